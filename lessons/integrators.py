@@ -1,0 +1,242 @@
+"""Lesson 1.  From acceleration to motion: eight ways to take one step.
+
+    ẋ = v,   v̇ = a(t, x, v)
+
+Symbols: t [s] time · x [m] position · v [m/s] velocity · a [m/s²] acceleration · dt [s] step · p parameters of the scene.
+
+Every method is a function  step(acceleration, t, x, v, dt, p) → (x, v)  at t + dt.  x and v are float arrays of one shape,
+whatever it is; acceleration(t, x, v, p) returns an array of that shape and gets p, untouched, as its last argument.
+*Left out:* everything that is not a smooth acceleration; contacts come with lesson 3.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from solutions.checks import Diverged, check_finite, check_positive
+
+NEWTON_TOLERANCE = 1e-12     # last correction over the size of the velocity [-]: well above round-off, 2e-16
+NEWTON_LIMIT = 30            # corrections [-]; from a sane guess Newton doubles its digits and needs fewer than 8
+DIFFERENCE_STEP = 1.5e-8     # √(2.2e-16) [-]: balances truncation against round-off in a forward difference
+
+
+# ---------------------------------------------------------------------------------------------- explicit methods
+
+def euler_step(acceleration, t, x, v, dt, p):
+    """Advance one step along the slope at its beginning; first order.
+
+    xₙ₊₁ = xₙ + dt vₙ
+    vₙ₊₁ = vₙ + dt a(tₙ, xₙ, vₙ)
+
+    Evaluates the acceleration once.  An undamped oscillator gains energy at every step.
+    *Source:* deck A, "Euler method".
+    """
+    # YOUR CODE HERE
+    raise NotImplementedError("Exercise 1.1: euler_step")
+
+
+def midpoint_step(acceleration, t, x, v, dt, p):
+    """Advance one step along the slope at its middle, which half an Euler step finds; second order.
+
+    x½ = xₙ + ½dt vₙ                      v½ = vₙ + ½dt a(tₙ, xₙ, vₙ)
+    xₙ₊₁ = xₙ + dt v½                     vₙ₊₁ = vₙ + dt a(tₙ + ½dt, x½, v½)
+
+    Evaluates the acceleration twice.
+    *Source:* deck A, "Midpoint method".
+    """
+    # YOUR CODE HERE
+    raise NotImplementedError("Exercise 1.2: midpoint_step")
+
+
+def rk4_step(acceleration, t, x, v, dt, p):
+    """Advance one step along a weighted mean of four slopes (the classical Runge–Kutta method); fourth order.
+
+    Each slope is a pair (velocity, acceleration): (v₁, a₁) at the beginning, (v₂, a₂) and (v₃, a₃) in the middle,
+    (v₄, a₄) at the end, each reached along the slope before it:
+
+    v₁ = vₙ                a₁ = a(tₙ,        xₙ,            v₁)
+    v₂ = vₙ + ½dt a₁       a₂ = a(tₙ + ½dt,  xₙ + ½dt v₁,   v₂)
+    v₃ = vₙ + ½dt a₂       a₃ = a(tₙ + ½dt,  xₙ + ½dt v₂,   v₃)
+    v₄ = vₙ + dt a₃        a₄ = a(tₙ + dt,   xₙ + dt v₃,    v₄)
+
+    xₙ₊₁ = xₙ + dt (v₁/6 + v₂/3 + v₃/3 + v₄/6)
+    vₙ₊₁ = vₙ + dt (a₁/6 + a₂/3 + a₃/3 + a₄/6)
+
+    Evaluates the acceleration four times.
+    *Source:* deck A, k₁/6 + k₂/3 + k₃/3 + k₄/6.
+    """
+    # YOUR CODE HERE
+    raise NotImplementedError("Exercise 1.3: rk4_step")
+
+
+def average_velocity_step(acceleration, t, x, v, dt, p):
+    """Advance one step: velocity by Euler, position with the mean of the old and the new velocity; first order.
+
+    vₙ₊₁ = vₙ + dt a(tₙ, xₙ, vₙ)
+    xₙ₊₁ = xₙ + ½dt (vₙ + vₙ₊₁)
+
+    Exact when the acceleration is constant.
+    *Source:* deck A, the last lines of "Mass-Spring-Damper System".
+    """
+    # YOUR CODE HERE
+    raise NotImplementedError("Exercise 1.4: average_velocity_step")
+
+
+# ---------------------------------------------------------------------------------------------- geometric methods
+
+def symplectic_euler_step(acceleration, t, x, v, dt, p):
+    """Advance one step, velocity first; first order, and bounded energy error on an undamped oscillator while ω dt < 2.
+
+    vₙ₊₁ = vₙ + dt a(tₙ, xₙ, vₙ)
+    xₙ₊₁ = xₙ + dt vₙ₊₁                    with the new velocity
+
+    *Source:* Hairer, Lubich, Wanner 2003, "Geometric numerical integration illustrated by the Störmer–Verlet method".
+    """
+    # YOUR CODE HERE
+    raise NotImplementedError("Exercise 1.5: symplectic_euler_step")
+
+
+def verlet_step(acceleration, t, x, v, dt, p):
+    """Advance one step of velocity Verlet; second order, and bounded energy error while ω dt < 2.
+
+    aₙ = a(tₙ, xₙ, vₙ)
+    xₙ₊₁ = xₙ + dt vₙ + ½dt² aₙ
+    vₙ₊₁ = vₙ + ½dt (aₙ + aₙ₊₁),           aₙ₊₁ = a(tₙ + dt, xₙ₊₁, vₙ + dt aₙ)
+
+    The velocity inside aₙ₊₁ is an Euler prediction: it matters only where the acceleration depends on velocity, and
+    there it keeps the method of second order.
+    *Source:* Swope et al. 1982; the prediction: Groot and Warren 1997 with λ = 1.
+    """
+    # YOUR CODE HERE
+    raise NotImplementedError("Exercise 1.6: verlet_step")
+
+
+# ---------------------------------------------------------------------------------------------- implicit methods
+
+def newton_matrix(acceleration, t, x, v, dt, p):
+    """Given.  The (n, n) matrix  1 − dt ∂a/∂v (t, x + dt v, v)  over the n entries of v, by forward differences.
+
+    It is the derivative of the residual  r(v) = v − vₙ − dt a(t, xₙ + dt v, v)  that Newton's method drives to zero.
+    """
+    a = acceleration(t, x + dt * v, v, p)
+    matrix = np.eye(v.size, dtype=v.dtype)
+    for k in range(v.size):
+        moved = v.copy()
+        moved.ravel()[k] += DIFFERENCE_STEP * max(1.0, abs(v.ravel()[k]))
+        delta = moved.ravel()[k] - v.ravel()[k]
+        matrix[:, k] -= dt * (acceleration(t, x + dt * moved, moved, p) - a).ravel() / delta
+    return matrix
+
+
+def solve(matrix, right):
+    """Given.  The y with matrix · y = right: (n, n) and (n,) arrays."""
+    return np.linalg.solve(matrix, right)
+
+
+def implicit_euler_step(acceleration, t, x, v, dt, p):
+    """Advance one step along the slope at its end; first order, and stable on a decaying system for every step.
+
+    vₙ₊₁ = vₙ + dt a(tₙ + dt, xₙ + dt vₙ₊₁, vₙ₊₁)
+    xₙ₊₁ = xₙ + dt vₙ₊₁
+
+    The first line is an equation for vₙ₊₁ =: w.  Newton's method solves it: start from w = vₙ and repeat
+        r = w − vₙ − dt a(tₙ + dt, xₙ + dt w, w)
+        w ← w − δ,    newton_matrix(acceleration, tₙ + dt, xₙ, w, dt, p) · δ = r     (given above, and so is solve)
+    until max|δ| ≤ NEWTON_TOLERANCE · max(1, max|w|).  r and δ are flat, (n,): use .ravel() and .reshape(v.shape).
+
+    Raises Diverged("Newton's method did not converge", dt) after NEWTON_LIMIT corrections.
+    *Source:* Hairer and Wanner 1996, "Solving ordinary differential equations II", IV.3 and IV.8.
+    """
+    # YOUR CODE HERE
+    raise NotImplementedError("Exercise 1.7: implicit_euler_step")
+
+
+def implicit_midpoint_step(acceleration, t, x, v, dt, p):
+    """Advance one step along the slope at the middle of the step itself; second order, keeps an oscillator's energy exactly.
+
+    x½ = ½(xₙ + xₙ₊₁),   v½ = ½(vₙ + vₙ₊₁)
+    xₙ₊₁ = xₙ + dt v½
+    vₙ₊₁ = vₙ + dt a(tₙ + ½dt, x½, v½)
+
+    (x½, v½) is where half a step of implicit Euler arrives; the other half goes on along the same slope.
+
+    Raises Diverged like implicit_euler_step.
+    *Source:* Hairer, Lubich, Wanner 2006, "Geometric numerical integration", II.1 and IV.2.
+    """
+    # YOUR CODE HERE
+    raise NotImplementedError("Exercise 1.8: implicit_midpoint_step")
+
+
+# ---------------------------------------------------------------------------------------------- many steps
+
+def advance(step, acceleration, t, x, v, dt, steps, p):
+    """Given.  The state (x, v) after so many steps of one method.
+
+    Raises BadInput for a step that is not positive or a state that is not finite, Diverged when the end is not finite.
+    """
+    check_positive("step dt [s]", dt)
+    check_finite("position x [m]", x)
+    check_finite("velocity v [m/s]", v)
+    for n in range(steps):
+        x, v = step(acceleration, t + n * dt, x, v, dt, p)
+    if not (np.all(np.isfinite(x)) and np.all(np.isfinite(v))):
+        raise Diverged("the motion is no longer finite", dt)
+    return x, v
+
+
+def trajectory(step, acceleration, t, x, v, dt, steps, p):
+    """Given.  Times (steps + 1,) and states (steps + 1, …) of the same run, the start included: ts, xs, vs."""
+    ts = t + dt * np.arange(steps + 1)
+    xs = np.zeros((steps + 1,) + x.shape)
+    vs = np.zeros((steps + 1,) + v.shape)
+    xs[0], vs[0] = x, v
+    for n in range(steps):
+        x, v = advance(step, acceleration, t + n * dt, x, v, dt, 1, p)
+        xs[n + 1], vs[n + 1] = x, v
+    return ts, xs, vs
+
+
+# ---------------------------------------------------------------------------------------------- how good is a method?
+
+class Oscillator(NamedTuple):
+    """The test problem of all stability: ẍ = −ω² x − 2ζω ẋ."""
+    omega: float         # undamped angular frequency ω [rad/s]
+    zeta: float          # damping ratio ζ [-]: 1 is critical
+
+
+def oscillator_acceleration(t, x, v, p):
+    """Given.  a = −ω² x − 2ζω v  [m/s²] of an Oscillator p."""
+    return -p.omega * p.omega * x - 2.0 * p.zeta * p.omega * v
+
+
+def amplification_matrix(step, omega, zeta, dt):
+    """The (2, 2) matrix A of one step on an oscillator: (xₙ₊₁, vₙ₊₁)ᵀ = A (xₙ, vₙ)ᵀ.
+
+    Column 1 is where the step takes (x, v) = (1, 0), column 2 where it takes (0, 1): states are arrays of shape (1,),
+    the acceleration is oscillator_acceleration, its parameters an Oscillator.
+    The method is stable where no eigenvalue of A is longer than 1.
+    *Source:* Hairer and Wanner 1996, IV.2.
+    """
+    # YOUR CODE HERE
+    raise NotImplementedError("Exercise 1.9: amplification_matrix")
+
+
+def spectral_radius(matrix):
+    """Given.  Length of the longer eigenvalue of a real (2, 2) matrix: the growth of the motion in one step."""
+    half_trace = 0.5 * (matrix[0, 0] + matrix[1, 1])
+    determinant = matrix[0, 0] * matrix[1, 1] - matrix[0, 1] * matrix[1, 0]
+    discriminant = half_trace * half_trace - determinant
+    if discriminant < 0.0:                               # a complex pair: |λ|² = λ λ̄ = det A
+        return np.sqrt(determinant)
+    return abs(half_trace) + np.sqrt(discriminant)
+
+
+def observed_order(dts, errors):
+    """Order of convergence that a series of runs shows: the slope of log(error) over log(dt), by least squares.
+
+    error ≈ C dtᵏ   ⇒   k = Σ (ξ − ξ̄)(η − η̄) / Σ (ξ − ξ̄)²,   ξ = log dt, η = log error
+
+    dts and errors are (n,) arrays of positive numbers.
+    """
+    # YOUR CODE HERE
+    raise NotImplementedError("Exercise 1.10: observed_order")

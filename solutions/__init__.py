@@ -1,0 +1,1 @@
+"""The worked answers: one module a lesson, and together the simulator itself."""

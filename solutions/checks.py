@@ -1,0 +1,30 @@
+"""What may go wrong, said in one sentence.  Given: every lesson may raise these, none has to define them."""
+
+import numpy as np
+
+
+class BadInput(ValueError):
+    """A value that no physics can be done with: names the thing, its value and the remedy."""
+
+    def __init__(self, thing, value, remedy):
+        super().__init__(f"{thing} is {value}: {remedy}")
+
+
+class Diverged(ArithmeticError):
+    """A computation that left the numbers behind: says with which step [s], and what to try."""
+
+    def __init__(self, what, dt):
+        super().__init__(f"{what} with dt = {dt} s: take a smaller step, or an implicit method")
+
+
+def check_positive(thing, value):
+    """Raise BadInput unless the number is finite and above zero (NaN is neither)."""
+    if not (value > 0.0 and np.isfinite(value)):
+        raise BadInput(thing, value, "give a finite number above zero")
+
+
+def check_finite(thing, values):
+    """Raise BadInput with the first entry of the array that is infinite or not a number."""
+    for value in values.ravel():
+        if not np.isfinite(value):
+            raise BadInput(thing, value, "give finite numbers only")

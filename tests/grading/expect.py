@@ -1,0 +1,59 @@
+"""The few ways in which a grading test compares.  A failure carries quantity, expected, got and tolerance as data."""
+
+import numpy as np
+
+
+class NotYet(AssertionError):
+    """An answer that is not right yet."""
+
+    def __init__(self, quantity, expected, got, tolerance):
+        self.quantity, self.expected, self.got, self.tolerance = quantity, expected, got, tolerance
+        super().__init__(f"{quantity}: expected {expected}, got {got}, tolerance {tolerance}")
+
+
+def numbers(quantity, got, shape):
+    """got as a float array, or NotYet when it is not one of that shape or holds NaN or infinity."""
+    try:
+        array = np.asarray(got, dtype=float)
+    except (TypeError, ValueError):
+        raise NotYet(quantity, f"an array of shape {shape}", f"a {type(got).__name__}", "exact") from None
+    if array.shape != shape:
+        raise NotYet(quantity, f"an array of shape {shape}", f"shape {array.shape}", "exact")
+    if not np.all(np.isfinite(array)):
+        raise NotYet(quantity, "finite numbers", show(array), "exact")
+    return array
+
+
+def close(quantity, got, expected, tolerance):
+    """got equals expected, entry by entry, within an absolute tolerance."""
+    expected = np.asarray(expected, dtype=float)
+    array = numbers(quantity, got, expected.shape)
+    if not np.all(np.abs(array - expected) <= tolerance):
+        raise NotYet(quantity, show(expected), show(array), f"{tolerance:.1e}")
+
+
+def between(quantity, got, low, high):
+    """low ≤ got ≤ high, for one number."""
+    number = float(numbers(quantity, got, ()))
+    if not low <= number <= high:
+        raise NotYet(quantity, f"{low:.6g} to {high:.6g}", f"{number:.6g}", "a range")
+
+
+def raises(quantity, error, function, *arguments):
+    """The call raises an error of that class (or of one of that name: compiled and sandboxed code have their own)."""
+    try:
+        function(*arguments)
+    except NotImplementedError:
+        raise
+    except Exception as e:
+        if error.__name__ not in {base.__name__ for base in type(e).__mro__}:
+            raise NotYet(quantity, error.__name__, type(e).__name__, "exact") from None
+    else:
+        raise NotYet(quantity, f"{error.__name__} to be raised", "no error", "exact")
+
+
+def show(array):
+    """A number or a small array in seven digits; of a large one the beginning."""
+    flat = np.ravel(array)
+    text = ", ".join(f"{x:.7g}" for x in flat[:6]) + (", …" if flat.size > 6 else "")
+    return text if np.ndim(array) == 0 else f"({text})"

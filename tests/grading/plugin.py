@@ -1,0 +1,109 @@
+"""One set of tests, several subjects: `pytest --of solutions|lessons|PATH`, `--compiled`, `--exercise 1.2`.
+
+Without options the subject is `solutions`, plain and compiled, and the tests of the workbook itself run too.
+With --of only the grading tests run.
+"""
+
+import types
+
+import pytest
+
+from solutions.checks import BadInput
+from validate import binding
+
+from .points import Points, score
+
+
+def pytest_addoption(parser):
+    group = parser.getgroup("workbook")
+    group.addoption("--of", help="whose answers to test: solutions, lessons or a folder of lesson files")
+    group.addoption("--compiled", action="store_true", help="test the compiled twins only")
+    group.addoption("--exercise", action="append", default=[], metavar="1.2", help="only this exercise (may be repeated)")
+
+
+def pytest_configure(config):
+    if config.getoption("--of"):
+        try:
+            binding.subject_folder(config.getoption("--of"))
+        except BadInput as e:
+            raise pytest.UsageError(str(e)) from None
+        config.points = Points()
+        config.pluginmanager.register(config.points)
+
+
+def pytest_generate_tests(metafunc):
+    if "lesson" in metafunc.fixturenames:
+        option, given = metafunc.config.getoption, hasattr(metafunc.config, "given_subject")
+        speeds = ["given"] if given else ["compiled"] if option("--compiled") else ["plain"] if option("--of") else ["plain", "compiled"]
+        metafunc.parametrize("lesson", speeds, indirect=True)
+
+
+def pytest_collection_modifyitems(config, items):
+    wanted, grading = config.getoption("--exercise"), config.getoption("--of") or hasattr(config, "given_subject")
+    keep = []
+    for item in items:
+        mark = item.get_closest_marker("exercise")
+        if (mark and (not wanted or mark.args[0] in wanted)) or not (mark or wanted or grading):
+            keep.append(item)
+    gone = [item for item in items if item not in keep]
+    if gone:
+        config.hook.pytest_deselected(items=gone)
+        items[:] = keep
+
+
+@pytest.fixture
+def lesson(request):
+    """The lesson that the test file is named after, from the subject under test."""
+    if request.param == "given":
+        return request.config.given_subject
+    name, of = request.path.stem.removeprefix("test_"), request.config.getoption("--of") or "solutions"
+    if request.param == "plain":
+        return binding.bind(name, of)
+    if not binding.can_compile():
+        pytest.skip("numba has no wheel for this machine: the compiled twins are not tested")
+    if request.node.get_closest_marker("counts_calls"):
+        pytest.skip("counts the calls of a Python function, which compiled code cannot call")
+    return Compiled(binding.bind(name, of, compiled=True))
+
+
+class Compiled:
+    """A compiled lesson that takes the plain functions of a test as callbacks: numba wants those compiled as well."""
+
+    def __init__(self, module):
+        self.module = module
+
+    def __getattr__(self, name):
+        value = getattr(self.module, name)
+        if not hasattr(value, "py_func"):
+            return value
+
+        def call(*arguments):
+            return value(*map(compiled_callback, arguments))
+        call.twin = value
+        return call
+
+
+def compiled_callback(argument):
+    if hasattr(argument, "twin"):
+        return argument.twin
+    return _jitted(argument) if isinstance(argument, types.FunctionType) else argument
+
+
+_callbacks = {}
+
+
+def _jitted(function):
+    from numba import njit
+    if function not in _callbacks:
+        _callbacks[function] = njit(error_model="numpy")(function)
+    return _callbacks[function]
+
+
+def pytest_terminal_summary(terminalreporter, config):
+    if not hasattr(config, "points") or not config.points.outcomes:
+        return
+    table = score(config.points.outcomes)
+    terminalreporter.section("points")
+    for exercise, (earned, possible) in table.items():
+        terminalreporter.line(f"{exercise:>6}  {earned:g} of {possible:g}")
+    terminalreporter.line(f"{'all':>6}  {sum(e for e, _ in table.values()):g} of {sum(p for _, p in table.values()):g}")

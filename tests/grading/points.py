@@ -1,0 +1,73 @@
+"""From test outcomes to points.  An exercise's points are the sum over its tests; what did not pass earns nothing."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from .expect import NotYet
+
+TESTS = Path(__file__).resolve().parent.parent
+
+
+class Outcome(NamedTuple):
+    """What one grading test found."""
+    exercise: str            # "1.2"
+    test: str                # a claim
+    points: float
+    status: str              # passed, not attempted, not yet
+    quantity: str = ""
+    expected: str = ""
+    got: str = ""
+    tolerance: str = ""
+    hint: str = ""
+
+
+class Points:
+    """A pytest plugin that keeps the outcome of every grading test."""
+
+    def __init__(self):
+        self.outcomes = []
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_makereport(self, item, call):
+        report = yield
+        mark = item.get_closest_marker("exercise")
+        if mark and (call.when == "call" or (call.excinfo and call.when == "setup")):
+            self.outcomes.append(outcome(mark, item.name, call.excinfo))
+        return report
+
+
+def outcome(mark, name, excinfo):
+    """The Outcome of one test from its mark and what it raised, if anything."""
+    exercise, points, hint = mark.args[0], mark.kwargs["points"], mark.kwargs["hint"]
+    if excinfo is None:
+        return Outcome(exercise, name, points, "passed")
+    error = excinfo.value
+    if isinstance(error, NotImplementedError):
+        return Outcome(exercise, name, points, "not attempted", got=str(error), hint=hint)
+    if isinstance(error, NotYet):
+        return Outcome(exercise, name, points, "not yet", *map(str, (error.quantity, error.expected, error.got, error.tolerance)), hint)
+    return Outcome(exercise, name, points, "not yet", "the call itself", "an answer", f"{type(error).__name__}: {error}", "", hint)
+
+
+def grade(lesson, subject, exercise=None):
+    """Outcomes of a lesson's grading tests for a subject (any object with the lesson's functions as attributes)."""
+    class Given:
+        def pytest_configure(self, config):
+            config.given_subject = subject
+
+    points = Points()
+    selected = [f"--exercise={exercise}"] if exercise else []
+    pytest.main([str(TESTS / f"test_{lesson}.py"), "-q", "--no-header", "--no-summary", "-p", "no:cacheprovider",
+                 "-p", "no:terminal", f"--rootdir={TESTS.parent}", *selected], plugins=[Given(), points])
+    return points.outcomes
+
+
+def score(outcomes):
+    """{exercise: (points earned, points possible)}, in the order in which the exercises came."""
+    total = {}
+    for o in outcomes:
+        earned, possible = total.get(o.exercise, (0, 0))
+        total[o.exercise] = earned + o.points * (o.status == "passed"), possible + o.points
+    return total

@@ -1,0 +1,1 @@
+"""Validation: scenes held against truth and engines, measured, and reported."""

@@ -1,0 +1,83 @@
+"""Make lessons/ from solutions/: the same modules with the answers taken out.
+
+`python -m validate.generate` writes them, `--check` only says whether they are what it would write.
+"""
+
+import re
+import sys
+from pathlib import Path
+
+from solutions.checks import BadInput
+
+from .binding import ROOT, SOLUTIONS, lesson_names
+
+LESSONS = ROOT / "lessons"
+ANSWER = re.compile(r"^(?P<indent> *)### BEGIN SOLUTION (?P<exercise>\d+\.\d+)\n.*?^ *### END SOLUTION *\n", re.M | re.S)
+FUNCTION = re.compile(r"^def (\w+)", re.M)
+
+
+def stub(source):
+    """The text of a lesson: every answer replaced by a NotImplementedError that names exercise and function."""
+    def empty(match):
+        function = FUNCTION.findall(source, 0, match.start())[-1]
+        indent, exercise = match["indent"], match["exercise"]
+        return f'{indent}# YOUR CODE HERE\n{indent}raise NotImplementedError("Exercise {exercise}: {function}")\n'
+
+    text = ANSWER.sub(empty, source)
+    if re.search(r"(BEGIN|END) SOLUTION", text):
+        raise BadInput("a solution marker", "unpaired or without its exercise number", "write ### BEGIN SOLUTION 1.2 … ### END SOLUTION")
+    return re.sub(r"^from \.(\w+) import", r"from solutions.\1 import", text, flags=re.M)
+
+
+def exercises(source):
+    """{"1.2": "midpoint_step", …} in the order of the text."""
+    return {m["exercise"]: FUNCTION.findall(source, 0, m.start())[-1] for m in ANSWER.finditer(source)}
+
+
+def lessons():
+    """{file name: text} of everything that belongs into lessons/."""
+    texts = {f"{name}.py": stub((SOLUTIONS / f"{name}.py").read_text()) for name in lesson_names()}
+    return {"__init__.py": '"""Your copy of the lessons: each function waits for its body.  Start with notebooks/00_start_here.ipynb."""\n', **texts}
+
+
+def differing(folder=LESSONS):
+    """Names of the files that are not what the solutions would give, missing and superfluous ones included."""
+    texts = lessons()
+    there = {path.name: path.read_text() for path in Path(folder).glob("*.py")}
+    return sorted(name for name in texts.keys() | there.keys() if texts.get(name) != there.get(name))
+
+
+def worked_in(folder=LESSONS):
+    """Files in which somebody has answered something: an exercise's function is there, but no longer raises."""
+    def answered(path):
+        text, solution = path.read_text(), SOLUTIONS / path.name
+        return solution.is_file() and any(f"def {function}(" in text and f'"Exercise {exercise}: {function}"' not in text
+                                          for exercise, function in exercises(solution.read_text()).items())
+    return sorted(path.name for path in Path(folder).glob("*.py") if answered(path))
+
+
+def main(arguments):
+    if arguments not in ([], ["--check"], ["--force"]):
+        print(f"{' '.join(arguments)} is not an option here: give --check, --force or nothing", file=sys.stderr)
+        return 2
+    changed = differing()
+    if arguments == ["--check"]:
+        if changed:
+            print(f"lessons/ is not what solutions/ gives ({', '.join(changed)}): run python -m validate.generate", file=sys.stderr)
+        return 1 if changed else 0
+    answered = worked_in()
+    if answered and arguments != ["--force"]:
+        print(f"lessons/ holds answers ({', '.join(answered)}): move them away, or overwrite them with --force", file=sys.stderr)
+        return 2
+    texts = lessons()
+    for name in changed:
+        if name in texts:
+            (LESSONS / name).write_text(texts[name])
+        else:
+            (LESSONS / name).unlink()
+        print(f"lessons/{name}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
