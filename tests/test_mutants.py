@@ -18,7 +18,7 @@ def mutants():
             yield pytest.param(name, mutant, id=f"{mutant.exercise}-{'right' if mutant.right else 'wrong'}-{mutant.story.replace(' ', '_')}")
 
 
-@pytest.mark.parametrize("lesson_name, mutant", mutants())
+@pytest.mark.parametrize("lesson_name, mutant", list(mutants()))
 def test_an_answer_keeps_its_points_exactly_when_it_is_right(lesson_name, mutant):
     module = binding.bind(lesson_name)
     subject = types.SimpleNamespace(**{**vars(module), mutant.function.__name__: mutant.function})

@@ -1,5 +1,7 @@
 """From test outcomes to points.  An exercise's points are the sum over its tests; what did not pass earns nothing."""
 
+import contextlib
+import io
 from pathlib import Path
 from typing import NamedTuple
 
@@ -59,8 +61,9 @@ def grade(lesson, subject, exercise=None):
 
     points = Points()
     selected = [f"--exercise={exercise}"] if exercise else []
-    pytest.main([str(TESTS / f"test_{lesson}.py"), "-q", "--no-header", "--no-summary", "-p", "no:cacheprovider",
-                 "-p", "no:terminal", f"--rootdir={TESTS.parent}", *selected], plugins=[Given(), points])
+    with contextlib.redirect_stdout(io.StringIO()):
+        pytest.main([str(TESTS / f"test_{lesson}.py"), f"--rootdir={TESTS.parent}", "--tb=no", "-p", "no:cacheprovider", *selected],
+                    plugins=[Given(), points])
     return points.outcomes
 
 
