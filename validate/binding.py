@@ -173,7 +173,7 @@ class World:
         from numba import njit
         for name, value in list(vars(module).items()):
             if isinstance(value, types.FunctionType) and value.__module__ == module.__name__ and (names is None or name in names):
-                twin = njit(cache=True, error_model="numpy")(value)
+                twin = njit(cache=True, error_model="numpy", no_cfunc_wrapper=True)(value)
                 # numba recognises a function argument in its disk cache by this id alone: make it the same in every process
                 twin._set_uuid(str(uuid.uuid5(uuid.NAMESPACE_URL, f"{module.__name__}.{value.__qualname__}")))
                 setattr(module, name, twin)
@@ -193,6 +193,8 @@ def _called_from(module, root):
 def _use_cache(digest):
     """Point numba at this world's folder, and delete the folders of worlds long gone."""
     import numba
+    from numba.core.config import _OptLevel
+    numba.config.OPT, numba.config.LOOP_VECTORIZE = _OptLevel(2), 0                   # same speed here, a third of the compiling
     warnings.filterwarnings("ignore", message="Cannot cache compiled function")      # then it is compiled anew, that is all
     folder = CACHE / digest
     try:

@@ -1,0 +1,357 @@
+"""Lesson 2.  Forces, and the mass-spring-damper system.
+
+Symbols: x (n, d) [m] positions of n points in d dimensions · v (n, d) [m/s] · F [N] · m [kg], inv_mass [1/kg] (0 holds a point
+fixed) · k [N/m] stiffness · k_d [N s/m] damper · k_v [N s/m] viscosity · l [m] length of a spring, rest its natural one.
+
+A spring joins points i and j.  Its tension pulls i towards j and j towards i: two forces, equal and opposite.
+*Left out:* collisions of the points with each other; bending and torsion of a rod with thickness.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .checks import BadInput, Diverged, check_finite, check_positive
+from .integrators import average_velocity_step
+
+GRAVITY = 9.81                # g [m/s²], near the ground; deck A rounds it to 9.8
+G = 6.67430e-11               # gravitational constant [m³/(kg s²)], CODATA 2018
+
+STRUCTURAL = ((0, 1), (1, 0))     # (rows, columns) from a node of a grid to its partner: along the threads
+SHEAR = ((1, 1), (1, -1))         # across each mesh, both diagonals
+BEND = ((0, 2), (2, 0))           # over the next node
+
+CG_TOLERANCE = 1e-10          # residual over right-hand side [-]: far below the error of a first-order step
+
+
+class Mesh(NamedTuple):
+    """Everything about a mass-spring-damper system that does not move."""
+    inv_mass: np.ndarray      # (n,) 1/m [1/kg]; 0 is a fixed point
+    gravity: np.ndarray       # (d,) [m/s²]
+    wind: np.ndarray          # (d,) force of the wind on each point [N]
+    k_v: float                # viscosity [N s/m]
+    i: np.ndarray             # (s,) first end of each spring
+    j: np.ndarray             # (s,) second end
+    rest: np.ndarray          # (s,) natural length [m]
+    k: np.ndarray             # (s,) stiffness [N/m]
+    k_d: np.ndarray           # (s,) damper [N s/m]
+
+
+# ---------------------------------------------------------------------------------------------- single forces
+
+def universal_gravity(x_a, x_b, m_a, m_b, G):
+    """Force [N] (d,) on body a: Newton's attraction towards body b.
+
+    F = G m_a m_b / r²  along the line from a to b,   r = |x_b − x_a|
+
+    Near the ground, with b the Earth, it is m_a g.
+    *Source:* deck A, "Friction (2)" and "Gravity"; Newton 1687.
+    """
+    ### BEGIN SOLUTION 2.1
+    r = x_b - x_a
+    return G * m_a * m_b / np.sum(r * r) ** 1.5 * r
+    ### END SOLUTION
+
+
+def air_force(v, wind, k_v):
+    """Force [N] of the air on points that move with v [m/s]: the wind pushes, viscosity holds back.
+
+    F = F_wind − k_v v
+
+    wind [N] is the force on a point at rest.  v and wind are arrays that fit together, or one coordinate of each.
+    *Source:* deck A, "Viscosity", and "initialize force with wind".
+    """
+    ### BEGIN SOLUTION 2.2
+    return wind - k_v * v
+    ### END SOLUTION
+
+
+def spring_tension(length, rate, rest, k, k_d):
+    """Tension [N] of a spring with a damper beside it; negative where it pushes.
+
+    T = k (l − rest) + k_d l̇          l̇ [m/s]: how fast it lengthens
+
+    *Source:* deck A, "Damping", whose sign is that of the force on the moving end.
+    """
+    ### BEGIN SOLUTION 2.3
+    return k * (length - rest) + k_d * rate
+    ### END SOLUTION
+
+
+def soft_constraint_force(C, C_rate, gradient, k, k_d):
+    """Force [N] (d,) that holds a point softly to the constraint C(x) = 0: fixing to a surface, a path, a point.
+
+    F = −(k C + k_d Ċ) ∇C
+
+    C [m] and Ċ = ∇C · v [m/s] are floats, gradient ∇C (d,) [-].
+    *Source:* deck A, "Soft constraints", "Fix to surface"; Witkin and Baraff 1997.
+    """
+    ### BEGIN SOLUTION 2.4
+    return -(k * C + k_d * C_rate) * gradient
+    ### END SOLUTION
+
+
+def soft_contact_force(C, C_rate, gradient, k, k_d):
+    """Force [N] (d,) that keeps a point softly on the side C(x) ≥ 0 of a surface: the same spring, but it never pulls.
+
+    F = max(0, −(k C + k_d Ċ)) ∇C   where C < 0;   0 elsewhere
+
+    *Source:* deck A, "Non-penetration".
+    """
+    ### BEGIN SOLUTION 2.5
+    if C >= 0.0:
+        return 0.0 * gradient
+    return max(0.0, -(k * C + k_d * C_rate)) * gradient
+    ### END SOLUTION
+
+
+def angular_spring_forces(x_a, x_b, x_c, rest, k):
+    """Forces [N] (2,) on a, b and c, in the plane, of an angular spring at b that wants the angle `rest` from arm a to arm c.
+
+    θ = angle from r_a = x_a − x_b to r_c = x_c − x_b, counter-clockwise, with θ − rest taken into (−π, π]
+    F_c = −k (θ − rest) r_c⊥ / |r_c|²         r⊥ = (−r_y, r_x) turns r counter-clockwise
+    F_a = +k (θ − rest) r_a⊥ / |r_a|²
+    F_b = −F_a − F_c                          nothing is pushed from outside
+
+    k [N m/rad].  Derivative of the energy ½k(θ − rest)².
+    Raises BadInput("the arm of an angular spring [m]", 0.0, …) when an arm has no length.
+    *Source:* deck A, "Angular springs".
+    """
+    ### BEGIN SOLUTION 2.6
+    r_a, r_c = x_a - x_b, x_c - x_b
+    squared_a, squared_c = np.sum(r_a * r_a), np.sum(r_c * r_c)
+    if squared_a == 0.0 or squared_c == 0.0:
+        raise BadInput("the arm of an angular spring [m]", 0.0, "keep its ends away from its hinge")
+    theta = np.arctan2(r_a[0] * r_c[1] - r_a[1] * r_c[0], np.sum(r_a * r_c))
+    turn = np.arctan2(np.sin(theta - rest), np.cos(theta - rest))
+    F_a = k * turn / squared_a * np.array([-r_a[1], r_a[0]])
+    F_c = -k * turn / squared_c * np.array([-r_c[1], r_c[0]])
+    return F_a, -F_a - F_c, F_c
+    ### END SOLUTION
+
+
+# ---------------------------------------------------------------------------------------------- the system
+
+def spring_forces(x, v, mesh):
+    """Forces (n, d) [N] of all springs on all points.
+
+    For each spring:  r = x_j − x_i,   l = |r|,   l̇ = r · (v_j − v_i) / l,   T = spring_tension(l, l̇, …)
+                      F_i += T r/l,    F_j −= T r/l
+
+    Sum over the d coordinates in a loop: small arrays would cost more than the arithmetic.
+    Raises BadInput("the length of a spring [m]", 0.0, …) when its ends coincide: then it has no direction.
+    *Source:* deck A, "spring.point1.force += force; spring.point2.force -= force".
+    """
+    ### BEGIN SOLUTION 2.7
+    force = np.zeros_like(x)
+    for s in range(mesh.i.size):
+        i, j = mesh.i[s], mesh.j[s]
+        x_i, x_j, v_i, v_j, force_i, force_j = x[i], x[j], v[i], v[j], force[i], force[j]      # views of the rows
+
+        squared, product = 0.0, 0.0
+        for c in range(x_i.size):
+            r = x_j[c] - x_i[c]
+            squared += r * r
+            product += r * (v_j[c] - v_i[c])
+        if squared == 0.0:
+            raise BadInput("the length of a spring [m]", 0.0, "keep its ends apart: it has no direction")
+        length = np.sqrt(squared)
+
+        pull = spring_tension(length, product / length, mesh.rest[s], mesh.k[s], mesh.k_d[s]) / length
+        for c in range(x_i.size):
+            force_i[c] += pull * (x_j[c] - x_i[c])
+            force_j[c] -= pull * (x_j[c] - x_i[c])
+    return force
+    ### END SOLUTION
+
+
+def mesh_acceleration(t, x, v, mesh):
+    """Acceleration (n, d) [m/s²] of every point of a mesh; fixed points have none.
+
+    a = g + F/m,   F = springs + air          a = 0 where inv_mass = 0
+
+    *Source:* deck A, "Mass-Spring-Damper System".
+    """
+    ### BEGIN SOLUTION 2.8
+    force = spring_forces(x, v, mesh)
+    a = np.zeros_like(x)
+    for n in range(x.shape[0]):
+        if mesh.inv_mass[n] > 0.0:
+            for c in range(x.shape[1]):
+                air = air_force(v[n, c], mesh.wind[c], mesh.k_v)
+                a[n, c] = mesh.gravity[c] + (force[n, c] + air) * mesh.inv_mass[n]
+    return a
+    ### END SOLUTION
+
+
+def mass_spring_damper_step(t, x, v, dt, mesh):
+    """Advance the whole system by one step, as the lecture does: (x, v) at t + dt.
+
+    wind on every point · spring-damper forces on the two ends · a = g + F/m · v_new = v + dt a · x += dt (v + v_new)/2
+
+    *Source:* deck A, "Mass-Spring-Damper System".
+    """
+    ### BEGIN SOLUTION 2.9
+    return average_velocity_step(mesh_acceleration, t, x, v, dt, mesh)
+    ### END SOLUTION
+
+
+# ---------------------------------------------------------------------------------------------- building a mesh
+
+def grid_pairs(rows, cols, offsets):
+    """Pairs (s, 2) of node numbers that springs join in a grid; node (r, c) has number r · cols + c.
+
+    For every offset (dr, dc), for every node from the first to the last: (node, node at r + dr, c + dc) where there is one.
+    STRUCTURAL, SHEAR and BEND are such offsets; add the tuples to have several connectivities.
+    Returns integers; an empty list of pairs has shape (0, 2).
+    *Source:* deck A, "Multiple connectivity"; Provot 1995 for the three names.
+    """
+    ### BEGIN SOLUTION 2.10
+    pairs = [(r * cols + c, (r + dr) * cols + c + dc)
+             for dr, dc in offsets for r in range(rows) for c in range(cols)
+             if 0 <= r + dr < rows and 0 <= c + dc < cols]
+    return np.array(pairs, dtype=np.int64).reshape(-1, 2)
+    ### END SOLUTION
+
+
+def make_mesh(x, m, fixed, pairs, k, k_d, gravity, wind, k_v):
+    """Given.  A Mesh whose springs rest at the lengths they have at x.
+
+    x (n, d); m [kg], k and k_d are numbers or one each; fixed lists point numbers; pairs (s, 2); gravity and wind (d,).
+    Raises BadInput for a mass that is not positive, a state that is not finite, a spring of no length.
+    """
+    check_finite("a position of the mesh [m]", x)
+    masses = np.broadcast_to(np.asarray(m, dtype=float), len(x))
+    for mass in masses:
+        check_positive("a mass of the mesh [kg]", mass)
+    inv_mass = 1.0 / masses
+    inv_mass[list(fixed)] = 0.0
+    i, j = np.ascontiguousarray(pairs[:, 0]), np.ascontiguousarray(pairs[:, 1])
+    rest = np.sqrt(np.sum((x[j] - x[i]) ** 2, axis=1))
+    for s in np.flatnonzero(rest == 0.0):
+        raise BadInput(f"the length of spring {s} from point {i[s]} to {j[s]} [m]", 0.0, "move its ends apart")
+
+    def each(value):
+        return np.full(len(i), value, dtype=float) if np.ndim(value) == 0 else np.array(value, dtype=float)
+
+    return Mesh(inv_mass, np.array(gravity, dtype=float), np.array(wind, dtype=float), float(k_v), i, j, rest, each(k), each(k_d))
+
+
+def randomised(value, spread, u):
+    """Given.  value · (1 + spread (2u − 1)): between ±spread of the value for u in [0, 1), a number or an array of draws."""
+    return value * (1.0 + spread * (2.0 * u - 1.0))
+
+
+# ---------------------------------------------------------------------------------------------- stiff meshes
+
+class StepMatrix(NamedTuple):
+    """The sparse matrix A = M + dt k_v − dt ∂F/∂v − dt² ∂F/∂x of a mesh: a diagonal, and one block a spring."""
+    diagonal: np.ndarray      # (n,) m + dt k_v [kg]; 0 for a fixed point
+    i: np.ndarray             # (s,)
+    j: np.ndarray             # (s,)
+    block: np.ndarray         # (s, d, d) dt² K + dt D of each spring [kg]
+
+
+def spring_stiffness(x, mesh):
+    """Blocks K [N/m] and D [N s/m], each (s, d, d): how the force on i answers when i moves, and when it gets faster.
+
+    K = −∂F_i/∂x_i = k n nᵀ + k max(0, 1 − rest/l) (1 − n nᵀ)          n = r/l,  r = x_j − x_i
+    D = −∂F_i/∂v_i = k_d n nᵀ
+
+    j answers alike, and each answers the other's motion with the opposite sign.  Left out, so that the matrix stays
+    positive: the sideways push of a compressed spring (the max), and the damper's share of ∂F/∂x.
+    *Source:* Baraff and Witkin 1998; Choi and Ko 2002 for the max.
+    """
+    ### BEGIN SOLUTION 2.11
+    d = x.shape[1]
+    K, D = np.zeros((mesh.i.size, d, d)), np.zeros((mesh.i.size, d, d))
+    for s in range(mesh.i.size):
+        r = x[mesh.j[s]] - x[mesh.i[s]]
+        length = np.sqrt(np.sum(r * r))
+        across = mesh.k[s] * max(0.0, 1.0 - mesh.rest[s] / length)
+        for a in range(d):
+            K[s, a, a] = across
+            for b in range(d):
+                nn = r[a] * r[b] / (length * length)
+                K[s, a, b] += (mesh.k[s] - across) * nn
+                D[s, a, b] = mesh.k_d[s] * nn
+    return K, D
+    ### END SOLUTION
+
+
+def apply_blocks(y, i, j, block):
+    """Given.  (n, d): Σ over springs of block · (y_i − y_j), added at i and subtracted at j."""
+    out = np.zeros_like(y)
+    for s in range(i.size):
+        for a in range(y.shape[1]):
+            total = 0.0
+            for b in range(y.shape[1]):
+                total += block[s, a, b] * (y[i[s], b] - y[j[s], b])
+            out[i[s], a] += total
+            out[j[s], a] -= total
+    return out
+
+
+def apply_step_matrix(y, A):
+    """Given.  A · y for a StepMatrix, (n, d); the rows of fixed points are 0."""
+    out = apply_blocks(y, A.i, A.j, A.block)
+    for n in range(y.shape[0]):
+        for c in range(y.shape[1]):
+            out[n, c] = A.diagonal[n] * y[n, c] + out[n, c] if A.diagonal[n] > 0.0 else 0.0
+    return out
+
+
+def conjugate_gradients(apply, A, right):
+    """The y with apply(y, A) = right, for a symmetric positive definite apply; right and y are arrays of one shape.
+
+    y = 0,  r = right,  p = r;  repeat
+        α = (r·r) / (p·Ap),   y += α p,   r_new = r − α Ap,   p = r_new + (r_new·r_new)/(r·r) p
+    until |r| ≤ CG_TOLERANCE |right|.  A right-hand side of zeros has the solution zeros.
+
+    Raises Diverged("conjugate gradients did not converge", nan) after 10 · (size of right) rounds.
+    *Source:* Hestenes and Stiefel 1952; Shewchuk 1994.
+    """
+    ### BEGIN SOLUTION 2.12
+    y = np.zeros_like(right)
+    r = right.copy()
+    p = right.copy()
+    squared = np.sum(r * r)
+    enough = CG_TOLERANCE * CG_TOLERANCE * squared
+    for _ in range(10 * right.size):
+        if squared <= enough:
+            return y
+        Ap = apply(p, A)
+        alpha = squared / np.sum(p * Ap)
+        y += alpha * p
+        r -= alpha * Ap
+        before, squared = squared, np.sum(r * r)
+        p = r + squared / before * p
+    raise Diverged("conjugate gradients did not converge", np.nan)
+    ### END SOLUTION
+
+
+def implicit_mesh_step(acceleration, t, x, v, dt, mesh):
+    """Advance a mesh one step by linearly implicit Euler: stable for any stiffness, first order.
+
+    (M + dt k_v − dt ∂F/∂v − dt² ∂F/∂x) Δv = dt (M a + dt ∂F/∂x v)        a = acceleration(t, x, v, mesh)
+    vₙ₊₁ = vₙ + Δv,   xₙ₊₁ = xₙ + dt vₙ₊₁
+
+    With K, D = spring_stiffness: the matrix is a StepMatrix with diagonal m + dt k_v (0 for a fixed point) and blocks
+    dt² K + dt D; and ∂F/∂x v = −apply_blocks(v, i, j, K).  The right-hand side of a fixed point is 0.
+    Solved by conjugate_gradients with apply_step_matrix.
+    *Source:* Baraff and Witkin 1998, "Large steps in cloth simulation".
+    """
+    ### BEGIN SOLUTION 2.13
+    K, D = spring_stiffness(x, mesh)
+    a = acceleration(t, x, v, mesh)
+    pull = apply_blocks(v, mesh.i, mesh.j, K)
+    diagonal = np.zeros(x.shape[0])
+    right = np.zeros_like(x)
+    for n in range(x.shape[0]):
+        if mesh.inv_mass[n] > 0.0:
+            diagonal[n] = 1.0 / mesh.inv_mass[n] + dt * mesh.k_v
+            right[n] = dt * (a[n] / mesh.inv_mass[n] - dt * pull[n])
+    A = StepMatrix(diagonal, mesh.i, mesh.j, dt * dt * K + dt * D)
+    v = v + conjugate_gradients(apply_step_matrix, A, right)
+    return x + dt * v, v
+    ### END SOLUTION

@@ -1,0 +1,75 @@
+"""The two witnesses, set up to match textbook mechanics, and whether they are here at all.
+
+Both move first-order: pybullet v += a dt, then x += v dt; pymunk x += v dt, then v += a dt.  Started from a velocity half a
+step away (−½ a dt in pybullet, +½ a dt in pymunk) they become leapfrog, of second order where forces are smooth.
+"""
+
+from importlib.metadata import PackageNotFoundError, version
+
+from solutions.checks import BadInput
+
+from .scene import World
+
+NAMES = ("pymunk", "pybullet")
+
+
+def installed(engine):
+    """The engine's version, or None.  Raises BadInput for an engine nobody knows."""
+    if engine not in NAMES:
+        raise BadInput(f"engine {engine!r}", "unknown", f"choose from: {', '.join(NAMES)}")
+    try:
+        return version(engine)
+    except PackageNotFoundError:
+        return None
+
+
+def pymunk_space(gravity=(0.0, 0.0)):
+    """A pymunk.Space without damping, its units metres."""
+    import pymunk
+    space = pymunk.Space()
+    space.gravity = tuple(map(float, gravity))
+    space.collision_slop = 1e-5                      # the default, 0.1, is a length in pixels
+    return space
+
+
+def pymunk_world(space, dt, read):
+    """The World of a space."""
+    return World(lambda: space.step(dt), read, lambda: None)
+
+
+class Bullet:
+    """A pybullet client without a window, with the settings that every scene needs.  Bodies have no shape unless given one."""
+
+    def __init__(self, dt, gravity=(0.0, 0.0, 0.0)):
+        import pybullet
+        self.pb, self.client = pybullet, pybullet.connect(pybullet.DIRECT)
+        pybullet.setGravity(*map(float, gravity), physicsClientId=self.client)
+        pybullet.setTimeStep(dt, physicsClientId=self.client)
+        # the residual threshold stops the solver at an absolute velocity, which ruins small steps; the breaking threshold is
+        # global to the process and survives reconnecting, so every scene sets it
+        pybullet.setPhysicsEngineParameter(solverResidualThreshold=0, contactBreakingThreshold=0.02, physicsClientId=self.client)
+
+    def point_mass(self, m, x, v, default=False):
+        """A free body with maximal coordinates: no hidden damping, no velocity clamp.  default: as createMultiBody leaves it."""
+        body = self.pb.createMultiBody(m, basePosition=list(map(float, x)), useMaximalCoordinates=0 if default else 1,
+                                       physicsClientId=self.client)
+        if not default:
+            self.pb.changeDynamics(body, -1, linearDamping=0, angularDamping=0, physicsClientId=self.client)
+        self.pb.resetBaseVelocity(body, list(map(float, v)), physicsClientId=self.client)
+        return body
+
+    def position(self, body):
+        return self.pb.getBasePositionAndOrientation(body, physicsClientId=self.client)[0]
+
+    def velocity(self, body):
+        return self.pb.getBaseVelocity(body, physicsClientId=self.client)[0]
+
+    def push(self, body, force, x):
+        """Apply a force [N] at the centre x [m] during the next step only (pybullet clears it)."""
+        self.pb.applyExternalForce(body, -1, force, x, self.pb.WORLD_FRAME, physicsClientId=self.client)
+
+    def step(self):
+        self.pb.stepSimulation(physicsClientId=self.client)
+
+    def close(self):
+        self.pb.disconnect(physicsClientId=self.client)

@@ -1,0 +1,433 @@
+"""Hold one scene against its truth: errors, orders, verdicts; then error against run time.
+
+Errors and times come from separate, identical runs.  Only the stepping loop is timed: two warm-ups, then interleaved
+repeats with garbage collection off; a loop shorter than a tenth of a millisecond is repeated inside the clock.
+"""
+
+import gc
+import json
+import time
+import warnings
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from solutions.integrators import observed_order
+
+from . import binding, engines
+from .scene import EXACT, ROUND_OFF
+
+RECORDED = Path(__file__).resolve().parent / "recorded"
+WARM_UPS, REPEATS = 2, 7
+ASYMPTOTIC = 0.5             # limits above this are not held against a run [-]
+SHORTEST = 1e-4              # a timed loop is repeated until it lasts this long [s]
+FRAMES = 120                 # of the moving picture
+TARGETS = (1e-2, 1e-3, 1e-4, 1e-6, 1e-8)
+
+
+class Plan(NamedTuple):
+    """How much to measure."""
+    of: str = "solutions"
+    speeds: tuple = ("plain", "compiled")
+    quick: bool = True
+    live: tuple = ("pymunk", "pybullet")     # engines installed here; the others come from their records
+    overrides: tuple = ()                    # (name, value) pairs that replace parameters of the first case
+
+    def longest(self):
+        """A single timed run may take this long [s], ours and an engine's: longer ones are left to --full."""
+        return (0.004, 0.03) if self.quick else (5.0, 5.0)
+
+
+# ---------------------------------------------------------------------------------------------- running a scene
+
+def final(scene, step, p, steps):
+    """What our method observes at T, or why it could not."""
+    try:
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore")
+            observed = scene.observe(scene.run(step, scene.start(p), p, scene.T / steps, steps), p)
+    except ArithmeticError as e:
+        return None, str(e)
+    except np.linalg.LinAlgError as e:
+        return None, f"Newton's matrix is singular: {e}"
+    return (observed, None) if np.all(np.isfinite(observed)) else (None, "not finite")
+
+
+def engine_final(scene, engine, p, steps):
+    """What an engine reads after so many steps."""
+    world = engine.make(p, scene.T / steps)
+    try:
+        for _ in range(steps):
+            world.step()
+        observed = np.array(world.read(), dtype=float)
+    finally:
+        world.close()
+    return (observed, None) if np.all(np.isfinite(observed)) else (None, "not finite")
+
+
+def relative(observed, truth):
+    """|observed − truth| / |truth|, Euclidean norms over everything observed; absolute where the truth is zero."""
+    size = np.linalg.norm(truth)
+    return float(np.linalg.norm(observed - truth) / (size if size > 0.0 else 1.0))
+
+
+def curve(scene, label, p, truth, runs, order, limits):
+    """Errors over the sweep, the order they show, and the verdict on them.
+
+    A limit holds where it is small: an expansion in powers of dt says nothing about a step at which it promises 50 %.
+    """
+    rows, worst = [], None
+    for steps, (observed, failure) in runs:
+        error = None if failure else relative(observed, truth)
+        limit = limits(steps)
+        rows.append({"steps": steps, "dt": scene.T / steps, "error": error, "limit": limit, "failure": failure})
+        if error is not None and limit < ASYMPTOTIC:
+            worst = max(worst or 0.0, error / limit)
+    shown = shown_order(rows, 10.0 * scene.UNCERTAINTY)
+    finest = rows[-1]
+    if finest["failure"]:
+        right, why = False, f"fails at the finest step: {finest['failure']}"
+    elif worst is None:
+        right, why = False, "the sweep never becomes fine enough to judge: theory allows 50 % at its finest step"
+    elif worst > 1.0:
+        right, why = False, f"departs from truth by {worst:.3g} times what theory allows"
+    elif order in (1, 2, 4) and shown is not None and shown < order - 0.3:
+        right, why = False, f"converges with order {shown:.2f}, theory says {order}"
+    else:
+        right, why = True, ""
+    return {"label": label, "rows": rows, "order": shown, "expected": order, "right": right, "why": why}
+
+
+def shown_order(rows, floor):
+    """Order over the finest part of the sweep that is still above truth's uncertainty and round-off; None if too little is."""
+    clear = [(r["dt"], r["error"]) for r in rows if r["error"] is not None and 1e-11 + floor < r["error"] < ASYMPTOTIC
+             and r["error"] > 100.0 * ROUND_OFF * r["steps"]]
+    return float(observed_order(*map(np.array, zip(*clear[-4:])))) if len(clear) >= 3 else None
+
+
+# ---------------------------------------------------------------------------------------------- errors
+
+def errors(name, plan, tick=lambda: None):
+    """Everything about a scene but its run times: a dict that JSON can hold."""
+    scene = binding.bind_scene(name, plan.of)
+    fast = binding.bind_scene(name, plan.of, compiled=True) if "compiled" in plan.speeds else scene
+    cases = {}
+    for case, p in cases_of(scene, plan).items():
+        truth = np.array(scene.truth(p, scene.T), dtype=float)
+        ours = []
+        for method in scene.METHODS:
+            order = getattr(scene, "ORDERS", {}).get(method.function, method.order)
+            step = getattr(binding.world(plan.of, fast is not scene).lesson(method.lesson), method.function)
+            runs = [(n, final(fast, step, p, n)) for n in scene.STEPS]
+            ours.append(curve(scene, method.label, p, truth, runs, order, lambda n: scene.tolerance(p, scene.T / n)[order]))
+            tick()
+        cases[case] = {"params": p._asdict() if hasattr(p, "_asdict") else {}, "truth": truth.tolist(), "ours": ours,
+                       "engines": [engine_curve(name, scene, case, e, p, truth, plan) for e in scene.ENGINES]}
+        tick()
+    first = next(iter(cases_of(scene, plan).values()))
+    return jsonable({
+        "scene": name, "title": scene.TITLE, "lesson": scene.LESSON, "story": (scene.__doc__ or "").strip(), "T": scene.T,
+        "uncertainty": scene.UNCERTAINTY, "truth_story": (scene.truth.__doc__ or "").strip(), "needs": list(scene.NEEDS),
+        "cases": cases, "parity": parity(scene, fast, plan, first), "picture": picture(scene, fast, plan, first),
+        "law": (getattr(scene, "acceleration", None) and scene.acceleration.__doc__ or "").strip(),
+    })
+
+
+def cases_of(scene, plan):
+    """The scene's cases; with overrides only the first, changed."""
+    if not plan.overrides:
+        return scene.CASES
+    name, p = next(iter(scene.CASES.items()))
+    return {f"{name}, changed": p._replace(**dict(plan.overrides))}
+
+
+def engine_curve(name, scene, case, engine, p, truth, plan):
+    """An engine's errors: live where it is installed, recorded where it is not."""
+    product = engine.label.split(",")[0]
+    if product in plan.live:
+        source = f"live, {product} {engines.installed(product)}"
+        runs = [(n, engine_final(scene, engine, p, n)) for n in scene.STEPS]
+    else:
+        record = recorded(name, case, engine.label)
+        if record is None:
+            return {"label": engine.label, "rows": [], "order": None, "expected": engine.order, "right": None, "settings": engine.settings,
+                    "source": "missing", "why": f"{product} is not installed here and this case was never recorded"}
+        source = record["source"]
+        runs = [(r["steps"], (np.array(r["observed"]), None) if r["observed"] else (None, r["failure"])) for r in record["runs"]]
+    def judged(against):
+        return curve(scene, engine.label, p, against, runs, engine.order, lambda n: scene.tolerance(p, scene.T / n)[engine.label])
+
+    result, reason = judged(truth), ""
+    if engine.label in getattr(scene, "WHY", {}):                    # it must depart, and exactly as its own law says
+        reason, own_law = scene.WHY[engine.label]
+        own = np.array(own_law(p, scene.T), dtype=float)
+        result = {**judged(own), "rows": result["rows"], "departs": relative(own, truth)}
+    return {**result, "settings": engine.settings, "source": source, "reason": reason,
+            "observed": [{"steps": n, "observed": None if o is None else o.tolist(), "failure": f} for n, (o, f) in runs]}
+
+
+def recorded(name, case, label):
+    """The trace of one engine run on one case from the repository, or None."""
+    path = RECORDED / f"{name}.json"
+    if not path.is_file():
+        return None
+    record = json.loads(path.read_text())
+    runs = record["runs"].get(case, {}).get(label)
+    return runs and {"source": f"recorded, {record['stamp']}", "runs": runs, "seconds": record["seconds"].get(label)}
+
+
+def parity(scene, fast, plan, p):
+    """Largest difference between the plain and the compiled run of every method, relative; None without a compiled one."""
+    if fast is scene or "plain" not in plan.speeds:
+        return None
+    worst = 0.0
+    for method in scene.METHODS:
+        plain, twin = (getattr(binding.world(plan.of, c).lesson(method.lesson), method.function) for c in (False, True))
+        a, b = final(scene, plain, p, scene.STEPS[0])[0], final(fast, twin, p, scene.STEPS[0])[0]
+        if a is not None and b is not None:
+            worst = max(worst, relative(a, b))
+    return worst
+
+
+def picture(scene, fast, plan, p):
+    """Frames of the motion: truth, our best method, and the first engine that is live."""
+    method = max(scene.METHODS, key=lambda m: m.order)
+    step = getattr(binding.world(plan.of, fast is not scene).lesson(method.lesson), method.function)
+    per_frame = max(1, scene.STEPS[-3] // FRAMES)
+    dt = scene.T / (per_frame * FRAMES)
+    state, frames = scene.start(p), {"truth": [], method.label: []}
+    for frame in range(FRAMES + 1):
+        frames["truth"].append(scene.points(np.array(scene.truth(p, scene.T * frame / FRAMES)), p).tolist())
+        frames[method.label].append(scene.points(scene.observe(state, p), p).tolist())
+        state = fast.run(step, state, p, dt, per_frame)
+    for engine in scene.ENGINES:
+        if engine.label.split(",")[0] in plan.live and engine.label not in getattr(scene, "WHY", {}):
+            frames[engine.label] = engine_frames(scene, engine, p, per_frame)
+            break
+    links = [list(map(int, pair)) for pair in scene.LINKS(p)] if hasattr(scene, "LINKS") else []
+    return {"seconds": scene.T, "frames": frames, "links": links, "dt": dt}
+
+
+def engine_frames(scene, engine, p, per_frame):
+    world = engine.make(p, scene.T / (per_frame * FRAMES))
+    frames = []
+    try:
+        for frame in range(FRAMES + 1):
+            frames.append(scene.points(np.array(world.read(), dtype=float), p).tolist())
+            for _ in range(per_frame):
+                world.step()
+    finally:
+        world.close()
+    return frames
+
+
+# ---------------------------------------------------------------------------------------------- times
+
+class Timed(NamedTuple):
+    """Something with a stepping loop: prepare() gives a function to time, and what to do after."""
+    label: str
+    speed: str               # plain, compiled, engine
+    steps: int
+    prepare: object
+
+
+def times(name, plan, result, tick=lambda: None):
+    """Run times of the first case, joined with the errors already found: [{label, speed, steps, error, seconds, low, high}]."""
+    scene = binding.bind_scene(name, plan.of)
+    case, p = next(iter(cases_of(scene, plan).items()))
+    found = {c["label"]: {r["steps"]: r for r in c["rows"]} for c in result["cases"][case]["ours"] + result["cases"][case]["engines"]}
+    items = [Timed(m.label, speed, n, _ours(name, plan, m, speed, p, n))
+             for m in scene.METHODS for speed in plan.speeds for n in scene.STEPS]
+    items += [Timed(e.label, "engine", n, _engine(scene, e, p, n)) for e in scene.ENGINES
+              if e.label.split(",")[0] in plan.live for n in scene.STEPS]
+    items = [item for item in items if found[item.label][item.steps]["error"] is not None]
+    timed = interleaved(items, plan.longest(), tick)
+    rows = [{"label": i.label, "speed": i.speed, "steps": i.steps, "error": found[i.label][i.steps]["error"], **t} for i, t in timed]
+    return jsonable({"rows": rows, "baseline": baseline(plan), "left_out": left_out(name, plan, p),
+                     "reach": reach(rows), "advantage": advantage(rows)})
+
+
+def _ours(name, plan, method, speed, p, steps):
+    def prepare():
+        scene = binding.bind_scene(name, plan.of, compiled=speed == "compiled")
+        step = getattr(binding.world(plan.of, speed == "compiled").lesson(method.lesson), method.function)
+        arguments = step, scene.start(p), p, scene.T / steps, steps
+        run = entry(scene.run, arguments)
+        return lambda: run(*arguments), lambda: None
+    return prepare
+
+
+def entry(run, arguments):
+    """run itself, or of a compiled run the machine code for such arguments: finding it anew costs 50 µs a call."""
+    if not hasattr(run, "get_overload"):
+        return run
+    from numba import typeof
+    run(*arguments)
+    return run.get_overload(tuple(map(typeof, arguments)))
+
+
+def _engine(scene, engine, p, steps):
+    def prepare():
+        world = engine.make(p, scene.T / steps)
+
+        def loop():
+            step = world.step
+            for _ in range(steps):
+                step()
+        return loop, world.close
+    return prepare
+
+
+def interleaved(items, longest, tick):
+    """[(item, {seconds, low, high})]: medians of interleaved repeats.  What would take longer than `longest` is left out."""
+    chosen = []
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore")
+        slow = set()
+        for item in items:                                          # warm-ups, coarse to fine: they also say how long it takes
+            if (item.label, item.speed) in slow:
+                continue
+            seconds = min(_clock(item, 1) for _ in range(WARM_UPS))
+            if seconds > longest[item.speed == "engine"]:
+                slow.add((item.label, item.speed))
+                if any(i.label == item.label and i.speed == item.speed for i, _ in chosen):
+                    continue                                        # the coarser steps of this method are there
+            chosen.append((item, 1 if item.speed == "engine" else max(1, int(SHORTEST / max(seconds, 1e-9)))))
+        samples = [[] for _ in chosen]
+        enabled = gc.isenabled()
+        gc.disable()
+        try:
+            for _ in range(REPEATS):
+                for (item, inner), seconds in zip(chosen, samples):
+                    seconds.append(_clock(item, inner))
+                gc.collect()
+                tick()
+        finally:
+            if enabled:
+                gc.enable()
+    return [(item, {"seconds": float(np.median(s)), "low": min(s), "high": max(s)}) for (item, _), s in zip(chosen, samples)]
+
+
+def _clock(item, inner):
+    """Seconds of one stepping loop."""
+    loop, close = item.prepare()
+    try:
+        begin = time.perf_counter()
+        for _ in range(inner):
+            loop()
+        return (time.perf_counter() - begin) / inner
+    finally:
+        close()
+
+
+def baseline(plan):
+    """What one step of an empty world costs [s]: the Python call itself, for each engine."""
+    costs = {}
+    if "pymunk" in plan.live:
+        space = engines.pymunk_space()
+        costs["pymunk"] = _empty(lambda: space.step(1e-3))
+    if "pybullet" in plan.live:
+        bullet = engines.Bullet(1e-3)
+        costs["pybullet"] = _empty(bullet.step)
+        bullet.close()
+    return costs
+
+
+def _empty(step):
+    laps = []
+    for _ in range(REPEATS):
+        begin = time.perf_counter()
+        for _ in range(500):
+            step()
+        laps.append((time.perf_counter() - begin) / 500)
+    return float(np.median(laps))
+
+
+def left_out(name, plan, p):
+    """[{what, saves: times longer with it put in, same: the motion is unchanged, note}] for what the scene does without."""
+    speed = "compiled" if "compiled" in plan.speeds else "plain"
+    scene = binding.bind_scene(name, plan.of, compiled=speed == "compiled")
+    method = max(scene.METHODS, key=lambda m: m.order)
+    step = getattr(binding.world(plan.of, speed == "compiled").lesson(method.lesson), method.function)
+    steps = scene.STEPS[2] if speed == "compiled" else scene.STEPS[0]
+    rows = []
+    for what, extra in scene.LEAVES_OUT.items():
+        if isinstance(extra, str):
+            rows.append({"what": what, "saves": None, "same": None, "note": extra})
+            continue
+        items = [Timed("without", speed, steps, _loop(scene, step, p, scene.start(p), steps)),
+                 Timed("with", speed, steps, _loop(scene, step, *reversed(extra(p)), steps))]
+        (_, lean), (_, full) = interleaved(items, (np.inf, np.inf), lambda: None)
+        state, p_full = extra(p)
+        a = scene.observe(scene.run(step, scene.start(p), p, scene.T / steps, steps), p)
+        b = scene.observe(scene.run(step, state, p_full, scene.T / steps, steps), p)
+        rows.append({"what": what, "saves": full["seconds"] / lean["seconds"], "same": relative(a, b) < 1e-9, "note": ""})
+    return rows
+
+
+def _loop(scene, step, p, state, steps):
+    arguments = step, state, p, scene.T / steps, steps
+
+    def prepare():
+        run = entry(scene.run, arguments)
+        return lambda: run(*arguments), lambda: None
+    return prepare
+
+
+# ---------------------------------------------------------------------------------------------- reading the diagram
+
+def reach(rows):
+    """{label (speed): {target error: seconds, or None where the sweep does not get there}}, log-log between points."""
+    table = {}
+    for key in dict.fromkeys((r["label"], r["speed"]) for r in rows):
+        points = sorted((r["error"], r["seconds"]) for r in rows if (r["label"], r["speed"]) == key)
+        table[f"{key[0]} ({key[1]})"] = {f"{target:g}": time_to(points, target) for target in TARGETS}
+    return table
+
+
+def time_to(points, target):
+    """Least time for that error from (error, seconds) points: the cheapest point that is good enough, or between it and the next."""
+    good = [(s, e) for e, s in points if e <= target]
+    if not good:
+        return None
+    seconds, error = min(good)
+    worse = [(e, s) for e, s in points if e > target and s < seconds]
+    if not worse or error <= 0.0:
+        return seconds
+    e, s = min(worse)
+    fraction = np.log(target / error) / np.log(e / error)
+    return float(np.exp(np.log(seconds) + fraction * (np.log(s) - np.log(seconds))))
+
+
+def advantage(rows):
+    """For each engine: its smallest error, its time for that, our quickest compiled time to get there, and the ratio."""
+    result = []
+    ours = {}
+    for r in rows:
+        if r["speed"] != "engine":
+            ours.setdefault((r["label"], r["speed"]), []).append((r["error"], r["seconds"]))
+    for label in dict.fromkeys(r["label"] for r in rows if r["speed"] == "engine"):
+        best = min((r for r in rows if r["label"] == label), key=lambda r: r["error"])
+        reached = [(t, name, speed) for (name, speed), points in ours.items() if (t := time_to(sorted(points), best["error"]))]
+        quickest = min(reached, default=(None, "", ""))
+        result.append({"engine": label, "error": best["error"], "seconds": best["seconds"], "ours": quickest[0],
+                       "method": quickest[1], "speed": quickest[2], "ratio": best["seconds"] / quickest[0] if quickest[0] else None})
+    return result
+
+
+def jsonable(value):
+    """The same data in types that JSON knows; numbers that are not finite become None."""
+    if isinstance(value, dict):
+        return {str(k): jsonable(v) for k, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [jsonable(v) for v in value]
+    if isinstance(value, np.ndarray):
+        return jsonable(value.tolist())
+    if isinstance(value, (bool, np.bool_)):
+        return bool(value)
+    if isinstance(value, (int, np.integer)):
+        return int(value)
+    if isinstance(value, (float, np.floating)):
+        return float(value) if np.isfinite(value) else None
+    return value

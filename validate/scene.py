@@ -1,0 +1,74 @@
+"""What a scene may say of itself: the records that scene files are written with, and their defaults.
+
+A scene is a module in `validate/scenes/`.  It must define
+    TITLE, LESSON             name for people, and the lesson that it belongs to
+    CASES                     {name: Params}: the first is timed and drawn, all are checked
+    T                         output time [s]
+    STEPS                     numbers of steps over T, coarse to fine: they divide T, and span two decades
+    METHODS                   tuple of Method: which of our steps to run
+    start(p) → state          a tuple of arrays, ready for run; checks p
+    run(step, state, p, dt, steps) → state      the stepping loop, and nothing else; this is what is compiled and timed
+    observe(state, p)         flat array: what is compared with the truth at T
+    truth(p, t)               the same quantities at time t
+    UNCERTAINTY               of the truth, relative
+    tolerance(p, dt)          {order or engine label: largest relative error}, derived before looking
+    ENGINES                   tuple of Engine
+    points(observed, p)       (n, 2) drawing coordinates [m] of what was observed
+    NEEDS, LEAVES_OUT         what the scene calls; {what it does without: (p → (state, p) with it put in), or why not yet}
+and may define
+    LINKS(p)                  pairs of points to join in the picture
+    ORDERS                    {method's function: order here}, where it differs from the usual; EXACT means no error but round-off
+    WHY                       {engine label: (why it departs from the truth, in one sentence; its own law (p, t), like truth)}:
+                              such an engine is held against its own law, and the report says how far that is from the truth
+"""
+
+from typing import Callable, NamedTuple
+
+EXACT = "exact"
+ROUND_OFF = 2.3e-16          # half the spacing of floats around 1, rounded up [-]
+
+
+class Method(NamedTuple):
+    """One of our steps."""
+    function: str
+    label: str
+    order: int
+    lesson: str = "integrators"
+
+
+EULER = Method("euler_step", "Euler", 1)
+MIDPOINT = Method("midpoint_step", "midpoint", 2)
+RK4 = Method("rk4_step", "Runge–Kutta 4", 4)
+AVERAGE_VELOCITY = Method("average_velocity_step", "average velocity", 1)
+SYMPLECTIC_EULER = Method("symplectic_euler_step", "symplectic Euler", 1)
+VERLET = Method("verlet_step", "Verlet", 2)
+IMPLICIT_EULER = Method("implicit_euler_step", "implicit Euler", 1)
+IMPLICIT_MIDPOINT = Method("implicit_midpoint_step", "implicit midpoint", 2)
+IMPLICIT_MESH = Method("implicit_mesh_step", "implicit mesh", 1, "springs")
+
+INTEGRATORS = (EULER, MIDPOINT, RK4, AVERAGE_VELOCITY, SYMPLECTIC_EULER, VERLET, IMPLICIT_EULER, IMPLICIT_MIDPOINT)
+
+
+class Engine(NamedTuple):
+    """One way to set up an engine: make(p, dt) gives a World."""
+    label: str               # "pymunk", "pymunk, leapfrog start": the engine's name comes first
+    make: Callable
+    order: int               # expected
+    settings: str            # for people: what was set, and to what
+
+
+class World(NamedTuple):
+    """An engine at work: step() advances it by dt, read() observes it, close() ends it."""
+    step: Callable
+    read: Callable
+    close: Callable
+
+
+def by_order(rate, T, dt):
+    """{order k: largest relative error at T} of a method whose local error is (rate dt)ᵏ⁺¹ a step.
+
+    rate [1/s] is the fastest rate at which anything in the scene changes: T/dt steps add up to  rate T (rate dt)ᵏ.
+    Round-off adds up like T/dt half-spacings at worst; Newton's method stops at 1e-12.
+    """
+    limits = {k: rate * T * (rate * dt) ** k + 1e-12 + T / dt * ROUND_OFF for k in (1, 2, 4)}
+    return {**limits, EXACT: 1e-12 + T / dt * ROUND_OFF}
