@@ -5,8 +5,8 @@ use them.  The plain world of `solutions` is simply the imported packages.  Ever
 under a package name of its own, in which whatever came from `solutions` is replaced by the subject's function or by its
 compiled twin.  Nothing is decorated, and the imported packages stay as they are.
 
-A twin's cache on disk lives in a folder named after a digest of *all* files of its world, because numba looks at one file
-only: without that, an edit to an imported sibling would leave a stale caller.
+A twin's cache on disk lives in a folder named after a digest of *all* lesson files of its world, because numba looks at one
+file only: without that, an edit to an imported sibling would leave a stale caller.  A scene's own digest is part of its name.
 """
 
 import hashlib
@@ -73,11 +73,14 @@ def world(of="solutions", compiled=False):
 
 
 def digest_of(folder):
-    """Fingerprint of every file that a world of this subject is made of, and of the compiler."""
-    files = sorted({*SOLUTIONS.glob("*.py"), *SCENES.glob("*.py"), *folder.glob("*.py"), Path(__file__)})
-    text = b"".join(str(path).encode() + path.read_bytes() for path in files)
-    bounds = os.environ.get("NUMBA_BOUNDSCHECK", "")
-    return hashlib.sha256(text + f"{_numba_version()} {sys.version} {bounds}".encode()).hexdigest()[:12]
+    """Fingerprint of every lesson file that a world of this subject is made of, and of the compiler."""
+    compiler = f"{_numba_version()} {sys.version} {os.environ.get('NUMBA_BOUNDSCHECK', '')}"
+    return _fingerprint({*SOLUTIONS.glob("*.py"), *folder.glob("*.py"), Path(__file__)}, compiler)
+
+
+def _fingerprint(files, more=""):
+    text = b"".join(str(path).encode() + path.read_bytes() for path in sorted(files))
+    return hashlib.sha256(text + more.encode()).hexdigest()[:12]
 
 
 def _numba_version():
@@ -120,18 +123,23 @@ class World:
         speed = "compiled" if compiled else "plain"
         self.name, self.folder, self.compiled = f"_{speed}_{digest}", folder, compiled
         self.done = {}
-        for package, path in {"": [], ".solutions": [SOLUTIONS], ".subject": [folder], ".scenes": [SCENES]}.items():
-            module = types.ModuleType(self.name + package)
-            module.__path__ = [str(p) for p in path]
-            sys.modules[self.name + package] = module
+        for package, path in {"": [], ".solutions": [SOLUTIONS], ".subject": [folder]}.items():
+            self._package(package, path)
         if compiled:
             _use_cache(digest)
+
+    def _package(self, package, path):
+        if self.name + package not in sys.modules:
+            module = sys.modules[self.name + package] = types.ModuleType(self.name + package)
+            module.__path__ = [str(p) for p in path]
 
     def lesson(self, name):
         return self._load("subject" if self.folder != SOLUTIONS else "solutions", name)
 
     def scene(self, name):
-        return self._load("scenes", name)
+        package = f"scenes_{_fingerprint([SCENES / f'{name}.py'])}"
+        self._package(f".{package}", [SCENES])
+        return self._load(package, name)
 
     def _load(self, package, name):
         key = package, name
@@ -140,7 +148,7 @@ class World:
             self.done[key] = module                                  # before its imports: lessons may not import in circles
             self._redirect(package, module)
             if self.compiled:
-                self._compile(module, _called_from(module, COMPILED_SCENE_ROOT) if package == "scenes" else None)
+                self._compile(module, _called_from(module, COMPILED_SCENE_ROOT) if package.startswith("scenes") else None)
         return self.done[key]
 
     def _redirect(self, package, module):
@@ -165,7 +173,7 @@ class World:
 
     def _origin(self, package, lesson):
         """Where a scene or a lesson of this world finds that lesson: scenes use the subject's, lessons use the solutions'."""
-        if package == "scenes" and (self.folder / f"{lesson}.py").is_file():
+        if package.startswith("scenes") and (self.folder / f"{lesson}.py").is_file():
             return self.lesson(lesson)
         return self._load("solutions", lesson) if self.compiled else PLAIN.lesson(lesson)
 
