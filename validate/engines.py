@@ -4,6 +4,10 @@ Both move first-order: pybullet v += a dt, then x += v dt; pymunk x += v dt, the
 step away (−½ a dt in pybullet, +½ a dt in pymunk) they become leapfrog, of second order where forces are smooth.
 """
 
+import ctypes
+import importlib
+import os
+import sys
 from importlib.metadata import PackageNotFoundError, version
 
 from solutions.checks import BadInput
@@ -21,6 +25,23 @@ def installed(engine):
         return version(engine)
     except PackageNotFoundError:
         return None
+
+
+def quiet_import(name):
+    """The module, without the line that its C code prints when it is loaded."""
+    if name in sys.modules:
+        return sys.modules[name]
+    sys.stdout.flush()
+    kept, nowhere = os.dup(1), os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(nowhere, 1)
+        module = importlib.import_module(name)
+        ctypes.CDLL(None).fflush(None)               # the line sits in the C library's buffer
+        return module
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)
+        os.close(nowhere)
 
 
 def pymunk_space(gravity=(0.0, 0.0)):
@@ -41,7 +62,7 @@ class Bullet:
     """A pybullet client without a window, with the settings that every scene needs.  Bodies have no shape unless given one."""
 
     def __init__(self, dt, gravity=(0.0, 0.0, 0.0)):
-        import pybullet
+        pybullet = quiet_import("pybullet")
         self.pb, self.client = pybullet, pybullet.connect(pybullet.DIRECT)
         pybullet.setGravity(*map(float, gravity), physicsClientId=self.client)
         pybullet.setTimeStep(dt, physicsClientId=self.client)

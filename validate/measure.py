@@ -5,6 +5,7 @@ repeats with garbage collection off; a loop shorter than a tenth of a millisecon
 """
 
 import gc
+import inspect
 import json
 import time
 import warnings
@@ -13,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from solutions.checks import BadInput
 from solutions.integrators import observed_order
 
 from . import binding, engines
@@ -23,6 +25,7 @@ WARM_UPS, REPEATS = 2, 7
 ASYMPTOTIC = 0.5             # limits above this are not held against a run [-]
 SHORTEST = 1e-4              # a timed loop is repeated until it lasts this long [s]
 FRAMES = 120                 # of the moving picture
+NOT_ATTEMPTED = "not attempted"
 TARGETS = (1e-2, 1e-3, 1e-4, 1e-6, 1e-8)
 
 
@@ -51,6 +54,12 @@ def final(scene, step, p, steps):
         return None, str(e)
     except np.linalg.LinAlgError as e:
         return None, f"Newton's matrix is singular: {e}"
+    except NotImplementedError as e:
+        return None, f"{NOT_ATTEMPTED}: {e}"
+    except BadInput:
+        raise
+    except Exception as e:                                           # a subject's code may do anything: say it, and go on
+        return None, f"{type(e).__name__}: {str(e).strip().splitlines()[0] if str(e).strip() else ''}"
     return (observed, None) if np.all(np.isfinite(observed)) else (None, "not finite")
 
 
@@ -86,7 +95,9 @@ def curve(scene, label, p, truth, runs, order, limits):
             worst = max(worst or 0.0, error / limit)
     shown = shown_order(rows, 10.0 * scene.UNCERTAINTY)
     finest = rows[-1]
-    if finest["failure"]:
+    if finest["failure"] and finest["failure"].startswith(NOT_ATTEMPTED):
+        right, why = None, finest["failure"]
+    elif finest["failure"]:
         right, why = False, f"fails at the finest step: {finest['failure']}"
     elif worst is None:
         right, why = False, "the sweep never becomes fine enough to judge: theory allows 50 % at its finest step"
@@ -119,7 +130,7 @@ def errors(name, plan, tick=lambda: None):
         for method in scene.METHODS:
             order = getattr(scene, "ORDERS", {}).get(method.function, method.order)
             step = getattr(binding.world(plan.of, fast is not scene).lesson(method.lesson), method.function)
-            runs = [(n, final(fast, step, p, n)) for n in scene.STEPS]
+            runs = [(n, final(fast, step, p, n)) for n in sweep(scene)]
             ours.append(curve(scene, method.label, p, truth, runs, order, lambda n: scene.tolerance(p, scene.T / n)[order]))
             tick()
         cases[case] = {"params": p._asdict() if hasattr(p, "_asdict") else {}, "truth": truth.tolist(), "ours": ours,
@@ -127,11 +138,16 @@ def errors(name, plan, tick=lambda: None):
         tick()
     first = next(iter(cases_of(scene, plan).values()))
     return jsonable({
-        "scene": name, "title": scene.TITLE, "lesson": scene.LESSON, "story": (scene.__doc__ or "").strip(), "T": scene.T,
-        "uncertainty": scene.UNCERTAINTY, "truth_story": (scene.truth.__doc__ or "").strip(), "needs": list(scene.NEEDS),
-        "cases": cases, "parity": parity(scene, fast, plan, first), "picture": picture(scene, fast, plan, first),
-        "law": (getattr(scene, "acceleration", None) and scene.acceleration.__doc__ or "").strip(),
+        "scene": name, "title": scene.TITLE, "lesson": scene.LESSON, "story": inspect.getdoc(scene) or "", "T": scene.T,
+        "uncertainty": scene.UNCERTAINTY, "truth_story": inspect.getdoc(scene.truth) or "", "needs": list(scene.NEEDS),
+        "cases": cases, "parity": parity(scene, fast, plan, first), "picture": picture(scene, fast, plan, first, {c["label"] for c in next(iter(cases.values()))["ours"] if c["right"]}),
+        "law": inspect.getdoc(getattr(scene, "acceleration", None)) or "" if hasattr(scene, "acceleration") else "",
     })
+
+
+def sweep(scene):
+    """The scene's numbers of steps, and before them three that are too coarse: they show where a method gives up."""
+    return tuple(n for n in (scene.STEPS[0] // 10, scene.STEPS[0] // 5, scene.STEPS[0] // 2) if n >= 2) + scene.STEPS
 
 
 def cases_of(scene, plan):
@@ -147,7 +163,7 @@ def engine_curve(name, scene, case, engine, p, truth, plan):
     product = engine.label.split(",")[0]
     if product in plan.live:
         source = f"live, {product} {engines.installed(product)}"
-        runs = [(n, engine_final(scene, engine, p, n)) for n in scene.STEPS]
+        runs = [(n, engine_final(scene, engine, p, n)) for n in sweep(scene)]
     else:
         record = recorded(name, case, engine.label)
         if record is None:
@@ -190,23 +206,32 @@ def parity(scene, fast, plan, p):
     return worst
 
 
-def picture(scene, fast, plan, p):
-    """Frames of the motion: truth, our best method, and the first engine that is live."""
-    method = max(scene.METHODS, key=lambda m: m.order)
-    step = getattr(binding.world(plan.of, fast is not scene).lesson(method.lesson), method.function)
+def picture(scene, fast, plan, p, usable):
+    """Frames of the motion: truth, our usable method of highest order, and the first engine that is live and agrees."""
     per_frame = max(1, scene.STEPS[-3] // FRAMES)
     dt = scene.T / (per_frame * FRAMES)
-    state, frames = scene.start(p), {"truth": [], method.label: []}
-    for frame in range(FRAMES + 1):
-        frames["truth"].append(scene.points(np.array(scene.truth(p, scene.T * frame / FRAMES)), p).tolist())
-        frames[method.label].append(scene.points(scene.observe(state, p), p).tolist())
-        state = fast.run(step, state, p, dt, per_frame)
+    frames = {"truth": [scene.points(np.array(scene.truth(p, scene.T * k / FRAMES)), p).tolist() for k in range(FRAMES + 1)]}
+    for method in sorted((m for m in scene.METHODS if m.label in usable), key=lambda m: -m.order)[:1]:
+        frames[method.label] = our_frames(scene, fast, plan, method, p, dt, per_frame)
     for engine in scene.ENGINES:
         if engine.label.split(",")[0] in plan.live and engine.label not in getattr(scene, "WHY", {}):
             frames[engine.label] = engine_frames(scene, engine, p, per_frame)
             break
+    else:
+        record = RECORDED / f"{scene.__name__.rpartition('.')[2]}.json"
+        if record.is_file() and not plan.overrides:
+            frames["pybullet, recorded"] = json.loads(record.read_text())["frames"]
     links = [list(map(int, pair)) for pair in scene.LINKS(p)] if hasattr(scene, "LINKS") else []
     return {"seconds": scene.T, "frames": frames, "links": links, "dt": dt}
+
+
+def our_frames(scene, fast, plan, method, p, dt, per_frame):
+    step = getattr(binding.world(plan.of, fast is not scene).lesson(method.lesson), method.function)
+    state, frames = scene.start(p), []
+    for _ in range(FRAMES + 1):
+        frames.append(scene.points(scene.observe(state, p), p).tolist())
+        state = fast.run(step, state, p, dt, per_frame)
+    return frames
 
 
 def engine_frames(scene, engine, p, per_frame):
@@ -242,8 +267,11 @@ def times(name, plan, result, tick=lambda: None):
     items += [Timed(e.label, "engine", n, _engine(scene, e, p, n)) for e in scene.ENGINES
               if e.label.split(",")[0] in plan.live for n in scene.STEPS]
     items = [item for item in items if found[item.label][item.steps]["error"] is not None]
-    timed = interleaved(items, plan.longest(), tick)
-    rows = [{"label": i.label, "speed": i.speed, "steps": i.steps, "error": found[i.label][i.steps]["error"], **t} for i, t in timed]
+    timed = [(i.label, i.speed, i.steps, t) for i, t in interleaved(items, plan.longest(), tick)]
+    timed += [(e.label, "recorded", row["steps"], row) for e in scene.ENGINES if e.label.split(",")[0] not in plan.live
+              for row in (recorded(name, case, e.label) or {}).get("seconds") or []]
+    rows = [{**t, "label": label, "speed": speed, "steps": n, "error": found[label][n]["error"]} for label, speed, n, t in timed
+            if n in found[label] and found[label][n]["error"] is not None]
     return jsonable({"rows": rows, "baseline": baseline(plan), "left_out": left_out(name, plan, p),
                      "reach": reach(rows), "advantage": advantage(rows)})
 
@@ -405,7 +433,7 @@ def advantage(rows):
     result = []
     ours = {}
     for r in rows:
-        if r["speed"] != "engine":
+        if r["speed"] in ("plain", "compiled"):
             ours.setdefault((r["label"], r["speed"]), []).append((r["error"], r["seconds"]))
     for label in dict.fromkeys(r["label"] for r in rows if r["speed"] == "engine"):
         best = min((r for r in rows if r["label"] == label), key=lambda r: r["error"])

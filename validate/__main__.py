@@ -1,0 +1,259 @@
+"""The command line: `validate` measures scenes and writes the report, `validate list` names them, `validate record` keeps traces."""
+
+import json
+import os
+import sys
+import tempfile
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from enum import Enum
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Annotated, Optional
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from solutions.checks import BadInput
+
+from . import binding, engines
+
+app = typer.Typer(add_completion=False, invoke_without_command=True, rich_markup_mode=None, pretty_exceptions_enable=False,
+                  help="Hold every scene against its truth and against the engines; write the report.")
+console = Console()
+
+
+class EngineName(str, Enum):
+    pymunk = "pymunk"
+    pybullet = "pybullet"
+
+
+@app.callback()
+def validate(
+    context: typer.Context,
+    scene: Annotated[Optional[list[str]], typer.Option(help="Only this scene (may be repeated).")] = None,
+    lesson: Annotated[Optional[list[str]], typer.Option(help="Only the scenes of this lesson (may be repeated).")] = None,
+    of: Annotated[str, typer.Option(help="Whose answers: solutions, lessons or a folder of lesson files.")] = "solutions",
+    plain: Annotated[Optional[bool], typer.Option("--plain/--compiled", help="One speed only; both without this option.")] = None,
+    quick: Annotated[bool, typer.Option("--quick/--full", help="Time only short runs, or all of them.")] = True,
+    engine: Annotated[Optional[list[EngineName]], typer.Option(help="Run only this engine live (may be repeated).")] = None,
+    set_: Annotated[Optional[list[str]], typer.Option("--set", metavar="NAME=VALUE", help="Change a parameter of one scene's first case.")] = None,
+    jobs: Annotated[int, typer.Option(min=1, help="Processes for everything that is not timed.")] = max(1, min(4, os.cpu_count() or 1)),
+    out: Annotated[Path, typer.Option(help="Folder of the report.")] = Path("report"),
+):
+    if context.invoked_subcommand:
+        return
+    names = chosen(scene or [], lesson or [])
+    plan = plan_of(of, plain, quick, [e.value for e in engine or []], overrides(set_ or [], names))
+    folder = writable(out)
+    raise typer.Exit(run(names, plan, jobs, folder))
+
+
+@app.command("list")
+def list_scenes():
+    """Name every scene and its lesson."""
+    table = Table("scene", "lesson", "what it is", box=None, header_style="bold")
+    for name in binding.scene_names():
+        module = binding.bind_scene(name)
+        table.add_row(name, module.LESSON, (module.__doc__ or "").strip().splitlines()[0])
+    console.print(table)
+
+
+@app.command("record")
+def record(scene: Annotated[Optional[list[str]], typer.Option(help="Only this scene (may be repeated).")] = None):
+    """Keep the traces of pybullet in the repository, for machines without it."""
+    from . import record as recorder
+    if not engines.installed("pybullet"):
+        raise BadInput("engine 'pybullet'", "not installed", "record where it is: Linux x86-64 with Python 3.11 or older")
+    for name in chosen(scene or [], []):
+        path = recorder.record(name)
+        if path:
+            console.print(f"recorded {name} in {path.relative_to(binding.ROOT)}")
+
+
+# ---------------------------------------------------------------------------------------------- what was asked for
+
+def chosen(scenes, lessons):
+    """The scenes that were asked for; all of them when nothing was.  Raises BadInput for a name that is none."""
+    for name in scenes:
+        binding.bind_scene(name)
+    for name in lessons:
+        binding.bind(name)
+    every = binding.scene_names()
+    return [n for n in every if n in scenes or (not scenes and (not lessons or binding.bind_scene(n).LESSON in lessons))]
+
+
+def plan_of(of, plain, quick, wanted, changes):
+    from .measure import Plan
+    binding.subject_folder(of)
+    for name in wanted:
+        if not engines.installed(name):
+            raise BadInput(f"engine {name!r}", "not installed", "leave --engine out: its recorded traces stand in")
+    live = tuple(name for name in (wanted or engines.NAMES) if engines.installed(name))
+    speeds = {None: ("plain", "compiled"), True: ("plain",), False: ("compiled",)}[plain]
+    if plain is False and not binding.can_compile():
+        raise BadInput("numba", "not installed", "install it, or use --plain")
+    if not binding.can_compile():
+        speeds = ("plain",)
+    return Plan(of, speeds, quick, live, changes)
+
+
+def overrides(pairs, names):
+    """((name, value), …) from NAME=VALUE.  Raises BadInput for what is no number or no parameter, or for more than one scene."""
+    changes = []
+    for pair in pairs:
+        name, _, text = pair.partition("=")
+        if len(names) != 1:
+            raise BadInput(f"--set {pair}", f"meant for {len(names)} scenes", "name one with --scene")
+        first = next(iter(binding.bind_scene(names[0]).CASES.values()))
+        if name not in first._fields:
+            raise BadInput(f"parameter {name!r}", f"unknown in {names[0]}", f"choose from: {', '.join(first._fields)}")
+        try:
+            changes.append((name, type(getattr(first, name))(text)))
+        except ValueError:
+            raise BadInput(f"parameter {name}", repr(text), "give a number") from None
+    if changes:
+        scene = binding.bind_scene(names[0])
+        scene.start(next(iter(scene.CASES.values()))._replace(**dict(changes)))          # raises BadInput for impossible values
+    return tuple(changes)
+
+
+def writable(out):
+    """The output folder, made if need be.  Raises BadInput when nothing can be written there."""
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=out):
+            pass
+    except OSError as e:
+        raise BadInput(f"output folder {str(out)!r}", f"not writable ({e.strerror})", "name another with --out") from None
+    return out
+
+
+# ---------------------------------------------------------------------------------------------- the run
+
+def run(names, plan, jobs, out):
+    """Measure, report, and say how it went: 0, or 1 when something departs from its truth without having been predicted."""
+    from . import report
+    from .report import summary
+    store = Store(out, plan, names)
+    try:
+        with Progress(TextColumn("{task.description:22}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), console=console) as bars:
+            measure_errors(store, names, plan, jobs, bars)
+            measure_times(store, names, plan, bars)
+            measure_stability(store, names, plan, bars)
+            results = store.results(names)
+            front = report.write(out, results, store.stability(), plan, bars)
+    except KeyboardInterrupt:
+        console.print(f"Interrupted. What was finished is kept in {out}: the same command goes on from there.")
+        return 130
+    store.finish()
+    departures = summary.show(console, results, store.stability())
+    console.print(f"\nThe report lies in [bold]{front}[/bold]", highlight=False, soft_wrap=True)
+    return 1 if departures else 0
+
+
+class Store:
+    """Results on disk, one file each.  A run that was interrupted is continued; a finished one is measured anew."""
+
+    def __init__(self, out, plan, names):
+        self.folder, self.mark = out / "results", out / "results" / "unfinished.json"
+        self.folder.mkdir(exist_ok=True)
+        stamp = {"plan": list(map(str, plan)), "code": code_digest(plan.of), "names": names}
+        if not (self.mark.is_file() and json.loads(self.mark.read_text()) == stamp):
+            for old in self.folder.glob("*.json"):
+                old.unlink()
+            write_whole(self.mark, stamp)
+
+    def path(self, kind, name):
+        return self.folder / f"{name}.{kind}.json"
+
+    def has(self, kind, name):
+        return self.path(kind, name).is_file()
+
+    def get(self, kind, name):
+        return json.loads(self.path(kind, name).read_text())
+
+    def put(self, kind, name, value):
+        write_whole(self.path(kind, name), value)
+
+    def results(self, names):
+        return [{**self.get("errors", name), "times": self.get("times", name)} for name in names]
+
+    def stability(self):
+        return self.get("cases", "stability") if self.has("cases", "stability") else []
+
+    def finish(self):
+        self.mark.unlink(missing_ok=True)
+
+
+def write_whole(path, value):
+    """Write JSON so that a reader never sees half of it."""
+    draft = path.with_suffix(".part")
+    draft.write_text(json.dumps(value, ensure_ascii=False, allow_nan=False))
+    draft.replace(path)
+
+
+def code_digest(of):
+    """Fingerprint of all code that a result depends on."""
+    package = Path(__file__).parent
+    files = {*package.rglob("*.py"), *binding.SOLUTIONS.glob("*.py"), *binding.subject_folder(of).glob("*.py")}
+    return binding._fingerprint(files)
+
+
+def measure_errors(store, names, plan, jobs, bars):
+    """Errors of every scene, several processes at a time: compiling is most of it."""
+    from . import measure
+    todo = [n for n in names if not store.has("errors", n)]
+    bar = bars.add_task("errors", total=len(names), completed=len(names) - len(todo))
+    if jobs == 1 or len(todo) <= 1:
+        for name in todo:
+            store.put("errors", name, measure.errors(name, plan))
+            bars.advance(bar)
+        return
+    pool = ProcessPoolExecutor(min(jobs, len(todo)), mp_context=get_context("spawn"))
+    try:
+        waiting = {pool.submit(measure.errors, name, plan): name for name in todo}
+        for done in as_completed(waiting):
+            store.put("errors", waiting[done], done.result())
+            bars.advance(bar)
+    except BrokenProcessPool:
+        raise BadInput("a measuring process", "gone", "the machine may be short of memory: try --jobs 1") from None
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
+
+
+def measure_times(store, names, plan, bars):
+    """Run times, one scene after the other and nothing beside them."""
+    from . import measure
+    todo = [n for n in names if not store.has("times", n)]
+    bar = bars.add_task("run times", total=len(names), completed=len(names) - len(todo))
+    for name in todo:
+        store.put("times", name, measure.times(name, plan, store.get("errors", name)))
+        bars.advance(bar)
+
+
+def measure_stability(store, names, plan, bars):
+    """The stability cases of the lessons that these scenes belong to."""
+    from . import measure, stability
+    bar = bars.add_task("stability", total=1, completed=int(store.has("cases", "stability")))
+    if not store.has("cases", "stability"):
+        lessons = {binding.bind_scene(name).LESSON for name in names}
+        found = stability.cases(plan.of, lessons)
+        store.put("cases", "stability", measure.jsonable([case._asdict() | {
+            "findings": [f._asdict() for f in case.findings], "picture": case.picture and case.picture._asdict()} for case in found]))
+        bars.advance(bar)
+
+
+def main():
+    """Run the command line; bad input ends with one sentence and exit code 2."""
+    try:
+        app(prog_name="validate", standalone_mode=True)
+    except BadInput as e:
+        print(f"validate: {e}", file=sys.stderr)
+        sys.exit(2)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,34 @@
+"""Keep what pybullet did: its readings at T for every case, setting and step, and its run times, stamped with versions."""
+
+import json
+import platform
+
+from . import binding, engines, measure
+
+
+def record(name):
+    """Write the traces of one scene's pybullet runs; the path, or None for a scene without that engine."""
+    scene = binding.bind_scene(name)
+    witnesses = [e for e in scene.ENGINES if e.label.startswith("pybullet")]
+    if not witnesses:
+        return None
+    runs = {case: {e.label: [_reading(scene, e, p, n) for n in measure.sweep(scene)] for e in witnesses} for case, p in scene.CASES.items()}
+    p = next(iter(scene.CASES.values()))
+    items = [measure.Timed(e.label, "engine", n, measure._engine(scene, e, p, n)) for e in witnesses for n in scene.STEPS]
+    timed = measure.interleaved(items, (5.0, 5.0), lambda: None)
+    trace = {
+        "stamp": f"pybullet {engines.installed('pybullet')}, {platform.system()} {platform.machine()}, Python {platform.python_version()}",
+        "settings": {e.label: e.settings for e in witnesses},
+        "runs": runs,
+        "seconds": {e.label: [{"steps": i.steps, **t} for i, t in timed if i.label == e.label] for e in witnesses},
+        "frames": measure.engine_frames(scene, witnesses[-1], p, max(1, scene.STEPS[-3] // measure.FRAMES)),
+    }
+    measure.RECORDED.mkdir(exist_ok=True)
+    path = measure.RECORDED / f"{name}.json"
+    path.write_text(json.dumps(measure.jsonable(trace), indent=None, separators=(",", ":")) + "\n")
+    return path
+
+
+def _reading(scene, engine, p, steps):
+    observed, failure = measure.engine_final(scene, engine, p, steps)
+    return {"steps": steps, "observed": None if observed is None else observed, "failure": failure}

@@ -1,0 +1,178 @@
+"""Masses on springs once more, by other means: what the scenes of lesson 2 hold our steps against.
+
+Nothing here knows the forces of `solutions`.  A net's springs are one matrix: B (s, n), with −1 at one end of each spring
+and +1 at the other, turns points into springs, r = B x, and its transpose turns tensions back into forces.  SciPy moves it
+(DOP853), Newton's method finds where it rests, and a complex step gives its stiffness, from which follow its modes.
+"""
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from scipy.integrate import solve_ivp
+from scipy.optimize import root
+
+from solutions.springs import make_mesh
+
+from .engines import pymunk_space, pymunk_world
+from .scene import EXACT, ROUND_OFF
+
+RTOL, ATOL = 1e-13, 1e-15    # of DOP853, near the least it accepts: a step errs by less than it rounds
+TINY = 1e-30                 # a complex step [m]: its square vanishes beside 1, so the derivative is exact to round-off
+
+
+class Net(NamedTuple):
+    """Equal masses, equal springs.  Springs rest at the lengths in `rest`."""
+    x: np.ndarray            # (n, d) first positions [m]
+    v: np.ndarray            # (n, d) first velocities [m/s]
+    fixed: tuple             # numbers of the points that do not move
+    pairs: np.ndarray        # (s, 2) ends of each spring
+    rest: np.ndarray         # (s,) [m]
+    m: float                 # [kg]
+    k: float                 # [N/m]
+    k_d: float               # [N s/m]
+    k_v: float               # [N s/m]
+    gravity: np.ndarray      # (d,) [m/s²]
+    wind: np.ndarray         # (d,) [N] on each point
+
+    def spring_matrix(self):
+        """B (s, n)."""
+        one = np.eye(len(self.x))
+        return one[self.pairs[:, 1]] - one[self.pairs[:, 0]]
+
+    def free(self):
+        """(n,) bool."""
+        return ~np.isin(np.arange(len(self.x)), self.fixed)
+
+    def padded(self):
+        """The same net with a third coordinate, in which nothing happens."""
+        pad = lambda a: np.concatenate((a, np.zeros(a.shape[:-1] + (3 - a.shape[-1],))), axis=-1)
+        return self._replace(x=pad(self.x), v=pad(self.v), gravity=pad(self.gravity), wind=pad(self.wind))
+
+
+def state_of(net):
+    """(x, v, mesh) for the lesson's steps.  The mesh is made by the plain function in every world: numba takes no lists."""
+    mesh = make_mesh(net.x, net.m, net.fixed, net.pairs, net.k, net.k_d, net.gravity, net.wind, net.k_v)
+    return net.x.copy(), net.v.copy(), mesh._replace(rest=net.rest)
+
+
+# ---------------------------------------------------------------------------------------------- truth
+
+def forces(x, v, net, B):
+    """Forces [N] (n, d) on all points:  m g + wind − k_v v − Bᵀ T n,   n = Bx/|Bx|,   T = k (|Bx| − rest) + k_d n · Bv."""
+    r = B @ x
+    length = np.sqrt(np.sum(r * r, axis=1, keepdims=True))
+    n = r / length
+    tension = net.k * (length - net.rest[:, None]) + net.k_d * np.sum(n * (B @ v), axis=1, keepdims=True)
+    return net.m * net.gravity + net.wind - net.k_v * v - B.T @ (tension * n)
+
+
+def motion(net, T, rtol=RTOL):
+    """x(t) (n, d), a function of t in [0, T], by DOP853.  At T it is the end of the integration; between, an interpolation."""
+    B, free, shape = net.spring_matrix(), net.free()[:, None], net.x.shape
+
+    def slope(t, y):
+        x, v = y.reshape(2, *shape)
+        return np.concatenate(((free * v).ravel(), (free * forces(x, v, net, B) / net.m).ravel()))
+
+    start = np.concatenate((net.x.ravel(), net.v.ravel()))
+    run = solve_ivp(slope, (0.0, T), start, method="DOP853", rtol=rtol, atol=ATOL, dense_output=True)
+    return lambda t: np.split(run.y[:, -1] if t == T else run.sol(t), 2)[0].reshape(shape)
+
+
+def rest_positions(net):
+    """(n, d): where the forces vanish, by Newton's method (SciPy's root) from the first positions."""
+    B, free = net.spring_matrix(), net.free()
+
+    def moved(y):
+        x = net.x.astype(y.dtype)
+        x[free] = y.reshape(-1, net.x.shape[1])
+        return x
+
+    pull = lambda y: forces(moved(y), 0.0 * net.v, net, B)[free].ravel()
+    found = root(pull, net.x[free].ravel(), jac=lambda y: _jacobian(pull, y), tol=1e-14)
+    for _ in range(3):                                   # root stops at √tol of its own measure: let Newton finish
+        found.x -= np.linalg.solve(_jacobian(pull, found.x), pull(found.x))
+    return moved(found.x)
+
+
+def _jacobian(function, y):
+    """∂function/∂y by complex steps: no difference is taken, nothing cancels."""
+    return np.stack([function(y + 1j * TINY * e).imag / TINY for e in np.eye(y.size)], axis=1)
+
+
+# ---------------------------------------------------------------------------------------------- what a step may get wrong
+
+def modes(net):
+    """(omega, c, amplitude) of each mode about rest: frequency [rad/s], damping [1/s], first amplitude √(q² + q̇²/ω²) [m]."""
+    B, free, x = net.spring_matrix(), net.free(), rest_positions(net)
+    d = x.shape[1]
+
+    def pull(y, v):
+        moved = x.astype(complex)
+        moved[free] = y.reshape(-1, d)
+        speed = np.zeros_like(moved)
+        speed[free] = v.reshape(-1, d)
+        return forces(moved, speed, net, B)[free].ravel()
+
+    here, still = x[free].ravel(), np.zeros(d * free.sum())
+    squared, shapes = np.linalg.eigh(-_jacobian(lambda y: pull(y, still), here) / net.m)
+    omega = np.sqrt(np.abs(squared))
+    c = np.einsum("am,ab,bm->m", shapes, -_jacobian(lambda v: pull(here, v), still) / net.m, shapes)
+    q, q_rate = shapes.T @ (net.x[free].ravel() - here), shapes.T @ net.v[free].ravel()
+    return omega, c, np.hypot(q, q_rate / omega)
+
+
+def by_mode(omega, c, amplitude, size, T, dt, uncertainty):
+    """{order k: largest relative error at T}: each mode errs on its own, at its own rate ω + c and by its own amplitude.
+
+    A step that errs by (rate dt)ᵏ⁺¹ multiplies a mode by e^z + δ with |δ| ≤ (rate dt)ᵏ⁺¹, |e^z| ≤ 1; after T/dt steps that is
+    off by at most χ e^χ,  χ = rate T (rate dt)ᵏ:  fast modes may be tiny and still spoil a coarse run by growing.
+    size [m] is that of the truth at T.  Round-off and Newton's method as in scene.by_order.
+    """
+    floor = 1e-12 + T / dt * ROUND_OFF + uncertainty
+    rate = omega + c
+    chi = {k: np.minimum(rate * T * (rate * dt) ** k, 500.0) for k in (1, 2, 4)}     # e⁵⁰⁰ is large enough, and finite
+    return {**{k: float(np.sum(amplitude * x * np.exp(x))) / size + floor for k, x in chi.items()}, EXACT: floor}
+
+
+@lru_cache(maxsize=None)
+def _noted(key, make):
+    return modes(make(key))
+
+
+def net_limits(make, p, size, T, dt, uncertainty):
+    """by_mode for the net that make(p) builds, with √2 times its frequencies at rest.
+
+    Let go without tension, threads swing between none and twice what they carry at rest; what holds a slow mode is tension,
+    so its ω² swings between nothing and twice its value.
+    """
+    omega, c, amplitude = _noted(p, make)
+    return by_mode(np.sqrt(2.0) * omega, c, amplitude, size, T, dt, uncertainty)
+
+
+# ---------------------------------------------------------------------------------------------- a witness
+
+def pymunk_net(net, dt, observe):
+    """A World of point masses and DampedSprings; observe(x (n, d)) reads it.
+
+    Masses are equal, so that wind is a part of gravity and viscosity one factor e^(−k_v dt/m) for all velocities.
+    """
+    import pymunk
+    wide = net.padded()
+    space = pymunk_space((wide.gravity + wide.wind / net.m)[:2])
+    space.damping = np.exp(-net.k_v / net.m)             # the fraction of velocity kept after a second
+    bodies = []
+    for n, (x, v) in enumerate(zip(wide.x, wide.v)):
+        held = n in net.fixed
+        body = pymunk.Body(body_type=pymunk.Body.STATIC) if held else pymunk.Body(net.m, float("inf"))
+        body.position = tuple(map(float, x[:2]))
+        if not held:
+            body.velocity = tuple(map(float, v[:2]))
+        space.add(body)
+        bodies.append(body)
+    for (i, j), rest in zip(net.pairs, net.rest):
+        if not (i in net.fixed and j in net.fixed):      # between two immovable ends there is nothing to solve for
+            space.add(pymunk.DampedSpring(bodies[i], bodies[j], (0.0, 0.0), (0.0, 0.0), float(rest), net.k, net.k_d))
+    d = net.x.shape[1]
+    return pymunk_world(space, dt, lambda: observe(np.array([body.position for body in bodies])[:, :d]))

@@ -1,0 +1,45 @@
+"""Write the report: one folder of static pages that need no network, and the same content as JSON."""
+
+import json
+import shutil
+from pathlib import Path
+
+from jinja2 import Environment, PackageLoader, select_autoescape
+
+from ..binding import bind_scene
+from . import plots, words
+
+HERE = Path(__file__).parent
+
+
+def write(out, results, stability, plan, bars):
+    """Pages, pictures and report.json in a folder; the path of the front page."""
+    pages = Environment(loader=PackageLoader("validate", "report"), autoescape=select_autoescape(), trim_blocks=True, lstrip_blocks=True)
+    pages.filters.update(seconds=words.seconds, number=words.number, percent=words.percent, factor=words.factor)
+    pages.tests["reaches"] = lambda row: any(t is not None for t in row.values())
+    pages.globals.update(run=words.run(plan), players=plots.PLAYERS, verdict=words.verdict, judge=words.judge)
+    bar = bars.add_task("report", total=len(results) + 2)
+
+    plots.style()
+    for result in results:
+        plots.convergence(out / f"{result['scene']}-steps.svg", result)
+        plots.work_precision(out / f"{result['scene']}-times.svg", result)
+        page = pages.get_template("scene.html").render(r=result, parameters=words.parameters(bind_scene(result["scene"])),
+                                                       findings=words.findings(result), others=results,
+                                                       cases=[c for c in stability if c["lesson"] == result["lesson"]])
+        (out / f"{result['scene']}.html").write_text(page)
+        bars.advance(bar)
+
+    for case in stability:
+        plots.stability(out / f"stability-{case['number']}.svg", case)
+    (out / "stability.html").write_text(pages.get_template("stability.html").render(cases=stability))
+    bars.advance(bar)
+
+    rows = [words.row(result) for result in results]
+    front = out / "index.html"
+    front.write_text(pages.get_template("front.html").render(rows=rows, cases=stability, results=results))
+    (out / "report.json").write_text(json.dumps({"run": words.run(plan), "scenes": results, "stability": stability}, ensure_ascii=False, indent=1))
+    for name in ("style.css", "player.js"):
+        shutil.copyfile(HERE / name, out / name)
+    bars.advance(bar)
+    return front

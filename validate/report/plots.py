@@ -1,0 +1,87 @@
+"""The still pictures.  Colours: Okabe and Ito 2008, told apart by colour-blind readers; every curve has a marker too."""
+
+import matplotlib
+
+matplotlib.use("svg")
+import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
+
+LOOKS = {                       # label: colour, marker
+    "Euler": ("#E69F00", "o"), "midpoint": ("#56B4E9", "^"), "Runge–Kutta 4": ("#009E73", "s"), "average velocity": ("#CC79A7", "v"),
+    "symplectic Euler": ("#D55E00", "D"), "Verlet": ("#0072B2", "P"), "implicit Euler": ("#8C6D31", "<"),
+    "implicit midpoint": ("#6A51A3", ">"), "implicit mesh": ("#7F7F7F", "h"),
+}
+ENGINE_LOOKS = {"pymunk": ("#000000", "x"), "pybullet": ("#5A5A5A", "+")}
+PLAYERS = {"truth": "#bbbbbb", "ours": "#0072B2", "engine": "#D55E00"}
+TOP = 10.0                      # errors above this, and failures, are drawn here, as crosses [-]
+
+
+def style():
+    plt.rcParams.update({"svg.fonttype": "none", "font.family": "sans-serif", "font.size": 10, "axes.spines.top": False,
+                         "axes.spines.right": False, "axes.grid": True, "grid.color": "#e6e6e6", "axes.axisbelow": True,
+                         "legend.frameon": False, "figure.figsize": (8.2, 4.6), "svg.hashsalt": "workbook"})
+
+
+def look(label):
+    """Colour, marker and line of a curve: engines are dotted, and their variants differ by their dots."""
+    if label in LOOKS:
+        return (*LOOKS[label], "-")
+    product, _, variant = label.partition(", ")
+    colour, marker = ENGINE_LOOKS[product]
+    return colour, marker, {"": "-", "default": ":"}.get(variant, "--")
+
+
+def convergence(path, result):
+    """Error against step, with the runs that failed along the top."""
+    case = next(iter(result["cases"].values()))
+    figure, axes = plt.subplots()
+    for c in case["ours"] + case["engines"]:
+        colour, marker, line = look(c["label"])
+        good = [(r["dt"], r["error"]) for r in c["rows"] if r["error"] is not None and 10 * result["uncertainty"] < r["error"] < TOP]
+        lost = [r["dt"] for r in c["rows"] if r["error"] is None or r["error"] >= TOP]
+        order = f"  {c['order']:.2f}" if c["order"] is not None else ""
+        axes.loglog(*zip(*good), color=colour, marker=marker, ls=line, ms=5, lw=1.3, label=c["label"] + order) if good else None
+        axes.plot(lost, [TOP] * len(lost), color=colour, marker="X", ls="", ms=7, clip_on=False)
+    axes.set(xlabel="step dt [s]", ylabel=f"relative error at t = {result['T']:g} s [-]", xscale="log", yscale="log")
+    axes.axhline(TOP, color="#999999", lw=0.6)
+    axes.annotate("failed, or error above 10", (0.01, TOP), xycoords=("axes fraction", "data"), va="bottom", fontsize=8, color="#555555")
+    _finish(figure, axes, path, "method  measured order")
+
+
+def work_precision(path, result):
+    """Error against run time: compiled solid, plain faint, engines dark."""
+    figure, axes = plt.subplots()
+    rows = [r for r in result["times"]["rows"] if 10 * result["uncertainty"] < r["error"] < TOP]
+    for label, speed in dict.fromkeys((r["label"], r["speed"]) for r in rows):
+        colour, marker, line = look(label)
+        mine = sorted((r["steps"], r["seconds"], r["error"], r["low"], r["high"]) for r in rows if (r["label"], r["speed"]) == (label, speed))
+        _, x, y, low, high = zip(*mine)
+        plain = speed == "plain"
+        axes.loglog(x, y, color=colour, marker=marker, ls=":" if plain else line, ms=3 if plain else 5, lw=0.9 if plain else 1.4,
+                    alpha=0.55 if plain else 1.0, label=None if plain else label + (" (recorded)" if speed == "recorded" else ""))
+        axes.hlines(y, low, high, color=colour, lw=0.8, alpha=0.5)
+    if any(r["speed"] == "plain" for r in rows):
+        axes.plot([], [], color="#555555", ls=":", marker=".", label="the same, plain Python")
+    axes.set(xlabel="run time of the stepping loop [s]", ylabel=f"relative error at t = {result['T']:g} s [-]")
+    _finish(figure, axes, path, "compiled, and engines")
+
+
+def stability(path, case):
+    """A stability case's own picture."""
+    picture = case["picture"]
+    if not picture:
+        return
+    figure, axes = plt.subplots()
+    for k, (label, xs, ys, mark) in enumerate(picture["series"]):
+        colour = LOOKS[label.split(",")[0]][0] if label.split(",")[0] in LOOKS else list(LOOKS.values())[k % len(LOOKS)][0]
+        axes.plot(xs, ys, mark, color=colour, label=label, ms=5, lw=1.4)
+    axes.set(xlabel=picture["x_label"], ylabel=picture["y_label"], title=picture["title"])
+    for axis, scale in (("x", picture.get("x_scale")), ("y", picture.get("y_scale"))):
+        if scale:
+            getattr(axes, f"set_{axis}scale")(scale)
+    _finish(figure, axes, path, None)
+
+
+def _finish(figure, axes, path, title):
+    axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=8.5, title=title, title_fontsize=8.5, alignment="left")
+    figure.savefig(path, bbox_inches="tight", metadata={"Date": None})
+    plt.close(figure)
