@@ -311,7 +311,7 @@ def test_conjugate_gradients_solve_positive_systems_and_own_up_to_others(lesson)
     close("sag of a loaded chain of 20", lesson.conjugate_gradients(times, chain, right), sag, 3e-8)
     close("the right-hand side that was handed in: copy it", right, load, 0.0)
 
-    hilbert = 1.0 / (np.arange(6)[:, None] + np.arange(1, 7)[None, :])                      # condition 1.5e7: more rounds than unknowns
+    hilbert = 1.0 / (np.arange(7)[:, None] + np.arange(1, 8)[None, :])                      # condition 5e8: more rounds than unknowns
     y = lesson.conjugate_gradients(times, hilbert, hilbert.sum(axis=1)[:, None].copy())
     # residual 1e-10 · |right| = 4e-10 by recursion, plus round-off of numbers below 10
     close("product of Hilbert's matrix with the solution", hilbert @ y, hilbert.sum(axis=1)[:, None], 5e-10)

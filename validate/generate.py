@@ -16,11 +16,13 @@ ANSWER = re.compile(r"^(?P<indent> *)### BEGIN SOLUTION (?P<exercise>\d+\.\d+)\n
 FUNCTION = re.compile(r"^def (\w+)", re.M)
 
 
-def stub(source):
-    """The text of a lesson: every answer replaced by a NotImplementedError that names exercise and function."""
+def stub(source, solved=()):
+    """The text of a lesson: every answer but the solved ones replaced by a NotImplementedError that names exercise and function."""
     def empty(match):
         function = FUNCTION.findall(source, 0, match.start())[-1]
         indent, exercise = match["indent"], match["exercise"]
+        if exercise in solved:
+            return "".join(match[0].splitlines(keepends=True)[1:-1])
         return f'{indent}# YOUR CODE HERE\n{indent}raise NotImplementedError("Exercise {exercise}: {function}")\n'
 
     text = ANSWER.sub(empty, source)

@@ -36,6 +36,7 @@ class Plan(NamedTuple):
     quick: bool = True
     live: tuple = ("pymunk", "pybullet")     # engines installed here; the others come from their records
     overrides: tuple = ()                    # (name, value) pairs that replace parameters of the first case
+    most_steps: int | None = None            # a shorter sweep, for a notebook
 
     def longest(self):
         """A single timed run may take this long [s], ours and an engine's: longer ones are left to --full."""
@@ -100,7 +101,7 @@ def curve(scene, label, p, truth, runs, order, limits):
     elif finest["failure"]:
         right, why = False, f"fails at the finest step: {finest['failure']}"
     elif worst is None:
-        right, why = False, "the sweep never becomes fine enough to judge: theory allows 50 % at its finest step"
+        right, why = None, "the sweep is too coarse to judge: theory allows 50 % at its finest step"
     elif worst > 1.0:
         right, why = False, f"departs from truth by {worst:.3g} times what theory allows"
     elif order in (1, 2, 4) and shown is not None and shown < order - 0.3:
@@ -130,31 +131,33 @@ def errors(name, plan, tick=lambda: None):
         for method in scene.METHODS:
             order = getattr(scene, "ORDERS", {}).get(method.function, method.order)
             step = getattr(binding.world(plan.of, fast is not scene).lesson(method.lesson), method.function)
-            runs = [(n, final(fast, step, p, n)) for n in sweep(scene)]
+            runs = [(n, final(fast, step, p, n)) for n in sweep(scene, plan)]
             ours.append(curve(scene, method.label, p, truth, runs, order, lambda n: scene.tolerance(p, scene.T / n)[order]))
             tick()
         cases[case] = {"params": p._asdict() if hasattr(p, "_asdict") else {}, "truth": truth.tolist(), "ours": ours,
                        "engines": [engine_curve(name, scene, case, e, p, truth, plan) for e in scene.ENGINES]}
         tick()
     first = next(iter(cases_of(scene, plan).values()))
+    agreeing = usable({"cases": cases})
     return jsonable({
         "scene": name, "title": scene.TITLE, "lesson": scene.LESSON, "story": inspect.getdoc(scene) or "", "T": scene.T,
         "uncertainty": scene.UNCERTAINTY, "truth_story": inspect.getdoc(scene.truth) or "", "needs": list(scene.NEEDS),
-        "cases": cases, "parity": parity(scene, fast, plan, first), "picture": picture(scene, fast, plan, first, {c["label"] for c in next(iter(cases.values()))["ours"] if c["right"]}),
+        "cases": cases, "parity": parity(scene, fast, plan, first), "picture": picture(scene, fast, plan, first, agreeing),
         "law": inspect.getdoc(getattr(scene, "acceleration", None)) or "" if hasattr(scene, "acceleration") else "",
     })
 
 
-def sweep(scene):
+def sweep(scene, plan=Plan()):
     """The scene's numbers of steps, and before them three that are too coarse: they show where a method gives up."""
-    return tuple(n for n in (scene.STEPS[0] // 10, scene.STEPS[0] // 5, scene.STEPS[0] // 2) if n >= 2) + scene.STEPS
+    coarse = tuple(n for n in (scene.STEPS[0] // 10, scene.STEPS[0] // 5, scene.STEPS[0] // 2) if n >= 2)
+    return tuple(n for n in coarse + scene.STEPS if n <= (plan.most_steps or n))
 
 
 def cases_of(scene, plan):
-    """The scene's cases; with overrides only the first, changed."""
-    if not plan.overrides:
-        return scene.CASES
+    """The scene's cases; for a notebook only the first, and with overrides the first, changed."""
     name, p = next(iter(scene.CASES.items()))
+    if not plan.overrides:
+        return {name: p} if plan.most_steps else scene.CASES
     return {f"{name}, changed": p._replace(**dict(plan.overrides))}
 
 
@@ -163,7 +166,7 @@ def engine_curve(name, scene, case, engine, p, truth, plan):
     product = engine.label.split(",")[0]
     if product in plan.live:
         source = f"live, {product} {engines.installed(product)}"
-        runs = [(n, engine_final(scene, engine, p, n)) for n in sweep(scene)]
+        runs = [(n, engine_final(scene, engine, p, n)) for n in sweep(scene, plan)]
     else:
         record = recorded(name, case, engine.label)
         if record is None:
@@ -263,16 +266,16 @@ def times(name, plan, result, tick=lambda: None):
     case, p = next(iter(cases_of(scene, plan).items()))
     found = {c["label"]: {r["steps"]: r for r in c["rows"]} for c in result["cases"][case]["ours"] + result["cases"][case]["engines"]}
     items = [Timed(m.label, speed, n, _ours(name, plan, m, speed, p, n))
-             for m in scene.METHODS for speed in plan.speeds for n in scene.STEPS]
+             for m in scene.METHODS for speed in plan.speeds for n in scene.STEPS if n in found[m.label]]
     items += [Timed(e.label, "engine", n, _engine(scene, e, p, n)) for e in scene.ENGINES
-              if e.label.split(",")[0] in plan.live for n in scene.STEPS]
+              if e.label.split(",")[0] in plan.live for n in scene.STEPS if n in found[e.label]]
     items = [item for item in items if found[item.label][item.steps]["error"] is not None]
     timed = [(i.label, i.speed, i.steps, t) for i, t in interleaved(items, plan.longest(), tick)]
     timed += [(e.label, "recorded", row["steps"], row) for e in scene.ENGINES if e.label.split(",")[0] not in plan.live
               for row in (recorded(name, case, e.label) or {}).get("seconds") or []]
     rows = [{**t, "label": label, "speed": speed, "steps": n, "error": found[label][n]["error"]} for label, speed, n, t in timed
             if n in found[label] and found[label][n]["error"] is not None]
-    return jsonable({"rows": rows, "baseline": baseline(plan), "left_out": left_out(name, plan, p),
+    return jsonable({"rows": rows, "baseline": baseline(plan), "left_out": left_out(name, plan, p, usable(result)),
                      "reach": reach(rows), "advantage": advantage(rows)})
 
 
@@ -372,11 +375,18 @@ def _empty(step):
     return float(np.median(laps))
 
 
-def left_out(name, plan, p):
+def usable(result):
+    """Labels of our methods that agree with the truth in the first case."""
+    return {c["label"] for c in next(iter(result["cases"].values()))["ours"] if c["right"]}
+
+
+def left_out(name, plan, p, usable):
     """[{what, saves: times longer with it put in, same: the motion is unchanged, note}] for what the scene does without."""
     speed = "compiled" if "compiled" in plan.speeds else "plain"
     scene = binding.bind_scene(name, plan.of, compiled=speed == "compiled")
-    method = max(scene.METHODS, key=lambda m: m.order)
+    method = max((m for m in scene.METHODS if m.label in usable), key=lambda m: m.order, default=None)
+    if method is None:
+        return []
     step = getattr(binding.world(plan.of, speed == "compiled").lesson(method.lesson), method.function)
     steps = scene.STEPS[2] if speed == "compiled" else scene.STEPS[0]
     rows = []

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.integrate import solve_ivp
-from scipy.optimize import root
+from scipy.optimize import minimize, root
 
 from solutions.springs import make_mesh
 
@@ -81,7 +81,11 @@ def motion(net, T, rtol=RTOL):
 
 
 def rest_positions(net):
-    """(n, d): where the forces vanish, by Newton's method (SciPy's root) from the first positions."""
+    """(n, d): where the net rests: energy is least there (SciPy's BFGS), and Newton's method finds the point to round-off.
+
+    U = Σ ½k (|Bx| − rest)² − Σ (m g + wind) · x.  Newton alone, from far away, may end where forces vanish but energy does not
+    have its minimum.
+    """
     B, free = net.spring_matrix(), net.free()
 
     def moved(y):
@@ -89,11 +93,13 @@ def rest_positions(net):
         x[free] = y.reshape(-1, net.x.shape[1])
         return x
 
+    def energy(y):
+        stretch = np.linalg.norm(B @ moved(y), axis=1) - net.rest
+        return 0.5 * net.k * np.sum(stretch**2) - np.sum(moved(y)[free] @ (net.m * net.gravity + net.wind))
+
     pull = lambda y: forces(moved(y), 0.0 * net.v, net, B)[free].ravel()
-    found = root(pull, net.x[free].ravel(), jac=lambda y: _jacobian(pull, y), tol=1e-14)
-    for _ in range(3):                                   # root stops at √tol of its own measure: let Newton finish
-        found.x -= np.linalg.solve(_jacobian(pull, found.x), pull(found.x))
-    return moved(found.x)
+    near = minimize(energy, net.x[free].ravel(), jac=lambda y: -pull(y), method="BFGS").x
+    return moved(root(pull, near, jac=lambda y: _jacobian(pull, y), tol=1e-15).x)
 
 
 def _jacobian(function, y):
@@ -137,18 +143,21 @@ def by_mode(omega, c, amplitude, size, T, dt, uncertainty):
 
 
 @lru_cache(maxsize=None)
-def _noted(key, make):
-    return modes(make(key))
+def _noted(make, p):
+    net = make(p)
+    B = net.spring_matrix()[:, net.free()]
+    return *modes(net), np.sqrt(net.k / net.m) * np.linalg.norm(B, 2)
 
 
 def net_limits(make, p, size, T, dt, uncertainty):
-    """by_mode for the net that make(p) builds, with √2 times its frequencies at rest.
+    """by_mode for the net that make(p) builds, with √2 times its frequencies at rest, but none above the fastest there can be.
 
     Let go without tension, threads swing between none and twice what they carry at rest; what holds a slow mode is tension,
-    so its ω² swings between nothing and twice its value.
+    so its ω² swings between nothing and twice its value.  A spring's stiffness is k along it and k (1 − rest/l) < k across,
+    so no mode of any shape of the net exceeds √(k/m) |B|.
     """
-    omega, c, amplitude = _noted(p, make)
-    return by_mode(np.sqrt(2.0) * omega, c, amplitude, size, T, dt, uncertainty)
+    omega, c, amplitude, fastest = _noted(make, p)
+    return by_mode(np.minimum(np.sqrt(2.0) * omega, fastest), c, amplitude, size, T, dt, uncertainty)
 
 
 # ---------------------------------------------------------------------------------------------- a witness

@@ -4,7 +4,9 @@ Without options the subject is `solutions`, plain and compiled, and the tests of
 With --of only the grading tests run.
 """
 
+import json
 import types
+from pathlib import Path
 
 import pytest
 
@@ -19,6 +21,7 @@ def pytest_addoption(parser):
     group.addoption("--of", help="whose answers to test: solutions, lessons or a folder of lesson files")
     group.addoption("--compiled", action="store_true", help="test the compiled twins only")
     group.addoption("--exercise", action="append", default=[], metavar="1.2", help="only this exercise (may be repeated)")
+    group.addoption("--outcomes", metavar="FILE", help="with --of: write every outcome there, as JSON")
 
 
 def pytest_configure(config):
@@ -97,6 +100,12 @@ def _jitted(function):
     if function not in _callbacks:
         _callbacks[function] = njit(error_model="numpy")(function)
     return _callbacks[function]
+
+
+def pytest_sessionfinish(session):
+    path = session.config.getoption("--outcomes")
+    if path and hasattr(session.config, "points"):
+        Path(path).write_text(json.dumps([outcome._asdict() for outcome in session.config.points.outcomes]))
 
 
 def pytest_terminal_summary(terminalreporter, config):

@@ -21,6 +21,7 @@ def write(out, results, stability, plan, bars):
     bar = bars.add_task("report", total=len(results) + 2)
 
     plots.style()
+    plots.plt.switch_backend("svg")                                  # needs no screen
     for result in results:
         plots.convergence(out / f"{result['scene']}-steps.svg", result)
         plots.work_precision(out / f"{result['scene']}-times.svg", result)

@@ -1,4 +1,5 @@
 // A small player: every <canvas data-picture="id"> plays the frames in <script id="id" type="application/json">.
+(() => {
 "use strict";
 const COLOURS = {truth: "#9a9a9a", ours: "#0072B2", engine: "#D55E00"};
 const reduced = matchMedia("(prefers-reduced-motion: reduce)").matches;
@@ -59,4 +60,9 @@ function play(canvas) {
   requestAnimationFrame(draw);
 }
 
-addEventListener("DOMContentLoaded", () => document.querySelectorAll("canvas[data-picture]").forEach(play));
+const start = () => document.querySelectorAll("canvas[data-picture]:not([data-playing])").forEach(canvas => {
+  canvas.dataset.playing = "";
+  play(canvas);
+});
+document.readyState === "loading" ? addEventListener("DOMContentLoaded", start) : start();
+})();

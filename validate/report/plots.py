@@ -1,9 +1,6 @@
 """The still pictures.  Colours: Okabe and Ito 2008, told apart by colour-blind readers; every curve has a marker too."""
 
-import matplotlib
-
-matplotlib.use("svg")
-import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
+import matplotlib.pyplot as plt
 
 LOOKS = {                       # label: colour, marker
     "Euler": ("#E69F00", "o"), "midpoint": ("#56B4E9", "^"), "Runge–Kutta 4": ("#009E73", "s"), "average velocity": ("#CC79A7", "v"),
@@ -18,7 +15,7 @@ TOP = 10.0                      # errors above this, and failures, are drawn her
 def style():
     plt.rcParams.update({"svg.fonttype": "none", "font.family": "sans-serif", "font.size": 10, "axes.spines.top": False,
                          "axes.spines.right": False, "axes.grid": True, "grid.color": "#e6e6e6", "axes.axisbelow": True,
-                         "legend.frameon": False, "figure.figsize": (8.2, 4.6), "svg.hashsalt": "workbook"})
+                         "legend.frameon": False, "figure.figsize": (8.6, 4.8), "svg.hashsalt": "workbook"})
 
 
 def look(label):
@@ -81,7 +78,15 @@ def stability(path, case):
     _finish(figure, axes, path, None)
 
 
+def show(plot, result):
+    """Draw one of the plots where a notebook shows it."""
+    plot(None, result)
+
+
 def _finish(figure, axes, path, title):
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=8.5, title=title, title_fontsize=8.5, alignment="left")
+    if path is None:
+        plt.show()
+        return
     figure.savefig(path, bbox_inches="tight", metadata={"Date": None})
     plt.close(figure)

@@ -57,7 +57,7 @@ def run(plan):
 def judge(curve):
     """One word for a curve's verdict, and its kind: agrees, predicted, departs or open."""
     if curve["right"] is None:
-        return ("not attempted" if "not attempted" in curve["why"] else "missing"), "open"
+        return ("not attempted" if "not attempted" in curve["why"] else "undecided"), "open"
     if not curve["right"]:
         return "departs", "departs"
     return ("departs as predicted", "predicted") if curve.get("reason") else ("agrees", "agrees")

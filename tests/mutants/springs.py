@@ -1,0 +1,442 @@
+"""Lesson 2: signs, masses and neighbours that go astray, and the other ways of writing forces."""
+
+import numpy as np
+
+from solutions import integrators, springs as worked
+from solutions.checks import BadInput, Diverged
+from . import collection
+
+wrong, right, MUTANTS = collection()
+
+
+# 2.1 ------------------------------------------------------------------------------------------------------------
+@wrong("2.1", "repels")
+def universal_gravity(x_a, x_b, m_a, m_b, G):
+    return -worked.universal_gravity(x_a, x_b, m_a, m_b, G)
+
+
+@wrong("2.1", "divides by r² and forgets that r has a length")
+def universal_gravity(x_a, x_b, m_a, m_b, G):
+    r = x_b - x_a
+    return G * m_a * m_b / np.sum(r * r) * r
+
+
+@wrong("2.1", "acceleration instead of force")
+def universal_gravity(x_a, x_b, m_a, m_b, G):
+    return worked.universal_gravity(x_a, x_b, 1.0, m_b, G)
+
+
+@right("2.1", "magnitude times direction")
+def universal_gravity(x_a, x_b, m_a, m_b, G):
+    distance = np.linalg.norm(x_b - x_a)
+    return G * m_a * m_b / distance**2 * ((x_b - x_a) / distance)
+
+
+# 2.2 ------------------------------------------------------------------------------------------------------------
+@wrong("2.2", "viscosity speeds up")
+def air_force(v, wind, k_v):
+    return wind + k_v * v
+
+
+@wrong("2.2", "takes the wind for a velocity")
+def air_force(v, wind, k_v):
+    return k_v * (wind - v)
+
+
+@wrong("2.2", "quadratic")
+def air_force(v, wind, k_v):
+    return wind - k_v * np.abs(v) * v
+
+
+@wrong("2.2", "divides by the viscosity")
+def air_force(v, wind, k_v):
+    return -k_v * (v - wind / k_v)
+
+
+@right("2.2", "viscosity first")
+def air_force(v, wind, k_v):
+    return -(k_v * v) + wind
+
+
+# 2.3 ------------------------------------------------------------------------------------------------------------
+@wrong("2.3", "pushes when stretched")
+def spring_tension(length, rate, rest, k, k_d):
+    return k * (rest - length) + k_d * rate
+
+
+@wrong("2.3", "damper drives")
+def spring_tension(length, rate, rest, k, k_d):
+    return k * (length - rest) - k_d * rate
+
+
+@wrong("2.3", "strain instead of extension")
+def spring_tension(length, rate, rest, k, k_d):
+    return k * (length - rest) / rest + k_d * rate
+
+
+@wrong("2.3", "a rope: never pushes")
+def spring_tension(length, rate, rest, k, k_d):
+    return max(0.0, k * (length - rest) + k_d * rate)
+
+
+@right("2.3", "multiplied out")
+def spring_tension(length, rate, rest, k, k_d):
+    return k * length + k_d * rate - k * rest
+
+
+# 2.4 ------------------------------------------------------------------------------------------------------------
+@wrong("2.4", "pushes away")
+def soft_constraint_force(C, C_rate, gradient, k, k_d):
+    return (k * C + k_d * C_rate) * gradient
+
+
+@wrong("2.4", "brings the gradient to length 1")
+def soft_constraint_force(C, C_rate, gradient, k, k_d):
+    return -(k * C + k_d * C_rate) * gradient / np.linalg.norm(gradient)
+
+
+@wrong("2.4", "no damper")
+def soft_constraint_force(C, C_rate, gradient, k, k_d):
+    return -k * C * gradient
+
+
+@wrong("2.4", "one side only")
+def soft_constraint_force(C, C_rate, gradient, k, k_d):
+    return worked.soft_contact_force(C, C_rate, gradient, k, k_d)
+
+
+@right("2.4", "two forces, added")
+def soft_constraint_force(C, C_rate, gradient, k, k_d):
+    spring, damper = -k * C * gradient, -k_d * C_rate * gradient
+    return spring + damper
+
+
+# 2.5 ------------------------------------------------------------------------------------------------------------
+@wrong("2.5", "pulls a point that leaves")
+def soft_contact_force(C, C_rate, gradient, k, k_d):
+    return -(k * C + k_d * C_rate) * gradient if C < 0.0 else 0.0 * gradient
+
+
+@wrong("2.5", "damps above the surface")
+def soft_contact_force(C, C_rate, gradient, k, k_d):
+    return max(0.0, -(k * C + k_d * C_rate)) * gradient
+
+
+@wrong("2.5", "limits the spring but not the damper")
+def soft_contact_force(C, C_rate, gradient, k, k_d):
+    return (max(0.0, -k * C) - k_d * C_rate) * gradient if C < 0.0 else 0.0 * gradient
+
+
+@wrong("2.5", "already pushes at the surface")
+def soft_contact_force(C, C_rate, gradient, k, k_d):
+    return max(0.0, -(k * C + k_d * C_rate)) * gradient if C <= 0.0 else 0.0 * gradient
+
+
+@wrong("2.5", "a number where the force is none")
+def soft_contact_force(C, C_rate, gradient, k, k_d):
+    return max(0.0, -(k * C + k_d * C_rate)) * gradient if C < 0.0 else 0.0
+
+
+@right("2.5", "by cases")
+def soft_contact_force(C, C_rate, gradient, k, k_d):
+    force = np.zeros_like(gradient)
+    if C < 0.0 and k * C + k_d * C_rate < 0.0:
+        force -= (k * C + k_d * C_rate) * gradient
+    return force
+
+
+# 2.6 ------------------------------------------------------------------------------------------------------------
+def angular_spring(angle=lambda theta, rest: np.angle(np.exp(1j * (theta - rest))), power=2, hinge=1.0, order=(0, 1, 2), checked=True):
+    """The forces through complex numbers, with an angle, arm or hinge that may be wrong."""
+    def angular_spring_forces(x_a, x_b, x_c, rest, k):
+        r_a, r_c = (complex(*(x - x_b)) for x in (x_a, x_c))
+        if r_a * r_c == 0.0:
+            if checked:
+                raise BadInput("the arm of an angular spring [m]", 0.0, "keep its ends away from its hinge")
+            return (np.zeros(2),) * 3
+        torque = k * angle(np.angle(r_c) - np.angle(r_a), rest)
+        F_a, F_c = torque * 1j * r_a / abs(r_a) ** power, -torque * 1j * r_c / abs(r_c) ** power
+        forces = F_a, -hinge * (F_a + F_c), F_c
+        return tuple(np.array([forces[n].real, forces[n].imag]) for n in order)
+    return angular_spring_forces
+
+
+right("2.6", "with complex numbers")(angular_spring())
+wrong("2.6", "no wrap-around")(angular_spring(angle=lambda theta, rest: theta - rest))
+wrong("2.6", "the sine of the angle")(angular_spring(angle=lambda theta, rest: np.sin(theta - rest)))
+wrong("2.6", "takes the angle without its sign")(angular_spring(angle=lambda theta, rest: abs(theta) - rest))
+wrong("2.6", "force that does not fall with the arm")(angular_spring(power=1))
+wrong("2.6", "no force on the hinge")(angular_spring(hinge=0.0))
+wrong("2.6", "hinge pushed the wrong way")(angular_spring(hinge=-1.0))
+wrong("2.6", "opens instead of closing")(angular_spring(angle=lambda theta, rest: -np.angle(np.exp(1j * (theta - rest)))))
+wrong("2.6", "a, c, b")(angular_spring(order=(0, 2, 1)))
+wrong("2.6", "silent about an arm without length")(angular_spring(checked=False))
+
+
+# 2.7 ------------------------------------------------------------------------------------------------------------
+def by_matrices(tension=worked.spring_tension, add=np.add.at, other=1.0, unit=True, rate=None, checked=True):
+    """All springs at once, with a tension, a sum or a far end that may be wrong."""
+    def spring_forces(x, v, mesh):
+        r, u = x[mesh.j] - x[mesh.i], v[mesh.j] - v[mesh.i]
+        length = np.sqrt(np.sum(r * r, axis=1))
+        if np.any(length == 0.0):
+            if checked:
+                raise BadInput("the length of a spring [m]", 0.0, "keep its ends apart: it has no direction")
+            length = np.where(length == 0.0, 1.0, length)
+        lengthening = np.sum(r * u, axis=1) / length if rate is None else rate(r, u, length)
+        pull = tension(length, lengthening, mesh.rest, mesh.k, mesh.k_d)[:, None] * r / (length[:, None] if unit else 1.0)
+        force = np.zeros_like(x)
+        add(force, mesh.i, pull)
+        add(force, mesh.j, -other * pull)
+        return force
+    return spring_forces
+
+
+def overwrite(force, at, pull):
+    force[at] += pull            # of several springs at one point, NumPy keeps the last
+
+
+right("2.7", "all springs at once")(by_matrices())
+wrong("2.7", "one spring a point survives")(by_matrices(add=overwrite))
+wrong("2.7", "pushes instead of pulling")(by_matrices(tension=lambda *a: -worked.spring_tension(*a)))
+wrong("2.7", "the far end feels nothing")(by_matrices(other=0.0))
+wrong("2.7", "both ends the same way")(by_matrices(other=-1.0))
+wrong("2.7", "r instead of r/l")(by_matrices(unit=False))
+wrong("2.7", "rate without division by l")(by_matrices(rate=lambda r, u, length: np.sum(r * u, axis=1)))
+wrong("2.7", "speed for rate")(by_matrices(rate=lambda r, u, length: np.sqrt(np.sum(u * u, axis=1))))
+wrong("2.7", "rate the other way round")(by_matrices(rate=lambda r, u, length: -np.sum(r * u, axis=1) / length))
+wrong("2.7", "silent about a spring without length")(by_matrices(checked=False))
+
+
+@wrong("2.7", "damps every motion, not only along the spring")
+def spring_forces(x, v, mesh):
+    force = worked.spring_forces(x, np.zeros_like(v), mesh)
+    damped = mesh.k_d[:, None] * (v[mesh.j] - v[mesh.i])
+    np.add.at(force, mesh.i, damped)
+    np.add.at(force, mesh.j, -damped)
+    return force
+
+
+@wrong("2.7", "every spring like the first")
+def spring_forces(x, v, mesh):
+    return worked.spring_forces(x, v, mesh._replace(k=np.full_like(mesh.k, mesh.k[0]), rest=np.full_like(mesh.rest, mesh.rest[0])))
+
+
+@wrong("2.7", "nothing on fixed points")
+def spring_forces(x, v, mesh):
+    return worked.spring_forces(x, v, mesh) * (mesh.inv_mass > 0.0)[:, None]
+
+
+@wrong("2.7", "the plane only")
+def spring_forces(x, v, mesh):
+    flat = np.where(np.arange(x.shape[1]) < 2, 1.0, 0.0)
+    return worked.spring_forces(flat * x, flat * v, mesh)
+
+
+# 2.8 ------------------------------------------------------------------------------------------------------------
+def newton(gravity=lambda g, inv_mass: g, air=lambda a, inv_mass: a * inv_mass, springs=lambda f, inv_mass: f * inv_mass, fixed=True):
+    """a = g + F/m for all points at once, with terms that may be wrong."""
+    def mesh_acceleration(t, x, v, mesh):
+        inv_mass = mesh.inv_mass[:, None]
+        a = gravity(mesh.gravity, inv_mass) + springs(worked.spring_forces(x, v, mesh), inv_mass) + air(mesh.wind - mesh.k_v * v, inv_mass)
+        return np.where(inv_mass > 0.0, a, 0.0) if fixed else a
+    return mesh_acceleration
+
+
+right("2.8", "all points at once")(newton())
+wrong("2.8", "fixed points fall")(newton(fixed=False))
+wrong("2.8", "heavy points fall slower")(newton(gravity=lambda g, inv_mass: g * inv_mass))
+wrong("2.8", "forgets gravity")(newton(gravity=lambda g, inv_mass: 0.0 * g))
+wrong("2.8", "wind blows on all masses alike")(newton(air=lambda a, inv_mass: a))
+wrong("2.8", "springs pull on all masses alike")(newton(springs=lambda f, inv_mass: f))
+wrong("2.8", "forgets the air")(newton(air=lambda a, inv_mass: 0.0))
+wrong("2.8", "multiplies by the mass")(newton(springs=lambda f, inv_mass: f / np.where(inv_mass > 0.0, inv_mass, 1.0)))
+wrong("2.8", "springs the wrong way")(newton(springs=lambda f, inv_mass: -f * inv_mass))
+
+
+# 2.9 ------------------------------------------------------------------------------------------------------------
+def loop(step):
+    """The system moved by some step of lesson 1."""
+    def mass_spring_damper_step(t, x, v, dt, mesh):
+        return step(worked.mesh_acceleration, t, x, v, dt, mesh)
+    return mass_spring_damper_step
+
+
+wrong("2.9", "Euler")(loop(integrators.euler_step))
+wrong("2.9", "new velocity twice")(loop(integrators.symplectic_euler_step))
+wrong("2.9", "Verlet: exact in free fall, but another loop")(loop(integrators.verlet_step))
+wrong("2.9", "midpoint: exact in free fall, but another loop")(loop(integrators.midpoint_step))
+
+
+@wrong("2.9", "changes its input")
+def mass_spring_damper_step(t, x, v, dt, mesh):
+    a = worked.mesh_acceleration(t, x, v, mesh)
+    x += dt * (v + 0.5 * dt * a)
+    v += dt * a
+    return x, v
+
+
+@right("2.9", "the lines of the lecture")
+def mass_spring_damper_step(t, x, v, dt, mesh):
+    v_new = v + dt * worked.mesh_acceleration(t, x, v, mesh)
+    return x + dt * (v + v_new) / 2.0, v_new
+
+
+# 2.10 -----------------------------------------------------------------------------------------------------------
+def numbering(number=lambda r, c, rows, cols: r * cols + c, exists=lambda r, c, rows, cols: 0 <= r < rows and 0 <= c < cols,
+              row=lambda i, j: [i, j], kind=int, empty=True, inside=False):
+    """Pairs of a grid with a number or an edge that may be wrong."""
+    def grid_pairs(rows, cols, offsets):
+        nodes = [(r, c) for r in range(rows) for c in range(cols)]
+        steps = [(node, offset) for node in nodes for offset in offsets] if inside else [(node, offset) for offset in offsets for node in nodes]
+        pairs = [row(number(r, c, rows, cols), number(r + dr, c + dc, rows, cols))
+                 for (r, c), (dr, dc) in steps if exists(r + dr, c + dc, rows, cols)]
+        return np.array(pairs, dtype=kind).reshape(-1, 2) if empty else np.array(pairs, dtype=kind)
+    return grid_pairs
+
+
+right("2.10", "over a list of nodes")(numbering())
+wrong("2.10", "counts along columns")(numbering(number=lambda r, c, rows, cols: c * rows + r))
+wrong("2.10", "multiplies by the rows")(numbering(number=lambda r, c, rows, cols: r * rows + c))
+wrong("2.10", "a torus: the edge comes round")(numbering(number=lambda r, c, rows, cols: r % rows * cols + c % cols, exists=lambda *_: True))
+wrong("2.10", "asks whether the number exists, not the column")(
+    numbering(exists=lambda r, c, rows, cols: 0 <= r * cols + c < rows * cols))
+wrong("2.10", "forgets the left edge")(numbering(exists=lambda r, c, rows, cols: r < rows and c < cols))
+wrong("2.10", "every pair twice")(numbering(row=lambda i, j: [[i, j], [j, i]]))
+wrong("2.10", "numbers that are no integers")(numbering(kind=float))
+wrong("2.10", "no shape without pairs")(numbering(empty=False))
+wrong("2.10", "nodes outside, offsets inside")(numbering(inside=True))
+
+
+# 2.11 -----------------------------------------------------------------------------------------------------------
+def blocks(sideways=lambda stretch: max(0.0, stretch), along=1.0, damper=lambda k_d, nn: k_d * nn, sign=1.0):
+    """K and D by outer products, with parts that may be wrong."""
+    def spring_stiffness(x, mesh):
+        K, D = [], []
+        for i, j, rest, k, k_d in zip(mesh.i, mesh.j, mesh.rest, mesh.k, mesh.k_d):
+            length = np.linalg.norm(x[j] - x[i])
+            nn = np.outer(x[j] - x[i], x[j] - x[i]) / length**2
+            K.append(sign * k * (along * nn + sideways(1.0 - rest / length) * (np.eye(x.shape[1]) - nn)))
+            D.append(damper(k_d, nn))
+        return np.array(K), np.array(D)
+    return spring_stiffness
+
+
+right("2.11", "by outer products")(blocks())
+wrong("2.11", "the sideways push of a compressed spring")(blocks(sideways=lambda stretch: stretch))
+wrong("2.11", "nothing sideways")(blocks(sideways=lambda stretch: 0.0))
+wrong("2.11", "as stiff across as along")(blocks(sideways=lambda stretch: 1.0))
+wrong("2.11", "nothing along")(blocks(along=0.0))
+wrong("2.11", "a damper in all directions")(blocks(damper=lambda k_d, nn: k_d * np.eye(len(nn))))
+wrong("2.11", "forgets k_d")(blocks(damper=lambda k_d, nn: nn))
+wrong("2.11", "derivative of F without the minus")(blocks(sign=-1.0))
+
+
+# 2.12 -----------------------------------------------------------------------------------------------------------
+def descent(conjugate=True, tolerance=1e-10, rounds=10, start=0.0, silent=False, copied=True, zero=True):
+    """Conjugate gradients with the conjugacy written out, β = −(r·Ap)/(p·Ap), and with parts that may be wrong."""
+    def conjugate_gradients(apply, A, right):
+        y = np.full_like(right, start)
+        r = right.copy() if copied else right
+        p, scale = r.copy(), np.linalg.norm(right)
+        for _ in range(int(rounds * right.size)):
+            if zero and np.linalg.norm(r) <= tolerance * scale:
+                return y
+            Ap = apply(p, A)
+            alpha = np.sum(r * p) / np.sum(p * Ap)
+            y += alpha * p
+            r -= alpha * Ap
+            if np.linalg.norm(r) <= tolerance * scale:
+                return y
+            p = r - (np.sum(r * Ap) / np.sum(p * Ap) * p if conjugate else 0.0)
+        if silent:
+            return y
+        raise Diverged("conjugate gradients did not converge", np.nan)
+    return conjugate_gradients
+
+
+right("2.12", "conjugacy written out")(descent())
+wrong("2.12", "steepest descent")(descent(conjugate=False))
+wrong("2.12", "stops at a thousandth")(descent(tolerance=1e-3))
+wrong("2.12", "stops after as many rounds as unknowns")(descent(rounds=1))
+wrong("2.12", "never gives up: returns whatever it has")(descent(silent=True))
+wrong("2.12", "starts from ones, with the residual of zeros")(descent(start=1.0))
+wrong("2.12", "uses up the right-hand side")(descent(copied=False))
+wrong("2.12", "divides zero by zero")(descent(zero=False))
+
+
+@wrong("2.12", "the ratio upside down")
+def conjugate_gradients(apply, A, right):
+    y, r, p = np.zeros_like(right), right.copy(), right.copy()
+    for _ in range(10 * right.size):
+        squared = np.sum(r * r)
+        if squared <= worked.CG_TOLERANCE**2 * np.sum(right * right):
+            return y
+        alpha = squared / np.sum(p * apply(p, A))
+        y += alpha * p
+        r -= alpha * apply(p, A)
+        p = r + squared / np.sum(r * r) * p
+    raise Diverged("conjugate gradients did not converge", np.nan)
+
+
+@wrong("2.12", "residuals in place of conjugate directions: r + p")
+def conjugate_gradients(apply, A, right):
+    y, r, p = np.zeros_like(right), right.copy(), right.copy()
+    for _ in range(10 * right.size):
+        squared = np.sum(r * r)
+        if squared <= worked.CG_TOLERANCE**2 * np.sum(right * right):
+            return y
+        alpha = squared / np.sum(p * apply(p, A))
+        y, r, p = y + alpha * p, r - alpha * apply(p, A), r + p
+    raise Diverged("conjugate gradients did not converge", np.nan)
+
+
+# 2.13 -----------------------------------------------------------------------------------------------------------
+def large_step(ahead=1.0, damping=1.0, viscosity=1.0, stiffness=1.0, old=False, late=0.0, held=True, massive=True):
+    """Linearly implicit Euler as one dense system, with terms that may be wrong."""
+    def implicit_mesh_step(acceleration, t, x, v, dt, mesh):
+        n, d = x.shape
+        K, D = (dense(blocks_of, mesh, n, d) for blocks_of in worked.spring_stiffness(x, mesh))
+        free = np.repeat(mesh.inv_mass > 0.0, d) if held else np.ones(n * d, bool)
+        mass = np.repeat(1.0 / np.where(mesh.inv_mass > 0.0, mesh.inv_mass, 1.0), d)
+        a = acceleration(t + late * dt, x, v, mesh).ravel()
+        A = np.diag(mass + viscosity * dt * mesh.k_v) + stiffness * dt * dt * K + damping * dt * D
+        b = dt * ((mass if massive else 1.0) * a - ahead * dt * K @ v.ravel())
+        jump = np.zeros(n * d)
+        jump[free] = np.linalg.solve(A[np.ix_(free, free)], b[free])
+        v_new = v + jump.reshape(n, d)
+        return x + dt * (v if old else v_new), v_new
+    return implicit_mesh_step
+
+
+def dense(blocks_of, mesh, n, d):
+    """The (nd, nd) matrix with one block a spring: + at (i, i) and (j, j), − at (i, j) and (j, i)."""
+    whole = np.zeros((n, d, n, d))
+    for i, j, block in zip(mesh.i, mesh.j, blocks_of):
+        whole[i, :, i] += block
+        whole[j, :, j] += block
+        whole[i, :, j] -= block
+        whole[j, :, i] -= block
+    return whole.reshape(n * d, n * d)
+
+
+right("2.13", "as one dense system")(large_step())
+wrong("2.13", "forgets dt ∂F/∂x v on the right")(large_step(ahead=0.0))
+wrong("2.13", "∂F/∂x v with the wrong sign")(large_step(ahead=-1.0))
+wrong("2.13", "dampers explicit")(large_step(damping=0.0))
+wrong("2.13", "viscosity explicit")(large_step(viscosity=0.0))
+wrong("2.13", "springs explicit")(large_step(stiffness=0.0))
+wrong("2.13", "moves with the old velocity")(large_step(old=True))
+wrong("2.13", "acceleration at the end of the step")(large_step(late=1.0))
+wrong("2.13", "fixed points give way")(large_step(held=False))
+wrong("2.13", "forgets the mass on the right")(large_step(massive=False))
+
+
+@wrong("2.13", "symplectic Euler")
+def implicit_mesh_step(acceleration, t, x, v, dt, mesh):
+    return integrators.symplectic_euler_step(acceleration, t, x, v, dt, mesh)
+
+
+@wrong("2.13", "fully implicit Euler, by Newton's method")
+def implicit_mesh_step(acceleration, t, x, v, dt, mesh):
+    return integrators.implicit_euler_step(acceleration, t, x, v, dt, mesh)

@@ -1,0 +1,44 @@
+"""The notebooks run from first cell to last with nothing attempted, half done and solved; stored without outputs."""
+
+import json
+import os
+import re
+
+import nbformat
+import pytest
+from nbclient import NotebookClient
+
+from validate.binding import ROOT, SOLUTIONS, lesson_names
+from validate.generate import exercises, stub
+
+NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
+STATES = {"nothing attempted": lambda k: False, "half done": lambda k: k % 2 == 0, "solved": lambda k: True}
+
+
+def answered(state):
+    """{lesson: exercises that are solved in that state}."""
+    return {name: {e for k, e in enumerate(exercises((SOLUTIONS / f"{name}.py").read_text())) if STATES[state](k)} for name in lesson_names()}
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_a_notebook_is_stored_without_outputs(path):
+    for cell in nbformat.read(path, as_version=4).cells:
+        assert cell.cell_type != "code" or (not cell.outputs and cell.execution_count is None)
+
+
+@pytest.mark.parametrize("state", STATES)
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_a_notebook_runs_to_its_end_and_its_checks_say_the_state(path, state, tmp_path, monkeypatch):
+    solved = answered(state)
+    for name in lesson_names():
+        (tmp_path / f"{name}.py").write_text(stub((SOLUTIONS / f"{name}.py").read_text(), solved[name]))
+    monkeypatch.setenv("WORKBOOK_LESSONS", str(tmp_path))
+    notebook = nbformat.read(path, as_version=4)
+    NotebookClient(notebook, timeout=300, kernel_name="python3", resources={"metadata": {"path": ROOT / "notebooks"}}).execute()
+    every = set().union(*solved.values())
+    for cell in notebook.cells:
+        asked = re.match(r'check\("([\d.]+)"\)', cell.source) if cell.cell_type == "code" else None
+        if asked:
+            said = json.dumps([dict(output) for output in cell.outputs], ensure_ascii=False)
+            state_of = "passed" if asked[1] in every else "not attempted"
+            assert f"Exercise {asked[1]}: {state_of}" in said, said

@@ -1,0 +1,171 @@
+"""What a notebook needs beside the lesson itself: the learner's code as saved just now, the check, pictures.
+
+The learner's folder is `lessons/`, or the one that the environment variable WORKBOOK_LESSONS names.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import uuid
+from html import escape
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+from IPython.display import HTML, Markdown, display
+
+from . import binding, measure
+from .report import plots, words
+
+TESTS = binding.ROOT / "tests"
+COLOUR = {"passed": "#00684a", "not yet": "#b3261e", "not attempted": "#7a5b00"}
+SIGN = {"passed": "✓", "not yet": "✗", "not attempted": "○"}
+
+plots.style()
+plt.rcParams["figure.figsize"] = (7.2, 3.8)
+
+
+def folder():
+    """Where the learner works."""
+    return Path(os.environ.get("WORKBOOK_LESSONS", binding.ROOT / "lessons"))
+
+
+# ---------------------------------------------------------------------------------------------- the learner's code
+
+class Unreadable:
+    """Stands in for a lesson that cannot be loaded: whatever is taken from it says why."""
+
+    def __init__(self, why):
+        self.why = why
+
+    def __getattr__(self, name):
+        def stuck(*_):
+            raise NotImplementedError(self.why)
+        return stuck
+
+
+def mine(lesson):
+    """Your lesson, as saved just now.  A file that cannot be loaded is reported in one sentence, and nothing else breaks."""
+    try:
+        return binding.bind(lesson, folder())
+    except Exception as e:
+        where = f", line {e.lineno}" if isinstance(e, SyntaxError) and e.lineno else ""
+        why = f"lessons/{lesson}.py cannot be loaded{where}: {type(e).__name__}: {e}"
+        display(HTML(f'<p style="color:{COLOUR["not yet"]}"><b>{escape(why)}</b></p>'))
+        return Unreadable(why)
+
+
+def attempt(function, *arguments):
+    """What your function returns; None, and a sentence, when it is not written yet or fails."""
+    try:
+        with np.errstate(all="ignore"):
+            return function(*arguments)
+    except NotImplementedError as e:
+        display(HTML(f'<p style="color:{COLOUR["not attempted"]}">○ {escape(str(e))}: not attempted yet, so it is not drawn.</p>'))
+    except ArithmeticError as e:
+        display(HTML(f'<p style="color:{COLOUR["not yet"]}">✗ {escape(str(e))}.</p>'))
+    except Exception as e:
+        display(HTML(f'<p style="color:{COLOUR["not yet"]}">✗ {escape(type(e).__name__)}: {escape(str(e))}.</p>'))
+    return None
+
+
+# ---------------------------------------------------------------------------------------------- the check
+
+def check(exercise):
+    """Run the grader's tests of one exercise on your code as saved just now: not attempted, not yet, or passed."""
+    lesson = _lesson_of(exercise)
+    with tempfile.TemporaryDirectory() as scratch:
+        file = Path(scratch) / "outcomes.json"
+        run = subprocess.run([sys.executable, "-m", "pytest", str(TESTS / f"test_{lesson}.py"), f"--of={folder().resolve()}",
+                              f"--exercise={exercise}", f"--outcomes={file}", f"--rootdir={binding.ROOT}", "-p", "no:cacheprovider"],
+                             cwd=binding.ROOT, capture_output=True, text=True)
+        outcomes = json.loads(file.read_text()) if file.is_file() else []
+    if not outcomes:
+        raise RuntimeError(f"the check of exercise {exercise} did not run:\n{run.stdout}\n{run.stderr}")
+    display(_Answer(exercise, outcomes))
+
+
+def _lesson_of(exercise):
+    from .generate import exercises
+    for lesson in binding.lesson_names():
+        if exercise in exercises((binding.SOLUTIONS / f"{lesson}.py").read_text()):
+            return lesson
+    raise binding.BadInput(f"exercise {exercise!r}", "unknown", 'give its number in quotes, like check("1.2")')
+
+
+class _Answer:
+    """The answer of a check, for people: the worst outcome first; all of it as text and as HTML."""
+
+    def __init__(self, exercise, outcomes):
+        self.exercise, self.outcomes = exercise, outcomes
+        self.open = [o for o in outcomes if o["status"] != "passed"]
+        states = {o["status"] for o in outcomes}
+        self.state = "not yet" if "not yet" in states else "not attempted" if "not attempted" in states else "passed"
+
+    def lines(self):
+        earned = sum(o["points"] for o in self.outcomes if o["status"] == "passed")
+        yield f"{SIGN[self.state]} Exercise {self.exercise}: {self.state}", f"{earned:g} of {sum(o['points'] for o in self.outcomes):g} points"
+        if self.state == "not attempted":
+            yield "still open", self.open[0]["got"]
+        elif self.open:
+            first = next(o for o in self.open if o["status"] == "not yet")
+            for name in ("quantity", "expected", "got", "tolerance", "hint"):
+                if first[name]:
+                    yield name, first[name]
+
+    def __repr__(self):
+        (title, points), *rest = self.lines()
+        return "\n".join([f"{title} ({points})", *(f"    {name:10} {value}" for name, value in rest)])
+
+    def _repr_html_(self):
+        (title, points), *rest = self.lines()
+        rows = "".join(f'<tr><td style="text-align:left;color:#5b666e;padding:.1rem 1rem .1rem 0">{escape(n)}</td>'
+                       f'<td style="text-align:left">{escape(v)}</td></tr>' for n, v in rest)
+        return (f'<div style="border-left:4px solid {COLOUR[self.state]};padding:.3rem .8rem;margin:.3rem 0">'
+                f'<b style="color:{COLOUR[self.state]}">{escape(title)}</b> ({points})<table style="margin:0">{rows}</table></div>')
+
+
+# ---------------------------------------------------------------------------------------------- pictures
+
+def play(frames, seconds, links=(), height=260):
+    """A moving picture: frames = {label: list of (n, 2) arrays [m]}; "truth" is drawn in grey, the others in colour."""
+    name = f"p{uuid.uuid4().hex}"
+    picture = {"seconds": seconds, "links": [list(map(int, pair)) for pair in links],
+               "frames": {label: [np.round(np.asarray(f, dtype=float), 5).tolist() for f in fs] for label, fs in frames.items()}}
+    kinds = ["truth" if label == "truth" else "engine" if label.startswith("py") else "ours" for label in frames]
+    key = " &nbsp; ".join(f'<span style="color:{plots.PLAYERS[kind]}">●</span> {escape(label)}' for kind, label in zip(kinds, frames))
+    script = (Path(plots.__file__).parent / "player.js").read_text()
+    display(HTML(f'<canvas data-picture="{name}" style="width:100%;max-width:46rem;height:{height}px;background:#f6f7f8"></canvas>'
+                 f'<div>{key}</div><script type="application/json" id="{name}">{json.dumps(picture)}</script><script>{script}</script>'))
+
+
+def scene_of(name):
+    """A scene with your lesson functions in it."""
+    return binding.bind_scene(name, folder())
+
+
+def measured(name, most_steps=1000):
+    """Hold your methods, plain, against truth and engines on one scene; returns what the report is made of."""
+    plan = measure.Plan(of=str(folder()), speeds=("plain",), live=tuple(n for n in measure.engines.NAMES if measure.engines.installed(n)),
+                        most_steps=most_steps)
+    result = measure.errors(name, plan)
+    return {**result, "times": measure.times(name, plan, result)}
+
+
+def show_motion(result):
+    """The scene's moving picture: truth, your best method, an engine."""
+    picture = result["picture"]
+    play(picture["frames"], picture["seconds"], picture["links"])
+
+
+def show_precision(result):
+    """Error against step, and error against run time: the two figures of the report, with your methods in them."""
+    plots.show(plots.convergence, result)
+    plots.show(plots.work_precision, result)
+
+
+def show_findings(result):
+    """What the numbers say."""
+    display(Markdown("\n".join(f"- {sentence}" for sentence in words.findings(result))))

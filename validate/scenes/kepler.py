@@ -1,0 +1,198 @@
+"""A planet runs around its sun sixteen times on an ellipse, and every method is asked where it is in the end."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from solutions.checks import BadInput, check_positive
+from solutions.integrators import advance
+from validate.engines import Bullet, pymunk_space, pymunk_world
+from validate.scene import IMPLICIT_MIDPOINT, MIDPOINT, RK4, ROUND_OFF, SYMPLECTIC_EULER, VERLET, Engine, World
+
+TITLE, LESSON = "Kepler", "integrators"
+T = 100.0                    # [s]: sixteen revolutions
+STEPS = (1000, 2000, 5000, 10000, 20000, 50000, 100000)
+# Euler, average velocity and implicit Euler gain or lose energy at every passage, and phase goes with the square of time: by
+# drift() below they would need ten million steps to be told from a guess.
+METHODS = (MIDPOINT, RK4, SYMPLECTIC_EULER, VERLET, IMPLICIT_MIDPOINT)
+UNCERTAINTY = 1e-12          # the truth's: round-off in the energy, v²/2 − μ/r, grows with time as in drift(): 3e-13
+
+
+class Params(NamedTuple):
+    mu: float = 1.0          # gravity of the sun, G m [m³/s²]
+    a: float = 1.0           # half the long axis [m]
+    e: float = 0.6           # eccentricity [-]
+
+
+CASES = {"e = 0.6": Params()}
+PUBLISHED = ((100.0, (-0.104183204, -0.694741716), 1e-9),)    # its velocity is then (1.236177763, 0.564623251) m/s
+
+
+def acceleration(t, x, v, p):
+    """a = −μ x/|x|³"""
+    return -p.mu / (x @ x) ** 1.5 * x
+
+
+def start(p):
+    """Nearest to the sun, where the planet is fastest: |x| = a (1 − e),  v² = μ (1 + e)/(a (1 − e))."""
+    for name in ("mu", "a"):
+        check_positive(name, getattr(p, name))
+    if not 0.0 <= p.e < 1.0:
+        raise BadInput("the eccentricity e", p.e, "give a number from 0 up to, but not including, 1")
+    return np.array([p.a * (1.0 - p.e), 0.0]), np.array([0.0, np.sqrt(p.mu / p.a * (1.0 + p.e) / (1.0 - p.e))])
+
+
+def run(step, state, p, dt, steps):
+    x, v = state
+    return advance(step, acceleration, 0.0, x, v, dt, steps, p)
+
+
+def observe(state, p):
+    return state[0][:2]
+
+
+def eccentric_anomaly(M, e):
+    """E [rad] from Kepler's equation E − e sin E = M, by Newton's method to round-off.
+
+    It starts beyond the root within the same half turn; there the left side bends so that no correction overshoots.
+    """
+    E = M + e * np.sign(np.sin(M))
+    for _ in range(50):                                                    # fewer than ten, even for e = 0.99
+        before, E = E, E - (E - e * np.sin(E) - M) / (1.0 - e * np.cos(E))
+        if abs(E - before) <= 4.0 * ROUND_OFF * abs(E):
+            break
+    return E
+
+
+def orbit(x, v, mu, t):
+    """(x, v) at t of a planet that passes x with the velocity v on an ellipse; NaN when it escapes.
+
+    1/a = 2/r − v²/μ,   n = √(μ/a³),   e cos E₀ = 1 − r/a,   e sin E₀ = x·v/√(μa),   E − e sin E = E₀ − e sin E₀ + n t
+    With ψ = E − E₀:   x(t) = f x + g v,   f = 1 − (a/r)(1 − cos ψ),   g = ((r/a) sin ψ + e sin E₀ (1 − cos ψ))/n;
+    v(t) is the time derivative, with ψ̇ = n/(1 − e cos E).
+    Source: Bate, Mueller and White 1971, Fundamentals of astrodynamics, chapter 4.
+    """
+    r, per_a = np.linalg.norm(x), 2.0 / np.linalg.norm(x) - v @ v / mu
+    if per_a <= 0.0:
+        return np.full_like(x, np.nan), np.full_like(v, np.nan)
+    n, r_a, e_cos, e_sin = np.sqrt(mu * per_a**3), r * per_a, 1.0 - r * per_a, x @ v * np.sqrt(per_a / mu)
+    E_0, e = np.arctan2(e_sin, e_cos), np.hypot(e_sin, e_cos)
+    E = eccentric_anomaly(E_0 - e_sin + n * t, e)
+    c, s, rate = np.cos(E - E_0), np.sin(E - E_0), n / (1.0 - e * np.cos(E))
+    return ((1.0 - (1.0 - c) / r_a) * x + (r_a * s + e_sin * (1.0 - c)) / n * v,
+            -s / r_a * rate * x + (r_a * c + e_sin * s) / n * rate * v)
+
+
+def truth(p, t):
+    """Kepler's ellipse: n t = E − e sin E,   n = √(μ/a³),   x = a (cos E − e, √(1 − e²) sin E)
+
+    Areas: r²θ̇ is constant; with the eccentric anomaly E in place of θ that integrates to the first equation.
+    Source: Kepler 1609, Astronomia nova; Goldstein, Classical mechanics, § 3.8.
+    """
+    return orbit(*start(p), p.mu, t)[0]
+
+
+def drift(p, T, dt, k):
+    """Largest relative error of position at T of a method of order k whose drift of energy starts at order k + 1.
+
+    Near the sun a step errs by (rate dt)ᵏ⁺¹ of the velocity, rate = √(μ/r³) at the shortest distance r: within a fifth that is
+    how far, in complex time, the nearest point with |x| = 0 lies, and so how fast Taylor's coefficients can grow.  A passage
+    lasts 1/rate: it changes v by (rate dt)ᵏ v, and the energy, relative to μ/2a, by
+        ε_k = 2 (1 + e)/(1 − e) (rate dt)ᵏ.
+    A method of even order does that on the way in and undoes it on the way out, as time reversal demands; only ε_k₊₁ is left
+    at every passage.  Kepler's third law: n changes by 3/2 ε, so the phase at T is wrong by
+        φ = 3/2 n T (ε_k + ε_k₊₁ n T/4π),        in metres |v(T)|/n φ.
+    Source: Calvo and Sanz-Serna 1993; Hairer, Lubich, Wanner 2006, X.3 and XI.
+    """
+    n, rate = np.sqrt(p.mu / p.a**3), np.sqrt(p.mu / (p.a * (1.0 - p.e)) ** 3)
+    x, v = orbit(*start(p), p.mu, T)
+    metres = np.linalg.norm(v) / n / np.linalg.norm(x)
+    weight = metres * 1.5 * n * T * 2.0 * (1.0 + p.e) / (1.0 - p.e)        # what a relative error of v at each passage does
+    round_off = weight * (1e-12 + T / dt * ROUND_OFF)
+    return weight * ((rate * dt) ** k + n * T / (4.0 * np.pi) * (rate * dt) ** (k + 1)) + round_off
+
+
+def late_start(p, T, dt, side):
+    """Relative error at T of leapfrog whose first velocity belongs to dt/2 before (side +1) or after (−1) the start.
+
+    Symplectic Euler and the engines are leapfrog that took v(0) for v(∓½dt): exactly the ellipse of a planet with the velocity
+    v(0) ± ½dt a(0).  At the nearest point a is across v, so that energy changes by dt² only: the ellipse turns, its period stays.
+    """
+    x, v = start(p)
+    shifted, _ = orbit(x, v + side * 0.5 * dt * acceleration(0.0, x, v, p), p.mu, T)
+    return np.linalg.norm(shifted - truth(p, T)) / np.linalg.norm(truth(p, T))
+
+
+def limits_at(p, T, dt):
+    """{order or engine label: largest relative error at T}."""
+    smooth = {k: drift(p, T, dt, k) for k in (2, 4)}
+    old, new = late_start(p, T, dt, -1.0) + smooth[2], late_start(p, T, dt, 1.0) + smooth[2]
+    return {**smooth, 1: new, "pymunk": old, "pymunk, leapfrog start": smooth[2], "pybullet": new, "pybullet, leapfrog start": smooth[2]}
+
+
+def tolerance(p, dt):
+    """Order 2 and 4 drift in phase; symplectic Euler and both engines are leapfrog, started half a step late or early."""
+    return limits_at(p, T, dt)
+
+
+def pymunk_make(p, dt, ahead=0.0):
+    """Chipmunk calls velocity_func after it has moved the body: the attraction is that at the new position.
+
+    A force applied before step() would be that at the old position: forward Euler, which spirals outwards.
+    """
+    import pymunk
+    space = pymunk_space()
+    x, v = start(p)
+    body = pymunk.Body(1.0, 1.0)
+    body.position, body.velocity = tuple(map(float, x)), tuple(map(float, v + ahead * dt * acceleration(0.0, x, v, p)))
+
+    def attract(body, gravity, damping, dt):
+        x, y = body.position
+        pull = -p.mu / (x * x + y * y) ** 1.5
+        body.velocity += (pull * x * dt, pull * y * dt)
+
+    body.velocity_func = attract
+    space.add(body)
+    return pymunk_world(space, dt, lambda: np.array(body.position))
+
+
+def pybullet_make(p, dt, ahead=0.0):
+    """The attraction as a force, from the position before each step.
+
+    By default a body would carry the hidden damping −0.04 v (1 + |v|) and fall into the sun within three revolutions.
+    """
+    bullet = Bullet(dt)
+    x, v = start(p)
+    body = bullet.point_mass(1.0, (*x, 0.0), (*(v - ahead * dt * acceleration(0.0, x, v, p)), 0.0))
+
+    def step():
+        x, y, z = bullet.position(body)
+        pull = -p.mu / (x * x + y * y) ** 1.5
+        bullet.push(body, (pull * x, pull * y, 0.0), (x, y, z))
+        bullet.step()
+
+    return World(step, lambda: np.array(bullet.position(body)[:2]), bullet.close)
+
+
+ENGINES = (
+    Engine("pymunk", pymunk_make, 1, "attraction in velocity_func"),
+    Engine("pymunk, leapfrog start", lambda p, dt: pymunk_make(p, dt, ahead=0.5), 2, "first velocity + ½ a dt"),
+    Engine("pybullet", pybullet_make, 1, "useMaximalCoordinates=1, no damping; force applied each step"),
+    Engine("pybullet, leapfrog start", lambda p, dt: pybullet_make(p, dt, ahead=0.5), 2, "first velocity − ½ a dt"),
+)
+
+
+def points(observed, p):
+    """The sun, and the planet."""
+    return np.array([[0.0, 0.0], [observed[0], observed[1]]])
+
+
+def in_space(p):
+    """The same motion with z carried along."""
+    x, v = start(p)
+    return (np.append(x, 0.0), np.append(v, 0.0)), p
+
+
+NEEDS = ("one point in the plane", "one step function")
+LEAVES_OUT = {"the third dimension": in_space, "the motion of the sun": "the lighter the planet, the less it matters",
+              "steps that adapt to the distance": "beyond this workbook", "rotation": "lesson 5 builds it"}

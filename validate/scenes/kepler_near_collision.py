@@ -1,0 +1,35 @@
+"""A comet on a long ellipse: a tenth of its distance from the sun at its nearest, where all the error is made."""
+
+import numpy as np
+
+from solutions.integrators import advance
+from validate.scene import IMPLICIT_MIDPOINT, MIDPOINT, RK4, SYMPLECTIC_EULER, VERLET
+from validate.scenes.kepler import ENGINES, Params, in_space, limits_at, observe, points, start, truth
+
+TITLE, LESSON = "Kepler, near collision", "integrators"
+T = 20.0                     # [s]: three revolutions
+STEPS = (2000, 5000, 10000, 20000, 50000, 100000, 200000)
+METHODS = (MIDPOINT, RK4, SYMPLECTIC_EULER, VERLET, IMPLICIT_MIDPOINT)    # the others: see kepler
+UNCERTAINTY = 1e-12          # the truth's, as in kepler: 1e-13
+
+CASES = {"e = 0.9": Params(e=0.9)}
+PUBLISHED = ((20.0, (-1.295266251, 0.400393896), 1e-9),)
+
+
+def acceleration(t, x, v, p):
+    """a = −μ x/|x|³"""
+    return -p.mu / (x @ x) ** 1.5 * x
+
+
+def run(step, state, p, dt, steps):
+    x, v = state
+    return advance(step, acceleration, 0.0, x, v, dt, steps, p)
+
+
+def tolerance(p, dt):
+    """As in kepler.  The rate at the nearest point, √(μ/r³), is 32 times the mean one: most steps are wasted far away."""
+    return limits_at(p, T, dt)
+
+
+NEEDS = ("one point in the plane", "one step function")
+LEAVES_OUT = {"the third dimension": in_space, "steps that adapt to the distance": "beyond this workbook", "rotation": "lesson 5 builds it"}

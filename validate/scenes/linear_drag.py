@@ -1,0 +1,148 @@
+"""A pellet shot up in syrup: drag in proportion to speed bends the parabola until it comes down almost straight."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from solutions.checks import check_positive
+from solutions.integrators import advance
+from validate.engines import Bullet, pymunk_space, pymunk_world
+from validate.scene import INTEGRATORS, Engine, World, by_order
+
+TITLE, LESSON = "Linear drag", "integrators"
+T = 1.97599434               # [s]: when it is back at the height of the start
+STEPS = (10, 20, 50, 100, 200, 500, 1000, 2000)
+METHODS = INTEGRATORS
+UNCERTAINTY = 1e-14          # (1 − e^(−kt)) and gt are ten times as large as their difference
+
+
+class Params(NamedTuple):
+    vx: float = 2.54         # shot with this velocity [m/s], y up
+    vy: float = 12.7
+    k: float = 1.0           # drag over mass [1/s]
+    g: float = 9.81456       # gravity [m/s²]
+
+
+CASES = {"shot": Params()}
+# Landing time and range are published to 8 decimals: half a unit of the time, at the 6.7 m/s of the landing, is 3.4e-8 m.
+PUBLISHED = ((1.97599434, (2.18789655, 0.0), 4e-8),)
+
+
+def acceleration(t, x, v, p):
+    """a = −g ŷ − k v"""
+    a = -p.k * v
+    a[1] -= p.g
+    return a
+
+
+def start(p):
+    check_positive("k", p.k)
+    return np.zeros(2), np.array([p.vx, p.vy])
+
+
+def run(step, state, p, dt, steps):
+    x, v = state
+    return advance(step, acceleration, 0.0, x, v, dt, steps, p)
+
+
+def observe(state, p):
+    return state[0][:2]
+
+
+def truth(p, t):
+    """x(t) = v∞ t + (v₀ − v∞)(1 − e^(−kt))/k,   v∞ = −(g/k) ŷ
+
+    v − v∞ obeys u̇ = −k u, so it decays as e^(−kt); integrate once more.  It lands when (v_y + g/k)(1 − e^(−kt)) = g t.
+    Source: Marion and Thornton, Classical dynamics, chapter 2 (motion in a resisting medium).
+    """
+    v_0, v_end = np.array([p.vx, p.vy]), np.array([0.0, -p.g / p.k])
+    return v_end * t - (v_0 - v_end) * np.expm1(-p.k * t) / p.k
+
+
+def hidden_damping(p, t):
+    """What a reduced-coordinate body of pybullet does by default: a − 0.04 v (1 + |v|), |v| the length of the vector; by DOP853.
+
+    Source: measured, and in Bullet's btMultiBody.
+    """
+    from scipy.integrate import solve_ivp
+
+    def law(t, y):
+        x, v = y[:2], y[2:]
+        return np.concatenate((v, acceleration(t, x, v, p) - 0.04 * v * (1.0 + np.linalg.norm(v))))
+
+    return solve_ivp(law, (0.0, max(t, 1e-9)), np.concatenate(start(p)), method="DOP853", rtol=1e-12, atol=1e-13).y[:2, -1]
+
+
+def tolerance(p, dt):
+    """Only the term that decays, |v₀ − v∞|/k long, can be wrong, at the rate k; relative to x(T), which is ten times shorter.
+
+    Both engines move first-order and take drag at the beginning of a step, or shrink v by e^(−k dt): order 1 with rate k.  Half
+    a step in the first velocity would not help, because drag answers to it.  The hidden damping has its fastest rate,
+    0.04 (1 + 2|v|), at the greater of the first speed and the terminal one.
+    """
+    scale = np.hypot(p.vx, p.vy + p.g / p.k) / p.k / np.linalg.norm(truth(p, T))
+    limits = {k: scale * limit for k, limit in by_order(p.k, T, dt).items()}
+    fastest = max(np.hypot(p.vx, p.vy), p.g / p.k)
+    hidden = scale * by_order(p.k + 0.04 * (1.0 + 2.0 * fastest), T, dt)[1]
+    return {**limits, "pybullet, default": hidden,
+            **{label: limits[1] for label in ("pymunk", "pymunk, own damping", "pybullet", "pybullet, own damping")}}
+
+
+def pymunk_make(p, dt, own=False):
+    """Drag as a force before each step, or as the space's damping: the part of the velocity that is left after a second.
+
+    Chipmunk moves first and then applies the force: forward Euler, which is harmless here because drag depends on v alone.
+    """
+    import pymunk
+    space = pymunk_space((0.0, -p.g))
+    if own:
+        space.damping = np.exp(-p.k)
+    body = pymunk.Body(1.0, 1.0)
+    body.velocity = (p.vx, p.vy)
+    space.add(body)
+
+    def step():
+        body.force = (-p.k * body.velocity.x, -p.k * body.velocity.y)            # used up by the step
+        space.step(dt)
+
+    read = lambda: np.array([body.position.x, body.position.y])
+    return pymunk_world(space, dt, read) if own else World(step, read, lambda: None)
+
+
+def pybullet_make(p, dt, default=False, own=False):
+    """Drag as a force before each step, or as the body's own damping: the part of the velocity that is lost in a second."""
+    bullet = Bullet(dt, (0.0, -p.g, 0.0))
+    body = bullet.point_mass(1.0, (0.0, 0.0, 0.0), (p.vx, p.vy, 0.0), default)
+    if own:
+        bullet.pb.changeDynamics(body, -1, linearDamping=-np.expm1(-p.k), physicsClientId=bullet.client)
+
+    def step():
+        v = bullet.velocity(body)
+        bullet.push(body, (-p.k * v[0], -p.k * v[1], 0.0), bullet.position(body))
+        bullet.step()
+
+    return World(bullet.step if own else step, lambda: np.array(bullet.position(body)[:2]), bullet.close)
+
+
+ENGINES = (
+    Engine("pymunk", pymunk_make, 1, "force applied each step"),
+    Engine("pymunk, own damping", lambda p, dt: pymunk_make(p, dt, own=True), 1, "space.damping = e^(−k): what is left after a second"),
+    Engine("pybullet, default", lambda p, dt: pybullet_make(p, dt, default=True), 1, "createMultiBody as it comes; force applied each step"),
+    Engine("pybullet", pybullet_make, 1, "useMaximalCoordinates=1, no damping; force applied each step"),
+    Engine("pybullet, own damping", lambda p, dt: pybullet_make(p, dt, own=True), 1,
+           "useMaximalCoordinates=1, linearDamping = 1 − e^(−k): what is lost in a second"),
+)
+WHY = {"pybullet, default": ("its reduced-coordinate bodies carry a hidden damping −0.04 v (1 + |v|)", hidden_damping)}
+
+
+def points(observed, p):
+    return observed[None, :]
+
+
+def in_space(p):
+    """The same motion with z carried along."""
+    return (np.zeros(3), np.array([p.vx, p.vy, 0.0])), p
+
+
+NEEDS = ("one point in the plane", "one step function")
+LEAVES_OUT = {"the third dimension": in_space, "rotation": "lesson 5 builds it", "detection of the ground": "lesson 6 builds it"}

@@ -1,0 +1,91 @@
+"""A net of two metres at 24 frames a second: one step a frame tears it, four make it rough, sixteen look right."""
+
+from functools import lru_cache
+
+import numpy as np
+
+from solutions.checks import check_positive
+from solutions.integrators import advance, amplification_matrix, average_velocity_step, spectral_radius
+from solutions.springs import mesh_acceleration
+from validate.reference import modes, motion, net_limits, pymunk_net, state_of
+from validate.scene import IMPLICIT_MESH, INTEGRATORS, Engine
+from validate.scenes.spring_net import Params, net
+
+TITLE, LESSON = "1, 4, 16 samples a frame", "springs"
+FRAMES_PER_SECOND = 24
+SAMPLES = (1, 4, 16, 64, 256)              # steps a frame [-]
+T = 1.0                                    # [s]
+STEPS = tuple(FRAMES_PER_SECOND * samples for samples in SAMPLES)
+METHODS = INTEGRATORS + (IMPLICIT_MESH,)
+UNCERTAINTY = 1e-12
+
+# The lecture's step multiplies a mode by |λ|, |λ|² = 1 − c dt + ½ω² dt².  Dampers give c = τω² with τ = k_d/k = 6 ms, so every
+# mode grows alike when dt > 2τ = 12 ms: with one sample a frame (42 ms), not with four (10 ms).
+CASES = {"net": Params(spacing=0.5, shear=1, k=20.0, k_d=0.12, wind=0.1)}
+
+
+def start(p):
+    for name in ("n", "spacing", "m", "k"):
+        check_positive(name, getattr(p, name))
+    return state_of(net(p))
+
+
+def run(step, state, p, dt, steps):
+    x, v, mesh = state
+    x, v = advance(step, mesh_acceleration, 0.0, x, v, dt, steps, mesh)
+    return x, v, mesh
+
+
+def observe(state, p):
+    return state[0][:, :2].ravel()
+
+
+@lru_cache(maxsize=None)
+def reference(p):
+    return motion(net(p), T)
+
+
+def truth(p, t):
+    """Every node, by DOP853 with forces of its own, at a relative tolerance of 1e-13: thousands of samples a frame."""
+    return reference(p)(t).ravel()
+
+
+def tolerance(p, dt):
+    """Each mode on its own, with the room that large motion needs (net_limits); pymunk is symplectic Euler, order 1."""
+    limits = net_limits(net, p, np.linalg.norm(truth(p, T)), T, dt, UNCERTAINTY)
+    return {**limits, "pymunk": limits[1]}
+
+
+ENGINES = (Engine("pymunk", lambda p, dt: pymunk_net(net(p), dt, np.ravel), 1, "DampedSpring between point masses"),)
+
+
+def points(observed, p):
+    return observed.reshape(-1, 2)
+
+
+def LINKS(p):
+    return net(p).pairs.tolist()
+
+
+def published():
+    """((claim, found, expected, tolerance), …): how the fastest mode grows in a step of the lecture's method, for a test to assert.
+
+    |λ|² = det A = (1 − ½ω²dt²)(1 − c dt) + ω² dt (dt − ½c dt²) = 1 − c dt + ½ω² dt²  while λ is complex.
+    """
+    omega, c, _ = modes(net(CASES["net"]))
+    omega, c = omega[-1], c[-1]
+    claims = []
+    for samples in (4, 16, 64):
+        dt = 1.0 / (FRAMES_PER_SECOND * samples)
+        grows = spectral_radius(amplification_matrix(average_velocity_step, omega, 0.5 * c / omega, dt))
+        claims.append((f"growth in a step, {samples} samples a frame [-]", grows, np.sqrt(1.0 - c * dt + 0.5 * (omega * dt) ** 2), 1e-12))
+    return tuple(claims)
+
+
+def in_space(p):
+    """The same motion with a third coordinate carried along."""
+    return state_of(net(p).padded()), p
+
+
+NEEDS = ("two coordinates", "springs with dampers", "one step function")
+LEAVES_OUT = {"the third dimension": in_space, "rotation": "lesson 5 builds it", "contact of the net with itself": "lesson 6 builds it"}

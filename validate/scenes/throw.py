@@ -1,0 +1,125 @@
+"""A stone thrown from a cliff, without air: the parabola that half of the methods trace exactly, and the others miss by ½ g h t."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from solutions.integrators import advance
+from validate.engines import Bullet, pymunk_space, pymunk_world
+from validate.scene import EXACT, INTEGRATORS, Engine, World, by_order
+
+TITLE, LESSON = "Throw", "integrators"
+T = 10.0                     # [s]
+STEPS = (10, 20, 50, 100, 200, 500, 1000, 2000)
+METHODS = INTEGRATORS
+# One step with a constant a moves the stone by dt v + ½dt² a, and its velocity by dt a.  Every method gets the velocity right;
+# those whose position moves with the mean of old and new velocity, or with the one in the middle, get the position right too.
+ORDERS = {f"{name}_step": EXACT for name in ("midpoint", "rk4", "average_velocity", "verlet", "implicit_midpoint")}
+UNCERTAINTY = 1e-15
+
+
+class Params(NamedTuple):
+    vx: float = -2.0         # thrown with this velocity [m/s], z up
+    vy: float = 2.0
+    vz: float = 8.0
+    g: float = 9.81          # gravity [m/s²]
+
+
+CASES = {"thrown": Params()}
+PUBLISHED = ((10.0, (-20.0, 20.0, -410.5), 1e-12),)           # by hand, exactly: only round-off may differ
+
+
+def acceleration(t, x, v, p):
+    """a = −g ẑ"""
+    a = np.zeros_like(v)
+    a[2] = -p.g
+    return a
+
+
+def start(p):
+    return np.zeros(3), np.array([p.vx, p.vy, p.vz])
+
+
+def run(step, state, p, dt, steps):
+    x, v = state
+    return advance(step, acceleration, 0.0, x, v, dt, steps, p)
+
+
+def observe(state, p):
+    return state[0]
+
+
+def truth(p, t):
+    """x(t) = v₀ t − ½ g t² ẑ
+
+    Source: Galilei 1638, fourth day; a = −g ẑ integrated twice.
+    """
+    return np.array([p.vx * t, p.vy * t, p.vz * t - 0.5 * p.g * t * t])
+
+
+def hidden_damping(p, t):
+    """What a reduced-coordinate body of pybullet does by default: a − 0.04 v (1 + |v|), |v| the length of the vector; by DOP853.
+
+    Source: measured, and in Bullet's btMultiBody.
+    """
+    from scipy.integrate import solve_ivp
+
+    def law(t, y):
+        x, v = y[:3], y[3:]
+        return np.concatenate((v, acceleration(t, x, v, p) - 0.04 * v * (1.0 + np.linalg.norm(v))))
+
+    return solve_ivp(law, (0.0, max(t, 1e-9)), np.concatenate(start(p)), method="DOP853", rtol=1e-12, atol=1e-13).y[:3, -1]
+
+
+def tolerance(p, dt):
+    """The bias of order 1, exactly: moving with the old velocity adds up to Σ dt v(n dt) = x(T) + ½ g dt T ẑ, with the new to −½ g dt T ẑ.
+
+    pymunk moves with the old velocity and errs upwards, pybullet with the new and errs downwards: their mean is exact.  Half a
+    step of gravity in the first velocity takes the bias away.  With damping the fastest rate is that of 0.04 v (1 + |v|) at the
+    greater of the first speed and the terminal one, where 0.04 v (1 + v) = g.
+    """
+    limits = by_order(0.0, T, dt)
+    bias = 0.5 * p.g * dt * T / np.linalg.norm(truth(p, T)) + limits[EXACT]
+    fastest = max(np.linalg.norm(start(p)[1]), 0.5 * (np.sqrt(1.0 + 100.0 * p.g) - 1.0))
+    damped = by_order(0.04 * (1.0 + 2.0 * fastest), T, dt)[1]
+    return {**limits, 1: bias, "pymunk": bias, "pymunk, leapfrog start": limits[EXACT],
+            "pybullet": bias, "pybullet, default": damped, "pybullet, leapfrog start": limits[EXACT]}
+
+
+def pymunk_make(p, dt, ahead=0.0):
+    """Two dimensions are enough: the vertical plane of the throw, turned back into space when read."""
+    import pymunk
+    space = pymunk_space((0.0, -p.g))
+    body = pymunk.Body(1.0, 1.0)
+    heading, speed = np.arctan2(p.vy, p.vx), np.hypot(p.vx, p.vy)
+    body.velocity = (speed, p.vz - ahead * dt * p.g)
+    space.add(body)
+    return pymunk_world(space, dt, lambda: np.array([np.cos(heading) * body.position.x, np.sin(heading) * body.position.x, body.position.y]))
+
+
+def pybullet_make(p, dt, ahead=0.0, default=False):
+    """A free body under the engine's own gravity."""
+    bullet = Bullet(dt, (0.0, 0.0, -p.g))
+    body = bullet.point_mass(1.0, (0.0, 0.0, 0.0), (p.vx, p.vy, p.vz + ahead * dt * p.g), default)
+    return World(bullet.step, lambda: np.array(bullet.position(body)), bullet.close)
+
+
+ENGINES = (
+    Engine("pymunk", pymunk_make, 1, "as it comes: it has no damping by default"),
+    Engine("pymunk, leapfrog start", lambda p, dt: pymunk_make(p, dt, ahead=0.5), EXACT, "first velocity + ½ a dt"),
+    Engine("pybullet, default", lambda p, dt: pybullet_make(p, dt, default=True), 1, "createMultiBody as it comes"),
+    Engine("pybullet", pybullet_make, 1, "useMaximalCoordinates=1, no damping"),
+    Engine("pybullet, leapfrog start", lambda p, dt: pybullet_make(p, dt, ahead=0.5), EXACT, "first velocity − ½ a dt"),
+)
+WHY = {"pybullet, default": ("its reduced-coordinate bodies carry a hidden damping −0.04 v (1 + |v|)", hidden_damping)}
+
+
+def points(observed, p):
+    """Seen from the side of the throw."""
+    heading = np.arctan2(p.vy, p.vx)
+    return np.array([[np.cos(heading) * observed[0] + np.sin(heading) * observed[1], observed[2]]])
+
+
+NEEDS = ("one point in space", "one step function")
+LEAVES_OUT = {"air": "the scenes with linear and quadratic drag have it", "rotation": "lesson 5 builds it",
+              "detection of the ground": "lesson 6 builds it"}
