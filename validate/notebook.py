@@ -132,10 +132,10 @@ class _Answer:
 def play(frames, seconds, links=(), height=260):
     """A moving picture: frames = {label: list of (n, 2) arrays [m]}; "truth" is drawn in grey, the others in colour."""
     name = f"p{uuid.uuid4().hex}"
-    picture = {"seconds": seconds, "links": [list(map(int, pair)) for pair in links],
-               "frames": {label: [np.round(np.asarray(f, dtype=float), 5).tolist() for f in fs] for label, fs in frames.items()}}
-    kinds = ["truth" if label == "truth" else "engine" if label.startswith("py") else "ours" for label in frames]
-    key = " &nbsp; ".join(f'<span style="color:{plots.PLAYERS[kind]}">●</span> {escape(label)}' for kind, label in zip(kinds, frames))
+    picture = plots.playable({
+        "seconds": seconds, "links": [list(map(int, pair)) for pair in links],
+        "frames": {label: [np.round(np.asarray(f, dtype=float), 5).tolist() for f in fs] for label, fs in frames.items()}})
+    key = " &nbsp; ".join(f'<span style="color:{c}">●</span> {escape(label)}' for c, label in zip(picture["colours"], frames))
     script = (Path(plots.__file__).parent / "player.js").read_text()
     display(HTML(f'<canvas data-picture="{name}" style="width:100%;max-width:46rem;height:{height}px;background:#f6f7f8"></canvas>'
                  f'<div>{key}</div><script type="application/json" id="{name}">{json.dumps(picture)}</script><script>{script}</script>'))

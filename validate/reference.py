@@ -165,7 +165,8 @@ def net_limits(make, p, size, T, dt, uncertainty):
 def pymunk_net(net, dt, observe):
     """A World of point masses and DampedSprings; observe(x (n, d)) reads it.
 
-    Masses are equal, so that wind is a part of gravity and viscosity one factor e^(−k_v dt/m) for all velocities.
+    Masses are equal, so that wind is a part of gravity and viscosity one factor e^(−k_v dt/m) on all velocities.  The factor also
+    meets the impulse that springs have just given: at rest they stretch e^(k_v dt/m) times too far, an error of first order.
     """
     import pymunk
     wide = net.padded()

@@ -17,7 +17,7 @@ def write(out, results, stability, plan, bars):
     pages = Environment(loader=PackageLoader("validate", "report"), autoescape=select_autoescape(), trim_blocks=True, lstrip_blocks=True)
     pages.filters.update(seconds=words.seconds, number=words.number, percent=words.percent, factor=words.factor)
     pages.tests["reaches"] = lambda row: any(t is not None for t in row.values())
-    pages.globals.update(run=words.run(plan), players=plots.PLAYERS, verdict=words.verdict, judge=words.judge)
+    pages.globals.update(run=words.run(plan), playable=plots.playable, verdict=words.verdict, judge=words.judge)
     bar = bars.add_task("report", total=len(results) + 2)
 
     plots.style()

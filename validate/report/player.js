@@ -1,7 +1,6 @@
 // A small player: every <canvas data-picture="id"> plays the frames in <script id="id" type="application/json">.
 (() => {
 "use strict";
-const COLOURS = {truth: "#9a9a9a", ours: "#0072B2", engine: "#D55E00"};
 const reduced = matchMedia("(prefers-reduced-motion: reduce)").matches;
 
 function play(canvas) {
@@ -14,7 +13,7 @@ function play(canvas) {
   if (y1 - y0 < 0.25 * size) { const c = (y0 + y1) / 2; y0 = c - 0.125 * size; y1 = c + 0.125 * size; }
   if (x1 - x0 < 0.25 * size) { const c = (x0 + x1) / 2; x0 = c - 0.125 * size; x1 = c + 0.125 * size; }
   x0 -= pad; x1 += pad; y0 -= pad; y1 += pad;
-  const kinds = runs.map(([label], k) => label === "truth" ? "truth" : k === 1 && !/^py/.test(label) ? "ours" : "engine");
+  const kinds = runs.map(([label]) => label === "truth" ? "truth" : /^py/.test(label) ? "engine" : "ours");
   const ratio = window.devicePixelRatio || 1, small = canvas.dataset.small !== undefined;
   const width = canvas.clientWidth, height = canvas.clientHeight;
   canvas.width = width * ratio; canvas.height = height * ratio;
@@ -30,7 +29,7 @@ function play(canvas) {
     pen.clearRect(0, 0, width, height);
     runs.forEach(([, frames], r) => {
       const kind = kinds[r], points = frames[Math.min(k, frames.length - 1)].map(at);
-      pen.strokeStyle = pen.fillStyle = COLOURS[kind];
+      pen.strokeStyle = pen.fillStyle = picture.colours[r];
       pen.lineWidth = kind === "truth" ? (small ? 3 : 6) : 1.5;
       pen.setLineDash(kind === "engine" ? [4, 3] : []);
       const moving = points.length - 1;

@@ -8,7 +8,7 @@ LOOKS = {                       # label: colour, marker
     "implicit midpoint": ("#6A51A3", ">"), "implicit mesh": ("#7F7F7F", "h"),
 }
 ENGINE_LOOKS = {"pymunk": ("#000000", "x"), "pybullet": ("#5A5A5A", "+")}
-PLAYERS = {"truth": "#bbbbbb", "ours": "#0072B2", "engine": "#D55E00"}
+OURS_MOVING = ("#0072B2", "#009E73", "#CC79A7", "#E69F00")
 TOP = 10.0                      # errors above this, and failures, are drawn here, as crosses [-]
 
 
@@ -25,6 +25,13 @@ def look(label):
     product, _, variant = label.partition(", ")
     colour, marker = ENGINE_LOOKS[product]
     return colour, marker, {"": "-", "default": ":"}.get(variant, "--")
+
+
+def playable(picture):
+    """A moving picture with a colour for each of its runs: truth grey, engines vermilion, ours blue and on."""
+    own = iter(OURS_MOVING * 3)
+    colours = ["#8f8f8f" if label == "truth" else "#D55E00" if label.startswith("py") else next(own) for label in picture["frames"]]
+    return {**picture, "colours": colours}
 
 
 def convergence(path, result):

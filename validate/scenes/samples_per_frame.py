@@ -1,11 +1,11 @@
-"""A net of two metres at 24 frames a second: one step a frame tears it, four make it rough, sixteen look right."""
+"""A net of two metres at 24 frames a second: one step a frame tears it, four miss by 3 cm, sixteen by 7 mm."""
 
 from functools import lru_cache
 
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.integrators import advance, amplification_matrix, average_velocity_step, spectral_radius
+from solutions.integrators import advance, amplification_matrix, average_velocity_step
 from solutions.springs import mesh_acceleration
 from validate.reference import modes, motion, net_limits, pymunk_net, state_of
 from validate.scene import IMPLICIT_MESH, INTEGRATORS, Engine
@@ -70,15 +70,14 @@ def LINKS(p):
 def published():
     """((claim, found, expected, tolerance), …): how the fastest mode grows in a step of the lecture's method, for a test to assert.
 
-    |λ|² = det A = (1 − ½ω²dt²)(1 − c dt) + ω² dt (dt − ½c dt²) = 1 − c dt + ½ω² dt²  while λ is complex.
+    |λ₁ λ₂| = det A = (1 − ½ω²dt²)(1 − c dt) + ω² dt (dt − ½c dt²) = 1 − c dt + ½ω² dt²;  |λ|² while the pair is complex.
     """
-    omega, c, _ = modes(net(CASES["net"]))
-    omega, c = omega[-1], c[-1]
+    omega, c = (values[-1] for values in modes(net(CASES["net"]))[:2])
     claims = []
-    for samples in (4, 16, 64):
+    for samples in SAMPLES[:3]:
         dt = 1.0 / (FRAMES_PER_SECOND * samples)
-        grows = spectral_radius(amplification_matrix(average_velocity_step, omega, 0.5 * c / omega, dt))
-        claims.append((f"growth in a step, {samples} samples a frame [-]", grows, np.sqrt(1.0 - c * dt + 0.5 * (omega * dt) ** 2), 1e-12))
+        A = amplification_matrix(average_velocity_step, omega, 0.5 * c / omega, dt)
+        claims.append((f"det A, {samples} samples a frame [-]", np.linalg.det(A), 1.0 - c * dt + 0.5 * (omega * dt) ** 2, 1e-12))
     return tuple(claims)
 
 

@@ -1,0 +1,553 @@
+"""How long may a step be?  The bound that theory gives each method, held against the bound that an experiment finds.
+
+    ẍ = −ω² x − 2ζω ẋ        hω: step times angular frequency [-], ζ: damping ratio [-]
+
+The experiment is always a run of many steps of the lesson's own method, never its formula.  Two oscillators go side by side
+through one run, from (x, v) = (1, 0) and (0, 1): where they end is the (2, 2) matrix M of all N steps together, and one step
+lets the motion grow by |longest eigenvalue of M|^(1/N), whatever the phase in which the run happens to stop.  The edge of
+stability is where that passes 1, found by bisection on hω.
+
+Cases 1 to 8 are those of the workbook's list; case 0 draws all methods into one picture.
+*Source:* Hairer and Wanner 1996, "Solving ordinary differential equations II", IV.2; Hairer, Lubich, Wanner 2006.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from solutions.checks import Diverged
+
+from . import binding
+from .scene import INTEGRATORS
+
+OMEGA = 3.0                  # angular frequency of the runs [rad/s]: not 1, so that h taken for hω would show
+STEPS = 499                  # of one run: a prime, so that no run ends where it began, where eigenvalues meet and round-off grows
+NOISE = 1e-9                 # growth a step below this is round-off: √2.2e-16 = 1.5e-8 where eigenvalues meet, over tens of steps
+BRACKET = 1e-6               # bisection stops at this relative width
+EDGE = 2e-6                  # an edge is known this well, relative: the bracket, and as much for the noise over a slope of 0.01 or more
+GROWTH = 1e-13               # growth a step is known this well: fifty roundings of 1.1e-16 a step, times ω between x and v, times 6
+NEWTON = 1e-12               # … and an implicit method's this well: its velocity when Newton's method stops [m/s]
+SHORTEST, LONGEST = 0.05, 4.0                                                # hω between which edges are searched
+
+EXPLICIT, IMPLICIT = INTEGRATORS[:6], INTEGRATORS[6:]
+LINE, DOTS = "line", "dots"
+
+
+class Finding(NamedTuple):
+    """One bound, and what became of it: it holds where |measured − bound| ≤ tolerance."""
+    case: int
+    claim: str               # what theory says, in one sentence
+    quantity: str            # what was measured [unit]
+    bound: float             # theory's number
+    measured: float          # the experiment's
+    tolerance: float         # derived beforehand, in the unit of the quantity
+    holds: bool
+    words: str               # what was found, in one sentence
+
+
+class Picture(NamedTuple):
+    """Curves to draw: series = [(label, xs, ys, style)], style "line" for theory and "dots" for runs, unless the sentence differs."""
+    title: str
+    x_label: str
+    y_label: str
+    series: list
+    sentence: str
+
+
+class Case(NamedTuple):
+    """All that is known about one case."""
+    number: int
+    title: str
+    lesson: str
+    findings: list
+    picture: Picture
+
+
+def finding(case, claim, quantity, bound, measured, tolerance, words):
+    """A Finding that has been judged; a measurement that failed is not a number, and does not hold."""
+    return Finding(case, claim, quantity, float(bound), float(measured), float(tolerance),
+                   bool(abs(measured - bound) <= tolerance), words)
+
+
+def series(label, xs, ys, style):
+    return (label, [float(x) for x in xs], [float(y) for y in ys], style)
+
+
+# ---------------------------------------------------------------------------------------------- the experiment
+
+def growth(lesson, method, h_omega, zeta=0.0, steps=STEPS):
+    """Factor [-] by which one step lets an oscillator's motion grow, from a run of many; infinite when the run breaks off."""
+    p = lesson.Oscillator(OMEGA, zeta)
+    x, v = np.array([1.0, 0.0]), np.array([0.0, 1.0])
+    try:
+        end = lesson.advance(getattr(lesson, method), lesson.oscillator_acceleration, 0.0, x, v, h_omega / OMEGA, steps, p)
+    except (Diverged, np.linalg.LinAlgError):
+        return np.inf
+    factor = float(lesson.spectral_radius(np.array(end))) ** (1.0 / steps)
+    return factor if np.isfinite(factor) else np.inf
+
+
+def grows(lesson, method, h_omega, zeta=0.0):
+    return growth(lesson, method, h_omega, zeta) > 1.0 + NOISE
+
+
+def edge(lesson, method, zeta):
+    """The hω at which the motion begins to grow, by bisection."""
+    return bisect(lambda h_omega: grows(lesson, method, h_omega, zeta), SHORTEST, LONGEST)
+
+
+def bisect(too_long, low, high):
+    """Where too_long turns from False to True; 0 if it is True at low already, infinite if it is still False at high."""
+    if too_long(low):
+        return 0.0
+    if not too_long(high):
+        return np.inf
+    while high - low > BRACKET * high:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if too_long(middle) else (middle, high)
+    return 0.5 * (low + high)
+
+
+def flips(lesson, method, edges):
+    """How many of these edges {ζ: hω} flip within ±0.1 %: bounded at 0.999 times that step, growing at 1.001 times."""
+    return sum(not grows(lesson, method, 0.999 * h, zeta) and grows(lesson, method, 1.001 * h, zeta) for zeta, h in edges.items())
+
+
+def departure(lesson, method, edges):
+    """Largest relative departure of the measured edges from these."""
+    return max(abs(edge(lesson, method, zeta) / h - 1.0) for zeta, h in edges.items())
+
+
+def turning(lesson, method, h_omega, steps):
+    """Mean angle [rad] that one step turns the point (x, −v/ω) about the origin, from a run that starts at (1, 0)."""
+    p, x, v = lesson.Oscillator(OMEGA, 0.0), np.ones(1), np.zeros(1)
+    angles = np.zeros(steps + 1)
+    for n in range(steps):
+        x, v = lesson.advance(getattr(lesson, method), lesson.oscillator_acceleration, 0.0, x, v, h_omega / OMEGA, 1, p)
+        angles[n + 1] = np.arctan2(-v[0] / OMEGA, x[0])
+    return np.unwrap(angles)[-1] / steps
+
+
+def refuse(methods, run):
+    """How many of these methods end in Diverged, as they must, rather than in a number: run(name) → anything."""
+    refused = 0
+    for method in methods:
+        try:
+            run(method.function)
+        except Diverged:
+            refused += 1
+    return refused
+
+
+# ---------------------------------------------------------------------------------------------- the theory of edges
+
+def runge_kutta_edge(weights, zeta):
+    """Smallest hω > 0 with |R(hs)| = 1:  R(z) = Σ weightsₖ zᵏ,  s = −ζ − √(ζ² − 1), the faster root of s² + 2ζs + 1 = 0."""
+    s = -zeta - np.sqrt(complex(zeta * zeta - 1.0))
+    R = np.array([w * s**k for k, w in enumerate(weights)])[::-1]
+    roots = np.roots(np.polysub(np.polymul(R, R.conj()).real, [1.0]))
+    return min(r.real for r in roots if abs(r.imag) < 1e-6 and r.real > SHORTEST)      # 1e-6: a root this near the axis is real
+
+
+def euler_edge(zeta):
+    """|1 + hs| = 1:  hω = 2ζ for a complex pair, ζ ≤ 1;  2(ζ − √(ζ² − 1)) for the faster of two real roots."""
+    return 2.0 * zeta if zeta <= 1.0 else 2.0 * (zeta - np.sqrt(zeta * zeta - 1.0))
+
+
+def symplectic_euler_edge(zeta):
+    """An eigenvalue reaches −1 where trace + determinant = −1:  (hω)² + 4ζ hω = 4."""
+    return 2.0 * (np.sqrt(1.0 + zeta * zeta) - zeta)
+
+
+def average_velocity_edge(zeta):
+    """det A = 1 − 2ζ hω + ½(hω)² passes 1 at hω = 4ζ;  trace + determinant = 3 − … passes −1 at hω = 1/ζ: the smaller of both."""
+    return 4.0 * zeta if zeta <= 0.5 else 1.0 / zeta
+
+
+def verlet_edge(zeta):
+    """With the predicted velocity:  1 + tr + det = 0 where (4ζ² − 1)(hω)² − 4ζ hω + 4 = 0;  1 − tr + det = 0 where hω = 1/ζ."""
+    return 2.0 / (zeta + np.sqrt(1.0 - 3.0 * zeta * zeta)) if zeta <= 0.5 else 1.0 / zeta
+
+
+EDGES = {
+    "euler_step": euler_edge,
+    "midpoint_step": lambda zeta: runge_kutta_edge((1.0, 1.0, 1.0 / 2.0), zeta) if zeta > 0.0 else 0.0,
+    "rk4_step": lambda zeta: runge_kutta_edge((1.0, 1.0, 1.0 / 2.0, 1.0 / 6.0, 1.0 / 24.0), zeta),
+    "average_velocity_step": average_velocity_edge,
+    "symplectic_euler_step": symplectic_euler_edge,
+    "verlet_step": verlet_edge,
+}
+
+
+def edge_picture(lesson, title, methods, zetas, sentence):
+    """Theory's edge over ζ as a line, the measured ones as dots."""
+    fine = np.linspace(0.0, max(zetas), 121)
+    drawn = []
+    for method in methods:
+        drawn.append(series(f"{method.label}, theory", fine, [EDGES[method.function](z) for z in fine], LINE))
+        drawn.append(series(f"{method.label}, measured", zetas, [edge(lesson, method.function, z) for z in zetas], DOTS))
+    return Picture(title, "damping ratio ζ [-]", "longest stable hω [-]", drawn, sentence)
+
+
+# ---------------------------------------------------------------------------------------------- the cases
+
+def case_0(lesson):
+    """Every method's edge: six explicit ones end somewhere, the two implicit ones nowhere."""
+    zetas, found = (0.0, 0.1, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0), []
+    for method in EXPLICIT:
+        edges = {z: EDGES[method.function](z) for z in zetas if EDGES[method.function](z) > 0.0}
+        worst = departure(lesson, method.function, edges)
+        found.append(finding(
+            0, f"The edge of {method.label} follows from the eigenvalues of one step.",
+            f"largest relative departure of {method.label}'s edge over {len(edges)} damping ratios [-]", 0.0, worst, EDGE,
+            f"Between ζ = {min(edges)} and {max(edges)} the edge of {method.label} is where theory puts it, within {worst:.1e}."))
+    long = (0.1, 1.0, 10.0, 100.0, 1000.0)
+    for method in IMPLICIT:
+        # seven steps: a velocity left 1e-12 wrong moves x by h 1e-12 = 3e-10 at the longest step, below NOISE
+        stable = sum(growth(lesson, method.function, h, z, steps=7) <= 1.0 + NOISE for h in long for z in (0.0, 0.5))
+        found.append(finding(
+            0, f"{method.label.capitalize()} is stable for every step.", f"runs of {method.label} that stay bounded [of {2 * len(long)}]",
+            2 * len(long), stable, 0.0,
+            f"From hω = 0.1 to 1000, undamped and at ζ = 0.5, {stable} of {2 * len(long)} runs of {method.label} stay bounded."))
+    return found, edge_picture(lesson, "Where each method is stable", EXPLICIT, zetas,
+                               "Below its curve a method is stable, above it the motion grows; implicit Euler and implicit midpoint "
+                               "have no curve, because they are stable everywhere.")
+
+
+def case_1(lesson):
+    """Explicit Euler:  |1 + hs|² = 1 − 2ζ hω + (hω)² for ζ ≤ 1:  stable below 2ζ;  2(ζ − √(ζ² − 1)) for ζ > 1."""
+    step, zetas = "euler_step", (0.1, 0.25, 0.5, 0.75, 1.0, 1.5, 3.0)
+    edges = {z: euler_edge(z) for z in zetas}
+    at_half, at_three, tiny = edge(lesson, step, 0.5), edge(lesson, step, 1.5), growth(lesson, step, 0.001)
+    flipped, worst = flips(lesson, step, edges), departure(lesson, step, edges)
+    return [
+        finding(1, "Without damping explicit Euler is never stable: a step lets the motion grow by √(1 + (hω)²).",
+                "growth a step, ζ = 0, hω = 0.001 [-]", np.sqrt(1.0 + 1e-6), tiny, GROWTH,
+                f"Even at a thousandth of a radian a step the motion grows, by {tiny - 1.0:.3e} a step."),
+        finding(1, "For ζ ≤ 1 it is stable up to hω = 2ζ.", "edge hω at ζ = 0.5 [-]", 1.0, at_half, EDGE,
+                f"At half the critical damping the run turns from decay to growth at hω = {at_half:.6f}."),
+        finding(1, "For ζ > 1 it is stable up to hω = 2(ζ − √(ζ² − 1)).", "edge hω at ζ = 1.5 [-]", edges[1.5], at_three,
+                EDGE * edges[1.5], f"At one and a half times the critical damping it turns at hω = {at_three:.6f}."),
+        finding(1, "The two formulas hold at every damping ratio.", "largest relative departure of the edge over seven damping ratios [-]",
+                0.0, worst, EDGE, f"From ζ = 0.1 to 3 the measured edge departs from theory by at most {worst:.1e}."),
+        finding(1, "The edge flips within ±0.1 %.", "edges that flip [of 7]", len(edges), flipped, 0.0,
+                f"At {flipped} of {len(edges)} damping ratios a run stays bounded at 0.999 times the bound and grows at 1.001 times."),
+    ], edge_picture(lesson, "Explicit Euler: the longest stable step", EXPLICIT[:1], (0.0, *zetas),
+                    "Damping opens explicit Euler's stability up to hω = 2 at ζ = 1; more damping closes it again, because the fast "
+                    "of the two decays becomes too fast for the step.")
+
+
+def case_2(lesson):
+    """Symplectic Euler:  stable below hω = 2(√(1 + ζ²) − ζ)."""
+    step, zetas = "symplectic_euler_step", (0.0, 0.1, 0.25, 0.5, 1.0, 1.5, 3.0)
+    edges = {z: symplectic_euler_edge(z) for z in zetas}
+    undamped, critical = edge(lesson, step, 0.0), edge(lesson, step, 1.0)
+    flipped, worst = flips(lesson, step, edges), departure(lesson, step, edges)
+    return [
+        finding(2, "Without damping symplectic Euler is stable up to hω = 2.", "edge hω at ζ = 0 [-]", 2.0, undamped, 2.0 * EDGE,
+                f"An undamped oscillator stays bounded up to hω = {undamped:.6f}: a third of a period a step."),
+        finding(2, "At critical damping it is stable up to hω = 2(√2 − 1).", "edge hω at ζ = 1 [-]", edges[1.0], critical, EDGE,
+                f"Critical damping shortens the longest stable step to hω = {critical:.6f}."),
+        finding(2, "The formula holds at every damping ratio.", "largest relative departure of the edge over seven damping ratios [-]",
+                0.0, worst, EDGE, f"From ζ = 0 to 3 the measured edge departs from theory by at most {worst:.1e}."),
+        finding(2, "The edge flips within ±0.1 %.", "edges that flip [of 7]", len(edges), flipped, 0.0,
+                f"At {flipped} of {len(edges)} damping ratios a run stays bounded at 0.999 times the bound and grows at 1.001 times."),
+    ], edge_picture(lesson, "Symplectic Euler: the longest stable step", (EXPLICIT[4], EXPLICIT[0]), zetas,
+                    "Symplectic Euler is stable where explicit Euler never is, without damping; but damping, which it evaluates at the "
+                    "beginning of the step, costs it stability from the start.")
+
+
+def case_3(lesson):
+    """Midpoint, undamped:  R(iy) = 1 + iy − ½y²,  |R|² = 1 + ¼y⁴,  y = hω."""
+    step, law = "midpoint_step", lambda y: np.sqrt(1.0 + y**4 / 4.0)
+    found = []
+    for y in (0.05, 0.2, 1.0):
+        rate = growth(lesson, step, y)
+        found.append(finding(3, "Without damping the midpoint method always grows, by √(1 + (hω)⁴/4) a step.",
+                             f"growth a step at hω = {y} [-]", law(y), rate, GROWTH,
+                             f"At hω = {y} the motion doubles every {np.log(2.0) / np.log(rate):,.0f} steps."))
+    dots, fine = np.linspace(0.1, 1.2, 12), np.linspace(0.0, 1.2, 61)
+    return found, Picture("Midpoint: slow growth", "hω [-]", "growth a step [-]", [
+        series("midpoint, theory", fine, law(fine), LINE),
+        series("midpoint, measured", dots, [growth(lesson, step, y) for y in dots], DOTS),
+        series("Euler, theory", fine, np.sqrt(1.0 + fine**2), LINE),
+        series("Euler, measured", dots, [growth(lesson, "euler_step", y) for y in dots], DOTS),
+    ], "Both methods grow at every step length, but Euler's growth starts with (hω)²/2 and the midpoint method's with (hω)⁴/8.")
+
+
+def case_4(lesson):
+    """Runge–Kutta 4, undamped:  |R(iy)|² = 1 − y⁶/72 + y⁸/576:  stable up to √8.  On the real axis: up to the root of R(−z) = 1.
+
+    The real axis is an over-damped oscillator: at ζ = 5/4 it decays with the rates λ = 2ω and ½ω.
+    """
+    step, zeta, fast = "rk4_step", 1.25, 2.0
+    real = min(-r.real for r in np.roots((1.0 / 24.0, 1.0 / 6.0, 1.0 / 2.0, 1.0)) if abs(r.imag) < 1e-6)
+    imaginary_edge, real_edge = edge(lesson, step, 0.0), fast * edge(lesson, step, zeta)
+    flipped = flips(lesson, step, {0.0: np.sqrt(8.0), zeta: real / fast})
+    y = 0.2
+    lost, at_one = 1.0 - growth(lesson, step, y) ** 2, growth(lesson, step, 1.0) ** 2
+    law = lambda y: np.sqrt(1.0 - y**6 / 72.0 + y**8 / 576.0)
+    dots, fine = np.linspace(0.2, 3.0, 15), np.linspace(0.0, 3.0, 121)
+    return [
+        finding(4, "On an undamped oscillator Runge–Kutta 4 is stable up to hω = √8.", "edge hω on the imaginary axis [-]",
+                np.sqrt(8.0), imaginary_edge, EDGE * np.sqrt(8.0), f"The undamped run turns from decay to growth at hω = {imaginary_edge:.6f}."),
+        finding(4, "On a pure decay it is stable up to hλ = 2.785294.", "edge hλ on the real axis [-]", real, real_edge, EDGE * real,
+                f"The over-damped run turns at hλ = {real_edge:.6f}, λ the faster of its two decay rates."),
+        finding(4, "Both edges flip within ±0.1 %.", "edges that flip [of 2]", 2, flipped, 0.0,
+                f"{flipped} of 2 runs stay bounded at 0.999 times the bound and grow at 1.001 times."),
+        # y⁸/576: the only other term of |R|²
+        finding(4, "Below its edge it damps: an undamped oscillator loses (hω)⁶/72 of its energy a step.",
+                f"energy lost a step at hω = {y} [-]", y**6 / 72.0, lost, y**8 / 576.0 + 2.0 * GROWTH,
+                f"At hω = {y} a step loses {lost:.3e} of the energy, {np.log(2.0) / lost:,.0f} steps for half of it."),
+        finding(4, "At a larger step the next term counts: |R|² = 1 − (hω)⁶/72 + (hω)⁸/576.", "energy kept a step at hω = 1 [-]",
+                1.0 - 1.0 / 72.0 + 1.0 / 576.0, at_one, 2.0 * GROWTH, f"At hω = 1 a step keeps {100.0 * at_one:.4f} % of the energy."),
+    ], Picture("Runge–Kutta 4 on an undamped oscillator", "hω [-]", "growth a step [-]", [
+        series("theory", fine, law(fine), LINE), series("measured", dots, [growth(lesson, step, y) for y in dots], DOTS),
+    ], "Runge–Kutta 4 keeps the amplitude well up to hω = 1, damps it strongly around hω = 2.4, and grows beyond 2.828.")
+
+
+def case_5(lesson):
+    """Implicit Euler, undamped:  |R(iy)| = (1 + y²)^(−½) a step, y = hω: it acts like a damping ratio  ln(1 + y²)/2y ≈ ½y."""
+    step, law = "implicit_euler_step", lambda y: 1.0 / np.sqrt(1.0 + y * y)
+    few, ten_periods = 5, 628                    # few steps: Newton's 1e-12 m/s is absolute, so the motion must not vanish
+    found = []
+    for y in (0.1, 1.0, 4.0):
+        rate = growth(lesson, step, y, steps=few)
+        found.append(finding(5, "Implicit Euler damps what has no damper: the motion shrinks by (1 + (hω)²)^(−1/2) a step.",
+                             f"growth a step at hω = {y:g} [-]", law(y), rate, OMEGA * NEWTON / law(y) ** few,
+                             f"At hω = {y:g} a step takes {100.0 * (1.0 - rate):.3g} % of the amplitude."))
+    ratio = -np.log(growth(lesson, step, 0.1, steps=few)) / 0.1
+    kept = growth(lesson, step, 0.1, steps=ten_periods) ** ten_periods
+    found += [
+        finding(5, "That is the decay that a damping ratio of ½hω would cause.", "numerical damping ratio at hω = 0.1 [-]", 0.05, ratio,
+                0.1**3 / 4.0, f"At hω = 0.1 implicit Euler adds a damping ratio of {ratio:.4f} to whatever the scene has."),  # next term: −y³/4
+        finding(5, "Ten periods at hω = 0.1 leave (1.01)^(−314) of the amplitude.", "amplitude left after 628 steps [-]", 1.01**-314, kept,
+                OMEGA * NEWTON * ten_periods, f"After ten periods at 63 steps a period {100.0 * kept:.2f} % of the amplitude is left."),
+    ]
+    dots, fine = np.linspace(0.25, 4.0, 16), np.linspace(0.0, 4.0, 121)
+    return found, Picture("Implicit Euler: numerical damping", "hω [-]", "growth a step [-]", [
+        series("implicit Euler, theory", fine, law(fine), LINE),
+        series("implicit Euler, measured", dots, [growth(lesson, step, y, steps=few) for y in dots], DOTS),
+        series("implicit midpoint, theory", fine, np.ones_like(fine), LINE),
+        series("implicit midpoint, measured", dots, [growth(lesson, "implicit_midpoint_step", y, steps=few) for y in dots], DOTS),
+    ], "Implicit Euler never grows because it always shrinks; implicit midpoint is stable for every step too, and keeps the amplitude.")
+
+
+def case_6(lesson):
+    """Verlet turns the motion by 2 asin(½hω) a step, implicit midpoint by 2 atan(½hω): energy is kept, phase is not.
+
+    The point (x, −v/ω) of Verlet goes round an ellipse with axes 1 : r, r = √(1 − (hω)²/4): its angle runs ahead of the phase or
+    behind it by at most asin((1 − r)/(1 + r)), however long the run.  Implicit midpoint goes round a circle.
+    *Source:* cos θ = ½ tr A; Hairer, Lubich, Wanner 2006, I.5.
+    """
+    steps, newton = 1000, OMEGA * NEWTON
+    laws = {"verlet_step": lambda y: 2.0 * np.arcsin(0.5 * y) / y, "implicit_midpoint_step": lambda y: 2.0 * np.arctan(0.5 * y) / y}
+    names, formulas = {m.function: m.label for m in INTEGRATORS}, {"verlet_step": "asin", "implicit_midpoint_step": "atan"}
+    ellipse = lambda y: (1.0 - np.sqrt(1.0 - y * y / 4.0)) / (1.0 + np.sqrt(1.0 - y * y / 4.0))
+    found, drawn, fine, dots = [], [], np.linspace(0.02, 1.6, 80), np.linspace(0.2, 1.6, 8)
+    for step, law in laws.items():
+        for y in (0.1, 0.5, 1.0):
+            got = turning(lesson, step, y, steps) / y
+            # the angle at the end of the run; Newton's method leaves up to 1e-12 m/s a step, relative to at least 1/ω of it
+            limit = np.arcsin(ellipse(y)) / (steps * y) if step == "verlet_step" else newton / y
+            found.append(finding(
+                6, f"{names[step].capitalize()} oscillates at (2/h) {formulas[step]}(hω/2) instead of ω.",
+                f"frequency of {names[step]} over the true one at hω = {y:g} [-]", law(y), got, limit,
+                f"At hω = {y:g} {names[step]} is a whole period {'ahead' if got > 1.0 else 'behind'} after {1.0 / abs(got - 1.0):,.0f} periods."))
+        kept = growth(lesson, step, 0.5)
+        found.append(finding(6, f"{names[step].capitalize()} keeps the amplitude.", f"growth a step of {names[step]} at hω = 0.5 [-]", 1.0, kept,
+                             GROWTH if step == "verlet_step" else newton,
+                             f"Over {STEPS} steps {names[step]} changes the amplitude by {abs(kept**STEPS - 1.0):.0e}: the error is all in the phase."))
+        drawn += [series(f"{names[step]}, theory", fine, 100.0 * (law(fine) - 1.0), LINE),
+                  series(f"{names[step]}, measured", dots, [100.0 * (turning(lesson, step, y, steps) / y - 1.0) for y in dots], DOTS)]
+    return found, Picture("Phase: too fast and too slow", "hω [-]", "error of the frequency [%]", drawn,
+                          "Verlet runs ahead by about (hω)²/24, implicit midpoint lags by twice as much; neither loses energy.")
+
+
+class StiffPair(NamedTuple):
+    """Wall at 0, then a spring, a mass, a spring, a mass; at rest at x = (1, 2)."""
+    k1: float = 750.0        # from the wall to mass 1 [N/m]
+    k2: float = 1e20         # between the masses [N/m]
+    m: float = 1.0           # of each [kg]
+    rest: float = 1.0        # length of each spring at rest [m]
+
+
+def stiff_pair(t, x, v, p):
+    """a₁ = (F − k₁(x₁ − L))/m,  a₂ = −F/m,  F = k₂(x₂ − x₁ − L)."""
+    F = p.k2 * (x[1] - x[0] - p.rest)
+    return np.array([F - p.k1 * (x[0] - p.rest), -F]) / p.m
+
+
+def case_7(lesson):
+    """A stiff pair, released at rest from x = (0.5, 1.5): both masses swing as one, ω² = k₁/2m = 375, ω₂ = √(2k₂/m) = 1.4e10 rad/s.
+
+    The second spring starts unstretched and has to pull with ¼k₁: 1.9e-18 m, a hundredth of the spacing of floats at x = 2.
+    Both methods turn (x̄, −v̄/ω) on a circle or a spiral, by atan(hω) and 2 atan(½hω) a step.
+    """
+    p, dt, steps = StiffPair(), 0.002, 500
+    omega, amplitude = np.sqrt(p.k1 / (2.0 * p.m)), 0.5
+    newton = NEWTON * omega * amplitude * steps  # [m/s]: a stop at 1e-12 of the fastest velocity, 9.7 m/s, at every step
+    y = omega * dt
+    laws = {"implicit_euler_step": (np.arctan(y), 1.0 / np.sqrt(1.0 + y * y)), "implicit_midpoint_step": (2.0 * np.arctan(0.5 * y), 1.0)}
+    found, drawn, names = [], [], {m.function: m.label for m in INTEGRATORS}
+    for step, (angle, shrink) in laws.items():
+        ts, middle, velocity, stretch = swing(lesson, step, p, dt, steps)
+        turned = np.unwrap(np.arctan2(-velocity / omega, middle) + np.pi)[-1] / (steps * dt)    # + π: starts on the negative side
+        left = np.hypot(middle[-1], velocity[-1] / omega)
+        size = amplitude * shrink**steps
+        found += [
+            finding(7, "The soft mode swings at the frequency of the method, as if the stiff spring were a rod.",
+                    f"frequency of the soft mode, {names[step]} [rad/s]", angle / dt, turned, newton / (omega * size) / (steps * dt),
+                    f"With hω₂ = {dt * np.sqrt(2.0 * p.k2 / p.m):.1e} {names[step]} still swings at {turned:.6f} rad/s (truth {omega:.6f})."),
+            finding(7, "Its amplitude is what the method makes of an oscillator without any stiff spring.",
+                    f"amplitude of the soft mode after 1 s, {names[step]} [m]", size, left, newton / omega,
+                    f"After 1 s {names[step]} has {left:.6f} m of {amplitude} m left."),
+            # implicit Euler forgets the stiff mode at every step, implicit midpoint keeps what every step has left of it
+            finding(7, "The stiff spring does not blow up: it stays at its length.", f"largest stretch of the stiff spring, {names[step]} [m]",
+                    0.0, stretch, 2.0 * dt * (newton if step == "implicit_midpoint_step" else newton / steps) + np.spacing(2.0),
+                    f"Under {names[step]} the stiff spring never leaves its length by more than {stretch:.1e} m; floats there are 4.4e-16 m apart."),
+        ]
+        drawn.append(series(names[step], ts, 1.0 + middle, DOTS))
+    x, v = np.array([0.5, 1.5]), np.zeros(2)
+    refused = refuse(EXPLICIT, lambda name: lesson.advance(getattr(lesson, name), stiff_pair, 0.0, x, v, dt, steps, p))
+    found.append(finding(7, "Every explicit method must refuse: its step may not exceed about 2/ω₂ = 1.4e-10 s.",
+                         "explicit methods that raise Diverged [of 6]", len(EXPLICIT), refused, 0.0,
+                         f"At dt = {dt} s {refused} of {len(EXPLICIT)} explicit methods refuse with an error, none with a wrong number."))
+    fine = np.linspace(0.0, steps * dt, 241)
+    drawn.insert(0, series("truth", fine, 1.0 - amplitude * np.cos(omega * fine), LINE))
+    return found, Picture("A stiff pair: motion of the soft mode", "t [s]", "position of mass 1 [m]", drawn,
+                          "The step is ten million times too long for the stiff spring, and both implicit methods follow the soft one; "
+                          "implicit Euler damps it, implicit midpoint does not.")
+
+
+def swing(lesson, step, p, dt, steps):
+    """Times, mean displacement and mean velocity of the pair, and the stiff spring's largest stretch; NaN from where it breaks off."""
+    x, v = np.array([0.5, 1.5]), np.zeros(2)
+    xs, vs = np.full((steps + 1, 2), np.nan), np.full((steps + 1, 2), np.nan)
+    xs[0], vs[0] = x, v
+    try:
+        for n in range(steps):
+            x, v = lesson.advance(getattr(lesson, step), stiff_pair, n * dt, x, v, dt, 1, p)
+            xs[n + 1], vs[n + 1] = x, v
+    except (Diverged, np.linalg.LinAlgError):
+        pass
+    at_rest = np.array([1.0, 2.0]) * p.rest
+    return dt * np.arange(steps + 1), (xs - at_rest).mean(axis=1), vs.mean(axis=1), np.abs(xs[:, 1] - xs[:, 0] - p.rest).max()
+
+
+UNIT = 1e-14                 # of concentration: the difference step of newton_matrix takes numbers below 1 for small, and y₂ ends at 8e-14
+END = 1e11                   # of the reaction [s]
+PUBLISHED = np.array([2.08334014970e-8, 8.33336077e-14, 0.99999997917])      # y(10¹¹ s)
+
+
+def robertson(t, x, v, p):
+    """ẏ₁ = −0.04 y₁ + 10⁴ y₂ y₃,   ẏ₂ = −ẏ₁ − ẏ₃,   ẏ₃ = 3·10⁷ y₂²:  three concentrations in the place of v, in UNITs; x is unused.
+
+    *Source:* Robertson 1966; Hairer and Wanner 1996, IV.10; values at 10¹¹ s: Mazzia and Magherini, "Test set for IVP solvers".
+    """
+    slow, back, fast = 0.04 * v[0], 1e4 * UNIT * v[1] * v[2], 3e7 * UNIT * v[1] * v[1]
+    return np.array([back - slow, slow - back - fast, fast])
+
+
+def react(lesson, step, ratio):
+    """Times and concentrations of the reaction to END, every time the ratio of the one before it, from 10⁻⁵ s on."""
+    ts = END * ratio ** np.arange(-round(16.0 / np.log10(ratio)), 1.0)
+    t, x, y, ys = 0.0, np.zeros(3), np.array([1.0, 0.0, 0.0]) / UNIT, []
+    for end in ts:
+        x, y = lesson.advance(getattr(lesson, step), robertson, t, x, y, end - t, 1, ())
+        t = end
+        ys.append(UNIT * y)
+    return ts, np.array(ys)
+
+
+def case_8(lesson):
+    """Robertson's reaction to 10¹¹ s.  Late, y₁ obeys u̇ = −c u², c = 3·10⁷ (4·10⁻⁶)² = 4.8e-4 /s, since y₂ = 4·10⁻⁶ y₁:  u = 1/ct.
+
+    Implicit Euler with times tₙ₊₁ = q tₙ turns that into  uₙ₊₁ = uₙ − (q − 1) tₙ c uₙ₊₁²,  solved by uₙ = q/(c tₙ): a relative
+    error of exactly q − 1, first order in the step.  The truth itself is 3.3e-6 away from 1/ct, so the error is known to about that.
+    Explicit Euler sees the fast rate |λ| = 0.04 + 10⁴ y₃ + … and may not step further than 2/|λ|.
+    """
+    found = []
+    beside = abs(PUBLISHED[0] * 4.8e-4 * END - 1.0)
+    for per_decade in (50, 100):
+        ratio = 10.0 ** (1.0 / per_decade)
+        ts, ys = reached(lesson, ratio)
+        for k, name in enumerate(("y₁", "y₂")):
+            error = ys[-1, k] / PUBLISHED[k] - 1.0
+            found.append(finding(
+                8, f"With times in the ratio q implicit Euler is wrong by q − 1 in {name}: first order.",
+                f"relative error of {name} at 10¹¹ s, {per_decade} steps a decade [-]", ratio - 1.0, error, beside,
+                f"{len(ts):,} steps reach 10¹¹ s with {name} {100.0 * error:.4f} % above the published value."))
+    # a step's derivatives cancel to round-off of their largest, 4·10⁻⁹ of y₁ times a step of t/43: less than the 1.1e-16 of each sum
+    total = ys[-1].sum()
+    found.append(finding(8, "Nothing is lost: y₁ + y₂ + y₃ = 1.", "sum of the concentrations at 10¹¹ s [-]", 1.0, total,
+                         len(ts) * 4 * 1.1e-16, f"After {len(ts):,} steps the sum departs from 1 by {abs(total - 1.0):.0e}."))
+    refused = refuse(EXPLICIT, lambda name: react(lesson, name, ratio))
+    found.append(finding(8, "Every explicit method must refuse such steps.", "explicit methods that raise Diverged [of 6]",
+                         len(EXPLICIT), refused, 0.0, f"{refused} of {len(EXPLICIT)} explicit methods refuse, none returns a number."))
+    longest = 2.0 / fastest_rate(PUBLISHED)
+    step = bisect(lambda dt: leaves(lesson, dt), 1e-5, 1e-3)
+    found.append(finding(8, "Explicit Euler must not step further than 2/|λ|, even at the end, where nothing seems to move.",
+                         "longest step of explicit Euler at 10¹¹ s [s]", longest, step, EDGE * longest,
+                         f"A small disturbance grows at steps above {step:.6e} s: {END / step:.1e} steps for the whole reaction."))
+    late = ts > 1e3
+    drawn = [series(f"{name}, implicit Euler", np.log10(ts), np.log10(np.maximum(ys[:, k], 1e-15)), LINE) for k, name in enumerate(("y₁", "y₂", "y₃"))]
+    drawn += [series("published", [np.log10(END)] * 3, np.log10(PUBLISHED), DOTS),
+              series("1/ct", np.log10(ts[late]), -np.log10(4.8e-4 * ts[late]), LINE)]
+    return found, Picture("Robertson's reaction", "log₁₀ of time [s]", "log₁₀ of concentration [-]", drawn,
+                          "Sixteen decades of time with steps that grow a thousandfold every three decades; the lines of implicit Euler "
+                          "end at the published values, and y₁ follows 1/ct.")
+
+
+def reached(lesson, ratio):
+    """What implicit Euler reaches, or NaN if it breaks off."""
+    try:
+        return react(lesson, "implicit_euler_step", ratio)
+    except (Diverged, np.linalg.LinAlgError):
+        return np.array([END]), np.full((1, 3), np.nan)
+
+
+def fastest_rate(y):
+    """Largest |eigenvalue| [1/s] of the reaction's Jacobian."""
+    J = np.array([[-0.04, 1e4 * y[2], 1e4 * y[1]], [0.04, -1e4 * y[2] - 6e7 * y[1], -1e4 * y[1]], [0.0, 6e7 * y[1], 0.0]])
+    return np.abs(np.linalg.eigvals(J)).max()
+
+
+def leaves(lesson, dt):
+    """Whether 1,000 steps of explicit Euler carry a y₂ that is half too large away from its published value.
+
+    y₂ returns to a value 4·10⁻⁶ of the disturbance off, because y₁ has taken up the rest: over 1,000 steps a shift of the edge of 2e-9.
+    """
+    disturbed = np.array([1.0, 1.5, 1.0]) * PUBLISHED / UNIT
+    try:
+        _, y = lesson.advance(lesson.euler_step, robertson, END, np.zeros(3), disturbed, dt, 1000, ())
+    except Diverged:
+        return True
+    return abs(UNIT * y[1] - PUBLISHED[1]) > 0.5 * PUBLISHED[1]
+
+
+CASES = {
+    0: ("Where each method is stable", case_0, "integrators"),
+    1: ("Explicit Euler", case_1, "integrators"),
+    2: ("Symplectic Euler", case_2, "integrators"),
+    3: ("Midpoint: slow growth", case_3, "integrators"),
+    4: ("Runge–Kutta 4", case_4, "integrators"),
+    5: ("Implicit Euler: numerical damping", case_5, "integrators"),
+    6: ("Verlet and implicit midpoint: phase", case_6, "integrators"),
+    7: ("A stiff pair", case_7, "integrators"),
+    8: ("Robertson's reaction", case_8, "integrators"),
+}
+OWN_LAWS = {7, 8}            # these bring an acceleration of their own, and nothing in this file is compiled
+
+
+def examine(number, of="solutions", compiled=True):
+    """One case, its lesson taken from that subject; compiled where the acceleration is the lesson's."""
+    title, function, name = CASES[number]
+    lesson = binding.world(of, compiled and binding.can_compile() and number not in OWN_LAWS).lesson(name)
+    with np.errstate(all="ignore"):              # overflow is what an unstable run does
+        return Case(number, title, name, *function(lesson))
+
+
+def findings(of="solutions", compiled=True):
+    """Every finding of every case."""
+    return [f for number in CASES for f in examine(number, of, compiled).findings]
