@@ -246,10 +246,10 @@ def measure_stability(store, names, plan, bars):
         bars.advance(bar)
 
 
-def main():
+def main(arguments=None):
     """Run the command line; bad input ends with one sentence and exit code 2."""
     try:
-        app(prog_name="validate", standalone_mode=True)
+        app(arguments, prog_name="validate")
     except BadInput as e:
         print(f"validate: {e}", file=sys.stderr)
         sys.exit(2)

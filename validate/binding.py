@@ -152,24 +152,20 @@ class World:
         return self.done[key]
 
     def _redirect(self, package, module):
-        """Replace each thing that module imported from elsewhere in the workbook by this world's own."""
+        """Replace each thing that module imported from elsewhere in the workbook by this world's own.
+
+        Classes stay one for all worlds, or `except BadInput` would not recognise what a twin raises.
+        """
         for name, value in list(vars(module).items()):
             home = value.__name__ if isinstance(value, types.ModuleType) else getattr(value, "__module__", None) or ""
-            for prefix in ("solutions.", f"{self.name}.solutions."):
-                if not home.startswith(prefix) or home == module.__name__:
-                    continue
-                origin = home.removeprefix(prefix)
-                if isinstance(value, type):                          # one class for all worlds: `except BadInput` must work
-                    setattr(module, name, getattr(PLAIN.lesson(origin), value.__name__))
-                elif isinstance(value, types.ModuleType):
-                    setattr(module, name, self._origin(package, origin))
-                elif isinstance(value, types.FunctionType):
-                    setattr(module, name, getattr(self._origin(package, origin), value.__name__))
-        if package == "solutions":
-            plain = PLAIN.lesson(module.__name__.rpartition(".")[2])
-            for name, value in list(vars(module).items()):
-                if isinstance(value, type) and value.__module__ == module.__name__:
-                    setattr(module, name, getattr(plain, name))
+            source, _, origin = home.removeprefix(f"{self.name}.").rpartition(".")
+            if source not in ("solutions", "subject") or (home == module.__name__ and not isinstance(value, type)):
+                continue
+            if isinstance(value, type):
+                setattr(module, name, getattr(PLAIN.lesson(origin), value.__name__) if source == "solutions" else value)
+            elif isinstance(value, (types.ModuleType, types.FunctionType)):
+                replacement = self._load("subject", origin) if source == "subject" else self._origin(package, origin)
+                setattr(module, name, replacement if isinstance(value, types.ModuleType) else getattr(replacement, value.__name__))
 
     def _origin(self, package, lesson):
         """Where a scene or a lesson of this world finds that lesson: scenes use the subject's, lessons use the solutions'."""

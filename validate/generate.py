@@ -42,20 +42,20 @@ def lessons():
     return {"__init__.py": '"""Your copy of the lessons: each function waits for its body.  Start with notebooks/00_start_here.ipynb."""\n', **texts}
 
 
-def differing(folder=LESSONS):
+def differing(folder=None):
     """Names of the files that are not what the solutions would give, missing and superfluous ones included."""
     texts = lessons()
-    there = {path.name: path.read_text() for path in Path(folder).glob("*.py")}
+    there = {path.name: path.read_text() for path in Path(folder or LESSONS).glob("*.py")}
     return sorted(name for name in texts.keys() | there.keys() if texts.get(name) != there.get(name))
 
 
-def worked_in(folder=LESSONS):
+def worked_in(folder=None):
     """Files in which somebody has answered something: an exercise's function is there, but no longer raises."""
     def answered(path):
         text, solution = path.read_text(), SOLUTIONS / path.name
         return solution.is_file() and any(f"def {function}(" in text and f'"Exercise {exercise}: {function}"' not in text
                                           for exercise, function in exercises(solution.read_text()).items())
-    return sorted(path.name for path in Path(folder).glob("*.py") if answered(path))
+    return sorted(path.name for path in Path(folder or LESSONS).glob("*.py") if answered(path))
 
 
 def main(arguments):

@@ -22,14 +22,14 @@ from .scene import INTEGRATORS
 
 OMEGA = 3.0                  # angular frequency of the runs [rad/s]: not 1, so that h taken for hω would show
 STEPS = 499                  # of one run: a prime, so that no run ends where it began, where eigenvalues meet and round-off grows
-NOISE = 1e-9                 # growth a step below this is round-off: √2.2e-16 = 1.5e-8 where eigenvalues meet, over tens of steps
-BRACKET = 1e-6               # bisection stops at this relative width
-EDGE = 2e-6                  # an edge is known this well, relative: the bracket, and as much for the noise over a slope of 0.01 or more
-GROWTH = 1e-13               # growth a step is known this well: fifty roundings of 1.1e-16 a step, times ω between x and v, times 6
-NEWTON = 1e-12               # … and an implicit method's this well: its velocity when Newton's method stops [m/s]
-SHORTEST, LONGEST = 0.05, 4.0                                                # hω between which edges are searched
+GROWTH = 1e-13               # growth a step is known this well: fifty roundings of 1.1e-16, times ω between x and v, rounded up
+NEWTON = 1e-12               # … with an implicit method its velocity is, where Newton's method stops [m/s]
+NOISE = 1e-9                 # less growth a step is none: far above round-off, far below the 2e-5 of Euler 0.1 % beyond its edge
+EDGE = 1e-6                  # relative width at which bisection stops: half of it, and NOISE over a slope of 0.02, are less than this
+SHORTEST, LONGEST = 0.05, 4.0                                                        # hω between which edges are searched
 
 EXPLICIT, IMPLICIT = INTEGRATORS[:6], INTEGRATORS[6:]
+LABEL = {method.function: method.label for method in INTEGRATORS}
 LINE, DOTS = "line", "dots"
 
 
@@ -46,7 +46,7 @@ class Finding(NamedTuple):
 
 
 class Picture(NamedTuple):
-    """Curves to draw: series = [(label, xs, ys, style)], style "line" for theory and "dots" for runs, unless the sentence differs."""
+    """Curves to draw: series = [(label, xs, ys, style)], style "line" or "dots"."""
     title: str
     x_label: str
     y_label: str
@@ -102,7 +102,7 @@ def bisect(too_long, low, high):
         return 0.0
     if not too_long(high):
         return np.inf
-    while high - low > BRACKET * high:
+    while high - low > EDGE * high:
         middle = 0.5 * (low + high)
         low, high = (low, middle) if too_long(middle) else (middle, high)
     return 0.5 * (low + high)
@@ -113,18 +113,21 @@ def flips(lesson, method, edges):
     return sum(not grows(lesson, method, 0.999 * h, zeta) and grows(lesson, method, 1.001 * h, zeta) for zeta, h in edges.items())
 
 
-def departure(lesson, method, edges):
-    """Largest relative departure of the measured edges from these."""
-    return max(abs(edge(lesson, method, zeta) / h - 1.0) for zeta, h in edges.items())
+def departure(measured, edges):
+    """Largest relative departure of measured edges {ζ: hω} from theory's; where theory allows no step there is none."""
+    return max(abs(measured[zeta] / h - 1.0) for zeta, h in edges.items() if h > 0.0)
 
 
-def turning(lesson, method, h_omega, steps):
-    """Mean angle [rad] that one step turns the point (x, −v/ω) about the origin, from a run that starts at (1, 0)."""
+def turning(lesson, method, h_omega, steps, flatness=1.0):
+    """Mean angle [rad] that one step turns the motion by, counted on an ellipse with axes 1 (x) and flatness (v/ω).
+
+    Counted on a wrong ellipse the angle would run ahead and fall behind in turns, but gain nothing in the long run.
+    """
     p, x, v = lesson.Oscillator(OMEGA, 0.0), np.ones(1), np.zeros(1)
     angles = np.zeros(steps + 1)
     for n in range(steps):
         x, v = lesson.advance(getattr(lesson, method), lesson.oscillator_acceleration, 0.0, x, v, h_omega / OMEGA, 1, p)
-        angles[n + 1] = np.arctan2(-v[0] / OMEGA, x[0])
+        angles[n + 1] = np.arctan2(-v[0] / (flatness * OMEGA), x[0])
     return np.unwrap(angles)[-1] / steps
 
 
@@ -155,17 +158,17 @@ def euler_edge(zeta):
 
 
 def symplectic_euler_edge(zeta):
-    """An eigenvalue reaches −1 where trace + determinant = −1:  (hω)² + 4ζ hω = 4."""
+    """An eigenvalue reaches −1 where 1 + tr A + det A = 4 − 4ζ hω − (hω)² = 0."""
     return 2.0 * (np.sqrt(1.0 + zeta * zeta) - zeta)
 
 
 def average_velocity_edge(zeta):
-    """det A = 1 − 2ζ hω + ½(hω)² passes 1 at hω = 4ζ;  trace + determinant = 3 − … passes −1 at hω = 1/ζ: the smaller of both."""
+    """det A = 1 − 2ζ hω + ½(hω)² passes 1 at hω = 4ζ;  tr A + det A = 3 − 4ζ hω passes −1 at hω = 1/ζ."""
     return 4.0 * zeta if zeta <= 0.5 else 1.0 / zeta
 
 
 def verlet_edge(zeta):
-    """With the predicted velocity:  1 + tr + det = 0 where (4ζ² − 1)(hω)² − 4ζ hω + 4 = 0;  1 − tr + det = 0 where hω = 1/ζ."""
+    """With the predicted velocity:  1 + tr A + det A = 4 − 4ζ hω + (4ζ² − 1)(hω)²  and  1 − tr A + det A = (hω)² (1 − ζ hω)."""
     return 2.0 / (zeta + np.sqrt(1.0 - 3.0 * zeta * zeta)) if zeta <= 0.5 else 1.0 / zeta
 
 
@@ -179,13 +182,13 @@ EDGES = {
 }
 
 
-def edge_picture(lesson, title, methods, zetas, sentence):
-    """Theory's edge over ζ as a line, the measured ones as dots."""
-    fine = np.linspace(0.0, max(zetas), 121)
+def edge_picture(title, measured, sentence):
+    """Theory's edges over ζ as lines, the measured ones as dots: measured = {method: {ζ: hω}}."""
     drawn = []
-    for method in methods:
-        drawn.append(series(f"{method.label}, theory", fine, [EDGES[method.function](z) for z in fine], LINE))
-        drawn.append(series(f"{method.label}, measured", zetas, [edge(lesson, method.function, z) for z in zetas], DOTS))
+    for method, edges in measured.items():
+        fine = np.linspace(0.0, max(edges), 121)
+        drawn.append(series(f"{LABEL[method]}, theory", fine, [EDGES[method](zeta) for zeta in fine], LINE))
+        drawn.append(series(f"{LABEL[method]}, measured", edges.keys(), edges.values(), DOTS))
     return Picture(title, "damping ratio ζ [-]", "longest stable hω [-]", drawn, sentence)
 
 
@@ -193,66 +196,66 @@ def edge_picture(lesson, title, methods, zetas, sentence):
 
 def case_0(lesson):
     """Every method's edge: six explicit ones end somewhere, the two implicit ones nowhere."""
-    zetas, found = (0.0, 0.1, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0), []
-    for method in EXPLICIT:
-        edges = {z: EDGES[method.function](z) for z in zetas if EDGES[method.function](z) > 0.0}
-        worst = departure(lesson, method.function, edges)
+    zetas, measured, found = (0.0, 0.1, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0), {}, []
+    for method, law in EDGES.items():
+        measured[method] = {zeta: edge(lesson, method, zeta) for zeta in zetas}
+        never = "" if law(0.0) > 0.0 else "; without damping it is never stable"
+        worst = departure(measured[method], {zeta: law(zeta) for zeta in zetas})
         found.append(finding(
-            0, f"The edge of {method.label} follows from the eigenvalues of one step.",
-            f"largest relative departure of {method.label}'s edge over {len(edges)} damping ratios [-]", 0.0, worst, EDGE,
-            f"Between ζ = {min(edges)} and {max(edges)} the edge of {method.label} is where theory puts it, within {worst:.1e}."))
+            0, f"The {LABEL[method]} method is stable up to the step at which an eigenvalue of one step leaves the unit circle.",
+            f"{LABEL[method]}: largest relative departure of the edge over ζ = 0 to 2 [-]", 0.0, worst, EDGE,
+            f"The edge of the {LABEL[method]} method is where theory puts it, within {worst:.1e}{never}."))
     long = (0.1, 1.0, 10.0, 100.0, 1000.0)
-    for method in IMPLICIT:
+    for method in (m.function for m in IMPLICIT):
         # seven steps: a velocity left 1e-12 wrong moves x by h 1e-12 = 3e-10 at the longest step, below NOISE
-        stable = sum(growth(lesson, method.function, h, z, steps=7) <= 1.0 + NOISE for h in long for z in (0.0, 0.5))
+        stable = sum(growth(lesson, method, h, zeta, steps=7) <= 1.0 + NOISE for h in long for zeta in (0.0, 0.5))
         found.append(finding(
-            0, f"{method.label.capitalize()} is stable for every step.", f"runs of {method.label} that stay bounded [of {2 * len(long)}]",
+            0, f"The {LABEL[method]} method is stable for every step.", f"{LABEL[method]}: runs that stay bounded [of {2 * len(long)}]",
             2 * len(long), stable, 0.0,
-            f"From hω = 0.1 to 1000, undamped and at ζ = 0.5, {stable} of {2 * len(long)} runs of {method.label} stay bounded."))
-    return found, edge_picture(lesson, "Where each method is stable", EXPLICIT, zetas,
+            f"From hω = 0.1 to 1000, undamped and at ζ = 0.5, {stable} of {2 * len(long)} runs of the {LABEL[method]} method stay bounded."))
+    return found, edge_picture("Where each method is stable", measured,
                                "Below its curve a method is stable, above it the motion grows; implicit Euler and implicit midpoint "
                                "have no curve, because they are stable everywhere.")
 
 
 def case_1(lesson):
     """Explicit Euler:  |1 + hs|² = 1 − 2ζ hω + (hω)² for ζ ≤ 1:  stable below 2ζ;  2(ζ − √(ζ² − 1)) for ζ > 1."""
-    step, zetas = "euler_step", (0.1, 0.25, 0.5, 0.75, 1.0, 1.5, 3.0)
-    edges = {z: euler_edge(z) for z in zetas}
-    at_half, at_three, tiny = edge(lesson, step, 0.5), edge(lesson, step, 1.5), growth(lesson, step, 0.001)
-    flipped, worst = flips(lesson, step, edges), departure(lesson, step, edges)
+    step, edges = "euler_step", {zeta: euler_edge(zeta) for zeta in (0.1, 0.25, 0.5, 0.75, 1.0, 1.5, 3.0)}
+    measured = {zeta: edge(lesson, step, zeta) for zeta in (0.0, *edges)}
+    flipped, worst, tiny = flips(lesson, step, edges), departure(measured, edges), growth(lesson, step, 0.001)
     return [
         finding(1, "Without damping explicit Euler is never stable: a step lets the motion grow by √(1 + (hω)²).",
                 "growth a step, ζ = 0, hω = 0.001 [-]", np.sqrt(1.0 + 1e-6), tiny, GROWTH,
                 f"Even at a thousandth of a radian a step the motion grows, by {tiny - 1.0:.3e} a step."),
-        finding(1, "For ζ ≤ 1 it is stable up to hω = 2ζ.", "edge hω at ζ = 0.5 [-]", 1.0, at_half, EDGE,
-                f"At half the critical damping the run turns from decay to growth at hω = {at_half:.6f}."),
-        finding(1, "For ζ > 1 it is stable up to hω = 2(ζ − √(ζ² − 1)).", "edge hω at ζ = 1.5 [-]", edges[1.5], at_three,
-                EDGE * edges[1.5], f"At one and a half times the critical damping it turns at hω = {at_three:.6f}."),
+        finding(1, "For ζ ≤ 1 it is stable up to hω = 2ζ.", "edge hω at ζ = 0.5 [-]", 1.0, measured[0.5], EDGE,
+                f"At half the critical damping the run turns from decay to growth at hω = {measured[0.5]:.6f}."),
+        finding(1, "For ζ > 1 it is stable up to hω = 2(ζ − √(ζ² − 1)).", "edge hω at ζ = 1.5 [-]", edges[1.5], measured[1.5],
+                EDGE * edges[1.5], f"At one and a half times the critical damping it turns at hω = {measured[1.5]:.6f}."),
         finding(1, "The two formulas hold at every damping ratio.", "largest relative departure of the edge over seven damping ratios [-]",
                 0.0, worst, EDGE, f"From ζ = 0.1 to 3 the measured edge departs from theory by at most {worst:.1e}."),
         finding(1, "The edge flips within ±0.1 %.", "edges that flip [of 7]", len(edges), flipped, 0.0,
                 f"At {flipped} of {len(edges)} damping ratios a run stays bounded at 0.999 times the bound and grows at 1.001 times."),
-    ], edge_picture(lesson, "Explicit Euler: the longest stable step", EXPLICIT[:1], (0.0, *zetas),
+    ], edge_picture("Explicit Euler: the longest stable step", {step: measured},
                     "Damping opens explicit Euler's stability up to hω = 2 at ζ = 1; more damping closes it again, because the fast "
                     "of the two decays becomes too fast for the step.")
 
 
 def case_2(lesson):
     """Symplectic Euler:  stable below hω = 2(√(1 + ζ²) − ζ)."""
-    step, zetas = "symplectic_euler_step", (0.0, 0.1, 0.25, 0.5, 1.0, 1.5, 3.0)
-    edges = {z: symplectic_euler_edge(z) for z in zetas}
-    undamped, critical = edge(lesson, step, 0.0), edge(lesson, step, 1.0)
-    flipped, worst = flips(lesson, step, edges), departure(lesson, step, edges)
+    step, edges = "symplectic_euler_step", {zeta: symplectic_euler_edge(zeta) for zeta in (0.0, 0.1, 0.25, 0.5, 1.0, 1.5, 3.0)}
+    measured = {zeta: edge(lesson, step, zeta) for zeta in edges}
+    beside = {zeta: edge(lesson, "euler_step", zeta) for zeta in edges}
+    flipped, worst = flips(lesson, step, edges), departure(measured, edges)
     return [
-        finding(2, "Without damping symplectic Euler is stable up to hω = 2.", "edge hω at ζ = 0 [-]", 2.0, undamped, 2.0 * EDGE,
-                f"An undamped oscillator stays bounded up to hω = {undamped:.6f}: a third of a period a step."),
-        finding(2, "At critical damping it is stable up to hω = 2(√2 − 1).", "edge hω at ζ = 1 [-]", edges[1.0], critical, EDGE,
-                f"Critical damping shortens the longest stable step to hω = {critical:.6f}."),
+        finding(2, "Without damping symplectic Euler is stable up to hω = 2.", "edge hω at ζ = 0 [-]", 2.0, measured[0.0], 2.0 * EDGE,
+                f"An undamped oscillator stays bounded up to hω = {measured[0.0]:.6f}: a third of a period a step."),
+        finding(2, "At critical damping it is stable up to hω = 2(√2 − 1).", "edge hω at ζ = 1 [-]", edges[1.0], measured[1.0], EDGE,
+                f"Critical damping shortens the longest stable step to hω = {measured[1.0]:.6f}."),
         finding(2, "The formula holds at every damping ratio.", "largest relative departure of the edge over seven damping ratios [-]",
                 0.0, worst, EDGE, f"From ζ = 0 to 3 the measured edge departs from theory by at most {worst:.1e}."),
         finding(2, "The edge flips within ±0.1 %.", "edges that flip [of 7]", len(edges), flipped, 0.0,
                 f"At {flipped} of {len(edges)} damping ratios a run stays bounded at 0.999 times the bound and grows at 1.001 times."),
-    ], edge_picture(lesson, "Symplectic Euler: the longest stable step", (EXPLICIT[4], EXPLICIT[0]), zetas,
+    ], edge_picture("Symplectic Euler: the longest stable step", {step: measured, "euler_step": beside},
                     "Symplectic Euler is stable where explicit Euler never is, without damping; but damping, which it evaluates at the "
                     "beginning of the step, costs it stability from the start.")
 
@@ -264,8 +267,8 @@ def case_3(lesson):
     for y in (0.05, 0.2, 1.0):
         rate = growth(lesson, step, y)
         found.append(finding(3, "Without damping the midpoint method always grows, by √(1 + (hω)⁴/4) a step.",
-                             f"growth a step at hω = {y} [-]", law(y), rate, GROWTH,
-                             f"At hω = {y} the motion doubles every {np.log(2.0) / np.log(rate):,.0f} steps."))
+                             f"growth a step at hω = {y:g} [-]", law(y), rate, GROWTH,
+                             f"At hω = {y:g} the motion doubles every {np.log(2.0) / np.log(rate):,.0f} steps."))
     dots, fine = np.linspace(0.1, 1.2, 12), np.linspace(0.0, 1.2, 61)
     return found, Picture("Midpoint: slow growth", "hω [-]", "growth a step [-]", [
         series("midpoint, theory", fine, law(fine), LINE),
@@ -336,30 +339,25 @@ def case_5(lesson):
 def case_6(lesson):
     """Verlet turns the motion by 2 asin(½hω) a step, implicit midpoint by 2 atan(½hω): energy is kept, phase is not.
 
-    The point (x, −v/ω) of Verlet goes round an ellipse with axes 1 : r, r = √(1 − (hω)²/4): its angle runs ahead of the phase or
-    behind it by at most asin((1 − r)/(1 + r)), however long the run.  Implicit midpoint goes round a circle.
+    Verlet goes round the ellipse  x² (1 − (hω)²/4) + (v/ω)² = const,  implicit midpoint round the circle  x² + (v/ω)² = const.
     *Source:* cos θ = ½ tr A; Hairer, Lubich, Wanner 2006, I.5.
     """
-    steps, newton = 1000, OMEGA * NEWTON
-    laws = {"verlet_step": lambda y: 2.0 * np.arcsin(0.5 * y) / y, "implicit_midpoint_step": lambda y: 2.0 * np.arctan(0.5 * y) / y}
-    names, formulas = {m.function: m.label for m in INTEGRATORS}, {"verlet_step": "asin", "implicit_midpoint_step": "atan"}
-    ellipse = lambda y: (1.0 - np.sqrt(1.0 - y * y / 4.0)) / (1.0 + np.sqrt(1.0 - y * y / 4.0))
-    found, drawn, fine, dots = [], [], np.linspace(0.02, 1.6, 80), np.linspace(0.2, 1.6, 8)
-    for step, law in laws.items():
+    steps, fine, dots, found, drawn = 1000, np.linspace(0.02, 1.6, 80), np.linspace(0.2, 1.6, 8), [], []
+    for step, inverse, flat, known in (("verlet_step", np.arcsin, 0.25, GROWTH), ("implicit_midpoint_step", np.arctan, 0.0, OMEGA * NEWTON)):
+        name, law = LABEL[step], lambda y: 2.0 * inverse(0.5 * y) / y
+        frequency = lambda y: turning(lesson, step, y, steps, np.sqrt(1.0 - flat * y * y)) / y
         for y in (0.1, 0.5, 1.0):
-            got = turning(lesson, step, y, steps) / y
-            # the angle at the end of the run; Newton's method leaves up to 1e-12 m/s a step, relative to at least 1/ω of it
-            limit = np.arcsin(ellipse(y)) / (steps * y) if step == "verlet_step" else newton / y
+            got = frequency(y)
             found.append(finding(
-                6, f"{names[step].capitalize()} oscillates at (2/h) {formulas[step]}(hω/2) instead of ω.",
-                f"frequency of {names[step]} over the true one at hω = {y:g} [-]", law(y), got, limit,
-                f"At hω = {y:g} {names[step]} is a whole period {'ahead' if got > 1.0 else 'behind'} after {1.0 / abs(got - 1.0):,.0f} periods."))
+                6, f"{name.capitalize()} oscillates at (2/h) {'asin' if flat else 'atan'}(hω/2) instead of ω.",
+                f"{name}: frequency over the true one at hω = {y:g} [-]", law(y), got, known / y,
+                f"At hω = {y:g} {name} is a whole period {'ahead' if got > 1.0 else 'behind'} after {1.0 / abs(got - 1.0):,.0f} periods."))
         kept = growth(lesson, step, 0.5)
-        found.append(finding(6, f"{names[step].capitalize()} keeps the amplitude.", f"growth a step of {names[step]} at hω = 0.5 [-]", 1.0, kept,
-                             GROWTH if step == "verlet_step" else newton,
-                             f"Over {STEPS} steps {names[step]} changes the amplitude by {abs(kept**STEPS - 1.0):.0e}: the error is all in the phase."))
-        drawn += [series(f"{names[step]}, theory", fine, 100.0 * (law(fine) - 1.0), LINE),
-                  series(f"{names[step]}, measured", dots, [100.0 * (turning(lesson, step, y, steps) / y - 1.0) for y in dots], DOTS)]
+        found.append(finding(
+            6, f"{name.capitalize()} keeps the amplitude.", f"{name}: growth a step at hω = 0.5 [-]", 1.0, kept, known,
+            f"After {STEPS} steps of {name} the amplitude is {kept**STEPS:.10f} of what it was: the error is all in the phase."))
+        drawn += [series(f"{name}, theory", fine, 100.0 * (law(fine) - 1.0), LINE),
+                  series(f"{name}, measured", dots, [100.0 * (frequency(y) - 1.0) for y in dots], DOTS)]
     return found, Picture("Phase: too fast and too slow", "hω [-]", "error of the frequency [%]", drawn,
                           "Verlet runs ahead by about (hω)²/24, implicit midpoint lags by twice as much; neither loses energy.")
 
@@ -381,33 +379,35 @@ def stiff_pair(t, x, v, p):
 def case_7(lesson):
     """A stiff pair, released at rest from x = (0.5, 1.5): both masses swing as one, ω² = k₁/2m = 375, ω₂ = √(2k₂/m) = 1.4e10 rad/s.
 
-    The second spring starts unstretched and has to pull with ¼k₁: 1.9e-18 m, a hundredth of the spacing of floats at x = 2.
-    Both methods turn (x̄, −v̄/ω) on a circle or a spiral, by atan(hω) and 2 atan(½hω) a step.
+    The second spring starts unstretched and has to pull with 187.5 N: 1.9e-18 m, less than a hundredth of the spacing of floats there.
+    The mean of both turns by atan(hω) a step of implicit Euler, on a spiral, and by 2 atan(½hω) of implicit midpoint, on a circle.
+    Measured limits of our Newton's method here: it works from dt = 0.5 to 4 ms.  At 10 ms the 1 in  1 + h²k₂  is below round-off and
+    the matrix singular; at 0.1 ms the spacing of floats in x, 4.4e-16 m, is 4e-12 m/s of velocity, and 1e-12 cannot be reached.
     """
     p, dt, steps = StiffPair(), 0.002, 500
     omega, amplitude = np.sqrt(p.k1 / (2.0 * p.m)), 0.5
     newton = NEWTON * omega * amplitude * steps  # [m/s]: a stop at 1e-12 of the fastest velocity, 9.7 m/s, at every step
     y = omega * dt
     laws = {"implicit_euler_step": (np.arctan(y), 1.0 / np.sqrt(1.0 + y * y)), "implicit_midpoint_step": (2.0 * np.arctan(0.5 * y), 1.0)}
-    found, drawn, names = [], [], {m.function: m.label for m in INTEGRATORS}
+    found, drawn = [], []
     for step, (angle, shrink) in laws.items():
         ts, middle, velocity, stretch = swing(lesson, step, p, dt, steps)
-        turned = np.unwrap(np.arctan2(-velocity / omega, middle) + np.pi)[-1] / (steps * dt)    # + π: starts on the negative side
+        turned = np.unwrap(np.arctan2(velocity / omega, -middle))[-1] / (steps * dt)
         left = np.hypot(middle[-1], velocity[-1] / omega)
         size = amplitude * shrink**steps
         found += [
             finding(7, "The soft mode swings at the frequency of the method, as if the stiff spring were a rod.",
-                    f"frequency of the soft mode, {names[step]} [rad/s]", angle / dt, turned, newton / (omega * size) / (steps * dt),
-                    f"With hω₂ = {dt * np.sqrt(2.0 * p.k2 / p.m):.1e} {names[step]} still swings at {turned:.6f} rad/s (truth {omega:.6f})."),
+                    f"frequency of the soft mode, {LABEL[step]} [rad/s]", angle / dt, turned, newton / (omega * size) / (steps * dt),
+                    f"With hω₂ = {dt * np.sqrt(2.0 * p.k2 / p.m):.1e} {LABEL[step]} still swings at {turned:.6f} rad/s (truth {omega:.6f})."),
             finding(7, "Its amplitude is what the method makes of an oscillator without any stiff spring.",
-                    f"amplitude of the soft mode after 1 s, {names[step]} [m]", size, left, newton / omega,
-                    f"After 1 s {names[step]} has {left:.6f} m of {amplitude} m left."),
+                    f"amplitude of the soft mode after 1 s, {LABEL[step]} [m]", size, left, newton / omega,
+                    f"After 1 s {LABEL[step]} has {left:.6f} m of {amplitude} m left."),
             # implicit Euler forgets the stiff mode at every step, implicit midpoint keeps what every step has left of it
-            finding(7, "The stiff spring does not blow up: it stays at its length.", f"largest stretch of the stiff spring, {names[step]} [m]",
+            finding(7, "The stiff spring does not blow up: it stays at its length.", f"largest stretch of the stiff spring, {LABEL[step]} [m]",
                     0.0, stretch, 2.0 * dt * (newton if step == "implicit_midpoint_step" else newton / steps) + np.spacing(2.0),
-                    f"Under {names[step]} the stiff spring never leaves its length by more than {stretch:.1e} m; floats there are 4.4e-16 m apart."),
+                    f"Under {LABEL[step]} the stiff spring never leaves its length by more than {stretch:.1e} m; floats there are 4.4e-16 m apart."),
         ]
-        drawn.append(series(names[step], ts, 1.0 + middle, DOTS))
+        drawn.append(series(LABEL[step], ts, 1.0 + middle, DOTS))
     x, v = np.array([0.5, 1.5]), np.zeros(2)
     refused = refuse(EXPLICIT, lambda name: lesson.advance(getattr(lesson, name), stiff_pair, 0.0, x, v, dt, steps, p))
     found.append(finding(7, "Every explicit method must refuse: its step may not exceed about 2/ω₂ = 1.4e-10 s.",
@@ -435,7 +435,9 @@ def swing(lesson, step, p, dt, steps):
     return dt * np.arange(steps + 1), (xs - at_rest).mean(axis=1), vs.mean(axis=1), np.abs(xs[:, 1] - xs[:, 0] - p.rest).max()
 
 
-UNIT = 1e-14                 # of concentration: the difference step of newton_matrix takes numbers below 1 for small, and y₂ ends at 8e-14
+# Unit of concentration.  newton_matrix moves every number below 1 by 1.5e-8, but y₂ ends at 8e-14: ∂(3·10⁷ y₂²)/∂y₂ would come out
+# 0.45/s too large, and in units of 1 Newton's method was seen to give up (Diverged) between 10⁷ and 10⁸ s.
+UNIT = 1e-14
 END = 1e11                   # of the reaction [s]
 PUBLISHED = np.array([2.08334014970e-8, 8.33336077e-14, 0.99999997917])      # y(10¹¹ s)
 
@@ -478,10 +480,10 @@ def case_8(lesson):
                 8, f"With times in the ratio q implicit Euler is wrong by q − 1 in {name}: first order.",
                 f"relative error of {name} at 10¹¹ s, {per_decade} steps a decade [-]", ratio - 1.0, error, beside,
                 f"{len(ts):,} steps reach 10¹¹ s with {name} {100.0 * error:.4f} % above the published value."))
-    # a step's derivatives cancel to round-off of their largest, 4·10⁻⁹ of y₁ times a step of t/43: less than the 1.1e-16 of each sum
+    # in a step the terms dt·0.04 y₁ < 2 cancel, each rounded by 1.1e-16 of itself some eight times
     total = ys[-1].sum()
     found.append(finding(8, "Nothing is lost: y₁ + y₂ + y₃ = 1.", "sum of the concentrations at 10¹¹ s [-]", 1.0, total,
-                         len(ts) * 4 * 1.1e-16, f"After {len(ts):,} steps the sum departs from 1 by {abs(total - 1.0):.0e}."))
+                         len(ts) * 16 * 1.1e-16, f"After {len(ts):,} steps the sum departs from 1 by {abs(total - 1.0):.0e}."))
     refused = refuse(EXPLICIT, lambda name: react(lesson, name, ratio))
     found.append(finding(8, "Every explicit method must refuse such steps.", "explicit methods that raise Diverged [of 6]",
                          len(EXPLICIT), refused, 0.0, f"{refused} of {len(EXPLICIT)} explicit methods refuse, none returns a number."))
@@ -495,8 +497,8 @@ def case_8(lesson):
     drawn += [series("published", [np.log10(END)] * 3, np.log10(PUBLISHED), DOTS),
               series("1/ct", np.log10(ts[late]), -np.log10(4.8e-4 * ts[late]), LINE)]
     return found, Picture("Robertson's reaction", "log₁₀ of time [s]", "log₁₀ of concentration [-]", drawn,
-                          "Sixteen decades of time with steps that grow a thousandfold every three decades; the lines of implicit Euler "
-                          "end at the published values, and y₁ follows 1/ct.")
+                          f"Sixteen decades of time in {len(ts):,} steps, each {100.0 * (ratio - 1.0):.1f} % longer than the one before; the lines of implicit "
+                          "Euler end at the published values, and late y₁ follows 1/ct.")
 
 
 def reached(lesson, ratio):

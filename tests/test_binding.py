@@ -1,0 +1,88 @@
+"""One text, two speeds: the twin is the same code, its cache is found again, and it cannot go stale."""
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from solutions.checks import BadInput
+from validate import binding
+
+needs_numba = pytest.mark.skipif(not binding.can_compile(), reason="numba has no wheel for this machine: there are no compiled twins")
+
+
+def in_a_new_process(code, *arguments):
+    """What a fresh interpreter prints."""
+    done = subprocess.run([sys.executable, "-c", code, *map(str, arguments)], cwd=binding.ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.strip()
+
+
+@needs_numba
+def test_an_edit_to_an_imported_sibling_is_seen_by_the_compiled_twin(tmp_path):
+    (tmp_path / "upper.py").write_text("from .lower import base\n\n\ndef doubled(x):\n    return 2.0 * base(x)\n")
+    ask = "import sys; from validate.binding import bind; print(bind('upper', sys.argv[1], compiled=True).doubled(3.0))"
+    (tmp_path / "lower.py").write_text("def base(x):\n    return x + 1.0\n")
+    assert in_a_new_process(ask, tmp_path) == "8.0"
+    os.utime(tmp_path / "lower.py", (1, 1))                        # the date of the file must not matter, only what is in it
+    assert in_a_new_process(ask, tmp_path) == "8.0"
+    (tmp_path / "lower.py").write_text("def base(x):\n    return x + 5.0\n")
+    assert in_a_new_process(ask, tmp_path) == "16.0"
+
+
+@needs_numba
+def test_an_edit_is_seen_within_one_process_too(tmp_path):
+    for number in (1.0, 2.0):
+        (tmp_path / "lower.py").write_text(f"def base(x):\n    return x + {number}\n")
+        assert binding.bind("lower", tmp_path).base(0.0) == number
+        assert binding.bind("lower", tmp_path, compiled=True).base(0.0) == number
+
+
+@needs_numba
+def test_a_second_process_compiles_nothing():
+    ask = """
+import numpy as np
+from validate.binding import bind
+lesson = bind("integrators", compiled=True)
+lesson.advance(lesson.verlet_step, lesson.oscillator_acceleration, 0.0, np.ones(1), np.zeros(1), 0.1, 3, lesson.Oscillator(1.0, 0.0))
+print(sum(lesson.advance.stats.cache_misses.values()))
+"""
+    in_a_new_process(ask)
+    assert in_a_new_process(ask) == "0"
+
+
+@needs_numba
+def test_plain_and_compiled_give_the_same_bits_and_the_plain_module_stays_plain():
+    plain, twin = binding.bind("integrators"), binding.bind("integrators", compiled=True)
+    ends = [m.advance(m.rk4_step, m.oscillator_acceleration, 0.0, np.ones(1), np.zeros(1), 0.01, 100, m.Oscillator(3.0, 0.1)) for m in (plain, twin)]
+    assert np.array_equal(*ends)
+    assert not hasattr(plain.rk4_step, "py_func") and hasattr(twin.rk4_step, "py_func")
+
+
+@needs_numba
+def test_a_twin_raises_the_same_errors_with_the_value_in_them():
+    twin = binding.bind("integrators", compiled=True)
+    with pytest.raises(BadInput, match="-0.5"):
+        twin.advance(twin.rk4_step, twin.oscillator_acceleration, 0.0, np.ones(1), np.zeros(1), -0.5, 1, twin.Oscillator(1.0, 0.0))
+
+
+def test_a_scene_uses_the_subject_it_is_bound_to(tmp_path):
+    text = (binding.SOLUTIONS / "integrators.py").read_text().replace("from .", "from solutions.")
+    (tmp_path / "integrators.py").write_text(text + "\n\ndef advance(step, acceleration, t, x, v, dt, steps, p):\n    return x + 42.0, v\n")
+    scene = binding.bind_scene("oscillator", tmp_path)
+    p = next(iter(scene.CASES.values()))
+    assert scene.run(None, scene.start(p), p, 0.1, 1)[0] == p.x0 + 42.0
+    assert binding.bind_scene("oscillator").run.__globals__["advance"].__module__ == "solutions.integrators"
+
+
+@pytest.mark.parametrize("call, names", [
+    (lambda: binding.bind("juggling"), "juggling"),
+    (lambda: binding.bind("integrators", "no/such/folder"), "no/such/folder"),
+    (lambda: binding.bind_scene("moonwalk"), "moonwalk"),
+])
+def test_what_is_unknown_is_named_with_a_remedy(call, names):
+    with pytest.raises(BadInput) as caught:
+        call()
+    assert names in str(caught.value) and ": " in str(caught.value) and "\n" not in str(caught.value)

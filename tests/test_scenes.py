@@ -1,0 +1,95 @@
+"""Every scene: its truth reproduces the published numbers, our methods and the engines keep to it, and a wrong method would be seen."""
+
+import math
+
+import numpy as np
+import pytest
+
+from solutions import integrators
+from solutions.checks import BadInput
+from validate import binding, engines, measure
+from validate.generate import stub
+from validate.report import words
+
+SCENES = binding.scene_names()
+LIVE = tuple(name for name in engines.NAMES if engines.installed(name))
+BRIEF = measure.Plan(speeds=("plain",), live=LIVE, most_steps=500)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_truth_reproduces_what_was_published(name):
+    scene = binding.bind_scene(name)
+    p = next(iter(scene.CASES.values()))
+    for t, expected, tolerance in getattr(scene, "PUBLISHED", ()):
+        assert np.allclose(scene.truth(p, t), expected, rtol=0.0, atol=tolerance)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_truth_begins_where_the_scene_begins(name):
+    scene = binding.bind_scene(name)
+    for p in scene.CASES.values():
+        begin = scene.observe(scene.start(p), p)
+        assert np.allclose(scene.truth(p, 0.0), begin, rtol=0.0, atol=1e-9 * (1.0 + np.abs(begin).max()))
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_steps_span_two_decades(name):
+    steps = binding.bind_scene(name).STEPS
+    assert list(steps) == sorted(steps) and steps[-1] >= 100 * steps[0]
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_nothing_departs_from_truth_without_having_been_predicted(name):
+    result = measure.errors(name, BRIEF)
+    for case in result["cases"].values():
+        for curve in case["ours"] + case["engines"]:
+            assert curve["right"] is not False, f"{curve['label']} {curve['why']}"
+    assert result["picture"]["frames"]["truth"]
+
+
+def test_a_wrong_method_departs(tmp_path):
+    text = stub((binding.SOLUTIONS / "integrators.py").read_text(), {f"1.{k}" for k in range(1, 11)})
+    (tmp_path / "integrators.py").write_text(text.replace("return x + dt * v_mid, v + dt *", "return x + dt * v, v + dt *"))
+    result = measure.errors("oscillator", measure.Plan(of=str(tmp_path), speeds=("plain",), live=(), most_steps=2000))
+    verdicts = {c["label"]: c["right"] for c in result["cases"]["under-damped"]["ours"]}
+    assert verdicts["midpoint"] is False and verdicts["Verlet"] is True
+
+
+def test_stubs_are_not_attempted_and_depart_from_nothing():
+    result = measure.errors("oscillator", measure.Plan(of="lessons", speeds=("plain",), live=(), most_steps=200))
+    for curve in result["cases"]["under-damped"]["ours"]:
+        assert curve["right"] is None and "Exercise" in curve["why"]
+    assert words.verdict(result["cases"]["under-damped"]["ours"])[1] == "open"
+
+
+@pytest.mark.parametrize("name", [n for n in SCENES if any(e.label.startswith("pybullet") for e in binding.bind_scene(n).ENGINES)])
+def test_without_pybullet_its_record_stands_in_and_says_so(name):
+    result = measure.errors(name, measure.Plan(speeds=("plain",), live=(), most_steps=50))
+    curves = [c for c in next(iter(result["cases"].values()))["engines"] if c["label"].startswith("pybullet")]
+    assert curves and all(c["source"].startswith("recorded, pybullet") for c in curves)
+
+
+def test_same_scene_same_bits():
+    first, second = (measure.errors("oscillator", measure.Plan(speeds=("plain",), live=LIVE, most_steps=100)) for _ in range(2))
+    assert first == second
+
+
+def test_time_to_an_error_is_read_between_points():
+    points = [(1e-1, 1.0), (1e-3, 100.0)]
+    assert measure.time_to(points, 1e-2) == pytest.approx(10.0)
+    assert measure.time_to(points, 1e-4) is None
+    assert measure.time_to(points, 1.0) == 1.0
+
+
+@pytest.mark.parametrize("value", [0.0, -1.0, math.nan, math.inf])
+def test_a_step_must_be_positive_and_finite(value):
+    with pytest.raises(BadInput, match="step dt"):
+        integrators.advance(integrators.euler_step, integrators.oscillator_acceleration, 0.0, np.ones(1), np.ones(1), value, 1,
+                            integrators.Oscillator(1.0, 0.0))
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf])
+def test_a_state_must_be_finite(value):
+    with pytest.raises(BadInput, match=str(value)):
+        integrators.advance(integrators.euler_step, integrators.oscillator_acceleration, 0.0, np.array([value]), np.ones(1), 0.1, 1,
+                            integrators.Oscillator(1.0, 0.0))

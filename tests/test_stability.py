@@ -1,0 +1,79 @@
+"""Theory's bounds of stability are found again by experiment, and a wrong method does not find them."""
+
+import types
+from functools import lru_cache
+
+import numpy as np
+import pytest
+
+from validate import binding, stability
+
+SOLUTIONS = binding.bind("integrators")
+examine = lru_cache(maxsize=None)(stability.examine)
+numbers = pytest.mark.parametrize("number", stability.CASES, ids=lambda n: f"{n}-{stability.CASES[n][0].replace(' ', '_')}")
+
+
+@numbers
+def test_experiment_finds_the_bound_that_theory_gives(number):
+    lost = [f for f in examine(number).findings if not f.holds]
+    assert not lost, "\n".join(f"{f.quantity}: theory {f.bound}, measured {f.measured}, tolerance {f.tolerance}" for f in lost)
+
+
+@numbers
+def test_a_picture_holds_plain_finite_numbers(number):
+    picture = examine(number).picture
+    for label, xs, ys, style in picture.series:
+        assert type(xs) is type(ys) is list and len(xs) == len(ys) and np.all(np.isfinite(xs + ys)), label
+        assert style in ("line", "dots")
+
+
+@numbers
+def test_every_finding_says_what_it_claims_in_sentences(number):
+    found = examine(number).findings
+    for f in found:
+        assert f.case == number and f.claim.endswith(".") and f.words.endswith(".") and f.quantity.endswith("]")
+    assert len({f.quantity for f in found}) == len(found)
+
+
+def backwards_rk4(acceleration, t, x, v, dt, p):
+    """Runge–Kutta 4 with the weights of the middle and of the ends exchanged."""
+    a1 = acceleration(t, x, v, p)
+    v2 = v + 0.5 * dt * a1
+    a2 = acceleration(t, x + 0.5 * dt * v, v2, p)
+    v3 = v + 0.5 * dt * a2
+    a3 = acceleration(t, x + 0.5 * dt * v2, v3, p)
+    v4 = v + dt * a3
+    a4 = acceleration(t, x + dt * v3, v4, p)
+    return x + dt / 6.0 * (2.0 * v + v2 + v3 + 2.0 * v4), v + dt / 6.0 * (2.0 * a1 + a2 + a3 + 2.0 * a4)
+
+
+WRONG = [                         # case, the method that it examines, what is put in its place
+    (1, "euler_step", SOLUTIONS.symplectic_euler_step),
+    (2, "symplectic_euler_step", SOLUTIONS.euler_step),
+    (3, "midpoint_step", SOLUTIONS.euler_step),
+    (4, "rk4_step", backwards_rk4),
+    (5, "implicit_euler_step", SOLUTIONS.implicit_midpoint_step),
+    (6, "verlet_step", SOLUTIONS.midpoint_step),
+    (6, "implicit_midpoint_step", SOLUTIONS.implicit_euler_step),
+    (7, "implicit_euler_step", SOLUTIONS.symplectic_euler_step),
+    (8, "implicit_euler_step", SOLUTIONS.implicit_midpoint_step),
+]
+
+
+@pytest.mark.parametrize("number, method, wrong", WRONG, ids=[f"{n}-{w.__name__}_as_{m}" for n, m, w in WRONG])
+def test_a_wrong_method_does_not_find_the_bound(number, method, wrong):
+    subject = types.SimpleNamespace(**{**vars(SOLUTIONS), method: wrong})
+    with np.errstate(all="ignore"):
+        found, _ = stability.CASES[number][1](subject)
+    assert not all(f.holds for f in found)
+
+
+def test_a_measurement_that_failed_is_a_finding_that_does_not_hold():
+    for measured in (np.nan, np.inf):
+        assert not stability.finding(1, "", "", 1.0, measured, 0.1, "").holds
+
+
+def test_bisection_says_so_when_there_is_no_edge():
+    assert stability.bisect(lambda h: True, 0.05, 4.0) == 0.0
+    assert stability.bisect(lambda h: False, 0.05, 4.0) == np.inf
+    assert stability.bisect(lambda h: h > np.pi, 0.05, 4.0) == pytest.approx(np.pi, rel=stability.EDGE)
