@@ -146,7 +146,11 @@ def soft_contact_force(C, C_rate, gradient, k, k_d):
 
 
 # 2.6 ------------------------------------------------------------------------------------------------------------
-def angular_spring(angle=lambda theta, rest: np.angle(np.exp(1j * (theta - rest))), power=2, hinge=1.0, order=(0, 1, 2), checked=True):
+def short_way(theta, rest):
+    return np.angle(np.exp(1j * (theta - rest)))
+
+
+def angular_spring(angle=short_way, power=2, hinge=1.0, order=(0, 1, 2), checked=True):
     """The forces through complex numbers, with an angle, arm or hinge that may be wrong."""
     def angular_spring_forces(x_a, x_b, x_c, rest, k):
         r_a, r_c = (complex(*(x - x_b)) for x in (x_a, x_c))
@@ -168,7 +172,7 @@ wrong("2.6", "takes the angle without its sign")(angular_spring(angle=lambda the
 wrong("2.6", "force that does not fall with the arm")(angular_spring(power=1))
 wrong("2.6", "no force on the hinge")(angular_spring(hinge=0.0))
 wrong("2.6", "hinge pushed the wrong way")(angular_spring(hinge=-1.0))
-wrong("2.6", "opens instead of closing")(angular_spring(angle=lambda theta, rest: -np.angle(np.exp(1j * (theta - rest)))))
+wrong("2.6", "opens instead of closing")(angular_spring(angle=lambda theta, rest: -short_way(theta, rest)))
 wrong("2.6", "a, c, b")(angular_spring(order=(0, 2, 1)))
 wrong("2.6", "silent about an arm without length")(angular_spring(checked=False))
 
@@ -219,7 +223,8 @@ def spring_forces(x, v, mesh):
 
 @wrong("2.7", "every spring like the first")
 def spring_forces(x, v, mesh):
-    return worked.spring_forces(x, v, mesh._replace(k=np.full_like(mesh.k, mesh.k[0]), rest=np.full_like(mesh.rest, mesh.rest[0])))
+    alike = {name: np.full_like(getattr(mesh, name), getattr(mesh, name)[0]) for name in ("rest", "k", "k_d")}
+    return worked.spring_forces(x, v, mesh._replace(**alike))
 
 
 @wrong("2.7", "nothing on fixed points")
@@ -234,11 +239,16 @@ def spring_forces(x, v, mesh):
 
 
 # 2.8 ------------------------------------------------------------------------------------------------------------
-def newton(gravity=lambda g, inv_mass: g, air=lambda a, inv_mass: a * inv_mass, springs=lambda f, inv_mass: f * inv_mass, fixed=True):
+def over_mass(force, inv_mass):
+    return force * inv_mass
+
+
+def newton(gravity=lambda g, inv_mass: g, air=over_mass, springs=over_mass, fixed=True):
     """a = g + F/m for all points at once, with terms that may be wrong."""
     def mesh_acceleration(t, x, v, mesh):
         inv_mass = mesh.inv_mass[:, None]
-        a = gravity(mesh.gravity, inv_mass) + springs(worked.spring_forces(x, v, mesh), inv_mass) + air(mesh.wind - mesh.k_v * v, inv_mass)
+        a = gravity(mesh.gravity, inv_mass) + air(mesh.wind - mesh.k_v * v, inv_mass)
+        a = a + springs(worked.spring_forces(x, v, mesh), inv_mass)
         return np.where(inv_mass > 0.0, a, 0.0) if fixed else a
     return mesh_acceleration
 
@@ -283,12 +293,14 @@ def mass_spring_damper_step(t, x, v, dt, mesh):
 
 
 # 2.10 -----------------------------------------------------------------------------------------------------------
-def numbering(number=lambda r, c, rows, cols: r * cols + c, exists=lambda r, c, rows, cols: 0 <= r < rows and 0 <= c < cols,
-              row=lambda i, j: [i, j], kind=int, empty=True, inside=False):
+def numbering(number=lambda r, c, rows, cols: r * cols + c,
+              exists=lambda r, c, rows, cols: 0 <= r < rows and 0 <= c < cols, row=lambda i, j: [i, j], kind=int, empty=True, inside=False):
     """Pairs of a grid with a number or an edge that may be wrong."""
     def grid_pairs(rows, cols, offsets):
         nodes = [(r, c) for r in range(rows) for c in range(cols)]
-        steps = [(node, offset) for node in nodes for offset in offsets] if inside else [(node, offset) for offset in offsets for node in nodes]
+        steps = [(node, offset) for offset in offsets for node in nodes]
+        if inside:
+            steps = [(node, offset) for node in nodes for offset in offsets]
         pairs = [row(number(r, c, rows, cols), number(r + dr, c + dc, rows, cols))
                  for (r, c), (dr, dc) in steps if exists(r + dr, c + dc, rows, cols)]
         return np.array(pairs, dtype=kind).reshape(-1, 2) if empty else np.array(pairs, dtype=kind)
@@ -298,7 +310,8 @@ def numbering(number=lambda r, c, rows, cols: r * cols + c, exists=lambda r, c, 
 right("2.10", "over a list of nodes")(numbering())
 wrong("2.10", "counts along columns")(numbering(number=lambda r, c, rows, cols: c * rows + r))
 wrong("2.10", "multiplies by the rows")(numbering(number=lambda r, c, rows, cols: r * rows + c))
-wrong("2.10", "a torus: the edge comes round")(numbering(number=lambda r, c, rows, cols: r % rows * cols + c % cols, exists=lambda *_: True))
+wrong("2.10", "a torus: the edge comes round")(
+    numbering(number=lambda r, c, rows, cols: r % rows * cols + c % cols, exists=lambda *_: True))
 wrong("2.10", "asks whether the number exists, not the column")(
     numbering(exists=lambda r, c, rows, cols: 0 <= r * cols + c < rows * cols))
 wrong("2.10", "forgets the left edge")(numbering(exists=lambda r, c, rows, cols: r < rows and c < cols))

@@ -1,0 +1,33 @@
+"""What must hold of the repository itself."""
+
+import re
+import tomllib
+
+from validate.binding import ROOT, SOLUTIONS
+
+
+def test_the_lock_names_only_the_public_index():
+    hosts = set(re.findall(r"https?://([^/\"]+)", (ROOT / "uv.lock").read_text()))
+    assert hosts <= {"pypi.org", "files.pythonhosted.org"}
+    assert "://" not in (ROOT / "constraints.txt").read_text()
+
+
+def test_both_locks_hold_the_same_versions():
+    locked = {(p["name"], p["version"]) for p in tomllib.loads((ROOT / "uv.lock").read_text())["package"] if "registry" in p["source"]}
+    pinned = set(re.findall(r"^([\w.-]+)==([^ ;\n]+)", (ROOT / "constraints.txt").read_text(), flags=re.M))
+    assert pinned <= locked and len({n for n, _ in pinned}) >= 100
+
+
+def test_solutions_import_nothing_but_numpy_typing_and_their_siblings():
+    for path in SOLUTIONS.glob("*.py"):
+        for line in path.read_text().splitlines():
+            if re.match(r"(import|from) ", line):
+                assert re.match(r"import numpy as np$|from typing import NamedTuple$|from \.\w+ import ", line), f"{path.name}: {line}"
+
+
+def test_every_lesson_has_its_notebook_tests_mutants_and_scenes():
+    from validate import binding
+    for name in binding.lesson_names():
+        assert list((ROOT / "notebooks").glob(f"*_{name}.ipynb")), name
+        assert (ROOT / "tests" / f"test_{name}.py").is_file() and (ROOT / "tests" / "mutants" / f"{name}.py").is_file()
+        assert any(binding.bind_scene(s).LESSON == name for s in binding.scene_names())

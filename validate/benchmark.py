@@ -1,0 +1,136 @@
+"""Speed and memory, as ratios measured in one run: `python -m validate.benchmark`.
+
+Every row says what was asked for and what was found.  Absolute times are shown for orientation only.
+"""
+
+import subprocess
+import sys
+import time
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from solutions import springs
+from solutions.integrators import observed_order
+
+from . import binding
+
+REPEATS = 9
+
+
+def net(n_springs, seed=1):
+    """A square net, slightly disturbed, with about so many structural springs: x, v, mesh."""
+    side = int(np.sqrt(n_springs / 2)) + 1
+    grid = np.stack(np.meshgrid(np.arange(side), -np.arange(side), indexing="ij"), axis=-1).reshape(-1, 2) * 0.1
+    x = grid + 1e-3 * np.random.default_rng(seed).normal(size=grid.shape)
+    node = np.arange(side * side).reshape(side, side)
+    pairs = np.concatenate([np.stack([node[:-1].ravel(), node[1:].ravel()], 1), np.stack([node[:, :-1].ravel(), node[:, 1:].ravel()], 1)])
+    return x, np.zeros_like(x), springs.make_mesh(x, 0.01, [0, side - 1], pairs, 50.0, 0.05, (0.0, -9.81), (0.01, 0.0), 0.01)
+
+
+def numpy_forces_add_at(x, v, mesh):
+    """Spring forces as one writes them in NumPy: all springs at once, np.add.at for the ends."""
+    r, u = x[mesh.j] - x[mesh.i], v[mesh.j] - v[mesh.i]
+    length = np.sqrt(np.sum(r * r, axis=1))
+    tension = mesh.k * (length - mesh.rest) + mesh.k_d * np.sum(r * u, axis=1) / length
+    pull = (tension / length)[:, None] * r
+    force = np.zeros_like(x)
+    np.add.at(force, mesh.i, pull)
+    np.subtract.at(force, mesh.j, pull)
+    return force
+
+
+def numpy_forces_bincount(x, v, mesh):
+    """The same with the fastest scatter that NumPy has for few columns."""
+    r, u = x[mesh.j] - x[mesh.i], v[mesh.j] - v[mesh.i]
+    length = np.sqrt(np.sum(r * r, axis=1))
+    tension = mesh.k * (length - mesh.rest) + mesh.k_d * np.sum(r * u, axis=1) / length
+    pull = (tension / length)[:, None] * r
+    columns = [np.bincount(mesh.i, pull[:, c], len(x)) - np.bincount(mesh.j, pull[:, c], len(x)) for c in range(x.shape[1])]
+    return np.stack(columns, axis=1)
+
+
+def numpy_step(forces, x, v, dt, mesh):
+    """Symplectic Euler on the whole mesh, vectorised."""
+    free = (mesh.inv_mass > 0.0)[:, None]
+    force = forces(x, v, mesh) + mesh.wind - mesh.k_v * v
+    v = v + dt * np.where(free, mesh.gravity + force * mesh.inv_mass[:, None], 0.0)
+    return x + dt * v, v
+
+
+def step_times(contenders):
+    """{name: median seconds}, interleaved; contenders = {name: (function, steps in one call)}."""
+    samples = {name: [] for name in contenders}
+    for _ in range(REPEATS):
+        for name, (function, steps) in contenders.items():
+            begin = time.perf_counter()
+            function()
+            samples[name].append((time.perf_counter() - begin) / steps)
+    return {name: float(np.median(s)) for name, s in samples.items()}
+
+
+def compiled_run(n_springs, steps):
+    """A function that takes so many compiled symplectic Euler steps of a net, already compiled."""
+    world = binding.world(compiled=True)
+    step, mesh_acceleration = world.lesson("integrators").symplectic_euler_step, world.lesson("springs").mesh_acceleration
+    advance, (x, v, mesh) = world.lesson("integrators").advance, net(n_springs)
+    advance(step, mesh_acceleration, 0.0, x, v, 1e-4, 1, mesh)
+    return lambda: advance(step, mesh_acceleration, 0.0, x, v, 1e-4, steps, mesh)
+
+
+def thousand_springs():
+    """A step of 1,000 springs: compiled against two ways of vectorising it."""
+    x, v, mesh = net(1000)
+    times = step_times({
+        "compiled": (compiled_run(1000, 200), 200),
+        "add.at": (lambda: numpy_step(numpy_forces_add_at, x, v, 1e-4, mesh), 1),
+        "bincount": (lambda: numpy_step(numpy_forces_bincount, x, v, 1e-4, mesh), 1),
+    })
+    for way, wanted in (("add.at", 10.0), ("bincount", None)):
+        ratio = times[way] / times["compiled"]
+        asked = f"at least {wanted:g}×" if wanted else "for comparison"
+        yield (f"{mesh.i.size} springs, one step: NumPy with {way} / compiled", asked,
+               f"{ratio:.1f}×  ({times[way] * 1e6:.0f} µs / {times['compiled'] * 1e6:.1f} µs)", wanted is None or ratio >= wanted)
+
+
+def growth():
+    """Cost against the number of springs."""
+    sizes = np.array([1000, 10_000, 100_000, 1_000_000])
+    times = step_times({n: (compiled_run(n, max(1, 200_000 // n)), max(1, 200_000 // n)) for n in sizes})
+    order = observed_order(sizes.astype(float), np.array([times[n] for n in sizes]))
+    yield "cost of a step over 10³ to 10⁶ springs grows as n to the", "1.0 ± 0.1", f"{order:.3f}", abs(order - 1.0) <= 0.1
+
+
+def memory():
+    """Peak memory of a process that takes steps with a million springs."""
+    code = ("import resource; from validate.benchmark import compiled_run; compiled_run(1_000_000, 5)(); "
+            "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)")
+    peak = int(subprocess.run([sys.executable, "-c", code], cwd=binding.ROOT, capture_output=True, text=True, check=True).stdout)
+    gib = peak * (1 if sys.platform == "darwin" else 1024) / 2**30                     # kB on Linux, bytes on macOS
+    yield "a million springs, peak memory", "within 4 GiB", f"{gib:.2f} GiB", gib <= 4.0
+
+
+def imports():
+    """Importing a lesson, NumPy included, in a new process; beside NumPy alone."""
+    def seconds(module):
+        code = f"import time; t = time.perf_counter(); import {module}; print(time.perf_counter() - t)"
+        laps = [float(subprocess.run([sys.executable, "-c", code], cwd=binding.ROOT, capture_output=True, text=True, check=True).stdout)
+                for _ in range(5)]
+        return float(np.median(laps))
+    alone = seconds("numpy")
+    for name in binding.lesson_names():
+        taken = seconds(f"solutions.{name}")
+        yield f"import of lesson {name}", "under 0.3 s", f"{taken:.2f} s  (NumPy alone {alone:.2f} s)", taken < 0.3
+
+
+def main():
+    table = Table("what", "asked", "found", "", box=None, header_style="bold")
+    for part in (thousand_springs, growth, memory, imports):
+        for what, asked, found, met in part():
+            table.add_row(what, asked, found, "[green]met[/green]" if met else "[bold red]not met[/bold red]")
+    Console().print(table)
+
+
+if __name__ == "__main__":
+    main()
