@@ -192,7 +192,7 @@ def test_a_spring_without_length_is_refused(lesson):
     raises("two ends in one place", BadInput, lesson.spring_forces, x, v, mesh)
 
 
-@exercise("2.8", points=1, hint="gravity is an acceleration already; the air's force is divided by the mass; inv_mass = 0 means a = 0")
+@exercise("2.8", points=1, hint="gravity is an acceleration already, the air is a force: over the mass; a = 0 where inv_mass = 0")
 def test_points_without_springs_fall_alike_drift_with_the_wind_and_stay_where_fixed(lesson):
     g, x, v = np.array([0.0, -9.81]), np.zeros((4, 2)), np.array([[0.0, 0.0], [1.0, 2.0], [0.0, 0.0], [-3.0, 1.0]])
     mass, inv_mass, free = np.array([[2.0], [0.5], [4.0]]), [0.5, 2.0, 0.0, 0.25], [0, 1, 3]
@@ -223,7 +223,7 @@ def test_a_mesh_obeys_newton_and_a_weight_hangs_still(lesson):
     close("accelerations of a weight that hangs still [m/s²]", a, np.zeros((2, 2)), 1e-12)
 
 
-@exercise("2.9", points=1, hint="one of the steps of lesson 1 is just this loop: give it mesh_acceleration, and the mesh as its parameters")
+@exercise("2.9", points=1, hint="one of the steps of lesson 1 is just this: give it mesh_acceleration, and the mesh as p")
 def test_the_lectures_loop_is_exact_in_free_fall_and_settles_where_the_weight_hangs(lesson):
     falling = mesh_of(lesson, [0.5, 0.0], [], [1.0, -9.81])
     x, v = np.zeros((2, 2)), np.array([[2.0, 3.0], [0.0, 0.0]])
@@ -348,7 +348,7 @@ def swaying(t, x, v, mesh):
     return force
 
 
-@exercise("2.13", points=1, hint="the Δv on the left is paid for by dt ∂F/∂x v on the right; the position moves with the new velocity")
+@exercise("2.13", points=1, hint="do not forget dt ∂F/∂x v on the right; the position moves with the new velocity")
 def test_the_implicit_step_is_linearly_implicit_euler(lesson):
     t, dt, m, k, k_d, k_v = 0.8, 0.1, 0.5, 60.0, 2.0, 0.7
     weight = mesh_of(lesson, [0.0, 1.0 / m], [(0, 1, 1.0, k, k_d)], [-9.81], [1.5], k_v)
@@ -376,7 +376,7 @@ def test_the_implicit_step_is_linearly_implicit_euler(lesson):
     close("x of that mesh [m]", x_new, x + dt * v_new, 1e-14)
 
 
-@exercise("2.13", points=0.5, hint="stiffness belongs into the matrix: blocks dt² K + dt D, diagonal m + dt k_v, 0 for a fixed point")
+@exercise("2.13", points=0.5, hint="in the matrix: blocks dt² K + dt D; on its diagonal m + dt k_v, 0 for a fixed point")
 def test_the_implicit_step_brings_a_stiff_spring_to_rest_without_gaining_energy(lesson):
     m, k, g, dt = 1.0, 1e8, 9.81, 1.0 / 60.0                                               # ω dt = 167: explicit steps end at 2
     stiff = mesh_of(lesson, [0.0, 1.0 / m], [(0, 1, 1.0, k, 0.0)], [0.0, -g])

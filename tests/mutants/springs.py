@@ -293,13 +293,16 @@ def mass_spring_damper_step(t, x, v, dt, mesh):
 
 
 # 2.10 -----------------------------------------------------------------------------------------------------------
-def numbering(number=lambda r, c, rows, cols: r * cols + c,
-              exists=lambda r, c, rows, cols: 0 <= r < rows and 0 <= c < cols, row=lambda i, j: [i, j], kind=int, empty=True, inside=False):
+def inside(r, c, rows, cols):
+    return 0 <= r < rows and 0 <= c < cols
+
+
+def numbering(number=lambda r, c, rows, cols: r * cols + c, exists=inside, row=lambda i, j: [i, j], kind=int, empty=True, turned=False):
     """Pairs of a grid with a number or an edge that may be wrong."""
     def grid_pairs(rows, cols, offsets):
         nodes = [(r, c) for r in range(rows) for c in range(cols)]
         steps = [(node, offset) for offset in offsets for node in nodes]
-        if inside:
+        if turned:
             steps = [(node, offset) for node in nodes for offset in offsets]
         pairs = [row(number(r, c, rows, cols), number(r + dr, c + dc, rows, cols))
                  for (r, c), (dr, dc) in steps if exists(r + dr, c + dc, rows, cols)]
@@ -318,7 +321,7 @@ wrong("2.10", "forgets the left edge")(numbering(exists=lambda r, c, rows, cols:
 wrong("2.10", "every pair twice")(numbering(row=lambda i, j: [[i, j], [j, i]]))
 wrong("2.10", "numbers that are no integers")(numbering(kind=float))
 wrong("2.10", "no shape without pairs")(numbering(empty=False))
-wrong("2.10", "nodes outside, offsets inside")(numbering(inside=True))
+wrong("2.10", "nodes outside, offsets inside")(numbering(turned=True))
 
 
 # 2.11 -----------------------------------------------------------------------------------------------------------

@@ -38,7 +38,7 @@ def inertia(p):
 
 
 def acceleration(t, x, v, p):
-    """θ̈ = (r × F_c − ½ m g length sin θ)/I,   r = length (sin θ, −cos θ): the rod's arm; F_c: what angular_spring_forces pulls its end with.
+    """θ̈ = (r × F_c − ½ m g length sin θ)/I,   r = length (sin θ, −cos θ),   F_c by angular_spring_forces on the rod's end.
 
     The other arm hangs straight down and is fixed; F_c ⊥ r has the moment −κ θ about the hinge, whatever the arm's length.
     """
@@ -64,7 +64,8 @@ def observe(state, p):
 
 
 def truth(p, t):
-    """θ(t) of the spring alone: θ₀ cos ωt, ω² = κ/I;  of gravity alone: 2 arcsin(k sn(K + ωt, k²)), ω² = m g length/2I, k = sin ½θ₀.
+    """θ(t) of the spring alone: θ₀ cos ωt, ω² = κ/I;  of gravity alone: 2 arcsin(k sn(K + ωt, k²)), ω² = m g length/2I,
+    k = sin ½θ₀.
 
     Of both: θ̈ = −(κ θ + ½ m g length sin θ)/I, by DOP853 at a relative tolerance of 1e-13.
     Source: for gravity, Landau and Lifshitz, Mechanics, § 11, in Jacobi's functions; I = m length²/3.

@@ -142,7 +142,7 @@ def published():
     return (("sag of rigid links [m]", -x[middle, 1], 0.5895021, 5e-8),
             ("sideways pull of rigid links [weights]", H / weight, 5.54718, 5e-6),
             ("sag as k → ∞, extrapolated from two stiffnesses [m]", 2.0 * stiff[1] - stiff[0], 0.5895021, 1e-7),
-            ("elastic rest by Newton's method, from its rest by H alone [m]", np.abs(rest_positions(net(p)) - elastic).max(), 0.0, 1e-12),
+            ("elastic rest by Newton's method, from that by H [m]", np.abs(rest_positions(net(p)) - elastic).max(), 0.0, 1e-12),
             ("where the damped chain settles, from the same [m]", np.abs(settled - elastic).max(), 0.0, 1e-11))
 
 

@@ -86,14 +86,16 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """Each mode on its own (by_mode): the system is linear.  pymunk is symplectic Euler with its dampers one by one: order 1."""
+    """Each mode on its own (by_mode): the system is linear.  pymunk is symplectic Euler, its dampers one by one: order 1."""
     omega, c, shapes = modes(p)
     amplitude = np.abs(shapes.T @ static_extension(p))
     limits = by_mode(omega, c, amplitude, np.linalg.norm(truth(p, T)), T, dt, UNCERTAINTY)
     return {**limits, "pymunk": limits[1]}
 
 
-ENGINES = (Engine("pymunk", lambda p, dt: pymunk_net(net(p), dt, lambda x: observe((x,), p)), 1, "DampedSpring between point masses"),)
+ENGINES = (
+    Engine("pymunk", lambda p, dt: pymunk_net(net(p), dt, lambda x: observe((x,), p)), 1, "DampedSpring between point masses"),
+)
 
 
 def points(observed, p):
@@ -121,4 +123,5 @@ def in_space(p):
 
 
 NEEDS = ("one coordinate", "springs with dampers", "one step function")
-LEAVES_OUT = {"the second and third dimension": in_space, "rotation": "lesson 5 builds it", "contact between masses": "lesson 6 builds it"}
+LEAVES_OUT = {"the second and third dimension": in_space, "rotation": "lesson 5 builds it",
+              "contact between masses": "lesson 6 builds it"}

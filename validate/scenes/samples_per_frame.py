@@ -68,7 +68,7 @@ def LINKS(p):
 
 
 def published():
-    """((claim, found, expected, tolerance), …): how the fastest mode grows in a step of the lecture's method, for a test to assert.
+    """((claim, found, expected, tolerance), …): how the fastest mode grows in one of the lecture's steps, for a test to assert.
 
     |λ₁ λ₂| = det A = (1 − ½ω²dt²)(1 − c dt) + ω² dt (dt − ½c dt²) = 1 − c dt + ½ω² dt²;  |λ|² while the pair is complex.
     """
@@ -87,4 +87,5 @@ def in_space(p):
 
 
 NEEDS = ("two coordinates", "springs with dampers", "one step function")
-LEAVES_OUT = {"the third dimension": in_space, "rotation": "lesson 5 builds it", "contact of the net with itself": "lesson 6 builds it"}
+LEAVES_OUT = {"the third dimension": in_space, "rotation": "lesson 5 builds it",
+              "contact of the net with itself": "lesson 6 builds it"}
