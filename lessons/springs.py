@@ -56,7 +56,7 @@ def air_force(v, wind, k_v):
 
     F = F_wind − k_v v
 
-    wind [N] is the force on a point at rest.  v and wind are arrays that fit together, or one coordinate of each.
+    wind [N] is the force on a point at rest.  v and wind are arrays that broadcast, (n, d) and (d,), or one coordinate of each.
     *Source:* deck A, "Viscosity", and "initialize force with wind".
     """
     # YOUR CODE HERE
@@ -130,7 +130,7 @@ def spring_forces(x, v, mesh):
 
 
 def mesh_acceleration(t, x, v, mesh):
-    """Acceleration (n, d) [m/s²] of every point of a mesh; fixed points have none.
+    """Acceleration (n, d) [m/s²] of every point of a mesh; fixed points have none, so one that is at rest stays there.
 
     a = g + F/m,   F = springs + air          a = 0 where inv_mass = 0
 
@@ -246,7 +246,7 @@ def conjugate_gradients(apply, A, right):
         α = (r·r) / (p·Ap),   y += α p,   r_new = r − α Ap,   p = r_new + (r_new·r_new)/(r·r) p
     until |r| ≤ CG_TOLERANCE |right|.  A right-hand side of zeros has the solution zeros.
 
-    Raises Diverged("conjugate gradients did not converge", nan) after 10 · (size of right) rounds.
+    Raises Diverged("conjugate gradients did not converge: |r|²", |r|², …) after 10 · (size of right) rounds.
     *Source:* Hestenes and Stiefel 1952; Shewchuk 1994.
     """
     # YOUR CODE HERE

@@ -11,10 +11,10 @@ class BadInput(ValueError):
 
 
 class Diverged(ArithmeticError):
-    """A computation that left the numbers behind: says with which step [s], and what to try."""
+    """A computation that left the numbers behind: says what happened, at which value of what, and the remedy."""
 
-    def __init__(self, what, dt):
-        super().__init__(f"{what} with dt = {dt} s: take a smaller step, or an implicit method")
+    def __init__(self, what, value, remedy):
+        super().__init__(f"{what} = {value}: {remedy}")
 
 
 def check_positive(thing, value):

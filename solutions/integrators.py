@@ -17,7 +17,8 @@ from .checks import Diverged, check_finite, check_positive
 
 NEWTON_TOLERANCE = 1e-12     # last correction over the size of the velocity [-]: well above round-off, 2e-16
 NEWTON_LIMIT = 30            # corrections [-]; from a sane guess Newton doubles its digits and needs fewer than 8
-DIFFERENCE_STEP = 1.5e-8     # √(2.2e-16) [-]: balances truncation against round-off in a forward difference
+ROUND_OFF = 1e-15            # a few spacings of floats [-]: no position is known better than this, relative to its size
+DIFFERENCE_STEP = 6e-6       # ∛(2.2e-16) [-]: balances truncation against round-off in a central difference
 
 
 # ---------------------------------------------------------------------------------------------- explicit methods
@@ -134,17 +135,17 @@ def verlet_step(acceleration, t, x, v, dt, p):
 # ---------------------------------------------------------------------------------------------- implicit methods
 
 def newton_matrix(acceleration, t, x, v, dt, p):
-    """Given.  The (n, n) matrix  1 − dt ∂a/∂v (t, x + dt v, v)  over the n entries of v, by forward differences.
+    """Given.  The (n, n) matrix  1 − dt ∂a/∂v (t, x + dt v, v)  over the n entries of v, by central differences.
 
     It is the derivative of the residual  r(v) = v − vₙ − dt a(t, xₙ + dt v, v)  that Newton's method drives to zero.
     """
-    a = acceleration(t, x + dt * v, v, p)
     matrix = np.eye(v.size, dtype=v.dtype)
     for k in range(v.size):
-        moved = v.copy()
-        moved.ravel()[k] += DIFFERENCE_STEP * max(1.0, abs(v.ravel()[k]))
-        delta = moved.ravel()[k] - v.ravel()[k]
-        matrix[:, k] -= dt * (acceleration(t, x + dt * moved, moved, p) - a).ravel() / delta
+        ahead, behind = v.copy(), v.copy()
+        ahead.ravel()[k] += DIFFERENCE_STEP * max(1.0, abs(v.ravel()[k]))
+        behind.ravel()[k] -= DIFFERENCE_STEP * max(1.0, abs(v.ravel()[k]))
+        change = acceleration(t, x + dt * ahead, ahead, p) - acceleration(t, x + dt * behind, behind, p)
+        matrix[:, k] -= dt * change.ravel() / (ahead.ravel()[k] - behind.ravel()[k])
     return matrix
 
 
@@ -162,21 +163,24 @@ def implicit_euler_step(acceleration, t, x, v, dt, p):
     The first line is an equation for vₙ₊₁ =: w.  Newton's method solves it: start from w = vₙ and repeat
         r = w − vₙ − dt a(tₙ + dt, xₙ + dt w, w)
         w ← w − δ,    newton_matrix(acceleration, tₙ + dt, xₙ, w, dt, p) · δ = r     (given above, and so is solve)
-    until max|δ| ≤ NEWTON_TOLERANCE · max(1, max|w|).  r and δ are flat, (n,): use .ravel() and .reshape(v.shape).
+    until max|δ| ≤ NEWTON_TOLERANCE · max(1, max|w|) + ROUND_OFF · max|xₙ| / dt.  (The last term: what the rounding of a
+    position far from the origin looks like as a velocity.)  r and δ are flat, (n,): use .ravel() and .reshape(v.shape).
 
-    Raises Diverged("Newton's method did not converge", dt) after NEWTON_LIMIT corrections.
+    Raises Diverged("Newton's method did not converge at dt [s]", dt, "take a smaller step") after NEWTON_LIMIT corrections;
+    solve raises LinAlgError where the 1 in the matrix is lost beside dt² k/m, when that is above 10¹⁶.
     *Source:* Hairer and Wanner 1996, "Solving ordinary differential equations II", IV.3 and IV.8.
     """
     ### BEGIN SOLUTION 1.7
     w = v.copy()
+    unknowable = ROUND_OFF * np.max(np.abs(x)) / dt
     for _ in range(NEWTON_LIMIT):
         residual = w - v - dt * acceleration(t + dt, x + dt * w, w, p)
         matrix = newton_matrix(acceleration, t + dt, x, w, dt, p)
         delta = solve(matrix, residual.ravel()).reshape(v.shape)
         w = w - delta
-        if np.max(np.abs(delta)) <= NEWTON_TOLERANCE * max(1.0, np.max(np.abs(w))):
+        if np.max(np.abs(delta)) <= NEWTON_TOLERANCE * max(1.0, np.max(np.abs(w))) + unknowable:
             return x + dt * w, w
-    raise Diverged("Newton's method did not converge", dt)
+    raise Diverged("Newton's method did not converge at dt [s]", dt, "take a smaller step")
     ### END SOLUTION
 
 
@@ -211,7 +215,7 @@ def advance(step, acceleration, t, x, v, dt, steps, p):
     for n in range(steps):
         x, v = step(acceleration, t + n * dt, x, v, dt, p)
     if not (np.all(np.isfinite(x)) and np.all(np.isfinite(v))):
-        raise Diverged("the motion is no longer finite", dt)
+        raise Diverged("the motion is no longer finite at dt [s]", dt, "take a smaller step, or an implicit method")
     return x, v
 
 

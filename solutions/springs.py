@@ -58,7 +58,7 @@ def air_force(v, wind, k_v):
 
     F = F_wind − k_v v
 
-    wind [N] is the force on a point at rest.  v and wind are arrays that fit together, or one coordinate of each.
+    wind [N] is the force on a point at rest.  v and wind are arrays that broadcast, (n, d) and (d,), or one coordinate of each.
     *Source:* deck A, "Viscosity", and "initialize force with wind".
     """
     ### BEGIN SOLUTION 2.2
@@ -166,7 +166,7 @@ def spring_forces(x, v, mesh):
 
 
 def mesh_acceleration(t, x, v, mesh):
-    """Acceleration (n, d) [m/s²] of every point of a mesh; fixed points have none.
+    """Acceleration (n, d) [m/s²] of every point of a mesh; fixed points have none, so one that is at rest stays there.
 
     a = g + F/m,   F = springs + air          a = 0 where inv_mass = 0
 
@@ -207,9 +207,9 @@ def grid_pairs(rows, cols, offsets):
     *Source:* deck A, "Multiple connectivity"; Provot 1995 for the three names.
     """
     ### BEGIN SOLUTION 2.10
-    pairs = [(r * cols + c, (r + dr) * cols + c + dc)
-             for dr, dc in offsets for r in range(rows) for c in range(cols)
-             if 0 <= r + dr < rows and 0 <= c + dc < cols]
+    pairs = [node for dr, dc in offsets for r in range(rows) for c in range(cols)
+             if 0 <= r + dr < rows and 0 <= c + dc < cols
+             for node in (r * cols + c, (r + dr) * cols + c + dc)]
     return np.array(pairs, dtype=np.int64).reshape(-1, 2)
     ### END SOLUTION
 
@@ -308,7 +308,7 @@ def conjugate_gradients(apply, A, right):
         α = (r·r) / (p·Ap),   y += α p,   r_new = r − α Ap,   p = r_new + (r_new·r_new)/(r·r) p
     until |r| ≤ CG_TOLERANCE |right|.  A right-hand side of zeros has the solution zeros.
 
-    Raises Diverged("conjugate gradients did not converge", nan) after 10 · (size of right) rounds.
+    Raises Diverged("conjugate gradients did not converge: |r|²", |r|², …) after 10 · (size of right) rounds.
     *Source:* Hestenes and Stiefel 1952; Shewchuk 1994.
     """
     ### BEGIN SOLUTION 2.12
@@ -326,7 +326,7 @@ def conjugate_gradients(apply, A, right):
         r -= alpha * Ap
         before, squared = squared, np.sum(r * r)
         p = r + squared / before * p
-    raise Diverged("conjugate gradients did not converge", np.nan)
+    raise Diverged("conjugate gradients did not converge: |r|²", squared, "the matrix must be positive definite")
     ### END SOLUTION
 
 
@@ -342,8 +342,8 @@ def implicit_mesh_step(acceleration, t, x, v, dt, mesh):
     *Source:* Baraff and Witkin 1998, "Large steps in cloth simulation".
     """
     ### BEGIN SOLUTION 2.13
-    K, D = spring_stiffness(x, mesh)
     a = acceleration(t, x, v, mesh)
+    K, D = spring_stiffness(x, mesh)
     pull = apply_blocks(v, mesh.i, mesh.j, K)
     diagonal = np.zeros(x.shape[0])
     right = np.zeros_like(x)

@@ -111,7 +111,7 @@ def test_halving_the_step_divides_the_error_by_two_to_the_order(lesson, method, 
     between("order of convergence over dt = 1/20 … 1/80 s", ratios[1:].mean(), order - 0.3, order + 0.4)
 
 
-@exercise("1.7", points=1, hint="when the loop ends without a return, raise Diverged(\"Newton's method did not converge\", dt)")
+@exercise("1.7", points=1, hint="when the loop ends without a return, raise Diverged as the docstring says")
 def test_implicit_euler_says_so_when_newton_finds_no_root(lesson):
     """w = v + dt(1 + w²) has no real root once 4 dt (v + dt) > 1."""
     raises("a step without a solution", Diverged, lesson.implicit_euler_step, runaway, 0.0, np.zeros(1), np.zeros(1), 10.0, Drive(1.0, 0.0))

@@ -199,7 +199,7 @@ def code_digest(of):
     """Fingerprint of all code that a result depends on."""
     package = Path(__file__).parent
     files = {*package.rglob("*.py"), *binding.SOLUTIONS.glob("*.py"), *binding.subject_folder(of).glob("*.py")}
-    return binding._fingerprint(files)
+    return binding.fingerprint(files)
 
 
 def measure_errors(store, names, plan, jobs, bars):

@@ -5,8 +5,8 @@ use them.  The plain world of `solutions` is simply the imported packages.  Ever
 under a package name of its own, in which whatever came from `solutions` is replaced by the subject's function or by its
 compiled twin.  Nothing is decorated, and the imported packages stay as they are.
 
-A twin's cache on disk lives in a folder named after a digest of *all* lesson files of its world, because numba looks at one
-file only: without that, an edit to an imported sibling would leave a stale caller.  A scene's own digest is part of its name.
+A twin's cache on disk lives in a folder named after a digest of *all* files of its world, because numba looks at one file
+only: without that, an edit to an imported sibling would leave a stale caller.
 """
 
 import hashlib
@@ -73,12 +73,13 @@ def world(of="solutions", compiled=False):
 
 
 def digest_of(folder):
-    """Fingerprint of every lesson file that a world of this subject is made of, and of the compiler."""
+    """Fingerprint of every file that a world of this subject is made of, and of the compiler."""
     compiler = f"{_numba_version()} {sys.version} {os.environ.get('NUMBA_BOUNDSCHECK', '')}"
-    return _fingerprint({*SOLUTIONS.glob("*.py"), *folder.glob("*.py"), Path(__file__)}, compiler)
+    return fingerprint({*SOLUTIONS.glob("*.py"), *SCENES.glob("*.py"), *folder.glob("*.py"), Path(__file__)}, compiler)
 
 
-def _fingerprint(files, more=""):
+def fingerprint(files, more=""):
+    """Twelve digits that change with any of these files."""
     text = b"".join(str(path).encode() + path.read_bytes() for path in sorted(files))
     return hashlib.sha256(text + more.encode()).hexdigest()[:12]
 
@@ -100,7 +101,7 @@ def can_compile():
 def _world(folder, compiled, digest):
     if compiled and not can_compile():
         raise BadInput("numba", "not installed", "install it, or use --plain")
-    return World(folder, compiled, digest)
+    return CompiledWorld(folder, digest) if compiled else World(folder, digest)
 
 
 class PlainWorld:
@@ -117,75 +118,98 @@ PLAIN = PlainWorld()
 
 
 class World:
-    """A copy of solutions, subject and scenes under one package name, with their references redirected."""
+    """Copies of the subject's lessons and of the scenes, under a package name of their own, that refer to each other."""
 
-    def __init__(self, folder, compiled, digest):
-        speed = "compiled" if compiled else "plain"
-        self.name, self.folder, self.compiled = f"_{speed}_{digest}", folder, compiled
-        self.done = {}
-        for package, path in {"": [], ".solutions": [SOLUTIONS], ".subject": [folder]}.items():
-            self._package(package, path)
-        if compiled:
-            _use_cache(digest)
-
-    def _package(self, package, path):
-        if self.name + package not in sys.modules:
+    def __init__(self, folder, digest, speed="plain"):
+        self.name, self.folder, self.done = f"_{speed}_{digest}", folder, {}
+        for package, path in {"": [], ".solutions": [SOLUTIONS], ".subject": [folder], ".scenes": [SCENES]}.items():
             module = sys.modules[self.name + package] = types.ModuleType(self.name + package)
             module.__path__ = [str(p) for p in path]
 
     def lesson(self, name):
-        return self._load("subject" if self.folder != SOLUTIONS else "solutions", name)
+        return self._load("subject", name)
 
     def scene(self, name):
-        package = f"scenes_{_fingerprint([SCENES / f'{name}.py'])}"
-        self._package(f".{package}", [SCENES])
-        return self._load(package, name)
+        return self._load("scenes", name)
+
+    def solution(self, name):
+        """A lesson of the solutions, as lessons and scenes of this world see it."""
+        return PLAIN.lesson(name)
 
     def _load(self, package, name):
-        key = package, name
-        if key not in self.done:
+        if (package, name) not in self.done:
             module = importlib.import_module(f"{self.name}.{package}.{name}")
-            self.done[key] = module                                  # before its imports: lessons may not import in circles
-            self._redirect(package, module)
-            if self.compiled:
-                self._compile(module, _called_from(module, COMPILED_SCENE_ROOT) if package.startswith("scenes") else None)
-        return self.done[key]
+            self.done[package, name] = module
+            self._finish(package, module)
+        return self.done[package, name]
 
-    def _redirect(self, package, module):
-        """Replace each thing that module imported from elsewhere in the workbook by this world's own.
+    def _finish(self, package, module):
+        if package == "scenes":
+            vars(module).update(self._redirected(package, module))
 
-        Classes stay one for all worlds, or `except BadInput` would not recognise what a twin raises.
+    def _redirected(self, package, module):
+        """{name: what it means in this world} for everything that module imported from a lesson.
+
+        A scene means the subject's lessons, a lesson means the solutions'.  Classes stay one for all worlds, or
+        `except BadInput` would not recognise what a twin raises.
         """
-        for name, value in list(vars(module).items()):
+        meant = {}
+        for name, value in vars(module).items():
             home = value.__name__ if isinstance(value, types.ModuleType) else getattr(value, "__module__", None) or ""
             source, _, origin = home.removeprefix(f"{self.name}.").rpartition(".")
-            if source not in ("solutions", "subject") or (home == module.__name__ and not isinstance(value, type)):
+            if source not in ("solutions", "subject"):
                 continue
             if isinstance(value, type):
-                setattr(module, name, getattr(PLAIN.lesson(origin), value.__name__) if source == "solutions" else value)
-            elif isinstance(value, (types.ModuleType, types.FunctionType)):
-                replacement = self._load("subject", origin) if source == "subject" else self._origin(package, origin)
-                setattr(module, name, replacement if isinstance(value, types.ModuleType) else getattr(replacement, value.__name__))
-
-    def _origin(self, package, lesson):
-        """Where a scene or a lesson of this world finds that lesson: scenes use the subject's, lessons use the solutions'."""
-        if package.startswith("scenes") and (self.folder / f"{lesson}.py").is_file():
-            return self.lesson(lesson)
-        return self._load("solutions", lesson) if self.compiled else PLAIN.lesson(lesson)
-
-    def _compile(self, module, names):
-        from numba import njit
-        for name, value in list(vars(module).items()):
-            if isinstance(value, types.FunctionType) and value.__module__ == module.__name__ and (names is None or name in names):
-                twin = njit(cache=True, error_model="numpy", no_cfunc_wrapper=True)(value)
-                # numba recognises a function argument in its disk cache by this id alone: make it the same in every process
-                twin._set_uuid(str(uuid.uuid5(uuid.NAMESPACE_URL, f"{module.__name__}.{value.__qualname__}")))
-                setattr(module, name, twin)
+                meant[name] = getattr(PLAIN.lesson(origin), value.__name__) if source == "solutions" else value
+            elif home != module.__name__ and isinstance(value, (types.ModuleType, types.FunctionType)):
+                of_subject = source == "subject" or (package == "scenes" and (self.folder / f"{origin}.py").is_file())
+                there = self.lesson(origin) if of_subject else self.solution(origin)
+                meant[name] = there if isinstance(value, types.ModuleType) else getattr(there, value.__name__)
+        return meant
 
 
-def _called_from(module, root):
-    """Names of the module's own functions that root reaches, itself included."""
-    own = {name: f for name, f in vars(module).items() if isinstance(f, types.FunctionType) and f.__module__ == module.__name__}
+class CompiledWorld(World):
+    """The same, compiled: every function of a lesson; of a scene `run` and what it calls, the rest of it stays plain."""
+
+    def __init__(self, folder, digest):
+        super().__init__(folder, digest, "compiled")
+        _use_cache(digest)
+
+    def lesson(self, name):
+        return self.solution(name) if self.folder == SOLUTIONS else super().lesson(name)
+
+    def solution(self, name):
+        return self._load("solutions", name)
+
+    def _finish(self, package, module):
+        if package != "scenes":
+            vars(module).update(self._redirected(package, module))
+            own = {name for name, f in vars(module).items() if isinstance(f, types.FunctionType) and f.__module__ == module.__name__}
+            vars(module).update(_twins(module, own, vars(module)))
+            return
+        space = {**vars(module), **self._redirected(package, module)}           # what `run` and its callees see
+        vars(module).update(world(self.folder).scene(module.__name__.rpartition(".")[2]).__dict__ | {"__name__": module.__name__})
+        space |= _twins(module, _called_from(space, COMPILED_SCENE_ROOT, module.__name__), space)
+        module.run = space["run"]
+
+
+def _twins(module, names, space):
+    """{name: compiled function}, whose globals are `space`, for those functions of a module."""
+    from numba import njit
+    twins = {}
+    for name in names:
+        plain = space[name]
+        copy = types.FunctionType(plain.__code__, space, plain.__name__, plain.__defaults__, plain.__closure__)
+        copy.__module__, copy.__qualname__, copy.__doc__ = module.__name__, plain.__qualname__, plain.__doc__
+        twins[name] = njit(cache=True, error_model="numpy", no_cfunc_wrapper=True)(copy)
+        # numba recognises a function argument in its disk cache by this id alone: make it the same in every process
+        twins[name]._set_uuid(str(uuid.uuid5(uuid.NAMESPACE_URL, f"{module.__name__}.{plain.__qualname__}")))
+    return twins
+
+
+def _called_from(space, root, home):
+    """Names of the functions of module `home` that root reaches, itself included."""
+    own = {name: f for name, f in space.items() if isinstance(f, types.FunctionType) and f.__module__ == home}
     reached, waiting = set(), [root] if root in own else []
     while waiting:
         name = waiting.pop()

@@ -25,7 +25,7 @@ and may define
 from typing import Callable, NamedTuple
 
 EXACT = "exact"
-ROUND_OFF = 2.3e-16          # half the spacing of floats around 1, rounded up [-]
+ROUND_OFF = 2.3e-16          # spacing of floats around 1, rounded up [-]
 
 
 class Method(NamedTuple):
@@ -68,7 +68,7 @@ def by_order(rate, T, dt):
     """{order k: largest relative error at T} of a method whose local error is (rate dt)ᵏ⁺¹ a step.
 
     rate [1/s] is the fastest rate at which anything in the scene changes: T/dt steps add up to  rate T (rate dt)ᵏ.
-    Round-off adds up like T/dt half-spacings at worst; Newton's method stops at 1e-12.
+    Round-off adds up like T/dt spacings at worst; Newton's method stops at 1e-12.
     """
     limits = {k: rate * T * (rate * dt) ** k + 1e-12 + T / dt * ROUND_OFF for k in (1, 2, 4)}
     return {**limits, EXACT: 1e-12 + T / dt * ROUND_OFF}

@@ -210,8 +210,8 @@ def case_0(lesson):
         # seven steps: a velocity left 1e-12 wrong moves x by h 1e-12 = 3e-10 at the longest step, below NOISE
         stable = sum(growth(lesson, method, *oscillator, steps=7) <= 1.0 + NOISE for oscillator in tried)
         found.append(finding(
-            0, f"The {LABEL[method]} method is stable for every step.", f"{LABEL[method]}: runs that stay bounded [of {len(tried)}]",
-            len(tried), stable, 0.0,
+            0, f"The {LABEL[method]} method is stable for every step.",
+            f"{LABEL[method]}: runs that stay bounded [of {len(tried)}]", len(tried), stable, 0.0,
             f"From hω = 0.1 to 1000, undamped and at ζ = 0.5, {stable} of {len(tried)} runs of {LABEL[method]} stay bounded."))
     return found, edge_picture("Where each method is stable", measured,
                                "Below its curve a method is stable, above it the motion grows; implicit Euler and implicit "
@@ -231,10 +231,11 @@ def case_1(lesson):
                 f"At half the critical damping the run turns from decay to growth at hω = {measured[0.5]:.5f}."),
         finding(1, "For ζ > 1 it is stable up to hω = 2(ζ − √(ζ² − 1)).", "edge hω at ζ = 1.5 [-]", edges[1.5], measured[1.5],
                 EDGE * edges[1.5], f"At one and a half times the critical damping it turns at hω = {measured[1.5]:.5f}."),
-        finding(1, "The two formulas hold at every damping ratio.", "largest relative departure of the edge at 7 damping ratios [-]",
-                0.0, worst, EDGE, f"From ζ = 0.1 to 3 the measured edge departs from theory by at most {worst:.1e}."),
+        finding(1, "The two formulas hold at every damping ratio.",
+                "largest relative departure of the edge at 7 damping ratios [-]", 0.0, worst, EDGE,
+                f"From ζ = 0.1 to 3 the measured edge departs from theory by at most {worst:.1e}."),
         finding(1, "The edge flips within ±0.1 %.", "edges that flip [of 7]", len(edges), flipped, 0.0,
-                f"At {flipped} of {len(edges)} damping ratios a run stays bounded 0.1 % below the bound and grows 0.1 % above it."),
+                f"At {flipped} of {len(edges)} damping ratios a run stays bounded 0.1 % below the bound, and grows 0.1 % above."),
     ], edge_picture("Explicit Euler: the longest stable step", {step: measured},
                     "Damping opens explicit Euler's stability up to hω = 2 at ζ = 1; more damping closes it again, because the "
                     "faster of the two decays becomes too fast for the step.")
@@ -248,16 +249,18 @@ def case_2(lesson):
     flipped, worst = flips(lesson, step, edges), departure(measured, edges)
     return [
         finding(2, "Without damping symplectic Euler is stable up to hω = 2.", "edge hω at ζ = 0 [-]",
-                2.0, measured[0.0], 2.0 * EDGE, f"An undamped oscillator stays bounded up to hω = {measured[0.0]:.5f}: about a third of a period a step."),
+                2.0, measured[0.0], 2.0 * EDGE,
+                f"An undamped oscillator stays bounded up to hω = {measured[0.0]:.5f}: about a third of a period a step."),
         finding(2, "At critical damping it is stable up to hω = 2(√2 − 1).", "edge hω at ζ = 1 [-]",
-                edges[1.0], measured[1.0], EDGE, f"Critical damping shortens the longest stable step to hω = {measured[1.0]:.5f}."),
+                edges[1.0], measured[1.0], EDGE,
+                f"Critical damping shortens the longest stable step to hω = {measured[1.0]:.5f}."),
         finding(2, "The formula holds at every damping ratio.", "largest relative departure of the edge at 7 damping ratios [-]",
                 0.0, worst, EDGE, f"From ζ = 0 to 3 the measured edge departs from theory by at most {worst:.1e}."),
         finding(2, "The edge flips within ±0.1 %.", "edges that flip [of 7]", len(edges), flipped, 0.0,
-                f"At {flipped} of {len(edges)} damping ratios a run stays bounded 0.1 % below the bound and grows 0.1 % above it."),
+                f"At {flipped} of {len(edges)} damping ratios a run stays bounded 0.1 % below the bound, and grows 0.1 % above."),
     ], edge_picture("Symplectic Euler: the longest stable step", {step: measured, "euler_step": beside},
-                    "Symplectic Euler is stable where explicit Euler never is, without damping; but damping, which it evaluates at "
-                    "the beginning of the step, costs it stability from the start.")
+                    "Symplectic Euler is stable where explicit Euler never is, without damping; but damping, which it evaluates "
+                    "at the beginning of the step, costs it stability from the start.")
 
 
 def case_3(lesson):
@@ -296,9 +299,10 @@ def case_4(lesson):
                 np.sqrt(8.0), imaginary_edge, EDGE * np.sqrt(8.0),
                 f"The undamped run turns from decay to growth at hω = {imaginary_edge:.5f}."),
         finding(4, "On a pure decay it is stable up to hλ = 2.785294.", "edge hλ on the real axis [-]",
-                real, real_edge, EDGE * real, f"The over-damped run turns at hλ = {real_edge:.5f}, λ the faster of its two decay rates."),
+                real, real_edge, EDGE * real,
+                f"The over-damped run turns at hλ = {real_edge:.5f}, λ the faster of its two decay rates."),
         finding(4, "Both edges flip within ±0.1 %.", "edges that flip [of 2]", 2, flipped, 0.0,
-                f"At {flipped} of 2 edges a run stays bounded 0.1 % below the bound and grows 0.1 % above it."),
+                f"At {flipped} of 2 edges a run stays bounded 0.1 % below the bound, and grows 0.1 % above."),
         # y⁸/576: the only other term of |R|²
         finding(4, "Below its edge it damps: an undamped oscillator loses (hω)⁶/72 of its energy a step.",
                 f"energy lost a step at hω = {y} [-]", y**6 / 72.0, lost, y**8 / 576.0 + 2.0 * GROWTH,
@@ -365,7 +369,8 @@ def case_6(lesson):
         drawn += [series(f"{name}, theory", fine, 100.0 * (law(fine) - 1.0), LINE),
                   series(f"{name}, measured", dots, [100.0 * (frequency(y) - 1.0) for y in dots], DOTS)]
     return found, Picture("Phase: too fast and too slow", "hω [-]", "error of the frequency [%]", drawn,
-                          "At small steps Verlet runs ahead by (hω)²/24 and implicit midpoint lags by twice as much; neither loses energy.")
+                          "At small steps Verlet runs ahead by (hω)²/24 and implicit midpoint lags by twice as much; "
+                          "neither loses energy.")
 
 
 class StiffPair(NamedTuple):
@@ -391,7 +396,7 @@ def case_7(lesson):
     round-off and the matrix singular; at 0.1 ms the spacing of floats in x, 4.4e-16 m, is 4e-12 m/s: too coarse to stop at 1e-12.
     """
     p, dt, steps = StiffPair(), 0.002, 500
-    omega, amplitude = np.sqrt(p.k1 / (2.0 * p.m)), 0.5
+    omega, stiff, amplitude = np.sqrt(p.k1 / (2.0 * p.m)), np.sqrt(2.0 * p.k2 / p.m), 0.5
     newton = NEWTON * omega * amplitude * steps  # [m/s]: a stop at 1e-12 of the fastest velocity, 9.7 m/s, at every step
     y = omega * dt
     laws = {"implicit_euler_step": (np.arctan(y), 1.0 / np.sqrt(1.0 + y * y)),
@@ -406,14 +411,15 @@ def case_7(lesson):
         loose = 2.0 * dt * (newton if shrink == 1.0 else newton / steps) + np.spacing(2.0)
         found += [
             finding(7, "The soft mode swings at the frequency of the method, as if the stiff spring were a rod.",
-                    f"{LABEL[step]}: frequency of the soft mode [rad/s]", angle / dt, turned, newton / (omega * size) / (steps * dt),
-                    f"At hω₂ = {dt * np.sqrt(2.0 * p.k2 / p.m):.1e} {LABEL[step]} swings at {turned:.6f} rad/s; the truth is {omega:.6f}."),
+                    f"{LABEL[step]}: frequency of the soft mode [rad/s]",
+                    angle / dt, turned, newton / (omega * size) / (steps * dt),
+                    f"With hω₂ = {dt * stiff:.1e} {LABEL[step]} swings at {turned:.6f} rad/s; the truth is {omega:.6f}."),
             finding(7, "Its amplitude is what the method makes of an oscillator without any stiff spring.",
                     f"{LABEL[step]}: amplitude of the soft mode after 1 s [m]", size, left, newton / omega,
                     f"After 1 s {LABEL[step]} has {left:.6f} m of {amplitude} m left."),
             finding(7, "The stiff spring does not blow up: it stays at its length.",
                     f"{LABEL[step]}: largest stretch of the stiff spring [m]", 0.0, stretch, loose,
-                    f"Under {LABEL[step]} the stiff spring stays at its length within {stretch:.1e} m; floats are 4.4e-16 m apart there."),
+                    f"{LABEL[step].capitalize()} keeps the stiff spring's length within {stretch:.1e} m; floats are 4.4e-16 m apart."),
         ]
         drawn.append(series(LABEL[step], ts, 1.0 + middle, DOTS))
     x, v = np.array([0.5, 1.5]), np.zeros(2)
@@ -429,7 +435,7 @@ def case_7(lesson):
 
 
 def swing(lesson, step, p, dt, steps):
-    """Times, mean displacement and velocity of the pair, and the stiff spring's largest stretch; NaN from where the run breaks off."""
+    """Times, mean displacement and velocity of the pair, the stiff spring's largest stretch; NaN from where the run breaks off."""
     x, v = np.array([0.5, 1.5]), np.zeros(2)
     xs, vs = np.full((steps + 1, 2), np.nan), np.full((steps + 1, 2), np.nan)
     xs[0], vs[0] = x, v
@@ -494,19 +500,20 @@ def case_8(lesson):
                          len(ts) * 16 * 1.1e-16, f"After {len(ts):,} steps the sum departs from 1 by {abs(total - 1.0):.0e}."))
     refused = refuse(EXPLICIT, lambda name: react(lesson, name, ratio))
     found.append(finding(8, "Every explicit method must refuse such steps.", "explicit methods that raise Diverged [of 6]",
-                         len(EXPLICIT), refused, 0.0, f"{refused} of {len(EXPLICIT)} explicit methods end in an error instead of a number."))
+                         len(EXPLICIT), refused, 0.0,
+                         f"{refused} of {len(EXPLICIT)} explicit methods end in an error instead of a number."))
     longest = 2.0 / fastest_rate(PUBLISHED)
     step = bisect(lambda dt: leaves(lesson, dt), 1e-5, 1e-3)
     found.append(finding(8, "Explicit Euler must not step further than 2/|λ|, even at the end, where nothing seems to move.",
                          "longest step of explicit Euler at 10¹¹ s [s]", longest, step, EDGE * longest,
                          f"A disturbance of y₂ grows at steps above {step:.5e} s: {END / step:.1e} steps to 10¹¹ s."))
     late = ts > 1e3
-    drawn = [series(f"{name}, implicit Euler", np.log10(ts), np.log10(column), LINE) for name, column in zip(("y₁", "y₂", "y₃"), ys.T)]
+    drawn = [series(f"{name}, implicit Euler", np.log10(ts), np.log10(y), LINE) for name, y in zip(("y₁", "y₂", "y₃"), ys.T)]
     drawn += [series("published", [np.log10(END)] * 3, np.log10(PUBLISHED), DOTS),
               series("1/ct", np.log10(ts[late]), -np.log10(4.8e-4 * ts[late]), LINE)]
     return found, Picture("Robertson's reaction", "log₁₀ of time [s]", "log₁₀ of concentration [-]", drawn,
                           f"Sixteen decades of time in {len(ts):,} steps, each {100.0 * (ratio - 1.0):.1f} % longer than the one "
-                          "before: the lines of implicit Euler end that much above the published y₁ and y₂, and late y₁ follows 1/ct.")
+                          "before: implicit Euler ends that much above the published y₁ and y₂; late y₁ follows 1/ct.")
 
 
 def reached(lesson, ratio):
@@ -526,7 +533,7 @@ def fastest_rate(y):
 def leaves(lesson, dt):
     """Whether 1,000 steps of explicit Euler carry a y₂ that is half too large away from its published value.
 
-    y₂ returns to a value 4·10⁻⁶ of the disturbance off, since y₁ has taken up the rest: over 1,000 steps that shifts the edge by 2e-9.
+    y₂ returns to a value 4·10⁻⁶ of the disturbance off: y₁ has taken up the rest.  Over 1,000 steps that shifts the edge by 2e-9.
     """
     disturbed = np.array([1.0, 1.5, 1.0]) * PUBLISHED / UNIT
     try:

@@ -191,7 +191,7 @@ def implicit_euler(time=1.0, place=1.0, limit=30, corrections=30):
             w = w - delta
             if np.max(np.abs(delta)) <= 1e-12 * max(1.0, np.max(np.abs(w))) or k + 1 == corrections:
                 return x + dt * w, w
-        raise Diverged("Newton's method did not converge", dt)
+        raise Diverged("Newton's method did not converge at dt [s]", dt, "take a smaller step")
     return implicit_euler_step
 
 
@@ -212,7 +212,7 @@ def implicit_euler_step(acceleration, t, x, v, dt, p):
     found = root(lambda w: w - v.ravel() - dt * acceleration(t + dt, x + dt * w.reshape(v.shape), w.reshape(v.shape), p).ravel(),
                  v.ravel(), tol=1e-13)
     if np.max(np.abs(found.fun)) > 1e-10:
-        raise Diverged("Newton's method did not converge", dt)
+        raise Diverged("Newton's method did not converge at dt [s]", dt, "take a smaller step")
     w = found.x.reshape(v.shape)
     return x + dt * w, w
 

@@ -367,7 +367,7 @@ def descent(conjugate=True, tolerance=1e-10, rounds=10, start=0.0, silent=False,
             p = r - (np.sum(r * Ap) / np.sum(p * Ap) * p if conjugate else 0.0)
         if silent:
             return y
-        raise Diverged("conjugate gradients did not converge", np.nan)
+        raise Diverged("conjugate gradients did not converge: |r|²", np.nan, "the matrix must be positive definite")
     return conjugate_gradients
 
 
@@ -392,7 +392,7 @@ def conjugate_gradients(apply, A, right):
         y += alpha * p
         r -= alpha * apply(p, A)
         p = r + squared / np.sum(r * r) * p
-    raise Diverged("conjugate gradients did not converge", np.nan)
+    raise Diverged("conjugate gradients did not converge: |r|²", np.nan, "the matrix must be positive definite")
 
 
 @wrong("2.12", "residuals in place of conjugate directions: r + p")
@@ -404,7 +404,7 @@ def conjugate_gradients(apply, A, right):
             return y
         alpha = squared / np.sum(p * apply(p, A))
         y, r, p = y + alpha * p, r - alpha * apply(p, A), r + p
-    raise Diverged("conjugate gradients did not converge", np.nan)
+    raise Diverged("conjugate gradients did not converge: |r|²", np.nan, "the matrix must be positive definite")
 
 
 # 2.13 -----------------------------------------------------------------------------------------------------------

@@ -54,14 +54,16 @@ def observe(state, p):
 def eccentric_anomaly(M, e):
     """E [rad] from Kepler's equation E − e sin E = M, by Newton's method to round-off.
 
-    It starts beyond the root within the same half turn; there the left side bends so that no correction overshoots.
+    It starts at the end of the half turn that M is in: there the left side bends so that no correction overshoots.  So they
+    all have one sign, until round-off takes over.
     """
-    E = M + e * np.sign(np.sin(M))
-    for _ in range(50):                                                    # fewer than ten, even for e = 0.99
-        before, E = E, E - (E - e * np.sin(E) - M) / (1.0 - e * np.cos(E))
-        if abs(E - before) <= 4.0 * ROUND_OFF * abs(E):
-            break
-    return E
+    side = np.sign(np.sin(M))
+    E = np.pi * (np.ceil(M / np.pi) if side > 0.0 else np.floor(M / np.pi))
+    while True:
+        nearer = E - (E - e * np.sin(E) - M) / (1.0 - e * np.cos(E))
+        if not side * (E - nearer) > 0.0:                                  # also where M is not a number
+            return E
+        E = nearer
 
 
 def orbit(x, v, mu, t):
@@ -130,7 +132,8 @@ def limits_at(p, T, dt):
     """{order or engine label: largest relative error at T}."""
     smooth = {k: drift(p, T, dt, k) for k in (2, 4)}
     old, new = late_start(p, T, dt, -1.0) + smooth[2], late_start(p, T, dt, 1.0) + smooth[2]
-    return {**smooth, 1: new, "pymunk": old, "pymunk, leapfrog start": smooth[2], "pybullet": new, "pybullet, leapfrog start": smooth[2]}
+    return {**smooth, 1: new, "pymunk": old, "pymunk, leapfrog start": smooth[2],
+            "pybullet": new, "pybullet, leapfrog start": smooth[2]}
 
 
 def tolerance(p, dt):

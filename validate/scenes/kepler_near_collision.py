@@ -32,4 +32,5 @@ def tolerance(p, dt):
 
 
 NEEDS = ("one point in the plane", "one step function")
-LEAVES_OUT = {"the third dimension": in_space, "steps that adapt to the distance": "beyond this workbook", "rotation": "lesson 5 builds it"}
+LEAVES_OUT = {"the third dimension": in_space, "steps that adapt to the distance": "beyond this workbook",
+              "rotation": "lesson 5 builds it"}

@@ -126,8 +126,10 @@ def pybullet_make(p, dt, default=False, own=False):
 
 ENGINES = (
     Engine("pymunk", pymunk_make, 1, "force applied each step"),
-    Engine("pymunk, own damping", lambda p, dt: pymunk_make(p, dt, own=True), 1, "space.damping = e^(−k): what is left after a second"),
-    Engine("pybullet, default", lambda p, dt: pybullet_make(p, dt, default=True), 1, "createMultiBody as it comes; force applied each step"),
+    Engine("pymunk, own damping", lambda p, dt: pymunk_make(p, dt, own=True), 1,
+           "space.damping = e^(−k): what is left after a second"),
+    Engine("pybullet, default", lambda p, dt: pybullet_make(p, dt, default=True), 1,
+           "createMultiBody as it comes; force applied each step"),
     Engine("pybullet", pybullet_make, 1, "useMaximalCoordinates=1, no damping; force applied each step"),
     Engine("pybullet, own damping", lambda p, dt: pybullet_make(p, dt, own=True), 1,
            "useMaximalCoordinates=1, linearDamping = 1 − e^(−k): what is lost in a second"),

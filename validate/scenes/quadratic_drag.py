@@ -120,7 +120,8 @@ def pybullet_make(p, dt, default=False):
 
 ENGINES = (
     Engine("pymunk", pymunk_make, 1, "force applied each step"),
-    Engine("pybullet, default", lambda p, dt: pybullet_make(p, dt, default=True), 1, "createMultiBody as it comes; force applied each step"),
+    Engine("pybullet, default", lambda p, dt: pybullet_make(p, dt, default=True), 1,
+           "createMultiBody as it comes; force applied each step"),
     Engine("pybullet", pybullet_make, 1, "useMaximalCoordinates=1, no damping; force applied each step"),
 )
 WHY = {"pybullet, default": ("its reduced-coordinate bodies carry a hidden damping −0.04 v (1 + |v|)", hidden_damping)}
@@ -136,4 +137,5 @@ def in_space(p):
 
 
 NEEDS = ("one coordinate", "one step function")
-LEAVES_OUT = {"the second and third dimension": in_space, "rotation": "lesson 5 builds it", "detection of the ground": "lesson 6 builds it"}
+LEAVES_OUT = {"the second and third dimension": in_space, "rotation": "lesson 5 builds it",
+              "detection of the ground": "lesson 6 builds it"}

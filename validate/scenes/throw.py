@@ -1,4 +1,4 @@
-"""A stone thrown from a cliff, without air: the parabola that half of the methods trace exactly, and the others miss by ½ g h t."""
+"""A stone thrown from a cliff, without air: most methods trace its parabola exactly, three miss it by ½ g h t."""
 
 from typing import NamedTuple
 
@@ -72,7 +72,7 @@ def hidden_damping(p, t):
 
 
 def tolerance(p, dt):
-    """The bias of order 1, exactly: moving with the old velocity adds up to Σ dt v(n dt) = x(T) + ½ g dt T ẑ, with the new to −½ g dt T ẑ.
+    """The bias of order 1, exactly: moved with the old velocity it arrives at Σ dt v(n dt) = x(T) + ½ g dt T ẑ, with the new at − ½.
 
     pymunk moves with the old velocity and errs upwards, pybullet with the new and errs downwards: their mean is exact.  Half a
     step of gravity in the first velocity takes the bias away.  With damping the fastest rate is that of 0.04 v (1 + |v|) at the
@@ -94,7 +94,8 @@ def pymunk_make(p, dt, ahead=0.0):
     heading, speed = np.arctan2(p.vy, p.vx), np.hypot(p.vx, p.vy)
     body.velocity = (speed, p.vz - ahead * dt * p.g)
     space.add(body)
-    return pymunk_world(space, dt, lambda: np.array([np.cos(heading) * body.position.x, np.sin(heading) * body.position.x, body.position.y]))
+    ahead_x, ahead_y = np.cos(heading), np.sin(heading)
+    return pymunk_world(space, dt, lambda: np.array([ahead_x * body.position.x, ahead_y * body.position.x, body.position.y]))
 
 
 def pybullet_make(p, dt, ahead=0.0, default=False):
