@@ -5,7 +5,8 @@ import json
 import pytest
 
 from validate import __main__ as cli
-from validate import binding, engines, measure, report, stability
+from validate import binding, engines, measure, report
+from validate.report import summary
 
 
 def run(capsys, *arguments):
@@ -69,9 +70,9 @@ def pretended(monkeypatch):
 
     monkeypatch.setattr(measure, "errors", errors)
     monkeypatch.setattr(measure, "times", times)
-    monkeypatch.setattr(stability, "cases", lambda of, lessons: [])
+    monkeypatch.setattr(measure, "stability_cases", lambda lessons, plan: [])
     monkeypatch.setattr(report, "write", lambda out, *_: out / "index.html")
-    monkeypatch.setattr(report.summary, "show", lambda *_: 0)
+    monkeypatch.setattr(summary, "show", lambda *_: 0)
     return calls
 
 

@@ -142,7 +142,6 @@ def run(names, plan, jobs, out):
         with Progress(TextColumn("{task.description:22}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), console=console) as bars:
             measure_errors(store, names, plan, jobs, bars)
             measure_times(store, names, plan, bars)
-            measure_stability(store, names, plan, bars)
             results = store.results(names)
             front = report.write(out, results, store.stability(), plan, bars)
     except KeyboardInterrupt:
@@ -182,7 +181,7 @@ class Store:
         return [{**self.get("errors", name), "times": self.get("times", name)} for name in names]
 
     def stability(self):
-        return self.get("cases", "stability") if self.has("cases", "stability") else []
+        return self.get("cases", "stability")
 
     def finish(self):
         self.mark.unlink(missing_ok=True)
@@ -203,20 +202,22 @@ def code_digest(of):
 
 
 def measure_errors(store, names, plan, jobs, bars):
-    """Errors of every scene, several processes at a time: compiling is most of it."""
+    """Errors of every scene and the stability cases, several processes at a time: compiling is most of it."""
     from . import measure
-    todo = [n for n in names if not store.has("errors", n)]
-    bar = bars.add_task("errors", total=len(names), completed=len(names) - len(todo))
+    lessons = sorted({binding.bind_scene(name).LESSON for name in names})
+    tasks = {("cases", "stability"): (measure.stability_cases, lessons, plan), **{("errors", n): (measure.errors, n, plan) for n in names}}
+    todo = {key: call for key, call in tasks.items() if not store.has(*key)}
+    bar = bars.add_task("errors and stability", total=len(tasks), completed=len(tasks) - len(todo))
     if jobs == 1 or len(todo) <= 1:
-        for name in todo:
-            store.put("errors", name, measure.errors(name, plan))
+        for key, (function, *arguments) in todo.items():
+            store.put(*key, function(*arguments))
             bars.advance(bar)
         return
     pool = ProcessPoolExecutor(min(jobs, len(todo)), mp_context=get_context("spawn"))
     try:
-        waiting = {pool.submit(measure.errors, name, plan): name for name in todo}
+        waiting = {pool.submit(*call): key for key, call in todo.items()}
         for done in as_completed(waiting):
-            store.put("errors", waiting[done], done.result())
+            store.put(*waiting[done], done.result())
             bars.advance(bar)
     except BrokenProcessPool:
         raise BadInput("a measuring process", "gone", "the machine may be short of memory: try --jobs 1") from None
@@ -231,18 +232,6 @@ def measure_times(store, names, plan, bars):
     bar = bars.add_task("run times", total=len(names), completed=len(names) - len(todo))
     for name in todo:
         store.put("times", name, measure.times(name, plan, store.get("errors", name)))
-        bars.advance(bar)
-
-
-def measure_stability(store, names, plan, bars):
-    """The stability cases of the lessons that these scenes belong to."""
-    from . import measure, stability
-    bar = bars.add_task("stability", total=1, completed=int(store.has("cases", "stability")))
-    if not store.has("cases", "stability"):
-        lessons = {binding.bind_scene(name).LESSON for name in names}
-        found = stability.cases(plan.of, lessons)
-        store.put("cases", "stability", measure.jsonable([case._asdict() | {
-            "findings": [f._asdict() for f in case.findings], "picture": case.picture and case.picture._asdict()} for case in found]))
         bars.advance(bar)
 
 

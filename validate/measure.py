@@ -17,7 +17,7 @@ import numpy as np
 from solutions.checks import BadInput
 from solutions.integrators import observed_order
 
-from . import binding, engines
+from . import binding, engines, stability
 from .scene import EXACT, ROUND_OFF
 
 RECORDED = Path(__file__).resolve().parent / "recorded"
@@ -248,6 +248,12 @@ def engine_frames(scene, engine, p, per_frame):
     finally:
         world.close()
     return frames
+
+
+def stability_cases(lessons, plan):
+    """The stability cases of these lessons, as data."""
+    found = stability.cases(lessons, plan.of, "compiled" in plan.speeds)
+    return jsonable([{**case._asdict(), "findings": [f._asdict() for f in case.findings], "picture": case.picture._asdict()} for case in found])
 
 
 # ---------------------------------------------------------------------------------------------- times

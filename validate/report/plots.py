@@ -77,11 +77,8 @@ def stability(path, case):
     figure, axes = plt.subplots()
     for k, (label, xs, ys, mark) in enumerate(picture["series"]):
         colour = LOOKS[label.split(",")[0]][0] if label.split(",")[0] in LOOKS else list(LOOKS.values())[k % len(LOOKS)][0]
-        axes.plot(xs, ys, mark, color=colour, label=label, ms=5, lw=1.4)
+        axes.plot(xs, ys, {"line": "-", "dots": "o"}[mark], color=colour, label=label, ms=5, lw=1.4)
     axes.set(xlabel=picture["x_label"], ylabel=picture["y_label"], title=picture["title"])
-    for axis, scale in (("x", picture.get("x_scale")), ("y", picture.get("y_scale"))):
-        if scale:
-            getattr(axes, f"set_{axis}scale")(scale)
     _finish(figure, axes, path, None)
 
 
