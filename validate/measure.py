@@ -39,8 +39,8 @@ class Plan(NamedTuple):
     most_steps: int | None = None            # a shorter sweep, for a notebook
 
     def longest(self):
-        """A single timed run may take this long [s], ours and an engine's: longer ones are left to --full."""
-        return (0.004, 0.03) if self.quick else (5.0, 5.0)
+        """{speed: how long a single timed run may take [s]}; longer ones are left to --full, and there out."""
+        return {"plain": 0.004, "compiled": 0.01, "engine": 0.025} if self.quick else dict.fromkeys(("plain", "compiled", "engine"), 0.5)
 
 
 # ---------------------------------------------------------------------------------------------- running a scene
@@ -128,7 +128,7 @@ def errors(name, plan, tick=lambda: None):
     for case, p in cases_of(scene, plan).items():
         truth = np.array(scene.truth(p, scene.T), dtype=float)
         ours = []
-        for method in scene.METHODS:
+        for method in methods_of(scene, plan):
             order = getattr(scene, "ORDERS", {}).get(method.function, method.order)
             step = getattr(binding.world(plan.of, fast is not scene).lesson(method.lesson), method.function)
             runs = [(n, final(fast, step, p, n)) for n in sweep(scene, plan)]
@@ -145,6 +145,12 @@ def errors(name, plan, tick=lambda: None):
         "cases": cases, "parity": parity(scene, fast, plan, first), "picture": picture(scene, fast, plan, first, agreeing),
         "law": inspect.getdoc(getattr(scene, "acceleration", None)) or "" if hasattr(scene, "acceleration") else "",
     })
+
+
+def methods_of(scene, plan):
+    """The methods to run; those that the scene finds too slow for a quick validation only in a full one."""
+    slow = getattr(scene, "FULL_ONLY", ()) if plan.quick else ()
+    return tuple(m for m in scene.METHODS if m.function not in slow)
 
 
 def sweep(scene, plan=Plan()):
@@ -166,7 +172,7 @@ def engine_curve(name, scene, case, engine, p, truth, plan):
     product = engine.label.split(",")[0]
     if product in plan.live:
         source = f"live, {product} {engines.installed(product)}"
-        runs = [(n, engine_final(scene, engine, p, n)) for n in sweep(scene, plan)]
+        runs = [(n, engine_final(scene, engine, p, n)) for n in sweep(scene, plan) if n <= (engine.most_steps or n)]
     else:
         record = recorded(name, case, engine.label)
         if record is None:
@@ -201,7 +207,7 @@ def parity(scene, fast, plan, p):
     if fast is scene or "plain" not in plan.speeds:
         return None
     worst = 0.0
-    for method in scene.METHODS:
+    for method in methods_of(scene, plan):
         plain, twin = (getattr(binding.world(plan.of, c).lesson(method.lesson), method.function) for c in (False, True))
         a, b = final(scene, plain, p, scene.STEPS[0])[0], final(fast, twin, p, scene.STEPS[0])[0]
         if a is not None and b is not None:
@@ -259,7 +265,7 @@ def stability_cases(lessons, plan):
 # ---------------------------------------------------------------------------------------------- times
 
 class Timed(NamedTuple):
-    """Something with a stepping loop: prepare() gives a function to time, and what to do after."""
+    """Something with a stepping loop: prepare(steps) gives a function to time, and what to do after."""
     label: str
     speed: str               # plain, compiled, engine
     steps: int
@@ -270,26 +276,31 @@ def times(name, plan, result, tick=lambda: None):
     """Run times of the first case, joined with the errors already found: [{label, speed, steps, error, seconds, low, high}]."""
     scene = binding.bind_scene(name, plan.of)
     case, p = next(iter(cases_of(scene, plan).items()))
-    found = {c["label"]: {r["steps"]: r for r in c["rows"]} for c in result["cases"][case]["ours"] + result["cases"][case]["engines"]}
-    items = [Timed(m.label, speed, n, _ours(name, plan, m, speed, p, n))
-             for m in scene.METHODS for speed in plan.speeds for n in scene.STEPS if n in found[m.label]]
-    items += [Timed(e.label, "engine", n, _engine(scene, e, p, n)) for e in scene.ENGINES
-              if e.label.split(",")[0] in plan.live for n in scene.STEPS if n in found[e.label]]
-    items = [item for item in items if found[item.label][item.steps]["error"] is not None]
+    found = {c["label"]: {r["steps"]: r for r in c["rows"] if r["error"] is not None and r["steps"] in scene.STEPS}
+             for c in result["cases"][case]["ours"] + result["cases"][case]["engines"]}
+    items = [Timed(m.label, speed, n, prepare) for m in methods_of(scene, plan) for speed in plan.speeds
+             for prepare in [_ours(name, plan, m, speed, p)] for n in found[m.label]]
+    items += [Timed(e.label, "engine", n, _engine(scene, e, p)) for e in scene.ENGINES if e.label.split(",")[0] in plan.live
+              for n in found[e.label]]
     timed = [(i.label, i.speed, i.steps, t) for i, t in interleaved(items, plan.longest(), tick)]
     timed += [(e.label, "recorded", row["steps"], row) for e in scene.ENGINES if e.label.split(",")[0] not in plan.live
               for row in (recorded(name, case, e.label) or {}).get("seconds") or []]
     rows = [{**t, "label": label, "speed": speed, "steps": n, "error": found[label][n]["error"]} for label, speed, n, t in timed
-            if n in found[label] and found[label][n]["error"] is not None]
-    return jsonable({"rows": rows, "baseline": baseline(plan), "left_out": left_out(name, plan, p, usable(result)),
-                     "reach": reach(rows), "advantage": advantage(rows)})
+            if n in found[label]]
+    untimed = dict.fromkeys(f"{i.label} ({i.speed})" for i in items if (i.label, i.speed) not in {(r["label"], r["speed"]) for r in rows})
+    return jsonable({"rows": rows, "untimed": list(untimed), "baseline": baseline(plan), "reach": reach(rows), "advantage": advantage(rows),
+                     "left_out": left_out(name, plan, p, usable(result))})
 
 
-def _ours(name, plan, method, speed, p, steps):
-    def prepare():
-        scene = binding.bind_scene(name, plan.of, compiled=speed == "compiled")
-        step = getattr(binding.world(plan.of, speed == "compiled").lesson(method.lesson), method.function)
-        arguments = step, scene.start(p), p, scene.T / steps, steps
+def _ours(name, plan, method, speed, p):
+    scene = binding.bind_scene(name, plan.of, compiled=speed == "compiled")
+    step = getattr(binding.world(plan.of, speed == "compiled").lesson(method.lesson), method.function)
+    return _loop(scene, step, p, scene.start(p))
+
+
+def _loop(scene, step, p, state):
+    def prepare(steps):
+        arguments = step, state, p, scene.T / steps, steps
         run = entry(scene.run, arguments)
         return lambda: run(*arguments), lambda: None
     return prepare
@@ -300,12 +311,14 @@ def entry(run, arguments):
     if not hasattr(run, "get_overload"):
         return run
     from numba import typeof
-    run(*arguments)
-    return run.get_overload(tuple(map(typeof, arguments)))
+    types = tuple(map(typeof, arguments))
+    if types not in run.overloads:
+        run(*arguments[:-1], 1)
+    return run.get_overload(types)
 
 
-def _engine(scene, engine, p, steps):
-    def prepare():
+def _engine(scene, engine, p):
+    def prepare(steps):
         world = engine.make(p, scene.T / steps)
 
         def loop():
@@ -317,19 +330,19 @@ def _engine(scene, engine, p, steps):
 
 
 def interleaved(items, longest, tick):
-    """[(item, {seconds, low, high})]: medians of interleaved repeats.  What would take longer than `longest` is left out."""
+    """[(item, {seconds, low, high})]: medians of interleaved repeats.  What would take longer than `longest[speed]` is left out."""
     chosen = []
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
-        slow = set()
-        for item in items:                                          # warm-ups, coarse to fine: they also say how long it takes
-            if (item.label, item.speed) in slow:
+        pace = {}                                                   # {(label, speed): seconds a step}, as far as it is known
+        for item in items:
+            key = item.label, item.speed
+            if key not in pace:
+                pace[key] = min(_clock(item._replace(steps=2), 1) for _ in range(2)) / 2
+            if pace[key] * item.steps > longest[item.speed]:
                 continue
             seconds = min(_clock(item, 1) for _ in range(WARM_UPS))
-            if seconds > longest[item.speed == "engine"]:
-                slow.add((item.label, item.speed))
-                if any(i.label == item.label and i.speed == item.speed for i, _ in chosen):
-                    continue                                        # the coarser steps of this method are there
+            pace[key] = seconds / item.steps
             chosen.append((item, 1 if item.speed == "engine" else max(1, int(SHORTEST / max(seconds, 1e-9)))))
         samples = [[] for _ in chosen]
         enabled = gc.isenabled()
@@ -348,7 +361,7 @@ def interleaved(items, longest, tick):
 
 def _clock(item, inner):
     """Seconds of one stepping loop."""
-    loop, close = item.prepare()
+    loop, close = item.prepare(item.steps)
     try:
         begin = time.perf_counter()
         for _ in range(inner):
@@ -400,23 +413,13 @@ def left_out(name, plan, p, usable):
         if isinstance(extra, str):
             rows.append({"what": what, "saves": None, "same": None, "note": extra})
             continue
-        items = [Timed("without", speed, steps, _loop(scene, step, p, scene.start(p), steps)),
-                 Timed("with", speed, steps, _loop(scene, step, *reversed(extra(p)), steps))]
-        (_, lean), (_, full) = interleaved(items, (np.inf, np.inf), lambda: None)
         state, p_full = extra(p)
+        items = [Timed("without", speed, steps, _loop(scene, step, p, scene.start(p))), Timed("with", speed, steps, _loop(scene, step, p_full, state))]
+        (_, lean), (_, full) = interleaved(items, {speed: np.inf}, lambda: None)
         a = scene.observe(scene.run(step, scene.start(p), p, scene.T / steps, steps), p)
         b = scene.observe(scene.run(step, state, p_full, scene.T / steps, steps), p)
         rows.append({"what": what, "saves": full["seconds"] / lean["seconds"], "same": relative(a, b) < 1e-9, "note": ""})
     return rows
-
-
-def _loop(scene, step, p, state, steps):
-    arguments = step, state, p, scene.T / steps, steps
-
-    def prepare():
-        run = entry(scene.run, arguments)
-        return lambda: run(*arguments), lambda: None
-    return prepare
 
 
 # ---------------------------------------------------------------------------------------------- reading the diagram
@@ -451,7 +454,7 @@ def advantage(rows):
     for r in rows:
         if r["speed"] in ("plain", "compiled"):
             ours.setdefault((r["label"], r["speed"]), []).append((r["error"], r["seconds"]))
-    for label in dict.fromkeys(r["label"] for r in rows if r["speed"] == "engine"):
+    for label in dict.fromkeys(r["label"] for r in rows if r["speed"] == "engine" and r["error"] < ASYMPTOTIC):
         best = min((r for r in rows if r["label"] == label), key=lambda r: r["error"])
         reached = [(t, name, speed) for (name, speed), points in ours.items() if (t := time_to(sorted(points), best["error"]))]
         quickest = min(reached, default=(None, "", ""))

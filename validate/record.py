@@ -12,10 +12,10 @@ def record(name):
     witnesses = [e for e in scene.ENGINES if e.label.startswith("pybullet")]
     if not witnesses:
         return None
-    runs = {case: {e.label: [_reading(scene, e, p, n) for n in measure.sweep(scene)] for e in witnesses} for case, p in scene.CASES.items()}
+    runs = {case: {e.label: [_reading(scene, e, p, n) for n in measure.sweep(scene) if n <= (e.most_steps or n)] for e in witnesses} for case, p in scene.CASES.items()}
     p = next(iter(scene.CASES.values()))
-    items = [measure.Timed(e.label, "engine", n, measure._engine(scene, e, p, n)) for e in witnesses for n in scene.STEPS]
-    timed = measure.interleaved(items, (5.0, 5.0), lambda: None)
+    items = [measure.Timed(e.label, "engine", n, measure._engine(scene, e, p)) for e in witnesses for n in scene.STEPS if n <= (e.most_steps or n)]
+    timed = measure.interleaved(items, {"engine": 0.2}, lambda: None)
     trace = {
         "stamp": f"pybullet {engines.installed('pybullet')}, {platform.system()} {platform.machine()}, Python {platform.python_version()}",
         "settings": {e.label: e.settings for e in witnesses},

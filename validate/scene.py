@@ -17,6 +17,9 @@ A scene is a module in `validate/scenes/`.  It must define
     NEEDS, LEAVES_OUT         what the scene calls; {what it does without: (p → (state, p) with it put in), or why not yet}
 and may define
     LINKS(p)                  pairs of points to join in the picture
+    FULL_ONLY                 functions of methods that are too slow here for a quick validation
+    WITHOUT                   a sentence: which methods are not run here at all, and why
+    PUBLISHED                 ((time, observed, tolerance), …) of the first case, from elsewhere
     ORDERS                    {method's function: order here}, where it differs from the usual; EXACT means no error but round-off
     WHY                       {engine label: (why it departs from the truth, in one sentence; its own law (p, t), like truth)}:
                               such an engine is held against its own law, and the report says how far that is from the truth
@@ -55,6 +58,7 @@ class Engine(NamedTuple):
     make: Callable
     order: int               # expected
     settings: str            # for people: what was set, and to what
+    most_steps: int | None = None            # the finest step that is worth the engine's time
 
 
 class World(NamedTuple):

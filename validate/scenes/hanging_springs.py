@@ -14,6 +14,7 @@ TITLE, LESSON = "Hanging springs", "springs"
 T = 1.5                      # [s]: two and a half periods of the slowest mode
 STEPS = (200, 500, 1000, 2000, 5000, 10000, 20000)
 METHODS = INTEGRATORS + (IMPLICIT_MESH,)
+FULL_ONLY = ("implicit_euler_step", "implicit_midpoint_step")     # they build a dense matrix at every correction
 UNCERTAINTY = 1e-13          # 200 radians of the fastest mode, each rounded to 2e-16
 
 
