@@ -73,7 +73,7 @@ def test_a_scene_uses_the_subject_it_is_bound_to(tmp_path):
     (tmp_path / "integrators.py").write_text(text + "\n\ndef advance(step, acceleration, t, x, v, dt, steps, p):\n    return x + 42.0, v\n")
     scene = binding.bind_scene("oscillator", tmp_path)
     p = next(iter(scene.CASES.values()))
-    assert scene.run(None, scene.start(p), p, 0.1, 1)[0] == p.x0 + 42.0
+    assert scene.run(None, None, scene.start(p), p, 0.1, 1)[0] == p.x0 + 42.0
     assert binding.bind_scene("oscillator").run.__globals__["advance"].__module__ == "solutions.integrators"
 
 

@@ -27,7 +27,7 @@ SOLUTIONS, SCENES = ROOT / "solutions", ROOT / "validate" / "scenes"
 CACHE = ROOT / ".cache" / "compiled"
 CACHED_WORLDS = 6              # digests kept on disk: a handful of edits back; older ones are deleted
 GIVEN = {"__init__", "checks", "vectors"}
-COMPILED_SCENE_ROOT = "run"    # a scene compiles this function and what it calls; truth and engines stay plain
+COMPILED = ("run", "acceleration")       # of a scene these are compiled, and what they call; truth and engines stay plain
 
 
 def subject_folder(of):
@@ -104,6 +104,12 @@ def _world(folder, compiled, digest):
     return CompiledWorld(folder, digest) if compiled else World(folder, digest)
 
 
+def with_law(scene):
+    """The scene, with its acceleration under the name `law`: what run is given.  Only `law` and `run` are ever compiled."""
+    scene.law = getattr(scene, "acceleration", None)
+    return scene
+
+
 class PlainWorld:
     """The packages as imported."""
 
@@ -111,7 +117,7 @@ class PlainWorld:
         return importlib.import_module(f"solutions.{name}")
 
     def scene(self, name):
-        return importlib.import_module(f"validate.scenes.{name}")
+        return with_law(importlib.import_module(f"validate.scenes.{name}"))
 
 
 PLAIN = PlainWorld()
@@ -146,6 +152,7 @@ class World:
     def _finish(self, package, module):
         if package == "scenes":
             vars(module).update(self._redirected(package, module))
+            with_law(module)
 
     def _redirected(self, package, module):
         """{name: what it means in this world} for everything that module imported from a lesson.
@@ -169,7 +176,7 @@ class World:
 
 
 class CompiledWorld(World):
-    """The same, compiled: every function of a lesson; of a scene `run` and what it calls, the rest of it stays plain."""
+    """The same, compiled: every function of a lesson; of a scene `run`, the acceleration, and what they call; the rest stays plain."""
 
     def __init__(self, folder, digest):
         super().__init__(folder, digest, "compiled")
@@ -187,10 +194,10 @@ class CompiledWorld(World):
             own = {name for name, f in vars(module).items() if isinstance(f, types.FunctionType) and f.__module__ == module.__name__}
             vars(module).update(_twins(module, own, vars(module)))
             return
-        space = {**vars(module), **self._redirected(package, module)}           # what `run` and its callees see
-        vars(module).update(world(self.folder).scene(module.__name__.rpartition(".")[2]).__dict__ | {"__name__": module.__name__})
-        space |= _twins(module, _called_from(space, COMPILED_SCENE_ROOT, module.__name__), space)
-        module.run = space["run"]
+        space = {**vars(module), **self._redirected(package, module)}           # what compiled functions see
+        plain = world(self.folder).scene(module.__name__.rpartition(".")[2])
+        space |= _twins(module, _called_from(space, COMPILED, module.__name__), space)
+        vars(module).update({**vars(plain), "__name__": module.__name__, "run": space["run"], "law": space.get("acceleration")})
 
 
 def _twins(module, names, space):
@@ -207,10 +214,10 @@ def _twins(module, names, space):
     return twins
 
 
-def _called_from(space, root, home):
-    """Names of the functions of module `home` that root reaches, itself included."""
+def _called_from(space, roots, home):
+    """Names of the functions of module `home` that the roots reach, themselves included."""
     own = {name: f for name, f in space.items() if isinstance(f, types.FunctionType) and f.__module__ == home}
-    reached, waiting = set(), [root] if root in own else []
+    reached, waiting = set(), [name for name in roots if name in own]
     while waiting:
         name = waiting.pop()
         reached.add(name)

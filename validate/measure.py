@@ -50,7 +50,7 @@ def final(scene, step, p, steps):
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
-            observed = scene.observe(scene.run(step, scene.start(p), p, scene.T / steps, steps), p)
+            observed = scene.observe(scene.run(step, scene.law, scene.start(p), p, scene.T / steps, steps), p)
     except ArithmeticError as e:
         return None, str(e)
     except np.linalg.LinAlgError as e:
@@ -239,7 +239,7 @@ def our_frames(scene, fast, plan, method, p, dt, per_frame):
     state, frames = scene.start(p), []
     for _ in range(FRAMES + 1):
         frames.append(scene.points(scene.observe(state, p), p).tolist())
-        state = fast.run(step, state, p, dt, per_frame)
+        state = fast.run(step, fast.law, state, p, dt, per_frame)
     return frames
 
 
@@ -300,7 +300,7 @@ def _ours(name, plan, method, speed, p):
 
 def _loop(scene, step, p, state):
     def prepare(steps):
-        arguments = step, state, p, scene.T / steps, steps
+        arguments = step, scene.law, state, p, scene.T / steps, steps
         run = entry(scene.run, arguments)
         return lambda: run(*arguments), lambda: None
     return prepare
@@ -416,8 +416,8 @@ def left_out(name, plan, p, usable):
         state, p_full = extra(p)
         items = [Timed("without", speed, steps, _loop(scene, step, p, scene.start(p))), Timed("with", speed, steps, _loop(scene, step, p_full, state))]
         (_, lean), (_, full) = interleaved(items, {speed: np.inf}, lambda: None)
-        a = scene.observe(scene.run(step, scene.start(p), p, scene.T / steps, steps), p)
-        b = scene.observe(scene.run(step, state, p_full, scene.T / steps, steps), p)
+        a = scene.observe(scene.run(step, scene.law, scene.start(p), p, scene.T / steps, steps), p)
+        b = scene.observe(scene.run(step, scene.law, state, p_full, scene.T / steps, steps), p)
         rows.append({"what": what, "saves": full["seconds"] / lean["seconds"], "same": relative(a, b) < 1e-9, "note": ""})
     return rows
 

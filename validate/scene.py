@@ -7,7 +7,9 @@ A scene is a module in `validate/scenes/`.  It must define
     STEPS                     numbers of steps over T, coarse to fine: they divide T, and span two decades
     METHODS                   tuple of Method: which of our steps to run
     start(p) → state          a tuple of arrays, ready for run; checks p
-    run(step, state, p, dt, steps) → state      the stepping loop, and nothing else; this is what is compiled and timed
+    acceleration              (t, x, v, p) → a [m/s²]: the law of the scene, its own or a lesson's
+    run(step, acceleration, state, p, dt, steps) → state        the stepping loop, and nothing else: what is compiled and timed.
+                              It gets its functions as arguments, or numba could not find it again in its cache
     observe(state, p)         flat array: what is compared with the truth at T
     truth(p, t)               the same quantities at time t
     UNCERTAINTY               of the truth, relative

@@ -6,7 +6,7 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.integrators import advance
-from solutions.springs import mesh_acceleration
+from solutions.springs import mesh_acceleration as acceleration
 from validate.reference import Net, by_mode, pymunk_net, state_of
 from validate.scene import IMPLICIT_MESH, INTEGRATORS, Engine
 
@@ -46,9 +46,9 @@ def start(p):
     return state_of(net(p))
 
 
-def run(step, state, p, dt, steps):
+def run(step, acceleration, state, p, dt, steps):
     x, v, mesh = state
-    x, v = advance(step, mesh_acceleration, 0.0, x, v, dt, steps, mesh)
+    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, mesh)
     return x, v, mesh
 
 

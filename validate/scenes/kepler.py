@@ -42,7 +42,7 @@ def start(p):
     return np.array([p.a * (1.0 - p.e), 0.0]), np.array([0.0, np.sqrt(p.mu / p.a * (1.0 + p.e) / (1.0 - p.e))])
 
 
-def run(step, state, p, dt, steps):
+def run(step, acceleration, state, p, dt, steps):
     x, v = state
     return advance(step, acceleration, 0.0, x, v, dt, steps, p)
 

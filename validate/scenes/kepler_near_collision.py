@@ -21,7 +21,7 @@ def acceleration(t, x, v, p):
     return -p.mu / (x @ x) ** 1.5 * x
 
 
-def run(step, state, p, dt, steps):
+def run(step, acceleration, state, p, dt, steps):
     x, v = state
     return advance(step, acceleration, 0.0, x, v, dt, steps, p)
 

@@ -40,7 +40,7 @@ def start(p):
     return np.zeros(2), np.array([p.vx, p.vy])
 
 
-def run(step, state, p, dt, steps):
+def run(step, acceleration, state, p, dt, steps):
     x, v = state
     return advance(step, acceleration, 0.0, x, v, dt, steps, p)
 

@@ -37,7 +37,7 @@ def start(p):
     return np.array([p.x0]), np.zeros(1)
 
 
-def run(step, state, p, dt, steps):
+def run(step, acceleration, state, p, dt, steps):
     x, v = state
     return advance(step, acceleration, 0.0, x, v, dt, steps, p)
 

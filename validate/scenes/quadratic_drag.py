@@ -39,7 +39,7 @@ def start(p):
     return np.zeros(1), np.zeros(1)
 
 
-def run(step, state, p, dt, steps):
+def run(step, acceleration, state, p, dt, steps):
     x, v = state
     return advance(step, acceleration, 0.0, x, v, dt, steps, p)
 
