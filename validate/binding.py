@@ -20,6 +20,8 @@ import warnings
 from functools import lru_cache
 from pathlib import Path
 
+import numpy as np
+
 from solutions.checks import BadInput
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -27,7 +29,7 @@ SOLUTIONS, SCENES = ROOT / "solutions", ROOT / "validate" / "scenes"
 CACHE = ROOT / ".cache" / "compiled"
 CACHED_WORLDS = 6              # digests kept on disk: a handful of edits back; older ones are deleted
 GIVEN = {"__init__", "checks", "vectors"}
-COMPILED = ("run", "acceleration")       # of a scene these are compiled, and what they call; truth and engines stay plain
+LAW = "acceleration"           # of a scene this is compiled, and what it calls; the loops are in the lessons
 
 
 def subject_folder(of):
@@ -105,8 +107,8 @@ def _world(folder, compiled, digest):
 
 
 def with_law(scene):
-    """The scene, with its acceleration under the name `law`: what run is given.  Only `law` and `run` are ever compiled."""
-    scene.law = getattr(scene, "acceleration", None)
+    """The scene, with its acceleration under the name `law`: what run is given.  `acceleration` itself always stays plain."""
+    scene.law = getattr(scene, LAW, None)
     return scene
 
 
@@ -176,7 +178,7 @@ class World:
 
 
 class CompiledWorld(World):
-    """The same, compiled: every function of a lesson; of a scene `run`, the acceleration, and what they call; the rest stays plain."""
+    """The same, compiled: every function of a lesson, and the law of a scene.  A scene's run is plain and calls compiled lessons."""
 
     def __init__(self, folder, digest):
         super().__init__(folder, digest, "compiled")
@@ -195,9 +197,11 @@ class CompiledWorld(World):
             vars(module).update(_twins(module, own, vars(module)))
             return
         space = {**vars(module), **self._redirected(package, module)}           # what compiled functions see
-        plain = world(self.folder).scene(module.__name__.rpartition(".")[2])
-        space |= _twins(module, _called_from(space, COMPILED, module.__name__), space)
-        vars(module).update({**vars(plain), "__name__": module.__name__, "run": space["run"], "law": space.get("acceleration")})
+        plain = vars(world(self.folder).scene(module.__name__.rpartition(".")[2]))
+        lessons = {name: Direct(twin) for name, twin in self._redirected(package, module).items() if hasattr(twin, "py_func")}
+        space |= _twins(module, _called_from(space, LAW, module.__name__), space)
+        run = types.FunctionType(plain["run"].__code__, {**plain, **lessons}, "run")
+        vars(module).update({**plain, "__name__": module.__name__, "run": run, "law": space.get(LAW)})
 
 
 def _twins(module, names, space):
@@ -214,10 +218,36 @@ def _twins(module, names, space):
     return twins
 
 
-def _called_from(space, roots, home):
-    """Names of the functions of module `home` that the roots reach, themselves included."""
+class Direct:
+    """A compiled function that goes by the kinds of its arguments: numba's own search for the machine code takes 50 µs a call."""
+
+    def __init__(self, twin):
+        self.twin, self.known = twin, {}
+
+    def __call__(self, *arguments):
+        kinds = tuple(map(_kind, arguments))
+        if kinds not in self.known:
+            from numba import typeof
+            exact = tuple(map(typeof, arguments))
+            if exact not in self.twin.overloads:
+                self.twin.compile(exact)
+            self.known[kinds] = self.twin.get_overload(exact)
+        return self.known[kinds](*arguments)
+
+
+def _kind(argument):
+    """What decides which machine code an argument needs."""
+    if isinstance(argument, np.ndarray):
+        return argument.dtype, argument.ndim, argument.flags.num
+    if isinstance(argument, tuple):
+        return type(argument), *map(_kind, argument)
+    return argument if hasattr(argument, "py_func") else type(argument)
+
+
+def _called_from(space, root, home):
+    """Names of the functions of module `home` that root reaches, itself included."""
     own = {name: f for name, f in space.items() if isinstance(f, types.FunctionType) and f.__module__ == home}
-    reached, waiting = set(), [name for name in roots if name in own]
+    reached, waiting = set(), [root] if root in own else []
     while waiting:
         name = waiting.pop()
         reached.add(name)

@@ -36,7 +36,7 @@ class Plan(NamedTuple):
     quick: bool = True
     live: tuple = ("pymunk", "pybullet")     # engines installed here; the others come from their records
     overrides: tuple = ()                    # (name, value) pairs that replace parameters of the first case
-    most_steps: int | None = None            # a shorter sweep, for a notebook
+    most_steps: int | None = None            # a shorter sweep of the first case only, for a notebook
 
     def longest(self):
         """{speed: how long a single timed run may take [s]}; longer ones are left to --full, and there out."""
@@ -142,7 +142,7 @@ def errors(name, plan, tick=lambda: None):
     return jsonable({
         "scene": name, "title": scene.TITLE, "lesson": scene.LESSON, "story": inspect.getdoc(scene) or "", "T": scene.T,
         "uncertainty": scene.UNCERTAINTY, "truth_story": inspect.getdoc(scene.truth) or "", "needs": list(scene.NEEDS),
-        "cases": cases, "parity": parity(scene, fast, plan, first), "picture": picture(scene, fast, plan, first, agreeing),
+        "without": not_run(scene, plan), "cases": cases, "parity": parity(scene, fast, plan, first), "picture": picture(scene, fast, plan, first, agreeing),
         "law": inspect.getdoc(getattr(scene, "acceleration", None)) or "" if hasattr(scene, "acceleration") else "",
     })
 
@@ -151,6 +151,13 @@ def methods_of(scene, plan):
     """The methods to run; those that the scene finds too slow for a quick validation only in a full one."""
     slow = getattr(scene, "FULL_ONLY", ()) if plan.quick else ()
     return tuple(m for m in scene.METHODS if m.function not in slow)
+
+
+def not_run(scene, plan):
+    """Sentences: which methods this run leaves out, and why."""
+    labels = [m.label for m in scene.METHODS if m not in methods_of(scene, plan)]
+    slow = [f"Left to --full, because they take longest to compile or to run: {', '.join(labels)}"] if labels else []
+    return slow + ([f"Not run here: {scene.WITHOUT}"] if hasattr(scene, "WITHOUT") else [])
 
 
 def sweep(scene, plan=Plan()):
@@ -301,20 +308,8 @@ def _ours(name, plan, method, speed, p):
 def _loop(scene, step, p, state):
     def prepare(steps):
         arguments = step, scene.law, state, p, scene.T / steps, steps
-        run = entry(scene.run, arguments)
-        return lambda: run(*arguments), lambda: None
+        return lambda: scene.run(*arguments), lambda: None
     return prepare
-
-
-def entry(run, arguments):
-    """run itself, or of a compiled run the machine code for such arguments: finding it anew costs 50 µs a call."""
-    if not hasattr(run, "get_overload"):
-        return run
-    from numba import typeof
-    types = tuple(map(typeof, arguments))
-    if types not in run.overloads:
-        run(*arguments[:-1], 1)
-    return run.get_overload(types)
 
 
 def _engine(scene, engine, p):
@@ -351,7 +346,6 @@ def interleaved(items, longest, tick):
             for _ in range(REPEATS):
                 for (item, inner), seconds in zip(chosen, samples):
                     seconds.append(_clock(item, inner))
-                gc.collect()
                 tick()
         finally:
             if enabled:

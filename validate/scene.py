@@ -8,8 +8,8 @@ A scene is a module in `validate/scenes/`.  It must define
     METHODS                   tuple of Method: which of our steps to run
     start(p) → state          a tuple of arrays, ready for run; checks p
     acceleration              (t, x, v, p) → a [m/s²]: the law of the scene, its own or a lesson's
-    run(step, acceleration, state, p, dt, steps) → state        the stepping loop, and nothing else: what is compiled and timed.
-                              It gets its functions as arguments, or numba could not find it again in its cache
+    run(step, acceleration, state, p, dt, steps) → state        hands over to a lesson's stepping loop: that is timed, and
+                              in a compiled world step, acceleration and loop are compiled
     observe(state, p)         flat array: what is compared with the truth at T
     truth(p, t)               the same quantities at time t
     UNCERTAINTY               of the truth, relative

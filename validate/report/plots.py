@@ -61,12 +61,12 @@ def work_precision(path, result):
         _, x, y, low, high = zip(*mine)
         plain = speed == "plain"
         axes.loglog(x, y, color=colour, marker=marker, ls=":" if plain else line, ms=3 if plain else 5, lw=0.9 if plain else 1.4,
-                    alpha=0.55 if plain else 1.0, label=None if plain else label + (" (recorded)" if speed == "recorded" else ""))
+                    alpha=0.55 if plain else 1.0, label=None if plain and any(r["speed"] == "compiled" for r in rows) else label + (" (recorded)" if speed == "recorded" else ""))
         axes.hlines(y, low, high, color=colour, lw=0.8, alpha=0.5)
-    if any(r["speed"] == "plain" for r in rows):
+    if {"plain", "compiled"} <= {r["speed"] for r in rows}:
         axes.plot([], [], color="#555555", ls=":", marker=".", label="the same, plain Python")
     axes.set(xlabel="run time of the stepping loop [s]", ylabel=f"relative error at t = {result['T']:g} s [-]")
-    _finish(figure, axes, path, "compiled, and engines")
+    _finish(figure, axes, path, "compiled, and engines" if any(r["speed"] == "compiled" for r in rows) else "plain Python, and engines")
 
 
 def stability(path, case):

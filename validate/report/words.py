@@ -100,8 +100,8 @@ def row(result):
 
 def findings(result):
     """Sentences, the most important first."""
-    name, case = next(iter(result["cases"].items()))
-    return [*_ours(result), *_engines(case), *_times(result), *_left_out(result), *_parity(result)]
+    case = next(iter(result["cases"].values()))
+    return [*_ours(result), *(f"{sentence}." for sentence in result["without"]), *_engines(case), *_times(result), *_left_out(result), *_parity(result)]
 
 
 def _ours(result):

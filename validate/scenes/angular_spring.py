@@ -17,6 +17,7 @@ TITLE, LESSON = "Angular spring", "springs"
 T = 2.5                      # [s]: about two periods; no case is then at a turning point, where errors of phase do not show
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
 METHODS = INTEGRATORS
+FULL_ONLY = ("implicit_euler_step", "implicit_midpoint_step")     # not what this scene is about, and half of its compiling
 UNCERTAINTY = 1e-12          # DOP853's, where both act; the closed forms are ten times better
 
 

@@ -13,6 +13,7 @@ TITLE, LESSON = "Quadratic drag", "integrators"
 T = 3.0                      # [s]: three times what it takes to gain the terminal speed without air
 STEPS = (15, 30, 60, 150, 300, 600, 1500, 3000)
 METHODS = INTEGRATORS
+FULL_ONLY = ("implicit_euler_step", "implicit_midpoint_step")     # not what this scene is about, and half of its compiling
 UNCERTAINTY = 1e-14
 
 
