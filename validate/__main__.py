@@ -143,7 +143,7 @@ def run(names, plan, jobs, out):
             measure_errors(store, names, plan, jobs, bars)
             measure_times(store, names, plan, bars)
             results = store.results(names)
-            front = report.write(out, results, store.stability(), plan, bars)
+            front = report.write(out, results, store.stability(), plan, jobs, bars)
     except KeyboardInterrupt:
         console.print(f"Interrupted. What was finished is kept in {out}: the same command goes on from there.")
         return 130

@@ -40,7 +40,7 @@ class Plan(NamedTuple):
 
     def longest(self):
         """{speed: how long a single timed run may take [s]}; longer ones are left to --full, and there out."""
-        return {"plain": 0.004, "compiled": 0.01, "engine": 0.025} if self.quick else dict.fromkeys(("plain", "compiled", "engine"), 0.5)
+        return {"plain": 0.004, "compiled": 0.008, "engine": 0.02} if self.quick else dict.fromkeys(("plain", "compiled", "engine"), 0.5)
 
 
 # ---------------------------------------------------------------------------------------------- running a scene
@@ -126,6 +126,7 @@ def errors(name, plan, tick=lambda: None):
     fast = binding.bind_scene(name, plan.of, compiled=True) if "compiled" in plan.speeds else scene
     cases = {}
     for case, p in cases_of(scene, plan).items():
+        first = not cases                                            # the others are asked of engines in a full validation only
         truth = np.array(scene.truth(p, scene.T), dtype=float)
         ours = []
         for method in methods_of(scene, plan):
@@ -135,7 +136,7 @@ def errors(name, plan, tick=lambda: None):
             ours.append(curve(scene, method.label, p, truth, runs, order, lambda n: scene.tolerance(p, scene.T / n)[order]))
             tick()
         cases[case] = {"params": p._asdict() if hasattr(p, "_asdict") else {}, "truth": truth.tolist(), "ours": ours,
-                       "engines": [engine_curve(name, scene, case, e, p, truth, plan) for e in scene.ENGINES]}
+                       "engines": [engine_curve(name, scene, case, e, p, truth, plan) for e in scene.ENGINES] if first or not plan.quick else []}
         tick()
     first = next(iter(cases_of(scene, plan).values()))
     agreeing = usable({"cases": cases})
@@ -157,6 +158,8 @@ def not_run(scene, plan):
     """Sentences: which methods this run leaves out, and why."""
     labels = [m.label for m in scene.METHODS if m not in methods_of(scene, plan)]
     slow = [f"Left to --full, because they take longest to compile or to run: {', '.join(labels)}"] if labels else []
+    if plan.quick and len(scene.CASES) > 1:
+        slow.append(f"Left to --full: the engines on {', '.join(list(scene.CASES)[1:])}")
     return slow + ([f"Not run here: {scene.WITHOUT}"] if hasattr(scene, "WITHOUT") else [])
 
 

@@ -87,7 +87,16 @@ def show(plot, result):
     plot(None, result)
 
 
+def draw(plot, path, data):
+    """Draw one of the plots into a file, without a screen."""
+    plt.switch_backend("svg")
+    plot(path, data)
+
+
 def _finish(figure, axes, path, title):
+    if not axes.get_legend_handles_labels()[0]:
+        axes.plot([], [], label=" ")
+        axes.text(0.5, 0.5, "nothing to draw: no method has been attempted", transform=axes.transAxes, ha="center", color="#555555")
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=8.5, title=title, title_fontsize=8.5, alignment="left")
     if path is None:
         plt.show()

@@ -184,10 +184,10 @@ def pybullet_make(p, dt, ahead=0.0):
 
 
 ENGINES = (
-    Engine("pymunk", pymunk_make, 1, "attraction in velocity_func", 100_000),
-    Engine("pymunk, leapfrog start", lambda p, dt: pymunk_make(p, dt, ahead=0.5), 2, "first velocity + ½ a dt", 100_000),
-    Engine("pybullet", pybullet_make, 1, "useMaximalCoordinates=1, no damping; force applied each step", 100_000),
-    Engine("pybullet, leapfrog start", lambda p, dt: pybullet_make(p, dt, ahead=0.5), 2, "first velocity − ½ a dt", 100_000),
+    Engine("pymunk", pymunk_make, 1, "attraction in velocity_func", 50_000),
+    Engine("pymunk, leapfrog start", lambda p, dt: pymunk_make(p, dt, ahead=0.5), 2, "first velocity + ½ a dt", 50_000),
+    Engine("pybullet", pybullet_make, 1, "useMaximalCoordinates=1, no damping; force applied each step", 50_000),
+    Engine("pybullet, leapfrog start", lambda p, dt: pybullet_make(p, dt, ahead=0.5), 2, "first velocity − ½ a dt", 50_000),
 )
 
 
