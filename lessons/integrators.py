@@ -140,13 +140,14 @@ def implicit_euler_step(acceleration, t, x, v, dt, p):
     vₙ₊₁ = vₙ + dt a(tₙ + dt, xₙ + dt vₙ₊₁, vₙ₊₁)
     xₙ₊₁ = xₙ + dt vₙ₊₁
 
-    The first line is an equation for vₙ₊₁ =: w.  Newton's method solves it: start from w = vₙ and repeat
+    The first line is an equation for vₙ₊₁ =: w.  Newton's method solves it: start from a copy of vₙ as w and repeat, at most
+    NEWTON_LIMIT times,
         r = w − vₙ − dt a(tₙ + dt, xₙ + dt w, w)
         w ← w − δ,    newton_matrix(acceleration, tₙ + dt, xₙ, w, dt, p) · δ = r     (given above, and so is solve)
     until max|δ| ≤ NEWTON_TOLERANCE · max(1, max|w|) + ROUND_OFF · max|xₙ| / dt.  (The last term: what the rounding of a
     position far from the origin looks like as a velocity.)  r and δ are flat, (n,): use .ravel() and .reshape(v.shape).
 
-    Raises Diverged("Newton's method did not converge at dt [s]", dt, "take a smaller step") after NEWTON_LIMIT corrections;
+    Raises Diverged("Newton's method did not converge at dt [s]", dt, "take a smaller step") when they are used up;
     solve raises LinAlgError where the 1 in the matrix is lost beside dt² k/m, when that is above 10¹⁶.
     *Source:* Hairer and Wanner 1996, "Solving ordinary differential equations II", IV.3 and IV.8.
     """

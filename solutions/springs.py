@@ -114,7 +114,7 @@ def angular_spring_forces(x_a, x_b, x_c, rest, k):
     F_b = −F_a − F_c                          nothing is pushed from outside
 
     k [N m/rad].  Derivative of the energy ½k(θ − rest)².
-    Raises BadInput("the arm of an angular spring [m]", 0.0, …) when an arm has no length.
+    Raises BadInput("the arm of an angular spring [m]", 0.0, "keep its ends away from its hinge") when an arm has no length.
     *Source:* deck A, "Angular springs".
     """
     ### BEGIN SOLUTION 2.6
@@ -138,8 +138,10 @@ def spring_forces(x, v, mesh):
     For each spring:  r = x_j − x_i,   l = |r|,   l̇ = r · (v_j − v_i) / l,   T = spring_tension(l, l̇, …)
                       F_i += T r/l,    F_j −= T r/l
 
-    Sum over the d coordinates in a loop: small arrays would cost more than the arithmetic.
-    Raises BadInput("the length of a spring [m]", 0.0, …) when its ends coincide: then it has no direction.
+    On fixed points too: mesh_acceleration holds them.  (For speed the worked answer sums over the d coordinates in a loop, since
+    small arrays cost more than the arithmetic in them; array expressions are as right.  But beware: F[i] += f with arrays of
+    point numbers counts a point that occurs twice only once.)
+    Raises BadInput("the length of a spring [m]", 0.0, "keep its ends apart") when its ends coincide: then it has no direction.
     *Source:* deck A, "spring.point1.force += force; spring.point2.force -= force".
     """
     ### BEGIN SOLUTION 2.7
@@ -154,7 +156,7 @@ def spring_forces(x, v, mesh):
             squared += r * r
             product += r * (v_j[c] - v_i[c])
         if squared == 0.0:
-            raise BadInput("the length of a spring [m]", 0.0, "keep its ends apart: it has no direction")
+            raise BadInput("the length of a spring [m]", 0.0, "keep its ends apart")
         length = np.sqrt(squared)
 
         pull = spring_tension(length, product / length, mesh.rest[s], mesh.k[s], mesh.k_d[s]) / length
@@ -308,7 +310,8 @@ def conjugate_gradients(apply, A, right):
         α = (r·r) / (p·Ap),   y += α p,   r_new = r − α Ap,   p = r_new + (r_new·r_new)/(r·r) p
     until |r| ≤ CG_TOLERANCE |right|.  A right-hand side of zeros has the solution zeros.
 
-    Raises Diverged("conjugate gradients did not converge: |r|²", |r|², …) after 10 · (size of right) rounds.
+    Raises Diverged("conjugate gradients did not converge: |r|²", |r|², "the matrix must be positive definite") after
+    10 · (size of right) rounds.
     *Source:* Hestenes and Stiefel 1952; Shewchuk 1994.
     """
     ### BEGIN SOLUTION 2.12

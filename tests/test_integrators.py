@@ -11,24 +11,24 @@ from solutions.checks import Diverged
 exercise = pytest.mark.exercise
 OMEGA, ZETA, DT = 3.0, 0.2, 0.1
 
-METHODS = {                       # method: exercise, points for its matrix, for its order, the order
-    "euler_step": ("1.1", 1, 1, 1),
-    "midpoint_step": ("1.2", 1, 1, 2),
-    "rk4_step": ("1.3", 1, 2, 4),
-    "average_velocity_step": ("1.4", 1, 1, 1),
-    "symplectic_euler_step": ("1.5", 1, 1, 1),
-    "verlet_step": ("1.6", 1, 1, 2),
-    "implicit_euler_step": ("1.7", 1, 1, 1),
-    "implicit_midpoint_step": ("1.8", 1, 1, 2),
+METHODS = {     # method: exercise, points for its matrix, for its order, the order, where in the step it reads the clock {c: weight}
+    "euler_step": ("1.1", 1, 1, 1, {0: 1}),
+    "midpoint_step": ("1.2", 1, 1, 2, {0.5: 1}),
+    "rk4_step": ("1.3", 1, 2, 4, {0: 1 / 6, 0.5: 2 / 3, 1: 1 / 6}),
+    "average_velocity_step": ("1.4", 1, 1, 1, {0: 1}),
+    "symplectic_euler_step": ("1.5", 1, 1, 1, {0: 1}),
+    "verlet_step": ("1.6", 1, 1, 2, {0: 1 / 2, 1: 1 / 2}),
+    "implicit_euler_step": ("1.7", 0.5, 1, 1, {1: 1}),
+    "implicit_midpoint_step": ("1.8", 0.5, 1, 2, {0.5: 1}),
 }
 HINTS = {
     "1.1": "both slopes belong to the beginning of the step: use the old v for the position",
-    "1.2": "take half an Euler step, then a whole step from the beginning along the slopes found there",
+    "1.2": "take half an Euler step, then a whole step from the beginning along the slopes found there, with a at t + ½dt",
     "1.3": "each slope is reached along the one before it; weights 1/6, 1/3, 1/3, 1/6, for x and v alike",
     "1.4": "new velocity by Euler first, then the position with the mean of old and new velocity",
     "1.5": "velocity first; the position then moves with the new velocity",
-    "1.6": "the new acceleration belongs to tₙ + dt, the new position and the predicted velocity v + dt a",
-    "1.7": "the acceleration belongs to tₙ + dt, to x + dt w and to w; subtract the Newton correction",
+    "1.6": "the position takes ½dt² a; the new acceleration belongs to tₙ + dt, the new position and the predicted velocity v + dt a",
+    "1.7": "the acceleration belongs to tₙ + dt, to x + dt w and to w; start from w = v.copy(), and subtract the Newton correction",
     "1.8": "half a step of implicit Euler gives the middle: the end is as far again beyond it",
 }
 
@@ -97,8 +97,14 @@ def drive_truth():
     return p, x, v, end.reshape(2, 2)
 
 
-@pytest.mark.parametrize("method, order", cases(3))
-def test_halving_the_step_divides_the_error_by_two_to_the_order(lesson, method, order, drive_truth):
+@pytest.mark.parametrize("method, order, clock", cases(3, 4))
+def test_halving_the_step_divides_the_error_by_two_to_the_order(lesson, method, order, clock, drive_truth):
+    push = Drive(1e-3, 0.0)
+    _, kicked = lesson.advance(getattr(lesson, method), driven_pendula, 1.7, np.zeros(2), np.zeros(2), 0.1, 1, push)
+    mean = sum(weight * np.cos(1.7 + c * 0.1) for c, weight in clock.items())
+    # near x = 0 the pendulum's own pull is below 1e-3 of the push; a clock wrong by half a step would change the mean by 0.05
+    close("gain of velocity over dt times push: does a get the right time?", kicked / (0.1 * push.strength), [mean, mean], 0.005)
+
     p, x, v, end = drive_truth
     steps = np.array([16, 32, 64, 128])
     errors = []
@@ -111,7 +117,21 @@ def test_halving_the_step_divides_the_error_by_two_to_the_order(lesson, method, 
     between("order of convergence over dt = 1/20 … 1/80 s", ratios[1:].mean(), order - 0.3, order + 0.4)
 
 
-@exercise("1.7", points=1, hint="when the loop ends without a return, raise Diverged as the docstring says")
+@pytest.mark.parametrize("method, share", [
+    pytest.param("implicit_euler_step", 1.0, marks=exercise("1.7", points=1, hint=HINTS["1.7"] + "; repeat until the correction is small enough")),
+    pytest.param("implicit_midpoint_step", 0.5, marks=exercise("1.8", points=0.5, hint=HINTS["1.8"]))])
+def test_an_implicit_step_solves_its_own_equation_however_long_it_is(lesson, method, share):
+    """v⁺ = v + dt a and x⁺ = x + dt v at the same moment of the step: its end, or its middle."""
+    x, v, p = np.array([1.0, -2.5]), np.array([-0.3, 2.0]), Drive(0.7, 0.3)
+    for dt in (0.3, 0.9):
+        x_new, v_new = lesson.advance(getattr(lesson, method), driven_pendula, 1.7, x, v, dt, 1, p)
+        there = x + share * (x_new - x), v + share * (v_new - v)
+        # Newton's last correction is below 1e-12 of |w| < 3, and the equation at most 1 + dt (1 + dt) < 3 times as steep
+        close(f"v⁺ − v − dt a after a step of {dt} s [m/s]", v_new - v - dt * driven_pendula(1.7 + share * dt, *there, p), [0.0, 0.0], 1e-11)
+        close(f"x⁺ − x − dt v after a step of {dt} s [m]", x_new - x - dt * there[1], [0.0, 0.0], 1e-11)
+
+
+@exercise("1.7", points=0.5, hint="when the loop ends without a return, raise Diverged as the docstring says")
 def test_implicit_euler_says_so_when_newton_finds_no_root(lesson):
     """w = v + dt(1 + w²) has no real root once 4 dt (v + dt) > 1."""
     raises("a step without a solution", Diverged, lesson.implicit_euler_step, runaway, 0.0, np.zeros(1), np.zeros(1), 10.0, Drive(1.0, 0.0))

@@ -112,9 +112,13 @@ def curve(scene, label, p, truth, runs, order, limits):
 
 
 def shown_order(rows, floor):
-    """Order over the finest part of the sweep that is still above truth's uncertainty and round-off; None if too little is."""
-    clear = [(r["dt"], r["error"]) for r in rows if r["error"] is not None and 1e-11 + floor < r["error"] < ASYMPTOTIC
-             and r["error"] > 100.0 * ROUND_OFF * r["steps"]]
+    """Order over the finest four runs that are clear of truth's uncertainty and of round-off; None if there are fewer than three.
+
+    Runs before one that was lost do not count: what they have right they have by luck.
+    """
+    lost = [k for k, r in enumerate(rows) if r["error"] is None or r["error"] >= ASYMPTOTIC]
+    clear = [(r["dt"], r["error"]) for r in rows[lost[-1] + 1 if lost else 0:]
+             if r["error"] > max(1e-11 + floor, 100.0 * ROUND_OFF * r["steps"])]
     return float(observed_order(*map(np.array, zip(*clear[-4:])))) if len(clear) >= 3 else None
 
 

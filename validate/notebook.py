@@ -108,7 +108,8 @@ class _Answer:
         earned = sum(o["points"] for o in self.outcomes if o["status"] == "passed")
         yield f"{SIGN[self.state]} Exercise {self.exercise}: {self.state}", f"{earned:g} of {sum(o['points'] for o in self.outcomes):g} points"
         if self.state == "not attempted":
-            yield "still open", self.open[0]["got"]
+            waits = self.open[0]["got"]
+            yield ("still open" if f"Exercise {self.exercise}:" in waits else "it waits for"), waits
         elif self.open:
             first = next(o for o in self.open if o["status"] == "not yet")
             for name in ("quantity", "expected", "got", "tolerance", "hint"):

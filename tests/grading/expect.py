@@ -16,11 +16,11 @@ def numbers(quantity, got, shape):
     try:
         array = np.asarray(got, dtype=float)
     except (TypeError, ValueError):
-        raise NotYet(quantity, f"an array of shape {shape}", f"a {type(got).__name__}", "exact") from None
+        raise NotYet(quantity, f"an array of shape {shape}", f"a {type(got).__name__}", "") from None
     if array.shape != shape:
-        raise NotYet(quantity, f"an array of shape {shape}", f"shape {array.shape}", "exact")
+        raise NotYet(quantity, f"an array of shape {shape}", f"shape {array.shape}", "")
     if not np.all(np.isfinite(array)):
-        raise NotYet(quantity, "finite numbers", show(array), "exact")
+        raise NotYet(quantity, "finite numbers", show(array), "")
     return array
 
 
@@ -29,14 +29,14 @@ def close(quantity, got, expected, tolerance):
     expected = np.asarray(expected, dtype=float)
     array = numbers(quantity, got, expected.shape)
     if not np.all(np.abs(array - expected) <= tolerance):
-        raise NotYet(quantity, show(expected), show(array), f"{tolerance:.1e}")
+        raise NotYet(quantity, show(expected), show(array), f"{tolerance:.1e}" if tolerance else "none: exactly this")
 
 
 def between(quantity, got, low, high):
     """low ≤ got ≤ high, for one number."""
     number = float(numbers(quantity, got, ()))
     if not low <= number <= high:
-        raise NotYet(quantity, f"{low:.6g} to {high:.6g}", f"{number:.6g}", "a range")
+        raise NotYet(quantity, f"{low:.6g} to {high:.6g}", f"{number:.6g}", "")
 
 
 def raises(quantity, error, function, *arguments):
@@ -47,9 +47,9 @@ def raises(quantity, error, function, *arguments):
         raise
     except Exception as e:
         if error.__name__ not in {base.__name__ for base in type(e).__mro__}:
-            raise NotYet(quantity, error.__name__, type(e).__name__, "exact") from None
+            raise NotYet(quantity, error.__name__, f"{type(e).__name__}: {e}", "") from None
     else:
-        raise NotYet(quantity, f"{error.__name__} to be raised", "no error", "exact")
+        raise NotYet(quantity, f"{error.__name__} to be raised", "no error", "")
 
 
 def show(array):

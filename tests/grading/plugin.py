@@ -5,6 +5,7 @@ With --of only the grading tests run.
 """
 
 import json
+import signal
 import types
 from pathlib import Path
 
@@ -13,7 +14,7 @@ import pytest
 from solutions.checks import BadInput
 from validate import binding
 
-from .points import Points, score
+from .points import LIMIT, Points, TooLong, score
 
 
 def pytest_addoption(parser):
@@ -39,6 +40,24 @@ def pytest_generate_tests(metafunc):
         option, given = metafunc.config.getoption, hasattr(metafunc.config, "given_subject")
         speeds = ["given"] if given else ["compiled"] if option("--compiled") else ["plain"] if option("--of") else ["plain", "compiled"]
         metafunc.parametrize("lesson", speeds, indirect=True)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call(item):
+    """Stop a subject's endless loop, where the system has an alarm clock; compiled and given code is ours, and trusted."""
+    grading = item.get_closest_marker("exercise") and item.config.getoption("--of")
+    if not grading or not hasattr(signal, "SIGALRM"):
+        return (yield)
+
+    def ring(*_):
+        raise TooLong()
+    before = signal.signal(signal.SIGALRM, ring)
+    signal.setitimer(signal.ITIMER_REAL, LIMIT)
+    try:
+        return (yield)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
 
 
 def pytest_collection_modifyitems(config, items):

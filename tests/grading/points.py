@@ -7,9 +7,16 @@ from typing import NamedTuple
 
 import pytest
 
+from solutions.checks import BadInput
+
 from .expect import NotYet
 
 TESTS = Path(__file__).resolve().parent.parent
+LIMIT = 20.0                 # a grading test may take this long [s]: the slowest takes 2, on two shared cores
+
+
+class TooLong(Exception):
+    """A test that has run out of its time."""
 
 
 class Outcome(NamedTuple):
@@ -50,7 +57,40 @@ def outcome(mark, name, excinfo):
         return Outcome(exercise, name, points, "not attempted", got=str(error), hint=hint)
     if isinstance(error, NotYet):
         return Outcome(exercise, name, points, "not yet", *map(str, (error.quantity, error.expected, error.got, error.tolerance)), hint)
-    return Outcome(exercise, name, points, "not yet", "the call itself", "an answer", f"{type(error).__name__}: {error}", "", hint)
+    said = f"{type(error).__name__}: {error}"
+    if isinstance(error, TooLong):
+        return Outcome(exercise, name, points, "not yet", "the time it takes", f"an answer within {LIMIT:g} s", "none", "",
+                       "does a loop of yours never end? Count its rounds, and stop after so many")
+    if not _in_a_test(excinfo):
+        return Outcome(exercise, name, points, "not yet", "reading the file", "a module that loads", f"{said}{_line(error)}", "",
+                       "mend this first: nothing in the file can be tested before")
+    return Outcome(exercise, name, points, "not yet", "the call itself", "an answer", f"{said}{_place(excinfo)}", "", _advice(error, hint))
+
+
+def _in_a_test(excinfo):
+    return any(entry.path.name.startswith("test_") for entry in excinfo.traceback)
+
+
+def _line(error):
+    return f" (line {error.lineno})" if isinstance(error, SyntaxError) and error.lineno and "line" not in str(error) else ""
+
+
+def _place(excinfo):
+    """Where in the subject's own file it happened."""
+    inside = [entry for entry in excinfo.traceback if TESTS not in entry.path.parents and "site-packages" not in entry.path.parts]
+    return f" ({inside[-1].path.name}, line {inside[-1].lineno + 1})" if inside else ""
+
+
+def _advice(error, hint):
+    """A hint for what Python says, where that is more to the point than the hint for the physics."""
+    text = str(error)
+    if "NoneType" in text:
+        return "your function gave None: does every way through it end in a return?"
+    if "to unpack" in text:
+        return "return as many values as the docstring says, in its order"
+    if isinstance(error, NameError):
+        return "a name is misspelt, or was never given a value"
+    return hint
 
 
 def grade(lesson, subject, exercise=None):

@@ -34,6 +34,11 @@ def euler_step(acceleration, t, x, v, dt, p):
     return x, v
 
 
+@wrong("1.1", "reads the clock at the end")
+def euler_step(acceleration, t, x, v, dt, p):
+    return x + dt * v, v + dt * acceleration(t + dt, x, v, p)
+
+
 @right("1.1", "through one state vector")
 def euler_step(acceleration, t, x, v, dt, p):
     y, slope = np.stack([x, v]), np.stack([v, acceleration(t, x, v, p)])
@@ -215,6 +220,27 @@ def implicit_euler_step(acceleration, t, x, v, dt, p):
         raise Diverged("Newton's method did not converge at dt [s]", dt, "take a smaller step")
     w = found.x.reshape(v.shape)
     return x + dt * w, w
+
+
+@wrong("1.7", "one linearised step, no loop")
+def implicit_euler_step(acceleration, t, x, v, dt, p):
+    r = -dt * acceleration(t + dt, x + dt * v, v, p)
+    w = v - np.linalg.solve(worked.newton_matrix(acceleration, t + dt, x, v, dt, p), r.ravel()).reshape(v.shape)
+    if np.max(np.abs(w - v - dt * acceleration(t + dt, x + dt * w, w, p))) > 1e-3:
+        raise Diverged("Newton's method did not converge at dt [s]", dt, "take a smaller step")
+    return x + dt * w, w
+
+
+@wrong("1.7", "stops at a thousandth")
+def implicit_euler_step(acceleration, t, x, v, dt, p):
+    w = v.copy()
+    for _ in range(30):
+        r = w - v - dt * acceleration(t + dt, x + dt * w, w, p)
+        delta = np.linalg.solve(worked.newton_matrix(acceleration, t + dt, x, w, dt, p), r.ravel()).reshape(v.shape)
+        if np.max(np.abs(delta)) <= 1e-3:
+            return x + dt * w, w
+        w = w - delta
+    raise Diverged("Newton's method did not converge at dt [s]", dt, "take a smaller step")
 
 
 # 1.8 ------------------------------------------------------------------------------------------------------------
