@@ -64,7 +64,7 @@ def test_stubs_are_not_attempted_and_depart_from_nothing():
 
 @pytest.mark.parametrize("name", [n for n in SCENES if any(e.label.startswith("pybullet") for e in binding.bind_scene(n).ENGINES)])
 def test_without_pybullet_its_record_stands_in_and_says_so(name):
-    result = measure.errors(name, measure.Plan(speeds=("plain",), live=(), most_steps=50))
+    result = measure.errors(name, measure.Plan(speeds=("plain",), live=(), most_steps=binding.bind_scene(name).STEPS[0]))
     curves = [c for c in next(iter(result["cases"].values()))["engines"] if c["label"].startswith("pybullet")]
     assert curves and all(c["source"].startswith("recorded, pybullet") for c in curves)
 
