@@ -23,6 +23,8 @@ from .scene import EXACT, ROUND_OFF
 RECORDED = Path(__file__).resolve().parent / "recorded"
 WARM_UPS, REPEATS = 2, 7
 ASYMPTOTIC = 0.5             # limits above this are not held against a run [-]
+EXACTLY = 1e-11              # a smaller relative error is round-off: there is no race for it [-]
+LOST = 10.0                  # a run with a larger relative error is not worth timing [-]
 SHORTEST = 1e-4              # a timed loop is repeated until it lasts this long [s]
 FRAMES = 120                 # of the moving picture
 NOT_ATTEMPTED = "not attempted"
@@ -40,7 +42,7 @@ class Plan(NamedTuple):
 
     def longest(self):
         """{speed: how long a single timed run may take [s]}; longer ones are left to --full, and there out."""
-        return {"plain": 0.004, "compiled": 0.008, "engine": 0.02} if self.quick else dict.fromkeys(("plain", "compiled", "engine"), 0.5)
+        return {"plain": 0.006, "compiled": 0.006, "engine": 0.02} if self.quick else dict.fromkeys(("plain", "compiled", "engine"), 0.5)
 
 
 # ---------------------------------------------------------------------------------------------- running a scene
@@ -232,20 +234,21 @@ def parity(scene, fast, plan, p):
 def picture(scene, fast, plan, p, usable):
     """Frames of the motion: truth, our usable method of highest order, and the first engine that is live and agrees."""
     per_frame = max(1, scene.STEPS[-3] // FRAMES)
-    dt = scene.T / (per_frame * FRAMES)
-    frames = {"truth": [scene.points(np.array(scene.truth(p, scene.T * k / FRAMES)), p).tolist() for k in range(FRAMES + 1)]}
+    seconds = getattr(scene, "FILM", scene.T)
+    dt = seconds / (per_frame * FRAMES)
+    frames = {"truth": [scene.points(np.array(scene.truth(p, seconds * k / FRAMES)), p).tolist() for k in range(FRAMES + 1)]}
     for method in sorted((m for m in scene.METHODS if m.label in usable), key=lambda m: -m.order)[:1]:
         frames[method.label] = our_frames(scene, fast, plan, method, p, dt, per_frame)
     for engine in scene.ENGINES:
         if engine.label.split(",")[0] in plan.live and engine.label not in getattr(scene, "WHY", {}):
-            frames[engine.label] = engine_frames(scene, engine, p, per_frame)
+            frames[engine.label] = engine_frames(scene, engine, p, dt, per_frame)
             break
     else:
         record = RECORDED / f"{scene.__name__.rpartition('.')[2]}.json"
         if record.is_file() and not plan.overrides:
             frames["pybullet, recorded"] = json.loads(record.read_text())["frames"]
     links = [list(map(int, pair)) for pair in scene.LINKS(p)] if hasattr(scene, "LINKS") else []
-    return {"seconds": scene.T, "frames": frames, "links": links, "dt": dt}
+    return {"seconds": seconds, "frames": frames, "links": links, "dt": dt}
 
 
 def our_frames(scene, fast, plan, method, p, dt, per_frame):
@@ -257,8 +260,8 @@ def our_frames(scene, fast, plan, method, p, dt, per_frame):
     return frames
 
 
-def engine_frames(scene, engine, p, per_frame):
-    world = engine.make(p, scene.T / (per_frame * FRAMES))
+def engine_frames(scene, engine, p, dt, per_frame):
+    world = engine.make(p, dt)
     frames = []
     try:
         for frame in range(FRAMES + 1):
@@ -290,7 +293,7 @@ def times(name, plan, result, tick=lambda: None):
     """Run times of the first case, joined with the errors already found: [{label, speed, steps, error, seconds, low, high}]."""
     scene = binding.bind_scene(name, plan.of)
     case, p = next(iter(cases_of(scene, plan).items()))
-    found = {c["label"]: {r["steps"]: r for r in c["rows"] if r["error"] is not None and r["steps"] in scene.STEPS}
+    found = {c["label"]: {r["steps"]: r for r in c["rows"] if r["error"] is not None and r["error"] < LOST}
              for c in result["cases"][case]["ours"] + result["cases"][case]["engines"]}
     items = [Timed(m.label, speed, n, prepare) for m in methods_of(scene, plan) for speed in plan.speeds
              for prepare in [_ours(name, plan, m, speed, p)] for n in found[m.label]]
@@ -449,14 +452,15 @@ def time_to(points, target):
 
 
 def advantage(rows):
-    """For each engine: its smallest error, its time for that, our quickest compiled time to get there, and the ratio."""
+    """For each engine that errs: its smallest error, its time for that, our quickest time to get there, and the ratio."""
     result = []
     ours = {}
     for r in rows:
         if r["speed"] in ("plain", "compiled"):
             ours.setdefault((r["label"], r["speed"]), []).append((r["error"], r["seconds"]))
-    for label in dict.fromkeys(r["label"] for r in rows if r["speed"] == "engine" and r["error"] < ASYMPTOTIC):
-        best = min((r for r in rows if r["label"] == label), key=lambda r: r["error"])
+    worth = [r for r in rows if r["speed"] == "engine" and EXACTLY < r["error"] < ASYMPTOTIC]
+    for label in dict.fromkeys(r["label"] for r in worth):
+        best = min((r for r in worth if r["label"] == label), key=lambda r: r["error"])
         reached = [(t, name, speed) for (name, speed), points in ours.items() if (t := time_to(sorted(points), best["error"]))]
         quickest = min(reached, default=(None, "", ""))
         result.append({"engine": label, "error": best["error"], "seconds": best["seconds"], "ours": quickest[0],

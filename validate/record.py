@@ -13,7 +13,7 @@ def record(name):
     if not witnesses:
         return None
     runs = {case: {e.label: [_reading(scene, e, p, n) for n in measure.sweep(scene) if n <= (e.most_steps or n)] for e in witnesses} for case, p in scene.CASES.items()}
-    p = next(iter(scene.CASES.values()))
+    p, per_frame = next(iter(scene.CASES.values())), max(1, scene.STEPS[-3] // measure.FRAMES)
     items = [measure.Timed(e.label, "engine", n, measure._engine(scene, e, p)) for e in witnesses for n in scene.STEPS if n <= (e.most_steps or n)]
     timed = measure.interleaved(items, {"engine": 0.2}, lambda: None)
     trace = {
@@ -21,7 +21,7 @@ def record(name):
         "settings": {e.label: e.settings for e in witnesses},
         "runs": runs,
         "seconds": {e.label: [{"steps": i.steps, **t} for i, t in timed if i.label == e.label] for e in witnesses},
-        "frames": measure.engine_frames(scene, witnesses[-1], p, max(1, scene.STEPS[-3] // measure.FRAMES)),
+        "frames": measure.engine_frames(scene, witnesses[-1], p, getattr(scene, "FILM", scene.T) / (per_frame * measure.FRAMES), per_frame),
     }
     measure.RECORDED.mkdir(exist_ok=True)
     path = measure.RECORDED / f"{name}.json"

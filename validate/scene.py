@@ -20,6 +20,7 @@ A scene is a module in `validate/scenes/`.  It must define
 and may define
     LINKS(p)                  pairs of points to join in the picture
     FULL_ONLY                 functions of methods that are too slow here for a quick validation
+    FILM                      how much of the motion the moving picture shows [s]; T without it
     WITHOUT                   a sentence: which methods are not run here at all, and why
     PUBLISHED                 ((time, observed, tolerance), …) of the first case, from elsewhere
     ORDERS                    {method's function: order here}, where it differs from the usual; EXACT means no error but round-off

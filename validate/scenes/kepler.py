@@ -18,6 +18,7 @@ METHODS = (MIDPOINT, RK4, SYMPLECTIC_EULER, VERLET, IMPLICIT_MIDPOINT)
 FULL_ONLY = ("implicit_midpoint_step",)     # not what this scene is about, and half of its compiling
 WITHOUT = ("Euler, average velocity and implicit Euler gain or lose energy at every passage: theory promises them 50 % only from 15 million "
            "steps on, and ten million steps of Euler were measured to miss by 86 %")
+FILM = 12.6                  # two revolutions [s]
 UNCERTAINTY = 1e-12          # the truth's: round-off in the energy, v²/2 − μ/r, grows with time as in drift(): 3e-13
 
 

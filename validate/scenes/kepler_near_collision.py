@@ -12,6 +12,7 @@ STEPS = (2000, 5000, 10000, 20000, 50000, 100000, 200000)
 METHODS = (MIDPOINT, RK4, SYMPLECTIC_EULER, VERLET, IMPLICIT_MIDPOINT)    # as in kepler: the others would need millions of steps
 FULL_ONLY = ("implicit_midpoint_step",)     # not what this scene is about, and half of its compiling
 WITHOUT = "Euler, average velocity and implicit Euler would need millions of steps: two million of Euler miss by 30 %"
+FILM = 12.6                  # two revolutions [s]
 UNCERTAINTY = 1e-12          # the truth's, as in kepler: 1e-13
 
 CASES = {"e = 0.9": Params(e=0.9)}
