@@ -11,6 +11,8 @@ from nbclient import NotebookClient
 from validate.binding import ROOT, SOLUTIONS, lesson_names
 from validate.generate import exercises, stub
 
+pytestmark = pytest.mark.xdist_group("notebooks")        # one kernel at a time: two that start together may choose the same port
+
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 STATES = {"nothing attempted": 0.0, "half done": 0.5, "solved": 1.0}          # share of the exercises, from the first on
 

@@ -34,7 +34,10 @@ PUBLISHED = ((100.0, (-0.104183204, -0.694741716), 1e-9),)    # its velocity is 
 
 def acceleration(t, x, v, p):
     """a = −μ x/|x|³"""
-    return -p.mu / (x @ x) ** 1.5 * x
+    squared = 0.0
+    for coordinate in x:
+        squared += coordinate * coordinate
+    return -p.mu / (squared * np.sqrt(squared)) * x
 
 
 def start(p):

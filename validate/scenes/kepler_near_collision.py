@@ -21,7 +21,10 @@ PUBLISHED = ((20.0, (-1.295266251, 0.400393896), 1e-9),)
 
 def acceleration(t, x, v, p):
     """a = −μ x/|x|³"""
-    return -p.mu / (x @ x) ** 1.5 * x
+    squared = 0.0
+    for coordinate in x:
+        squared += coordinate * coordinate
+    return -p.mu / (squared * np.sqrt(squared)) * x
 
 
 def run(step, acceleration, state, p, dt, steps):
