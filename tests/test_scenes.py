@@ -24,6 +24,12 @@ def test_a_truth_reproduces_what_was_published(name):
         assert np.allclose(scene.truth(p, t), expected, rtol=0.0, atol=tolerance)
 
 
+@pytest.mark.parametrize("name", [n for n in SCENES if hasattr(binding.bind_scene(n), "published")])
+def test_what_a_scene_claims_beside_its_motion_holds(name):
+    for claim, found, expected, tolerance in binding.bind_scene(name).published():
+        assert np.all(np.abs(np.asarray(found) - expected) <= tolerance), f"{claim}: {found}, expected {expected} ± {tolerance}"
+
+
 @pytest.mark.parametrize("name", SCENES)
 def test_a_truth_begins_where_the_scene_begins(name):
     scene = binding.bind_scene(name)
