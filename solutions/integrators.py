@@ -145,7 +145,8 @@ def newton_matrix(acceleration, t, x, v, dt, p):
         ahead.ravel()[k] += DIFFERENCE_STEP * max(1.0, abs(v.ravel()[k]))
         behind.ravel()[k] -= DIFFERENCE_STEP * max(1.0, abs(v.ravel()[k]))
         change = acceleration(t, x + dt * ahead, ahead, p) - acceleration(t, x + dt * behind, behind, p)
-        matrix[:, k] -= dt * change.ravel() / (ahead.ravel()[k] - behind.ravel()[k])
+        for row in range(v.size):
+            matrix[row, k] -= dt * change.ravel()[row] / (ahead.ravel()[k] - behind.ravel()[k])
     return matrix
 
 

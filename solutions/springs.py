@@ -119,14 +119,16 @@ def angular_spring_forces(x_a, x_b, x_c, rest, k):
     """
     ### BEGIN SOLUTION 2.6
     r_a, r_c = x_a - x_b, x_c - x_b
-    squared_a, squared_c = np.sum(r_a * r_a), np.sum(r_c * r_c)
+    squared_a, squared_c = r_a[0] * r_a[0] + r_a[1] * r_a[1], r_c[0] * r_c[0] + r_c[1] * r_c[1]
     if squared_a == 0.0 or squared_c == 0.0:
         raise BadInput("the arm of an angular spring [m]", 0.0, "keep its ends away from its hinge")
-    theta = np.arctan2(r_a[0] * r_c[1] - r_a[1] * r_c[0], np.sum(r_a * r_c))
-    turn = np.arctan2(np.sin(theta - rest), np.cos(theta - rest))
-    F_a = k * turn / squared_a * np.array([-r_a[1], r_a[0]])
-    F_c = -k * turn / squared_c * np.array([-r_c[1], r_c[0]])
-    return F_a, -F_a - F_c, F_c
+    theta = np.arctan2(r_a[0] * r_c[1] - r_a[1] * r_c[0], r_a[0] * r_c[0] + r_a[1] * r_c[1])
+    turn = theta - rest
+    turn -= 2.0 * np.pi * np.ceil((turn - np.pi) / (2.0 * np.pi))
+    push_a, push_c = k * turn / squared_a, -k * turn / squared_c
+    F_a = np.array([-push_a * r_a[1], push_a * r_a[0]])
+    F_c = np.array([-push_c * r_c[1], push_c * r_c[0]])
+    return F_a, -(F_a + F_c), F_c
     ### END SOLUTION
 
 
@@ -353,7 +355,8 @@ def implicit_mesh_step(acceleration, t, x, v, dt, mesh):
     for n in range(x.shape[0]):
         if mesh.inv_mass[n] > 0.0:
             diagonal[n] = 1.0 / mesh.inv_mass[n] + dt * mesh.k_v
-            right[n] = dt * (a[n] / mesh.inv_mass[n] - dt * pull[n])
+            for c in range(x.shape[1]):
+                right[n, c] = dt * (a[n, c] / mesh.inv_mass[n] - dt * pull[n, c])
     A = StepMatrix(diagonal, mesh.i, mesh.j, dt * dt * K + dt * D)
     v = v + conjugate_gradients(apply_step_matrix, A, right)
     return x + dt * v, v

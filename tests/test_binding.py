@@ -41,13 +41,17 @@ def test_an_edit_is_seen_within_one_process_too(tmp_path):
 
 
 @needs_numba
-def test_a_second_process_compiles_nothing():
-    ask = """
+@pytest.mark.parametrize("function, call", [
+    ("advance", "lesson.advance(lesson.verlet_step, lesson.oscillator_acceleration, 0.0, np.ones(1), np.zeros(1), 0.1, 3, lesson.Oscillator(1.0, 0.0))"),
+    ("amplification_matrix", "lesson.amplification_matrix(lesson.euler_step, 1.0, 0.0, 0.1)"),          # hands a function on
+])
+def test_a_second_process_compiles_nothing(function, call):
+    ask = f"""
 import numpy as np
 from validate.binding import bind
 lesson = bind("integrators", compiled=True)
-lesson.advance(lesson.verlet_step, lesson.oscillator_acceleration, 0.0, np.ones(1), np.zeros(1), 0.1, 3, lesson.Oscillator(1.0, 0.0))
-print(sum(lesson.advance.stats.cache_misses.values()))
+{call}
+print(sum(lesson.{function}.stats.cache_misses.values()))
 """
     in_a_new_process(ask)
     assert in_a_new_process(ask) == "0"

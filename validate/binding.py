@@ -255,10 +255,20 @@ def _called_from(space, root, home):
     return reached
 
 
+@lru_cache(maxsize=1)
+def _without_addresses():
+    """Let numba keep the machine code of functions that hand a function on: it would write down an address, which nobody reads."""
+    from numba import types
+    from numba.core.imputils import lower_constant
+    import numba.experimental.function_type  # noqa: F401           registers its own way: ours must come after
+    lower_constant(types.Dispatcher)(lambda context, builder, kind, function: context.get_dummy_value())
+
+
 def _use_cache(digest):
     """Point numba at this world's folder, and delete the folders of worlds long gone."""
     import numba
     from numba.core.config import _OptLevel
+    _without_addresses()
     numba.config.OPT, numba.config.LOOP_VECTORIZE = _OptLevel(2), 0                   # same speed here, a third of the compiling
     warnings.filterwarnings("ignore", message="Cannot cache compiled function")      # then it is compiled anew, that is all
     folder = CACHE / digest

@@ -18,6 +18,7 @@ T = 2.5                      # [s]: about two periods; no case is then at a turn
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
 METHODS = INTEGRATORS
 FULL_ONLY = ("implicit_euler_step", "implicit_midpoint_step")     # not what this scene is about, and half of its compiling
+HINGE, DOWN = np.zeros(2), np.array([0.0, -1.0])                  # where the rod turns, and the end of the arm that is fixed [m]
 UNCERTAINTY = 1e-12          # DOP853's, where both act; the closed forms are ten times better
 
 
@@ -43,8 +44,8 @@ def acceleration(t, x, v, p):
 
     The other arm hangs straight down and is fixed; F_c ⊥ r has the moment −κ θ about the hinge, whatever the arm's length.
     """
-    r = p.length * np.array([np.sin(x[0]), -np.cos(x[0])])
-    F_c = angular_spring_forces(np.array([0.0, -1.0]), np.zeros(2), r, 0.0, p.kappa)[2]
+    r = np.array([p.length * np.sin(x[0]), -p.length * np.cos(x[0])])
+    F_c = angular_spring_forces(DOWN, HINGE, r, 0.0, p.kappa)[2]
     moment = r[0] * F_c[1] - r[1] * F_c[0] - 0.5 * p.m * p.g * p.length * np.sin(x[0])
     return np.array([moment * 3.0 / (p.m * p.length * p.length)])
 
