@@ -113,7 +113,7 @@ class _Answer:
             yield ("still open" if f"Exercise {self.exercise}:" in waits else "it waits for"), waits
         elif self.open:
             first = next(o for o in self.open if o["status"] == "not yet")
-            for name in ("quantity", "expected", "got", "tolerance", "hint"):
+            for name in ("quantity", "given", "expected", "got", "tolerance", "hint"):
                 if first[name]:
                     yield name, first[name]
 

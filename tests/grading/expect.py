@@ -4,39 +4,44 @@ import numpy as np
 
 
 class NotYet(AssertionError):
-    """An answer that is not right yet."""
+    """An answer that is not right yet.
 
-    def __init__(self, quantity, expected, got, tolerance):
-        self.quantity, self.expected, self.got, self.tolerance = quantity, expected, got, tolerance
-        super().__init__(f"{quantity}: expected {expected}, got {got}, tolerance {tolerance}")
+    quantity and tolerance may be shown to anyone.  given (the inputs), expected and got may not when the inputs are secret;
+    then error, the size of what is wrong, stands in for them.
+    """
+
+    def __init__(self, quantity, expected, got, tolerance, error="", given=""):
+        self.quantity, self.expected, self.got, self.tolerance, self.error, self.given = quantity, expected, got, tolerance, error, given
+        super().__init__(f"{quantity}{f' ({given})' if given else ''}: expected {expected}, got {got}, tolerance {tolerance}")
 
 
-def numbers(quantity, got, shape):
+def numbers(quantity, got, shape, given=""):
     """got as a float array, or NotYet when it is not one of that shape or holds NaN or infinity."""
     try:
         array = np.asarray(got, dtype=float)
     except (TypeError, ValueError):
-        raise NotYet(quantity, f"an array of shape {shape}", f"a {type(got).__name__}", "") from None
+        raise NotYet(quantity, f"an array of shape {shape}", f"a {type(got).__name__}", "", f"a {type(got).__name__}", given) from None
     if array.shape != shape:
-        raise NotYet(quantity, f"an array of shape {shape}", f"shape {array.shape}", "")
+        raise NotYet(quantity, f"an array of shape {shape}", f"shape {array.shape}", "", f"shape {array.shape}", given)
     if not np.all(np.isfinite(array)):
-        raise NotYet(quantity, "finite numbers", show(array), "")
+        raise NotYet(quantity, "finite numbers", show(array), "", "not finite", given)
     return array
 
 
-def close(quantity, got, expected, tolerance):
-    """got equals expected, entry by entry, within an absolute tolerance."""
+def close(quantity, got, expected, tolerance, given=""):
+    """got equals expected, entry by entry, within an absolute tolerance.  given: the inputs, in words."""
     expected = np.asarray(expected, dtype=float)
-    array = numbers(quantity, got, expected.shape)
-    if not np.all(np.abs(array - expected) <= tolerance):
-        raise NotYet(quantity, show(expected), show(array), f"{tolerance:.1e}" if tolerance else "none: exactly this")
+    array = numbers(quantity, got, expected.shape, given)
+    off = np.abs(array - expected)
+    if not np.all(off <= tolerance):
+        raise NotYet(quantity, show(expected), show(array), f"{tolerance:.1e}" if tolerance else "none: exactly this", f"{np.max(off):.1e} off", given)
 
 
-def between(quantity, got, low, high):
+def between(quantity, got, low, high, given=""):
     """low ≤ got ≤ high, for one number."""
-    number = float(numbers(quantity, got, ()))
+    number = float(numbers(quantity, got, (), given))
     if not low <= number <= high:
-        raise NotYet(quantity, f"{low:.6g} to {high:.6g}", f"{number:.6g}", "")
+        raise NotYet(quantity, f"{low:.6g} to {high:.6g}", f"{number:.6g}", "", f"{max(low - number, number - high):.1e} off", given)
 
 
 def raises(quantity, error, function, *arguments):
@@ -47,9 +52,9 @@ def raises(quantity, error, function, *arguments):
         raise
     except Exception as e:
         if error.__name__ not in {base.__name__ for base in type(e).__mro__}:
-            raise NotYet(quantity, error.__name__, f"{type(e).__name__}: {e}", "") from None
+            raise NotYet(quantity, error.__name__, f"{type(e).__name__}: {e}", "", "another error") from None
     else:
-        raise NotYet(quantity, f"{error.__name__} to be raised", "no error", "")
+        raise NotYet(quantity, f"{error.__name__} to be raised", "no error", "", "no error")
 
 
 def show(array):

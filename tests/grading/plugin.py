@@ -1,20 +1,24 @@
-"""One set of tests, several subjects: `pytest --of solutions|lessons|PATH`, `--compiled`, `--exercise 1.2`.
+"""One set of tests, several subjects: `pytest --of=solutions|lessons|PATH`, `--compiled`, `--exercise=1.2`, `--seed=anything`.
 
 Without options the subject is `solutions`, plain and compiled, and the tests of the workbook itself run too.
 With --of only the grading tests run.
 """
 
+import hashlib
 import json
 import signal
 import types
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from solutions.checks import BadInput
 from validate import binding
 
-from .points import LIMIT, Points, TooLong, score
+from .points import BOX_LIMIT, LIMIT, Points, TooLong, score
+
+PUBLIC = "public"            # the seed of everyone's own tests
 
 
 def pytest_addoption(parser):
@@ -22,6 +26,7 @@ def pytest_addoption(parser):
     group.addoption("--of", help="whose answers to test: solutions, lessons or a folder of lesson files")
     group.addoption("--compiled", action="store_true", help="test the compiled twins only")
     group.addoption("--exercise", action="append", default=[], metavar="1.2", help="only this exercise (may be repeated)")
+    group.addoption("--seed", default=PUBLIC, help="draw the inputs of the tests from this; a class is graded with a secret one")
     group.addoption("--outcomes", metavar="FILE", help="with --of: write every outcome there, as JSON")
 
 
@@ -77,7 +82,10 @@ def pytest_collection_modifyitems(config, items):
 def lesson(request):
     """The lesson that the test file is named after, from the subject under test."""
     if request.param == "given":
-        return request.config.given_subject
+        subject = request.config.given_subject
+        if hasattr(subject, "box"):
+            subject.box.begin(BOX_LIMIT)
+        return subject
     name, of = request.path.stem.removeprefix("test_"), request.config.getoption("--of") or "solutions"
     if request.param == "plain":
         return binding.bind(name, of)
@@ -86,6 +94,27 @@ def lesson(request):
     if request.node.get_closest_marker("counts_calls"):
         pytest.skip("counts the calls of a Python function, which compiled code cannot call")
     return Compiled(binding.bind(name, of, compiled=True))
+
+
+class Draw:
+    """Inputs of one test, drawn from the seed and the name of the test: the same for every subject."""
+
+    def __init__(self, seed, test):
+        self.rng = np.random.default_rng(list(hashlib.sha256(f"{seed}/{test}".encode()).digest()))
+
+    def __call__(self, low, high, shape=None):
+        """A float, or an array of them, between low and high."""
+        return self.rng.uniform(low, high, shape)
+
+    def whole(self, low, high):
+        """A whole number from low to high, both included."""
+        return int(self.rng.integers(low, high + 1))
+
+
+@pytest.fixture
+def draw(request):
+    """The inputs of this test."""
+    return Draw(request.config.getoption("--seed"), request.function.__name__)
 
 
 class Compiled:

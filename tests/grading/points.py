@@ -13,6 +13,7 @@ from .expect import NotYet
 
 TESTS = Path(__file__).resolve().parent.parent
 LIMIT = 20.0                 # a grading test may take this long [s]: the slowest takes 2, on two shared cores
+BOX_LIMIT = 10.0             # and so long in the sandbox [s]
 
 
 class TooLong(Exception):
@@ -30,6 +31,8 @@ class Outcome(NamedTuple):
     got: str = ""
     tolerance: str = ""
     hint: str = ""
+    error: str = ""          # the size of what is wrong, in place of expected and got where the inputs are secret
+    given: str = ""          # the inputs, in words
 
 
 class Points:
@@ -37,6 +40,12 @@ class Points:
 
     def __init__(self):
         self.outcomes = []
+
+    def pytest_collection_finish(self, session):
+        if session.config.getoption("--collect-only"):
+            for item in session.items:
+                mark = item.get_closest_marker("exercise")
+                self.outcomes.append(Outcome(mark.args[0], item.name, mark.kwargs["points"], "not run", hint=mark.kwargs["hint"]))
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_makereport(self, item, call):
@@ -56,15 +65,18 @@ def outcome(mark, name, excinfo):
     if isinstance(error, NotImplementedError):
         return Outcome(exercise, name, points, "not attempted", got=str(error), hint=hint)
     if isinstance(error, NotYet):
-        return Outcome(exercise, name, points, "not yet", *map(str, (error.quantity, error.expected, error.got, error.tolerance)), hint)
-    said = f"{type(error).__name__}: {error}"
+        words = map(str, (error.quantity, error.expected, error.got, error.tolerance, hint, error.error, error.given))
+        return Outcome(exercise, name, points, "not yet", *words)
+    kind = type(error).__name__
+    said = f"{kind}: {error}"
     if isinstance(error, TooLong):
         return Outcome(exercise, name, points, "not yet", "the time it takes", f"an answer within {LIMIT:g} s", "none", "",
                        "does a loop of yours never end? Count its rounds, and stop after so many")
     if not _in_a_test(excinfo):
         return Outcome(exercise, name, points, "not yet", "reading the file", "a module that loads", f"{said}{_line(error)}", "",
-                       "mend this first: nothing in the file can be tested before")
-    return Outcome(exercise, name, points, "not yet", "the call itself", "an answer", f"{said}{_place(excinfo)}", "", _advice(error, hint))
+                       "mend this first: nothing in the file can be tested before", f"{kind}{_line(error)}")
+    place = _place(excinfo)
+    return Outcome(exercise, name, points, "not yet", "the call itself", "an answer", f"{said}{place}", "", _advice(error, hint), f"{kind}{place}")
 
 
 def _in_a_test(excinfo):
@@ -77,6 +89,8 @@ def _line(error):
 
 def _place(excinfo):
     """Where in the subject's own file it happened."""
+    if hasattr(excinfo.value, "where"):                              # the sandbox says
+        return f" ({excinfo.value.where})" if excinfo.value.where else ""
     inside = [entry for entry in excinfo.traceback if TESTS not in entry.path.parents and "site-packages" not in entry.path.parts]
     return f" ({inside[-1].path.name}, line {inside[-1].lineno + 1})" if inside else ""
 
@@ -93,16 +107,20 @@ def _advice(error, hint):
     return hint
 
 
-def grade(lesson, subject, exercise=None):
-    """Outcomes of a lesson's grading tests for a subject (any object with the lesson's functions as attributes)."""
+def grade(lesson, subject, exercise=None, seed="public", collect=False):
+    """Outcomes of a lesson's grading tests for a subject (any object with the lesson's functions as attributes).
+
+    With collect no test is run: the tests that there are, all of them "not run".
+    """
     class Given:
         def pytest_configure(self, config):
             config.given_subject = subject
 
     points = Points()
     selected = [f"--exercise={exercise}"] if exercise else []
+    selected += ["--collect-only"] if collect else []
     with contextlib.redirect_stdout(io.StringIO()):
-        pytest.main([str(TESTS / f"test_{lesson}.py"), f"--rootdir={TESTS.parent}", "--tb=no", "-p", "no:cacheprovider", *selected],
+        pytest.main([str(TESTS / f"test_{lesson}.py"), f"--rootdir={TESTS.parent}", "--tb=no", "-p", "no:cacheprovider", f"--seed={seed}", *selected],
                     plugins=[Given(), points])
     return points.outcomes
 

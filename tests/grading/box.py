@@ -1,0 +1,302 @@
+"""The sandbox: one worker process with one student's file, to which the trusted parent talks in plain data only.
+
+On Linux the worker lives in bubblewrap: it sees Python, NumPy, the file and the lessons as handed out, all read-only; no network, no
+other process, no solutions, no tests.  Elsewhere it is a process with nothing around it, and what comes of it is no grade.
+"""
+
+import contextlib
+import glob
+import json
+import os
+import queue
+import secrets
+import shutil
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from solutions.checks import BadInput, Diverged
+
+from . import wire
+
+HERE = Path(__file__).resolve().parent
+LIMITS = {"AS": 2 << 30, "CPU": 150, "NPROC": 4, "FSIZE": 16 << 20, "NOFILE": 64, "CORE": 0}     # [bytes], [s], [-], [bytes], [-], [bytes]
+ENVIRONMENT = {"PATH": "/usr/bin:/bin", "HOME": "/tmp", "LANG": "C.UTF-8", "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1",
+               "MKL_NUM_THREADS": "1", "PYTHONHASHSEED": "0"}
+HIDDEN = ("solutions", "lessons", "validate", "tests", "pybullet*", "pymunk*", "physics_animation_workbook*", "__editable__*")
+READY_WITHIN = 30.0          # [s]: starting takes 0.2, on a machine that does nothing else
+IMPORT_WITHIN = 10.0         # a student's file may take so long to load [s]
+MOST_ENTRIES = 1_000_000     # of all arrays that a student's code hands to one of our functions [-]: the tests need 10⁴
+PRINTED = 20_000             # of what is printed, so much is kept [bytes]
+ERRORS = {e.__name__: e for e in (
+    BadInput, Diverged, NotImplementedError, ValueError, TypeError, ZeroDivisionError, IndexError, KeyError, AttributeError, NameError,
+    UnboundLocalError, ImportError, ModuleNotFoundError, SyntaxError, IndentationError, ArithmeticError, FloatingPointError,
+    OverflowError, RecursionError, MemoryError, np.linalg.LinAlgError)}
+
+
+class StudentError(Exception):
+    """The student's program raised an error that is none of Python's usual ones, or ended, or took too long, or sent no data."""
+
+
+class Lost(StudentError):
+    """… and its worker is gone."""
+
+
+# ---------------------------------------------------------------------------------------------- the command
+
+def sandbox_command(python, binds):
+    """bwrap's arguments: read-only /usr, interpreter and environment, the binds {from: to}, an empty /tmp, and nothing else."""
+    interpreter, environment = Path(python).resolve().parent.parent, Path(python).absolute().parent.parent
+    command = ["bwrap", "--unshare-pid", "--unshare-net", "--unshare-ipc", "--unshare-uts", "--unshare-cgroup-try", "--die-with-parent",
+               "--new-session", "--clearenv", "--hostname", "box", "--cap-drop", "ALL"]
+    for name, value in ENVIRONMENT.items():
+        command += ["--setenv", name, value]
+    command += ["--ro-bind", "/usr", "/usr", "--proc", "/proc", "--dev", "/dev", "--perms", "1777", "--size", str(32 << 20), "--tmpfs", "/tmp"]
+    for folder in ("bin", "sbin", "lib", "lib64"):
+        if os.path.islink(f"/{folder}"):
+            command += ["--symlink", os.readlink(f"/{folder}"), f"/{folder}"]
+        elif os.path.isdir(f"/{folder}"):
+            command += ["--ro-bind", f"/{folder}", f"/{folder}"]
+    for folder in dict.fromkeys((interpreter, environment)):
+        if not folder.is_relative_to("/usr"):
+            for parent in reversed(folder.parents[:-1]):               # bwrap would make them for root only
+                command += ["--dir", str(parent)]
+            command += ["--ro-bind", str(folder), str(folder)]
+    for source, target in binds.items():
+        command += ["--ro-bind", str(source), target]
+    for pattern in HIDDEN:
+        for path in glob.glob(f"{environment}/lib/python*/site-packages/{pattern}"):
+            command += ["--tmpfs", path] if os.path.isdir(path) else ["--ro-bind", "/dev/null", path]
+    command += ["--remount-ro", "/dev", "--remount-ro", "/", "--chdir", "/tmp"]
+    if os.geteuid() == 0:    # the limit of processes does not bind root: become somebody who owns nothing, then give up making users
+        somebody = str(60000 + secrets.randbelow(5000))
+        command += ["--cap-add", "CAP_SETUID", "--cap-add", "CAP_SETGID", "--cap-add", "CAP_SETPCAP", "setpriv", "--reuid", somebody,
+                    "--regid", somebody, "--clear-groups", "--no-new-privs", "--inh-caps=-all", "--bounding-set=-all",
+                    "bwrap", "--die-with-parent", "--dev-bind", "/", "/"]
+    return command + ["--unshare-user", "--disable-userns"]
+
+
+@lru_cache(maxsize=1)
+def no_sandbox_because():
+    """Why code cannot be locked in here; an empty string when it can."""
+    if not shutil.which("bwrap"):
+        return "bubblewrap is not installed"
+    try:
+        trial = subprocess.run([*sandbox_command(sys.executable, {}), "true"], capture_output=True, text=True, timeout=30)
+    except (OSError, subprocess.TimeoutExpired) as e:
+        return f"bubblewrap does not start: {e}"
+    return "" if trial.returncode == 0 else f"bubblewrap may not make a sandbox here: {trial.stderr.strip()[:200]}"
+
+
+# ---------------------------------------------------------------------------------------------- the worker
+
+class Call:
+    """A function that lives in the worker."""
+
+    def __init__(self, box, name):
+        self.box, self.name = box, name
+
+    def __call__(self, *arguments):
+        return self.box.call(self.name, arguments)
+
+
+class Box:
+    """One lesson's file of one submission.  Calls of its functions start the worker, and start another one when it was lost.
+
+    text: the file, as bytes · given: folder of the lessons as handed out · earlier: {lesson: {exercise function: worked one}} that
+    the file may build on · budget [s] for all calls together · begin(limit) allows the next calls so many seconds together.
+    """
+
+    def __init__(self, lesson, text, given, earlier, budget, records=(), limits=LIMITS):
+        self.earlier, self.budget, self.printed, self.process, self.broken, self.depth = earlier, budget, b"", None, None, 0
+        self.own, self.names, self.records = {}, {}, {kind.__name__: kind for kind in records}
+        self.until = time.monotonic() + budget
+        self.folder = Path(tempfile.mkdtemp(prefix="workbook-"))
+        self.folder.chmod(0o755)
+        (self.folder / f"{lesson}.py").write_bytes(text)
+        (self.folder / f"{lesson}.py").chmod(0o444)
+        config = {"lesson": lesson, "earlier": {name: list(functions) for name, functions in earlier.items()}}
+        if no_sandbox_because():
+            inside = {"wire": str(HERE), "given": str(given), "student": str(self.folder)}
+            limits, before = {name: value for name, value in limits.items() if name != "NPROC"}, []
+        else:
+            inside = {"wire": "/box", "given": "/given", "student": "/student"}
+            before = sandbox_command(sys.executable, {HERE / "wire.py": "/box/wire.py", HERE / "worker.py": "/box/worker.py",
+                                                      given: "/given", self.folder: "/student"})
+        self.command = [*before, sys.executable, "-I", "-B", "-u", f"{inside['wire']}/worker.py", json.dumps({**config, **inside, "limits": limits})]
+
+    # -- functions and records on the wire
+
+    def name_of(self, function):
+        if isinstance(function, Call):
+            return function.name
+        if function not in self.names:
+            self.names[function] = f"test:{len(self.own)}"
+            self.own[self.names[function]] = function
+        return self.names[function]
+
+    def resolve(self, name):
+        kind, _, rest = name.partition(":")
+        if kind in ("lesson", "own"):
+            return Call(self, name)
+        lesson, _, function = rest.partition(".")
+        if kind == "solution" and function in self.earlier.get(lesson, ()):
+            return self.earlier[lesson][function]
+        if name in self.own:
+            return self.own[name]
+        raise wire.WireError("a function that is not there")
+
+    def record(self, name, fields, values):
+        kind = self.records.get(name)
+        return kind(*values) if kind and kind._fields == fields else values
+
+    def error(self, names, message, where):
+        kind = next((ERRORS[name] for name in names if name in ERRORS), None)
+        error = kind.__new__(kind) if kind else StudentError()
+        error.args = (str(message) if kind else f"{names[0]}: {message}",)
+        error.where = str(where)
+        return error
+
+    # -- the conversation
+
+    def begin(self, limit):
+        """The next calls may take so long, all together [s]."""
+        self.until = time.monotonic() + min(limit, max(self.budget, 0.0))
+
+    def call(self, name, arguments):
+        """What the worker's function of that name returns; raises what it raised, or Lost."""
+        if self.broken:
+            raise self.broken
+        remember(self.records, arguments)
+        began, self.depth = time.monotonic(), self.depth + 1
+        try:
+            if self.process is None:
+                self.start()
+            return self.peer.call(name, arguments)
+        except wire.WireError as e:
+            raise self.lost(f"the program sent no plain data: {e}") from None
+        finally:
+            self.depth -= 1
+            if self.depth == 0:
+                self.budget -= time.monotonic() - began
+
+    def open(self):
+        """Import the file.  When that fails every later call fails in the same way, at once."""
+        self.begin(IMPORT_WITHIN)
+        try:
+            self.call("import", ())
+        except RuntimeError as e:
+            if type(e) is RuntimeError:                                # the grader's own
+                raise
+            self.broken = e
+        except Exception as e:
+            self.stop()
+            self.broken = e
+
+    def start(self):
+        environment = None if not no_sandbox_because() else {**ENVIRONMENT, **{k: os.environ[k] for k in ("SYSTEMROOT",) if k in os.environ}}
+        self.process = process = subprocess.Popen(self.command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                                  env=environment, start_new_session=True)
+        self.inbox, self.outbox = queue.Queue(4), queue.Queue(64)
+        self.peer = wire.Peer(self.send, self.receive, self.resolve, self.name_of, self.record, describe, self.error,
+                              fatal=(KeyboardInterrupt, wire.WireError, Lost))
+        self.peer.served = self.peer.serve
+        self.peer.serve = self.serve
+        for task in (_reading, _writing, self._listening):
+            threading.Thread(target=task, args=(process, self.inbox, self.outbox), daemon=True).start()
+        try:
+            ready = self.inbox.get(timeout=READY_WITHIN)
+        except queue.Empty:
+            ready = None
+        if not isinstance(ready, tuple):                               # no code of the student's has run yet
+            self.stop()
+            raise RuntimeError(f"the grader cannot start its sandbox: {self.printed[-500:].decode(errors='replace')}")
+
+    def serve(self, name, arguments):
+        """Work one of our functions for the student's code, if what it hands over is of a sane size."""
+        if sum(array.size for array in wire.arrays_in(arguments)) > MOST_ENTRIES or not name.startswith(("test:", "solution:")):
+            raise wire.WireError("a call that no test asks for")
+        self.peer.served(name, arguments)
+
+    def send(self, frame):
+        """Hand a frame to the worker."""
+        try:
+            self.outbox.put(frame, timeout=max(0.01, self.until - time.monotonic()))
+        except queue.Full:
+            raise self.lost("it asks, and does not listen to the answers") from None
+
+    def receive(self):
+        """The next frame."""
+        left = self.until - time.monotonic()
+        try:
+            frame = self.inbox.get(timeout=max(0.0, left)) if left > 0.0 else None
+        except queue.Empty:
+            frame = None
+        if frame is None:
+            raise self.lost("it took too long" if self.budget > 0.0 else "the time for the whole submission is used up")
+        if isinstance(frame, Exception):
+            raise self.lost(str(frame))
+        return frame
+
+    def lost(self, why):
+        self.stop()
+        return Lost(why)
+
+    def stop(self):
+        """End the worker, if there is one."""
+        if self.process:
+            with contextlib.suppress(OSError):
+                os.killpg(self.process.pid, 9) if os.name == "posix" else self.process.kill()
+            self.process.wait()                                        # the threads end with its pipes
+            with contextlib.suppress(queue.Full):
+                self.outbox.put_nowait(None)
+            self.process = None
+
+    def close(self):
+        self.stop()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def _listening(self, process, inbox, outbox):
+        """Keep the beginning of what is printed, and let the rest go."""
+        while chunk := process.stderr.read1(65536):
+            self.printed = (self.printed + chunk)[:PRINTED]
+
+
+def _reading(process, inbox, outbox):
+    try:
+        while (frame := wire.read(process.stdout)) is not None:
+            inbox.put(frame, timeout=60.0)
+        inbox.put(StudentError("the program ended before it answered"))
+    except Exception as e:                                             # also a queue that nobody empties any more
+        with contextlib.suppress(queue.Full):
+            inbox.put_nowait(StudentError(f"the program sent no plain data: {e}"))
+
+
+def _writing(process, inbox, outbox):
+    """In a thread of its own: a worker that never reads must not stop the parent."""
+    with contextlib.suppress(OSError, ValueError):
+        while (frame := outbox.get()) is not None:
+            process.stdin.write(frame)
+            process.stdin.flush()
+
+
+def describe(e):
+    """An error of our own functions, for the student's code."""
+    return [kind.__name__ for kind in type(e).__mro__][:8], str(e)[:300], ""
+
+
+def remember(records, value):
+    """Note the class of every NamedTuple in a value, so that it can come back as one."""
+    if isinstance(value, tuple | list):
+        if hasattr(value, "_fields"):
+            records[type(value).__name__] = type(value)
+        for part in value:
+            remember(records, part)
+
+

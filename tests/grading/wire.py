@@ -1,0 +1,177 @@
+"""Data between the trusted parent and the worker with the student's code: a JSON tree and raw arrays, and nothing else.
+
+    frame    "WBK1", length of the tree, length of the arrays; the tree; the arrays
+    tree     None, bool, int, float, str as they are;  [...] a tuple;  {"a": [dtype, shape]} the next array;
+             {"r": [name, fields, values]} a NamedTuple;  {"f": name} a function that the other side calls by that name
+
+Nothing is unpickled, and every size is checked before memory is asked for.  *Left out:* dicts and objects.
+"""
+
+import json
+import math
+import struct
+
+import numpy as np
+
+MAGIC, HEADER = b"WBK1", struct.Struct("<4sIQ")
+MAX_TREE, MAX_ARRAYS, MAX_DEPTH = 1 << 18, 1 << 25, 24                 # [bytes], [bytes], [-]: the tests need a hundredth
+DTYPES = {"b1", "u1", "i4", "i8", "f4", "f8", "c16"}
+
+
+class WireError(Exception):
+    """The other side sent something that is not plain data."""
+
+
+def pack(value, name_of=None):
+    """The frame of a value.  name_of(function) gives the name under which a function goes over the wire."""
+    arrays = []
+
+    def tree(value, depth=0):
+        if depth > MAX_DEPTH:
+            raise WireError("nested too deep")
+        if value is None or type(value) in (bool, int, float, str):
+            return value
+        if isinstance(value, np.generic):
+            return tree(value.item())
+        if isinstance(value, np.ndarray):
+            plain = np.array(value, order="C", subok=False)            # a copy without tricks
+            if plain.dtype.str[1:] not in DTYPES:
+                raise WireError(f"an array of {plain.dtype} is not plain data")
+            arrays.append(plain.astype(plain.dtype.newbyteorder("<")).tobytes())
+            return {"a": [plain.dtype.str[1:], list(plain.shape)]}
+        if isinstance(value, tuple) and hasattr(value, "_fields"):
+            return {"r": [type(value).__name__, list(value._fields), [tree(v, depth + 1) for v in value]]}
+        if type(value) in (list, tuple):
+            return [tree(v, depth + 1) for v in value]
+        if callable(value) and name_of:
+            return {"f": name_of(value)}
+        raise WireError(f"a {type(value).__name__} is not plain data")
+
+    head = json.dumps(tree(value)).encode()
+    return HEADER.pack(MAGIC, len(head), sum(map(len, arrays))) + head + b"".join(arrays)
+
+
+def read(stream):
+    """The next (tree, arrays) of a binary stream, as bytes; None at its end."""
+    raw = stream.read(HEADER.size)
+    if not raw:
+        return None
+    if len(raw) < HEADER.size:
+        raise WireError("a frame broke off")
+    magic, tree, arrays = HEADER.unpack(raw)
+    if magic != MAGIC or tree > MAX_TREE or arrays > MAX_ARRAYS:
+        raise WireError("not a frame, or too large a one")
+    head, body = stream.read(tree), stream.read(arrays) if arrays else b""
+    if len(head) < tree or len(body) < arrays:
+        raise WireError("a frame broke off")
+    return head, body
+
+
+def unpack(head, body, function=None, record=None):
+    """The value of a frame.  function(name) and record(name, fields, values) make what only the receiver can make."""
+    position = 0
+
+    def array(code, shape):
+        nonlocal position
+        if code not in DTYPES or len(shape) > 8 or not all(type(n) is int and 0 <= n < 1 << 31 for n in shape):
+            raise WireError("an array has a bad header")
+        begin, position = position, position + math.prod(shape) * np.dtype(code).itemsize
+        if position > len(body):
+            raise WireError("an array is longer than its bytes")
+        return np.frombuffer(body[begin:position], "<" + code).reshape(shape).astype(code)
+
+    def value(tree, depth=0):
+        if depth > MAX_DEPTH:
+            raise WireError("nested too deep")
+        if type(tree) is list:
+            return tuple(value(v, depth + 1) for v in tree)
+        if type(tree) is not dict:
+            return tree
+        (kind, content), = tree.items()
+        if kind == "a":
+            return array(*content)
+        if kind == "f" and function and type(content) is str:
+            return function(content)
+        if kind == "r" and record:
+            name, fields, values = content
+            if not all(type(text) is str and text.isidentifier() for text in [name, *fields]) or len(fields) != len(values):
+                raise WireError("a record has a bad header")
+            return record(name, tuple(fields), tuple(value(v, depth + 1) for v in values))
+        raise WireError("something that is not plain data")
+
+    try:
+        return value(json.loads(head))
+    except WireError:
+        raise
+    except Exception as e:                                             # ValueError, TypeError, RecursionError, MemoryError …
+        raise WireError(f"malformed data ({type(e).__name__})") from None
+
+
+def arrays_in(value):
+    """Every array in a value, in the order in which it goes over the wire."""
+    if isinstance(value, np.ndarray):
+        yield value
+    elif isinstance(value, tuple | list):
+        for part in value:
+            yield from arrays_in(part)
+
+
+class Peer:
+    """One side of the conversation.  A call waits for its answer and serves the other side's calls meanwhile, to any depth.
+
+    ["call", function, arguments] is answered by ["value", result, changed] or ["error", class names, message, where]; changed
+    holds (number, array) of the arguments' arrays that the call has changed in place, which happens to the caller's as well.
+    """
+
+    def __init__(self, send, receive, resolve, name_of, record, describe, error, fatal=()):
+        self.send, self.receive = send, receive                        # a frame, as bytes and as (tree, arrays)
+        self.resolve, self.name_of, self.record = resolve, name_of, record
+        self.describe, self.error = describe, error                    # exception → (names, message, where), and back
+        self.fatal = fatal                                             # exceptions that end the conversation
+
+    def call(self, name, arguments):
+        """What the other side's function returns; raises what `error` makes of its answer."""
+        self.send(pack(("call", name, arguments), self.name_of))
+        while True:
+            kind, *content = self.message()
+            if kind == "call":
+                self.serve(*content)
+                continue
+            if kind == "error":
+                raise self.error(*content)
+            if kind != "value":
+                raise WireError("an unexpected message")
+            result, changed = content
+            own = list(arrays_in(arguments))
+            for number, array in changed:
+                if own[number].shape != array.shape or own[number].dtype != array.dtype:
+                    raise WireError("an argument changed its shape")
+                own[number][...] = array
+            return result
+
+    def message(self):
+        got = unpack(*self.receive(), self.resolve, self.record)
+        if type(got) is not tuple or not got or type(got[0]) is not str:
+            raise WireError("an unexpected message")
+        return got
+
+    def serve(self, name, arguments):
+        """Call one of our functions for the other side, and answer."""
+        before = [array.copy() for array in arrays_in(arguments)]
+        try:
+            result = self.resolve(name)(*arguments)
+            changed = [(n, now) for n, (old, now) in enumerate(zip(before, arrays_in(arguments))) if not same(old, now)]
+            answer = "value", result, changed
+        except self.fatal:
+            raise
+        except BaseException as e:                                     # SystemExit of a student's code, too
+            answer = "error", *self.describe(e)
+        try:
+            frame = pack(answer, self.name_of)
+        except Exception as e:                                         # WireError, RecursionError, an int of too many digits …
+            frame = pack(("error", ["TypeError"], f"the result is not plain data: {str(e)[:200]}", ""))
+        self.send(frame)
+
+
+def same(a, b):
+    return a.shape == b.shape and a.tobytes() == b.tobytes()

@@ -1,0 +1,158 @@
+"""Runs inside the sandbox, beside the student's code.  The parent trusts nothing that comes from here.
+
+Usage: worker.py CONFIG, a JSON object: limits; lesson; student, the folder of the student's file; given, the folder of the lessons as
+handed out; wire, the folder of wire.py; earlier, {lesson: its exercises} of the lessons that this one builds on.  Frames go over
+standard input and output; what the student prints goes to standard error.
+"""
+
+import collections
+import contextlib
+import importlib.util
+import json
+import os
+import sys
+import traceback
+import types
+
+config = json.loads(sys.argv[1])
+LESSON = f"lessons.{config['lesson']}"
+with contextlib.suppress(ImportError):                                 # there is no resource module on Windows
+    import resource
+    for limit, value in config["limits"].items():                      # hard, and set before any code of the student's runs
+        with contextlib.suppress(ValueError, OSError, AttributeError):
+            resource.setrlimit(getattr(resource, f"RLIMIT_{limit}"), (value, value))
+
+sys.path.insert(0, config["wire"])
+import numpy  # noqa: E402, F401         before the student's file, or it would count against the time of the first test
+import wire  # noqa: E402
+
+incoming, outgoing = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
+os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+os.dup2(2, 1)                                                          # print() goes where standard error goes
+
+
+# ---------------------------------------------------------------------------------------------- modules
+
+class Handout(importlib.machinery.SourceFileLoader):
+    """Loads a lesson as handed out; its exercises are worked by the parent, over the wire."""
+
+    def exec_module(self, module):
+        super().exec_module(module)
+        name = module.__name__.partition(".")[2]
+        for function in config["earlier"].get(name, ()):
+            setattr(module, function, remote(f"solution:{name}.{function}"))
+
+
+class Finder:
+    """Finds the student's file as lessons.NAME, and under solutions or lessons the checks and the lessons that this one builds on."""
+
+    @staticmethod
+    def find_spec(full, path=None, target=None):
+        package, _, name = full.rpartition(".")
+        if full == LESSON:
+            return importlib.util.spec_from_file_location(full, os.path.join(config["student"], f"{name}.py"))
+        file = os.path.join(config["given"], f"{name}.py")
+        if package in ("lessons", "solutions") and (name in config["earlier"] or name in ("checks", "vectors")):
+            return importlib.util.spec_from_file_location(full, file, loader=Handout(full, file))
+        return None
+
+
+for package in ("lessons", "solutions"):
+    sys.modules[package] = types.ModuleType(package)
+    sys.modules[package].__path__ = []
+sys.meta_path.insert(0, Finder)
+
+
+# ---------------------------------------------------------------------------------------------- functions and records
+
+own, names = {}, {}                                                    # functions of ours that the parent knows by name, and back
+
+
+def remote(name):
+    """A function of the parent's."""
+    def call(*arguments):
+        return peer.call(name, arguments)
+    names[call] = name
+    return call
+
+
+def students(name):
+    """A function of the student's file, which is imported when the first one is called."""
+    def call(*arguments):
+        return getattr(importlib.import_module(LESSON), name)(*arguments)
+    names[call] = f"lesson:{name}"
+    return call
+
+
+def resolve(name):
+    """A function by the name that it has on the wire."""
+    kind, _, rest = name.partition(":")
+    if name == "import":
+        return lambda: importlib.import_module(LESSON) and None
+    return students(rest) if kind == "lesson" else own[name] if kind == "own" else remote(name)
+
+
+def name_of(function):
+    """The name by which the parent may call a function."""
+    if function not in names:
+        names[function] = f"own:{len(own)}"
+        own[names[function]] = function
+    return names[function]
+
+
+records = {}
+
+
+def record(name, fields, values):
+    """A NamedTuple of the class that a lesson has for it, or of one that looks the same."""
+    for module in [m for n, m in list(sys.modules.items()) if n.startswith(("lessons.", "solutions."))]:
+        known = getattr(module, name, None)
+        if isinstance(known, type) and getattr(known, "_fields", None) == fields:
+            return known(*values)
+    if (name, fields) not in records:
+        records[name, fields] = collections.namedtuple(name, fields)
+    return records[name, fields](*values)
+
+
+# ---------------------------------------------------------------------------------------------- errors
+
+class FromParent(Exception):
+    """An error of the parent's that the lessons have no name for."""
+
+
+def raised(names, message, where):
+    """An error of the parent's, as the class of that name."""
+    for module in ("solutions.checks", "builtins"):
+        kind = getattr(sys.modules.get(module), names[0], None)
+        if isinstance(kind, type) and issubclass(kind, Exception):
+            return kind.__new__(kind, message)
+    return FromParent(f"{names[0]}: {message}")
+
+
+def describe(e):
+    """Names of its class and that class's bases, message, and the last place in the student's file."""
+    places = [entry.lineno for entry in traceback.extract_tb(e.__traceback__) if entry.filename.startswith(config["student"])]
+    line = e.lineno if isinstance(e, SyntaxError) else places[-1] if places else None
+    return [kind.__name__ for kind in type(e).__mro__][:8], str(e)[:300], f"{config['lesson']}.py, line {line}" if line else ""
+
+
+# ---------------------------------------------------------------------------------------------- the conversation
+
+def send(frame):
+    outgoing.write(frame)
+    outgoing.flush()
+
+
+def receive():
+    frame = wire.read(incoming)
+    if frame is None:                                                  # the parent has gone
+        os._exit(0)
+    return frame
+
+
+peer = wire.Peer(send, receive, resolve, name_of, record, describe, raised)
+send(wire.pack(("ready",)))
+while True:
+    kind, *content = peer.message()
+    if kind == "call":
+        peer.serve(*content)
