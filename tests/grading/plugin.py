@@ -16,9 +16,7 @@ import pytest
 from solutions.checks import BadInput
 from validate import binding
 
-from .points import BOX_LIMIT, LIMIT, Points, TooLong, score
-
-PUBLIC = "public"            # the seed of everyone's own tests
+from .points import BOX_LIMIT, LIMIT, PUBLIC, Points, TooLong, score
 
 
 def pytest_addoption(parser):
