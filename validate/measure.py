@@ -164,10 +164,10 @@ def methods_of(scene, plan):
 def not_run(scene, plan):
     """Sentences: which methods this run leaves out, and why."""
     labels = [m.label for m in scene.METHODS if m not in methods_of(scene, plan)]
-    slow = [f"Left to --full, because they take longest to compile or to run: {', '.join(labels)}"] if labels else []
+    slow = [f"Left to --full, to keep this one quick: {', '.join(labels)}"] if labels else []
     if plan.quick and len(scene.CASES) > 1:
         slow.append(f"Left to --full: the engines on {', '.join(list(scene.CASES)[1:])}")
-    return slow + ([f"Not run here: {scene.WITHOUT}"] if hasattr(scene, "WITHOUT") else [])
+    return slow
 
 
 def sweep(scene, plan=Plan()):

@@ -21,7 +21,6 @@ and may define
     LINKS(p)                  pairs of points to join in the picture
     FULL_ONLY                 functions of methods that are too slow here for a quick validation
     FILM                      how much of the motion the moving picture shows [s]; T without it
-    WITHOUT                   a sentence: which methods are not run here at all, and why
     PUBLISHED                 ((time, observed, tolerance), …) of the first case, from elsewhere
     ORDERS                    {method's function: order here}, where it differs from the usual; EXACT means no error but round-off
     WHY                       {engine label: (why it departs from the truth, in one sentence; its own law (p, t), like truth)}:
@@ -31,6 +30,7 @@ and may define
 from typing import Callable, NamedTuple
 
 EXACT = "exact"
+LATE_LEAPFROG = "1 to 2"     # the order that leapfrog shows when its first velocity belongs to half a step before or after
 ROUND_OFF = 2.3e-16          # spacing of floats around 1, rounded up [-]
 
 

@@ -34,6 +34,7 @@ def pytest_configure(config):
             binding.subject_folder(config.getoption("--of"))
         except BadInput as e:
             raise pytest.UsageError(str(e)) from None
+        config.option.tbstyle = "short" if config.option.tbstyle == "auto" else config.option.tbstyle     # of a student's file, not of ours
         config.points = Points()
         config.pluginmanager.register(config.points)
 
