@@ -20,6 +20,9 @@ A scene is a module in `validate/scenes/`.  It must define
 and may define
     LINKS(p)                  pairs of points to join in the picture
     FULL_ONLY                 functions of methods that are too slow here for a quick validation
+    bodies(p)                 shapes of validate/report/space.py: the motion is then shown in space, and its points in small;
+    poses(observed, p)        (bodies, 7) place and quaternion (w, x, y, z) of each;
+    arrows(observed, p)       {name: (from, to)} [m], such as ω and L;   TRAIL: number of the body whose way is drawn;   GROUND: draw z = 0
     FILM                      how much of the motion the moving picture shows [s]; T without it
     PUBLISHED                 ((time, observed, tolerance), …) of the first case, from elsewhere
     ORDERS                    {method's function: order here}, where it differs from the usual; EXACT means no error but round-off
