@@ -4,10 +4,7 @@ import json
 import os
 import secrets
 import sys
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from concurrent.futures.process import BrokenProcessPool
 from datetime import datetime
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Annotated, Optional
 
@@ -19,9 +16,8 @@ from solutions.checks import BadInput
 from validate import binding
 from validate.__main__ import writable, write_whole
 
-from . import box, marking, pages, submissions
+from . import box, local, marking, pages, submissions
 
-MEMORY = 6 << 30             # of a grading process [bytes]: what a student's code hands back may not swell it to more
 console = Console()
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
@@ -88,7 +84,7 @@ def run(handed_in, settings, people, terms, jobs, executor, out):
     try:
         with Progress(TextColumn("{task.description:12}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), console=console) as bars:
             bar = bars.add_task("submissions", total=len(handed_in), completed=len(results))
-            for student, result, why in (on_cluster(executor, todo, settings) if executor else on_this_machine(jobs, todo, settings)):
+            for student, result, why in (on_cluster(executor, todo, settings) if executor else local.results(jobs, todo, settings)):
                 if result:
                     results[student] = result
                     write_whole(kept / f"{student}.json", result)
@@ -111,45 +107,6 @@ def before(path, digest):
     except (OSError, ValueError):
         return None
     return result if result.get("digest") == digest else None
-
-
-def on_this_machine(jobs, todo, settings):
-    """(student, result, "") or (student, None, why the grader failed), as they come."""
-    waiting = {s.student: s for s in todo}
-    for attempt in (1, 2):                               # a grading process that died takes others' work along: once more, one at a time
-        pool = ProcessPoolExecutor(max(1, min(jobs, len(waiting))) if attempt == 1 else 1, mp_context=get_context("spawn"), initializer=bounded)
-        try:
-            futures = {pool.submit(marked, s, settings): s.student for s in waiting.values()}
-            for future in as_completed(futures):
-                try:
-                    result, why = future.result()
-                except BrokenProcessPool:
-                    continue
-                waiting.pop(futures[future])
-                yield futures[future], result, why
-        finally:
-            pool.shutdown(wait=True, cancel_futures=True)
-        if not waiting:
-            return
-    for student in waiting:
-        yield student, None, "the grading process ended unexpectedly"
-
-
-def marked(submission, settings):
-    """(result, "") or (None, why the grader failed)."""
-    try:
-        return marking.mark(submission, settings), ""
-    except Exception as e:
-        return None, f"{type(e).__name__}: {e}"
-
-
-def bounded():
-    """Keep a grading process from taking all memory."""
-    try:
-        import resource
-        resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-    except (ImportError, ValueError, OSError):
-        pass
 
 
 def on_cluster(executor, todo, settings):
