@@ -76,7 +76,7 @@ def run(handed_in, settings, people, terms, jobs, executor, out):
     kept.mkdir(exist_ok=True)
     results, todo, failed = {}, [], {}
     for submission in handed_in:
-        result = before(kept / f"{submission.student}.json", settings.digest(submission))
+        result = before(kept / f"{pages.file_name(submission.student)}.json", settings.digest(submission))
         if result:
             results[submission.student] = result
         else:
@@ -87,7 +87,7 @@ def run(handed_in, settings, people, terms, jobs, executor, out):
             for student, result, why in (on_cluster(executor, todo, settings) if executor else local.results(jobs, todo, settings)):
                 if result:
                     results[student] = result
-                    write_whole(kept / f"{student}.json", result)
+                    write_whole(kept / f"{pages.file_name(student)}.json", result)
                 else:
                     failed[student] = why
                 bars.advance(bar)

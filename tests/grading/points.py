@@ -14,6 +14,7 @@ from .expect import NotYet
 TESTS = Path(__file__).resolve().parent.parent
 PUBLIC = "public"            # the seed of everyone's own tests
 LIMIT = 20.0                 # a grading test may take this long [s]: the slowest takes 2, on two shared cores
+READING = "reading the file"   # the quantity where a file could not be loaded
 BOX_LIMIT = 10.0             # and so long in the sandbox [s]
 
 
@@ -79,10 +80,15 @@ def outcome(mark, name, excinfo):
         return Outcome(exercise, name, points, "not yet", "the time it takes", f"an answer within {LIMIT:g} s", "none", "",
                        "does a loop of yours never end? Count its rounds, and stop after so many")
     if not _in_a_test(excinfo):
-        return Outcome(exercise, name, points, "not yet", "reading the file", "a module that loads", f"{said}{_line(error)}", "",
-                       "mend this first: nothing in the file can be tested before", f"{kind}{_line(error)}")
+        return unreadable(Outcome(exercise, name, points, "not run"), error, _line(error))
     place = _place(excinfo)
     return Outcome(exercise, name, points, "not yet", "the call itself", "an answer", f"{said}{place}", "", _advice(error, hint), f"{kind}{place}")
+
+
+def unreadable(o, error, place):
+    """The Outcome of a test whose subject could not even be loaded."""
+    return o._replace(status="not yet", quantity=READING, expected="a module that loads", got=f"{type(error).__name__}: {error}{place}",
+                      hint="mend this first: nothing in the file can be tested before", error=f"{type(error).__name__}{place}")
 
 
 def _in_a_test(excinfo):
