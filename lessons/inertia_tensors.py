@@ -255,7 +255,8 @@ def mesh_body(density, x, faces):
     Taken about the origin of the world, V c cᵀ would cancel nearly all of Q when the body is far away, and the digits with it.
 
     Raises BadInput unless the density is positive (check_positive), the corners are finite and the mesh is closed (check_closed);
-    and with "the volume inside the mesh [m³]" when V is not positive: then its triangles are clockwise, or it is flat.
+    and with "the volume inside the mesh [m³]" unless V > ε e³, e = max|x − o| over all coordinates, ε = TENSOR_ROUND_OFF: then its
+    triangles are clockwise, or it is flat and its volume nothing but round-off.
     *Source:* as for mesh_integrals.
     """
     # YOUR CODE HERE

@@ -324,16 +324,18 @@ def mesh_body(density, x, faces):
     Taken about the origin of the world, V c cᵀ would cancel nearly all of Q when the body is far away, and the digits with it.
 
     Raises BadInput unless the density is positive (check_positive), the corners are finite and the mesh is closed (check_closed);
-    and with "the volume inside the mesh [m³]" when V is not positive: then its triangles are clockwise, or it is flat.
+    and with "the volume inside the mesh [m³]" unless V > ε e³, e = max|x − o| over all coordinates, ε = TENSOR_ROUND_OFF: then its
+    triangles are clockwise, or it is flat and its volume nothing but round-off.
     *Source:* as for mesh_integrals.
     """
     ### BEGIN SOLUTION 4.17
     check_positive("density [kg/m³]", density)
     check_finite("a corner of the mesh [m]", x)
     check_closed(x.shape[0], faces)
-    volume, first, second = mesh_integrals(x - x[0], faces)
-    if volume <= 0.0:
-        raise BadInput("the volume inside the mesh [m³]", volume, "order its triangles counter-clockwise as seen from outside")
+    offsets = x - x[0]
+    volume, first, second = mesh_integrals(offsets, faces)
+    if volume <= TENSOR_ROUND_OFF * np.max(np.abs(offsets)) ** 3:
+        raise BadInput("the volume inside the mesh [m³]", volume, "give one that is not flat, its triangles counter-clockwise as seen from outside")
     centre = first / volume
     covariance = second - volume * np.outer(centre, centre)
     return Body(density * volume, x[0] + centre, density * (np.trace(covariance) * np.eye(3) - covariance))
