@@ -69,10 +69,10 @@ def test_a_wrong_tensor_departs_and_a_table_without_motion_has_all_its_numbers(t
 
 def test_an_engine_that_leaves_its_own_rule_departs(monkeypatch):
     scene = binding.bind_scene("tensors")
-    why, rule = scene.WHY["pybullet, compound"]
-    monkeypatch.setitem(scene.WHY, "pybullet, compound", (why, lambda p, t: rule(p, t) * 1.001))
+    why, rule = scene.WHY["pybullet, automatic"]
+    monkeypatch.setitem(scene.WHY, "pybullet, automatic", (why, lambda p, t: rule(p, t) * 1.001))
     result = measure.errors("tensors", measure.Plan(speeds=("plain",), live=()))
-    assert {e["right"] for one in result["cases"].values() for e in one["engines"] if e["label"] == "pybullet, compound"} == {False}
+    assert {e["right"] for one in result["cases"].values() for e in one["engines"] if e["label"] == "pybullet, automatic"} == {False}
 
 
 def test_a_wrong_method_departs(tmp_path):

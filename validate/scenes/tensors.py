@@ -156,10 +156,13 @@ def mesh(p):
 def truth(p, t):
     """The volume integral I = ∫ (|r|² 1 − r rᵀ) dm about the centre of mass, by other ways than the lesson's.
 
-    Solids of revolution: in slices across the axis, of squared radius q(z): Izz = ρ π/2 ∫ q² dz,  Ixx = ρ π ∫ (q²/4 + z² q) dz − m Z².
-    q is a polynomial, piece by piece, so that Gauss's quadrature is exact.  Boxes: eight points at ±edge/√12.  Bar with round ends:
-    in strips across it.  Corner of a box: ∫x² = V a²/10, ∫x y = V a b/20.  Two discs: ½ Σ m r² + m₁ m₂/(m₁ + m₂) c² (Huygens).
-    Ring: ½ m (a² + b²).  Triangle: m (sum of squared sides)/36.
+    round about z       slices of squared radius q(z): Izz = ρ π/2 ∫ q² dz,  Ixx = ρ π ∫ (q²/4 + z² q) dz − m Z²;
+                        q is a polynomial, piece by piece, so that Gauss's quadrature is exact
+    of boxes            eight points in each, at ±edge/√12
+    corner of a box     ∫x² = V a²/10,  ∫x y = V a b/20
+    ring, triangle      ½ m (a² + b²),  m (sum of the squared sides)/36
+    two discs           ½ Σ m r² + m₁ m₂/(m₁ + m₂) c²
+    bar, round ends     strips across it, by Gauss's quadrature
     Source: any text of mechanics; Stroud 1971 for the quadratures.
     """
     if p.shape in ("ball", "cylinder", "capsule", "dumbbell"):
@@ -381,7 +384,7 @@ def pymunk_make(p, dt):
 
 ENGINES = (
     Engine("pybullet", bullet_make, EXACT, "createMultiBody with the shape and a mass; read by getDynamicsInfo"),
-    Engine("pybullet, compound", bullet_make, EXACT, "createMultiBody as it comes"),
+    Engine("pybullet, automatic", bullet_make, EXACT, "createMultiBody as it comes"),
     Engine("pybullet, hull", bullet_make, EXACT, "GEOM_MESH from corners"),
     Engine("pybullet, concave mesh", lambda p, dt: bullet_make(p, dt, concave=True), EXACT, "GEOM_MESH with GEOM_FORCE_CONCAVE_TRIMESH"),
     Engine("pybullet, told", lambda p, dt: bullet_make(p, dt, told=True), EXACT,
@@ -390,7 +393,7 @@ ENGINES = (
     Engine("pymunk, Segment", pymunk_make, EXACT, "moment_for_segment"),
 )
 WHY = {
-    "pybullet, compound": ("it takes the box around the shape, along the axes of the shape, for the shape", by_bounding_box),
+    "pybullet, automatic": ("it takes the box around the shape, along the axes of the shape, for the shape", by_bounding_box),
     "pybullet, hull": ("it takes the box around the hull for the hull, and makes it 6 mm larger", by_fat_box),
     "pybullet, concave mesh": ("it gives triangle meshes no inertia, so that no torque turns them", by_nothing),
     "pymunk, Segment": ("it takes the box around the bar for the bar", by_flat_box),
@@ -399,7 +402,7 @@ SHAPES_OF = {                # method or engine: what it can do
     "combine": ("ball", "box", "cylinder", "capsule", "dumbbell", "turned bar", "angle", "ring", "two discs", "round bar"),
     "mesh_body": ("box", "angle", "corner", "triangle"),
     "pybullet": ("ball", "box", "cylinder"),
-    "pybullet, compound": ("capsule", "dumbbell", "turned bar", "angle"),
+    "pybullet, automatic": ("capsule", "dumbbell", "turned bar", "angle"),
     "pybullet, hull": ("corner",), "pybullet, concave mesh": ("corner",),
     "pybullet, told": ("capsule", "dumbbell", "turned bar", "angle", "corner"),
     "pymunk": ("ring", "triangle", "two discs"), "pymunk, Segment": ("round bar",),
@@ -430,15 +433,17 @@ def silhouette(p):
 
 
 def gallery():
-    """All outlines beside each other, and the pairs of points that make each of them a line."""
-    points, pairs, at = [], [], 0.0
-    for p in CASES.values():
-        drawn = silhouette(p)
-        first, low, high = sum(map(len, points)), drawn.min(axis=0), drawn.max(axis=0)
-        points.append(drawn + np.array([at - low[0], -0.5 * (low[1] + high[1])]))
-        pairs += [(first + i, first + (i + 1) % len(drawn)) for i in range(len(drawn))]
-        at += high[0] - low[0] + 0.15
-    return np.concatenate(points), pairs
+    """All outlines, five a row, and the pairs of points that make each of them a line."""
+    drawn, pairs, across, down = [], [], 0.0, 0.0
+    for k, p in enumerate(CASES.values()):
+        if k % 5 == 0:
+            across, down = 0.0, down - 1.4
+        shape, first = silhouette(p), sum(map(len, drawn))
+        low, high = shape.min(axis=0), shape.max(axis=0)
+        drawn.append(shape + np.array([across - low[0], down - 0.5 * (low[1] + high[1])]))
+        pairs += [(first + i, first + (i + 1) % len(shape)) for i in range(len(shape))]
+        across += high[0] - low[0] + 0.25
+    return np.concatenate(drawn), pairs
 
 
 def points(observed, p):
