@@ -336,7 +336,8 @@ def mesh_body(density, x, faces):
     offsets = x - x[0]
     volume, first, second = mesh_integrals(offsets, faces)
     if volume <= TENSOR_ROUND_OFF * np.max(np.abs(offsets)) ** 3:
-        raise BadInput("the volume inside the mesh [m³]", volume, "give one that is not flat, its triangles counter-clockwise as seen from outside")
+        raise BadInput("the volume inside the mesh [m³]", volume,
+                       "give one that is not flat, its triangles counter-clockwise as seen from outside")
     centre = first / volume
     covariance = second - volume * np.outer(centre, centre)
     return Body(density * volume, x[0] + centre, density * (np.trace(covariance) * np.eye(3) - covariance))

@@ -36,7 +36,8 @@ def test_a_body_balances_on_its_centre_of_mass(lesson, draw):
     m, x = cloud(draw, draw.whole(3, 6))
     M, X = lesson.centre_of_mass(m, x)
     close("total mass [kg]", M, sum(m), ROUNDED, f"m = {m}")
-    close("Σ mᵢ (xᵢ − X): what gravity would turn the body with [kg m]", m @ (x - np.asarray(X)), np.zeros(3), ROUNDED, f"m = {m}, x = {x.tolist()}")
+    balance = m @ (x - np.asarray(X))
+    close("Σ mᵢ (xᵢ − X): what gravity would turn the body with [kg m]", balance, np.zeros(3), ROUNDED, f"m = {m}, x = {x.tolist()}")
     _, X = lesson.centre_of_mass(m[:1], x[:1])
     close("centre of a single point [m]: the point", X, x[0], ROUNDED, f"x = {x[0]}")
 
@@ -65,8 +66,10 @@ def test_angular_momentum_of_a_turning_body_is_its_tensor_times_omega(lesson, dr
     X, omega = m @ x / m.sum(), draw(-3.0, 3.0, 3)
     v = np.cross(omega, x - X)
     given = f"m = {m}, x = {x.tolist()}, ω = {omega}"
-    close("L about the centre, of points that turn with ω [kg m²/s]: I ω", lesson.angular_momentum(m, x, v, X), tensor(m, x - X) @ omega, ROUNDED, given)
-    close("L of one point that flies straight at `about` [kg m²/s]", lesson.angular_momentum(m[:1], x[:1], X - x[:1], X), np.zeros(3), ROUNDED, given)
+    found, expected = lesson.angular_momentum(m, x, v, X), tensor(m, x - X) @ omega
+    close("L about the centre, of points that turn with ω [kg m²/s]: I ω", found, expected, ROUNDED, given)
+    straight = lesson.angular_momentum(m[:1], x[:1], X - x[:1], X)
+    close("L of one point that flies straight at `about` [kg m²/s]", straight, np.zeros(3), ROUNDED, given)
 
 
 @exercise("4.3", points=0.5, hint="the arm of each point begins at `about`, not at the origin; `about` itself does not move")
@@ -75,7 +78,8 @@ def test_angular_momentum_about_another_point_has_the_arm_of_the_whole_momentum(
     v, about, X = draw(-4.0, 4.0, x.shape), draw(-1.5, 1.5, 3), m @ x / m.sum()
     here, there = lesson.angular_momentum(m, x, v, about), lesson.angular_momentum(m, x, v, X)
     given = f"m = {m}, x = {x.tolist()}, v = {v.tolist()}, about = {about}"
-    close("L about a point − L about the centre [kg m²/s]: (X − about) × P", np.asarray(here) - there, np.cross(X - about, m @ v), ROUNDED, given)
+    carried = np.cross(X - about, m @ v)
+    close("L about a point − L about the centre [kg m²/s]: (X − about) × P", np.asarray(here) - there, carried, ROUNDED, given)
     flight = lesson.angular_momentum(m, x + 0.7 * v, v, about)
     close("L a while later, each point on its straight line [kg m²/s]: the same", flight, here, ROUNDED, given)
 
@@ -119,7 +123,8 @@ def test_tensor_of_a_box_is_its_volume_integral(lesson, draw):
 @exercise("4.5", points=0.25, hint="nothing in the formula minds a negative mass: a hole takes away what the box would have had")
 def test_tensor_of_a_hole_is_the_negative_of_the_box(lesson, draw):
     m, size = draw(0.5, 5.0), draw(0.2, 2.0, 3)
-    close("tensor of a hole of box shape [kg m²]", lesson.box_inertia(-m, size), -by_eight_points(m, size), ROUNDED, f"m = {m:.4g}, size = {size}")
+    hole = lesson.box_inertia(-m, size)
+    close("tensor of a hole of box shape [kg m²]", hole, -by_eight_points(m, size), ROUNDED, f"m = {m:.4g}, size = {size}")
 
 
 def by_slices(m, pieces):
@@ -167,10 +172,12 @@ def test_tensor_of_a_capsule_is_its_volume_integral(lesson, draw):
 @exercise("4.8", points=0.5, hint="with length = 0 all mass is in the two half balls, and they make a ball")
 def test_a_capsule_without_length_is_a_ball_and_a_long_one_a_rod(lesson, draw):
     m, r = draw(0.5, 5.0), draw(0.2, 1.0)
-    close("tensor of a capsule of length 0 [kg m²]", lesson.capsule_inertia(m, r, 0.0), 0.4 * m * r * r * np.eye(3), ROUNDED, f"m = {m:.4g}, R = {r:.4g}")
+    ball = 0.4 * m * r * r * np.eye(3)
+    close("tensor of a capsule of length 0 [kg m²]", lesson.capsule_inertia(m, r, 0.0), ball, ROUNDED, f"m = {m:.4g}, R = {r:.4g}")
     # a thin one: the caps hold 4/3 R/h of the mass and reach R further out, which moves m h²/12 by less than 6 R/h of itself
     h = 1e5 * r
-    close("Ixx of a long thin capsule over m h²/12 [-]", np.asarray(lesson.capsule_inertia(m, r, h))[0, 0] / (m * h * h / 12.0), 1.0, 6e-5, f"R/h = {r / h:.3g}")
+    rod = np.asarray(lesson.capsule_inertia(m, r, h))[0, 0] / (m * h * h / 12.0)
+    close("Ixx of a long thin capsule over m h²/12 [-]", rod, 1.0, 6e-5, f"m = {m:.4g}, R = {r:.4g}, length = {h:.4g}")
 
 
 # ---------------------------------------------------------------------------------------------- from body to world
@@ -386,7 +393,8 @@ def test_a_mesh_has_the_mass_centre_and_tensor_of_its_body(lesson, draw):
     m, given = density * a * b * c / 6.0, f"density = {density:.4g}, edges {a:.4g}, {b:.4g}, {c:.4g}"
     _, found_x, found_I = lesson.mesh_body(density, np.array([[0.0, 0.0, 0.0], [a, 0.0, 0.0], [0.0, b, 0.0], [0.0, 0.0, c]]), TETRAHEDRON)
     # Σ over the corner cut off a box: ∫x² = V a²/10, ∫x y = V a b/20, centre a/4: 1/10 − 1/16 = 3/80, 1/20 − 1/16 = −1/80
-    expected = m / 80.0 * np.array([[3.0 * (b * b + c * c), a * b, a * c], [a * b, 3.0 * (a * a + c * c), b * c], [a * c, b * c, 3.0 * (a * a + b * b)]])
+    expected = m / 80.0 * np.array([[3.0 * (b * b + c * c), a * b, a * c], [a * b, 3.0 * (a * a + c * c), b * c],
+                                    [a * c, b * c, 3.0 * (a * a + b * b)]])
     close("centre of a corner cut off a box [m]", found_x, [0.25 * a, 0.25 * b, 0.25 * c], ROUNDED, given)
     close("its tensor about the centre [kg m²]", found_I, expected, ROUNDED, given)
 
@@ -397,7 +405,8 @@ def test_a_mesh_far_from_the_origin_keeps_its_digits(lesson, draw):
     far = np.round(draw(0.5, 1.0, 3) * np.array([1e5, -1e5, 1e5]))
     _, found_x, found_I = lesson.mesh_body(density, *box_mesh(size, far))
     given = f"size = {size}, centre = {far}"
-    # a corner 10⁵ m out is rounded by 7e-12 m, and the tensor of 7 kg with it by 4 · 7 kg · 2 m · 7e-12 m; about the origin, 7 · 10¹⁰ kg m² would be, by 1e-6
+    # a corner 10⁵ m out is rounded by 7e-12 m, and the tensor of 7 kg with it by 4 · 7 kg · 2 m · 7e-12 m; about the origin
+    # 7 · 10¹⁰ kg m² would be rounded, by 1e-6 kg m², and more when the tetrahedra reach there
     close("tensor about the centre, 10⁵ m away [kg m²]", found_I, by_eight_points(density * np.prod(size), size), 1e-9, given)
     close("centre of mass, 10⁵ m away [m]", found_x, far, 1e-10, given)
 

@@ -253,7 +253,8 @@ def parity(scene, fast, plan, p):
 def picture(scene, fast, plan, p, usable):
     """Frames of the motion: truth, our usable method of highest order, and the first engine that is live and agrees."""
     if still(scene) is not None:
-        return {"seconds": 0.0, "dt": 0.0, "links": links(scene, p), "frames": {"truth": [scene.points(np.array(scene.truth(p, scene.T), dtype=float), p).tolist()]}}
+        drawn = scene.points(np.array(scene.truth(p, scene.T), dtype=float), p).tolist()
+        return {"seconds": 0.0, "dt": 0.0, "links": links(scene, p), "frames": {"truth": [drawn]}}
     per_frame = max(1, scene.STEPS[-3] // FRAMES)
     seconds = getattr(scene, "FILM", scene.T)
     dt = seconds / (per_frame * FRAMES)

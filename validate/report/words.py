@@ -127,7 +127,8 @@ def _witnesses(result):
     for name, case in result["cases"].items():
         for c in case["engines"]:
             if c.get("reason") and c["right"]:
-                yield f"{name[0].upper()}{name[1:]}: {c['label']} is {percent(c['rows'][-1]['error'])} off because {c['reason']}; that rule alone gives {percent(c['departs'])}."
+                yield (f"{name[0].upper()}{name[1:]}: {c['label']} is {percent(c['rows'][-1]['error'])} off because {c['reason']}; "
+                       f"that rule alone gives {percent(c['departs'])}.")
             elif c["right"] is False:
                 yield f"{name[0].upper()}{name[1:]}: {c['label']} {c['why']}, and nothing that the scene says predicts it."
 

@@ -89,8 +89,9 @@ def tolerance(p, dt):
     m h²/6, h = 2R/n, against ⅖ m R²:  error ≤ (1 + √3/n)⁵ − 1 + 5/(3n²), of first order at worst.
     pybullet's own rule knows no n: round-off.
     """
-    n, half_turn = 1.0 / dt, 0.5 * np.pi
-    return {2: 1.0 - np.cos(min(np.sqrt(2.0) / n, half_turn)) ** 5 + 1e-12, 1: (1.0 + np.sqrt(3.0) / n) ** 5 - 1.0 + 5.0 / (3.0 * n * n), "pybullet, hull": 1e-12}
+    n = 1.0 / dt
+    alpha = min(np.sqrt(2.0) / n, 0.5 * np.pi)
+    return {2: 1.0 - np.cos(alpha) ** 5 + 1e-12, 1: (1.0 + np.sqrt(3.0) / n) ** 5 - 1.0 + 5.0 / (3.0 * n * n), "pybullet, hull": 1e-12}
 
 
 def by_fat_box(p, t):
