@@ -6,6 +6,7 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
+from solutions.checks import BadInput
 from validate import stability
 
 examine = lru_cache(maxsize=None)(stability.examine)
@@ -54,6 +55,25 @@ def test_a_wrong_method_does_not_find_the_bound(number, method, wrong):
     with np.errstate(all="ignore"):
         found, _ = stability.CASES[number][1](subject)
     assert not all(f.holds for f in found)
+
+
+def about_the_world(density, x, faces):
+    V, first, second = stability.lesson_of(40).mesh_integrals(x, faces)
+    C = second - np.outer(first, first) / V
+    return stability.lesson_of(40).Body(density * V, first / V, density * (np.trace(C) * np.eye(3) - C))
+
+
+def without_tolerance(I):
+    moments = np.linalg.eigvalsh(I)
+    if moments[0] <= 0.0 or moments[2] > moments[0] + moments[1]:
+        raise BadInput("a tensor", moments[2], "give another")
+
+
+@pytest.mark.parametrize("number, function", [(40, about_the_world), (41, without_tolerance)], ids=["40", "41"])
+def test_a_wrong_tensor_does_not_find_the_bound(number, function):
+    method = {40: "mesh_body", 41: "check_inertia"}[number]
+    subject = types.SimpleNamespace(**{**vars(stability.lesson_of(number)), method: function})
+    assert not all(f.holds for f in stability.CASES[number][1](subject)[0])
 
 
 def test_a_measurement_that_failed_is_a_finding_that_does_not_hold():

@@ -133,39 +133,57 @@ def errors(name, plan, tick=lambda: None):
     fast = binding.bind_scene(name, plan.of, compiled=True) if "compiled" in plan.speeds else scene
     cases = {}
     for case, p in cases_of(scene, plan).items():
-        first = not cases                                            # the others are asked of engines in a full validation only
+        asked = not cases or not plan.quick or still(scene) is not None       # moving ones ask engines for other cases in a full validation only
         truth = np.array(scene.truth(p, scene.T), dtype=float)
         ours = []
-        for method in methods_of(scene, plan):
+        for method in methods_of(scene, plan, p):
             order = getattr(scene, "ORDERS", {}).get(method.function, method.order)
             step = getattr(binding.world(plan.of, fast is not scene).lesson(method.lesson), method.function)
             runs = [(n, final(fast, step, p, n)) for n in sweep(scene, plan)]
             ours.append(curve(scene, method.label, p, truth, runs, order, lambda n: scene.tolerance(p, scene.T / n)[order]))
+            if still(scene) is not None:
+                ours[-1]["observed"] = [{"steps": n, "observed": o, "failure": f} for n, (o, f) in runs]
             tick()
         cases[case] = {"params": p._asdict() if hasattr(p, "_asdict") else {}, "truth": truth.tolist(), "ours": ours,
-                       "engines": [engine_curve(name, scene, case, e, p, truth, plan) for e in scene.ENGINES] if first or not plan.quick else []}
+                       "quantities": scene.QUANTITIES(p) if hasattr(scene, "QUANTITIES") else [],
+                       "engines": [engine_curve(name, scene, case, e, p, truth, plan) for e in engines_of(scene, p)] if asked else []}
         tick()
     first = next(iter(cases_of(scene, plan).values()))
     agreeing = usable({"cases": cases})
     return jsonable({
-        "scene": name, "title": scene.TITLE, "lesson": scene.LESSON, "story": inspect.getdoc(scene) or "", "T": scene.T,
+        "scene": name, "still": still(scene), "title": scene.TITLE, "lesson": scene.LESSON, "story": inspect.getdoc(scene) or "", "T": scene.T,
         "uncertainty": scene.UNCERTAINTY, "truth_story": inspect.getdoc(scene.truth) or "", "needs": list(scene.NEEDS),
         "without": not_run(scene, plan), "cases": cases, "parity": parity(scene, fast, plan, first), "picture": picture(scene, fast, plan, first, agreeing),
         "law": inspect.getdoc(getattr(scene, "acceleration", None)) or "" if hasattr(scene, "acceleration") else "",
     })
 
 
-def methods_of(scene, plan):
-    """The methods to run; those that the scene finds too slow for a quick validation only in a full one."""
+def still(scene):
+    """None where something moves; else what the scene refines instead of a step, in words: "" when nothing."""
+    return getattr(scene, "STILL", None)
+
+
+def can(scene, name, p):
+    """Whether a method or an engine of the scene can do this case; without a case, whether it is there at all."""
+    return p is None or not hasattr(scene, "CAN") or scene.CAN(name, p)
+
+
+def methods_of(scene, plan, p=None):
+    """The methods to run on a case; those that the scene finds too slow for a quick validation only in a full one."""
     slow = getattr(scene, "FULL_ONLY", ()) if plan.quick else ()
-    return tuple(m for m in scene.METHODS if m.function not in slow)
+    return tuple(m for m in scene.METHODS if m.function not in slow and can(scene, m.function, p))
+
+
+def engines_of(scene, p):
+    """The engines that can do this case."""
+    return tuple(e for e in scene.ENGINES if can(scene, e.label, p))
 
 
 def not_run(scene, plan):
     """Sentences: which methods this run leaves out, and why."""
     labels = [m.label for m in scene.METHODS if m not in methods_of(scene, plan)]
     slow = [f"Left to --full, to keep this one quick: {', '.join(labels)}"] if labels else []
-    if plan.quick and len(scene.CASES) > 1:
+    if plan.quick and len(scene.CASES) > 1 and still(scene) is None:
         slow.append(f"Left to --full: the engines on {', '.join(list(scene.CASES)[1:])}")
     return slow
 
@@ -177,10 +195,10 @@ def sweep(scene, plan=Plan()):
 
 
 def cases_of(scene, plan):
-    """The scene's cases; for a notebook only the first, and with overrides the first, changed."""
+    """The scene's cases; for a notebook only the first of what moves, and with overrides the first, changed."""
     name, p = next(iter(scene.CASES.items()))
     if not plan.overrides:
-        return {name: p} if plan.most_steps else scene.CASES
+        return {name: p} if plan.most_steps and still(scene) is None else scene.CASES
     return {f"{name}, changed": p._replace(**dict(plan.overrides))}
 
 
@@ -204,7 +222,7 @@ def engine_curve(name, scene, case, engine, p, truth, plan):
     if engine.label in getattr(scene, "WHY", {}):                    # it must depart, and exactly as its own law says
         reason, own_law = scene.WHY[engine.label]
         own = np.array(own_law(p, scene.T), dtype=float)
-        result = {**judged(own), "rows": result["rows"], "departs": relative(own, truth)}
+        result = {**judged(own), "rows": result["rows"], "departs": relative(own, truth), "own": own.tolist()}
     return {**result, "settings": engine.settings, "source": source, "reason": reason,
             "observed": [{"steps": n, "observed": None if o is None else o.tolist(), "failure": f} for n, (o, f) in runs]}
 
@@ -224,7 +242,7 @@ def parity(scene, fast, plan, p):
     if fast is scene or "plain" not in plan.speeds:
         return None
     worst = 0.0
-    for method in methods_of(scene, plan):
+    for method in methods_of(scene, plan, p):
         plain, twin = (getattr(binding.world(plan.of, c).lesson(method.lesson), method.function) for c in (False, True))
         a, b = final(scene, plain, p, scene.STEPS[0])[0], final(fast, twin, p, scene.STEPS[0])[0]
         if a is not None and b is not None:
@@ -234,6 +252,10 @@ def parity(scene, fast, plan, p):
 
 def picture(scene, fast, plan, p, usable):
     """Frames of the motion: truth, our usable method of highest order, and the first engine that is live and agrees."""
+    if still(scene) is not None:
+        there = np.array(scene.truth(p, scene.T), dtype=float)
+        return {"seconds": 0.0, "dt": 0.0, "links": links(scene, p), "frames": {"truth": [scene.points(there, p).tolist()]},
+                "space": in_space(scene, {"truth": [there]}, p, 1.0)}
     per_frame = max(1, scene.STEPS[-3] // FRAMES)
     seconds = getattr(scene, "FILM", scene.T)
     dt = seconds / (per_frame * FRAMES)
@@ -248,8 +270,7 @@ def picture(scene, fast, plan, p, usable):
     record = RECORDED / f"{scene.__name__.rpartition('.')[2]}.json"
     if record.is_file() and not plan.overrides and not any(label.startswith("py") for label in seen):
         frames["pybullet, recorded"] = json.loads(record.read_text())["frames"]
-    links = [list(map(int, pair)) for pair in scene.LINKS(p)] if hasattr(scene, "LINKS") else []
-    return {"seconds": seconds, "frames": frames, "links": links, "dt": dt, "space": in_space(scene, seen, p, seconds)}
+    return {"seconds": seconds, "frames": frames, "links": links(scene, p), "dt": dt, "space": in_space(scene, seen, p, seconds)}
 
 
 def in_space(scene, seen, p, seconds):
@@ -264,6 +285,11 @@ def in_space(scene, seen, p, seconds):
             each = [scene.arrows(observed, p) for observed in film]
             arrows[label] = {name: [one[name] for one in each] for name in each[0]}
     return space.picture(scene.bodies(p), poses, seconds, arrows, getattr(scene, "TRAIL", None), getattr(scene, "GROUND", False))
+
+
+def links(scene, p):
+    """Pairs of points that the picture joins."""
+    return [list(map(int, pair)) for pair in scene.LINKS(p)] if hasattr(scene, "LINKS") else []
 
 
 def our_frames(scene, fast, plan, method, p, dt, per_frame):
@@ -312,17 +338,18 @@ def times(name, plan, result, tick=lambda: None):
     case, p = next(iter(cases_of(scene, plan).items()))
     found = {c["label"]: {r["steps"]: r for r in c["rows"] if r["error"] is not None and r["error"] < LOST}
              for c in result["cases"][case]["ours"] + result["cases"][case]["engines"]}
-    items = [Timed(m.label, speed, n, prepare) for m in methods_of(scene, plan) for speed in plan.speeds
+    refined = still(scene) != ""                                     # else there is no diagram to time anything for
+    items = [Timed(m.label, speed, n, prepare) for m in methods_of(scene, plan, p) for speed in plan.speeds if refined
              for prepare in [_ours(name, plan, m, speed, p)] for n in found[m.label]]
-    items += [Timed(e.label, "engine", n, _engine(scene, e, p)) for e in scene.ENGINES if e.label.split(",")[0] in plan.live
+    items += [Timed(e.label, "engine", n, _engine(scene, e, p)) for e in engines_of(scene, p) if refined and e.label.split(",")[0] in plan.live
               for n in found[e.label]]
     timed = [(i.label, i.speed, i.steps, t) for i, t in interleaved(items, plan.longest(), tick)]
-    timed += [(e.label, "recorded", row["steps"], row) for e in scene.ENGINES if e.label.split(",")[0] not in plan.live
+    timed += [(e.label, "recorded", row["steps"], row) for e in engines_of(scene, p) if e.label.split(",")[0] not in plan.live
               for row in (recorded(name, case, e.label) or {}).get("seconds") or []]
     rows = [{**t, "label": label, "speed": speed, "steps": n, "error": found[label][n]["error"]} for label, speed, n, t in timed
             if n in found[label]]
     untimed = dict.fromkeys(f"{i.label} ({i.speed})" for i in items if (i.label, i.speed) not in {(r["label"], r["speed"]) for r in rows})
-    return jsonable({"rows": rows, "untimed": list(untimed), "baseline": baseline(plan), "reach": reach(rows), "advantage": advantage(rows),
+    return jsonable({"rows": rows, "untimed": list(untimed), "baseline": baseline(plan) if still(scene) is None else {}, "reach": reach(rows), "advantage": advantage(rows),
                      "left_out": left_out(name, plan, p, usable(result))})
 
 
@@ -428,7 +455,7 @@ def left_out(name, plan, p, usable):
     if method is None:
         return []
     step = getattr(binding.world(plan.of, speed == "compiled").lesson(method.lesson), method.function)
-    steps = scene.STEPS[2] if speed == "compiled" else scene.STEPS[0]
+    steps = scene.STEPS[min(2, len(scene.STEPS) - 1)] if speed == "compiled" else scene.STEPS[0]
     rows = []
     for what, extra in scene.LEAVES_OUT.items():
         if isinstance(extra, str):

@@ -12,21 +12,28 @@ def record(name):
     witnesses = [e for e in scene.ENGINES if e.label.startswith("pybullet")]
     if not witnesses:
         return None
-    runs = {case: {e.label: [_reading(scene, e, p, n) for n in measure.sweep(scene) if n <= (e.most_steps or n)] for e in witnesses} for case, p in scene.CASES.items()}
-    p, per_frame = next(iter(scene.CASES.values())), max(1, scene.STEPS[-3] // measure.FRAMES)
-    items = [measure.Timed(e.label, "engine", n, measure._engine(scene, e, p)) for e in witnesses for n in scene.STEPS if n <= (e.most_steps or n)]
+    runs = {case: {e.label: [_reading(scene, e, p, n) for n in measure.sweep(scene) if n <= (e.most_steps or n)]
+                   for e in witnesses if measure.can(scene, e.label, p)} for case, p in scene.CASES.items()}
+    p, moves = next(iter(scene.CASES.values())), measure.still(scene) is None
+    items = [measure.Timed(e.label, "engine", n, measure._engine(scene, e, p))
+             for e in witnesses if moves for n in scene.STEPS if n <= (e.most_steps or n)]
     timed = measure.interleaved(items, {"engine": 0.2}, lambda: None)
     trace = {
         "stamp": f"pybullet {engines.installed('pybullet')}, {platform.system()} {platform.machine()}, Python {platform.python_version()}",
         "settings": {e.label: e.settings for e in witnesses},
         "runs": runs,
         "seconds": {e.label: [{"steps": i.steps, **t} for i, t in timed if i.label == e.label] for e in witnesses},
-        "frames": measure.engine_frames(scene, witnesses[-1], p, getattr(scene, "FILM", scene.T) / (per_frame * measure.FRAMES), per_frame),
+        "frames": _film(scene, witnesses[-1], p) if moves else [],
     }
     measure.RECORDED.mkdir(exist_ok=True)
     path = measure.RECORDED / f"{name}.json"
     path.write_text(json.dumps(measure.jsonable(trace), indent=None, separators=(",", ":")) + "\n")
     return path
+
+
+def _film(scene, engine, p):
+    per_frame = max(1, scene.STEPS[-3] // measure.FRAMES)
+    return measure.engine_frames(scene, engine, p, getattr(scene, "FILM", scene.T) / (per_frame * measure.FRAMES), per_frame)
 
 
 def _reading(scene, engine, p, steps):

@@ -26,8 +26,12 @@ and may define
     FILM                      how much of the motion the moving picture shows [s]; T without it
     PUBLISHED                 ((time, observed, tolerance), …) of the first case, from elsewhere
     ORDERS                    {method's function: order here}, where it differs from the usual; EXACT means no error but round-off
+    CAN(name, p)              whether that method (by its function) or engine (by its label) can do that case at all; without it all can
     WHY                       {engine label: (why it departs from the truth, in one sentence; its own law (p, t), like truth)}:
                               such an engine is held against its own law, and the report says how far that is from the truth
+    STILL                     nothing moves: what the fineness dt = T/steps means, in words, "size of a triangle, 1/n [-]".  T is 1, no start is
+                              compared, the picture stands.  When nothing can be refined either, STILL is "" and STEPS (1,): then the report
+                              has no diagrams but a table of numbers, under the names that QUANTITIES(p) gives to what is observed
 """
 
 from typing import Callable, NamedTuple
@@ -54,6 +58,9 @@ VERLET = Method("verlet_step", "Verlet", 2)
 IMPLICIT_EULER = Method("implicit_euler_step", "implicit Euler", 1)
 IMPLICIT_MIDPOINT = Method("implicit_midpoint_step", "implicit midpoint", 2)
 IMPLICIT_MESH = Method("implicit_mesh_step", "implicit mesh", 1, "springs")
+TRIANGLES = Method("mesh_body", "triangles", 2, "inertia_tensors")
+POINTS = Method("point_mass_inertia", "points", 1, "inertia_tensors")
+PARTS = Method("combine", "parts", 2, "inertia_tensors")
 
 INTEGRATORS = (EULER, MIDPOINT, RK4, AVERAGE_VELOCITY, SYMPLECTIC_EULER, VERLET, IMPLICIT_EULER, IMPLICIT_MIDPOINT)
 

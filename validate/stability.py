@@ -11,6 +11,8 @@ Cases 1 to 8 are those of the workbook's list; case 0 draws all methods into one
 *Source:* Hairer and Wanner 1996, "Solving ordinary differential equations II", IV.2; Hairer, Lubich, Wanner 2006.
 """
 
+from importlib import import_module
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -550,6 +552,8 @@ CASES = {
     7: ("A stiff pair", case_7, "integrators"),
     8: ("Robertson's reaction", case_8, "integrators"),
 }
+for path in sorted(Path(__file__).parent.glob("stability_*.py")):                    # the other lessons' own; they need the records above
+    CASES |= import_module(f".{path.stem}", __package__).CASES
 OWN_LAWS = {7, 8}            # these bring an acceleration of their own, and nothing in this file is compiled
 
 

@@ -21,8 +21,9 @@ def write(out, results, stability, plan, jobs, bars):
     pages.tests["reaches"] = lambda row: any(t is not None for t in row.values())
     pages.globals.update(run=words.run(plan), playable=plots.playable, verdict=words.verdict, judge=words.judge, arrow_colours=space.ARROWS)
 
-    pictures = [(plots.convergence, out / f"{r['scene']}-steps.svg", r) for r in results]
-    pictures += [(plots.work_precision, out / f"{r['scene']}-times.svg", r) for r in results]
+    refined = [r for r in results if r["still"] != ""]
+    pictures = [(plots.convergence, out / f"{r['scene']}-steps.svg", r) for r in refined]
+    pictures += [(plots.work_precision, out / f"{r['scene']}-times.svg", r) for r in refined]
     pictures += [(plots.stability, out / f"stability-{case['number']}.svg", case) for case in stability]
     bar = bars.add_task("report", total=len(pictures) + 1)
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn"), initializer=plots.style) as pool:

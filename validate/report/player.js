@@ -50,11 +50,11 @@ function play(canvas) {
       });
       pen.globalAlpha = 1;
     });
-    if (!small) {
+    if (!small && last > 0) {
       pen.fillStyle = "#555"; pen.font = "12px system-ui, sans-serif";
       pen.fillText(`t = ${(picture.seconds * k / last).toFixed(2)} s`, 8, height - 8);
     }
-    if (!reduced) requestAnimationFrame(draw);
+    if (!reduced && last > 0) requestAnimationFrame(draw);
   }
   requestAnimationFrame(draw);
 }

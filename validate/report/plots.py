@@ -5,7 +5,8 @@ import matplotlib.pyplot as plt
 LOOKS = {                       # label: colour, marker
     "Euler": ("#E69F00", "o"), "midpoint": ("#56B4E9", "^"), "Runge–Kutta 4": ("#009E73", "s"), "average velocity": ("#CC79A7", "v"),
     "symplectic Euler": ("#D55E00", "D"), "Verlet": ("#0072B2", "P"), "implicit Euler": ("#8C6D31", "<"),
-    "implicit midpoint": ("#6A51A3", ">"), "implicit mesh": ("#7F7F7F", "h"),
+    "implicit midpoint": ("#6A51A3", ">"), "implicit mesh": ("#7F7F7F", "h"), "triangles": ("#0072B2", "^"), "points": ("#E69F00", "o"),
+    "parts": ("#009E73", "s"),
 }
 ENGINE_LOOKS = {"pymunk": ("#000000", "x"), "pybullet": ("#5A5A5A", "+")}
 OURS_MOVING = ("#0072B2", "#009E73", "#CC79A7", "#E69F00")
@@ -34,6 +35,10 @@ def playable(picture):
     return {**picture, "colours": colours}
 
 
+def error_label(result):
+    return "relative error [-]" if result["still"] else f"relative error at t = {result['T']:g} s [-]"
+
+
 def convergence(path, result):
     """Error against step, with the runs that failed along the top."""
     case = next(iter(result["cases"].values()))
@@ -45,7 +50,7 @@ def convergence(path, result):
         order = f"  {c['order']:.2f}" if c["order"] is not None else ""
         axes.loglog(*zip(*good), color=colour, marker=marker, ls=line, ms=5, lw=1.3, label=c["label"] + order) if good else None
         axes.plot(lost, [TOP] * len(lost), color=colour, marker="X", ls="", ms=7, clip_on=False)
-    axes.set(xlabel="step dt [s]", ylabel=f"relative error at t = {result['T']:g} s [-]", xscale="log", yscale="log")
+    axes.set(xlabel=result["still"] or "step dt [s]", ylabel=error_label(result), xscale="log", yscale="log")
     axes.axhline(TOP, color="#999999", lw=0.6)
     axes.annotate("failed, or error above 10", (0.01, TOP), xycoords=("axes fraction", "data"), va="bottom", fontsize=8, color="#555555")
     _finish(figure, axes, path, "method  measured order")
@@ -65,7 +70,7 @@ def work_precision(path, result):
         axes.hlines(y, low, high, color=colour, lw=0.8, alpha=0.5)
     if {"plain", "compiled"} <= {r["speed"] for r in rows}:
         axes.plot([], [], color="#555555", ls=":", marker=".", label="the same, plain Python")
-    axes.set(xlabel="run time of the stepping loop [s]", ylabel=f"relative error at t = {result['T']:g} s [-]")
+    axes.set(xlabel="run time [s]" if result["still"] else "run time of the stepping loop [s]", ylabel=error_label(result))
     _finish(figure, axes, path, "compiled, and engines" if any(r["speed"] == "compiled" for r in rows) else "plain Python, and engines")
 
 

@@ -34,7 +34,7 @@ def seconds(t):
 
 
 def percent(x):
-    return "–" if x is None else f"{100 * x:.2g} %"
+    return "–" if x is None else f"{100 * x:.2g} %" if x < 0.995 else f"{100 * x:.0f} %"
 
 
 def factor(x):
@@ -102,8 +102,7 @@ def row(result):
 
 def findings(result):
     """Sentences, the most important first."""
-    case = next(iter(result["cases"].values()))
-    return [*_ours(result), *(f"{sentence}." for sentence in result["without"]), *_engines(case), *_times(result), *_left_out(result), *_parity(result)]
+    return [*_ours(result), *(f"{sentence}." for sentence in result["without"]), *_witnesses(result), *_times(result), *_left_out(result), *_parity(result)]
 
 
 def _ours(result):
@@ -121,8 +120,22 @@ def _ours(result):
     if shown:
         yield "Measured orders of convergence: " + ", ".join(f"{c['label']} {c['order']:.2f} ({c['expected']})" for c in shown) + "; the expected order is in brackets."
     exact = [c["label"] for c in next(iter(result["cases"].values()))["ours"] if c["expected"] == "exact" and c["right"]]
-    if exact:
+    if exact and result["still"] != "":
         yield f"Exact up to round-off at every step, as derived: {', '.join(exact)}."
+
+
+def _witnesses(result):
+    """What engines do: in the first case of a motion; of what stands still, in every case where they depart."""
+    if result["still"] is None:
+        yield from _engines(next(iter(result["cases"].values())))
+        return
+    for name, case in result["cases"].items():
+        for c in case["engines"]:
+            if c.get("reason") and c["right"]:
+                yield (f"{name[0].upper()}{name[1:]}: {c['label']} is {percent(c['rows'][-1]['error'])} off because {c['reason']}; "
+                       f"that rule alone gives {percent(c['departs'])}.")
+            elif c["right"] is False:
+                yield f"{name[0].upper()}{name[1:]}: {c['label']} {c['why']}, and nothing that the scene says predicts it."
 
 
 def _engines(case):
