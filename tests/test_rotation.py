@@ -210,6 +210,7 @@ def test_one_step_of_the_loop_is_velocities_first(lesson, draw):
     close("v after one step [m/s]", v_new, faster, EXACT)
     close("x after one step [m]", x_new, x + dt * faster, EXACT)
     close("ω after one step [rad/s]", omega_new, turned, EXACT)
+    close("length of q after one step", np.linalg.norm(q_new), 1.0, EXACT)
     close("orientation after one step, as a matrix", turn(q_new).as_matrix(), after.as_matrix(), EXACT)
     close("the state that was handed in: return new arrays", np.concatenate((x, v, q, omega)), np.concatenate(kept), 0.0)
 
