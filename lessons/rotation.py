@@ -8,7 +8,7 @@ Vectors are in world coordinates, unless the name ends in _body.  The axes of th
 
 Every method is a function  step(torque, t, q, L, dt, body) → (q, L)  at t + dt.  torque(t, q, L, body) returns (3,) [N m] and gets
 body, any record with a field I_body, untouched.  L itself is the state, so that without a torque it is kept to the last digit.
-*Left out:* what makes the torque of a contact; lessons 6, 7 and 9 build it.
+*Left out:* contacts, but for a ball on a floor; lessons 6, 7 and 9 build them.
 """
 
 from typing import NamedTuple
@@ -42,6 +42,16 @@ class Top(NamedTuple):
     """A body that turns about a fixed point on its third axis."""
     I_body: np.ndarray       # (3,) principal moments about the pivot [kg m²]
     mgl: float               # weight times the distance from the pivot to the centre of mass [N m]
+
+
+class Ball(NamedTuple):
+    """A ball, or whatever rolls with three equal moments, on a horizontal floor."""
+    m: float                 # mass [kg]
+    I_body: np.ndarray       # (3,) moments of inertia [kg m²]
+    radius: float            # [m]
+    mu: float                # friction [-]
+    gravity: np.ndarray      # (3,) [m/s²]; a floor that slopes is a horizontal one under a gravity that slants
+    dt: float                # step [s]: so long friction will act before it is asked again
 
 
 def check_moments(I_body):
@@ -266,6 +276,24 @@ def rigid_body_step(load, t, x, v, q, omega, dt, body):
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 5.12: rigid_body_step")
+
+
+def rolling_load(t, x, v, q, omega, ball):
+    """Given.  Weight, support and friction of a Ball on a horizontal floor: F [N], τ [N m], each (3,).
+
+    Friction stops the slip u of the lowest point by the end of the step, if μN is enough for that, or else does what μN can:
+        f = −min(μN, |u′|/(K dt)) u′/|u′|      u′ = u + dt g_t: the slip that there would be without,   K = 1/m + radius²/I
+    *Source:* deck B, Coulomb's law; lesson 7 does the same for bodies of any shape.
+    """
+    r = np.array([0.0, 0.0, -ball.radius])
+    slip = point_velocity(v, omega, r) + ball.dt * ball.gravity
+    slip[2] = 0.0
+    size, support = np.sqrt(np.sum(slip * slip)), -ball.m * ball.gravity[2]
+    K = 1.0 / ball.m + ball.radius * ball.radius / ball.I_body[0]
+    f = np.zeros(3)
+    if size > 0.0:
+        f = -min(ball.mu * support, size / (K * ball.dt)) / size * slip
+    return ball.m * ball.gravity + np.array([f[0], f[1], support]), cross(r, f)
 
 
 def kinetic_energy(q, L, I_body):
