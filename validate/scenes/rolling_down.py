@@ -65,13 +65,8 @@ def acceleration_down(p):
 
 
 def tolerance(p, dt):
-    """A step that moves with the new velocity arrives ½ a dt T too far; v and ω are exact, for the force is constant.
-
-    Engines alike; their contact may take a step to be felt: a dt².
-    """
-    a = acceleration_down(p)
-    bias = (0.5 * a * dt * T + a * dt * dt) / np.linalg.norm(truth(p, T))
-    limit = bias + 1e-12 + T / dt * ROUND_OFF
+    """A step that moves with the new velocity arrives ½ a dt T too far, the engine's too; v and ω are exact, for the force is constant."""
+    limit = 0.5 * acceleration_down(p) * dt * T / np.linalg.norm(truth(p, T)) + 1e-12 + T / dt * ROUND_OFF
     return {1: limit, "pybullet": limit, "pybullet, reduced coordinates": limit}
 
 
@@ -80,7 +75,7 @@ def pybullet_make(maximal):
 
 
 ENGINES = (
-    Engine("pybullet, reduced coordinates", pybullet_make(False), 1, "createMultiBody on a GEOM_PLANE, slanted gravity; 100 iterations, no residual threshold, no damping"),
+    Engine("pybullet, reduced coordinates", pybullet_make(False), 1, "createMultiBody on a GEOM_PLANE, slanted gravity; 100 iterations, no residual threshold, no slop, no damping"),
     Engine("pybullet", pybullet_make(True), 1, "the same with useMaximalCoordinates=1"),
 )
 

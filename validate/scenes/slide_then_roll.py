@@ -96,7 +96,7 @@ def pybullet_make(maximal):
 
 ENGINES = (
     Engine("pymunk", pymunk_make, 1, "50 iterations; the circle starts 1e-6 m inside the floor"),
-    Engine("pybullet, reduced coordinates", pybullet_make(False), 1, "createMultiBody on a GEOM_PLANE; 100 iterations, no residual threshold, no damping"),
+    Engine("pybullet, reduced coordinates", pybullet_make(False), 1, "createMultiBody on a GEOM_PLANE; 100 iterations, no residual threshold, no slop, no damping"),
     Engine("pybullet", pybullet_make(True), 1, "the same with useMaximalCoordinates=1"),
 )
 
