@@ -1,0 +1,618 @@
+"""Lesson 5.  A rigid body on its own.
+
+    ẋ = P/M,   Ṙ = ω* R,   Ṗ = F,   L̇ = τ           with   ω = I⁻¹ L,   I = R I_body Rᵀ
+
+Symbols: x (3,) [m] centre of mass · v [m/s] · P [kg m/s] · R (3, 3), q (4,) = (w, x, y, z) orientation: both turn coordinates of the
+body into those of the world · ω (3,) [rad/s] · L (3,) [kg m²/s] · τ (3,) [N m] · I_body (3,) [kg m²] principal moments.
+Vectors are in world coordinates, unless the name ends in _body.  The axes of the body are its principal axes; lesson 4 finds them.
+
+Every method is a function  step(torque, t, q, L, dt, body) → (q, L)  at t + dt.  torque(t, q, L, body) returns (3,) [N m] and gets
+body, any record with a field I_body, untouched.  L itself is the state, so that without a torque it is kept to the last digit.
+*Left out:* contacts, but for a ball on a floor; lessons 6, 7 and 9 build them.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .checks import BadInput, Diverged, check_finite, check_positive
+
+NEWTON_TOLERANCE = 1e-12     # last correction over the size of the unknown [-]: Newton squares it, so what is left is round-off
+NEWTON_LIMIT = 30            # corrections [-]; from a sane guess Newton doubles its digits and needs fewer than 6
+UNIT_TOLERANCE = 1e-9        # how far from 1 a quaternion's length may be handed in [-]: a thousand times what ten million steps round off
+FLAT = 1e-12                 # of a flat body I₁ + I₂ = I₃; rounding may break that by so much [-]
+SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))      # share of the step in each of four substeps [-]: 4γ³ + (1 − 4γ)³ = 0
+
+
+class State(NamedTuple):
+    """The lecture's S(t), and its derivative."""
+    x: np.ndarray            # (3,) position of the centre of mass [m]
+    R: np.ndarray            # (3, 3) orientation: its columns are the axes of the body
+    P: np.ndarray            # (3,) momentum [kg m/s]
+    L: np.ndarray            # (3,) angular momentum about the centre of mass [kg m²/s]
+
+
+class Body(NamedTuple):
+    """What a rigid body is, as far as its motion goes."""
+    m: float                 # mass [kg]
+    I_body: np.ndarray       # (3,) principal moments of inertia [kg m²]
+
+
+class Top(NamedTuple):
+    """A body that turns about a fixed point on its third axis."""
+    I_body: np.ndarray       # (3,) principal moments about the pivot [kg m²]
+    mgl: float               # weight times the distance from the pivot to the centre of mass [N m]
+
+
+class Ball(NamedTuple):
+    """A ball, or whatever rolls with three equal moments, on a horizontal floor."""
+    m: float                 # mass [kg]
+    I_body: np.ndarray       # (3,) moments of inertia [kg m²]
+    radius: float            # [m]
+    mu: float                # friction [-]
+    gravity: np.ndarray      # (3,) [m/s²]; a floor that slopes is a horizontal one under a gravity that slants
+    dt: float                # step [s]: so long friction will act before it is asked again
+
+
+def check_moments(I_body):
+    """Given.  Raise BadInput unless some distribution of mass has these principal moments: positive, none above the sum of the others."""
+    for k in range(3):
+        check_positive("a principal moment of inertia [kg m²]", I_body[k])
+        if I_body[k] > (I_body[(k + 1) % 3] + I_body[(k + 2) % 3]) * (1.0 + FLAT):
+            raise BadInput("a principal moment of inertia [kg m²]", I_body[k], "no mass has it: keep it below the sum of the other two")
+
+
+def make_body(m, I_body):
+    """Given.  A Body from a number and three; raises BadInput for a mass or moments that no body has."""
+    check_positive("mass m [kg]", m)
+    moments = np.array(I_body, dtype=float)
+    check_moments(moments)
+    return Body(float(m), moments)
+
+
+# ---------------------------------------------------------------------------------------------- rotational movement
+
+def cross(a, b):
+    """Given.  a × b of two vectors (3,); written out, because that is ten times as fast as NumPy's."""
+    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+
+
+def skew(a):
+    """The matrix a* (3, 3) with  a* b = a × b  for every b.
+
+         ⎛  0   −a_z   a_y ⎞
+    a* = ⎜  a_z   0   −a_x ⎟
+         ⎝ −a_y  a_x    0  ⎠
+
+    *Source:* deck A, "Rotational Movement".
+    """
+    ### BEGIN SOLUTION 5.1
+    return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
+    ### END SOLUTION
+
+
+def point_velocity(v, omega, r):
+    """Velocity [m/s] (3,) of the point of a body at the offset r [m] from its centre of mass:  v + ω × r.
+
+    *Source:* deck A, "Rotational Movement": a = b + r(t).
+    """
+    ### BEGIN SOLUTION 5.2
+    return v + cross(omega, r)
+    ### END SOLUTION
+
+
+def total_load(x, points, forces):
+    """Force F [N] (3,) and torque τ [N m] (3,) about the centre of mass x of forces (n, 3) that act at points (n, 3) [m].
+
+    F = Σ fᵢ,   τ = Σ (pᵢ − x) × fᵢ
+
+    *Source:* deck A, "Center of Mass"; deck B, "Simulation loop".
+    """
+    ### BEGIN SOLUTION 5.3
+    F, tau = np.zeros(3), np.zeros(3)
+    for i in range(forces.shape[0]):
+        F += forces[i]
+        tau += cross(points[i] - x, forces[i])
+    return F, tau
+    ### END SOLUTION
+
+
+def angular_velocity(R, L, I_body):
+    """ω [rad/s] (3,) of a body with the angular momentum L:  ω = I⁻¹ L,  I⁻¹ = R I_body⁻¹ Rᵀ.
+
+    In the body's own coordinates the inertia is a diagonal, (I₁, I₂, I₃) = I_body: turn L there with Rᵀ, divide, turn back.
+    *Source:* deck A, "Angular Momentum", "Inertia Tensor".
+    """
+    ### BEGIN SOLUTION 5.4
+    return R @ ((R.T @ L) / I_body)
+    ### END SOLUTION
+
+
+def state_derivative(S, F, tau, body):
+    """Ṡ as a State:  ẋ = P/M,  Ṙ = ω* R,  Ṗ = F,  L̇ = τ,  for a State S and a Body; ω = angular_velocity(R, L, I_body).
+
+    *Source:* deck A, S(t) and its derivative; Baraff 1997.
+    """
+    ### BEGIN SOLUTION 5.5
+    omega = angular_velocity(S.R, S.L, body.I_body)
+    return State(S.P / body.m, skew(omega) @ S.R, F, tau)
+    ### END SOLUTION
+
+
+# ---------------------------------------------------------------------------------------------- three ways to turn a body
+
+def matrix_update(R, omega, dt):
+    """Orientation (3, 3) after dt at ω, first way:  R + dt ω* R, and then renormalised; first order.
+
+    Renormalising (Gram and Schmidt): bring the first column to length 1; take from the second its part along the first, and
+    bring it to length 1; the third is first × second.
+    *Source:* deck A, "Update Orientation".
+    """
+    ### BEGIN SOLUTION 5.6
+    M = R + dt * (skew(omega) @ R)
+    first, second = M[:, 0].copy(), M[:, 1].copy()
+    first /= np.sqrt(np.sum(first * first))
+    second -= np.sum(first * second) * first
+    second /= np.sqrt(np.sum(second * second))
+    return np.stack((first, second, cross(first, second)), axis=1)
+    ### END SOLUTION
+
+
+def axis_angle_update(R, omega, dt):
+    """Orientation (3, 3) after dt at ω, second way: every column r of R is turned about the axis n by the angle θ.
+
+    θ = |ω| dt,   n = ω/|ω|
+    r ← cos θ r + sin θ n × r + (1 − cos θ)(n · r) n
+
+    Exact while ω does not change.  Where ω = 0 nothing turns: a copy of R.
+    *Source:* deck A, "Extract axis-angle from ω(t) and rotate columns of R(t)"; Rodrigues 1840.
+    """
+    ### BEGIN SOLUTION 5.7
+    turned = R.copy()
+    rate = np.sqrt(np.sum(omega * omega))
+    if rate > 0.0:
+        n, c, s = omega / rate, np.cos(rate * dt), np.sin(rate * dt)
+        for k in range(3):
+            r = R[:, k].copy()
+            turned[:, k] = c * r + s * cross(n, r) + (1.0 - c) * np.sum(n * r) * n
+    return turned
+    ### END SOLUTION
+
+
+def product(a, b):
+    """The quaternion a b (4,) of two of them, each (w, x, y, z): first b turns, then a.
+
+    (a₀, 𝐚)(b₀, 𝐛) = (a₀b₀ − 𝐚·𝐛,  a₀𝐛 + b₀𝐚 + 𝐚×𝐛)
+
+    *Source:* Hamilton 1844; deck A, "Use quaternions".
+    """
+    ### BEGIN SOLUTION 5.8
+    return np.array([a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
+                     a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+                     a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
+                     a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]])
+    ### END SOLUTION
+
+
+def rotation_matrix(q):
+    """The matrix R (3, 3) of a unit quaternion:  R r = q (0, r) q̄.
+
+        ⎛ 1 − 2(y² + z²)   2(xy − wz)       2(xz + wy)     ⎞
+    R = ⎜ 2(xy + wz)       1 − 2(x² + z²)   2(yz − wx)     ⎟
+        ⎝ 2(xz − wy)       2(yz + wx)       1 − 2(x² + y²) ⎠
+
+    q and −q are the same orientation.
+    *Source:* deck B, "rotation (matrix R or quaternion q)".
+    """
+    ### BEGIN SOLUTION 5.9
+    w, x, y, z = q[0], q[1], q[2], q[3]
+    return np.array([[1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
+                     [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
+                     [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)]])
+    ### END SOLUTION
+
+
+def unit(q):
+    """Given.  q / |q|: the nearest quaternion that is a rotation.  Raises BadInput when there is none: length 0, or not a number."""
+    length = np.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
+    check_positive("length of the quaternion q [-]", length)
+    return np.array([q[0] / length, q[1] / length, q[2] / length, q[3] / length])
+
+
+def quaternion_update(q, omega, dt):
+    """Orientation (4,) after dt at ω, third way:  q + dt q̇  with  q̇ = ½ (0, ω) q,  and then normalised by unit; first order.
+
+    Turns about ω as it should, but by 2 atan(½|ω| dt) instead of |ω| dt: never more than half a turn.
+    *Source:* deck A, "Use quaternions"; deck B, "Don't forget to normalize q".
+    """
+    ### BEGIN SOLUTION 5.10
+    spin = np.array([0.0, omega[0], omega[1], omega[2]])
+    return unit(q + 0.5 * dt * product(spin, q))
+    ### END SOLUTION
+
+
+# ---------------------------------------------------------------------------------------------- small change
+
+def exponential(phi):
+    """Given.  The quaternion (4,) of a rotation about the axis φ/|φ| by the angle |φ| [rad]: (cos ½|φ|, sin ½|φ| φ/|φ|)."""
+    angle = np.sqrt(phi[0] * phi[0] + phi[1] * phi[1] + phi[2] * phi[2])
+    s = 0.5 if angle == 0.0 else np.sin(0.5 * angle) / angle
+    return np.array([np.cos(0.5 * angle), s * phi[0], s * phi[1], s * phi[2]])
+
+
+def rotate(q, r):
+    """Given.  World coordinates of a vector with body coordinates r:  r + 2w 𝐪×r + 2𝐪×(𝐪×r),  q = (w, 𝐪)."""
+    a, b, c = q[2] * r[2] - q[3] * r[1], q[3] * r[0] - q[1] * r[2], q[1] * r[1] - q[2] * r[0]
+    return np.array([r[0] + 2.0 * (q[0] * a + q[2] * c - q[3] * b),
+                     r[1] + 2.0 * (q[0] * b + q[3] * a - q[1] * c),
+                     r[2] + 2.0 * (q[0] * c + q[1] * b - q[2] * a)])
+
+
+def unrotate(q, r):
+    """Given.  Body coordinates of a vector with world coordinates r: rotate the other way round."""
+    return rotate(np.array([-q[0], q[1], q[2], q[3]]), r)
+
+
+def body_component(q, r, k):
+    """Given.  The k-th body coordinate of a vector with world coordinates r, without the other two; q need not be an array."""
+    w, x, y, z = q[0], q[1], q[2], q[3]
+    if k == 0:
+        return (w * w + x * x - y * y - z * z) * r[0] + 2.0 * ((x * y + w * z) * r[1] + (x * z - w * y) * r[2])
+    if k == 1:
+        return (w * w - x * x + y * y - z * z) * r[1] + 2.0 * ((x * y - w * z) * r[0] + (y * z + w * x) * r[2])
+    return (w * w - x * x - y * y + z * z) * r[2] + 2.0 * ((x * z + w * y) * r[0] + (y * z - w * x) * r[1])
+
+
+def about_axis(q, k, angle):
+    """Given.  The body turned about its own k-th axis:  q (cos ½angle, sin ½angle 𝐞ₖ), as a tuple (faster than an array)."""
+    c, s = np.cos(0.5 * angle), np.sin(0.5 * angle)
+    w, x, y, z = q[0], q[1], q[2], q[3]
+    if k == 0:
+        return w * c - x * s, x * c + w * s, y * c + z * s, z * c - y * s
+    if k == 1:
+        return w * c - y * s, x * c - z * s, y * c + w * s, z * c + x * s
+    return w * c - z * s, x * c + y * s, y * c - x * s, z * c + w * s
+
+
+def solve3(a, b, c, r):
+    """Given.  The u (3,) with  u₀ a + u₁ b + u₂ c = r  for columns a, b, c (3,), by Cramer's rule."""
+    bc = cross(b, c)
+    det = np.sum(a * bc)
+    return np.array([np.sum(r * bc), np.sum(a * cross(r, c)), np.sum(a * cross(b, r))]) / det
+
+
+def angular_momentum(q, omega, I_body):
+    """Given.  L = I ω [kg m²/s] (3,)."""
+    return rotate(q, I_body * unrotate(q, omega))
+
+
+# ---------------------------------------------------------------------------------------------- the lecture's loop
+
+def angular_acceleration(q, omega, tau, I_body):
+    """ω̇ = I⁻¹ (τ − ω × Iω) [rad/s²] (3,): the last term, the gyroscopic one, makes things tumble without any torque.
+
+    rotate and unrotate, given above, take vectors from body to world coordinates and back.
+    *Source:* deck B, "Rigid bodies"; Euler 1758.
+    """
+    ### BEGIN SOLUTION 5.11
+    omega_body = unrotate(q, omega)
+    return rotate(q, (unrotate(q, tau) - cross(omega_body, I_body * omega_body)) / I_body)
+    ### END SOLUTION
+
+
+def rigid_body_step(load, t, x, v, q, omega, dt, body):
+    """Advance a rigid body by one step, as the lecture does: (x, v, q, ω) at t + dt; first order.
+
+    forces and torques:   F, τ = load(t, x, v, q, ω, body)
+    velocities:           v ← v + dt F/m,     ω ← ω + dt ω̇
+    positions:            x ← x + dt v,       q ← quaternion_update, both with the new velocities
+
+    body is any record with fields m and I_body; load gets it untouched.
+    *Source:* deck B, "Simulation loop".
+    """
+    ### BEGIN SOLUTION 5.12
+    F, tau = load(t, x, v, q, omega, body)
+    v = v + dt / body.m * F
+    omega = omega + dt * angular_acceleration(q, omega, tau, body.I_body)
+    return x + dt * v, v, quaternion_update(q, omega, dt), omega
+    ### END SOLUTION
+
+
+def rolling_load(t, x, v, q, omega, ball):
+    """Given.  Weight, support and friction of a Ball on a horizontal floor: F [N], τ [N m], each (3,).
+
+    Friction stops the slip u of the lowest point by the end of the step, if μN is enough for that, or else does what μN can:
+        f = −min(μN, |u′|/(K dt)) u′/|u′|      u′ = u + dt g_t: the slip that there would be without,   K = 1/m + radius²/I
+    *Source:* deck B, Coulomb's law; lesson 7 does the same for bodies of any shape.
+    """
+    r = np.array([0.0, 0.0, -ball.radius])
+    slip = point_velocity(v, omega, r) + ball.dt * ball.gravity
+    slip[2] = 0.0
+    size, support = np.sqrt(np.sum(slip * slip)), -ball.m * ball.gravity[2]
+    K = 1.0 / ball.m + ball.radius * ball.radius / ball.I_body[0]
+    f = np.zeros(3)
+    if size > 0.0:
+        f = -min(ball.mu * support, size / (K * ball.dt)) / size * slip
+    return ball.m * ball.gravity + np.array([f[0], f[1], support]), cross(r, f)
+
+
+def kinetic_energy(q, L, I_body):
+    """Energy of rotation [J]:  ½ ω·L = Σ Lₖ²/2Iₖ  over the body coordinates Lₖ of L.
+
+    *Source:* Landau and Lifshitz, Mechanics, § 32.
+    """
+    ### BEGIN SOLUTION 5.13
+    L_body = unrotate(q, L)
+    return 0.5 * np.sum(L_body * L_body / I_body)
+    ### END SOLUTION
+
+
+def tumbling_rate(I_body, k, spin):
+    """Rate [1/s] at which a disturbance of the spin [rad/s] about the k-th principal axis grows as e^(rate·t); 0 where it does not.
+
+    rate = |spin| √((I_k − I_i)(I_j − I_k) / (I_i I_j))          i, j: the other two axes
+
+    Under the root stands a positive number for the axis of the middle moment only: the tennis-racket theorem.
+    *Source:* deck B, "Tennis racket theorem"; Euler's equations, linear about ω = spin 𝐞ₖ.
+    """
+    ### BEGIN SOLUTION 5.14
+    i, j = (k + 1) % 3, (k + 2) % 3
+    squared = (I_body[k] - I_body[i]) * (I_body[j] - I_body[k]) / (I_body[i] * I_body[j])
+    return abs(spin) * np.sqrt(max(0.0, squared))
+    ### END SOLUTION
+
+
+def no_torque(t, q, L, body):
+    """Given.  τ = 0: a body on its own."""
+    return np.zeros(3)
+
+
+def heavy_top_torque(t, q, L, top):
+    """τ [N m] (3,) of gravity, −z, about the pivot of a Top whose centre of mass lies on its third axis 𝐞 = R (0, 0, 1).
+
+    τ = l𝐞 × (−Mg ẑ) = Mgl (−e_y, e_x, 0)
+
+    *Source:* Landau and Lifshitz, Mechanics, § 35.
+    """
+    ### BEGIN SOLUTION 5.15
+    e = rotate(q, np.array([0.0, 0.0, 1.0]))
+    return top.mgl * np.array([-e[1], e[0], 0.0])
+    ### END SOLUTION
+
+
+# ---------------------------------------------------------------------------------------------- steps of first order
+
+def matrix_step(torque, t, q, L, dt, body):
+    """Given.  L ← L + dt τ, then the lecture's first update with ω = I⁻¹ L; first order."""
+    L = L + dt * torque(t, q, L, body)
+    R = rotation_matrix(q)
+    return quaternion_of(matrix_update(R, angular_velocity(R, L, body.I_body), dt)), L
+
+
+def axis_angle_step(torque, t, q, L, dt, body):
+    """Given.  The same with the second update."""
+    L = L + dt * torque(t, q, L, body)
+    R = rotation_matrix(q)
+    return quaternion_of(axis_angle_update(R, angular_velocity(R, L, body.I_body), dt)), L
+
+
+def quaternion_step(torque, t, q, L, dt, body):
+    """Given.  The same with the third."""
+    L = L + dt * torque(t, q, L, body)
+    return quaternion_update(q, angular_velocity(rotation_matrix(q), L, body.I_body), dt), L
+
+
+def gyroscopic_step(torque, t, q, L, dt, body):
+    """Given.  Deck B's loop, whose state is ω: the gyroscopic term at the beginning of the step.  |L| is not kept."""
+    omega = angular_velocity(rotation_matrix(q), L, body.I_body)
+    omega = omega + dt * angular_acceleration(q, omega, torque(t, q, L, body), body.I_body)
+    q = quaternion_update(q, omega, dt)
+    return q, angular_momentum(q, omega, body.I_body)
+
+
+def implicit_gyroscopic_step(torque, t, q, L, dt, body):
+    """Given.  The same with the gyroscopic term at the end of the step, by one step of Newton's method, as some engines have it.
+
+    (I + dt (ω* I − (Iω)*)) Δω = dt (τ − ω × Iω)  in body coordinates.
+    *Source:* Catto 2015, "Numerical methods".
+    """
+    I, L_body = body.I_body, unrotate(q, L)
+    omega, one = L_body / I, np.eye(3)
+    right = dt * (unrotate(q, torque(t, q, L, body)) - cross(omega, L_body))
+    column = [I[k] * one[k] + dt * cross(I[k] * omega - L_body, one[k]) for k in range(3)]
+    omega = rotate(q, omega + solve3(column[0], column[1], column[2], right))
+    q = quaternion_update(q, omega, dt)
+    return q, angular_momentum(q, omega, I)
+
+
+def quaternion_of(R):
+    """Given.  The unit quaternion (4,) of a rotation matrix; the largest of its four numbers is found first, so that nothing cancels.
+
+    *Source:* Shepperd 1978.
+    """
+    trace = R[0, 0] + R[1, 1] + R[2, 2]
+    k = 0
+    for i in range(1, 3):
+        if R[i, i] > R[k, k]:
+            k = i
+    if trace > R[k, k]:
+        return unit(np.array([1.0 + trace, R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]]))
+    i, j = (k + 1) % 3, (k + 2) % 3
+    q = np.zeros(4)
+    q[0], q[1 + k] = R[j, i] - R[i, j], 1.0 + R[k, k] - R[i, i] - R[j, j]
+    q[1 + i], q[1 + j] = R[i, k] + R[k, i], R[j, k] + R[k, j]
+    return unit(q)
+
+
+# ---------------------------------------------------------------------------------------------- steps that keep what nature keeps
+
+def runge_kutta_step(torque, t, q, L, dt, body):
+    """Given.  Lesson 1's classical method on q̇ = ½ (0, ω) q, L̇ = τ, then q normalised; fourth order, and keeps no energy."""
+    rate_1, tau_1 = _slope(torque, t, q, L, body)
+    rate_2, tau_2 = _slope(torque, t + 0.5 * dt, q + 0.5 * dt * rate_1, L + 0.5 * dt * tau_1, body)
+    rate_3, tau_3 = _slope(torque, t + 0.5 * dt, q + 0.5 * dt * rate_2, L + 0.5 * dt * tau_2, body)
+    rate_4, tau_4 = _slope(torque, t + dt, q + dt * rate_3, L + dt * tau_3, body)
+    q = q + dt / 6.0 * (rate_1 + 2.0 * rate_2 + 2.0 * rate_3 + rate_4)
+    return unit(q), L + dt / 6.0 * (tau_1 + 2.0 * tau_2 + 2.0 * tau_3 + tau_4)
+
+
+def _slope(torque, t, q, L, body):
+    """q̇ and L̇."""
+    omega = angular_velocity(rotation_matrix(q), L, body.I_body)
+    return 0.5 * product(np.array([0.0, omega[0], omega[1], omega[2]]), q), torque(t, q, L, body)
+
+
+def midpoint_turn(q, L, I_body, dt):
+    """Orientation (4,) of a body after dt without torque, by the implicit midpoint rule; second order, keeps the energy to round-off.
+
+    With the body coordinates ℓ of L at the beginning (unrotate), ask for those half-way, m:
+        m = ℓ + ½dt m × w,    w = m/I_body
+    Newton's method: start from a copy of ℓ and repeat, at most NEWTON_LIMIT times,
+        r = m − ℓ − ½dt m × w;     column k of its derivative:  𝐞ₖ + ½dt (w − m/Iₖ) × 𝐞ₖ
+        m ← m − δ,   δ = solve3(three columns, r)
+    until max|δ| ≤ NEWTON_TOLERANCE max|m|.  Then, with w = m/I_body of the last m, the body turns about w as in quaternion_update,
+    but on its own side:   q ← unit(q (1, ½dt w)).
+    The new ℓ is then 2m − ℓ: as long as ℓ, and of the same energy, since  (2m − ℓ)² − ℓ² = 4m·(m − ℓ) = 0,  and alike with /I.
+
+    Raises Diverged("Newton's method did not converge at dt [s]", dt, "take a smaller step") when the corrections are used up.
+    *Source:* Hairer, Lubich, Wanner 2006, "Geometric numerical integration", IV.2; Cayley 1846 for the turn.
+    """
+    ### BEGIN SOLUTION 5.16
+    start, one = unrotate(q, L), np.eye(3)
+    m = start.copy()
+    for _ in range(NEWTON_LIMIT):
+        w = m / I_body
+        r = m - start - 0.5 * dt * cross(m, w)
+        delta = solve3(one[0] + 0.5 * dt * cross(w - m / I_body[0], one[0]),
+                       one[1] + 0.5 * dt * cross(w - m / I_body[1], one[1]),
+                       one[2] + 0.5 * dt * cross(w - m / I_body[2], one[2]), r)
+        m = m - delta
+        if np.max(np.abs(delta)) <= NEWTON_TOLERANCE * np.max(np.abs(m)):
+            w = m / I_body
+            return unit(product(q, np.array([1.0, 0.5 * dt * w[0], 0.5 * dt * w[1], 0.5 * dt * w[2]])))
+    raise Diverged("Newton's method did not converge at dt [s]", dt, "take a smaller step")
+    ### END SOLUTION
+
+
+def middle_axis(I_body):
+    """Given.  Number of the axis whose moment is neither the largest nor the smallest; the first such where moments are equal."""
+    for k in range(2):
+        if (I_body[(k + 1) % 3] - I_body[k]) * (I_body[k] - I_body[(k + 2) % 3]) >= 0.0:
+            return k
+    return 2
+
+
+def splitting_turn(q, L, I_body, dt):
+    """Orientation (4,) of a body after dt without torque, as five turns that are each exact; second order, the energy error stays bounded.
+
+    Let b be the middle_axis, a and c the two that follow it (b + 1 and b + 2, modulo 3).  The energy is a sum of three,
+        L²/2I_b  +  ½(1/I_a − 1/I_b) L_a²  +  ½(1/I_c − 1/I_b) L_c²
+    and each alone moves the body in a way that is known.  The first turns it about L, by dt/I_b L: a product with
+    exponential(dt/I_b L) on the left, and it does not matter when.  The second turns it about its own axis a by the angle
+    dt (1/I_a − 1/I_b) L_a,  L_a = body_component(q, L, a)  of the q reached so far:  about_axis.  The third likewise about c.  In turn:
+        half of a,  all of c,  half of a,  about L          and unit at the end
+    Exact when two moments are equal.
+    *Source:* Touma and Wisdom 1994; Fassò 2003, "Comparison of splitting algorithms for the rigid body".
+    """
+    ### BEGIN SOLUTION 5.17
+    b = middle_axis(I_body)
+    a, c = (b + 1) % 3, (b + 2) % 3
+    slow_a, slow_c = dt * (1.0 / I_body[a] - 1.0 / I_body[b]), dt * (1.0 / I_body[c] - 1.0 / I_body[b])
+    turned = about_axis(q, a, 0.5 * slow_a * body_component(q, L, a))
+    turned = about_axis(turned, c, slow_c * body_component(turned, L, c))
+    turned = about_axis(turned, a, 0.5 * slow_a * body_component(turned, L, a))
+    return unit(product(exponential(dt / I_body[b] * L), turned))
+    ### END SOLUTION
+
+
+def midpoint_step(torque, t, q, L, dt, body):
+    """Given.  Half of the torque's push on L, midpoint_turn, the other half; second order, and reversible."""
+    L = L + 0.5 * dt * torque(t, q, L, body)
+    q = midpoint_turn(q, L, body.I_body, dt)
+    return q, L + 0.5 * dt * torque(t + dt, q, L, body)
+
+
+def splitting_step(torque, t, q, L, dt, body):
+    """Given.  Half of the torque's push on L, splitting_turn, the other half; second order, and reversible."""
+    L = L + 0.5 * dt * torque(t, q, L, body)
+    q = splitting_turn(q, L, body.I_body, dt)
+    return q, L + 0.5 * dt * torque(t + dt, q, L, body)
+
+
+def compose(step, torque, t, q, L, dt, body):
+    """(q, L) after five substeps of a reversible step of second order, the third one backwards; fourth order.
+
+    γ dt, γ dt, (1 − 4γ) dt, γ dt, γ dt          γ = SUZUKI = 1/(4 − ∛4)
+
+    Each begins at the time where the one before it ended.  What the step keeps, five of it keep.
+    *Source:* Suzuki 1990; Hairer, Lubich, Wanner 2006, II.4.
+    """
+    ### BEGIN SOLUTION 5.18
+    for share in (SUZUKI, SUZUKI, 1.0 - 4.0 * SUZUKI, SUZUKI, SUZUKI):
+        q, L = step(torque, t, q, L, share * dt, body)
+        t = t + share * dt
+    return q, L
+    ### END SOLUTION
+
+
+def composed_splitting_step(torque, t, q, L, dt, body):
+    """Given.  compose of splitting_step: fourth order, L exact where nothing pushes it, bounded energy error."""
+    return compose(splitting_step, torque, t, q, L, dt, body)
+
+
+def composed_midpoint_step(torque, t, q, L, dt, body):
+    """Given.  compose of midpoint_step: fourth order, L and, without torque, energy to round-off."""
+    return compose(midpoint_step, torque, t, q, L, dt, body)
+
+
+# ---------------------------------------------------------------------------------------------- many steps
+
+def check_rotation(q):
+    """Given.  Raise BadInput unless the quaternion handed in has length 1."""
+    length = np.sqrt(np.sum(q * q))
+    if not abs(length - 1.0) <= UNIT_TOLERANCE:
+        raise BadInput("length of the quaternion q [-]", length, "divide q by it: an orientation has length 1")
+
+
+def tumble(step, torque, t, q, L, dt, steps, body):
+    """Given.  The state (q, L) after so many steps of one method.
+
+    Raises BadInput for a step that is not positive, a quaternion that is no rotation, moments that no body has, an L that is not
+    finite; Diverged when the end is not finite.
+    """
+    check_positive("step dt [s]", dt)
+    check_rotation(q)
+    check_moments(body.I_body)
+    check_finite("angular momentum L [kg m²/s]", L)
+    for n in range(steps):
+        q, L = step(torque, t + n * dt, q, L, dt, body)
+    if not (np.all(np.isfinite(q)) and np.all(np.isfinite(L))):
+        raise Diverged("the rotation is no longer finite at dt [s]", dt, "take a smaller step")
+    return q, L
+
+
+def tumbling(step, torque, t, q, L, dt, steps, body):
+    """Given.  Times (steps + 1,), orientations (steps + 1, 4) and angular momenta (steps + 1, 3) of the same run, the start included."""
+    ts = t + dt * np.arange(steps + 1)
+    qs, Ls = np.zeros((steps + 1, 4)), np.zeros((steps + 1, 3))
+    qs[0], Ls[0] = q, L
+    for n in range(steps):
+        q, L = tumble(step, torque, t + n * dt, q, L, dt, 1, body)
+        qs[n + 1], Ls[n + 1] = q, L
+    return ts, qs, Ls
+
+
+def move(step, load, t, x, v, q, omega, dt, steps, body):
+    """Given.  The state (x, v, q, ω) after so many steps of a rigid body, like rigid_body_step; raises what tumble raises."""
+    check_positive("step dt [s]", dt)
+    check_positive("mass m [kg]", body.m)
+    check_rotation(q)
+    check_moments(body.I_body)
+    check_finite("position x [m]", x)
+    check_finite("velocity v [m/s]", v)
+    check_finite("angular velocity ω [rad/s]", omega)
+    for n in range(steps):
+        x, v, q, omega = step(load, t + n * dt, x, v, q, omega, dt, body)
+    if not (np.all(np.isfinite(x)) and np.all(np.isfinite(v)) and np.all(np.isfinite(omega))):
+        raise Diverged("the motion is no longer finite at dt [s]", dt, "take a smaller step")
+    return x, v, q, omega

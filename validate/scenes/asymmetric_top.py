@@ -1,0 +1,91 @@
+"""A body with three different moments, spun about its middle axis with a hundredth of disturbance: it turns over, as tennis rackets do."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from solutions.rotation import Body, check_moments, tumble
+from solutions.rotation import no_torque as acceleration
+from validate.rigid import FREE_ENGINES, TURNS, FreeTop, axes_seen, free_limits, freely, quaternion_matrix
+
+TITLE, LESSON = "Asymmetric top", "rotation"
+T = 10.0                     # [s]: it turns over at 6.06 s, and is about to set out for the next time
+STEPS = (500, 1000, 2000, 5000, 10000, 20000, 50000)
+METHODS = TURNS
+FULL_ONLY = ("composed_midpoint_step",)
+UNCERTAINTY = 1e-11          # 1 − k² = 5e-5 is known to 2e-16/5e-5, and the instant of the flip like its logarithm
+
+
+class Params(NamedTuple):
+    I1: float = 1.0          # principal moments of inertia [kg m²]
+    I2: float = 2.0
+    I3: float = 3.0
+    w1: float = 0.01         # ω in the body at the start [rad/s]
+    w2: float = 2.0
+    w3: float = 0.01
+
+    def moments(self):
+        return np.array([self.I1, self.I2, self.I3])
+
+    def omega(self):
+        return np.array([self.w1, self.w2, self.w3])
+
+
+CASES = {"one flip": Params(), "calm about the largest moment": Params(w1=0.01, w2=0.02, w3=2.0)}
+
+
+def start(p):
+    check_moments(p.moments())
+    return np.array([1.0, 0.0, 0.0, 0.0]), p.moments() * p.omega(), Body(1.0, p.moments())
+
+
+def run(step, acceleration, state, p, dt, steps):
+    q, L, body = state
+    q, L = tumble(step, acceleration, 0.0, q, L, dt, steps, body)
+    return q, L, body
+
+
+def observe(state, p):
+    """R, its nine numbers: they do not tell q from −q."""
+    w, x, y, z = state[0]
+    return quaternion_matrix(w, x, y, z).ravel()
+
+
+def truth(p, t):
+    """ω by Jacobi's sn, cn, dn; about L the body turns at |L| (I₁ω₁² + I₂ω₂²)/(I₁²ω₁² + I₂²ω₂²), integrated by Gauss's rule (FreeTop).
+
+    Where the moments are not in order, or L² < 2E I₂, by DOP853.
+    Source: Landau and Lifshitz, Mechanics, § 37.
+    """
+    if FreeTop.knows(p.moments(), p.omega()):
+        return FreeTop(p.moments(), p.omega()).R(t).ravel()
+    return (freely(np.eye(3), p.omega(), p.moments(), t)[0] if t > 0.0 else np.eye(3)).ravel()
+
+
+def tolerance(p, dt):
+    """free_limits: errors grow as neighbouring motions part; the constants of first-order steps, pybullet's among them, in closed form."""
+    return free_limits(p, T, dt)
+
+
+ENGINES = FREE_ENGINES
+
+
+def points(observed, p):
+    return axes_seen(observed)
+
+
+def LINKS(p):
+    return [(0, 1), (0, 2), (0, 3)]
+
+
+def published():
+    p = Params()
+    top = FreeTop(p.moments(), p.omega())
+    flip = top.flips()[0]
+    R, L = freely(np.eye(3), p.omega(), p.moments(), T)
+    return (("the flip [s]", flip, 6.06, 5e-3), ("ω₂ at the flip [rad/s]", top.omega(flip)[1], 0.0, 1e-10),
+            ("R at T, by DOP853", truth(p, T), R.ravel(), 1e-10), ("ω in the body at T, by DOP853", top.omega(T), R.T @ L / p.moments(), 1e-10))
+
+
+NEEDS = ("one orientation", "one angular momentum", "one step function")
+LEAVES_OUT = {"position": "x += dt P/M goes on beside it and touches nothing", "contacts": "lessons 6 and 7 build them"}

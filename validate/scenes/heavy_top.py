@@ -1,0 +1,122 @@
+"""A fast top leans a little and is let go: its tip draws small loops, with a cusp at each, around the vertical."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from solutions.checks import BadInput, check_positive
+from solutions.rotation import Top, check_moments, exponential, tumble
+from solutions.rotation import heavy_top_torque as acceleration
+from validate.rigid import HeavyTop, Rigid, TURNS, about, freely
+from validate.scene import ROUND_OFF, Engine, World, by_order
+
+TITLE, LESSON = "Heavy top", "rotation"
+T = 2.0                      # [s]: nearly three nutations
+STEPS = (500, 1000, 2000, 5000, 10000, 20000, 50000)
+METHODS = TURNS
+FULL_ONLY = ("matrix_step", "axis_angle_step", "composed_midpoint_step")       # the asymmetric top has the first two
+UNCERTAINTY = 1e-12
+
+
+class Params(NamedTuple):
+    I1: float = 5.0          # moment across the axis, about the pivot [kg m²]
+    I3: float = 1.0          # moment about the axis [kg m²]
+    mgl: float = 20.0        # weight times the distance from the pivot to the centre of mass [N m]
+    tilt: float = 0.05       # at the start [rad]
+    spin: float = 50.0       # ω₃ [rad/s]
+
+    def moments(self):
+        return np.array([self.I1, self.I1, self.I3])
+
+
+CASES = {"fast": Params()}
+LENGTH, G = 1.0, 9.81        # for pybullet: from the pivot to the centre of mass [m], gravity [m/s²]; only Mgl counts
+
+
+def start(p):
+    check_moments(p.moments())
+    check_positive("Mgl [N m]", p.mgl)
+    if not 0.0 < p.tilt < np.pi:
+        raise BadInput("the tilt [rad]", p.tilt, "give a number between 0 and π")
+    if not (p.I3 * p.spin / p.I1) ** 2 > 4.0 * p.mgl / p.I1:
+        raise BadInput("the spin [rad/s]", p.spin, "let the top spin fast enough to stand, ω₃² > 4 I₁ Mgl/I₃²")
+    q = exponential(np.array([p.tilt, 0.0, 0.0]))
+    return q, about(np.array([1.0, 0.0, 0.0]), p.tilt) @ np.array([0.0, 0.0, p.I3 * p.spin]), Top(p.moments(), p.mgl)
+
+
+def run(step, acceleration, state, p, dt, steps):
+    q, L, top = state
+    q, L = tumble(step, acceleration, 0.0, q, L, dt, steps, top)
+    return q, L, top
+
+
+def observe(state, p):
+    """Where the tip is, seen from above: the horizontal coordinates of the unit vector along the top."""
+    w, x, y, z = state[0]
+    return np.array([2.0 * (x * z + w * y), 2.0 * (y * z - w * x)])
+
+
+def truth(p, t):
+    """θ by Jacobi's sn and dn, φ by Gauss's rule (HeavyTop): the tip is at sin θ (sin φ, −cos φ).
+
+    Source: Landau and Lifshitz, Mechanics, § 35.
+    """
+    return HeavyTop(p.I1, p.I3, p.mgl, p.tilt, p.spin).tip(t)
+
+
+def tolerance(p, dt):
+    """The fastest rate is the spin.  Near the vertical the tip obeys a linear equation, so that it errs in proportion to its distance.
+
+    Round-off is that of q, 1e-16 a step beside a tip at sin θ₀ at least.  pybullet takes the gyroscopic term at the end of the step
+    (maximal coordinates) or at its beginning (reduced), about the centre of mass and not about the pivot: I = I₁ − ml².  Seen from
+    the body its tip turns at Ω = (I₃/I − 1) ω₃, and e^(iΩdt) ≈ 1 + iΩdt is too long by ½(Ω dt)² a step.
+    """
+    limits = {k: limit + T / dt * ROUND_OFF / np.sin(p.tilt) for k, limit in by_order(p.spin, T, dt).items()}
+    turning = (p.I3 / (p.I1 - mass(p) * LENGTH**2) - 1.0) * p.spin
+    witness = limits[1] + 0.5 * turning**2 * dt * T
+    return {**limits, "pybullet": witness, "pybullet, reduced coordinates": witness}
+
+
+def mass(p):
+    return p.mgl / (G * LENGTH)
+
+
+def pybullet_make(maximal):
+    def make(p, dt):
+        """A body held at its pivot by a point-to-point constraint; its moments are about the centre of mass: I₁ − ml²."""
+        across = p.I1 - mass(p) * LENGTH**2
+        R = about(np.array([1.0, 0.0, 0.0]), p.tilt)
+        axis = R[:, 2]
+        bullet = Rigid(dt, (0.0, 0.0, -G), iterations=200, erp=1.0)
+        body = bullet.body(mass(p), (across, across, p.I3), LENGTH * axis, p.spin * axis, maximal, R=R)
+        bullet.pivot(body, (0.0, 0.0, -LENGTH), maximal)
+        return World(bullet.step, lambda: bullet.R(body)[:2, 2], bullet.close)
+    return make
+
+
+SETTINGS = "pivot: JOINT_POINT2POINT, 200 iterations, erp 1; no damping"
+ENGINES = (
+    Engine("pybullet, reduced coordinates", pybullet_make(False), 1, f"createMultiBody, no clamp of velocity; {SETTINGS}"),
+    Engine("pybullet", pybullet_make(True), 1, f"useMaximalCoordinates=1; {SETTINGS}"),
+)
+
+
+def points(observed, p):
+    return np.vstack((np.zeros(2), observed))
+
+
+def LINKS(p):
+    return [(0, 1)]
+
+
+def published():
+    p = Params()
+    top, R = HeavyTop(*p), about(np.array([1.0, 0.0, 0.0]), p.tilt)
+    tip = freely(R, np.array([0.0, 0.0, p.spin]), p.moments(), T, lambda R: np.cross(R[:, 2], [0.0, 0.0, -p.mgl]))[0][:2, 2]
+    return (("energy [J]", 0.5 * p.I3 * p.spin**2 + p.mgl * np.cos(p.tilt), 1269.975, 5e-4),
+            ("least and largest tilt [°]", np.degrees(np.arccos([top.u0, top.u1])), (2.864789, 3.125582), 5e-7),
+            ("nutation [s]", top.nutation(), 0.685458497, 5e-10), ("the tip at T, by DOP853", truth(p, T), tip, 1e-12))
+
+
+NEEDS = ("one orientation", "one angular momentum", "one torque", "one step function")
+LEAVES_OUT = {"the pivot's force": "taken about the pivot, it has no torque", "friction at the pivot": "lesson 3 has friction"}

@@ -1,0 +1,103 @@
+"""A ball lets itself go on a slope and rolls: two sevenths of its weight's pull are spent on turning it."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from solutions.checks import BadInput, check_positive
+from solutions.rotation import Ball, move
+from solutions.rotation import rolling_load as acceleration
+from validate.rigid import LOOP, rolling_ball
+from validate.scene import ROUND_OFF, Engine
+
+TITLE, LESSON = "Rolling down", "rotation"
+T = 1.0                      # [s]
+STEPS = (50, 100, 200, 500, 1000, 2000, 5000)
+METHODS = (LOOP,)
+UNCERTAINTY = 1e-15
+
+
+class Params(NamedTuple):
+    slope: float = 15.0      # of the floor [°]
+    radius: float = 0.05     # [m]
+    m: float = 0.5           # mass [kg]
+    mu: float = 0.5          # friction [-]; it rolls from 2/7 tan 15° = 0.077 on
+    g: float = 9.81          # gravity [m/s²]
+
+
+CASES = {"15°": Params(), "hardly rough enough": Params(mu=0.077)}
+
+
+def ball(p, dt):
+    slope = np.radians(p.slope)
+    return Ball(p.m, np.full(3, 0.4 * p.m * p.radius**2), p.radius, p.mu, p.g * np.array([np.sin(slope), 0.0, -np.cos(slope)]), dt)
+
+
+def start(p):
+    for name in ("radius", "m", "g"):
+        check_positive(name, getattr(p, name))
+    if not p.mu >= 2.0 / 7.0 * np.tan(np.radians(p.slope)):
+        raise BadInput("the friction μ", p.mu, "give 2/7 tan(slope) or more: with less it slides")
+    return np.array([0.0, 0.0, p.radius]), np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3)
+
+
+def run(step, acceleration, state, p, dt, steps):
+    x, v, q, omega = state
+    return move(step, acceleration, 0.0, x, v, q, omega, dt, steps, ball(p, dt))
+
+
+def observe(state, p):
+    """Way down the slope s [m], speed v and rim speed rω [m/s]."""
+    return np.array([state[0][0], state[1][0], p.radius * state[3][1]])
+
+
+def truth(p, t):
+    """v = rω = at,  s = ½at²,  a = g sin β/(1 + I/mr²) = (5/7) g sin β.
+
+    Source: m v̇ = m g sin β − f,  I ω̇ = r f,  v = rω; deck B, "sticking: any force in the cone".
+    """
+    a = acceleration_down(p)
+    return np.array([0.5 * a * t * t, a * t, a * t])
+
+
+def acceleration_down(p):
+    return 5.0 / 7.0 * p.g * np.sin(np.radians(p.slope))
+
+
+def tolerance(p, dt):
+    """A step that moves with the new velocity arrives ½ a dt T too far, the engine's too; v and ω are exact, for the force is constant."""
+    limit = 0.5 * acceleration_down(p) * dt * T / np.linalg.norm(truth(p, T)) + 1e-12 + T / dt * ROUND_OFF
+    return {1: limit, "pybullet": limit, "pybullet, reduced coordinates": limit}
+
+
+def pybullet_make(maximal):
+    return lambda p, dt: rolling_ball(ball(p, dt), np.zeros(3), maximal, dt)
+
+
+ENGINES = (
+    Engine("pybullet, reduced coordinates", pybullet_make(False), 1, "createMultiBody on a GEOM_PLANE, slanted gravity; 100 iterations, no residual threshold, no slop, no damping"),
+    Engine("pybullet", pybullet_make(True), 1, "the same with useMaximalCoordinates=1"),
+)
+
+
+def points(observed, p):
+    """The slope from the side: the centre, and a mark on the rim, which has turned by s/r."""
+    slope, s = np.radians(p.slope), observed[0]
+    down, up = np.array([np.cos(slope), -np.sin(slope)]), np.array([np.sin(slope), np.cos(slope)])
+    turned = s / p.radius
+    centre = s * down + p.radius * up
+    return np.stack((centre, centre + p.radius * (np.sin(turned) * down + np.cos(turned) * up), np.zeros(2), 1.1 * down))
+
+
+def LINKS(p):
+    return [(0, 1), (2, 3)]
+
+
+def published():
+    s, v, _ = truth(Params(), T)
+    return (("speed after 1 s [m/s]", v, 1.813582, 5e-7), ("way after 1 s [m]", s, 0.906791, 5e-7))
+
+
+NEEDS = ("one ball", "one force at one point", "the lecture's loop")
+LEAVES_OUT = {"detection of the contact": "the ball starts on the floor and stays there; lesson 6 finds contacts",
+              "a support that may be wrong": "N = mg cos β, because nothing moves up or down; lesson 9 solves for it"}

@@ -1,0 +1,122 @@
+"""A ball bowled without spin slides, is turned by the friction that brakes it, and from one instant on rolls for ever."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from solutions.checks import check_positive
+from solutions.rotation import Ball, move
+from solutions.rotation import rolling_load as acceleration
+from validate.engines import pymunk_space, pymunk_world
+from validate.rigid import LOOP, rolling_ball
+from validate.scene import ROUND_OFF, Engine
+
+TITLE, LESSON = "Slide, then roll", "rotation"
+T = 1.5                      # [s]
+STEPS = (60, 120, 300, 600, 1200, 3000, 6000)
+METHODS = (LOOP,)
+UNCERTAINTY = 1e-15
+
+
+class Params(NamedTuple):
+    shape: float = 0.4       # I/mR² [-]: 2/5 for a sphere, 1/2 for a disc
+    v0: float = 5.0          # speed at the start [m/s]
+    mu: float = 0.2          # friction [-]
+    R: float = 0.1           # radius [m]
+    m: float = 2.0           # mass [kg]
+    g: float = 9.81          # gravity [m/s²]
+
+
+CASES = {"sphere": Params(), "disc": Params(shape=0.5)}
+
+
+def ball(p, dt):
+    return Ball(p.m, np.full(3, p.shape * p.m * p.R**2), p.R, p.mu, np.array([0.0, 0.0, -p.g]), dt)
+
+
+def start(p):
+    for name in ("shape", "R", "m", "mu", "g"):
+        check_positive(name, getattr(p, name))
+    return np.array([0.0, 0.0, p.R]), np.array([p.v0, 0.0, 0.0]), np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3)
+
+
+def run(step, acceleration, state, p, dt, steps):
+    x, v, q, omega = state
+    return move(step, acceleration, 0.0, x, v, q, omega, dt, steps, ball(p, dt))
+
+
+def observe(state, p):
+    """Way x [m], speed v and rim speed Rω [m/s]."""
+    return np.array([state[0][0], state[1][0], p.R * state[3][1]])
+
+
+def rolls_from(p):
+    """When slipping ends [s]: v₀ − μg t = Rω = μg t mR²/I."""
+    return p.v0 / (p.mu * p.g * (1.0 + 1.0 / p.shape))
+
+
+def truth(p, t):
+    """v = v₀ − μgt and Rω = μgt mR²/I until they meet at t* = v₀/(μg(1 + mR²/I)); from then on both are v₀/(1 + I/mR²).
+
+    Source: Newton and Euler with f = μmg; deck A, friction; 5/7 of the speed is left to a sphere, 2/3 to a disc.
+    """
+    sliding, brake = min(t, rolls_from(p)), p.mu * p.g
+    v = p.v0 - brake * sliding
+    return np.array([p.v0 * sliding - 0.5 * brake * sliding**2 + v * (t - sliding), v, brake * sliding / p.shape])
+
+
+def tolerance(p, dt):
+    """While it slides, a step that moves with the new velocity falls ½ μg dt behind each second, one with the old gets as much ahead.
+
+    In the step in which it begins to roll the velocity is off by μg dt at most, for dt; after it both velocities are exact, though
+    pymunk's friction may act for one step more or less: another μg dt².
+    """
+    brake = p.mu * p.g
+    bias = (0.5 * brake * dt * rolls_from(p) + 2.0 * brake * dt * dt) / np.linalg.norm(truth(p, T))
+    limit = bias + 1e-12 + T / dt * ROUND_OFF
+    return {1: limit, "pymunk": limit, "pybullet": limit, "pybullet, reduced coordinates": limit}
+
+
+def pymunk_make(p, dt):
+    """A circle with that moment, which overlaps the floor by a micrometre: pymunk needs an overlap to see a contact."""
+    import pymunk
+    space = pymunk_space((0.0, -p.g))
+    space.iterations = 50
+    body = pymunk.Body(p.m, p.shape * p.m * p.R**2)
+    body.position, body.velocity = (0.0, p.R - 1e-6), (p.v0, 0.0)
+    shape, floor = pymunk.Circle(body, p.R), pymunk.Segment(space.static_body, (-10.0, 0.0), (100.0, 0.0), 0.0)
+    shape.friction, floor.friction = p.mu, 1.0           # pymunk multiplies the two
+    space.add(body, shape, floor)
+    return pymunk_world(space, dt, lambda: np.array([body.position.x, body.velocity.x, -p.R * body.angular_velocity]))
+
+
+def pybullet_make(maximal):
+    return lambda p, dt: rolling_ball(ball(p, dt), np.array([p.v0, 0.0, 0.0]), maximal, dt)
+
+
+ENGINES = (
+    Engine("pymunk", pymunk_make, 1, "50 iterations; the circle starts 1e-6 m inside the floor"),
+    Engine("pybullet, reduced coordinates", pybullet_make(False), 1, "createMultiBody on a GEOM_PLANE; 100 iterations, no residual threshold, no slop, no damping"),
+    Engine("pybullet", pybullet_make(True), 1, "the same with useMaximalCoordinates=1"),
+)
+
+
+def points(observed, p):
+    """From the side: the centre, and how far the rim has come, both along the floor."""
+    x, v, rim = observed
+    return np.array([[x, p.R], [x, p.R + 0.2 * v], [x + 0.05, p.R], [x + 0.05, p.R + 0.2 * rim], [0.0, 0.0], [6.0, 0.0]])
+
+
+def LINKS(p):
+    return [(0, 1), (2, 3), (4, 5)]
+
+
+def published():
+    sphere, disc = CASES["sphere"], CASES["disc"]
+    return (("a sphere rolls from [s]", rolls_from(sphere), 0.728120, 5e-7), ("its speed then [m/s]", truth(sphere, T)[1:], 25.0 / 7.0, 1e-14),
+            ("a disc rolls from [s]", rolls_from(disc), 0.849473, 5e-7), ("its speed then [m/s]", truth(disc, T)[1:], 10.0 / 3.0, 1e-14))
+
+
+NEEDS = ("one ball", "one force at one point", "the lecture's loop")
+LEAVES_OUT = {"detection of the contact": "the ball starts on the floor and stays there; lesson 6 finds contacts",
+              "a support that may be wrong": "N = mg, because nothing moves up or down; lesson 9 solves for it"}
