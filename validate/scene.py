@@ -13,7 +13,7 @@ A scene is a module in `validate/scenes/`.  It must define
     observe(state, p)         flat array: what is compared with the truth at T
     truth(p, t)               the same quantities at time t
     UNCERTAINTY               of the truth, relative
-    tolerance(p, dt)          {order or engine label: largest relative error}, derived before looking
+    tolerance(p, dt)          {order, or label of an engine or a method: largest relative error}, derived before looking
     ENGINES                   tuple of Engine
     points(observed, p)       (n, 2) drawing coordinates [m] of what was observed
     NEEDS, LEAVES_OUT         what the scene calls; {what it does without: (p → (state, p) with it put in), or why not yet}
@@ -24,8 +24,8 @@ and may define
     WITHOUT                   a sentence: which methods are not run here at all, and why
     PUBLISHED                 ((time, observed, tolerance), …) of the first case, from elsewhere
     ORDERS                    {method's function: order here}, where it differs from the usual; EXACT means no error but round-off
-    WHY                       {engine label: (why it departs from the truth, in one sentence; its own law (p, t), like truth)}:
-                              such an engine is held against its own law, and the report says how far that is from the truth
+    WHY                       {label of an engine or a method: (why it departs from the truth, in one sentence; its own law (p, t),
+                              like truth)}: it is held against its own law, and the report says how far that is from the truth
 """
 
 from typing import Callable, NamedTuple
@@ -51,6 +51,11 @@ VERLET = Method("verlet_step", "Verlet", 2)
 IMPLICIT_EULER = Method("implicit_euler_step", "implicit Euler", 1)
 IMPLICIT_MIDPOINT = Method("implicit_midpoint_step", "implicit midpoint", 2)
 IMPLICIT_MESH = Method("implicit_mesh_step", "implicit mesh", 1, "springs")
+SLIDING = Method("sliding_step", "sliding", 1, "friction")
+PYRAMID = Method("pyramid_step", "pyramid", 1, "friction")
+EVENT = Method("event_step", "event", 2, "friction")
+CONTACT = Method("contact_step", "contact", 1, "friction")
+GRIPPING = Method("gripping_step", "gripping", 1, "friction")
 
 INTEGRATORS = (EULER, MIDPOINT, RK4, AVERAGE_VELOCITY, SYMPLECTIC_EULER, VERLET, IMPLICIT_EULER, IMPLICIT_MIDPOINT)
 

@@ -6,6 +6,8 @@ LOOKS = {                       # label: colour, marker
     "Euler": ("#E69F00", "o"), "midpoint": ("#56B4E9", "^"), "Runge–Kutta 4": ("#009E73", "s"), "average velocity": ("#CC79A7", "v"),
     "symplectic Euler": ("#D55E00", "D"), "Verlet": ("#0072B2", "P"), "implicit Euler": ("#8C6D31", "<"),
     "implicit midpoint": ("#6A51A3", ">"), "implicit mesh": ("#7F7F7F", "h"),
+    "sliding": ("#0072B2", "o"), "pyramid": ("#D55E00", "D"), "event": ("#009E73", "s"), "contact": ("#E69F00", "v"),
+    "gripping": ("#56B4E9", "^"),
 }
 ENGINE_LOOKS = {"pymunk": ("#000000", "x"), "pybullet": ("#5A5A5A", "+")}
 OURS_MOVING = ("#0072B2", "#009E73", "#CC79A7", "#E69F00")
