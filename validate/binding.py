@@ -225,6 +225,7 @@ class Direct:
         self.twin, self.known = twin, {}
 
     def __call__(self, *arguments):
+        arguments = [a.twin if isinstance(a, Direct) else a for a in arguments]           # a lesson's function may take another
         kinds = tuple(map(_kind, arguments))
         if kinds not in self.known:
             from numba import typeof

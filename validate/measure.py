@@ -140,7 +140,7 @@ def errors(name, plan, tick=lambda: None):
             order = getattr(scene, "ORDERS", {}).get(method.function, method.order)
             step = getattr(binding.world(plan.of, fast is not scene).lesson(method.lesson), method.function)
             runs = [(n, final(fast, step, p, n)) for n in sweep(scene, plan)]
-            ours.append(curve(scene, method.label, p, truth, runs, order, lambda n: scene.tolerance(p, scene.T / n)[order]))
+            ours.append(judged(scene, method.label, p, truth, runs, order))
             if still(scene) is not None:
                 ours[-1]["observed"] = [{"steps": n, "observed": o, "failure": f} for n, (o, f) in runs]
             tick()
@@ -215,16 +215,22 @@ def engine_curve(name, scene, case, engine, p, truth, plan):
                     "source": "missing", "why": f"{product} is not installed here and this case was never recorded"}
         source = record["source"]
         runs = [(r["steps"], (np.array(r["observed"]), None) if r["observed"] else (None, r["failure"])) for r in record["runs"]]
-    def judged(against):
-        return curve(scene, engine.label, p, against, runs, engine.order, lambda n: scene.tolerance(p, scene.T / n)[engine.label])
-
-    result, reason = judged(truth), ""
-    if engine.label in getattr(scene, "WHY", {}):                    # it must depart, and exactly as its own law says
-        reason, own_law = scene.WHY[engine.label]
-        own = np.array(own_law(p, scene.T), dtype=float)
-        result = {**judged(own), "rows": result["rows"], "departs": relative(own, truth), "own": own.tolist()}
-    return {**result, "settings": engine.settings, "source": source, "reason": reason,
+    return {**judged(scene, engine.label, p, truth, runs, engine.order), "settings": engine.settings, "source": source,
             "observed": [{"steps": n, "observed": None if o is None else o.tolist(), "failure": f} for n, (o, f) in runs]}
+
+
+def judged(scene, label, p, truth, runs, order):
+    """The curve of one method or engine; where the scene gives it a law of its own, it must depart from the truth exactly as that says."""
+    def limit(steps):
+        limits = scene.tolerance(p, scene.T / steps)
+        return limits[label] if label in limits else limits[order]
+
+    result = {**curve(scene, label, p, truth, runs, order, limit), "reason": ""}
+    if label in getattr(scene, "WHY", {}):
+        reason, own_law = scene.WHY[label]
+        own = np.array(own_law(p, scene.T), dtype=float)
+        result = {**curve(scene, label, p, own, runs, order, limit), "rows": result["rows"], "reason": reason, "departs": relative(own, truth), "own": own.tolist()}
+    return result
 
 
 def recorded(name, case, label):
@@ -444,7 +450,7 @@ def _empty(step):
 
 def usable(result):
     """Labels of our methods that agree with the truth in the first case."""
-    return {c["label"] for c in next(iter(result["cases"].values()))["ours"] if c["right"]}
+    return {c["label"] for c in next(iter(result["cases"].values()))["ours"] if c["right"] and not c["reason"]}
 
 
 def left_out(name, plan, p, usable):

@@ -13,7 +13,7 @@ A scene is a module in `validate/scenes/`.  It must define
     observe(state, p)         flat array: what is compared with the truth at T
     truth(p, t)               the same quantities at time t
     UNCERTAINTY               of the truth, relative
-    tolerance(p, dt)          {order or engine label: largest relative error}, derived before looking
+    tolerance(p, dt)          {order, or label of an engine or a method: largest relative error}, derived before looking
     ENGINES                   tuple of Engine
     points(observed, p)       (n, 2) drawing coordinates [m] of what was observed
     NEEDS, LEAVES_OUT         what the scene calls; {what it does without: (p → (state, p) with it put in), or why not yet}
@@ -26,9 +26,9 @@ and may define
     FILM                      how much of the motion the moving picture shows [s]; T without it
     PUBLISHED                 ((time, observed, tolerance), …) of the first case, from elsewhere
     ORDERS                    {method's function: order here}, where it differs from the usual; EXACT means no error but round-off
+    WHY                       {label of an engine or a method: (why it departs from the truth, in one sentence; its own law (p, t),
+                              like truth)}: it is held against its own law, and the report says how far that is from the truth
     CAN(name, p)              whether that method (by its function) or engine (by its label) can do that case at all; without it all can
-    WHY                       {engine label: (why it departs from the truth, in one sentence; its own law (p, t), like truth)}:
-                              such an engine is held against its own law, and the report says how far that is from the truth
     STILL                     nothing moves: what the fineness dt = T/steps means, in words, "size of a triangle, 1/n [-]".  T is 1, no start is
                               compared, the picture stands.  When nothing can be refined either, STILL is "" and STEPS (1,): then the report
                               has no diagrams but a table of numbers, under the names that QUANTITIES(p) gives to what is observed
@@ -61,6 +61,11 @@ IMPLICIT_MESH = Method("implicit_mesh_step", "implicit mesh", 1, "springs")
 TRIANGLES = Method("mesh_body", "triangles", 2, "inertia_tensors")
 POINTS = Method("point_mass_inertia", "points", 1, "inertia_tensors")
 PARTS = Method("combine", "parts", 2, "inertia_tensors")
+SLIDING = Method("sliding_step", "sliding", 1, "friction")
+PYRAMID = Method("pyramid_step", "pyramid", 1, "friction")
+EVENT = Method("event_step", "event", 2, "friction")
+CONTACT = Method("contact_step", "contact", 1, "friction")
+GRIPPING = Method("gripping_step", "gripping", 1, "friction")
 
 INTEGRATORS = (EULER, MIDPOINT, RK4, AVERAGE_VELOCITY, SYMPLECTIC_EULER, VERLET, IMPLICIT_EULER, IMPLICIT_MIDPOINT)
 

@@ -10,6 +10,8 @@ LOOKS = {                       # label: colour, marker
     "ω*R, renormalised": ("#8C6D31", "<"), "axis–angle": ("#E69F00", "o"), "quaternion": ("#CC79A7", "v"), "gyroscopic term": ("#D55E00", "D"),
     "gyroscopic, implicit": ("#7F7F7F", "h"), "midpoint turn": ("#6A51A3", ">"), "splitting": ("#56B4E9", "^"),
     "splitting, composed": ("#0072B2", "P"), "midpoint, composed": ("#B07CC6", "d"), "the lecture's loop": ("#0072B2", "P"),
+    "sliding": ("#0072B2", "o"), "pyramid": ("#D55E00", "D"), "event": ("#009E73", "s"), "contact": ("#E69F00", "v"),
+    "gripping": ("#56B4E9", "^"),
 }
 ENGINE_LOOKS = {"pymunk": ("#000000", "x"), "pybullet": ("#5A5A5A", "+")}
 OURS_MOVING = ("#0072B2", "#009E73", "#CC79A7", "#E69F00")

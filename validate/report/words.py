@@ -119,6 +119,9 @@ def _ours(result):
     shown = [c for c in next(iter(result["cases"].values()))["ours"] if c["order"] is not None and c["right"]]
     if shown:
         yield "Measured orders of convergence: " + ", ".join(f"{c['label']} {c['order']:.2f} ({c['expected']})" for c in shown) + "; the expected order is in brackets."
+    for c in next(iter(result["cases"].values()))["ours"]:
+        if c["right"] and c["reason"]:
+            yield f"{c['label']} converges to another law because {c['reason']}: {percent(c['departs'])} away from the truth."
     exact = [c["label"] for c in next(iter(result["cases"].values()))["ours"] if c["expected"] == "exact" and c["right"]]
     if exact and result["still"] != "":
         yield f"Exact up to round-off at every step, as derived: {', '.join(exact)}."

@@ -1,0 +1,439 @@
+"""Lesson 3: friction with a sign, a mass, a step or a case of its own gone astray."""
+
+import numpy as np
+
+from solutions import friction as worked
+from . import collection
+
+wrong, right, MUTANTS = collection()
+tangential, cone_radius = worked.tangential, worked.cone_radius
+
+
+def size(y):
+    return np.linalg.norm(y)
+
+
+def unit(y):
+    return y / size(y) if size(y) > 0.0 else 0.0 * y
+
+
+# 3.1 ------------------------------------------------------------------------------------------------------------
+@wrong("3.1", "with the sign of F · n")
+def normal_force(F, n):
+    return max(0.0, F @ n)
+
+
+@wrong("3.1", "pulls at what is lifted")
+def normal_force(F, n):
+    return -(F @ n)
+
+
+@wrong("3.1", "all of F presses")
+def normal_force(F, n):
+    return size(F) if F @ n < 0.0 else 0.0
+
+
+@wrong("3.1", "the last coordinate only")
+def normal_force(F, n):
+    return max(0.0, -F[-1])
+
+
+@wrong("3.1", "a vector")
+def normal_force(F, n):
+    return max(0.0, -(F @ n)) * n
+
+
+@right("3.1", "one by one")
+def normal_force(F, n):
+    total = sum(-a * b for a, b in zip(F, n))
+    return total if total > 0.0 else 0.0
+
+
+# 3.2 ------------------------------------------------------------------------------------------------------------
+def holding(sign=-1.0, rim=True, clamp=True, load=lambda F, n: max(0.0, -(F @ n)), part=tangential, checked=True, safe=True):
+    """Static friction by a clamp, with parts that may be wrong."""
+    def static_friction(F, n, mu_s):
+        pull, F_N = part(F, n), load(F, n)
+        limit = cone_radius(mu_s, F_N) if checked else (mu_s * F_N if F_N > 0.0 or not safe else 0.0)
+        if size(pull) <= limit or not clamp:
+            return sign * pull
+        return sign * limit * unit(pull) if rim else 0.0 * pull
+    return static_friction
+
+
+right("3.2", "by a clamp")(holding())
+wrong("3.2", "pushes on")(holding(sign=1.0))
+wrong("3.2", "gives up beyond the cone")(holding(rim=False))
+wrong("3.2", "holds everything")(holding(clamp=False))
+wrong("3.2", "cancels the whole of F")(holding(part=lambda F, n: F))
+wrong("3.2", "the normal force is the size of F")(holding(load=lambda F, n: size(F)))
+wrong("3.2", "takes a lift for a load")(holding(load=lambda F, n: abs(F @ n)))
+wrong("3.2", "takes a negative μ")(holding(checked=False))
+wrong("3.2", "∞ times nothing")(holding(checked=False, safe=False))
+
+
+@wrong("3.2", "always on the rim")
+def static_friction(F, n, mu_s):
+    return -cone_radius(mu_s, worked.normal_force(F, n)) * unit(tangential(F, n))
+
+
+# 3.3 ------------------------------------------------------------------------------------------------------------
+def braking(sign=-1.0, direction=lambda F, v, n: unit(tangential(v, n)), load=lambda F, n: max(0.0, -(F @ n)), scale=lambda v: 1.0):
+    def kinetic_friction(F, v, n, mu_k):
+        return sign * cone_radius(mu_k, load(F, n)) * scale(v) * direction(F, v, n)
+    return kinetic_friction
+
+
+right("3.3", "by a unit vector")(braking())
+wrong("3.3", "speeds up")(braking(sign=1.0))
+wrong("3.3", "against the pull")(braking(direction=lambda F, v, n: unit(tangential(F, n))))
+wrong("3.3", "against all of v")(braking(direction=lambda F, v, n: unit(v)))
+wrong("3.3", "grows with the speed")(braking(scale=lambda v: size(v)))
+wrong("3.3", "the load is the size of F")(braking(load=lambda F, n: size(F)))
+wrong("3.3", "a lift brakes, too")(braking(load=lambda F, n: abs(F @ n)))
+
+
+@wrong("3.3", "divides by no speed")
+def kinetic_friction(F, v, n, mu_k):
+    v_t = tangential(v, n)
+    with np.errstate(invalid="ignore"):
+        return -cone_radius(mu_k, worked.normal_force(F, n)) * v_t / size(v_t)
+
+
+# 3.4 ------------------------------------------------------------------------------------------------------------
+def on_slope(holds=lambda theta, mu_s, mu_k: np.tan(theta) <= mu_s, slides=lambda theta, mu_s, mu_k: np.sin(theta) - mu_k * np.cos(theta)):
+    def incline_acceleration(theta, mu_s, mu_k, g):
+        worked.check_friction(mu_s)
+        return 0.0 if holds(theta, mu_s, mu_k) else g * slides(theta, mu_s, mu_k)
+    return incline_acceleration
+
+
+right("3.4", "by the tangent")(on_slope())
+wrong("3.4", "static friction in motion")(on_slope(slides=lambda theta, mu_s, mu_k: np.sin(theta) - mu_s * np.cos(theta)))
+wrong("3.4", "kinetic friction at rest")(on_slope(holds=lambda theta, mu_s, mu_k: np.tan(theta) <= mu_k))
+wrong("3.4", "sine and cosine exchanged")(on_slope(slides=lambda theta, mu_s, mu_k: np.cos(theta) - mu_k * np.sin(theta)))
+wrong("3.4", "sin θ against μ")(on_slope(holds=lambda theta, mu_s, mu_k: np.sin(theta) <= mu_s))
+wrong("3.4", "never holds")(on_slope(holds=lambda theta, mu_s, mu_k: False))
+wrong("3.4", "friction on the level")(on_slope(slides=lambda theta, mu_s, mu_k: np.sin(theta) - mu_k))
+
+
+@wrong("3.4", "takes a negative μ")
+def incline_acceleration(theta, mu_s, mu_k, g):
+    return 0.0 if np.tan(theta) <= mu_s else g * (np.sin(theta) - mu_k * np.cos(theta))
+
+
+# 3.5 ------------------------------------------------------------------------------------------------------------
+def dissipating(sign=-1.0, stop=lambda m, speed: m * speed, choose=min, limit=cone_radius):
+    def friction_impulse(v_t, m, j_n, mu):
+        return sign * choose(limit(mu, j_n), stop(m, size(v_t))) * unit(v_t)
+    return friction_impulse
+
+
+right("3.5", "by a unit vector")(dissipating())
+wrong("3.5", "along the motion")(dissipating(sign=1.0))
+wrong("3.5", "forgets the mass")(dissipating(stop=lambda m, speed: speed))
+wrong("3.5", "the greater one")(dissipating(choose=max))
+wrong("3.5", "always slides")(dissipating(choose=lambda limit, stop: limit))
+wrong("3.5", "always stops")(dissipating(choose=lambda limit, stop: stop))
+wrong("3.5", "forgets μ")(dissipating(limit=lambda mu, j_n: worked.check_friction(mu) or j_n))
+wrong("3.5", "takes a negative μ")(dissipating(limit=lambda mu, j_n: mu * j_n if j_n > 0.0 else 0.0))
+
+
+@wrong("3.5", "divides by no speed")
+def friction_impulse(v_t, m, j_n, mu):
+    with np.errstate(invalid="ignore"):
+        return -min(cone_radius(mu, j_n), m * size(v_t)) * v_t / size(v_t)
+
+
+@wrong("3.5", "changes its input")
+def friction_impulse(v_t, m, j_n, mu):
+    v_t *= -min(cone_radius(mu, j_n) / max(size(v_t), 1e-300), m)
+    return v_t
+
+
+# 3.6 ------------------------------------------------------------------------------------------------------------
+def square(sign=-1.0, mass=True, clamp=lambda y, limit: np.clip(y, -limit, limit), second=True, width=1.0):
+    def pyramid_impulse(v_t, m, j_n, mu, t_1, t_2):
+        tangents = np.stack([t_1, t_2 if second else 0.0 * t_2])
+        return sign * clamp((m if mass else 1.0) * tangents @ v_t, width * cone_radius(mu, j_n)) @ tangents
+    return pyramid_impulse
+
+
+right("3.6", "both tangents at once")(square())
+wrong("3.6", "along the motion")(square(sign=1.0))
+wrong("3.6", "forgets the mass")(square(mass=False))
+wrong("3.6", "no clamp from below")(square(clamp=np.minimum))
+wrong("3.6", "one tangent only")(square(second=False))
+wrong("3.6", "inside the cone: half the area")(square(width=np.sqrt(0.5)))
+
+
+@wrong("3.6", "a cone")
+def pyramid_impulse(v_t, m, j_n, mu, t_1, t_2):
+    return worked.friction_impulse(v_t, m, j_n, mu)
+
+
+# 3.7 ------------------------------------------------------------------------------------------------------------
+def block_step(rest=True, at_rest="mu_s", moving="mu_k", late=0.0, old=False, against="new", once=True, load=worked.normal_force, speed=1.0):
+    """A step of a block with friction as a vector of its own, with terms that may be wrong."""
+    def sliding_step(acceleration, t, x, v, dt, p):
+        a = acceleration(t + late * dt, x, v, p)
+        a_n, a_t = load(a, p.n), tangential(a, p.n)
+        if rest and size(v) == 0.0 and size(a_t) <= cone_radius(getattr(p, at_rest), a_n):
+            return x, v
+        free = v + dt * a_t
+        limit = (dt if once else 1.0) * cone_radius(getattr(p, moving), a_n)
+        direction = unit(free if against == "new" else v if size(v) > 0.0 else a_t)
+        v_new = free - direction * (min(limit, size(free)) if speed else limit)
+        v_new = 0.0 * v if speed and size(free) <= limit else v_new
+        return x + dt * (v if old else v_new), v_new
+    return sliding_step
+
+
+right("3.7", "by a unit vector")(block_step())
+wrong("3.7", "kinetic friction at rest")(block_step(at_rest="mu_k"))
+wrong("3.7", "static friction in motion")(block_step(moving="mu_s"))
+wrong("3.7", "does not ask whether it holds")(block_step(rest=False))
+wrong("3.7", "reads the clock at the end")(block_step(late=1.0))
+wrong("3.7", "moves with the old velocity")(block_step(old=True))
+wrong("3.7", "friction as a force: goes to and fro")(block_step(speed=0.0))
+wrong("3.7", "friction without dt")(block_step(once=False))
+wrong("3.7", "against the old velocity")(block_step(against="old"))
+wrong("3.7", "the load is the size of a")(block_step(load=lambda a, n: size(a)))
+
+
+@wrong("3.7", "changes its input")
+def sliding_step(acceleration, t, x, v, dt, p):
+    x_new, v_new = worked.sliding_step(acceleration, t, x, v, dt, p)
+    x += x_new - x
+    v += v_new - v
+    return x, v
+
+
+# 3.8 ------------------------------------------------------------------------------------------------------------
+def heading(moving=lambda v, a_t: v, limit="mu_s", sign=1.0, scaled=True, ask=lambda pull, hold: pull > hold, clock=1.0):
+    def slip_direction(acceleration, t, x, v, p):
+        a = acceleration(clock * t, x, v, p)
+        a_t, a_n = tangential(a, p.n), worked.normal_force(a, p.n)
+        if size(v) > 0.0:
+            return unit(moving(v, a_t))
+        breaks = ask(size(a_t), cone_radius(getattr(p, limit), a_n))
+        return sign * (unit(a_t) if scaled else a_t) if breaks else 0.0 * a_t
+    return slip_direction
+
+
+right("3.8", "all cases from one pull")(heading())
+wrong("3.8", "a moving block goes where it is pulled")(heading(moving=lambda v, a_t: a_t))
+wrong("3.8", "kinetic friction at rest")(heading(limit="mu_k"))
+wrong("3.8", "against the pull")(heading(sign=-1.0))
+wrong("3.8", "no unit vector")(heading(scaled=False))
+wrong("3.8", "always breaks away")(heading(ask=lambda pull, hold: True))
+wrong("3.8", "never breaks away")(heading(ask=lambda pull, hold: False))
+wrong("3.8", "the clock stands still")(heading(clock=0.0))
+
+
+# 3.9 ------------------------------------------------------------------------------------------------------------
+def first_stop(halvings=60, whole=True, begin=0.0, length=lambda middle, dt: middle, towards=1.0, end=lambda a, b: b):
+    def stopping_time(acceleration, t, x, v, dt, d, p):
+        def moves(tau):
+            return worked.slide(acceleration, t + begin * tau, x, v, length(tau, dt), d, p)[1] @ d * towards > 0.0
+        if whole and moves(dt):
+            return dt
+        a, b = 0.0, dt
+        for _ in range(halvings):
+            a, b = (0.5 * (a + b), b) if moves(0.5 * (a + b)) else (a, 0.5 * (a + b))
+        return end(a, b)
+    return stopping_time
+
+
+right("3.9", "with a question of its own")(first_stop())
+wrong("3.9", "ten halvings")(first_stop(halvings=10))
+right("3.9", "does not ask about the whole step: halving finds its end")(first_stop(whole=False))
+wrong("3.9", "the forces of later")(first_stop(begin=1.0))
+wrong("3.9", "returns the first half, however late it stops")(first_stop(end=lambda a, b: 0.5 * a))
+wrong("3.9", "the speed against d")(first_stop(towards=-1.0))
+
+
+@wrong("3.9", "v over μ g, whatever pushes")
+def stopping_time(acceleration, t, x, v, dt, d, p):
+    a = acceleration(t, x, v, p)
+    brake = cone_radius(p.mu_k, worked.normal_force(a, p.n))
+    return min(dt, (v @ d) / brake)
+
+
+@wrong("3.9", "the deceleration of now")
+def stopping_time(acceleration, t, x, v, dt, d, p):
+    a = acceleration(t, x, v, p)
+    brake = cone_radius(p.mu_k, worked.normal_force(a, p.n)) - a @ d
+    return min(dt, (v @ d) / brake) if brake > 0.0 else dt
+
+
+@wrong("3.9", "the speed whatever its direction: never stops")
+def stopping_time(acceleration, t, x, v, dt, d, p):
+    return dt if size(worked.slide(acceleration, t, x, v, dt, d, p)[1]) > 0.0 else 0.5 * dt
+
+
+# 3.10 -----------------------------------------------------------------------------------------------------------
+def first_slip(halvings=60, since=lambda t, tau: t + tau, whole=True, slips=lambda d: size(d) > 0.0):
+    def breakaway_time(acceleration, t, x, v, dt, p):
+        def breaks(tau):
+            return slips(worked.slip_direction(acceleration, since(t, tau), x, v, p))
+        if whole and not breaks(dt):
+            return dt
+        a, b = 0.0, dt
+        for _ in range(halvings):
+            a, b = (a, 0.5 * (a + b)) if breaks(0.5 * (a + b)) else (0.5 * (a + b), b)
+        return b
+    return breakaway_time
+
+
+right("3.10", "with a question of its own")(first_slip())
+wrong("3.10", "ten halvings")(first_slip(halvings=10))
+wrong("3.10", "counts from zero")(first_slip(since=lambda t, tau: tau))
+wrong("3.10", "asks about now")(first_slip(since=lambda t, tau: t))
+wrong("3.10", "holds while it slips")(first_slip(slips=lambda d: size(d) == 0.0))
+wrong("3.10", "returns the moment, not the time to it")(
+    lambda acceleration, t, x, v, dt, p: t + first_slip()(acceleration, t, x, v, dt, p))
+MUTANTS[-1].function.__name__ = "breakaway_time"
+
+
+# 3.11 -----------------------------------------------------------------------------------------------------------
+def event(exactly=True, whole=False, waits=True, rest=False, moves=True):
+    def until_event(acceleration, t, x, v, dt, p):
+        d = worked.slip_direction(acceleration, t, x, v, p)
+        if size(d) == 0.0:
+            return (worked.breakaway_time(acceleration, t, x, v, dt, p) if waits else dt), x, v
+        tau = worked.stopping_time(acceleration, t, x, v, dt, d, p)
+        x_new, v_new = worked.slide(acceleration, t, x, v, dt if whole else tau, d, p)
+        if exactly and tau < dt or rest:
+            v_new = np.zeros_like(v)
+        return tau, (x_new if moves else x), v_new
+    return until_event
+
+
+right("3.11", "with new names")(event())
+wrong("3.11", "leaves what round-off leaves of v")(event(exactly=False))
+wrong("3.11", "slides for the whole step")(event(whole=True))
+wrong("3.11", "never wakes up")(event(waits=False))
+wrong("3.11", "stops at the end of every step")(event(rest=True))
+wrong("3.11", "does not move")(event(moves=False))
+
+
+@wrong("3.11", "a moving block only")
+def until_event(acceleration, t, x, v, dt, p):
+    d = unit(v)
+    tau = worked.stopping_time(acceleration, t, x, v, dt, d, p)
+    x, v = worked.slide(acceleration, t, x, v, tau, d, p)
+    return tau, x, (v if tau == dt else 0.0 * v)
+
+
+# 3.12 -----------------------------------------------------------------------------------------------------------
+def hollow(sign=-1.0, inside=1.0, centred=True, axial=True, scaled=True, safe=True):
+    def bowl_gap(x, p):
+        r = x - p.centre if centred else x
+        r = r - (r @ p.axis) * p.axis if axial else r
+        distance = size(r)
+        with np.errstate(invalid="ignore"):
+            n = unit(r) if safe else r / distance
+        return inside * (p.radius - distance), sign * (n if scaled else r)
+    return bowl_gap
+
+
+right("3.12", "by a unit vector")(hollow())
+wrong("3.12", "outwards")(hollow(sign=1.0))
+wrong("3.12", "a ball instead of a bowl")(hollow(sign=1.0, inside=-1.0))
+wrong("3.12", "negative inside")(hollow(inside=-1.0))
+wrong("3.12", "around the origin")(hollow(centred=False))
+wrong("3.12", "every trough a bowl")(hollow(axial=False))
+wrong("3.12", "no unit vector")(hollow(scaled=False))
+wrong("3.12", "divides by no distance")(hollow(safe=False))
+
+
+# 3.13 -----------------------------------------------------------------------------------------------------------
+def impact(leaves=True, bounce=lambda e: 1.0 + e, mass=True, slip=tangential, sign=1.0, friction=worked.friction_impulse, mass_n=True):
+    def contact_impulse(v, n, m, e, mu):
+        v_n = v @ n
+        if leaves and v_n >= 0.0:
+            return np.zeros_like(v)
+        j_n = -sign * bounce(e) * (m if mass_n else 1.0) * v_n
+        return j_n * n + friction(slip(v, n), m if mass else 1.0, abs(j_n), mu)
+    return contact_impulse
+
+
+right("3.13", "by the same law")(impact())
+wrong("3.13", "sucks at what leaves")(impact(leaves=False))
+wrong("3.13", "e for 1 + e")(impact(bounce=lambda e: e))
+wrong("3.13", "1 − e")(impact(bounce=lambda e: 1.0 - e))
+wrong("3.13", "no restitution")(impact(bounce=lambda e: 1.0))
+wrong("3.13", "pulls in")(impact(sign=-1.0))
+wrong("3.13", "forgets the mass in friction")(impact(mass=False))
+wrong("3.13", "forgets the mass in the normal impulse")(impact(mass_n=False))
+wrong("3.13", "friction against all of v")(impact(slip=lambda v, n: v))
+wrong("3.13", "no friction")(impact(friction=lambda v_t, m, j_n, mu: 0.0 * v_t))
+wrong("3.13", "grips always")(impact(friction=lambda v_t, m, j_n, mu: -m * v_t))
+wrong("3.13", "friction as if e = 0")(
+    lambda v, n, m, e, mu: (1.0 + e) * worked.contact_impulse(v, n, m, 0.0, 0.0) + tangential(worked.contact_impulse(v, n, m, 0.0, mu), n))
+MUTANTS[-1].function.__name__ = "contact_impulse"
+
+
+# 3.14 and 3.16 --------------------------------------------------------------------------------------------------
+def particle_step(name, grip=0.0, old=False, back=-1.0, asked="new", mass=True, only_inwards=False, both_ways=False, doubled=False,
+                  reached=0.0, half=1.0, depth=lambda phi: -phi, once=True, moving=lambda moved, x, v, dt: moved):
+    """A step of a particle and what a surface does to it, with terms that may be wrong."""
+    def step(acceleration, surface, t, x, v, dt, p):
+        v_free = v + (dt if once else 1.0) * acceleration(t, x, v, p)
+        moved = dt * (v if old else v_free)
+        x_free = x + moved
+        phi, n = surface(x if asked == "old" else x_free, p)
+        if phi >= reached:
+            return x_free, v_free
+        leads_in = v_free @ n < 0.0
+        x_new = x_free if only_inwards and not leads_in else x_free + back * half * phi * n
+        if grip and (leads_in or both_ways):
+            x_new = x_new + grip * worked.grip_correction(moving(moved, x, v, dt), n, max(0.0, depth(phi)), p.mu)
+        J = worked.contact_impulse(v_free, n, p.m, p.e, p.mu)
+        return x_new, v_free + J / (p.m if mass else 1.0) * (2.0 if doubled else 1.0)
+    step.__name__ = name
+    return step
+
+
+for number, name, grip in (("3.14", "contact_step", 0.0), ("3.16", "gripping_step", 1.0)):
+    right(number, "with new names")(particle_step(name, grip))
+    wrong(number, "moves with the old velocity")(particle_step(name, grip, old=True))
+    wrong(number, "puts it in deeper")(particle_step(name, grip, back=1.0))
+    wrong(number, "does not put it back")(particle_step(name, grip, back=0.0))
+    wrong(number, "puts it half the way back")(particle_step(name, grip, half=0.5))
+    wrong(number, "asks for the gap before it moves")(particle_step(name, grip, asked="old"))
+    wrong(number, "forgets to divide by the mass")(particle_step(name, grip, mass=False))
+    wrong(number, "leaves what is inside and leaves")(particle_step(name, grip, only_inwards=True))
+    wrong(number, "every particle is in contact")(particle_step(name, grip, reached=np.inf))
+    wrong(number, "forgets dt")(particle_step(name, grip, once=False))
+wrong("3.14", "grips as well")(particle_step("contact_step", 1.0))
+wrong("3.16", "does not grip")(particle_step("gripping_step", 0.0))
+wrong("3.16", "grips forwards")(particle_step("gripping_step", -1.0))
+wrong("3.16", "grips on the way out")(particle_step("gripping_step", 1.0, both_ways=True))
+wrong("3.16", "a depth below zero")(particle_step("gripping_step", 1.0, depth=lambda phi: phi))
+wrong("3.16", "grips the displacement of the old velocity")(particle_step("gripping_step", 1.0, moving=lambda moved, x, v, dt: dt * v))
+
+
+@wrong("3.14", "changes its input")
+def contact_step(acceleration, surface, t, x, v, dt, p):
+    v += dt * acceleration(t, x, v, p)
+    x += dt * v
+    phi, n = surface(x, p)
+    return (x - phi * n, v + worked.contact_impulse(v, n, p.m, p.e, p.mu) / p.m) if phi < 0.0 else (x, v)
+
+
+# 3.15 -----------------------------------------------------------------------------------------------------------
+def grip(sign=-1.0, part=tangential, limit=lambda mu, depth: mu * depth, choose=min):
+    def grip_correction(moved, n, depth, mu):
+        s = part(moved, n)
+        return sign * choose(limit(mu, depth), size(s)) * unit(s)
+    return grip_correction
+
+
+right("3.15", "by a unit vector")(grip())
+wrong("3.15", "forwards")(grip(sign=1.0))
+wrong("3.15", "all of the displacement")(grip(part=lambda moved, n: moved))
+wrong("3.15", "holds everything")(grip(choose=lambda limit, s: s))
+wrong("3.15", "always slides")(grip(choose=lambda limit, s: limit))
+wrong("3.15", "forgets μ")(grip(limit=lambda mu, depth: depth))
