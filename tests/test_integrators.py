@@ -9,7 +9,6 @@ from .grading.expect import between, close, raises
 from solutions.checks import Diverged
 
 exercise = pytest.mark.exercise
-OMEGA, ZETA, DT = 3.0, 0.2, 0.1
 
 METHODS = {     # method: exercise, points for its matrix, for its order, the order, where in the step it reads the clock {c: weight}
     "euler_step": ("1.1", 1, 1, 1, {0: 1}),
@@ -40,9 +39,9 @@ def cases(*indices):
     return [case(name, row, row[2] if indices else row[1]) for name, row in METHODS.items()]
 
 
-def expected_matrix(name, h):
+def expected_matrix(name, omega, zeta, h):
     """A of one step on the damped oscillator: the method's stability function at hB for those that have one."""
-    B = np.array([[0.0, 1.0], [-OMEGA**2, -2.0 * ZETA * OMEGA]])
+    B = np.array([[0.0, 1.0], [-omega**2, -2.0 * zeta * omega]])
     one, z = np.eye(2), h * B
     kick = np.array([[1.0, 0.0], [z[1, 0], 1.0 + z[1, 1]]])                       # v ← v + h a
     kick_ahead = one + np.array([[0.0, 0.0], [0.5 * z[1, 0], 0.5 * z[1, 1]]])     # v ← v + ½h a
@@ -66,14 +65,15 @@ def verlet_matrix(B, h):
 
 
 @pytest.mark.parametrize("method", cases())
-def test_one_step_has_the_amplification_matrix_of_the_method(lesson, method):
-    p = lesson.Oscillator(OMEGA, ZETA)
-    expected = expected_matrix(method, DT)
-    for x0, v0 in ((1.0, 0.0), (0.0, 1.0), (0.3, -2.0)):
+def test_one_step_has_the_amplification_matrix_of_the_method(lesson, draw, method):
+    omega, zeta, dt = draw(2.0, 4.0), draw(0.1, 0.4), draw(0.05, 0.15)
+    p, expected = lesson.Oscillator(omega, zeta), expected_matrix(method, omega, zeta, dt)
+    for x0, v0 in draw(-1.0, 1.0, (3, 2)):
         before = np.array([x0]), np.array([v0])
-        x, v = lesson.advance(getattr(lesson, method), lesson.oscillator_acceleration, 0.0, *before, DT, 1, p)
-        # 1e-11: Newton stops at 1e-12, everything else is round-off of numbers below 30
-        close(f"x, v after one step of {DT} s from x = {x0} m, v = {v0} m/s", [x[0], v[0]], expected @ [x0, v0], 1e-11)
+        x, v = lesson.advance(getattr(lesson, method), lesson.oscillator_acceleration, 0.0, *before, dt, 1, p)
+        # Newton stops at 1e-12 |w|, |w|² < ω²x² + v² < 17, which the midpoint doubles; the rest is round-off of numbers below 20
+        close("x and v [m, m/s] after one step", [x[0], v[0]], expected @ [x0, v0], 1e-11,
+              given=f"ω = {omega:.4g}/s, ζ = {zeta:.4g}, dt = {dt:.4g} s, from x = {x0:.4g} m and v = {v0:.4g} m/s")
         close("the x and v that were handed in: return new arrays", np.ravel(before), [x0, v0], 0.0)
 
 
@@ -87,54 +87,61 @@ def driven_pendula(t, x, v, p):
     return -np.sin(x) - p.drag * v + p.strength * np.cos(t)
 
 
-@pytest.fixture(scope="module")
-def drive_truth():
-    """Two driven pendula at t = 1.7 + 1.6 s by DOP853 at its tightest tolerance (global error below 1e-12)."""
+def driven_truth(p, t, x, v, T):
+    """x and v, one row each, of driven pendula after T, by DOP853 at its tightest tolerance (global error below 1e-12)."""
     from scipy.integrate import solve_ivp
-    p, x, v = Drive(0.7, 0.3), np.array([1.0, -0.4]), np.array([0.2, 1.5])
-    end = solve_ivp(lambda t, y: np.concatenate([y[2:], driven_pendula(t, y[:2], y[2:], p)]), (1.7, 3.3),
-                    np.concatenate([x, v]), method="DOP853", rtol=3e-14, atol=1e-14).y[:, -1]
-    return p, x, v, end.reshape(2, 2)
+    start = np.stack([x, v])
+
+    def slopes(t, y):
+        x, v = y.reshape(start.shape)
+        return np.concatenate([v, driven_pendula(t, x, v, p)])
+
+    return solve_ivp(slopes, (t, t + T), start.ravel(), method="DOP853", rtol=3e-14, atol=1e-14).y[:, -1].reshape(start.shape)
 
 
 @pytest.mark.parametrize("method, order, clock", cases(3, 4))
-def test_halving_the_step_divides_the_error_by_two_to_the_order(lesson, method, order, clock, drive_truth):
-    push = Drive(1e-3, 0.0)
-    _, kicked = lesson.advance(getattr(lesson, method), driven_pendula, 1.7, np.zeros(2), np.zeros(2), 0.1, 1, push)
-    mean = sum(weight * np.cos(1.7 + c * 0.1) for c, weight in clock.items())
-    # near x = 0 the pendulum's own pull is below 1e-3 of the push; a clock wrong by half a step would change the mean by 0.05
-    close("gain of velocity over dt times push: does a get the right time?", kicked / (0.1 * push.strength), [mean, mean], 0.005)
+def test_halving_the_step_divides_the_error_by_two_to_the_order(lesson, draw, method, order, clock):
+    step, t, dt, push = getattr(lesson, method), draw(1.4, 1.9), draw(0.05, 0.1), Drive(draw(5e-4, 1e-3), 0.0)
+    _, kicked = lesson.advance(step, driven_pendula, t, np.zeros(2), np.zeros(2), dt, 1, push)
+    mean = sum(weight * np.cos(t + c * dt) for c, weight in clock.items())
+    # |cos| < ½ from 1.4 to 2.0: x < ½dt² push, and the pendulum pulls as little; a clock wrong by ½dt changes the mean by 0.4 dt
+    close("gain of velocity over dt times push: does a get the right time?", kicked / (dt * push.strength), [mean, mean],
+          0.5 * dt * dt, given=f"dt = {dt:.4g} s, t = {t:.4g} s")
 
-    p, x, v, end = drive_truth
-    steps = np.array([16, 32, 64, 128])
+    p, x, v, T = Drive(draw(0.5, 0.9), draw(0.2, 0.4)), draw(-1.5, 1.5, 3), draw(-1.5, 1.5, 3), draw(1.2, 1.6)
+    end = driven_truth(p, t, x, v, T)
     errors = []
-    for n in steps:
-        got = lesson.advance(getattr(lesson, method), driven_pendula, 1.7, x.copy(), v.copy(), 1.6 / n, int(n), p)
-        close(f"x after {n} steps [rad]", got[0], end[0], 2.0 * 1.6 / n)          # the right motion: |x|, |v|, |a| < 3, t < 2
-        errors.append(max(np.abs(got[0] - end[0]).max(), np.abs(got[1] - end[1]).max()))
-    ratios = np.log2(np.array(errors[:-1]) / errors[1:])
-    # the next term of the expansion is dt smaller: at dt ≤ 1/20 s it moves a measured order by at most a third
-    between("order of convergence over dt = 1/20 … 1/80 s", ratios[1:].mean(), order - 0.3, order + 0.4)
+    for n in (32, 64, 128):
+        got = np.array(lesson.advance(step, driven_pendula, t, x.copy(), v.copy(), T / n, n, p))
+        # ½dt² |(a, ȧ)| in each step, and |(a, ȧ)| < 3, grows by no more than eᵗ: ½dt · 3 (e^1.6 − 1) < 6 dt
+        close(f"x and v after {n} steps [rad, rad/s]", got, end, 6.0 * T / n)
+        errors.append(np.abs(got - end).max())
+    # no rate is above 1.5/s, so the next term of the expansion is below 5 dt of this one: dt = 1/20 … 1/80 s moves the mean
+    # order by less than 5 (1/20 − 1/80)/(2 ln 2) = 0.14, and the truth's own 1e-12, beside errors of 2e-11, by 0.04
+    between("order of convergence over the last two halvings", np.log2(errors[0] / errors[2]) / 2.0, order - 0.2, order + 0.2)
 
 
 @pytest.mark.parametrize("method, share", [
     pytest.param("implicit_euler_step", 1.0, marks=exercise("1.7", points=1, hint=HINTS["1.7"] + "; repeat until the correction is small enough")),
     pytest.param("implicit_midpoint_step", 0.5, marks=exercise("1.8", points=0.5, hint=HINTS["1.8"]))])
-def test_an_implicit_step_solves_its_own_equation_however_long_it_is(lesson, method, share):
+def test_an_implicit_step_solves_its_own_equation_however_long_it_is(lesson, draw, method, share):
     """v⁺ = v + dt a and x⁺ = x + dt v at the same moment of the step: its end, or its middle."""
-    x, v, p = np.array([1.0, -2.5]), np.array([-0.3, 2.0]), Drive(0.7, 0.3)
-    for dt in (0.3, 0.9):
-        x_new, v_new = lesson.advance(getattr(lesson, method), driven_pendula, 1.7, x, v, dt, 1, p)
-        there = x + share * (x_new - x), v + share * (v_new - v)
-        # Newton's last correction is below 1e-12 of |w| < 3, and the equation at most 1 + dt (1 + dt) < 3 times as steep
-        close(f"v⁺ − v − dt a after a step of {dt} s [m/s]", v_new - v - dt * driven_pendula(1.7 + share * dt, *there, p), [0.0, 0.0], 1e-11)
-        close(f"x⁺ − x − dt v after a step of {dt} s [m]", x_new - x - dt * there[1], [0.0, 0.0], 1e-11)
+    for dt in (draw(0.3, 0.6), draw(0.6, 0.9)):
+        t, x, v, p = draw(1.0, 3.0), draw(-3.0, 3.0, 2), draw(-1.5, 1.5, 2), Drive(draw(0.5, 0.9), draw(1.0, 1.5))
+        x_new, v_new = lesson.advance(getattr(lesson, method), driven_pendula, t, x, v, dt, 1, p)
+        there, given = (x + share * (x_new - x), v + share * (v_new - v)), f"dt = {dt:.4g} s"
+        rest = v_new - v - dt * driven_pendula(t + share * dt, *there, p)
+        # Newton's residual r has r′ = 1 + c dt + dt² cos x from 1 to 3.2 and r″ < dt³: an error e < 2.9 shrinks at once, to ½e²dt³/r′.
+        # The last correction is below 1e-12 |w|, |w| < (|v| + 1.9 dt)/(1 + c dt) < 1.7; half a step doubles it, but has r′ < 1.9
+        close("v⁺ − v − dt a after the step [m/s]", rest, [0.0, 0.0], 1e-11, given)
+        close("x⁺ − x − dt v after the step [m]", x_new - x - dt * there[1], [0.0, 0.0], 1e-11, given)
 
 
 @exercise("1.7", points=0.5, hint="when the loop ends without a return, raise Diverged as the docstring says")
-def test_implicit_euler_says_so_when_newton_finds_no_root(lesson):
-    """w = v + dt(1 + w²) has no real root once 4 dt (v + dt) > 1."""
-    raises("a step without a solution", Diverged, lesson.implicit_euler_step, runaway, 0.0, np.zeros(1), np.zeros(1), 10.0, Drive(1.0, 0.0))
+def test_implicit_euler_says_so_when_newton_finds_no_root(lesson, draw):
+    """w = v + s dt (1 + w²) has no real root once 4 s dt (v + s dt) > 1."""
+    x, v, dt, p = draw(-1.0, 1.0, 1), draw(0.0, 1.0, 1), draw(5.0, 15.0), Drive(draw(0.5, 2.0), 0.0)
+    raises("a step without a solution", Diverged, lesson.implicit_euler_step, runaway, 0.0, x, v, dt, p)
 
 
 def runaway(t, x, v, p):
@@ -142,14 +149,18 @@ def runaway(t, x, v, p):
 
 
 @exercise("1.9", points=1, hint="one column for each starting state: where the step takes (1, 0), and where (0, 1)")
-def test_amplification_matrix_moves_states_as_the_method_does(lesson):
-    close("A of Euler's method", lesson.amplification_matrix(euler, OMEGA, ZETA, DT), expected_matrix("euler_step", DT), 1e-14)
-    drift, kick = np.array([[1.0, DT], [0.0, 1.0]]), expected_matrix("euler_step", DT) - [[0.0, DT], [0.0, 0.0]]
-    close("A of position first, then velocity", lesson.amplification_matrix(drift_then_kick, OMEGA, ZETA, DT), kick @ drift, 1e-14)
+def test_amplification_matrix_moves_states_as_the_method_does(lesson, draw):
+    omega, zeta, dt = draw(2.0, 4.0), draw(0.1, 0.4), draw(0.05, 0.15)
+    given, expected = f"ω = {omega:.4g}/s, ζ = {zeta:.4g}, dt = {dt:.4g} s", expected_matrix("euler_step", omega, zeta, dt)
+    drift, kick = np.array([[1.0, dt], [0.0, 1.0]]), expected - [[0.0, dt], [0.0, 0.0]]
+    # round-off of numbers below 3
+    close("A of a step that only drifts", lesson.amplification_matrix(drift_only, omega, zeta, dt), drift, 1e-14, given)
+    A = lesson.amplification_matrix(drift_then_kick, omega, zeta, dt)
+    close("A of position first, then velocity", A, kick @ drift, 1e-14, given)
 
 
-def euler(acceleration, t, x, v, dt, p):
-    return x + dt * v, v + dt * acceleration(t, x, v, p)
+def drift_only(acceleration, t, x, v, dt, p):
+    return x + dt * v, v
 
 
 def drift_then_kick(acceleration, t, x, v, dt, p):
@@ -158,9 +169,11 @@ def drift_then_kick(acceleration, t, x, v, dt, p):
 
 
 @exercise("1.10", points=1, hint="subtract the means of log dt and of log error, then divide the sum of products by the sum of squares")
-def test_observed_order_is_the_slope_between_logarithms(lesson):
-    dts = np.array([0.1, 0.03, 0.02, 0.001])
-    close("order of error = 5 dt³", lesson.observed_order(dts, 5.0 * dts**3), 3.0, 1e-12)
-    wobble = np.array([1.0, 3.0, 0.5, 2.0])
-    slope = np.polyfit(np.log(dts), np.log(7.0 * dts**2 * wobble), 1)[0]
-    close("order of a noisy series, by least squares", lesson.observed_order(dts, 7.0 * dts**2 * wobble), slope, 1e-10)
+def test_observed_order_is_the_slope_between_logarithms(lesson, draw):
+    dts, order, C = draw(0.5, 1.0, 4) * [0.1, 1.0, 0.3, 0.03], draw(1.0, 4.0), draw(2.0, 9.0)
+    errors = C * dts**order
+    # round-off of logarithms below 20, over a spread of more than 2
+    close("order of a power of dt", lesson.observed_order(dts, errors), order, 1e-13, given=f"error = {C:.4g} dt^{order:.4g}")
+    errors = errors * draw(0.5, 2.0, 4)
+    slope = np.polyfit(np.log(dts), np.log(errors), 1)[0]
+    close("order of a noisy series, by least squares", lesson.observed_order(dts, errors), slope, 1e-13)

@@ -46,7 +46,8 @@ def validate(
     if context.invoked_subcommand:
         return
     names = chosen(scene or [], lesson or [])
-    plan = plan_of(of, plain, quick, [e.value for e in engine or []], overrides(set_ or [], names))
+    there(of, names)
+    plan = plan_of(of, names, plain, quick, [e.value for e in engine or []], overrides(set_ or [], names))
     folder = writable(out)
     raise typer.Exit(run(names, plan, jobs, folder))
 
@@ -85,9 +86,16 @@ def chosen(scenes, lessons):
     return [n for n in every if n in scenes or (not scenes and (not lessons or binding.bind_scene(n).LESSON in lessons))]
 
 
-def plan_of(of, plain, quick, wanted, changes):
+def there(of, names):
+    """Raises BadInput when the worked answers are asked for in a copy of the workbook that is without them."""
+    without = sorted({lesson for lesson in (binding.bind_scene(n).LESSON for n in names) if binding.withheld(lesson)})
+    if binding.subject_folder(of) == binding.SOLUTIONS and without:
+        raise BadInput("this copy of the workbook", f"without worked answers of {', '.join(without)}", "give --of lessons --plain")
+
+
+def plan_of(of, names, plain, quick, wanted, changes):
     from .measure import Plan
-    binding.subject_folder(of)
+    folder = binding.subject_folder(of)
     for name in wanted:
         if not engines.installed(name):
             raise BadInput(f"engine {name!r}", "not installed", "leave --engine out: its recorded traces stand in")
@@ -95,8 +103,12 @@ def plan_of(of, plain, quick, wanted, changes):
     speeds = {None: ("plain", "compiled"), True: ("plain",), False: ("compiled",)}[plain]
     if plain is False and not binding.can_compile():
         raise BadInput("numba", "not installed", "install it, or use --plain")
-    if not binding.can_compile():
+    waiting = {name: count for name in {binding.bind_scene(n).LESSON for n in names}
+               if (folder / f"{name}.py").is_file() and (count := len(binding.withheld(name, folder)))}
+    if not binding.can_compile() or (waiting and plain is None):                     # a function without a body has no type
         speeds = ("plain",)
+        if waiting:
+            console.print(f"Plain speed only, until every exercise is done: {', '.join(f'{n} of {name} wait' for name, n in sorted(waiting.items()))}.")
     return Plan(of, speeds, quick, live, changes)
 
 

@@ -12,6 +12,7 @@ only: without that, an edit to an imported sibling would leave a stale caller.
 import hashlib
 import importlib
 import os
+import re
 import shutil
 import sys
 import types
@@ -43,6 +44,11 @@ def subject_folder(of):
 def lesson_names(folder=SOLUTIONS):
     """The lessons in a folder, sorted."""
     return sorted(path.stem for path in Path(folder).glob("*.py") if path.stem not in GIVEN)
+
+
+def withheld(lesson, folder=SOLUTIONS):
+    """Functions of a lesson that still wait for their body: in solutions/ none, but all in a copy of the workbook without worked answers."""
+    return set(re.findall(r'raise NotImplementedError\("Exercise [\d.]+: (\w+)"\)', (Path(folder) / f"{lesson}.py").read_text()))
 
 
 def scene_names():

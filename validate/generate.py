@@ -16,8 +16,11 @@ ANSWER = re.compile(r"^(?P<indent> *)### BEGIN SOLUTION (?P<exercise>\d+\.\d+)\n
 FUNCTION = re.compile(r"^def (\w+)", re.M)
 
 
-def stub(source, solved=()):
-    """The text of a lesson: every answer but the solved ones replaced by a NotImplementedError that names exercise and function."""
+def stub(source, solved=(), elsewhere=None):
+    """The text of a lesson: every answer but the solved ones replaced by a NotImplementedError that names exercise and function.
+
+    It imports the siblings named in `elsewhere` from solutions, and the others from beside it; without `elsewhere`, all from solutions.
+    """
     def empty(match):
         function = FUNCTION.findall(source, 0, match.start())[-1]
         indent, exercise = match["indent"], match["exercise"]
@@ -28,7 +31,8 @@ def stub(source, solved=()):
     text = ANSWER.sub(empty, source)
     if re.search(r"(BEGIN|END) SOLUTION", text):
         raise BadInput("a solution marker", "unpaired or without its exercise number", "write ### BEGIN SOLUTION 1.2 … ### END SOLUTION")
-    return re.sub(r"^from \.(\w+) import", r"from solutions.\1 import", text, flags=re.M)
+    return re.sub(r"^from \.(\w+) import", lambda m: f"from solutions.{m[1]} import" if elsewhere is None or m[1] in elsewhere else m[0],
+                  text, flags=re.M)
 
 
 def exercises(source):

@@ -15,7 +15,6 @@ from typing import NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput
-from solutions.integrators import observed_order
 
 from . import binding, engines, stability
 from .scene import EXACT, ROUND_OFF
@@ -122,7 +121,7 @@ def shown_order(rows, floor):
     lost = [k for k, r in enumerate(rows) if r["error"] is None or r["error"] >= ASYMPTOTIC]
     clear = [(r["dt"], r["error"]) for r in rows[lost[-1] + 1 if lost else 0:]
              if r["error"] > max(1e-11 + floor, 100.0 * ROUND_OFF * r["steps"])]
-    return float(observed_order(*map(np.array, zip(*clear[-4:])))) if len(clear) >= 3 else None
+    return float(np.polyfit(*np.log(clear[-4:]).T, 1)[0]) if len(clear) >= 3 else None
 
 
 # ---------------------------------------------------------------------------------------------- errors

@@ -9,8 +9,10 @@ import glob
 import json
 import os
 import queue
+import re
 import secrets
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -33,6 +35,7 @@ HIDDEN = ("solutions", "lessons", "validate", "tests", "pybullet*", "pymunk*", "
 READY_WITHIN = 30.0          # [s]: starting takes 0.2, on a machine that does nothing else
 IMPORT_WITHIN = 10.0         # a student's file may take so long to load [s]
 MOST_ENTRIES = 1_000_000     # of all arrays that a student's code hands to one of our functions [-]: the tests need 10⁴
+DEEPEST = 16                 # calls inside calls, there and back [-]: the tests need 4
 PRINTED = 20_000             # of what is printed, so much is kept [bytes]
 ERRORS = {e.__name__: e for e in (
     BadInput, Diverged, NotImplementedError, ValueError, TypeError, ZeroDivisionError, IndexError, KeyError, AttributeError, NameError,
@@ -42,10 +45,15 @@ ERRORS = {e.__name__: e for e in (
 
 class StudentError(Exception):
     """The student's program raised an error that is none of Python's usual ones, or ended, or took too long, or sent no data."""
+    where = ""               # place in the student's file
 
 
 class Lost(StudentError):
     """… and its worker is gone."""
+
+
+class Late(StudentError):
+    """One of our own functions, with what the student's code handed it, takes too long."""
 
 
 # ---------------------------------------------------------------------------------------------- the command
@@ -53,7 +61,7 @@ class Lost(StudentError):
 def sandbox_command(python, binds):
     """bwrap's arguments: read-only /usr, interpreter and environment, the binds {from: to}, an empty /tmp, and nothing else."""
     interpreter, environment = Path(python).resolve().parent.parent, Path(python).absolute().parent.parent
-    command = ["bwrap", "--unshare-pid", "--unshare-net", "--unshare-ipc", "--unshare-uts", "--unshare-cgroup-try", "--die-with-parent",
+    command = [shutil.which("bwrap") or "bwrap", "--unshare-pid", "--unshare-net", "--unshare-ipc", "--unshare-uts", "--unshare-cgroup-try", "--die-with-parent",
                "--new-session", "--clearenv", "--hostname", "box", "--cap-drop", "ALL"]
     for name, value in ENVIRONMENT.items():
         command += ["--setenv", name, value]
@@ -88,7 +96,7 @@ def no_sandbox_because():
     if not shutil.which("bwrap"):
         return "bubblewrap is not installed"
     try:
-        trial = subprocess.run([*sandbox_command(sys.executable, {}), "true"], capture_output=True, text=True, timeout=30)
+        trial = subprocess.run([*sandbox_command(sys.executable, {}), "true"], capture_output=True, text=True, timeout=30, env=ENVIRONMENT)
     except (OSError, subprocess.TimeoutExpired) as e:
         return f"bubblewrap does not start: {e}"
     return "" if trial.returncode == 0 else f"bubblewrap may not make a sandbox here: {trial.stderr.strip()[:200]}"
@@ -111,10 +119,12 @@ class Box:
 
     exercises: functions that the file must answer · text: the file, as bytes · given: folder of the lessons as handed out · earlier: {lesson: {exercise function: worked one}} that
     the file may build on · budget [s] for all calls together · begin(limit) allows the next calls so many seconds together.
+    secret: no word of the student's code is kept with its errors, since it may know secret inputs · failed: what the grader itself could not do.
     """
 
     def __init__(self, lesson, exercises, text, given, earlier, budget, records=(), limits=LIMITS):
         self.earlier, self.budget, self.printed, self.process, self.broken, self.depth = earlier, budget, b"", None, None, 0
+        self.lesson, self.lines, self.secret, self.failed = lesson, text.count(b"\n") + 1, False, None
         self.records = {kind.__name__: kind for kind in records}
         self.until = time.monotonic() + budget
         self.folder = Path(tempfile.mkdtemp(prefix="workbook-"))
@@ -160,16 +170,22 @@ class Box:
         return kind(*values) if kind and kind._fields == fields else values
 
     def error(self, names, message, where):
+        names = [name for name in names if type(name) is str]
         kind = next((ERRORS[name] for name in names if name in ERRORS), None)
         error = kind.__new__(kind) if kind else StudentError()
-        error.args = (str(message) if kind else f"{names[0]}: {message}",)
-        error.where = str(where)
+        error.args = (message if kind else f"{names[0] if names else 'an error'}: {message}",)
+        if isinstance(error, SyntaxError):
+            error.msg = message
+        line = re.fullmatch(rf"{self.lesson}\.py, line (\d{{1,6}})", where, re.ASCII)
+        error.where = where if line and int(line[1]) <= self.lines and not self.secret else ""
         return error
 
     # -- the conversation
 
     def begin(self, limit):
-        """The next calls may take so long, all together [s]."""
+        """The next calls may take so long, all together [s].  A worker that has said something unasked is replaced: it would answer past the question."""
+        if self.process and self.depth == 0 and not self.inbox.empty():
+            self.stop()
         self.until = time.monotonic() + min(limit, max(self.budget, 0.0))
 
     def call(self, name, arguments):
@@ -177,6 +193,8 @@ class Box:
         if self.broken:
             raise self.broken
         remember(self.records, arguments)
+        if self.process is None and self.budget <= 0.0:
+            raise Lost("the time for the whole submission is used up")
         began, self.depth = time.monotonic(), self.depth + 1
         try:
             if self.process is None:
@@ -184,6 +202,8 @@ class Box:
             return self.peer.call(name, arguments)
         except wire.WireError as e:
             raise self.lost(f"the program sent no plain data: {e}") from None
+        except Late:
+            raise self.lost("it took too long") from None
         finally:
             self.depth -= 1
             if self.depth == 0:
@@ -203,14 +223,15 @@ class Box:
             self.broken = e
 
     def start(self):
-        environment = None if not no_sandbox_because() else {**ENVIRONMENT, **{k: os.environ[k] for k in ("SYSTEMROOT",) if k in os.environ}}
+        environment = {**ENVIRONMENT, **{k: os.environ[k] for k in ("SYSTEMROOT",) if k in os.environ}}     # --clearenv leaves /proc/1/environ
         self.process = process = subprocess.Popen(self.command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                                   env=environment, start_new_session=True)
         self.inbox, self.outbox, self.own, self.names = queue.Queue(4), queue.Queue(64), {}, {}
         self.peer = wire.Peer(self.send, self.receive, self.resolve, self.name_of, self.record, describe, self.error,
-                              fatal=(KeyboardInterrupt, wire.WireError, Lost))
+                              fatal=(KeyboardInterrupt, wire.WireError, Lost, Late))
         self.peer.served = self.peer.serve
         self.peer.serve = self.serve
+        self.peer.may_change = lambda name: name.rpartition(":")[2].startswith("solve_")     # all else is pure, or the tests could be moved
         self.threads = [threading.Thread(target=task, args=(process, self.inbox, self.outbox), daemon=True)
                         for task in (_reading, _writing, self._listening)]
         for thread in self.threads:
@@ -221,13 +242,16 @@ class Box:
             ready = None
         if not isinstance(ready, tuple):                               # no code of the student's has run yet
             self.stop()
-            raise RuntimeError(f"the grader cannot start its sandbox: {self.printed[-500:].decode(errors='replace')}")
+            self.failed = RuntimeError(f"the grader cannot start its sandbox: {self.printed[-500:].decode(errors='replace')}")
+            raise self.failed
 
     def serve(self, name, arguments):
         """Work one of our functions for the student's code, if what it hands over is of a sane size."""
-        if sum(array.size for array in wire.arrays_in(arguments)) > MOST_ENTRIES or not name.startswith(("test:", "solution:")):
+        if (sum(array.size for array in wire.arrays_in(arguments)) > MOST_ENTRIES or self.depth > DEEPEST
+                or not name.startswith(("test:", "solution:"))):
             raise wire.WireError("a call that no test asks for")
-        self.peer.served(name, arguments)
+        with alarm(self.until - time.monotonic()) if self.depth == 1 else contextlib.nullcontext():
+            self.peer.served(name, arguments)
 
     def send(self, frame):
         """Hand a frame to the worker."""
@@ -261,8 +285,13 @@ class Box:
             self.process.wait()
             with contextlib.suppress(queue.Full):
                 self.outbox.put_nowait(None)
+            until = time.monotonic() + 3.0
             for thread in self.threads:                                # they end with the worker's pipes
-                thread.join(1.0)
+                while thread.is_alive() and time.monotonic() < until:
+                    with contextlib.suppress(queue.Empty):             # which may be full of frames
+                        while True:
+                            self.inbox.get_nowait()
+                    thread.join(0.002)
             if not any(thread.is_alive() for thread in self.threads):
                 for pipe in (self.process.stdin, self.process.stdout, self.process.stderr):
                     with contextlib.suppress(OSError):                 # what could not be written any more
@@ -295,6 +324,24 @@ def _writing(process, inbox, outbox):
         while (frame := outbox.get()) is not None:
             process.stdin.write(frame)
             process.stdin.flush()
+
+
+@contextlib.contextmanager
+def alarm(seconds):
+    """Raise Late after so long, also inside a loop of ours; only in a main thread, and where the system has an alarm clock."""
+    if not hasattr(signal, "setitimer") or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def ring(*_):
+        raise Late()
+    before = signal.signal(signal.SIGALRM, ring)
+    signal.setitimer(signal.ITIMER_REAL, max(0.01, seconds))
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
 
 
 def describe(e):

@@ -3,15 +3,20 @@
 A manifest fixes what there is to earn.  A test that did not pass, for whatever reason, earns nothing of its points and touches no other.
 """
 
+import contextlib
 import hashlib
+import re
 import time
+from pathlib import Path
 from typing import NamedTuple
 
 from validate import binding
 
 from . import box, points, remote
+from .submissions import spelt_out
 
 BUDGET = 60.0                # of one lesson of one submission, all calls together [s]: the worked one takes 1
+MEMORY = 2 << 30             # so much may the grader's own process grow by what a student's code hands back, which broadcasts [bytes]
 PRINTED = 2000               # of what a student's code prints, so much is shown [characters]
 
 
@@ -29,7 +34,7 @@ class Settings(NamedTuple):
 
 def settings(lessons, seed):
     """The Settings for these lessons."""
-    return Settings(tuple(lessons), seed, manifest(lessons), code_digest())
+    return Settings(tuple(lessons), seed, manifest(lessons), code_digest(lessons))
 
 
 def manifest(lessons):
@@ -41,9 +46,12 @@ def manifest(lessons):
     return tuple(sorted(rows, key=lambda row: (lessons.index(row[0]), [int(n) for n in row[1].split(".")])))
 
 
-def code_digest():
-    """Fingerprint of everything that decides about points."""
-    return binding.fingerprint({*binding.SOLUTIONS.glob("*.py"), *points.TESTS.glob("*.py"), *(points.TESTS / "grading").glob("*.py")})
+def code_digest(lessons=None):
+    """Fingerprint of everything that decides about points in these lessons, or in all of them; the same wherever the workbook lies."""
+    grader = ("box", "expect", "marking", "plugin", "points", "remote", "shipping", "wire", "worker")
+    files = {*binding.SOLUTIONS.glob("*.py"), *(points.TESTS / f"test_{lesson}.py" for lesson in lessons or binding.lesson_names()),
+             *(points.TESTS / "grading" / f"{name}.py" for name in grader), *(binding.ROOT / "validate" / f"{name}.py" for name in ("binding", "generate"))}
+    return hashlib.sha256(b"".join(file.name.encode() + file.read_bytes() for file in sorted(files))).hexdigest()[:12]
 
 
 def mark(submission, settings):
@@ -51,7 +59,8 @@ def mark(submission, settings):
     began, found, printed = time.monotonic(), {}, {}
     for lesson in settings.lessons:
         if lesson in submission.files:
-            outcomes, printed[lesson] = mark_lesson(lesson, submission.files[lesson], settings.seed)
+            with bounded():
+                outcomes, printed[lesson] = mark_lesson(lesson, submission.files[lesson], settings.seed)
             found.update({(lesson, kind, o.test): o for kind, o in outcomes})
     tests = [verdict(row, found, row[0] in submission.files) for row in settings.manifest]
     return {"student": submission.student, "problems": list(submission.problems), "timestamp": submission.timestamp,
@@ -64,12 +73,40 @@ def mark_lesson(lesson, text, seed):
     place = remote.box_of(lesson, text, BUDGET)
     try:
         place.open()
+        if place.broken:
+            where = f" ({place.broken.where})" if getattr(place.broken, "where", "") else ""
+            return [("visible", points.unreadable(o, place.broken, where)) for o in points.grade(lesson, None, collect=True)], readable(
+                place.printed.decode(errors="replace"))
         subject = remote.lesson_in(place, lesson)
         outcomes = [("visible", o) for o in points.grade(lesson, subject, seed=points.PUBLIC)]
         printed = readable(place.printed.decode(errors="replace"))
-        return outcomes + [("hidden", o) for o in points.grade(lesson, subject, seed=seed)], printed
+        place.stop()                                                   # a new worker: what the old one has seen, or what was left in it, is gone
+        place.open()
+        place.secret = True
+        outcomes += [("hidden", o) for o in points.grade(lesson, subject, seed=seed)]
+        if place.failed:                                               # pytest has caught it: it must not become a zero
+            raise place.failed
+        return outcomes, printed
     finally:
         place.close()
+
+
+@contextlib.contextmanager
+def bounded():
+    """Let this process have only so much more memory; beyond, NumPy raises MemoryError in the test that asked for it."""
+    try:
+        import resource
+        now = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+        before, hard = resource.getrlimit(resource.RLIMIT_AS)
+    except (ImportError, OSError):                                     # no Linux, so no sandbox either
+        yield
+        return
+    limits = [now + MEMORY, *(limit for limit in (before, hard) if limit != resource.RLIM_INFINITY)]
+    resource.setrlimit(resource.RLIMIT_AS, (min(limits), hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, (before, hard))
 
 
 def verdict(row, found, handed_in):
@@ -90,13 +127,24 @@ def says(o, kind):
     """What a student may read about a test.  With secret inputs only the size of the error is told, nothing that they could be read off."""
     told = {"quantity": o.quantity, "given": o.given, "expected": o.expected, "got": o.got, "tolerance": o.tolerance}
     if kind == "hidden":
-        told = {"quantity": o.quantity, "got": o.error or o.status, "tolerance": o.tolerance}
+        told = {"quantity": o.quantity, "got": roughly(o.error) or o.status, "tolerance": o.tolerance}
     return {name: readable(text) for name, text in told.items() if text}
+
+
+def roughly(error):
+    """The size of an error by its power of ten, and no shape: a program that knows secret inputs could write them into the digits."""
+    if error.startswith("shape "):
+        return "an array of another shape"
+    size = re.fullmatch(r"(\S+) off", error)
+    if not size:
+        return error
+    number = float(size[1])
+    return "more than 1000 off" if number >= 1000.0 else "less than 1e-15 off" if number < 1e-15 else f"about 1{size[1][size[1].index('e'):]} off"
 
 
 def readable(text):
     """Text from a student's program, fit to be shown: control and format characters spelt out, and not too much of it."""
-    shown = "".join(c if c == "\n" or (c.isprintable() and ord(c) not in range(0xD800, 0xE000)) else f"\\x{ord(c):02x}" for c in text[:PRINTED])
+    shown = "\n".join(map(spelt_out, text[:PRINTED].split("\n")))
     return shown + (" …" if len(text) > PRINTED else "")
 
 

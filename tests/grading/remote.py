@@ -1,7 +1,9 @@
 """A lesson whose exercises are worked in the sandbox: the object that the grading tests get as `lesson`."""
 
+import atexit
 import importlib
 import re
+import shutil
 import tempfile
 import types
 from functools import lru_cache
@@ -29,6 +31,7 @@ def handout():
     """A folder with the lessons as handed out, for the sandbox."""
     folder = Path(tempfile.mkdtemp(prefix="handout-"))
     folder.chmod(0o755)
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
     for name, text in generate.lessons().items():
         (folder / name).write_text(text)
     for name in sorted(binding.GIVEN - {"__init__"}):

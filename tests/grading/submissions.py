@@ -14,6 +14,7 @@ from solutions.checks import BadInput
 LARGEST = 1 << 18            # of a lesson file [bytes]: ten times the worked one
 DEEPEST = 4                  # folders between the top and the file
 MOST_ENTRIES = 5000          # of a zip or a folder [-]: more is not a submission
+LARGEST_ZIP = 1 << 25        # [bytes]: its list of entries is read before they can be counted
 
 
 class Submission(NamedTuple):
@@ -37,7 +38,7 @@ def read_all(folder, lessons):
     for path in sorted(folder.iterdir()):
         if path.name.startswith((".", "__")) or not (path.is_symlink() or path.is_dir() or path.suffix.lower() == ".zip"):
             continue
-        student = path.stem if path.suffix.lower() == ".zip" else path.name
+        student = spelt_out(path.stem if path.suffix.lower() == ".zip" else path.name)
         if student in found:
             raise BadInput(f"student {student!r}", "there as a folder and as a zip", "keep one of them")
         found[student] = read(path, student, lessons)
@@ -52,9 +53,22 @@ def read(path, student, lessons):
         return Submission(student, {}, ("it is a link to somewhere else, which is not followed",), "")
     try:
         files, problems, when = (from_zip if path.is_file() else from_folder)(path, lessons)
-    except (OSError, zipfile.BadZipFile, NotImplementedError, ValueError, RuntimeError, EOFError) as e:
+    except Exception as e:                                             # BadZipFile, ValueError, zlib.error, struct.error …
         return Submission(student, {}, (f"it cannot be read: {type(e).__name__}",), "")
-    return Submission(student, files, tuple(problems), datetime.fromtimestamp(when).isoformat(timespec="seconds") if when else "")
+    return Submission(student, files, tuple(map(spelt_out, problems)), moment(when))
+
+
+def moment(when):
+    """A file's date as text; "" where there is none, or one that no calendar has."""
+    try:
+        return datetime.fromtimestamp(when).isoformat(timespec="seconds") if when else ""
+    except (OSError, ValueError, OverflowError):
+        return ""
+
+
+def spelt_out(text):
+    """Text with its control, format and broken characters written as their numbers: names may hold any."""
+    return "".join(c if c.isprintable() else f"\\x{ord(c):02x}" for c in text)
 
 
 def nearest(candidates, problems):
@@ -107,6 +121,8 @@ def from_folder(top, lessons):
 def from_zip(path, lessons):
     """Only entries that are wanted are decompressed, and of those no more than a lesson file may have."""
     problems, candidates, files = [], {}, {}
+    if path.stat().st_size > LARGEST_ZIP:
+        raise ValueError("too large a zip")
     with zipfile.ZipFile(path) as archive:
         entries = archive.infolist()
         if len(entries) > MOST_ENTRIES:
@@ -120,8 +136,11 @@ def from_zip(path, lessons):
                     candidates.setdefault(lesson, []).append(name)
         by_name = {entry.filename.replace("\\", "/"): entry for entry in entries}
         for lesson, place in nearest(candidates, problems).items():
-            with archive.open(by_name[place]) as file:
-                keep(files, lesson, place, file.read(LARGEST + 1), problems)
+            try:
+                with archive.open(by_name[place]) as file:
+                    keep(files, lesson, place, file.read(LARGEST + 1), problems)
+            except Exception as e:                                     # encrypted, broken, packed in a way that Python does not know
+                problems.append(f"{place} cannot be read: {type(e).__name__}")
     return files, problems, path.stat().st_mtime
 
 
@@ -152,4 +171,14 @@ def roster(path):
             rows = [Person(**{f: (row.get(f) or "").strip() for f in Person._fields}) for row in reader]
     except (OSError, UnicodeDecodeError, csv.Error) as e:
         raise BadInput(f"class list {str(path)!r}", f"not readable ({e})", "name a CSV file") from None
+    for person in rows:
+        if person.timestamp:
+            check_moment(person, path)
     return {person.student_id: person for person in rows if person.student_id}
+
+
+def check_moment(person, path):
+    try:
+        datetime.fromisoformat(person.timestamp)
+    except ValueError:
+        raise BadInput(f"timestamp of {person.student_id} in {str(path)!r}", repr(person.timestamp), "write it like 2026-11-30T23:59") from None

@@ -16,6 +16,7 @@ import numpy as np
 MAGIC, HEADER = b"WBK1", struct.Struct("<4sIQ")
 MAX_TREE, MAX_ARRAYS, MAX_DEPTH = 1 << 18, 1 << 25, 24                 # [bytes], [bytes], [-]: the tests need a hundredth
 DTYPES = {"b1", "u1", "i4", "i8", "f4", "f8", "c16"}
+MESSAGES = {"call": [(str, tuple)], "error": [(tuple, str, str)]}      # what follows the kind of a message; a value's is looked at in `answer`
 
 
 class WireError(Exception):
@@ -129,26 +130,29 @@ class Peer:
         self.describe, self.error = describe, error                    # exception → (names, message, where), and back
         self.define = define                                           # takes (name, code, names, values) of a function
         self.fatal = fatal                                             # exceptions that end the conversation
+        self.may_change = lambda name: True                            # whether that function of the other side's may change arrays
 
     def call(self, name, arguments):
         """What the other side's function returns; raises what `error` makes of its answer."""
         self.send(pack(("call", name, arguments), self.name_of))
         while True:
             kind, *content = self.message()
+            if tuple(map(type, content)) not in MESSAGES.get(kind, ()) and kind != "value":
+                raise WireError("an unexpected message")
             if kind == "call":
                 self.serve(*content)
-                continue
-            if kind == "error":
+            elif kind == "error":
                 raise self.error(*content)
-            if kind != "value":
-                raise WireError("an unexpected message")
-            result, changed = content
-            own = list(arrays_in(arguments))
-            for number, array in changed:
-                if own[number].shape != array.shape or own[number].dtype != array.dtype:
-                    raise WireError("an argument changed its shape")
-                own[number][...] = array
-            return result
+            else:
+                result, changed = answer(content)
+                own = list(arrays_in(arguments))
+                if changed and not self.may_change(name):
+                    raise self.error(("ValueError",), "it changes an array that it was given: return a new one", "")
+                for number, array in changed:
+                    if not 0 <= number < len(own) or own[number].shape != array.shape or own[number].dtype != array.dtype:
+                        raise WireError("an argument changed its shape")
+                    own[number][...] = array
+                return result
 
     def message(self):
         """The next message.  ["define", …] brings a function along, where this side takes any."""
@@ -176,6 +180,14 @@ class Peer:
         except Exception as e:                                         # WireError, RecursionError, an int of too many digits …
             frame = pack(("error", ["TypeError"], f"the result is not plain data: {str(e)[:200]}", ""))
         self.send(frame)
+
+
+def answer(content):
+    """(result, changed) of a value message."""
+    if len(content) != 2 or type(content[1]) is not tuple or not all(
+            type(pair) is tuple and len(pair) == 2 and type(pair[0]) is int and isinstance(pair[1], np.ndarray) for pair in content[1]):
+        raise WireError("an unexpected message")
+    return content
 
 
 def same(a, b):

@@ -1,0 +1,212 @@
+"""Grading where students hand in: the zip that Gradescope asks for, what runs in it, and a workflow for GitHub Classroom."""
+
+import json
+import os
+import sys
+import tempfile
+import traceback
+import zipfile
+from datetime import datetime
+from math import ceil
+from pathlib import Path
+from typing import Annotated, Optional
+
+import typer
+
+from solutions.checks import BadInput
+from validate.__main__ import writable, write_whole
+from validate.binding import ROOT
+
+from . import marking, pages, points, submissions
+from .__main__ import chosen
+from .release import tracked
+
+app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+Lessons = Annotated[Optional[list[str]], typer.Option(help="Only this lesson (may be repeated); all of them without.")]
+Dirty = Annotated[bool, typer.Option("--dirty", help="Take tracked files as they lie there, committed or not.")]
+
+
+# ---------------------------------------------------------------------------------------------- Gradescope
+
+WHEN = (1980, 1, 1, 0, 0, 0)                      # of every entry: the same commit and seed give the same bytes
+SETUP = """#!/usr/bin/env bash
+# Gradescope runs this once, as root, when it builds the image of the assignment; /autograder/source is this zip, unpacked.
+# Choose Ubuntu 24.04: the bubblewrap of 22.04 is too old for the sandbox, and what is graded without one says that it is no grade.
+set -euo pipefail
+source=${AUTOGRADER:-/autograder}/source
+export DEBIAN_FRONTEND=noninteractive
+apt-get update
+apt-get install -y bubblewrap
+apt-get install -y python3.11 python3.11-venv || apt-get install -y python3 python3-venv     # not every Ubuntu has 3.11
+python=$(command -v python3.11 || command -v python3)
+"$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "Python 3.11 or newer is needed: choose a newer Ubuntu" >&2; exit 1; }
+"$python" -m venv "$source/venv"
+"$source/venv/bin/pip" install -q -c "$source/workbook/constraints.txt" -e "$source/workbook"
+"""
+RUN = """#!/usr/bin/env bash
+# Gradescope runs this for every submission, and shows what is then in results/results.json.
+root=${AUTOGRADER:-/autograder}
+results=$root/results/results.json
+mkdir -p "$root/results"
+rm -f "$results"
+cd "$root/source/workbook" && "$root/source/venv/bin/python" -m tests.grading.autograder run "$root/submission" "$results" \\
+    --course "$root/source/course.json" --metadata "$root/submission_metadata.json"
+code=$?
+if [ ! -s "$results" ]; then      # no score: Gradescope then says that the autograder failed
+    echo '{"output": "The grader itself did not run, so there is no score. Please tell your instructor."}' > "$results"
+fi
+exit $code
+"""
+
+
+@app.command(help="Write the zip that Gradescope asks for; the seed is in it, so show it to nobody.")
+def gradescope(
+    seed: Annotated[str, typer.Option(help="Secret from which hidden inputs are drawn.")],
+    out: Annotated[Path, typer.Option(help="The zip to write.")] = Path("autograder.zip"),
+    lesson: Lessons = None,
+    late: Annotated[float, typer.Option(min=0.0, max=100.0, help="Percent of the maximum taken off for each day begun after Gradescope's due date.")] = 0.0,
+    dirty: Dirty = False,
+):
+    course = json.dumps({"lessons": chosen(lesson or []), "seed": seed, "late": late}, indent=1)
+    files = {"setup.sh": (SETUP.encode(), 0o755), "run_autograder": (RUN.encode(), 0o755), "course.json": (course.encode(), 0o600)}
+    files |= {f"workbook/{path}": ((ROOT / path).read_bytes(), 0o644) for path in tracked(dirty)}
+    write_zip(out, files)
+    print(f"{out}: {len(files)} files, lessons {', '.join(chosen(lesson or []))}")
+
+
+def write_zip(out, files):
+    """Write {path: (bytes, mode)} whole or not at all, readable by the owner only."""
+    folder = writable(out.absolute().parent)
+    with tempfile.NamedTemporaryFile(dir=folder, suffix=".part", delete=False) as draft:
+        try:
+            with zipfile.ZipFile(draft, "w", zipfile.ZIP_DEFLATED) as archive:
+                for path, (data, mode) in sorted(files.items()):
+                    entry = zipfile.ZipInfo(path, WHEN)
+                    entry.create_system, entry.external_attr, entry.compress_type = 3, (0o100000 | mode) << 16, zipfile.ZIP_DEFLATED
+                    archive.writestr(entry, data)
+            draft.close()
+            os.replace(draft.name, out)
+        except BaseException as e:
+            Path(draft.name).unlink(missing_ok=True)
+            raise BadInput(f"--out {str(out)!r}", f"not writable ({e.strerror})", "name another file") from None if isinstance(e, OSError) else e
+
+
+@app.command(help="Grade one submission inside Gradescope; run_autograder in the zip calls this.")
+def run(
+    submission: Annotated[Path, typer.Argument(help="Folder of what was handed in.")],
+    results: Annotated[Path, typer.Argument(help="results.json to write.")],
+    course: Annotated[Path, typer.Option(help="Lessons, seed and late penalty.")],
+    metadata: Annotated[Optional[Path], typer.Option(help="Gradescope's submission_metadata.json.")] = None,
+):
+    try:
+        found = graded(submission, json.loads(course.read_text()), told(metadata))
+    except Exception as e:                        # without a score Gradescope says that the autograder failed; a zero would be the student's
+        traceback.print_exc()                     # for instructors only: it may name hidden inputs
+        found = {"output": f"The grader itself failed ({type(e).__name__}), so there is no score. Please tell your instructor."}
+    write_whole(results, found)
+    raise typer.Exit(0 if "score" in found else 1)
+
+
+def graded(folder, course, metadata):
+    """What Gradescope gets to read.  Handed in and due are as Gradescope says, where it does."""
+    settings = marking.settings(tuple(course["lessons"]), course["seed"])
+    users, assignment = metadata.get("users") or [{}], metadata.get("assignment") or {}
+    submission = submissions.read(folder, users[0].get("email") or "submission", settings.lessons)
+    if when := moment(metadata.get("created_at")):
+        submission = submission._replace(timestamp=when)
+    due = moment((users[0].get("assignment") or {}).get("due_date") or assignment.get("due_date"))      # one's own, where it was extended
+    return pages.gradescope(marking.mark(submission, settings), settings, pages.Terms(due, course["late"]))
+
+
+def told(metadata):
+    return json.loads(metadata.read_text()) if metadata and metadata.is_file() else {}
+
+
+def moment(text):
+    """An ISO 8601 time without fractions of a second; "" for none."""
+    return datetime.fromisoformat(text).isoformat(timespec="seconds") if text else ""
+
+
+# ---------------------------------------------------------------------------------------------- GitHub Classroom
+
+HEAD = """# Written by `autograder classroom`.  The names of workflow and job are those that GitHub Classroom looks for.
+# The tests run with their public inputs, in the student's own repository: for grades on which something depends, collect and run `grade`.
+name: Autograding Tests
+"on": [push, workflow_dispatch]
+permissions:
+  checks: write
+  actions: read
+  contents: read
+jobs:
+  run-autograding-tests:
+    runs-on: ubuntu-latest
+    if: github.actor != 'github-classroom[bot]'
+    steps:
+      - uses: actions/checkout@v4
+      - uses: actions/setup-python@v5
+        with:
+          python-version: "3.11"
+      - name: Install the workbook
+        run: python3 -m venv .venv && .venv/bin/pip install -q -c constraints.txt -e .
+"""
+STEP = """      - name: {name}
+        id: {id}
+        uses: classroom-resources/autograding-command-grader@v1
+        with:
+          test-name: {name}
+          command: .venv/bin/pytest tests/test_{lesson}.py --of=lessons --exercise={exercise}
+          timeout: {minutes}
+          max-score: {points}
+"""
+TAIL = """      - name: Autograding Reporter
+        uses: classroom-resources/autograding-grading-reporter@v1
+        env:
+{results}
+        with:
+          runners: {runners}
+"""
+
+
+@app.command(help="Write a workflow for GitHub Classroom with one step an exercise: all of its points, or none.")
+def classroom(
+    out: Annotated[Path, typer.Option(help="The workflow to write, in the repository that students copy.")] = Path(".github/workflows/grade.yml"),
+    lesson: Lessons = None,
+):
+    writable(out.absolute().parent)
+    pages.write_whole(out, workflow(marking.manifest(tuple(chosen(lesson or [])))))
+    print(out)
+
+
+def workflow(manifest):
+    """The text of the workflow for a manifest.  Raises BadInput for an exercise whose points are not whole.
+
+    The workbook is installed by a step of its own, not as setup-command: when that fails the job ends, and nobody gets a zero for it.
+    timeout [min] is that of all tests of an exercise, and one for pytest to start.
+    *Source:* the README of classroom-resources/autograding-command-grader and of autograding-grading-reporter, v1.
+    """
+    steps = {}
+    for lesson, exercise, function, _, worth, _ in manifest:
+        tests, total = steps.get((lesson, exercise, function), (0, 0.0))
+        steps[lesson, exercise, function] = tests + 1, total + worth
+    text, ids = HEAD, []
+    for (lesson, exercise, function), (tests, total) in steps.items():
+        if total != int(total):
+            raise BadInput(f"points of exercise {exercise}", f"{total:g}", "GitHub Classroom counts whole points only: share them out differently")
+        ids.append(f"exercise-{exercise.replace('.', '-')}")
+        text += STEP.format(name=f"Exercise {exercise} {function}", id=ids[-1], lesson=lesson, exercise=exercise,
+                            minutes=1 + ceil(tests * points.LIMIT / 60.0), points=int(total))
+    env = "\n".join(f"          {name.upper()}_RESULTS: ${{{{ steps.{name}.outputs.result }}}}" for name in ids)
+    return text + TAIL.format(results=env, runners=",".join(ids))
+
+
+def main(arguments=None):
+    """Run the command line; bad input ends with one sentence and exit code 2."""
+    try:
+        app(arguments, prog_name="autograder")
+    except BadInput as e:
+        print(f"autograder: {e}", file=sys.stderr)
+        sys.exit(2)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,194 @@
+"""`grade --executor tcp://HOST:PORT`: the submissions go to a running Dask cluster, and come back marked.
+
+A worker grades each submission in a process of its own, started from the workbook that lies there: so one test run never meets another
+in a process, however many threads a worker has, and what kills the grading does not kill the worker.  --nthreads of a worker is how many
+submissions it grades at a time.  A cluster runs what anybody sends who reaches its ports: keep it in a network of your own.
+"""
+
+import json
+import os
+import pickle
+import queue
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from importlib.metadata import version
+
+from solutions.checks import BadInput
+from validate import binding
+
+from . import box, local, marking
+
+CONNECT_WITHIN = 5.0         # [s]: a scheduler answers in milliseconds
+WORKERLESS = 30.0            # so long a cluster may be without any worker [s]: a nanny starts a new one in 2
+LOOK_AFTER = 1.0             # while nothing comes, see so often whether the cluster is still there [s]
+PATIENCE = 5.0 * marking.BUDGET     # of a lesson [s]: the student's budget, and four times that for the tests' own work on a busy machine
+
+
+# ---------------------------------------------------------------------------------------------- here
+
+def results(address, todo, settings):
+    """(student, result, "") or (student, None, why the grader failed), as they come, each student once.
+
+    Raises BadInput when there is no such cluster, no worker, or one whose workbook is not the same as here.
+    """
+    if not todo:
+        return iter(())
+    client = connected(address)
+    try:
+        fit(client, address, settings)
+    except BaseException:
+        client.close()
+        raise
+    return graded(client, address, todo, settings)
+
+
+def connected(address):
+    """A client of the scheduler there."""
+    if not re.fullmatch(r"\w+://\S+:\d+", address):
+        raise BadInput(f"--executor {address!r}", "not an address", "write it like tcp://127.0.0.1:8786")
+    try:
+        from distributed import Client
+    except ImportError:
+        raise BadInput("the package distributed", "not installed", "--executor needs it: pip install -c constraints.txt -e '.[cluster]'") from None
+    try:
+        return Client(address, timeout=CONNECT_WITHIN, set_as_default=False)
+    except (OSError, ValueError) as e:
+        raise BadInput(f"--executor {address}", f"no Dask scheduler that answers ({type(e).__name__})",
+                       "start one there with `dask scheduler`, and name the address that it prints") from None
+
+
+def fit(client, address, settings):
+    """Raise BadInput unless there are workers, and each would mark as this machine does."""
+    try:
+        client.wait_for_workers(1, timeout=CONNECT_WITHIN)
+    except TimeoutError:
+        raise BadInput(f"--executor {address}", "a scheduler without workers",
+                       f"start one on each machine, where the workbook is: `dask worker {address}`") from None
+    try:
+        client.run_on_scheduler(makeup, settings.code)                 # it unpacks what passes through
+    except Exception as e:
+        raise refusal(f"the scheduler at {address}", without_workbook(e)) from None
+    for worker, answer in client.run(asked, parcel(None, settings), on_error="return").items():
+        unfit = without_workbook(answer) if isinstance(answer, Exception) else answer[0]
+        if unfit:
+            raise refusal(f"the worker at {worker}", unfit)
+
+
+def without_workbook(error):
+    return f"without a workbook that runs ({in_a_line(error)})"
+
+
+def in_a_line(error):
+    return " ".join(f"{type(error).__name__}: {error}".split())
+
+
+def refusal(thing, unfit):
+    return BadInput(thing, unfit, "give it the workbook and the locked versions that are here, start it again, and repeat the command")
+
+
+def parcel(submission, settings):
+    """What travels to a worker: everything that it needs, as bytes."""
+    return pickle.dumps((submission, settings, makeup(settings.code)))
+
+
+def makeup(code):
+    """What marks depend on besides the submission: {thing: which}."""
+    return {"workbook": code, "Python": f"{sys.version_info.major}.{sys.version_info.minor}", "numpy": version("numpy"),
+            "pytest": version("pytest"), "sandbox": box.no_sandbox_because() or "bubblewrap"}
+
+
+def graded(client, address, todo, settings):
+    """Hand everything over, and wait.  Dask gives what a dead worker had to another one."""
+    waiting, finished, seen = {}, queue.Queue(), time.monotonic()
+    try:
+        for submission in todo:
+            future = client.submit(asked, parcel(submission, settings), pure=False, retries=1)
+            waiting[future] = submission.student
+            future.add_done_callback(finished.put)
+        while waiting:
+            try:
+                future = finished.get(timeout=LOOK_AFTER)
+            except queue.Empty:
+                seen = time.monotonic() if workers_of(client) else seen
+                if time.monotonic() - seen > WORKERLESS:
+                    break
+                continue
+            if future.status == "pending":                             # its worker died after the last word
+                future.add_done_callback(finished.put)
+            elif future in waiting and future.status != "cancelled":   # cancelled: the scheduler is gone
+                result, why = fetched(future)
+                yield waiting.pop(future), result, why
+        for student in waiting.values():
+            yield student, None, f"the cluster at {address} has gone away"
+    finally:                                                           # also when the run is interrupted: what waits is cancelled with it
+        client.close(timeout=CONNECT_WITHIN)
+
+
+def workers_of(client):
+    """Addresses of the workers; none when the scheduler does not answer."""
+    try:
+        return [*client.nthreads()] if client.status == "running" else []
+    except Exception:                                                  # whatever Dask says when it is cut off
+        return []
+
+
+def fetched(future):
+    """(result, "") or (None, why the grader failed)."""
+    try:
+        unfit, result, why = future.result()
+    except ImportError as e:
+        raise refusal("a worker that came later or was changed", without_workbook(e)) from None
+    except Exception as e:
+        return None, in_a_line(e)
+    if unfit:
+        raise refusal("a worker that came later or was changed", unfit)
+    return result, why
+
+
+# ---------------------------------------------------------------------------------------------- on a worker
+
+def asked(parcel):
+    """(why this worker may not grade, result, why the grader failed), from a process of its own.  Raises RuntimeError when that breaks."""
+    lessons = len(pickle.loads(parcel)[1].lessons)
+    try:
+        run = subprocess.run([sys.executable, "-m", __name__], cwd=binding.ROOT, input=parcel, capture_output=True, timeout=PATIENCE * lessons)
+    except subprocess.TimeoutExpired:
+        raise RuntimeError(f"the grading process did not end within {PATIENCE * lessons:g} s") from None
+    try:
+        return tuple(json.loads(run.stdout))
+    except ValueError:
+        last = run.stderr.decode(errors="replace").strip().splitlines()[-1:]
+        raise RuntimeError(f"the grading process ended unexpectedly ({run.returncode}): {' '.join(last)[:300]}") from None
+
+
+def answer(submission, settings, theirs):
+    """What `asked` returns, in the process of its own; without a submission only whether this worker may grade."""
+    ours = makeup(marking.code_digest(settings.lessons))
+    unfit = "; ".join(f"with {thing} {ours[thing]} instead of {theirs[thing]}" for thing in theirs if ours[thing] != theirs[thing])
+    return (unfit, None, "") if unfit or submission is None else ("", *local.marked(submission, settings))
+
+
+def orphaned(parent, folder):
+    """End when the worker does: another one grades this again."""
+    while os.getppid() == parent:
+        time.sleep(1.0)
+    shutil.rmtree(folder, ignore_errors=True)
+    os._exit(1)
+
+
+def main():
+    channel = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)                                                      # nothing else may get in between
+    with tempfile.TemporaryDirectory(prefix="grading-") as tempfile.tempdir:
+        threading.Thread(target=orphaned, args=(os.getppid(), tempfile.tempdir), daemon=True).start()
+        json.dump(answer(*pickle.load(sys.stdin.buffer)), channel)
+        channel.close()
+
+
+if __name__ == "__main__":
+    main()

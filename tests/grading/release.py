@@ -1,0 +1,377 @@
+"""`release --out workbook.zip`: the students' zip of this repository, refused when an answer would leak.
+
+In it are files that git tracks, and of those what a student needs: lessons, notebooks, their tests, scenes, recorded traces, docs.  In place of
+the worked answers there are the lessons as handed out, and a lesson builds on its siblings: a student's own lesson 1 serves lesson 2.
+A lesson of --with-solutions is there as worked, without markers, and the others import it from there.
+
+Every text of the zip is searched for every answer that is not released, in two ways: as code, statement by statement after ast.unparse (in
+Python files, notebook cells, fences, strings of JSON and of Python), and as text, line by line without spaces (in comments and prose, too).
+An answer has leaked where one text holds more than LEAKED of it, by size, and with that a piece of at least TELLING names, attributes and numbers;
+smaller ones, like `return x`, are ordinary code.  An answer without any such piece has leaked where a function of its name has its body.
+*Left out:* an answer whose variables were renamed.
+"""
+
+import ast
+import copy
+import html
+import json
+import keyword
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import textwrap
+import warnings
+import zipfile
+from functools import lru_cache
+from pathlib import Path
+from typing import Annotated, NamedTuple, Optional
+
+import typer
+
+from solutions.checks import BadInput
+from validate import binding, generate
+from validate.binding import ROOT
+
+TOP = "workbook"                                  # folder that the zip unpacks to
+WHEN = (1980, 1, 1, 0, 0, 0)                      # of every entry: the same commit gives the same bytes
+LEAKED = 2 / 3                                    # share of an answer
+TELLING = 5                                       # names, attributes and numbers in a statement: `r = x_b - x_a` has 3
+TELLING_SENTENCE = 30                             # characters without spaces in a sentence of answers.md; shorter ones are formulas of the lesson
+PICTURES = {".png", ".jpg", ".gif"}
+ALWAYS = {"README.md", "LICENSE", "pyproject.toml", "constraints.txt", "uv.lock", ".python-version", "tests/__init__.py", "tests/grading/__init__.py"}
+AUTHORS = {"validate/generate.py", "validate/benchmark.py",     # make the lessons from the answers, and time the answers
+           "docs/grading.md"}                                   # for instructors
+PLUGIN, ANSWERS = "tests/grading/plugin.py", "solutions/answers.md"
+NO_ANSWERS = "The answers to the questions of the notebooks are not part of this copy: ask your instructor for them.\n"
+MARKER = re.compile(r"(BEGIN|END)\W+SOLUTION", re.I)
+FENCE = re.compile(r"^ *(```|~~~).*?\n(.*?)^ *\1", re.M | re.S)
+WORD = re.compile(r"[^\W\d]\w*|\d[\d.]*")          # a name or a number
+SPAN = re.compile(r"`([^`\n]+)`")
+
+app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+
+
+@app.command(help="Write the students' zip; it is refused when an answer would leak.")
+def release(
+    out: Annotated[Path, typer.Option(help="The zip to write.")] = Path("workbook.zip"),
+    with_solutions: Annotated[Optional[str], typer.Option(metavar="[=LESSON,LESSON]", help="Worked answers of these lessons, or of all.")] = None,
+    lesson: Annotated[Optional[list[str]], typer.Option(help="Only this lesson (may be repeated), and the earlier ones that it builds on.")] = None,
+    dirty: Annotated[bool, typer.Option("--dirty", help="Take tracked files as they lie there, committed or not.")] = False,
+):
+    if out.exists() and not zipfile.is_zipfile(out):
+        raise BadInput(f"--out {str(out)!r}", "there, and no zip", "name another file")
+    chosen = with_earlier(known(lesson or binding.lesson_names()))
+    worked = set(chosen) if with_solutions == EVERY else set(known([n for n in (with_solutions or "").split(",") if n]))
+    if missing := (with_earlier(worked) - worked) | (worked - chosen):
+        raise BadInput(f"--with-solutions={','.join(sorted(worked))}", f"without {', '.join(sorted(missing))}",
+                       "release the lessons that these build on as well, and none that --lesson leaves out")
+    out.unlink(missing_ok=True)                   # whatever happens now, no older zip is taken for this one
+    files = contents(tracked(dirty), chosen, worked, with_solutions == EVERY)
+    refuse_leaks(files, worked, with_solutions == EVERY)
+    write(out, files)
+    print(f"{out}: {len(files)} files, lessons {', '.join(sorted(chosen))}, worked answers of {', '.join(sorted(worked)) or 'none'}")
+
+
+# ---------------------------------------------------------------------------------------------- what goes in
+
+EVERY = "*"
+
+
+def source(lesson):
+    return (binding.SOLUTIONS / f"{lesson}.py").read_text(encoding="utf-8")
+
+
+def known(names):
+    """The names.  Raises BadInput for one that is no lesson."""
+    for name in names:
+        binding.bind(name)
+    return names
+
+
+def with_earlier(names):
+    """Those lessons and all that they build on."""
+    found, waiting = set(), list(names)
+    while waiting:
+        name = waiting.pop()
+        found.add(name)
+        waiting += set(re.findall(r"^from \.(\w+) import", source(name), re.M)) - binding.GIVEN - found
+    return found
+
+
+def tracked(dirty):
+    """Paths of all files that git tracks.  Raises BadInput when what lies here is not what was committed."""
+    def git(*arguments):
+        try:
+            return subprocess.run(["git", *arguments], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+        except (OSError, subprocess.CalledProcessError):
+            raise BadInput(f"folder {str(ROOT)!r}", "no git repository", "release from a clone") from None
+
+    changed = [line[3:] for line in git("status", "--porcelain", "--untracked-files=no").splitlines()]
+    if changed and not dirty:
+        some = ", ".join(changed[:3] + ["…"] * (len(changed) > 3))
+        raise BadInput("the work tree", f"changed but not committed ({some})", "commit, or give --dirty")
+    return sorted(path for path in git("ls-files", "-z").split("\0") if path and (ROOT / path).exists())
+
+
+def contents(paths, lessons, worked, answers):
+    """{path in the zip: bytes}."""
+    scenes = {name for name in binding.scene_names() if binding.bind_scene(name).LESSON in lessons}
+    others = set(binding.lesson_names()) - lessons
+    chosen = {path for path in paths if wanted(Path(path), lessons, others, scenes)}
+    files = {path: read(path) for path in with_imports(chosen, paths)}
+    for name in lessons:
+        solved = set(generate.exercises(source(name))) if name in worked else ()
+        files[f"solutions/{name}.py"] = generate.stub(source(name), solved, elsewhere=()).encode()
+        files[f"lessons/{name}.py"] = generate.stub(source(name), elsewhere=binding.GIVEN | worked).encode()
+    files["lessons/__init__.py"] = generate.lessons()["__init__.py"].encode()
+    files[ANSWERS] = read(ANSWERS) if answers else NO_ANSWERS.encode()
+    files["pyproject.toml"] = for_students(files["pyproject.toml"].decode(), files, worked >= lessons).encode()
+    return files
+
+
+def wanted(path, lessons, others, scenes):
+    """Whether a tracked file goes into the zip as it is."""
+    folder = path.parts[0]
+    if path.as_posix() in AUTHORS:
+        return False
+    if path.parts[:2] in (("validate", "scenes"), ("validate", "recorded")):
+        return path.stem in scenes | {"__init__"}
+    if folder == "notebooks":
+        return path.stem.partition("_")[2] not in others
+    if folder == "solutions":
+        return path.suffix == ".py" and path.stem in binding.GIVEN
+    return folder in ("validate", "docs") or path.as_posix() in ALWAYS | {PLUGIN} | {f"tests/test_{name}.py" for name in lessons}
+
+
+def with_imports(chosen, paths):
+    """Those files, and what they import of tests/ and validate/scenes/."""
+    there = {path for path in paths if path.startswith(("tests/", "validate/scenes/"))}
+    found, waiting = set(), sorted(chosen)
+    while waiting:
+        path = waiting.pop()
+        found.add(path)
+        if path.endswith(".py"):
+            waiting += (imported(path) & there) - found
+    return found
+
+
+def imported(path):
+    """Paths of the modules that a module may import."""
+    package, names = path.split("/")[:-1], set()
+    for node in ast.walk(ast.parse(read(path))):
+        if isinstance(node, ast.ImportFrom):
+            base = package[:len(package) + 1 - node.level] if node.level else []
+            base = base + (node.module.split(".") if node.module else [])
+            names |= {".".join(base), *(".".join([*base, alias.name]) for alias in node.names)}
+        elif isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+    return {f"{name.replace('.', '/')}.py" for name in names}
+
+
+def read(path):
+    """The bytes of a file; text with the same line ends everywhere.  Raises BadInput for what cannot be looked into."""
+    file = ROOT / path
+    if file.is_symlink() or not file.is_file():
+        raise BadInput(path, "a link or no file", "put the file itself there")
+    if file.suffix in PICTURES:
+        return file.read_bytes()
+    try:
+        return file.read_text(encoding="utf-8").encode()
+    except UnicodeDecodeError:
+        raise BadInput(path, "neither text nor a picture", "students get nothing that cannot be searched for answers: git rm it") from None
+
+
+def for_students(text, files, solved):
+    """pyproject.toml without the commands that are not in the zip; where answers are missing, pytest asks about lessons/."""
+    def keep(match):
+        return match[0] if match[1].replace(".", "/") + ".py" in files else ""
+    text = re.sub(r'^[\w-]+ *= *"((?:tests|validate)[\w.]*):\w+".*\n', keep, text, flags=re.M)
+    return text if solved else text.replace('addopts = "', 'addopts = "--of=lessons ', 1)
+
+
+# ---------------------------------------------------------------------------------------------- what must not
+
+class Answer(NamedTuple):
+    """The body of an exercise, taken apart."""
+    lesson: str
+    exercise: str
+    function: str
+    body: str                        # normalised
+    pieces: dict[str, int]           # {statement: its size}
+    lines: dict[str, int]            # {line without spaces: its size}
+
+
+def answers_of(lesson):
+    for match in generate.ANSWER.finditer(source(lesson)):
+        body = textwrap.dedent("".join(match[0].splitlines(keepends=True)[1:-1]))
+        tree, function = ast.parse(body), generate.exercises(source(lesson))[match["exercise"]]
+        lines = {line: len(words(text)) for text in body.splitlines() if (line := squeezed(text))}
+        yield Answer(lesson, match["exercise"], function, plain(tree.body), dict(pieces(tree)), lines)
+
+
+def pieces(tree):
+    """(normalised, size) of every statement; of a compound one, its head.  A return counts as its value, a docstring not at all."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.stmt) and not isinstance(getattr(node, "value", None), ast.Constant):
+            node = node.value if isinstance(node, (ast.Return, ast.Expr)) and node.value else copy.copy(node)
+            for block in ("body", "orelse", "finalbody", "handlers", "cases"):
+                if isinstance(getattr(node, block, None), list):
+                    setattr(node, block, [ast.Pass()] if block == "body" else [])
+            yield ast.unparse(node), size(node)
+
+
+def size(node):
+    return sum(isinstance(part, (ast.Name, ast.Attribute, ast.Constant)) for part in ast.walk(node))
+
+
+def words(line):
+    """Names and numbers in a line of code."""
+    return [word for word in WORD.findall(line.partition("#")[0]) if not keyword.iskeyword(word)]
+
+
+def squeezed(line):
+    """A line of code without spaces, comment and `return`, and without what prose puts around it."""
+    return re.sub(r"\s", "", re.sub(r"^return\b", "", line.strip("#>*-`'\" \t").partition(" #")[0]))
+
+
+class Searched(NamedTuple):
+    """One text of the zip, as answers are looked for in it."""
+    statements: set[str]
+    lines: set[str]
+    bodies: set[tuple[str, str]]     # (function, its body)
+
+
+@lru_cache(maxsize=None)                          # lessons and solutions quote the same texts
+def searched(text):
+    statements, bodies = set(), set()
+    for tree in filter(None, map(parsed, [text, *(match[2] for match in FENCE.finditer(text))])):
+        for node in ast.walk(tree):
+            if isinstance(node, ast.FunctionDef):
+                bodies.add((node.name, plain(node.body)))
+            elif isinstance(node, ast.Lambda):
+                statements.add(ast.unparse(node.body))
+            elif isinstance(node, ast.Assign):
+                statements.add(ast.unparse(node.value))
+        statements |= dict(pieces(tree)).keys()
+    return Searched(statements, {squeezed(line) for line in [*html.unescape(text).splitlines(), *SPAN.findall(text)]}, bodies)
+
+
+def plain(body):
+    """The statements of a body without its docstring, normalised."""
+    documented = isinstance(body[0], ast.Expr) and isinstance(body[0].value, ast.Constant)
+    return "\n".join(map(ast.unparse, body[documented:]))
+
+
+def parsed(text):
+    """The syntax tree of a text, if it is Python; a notebook's own commands (%, !) do not count."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")                          # prose has escapes that no Python has
+            return ast.parse(re.sub(r"^[%!].*$", "", textwrap.dedent(text), flags=re.M))
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return None
+
+
+@lru_cache(maxsize=None)
+def texts(path, text):
+    """The text itself, and every text that it quotes and that is long enough: strings of JSON and Python, lists of strings as one."""
+    found = [text]
+    if path.endswith((".json", ".ipynb")):
+        found += strings(json.loads(text))
+    for tree in filter(None, map(parsed, list(found) if path.endswith((".py", ".json", ".ipynb")) else [])):
+        found += [node.value for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)]
+    return [text, *{quoted for quoted in found[1:] if len(WORD.findall(quoted)) >= TELLING}]
+
+
+def strings(value):
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, dict):
+        for part in value.values():
+            yield from strings(part)
+    elif isinstance(value, list):
+        if value and all(isinstance(part, str) for part in value):
+            yield "".join(value)
+        else:
+            for part in value:
+                yield from strings(part)
+
+
+def share(sizes, found, telling):
+    """How much of an answer was found, by size; 0 when no telling piece is among it."""
+    here = [sizes[piece] for piece in sizes if piece in found]
+    return sum(here) / sum(sizes.values()) if here and max(here) >= telling else 0.0
+
+
+def holds(where, answer):
+    """Whether a searched text holds that answer."""
+    if max(answer.pieces.values(), default=0) < TELLING:
+        return (answer.function, answer.body) in where.bodies
+    return share(answer.pieces, where.statements, TELLING) > LEAKED or share(answer.lines, where.lines, TELLING) > LEAKED
+
+
+def sentences(text):
+    """Of answers.md: what is long enough to be known again, without spaces."""
+    parts = (re.sub(r"\s", "", part) for part in re.split(r"(?<=[.:;?])\s+|\n\s*\n", text))
+    return {part for part in parts if len(part) >= TELLING_SENTENCE}
+
+
+def refuse_leaks(files, worked, answers_too):
+    """Raise BadInput, in one sentence, for the first thing in the zip that no student may have."""
+    hidden = [answer for name in binding.lesson_names() if name not in worked for answer in answers_of(name)]
+    secret = set() if answers_too else sentences((ROOT / ANSWERS).read_text(encoding="utf-8"))
+    for path, data in sorted(files.items()):
+        if "__pycache__" in path or path.endswith((".pyc", ".pyo")):
+            raise BadInput(path, "compiled code", "answers can be read from that: git rm it")
+        if Path(path).suffix in PICTURES:
+            continue
+        for text in texts(path, data.decode()):
+            if MARKER.search(text):
+                raise BadInput(path, f"not for students (it holds the marker {MARKER.search(text)[0]})", "take it out")
+            where, whole = searched(text), re.sub(r"\s", "", text)
+            for answer in hidden:
+                if holds(where, answer):
+                    raise BadInput(path, f"not for students (it holds the answer of exercise {answer.exercise}, {answer.function})",
+                                   f"take it out, or give --with-solutions={answer.lesson}")
+            for sentence in secret:
+                if sentence in whole:
+                    raise BadInput(path, f"not for students (it holds a sentence of {ANSWERS})", "take it out, or give --with-solutions")
+
+
+# ---------------------------------------------------------------------------------------------- the zip
+
+def write(out, files):
+    """Write the zip whole or not at all; sorted, without dates: what was committed decides on every byte, and zlib on none."""
+    try:
+        out.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(dir=out.parent, suffix=".part", delete=False) as draft:
+            try:
+                with zipfile.ZipFile(draft, "w", zipfile.ZIP_STORED) as archive:
+                    for path in sorted(files):
+                        entry = zipfile.ZipInfo(f"{TOP}/{path}", WHEN)
+                        entry.create_system, entry.external_attr = 3, 0o100644 << 16
+                        archive.writestr(entry, files[path])
+                draft.close()
+                os.chmod(draft.name, 0o644)
+                os.replace(draft.name, out)
+            except BaseException:
+                Path(draft.name).unlink(missing_ok=True)
+                raise
+    except OSError as e:
+        raise BadInput(f"--out {str(out)!r}", f"not writable ({e.strerror})", "name another file") from None
+
+
+def main(arguments=None):
+    """Run the command line; bad input ends with one sentence and exit code 2."""
+    arguments = sys.argv[1:] if arguments is None else arguments
+    try:
+        app([f"{a}={EVERY}" if a == "--with-solutions" else a for a in arguments], prog_name="release")
+    except BadInput as e:
+        print(f"release: {e}", file=sys.stderr)
+        sys.exit(2)
+
+
+if __name__ == "__main__":
+    main()
