@@ -584,3 +584,6 @@ def cases(lessons, of="solutions", compiled=True):
 def findings(of="solutions", compiled=True):
     """Every finding of every case."""
     return [f for number in CASES for f in examine(number, of, compiled).findings]
+
+
+from . import stability_friction as _friction  # noqa: E402, F401           adds the cases of lesson 3 to CASES

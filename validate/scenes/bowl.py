@@ -133,7 +133,7 @@ def pybullet_make(p, dt):
 
 ENGINES = (
     Engine("pybullet", pybullet_make, 1, f"a ball that cannot turn, on the plane that touches the bowl, laid anew before each step; "
-           f"contactSlop 0, solverResidualThreshold 0, {SWEEPS} iterations",
+           f"contactSlop 0, solverResidualThreshold 0, {SWEEPS} iterations"),
 )
 
 
