@@ -550,6 +550,9 @@ CASES = {
     7: ("A stiff pair", case_7, "integrators"),
     8: ("Robertson's reaction", case_8, "integrators"),
 }
+from .stability_rotation import CASES as ROTATION  # noqa: E402   needs the records above
+
+CASES |= ROTATION
 OWN_LAWS = {7, 8}            # these bring an acceleration of their own, and nothing in this file is compiled
 
 
