@@ -181,9 +181,15 @@ def rotation_matrix(q):
 
 
 def unit(q):
-    """Given.  q / |q|: the nearest quaternion that is a rotation.  Raises BadInput when there is none: length 0, or not a number."""
+    """Given.  q / |q|: the nearest quaternion that is a rotation.
+
+    Raises BadInput when there is none because q = 0, Diverged when a step has led to one that is not finite.
+    """
     length = np.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
-    check_positive("length of the quaternion q [-]", length)
+    if length == 0.0:
+        raise BadInput("length of the quaternion q [-]", length, "an orientation has length 1")
+    if not np.isfinite(length):
+        raise Diverged("length of the quaternion q [-]", length, "take a smaller step")
     return np.array([q[0] / length, q[1] / length, q[2] / length, q[3] / length])
 
 

@@ -45,6 +45,12 @@ WRONG = [                         # case, the method that it examines, what is p
     (6, "implicit_midpoint_step", "implicit_euler_step"),
     (7, "implicit_euler_step", "symplectic_euler_step"),
     (8, "implicit_euler_step", "implicit_midpoint_step"),
+    (11, "gyroscopic_step", "implicit_gyroscopic_step"),
+    (11, "matrix_step", "axis_angle_step"),
+    (11, "midpoint_step", "quaternion_step"),
+    (14, "splitting_step", "quaternion_step"),
+    (15, "midpoint_step", "runge_kutta_step"),
+    (17, "composed_splitting_step", "quaternion_step"),
 ]
 
 

@@ -51,6 +51,11 @@ def quaternion_matrix(w, x, y, z):
     return about(np.array([x, y, z]) / s, 2.0 * np.arctan2(s, w)) if s > 0.0 else np.eye(3)
 
 
+def relative_turn(R, S):
+    """Angle [rad] of the turn that takes one orientation to the other: |R − S| = 2√2 sin(½ angle) in Frobenius' norm."""
+    return 2.0 * np.arcsin(min(1.0, np.linalg.norm(R - S) / np.sqrt(8.0)))
+
+
 def integral(f, t, rate):
     """∫₀ᵗ f, f(ts) of an array, changing no faster than rate [1/s]."""
     panels = max(1, int(np.ceil(abs(t) * rate / PANEL)))
