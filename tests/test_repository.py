@@ -2,6 +2,7 @@
 
 import re
 import tomllib
+from hashlib import sha256
 
 from validate.binding import ROOT, SOLUTIONS
 
@@ -31,3 +32,10 @@ def test_every_lesson_has_its_notebook_tests_mutants_and_scenes():
         assert list((ROOT / "notebooks").glob(f"*_{name}.ipynb")), name
         assert (ROOT / "tests" / f"test_{name}.py").is_file() and (ROOT / "tests" / "mutants" / f"{name}.py").is_file()
         assert any(binding.bind_scene(s).LESSON == name for s in binding.scene_names())
+
+
+def test_the_player_in_space_was_built_from_its_source_and_can_stand_inside_a_page():
+    folder = ROOT / "validate" / "report"
+    bundle = (folder / "player3d.js").read_text()
+    assert sha256((folder / "player3d" / "source.js").read_bytes()).hexdigest()[:16] in bundle.splitlines()[0]
+    assert "</script" not in bundle and "SPDX-License-Identifier: MIT" in bundle

@@ -182,10 +182,10 @@ def engines_of(scene, p):
 def not_run(scene, plan):
     """Sentences: which methods this run leaves out, and why."""
     labels = [m.label for m in scene.METHODS if m not in methods_of(scene, plan)]
-    slow = [f"Left to --full, because they take longest to compile or to run: {', '.join(labels)}"] if labels else []
+    slow = [f"Left to --full, to keep this one quick: {', '.join(labels)}"] if labels else []
     if plan.quick and len(scene.CASES) > 1 and still(scene) is None:
         slow.append(f"Left to --full: the engines on {', '.join(list(scene.CASES)[1:])}")
-    return slow + ([f"Not run here: {scene.WITHOUT}"] if hasattr(scene, "WITHOUT") else [])
+    return slow
 
 
 def sweep(scene, plan=Plan()):
@@ -254,22 +254,22 @@ def picture(scene, fast, plan, p, usable):
     """Frames of the motion: truth, our usable method of highest order, and the first engine that is live and agrees."""
     if still(scene) is not None:
         drawn = scene.points(np.array(scene.truth(p, scene.T), dtype=float), p).tolist()
-        return {"seconds": 0.0, "dt": 0.0, "links": links(scene, p), "frames": {"truth": [drawn]}}
+        return {"seconds": 0.0, "dt": 0.0, "links": links(scene, p), "frames": {"truth": [drawn]}, "space": None}
     per_frame = max(1, scene.STEPS[-3] // FRAMES)
     seconds = getattr(scene, "FILM", scene.T)
     dt = seconds / (per_frame * FRAMES)
-    frames = {"truth": [scene.points(np.array(scene.truth(p, seconds * k / FRAMES)), p).tolist() for k in range(FRAMES + 1)]}
+    seen = {"truth": [np.array(scene.truth(p, seconds * k / FRAMES)) for k in range(FRAMES + 1)]}
     for method in sorted((m for m in scene.METHODS if m.label in usable), key=lambda m: -m.order)[:1]:
-        frames[method.label] = our_frames(scene, fast, plan, method, p, dt, per_frame)
+        seen[method.label] = our_frames(scene, fast, plan, method, p, dt, per_frame)
     for engine in scene.ENGINES:
         if engine.label.split(",")[0] in plan.live and engine.label not in getattr(scene, "WHY", {}):
-            frames[engine.label] = engine_frames(scene, engine, p, dt, per_frame)
+            seen[engine.label] = engine_frames(engine, p, dt, per_frame)
             break
-    else:
-        record = RECORDED / f"{scene.__name__.rpartition('.')[2]}.json"
-        if record.is_file() and not plan.overrides:
-            frames["pybullet, recorded"] = json.loads(record.read_text())["frames"]
-    return {"seconds": seconds, "frames": frames, "links": links(scene, p), "dt": dt}
+    frames = {label: [scene.points(observed, p).tolist() for observed in film] for label, film in seen.items()}
+    record = RECORDED / f"{scene.__name__.rpartition('.')[2]}.json"
+    if record.is_file() and not plan.overrides and not any(label.startswith("py") for label in seen):
+        frames["pybullet, recorded"] = json.loads(record.read_text())["frames"]
+    return {"seconds": seconds, "frames": frames, "links": links(scene, p), "dt": dt, "space": in_space(scene, seen, p, seconds)}
 
 
 def links(scene, p):
@@ -277,26 +277,42 @@ def links(scene, p):
     return [list(map(int, pair)) for pair in scene.LINKS(p)] if hasattr(scene, "LINKS") else []
 
 
+def in_space(scene, seen, p, seconds):
+    """The same motion for the player in space, where the scene says what its bodies look like; None where it does not."""
+    if not hasattr(scene, "bodies"):
+        return None
+    from .report import space                                        # brings matplotlib along
+    poses = {label: [scene.poses(observed, p) for observed in film] for label, film in seen.items()}
+    arrows = {}
+    if hasattr(scene, "arrows"):
+        for label, film in seen.items():
+            each = [scene.arrows(observed, p) for observed in film]
+            arrows[label] = {name: [one[name] for one in each] for name in each[0]}
+    return space.picture(scene.bodies(p), poses, seconds, arrows, getattr(scene, "TRAIL", None), getattr(scene, "GROUND", False))
+
+
 def our_frames(scene, fast, plan, method, p, dt, per_frame):
+    """What our method observes at every frame."""
     step = getattr(binding.world(plan.of, fast is not scene).lesson(method.lesson), method.function)
-    state, frames = scene.start(p), []
+    state, film = scene.start(p), []
     for _ in range(FRAMES + 1):
-        frames.append(scene.points(scene.observe(state, p), p).tolist())
+        film.append(scene.observe(state, p))
         state = fast.run(step, fast.law, state, p, dt, per_frame)
-    return frames
+    return film
 
 
-def engine_frames(scene, engine, p, dt, per_frame):
+def engine_frames(engine, p, dt, per_frame):
+    """What an engine reads at every frame."""
     world = engine.make(p, dt)
-    frames = []
+    film = []
     try:
-        for frame in range(FRAMES + 1):
-            frames.append(scene.points(np.array(world.read(), dtype=float), p).tolist())
+        for _ in range(FRAMES + 1):
+            film.append(np.array(world.read(), dtype=float))
             for _ in range(per_frame):
                 world.step()
     finally:
         world.close()
-    return frames
+    return film
 
 
 def stability_cases(lessons, plan):

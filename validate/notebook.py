@@ -17,7 +17,7 @@ import numpy as np
 from IPython.display import HTML, Markdown, display
 
 from . import binding, measure
-from .report import plots, words
+from .report import plots, space, words
 
 TESTS = binding.ROOT / "tests"
 COLOUR = {"passed": "#00684a", "not yet": "#b3261e", "not attempted": "#7a5b00"}
@@ -143,6 +143,19 @@ def play(frames, seconds, links=(), height=260):
                  f'<div>{key}</div><script type="application/json" id="{name}">{json.dumps(picture)}</script><script>{script}</script>'))
 
 
+def show3d(bodies, runs, seconds, arrows=None, trail=None, ground=False, height=380):
+    """A moving picture in space that turns under the mouse; what it takes is written in validate/report/space.py."""
+    _display3d(space.picture(bodies, runs, seconds, arrows, trail, ground), height)
+
+
+def _display3d(picture, height):
+    name = f"s{uuid.uuid4().hex}"
+    key = [f'<span style="color:{run["colour"]}">■</span> {escape(run["label"])}' for run in picture["runs"]]
+    key += [f'<span style="color:{colour}">→</span> {escape(arrow)}' for arrow, colour in zip(picture["arrows"], space.ARROWS)]
+    display(HTML(f'<div data-space="{name}" style="width:100%;max-width:46rem;height:{height}px"></div><div>{" &nbsp; ".join(key)}</div>'
+                 f'<script type="application/json" id="{name}">{json.dumps(picture)}</script><script>{space.PLAYER.read_text()}</script>'))
+
+
 def scene_of(name):
     """A scene with your lesson functions in it."""
     return binding.bind_scene(name, folder())
@@ -159,6 +172,9 @@ def measured(name, most_steps=1000):
 def show_motion(result):
     """The scene's moving picture: truth, your best method, an engine."""
     picture = result["picture"]
+    if picture["space"]:
+        _display3d(picture["space"], 380)
+        return
     play(picture["frames"], picture["seconds"], picture["links"])
 
 

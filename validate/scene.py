@@ -20,8 +20,10 @@ A scene is a module in `validate/scenes/`.  It must define
 and may define
     LINKS(p)                  pairs of points to join in the picture
     FULL_ONLY                 functions of methods that are too slow here for a quick validation
+    bodies(p)                 shapes of validate/report/space.py: the motion is then shown in space, and its points in small;
+    poses(observed, p)        (bodies, 7) place and quaternion (w, x, y, z) of each;
+    arrows(observed, p)       {name: (from, to)} [m], such as ω and L;   TRAIL: number of the body whose way is drawn;   GROUND: draw z = 0
     FILM                      how much of the motion the moving picture shows [s]; T without it
-    WITHOUT                   a sentence: which methods are not run here at all, and why
     PUBLISHED                 ((time, observed, tolerance), …) of the first case, from elsewhere
     ORDERS                    {method's function: order here}, where it differs from the usual; EXACT means no error but round-off
     CAN(name, p)              whether that method (by its function) or engine (by its label) can do that case at all; without it all can
@@ -35,6 +37,7 @@ and may define
 from typing import Callable, NamedTuple
 
 EXACT = "exact"
+LATE_LEAPFROG = "1 to 2"     # the order that leapfrog shows when its first velocity belongs to half a step before or after
 ROUND_OFF = 2.3e-16          # spacing of floats around 1, rounded up [-]
 
 

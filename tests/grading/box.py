@@ -23,7 +23,7 @@ import numpy as np
 
 from solutions.checks import BadInput, Diverged
 
-from . import wire
+from . import shipping, wire
 
 HERE = Path(__file__).resolve().parent
 LIMITS = {"AS": 2 << 30, "CPU": 150, "NPROC": 4, "FSIZE": 16 << 20, "NOFILE": 64, "CORE": 0}     # [bytes], [s], [-], [bytes], [-], [bytes]
@@ -69,7 +69,7 @@ def sandbox_command(python, binds):
                 command += ["--dir", str(parent)]
             command += ["--ro-bind", str(folder), str(folder)]
     for source, target in binds.items():
-        command += ["--ro-bind", str(source), target]
+        command += ["--dir", os.path.dirname(target), "--ro-bind", str(source), target]
     for pattern in HIDDEN:
         for path in glob.glob(f"{environment}/lib/python*/site-packages/{pattern}"):
             command += ["--tmpfs", path] if os.path.isdir(path) else ["--ro-bind", "/dev/null", path]
@@ -109,36 +109,39 @@ class Call:
 class Box:
     """One lesson's file of one submission.  Calls of its functions start the worker, and start another one when it was lost.
 
-    text: the file, as bytes · given: folder of the lessons as handed out · earlier: {lesson: {exercise function: worked one}} that
+    exercises: functions that the file must answer · text: the file, as bytes · given: folder of the lessons as handed out · earlier: {lesson: {exercise function: worked one}} that
     the file may build on · budget [s] for all calls together · begin(limit) allows the next calls so many seconds together.
     """
 
-    def __init__(self, lesson, text, given, earlier, budget, records=(), limits=LIMITS):
+    def __init__(self, lesson, exercises, text, given, earlier, budget, records=(), limits=LIMITS):
         self.earlier, self.budget, self.printed, self.process, self.broken, self.depth = earlier, budget, b"", None, None, 0
-        self.own, self.names, self.records = {}, {}, {kind.__name__: kind for kind in records}
+        self.records = {kind.__name__: kind for kind in records}
         self.until = time.monotonic() + budget
         self.folder = Path(tempfile.mkdtemp(prefix="workbook-"))
         self.folder.chmod(0o755)
         (self.folder / f"{lesson}.py").write_bytes(text)
         (self.folder / f"{lesson}.py").chmod(0o444)
-        config = {"lesson": lesson, "earlier": {name: list(functions) for name, functions in earlier.items()}}
+        config = {"lesson": lesson, "exercises": exercises, "earlier": {name: list(functions) for name, functions in earlier.items()}}
         if no_sandbox_because():
             inside = {"wire": str(HERE), "given": str(given), "student": str(self.folder)}
             limits, before = {name: value for name, value in limits.items() if name != "NPROC"}, []
         else:
             inside = {"wire": "/box", "given": "/given", "student": "/student"}
-            before = sandbox_command(sys.executable, {HERE / "wire.py": "/box/wire.py", HERE / "worker.py": "/box/worker.py",
-                                                      given: "/given", self.folder: "/student"})
+            before = sandbox_command(sys.executable, {**{HERE / file: f"/box/{file}" for file in ("wire.py", "shipping.py", "worker.py")}, given: "/given", self.folder: "/student"})
         self.command = [*before, sys.executable, "-I", "-B", "-u", f"{inside['wire']}/worker.py", json.dumps({**config, **inside, "limits": limits})]
 
     # -- functions and records on the wire
 
     def name_of(self, function):
+        """The name under which the worker calls a function.  One that knows nothing goes there as code; the others are called back here."""
         if isinstance(function, Call):
             return function.name
         if function not in self.names:
-            self.names[function] = f"test:{len(self.own)}"
-            self.own[self.names[function]] = function
+            parts = shipping.parts_of(function)
+            name = f"{'code' if parts else 'test'}:{len(self.own)}"
+            self.names[function], self.own[name] = name, function
+            if parts:
+                self.send(wire.pack(("define", name, *parts), self.name_of))
         return self.names[function]
 
     def resolve(self, name):
@@ -203,13 +206,15 @@ class Box:
         environment = None if not no_sandbox_because() else {**ENVIRONMENT, **{k: os.environ[k] for k in ("SYSTEMROOT",) if k in os.environ}}
         self.process = process = subprocess.Popen(self.command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                                   env=environment, start_new_session=True)
-        self.inbox, self.outbox = queue.Queue(4), queue.Queue(64)
+        self.inbox, self.outbox, self.own, self.names = queue.Queue(4), queue.Queue(64), {}, {}
         self.peer = wire.Peer(self.send, self.receive, self.resolve, self.name_of, self.record, describe, self.error,
                               fatal=(KeyboardInterrupt, wire.WireError, Lost))
         self.peer.served = self.peer.serve
         self.peer.serve = self.serve
-        for task in (_reading, _writing, self._listening):
-            threading.Thread(target=task, args=(process, self.inbox, self.outbox), daemon=True).start()
+        self.threads = [threading.Thread(target=task, args=(process, self.inbox, self.outbox), daemon=True)
+                        for task in (_reading, _writing, self._listening)]
+        for thread in self.threads:
+            thread.start()
         try:
             ready = self.inbox.get(timeout=READY_WITHIN)
         except queue.Empty:
@@ -253,9 +258,15 @@ class Box:
         if self.process:
             with contextlib.suppress(OSError):
                 os.killpg(self.process.pid, 9) if os.name == "posix" else self.process.kill()
-            self.process.wait()                                        # the threads end with its pipes
+            self.process.wait()
             with contextlib.suppress(queue.Full):
                 self.outbox.put_nowait(None)
+            for thread in self.threads:                                # they end with the worker's pipes
+                thread.join(1.0)
+            if not any(thread.is_alive() for thread in self.threads):
+                for pipe in (self.process.stdin, self.process.stdout, self.process.stderr):
+                    with contextlib.suppress(OSError):                 # what could not be written any more
+                        pipe.close()
             self.process = None
 
     def close(self):

@@ -16,9 +16,7 @@ import pytest
 from solutions.checks import BadInput
 from validate import binding
 
-from .points import BOX_LIMIT, LIMIT, Points, TooLong, score
-
-PUBLIC = "public"            # the seed of everyone's own tests
+from .points import BOX_LIMIT, LIMIT, PUBLIC, Points, TooLong, score
 
 
 def pytest_addoption(parser):
@@ -36,6 +34,7 @@ def pytest_configure(config):
             binding.subject_folder(config.getoption("--of"))
         except BadInput as e:
             raise pytest.UsageError(str(e)) from None
+        config.option.tbstyle = "short" if config.option.tbstyle == "auto" else config.option.tbstyle     # of a student's file, not of ours
         config.points = Points()
         config.pluginmanager.register(config.points)
 

@@ -12,7 +12,9 @@ from solutions.checks import BadInput
 from .expect import NotYet
 
 TESTS = Path(__file__).resolve().parent.parent
+PUBLIC = "public"            # the seed of everyone's own tests
 LIMIT = 20.0                 # a grading test may take this long [s]: the slowest takes 2, on two shared cores
+READING = "reading the file"   # the quantity where a file could not be loaded
 BOX_LIMIT = 10.0             # and so long in the sandbox [s]
 
 
@@ -45,15 +47,20 @@ class Points:
         if session.config.getoption("--collect-only"):
             for item in session.items:
                 mark = item.get_closest_marker("exercise")
-                self.outcomes.append(Outcome(mark.args[0], item.name, mark.kwargs["points"], "not run", hint=mark.kwargs["hint"]))
+                self.outcomes.append(Outcome(mark.args[0], name_of(item), mark.kwargs["points"], "not run", hint=mark.kwargs["hint"]))
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_makereport(self, item, call):
         report = yield
         mark = item.get_closest_marker("exercise")
         if mark and (call.when == "call" or (call.excinfo and call.when == "setup")):
-            self.outcomes.append(outcome(mark, item.name, call.excinfo))
+            self.outcomes.append(outcome(mark, name_of(item), call.excinfo))
         return report
+
+
+def name_of(item):
+    """A test's name, without the speed that a given subject does not have."""
+    return item.name.replace("[given-", "[").replace("[given]", "")
 
 
 def outcome(mark, name, excinfo):
@@ -73,10 +80,15 @@ def outcome(mark, name, excinfo):
         return Outcome(exercise, name, points, "not yet", "the time it takes", f"an answer within {LIMIT:g} s", "none", "",
                        "does a loop of yours never end? Count its rounds, and stop after so many")
     if not _in_a_test(excinfo):
-        return Outcome(exercise, name, points, "not yet", "reading the file", "a module that loads", f"{said}{_line(error)}", "",
-                       "mend this first: nothing in the file can be tested before", f"{kind}{_line(error)}")
+        return unreadable(Outcome(exercise, name, points, "not run"), error, _line(error))
     place = _place(excinfo)
     return Outcome(exercise, name, points, "not yet", "the call itself", "an answer", f"{said}{place}", "", _advice(error, hint), f"{kind}{place}")
+
+
+def unreadable(o, error, place):
+    """The Outcome of a test whose subject could not even be loaded."""
+    return o._replace(status="not yet", quantity=READING, expected="a module that loads", got=f"{type(error).__name__}: {error}{place}",
+                      hint="mend this first: nothing in the file can be tested before", error=f"{type(error).__name__}{place}")
 
 
 def _in_a_test(excinfo):
@@ -107,7 +119,7 @@ def _advice(error, hint):
     return hint
 
 
-def grade(lesson, subject, exercise=None, seed="public", collect=False):
+def grade(lesson, subject, exercise=None, seed=PUBLIC, collect=False):
     """Outcomes of a lesson's grading tests for a subject (any object with the lesson's functions as attributes).
 
     With collect no test is run: the tests that there are, all of them "not run".

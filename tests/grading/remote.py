@@ -42,16 +42,27 @@ def box_of(lesson, text, budget):
     earlier = {name: {function: getattr(importlib.import_module(f"solutions.{name}"), function) for function in exercises(name).values()}
                for name in builds_on(lesson)}
     records = [kind for kind in vars(importlib.import_module(f"solutions.{lesson}")).values() if hasattr(kind, "_fields")]
-    return Box(lesson, text, handout(), earlier, budget, records)
+    return Box(lesson, list(exercises(lesson).values()), text, handout(), earlier, budget, records)
 
 
 def lesson_in(box, lesson):
-    """The lesson with its exercises in the box; what is given is ours, and calls the exercises in the box too."""
+    """The lesson with its exercises in the box.
+
+    What is given is ours, and calls the exercises in the box.  A given function that gets an exercise's to work with, such as a loop of
+    steps, goes there as a whole: its result is the student's in any case, and a step is not worth a round trip.
+    """
     module = importlib.import_module(f"solutions.{lesson}")
     space = {**vars(module), **{function: Call(box, f"lesson:{function}") for function in exercises(lesson).values()}}
-    for name, value in vars(module).items():
-        if isinstance(value, types.FunctionType) and value.__module__ == module.__name__ and not isinstance(space[name], Call):
-            space[name] = types.FunctionType(value.__code__, space, name, value.__defaults__)
-    subject = types.SimpleNamespace(**space)
-    subject.box = box
-    return subject
+    given = [name for name, value in vars(module).items()
+             if isinstance(value, types.FunctionType) and value.__module__ == module.__name__ and not isinstance(space[name], Call)]
+    for name in given:
+        space[name] = types.FunctionType(vars(module)[name].__code__, space, name, vars(module)[name].__defaults__)
+    return types.SimpleNamespace(**{**space, **{name: _where_it_belongs(box, name, space[name]) for name in given}}, box=box)
+
+
+def _where_it_belongs(box, name, function):
+    there = Call(box, f"given:{name}")
+
+    def call(*arguments):
+        return (there if any(isinstance(a, Call) and a.name.startswith("lesson:") for a in arguments) else function)(*arguments)
+    return call

@@ -123,10 +123,11 @@ class Peer:
     holds (number, array) of the arguments' arrays that the call has changed in place, which happens to the caller's as well.
     """
 
-    def __init__(self, send, receive, resolve, name_of, record, describe, error, fatal=()):
+    def __init__(self, send, receive, resolve, name_of, record, describe, error, define=None, fatal=()):
         self.send, self.receive = send, receive                        # a frame, as bytes and as (tree, arrays)
         self.resolve, self.name_of, self.record = resolve, name_of, record
         self.describe, self.error = describe, error                    # exception → (names, message, where), and back
+        self.define = define                                           # takes (name, code, names, values) of a function
         self.fatal = fatal                                             # exceptions that end the conversation
 
     def call(self, name, arguments):
@@ -150,10 +151,14 @@ class Peer:
             return result
 
     def message(self):
-        got = unpack(*self.receive(), self.resolve, self.record)
-        if type(got) is not tuple or not got or type(got[0]) is not str:
-            raise WireError("an unexpected message")
-        return got
+        """The next message.  ["define", …] brings a function along, where this side takes any."""
+        while True:
+            got = unpack(*self.receive(), self.resolve, self.record)
+            if type(got) is not tuple or not got or type(got[0]) is not str:
+                raise WireError("an unexpected message")
+            if got[0] != "define" or not self.define:
+                return got
+            self.define(*got[1:])
 
     def serve(self, name, arguments):
         """Call one of our functions for the other side, and answer."""

@@ -1,7 +1,7 @@
 """Runs inside the sandbox, beside the student's code.  The parent trusts nothing that comes from here.
 
 Usage: worker.py CONFIG, a JSON object: limits; lesson; student, the folder of the student's file; given, the folder of the lessons as
-handed out; wire, the folder of wire.py; earlier, {lesson: its exercises} of the lessons that this one builds on.  Frames go over
+handed out; wire, the folder of wire.py; exercises, the functions that the file must answer; earlier, {lesson: its exercises} of the lessons that this one builds on.  Frames go over
 standard input and output; what the student prints goes to standard error.
 """
 
@@ -13,6 +13,7 @@ import os
 import sys
 import traceback
 import types
+from functools import lru_cache
 
 config = json.loads(sys.argv[1])
 LESSON = f"lessons.{config['lesson']}"
@@ -24,6 +25,7 @@ with contextlib.suppress(ImportError):                                 # there i
 
 sys.path.insert(0, config["wire"])
 import numpy  # noqa: E402, F401         before the student's file, or it would count against the time of the first test
+import shipping  # noqa: E402
 import wire  # noqa: E402
 
 incoming, outgoing = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
@@ -84,12 +86,31 @@ def students(name):
     return call
 
 
+@lru_cache(maxsize=1)
+def given():
+    """The lesson as handed out, its exercises those of the student's file."""
+    file = os.path.join(config["given"], f"{config['lesson']}.py")
+    spec = importlib.util.spec_from_file_location("handout", file)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    vars(module).update({name: students(name) for name in config["exercises"]})
+    return module
+
+
+def define(name, *parts):
+    """A function of the tests that runs here."""
+    own[name] = shipping.function_of(*parts)
+    names[own[name]] = name
+
+
 def resolve(name):
     """A function by the name that it has on the wire."""
     kind, _, rest = name.partition(":")
+    if kind == "given":
+        return getattr(given(), rest)
     if name == "import":
         return lambda: importlib.import_module(LESSON) and None
-    return students(rest) if kind == "lesson" else own[name] if kind == "own" else remote(name)
+    return students(rest) if kind == "lesson" else own[name] if kind in ("own", "code") else remote(name)
 
 
 def name_of(function):
@@ -150,7 +171,7 @@ def receive():
     return frame
 
 
-peer = wire.Peer(send, receive, resolve, name_of, record, describe, raised)
+peer = wire.Peer(send, receive, resolve, name_of, record, describe, raised, define)
 send(wire.pack(("ready",)))
 while True:
     kind, *content = peer.message()

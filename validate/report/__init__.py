@@ -9,7 +9,7 @@ from pathlib import Path
 from jinja2 import Environment, PackageLoader, select_autoescape
 
 from ..binding import bind_scene
-from . import plots, words
+from . import plots, space, words
 
 HERE = Path(__file__).parent
 
@@ -19,7 +19,7 @@ def write(out, results, stability, plan, jobs, bars):
     pages = Environment(loader=PackageLoader("validate", "report"), autoescape=select_autoescape(), trim_blocks=True, lstrip_blocks=True)
     pages.filters.update(seconds=words.seconds, number=words.number, percent=words.percent, factor=words.factor)
     pages.tests["reaches"] = lambda row: any(t is not None for t in row.values())
-    pages.globals.update(run=words.run(plan), playable=plots.playable, verdict=words.verdict, judge=words.judge)
+    pages.globals.update(run=words.run(plan), playable=plots.playable, verdict=words.verdict, judge=words.judge, arrow_colours=space.ARROWS)
 
     refined = [r for r in results if r["still"] != ""]
     pictures = [(plots.convergence, out / f"{r['scene']}-steps.svg", r) for r in refined]
@@ -39,7 +39,7 @@ def write(out, results, stability, plan, jobs, bars):
     front = out / "index.html"
     front.write_text(pages.get_template("front.html").render(rows=[words.row(r) for r in results], cases=stability, results=results))
     (out / "report.json").write_text(json.dumps({"run": words.run(plan), "scenes": results, "stability": stability}, ensure_ascii=False, indent=1))
-    for name in ("style.css", "player.js"):
+    for name in ("style.css", "player.js", *(["player3d.js"] if any(r["picture"]["space"] for r in results) else [])):
         shutil.copyfile(HERE / name, out / name)
     bars.advance(bar)
     return front

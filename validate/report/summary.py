@@ -11,7 +11,7 @@ def show(console, results, stability):
     """Print a line a scene; the number of departures that nobody predicted."""
     table = Table(header_style="bold", box=None, pad_edge=False)
     for column in ("scene", "ours", "pymunk", "pybullet", "order (expected)", "best engine error: theirs / ours"):
-        table.add_column(column)
+        table.add_column(column, no_wrap=column == "scene", overflow="fold")
     departures = 0
     for result in results:
         row = words.row(result)

@@ -3,6 +3,7 @@
 import inspect
 import platform
 import re
+from collections import Counter
 from datetime import date
 
 from .. import engines
@@ -65,14 +66,15 @@ def judge(curve):
 
 def verdict(curves):
     """The same for several curves at once: the worst of them, with a count."""
-    kinds = [judge(c)[1] for c in curves]
-    if not kinds:
+    count = Counter(judge(c)[0] for c in curves)
+    if not curves:
         return "not in this engine", "none"
-    for kind, text in (("departs", "departs"), ("open", "not attempted")):
-        if kind in kinds:
-            return f"{kinds.count(kind)} of {len(kinds)} {text}", kind
-    plain = kinds.count("agrees")
-    return (f"agrees ({plain})" if plain == len(kinds) else f"agrees ({plain}), as predicted ({len(kinds) - plain})"), "agrees"
+    for text, kind in (("departs", "departs"), ("not attempted", "open")):
+        if count[text]:
+            return f"{count[text]} of {len(curves)} {text}", kind
+    parts = [f"{text} ({count[word]})" for word, text in
+             (("agrees", "agrees"), ("departs as predicted", "as predicted"), ("undecided", "undecided")) if count[word]]
+    return ", ".join(parts), "open" if count["undecided"] == len(curves) else "agrees"
 
 
 def parameters(scene):
@@ -108,9 +110,12 @@ def _ours(result):
     wrong = [(n, c) for n, c in every if c["right"] is False]
     for n, c in wrong:
         yield f"{c['label']} ({n}) {c['why']}."
-    waiting = {c["why"] for _, c in every if c["right"] is None}
-    for why in sorted(waiting):
-        yield f"{why[0].upper()}{why[1:]}."
+    waiting = {}
+    for _, c in every:
+        if c["right"] is None:
+            waiting.setdefault(c["why"], {})[c["label"]] = None
+    for why, labels in waiting.items():
+        yield f"{', '.join(labels)}: {why}."
     shown = [c for c in next(iter(result["cases"].values()))["ours"] if c["order"] is not None and c["right"]]
     if shown:
         yield "Measured orders of convergence: " + ", ".join(f"{c['label']} {c['order']:.2f} ({c['expected']})" for c in shown) + "; the expected order is in brackets."

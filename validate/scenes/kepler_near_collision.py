@@ -3,15 +3,13 @@
 import numpy as np
 
 from solutions.integrators import advance
-from validate.scene import IMPLICIT_MIDPOINT, MIDPOINT, RK4, SYMPLECTIC_EULER, VERLET
-from validate.scenes.kepler import ENGINES, Params, in_space, limits_at, observe, points, start, truth
+from validate.scene import INTEGRATORS
+from validate.scenes.kepler import ENGINES, FULL_ONLY, ORDERS, Params, in_space, limits_at, observe, points, start, truth  # noqa: F401
 
 TITLE, LESSON = "Kepler, near collision", "integrators"
 T = 20.0                     # [s]: three revolutions
 STEPS = (2000, 5000, 10000, 20000, 50000, 100000, 200000)
-METHODS = (MIDPOINT, RK4, SYMPLECTIC_EULER, VERLET, IMPLICIT_MIDPOINT)    # as in kepler: the others would need millions of steps
-FULL_ONLY = ("implicit_midpoint_step",)     # not what this scene is about, and half of its compiling
-WITHOUT = "Euler, average velocity and implicit Euler would need millions of steps: two million of Euler miss by 30 %"
+METHODS = INTEGRATORS
 FILM = 12.6                  # two revolutions [s]
 UNCERTAINTY = 1e-12          # the truth's, as in kepler: 1e-13
 

@@ -1,0 +1,127 @@
+"""`grade SUBMISSIONS --out GRADES`: a class, from folders and zips to points with reasons."""
+
+import json
+import os
+import secrets
+import sys
+from datetime import datetime
+from pathlib import Path
+from typing import Annotated, Optional
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+from solutions.checks import BadInput
+from validate import binding
+from validate.__main__ import writable, write_whole
+
+from . import box, local, marking, pages, submissions
+
+console = Console()
+app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+
+
+@app.command(help="Grade a class: one folder or zip a student, the lesson files inside.")
+def grade(
+    class_: Annotated[Path, typer.Argument(metavar="SUBMISSIONS", help="Folder with one folder or zip a student.")],
+    out: Annotated[Path, typer.Option(help="Folder for grades, pages and CSV.")] = Path("grades"),
+    lesson: Annotated[Optional[list[str]], typer.Option(help="Only this lesson (may be repeated); all of them without.")] = None,
+    seed: Annotated[Optional[str], typer.Option(help="Secret from which hidden inputs are drawn; made and kept in OUT/seed.txt without.")] = None,
+    due: Annotated[Optional[str], typer.Option(metavar="YYYY-MM-DDTHH:MM", help="When it was due.")] = None,
+    late: Annotated[float, typer.Option(min=0.0, max=100.0, help="Percent of the maximum taken off for each day begun after that.")] = 0.0,
+    roster: Annotated[Optional[Path], typer.Option(help="CSV: student_id, last_name, first_name, email, timestamp.")] = None,
+    jobs: Annotated[int, typer.Option(min=1, help="Submissions at a time.")] = max(1, min(8, os.cpu_count() or 1)),
+    executor: Annotated[Optional[str], typer.Option(metavar="tcp://HOST:PORT", help="Hand the submissions to this Dask scheduler.")] = None,
+):
+    lessons = chosen(lesson or [])
+    terms = pages.Terms(deadline(due), late)
+    people = submissions.roster(roster) if roster else {}
+    handed_in = submissions.read_all(class_, lessons)
+    folder = writable(out)
+    raise typer.Exit(run(handed_in, marking.settings(lessons, secret(folder, seed)), people, terms, jobs, executor, folder))
+
+
+# ---------------------------------------------------------------------------------------------- what was asked for
+
+def chosen(lessons):
+    """The lessons to grade, in the order of the course.  Raises BadInput for one that there is not."""
+    for name in lessons:
+        binding.bind(name)
+    return sorted((n for n in binding.lesson_names() if not lessons or n in lessons), key=marking.course_order)
+
+
+def deadline(text):
+    try:
+        return datetime.fromisoformat(text).isoformat(timespec="seconds") if text else ""
+    except ValueError:
+        raise BadInput(f"--due {text!r}", "not a date", "write it like 2026-11-30T23:59") from None
+
+
+def secret(folder, seed):
+    """The seed: the one that was given, or the one of this folder, or a new one.  It is kept, so that grading again gives the same."""
+    file = folder / "seed.txt"
+    seed = seed or (file.read_text().strip() if file.is_file() else secrets.token_hex(16))
+    file.write_text(f"{seed}\n")
+    return seed
+
+
+# ---------------------------------------------------------------------------------------------- the run
+
+def run(handed_in, settings, people, terms, jobs, executor, out):
+    """Grade what is not graded yet, write every file, and say how it went: 0, or 1 when the grader failed on a submission."""
+    if box.no_sandbox_because():
+        console.print(f"NOT A GRADE: {box.no_sandbox_because()}. Students' code runs without a sandbox; use this to check yourself only.", style="bold red")
+    kept = out / "results"
+    kept.mkdir(exist_ok=True)
+    results, todo, failed = {}, [], {}
+    for submission in handed_in:
+        result = before(kept / f"{pages.file_name(submission.student)}.json", settings.digest(submission))
+        if result:
+            results[submission.student] = result
+        else:
+            todo.append(submission)
+    try:
+        with Progress(TextColumn("{task.description:12}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), console=console) as bars:
+            bar = bars.add_task("submissions", total=len(handed_in), completed=len(results))
+            for student, result, why in (on_cluster(executor, todo, settings) if executor else local.results(jobs, todo, settings)):
+                if result:
+                    results[student] = result
+                    write_whole(kept / f"{pages.file_name(student)}.json", result)
+                else:
+                    failed[student] = why
+                bars.advance(bar)
+    except KeyboardInterrupt:
+        console.print(f"Interrupted. What was graded is kept in {out}: the same command goes on from there.")
+        return 130
+    front = pages.write(out, [results[s.student] for s in handed_in if s.student in results], failed, settings, people, terms)
+    pages.show(console, [*results.values()], failed, settings)
+    console.print(f"\nThe class lies in [bold]{front}[/bold]", highlight=False, soft_wrap=True)
+    return 1 if failed else 0
+
+
+def before(path, digest):
+    """The result of an earlier run, if nothing has changed since."""
+    try:
+        result = json.loads(path.read_text())
+    except (OSError, ValueError):
+        return None
+    return result if result.get("digest") == digest else None
+
+
+def on_cluster(executor, todo, settings):
+    from . import cluster
+    return cluster.results(executor, todo, settings)
+
+
+def main(arguments=None):
+    """Run the command line; bad input ends with one sentence and exit code 2."""
+    try:
+        app(arguments, prog_name="grade")
+    except BadInput as e:
+        print(f"grade: {e}", file=sys.stderr)
+        sys.exit(2)
+
+
+if __name__ == "__main__":
+    main()

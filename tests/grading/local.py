@@ -1,0 +1,37 @@
+"""Grade on this machine, several submissions at a time, each in a process of its own while it lasts."""
+
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from multiprocessing import get_context
+
+from . import marking
+
+
+def results(jobs, todo, settings):
+    """(student, result, "") or (student, None, why the grader failed), as they come."""
+    waiting = {s.student: s for s in todo}
+    for attempt in (1, 2):                               # a grading process that died takes others' work along: once more, one at a time
+        pool = ProcessPoolExecutor(max(1, min(jobs, len(waiting))) if attempt == 1 else 1, mp_context=get_context("spawn"))
+        try:
+            futures = {pool.submit(marked, s, settings): s.student for s in waiting.values()}
+            for future in as_completed(futures):
+                try:
+                    result, why = future.result()
+                except BrokenProcessPool:
+                    continue
+                waiting.pop(futures[future])
+                yield futures[future], result, why
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)
+        if not waiting:
+            return
+    for student in waiting:
+        yield student, None, "the grading process ended unexpectedly"
+
+
+def marked(submission, settings):
+    """(result, "") or (None, why the grader failed)."""
+    try:
+        return marking.mark(submission, settings), ""
+    except Exception as e:
+        return None, f"{type(e).__name__}: {e}"

@@ -1,0 +1,155 @@
+"""What students handed in: one folder or zip each.  Nothing is unpacked, followed or executed; only the lesson files' bytes are read."""
+
+import csv
+import hashlib
+import os
+import stat
+import zipfile
+from datetime import datetime
+from pathlib import Path
+from typing import NamedTuple
+
+from solutions.checks import BadInput
+
+LARGEST = 1 << 18            # of a lesson file [bytes]: ten times the worked one
+DEEPEST = 4                  # folders between the top and the file
+MOST_ENTRIES = 5000          # of a zip or a folder [-]: more is not a submission
+
+
+class Submission(NamedTuple):
+    """One student's files."""
+    student: str             # name of the folder or zip: the student's id
+    files: dict              # {lesson: bytes}; a lesson that is missing was not handed in
+    problems: tuple          # sentences about what could not be read
+    timestamp: str           # when it was handed in: ISO 8601, from the date of the zip or of its newest lesson file; "" if there is none
+
+    def digest(self):
+        """Changes when anything changes that is graded."""
+        return hashlib.sha256(repr((sorted(self.files.items()), self.problems, self.timestamp)).encode()).hexdigest()
+
+
+def read_all(folder, lessons):
+    """Every submission in a folder, sorted by student.  Raises BadInput when there is none."""
+    folder = Path(folder)
+    if not folder.is_dir():
+        raise BadInput(f"submissions {str(folder)!r}", "not a folder", "name the folder that holds one folder or zip a student")
+    found = {}
+    for path in sorted(folder.iterdir()):
+        if path.name.startswith((".", "__")) or not (path.is_symlink() or path.is_dir() or path.suffix.lower() == ".zip"):
+            continue
+        student = path.stem if path.suffix.lower() == ".zip" else path.name
+        if student in found:
+            raise BadInput(f"student {student!r}", "there as a folder and as a zip", "keep one of them")
+        found[student] = read(path, student, lessons)
+    if not found:
+        raise BadInput(f"submissions {str(folder)!r}", "empty", "put one folder or zip a student into it")
+    return list(found.values())
+
+
+def read(path, student, lessons):
+    """One submission; whatever is wrong with it becomes a sentence, not an error."""
+    if path.is_symlink():
+        return Submission(student, {}, ("it is a link to somewhere else, which is not followed",), "")
+    try:
+        files, problems, when = (from_zip if path.is_file() else from_folder)(path, lessons)
+    except (OSError, zipfile.BadZipFile, NotImplementedError, ValueError, RuntimeError, EOFError) as e:
+        return Submission(student, {}, (f"it cannot be read: {type(e).__name__}",), "")
+    return Submission(student, files, tuple(problems), datetime.fromtimestamp(when).isoformat(timespec="seconds") if when else "")
+
+
+def nearest(candidates, problems):
+    """Of {lesson: places}, the one place nearest to the top for each lesson."""
+    chosen = {}
+    for lesson, places in candidates.items():
+        chosen[lesson], *others = sorted(places, key=lambda place: (place.count("/"), place))
+        if others and others[0].count("/") == chosen[lesson].count("/"):
+            problems.append(f"{lesson}.py is there more than once; {chosen[lesson]} was taken")
+    return chosen
+
+
+def wanted(name, lessons):
+    """The lesson whose file this path may be, or None."""
+    parts = name.split("/")
+    lesson = parts[-1].removesuffix(".py")
+    plain = not any(part in ("", ".", "..", "__MACOSX") or part.startswith(".") for part in parts) and len(parts) <= DEEPEST + 1
+    return lesson if plain and parts[-1].endswith(".py") and lesson in lessons else None
+
+
+def from_folder(top, lessons):
+    problems, candidates, entries, when = [], {}, 0, 0.0
+    for here, folders, names in os.walk(top, followlinks=False):
+        folders[:] = sorted(f for f in folders if not f.startswith("."))
+        inside = Path(here).relative_to(top)
+        if len(inside.parts) >= DEEPEST:
+            folders.clear()
+        entries += len(folders) + len(names)
+        if entries > MOST_ENTRIES:
+            raise ValueError("too many files")
+        for name in names:
+            place = str(inside / name)
+            if lesson := wanted(place, lessons):
+                candidates.setdefault(lesson, []).append(place)
+    files = {}
+    for lesson, place in nearest(candidates, problems).items():
+        try:
+            descriptor = os.open(top / place, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
+            with os.fdopen(descriptor, "rb") as file:
+                about = os.fstat(file.fileno())
+                if not stat.S_ISREG(about.st_mode):
+                    raise OSError("not a regular file")
+                keep(files, lesson, place, file.read(LARGEST + 1), problems)
+                when = max(when, about.st_mtime)
+        except OSError:
+            problems.append(f"{place} is not a regular file, and was not read")
+    return files, problems, when
+
+
+def from_zip(path, lessons):
+    """Only entries that are wanted are decompressed, and of those no more than a lesson file may have."""
+    problems, candidates, files = [], {}, {}
+    with zipfile.ZipFile(path) as archive:
+        entries = archive.infolist()
+        if len(entries) > MOST_ENTRIES:
+            raise ValueError("too many files")
+        for entry in entries:
+            name = entry.filename.replace("\\", "/")
+            if lesson := wanted(name, lessons):
+                if stat.S_ISLNK(entry.external_attr >> 16):
+                    problems.append(f"{name} is a link, and was not read")
+                else:
+                    candidates.setdefault(lesson, []).append(name)
+        by_name = {entry.filename.replace("\\", "/"): entry for entry in entries}
+        for lesson, place in nearest(candidates, problems).items():
+            with archive.open(by_name[place]) as file:
+                keep(files, lesson, place, file.read(LARGEST + 1), problems)
+    return files, problems, path.stat().st_mtime
+
+
+def keep(files, lesson, place, text, problems):
+    if len(text) > LARGEST:
+        problems.append(f"{place} is larger than {LARGEST // 1024} KiB, and was not read")
+    else:
+        files[lesson] = text
+
+
+class Person(NamedTuple):
+    """One line of the class list; what it does not say is empty."""
+    student_id: str
+    last_name: str = ""
+    first_name: str = ""
+    email: str = ""
+    timestamp: str = ""      # when it was handed in, if that is known better than from the files
+
+
+def roster(path):
+    """{student id: Person} from a CSV file with those columns.  Raises BadInput for a file without student_id."""
+    try:
+        with open(path, newline="", encoding="utf-8-sig") as file:
+            reader = csv.DictReader(file)
+            if "student_id" not in (reader.fieldnames or ()):
+                raise BadInput(f"class list {str(path)!r}", f"without the column student_id ({', '.join(reader.fieldnames or ()) or 'empty'})",
+                               f"give it the columns {', '.join(Person._fields)}; all but the first may be missing")
+            rows = [Person(**{f: (row.get(f) or "").strip() for f in Person._fields}) for row in reader]
+    except (OSError, UnicodeDecodeError, csv.Error) as e:
+        raise BadInput(f"class list {str(path)!r}", f"not readable ({e})", "name a CSV file") from None
+    return {person.student_id: person for person in rows if person.student_id}
