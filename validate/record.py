@@ -33,7 +33,8 @@ def record(name):
 
 def _film(scene, engine, p):
     per_frame = max(1, scene.STEPS[-3] // measure.FRAMES)
-    return measure.engine_frames(scene, engine, p, getattr(scene, "FILM", scene.T) / (per_frame * measure.FRAMES), per_frame)
+    film = measure.engine_frames(engine, p, getattr(scene, "FILM", scene.T) / (per_frame * measure.FRAMES), per_frame)
+    return [scene.points(observed, p).tolist() for observed in film]
 
 
 def _reading(scene, engine, p, steps):
