@@ -24,10 +24,11 @@ def test_every_exercise_raises_its_number_and_name_and_no_marker_leaks():
 
 def test_no_line_of_an_answer_is_left_in_a_lesson():
     for path in SOLUTIONS.glob("*.py"):
-        lesson = generate.lessons().get(path.name, "").splitlines()
-        for match in generate.ANSWER.finditer(path.read_text()):
+        lesson, source = generate.lessons().get(path.name, "").splitlines(), path.read_text()
+        given = generate.ANSWER.sub("", source).splitlines()                               # may use the same line
+        for match in generate.ANSWER.finditer(source):
             for line in match[0].splitlines()[1:-1]:
-                if len(line.strip()) > 20:
+                if len(line.strip()) > 20 and line not in given:
                     assert line not in lesson
 
 

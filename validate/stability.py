@@ -552,9 +552,9 @@ CASES = {
     7: ("A stiff pair", case_7, "integrators"),
     8: ("Robertson's reaction", case_8, "integrators"),
 }
+OWN_LAWS = {7, 8}            # these bring an acceleration of their own, and nothing in this file is compiled
 for path in sorted(Path(__file__).parent.glob("stability_*.py")):                    # the other lessons' own; they need the records above
     CASES |= import_module(f".{path.stem}", __package__).CASES
-OWN_LAWS = {7, 8}            # these bring an acceleration of their own, and nothing in this file is compiled
 
 
 def lesson_of(number, of="solutions", compiled=True):
