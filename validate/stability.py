@@ -554,7 +554,9 @@ CASES = {
 }
 OWN_LAWS = {7, 8}            # these bring an acceleration of their own, and nothing in this file is compiled
 for path in sorted(Path(__file__).parent.glob("stability_*.py")):                    # the other lessons' own; they need the records above
-    CASES |= import_module(f".{path.stem}", __package__).CASES
+    more = import_module(f".{path.stem}", __package__)
+    CASES |= more.CASES
+    OWN_LAWS |= getattr(more, "OWN_LAWS", set())
 
 
 def lesson_of(number, of="solutions", compiled=True):
@@ -584,6 +586,3 @@ def cases(lessons, of="solutions", compiled=True):
 def findings(of="solutions", compiled=True):
     """Every finding of every case."""
     return [f for number in CASES for f in examine(number, of, compiled).findings]
-
-
-from . import stability_friction as _friction  # noqa: E402, F401           adds the cases of lesson 3 to CASES

@@ -284,7 +284,7 @@ def refuses(function, arguments, value):
     return False
 
 
-stability.CASES.update({
+CASES = {
     31: ("Stick or slip on a slope", case_31, "friction"),
     32: ("Stick and slip under a periodic force", case_32, "friction"),
     33: ("Friction as a force never stops", case_33, "friction"),
@@ -292,5 +292,5 @@ stability.CASES.update({
     35: ("Cone and pyramid", case_35, "friction"),
     36: ("What a round wall costs", case_36, "friction"),
     37: ("Extreme friction", case_37, "friction"),
-})
-stability.OWN_LAWS |= {31, 32, 33, 34, 35, 36, 37}      # short runs: compiling them would take longer
+}
+OWN_LAWS = set(CASES)        # short runs: compiling them would take longer
