@@ -212,11 +212,11 @@ def sliding_step(acceleration, t, x, v, dt, p):
 
 def pyramid_step(acceleration, t, x, v, dt, p):
     """Given.  A sliding step on the floor of a three-dimensional room, n = (0, 0, 1), with the pyramid along x and y for the cone."""
-    a = acceleration(t, x, v, p)
-    v = v + dt * tangential(a, p.n)
+    pull = dt * acceleration(t, x, v, p)
     t_1, t_2 = np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])
-    v = v + pyramid_impulse(v, 1.0, dt * normal_force(a, p.n), p.mu_k, t_1, t_2)
-    return x + dt * v, v
+    v_free = v + tangential(pull, p.n)
+    v_new = v_free + pyramid_impulse(v_free, 1.0, normal_force(pull, p.n), p.mu_k, t_1, t_2)
+    return x + dt * v_new, v_new
 
 
 # ---------------------------------------------------------------------------------------------- stick, slip, and when
@@ -244,10 +244,10 @@ def slide(acceleration, t, x, v, dt, d, p):
 
     Second order while the path is straight, and exact while nothing changes.
     """
-    a = acceleration(t, x, v, p)
-    v_mid = v + 0.5 * dt * (tangential(a, p.n) - cone_radius(p.mu_k, normal_force(a, p.n)) * d)
-    a = acceleration(t + 0.5 * dt, x + 0.5 * dt * v, v_mid, p)
-    return x + dt * v_mid, v + dt * (tangential(a, p.n) - cone_radius(p.mu_k, normal_force(a, p.n)) * d)
+    early = acceleration(t, x, v, p)
+    v_mid = v + 0.5 * dt * (tangential(early, p.n) - cone_radius(p.mu_k, normal_force(early, p.n)) * d)
+    middle = acceleration(t + 0.5 * dt, x + 0.5 * dt * v, v_mid, p)
+    return x + dt * v_mid, v + dt * (tangential(middle, p.n) - cone_radius(p.mu_k, normal_force(middle, p.n)) * d)
 
 
 def stopping_time(acceleration, t, x, v, dt, d, p):
@@ -296,7 +296,7 @@ def breakaway_time(acceleration, t, x, v, dt, p):
 def until_event(acceleration, t, x, v, dt, p):
     """(τ, x, v): go on until the block stops or breaks away, or for dt [s] if it does neither; second order.
 
-    d = slip_direction(acceleration, t, x, v, p)
+    Let d = slip_direction(acceleration, t, x, v, p).  Then
     where d is zeros:   τ = breakaway_time,   x and v as they are
     elsewhere:          τ = stopping_time,    (x, v) from slide over τ;   if τ < dt it has stopped: v is zeros, exactly
 

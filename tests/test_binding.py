@@ -90,3 +90,13 @@ def test_what_is_unknown_is_named_with_a_remedy(call, names):
     with pytest.raises(BadInput) as caught:
         call()
     assert names in str(caught.value) and ": " in str(caught.value) and "\n" not in str(caught.value)
+
+
+@needs_numba
+def test_a_scene_may_hand_a_function_of_its_lesson_to_a_compiled_loop():
+    """The bowl's run gives bowl_gap to contact_motion: both are twins, and the motion is the plain one."""
+    plain, fast = binding.bind_scene("bowl"), binding.bind_scene("bowl", compiled=True)
+    p = plain.CASES["rough bowl"]
+    ends = [scene.observe(scene.run(binding.world(compiled=c).lesson("friction").gripping_step, scene.law, scene.start(p), p, 0.01, 20), p)
+            for scene, c in ((plain, False), (fast, True))]
+    assert np.array_equal(*ends)

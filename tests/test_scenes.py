@@ -121,3 +121,15 @@ def test_a_state_must_be_finite(value):
     with pytest.raises(BadInput, match=str(value)):
         integrators.advance(integrators.euler_step, integrators.oscillator_acceleration, 0.0, np.array([value]), np.ones(1), 0.1, 1,
                             integrators.Oscillator(1.0, 0.0))
+
+
+def test_a_method_with_a_law_of_its_own_must_follow_that_law(tmp_path):
+    """With the cone in its place the pyramid would agree with the truth: that is a departure, too."""
+    text = (binding.SOLUTIONS / "friction.py").read_text()
+    pyramid = "pyramid_impulse(v_free, 1.0, normal_force(pull, p.n), p.mu_k, t_1, t_2)"
+    assert pyramid in text
+    for replacement, expected in ((pyramid, True), ("friction_impulse(v_free, 1.0, normal_force(pull, p.n), p.mu_k)", False)):
+        (tmp_path / "friction.py").write_text(text.replace("from .", "from solutions.").replace(pyramid, replacement))
+        result = measure.errors("stopping_block", measure.Plan(of=str(tmp_path), speeds=("plain",), live=(), most_steps=200))
+        verdicts = {c["label"]: c["right"] for c in result["cases"]["heading 22.5°"]["ours"]}
+        assert verdicts["pyramid"] is expected and verdicts["sliding"] is True
