@@ -59,7 +59,7 @@ def check_moments(I_body):
     for k in range(3):
         check_positive("a principal moment of inertia [kg m²]", I_body[k])
         if I_body[k] > (I_body[(k + 1) % 3] + I_body[(k + 2) % 3]) * (1.0 + FLAT):
-            raise BadInput("a principal moment of inertia [kg m²]", I_body[k], "no mass has it: keep it below the sum of the other two")
+            raise BadInput("a principal moment of inertia [kg m²]", I_body[k], "no distribution of mass has it; keep it below the sum of the other two")
 
 
 def make_body(m, I_body):
