@@ -59,7 +59,7 @@ def check_moments(I_body):
     for k in range(3):
         check_positive("a principal moment of inertia [kg m²]", I_body[k])
         if I_body[k] > (I_body[(k + 1) % 3] + I_body[(k + 2) % 3]) * (1.0 + FLAT):
-            raise BadInput("a principal moment of inertia [kg m²]", I_body[k], "no mass has it: keep it below the sum of the other two")
+            raise BadInput("a principal moment of inertia [kg m²]", I_body[k], "no distribution of mass has it; keep it below the sum of the other two")
 
 
 def make_body(m, I_body):
@@ -261,7 +261,7 @@ def unrotate(q, r):
 
 def body_component(q, r, k):
     """Given.  The k-th body coordinate of a vector with world coordinates r, without the other two; q need not be an array."""
-    w, x, y, z = q[0], q[1], q[2], q[3]
+    x, y, z, w = q[1], q[2], q[3], q[0]
     if k == 0:
         return (w * w + x * x - y * y - z * z) * r[0] + 2.0 * ((x * y + w * z) * r[1] + (x * z - w * y) * r[2])
     if k == 1:
@@ -272,7 +272,7 @@ def body_component(q, r, k):
 def about_axis(q, k, angle):
     """Given.  The body turned about its own k-th axis:  q (cos ½angle, sin ½angle 𝐞ₖ), as a tuple (faster than an array)."""
     c, s = np.cos(0.5 * angle), np.sin(0.5 * angle)
-    w, x, y, z = q[0], q[1], q[2], q[3]
+    x, y, z, w = q[1], q[2], q[3], q[0]
     if k == 0:
         return w * c - x * s, x * c + w * s, y * c + z * s, z * c - y * s
     if k == 1:
@@ -443,7 +443,8 @@ def quaternion_of(R):
             k = i
     if trace > R[k, k]:
         return unit(np.array([1.0 + trace, R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]]))
-    i, j = (k + 1) % 3, (k + 2) % 3
+    i = (k + 1) % 3
+    j = 3 - k - i
     q = np.zeros(4)
     q[0], q[1 + k] = R[j, i] - R[i, j], 1.0 + R[k, k] - R[i, i] - R[j, j]
     q[1 + i], q[1 + j] = R[i, k] + R[k, i], R[j, k] + R[k, j]

@@ -1,6 +1,7 @@
 """What rotation does to a step: energy that drifts, spins that are too fast, needles, and the spin at which a top falls asleep.
 
 Every bound here is a closed form; the experiment is a run of the lesson's own steps.  Cases 11, 14, 15 and 17 of the workbook's list.
+Reached through `stability`, which imports this file at its end: import that one first.
 (pybullet turns a body by π/4 a step at most, 785 rad/s at a millisecond, and says nothing beyond: it has no part in case 14.)
 *Source:* Euler 1758; Landau and Lifshitz, Mechanics, §§ 33 to 37; Klein and Sommerfeld 1897 for the sleeping top.
 """
