@@ -141,6 +141,9 @@ def test_an_implicit_step_solves_its_own_equation_however_long_it_is(lesson, dra
 def test_implicit_euler_says_so_when_newton_finds_no_root(lesson, draw):
     """w = v + s dt (1 + w²) has no real root once 4 s dt (v + s dt) > 1."""
     x, v, dt, p = draw(-1.0, 1.0, 1), draw(0.0, 1.0, 1), draw(5.0, 15.0), Drive(draw(0.5, 2.0), 0.0)
+    _, w = lesson.implicit_euler_step(runaway, 0.0, x, v, 0.002 * dt, p)
+    # with s dt < 0.06 and w < 2 the equation is steeper than 0.7; the last correction is below 1e-12 |w|
+    close("w − v − s dt (1 + w²) after a short step, which has one [m/s]", w - v - 0.002 * dt * p.strength * (1.0 + w * w), [0.0], 1e-11)
     raises("a step without a solution", Diverged, lesson.implicit_euler_step, runaway, 0.0, x, v, dt, p)
 
 

@@ -7,6 +7,7 @@ With --of only the grading tests run.
 import hashlib
 import json
 import signal
+import threading
 import types
 from pathlib import Path
 
@@ -49,8 +50,8 @@ def pytest_generate_tests(metafunc):
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_call(item):
     """Stop a subject's endless loop, where the system has an alarm clock; compiled and given code is ours, and trusted."""
-    grading = item.get_closest_marker("exercise") and item.config.getoption("--of")
-    if not grading or not hasattr(signal, "SIGALRM"):
+    grading = item.get_closest_marker("exercise") and (item.config.getoption("--of") or hasattr(item.config, "given_subject"))
+    if not grading or not hasattr(signal, "SIGALRM") or threading.current_thread() is not threading.main_thread():
         return (yield)
 
     def ring(*_):
