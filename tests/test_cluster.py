@@ -21,6 +21,7 @@ from tests.grading.submissions import Submission
 from validate.binding import ROOT
 
 pytestmark = pytest.mark.xdist_group("cluster")
+LESSON = "inertia_tensors"   # its tests are the quickest
 UP_WITHIN = 60.0             # [s]: a scheduler needs 1, a worker 2, on a machine that does nothing else
 
 
@@ -76,16 +77,16 @@ def until(true):
 
 @pytest.fixture(scope="module")
 def settings():
-    return marking.settings(["integrators"], "a secret")
+    return marking.settings([LESSON], "a secret")
 
 
 def small_class():
     """Eight students: two with everything, two with nothing, one with no file, one who forgot a bracket, one with half, one who prints."""
-    worked = (ROOT / "solutions" / "integrators.py").read_text().replace("from .", "from solutions.")
-    blank = (ROOT / "lessons" / "integrators.py").read_text()
-    half = worked.replace("def midpoint_step", "def another_name")
-    texts = {"ada": worked, "bea": blank, "cyd": None, "dov": "def euler_step(:\n", "eve": half, "fay": "print('ö\\x07')\n" + blank, "gus": worked, "hal": blank}
-    return [Submission(name, {"integrators": text.encode()} if text else {}, (), "2026-11-30T23:59:00") for name, text in texts.items()]
+    worked = (ROOT / "solutions" / f"{LESSON}.py").read_text().replace("from .", "from solutions.")
+    blank = (ROOT / "lessons" / f"{LESSON}.py").read_text()
+    half = worked.replace("def box_inertia", "def another_name")
+    texts = {"ada": worked, "bea": blank, "cyd": None, "dov": "def box_inertia(:\n", "eve": half, "fay": "print('ö\\x07')\n" + blank, "gus": worked, "hal": blank}
+    return [Submission(name, {LESSON: text.encode()} if text else {}, (), "2026-11-30T23:59:00") for name, text in texts.items()]
 
 
 def without_time(result):
@@ -111,7 +112,7 @@ def test_a_worker_that_is_killed_half_way_loses_nothing_and_nothing_is_counted_t
 
 
 def test_what_a_killed_worker_had_begun_ends_with_it(settings):
-    hangs = Submission("kim", {"integrators": b"while True:\n    pass\n"}, (), "")      # for IMPORT_WITHIN, 10 s
+    hangs = Submission("kim", {LESSON: b"while True:\n    pass\n"}, (), "")      # for IMPORT_WITHIN, 10 s
     command = "import sys; from tests.grading import cluster; cluster.asked(sys.stdin.buffer.read())"
     with subprocess.Popen([sys.executable, "-c", command], cwd=ROOT, stdin=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
         process.stdin.write(cluster.parcel(hangs, settings))
@@ -125,7 +126,7 @@ def test_what_a_killed_worker_had_begun_ends_with_it(settings):
 
 def test_a_failure_of_the_grader_and_a_cluster_that_dies_are_told_and_give_no_points(tmp_path, settings, monkeypatch):
     monkeypatch.setattr(cluster, "WORKERLESS", 2.0)
-    no_bytes = Submission("ivy", {"integrators": None}, (), "")
+    no_bytes = Submission("ivy", {LESSON: None}, (), "")
     with cluster_of(1, tmp_path) as (address, workers):
         (student, result, why), = cluster.results(address, [no_bytes], settings)
         assert (student, result) == ("ivy", None) and "AttributeError" in why
@@ -156,7 +157,7 @@ def test_a_workbook_elsewhere_is_accepted_and_one_that_differs_is_refused(tmp_pa
             with client_of(address) as client:
                 client.wait_for_workers(1, timeout=UP_WITHIN)
                 cluster.fit(client, address, settings)
-                with open(copy / "tests" / "test_integrators.py", "a") as file:
+                with open(copy / "tests" / f"test_{LESSON}.py", "a") as file:
                     file.write("# another version\n")
                 with pytest.raises(BadInput, match=f"worker at tcp.* is with workbook .* instead of {settings.code}: give it"):
                     cluster.fit(client, address, settings)

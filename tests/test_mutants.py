@@ -28,8 +28,11 @@ def all_mutants():
 def grades_of(name):
     """Outcomes of each mutant of a lesson, all from one run of its tests."""
     module = vars(binding.bind(name))
-    subjects = [(types.SimpleNamespace(**{**module, mutant.function.__name__: mutant.function}), mutant.exercise) for mutant in mutants_of(name)]
-    return grade_each(name, {str(number): subject for number, subject in enumerate(subjects)})
+
+    def subject(mutant):
+        changed = types.SimpleNamespace(**{**module, mutant.function.__name__: mutant.function})
+        return changed, lambda exercise, test: exercise == mutant.exercise
+    return grade_each(name, {str(number): subject(mutant) for number, mutant in enumerate(mutants_of(name))})
 
 
 @pytest.mark.parametrize("name, number", list(all_mutants()))

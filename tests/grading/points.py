@@ -125,24 +125,24 @@ def _advice(error, hint):
     return hint
 
 
-def grade(lesson, subject, exercise=None, seed=PUBLIC, collect=False):
-    """Outcomes of a lesson's grading tests for a subject (any object with the lesson's functions as attributes).
+def grade(lesson, subject, wanted=lambda exercise, test: True, seed=PUBLIC, collect=False):
+    """Outcomes of a lesson's grading tests, or of those that are wanted, for a subject (any object with the lesson's functions as attributes).
 
     With collect no test is run: the tests that there are, all of them "not run".
     """
-    return grade_each(lesson, {"given": (subject, exercise)}, seed, collect)["given"]
+    return grade_each(lesson, {"given": (subject, wanted)}, seed, collect)["given"]
 
 
 def grade_each(lesson, subjects, seed=PUBLIC, collect=False):
-    """{name: outcomes} of several subjects, {name: (subject, its exercise, or None for all)}, in one run of pytest."""
+    """{name: outcomes} of several subjects, {name: (subject, wanted)}, in one run of pytest."""
     class Given:
         def pytest_configure(self, config):
             config.given = subjects
 
     points = Points()
     with contextlib.redirect_stdout(io.StringIO()):
-        pytest.main([str(TESTS / f"test_{lesson}.py"), f"--rootdir={TESTS.parent}", "--tb=no", "-p", "no:cacheprovider", f"--seed={seed}",
-                     *["--collect-only"] * collect], plugins=[Given(), points])
+        pytest.main([str(TESTS / f"test_{lesson}.py"), f"--rootdir={TESTS.parent}", "--tb=no", "-p", "no:cacheprovider",
+                     "-p", "no:unraisableexception", f"--seed={seed}", *["--collect-only"] * collect], plugins=[Given(), points])
     return {name: points.outcomes.get(name, []) for name in subjects}
 
 
