@@ -36,7 +36,7 @@ PANEL = 0.2                  # radians of the fastest motion in each panel of Ga
 
 def cross_matrix(a):
     """(3, 3): times b it is a × b."""
-    return np.cross(a, np.eye(3)).T
+    return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
 
 
 def about(axis, angle):
@@ -49,6 +49,20 @@ def quaternion_matrix(w, x, y, z):
     """R (3, 3) of a unit quaternion, as a turn by 2 acos w about (x, y, z)."""
     s = np.sqrt(x * x + y * y + z * z)
     return about(np.array([x, y, z]) / s, 2.0 * np.arctan2(s, w)) if s > 0.0 else np.eye(3)
+
+
+def quaternion(R):
+    """The unit quaternion (w, x, y, z), w ≥ 0, of R: the longest row of 4 q qᵀ.
+
+    *Source:* Shepperd 1978.
+    """
+    (a, b, c), (d, e, f), (g, h, i) = R
+    rows = np.array([[1.0 + a + e + i, h - f, c - g, d - b],
+                     [h - f, 1.0 + a - e - i, b + d, c + g],
+                     [c - g, b + d, 1.0 - a + e - i, f + h],
+                     [d - b, c + g, f + h, 1.0 - a - e + i]])
+    row = rows[np.argmax(np.diag(rows))]
+    return row / np.copysign(np.linalg.norm(row), row[0])
 
 
 def relative_turn(R, S):
@@ -176,10 +190,16 @@ class HeavyTop:
     def sine_squared(self, t):
         return (self.high + self.drop(t)) * (2.0 - self.high - self.drop(t))
 
+    def precession(self, t):
+        return self.a * self.drop(t) / self.sine_squared(t)
+
+    def tips(self, ts):
+        """Horizontal coordinates (n, 2) of the unit vector along the top at these times, one after the other; at 0 it is at (0, −sin θ₀)."""
+        phi = np.cumsum([integral(lambda s: self.precession(begin + s), end - begin, 4.0 * self.a) for begin, end in zip([0.0, *ts], ts)])
+        return np.sqrt(self.sine_squared(ts))[:, None] * np.stack((np.sin(phi), -np.cos(phi)), axis=1)
+
     def tip(self, t):
-        """Horizontal coordinates (2,) of the unit vector along the top, which starts at (0, −sin θ₀)."""
-        phi = integral(lambda s: self.a * self.drop(s) / self.sine_squared(s), t, 4.0 * self.a)
-        return np.sqrt(self.sine_squared(t)) * np.array([np.sin(phi), -np.cos(phi)])
+        return self.tips([t])[0]
 
 
 # ---------------------------------------------------------------------------------------------- what a step may get wrong
@@ -203,17 +223,18 @@ def growth_of_errors(I, omega, T):
     I = np.array(I)
 
     def parts(w):
-        w_dot = np.cross(I * w, w) / I
-        J_w = (cross_matrix(I * w) - cross_matrix(w) * I) / I[:, None]
-        kept = lambda theta: np.concatenate((theta, np.cross(I * w, theta) / I))
-        kappa = 0.5 * np.array([-w[1] * w[2], w[0] * w[2], -w[0] * w[1]])
-        gyroscopic = [np.concatenate((0.5 * w_dot, sign * 0.5 * J_w @ w_dot)) for sign in (-1.0, 1.0)]
-        defects = [kept(-0.5 * w_dot), kept(-0.5 * w_dot + kappa), *gyroscopic]
-        return w_dot, np.block([[-cross_matrix(w), np.eye(3)], [np.zeros((3, 3)), J_w]]), np.stack(defects, axis=1)
+        W, turned = cross_matrix(w), cross_matrix(I * w) / I[:, None]       # turned @ θ: I⁻¹(Iω × θ)
+        w_dot, J_w = turned @ w, turned - W * I / I[:, None]
+        theta = np.stack((-0.5 * w_dot, 0.5 * np.array([-w[1] * w[2], w[0] * w[2], -w[0] * w[1]]) - 0.5 * w_dot), axis=1)
+        J, d = np.zeros((6, 6)), np.zeros((6, 10))
+        J[:3, :3], J[:3, 3:], J[3:, 3:] = -W, np.eye(3), J_w
+        d[:3, 6:8], d[3:, 6:8] = theta, turned @ theta
+        d[:3, 8], d[:3, 9], d[3:, 8], d[3:, 9] = 0.5 * w_dot, 0.5 * w_dot, -0.5 * J_w @ w_dot, 0.5 * J_w @ w_dot
+        return w_dot, J, d
 
     def slope(t, y):
         w_dot, J, d = parts(y[:3])
-        return np.concatenate((w_dot, (J @ y[3:].reshape(6, 10) + np.hstack((np.zeros((6, 6)), d))).ravel()))
+        return np.concatenate((w_dot, (J @ y[3:].reshape(6, 10) + d).ravel()))
 
     times = np.linspace(0.0, T, 401)
     start = np.concatenate((omega, np.hstack((np.eye(6), np.zeros((6, 4)))).ravel()))
@@ -257,8 +278,7 @@ class Rigid(Bullet):
 
     def body(self, m, I, x, omega, maximal, v=(0.0, 0.0, 0.0), R=np.eye(3), shape=-1, mu=0.0):
         """A body at x, turned by R; mass and moments go in one call, or the first is lost."""
-        w = np.sqrt(max(0.0, 1.0 + np.trace(R))) / 2.0                   # scenes start less than half a turn away
-        q = [*(np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]]) / (4.0 * w)), w]
+        q = np.roll(quaternion(R), -1).tolist()                          # pybullet has w last
         body = self.pb.createMultiBody(m, shape, basePosition=list(map(float, x)), baseOrientation=q, useMaximalCoordinates=int(maximal), physicsClientId=self.client)
         unclamped = {} if maximal else {"maxJointVelocity": 1e9}
         self.pb.changeDynamics(body, -1, mass=m, localInertiaDiagonal=list(map(float, I)), linearDamping=0, angularDamping=0, lateralFriction=mu,
@@ -305,6 +325,21 @@ def seen(tips):
 def axes_seen(R):
     """The centre of a body and the tips of its three axes, as points to draw."""
     return seen(np.vstack((np.zeros(3), np.reshape(R, (3, 3)).T)))
+
+
+def pose(x, R):
+    """(7,): a body at x, turned by R, for the player in space."""
+    return np.concatenate((x, quaternion(R)))
+
+
+def omega_and_L(R, p, reach):
+    """The arrows of a free body with p.moments() and p.omega() that started at R = 1, so that L = I ω(0) for ever.
+
+    L is drawn reach [m] long, and ω at the scale at which its tip stays in the plane across L at L's tip: ω · L = 2E is kept, too.
+    """
+    R, I = np.reshape(R, (3, 3)), p.moments()
+    L, still = I * p.omega(), np.zeros(3)
+    return {"ω": (still, reach * np.linalg.norm(L) / (L @ p.omega()) * R @ ((R.T @ L) / I)), "L": (still, reach * L / np.linalg.norm(L))}
 
 
 def free_body(maximal):

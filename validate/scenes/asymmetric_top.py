@@ -6,7 +6,7 @@ import numpy as np
 
 from solutions.rotation import Body, check_moments, tumble
 from solutions.rotation import no_torque as acceleration
-from validate.rigid import FREE_ENGINES, TURNS, FreeTop, axes_seen, free_limits, freely, quaternion_matrix
+from validate.rigid import FREE_ENGINES, TURNS, FreeTop, axes_seen, free_limits, freely, omega_and_L, pose, quaternion_matrix
 
 TITLE, LESSON = "Asymmetric top", "rotation"
 T = 10.0                     # [s]: it turns over at 6.06 s, and is about to set out for the next time
@@ -76,6 +76,21 @@ def points(observed, p):
 
 def LINKS(p):
     return [(0, 1), (0, 2), (0, 3)]
+
+
+def bodies(p):
+    """A plate of one kilogram with these moments: Iᵢ = m(aⱼ² + aₖ²)/3 for half sizes a, drawn thicker than it is."""
+    from validate.report import space                                # brings matplotlib along
+    a = np.sqrt(1.5 * np.maximum(0.0, np.sum(p.moments()) - 2.0 * p.moments()))
+    return [space.box(np.maximum(a, 0.05 * a.max()))]
+
+
+def poses(observed, p):
+    return [pose(np.zeros(3), np.reshape(observed, (3, 3)))]
+
+
+def arrows(observed, p):
+    return omega_and_L(observed, p, 3.0)
 
 
 def published():

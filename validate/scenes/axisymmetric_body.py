@@ -1,4 +1,4 @@
-"""A disc-like body thrown without a torque: its axis circles about the angular momentum, and every method is asked where it points."""
+"""A cylinder thrown without a torque: its axis circles about the angular momentum, and every method is asked where it points."""
 
 from typing import NamedTuple
 
@@ -8,7 +8,7 @@ from solutions.checks import BadInput
 from solutions.rotation import Body, check_moments, tumble
 from solutions.rotation import no_torque as acceleration
 from validate.engines import installed
-from validate.rigid import FIRST_ORDER, FREE_ENGINES, MATRIX, TURNS, Rigid, axes_seen, free_limits, freely, quaternion_matrix, symmetric_top
+from validate.rigid import FIRST_ORDER, FREE_ENGINES, MATRIX, TURNS, Rigid, axes_seen, free_limits, freely, omega_and_L, pose, quaternion_matrix, symmetric_top
 from validate.scene import EXACT
 
 TITLE, LESSON = "Axisymmetric body", "rotation"
@@ -79,6 +79,20 @@ def points(observed, p):
 
 def LINKS(p):
     return [(0, 1), (0, 2), (0, 3)]
+
+
+def bodies(p):
+    """A cylinder of one kilogram with these moments: I₃ = ½mr², I₁ = m(3r² + l²)/12."""
+    from validate.report import space                                # brings matplotlib along
+    return [space.cylinder(np.sqrt(2.0 * p.I3), np.sqrt(12.0 * p.I1 - 6.0 * p.I3))]
+
+
+def poses(observed, p):
+    return [pose(np.zeros(3), np.reshape(observed, (3, 3)))]
+
+
+def arrows(observed, p):
+    return omega_and_L(observed, p, 0.5)
 
 
 def published():

@@ -109,6 +109,34 @@ def LINKS(p):
     return [(0, 1)]
 
 
+TRAIL = 1                    # the tip
+
+
+def bodies(p):
+    """A cone on its point, as long as the unit vector along it, and its tip."""
+    from validate.report import space                                # brings matplotlib along
+    return [space.cone(0.3, 1.0), space.sphere(0.01)]
+
+
+def axis(observed):
+    """The unit vector (3,) along the top, from what is seen of it from above."""
+    return np.append(observed, np.sqrt(1.0 - observed @ observed))
+
+
+def poses(observed, p):
+    """Turned out of the vertical the shortest way: nobody sees how far a round top has spun."""
+    x, y, z = tip = axis(observed)
+    q = np.array([1.0 + z, -y, x, 0.0])
+    q /= np.linalg.norm(q)
+    return [np.append(np.zeros(3), q), np.append(tip, q)]
+
+
+def arrows(observed, p):
+    """ω, but for the thousandth of it that lies across the axis, and the torque Mgl 𝐳 × 𝐞₃ that pushes L sideways."""
+    x, y, _ = tip = axis(observed)
+    return {"ω": (tip, 1.4 * tip), "τ": (tip, tip + 0.3 / np.sin(p.tilt) * np.array([-y, x, 0.0]))}
+
+
 def published():
     p = Params()
     top, R = HeavyTop(*p), about(np.array([1.0, 0.0, 0.0]), p.tilt)

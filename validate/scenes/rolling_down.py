@@ -7,7 +7,7 @@ import numpy as np
 from solutions.checks import BadInput, check_positive
 from solutions.rotation import Ball, move
 from solutions.rotation import rolling_load as acceleration
-from validate.rigid import LOOP, rolling_ball
+from validate.rigid import LOOP, about, pose, rolling_ball
 from validate.scene import ROUND_OFF, Engine
 
 TITLE, LESSON = "Rolling down", "rotation"
@@ -91,6 +91,32 @@ def points(observed, p):
 
 def LINKS(p):
     return [(0, 1), (2, 3)]
+
+
+def bodies(p):
+    """The ball, and a board for a slope."""
+    from validate.report import space                                # brings matplotlib along
+    return [space.sphere(p.radius), space.box((0.6, 0.15, 0.005))]
+
+
+def axes(p):
+    """Unit vectors (3,) down the slope, along it, and out of it."""
+    slope = np.radians(p.slope)
+    return np.array([np.cos(slope), 0.0, -np.sin(slope)]), np.array([0.0, 1.0, 0.0]), np.array([np.sin(slope), 0.0, np.cos(slope)])
+
+
+def poses(observed, p):
+    down, along, out = axes(p)
+    s = observed[0]
+    return [pose(s * down + p.radius * out, about(along, s / p.radius)), pose(0.5 * down - 0.005 * out, about(along, np.radians(p.slope)))]
+
+
+def arrows(observed, p):
+    """v, and ω as long as the speed of the rim: the same, because it rolls."""
+    down, along, out = axes(p)
+    s, v, rim = observed
+    centre = s * down + p.radius * out
+    return {"v": (centre, centre + 0.15 * v * down), "ω": (centre, centre + 0.15 * rim * along)}
 
 
 def published():

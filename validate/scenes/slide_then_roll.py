@@ -8,7 +8,7 @@ from solutions.checks import check_positive
 from solutions.rotation import Ball, move
 from solutions.rotation import rolling_load as acceleration
 from validate.engines import pymunk_space, pymunk_world
-from validate.rigid import LOOP, rolling_ball
+from validate.rigid import LOOP, about, pose, rolling_ball
 from validate.scene import ROUND_OFF, Engine
 
 TITLE, LESSON = "Slide, then roll", "rotation"
@@ -109,6 +109,29 @@ def points(observed, p):
 
 def LINKS(p):
     return [(0, 1), (2, 3), (4, 5)]
+
+
+GROUND = True
+
+
+def bodies(p):
+    from validate.report import space                                # brings matplotlib along
+    return [space.sphere(p.R)]
+
+
+def poses(observed, p):
+    """Its rim has come ½ (Rω)²/(μg mR²/I) while it slid, and since then as far as the ball: what is beyond (v₀² − v²)/2μg."""
+    x, v, rim = observed
+    brake = p.mu * p.g
+    way = 0.5 * rim**2 * p.shape / brake + max(0.0, x - (p.v0**2 - v**2) / (2.0 * brake))
+    return [pose(np.array([x, 0.0, p.R]), about(np.array([0.0, 1.0, 0.0]), way / p.R))]
+
+
+def arrows(observed, p):
+    """v, and ω as long as the speed of the rim: the same as soon as it rolls."""
+    x, v, rim = observed
+    centre = np.array([x, 0.0, p.R])
+    return {"v": (centre, centre + np.array([0.2 * v, 0.0, 0.0])), "ω": (centre, centre + np.array([0.0, 0.2 * rim, 0.0]))}
 
 
 def published():
