@@ -90,7 +90,7 @@ def poses(observed, p):
 
 
 def arrows(observed, p):
-    return omega_and_L(observed, p, 3.0)
+    return omega_and_L(observed, p, 4.0)
 
 
 def published():

@@ -113,9 +113,19 @@ TRAIL = 1                    # the tip
 
 
 def bodies(p):
-    """A cone on its point, as long as the unit vector along it, and its tip."""
+    """Only the upper end of the top's axle, a metre from its point, or nobody would see the loops; and a plumb line over the point."""
     from validate.report import space                                # brings matplotlib along
-    return [space.cone(0.3, 1.0), space.sphere(0.01)]
+    reach = np.sin(p.tilt)
+    return [space.cylinder(0.03 * reach, reach), space.sphere(0.07 * reach), space.cylinder(0.01 * reach, reach)]
+
+
+def poses(observed, p):
+    """Turned out of the vertical the shortest way: nobody sees how far a round axle has spun."""
+    x, y, z = tip = axis(observed)
+    q = np.array([1.0 + z, -y, x, 0.0])
+    q /= np.linalg.norm(q)
+    middle = 0.5 * np.sin(p.tilt)
+    return [np.append((1.0 - middle) * tip, q), np.append(tip, q), (0.0, 0.0, 1.0 - middle, 1.0, 0.0, 0.0, 0.0)]
 
 
 def axis(observed):
@@ -123,18 +133,10 @@ def axis(observed):
     return np.append(observed, np.sqrt(1.0 - observed @ observed))
 
 
-def poses(observed, p):
-    """Turned out of the vertical the shortest way: nobody sees how far a round top has spun."""
-    x, y, z = tip = axis(observed)
-    q = np.array([1.0 + z, -y, x, 0.0])
-    q /= np.linalg.norm(q)
-    return [np.append(np.zeros(3), q), np.append(tip, q)]
-
-
 def arrows(observed, p):
     """ω, but for the thousandth of it that lies across the axis, and the torque Mgl 𝐳 × 𝐞₃ that pushes L sideways."""
     x, y, _ = tip = axis(observed)
-    return {"ω": (tip, 1.4 * tip), "τ": (tip, tip + 0.3 / np.sin(p.tilt) * np.array([-y, x, 0.0]))}
+    return {"ω": (tip, tip + np.sin(p.tilt) * tip), "τ": (tip, tip + np.array([-y, x, 0.0]))}
 
 
 def published():
