@@ -29,7 +29,7 @@ TURNS = (MATRIX, AXIS_ANGLE, QUATERNION, GYROSCOPIC, IMPLICIT_GYROSCOPIC, RUNGE_
 
 RTOL, ATOL = 1e-13, 1e-15    # of DOP853, near the least it accepts
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(20)
-PANEL = 0.2                  # radians of the fastest motion in each panel of Gauss's rule, whose error is then (0.1)⁴⁰/40!: none
+PANEL = 1.0                  # radian of the fastest motion in each panel of Gauss's rule, whose error is then (½)⁴⁰/40!: none
 
 
 # ---------------------------------------------------------------------------------------------- small change
