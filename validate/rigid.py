@@ -36,7 +36,8 @@ PANEL = 1.0                  # radian of the fastest motion in each panel of Gau
 
 def cross_matrix(a):
     """(3, 3): times b it is a × b."""
-    return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
+    x, y, z = a
+    return np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))
 
 
 def about(axis, angle):
