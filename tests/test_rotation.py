@@ -414,7 +414,7 @@ def test_every_step_converges_with_its_order_to_a_tilted_heavy_top(lesson, draw,
 
     def slope(t, y):
         R, L = y[:9].reshape(3, 3), y[9:]
-        omega = R @ ((R.T @ L) / I_body)
+        omega = np.linalg.solve(R @ np.diag(I_body) @ R.T, L)
         return np.concatenate((np.cross(omega, R.T).T.ravel(), np.cross(R[:, 2], [0.0, 0.0, -mgl])))
     L = inertia(q, I_body) @ omega
     end = solve_ivp(slope, (0.0, T), np.concatenate((turn(q).ravel(), L)), method="DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
