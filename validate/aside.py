@@ -7,6 +7,7 @@ import contextlib
 import io
 import multiprocessing
 import os
+import sys
 from concurrent.futures import ProcessPoolExecutor
 
 import pytest
@@ -17,6 +18,7 @@ PROCESSES.set_forkserver_preload(["validate.warm"])
 
 def run(*arguments):
     """What pytest prints; whatever the code under test does to its process, this one survives."""
+    vars(sys.modules["__main__"]).setdefault("__spec__", None)        # IPython's %reset takes it away, and multiprocessing asks for it
     with ProcessPoolExecutor(1, mp_context=PROCESSES) as process:
         said = process.submit(quiet, *arguments)
         return str(said.exception() or said.result())
