@@ -18,7 +18,12 @@ LIVE = tuple(name for name in engines.NAMES if engines.installed(name))
 BRIEF = measure.Plan(speeds=("plain",), live=LIVE, most_steps=500)
 
 
-@pytest.mark.parametrize("name", SCENES)
+def scenes(names):
+    """For each of these scenes; all tests of a scene in one process, which then computes its truth once."""
+    return pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.xdist_group(f"scene {name}")) for name in names])
+
+
+@scenes(SCENES)
 def test_a_truth_reproduces_what_was_published(name):
     scene = binding.bind_scene(name)
     p = next(iter(scene.CASES.values()))
@@ -26,13 +31,13 @@ def test_a_truth_reproduces_what_was_published(name):
         assert np.allclose(scene.truth(p, t), expected, rtol=0.0, atol=tolerance)
 
 
-@pytest.mark.parametrize("name", [n for n in SCENES if hasattr(binding.bind_scene(n), "published")])
+@scenes([n for n in SCENES if hasattr(binding.bind_scene(n), "published")])
 def test_what_a_scene_claims_beside_its_motion_holds(name):
     for claim, found, expected, tolerance in binding.bind_scene(name).published():
         assert np.all(np.abs(np.asarray(found) - expected) <= tolerance), f"{claim}: {found}, expected {expected} ± {tolerance}"
 
 
-@pytest.mark.parametrize("name", MOVING)
+@scenes(MOVING)
 def test_a_truth_begins_where_the_scene_begins(name):
     scene = binding.bind_scene(name)
     for p in scene.CASES.values():
@@ -40,13 +45,13 @@ def test_a_truth_begins_where_the_scene_begins(name):
         assert np.allclose(scene.truth(p, 0.0), begin, rtol=0.0, atol=1e-9 * (1.0 + np.abs(begin).max()))
 
 
-@pytest.mark.parametrize("name", REFINED)
+@scenes(REFINED)
 def test_steps_span_two_decades(name):
     steps = binding.bind_scene(name).STEPS
     assert list(steps) == sorted(steps) and steps[-1] >= 100 * steps[0]
 
 
-@pytest.mark.parametrize("name", SCENES)
+@scenes(SCENES)
 def test_nothing_departs_from_truth_without_having_been_predicted(name):
     result = measure.errors(name, BRIEF)
     for case in result["cases"].values():
@@ -90,7 +95,7 @@ def test_stubs_are_not_attempted_and_depart_from_nothing():
     assert words.verdict(result["cases"]["under-damped"]["ours"])[1] == "open"
 
 
-@pytest.mark.parametrize("name", [n for n in SCENES if any(e.label.startswith("pybullet") for e in binding.bind_scene(n).ENGINES)])
+@scenes([n for n in SCENES if any(e.label.startswith("pybullet") for e in binding.bind_scene(n).ENGINES)])
 def test_without_pybullet_its_record_stands_in_and_says_so(name):
     result = measure.errors(name, measure.Plan(speeds=("plain",), live=(), most_steps=binding.bind_scene(name).STEPS[0]))
     curves = [c for c in next(iter(result["cases"].values()))["engines"] if c["label"].startswith("pybullet")]

@@ -10,7 +10,8 @@ from solutions.checks import BadInput
 from validate import stability
 
 examine = lru_cache(maxsize=None)(stability.examine)
-numbers = pytest.mark.parametrize("number", stability.CASES, ids=lambda n: f"{n}-{stability.CASES[n][0].replace(' ', '_')}")
+numbers = pytest.mark.parametrize("number", [pytest.param(n, id=f"{n}-{name.replace(' ', '_')}", marks=pytest.mark.xdist_group(f"case {n}"))
+                                             for n, (name, *_) in stability.CASES.items()])
 
 
 @numbers

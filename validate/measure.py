@@ -330,11 +330,12 @@ def stability_cases(lessons, plan):
 # ---------------------------------------------------------------------------------------------- times
 
 class Timed(NamedTuple):
-    """Something with a stepping loop: prepare(steps) gives a function to time, and what to do after."""
+    """Something with a stepping loop."""
     label: str
     speed: str               # plain, compiled, engine
     steps: int
-    prepare: object
+    dt: float                # [s]
+    prepare: object          # (steps, dt) → (the function to time, what to do after)
 
 
 def times(name, plan, result, tick=lambda: None):
@@ -344,9 +345,9 @@ def times(name, plan, result, tick=lambda: None):
     found = {c["label"]: {r["steps"]: r for r in c["rows"] if r["error"] is not None and r["error"] < LOST}
              for c in result["cases"][case]["ours"] + result["cases"][case]["engines"]}
     refined = still(scene) != ""                                     # else there is no diagram to time anything for
-    items = [Timed(m.label, speed, n, prepare) for m in methods_of(scene, plan, p) for speed in plan.speeds if refined
+    items = [Timed(m.label, speed, n, scene.T / n, prepare) for m in methods_of(scene, plan, p) for speed in plan.speeds if refined
              for prepare in [_ours(name, plan, m, speed, p)] for n in found[m.label]]
-    items += [Timed(e.label, "engine", n, _engine(scene, e, p)) for e in engines_of(scene, p) if refined and e.label.split(",")[0] in plan.live
+    items += [Timed(e.label, "engine", n, scene.T / n, _engine(e, p)) for e in engines_of(scene, p) if refined and e.label.split(",")[0] in plan.live
               for n in found[e.label]]
     timed = [(i.label, i.speed, i.steps, t) for i, t in interleaved(items, plan.longest(), tick)]
     timed += [(e.label, "recorded", row["steps"], row) for e in engines_of(scene, p) if e.label.split(",")[0] not in plan.live
@@ -365,15 +366,15 @@ def _ours(name, plan, method, speed, p):
 
 
 def _loop(scene, step, p, state):
-    def prepare(steps):
-        arguments = step, scene.law, state, p, scene.T / steps, steps
+    def prepare(steps, dt):
+        arguments = step, scene.law, state, p, dt, steps
         return lambda: scene.run(*arguments), lambda: None
     return prepare
 
 
-def _engine(scene, engine, p):
-    def prepare(steps):
-        world = engine.make(p, scene.T / steps)
+def _engine(engine, p):
+    def prepare(steps, dt):
+        world = engine.make(p, dt)
 
         def loop():
             step = world.step
@@ -392,7 +393,7 @@ def interleaved(items, longest, tick):
         for item in items:
             key = item.label, item.speed
             if key not in pace:
-                pace[key] = min(_clock(item._replace(steps=2), 1) for _ in range(2)) / 2
+                pace[key] = min(_clock(item, 1, steps=2) for _ in range(2)) / 2
             if pace[key] * item.steps > longest[item.speed]:
                 continue
             seconds = min(_clock(item, 1) for _ in range(WARM_UPS))
@@ -412,9 +413,9 @@ def interleaved(items, longest, tick):
     return [(item, {"seconds": float(np.median(s)), "low": min(s), "high": max(s)}) for (item, _), s in zip(chosen, samples)]
 
 
-def _clock(item, inner):
-    """Seconds of one stepping loop."""
-    loop, close = item.prepare(item.steps)
+def _clock(item, inner, steps=None):
+    """Seconds of one stepping loop, or of its first steps."""
+    loop, close = item.prepare(steps or item.steps, item.dt)
     try:
         begin = time.perf_counter()
         for _ in range(inner):
@@ -467,7 +468,8 @@ def left_out(name, plan, p, usable):
             rows.append({"what": what, "saves": None, "same": None, "note": extra})
             continue
         state, p_full = extra(p)
-        items = [Timed("without", speed, steps, _loop(scene, step, p, scene.start(p))), Timed("with", speed, steps, _loop(scene, step, p_full, state))]
+        items = [Timed(which, speed, steps, scene.T / steps, _loop(scene, step, *begin))
+                 for which, *begin in (("without", p, scene.start(p)), ("with", p_full, state))]
         (_, lean), (_, full) = interleaved(items, {speed: np.inf}, lambda: None)
         a = scene.observe(scene.run(step, scene.law, scene.start(p), p, scene.T / steps, steps), p)
         b = scene.observe(scene.run(step, scene.law, state, p_full, scene.T / steps, steps), p)

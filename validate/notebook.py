@@ -5,8 +5,6 @@ The learner's folder is `lessons/`, or the one that the environment variable WOR
 
 import json
 import os
-import subprocess
-import sys
 import tempfile
 import uuid
 from html import escape
@@ -16,7 +14,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from IPython.display import HTML, Markdown, display
 
-from . import binding, measure
+from . import aside, binding, measure
 from .report import plots, space, words
 
 TESTS = binding.ROOT / "tests"
@@ -107,13 +105,11 @@ def check(exercise):
     lesson = _lesson_of(exercise)
     with tempfile.TemporaryDirectory() as scratch:
         file = Path(scratch) / "outcomes.json"
-        run = subprocess.run([sys.executable, "-m", "pytest", str(TESTS / f"test_{lesson}.py"), f"--of={folder().resolve()}",
-                              f"--exercise={exercise}", f"--outcomes={file}", f"--rootdir={binding.ROOT}", "-p", "no:cacheprovider"],
-                             cwd=binding.ROOT, capture_output=True, text=True,
-                             env={**os.environ, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"})         # a second sooner
+        said = aside.run(str(TESTS / f"test_{lesson}.py"), f"--of={folder().resolve()}", f"--exercise={exercise}", f"--outcomes={file}",
+                         f"--rootdir={binding.ROOT}")
         outcomes = json.loads(file.read_text()) if file.is_file() else []
     if not outcomes:
-        raise RuntimeError(f"the check of exercise {exercise} did not run:\n{run.stdout}\n{run.stderr}")
+        raise RuntimeError(f"the check of exercise {exercise} did not run:\n{said}")
     display(_Answer(exercise, outcomes))
 
 

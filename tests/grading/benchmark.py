@@ -68,10 +68,10 @@ def main():
             ordinary = mean(pool.map(plain, sample))
     honest = mean(results[s.student]["seconds"] for s in handed_in if s.student not in hostile and results[s.student])
     evil = mean(results[student]["seconds"] for student in hostile if results[student])
-    points = sum(t["earned"] for student in hostile for t in results[student]["tests"] if t["lesson"] == "integrators")
+    stolen = sum(t["earned"] for student in hostile for t in results[student]["tests"] if t["lesson"] == "integrators" and t["exercise"] != "1.10")
     console.print(f"{sum(r is not None for r in results.values())} of {CLASS} graded in {seconds:.0f} s by {JOBS} processes")
     console.print(f"an honest one: {honest:.1f} s; plain pytest on the same files: {ordinary:.1f} s; so {honest - ordinary:+.1f} s each")
-    console.print(f"a hostile or broken one: {evil:.1f} s, and the {HOSTILE} of them earned {points:g} points in the lesson that they attack")
+    console.print(f"a hostile or broken one: {evil:.1f} s, and the {HOSTILE} of them gained {stolen:g} points beside their honest function's")
     return 0
 
 

@@ -43,7 +43,8 @@ def pytest_configure(config):
 def pytest_generate_tests(metafunc):
     if "lesson" in metafunc.fixturenames:
         option = metafunc.config.getoption
-        subjects = ["compiled"] if option("--compiled") else ["plain"] if option("--of") else ["plain", "compiled"]
+        once = pytest.param("compiled", marks=pytest.mark.xdist_group(f"compiled {metafunc.definition.path.stem}"))        # by one process
+        subjects = [once] if option("--compiled") else ["plain"] if option("--of") else ["plain", once]
         if hasattr(metafunc.config, "given"):
             subjects = list(metafunc.config.given)
         metafunc.parametrize("lesson", subjects, indirect=True)

@@ -73,7 +73,7 @@ def support(x, v, p):
 
 @lru_cache(maxsize=None)
 def reference(p):
-    """[(begin, solution), …] and where it rests, or None: one piece for each start, by DOP853."""
+    """[(begin, motion), …] and where it rests, or None: one piece for each start, by DOP853."""
     def law(t, y):
         x, v = y[:3], y[3:]
         n, N = inward(x, p), support(x, v, p)
