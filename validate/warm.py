@@ -4,6 +4,10 @@ import gc
 import tempfile
 from pathlib import Path
 
+import scipy.integrate  # noqa: F401        many tests want them
+import scipy.optimize  # noqa: F401
+import scipy.special  # noqa: F401
+
 from .aside import quiet
 
 with tempfile.TemporaryDirectory() as place:
