@@ -97,9 +97,12 @@ def test_stubs_are_not_attempted_and_depart_from_nothing():
 
 @scenes([n for n in SCENES if any(e.label.startswith("pybullet") for e in binding.bind_scene(n).ENGINES)])
 def test_without_pybullet_its_record_stands_in_and_says_so(name):
-    result = measure.errors(name, measure.Plan(speeds=("plain",), live=(), most_steps=binding.bind_scene(name).STEPS[0]))
-    curves = [c for c in next(iter(result["cases"].values()))["engines"] if c["label"].startswith("pybullet")]
-    assert curves and all(c["source"].startswith("recorded, pybullet") for c in curves)
+    scene = binding.bind_scene(name)
+    case, p = next(iter(scene.CASES.items()))
+    truth = np.array(scene.truth(p, scene.T), dtype=float)
+    curves = [measure.engine_curve(name, scene, case, engine, p, truth, measure.Plan(speeds=("plain",), live=()))
+              for engine in measure.engines_of(scene, p) if engine.label.startswith("pybullet")]
+    assert curves and all(c["source"].startswith("recorded, pybullet") and c["rows"] for c in curves)
 
 
 def test_same_scene_same_bits():

@@ -10,8 +10,8 @@ from solutions.checks import BadInput
 from validate import stability
 
 examine = lru_cache(maxsize=None)(stability.examine)
-numbers = pytest.mark.parametrize("number", [pytest.param(n, id=f"{n}-{name.replace(' ', '_')}", marks=pytest.mark.xdist_group(f"case {n}"))
-                                             for n, (name, *_) in stability.CASES.items()])
+numbers = pytest.mark.parametrize("number", [pytest.param(n, id=f"{n}-{name.replace(' ', '_')}", marks=pytest.mark.xdist_group(f"compiled test_{lesson}"))
+                                             for n, (name, _, lesson) in stability.CASES.items()])          # where its functions are compiled anyway
 
 
 @numbers
@@ -55,7 +55,8 @@ WRONG = [                         # case, the method that it examines, what is p
 ]
 
 
-@pytest.mark.parametrize("number, method, wrong", WRONG, ids=[f"{n}-{w}_as_{m}" for n, m, w in WRONG])
+@pytest.mark.parametrize("number, method, wrong", [pytest.param(n, m, w, id=f"{n}-{w}_as_{m}", marks=pytest.mark.xdist_group(f"compiled test_{stability.CASES[n][2]}"))
+                                                   for n, m, w in WRONG])
 def test_a_wrong_method_does_not_find_the_bound(number, method, wrong):
     lesson = stability.lesson_of(number)
     subject = types.SimpleNamespace(**{**vars(lesson), method: getattr(lesson, wrong)})

@@ -6,7 +6,6 @@ Where the system can fork, that process is a copy of one that has its imports be
 import contextlib
 import io
 import multiprocessing
-import os
 import sys
 from concurrent.futures import ProcessPoolExecutor
 
@@ -26,7 +25,6 @@ def run(*arguments):
 
 def quiet(*arguments):
     """What pytest prints, in this process."""
-    os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"                # other people's plugins have nothing to do here, and take a second
     with contextlib.redirect_stdout(io.StringIO()) as said, contextlib.redirect_stderr(said):
-        pytest.main([*arguments, "-p", "no:cacheprovider"])
+        pytest.main([*arguments, "-p", "no:cacheprovider", "--disable-plugin-autoload"])
     return said.getvalue()
