@@ -8,7 +8,8 @@ from solutions.checks import BadInput
 from solutions.rotation import Body, check_moments, tumble
 from solutions.rotation import no_torque as acceleration
 from validate.engines import installed
-from validate.rigid import FIRST_ORDER, FREE_ENGINES, MATRIX, TURNS, Rigid, axes_seen, free_limits, freely, omega_and_L, pose, quaternion_matrix, symmetric_top
+from validate.rigid import (
+    FIRST_ORDER, FREE_ENGINES, MATRIX, TURNS, Rigid, axes_seen, free_limits, freely, omega_and_L, pose, quaternion_matrix, symmetric_top)
 from validate.scene import EXACT
 
 TITLE, LESSON = "Axisymmetric body", "rotation"
