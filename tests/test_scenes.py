@@ -45,6 +45,17 @@ def test_a_truth_begins_where_the_scene_begins(name):
         assert np.allclose(scene.truth(p, 0.0), begin, rtol=0.0, atol=1e-9 * (1.0 + np.abs(begin).max()))
 
 
+@scenes([n for n in SCENES if hasattr(binding.bind_scene(n), "poses")])
+def test_a_body_is_shown_by_a_place_and_a_rotation_where_the_motion_has_it(name):
+    scene = binding.bind_scene(name)
+    p = next(iter(scene.CASES.values()))
+    for t in (0.0, 0.37 * scene.T, scene.T):
+        observed = np.array(scene.truth(p, t), dtype=float)
+        poses = np.array(scene.poses(observed, p), dtype=float)
+        assert poses.shape == (len(scene.bodies(p)), 7) and np.all(np.isfinite(poses))
+        assert np.allclose(np.linalg.norm(poses[:, 3:], axis=1), 1.0, rtol=0.0, atol=1e-12)      # rounding of quaternions of R
+
+
 @scenes(REFINED)
 def test_steps_span_two_decades(name):
     steps = binding.bind_scene(name).STEPS

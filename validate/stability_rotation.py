@@ -49,12 +49,12 @@ def energies(lesson, method, I, omega, dt, ts):
 
 # ---------------------------------------------------------------------------------------------- drift of energy
 
-DISC, SPUN, MS = (0.04, 0.04, 0.02), (2.0, 4.0, 6.0), 1e-3     # moments [kg m²], ω [rad/s], step [s]
+CYLINDER, SPUN, MS = (0.04, 0.04, 0.02), (2.0, 4.0, 6.0), 1e-3     # moments [kg m²], ω [rad/s], step [s]
 
 
 def gyroscopic_energy(t, sign):
     """E/E₀ of a step that takes the gyroscopic term at its beginning (+1) or its end (−1), exactly: ω_⊥² grows by 1 + (Ω dt)² or shrinks."""
-    I, w = np.array(DISC), np.array(SPUN)
+    I, w = np.array(CYLINDER), np.array(SPUN)
     turn = (I[2] - I[0]) / I[0] * w[2]
     across = I[0] * (w[0] ** 2 + w[1] ** 2) * (1.0 + (turn * MS) ** 2) ** (sign * t / MS)
     return (across + I[2] * w[2] ** 2) / np.sum(I * w * w)
@@ -62,7 +62,7 @@ def gyroscopic_energy(t, sign):
 
 def kept_L_energy(t, times=1.0):
     """E/E₀ where L is kept and ω is that of the beginning, to first order in dt: u = L₃² obeys  u̇ = ρ u (L² − u),  a logistic."""
-    I, L = np.array(DISC), np.array(DISC) * np.array(SPUN)
+    I, L = np.array(CYLINDER), np.array(CYLINDER) * np.array(SPUN)
     squared, u0 = L @ L, L[2] ** 2
     rate = times * MS * (I[0] - I[2]) * squared / (I[0] ** 2 * I[2])
     u = squared / (1.0 + (squared / u0 - 1.0) * np.exp(-rate * t))
@@ -71,16 +71,16 @@ def kept_L_energy(t, times=1.0):
 
 
 def case_11(lesson):
-    """A first-order step gains or loses  dE/dt = ±½ dt ω̇ᵀIω̇,  ω̇ seen from the body; for this disc ±4.74 % in 10 s at 1 ms.
+    """A first-order step gains or loses  dE/dt = ±½ dt ω̇ᵀIω̇,  ω̇ seen from the body; for this cylinder ±4.74 % in 10 s at 1 ms.
 
     Gyroscopic term at the beginning:  I Δω = −dt ω × Iω,  so that ΔE = ½ Δωᵀ I Δω > 0;  at the end, minus that.  Seen from the body the
-    disc's ω_⊥ turns at Ω = (I₃ − I₁)/I₁ ω₃, so that explicit Euler multiplies its length by √(1 + (Ω dt)²), implicit Euler divides:
+    cylinder's ω_⊥ turns at Ω = (I₃ − I₁)/I₁ ω₃, so that explicit Euler multiplies its length by √(1 + (Ω dt)²), implicit Euler divides:
     exact, because turning about ω moves nothing along ω.  Where L is kept, ℓ ← e^(−dt ω*) ℓ has the same ΔE; renormalising by
-    columns adds  dt² κ  to the turn, κ = ½(−ω₂ω₃, ω₁ω₃, −ω₁ω₂), and for this disc twice the drift on top.
+    columns adds  dt² κ  to the turn, κ = ½(−ω₂ω₃, ω₁ω₃, −ω₁ω₂), and for this cylinder twice the drift on top.
     """
     steps, rate = 10000, np.linalg.norm(SPUN)
-    energy = {m: released(lesson, m, DISC, SPUN, MS, steps)[2] - 1.0 for m in LABEL}
-    I, w = np.array(DISC), np.array(SPUN)
+    energy = {m: released(lesson, m, CYLINDER, SPUN, MS, steps)[2] - 1.0 for m in LABEL}
+    I, w = np.array(CYLINDER), np.array(SPUN)
     w_dot = np.cross(I * w, w) / I
     first = 0.5 * MS * (w_dot @ (I * w_dot)) * steps * MS / (0.5 * w @ (I * w))
     found = [
@@ -107,9 +107,9 @@ def case_11(lesson):
              series("theory, gyroscopic, implicit", fine, 100.0 * (gyroscopic_energy(fine, -1) - 1.0), LINE),
              series("theory, L kept", fine, 100.0 * (kept_L_energy(fine) - 1.0), LINE),
              series("theory, renormalised", fine, 100.0 * (kept_L_energy(fine, 3.0) - 1.0), LINE)]
-    drawn += [series(LABEL[m], ts, 100.0 * (energies(lesson, m, DISC, SPUN, MS, ts) - 1.0), DOTS)
+    drawn += [series(LABEL[m], ts, 100.0 * (energies(lesson, m, CYLINDER, SPUN, MS, ts) - 1.0), DOTS)
               for m in ("gyroscopic_step", "implicit_gyroscopic_step", "quaternion_step", "matrix_step", "midpoint_step", "splitting_step")]
-    return found, Picture("Energy of a thrown disc at 1 ms", "t [s]", "energy gained [%]", drawn,
+    return found, Picture("Energy of a thrown cylinder at 1 ms", "t [s]", "energy gained [%]", drawn,
                           "First-order steps gain energy or lose it, three times as fast where R is renormalised by columns; the midpoint turn and "
                           "the splitting keep it.")
 
@@ -117,14 +117,14 @@ def case_11(lesson):
 # ---------------------------------------------------------------------------------------------- too fast
 
 def case_14(lesson):
-    """A disc at 10⁴ rad/s with 10 rad a step: L is a state and does not change; two equal moments make the splitting exact.
+    """A cylinder at 10⁴ rad/s with 10 rad a step: L is a state and does not change; two equal moments make the splitting exact.
 
     Round-off: an angle of N rad is known to some 16 roundings of N/2⁵³.  The gyroscopic term at the beginning multiplies ω_⊥ by
     √(1 + (Ω dt)²) = √17 a step.
     """
     fast, steps = (6000.0, 0.0, 8000.0), 1000
-    I, L = np.array(DISC), np.array(DISC) * fast
-    runs = {m: tried(lesson, m, DISC, fast, MS, steps) for m in LABEL}
+    I, L = np.array(CYLINDER), np.array(CYLINDER) * fast
+    runs = {m: tried(lesson, m, CYLINDER, fast, MS, steps) for m in LABEL}
     lost = max(np.abs(runs[m][1] - L).max() if runs[m] else np.inf for m in KEEP_L)
     angle = (np.linalg.norm(L) / I[0] + abs(1.0 - I[2] / I[0]) * fast[2]) * steps * MS
     found = [finding(14, "Where L is the state, no spin is too fast to keep it.", f"largest change of L in {len(KEEP_L)} steps of the lesson [kg m²/s]",
@@ -147,10 +147,10 @@ def case_14(lesson):
         errors = []
         for spin in spins:
             omega = spin / 1e4 * np.array(fast)
-            run = tried(lesson, method, DISC, omega, MS, steps)
+            run = tried(lesson, method, CYLINDER, omega, MS, steps)
             errors.append(np.log10(max(relative_turn(run[0], symmetric_top(I, omega, steps * MS)), 1e-16)) if run else np.log10(np.pi))
         drawn.append(series(LABEL[method], np.log10(spins), errors, DOTS))
-    return found, Picture("A disc spun ever faster, 1 ms a step", "log₁₀ of the spin [rad/s]", "log₁₀ of the error after 1 s [rad]", drawn,
+    return found, Picture("A cylinder spun ever faster, 1 ms a step", "log₁₀ of the spin [rad/s]", "log₁₀ of the error after 1 s [rad]", drawn,
                           "The splitting loses only what the angle itself loses to rounding; the others are lost where they turn by about a radian a step.")
 
 
