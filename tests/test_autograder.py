@@ -182,9 +182,18 @@ def test_a_step_passes_a_right_answer_and_fails_an_empty_one(manifest, tmp_path)
     assert code == {str(tmp_path): 0, "lessons": 1}
 
 
-def test_points_that_classroom_cannot_count_are_refused():
-    with pytest.raises(BadInput, match=r"exercise 1\.1 is 0\.5: GitHub Classroom counts whole points"):
-        autograder.workflow([("integrators", "1.1", "euler_step", "test_a", 0.5, "")])
+def test_classroom_counts_whole_points():
+    def scores(*worths):
+        text = autograder.workflow([("integrators", f"1.{n}", "a_step", f"test_{n}", worth, "") for n, worth in enumerate(worths, 1)])
+        steps = yaml.safe_load(text)["jobs"]["run-autograding-tests"]["steps"]
+        return [step["with"]["max-score"] for step in steps if "command-grader@v1" in step.get("uses", "")], "times the workbook's" in text
+    assert scores(2, 1) == ([2, 1], False) and scores(1.5, 1) == ([3, 2], True) and scores(0.25, 0.5) == ([1, 2], True)
+    with pytest.raises(BadInput, match="not in quarters: GitHub Classroom counts whole points"):
+        scores(0.3)
+
+
+def test_the_workflow_of_all_lessons_is_written(tmp_path):
+    assert command_line("classroom", "--out", tmp_path / "grade.yml") == 0
 
 
 def test_the_workflow_is_written_where_it_was_asked_for(tmp_path):

@@ -131,7 +131,8 @@ def moment(text):
 
 HEAD = """# Written by `autograder classroom`.  The names of workflow and job are those that GitHub Classroom looks for.
 # The tests run with their public inputs, in the student's own repository: for grades on which something depends, collect and run `grade`.
-name: Autograding Tests
+"""
+JOB = """name: Autograding Tests
 "on": [push, workflow_dispatch]
 permissions:
   checks: write
@@ -178,8 +179,9 @@ def classroom(
 
 
 def workflow(manifest):
-    """The text of the workflow for a manifest.  Raises BadInput for an exercise whose points are not whole.
+    """The text of the workflow for a manifest.  Raises BadInput for points that no small factor makes whole.
 
+    GitHub counts whole points only: where an exercise has half a point, everybody's count for twice as much, and the workflow says so.
     The workbook is installed by a step of its own, not as setup-command: when that fails the job ends, and nobody gets a zero for it.
     timeout [min] is that of all tests of an exercise, and one for pytest to start.
     *Source:* the README of classroom-resources/autograding-command-grader and of autograding-grading-reporter, v1.
@@ -188,13 +190,14 @@ def workflow(manifest):
     for lesson, exercise, function, _, worth, _ in manifest:
         tests, total = steps.get((lesson, exercise, function), (0, 0.0))
         steps[lesson, exercise, function] = tests + 1, total + worth
-    text, ids = HEAD, []
+    scale = next((k for k in (1, 2, 4) if all(k * total == int(k * total) for _, total in steps.values())), None)
+    if scale is None:
+        raise BadInput("points", "not in quarters", "GitHub Classroom counts whole points only: share them out differently")
+    text, ids = HEAD + (f"# GitHub counts whole points: these are {scale} times the workbook's.\n" if scale > 1 else "") + JOB, []
     for (lesson, exercise, function), (tests, total) in steps.items():
-        if total != int(total):
-            raise BadInput(f"points of exercise {exercise}", f"{total:g}", "GitHub Classroom counts whole points only: share them out differently")
         ids.append(f"exercise-{exercise.replace('.', '-')}")
         text += STEP.format(name=f"Exercise {exercise} {function}", id=ids[-1], lesson=lesson, exercise=exercise,
-                            minutes=1 + ceil(tests * points.LIMIT / 60.0), points=int(total))
+                            minutes=1 + ceil(tests * points.LIMIT / 60.0), points=int(scale * total))
     env = "\n".join(f"          {name.upper()}_RESULTS: ${{{{ steps.{name}.outputs.result }}}}" for name in ids)
     return text + TAIL.format(results=env, runners=",".join(ids))
 
