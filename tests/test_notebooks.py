@@ -1,17 +1,14 @@
 """The notebooks run from first cell to last with nothing attempted, half done and solved; stored without outputs."""
 
-import contextlib
-import json
 import re
-import tempfile
 
 import nbformat
 import pytest
-import zmq
-from jupyter_client import KernelManager
 
 from validate.binding import ROOT, SOLUTIONS, lesson_names
 from validate.generate import exercises, stub
+
+from .kernels import kernel, ran
 
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 STATES = {"nothing attempted": 0.0, "half done": 0.5, "solved": 1.0}          # share of the exercises, from the first on
@@ -29,35 +26,11 @@ def test_a_notebook_is_stored_without_outputs(path):
         assert cell.cell_type != "code" or (not cell.outputs and cell.execution_count is None)
 
 
-@contextlib.contextmanager
-def kernel():
-    """A client of a new kernel.  It waits by blocking: nbclient's way of waiting may overlook an answer on a busy machine, until its time is up."""
-    with tempfile.TemporaryDirectory() as place:                      # two kernels that start together may choose the same port, but not the same file
-        manager = KernelManager(kernel_name="python3", **({"transport": "ipc", "ip": f"{place}/kernel"} if zmq.has("ipc") else {}))
-        manager.start_kernel(cwd=ROOT / "notebooks")
-        client = manager.blocking_client()
-        try:
-            client.start_channels()
-            client.wait_for_ready(timeout=60)
-            yield client
-        finally:
-            client.stop_channels()
-            manager.shutdown_kernel(now=True)
-
-
-def ran(client, source):
-    """What a cell puts out, as text."""
-    said = []
-    reply = client.execute_interactive(source, timeout=120, allow_stdin=False, output_hook=lambda message: said.append(message["content"]))["content"]
-    assert reply["status"] == "ok", "\n".join([source, *reply.get("traceback", ())])
-    return json.dumps(said, ensure_ascii=False, default=str)
-
-
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_a_notebook_runs_to_its_end_and_its_checks_say_the_state(path, tmp_path):
     """One kernel, as at a student's desk: run from first cell to last, write more of the lessons, forget every name, run again."""
     cells = [cell.source for cell in nbformat.read(path, as_version=4).cells if cell.cell_type == "code"]
-    with kernel() as client:
+    with kernel(ROOT / "notebooks") as client:
         for state, solved in ((state, answered(state)) for state in STATES):
             for name in lesson_names():
                 (tmp_path / state).mkdir(exist_ok=True)
