@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput, Diverged, check_finite, check_positive
+from solutions.checks import BadInput, Diverged, check_end, check_finite, check_motion, check_positive
 
 HALVINGS = 60                # of an interval of time: 2⁻⁶⁰ of a step is below the spacing of floats
 EVENTS = 8                   # stops and starts in one step [-]; a force that reverses more often needs a shorter step
@@ -374,15 +374,12 @@ def contact_motion(step, acceleration, surface, t, x, v, dt, steps, p):
     Raises BadInput for a mass or a step that is not positive, a negative μ, an e outside 0 … 1 or a state that is not finite,
     Diverged when the end is not finite.
     """
-    check_positive("step dt [s]", dt)
     check_positive("mass m [kg]", p.m)
     check_friction(p.mu)
     if not 0.0 <= p.e <= 1.0:
         raise BadInput("restitution e [-]", p.e, "give a number from 0 to 1")
-    check_finite("position x [m]", x)
-    check_finite("velocity v [m/s]", v)
+    check_motion(x, v, dt)
     for n in range(steps):
         x, v = step(acceleration, surface, t + n * dt, x, v, dt, p)
-    if not (np.all(np.isfinite(x)) and np.all(np.isfinite(v))):
-        raise Diverged("the motion is no longer finite at dt [s]", dt, "take a smaller step")
+    check_end(x, v, dt)
     return x, v

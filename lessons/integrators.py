@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solutions.checks import Diverged, check_finite, check_positive
+from solutions.checks import Diverged, check_end, check_motion
 
 NEWTON_TOLERANCE = 1e-12     # last correction over the size of the velocity [-]: well above round-off, 2e-16
 NEWTON_LIMIT = 30            # corrections [-]; from a sane guess Newton doubles its digits and needs fewer than 8
@@ -179,13 +179,10 @@ def advance(step, acceleration, t, x, v, dt, steps, p):
 
     Raises BadInput for a step that is not positive or a state that is not finite, Diverged when the end is not finite.
     """
-    check_positive("step dt [s]", dt)
-    check_finite("position x [m]", x)
-    check_finite("velocity v [m/s]", v)
+    check_motion(x, v, dt)
     for n in range(steps):
         x, v = step(acceleration, t + n * dt, x, v, dt, p)
-    if not (np.all(np.isfinite(x)) and np.all(np.isfinite(v))):
-        raise Diverged("the motion is no longer finite at dt [s]", dt, "take a smaller step, or an implicit method")
+    check_end(x, v, dt)
     return x, v
 
 

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput, Diverged, check_finite, check_positive
+from solutions.checks import BadInput, Diverged, check_end, check_finite, check_motion, check_positive
 
 NEWTON_TOLERANCE = 1e-12     # last correction over the size of the unknown [-]: Newton squares it, so what is left is round-off
 NEWTON_LIMIT = 30            # corrections [-]; from a sane guess Newton doubles its digits and needs fewer than 6
@@ -510,20 +510,20 @@ def check_rotation(q):
         raise BadInput("length of the quaternion q [-]", length, "divide q by it: an orientation has length 1")
 
 
-def tumble(step, torque, t, q, L, dt, steps, body):
-    """Given.  The state (q, L) after so many steps of one method.
-
-    Raises BadInput for a step that is not positive, a quaternion that is no rotation, moments that no body has, an L that is not
-    finite; Diverged when the end is not finite.
-    """
+def check_tumbling(q, L, dt, I_body):
+    """Given.  Raise BadInput for a step that is not positive, a quaternion that is no rotation, moments that no body has, an L that is not finite."""
     check_positive("step dt [s]", dt)
     check_rotation(q)
-    check_moments(body.I_body)
+    check_moments(I_body)
     check_finite("angular momentum L [kg m²/s]", L)
+
+
+def tumble(step, torque, t, q, L, dt, steps, body):
+    """Given.  The state (q, L) after so many steps of one method; raises what check_tumbling raises, and Diverged when the end is not finite."""
+    check_tumbling(q, L, dt, body.I_body)
     for n in range(steps):
         q, L = step(torque, t + n * dt, q, L, dt, body)
-    if not (np.all(np.isfinite(q)) and np.all(np.isfinite(L))):
-        raise Diverged("the rotation is no longer finite at dt [s]", dt, "take a smaller step")
+    check_end(q, L, dt)
     return q, L
 
 
@@ -540,15 +540,13 @@ def tumbling(step, torque, t, q, L, dt, steps, body):
 
 def move(step, load, t, x, v, q, omega, dt, steps, body):
     """Given.  The state (x, v, q, ω) after so many steps of a rigid body, like rigid_body_step; raises what tumble raises."""
-    check_positive("step dt [s]", dt)
     check_positive("mass m [kg]", body.m)
+    check_motion(x, v, dt)
     check_rotation(q)
     check_moments(body.I_body)
-    check_finite("position x [m]", x)
-    check_finite("velocity v [m/s]", v)
     check_finite("angular velocity ω [rad/s]", omega)
     for n in range(steps):
         x, v, q, omega = step(load, t + n * dt, x, v, q, omega, dt, body)
-    if not (np.all(np.isfinite(x)) and np.all(np.isfinite(v)) and np.all(np.isfinite(omega))):
-        raise Diverged("the motion is no longer finite at dt [s]", dt, "take a smaller step")
+    check_end(x, v, dt)
+    check_end(q, omega, dt)
     return x, v, q, omega

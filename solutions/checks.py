@@ -28,3 +28,16 @@ def check_finite(thing, values):
     for value in values.ravel():
         if not np.isfinite(value):
             raise BadInput(thing, value, "give finite numbers only")
+
+
+def check_motion(x, v, dt):
+    """Raise BadInput for a step that is not positive, or for a state that is not finite: what a loop asks before its first step."""
+    check_positive("step dt [s]", dt)
+    check_finite("position x [m]", x)
+    check_finite("velocity v [m/s]", v)
+
+
+def check_end(x, v, dt):
+    """Raise Diverged unless the state is still finite: what a loop asks after its last step."""
+    if not (np.all(np.isfinite(x)) and np.all(np.isfinite(v))):
+        raise Diverged("the motion is no longer finite at dt [s]", dt, "take a smaller step, or an implicit method")
