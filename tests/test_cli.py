@@ -70,7 +70,7 @@ def pretended(monkeypatch):
 
     monkeypatch.setattr(measure, "errors", errors)
     monkeypatch.setattr(measure, "times", times)
-    monkeypatch.setattr(measure, "stability_cases", lambda lessons, plan: [])
+    monkeypatch.setattr(measure, "stability_cases", lambda lesson, plan: [])
     monkeypatch.setattr(report, "write", lambda out, *_: out / "index.html")
     monkeypatch.setattr(summary, "show", lambda *_: 0)
     return calls

@@ -56,7 +56,7 @@ def validate(
 def list_scenes():
     """Name every scene and its lesson."""
     table = Table("scene", "lesson", "what it is", box=None, header_style="bold")
-    for name in binding.scene_names():
+    for name in chosen([], []):
         module = binding.bind_scene(name)
         table.add_row(name, module.LESSON, (module.__doc__ or "").strip().splitlines()[0])
     console.print(table)
@@ -82,8 +82,8 @@ def chosen(scenes, lessons):
         binding.bind_scene(name)
     for name in lessons:
         binding.bind(name)
-    every = binding.scene_names()
-    return [n for n in every if n in scenes or (not scenes and (not lessons or binding.bind_scene(n).LESSON in lessons))]
+    wanted = {n: binding.bind_scene(n).LESSON for n in scenes or binding.scene_names()}
+    return [n for lesson in binding.lesson_names() for n in sorted(wanted) if wanted[n] == lesson and (scenes or not lessons or lesson in lessons)]
 
 
 def there(of, names):
@@ -154,13 +154,13 @@ def run(names, plan, jobs, out):
         with Progress(TextColumn("{task.description:22}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), console=console) as bars:
             measure_errors(store, names, plan, jobs, bars)
             measure_times(store, names, plan, bars)
-            results = store.results(names)
-            front = report.write(out, results, store.stability(), plan, jobs, bars)
+            results, stability = store.results(names), store.stability(names)
+            front = report.write(out, results, stability, plan, jobs, bars)
     except KeyboardInterrupt:
         console.print(f"Interrupted. What was finished is kept in {out}: the same command goes on from there.")
         return 130
     store.finish()
-    departures = summary.show(console, results, store.stability())
+    departures = summary.show(console, results, stability)
     console.print(f"\nThe report lies in [bold]{front}[/bold]", highlight=False, soft_wrap=True)
     return 1 if departures else 0
 
@@ -192,8 +192,8 @@ class Store:
     def results(self, names):
         return [{**self.get("errors", name), "times": self.get("times", name)} for name in names]
 
-    def stability(self):
-        return self.get("cases", "stability")
+    def stability(self, names):
+        return [case for lesson in lessons_of(names) for case in self.get("stability", lesson)]
 
     def finish(self):
         self.mark.unlink(missing_ok=True)
@@ -213,11 +213,24 @@ def code_digest(of):
     return binding.fingerprint(files)
 
 
+def lessons_of(names):
+    """The lessons of these scenes, in the order of the course."""
+    there = {binding.bind_scene(name).LESSON for name in names}
+    return [lesson for lesson in binding.lesson_names() if lesson in there]
+
+
+def mixed(names):
+    """The scenes in turns, one of each lesson: neighbours, which run at one time, then compile nothing twice."""
+    lessons = [binding.bind_scene(name).LESSON for name in names]
+    turns = {name: lessons[:k].count(lessons[k]) for k, name in enumerate(names)}
+    return sorted(names, key=turns.get)
+
+
 def measure_errors(store, names, plan, jobs, bars):
-    """Errors of every scene and the stability cases, several processes at a time: compiling is most of it."""
+    """Errors of every scene and then the stability cases, several processes at a time: compiling is most of it."""
     from . import measure
-    lessons = sorted({binding.bind_scene(name).LESSON for name in names})
-    tasks = {("cases", "stability"): (measure.stability_cases, lessons, plan), **{("errors", n): (measure.errors, n, plan) for n in names}}
+    tasks = {**{("errors", n): (measure.errors, n, plan) for n in mixed(names)},
+             **{("stability", lesson): (measure.stability_cases, lesson, plan) for lesson in lessons_of(names)}}
     todo = {key: call for key, call in tasks.items() if not store.has(*key)}
     bar = bars.add_task("errors and stability", total=len(tasks), completed=len(tasks) - len(todo))
     if jobs == 1 or len(todo) <= 1:

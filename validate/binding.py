@@ -42,8 +42,11 @@ def subject_folder(of):
 
 
 def lesson_names(folder=SOLUTIONS):
-    """The lessons in a folder, sorted."""
-    return sorted(path.stem for path in Path(folder).glob("*.py") if path.stem not in GIVEN)
+    """The lessons in a folder, in the order of the course: the number is the first in the text."""
+    def place(path):
+        number = re.match(r'"""Lesson (\d+)', path.read_text(encoding="utf-8", errors="replace"))
+        return int(number[1]) if number else 99, path.stem
+    return [path.stem for path in sorted((path for path in Path(folder).glob("*.py") if path.stem not in GIVEN), key=place)]
 
 
 def withheld(lesson, folder=SOLUTIONS):

@@ -41,7 +41,7 @@ class Plan(NamedTuple):
 
     def longest(self):
         """{speed: how long a single timed run may take [s]}; longer ones are left to --full, and there out."""
-        return {"plain": 0.006, "compiled": 0.006, "engine": 0.02} if self.quick else {"plain": 0.5, "compiled": 0.5, "engine": 1.5}
+        return {"plain": 0.003, "compiled": 0.003, "engine": 0.01} if self.quick else {"plain": 0.5, "compiled": 0.5, "engine": 1.5}
 
 
 # ---------------------------------------------------------------------------------------------- running a scene
@@ -321,9 +321,9 @@ def engine_frames(engine, p, dt, per_frame):
     return film
 
 
-def stability_cases(lessons, plan):
-    """The stability cases of these lessons, as data."""
-    found = stability.cases(lessons, plan.of, "compiled" in plan.speeds)
+def stability_cases(lesson, plan):
+    """The stability cases of a lesson, as data."""
+    found = stability.cases(lesson, plan.of, "compiled" in plan.speeds)
     return jsonable([{**case._asdict(), "findings": [f._asdict() for f in case.findings], "picture": case.picture._asdict()} for case in found])
 
 

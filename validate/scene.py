@@ -68,6 +68,8 @@ CONTACT = Method("contact_step", "contact", 1, "friction")
 GRIPPING = Method("gripping_step", "gripping", 1, "friction")
 
 INTEGRATORS = (EULER, MIDPOINT, RK4, AVERAGE_VELOCITY, SYMPLECTIC_EULER, VERLET, IMPLICIT_EULER, IMPLICIT_MIDPOINT)
+ONE_OF_EACH_ORDER = (SYMPLECTIC_EULER, VERLET, RK4)                  # enough for a quick run; oscillator and throw show the others
+LEFT_TO_FULL = tuple(method.function for method in INTEGRATORS if method not in ONE_OF_EACH_ORDER)
 
 
 class Engine(NamedTuple):

@@ -571,11 +571,11 @@ def examine(number, of="solutions", compiled=True):
         return Case(number, title, name, *function(lesson_of(number, of, compiled)))
 
 
-def cases(lessons, of="solutions", compiled=True):
-    """Every case of these lessons whose exercises have been attempted."""
+def cases(lesson, of="solutions", compiled=True):
+    """Every case of a lesson whose exercises have been attempted."""
     found = []
     for number in CASES:
-        if CASES[number][2] in lessons:
+        if CASES[number][2] == lesson:
             try:
                 found.append(examine(number, of, compiled))
             except NotImplementedError:

@@ -148,8 +148,3 @@ def readable(text):
     """Text from a student's program, fit to be shown: control and format characters spelt out, and not too much of it."""
     shown = "\n".join(map(spelt_out, text[:PRINTED].split("\n")))
     return shown + (" …" if len(text) > PRINTED else "")
-
-
-def course_order(lesson):
-    """Place of a lesson in the course: the number of its exercises."""
-    return int(next(iter(remote.exercises(lesson))).partition(".")[0])

@@ -11,13 +11,13 @@ from solutions.checks import check_positive
 from solutions.integrators import advance
 from solutions.springs import angular_spring_forces
 from validate.engines import pymunk_space, pymunk_world
-from validate.scene import INTEGRATORS, Engine, by_order
+from validate.scene import INTEGRATORS, LEFT_TO_FULL, Engine, by_order
 
 TITLE, LESSON = "Angular spring", "springs"
 T = 2.5                      # [s]: about two periods; no case is then at a turning point, where errors of phase do not show
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
 METHODS = INTEGRATORS
-FULL_ONLY = ("implicit_euler_step", "implicit_midpoint_step")     # not what this scene is about, and half of its compiling
+FULL_ONLY = LEFT_TO_FULL
 HINGE, DOWN = np.zeros(2), np.array([0.0, -1.0])                  # where the rod turns, and the end of the arm that is fixed [m]
 UNCERTAINTY = 1e-12          # DOP853's, where both act; the closed forms are ten times better
 

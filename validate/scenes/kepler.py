@@ -7,7 +7,7 @@ import numpy as np
 from solutions.checks import BadInput, check_positive
 from solutions.integrators import advance
 from validate.engines import Bullet, pymunk_space, pymunk_world
-from validate.scene import INTEGRATORS, LATE_LEAPFROG, ROUND_OFF, Engine, World
+from validate.scene import INTEGRATORS, LATE_LEAPFROG, LEFT_TO_FULL, ROUND_OFF, Engine, World
 
 TITLE, LESSON = "Kepler", "integrators"
 T = 100.0                    # [s]: sixteen revolutions
@@ -15,8 +15,8 @@ STEPS = (2000, 5000, 10000, 20000, 50000, 100000, 150000, 200000)
 METHODS = INTEGRATORS
 ORDERS = {"symplectic_euler_step": LATE_LEAPFROG}       # see late_start
 # Euler, average velocity and implicit Euler gain or lose energy at every passage, see drift: they are drawn, but no step here is one
-# at which theory promises anything.  The implicit methods take half of the compiling.
-FULL_ONLY = ("euler_step", "average_velocity_step", "implicit_euler_step", "implicit_midpoint_step")
+# at which theory promises anything.
+FULL_ONLY = LEFT_TO_FULL
 FILM = 12.6                  # two revolutions [s]
 UNCERTAINTY = 1e-12          # the truth's: round-off in the energy, v²/2 − μ/r, grows with time as in drift(): 3e-13
 

@@ -3,13 +3,14 @@
 import numpy as np
 
 from solutions.integrators import advance
-from validate.scene import INTEGRATORS
-from validate.scenes.kepler import ENGINES, FULL_ONLY, ORDERS, Params, in_space, limits_at, observe, points, start, truth  # noqa: F401
+from validate.scene import INTEGRATORS, LEFT_TO_FULL
+from validate.scenes.kepler import ENGINES, ORDERS, Params, in_space, limits_at, observe, points, start, truth  # noqa: F401
 
 TITLE, LESSON = "Kepler, near collision", "integrators"
 T = 20.0                     # [s]: three revolutions
 STEPS = (2000, 5000, 10000, 20000, 50000, 100000, 200000)
 METHODS = INTEGRATORS
+FULL_ONLY = LEFT_TO_FULL
 FILM = 12.6                  # two revolutions [s]
 UNCERTAINTY = 1e-12          # the truth's, as in kepler: 1e-13
 

@@ -7,13 +7,13 @@ import numpy as np
 from solutions.checks import check_positive
 from solutions.integrators import advance
 from validate.engines import Bullet, pymunk_space, pymunk_world
-from validate.scene import INTEGRATORS, Engine, World, by_order
+from validate.scene import INTEGRATORS, LEFT_TO_FULL, Engine, World, by_order
 
 TITLE, LESSON = "Linear drag", "integrators"
 T = 1.97599434               # [s]: when it is back at the height of the start
 STEPS = (10, 20, 50, 100, 200, 500, 1000, 2000)
 METHODS = INTEGRATORS
-FULL_ONLY = ("implicit_euler_step", "implicit_midpoint_step")     # not what this scene is about, and half of its compiling
+FULL_ONLY = LEFT_TO_FULL
 UNCERTAINTY = 1e-14          # (1 − e^(−kt)) and gt are ten times as large as their difference
 
 

@@ -7,13 +7,13 @@ import numpy as np
 from solutions.checks import check_positive
 from solutions.integrators import advance
 from validate.engines import Bullet, pymunk_space, pymunk_world
-from validate.scene import INTEGRATORS, Engine, World, by_order
+from validate.scene import INTEGRATORS, LEFT_TO_FULL, Engine, World, by_order
 
 TITLE, LESSON = "Quadratic drag", "integrators"
 T = 3.0                      # [s]: three times what it takes to gain the terminal speed without air
 STEPS = (15, 30, 60, 150, 300, 600, 1500, 3000)
 METHODS = INTEGRATORS
-FULL_ONLY = ("implicit_euler_step", "implicit_midpoint_step")     # not what this scene is about, and half of its compiling
+FULL_ONLY = LEFT_TO_FULL
 UNCERTAINTY = 1e-14
 
 
