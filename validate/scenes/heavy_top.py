@@ -14,7 +14,7 @@ TITLE, LESSON = "Heavy top", "rotation"
 T = 2.0                      # [s]: nearly three nutations
 STEPS = (500, 1000, 2000, 5000, 10000, 20000, 50000)
 METHODS = TURNS
-FULL_ONLY = ("matrix_step", "axis_angle_step", "composed_midpoint_step")       # the asymmetric top has the first two
+FULL_ONLY = ("matrix_step", "axis_angle_step", "implicit_gyroscopic_step", "midpoint_step", "composed_midpoint_step")     # the asymmetric top has them
 UNCERTAINTY = 1e-12
 
 
