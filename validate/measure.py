@@ -37,11 +37,16 @@ class Plan(NamedTuple):
     quick: bool = True
     live: tuple = ("pymunk", "pybullet")     # engines installed here; the others come from their records
     overrides: tuple = ()                    # (name, value) pairs that replace parameters of the first case
-    most_steps: int | None = None            # a shorter sweep of the first case only, for a notebook
+    most_steps: int | None = None            # for a notebook: a shorter sweep, of the first case only
 
     def longest(self):
         """{speed: how long a single timed run may take [s]}; longer ones are left to --full, and there out."""
-        return {"plain": 0.003, "compiled": 0.003, "engine": 0.01} if self.quick else {"plain": 0.5, "compiled": 0.5, "engine": 1.5}
+        ours, engine = (0.02, 0.02) if self.most_steps else (0.003, 0.01) if self.quick else (0.5, 1.5)
+        return {"plain": ours, "compiled": ours, "engine": engine}
+
+    def repeats(self):
+        """How often each run is timed: seldom in a notebook, whose reader waits."""
+        return 3 if self.most_steps else REPEATS
 
 
 # ---------------------------------------------------------------------------------------------- running a scene
@@ -126,7 +131,7 @@ def shown_order(rows, floor):
 
 # ---------------------------------------------------------------------------------------------- errors
 
-def errors(name, plan, tick=lambda: None):
+def errors(name, plan):
     """Everything about a scene but its run times: a dict that JSON can hold."""
     scene = binding.bind_scene(name, plan.of)
     fast = binding.bind_scene(name, plan.of, compiled=True) if "compiled" in plan.speeds else scene
@@ -142,11 +147,9 @@ def errors(name, plan, tick=lambda: None):
             ours.append(judged(scene, method.label, p, truth, runs, order))
             if still(scene) is not None:
                 ours[-1]["observed"] = [{"steps": n, "observed": o, "failure": f} for n, (o, f) in runs]
-            tick()
         cases[case] = {"params": p._asdict() if hasattr(p, "_asdict") else {}, "truth": truth.tolist(), "ours": ours,
                        "quantities": scene.QUANTITIES(p) if hasattr(scene, "QUANTITIES") else [],
                        "engines": [engine_curve(name, scene, case, e, p, truth, plan) for e in engines_of(scene, p)] if asked else []}
-        tick()
     first = next(iter(cases_of(scene, plan).values()))
     agreeing = usable({"cases": cases})
     return jsonable({
@@ -179,7 +182,9 @@ def engines_of(scene, p):
 
 
 def not_run(scene, plan):
-    """Sentences: which methods this run leaves out, and why."""
+    """Sentences: which methods this run leaves out, and why; none in a notebook, which cannot run them all."""
+    if plan.most_steps:
+        return []
     labels = [m.label for m in scene.METHODS if m not in methods_of(scene, plan)]
     slow = [f"Left to --full, to keep this one quick: {', '.join(labels)}"] if labels else []
     if plan.quick and len(scene.CASES) > 1 and still(scene) is None:
@@ -341,7 +346,7 @@ class Timed(NamedTuple):
     prepare: object          # (steps, dt) → (the function to time, what to do after)
 
 
-def times(name, plan, result, tick=lambda: None):
+def times(name, plan, result):
     """Run times of the first case, joined with the errors already found: [{label, speed, steps, error, seconds, low, high}]."""
     scene = binding.bind_scene(name, plan.of)
     case, p = next(iter(cases_of(scene, plan).items()))
@@ -352,7 +357,7 @@ def times(name, plan, result, tick=lambda: None):
              for prepare in [_ours(name, plan, m, speed, p)] for n in found[m.label]]
     items += [Timed(e.label, "engine", n, scene.T / n, _engine(e, p)) for e in engines_of(scene, p) if refined and e.label.split(",")[0] in plan.live
               for n in found[e.label]]
-    timed = [(i.label, i.speed, i.steps, t) for i, t in interleaved(items, plan.longest(), tick)]
+    timed = [(i.label, i.speed, i.steps, t) for i, t in interleaved(items, plan.longest(), plan.repeats())]
     timed += [(e.label, "recorded", row["steps"], row) for e in engines_of(scene, p) if e.label.split(",")[0] not in plan.live
               for row in (recorded(name, case, e.label) or {}).get("seconds") or []]
     rows = [{**t, "label": label, "speed": speed, "steps": n, "error": found[label][n]["error"]} for label, speed, n, t in timed
@@ -387,7 +392,7 @@ def _engine(engine, p):
     return prepare
 
 
-def interleaved(items, longest, tick):
+def interleaved(items, longest, repeats=REPEATS):
     """[(item, {seconds, low, high})]: medians of interleaved repeats.  What would take longer than `longest[speed]` is left out."""
     chosen = []
     with warnings.catch_warnings(), np.errstate(all="ignore"):
@@ -406,10 +411,9 @@ def interleaved(items, longest, tick):
         enabled = gc.isenabled()
         gc.disable()
         try:
-            for _ in range(REPEATS):
+            for _ in range(repeats):
                 for (item, inner), seconds in zip(chosen, samples):
                     seconds.append(_clock(item, inner))
-                tick()
         finally:
             if enabled:
                 gc.enable()
@@ -473,7 +477,7 @@ def left_out(name, plan, p, usable):
         state, p_full = extra(p)
         items = [Timed(which, speed, steps, scene.T / steps, _loop(scene, step, *begin))
                  for which, *begin in (("without", p, scene.start(p)), ("with", p_full, state))]
-        (_, lean), (_, full) = interleaved(items, {speed: np.inf}, lambda: None)
+        (_, lean), (_, full) = interleaved(items, {speed: np.inf})
         a = scene.observe(scene.run(step, scene.law, scene.start(p), p, scene.T / steps, steps), p)
         b = scene.observe(scene.run(step, scene.law, state, p_full, scene.T / steps, steps), p)
         rows.append({"what": what, "saves": full["seconds"] / lean["seconds"], "same": relative(a, b) < 1e-9, "note": ""})

@@ -1,6 +1,8 @@
 """The still pictures.  Colours: Okabe and Ito 2008, told apart by colour-blind readers; every curve has a marker too."""
 
 import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.ticker import LogFormatterSciNotation, LogLocator, NullFormatter
 
 LOOKS = {                       # label: colour, marker
     "Euler": ("#E69F00", "o"), "midpoint": ("#56B4E9", "^"), "Runge–Kutta 4": ("#009E73", "s"), "average velocity": ("#CC79A7", "v"),
@@ -65,18 +67,19 @@ def work_precision(path, result):
     """Error against run time: compiled solid, plain faint, engines dark."""
     figure, axes = plt.subplots()
     rows = [r for r in result["times"]["rows"] if 10 * result["uncertainty"] < r["error"] < TOP]
+    compiled = any(r["speed"] == "compiled" for r in rows)
     for label, speed in dict.fromkeys((r["label"], r["speed"]) for r in rows):
         colour, marker, line = look(label)
         mine = sorted((r["steps"], r["seconds"], r["error"], r["low"], r["high"]) for r in rows if (r["label"], r["speed"]) == (label, speed))
         _, x, y, low, high = zip(*mine)
-        plain = speed == "plain"
+        plain = compiled and speed == "plain"
         axes.loglog(x, y, color=colour, marker=marker, ls=":" if plain else line, ms=3 if plain else 5, lw=0.9 if plain else 1.4,
-                    alpha=0.55 if plain else 1.0, label=None if plain and any(r["speed"] == "compiled" for r in rows) else label + (" (recorded)" if speed == "recorded" else ""))
+                    alpha=0.55 if plain else 1.0, label=None if plain else label + (" (recorded)" if speed == "recorded" else ""))
         axes.hlines(y, low, high, color=colour, lw=0.8, alpha=0.5)
-    if {"plain", "compiled"} <= {r["speed"] for r in rows}:
+    if compiled and any(r["speed"] == "plain" for r in rows):
         axes.plot([], [], color="#555555", ls=":", marker=".", label="the same, plain Python")
     axes.set(xlabel="run time [s]" if result["still"] else "run time of the stepping loop [s]", ylabel=error_label(result))
-    _finish(figure, axes, path, "compiled, and engines" if any(r["speed"] == "compiled" for r in rows) else "plain Python, and engines")
+    _finish(figure, axes, path, "compiled, and engines" if compiled else "plain Python, and engines")
 
 
 def stability(path, case):
@@ -103,7 +106,17 @@ def draw(plot, path, data):
     plot(path, data)
 
 
+def _tick(axis):
+    """On a logarithmic axis name powers of ten, and over fewer than two of them 2 and 5 as well; more would run into each other."""
+    if axis.get_scale() == "log":
+        few = np.ptp(np.log10(axis.get_view_interval())) < 2.0
+        axis.set_minor_locator(LogLocator(subs=(2, 5) if few else "auto"))
+        axis.set_minor_formatter(LogFormatterSciNotation(minor_thresholds=(np.inf, np.inf)) if few else NullFormatter())
+
+
 def _finish(figure, axes, path, title):
+    _tick(axes.xaxis)
+    _tick(axes.yaxis)
     if not axes.get_legend_handles_labels()[0]:
         axes.plot([], [], label=" ")
         axes.text(0.5, 0.5, "nothing to draw: no method has been attempted", transform=axes.transAxes, ha="center", color="#555555")
