@@ -41,3 +41,14 @@ def test_a_notebook_runs_to_its_end_and_its_checks_say_the_state(path, tmp_path)
                 if asked:
                     expected = "passed" if any(asked[1] in numbers for numbers in solved.values()) else "not attempted"
                     assert f"Exercise {asked[1]}: {expected}" in said, f"{state}: {said}"
+
+
+def test_a_lesson_that_cannot_be_loaded_is_told_and_the_engines_run_alone(tmp_path, monkeypatch, capsys):
+    from validate.notebook import measured, scene_of
+    (tmp_path / "friction.py").write_text("def normal_force(:\n")
+    monkeypatch.setenv("WORKBOOK_LESSONS", str(tmp_path))
+    monkeypatch.setattr("validate.notebook.display", lambda shown: print(shown.data))
+    result = measured("stick_slip", 50)
+    case = next(iter(result["cases"].values()))
+    assert case["ours"] == [] and case["engines"] and scene_of("stick_slip").TITLE
+    assert "lessons/friction.py cannot be loaded, line 1: SyntaxError" in capsys.readouterr().out

@@ -171,7 +171,9 @@ def can(scene, name, p):
 
 
 def methods_of(scene, plan, p=None):
-    """The methods to run on a case; those that the scene finds too slow for a quick validation only in a full one."""
+    """The methods to run on a case; those that the scene finds too slow for a quick validation only in a full one, none without a speed."""
+    if not plan.speeds:
+        return ()
     slow = getattr(scene, "FULL_ONLY", ()) if plan.quick else ()
     return tuple(m for m in scene.METHODS if m.function not in slow and can(scene, m.function, p))
 
@@ -402,7 +404,8 @@ def interleaved(items, longest, repeats=REPEATS):
             key = item.label, item.speed
             if key not in pace:
                 pace[key] = min(_clock(item, 1, steps=2) for _ in range(2)) / 2
-            if pace[key] * item.steps > longest[item.speed]:
+            first = all((i.label, i.speed) != key for i, _ in chosen)
+            if pace[key] * item.steps > longest[item.speed] * (3.0 if first else 1.0):                   # or a slow one would not be there at all
                 continue
             seconds = min(_clock(item, 1) for _ in range(WARM_UPS))
             pace[key] = seconds / item.steps

@@ -52,11 +52,16 @@ def mine(lesson):
     try:
         latest[lesson] = binding.bind(lesson, folder())
     except Exception as e:
-        where = f", line {e.lineno}" if isinstance(e, SyntaxError) and e.lineno else ""
-        why = f"lessons/{lesson}.py cannot be loaded{where}: {type(e).__name__}: {e}"
-        display(HTML(f'<p style="color:{COLOUR["not yet"]}"><b>{escape(why)}</b></p>'))
-        latest[lesson] = Unreadable(why)
+        latest[lesson] = Unreadable(_say_unreadable(lesson, e))
     return latest[lesson]
+
+
+def _say_unreadable(lesson, e):
+    """Say in one sentence why a lesson could not be loaded; the sentence."""
+    at_fault, where = (Path(e.filename).stem, f", line {e.lineno}") if isinstance(e, SyntaxError) and e.filename else (lesson, "")
+    why = f"lessons/{at_fault}.py cannot be loaded{where}: {type(e).__name__}: {e}"
+    display(HTML(f'<p style="color:{COLOUR["not yet"]}"><b>{escape(why)}</b></p>'))
+    return why
 
 
 class StandIn:
@@ -182,14 +187,23 @@ def _display3d(picture, height):
 
 
 def scene_of(name):
-    """A scene with your lesson functions in it."""
-    return binding.bind_scene(name, folder())
+    """A scene with your lesson functions in it; with the workbook's own, and a sentence, where yours cannot be loaded."""
+    try:
+        return binding.bind_scene(name, folder())
+    except Exception as e:
+        scene = binding.bind_scene(name)
+        _say_unreadable(scene.LESSON, e)
+        return scene
 
 
 def measured(name, most_steps=1000):
-    """Hold your methods, plain, against truth and engines on one scene; returns what the report is made of."""
-    plan = measure.Plan(of=str(folder()), speeds=("plain",), live=tuple(n for n in measure.engines.NAMES if measure.engines.installed(n)),
-                        most_steps=most_steps)
+    """Hold your methods, plain, against truth and engines on one scene; returns what the report is made of.
+
+    Where your lesson cannot be loaded a sentence says so, and the engines run alone.
+    """
+    own = scene_of(name) is not binding.bind_scene(name) or folder().resolve() == binding.SOLUTIONS
+    plan = measure.Plan(of=str(folder()) if own else "solutions", speeds=("plain",) if own else (),
+                        live=tuple(n for n in measure.engines.NAMES if measure.engines.installed(n)), most_steps=most_steps)
     result = measure.errors(name, plan)
     return {**result, "times": measure.times(name, plan, result)}
 
