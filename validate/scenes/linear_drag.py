@@ -6,7 +6,7 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.integrators import advance
-from validate.engines import Bullet, pymunk_space, pymunk_world
+from validate.engines import Bullet, hidden_damping, pymunk_space, pymunk_world
 from validate.scene import INTEGRATORS, LEFT_TO_FULL, Engine, World, by_order
 
 TITLE, LESSON = "Linear drag", "integrators"
@@ -58,20 +58,6 @@ def truth(p, t):
     """
     v_0, v_end = np.array([p.vx, p.vy]), np.array([0.0, -p.g / p.k])
     return v_end * t - (v_0 - v_end) * np.expm1(-p.k * t) / p.k
-
-
-def hidden_damping(p, t):
-    """What a reduced-coordinate body of pybullet does by default: a − 0.04 v (1 + |v|), |v| the length of the vector; by DOP853.
-
-    Source: measured, and in Bullet's btMultiBody.
-    """
-    from scipy.integrate import solve_ivp
-
-    def law(t, y):
-        x, v = y[:2], y[2:]
-        return np.concatenate((v, acceleration(t, x, v, p) - 0.04 * v * (1.0 + np.linalg.norm(v))))
-
-    return solve_ivp(law, (0.0, max(t, 1e-9)), np.concatenate(start(p)), method="DOP853", rtol=1e-12, atol=1e-13).y[:2, -1]
 
 
 def tolerance(p, dt):
@@ -135,7 +121,7 @@ ENGINES = (
     Engine("pybullet, own damping", lambda p, dt: pybullet_make(p, dt, own=True), 1,
            "useMaximalCoordinates=1, linearDamping = 1 − e^(−k): what is lost in a second"),
 )
-WHY = {"pybullet, default": ("its reduced-coordinate bodies carry a hidden damping −0.04 v (1 + |v|)", hidden_damping)}
+WHY = {"pybullet, default": hidden_damping(acceleration, start)}
 
 
 def points(observed, p):

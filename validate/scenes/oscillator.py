@@ -6,7 +6,7 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.integrators import advance
-from validate.engines import Bullet, pymunk_space, pymunk_world
+from validate.engines import Bullet, hidden_damping, pymunk_space, pymunk_world
 from validate.scene import INTEGRATORS, Engine, World, by_order
 
 TITLE, LESSON = "Oscillator", "integrators"
@@ -63,16 +63,6 @@ def truth(p, t):
     return np.array([p.x0 * np.exp(-delta * t) * shape])
 
 
-def hidden_damping(p, t):
-    """What a reduced-coordinate body of pybullet does by default: a − 0.04 v (1 + |v|), by DOP853.
-
-    Source: measured, and in Bullet's btMultiBody.
-    """
-    from scipy.integrate import solve_ivp
-    law = lambda t, y: (y[1], acceleration(t, y[0], y[1], p) - 0.04 * y[1] * (1.0 + abs(y[1])))
-    return solve_ivp(law, (0.0, max(t, 1e-9)), (p.x0, 0.0), method="DOP853", rtol=1e-12, atol=1e-13).y[:1, -1]
-
-
 def tolerance(p, dt):
     """The fastest rate is ω + c/m; relative to x(T), which damping has made e^(δT) smaller than the motion was.
 
@@ -117,7 +107,7 @@ ENGINES = (
     Engine("pybullet", pybullet_make, 1, "useMaximalCoordinates=1, no damping; force applied each step"),
     Engine("pybullet, leapfrog start", lambda p, dt: pybullet_make(p, dt, ahead=0.5), 1, "first velocity − ½ a dt: second order without a damper"),
 )
-WHY = {"pybullet, default": ("its reduced-coordinate bodies carry a hidden damping −0.04 v (1 + |v|)", hidden_damping)}
+WHY = {"pybullet, default": hidden_damping(acceleration, start)}
 
 
 def points(observed, p):

@@ -6,7 +6,7 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.integrators import advance
-from validate.engines import Bullet, pymunk_space, pymunk_world
+from validate.engines import Bullet, hidden_damping, pymunk_space, pymunk_world
 from validate.scene import INTEGRATORS, LEFT_TO_FULL, Engine, World, by_order
 
 TITLE, LESSON = "Quadratic drag", "integrators"
@@ -65,16 +65,6 @@ def truth(p, t):
     return np.array([terminal_speed(p) ** 2 / p.g * (s + np.log1p(np.exp(-2.0 * s)) - np.log(2.0))])
 
 
-def hidden_damping(p, t):
-    """What a reduced-coordinate body of pybullet does by default: a − 0.04 v (1 + |v|), by DOP853.
-
-    Source: measured, and in Bullet's btMultiBody.
-    """
-    from scipy.integrate import solve_ivp
-    law = lambda t, y: (y[1], acceleration(t, y[:1], y[1:], p)[0] - 0.04 * y[1] * (1.0 + abs(y[1])))
-    return solve_ivp(law, (0.0, max(t, 1e-9)), (0.0, 0.0), method="DOP853", rtol=1e-12, atol=1e-13).y[:1, -1]
-
-
 def tolerance(p, dt):
     """The fastest rate is |∂a/∂v| = 2g/v∞ at the terminal speed, and what is wrong is as long as v∞ over that rate.
 
@@ -125,7 +115,7 @@ ENGINES = (
            "createMultiBody as it comes; force applied each step"),
     Engine("pybullet", pybullet_make, 1, "useMaximalCoordinates=1, no damping; force applied each step"),
 )
-WHY = {"pybullet, default": ("its reduced-coordinate bodies carry a hidden damping −0.04 v (1 + |v|)", hidden_damping)}
+WHY = {"pybullet, default": hidden_damping(acceleration, start)}
 
 
 def points(observed, p):

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solutions.integrators import advance
-from validate.engines import Bullet, pymunk_space, pymunk_world
+from validate.engines import Bullet, hidden_damping, pymunk_space, pymunk_world
 from validate.scene import EXACT, INTEGRATORS, Engine, World, by_order
 
 TITLE, LESSON = "Throw", "integrators"
@@ -58,20 +58,6 @@ def truth(p, t):
     return np.array([p.vx * t, p.vy * t, p.vz * t - 0.5 * p.g * t * t])
 
 
-def hidden_damping(p, t):
-    """What a reduced-coordinate body of pybullet does by default: a − 0.04 v (1 + |v|), |v| the length of the vector; by DOP853.
-
-    Source: measured, and in Bullet's btMultiBody.
-    """
-    from scipy.integrate import solve_ivp
-
-    def law(t, y):
-        x, v = y[:3], y[3:]
-        return np.concatenate((v, acceleration(t, x, v, p) - 0.04 * v * (1.0 + np.linalg.norm(v))))
-
-    return solve_ivp(law, (0.0, max(t, 1e-9)), np.concatenate(start(p)), method="DOP853", rtol=1e-12, atol=1e-13).y[:3, -1]
-
-
 def tolerance(p, dt):
     """The bias of order 1, exactly: moved with the old velocity it arrives at Σ dt v(n dt) = x(T) + ½ g dt T ẑ, with the new at − ½.
 
@@ -113,7 +99,7 @@ ENGINES = (
     Engine("pybullet", pybullet_make, 1, "useMaximalCoordinates=1, no damping"),
     Engine("pybullet, leapfrog start", lambda p, dt: pybullet_make(p, dt, ahead=0.5), EXACT, "first velocity − ½ a dt"),
 )
-WHY = {"pybullet, default": ("its reduced-coordinate bodies carry a hidden damping −0.04 v (1 + |v|)", hidden_damping)}
+WHY = {"pybullet, default": hidden_damping(acceleration, start)}
 
 
 def points(observed, p):
