@@ -153,11 +153,16 @@ def errors(name, plan):
     first = next(iter(cases_of(scene, plan).values()))
     agreeing = usable({"cases": cases})
     return jsonable({
-        "scene": name, "still": still(scene), "title": scene.TITLE, "lesson": scene.LESSON, "story": inspect.getdoc(scene) or "", "T": scene.T,
-        "uncertainty": scene.UNCERTAINTY, "truth_story": inspect.getdoc(scene.truth) or "", "needs": list(scene.NEEDS),
+        "scene": name, "still": still(scene), "title": scene.TITLE, "lesson": scene.LESSON, "story": said_of(scene), "T": scene.T,
+        "uncertainty": scene.UNCERTAINTY, "truth_story": said_of(scene.truth), "needs": list(scene.NEEDS),
         "without": not_run(scene, plan), "cases": cases, "parity": parity(scene, fast, plan, first), "picture": picture(scene, fast, plan, first, agreeing),
-        "law": inspect.getdoc(getattr(scene, "acceleration", None)) or "" if hasattr(scene, "acceleration") else "",
+        "law": said_of(scene.acceleration) if hasattr(scene, "acceleration") else "",
     })
+
+
+def said_of(thing):
+    """Its docstring, without what only the makers of lessons read."""
+    return (inspect.getdoc(thing) or "").removeprefix("Given.").replace("*Source:*", "Source:").replace("*Left out:*", "Left out:").strip()
 
 
 def still(scene):
