@@ -189,16 +189,17 @@ def engines_of(scene, p):
 
 
 def not_run(scene, plan):
-    """Sentences: which methods this run leaves out, and why; none in a notebook, which cannot run them all."""
+    """Sentences: what the scene does without, and what this run leaves to --full; in a notebook only the former, for it has no --full."""
+    never = [scene.WITHOUT[0].upper() + scene.WITHOUT[1:]] if hasattr(scene, "WITHOUT") else []
     if plan.most_steps:
-        return []
+        return never
     labels = [m.label for m in scene.METHODS if m not in methods_of(scene, plan)]
     slow = [f"Left to --full, to keep this one quick: {', '.join(labels)}"] if labels else []
     if plan.quick and len(scene.CASES) > 1 and still(scene) is None:
         slow.append(f"Left to --full: the engines on {', '.join(list(scene.CASES)[1:])}")
     if plan.quick and len(scene.STEPS) > 1 and scene.ENGINES:
         slow.append("Left to --full: the engines' finest step")
-    return slow
+    return never + slow
 
 
 def sweep(scene, plan=Plan()):

@@ -19,6 +19,7 @@ A scene is a module in `validate/scenes/`.  It must define
     NEEDS, LEAVES_OUT         what the scene calls; {what it does without: (p → (state, p) with it put in), or why not yet}
 and may define
     LINKS(p)                  pairs of points to join in the picture
+    WITHOUT                   why some methods or engines that a reader would expect are not there, in one sentence without its full stop
     FULL_ONLY                 functions of methods that are too slow here for a quick validation
     bodies(p)                 shapes of validate/report/space.py: the motion is then shown in space, and its points in small;
     poses(observed, p)        (bodies, 7) place and quaternion (w, x, y, z) of each;
