@@ -274,11 +274,30 @@ def _without_addresses():
     lower_constant(types.Dispatcher)(lambda context, builder, kind, function: context.get_dummy_value())
 
 
+@lru_cache(maxsize=1)
+def _short_of_words():
+    """Let `rows[k] = row` say that shapes differ, but not which: numba takes a second and a half to compile that sentence, wherever it may be said."""
+    from numba.extending import overload
+    from numba.np import arrayobj
+
+    def shapes_differ(src_shapes, index_shape):
+        """Stands in for numba's function of that purpose."""
+
+    @overload(shapes_differ)
+    def _(src_shapes, index_shape):
+        def say(src_shapes, index_shape):
+            raise ValueError("an array does not fit where it is assigned to")
+        return say
+    if hasattr(arrayobj, "raise_with_shape_context"):                # of numba 0.61 and later
+        arrayobj.raise_with_shape_context = shapes_differ
+
+
 def _use_cache(digest):
     """Point numba at this world's folder, and delete the folders of worlds long gone."""
     import numba
     from numba.core.config import _OptLevel
     _without_addresses()
+    _short_of_words()
     numba.config.OPT, numba.config.LOOP_VECTORIZE = _OptLevel(2), 0                   # same speed here, a third of the compiling
     warnings.filterwarnings("ignore", message="Cannot cache compiled function")      # then it is compiled anew, that is all
     folder = CACHE / digest
