@@ -134,7 +134,8 @@ def shown_order(rows, floor):
 def errors(name, plan):
     """Everything about a scene but its run times: a dict that JSON can hold."""
     scene = binding.bind_scene(name, plan.of)
-    fast = binding.bind_scene(name, plan.of, compiled=True) if "compiled" in plan.speeds else scene
+    table = still(scene) == ""                                       # nothing is timed in it: in a quick run it would be compiled for nothing
+    fast = binding.bind_scene(name, plan.of, compiled=True) if "compiled" in plan.speeds and not (table and plan.quick) else scene
     cases = {}
     for case, p in cases_of(scene, plan).items():
         asked = not cases or not plan.quick or still(scene) is not None       # moving ones ask engines for other cases in a full validation only
