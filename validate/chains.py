@@ -5,10 +5,13 @@ keep their length whatever is done; SciPy's DOP853 moves them.  A cloth is a set
 """
 
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.linalg import solve_banded
+from scipy.sparse import block_diag, csr_matrix, identity, kron
+from scipy.sparse.linalg import spsolve
 from scipy.special import ellipj, ellipk
 
 from .engines import pymunk_space, pymunk_world
@@ -20,7 +23,7 @@ PBD = Method("pbd_step", "PBD", 1, "pbd")
 XPBD = Method("xpbd_step", "XPBD", 1, "pbd")
 RATTLE = Method("rattle_step", "RATTLE", 2, "pbd")
 
-RTOL, ATOL = 1e-12, 1e-13
+RTOL = 1e-12                 # of DOP853; a tenth of it absolute
 ITERATIONS = 10              # of the engines' solvers for each link: news of an impulse goes one link a sweep, to and fro
 SHARE = 0.1                  # moment of inertia of a bob in pybullet over m l²: its solver sweeps over three axes, and a point has none
 
@@ -93,12 +96,12 @@ def rods_slope(n, l, m, g, inertia):
 
 
 @lru_cache(maxsize=None)
-def rope_motion(n, l, m, g, T, inertia=0.0, late=0.0, ahead=0.0):
+def rope_motion(n, l, m, g, T, inertia=0.0, late=0.0, ahead=0.0, rtol=RTOL):
     """solve_ivp's answer for (θ, ω) of a rope let go straight and horizontal along x, with the velocity of `ahead` seconds later."""
     slope = rods_slope(n, l, m, g, inertia) if inertia else rope_slope(l, m, g, late)
     start = np.concatenate((np.full(n, 0.5 * np.pi), np.zeros(n)))
     start[n:] = ahead * slope(0.0, start)[n:]
-    return solve_ivp(slope, (0.0, T), start, method="DOP853", rtol=RTOL, atol=ATOL, dense_output=True)
+    return solve_ivp(slope, (0.0, T), start, method="DOP853", rtol=rtol, atol=0.1 * rtol, dense_output=True)
 
 
 @lru_cache(maxsize=None)
@@ -110,8 +113,8 @@ def rope_lag(n, l, m, g, T, inertia=0.0, late=0.0, ahead=0.0):
     The engines take the links' directions in the middle of that difference (late = 0).  pybullet begins as we do, ahead = ½;
     pymunk moves before it pulls, x₁ = x₀: ahead = −½.
     """
-    h = 1e-4                 # [s]: a central difference, off by a relative (ρ h)², with DOP853's 1e-10 over h
-    ends = [rope_places(rope_motion(n, l, m, g, T, inertia, late * dt, ahead * dt).y[:n, -1], l) for dt in (h, -h)]
+    h = 1e-4                 # [s]: a central difference, off by a relative (ρ h)², with DOP853's 1e-6 over h: a per cent of 1 m/s
+    ends = [rope_places(rope_motion(n, l, m, g, T, inertia, late * dt, ahead * dt, 1e-9).y[:n, -1], l) for dt in (h, -h)]
     return float(np.linalg.norm(ends[0] - ends[1]) / (2.0 * h))
 
 
@@ -176,3 +179,91 @@ def bullet_rope(x, m, g, inertia, dt, read):
         bodies.append(body)
         above = place
     return World(bullet.step, lambda: read(np.array([bullet.position(body) for body in bodies])[:, ::2]), bullet.close)
+
+
+# ---------------------------------------------------------------------------------------------- a cloth
+
+class Weave(NamedTuple):
+    """Equal masses in a square, joined by springs along threads and both diagonals."""
+    x: np.ndarray            # (n, 3) [m] flat, at natural length
+    pairs: np.ndarray        # (s, 2)
+    rest: np.ndarray         # (s,) [m]
+    held: tuple              # numbers of the points that do not move
+    m: float                 # [kg]
+    k: float                 # [N/m]
+    g: float                 # [m/s²], against z
+
+    def matrix(self):
+        """B (s, n), sparse: −1 at one end of each spring, +1 at the other; r = B x."""
+        s = np.arange(len(self.pairs))
+        return csr_matrix((np.repeat([-1.0, 1.0], len(s)), (np.tile(s, 2), self.pairs.T.ravel())), (len(s), len(self.x)))
+
+    def free(self):
+        return ~np.isin(np.arange(len(self.x)), self.held)
+
+
+def weave(n, spacing, m, k, g):
+    """n × n points in the plane y = 0 … −(n − 1) spacing, held at the two corners of y = 0; z is up."""
+    r, c = np.divmod(np.arange(n * n), n)
+    number = np.arange(n * n).reshape(n, n)
+    pairs = np.concatenate([np.stack((a.ravel(), b.ravel()), axis=1) for a, b in (
+        (number[:, :-1], number[:, 1:]), (number[:-1], number[1:]), (number[:-1, :-1], number[1:, 1:]), (number[:-1, 1:], number[1:, :-1]))])
+    x = spacing * np.stack((c, -r, 0 * c), axis=1).astype(float)
+    return Weave(x, pairs, np.linalg.norm(x[pairs[:, 1]] - x[pairs[:, 0]], axis=1), (0, n - 1), m, k, g)
+
+
+def weave_motion(cloth, T, late=0.0, ahead=0.0, rtol=1e-10):
+    """solve_ivp's answer for a cloth let go flat: ẍ = −g − Bᵀ(k (l − rest) n)/m, forces taken at x + late v; begins with ahead ẍ."""
+    B, free = cloth.matrix(), cloth.free()[:, None]
+    Bt = B.T.tocsr()
+
+    def acceleration(x):
+        r = B @ x
+        length = np.sqrt(np.sum(r * r, axis=1, keepdims=True))
+        a = -Bt @ (cloth.k / cloth.m * (1.0 - cloth.rest[:, None] / length) * r)
+        a[:, 2] -= cloth.g
+        return free * a
+
+    def slope(t, y):
+        x, v = y.reshape(2, *cloth.x.shape)
+        return np.concatenate((v.ravel(), acceleration(x + late * v).ravel()))
+
+    start = np.concatenate((cloth.x.ravel(), ahead * acceleration(cloth.x).ravel()))
+    return solve_ivp(slope, (0.0, T), start, method="DOP853", rtol=rtol, atol=0.01 * rtol, dense_output=True)
+
+
+def weave_rest(cloth, begin):
+    """x (n, 3) where a cloth rests: its energy is least there.  Newton's method on the energy, sparse, with as much of the identity added
+    as makes the step lead downhill; begin (n, 3) chooses among the folds that it may hang in.
+
+    U = Σ ½k (l − rest)² + Σ m g z;   ∂²U of a spring:  k n nᵀ + k (1 − rest/l)(1 − n nᵀ)
+    """
+    B, free = cloth.matrix(), np.flatnonzero(cloth.free())
+    columns = (3 * free[:, None] + np.arange(3)).ravel()
+    wide = kron(B, identity(3), format="csr")[:, columns]
+    x, damping = begin.copy(), 1.0
+
+    def energy(x):
+        length = np.linalg.norm(B @ x, axis=1)
+        return 0.5 * cloth.k * np.sum((length - cloth.rest) ** 2) + cloth.m * cloth.g * np.sum(x[free, 2])
+
+    for _ in range(400):
+        r = B @ x
+        length = np.linalg.norm(r, axis=1)
+        n = r / length[:, None]
+        pull = wide.T @ (cloth.k * (length - cloth.rest)[:, None] * n).ravel() + np.tile([0.0, 0.0, cloth.m * cloth.g], len(free))
+        if np.abs(pull).max() < 1e-13:
+            break
+        slack = cloth.k * (1.0 - cloth.rest / length)
+        blocks = (cloth.k - slack)[:, None, None] * n[:, :, None] * n[:, None, :] + slack[:, None, None] * np.eye(3)
+        H = wide.T @ block_diag(blocks, format="csr") @ wide
+        while True:
+            step = np.zeros_like(x)
+            step[free] = spsolve((H + damping * identity(len(columns))).tocsc(), -pull).reshape(-1, 3)
+            if np.abs(step).max() < 0.2 and energy(x + step) <= energy(x) + 1e-16:
+                x, damping = x + step, 0.3 * damping
+                break
+            damping = 4.0 * damping + 1e-9
+            if damping > 1e9:
+                return x
+    return x
