@@ -7,7 +7,7 @@ beforehand.  *Source:* Müller et al. 2006, Macklin et al. 2016 and 2019; each c
 import numpy as np
 
 from solutions import integrators
-from solutions.checks import BadInput
+from solutions.checks import BadInput, Diverged
 from solutions.pbd import Net
 
 from .stability import DOTS, LINE, Picture, finding, series
@@ -30,8 +30,11 @@ def straight(n, l=1.0):
 
 
 def settle(lesson, step, p, x, dt, steps):
-    """Where a chain is after so many steps from rest."""
-    return integrators.advance(getattr(lesson, step), lesson.falling_acceleration, 0.0, x, 0.0 * x, dt, steps, p)[0]
+    """Where a chain is after so many steps from rest; not a number where it has not come to its end."""
+    try:
+        return integrators.advance(getattr(lesson, step), lesson.falling_acceleration, 0.0, x, 0.0 * x, dt, steps, p)[0]
+    except Diverged:
+        return np.full_like(x, np.nan)
 
 
 def stretch(x, l=1.0):
