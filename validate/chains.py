@@ -18,7 +18,7 @@ from .engines import pymunk_space, pymunk_world
 from .rigid import Rigid
 from .scene import Method, World
 
-PROJECTION = Method("projection_step", "projection, Newton", 1, "pbd")
+PROJECTION = Method("projection_step", "projection", 1, "pbd")
 PBD = Method("pbd_step", "PBD", 1, "pbd")
 XPBD = Method("xpbd_step", "XPBD", 1, "pbd")
 RATTLE = Method("rattle_step", "RATTLE", 2, "pbd")
