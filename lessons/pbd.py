@@ -104,7 +104,8 @@ def falling_acceleration(t, x, v, net):
     a = np.zeros_like(x)
     for k in range(x.shape[0]):
         if net.inv_mass[k] > 0.0:
-            a[k] = net.gravity
+            for c in range(x.shape[1]):
+                a[k, c] = net.gravity[c]
     return a
 
 
@@ -167,20 +168,47 @@ def rattle_step(acceleration, t, x, v, dt, net):
     It takes no energy.  Left to the simulator's judges; PBD is about the other one.
     *Source:* Ryckaert et al. 1977 (SHAKE), Andersen 1983 (RATTLE).
     """
-    W = np.repeat(net.inv_mass, x.shape[1])
     _, J = constraints(x, net)
-    push = (J * W).T.copy()
     new = x + dt * v + 0.5 * dt * dt * acceleration(t, x, v, net)
     for _ in range(NEWTON_LIMIT):
-        C, J = constraints(new, net)
-        change = (push @ solve(J @ push, -C)).reshape(x.shape)
+        C, J_new = constraints(new, net)
+        change = pushed(J, solve(met(J_new, J, net), -C), net)
         new = new + change
         if np.max(np.abs(change)) <= NEWTON_TOLERANCE * np.max(net.rest):
             v = (new - x) / dt + 0.5 * dt * acceleration(t + dt, new, v, net)
             _, J = constraints(new, net)
-            push = (J * W).T.copy()
-            return new, v - (push @ solve(J @ push, J @ v.ravel())).reshape(x.shape)
+            return new, v - pushed(J, solve(met(J, J, net), rates(J, v)), net)
     raise Diverged("the projection did not converge at dt [s]", dt, "take a smaller step")
+
+
+def met(J, K, net):
+    """Given.  J W Kᵀ (s, s): how each constraint, with the gradients J, answers a push along the gradients K of each."""
+    d, A = J.shape[1] // net.inv_mass.size, np.zeros((J.shape[0], K.shape[0]))
+    for s in range(J.shape[0]):
+        for k in (net.i[s], net.j[s]):                                   # no other point of row s counts
+            for r in range(K.shape[0]):
+                for c in range(k * d, k * d + d):
+                    A[s, r] += net.inv_mass[k] * J[s, c] * K[r, c]
+    return A
+
+
+def pushed(J, Lam, net):
+    """Given.  W JᵀΛ (n, d) [m]: where multipliers Λ (s,) move the points."""
+    d = J.shape[1] // net.inv_mass.size
+    moved = np.zeros((net.inv_mass.size, d))
+    for s in range(Lam.size):
+        for k in (net.i[s], net.j[s]):
+            for c in range(d):
+                moved[k, c] += net.inv_mass[k] * J[s, k * d + c] * Lam[s]
+    return moved
+
+
+def rates(J, v):
+    """Given.  J v (s,) [m/s]: how fast each constraint is being left."""
+    rate = np.zeros(J.shape[0])
+    for s in range(J.shape[0]):
+        rate[s] = np.sum(J[s] * v.ravel())
+    return rate
 
 
 # ---------------------------------------------------------------------------------------------- position-based dynamics

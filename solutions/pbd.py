@@ -118,7 +118,8 @@ def falling_acceleration(t, x, v, net):
     a = np.zeros_like(x)
     for k in range(x.shape[0]):
         if net.inv_mass[k] > 0.0:
-            a[k] = net.gravity
+            for c in range(x.shape[1]):
+                a[k, c] = net.gravity[c]
     return a
 
 
@@ -133,7 +134,8 @@ def predict(acceleration, t, x, v, dt, net):
     goal = x + dt * v
     for k in range(x.shape[0]):
         if net.inv_mass[k] > 0.0:
-            goal[k] += dt * dt * a[k]
+            for c in range(x.shape[1]):
+                goal[k, c] += dt * dt * a[k, c]
     return goal
     ### END SOLUTION
 
