@@ -99,14 +99,16 @@ def projection(C, gradients, inv_mass):
     *Source:* deck B, "Applying a constraint force"; Müller et al. 2006, section 3.3.
     """
     ### BEGIN SOLUTION 8.2
-    total = 0.0
+    total, d = 0.0, gradients.shape[1]
     for k in range(inv_mass.size):
-        total += inv_mass[k] * np.sum(gradients[k] * gradients[k])
+        for c in range(d):
+            total += inv_mass[k] * gradients[k, c] * gradients[k, c]
     if total == 0.0:
         raise BadInput("Σ w |∇C|² of a constraint", 0.0, "let one of its points have a mass and a gradient")
     corrections = np.zeros_like(gradients)
     for k in range(inv_mass.size):
-        corrections[k] = -C / total * inv_mass[k] * gradients[k]
+        for c in range(d):
+            corrections[k, c] = -C / total * inv_mass[k] * gradients[k, c]
     return corrections
     ### END SOLUTION
 
@@ -167,20 +169,22 @@ def newton_correction(x, lam, goal, dt, net):
     ### BEGIN SOLUTION 8.4
     d, size = x.shape[1], x.size
     C, J = constraints(x, net)
-    A, right = np.eye(size + C.size), np.zeros(size + C.size)
-    right[:size] = (goal - x).ravel()
+    A, right, change = np.zeros((size + C.size, size + C.size)), np.zeros(size + C.size), np.zeros_like(x)
+    for k in range(size):
+        A[k, k], right[k] = 1.0, goal[k // d, k % d] - x[k // d, k % d]
     for s in range(C.size):
-        i, j, row = net.i[s], net.j[s], size + s
-        right[row], A[row, row] = -C[s], 0.0
-        for a in range(d):
-            for k in (i * d + a, j * d + a):
-                A[row, k], A[k, row] = J[s, k], -net.inv_mass[k // d] * J[s, k]
-            for b in range(d):
-                H = ((1.0 if a == b else 0.0) - J[s, i * d + a] * J[s, i * d + b]) / (C[s] + net.rest[s])
-                for k, e, sign in ((i, i, 1.0), (i, j, -1.0), (j, i, -1.0), (j, j, 1.0)):
-                    A[k * d + a, e * d + b] -= dt * dt * net.inv_mass[k] * lam[s] * sign * H
+        right[size + s] = -C[s]
+        for e in (net.i[s], net.j[s]):
+            for a in range(e * d, e * d + d):
+                A[size + s, a], A[a, size + s] = J[s, a], -net.inv_mass[e] * J[s, a]
+                for f in (net.i[s], net.j[s]):                           # J at i is n, at j −n: J Jᵀ has the sign of each block in it
+                    for b in range(f * d, f * d + d):
+                        same = (1.0 if e == f else -1.0) if a % d == b % d else 0.0
+                        A[a, b] -= dt * dt * net.inv_mass[e] * lam[s] * (same - J[s, a] * J[s, b]) / (C[s] + net.rest[s])
     found = solve(A, right)
-    return found[:size].copy().reshape(x.shape), found[size:] / (dt * dt)
+    for k in range(size):
+        change[k // d, k % d] = found[k]
+    return change, found[size:] / (dt * dt)
     ### END SOLUTION
 
 

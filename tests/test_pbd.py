@@ -162,9 +162,10 @@ def test_a_pendulum_goes_where_its_string_is_in_line_with_the_prediction(lesson,
     goal = x[1] + dt * v[1] + dt * dt * p.gravity
     new, _ = lesson.projection_step(lesson.falling_acceleration, 0.0, x, v, dt, p)
     close("pendulum after a step [m]", new, [np.zeros(2), length * goal / np.linalg.norm(goal)], 1e-11, given=f"x = {x.tolist()} m, v = {v.tolist()} m/s, dt = {dt} s")
-    corners = np.array([[0.0, 0.0], [1.0, 0.1], [0.3, 0.9]])
-    impossible = net(lesson, [1.0, 1.0, 1.0], [(0, 1), (1, 2), (2, 0)], [0.2, 0.2, draw(1.0, 2.0)])
-    raises("three links that make no triangle", Diverged, lesson.projection_step, lesson.falling_acceleration, 0.0, corners, 0.0 * corners, dt, impossible)
+    far = draw(2.2, 3.0)
+    between = np.array([[0.0, 0.0], [0.5 * far, draw(0.3, 0.9)], [far, 0.0]])
+    short = net(lesson, [0.0, 1.0, 0.0], [(0, 1), (1, 2)], 1.0)
+    raises("two links that are too short for the points that hold them", Diverged, lesson.projection_step, lesson.falling_acceleration, 0.0, between, 0.0 * between, dt, short)
 
 
 # ---------------------------------------------------------------------------------------------- position-based dynamics

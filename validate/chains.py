@@ -113,8 +113,8 @@ def rope_lag(n, l, m, g, T, inertia=0.0, late=0.0, ahead=0.0):
     The engines take the links' directions in the middle of that difference (late = 0).  pybullet begins as we do, ahead = ½;
     pymunk moves before it pulls, x₁ = x₀: ahead = −½.
     """
-    h = 1e-4                 # [s]: a central difference, off by a relative (ρ h)², with DOP853's 1e-6 over h: a per cent of 1 m/s
-    ends = [rope_places(rope_motion(n, l, m, g, T, inertia, late * dt, ahead * dt, 1e-9).y[:n, -1], l) for dt in (h, -h)]
+    h = 1e-4                 # [s]: a central difference, off by a relative (ρ h)², with DOP853's 1e-6 over h: 0.01 m/s
+    ends = [rope_places(rope_motion(n, l, m, g, T, inertia, late * dt, ahead * dt, 1e-7).y[:n, -1], l) for dt in (h, -h)]
     return float(np.linalg.norm(ends[0] - ends[1]) / (2.0 * h))
 
 
@@ -212,7 +212,7 @@ def weave(n, spacing, m, k, g):
     return Weave(x, pairs, np.linalg.norm(x[pairs[:, 1]] - x[pairs[:, 0]], axis=1), (0, n - 1), m, k, g)
 
 
-def weave_motion(cloth, T, late=0.0, ahead=0.0, rtol=1e-10):
+def weave_motion(cloth, T, late=0.0, ahead=0.0, rtol=1e-8):
     """solve_ivp's answer for a cloth let go flat: ẍ = −g − Bᵀ(k (l − rest) n)/m, forces taken at x + late v; begins with ahead ẍ."""
     B, free = cloth.matrix(), cloth.free()[:, None]
     Bt = B.T.tocsr()
@@ -229,7 +229,7 @@ def weave_motion(cloth, T, late=0.0, ahead=0.0, rtol=1e-10):
         return np.concatenate((v.ravel(), acceleration(x + late * v).ravel()))
 
     start = np.concatenate((cloth.x.ravel(), ahead * acceleration(cloth.x).ravel()))
-    return solve_ivp(slope, (0.0, T), start, method="DOP853", rtol=rtol, atol=0.01 * rtol, dense_output=True)
+    return solve_ivp(slope, (0.0, T), start, method="DOP853", rtol=rtol, atol=1e-4 * rtol, dense_output=True)
 
 
 def weave_rest(cloth, begin):

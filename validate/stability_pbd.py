@@ -126,7 +126,7 @@ def case_81(lesson):
     the last visit to link k + 1 has moved point k down by what it is short of, the weights below k times dt²/m.  Altogether
     ½N(N − 1) g dt²; with n sweeps less (left_over).  A run of `patience` comes to rest.
     """
-    found, N, dt = [], 10, 1.0 / 60.0
+    found, N, dt = [], 8, 1.0 / 60.0
     x = straight(N)
     for sweeps in (1, 5, 20):
         bound = left_over([1.0] * N, sweeps, dt)
@@ -207,7 +207,7 @@ def case_84(lesson):
 
     n sweeps leave  A (1 − Gⁿ)⁻¹ Gⁿ Λ*  of softness, about a share 1/n at first; n substeps leave ½N(N − 1) g (dt/n)²: a share 1/n².
     """
-    found, N, frame = [], 10, 1.0 / 60.0
+    found, N, frame = [], 8, 1.0 / 60.0
     x, once = straight(N), 0.5 * N * (N - 1) * G * frame**2
     ways = {"sweeps": lambda n: (settle(lesson, "xpbd_step", net([1.0] * N, sweeps=n), x, frame, patience(N, n))), "substeps": lambda n: settle(lesson, "xpbd_step", net([1.0] * N), x, frame / n, patience(N, 1))}
     theory = {"sweeps": lambda n: left_over([1.0] * N, n, frame).sum(), "substeps": lambda n: once / n**2}

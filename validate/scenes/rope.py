@@ -24,7 +24,7 @@ class Params(NamedTuple):
     links: int = 10          # N [-]
     l: float = 0.1           # length of each [m]
     m: float = 0.1           # each weight [kg]
-    sweeps: int = 20         # of PBD and XPBD in a step [-]
+    sweeps: int = 10         # of PBD and XPBD in a step [-]
     g: float = 9.81          # gravity [m/s²]
 
 
