@@ -1,6 +1,6 @@
 """How soft is what should not stretch, and what do sweeps and steps cost?  Theory's numbers for lesson 8 against those that runs find.
 
-Cases 9, 12 and 81 to 85.  Everything hangs straight down or turns in a circle, where a sweep is a linear map, and all of it can be said
+Cases 9, 12 and 81 to 86.  Nearly everything hangs straight down or turns in a circle, where a sweep is a linear map, and all of it can be said
 beforehand.  *Source:* Müller et al. 2006, Macklin et al. 2016 and 2019; each case derives what it adds.
 """
 
@@ -10,6 +10,7 @@ from solutions import integrators
 from solutions.checks import BadInput, Diverged
 from solutions.pbd import Net
 
+from .chains import pendulum_period
 from .stability import DOTS, LINE, Picture, finding, series
 
 G = 9.81                     # [m/s²]
@@ -270,6 +271,73 @@ def case_85(lesson):
         "From a nanometre a newton to a metre a newton, with steps of a whole second: no stiffness is too stiff.")
 
 
+def case_86(lesson):
+    """What the larger pieces must keep: a fold its angle, a ball its air, a rod its period, and nothing is left inside an obstacle.
+
+    A weightless fold of stiffness 1 comes to its angle by Newton's method, in a handful of visits.  A ball without gravity or compliance of
+    its air comes to rest at its volume; neither pushes anything from outside.  The rod's quarter period, at steps of dt and dt/2 and
+    extrapolated, is off by a few (ω dt)² of it.
+    """
+    found, quiet = [], np.zeros(3)
+    x = np.array([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.4, 0.1], [-0.9, 0.6, 0.5]])
+    loose = Net(np.array([1.0, 2.0, 1.0, 0.5]), quiet, np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros(0), np.zeros(0), 1)
+    nowhere = lesson.Obstacle(np.array([0.0, 0.0, -9.0]), 0.0, np.array([0.0, 0.0, -9.0]), np.array([0.0, 0.0, 1.0]))
+    sheet, centre = lesson.Cloth(loose, np.array([[0, 1, 2, 3]]), np.array([0.2]), 1.0, nowhere), x.T @ (1.0 / loose.inv_mass)
+    for _ in range(12):
+        x = lesson.fold_sweep(x, sheet)
+    left = abs(lesson.fold_constraint(x, 0.2)[0])
+    found.append(finding(86, "A fold comes to the angle that it wants.", "angle that is left after 12 visits [rad]", 0.0, left, ROUND_OFF, f"After 12 visits a fold is {left:.0e} rad off."))
+    shift = np.abs(x.T @ (1.0 / loose.inv_mass) - centre).max()
+    found.append(finding(86, "Folding pushes nothing from outside.", "way of the centre of mass, times the mass [kg m]", 0.0, shift, ROUND_OFF, f"Its centre of mass has moved by {shift:.0e}."))
+
+    corners = np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]])
+    faces = np.array([[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]])
+    net_ = lesson.make_net(corners, 1.0, [], lesson.shared_edges(faces)[0], 1e9, 1.0, quiet, 5)           # links that hardly pull: the air is judged alone
+    y, v = corners * [1.2, 0.9, 1.0], 0.0 * corners
+    ball = lesson.Balloon(net_, faces, 2.0, 0.0, nowhere)                                          # Newton: five visits square what is left five times
+    for _ in range(10):
+        y, v = lesson.balloon_step(lesson.falling_acceleration, 0.0, y, v, 0.05, ball)
+    volume, drift = lesson.volume_gradient(y, faces)[0], np.abs(v.sum(axis=0)).max()
+    found.append(finding(86, "A ball comes to the volume that its air wants.", "volume [m³]", 2.0, volume, 1e-9, f"The ball holds {volume:.9f} m³."))
+    found.append(finding(86, "Its air pushes nothing from outside.", "momentum of the ball [kg m/s]", 0.0, drift, 1e-11, f"Its momentum is {drift:.0e} kg m/s."))
+
+    half, theta = 0.3, 0.5
+    moment = (2.0 * half) ** 2 / 12.0
+    rod = lesson.Hung(1.0, np.array([moment, moment, 1e-4]), np.array([0.0, 0.0, -G]), quiet, np.array([0.0, 0.0, half]), 3)
+    bound = 0.25 * pendulum_period(theta, (moment + half**2) / half, G)
+    quarters = [quarter_period(lesson, rod, half, theta, dt) for dt in (0.002, 0.001)]
+    got, dt, omega = 2.0 * quarters[1] - quarters[0], 0.002, 0.5 * np.pi / bound
+    found.append(finding(86, "A rigid rod that hangs from a point swings as a compound pendulum.", "quarter period of a rod of 0.6 m, extrapolated [s]", bound, got, 5.0 * (omega * dt) ** 2 * bound, f"A rod of 0.6 m is at its lowest after {got:.5f} s."))
+
+    n = 4
+    sheet = np.array([[0.3 * (k % n), 0.3 * (k // n), 0.4] for k in range(n * n)])
+    triangles = np.array([t for r in range(n - 1) for c in range(n - 1) for a in [r * n + c] for t in ((a, a + 1, a + n), (a + 1, a + n + 1, a + n))])
+    edges, hinges = lesson.shared_edges(triangles)
+    thrown = lesson.Obstacle(np.array([0.45, 0.4, 0.0]), 0.3, np.array([0.0, 0.0, -0.25]), np.array([0.0, 0.0, 1.0]))
+    cloth = lesson.Cloth(lesson.make_net(sheet, 0.1, [], edges, 0.0, 1.0, (0.0, 0.0, -G), 3), hinges, np.zeros(len(hinges)), 0.1, thrown)
+    v, depth = 0.0 * sheet, 0.0
+    for _ in range(40):
+        sheet, v = lesson.cloth_step(lesson.falling_acceleration, 0.0, sheet, v, 0.02, cloth)
+        depth = max(depth, 0.3 - np.linalg.norm(sheet - thrown.centre, axis=1).min(), -0.25 - sheet[:, 2].min())
+    found.append(finding(86, "No weight of a cloth is inside what it falls on at the end of a step.", "deepest weight in 40 steps [m]", 0.0, max(depth, 0.0), ROUND_OFF, f"A cloth that falls on a ball and a floor is never deeper than {max(depth, 0.0):.0e} m."))
+    fine, dots = np.linspace(0.1, 2.5, 40), np.array([0.25, 0.5, 1.0, 1.5, 2.0])
+    period = lambda a: 0.25 * pendulum_period(a, (moment + half**2) / half, G)
+    return found, Picture("A rod on a pivot", "let go at [rad]", "time to its lowest point [s]", [
+        series("theory", fine, [period(a) for a in fine], LINE), series("hung_step, 5 ms, measured", dots, [quarter_period(lesson, rod, half, a, 0.005) for a in dots], DOTS)],
+        "A rigid body in a projection: it needs the generalised inverse mass, and nothing else that a point has not.")
+
+
+def quarter_period(lesson, rod, half, theta, dt):
+    """When [s] a rod that is let go at the angle θ about y passes its lowest point, between steps on a straight line."""
+    q = np.array([np.cos(0.5 * theta), 0.0, -np.sin(0.5 * theta), 0.0])
+    x, v, omega, t = half * np.array([np.sin(theta), 0.0, -np.cos(theta)]), np.zeros(3), np.zeros(3), 0.0
+    while x[0] > 0.0 and t < 2.0:
+        before = x[0]
+        x, v, q, omega = lesson.hung_step(t, x, v, q, omega, dt, rod)
+        t += dt
+    return t - dt * x[0] / (x[0] - before)
+
+
 CASES = {
     9: ("PBD is as soft as its step", case_9, "pbd"),
     12: ("XPBD: a compliance of its own", case_12, "pbd"),
@@ -278,5 +346,6 @@ CASES = {
     83: ("What projection takes from what turns", case_83, "pbd"),
     84: ("Substeps against sweeps", case_84, "pbd"),
     85: ("Extremes of constraints", case_85, "pbd"),
+    86: ("A fold, a ball, a rod and a cloth", case_86, "pbd"),
 }
 OWN_LAWS = set(CASES)        # short runs: compiling them would take longer
