@@ -327,7 +327,7 @@ def fold_constraint(x, fold):
 
     x (4, 3): a, b the edge, c and d the other corners.      e = b − a
     N_c = (a − c) × (b − c),   N_d = (b − d) × (a − d)          normals, both on one side of a flat sheet
-    φ = atan2((N_c × N_d) · e/|e|,  N_c · N_d),      C = φ − fold, taken into (−π, π]
+    θ = atan2((N_c × N_d) · e/|e|,  N_c · N_d),      C = θ − fold, taken into (−π, π]
 
     ∇_c = −|e| N_c/|N_c|²,      ∇_d = −|e| N_d/|N_d|²
     ∇_a = −β_c ∇_c − β_d ∇_d,   β_c = (b − c)·e/|e|²,  β_d = (b − d)·e/|e|²          so much of a wing's height hangs on a
