@@ -494,8 +494,3 @@ def shared_edges(faces):
             found.setdefault((min(a, b), max(a, b)), []).append((a, b, c))
     hinges = [(*two[0], two[1][2]) for two in found.values() if len(two) == 2]
     return np.array(sorted(found), dtype=np.int64), np.array(hinges, dtype=np.int64).reshape(-1, 4)
-
-
-def check_hinge(x):
-    """Given.  Raise BadInput unless the two triangles of a hinge x (4, 3) have an area."""
-    fold_constraint(np.asarray(x, dtype=float), 0.0)
