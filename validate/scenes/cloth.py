@@ -82,8 +82,8 @@ def truth(p, t):
 @lru_cache(maxsize=None)
 def lag(p):
     """|∂x/∂dt| [m/s] at T of implicit Euler,  xₙ₊₁ − 2xₙ + xₙ₋₁ = dt² a(xₙ₊₁): forces of x + dt v, begun with the velocity of ½dt later."""
-    dt = 1e-5                # [s]: a difference; both are known to 1e-10
-    moved = weave_motion(cloth(p), T, dt, 0.5 * dt).y[:3 * p.n**2, -1]
+    dt = 1e-5                # [s]: a difference; both are known to 1e-9 at least
+    moved = weave_motion(cloth(p), T, dt, 0.5 * dt, 1e-6).y[:3 * p.n**2, -1]
     return np.linalg.norm(moved - truth(p, T)) / dt
 
 
