@@ -1,0 +1,461 @@
+"""Lesson 8: projections with a sign, a mass, a step or an order of their own gone astray."""
+
+import numpy as np
+
+from solutions import pbd as worked
+from solutions.checks import BadInput, Diverged
+from . import collection
+
+wrong, right, MUTANTS = collection()
+NO_LENGTH = BadInput("the length of a link [m]", 0.0, "keep its ends apart")
+NO_WEIGHT = BadInput("Σ w |∇C|² of a constraint", 0.0, "let one of its points have a mass and a gradient")
+
+
+def size(y):
+    return np.linalg.norm(y)
+
+
+# 8.1 ------------------------------------------------------------------------------------------------------------
+def link(sign=1.0, scaled=True, absolute=False, towards=1.0, squared=False, checked=True, ratio=False):
+    def distance_constraint(x_i, x_j, rest):
+        r, length = x_i - x_j, size(x_i - x_j)
+        if length == 0.0:
+            if checked:
+                raise NO_LENGTH
+            return -rest, r
+        C = sign * (length - rest) if not squared else length**2 - rest**2
+        C = C / rest if ratio else C
+        return abs(C) if absolute else C, towards * (r / length if scaled else r)
+    return distance_constraint
+
+
+right("8.1", "with norm")(link())
+wrong("8.1", "too short is positive")(link(sign=-1.0))
+wrong("8.1", "the gradient of j")(link(towards=-1.0))
+wrong("8.1", "no unit vector")(link(scaled=False))
+wrong("8.1", "never too short")(link(absolute=True))
+wrong("8.1", "squares of lengths")(link(squared=True))
+wrong("8.1", "the strain")(link(ratio=True))
+wrong("8.1", "takes ends that coincide")(link(checked=False))
+
+
+# 8.2 ------------------------------------------------------------------------------------------------------------
+def projecting(sign=-1.0, mass=True, total=lambda w, g: np.sum(w * np.sum(g * g, axis=1)), checked=True):
+    def projection(C, gradients, inv_mass):
+        s = total(inv_mass, gradients)
+        if s == 0.0:
+            if checked:
+                raise NO_WEIGHT
+            return 0.0 * gradients
+        return sign * C / s * (inv_mass[:, None] if mass else 1.0) * gradients
+    return projection
+
+
+right("8.2", "all points at once")(projecting())
+wrong("8.2", "makes it worse")(projecting(sign=1.0))
+wrong("8.2", "every point alike")(projecting(mass=False))
+wrong("8.2", "forgets the masses below")(projecting(total=lambda w, g: np.sum(g * g)))
+wrong("8.2", "takes gradients for unit vectors")(projecting(total=lambda w, g: np.sum(w)))
+wrong("8.2", "half of it")(projecting(sign=-0.5))
+wrong("8.2", "takes what nothing can meet")(projecting(checked=False))
+
+
+@wrong("8.2", "every point on its own")
+def projection(C, gradients, inv_mass):
+    if not np.any(inv_mass) or not np.any(gradients):
+        raise NO_WEIGHT
+    return -C * gradients / np.sum(gradients * gradients, axis=1, keepdims=True) * (inv_mass > 0.0)[:, None]
+
+
+# 8.3 ------------------------------------------------------------------------------------------------------------
+def predicting(half=1.0, stops=False, falls=False, clock=1.0, speed=1.0, changes=False):
+    def predict(acceleration, t, x, v, dt, net):
+        free = (net.inv_mass > 0.0)[:, None]
+        a = np.asarray(acceleration(clock * t, x, speed * v, net)) * (1.0 if falls else free)
+        move = dt * v * (free if stops else 1.0) + half * dt * dt * a
+        if changes:
+            x += move
+            return x
+        return x + move
+    return predict
+
+
+right("8.3", "with a mask")(predicting())
+wrong("8.3", "half of the force")(predicting(half=0.5))
+wrong("8.3", "immovable points stop")(predicting(stops=True))
+wrong("8.3", "immovable points fall")(predicting(falls=True))
+wrong("8.3", "the clock stands still")(predicting(clock=0.0))
+wrong("8.3", "the force of rest")(predicting(speed=0.0))
+wrong("8.3", "changes its input")(predicting(changes=True))
+wrong("8.3", "no force")(predicting(half=0.0))
+
+
+# 8.4 ------------------------------------------------------------------------------------------------------------
+def newton(curved=1.0, per_row=True, scale=lambda dt: dt * dt, sign=1.0, from_goal=1.0, difference=False, across=True):
+    def newton_correction(x, lam, goal, dt, net):
+        d, n, s = x.shape[1], x.size, net.i.size
+        C, J = worked.constraints(x, net)
+        W = np.repeat(net.inv_mass, d)
+        bend = np.zeros((n, n))
+        for k in range(s):
+            i, j = slice(net.i[k] * d, net.i[k] * d + d), slice(net.j[k] * d, net.j[k] * d + d)
+            H = lam[k] * ((np.eye(d) if across else 0.0) - np.outer(J[k, i], J[k, i])) / (C[k] + net.rest[k])
+            bend[i, i] += H
+            bend[j, j] += H
+            bend[i, j] -= H
+            bend[j, i] -= H
+        push = W[:, None] * J.T if per_row else J.T * W.max()
+        A = np.block([[np.eye(n) - curved * dt * dt * W[:, None] * bend, -sign * push], [J, np.zeros((s, s))]])
+        found = np.linalg.solve(A, np.concatenate((from_goal * (goal - x).ravel(), -C)))
+        return found[:n].reshape(x.shape), found[n:] / scale(dt) + (lam if difference else 0.0)
+    return newton_correction
+
+
+right("8.4", "in blocks")(newton())
+wrong("8.4", "takes links for straight surfaces: no second derivative")(newton(curved=0.0))
+wrong("8.4", "the second derivative with the other sign")(newton(curved=-1.0))
+wrong("8.4", "one mass for all")(newton(per_row=False))
+wrong("8.4", "gives Λ for λ")(newton(scale=lambda dt: 1.0))
+wrong("8.4", "dt for dt²")(newton(scale=lambda dt: dt))
+wrong("8.4", "multipliers of the other sign")(newton(sign=-1.0))
+wrong("8.4", "away from the prediction")(newton(from_goal=-1.0))
+wrong("8.4", "adds the old λ")(newton(difference=True))
+wrong("8.4", "second derivatives along the link only")(newton(across=False))
+
+
+# 8.5 ------------------------------------------------------------------------------------------------------------
+def projecting_step(rounds=40, enough=1e-12, speed=lambda new, x, goal, v, dt: (new - x) / dt, start="x", gives_up=True, force=True):
+    def projection_step(acceleration, t, x, v, dt, net):
+        goal = worked.predict(acceleration, t, x, v, dt, net)
+        new, lam = (x if start == "x" else goal).copy(), np.zeros(net.i.size)
+        for _ in range(rounds):
+            change, found = worked.newton_correction(new, lam, goal if force else x, dt, net)
+            new, lam = new + change, found
+            if np.abs(change).max() <= enough * net.rest.max():
+                return new, speed(new, x, goal, v, dt)
+        if gives_up:
+            raise Diverged("the projection did not converge at dt [s]", dt, "take a smaller step")
+        return new, speed(new, x, goal, v, dt)
+    return projection_step
+
+
+right("8.5", "from the prediction")(projecting_step(start="goal"))
+wrong("8.5", "one round")(projecting_step(rounds=1, gives_up=False))
+wrong("8.5", "two rounds")(projecting_step(rounds=2, gives_up=False))
+wrong("8.5", "does not say that it failed")(projecting_step(gives_up=False))
+wrong("8.5", "keeps the predicted velocity")(projecting_step(speed=lambda new, x, goal, v, dt: (goal - x) / dt))
+wrong("8.5", "keeps the old velocity")(projecting_step(speed=lambda new, x, goal, v, dt: v))
+wrong("8.5", "forgets the prediction")(projecting_step(force=False))
+wrong("8.5", "the velocity without dt")(projecting_step(speed=lambda new, x, goal, v, dt: new - x))
+
+
+# 8.6 ------------------------------------------------------------------------------------------------------------
+def sweeping(stiff=True, by_mass=True, sign=1.0, jacobi=False, backwards=False, changes=False, checked=True, held=True):
+    def distance_sweep(x, net):
+        seen = x.copy()
+        new = x if changes else x.copy()
+        order = range(net.i.size)
+        for s in reversed(order) if backwards else order:
+            i, j = net.i[s], net.j[s]
+            r = (seen if jacobi else new)[i] - (seen if jacobi else new)[j]
+            w_i, w_j = (net.inv_mass[i], net.inv_mass[j]) if by_mass else (float(net.inv_mass[i] > 0.0), float(net.inv_mass[j] > 0.0))
+            w_i, w_j = (w_i, w_j) if held else (1.0, 1.0)
+            if not r.any():
+                if checked:
+                    raise NO_LENGTH
+                continue
+            move = sign * (net.stiffness[s] if stiff else 1.0) * (size(r) - net.rest[s]) / (w_i + w_j) * r / size(r)
+            new[i] -= w_i * move
+            new[j] += w_j * move
+        return new
+    return distance_sweep
+
+
+right("8.6", "with vectors")(sweeping())
+wrong("8.6", "always fully stiff")(sweeping(stiff=False))
+wrong("8.6", "both ends alike")(sweeping(by_mass=False))
+wrong("8.6", "the wrong way")(sweeping(sign=-1.0))
+wrong("8.6", "all links at once")(sweeping(jacobi=True))
+wrong("8.6", "from the last to the first")(sweeping(backwards=True))
+wrong("8.6", "changes its input")(sweeping(changes=True))
+wrong("8.6", "takes ends that coincide")(sweeping(checked=False))
+wrong("8.6", "moves the immovable")(sweeping(held=False))
+
+
+# 8.7 ------------------------------------------------------------------------------------------------------------
+def dynamics(sweeps=lambda n: n, speed=lambda new, x, goal, v, dt: (new - x) / dt, begin="goal"):
+    def pbd_step(acceleration, t, x, v, dt, net):
+        goal = worked.predict(acceleration, t, x, v, dt, net)
+        new = (goal if begin == "goal" else x + dt * v).copy()
+        for _ in range(sweeps(net.sweeps)):
+            new = worked.distance_sweep(new, net)
+        return new, speed(new, x, goal, v, dt)
+    return pbd_step
+
+
+right("8.7", "with a copy")(dynamics())
+wrong("8.7", "one sweep")(dynamics(sweeps=lambda n: 1))
+wrong("8.7", "one sweep too many")(dynamics(sweeps=lambda n: n + 1))
+wrong("8.7", "no sweep")(dynamics(sweeps=lambda n: 0))
+wrong("8.7", "keeps the predicted velocity")(dynamics(speed=lambda new, x, goal, v, dt: (goal - x) / dt))
+wrong("8.7", "keeps the old velocity")(dynamics(speed=lambda new, x, goal, v, dt: v))
+wrong("8.7", "no force")(dynamics(begin="x"))
+
+
+# 8.8 ------------------------------------------------------------------------------------------------------------
+def sagging(left=lambda s, n: (1.0 - s) ** n, step=lambda dt: dt * dt, below=lambda S: 1.0 - S, above=lambda S: S):
+    def pbd_sag(g, dt, stiffness, sweeps):
+        S = left(stiffness, sweeps)
+        return g * step(dt) * above(S) / below(S)
+    return pbd_sag
+
+
+right("8.8", "by what is put back")(lambda g, dt, stiffness, sweeps: g * dt**2 / (1.0 - (1.0 - stiffness) ** sweeps) - g * dt**2)
+MUTANTS[-1].function.__name__ = "pbd_sag"
+wrong("8.8", "what the sweeps take, not what they leave")(sagging(left=lambda s, n: s**n))
+wrong("8.8", "falls once only")(sagging(below=lambda S: 1.0))
+wrong("8.8", "before the sweeps")(sagging(above=lambda S: 1.0))
+wrong("8.8", "falls by ½ g dt²")(sagging(step=lambda dt: 0.5 * dt * dt))
+wrong("8.8", "n times as stiff")(sagging(left=lambda s, n: max(0.0, 1.0 - n * s)))
+
+
+# 8.9 ------------------------------------------------------------------------------------------------------------
+def folding(angle="atan2", wrapped=True, sign=1.0, wings=1.0, leverage=True, closed=True, checked=True, swapped=False, slope=1.0):
+    def fold_constraint(x, fold):
+        a, b, c, d = x
+        e, N_c, N_d = b - a, np.cross(a - c, b - c), np.cross(b - d, a - d)
+        if checked and not (N_c.any() and N_d.any()):
+            raise BadInput("the area of a triangle at a fold [m²]", 0.0, "keep its corners apart")
+        e_hat = e / size(e)
+        with np.errstate(all="ignore"):
+            phi = np.arctan2(np.cross(N_c, N_d) @ e_hat, N_c @ N_d)
+            phi = phi if angle == "atan2" else np.arccos(np.clip(N_c @ N_d / size(N_c) / size(N_d), -1.0, 1.0)) if angle == "acos" else np.pi - phi
+            C = sign * phi - fold
+            C = np.pi - (np.pi - C) % (2.0 * np.pi) if wrapped else C
+            g_c, g_d = (-wings * size(e) ** slope * N / (N @ N) for N in (N_c, N_d))
+        share = ((b - c) @ e / (e @ e), (b - d) @ e / (e @ e)) if leverage else (0.5, 0.5)
+        share = tuple(1.0 - y for y in share) if swapped else share
+        g_a = -share[0] * g_c - share[1] * g_d
+        g_b = -(g_a + g_c + g_d) if closed else 0.0 * g_a
+        return C, np.stack((g_a, g_b, g_c, g_d))
+    return fold_constraint
+
+
+right("8.9", "with NumPy's products")(folding())
+wrong("8.9", "an angle without a side: acos")(folding(angle="acos"))
+wrong("8.9", "flat is π")(folding(angle="open"))
+wrong("8.9", "not taken into (−π, π]")(folding(wrapped=False))
+wrong("8.9", "folded to the other side")(folding(sign=-1.0))
+wrong("8.9", "gradients of the other sign")(folding(wings=-1.0))
+wrong("8.9", "gradients without the edge's length")(folding(slope=0.0))
+wrong("8.9", "half of each wing to each end of the edge")(folding(leverage=False))
+wrong("8.9", "leverage of the other end")(folding(swapped=True))
+wrong("8.9", "pushes from outside")(folding(closed=False))
+wrong("8.9", "takes a triangle without area")(folding(checked=False))
+
+
+# 8.10 -----------------------------------------------------------------------------------------------------------
+def ball(sign=1.0, n_sign=1.0, centred=True, scaled=True, safe=True):
+    def ball_gap(x, obstacle):
+        r = x - obstacle.centre if centred else x
+        if safe and not r.any():
+            return -obstacle.radius, 0.0 * r
+        with np.errstate(invalid="ignore"):
+            return sign * (size(r) - obstacle.radius), n_sign * (r / size(r) if scaled else r)
+    return ball_gap
+
+
+right("8.10", "with norm")(ball())
+wrong("8.10", "a bowl")(ball(sign=-1.0, n_sign=-1.0))
+wrong("8.10", "positive inside")(ball(sign=-1.0))
+wrong("8.10", "inwards")(ball(n_sign=-1.0))
+wrong("8.10", "around the origin")(ball(centred=False))
+wrong("8.10", "no unit vector")(ball(scaled=False))
+wrong("8.10", "divides by no distance")(ball(safe=False))
+
+
+# 8.11 -----------------------------------------------------------------------------------------------------------
+def outside(asks=lambda phi: phi < 0.0, sign=-1.0, held=True, changes=False, share=1.0):
+    def keep_outside(surface, x, inv_mass, obstacle):
+        new = x if changes else x.copy()
+        for k in range(len(x)):
+            phi, n = surface(x[k], obstacle)
+            if asks(phi) and (inv_mass[k] > 0.0 or not held):
+                new[k] = x[k] + sign * share * phi * np.asarray(n)
+        return new
+    return keep_outside
+
+
+right("8.11", "with a new array")(outside())
+right("8.11", "on the skin is as good as inside")(outside(asks=lambda phi: phi <= 0.0))
+wrong("8.11", "pulls everything onto the skin")(outside(asks=lambda phi: True))
+wrong("8.11", "pulls in what is outside")(outside(asks=lambda phi: phi > 0.0))
+wrong("8.11", "deeper")(outside(sign=1.0))
+wrong("8.11", "half of the way")(outside(share=0.5))
+wrong("8.11", "moves the immovable")(outside(held=False))
+wrong("8.11", "changes its input")(outside(changes=True))
+
+
+# 8.12 -----------------------------------------------------------------------------------------------------------
+def giving(memory=1.0, scale=lambda alpha, dt: alpha / dt**2, sign=-1.0, below=1.0, checked=True, weighed=True, nan=True):
+    def compliant_multiplier(C, Lam, weight, alpha, dt):
+        if checked and (alpha < 0.0 or nan and alpha != alpha):
+            raise BadInput("compliance α [m/N]", alpha, "give zero or more")
+        if weight == 0.0:
+            if weighed:
+                raise NO_WEIGHT
+            return 0.0
+        soft = scale(alpha, dt)
+        return (sign * C - memory * soft * Lam) / (weight + below * soft)
+    return compliant_multiplier
+
+
+right("8.12", "in two lines")(giving())
+wrong("8.12", "forgets what it has pulled")(giving(memory=0.0))
+wrong("8.12", "α without dt²")(giving(scale=lambda alpha, dt: alpha))
+wrong("8.12", "α dt²")(giving(scale=lambda alpha, dt: alpha * dt**2))
+wrong("8.12", "soft above, stiff below")(giving(below=0.0))
+wrong("8.12", "the wrong way")(giving(sign=1.0))
+wrong("8.12", "takes a negative compliance")(giving(checked=False))
+wrong("8.12", "takes NaN")(giving(nan=False))
+wrong("8.12", "takes a constraint with no free mass")(giving(weighed=False))
+
+
+# 8.13 -----------------------------------------------------------------------------------------------------------
+def soft_sweep(adds=True, kept=True, jacobi=False, mass=True, sign=1.0, changes=False, checked=True, one_alpha=False, weight=1.0):
+    def compliant_sweep(x, Lam, dt, net):
+        seen, new, total = x.copy(), (x if changes else x.copy()), (Lam if changes else Lam.copy())
+        for s in range(net.i.size):
+            i, j = net.i[s], net.j[s]
+            r = (seen if jacobi else new)[i] - (seen if jacobi else new)[j]
+            if not r.any():
+                if checked:
+                    raise NO_LENGTH
+                continue
+            w_i, w_j = net.inv_mass[i], net.inv_mass[j]
+            alpha = net.alpha[0] if one_alpha else net.alpha[s]
+            change = worked.compliant_multiplier(size(r) - net.rest[s], total[s] if kept else 0.0, weight * (w_i + w_j), alpha, dt)
+            total[s] = total[s] + change if adds else change
+            new[i] = new[i] + sign * (w_i if mass else 1.0) * change * r / size(r)
+            new[j] = new[j] - sign * (w_j if mass else 1.0) * change * r / size(r)
+        return new, total
+    return compliant_sweep
+
+
+right("8.13", "with vectors")(soft_sweep())
+wrong("8.13", "returns the last ΔΛ")(soft_sweep(adds=False))
+wrong("8.13", "forgets what it has pulled")(soft_sweep(kept=False))
+wrong("8.13", "all links at once")(soft_sweep(jacobi=True))
+wrong("8.13", "forgets the masses")(soft_sweep(mass=False))
+wrong("8.13", "the wrong way")(soft_sweep(sign=-1.0))
+wrong("8.13", "changes its input")(soft_sweep(changes=True))
+wrong("8.13", "takes ends that coincide")(soft_sweep(checked=False))
+wrong("8.13", "one compliance for all")(soft_sweep(one_alpha=True))
+wrong("8.13", "half of the weight")(soft_sweep(weight=0.5))
+
+
+# 8.14 -----------------------------------------------------------------------------------------------------------
+def soft_step(anew=False, sweeps=lambda n: n, hard=False, speed=lambda new, x, v, dt: (new - x) / dt, begin=0.0):
+    def xpbd_step(acceleration, t, x, v, dt, net):
+        new, Lam = worked.predict(acceleration, t, x, v, dt, net), np.full(net.i.size, begin)
+        for _ in range(sweeps(net.sweeps)):
+            new, Lam = worked.compliant_sweep(new, 0.0 * Lam if anew else Lam, dt, net)
+            new = worked.distance_sweep(new, net) if hard else new
+        return new, speed(new, x, v, dt)
+    return xpbd_step
+
+
+right("8.14", "with a loop")(soft_step())
+wrong("8.14", "Λ = 0 at every sweep")(soft_step(anew=True))
+wrong("8.14", "Λ = 1 to begin with")(soft_step(begin=1.0))
+wrong("8.14", "PBD after all")(soft_step(hard=True))
+wrong("8.14", "no sweep")(soft_step(sweeps=lambda n: 0))
+wrong("8.14", "keeps the old velocity")(soft_step(speed=lambda new, x, v, dt: v))
+wrong("8.14", "half of the velocity")(soft_step(speed=lambda new, x, v, dt: 0.5 * (new - x) / dt))
+
+
+# 8.15 -----------------------------------------------------------------------------------------------------------
+def readiness(turned=True, arm=np.cross, centre=1.0, moments=lambda I: 1.0 / I, back=False):
+    def generalised_inverse_mass(q, r, n, m, I_body):
+        turn = arm(r, n)
+        if turned:
+            turn = worked.rotate(q, turn) if back else worked.unrotate(q, turn)
+        return centre / m + np.sum(turn * turn * moments(I_body))
+    return generalised_inverse_mass
+
+
+right("8.15", "with NumPy's product")(readiness())
+wrong("8.15", "moments about the world's axes")(readiness(turned=False))
+wrong("8.15", "turned the wrong way")(readiness(back=True))
+wrong("8.15", "does not move, only turns")(readiness(centre=0.0))
+wrong("8.15", "does not turn")(readiness(arm=lambda r, n: 0.0 * r))
+wrong("8.15", "the arm along n")(readiness(arm=lambda r, n: (r @ n) * n))
+wrong("8.15", "multiplies by the moments")(readiness(moments=lambda I: I))
+
+
+# 8.16 -----------------------------------------------------------------------------------------------------------
+def pushed(mass=True, sign=1.0, turned=True, half=1.0, unit=True, moves=1.0):
+    def push_body(x, q, r, p, m, I_body):
+        arm = sign * np.cross(r, p)
+        turn = worked.rotate(q, worked.unrotate(q, arm) / I_body) if turned else arm / I_body
+        new = q + 0.5 * half * worked.product(np.append(0.0, turn), q)
+        return x + moves * p / (m if mass else 1.0), new / size(new) if unit else new
+    return push_body
+
+
+right("8.16", "by the product itself")(pushed())
+wrong("8.16", "forgets the mass")(pushed(mass=False))
+wrong("8.16", "turns the other way")(pushed(sign=-1.0))
+wrong("8.16", "moments about the world's axes")(pushed(turned=False))
+wrong("8.16", "turns twice as far")(pushed(half=2.0))
+wrong("8.16", "a quaternion of another length")(pushed(unit=False))
+wrong("8.16", "turns only")(pushed(moves=0.0))
+
+
+# 8.17 -----------------------------------------------------------------------------------------------------------
+def rate(order=False, scale=2.0, by_w=True, per_step=True, sign=1.0, back=True):
+    def turning_rate(q_old, q_new, dt):
+        turned_back = q_old * np.array([1.0, -1.0, -1.0, -1.0]) if back else q_old
+        turn = worked.product(turned_back, q_new) if order else worked.product(q_new, turned_back)
+        return sign * scale * turn[1:] / (turn[0] if by_w else 1.0) / (dt if per_step else 1.0)
+    return turning_rate
+
+
+right("8.17", "with a conjugate by signs")(rate())
+wrong("8.17", "the body's own axes")(rate(order=True))
+wrong("8.17", "half as fast")(rate(scale=1.0))
+wrong("8.17", "not for −q")(rate(by_w=False))
+wrong("8.17", "an angle, no rate")(rate(per_step=False))
+wrong("8.17", "backwards")(rate(sign=-1.0))
+wrong("8.17", "the product of both")(rate(back=False))
+
+
+# 8.18 -----------------------------------------------------------------------------------------------------------
+def enclosed(share=6.0, order=(0, 1, 2), slope_share=6.0, sign=1.0, only_first=False):
+    def volume_gradient(x, faces):
+        corners = x[faces[:, list(order)]]
+        a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+        gradient = np.zeros_like(x)
+        for k, (p, r) in enumerate(((b, c), (c, a), (a, b))):
+            if k == 0 or not only_first:
+                np.add.at(gradient, faces[:, order[k]], np.cross(p, r) / slope_share)
+        return sign * np.sum(a * np.cross(b, c)) / share, sign * gradient
+    return volume_gradient
+
+
+right("8.18", "all faces at once")(enclosed())
+right("8.18", "from another corner")(enclosed(order=(1, 2, 0)))
+wrong("8.18", "inside out")(enclosed(order=(0, 2, 1)))
+wrong("8.18", "a third")(enclosed(share=3.0))
+wrong("8.18", "a third in the slope")(enclosed(slope_share=3.0))
+wrong("8.18", "the first corner only")(enclosed(only_first=True))
+
+
+@wrong("8.18", "counts a corner of several faces once")
+def volume_gradient(x, faces):
+    gradient = np.zeros_like(x)
+    a, b, c = (x[faces[:, k]] for k in range(3))
+    gradient[faces[:, 0]] += np.cross(b, c) / 6.0
+    gradient[faces[:, 1]] += np.cross(c, a) / 6.0
+    gradient[faces[:, 2]] += np.cross(a, b) / 6.0
+    return np.sum(a * np.cross(b, c)) / 6.0, gradient

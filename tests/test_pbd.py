@@ -1,0 +1,462 @@
+"""Lesson 8 is right when a projection does what its constraint asks, no more, shares it by mass, and a spring stays a spring at any step."""
+
+import numpy as np
+import pytest
+
+from .grading.expect import close, raises
+from solutions.checks import BadInput, Diverged
+
+exercise = pytest.mark.exercise
+G = 9.81                     # [m/s²]
+# Everything drawn is below 10 in its unit, and what is compared takes a few dozen operations, each rounded by 1.1e-16 of that:
+ROUND_OFF = 1e-12
+TINY = 1e-30                 # a complex step: its square vanishes beside 1, so that a derivative is exact to round-off
+
+
+def direction(draw, d):
+    """A unit vector (d,), drawn."""
+    y = draw(-1.0, 1.0, d)
+    while not 0.1 < np.linalg.norm(y) < 1.0:
+        y = draw(-1.0, 1.0, d)
+    return y / np.linalg.norm(y)
+
+
+def net(lesson, inv_mass, pairs, rest, d=2, stiffness=1.0, alpha=0.0, sweeps=1, g=G):
+    """A Net without the lesson's own checks; gravity against the last coordinate."""
+    pairs = np.array(pairs, dtype=np.int64)
+    gravity = np.zeros(d)
+    gravity[-1] = -g
+    each = lambda y: np.broadcast_to(np.array(y, dtype=float), len(pairs)).copy()
+    return lesson.Net(np.array(inv_mass, dtype=float), gravity, pairs[:, 0].copy(), pairs[:, 1].copy(), each(rest), each(stiffness), each(alpha), sweeps)
+
+
+def chain(lesson, draw, links, d=2, held=True, **more):
+    """(x, Net) of a zigzag of drawn masses whose links are about as long as they should be."""
+    x = np.cumsum(np.concatenate((np.zeros((1, d)), [draw(0.8, 1.2) * direction(draw, d) for _ in range(links)])), axis=0)
+    inv_mass = 1.0 / draw(0.5, 2.0, links + 1)
+    if held:
+        inv_mass[0] = 0.0
+    return x, net(lesson, inv_mass, [(k, k + 1) for k in range(links)], draw(0.9, 1.1, links), d, **more)
+
+
+def lengths(x, p):
+    return np.linalg.norm(x[p.i] - x[p.j], axis=1)
+
+
+# ---------------------------------------------------------------------------------------------- one constraint
+
+@exercise("8.1", points=0.5, hint="C is positive where the points are too far apart; n points from j to i, and has length 1")
+def test_a_link_knows_how_much_too_long_it_is_and_where_its_ends_should_go(lesson, draw):
+    for d in (2, 3):
+        x_j, n, length, rest = draw(-2.0, 2.0, d), direction(draw, d), draw(0.5, 3.0), draw(0.5, 3.0)
+        C, gradient = lesson.distance_constraint(x_j + length * n, x_j, rest)
+        given = f"x_i = {x_j + length * n} m, x_j = {x_j} m, rest = {rest} m"
+        close("constraint C [m]", C, length - rest, ROUND_OFF, given=given)
+        close("its gradient for i [-]", gradient, n, ROUND_OFF, given=given)
+
+
+@exercise("8.1", points=0.5, hint="no length, no direction: raise BadInput as the docstring says, before dividing")
+def test_a_link_whose_ends_coincide_is_refused(lesson, draw):
+    x = draw(-2.0, 2.0, 2)
+    raises("a link whose ends coincide", BadInput, lesson.distance_constraint, x, x.copy(), draw(0.5, 2.0))
+
+
+@exercise("8.2", points=1, hint="Λ = −C/Σ w|∇C|², the same for all points; each point then moves by w Λ along its own gradient")
+def test_a_projection_meets_a_linear_constraint_at_once_and_shares_it_by_inverse_mass(lesson, draw):
+    for k, d in ((2, 2), (4, 3)):
+        gradients, w, C = draw(-2.0, 2.0, (k, d)), draw(0.2, 2.0, k), draw(0.5, 2.0) * (2 * draw.whole(0, 1) - 1)
+        w[0] = 0.0
+        moved = np.asarray(lesson.projection(C, gradients, w), dtype=float)
+        given = f"C = {C}, ∇C = {gradients.tolist()}, w = {w}"
+        close("C + Σ ∇C · Δx: what is left of a linear constraint", C + np.sum(gradients * moved), 0.0, ROUND_OFF, given=given)
+        close("correction of an immovable point [m]", moved[0], np.zeros(d), 0.0, given=given)
+        share = moved[1:] / w[1:, None] / gradients[1:]
+        close("Δx/(w ∇C): one number for all points and coordinates", share, np.full_like(share, share[0, 0]), ROUND_OFF * np.abs(share).max() / np.abs(gradients).min(), given=given)
+
+
+@exercise("8.2", points=0.5, hint="when Σ w|∇C|² is 0 nothing can move: raise BadInput instead of dividing by it")
+def test_a_constraint_that_nothing_can_meet_is_refused(lesson, draw):
+    gradients = draw(0.5, 2.0, (2, 3))
+    raises("a constraint between immovable points", BadInput, lesson.projection, draw(0.5, 1.0), gradients, np.zeros(2))
+    raises("a constraint without a gradient", BadInput, lesson.projection, draw(0.5, 1.0), 0.0 * gradients, np.ones(2))
+
+
+# ---------------------------------------------------------------------------------------------- the projection method
+
+def swirl(t, x, v, p):
+    """An acceleration that depends on all that it is given."""
+    return t * x - 2.0 * v + p.gravity
+
+
+@exercise("8.3", points=0.5, hint="dt² a, not ½ dt² a; where inv_mass is 0 leave the force out, but not the velocity")
+def test_points_are_predicted_to_go_on_and_fall_and_immovable_ones_only_to_go_on(lesson, draw):
+    for d in (2, 3):
+        x, v, t, dt = draw(-1.0, 1.0, (3, d)), draw(-1.0, 1.0, (3, d)), draw(0.5, 2.0), draw(0.05, 0.5)
+        p = net(lesson, [1.0, 0.0, draw(0.5, 2.0)], [(0, 1)], 1.0, d)
+        before = x.copy()
+        expected = x + dt * v + dt * dt * swirl(t, x, v, p) * np.array([[1.0], [0.0], [1.0]])
+        close("predicted positions [m]", lesson.predict(swirl, t, x, v, dt, p), expected, ROUND_OFF, given=f"x = {x.tolist()}, v = {v.tolist()}, t = {t} s, dt = {dt} s")
+        close("the x that was handed in: return a new array", x, before, 0.0)
+
+
+def equations(x, lam, goal, dt, p):
+    """What Newton's method makes zero: (x − x_pred − dt² W Σ λ∇C, C), of complex numbers as well."""
+    r = x[p.i] - x[p.j]
+    length = np.sqrt(np.sum(r * r, axis=1))
+    pull = lam[:, None] * r / length[:, None]
+    force = np.zeros_like(pull, shape=x.shape)
+    np.add.at(force, p.i, pull)
+    np.subtract.at(force, p.j, pull)
+    return np.concatenate(((x - goal - dt * dt * p.inv_mass[:, None] * force).ravel(), length - p.rest))
+
+
+@exercise("8.4", points=1, hint="both rows of the docstring: the matrix needs −dt² W Σ λ ∇²C beside 1, and the unknown is the new λ itself")
+def test_a_newton_round_solves_the_equations_as_they_are_about_its_guess(lesson, draw):
+    """f + f'·(Δx, Δλ) = 0 with f' along that direction by a complex step."""
+    for d, held in ((2, True), (3, False)):
+        x, p = chain(lesson, draw, 3, d, held)
+        lam, goal, dt = draw(-5.0, 5.0, 3), x + draw(-0.1, 0.1, x.shape), draw(0.1, 0.3)
+        change, new = lesson.newton_correction(x, lam, goal, dt, p)
+        change, new = np.asarray(change, dtype=float), np.asarray(new, dtype=float)
+        given = f"x = {x.tolist()}, λ = {lam}, x_pred = {goal.tolist()}, dt = {dt} s, {p}"
+        slope = equations(x + 1j * TINY * change, lam + 1j * TINY * (new - lam), goal, dt, p).imag / TINY
+        # a matrix of numbers up to 1/dt² ≤ 100 of a condition below 1e4
+        close("equations about the guess, with the correction put in [m]", equations(x, lam, goal, dt, p) + slope, np.zeros(x.size + 3), 1e-10, given=given)
+
+
+@exercise("8.4", points=1, hint="λ is in newtons: divide Λ = dt² λ by dt² at the end; W stands on the left of Jᵀ, by rows")
+def test_links_that_hang_at_rest_carry_what_is_below_them(lesson, draw):
+    for links in (1, 3):
+        rest, masses, dt = draw(0.5, 1.5, links), draw(0.5, 3.0, links), draw(0.01, 0.3)
+        x = np.zeros((links + 1, 2))
+        x[1:, 1] = -np.cumsum(rest)
+        p = net(lesson, [0.0, *(1.0 / masses)], [(k, k + 1) for k in range(links)], rest)
+        goal = x.copy()
+        goal[1:, 1] -= dt * dt * G
+        change, lam = lesson.newton_correction(x, np.zeros(links), goal, dt, p)
+        given = f"masses {masses} kg, links {rest} m, dt = {dt} s"
+        close("correction of what hangs at rest [m]", change, np.zeros_like(x), ROUND_OFF, given=given)
+        # λ comes from Λ = dt² λ > 1e-3 N s², known to 1e-15
+        close("multipliers λ [N]: minus the weight below", lam, -G * np.cumsum(masses[::-1])[::-1], 1e-9, given=given)
+
+
+@exercise("8.5", points=0.5, hint="the velocity is what the points have really moved, over dt; repeat Newton's rounds until nothing changes")
+def test_after_a_step_every_link_has_its_length_and_nothing_is_pushed_from_outside(lesson, draw):
+    x, p = chain(lesson, draw, 3, 2, held=False)
+    p = p._replace(rest=lengths(x, p))
+    v, dt = draw(-1.0, 1.0, x.shape), draw(0.02, 0.1)
+    new, v_new = lesson.projection_step(lesson.falling_acceleration, 0.0, x, v, dt, p)
+    new, v_new = np.asarray(new, dtype=float), np.asarray(v_new, dtype=float)
+    given, m = f"x = {x.tolist()} m, v = {v.tolist()} m/s, dt = {dt} s, {p}", 1.0 / p.inv_mass
+    close("lengths of the links after a step [m]", lengths(new, p), p.rest, 1e-11, given=given)
+    close("velocity [m/s]: what it has moved, over dt", v_new, (new - x) / dt, 1e-11, given=given)
+    close("momentum after a step [kg m/s]: what gravity gave", m @ v_new, m @ v + dt * m.sum() * p.gravity, 1e-11, given=given)
+
+
+@exercise("8.5", points=0.5, hint="raise Diverged when NEWTON_LIMIT rounds were not enough; ask every coordinate of Δx")
+def test_a_pendulum_goes_where_its_string_is_in_line_with_the_prediction(lesson, draw):
+    n, length, dt = direction(draw, 2), draw(0.5, 2.0), draw(0.02, 0.1)
+    x = np.stack((np.zeros(2), length * n))
+    v = np.stack((np.zeros(2), draw(-2.0, 2.0, 2)))
+    p = net(lesson, [0.0, draw(0.5, 2.0)], [(0, 1)], length)
+    goal = x[1] + dt * v[1] + dt * dt * p.gravity
+    new, _ = lesson.projection_step(lesson.falling_acceleration, 0.0, x, v, dt, p)
+    close("pendulum after a step [m]", new, [np.zeros(2), length * goal / np.linalg.norm(goal)], 1e-11, given=f"x = {x.tolist()} m, v = {v.tolist()} m/s, dt = {dt} s")
+    far = draw(2.2, 3.0)
+    between = np.array([[0.0, 0.0], [0.5 * far, draw(0.3, 0.9)], [far, 0.0]])
+    short = net(lesson, [0.0, 1.0, 0.0], [(0, 1), (1, 2)], 1.0)
+    raises("two links that are too short for the points that hold them", Diverged, lesson.projection_step, lesson.falling_acceleration, 0.0, between, 0.0 * between, dt, short)
+
+
+# ---------------------------------------------------------------------------------------------- position-based dynamics
+
+@exercise("8.6", points=1, hint="each end by its own w over w_i + w_j, and both by the link's stiffness; the centre of mass stays")
+def test_a_visit_takes_its_share_of_the_error_and_leaves_the_centre_of_mass(lesson, draw):
+    for d in (2, 3):
+        s, w = draw(0.2, 0.9), draw(0.3, 2.0, 2)
+        x, rest = np.stack((draw(-1.0, 1.0, d), draw(2.0, 3.0, d))), draw(0.3, 0.8)
+        for share in (1.0, s):
+            p = net(lesson, w, [(0, 1)], rest, d, share)
+            before, new = x.copy(), np.asarray(lesson.distance_sweep(x, p), dtype=float)
+            given = f"x = {x.tolist()} m, w = {w}, rest = {rest} m, stiffness {share}"
+            close("length after a visit [m]", lengths(new, p), rest + (1.0 - share) * (lengths(x, p) - rest), ROUND_OFF, given=given)
+            close("centre of mass [m]", (1.0 / w) @ new, (1.0 / w) @ x, ROUND_OFF * 10.0, given=given)
+            close("the x that was handed in: return a new array", x, before, 0.0)
+
+
+@exercise("8.6", points=0.5, hint="one after the other: a link starts from where the ones before it have put its ends")
+def test_a_sweep_visits_one_link_after_the_other_and_leaves_the_immovable_alone(lesson, draw):
+    """Points 0 (held), 1, 2 on a line: the first visit moves 1 all the way, the second takes half of it back."""
+    n, a, b, share = direction(draw, 3), draw(0.1, 0.5), draw(-0.5, -0.1), draw(0.3, 1.0)
+    begin, w = draw(-1.0, 1.0, 3), draw(0.5, 2.0)
+    x = begin + np.outer([0.0, 1.0 + a, 2.0 + a + b], n)
+    p = net(lesson, [0.0, w, w], [(0, 1), (1, 2)], 1.0, 3, share)
+    first = 1.0 + (1.0 - share) * a
+    error = 2.0 + a + b - first - 1.0
+    expected = begin + np.outer([0.0, first + 0.5 * share * error, 2.0 + a + b - 0.5 * share * error], n)
+    new = lesson.distance_sweep(x, p)
+    close("positions after a sweep [m]", new, expected, ROUND_OFF, given=f"x = {x.tolist()} m, {p}")
+    close("the immovable point [m]", np.asarray(new)[0], x[0], 0.0)
+    x[1] = x[0]
+    raises("a link whose ends coincide", BadInput, lesson.distance_sweep, x, p)
+
+
+@exercise("8.7", points=1, hint="predict, then net.sweeps sweeps, then the velocity from what was moved")
+def test_a_weight_on_one_link_sags_by_what_its_sweeps_leave(lesson, draw):
+    for sweeps in (1, draw.whole(2, 5)):
+        s, dt, length = draw(0.2, 0.8), draw(0.01, 0.1), draw(0.5, 2.0)
+        S = (1.0 - s) ** sweeps
+        sag = G * dt * dt * S / (1.0 - S)
+        x = np.array([[0.0, 0.0], [0.0, -length - sag]])
+        p = net(lesson, [0.0, draw(0.2, 5.0)], [(0, 1)], length, 2, s, 0.0, sweeps)
+        given = f"x = {x.tolist()} m, dt = {dt} s, {p}"
+        new, v = lesson.pbd_step(lesson.falling_acceleration, 0.0, x, 0.0 * x, dt, p)
+        close("a weight where it should rest, after a step [m]", new, x, ROUND_OFF, given=given)
+        close("its velocity [m/s]", v, 0.0 * x, ROUND_OFF / dt, given=given)
+        fast = np.array([[0.0, 0.0], [0.0, draw(1.0, 2.0)]])
+        new, v = lesson.pbd_step(lesson.falling_acceleration, 0.0, x, fast, dt, p)
+        expected = -length - S * (sag + G * dt * dt - dt * fast[1, 1])
+        close("a weight that was thrown, after a step [m]", np.asarray(new)[1, 1], expected, ROUND_OFF, given=f"v = {fast[1]} m/s, {given}")
+        close("its velocity [m/s]: what it has moved, over dt", np.asarray(v)[1, 1], (expected - x[1, 1]) / dt, ROUND_OFF / dt, given=given)
+
+
+@exercise("8.8", points=0.5, hint="S = (1 − s)ⁿ is what the sweeps leave; the sag is where falling by g dt² and being put back balance")
+def test_the_sag_is_where_falling_and_projecting_balance(lesson, draw):
+    g, dt, s, sweeps = draw(1.0, 20.0), draw(0.01, 0.1), draw(0.2, 0.8), draw.whole(1, 6)
+    sag = 0.0
+    for _ in range(400):                             # it converges by a factor S ≤ 0.8 each time
+        sag = sag + g * dt * dt
+        for _ in range(sweeps):
+            sag -= s * sag
+    close("sag [m]", lesson.pbd_sag(g, dt, s, sweeps), sag, ROUND_OFF, given=f"g = {g} m/s², dt = {dt} s, s = {s}, n = {sweeps}")
+    close("sag of full stiffness [m]", lesson.pbd_sag(g, dt, 1.0, 1), 0.0, 0.0)
+
+
+# ---------------------------------------------------------------------------------------------- folds and obstacles
+
+def folded(draw, phi):
+    """(4, 3): two drawn triangles with a common edge, folded by φ, in a drawn place of space."""
+    e, up = direction(draw, 3), direction(draw, 3)
+    up = np.cross(e, up)
+    up = up / np.linalg.norm(up)
+    side = np.cross(up, e)
+    a, length = draw(-1.0, 1.0, 3), draw(0.7, 1.5)
+    c = a + draw(0.2, 1.0) * length * e + draw(0.5, 1.2) * side
+    d = a + draw(-0.3, 0.7) * length * e + draw(0.5, 1.2) * (-np.cos(phi) * side - np.sin(phi) * up)
+    return np.stack((a, a + length * e, c, d))
+
+
+def angle(x):
+    """The angle of a fold, by what is seen along its edge: how far wing d is from being opposite to wing c."""
+    e = x[1] - x[0]
+    e = e / np.linalg.norm(e)
+    c, d = (y - (y @ e) * e for y in (x[2] - x[0], x[0] - x[3]))
+    return np.arctan2(np.cross(c, d) @ e, c @ d)
+
+
+@exercise("8.9", points=1, hint="flat is 0; atan2 with (N_c × N_d) · e/|e| knows which way it is folded; take C into (−π, π]")
+def test_a_fold_knows_its_angle_and_its_side(lesson, draw):
+    for phi, wanted in ((draw(0.2, 2.5), draw(-0.5, 0.5)), (-draw(0.2, 2.5), draw(-0.5, 0.5)), (0.0, 0.0), (3.0, -draw(0.5, 2.5))):
+        x = folded(draw, phi)
+        expected = angle(x) - wanted
+        expected -= 2.0 * np.pi * (expected > np.pi)
+        close("angle, as the test has made it [rad]", abs(angle(x)), abs(phi), 1e-11)
+        close("C of a fold [rad]", lesson.fold_constraint(x, wanted)[0], expected, 1e-11, given=f"corners {x.tolist()} m, wanted {wanted} rad")
+    x[3] = x[0]
+    raises("a triangle without area", BadInput, lesson.fold_constraint, x, 0.0)
+
+
+@exercise("8.9", points=1, hint="wings move the angle by |e|/|N| each, along their normals; what the edge does follows from leverage, β, and from Σ = 0")
+def test_the_gradient_of_a_fold_is_the_slope_of_its_angle_and_pushes_nothing_from_outside(lesson, draw):
+    for phi in (draw(0.3, 2.0), -draw(0.3, 2.0), 0.0):
+        x, h = folded(draw, phi), 1e-5
+        got = np.asarray(lesson.fold_constraint(x, 0.2)[1], dtype=float)
+        slope = np.zeros((4, 3))
+        for k in range(12):
+            y = np.zeros(12)
+            y[k] = h
+            slope.flat[k] = (angle(x + y.reshape(4, 3)) - angle(x - y.reshape(4, 3))) / (2.0 * h)
+        # central differences: h²/6 of a third derivative below 1e2, and 1e-16/h of round-off
+        close("gradient of the angle [rad/m]", got, slope, 1e-8, given=f"corners {x.tolist()} m")
+        close("Σ ∇C: no force from outside", got.sum(axis=0), np.zeros(3), ROUND_OFF * 10.0, given=f"corners {x.tolist()} m")
+        close("Σ x × ∇C: no torque from outside", np.cross(x, got).sum(axis=0), np.zeros(3), ROUND_OFF * 10.0, given=f"corners {x.tolist()} m")
+
+
+@exercise("8.10", points=0.5, hint="|x − centre| − radius: positive outside; n points away from the centre, and is 0 there")
+def test_a_ball_knows_how_far_away_its_skin_is(lesson, draw):
+    for d in (2, 3):
+        ball = lesson.Obstacle(draw(-2.0, 2.0, d), draw(0.5, 2.0), np.zeros(d), np.eye(d)[0])
+        for distance in (draw(0.1, 0.4), draw(2.5, 4.0)):
+            n = direction(draw, d)
+            phi, normal = lesson.ball_gap(ball.centre + distance * n, ball)
+            close("gap of a ball [m]", phi, distance - ball.radius, ROUND_OFF, given=f"{ball}, {distance} m along {n}")
+            close("normal of a ball [-]", normal, n, ROUND_OFF, given=f"{ball}, {distance} m along {n}")
+        phi, normal = lesson.ball_gap(ball.centre, ball)
+        close("gap in the middle [m]", phi, -ball.radius, ROUND_OFF)
+        close("normal in the middle [-]", normal, np.zeros(d), 0.0)
+
+
+@exercise("8.11", points=1, hint="only where φ < 0, only what can move, and straight along n by −φ")
+def test_what_has_got_inside_is_put_onto_the_skin_and_the_rest_is_left_alone(lesson, draw):
+    n, tangent = direction(draw, 3), direction(draw, 3)
+    tangent = np.cross(n, tangent)
+    floor = lesson.Obstacle(np.zeros(3), 0.0, draw(-1.0, 1.0, 3), n)
+    heights = np.array([-draw(0.1, 0.5), draw(0.1, 0.5), -draw(0.1, 0.5), 0.0])
+    x = floor.point + np.outer(heights, n) + np.outer(draw(-1.0, 1.0, 4), tangent)
+    before, w = x.copy(), np.array([draw(0.5, 2.0), 1.0, 0.0, 1.0])
+    new = np.asarray(lesson.keep_outside(lesson.floor_gap, x, w, floor), dtype=float)
+    given = f"heights {heights} m over the floor {floor}, w = {w}"
+    close("where a point inside is put [m]", new[0], x[0] - heights[0] * n, ROUND_OFF, given=given)
+    close("points outside, and immovable ones [m]", new[1:3], x[1:3], 0.0, given=given)
+    close("a point on the skin [m]", new[3], x[3], ROUND_OFF, given=given)
+    close("the x that was handed in: return a new array", x, before, 0.0)
+
+
+# ---------------------------------------------------------------------------------------------- XPBD
+
+@exercise("8.12", points=0.5, hint="(−C − α̃ Λ)/(weight + α̃) with α̃ = α/dt²: after the visit C + α̃ Λ is zero")
+def test_after_a_visit_a_compliant_constraint_obeys_hookes_law(lesson, draw):
+    for alpha in (0.0, draw(0.001, 0.1)):
+        C, Lam, weight, dt = draw(-1.0, 1.0), draw(-1.0, 1.0), draw(0.2, 2.0), draw(0.05, 0.5)
+        change = lesson.compliant_multiplier(C, Lam, weight, alpha, dt)
+        given = f"C = {C} m, Λ = {Lam} N s², weight {weight} /kg, α = {alpha} m/N, dt = {dt} s"
+        close("C + α λ after a visit [m]", C + weight * change + alpha * (Lam + change) / dt**2, 0.0, 1e-10, given=given)
+
+
+@exercise("8.12", points=0.5, hint="ask `not alpha >= 0.0`, which NaN answers, too; and a weight of 0 before you divide")
+def test_a_negative_compliance_and_a_constraint_without_mass_are_refused(lesson, draw):
+    for alpha in (-draw(0.001, 0.1), np.nan):
+        raises("a compliance that is none", BadInput, lesson.compliant_multiplier, 0.1, 0.0, 1.0, alpha, 0.1)
+    for alpha in (0.0, draw(0.001, 0.1)):
+        raises("a constraint with no free mass", BadInput, lesson.compliant_multiplier, 0.1, 0.0, 0.0, alpha, 0.1)
+
+
+@exercise("8.13", points=1, hint="Λ of each link goes on from where it was; add w ΔΛ n to i and take it from j")
+def test_a_visit_to_a_spring_leaves_it_in_balance_with_what_it_has_pulled(lesson, draw):
+    for d in (2, 3):
+        x, w = np.stack((draw(-1.0, 1.0, d), draw(2.0, 3.0, d))), draw(0.3, 2.0, 2)
+        p = net(lesson, w, [(0, 1)], draw(0.5, 1.0), d, 1.0, draw(0.001, 0.1))
+        Lam, dt, before = np.array([-draw(0.1, 0.5)]), draw(0.1, 0.4), x.copy()
+        kept = Lam.copy()
+        new, total = lesson.compliant_sweep(x, Lam, dt, p)
+        new, total = np.asarray(new, dtype=float), np.asarray(total, dtype=float)
+        given = f"x = {x.tolist()} m, Λ = {Lam}, dt = {dt} s, {p}"
+        close("C + α λ after a visit [m]", lengths(new, p) - p.rest + p.alpha * total / dt**2, np.zeros(1), 1e-11, given=given)
+        pull = (total - Lam) * (x[0] - x[1]) / np.linalg.norm(x[0] - x[1])
+        close("how both ends moved [m]: by w and ΔΛ, along the link", new - x, np.stack((w[0] * pull, -w[1] * pull)), 1e-11, given=given)
+        close("the x that was handed in: return a new array", x, before, 0.0)
+        close("the Λ that was handed in: return a new array", Lam, kept, 0.0)
+
+
+@exercise("8.13", points=0.5, hint="every link has its own Λ and α, and starts from where the ones before it have put its ends")
+def test_springs_are_visited_one_after_the_other(lesson, draw):
+    n, begin, dt = direction(draw, 2), draw(-1.0, 1.0, 2), draw(0.1, 0.4)
+    a, b, w, alpha = draw(0.1, 0.5), draw(0.1, 0.5), draw(0.5, 2.0), draw(0.001, 0.1, 2)
+    x = begin + np.outer([0.0, 1.0 + a, 2.0 + a + b], n)
+    p = net(lesson, [0.0, w, w], [(0, 1), (1, 2)], 1.0, 2, 1.0, alpha)
+    new, Lam = lesson.compliant_sweep(x, np.zeros(2), dt, p)
+    soft = alpha / dt**2
+    first = -a / (w + soft[0])
+    between_ = b - w * first                         # the first visit pulls point 1 towards 0 by −w ΔΛ, which lengthens the second
+    second = -between_ / (2.0 * w + soft[1])
+    close("Λ after a sweep [N s²]", Lam, [first, second], 1e-11, given=f"x = {x.tolist()} m, dt = {dt} s, {p}")
+    close("positions after a sweep [m]", new, x + np.outer([0.0, w * first - w * second, w * second], n), 1e-11, given=f"x = {x.tolist()} m, dt = {dt} s, {p}")
+    x[1] = x[0]
+    raises("a link whose ends coincide", BadInput, lesson.compliant_sweep, x, np.zeros(2), dt, p)
+
+
+@exercise("8.14", points=1, hint="Λ begins with zeros at every step, and is handed from sweep to sweep within it")
+def test_one_spring_is_implicit_euler_whatever_the_step_and_the_sweeps(lesson, draw):
+    """v⁺ = (v − dt (k/m) s + dt (−g))/(1 + dt² k/m),  s the stretch: implicit Euler of m s̈ = −k s − m g, in y; along a line it stays one."""
+    for sweeps in (1, draw.whole(2, 6)):
+        m, k, rest, dt = draw(0.3, 3.0), draw(10.0, 500.0), draw(0.5, 1.5), draw(0.01, 0.2)
+        stretch, speed = draw(-0.2, 0.2), draw(-1.0, 1.0)
+        x, v = np.array([[0.0, 0.0], [0.0, -rest - stretch]]), np.array([[0.0, 0.0], [0.0, speed]])
+        p = net(lesson, [0.0, 1.0 / m], [(0, 1)], rest, 2, 1.0, 1.0 / k, sweeps)
+        given = f"m = {m} kg, k = {k} N/m, dt = {dt} s, stretch {stretch} m, v = {speed} m/s, {sweeps} sweeps"
+        new, v_new = lesson.xpbd_step(lesson.falling_acceleration, 0.0, x, v, dt, p)
+        expected = (speed + dt * (k / m * stretch - G)) / (1.0 + dt * dt * k / m)
+        close("velocity after a step [m/s]: implicit Euler's", np.asarray(v_new)[1, 1], expected, 1e-10, given=given)
+        close("position after a step [m]", np.asarray(new)[1, 1], x[1, 1] + dt * expected, 1e-11, given=given)
+        hanging = np.array([[0.0, 0.0], [0.0, -rest - m * G / k]])
+        new, _ = lesson.xpbd_step(lesson.falling_acceleration, 0.0, hanging, 0.0 * v, dt, p)
+        close("where a weight hangs after a step [m]: m g/k lower", new, hanging, 1e-11, given=given)
+
+
+# ---------------------------------------------------------------------------------------------- rigid bodies
+
+def body(draw):
+    """(q, R, m, I_body): a drawn orientation, and R by Rodrigues' formula."""
+    axis, turn = direction(draw, 3), draw(0.3, 2.5)
+    K = np.array([[0.0, -axis[2], axis[1]], [axis[2], 0.0, -axis[0]], [-axis[1], axis[0], 0.0]])
+    R = np.eye(3) + np.sin(turn) * K + (1.0 - np.cos(turn)) * K @ K
+    low = draw(0.5, 1.0, 2)
+    return np.append(np.cos(0.5 * turn), np.sin(0.5 * turn) * axis), R, draw(0.5, 3.0), np.array([low[0], low[1], draw(0.95, 1.0) * low.sum()])
+
+
+@exercise("8.15", points=1, hint="r × n in the body's coordinates, squared over the moments; 1/m beside it")
+def test_a_point_of_a_body_gives_way_as_an_impulse_there_would_make_it(lesson, draw):
+    """An impulse n at r gives v = n/m and ω = I⁻¹(r × n): the point moves along n with n·(v + ω × r)."""
+    q, R, m, I_body = body(draw)
+    for r in (draw(-1.0, 1.0, 3), np.zeros(3)):
+        n = direction(draw, 3)
+        omega = R @ np.diag(1.0 / I_body) @ R.T @ np.cross(r, n)
+        close("generalised inverse mass [1/kg]", lesson.generalised_inverse_mass(q, r, n, m, I_body), n @ (n / m + np.cross(omega, r)), ROUND_OFF,
+              given=f"q = {q}, r = {r} m, n = {n}, m = {m} kg, I = {I_body}")
+
+
+def turn_of(q_new, q_old):
+    """Matrix by which a body has turned, from two quaternions."""
+    def matrix(q):
+        w, v = q[0], q[1:]
+        K = np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
+        return np.eye(3) + 2.0 * w * K + 2.0 * K @ K
+    return matrix(q_new) @ matrix(q_old).T
+
+
+@exercise("8.16", points=1.5, hint="the turn is I⁻¹(r × p), in the world; quaternion_update(q, turn, 1.0) turns by it and keeps |q| = 1")
+def test_a_push_beside_the_centre_moves_and_turns_a_body(lesson, draw):
+    q, R, m, I_body = body(draw)
+    x, r, p = draw(-1.0, 1.0, 3), draw(-1.0, 1.0, 3), draw(-1.0, 1.0, 3)
+    new, turned = lesson.push_body(x, q, r, p, m, I_body)
+    given = f"q = {q}, r = {r} m, p = {p} kg m, m = {m} kg, I = {I_body}"
+    close("centre of mass [m]", new, x + p / m, ROUND_OFF, given=given)
+    turned = np.asarray(turned, dtype=float)
+    close("length of the quaternion [-]", np.linalg.norm(turned), 1.0, ROUND_OFF, given=given)
+    turn = R @ np.diag(1.0 / I_body) @ R.T @ np.cross(r, p)
+    angle, axis = 2.0 * np.arctan(0.5 * np.linalg.norm(turn)), turn / np.linalg.norm(turn)
+    K = np.array([[0.0, -axis[2], axis[1]], [axis[2], 0.0, -axis[0]], [-axis[1], axis[0], 0.0]])
+    close("by what matrix it has turned [-]", turn_of(turned, q), np.eye(3) + np.sin(angle) * K + (1.0 - np.cos(angle)) * K @ K, 1e-11, given=given)
+
+
+@exercise("8.17", points=0.5, hint="Δq = q_new q̄_old; twice its vector over its first number, over dt")
+def test_a_turn_has_the_rate_that_leads_from_one_orientation_to_the_other(lesson, draw):
+    q, _, _, _ = body(draw)
+    axis, angle, dt = direction(draw, 3), draw(0.1, 2.0), draw(0.05, 0.5)
+    half, s = np.cos(0.5 * angle), np.sin(0.5 * angle)
+    a, v = q[0], q[1:]
+    turned = np.append(half * a - s * axis @ v, half * v + a * s * axis + s * np.cross(axis, v))
+    for sign in (1.0, -1.0):
+        close("rate of a turn [rad/s]", lesson.turning_rate(q, sign * turned, dt), 2.0 * np.tan(0.5 * angle) / dt * axis, 1e-10, given=f"q = {q}, {angle} rad about {axis} in {dt} s")
+
+
+# ---------------------------------------------------------------------------------------------- a soft ball
+
+CUBE = np.array([[0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4], [2, 6, 3], [3, 6, 7], [0, 4, 2], [2, 4, 6], [1, 3, 5], [3, 7, 5]])
+
+
+@exercise("8.18", points=1, hint="a sixth of a · (b × c) for every face; its slope with a is b × c/6, and so on in turns")
+def test_a_closed_surface_knows_its_volume_and_how_its_corners_change_it(lesson, draw):
+    """A box between three drawn vectors has the volume |u · (v × w)|; the volume is linear in each coordinate of a corner."""
+    u, v, w = (np.eye(3)[k] * draw(1.0, 2.0) + draw(-0.3, 0.3, 3) for k in range(3))
+    corners = np.array([[k & 1, k >> 1 & 1, k >> 2] for k in range(8)])
+    x = draw(-2.0, 2.0, 3) + corners @ np.stack((u, v, w))
+    V, gradient = lesson.volume_gradient(x, CUBE)
+    close("volume of a slanting box [m³]", V, u @ np.cross(v, w), 1e-11, given=f"corners {x.tolist()} m")
+    gradient = np.asarray(gradient, dtype=float)
+    close("Σ ∇V [m²]: pushed as a whole it keeps its volume", gradient.sum(axis=0), np.zeros(3), 1e-11, given=f"corners {x.tolist()} m")
+    change = draw(-0.5, 0.5, 3)
+    for k in (0, 3, 6):
+        y = x.copy()
+        y[k] += change
+        close("how one corner changes the volume [m³]", gradient[k] @ change, lesson.volume_gradient(y, CUBE)[0] - V, 1e-11, given=f"corners {x.tolist()} m, corner {k} by {change} m")
