@@ -118,15 +118,9 @@ ENGINES = (
 
 
 def points(observed, p):
-    """The first row, each ball by its rim; touching balls at their places before, for want of others."""
-    around = np.linspace(0.0, 2.0 * np.pi, 9)[:-1]
-    rim = p.R * np.stack((np.cos(around), np.sin(around)), axis=1)
+    """The centres of the first row; touching balls at their places before, for want of others."""
     x = observed[:BALLS] if p.gap > 0.0 else start(p)[0][0, :, 0]
-    return np.concatenate([np.array([place, 0.0]) + rim for place in x])
-
-
-def LINKS(p):
-    return [(8 * i + k, 8 * i + (k + 1) % 8) for i in range(BALLS) for k in range(8)]
+    return np.round(np.stack((x, np.zeros(BALLS)), axis=1), 5)
 
 
 NEEDS = ("one coordinate", "the order of the impacts")

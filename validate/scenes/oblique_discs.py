@@ -121,7 +121,7 @@ def pybullet_make(p, dt):
 
 ENGINES = (
     Engine("pymunk", pymunk_make, 1, f"{COPIES} pairs of circles; no other setting matters"),
-    Engine("pybullet", pybullet_make, 1, f"{COPIES} pairs of spheres; {IMPACT_SETTINGS}"),
+    Engine("pybullet", pybullet_make, 1, f"{COPIES} pairs of spheres; {IMPACT_SETTINGS}", most_steps=500),
 )
 
 
@@ -133,14 +133,14 @@ def published():
 
 
 def points(observed, p):
-    """The first pair: their rims, as twelve-sided as needs be."""
-    around = np.linspace(0.0, 2.0 * np.pi, 13)[:-1]
+    """The first pair, each with six corners for its rim."""
+    around = np.linspace(0.0, 2.0 * np.pi, 7)[:-1]
     rim = p.R * np.stack((np.cos(around), np.sin(around)), axis=1)
-    return np.concatenate((observed[0:2] + rim, observed[4:6] + rim))
+    return np.round(np.concatenate((observed[0:2] + rim, observed[4:6] + rim)), 4)
 
 
 def LINKS(p):
-    return [(i + k, i + (k + 1) % 12) for i in (0, 12) for k in range(12)]
+    return [(i + k, i + (k + 1) % 6) for i in (0, 6) for k in range(6)]
 
 
 def in_space(p):
