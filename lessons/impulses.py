@@ -440,17 +440,26 @@ def spin_all(step, acceleration, t, x, v, omega, dt, steps, p):
 
 # ---------------------------------------------------------------------------------------------- discs that meet
 
-def meeting_time(x, v, reach, dt):
-    """Given.  When [s] two round things meet, one seen from the other at x (d,) with v (d,), reach the sum of their radii; dt if not before.
+def meeting_time(x, v, i, j, reach, dt):
+    """Given.  When [s] two round things i and j meet, reach [m] the sum of their radii; dt if not before.
 
-    |x + τ v| = reach, with the distance falling; what overlaps and comes closer meets now.
+    |Δx + τ Δv| = reach, with the distance falling; what overlaps and comes closer meets now.
     """
-    closing = -(x @ v)
-    if closing <= 0.0:
-        return dt
-    apart = max(0.0, x @ x - reach * reach)
-    squared = closing * closing - (v @ v) * apart
-    return min(dt, apart / (closing + np.sqrt(squared))) if squared >= 0.0 else dt
+    closing, apart, speed = 0.0, -reach * reach, 0.0
+    for k in range(x.shape[1]):
+        dx, dv = x[i, k] - x[j, k], v[i, k] - v[j, k]
+        closing, apart, speed = closing - dx * dv, apart + dx * dx, speed + dv * dv
+    apart = max(0.0, apart)
+    squared = closing * closing - speed * apart
+    return min(dt, apart / (closing + np.sqrt(squared))) if closing > 0.0 and squared >= 0.0 else dt
+
+
+def overlap(x, i, j, reach):
+    """Given.  Whether two round things are closer than the sum of their radii, reach [m]."""
+    squared = 0.0
+    for k in range(x.shape[1]):
+        squared += (x[i, k] - x[j, k]) ** 2
+    return squared < reach * reach
 
 
 def normal_between(x, i, j):
@@ -493,8 +502,7 @@ def projecting_discs_step(x, v, dt, p):
     x, v = drift(x, v, dt), v.copy()
     for i in range(x.shape[0]):
         for j in range(i):
-            d = x[i] - x[j]
-            if d @ d < (p.radius[i] + p.radius[j]) ** 2:
+            if overlap(x, i, j, p.radius[i] + p.radius[j]):
                 v[i], v[j] = disc_impact(x, v, i, j, p)
                 x[i], x[j] = separated(x, i, j, p)
     return x, v
@@ -510,7 +518,7 @@ def backtracking_discs_step(x, v, dt, p):
         tau, first, second = left, 0, 0
         for i in range(x.shape[0]):
             for j in range(i):
-                meets = meeting_time(x[i] - x[j], v[i] - v[j], p.radius[i] + p.radius[j], left)
+                meets = meeting_time(x, v, i, j, p.radius[i] + p.radius[j], left)
                 if meets < tau:
                     tau, first, second = meets, i, j
         x = drift(x, v, tau)

@@ -16,7 +16,7 @@ from validate.scene import EXACT, Engine, World, by_order
 TITLE, LESSON = "Bounces", "impulses"
 T = 1.9                      # [s]: in the third flight, clear of impacts
 FILM = 4.5                   # [s]: until it lies
-STEPS = (40, 100, 200, 500, 1000, 2000, 4000)
+STEPS = (40, 100, 200, 500, 1000, 2000, 5000, 10000)
 METHODS = (PENALTY, PROJECTING, BACKTRACKING)
 ORDERS = {"backtracking_step": EXACT}      # a parabola between impacts whose moments are found
 UNCERTAINTY = 1e-14
