@@ -1,8 +1,8 @@
 """Lesson 7.  Impulses: collisions that take no time.
 
 Symbols: a, b two bodies · v [m/s], omega [rad/s], r [m] offset of the contact point from a centre of mass · n unit normal, from b to a ·
-u [m/s] velocity of a's contact point relative to b's, u_n = n · u · J, j [N s] impulse on a; b gets −J · e [-] restitution · μ [-] friction ·
-K [1/kg] what an impulse does to u: u⁺ = u + K J, k = n · K n · φ [m] gap, n = ∇φ · λ [N s] multiplier of the gap.
+u [m/s] velocity of a's contact point as seen from b's, u_n = n · u its part along n · J, j [N s] impulse on a; b gets −J · e [-] restitution ·
+μ [-] friction · K [1/kg] what an impulse does to u: u⁺ = u + K J, and k = n · K n · φ [m] gap, n = ∇φ · λ [N s] multiplier of the gap.
 
 Velocities after an impact have a ⁺.  An impact is so short that nothing moves and no other force counts.  A body that cannot be moved has
 inv_mass = 0 and inv_inertia = 0.  In the plane r × n is the number r_x n_y − r_y n_x, and omega is a number, counter-clockwise.
@@ -232,7 +232,10 @@ def angular_momenta(L_a, L_b, r_a, r_b, J):
 def point_inverse_mass(r, inv_mass, inv_inertia):
     """K [1/kg], (3, 3): an impulse J at the offset r changes the velocity of that very point by K J.
 
-    K = 1/m − r* I⁻¹ r*          r* = skew(r) of lesson 5: column k is what a unit impulse along axis k does;  of two bodies u changes by (K_a + K_b) J; all zeros for one that cannot be moved
+    K = 1/m − r* I⁻¹ r*          r* = skew(r) of lesson 5
+
+    Its column k is what an impulse of 1 N s along axis k does to the velocity.  K is symmetric, and all zeros for a body that cannot be
+    moved.  Between two bodies u changes by (K_a + K_b) J.
 
     *Source:* Mirtich and Canny 1995; Baraff 1997.
     """
@@ -251,11 +254,11 @@ def cone_impulse(u, n, K, w, mu):
 
     n · u ≥ w:    J = 0, they separate by themselves.       Otherwise
     stick:        J = K⁻¹ (w n − u)                         which leaves u⁺ = w n, nothing along the surface; if |J_t| ≤ μ J_n, this is J.
-    slide:        J = j d,   d = n cos β + sin β J_t/|J_t|  on the rim of the cone, tan β = μ, to the side to which sticking would have pushed:
+    slide:        J = j d,   d = n cos β + sin β J_t/|J_t|  on the rim of the cone, tan β = μ, to the side to which sticking would push:
                   j = (w − n · u)/(n · K d)                 J_t = tangential(J, n) is that of the stick's J
 
-    n · K d > 0 for every μ, infinity included: n · K J > 0 for the stick's J, and its J_t is longer than that of d.  Raises what
-    check_contact raises; call it first.
+    n · K d > 0 for every μ, infinity included: for the stick's J it is, and d leans less towards J_t than that does.
+    solve3 of lesson 5 solves for J, given the columns of K.  Raises what check_contact raises; call it first.
     *Source:* Coulomb's law on velocities after the impact; deck B, "Coulomb's law".  The side of the rim is a choice (see the notebook).
     *Left out:* slip that turns while the impact lasts.
     """
@@ -487,7 +490,7 @@ def backtracking_spin_step(acceleration, t, x, v, omega, dt, p):
 
 
 def spin_all(step, acceleration, t, x, v, omega, dt, steps, p):
-    """Given.  (x, v, ω), each (copies, 3), of copies of a Spinner after so many steps of one method; errors as in drop_all, and a negative μ."""
+    """Given.  (x, v, ω), each (copies, 3), of copies of a Spinner after so many steps of one method; errors as in drop_all, or for μ < 0."""
     check_positive("step dt [s]", dt)
     check_restitution(p.e)
     check_friction(p.mu)
@@ -530,7 +533,7 @@ def overlap(x, i, j, reach):
 
 
 def normal_between(x, i, j):
-    """Given.  (distance [m], unit normal (d,) from disc j to disc i).  Two that sit on one point have none: then any will do, the first axis."""
+    """Given.  (distance [m], unit normal (d,) from disc j to disc i).  Two on one point have none: then any will do, the first axis."""
     n = x[i] - x[j]
     distance = np.sqrt(n @ n)
     if distance == 0.0:
@@ -615,7 +618,7 @@ def discs_all(step, x, v, dt, steps, p):
 # ---------------------------------------------------------------------------------------------- several impacts at once
 
 def one_after_the_other(body, r, n, e, mu):
-    """Given.  A Solid after an impact at several points, offsets r (points, 3), normals n, with what cannot be moved: each point once, in turn.
+    """Given.  A Solid after an impact at several points, as in solve_impacts, but each point once, in turn.
 
     Each finds the body as the one before has left it, so that the result depends on their order: two ends of an edge leave at
     different speeds.
@@ -632,7 +635,7 @@ def solve_impacts(body, r, n, e, mu):
     uᵢ = v + ω × rᵢ;  wᵢ = max(0, −e nᵢ · uᵢ)  from the velocities before the impact, and  Jᵢ = 0.  Then sweep over all points:
         take back the point's own impulse:   u = uᵢ − Kᵢ Jᵢ,    Kᵢ = point_inverse_mass(rᵢ, 1/m, I⁻¹)
         ask what it should be now:           J = cone_impulse(u, nᵢ, Kᵢ, wᵢ, μ);    push the body by J − Jᵢ at rᵢ;    Jᵢ ← J
-    until in a sweep no impulse changed its own point's velocity, |Kᵢ (J − Jᵢ)|, by more than SETTLED times the largest |uᵢ| at the beginning.
+    until in a sweep no impulse changed a component of its point's velocity, Kᵢ (J − Jᵢ), by more than SETTLED times the largest |uᵢ| before.
 
     Together: the order of the points does not matter in the end, and what met the floor flat leaves it flat.
     Raises what check_restitution raises, call it first; Diverged when SWEEPS sweeps are not enough.

@@ -88,6 +88,8 @@ def case_19(lesson):
     x, v = lesson.projecting_step(lesson.falling_acceleration, 0.0, np.array([0.0, -depth]), np.zeros(2), dt, p)
     found += [
         finding(19, "A ball inside its floor is put on it.", "height after one step [m]", 0.0, x[1], ROUND_OFF, f"A ball {depth} m deep is at {x[1]:g} m after one step."),
+        finding(19, "The work of that is m g times the depth, and nothing else.", "energy that it has gained [J/kg]", G * depth + 0.5 * (0.5 * G * dt) ** 2, G * (x[1] + depth) + 0.5 * v @ v, ROUND_OFF,
+                f"Being put on the floor has given it {G * (x[1] + depth) + 0.5 * v @ v:.5f} J/kg; g times the depth is {G * depth:.5f}."),
         finding(19, "It gets no speed from that: what it has is e g dt, from the fall of that step.", "speed after one step [m/s]", 0.5 * G * dt, np.hypot(*v), ROUND_OFF,
                 f"It leaves with {np.hypot(*v):.4f} m/s, which is e g dt."),
     ]

@@ -9,7 +9,7 @@ from solutions.checks import check_positive
 from solutions.impulses import Drop, check_restitution, drop_all
 from solutions.impulses import falling_acceleration as acceleration
 from validate.engines import pymunk_space, pymunk_world
-from validate.impacts import (APART, BACKTRACKING, COPIES, IMPACT_SETTINGS, ITERATIONS, LATE, PENALTY, PROJECTING, Impacts, delays, pymunk_ball,
+from validate.impacts import (APART, BACKTRACKING, COPIES, IMPACT_SETTINGS, LATE, PENALTY, PROJECTING, Impacts, delays, pymunk_ball,
                               pymunk_floor, soft_bounce)
 from validate.scene import EXACT, Engine, World, by_order
 

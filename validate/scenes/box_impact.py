@@ -7,7 +7,7 @@ import numpy as np
 from solutions.checks import check_positive
 from solutions.impulses import Solid, check_restitution
 from validate.engines import pymunk_space
-from validate.impacts import IMPACT_SETTINGS, IN_TURN, TOGETHER, Impacts, all_at_once, each_in_turn, leaning
+from validate.impacts import IN_TURN, TOGETHER, Impacts, all_at_once, each_in_turn, leaning
 from validate.scene import EXACT, Engine, World
 
 TITLE, LESSON = "A box lands", "impulses"
@@ -18,7 +18,8 @@ ORDERS = {"solve_impacts": EXACT, "one_after_the_other": EXACT}
 UNCERTAINTY = 1e-14
 HALF = np.array([0.1, 0.2, 0.3])       # half sizes [m]
 TILT = {"corner": (0.5, 0.7), "edge": (0.5, 0.0), "face": (0.0, 0.0)}                 # about x, then about y [rad]
-STEP, OVERLAP = 1e-3, 1e-12            # of the engines' worlds [s], [m]: they see a contact when there is an overlap
+OVERLAP = 1e-12              # of the engines' bodies [m]: they see a contact when there is one
+BRIEF = 1e-12                # their step [s]: nothing moves in it
 ROUGH = 1e6                  # friction that sticks [-]: any cone is wide enough; infinity the engines do not take
 
 
@@ -98,7 +99,7 @@ def in_turn(p, t):
 
 def tolerance(p, dt):
     """Sweeps stop at changes of 1e-14 of 2 m/s; what they would still change is a hundred times that at most, for 2 m/s, and so much more
-    for ω as the box is smaller than a metre.  The engines sweep fifty times; their boxes overlap by 1e-12 m, over arms of 0.1 m.
+    for ω as the box is smaller than a metre.  The engines' boxes overlap by 1e-12 m, over arms of 0.1 m: ten times that, and as much for luck.
     """
     ours = 100.0 * 1e-14 / HALF.min()                                  # relative to a change of 2 m/s and more
     return {EXACT: ours, "pymunk": 1e-10, "pybullet": 1e-10}
@@ -116,12 +117,12 @@ def pymunk_make(p, dt):
     box = pymunk.Poly.create_box(body, tuple(map(float, 2.0 * HALF[:2])))
     box.elasticity, box.friction = p.e, ROUGH * p.rough
     space.add(floor, body, box)
-    return World(lambda: space.step(1e-12), lambda: np.array([*body.velocity, 0.0, 0.0, 0.0, body.angular_velocity]) - y, lambda: None)
+    return World(lambda: space.step(BRIEF), lambda: np.array([*body.velocity, 0.0, 0.0, 0.0, body.angular_velocity]) - y, lambda: None)
 
 
 def pybullet_make(p, dt):
     """Its contacts are taken before anything moves: one step is the impact."""
-    bullet = Impacts(1e-12)
+    bullet = Impacts(BRIEF)
     pb, client = bullet.pb, bullet.client
     bullet.pb.setPhysicsEngineParameter(numSolverIterations=2000, physicsClientId=client)
     y, n, r, _ = landing(p)
@@ -134,7 +135,7 @@ def pybullet_make(p, dt):
 
 ENGINES = (
     Engine("pymunk", pymunk_make, EXACT, "a Poly on a thick Segment, 2,000 iterations"),
-    Engine("pybullet", pybullet_make, EXACT, f"a box on a box; {IMPACT_SETTINGS}, but 2,000 iterations"),
+    Engine("pybullet", pybullet_make, EXACT, "a box on a box; maximal coordinates; contactERP, contactSlop, contactProcessingThreshold 0, 2,000 iterations"),
 )
 WHY = {"one after the other": ("each point finds the body as the one before has left it, so that the order of the points counts", in_turn)}
 
