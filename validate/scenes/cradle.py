@@ -60,7 +60,8 @@ def observe(state, p):
 def truth(p, t):
     """With gaps the velocity goes from ball to ball, each time e = 1 and equal masses; it is the last that leaves: (0, 0, 0, 0, 1).
 
-    Touching balls meet all at once, and five velocities have two conditions only: momentum and energy.
+    Touching balls meet all at once, and five velocities have two conditions only: momentum and energy.  (Both engines end with
+    (−½, 0, ½, ½, ½) here, whatever the step, and our steps with (0, 0, 0, 0, 1).)
     Source: Newton; for what touching balls may do, Herrmann and Schmälzle 1981.
     """
     x, v, _ = start(p)
