@@ -16,7 +16,7 @@ from validate.scene import EXACT, Engine, World, by_order
 TITLE, LESSON = "Bounces", "impulses"
 T = 1.9                      # [s]: in the third flight, clear of impacts
 FILM = 4.5                   # [s]: until it lies
-STEPS = (40, 100, 200, 500, 1000, 2000, 5000, 10000)
+STEPS = (40, 100, 200, 500, 1000, 2500, 10000)
 METHODS = (PENALTY, PROJECTING, BACKTRACKING)
 ORDERS = {"backtracking_step": EXACT}      # a parabola between impacts whose moments are found
 UNCERTAINTY = 1e-14
@@ -169,7 +169,7 @@ def pybullet_make(p, dt):
 
 ENGINES = (
     Engine("pymunk", pymunk_make, 1, f"{COPIES} circles on a thick segment; collision_slop 1e-5"),
-    Engine("pybullet", pybullet_make, 1, f"{COPIES} spheres on a GEOM_PLANE; {IMPACT_SETTINGS}", most_steps=2000),
+    Engine("pybullet", pybullet_make, 1, f"{COPIES} spheres on a GEOM_PLANE; {IMPACT_SETTINGS}", most_steps=2500),
 )
 WHY = {"penalty": ("its floor is a spring that takes 30 ms to turn the ball round, whatever the step", soft)}
 
