@@ -62,15 +62,16 @@ def case_18(lesson):
         finding(18, "Every impact of every rod ends with a finite impulse.", f"finite impulses [of {tried}]", tried, finite, 0.0, f"{finite} of {tried} impacts at μ from 1.34 to ∞ end in a finite impulse."),
         finding(18, "No impact with e = 0 makes energy.", "largest gain of energy [J]", 0.0, max(0.0, gained), ROUND_OFF, f"The most that an impact gained is {max(0.0, gained):.0e} J, of some 5 J."),
         finding(18, "The tip stays on the floor.", "largest normal velocity after the impact [m/s]", 0.0, wrong, ROUND_OFF, f"After the impact the tip leaves with {wrong:.0e} m/s at most."),
-        finding(18, "No impulse is larger than the larger of the frictionless one and the one that sticks.", "largest impulse over that [-], or 1", 1.0, max(1.0, size), ROUND_OFF,
+        finding(18, "No impulse is larger than the larger of the frictionless one and the one that sticks.", "largest impulse over that, or 1 [-]", 1.0, max(1.0, size), ROUND_OFF,
                 f"The largest impulse is {size:.3f} of that bound."),
     ]
     fine = np.linspace(2.0, 88.0, 173)
-    naive = [1.0 / against_the_first_slip(rod(lesson, a), 2.0, 1.0) for a in fine]
+    naive = np.array([1.0 / against_the_first_slip(rod(lesson, a), 2.0, 1.0) for a in fine])
+    flat, steep = (fine < STEEPEST) & (0.0 < naive) & (naive < 4.0), (fine > STEEPEST) & (0.0 < naive) & (naive < 4.0)
     ours = [lesson.contact_impulse(-3.0 * ACROSS - UP, UP, rod(lesson, a), 0.0, 2.0)[1] for a in fine]
-    shown = [y if 0.0 < y < 4.0 else np.nan for y in naive]
     return found, Picture("A rod pushed over a rough floor, μ = 2", "angle from the floor [°]", "normal impulse over m v [-]", [
-        series("friction against the first slip", fine, shown, LINE), series("cone_impulse", fine[::6], ours[::6], DOTS)],
+        series("friction against the first slip, flatter rods", fine[flat], naive[flat], LINE),
+        series("friction against the first slip, steeper rods", fine[steep], naive[steep], LINE), series("cone_impulse", fine[::6], ours[::6], DOTS)],
         "Between 37° and 79° the common rule has no impulse at all: it would be infinite, or a pull. The cone's does not notice.")
 
 
