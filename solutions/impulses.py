@@ -1,0 +1,661 @@
+"""Lesson 7.  Impulses: collisions that take no time.
+
+Symbols: a, b two bodies · v [m/s], omega [rad/s], r [m] offset of the contact point from a centre of mass · n unit normal, from b to a ·
+u [m/s] velocity of a's contact point as seen from b's, u_n = n · u its part along n · J, j [N s] impulse on a; b gets −J · e [-] restitution ·
+μ [-] friction · K [1/kg] what an impulse does to u: u⁺ = u + K J, and k = n · K n · φ [m] gap, n = ∇φ · λ [N s] multiplier of the gap.
+
+Velocities after an impact have a ⁺.  An impact is so short that nothing moves and no other force counts.  A body that cannot be moved has
+inv_mass = 0 and inv_inertia = 0.  In the plane r × n is the number r_x n_y − r_y n_x, and omega is a number, counter-clockwise.
+*Left out:* finding out who touches whom (lesson 6); contacts that last (lesson 9).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .checks import BadInput, Diverged, check_finite, check_positive
+from .friction import check_friction, tangential
+from .rotation import cross, point_velocity, solve3
+
+UNIT = 1e-9                  # how far from 1 a normal's length may be handed in [-]: any rounding is far below
+IMPACTS = 10_000             # in one step [-]; a ball of e = 0.8 has 165 before the next is closer than the spacing of floats
+SWEEPS = 10_000              # over several contact points [-]; four under a box need about a hundred
+SETTLED = 1e-14              # largest change in a sweep over the largest speed at the beginning [-]: a hundred roundings
+
+
+class Flat(NamedTuple):
+    """A body in the plane."""
+    v: np.ndarray            # (2,) [m/s]
+    omega: float             # [rad/s]
+    inv_mass: float          # [1/kg]
+    inv_inertia: float       # [1/(kg m²)]
+
+
+class Solid(NamedTuple):
+    """A body in space."""
+    v: np.ndarray            # (3,) [m/s]
+    omega: np.ndarray        # (3,) [rad/s]
+    inv_mass: float          # [1/kg]
+    inv_inertia: np.ndarray  # (3, 3) in the world [1/(kg m²)]
+
+
+class Drop(NamedTuple):
+    """A ball that does not turn, over a plane."""
+    e: float                 # restitution [-]
+    gravity: np.ndarray      # (d,) [m/s²]
+    point: np.ndarray        # (d,) where its centre is when it lies on the plane [m]
+    n: np.ndarray            # (d,) unit normal of the plane
+    stiffness: float         # of the penalty's spring over the mass, ω² [1/s²]
+    damping: float           # of its damper over the mass [1/s]
+
+
+class Spinner(NamedTuple):
+    """A ball that turns, over a plane."""
+    e: float                 # restitution [-]
+    mu: float                # friction [-]
+    inv_mass: float          # [1/kg]
+    inv_inertia: np.ndarray  # (3, 3), the same about any axis [1/(kg m²)]
+    radius: float            # [m]
+    gravity: np.ndarray      # (3,) [m/s²]
+    point: np.ndarray        # (3,) where its centre is when it lies on the plane [m]
+    n: np.ndarray            # (3,) unit normal of the plane
+
+
+class Discs(NamedTuple):
+    """Discs or balls without friction, and without a force between their impacts."""
+    radius: np.ndarray       # (bodies,) [m]
+    inv_mass: np.ndarray     # (bodies,) [1/kg]
+    e: float                 # restitution [-]
+
+
+# ---------------------------------------------------------------------------------------------- what may be asked
+
+def check_restitution(e):
+    """Given.  Raise BadInput unless 0 ≤ e ≤ 1: above 1 every impact would make energy."""
+    if not 0.0 <= e <= 1.0:
+        raise BadInput("restitution e [-]", e, "give a number from 0 to 1")
+
+
+def check_inverse_mass(k):
+    """Given.  Raise BadInput unless k [1/kg] is above zero: of two bodies that cannot be moved neither can give way."""
+    if not (k > 0.0 and np.isfinite(k)):
+        raise BadInput("inverse mass of two bodies at their contact [1/kg]", k, "let one of them have a finite mass")
+
+
+def check_normal(n):
+    """Given.  Raise BadInput unless n (d,) is a unit vector."""
+    length = np.sqrt(n @ n)
+    if not abs(length - 1.0) <= UNIT:
+        raise BadInput("length of a normal [-]", length, "give a unit vector")
+
+
+def check_contact(u, n, K, mu):
+    """Given.  Raise BadInput unless n is a unit vector, μ ≥ 0, u finite, and K gives way along n."""
+    check_normal(n)
+    check_friction(mu)
+    check_finite("relative velocity u [m/s]", u)
+    check_inverse_mass(n @ times(K, n))
+
+
+def times(A, b):
+    """Given.  A b of a matrix (3, 3) and a vector (3,); written out, because compiling that costs a tenth of A @ b."""
+    return np.array([A[0, 0] * b[0] + A[0, 1] * b[1] + A[0, 2] * b[2],
+                     A[1, 0] * b[0] + A[1, 1] * b[1] + A[1, 2] * b[2],
+                     A[2, 0] * b[0] + A[2, 1] * b[1] + A[2, 2] * b[2]])
+
+
+# ---------------------------------------------------------------------------------------------- without any physics, and with a spring
+
+def kinematic_response(v, n, k):
+    """Velocity (d,) of a point after it has hit a fixed surface:  v⁺ = v − (1 + k)(v · n) n,  and v⁺ = v where it leaves, v · n ≥ 0.
+
+    It turns the normal velocity round and keeps the share k of it; k = 0.8 looks like a ball.  Along the surface nothing changes.
+    *Source:* deck A, "Kinematic response".
+    """
+    ### BEGIN SOLUTION 7.1
+    v_n = v @ n
+    return v - (1.0 + k) * v_n * n if v_n < 0.0 else v
+    ### END SOLUTION
+
+
+def penalty_force(phi, v_n, stiffness, damping):
+    """Force [N] along n of a spring and a damper that push a body out of where it should not be; they never pull.
+
+    f = max(0, −stiffness φ − damping v_n)  while φ < 0;     0 outside
+
+    φ [m] gap, v_n [m/s] its rate, stiffness [N/m], damping [N s/m].  For forces over mass hand in k/m and c/m.
+    *Source:* deck A, "Penalty method".
+    """
+    ### BEGIN SOLUTION 7.2
+    return max(0.0, -stiffness * phi - damping * v_n) if phi < 0.0 else 0.0
+    ### END SOLUTION
+
+
+# ---------------------------------------------------------------------------------------------- in the plane
+
+def flat_cross(r, f):
+    """Given.  r × f in the plane, a number:  r_x f_y − r_y f_x."""
+    return r[0] * f[1] - r[1] * f[0]
+
+
+def flat_relative_velocity(a, b, r_a, r_b):
+    """u (2,) [m/s]: how fast the contact point of a Flat body a moves as seen from that of b, each at its offset r (2,).
+
+    u = (v_a + ω_a × r_a) − (v_b + ω_b × r_b),       ω × r = ω (−r_y, r_x)  in the plane
+
+    *Source:* deck A, "Relative Velocity".
+    """
+    ### BEGIN SOLUTION 7.3
+    turn_a = a.omega * np.array([-r_a[1], r_a[0]])
+    turn_b = b.omega * np.array([-r_b[1], r_b[0]])
+    return a.v + turn_a - b.v - turn_b
+    ### END SOLUTION
+
+
+def impulse_size(u_n, k, e):
+    """j ≥ 0 [N s]: how hard two bodies push each other apart that meet with u_n [m/s] and rebound with −e u_n.
+
+    j = −(1 + e) u_n/k,      and 0 where they separate by themselves, u_n ≥ 0
+
+    k [1/kg]: the velocity by which j = 1 drives their contact points apart; without rotation k = 1/m_a + 1/m_b.
+    Raises what check_restitution and check_inverse_mass raise; call them first.
+    *Source:* deck A, "Computing impulse", 1st: objects cannot rotate; deck B, "Coefficient of restitution".
+    """
+    ### BEGIN SOLUTION 7.4
+    check_restitution(e)
+    check_inverse_mass(k)
+    return -(1.0 + e) * u_n / k if u_n < 0.0 else 0.0
+    ### END SOLUTION
+
+
+def flat_inverse_mass(a, b, r_a, r_b, n):
+    """k [1/kg] of two Flat bodies that can turn:  k = 1/m_a + 1/m_b + (r_a × n)²/I_a + (r_b × n)²/I_b,   r × n: flat_cross.
+
+    *Source:* deck A, "Computing impulse", in the plane.
+    """
+    ### BEGIN SOLUTION 7.5
+    lever_a, lever_b = flat_cross(r_a, n), flat_cross(r_b, n)
+    return a.inv_mass + b.inv_mass + lever_a**2 * a.inv_inertia + lever_b**2 * b.inv_inertia
+    ### END SOLUTION
+
+
+def flat_push(body, r, J):
+    """The Flat body after an impulse J (2,) [N s] at the offset r:  v⁺ = v + J/m,   ω⁺ = ω + (r × J)/I;   masses as they are.
+
+    *Source:* deck A, the updates after "Computing impulse".
+    """
+    ### BEGIN SOLUTION 7.6
+    return Flat(body.v + body.inv_mass * J, body.omega + body.inv_inertia * flat_cross(r, J), body.inv_mass, body.inv_inertia)
+    ### END SOLUTION
+
+
+# ---------------------------------------------------------------------------------------------- in space
+
+def relative_velocity(a, b, r_a, r_b):
+    """Given.  u (3,) [m/s] of two Solid bodies:  (v_a + ω_a × r_a) − (v_b + ω_b × r_b).
+
+    *Source:* deck A, "Relative Velocity".
+    """
+    return point_velocity(a.v, a.omega, r_a) - point_velocity(b.v, b.omega, r_b)
+
+
+def inverse_mass(a, b, r_a, r_b, n):
+    """k [1/kg] of two Solid bodies:  k = 1/m_a + 1/m_b + n · [(I_a⁻¹ (r_a × n)) × r_a] + n · [(I_b⁻¹ (r_b × n)) × r_b].
+
+    *Source:* deck A, "Computing impulse".
+    """
+    ### BEGIN SOLUTION 7.7
+    turn_a = cross(times(a.inv_inertia, cross(r_a, n)), r_a)
+    turn_b = cross(times(b.inv_inertia, cross(r_b, n)), r_b)
+    return a.inv_mass + b.inv_mass + n @ turn_a + n @ turn_b
+    ### END SOLUTION
+
+
+def push(body, r, J):
+    """Given.  The Solid body after an impulse J (3,) [N s] at the offset r:  v⁺ = v + J/m,   ω⁺ = ω + I⁻¹ (r × J)."""
+    return Solid(body.v + body.inv_mass * J, body.omega + times(body.inv_inertia, cross(r, J)), body.inv_mass, body.inv_inertia)
+
+
+def angular_momenta(L_a, L_b, r_a, r_b, J):
+    """(L_a⁺, L_b⁺), each (3,) [kg m²/s], about their own centres, after J on a and −J on b:  L_a + r_a × J,   L_b − r_b × J.
+
+    The same impact without any inertia tensor: where L is the state, as in lesson 5, this is the update.
+    *Source:* deck A, "LA += rA × J, LB −= rB × J".
+    """
+    ### BEGIN SOLUTION 7.8
+    return L_a + cross(r_a, J), L_b - cross(r_b, J)
+    ### END SOLUTION
+
+
+# ---------------------------------------------------------------------------------------------- friction, and energy
+
+def point_inverse_mass(r, inv_mass, inv_inertia):
+    """K [1/kg], (3, 3): an impulse J at the offset r changes the velocity of that very point by K J.
+
+    K = 1/m − r* I⁻¹ r*          r* = skew(r) of lesson 5
+
+    Its column k is what an impulse of 1 N s along axis k does to the velocity.  K is symmetric, and all zeros for a body that cannot be
+    moved.  Between two bodies u changes by (K_a + K_b) J.
+
+    *Source:* Mirtich and Canny 1995; Baraff 1997.
+    """
+    ### BEGIN SOLUTION 7.9
+    K = np.zeros((3, 3))
+    for k in range(3):
+        unit = np.zeros(3)
+        unit[k] = 1.0
+        K[k] = inv_mass * unit + cross(times(inv_inertia, cross(r, unit)), r)      # a column, but K is symmetric
+    return K
+    ### END SOLUTION
+
+
+def cone_impulse(u, n, K, w, mu):
+    """J (3,) [N s] that makes two contact points with u (3,) separate at w ≥ 0 [m/s], n · u⁺ = w, within the cone |J_t| ≤ μ J_n.
+
+    n · u ≥ w:    J = 0, they separate by themselves.       Otherwise
+    stick:        J = K⁻¹ (w n − u)                         which leaves u⁺ = w n, nothing along the surface; if |J_t| ≤ μ J_n, this is J.
+    slide:        J = j d,   d = n cos β + sin β J_t/|J_t|  on the rim of the cone, tan β = μ, to the side to which sticking would push:
+                  j = (w − n · u)/(n · K d)                 J_t = tangential(J, n) is that of the stick's J
+
+    n · K d > 0 for every μ, infinity included: for the stick's J it is, and d leans less towards J_t than that does.
+    solve3 of lesson 5 solves for J, given the columns of K.  Raises what check_contact raises; call it first.
+    *Source:* Coulomb's law on velocities after the impact; deck B, "Coulomb's law".  The side of the rim is a choice (see the notebook).
+    *Left out:* slip that turns while the impact lasts.
+    """
+    ### BEGIN SOLUTION 7.10
+    check_contact(u, n, K, mu)
+    if u @ n >= w:
+        return np.zeros(3)
+    J = solve3(K[0], K[1], K[2], w * n - u)
+    J_t = tangential(J, n)
+    size = np.sqrt(J_t @ J_t)
+    if size <= mu * (J @ n):
+        return J
+    beta = np.arctan(mu)
+    d = np.cos(beta) * n + np.sin(beta) / size * J_t
+    return (w - u @ n) / (n @ times(K, d)) * d
+    ### END SOLUTION
+
+
+def contact_impulse(u, n, K, e, mu):
+    """Given.  J (3,) [N s] of an impact with friction: cone_impulse with Newton's  n · u⁺ = −e n · u;  0 where they separate."""
+    check_restitution(e)
+    return cone_impulse(u, n, K, max(0.0, -e * (u @ n)), mu) if u @ n < 0.0 else np.zeros(3)
+
+
+def energy_change(u, K, J):
+    """Kinetic energy [J] that an impulse J at a contact gives both bodies together:  ΔE = J · u + ½ J · K J  =  J · (u + u⁺)/2.
+
+    Negative: lost.  Without friction it is −½ (1 − e²) u_n²/k.  A J that sticks gives ½ (e² u_n² n · K⁻¹n − u · K⁻¹u), and that may be
+    above zero: Newton's restitution looks at normal velocities only, but friction can turn tangential into normal motion.
+    *Source:* ½ m v² and ½ ω · Iω before and after; Kane and Levinson 1985 for the gain.
+    """
+    ### BEGIN SOLUTION 7.11
+    return J @ u + 0.5 * (J @ times(K, J))
+    ### END SOLUTION
+
+
+# ---------------------------------------------------------------------------------------------- when
+
+def gap_multiplier(phi, u_n, k, dt):
+    """λ ≥ 0 [N s] with which a contact answers in a step of dt, so that the gap is not below zero at its end; the impulse is J = λ ∇φ.
+
+    φ⁺ = φ + dt (u_n + k λ),       0 ≤ φ⁺  ⊥  λ ≥ 0:    either the gap stays open and λ = 0, or it closes and λ is just what that takes
+
+    φ ≥ 0 [m] gap now, u_n [m/s] its rate before λ, k [1/kg].  Raises what check_inverse_mass raises.
+    *Source:* deck B, the gap function and its complementarity; Moreau 1988.
+    """
+    ### BEGIN SOLUTION 7.12
+    check_inverse_mass(k)
+    return max(0.0, -(phi / dt + u_n) / k)
+    ### END SOLUTION
+
+
+def impact_time(phi, v_n, a_n, dt):
+    """After how long [s] a gap φ [m] closes that has the rate v_n [m/s] and the constant acceleration a_n [m/s²]; dt if not in this step.
+
+    φ + v_n τ + ½ a_n τ² = 0  with the gap closing there; what is inside already, φ < 0, counts as φ = 0: it touches.
+    s = √(v_n² − 2 a_n φ)
+    v_n < 0:                  τ = 2φ/(s − v_n)                        the same as (−v_n − s)/a_n, but it does not divide by a small a_n
+    v_n ≥ 0 and a_n < 0:      τ = −(v_n + s)/a_n                      it comes back
+    v_n ≥ 0 and a_n ≥ 0, or no real s:   it never closes
+
+    *Source:* deck A, "time of impact"; deck B, "go back to time of impact"; the quadratic formula.
+    """
+    ### BEGIN SOLUTION 7.13
+    phi = max(0.0, phi)
+    squared = v_n * v_n - 2.0 * a_n * phi
+    if squared < 0.0 or (v_n >= 0.0 and a_n >= 0.0):
+        return dt
+    s = np.sqrt(squared)
+    tau = 2.0 * phi / (s - v_n) if v_n < 0.0 else -(v_n + s) / a_n
+    return min(tau, dt)
+    ### END SOLUTION
+
+
+def bouncing_time(v_n, a_n, e):
+    """For how long [s] a ball goes on bouncing that has just left its plane with v_n [m/s], under a constant a_n [m/s²]: Zeno's sum.
+
+    T = 2v_n/|a_n| · (1 + e + e² + …) = 2v_n/(|a_n| (1 − e));      0 where v_n ≤ 0;      ∞ where a_n ≥ 0 or e = 1
+
+    Infinitely many impacts, and over in a finite time.
+    *Source:* flights of 2v/|a|, each e times as long as the one before; the geometric series.
+    """
+    ### BEGIN SOLUTION 7.14
+    if v_n <= 0.0:
+        return 0.0
+    if a_n >= 0.0 or e == 1.0:
+        return np.inf
+    return -2.0 * v_n / (a_n * (1.0 - e))
+    ### END SOLUTION
+
+
+# ---------------------------------------------------------------------------------------------- a ball over a plane, in time
+
+def falling_acceleration(t, x, v, p):
+    """Given.  a = g  [m/s²]."""
+    return p.gravity
+
+
+def gap(x, p):
+    """Given.  φ [m] of a ball over its plane:  (x − point) · n."""
+    return (x - p.point) @ p.n
+
+
+def penalty_step(acceleration, t, x, v, dt, p):
+    """Given.  Advance a Drop by symplectic Euler with the penalty's spring and damper for the plane; first order, stable for ω dt < 2."""
+    push = penalty_force(gap(x, p), v @ p.n, p.stiffness, p.damping)
+    v = v + dt * (acceleration(t, x, v, p) + push * p.n)
+    return x + dt * v, v
+
+
+def projecting_step(acceleration, t, x, v, dt, p):
+    """Advance a Drop by one step, and put right at its end what went wrong on the way; first order.
+
+    v ← v + dt a(t, x, v),    x ← x + dt v                       as usual, the velocity first
+    φ = gap(x, p) < 0:        v ← kinematic_response(v, n, e),   x ← x − φ n
+
+    *Source:* deck B, time stepping, "Option 2".
+    """
+    ### BEGIN SOLUTION 7.15
+    v = v + dt * acceleration(t, x, v, p)
+    x = x + dt * v
+    phi = gap(x, p)
+    if phi < 0.0:
+        v = kinematic_response(v, p.n, p.e)
+        x = x - phi * p.n
+    return x, v
+    ### END SOLUTION
+
+
+def fly(x, v, a, t):
+    """Given.  (x, v) after t [s] under a constant acceleration a:  x + t v + ½ t² a,  v + t a."""
+    return x + t * v + 0.5 * t * t * a, v + t * a
+
+
+def lie(x, v, a, t, n):
+    """Given.  (x, v) after t [s] of a ball that lies on its plane: it slides along without friction; a support pushes, and never pulls."""
+    return fly(x, tangential(v, n), a - min(0.0, a @ n) * n, t)
+
+
+def backtracking_step(acceleration, t, x, v, dt, p):
+    """Advance a Drop by one step, impact by impact; exact while the acceleration is constant.
+
+    a = acceleration(t, x, v, p), for the whole step.  While there is something left of dt, at most IMPACTS times:
+    τ = impact_time(φ, v · n, a · n, left),     φ = gap(x, p);     (x, v) = fly(x, v, a, τ);     left ← left − τ
+    where nothing is left: done.                Otherwise it is on the plane:
+    v ← kinematic_response(v, n, e),            x ← x − gap(x, p) n                                   (which is round-off)
+    if bouncing_time(v · n, a · n, e) ≤ left:   all its bounces end within this step: return lie(x, v, a, left, n)
+
+    Raises Diverged after IMPACTS impacts.
+    *Source:* deck B, time stepping, "Option 1".
+    """
+    ### BEGIN SOLUTION 7.16
+    a, left = acceleration(t, x, v, p), dt
+    for _ in range(IMPACTS):
+        tau = impact_time(gap(x, p), v @ p.n, a @ p.n, left)
+        x, v = fly(x, v, a, tau)
+        left -= tau
+        if left <= 0.0:
+            return x, v
+        v = kinematic_response(v, p.n, p.e)
+        x = x - gap(x, p) * p.n
+        if bouncing_time(v @ p.n, a @ p.n, p.e) <= left:
+            return lie(x, v, a, left, p.n)
+    raise Diverged("impacts without end in a step of dt [s]", dt, "take a smaller step")
+    ### END SOLUTION
+
+
+def drop_all(step, acceleration, t, x, v, dt, steps, p):
+    """Given.  The states (x, v), each (copies, d), of copies of a Drop that know nothing of each other, after so many steps of one method.
+
+    Raises BadInput for a step that is not positive, an e outside 0 … 1, a normal that is not one, a state that is not finite; Diverged when
+    the end is not finite.
+    """
+    check_positive("step dt [s]", dt)
+    check_restitution(p.e)
+    check_normal(p.n)
+    check_finite("position x [m]", x)
+    check_finite("velocity v [m/s]", v)
+    x, v = x.copy(), v.copy()
+    for k in range(x.shape[0]):
+        x_k, v_k = x[k], v[k]
+        for n in range(steps):
+            x_k, v_k = step(acceleration, t + n * dt, x_k, v_k, dt, p)
+        x[k], v[k] = x_k, v_k
+    check_end(x, v, dt)
+    return x, v
+
+
+def check_end(x, v, dt):
+    """Given.  Raise Diverged unless a state is finite."""
+    for values in (x, v):
+        for value in values.ravel():
+            if not np.isfinite(value):
+                raise Diverged("the motion is no longer finite at dt [s]", dt, "take a smaller step")
+
+
+# ---------------------------------------------------------------------------------------------- a ball that turns
+
+def spinning_impact(v, omega, p):
+    """Given.  (v, ω) of a Spinner after it has hit its plane: at the offset −radius n, with contact_impulse."""
+    r = -p.radius * p.n
+    J = contact_impulse(point_velocity(v, omega, r), p.n, point_inverse_mass(r, p.inv_mass, p.inv_inertia), p.e, p.mu)
+    return v + p.inv_mass * J, omega + times(p.inv_inertia, cross(r, J))
+
+
+def projecting_spin_step(acceleration, t, x, v, omega, dt, p):
+    """Given.  Advance a Spinner as projecting_step does; first order."""
+    v = v + dt * acceleration(t, x, v, p)
+    x = x + dt * v
+    phi = gap(x, p)
+    if phi < 0.0:
+        v, omega = spinning_impact(v, omega, p)
+        x = x - phi * p.n
+    return x, v, omega
+
+
+def backtracking_spin_step(acceleration, t, x, v, omega, dt, p):
+    """Given.  Advance a Spinner impact by impact; exact while the acceleration is constant.  Raises Diverged after IMPACTS impacts."""
+    a, left = acceleration(t, x, v, p), dt
+    for _ in range(IMPACTS):
+        tau = impact_time(gap(x, p), v @ p.n, a @ p.n, left)
+        x, v = fly(x, v, a, tau)
+        left -= tau
+        if left <= 0.0:
+            return x, v, omega
+        v, omega = spinning_impact(v, omega, p)
+        x = x - gap(x, p) * p.n
+    raise Diverged("impacts without end in a step of dt [s]", dt, "take a smaller step")
+
+
+def spin_all(step, acceleration, t, x, v, omega, dt, steps, p):
+    """Given.  (x, v, ω), each (copies, 3), of copies of a Spinner after so many steps of one method; errors as in drop_all, or for μ < 0."""
+    check_positive("step dt [s]", dt)
+    check_restitution(p.e)
+    check_friction(p.mu)
+    check_normal(p.n)
+    check_finite("position x [m]", x)
+    check_finite("velocity v [m/s]", v)
+    check_finite("angular velocity ω [rad/s]", omega)
+    x, v, omega = x.copy(), v.copy(), omega.copy()
+    for k in range(x.shape[0]):
+        x_k, v_k, omega_k = x[k], v[k], omega[k]
+        for n in range(steps):
+            x_k, v_k, omega_k = step(acceleration, t + n * dt, x_k, v_k, omega_k, dt, p)
+        x[k], v[k], omega[k] = x_k, v_k, omega_k
+    check_end(x, v, dt)
+    return x, v, omega
+
+
+# ---------------------------------------------------------------------------------------------- discs that meet
+
+def meeting_time(x, v, i, j, reach, dt):
+    """Given.  When [s] two round things i and j meet, reach [m] the sum of their radii; dt if not before.
+
+    |Δx + τ Δv| = reach, with the distance falling; what overlaps and comes closer meets now.
+    """
+    closing, apart, speed = 0.0, -reach * reach, 0.0
+    for k in range(x.shape[1]):
+        dx, dv = x[i, k] - x[j, k], v[i, k] - v[j, k]
+        closing, apart, speed = closing - dx * dv, apart + dx * dx, speed + dv * dv
+    apart = max(0.0, apart)
+    squared = closing * closing - speed * apart
+    return min(dt, apart / (closing + np.sqrt(squared))) if closing > 0.0 and squared >= 0.0 else dt
+
+
+def overlap(x, i, j, reach):
+    """Given.  Whether two round things are closer than the sum of their radii, reach [m]."""
+    squared = 0.0
+    for k in range(x.shape[1]):
+        squared += (x[i, k] - x[j, k]) ** 2
+    return squared < reach * reach
+
+
+def normal_between(x, i, j):
+    """Given.  (distance [m], unit normal (d,) from disc j to disc i).  Two on one point have none: then any will do, the first axis."""
+    n = x[i] - x[j]
+    distance = np.sqrt(n @ n)
+    if distance == 0.0:
+        n[0] = 1.0
+        return 0.0, n
+    return distance, n / distance
+
+
+def disc_impact(x, v, i, j, p):
+    """Given.  (v_i, v_j), each (d,), after disc i has met disc j without friction: the impulse j n of impulse_size."""
+    _, n = normal_between(x, i, j)
+    size = impulse_size((v[i] - v[j]) @ n, p.inv_mass[i] + p.inv_mass[j], p.e)
+    return v[i] + p.inv_mass[i] * size * n, v[j] - p.inv_mass[j] * size * n
+
+
+def separated(x, i, j, p):
+    """Given.  (x_i, x_j), each (d,), with two discs that overlap moved apart along their normal until they touch, the lighter the farther.
+
+    Only positions change: whoever starts inside another is separated, and not thrown out.
+    """
+    distance, n = normal_between(x, i, j)
+    share = max(0.0, p.radius[i] + p.radius[j] - distance) / (p.inv_mass[i] + p.inv_mass[j])
+    return x[i] + share * p.inv_mass[i] * n, x[j] - share * p.inv_mass[j] * n
+
+
+def drift(x, v, dt):
+    """Given.  x + dt v, body by body: compiled loops over short rows cost less than arrays of two dimensions."""
+    x = x.copy()
+    for k in range(x.shape[0]):
+        x[k] += dt * v[k]
+    return x
+
+
+def projecting_discs_step(x, v, dt, p):
+    """Given.  Advance discs by one step, then treat all that overlap, pair by pair; first order."""
+    x, v = drift(x, v, dt), v.copy()
+    for i in range(x.shape[0]):
+        for j in range(i):
+            if overlap(x, i, j, p.radius[i] + p.radius[j]):
+                v[i], v[j] = disc_impact(x, v, i, j, p)
+                x[i], x[j] = separated(x, i, j, p)
+    return x, v
+
+
+def backtracking_discs_step(x, v, dt, p):
+    """Given.  Advance discs impact by impact, the earliest first; exact.  Raises Diverged after IMPACTS impacts.
+
+    Of impacts at the same moment the first pair in the list goes first: a choice.
+    """
+    left, v = dt, v.copy()
+    for _ in range(IMPACTS):
+        tau, first, second = left, 0, 0
+        for i in range(x.shape[0]):
+            for j in range(i):
+                meets = meeting_time(x, v, i, j, p.radius[i] + p.radius[j], left)
+                if meets < tau:
+                    tau, first, second = meets, i, j
+        x = drift(x, v, tau)
+        left -= tau
+        if left <= 0.0:
+            return x, v
+        v[first], v[second] = disc_impact(x, v, first, second, p)
+    raise Diverged("impacts without end in a step of dt [s]", dt, "take a smaller step")
+
+
+def discs_all(step, x, v, dt, steps, p):
+    """Given.  (x, v), each (copies, bodies, d), of copies of some discs after so many steps of one method; errors as in drop_all."""
+    check_positive("step dt [s]", dt)
+    check_restitution(p.e)
+    check_finite("position x [m]", x)
+    check_finite("velocity v [m/s]", v)
+    x, v = x.copy(), v.copy()
+    for k in range(x.shape[0]):
+        x_k, v_k = x[k], v[k]
+        for _ in range(steps):
+            x_k, v_k = step(x_k, v_k, dt, p)
+        x[k], v[k] = x_k, v_k
+    check_end(x, v, dt)
+    return x, v
+
+
+# ---------------------------------------------------------------------------------------------- several impacts at once
+
+def one_after_the_other(body, r, n, e, mu):
+    """Given.  A Solid after an impact at several points, as in solve_impacts, but each point once, in turn.
+
+    Each finds the body as the one before has left it, so that the result depends on their order: two ends of an edge leave at
+    different speeds.
+    """
+    for i in range(r.shape[0]):
+        u = point_velocity(body.v, body.omega, r[i])
+        body = push(body, r[i], contact_impulse(u, n[i], point_inverse_mass(r[i], body.inv_mass, body.inv_inertia), e, mu))
+    return body
+
+
+def solve_impacts(body, r, n, e, mu):
+    """A Solid after an impact at several points at once, offsets r (points, 3), normals n (points, 3), with what cannot be moved.
+
+    uᵢ = v + ω × rᵢ;  wᵢ = max(0, −e nᵢ · uᵢ)  from the velocities before the impact, and  Jᵢ = 0.  Then sweep over all points:
+        take back the point's own impulse:   u = uᵢ − Kᵢ Jᵢ,    Kᵢ = point_inverse_mass(rᵢ, 1/m, I⁻¹)
+        ask what it should be now:           J = cone_impulse(u, nᵢ, Kᵢ, wᵢ, μ);    push the body by J − Jᵢ at rᵢ;    Jᵢ ← J
+    until in a sweep no impulse changed a component of its point's velocity, Kᵢ (J − Jᵢ), by more than SETTLED times the largest |uᵢ| before.
+
+    Together: the order of the points does not matter in the end, and what met the floor flat leaves it flat.
+    Raises what check_restitution raises, call it first; Diverged when SWEEPS sweeps are not enough.
+    *Source:* Gauss–Seidel sweeps, as in Guendelman et al. 2003; deck B, "Multi-contact problems".
+    *Left out:* how an impact travels from point to point; contacts between many bodies (lesson 9).
+    """
+    ### BEGIN SOLUTION 7.17
+    check_restitution(e)
+    w, Js, speed = np.zeros(len(r)), np.zeros((len(r), 3)), 0.0
+    for i in range(len(r)):
+        u = point_velocity(body.v, body.omega, r[i])
+        w[i], speed = max(0.0, -e * (n[i] @ u)), max(speed, np.sqrt(u @ u))
+    for _ in range(SWEEPS):
+        worst = 0.0
+        for i in range(len(r)):
+            K = point_inverse_mass(r[i], body.inv_mass, body.inv_inertia)
+            J = cone_impulse(point_velocity(body.v, body.omega, r[i]) - times(K, Js[i]), n[i], K, w[i], mu) - Js[i]
+            body, worst = push(body, r[i], J), max(worst, np.abs(times(K, J)).max())
+            Js[i] += J
+        if worst <= SETTLED * speed:
+            return body
+    raise Diverged("change of velocity [m/s] after all sweeps over the points of an impact", worst, "give fewer points, or less friction")
+    ### END SOLUTION

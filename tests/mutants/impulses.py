@@ -1,0 +1,443 @@
+"""Lesson 7: impacts with a sign, a mass, a lever arm or a case of their own gone astray."""
+
+import numpy as np
+
+from solutions import impulses as worked
+from solutions.rotation import cross, point_velocity, skew
+from . import collection
+
+wrong, right, MUTANTS = collection()
+tangential = worked.tangential
+
+
+# 7.1 ------------------------------------------------------------------------------------------------------------
+def response(bounce=lambda k: 1.0 + k, leaves=True, all_of_v=False, sign=-1.0):
+    def kinematic_response(v, n, k):
+        v_n = v @ n
+        if leaves and v_n >= 0.0:
+            return v
+        return -k * v if all_of_v else v + sign * bounce(k) * v_n * n
+    return kinematic_response
+
+
+@right("7.1", "by parts")
+def kinematic_response(v, n, k):
+    along, normal = v - np.dot(v, n) * n, np.dot(v, n) * n
+    return along - k * normal if np.dot(v, n) < 0.0 else np.array(v)
+
+
+wrong("7.1", "k for 1 + k")(response(bounce=lambda k: k))
+wrong("7.1", "1 − k")(response(bounce=lambda k: 1.0 - k))
+wrong("7.1", "sucks at what leaves")(response(leaves=False))
+wrong("7.1", "turns all of v round")(response(all_of_v=True))
+wrong("7.1", "pulls in")(response(sign=1.0))
+
+
+@wrong("7.1", "changes its input")
+def kinematic_response(v, n, k):
+    v -= (1.0 + k) * min(0.0, v @ n) * n
+    return v
+
+
+# 7.2 ------------------------------------------------------------------------------------------------------------
+def penalty(spring=-1.0, damper=-1.0, pulls=False, inside=lambda phi: phi < 0.0):
+    def penalty_force(phi, v_n, stiffness, damping):
+        f = spring * stiffness * phi + damper * damping * v_n
+        return (f if pulls else max(0.0, f)) if inside(phi) else 0.0
+    return penalty_force
+
+
+@right("7.2", "by an if")
+def penalty_force(phi, v_n, stiffness, damping):
+    depth = max(0.0, -phi)
+    f = stiffness * depth - damping * v_n
+    return f if depth > 0.0 and f > 0.0 else 0.0
+
+
+wrong("7.2", "pulls back what leaves fast")(penalty(pulls=True))
+wrong("7.2", "the damper pushes on")(penalty(damper=1.0))
+wrong("7.2", "no damper")(penalty(damper=0.0))
+wrong("7.2", "the spring pulls in")(penalty(spring=1.0))
+wrong("7.2", "damps outside, too")(penalty(inside=lambda phi: True))
+
+
+# 7.3 ------------------------------------------------------------------------------------------------------------
+def seen(side=1.0, sign=1.0, turns=1.0, swap=False):
+    def flat_relative_velocity(a, b, r_a, r_b):
+        r_a, r_b = (r_b, r_a) if swap else (r_a, r_b)
+        spin = lambda omega, r: turns * omega * side * np.array([-r[1], r[0]])
+        return sign * (a.v + spin(a.omega, r_a) - b.v - spin(b.omega, r_b))
+    return flat_relative_velocity
+
+
+@right("7.3", "in space")
+def flat_relative_velocity(a, b, r_a, r_b):
+    point = lambda body, r: np.append(body.v, 0.0) + np.cross([0.0, 0.0, body.omega], np.append(r, 0.0))
+    return (point(a, r_a) - point(b, r_b))[:2]
+
+
+wrong("7.3", "turns clockwise")(seen(side=-1.0))
+wrong("7.3", "b as seen from a")(seen(sign=-1.0))
+wrong("7.3", "does not turn")(seen(turns=0.0))
+wrong("7.3", "each at the other's offset")(seen(swap=True))
+
+
+@wrong("7.3", "the turn of b added")
+def flat_relative_velocity(a, b, r_a, r_b):
+    return a.v - b.v + a.omega * np.array([-r_a[1], r_a[0]]) + b.omega * np.array([-r_b[1], r_b[0]])
+
+
+# 7.4 ------------------------------------------------------------------------------------------------------------
+def size(bounce=lambda e: 1.0 + e, over=lambda k: 1.0 / k, leaves=True, checks=(worked.check_restitution, worked.check_inverse_mass)):
+    def impulse_size(u_n, k, e):
+        for check in checks:
+            check(e if check is worked.check_restitution else k)
+        return 0.0 if leaves and u_n >= 0.0 else -bounce(e) * u_n * over(k)
+    return impulse_size
+
+
+right("7.4", "the checks in a loop")(size())
+wrong("7.4", "no restitution")(size(bounce=lambda e: 1.0))
+wrong("7.4", "1 − e")(size(bounce=lambda e: 1.0 - e))
+wrong("7.4", "times k")(size(over=lambda k: k))
+wrong("7.4", "pulls at what separates")(size(leaves=False))
+wrong("7.4", "takes any restitution")(size(checks=(worked.check_inverse_mass,)))
+wrong("7.4", "two walls")(size(checks=(worked.check_restitution,), over=lambda k: 1.0 / k if k else np.inf))
+
+
+# 7.5 and 7.7 ----------------------------------------------------------------------------------------------------
+def flat_k(power=2, second=True, over=False, arm=lambda r, n: r[0] * n[1] - r[1] * n[0], mass=1.0):
+    def flat_inverse_mass(a, b, r_a, r_b, n):
+        turn = lambda body, r: abs(arm(r, n)) ** power * (1.0 / max(body.inv_inertia, 1e-300) if over else body.inv_inertia)
+        return mass * (a.inv_mass + b.inv_mass) + turn(a, r_a) + (turn(b, r_b) if second else 0.0)
+    return flat_inverse_mass
+
+
+right("7.5", "body by body")(flat_k())
+wrong("7.5", "the lever not squared")(flat_k(power=1))
+wrong("7.5", "b does not turn")(flat_k(second=False))
+wrong("7.5", "inertia for its inverse")(flat_k(over=True))
+wrong("7.5", "r · n for r × n")(flat_k(arm=lambda r, n: r @ n))
+wrong("7.5", "forgets the masses")(flat_k(mass=0.0))
+
+
+def solid_k(second=True, sign=1.0, mass=1.0, arm=lambda r, n: cross(r, n), back=lambda turn, r: cross(turn, r)):
+    def inverse_mass(a, b, r_a, r_b, n):
+        give = lambda body, r: mass * body.inv_mass + sign * n @ back(body.inv_inertia @ arm(r, n), r)
+        return give(a, r_a) + (give(b, r_b) if second else b.inv_mass)
+    return inverse_mass
+
+
+@right("7.7", "as a square: (r × n) · I⁻¹ (r × n)")
+def inverse_mass(a, b, r_a, r_b, n):
+    give = lambda body, r: body.inv_mass + np.cross(r, n) @ body.inv_inertia @ np.cross(r, n)
+    return give(a, r_a) + give(b, r_b)
+
+
+wrong("7.7", "b does not turn")(solid_k(second=False))
+wrong("7.7", "× r from the wrong side")(solid_k(sign=-1.0))
+wrong("7.7", "forgets the masses")(solid_k(mass=0.0))
+wrong("7.7", "without the last × r")(solid_k(back=lambda turn, r: turn))
+
+
+@wrong("7.7", "inertia tensors for their inverses")
+def inverse_mass(a, b, r_a, r_b, n):
+    give = lambda body, r: body.inv_mass + n @ np.cross(np.linalg.pinv(body.inv_inertia) @ np.cross(r, n), r)
+    return give(a, r_a) + give(b, r_b)
+
+
+# 7.6 ------------------------------------------------------------------------------------------------------------
+def pushed(mass=lambda m: m, inertia=lambda i: i, side=1.0, turns=True):
+    def flat_push(body, r, J):
+        torque = side * (r[0] * J[1] - r[1] * J[0]) if turns else 0.0
+        return worked.Flat(body.v + mass(body.inv_mass) * J, body.omega + inertia(body.inv_inertia) * torque, body.inv_mass, body.inv_inertia)
+    return flat_push
+
+
+right("7.6", "by a torque")(pushed())
+wrong("7.6", "mass for its inverse")(pushed(mass=lambda m: 1.0 / m if m else 0.0))
+wrong("7.6", "inertia for its inverse")(pushed(inertia=lambda i: 1.0 / i if i else 0.0))
+wrong("7.6", "turns the other way")(pushed(side=-1.0))
+wrong("7.6", "does not turn")(pushed(turns=False))
+
+
+# 7.8 ------------------------------------------------------------------------------------------------------------
+def momenta(sign_a=1.0, sign_b=-1.0, arm=lambda r_a, r_b: (r_a, r_b)):
+    def angular_momenta(L_a, L_b, r_a, r_b, J):
+        r_a, r_b = arm(r_a, r_b)
+        return L_a + sign_a * np.cross(r_a, J), L_b + sign_b * np.cross(r_b, J)
+    return angular_momenta
+
+
+@right("7.8", "with skew")
+def angular_momenta(L_a, L_b, r_a, r_b, J):
+    return L_a + skew(r_a) @ J, L_b + skew(r_b) @ -J
+
+
+wrong("7.8", "b gains as a does")(momenta(sign_b=1.0))
+wrong("7.8", "J × r")(momenta(-1.0, 1.0))
+wrong("7.8", "b does not turn")(momenta(sign_b=0.0))
+wrong("7.8", "one arm for both")(momenta(arm=lambda r_a, r_b: (r_a, r_a)))
+
+
+# 7.9 ------------------------------------------------------------------------------------------------------------
+def K_of(sign=-1.0, mass=lambda m: m * np.eye(3), turn=lambda r: skew(r), middle=lambda inv: inv):
+    def point_inverse_mass(r, inv_mass, inv_inertia):
+        return mass(inv_mass) + sign * turn(r) @ middle(inv_inertia) @ turn(r)
+    return point_inverse_mass
+
+
+right("7.9", "with skew")(K_of())
+wrong("7.9", "plus for minus")(K_of(sign=1.0))
+wrong("7.9", "1/m everywhere")(K_of(mass=lambda m: m * np.ones((3, 3))))
+wrong("7.9", "forgets the mass")(K_of(mass=lambda m: np.zeros((3, 3))))
+wrong("7.9", "a number for the tensor")(K_of(middle=lambda inv: np.trace(inv) / 3.0 * np.eye(3)))
+
+
+@wrong("7.9", "transposed on both sides")
+def point_inverse_mass(r, inv_mass, inv_inertia):
+    return inv_mass * np.eye(3) + inv_inertia @ skew(r) @ skew(r)
+
+
+# 7.10 -----------------------------------------------------------------------------------------------------------
+def cone(check=True, parts=True, goal=lambda w: w, rim=lambda mu: mu, side="stick", clamp="rim", sticks=lambda J_t, J_n, mu: J_t <= mu * J_n):
+    def cone_impulse(u, n, K, w, mu):
+        if check:
+            worked.check_contact(u, n, K, mu)
+        if parts and u @ n >= w:
+            return np.zeros(3)
+        J = np.linalg.solve(K, goal(w) * n - u)
+        J_t = tangential(J, n)
+        length = np.linalg.norm(J_t)
+        if sticks(length, J @ n, mu):
+            return J
+        if clamp == "cut":                                               # the stick's normal impulse, friction cut down
+            return (J @ n) * n + mu * max(0.0, J @ n) / length * J_t
+        slip = tangential(u, n)
+        t = J_t / length if side == "stick" else -slip / max(np.linalg.norm(slip), 1e-300)
+        d = n + rim(mu) * t if mu < 1e9 else t
+        return (goal(w) - u @ n) / (n @ K @ d) * d
+    return cone_impulse
+
+
+right("7.10", "by NumPy's solver")(cone())
+wrong("7.10", "checks nothing")(cone(check=False))
+wrong("7.10", "pulls at what separates")(cone(parts=False))
+wrong("7.10", "never rebounds")(cone(goal=lambda w: 0.0))
+wrong("7.10", "never sticks")(cone(sticks=lambda J_t, J_n, mu: False))
+wrong("7.10", "always sticks")(cone(sticks=lambda J_t, J_n, mu: True))
+wrong("7.10", "against the slip before the impact")(cone(side="slip"))
+wrong("7.10", "keeps the stick's normal impulse")(cone(clamp="cut"))
+wrong("7.10", "half the friction")(cone(rim=lambda mu: 0.5 * mu))
+
+
+@wrong("7.10", "normal and friction apart, as if K were a number")
+def cone_impulse(u, n, K, w, mu):
+    worked.check_contact(u, n, K, mu)
+    if u @ n >= w:
+        return np.zeros(3)
+    j = (w - u @ n) / (n @ K @ n)
+    slip = tangential(u, n)
+    speed = np.linalg.norm(slip)
+    return j * n - min(mu * j, speed / (slip @ K @ slip / speed**2)) * slip / speed
+
+
+# 7.11 -----------------------------------------------------------------------------------------------------------
+def work(half=0.5, sign=1.0, first=1.0):
+    def energy_change(u, K, J):
+        return sign * (first * J @ u + half * J @ K @ J)
+    return energy_change
+
+
+@right("7.11", "the mean of before and after")
+def energy_change(u, K, J):
+    return J @ (u + (u + K @ J)) / 2.0
+
+
+wrong("7.11", "without the half")(work(half=1.0))
+wrong("7.11", "lost, not gained")(work(sign=-1.0))
+wrong("7.11", "with the velocity before only")(work(half=0.0))
+wrong("7.11", "without the velocity before")(work(first=0.0))
+
+
+# 7.12 -----------------------------------------------------------------------------------------------------------
+def multiplier(gap=1.0, clamp=True, over=lambda k: 1.0 / k, check=True):
+    def gap_multiplier(phi, u_n, k, dt):
+        if check:
+            worked.check_inverse_mass(k)
+        lam = -(gap * phi / dt + u_n) * over(k) if k else np.inf
+        return max(0.0, lam) if clamp else lam
+    return gap_multiplier
+
+
+@right("7.12", "asks first whether the gap stays open")
+def gap_multiplier(phi, u_n, k, dt):
+    worked.check_inverse_mass(k)
+    free = phi + dt * u_n
+    return 0.0 if free >= 0.0 else -free / (dt * k)
+
+
+wrong("7.12", "does not ask how wide the gap is")(multiplier(gap=0.0))
+wrong("7.12", "pulls open gaps together")(multiplier(clamp=False))
+wrong("7.12", "times k")(multiplier(over=lambda k: k))
+wrong("7.12", "two walls")(multiplier(check=False))
+
+
+@wrong("7.12", "waits until the gap is closed")
+def gap_multiplier(phi, u_n, k, dt):
+    worked.check_inverse_mass(k)
+    return max(0.0, -u_n / k) if phi <= 0.0 else 0.0
+
+
+# 7.13 -----------------------------------------------------------------------------------------------------------
+def moment(inside=True, back=True, limit=True, pull=2.0, stable=True):
+    def impact_time(phi, v_n, a_n, dt):
+        phi = max(0.0, phi) if inside else phi
+        squared = v_n * v_n - pull * a_n * phi
+        if squared < 0.0 or v_n >= 0.0 and (a_n >= 0.0 or not back):
+            return dt
+        s = np.sqrt(squared)
+        with np.errstate(all="ignore"):
+            if v_n < 0.0 and stable:
+                tau = np.float64(2.0 * phi) / (s - v_n)
+            else:
+                tau = np.float64(-v_n - s) / a_n
+        return min(tau, dt) if limit else tau
+    return impact_time
+
+
+@right("7.13", "2φ/(s − v) for both, but for what comes back from the plane itself")
+def impact_time(phi, v_n, a_n, dt):
+    phi = max(phi, 0.0)
+    if v_n >= 0.0 and a_n >= 0.0 or v_n**2 < 2.0 * a_n * phi:
+        return dt
+    s = (v_n**2 - 2.0 * a_n * phi) ** 0.5
+    return min(dt, 2.0 * phi / (s - v_n) if v_n < 0.0 else (v_n + s) / -a_n)
+
+
+wrong("7.13", "what is inside meets later")(moment(inside=False))
+wrong("7.13", "what goes up never comes down")(moment(back=False))
+wrong("7.13", "beyond the end of the step")(moment(limit=False))
+wrong("7.13", "half the acceleration")(moment(pull=1.0))
+wrong("7.13", "divides by next to nothing")(moment(stable=False))
+
+
+@wrong("7.13", "without acceleration")
+def impact_time(phi, v_n, a_n, dt):
+    return min(dt, max(0.0, phi) / -v_n) if v_n < 0.0 else dt
+
+
+# 7.14 -----------------------------------------------------------------------------------------------------------
+def zeno(flight=2.0, sum=lambda e: 1.0 - e, down=True, endless=True, falls=True):
+    def bouncing_time(v_n, a_n, e):
+        if down and v_n <= 0.0:
+            return 0.0
+        if endless and e == 1.0 or falls and a_n >= 0.0:
+            return np.inf
+        return flight * v_n / (-a_n * sum(e)) if sum(e) else 0.0
+    return bouncing_time
+
+
+@right("7.14", "one flight, and e times as much again")
+def bouncing_time(v_n, a_n, e):
+    if v_n <= 0.0:
+        return 0.0
+    return 2.0 * v_n / (-a_n) / (1.0 - e) if a_n < 0.0 and e < 1.0 else float("inf")
+
+
+wrong("7.14", "the way up only")(zeno(flight=1.0))
+wrong("7.14", "one flight")(zeno(sum=lambda e: 1.0))
+wrong("7.14", "1 + e")(zeno(sum=lambda e: 1.0 + e))
+wrong("7.14", "a time below zero")(zeno(down=False))
+wrong("7.14", "e = 1 ends at once")(zeno(endless=False))
+wrong("7.14", "comes back without a pull")(zeno(falls=False))
+
+
+# 7.15 -----------------------------------------------------------------------------------------------------------
+def project(old=False, back=-1.0, response=worked.kinematic_response, asked="new", once=True):
+    def projecting_step(acceleration, t, x, v, dt, p):
+        v_new = v + (dt if once else 1.0) * acceleration(t, x, v, p)
+        x_new = x + dt * (v if old else v_new)
+        phi = worked.gap(x if asked == "old" else x_new, p)
+        return (x_new + back * phi * p.n, response(v_new, p.n, p.e)) if phi < 0.0 else (x_new, v_new)
+    return projecting_step
+
+
+right("7.15", "with new names")(project())
+wrong("7.15", "moves with the old velocity")(project(old=True))
+wrong("7.15", "puts it in deeper")(project(back=1.0))
+wrong("7.15", "leaves it inside")(project(back=0.0))
+wrong("7.15", "does not bounce")(project(response=lambda v, n, e: tangential(v, n)))
+wrong("7.15", "asks before it moves")(project(asked="old"))
+wrong("7.15", "forgets dt")(project(once=False))
+
+
+# 7.16 -----------------------------------------------------------------------------------------------------------
+def back_to(rest=True, goes_on=True, once=False, fly=worked.fly, lie=worked.lie, bounce=lambda e: e):
+    def backtracking_step(acceleration, t, x, v, dt, p):
+        a, left = acceleration(t, x, v, p), dt
+        for _ in range(1 if once else 300):
+            tau = worked.impact_time(worked.gap(x, p), v @ p.n, a @ p.n, left)
+            x, v = fly(x, v, a, tau)
+            left = left - tau
+            if left <= 0.0:
+                return x, v
+            v = worked.kinematic_response(v, p.n, bounce(p.e))
+            x = x - worked.gap(x, p) * p.n
+            if not goes_on:
+                return x, v
+            if rest and worked.bouncing_time(v @ p.n, a @ p.n, p.e) <= left:
+                return lie(x, v, a, left, p.n)
+        return fly(x, v, a, left)
+    return backtracking_step
+
+
+right("7.16", "with new names")(back_to())
+wrong("7.16", "stops at the impact")(back_to(goes_on=False))
+wrong("7.16", "one impact a step")(back_to(once=True))
+wrong("7.16", "flies without the half of a t²")(back_to(fly=lambda x, v, a, t: (x + t * v, v + t * a)))
+wrong("7.16", "every impact elastic")(back_to(bounce=lambda e: 1.0))
+wrong("7.16", "what lies does not slide")(back_to(lie=lambda x, v, a, t, n: (x, 0.0 * v)))
+
+
+@wrong("7.16", "projects instead")
+def backtracking_step(acceleration, t, x, v, dt, p):
+    return worked.projecting_step(acceleration, t, x, v, dt, p)
+
+
+# 7.17 -----------------------------------------------------------------------------------------------------------
+def sweeping(sweeps=3000, before=True, takes_back=True, friction=lambda mu: mu, check=True, push=worked.push, rebound=lambda e: e):
+    def solve_impacts(body, r, n, e, mu):
+        if check:
+            worked.check_restitution(e)
+        velocity = lambda body, i: point_velocity(body.v, body.omega, r[i])
+        Ks = [worked.point_inverse_mass(arm, body.inv_mass, body.inv_inertia) for arm in r]
+        w = [max(0.0, -rebound(e) * (n[i] @ velocity(body, i))) for i in range(len(r))]
+        Js = np.zeros((len(r), 3))
+        for _ in range(sweeps):
+            worst = 0.0
+            for i, K in enumerate(Ks):
+                u = velocity(body, i)
+                goal = w[i] if before else max(0.0, -e * (n[i] @ u))
+                J = worked.cone_impulse(u - (K @ Js[i] if takes_back else 0.0), n[i], K, goal, friction(mu))
+                change = J - Js[i] if takes_back else J
+                body, Js[i], worst = push(body, r[i], change), Js[i] + change, max(worst, np.abs(change).max())
+            if worst < 1e-15:
+                break
+        return body
+    return solve_impacts
+
+
+right("7.17", "until no impulse changes")(sweeping())
+wrong("7.17", "one sweep")(sweeping(sweeps=1))
+wrong("7.17", "five sweeps")(sweeping(sweeps=5))
+wrong("7.17", "restitution of what the sweep has left")(sweeping(sweeps=300, before=False))
+wrong("7.17", "without friction")(sweeping(friction=lambda mu: 0.0))
+wrong("7.17", "never rebounds")(sweeping(rebound=lambda e: 0.0))
+wrong("7.17", "does not turn")(sweeping(sweeps=300, push=lambda body, r, J: body._replace(v=body.v + body.inv_mass * J)))
+wrong("7.17", "takes any restitution")(sweeping(check=False))
+
+
+@wrong("7.17", "one after the other")
+def solve_impacts(body, r, n, e, mu):
+    return worked.one_after_the_other(body, r, n, e, mu)
