@@ -20,7 +20,7 @@ FLAT = 1e-12                 # a triangle of less than this times its longest ed
 PARALLEL = 1e-12             # sin² of the angle below which two edges count as parallel [-]
 STOP = 1e-14                 # where GJK stops: it knows a distance to this times the size of the bodies [-]
 GJK_STEPS = 100              # far more than any pair of bodies has needed [-]
-LEAF = 4                     # boxes in a leaf of a tree: testing so few is quicker than going down further [-]
+LEAF = 8                     # boxes in a leaf of a tree: testing so few is quicker than going down further [-]
 EDGES_WIN_BY = 1e-9          # how much farther [m] a pair of edges must separate than any face: equal ones would take turns
 
 
@@ -423,6 +423,26 @@ def enclose(tree, node):
     return axis
 
 
+def halve(tree, first, count, axis):
+    """Given.  Reorder tree.order[first:first + count] in place: the half with the lesser middles along an axis comes first.
+
+    *Source:* Hoare 1961, "Algorithm 65: find": it takes time in proportion to count.
+    """
+    order, low, high, k = tree.order, first, first + count - 1, first + count // 2
+    while low < high:
+        pivot = tree.item_low[order[(low + high) // 2], axis] + tree.item_high[order[(low + high) // 2], axis]
+        i, j = low, high
+        while i <= j:
+            while tree.item_low[order[i], axis] + tree.item_high[order[i], axis] < pivot:
+                i += 1
+            while tree.item_low[order[j], axis] + tree.item_high[order[j], axis] > pivot:
+                j -= 1
+            if i <= j:
+                order[i], order[j] = order[j], order[i]
+                i, j = i + 1, j - 1
+        low, high = (i if j < k else low), (j if k < i else high)
+
+
 def build_tree(low, high):
     """Given.  The Tree of boxes low, high (n, d): halve the items along the coordinate in which they are spread most, down to LEAF.
 
@@ -437,8 +457,8 @@ def build_tree(low, high):
     while node < nodes:
         axis, first, count = enclose(tree, node), tree.first[node], tree.count[node]
         if count > LEAF:
-            items, half = tree.order[first:first + count].copy(), count // 2
-            tree.order[first:first + count] = items[np.argpartition(low[items, axis] + high[items, axis], half)]
+            half = count // 2
+            halve(tree, first, count, axis)
             tree.child[node] = nodes
             tree.first[nodes], tree.count[nodes] = first, half
             tree.first[nodes + 1], tree.count[nodes + 1] = first + half, count - half
