@@ -12,6 +12,8 @@ LOOKS = {                       # label: colour, marker
     "splitting, composed": ("#0072B2", "P"), "midpoint, composed": ("#B07CC6", "d"), "the lecture's loop": ("#0072B2", "P"),
     "sliding": ("#0072B2", "o"), "pyramid": ("#D55E00", "D"), "event": ("#009E73", "s"), "contact": ("#E69F00", "v"),
     "gripping": ("#56B4E9", "^"),
+    "continuous": ("#0072B2", "P"), "discrete": ("#D55E00", "D"), "brute force": ("#E69F00", "o"), "trees": ("#0072B2", "P"), "narrow phase": ("#009E73", "s"),
+    "GJK": ("#CC79A7", "v"), "separating axes": ("#E69F00", "o"),
 }
 ENGINE_LOOKS = {"pymunk": ("#000000", "x"), "pybullet": ("#5A5A5A", "+")}
 OURS_MOVING = ("#0072B2", "#009E73", "#CC79A7", "#E69F00")
