@@ -20,7 +20,7 @@ FLAT = 1e-12                 # a triangle of less than this times its longest ed
 PARALLEL = 1e-12             # sin² of the angle below which two edges count as parallel [-]
 STOP = 1e-14                 # where GJK stops: it knows a distance to this times the size of the bodies [-]
 GJK_STEPS = 100              # far more than any pair of bodies has needed [-]
-LEAF = 4                     # boxes in a leaf of a tree: testing so few is quicker than going down further [-]
+LEAF = 8                     # boxes in a leaf of a tree: testing so few is quicker than going down further [-]
 EDGES_WIN_BY = 1e-9          # how much farther [m] a pair of edges must separate than any face: equal ones would take turns
 
 
@@ -52,6 +52,13 @@ class Box(NamedTuple):
     x: np.ndarray            # (3,) centre [m]
     R: np.ndarray            # (3, 3) its axes, as columns
     half: np.ndarray         # (3,) half of its edges [m]
+
+
+class Target(NamedTuple):
+    """What a ball flies at: a plane, or the cylinder about the x axis."""
+    r: float                 # radius of the ball [m]
+    R: float                 # radius of the cylinder [m]
+    plane: Plane
 
 
 class Tree(NamedTuple):
@@ -172,6 +179,54 @@ def cylinder_hit(t, dt, x_0, x_1, r, R):
     s = (moment - t) / dt if moment < NEVER else 1.0
     c = cylinder_contact(x_0 + s * (x_1 - x_0), r, R)
     return Contact(c.p_a, c.p_b, c.n, c.gap, moment)
+
+
+def plane_gap(x, p):
+    """Given.  Gap [m] between a ball at x (3,) and the plane of a Target."""
+    return plane_distance(x, p.plane) - p.r
+
+
+def plane_time(t, dt, x_0, x_1, p):
+    """Given.  Its plane_impact_time [s]."""
+    return plane_impact_time(t, dt, x_0, x_1, p.r, p.plane)
+
+
+def cylinder_gap(x, p):
+    """Given.  Gap [m] between a ball at x (3,) and the cylinder of a Target."""
+    return cylinder_contact(x, p.r, p.R).gap
+
+
+def cylinder_time(t, dt, x_0, x_1, p):
+    """Given.  Its cylinder_impact_time [s]."""
+    return cylinder_impact_time(t, dt, x_0, x_1, p.r, p.R)
+
+
+def discrete_step(gap, impact_time, t, x, v, dt, p):
+    """Given.  (x, v) of a ball that stays where the discrete test finds it: looked at after each step, it is in by up to |v| dt, or past."""
+    x = x + dt * v
+    return x, 0.0 * v if gap(x, p) < 0.0 else v
+
+
+def continuous_step(gap, impact_time, t, x, v, dt, p):
+    """Given.  (x, v) of a ball that stays where the continuous test finds it: exactly where it touches, however long the step is."""
+    moment = impact_time(t, dt, x, x + dt * v, p)
+    return (x + (moment - t) * v, 0.0 * v) if moment < NEVER else (x + dt * v, v)
+
+
+def flight(step, gap, impact_time, t, x, v, dt, steps, p):
+    """Given.  (x, v), each (n, 3), of n balls that fly straight, one test a step, until they are found to touch; then they stay.
+
+    Raises BadInput for a step that is not positive, and a state that is not finite.
+    """
+    check_positive("step dt [s]", dt)
+    check_finite("position x [m]", x)
+    check_finite("velocity v [m/s]", v)
+    x, v = x.copy(), v.copy()
+    for k in range(len(x)):
+        for n in range(steps):
+            if v[k] @ v[k] > 0.0:
+                x[k], v[k] = step(gap, impact_time, t + n * dt, x[k], v[k], dt, p)
+    return x, v
 
 
 def closest_on_segment(p, a, b):
@@ -375,6 +430,26 @@ def enclose(tree, node):
     return axis
 
 
+def halve(tree, first, count, axis):
+    """Given.  Reorder tree.order[first:first + count] in place: the half with the lesser middles along an axis comes first.
+
+    *Source:* Hoare 1961, "Algorithm 65: find": it takes time in proportion to count.
+    """
+    order, low, high, k = tree.order, first, first + count - 1, first + count // 2
+    while low < high:
+        pivot = tree.item_low[order[(low + high) // 2], axis] + tree.item_high[order[(low + high) // 2], axis]
+        i, j = low, high
+        while i <= j:
+            while tree.item_low[order[i], axis] + tree.item_high[order[i], axis] < pivot:
+                i += 1
+            while tree.item_low[order[j], axis] + tree.item_high[order[j], axis] > pivot:
+                j -= 1
+            if i <= j:
+                order[i], order[j] = order[j], order[i]
+                i, j = i + 1, j - 1
+        low, high = (i if j < k else low), (j if k < i else high)
+
+
 def build_tree(low, high):
     """Given.  The Tree of boxes low, high (n, d): halve the items along the coordinate in which they are spread most, down to LEAF.
 
@@ -389,8 +464,8 @@ def build_tree(low, high):
     while node < nodes:
         axis, first, count = enclose(tree, node), tree.first[node], tree.count[node]
         if count > LEAF:
-            items, half = tree.order[first:first + count].copy(), count // 2
-            tree.order[first:first + count] = items[np.argpartition(low[items, axis] + high[items, axis], half)]
+            half = count // 2
+            halve(tree, first, count, axis)
             tree.child[node] = nodes
             tree.first[nodes], tree.count[nodes] = first, half
             tree.first[nodes + 1], tree.count[nodes + 1] = first + half, count - half

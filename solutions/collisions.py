@@ -54,6 +54,13 @@ class Box(NamedTuple):
     half: np.ndarray         # (3,) half of its edges [m]
 
 
+class Target(NamedTuple):
+    """What a ball flies at: a plane, or the cylinder about the x axis."""
+    r: float                 # radius of the ball [m]
+    R: float                 # radius of the cylinder [m]
+    plane: Plane
+
+
 class Tree(NamedTuple):
     """A hierarchy of boxes around n items; node 0 is the root, and holds all."""
     low: np.ndarray          # (m, d) corners of the box around each node [m]
@@ -189,6 +196,54 @@ def cylinder_hit(t, dt, x_0, x_1, r, R):
     s = (moment - t) / dt if moment < NEVER else 1.0
     c = cylinder_contact(x_0 + s * (x_1 - x_0), r, R)
     return Contact(c.p_a, c.p_b, c.n, c.gap, moment)
+
+
+def plane_gap(x, p):
+    """Given.  Gap [m] between a ball at x (3,) and the plane of a Target."""
+    return plane_distance(x, p.plane) - p.r
+
+
+def plane_time(t, dt, x_0, x_1, p):
+    """Given.  Its plane_impact_time [s]."""
+    return plane_impact_time(t, dt, x_0, x_1, p.r, p.plane)
+
+
+def cylinder_gap(x, p):
+    """Given.  Gap [m] between a ball at x (3,) and the cylinder of a Target."""
+    return cylinder_contact(x, p.r, p.R).gap
+
+
+def cylinder_time(t, dt, x_0, x_1, p):
+    """Given.  Its cylinder_impact_time [s]."""
+    return cylinder_impact_time(t, dt, x_0, x_1, p.r, p.R)
+
+
+def discrete_step(gap, impact_time, t, x, v, dt, p):
+    """Given.  (x, v) of a ball that stays where the discrete test finds it: looked at after each step, it is in by up to |v| dt, or past."""
+    x = x + dt * v
+    return x, 0.0 * v if gap(x, p) < 0.0 else v
+
+
+def continuous_step(gap, impact_time, t, x, v, dt, p):
+    """Given.  (x, v) of a ball that stays where the continuous test finds it: exactly where it touches, however long the step is."""
+    moment = impact_time(t, dt, x, x + dt * v, p)
+    return (x + (moment - t) * v, 0.0 * v) if moment < NEVER else (x + dt * v, v)
+
+
+def flight(step, gap, impact_time, t, x, v, dt, steps, p):
+    """Given.  (x, v), each (n, 3), of n balls that fly straight, one test a step, until they are found to touch; then they stay.
+
+    Raises BadInput for a step that is not positive, and a state that is not finite.
+    """
+    check_positive("step dt [s]", dt)
+    check_finite("position x [m]", x)
+    check_finite("velocity v [m/s]", v)
+    x, v = x.copy(), v.copy()
+    for k in range(len(x)):
+        for n in range(steps):
+            if v[k] @ v[k] > 0.0:
+                x[k], v[k] = step(gap, impact_time, t + n * dt, x[k], v[k], dt, p)
+    return x, v
 
 
 def closest_on_segment(p, a, b):

@@ -1,0 +1,133 @@
+"""Distances, impacts and pairs by other means, and the two engines asked for the same: the witnesses of lesson 6.
+
+Nothing here knows the functions of `solutions`.  Distances of convex bodies are least squares with weights that are not negative (SciPy's
+nnls), first roots are SciPy's brentq, pairs are NumPy's comparison of all with all.
+"""
+
+import numpy as np
+from scipy.optimize import brentq, nnls
+
+from .engines import Bullet
+from .scene import Method, World
+
+DISCRETE = Method("discrete_step", "discrete", 1, "collisions")
+CONTINUOUS = Method("continuous_step", "continuous", 2, "collisions")
+BRUTE_FORCE = Method("all_pairs", "brute force", 1, "collisions")
+TREES = Method("tree_pairs", "trees", 2, "collisions")
+
+COPIES = 16                  # balls that fly at once, so that their impacts fall on all phases of a step
+GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
+EARLIEST, SPREAD = 0.3, 0.4  # of the output time: when the impacts are
+PLACE_APART = 1.0            # metre between two copies along the x axis
+SWEPT = 0.8                  # radius that pybullet sweeps over that of the ball [-]: with the whole of it a ball sticks to what it grazes
+RAY_ENDS = 1e-2              # how far from a round shape pybullet's rays may end [m]: it iterates until the squared distance is below 1e-4
+
+
+def impact_times(T):
+    """When each copy hits [s]: at EARLIEST + SPREAD {k φ} of T, φ the golden section, which is spread over the steps of any length."""
+    return T * (EARLIEST + SPREAD * ((np.arange(COPIES) + 1.0) * GOLDEN % 1.0))
+
+
+def first_root(gap, t_0, t_1):
+    """The time between t_0 (gap above zero) and t_1 (below) at which gap(t) is zero, to the last digit."""
+    return brentq(gap, t_0, t_1, xtol=1e-300, rtol=4.0 * np.finfo(float).eps)
+
+
+def hull_distance(a, b, weight=1e3):
+    """Distance [m] of the hulls of points a (k, d) and b (m, d): min |Σ α a − Σ β b| over α, β ≥ 0 with Σ α = Σ β = 1.
+
+    The two sums enter as rows of that weight, which leaves a relative error of about 1/weight² (a penalty); so the answer is only the start:
+    the points that carry weight span flat parts of the two bodies, and the distance of those is a linear system, solved exactly.
+    *Source:* Lawson and Hanson 1974, chapter 23.
+    """
+    rows = np.vstack((np.hstack((a.T, -b.T)), weight * np.hstack((np.ones(len(a)), np.zeros(len(b)))), weight * np.hstack((np.zeros(len(a)), np.ones(len(b))))))
+    shares, _ = nnls(rows, np.append(np.zeros(a.shape[1]), [weight, weight]))
+    p, q = a[shares[:len(a)] > 1e-9], b[shares[len(a):] > 1e-9]
+    span = np.vstack((p[1:] - p[0], q[1:] - q[0]))
+    r = p[0] - q[0]
+    if len(span):
+        r = r - span.T @ np.linalg.lstsq(span.T, r, rcond=None)[0]
+    return float(np.linalg.norm(r))
+
+
+def all_touching(low, high):
+    """Pairs (m, 2), i < j, of boxes low, high (n, d) that have a point in common, by comparing all with all, 500 rows at a time."""
+    found = []
+    for first in range(0, len(low), 500):
+        part = slice(first, first + 500)
+        i, j = np.nonzero(np.all((low[part, None] <= high[None]) & (low[None] <= high[part, None]), axis=2))
+        found.append(np.stack((i + first, j), axis=1)[i + first < j])
+    return np.concatenate(found)
+
+
+# ---------------------------------------------------------------------------------------------- pybullet
+
+def target(bullet, p, grown=0.0):
+    """The obstacle of a scene as a static body: the plane z = 0, or the cylinder about x, its radius grown by that of the ball."""
+    pb, client = bullet.pb, {"physicsClientId": bullet.client}
+    if p.R == 0.0:
+        shape, turn = pb.createCollisionShape(pb.GEOM_PLANE, **client), [0.0, 0.0, 0.0, 1.0]
+    else:
+        shape, turn = pb.createCollisionShape(pb.GEOM_CYLINDER, radius=p.R + grown, height=100.0, **client), [0.0, np.sqrt(0.5), 0.0, np.sqrt(0.5)]
+    body = pb.createMultiBody(0.0, shape, basePosition=[0.0, 0.0, grown if p.R == 0.0 else 0.0], baseOrientation=turn, useMaximalCoordinates=1, **client)
+    pb.changeDynamics(body, -1, lateralFriction=0, restitution=0, **client)
+    return body
+
+
+def bullet_rays(p, x, v, dt):
+    """A World of points that fly on by rays, one a step, at an obstacle grown by the radius of the ball; where a ray ends they stay."""
+    bullet = Bullet(dt)
+    target(bullet, p, p.r)
+    at, velocity = np.array(x), np.array(v)
+
+    def step():
+        there = at + dt * velocity
+        hits = bullet.pb.rayTestBatch(at.tolist(), there.tolist(), physicsClientId=bullet.client)
+        for k, (body, _, share, *_) in enumerate(hits):
+            moving = np.any(velocity[k])
+            at[k] = at[k] + (share if body >= 0 and moving else 1.0) * dt * velocity[k]
+            if body >= 0 and moving:
+                velocity[k] = 0.0
+    return World(step, lambda: at.ravel().copy(), bullet.close)
+
+
+def bullet_swept(p, x, v, dt):
+    """A World of balls of maximal coordinates with continuous detection; each is read where the step left it in which it was found.
+
+    Their velocity changes only in the step after that, so a ball that went less far than v dt with its old velocity was stopped by the
+    sweep; one whose velocity has changed was found in contact where it was before.
+    """
+    bullet = Bullet(dt)
+    pb, client = bullet.pb, {"physicsClientId": bullet.client}
+    pb.setPhysicsEngineParameter(contactERP=0, contactSlop=0, restitutionVelocityThreshold=0, **client)
+    target(bullet, p)
+    shape = pb.createCollisionShape(pb.GEOM_SPHERE, radius=p.r, **client)
+    at, speed, bodies, done = np.array(x), np.linalg.norm(v[0]), [], [False] * len(x)
+    for k in range(len(x)):
+        body = pb.createMultiBody(1.0, shape, basePosition=x[k].tolist(), useMaximalCoordinates=1, **client)
+        pb.changeDynamics(body, -1, linearDamping=0, angularDamping=0, lateralFriction=0, restitution=0, contactProcessingThreshold=0,
+                          ccdSweptSphereRadius=SWEPT * p.r, **client)
+        pb.resetBaseVelocity(body, v[k].tolist(), **client)
+        bodies.append(body)
+
+    def step():
+        pb.stepSimulation(**client)
+        for k, body in enumerate(bodies):
+            if not done[k]:
+                there = np.array(bullet.position(body))
+                if np.linalg.norm(np.subtract(bullet.velocity(body), v[k])) > 1e-6 * speed:
+                    done[k] = True
+                    continue
+                done[k] = np.linalg.norm(there - at[k]) < (1.0 - 1e-9) * speed * dt - 1e-12
+                at[k] = there
+    return World(step, lambda: at.ravel().copy(), bullet.close)
+
+
+def swept_limit(p, dt):
+    """How far from its place of impact [m] a ball may be found by bullet_swept.
+
+    Steps shorter than half the swept radius are not swept: then a ball is found in by at most v dt.  Longer ones end where the swept sphere
+    touches, with the ball in by (1 − SWEPT) r, or before, where the ball itself is found in by less.
+    *Source:* Bullet: changeDynamics sets the threshold of motion to half the radius; btDiscreteDynamicsWorld::integrateTransforms.
+    """
+    return p.speed * dt if p.speed * dt < 0.5 * SWEPT * p.r else max((1.0 - SWEPT) * p.r, 0.0)
