@@ -15,7 +15,7 @@ def record(name):
     runs = {case: {e.label: [_reading(scene, e, p, n) for n in measure.sweep(scene) if n <= (e.most_steps or n)]
                    for e in witnesses if measure.can(scene, e.label, p)} for case, p in scene.CASES.items()}
     p, moves = next(iter(scene.CASES.values())), measure.still(scene) is None
-    items = [measure.Timed(e.label, "engine", n, measure._engine(e, p))
+    items = [measure.Timed(e.label, "engine", n, scene.T / n, measure._engine(e, p))
              for e in witnesses if moves for n in scene.STEPS if n <= (e.most_steps or n)]
     timed = measure.interleaved(items, {"engine": 0.2}, lambda: None)
     trace = {
