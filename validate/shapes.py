@@ -28,6 +28,11 @@ def impact_times(T):
     return T * (EARLIEST + SPREAD * ((np.arange(COPIES) + 1.0) * GOLDEN % 1.0))
 
 
+def across(x):
+    """The coordinates (1, 2) of places x (n, 3), in one row: nothing ever moves along x."""
+    return np.ravel(x[:, 1:])
+
+
 def first_root(gap, t_0, t_1):
     """The time between t_0 (gap above zero) and t_1 (below) at which gap(t) is zero, to the last digit."""
     return brentq(gap, t_0, t_1, xtol=1e-300, rtol=4.0 * np.finfo(float).eps)
@@ -88,7 +93,7 @@ def bullet_rays(p, x, v, dt):
             at[k] = at[k] + (share if body >= 0 and moving else 1.0) * dt * velocity[k]
             if body >= 0 and moving:
                 velocity[k] = 0.0
-    return World(step, lambda: at.ravel().copy(), bullet.close)
+    return World(step, lambda: across(at), bullet.close)
 
 
 def bullet_swept(p, x, v, dt):
@@ -120,7 +125,7 @@ def bullet_swept(p, x, v, dt):
                     continue
                 done[k] = np.linalg.norm(there - at[k]) < (1.0 - 1e-9) * speed * dt - 1e-12
                 at[k] = there
-    return World(step, lambda: at.ravel().copy(), bullet.close)
+    return World(step, lambda: across(at), bullet.close)
 
 
 def swept_limit(p, dt):
