@@ -182,6 +182,8 @@ def not_run(scene, plan):
     """Sentences: which methods this run leaves out, and why."""
     labels = [m.label for m in scene.METHODS if m not in methods_of(scene, plan)]
     slow = [f"Left to --full, to keep this one quick: {', '.join(labels)}"] if labels else []
+    if plan.quick and getattr(scene, "FULL_CASES", ()):
+        slow.append(f"Left to --full: {', '.join(scene.FULL_CASES)}")
     if plan.quick and len(scene.CASES) > 1 and still(scene) is None:
         slow.append(f"Left to --full: the engines on {', '.join(list(scene.CASES)[1:])}")
     return slow
@@ -197,7 +199,8 @@ def cases_of(scene, plan):
     """The scene's cases; for a notebook only the first of what moves, and with overrides the first, changed."""
     name, p = next(iter(scene.CASES.items()))
     if not plan.overrides:
-        return {name: p} if plan.most_steps and still(scene) is None else scene.CASES
+        slow = getattr(scene, "FULL_CASES", ()) if plan.quick else ()
+        return {name: p} if plan.most_steps and still(scene) is None else {case: q for case, q in scene.CASES.items() if case not in slow}
     return {f"{name}, changed": p._replace(**dict(plan.overrides))}
 
 
