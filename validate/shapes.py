@@ -136,3 +136,34 @@ def swept_limit(p, dt):
     *Source:* Bullet: changeDynamics sets the threshold of motion to half the radius; btDiscreteDynamicsWorld::integrateTransforms.
     """
     return p.speed * dt if p.speed * dt < 0.5 * SWEPT * p.r else max((1.0 - SWEPT) * p.r, 0.0)
+
+
+def bullet_boxes(low, high):
+    """A pybullet world with these boxes, standing: (Bullet, their bodies)."""
+    bullet, bodies = Bullet(0.01), []
+    client = {"physicsClientId": bullet.client}
+    for a, b in zip(low, high):
+        shape = bullet.pb.createCollisionShape(bullet.pb.GEOM_BOX, halfExtents=(0.5 * (b - a)).tolist(), **client)
+        bodies.append(bullet.pb.createMultiBody(0.0, shape, basePosition=(0.5 * (a + b)).tolist(), **client))
+    return bullet, bodies
+
+
+def bullet_closest_pairs(low, high):
+    """Pairs (m, 2) of boxes between which pybullet finds points of contact, asked for every pair."""
+    bullet, bodies = bullet_boxes(low, high)
+    ask = lambda i, j: bullet.pb.getClosestPoints(bodies[i], bodies[j], 0.0, physicsClientId=bullet.client)
+    found = [(i, j) for i in range(len(low)) for j in range(i + 1, len(low)) if ask(i, j)]
+    bullet.close()
+    return np.array(found).reshape(-1, 2)
+
+
+def bullet_query_pairs(low, high):
+    """Pairs (m, 2) as pybullet's broad phase knows them: for every box those whose own are in reach of it.  A step makes it take them in."""
+    bullet, bodies = bullet_boxes(low, high)
+    bullet.step()
+    number, found = {body: k for k, body in enumerate(bodies)}, []
+    for k in range(len(low)):
+        there = bullet.pb.getOverlappingObjects(low[k].tolist(), high[k].tolist(), physicsClientId=bullet.client) or ()
+        found += [(k, number[body]) for body, _ in there if number[body] > k]
+    bullet.close()
+    return np.array(found).reshape(-1, 2)
