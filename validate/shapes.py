@@ -6,6 +6,7 @@ nnls), first roots are SciPy's brentq, pairs are NumPy's comparison of all with 
 
 import numpy as np
 from scipy.optimize import brentq, nnls
+from scipy.spatial import ConvexHull
 
 from .engines import Bullet
 from .scene import Method, World
@@ -13,6 +14,9 @@ from .scene import Method, World
 DISCRETE = Method("discrete_step", "discrete", 1, "collisions")
 CONTINUOUS = Method("continuous_step", "continuous", 2, "collisions")
 BRUTE_FORCE = Method("all_pairs", "brute force", 1, "collisions")
+GJK = Method("gjk", "GJK", 1, "collisions")
+NARROW = Method("ball_contact", "narrow phase", 2, "collisions")
+AXES = Method("box_separation", "separating axes", 2, "collisions")
 TREES = Method("tree_pairs", "trees", 2, "collisions")
 
 COPIES = 16                  # balls that fly at once, so that their impacts fall on all phases of a step
@@ -38,21 +42,31 @@ def first_root(gap, t_0, t_1):
     return brentq(gap, t_0, t_1, xtol=1e-300, rtol=4.0 * np.finfo(float).eps)
 
 
-def hull_distance(a, b, weight=1e3):
-    """Distance [m] of the hulls of points a (k, d) and b (m, d): min |Σ α a − Σ β b| over α, β ≥ 0 with Σ α = Σ β = 1.
+def hull_nearest(a, b, weight=1e3):
+    """(p, q): the points of the hulls of a (k, d) and b (m, d) that are nearest: min |Σ α a − Σ β b| over α, β ≥ 0 with Σ α = Σ β = 1.
 
     The two sums enter as rows of that weight, which leaves a relative error of about 1/weight² (a penalty); so the answer is only the start:
-    the points that carry weight span flat parts of the two bodies, and the distance of those is a linear system, solved exactly.
+    the points that carry weight span flat parts of the two bodies, and the nearest points of those are a linear system, solved exactly.
     *Source:* Lawson and Hanson 1974, chapter 23.
     """
-    rows = np.vstack((np.hstack((a.T, -b.T)), weight * np.hstack((np.ones(len(a)), np.zeros(len(b)))), weight * np.hstack((np.zeros(len(a)), np.ones(len(b))))))
+    one, none = np.ones(len(a)), np.zeros(len(a))
+    rows = np.vstack((np.hstack((a.T, -b.T)), weight * np.hstack((one, np.zeros(len(b)))), weight * np.hstack((none, np.ones(len(b))))))
     shares, _ = nnls(rows, np.append(np.zeros(a.shape[1]), [weight, weight]))
     p, q = a[shares[:len(a)] > 1e-9], b[shares[len(a):] > 1e-9]
-    span = np.vstack((p[1:] - p[0], q[1:] - q[0]))
-    r = p[0] - q[0]
-    if len(span):
-        r = r - span.T @ np.linalg.lstsq(span.T, r, rcond=None)[0]
-    return float(np.linalg.norm(r))
+    span = np.vstack((p[1:] - p[0], q[0] - q[1:]))
+    c = np.linalg.lstsq(span.T, q[0] - p[0], rcond=None)[0] if len(span) else np.zeros(0)
+    split = len(p) - 1
+    return p[0] + c[:split] @ (p[1:] - p[0]), q[0] + c[split:] @ (q[1:] - q[0])
+
+
+def depth_of(a, b):
+    """(gap, n) of two hulls that overlap, from b to a: the face of the hull of all differences a − b that is nearest to 0.
+
+    *Source:* the Minkowski difference; SciPy's ConvexHull (Qhull) for its faces n · y + offset = 0.
+    """
+    faces = ConvexHull((a[:, None] - b[None]).reshape(-1, a.shape[1])).equations
+    nearest = faces[np.argmax(faces[:, -1])]
+    return float(nearest[-1]), -nearest[:-1]
 
 
 def all_touching(low, high):
