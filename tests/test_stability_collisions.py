@@ -1,0 +1,74 @@
+"""A wrong function of lesson 6 does not find what theory says."""
+
+import types
+
+import numpy as np
+import pytest
+
+from solutions import collisions as worked
+from validate import stability
+
+
+def always_up(x, r, box):
+    """Out through the top, however deep."""
+    contact = worked.ball_box(x, r, box)
+    return contact._replace(n=np.array([0.0, 0.0, 1.0])) if contact.gap < 0.0 else contact
+
+
+def only_outside(x, r, box):
+    """No case for a centre inside."""
+    return worked.ball_contact(x, r, box.x + box.R @ np.clip(box.R.T @ (x - box.x), -box.half, box.half), 0.0)
+
+
+def looks_afterwards(t, dt, x_0, x_1, r, plane):
+    """The end of the step for the time of impact."""
+    return t + dt if worked.plane_distance(x_1, plane) < r else np.inf
+
+
+def by_school(t, dt, x_0, x_1, r, R):
+    y, w = x_0[1:], x_1[1:] - x_0[1:]
+    A, B, C = w @ w, y @ w, y @ y - (R + r) ** 2
+    return t + dt * (-B - np.sqrt(max(0.0, B * B - A * C))) / A
+
+
+def through_the_origin(a, b):
+    """Distances from the origin of the world: the squares are rounded."""
+    i, j = np.unravel_index(np.argmin(np.sum(a**2, axis=1)[:, None] + np.sum(b**2, axis=1) - 2.0 * a @ b.T), (len(a), len(b)))
+    return worked.ball_contact(a[i], 0.0, b[j], 0.0)
+
+
+def single_precision(a, b):
+    return worked.gjk(a.astype(np.float32).astype(float), b.astype(np.float32).astype(float))
+
+
+def gentle(t, x, v, p):
+    """Half of the field."""
+    return 0.5 * worked.flock_acceleration(t, x, v, p)
+
+
+def takes_all(*_):
+    return np.zeros(3)
+
+
+WRONG = [                    # case, the function that it examines, what is put in its place
+    (16, "ball_box", always_up),
+    (16, "plane_impact_time", looks_afterwards),
+    (61, "gjk", through_the_origin),
+    (61, "gjk", single_precision),
+    (62, "cylinder_impact_time", by_school),
+    (63, "ball_box", only_outside),
+    (63, "ball_contact", lambda x, r, y, R: worked.ball_contact(x, r, y, R)._replace(n=np.zeros(3))),
+    (64, "gjk", through_the_origin),
+    (65, "flock_acceleration", gentle),
+    (66, "closest_on_segment", takes_all),
+    (66, "make_plane", takes_all),
+    (66, "repulsion", takes_all),
+]
+
+
+@pytest.mark.parametrize("number, name, wrong", WRONG, ids=[f"{n}-{name}-{k}" for k, (n, name, _) in enumerate(WRONG)])
+def test_a_wrong_function_does_not_find_what_theory_says(number, name, wrong):
+    lesson = types.SimpleNamespace(**{**vars(stability.lesson_of(number)), name: wrong})
+    with np.errstate(all="ignore"):
+        found, _ = stability.CASES[number][1](lesson)
+    assert not all(f.holds for f in found)
