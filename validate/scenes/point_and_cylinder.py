@@ -48,6 +48,13 @@ def start(p):
     return *place(p), Target(p.r, p.R, Plane(np.array([0.0, 0.0, 1.0]), 0.0))
 
 
+def with_others(p):
+    """(state, p) with as many balls again, a kilometre to the side, which never hit: a broad phase would leave them out."""
+    x, v, goal = start(p)
+    e = np.array([0.0, 1.0, 0.0])
+    return (np.concatenate((x, x + 1e3 * np.array([0.0, 1.0, 1.0]))), np.concatenate((v, np.linalg.norm(v[0]) * np.tile(e, (COPIES, 1)))), goal), p
+
+
 def run(step, acceleration, state, p, dt, steps):
     x, v, goal = state
     x, v = flight(step, cylinder_gap, cylinder_time, 0.0, x, v, dt, steps, goal)
@@ -55,7 +62,7 @@ def run(step, acceleration, state, p, dt, steps):
 
 
 def observe(state, p):
-    return across(state[0])
+    return across(state[0][:COPIES])
 
 
 def truth(p, t):
@@ -118,5 +125,6 @@ def published():
 
 
 NEEDS = ("a straight way", "a quadratic equation for each step, or a distance")
-LEAVES_OUT = {"gravity: the way would bend, and the equation be of fourth degree": "cut into short straight pieces it is this one",
+LEAVES_OUT = {"balls that never come near, tested at every step": with_others,
+              "gravity: the way would bend, and the equation be of fourth degree": "cut into short straight pieces it is this one",
               "response": "lesson 7 builds it", "a cloth in place of the balls: its edges and faces": "triangle_cylinder_gap of this lesson tests them"}

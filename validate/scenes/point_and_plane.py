@@ -45,6 +45,13 @@ def start(p):
     return *place(p), Target(p.r, p.R, Plane(np.array([0.0, 0.0, 1.0]), 0.0))
 
 
+def with_others(p):
+    """(state, p) with as many balls again, a kilometre to the side, which never hit: a broad phase would leave them out."""
+    x, v, goal = start(p)
+    e = np.array([0.0, 1.0, 0.0])
+    return (np.concatenate((x, x + 1e3 * np.array([0.0, 1.0, 1.0]))), np.concatenate((v, np.linalg.norm(v[0]) * np.tile(e, (COPIES, 1)))), goal), p
+
+
 def run(step, acceleration, state, p, dt, steps):
     x, v, goal = state
     x, v = flight(step, plane_gap, plane_time, 0.0, x, v, dt, steps, goal)
@@ -52,7 +59,7 @@ def run(step, acceleration, state, p, dt, steps):
 
 
 def observe(state, p):
-    return across(state[0])
+    return across(state[0][:COPIES])
 
 
 def truth(p, t):
@@ -110,4 +117,5 @@ def published():
 
 
 NEEDS = ("a straight way", "two signed distances for each step")
-LEAVES_OUT = {"gravity: the way would bend": "then the formula is the first step of Newton's method", "response": "lesson 7 builds it"}
+LEAVES_OUT = {"balls that never come near, tested at every step": with_others,
+              "gravity: the way would bend": "then the formula is the first step of Newton's method", "response": "lesson 7 builds it"}
