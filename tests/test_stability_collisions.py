@@ -50,6 +50,32 @@ def takes_all(*_):
     return np.zeros(3)
 
 
+def faces_only(a, b):
+    """Six axes of fifteen."""
+    found = [(abs((a.x - b.x) @ n) - worked.half_width(a, n) - worked.half_width(b, n), n, k) for k in range(6) for n in [worked.candidate_axis(a, b, k)]]
+    gap, n, k = max(found, key=lambda one: one[0])
+    return gap, n if n @ (a.x - b.x) >= 0.0 else -n, k
+
+
+def not_clipped(a, b):
+    """All corners of a for points of contact."""
+    gap, n, _ = worked.box_separation(a, b)
+    x = worked.box_corners(a)
+    return worked.Contacts(x, x - gap * n, n, np.full(8, gap))
+
+
+def from_the_ends(a, b, r_a, c, d, r_b):
+    """The nearest of the ends of two capsules."""
+    p, q = min(((p, q) for p in (a, b) for q in (c, d)), key=lambda pair: np.linalg.norm(pair[0] - pair[1]))
+    return worked.ball_contact(p, r_a, q, r_b)
+
+
+def edge_of_a(a, b):
+    """Polygons that know the edges of a only."""
+    contacts = worked.polygon_contacts(a, b)
+    return contacts._replace(gap=np.minimum(contacts.gap, worked.separating_edge(a, b)[0]))
+
+
 WRONG = [                    # case, the function that it examines, what is put in its place
     (16, "ball_box", always_up),
     (16, "plane_impact_time", looks_afterwards),
@@ -63,6 +89,10 @@ WRONG = [                    # case, the function that it examines, what is put 
     (66, "closest_on_segment", takes_all),
     (66, "make_plane", takes_all),
     (66, "repulsion", takes_all),
+    (67, "box_separation", faces_only),
+    (67, "box_box", not_clipped),
+    (67, "capsule_capsule", from_the_ends),
+    (67, "polygon_contacts", edge_of_a),
 ]
 
 

@@ -1,17 +1,18 @@
 """What does detection miss, and where does it lose its digits?  Lesson 6 at high speed, far away, at a grazing angle, deep inside, and flat.
 
-Cases 16 and 61 to 66.  The experiments throw thousands of balls, or put bodies where floats are coarse; none asks a formula for its own answer.
+Cases 16 and 61 to 67.  The experiments throw thousands of balls, or put bodies where floats are coarse; none asks a formula for its own answer.
 """
 
 import numpy as np
 
+from solutions import collisions as worked
 from solutions import integrators
 from solutions.checks import BadInput
 from solutions.integrators import observed_order
 
 from . import engines
 from .engines import Bullet
-from .shapes import hull_nearest
+from .shapes import depth_of, hull_nearest
 from .stability import DOTS, LINE, Picture, finding, series
 
 THROWN = 10_000              # balls, each at its own phase of a step
@@ -292,6 +293,80 @@ def case_66(lesson):
         "What is refused has no area for its size; what is merely small is measured as any other.")
 
 
+def inside(box, points):
+    """How far outside of a box the farthest of these points is [m]; below zero when all are inside."""
+    return max(np.max(np.abs(box.R.T @ (x - box.x)) - box.half) for x in points)
+
+
+def overlapping(rng, n):
+    """n pairs of drawn boxes that overlap, by a quarter of their size at most or so."""
+    pairs = []
+    while len(pairs) < n:
+        a, b = (worked.Box(0.8 * rng.uniform(-1.0, 1.0, 3), np.ascontiguousarray(np.linalg.qr(rng.normal(size=(3, 3)))[0]), rng.uniform(0.3, 1.0, 3)) for _ in range(2))
+        if worked.box_separation(a, b)[0] < 0.0:
+            pairs.append((a, b))
+    return pairs
+
+
+def case_67(lesson):
+    """Drawn boxes and polygons that overlap: the way out is one, the shortest as the hull of all differences knows it, and contacts are on both.
+
+    A box moved by −gap n touches and no more: the separation is then zero.  Points of contact lie within both bodies, but for the depth;
+    the deepest of them is as deep as the axis says where a face is touched; between two edges p_a − p_b = gap n.  Drawn capsules are as far
+    apart as their segments, by non-negative least squares, less the radii.  All to round-off, but boxes may leave EDGES_WIN_BY to a face.
+    """
+    rng, found = np.random.default_rng(67), []
+    pairs, worst = overlapping(rng, 100), {"depth": 0.0, "left": 0.0, "outside": -1.0, "deepest": 0.0}
+    depths, true = [], []
+    for a, b in pairs:
+        gap, n, k = lesson.box_separation(a, b)
+        contacts, way = lesson.box_box(a, b), depth_of(corners_of(a), corners_of(b))[0]
+        moved = a._replace(x=a.x - gap * n)
+        depths.append(-gap)
+        true.append(-way)
+        worst["depth"] = max(worst["depth"], abs(gap - way))
+        worst["left"] = max(worst["left"], abs(lesson.box_separation(moved, b)[0]))
+        if len(contacts.gap) == 0:
+            worst["outside"] = np.inf
+            continue
+        worst["outside"] = max(worst["outside"], inside(a, contacts.p_a), inside(b, contacts.p_b))
+        worst["deepest"] = max(worst["deepest"], abs(contacts.gap.min() - gap))
+    room = 2.0 * worked.EDGES_WIN_BY
+    found += [finding(67, "The least overlap of 15 axes is the shortest way out.", "greatest error of the depth of 100 pairs of boxes [m]", 0.0, worst["depth"], room,
+                      f"The depth of 100 pairs of boxes is that of the hull of their differences, to {worst['depth']:.0e} m."),
+              finding(67, "Moved out by the gap along n, two boxes touch and no more.", "greatest overlap or gap that is left of 100 pairs [m]", 0.0, worst["left"], room,
+                      f"Moved by the gap along n, 100 pairs are left with {worst['left']:.0e} m."),
+              finding(67, "Points of contact lie on both bodies.", "farthest point of contact outside of its box [m], or 0", 0.0, max(0.0, worst["outside"]), 1e-11,
+                      f"No point of contact of 100 pairs is farther than {max(0.0, worst['outside']):.0e} m outside of its box."),
+              finding(67, "The deepest point of contact is as deep as the axis says.", "greatest difference between the deepest contact and the axis [m]", 0.0, worst["deepest"], 1e-11,
+                      f"The deepest point of contact of 100 pairs is as deep as the axis says, to {worst['deepest']:.0e} m.")]
+    errors = []
+    for _ in range(100):
+        x = rng.uniform(-1.0, 1.0, (4, 3))
+        p, q = hull_nearest(x[:2], x[2:])
+        errors.append(abs(lesson.capsule_capsule(x[0], x[1], 0.1, x[2], x[3], 0.2).gap - (np.linalg.norm(p - q) - 0.3)))
+    found.append(finding(67, "Two capsules are as far apart as their segments, less the radii.", "greatest error of the gap of 100 pairs of capsules [m]", 0.0, max(errors), ROUND_OFF,
+                         f"The gap of 100 pairs of capsules is right to {max(errors):.0e} m."))
+    flat = []
+    for _ in range(100):
+        a, b = (rng.uniform(-0.6, 0.6, 2) + np.stack((np.cos(t), np.sin(t)), axis=1) for t in (np.sort(rng.uniform(0.0, 1.2, 5)) + 1.25 * np.arange(5) for _ in range(2)))
+        contacts, way = lesson.polygon_contacts(a, b), depth_of(a, b)[0]
+        if way < 0.0 and len(contacts.gap):
+            flat.append(abs(contacts.gap.min() - way))
+    found.append(finding(67, "Polygons that overlap touch as deep as the hull of their differences says.", "greatest error of the deepest contact of 100 pairs of polygons [m]", 0.0, max(flat, default=np.inf), ROUND_OFF,
+                         f"The deepest contact of {len(flat)} pairs of polygons is right to {max(flat, default=np.inf):.0e} m."))
+    order = np.argsort(true)
+    return found, Picture("The way out of 100 pairs of boxes", "shortest way out, by the hull of differences [m]", "depth found [m]", [
+        series("equal", np.array(true)[order], np.array(true)[order], LINE), series("separating axes, measured", np.array(true)[order], np.array(depths)[order], DOTS)],
+        "Fifteen axes are all it takes: no other direction is a shorter way out of two boxes.")
+
+
+def corners_of(box):
+    """The eight corners (8, 3) of a box."""
+    signs = np.array([[i, j, k] for i in (-1.0, 1.0) for j in (-1.0, 1.0) for k in (-1.0, 1.0)])
+    return box.x + signs * box.half @ box.R.T
+
+
 def refuses(function, arguments):
     """Whether a call ends in BadInput."""
     try:
@@ -309,5 +384,6 @@ CASES = {
     64: ("Bodies without volume", case_64, "collisions"),
     65: ("Avoidance head-on", case_65, "collisions"),
     66: ("What has no distance", case_66, "collisions"),
+    67: ("The way out of an overlap", case_67, "collisions"),
 }
 OWN_LAWS = set(CASES)        # short: compiling them would take longer

@@ -9,7 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from solutions.collisions import (
-    Box, Plane, ball_box, ball_capsule, ball_contact, ball_plane, ball_triangle, box_box, box_separation, capsule_capsule, cylinder_hit, gjk, polygon_contacts)
+    Box, Plane, ball_box, ball_capsule, ball_contact, ball_plane, ball_triangle, box_box, box_corners, box_separation, capsule_capsule, cylinder_hit, gjk, points_plane,
+    polygon_contacts)
 from validate.engines import Bullet
 from validate.scene import EXACT, Engine, World
 from validate.shapes import AXES, CONTINUOUS, GJK, NARROW, depth_of, first_root, hull_nearest
@@ -29,7 +30,7 @@ class Params(NamedTuple):
 
 CASES = {name: Params(name) for name in (
     "ball, ball", "ball, plane", "ball, capsule", "capsule, capsule", "ball, triangle", "ball, box", "ball in a box", "box, box (corner)",
-    "box, box (edges)", "box in a box", "box on a box", "triangle, box", "disc, polygon (2D)", "polygon, polygon (2D)", "rectangles (2D)", "flying disc (2D)")}
+    "box, box (edges)", "box in a box", "box on a box", "box, plane", "triangle, box", "disc, polygon (2D)", "polygon, polygon (2D)", "rectangles (2D)", "flying disc (2D)")}
 MARGIN = 0.001               # of pybullet: what it rounds boxes off with, and puts around hulls of points [m]
 
 
@@ -61,6 +62,7 @@ SHAPES = {                   # name: (kind, points or (centre, turn, half edges)
     "box, box (edges)": (("box", ((0.0, 0.0, 0.0), (0.7, 0.0, 0.0), (0.9, 0.4, 0.4))), ("box", ((0.0, 0.0, 1.4), (0.0, 0.8, 0.0), (0.4, 0.9, 0.4)))),
     "box in a box": (("box", ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.9, 0.8, 0.5))), ("box", ((0.2, -0.1, 0.6), (0.3, 0.5, 0.2), (0.3, 0.3, 0.5)))),
     "box on a box": (("box", ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.9, 0.8, 0.5))), ("box", ((0.7, -0.5, 0.85), (0.0, 0.0, 0.0), (0.6, 0.7, 0.4)))),
+    "box, plane": (("box", ((0.2, -0.1, 0.6), (0.5, 0.4, 0.2), (0.4, 0.5, 0.45))), ("plane", None)),
     "triangle, box": (("hull", [(1.2, 0.1, 0.9), (1.9, -0.4, 0.6), (1.5, 0.9, 1.3)]), ("box", ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.6, 0.4, 0.5)))),
     "disc, polygon (2D)": (("ball", [(1.6, 0.9)]), ("hull", [(0.0, -0.6), (0.8, -0.1), (0.5, 0.6), (-0.4, 0.5)])),
     "polygon, polygon (2D)": (("hull", [(1.1, 0.2), (1.9, -0.1), (2.0, 0.8)]), ("hull", [(0.0, -0.6), (0.8, -0.1), (0.9, 0.6), (-0.4, 0.5)])),
@@ -131,6 +133,10 @@ def run(step, acceleration, state, p, dt, steps):
     if p.pair in MANY:
         c = polygon_contacts(corners(a, p), corners(b, p)) if flat(p) else box_box(box_of(a), box_of(b))
         return (np.array([c.gap.min(), *c.n, *c.p_b.mean(axis=0), len(c.gap)]),)
+    if p.pair == "box, plane":                                               # the corners below it; of these the deepest
+        c = points_plane(box_corners(box_of(a)), the_plane())
+        k = int(np.argmin(c.gap))
+        return (np.array([c.gap[k], *c.n, *c.p_b[k]]),)
     if step.__name__ == "gjk":
         c = gjk(corners(a, p), corners(b, p))
         r_a, r_b = radii(p)
@@ -169,9 +175,9 @@ def CAN(name, p):
 APART = ("ball, ball", "ball, capsule", "capsule, capsule", "ball, triangle", "ball, box", "box, box (corner)", "box, box (edges)", "triangle, box",
          "disc, polygon (2D)", "polygon, polygon (2D)")
 DOES = {                     # method or engine: the pairs that it can do
-    "ball_contact": ("ball, ball", "ball, plane", "ball, capsule", "capsule, capsule", "ball, triangle", "ball, box", "ball in a box"),
+    "ball_contact": ("ball, ball", "ball, plane", "ball, capsule", "capsule, capsule", "ball, triangle", "ball, box", "ball in a box", "box, plane"),
     "gjk": APART, "box_separation": ("box, box (corner)", "box, box (edges)", "box in a box", *MANY), "continuous_step": ("flying disc (2D)",),
-    "pybullet": ("ball, ball", "ball, plane", "ball, capsule", "capsule, capsule", "ball in a box", "box on a box"),
+    "pybullet": ("ball, ball", "ball, plane", "ball, capsule", "capsule, capsule", "ball in a box", "box on a box", "box, plane"),
     "pybullet, round edges": ("ball, box", "box, box (corner)", "box, box (edges)", "box in a box"),
     "pybullet, hull": ("ball, triangle", "triangle, box"),
     "pymunk": ("disc, polygon (2D)", "rectangles (2D)", "flying disc (2D)"),
@@ -183,7 +189,7 @@ DOES = {                     # method or engine: the pairs that it can do
 def truth(p, t):
     """Apart: nearest points of two hulls, by non-negative least squares, less the radii.  Overlapping: the hull of all differences.
 
-    ball, plane    height over the plane;     ball in a box    the nearest of six faces
+    ball, plane    height over the plane, of a box that of its lowest corner;     ball in a box    the nearest of six faces
     box on a box   the rectangle that both cover: four points of contact;     rectangles    the stretch: two points
     flying disc    first root of the distance of the centres less r + R, by brentq
     Source: the definitions of distance and of the Minkowski difference.
@@ -198,6 +204,10 @@ def truth(p, t):
         return np.array([-0.1, *(FLAT @ [0.0, -1.0]), *moved([(1.6, 0.9)], p)[0], 2.0])
     if p.pair == "box on a box":                                             # overlap 0.05 m, x 0.1 … 0.9, y −0.8 … 0.2
         return np.array([-0.05, *(WORLD @ [0.0, 0.0, -1.0]), *moved([(0.5, -0.3, 0.45)], p)[0], 4.0])
+    if p.pair == "box, plane":                                               # the lowest of its corners, before WORLD turns all
+        x, angles, half = a[1]
+        lowest = min(np.array(x) + SIGNS * np.array(half) @ turn(*angles).T, key=lambda y: y[2])
+        return np.array([lowest[2], *WORLD[:, 2], *moved([(*lowest[:2], 0.0)], p)[0]])
     if p.pair == "ball, plane":
         return np.array([a[1][0][2] - p.r, *WORLD[:, 2], *moved([(*a[1][0][:2], 0.0)], p)[0]])
     if p.pair == "ball in a box":                                            # 0.4 − 0.25 = 0.15 m below the face y = 0.4, which is the nearest
