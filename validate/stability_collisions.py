@@ -233,10 +233,10 @@ def case_64(lesson):
 
 # ---------------------------------------------------------------------------------------------- avoidance, and what cannot be
 
-def nearest_approach(lesson, closing, k, reach, steps=20_000):
+def nearest_approach(lesson, closing, k, reach, steps=10_000):
     """Least gap [m] of two that fly at each other with that closing speed [m/s], by Verlet's method of lesson 1, and the gap of theory."""
     radius, turning = 0.1, 1.0 / (1.0 / reach + closing / np.sqrt(2.0 * k))
-    p, dt = lesson.make_flock(radius, reach, k, 0.0, 0.0), 1e-3 * turning / closing
+    p, dt = lesson.make_flock(radius, reach, k, 0.0, 0.0), 2e-3 * turning / closing
     half = 0.5 * (2.0 * radius + turning) + 4.0 * turning
     half = min(half, 0.5 * (2.0 * radius + reach))
     begin = 2.0 * half - 2.0 * radius                               # its energy there counts as well
@@ -254,15 +254,15 @@ def nearest_approach(lesson, closing, k, reach, steps=20_000):
 def case_65(lesson):
     """Head-on: two of a flock that close with u from out of reach turn back at a gap g with  ¼ u² = ½ k (1/g − 1/reach)².
 
-    Each has ½ (u/2)².  g = 1/(1/reach + u/√(2k)): above zero at any speed.  Verlet's energy error is (dt/τ)² = 1e-6 times a constant of
+    Each has ½ (u/2)².  g = 1/(1/reach + u/√(2k)): above zero at any speed.  Verlet's energy error is (dt/τ)² = 4e-6 times a constant of
     the potential's steepness, fourth power at most: 4·5/2; the gap follows the energy with a power below one.
     """
     found, k, reach = [], 1.0, 1.0
     for closing in (1.0, 10.0, 100.0):
         got, turning = nearest_approach(lesson, closing, k, reach)
-        found.append(finding(65, "A field without limit at the skin turns everybody back.", f"least gap, closing with {closing:g} m/s [m]", turning, got, 1e-5 * turning,
+        found.append(finding(65, "A field without limit at the skin turns everybody back.", f"least gap, closing with {closing:g} m/s [m]", turning, got, 4e-5 * turning,
                              f"Two that close with {closing:g} m/s come within {got:.6f} m of each other; theory says {turning:.6f} m."))
-    speeds = 10.0 ** np.linspace(-0.5, 2.0, 6)
+    speeds = 10.0 ** np.linspace(-0.5, 2.0, 5)
     fine = 10.0 ** np.linspace(-0.6, 2.1, 40)
     return found, Picture("How near do they come?", "log₁₀ of the closing speed [m/s]", "log₁₀ of the least gap [m]", [
         series("1/(1/reach + u/√(2k)), theory", np.log10(fine), np.log10(1.0 / (1.0 / reach + fine / np.sqrt(2.0 * k))), LINE),
