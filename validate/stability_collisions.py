@@ -336,7 +336,7 @@ def case_67(lesson):
                       f"The depth of 100 pairs of boxes is that of the hull of their differences, to {worst['depth']:.0e} m."),
               finding(67, "Moved out by the gap along n, two boxes touch and no more.", "greatest overlap or gap that is left of 100 pairs [m]", 0.0, worst["left"], room,
                       f"Moved by the gap along n, 100 pairs are left with {worst['left']:.0e} m."),
-              finding(67, "Points of contact lie on both bodies.", "farthest point of contact outside of its box [m], or 0", 0.0, max(0.0, worst["outside"]), 1e-11,
+              finding(67, "Points of contact lie on both bodies.", "how far outside of its box the farthest point of contact is, or 0 [m]", 0.0, max(0.0, worst["outside"]), 1e-11,
                       f"No point of contact of 100 pairs is farther than {max(0.0, worst['outside']):.0e} m outside of its box."),
               finding(67, "The deepest point of contact is as deep as the axis says.", "greatest difference between the deepest contact and the axis [m]", 0.0, worst["deepest"], 1e-11,
                       f"The deepest point of contact of 100 pairs is as deep as the axis says, to {worst['deepest']:.0e} m.")]
