@@ -69,7 +69,7 @@ class Tree(NamedTuple):
     first: np.ndarray        # (m,) its items are order[first], …
     count: np.ndarray        # (m,) … so many
     order: np.ndarray        # (n,) numbers of the items
-    item_low: np.ndarray     # (n, d) the boxes of the items themselves [m]
+    item_low: np.ndarray     # (n, d) the boxes of the items themselves [m], in the order of `order`: those of a leaf lie side by side
     item_high: np.ndarray    # (n, d)
 
 
@@ -465,7 +465,7 @@ def all_pairs(low, high):
 
 
 def enclose(tree, node):
-    """Given.  Put the box around the items of a node into the tree; return the coordinate in which their middles lie farthest apart."""
+    """Given.  For build_tree, while the items are still in the order of its input: put the box around the items of a node into the tree; return the coordinate in which their middles lie farthest apart."""
     widest, axis = -1.0, 0
     for c in range(tree.item_low.shape[1]):
         low, high, first, last = np.inf, -np.inf, np.inf, -np.inf
@@ -479,7 +479,7 @@ def enclose(tree, node):
 
 
 def halve(tree, first, count, axis):
-    """Given.  Reorder tree.order[first:first + count] in place: the half with the lesser middles along an axis comes first.
+    """Given.  For build_tree as well: reorder tree.order[first:first + count] in place, so that the half with the lesser middles along an axis comes first.
 
     *Source:* Hoare 1961, "Algorithm 65: find": it takes time in proportion to count.
     """
@@ -519,7 +519,7 @@ def build_tree(low, high):
             tree.first[nodes + 1], tree.count[nodes + 1] = first + half, count - half
             nodes += 2
         node += 1
-    return tree
+    return Tree(tree.low, tree.high, tree.child, tree.first, tree.count, tree.order, low[tree.order], high[tree.order])
 
 
 def girth(tree, node):
@@ -534,7 +534,7 @@ def touching_items(a, i, b, j, found):
     """Given.  Append to the list `found` the pairs of items, one of leaf i of a, one of leaf j of b, whose own boxes touch."""
     for k in range(a.first[i], a.first[i] + a.count[i]):
         for m in range(b.first[j], b.first[j] + b.count[j]):
-            if boxes_touch(a.item_low, a.item_high, a.order[k], b.item_low, b.item_high, b.order[m]):
+            if boxes_touch(a.item_low, a.item_high, k, b.item_low, b.item_high, m):
                 found.append((a.order[k], b.order[m]))
 
 
