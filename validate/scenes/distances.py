@@ -362,7 +362,12 @@ FLAT_CASES = tuple(name for name in CASES if name.endswith("(2D)"))
 
 def points(observed, p):
     """The pairs in the plane, side by side."""
-    return np.concatenate([picture(name)[0] + [4.5 * k, 0.0] for k, name in enumerate(FLAT_CASES)])
+    drawn, across = [], 0.0
+    for name in FLAT_CASES:
+        x = picture(name)[0]
+        drawn.append(x - [x[:, 0].min() - across, x[:, 1].mean()])
+        across += np.ptp(x[:, 0]) + 0.6
+    return np.concatenate(drawn)
 
 
 def LINKS(p):
