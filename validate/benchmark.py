@@ -102,6 +102,27 @@ def growth():
     yield "cost of a step over 10³ to 10⁶ springs grows as n to the", "1.0 ± 0.1", f"{order:.3f}", abs(order - 1.0) <= 0.1
 
 
+def boxes(n, seed=1):
+    """Corners low, high (n, 3) of boxes, one for each cubic metre, with about as many neighbours whatever n is."""
+    rng = np.random.default_rng(seed)
+    low = rng.uniform(0.0, n ** (1.0 / 3.0), (n, 3))
+    return low, low + rng.uniform(0.0, 1.2, (n, 3))
+
+
+def pair_search():
+    """Pairs of boxes by two trees: the growth of its cost, the tree made anew each time, and the cost of testing all pairs."""
+    lesson, sizes = binding.world(compiled=True).lesson("collisions"), np.array([1000, 10_000, 100_000])
+    times = step_times({(name, n): (lambda find=getattr(lesson, name), b=boxes(n): find(*b), 1)
+                        for name, n in (*(("tree_pairs", n) for n in sizes), ("all_pairs", 1000), ("all_pairs", 10_000))})
+    growth = times["tree_pairs", 100_000] / times["tree_pairs", 1000]
+    most = 100.0 * np.log(1e5) / np.log(1e3)
+    yield ("pairs by trees, 10⁵ boxes over 10³", f"at most n log n: {most:.0f}×", f"{growth:.0f}×  ({times['tree_pairs', 100_000] * 1e3:.0f} ms / {times['tree_pairs', 1000] * 1e3:.1f} ms)",
+           growth <= most)
+    for n in (1000, 10_000):
+        ratio = times["all_pairs", n] / times["tree_pairs", n]
+        yield f"pairs of {n:,} boxes: brute force / trees", "above 1×", f"{ratio:.1f}×", ratio > 1.0
+
+
 def cloth_frame():
     """A frame of a cloth of 100 × 100 weights, 20 sweeps of PBD and of XPBD, over the 1/60 s that it has."""
     from .chains import weave
@@ -144,7 +165,7 @@ def imports():
 
 def main():
     table = Table("what", "asked", "found", "", box=None, header_style="bold")
-    for part in (thousand_springs, growth, cloth_frame, memory, imports):
+    for part in (thousand_springs, growth, pair_search, cloth_frame, memory, imports):
         for what, asked, found, met in part():
             table.add_row(what, asked, found, "[green]met[/green]" if met else "[bold red]not met[/bold red]")
     Console().print(table)

@@ -14,6 +14,8 @@ LOOKS = {                       # label: colour, marker
     "splitting, composed": ("#0072B2", "P"), "midpoint, composed": ("#B07CC6", "d"), "the lecture's loop": ("#0072B2", "P"),
     "sliding": ("#0072B2", "o"), "pyramid": ("#D55E00", "D"), "event": ("#009E73", "s"), "contact": ("#E69F00", "v"),
     "gripping": ("#56B4E9", "^"),
+    "continuous": ("#0072B2", "P"), "discrete": ("#D55E00", "D"), "brute force": ("#E69F00", "o"), "trees": ("#0072B2", "P"), "narrow phase": ("#009E73", "s"),
+    "GJK": ("#CC79A7", "v"), "separating axes": ("#E69F00", "o"),
     "penalty": ("#D55E00", "D"), "projecting": ("#0072B2", "o"), "backtracking": ("#009E73", "s"), "together": ("#009E73", "s"), "one after the other": ("#D55E00", "D"),
     "projection": ("#E69F00", "o"), "PBD": ("#D55E00", "D"), "XPBD": ("#56B4E9", "^"), "RATTLE": ("#009E73", "s"),
 }

@@ -152,7 +152,7 @@ def _engines(case):
             yield (f"{c['label']} stays {percent(clear[-1]['error'])} away from the truth because {c['reason']}: that law alone predicts "
                    f"{percent(c['departs'])}, and the engine converges to it" + (f" with order {c['order']:.2f}." if c["order"] else "."))
         else:
-            shown = f", with order {c['order']:.2f} where {c['expected']} is expected" if c["order"] is not None else ""
+            shown = f", with order {c['order']:.2f} where {c['expected']} is expected" if c["order"] is not None and c["expected"] else ""
             yield f"{c['label']} agrees with the truth to {percent(clear[-1]['error'])} at its finest step{shown}."
 
 

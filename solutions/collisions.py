@@ -1,0 +1,942 @@
+"""Lesson 6.  Collisions: who touches whom, when and where.
+
+Symbols: x (d,) centre, p (d,) any point [m] · r, R [m] radii · n (d,) unit normal, from b to a · gap [m], below zero where two
+bodies overlap · E(p) [m] signed distance from a plane · low, high (n, d) [m] corners of n boxes along the axes · t, dt [s].
+
+*Detection* says who touches whom, where and when: pure geometry, and all of this lesson but its end.  *Avoidance* acts before anything
+touches: it needs detection with a wide reach, and forces.  *Response* changes velocities once something touches: lesson 7.
+*Left out:* bodies that turn during the step, and shapes that are not convex (cut them up).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .checks import BadInput, check_finite, check_positive
+from .vectors import cross, dot
+
+NEVER = np.inf               # the time of what does not happen in this step [s]
+FLAT = 1e-12                 # a triangle of less than this times its longest edge squared has no normal but round-off [-]
+PARALLEL = 1e-12             # sin² of the angle below which two edges count as parallel [-]
+STOP = 1e-14                 # where GJK stops: it knows a distance to this times the size of the bodies [-]
+GJK_STEPS = 100              # far more than any pair of bodies has needed [-]
+LEAF = 8                     # boxes in a leaf of a tree: testing so few is quicker than going down further [-]
+EDGES_WIN_BY = 1e-9          # how much farther [m] a pair of edges must separate than any face: equal ones would take turns
+
+
+class Contact(NamedTuple):
+    """What detection hands over: where two bodies touch, or are nearest.  The lecture calls it p₁, p₂, n and t*."""
+    p_a: np.ndarray          # (d,) the point on a [m]
+    p_b: np.ndarray          # (d,) the point on b [m]
+    n: np.ndarray            # (d,) unit normal, from b to a
+    gap: float               # (p_a − p_b) · n [m]: below zero they overlap
+    t: float                 # when [s]; NEVER where they do not meet
+
+
+class Contacts(NamedTuple):
+    """The same for an area of contact, held by k of its points, which share one normal."""
+    p_a: np.ndarray          # (k, d) [m]
+    p_b: np.ndarray          # (k, d) [m]
+    n: np.ndarray            # (d,)
+    gap: np.ndarray          # (k,) [m]
+
+
+class Plane(NamedTuple):
+    """All p with n · p + d = 0; bodies belong on the side to which n points."""
+    n: np.ndarray            # (3,) or (2,) unit normal
+    d: float                 # [m]
+
+
+class Box(NamedTuple):
+    """A box in space."""
+    x: np.ndarray            # (3,) centre [m]
+    R: np.ndarray            # (3, 3) its axes, as columns
+    half: np.ndarray         # (3,) half of its edges [m]
+
+
+class Target(NamedTuple):
+    """What a ball flies at: a plane, or the cylinder about the x axis."""
+    r: float                 # radius of the ball [m]
+    R: float                 # radius of the cylinder [m]
+    plane: Plane
+
+
+class Tree(NamedTuple):
+    """A hierarchy of boxes around n items; node 0 is the root, and holds all."""
+    low: np.ndarray          # (m, d) corners of the box around each node [m]
+    high: np.ndarray         # (m, d)
+    child: np.ndarray        # (m,) its first child, the second one is the next node; 0: it is a leaf
+    first: np.ndarray        # (m,) its items are order[first], …
+    count: np.ndarray        # (m,) … so many
+    order: np.ndarray        # (n,) numbers of the items
+    item_low: np.ndarray     # (n, d) the boxes of the items themselves [m], in the order of `order`: those of a leaf lie side by side
+    item_high: np.ndarray    # (n, d)
+
+
+class Flock(NamedTuple):
+    """How the members of a flock mind each other."""
+    radius: float            # of one of them [m]
+    reach: float             # the gap at which they notice each other [m]
+    k: float                 # how much they shy away from each other [m⁴/s²]
+    align: float             # how quickly they take on the velocity of those in reach [1/s]
+    gather: float            # how strongly they are drawn to the middle of all [1/s²]
+
+
+# ---------------------------------------------------------------------------------------------- points and planes
+
+def make_plane(coefficients):
+    """Given.  The Plane of a x + b y + c z + d = 0 from (a, b, c, d), or in 2D (a, b, d), of whatever length.
+
+    Raises BadInput where all but d are zero: that is no plane, and what is not finite.
+    """
+    y = np.array(coefficients, dtype=float)
+    check_finite("coefficient of a plane", y)
+    length = np.sqrt(y[:-1] @ y[:-1])
+    if length == 0.0:
+        raise BadInput("the normal of a plane", 0.0, "give one of a, b, c another value than zero")
+    return Plane(y[:-1] / length, float(y[-1] / length))
+
+
+def plane_distance(p, plane):
+    """How far p (d,) is on the right side of a plane [m]; below zero it is on the wrong one, and that is the discrete test.
+
+    E(p) = a x + b y + c z + d = n · p + d
+
+    *Source:* deck A, "Detect collision: point–plane".
+    """
+    ### BEGIN SOLUTION 6.1
+    return p @ plane.n + plane.d
+    ### END SOLUTION
+
+
+def plane_impact_time(t, dt, x_0, x_1, r, plane):
+    """When [s] a ball of radius r that goes straight from x_0 at t to x_1 at t + dt touches a plane: the continuous test.
+
+    t* = t + dt d₁/(d₁ + d₂)         d₁ = E(x_0) − r above it before,   d₂ = r − E(x_1) below it after
+
+    t where it touches already (d₁ ≤ 0), NEVER where it does not get there (d₂ < 0).  r = 0: a point.
+    *Source:* deck A, "Time of impact".
+    """
+    ### BEGIN SOLUTION 6.2
+    before, after = plane_distance(x_0, plane) - r, r - plane_distance(x_1, plane)
+    if before <= 0.0:
+        return t
+    if after < 0.0:
+        return NEVER
+    return t + dt * before / (before + after)
+    ### END SOLUTION
+
+
+def some_normal(r):
+    """Given.  r/|r|; where r is zero, the last axis: every direction is as good then, and one has to be taken."""
+    length = np.sqrt(r @ r)
+    if length > 0.0:
+        return r / length
+    n = 0.0 * r
+    n[-1] = 1.0
+    return n
+
+
+def ball_contact(x_a, r_a, x_b, r_b):
+    """Given.  The Contact of two balls; with r_b = 0 of a ball and a point.  Most of what is round comes down to this.
+
+    n = (x_a − x_b)/|x_a − x_b|,   gap = |x_a − x_b| − r_a − r_b,   p_a = x_a − r_a n,   p_b = x_b + r_b n
+    """
+    r = x_a - x_b
+    n = some_normal(r)
+    return Contact(x_a - r_a * n, x_b + r_b * n, n, np.sqrt(r @ r) - r_a - r_b, 0.0)
+
+
+def ball_plane(x, r, plane):
+    """Given.  The Contact of a ball (a) and a plane (b)."""
+    distance = plane_distance(x, plane)
+    return Contact(x - r * plane.n, x - distance * plane.n, plane.n, distance - r, 0.0)
+
+
+# ---------------------------------------------------------------------------------------------- a cylinder along the x axis
+
+def cylinder_contact(x, r, R):
+    """Contact of a ball (a) of radius r at x (3,) and the endless cylinder (b) of radius R about the x axis: the discrete test.
+
+    The nearest point of the axis is q = (x₀, 0, 0): it is the Contact of a ball r at x and a ball R at q, see ball_contact.
+
+    *Source:* deck B, the worked question, part 1.
+    """
+    ### BEGIN SOLUTION 6.3
+    return ball_contact(x, r, np.array([x[0], 0.0, 0.0]), R)
+    ### END SOLUTION
+
+
+def cylinder_impact_time(t, dt, x_0, x_1, r, R):
+    """When [s] a ball that goes straight from x_0 (3,) at t to x_1 at t + dt first touches that cylinder: the continuous test.
+
+    With y the coordinates (1, 2) of x_0, w those of x_1 − x_0 and ρ = R + r:  |y + s w|² = ρ² is  A s² + 2 B s + C = 0,
+    A = w · w,   B = y · w,   C = y · y − ρ²,   D = B² − A C = A ρ² − (y₀ w₁ − y₁ w₀)²
+    first root  s = C/(−B + √D),   t* = t + s dt;        the last form of D and of s lose no digits where a fast ball only grazes
+
+    t where it touches already (C ≤ 0); NEVER where it does not approach (B ≥ 0), misses (D < 0) or comes later (s > 1).
+    *Source:* deck B, the worked question, part 2.
+    """
+    ### BEGIN SOLUTION 6.4
+    y, w, rho = x_0[1:], x_1[1:] - x_0[1:], R + r
+    A, B, C = w @ w, y @ w, y @ y - rho * rho
+    D = A * rho * rho - (y[0] * w[1] - y[1] * w[0]) ** 2
+    if C <= 0.0:
+        return t
+    if B >= 0.0 or D < 0.0:
+        return NEVER
+    s = C / (np.sqrt(D) - B)
+    return t + s * dt if s <= 1.0 else NEVER
+    ### END SOLUTION
+
+
+def cylinder_hit(t, dt, x_0, x_1, r, R):
+    """Given.  The Contact at the time of impact; where there is none, the one at the end of the step, with t = NEVER."""
+    moment = cylinder_impact_time(t, dt, x_0, x_1, r, R)
+    s = (moment - t) / dt if moment < NEVER else 1.0
+    c = cylinder_contact(x_0 + s * (x_1 - x_0), r, R)
+    return Contact(c.p_a, c.p_b, c.n, c.gap, moment)
+
+
+def plane_gap(x, p):
+    """Given.  Gap [m] between a ball at x (3,) and the plane of a Target."""
+    return plane_distance(x, p.plane) - p.r
+
+
+def plane_time(t, dt, x_0, x_1, p):
+    """Given.  Its plane_impact_time [s]."""
+    return plane_impact_time(t, dt, x_0, x_1, p.r, p.plane)
+
+
+def cylinder_gap(x, p):
+    """Given.  Gap [m] between a ball at x (3,) and the cylinder of a Target."""
+    return cylinder_contact(x, p.r, p.R).gap
+
+
+def cylinder_time(t, dt, x_0, x_1, p):
+    """Given.  Its cylinder_impact_time [s]."""
+    return cylinder_impact_time(t, dt, x_0, x_1, p.r, p.R)
+
+
+def discrete_step(gap, impact_time, t, x, v, dt, p):
+    """Given.  (x, v) of a ball that stays where the discrete test finds it: looked at after each step, it is in by up to |v| dt, or past."""
+    x = x + dt * v
+    return x, 0.0 * v if gap(x, p) < 0.0 else v
+
+
+def continuous_step(gap, impact_time, t, x, v, dt, p):
+    """Given.  (x, v) of a ball that stays where the continuous test finds it: exactly where it touches, however long the step is."""
+    moment = impact_time(t, dt, x, x + dt * v, p)
+    return (x + (moment - t) * v, 0.0 * v) if moment < NEVER else (x + dt * v, v)
+
+
+def flight(step, gap, impact_time, t, x, v, dt, steps, p):
+    """Given.  (x, v), each (n, 3), of n balls that fly straight, one test a step, until they are found to touch; then they stay.
+
+    Raises BadInput for a step that is not positive, and a state that is not finite.
+    """
+    check_positive("step dt [s]", dt)
+    check_finite("position x [m]", x)
+    check_finite("velocity v [m/s]", v)
+    x, v = x.copy(), v.copy()
+    for k in range(len(x)):
+        for n in range(steps):
+            if v[k] @ v[k] > 0.0:
+                x[k], v[k] = step(gap, impact_time, t + n * dt, x[k], v[k], dt, p)
+    return x, v
+
+
+def closest_on_segment(p, a, b):
+    """The point (d,) of the segment from a to b (d,) that is nearest to p (d,).
+
+    a + s (b − a),     s = (p − a) · (b − a)/|b − a|²,  but not below 0 and not above 1
+
+    Raises BadInput for a segment without length.
+    """
+    ### BEGIN SOLUTION 6.5
+    along = b - a
+    length_squared = along @ along
+    if length_squared == 0.0:
+        raise BadInput("the length of an edge [m]", 0.0, "give two different ends")
+    return a + min(1.0, max(0.0, (p - a) @ along / length_squared)) * along
+    ### END SOLUTION
+
+
+def edge_axis_distance(a, b):
+    """Given.  How far [m] an edge of a cloth from a to b (3,) is from the x axis."""
+    y_a, y_b = a[1:], b[1:]
+    if y_a[0] == y_b[0] and y_a[1] == y_b[1]:                        # along the axis: seen from its end a point
+        return np.sqrt(y_a @ y_a)
+    q = closest_on_segment(0.0 * y_a, y_a, y_b)
+    return np.sqrt(q @ q)
+
+
+def triangle_cylinder_gap(a, b, c, r, R):
+    """Gap [m] between a triangle of a cloth, with corners a, b, c (3,) and half as thick as r, and the cylinder of cylinder_contact.
+
+    Seen along the x axis the cylinder is a disc about 0.  Where the shadow of the triangle covers 0, the axis goes through the face:
+        gap = −R − r                              the three  y_i z_j − z_i y_j  over (a, b), (b, c), (c, a) are all > 0 or all < 0
+    elsewhere the nearest point is on an edge:
+        gap = least edge_axis_distance − R − r    of the three edges
+
+    All corners may be far outside while an edge or the face is not: testing the particles of a cloth is not enough.
+    *Source:* deck B, the worked question, part 3.
+    """
+    ### BEGIN SOLUTION 6.6
+    turns = np.array([a[1] * b[2] - a[2] * b[1], b[1] * c[2] - b[2] * c[1], c[1] * a[2] - c[2] * a[1]])
+    if np.all(turns > 0.0) or np.all(turns < 0.0):
+        return -R - r
+    return min(edge_axis_distance(a, b), edge_axis_distance(b, c), edge_axis_distance(c, a)) - R - r
+    ### END SOLUTION
+
+
+# ---------------------------------------------------------------------------------------------- narrow phase: round shapes
+
+def nearer(p, q, other):
+    """Given.  That one of q and other (d,) which is nearer to p (d,)."""
+    return q if (q - p) @ (q - p) <= (other - p) @ (other - p) else other
+
+
+def closest_on_triangle(p, a, b, c):
+    """The point (3,) of the triangle a b c that is nearest to p (3,).
+
+    N = (b − a) × (c − a),    q = p − ((p − a) · N/N · N) N         the foot of p on the triangle's plane
+    q where it is inside: ((b − a) × (q − a)) · N ≥ 0, and the same for b, c and for c, a;
+    elsewhere the nearest of the closest_on_segment of the three edges, see nearer
+
+    Raises BadInput for a triangle without area: |N| ≤ FLAT times its longest edge squared.
+    """
+    ### BEGIN SOLUTION 6.7
+    N = cross(b - a, c - a)
+    longest = max(dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c))
+    if np.sqrt(dot(N, N)) <= FLAT * longest:
+        raise BadInput("the area of a triangle [m²]", 0.5 * np.sqrt(dot(N, N)), "give three corners that are not on one line")
+    q = p - dot(p - a, N) / dot(N, N) * N
+    if dot(cross(b - a, q - a), N) >= 0.0 and dot(cross(c - b, q - b), N) >= 0.0 and dot(cross(a - c, q - c), N) >= 0.0:
+        return q
+    return nearer(p, nearer(p, closest_on_segment(p, a, b), closest_on_segment(p, b, c)), closest_on_segment(p, c, a))
+    ### END SOLUTION
+
+
+def ball_triangle(x, r, a, b, c):
+    """Given.  The Contact of a ball (a) and a triangle (b)."""
+    return ball_contact(x, r, closest_on_triangle(x, a, b, c), 0.0)
+
+
+def nearer_pair(p, q, other_p, other_q):
+    """Given.  That one of the pairs (p, q) and (other_p, other_q) whose points are nearer to each other."""
+    return (p, q) if (q - p) @ (q - p) <= (other_q - other_p) @ (other_q - other_p) else (other_p, other_q)
+
+
+def closest_segments(a, b, c, d):
+    """Given.  (p, q): the points of the segments a b and c d that are nearest to each other.
+
+    Either one of them is an end, or both are inside: there |a + s u − c − t w|² is least (u = b − a, w = d − c).
+    *Source:* Lumelsky 1985.
+    """
+    p, q = nearer_pair(a, closest_on_segment(a, c, d), b, closest_on_segment(b, c, d))
+    p, q = nearer_pair(p, q, closest_on_segment(c, a, b), c)
+    p, q = nearer_pair(p, q, closest_on_segment(d, a, b), d)
+    u, w, r = b - a, d - c, a - c
+    D = (u @ u) * (w @ w) - (u @ w) ** 2
+    if D > PARALLEL * (u @ u) * (w @ w):
+        s, t = ((u @ w) * (r @ w) - (w @ w) * (r @ u)) / D, ((u @ u) * (r @ w) - (u @ w) * (r @ u)) / D
+        if 0.0 <= s <= 1.0 and 0.0 <= t <= 1.0:
+            p, q = nearer_pair(p, q, a + s * u, c + t * w)
+    return p, q
+
+
+def capsule_capsule(a, b, r_a, c, d, r_b):
+    """Given.  The Contact of two capsules: about the segments a b and c d, with radii r_a and r_b."""
+    p, q = closest_segments(a, b, c, d)
+    return ball_contact(p, r_a, q, r_b)
+
+
+def ball_capsule(x, r, a, b, r_b):
+    """Given.  The Contact of a ball (a) and a capsule (b) of radius r_b about the segment from a to b."""
+    return ball_contact(x, r, closest_on_segment(x, a, b), r_b)
+
+
+def column(R, i):
+    """Given.  Axis i (3,) of a box, as an array of its own."""
+    return np.array([R[0, i], R[1, i], R[2, i]])
+
+
+def box_corners(box):
+    """Given.  The eight corners (8, 3) of a Box [m]."""
+    corners = np.zeros((8, 3))
+    for k in range(8):
+        side = np.array([1.0 if k & 1 else -1.0, 1.0 if k & 2 else -1.0, 1.0 if k & 4 else -1.0])
+        corners[k] = box.x + box.R @ (side * box.half)
+    return corners
+
+
+def ball_box(x, r, box):
+    """Contact of a ball (a) of radius r at x (3,) and a Box (b), also where the centre of the ball is inside.
+
+    y = Rᵀ (x − x_box);   outside: the ball_contact with the point x_box + R q, q_i = y_i but not beyond ±half_i, of radius 0
+    inside (|y_i| < half_i for all i): the way out is through the nearest face, along the axis i of the least depth half_i − |y_i|:
+        n = sign(y_i) times that axis, sign(0) = 1;   gap = −depth − r,   p_a = x − r n,   p_b = x + depth n
+
+    column(box.R, i) is axis i.
+    *Source:* Ericson 2005, section 5.1.3.
+    """
+    ### BEGIN SOLUTION 6.8
+    y = box.R.T @ (x - box.x)
+    depth = box.half - np.abs(y)
+    i = np.argmin(depth)
+    if depth[i] <= 0.0:
+        return ball_contact(x, r, box.x + box.R @ np.minimum(box.half, np.maximum(-box.half, y)), 0.0)
+    n = (1.0 if y[i] >= 0.0 else -1.0) * column(box.R, i)
+    return Contact(x - r * n, x + depth[i] * n, n, -depth[i] - r, 0.0)
+    ### END SOLUTION
+
+
+def points_plane(x, plane):
+    """Given.  The Contacts of a body with corners x (k, d) (a) and a plane (b): those corners that are not above it."""
+    m = 0
+    p_a, gap = np.zeros(x.shape), np.zeros(len(x))
+    for i in range(len(x)):
+        distance = plane_distance(x[i], plane)
+        if distance <= 0.0:
+            p_a[m], gap[m] = x[i], distance
+            m += 1
+    p_b = np.zeros((m, x.shape[1]))
+    for i in range(m):
+        p_b[i] = p_a[i] - gap[i] * plane.n
+    return Contacts(p_a[:m], p_b, plane.n, gap[:m])
+
+
+# ---------------------------------------------------------------------------------------------- broad phase
+
+def check_boxes(low, high):
+    """Given.  Raise BadInput for a box that is inside out or not finite, with its first such edge, and where there is no box at all."""
+    if len(low) == 0:
+        raise BadInput("the number of boxes", 0, "give one at least")
+    check_finite("corner of a box [m]", low)
+    check_finite("corner of a box [m]", high)
+    for i in range(len(low)):
+        for c in range(low.shape[1]):
+            if low[i, c] > high[i, c]:
+                raise BadInput("the edge of a box [m]", high[i, c] - low[i, c], "give low ≤ high in every coordinate")
+
+
+def swept_box(low, high, move):
+    """(low, high), each (d,): the box around everything that a box low, high (d,) passes on its way by move (d,) [m].
+
+    It reaches from the smaller to the larger of where each face begins and ends.  What it does not touch, the body does not hit.
+    *Source:* deck A, "Swept volumes".  *Left out:* that the swept volume itself is smaller than the box around it.
+    """
+    ### BEGIN SOLUTION 6.9
+    return np.minimum(low, low + move), np.maximum(high, high + move)
+    ### END SOLUTION
+
+
+def boxes_touch(low_a, high_a, i, low_b, high_b, j):
+    """Given.  Whether box i of some boxes and box j of others have a point in common: they must in every coordinate."""
+    for c in range(low_a.shape[1]):
+        if low_a[i, c] > high_b[j, c] or low_b[j, c] > high_a[i, c]:
+            return False
+    return True
+
+
+def as_pairs(found):
+    """Given.  A list of pairs of numbers as an array (m, 2)."""
+    pairs = np.zeros((len(found), 2), np.int64)
+    for k in range(len(found)):
+        pairs[k, 0], pairs[k, 1] = found[k]
+    return pairs
+
+
+def all_pairs(low, high):
+    """(m, 2): the numbers i < j of all boxes low, high (n, d) that touch each other, each pair once, by testing every pair.
+
+    n (n − 1)/2 tests, see boxes_touch: ten times as many boxes take a hundred times as long.  Begin with  found = [(0, 0) for _ in range(0)],
+    an empty list of pairs (so that the compiled copy knows what will be in it), append to it, and return as_pairs(found).
+    """
+    ### BEGIN SOLUTION 6.10
+    found = [(0, 0) for _ in range(0)]
+    for i in range(len(low)):
+        for j in range(i + 1, len(low)):
+            if boxes_touch(low, high, i, low, high, j):
+                found.append((i, j))
+    return as_pairs(found)
+    ### END SOLUTION
+
+
+def enclose(tree, node):
+    """Given.  For build_tree, while the items are still in the order of its input: put the box around the items of a node into the tree; return the coordinate in which their middles lie farthest apart."""
+    widest, axis = -1.0, 0
+    for c in range(tree.item_low.shape[1]):
+        low, high, first, last = np.inf, -np.inf, np.inf, -np.inf
+        for k in range(tree.first[node], tree.first[node] + tree.count[node]):
+            a, b = tree.item_low[tree.order[k], c], tree.item_high[tree.order[k], c]
+            low, high, first, last = min(low, a), max(high, b), min(first, a + b), max(last, a + b)
+        tree.low[node, c], tree.high[node, c] = low, high
+        if last - first > widest:
+            widest, axis = last - first, c
+    return axis
+
+
+def halve(tree, first, count, axis):
+    """Given.  For build_tree as well: reorder tree.order[first:first + count] in place, so that the half with the lesser middles along an axis comes first.
+
+    *Source:* Hoare 1961, "Algorithm 65: find": it takes time in proportion to count.
+    """
+    order, low, high, k = tree.order, first, first + count - 1, first + count // 2
+    while low < high:
+        pivot = tree.item_low[order[(low + high) // 2], axis] + tree.item_high[order[(low + high) // 2], axis]
+        i, j = low, high
+        while i <= j:
+            while tree.item_low[order[i], axis] + tree.item_high[order[i], axis] < pivot:
+                i += 1
+            while tree.item_low[order[j], axis] + tree.item_high[order[j], axis] > pivot:
+                j -= 1
+            if i <= j:
+                order[i], order[j] = order[j], order[i]
+                i, j = i + 1, j - 1
+        low, high = (i if j < k else low), (j if k < i else high)
+
+
+def build_tree(low, high):
+    """Given.  The Tree of boxes low, high (n, d): halve the items along the coordinate in which they are spread most, down to LEAF.
+
+    Each level of the tree takes time in proportion to n, and there are about log₂(n/LEAF) levels.  See check_boxes.
+    *Source:* median split; deck B, "Bounding volume hierarchies".
+    """
+    check_boxes(low, high)
+    n, d = low.shape
+    numbers = np.zeros((3, 2 * n), np.int64)
+    tree = Tree(np.zeros((2 * n, d)), np.zeros((2 * n, d)), numbers[0], numbers[1], numbers[2], np.arange(n), low, high)
+    tree.count[0], node, nodes = n, 0, 1
+    while node < nodes:
+        axis, first, count = enclose(tree, node), tree.first[node], tree.count[node]
+        if count > LEAF:
+            half = count // 2
+            halve(tree, first, count, axis)
+            tree.child[node] = nodes
+            tree.first[nodes], tree.count[nodes] = first, half
+            tree.first[nodes + 1], tree.count[nodes + 1] = first + half, count - half
+            nodes += 2
+        node += 1
+    return Tree(tree.low, tree.high, tree.child, tree.first, tree.count, tree.order, low[tree.order], high[tree.order])
+
+
+def girth(tree, node):
+    """Given.  Sum of the edges of a node's box [m]: which of two nodes is the bigger one."""
+    total = 0.0
+    for c in range(tree.low.shape[1]):
+        total += tree.high[node, c] - tree.low[node, c]
+    return total
+
+
+def touching_items(a, i, b, j, found):
+    """Given.  Append to the list `found` the pairs of items, one of leaf i of a, one of leaf j of b, whose own boxes touch."""
+    for k in range(a.first[i], a.first[i] + a.count[i]):
+        for m in range(b.first[j], b.first[j] + b.count[j]):
+            if boxes_touch(a.item_low, a.item_high, k, b.item_low, b.item_high, m):
+                found.append((a.order[k], b.order[m]))
+
+
+def find_intersections(a, b):
+    """(m, 2): the pairs (item of a, item of b) whose boxes touch, each once, by going down two Trees together.
+
+    FindIntersections(i, j), from (0, 0) on, where the boxes of the nodes i of a and j of b touch (boxes_touch; elsewhere: nothing):
+        neither is a leaf      FindIntersections with each child of the bigger node (girth; of i where they are equal) and the other node
+        one is a leaf          with each child of the one that is not, and the leaf
+        both are leaves        test the pairs of their items: touching_items(a, i, b, j, found)
+
+    Keep a list of the pairs (i, j) that are still to be looked at, [(0, 0)] at first; end with as_pairs(found), see all_pairs.
+    child 0 marks a leaf; the children of i are a.child[i] and a.child[i] + 1.
+    *Source:* deck B, "FindIntersections(node₁, node₂)".
+    """
+    ### BEGIN SOLUTION 6.11
+    found, waiting = [(0, 0) for _ in range(0)], [(0, 0)]
+    while len(waiting) > 0:
+        i, j = waiting.pop()
+        if boxes_touch(a.low, a.high, i, b.low, b.high, j):
+            down_a, down_b = a.child[i], b.child[j]
+            if down_a == 0 and down_b == 0:
+                touching_items(a, i, b, j, found)
+            elif down_b == 0 or (down_a > 0 and girth(a, i) >= girth(b, j)):
+                waiting.append((down_a, j))
+                waiting.append((down_a + 1, j))
+            else:
+                waiting.append((i, down_b))
+                waiting.append((i, down_b + 1))
+    return as_pairs(found)
+    ### END SOLUTION
+
+
+def tree_pairs(low, high):
+    """Given.  What all_pairs gives, in another order, by a tree that is held against itself: it finds (i, j) and (j, i), and all (i, i)."""
+    tree = build_tree(low, high)
+    pairs = find_intersections(tree, tree)
+    m = 0
+    for k in range(len(pairs)):
+        if pairs[k, 0] < pairs[k, 1]:
+            pairs[m] = pairs[k]
+            m += 1
+    return pairs[:m].copy()
+
+
+# ---------------------------------------------------------------------------------------------- narrow phase: separating axes
+
+def outward(a, i):
+    """Given.  Unit normal (2,) out of edge i of a polygon a (k, 2), counter-clockwise.  Raises BadInput for an edge without length."""
+    e = a[(i + 1) % len(a)] - a[i]
+    length = np.sqrt(e @ e)
+    if length == 0.0:
+        raise BadInput("the length of an edge [m]", 0.0, "leave out corners that are there twice")
+    return np.array([e[1], -e[0]]) / length
+
+
+def separating_edge(a, b):
+    """(gap [m], i): the edge i of the convex polygon a (k, 2) that separates it best from b (m, 2), and how far.
+
+    gap of edge i:  the least  n_i · (b_j − a_i)  of all corners j of b,  n_i = outward(a, i);    of all edges the one of the greatest gap
+
+    Above zero: a line along this edge separates them.  Below, of both polygons: they overlap, and this is the shortest way out.
+    Corners are counter-clockwise.
+    *Source:* the separating axis theorem; Gottschalk, Lin and Manocha 1996.
+    """
+    ### BEGIN SOLUTION 6.12
+    greatest, edge = -np.inf, 0
+    for i in range(len(a)):
+        n, gap = outward(a, i), np.inf
+        for j in range(len(b)):
+            gap = min(gap, n @ (b[j] - a[i]))
+        if gap > greatest:
+            greatest, edge = gap, i
+    return greatest, edge
+    ### END SOLUTION
+
+
+def clip(y, n, d):
+    """What is left of a convex polygon, or of a segment, with corners y (k, 2) or (k, 3) when everything with n · p > d is cut off.
+
+    Around the polygon: keep corner i if s_i = n · y_i − d ≤ 0; then, if s_i and s_j of the next corner j differ in sign (s_i s_j < 0), add
+        y_i + s_i/(s_i − s_j) (y_j − y_i)
+    A segment (k = 2) has one edge only: there is no crossing from its second corner back to its first.  It may be that nothing is left.
+    *Source:* Sutherland and Hodgman 1974.
+    """
+    ### BEGIN SOLUTION 6.13
+    kept, m, k = np.zeros((2 * len(y), y.shape[1])), 0, len(y)
+    for i in range(k):
+        j = (i + 1) % k
+        s_i, s_j = n @ y[i] - d, n @ y[j] - d
+        if s_i <= 0.0:
+            kept[m] = y[i]
+            m += 1
+        if s_i * s_j < 0.0 and (k > 2 or i == 0):
+            kept[m] = y[i] + s_i / (s_i - s_j) * (y[j] - y[i])
+            m += 1
+    return kept[:m].copy()
+    ### END SOLUTION
+
+
+def against_face(y, n, p, flipped):
+    """Given.  Contacts of corners y (k, d) with a face through p, outward normal n (d,): those that are not beyond it.
+
+    The face belongs to a, and y to b; flipped: the other way round.
+    """
+    m, d = 0, y.shape[1]
+    on_y, on_face, gap = np.zeros((len(y), d)), np.zeros((len(y), d)), np.zeros(len(y))
+    for i in range(len(y)):
+        s = n @ (y[i] - p)
+        if s <= 0.0:
+            on_y[m], on_face[m], gap[m] = y[i], y[i] - s * n, s
+            m += 1
+    on_y, on_face, gap = on_y[:m].copy(), on_face[:m].copy(), gap[:m].copy()
+    return Contacts(on_y, on_face, n, gap) if flipped else Contacts(on_face, on_y, -n, gap)
+
+
+def facing_edge(a, n):
+    """Given.  The edge (2, 2) of a polygon whose outward normal is most against n (2,)."""
+    least, edge = np.inf, 0
+    for i in range(len(a)):
+        against = outward(a, i) @ n
+        if against < least:
+            least, edge = against, i
+    return np.stack((a[edge], a[(edge + 1) % len(a)]))
+
+
+def polygon_contacts(a, b):
+    """Given.  Contacts of two convex polygons, counter-clockwise; none where they are apart.
+
+    The edge that separates best is the reference; the edge of the other that faces it most is cut to its width, and what is left of
+    its two ends behind the reference are the points of contact.  So an edge on an edge is two points: the lecture's point–point.
+    *Source:* deck A, "Edge/edge collisions are modeled as point/point"; Catto 2006 for the clipping.
+    """
+    (gap_a, i), (gap_b, j) = separating_edge(a, b), separating_edge(b, a)
+    if max(gap_a, gap_b) > 0.0:
+        return Contacts(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(2), np.zeros(0))
+    flipped = gap_b > gap_a
+    face, other, edge = (b, a, j) if flipped else (a, b, i)
+    n, p, q = outward(face, edge), face[edge], face[(edge + 1) % len(face)]
+    t = np.array([-n[1], n[0]])                                      # from p to q: counter-clockwise
+    y = clip(clip(facing_edge(other, n), t, t @ q), -t, -(t @ p))
+    return against_face(y, n, p, flipped)
+
+
+def half_width(box, n):
+    """Given.  How far [m] a Box reaches from its centre along the unit vector n:  Σ half_i |axis_i · n|."""
+    total = 0.0
+    for i in range(3):
+        total += box.half[i] * abs(box.R[0, i] * n[0] + box.R[1, i] * n[1] + box.R[2, i] * n[2])
+    return total
+
+
+def candidate_axis(a, b, k):
+    """Given.  Axis k of the 15 that can separate two Boxes: 3 of a, 3 of b, 9 across an edge of each; zeros where those are parallel."""
+    if k < 3:
+        return column(a.R, k)
+    if k < 6:
+        return column(b.R, k - 3)
+    n = cross(column(a.R, (k - 6) // 3), column(b.R, (k - 6) % 3))
+    return n / np.sqrt(dot(n, n)) if dot(n, n) > PARALLEL else 0.0 * n
+
+
+def box_separation(a, b):
+    """(gap [m], n, k): the axis of the 15 that separates two Boxes best, as a unit normal from b to a, and its number.
+
+    gap along an axis:   |r · axis| − half_width(a, axis) − half_width(b, axis),     r = x_a − x_b
+    Of all axes the one of the greatest gap; those across two edges (k ≥ 6) must exceed what the others give by EDGES_WIN_BY, and of equal
+    ones the first counts.  candidate_axis(a, b, k) gives axis k; leave out those that are zeros.  n = ±axis, so that n · r ≥ 0.
+
+    gap > 0: they are that far apart along n at least.  gap ≤ 0: they overlap, and −gap along n is the shortest way out.
+    *Source:* Gottschalk, Lin and Manocha 1996.
+    """
+    ### BEGIN SOLUTION 6.14
+    r, greatest, best, number = a.x - b.x, -np.inf, np.zeros(3), 0
+    for k in range(15):
+        axis = candidate_axis(a, b, k)
+        if dot(axis, axis) > 0.0:
+            gap = abs(dot(r, axis)) - half_width(a, axis) - half_width(b, axis)
+            if gap > greatest + (EDGES_WIN_BY if k >= 6 else 0.0):
+                greatest, best, number = gap, axis, k
+    return greatest, (best if dot(best, r) >= 0.0 else -best), number
+    ### END SOLUTION
+
+
+def box_face(box, n):
+    """Given.  (corners (4, 3), i, outward normal (3,)) of the face of a Box whose normal is most along n; i is its axis."""
+    i, most = 0, -1.0
+    for k in range(3):
+        along = abs(column(box.R, k) @ n)
+        if along > most:
+            i, most = k, along
+    out = column(box.R, i) if column(box.R, i) @ n >= 0.0 else -column(box.R, i)
+    j, k = (i + 1) % 3, (i + 2) % 3
+    u, w, middle = box.half[j] * column(box.R, j), box.half[k] * column(box.R, k), box.x + box.half[i] * out
+    return np.stack((middle + u + w, middle - u + w, middle - u - w, middle + u - w)), i, out
+
+
+def box_edge(box, i, n):
+    """Given.  (end, end) of the edge along axis i of a Box that lies farthest along n."""
+    x, along = box.x, box.half[i] * column(box.R, i)
+    for k in range(3):
+        if k != i:
+            axis = column(box.R, k)
+            x = x + (box.half[k] if axis @ n >= 0.0 else -box.half[k]) * axis
+    return x - along, x + along
+
+
+def box_box(a, b):
+    """Given.  Contacts of two Boxes; none where they are apart.
+
+    A face separates best: the face of the other box that faces it most is cut off at its four sides, and what is left behind the face are up
+    to eight points.  Two edges do: one point, where the edges are nearest.
+    *Source:* Gottschalk, Lin and Manocha 1996; Catto 2006.
+    """
+    gap, n, k = box_separation(a, b)
+    if gap > 0.0:
+        return Contacts(np.zeros((0, 3)), np.zeros((0, 3)), n, np.zeros(0))
+    if k >= 6:
+        (p, q), (s, t) = box_edge(a, (k - 6) // 3, -n), box_edge(b, (k - 6) % 3, n)
+        p, q = closest_segments(p, q, s, t)
+        return Contacts(np.stack((p,)), np.stack((q,)), n, np.array([gap]))
+    flipped = k >= 3
+    face, other, to = (b, a, n) if flipped else (a, b, -n)
+    y, i, out = box_face(face, to)
+    left, _, _ = box_face(other, -out)
+    for m in range(3):
+        if m != i:
+            axis = column(face.R, m)
+            left = clip(clip(left, axis, axis @ face.x + face.half[m]), -axis, face.half[m] - axis @ face.x)
+    return against_face(left, out, y[0], flipped)
+
+
+# ---------------------------------------------------------------------------------------------- narrow phase: any two convex bodies
+
+def support(x, n):
+    """Given.  Number of that point of x (k, d) which lies farthest along n (d,)."""
+    farthest, best = -np.inf, 0
+    for i in range(len(x)):
+        if x[i] @ n > farthest:
+            farthest, best = x[i] @ n, i
+    return best
+
+
+def cofactor(delta, G, rest, j):
+    """Given.  Δ_j of the points `rest` (bits of a whole number) and point j:  Σ Δ_i(rest) (y_i · y_k − y_i · y_j), k the first of rest."""
+    if rest == 0:
+        return 1.0
+    k = 0
+    while not rest >> k & 1:
+        k += 1
+    total = 0.0
+    for i in range(len(G)):
+        if rest >> i & 1:
+            total += delta[rest, i] * (G[i, k] - G[i, j])
+    return total
+
+
+def nearest_part(p, q):
+    """Given.  (p, q, weights) of those of the points p, q (k, d) that span the part nearest to 0 of what y = p − q spans; k is 5 at most.
+
+    The point nearest to 0 is Σ weight y, weights > 0 with sum 1.  Johnson's cofactors give it for every subset of the points; where they
+    are all positive it lies inside that subset, and the subset whose point is nearest is the one.
+    *Source:* Gilbert, Johnson and Keerthi 1988.
+    """
+    y = p - q
+    k, G, least = len(y), y @ y.T, np.inf
+    delta, weights = np.zeros((2**k, k)), np.zeros(k)
+    for subset in range(1, 2**k):
+        inside = True
+        for j in range(k):
+            if subset >> j & 1:
+                delta[subset, j] = cofactor(delta, G, subset ^ (1 << j), j)
+                inside = inside and delta[subset, j] > 0.0
+        if inside:
+            trial = delta[subset] / np.sum(delta[subset])
+            v = trial @ y
+            if v @ v < least:
+                least, weights = v @ v, trial
+    keep = weights > 0.0
+    return p[keep], q[keep], weights[keep]
+
+
+def far_enough(v, w):
+    """Given.  Whether v (d,) is the nearest point to 0, when the body reaches no nearer along −v than w (d,): to STOP of their size.
+
+    |v|² − v · w ≤ STOP |v| |w|:  v · w/|v| is a lower bound of the distance, and |v| an upper one.
+    """
+    size_v, size_w = np.sqrt(v @ v), np.sqrt(w @ w)
+    return v @ v - v @ w <= STOP * size_v * size_w or size_v <= STOP * size_w
+
+
+def gjk(a, b):
+    """Contact of two convex bodies, the hulls of the points a (k, d) and b (m, d): their nearest points and their distance.
+
+    The body of all differences, y = p − q, is as far from 0 as they are from each other.  From one point of each, p = a[:1], q = b[:1],
+    weights = np.ones(1), and at most GJK_STEPS times:
+        v = Σ weight (p − q)                                      the nearest point so far
+        i = support(a, −v),  j = support(b, v),  w = a_i − b_j    the point of the differences that is farthest towards 0
+        stop where far_enough(v, w);  else add a_i to p and b_j to q, and keep of them what counts: nearest_part(p, q)
+    The answer is ball_contact(Σ weight p, 0, Σ weight q, 0).  Where they overlap it has a gap of 0 (or round-off) and no normal of any meaning.
+    *Source:* Gilbert, Johnson and Keerthi 1988.
+    """
+    ### BEGIN SOLUTION 6.15
+    p, q, weights = a[:1], b[:1], np.ones(1)
+    for _ in range(GJK_STEPS):
+        v = weights @ (p - q)
+        i, j = support(a, -v), support(b, v)
+        if far_enough(v, a[i] - b[j]):
+            break
+        p, q, weights = nearest_part(np.concatenate((p, a[i:i + 1])), np.concatenate((q, b[j:j + 1])))
+    return ball_contact(weights @ p, 0.0, weights @ q, 0.0)
+    ### END SOLUTION
+
+
+# ---------------------------------------------------------------------------------------------- avoidance
+
+def repulsion(x, centre, radius, reach, k):
+    """Acceleration (d,) [m/s²] at x (d,) in a force field around an obstacle: it pushes away, without limit towards the skin.
+
+    a = k (1/g − 1/reach)/g² n        for a gap g = |x − centre| − radius below reach,     0 beyond
+    It is −∇U of  U = ½ k (1/g − 1/reach)²:  whoever comes with less energy than infinite never touches.
+
+    n: unit vector from the centre to x.  k in m⁴/s².  Raises BadInput for a gap of zero or below.
+    *Source:* deck A, "Collision avoidance: force fields"; Khatib 1986.
+    """
+    ### BEGIN SOLUTION 6.16
+    r = x - centre
+    distance = np.sqrt(r @ r)
+    g = distance - radius
+    if not g > 0.0:
+        raise BadInput("the gap to an obstacle [m]", g, "start outside, and take smaller steps")
+    return k * (1.0 / g - 1.0 / reach) / (g * g * distance) * r if g < reach else 0.0 * r
+    ### END SOLUTION
+
+
+def steer(x, v, centre, radius, ahead):
+    """Acceleration (2,) [m/s²], across v, with which somebody at x going with v (2,) just gets past a disc that is in the way.
+
+    e = v/|v|,   r = centre − x,   τ = r · e/|v|                  when it passes the centre
+    y = r − (r · e) e                                             how far it passes beside it, |y|
+    a = −2 (radius − |y|)/τ² · y/|y|      if 0 < τ < ahead [s] and |y| < radius;  else 0
+
+    Held for τ, it moves aside by ½ a τ² = radius − |y|.  Where it heads for the very centre (y = 0) it goes left: −y/|y| = (−e₁, e₀).
+    radius [m]: of the disc, and its own, and what room it wants to leave.  At rest (v = 0): 0.
+    *Source:* deck A, "Collision avoidance: steer to avoid"; Reynolds 1999.
+    """
+    ### BEGIN SOLUTION 6.17
+    speed, r = np.sqrt(v @ v), centre - x
+    if speed == 0.0:
+        return 0.0 * v
+    e = v / speed
+    along = r @ e
+    y = r - along * e
+    offset, tau = np.sqrt(y @ y), along / speed
+    if not 0.0 < tau < ahead or offset >= radius:
+        return 0.0 * v
+    aside = -y / offset if offset > 0.0 else np.array([-e[1], e[0]])
+    return 2.0 * (radius - offset) / tau**2 * aside
+    ### END SOLUTION
+
+
+def flock_acceleration(t, x, v, p):
+    """Given.  (n, d) [m/s²] of a flock at x, v (n, d): keep clear, go along with those near you, and stay together.
+
+    a_i = Σ_j repulsion(x_i, x_j, 2 radius, reach, k) + Σ_near align (v_j − v_i) + gather (x̄ − x_i)
+
+    Separation and gathering have potentials, and alignment only takes energy: it cannot grow, so U stays finite, so nobody collides.
+    *Source:* deck A, "as in flocking"; Reynolds 1987 for the three rules.
+    """
+    a, middle = np.zeros(x.shape), np.zeros(x.shape[1])
+    for i in range(len(x)):
+        middle += x[i] / len(x)
+    for i in range(len(x)):
+        a[i] += p.gather * (middle - x[i])
+        for j in range(i):
+            push = repulsion(x[i], x[j], 2.0 * p.radius, p.reach, p.k)
+            r = x[i] - x[j]
+            if np.sqrt(r @ r) < 2.0 * p.radius + p.reach:
+                push = push + p.align * (v[j] - v[i])
+            a[i] += push
+            a[j] -= push
+    return a
+
+
+def flock_energy(x, v, p):
+    """Given.  ½ Σ |v|² + Σ_pairs ½ k (1/g − 1/reach)² + ½ gather Σ |x − x̄|²  [m²/s²]: what flock_acceleration cannot let grow."""
+    energy, middle = 0.0, np.zeros(x.shape[1])
+    for i in range(len(x)):
+        middle += x[i] / len(x)
+    for i in range(len(x)):
+        energy += 0.5 * (v[i] @ v[i]) + 0.5 * p.gather * ((x[i] - middle) @ (x[i] - middle))
+        for j in range(i):
+            r = x[i] - x[j]
+            g = np.sqrt(r @ r) - 2.0 * p.radius
+            if g < p.reach:
+                energy += 0.5 * p.k * (1.0 / g - 1.0 / p.reach) ** 2
+    return energy
+
+
+def make_flock(radius, reach, k, align, gather):
+    """Given.  A Flock; raises BadInput for a length or a k that is not positive."""
+    check_positive("radius [m]", radius)
+    check_positive("reach [m]", reach)
+    check_positive("k [m⁴/s²]", k)
+    return Flock(radius, reach, k, align, gather)

@@ -1,0 +1,464 @@
+"""Lesson 6: detection with a side, a root, a clamp or a case of its own gone astray."""
+
+import numpy as np
+
+from solutions import collisions as worked
+from solutions.checks import BadInput
+from . import collection
+
+wrong, right, MUTANTS = collection()
+NEVER = np.inf
+
+
+def size(y):
+    return float(np.linalg.norm(y))
+
+
+# 6.1 ------------------------------------------------------------------------------------------------------------
+def distance(f):
+    def plane_distance(p, plane):
+        return f(p, plane)
+    return plane_distance
+
+
+right("6.1", "as a sum")(distance(lambda p, plane: sum(a * b for a, b in zip(plane.n, p)) + plane.d))
+wrong("6.1", "d with the wrong sign")(distance(lambda p, plane: p @ plane.n - plane.d))
+wrong("6.1", "without its sign")(distance(lambda p, plane: abs(p @ plane.n + plane.d)))
+wrong("6.1", "forgets d")(distance(lambda p, plane: p @ plane.n))
+wrong("6.1", "only which side")(distance(lambda p, plane: np.sign(p @ plane.n + plane.d)))
+
+
+# 6.2 ------------------------------------------------------------------------------------------------------------
+def impact(skin=1.0, after_skin=1.0, share=lambda d_1, d_2: d_1 / (d_1 + d_2), inside=lambda t: t, late=True, start=1.0):
+    def plane_impact_time(t, dt, x_0, x_1, r, plane):
+        d_1 = worked.plane_distance(x_0, plane) - skin * r
+        d_2 = after_skin * r - worked.plane_distance(x_1, plane)
+        if d_1 <= 0.0:
+            return inside(t)
+        if d_2 < 0.0 and late:
+            return NEVER
+        return start * t + share(d_1, d_2) * dt
+    return plane_impact_time
+
+
+right("6.2", "with new names")(impact())
+wrong("6.2", "a point for a ball")(impact(skin=0.0, after_skin=0.0))
+wrong("6.2", "the skin only before")(impact(after_skin=0.0))
+wrong("6.2", "d₂ over the sum")(impact(share=lambda d_1, d_2: d_2 / (d_1 + d_2)))
+wrong("6.2", "the middle of the step")(impact(share=lambda d_1, d_2: 0.5))
+wrong("6.2", "when it is in already, never")(impact(inside=lambda t: NEVER))
+wrong("6.2", "extrapolates")(impact(late=False))
+wrong("6.2", "forgets t")(impact(start=0.0))
+
+
+# 6.3 ------------------------------------------------------------------------------------------------------------
+def beside(foot=lambda x: np.array([x[0], 0.0, 0.0]), swap=False, radius=lambda R: R, own=lambda r: r):
+    def cylinder_contact(x, r, R):
+        a, b = (x, own(r)), (foot(x), radius(R))
+        return worked.ball_contact(*b, *a) if swap else worked.ball_contact(*a, *b)
+    return cylinder_contact
+
+
+wrong("6.3", "the distance from the origin")(beside(lambda x: np.zeros(3)))
+wrong("6.3", "along y")(beside(lambda x: np.array([0.0, x[1], 0.0])))
+wrong("6.3", "n from a to b")(beside(swap=True))
+wrong("6.3", "forgets the cylinder's radius")(beside(radius=lambda R: 0.0))
+wrong("6.3", "forgets the ball's radius")(beside(own=lambda r: 0.0))
+
+
+@right("6.3", "written out")
+def cylinder_contact(x, r, R):
+    h = np.hypot(x[1], x[2])
+    n = np.array([0.0, x[1] / h, x[2] / h]) if h > 0.0 else np.array([0.0, 1.0, 0.0])
+    return worked.Contact(x - r * n, np.array([x[0], 0.0, 0.0]) + R * n, n, h - r - R, 0.0)
+
+
+# 6.4 ------------------------------------------------------------------------------------------------------------
+def root(which=-1.0, naive=False, rho=lambda R, r: R + r, three=False, window=True, leaving=True, inside=lambda t: t, t_0=1.0):
+    def cylinder_impact_time(t, dt, x_0, x_1, r, R):
+        first = 0 if three else 1
+        y, w, reach = x_0[first:], (x_1 - x_0)[first:], rho(R, r)
+        A, B, C = w @ w, y @ w, y @ y - reach**2
+        D = B * B - A * C if naive or three else A * reach**2 - (y[0] * w[1] - y[1] * w[0]) ** 2
+        if C <= 0.0:
+            return inside(t)
+        if (B >= 0.0 and leaving) or D < 0.0 or A == 0.0:
+            return NEVER
+        s = (-B + which * np.sqrt(D)) / A if naive or which > 0.0 else C / (np.sqrt(D) - B)
+        return t_0 * t + s * dt if s <= 1.0 or not window else NEVER
+    return cylinder_impact_time
+
+
+right("6.4", "by the parts of the path")(root())
+wrong("6.4", "the second root")(root(which=1.0))
+wrong("6.4", "the formula from school")(root(naive=True))
+wrong("6.4", "forgets the ball")(root(rho=lambda R, r: R))
+wrong("6.4", "forgets the cylinder")(root(rho=lambda R, r: r))
+wrong("6.4", "a sphere for a cylinder")(root(three=True))
+wrong("6.4", "later steps, too")(root(window=False))
+wrong("6.4", "also behind")(root(leaving=False))
+wrong("6.4", "when it is in already, never")(root(inside=lambda t: NEVER))
+wrong("6.4", "forgets t")(root(t_0=0.0))
+
+
+@wrong("6.4", "the discrete test at the end of the step")
+def cylinder_impact_time(t, dt, x_0, x_1, r, R):
+    if size(x_0[1:]) <= R + r:
+        return t
+    return t + dt if size(x_1[1:]) <= R + r else NEVER
+
+
+# 6.5 ------------------------------------------------------------------------------------------------------------
+def foot(low=0.0, high=1.0, checked=True, begin="a", unit=False):
+    def closest_on_segment(p, a, b):
+        e = b - a
+        if not e @ e and checked:
+            raise BadInput("a segment", 0.0, "give two ends")
+        s = (p - a) @ e / (size(e) if unit else e @ e)
+        s = min(high, max(low, s))
+        return (a if begin == "a" else p) + s * e
+    return closest_on_segment
+
+
+right("6.5", "with a clamp")(foot())
+wrong("6.5", "a line for a segment")(foot(low=-np.inf, high=np.inf))
+wrong("6.5", "a ray for a segment")(foot(high=np.inf))
+wrong("6.5", "divides by the length once")(foot(unit=True))
+wrong("6.5", "begins at p")(foot(begin="p"))
+
+
+@wrong("6.5", "takes a segment without length")
+def closest_on_segment(p, a, b):
+    e = b - a
+    return a + min(1.0, max(0.0, (p - a) @ e / (e @ e))) * e if e @ e > 0.0 else a
+
+
+@wrong("6.5", "the nearer end")
+def closest_on_segment(p, a, b):
+    if size(b - a) == 0.0:
+        raise BadInput("a segment", 0.0, "give two ends")
+    return a if size(p - a) < size(p - b) else b
+
+
+@wrong("6.5", "refuses what is short")
+def closest_on_segment(p, a, b):
+    if size(b - a) < 1e-6:
+        raise BadInput("a segment", 0.0, "give two ends")
+    return worked.closest_on_segment(p, a, b)
+
+
+# 6.6 ------------------------------------------------------------------------------------------------------------
+def face(signs=(1, -1), edges=3, thick=True, pierced=lambda r, R: -R - r, measure=worked.edge_axis_distance):
+    def triangle_cylinder_gap(a, b, c, r, R):
+        corners = [a, b, c]
+        turns = [float(np.linalg.det(np.stack((corners[k][1:], corners[(k + 1) % 3][1:])))) for k in range(3)]
+        if any(all(sign * turn > 0.0 for turn in turns) for sign in signs):
+            return pierced(r, R)
+        return min(measure(corners[k], corners[(k + 1) % 3]) for k in range(edges)) - R - (r if thick else 0.0)
+    return triangle_cylinder_gap
+
+
+right("6.6", "by determinants")(face())
+wrong("6.6", "edges only")(face(signs=()))
+wrong("6.6", "one side of the face only")(face(signs=(1,)))
+wrong("6.6", "two edges only")(face(edges=2))
+wrong("6.6", "corners only")(face(measure=lambda a, b: size(a[1:])))
+wrong("6.6", "forgets how thick the cloth is")(face(thick=False))
+wrong("6.6", "a pierced face has a gap of zero")(face(pierced=lambda r, R: 0.0))
+
+
+@wrong("6.6", "particles only")
+def triangle_cylinder_gap(a, b, c, r, R):
+    return min(size(a[1:]), size(b[1:]), size(c[1:])) - R - r
+
+
+# 6.7 ------------------------------------------------------------------------------------------------------------
+def on_triangle(edges=3, inside=True, clamp=True, checked=True, flat=worked.FLAT, absolute=False):
+    def closest_on_triangle(p, a, b, c):
+        corners = [a, b, c]
+        N = np.cross(b - a, c - a)
+        longest = max(size(corners[k] - corners[k - 1]) for k in range(3))
+        if checked and size(N) <= flat * (1.0 if absolute else longest**2):
+            raise BadInput("a triangle", size(N), "give one with an area")
+        q = p - (p - a) @ N / (N @ N) * N
+        if inside and all(np.cross(corners[(k + 1) % 3] - corners[k], q - corners[k]) @ N >= 0.0 for k in range(3)):
+            return q
+        if not clamp:
+            return q
+        feet = [worked.closest_on_segment(p, corners[k], corners[(k + 1) % 3]) for k in range(edges)]
+        return min(feet, key=lambda y: size(y - p))
+    return closest_on_triangle
+
+
+right("6.7", "in a loop")(on_triangle())
+wrong("6.7", "edges only")(on_triangle(inside=False))
+wrong("6.7", "the plane for the triangle")(on_triangle(clamp=False))
+wrong("6.7", "two edges only")(on_triangle(edges=2))
+wrong("6.7", "takes a triangle without area")(on_triangle(checked=False))
+wrong("6.7", "refuses what is small")(on_triangle(flat=1e-9, absolute=True))
+
+
+@wrong("6.7", "the nearest corner")
+def closest_on_triangle(p, a, b, c):
+    q = worked.closest_on_triangle(p, a, b, c)
+    return min((a, b, c), key=lambda y: size(y - p)) if min(size(q - y) for y in (a, b, c)) < 0.3 * size(b - a) else q
+
+
+# 6.8 ------------------------------------------------------------------------------------------------------------
+def in_box(turn=lambda R, y: R.T @ y, inside=True, pick=np.argmin, depth_sign=-1.0, sign=lambda y: 1.0 if y >= 0.0 else -1.0, out=1.0):
+    def ball_box(x, r, box):
+        y = turn(box.R, x - box.x)
+        depth = box.half - np.abs(y)
+        if not (inside and np.all(depth > 0.0)):
+            return worked.ball_contact(x, r, box.x + box.R @ np.clip(y, -box.half, box.half), 0.0)
+        i = int(pick(depth))
+        n = out * sign(y[i]) * box.R[:, i]
+        return worked.Contact(x - r * n, x + depth[i] * n, n, depth_sign * depth[i] - r, 0.0)
+    return ball_box
+
+
+right("6.8", "with clip")(in_box())
+wrong("6.8", "turns the wrong way")(in_box(turn=lambda R, y: R @ y))
+wrong("6.8", "does not turn")(in_box(turn=lambda R, y: y))
+wrong("6.8", "no case for the inside")(in_box(inside=False))
+wrong("6.8", "the farthest face")(in_box(pick=np.argmax))
+wrong("6.8", "a gap above zero inside")(in_box(depth_sign=1.0))
+wrong("6.8", "no way out of the middle")(in_box(sign=np.sign))
+wrong("6.8", "n leads in")(in_box(out=-1.0))
+
+
+# 6.9 ------------------------------------------------------------------------------------------------------------
+def sweep(f):
+    def swept_box(low, high, move):
+        return f(low, high, move)
+    return swept_box
+
+
+right("6.9", "by the parts of the way")(sweep(lambda low, high, move: (low + np.clip(move, None, 0.0), high + np.clip(move, 0.0, None))))
+wrong("6.9", "where it ends")(sweep(lambda low, high, move: (low + move, high + move)))
+wrong("6.9", "only forwards")(sweep(lambda low, high, move: (low, high + move)))
+wrong("6.9", "larger on every side")(sweep(lambda low, high, move: (low - np.abs(move), high + np.abs(move))))
+wrong("6.9", "does not sweep")(sweep(lambda low, high, move: (low, high)))
+
+
+# 6.10 -----------------------------------------------------------------------------------------------------------
+def brute(strict=False, first=lambda i: i + 1, turned=False, some=lambda low: low):
+    def all_pairs(low, high):
+        n, found = len(low), []
+        for i in range(n):
+            for j in range(first(i), n):
+                a, b = (low[i], high[i]), (low[j], high[j])
+                touch = np.all((a[0] < b[1]) & (b[0] < a[1])) if strict else np.all((a[0] <= b[1]) & (b[0] <= a[1]))
+                if touch:
+                    found.append((j, i) if turned else (i, j))
+        return np.array(found, dtype=np.int64).reshape(-1, 2)
+    return all_pairs
+
+
+right("6.10", "with NumPy's comparison")(brute())
+wrong("6.10", "a common face does not count")(brute(strict=True))
+wrong("6.10", "each with itself")(brute(first=lambda i: i))
+wrong("6.10", "each pair twice")(brute(first=lambda i: 0))
+wrong("6.10", "the larger number first")(brute(turned=True))
+wrong("6.10", "neighbours in the list only")(brute(first=lambda i: max(i + 1, len(range(30)) - 3)))
+
+
+# 6.11 -----------------------------------------------------------------------------------------------------------
+def traversal(prune=True, second=True, leaves=lambda a, i, b, j, found: worked.touching_items(a, i, b, j, found), turned=False, both=True):
+    def find_intersections(a, b):
+        found = []
+
+        def go(i, j):
+            if prune and not worked.boxes_touch(a.low, a.high, i, b.low, b.high, j):
+                return
+            down_a, down_b = int(a.child[i]), int(b.child[j])
+            if not down_a and not down_b:
+                leaves(a, i, b, j, found)
+            elif down_a and (not down_b or worked.girth(a, i) >= worked.girth(b, j)):
+                go(down_a, j)
+                if second:
+                    go(down_a + 1, j)
+            elif both or not down_a:
+                go(i, down_b)
+                go(i, down_b + 1)
+        go(0, 0)
+        pairs = np.array(found, dtype=np.int64).reshape(-1, 2)
+        return pairs[:, ::-1] if turned else pairs
+    return find_intersections
+
+
+def every_item(a, i, b, j, found):
+    for k in range(a.first[i], a.first[i] + a.count[i]):
+        for m in range(b.first[j], b.first[j] + b.count[j]):
+            found.append((a.order[k], b.order[m]))
+
+
+right("6.11", "as a recursion")(traversal())
+wrong("6.11", "looks everywhere")(traversal(prune=False))
+wrong("6.11", "forgets the second child")(traversal(second=False))
+wrong("6.11", "all items of leaves that touch")(traversal(leaves=every_item))
+wrong("6.11", "b before a")(traversal(turned=True))
+wrong("6.11", "gives up where b's node is bigger")(traversal(both=False))
+
+
+# 6.12 -----------------------------------------------------------------------------------------------------------
+def edges(inner=min, outer=max, sign=1.0, centre=False, checked=True, of=lambda a, b: (a, b)):
+    def separating_edge(a, b):
+        a, b = of(a, b)
+        found = []
+        for i in range(len(a)):
+            e = a[(i + 1) % len(a)] - a[i]
+            n = sign * (worked.outward(a, i) if checked else np.array([e[1], -e[0]]) / max(size(e), 1e-300))
+            found.append(((inner(float(n @ (y - a[i])) for y in ([b.mean(axis=0)] if centre else b))), -i))
+        gap, i = outer(found)
+        return gap, -i
+    return separating_edge
+
+
+right("6.12", "with min and max")(edges())
+wrong("6.12", "the farthest corner")(edges(inner=max))
+wrong("6.12", "the worst edge")(edges(outer=min))
+wrong("6.12", "normals that lead in")(edges(sign=-1.0))
+wrong("6.12", "the middle of b for its corners")(edges(centre=True))
+wrong("6.12", "takes an edge without length")(edges(checked=False))
+wrong("6.12", "the edges of b")(edges(of=lambda a, b: (b, a)))
+
+
+# 6.13 -----------------------------------------------------------------------------------------------------------
+def cut(side=1.0, crossing=lambda s_i, s_j: s_i / (s_i - s_j), back=False, add=True, offset=1.0):
+    def clip(y, n, d):
+        k, kept = len(y), []
+        s = [side * float(n @ p - offset * d) for p in y]
+        for i in range(k):
+            j = (i + 1) % k
+            if s[i] <= 0.0:
+                kept.append(y[i])
+            if add and s[i] * s[j] < 0.0 and (back or k > 2 or i == 0):
+                kept.append(y[i] + crossing(s[i], s[j]) * (y[j] - y[i]))
+        return np.array(kept).reshape(-1, y.shape[1])
+    return clip
+
+
+right("6.13", "with a list")(cut())
+wrong("6.13", "keeps the other side")(cut(side=-1.0))
+wrong("6.13", "cuts in the middle of an edge")(cut(crossing=lambda s_i, s_j: 0.5))
+wrong("6.13", "the crossing from the other end")(cut(crossing=lambda s_i, s_j: s_j / (s_j - s_i)))
+wrong("6.13", "there and back along a segment")(cut(back=True))
+wrong("6.13", "only leaves corners out")(cut(add=False))
+wrong("6.13", "forgets d")(cut(offset=0.0))
+
+
+# 6.14 -----------------------------------------------------------------------------------------------------------
+def boxes(axes=range(15), room=worked.EDGES_WIN_BY, sign=1.0, zeros=False, width=worked.half_width, choose=lambda new, old: new > old, fixed=False):
+    def box_separation(a, b):
+        r, best = a.x - b.x, None
+        for k in axes:
+            n = worked.candidate_axis(a, b, k)
+            if not np.any(n) and not zeros:
+                continue
+            gap = abs(float(r @ n)) - width(a, n) - width(b, n)
+            if best is None or choose(gap, best[0] + (room if k >= 6 else 0.0)):
+                best = gap, n, k
+        gap, n, k = best
+        return gap, n if fixed else (sign if n @ r >= 0.0 else -sign) * n, k
+    return box_separation
+
+
+right("6.14", "with a tuple")(boxes())
+wrong("6.14", "the axes of a only")(boxes(axes=range(3)))
+wrong("6.14", "faces only")(boxes(axes=range(6)))
+wrong("6.14", "from a to b")(boxes(sign=-1.0))
+wrong("6.14", "the axis as it comes")(boxes(fixed=True))
+wrong("6.14", "takes axes that are zeros")(boxes(zeros=True, room=0.0, choose=lambda new, old: new >= old))
+wrong("6.14", "the last of equal ones")(boxes(choose=lambda new, old: new >= old))
+wrong("6.14", "the least gap")(boxes(choose=lambda new, old: new < old))
+wrong("6.14", "the longest half edge for the width")(boxes(width=lambda box, n: float(np.max(box.half))))
+
+
+# 6.15 -----------------------------------------------------------------------------------------------------------
+def nearest(steps=worked.GJK_STEPS, along=(-1.0, 1.0), reduce=True, swap=False):
+    def gjk(a, b):
+        p, q, weights = a[:1], b[:1], np.ones(1)
+        for _ in range(steps):
+            v = weights @ (p - q)
+            i, j = worked.support(a, along[0] * v), worked.support(b, along[1] * v)
+            if worked.far_enough(v, a[i] - b[j]):
+                break
+            p, q = np.vstack((p, a[i])), np.vstack((q, b[j]))
+            p, q, weights = worked.nearest_part(p, q)
+            if not reduce:
+                p, q, weights = p[-1:], q[-1:], np.ones(1)
+        x, y = weights @ p, weights @ q
+        return worked.ball_contact(y, 0.0, x, 0.0) if swap else worked.ball_contact(x, 0.0, y, 0.0)
+    return gjk
+
+
+right("6.15", "with vstack")(nearest())
+wrong("6.15", "a single step")(nearest(steps=1))
+wrong("6.15", "the supports exchanged")(nearest(along=(1.0, -1.0)))
+wrong("6.15", "both along the same way")(nearest(along=(-1.0, -1.0)))
+wrong("6.15", "keeps a single pair")(nearest(reduce=False))
+wrong("6.15", "n from a to b")(nearest(swap=True))
+
+
+@wrong("6.15", "the nearest corners")
+def gjk(a, b):
+    i, j = np.unravel_index(np.argmin(np.linalg.norm(a[:, None] - b[None], axis=2)), (len(a), len(b)))
+    return worked.ball_contact(a[i], 0.0, b[j], 0.0)
+
+
+# 6.16 -----------------------------------------------------------------------------------------------------------
+def field(strength=lambda g, reach: (1.0 / g - 1.0 / reach) / g**2, sign=1.0, checked=True, skin=True, ends=True, unit=True):
+    def repulsion(x, centre, radius, reach, k):
+        r = x - centre
+        g = size(r) - (radius if skin else 0.0)
+        if checked and size(r) <= radius:
+            raise BadInput("the gap [m]", g, "start outside")
+        if ends and g >= reach:
+            return 0.0 * r
+        return sign * k * strength(max(g, 1e-3), reach) * (r / max(size(r), 1e-300) if unit else r)
+    return repulsion
+
+
+right("6.16", "with new names")(field())
+wrong("6.16", "attracts")(field(sign=-1.0))
+wrong("6.16", "the potential for the force")(field(strength=lambda g, reach: 0.5 * (1.0 / g - 1.0 / reach) ** 2))
+wrong("6.16", "one power too few")(field(strength=lambda g, reach: (1.0 / g - 1.0 / reach) / g))
+wrong("6.16", "from the centre on")(field(skin=False))
+wrong("6.16", "goes on beyond its reach")(field(ends=False))
+wrong("6.16", "takes a place inside")(field(checked=False))
+wrong("6.16", "the way itself for its direction")(field(unit=False))
+
+
+# 6.17 -----------------------------------------------------------------------------------------------------------
+def swerve(side=-1.0, half=2.0, power=2, window=True, behind=True, wide=True, left=1.0, rest=True, need=lambda radius, offset: radius - offset):
+    def steer(x, v, centre, radius, ahead):
+        speed = size(v)
+        if speed == 0.0:
+            return 0.0 * v if rest else v + 1.0
+        e, r = v / speed, centre - x
+        along = float(r @ e)
+        y, tau = r - along * e, along / speed
+        if (behind and tau <= 0.0) or (window and tau >= ahead) or (wide and size(y) >= radius):
+            return 0.0 * v
+        way = side * y / size(y) if size(y) > 0.0 else left * np.array([-e[1], e[0]])
+        return half * need(radius, size(y)) / abs(tau) ** power * way
+    return steer
+
+
+right("6.17", "with new names")(swerve())
+wrong("6.17", "towards it")(swerve(side=1.0))
+wrong("6.17", "half as much")(swerve(half=1.0))
+wrong("6.17", "divides by τ once")(swerve(power=1))
+wrong("6.17", "flees what is behind")(swerve(behind=False))
+wrong("6.17", "looks ahead without end")(swerve(window=False))
+wrong("6.17", "swerves for what is aside")(swerve(wide=False))
+wrong("6.17", "head on to the right")(swerve(left=-1.0))
+wrong("6.17", "waits head on")(swerve(left=0.0))
+wrong("6.17", "starts by itself")(swerve(rest=False))
+wrong("6.17", "leaves room for all of the radius")(swerve(need=lambda radius, offset: radius))
+
+
+@wrong("6.17", "brakes")
+def steer(x, v, centre, radius, ahead):
+    return worked.steer(x, v, centre, radius, ahead) - 0.1 * v * (size(worked.steer(x, v, centre, radius, ahead)) > 0.0)

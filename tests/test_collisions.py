@@ -1,0 +1,541 @@
+"""Lesson 6 is right when distances are the least ones, times the first ones, and a hierarchy finds the pairs that brute force finds."""
+
+import numpy as np
+import pytest
+from scipy.optimize import nnls
+
+from .grading.expect import NotYet, between, close, numbers, raises
+from solutions.checks import BadInput
+
+exercise = pytest.mark.exercise
+# Lengths are below 30 m, times below 10 s, and each answer takes a few dozen operations, each rounded by 1.1e-16 of that:
+ROUND_OFF = 1e-12
+
+
+def rotation(draw):
+    """A drawn rotation (3, 3): columns n, t_1, t_2, none along an axis of the coordinates."""
+    q = np.concatenate((draw(0.4, 1.0, 1), draw(0.2, 0.6, 3)))
+    w, x, y, z = q / np.linalg.norm(q)
+    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
+
+
+def axes(draw, d):
+    """d unit vectors, at right angles to each other, as rows."""
+    if d == 3:
+        return np.ascontiguousarray(rotation(draw).T)
+    turn = draw(0.2, 1.3) + 0.5 * np.pi * draw.whole(0, 3)
+    return np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
+
+
+def never(quantity, got, given=""):
+    """The answer says that it does not happen: infinity."""
+    if not (np.ndim(got) == 0 and float(got) == np.inf):
+        raise NotYet(quantity, "NEVER", f"{got}", "none: exactly this", "another time", given)
+
+
+def same_contact(got, p_a, p_b, n, gap, tolerance, given=""):
+    """All fields of a contact."""
+    close("n of the contact: from b to a", got.n, n, tolerance, given)
+    close("gap of the contact [m]", got.gap, gap, tolerance, given)
+    close("p_a of the contact [m]", got.p_a, p_a, tolerance, given)
+    close("p_b of the contact [m]", got.p_b, p_b, tolerance, given)
+
+
+# ---------------------------------------------------------------------------------------------- points and planes
+
+@exercise("6.1", points=1, hint="n · p + d; the unit normal and d come with the plane")
+def test_a_plane_knows_how_far_a_point_is_and_on_which_side(lesson, draw):
+    for d in (2, 3):
+        rows, foot = axes(draw, d), draw(-3.0, 3.0, d)
+        plane = lesson.Plane(rows[0], float(-rows[0] @ foot))
+        for height in (draw(0.1, 3.0), 0.0, -draw(0.1, 3.0)):
+            p = foot + height * rows[0] + draw(-2.0, 2.0) * rows[1]
+            close("signed distance [m]", lesson.plane_distance(p, plane), height, ROUND_OFF, given=f"p = {p}, {plane}")
+
+
+def fall(lesson, draw, d, r):
+    """(t, dt, x_0, x_1, plane, s): a ball that touches a plane after the fraction s of a step."""
+    rows, foot, s = axes(draw, d), draw(-3.0, 3.0, d), draw(0.1, 0.9)
+    move = -draw(1.0, 9.0) * rows[0] + draw(-5.0, 5.0) * rows[1]
+    touch = foot + r * rows[0]
+    return draw(1.0, 5.0), draw(0.01, 0.5), touch - s * move, touch + (1.0 - s) * move, lesson.Plane(rows[0], float(-rows[0] @ foot)), s
+
+
+@exercise("6.2", points=0.5, hint="d₁ and d₂ are distances of the skin, not of the centre: E less r, and r less E")
+def test_a_ball_meets_a_plane_where_its_skin_does(lesson, draw):
+    for d, r in ((2, draw(0.1, 0.5)), (3, draw(0.1, 0.5)), (3, 0.0)):
+        t, dt, x_0, x_1, plane, s = fall(lesson, draw, d, r)
+        close("time of impact [s]", lesson.plane_impact_time(t, dt, x_0, x_1, r, plane), t + s * dt, ROUND_OFF, given=f"t = {t}, dt = {dt}, {x_0} to {x_1}, r = {r}, {plane}")
+
+
+@exercise("6.2", points=0.5, hint="d₁ ≤ 0: it touches already, at t; d₂ < 0: it does not get there, NEVER")
+def test_who_touches_already_touches_now_and_who_does_not_arrive_never(lesson, draw):
+    r = draw(0.1, 0.5)
+    t, dt, x_0, x_1, plane, s = fall(lesson, draw, 3, r)
+    given = f"t = {t}, dt = {dt}, {x_0} to {x_1}, r = {r}, {plane}"
+    short = x_0 + 0.9 * s * (x_1 - x_0)
+    never("time of impact of a step that ends before [s]", lesson.plane_impact_time(t, dt, x_0, short, r, plane), given)
+    never("time of impact of a ball that flies off [s]", lesson.plane_impact_time(t, dt, x_0, 2.0 * x_0 - x_1, r, plane), given)
+    for end in (x_0, 2.0 * x_1 - x_0):
+        close("time of impact of a ball that is in already [s]", lesson.plane_impact_time(t, dt, x_1, end, r, plane), t, 0.0, given)
+
+
+# ---------------------------------------------------------------------------------------------- a cylinder along the x axis
+
+@exercise("6.3", points=1, hint="the nearest point of the axis has the same x coordinate, and zeros")
+def test_a_ball_and_a_cylinder_are_nearest_across_the_axis(lesson, draw):
+    R, r, along = draw(0.5, 1.5), draw(0.1, 0.4), draw(-5.0, 5.0)
+    for gap in (draw(0.1, 2.0), -draw(0.05, 0.3), -0.9 * (R + r)):
+        phi = draw(0.0, 2.0 * np.pi)
+        n, foot = np.array([0.0, np.cos(phi), np.sin(phi)]), np.array([along, 0.0, 0.0])
+        x = foot + (R + r + gap) * n
+        same_contact(lesson.cylinder_contact(x, r, R), x - r * n, foot + R * n, n, gap, 1e-11, f"x = {x}, r = {r}, R = {R}")       # n is known to 1e-16·5/0.06
+    c = lesson.cylinder_contact(np.array([along, 0.0, 0.0]), r, R)
+    close("gap of a ball on the axis [m]", c.gap, -R - r, ROUND_OFF)
+    close("size of n there", np.linalg.norm(numbers("n", c.n, (3,))), 1.0, ROUND_OFF)
+    close("n along the axis there", c.n[0], 0.0, ROUND_OFF)
+
+
+def flight(draw, rho, beside, far, length, begin=None):
+    """(x_0, x_1): straight on for `length` across the axis (and some way along it), from `far` before it, passing it at `beside`."""
+    phi, x = draw(0.0, 2.0 * np.pi), draw(-3.0, 3.0, 2)
+    e, across = np.array([np.cos(phi), np.sin(phi)]), np.array([-np.sin(phi), np.cos(phi)])
+    y = -far * e + beside * across
+    return np.append(x[0], y), np.append(x[1], y + length * e)
+
+
+@exercise("6.4", points=1, hint="the first of the two roots; the coordinate along the axis does not matter")
+def test_the_first_root_is_when_it_touches_from_walking_to_ten_kilometres_a_second(lesson, draw):
+    """At `beside` from the axis the path enters the circle ρ at √(ρ² − beside²) before the axis; lengths are rounded by 1e-16·1000."""
+    R, r, dt = draw(0.5, 1.5), draw(0.05, 0.3), 0.1
+    for speed in (20.0, 100.0, 1e4):
+        length, share = speed * dt, draw(-0.9, 0.9)
+        far = (R + r) + draw(0.05, 0.2) * (length - 0.5 * (R + r))
+        x_0, x_1 = flight(draw, R + r, share * (R + r), far, length)
+        way = far - (R + r) * np.sqrt(1.0 - share**2)
+        t = draw(1.0, 5.0)
+        got = lesson.cylinder_impact_time(t, dt, x_0, x_1, r, R)
+        if way < length:
+            close("time of impact [s]", got, t + way / speed, 1e-11, given=f"t = {t}, dt = {dt}, {x_0} to {x_1}, r = {r}, R = {R}")
+        else:
+            never("time of impact after the end of the step [s]", got, given=f"t = {t}, dt = {dt}, {x_0} to {x_1}, r = {r}, R = {R}")
+
+
+@exercise("6.4", points=0.5, hint="C ≤ 0: touches already; B ≥ 0: moves away, or not across at all; D < 0: passes by; s > 1: later")
+def test_who_passes_by_leaves_or_comes_later_is_not_hit(lesson, draw):
+    R, r, t, dt = draw(0.5, 1.5), draw(0.05, 0.3), draw(1.0, 5.0), draw(0.01, 0.2)
+    rho = R + r
+    x_0, x_1 = flight(draw, rho, draw(1.05, 2.0) * rho, draw(3.0, 5.0), 10.0)
+    never("time of impact of one who passes by [s]", lesson.cylinder_impact_time(t, dt, x_0, x_1, r, R), f"{x_0} to {x_1}, r = {r}, R = {R}")
+    x_0, x_1 = flight(draw, rho, draw(-0.8, 0.8) * rho, draw(4.0, 6.0), draw(0.5, 1.5))
+    never("time of impact of one who comes later [s]", lesson.cylinder_impact_time(t, dt, x_0, x_1, r, R), f"{x_0} to {x_1}, r = {r}, R = {R}")
+    never("time of impact of one who leaves [s]", lesson.cylinder_impact_time(t, dt, x_0, 20.0 * x_0 - 19.0 * x_1, r, R), f"{x_0}, away, r = {r}, R = {R}")
+    aside = x_0 + np.array([draw(1.0, 9.0), 0.0, 0.0])
+    never("time of impact of one who flies along the axis [s]", lesson.cylinder_impact_time(t, dt, x_0, aside, r, R), f"{x_0} to {aside}")
+    inside = np.append(x_0[0], draw(0.1, 0.6, 2) * rho)
+    for end in (inside, x_0):
+        close("time of impact of one who is in already [s]", lesson.cylinder_impact_time(t, dt, inside, end, r, R), t, 0.0, given=f"{inside} to {end}")
+
+
+@exercise("6.4", points=0.5, hint="D = A ρ² − (y₀ w₁ − y₁ w₀)² and s = C/(√D − B): B² − A C and −B − √D lose the digits that count")
+def test_a_grazing_shot_from_afar_loses_no_digits(lesson, draw):
+    """From 1000ρ, passing at (1 − 1e-9)ρ: the cross product is known to 2e-13ρ, the entry at √(2e-9)ρ = 4.5e-5ρ to 2e-13/4.5e-5 = 5e-9ρ."""
+    for _ in range(5):
+        R, r = draw(0.5, 1.5), draw(0.05, 0.3)
+        rho = R + r
+        x_0, x_1 = flight(draw, rho, (1.0 - 1e-9) * rho, 1e3 * rho, 2e3 * rho)
+        way = 2e3 * rho * lesson.cylinder_impact_time(0.0, 1.0, x_0, x_1, r, R)
+        close("way to the impact over ρ [-]", way / rho, 1e3 - np.sqrt(2e-9 - 1e-18), 5e-8, given=f"{x_0} to {x_1}, r = {r}, R = {R}")
+
+
+@exercise("6.5", points=0.5, hint="s = (p − a) · (b − a)/|b − a|², held between 0 and 1")
+def test_the_nearest_point_of_a_segment_is_its_foot_or_an_end(lesson, draw):
+    for d in (2, 3):
+        rows, a, length = axes(draw, d), draw(-3.0, 3.0, d), draw(0.5, 4.0)
+        b, aside = a + length * rows[0], draw(0.1, 3.0) * rows[1]
+        s = draw(0.1, 0.9)
+        for p, expected in ((a + s * (b - a) + aside, a + s * (b - a)), (a - s * (b - a) + aside, a), (b + s * (b - a) - aside, b), (a, a)):
+            close("nearest point of the segment [m]", lesson.closest_on_segment(p, a, b), expected, ROUND_OFF, given=f"p = {p}, a = {a}, b = {b}")
+
+
+@exercise("6.5", points=0.5, hint="where a and b are the same point: raise BadInput with its length")
+def test_a_segment_without_length_is_refused(lesson, draw):
+    for d in (2, 3):
+        a = draw(-3.0, 3.0, d)
+        raises("a segment from a point to itself", BadInput, lesson.closest_on_segment, draw(-3.0, 3.0, d), a, a.copy())
+        tiny = a + 1e-7
+        close("nearest point of a very short segment [m]", lesson.closest_on_segment(tiny + 1.0, a, tiny), tiny, ROUND_OFF)
+
+
+def seen_along(draw, shadow):
+    """Corners (3,) whose coordinates (1, 2) are those (2,), turned by a drawn angle, with drawn x."""
+    phi = draw(0.0, 2.0 * np.pi)
+    c, s = np.cos(phi), np.sin(phi)
+    return [np.array([draw(-3.0, 3.0), c * y - s * z, s * y + c * z]) for y, z in shadow]
+
+
+@exercise("6.6", points=0.5, hint="all three y_i z_j − z_i y_j of one sign: the axis goes through the face, wherever the corners are")
+def test_a_cylinder_that_pierces_a_face_is_found_though_corners_and_edges_are_clear(lesson, draw):
+    R, r = draw(0.2, 0.5), draw(0.01, 0.1)
+    for order in (1, -1):
+        angles = np.array([0.0, 2.1, 4.2]) + draw(-0.3, 0.3, 3)
+        corners = seen_along(draw, [(draw(4.0, 6.0) * np.cos(a), draw(4.0, 6.0) * np.sin(a)) for a in angles])[::order]
+        close("gap of a pierced face [m]", lesson.triangle_cylinder_gap(*corners, r, R), -R - r, ROUND_OFF, given=f"corners {corners}, r = {r}, R = {R}")
+
+
+@exercise("6.6", points=0.5, hint="elsewhere the least edge_axis_distance of the three edges, less R + r")
+def test_elsewhere_the_nearest_edge_decides(lesson, draw):
+    R, r = draw(0.2, 0.5), draw(0.01, 0.1)
+    for height in (draw(0.6, 2.0), draw(0.05, 0.2)):
+        wide, high = draw(1.0, 5.0, 2), height + draw(1.0, 3.0)
+        edge, corner = [(-wide[0], height), (wide[1], height), (draw(-1.0, 1.0), high)], [(0.0, height), (wide[0], high), (-wide[1], high)]
+        for shadow in (edge, corner):
+            for k in range(3):
+                corners = seen_along(draw, shadow[k:] + shadow[:k])
+                close("gap of a triangle beside the axis [m]", lesson.triangle_cylinder_gap(*corners, r, R), height - R - r, ROUND_OFF, given=f"corners {corners}, r = {r}, R = {R}")
+    a = np.array([0.0, height, 0.0])
+    corners = a, a + np.array([draw(1.0, 3.0), 0.0, 0.0]), np.array([0.0, height + 1.0, draw(-1.0, 1.0)])
+    close("gap of a triangle with an edge along the axis [m]", lesson.triangle_cylinder_gap(*corners, r, R), height - R - r, ROUND_OFF, given=f"corners {corners}")
+
+
+# ---------------------------------------------------------------------------------------------- narrow phase
+
+def triangle(draw):
+    """(corners, unit normal): no angle below 0.4 rad, in a drawn plane."""
+    rows, at, size = axes(draw, 3), draw(-3.0, 3.0, 3), draw(0.5, 3.0)
+    flat = size * np.array([[0.0, 0.0], [1.0, 0.0], [draw(0.2, 0.8), draw(0.5, 1.0)]])
+    return [at + u * rows[0] + w * rows[1] for u, w in flat], rows[2]
+
+
+@exercise("6.7", points=0.5, hint="the foot on the plane where that is inside; all three edges where it is not")
+def test_the_nearest_point_of_a_triangle_is_inside_on_an_edge_or_a_corner(lesson, draw):
+    """p = q + y has q for its nearest point exactly when y makes no acute angle with the triangle as seen from q."""
+    for side in (1.0, -1.0):
+        corners, n = triangle(draw)
+        up = side * draw(0.1, 2.0) * n
+        share = draw(0.2, 1.0, 3)
+        inside = share / share.sum() @ np.stack(corners)
+        cases = [(inside + up, inside)]
+        for k in range(3):
+            a, b, c = (corners[(k + i) % 3] for i in range(3))
+            on = a + draw(0.1, 0.9) * (b - a)
+            out = np.cross(b - a, n)
+            out = -out if out @ (c - a) > 0.0 else out
+            away = -(b - a) / np.linalg.norm(b - a) - (c - a) / np.linalg.norm(c - a)
+            cases += [(on + draw(0.1, 2.0) * out / np.linalg.norm(out) + up, on), (a + draw(0.1, 2.0) * away + up, a)]
+        for p, q in cases:
+            close("nearest point of the triangle [m]", lesson.closest_on_triangle(p, *corners), q, ROUND_OFF, given=f"p = {p}, corners {corners}")
+
+
+@exercise("6.7", points=0.5, hint="|N| ≤ FLAT times the longest edge squared: BadInput; a small triangle is none of that")
+def test_a_triangle_without_area_is_refused_and_a_small_one_is_not(lesson, draw):
+    a, b, p = draw(-3.0, 3.0, 3), draw(-3.0, 3.0, 3), draw(-3.0, 3.0, 3)
+    for c in (a + draw(0.2, 0.8) * (b - a), b.copy(), a + 1.5 * (b - a)):
+        raises("three corners on one line", BadInput, lesson.closest_on_triangle, p, a, b, c)
+    raises("three corners in one point", BadInput, lesson.closest_on_triangle, p, a, a.copy(), a.copy())
+    small = 1e-6 * np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.3, 0.7, 0.0]])
+    close("nearest point of a small triangle [m]", lesson.closest_on_triangle(np.array([3e-7, 2e-7, 0.5]), *small), [3e-7, 2e-7, 0.0], ROUND_OFF)
+
+
+@exercise("6.8", points=0.5, hint="turn the centre into the box's own axes with Rᵀ, clamp it there, and turn the point back with R")
+def test_a_ball_outside_is_nearest_to_the_clamped_point(lesson, draw):
+    r = draw(0.1, 0.5)
+    for beyond in ((1, 0, 0), (0, -1, 0), (0, 1, 1), (-1, 0, 1), (1, -1, 1)):
+        box = lesson.Box(draw(-3.0, 3.0, 3), rotation(draw), draw(0.3, 2.0, 3))
+        out = draw(0.2, 1.0, 3) * np.array(beyond)
+        local = np.where(np.array(beyond) == 0, draw(-0.9, 0.9, 3), np.array(beyond)) * box.half
+        q, away = box.x + box.R @ local, box.R @ out
+        n, x = away / np.linalg.norm(away), q + away
+        same_contact(lesson.ball_box(x, r, box), x - r * n, q, n, np.linalg.norm(away) - r, 1e-11, f"x = {x}, r = {r}, {box}")
+
+
+@exercise("6.8", points=0.5, hint="inside, the least half_i − |y_i| tells the face; n leads out of it, and p_b is on it")
+def test_a_ball_whose_centre_is_inside_leaves_by_the_nearest_face(lesson, draw):
+    for axis in range(3):
+        for sign in (1.0, -1.0):
+            box, r, depth = lesson.Box(draw(-3.0, 3.0, 3), rotation(draw), draw(1.0, 2.0, 3)), draw(0.1, 0.5), draw(0.1, 0.4)
+            local = draw(-0.4, 0.4, 3)
+            local[axis] = sign * (box.half[axis] - depth)
+            n, x = sign * box.R[:, axis], box.x + box.R @ local
+            same_contact(lesson.ball_box(x, r, box), x - r * n, x + depth * n, n, -depth - r, 1e-11, f"x = {x}, r = {r}, {box}")
+    middle = lesson.ball_box(box.x, r, lesson.Box(box.x, box.R, np.array([2.0, 1.0, 3.0])))
+    close("n of a ball in the very middle: along the shortest half, up or down", np.abs(middle.n @ box.R), [0.0, 1.0, 0.0], 1e-11)
+    close("gap there [m]", middle.gap, -1.0 - r, 1e-11)
+
+
+# ---------------------------------------------------------------------------------------------- broad phase
+
+@exercise("6.9", points=1, hint="from the smaller of low and low + move to the larger of high and high + move, coordinate by coordinate")
+def test_a_swept_box_holds_the_box_at_every_moment_and_no_more(lesson, draw):
+    for d in (2, 3):
+        low, move = draw(-3.0, 3.0, d), draw(0.5, 5.0, d) * (2 * np.array([draw.whole(0, 1) for _ in range(d)]) - 1)
+        high = low + draw(0.2, 2.0, d)
+        for way in (move, np.zeros(d)):
+            s = np.linspace(0.0, 1.0, 5)[:, None]
+            got = lesson.swept_box(low, high, way)
+            close("low corner of the swept box [m]", got[0], (low + s * way).min(axis=0), ROUND_OFF, given=f"low {low}, high {high}, move {way}")
+            close("high corner of the swept box [m]", got[1], (high + s * way).max(axis=0), ROUND_OFF, given=f"low {low}, high {high}, move {way}")
+
+
+def boxes(draw, n, d, wide):
+    """n boxes with corners on a grid of whole numbers, so that some share a face, an edge or a corner exactly; some are flat."""
+    low = np.floor(draw(0.0, wide, (n, d)))
+    return low, low + np.floor(draw(0.0, 3.5, (n, d)))
+
+
+def touching(low_a, high_a, low_b, high_b):
+    """Numbers (m, 2) of all boxes of a and of b that have a point in common, sorted."""
+    return np.argwhere(np.all((low_a[:, None] <= high_b[None]) & (low_b[None] <= high_a[:, None]), axis=2))
+
+
+def same_pairs(quantity, got, expected, given=""):
+    """The same pairs, in any order."""
+    got = np.asarray(got)
+    if got.ndim != 2 or got.shape[1:] != (2,):
+        raise NotYet(quantity, "an array of shape (m, 2)", f"shape {got.shape}", "", f"shape {got.shape}", given)
+    if len(got) != len(expected):
+        raise NotYet(quantity, f"{len(expected)} pairs", f"{len(got)} pairs", "none: exactly these", "another number of pairs", given)
+    close(quantity, got[np.lexsort(got.T[::-1])], expected, 0.0, given)
+
+
+@exercise("6.10", points=1, hint="every i, every j > i; a common face, edge or corner counts as touching")
+def test_brute_force_finds_every_pair_once(lesson, draw):
+    for d, wide in ((2, 12.0), (3, 6.0)):
+        low, high = boxes(draw, 30, d, wide)
+        expected = touching(low, high, low, high)
+        same_pairs("pairs that touch", lesson.all_pairs(low, high), expected[expected[:, 0] < expected[:, 1]], given=f"30 boxes in {d}D")
+    far = 10.0 * np.arange(6.0).reshape(3, 2)
+    same_pairs("pairs of boxes that are all apart", lesson.all_pairs(far, far + 1.0), np.zeros((0, 2)))
+
+
+@exercise("6.11", points=1, hint="both children with the other node; both leaves: touching_items(a, i, b, j, found)")
+def test_two_trees_find_the_pairs_that_brute_force_finds(lesson, draw):
+    for d, n, m, wide in ((2, 60, 25, 20.0), (3, 40, 90, 9.0), (3, 3, 70, 5.0)):
+        a, b = boxes(draw, n, d, wide), boxes(draw, m, d, wide)
+        trees = lesson.build_tree(*a), lesson.build_tree(*b)
+        same_pairs("pairs (item of a, item of b)", lesson.find_intersections(*trees), touching(*a, *b), given=f"{n} and {m} boxes in {d}D")
+    apart = lesson.build_tree(a[0] + 100.0, a[1] + 100.0)
+    same_pairs("pairs of trees that are apart", lesson.find_intersections(apart, trees[1]), np.zeros((0, 2)))
+
+
+@exercise("6.11", points=1, hint="go down only where the boxes of the two nodes touch: that is what saves the work")
+def test_what_is_in_a_node_out_of_reach_is_not_looked_at(lesson, draw):
+    """A tree that says of one of the root's children that it is far away: nothing of that half may be found."""
+    a, b = boxes(draw, 50, 2, 9.0), boxes(draw, 40, 2, 9.0)
+    true, other = lesson.build_tree(*a), lesson.build_tree(*b)
+    for half in (1, 2):
+        low, high = true.low.copy(), true.high.copy()
+        low[half] += 1e3
+        high[half] += 1e3
+        lying = lesson.Tree(low, high, true.child, true.first, true.count, true.order, true.item_low, true.item_high)
+        hidden = true.order[true.first[half]:true.first[half] + true.count[half]]
+        expected = touching(*a, *b)
+        seen = expected[~np.isin(expected[:, 0], hidden)]
+        same_pairs("pairs, when a half of tree a says that it is far away", lesson.find_intersections(lying, other), seen, given="50 and 40 boxes")
+        seen = seen[:, ::-1]
+        same_pairs("pairs, when a half of tree b says that it is far away", lesson.find_intersections(other, lying), seen[np.lexsort(seen.T[::-1])], given="40 and 50 boxes")
+
+
+# ---------------------------------------------------------------------------------------------- separating axes
+
+def polygon(draw, k):
+    """A regular polygon, counter-clockwise, about a drawn centre: corners (k, 2), and half the width between centre and edges."""
+    turn = draw(0.0, 2.0 * np.pi) + 2.0 * np.pi * np.arange(k) / k
+    radius = draw(1.0, 2.0)
+    return draw(-3.0, 3.0, 2) + radius * np.stack((np.cos(turn), np.sin(turn)), axis=1), radius
+
+
+@exercise("6.12", points=0.5, hint="of each edge the least n · (b_j − a_i), of all edges the greatest of those")
+def test_the_edge_that_separates_best_is_the_one_a_corner_points_at(lesson, draw):
+    """Beside the middle of an edge, by less than a tenth of the size, every other edge line is farther inside."""
+    for k in (3, 5, 6):
+        a, radius = polygon(draw, k)
+        for share in (draw(0.02, 0.08), -draw(0.02, 0.08)):
+            i = draw.whole(0, k - 1)
+            e = a[(i + 1) % k] - a[i]
+            n, t = np.array([e[1], -e[0]]) / np.linalg.norm(e), e / np.linalg.norm(e)
+            gap = share * radius
+            tip = 0.5 * (a[i] + a[(i + 1) % k]) + gap * n
+            b = np.stack((tip, tip + draw(0.5, 1.0) * n - 0.3 * t, tip + draw(1.1, 2.0) * n + 0.3 * t)[::-1])
+            got = lesson.separating_edge(a, b)
+            close("gap along the edge that separates best [m]", got[0], gap, ROUND_OFF, given=f"a = {a.tolist()}, b = {b.tolist()}")
+            close("number of that edge", got[1], i, 0.0, given=f"a = {a.tolist()}, b = {b.tolist()}")
+
+
+@exercise("6.12", points=0.5, hint="outward(a, i) refuses an edge without length: use it")
+def test_an_edge_without_length_is_refused(lesson, draw):
+    a, _ = polygon(draw, 4)
+    raises("a corner that is there twice", BadInput, lesson.separating_edge, np.stack((a[0], a[1], a[1], a[2])), a)
+
+
+@exercise("6.13", points=0.5, hint="add the crossing y_i + s_i/(s_i − s_j)(y_j − y_i) wherever an edge changes sides")
+def test_a_cut_polygon_has_the_corners_of_what_is_left(lesson, draw):
+    """A rectangle of edges l and h, cut at f l; a corner of it cut off; all of it; nothing of it."""
+    for d in (2, 3):
+        rows, at, (long, high), f = axes(draw, d), draw(-3.0, 3.0, d), draw(1.0, 3.0, 2), draw(0.2, 0.8)
+        local = lambda corners: at + np.array(corners) @ rows[:2]
+        y = local([(0.0, 0.0), (long, 0.0), (long, high), (0.0, high)])
+        level = f * long + float(at @ rows[0])
+        slant = (rows[0] + rows[1]) / np.sqrt(2.0)
+        off = f * min(long, high)
+        cuts = (("cut across", rows[0], level, local([(0, 0), (f * long, 0), (f * long, high), (0, high)])),
+                ("cut from the other side", -rows[0], -level, local([(f * long, 0), (long, 0), (long, high), (f * long, high)])),
+                ("cut to a corner", slant, float(at @ slant) + off / np.sqrt(2.0), local([(0, 0), (off, 0), (0, off)])),
+                ("not cut at all", rows[0], level + long, y), ("cut away", rows[0], level - long, np.zeros((0, d))))
+        for name, n, offset, expected in cuts:
+            got = numbers(f"corners of a rectangle {name} [m]", lesson.clip(y, n, offset), expected.shape, given=f"y = {y.tolist()}, n = {n}, d = {offset}")
+            best = min(range(max(1, len(expected))), key=lambda k: np.abs(np.roll(got, k, axis=0) - expected).max(initial=0.0))
+            close(f"corners of a rectangle {name}, in their order [m]", np.roll(got, best, axis=0), expected, ROUND_OFF, given=f"y = {y.tolist()}, n = {n}, d = {offset}")
+
+
+@exercise("6.13", points=0.5, hint="a segment has one edge: do not come back from its second corner to its first")
+def test_a_cut_segment_keeps_two_ends(lesson, draw):
+    rows, a, f = axes(draw, 2), draw(-3.0, 3.0, 2), draw(0.2, 0.8)
+    b = a + draw(1.0, 3.0) * rows[0] + draw(-0.5, 0.5) * rows[1]
+    middle = a + f * (b - a)
+    for n, first, second in ((rows[0], a, middle), (-rows[0], middle, b)):
+        got = numbers("ends of a cut segment [m]", lesson.clip(np.stack((a, b)), n, float(n @ middle)), (2, 2), given=f"{a} to {b}")
+        close("ends of a cut segment, in the order of their place [m]", got[np.argsort(got @ rows[0])], [first, second], ROUND_OFF, given=f"{a} to {b}")
+    close("a segment that is not cut [m]", lesson.clip(np.stack((a, b)), rows[0], float(rows[0] @ b) + 1.0), [a, b], 0.0)
+
+
+def turned(axis, angle):
+    """The rotation about coordinate axis 0, 1 or 2."""
+    c, s, R = np.cos(angle), np.sin(angle), np.eye(3)
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    R[i, i], R[i, j], R[j, i], R[j, j] = c, -s, s, c
+    return R
+
+
+@exercise("6.14", points=0.5, hint="|r · axis| less both half_widths; the greatest of all; n from b to a")
+def test_boxes_are_as_far_apart_as_their_nearest_corner_and_face_or_edges(lesson, draw):
+    """A corner above a face, or edge across edge: the distance along that axis is the true one, and no axis can show more."""
+    Q = rotation(draw)
+    a_half, b_half = draw(1.0, 2.0, 3), draw(0.5, 0.8, 3)
+    tilted = turned(0, draw(0.55, 0.8)) @ turned(1, draw(0.5, 0.7))          # some corner of b is the lowest, by far
+    for gap in (draw(0.05, 0.5), -draw(0.005, 0.02)):
+        for axis, sign in ((0, 1.0), (2, -1.0)):
+            n_local = np.roll(np.array([0.0, 0.0, sign]), axis - 2)
+            R_b = np.roll(tilted, axis - 2, axis=0)
+            corners = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)]) * b_half @ R_b.T
+            tip = corners[np.argmin(corners @ n_local)]
+            at = (a_half[axis] + gap) * n_local - tip                        # the tip above the middle of the face
+            a = lesson.Box(draw(-3.0, 3.0, 3), Q, a_half)
+            b = lesson.Box(a.x + Q @ at, Q @ R_b, b_half)
+            for first, second, way, number in ((a, b, -1.0, axis), (b, a, 1.0, 3 + axis)):
+                got = lesson.box_separation(first, second)
+                close("gap of a corner above a face [m]", got[0], gap, ROUND_OFF, given=f"{first}, {second}")
+                close("its normal, from b to a", got[1], way * Q @ n_local, ROUND_OFF, given=f"{first}, {second}")
+                close("number of its axis", got[2], number, 0.0, given=f"{first}, {second}")
+
+
+@exercise("6.14", points=0.5, hint="axes 6 to 14 lie across an edge of each; where the edges are parallel candidate_axis is zeros: leave it out")
+def test_two_edges_across_each_other_separate_and_equal_axes_leave_it_to_a_face(lesson, draw):
+    Q, at, half = rotation(draw), draw(-3.0, 3.0, 3), draw(0.8, 1.5, 3)
+    roll_a, roll_b, gap = draw(0.6, 0.9), draw(0.6, 0.9), draw(0.05, 0.5)
+    R_a, R_b = turned(0, roll_a), turned(1, roll_b)                          # an edge of a along x on top, one of b along y below
+    top = half[1] * np.sin(roll_a) + half[2] * np.cos(roll_a)
+    low = half[0] * np.sin(roll_b) + half[2] * np.cos(roll_b)
+    y_top = half[1] * np.cos(roll_a) - half[2] * np.sin(roll_a)
+    x_low = -half[2] * np.sin(roll_b) + half[0] * np.cos(roll_b)
+    for depth in (gap, -0.05 * gap):
+        a = lesson.Box(at, Q @ R_a, half)
+        b = lesson.Box(at + Q @ np.array([-x_low, y_top, top + low + depth]), Q @ R_b, half)         # its lowest edge over the middle of a's
+        got = lesson.box_separation(a, b)
+        close("gap of two edges across each other [m]", got[0], depth, ROUND_OFF, given=f"{a}, {b}")
+        close("its normal, from b to a", got[1], -Q[:, 2], 1e-11, given=f"{a}, {b}")
+        close("number of its axis: edge 0 of a, edge 1 of b", got[2], 7, 0.0, given=f"{a}, {b}")
+    flush = lesson.Box(at, Q, half), lesson.Box(at + Q @ np.array([0.0, 0.0, 2.0 * half[2] + gap]), Q, half)
+    got = lesson.box_separation(*flush)
+    close("gap of two boxes flush with each other [m]", got[0], gap, ROUND_OFF, given=f"{flush}")
+    close("number of its axis: the first of those that show it", got[2], 2, 0.0, given=f"{flush}")
+
+
+# ---------------------------------------------------------------------------------------------- any two convex bodies
+
+def holds(quantity, p, points, given=""):
+    """p is in the hull of the points: weights ≥ 0 with sum 1 exist; non-negative least squares find them to 1e-13 or so of their size."""
+    left = nnls(np.vstack((points.T, np.ones(len(points)))), np.append(numbers(quantity, p, (points.shape[1],), given), 1.0))[1]
+    between(quantity + ": how far it is from its body [m]", left, 0.0, 1e-9, given)
+
+
+@exercise("6.15", points=1, hint="v = weights @ (p − q); support of a along −v, of b along v; stop, or take the new pair in and keep what counts")
+def test_the_distance_of_two_bodies_is_proved_by_two_points_and_a_plane(lesson, draw):
+    """Two points of the bodies show that they are no farther apart than that, and a slab between them, that they are no nearer."""
+    for d, k, m in ((2, 5, 7), (3, 8, 6), (3, 1, 9), (3, 20, 20)):
+        way = axes(draw, d)[0]
+        a, b = draw(-1.0, 1.0, (k, d)), draw(-1.0, 1.0, (m, d)) + draw(2.5, 6.0) * way * np.sqrt(d)
+        c, given = lesson.gjk(a, b), f"a = {a.tolist()}, b = {b.tolist()}"
+        holds("p_a", c.p_a, a, given)
+        holds("p_b", c.p_b, b, given)
+        close("p_a − p_b − gap n [m]", np.asarray(c.p_a) - c.p_b - c.gap * np.asarray(c.n), np.zeros(d), ROUND_OFF, given)
+        close("room between two planes across n that the bodies do not pass [m]", (a @ c.n).min() - (b @ c.n).max(), c.gap, 1e-11, given)
+
+
+@exercise("6.15", points=1, hint="far_enough also says when they overlap: then v is 0, and there is nothing left to be found")
+def test_bodies_that_overlap_have_no_distance_and_flat_ones_do_not_confuse(lesson, draw):
+    for d in (2, 3):
+        a = draw(-1.0, 1.0, (12, d)) + 0.0
+        a[:2 * d] = np.concatenate((np.eye(d), -np.eye(d)))                   # its hull holds the ball of 1/√3 about 0
+        close("distance of bodies that overlap [m]", lesson.gjk(a, draw(-1.0, 1.0, (7, d)) * 0.2 + 0.05).gap, 0.0, 1e-11, given=f"a = {a.tolist()}")
+    rows, gap = axes(draw, 3), draw(0.2, 2.0)
+    square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    a, b = square @ rows[:2], (square + np.array([1.0 + gap, 0.25])) @ rows[:2]
+    close("distance of two squares in one plane [m]", lesson.gjk(a, b).gap, gap, 1e-11, given=f"gap {gap} m")
+    close("distance of two squares face to face [m]", lesson.gjk(a, square @ rows[:2] + gap * rows[2]).gap, gap, 1e-11, given=f"gap {gap} m")
+    close("distance of two squares that share a side [m]", lesson.gjk(a, (square + np.array([1.0, 0.0])) @ rows[:2]).gap, 0.0, 1e-11)
+
+
+# ---------------------------------------------------------------------------------------------- avoidance
+
+@exercise("6.16", points=0.5, hint="k (1/g − 1/reach)/g², away from the centre; nothing from g = reach on")
+def test_the_field_is_the_slope_of_its_potential(lesson, draw):
+    """Simpson's rule on a over a way of 2h across a gap of 0.3 m and more is wrong by h⁴·a⁗/90 of a, a⁗ ≤ 360/g⁴: 2e-9 for h = 2e-3."""
+    for d in (2, 3):
+        centre, radius, reach, k = draw(-3.0, 3.0, d), draw(0.3, 1.0), draw(0.8, 2.0), draw(0.5, 2.0)
+        way, g, h = axes(draw, d)[0], draw(0.3, 0.6) , 2e-3
+        U = lambda g: 0.5 * k * (1.0 / g - 1.0 / reach) ** 2
+        near, here, far = (numbers("acceleration [m/s²]", lesson.repulsion(centre + (radius + s) * way, centre, radius, reach, k), (d,)) for s in (g - h, g, g + h))
+        given = f"gap {g} m, radius {radius} m, reach {reach} m, k = {k}"
+        mean = (near + 4.0 * here + far) @ way / 6.0
+        close("its work over the loss of potential [-]", mean * 2.0 * h / (U(g - h) - U(g + h)), 1.0, 1e-8, given)
+        close("its part across [m/s²]", here - (here @ way) * way, np.zeros(d), 1e-9, given)
+        for beyond in (reach, draw(1.1, 3.0) * reach):
+            got = lesson.repulsion(centre + (radius + beyond + 1e-9) * way, centre, radius, reach, k)
+            close("acceleration out of reach [m/s²]", got, np.zeros(d), 0.0, given)
+
+
+@exercise("6.16", points=0.5, hint="a gap of zero or below has no field: raise BadInput with it")
+def test_who_is_inside_an_obstacle_hears_so(lesson, draw):
+    centre, radius = draw(-3.0, 3.0, 2), draw(0.3, 1.0)
+    for distance in (0.0, draw(0.1, 0.9)):
+        raises("a place inside the obstacle", BadInput, lesson.repulsion, centre + distance * radius * axes(draw, 2)[0], centre, radius, 1.0, 1.0)
+
+
+@exercise("6.17", points=0.5, hint="½ a τ² = radius − |y|, away from the side on which the centre is")
+def test_held_until_it_passes_it_just_gets_past(lesson, draw):
+    for side in (1.0, -1.0):
+        rows, x, speed, radius = axes(draw, 2), draw(-3.0, 3.0, 2), draw(0.5, 3.0), draw(0.5, 2.0)
+        tau, offset = draw(0.5, 3.0), side * draw(0.1, 0.9) * radius
+        v, centre = speed * rows[0], x + speed * tau * rows[0] + offset * rows[1]
+        a = numbers("acceleration [m/s²]", lesson.steer(x, v, centre, radius, 4.0), (2,))
+        given = f"x = {x}, v = {v}, centre {centre}, radius {radius}"
+        close("its part along v [m/s²]", a @ rows[0], 0.0, 1e-11, given)
+        passed = x + tau * v + 0.5 * tau**2 * a
+        close("where it passes the centre, seen from there [m]", passed - centre, -np.sign(offset) * radius * rows[1], 1e-11, given)
+
+
+@exercise("6.17", points=0.5, hint="behind it, too far ahead, far enough aside, at rest: 0; straight on: to the left")
+def test_nobody_swerves_without_need_and_head_on_they_turn_left(lesson, draw):
+    rows, x, speed, radius = axes(draw, 2), draw(-3.0, 3.0, 2), draw(0.5, 3.0), draw(0.5, 2.0)
+    v, left = speed * rows[0], np.array([-rows[0][1], rows[0][0]])
+    off = lambda tau, offset: x + speed * tau * rows[0] + offset * rows[1]
+    for name, centre, velocity in (("behind it", off(-1.0, 0.1), v), ("too far ahead", off(5.0, 0.1), v), ("far enough aside", off(1.0, 1.1 * radius), v),
+                                   ("at rest", off(1.0, 0.1), 0.0 * v)):
+        close(f"acceleration for what is {name} [m/s²]", lesson.steer(x, velocity, centre, radius, 4.0), np.zeros(2), 0.0, given=f"x = {x}, v = {velocity}, centre {centre}")
+    x, v, left = np.array([1.0, 2.0]), np.array([2.0, 0.0]), np.array([0.0, 1.0])               # whole numbers: the offset is exactly 0
+    for turn in (1.0, -1.0):
+        close("acceleration when heading for the centre [m/s²]", lesson.steer(x, turn * v, x + turn * 2.0 * v, radius, 4.0), 0.5 * radius * turn * left, ROUND_OFF,
+              given=f"radius {radius}")
