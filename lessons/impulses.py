@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput, Diverged, check_finite, check_positive
+from solutions.checks import BadInput, Diverged, check_end, check_finite, check_motion
 from solutions.friction import check_friction, tangential
 from solutions.rotation import cross, point_velocity, solve3
 
@@ -365,11 +365,9 @@ def drop_all(step, acceleration, t, x, v, dt, steps, p):
     Raises BadInput for a step that is not positive, an e outside 0 … 1, a normal that is not one, a state that is not finite; Diverged when
     the end is not finite.
     """
-    check_positive("step dt [s]", dt)
+    check_motion(x, v, dt)
     check_restitution(p.e)
     check_normal(p.n)
-    check_finite("position x [m]", x)
-    check_finite("velocity v [m/s]", v)
     x, v = x.copy(), v.copy()
     for k in range(x.shape[0]):
         x_k, v_k = x[k], v[k]
@@ -378,14 +376,6 @@ def drop_all(step, acceleration, t, x, v, dt, steps, p):
         x[k], v[k] = x_k, v_k
     check_end(x, v, dt)
     return x, v
-
-
-def check_end(x, v, dt):
-    """Given.  Raise Diverged unless a state is finite."""
-    for values in (x, v):
-        for value in values.ravel():
-            if not np.isfinite(value):
-                raise Diverged("the motion is no longer finite at dt [s]", dt, "take a smaller step")
 
 
 # ---------------------------------------------------------------------------------------------- a ball that turns
@@ -424,12 +414,10 @@ def backtracking_spin_step(acceleration, t, x, v, omega, dt, p):
 
 def spin_all(step, acceleration, t, x, v, omega, dt, steps, p):
     """Given.  (x, v, ω), each (copies, 3), of copies of a Spinner after so many steps of one method; errors as in drop_all, or for μ < 0."""
-    check_positive("step dt [s]", dt)
+    check_motion(x, v, dt)
     check_restitution(p.e)
     check_friction(p.mu)
     check_normal(p.n)
-    check_finite("position x [m]", x)
-    check_finite("velocity v [m/s]", v)
     check_finite("angular velocity ω [rad/s]", omega)
     x, v, omega = x.copy(), v.copy(), omega.copy()
     for k in range(x.shape[0]):
@@ -534,10 +522,8 @@ def backtracking_discs_step(x, v, dt, p):
 
 def discs_all(step, x, v, dt, steps, p):
     """Given.  (x, v), each (copies, bodies, d), of copies of some discs after so many steps of one method; errors as in drop_all."""
-    check_positive("step dt [s]", dt)
+    check_motion(x, v, dt)
     check_restitution(p.e)
-    check_finite("position x [m]", x)
-    check_finite("velocity v [m/s]", v)
     x, v = x.copy(), v.copy()
     for k in range(x.shape[0]):
         x_k, v_k = x[k], v[k]

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .checks import BadInput, check_finite, check_positive
+from .checks import BadInput, check_finite, check_motion, check_positive
 from .vectors import cross, dot
 
 NEVER = np.inf               # the time of what does not happen in this step [s]
@@ -235,9 +235,7 @@ def flight(step, gap, impact_time, t, x, v, dt, steps, p):
 
     Raises BadInput for a step that is not positive, and a state that is not finite.
     """
-    check_positive("step dt [s]", dt)
-    check_finite("position x [m]", x)
-    check_finite("velocity v [m/s]", v)
+    check_motion(x, v, dt)
     x, v = x.copy(), v.copy()
     for k in range(len(x)):
         for n in range(steps):

@@ -143,9 +143,8 @@ def errors(name, plan):
         ours = []
         for method in methods_of(scene, plan, p):
             order = getattr(scene, "ORDERS", {}).get(method.function, method.order)
-            at = scene if plan.quick and method.function in getattr(scene, "PLAIN_IN_QUICK", ()) else fast
-            step = getattr(binding.world(plan.of, at is not scene).lesson(method.lesson), method.function)
-            runs = [(n, final(at, step, p, n)) for n in sweep(scene, plan)]
+            step = getattr(binding.world(plan.of, fast is not scene).lesson(method.lesson), method.function)
+            runs = [(n, final(fast, step, p, n)) for n in sweep(scene, plan)]
             ours.append(judged(scene, method.label, p, truth, runs, order))
             if still(scene) is not None:
                 ours[-1]["observed"] = [{"steps": n, "observed": o, "failure": f} for n, (o, f) in runs]
@@ -197,8 +196,6 @@ def not_run(scene, plan):
         return never
     labels = [m.label for m in scene.METHODS if m not in methods_of(scene, plan)]
     slow = [f"Left to --full, to keep this one quick: {', '.join(labels)}"] if labels else []
-    plain = [m.label for m in scene.METHODS if plan.quick and "compiled" in plan.speeds and m.function in getattr(scene, "PLAIN_IN_QUICK", ())]
-    slow += [f"Left to --full, because compiling takes longer than the rest: {', '.join(plain)}, compiled"] if plain else []
     if plan.quick and getattr(scene, "FULL_CASES", ()):
         slow.append(f"Left to --full: {', '.join(scene.FULL_CASES)}")
     if plan.quick and len(scene.CASES) > 1 and still(scene) is None:

@@ -24,7 +24,6 @@ and may define
     bodies(p)                 shapes of validate/report/space.py: the motion is then shown in space, and its points in small;
     poses(observed, p)        (bodies, 7) place and quaternion (w, x, y, z) of each;
     arrows(observed, p)       {name: (from, to)} [m], such as ω and L;   TRAIL: number of the body whose way is drawn;   GROUND: draw z = 0
-    PLAIN_IN_QUICK            functions of methods that a quick validation runs plain only, where compiling is what costs
     FULL_CASES                names of cases that are too dear for a quick validation
     FILM                      how much of the motion the moving picture shows [s]; T without it
     PUBLISHED                 ((time, observed, tolerance), …) of the first case, from elsewhere

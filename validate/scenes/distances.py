@@ -18,7 +18,6 @@ from validate.shapes import AXES, CONTINUOUS, GJK, NARROW, depth_of, first_root,
 TITLE, LESSON = "Distances and contacts", "collisions"
 T, STEPS, STILL = 1.0, (1,), ""
 METHODS = (NARROW, GJK, AXES, CONTINUOUS)
-PLAIN_IN_QUICK = ("box_separation",)                 # with clipping it is half of the lesson to compile
 ORDERS = {method.function: EXACT for method in METHODS}
 UNCERTAINTY = 1e-13          # of a linear system with a condition below 100
 
