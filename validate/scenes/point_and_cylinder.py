@@ -89,6 +89,7 @@ def tolerance(p, dt):
 
     continuous: a place is rounded by ½ spacing of the farthest one, speed · 0.7 s, at each of T/dt steps; at WIDEST beside the axis the root
     is 1/√(1 − WIDEST²) times as uncertain as the place.
+    rays: RAY_ENDS, which is measured and not derived; swept: see swept_limit.
     discrete: found after the impact by one step at most; meaningless for steps that may pass by: the shortest way through is 2 √(1 − WIDEST²)(R + r).
     """
     size, steep = np.linalg.norm(truth(p, T)), np.sqrt(1.0 - WIDEST**2)
