@@ -15,6 +15,7 @@ import numpy as np
 
 from .checks import BadInput, Diverged, check_end, check_finite, check_motion
 from .friction import check_friction, tangential
+from .integrators import symplectic_euler_step
 from .rotation import cross, point_velocity, solve3
 
 UNIT = 1e-9                  # how far from 1 a normal's length may be handed in [-]: any rounding is far below
@@ -456,26 +457,34 @@ def spinning_impact(v, omega, p):
 
 def projecting_spin_step(acceleration, t, x, v, omega, dt, p):
     """Given.  Advance a Spinner as projecting_step does; first order."""
-    v = v + dt * acceleration(t, x, v, p)
-    x = x + dt * v
-    phi = gap(x, p)
-    if phi < 0.0:
-        v, omega = spinning_impact(v, omega, p)
-        x = x - phi * p.n
-    return x, v, omega
+    x, v = symplectic_euler_step(acceleration, t, x, v, dt, p)
+    if gap(x, p) >= 0.0:
+        return x, v, omega
+    v, omega = spinning_impact(v, omega, p)
+    return put_on_plane(x, p), v, omega
+
+
+def put_on_plane(x, p):
+    """Given.  The place (d,) on the plane of p that is nearest to x:  x − φ n."""
+    return x - gap(x, p) * p.n
+
+
+def fly_to_plane(x, v, a, left, p):
+    """Given.  (x, v, what is then left of `left` [s]): on, under a constant acceleration, to the plane of p or to the end, whichever is first."""
+    tau = impact_time(gap(x, p), v @ p.n, a @ p.n, left)
+    x, v = fly(x, v, a, tau)
+    return x, v, left - tau
 
 
 def backtracking_spin_step(acceleration, t, x, v, omega, dt, p):
     """Given.  Advance a Spinner impact by impact; exact while the acceleration is constant.  Raises Diverged after IMPACTS impacts."""
-    a, left = acceleration(t, x, v, p), dt
+    a = acceleration(t, x, v, p)
+    x, v, left = fly_to_plane(x, v, a, dt, p)
     for _ in range(IMPACTS):
-        tau = impact_time(gap(x, p), v @ p.n, a @ p.n, left)
-        x, v = fly(x, v, a, tau)
-        left -= tau
         if left <= 0.0:
             return x, v, omega
         v, omega = spinning_impact(v, omega, p)
-        x = x - gap(x, p) * p.n
+        x, v, left = fly_to_plane(put_on_plane(x, p), v, a, left, p)
     raise Diverged("impacts without end in a step of dt [s]", dt, "take a smaller step")
 
 
