@@ -25,6 +25,7 @@ ASYMPTOTIC = 0.5             # limits above this are not held against a run [-]
 EXACTLY = 1e-11              # a smaller relative error is round-off: there is no race for it [-]
 LOST = 10.0                  # a run with a larger relative error is not worth timing [-]
 SHORTEST = 1e-4              # a timed loop is repeated until it lasts this long [s]
+NOTEBOOK = 0.02              # how long a timed run in a notebook may take [s]
 FRAMES = 120                 # of the moving picture
 NOT_ATTEMPTED = "not attempted"
 TARGETS = (1e-2, 1e-3, 1e-4, 1e-6, 1e-8)
@@ -41,7 +42,7 @@ class Plan(NamedTuple):
 
     def longest(self):
         """{speed: how long a single timed run may take [s]}; longer ones are left to --full, and there out."""
-        ours, engine = (0.02, 0.02) if self.most_steps else (0.003, 0.01) if self.quick else (0.5, 1.5)
+        ours, engine = (NOTEBOOK, NOTEBOOK) if self.most_steps else (0.003, 0.01) if self.quick else (0.5, 1.5)
         return {"plain": ours, "compiled": ours, "engine": engine}
 
     def repeats(self):

@@ -159,8 +159,14 @@ def with_imports(chosen, paths):
 
 def imported(path):
     """Paths of the modules that a module may import."""
-    package, names = path.split("/")[:-1], set()
-    for node in ast.walk(ast.parse(read(path))):
+    return named_in(read(path), tuple(path.split("/")[:-1]))
+
+
+@lru_cache(maxsize=None)
+def named_in(text, package):
+    """Paths of the modules that a text in that package may import."""
+    package, names = list(package), set()
+    for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.ImportFrom):
             base = package[:len(package) + 1 - node.level] if node.level else []
             base = base + (node.module.split(".") if node.module else [])
@@ -312,6 +318,22 @@ def holds(where, answer):
     return share(answer.pieces, where.statements, TELLING) > LEAKED or share(answer.lines, where.lines, TELLING) > LEAKED
 
 
+def signs_of(hidden):
+    """{telling piece, or (function, body) of an answer that has none: numbers of the answers that it may be a sign of}."""
+    signs = {}
+    for number, answer in enumerate(hidden):
+        telling = [piece for piece, size in (*answer.pieces.items(), *answer.lines.items()) if size >= TELLING]
+        for sign in (*telling, (answer.function, answer.body)):
+            signs.setdefault(sign, set()).add(number)
+    return signs
+
+
+def suspects(where, hidden, signs):
+    """Those answers of which a searched text holds a sign: no other can be in it."""
+    seen = signs.keys() & (where.statements | where.lines | where.bodies)
+    return [hidden[number] for number in sorted(set().union(*(signs[sign] for sign in seen)))]
+
+
 def sentences(text):
     """Of answers.md: what is long enough to be known again, without spaces."""
     parts = (re.sub(r"\s", "", part) for part in re.split(r"(?<=[.:;?])\s+|\n\s*\n", text))
@@ -321,6 +343,7 @@ def sentences(text):
 def refuse_leaks(files, worked, answers_too):
     """Raise BadInput, in one sentence, for the first thing in the zip that no student may have."""
     hidden = [answer for name in binding.lesson_names() if name not in worked for answer in answers_of(name)]
+    signs = signs_of(hidden)
     secret = set() if answers_too else sentences((ROOT / ANSWERS).read_text(encoding="utf-8"))
     for path, data in sorted(files.items()):
         if "__pycache__" in path or path.endswith((".pyc", ".pyo")):
@@ -331,7 +354,7 @@ def refuse_leaks(files, worked, answers_too):
             if MARKER.search(text):
                 raise BadInput(path, f"not for students (it holds the marker {MARKER.search(text)[0]})", "take it out")
             where, whole = searched(text), re.sub(r"\s", "", text)
-            for answer in hidden:
+            for answer in suspects(where, hidden, signs):
                 if holds(where, answer):
                     raise BadInput(path, f"not for students (it holds the answer of exercise {answer.exercise}, {answer.function})",
                                    f"take it out, or give --with-solutions={answer.lesson}")
