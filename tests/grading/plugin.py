@@ -30,6 +30,8 @@ def pytest_addoption(parser):
 
 
 def pytest_configure(config):
+    if hasattr(config.option, "loadscopereorder"):               # of pytest-xdist, which would take groups of one test last, and they are the longest
+        config.option.loadscopereorder = False
     if config.getoption("--of"):
         try:
             binding.subject_folder(config.getoption("--of"))
@@ -73,6 +75,7 @@ def pytest_collection_modifyitems(config, items):
     if len(keep) < len(items):
         config.hook.pytest_deselected(items=[item for item in items if not is_wanted(item, config)])
         items[:] = keep
+    items.sort(key=lambda item: item.path.stem != "test_notebooks")          # the longest first: then no process has one left when the others are done
 
 
 def is_wanted(item, config):
