@@ -111,7 +111,7 @@ def check(exercise):
     with tempfile.TemporaryDirectory() as scratch:
         file = Path(scratch) / "outcomes.json"
         said = aside.run(str(TESTS / f"test_{lesson}.py"), f"--of={folder().resolve()}", f"--exercise={exercise}", f"--outcomes={file}",
-                         f"--rootdir={binding.ROOT}")
+                         f"--rootdir={binding.ROOT}", "--tb=line")
         outcomes = json.loads(file.read_text()) if file.is_file() else []
     if not outcomes:
         raise RuntimeError(f"the check of exercise {exercise} did not run:\n{said}")
