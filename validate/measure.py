@@ -363,7 +363,8 @@ def times(name, plan, result):
     """Run times of the first case, joined with the errors already found: [{label, speed, steps, error, seconds, low, high}]."""
     scene = binding.bind_scene(name, plan.of)
     case, p = next(iter(cases_of(scene, plan).items()))
-    found = {c["label"]: {r["steps"]: r for r in c["rows"] if r["error"] is not None and r["error"] < LOST}
+    coarsest = scene.STEPS[0] if plan.quick and not plan.most_steps else 0               # what is coarser shows where methods give up, not how fast they are
+    found = {c["label"]: {r["steps"]: r for r in c["rows"] if r["error"] is not None and r["error"] < LOST and r["steps"] >= coarsest}
              for c in result["cases"][case]["ours"] + result["cases"][case]["engines"]}
     refined = still(scene) != ""                                     # else there is no diagram to time anything for
     items = [Timed(m.label, speed, n, scene.T / n, prepare) for m in methods_of(scene, plan, p) for speed in plan.speeds if refined

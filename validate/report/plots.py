@@ -2,7 +2,7 @@
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.ticker import LogFormatterSciNotation, LogLocator, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 LOOKS = {                       # label: colour, marker
     "Euler": ("#E69F00", "o"), "midpoint": ("#56B4E9", "^"), "Runge–Kutta 4": ("#009E73", "s"), "average velocity": ("#CC79A7", "v"),
@@ -110,12 +110,23 @@ def draw(plot, path, data):
     plot(path, data)
 
 
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def _power(x, _):
+    """10⁻³, 2·10⁻³: as plain text, which is drawn in a third of the time of a formula."""
+    exponent = int(np.floor(np.log10(x) + 1e-9))
+    lead = round(x / 10.0**exponent)
+    return f"{'' if lead == 1 else f'{lead}·'}10{str(exponent).translate(RAISED)}"
+
+
 def _tick(axis):
     """On a logarithmic axis name powers of ten, and over fewer than two of them 2 and 5 as well; more would run into each other."""
     if axis.get_scale() == "log":
         few = np.ptp(np.log10(axis.get_view_interval())) < 2.0
+        axis.set_major_formatter(FuncFormatter(_power))
         axis.set_minor_locator(LogLocator(subs=(2, 5) if few else "auto"))
-        axis.set_minor_formatter(LogFormatterSciNotation(minor_thresholds=(np.inf, np.inf)) if few else NullFormatter())
+        axis.set_minor_formatter(FuncFormatter(_power) if few else NullFormatter())
 
 
 def _finish(figure, axes, path, title):
