@@ -11,14 +11,14 @@ from solutions.integrators import advance
 from solutions.springs import mesh_acceleration as acceleration
 from validate.engines import Bullet
 from validate.reference import Net, forces, motion, net_limits, pymunk_net, rest_positions, state_of
-from validate.scene import IMPLICIT_MESH, INTEGRATORS, Engine, World
+from validate.scene import IMPLICIT_MESH, INTEGRATORS, LEFT_TO_FULL, Engine, World
 
 TITLE, LESSON = "Discrete catenary", "springs"
 T = 1.2                      # [s]: a period of the slowest mode, nearly two of the one that sags
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
 METHODS = INTEGRATORS + (IMPLICIT_MESH,)
-# the first two build a dense matrix at every correction, and the third takes seconds to compile: spring_net shows it
-FULL_ONLY = ("implicit_euler_step", "implicit_midpoint_step", "implicit_mesh_step")
+# implicit methods build a dense matrix at every correction, and the mesh's own takes seconds to compile: spring_net shows it
+FULL_ONLY = LEFT_TO_FULL + ("implicit_mesh_step",)
 UNCERTAINTY = 1e-11
 
 

@@ -10,13 +10,13 @@ from solutions.integrators import advance
 from solutions.springs import BEND, SHEAR, STRUCTURAL, grid_pairs
 from solutions.springs import mesh_acceleration as acceleration
 from validate.reference import Net, modes, motion, net_limits, pymunk_net, rest_positions, state_of
-from validate.scene import IMPLICIT_MESH, INTEGRATORS, Engine
+from validate.scene import IMPLICIT_MESH, INTEGRATORS, LEFT_TO_FULL, Engine
 
 TITLE, LESSON = "Spring net", "springs"
 T = 0.6                      # [s]: two bounces, and half a swing of the threads alone
 STEPS = (50, 100, 200, 500, 1000, 2000, 5000)
 METHODS = INTEGRATORS + (IMPLICIT_MESH,)
-FULL_ONLY = ("implicit_euler_step", "implicit_midpoint_step")     # they build a dense matrix at every correction
+FULL_ONLY = LEFT_TO_FULL     # of these the implicit ones build a dense matrix at every correction
 UNCERTAINTY = 1e-12
 
 
