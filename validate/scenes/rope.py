@@ -16,7 +16,6 @@ TITLE, LESSON = "Rope", "pbd"
 T = 1.0                      # [s]
 STEPS = (50, 100, 200, 600, 1000, 2000, 5000)
 METHODS = (PROJECTION, PBD, XPBD, RATTLE)
-FULL_ONLY = ("rattle_step",)  # beyond the lecture
 WITHOUT = "the projection method has a dense matrix of all points and links; for a long rope it would take a sparse one"
 UNCERTAINTY = 1e-9
 
