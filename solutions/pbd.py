@@ -214,7 +214,7 @@ def rattle_step(acceleration, t, x, v, dt, net):
 
     x' = x + dt v + ½dt² a + W J(x)ᵀΛ  with C(x') = 0,      v' = (x' − x)/dt + ½dt a' + W J(x')ᵀμ  with J(x') v' = 0
 
-    It takes no energy.  Left to the simulator's judges; PBD is about the other one.
+    It takes no energy: beyond the lecture, and what the projection method is measured by.
     *Source:* Ryckaert et al. 1977 (SHAKE), Andersen 1983 (RATTLE).
     """
     _, J = constraints(x, net)

@@ -30,7 +30,7 @@ class Params(NamedTuple):
 
 CASES = {name: Params(name) for name in (
     "ball, ball", "ball, plane", "ball, capsule", "capsule, capsule", "ball, triangle", "ball, box", "ball in a box", "box, box (corner)",
-    "box, box (edges)", "box in a box", "box on a box", "box, plane", "triangle, box", "disc, polygon (2D)", "polygon, polygon (2D)", "rectangles (2D)", "flying disc (2D)")}
+    "box, box (edges)", "axis of a corner", "axis of two edges", "box in a box", "box on a box", "box, plane", "triangle, box", "disc, polygon (2D)", "polygon, polygon (2D)", "rectangles (2D)", "flying disc (2D)")}
 MARGIN = 0.001               # of pybullet: what it rounds boxes off with, and puts around hulls of points [m]
 
 
@@ -69,6 +69,10 @@ SHAPES = {                   # name: (kind, points or (centre, turn, half edges)
     "rectangles (2D)": (("hull", [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)]), ("hull", [(1.2, 0.9), (3.4, 0.9), (3.4, 1.7), (1.2, 1.7)])),
     "flying disc (2D)": (("ball", [(-3.0, 0.35), (1.0, 0.05)]), ("ball", [(0.0, 0.0)])),
 }
+
+
+SHAPES |= {"axis of a corner": SHAPES["box, box (corner)"], "axis of two edges": SHAPES["box, box (edges)"]}
+AXIS_ONLY = ("axis of a corner", "axis of two edges", "box in a box")       # gap and normal: a separating axis knows no nearest points
 
 
 def flat(p):
@@ -115,7 +119,7 @@ def QUANTITIES(p):
     if p.pair == "flying disc (2D)":
         return "share of the way [-]", "n_x [-]", "n_y [-]"
     many = ("points [-]",) if p.pair in MANY else ()
-    return ("gap [m]", *(f"n_{c} [-]" for c in "xyz"[:2 if flat(p) else 3]), *(() if p.pair == "box in a box" else (f"{c} of b [m]" for c in "xyz"[:2 if flat(p) else 3])), *many)
+    return ("gap [m]", *(f"n_{c} [-]" for c in "xyz"[:2 if flat(p) else 3]), *(() if p.pair in AXIS_ONLY else (f"{c} of b [m]" for c in "xyz"[:2 if flat(p) else 3])), *many)
 
 
 MANY = ("box on a box", "rectangles (2D)")           # these touch along an area: b's point is the middle of the points of contact
@@ -143,8 +147,7 @@ def run(step, acceleration, state, p, dt, steps):
         return (np.array([c.gap - r_a - r_b, *c.n, *(c.p_b + r_b * c.n)]),)
     if step.__name__ == "box_separation":
         gap, n, _ = box_separation(box_of(a), box_of(b))
-        found = () if p.pair == "box in a box" else hull_nearest(corners(a, p), corners(b, p))[1]
-        return (np.array([gap, *n, *found]),)
+        return (np.array([gap, *n]),)
     c = narrow(p, a, b)
     return (np.array([c.gap, *c.n, *c.p_b]),)
 
@@ -176,7 +179,7 @@ APART = ("ball, ball", "ball, capsule", "capsule, capsule", "ball, triangle", "b
          "disc, polygon (2D)", "polygon, polygon (2D)")
 DOES = {                     # method or engine: the pairs that it can do
     "ball_contact": ("ball, ball", "ball, plane", "ball, capsule", "capsule, capsule", "ball, triangle", "ball, box", "ball in a box", "box, plane"),
-    "gjk": APART, "box_separation": ("box, box (corner)", "box, box (edges)", "box in a box", *MANY), "continuous_step": ("flying disc (2D)",),
+    "gjk": APART, "box_separation": (*AXIS_ONLY, *MANY), "continuous_step": ("flying disc (2D)",),
     "pybullet": ("ball, ball", "ball, plane", "ball, capsule", "capsule, capsule", "ball in a box", "box on a box", "box, plane"),
     "pybullet, round edges": ("ball, box", "box, box (corner)", "box, box (edges)", "box in a box"),
     "pybullet, hull": ("ball, triangle", "triangle, box"),
@@ -218,7 +221,7 @@ def truth(p, t):
     x, y = hull_nearest(corners(a, p), corners(b, p))
     distance = np.linalg.norm(x - y)
     n, (r_a, r_b) = (x - y) / distance, radii(p)
-    return np.array([distance - r_a - r_b, *n, *(y + r_b * n)])
+    return np.array([distance - r_a - r_b, *n, *(() if p.pair in AXIS_ONLY else y + r_b * n)])
 
 
 PUBLISHED = ((1.0, (0.40453610171, *(WORLD @ [-0.81482, -0.45268, 0.36214]), *(WORLD @ [0.574072, 0.318929, -0.255143] + AT)), 1e-4),)     # √1.22 − 0.7, by hand
