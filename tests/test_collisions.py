@@ -115,8 +115,9 @@ def test_the_first_root_is_when_it_touches_from_walking_to_ten_kilometres_a_seco
         far = (R + r) + draw(0.05, 0.2) * (length - 0.5 * (R + r))
         x_0, x_1 = flight(draw, R + r, share * (R + r), far, length)
         way = far - (R + r) * np.sqrt(1.0 - share**2)
-        t = draw(1.0, 5.0)
+        t, before = draw(1.0, 5.0), x_1.copy()
         got = lesson.cylinder_impact_time(t, dt, x_0, x_1, r, R)
+        close("the place that was handed in: do not change x_1 [m]", x_1, before, 0.0)
         if way < length:
             close("time of impact [s]", got, t + way / speed, 1e-11, given=f"t = {t}, dt = {dt}, {x_0} to {x_1}, r = {r}, R = {R}")
         else:
@@ -390,7 +391,18 @@ def test_a_cut_polygon_has_the_corners_of_what_is_left(lesson, draw):
             close(f"corners of a rectangle {name}, in their order [m]", np.roll(got, best, axis=0), expected, ROUND_OFF, given=f"y = {y.tolist()}, n = {n}, d = {offset}")
 
 
-@exercise("6.13", points=0.5, hint="a segment has one edge: do not come back from its second corner to its first")
+@exercise("6.13", points=0.25, hint="a corner exactly on the plane, s_i = 0, is kept, and adds no crossing")
+def test_a_corner_on_the_plane_is_kept_once(lesson, draw):
+    for d in (2, 3):
+        wide, high = float(draw.whole(1, 4)), float(draw.whole(1, 4))                 # whole numbers: s is exactly 0
+        y, n = np.zeros((4, d)), np.zeros(d)
+        y[:, :2], n[0] = [(0.0, 0.0), (wide, 0.0), (wide, high), (0.0, high)], 1.0
+        close("corners of a rectangle that only touches the plane [m]", lesson.clip(y, n, wide), y, 0.0, given=f"y = {y.tolist()}")
+        left = numbers("corners of a rectangle of which an edge is left [m]", lesson.clip(y, n, 0.0), (2, d), given=f"y = {y.tolist()}")
+        close("corners of a rectangle of which an edge is left, in the order of their place [m]", left[np.argsort(left[:, 1])], y[[0, 3]], 0.0, given=f"y = {y.tolist()}")
+
+
+@exercise("6.13", points=0.25, hint="a segment has one edge: do not come back from its second corner to its first")
 def test_a_cut_segment_keeps_two_ends(lesson, draw):
     rows, a, f = axes(draw, 2), draw(-3.0, 3.0, 2), draw(0.2, 0.8)
     b = a + draw(1.0, 3.0) * rows[0] + draw(-0.5, 0.5) * rows[1]

@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import brentq
 
 from .grading.expect import between, close, raises
-from solutions.checks import BadInput
+from solutions.checks import BadInput, Diverged
 
 exercise = pytest.mark.exercise
 # Everything drawn is below 30 in its unit, and what is compared takes a few dozen operations, each rounded by 1.1e-16 of that:
@@ -186,7 +186,7 @@ def meeting(draw, n, slip, u_n):
     return u_n * n + slip / np.linalg.norm(t) * t
 
 
-@exercise("7.10", points=0.5, hint="n · u ≥ w: there is nothing to do, J = 0")
+@exercise("7.10", points=0.25, hint="n · u ≥ w: there is nothing to do, J = 0")
 def test_contacts_that_part_fast_enough_get_no_impulse(lesson, draw):
     n, K = contact(draw)
     for u_n, w in ((draw(0.5, 2.0), 0.0), (draw(1.1, 2.0), draw(0.1, 1.0))):
@@ -194,7 +194,7 @@ def test_contacts_that_part_fast_enough_get_no_impulse(lesson, draw):
         close("impulse on what separates [N s]", got, STILL, 0.0, given=f"n · u = {u_n} m/s, w = {w} m/s")
 
 
-@exercise("7.10", points=0.5, hint="with enough friction the contact sticks: u + K J = w n, so J = K⁻¹ (w n − u)")
+@exercise("7.10", points=0.25, hint="with enough friction the contact sticks: u + K J = w n, so J = K⁻¹ (w n − u)")
 def test_enough_friction_leaves_nothing_along_the_surface(lesson, draw):
     for w, mu in ((draw(0.1, 2.0), np.inf), (0.0, 1e6)):
         n, K = contact(draw)
@@ -206,7 +206,7 @@ def test_enough_friction_leaves_nothing_along_the_surface(lesson, draw):
         close("relative velocity after sticking [m/s]", u + K @ lesson.cone_impulse(u, n, K, w, mu), w * n, 1e-11, given=f"u = {u} m/s, n = {n}, K = {K.tolist()}, w = {w} m/s")
 
 
-@exercise("7.10", points=1, hint="slide: |J_t| = μ J_n, J_t to the side of the stick's J_t, and the size so that n · u⁺ = w")
+@exercise("7.10", points=0.5, hint="slide: |J_t| = μ J_n, J_t to the side of the stick's J_t, and the size so that n · u⁺ = w")
 def test_too_little_friction_slides_on_the_rim_of_the_cone(lesson, draw):
     for share, w in ((draw(0.1, 0.9), 0.0), (draw(0.1, 0.9), draw(0.1, 2.0)), (0.0, draw(0.1, 1.0))):
         n, K = contact(draw)
@@ -218,6 +218,34 @@ def test_too_little_friction_slides_on_the_rim_of_the_cone(lesson, draw):
         given = f"u = {u} m/s, n = {n}, K = {K.tolist()}, w = {w} m/s, μ = {mu}"
         close("normal velocity after the impact [m/s]", n @ (u + K @ J), w, 1e-11, given=given)
         close("impulse along the surface [N s]: μ J_n, to the side of the stick's", across(n, J), mu * (J @ n) * along, 1e-10, given=given)
+
+
+@exercise("7.10", points=0.5, hint="compare |J_t|, not |J|, with μ J_n; and where 0 < n · u < w they separate too slowly: push")
+def test_a_cone_as_wide_as_the_sticking_impulse_needs_holds_also_what_parts_too_slowly(lesson, draw):
+    """u = w n − K J makes J the impulse that sticks, whatever J is."""
+    for slow in (False, True):
+        n, K = contact(draw)
+        rho, t = draw(0.05, 0.2), across(n, unit(draw, 3))
+        J = draw(0.5, 2.0) * (n + rho * t / np.linalg.norm(t))
+        w = n @ K @ J + draw(0.1, 0.5) if slow else draw(0.1, 0.5)
+        u = w * n - K @ J
+        got = lesson.cone_impulse(u, n, K, w, 1.3 * rho)
+        close("impulse that sticks [N s]", got, J, 1e-11, given=f"u = {u} m/s, n = {n}, K = {K.tolist()}, w = {w} m/s, μ = {1.3 * rho}")
+
+
+@exercise("7.10", points=0.5, hint="a stick that would have to pull, J_n < 0, is in no cone: slide; with β = arctan μ that works for μ = ∞, too")
+def test_a_contact_slides_where_sticking_would_have_to_pull(lesson, draw):
+    n, K = contact(draw)
+    side = across(n, K @ n) / np.linalg.norm(across(n, K @ n))
+    J, w = side - 0.5 * (n @ K @ side) / (n @ K @ n) * n, draw(0.1, 0.5)
+    u = w * n - K @ J
+    for mu in (draw(0.3, 1.0), 5.0, np.inf):
+        got = np.asarray(lesson.cone_impulse(u, n, K, w, mu))
+        given = f"u = {u} m/s, n = {n}, K = {K.tolist()}, w = {w} m/s, μ = {mu}"
+        close("normal velocity after the impact [m/s]", n @ (u + K @ got), w, 1e-10, given=given)
+        between("impulse out of the surface [N s]: it never pulls", got @ n, -ROUND_OFF, 1e3, given=given)
+        beta = np.arctan(mu)
+        close("impulse across the rim of the cone [N s]: none", np.cos(beta) * across(n, got) - np.sin(beta) * (got @ n) * side, STILL, 1e-10, given=given)
 
 
 @exercise("7.10", points=0.5, hint="call check_contact first")
@@ -362,7 +390,19 @@ def test_a_backtracking_step_follows_a_bouncing_ball_exactly(lesson, draw):
             close("velocity [m/s]", v, speed * p.n + (slip + along * time) * t, 1e-10, given=given)
 
 
-@exercise("7.16", points=0.5, hint="where bouncing_time fits into what is left it lies on the plane from there on: lie(…)")
+@exercise("7.16", points=0.25, hint="start from x and v without changing them: x = x + …, not x += …; and after IMPACTS impacts raise Diverged")
+def test_a_step_leaves_its_input_alone_and_says_when_impacts_have_no_end(lesson, draw):
+    p, t, pull, along = drop(draw, lesson, 2, 1.0)
+    x, v = p.point + draw(0.5e-4, 1e-4) * p.n, 0.0 * t
+    before = x.copy()
+    lesson.backtracking_step(lesson.falling_acceleration, 0.0, x, v, 0.1, p)
+    close("the position that was handed in [m]", x, before, 0.0)
+    close("the velocity that was handed in [m/s]", v, np.zeros(2), 0.0)
+    # a flight of a ball that loses nothing, from 0.1 mm, lasts 2 √(2h/a) < 0.013 s: 10,000 of them end before 130 s
+    raises("a step of 1000 s with more than IMPACTS impacts", Diverged, lesson.backtracking_step, lesson.falling_acceleration, 0.0, x, v, 1000.0, p)
+
+
+@exercise("7.16", points=0.25, hint="where bouncing_time fits into what is left it lies on the plane from there on: lie(…)")
 def test_a_ball_that_has_bounced_for_the_last_time_lies(lesson, draw):
     for e in (0.0, draw(0.3, 0.8)):
         p, t, pull, along = drop(draw, lesson, 3, e)

@@ -335,7 +335,7 @@ def test_a_negative_compliance_and_a_constraint_without_mass_are_refused(lesson,
 def test_a_visit_to_a_spring_leaves_it_in_balance_with_what_it_has_pulled(lesson, draw):
     for d in (2, 3):
         x, w = np.stack((draw(-1.0, 1.0, d), draw(2.0, 3.0, d))), draw(0.3, 2.0, 2)
-        p = net(lesson, w, [(0, 1)], draw(0.5, 1.0), d, 1.0, draw(0.001, 0.1))
+        p = net(lesson, w, [(0, 1)], draw(0.5, 1.0), d, 0.4, draw(0.001, 0.1))
         Lam, dt, before = np.array([-draw(0.1, 0.5)]), draw(0.1, 0.4), x.copy()
         kept = Lam.copy()
         new, total = lesson.compliant_sweep(x, Lam, dt, p)
@@ -353,7 +353,7 @@ def test_springs_are_visited_one_after_the_other(lesson, draw):
     n, begin, dt = direction(draw, 2), draw(-1.0, 1.0, 2), draw(0.1, 0.4)
     a, b, w, alpha = draw(0.1, 0.5), draw(0.1, 0.5), draw(0.5, 2.0), draw(0.001, 0.1, 2)
     x = begin + np.outer([0.0, 1.0 + a, 2.0 + a + b], n)
-    p = net(lesson, [0.0, w, w], [(0, 1), (1, 2)], 1.0, 2, 1.0, alpha)
+    p = net(lesson, [0.0, w, w], [(0, 1), (1, 2)], 1.0, 2, 0.4, alpha)
     new, Lam = lesson.compliant_sweep(x, np.zeros(2), dt, p)
     soft = alpha / dt**2
     first = -a / (w + soft[0])

@@ -202,7 +202,7 @@ def not_run(scene, plan):
     if plan.quick and len(scene.CASES) > 1 and still(scene) is None:
         slow.append(f"Left to --full: the engines on {', '.join(list(scene.CASES)[1:])}")
     if plan.quick and len(scene.STEPS) > 1 and scene.ENGINES:
-        slow.append("Left to --full: the engines' two finest steps")
+        slow.append("Left to --full: the engines' finest step")
     return never + slow
 
 
@@ -226,7 +226,7 @@ def engine_curve(name, scene, case, engine, p, truth, plan):
     product = engine.label.split(",")[0]
     if product in plan.live:
         source = f"live, {product} {engines.installed(product)}"
-        finest = scene.STEPS[-3:][0 if plan.quick else -1]                              # the last two are most of an engine's time
+        finest = scene.STEPS[-2:][0 if plan.quick else -1]                              # the last one is half of an engine's time
         runs = [(n, engine_final(scene, engine, p, n)) for n in sweep(scene, plan) if n <= min(engine.most_steps or n, finest)]
     else:
         record = recorded(name, case, engine.label)

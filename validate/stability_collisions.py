@@ -132,9 +132,10 @@ def case_61(lesson):
 
 
 def by_school(y, w, rho):
-    """First root by B² − A C and −B − √D."""
-    A, B, C = w @ w, y @ w, y @ y - rho * rho
-    return (-B - np.sqrt(max(B * B - A * C, 0.0))) / A
+    """First root of |y + s w|² = ρ² by B² − A C and −B − √D, whatever digits that costs."""
+    linear, quadratic = float(np.dot(y, w)), float(np.dot(w, w))
+    under_the_root = linear**2 - quadratic * float(np.dot(y, y) - rho**2)
+    return (-linear - np.sqrt(max(under_the_root, 0.0))) / quadratic
 
 
 def case_62(lesson):

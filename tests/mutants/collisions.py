@@ -325,15 +325,15 @@ wrong("6.12", "the edges of b")(edges(of=lambda a, b: (b, a)))
 
 
 # 6.13 -----------------------------------------------------------------------------------------------------------
-def cut(side=1.0, crossing=lambda s_i, s_j: s_i / (s_i - s_j), back=False, add=True, offset=1.0):
+def cut(side=1.0, crossing=lambda s_i, s_j: s_i / (s_i - s_j), back=False, add=True, offset=1.0, kept_at=lambda s: s <= 0.0, crosses=lambda a, b: a * b < 0.0):
     def clip(y, n, d):
         k, kept = len(y), []
         s = [side * float(n @ p - offset * d) for p in y]
         for i in range(k):
             j = (i + 1) % k
-            if s[i] <= 0.0:
+            if kept_at(s[i]):
                 kept.append(y[i])
-            if add and s[i] * s[j] < 0.0 and (back or k > 2 or i == 0):
+            if add and crosses(s[i], s[j]) and (back or k > 2 or i == 0):
                 kept.append(y[i] + crossing(s[i], s[j]) * (y[j] - y[i]))
         return np.array(kept).reshape(-1, y.shape[1])
     return clip
@@ -345,6 +345,8 @@ wrong("6.13", "cuts in the middle of an edge")(cut(crossing=lambda s_i, s_j: 0.5
 wrong("6.13", "the crossing from the other end")(cut(crossing=lambda s_i, s_j: s_j / (s_j - s_i)))
 wrong("6.13", "there and back along a segment")(cut(back=True))
 wrong("6.13", "only leaves corners out")(cut(add=False))
+wrong("6.13", "drops what is on the plane")(cut(kept_at=lambda s: s < 0.0))
+wrong("6.13", "counts what is on the plane twice")(cut(crosses=lambda a, b: a * b <= 0.0 and a != b))
 wrong("6.13", "forgets d")(cut(offset=0.0))
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from solutions import impulses as worked
+from solutions.checks import Diverged
 from solutions.rotation import cross, point_velocity, skew
 from . import collection
 
@@ -200,11 +201,11 @@ def point_inverse_mass(r, inv_mass, inv_inertia):
 
 
 # 7.10 -----------------------------------------------------------------------------------------------------------
-def cone(check=True, parts=True, goal=lambda w: w, rim=lambda mu: mu, side="stick", clamp="rim", sticks=lambda J_t, J_n, mu: J_t <= mu * J_n):
+def cone(check=True, parts=True, enough=lambda w: w, goal=lambda w: w, rim=lambda mu: mu, side="stick", clamp="rim", sticks=lambda J_t, J_n, mu: J_t <= mu * J_n):
     def cone_impulse(u, n, K, w, mu):
         if check:
             worked.check_contact(u, n, K, mu)
-        if parts and u @ n >= w:
+        if parts and u @ n >= enough(w):
             return np.zeros(3)
         J = np.linalg.solve(K, goal(w) * n - u)
         J_t = tangential(J, n)
@@ -228,6 +229,9 @@ wrong("7.10", "never sticks")(cone(sticks=lambda J_t, J_n, mu: False))
 wrong("7.10", "always sticks")(cone(sticks=lambda J_t, J_n, mu: True))
 wrong("7.10", "against the slip before the impact")(cone(side="slip"))
 wrong("7.10", "keeps the stick's normal impulse")(cone(clamp="cut"))
+wrong("7.10", "pulls where sticking would have to")(cone(sticks=lambda J_t, J_n, mu: J_t <= mu * abs(J_n)))
+wrong("7.10", "compares all of the impulse with the cone")(cone(sticks=lambda J_t, J_n, mu: np.hypot(J_t, J_n) <= mu * J_n))
+wrong("7.10", "lets be what parts too slowly")(cone(enough=lambda w: 0.0))
 wrong("7.10", "half the friction")(cone(rim=lambda mu: 0.5 * mu))
 
 
@@ -373,12 +377,14 @@ wrong("7.15", "forgets dt")(project(once=False))
 
 
 # 7.16 -----------------------------------------------------------------------------------------------------------
-def back_to(rest=True, goes_on=True, once=False, fly=worked.fly, lie=worked.lie, bounce=lambda e: e):
+def back_to(rest=True, goes_on=True, once=False, silent=False, changes=False, fly=worked.fly, lie=worked.lie, bounce=lambda e: e):
     def backtracking_step(acceleration, t, x, v, dt, p):
-        a, left = acceleration(t, x, v, p), dt
-        for _ in range(1 if once else 300):
+        a, left, given = acceleration(t, x, v, p), dt, x
+        for _ in range(1 if once else worked.IMPACTS):
             tau = worked.impact_time(worked.gap(x, p), v @ p.n, a @ p.n, left)
             x, v = fly(x, v, a, tau)
+            if changes:
+                given[:] = x
             left = left - tau
             if left <= 0.0:
                 return x, v
@@ -388,12 +394,16 @@ def back_to(rest=True, goes_on=True, once=False, fly=worked.fly, lie=worked.lie,
                 return x, v
             if rest and worked.bouncing_time(v @ p.n, a @ p.n, p.e) <= left:
                 return lie(x, v, a, left, p.n)
-        return fly(x, v, a, left)
+        if once or silent:
+            return fly(x, v, a, left)
+        raise Diverged("impacts in a step of dt [s]", dt, "take a smaller one")
     return backtracking_step
 
 
 right("7.16", "with new names")(back_to())
 wrong("7.16", "stops at the impact")(back_to(goes_on=False))
+wrong("7.16", "gives up without a word")(back_to(silent=True))
+wrong("7.16", "changes its input")(back_to(changes=True))
 wrong("7.16", "one impact a step")(back_to(once=True))
 wrong("7.16", "flies without the half of a t²")(back_to(fly=lambda x, v, a, t: (x + t * v, v + t * a)))
 wrong("7.16", "every impact elastic")(back_to(bounce=lambda e: 1.0))

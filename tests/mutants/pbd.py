@@ -322,7 +322,7 @@ wrong("8.12", "takes a constraint with no free mass")(giving(weighed=False))
 
 
 # 8.13 -----------------------------------------------------------------------------------------------------------
-def soft_sweep(adds=True, kept=True, jacobi=False, mass=True, sign=1.0, changes=False, checked=True, one_alpha=False, weight=1.0):
+def soft_sweep(adds=True, kept=True, jacobi=False, mass=True, sign=1.0, changes=False, checked=True, one_alpha=False, weight=1.0, stiffness=False):
     def compliant_sweep(x, Lam, dt, net):
         seen, new, total = x.copy(), (x if changes else x.copy()), (Lam if changes else Lam.copy())
         for s in range(net.i.size):
@@ -335,6 +335,7 @@ def soft_sweep(adds=True, kept=True, jacobi=False, mass=True, sign=1.0, changes=
             w_i, w_j = net.inv_mass[i], net.inv_mass[j]
             alpha = net.alpha[0] if one_alpha else net.alpha[s]
             change = worked.compliant_multiplier(size(r) - net.rest[s], total[s] if kept else 0.0, weight * (w_i + w_j), alpha, dt)
+            change *= net.stiffness[s] if stiffness else 1.0
             total[s] = total[s] + change if adds else change
             new[i] = new[i] + sign * (w_i if mass else 1.0) * change * r / size(r)
             new[j] = new[j] - sign * (w_j if mass else 1.0) * change * r / size(r)
@@ -351,6 +352,7 @@ wrong("8.13", "the wrong way")(soft_sweep(sign=-1.0))
 wrong("8.13", "changes its input")(soft_sweep(changes=True))
 wrong("8.13", "takes ends that coincide")(soft_sweep(checked=False))
 wrong("8.13", "one compliance for all")(soft_sweep(one_alpha=True))
+wrong("8.13", "PBD's stiffness on top")(soft_sweep(stiffness=True))
 wrong("8.13", "half of the weight")(soft_sweep(weight=0.5))
 
 
