@@ -545,7 +545,7 @@ def clip(y, n, d):
 
     Around the polygon: keep corner i if s_i = n · y_i − d ≤ 0; then, if s_i and s_j of the next corner j differ in sign (s_i s_j < 0), add
         y_i + s_i/(s_i − s_j) (y_j − y_i)
-    A segment (k = 2) has one edge only: there is no crossing from its second corner back to its first.  It may be that nothing is left.
+    A segment (k = 2) has one edge only: there is no crossing from its second corner back to its first.  It may be that nothing is left: an array of no rows.
     *Source:* Sutherland and Hodgman 1974.
     """
     # YOUR CODE HERE

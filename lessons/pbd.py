@@ -136,7 +136,8 @@ def newton_correction(x, lam, goal, dt, net):
 
     wanted:  x − x_pred − dt² W Σ λₛ ∇Cₛ(x) = 0  and  Cₛ(x) = 0.      Linear about the guess, with the new λ, of both:
         (1 − dt² W Σ λₛ ∇²Cₛ) Δx − dt² W Jᵀ λ_new = x_pred − x
-        J Δx                                      = −C                          Λ = dt² λ is the better unknown: of one size with x
+        J Δx                                      = −C
+    The λ that is handed in counts in ∇²C only.  (Λ = dt² λ is the better unknown: of one size with x.)
 
     W: the inverse mass of each coordinate of x.ravel();  (C, J) = constraints(x, net);  goal (n, d) is x_pred.
     ∇²C of a link: H = (1 − n nᵀ)/l for the ends (i, i) and (j, j), −H for (i, j) and (j, i);  l = C + rest.

@@ -253,7 +253,7 @@ def point_inverse_mass(r, inv_mass, inv_inertia):
 def cone_impulse(u, n, K, w, mu):
     """J (3,) [N s] that makes two contact points with u (3,) separate at w ≥ 0 [m/s], n · u⁺ = w, within the cone |J_t| ≤ μ J_n.
 
-    n · u ≥ w:    J = 0, they separate by themselves.       Otherwise
+    n · u ≥ w:    J = 0, they separate by themselves, and fast enough.       Otherwise, also where they separate too slowly, 0 < n · u < w:
     stick:        J = K⁻¹ (w n − u)                         which leaves u⁺ = w n, nothing along the surface; if |J_t| ≤ μ J_n, this is J.
     slide:        J = j d,   d = n cos β + sin β J_t/|J_t|  on the rim of the cone, tan β = μ, to the side to which sticking would push:
                   j = (w − n · u)/(n · K d)                 J_t = tangential(J, n) is that of the stick's J
