@@ -202,7 +202,7 @@ def not_run(scene, plan):
     if plan.quick and len(scene.CASES) > 1 and still(scene) is None:
         slow.append(f"Left to --full: the engines on {', '.join(list(scene.CASES)[1:])}")
     if plan.quick and len(scene.STEPS) > 1 and scene.ENGINES:
-        slow.append("Left to --full: the engines' finest step")
+        slow.append("Left to --full: the engines' finest step, where the one before it is fine enough to judge them by")
     return never + slow
 
 
@@ -226,7 +226,8 @@ def engine_curve(name, scene, case, engine, p, truth, plan):
     product = engine.label.split(",")[0]
     if product in plan.live:
         source = f"live, {product} {engines.installed(product)}"
-        finest = scene.STEPS[-2:][0 if plan.quick else -1]                              # the last one is half of an engine's time
+        early = scene.STEPS[-2:][0]                                  # the last one is half of an engine's time
+        finest = early if plan.quick and allowed(scene, p, engine.label, engine.order, early) < ASYMPTOTIC else scene.STEPS[-1]
         runs = [(n, engine_final(scene, engine, p, n)) for n in sweep(scene, plan) if n <= min(engine.most_steps or n, finest)]
     else:
         record = recorded(name, case, engine.label)
@@ -239,11 +240,16 @@ def engine_curve(name, scene, case, engine, p, truth, plan):
             "observed": [{"steps": n, "observed": None if o is None else o.tolist(), "failure": f} for n, (o, f) in runs]}
 
 
+def allowed(scene, p, label, order, steps):
+    """The largest relative error that theory allows a method or an engine at so many steps."""
+    limits = scene.tolerance(p, scene.T / steps)
+    return limits[label] if label in limits else limits[order]
+
+
 def judged(scene, label, p, truth, runs, order):
     """The curve of one method or engine; where the scene gives it a law of its own, it must depart from the truth exactly as that says."""
     def limit(steps):
-        limits = scene.tolerance(p, scene.T / steps)
-        return limits[label] if label in limits else limits[order]
+        return allowed(scene, p, label, order, steps)
 
     result = {**curve(scene, label, p, truth, runs, order, limit), "reason": ""}
     if label in getattr(scene, "WHY", {}):
