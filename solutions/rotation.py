@@ -173,10 +173,8 @@ def axis_angle_update(R, omega, dt):
     if rate > 0.0:
         n, c, s = omega / rate, np.cos(rate * dt), np.sin(rate * dt)
         for k in range(3):
-            r = R[:, k]
-            r_new = c * r + s * cross(n, r) + (1.0 - c) * np.sum(n * r) * n
-            for i in range(3):                       # one by one: numba takes seconds to compile `turned[:, k] = `
-                turned[i, k] = r_new[i]
+            r = R[:, k].copy()
+            turned[:, k] = c * r + s * cross(n, r) + (1.0 - c) * np.sum(n * r) * n
     return turned
     ### END SOLUTION
 

@@ -220,7 +220,7 @@ def lessons_of(names):
 
 
 def mixed(names):
-    """The scenes in turns, one of each lesson: neighbours, which run at one time, then compile nothing twice."""
+    """The scenes in turns, one of each lesson: neighbours, which run at one time, then compile little twice."""
     lessons = [binding.bind_scene(name).LESSON for name in names]
     turns = {name: lessons[:k].count(lessons[k]) for k, name in enumerate(names)}
     return sorted(names, key=turns.get)

@@ -276,7 +276,7 @@ def _without_addresses():
 
 @lru_cache(maxsize=1)
 def _short_of_words():
-    """Let `rows[k] = row` say that shapes differ, but not which: numba takes a second and a half to compile that sentence, wherever it may be said."""
+    """Let `rows[k] = row` say that shapes differ, but not which: compiling that sentence takes numba longer than all the rest."""
     from numba.extending import overload
     from numba.np import arrayobj
 

@@ -203,6 +203,10 @@ def not_run(scene, plan):
         slow.append(f"Left to --full: the engines on {', '.join(list(scene.CASES)[1:])}")
     if plan.quick and len(scene.STEPS) > 1 and scene.ENGINES:
         slow.append("Left to --full: the engines' finest step, where the one before it is fine enough to judge them by")
+    if plan.quick and still(scene) == "" and "compiled" in plan.speeds:
+        slow.append("Left to --full: the same, compiled")
+    elif plan.quick:
+        slow.append("Left to --full: run times of steps coarser than the scene's own sweep")
     return never + slow
 
 

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solutions.checks import Diverged
+from solutions.checks import BadInput, Diverged
 
 from . import binding
 from .scene import INTEGRATORS
@@ -131,6 +131,15 @@ def turning(lesson, method, h_omega, steps, flatness=1.0):
         x, v = lesson.advance(getattr(lesson, method), lesson.oscillator_acceleration, 0.0, x, v, h_omega / OMEGA, 1, p)
         angles[n + 1] = np.arctan2(-v[0] / (flatness * OMEGA), x[0])
     return np.unwrap(angles)[-1] / steps
+
+
+def refuses(function, arguments=(), value=""):
+    """Whether a call ends in BadInput, with that value in its sentence."""
+    try:
+        function(*arguments)
+    except BadInput as e:
+        return value in str(e)
+    return False
 
 
 def refuse(methods, run):

@@ -7,13 +7,12 @@ import numpy as np
 
 from solutions import collisions as worked
 from solutions import integrators
-from solutions.checks import BadInput
 from solutions.integrators import observed_order
 
 from . import engines
 from .engines import Bullet
 from .shapes import depth_of, hull_nearest
-from .stability import DOTS, LINE, Picture, finding, series
+from .stability import DOTS, LINE, Picture, finding, refuses, series
 
 THROWN = 10_000              # balls, each at its own phase of a step
 FEW = 60                     # … in an engine
@@ -366,15 +365,6 @@ def corners_of(box):
     """The eight corners (8, 3) of a box."""
     signs = np.array([[i, j, k] for i in (-1.0, 1.0) for j in (-1.0, 1.0) for k in (-1.0, 1.0)])
     return box.x + signs * box.half @ box.R.T
-
-
-def refuses(function, arguments):
-    """Whether a call ends in BadInput."""
-    try:
-        function(*arguments)
-    except BadInput:
-        return True
-    return False
 
 
 CASES = {

@@ -7,12 +7,11 @@ Cases 31 to 37.  Edges are found by bisection of runs from rest, never by asking
 import numpy as np
 
 from solutions import integrators
-from solutions.checks import BadInput
 from solutions.friction import InBowl, OnPlane, make_block
 
 from . import engines, stability
 from .blocks import bullet_block, pymunk_block
-from .stability import DOTS, EDGE, LINE, Picture, bisect, finding, series
+from .stability import DOTS, EDGE, LINE, Picture, bisect, finding, refuses, series
 
 G = 9.81                     # [m/s²]
 WAY = 1e-9                   # [m]: far above the round-off of a second, far below any slip beyond the edge by 1e-6
@@ -273,15 +272,6 @@ def case_37(lesson):
     return found, Picture("The same impact at any speed", "log₁₀ of the speed [m/s]", "impulse over m v [-]", [
         series("theory", exponents, np.full(10, 1.5 * np.hypot(1.0, 0.4)), LINE), series("contact, measured", exponents, after, DOTS)],
         "From a millimetre to a thousand kilometres a second: Coulomb's law has no scale of its own.")
-
-
-def refuses(function, arguments, value):
-    """Whether a call ends in BadInput with that value in its sentence."""
-    try:
-        function(*arguments)
-    except BadInput as e:
-        return value in str(e)
-    return False
 
 
 CASES = {

@@ -7,10 +7,10 @@ Cases 18 to 20 and 71 to 73.  Edges are found by bisection of runs or of impacts
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from solutions.checks import BadInput, Diverged
+from solutions.checks import Diverged
 
 from .impacts import COPIES
-from .stability import DOTS, EDGE, LINE, Picture, bisect, finding, series
+from .stability import DOTS, EDGE, LINE, Picture, bisect, finding, refuses, series
 
 G = 9.81                     # [m/s²]
 ROUND_OFF = 1e-12            # of numbers below 30, after a few hundred operations, each rounded by 1.1e-16 of that
@@ -265,15 +265,6 @@ def case_72(lesson):
 
 
 # ---------------------------------------------------------------------------------------------- what has no physics
-
-def refuses(function, arguments, value):
-    """Whether a call ends in BadInput with that value in its sentence."""
-    try:
-        function(*arguments)
-    except BadInput as e:
-        return value in str(e)
-    return False
-
 
 def case_73(lesson):
     """Impacts that have no physics are refused by name and value; those that only look so are solved."""

@@ -7,11 +7,11 @@ beforehand.  *Source:* Müller et al. 2006, Macklin et al. 2016 and 2019; each c
 import numpy as np
 
 from solutions import integrators
-from solutions.checks import BadInput, Diverged
+from solutions.checks import Diverged
 from solutions.pbd import Net
 
 from .chains import pendulum_period
-from .stability import DOTS, LINE, Picture, finding, series
+from .stability import DOTS, LINE, Picture, finding, refuses, series
 
 G = 9.81                     # [m/s²]
 MILLIMETRES = 1e3            # in a metre
@@ -220,15 +220,6 @@ def case_84(lesson):
     drawn = [part for way in ways for part in (series(f"{way}, theory", np.log10(fine), [np.log10(MILLIMETRES * theory[way](n)) for n in fine], LINE),
                                                series(f"{way}, measured", np.log10(dots), [np.log10(MILLIMETRES * stretch(ways[way](n)).sum()) for n in dots], DOTS))]
     return found, Picture("Where to spend the visits of a frame", "log₁₀ of the visits to a link", "log₁₀ of how much too low [mm]", drawn, "The same work, and a slope twice as steep: short steps are worth more than many sweeps.")
-
-
-def refuses(function, *arguments):
-    """Whether a call ends in BadInput."""
-    try:
-        function(*arguments)
-    except BadInput:
-        return True
-    return False
 
 
 def case_85(lesson):
