@@ -298,7 +298,7 @@ def _use_cache(digest):
     from numba.core.config import _OptLevel
     _without_addresses()
     _short_of_words()
-    numba.config.OPT, numba.config.LOOP_VECTORIZE = _OptLevel(2), 0                   # same speed here, a third of the compiling
+    numba.config.OPT, numba.config.LOOP_VECTORIZE = _OptLevel(1), 0                   # same speed here, a third of the compiling
     warnings.filterwarnings("ignore", message="Cannot cache compiled function")      # then it is compiled anew, that is all
     folder = CACHE / digest
     try:

@@ -46,8 +46,8 @@ class Plan(NamedTuple):
         return {"plain": ours, "compiled": ours, "engine": engine}
 
     def repeats(self):
-        """How often each run is timed: seldom in a notebook, whose reader waits."""
-        return 3 if self.most_steps else REPEATS
+        """How often each run is timed: seldomer where somebody waits."""
+        return 3 if self.most_steps else 5 if self.quick else REPEATS
 
 
 # ---------------------------------------------------------------------------------------------- running a scene
@@ -135,8 +135,6 @@ def shown_order(rows, floor):
 def errors(name, plan):
     """Everything about a scene but its run times: a dict that JSON can hold."""
     scene = binding.bind_scene(name, plan.of)
-    table = still(scene) == ""                                       # nothing is timed in it: in a quick run it would be compiled for nothing
-    fast = binding.bind_scene(name, plan.of, compiled=True) if "compiled" in plan.speeds and not (table and plan.quick) else scene
     cases = {}
     for case, p in cases_of(scene, plan).items():
         asked = not cases or not plan.quick or still(scene) is not None       # moving ones ask engines for other cases in a full validation only
@@ -144,7 +142,7 @@ def errors(name, plan):
         ours = []
         for method in methods_of(scene, plan, p):
             order = getattr(scene, "ORDERS", {}).get(method.function, method.order)
-            step = getattr(binding.world(plan.of, fast is not scene).lesson(method.lesson), method.function)
+            fast, step = at_speed(name, plan, method, speeds_of(scene, plan, method)[-1])
             runs = [(n, final(fast, step, p, n)) for n in sweep(scene, plan)]
             ours.append(judged(scene, method.label, p, truth, runs, order))
             if still(scene) is not None:
@@ -157,7 +155,7 @@ def errors(name, plan):
     return jsonable({
         "scene": name, "still": still(scene), "title": scene.TITLE, "lesson": scene.LESSON, "story": said_of(scene), "T": scene.T,
         "uncertainty": scene.UNCERTAINTY, "truth_story": said_of(scene.truth), "needs": list(scene.NEEDS),
-        "without": not_run(scene, plan), "cases": cases, "parity": parity(scene, fast, plan, first), "picture": picture(scene, fast, plan, first, agreeing),
+        "without": not_run(scene, plan), "cases": cases, "parity": parity(name, scene, plan, first), "picture": picture(name, scene, plan, first, agreeing),
         "law": said_of(scene.acceleration) if hasattr(scene, "acceleration") else "",
     })
 
@@ -185,6 +183,18 @@ def methods_of(scene, plan, p=None):
     return tuple(m for m in scene.METHODS if m.function not in slow and can(scene, m.function, p))
 
 
+def speeds_of(scene, plan, method):
+    """The speeds at which a method runs, the quickest last: plain only where a quick validation would wait for the compiler, not for the run."""
+    soon = still(scene) == "" or method.function in getattr(scene, "PLAIN_IN_QUICK", ())
+    return ("plain",) if plan.quick and soon and "plain" in plan.speeds else plan.speeds
+
+
+def at_speed(name, plan, method, speed):
+    """The scene and our step, both plain or both compiled."""
+    compiled = speed == "compiled"
+    return binding.bind_scene(name, plan.of, compiled), getattr(binding.world(plan.of, compiled).lesson(method.lesson), method.function)
+
+
 def engines_of(scene, p):
     """The engines that can do this case."""
     return tuple(e for e in scene.ENGINES if can(scene, e.label, p))
@@ -203,9 +213,10 @@ def not_run(scene, plan):
         slow.append(f"Left to --full: the engines on {', '.join(list(scene.CASES)[1:])}")
     if plan.quick and len(scene.STEPS) > 1 and scene.ENGINES:
         slow.append("Left to --full: the engines' finest step, where the one before it is fine enough to judge them by")
-    if plan.quick and still(scene) == "" and "compiled" in plan.speeds:
-        slow.append("Left to --full: the same, compiled")
-    elif plan.quick:
+    plain = [m.label for m in methods_of(scene, plan) if speeds_of(scene, plan, m) != plan.speeds]
+    if plain:
+        slow.append(f"Left to --full: the same, compiled: {', '.join(plain)}")
+    if plan.quick and still(scene) != "":
         slow.append("Left to --full: run times of steps coarser than the scene's own sweep")
     return never + slow
 
@@ -273,20 +284,17 @@ def recorded(name, case, label):
     return runs and {"source": f"recorded, {record['stamp']}", "runs": runs, "seconds": record["seconds"].get(label)}
 
 
-def parity(scene, fast, plan, p):
-    """Largest difference between the plain and the compiled run of every method, relative; None without a compiled one."""
-    if fast is scene or "plain" not in plan.speeds:
-        return None
-    worst = 0.0
+def parity(name, scene, plan, p):
+    """Largest difference between the plain and the compiled run of every method, relative; None where no method runs at both speeds."""
+    differences = []
     for method in methods_of(scene, plan, p):
-        plain, twin = (getattr(binding.world(plan.of, c).lesson(method.lesson), method.function) for c in (False, True))
-        a, b = final(scene, plain, p, scene.STEPS[0])[0], final(fast, twin, p, scene.STEPS[0])[0]
-        if a is not None and b is not None:
-            worst = max(worst, relative(a, b))
-    return worst
+        if len(speeds_of(scene, plan, method)) == 2:
+            a, b = (final(*at_speed(name, plan, method, speed), p, scene.STEPS[0])[0] for speed in plan.speeds)
+            differences.append(relative(a, b) if a is not None and b is not None else 0.0)
+    return max(differences, default=None)
 
 
-def picture(scene, fast, plan, p, usable):
+def picture(name, scene, plan, p, usable):
     """Frames of the motion: truth, our usable method of highest order, and the first engine that is live and agrees."""
     if still(scene) is not None:
         there = np.array(scene.truth(p, scene.T), dtype=float)
@@ -297,13 +305,13 @@ def picture(scene, fast, plan, p, usable):
     dt = seconds / (per_frame * FRAMES)
     seen = {"truth": [np.array(scene.truth(p, seconds * k / FRAMES)) for k in range(FRAMES + 1)]}
     for method in sorted((m for m in scene.METHODS if m.label in usable), key=lambda m: -m.order)[:1]:
-        seen[method.label] = our_frames(scene, fast, plan, method, p, dt, per_frame)
+        seen[method.label] = our_frames(*at_speed(name, plan, method, speeds_of(scene, plan, method)[-1]), p, dt, per_frame)
     for engine in scene.ENGINES:
         if engine.label.split(",")[0] in plan.live and engine.label not in getattr(scene, "WHY", {}):
             seen[engine.label] = engine_frames(engine, p, dt, per_frame)
             break
     frames = {label: [scene.points(observed, p).tolist() for observed in film] for label, film in seen.items()}
-    record = RECORDED / f"{scene.__name__.rpartition('.')[2]}.json"
+    record = RECORDED / f"{name}.json"
     if record.is_file() and not plan.overrides and not any(label.startswith("py") for label in seen):
         frames["pybullet, recorded"] = json.loads(record.read_text())["frames"]
     return {"seconds": seconds, "frames": frames, "links": links(scene, p), "dt": dt, "space": in_space(scene, seen, p, seconds)}
@@ -328,13 +336,12 @@ def links(scene, p):
     return [list(map(int, pair)) for pair in scene.LINKS(p)] if hasattr(scene, "LINKS") else []
 
 
-def our_frames(scene, fast, plan, method, p, dt, per_frame):
+def our_frames(scene, step, p, dt, per_frame):
     """What our method observes at every frame."""
-    step = getattr(binding.world(plan.of, fast is not scene).lesson(method.lesson), method.function)
     state, film = scene.start(p), []
     for _ in range(FRAMES + 1):
         film.append(scene.observe(state, p))
-        state = fast.run(step, fast.law, state, p, dt, per_frame)
+        state = scene.run(step, scene.law, state, p, dt, per_frame)
     return film
 
 
@@ -377,8 +384,8 @@ def times(name, plan, result):
     found = {c["label"]: {r["steps"]: r for r in c["rows"] if r["error"] is not None and r["error"] < LOST and r["steps"] >= coarsest}
              for c in result["cases"][case]["ours"] + result["cases"][case]["engines"]}
     refined = still(scene) != ""                                     # else there is no diagram to time anything for
-    items = [Timed(m.label, speed, n, scene.T / n, prepare) for m in methods_of(scene, plan, p) for speed in plan.speeds if refined
-             for prepare in [_ours(name, plan, m, speed, p)] for n in found[m.label]]
+    items = [Timed(m.label, speed, n, scene.T / n, prepare) for m in methods_of(scene, plan, p) for speed in speeds_of(scene, plan, m) if refined
+             for prepare in [_loop(*at_speed(name, plan, m, speed), p)] for n in found[m.label]]
     items += [Timed(e.label, "engine", n, scene.T / n, _engine(e, p)) for e in engines_of(scene, p) if refined and e.label.split(",")[0] in plan.live
               for n in found[e.label]]
     timed = [(i.label, i.speed, i.steps, t) for i, t in interleaved(items, plan.longest(), plan.repeats())]
@@ -391,13 +398,9 @@ def times(name, plan, result):
                      "left_out": left_out(name, plan, p, usable(result))})
 
 
-def _ours(name, plan, method, speed, p):
-    scene = binding.bind_scene(name, plan.of, compiled=speed == "compiled")
-    step = getattr(binding.world(plan.of, speed == "compiled").lesson(method.lesson), method.function)
-    return _loop(scene, step, p, scene.start(p))
+def _loop(scene, step, p, state=None):
+    state = state or scene.start(p)
 
-
-def _loop(scene, step, p, state):
     def prepare(steps, dt):
         arguments = step, scene.law, state, p, dt, steps
         return lambda: scene.run(*arguments), lambda: None
@@ -487,12 +490,12 @@ def usable(result):
 
 def left_out(name, plan, p, usable):
     """[{what, saves: times longer with it put in, same: the motion is unchanged, note}] for what the scene does without."""
-    speed = "compiled" if "compiled" in plan.speeds else "plain"
-    scene = binding.bind_scene(name, plan.of, compiled=speed == "compiled")
-    method = max((m for m in scene.METHODS if m.label in usable), key=lambda m: m.order, default=None)
+    plain = binding.bind_scene(name, plan.of)
+    method = max((m for m in plain.METHODS if m.label in usable), key=lambda m: m.order, default=None)
     if method is None:
         return []
-    step = getattr(binding.world(plan.of, speed == "compiled").lesson(method.lesson), method.function)
+    speed = speeds_of(plain, plan, method)[-1]
+    scene, step = at_speed(name, plan, method, speed)
     steps = scene.STEPS[min(2, len(scene.STEPS) - 1)] if speed == "compiled" else scene.STEPS[0]
     rows = []
     for what, extra in scene.LEAVES_OUT.items():
@@ -501,7 +504,7 @@ def left_out(name, plan, p, usable):
             continue
         state, p_full = extra(p)
         items = [Timed(which, speed, steps, scene.T / steps, _loop(scene, step, *begin))
-                 for which, *begin in (("without", p, scene.start(p)), ("with", p_full, state))]
+                 for which, *begin in (("without", p), ("with", p_full, state))]
         (_, lean), (_, full) = interleaved(items, {speed: np.inf})
         a = scene.observe(scene.run(step, scene.law, scene.start(p), p, scene.T / steps, steps), p)
         b = scene.observe(scene.run(step, scene.law, state, p_full, scene.T / steps, steps), p)

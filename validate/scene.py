@@ -21,6 +21,7 @@ and may define
     LINKS(p)                  pairs of points to join in the picture
     WITHOUT                   why some methods or engines that a reader would expect are not there, in one sentence without its full stop
     FULL_ONLY                 functions of methods that are too slow here for a quick validation
+    PLAIN_IN_QUICK            functions of methods that plain Python has done here before the compiler has: a quick validation does not compile them
     bodies(p)                 shapes of validate/report/space.py: the motion is then shown in space, and its points in small;
     poses(observed, p)        (bodies, 7) place and quaternion (w, x, y, z) of each;
     arrows(observed, p)       {name: (from, to)} [m], such as ω and L;   TRAIL: number of the body whose way is drawn;   GROUND: draw z = 0

@@ -5,7 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.integrators import advance
+from solutions.integrators import Oscillator, advance
+from solutions.integrators import oscillator_acceleration as acceleration
 from validate.engines import Bullet, hidden_damping, pymunk_space, pymunk_world
 from validate.scene import INTEGRATORS, Engine, World, by_order
 
@@ -26,9 +27,9 @@ class Params(NamedTuple):
 CASES = {"under-damped": Params(), "undamped": Params(c=0.0), "critically damped": Params(k=1.0, c=2.0), "over-damped": Params(k=1.0, c=5.0)}
 
 
-def acceleration(t, x, v, p):
-    """a = −(k x + c v)/m"""
-    return -(p.k * x + p.c * v) / p.m
+def oscillator(p):
+    """The lesson's parameters:  ω = √(k/m),  ζ = c / 2√(km)."""
+    return Oscillator(float(np.sqrt(p.k / p.m)), float(0.5 * p.c / np.sqrt(p.k * p.m)))
 
 
 def start(p):
@@ -39,7 +40,7 @@ def start(p):
 
 def run(step, acceleration, state, p, dt, steps):
     x, v = state
-    return advance(step, acceleration, 0.0, x, v, dt, steps, p)
+    return advance(step, acceleration, 0.0, x, v, dt, steps, oscillator(p))
 
 
 def observe(state, p):
@@ -82,7 +83,7 @@ def pymunk_make(p, dt, ahead=0.0):
     space = pymunk_space()
     body = pymunk.Body(p.m, 1.0)
     body.position = (p.x0, 0.0)
-    body.velocity = (ahead * dt * acceleration(0.0, p.x0, 0.0, p), 0.0)
+    body.velocity = (ahead * dt * acceleration(0.0, p.x0, 0.0, oscillator(p)), 0.0)
     space.add(body, pymunk.DampedSpring(space.static_body, body, (-2.0, 0.0), (0.0, 0.0), 2.0, p.k, p.c))
     return pymunk_world(space, dt, lambda: np.array([body.position.x]))
 
@@ -90,7 +91,7 @@ def pymunk_make(p, dt, ahead=0.0):
 def pybullet_make(p, dt, ahead=0.0, default=False):
     """The force of the spring and the damper, computed from the state before each step."""
     bullet = Bullet(dt)
-    body = bullet.point_mass(p.m, (p.x0, 0.0, 0.0), (-ahead * dt * acceleration(0.0, p.x0, 0.0, p), 0.0, 0.0), default)
+    body = bullet.point_mass(p.m, (p.x0, 0.0, 0.0), (-ahead * dt * acceleration(0.0, p.x0, 0.0, oscillator(p)), 0.0, 0.0), default)
 
     def step():
         x, v = bullet.position(body), bullet.velocity(body)
@@ -107,7 +108,7 @@ ENGINES = (
     Engine("pybullet", pybullet_make, 1, "useMaximalCoordinates=1, no damping; force applied each step"),
     Engine("pybullet, leapfrog start", lambda p, dt: pybullet_make(p, dt, ahead=0.5), 1, "first velocity − ½ a dt: second order without a damper"),
 )
-WHY = {"pybullet, default": hidden_damping(acceleration, start)}
+WHY = {"pybullet, default": hidden_damping(lambda t, x, v, p: acceleration(t, x, v, oscillator(p)), start)}
 
 
 def points(observed, p):
