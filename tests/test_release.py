@@ -91,8 +91,17 @@ def test_students_get_what_they_need_and_nothing_of_the_authors(released, reposi
     assert {"README.md", "LICENSE", "pyproject.toml", "constraints.txt", "uv.lock", "validate/scenes/oscillator.py",
             "validate/recorded/oscillator.json", "validate/report/base.html", "tests/grading/plugin.py", "tests/grading/expect.py", "notebooks/00_start_here.ipynb"} <= files.keys()
     assert not [name for name in files if re.search(r"mutants|test_(notebooks|generate|repository|release)|grading/box|generate|^\.|notes", name)
-                and name != ".python-version"]
+                and name not in (".python-version", ".gitignore")]
     assert files["solutions/answers.md"] == release.NO_ANSWERS
+    linked = re.findall(r"\]\((?!https?:)([^)#]+)", files["README.md"])
+    assert files["README.md"].startswith("# Physics-based animation: your workbook") and linked and not set(linked) - files.keys()
+
+
+def test_the_students_readme_names_commands_that_are_there(released):
+    files = files_in(released()[2])
+    commands = set(re.findall(r"\.venv/bin/([\w.-]+)", files["README.md"]))
+    ours = set(re.findall(r'^([\w-]+) *= *"(?:tests|validate)[\w.]*:\w+"', files["pyproject.toml"], re.M))
+    assert commands == {"pip", "jupyter", "pytest", "validate"} and "validate" in ours
 
 
 def test_without_answers_a_lesson_builds_on_its_siblings(released):
@@ -200,7 +209,7 @@ def refused(released, *named):
     ("validate/stability.py", "\n" + textwrap.indent(body_of("2.11"), "# "), "2.11"),
     ("validate/report/words.py", f"\nHELP = {body_of('1.10')!r}\n", "1.10"),
     ("tests/test_springs.py", function("reference", "\n".join(body_of("2.12").splitlines()[2:])), "2.12"),
-    ("README.md", f"\n```python\n{reformatted(body_of('1.3'))}\n```\n", "1.3"),
+    ("docs/students.md", f"\n```python\n{reformatted(body_of('1.3'))}\n```\n", "1.3"),
     ("docs/page.md", f"The answer: `{body_of('2.9').strip()}`", "2.9"),
     ("docs/page.html", "<pre>\n" + body_of("1.7").replace("<", "&lt;").replace(">", "&gt;") + "</pre>", "1.7"),
     ("validate/recorded/throw.json", None, "1.8"),
@@ -277,7 +286,8 @@ def test_a_notebook_runs_in_it_and_says_what_it_is_without(unpacked, monkeypatch
     with kernel(unpacked / "notebooks") as client:
         said = "".join(ran(client, cell.source) for cell in notebook.cells
                        if cell.cell_type == "code" and (cell.source not in asked or cell.source[7:-2] in checks))
-    assert "The worked answers of integrators are not in this copy" in said and "not attempted yet, so it is not drawn" in said
+    assert "The worked answers of integrators are not in this copy" in said and "This first picture was made beforehand" in said
+    assert "data-picture" in said and not re.search(r"Exercise [\d.]+: \w+: not attempted yet, so it is not drawn", said.partition("made beforehand")[0])
     assert all(f"Exercise {number}: not attempted" in said for number in checks)
 
 

@@ -18,6 +18,7 @@ from . import aside, binding, measure
 from .report import plots, space, words
 
 TESTS = binding.ROOT / "tests"
+OPENINGS, ARRAY = binding.ROOT / "notebooks" / "openings.json", "array"                # made by `release`
 COLOUR = {"passed": "#00684a", "not yet": "#b3261e", "not attempted": "#7a5b00"}
 SIGN = {"passed": "✓", "not yet": "✗", "not attempted": "○"}
 
@@ -101,6 +102,32 @@ def attempt(function, *arguments):
     except Exception as e:
         display(HTML(f'<p style="color:{COLOUR["not yet"]}">✗ {escape(type(e).__name__)}: {escape(str(e))}.</p>'))
     return None
+
+
+def opening(notebook, make):
+    """What `make` gives for a notebook's first picture; in a copy without worked answers what it gave when that copy was made."""
+    made = json.loads(OPENINGS.read_text()) if OPENINGS.is_file() else {}
+    if notebook not in made:
+        return attempt(make)
+    display(HTML("<p>This first picture was made beforehand, by the worked answers.</p>"))
+    return _unfrozen(made[notebook])
+
+
+def frozen(value):
+    """What `make` gave, in types that JSON knows; to five decimals, more than a picture shows."""
+    if isinstance(value, np.ndarray):
+        return {ARRAY: frozen(value.tolist())}
+    if isinstance(value, dict):
+        return {key: frozen(one) for key, one in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [frozen(one) for one in value]
+    return round(float(value), 5) if isinstance(value, (float, np.floating)) else int(value)
+
+
+def _unfrozen(value):
+    if isinstance(value, dict):
+        return np.array(value[ARRAY]) if ARRAY in value else {key: _unfrozen(one) for key, one in value.items()}
+    return [_unfrozen(one) for one in value] if isinstance(value, list) else value
 
 
 # ---------------------------------------------------------------------------------------------- the check

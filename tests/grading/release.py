@@ -1,7 +1,7 @@
 """`release --out workbook.zip`: the students' zip of this repository, refused when an answer would leak.
 
 In it are files that git tracks, and of those what a student needs: lessons, notebooks, their tests, scenes, recorded traces, docs.  In place of
-the worked answers there are the lessons as handed out, and a lesson builds on its siblings: a student's own lesson 1 serves lesson 2.
+the worked answers there are the lessons as handed out and what they make for the notebooks' first pictures, and a lesson builds on its siblings: a student's own lesson 1 serves lesson 2.
 A lesson of --with-solutions is there as worked, without markers, and the others import it from there.
 
 Every text of the zip is searched for every answer that is not released, in two ways: as code, statement by statement after ast.unparse (in
@@ -40,10 +40,12 @@ LEAKED = 2 / 3                                    # share of an answer
 TELLING = 5                                       # names, attributes and numbers in a statement: `r = x_b - x_a` has 3
 TELLING_SENTENCE = 30                             # characters without spaces in a sentence of answers.md; shorter ones are formulas of the lesson
 PICTURES = {".png", ".jpg", ".gif"}
-ALWAYS = {"README.md", "LICENSE", "pyproject.toml", "constraints.txt", "uv.lock", ".python-version", "tests/__init__.py", "tests/grading/__init__.py"}
+ALWAYS = {"LICENSE", "pyproject.toml", "constraints.txt", "uv.lock", ".python-version", ".gitignore", "tests/__init__.py", "tests/grading/__init__.py"}
 AUTHORS = {"validate/generate.py", "validate/benchmark.py",     # make the lessons from the answers, and time the answers
            "docs/grading.md"}                                   # for instructors
 PLUGIN, ANSWERS = "tests/grading/plugin.py", "solutions/answers.md"
+OPENINGS = "notebooks/openings.json"
+README = "docs/students.md"                       # is README.md there: the repository's own is for instructors
 NO_ANSWERS = "The answers to the questions of the notebooks are not part of this copy: ask your instructor for them.\n"
 MARKER = re.compile(r"(BEGIN|END)\W+SOLUTION", re.I)
 FENCE = re.compile(r"^ *(```|~~~).*?\n(.*?)^ *\1", re.M | re.S)
@@ -70,6 +72,7 @@ def release(
     out.unlink(missing_ok=True)                   # whatever happens now, no older zip is taken for this one
     files = contents(tracked(dirty), chosen, worked, with_solutions == EVERY)
     refuse_leaks(files, worked, with_solutions == EVERY)
+    files["README.md"] = files.pop(README)
     write(out, files)
     print(f"{out}: {len(files)} files, lessons {', '.join(sorted(chosen))}, worked answers of {', '.join(sorted(worked)) or 'none'}")
 
@@ -127,8 +130,30 @@ def contents(paths, lessons, worked, answers):
         files[f"lessons/{name}.py"] = generate.stub(source(name), elsewhere=binding.GIVEN | worked).encode()
     files["lessons/__init__.py"] = generate.lessons()["__init__.py"].encode()
     files[ANSWERS] = read(ANSWERS) if answers else NO_ANSWERS.encode()
+    if not worked >= lessons:
+        files[OPENINGS] = openings({path: text for path, text in files.items() if path.startswith("notebooks/")})
     files["pyproject.toml"] = for_students(files["pyproject.toml"].decode(), files, worked >= lessons).encode()
     return files
+
+
+def openings(notebooks):
+    """What the worked answers make for the first picture of each notebook, for a copy that has none of them."""
+    cells = [next(cell for cell in json.loads(text)["cells"] if cell["cell_type"] == "code") for _, text in sorted(notebooks.items())]
+    return made_by(tuple("".join(cell["source"]) for cell in cells)).encode()
+
+
+@lru_cache(maxsize=None)
+def made_by(cells):
+    """The JSON of everything that these cells hand to `opening`."""
+    from validate import notebook                                    # brings matplotlib along
+    made, opening = {}, notebook.opening
+    notebook.opening = lambda number, make: made.update({number: notebook.frozen(make())})        # gives None: then nothing is shown
+    try:
+        for cell in cells:
+            exec(cell, {"__name__": "opening"})
+    finally:
+        notebook.opening = opening
+    return json.dumps(made, separators=(",", ":"))
 
 
 def wanted(path, lessons, others, scenes):
@@ -348,7 +373,7 @@ def refuse_leaks(files, worked, answers_too):
     for path, data in sorted(files.items()):
         if "__pycache__" in path or path.endswith((".pyc", ".pyo")):
             raise BadInput(path, "compiled code", "answers can be read from that: git rm it")
-        if Path(path).suffix in PICTURES:
+        if Path(path).suffix in PICTURES or path == OPENINGS:           # frozen() lets nothing but numbers into it
             continue
         for text in texts(path, data.decode()):
             if MARKER.search(text):
