@@ -1,6 +1,9 @@
 """The command line: bad input gets one sentence and exit code 2, a run that was interrupted goes on, departures are told."""
 
 import json
+import re
+import subprocess
+import sys
 
 import pytest
 
@@ -95,3 +98,18 @@ def test_results_are_never_half_written(tmp_path):
     with pytest.raises(ValueError):
         cli.write_whole(path, {"a": float("nan")})
     assert json.loads(path.read_text()) == {"a": 1}
+
+
+@pytest.mark.parametrize("arguments, said", [
+    (["--of=lessons", "--exercise=9.9"], "ERROR: exercise '9.9' is unknown"),
+    (["--of=no/such/folder"], "no/such/folder"),
+])
+def test_the_tests_name_what_they_cannot_find(arguments, said):
+    asked = subprocess.run([sys.executable, "-m", "pytest", *arguments], cwd=binding.ROOT, capture_output=True, text=True)
+    assert asked.returncode == 4 and said in asked.stderr and len(asked.stderr.strip().splitlines()) == 1
+
+
+def test_one_exercise_loads_one_test_file():
+    asked = subprocess.run([sys.executable, "-m", "pytest", "--of=lessons", "--exercise=8.1", "--collect-only", "-q", "-v"], cwd=binding.ROOT,
+                           capture_output=True, text=True)
+    assert "test_pbd.py" in asked.stdout and not set(re.findall(r"test_\w+\.py", asked.stdout)) - {"test_pbd.py"}

@@ -289,3 +289,31 @@ def test_the_screen_shows_lessons_hardest_exercises_and_failures_as_plain_text()
     for part in ("1.2 land (50% of its points)", r"[bold]eve\x1b", "[/x] no sandbox", "NOT A GRADE: [red]why[/red]"):
         assert part in text
     pages.show(screen, [], {}, SETTINGS)
+
+
+@pytest.mark.parametrize("text", ["student_id,last_name,timestamp\nada,Lovelace,2026-11-30T23:59\n", "student_id;last_name;timestamp\nada;Lovelace;2026-11-30 23:59:00\n",
+                                  "student_id\tlast_name\ttimestamp\nada\tLovelace\t2026-11-30T23:59:00\n"])
+def test_a_class_list_may_come_from_any_spreadsheet(tmp_path, text):
+    (tmp_path / "list.csv").write_text(text, encoding="utf-8-sig")
+    assert submissions.roster(tmp_path / "list.csv") == {"ada": submissions.Person("ada", "Lovelace", timestamp="2026-11-30T23:59:00")}
+
+
+@pytest.mark.parametrize("content, why", [(None, "No such file"), (b"\x89PNG\r\n\x1a\n\xff", "no text"), (b"name\nAda\n", "without the column student_id"),
+                                          (b"student_id,timestamp\nada,soon\n", "'soon'")])
+def test_what_is_no_class_list_is_told_without_pythons_words(tmp_path, content, why):
+    if content is not None:
+        (tmp_path / "list.csv").write_bytes(content)
+    with pytest.raises(submissions.BadInput, match=re.escape(why)) as told:
+        submissions.roster(tmp_path / "list.csv")
+    assert "Errno" not in str(told.value) and "codec" not in str(told.value)
+
+
+def test_a_file_that_does_not_load_says_so_first_and_once(tmp_path):
+    error = SyntaxError("unmatched ')'", ("falling.py", 7, 1, ")("))
+    broken = points.unreadable(points.Outcome("1.1", "", 1.0, "not run"), error, " (falling.py, line 7)")
+    says = {"quantity": points.READING, "expected": broken.expected, "got": broken.got}
+    ada = result("ada", *(found(row[1], "not yet", says, hint=broken.hint) for row in MANIFEST if row[0] == "falling"))
+    pages.write(tmp_path, [ada], {}, SETTINGS, {}, FREE)
+    seen = Seen(tmp_path / "students" / "ada.html").text
+    assert seen.count("unmatched ')' (falling.py, line 7)") == 1 and seen.count("falling.py, line 7") == 1
+    assert seen.index("falling.py does not load") < seen.index("1.1") and "What did not pass" not in seen

@@ -21,7 +21,7 @@ METHODS = {     # method: exercise, points for its matrix, for its order, the or
     "implicit_midpoint_step": ("1.8", 0.5, 1, 2, {0.5: 1}),
 }
 HINTS = {
-    "1.1": "both slopes belong to the beginning of the step: use the old v for the position",
+    "1.1": "x gains dt times the old v, v gains dt times a: both slopes belong to the beginning of the step",
     "1.2": "take half an Euler step, then a whole step from the beginning along the slopes found there, with a at t + ½dt",
     "1.3": "each slope is reached along the one before it; weights 1/6, 1/3, 1/3, 1/6, for x and v alike",
     "1.4": "new velocity by Euler first, then the position with the mean of old and new velocity",

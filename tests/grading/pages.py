@@ -335,7 +335,7 @@ def templates():
     """The pages' templates; what they show is cleaned and escaped, and their style is in them."""
     pages = Environment(loader=FileSystemLoader(HERE / "templates"), autoescape=True, finalize=clean, trim_blocks=True, lstrip_blocks=True)
     pages.filters.update(line=line, breakable=breakable, number=number, claim=claim, many=many)
-    pages.globals.update(style=Markup("".join(css.read_text(encoding="utf-8") for css in STYLES)), SHOWN=SHOWN, INPUTS=INPUTS, mean=mean, median=median)
+    pages.globals.update(style=Markup("".join(css.read_text(encoding="utf-8") for css in STYLES)), SHOWN=SHOWN, INPUTS=INPUTS, READING=points.READING, mean=mean, median=median)
     return pages
 
 

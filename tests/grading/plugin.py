@@ -19,6 +19,8 @@ from validate import binding
 
 from .points import BOX_LIMIT, LIMIT, PUBLIC, Points, TooLong, name_of, score
 
+TESTS = Path(__file__).resolve().parent.parent
+
 
 def pytest_addoption(parser):
     group = parser.getgroup("workbook")
@@ -40,6 +42,22 @@ def pytest_configure(config):
         config.option.tbstyle = "short" if config.option.tbstyle == "auto" else config.option.tbstyle     # of a student's file, not of ours
         config.points = Points()
         config.pluginmanager.register(config.points)
+    for exercise in config.getoption("--exercise"):
+        if not tests_of(exercise):
+            raise pytest.UsageError(f"exercise {exercise!r} is unknown: give its number, like --exercise=1.2")
+
+
+def tests_of(exercise=""):
+    """The test files that name an exercise: one, if it exists; without one those of every lesson."""
+    files = (TESTS / f"test_{lesson}.py" for lesson in binding.lesson_names())
+    return [path for path in files if path.is_file() and (not exercise or f'"{exercise}"' in path.read_text(encoding="utf-8"))]
+
+
+def pytest_ignore_collect(collection_path, config):
+    """With --of or --exercise, do not even load what has no test of it."""
+    exercises = config.getoption("--exercise") or [""] * bool(config.getoption("--of"))
+    if exercises and collection_path.parent == TESTS and collection_path.suffix == ".py":
+        return not any(collection_path in tests_of(exercise) for exercise in exercises) or None
 
 
 def pytest_generate_tests(metafunc):

@@ -92,7 +92,8 @@ def outcome(mark, name, excinfo):
 
 
 def unreadable(o, error, place):
-    """The Outcome of a test whose subject could not even be loaded."""
+    """The Outcome of a test whose subject could not even be loaded; Python's own sentence may name the place already."""
+    place = "" if place and place in str(error) else place
     return o._replace(status="not yet", quantity=READING, expected="a module that loads", got=f"{type(error).__name__}: {error}{place}",
                       hint="mend this first: nothing in the file can be tested before", error=f"{type(error).__name__}{place}")
 

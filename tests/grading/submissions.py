@@ -164,21 +164,22 @@ def roster(path):
     """{student id: Person} from a CSV file with those columns.  Raises BadInput for a file without student_id."""
     try:
         with open(path, newline="", encoding="utf-8-sig") as file:
-            reader = csv.DictReader(file)
+            head = file.readline()
+            file.seek(0)
+            reader = csv.DictReader(file, delimiter=max(",;\t", key=head.count))        # where the comma is decimal, spreadsheets write semicolons
             if "student_id" not in (reader.fieldnames or ()):
                 raise BadInput(f"class list {str(path)!r}", f"without the column student_id ({', '.join(reader.fieldnames or ()) or 'empty'})",
                                f"give it the columns {', '.join(Person._fields)}; all but the first may be missing")
             rows = [Person(**{f: (row.get(f) or "").strip() for f in Person._fields}) for row in reader]
     except (OSError, UnicodeDecodeError, csv.Error) as e:
-        raise BadInput(f"class list {str(path)!r}", f"not readable ({e})", "name a CSV file") from None
-    for person in rows:
-        if person.timestamp:
-            check_moment(person, path)
-    return {person.student_id: person for person in rows if person.student_id}
+        why = e.strerror if isinstance(e, OSError) else "no text" if isinstance(e, UnicodeDecodeError) else e
+        raise BadInput(f"class list {str(path)!r}", f"not readable ({why})", "name a CSV file") from None
+    return {person.student_id: person._replace(timestamp=handed_in_at(person, path)) for person in rows if person.student_id}
 
 
-def check_moment(person, path):
+def handed_in_at(person, path):
+    """When a person's work was handed in, as everywhere else; empty when the list does not say."""
     try:
-        datetime.fromisoformat(person.timestamp)
+        return datetime.fromisoformat(person.timestamp).isoformat(timespec="seconds") if person.timestamp else ""
     except ValueError:
         raise BadInput(f"timestamp of {person.student_id} in {str(path)!r}", repr(person.timestamp), "write it like 2026-11-30T23:59") from None
