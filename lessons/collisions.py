@@ -164,7 +164,7 @@ def cylinder_impact_time(t, dt, x_0, x_1, r, R):
 
     With y the coordinates (1, 2) of x_0, w those of x_1 − x_0 and ρ = R + r:  |y + s w|² = ρ² is  A s² + 2 B s + C = 0,
     A = w · w,   B = y · w,   C = y · y − ρ²,   D = B² − A C = A ρ² − (y₀ w₁ − y₁ w₀)²
-    first root  s = C/(−B + √D),   t* = t + s dt;        the last form of D and of s lose no digits where a fast ball only grazes
+    first root  s = C/(−B + √D),   t* = t + s dt;        the last form of D loses no digits where a fast ball only grazes, that of s none where it is close already
 
     t where it touches already (C ≤ 0); NEVER where it does not approach (B ≥ 0), misses (D < 0) or comes later (s > 1).
     *Source:* deck B, the worked question, part 2.

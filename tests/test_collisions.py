@@ -140,7 +140,7 @@ def test_who_passes_by_leaves_or_comes_later_is_not_hit(lesson, draw):
         close("time of impact of one who is in already [s]", lesson.cylinder_impact_time(t, dt, inside, end, r, R), t, 0.0, given=f"{inside} to {end}")
 
 
-@exercise("6.4", points=0.5, hint="D = A ρ² − (y₀ w₁ − y₁ w₀)² and s = C/(√D − B): B² − A C and −B − √D lose the digits that count")
+@exercise("6.4", points=0.5, hint="D = A ρ² − (y₀ w₁ − y₁ w₀)²: in B² − A C the digits that count are lost")
 def test_a_grazing_shot_from_afar_loses_no_digits(lesson, draw):
     """From 1000ρ, passing at (1 − 1e-9)ρ: the cross product is known to 2e-13ρ, the entry at √(2e-9)ρ = 4.5e-5ρ to 2e-13/4.5e-5 = 5e-9ρ."""
     for _ in range(5):
@@ -484,6 +484,10 @@ def test_the_distance_of_two_bodies_is_proved_by_two_points_and_a_plane(lesson, 
         holds("p_b", c.p_b, b, given)
         close("p_a − p_b − gap n [m]", np.asarray(c.p_a) - c.p_b - c.gap * np.asarray(c.n), np.zeros(d), ROUND_OFF, given)
         close("room between two planes across n that the bodies do not pass [m]", (a @ c.n).min() - (b @ c.n).max(), c.gap, 1e-11, given)
+    round_ones = draw(-1.0, 1.0, (2, 400, 3))                                 # these take seven steps and more
+    a, b = round_ones / np.linalg.norm(round_ones, axis=2, keepdims=True) + np.array([[[2.5, 0.3, 0.2]], [[0.0, 0.0, 0.0]]])
+    c = lesson.gjk(a, b)
+    close("the same for two balls of 400 corners [m]", (a @ c.n).min() - (b @ c.n).max(), c.gap, 1e-11, given="centres 2.5 m apart")
 
 
 @exercise("6.15", points=1, hint="far_enough also says when they overlap: then v is 0, and there is nothing left to be found")

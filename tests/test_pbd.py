@@ -256,10 +256,10 @@ def angle(x):
 
 @exercise("8.9", points=1, hint="flat is 0; atan2 with (N_c × N_d) · e/|e| knows which way it is folded; take C into (−π, π]")
 def test_a_fold_knows_its_angle_and_its_side(lesson, draw):
-    for phi, wanted in ((draw(0.2, 2.5), draw(-0.5, 0.5)), (-draw(0.2, 2.5), draw(-0.5, 0.5)), (0.0, 0.0), (3.0, -draw(0.5, 2.5))):
+    for phi, wanted in ((draw(0.2, 2.5), draw(-0.5, 0.5)), (-draw(0.2, 2.5), draw(-0.5, 0.5)), (0.0, 0.0), (3.0, -draw(0.5, 2.5)), (-3.0, draw(0.5, 2.5))):
         x = folded(draw, phi)
         expected = angle(x) - wanted
-        expected -= 2.0 * np.pi * (expected > np.pi)
+        expected += 2.0 * np.pi * (float(expected <= -np.pi) - float(expected > np.pi))
         close("angle, as the test has made it [rad]", abs(angle(x)), abs(phi), 1e-11)
         close("C of a fold [rad]", lesson.fold_constraint(x, wanted)[0], expected, 1e-11, given=f"corners {x.tolist()} m, wanted {wanted} rad")
     x[3] = x[0]

@@ -397,6 +397,7 @@ def nearest(steps=worked.GJK_STEPS, along=(-1.0, 1.0), reduce=True, swap=False):
 
 right("6.15", "with vstack")(nearest())
 wrong("6.15", "a single step")(nearest(steps=1))
+wrong("6.15", "gives up after five steps")(nearest(steps=5))
 wrong("6.15", "the supports exchanged")(nearest(along=(1.0, -1.0)))
 wrong("6.15", "both along the same way")(nearest(along=(-1.0, -1.0)))
 wrong("6.15", "keeps a single pair")(nearest(reduce=False))

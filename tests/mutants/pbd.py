@@ -220,7 +220,7 @@ wrong("8.8", "n times as stiff")(sagging(left=lambda s, n: max(0.0, 1.0 - n * s)
 
 
 # 8.9 ------------------------------------------------------------------------------------------------------------
-def folding(angle="atan2", wrapped=True, sign=1.0, wings=1.0, leverage=True, closed=True, checked=True, swapped=False, slope=1.0):
+def folding(angle="atan2", wrapped=lambda C: np.pi - (np.pi - C) % (2.0 * np.pi), sign=1.0, wings=1.0, leverage=True, closed=True, checked=True, swapped=False, slope=1.0):
     def fold_constraint(x, fold):
         a, b, c, d = x
         e, N_c, N_d = b - a, np.cross(a - c, b - c), np.cross(b - d, a - d)
@@ -230,8 +230,7 @@ def folding(angle="atan2", wrapped=True, sign=1.0, wings=1.0, leverage=True, clo
         with np.errstate(all="ignore"):
             phi = np.arctan2(np.cross(N_c, N_d) @ e_hat, N_c @ N_d)
             phi = phi if angle == "atan2" else np.arccos(np.clip(N_c @ N_d / size(N_c) / size(N_d), -1.0, 1.0)) if angle == "acos" else np.pi - phi
-            C = sign * phi - fold
-            C = np.pi - (np.pi - C) % (2.0 * np.pi) if wrapped else C
+            C = wrapped(sign * phi - fold)
             g_c, g_d = (-wings * size(e) ** slope * N / (N @ N) for N in (N_c, N_d))
         share = ((b - c) @ e / (e @ e), (b - d) @ e / (e @ e)) if leverage else (0.5, 0.5)
         share = tuple(1.0 - y for y in share) if swapped else share
@@ -244,7 +243,9 @@ def folding(angle="atan2", wrapped=True, sign=1.0, wings=1.0, leverage=True, clo
 right("8.9", "with NumPy's products")(folding())
 wrong("8.9", "an angle without a side: acos")(folding(angle="acos"))
 wrong("8.9", "flat is π")(folding(angle="open"))
-wrong("8.9", "not taken into (−π, π]")(folding(wrapped=False))
+wrong("8.9", "not taken into (−π, π]")(folding(wrapped=lambda C: C))
+wrong("8.9", "taken into (−π, π] from above only")(folding(wrapped=lambda C: C - 2.0 * np.pi * (C > np.pi)))
+wrong("8.9", "taken into (−π, π] from below only")(folding(wrapped=lambda C: C + 2.0 * np.pi * (C <= -np.pi)))
 wrong("8.9", "folded to the other side")(folding(sign=-1.0))
 wrong("8.9", "gradients of the other sign")(folding(wings=-1.0))
 wrong("8.9", "gradients without the edge's length")(folding(slope=0.0))
