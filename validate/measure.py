@@ -209,7 +209,7 @@ def not_run(scene, plan):
     slow = [f"Left to --full, to keep this one quick: {', '.join(labels)}"] if labels else []
     if plan.quick and getattr(scene, "FULL_CASES", ()):
         slow.append(f"Left to --full: {', '.join(scene.FULL_CASES)}")
-    if plan.quick and len(scene.CASES) > 1 and still(scene) is None:
+    if plan.quick and len(scene.CASES) > 1 and still(scene) is None and scene.ENGINES:
         slow.append(f"Left to --full: the engines on {', '.join(list(scene.CASES)[1:])}")
     if plan.quick and len(scene.STEPS) > 1 and scene.ENGINES:
         slow.append("Left to --full: the engines' finest step, where the one before it is fine enough to judge them by")

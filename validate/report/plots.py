@@ -21,6 +21,7 @@ LOOKS = {                       # label: colour, marker
 }
 ENGINE_LOOKS = {"pymunk": ("#000000", "x"), "pybullet": ("#5A5A5A", "+")}
 OURS_MOVING = ("#0072B2", "#009E73", "#CC79A7", "#E69F00")
+ROUND_OFF = 1e-12               # relative error of a run of many steps that is exact [-]
 TOP = 10.0                      # errors above this, and failures, are drawn here, as crosses [-]
 
 
@@ -50,13 +51,25 @@ def error_label(result):
     return "relative error [-]" if result["still"] else f"relative error at t = {result['T']:g} s [-]"
 
 
+def floor(result):
+    """Error [-] below which nothing can be told: round-off, or what the truth is not known to."""
+    return max(ROUND_OFF, 10.0 * result["uncertainty"])
+
+
+def _ground(axes, bottom):
+    """Name the line on which runs lie that are right to the last digit that can be told, if there are any."""
+    if any(np.any(np.asarray(line.get_ydata(), dtype=float) == bottom) for line in axes.lines):
+        axes.axhline(bottom, color="#999999", lw=0.6)
+        axes.annotate("no error but round-off", (0.01, bottom), xycoords=("axes fraction", "data"), va="top", fontsize=8, color="#555555")
+
+
 def convergence(path, result):
     """Error against step, with the runs that failed along the top."""
-    case = next(iter(result["cases"].values()))
+    case, bottom = next(iter(result["cases"].values())), floor(result)
     figure, axes = plt.subplots()
     for c in case["ours"] + case["engines"]:
         colour, marker, line = look(c["label"])
-        good = [(r["dt"], r["error"]) for r in c["rows"] if r["error"] is not None and 10 * result["uncertainty"] < r["error"] < TOP]
+        good = [(r["dt"], max(r["error"], bottom)) for r in c["rows"] if r["error"] is not None and r["error"] < TOP]
         lost = [r["dt"] for r in c["rows"] if r["error"] is None or r["error"] >= TOP]
         order = f"  {c['order']:.2f}" if c["order"] is not None else ""
         axes.loglog(*zip(*good), color=colour, marker=marker, ls=line, ms=5, lw=1.3, label=c["label"] + order) if good else None
@@ -64,13 +77,15 @@ def convergence(path, result):
     axes.set(xlabel=result["still"] or "step dt [s]", ylabel=error_label(result), xscale="log", yscale="log")
     axes.axhline(TOP, color="#999999", lw=0.6)
     axes.annotate("failed, or error above 10", (0.01, TOP), xycoords=("axes fraction", "data"), va="bottom", fontsize=8, color="#555555")
+    _ground(axes, bottom)
     _finish(figure, axes, path, "method  measured order")
 
 
 def work_precision(path, result):
     """Error against run time: compiled solid, plain faint, engines dark."""
     figure, axes = plt.subplots()
-    rows = [r for r in result["times"]["rows"] if 10 * result["uncertainty"] < r["error"] < TOP]
+    bottom = floor(result)
+    rows = [{**r, "error": max(r["error"], bottom)} for r in result["times"]["rows"] if r["error"] < TOP]
     compiled = any(r["speed"] == "compiled" for r in rows)
     for label, speed in dict.fromkeys((r["label"], r["speed"]) for r in rows):
         colour, marker, line = look(label)
@@ -82,6 +97,7 @@ def work_precision(path, result):
         axes.hlines(y, low, high, color=colour, lw=0.8, alpha=0.5)
     if compiled and any(r["speed"] == "plain" for r in rows):
         axes.plot([], [], color="#555555", ls=":", marker=".", label="the same, plain Python")
+    _ground(axes, bottom)
     axes.set(xlabel="run time [s]" if result["still"] else "run time of the stepping loop [s]", ylabel=error_label(result))
     _finish(figure, axes, path, "compiled, and engines" if compiled else "plain Python, and engines")
 

@@ -34,7 +34,9 @@ def seconds(t):
 
 
 def percent(x):
-    return "–" if x is None else f"{100 * x:.2g} %" if x < 0.995 else f"{100 * x:.0f} %"
+    if x is None:
+        return "–"
+    return f"{100 * x:.0f} %" if x >= 0.995 else f"{100 * x:.2g} %" if x >= 1e-6 or x == 0.0 else f"{number(100 * x, 2)} %"
 
 
 def factor(x):
@@ -51,7 +53,7 @@ def run(plan):
     live = [f"{n} {engines.installed(n)} live" if n in plan.live else f"{n} recorded" for n in engines.NAMES]
     compiled = f"numba {_numba_version()}" if can_compile() else "numba not installed: plain speed only"
     return {"of": str(plan.of), "mode": "quick" if plan.quick else "full", "engines": live, "compiler": compiled,
-            "speeds": list(plan.speeds), "machine": f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",
+            "speeds": list(plan.speeds), "repeats": plan.repeats(), "machine": f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",
             "date": date.today().isoformat()}
 
 
