@@ -285,7 +285,7 @@ def rigid_body_step(load, t, x, v, q, omega, dt, body):
 
 
 def rolling_load(t, x, v, q, omega, ball):
-    """Given.  Weight, support and friction of a Ball on a horizontal floor: F [N], τ [N m], each (3,).
+    """Given.  Weight, support and friction of a Ball on a floor across z, with gravity from any side: F [N], τ [N m], each (3,).
 
     Friction stops the slip u of the lowest point by the end of the step, if μN is enough for that, or else does what μN can:
         f = −min(μN, |u′|/(K dt)) u′/|u′|      u′ = u + dt g_t: the slip that there would be without,   K = 1/m + radius²/I

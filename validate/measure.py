@@ -20,7 +20,7 @@ from . import binding, engines, stability
 from .scene import EXACT, ROUND_OFF
 
 RECORDED = Path(__file__).resolve().parent / "recorded"
-WARM_UPS, REPEATS = 2, 7
+WARM_UPS, REPEATS, PROBE = 2, 7, 64
 ASYMPTOTIC = 0.5             # limits above this are not held against a run [-]
 EXACTLY = 1e-11              # a smaller relative error is round-off: there is no race for it [-]
 LOST = 10.0                  # a run with a larger relative error is not worth timing [-]
@@ -47,7 +47,7 @@ class Plan(NamedTuple):
 
     def repeats(self):
         """How often each run is timed: seldomer where somebody waits."""
-        return 3 if self.most_steps else 5 if self.quick else REPEATS
+        return 3 if self.most_steps else REPEATS
 
 
 # ---------------------------------------------------------------------------------------------- running a scene
@@ -156,7 +156,7 @@ def errors(name, plan):
         "scene": name, "still": still(scene), "title": scene.TITLE, "lesson": scene.LESSON, "story": said_of(scene), "T": scene.T,
         "uncertainty": scene.UNCERTAINTY, "truth_story": said_of(scene.truth), "needs": list(scene.NEEDS),
         "without": not_run(scene, plan), "cases": cases, "parity": parity(name, scene, plan, first), "picture": picture(name, scene, plan, first, agreeing),
-        "law": said_of(scene.acceleration) if hasattr(scene, "acceleration") else "",
+        "law": said_of(scene.acceleration) if hasattr(scene, "acceleration") else "", "limits": said_of(scene.tolerance),
     })
 
 
@@ -427,10 +427,11 @@ def interleaved(items, longest, repeats=REPEATS):
         pace = {}                                                   # {(label, speed): seconds a step}, as far as it is known
         for item in items:
             key = item.label, item.speed
-            if key not in pace:
-                pace[key] = min(_clock(item, 1, steps=2) for _ in range(2)) / 2
             first = all((i.label, i.speed) != key for i, _ in chosen)
-            if pace[key] * item.steps > longest[item.speed] * (3.0 if first else 1.0):                   # or a slow one would not be there at all
+            limit = longest[item.speed] * (3.0 if first else 1.0)                                        # or a slow one would not be there at all
+            if key not in pace:
+                pace[key] = _pace(item, limit)
+            if pace[key] * item.steps > limit:
                 continue
             seconds = min(_clock(item, 1) for _ in range(WARM_UPS))
             pace[key] = seconds / item.steps
@@ -446,6 +447,14 @@ def interleaved(items, longest, repeats=REPEATS):
             if enabled:
                 gc.enable()
     return [(item, {"seconds": float(np.median(s)), "low": min(s), "high": max(s)}) for (item, _), s in zip(chosen, samples)]
+
+
+def _pace(item, limit):
+    """Seconds a step, from a few steps; where those leave it open whether all of them take longer than `limit`, from more, because of two the call is most."""
+    pace = min(_clock(item, 1, steps=2) for _ in range(2)) / 2
+    if PROBE < item.steps and limit / item.steps < pace < limit / PROBE:
+        pace = min(_clock(item, 1, steps=PROBE) for _ in range(2)) / PROBE
+    return pace
 
 
 def _clock(item, inner, steps=None):

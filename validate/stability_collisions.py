@@ -87,7 +87,7 @@ def case_16(lesson):
     found, even = [], (np.arange(THROWN) + 0.5) / THROWN
     for speed in (15.0, 50.0, 1000.0):
         missed = passed_discretely(lesson, speed, even)
-        found.append(finding(16, "The discrete test misses 1 − (R + w/2)/(v h) of all balls.", f"share of 10⁴ balls of {speed:g} m/s that get past a wall of 1 cm, discrete [-]",
+        found.append(finding(16, "The discrete test keeps only those whose step ends in front of the wall's middle, within R + w/2: behind it the near way out is the far side. It misses 1 − (R + w/2)/(v h).", f"share of 10⁴ balls of {speed:g} m/s that get past a wall of 1 cm, discrete [-]",
                              law(speed), missed, 1.0 / THROWN, f"At {speed:g} m/s {100.0 * missed:.2f} % get past; theory says {100.0 * law(speed):.2f} %."))
     for speed in (50.0, 1e4):
         missed = passed_continuously(lesson, speed, even)
@@ -104,7 +104,7 @@ def case_16(lesson):
         drawn.append(series("pybullet, measured", speeds, [passed_bullet(v, few) for v in speeds], DOTS))
     fine = np.linspace(10.0, 105.0, 100)
     return found, Picture("Through a wall of 1 cm", "speed [m/s]", "share that gets past [-]", [series("1 − (R + w/2)/(v h), theory", fine, law(fine), LINE), *drawn],
-                          "From 13.2 m/s on a ball of 10 cm may pass a wall between two steps of 1/240 s; the continuous test lets none pass.")
+                          "From 13.2 m/s on a ball of 10 cm (R = 5 cm) may be through the middle of the wall before a step of 1/240 s ends, and is let out behind; from 26.4 m/s on it may not be seen at all. The continuous test lets none pass.")
 
 
 # ---------------------------------------------------------------------------------------------- where digits get lost
@@ -167,7 +167,7 @@ def case_62(lesson):
         series("rounding of the coordinates", np.log10(deltas), np.log10([limit(d) for d in deltas]), LINE),
         series("C/(√D − B), measured", np.log10(deltas), np.log10([max(errors(ours, d), 1e-17) for d in deltas]), DOTS),
         series("school's formula, measured", np.log10(deltas), np.log10([max(errors(lambda y, w: by_school(y, w, rho), d), 1e-17) for d in deltas]), DOTS)],
-        "The same equation, written in two ways: one keeps the digits that the coordinates have, the other loses six more.")
+        "The same equation, written in two ways: one keeps the digits that the coordinates have, the other loses three more, for it squares a way of a thousand radii.")
 
 
 def case_63(lesson):

@@ -162,13 +162,13 @@ def case_82(lesson):
         measured.append(contraction)
         found.append(finding(82, "A heavy weight under a light one: each sweep leaves r/(1 + r) of the error.", f"what a sweep leaves at a mass ratio of {r:g} [-]", r / (1.0 + r), contraction, 1e-11, f"Under a mass ratio of {r:g} a sweep leaves {contraction:.6f} of the error."))
         if r <= 100.0:
-            bound = np.ceil(np.log(1e-3) / np.log(r / (1.0 + r)))
+            bound = 1.0 + np.ceil(np.log(1e-3) / np.log(r / (1.0 + r)))         # the first sweep is the one that spoils it
             needed.append(len(errors) - 1)
-            found.append(finding(82, "So a thousandth takes about 6.9 (r + 1) sweeps.", f"sweeps until a thousandth is left at a mass ratio of {r:g} [-]", bound, len(errors) - 1, 1.0, f"Under a mass ratio of {r:g} a thousandth is left after {len(errors) - 1} sweeps."))
+            found.append(finding(82, "So a thousandth takes about 6.9 (r + ½) sweeps, after the first, which makes the upper link wrong.", f"sweeps until a thousandth is left at a mass ratio of {r:g} [-]", bound, len(errors) - 1, 0.0, f"Under a mass ratio of {r:g} a thousandth is left after {len(errors) - 1} sweeps."))
     fine = np.geomspace(1.0, 1e4, 60)
     return found, Picture("A heavy weight under a light one", "log₁₀ of the mass ratio", "1 − what a sweep leaves, log₁₀", [
         series("theory: 1/(1 + r)", np.log10(fine), -np.log10(1.0 + fine), LINE), series("distance_sweep, measured", np.log10(ratios), np.log10(1.0 - np.array(measured)), DOTS)],
-        "Masses that differ by a hundred cost a hundred times the sweeps: hang the light one on the heavy one where you can.")
+        "A hundred times the mass costs about sixty times the sweeps of equal masses: hang the light one on the heavy one where you can.")
 
 
 def circling(lesson, step, turn, steps):
@@ -194,7 +194,7 @@ def case_83(lesson):
             theory.append(np.arctan(np.sin(theory[-1]) / (2.0 - np.cos(theory[-1]))))
         for step, label in (("pbd_step", "PBD"), ("projection_step", "projection")):
             got = circling(lesson, step, turn, steps)
-            found.append(finding(83, "Projection brakes what turns: tan β = sin α/(2 − cos α), so that 1/ω² grows by 2 dt² at every step.", f"{label}: speed left after {steps} steps at ω dt = {turn} [-]",
+            found.append(finding(83, "Projection brakes what turns: tan β = sin α/(2 − cos α), so that 1/ω² grows by nearly 2 dt² at every step.", f"{label}: speed left after {steps} steps at ω dt = {turn} [-]",
                                  theory[-1] / turn, got[-1] / turn, 1e-10, f"At ω dt = {turn} {label} has {100.0 * got[-1] / turn:.2f} % of the speed left after {steps} steps."))
             if label == "PBD":
                 drawn += [series(f"ω dt = {turn}: 1/√(1 + 2N(ω dt)²)", np.arange(steps), 1.0 / np.sqrt(1.0 + 2.0 * np.arange(steps) * turn**2), LINE), series(f"ω dt = {turn}: PBD", np.arange(0, steps, 10), got[::10] / turn, DOTS)]

@@ -195,7 +195,7 @@ wrong("7.9", "forgets the mass")(K_of(mass=lambda m: np.zeros((3, 3))))
 wrong("7.9", "a number for the tensor")(K_of(middle=lambda inv: np.trace(inv) / 3.0 * np.eye(3)))
 
 
-@wrong("7.9", "transposed on both sides")
+@wrong("7.9", "both levers on one side, and the other sign")
 def point_inverse_mass(r, inv_mass, inv_inertia):
     return inv_mass * np.eye(3) + inv_inertia @ skew(r) @ skew(r)
 

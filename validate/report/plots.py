@@ -1,5 +1,7 @@
 """The still pictures.  Colours: Okabe and Ito 2008, told apart by colour-blind readers; every curve has a marker too."""
 
+import re
+
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
@@ -60,7 +62,7 @@ def _ground(axes, bottom):
     """Name the line on which runs lie that are right to the last digit that can be told, if there are any."""
     if any(np.any(np.asarray(line.get_ydata(), dtype=float) == bottom) for line in axes.lines):
         axes.axhline(bottom, color="#999999", lw=0.6)
-        axes.annotate("no error but round-off", (0.01, bottom), xycoords=("axes fraction", "data"), va="top", fontsize=8, color="#555555")
+        axes.annotate("no error that can be told", (0.01, bottom), xycoords=("axes fraction", "data"), va="top", fontsize=8, color="#555555")
 
 
 def convergence(path, result):
@@ -69,16 +71,17 @@ def convergence(path, result):
     figure, axes = plt.subplots()
     for c in case["ours"] + case["engines"]:
         colour, marker, line = look(c["label"])
-        good = [(r["dt"], max(r["error"], bottom)) for r in c["rows"] if r["error"] is not None and r["error"] < TOP]
         lost = [r["dt"] for r in c["rows"] if r["error"] is None or r["error"] >= TOP]
-        order = f"  {c['order']:.2f}" if c["order"] is not None else ""
-        axes.loglog(*zip(*good), color=colour, marker=marker, ls=line, ms=5, lw=1.3, label=c["label"] + order) if good else None
+        seen = [(r["dt"], np.nan if r["dt"] in lost else max(r["error"], bottom)) for r in c["rows"]]           # a line has a gap where a run was lost
+        order = f": {c['order']:.2f}" if c["order"] is not None else ""
+        if len(lost) < len(seen):
+            axes.loglog(*zip(*seen), color=colour, marker=marker, ls=line, ms=5, lw=1.3, label=c["label"] + order)
         axes.plot(lost, [TOP] * len(lost), color=colour, marker="X", ls="", ms=7, clip_on=False)
     axes.set(xlabel=result["still"] or "step dt [s]", ylabel=error_label(result), xscale="log", yscale="log")
     axes.axhline(TOP, color="#999999", lw=0.6)
     axes.annotate("failed, or error above 10", (0.01, TOP), xycoords=("axes fraction", "data"), va="bottom", fontsize=8, color="#555555")
     _ground(axes, bottom)
-    _finish(figure, axes, path, "method  measured order")
+    _finish(figure, axes, path, "method: measured order")
 
 
 def work_precision(path, result):
@@ -108,11 +111,27 @@ def stability(path, case):
     if not picture:
         return
     figure, axes = plt.subplots()
-    for k, (label, xs, ys, mark) in enumerate(picture["series"]):
-        colour = LOOKS[label.split(",")[0]][0] if label.split(",")[0] in LOOKS else list(LOOKS.values())[k % len(LOOKS)][0]
-        axes.plot(xs, ys, {"line": "-", "dots": "o"}[mark], color=colour, label=label, ms=5, lw=1.4)
+    colours = series_colours([label for label, *_ in picture["series"]])
+    for (label, xs, ys, mark), colour in zip(picture["series"], colours):
+        few = len(xs) <= 60
+        axes.plot(xs, ys, {"line": "-", "dots": "o"}[mark], color=colour, label=label, ms=5 if few else 2, lw=1.4, zorder=3 if mark == "line" else 2)
     axes.set(xlabel=picture["x_label"], ylabel=picture["y_label"], title=picture["title"])
     _finish(figure, axes, path, None)
+
+
+THEORY_OR_MEASURED = re.compile(r"^theory, |, (theory|measured)$|: .*$")
+
+
+def series_colours(labels):
+    """A colour each: a method has its own, theory and measurement of one thing share theirs, and no two things have one."""
+    things = list(dict.fromkeys(THEORY_OR_MEASURED.sub("", label) for label in labels))
+    colours = {}
+    for thing in things:
+        own = max((name for name in LOOKS if thing.startswith(name)), key=len, default=None)
+        if own and LOOKS[own][0] not in colours.values():
+            colours[thing] = LOOKS[own][0]
+    free = iter([colour for colour in dict.fromkeys(look[0] for look in LOOKS.values()) if colour not in colours.values()])
+    return [colours[thing] if thing in colours else colours.setdefault(thing, next(free, "#000000")) for thing in (THEORY_OR_MEASURED.sub("", label) for label in labels)]
 
 
 def show(plot, result):
@@ -132,8 +151,8 @@ RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 def _power(x, _):
     """10⁻³, 2·10⁻³: as plain text, which is drawn in a third of the time of a formula."""
     exponent = int(np.floor(np.log10(x) + 1e-9))
-    lead = round(x / 10.0**exponent)
-    return f"{'' if lead == 1 else f'{lead}·'}10{str(exponent).translate(RAISED)}"
+    lead = f"{x / 10.0**exponent:.2g}"
+    return f"{'' if lead == '1' else f'{lead}·'}10{str(exponent).translate(RAISED)}"
 
 
 def _tick(axis):

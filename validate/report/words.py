@@ -8,6 +8,7 @@ from datetime import date
 
 from .. import engines
 from ..binding import _numba_version, can_compile
+from ..scene import EXACT
 
 NAMES = {"pymunk": "pymunk", "pybullet": "pybullet"}
 
@@ -70,7 +71,7 @@ def verdict(curves):
     """The same for several curves at once: the worst of them, with a count."""
     count = Counter(judge(c)[0] for c in curves)
     if not curves:
-        return "not in this engine", "none"
+        return "not done here", "none"
     for text, kind in (("departs", "departs"), ("not attempted", "open")):
         if count[text]:
             return f"{count[text]} of {len(curves)} {text}", kind
@@ -91,12 +92,13 @@ def row(result):
     case = next(iter(result["cases"].values()))
     every = [c for one in result["cases"].values() for c in one["ours"]]
     witnesses = {name: [c for one in result["cases"].values() for c in one["engines"] if c["label"].split(",")[0] == name] for name in NAMES}
-    resolved = [c for c in case["ours"] if c["order"] is not None]
-    best = max(resolved, key=lambda c: c["order"], default=None)
+    best = max((c for c in case["ours"] if c["right"] and not c["reason"] and (c["order"] is not None or c["expected"] == EXACT)),
+               key=lambda c: (c["expected"] == EXACT, c["order"] or 0.0), default=None)
+    own_laws = {c["label"] for c in case["engines"] if c.get("reason")}
     advantages = {}
-    for a in result["times"]["advantage"]:
+    for a in result["times"]["advantage"]:                               # to be as wrong as another law is no race
         name = a["engine"].split(",")[0]
-        if a["ratio"] and (name not in advantages or a["error"] < advantages[name]["error"]):
+        if a["engine"] not in own_laws and (name not in advantages or a["error"] < advantages[name]["error"]):
             advantages[name] = a
     return {"result": result, "ours": verdict(every), "engines": {n: (verdict(c), c[0]["source"] if c else "") for n, c in witnesses.items()},
             "best": best, "advantages": advantages, "left_out": result["times"]["left_out"]}
@@ -161,10 +163,10 @@ def _engines(case):
 def _times(result):
     for a in result["times"]["advantage"]:
         if a["ratio"]:
-            yield (f"The smallest error that {a['engine']} was timed at is {percent(a['error'])}, in {seconds(a['seconds'])}; our {a['method']} ({a['speed']}) "
+            yield (f"The smallest error that {a['engine']} was timed at is {percent(a['error'])}, in {seconds(a['seconds'])}; ours ({a['method']}, {a['speed']}) "
                    f"gets there in {seconds(a['ours'])}: {factor(a['ratio'])}{' the speed' if not 0.5 < a['ratio'] < 2 else ''}.")
         else:
-            yield f"None of our timed runs reaches the {percent(a['error'])} of {a['engine']}."
+            yield f"None of those runs of ours that were timed reaches the {percent(a['error'])} of {a['engine']}, {seconds(a['seconds'])}."
 
 
 def _left_out(result):
@@ -176,5 +178,5 @@ def _left_out(result):
 
 def _parity(result):
     if result["parity"] is not None:
-        yield ("Plain and compiled runs agree to the last bit." if result["parity"] == 0.0 else
-               f"Plain and compiled runs differ by at most {number(result['parity'])}, relative.")
+        yield ("Where there are both, plain and compiled runs agree to the last bit." if result["parity"] == 0.0 else
+               f"Where there are both, plain and compiled runs differ by at most {number(result['parity'])}, relative.")

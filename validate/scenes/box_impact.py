@@ -180,5 +180,5 @@ def LINKS(p):
 
 
 NEEDS = ("one body", "the offsets of the points that meet", "sweeps over them until nothing changes")
-LEAVES_OUT = {"sliding points": "at a sliding point in space both engines have laws of their own, up to 20 % of the speed away", "time": "an impact takes none",
+LEAVES_OUT = {"sliding points": "at a sliding point the engines have laws of their own, up to 20 % of the speed away", "time": "an impact takes none",
               "detection of the points": "lesson 6 finds them"}

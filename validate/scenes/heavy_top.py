@@ -1,4 +1,4 @@
-"""A fast top leans a little and is let go: its tip draws small loops, with a cusp at each, around the vertical."""
+"""A fast top leans a little and is let go: its tip draws small arches, which meet in cusps, around the vertical."""
 
 from typing import NamedTuple
 
@@ -113,7 +113,7 @@ TRAIL = 1                    # the tip
 
 
 def bodies(p):
-    """Only the upper end of the top's axle, a metre from its point, or nobody would see the loops; and a plumb line over the point."""
+    """Only the upper end of the top's axle, a metre from its point, or nobody would see the arches; and a plumb line over the point."""
     from validate.report import space                                # brings matplotlib along
     reach = np.sin(p.tilt)
     return [space.cylinder(0.03 * reach, reach), space.sphere(0.07 * reach), space.cylinder(0.01 * reach, reach)]

@@ -1,4 +1,4 @@
-"""A comet on a long ellipse: a tenth of its distance from the sun at its nearest, where all the error is made."""
+"""A comet on a long ellipse: at its nearest a nineteenth of its farthest distance from the sun, where all the error is made."""
 
 import numpy as np
 

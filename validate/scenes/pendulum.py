@@ -91,7 +91,7 @@ ENGINES = (
     Engine("pymunk", pymunk_make, 1, f"PinJoint to a mass that cannot turn; error_bias 0, {10 * ITERATIONS} iterations"),
     Engine("pybullet", pybullet_make, 1, f"JOINT_POINT2POINT, useMaximalCoordinates=1, erp 1, {10 * ITERATIONS} iterations; a bob with I = {SHARE} mL²"),
 )
-WHY = {"pybullet": (f"it has no point masses: its bob turns with the string, and has a moment of inertia of {SHARE} mL²", with_inertia)}
+WHY = {"pybullet": (f"our bob there must have a moment of inertia, for its solver sweeps over three axes: with {SHARE} mL² it turns with the string", with_inertia)}
 
 
 def published():

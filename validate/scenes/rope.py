@@ -105,7 +105,7 @@ ENGINES = (
     Engine("pymunk", pymunk_make, 1, f"PinJoints between masses that cannot turn; error_bias 0, {ITERATIONS} iterations for each link", 5000),
     Engine("pybullet", pybullet_make, 1, f"JOINT_POINT2POINT, useMaximalCoordinates=1, erp 1, {ITERATIONS} iterations for each link; weights with I = {SHARE} m l²", 5000),
 )
-WHY = {"pybullet": (f"it has no point masses: each weight turns with the link above it, and has a moment of inertia of {SHARE} m l²", of_bodies)}
+WHY = {"pybullet": (f"our weights there must have a moment of inertia, for its solver sweeps over three axes: with {SHARE} m l² each turns with the link above it", of_bodies)}
 
 
 def published():

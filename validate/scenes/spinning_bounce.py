@@ -1,4 +1,4 @@
-"""A spinning ball meets the floor: friction takes from its slip what the cone allows, or all of it; then it leaves rolling, or even backwards."""
+"""A spinning ball meets the floor: friction takes from its slip what the cone allows, or all of it; then it leaves rolling."""
 
 from typing import NamedTuple
 
@@ -76,7 +76,7 @@ def after(p):
 def truth(p, t):
     """Straight lines;  at the floor  v_n⁺ = −e v_n,  v⁺ = v − J/m,  Rω⁺ = Rω − J R²/I,  J = min(μ(1 + e) m |v_n|, m (v + Rω)/(1 + mR²/I)).
 
-    Source: Garwin 1969, for the grip; Coulomb for the slip.
+    Source: linear and angular momentum about the point that touches; it grips where Coulomb's cone allows that.
     """
     v, rim = after(p)
     rows = []
