@@ -125,8 +125,8 @@ def friction_impulse(v_t, m, j_n, mu):
 
     J_t = −min(μ j_n, m |v_t|) v_t/|v_t|          of all |J_t| ≤ μ j_n;   0 where v_t = 0
 
-    Either it slides on, and friction is on the rim of the cone, against the motion; or it stops, and friction is inside.  That is
-    Coulomb's law, and the principle of maximum dissipation is all of it.  j_n ≥ 0 [N s]: the normal impulse; μ j_n: cone_radius.
+    Either it slides on, and friction is on the rim of the cone, against the motion: −μ j_n v_t/|v_t|; or it stops, and friction is
+    inside: −m v_t itself, for m |v_t| v_t/|v_t| would leave a round-off of velocity, and that is a motion.  That is Coulomb's law, and the principle of maximum dissipation is all of it.  j_n ≥ 0 [N s]: the normal impulse; μ j_n: cone_radius.
     *Source:* deck B, "Maximum dissipation principle"; Moreau 1973 for the principle.
     """
     # YOUR CODE HERE
@@ -179,7 +179,8 @@ def sliding_step(acceleration, t, x, v, dt, p):
     The impulse takes at most the velocity that is there: that is what friction as a force cannot know.  v lies in the plane.
     p has the fields n, mu_s and mu_k of a Block.
     *Source:* deck B, the order of its steps; Moreau 1988 for friction as an impulse a step.
-    *Left out:* a block that is lifted off.
+    *Left out:* a block that is lifted off; and one whose pull turns it round within a step: it was at rest in between, where μ_s would
+    have held it on a slope between the two μ, and this step does not see that.  event_step does.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 3.7: sliding_step")

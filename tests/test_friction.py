@@ -144,8 +144,11 @@ def test_friction_leaves_the_least_energy_that_the_cone_allows(lesson, draw):
         close("speed that is left [m/s]", np.linalg.norm(v + J / m), max(0.0, 1.0 - share) * speed, ROUND_OFF, given=given)
 
 
-@exercise("3.5", points=0.5, hint="v_t = 0 has no direction: return zeros; μ = 0 takes nothing, and μ = ∞ stops everything")
+@exercise("3.5", points=0.5, hint="v_t = 0 has no direction: return zeros; μ = 0 takes nothing, and μ = ∞ stops everything; −m v_t itself leaves nothing")
 def test_friction_knows_its_limits(lesson, draw):
+    for d in (2, 3):
+        for v in draw(-1.0, 1.0, (40, d)):                               # one in seven of them is not a unit vector times its length, to the last digit
+            close("velocity that is left where it stops [m/s]: exactly none", v + lesson.friction_impulse(v, 1.0, 10.0, 1.0), 0.0 * v, 0.0, given=f"v_t = {v}, m = 1 kg")
     v, m, j_n, still = draw(1.0, 3.0, 2), draw(0.5, 5.0), draw(0.1, 2.0), np.zeros(2)
     close("impulse at rest [N s]", lesson.friction_impulse(still, m, j_n, draw(0.2, 1.0)), still, 0.0)
     close("impulse where μ = 0 [N s]", lesson.friction_impulse(v, m, j_n, 0.0), still, 0.0, given=f"v_t = {v}")
@@ -222,7 +225,7 @@ def test_a_block_on_a_slope_holds_slides_and_keeps_sliding(lesson, draw):
         close("velocity of a block that slides down [m/s]", v, (v0 + a * t) * down, 1e-10, given=f"{p}, v = {v0} m/s")
 
 
-@exercise("3.7", points=1, hint="pull first, v* = v + dt a_t; friction then acts against v*, at most μ_k a_n dt, with a at the time t")
+@exercise("3.7", points=0.5, hint="pull first, v* = v + dt a_t; friction then acts against v*, at most μ_k a_n dt, with a at the time t")
 def test_friction_shortens_the_velocity_that_the_pull_alone_would_give(lesson, draw):
     axes, mu, omega, t, dt = frame(draw, 3), draw(0.2, 0.6), draw(1.0, 3.0), draw(0.5, 1.5), draw(0.01, 0.05)
     push = along_surface(draw, axes, draw(1.0, 5.0)) - draw(0.5, 2.0) * axes[0]
@@ -236,6 +239,26 @@ def test_friction_shortens_the_velocity_that_the_pull_alone_would_give(lesson, d
     close("speed that friction takes in a step, over dt [m/s²]", (np.linalg.norm(free) - np.linalg.norm(v_new)) / dt, mu * (G - now @ axes[0]), 1e-10, given=given)
     close("how far it moves, over dt [m/s]", (x_new - x) / dt, v_new, 1e-11, given=given)
     close("the x and v that were handed in: return new arrays", np.array((x, v)), np.array(before), 0.0)
+
+
+@exercise("3.7", points=0.5, hint="at rest means that all of v is zero; |a_t| = μ_s a_n still holds; what is lifted, a_n = 0, feels no friction")
+def test_what_moves_a_little_or_along_an_axis_or_turns_round_is_not_at_rest(lesson, draw):
+    pull, dt, up, along = lesson.driven_acceleration, draw(0.01, 0.05), np.array([0.0, 1.0]), np.array([1.0, 0.0])
+    level, speed = block(lesson, up, 0.8, 0.3, -G * up), draw(1.0, 3.0)
+    v = lesson.sliding_step(pull, 0.0, np.zeros(2), speed * along, dt, level)[1]
+    close("velocity of a block on a level floor [m/s]", v, (speed - 0.3 * G * dt) * along, ROUND_OFF, given=f"v = {speed * along}, {level}")
+    between_the_two, down, tangent, press = slope(draw, lesson, 1.5, 0.5)
+    for slow in (1e-3, 1e-9):
+        v = lesson.sliding_step(pull, 0.0, np.zeros(3), slow * down, dt, between_the_two)[1]
+        close("velocity of a block that creeps down a slope [m/s]", v, (slow + 0.5 * tangent * press * dt) * down, ROUND_OFF, given=f"v = {slow} m/s down, {between_the_two}")
+    v = lesson.sliding_step(pull, 0.0, np.zeros(3), -0.1 * tangent * press * dt * down, dt, between_the_two)[1]
+    close("velocity of a block that the pull turns round [m/s]", v, 0.4 * tangent * press * dt * down, ROUND_OFF, given=f"{between_the_two}, dt = {dt} s")
+    lifted = block(lesson, up, 0.8, 0.3, G * up + 2.0 * along)
+    for speed in (0.0, draw(1.0, 3.0)):
+        v = lesson.sliding_step(pull, 0.0, np.zeros(2), speed * along, dt, lifted)[1]
+        close("velocity of a block that is lifted [m/s]: no friction", v, (speed + 2.0 * dt) * along, ROUND_OFF, given=f"v = {speed} m/s, {lifted}")
+    edge = block(lesson, up, 0.5, 0.1, 5.0 * along - 10.0 * up)
+    close("velocity where |a_t| is μ_s a_n [m/s]: it holds", lesson.sliding_step(pull, 0.0, np.zeros(2), np.zeros(2), dt, edge)[1], np.zeros(2), 0.0, given=f"{edge}")
 
 
 def on_the_line(draw, lesson, mu, amplitude, omega):
@@ -261,6 +284,14 @@ def test_a_block_slides_on_or_breaks_away_along_the_pull_or_stays(lesson, draw):
     for turn, expected in ((0.0, to), (0.5 * np.pi, 0.0 * to), (np.pi, -to)):
         got = lesson.slip_direction(pull, turn / omega, np.zeros(2), np.zeros(2), p)
         close("direction under a force to and fro, early, in the middle, late in its swing [-]", got, expected, ROUND_OFF, given=f"{p}, t = {turn / omega} s")
+    up, along = np.array([0.0, 1.0]), np.array([1.0, 0.0])
+    for name, load, mu, expected in (("without pull or friction: none", -10.0 * up, 0.0, 0.0 * up), ("where |a_t| is μ_s a_n: none", 5.0 * along - 10.0 * up, 0.5, 0.0 * up),
+                                     ("where it is lifted: along the pull", 5.0 * along + 10.0 * up, 0.9, along)):
+        got = lesson.slip_direction(pull, 0.0, np.zeros(2), np.zeros(2), block(lesson, up, mu, mu, load))
+        close(f"direction from rest {name} [-]", got, expected, 0.0, given=f"a = {load}, n = {up}, μ = {mu}")
+    for slow in (1e-3, 1e-9):
+        got = lesson.slip_direction(pull, 0.0, still, -slow * down, gentle)
+        close("direction of a block that creeps [-]", got, -down, ROUND_OFF, given=f"{gentle}, v = {-slow * down}")
 
 
 @exercise("3.9", points=0.5, hint="the speed along d falls to zero once: keep the half of the interval in which it does, HALVINGS times")
@@ -304,6 +335,11 @@ def test_a_block_breaks_away_when_the_force_reaches_its_limit(lesson, draw):
     for dt, expected, tolerance in ((slips - t + draw(0.2, 0.8) * (np.pi / omega - slips), slips - t, 1e-13), (draw(0.2, 0.9) * (slips - t), None, 0.0)):
         got = lesson.breakaway_time(lesson.driven_acceleration, t, rest, rest, dt, p)
         close("time to the slip [s], or the whole step where it holds", got, dt if expected is None else expected, tolerance, given=f"{p}, t = {t} s, dt = {dt} s")
+    lift = draw(0.2, 0.8) * (amplitude - 1.0) * G                             # a_n = g − lift cos ωt: slips where A |cos| = μ_s (g + lift |cos|), A = amplitude μ_s g
+    both = p._replace(push=p.push + lift * p.n, mu_k=0.5 * p.mu_s)
+    t, slips = 0.5 * np.pi / omega, np.arccos(-1.0 / (amplitude - lift / G)) / omega
+    got = lesson.breakaway_time(lesson.driven_acceleration, t, rest, rest, 0.5 * (slips + np.pi / omega) - t, both)
+    close("time to the slip under a load that varies, μ_k half of μ_s [s]", got, slips - t, 1e-13, given=f"{both}, t = {t} s")
 
 
 @exercise("3.11", points=0.5, hint="after a stop v is zeros, exactly: the round-off that a slide leaves would count as a motion")
@@ -404,6 +440,10 @@ def above(lesson, draw, mu, e, theta=0.0, d=3):
     return lesson.OnPlane(draw(0.5, 5.0), mu, e, gravity, draw(-2.0, 2.0, d), axes[0]), down
 
 
+def swinging_acceleration(t, x, v, p):
+    return np.cos(t) * p.gravity
+
+
 def fly(lesson, step, p, x, v, dt, steps):
     for n in range(steps):
         x, v = step(lesson.falling_acceleration, lesson.plane_gap, n * dt, x, v, dt, p)
@@ -428,6 +468,13 @@ def check_fall(lesson, step, draw, grips):
     close("velocity after 5 steps of free flight [m/s]", v_new, v + 0.05 * p.gravity, ROUND_OFF, given=f"{p}, v = {v} m/s")
     close("position after them [m]: moved with the new velocity", x, begin + 0.05 * v + 0.5 * 0.05 * 0.06 * p.gravity, ROUND_OFF, given=f"{p}, v = {v} m/s")
     close("the x and v that were handed in: return new arrays", np.array((begin, v)), np.array(kept), 0.0)
+
+    t = draw(0.3, 1.0)
+    x, v_new = step(swinging_acceleration, lesson.plane_gap, t, begin, v, dt, p)
+    close("velocity under a weight that swings, a(t) = g cos t [m/s]", v_new, v + dt * np.cos(t) * p.gravity, ROUND_OFF, given=f"{p}, v = {v} m/s, t = {t} s")
+    x, v_new = fly(lesson, step, p, p.point + 5e-4 * p.n, 3.0 * down - 1e-3 * dt * p.gravity, dt * 1e-3, 1)
+    close("height of a particle that slides by, half a millimetre above [m]", (x - p.point) @ p.n, 5e-4, 1e-11, given=f"{p}")
+    close("its velocity [m/s]", v_new, 3.0 * down, ROUND_OFF, given=f"{p}")
 
     close_by = p.point + draw(0.1, 0.5) * dt * p.n                       # a step at more than 0.5 m/s leads into the plane
     pressed = v - 1.0 * p.n + dt * p.gravity                             # what arrives at the wall
@@ -467,6 +514,8 @@ def test_the_grip_undoes_a_displacement_inside_its_cone(lesson, draw):
         got = lesson.grip_correction(s - draw(0.5, 2.0) * depth * axes[0], axes[0], depth, mu)
         expected = -s if share <= 1.0 else -s / share
         close("tangential correction [m]", got, expected, ROUND_OFF, given=f"s = {s} m, n = {axes[0]}, depth {depth} m, μ = {mu}")
+    straight = lesson.grip_correction(np.array([0.0, -1e-3]), np.array([0.0, 1.0]), 1e-3, 0.5)
+    close("tangential correction where it moved straight into the wall [m]: none", straight, np.zeros(2), 0.0)
 
 
 @exercise("3.16", points=0.5, hint="φ < 0 and v · n < 0: correct along the surface as well, with what this step moved and −φ as the depth")

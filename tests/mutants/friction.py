@@ -123,13 +123,15 @@ def incline_acceleration(theta, mu_s, mu_k, g):
 
 
 # 3.5 ------------------------------------------------------------------------------------------------------------
-def dissipating(sign=-1.0, stop=lambda m, speed: m * speed, choose=min, limit=cone_radius):
+def dissipating(sign=-1.0, stop=lambda m, speed: m * speed, choose=min, limit=cone_radius, exactly=True):
     def friction_impulse(v_t, m, j_n, mu):
-        return sign * choose(limit(mu, j_n), stop(m, size(v_t))) * unit(v_t)
+        size_J = choose(limit(mu, j_n), stop(m, size(v_t)))
+        return sign * m * v_t if exactly and size_J == m * size(v_t) else sign * size_J * unit(v_t)
     return friction_impulse
 
 
-right("3.5", "by a unit vector")(dissipating())
+right("3.5", "by its size")(dissipating())
+wrong("3.5", "leaves what round-off leaves")(dissipating(exactly=False))
 wrong("3.5", "along the motion")(dissipating(sign=1.0))
 wrong("3.5", "forgets the mass")(dissipating(stop=lambda m, speed: speed))
 wrong("3.5", "the greater one")(dissipating(choose=max))
@@ -173,18 +175,19 @@ def pyramid_impulse(v_t, m, j_n, mu, t_1, t_2):
 
 
 # 3.7 ------------------------------------------------------------------------------------------------------------
-def block_step(rest=True, at_rest="mu_s", moving="mu_k", late=0.0, old=False, against="new", once=True, load=worked.normal_force, speed=1.0):
+def block_step(rest=True, at_rest="mu_s", moving="mu_k", late=0.0, old=False, against="new", once=True, load=worked.normal_force, speed=1.0,
+               still=lambda v: size(v) == 0.0, holds=lambda pull, limit: pull <= limit, turns=True):
     """A step of a block with friction as a vector of its own, with terms that may be wrong."""
     def sliding_step(acceleration, t, x, v, dt, p):
         a = acceleration(t + late * dt, x, v, p)
         a_n, a_t = load(a, p.n), tangential(a, p.n)
-        if rest and size(v) == 0.0 and size(a_t) <= cone_radius(getattr(p, at_rest), a_n):
+        if rest and still(v) and holds(size(a_t), cone_radius(getattr(p, at_rest), a_n)):
             return x, v
         free = v + dt * a_t
         limit = (dt if once else 1.0) * cone_radius(getattr(p, moving), a_n)
         direction = unit(free if against == "new" else v if size(v) > 0.0 else a_t)
         v_new = free - direction * (min(limit, size(free)) if speed else limit)
-        v_new = 0.0 * v if speed and size(free) <= limit else v_new
+        v_new = 0.0 * v if speed and (size(free) <= limit or not turns and v_new @ v < 0.0) else v_new
         return x + dt * (v if old else v_new), v_new
     return sliding_step
 
@@ -198,6 +201,12 @@ wrong("3.7", "moves with the old velocity")(block_step(old=True))
 wrong("3.7", "friction as a force: goes to and fro")(block_step(speed=0.0))
 wrong("3.7", "friction without dt")(block_step(once=False))
 wrong("3.7", "against the old velocity")(block_step(against="old"))
+wrong("3.7", "at rest where a coordinate of v is zero")(block_step(still=lambda v: bool(np.any(v == 0.0))))
+wrong("3.7", "at rest below a millimetre a second")(block_step(still=lambda v: size(v) <= 1e-3))
+wrong("3.7", "at rest below a nanometre a second")(block_step(still=lambda v: size(v) <= 1e-9))
+wrong("3.7", "slips on the edge of the cone")(block_step(holds=lambda pull, limit: pull < limit))
+wrong("3.7", "what turns round stops")(block_step(turns=False))
+wrong("3.7", "what is lifted is pressed")(block_step(load=lambda a, n: abs(a @ n)))
 wrong("3.7", "the load is the size of a")(block_step(load=lambda a, n: size(a)))
 
 
@@ -210,11 +219,11 @@ def sliding_step(acceleration, t, x, v, dt, p):
 
 
 # 3.8 ------------------------------------------------------------------------------------------------------------
-def heading(moving=lambda v, a_t: v, limit="mu_s", sign=1.0, scaled=True, ask=lambda pull, hold: pull > hold, clock=1.0):
+def heading(moving=lambda v, a_t: v, limit="mu_s", sign=1.0, scaled=True, ask=lambda pull, hold: pull > hold, clock=1.0, load=worked.normal_force, least=0.0):
     def slip_direction(acceleration, t, x, v, p):
         a = acceleration(clock * t, x, v, p)
-        a_t, a_n = tangential(a, p.n), worked.normal_force(a, p.n)
-        if size(v) > 0.0:
+        a_t, a_n = tangential(a, p.n), load(a, p.n)
+        if size(v) > least:
             return unit(moving(v, a_t))
         breaks = ask(size(a_t), cone_radius(getattr(p, limit), a_n))
         return sign * (unit(a_t) if scaled else a_t) if breaks else 0.0 * a_t
@@ -226,6 +235,9 @@ wrong("3.8", "a moving block goes where it is pulled")(heading(moving=lambda v, 
 wrong("3.8", "kinetic friction at rest")(heading(limit="mu_k"))
 wrong("3.8", "against the pull")(heading(sign=-1.0))
 wrong("3.8", "no unit vector")(heading(scaled=False))
+wrong("3.8", "slips on the edge of the cone")(heading(ask=lambda pull, hold: pull >= hold))
+wrong("3.8", "what is lifted is pressed")(heading(load=lambda a, n: abs(a @ n)))
+wrong("3.8", "at rest below a micrometre a second")(heading(least=1e-6))
 wrong("3.8", "always breaks away")(heading(ask=lambda pull, hold: True))
 wrong("3.8", "never breaks away")(heading(ask=lambda pull, hold: False))
 wrong("3.8", "the clock stands still")(heading(clock=0.0))
@@ -287,6 +299,20 @@ def first_slip(halvings=60, since=lambda t, tau: t + tau, whole=True, slips=lamb
 
 
 right("3.10", "with a question of its own")(first_slip())
+wrong("3.10", "the kinetic limit")(lambda acceleration, t, x, v, dt, p: first_slip()(acceleration, t, x, v, dt, p._replace(mu_s=p.mu_k)))
+MUTANTS[-1].function.__name__ = "breakaway_time"
+
+
+@wrong("3.10", "the load of now")
+def breakaway_time(acceleration, t, x, v, dt, p):
+    a_n = worked.normal_force(acceleration(t, x, v, p), p.n)
+    breaks = lambda tau: size(tangential(acceleration(t + tau, x, v, p), p.n)) > cone_radius(p.mu_s, a_n)
+    low, high = 0.0, dt
+    for _ in range(60 if breaks(dt) else 0):
+        low, high = (low, 0.5 * (low + high)) if breaks(0.5 * (low + high)) else (0.5 * (low + high), high)
+    return high
+
+
 wrong("3.10", "ten halvings")(first_slip(halvings=10))
 wrong("3.10", "counts from zero")(first_slip(since=lambda t, tau: tau))
 wrong("3.10", "asks about now")(first_slip(since=lambda t, tau: t))
@@ -377,10 +403,10 @@ MUTANTS[-1].function.__name__ = "contact_impulse"
 
 # 3.14 and 3.16 --------------------------------------------------------------------------------------------------
 def particle_step(name, grip=0.0, old=False, back=-1.0, asked="new", mass=True, only_inwards=False, both_ways=False, doubled=False,
-                  reached=0.0, half=1.0, depth=lambda phi: -phi, once=True, moving=lambda moved, x, v, dt: moved):
+                  reached=0.0, half=1.0, depth=lambda phi: -phi, once=True, clock=1.0, moving=lambda moved, x, v, dt: moved):
     """A step of a particle and what a surface does to it, with terms that may be wrong."""
     def step(acceleration, surface, t, x, v, dt, p):
-        v_free = v + (dt if once else 1.0) * acceleration(t, x, v, p)
+        v_free = v + (dt if once else 1.0) * acceleration(clock * t, x, v, p)
         moved = dt * (v if old else v_free)
         x_free = x + moved
         phi, n = surface(x if asked == "old" else x_free, p)
@@ -407,6 +433,8 @@ for number, name, grip in (("3.14", "contact_step", 0.0), ("3.16", "gripping_ste
     wrong(number, "leaves what is inside and leaves")(particle_step(name, grip, only_inwards=True))
     wrong(number, "every particle is in contact")(particle_step(name, grip, reached=np.inf))
     wrong(number, "forgets dt")(particle_step(name, grip, once=False))
+    wrong(number, "the clock stands still")(particle_step(name, grip, clock=0.0))
+    wrong(number, "in contact a millimetre too early")(particle_step(name, grip, reached=1e-3))
 wrong("3.14", "grips as well")(particle_step("contact_step", 1.0))
 wrong("3.16", "does not grip")(particle_step("gripping_step", 0.0))
 wrong("3.16", "grips forwards")(particle_step("gripping_step", -1.0))
@@ -433,6 +461,15 @@ def grip(sign=-1.0, part=tangential, limit=lambda mu, depth: mu * depth, choose=
 
 right("3.15", "by a unit vector")(grip())
 wrong("3.15", "forwards")(grip(sign=1.0))
+
+
+@wrong("3.15", "divides by no way")
+def grip_correction(moved, n, depth, mu):
+    s = tangential(moved, n)
+    with np.errstate(invalid="ignore"):
+        return -min(cone_radius(mu, depth), size(s)) * (s / size(s))
+
+
 wrong("3.15", "all of the displacement")(grip(part=lambda moved, n: moved))
 wrong("3.15", "holds everything")(grip(choose=lambda limit, s: s))
 wrong("3.15", "always slides")(grip(choose=lambda limit, s: limit))
