@@ -258,6 +258,9 @@ def test_principal_axes_are_right_handed(lesson, draw):
         kept = I.copy()
         _, axes = lesson.principal_axes(I)
         close("determinant of the axes [-]", np.linalg.det(np.asarray(axes)), 1.0, ROUNDED, f"I = {I.tolist()}")
+        found = np.asarray(lesson.principal_axes(I)[0])
+        close("principal moments, in their order [kg m²]", found, np.sort(found), 0.0, f"I = {I.tolist()}")
+        close("R diag(moments) Rᵀ over the largest [-]", np.asarray(axes) @ np.diag(found) @ np.asarray(axes).T / found.max(), I / found.max(), ROUNDED, f"I = {I.tolist()}")
         close("the tensor that was handed in", I, kept, 0.0)
 
 
@@ -275,10 +278,18 @@ def test_impossible_tensors_are_refused(lesson, draw):
         "a line of points: no moment about itself": turned([0.0, middle, middle], np.eye(3)),
         "a tensor of zeros: no mass": np.zeros((3, 3)),
         "NaN": np.diag([low, middle, np.nan]), "infinity": np.diag([np.inf, middle, middle]),
-        "two different entries Ixy and Iyx": turned([low, middle, middle], R) + np.array([[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [0.0, 0.0, 0.0]]),
+        "moments 1, 1 and 1e-15: nearly a line": turned([1e-15 * middle, middle, middle], np.eye(3)),
+        "a moment 1e-12 above the sum of the others": np.diag([low, middle, (low + middle) * (1.0 + 1e-12)]),
     }
     for what, I in impossible.items():
         raises(what, BadInput, lesson.check_inertia, I)
+    for i, j in ((0, 1), (0, 2), (2, 1)):
+        for size, part in ((1.0, 0.1), (1e-9, 0.1), (1.0, 1e-9)):
+            I = size * np.diag([low, middle, middle])
+            I[i, j] += part * size
+            raises(f"two different entries I{i}{j} and I{j}{i}", BadInput, lesson.check_inertia, I, naming=[part * size])
+    raises("a negative moment", BadInput, lesson.check_inertia, np.diag([middle, -low, middle]), naming=[-low])
+    raises("a moment above the sum of the others", BadInput, lesson.check_inertia, np.diag([low, 3.0 * middle, middle]), naming=[3.0 * middle])
 
 
 @exercise("4.14", points=0.5, hint="round-off must not condemn a thin plate, I₃ = I₁ + I₂: allow ε = TENSOR_ROUND_OFF of it")
@@ -287,7 +298,10 @@ def test_possible_tensors_pass(lesson, draw):
     lesson.check_inertia(np.diag([low, low, low]))
     lesson.check_inertia(np.diag([1e-6 * low, low, low]))              # a needle
     lesson.check_inertia(1e-9 * np.diag([low, middle, low + middle]))  # a plate, small and light
+    lesson.check_inertia(1e-15 * np.diag([low, middle, middle]))
     for _ in range(20):
+        R, size = rotation(draw), 10.0 ** draw(-9.0, 9.0)
+        lesson.check_inertia(size * (R @ np.diag([low, middle, middle]) @ R.T))          # asymmetric by the round-off of its size
         lesson.check_inertia(turned([low, middle, low + middle], rotation(draw)))
         m, r = cloud(draw, 5)
         lesson.check_inertia(tensor(m, r) + 0.01 * np.eye(3))
@@ -354,7 +368,7 @@ def test_integrals_over_boxes_and_an_angle_are_products(lesson, draw):
     compare_integrals(lesson, "an L, which is not convex", x, faces, expected, f"legs {a:.4g}, {b:.4g}, thickness {t:.4g}, height {height:.4g}")
 
 
-@exercise("4.16", points=0.5, hint="every edge i → j needs a j → i; an odd triangle, turned round or doubled, breaks that")
+@exercise("4.16", points=0.5, hint="every edge i → j needs a j → i; an odd triangle, turned round or doubled, breaks that; name a corner where it is open")
 def test_open_and_crooked_meshes_are_refused(lesson, draw):
     x, faces = box_mesh(draw(0.3, 1.5, 3), np.zeros(3))
     k = draw.whole(0, len(faces) - 1)
@@ -366,6 +380,9 @@ def test_open_and_crooked_meshes_are_refused(lesson, draw):
               "a number that no corner has": np.where(faces == len(x) - 1, len(x), faces), "a negative number": np.where(faces == 0, -1, faces)}
     for what, wrong in broken.items():
         raises(what, BadInput, lesson.check_closed, len(x), np.ascontiguousarray(wrong))
+    k = int(np.flatnonzero(np.all(faces > 0, axis=1))[0])
+    raises("a triangle missing that has no corner 0", BadInput, lesson.check_closed, len(x), np.delete(faces, k, axis=0), naming=faces[k].tolist())
+    raises("a number that no corner has", BadInput, lesson.check_closed, len(x), np.where(faces == len(x) - 1, 77, faces), naming=[77])
 
 
 @exercise("4.16", points=0.5, hint="compare what is there with what goes back, edge by edge; how the triangles are ordered does not matter")
@@ -376,6 +393,7 @@ def test_closed_meshes_pass(lesson, draw):
     lesson.check_closed(len(x), np.ascontiguousarray(np.roll(faces, draw.whole(1, 5), axis=0)[:, [1, 2, 0]]))
     lesson.check_closed(2 * len(x), np.concatenate([faces, faces + len(x)]))          # two bodies that do not touch
     lesson.check_closed(len(x) + 1, faces)                                            # a corner that no triangle uses
+    lesson.check_closed(6, np.concatenate([TETRAHEDRON, np.array([0, 1, 4, 5])[TETRAHEDRON]]))           # two that share an edge: it is there twice, and back twice
 
 
 @exercise("4.17", points=1, hint="subtract V c cᵀ before you form the trace: the tensor is about the centre of mass")

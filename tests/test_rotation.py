@@ -153,12 +153,15 @@ def pauli(q):
 
 @exercise("5.8", points=1, hint="scalar: a₀b₀ − 𝐚·𝐛; vector: a₀𝐛 + b₀𝐚 + 𝐚×𝐛; i j = k, but j i = −k")
 def test_quaternions_multiply_like_paulis_matrices(lesson, draw):
-    a, b = draw(-2.0, 2.0, 4), draw(-2.0, 2.0, 4)
-    expected = pauli(a) @ pauli(b)
-    got = np.asarray(lesson.product(a, b))
-    close("the product of two quaternions", got, [expected[0, 0].real, -expected[0, 1].imag, expected[1, 0].real, -expected[0, 0].imag], EXACT,
-          given=f"a = {a}, b = {b}")
-    close("|a b| − |a| |b|", np.linalg.norm(got) - np.linalg.norm(a) * np.linalg.norm(b), 0.0, EXACT)
+    pairs = draw(-2.0, 2.0, (8, 2, 4))
+    pairs[:2, :, 0] = 0.0                                                # two without a scalar: the product's is −𝐚·𝐛, of either sign
+    pairs[1, 1] = pairs[1, 0]
+    for a, b in pairs:
+        expected = pauli(a) @ pauli(b)
+        got = np.asarray(lesson.product(a, b))
+        close("the product of two quaternions", got, [expected[0, 0].real, -expected[0, 1].imag, expected[1, 0].real, -expected[0, 0].imag], EXACT,
+              given=f"a = {a}, b = {b}")
+        close("|a b| − |a| |b|", np.linalg.norm(got) - np.linalg.norm(a) * np.linalg.norm(b), 0.0, EXACT)
 
 
 @exercise("5.9", points=1, hint="the products with w change sign across the diagonal: 2(xy − wz) above it, 2(xy + wz) below")
@@ -288,6 +291,9 @@ def test_the_midpoint_turn_solves_its_own_equation(lesson, draw):
     rate = np.linalg.norm(w)
     expected = turn(q) @ about(2.0 * np.arctan(0.5 * rate * dt) / rate * w)
     close("orientation after dt, as a matrix", turn(q_new), expected, 1e-11)
+    for size in (1e6, 1e-6):                                             # the same motion: the correction is small when it is small beside m
+        scaled = lesson.midpoint_turn(q, size * L, size * I_body, dt)
+        close("the same of a body a million times as heavy, or as light", turn(scaled), expected, 1e-11, given=f"I_body = {size * I_body}, dt = {dt}")
     close("the q that was handed in: leave it", q, kept, 0.0)
 
 

@@ -1,5 +1,7 @@
 """The few ways in which a grading test compares.  A failure carries quantity, expected, got and tolerance as data."""
 
+import re
+
 import numpy as np
 
 
@@ -44,8 +46,11 @@ def between(quantity, got, low, high, given=""):
         raise NotYet(quantity, f"{low:.6g} to {high:.6g}", f"{number:.6g}", "", f"{max(low - number, number - high):.1e} off", given)
 
 
-def raises(quantity, error, function, *arguments):
-    """The call raises an error of that class (or of one of that name: compiled and sandboxed code have their own)."""
+def raises(quantity, error, function, *arguments, naming=()):
+    """The call raises an error of that class (or of one of that name: compiled and sandboxed code have their own).
+
+    naming: values of which the error's sentence must name one, to 1e-6 of it.
+    """
     try:
         function(*arguments)
     except NotImplementedError:
@@ -53,6 +58,9 @@ def raises(quantity, error, function, *arguments):
     except Exception as e:
         if error.__name__ not in {base.__name__ for base in type(e).__mro__}:
             raise NotYet(quantity, error.__name__, f"{type(e).__name__}: {e}", "", "another error") from None
+        said = [float(number) for number in re.findall(r"-?\d+\.?\d*(?:e[-+]?\d+)?|-?inf|nan", str(e))]
+        if naming and not any(abs(a - b) <= 1e-6 * abs(b) for a in said for b in naming):
+            raise NotYet(f"{quantity}: the value that {error.__name__} names", " or ".join(f"{value:.7g}" for value in naming), str(e), "", "another value") from None
     else:
         raise NotYet(quantity, f"{error.__name__} to be raised", "no error", "", "no error")
 

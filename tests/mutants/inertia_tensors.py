@@ -388,6 +388,20 @@ def principal_axes(I):
     return np.linalg.eigh(I)
 
 
+@wrong("4.13", "turns a row round")
+def principal_axes(I):
+    moments, R = np.linalg.eigh(I)
+    if np.linalg.det(R) < 0.0:
+        R[2] = -R[2]
+    return moments, R
+
+
+@wrong("4.13", "moments in no order")
+def principal_axes(I):
+    moments, R = np.linalg.eig(I)
+    return moments, R * np.array([1.0, 1.0, np.sign(np.linalg.det(R))])
+
+
 @wrong("4.13", "axes in rows")
 def principal_axes(I):
     moments, R = worked.principal_axes(I)
@@ -427,25 +441,32 @@ def principal_axes(I):
 
 
 # 4.14 -----------------------------------------------------------------------------------------------------------
-def judged(lowest, highest, symmetric=True, finite=True):
+def judged(lowest, highest, symmetric=True, finite=True, asymmetry=lambda I: np.max(np.abs(I - I.T)), equal=1e-14, named=lambda a, c: (a, c)):
     """A check with these two questions about the moments."""
     def check_inertia(I):
         if finite:
             check_finite("an entry of the inertia tensor [kg m²]", I)
         elif not np.all(np.isfinite(I)):
             return
-        if symmetric and np.max(np.abs(I - I.T)) > 1e-14 * np.max(np.abs(I)):
-            raise BadInput("the asymmetry of an inertia tensor [kg m²]", np.max(np.abs(I - I.T)), "make it symmetric")
+        if symmetric and asymmetry(I) > equal * np.max(np.abs(I)):
+            raise BadInput("the asymmetry of an inertia tensor [kg m²]", asymmetry(I), "make it symmetric")
         a, b, c = np.linalg.eigvalsh(I)
         if lowest(a, c):
-            raise BadInput("the smallest principal moment [kg m²]", a, "give it thickness")
+            raise BadInput("the smallest principal moment [kg m²]", named(a, c)[0], "give it thickness")
         if highest(a, b, c):
-            raise BadInput("the largest principal moment [kg m²]", c, "no body has that")
+            raise BadInput("the largest principal moment [kg m²]", named(a, c)[1], "no body has that")
     return check_inertia
 
 
 thin, too_large = lambda a, c: a <= 1e-14 * c, lambda a, b, c: c > (a + b) * (1.0 + 1e-14)
 wrong("4.14", "never asks about the sum")(judged(thin, lambda a, b, c: False))
+wrong("4.14", "lets next to nothing pass")(judged(lambda a, c: a <= 0.0, too_large))
+wrong("4.14", "a tolerance of 1e-14 kg m²")(judged(lambda a, c: a <= 1e-14, too_large))
+wrong("4.14", "a thousand million times too tolerant")(judged(thin, lambda a, b, c: c > (a + b) * (1.0 + 1e-9)))
+wrong("4.14", "asks Ixy and Iyx only")(judged(thin, too_large, asymmetry=lambda I: abs(I[0, 1] - I[1, 0])))
+wrong("4.14", "wants symmetry to the last digit")(judged(thin, too_large, equal=0.0))
+wrong("4.14", "is content with NumPy's idea of close")(judged(thin, too_large, equal=1e-5))
+wrong("4.14", "names another moment")(judged(thin, too_large, named=lambda a, c: (c, a)))
 wrong("4.14", "lets zero pass")(judged(lambda a, c: a < 0.0, too_large))
 wrong("4.14", "a plate is condemned by round-off")(judged(thin, lambda a, b, c: c >= a + b))
 wrong("4.14", "does not look below the diagonal")(judged(thin, too_large, symmetric=False))
@@ -540,6 +561,22 @@ def check_closed(count, faces):
 def check_closed(count, faces):
     every = edges_of(faces)
     if sorted(every) != sorted((j, i) for i, j in every):
+        raise BadInput("a corner on an open edge: number", every[0][0], "close the mesh")
+
+
+@wrong("4.16", "names corner 0, whichever is open")
+def check_closed(count, faces):
+    try:
+        worked.check_closed(count, faces)
+    except BadInput:
+        raise BadInput("a corner on an open edge: number", 0, "close the mesh") from None
+
+
+@wrong("4.16", "wants every edge once there and once back")
+def check_closed(count, faces):
+    worked.check_closed(count, faces)
+    every = edges_of(faces)
+    if len(set(every)) < len(every):
         raise BadInput("a corner on an open edge: number", every[0][0], "close the mesh")
 
 

@@ -224,6 +224,12 @@ wrong("5.8", "plus in the scalar")(hamilton(dot=1.0))
 wrong("5.8", "forgets a scalar")(hamilton(mixed=(1.0, 0.0)))
 
 
+@wrong("5.8", "turns what has a negative scalar round")
+def product(a, b):
+    c = worked.product(a, b)
+    return c if c[0] >= 0.0 else -c
+
+
 @wrong("5.8", "the scalar last")
 def product(a, b):
     return np.roll(worked.product(np.roll(a, 1), np.roll(b, 1)), -1)
@@ -424,7 +430,7 @@ def heavy_top_torque(t, q, L, top):
 
 # 5.16 -----------------------------------------------------------------------------------------------------------
 def midpoint(rounds=60, gyro=1.0, close=lambda q, w, dt: worked.unit(worked.product(q, np.concatenate(([1.0], 0.5 * dt * w)))), silent=False,
-             guess=lambda start: start.copy(), end=False, strict=False):
+             guess=lambda start: start.copy(), end=False, strict=False, small=lambda m: 4e-16 * np.max(np.abs(m))):
     """By going round the equation itself, m ← ℓ + ½dt m × w, until nothing changes, with parts that may be wrong."""
     def midpoint_turn(q, L, I_body, dt):
         start = worked.unrotate(q, L)
@@ -432,14 +438,14 @@ def midpoint(rounds=60, gyro=1.0, close=lambda q, w, dt: worked.unit(worked.prod
         for n in range(rounds):
             m_new = start + gyro * 0.5 * dt * np.cross(m, m / I_body)
             change, m = np.max(np.abs(m_new - m)), m_new
-            small = 4e-16 * np.max(np.abs(m))
-            if change < small or (change <= small and not strict) or (silent and n == rounds - 1):
+            if change < small(m) or (change <= small(m) and not strict) or (silent and n == rounds - 1):
                 return close(q, (2.0 * m - start if end else m) / I_body, dt)
         raise Diverged("the equation did not settle at dt [s]", dt, "take a smaller step")
     return midpoint_turn
 
 
 right("5.16", "by going round the equation")(midpoint(rounds=1000))
+wrong("5.16", "until the change is small in kg m²/s")(midpoint(rounds=1000, small=lambda m: 1e-12))
 wrong("5.16", "goes round once")(midpoint(rounds=1, silent=True))
 wrong("5.16", "goes round five times: not there yet")(midpoint(rounds=5, silent=True))
 wrong("5.16", "the gyroscopic term with the other sign")(midpoint(rounds=1000, gyro=-1.0))
