@@ -134,7 +134,7 @@ def friction_impulse(v_t, m, j_n, mu):
 
 
 def pyramid_impulse(v_t, m, j_n, mu, t_1, t_2):
-    """The same for a pyramid in place of the cone, whose sides face the unit vectors t_1 and t_2 (d,), both along the surface.
+    """The same for a pyramid in place of the cone, whose sides face the unit vectors t_1 and t_2 (d,), both along the surface and across each other.
 
     J_t = −clamp(m v_t · t_1) t_1 − clamp(m v_t · t_2) t_2          clamp(y): y, but not beyond ±μ j_n
 

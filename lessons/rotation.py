@@ -450,7 +450,7 @@ def middle_axis(I_body):
 
 
 def splitting_turn(q, L, I_body, dt):
-    """Orientation (4,) of a body after dt without torque, as five turns that are each exact; second order, the energy error stays bounded.
+    """Orientation (4,) of a body after dt without torque, as four turns that are each exact; second order, the energy error stays bounded.
 
     Let b be the middle_axis, a and c the two that follow it (b + 1 and b + 2, modulo 3).  The energy is a sum of three,
         L²/2I_b  +  ½(1/I_a − 1/I_b) L_a²  +  ½(1/I_c − 1/I_b) L_c²

@@ -209,7 +209,7 @@ def swirling_load(t, x, v, q, omega, body):
     return F, np.array([x[1] - omega[0], v[1] + q[0], np.sin(t) - omega[2]])
 
 
-@exercise("5.12", points=1, hint="load at the old state; then v and ω; then x and q with the new v and the new ω")
+@exercise("5.12", points=1, hint="load at the old state, F over m; then v and ω; then x and q with the new v and the new ω")
 def test_one_step_of_the_loop_is_velocities_first(lesson, draw):
     t, dt, m = draw(0.5, 1.5), draw(0.1, 0.3), draw(1.0, 3.0)
     x, v, q, omega, I_body = draw(-1.0, 1.0, 3), draw(-1.0, 1.0, 3), orientation(draw), spin_of(draw), moments(draw)
@@ -336,7 +336,7 @@ def test_the_midpoint_turn_solves_its_equation_or_says_that_it_did_not(lesson, d
               given=f"ω = {omega}, dt = {dt}")
 
 
-@exercise("5.17", points=0.5, hint="rates (1/I_a − 1/I_b) L_a about a, likewise about c, and dt/I_b L about L: with two equal moments the sum is exact")
+@exercise("5.17", points=0.5, hint="rates (1/I_a − 1/I_b) L_a about a, likewise about c, both on the right of q; dt/I_b L about L, on its left: with two equal moments the sum is exact")
 def test_the_splitting_turn_is_exact_when_two_moments_are_equal(lesson, draw):
     across, along, q, omega, dt = draw(2.0, 3.0), draw(1.0, 1.8), orientation(draw), spin_of(draw), draw(0.5, 2.0)
     for k in range(3):

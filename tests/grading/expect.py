@@ -68,5 +68,5 @@ def raises(quantity, error, function, *arguments, naming=()):
 def show(array):
     """A number or a small array in seven digits; of a large one the beginning."""
     flat = np.ravel(array)
-    text = ", ".join(f"{x:.7g}" for x in flat[:6]) + (", …" if flat.size > 6 else "")
+    text = ", ".join(f"{x:.7g}" for x in flat[:9]) + (", …" if flat.size > 9 else "")
     return text if np.ndim(array) == 0 else f"({text})"

@@ -70,6 +70,8 @@ def convergence(path, result):
     case, bottom = next(iter(result["cases"].values())), floor(result)
     figure, axes = plt.subplots()
     for c in case["ours"] + case["engines"]:
+        if c["why"].startswith("not attempted"):
+            continue
         colour, marker, line = look(c["label"])
         lost = [r["dt"] for r in c["rows"] if r["error"] is None or r["error"] >= TOP]
         seen = [(r["dt"], np.nan if r["dt"] in lost else max(r["error"], bottom)) for r in c["rows"]]           # a line has a gap where a run was lost
