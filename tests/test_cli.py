@@ -113,3 +113,11 @@ def test_one_exercise_loads_one_test_file():
     asked = subprocess.run([sys.executable, "-m", "pytest", "--of=lessons", "--exercise=8.1", "--collect-only", "-q", "-v"], cwd=binding.ROOT,
                            capture_output=True, text=True)
     assert "test_pbd.py" in asked.stdout and not set(re.findall(r"test_\w+\.py", asked.stdout)) - {"test_pbd.py"}
+
+
+def test_a_method_without_error_ends_up_on_the_page_and_in_the_table(capsys, tmp_path):
+    code, said, _ = run(capsys, "--scene", "throw", "--plain", "--out", str(tmp_path))
+    assert code == 0 and "exact" in said
+    page = (tmp_path / "throw.html").read_text()
+    assert "no error that can be told" in (tmp_path / "throw-times.svg").read_text() and "What theory allows" in page
+    assert "exact" in (tmp_path / "index.html").read_text()

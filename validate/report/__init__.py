@@ -17,7 +17,7 @@ HERE = Path(__file__).parent
 def write(out, results, stability, plan, jobs, bars):
     """Pages, pictures and report.json in a folder; the path of the front page."""
     pages = Environment(loader=PackageLoader("validate", "report"), autoescape=select_autoescape(), trim_blocks=True, lstrip_blocks=True)
-    pages.filters.update(seconds=words.seconds, number=words.number, percent=words.percent, factor=words.factor)
+    pages.filters.update(seconds=words.seconds, number=words.number, percent=words.percent, factor=words.factor, order=words.order)
     pages.tests["reaches"] = lambda row: any(t is not None for t in row.values())
     pages.globals.update(run=words.run(plan), playable=plots.playable, verdict=words.verdict, judge=words.judge, arrow_colours=space.ARROWS)
 

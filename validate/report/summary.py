@@ -17,7 +17,7 @@ def show(console, results, stability):
         row = words.row(result)
         every = [c for one in result["cases"].values() for c in one["ours"] + one["engines"]]
         departures += sum(c["right"] is False for c in every)
-        best = f"{row['best']['label']} {row['best']['order']:.2f} ({row['best']['expected']})" if row["best"] else "–"
+        best = f"{row['best']['label']} {words.order(row['best'])}" if row["best"] else "–"
         faster = ", ".join(f"{n} {words.factor(a['ratio'])}" for n, a in row["advantages"].items()) or "–"
         table.add_row(result["scene"], coloured(row["ours"]), *(coloured(v) for v, _ in row["engines"].values()), best, faster)
     console.print(table)

@@ -49,6 +49,13 @@ def factor(x):
     return f"{x:,.0f}×" if x >= 10 else f"{x:.2g}×"
 
 
+def order(curve):
+    """Order of convergence as measured, and in brackets as expected."""
+    if curve["expected"] == EXACT:
+        return EXACT
+    return f"{'–' if curve['order'] is None else format(curve['order'], '.2f')} ({curve['expected']})"
+
+
 def run(plan):
     """What the report was made with."""
     live = [f"{n} {engines.installed(n)} live" if n in plan.live else f"{n} recorded" for n in engines.NAMES]
