@@ -290,7 +290,7 @@ def parity(name, scene, plan, p):
     for method in methods_of(scene, plan, p):
         if len(speeds_of(scene, plan, method)) == 2:
             a, b = (final(*at_speed(name, plan, method, speed), p, scene.STEPS[0])[0] for speed in plan.speeds)
-            differences.append(relative(a, b) if a is not None and b is not None else 0.0)
+            differences += [relative(a, b)] if a is not None and b is not None else []
     return max(differences, default=None)
 
 

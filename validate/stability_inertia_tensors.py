@@ -142,4 +142,4 @@ def case_41(lesson):
 
 CASES = {40: ("A mesh far from the origin", case_40, "inertia_tensors"),
          41: ("Needles, plates, and what no body has", case_41, "inertia_tensors")}
-OWN_LAWS = set(CASES)        # 0.1 s: compiling them takes 7
+OWN_LAWS = set(CASES)        # short: compiling them would take longer

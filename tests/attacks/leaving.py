@@ -90,10 +90,11 @@ for folder in ("/", "/tmp", "/box", "/given", "/student", "/dev", "/dev/shm", "/
             pass
 """)
 attack("a full disk", "the grader cannot write its results", """
+import os, tempfile
 def euler_step(acceleration, t, x, v, dt, p):
     for n in range(100):
         try:
-            with open(f"/tmp/{n}", "wb") as file:
+            with open(os.path.join(tempfile.gettempdir(), str(n)), "wb") as file:
                 file.write(bytes(10 << 20))
         except OSError:
             pass

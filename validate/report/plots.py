@@ -6,6 +6,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
+from .words import judge
+
 LOOKS = {                       # label: colour, marker
     "Euler": ("#E69F00", "o"), "midpoint": ("#56B4E9", "^"), "Runge–Kutta 4": ("#009E73", "s"), "average velocity": ("#CC79A7", "v"),
     "symplectic Euler": ("#D55E00", "D"), "Verlet": ("#0072B2", "P"), "implicit Euler": ("#8C6D31", "<"),
@@ -70,7 +72,7 @@ def convergence(path, result):
     case, bottom = next(iter(result["cases"].values())), floor(result)
     figure, axes = plt.subplots()
     for c in case["ours"] + case["engines"]:
-        if c["why"].startswith("not attempted"):
+        if judge(c)[0] == "not attempted":
             continue
         colour, marker, line = look(c["label"])
         lost = [r["dt"] for r in c["rows"] if r["error"] is None or r["error"] >= TOP]
@@ -126,14 +128,13 @@ THEORY_OR_MEASURED = re.compile(r"^theory, |, (theory|measured)$|: .*$")
 
 def series_colours(labels):
     """A colour each: a method has its own, theory and measurement of one thing share theirs, and no two things have one."""
-    things = list(dict.fromkeys(THEORY_OR_MEASURED.sub("", label) for label in labels))
-    colours = {}
+    things, colours = [THEORY_OR_MEASURED.sub("", label) for label in labels], {}
     for thing in things:
         own = max((name for name in LOOKS if thing.startswith(name)), key=len, default=None)
         if own and LOOKS[own][0] not in colours.values():
             colours[thing] = LOOKS[own][0]
     free = iter([colour for colour in dict.fromkeys(look[0] for look in LOOKS.values()) if colour not in colours.values()])
-    return [colours[thing] if thing in colours else colours.setdefault(thing, next(free, "#000000")) for thing in (THEORY_OR_MEASURED.sub("", label) for label in labels)]
+    return [colours[thing] if thing in colours else colours.setdefault(thing, next(free, "#000000")) for thing in things]
 
 
 def show(plot, result):

@@ -13,7 +13,7 @@ TITLE, LESSON = "Ball of triangles", "inertia_tensors"
 T, STILL = 1.0, "fineness 1/n [-]: n triangles a quarter of the equator, n points a diameter"
 STEPS = (1, 2, 5, 10, 20, 50, 100)
 METHODS = (TRIANGLES, POINTS)
-PLAIN_IN_QUICK = ("mesh_body", "point_mass_inertia")     # 1.5 s; compiling takes 8
+PLAIN_IN_QUICK = ("mesh_body", "point_mass_inertia")     # sooner run than compiled
 UNCERTAINTY = 1e-15
 
 

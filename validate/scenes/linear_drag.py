@@ -14,7 +14,7 @@ T = 1.97599434               # [s]: when it is back at the height of the start
 STEPS = (10, 20, 50, 100, 200, 500, 1000, 2000)
 METHODS = INTEGRATORS
 FULL_ONLY = LEFT_TO_FULL
-PLAIN_IN_QUICK = ("symplectic_euler_step", "verlet_step")             # all their runs: a tenth of a second
+PLAIN_IN_QUICK = ("symplectic_euler_step", "verlet_step")             # sooner run than compiled
 UNCERTAINTY = 1e-14          # (1 − e^(−kt)) and gt are ten times as large as their difference
 
 

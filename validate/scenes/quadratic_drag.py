@@ -14,7 +14,7 @@ T = 3.0                      # [s]: three times what it takes to gain the termin
 STEPS = (15, 30, 60, 150, 300, 600, 1500, 3000)
 METHODS = INTEGRATORS
 FULL_ONLY = LEFT_TO_FULL
-PLAIN_IN_QUICK = ("symplectic_euler_step", "verlet_step")             # all their runs: a tenth of a second
+PLAIN_IN_QUICK = ("symplectic_euler_step", "verlet_step")             # sooner run than compiled
 UNCERTAINTY = 1e-14
 
 

@@ -13,7 +13,7 @@ T = 10.0                     # [s]
 STEPS = (10, 20, 50, 100, 200, 500, 1000, 2000)
 METHODS = INTEGRATORS
 FULL_ONLY = ("implicit_euler_step", "implicit_midpoint_step")     # not what this scene is about, and half of its compiling
-PLAIN_IN_QUICK = tuple(m.function for m in INTEGRATORS if m.order < 4)               # all their runs: a tenth of a second
+PLAIN_IN_QUICK = tuple(m.function for m in INTEGRATORS if m.order < 4)               # sooner run than compiled
 # One step with a constant a moves the stone by dt v + ½dt² a, and its velocity by dt a.  Every method gets the velocity right;
 # those whose position moves with the mean of old and new velocity, or with the one in the middle, get the position right too.
 ORDERS = {f"{name}_step": EXACT for name in ("midpoint", "rk4", "average_velocity", "verlet", "implicit_midpoint")}
