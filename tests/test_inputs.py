@@ -166,7 +166,7 @@ def test_a_ball_that_rolls_and_a_box_that_tips_settle_at_once():
 
 def test_where_the_law_of_an_impact_has_no_answer_the_fallback_is_physical_and_says_so():
     """Boxes on two to four of their corners, with friction of 1.5 and more: inside the cone, no energy gained, nothing goes in."""
-    rng, fell_back = np.random.default_rng(3), 0
+    rng, fell_back = np.random.default_rng(9), 0
     for _ in range(5):
         half, R = rng.uniform(0.05, 0.5, 3), rotation_of(rng)
         corners = np.array([(a, b, c) for a in (-1.0, 1.0) for b in (-1.0, 1.0) for c in (-1.0, 1.0)])[rng.choice(8, rng.integers(2, 5), replace=False)] * half
