@@ -345,7 +345,7 @@ def compliant_multiplier(C, Lam, weight, alpha, dt):
     Λ = λ dt² is what earlier visits of this step have added up to.  It comes to rest where C = −α̃ Λ = −α λ: Hooke's law.
     Raises BadInput("compliance α [m/N]", α, "give zero or more") for a negative one (NaN, too),
     BadInput("Σ w |∇C|² of a constraint", 0.0, "let one of its points have a mass and a gradient") for a weight of 0, and
-    check_positive("step dt [s]", dt) for a step that is not positive.
+    BadInput("step dt [s]", dt, "give a number above zero") for a step that is not positive (NaN, too).
     *Source:* Macklin, Müller and Chentanez 2016, eq. 18.
     """
     # YOUR CODE HERE
