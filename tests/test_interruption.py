@@ -13,7 +13,7 @@ import time
 
 import pytest
 
-from validate.binding import ROOT, SOLUTIONS
+from validate.binding import ROOT, SOLUTIONS, can_compile
 from validate.generate import exercises, stub
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals, disks and limits as POSIX has them")
@@ -120,6 +120,21 @@ def test_a_file_that_cannot_be_written_is_named_in_one_sentence(tmp_path):
     limited = subprocess.run(["sh", "-c", 'ulimit -f 8; exec "$@"', "sh", *command(tmp_path / "report")], cwd=ROOT, capture_output=True, text=True)
     assert limited.returncode == 2 and "tensors.errors.json" in limited.stderr and "too large" in limited.stderr, limited.stderr
     assert len(limited.stderr.strip().splitlines()) == 1 and not list(tmp_path.rglob("*.part"))
+
+
+@pytest.mark.skipif(not can_compile(), reason="numba is not installed")
+def test_compiled_code_that_the_disk_does_not_take_is_compiled_all_the_same(tmp_path):
+    code = """
+import pathlib, sys
+import numpy as np
+from validate import binding
+binding.CACHE = pathlib.Path(sys.argv[1])
+vectors = binding.world("solutions", compiled=True).lesson("vectors")
+print(vectors.dot(np.array([1.0, 2.0, 3.0]), np.array([4.0, 5.0, 6.0])))
+"""
+    limited = subprocess.run(["sh", "-c", 'ulimit -f 1; exec "$@"', "sh", sys.executable, "-c", code, str(tmp_path)], cwd=ROOT, capture_output=True, text=True)
+    assert limited.stdout == "32.0\n", limited.stderr
+    assert not [path for path in tmp_path.rglob("*.nbc") if path.stat().st_size > 512]
 
 
 DISK = """

@@ -19,6 +19,7 @@ import traceback
 import types
 import uuid
 import warnings
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 
@@ -301,12 +302,25 @@ def _short_of_words():
         arrayobj.raise_with_shape_context = shapes_differ
 
 
+@lru_cache(maxsize=1)
+def _full_disk_is_no_error():
+    """Let numba go on where the disk takes no more: what it cannot keep is compiled anew next time."""
+    from numba.core.caching import Cache
+    keep = Cache.save_overload
+
+    def keep_if_possible(cache, signature, data):
+        with suppress(OSError):
+            keep(cache, signature, data)
+    Cache.save_overload = keep_if_possible
+
+
 def _use_cache(digest):
     """Point numba at this world's folder, and delete the folders of worlds long gone."""
     import numba
     from numba.core.config import _OptLevel
     _without_addresses()
     _short_of_words()
+    _full_disk_is_no_error()
     numba.config.OPT, numba.config.LOOP_VECTORIZE = _OptLevel(1), 0                   # same speed here, a third of the compiling
     warnings.filterwarnings("ignore", message="Cannot cache compiled function")      # then it is compiled anew, that is all
     folder = CACHE / digest
