@@ -14,6 +14,7 @@ import pytest
 
 from validate import __main__ as cli
 from validate import binding, engines, measure, processes, record, report, store
+from validate.generate import exercises, stub
 from validate.report import plots, summary
 
 
@@ -65,6 +66,17 @@ def test_answers_that_are_not_there_or_do_not_load_are_named_in_one_sentence(cap
     last = len(lesson.read_bytes().splitlines()) if lesson.is_file() else 0
     assert code == 2 and "inertia_tensors.py" in error and says.format(last=last) in error and len(error.strip().splitlines()) == 1
     assert not (tmp_path / "report").exists()
+
+
+def test_answers_that_end_in_errors_depart_and_end_nothing_else(capsys, tmp_path, here):
+    shutil.copytree(binding.ROOT / "lessons", tmp_path / "answers")
+    lesson = tmp_path / "answers" / "inertia_tensors.py"
+    source = (binding.SOLUTIONS / lesson.name).read_text()
+    lesson.write_text(stub(source, exercises(source)) + "\ndef world_inverse_inertia(I_body, R):\n    return {}[1]\n\ndef combine(m, x, I):\n    return x['I']\n")
+    code, said, error = run(capsys, *of("tensors"), "--plain", "--of", str(lesson.parent), "--out", str(tmp_path / "report"))
+    said = " ".join(said.split())
+    assert code == 1 and error == "" and " of 15 " in said and "case 41 The case comes to its end, which here was KeyError: 1." in said, said
+    assert "KeyError: 1" in (tmp_path / "report" / "stability.html").read_text() and not (tmp_path / "report" / "stability-41.svg").exists()
 
 
 def test_a_scene_that_does_not_load_is_named_and_hides_no_other(capsys, tmp_path, monkeypatch):
