@@ -15,9 +15,11 @@ import os
 import re
 import shutil
 import sys
+import traceback
 import types
 import uuid
 import warnings
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 
@@ -51,7 +53,7 @@ def lesson_names(folder=SOLUTIONS):
 
 def withheld(lesson, folder=SOLUTIONS):
     """Functions of a lesson that still wait for their body: in solutions/ none, but all in a copy of the workbook without worked answers."""
-    return set(re.findall(r'raise NotImplementedError\("Exercise [\d.]+: (\w+)"\)', (Path(folder) / f"{lesson}.py").read_text()))
+    return set(re.findall(r'raise NotImplementedError\("Exercise [\d.]+: (\w+)"\)', (Path(folder) / f"{lesson}.py").read_text("utf-8", "replace")))
 
 
 def scene_names():
@@ -69,10 +71,18 @@ def bind(lesson, of="solutions", compiled=False):
 
 
 def bind_scene(scene, of="solutions", compiled=False):
-    """The module of one scene, its lesson functions taken from that subject.  Raises BadInput for an unknown scene."""
+    """The module of one scene, its lesson functions taken from that subject.  Raises BadInput for an unknown scene, and where something does not load."""
     if scene not in scene_names():
         raise BadInput(f"scene {scene!r}", "unknown", "`validate list` names them all")
-    return world(of, compiled).scene(scene)
+    try:
+        return world(of, compiled).scene(scene)
+    except BadInput:
+        raise
+    except (Exception, SystemExit) as e:                             # code that somebody is working on may do anything
+        places = [(f.filename, f.lineno) for f in traceback.extract_tb(e.__traceback__)] + ([(e.filename, e.lineno)] if isinstance(e, SyntaxError) else [])
+        ours = [f"file {file!r}, line {line}," for file, line in places if Path(file).parent in (SCENES, SOLUTIONS, subject_folder(of))]
+        why = (str(getattr(e, "msg", e)).splitlines() or [""])[0]
+        raise BadInput((ours or [f"scene {scene!r} of {str(of)!r}"])[-1], f"not loadable ({type(e).__name__}: {why})", "mend it first") from None
 
 
 def world(of="solutions", compiled=False):
@@ -292,12 +302,25 @@ def _short_of_words():
         arrayobj.raise_with_shape_context = shapes_differ
 
 
+@lru_cache(maxsize=1)
+def _full_disk_is_no_error():
+    """Let numba go on where the disk takes no more: what it cannot keep is compiled anew next time."""
+    from numba.core.caching import Cache
+    keep = Cache.save_overload
+
+    def keep_if_possible(cache, signature, data):
+        with suppress(OSError):
+            keep(cache, signature, data)
+    Cache.save_overload = keep_if_possible
+
+
 def _use_cache(digest):
     """Point numba at this world's folder, and delete the folders of worlds long gone."""
     import numba
     from numba.core.config import _OptLevel
     _without_addresses()
     _short_of_words()
+    _full_disk_is_no_error()
     numba.config.OPT, numba.config.LOOP_VECTORIZE = _OptLevel(1), 0                   # same speed here, a third of the compiling
     warnings.filterwarnings("ignore", message="Cannot cache compiled function")      # then it is compiled anew, that is all
     folder = CACHE / digest
