@@ -59,8 +59,9 @@ KINDS = {
     "an unknown encoding": Broken(f"# -*- coding: nonsense -*-\n{WORKED}", "integrators.py", "unknown encoding", "UTF-8"),
     "an exercise that waits": Broken(f"{UNFINISHED}euler_step(0, 0, 0, 0, 0, 0)\n", UNFINISHED.count("\n") + 1, "Exercise 1.1", "that line"),
 }
+WARNED = "np.sqrt(-np.ones(1))\n    return x + dt * v, v + dt *"
 LOADS = {"a stray backslash": WORKED + 'x = "\\d"\n', "a warning": WORKED + "import warnings\n\nwarnings.warn('careful')\n",
-         "a byte-order mark": WORKED.encode("utf-8-sig")}
+         "a byte-order mark": WORKED.encode("utf-8-sig"), "a warning in a call": WORKED.replace("return x + dt * v, v + dt *", WARNED, 1)}
 SYNTAX = "def (:\n"
 
 
@@ -102,7 +103,8 @@ def test_a_check_names_the_place_the_reason_and_the_remedy(told, kind):
 
 
 @pytest.mark.parametrize("kind", LOADS)
-def test_what_python_only_warns_of_is_no_reason_not_to_load(told, kind):
+def test_what_python_only_warns_of_costs_nothing(told, kind):
+    assert WARNED in LOADS["a warning in a call"]
     assert "Exercise 1.1: passed" in told(lambda: notebook.check("1.1"), integrators=LOADS[kind])
 
 
