@@ -7,16 +7,15 @@ import traceback
 from pathlib import Path
 from typing import NamedTuple
 
-import numpy as np
 import pytest
 
 from solutions.checks import BadInput
 from validate.loading import TooLong, Unloadable, remedy_for, words_of
 
-from .expect import NotYet
+from .expect import MOST_DIGITS, NotYet, tidy
 
 TESTS = Path(__file__).resolve().parent.parent
-OURS = {TESTS, TESTS.parent / "validate", Path(os.__file__).parent, Path(np.__file__).parent}    # no subject's file is in here
+OURS = {TESTS, TESTS.parent / "validate", Path(os.__file__).parent}                      # no subject's file is in here
 PUBLIC = "public"            # the seed of everyone's own tests
 LIMIT = 20.0                 # a grading test may take this long [s]: the slowest takes 2, on two shared cores
 READING = "reading the file"   # the quantity where a file could not be loaded
@@ -88,7 +87,7 @@ def outcome(mark, name, excinfo):
                        "does a loop of yours never end? Count its rounds, and stop after so many")
     if not any(Path(entry.filename).name.startswith("test_") for entry in _frames(error)):
         return unreadable(Outcome(exercise, name, points, "not run"), error, "")
-    kind, place, said = type(error).__name__, _place(error), words_of(error)
+    kind, place, said = type(error).__name__, _place(error), tidy(words_of(error), MOST_DIGITS)
     return Outcome(exercise, name, points, "not yet", "the call itself", "an answer", f"{kind}: {said}{place}", "",
                    _advice(error, said, hint), f"{kind}{place}")
 
@@ -110,7 +109,8 @@ def _place(error):
     if hasattr(error, "where"):                                      # the sandbox says
         return f" ({error.where})" if error.where else ""
     files = [(Path(entry.filename), entry.lineno) for entry in _frames(error) if not entry.filename.startswith("<")]
-    own = [f" ({file.name}, line {line})" for file, line in files if not OURS.intersection(file.parents)]
+    own = [f" ({file.name}, line {line})" for file, line in files
+           if "site-packages" not in file.parts and not OURS.intersection(file.parents)]
     return own[-1] if own else ""
 
 

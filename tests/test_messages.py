@@ -1,0 +1,108 @@
+"""What a check says: in few digits, the first entry that differs, never the same words for expected and got."""
+
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from .grading.expect import LONGEST, NotYet, between, close, numbers, raises, tidy
+
+
+def told(comparison, *arguments, **more):
+    """The NotYet that a comparison ends in."""
+    with pytest.raises(NotYet) as error:
+        comparison("quantity [m]", *arguments, **more)
+    return error.value
+
+
+@pytest.mark.parametrize("expected, got, said", [
+    (1.23456789, 2.0, ("1.235", "2")),
+    (1.23456789, 1.2349, ("1.2346", "1.2349")),
+    (1.23456789, 1.23457, ("1.234568", "1.23457")),
+    (1.00049, 1.00051, ("1.00049", "1.00051")),                    # at four digits they would be a thousandth apart
+    (1.23456789, 1.23456789 + 1e-9, ("1.235", "1.235 + 1e-09")),
+    (0.1, 0.1 - 1e-12, ("0.1", "0.1 - 1e-12")),
+    (0.0, -3e-17, ("0", "-3e-17")),
+    (5.0, 5.0000001, ("5", "5 + 1e-07")),
+    (64741.2, 64741.9, ("64741.2", "64741.9")),
+    (1000.0, 0.0, ("1000", "0")),
+    (-2.5e9, 2.5e9, ("-2.5e+09", "2.5e+09")),
+])
+def test_two_numbers_have_four_digits_or_as_many_as_tell_them_apart(expected, got, said):
+    error = told(close, got, expected, 0.0)
+    assert (error.expected, error.got) == said
+
+
+def test_random_numbers_never_look_alike_and_say_how_far_they_are_apart():
+    rng = np.random.default_rng(4)
+    for _ in range(20_000):
+        a = rng.standard_normal() * 10.0 ** rng.integers(-12, 12)
+        b = a * (1.0 + rng.standard_normal() * 10.0 ** rng.integers(-14, 3))
+        if a != b:
+            error = told(close, b, a, 0.0)
+            assert error.expected != error.got
+            left, right = float(error.expected), eval(error.got)
+            assert right - left == pytest.approx(b - a, rel=1.01, abs=0.0) and (right > left) == (b > a), error
+
+
+def test_a_few_entries_are_shown_whole_and_of_more_the_first_that_differs():
+    error = told(close, np.array([1.0, 2.00004, 3.0]), np.array([1.0 + 1e-9, 2.0, 3.0]), 1e-6)
+    assert (error.expected, error.got) == ("(1, 2, 3)", "(1, 2.00004, 3)")
+    matrix = np.arange(9.0).reshape(3, 3)
+    other = matrix.copy()
+    other[1, 2], other[2, 0] = 5.25, -1.0
+    error = told(close, other, matrix, 1e-6)
+    assert (error.expected, error.got) == ("5 at [1, 2]", "5.25 at [1, 2]; 2 of 9 entries differ")
+    assert error.error == "7.0e+00 off"                              # of the worst, as the grader tells it
+    other[1, 2] = np.nan
+    assert told(numbers, other, (3, 3)).got == "nan at [1, 2]"
+
+
+def test_a_range_shows_which_end_was_missed():
+    error = told(between, 0.5, 0.50001, 12.0)
+    assert (error.expected, error.got) == ("0.50001 to 12", "0.5")
+    error = told(between, 1.0 + 1e-12, 0.0, 1.0)
+    assert (error.expected, error.got) == ("0 to 1", "1 + 1e-12")
+
+
+@pytest.mark.parametrize("got, said", [
+    (None, "None: does every way through your function end in a return?"), ("left", "a str"), (3.0, "a number"),
+    (np.zeros(2), "an array of shape (2,)"), ((1.0, (2.0, 3.0)), "a tuple"), ((1.0, np.inf, 2.0), "inf at [1]")])
+def test_what_is_no_such_array_is_named(got, said):
+    assert told(close, got, np.zeros(3), 1.0).got == said
+
+
+class Ball(NamedTuple):
+    """A record, as the lessons have them."""
+    x: np.ndarray
+    radius: float
+    faces: np.ndarray = np.zeros((0, 3))
+
+
+def test_inputs_are_written_as_people_write_them():
+    x, pi, one = np.array([1.0, -2.3456789, 1e-9]), np.float64(3.14159265358979), 1.0
+    assert tidy(f"x = {x}, π = {pi}, one = {one}") == "x = [1, -2.346, 1e-09], π = 3.142, one = 1"
+    assert tidy(f"{Ball(x, pi)}") == "Ball(x = [1, -2.346, 1e-09], radius = 3.142, faces = [])"
+    assert tidy(f"{(pi, np.int64(3), np.bool_(True))}, {[x[:1], x[:2]]}") == "(3.142, 3, True), [[1], [1, -2.346]]"
+    assert tidy("speed [kg m²/s] at rest, exercise 1.2") == "speed [kg m²/s] at rest, exercise 1.2"
+    assert tidy(f"{0.5 - 1e-11}, {1.000001 * 0.123456}, {0.1 + 0.2}, {1e300}") == "0.5 - 1e-11, 0.1235, 0.3, 1e+300"
+
+
+def test_a_long_array_is_cut_and_no_text_is_longer_than_a_student_reads():
+    many = np.random.default_rng(1).random((40, 3))
+    text = tidy(f"corners {many.tolist()} m, m = {many[:, 0]} kg")
+    assert text.count("…") == 2 and text.endswith(", …] kg") and "]] m" in text and len(text) < LONGEST
+    assert len(tidy(", ".join(f"{Ball(x, 1.0)}" for x in many))) <= LONGEST
+    assert len(tidy("word " * 500)) <= LONGEST
+
+
+def test_an_error_is_told_without_the_words_of_numpy():
+    def call():
+        raise KeyError(f"{np.array([0.1, 0.25])} and {0.1 + 1e-3 / 3.0!r} and {(np.float64(0.25),)}")
+    error = told(raises, ValueError, call)
+    assert error.expected == "ValueError" and error.got == "KeyError: '[0.1, 0.25] and 0.1003333 and (0.25,)'"
+
+
+def test_a_failure_in_one_line_has_all_of_it():
+    error = told(close, 1.0, 2.0, 0.0, given=f"x = {np.float64(0.123456)}")
+    assert str(error) == "quantity [m] (x = 0.1235): expected 2, got 1, tolerance none: exactly this"
