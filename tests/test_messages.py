@@ -1,10 +1,14 @@
 """What a check says: in few digits, the first entry that differs, never the same words for expected and got."""
 
+from types import SimpleNamespace
 from typing import NamedTuple
 
 import numpy as np
 import pytest
 
+from validate import binding, notebook
+
+from .grading import box, example, marking, points
 from .grading.expect import LONGEST, NotYet, between, close, numbers, raises, tidy
 
 
@@ -106,3 +110,59 @@ def test_an_error_is_told_without_the_words_of_numpy():
 def test_a_failure_in_one_line_has_all_of_it():
     error = told(close, 1.0, 2.0, 0.0, given=f"x = {np.float64(0.123456)}")
     assert str(error) == "quantity [m] (x = 0.1235): expected 2, got 1, tolerance none: exactly this"
+
+
+# ---------------------------------------------------------------------------------------------- what a student prints
+
+BODY = "return x + dt * v, v + dt *"                     # how the answer of 1.1 begins
+ESCAPE = r"\x1b[31m"                                     # as a student writes it
+
+
+def printing(lines):
+    """Lesson 1 with these lines before the answer of its first exercise."""
+    return example.worked("integrators").replace(BODY, f"{lines}\n    {BODY}", 1)
+
+
+def checked(monkeypatch, tmp_path, text):
+    """What a check of the first exercise of that file shows, in both of its forms."""
+    (tmp_path / "integrators.py").write_text(text)
+    shown = []
+    monkeypatch.setenv("WORKBOOK_LESSONS", str(tmp_path))
+    monkeypatch.setattr("validate.notebook.display", shown.append)
+    notebook.check("1.1")
+    return repr(shown[0]), shown[0]._repr_html_()
+
+
+def test_what_a_function_prints_is_shown_with_the_test_that_failed(monkeypatch, tmp_path):
+    text, html = checked(monkeypatch, tmp_path, printing(f"print('dt is', dt, '{ESCAPE}')\n    return x, v"))
+    assert "Exercise 1.1: not yet" in text and "    printed    dt is 0.0752" in text and "dt is 0.0752" in html
+    assert ESCAPE in text and ESCAPE in html and "\x1b" not in text + html and "white-space:pre-wrap" in html
+
+
+def test_what_a_right_function_prints_is_not_in_the_way(monkeypatch, tmp_path):
+    text, _ = checked(monkeypatch, tmp_path, printing("print('here')"))
+    assert "Exercise 1.1: passed" in text and "here" not in text
+
+
+@pytest.mark.parametrize("printed", ["'word ' * 100_000", "'\\n'.join(map(str, range(100_000)))"])
+def test_of_much_that_is_printed_the_beginning_is_shown(monkeypatch, tmp_path, printed):
+    text, html = checked(monkeypatch, tmp_path, printing(f"print({printed})\n    return x, v"))
+    assert len(text) < points.PRINTED + 1000 and len(text.splitlines()) < points.LINES + 10 and "…" in text
+    assert len(html) < 3 * points.PRINTED
+
+
+def test_what_is_printed_with_secret_inputs_is_never_told():
+    """Right with the public inputs, wrong and talkative with all others."""
+    box.sandbox_for_tests(pytest.skip, pytest.fail)
+    worked, public = binding.bind("integrators"), set()
+
+    def noting(acceleration, t, x, v, dt, p):
+        public.add(float(dt))
+        return worked.euler_step(acceleration, t, x, v, dt, p)
+    points.grade("integrators", SimpleNamespace(**{**vars(worked), "euler_step": noting}))
+    talk = printing(f"if dt not in {public!r}:\n        print('dt', dt)\n        return x, v")
+    outcomes, printed = marking.mark_lesson("integrators", talk.encode(), "a secret")
+    hidden = [o for kind, o in outcomes if kind == "hidden"]
+    assert "not yet" in {o.status for o in hidden} and "dt 0." not in printed and all(o.printed == "" for o in hidden)
+    for told in (marking.says(o, "hidden") for o in hidden):
+        assert told.keys() <= {"quantity", "got", "tolerance"} and "dt 0." not in str(told)

@@ -1,6 +1,6 @@
 """A subject's file that does not load, or that lacks a function: what is said about it, and what stands in for it.
 
-A student's file may hold anything.  Whatever is wrong with it ends in an Unloadable that names file, line, reason and remedy.
+A student's file may hold anything.  Whatever is wrong ends in an Unloadable that names file, line, reason and remedy.
 """
 
 import contextlib
@@ -74,7 +74,7 @@ REMEDIES = {                 # {sign in what Python says: what to do}; the first
 def unloadable(file, error):
     """The Unloadable for a file that raised that error while it was loaded."""
     at_fault, place = _place(file, error)
-    words = re.sub(r" \([^()]*\.(py|so)\)$", "", " ".join(words_of(error).split()))         # without where a library lies
+    words = re.sub(r" \([^()]*\.(py|so)\)$", "", " ".join(words_of(error).split()))     # without where a library lies
     words = words if len(words) <= LONGEST_REASON else f"{words[:LONGEST_REASON]} …"
     told = ": ".join(filter(None, ("" if isinstance(error, TooLong) else type(error).__name__, words)))
     where = ", ".join(filter(None, (at_fault.name, place)))
@@ -135,7 +135,7 @@ def waiting(why):
 def answer_for_what_is_missing(module):
     """Let a lesson have, for every name that its file lacks, a function that says so."""
     def absent(name):
-        if name.startswith("_"):                                       # Python and IPython ask for such names, and mean it
+        if name.startswith("_"):                                     # Python and IPython ask for such names
             raise AttributeError(name)
         return waiting(lacks(Path(module.__file__), name))
     vars(module).setdefault("__getattr__", absent)

@@ -187,18 +187,19 @@ class _Answer:
             yield ("still open" if f"Exercise {self.exercise}:" in waits else "it waits for"), waits
         elif self.open:
             first = next(o for o in self.open if o["status"] == "not yet")
-            for name in ("quantity", "given", "expected", "got", "tolerance", "hint"):
+            for name in ("quantity", "given", "expected", "got", "tolerance", "hint", "printed"):
                 if first[name]:
                     yield name, first[name]
 
     def __repr__(self):
         (title, points), *rest = self.lines()
-        return "\n".join([f"{title} ({points})", *(f"    {name:10} {value}" for name, value in rest)])
+        indented = ((name, value.replace("\n", f"\n{'':15}")) for name, value in rest)
+        return "\n".join([f"{title} ({points})", *(f"    {name:10} {value}" for name, value in indented)])
 
     def _repr_html_(self):
         (title, points), *rest = self.lines()
         rows = "".join(f'<tr><td style="text-align:left;color:#5b666e;padding:.1rem 1rem .1rem 0">{escape(n)}</td>'
-                       f'<td style="text-align:left">{escape(v)}</td></tr>' for n, v in rest)
+                       f'<td style="text-align:left;white-space:pre-wrap">{escape(v)}</td></tr>' for n, v in rest)
         return (f'<div style="border-left:4px solid {COLOUR[self.state]};padding:.3rem .8rem;margin:.3rem 0">'
                 f'<b style="color:{COLOUR[self.state]}">{escape(title)}</b> ({points})<table style="margin:0">{rows}</table></div>')
 

@@ -15,14 +15,15 @@ LONGEST = 300                # of a text [characters]
 MARGIN = re.compile(r"(?<=\[) | (?=[\],])")                            # as NumPy prints arrays: [ 1.   -0.25]
 BETWEEN = re.compile(r"(?:(?<=[\d.\]])|(?<=nan|inf)) (?=-?(?:[\d\[]|nan|inf))")
 FLOAT = re.compile(r"(?<![\w.])-?\d+\.\d*(?:e[-+]?\d+)?")
+NOTHING = "None: does every way through your function end in a return?"
 ROUNDING, NEARLY = 1e-15, 1e-6          # relative differences: nobody means the one, and a test means the other
 
 
 class NotYet(AssertionError):
     """An answer that is not right yet.
 
-    quantity and tolerance may be shown to anyone.  given (the inputs), expected and got may not when the inputs are secret;
-    then error, the size of what is wrong, stands in for them.
+    quantity and tolerance may be shown to anyone.  given (the inputs), expected and got may not when the inputs are
+    secret; then error, the size of what is wrong, stands in for them.
     """
 
     def __init__(self, quantity, expected, got, tolerance, error="", given=""):
@@ -38,11 +39,12 @@ class NotYet(AssertionError):
 def numbers(quantity, got, shape, given=""):
     """got as a float array, or NotYet when it is not one of that shape or holds NaN or infinity."""
     if got is None:
-        raise NotYet(quantity, of_shape(shape), "None: does every way through your function end in a return?", "", "None", given)
+        raise NotYet(quantity, of_shape(shape), NOTHING, "", "None", given)
     try:
         array = np.asarray(got, dtype=float)
     except (TypeError, ValueError):
-        raise NotYet(quantity, of_shape(shape), f"a {type(got).__name__}", "", f"a {type(got).__name__}", given) from None
+        kind = f"a {type(got).__name__}"
+        raise NotYet(quantity, of_shape(shape), kind, "", kind, given) from None
     if array.shape != shape:
         raise NotYet(quantity, of_shape(shape), of_shape(array.shape), "", f"shape {array.shape}", given)
     if not np.all(np.isfinite(array)):

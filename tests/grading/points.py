@@ -20,6 +20,7 @@ PUBLIC = "public"            # the seed of everyone's own tests
 LIMIT = 20.0                 # a grading test may take this long [s]: the slowest takes 2, on two shared cores
 READING = "reading the file"   # the quantity where a file could not be loaded
 BOX_LIMIT = 10.0             # and so long in the sandbox [s]
+LINES, PRINTED = 20, 2000    # of what a subject prints, so much is shown [lines, characters]
 
 
 class Outcome(NamedTuple):
@@ -35,6 +36,7 @@ class Outcome(NamedTuple):
     hint: str = ""
     error: str = ""          # the size of what is wrong, in place of expected and got where the inputs are secret
     given: str = ""          # the inputs, in words
+    printed: str = ""        # by a subject in this process, while the test failed
 
 
 class Points:
@@ -60,10 +62,19 @@ class Points:
         report = yield
         mark = item.get_closest_marker("exercise")
         if mark and (call.when == "call" or (call.excinfo and call.when == "setup")):
-            self.keep(item, outcome(mark, name_of(item), call.excinfo))
+            found = outcome(mark, name_of(item), call.excinfo)
+            self.keep(item, found._replace(printed=beginning(report.capstdout)) if call.excinfo else found)
             if call.when == "setup" and isinstance(call.excinfo.value, BadInput):
                 report.longrepr = str(call.excinfo.value)            # how it came to that is not the student's
         return report
+
+
+def beginning(text):
+    """The first lines of what was printed, what is no text in it written as numbers."""
+    lines = text.expandtabs(4)[:PRINTED + 1].splitlines()
+    kept = "\n".join(lines[:LINES])[:PRINTED]
+    shown = "".join(c if c.isprintable() or c == "\n" else f"\\x{ord(c):02x}" for c in kept)
+    return f"{shown}\n…" if len(lines) > LINES or len(text) > PRINTED else shown
 
 
 def name_of(item):
