@@ -198,7 +198,7 @@ class _Answer:
 
     def _repr_html_(self):
         (title, points), *rest = self.lines()
-        rows = "".join(f'<tr><td style="text-align:left;color:#5b666e;padding:.1rem 1rem .1rem 0">{escape(n)}</td>'
+        rows = "".join(f'<tr><td style="text-align:left;vertical-align:top;color:#5b666e;padding:.1rem 1rem .1rem 0">{escape(n)}</td>'
                        f'<td style="text-align:left;white-space:pre-wrap">{escape(v)}</td></tr>' for n, v in rest)
         return (f'<div style="border-left:4px solid {COLOUR[self.state]};padding:.3rem .8rem;margin:.3rem 0">'
                 f'<b style="color:{COLOUR[self.state]}">{escape(title)}</b> ({points})<table style="margin:0">{rows}</table></div>')
