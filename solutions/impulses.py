@@ -6,7 +6,7 @@ u [m/s] velocity of a's contact point as seen from b's, u_n = n · u its part al
 
 Velocities after an impact have a ⁺.  An impact is so short that nothing moves and no other force counts.  A body that cannot be moved has
 inv_mass = 0 and inv_inertia = 0.  In the plane r × n is the number r_x n_y − r_y n_x, and omega is a number, counter-clockwise.
-*Left out:* finding out who touches whom (lesson 6); contacts that last (lesson 9).
+*Left out:* finding out who touches whom (lesson 6).  Contacts that last, as in a stack, are not part of the lessons yet.
 """
 
 from typing import NamedTuple
@@ -744,7 +744,7 @@ def solve_impacts(body, r, n, e, mu):
     Together: the order of the points does not matter in the end, and what met the floor flat leaves it flat.
     Raises what check_impacts raises; call it first.
     *Source:* Gauss–Seidel sweeps, as in Guendelman et al. 2003; deck B, "Multi-contact problems".
-    *Left out:* how an impact travels from point to point; contacts between many bodies (lesson 9).
+    *Left out:* how an impact travels from point to point; contacts between many bodies.
     """
     ### BEGIN SOLUTION 7.17
     check_impacts(body, r, n, e, mu)

@@ -8,7 +8,7 @@ Vectors are in world coordinates, unless the name ends in _body.  The axes of th
 
 Every method is a function  step(torque, t, q, L, dt, body) → (q, L)  at t + dt.  torque(t, q, L, body) returns (3,) [N m] and gets
 body, any record with a field I_body, untouched.  L itself is the state, so that without a torque it is kept to the last digit.
-*Left out:* contacts, but for a ball on a floor; lessons 6, 7 and 9 build them.
+*Left out:* contacts, but for a ball on a floor; lessons 6 and 7 find them and answer them.
 """
 
 from typing import NamedTuple
