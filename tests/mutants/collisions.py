@@ -4,9 +4,9 @@ import numpy as np
 
 from solutions import collisions as worked
 from solutions.checks import BadInput
-from . import collection
+from . import collection, variants
 
-wrong, right, MUTANTS = collection()
+wrong, right, edit, MUTANTS = collection(worked)
 NEVER = np.inf
 
 
@@ -15,6 +15,7 @@ def size(y):
 
 
 # 6.1 ------------------------------------------------------------------------------------------------------------
+@variants
 def distance(f):
     def plane_distance(p, plane):
         return f(p, plane)
@@ -29,6 +30,7 @@ wrong("6.1", "only which side")(distance(lambda p, plane: np.sign(p @ plane.n + 
 
 
 # 6.2 ------------------------------------------------------------------------------------------------------------
+@variants
 def impact(skin=1.0, after_skin=1.0, share=lambda d_1, d_2: d_1 / (d_1 + d_2), inside=lambda t: t, late=True, start=1.0):
     def plane_impact_time(t, dt, x_0, x_1, r, plane):
         d_1 = worked.plane_distance(x_0, plane) - skin * r
@@ -52,6 +54,7 @@ wrong("6.2", "forgets t")(impact(start=0.0))
 
 
 # 6.3 ------------------------------------------------------------------------------------------------------------
+@variants
 def beside(foot=lambda x: np.array([x[0], 0.0, 0.0]), swap=False, radius=lambda R: R, own=lambda r: r):
     def cylinder_contact(x, r, R):
         a, b = (x, own(r)), (foot(x), radius(R))
@@ -74,6 +77,7 @@ def cylinder_contact(x, r, R):
 
 
 # 6.4 ------------------------------------------------------------------------------------------------------------
+@variants
 def root(which=-1.0, naive=False, rho=lambda R, r: R + r, three=False, window=True, leaving=True, inside=lambda t: t, t_0=1.0):
     def cylinder_impact_time(t, dt, x_0, x_1, r, R):
         first = 0 if three else 1
@@ -109,6 +113,7 @@ def cylinder_impact_time(t, dt, x_0, x_1, r, R):
 
 
 # 6.5 ------------------------------------------------------------------------------------------------------------
+@variants
 def foot(low=0.0, high=1.0, checked=True, begin="a", unit=False):
     def closest_on_segment(p, a, b):
         e = b - a
@@ -148,6 +153,7 @@ def closest_on_segment(p, a, b):
 
 
 # 6.6 ------------------------------------------------------------------------------------------------------------
+@variants
 def face(signs=(1, -1), edges=3, thick=True, pierced=lambda r, R: -R - r, measure=worked.edge_axis_distance):
     def triangle_cylinder_gap(a, b, c, r, R):
         corners = [a, b, c]
@@ -173,6 +179,7 @@ def triangle_cylinder_gap(a, b, c, r, R):
 
 
 # 6.7 ------------------------------------------------------------------------------------------------------------
+@variants
 def on_triangle(edges=3, inside=True, clamp=True, checked=True, flat=worked.FLAT, absolute=False):
     def closest_on_triangle(p, a, b, c):
         corners = [a, b, c]
@@ -205,6 +212,7 @@ def closest_on_triangle(p, a, b, c):
 
 
 # 6.8 ------------------------------------------------------------------------------------------------------------
+@variants
 def in_box(turn=lambda R, y: R.T @ y, inside=True, pick=np.argmin, depth_sign=-1.0, sign=lambda y: 1.0 if y >= 0.0 else -1.0, out=1.0):
     def ball_box(x, r, box):
         y = turn(box.R, x - box.x)
@@ -228,6 +236,7 @@ wrong("6.8", "n leads in")(in_box(out=-1.0))
 
 
 # 6.9 ------------------------------------------------------------------------------------------------------------
+@variants
 def sweep(f):
     def swept_box(low, high, move):
         return f(low, high, move)
@@ -242,6 +251,7 @@ wrong("6.9", "does not sweep")(sweep(lambda low, high, move: (low, high)))
 
 
 # 6.10 -----------------------------------------------------------------------------------------------------------
+@variants
 def brute(strict=False, first=lambda i: i + 1, turned=False, some=lambda low: low):
     def all_pairs(low, high):
         n, found = len(low), []
@@ -264,6 +274,7 @@ wrong("6.10", "neighbours in the list only")(brute(first=lambda i: max(i + 1, le
 
 
 # 6.11 -----------------------------------------------------------------------------------------------------------
+@variants
 def traversal(prune=True, second=True, leaves=lambda a, i, b, j, found: worked.touching_items(a, i, b, j, found), turned=False, both=True):
     def find_intersections(a, b):
         found = []
@@ -302,6 +313,7 @@ wrong("6.11", "gives up where b's node is bigger")(traversal(both=False))
 
 
 # 6.12 -----------------------------------------------------------------------------------------------------------
+@variants
 def edges(inner=min, outer=max, sign=1.0, centre=False, checked=True, of=lambda a, b: (a, b)):
     def separating_edge(a, b):
         a, b = of(a, b)
@@ -325,6 +337,7 @@ wrong("6.12", "the edges of b")(edges(of=lambda a, b: (b, a)))
 
 
 # 6.13 -----------------------------------------------------------------------------------------------------------
+@variants
 def cut(side=1.0, crossing=lambda s_i, s_j: s_i / (s_i - s_j), back=False, add=True, offset=1.0, kept_at=lambda s: s <= 0.0, crosses=lambda a, b: a * b < 0.0):
     def clip(y, n, d):
         k, kept = len(y), []
@@ -351,6 +364,7 @@ wrong("6.13", "forgets d")(cut(offset=0.0))
 
 
 # 6.14 -----------------------------------------------------------------------------------------------------------
+@variants
 def boxes(axes=range(15), room=worked.EDGES_WIN_BY, sign=1.0, zeros=False, width=worked.half_width, choose=lambda new, old: new > old, fixed=False):
     def box_separation(a, b):
         r, best = a.x - b.x, None
@@ -378,6 +392,7 @@ wrong("6.14", "the longest half edge for the width")(boxes(width=lambda box, n: 
 
 
 # 6.15 -----------------------------------------------------------------------------------------------------------
+@variants
 def nearest(steps=worked.GJK_STEPS, along=(-1.0, 1.0), reduce=True, swap=False):
     def gjk(a, b):
         p, q, weights = a[:1], b[:1], np.ones(1)
@@ -411,6 +426,7 @@ def gjk(a, b):
 
 
 # 6.16 -----------------------------------------------------------------------------------------------------------
+@variants
 def field(strength=lambda g, reach: (1.0 / g - 1.0 / reach) / g**2, sign=1.0, checked=True, skin=True, ends=True, unit=True):
     def repulsion(x, centre, radius, reach, k):
         r = x - centre
@@ -434,6 +450,7 @@ wrong("6.16", "the way itself for its direction")(field(unit=False))
 
 
 # 6.17 -----------------------------------------------------------------------------------------------------------
+@variants
 def swerve(side=-1.0, half=2.0, power=2, window=True, behind=True, wide=True, left=1.0, rest=True, need=lambda radius, offset: radius - offset):
     def steer(x, v, centre, radius, ahead):
         speed = size(v)

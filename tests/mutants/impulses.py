@@ -5,13 +5,14 @@ import numpy as np
 from solutions import impulses as worked
 from solutions.checks import Diverged
 from solutions.rotation import cross, point_velocity, skew
-from . import collection
+from . import collection, variants
 
-wrong, right, MUTANTS = collection()
+wrong, right, edit, MUTANTS = collection(worked)
 tangential = worked.tangential
 
 
 # 7.1 ------------------------------------------------------------------------------------------------------------
+@variants
 def response(bounce=lambda k: 1.0 + k, leaves=True, all_of_v=False, sign=-1.0):
     def kinematic_response(v, n, k):
         v_n = v @ n
@@ -41,6 +42,7 @@ def kinematic_response(v, n, k):
 
 
 # 7.2 ------------------------------------------------------------------------------------------------------------
+@variants
 def penalty(spring=-1.0, damper=-1.0, pulls=False, inside=lambda phi: phi < 0.0):
     def penalty_force(phi, v_n, stiffness, damping):
         f = spring * stiffness * phi + damper * damping * v_n
@@ -63,6 +65,7 @@ wrong("7.2", "damps outside, too")(penalty(inside=lambda phi: True))
 
 
 # 7.3 ------------------------------------------------------------------------------------------------------------
+@variants
 def seen(side=1.0, sign=1.0, turns=1.0, swap=False):
     def flat_relative_velocity(a, b, r_a, r_b):
         r_a, r_b = (r_b, r_a) if swap else (r_a, r_b)
@@ -89,6 +92,7 @@ def flat_relative_velocity(a, b, r_a, r_b):
 
 
 # 7.4 ------------------------------------------------------------------------------------------------------------
+@variants
 def size(bounce=lambda e: 1.0 + e, over=lambda k: 1.0 / k, leaves=True, checks=(worked.check_restitution, worked.check_inverse_mass)):
     def impulse_size(u_n, k, e):
         for check in checks:
@@ -107,6 +111,7 @@ wrong("7.4", "two walls")(size(checks=(worked.check_restitution,), over=lambda k
 
 
 # 7.5 and 7.7 ----------------------------------------------------------------------------------------------------
+@variants
 def flat_k(power=2, second=True, over=False, arm=lambda r, n: r[0] * n[1] - r[1] * n[0], mass=1.0):
     def flat_inverse_mass(a, b, r_a, r_b, n):
         turn = lambda body, r: abs(arm(r, n)) ** power * (1.0 / max(body.inv_inertia, 1e-300) if over else body.inv_inertia)
@@ -122,6 +127,7 @@ wrong("7.5", "r · n for r × n")(flat_k(arm=lambda r, n: r @ n))
 wrong("7.5", "forgets the masses")(flat_k(mass=0.0))
 
 
+@variants
 def solid_k(second=True, sign=1.0, mass=1.0, arm=lambda r, n: cross(r, n), back=lambda turn, r: cross(turn, r)):
     def inverse_mass(a, b, r_a, r_b, n):
         give = lambda body, r: mass * body.inv_mass + sign * n @ back(body.inv_inertia @ arm(r, n), r)
@@ -148,6 +154,7 @@ def inverse_mass(a, b, r_a, r_b, n):
 
 
 # 7.6 ------------------------------------------------------------------------------------------------------------
+@variants
 def pushed(mass=lambda m: m, inertia=lambda i: i, side=1.0, turns=True):
     def flat_push(body, r, J):
         torque = side * (r[0] * J[1] - r[1] * J[0]) if turns else 0.0
@@ -163,6 +170,7 @@ wrong("7.6", "does not turn")(pushed(turns=False))
 
 
 # 7.8 ------------------------------------------------------------------------------------------------------------
+@variants
 def momenta(sign_a=1.0, sign_b=-1.0, arm=lambda r_a, r_b: (r_a, r_b)):
     def angular_momenta(L_a, L_b, r_a, r_b, J):
         r_a, r_b = arm(r_a, r_b)
@@ -182,6 +190,7 @@ wrong("7.8", "one arm for both")(momenta(arm=lambda r_a, r_b: (r_a, r_a)))
 
 
 # 7.9 ------------------------------------------------------------------------------------------------------------
+@variants
 def K_of(sign=-1.0, mass=lambda m: m * np.eye(3), turn=lambda r: skew(r), middle=lambda inv: inv):
     def point_inverse_mass(r, inv_mass, inv_inertia):
         return mass(inv_mass) + sign * turn(r) @ middle(inv_inertia) @ turn(r)
@@ -201,6 +210,7 @@ def point_inverse_mass(r, inv_mass, inv_inertia):
 
 
 # 7.10 -----------------------------------------------------------------------------------------------------------
+@variants
 def cone(check=True, parts=True, enough=lambda w: w, goal=lambda w: w, rim=lambda mu: mu, side="stick", clamp="rim", sticks=lambda J_t, J_n, mu: J_t <= mu * J_n):
     def cone_impulse(u, n, K, w, mu):
         if check:
@@ -247,6 +257,7 @@ def cone_impulse(u, n, K, w, mu):
 
 
 # 7.11 -----------------------------------------------------------------------------------------------------------
+@variants
 def work(half=0.5, sign=1.0, first=1.0):
     def energy_change(u, K, J):
         return sign * (first * J @ u + half * J @ K @ J)
@@ -265,6 +276,7 @@ wrong("7.11", "without the velocity before")(work(first=0.0))
 
 
 # 7.12 -----------------------------------------------------------------------------------------------------------
+@variants
 def multiplier(gap=1.0, clamp=True, over=lambda k: 1.0 / k, check=True):
     def gap_multiplier(phi, u_n, k, dt):
         if check:
@@ -294,6 +306,7 @@ def gap_multiplier(phi, u_n, k, dt):
 
 
 # 7.13 -----------------------------------------------------------------------------------------------------------
+@variants
 def moment(inside=True, back=True, limit=True, pull=2.0, stable=True):
     def impact_time(phi, v_n, a_n, dt):
         phi = max(0.0, phi) if inside else phi
@@ -332,6 +345,7 @@ def impact_time(phi, v_n, a_n, dt):
 
 
 # 7.14 -----------------------------------------------------------------------------------------------------------
+@variants
 def zeno(flight=2.0, sum=lambda e: 1.0 - e, down=True, endless=True, falls=True):
     def bouncing_time(v_n, a_n, e):
         if down and v_n <= 0.0:
@@ -358,6 +372,7 @@ wrong("7.14", "comes back without a pull")(zeno(falls=False))
 
 
 # 7.15 -----------------------------------------------------------------------------------------------------------
+@variants
 def project(old=False, back=-1.0, response=worked.kinematic_response, asked="new", once=True):
     def projecting_step(acceleration, t, x, v, dt, p):
         v_new = v + (dt if once else 1.0) * acceleration(t, x, v, p)
@@ -377,6 +392,7 @@ wrong("7.15", "forgets dt")(project(once=False))
 
 
 # 7.16 -----------------------------------------------------------------------------------------------------------
+@variants
 def back_to(rest=True, goes_on=True, once=False, silent=False, changes=False, fly=worked.fly, lie=worked.lie, bounce=lambda e: e):
     def backtracking_step(acceleration, t, x, v, dt, p):
         a, left, given = acceleration(t, x, v, p), dt, x
@@ -416,6 +432,7 @@ def backtracking_step(acceleration, t, x, v, dt, p):
 
 
 # 7.17 -----------------------------------------------------------------------------------------------------------
+@variants
 def sweeping(sweeps=3000, before=True, takes_back=True, friction=lambda mu: mu, check=True, push=worked.push, rebound=lambda e: e):
     def solve_impacts(body, r, n, e, mu):
         if check:

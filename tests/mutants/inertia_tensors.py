@@ -4,9 +4,9 @@ import numpy as np
 
 from solutions import inertia_tensors as worked
 from solutions.checks import BadInput, check_finite, check_positive
-from . import collection
+from . import collection, variants
 
-wrong, right, MUTANTS = collection()
+wrong, right, edit, MUTANTS = collection(worked)
 
 
 # 4.1 ------------------------------------------------------------------------------------------------------------
@@ -223,6 +223,7 @@ def cylinder_inertia(m, radius, length):
 
 
 # 4.8 ------------------------------------------------------------------------------------------------------------
+@variants
 def capsule(across):
     """A capsule whose Ixx is m_c (3R² + h²)/12 + m_s across(R, h)."""
     def capsule_inertia(m, radius, length):
@@ -350,6 +351,7 @@ def parallel_axes(I, m, d):
 
 
 # 4.12 -----------------------------------------------------------------------------------------------------------
+@variants
 def carried(offset, body=lambda M, X, I: worked.Body(M, X, I)):
     """The parts' tensors, each carried by offset(x, X)."""
     def combine(m, x, I):
@@ -441,6 +443,7 @@ def principal_axes(I):
 
 
 # 4.14 -----------------------------------------------------------------------------------------------------------
+@variants
 def judged(lowest, highest, symmetric=True, finite=True, asymmetry=lambda I: np.max(np.abs(I - I.T)), equal=1e-14, named=lambda a, c: (a, c)):
     """A check with these two questions about the moments."""
     def check_inertia(I):

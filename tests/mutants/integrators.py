@@ -4,9 +4,9 @@ import numpy as np
 
 from solutions import integrators as worked
 from solutions.checks import Diverged
-from . import collection
+from . import collection, variants
 
-wrong, right, MUTANTS = collection()
+wrong, right, edit, MUTANTS = collection(worked)
 
 
 # 1.1 ------------------------------------------------------------------------------------------------------------
@@ -73,6 +73,7 @@ def midpoint_step(acceleration, t, x, v, dt, p):
 
 
 # 1.3 ------------------------------------------------------------------------------------------------------------
+@variants
 def runge_kutta(nodes, weights):
     """A method as a table: each slope is reached along the slope before it, nodes · dt away."""
     def step(acceleration, t, x, v, dt, p):
@@ -186,6 +187,7 @@ def verlet_step(acceleration, t, x, v, dt, p):
 
 
 # 1.7 ------------------------------------------------------------------------------------------------------------
+@variants
 def implicit_euler(time=1.0, place=1.0, limit=30, corrections=30):
     """Newton's method with the acceleration at a time and place that may be wrong."""
     def implicit_euler_step(acceleration, t, x, v, dt, p):
@@ -267,6 +269,7 @@ def implicit_midpoint_step(acceleration, t, x, v, dt, p):
 
 
 # 1.9 ------------------------------------------------------------------------------------------------------------
+@variants
 def columns(acceleration):
     def of(step, omega, zeta, dt):
         p, one, zero = worked.Oscillator(omega, zeta), np.ones(1), np.zeros(1)

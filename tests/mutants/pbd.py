@@ -4,9 +4,9 @@ import numpy as np
 
 from solutions import pbd as worked
 from solutions.checks import BadInput, Diverged
-from . import collection
+from . import collection, variants
 
-wrong, right, MUTANTS = collection()
+wrong, right, edit, MUTANTS = collection(worked)
 NO_LENGTH = BadInput("the length of a link [m]", 0.0, "keep its ends apart")
 NO_WEIGHT = BadInput("Σ w |∇C|² of a constraint", 0.0, "let one of its points have a mass and a gradient")
 
@@ -16,6 +16,7 @@ def size(y):
 
 
 # 8.1 ------------------------------------------------------------------------------------------------------------
+@variants
 def link(sign=1.0, scaled=True, absolute=False, towards=1.0, squared=False, checked=True, ratio=False):
     def distance_constraint(x_i, x_j, rest):
         r, length = x_i - x_j, size(x_i - x_j)
@@ -40,6 +41,7 @@ wrong("8.1", "takes ends that coincide")(link(checked=False))
 
 
 # 8.2 ------------------------------------------------------------------------------------------------------------
+@variants
 def projecting(sign=-1.0, mass=True, total=lambda w, g: np.sum(w * np.sum(g * g, axis=1)), checked=True):
     def projection(C, gradients, inv_mass):
         s = total(inv_mass, gradients)
@@ -68,6 +70,7 @@ def projection(C, gradients, inv_mass):
 
 
 # 8.3 ------------------------------------------------------------------------------------------------------------
+@variants
 def predicting(half=1.0, stops=False, falls=False, clock=1.0, speed=1.0, changes=False):
     def predict(acceleration, t, x, v, dt, net):
         free = (net.inv_mass > 0.0)[:, None]
@@ -91,6 +94,7 @@ wrong("8.3", "no force")(predicting(half=0.0))
 
 
 # 8.4 ------------------------------------------------------------------------------------------------------------
+@variants
 def newton(curved=1.0, per_row=True, scale=lambda dt: dt * dt, sign=1.0, from_goal=1.0, difference=False, across=True):
     def newton_correction(x, lam, goal, dt, net):
         d, n, s = x.shape[1], x.size, net.i.size
@@ -124,6 +128,7 @@ wrong("8.4", "second derivatives along the link only")(newton(across=False))
 
 
 # 8.5 ------------------------------------------------------------------------------------------------------------
+@variants
 def projecting_step(rounds=40, enough=1e-12, speed=lambda new, x, goal, v, dt: (new - x) / dt, start="x", gives_up=True, force=True):
     def projection_step(acceleration, t, x, v, dt, net):
         goal = worked.predict(acceleration, t, x, v, dt, net)
@@ -150,6 +155,7 @@ wrong("8.5", "the velocity without dt")(projecting_step(speed=lambda new, x, goa
 
 
 # 8.6 ------------------------------------------------------------------------------------------------------------
+@variants
 def sweeping(stiff=True, by_mass=True, sign=1.0, jacobi=False, backwards=False, changes=False, checked=True, held=True):
     def distance_sweep(x, net):
         seen = x.copy()
@@ -183,6 +189,7 @@ wrong("8.6", "moves the immovable")(sweeping(held=False))
 
 
 # 8.7 ------------------------------------------------------------------------------------------------------------
+@variants
 def dynamics(sweeps=lambda n: n, speed=lambda new, x, goal, v, dt: (new - x) / dt, begin="goal"):
     def pbd_step(acceleration, t, x, v, dt, net):
         goal = worked.predict(acceleration, t, x, v, dt, net)
@@ -203,6 +210,7 @@ wrong("8.7", "no force")(dynamics(begin="x"))
 
 
 # 8.8 ------------------------------------------------------------------------------------------------------------
+@variants
 def sagging(left=lambda s, n: (1.0 - s) ** n, step=lambda dt: dt * dt, below=lambda S: 1.0 - S, above=lambda S: S):
     def pbd_sag(g, dt, stiffness, sweeps):
         S = left(stiffness, sweeps)
@@ -211,7 +219,6 @@ def sagging(left=lambda s, n: (1.0 - s) ** n, step=lambda dt: dt * dt, below=lam
 
 
 right("8.8", "by what is put back")(lambda g, dt, stiffness, sweeps: g * dt**2 / (1.0 - (1.0 - stiffness) ** sweeps) - g * dt**2)
-MUTANTS[-1].function.__name__ = "pbd_sag"
 wrong("8.8", "what the sweeps take, not what they leave")(sagging(left=lambda s, n: s**n))
 wrong("8.8", "falls once only")(sagging(below=lambda S: 1.0))
 wrong("8.8", "before the sweeps")(sagging(above=lambda S: 1.0))
@@ -220,6 +227,7 @@ wrong("8.8", "n times as stiff")(sagging(left=lambda s, n: max(0.0, 1.0 - n * s)
 
 
 # 8.9 ------------------------------------------------------------------------------------------------------------
+@variants
 def folding(angle="atan2", wrapped=lambda C: np.pi - (np.pi - C) % (2.0 * np.pi), sign=1.0, wings=1.0, leverage=True, closed=True, checked=True, swapped=False, slope=1.0):
     def fold_constraint(x, fold):
         a, b, c, d = x
@@ -256,6 +264,7 @@ wrong("8.9", "takes a triangle without area")(folding(checked=False))
 
 
 # 8.10 -----------------------------------------------------------------------------------------------------------
+@variants
 def ball(sign=1.0, n_sign=1.0, centred=True, scaled=True, safe=True):
     def ball_gap(x, obstacle):
         r = x - obstacle.centre if centred else x
@@ -276,6 +285,7 @@ wrong("8.10", "divides by no distance")(ball(safe=False))
 
 
 # 8.11 -----------------------------------------------------------------------------------------------------------
+@variants
 def outside(asks=lambda phi: phi < 0.0, sign=-1.0, held=True, changes=False, share=1.0):
     def keep_outside(surface, x, inv_mass, obstacle):
         new = x if changes else x.copy()
@@ -298,6 +308,7 @@ wrong("8.11", "changes its input")(outside(changes=True))
 
 
 # 8.12 -----------------------------------------------------------------------------------------------------------
+@variants
 def giving(memory=1.0, scale=lambda alpha, dt: alpha / dt**2, sign=-1.0, below=1.0, checked=True, weighed=True, nan=True):
     def compliant_multiplier(C, Lam, weight, alpha, dt):
         if checked and (alpha < 0.0 or nan and alpha != alpha):
@@ -323,6 +334,7 @@ wrong("8.12", "takes a constraint with no free mass")(giving(weighed=False))
 
 
 # 8.13 -----------------------------------------------------------------------------------------------------------
+@variants
 def soft_sweep(adds=True, kept=True, jacobi=False, mass=True, sign=1.0, changes=False, checked=True, one_alpha=False, weight=1.0, stiffness=False):
     def compliant_sweep(x, Lam, dt, net):
         seen, new, total = x.copy(), (x if changes else x.copy()), (Lam if changes else Lam.copy())
@@ -358,6 +370,7 @@ wrong("8.13", "half of the weight")(soft_sweep(weight=0.5))
 
 
 # 8.14 -----------------------------------------------------------------------------------------------------------
+@variants
 def soft_step(anew=False, sweeps=lambda n: n, hard=False, speed=lambda new, x, v, dt: (new - x) / dt, begin=0.0):
     def xpbd_step(acceleration, t, x, v, dt, net):
         new, Lam = worked.predict(acceleration, t, x, v, dt, net), np.full(net.i.size, begin)
@@ -378,6 +391,7 @@ wrong("8.14", "half of the velocity")(soft_step(speed=lambda new, x, v, dt: 0.5 
 
 
 # 8.15 -----------------------------------------------------------------------------------------------------------
+@variants
 def readiness(turned=True, arm=np.cross, centre=1.0, moments=lambda I: 1.0 / I, back=False):
     def generalised_inverse_mass(q, r, n, m, I_body):
         turn = arm(r, n)
@@ -397,6 +411,7 @@ wrong("8.15", "multiplies by the moments")(readiness(moments=lambda I: I))
 
 
 # 8.16 -----------------------------------------------------------------------------------------------------------
+@variants
 def pushed(mass=True, sign=1.0, turned=True, half=1.0, unit=True, moves=1.0):
     def push_body(x, q, r, p, m, I_body):
         arm = sign * np.cross(r, p)
@@ -416,6 +431,7 @@ wrong("8.16", "turns only")(pushed(moves=0.0))
 
 
 # 8.17 -----------------------------------------------------------------------------------------------------------
+@variants
 def rate(order=False, scale=2.0, by_w=True, per_step=True, sign=1.0, back=True):
     def turning_rate(q_old, q_new, dt):
         turned_back = q_old * np.array([1.0, -1.0, -1.0, -1.0]) if back else q_old
@@ -434,6 +450,7 @@ wrong("8.17", "the product of both")(rate(back=False))
 
 
 # 8.18 -----------------------------------------------------------------------------------------------------------
+@variants
 def enclosed(share=6.0, order=(0, 1, 2), slope_share=6.0, sign=1.0, only_first=False):
     def volume_gradient(x, faces):
         corners = x[faces[:, list(order)]]

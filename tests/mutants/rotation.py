@@ -4,9 +4,9 @@ import numpy as np
 
 from solutions import rotation as worked
 from solutions.checks import Diverged
-from . import collection
+from . import collection, variants
 
-wrong, right, MUTANTS = collection()
+wrong, right, edit, MUTANTS = collection(worked)
 
 
 # 5.1 ------------------------------------------------------------------------------------------------------------
@@ -116,6 +116,7 @@ def angular_velocity(R, L, I_body):
 
 
 # 5.5 ------------------------------------------------------------------------------------------------------------
+@variants
 def derivative(mass=lambda m: m, turn=lambda omega, R: worked.skew(omega) @ R, omega=worked.angular_velocity, torque=lambda tau, omega, L: tau):
     """Ṡ with parts that may be wrong."""
     def state_derivative(S, F, tau, body):
@@ -182,6 +183,7 @@ def matrix_update(R, omega, dt):
 
 
 # 5.7 ------------------------------------------------------------------------------------------------------------
+@variants
 def rodrigues(angle=lambda rate, dt: rate * dt, sign=1.0, along=1.0, side=lambda T, R: T @ R, rest=True):
     """exp(θ n*) = 1 + sin θ n* + (1 − cos θ) n*², with parts that may be wrong."""
     def axis_angle_update(R, omega, dt):
@@ -209,6 +211,7 @@ def axis_angle_update(R, omega, dt):
 
 
 # 5.8 ------------------------------------------------------------------------------------------------------------
+@variants
 def hamilton(dot=-1.0, twist=1.0, mixed=(1.0, 1.0)):
     """Scalar and vector parts, with signs that may be wrong."""
     def product(a, b):
@@ -264,6 +267,7 @@ def rotation_matrix(q):
 
 
 # 5.10 -----------------------------------------------------------------------------------------------------------
+@variants
 def third_way(half=0.5, sign=1.0, left=True, close=worked.unit):
     """q + ½dt (0, ω) q, normalised, with parts that may be wrong."""
     def quaternion_update(q, omega, dt):
@@ -292,6 +296,7 @@ def quaternion_update(q, omega, dt):
 
 
 # 5.11 -----------------------------------------------------------------------------------------------------------
+@variants
 def euler_equations(gyro=-1.0, inverse=True, push=worked.unrotate, back=worked.rotate, momentum=lambda I, w: I * w):
     """ω̇ with terms and frames that may be wrong."""
     def angular_acceleration(q, omega, tau, I_body):
@@ -322,6 +327,7 @@ def angular_acceleration(q, omega, tau, I_body):
 
 
 # 5.12 -----------------------------------------------------------------------------------------------------------
+@variants
 def loop(late=0.0, old_v=False, old_omega=False, gyro=True, mass=True, turned=worked.quaternion_update, first=False):
     """Deck B's loop with an order of things that may be wrong."""
     def rigid_body_step(load, t, x, v, q, omega, dt, body):
@@ -380,6 +386,7 @@ def kinetic_energy(q, L, I_body):
 
 
 # 5.14 -----------------------------------------------------------------------------------------------------------
+@variants
 def racket(sign=1.0, below=lambda I, i, j: I[i] * I[j], spin_of=abs, root=lambda s: np.sqrt(max(0.0, s))):
     """The rate with parts that may be wrong."""
     def tumbling_rate(I_body, k, spin):
@@ -429,6 +436,7 @@ def heavy_top_torque(t, q, L, top):
 
 
 # 5.16 -----------------------------------------------------------------------------------------------------------
+@variants
 def midpoint(rounds=60, gyro=1.0, close=lambda q, w, dt: worked.unit(worked.product(q, np.concatenate(([1.0], 0.5 * dt * w)))), silent=False,
              guess=lambda start: start.copy(), end=False, strict=False, small=lambda m: 4e-16 * np.max(np.abs(m))):
     """By going round the equation itself, m ← ℓ + ½dt m × w, until nothing changes, with parts that may be wrong."""
@@ -474,6 +482,7 @@ def midpoint_turn(q, L, I_body, dt):
 
 
 # 5.17 -----------------------------------------------------------------------------------------------------------
+@variants
 def splitting(order="aca", middle=worked.middle_axis, fresh=True, whole=1.0, left=True, sign=1.0, close=worked.unit, slow=lambda I, k, b: 1.0 / I[k] - 1.0 / I[b]):
     """A sequence of exact turns about axes of the body, half where one comes twice, with parts that may be wrong."""
     def splitting_turn(q, L, I_body, dt):
@@ -509,6 +518,7 @@ def splitting_turn(q, L, I_body, dt):
 
 
 # 5.18 -----------------------------------------------------------------------------------------------------------
+@variants
 def composed(shares, clock=1.0):
     """Substeps with shares of dt."""
     def compose(step, torque, t, q, L, dt, body):
