@@ -3,7 +3,7 @@
 One module per lesson.  A wrong answer has one fault only, and its kind proves it: without the fault the answer passes.
 
 edit         the worked answer with one replacement in one line of its text
-variant      made by a factory with one argument that differs from its default; the factory's defaults make a right answer
+variant      made by a factory with one argument that differs from its default; its defaults make a right answer
 written out  neither of these: WRITTEN_OUT describes its one fault
 """
 
@@ -22,20 +22,20 @@ class Mutant(NamedTuple):
     story: str               # what is wrong, or what is different
     right: bool
     function: Callable
-    kind: str                # edit, variant or written out
-    faults: int              # replacements, or arguments that differ from their defaults
-    factory: str = ""        # of a variant
+    kind: str = "written out"
+    faults: int = 0          # replacements in the text, or arguments that differ from their defaults
+    factory: Callable = None
 
 
 def variants(make):
     """A factory of answers that notes which of its arguments differ from their defaults."""
-    parameters = inspect.signature(make)
+    signature = inspect.signature(make)
 
     @functools.wraps(make)
     def noting(*arguments, **named):
-        bound, answer = parameters.bind(*arguments, **named), make(*arguments, **named)
-        changed = [name for name, value in bound.arguments.items() if value is not parameters.parameters[name].default]
-        answer.made = "variant", len(changed), make.__qualname__
+        bound, answer = signature.bind(*arguments, **named), make(*arguments, **named)
+        faults = sum(value is not signature.parameters[name].default for name, value in bound.arguments.items())
+        answer.made = "variant", faults, noting
         return answer
     return noting
 
@@ -47,8 +47,11 @@ def collection(worked):
     def keep(right):
         def marked(exercise, story):
             def decorate(function):
-                made = getattr(function, "made", ("written out", int(not right)))
-                mutants.append(Mutant(exercise, names[exercise], story, right, function, *made))
+                mutant = Mutant(exercise, names[exercise], story, right, function, *getattr(function, "made", ()))
+                whole = (exercise, 0, mutant.factory)
+                if mutant.factory and whole not in [(m.exercise, m.faults, m.factory) for m in mutants] and not right:
+                    keep(True)(exercise, f"{mutant.factory.__name__} with its defaults")(mutant.factory())
+                mutants.append(mutant)
                 return function
             return decorate
         return marked
@@ -57,7 +60,7 @@ def collection(worked):
         name = names[exercise]
         head, mark, answer = inspect.getsource(getattr(worked, name)).partition("### BEGIN SOLUTION")
         space = dict(vars(worked))
-        exec(head + mark + answer.replace(old, new), space)
-        mutants.append(Mutant(exercise, name, story, False, space[name], "edit", answer.count(old)))
+        exec(compile(head + mark + answer.replace(old, new), worked.__file__, "exec"), space)
+        mutants.append(Mutant(exercise, name, story, False, space[name], "edit", answer.count(old) + old.count("\n")))
 
     return keep(False), keep(True), edit, mutants

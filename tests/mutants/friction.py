@@ -1,5 +1,7 @@
 """Lesson 3: friction with a sign, a mass, a step or a case of its own gone astray."""
 
+import functools
+
 import numpy as np
 
 from solutions import friction as worked
@@ -411,8 +413,7 @@ wrong("3.13", "friction as if e = 0")(
 
 
 # 3.14 and 3.16 --------------------------------------------------------------------------------------------------
-@variants
-def particle_step(name, grip=0.0, old=False, back=-1.0, asked="new", mass=True, only_inwards=False, both_ways=False, doubled=False,
+def particle_step(grip=0.0, old=False, back=-1.0, asked="new", mass=True, only_inwards=False, both_ways=False, doubled=False,
                   reached=0.0, half=1.0, depth=lambda phi: -phi, once=True, clock=1.0, moving=lambda moved, x, v, dt: moved):
     """A step of a particle and what a surface does to it, with terms that may be wrong."""
     def step(acceleration, surface, t, x, v, dt, p):
@@ -428,29 +429,29 @@ def particle_step(name, grip=0.0, old=False, back=-1.0, asked="new", mass=True, 
             x_new = x_new + grip * worked.grip_correction(moving(moved, x, v, dt), n, max(0.0, depth(phi)), p.mu)
         J = worked.contact_impulse(v_free, n, p.m, p.e, p.mu)
         return x_new, v_free + J / (p.m if mass else 1.0) * (2.0 if doubled else 1.0)
-    step.__name__ = name
     return step
 
 
-for number, name, grip in (("3.14", "contact_step", 0.0), ("3.16", "gripping_step", 1.0)):
-    right(number, "with new names")(particle_step(name, grip))
-    wrong(number, "moves with the old velocity")(particle_step(name, grip, old=True))
-    wrong(number, "puts it in deeper")(particle_step(name, grip, back=1.0))
-    wrong(number, "does not put it back")(particle_step(name, grip, back=0.0))
-    wrong(number, "puts it half the way back")(particle_step(name, grip, half=0.5))
-    wrong(number, "asks for the gap before it moves")(particle_step(name, grip, asked="old"))
-    wrong(number, "forgets to divide by the mass")(particle_step(name, grip, mass=False))
-    wrong(number, "leaves what is inside and leaves")(particle_step(name, grip, only_inwards=True))
-    wrong(number, "every particle is in contact")(particle_step(name, grip, reached=np.inf))
-    wrong(number, "forgets dt")(particle_step(name, grip, once=False))
-    wrong(number, "the clock stands still")(particle_step(name, grip, clock=0.0))
-    wrong(number, "in contact a millimetre too early")(particle_step(name, grip, reached=1e-3))
-wrong("3.14", "grips as well")(particle_step("contact_step", 1.0))
-wrong("3.16", "does not grip")(particle_step("gripping_step", 0.0))
-wrong("3.16", "grips forwards")(particle_step("gripping_step", -1.0))
-wrong("3.16", "grips on the way out")(particle_step("gripping_step", 1.0, both_ways=True))
-wrong("3.16", "a depth below zero")(particle_step("gripping_step", 1.0, depth=lambda phi: phi))
-wrong("3.16", "grips the displacement of the old velocity")(particle_step("gripping_step", 1.0, moving=lambda moved, x, v, dt: dt * v))
+contact, gripping = variants(particle_step), variants(functools.partial(particle_step, grip=1.0))
+for number, particle in (("3.14", contact), ("3.16", gripping)):
+    right(number, "with new names")(particle())
+    wrong(number, "moves with the old velocity")(particle(old=True))
+    wrong(number, "puts it in deeper")(particle(back=1.0))
+    wrong(number, "does not put it back")(particle(back=0.0))
+    wrong(number, "puts it half the way back")(particle(half=0.5))
+    wrong(number, "asks for the gap before it moves")(particle(asked="old"))
+    wrong(number, "forgets to divide by the mass")(particle(mass=False))
+    wrong(number, "leaves what is inside and leaves")(particle(only_inwards=True))
+    wrong(number, "every particle is in contact")(particle(reached=np.inf))
+    wrong(number, "forgets dt")(particle(once=False))
+    wrong(number, "the clock stands still")(particle(clock=0.0))
+    wrong(number, "in contact a millimetre too early")(particle(reached=1e-3))
+wrong("3.14", "grips as well")(contact(grip=1.0))
+wrong("3.16", "does not grip")(gripping(grip=0.0))
+wrong("3.16", "grips forwards")(gripping(grip=-1.0))
+wrong("3.16", "grips on the way out")(gripping(both_ways=True))
+wrong("3.16", "a depth below zero")(gripping(depth=lambda phi: phi))
+wrong("3.16", "grips the displacement of the old velocity")(gripping(moving=lambda moved, x, v, dt: dt * v))
 
 
 @wrong("3.14", "changes its input")

@@ -437,7 +437,7 @@ def heavy_top_torque(t, q, L, top):
 
 # 5.16 -----------------------------------------------------------------------------------------------------------
 @variants
-def midpoint(rounds=60, gyro=1.0, close=lambda q, w, dt: worked.unit(worked.product(q, np.concatenate(([1.0], 0.5 * dt * w)))), silent=False,
+def midpoint(rounds=1000, gyro=1.0, close=lambda q, w, dt: worked.unit(worked.product(q, np.concatenate(([1.0], 0.5 * dt * w)))), silent=False,
              guess=lambda start: start.copy(), end=False, strict=False, small=lambda m: 4e-16 * np.max(np.abs(m))):
     """By going round the equation itself, m ← ℓ + ½dt m × w, until nothing changes, with parts that may be wrong."""
     def midpoint_turn(q, L, I_body, dt):
@@ -452,22 +452,22 @@ def midpoint(rounds=60, gyro=1.0, close=lambda q, w, dt: worked.unit(worked.prod
     return midpoint_turn
 
 
-right("5.16", "by going round the equation")(midpoint(rounds=1000))
-wrong("5.16", "until the change is small in kg m²/s")(midpoint(rounds=1000, small=lambda m: 1e-12))
+right("5.16", "by going round the equation")(midpoint())
+wrong("5.16", "until the change is small in kg m²/s")(midpoint(small=lambda m: 1e-12))
 wrong("5.16", "goes round once")(midpoint(rounds=1, silent=True))
 wrong("5.16", "goes round five times: not there yet")(midpoint(rounds=5, silent=True))
-wrong("5.16", "the gyroscopic term with the other sign")(midpoint(rounds=1000, gyro=-1.0))
+wrong("5.16", "the gyroscopic term with the other sign")(midpoint(gyro=-1.0))
 wrong("5.16", "ω at the beginning of the step")(midpoint(rounds=1, gyro=0.0, silent=True))
-wrong("5.16", "ω at the end of the step")(midpoint(rounds=1000, end=True))
+wrong("5.16", "ω at the end of the step")(midpoint(end=True))
 wrong("5.16", "turns on the side of the world")(
-    midpoint(rounds=1000, close=lambda q, w, dt: worked.unit(worked.product(np.concatenate(([1.0], 0.5 * dt * w)), q))))
+    midpoint(close=lambda q, w, dt: worked.unit(worked.product(np.concatenate(([1.0], 0.5 * dt * w)), q))))
 wrong("5.16", "forgets the half in the turn")(
-    midpoint(rounds=1000, close=lambda q, w, dt: worked.unit(worked.product(q, np.concatenate(([1.0], dt * w))))))
+    midpoint(close=lambda q, w, dt: worked.unit(worked.product(q, np.concatenate(([1.0], dt * w))))))
 wrong("5.16", "turns by |ω| dt: the angle of another rule")(
-    midpoint(rounds=1000, close=lambda q, w, dt: worked.product(q, worked.exponential(dt * w))))
+    midpoint(close=lambda q, w, dt: worked.product(q, worked.exponential(dt * w))))
 wrong("5.16", "does not normalise")(
-    midpoint(rounds=1000, close=lambda q, w, dt: worked.product(q, np.concatenate(([1.0], 0.5 * dt * w)))))
-wrong("5.16", "gives up on a body at rest")(midpoint(rounds=1000, strict=True))
+    midpoint(close=lambda q, w, dt: worked.product(q, np.concatenate(([1.0], 0.5 * dt * w)))))
+wrong("5.16", "gives up on a body at rest")(midpoint(strict=True))
 
 
 @wrong("5.16", "never says so: turns by whatever Newton's method has")
@@ -518,8 +518,11 @@ def splitting_turn(q, L, I_body, dt):
 
 
 # 5.18 -----------------------------------------------------------------------------------------------------------
+G, G3 = worked.SUZUKI, 1.0 / (2.0 - 2.0 ** (1.0 / 3.0))
+
+
 @variants
-def composed(shares, clock=1.0):
+def composed(shares=(G, G, 1.0 - 4.0 * G, G, G), clock=1.0):
     """Substeps with shares of dt."""
     def compose(step, torque, t, q, L, dt, body):
         for share in shares:
@@ -529,11 +532,10 @@ def composed(shares, clock=1.0):
     return compose
 
 
-G, G3 = worked.SUZUKI, 1.0 / (2.0 - 2.0 ** (1.0 / 3.0))
-right("5.18", "as a list of shares")(composed([G, G, 1.0 - 4.0 * G, G, G]))
+right("5.18", "as a list of shares")(composed())
 wrong("5.18", "five equal substeps")(composed([0.2] * 5))
 wrong("5.18", "the third forwards: more than one step in all")(composed([G, G, 4.0 * G - 1.0, G, G]))
 wrong("5.18", "forgets the third")(composed([G, G, G, G]))
 wrong("5.18", "Yoshida's three shares: fourth order, but another method")(composed([G3, 1.0 - 2.0 * G3, G3]))
 wrong("5.18", "the negative one first")(composed([1.0 - 4.0 * G, G, G, G, G]))
-wrong("5.18", "the clock stands still")(composed([G, G, 1.0 - 4.0 * G, G, G], clock=0.0))
+wrong("5.18", "the clock stands still")(composed(clock=0.0))

@@ -269,7 +269,7 @@ wrong("2.8", "springs the wrong way")(newton(springs=lambda f, inv_mass: -f * in
 
 # 2.9 ------------------------------------------------------------------------------------------------------------
 @variants
-def loop(step):
+def loop(step=integrators.average_velocity_step):
     """The system moved by some step of lesson 1."""
     def mass_spring_damper_step(t, x, v, dt, mesh):
         return step(worked.mesh_acceleration, t, x, v, dt, mesh)
