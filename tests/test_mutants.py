@@ -22,7 +22,7 @@ def mutants_of(name):
 def all_mutants():
     for name in LESSONS:
         for number, mutant in enumerate(mutants_of(name)):
-            label = f"{name}-{mutant.exercise}-{'right' if mutant.right else 'wrong'}-{mutant.story.replace(' ', '_')}"
+            label = f"{name}-{mutant.exercise}-{'right' if mutant.right else 'wrong'}-{mutant.kind}-{mutant.story}".replace(" ", "_")
             yield pytest.param(name, number, id=label, marks=pytest.mark.xdist_group(f"mutants of {name}"))
 
 
@@ -32,7 +32,7 @@ def grades_of(name):
     module = vars(binding.bind(name))
 
     def subject(mutant):
-        changed = types.SimpleNamespace(**{**module, mutant.function.__name__: mutant.function})
+        changed = types.SimpleNamespace(**{**module, mutant.name: mutant.function})
         return changed, lambda exercise, test: exercise == mutant.exercise
     return grade_each(name, {str(number): subject(mutant) for number, mutant in enumerate(mutants_of(name))})
 
