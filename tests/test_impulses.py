@@ -487,7 +487,7 @@ def falling_box(draw, lesson, points):
     return body, lowest, np.tile([0.0, 0.0, 1.0], (points, 1))
 
 
-@exercise("7.17", points=0.75,
+@exercise("7.17", points=0.5,
           hint="the w are those before the impact; each point takes its own impulse back before it asks for the new one; sweep until nothing changes")
 def test_a_box_that_lands_on_a_corner_an_edge_or_a_face_leaves_as_all_its_points_demand(lesson, draw):
     """Sweeps stop at changes of 1e-14 of 3 m/s; what is still to come is at most some hundred times as much; ω is v over 0.1 m."""
@@ -498,7 +498,7 @@ def test_a_box_that_lands_on_a_corner_an_edge_or_a_face_leaves_as_all_its_points
     change = answer(r, body.inv_mass, body.inv_inertia, J)
     # rebounds with e, and sticks
     held = body._replace(v=e / (1.0 + e) * (n @ change) * n - change, omega=np.zeros(3))
-    got, given = lesson.solve_impacts(held, r[None], n[None], e, 2.0), f"r = {r}, n = {n}, e = {e}, μ = 2, {held}"
+    (got, _), given = lesson.solve_impacts(held, r[None], n[None], e, 2.0), f"r = {r}, n = {n}, e = {e}, μ = 2, {held}"
     close("velocity of a body that friction of 1.5 times the load holds [m/s]", got.v, held.v + body.inv_mass * J,
           1e-10, given)
     close("its angular velocity [rad/s]", got.omega, body.inv_inertia @ np.cross(r, J), 1e-10, given)
@@ -528,6 +528,25 @@ def test_the_order_of_the_points_does_not_matter_and_sliding_points_slide(lesson
         u = np.asarray(one.v) + np.cross(one.omega, corner)
         close("speed at which each point leaves [m/s]", u[2], -e * body.v[2], 1e-10, given=given)
     raises("a restitution above 1", BadInput, lesson.solve_impacts, body, r, n, 1.0 + draw(0.1, 1.0), mu)
+
+
+@exercise("7.17", points=0.25,
+          hint="compare with largest_speed; the residual is that of the last sweep; where none settles, most_dissipative_impact answers")
+def test_the_residual_tells_what_has_settled_from_what_cannot(lesson, draw):
+    """A ball that rolls settles at once.  A body between two walls can rebound from neither: what is left of it is v · n = 0."""
+    n = unit(draw, 3)
+    radius, along, e = draw(0.05, 0.5), across(n, draw(5.0, 20.0) * unit(draw, 3)), draw(0.2, 0.8)
+    v = along - draw(0.05, 0.2) * n
+    ball = lesson.Solid(v, np.cross(n, along) / radius, 1.0, np.eye(3) / (0.4 * radius**2))
+    got, residual = lesson.solve_impacts(ball, -radius * n[None], n[None], e, draw(0.1, 0.9))
+    given = f"a ball of radius {radius} that rolls with v = {v}, n = {n}, e = {e}"
+    close("velocity along n after the impact [m/s]", got.v @ n, -e * (v @ n), 1e-12, given)
+    between("residual of what settles [m/s]", residual, 0.0, 1e-12, given)
+    arms, walls = radius * np.stack((-n, n)), np.stack((n, -n))
+    got, residual = lesson.solve_impacts(ball, arms, walls, e, 0.0)
+    given = f"the same between two walls, at r = {arms.tolist()}, with n = {walls.tolist()}, μ = 0"
+    close("velocity along n between two walls [m/s]", got.v @ n, 0.0, 1e-9, given)
+    between("residual of what cannot settle [m/s]", residual, 0.1 * e * -(v @ n), 10.0 * -(v @ n), given)
 
 
 def least_change(body, r, n, e):
@@ -577,7 +596,7 @@ def test_without_friction_a_tumbling_body_changes_no_more_than_all_its_points_de
     for body, r, n in tumbling(draw, lesson):
         for slow in (1.0, 1e-6):
             e, moving = draw(0.1, 0.9), body._replace(v=slow * body.v, omega=slow * body.omega)
-            got, expected = lesson.solve_impacts(moving, r, n, e, 0.0), least_change(moving, r, n, e)
+            (got, _), expected = lesson.solve_impacts(moving, r, n, e, 0.0), least_change(moving, r, n, e)
             given = f"r = {r.tolist()}, n = {n.tolist()}, e = {e}, {moving}"
             close("velocity after the impact [m/s]", got.v, expected[:3], 1e-9 * slow, given)
             close("angular velocity after the impact [rad/s]", got.omega, expected[3:], 1e-8 * slow, given)

@@ -108,7 +108,7 @@ wrong("6.4", "when it is in already, never")(root(inside=lambda t: NEVER))
 wrong("6.4", "forgets t")(root(t_0=0.0))
 edit("6.4", "the discrete test at the end of the step", "C / (np.sqrt(D) - B)",
      "1.0 if x_1[1:] @ x_1[1:] <= rho * rho else 2.0")
-edit("6.4", "what arrives at the end does not", "s <= 1.0", "s < 1.0")
+edit("6.4", "what arrives at the end does not", "s > 1.0", "s >= 1.0")
 edit("6.4", "what touches and leaves was never there", "C <= 0.0", "C < 0.0")
 
 
@@ -129,11 +129,11 @@ right("6.5", "with a clamp")(foot())
 wrong("6.5", "a ray for a segment")(foot(high=np.inf))
 wrong("6.5", "divides by the length once")(foot(unit=True))
 wrong("6.5", "begins at p")(foot(begin="p"))
-edit("6.5", "a line for a segment", "min(1.0, max(0.0, (p - a) @ along / length_squared))",
+edit("6.5", "a line for a segment", "np.minimum(1.0, np.maximum(0.0, (p - a) @ along / length_squared))",
      "(p - a) @ along / length_squared")
 edit("6.5", "takes a segment without length",
      'raise BadInput("the length of an edge [m]", 0.0, "give two different ends")', "return a")
-edit("6.5", "the nearer end", "min(1.0, max(0.0, (p - a) @ along / length_squared))",
+edit("6.5", "the nearer end", "np.minimum(1.0, np.maximum(0.0, (p - a) @ along / length_squared))",
      "float((p - a) @ (p - a) > (p - b) @ (p - b))")
 edit("6.5", "refuses what is short", "length_squared == 0.0", "length_squared < 1e-12")
 
@@ -322,9 +322,9 @@ wrong("6.12", "normals that lead in")(edges(sign=-1.0))
 wrong("6.12", "the middle of b for its corners")(edges(centre=True))
 wrong("6.12", "takes an edge without length")(edges(checked=False))
 wrong("6.12", "the edges of b")(edges(of=lambda a, b: (b, a)))
-edit("6.12", "the edge whose gap is nearest to zero", "gap > greatest", "abs(gap) < abs(greatest)")
-edit("6.12", "the first edge that separates", "gap > greatest", "greatest <= 0.0 and gap > greatest")
-edit("6.12", "the last edge that separates", "gap > greatest", "gap > min(greatest, 0.0)")
+edit("6.12", "the edge whose gap is nearest to zero", "not gap <= greatest", "abs(gap) < abs(greatest)")
+edit("6.12", "the first edge that separates", "not gap <= greatest", "greatest <= 0.0 and gap > greatest")
+edit("6.12", "the last edge that separates", "not gap <= greatest", "gap > min(greatest, 0.0)")
 edit("6.12", "forgets the first corner of b", "range(len(b))", "range(1, len(b))")
 edit("6.12", "every edge begins at the first corner", "b[j] - a[i]", "b[j] - a[0]")
 
@@ -386,9 +386,9 @@ edit("6.14", "takes axes that are zeros", "dot(axis, axis) > 0.0", "dot(axis, ax
 edit("6.14", "edges win by nothing", "EDGES_WIN_BY if k >= 6", "0.0 if k >= 6")
 edit("6.14", "edges win by a twentieth", "EDGES_WIN_BY if k >= 6", "0.05 * abs(greatest) if k >= 6")
 edit("6.14", "forgets the last axis", "range(15)", "range(14)")
-edit("6.14", "the first axis that separates", "gap > greatest +", "greatest <= 0.0 and gap > greatest +")
-edit("6.14", "edges only where no face separates", "gap > greatest +", "(k < 6 or greatest < 0.0) and gap > greatest +")
-edit("6.14", "the axis whose gap is nearest to zero", "gap > greatest +", "abs(gap) < abs(greatest) +")
+edit("6.14", "the first axis that separates", "not gap <= greatest +", "greatest <= 0.0 and gap > greatest +")
+edit("6.14", "edges only where no face separates", "not gap <= greatest +", "(k < 6 or greatest < 0.0) and gap > greatest +")
+edit("6.14", "the axis whose gap is nearest to zero", "not gap <= greatest +", "abs(gap) < abs(greatest) +")
 wrong("6.14", "the least gap")(boxes(choose=lambda new, old: new < old))
 wrong("6.14", "the longest half edge for the width")(boxes(width=lambda box, n: float(np.max(box.half))))
 
