@@ -407,6 +407,14 @@ def test_a_ball_whose_centre_is_inside_leaves_by_the_nearest_face(lesson, draw):
     middle = lesson.ball_box(box.x, r, lesson.Box(box.x, box.R, np.array([2.0, 1.0, 3.0])))
     close("n of a ball in the very middle: along the shortest half, up or down", np.abs(middle.n @ box.R), [0.0, 1.0, 0.0], 1e-11)
     close("gap there [m]", middle.gap, -1.0 - r, 1e-11)
+    cube = lesson.Box(np.zeros(3), np.eye(3), 0.5 * np.ones(3))
+    for axis in range(3):
+        for sign in (1.0, -1.0):
+            n, off = sign * np.eye(3)[axis], np.array([0.25, 0.125, -0.25])
+            for place in (0.5 - 1e-9, 0.5, 0.5 + 1e-9):
+                x = np.where(np.arange(3) == axis, sign * place, off)
+                given = f"x = {x}, on or beside a face of {cube}"
+                same_contact(lesson.ball_box(x, r, cube), x - r * n, x + (0.5 - place) * n, n, place - 0.5 - r, 1e-11, given)
 
 
 def corners_of(box):
@@ -500,6 +508,8 @@ def test_brute_force_finds_every_pair_once(lesson, draw):
         same_pairs("pairs that touch", lesson.all_pairs(low, high), expected[expected[:, 0] < expected[:, 1]], given=f"30 boxes in {d}D")
     far = 10.0 * np.arange(6.0).reshape(3, 2)
     same_pairs("pairs of boxes that are all apart", lesson.all_pairs(far, far + 1.0), np.zeros((0, 2)))
+    raises("boxes that are inside out", BadInput, lesson.all_pairs, far + 1.0, far)
+    raises("a box whose corner is no number", BadInput, lesson.all_pairs, far, np.where(np.arange(6).reshape(3, 2) == 5, np.nan, far + 1.0))
 
 
 def crowds(draw, d):
@@ -858,6 +868,8 @@ def test_bodies_that_overlap_have_no_distance_and_flat_ones_do_not_confuse(lesso
     close("distance of two squares in one plane [m]", lesson.gjk(a, b).gap, gap, 1e-11, given=f"gap {gap} m")
     close("distance of two squares face to face [m]", lesson.gjk(a, square @ rows[:2] + gap * rows[2]).gap, gap, 1e-11, given=f"gap {gap} m")
     close("distance of two squares that share a side [m]", lesson.gjk(a, (square + np.array([1.0, 0.0])) @ rows[:2]).gap, 0.0, 1e-11)
+    raises("a body with a corner that is no number", BadInput, lesson.gjk, a, np.where(np.arange(12).reshape(4, 3) == 11, np.nan, b))
+    raises("bodies whose squares are no numbers", BadInput, lesson.gjk, 1e200 * a, 1e200 * b)
 
 
 def bodies(draw, d):

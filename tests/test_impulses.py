@@ -295,6 +295,7 @@ def test_gap_and_multiplier_are_never_below_zero_and_one_of_them_is_zero(lesson,
         close("multiplier times gap", lam * after, 0.0, 1e-9, given=given)             # λ is below 1,000 here
     close("multiplier of a resting contact [N s]", lesson.gap_multiplier(0.0, -1.0, 2.0, 0.1), 0.5, ROUND_OFF)
     raises("two bodies that cannot be moved", BadInput, lesson.gap_multiplier, 0.1, -1.0, 0.0, 0.1)
+    raises("a step of no time", BadInput, lesson.gap_multiplier, 0.1, -1.0, 1.0, 0.0)
 
 
 def height(phi, v_n, a_n):

@@ -195,6 +195,11 @@ def test_a_pendulum_goes_where_its_string_is_in_line_with_the_prediction(lesson,
             close("pendulum after a step, over its size [-]", np.asarray(new) / size,
                   [np.zeros(2), length / size * goal / np.linalg.norm(goal)], 1e-11,
                   given=f"x = {x.tolist()} m, v = {v.tolist()} m/s, dt = {dt} s, g = {G * size} m/s²")
+    triangle = np.array([[0.0, 0.0], [1.0, 0.2], [0.3, 0.9]])
+    once, twice = ([(0, 1), (1, 2), (2, 0)] + [(1, 2)] * more for more in (0, 1))
+    ends = [lesson.projection_step(lesson.falling_acceleration, 0.0, triangle, 0.0 * triangle, dt, p)[0]
+            for p in (net(lesson, [0.0, 1.0, 2.0], pairs, [np.linalg.norm(triangle[i] - triangle[j]) for i, j in pairs]) for pairs in (once, twice))]
+    close("a triangle with one link given twice, after a step [m]", ends[1], ends[0], 1e-10, given=f"x = {triangle.tolist()} m, dt = {dt} s")
     far = draw(2.2, 3.0)
     between = np.array([[0.0, 0.0], [0.5 * far, draw(0.3, 0.9)], [far, 0.0]])
     short = net(lesson, [0.0, 1.0, 0.0], [(0, 1), (1, 2)], 1.0)
@@ -456,6 +461,7 @@ def test_a_negative_compliance_and_a_constraint_without_mass_are_refused(lesson,
         raises("a compliance that is none", BadInput, lesson.compliant_multiplier, 0.1, 0.0, 1.0, alpha, 0.1)
     for alpha in (0.0, draw(0.001, 0.1)):
         raises("a constraint with no free mass", BadInput, lesson.compliant_multiplier, 0.1, 0.0, 0.0, alpha, 0.1)
+        raises("a step of no time", BadInput, lesson.compliant_multiplier, 0.1, 0.0, 1.0, alpha, 0.0)
 
 
 @exercise("8.13", points=1, hint="Λ of each link goes on from where it was; add w ΔΛ n to i and take it from j")

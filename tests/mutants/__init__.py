@@ -58,6 +58,7 @@ def collection(worked):
 
     def edit(exercise, story, old, new):
         name = names[exercise]
+        assert old in inspect.getsource(getattr(worked, name)), f"{exercise}, {story}: the worked answer has no {old!r}"
         head, mark, answer = inspect.getsource(getattr(worked, name)).partition("### BEGIN SOLUTION")
         space = dict(vars(worked))
         exec(compile(head + mark + answer.replace(old, new), worked.__file__, "exec"), space)

@@ -201,7 +201,7 @@ def in_box(turn=lambda R, y: R.T @ y, inside=True, pick=np.argmin, depth_sign=-1
     def ball_box(x, r, box):
         y = turn(box.R, x - box.x)
         depth = box.half - np.abs(y)
-        if not (inside and np.all(depth > 0.0)):
+        if not (inside and np.all(depth >= 0.0)):
             return worked.ball_contact(x, r, box.x + box.R @ np.clip(y, -box.half, box.half), 0.0)
         i = int(pick(depth))
         n = out * sign(y[i]) * box.R[:, i]
@@ -217,6 +217,7 @@ wrong("6.8", "the farthest face")(in_box(pick=np.argmax))
 wrong("6.8", "a gap above zero inside")(in_box(depth_sign=1.0))
 wrong("6.8", "no way out of the middle")(in_box(sign=np.sign))
 wrong("6.8", "n leads in")(in_box(out=-1.0))
+edit("6.8", "what is on a face is outside", "depth[i] < 0.0", "depth[i] <= 0.0")
 edit("6.8", "the face of the largest coordinate", "np.argmin(depth)", "np.argmax(np.abs(y))")
 edit("6.8", "the face of the least share of its half edge", "np.argmin(depth)", "np.argmin(depth / box.half)")
 
@@ -241,6 +242,7 @@ wrong("6.9", "does not sweep")(sweep(lambda low, high, move: (low, high)))
 @variants
 def brute(strict=False, first=lambda i: i + 1, turned=False, some=lambda low: low):
     def all_pairs(low, high):
+        worked.check_boxes(low, high)
         n, found = len(low), []
         for i in range(n):
             for j in range(first(i), n):
@@ -258,6 +260,7 @@ wrong("6.10", "each with itself")(brute(first=lambda i: i))
 wrong("6.10", "each pair twice")(brute(first=lambda i: 0))
 wrong("6.10", "the larger number first")(brute(turned=True))
 edit("6.10", "neighbours in the list only", "range(i + 1, len(low))", "range(i + 1, min(i + 2, len(low)))")
+edit("6.10", "takes boxes that are none", "check_boxes(low, high)", "pass")
 edit("6.10", "does not test the last two", "range(len(low))", "range(len(low) - 2)")
 
 
@@ -397,6 +400,7 @@ wrong("6.14", "the longest half edge for the width")(boxes(width=lambda box, n: 
 @variants
 def nearest(steps=worked.GJK_STEPS, along=(-1.0, 1.0), reduce=True, swap=False):
     def gjk(a, b):
+        worked.check_hulls(a, b)
         p, q, weights = a[:1], b[:1], np.ones(1)
         for _ in range(steps):
             v = weights @ (p - q)
@@ -419,6 +423,7 @@ wrong("6.15", "the supports exchanged")(nearest(along=(1.0, -1.0)))
 wrong("6.15", "both along the same way")(nearest(along=(-1.0, -1.0)))
 wrong("6.15", "keeps a single pair")(nearest(reduce=False))
 wrong("6.15", "n from a to b")(nearest(swap=True))
+edit("6.15", "takes bodies of any size and kind", "check_hulls(a, b)", "pass")
 edit("6.15", "a corner of each for the points between them", "weights @ p, 0.0, weights @ q, 0.0",
      "p[0], 0.0, q[0], 0.0")
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from solutions import impulses as worked
-from solutions.checks import Diverged
+from solutions.checks import Diverged, check_positive
 from solutions.rotation import cross, point_velocity, skew
 from . import collection, variants
 
@@ -260,6 +260,7 @@ def multiplier(gap=1.0, clamp=True, over=lambda k: 1.0 / k, check=True):
     def gap_multiplier(phi, u_n, k, dt):
         if check:
             worked.check_inverse_mass(k)
+        check_positive("step dt [s]", dt)
         lam = -(gap * phi / dt + u_n) * over(k) if k else np.inf
         return max(0.0, lam) if clamp else lam
     return gap_multiplier
@@ -268,6 +269,7 @@ def multiplier(gap=1.0, clamp=True, over=lambda k: 1.0 / k, check=True):
 @right("7.12", "asks first whether the gap stays open")
 def gap_multiplier(phi, u_n, k, dt):
     worked.check_inverse_mass(k)
+    check_positive("step dt [s]", dt)
     free = phi + dt * u_n
     return 0.0 if free >= 0.0 else -free / (dt * k)
 
@@ -276,6 +278,7 @@ wrong("7.12", "does not ask how wide the gap is")(multiplier(gap=0.0))
 wrong("7.12", "pulls open gaps together")(multiplier(clamp=False))
 wrong("7.12", "times k")(multiplier(over=lambda k: k))
 wrong("7.12", "two walls")(multiplier(check=False))
+edit("7.12", "takes a step of no time", 'check_positive("step dt [s]", dt)', "dt = dt or 1.0")
 edit("7.12", "waits until the gap is closed", "np.maximum(0.0, -(phi / dt + u_n) / k)",
      "max(0.0, -u_n / k) if phi <= 0.0 else 0.0")
 

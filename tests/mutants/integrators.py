@@ -3,7 +3,7 @@
 import numpy as np
 
 from solutions import integrators as worked
-from solutions.checks import Diverged
+from solutions.checks import Diverged, check_positive
 from . import collection, variants
 
 wrong, right, edit, MUTANTS = collection(worked)
@@ -308,4 +308,10 @@ def observed_order(dts, errors):
 
 @right("1.10", "polyfit")
 def observed_order(dts, errors):
+    for dt, error in zip(dts, errors):
+        check_positive("step dt [s]", dt)
+        check_positive("error [-]", error)
     return np.polyfit(np.log(dts), np.log(errors), 1)[0]
+
+
+edit("1.10", "leaves runs without error to the logarithm", 'check_positive("error [-]", errors[n])', "pass")

@@ -337,6 +337,8 @@ def giving(memory=1.0, scale=lambda alpha, dt: alpha / dt**2, sign=-1.0, below=1
             if weighed:
                 raise NO_WEIGHT
             return 0.0
+        if not dt > 0.0:
+            raise BadInput("step dt [s]", dt, "give a number above zero")
         soft = scale(alpha, dt)
         return (sign * C - memory * soft * Lam) / (weight + below * soft)
     return compliant_multiplier
@@ -350,6 +352,7 @@ wrong("8.12", "soft above, stiff below")(giving(below=0.0))
 wrong("8.12", "the wrong way")(giving(sign=1.0))
 wrong("8.12", "takes a negative compliance")(giving(checked=False))
 edit("8.12", "the error without its sign", "-C - scaled", "-abs(C) - scaled")
+edit("8.12", "takes a step backwards", "not dt > 0.0", "dt == 0.0 and C < 0.0")
 wrong("8.12", "takes NaN")(giving(nan=False))
 wrong("8.12", "takes a constraint with no free mass")(giving(weighed=False))
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from solutions import integrators, springs as worked
-from solutions.checks import BadInput, Diverged
+from solutions.checks import BadInput, Diverged, check_positive
 from . import collection, variants
 
 wrong, right, edit, MUTANTS = collection(worked)
@@ -29,7 +29,11 @@ def universal_gravity(x_a, x_b, m_a, m_b, G):
 @right("2.1", "magnitude times direction")
 def universal_gravity(x_a, x_b, m_a, m_b, G):
     distance = np.linalg.norm(x_b - x_a)
+    check_positive("distance of two bodies [m]", distance)
     return G * m_a * m_b / distance**2 * ((x_b - x_a) / distance)
+
+
+edit("2.1", "takes two bodies in one place", 'check_positive("distance of two bodies [m]", distance)', "pass")
 
 
 # 2.2 ------------------------------------------------------------------------------------------------------------
