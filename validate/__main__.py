@@ -19,8 +19,10 @@ from .processes import Ended, alone_in, ending_once, one_sentence, workers
 from .store import SUBSET, lessons_of, store_for
 
 app = typer.Typer(add_completion=False, invoke_without_command=True, rich_markup_mode=None, pretty_exceptions_enable=False,
-                  help="Hold every scene against its truth and against the engines; write the report.  With --scene or --lesson, only their part of the report "
-                       f"in OUT is made anew.  If the rest of it was made by other code or with other options, it stays as it is, and theirs goes into OUT/{SUBSET}.")
+                  help="Hold every scene against its truth and against the engines; write the report.  "
+                       "--scene and --lesson update their part of the report in OUT.  If its other scenes were measured "
+                       "with other code or other options, that report stays as it is, and the scenes that you name get "
+                       f"a report of their own in OUT/{SUBSET}.")
 console = Console()
 
 
@@ -55,7 +57,8 @@ def validate(
             with alone_in(writable(out)):
                 code = run(names, plan, pool, out)
     except Ended as e:
-        console.print(f"Interrupted. What was finished is kept in {out}: the same command goes on from there.", soft_wrap=True)
+        console.print(f"Interrupted. What was finished is kept in {out}: the same command goes on from there.",
+                      soft_wrap=True)
         code = e.code
     raise typer.Exit(code)
 
@@ -97,7 +100,8 @@ def chosen(scenes, lessons):
         binding.bind(name)
     for name in scenes or binding.scene_names():
         binding.bind_scene(name)
-    return [n for n in ordered(scenes or binding.scene_names()) if scenes or not lessons or binding.bind_scene(n).LESSON in lessons]
+    names = ordered(scenes or binding.scene_names())
+    return [n for n in names if scenes or not lessons or binding.bind_scene(n).LESSON in lessons]
 
 
 def ordered(names):
@@ -111,7 +115,8 @@ def there(of, names):
     folder = binding.subject_folder(of)
     lessons = {m.lesson for n in names for m in binding.bind_scene(n).METHODS} | set(lessons_of(names))
     if missing := sorted(f"{lesson}.py" for lesson in lessons if not (folder / f"{lesson}.py").is_file()):
-        raise BadInput(f"folder {str(of)!r}", f"without {', '.join(missing)}", "put the lesson files there, or name lessons that are there with --lesson")
+        raise BadInput(f"folder {str(of)!r}", f"without {', '.join(missing)}",
+                       "put the lesson files there, or name lessons that are there with --lesson")
     without = [lesson for lesson in lessons_of(names) if binding.withheld(lesson)]
     if folder == binding.SOLUTIONS and without:
         raise BadInput("this copy of the workbook", f"without worked answers of {', '.join(without)}", "give --of lessons --plain")
@@ -146,25 +151,25 @@ def overrides(pairs, names):
             raise BadInput(f"--set {pair}", f"meant for {len(names)} scenes", "name one with --scene")
         cases = list(binding.bind_scene(names[0]).CASES.values())
         if name not in cases[0]._fields:
-            raise BadInput(f"parameter {name!r}", f"unknown in {names[0]}", f"choose from: {', '.join(cases[0]._fields)}")
+            known = ", ".join(cases[0]._fields)
+            raise BadInput(f"parameter {name!r}", f"unknown in {names[0]}", f"choose from: {known}")
         changes.append((name, value_of(name, text, [getattr(case, name) for case in cases])))
     if changes:
-        scene = binding.bind_scene(names[0])
-        with measure.changed(names[0], changes):
-            scene.start(next(iter(scene.CASES.values()))._replace(**dict(changes)))      # raises BadInput for impossible values
+        with measure.changed(names[0], changes):                     # raises BadInput for impossible values
+            binding.bind_scene(names[0]).start(cases[0]._replace(**dict(changes)))
     return tuple(changes)
 
 
 def value_of(name, text, known):
-    """A parameter's new value, of the kind of the known ones; words only from among them.  Raises BadInput for anything else."""
+    """The value of a parameter, of the type of its known values; a word must be one of them.  Raises BadInput."""
     kind = type(known[0])
     try:
         value = kind(text)
     except ValueError:
         value = None
     if value is None or (kind is float and not isfinite(value)) or (kind is str and value not in known):
-        wanted = {int: "give a whole number", float: "give a finite number"}.get(kind) or f"choose from: {'; '.join(dict.fromkeys(known))}"
-        raise BadInput(f"parameter {name}", repr(text), wanted)
+        number = {int: "give a whole number", float: "give a finite number"}.get(kind)
+        raise BadInput(f"parameter {name}", repr(text), number or f"choose from: {'; '.join(dict.fromkeys(known))}")
     return value
 
 
@@ -185,13 +190,15 @@ def run(names, plan, pool, out):
     """Measure, report, and say how it went: 0, or 1 when something departs from its truth without having been predicted."""
     from .report import summary
     store = store_for(out, plan, names)
-    with Progress(TextColumn("{task.description:22}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), console=console) as bars:
+    columns = TextColumn("{task.description:22}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn()
+    with Progress(*columns, console=console) as bars:
         measure_errors(store, names, plan, pool, bars)
         measure_times(store, names, plan, pool, bars)
         front = report_on(store, names, plan, pool, bars)
     departures = summary.show(console, store.results(names), store.stability(names))
     if store.out != out:
-        console.print(f"\nOther scenes in {out} were measured with other code or options: their report stays as it is.", highlight=False, soft_wrap=True)
+        console.print(f"\nOther scenes in {out} were measured with other code or options: their report stays as it is.",
+                      highlight=False, soft_wrap=True)
     console.print(f"\nThe report lies in [bold]{front}[/bold]", highlight=False, soft_wrap=True)
     return 1 if departures else 0
 
@@ -227,12 +234,12 @@ def measure_times(store, names, plan, pool, bars):
 
 
 def report_on(store, names, plan, pool, bars):
-    """Write the report of these scenes and of those that were measured before with the same code and plan; the path of its front page."""
+    """Write the report of all scenes that were measured with this code and this plan; the path of its front page."""
     from . import report
     shown = ordered(store.scenes())
     results, stability = store.results(shown), store.stability(shown)
     pages = report.files(results, stability)
-    store.note(pages=sorted({*store.state["pages"], *pages}))        # before they are written: should that be interrupted, the next report knows of them
+    store.note(pages=sorted({*store.state["pages"], *pages}))        # first, in case writing them is interrupted
     front = report.write(store.out, results, stability, plan, pool, bars, store.measured)
     store.finish(names, pages)
     return front

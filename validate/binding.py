@@ -55,7 +55,8 @@ def lesson_names(folder=SOLUTIONS):
 
 def withheld(lesson, folder=SOLUTIONS):
     """Functions of a lesson that still wait for their body: in solutions/ none, but all in a copy of the workbook without worked answers."""
-    return set(re.findall(r'raise NotImplementedError\("Exercise [\d.]+: (\w+)"\)', (Path(folder) / f"{lesson}.py").read_text("utf-8", "replace")))
+    text = (Path(folder) / f"{lesson}.py").read_text(encoding="utf-8", errors="replace")
+    return set(re.findall(r'raise NotImplementedError\("Exercise [\d.]+: (\w+)"\)', text))
 
 
 def scene_names():
@@ -76,18 +77,21 @@ def bind(lesson, of="solutions", compiled=False):
 
 
 def bind_scene(scene, of="solutions", compiled=False):
-    """The module of one scene, its lesson functions taken from that subject.  Raises BadInput for an unknown scene, and where something does not load."""
+    """The module of one scene with the lesson functions of that subject.  Raises BadInput if it is unknown or broken."""
     if scene not in scene_names():
         raise BadInput(f"scene {scene!r}", "unknown", "`validate list` names them all")
     try:
         return world(of, compiled).scene(scene)
     except BadInput:
         raise
-    except (Exception, SystemExit) as e:                             # code that somebody is working on may do anything
-        places = [(f.filename, f.lineno) for f in traceback.extract_tb(e.__traceback__)] + ([(e.filename, e.lineno)] if isinstance(e, SyntaxError) else [])
-        ours = [f"file {file!r}, line {line}," for file, line in places if Path(file).parent in (SCENES, SOLUTIONS, subject_folder(of))]
+    except (Exception, SystemExit) as e:                             # a file in the making may do anything
+        lines = [(f.filename, f.lineno) for f in traceback.extract_tb(e.__traceback__)]
+        lines += [(e.filename, e.lineno)] if isinstance(e, SyntaxError) else []
+        folders = SCENES, SOLUTIONS, subject_folder(of)
+        places = [f"file {file!r}, line {line}," for file, line in lines if Path(file).parent in folders]
         why = (str(getattr(e, "msg", e)).splitlines() or [""])[0]
-        raise BadInput((ours or [f"scene {scene!r} of {str(of)!r}"])[-1], f"not loadable ({type(e).__name__}: {why})", "mend it first") from None
+        raise BadInput((places or [f"scene {scene!r} of {str(of)!r}"])[-1], f"not loadable ({type(e).__name__}: {why})",
+                       "correct that first") from None
 
 
 def world(of="solutions", compiled=False):

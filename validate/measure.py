@@ -59,7 +59,7 @@ def load(name, of):
 
 @contextmanager
 def changed(name, changes):
-    """In the block a scene runs with these parameters: numbers may overflow without a warning, and what it cannot compute ends in BadInput."""
+    """With changed parameters, do not warn of overflow, and raise BadInput for what the scene cannot compute."""
     if not changes:
         yield
         return
@@ -69,13 +69,14 @@ def changed(name, changes):
             yield
     except (BadInput, OSError):
         raise
-    except Exception as e:                                           # a truth, a bound or an engine is made for parameters near the scene's own
+    except Exception as e:                                           # a truth or an engine takes ordinary values only
         values = ", ".join(f"{parameter} = {value}" for parameter, value in changes)
-        raise BadInput(f"scene {name} with {values}", f"not computable ({type(e).__name__}: {e})", "choose a value nearer to the scene's own") from None
+        raise BadInput(f"scene {name} with {values}", f"not computable ({type(e).__name__}: {e})",
+                       "choose a value nearer to the scene's own") from None
 
 
 def with_overrides(measuring):
-    """The same, in such a block."""
+    """Let measuring(name, plan, …) run inside `changed`."""
     @wraps(measuring)
     def measured(name, plan, *more):
         with changed(name, plan.overrides):
@@ -309,16 +310,17 @@ def judged(scene, label, p, truth, runs, order):
 
 
 def trace(name):
-    """All that the repository keeps of a scene's runs of pybullet, or None.  Raises BadInput for a damaged file."""
+    """The recorded runs of pybullet on a scene, or None.  Raises BadInput for a damaged file."""
     path = RECORDED / f"{name}.json"
-    return read_whole(path, dict, f"make it anew: validate record --scene {name}") if path.is_file() else None
+    return read_whole(path, dict, f"restore it, or give: validate record --scene {name}") if path.is_file() else None
 
 
 def recorded(name, case, label):
-    """The trace of one engine run on one case from the repository, or None for what was not recorded.  Raises BadInput where the scene's file is missing."""
+    """The trace of one engine run on one case, None if it was not recorded.  Raises BadInput without the scene's file."""
     record = trace(name) or {"runs": {}}
     if not record["runs"] and label.startswith("pybullet"):
-        raise BadInput(f"file '{RECORDED / name}.json'", "missing or empty", f"restore it, or make it where pybullet is installed: validate record --scene {name}")
+        raise BadInput(f"file '{RECORDED / name}.json'", "missing or empty",
+                       f"restore it, or give where pybullet is installed: validate record --scene {name}")
     runs = record["runs"].get(case, {}).get(label)
     return runs and {"source": f"recorded, {record['stamp']}", "runs": runs, "seconds": record["seconds"].get(label)}
 
@@ -400,8 +402,8 @@ def engine_frames(engine, p, dt, per_frame):
 def stability_cases(lesson, plan):
     """The stability cases of a lesson, as data."""
     found = stability.cases(lesson, plan.of, "compiled" in plan.speeds)
-    return jsonable([{**case._asdict(), "findings": [f._asdict() for f in case.findings], "picture": case.picture and case.picture._asdict()}
-                     for case in found])
+    return jsonable([{**case._asdict(), "findings": [f._asdict() for f in case.findings],
+                      "picture": case.picture and case.picture._asdict()} for case in found])
 
 
 # ---------------------------------------------------------------------------------------------- times

@@ -1,7 +1,7 @@
-"""The processes of a run: workers that end with it, whatever ends it, and one run at a time in a folder.
+"""The processes of a run: workers that end with it, and a lock that keeps a second run out of its folder.
 
-Everything is measured in workers.  The run itself only waits and writes, so that it can end at any moment: Ctrl-C and SIGTERM raise `Ended` in it
-once, and its workers are killed.  When the run itself is killed, its workers notice that, and the system lets go of its folder.
+Workers do all the measuring; the run itself only waits and writes, so it can end at any moment. The first Ctrl-C or
+SIGTERM raises Ended in it, and its workers are killed. If the run itself is killed, its workers end as well.
 """
 
 import copyreg
@@ -22,22 +22,23 @@ except ImportError:                                                  # Windows
     import msvcrt
 
 ENDING = (signal.SIGINT, signal.SIGTERM)
-DIE_WITH_PARENT = 1                                                  # PR_SET_PDEATHSIG in Linux's <sys/prctl.h>
+PR_SET_PDEATHSIG = 1                                                 # of Linux's <sys/prctl.h>
 
-copyreg.pickle(BadInput, lambda e: (BadInput.__new__, (BadInput, *e.args)))        # its own __init__ wants the parts of the sentence
+# BadInput is constructed from the parts of its sentence; an exception is unpickled from the sentence itself
+copyreg.pickle(BadInput, lambda e: (BadInput.__new__, (BadInput, *e.args)))
 
 
 class Ended(BaseException):
-    """Somebody wants this run to end.  No KeyboardInterrupt: typer would turn that into exit code 1."""
+    """Ctrl-C or SIGTERM.  Not a KeyboardInterrupt, which typer turns into exit code 1."""
 
     def __init__(self, number):
         super().__init__(number)
-        self.code = 128 + number                                     # as a shell has it
+        self.code = 128 + number                                     # as in a shell
 
 
 @contextmanager
 def one_sentence(program):
-    """What can be expected to go wrong in the block ends it in one sentence and exit code 2; Ctrl-C and SIGTERM in 130 and 143."""
+    """End the program in one sentence: with exit code 2 for an expected failure, 130 for Ctrl-C and 143 for SIGTERM."""
     try:
         yield
     except Ended as e:
@@ -52,14 +53,14 @@ def one_sentence(program):
 
 @contextmanager
 def ending_once():
-    """In the block, the first Ctrl-C or SIGTERM raises Ended.  All later ones are ignored: nothing may disturb the tidying up."""
+    """Raise Ended for the first Ctrl-C or SIGTERM and ignore all later ones, which would disturb the cleaning up."""
     def end(number, frame):
         for each in ENDING:
             signal.signal(each, signal.SIG_IGN)
         raise Ended(number)
 
     before = {each: signal.getsignal(each) for each in ENDING}
-    heeded = [each for each in ENDING if before[each] != signal.SIG_IGN]              # nohup, or a shell's background
+    heeded = [each for each in ENDING if before[each] != signal.SIG_IGN]             # a background job ignores Ctrl-C
     for each in heeded:
         signal.signal(each, end)
     try:
@@ -72,7 +73,7 @@ def ending_once():
 
 @contextmanager
 def undisturbed():
-    """Signals that come during the block take effect after it."""
+    """Delay signals that arrive during the block until its end."""
     late = []
     before = {each: signal.signal(each, lambda number, frame: late.append(number)) for each in ENDING}
     try:
@@ -85,9 +86,9 @@ def undisturbed():
 
 
 @contextmanager
-def born_deaf():
-    """Processes that start in the block never get these signals, from their first instruction on: a Ctrl-C in a terminal is for all processes there."""
-    resource_tracker.ensure_running()                                # which leaves them open when it starts: let it be before
+def blocked_at_birth():
+    """Start processes with these signals blocked: a terminal sends Ctrl-C to workers, too, even while they import."""
+    resource_tracker.ensure_running()                                # it unblocks the signals when it starts
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING) if hasattr(signal, "pthread_sigmask") else None
     try:
         yield
@@ -99,13 +100,13 @@ def born_deaf():
 # ---------------------------------------------------------------------------------------------- workers
 
 class Workers:
-    """Processes that wait for calls, each behind a pipe."""
+    """Processes that wait for calls, each at the other end of a pipe."""
 
     def __init__(self, pipes):
         self.pipes = pipes
 
     def each(self, calls):
-        """(key, result) of every call in {key: (function, *arguments)}, as they are done.  Raises what a call raised."""
+        """Yield (key, result) of {key: (function, *arguments)} as the calls end.  Raises what a call raised."""
         waiting, idle, busy = list(calls.items()), list(self.pipes), {}
         try:
             while waiting or busy:
@@ -125,11 +126,11 @@ class Workers:
 
 @contextmanager
 def workers(count):
-    """So many Workers.  They end with the block; when an error or a signal leaves it, at once."""
+    """Workers for the length of the block.  They are killed when an error or a signal ends the block."""
     context = get_context("spawn")
     processes, pipes = [], []
     try:
-        with undisturbed(), born_deaf():
+        with undisturbed(), blocked_at_birth():
             for _ in range(count):
                 ours, theirs = context.Pipe()
                 process = context.Process(target=work, args=(theirs,))
@@ -151,12 +152,12 @@ def workers(count):
 
 
 def work(pipe):
-    """A worker's life: one call after the other, until the run closes the pipe or is no more."""
+    """Answer calls until the run closes the pipe or ends."""
     for each in ENDING:
         signal.signal(each, signal.SIG_IGN)
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(DIE_WITH_PARENT, signal.SIGKILL)     # whatever it is doing; the thread below has to wait for compiled code
-    threading.Thread(target=follow, args=(parent_process().sentinel,), daemon=True).start()
+    if sys.platform == "linux":                                      # during compiled code the thread below cannot run
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+    threading.Thread(target=end_with, args=(parent_process().sentinel,), daemon=True).start()
     try:
         while True:
             pipe.send(outcome(*pipe.recv()))
@@ -164,38 +165,39 @@ def work(pipe):
         return
 
 
-def follow(parent):
+def end_with(parent):
     connection.wait([parent])
     os._exit(1)
 
 
 def outcome(function, *arguments):
-    """(result, None) or (None, the error)."""
+    """(result, None), or (None, the error)."""
     try:
         return function(*arguments), None
     except (BadInput, OSError, MemoryError) as e:
         return None, e
-    except BaseException:                                            # a fault of ours, or sys.exit() in a subject's code
+    except BaseException:                                            # our own fault, or sys.exit() in a subject's code
         return None, RuntimeError(traceback.format_exc())
 
 
-# ---------------------------------------------------------------------------------------------- a folder's lock
+# ---------------------------------------------------------------------------------------------- one run per folder
 
 @contextmanager
 def alone_in(folder):
-    """Hold a folder.  Raises BadInput while another run holds it."""
+    """Lock a folder for the length of the block.  Raises BadInput while another run has locked it."""
     with open(folder / ".lock", "a") as file:
         try:
             lock(file)
         except (BlockingIOError, PermissionError):
-            raise BadInput(f"folder {str(folder)!r}", "in use by another run", "wait until that has ended, or name another folder with --out") from None
-        except OSError:                                              # a file system that has no locks
+            raise BadInput(f"folder {str(folder)!r}", "in use by another run",
+                           "wait until that has ended, or name another folder with --out") from None
+        except OSError:                                              # a file system without locks
             pass
         yield
 
 
 def lock(file):
-    """Lock a file until it is closed, which the system does for a process that ends.  Raises BlockingIOError or PermissionError when it is locked."""
+    """Lock a file until it is closed; the system closes the files of a process that is killed."""
     if sys.platform == "win32":
         msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
     else:

@@ -588,16 +588,18 @@ def cases(lesson, of="solutions", compiled=True):
                 found.append(examine(number, of, compiled))
             except NotImplementedError:
                 pass
-            except Exception as e:                                   # a subject's code may do anything: say it, and go on
+            except Exception as e:                                   # a subject's code may do anything
                 found.append(broken_off(number, e))
     return found
 
 
 def broken_off(number, error):
-    """The case of which a subject's answers left nothing but an error."""
+    """A case that ended in an error of the subject's code."""
     title, _, lesson = CASES[number]
     words = f"{type(error).__name__}: {(str(error).splitlines() or [''])[0]}"
-    return Case(number, title, lesson, [finding(number, f"The case comes to its end, which here was {words}.", "cases that do [of 1]", 1, 0, 0.0, words)], None)
+    claim = f"The case runs without an error; here it ended in {words}."
+    lost = finding(number, claim, "cases without an error [of 1]", 1, 0, 0.0, words)
+    return Case(number, title, lesson, [lost], None)
 
 
 def findings(of="solutions", compiled=True):

@@ -1,4 +1,4 @@
-"""What a run keeps on disk, and how: results whole or not at all, each report by one code and one plan."""
+"""The files of a run: results that are written whole or not at all, and one code and one plan for each report."""
 
 import json
 import sys
@@ -9,18 +9,19 @@ from solutions.checks import BadInput
 
 from . import binding, engines
 
-SUBSET = "subset"            # folder inside a report's for the report of some scenes that does not fit into it
+SUBSET = "subset"            # folder, inside the report's, for scenes that cannot join that report
 
 
 @contextmanager
 def whole(path):
-    """The path of a draft to write, which takes the place of `path` when the block ends well.  Raises BadInput where it cannot be written."""
+    """Yield a draft that replaces `path` when the block ends well.  Raises BadInput where it cannot be written."""
     draft = path.with_name(f".{path.name}.part")
     try:
         yield draft
         draft.replace(path)
     except OSError as e:
-        raise BadInput(f"file {str(path)!r}", f"not writable ({e.strerror or e})", "make room there; what was finished is kept") from None
+        raise BadInput(f"file {str(path)!r}", f"not writable ({e.strerror or e})",
+                       "make room there; finished results are kept") from None
     finally:
         draft.unlink(missing_ok=True)
 
@@ -32,7 +33,7 @@ def write_whole(path, value):
 
 
 def read_whole(path, kind, remedy):
-    """What a JSON file holds, a dict or a list.  Raises BadInput for a file that was damaged."""
+    """Read a dict or a list from a JSON file.  Raises BadInput for a damaged file."""
     try:
         value = json.loads(path.read_text(encoding="utf-8"))
     except ValueError as e:
@@ -43,15 +44,18 @@ def read_whole(path, kind, remedy):
 
 
 def code_digest(of):
-    """Fingerprint of all that a result depends on: code, recorded traces, and what is installed."""
-    package = binding.ROOT / "validate"
-    files = {*package.rglob("*.py"), *package.glob("recorded/*.json"), *binding.SOLUTIONS.glob("*.py"), *binding.subject_folder(of).glob("*.py")}
-    installed = [sys.version, version("numpy"), version("scipy"), binding._numba_version(), *map(engines.installed, engines.NAMES)]
-    return binding.fingerprint(files, " ".join(map(str, installed)))
+    """Fingerprint of everything that a result depends on: code, recorded traces and installed versions."""
+    package, subject = binding.ROOT / "validate", binding.subject_folder(of)
+    files = {*package.rglob("*.py"), *package.glob("recorded/*.json"), *subject.glob("*.py"), *binding.SOLUTIONS.glob("*.py")}
+    installed = version("numpy"), version("scipy"), binding._numba_version(), *map(engines.installed, engines.NAMES)
+    return binding.fingerprint(files, f"{sys.version} {installed}")
 
 
 def store_for(out, plan, names):
-    """Where a run keeps its results: in `out`, unless there are results of other scenes by other code or another plan.  Those stay, and the run goes into SUBSET."""
+    """Begin a run of these scenes in `out`, or in out/SUBSET.
+
+    It is the latter if `out` holds results of other scenes that were measured with other code or another plan.
+    """
     stamp = {"plan": list(map(str, plan)), "code": code_digest(plan.of)}
     store = Store(out)
     if store.state["stamp"] != stamp and set(store.scenes()) - set(names):
@@ -60,28 +64,39 @@ def store_for(out, plan, names):
     return store
 
 
-class Store:
-    """Results, a file each, all by one code and one plan.  An interrupted run is continued; what a finished one measured is measured anew.
+def lessons_of(names):
+    """The lessons of these scenes, in the order of the course."""
+    there = {binding.bind_scene(name).LESSON for name in names}
+    return [lesson for lesson in binding.lesson_names() if lesson in there]
 
-    `state` is kept beside them: the stamp of code and plan; the scenes that runs began and have not finished; what of those is still to be measured
-    (an older result by the same code and plan stays until then); and the files of the report.
+
+class Store:
+    """Results, one file each, that the same code and the same plan made.
+
+    A run continues what an interrupted run began, and measures anew what a finished run measured.  `state` holds
+    stamp: the code and the plan;    begun: scenes of runs that were interrupted;
+    todo: their results that are not measured yet (an older result stays until then);    pages: files of the report.
     """
 
     def __init__(self, out):
         self.out, self.folder = out, out / "results"
         self.mark = self.folder / "run.json"
-        self.state = {"stamp": None, "begun": [], "todo": [], "pages": []} | (self.read(self.mark) if self.mark.is_file() else {})
+        self.state = {"stamp": None, "begun": [], "todo": [], "pages": []}
+        if self.mark.is_file():
+            self.state |= self.read(self.mark)
 
     def begin(self, stamp, names):
         self.folder.mkdir(parents=True, exist_ok=True)
-        self.tidy()
+        for draft in [*self.out.glob(".*.part"), *self.folder.glob(".*.part")]:      # of workers that were killed
+            draft.unlink()
         if self.state["stamp"] != stamp:
             for old in self.folder.glob("*.*.json"):
                 old.unlink()
             self.note(stamp=stamp, begun=[], todo=[])
-        fresh = [n for n in names if n not in self.state["begun"]]
-        todo = {*self.state["todo"], *(f"{n}.{kind}" for n in fresh for kind in ("errors", "times")), *(f"{n}.stability" for n in lessons_of(fresh))}
-        self.note(begun=self.state["begun"] + fresh, todo=sorted(todo))
+        fresh = [name for name in names if name not in self.state["begun"]]
+        todo = {f"{name}.{kind}" for name in fresh for kind in ("errors", "times")}
+        todo |= {f"{lesson}.stability" for lesson in lessons_of(fresh)}
+        self.note(begun=self.state["begun"] + fresh, todo=sorted(todo.union(self.state["todo"])))
 
     def note(self, **changes):
         self.state |= changes
@@ -104,32 +119,22 @@ class Store:
         self.note(todo=[key for key in self.state["todo"] if key != f"{name}.{kind}"])
 
     def scenes(self):
-        """The scenes of which everything is there, from this run or an earlier one."""
+        """The scenes with all of their results, from this run or an earlier one."""
         return [n for n in binding.scene_names() if self.path("errors", n).is_file() and self.path("times", n).is_file()]
 
     def results(self, names):
         return [{**self.get("errors", name), "times": self.get("times", name)} for name in names]
 
     def stability(self, names):
-        return [case for lesson in lessons_of(names) if self.path("stability", lesson).is_file() for case in self.get("stability", lesson)]
+        lessons = [lesson for lesson in lessons_of(names) if self.path("stability", lesson).is_file()]
+        return [case for lesson in lessons for case in self.get("stability", lesson)]
 
     def measured(self, name):
-        """When a scene's or a lesson's results were written [ns]."""
+        """The time at which the results of a scene or a lesson were written [ns]."""
         return max(path.stat().st_mtime_ns for path in self.folder.glob(f"{name}.*.json"))
 
-    def tidy(self):
-        """Remove drafts that nobody finishes any more."""
-        for draft in [*self.out.glob(".*.part"), *self.folder.glob(".*.part")]:
-            draft.unlink()
-
     def finish(self, names, pages):
-        """The report is written: remove what belonged to the last one only."""
-        for old in {*self.state["pages"]} - {*pages}:
+        """Note that these scenes are done, and remove files that belonged to the last report only."""
+        for old in set(self.state["pages"]) - set(pages):
             (self.out / old).unlink(missing_ok=True)
-        self.note(begun=[n for n in self.state["begun"] if n not in names], pages=sorted(pages))
-
-
-def lessons_of(names):
-    """The lessons of these scenes, in the order of the course."""
-    there = {binding.bind_scene(name).LESSON for name in names}
-    return [lesson for lesson in binding.lesson_names() if lesson in there]
+        self.note(begun=[name for name in self.state["begun"] if name not in names], pages=sorted(pages))

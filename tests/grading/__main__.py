@@ -3,18 +3,20 @@
 import json
 import os
 import secrets
-import sys
 from datetime import datetime
 from pathlib import Path
 from typing import Annotated, Optional
 
 import typer
 from rich.console import Console
+from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from solutions.checks import BadInput
 from validate import binding
-from validate.__main__ import writable, write_whole
+from validate.__main__ import writable
+from validate.processes import alone_in, one_sentence
+from validate.store import whole, write_whole
 
 from . import box, local, marking, pages, submissions
 
@@ -38,8 +40,9 @@ def grade(
     terms = pages.Terms(deadline(due), late)
     people = submissions.roster(roster) if roster else {}
     handed_in = submissions.read_all(class_, lessons)
-    folder = writable(out)
-    raise typer.Exit(run(handed_in, marking.settings(lessons, secret(folder, seed)), people, terms, jobs, executor, folder))
+    with alone_in(writable(out)):
+        settings = marking.settings(lessons, secret(out, seed))
+        raise typer.Exit(run(handed_in, settings, people, terms, jobs, executor, out))
 
 
 # ---------------------------------------------------------------------------------------------- what was asked for
@@ -59,10 +62,18 @@ def deadline(text):
 
 
 def secret(folder, seed):
-    """The seed: the one that was given, or the one of this folder, or a new one.  It is kept, so that grading again gives the same."""
+    """The seed: the one that was given, or the one of this folder, or a new one.  It is kept, so that grading is repeatable.
+
+    Raises BadInput for an empty one: everybody could guess it.
+    """
     file = folder / "seed.txt"
-    seed = seed or (file.read_text().strip() if file.is_file() else secrets.token_hex(16))
-    file.write_text(f"{seed}\n")
+    kept = seed is None and file.is_file()
+    seed = (file.read_text() if kept else secrets.token_hex(16) if seed is None else seed).strip()
+    if not seed:
+        remedy = "write the secret into it" if kept else "give a secret, or leave --seed out"
+        raise BadInput(f"file {str(file)!r}" if kept else "--seed", "empty", remedy)
+    with whole(file) as draft:
+        draft.write_text(f"{seed}\n")
     return seed
 
 
@@ -96,6 +107,11 @@ def run(handed_in, settings, people, terms, jobs, executor, out):
         return 130
     front = pages.write(out, [results[s.student] for s in handed_in if s.student in results], failed, settings, people, terms)
     pages.show(console, [*results.values()], failed, settings)
+    for submission in handed_in:
+        if submission.problems:
+            more = f", and {len(submission.problems) - 1} more" if len(submission.problems) > 1 else ""
+            console.print(f"[bold]{escape(submission.student)}[/bold]: {escape(submission.problems[0])}{more}",
+                          highlight=False, soft_wrap=True)
     console.print(f"\nThe class lies in [bold]{front}[/bold]", highlight=False, soft_wrap=True)
     return 1 if failed else 0
 
@@ -115,12 +131,9 @@ def on_cluster(executor, todo, settings):
 
 
 def main(arguments=None):
-    """Run the command line; bad input ends with one sentence and exit code 2."""
-    try:
+    """Run the command line."""
+    with one_sentence("grade"):
         app(arguments, prog_name="grade")
-    except BadInput as e:
-        print(f"grade: {e}", file=sys.stderr)
-        sys.exit(2)
 
 
 if __name__ == "__main__":

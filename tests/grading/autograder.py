@@ -14,7 +14,8 @@ from typing import Annotated, Optional
 import typer
 
 from solutions.checks import BadInput
-from validate.__main__ import writable, write_whole
+from validate.__main__ import writable
+from validate.store import write_whole
 from validate.binding import ROOT
 
 from . import marking, pages, points, submissions
@@ -67,6 +68,8 @@ def gradescope(
     late: Annotated[float, typer.Option(min=0.0, max=100.0, help="Percent of the maximum taken off for each day begun after Gradescope's due date.")] = 0.0,
     dirty: Dirty = False,
 ):
+    if not seed.strip():
+        raise BadInput("--seed", "empty", "give a secret")
     course = json.dumps({"lessons": chosen(lesson or []), "seed": seed, "late": late}, indent=1)
     files = {"setup.sh": (SETUP.encode(), 0o755), "run_autograder": (RUN.encode(), 0o755), "course.json": (course.encode(), 0o600)}
     files |= {f"workbook/{path}": ((ROOT / path).read_bytes(), 0o644) for path in tracked(dirty)}

@@ -32,7 +32,9 @@ import typer
 
 from solutions.checks import BadInput
 from validate import binding, generate
+from validate.__main__ import writable
 from validate.binding import ROOT
+from validate.processes import one_sentence
 
 TOP = "workbook"                                  # folder that the zip unpacks to
 WHEN = (1980, 1, 1, 0, 0, 0)                      # of every entry: the same commit gives the same bytes
@@ -69,6 +71,7 @@ def release(
     if missing := (with_earlier(worked) - worked) | (worked - chosen):
         raise BadInput(f"--with-solutions={','.join(sorted(worked))}", f"without {', '.join(sorted(missing))}",
                        "release the lessons that these build on as well, and none that --lesson leaves out")
+    writable(out.absolute().parent)
     out.unlink(missing_ok=True)                   # whatever happens now, no older zip is taken for this one
     files = contents(tracked(dirty), chosen, worked, with_solutions == EVERY)
     refuse_leaks(files, worked, with_solutions == EVERY)
@@ -412,13 +415,10 @@ def write(out, files):
 
 
 def main(arguments=None):
-    """Run the command line; bad input ends with one sentence and exit code 2."""
+    """Run the command line."""
     arguments = sys.argv[1:] if arguments is None else arguments
-    try:
+    with one_sentence("release"):
         app([f"{a}={EVERY}" if a == "--with-solutions" else a for a in arguments], prog_name="release")
-    except BadInput as e:
-        print(f"release: {e}", file=sys.stderr)
-        sys.exit(2)
 
 
 if __name__ == "__main__":

@@ -15,9 +15,10 @@ HERE = Path(__file__).parent
 def pictures(results, stability):
     """(plot, file, data, the scene or lesson that it is of) of every still picture."""
     refined = [r for r in results if r["still"] != ""]
+    drawn = [case for case in stability if case["picture"]]
     return [*((plots.convergence, f"{r['scene']}-steps.svg", r, r["scene"]) for r in refined),
             *((plots.work_precision, f"{r['scene']}-times.svg", r, r["scene"]) for r in refined),
-            *((plots.stability, f"stability-{case['number']}.svg", case, case["lesson"]) for case in stability if case["picture"])]
+            *((plots.stability, f"stability-{case['number']}.svg", case, case["lesson"]) for case in drawn)]
 
 
 def copied(results):
@@ -27,12 +28,15 @@ def copied(results):
 
 def files(results, stability):
     """The names of all files of a report."""
-    return {"index.html", "report.json", *(["stability.html"] if stability else []), *copied(results), *(f"{r['scene']}.html" for r in results),
-            *(name for _, name, _, _ in pictures(results, stability))}
+    return {"index.html", "report.json", *(["stability.html"] if stability else []), *copied(results),
+            *(f"{r['scene']}.html" for r in results), *(name for _, name, _, _ in pictures(results, stability))}
 
 
 def write(out, results, stability, plan, pool, bars, measured):
-    """Pages, pictures and report.json in a folder; the path of the front page.  measured(scene or lesson) → when that was [ns]: newer pictures stay."""
+    """Pages, pictures and report.json in a folder; the path of the front page.
+
+    measured(scene or lesson) is when its results were written [ns]: pictures newer than that are not drawn again.
+    """
     pages = Environment(loader=PackageLoader("validate", "report"), autoescape=select_autoescape(), trim_blocks=True, lstrip_blocks=True)
     pages.filters.update(seconds=words.seconds, number=words.number, percent=words.percent, factor=words.factor, order=words.order)
     pages.tests["reaches"] = lambda row: any(t is not None for t in row.values())
@@ -49,8 +53,10 @@ def write(out, results, stability, plan, pool, bars, measured):
         cases=[c for c in stability if c["lesson"] == r["lesson"]]) for r in results}
     if stability:
         texts["stability.html"] = pages.get_template("stability.html").render(cases=stability)
-    texts["index.html"] = pages.get_template("front.html").render(rows=[words.row(r) for r in results], cases=stability, results=results)
-    texts["report.json"] = json.dumps({"run": words.run(plan), "scenes": results, "stability": stability}, ensure_ascii=False, indent=1)
+    rows = [words.row(r) for r in results]
+    texts["index.html"] = pages.get_template("front.html").render(rows=rows, cases=stability, results=results)
+    data = {"run": words.run(plan), "scenes": results, "stability": stability}
+    texts["report.json"] = json.dumps(data, ensure_ascii=False, indent=1)
     texts |= {name: (HERE / name).read_text(encoding="utf-8") for name in copied(results)}
     for name, text in texts.items():
         with whole(out / name) as draft:

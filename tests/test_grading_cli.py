@@ -1,0 +1,78 @@
+"""What an instructor's commands say when something is not as it should be: one sentence, at once, and exit code 2."""
+
+import errno
+from pathlib import Path
+
+import pytest
+
+from validate.processes import alone_in
+
+from .grading import __main__ as grade
+from .grading import autograder, local, release
+
+
+def run(capsys, program, *arguments):
+    """Exit code and what was written to standard output and error."""
+    with pytest.raises(SystemExit) as end:
+        program.main([*map(str, arguments)])
+    said = capsys.readouterr()
+    return end.value.code or 0, said.out, said.err
+
+
+@pytest.fixture
+def handed_in(tmp_path, monkeypatch):
+    """A class of one who handed nothing in, and one whose zip is broken; graded in this process."""
+    def results(jobs, todo, settings):
+        return ((s.student, *local.marked(s, settings)) for s in todo)
+    monkeypatch.setattr(local, "results", results)
+    (tmp_path / "class" / "cem").mkdir(parents=True)
+    (tmp_path / "class" / "bob.zip").write_bytes(b"PK\3\4 no zip")
+    return [tmp_path / "class", "--lesson", "integrators", "--out", tmp_path / "grades"]
+
+
+def test_a_zip_that_cannot_be_read_is_named_on_the_terminal(capsys, handed_in):
+    code, said, _ = run(capsys, grade, *handed_in, "--seed", "a secret")
+    assert code == 0 and "bob: it cannot be read: BadZipFile\n" in said and "cem:" not in said
+
+
+@pytest.mark.parametrize("given", ["", "  ", "\n"])
+def test_an_empty_secret_is_refused(capsys, tmp_path, handed_in, given):
+    code, _, error = run(capsys, grade, *handed_in, "--seed", given)
+    assert code == 2 and error == "grade: --seed is empty: give a secret, or leave --seed out\n"
+    assert not (tmp_path / "grades" / "seed.txt").exists()
+    (tmp_path / "grades" / "seed.txt").write_text(given)
+    code, _, error = run(capsys, grade, *handed_in)
+    assert code == 2 and "seed.txt' is empty" in error and len(error.splitlines()) == 1
+    code, _, error = run(capsys, autograder, "gradescope", "--dirty", "--seed", given, "--out", tmp_path / "a.zip")
+    assert code == 2 and "--seed is empty" in error and not (tmp_path / "a.zip").exists()
+
+
+def test_a_secret_is_kept_and_one_is_made_where_none_is_given(capsys, tmp_path, handed_in):
+    assert run(capsys, grade, *handed_in)[0] == 0
+    made = (tmp_path / "grades" / "seed.txt").read_text()
+    assert len(made.strip()) == 32
+    run(capsys, grade, *handed_in)
+    assert (tmp_path / "grades" / "seed.txt").read_text() == made
+
+
+def test_a_class_is_graded_once_at_a_time(capsys, tmp_path, handed_in):
+    (tmp_path / "grades").mkdir()
+    with alone_in(tmp_path / "grades"):
+        code, _, error = run(capsys, grade, *handed_in)
+    assert code == 2 and "in use by another run" in error and len(error.splitlines()) == 1
+    assert run(capsys, grade, *handed_in)[0] == 0
+
+
+def test_a_full_disk_is_said_in_one_sentence(capsys, handed_in, monkeypatch):
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+    monkeypatch.setattr(Path, "write_bytes", full)
+    code, _, error = run(capsys, grade, *handed_in)
+    assert code == 2 and "No space left on device" in error and len(error.splitlines()) == 1
+
+
+def test_release_finds_its_output_unwritable_before_it_begins(capsys, tmp_path, monkeypatch):
+    monkeypatch.setattr(release, "contents", lambda *_: pytest.fail("the zip was made before its folder was looked at"))
+    (tmp_path / "file").touch()
+    code, _, error = run(capsys, release, "--dirty", "--out", tmp_path / "file" / "workbook.zip")
+    assert code == 2 and "not writable" in error and "--out" in error and len(error.splitlines()) == 1
