@@ -11,6 +11,7 @@ import textwrap
 import zipfile
 
 import nbformat
+import numpy as np
 import pytest
 
 from validate import generate
@@ -329,3 +330,73 @@ def test_a_lesson_is_checked_though_one_that_it_builds_on_does_not_load(unpacked
     said = run_in(unpacked, "pytest", f"--of={tmp_path}", "--tb=line", "-p", "no:cacheprovider", *(f"--exercise={n}" for n in ("2.7", "2.9", "7.1"))).stdout
     assert re.search(r"^ +2\.7  (\d)", said, re.M) and re.search(r"^ +7\.1  1 of 1$", said, re.M) and re.search(r"^ +2\.9  0 of", said, re.M), said
     assert "integrators.py cannot be loaded: SyntaxError: invalid syntax (integrators.py, line 1)" in said
+
+
+# ---------------------------------------------------------------------------------------------- truths
+
+WRONG = """
+
+
+def _off(value):
+    if isinstance(value, tuple):
+        return type(value)(*map(_off, value)) if hasattr(value, "_fields") else tuple(map(_off, value))
+    return 1.01 * value if np.asarray(value).dtype.kind == "f" else value
+
+
+def _wrong(right):
+    return lambda *arguments: _off(right(*arguments))
+
+
+for _name in {names}:
+    globals()[_name] = _wrong(globals()[_name])
+"""
+TRUTHS = """
+import json, re, sys
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import nbformat
+import numpy as np
+from validate import notebook
+
+found, TRUE = {}, re.compile("truth|theory|by hand")
+
+def keep(name, data):
+    if TRUE.search(name):
+        found.setdefault(f"{cell.id} {name}", np.asarray(data, dtype=float).tolist())
+
+def shown():
+    for line in (line for number in plt.get_fignums() for axes in plt.figure(number).axes for line in axes.lines):
+        keep(str(line.get_label()), line.get_xydata())
+    plt.close("all")
+
+notebook.play = lambda frames, *_, **__: [keep(name, pictures) for name, pictures in frames.items()]
+notebook.display, plt.show, space = lambda *_: None, shown, {}
+for cell in nbformat.read(sys.argv[1], as_version=4).cells:
+    if cell.cell_type == "code" and not re.search("^check|^show_|measured\\\\(|interact|left_out", cell.source, re.M):
+        exec(cell.source, space)
+print(json.dumps(found))
+"""
+
+
+def truths(copy, notebook, lessons):
+    """{cell and label: numbers} of every curve of a notebook that says that it is true, where these are the student's lessons."""
+    run = subprocess.run([sys.executable, "-c", TRUTHS, str(copy / "notebooks" / notebook)], cwd=copy, capture_output=True, text=True,
+                         env={**os.environ, "WORKBOOK_LESSONS": str(lessons)})
+    assert run.returncode == 0, run.stderr
+    return json.loads(run.stdout.splitlines()[-1])
+
+
+@pytest.mark.parametrize("notebook, least", [("01_integrators.ipynb", 5), ("02_springs.ipynb", 5)])
+def test_what_a_notebook_calls_true_does_not_come_from_the_student(unpacked, tmp_path, notebook, least):
+    """The student's functions are all a hundredth off: what is drawn as truth is what it is where nothing is written yet."""
+    for name in lesson_names():
+        source = (SOLUTIONS / f"{name}.py").read_text()
+        answered = generate.exercises(source)
+        text = generate.stub(source, answered, elsewhere={"checks", "vectors"})
+        (tmp_path / f"{name}.py").write_text(text + WRONG.format(names=tuple(answered.values())))
+    wrong, open_ = truths(unpacked, notebook, tmp_path), truths(unpacked, notebook, unpacked / "lessons")
+    assert len(wrong) >= least and wrong == open_
+    for name, places in wrong.items():
+        if name.endswith("07-2b95ab truth"):                          # Kepler's ellipse: the ways from its two foci are 2 m long
+            assert np.allclose([np.hypot(*p) + np.hypot(p[0] + 1.2, p[1]) for p in places], 2.0, rtol=1e-12)

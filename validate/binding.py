@@ -27,7 +27,7 @@ import numpy as np
 
 from solutions.checks import BadInput
 
-from .loading import LOAD_WITHIN, Unloadable, alarm, answer_for_what_is_missing, stand_in, unloadable
+from .loading import LOAD_WITHIN, Unloadable, alarm, answer_for_what_is_missing, part, stand_in, unloadable
 
 ROOT = Path(__file__).resolve().parent.parent
 SOLUTIONS, SCENES = ROOT / "solutions", ROOT / "validate" / "scenes"
@@ -238,7 +238,7 @@ class World:
             elif home != module.__name__ and isinstance(value, (types.ModuleType, types.FunctionType)):
                 of_subject = source == "subject" or (package == "scenes" and (self.folder / f"{origin}.py").is_file())
                 there = self.lesson(origin) if of_subject else self.solution(origin)
-                meant[name] = there if isinstance(value, types.ModuleType) else getattr(there, value.__name__)
+                meant[name] = there if isinstance(value, types.ModuleType) else part(there, value.__name__)
         return meant
 
 

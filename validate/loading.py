@@ -83,21 +83,32 @@ def unloadable(file, error):
 
 def remedy_for(told, place):
     """What to do about a file that cannot be loaded, by what Python said."""
-    if not place and "Error: " in told and "No such file" in told:
-        return "put it back where it was"
+    if not place and ("No such file" in told or "Is a directory" in told):
+        return "put the file back where it was"
     known = (remedy for sign, remedy in REMEDIES.items() if sign in told)
     return next(known, f"correct that line, or take it out: {RUNS_AT_ONCE}")
 
 
+PUT_BACK = "put it back under that name, with its arguments"
+
+
 def lacks(file, name):
     """The sentence about a file without a function."""
-    return f"{file.parent.name}/{file.name} has no {name}: put it back under that name, with its arguments"
+    return f"{file.parent.name}/{file.name} has no {name}: {PUT_BACK}"
+
+
+def part(module, name):
+    """What a scene imports from a lesson.  Raises Unloadable where the lesson's file has no such thing."""
+    if name not in vars(module):
+        file = Path(module.__file__)
+        raise Unloadable(f"{file.parent.name}/{file.name}", f"it has no {name}", PUT_BACK)
+    return getattr(module, name)
 
 
 def words_of(error):
     """What an error says; a class of the student's own may fail at that, too."""
     try:
-        return str(error.msg if isinstance(error, SyntaxError) else error)
+        return str(error.msg if isinstance(error, SyntaxError) else getattr(error, "strerror", None) or error)
     except Exception:
         return ""
 

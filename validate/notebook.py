@@ -96,8 +96,8 @@ def answers(lesson):
     withheld = binding.withheld(lesson)
     if not withheld:
         return binding.bind(lesson)
-    display(HTML(f"<p>The worked answers of {escape(lesson)} are not in this copy of the workbook: your own functions stand in for them, "
-                 "where a figure says truth as well.</p>"))
+    display(HTML(f"<p>The worked answers of {escape(lesson)} are not in this copy of the workbook: your own functions stand in for them. "
+                 "What a figure calls truth does not come from them.</p>"))
     mine(lesson)
     return StandIn(lesson, withheld)
 
