@@ -27,6 +27,10 @@ def about(phi):
     return np.eye(3) + np.sin(angle) * K + (1.0 - np.cos(angle)) * K @ K
 
 
+def unit_of(y):
+    return y / np.linalg.norm(y)
+
+
 def turn(q):
     """The matrix of a quaternion (w, 𝐪), of whatever length: by 2 atan(|𝐪|/w) about 𝐪."""
     w, vector = float(q[0]), np.array([float(q[1]), float(q[2]), float(q[3])])
@@ -82,7 +86,8 @@ def test_a_point_moves_as_the_body_carries_it(lesson, draw):
 
 @exercise("5.3", points=1, hint="each force adds itself to F, and (pᵢ − x) × fᵢ to τ, in this order; x is the centre of mass")
 def test_forces_add_up_to_a_force_and_a_torque(lesson, draw):
-    x, points, forces = draw(-1.0, 1.0, 3), draw(-2.0, 2.0, (4, 3)), draw(-5.0, 5.0, (4, 3))
+    many = draw.whole(8, 12)
+    x, points, forces = draw(-1.0, 1.0, 3), draw(-2.0, 2.0, (many, 3)), draw(-5.0, 5.0, (many, 3))
     kept = points.copy(), forces.copy()
     F, tau = lesson.total_load(x, points, forces)
     close("total force [N]", F, forces.sum(axis=0), EXACT)
@@ -109,9 +114,11 @@ def test_the_state_changes_as_newton_and_euler_say(lesson, draw):
     q, I_body, omega, m, h = orientation(draw), moments(draw), spin_of(draw), draw(1.0, 3.0), 1e-4
     R, P, F, tau = turn(q), draw(-2.0, 2.0, 3), draw(-2.0, 2.0, 3), draw(-2.0, 2.0, 3)
     S = lesson.State(draw(-1.0, 1.0, 3), R, P, inertia(q, I_body) @ omega)
+    light, heavy = (lesson.state_derivative(S, F, tau, lesson.Body(share * m, I_body))[0] for share in (0.1, 10.0))
     x_rate, R_rate, P_rate, L_rate = lesson.state_derivative(S, F, tau, lesson.Body(m, I_body))
     before, after = (about(s * h * omega) @ R for s in (-1.0, 1.0))
-    close("ẋ [m/s]", x_rate, P / m, EXACT)
+    close("ẋ of a body ten times as light, as it is, ten times as heavy [m/s]", [light, x_rate, heavy],
+          [10.0 * P / m, P / m, 0.1 * P / m], EXACT * 10.0)
     # h²/6 |ω|³ < 1e-8/6 · 18
     close("Ṙ: how fast the axes of the body turn [1/s]", R_rate, (after - before) / (2.0 * h), 5e-8, given=f"ω = {omega}")
     close("Ṗ [N]", P_rate, F, 0.0)
@@ -133,7 +140,8 @@ def test_the_first_way_keeps_a_matrix_orthonormal(lesson, draw):
     close("orientation at ω = 0", lesson.matrix_update(R, np.zeros(3), dt), R, EXACT)
 
 
-@exercise("5.7", points=1.5, hint="Rodrigues: r cos θ + (n × r) sin θ + n (n·r)(1 − cos θ), each column on its own; ask for |ω| = 0 before you divide")
+@exercise("5.7", points=0.75,
+          hint="Rodrigues: r cos θ + (n × r) sin θ + n (n·r)(1 − cos θ), each column on its own; ask for |ω| = 0 before you divide")
 def test_the_second_way_is_exact_at_constant_omega(lesson, draw):
     R, omega, dt = turn(orientation(draw)), spin_of(draw), draw(0.5, 3.0)
     kept = R.copy()
@@ -143,6 +151,19 @@ def test_the_second_way_is_exact_at_constant_omega(lesson, draw):
     back = lesson.axis_angle_update(np.asarray(got, dtype=float), omega, -dt)
     close("orientation after dt and −dt: back", back, R, EXACT)
     close("orientation at ω = 0: R itself", lesson.axis_angle_update(R, np.zeros(3), dt), R, 0.0)
+
+
+@exercise("5.7", points=0.75,
+          hint="only |ω| = 0 is rest; take sin θ and cos θ of the whole angle, beyond a turn and for dt < 0, too")
+def test_the_second_way_turns_by_any_angle_at_any_rate(lesson, draw):
+    """The angle |ω| dt is known to 1e-16 of itself, and it is below 30."""
+    for quarter in (0, 1, 2, 3, 4, 7, 15):
+        for rate in (1e-12, 1e-4, 1.0, 1e6):
+            R, n, angle = turn(orientation(draw)), unit_of(draw(-1.0, 1.0, 3)), 0.5 * np.pi * (quarter + draw(0.1, 0.9))
+            for side in (1.0, -1.0):
+                got = lesson.axis_angle_update(R, rate * n, side * angle / rate)
+                close("orientation after dt", got, about(side * angle * n) @ R, EXACT,
+                      given=f"ω = {rate * n} rad/s, dt = {side * angle / rate} s")
 
 
 def pauli(q):
@@ -182,6 +203,8 @@ def test_the_third_way_turns_about_omega_by_twice_an_arc_tangent(lesson, draw):
     expected = about(2.0 * np.arctan(0.5 * rate * dt) / rate * omega) @ turn(q)
     close("length of the new quaternion", np.linalg.norm(got), 1.0, EXACT)
     close("orientation after dt, as a matrix", turn(got), expected, EXACT, given=f"ω = {omega}, dt = {dt}")
+    close("orientation after dt and −dt: back, as a matrix",
+          turn(lesson.quaternion_update(np.asarray(got, dtype=float), omega, -dt)), turn(q), EXACT)
     close("the q that was handed in: leave it", q, kept, 0.0)
 
 
@@ -199,6 +222,9 @@ def test_a_body_speeds_up_as_eulers_equations_say(lesson, draw):
     got = lesson.angular_acceleration(q, omega, tau, I_body)
     close("ω̇ [rad/s²]", got, np.linalg.solve(I, tau - np.cross(omega, I @ omega)), EXACT, given=f"q = {q}, ω = {omega}, τ = {tau}, I_body = {I_body}")
     along = 2.0 * turn(q)[:, 1]
+    small = lesson.angular_acceleration(q, 1e-6 * omega, 1e-12 * tau, I_body)
+    close("ω̇ where ω is a millionth of that, and τ a trillionth [1e-12 rad/s²]", 1e12 * np.asarray(small),
+          np.asarray(got), EXACT * 10.0)
     close("ω̇ about a principal axis, without torque [rad/s²]", lesson.angular_acceleration(q, along, np.zeros(3), I_body), np.zeros(3), EXACT)
     close("ω̇ of a ball [rad/s²]: τ/I", lesson.angular_acceleration(q, omega, tau, 2.0 * np.ones(3)), 0.5 * tau, EXACT)
 
@@ -211,21 +237,23 @@ def swirling_load(t, x, v, q, omega, body):
 
 @exercise("5.12", points=1, hint="load at the old state, F over m; then v and ω; then x and q with the new v and the new ω")
 def test_one_step_of_the_loop_is_velocities_first(lesson, draw):
-    t, dt, m = draw(0.5, 1.5), draw(0.1, 0.3), draw(1.0, 3.0)
-    x, v, q, omega, I_body = draw(-1.0, 1.0, 3), draw(-1.0, 1.0, 3), orientation(draw), spin_of(draw), moments(draw)
-    body, kept = lesson.Body(m, I_body), [a.copy() for a in (x, v, q, omega)]
-    x_new, v_new, q_new, omega_new = lesson.rigid_body_step(swirling_load, t, x, v, q, omega, dt, body)
-    F, tau = swirling_load(t, x, v, q, omega, body)
-    I = inertia(q, I_body)
-    faster, turned = v + dt * F / m, omega + dt * np.linalg.solve(I, tau - np.cross(omega, I @ omega))
-    rate = np.linalg.norm(turned)
-    after = about(2.0 * np.arctan(0.5 * rate * dt) / rate * turned) @ turn(q)
-    close("v after one step [m/s]", v_new, faster, EXACT)
-    close("x after one step [m]", x_new, x + dt * faster, EXACT)
-    close("ω after one step [rad/s]", omega_new, turned, EXACT)
-    close("length of q after one step", np.linalg.norm(q_new), 1.0, EXACT)
-    close("orientation after one step, as a matrix", turn(q_new), after, EXACT)
-    close("the state that was handed in: return new arrays", np.concatenate((x, v, q, omega)), np.concatenate(kept), 0.0)
+    for m in (draw(0.01, 0.1), draw(1.0, 3.0), draw(20.0, 90.0)):
+        t, dt = draw(0.5, 1.5), draw(0.1, 0.3)
+        x, v, q, omega, I_body = draw(-1.0, 1.0, 3), draw(-1.0, 1.0, 3), orientation(draw), spin_of(draw), moments(draw)
+        body, kept = lesson.Body(m, I_body), [a.copy() for a in (x, v, q, omega)]
+        x_new, v_new, q_new, omega_new = lesson.rigid_body_step(swirling_load, t, x, v, q, omega, dt, body)
+        F, tau = swirling_load(t, x, v, q, omega, body)
+        I = inertia(q, I_body)
+        faster, turned = v + dt * F / m, omega + dt * np.linalg.solve(I, tau - np.cross(omega, I @ omega))
+        rate = np.linalg.norm(turned)
+        after = about(2.0 * np.arctan(0.5 * rate * dt) / rate * turned) @ turn(q)
+        close("v after one step [m/s]", v_new, faster, EXACT)
+        close("x after one step [m]", x_new, x + dt * faster, EXACT)
+        close("ω after one step [rad/s]", omega_new, turned, EXACT)
+        close("length of q after one step", np.linalg.norm(q_new), 1.0, EXACT)
+        close("orientation after one step, as a matrix", turn(q_new), after, EXACT)
+        close("the state that was handed in: return new arrays", np.concatenate((x, v, q, omega)), np.concatenate(kept),
+              0.0)
 
 
 def unloaded(t, x, v, q, omega, body):
@@ -267,17 +295,22 @@ def test_only_the_middle_axis_tumbles(lesson, draw):
 
 @exercise("5.15", points=0.5, hint="rotate (0, 0, 1) to find the top's axis; gravity pulls its tip down, so the torque is horizontal and across the axis")
 def test_the_torque_on_a_top_is_the_slope_of_its_height(lesson, draw):
-    q, mgl, L, h = orientation(draw), draw(1.0, 5.0), draw(-1.0, 1.0, 3), 1e-4
-    tau = lesson.heavy_top_torque(draw(0.0, 1.0), q, L, lesson.Top(np.array([2.0, 2.0, 1.0]), mgl))
-    height = lambda phi: (about(phi) @ turn(q))[2, 2]
-    slope = [-mgl * (height(h * e) - height(-h * e)) / (2.0 * h) for e in np.eye(3)]
-    # h²/6 · mgl = 8e-9
-    close("torque [N m]: minus the change of Mgl e_z per radian about x, y, z", tau, slope, 2e-8, given=f"q = {q}, Mgl = {mgl}")
+    for upwards in (1.0, -1.0):
+        q, mgl, L, h = orientation(draw), draw(1.0, 5.0), draw(-1.0, 1.0, 3), 1e-4
+        if turn(q)[2, 2] * upwards < 0.0:
+            q = np.array([-q[1], q[0], -q[3], q[2]])                     # turned about its own first axis by π
+        tau = lesson.heavy_top_torque(draw(0.0, 1.0), q, L, lesson.Top(np.array([2.0, 2.0, 1.0]), mgl))
+        height = lambda phi: (about(phi) @ turn(q))[2, 2]
+        slope = [-mgl * (height(h * e) - height(-h * e)) / (2.0 * h) for e in np.eye(3)]
+        # h²/6 · mgl = 8e-9
+        close("torque [N m]: minus the change of Mgl e_z per radian about x, y, z", tau, slope, 2e-8,
+              given=f"q = {q}, Mgl = {mgl}")
 
 
 # ---------------------------------------------------------------------------------------------- turns and their composition
 
-@exercise("5.16", points=1, hint="w = m/I_body with the m of the last round; q on the left, (1, ½dt w) on the right, for w belongs to the body")
+@exercise("5.16", points=0.75,
+          hint="w = m/I_body with the m of the last round; q on the left, (1, ½dt w) on the right, for w belongs to the body")
 def test_the_midpoint_turn_solves_its_own_equation(lesson, draw):
     q, I_body, omega, dt = orientation(draw), moments(draw), spin_of(draw), draw(0.1, 0.4)
     kept, L = q.copy(), inertia(q, I_body) @ omega
@@ -295,6 +328,29 @@ def test_the_midpoint_turn_solves_its_own_equation(lesson, draw):
         scaled = lesson.midpoint_turn(q, size * L, size * I_body, dt)
         close("the same of a body a million times as heavy, or as light", turn(scaled), expected, 1e-11, given=f"I_body = {size * I_body}, dt = {dt}")
     close("the q that was handed in: leave it", q, kept, 0.0)
+    long = lesson.midpoint_turn((1.0 + 5e-10) * q, L, I_body, dt)            # as long as check_rotation lets pass
+    close("length of the quaternion that comes of one that is too long by 5e-10", np.linalg.norm(long), 1.0, EXACT)
+
+
+@exercise("5.16", points=0.25,
+          hint="Newton's method, with its derivative: of long steps a root is not found by going round the equation")
+def test_newtons_method_finds_the_root_of_a_step_too_long_for_going_round_the_equation(lesson, draw):
+    """About an outer axis k each round m ← ℓ + ½dt m × w multiplies a small error of m by ρ > 1: it never settles.
+
+    ρ = ½dt |spin| √((I_k − I_i)(I_k − I_j)/(I_i I_j)).  In 200,000 such steps Newton's method took 5 corrections at most.
+    """
+    for k in (0, 2, 0, 2, 0, 2):
+        q, I_body, spin, rho = orientation(draw), moments(draw), draw(0.5, 1.5), draw(1.5, 2.5)
+        omega_body, i, j = 0.05 * spin * draw(-1.0, 1.0, 3), (k + 1) % 3, (k + 2) % 3
+        omega_body[k] = spin
+        dt = 2.0 * rho / spin / np.sqrt((I_body[k] - I_body[i]) * (I_body[k] - I_body[j]) / (I_body[i] * I_body[j]))
+        before = I_body * omega_body
+        after = turn(lesson.midpoint_turn(q, turn(q) @ before, I_body, float(dt))).T @ turn(q) @ before
+        m = 0.5 * (before + after)
+        # a correction of 1e-12 |m| < 1e-11, times dt |w| < 30
+        close("ℓ_new − ℓ − dt m × w after a long step [kg m²/s]", after - before - dt * np.cross(m, m / I_body),
+              np.zeros(3), 1e-9,
+              given=f"I_body = {I_body}, ω in the body {omega_body}, dt = {dt}")
 
 
 @exercise("5.16", points=0.5, hint="does Newton's method go on until the correction is small? Then a turn changes the energy in its last digits only")
@@ -358,6 +414,8 @@ def test_the_splitting_turn_is_reversible_and_of_second_order(lesson, draw):
     back = lesson.splitting_turn(there, L, I_body, -0.3)
     close("orientation after dt and −dt: back", turn(back), turn(q), EXACT)
     close("the q that was handed in: leave it", q, kept, 0.0)
+    long = lesson.splitting_turn((1.0 + 5e-10) * q, L, I_body, 0.3)          # as long as check_rotation lets pass
+    close("length of the quaternion that comes of one that is too long by 5e-10", np.linalg.norm(long), 1.0, EXACT)
     truth, errors = freely(q, omega, I_body, T), []
     for n in (10, 20, 40):
         now = q

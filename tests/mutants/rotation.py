@@ -10,109 +10,52 @@ wrong, right, edit, MUTANTS = collection(worked)
 
 
 # 5.1 ------------------------------------------------------------------------------------------------------------
-@wrong("5.1", "transposed: b × a")
-def skew(a):
-    return worked.skew(a).T
-
-
-@wrong("5.1", "symmetric")
-def skew(a):
-    return np.abs(worked.skew(np.ones(3))) * worked.skew(np.abs(a)) * np.sign(worked.skew(np.ones(3)))
-
-
-@wrong("5.1", "x and z exchanged")
-def skew(a):
-    return worked.skew(a[::-1])
-
-
-@wrong("5.1", "outer product")
-def skew(a):
-    return np.outer(a, a)
-
-
 @right("5.1", "as cross products with the axes")
 def skew(a):
     return np.stack([np.cross(a, e) for e in np.eye(3)], axis=1)
 
 
+MATRIX = "[[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]]"
+edit("5.1", "transposed: b × a", MATRIX, "[[0.0, a[2], -a[1]], [-a[2], 0.0, a[0]], [a[1], -a[0], 0.0]]")
+edit("5.1", "symmetric", MATRIX, MATRIX.replace("-", ""))
+edit("5.1", "x and z exchanged", MATRIX, MATRIX.replace("a[2]", "c").replace("a[0]", "a[2]").replace("c", "a[0]"))
+edit("5.1", "outer product", f"np.array({MATRIX})", "np.outer(a, a)")
+
+
 # 5.2 ------------------------------------------------------------------------------------------------------------
-@wrong("5.2", "r × ω")
-def point_velocity(v, omega, r):
-    return v + np.cross(r, omega)
-
-
-@wrong("5.2", "forgets the centre of mass")
-def point_velocity(v, omega, r):
-    return np.cross(omega, r)
-
-
-@wrong("5.2", "forgets the rotation")
-def point_velocity(v, omega, r):
-    return v
-
-
 @right("5.2", "by the skew matrix")
 def point_velocity(v, omega, r):
     return worked.skew(omega) @ r + v
 
 
+edit("5.2", "r × ω", "cross(omega, r)", "cross(r, omega)")
+edit("5.2", "forgets the centre of mass", "v + cross(omega, r)", "cross(omega, r)")
+edit("5.2", "forgets the rotation", "v + cross(omega, r)", "v.copy()")
+
+
 # 5.3 ------------------------------------------------------------------------------------------------------------
-@wrong("5.3", "torque about the origin")
-def total_load(x, points, forces):
-    return forces.sum(axis=0), np.cross(points, forces).sum(axis=0)
-
-
-@wrong("5.3", "f × r")
-def total_load(x, points, forces):
-    return forces.sum(axis=0), np.cross(forces, points - x).sum(axis=0)
-
-
-@wrong("5.3", "arm from the point to the centre")
-def total_load(x, points, forces):
-    return forces.sum(axis=0), np.cross(x - points, forces).sum(axis=0)
-
-
-@wrong("5.3", "torque of the total force at the mean point")
-def total_load(x, points, forces):
-    F = forces.sum(axis=0)
-    return F, np.cross(points.mean(axis=0) - x, F)
-
-
-@wrong("5.3", "moves the points")
-def total_load(x, points, forces):
-    points -= x
-    return forces.sum(axis=0), np.cross(points, forces).sum(axis=0)
-
-
 @right("5.3", "all at once")
 def total_load(x, points, forces):
     return np.sum(forces, axis=0), np.sum(np.cross(points, forces), axis=0) - np.cross(x, np.sum(forces, axis=0))
 
 
+edit("5.3", "torque about the origin", "points[i] - x", "points[i]")
+edit("5.3", "f × r", "cross(points[i] - x, forces[i])", "cross(forces[i], points[i] - x)")
+edit("5.3", "arm from the point to the centre", "points[i] - x", "x - points[i]")
+edit("5.3", "all forces at the mean point", "points[i] - x", "np.sum(points, axis=0) / points.shape[0] - x")
+edit("5.3", "moves the points", "points[i] - x", "np.subtract(points[i], x, out=points[i])")
+
+
 # 5.4 ------------------------------------------------------------------------------------------------------------
-@wrong("5.4", "moments of the body, axes of the world")
-def angular_velocity(R, L, I_body):
-    return L / I_body
-
-
-@wrong("5.4", "stays in the body")
-def angular_velocity(R, L, I_body):
-    return (R.T @ L) / I_body
-
-
-@wrong("5.4", "multiplies by the inertia")
-def angular_velocity(R, L, I_body):
-    return R @ ((R.T @ L) * I_body)
-
-
-@wrong("5.4", "R and its transpose exchanged")
-def angular_velocity(R, L, I_body):
-    return R.T @ ((R @ L) / I_body)
-
-
 @right("5.4", "solves with the inertia of the world")
 def angular_velocity(R, L, I_body):
     return np.linalg.solve(R @ np.diag(I_body) @ R.T, L)
+
+
+edit("5.4", "moments of the body, axes of the world", "R @ ((R.T @ L) / I_body)", "L / I_body")
+edit("5.4", "stays in the body", "R @ ((R.T @ L) / I_body)", "(R.T @ L) / I_body")
+edit("5.4", "multiplies by the inertia", "/ I_body", "* I_body")
+edit("5.4", "R and its transpose exchanged", "R @ ((R.T @ L) / I_body)", "R.T @ ((R @ L) / I_body)")
 
 
 # 5.5 ------------------------------------------------------------------------------------------------------------
@@ -132,6 +75,7 @@ wrong("5.5", "turns the other way")(derivative(turn=lambda omega, R: worked.skew
 wrong("5.5", "rows for columns")(derivative(turn=lambda omega, R: np.cross(omega, R)))
 wrong("5.5", "L for ω")(derivative(omega=lambda R, L, I: L))
 wrong("5.5", "a gyroscopic term in L̇")(derivative(torque=lambda tau, omega, L: tau - np.cross(omega, L)))
+edit("5.5", "right only for masses above 1 kg", "S.P / body.m", "S.P / max(1.0, body.m)")
 
 
 # 5.6 ------------------------------------------------------------------------------------------------------------
@@ -145,41 +89,14 @@ def matrix_update(R, omega, dt):
     return renormalised(R + dt * np.cross(omega, R.T).T)
 
 
-@wrong("5.6", "does not renormalise")
-def matrix_update(R, omega, dt):
-    return R + dt * worked.skew(omega) @ R
-
-
-@wrong("5.6", "brings the columns to length 1 and leaves them oblique")
-def matrix_update(R, omega, dt):
-    M = R + dt * worked.skew(omega) @ R
-    return M / np.sqrt(np.sum(M * M, axis=0))
-
-
-@wrong("5.6", "the third column inside out")
-def matrix_update(R, omega, dt):
-    return worked.matrix_update(R, omega, dt) * [1.0, 1.0, -1.0]
-
-
-@wrong("5.6", "ω of the body")
-def matrix_update(R, omega, dt):
-    return renormalised(R + dt * R @ worked.skew(omega))
-
-
-@wrong("5.6", "forgets dt")
-def matrix_update(R, omega, dt):
-    return worked.matrix_update(R, omega, 1.0)
-
-
-@wrong("5.6", "renormalises rows")
-def matrix_update(R, omega, dt):
-    return renormalised((R + dt * worked.skew(omega) @ R).T).T
-
-
-@wrong("5.6", "changes its input")
-def matrix_update(R, omega, dt):
-    R += dt * worked.skew(omega) @ R
-    return renormalised(R)
+edit("5.6", "does not renormalise", "first, second = M[:, 0].copy(), M[:, 1].copy()", "return M")
+edit("5.6", "brings the columns to length 1 and leaves them oblique", "np.sum(first * second) * first", "0.0")
+edit("5.6", "the third column inside out", "cross(first, second)", "cross(second, first)")
+edit("5.6", "ω of the body", "skew(omega) @ R", "R @ skew(omega)")
+edit("5.6", "forgets dt", "dt * (skew(omega) @ R)", "skew(omega) @ R")
+edit("5.6", "renormalises rows", "np.stack((first, second, cross(first, second)), axis=1)",
+     "np.linalg.qr(M.T)[0].T * np.sign(np.diag(np.linalg.qr(M.T)[1]))[:, None]")
+edit("5.6", "changes its input", "R + dt * (skew(omega) @ R)", "np.add(R, dt * (skew(omega) @ R), out=R)")
 
 
 # 5.7 ------------------------------------------------------------------------------------------------------------
@@ -202,21 +119,23 @@ wrong("5.7", "half the angle")(rodrigues(angle=lambda rate, dt: 0.5 * rate * dt)
 wrong("5.7", "forgets the part along the axis")(rodrigues(along=0.0))
 wrong("5.7", "divides by zero at rest")(rodrigues(rest=False))
 wrong("5.7", "turns only for a second")(rodrigues(angle=lambda rate, dt: rate))
-
-
-@wrong("5.7", "changes its input")
-def axis_angle_update(R, omega, dt):
-    R[:] = worked.axis_angle_update(R, omega, dt)
-    return R
+edit("5.7", "changes its input", "turned = R.copy()", "turned = R")
+edit("5.7", "a milliradian a second is rest", "rate > 0.0", "rate > 1e-3")
+edit("5.7", "the sine without its sign", "np.sin(rate * dt)", "np.sqrt(1.0 - np.cos(rate * dt) ** 2)")
+edit("5.7", "no more than half a turn", "np.cos(rate * dt), np.sin(rate * dt)",
+     "np.cos(min(rate * dt, np.pi)), np.sin(min(rate * dt, np.pi))")
+edit("5.7", "no more than a turn", "np.cos(rate * dt), np.sin(rate * dt)",
+     "np.cos(min(rate * dt, 2.0 * np.pi)), np.sin(min(rate * dt, 2.0 * np.pi))")
 
 
 # 5.8 ------------------------------------------------------------------------------------------------------------
 @variants
-def hamilton(dot=-1.0, twist=1.0, mixed=(1.0, 1.0)):
-    """Scalar and vector parts, with signs that may be wrong."""
+def hamilton(dot=-1.0, twist=1.0, mixed=(1.0, 1.0), scalar=0, close=lambda c: c):
+    """Scalar and vector parts, with signs and places that may be wrong."""
     def product(a, b):
+        a, b = np.roll(a, -scalar), np.roll(b, -scalar)
         vector = mixed[0] * a[0] * b[1:] + mixed[1] * b[0] * a[1:] + twist * np.cross(a[1:], b[1:])
-        return np.concatenate(([a[0] * b[0] + dot * a[1:] @ b[1:]], vector))
+        return close(np.roll(np.concatenate(([a[0] * b[0] + dot * a[1:] @ b[1:]], vector)), scalar))
     return product
 
 
@@ -225,17 +144,8 @@ wrong("5.8", "b first: a × b the other way")(hamilton(twist=-1.0))
 wrong("5.8", "no cross product: they commute")(hamilton(twist=0.0))
 wrong("5.8", "plus in the scalar")(hamilton(dot=1.0))
 wrong("5.8", "forgets a scalar")(hamilton(mixed=(1.0, 0.0)))
-
-
-@wrong("5.8", "turns what has a negative scalar round")
-def product(a, b):
-    c = worked.product(a, b)
-    return c if c[0] >= 0.0 else -c
-
-
-@wrong("5.8", "the scalar last")
-def product(a, b):
-    return np.roll(worked.product(np.roll(a, 1), np.roll(b, 1)), -1)
+wrong("5.8", "the scalar last")(hamilton(scalar=3))
+wrong("5.8", "turns what has a negative scalar round")(hamilton(close=lambda c: c if c[0] >= 0.0 else -c))
 
 
 # 5.9 ------------------------------------------------------------------------------------------------------------
@@ -245,25 +155,11 @@ def rotation_matrix(q):
     return np.eye(3) + 2.0 * q[0] * K + 2.0 * K @ K
 
 
-@wrong("5.9", "from world to body")
-def rotation_matrix(q):
-    return worked.rotation_matrix(q).T
-
-
-@wrong("5.9", "the scalar last")
-def rotation_matrix(q):
-    return worked.rotation_matrix(np.roll(q, 1))
-
-
-@wrong("5.9", "forgets a factor 2 beside w")
-def rotation_matrix(q):
-    K = worked.skew(q[1:])
-    return np.eye(3) + q[0] * K + 2.0 * K @ K
-
-
-@wrong("5.9", "adds w² to a diagonal that has it already")
-def rotation_matrix(q):
-    return worked.rotation_matrix(q) + q[0] ** 2 * np.eye(3)
+edit("5.9", "from world to body", "w, x, y, z = q[0]", "w, x, y, z = -q[0]")
+edit("5.9", "the scalar last", "q[0], q[1], q[2], q[3]", "q[3], q[0], q[1], q[2]")
+edit("5.9", "forgets a factor 2 beside w", "w, x, y, z = q[0]", "w, x, y, z = 0.5 * q[0]")
+edit("5.9", "adds w² to a diagonal that has it already", "1.0 - 2.0 * (y * y + z * z)",
+     "w * w + 1.0 - 2.0 * (y * y + z * z)")
 
 
 # 5.10 -----------------------------------------------------------------------------------------------------------
@@ -287,12 +183,8 @@ wrong("5.10", "turns the other way")(third_way(sign=-1.0))
 wrong("5.10", "does not normalise")(third_way(close=lambda q: q))
 wrong("5.10", "divides by the squared length")(third_way(close=lambda q: q / (q @ q)))
 wrong("5.10", "divides zero by zero")(third_way(close=lambda q: q / np.linalg.norm(q)))
-
-
-@wrong("5.10", "changes its input")
-def quaternion_update(q, omega, dt):
-    q += 0.5 * dt * worked.product(np.concatenate(([0.0], omega)), q)
-    return worked.unit(q)
+edit("5.10", "changes its input", "q + 0.5 * dt * product(spin, q)", "np.add(q, 0.5 * dt * product(spin, q), out=q)")
+edit("5.10", "never back", "0.5 * dt", "0.5 * abs(dt)")
 
 
 # 5.11 -----------------------------------------------------------------------------------------------------------
@@ -314,16 +206,16 @@ wrong("5.11", "stays in the body")(euler_equations(back=lambda q, a: a))
 wrong("5.11", "ω × ω")(euler_equations(momentum=lambda I, w: w))
 
 
-@wrong("5.11", "moments of the body, axes of the world")
-def angular_acceleration(q, omega, tau, I_body):
-    return (tau - np.cross(omega, I_body * omega)) / I_body
-
-
 @right("5.11", "with the inertia of the world")
 def angular_acceleration(q, omega, tau, I_body):
     R = worked.rotation_matrix(q)
     I = R @ np.diag(I_body) @ R.T
     return np.linalg.solve(I, tau - np.cross(omega, I @ omega))
+
+
+edit("5.11", "moments of the body, axes of the world", "omega_body = unrotate(q, omega)",
+     "return (tau - cross(omega, I_body * omega)) / I_body")
+edit("5.11", "small torques are none", "unrotate(q, tau)", "unrotate(q, tau) * (np.sum(tau * tau) > 1e-12)")
 
 
 # 5.12 -----------------------------------------------------------------------------------------------------------
@@ -348,41 +240,21 @@ wrong("5.12", "load at the new position")(loop(first=True))
 wrong("5.12", "no gyroscopic term")(loop(gyro=False))
 wrong("5.12", "forgets the mass")(loop(mass=False))
 wrong("5.12", "forgets to normalise q")(loop(turned=third_way(close=lambda q: q)))
-
-
-@wrong("5.12", "changes its input")
-def rigid_body_step(load, t, x, v, q, omega, dt, body):
-    F, tau = load(t, x, v, q, omega, body)
-    v += dt / body.m * F
-    omega += dt * worked.angular_acceleration(q, omega, tau, body.I_body)
-    x += dt * v
-    return x, v, worked.quaternion_update(q, omega, dt), omega
+edit("5.12", "changes its input", "v = v + dt / body.m * F", "v += dt / body.m * F")
+edit("5.12", "right only for masses above 1 kg", "dt / body.m", "dt / max(body.m, 1.0)")
+edit("5.12", "right only for masses below 1 kg", "dt / body.m", "dt / min(body.m, 1.0)")
 
 
 # 5.13 -----------------------------------------------------------------------------------------------------------
-@wrong("5.13", "L of the world over moments of the body")
-def kinetic_energy(q, L, I_body):
-    return 0.5 * np.sum(L * L / I_body)
-
-
-@wrong("5.13", "forgets the half")
-def kinetic_energy(q, L, I_body):
-    return 2.0 * worked.kinetic_energy(q, L, I_body)
-
-
-@wrong("5.13", "takes L for ω")
-def kinetic_energy(q, L, I_body):
-    return 0.5 * np.sum(I_body * worked.unrotate(q, L) ** 2)
-
-
-@wrong("5.13", "turns L the wrong way")
-def kinetic_energy(q, L, I_body):
-    return 0.5 * np.sum(worked.rotate(q, L) ** 2 / I_body)
-
-
 @right("5.13", "half of ω·L")
 def kinetic_energy(q, L, I_body):
     return 0.5 * worked.angular_velocity(worked.rotation_matrix(q), L, I_body) @ L
+
+
+edit("5.13", "L of the world over moments of the body", "unrotate(q, L)", "L")
+edit("5.13", "forgets the half", "0.5 * np.sum", "np.sum")
+edit("5.13", "takes L for ω", "L_body * L_body / I_body", "L_body * L_body * I_body")
+edit("5.13", "turns L the wrong way", "unrotate(q, L)", "rotate(q, L)")
 
 
 # 5.14 -----------------------------------------------------------------------------------------------------------
@@ -410,75 +282,61 @@ wrong("5.14", "a negative spin calms")(racket(spin_of=lambda spin: spin))
 
 
 # 5.15 -----------------------------------------------------------------------------------------------------------
-@wrong("5.15", "lifts the tip")
-def heavy_top_torque(t, q, L, top):
-    return -worked.heavy_top_torque(t, q, L, top)
-
-
-@wrong("5.15", "forgets the weight")
-def heavy_top_torque(t, q, L, top):
-    return worked.heavy_top_torque(t, q, L, top) / top.mgl
-
-
-@wrong("5.15", "in coordinates of the body")
-def heavy_top_torque(t, q, L, top):
-    return worked.unrotate(q, worked.heavy_top_torque(t, q, L, top))
-
-
-@wrong("5.15", "the axis turned the wrong way")
-def heavy_top_torque(t, q, L, top):
-    return worked.heavy_top_torque(t, q * np.array([-1.0, 1.0, 1.0, 1.0]), L, top)
-
-
 @right("5.15", "as a cross product with the weight")
 def heavy_top_torque(t, q, L, top):
     return np.cross(worked.rotation_matrix(q)[:, 2], [0.0, 0.0, -top.mgl])
 
 
+edit("5.15", "lifts the tip", "[-e[1], e[0], 0.0]", "[e[1], -e[0], 0.0]")
+edit("5.15", "forgets the weight", "top.mgl * np", "np")
+edit("5.15", "in coordinates of the body", "top.mgl * np.array([-e[1], e[0], 0.0])",
+     "unrotate(q, top.mgl * np.array([-e[1], e[0], 0.0]))")
+edit("5.15", "the axis turned the wrong way", "rotate(q, np", "unrotate(q, np")
+edit("5.15", "lifts what hangs", "top.mgl * np", "np.sign(e[2]) * top.mgl * np")
+
+
 # 5.16 -----------------------------------------------------------------------------------------------------------
 @variants
-def midpoint(rounds=1000, gyro=1.0, close=lambda q, w, dt: worked.unit(worked.product(q, np.concatenate(([1.0], 0.5 * dt * w)))), silent=False,
-             guess=lambda start: start.copy(), end=False, strict=False, small=lambda m: 4e-16 * np.max(np.abs(m))):
-    """By going round the equation itself, m ← ℓ + ½dt m × w, until nothing changes, with parts that may be wrong."""
+def midpoint(gyro=1.0, newton=True, enough=lambda n, change, m: change <= 1e-12 * np.max(np.abs(m)), at=lambda m,
+             start: m,
+             close=lambda q, w, dt: worked.unit(worked.product(q, np.concatenate(([1.0], 0.5 * dt * w))))):
+    """Newton's method by NumPy's solver, with parts that may be wrong."""
     def midpoint_turn(q, L, I_body, dt):
-        start = worked.unrotate(q, L)
-        m = guess(start)
-        for n in range(rounds):
-            m_new = start + gyro * 0.5 * dt * np.cross(m, m / I_body)
-            change, m = np.max(np.abs(m_new - m)), m_new
-            if change < small(m) or (change <= small(m) and not strict) or (silent and n == rounds - 1):
-                return close(q, (2.0 * m - start if end else m) / I_body, dt)
+        start, half = worked.unrotate(q, L), 0.5 * dt * gyro
+        m = start.copy()
+        for n in range(worked.NEWTON_LIMIT):
+            r = m - start - half * np.cross(m, m / I_body)
+            slope = [e + half * np.cross(m / I_body - m / I, e) for e, I in zip(np.eye(3), I_body)]
+            delta = np.linalg.solve(np.stack(slope, axis=1), r) if newton else r
+            m = m - delta
+            if enough(n, np.max(np.abs(delta)), m):
+                return close(q, at(m, start) / I_body, dt)
         raise Diverged("the equation did not settle at dt [s]", dt, "take a smaller step")
     return midpoint_turn
 
 
-right("5.16", "by going round the equation")(midpoint())
-wrong("5.16", "until the change is small in kg m²/s")(midpoint(small=lambda m: 1e-12))
-wrong("5.16", "goes round once")(midpoint(rounds=1, silent=True))
-wrong("5.16", "goes round five times: not there yet")(midpoint(rounds=5, silent=True))
+right("5.16", "by NumPy's solver")(midpoint())
+wrong("5.16", "goes round the equation")(midpoint(newton=False))
+wrong("5.16", "until the change is small in kg m²/s")(midpoint(enough=lambda n, change, m: change <= 1e-12))
+wrong("5.16", "one correction")(midpoint(enough=lambda n, change, m: True))
+wrong("5.16", "two corrections: not there yet")(midpoint(enough=lambda n, change, m: n == 1))
 wrong("5.16", "the gyroscopic term with the other sign")(midpoint(gyro=-1.0))
-wrong("5.16", "ω at the beginning of the step")(midpoint(rounds=1, gyro=0.0, silent=True))
-wrong("5.16", "ω at the end of the step")(midpoint(end=True))
+wrong("5.16", "ω at the beginning of the step")(midpoint(at=lambda m, start: start))
+wrong("5.16", "ω at the end of the step")(midpoint(at=lambda m, start: 2.0 * m - start))
 wrong("5.16", "turns on the side of the world")(
     midpoint(close=lambda q, w, dt: worked.unit(worked.product(np.concatenate(([1.0], 0.5 * dt * w)), q))))
 wrong("5.16", "forgets the half in the turn")(
     midpoint(close=lambda q, w, dt: worked.unit(worked.product(q, np.concatenate(([1.0], dt * w))))))
 wrong("5.16", "turns by |ω| dt: the angle of another rule")(
-    midpoint(close=lambda q, w, dt: worked.product(q, worked.exponential(dt * w))))
+    midpoint(close=lambda q, w, dt: worked.unit(worked.product(q, worked.exponential(dt * w)))))
 wrong("5.16", "does not normalise")(
     midpoint(close=lambda q, w, dt: worked.product(q, np.concatenate(([1.0], 0.5 * dt * w)))))
-wrong("5.16", "gives up on a body at rest")(midpoint(strict=True))
-
-
-@wrong("5.16", "never says so: turns by whatever Newton's method has")
-def midpoint_turn(q, L, I_body, dt):
-    start, one = worked.unrotate(q, L), np.eye(3)
-    m = start.copy()
-    for _ in range(worked.NEWTON_LIMIT):
-        w = m / I_body
-        r = m - start - 0.5 * dt * np.cross(m, w)
-        m = m - np.linalg.solve(np.stack([e + 0.5 * dt * np.cross(w - m / I, e) for e, I in zip(one, I_body)], axis=1), r)
-    return worked.unit(worked.product(q, np.concatenate(([1.0], 0.5 * dt * m / I_body))))
+wrong("5.16", "normalises the turn, not its result")(
+    midpoint(close=lambda q, w, dt: worked.product(q, worked.unit(np.concatenate(([1.0], 0.5 * dt * w))))))
+wrong("5.16", "gives up on a body at rest")(midpoint(enough=lambda n, change, m: change < 1e-12 * np.max(np.abs(m))))
+edit("5.16", "never says so: turns by whatever Newton's method has",
+     'raise Diverged("Newton\'s method did not converge at dt [s]", dt, "take a smaller step")',
+     "return unit(product(q, np.array([1.0, 0.5 * dt * w[0], 0.5 * dt * w[1], 0.5 * dt * w[2]])))")
 
 
 # 5.17 -----------------------------------------------------------------------------------------------------------
@@ -509,12 +367,10 @@ wrong("5.17", "turns about its axes the other way")(splitting(sign=-1.0))
 wrong("5.17", "the whole energy of a and c: L²/2I_b counted twice")(splitting(slow=lambda I, k, b: 1.0 / I[k]))
 wrong("5.17", "differences of moments, not of their inverses")(splitting(slow=lambda I, k, b: 1.0 / (I[k] - I[b]) if I[k] != I[b] else 0.0))
 wrong("5.17", "always takes the first axis for the middle one")(splitting(middle=lambda I: 0))
-
-
-@wrong("5.17", "turns about its axes the whole way twice")
-def splitting_turn(q, L, I_body, dt):
-    turned = splitting("aca", whole=0.0)(q, L, I_body, 2.0 * dt)
-    return worked.unit(worked.product(worked.exponential(dt / I_body[worked.middle_axis(I_body)] * L), turned))
+edit("5.17", "does not normalise in the end", "unit(product(exponential(dt / I_body[b] * L), turned))",
+     "product(exponential(dt / I_body[b] * L), turned)")
+edit("5.17", "turns about its axes the whole way twice", "dt * (1.0 / I_body[a] - 1.0 / I_body[b]), dt * (1.0",
+     "2.0 * dt * (1.0 / I_body[a] - 1.0 / I_body[b]), 2.0 * dt * (1.0")
 
 
 # 5.18 -----------------------------------------------------------------------------------------------------------
