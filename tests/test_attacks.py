@@ -20,7 +20,7 @@ import pytest
 from validate.binding import ROOT
 
 from .attacks import ATTACKS, HONEST, SOLVED
-from .grading import box, marking, plugin, points, remote, submissions
+from .grading import box, marking, plugin, points, remote, sandbox, submissions
 
 SEED = "a secret"
 PATIENCE = 1.0               # of a test in the sandbox, in place of BOX_LIMIT [s]
@@ -31,8 +31,8 @@ MARK = f"ATTACKED_{os.getpid()}"
 
 
 @pytest.fixture(scope="session", autouse=True)
-def sandbox():
-    box.sandbox_for_tests(pytest.skip, pytest.fail)
+def _sandbox():
+    sandbox.for_tests(pytest.skip, pytest.fail)
 
 
 @pytest.fixture(scope="session")
@@ -54,7 +54,7 @@ def trial(folder, settings, monkeypatch, tmp_path_factory):
     monkeypatch.setattr(plugin, "BOX_LIMIT", PATIENCE)
     monkeypatch.setattr(box, "IMPORT_WITHIN", 3.0 * PATIENCE)
     monkeypatch.setattr(marking, "BUDGET", BUDGET)
-    monkeypatch.setitem(box.ENVIRONMENT, MARK, "1")
+    monkeypatch.setitem(sandbox.ENVIRONMENT, MARK, "1")
     monkeypatch.setenv("TOKEN", "TOKEN-OF-THE-GRADER")
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path_factory.mktemp("boxes")))
 
@@ -218,7 +218,7 @@ def test_the_grading_process_has_its_memory_and_its_limits_back(trial, settings)
 def test_a_sandbox_that_does_not_start_is_no_zero(trial, settings, monkeypatch):
     start = box.Box.start
     monkeypatch.setattr(box, "READY_WITHIN", 0.5)
-    monkeypatch.setattr(box.Box, "start", lambda self: (setattr(self, "command", ["sleep", "60"]) if self.printed else None, start(self)))
+    monkeypatch.setattr(box.Box, "start", lambda self: (setattr(self, "program", ["/bin/sleep", "60"]) if self.printed else None, start(self)))
     with pytest.raises(RuntimeError, match="cannot start"), nothing_left():
         text = HONEST + "import os\nprint('loaded', flush=True)\ndef euler_step(*a):\n    os._exit(0)\n"
         marking.mark(submissions.Submission("unlucky", {"integrators": text.encode()}, (), ""), settings["integrators"])

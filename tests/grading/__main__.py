@@ -16,7 +16,7 @@ from solutions.checks import BadInput
 from validate import binding
 from validate.__main__ import writable, write_whole
 
-from . import box, local, marking, pages, submissions
+from . import local, marking, pages, sandbox, submissions
 
 console = Console()
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
@@ -38,6 +38,7 @@ def grade(
     terms = pages.Terms(deadline(due), late)
     people = submissions.roster(roster) if roster else {}
     handed_in = submissions.read_all(class_, lessons)
+    sandbox.keep_out({class_: "submissions", out: "output folder", **({roster: "class list"} if roster else {})})
     folder = writable(out)
     raise typer.Exit(run(handed_in, marking.settings(lessons, secret(folder, seed)), people, terms, jobs, executor, folder))
 
@@ -70,8 +71,8 @@ def secret(folder, seed):
 
 def run(handed_in, settings, people, terms, jobs, executor, out):
     """Grade what is not graded yet, write every file, and say how it went: 0, or 1 when the grader failed on a submission."""
-    if box.no_sandbox_because():
-        console.print(f"NOT A GRADE: {box.no_sandbox_because()}. Students' code runs without a sandbox; use this to check yourself only.", style="bold red")
+    if sandbox.unavailable():
+        console.print(f"NOT A GRADE: {sandbox.unavailable()}. Students' code runs without a sandbox; use this to check yourself only.", style="bold red")
     kept = out / "results"
     kept.mkdir(exist_ok=True)
     results, todo, failed = {}, [], {}

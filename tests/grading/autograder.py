@@ -17,7 +17,7 @@ from solutions.checks import BadInput
 from validate.__main__ import writable, write_whole
 from validate.binding import ROOT
 
-from . import marking, pages, points, submissions
+from . import marking, pages, points, sandbox, submissions
 from .__main__ import chosen
 from .release import tracked
 
@@ -36,7 +36,7 @@ set -euo pipefail
 source=${AUTOGRADER:-/autograder}/source
 export DEBIAN_FRONTEND=noninteractive
 apt-get update
-apt-get install -y bubblewrap
+apt-get install -y bubblewrap libseccomp2
 apt-get install -y python3.11 python3.11-venv || apt-get install -y python3 python3-venv     # not every Ubuntu has 3.11
 python=$(command -v python3.11 || command -v python3)
 "$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "Python 3.11 or newer is needed: choose a newer Ubuntu" >&2; exit 1; }
@@ -99,6 +99,7 @@ def run(
     metadata: Annotated[Optional[Path], typer.Option(help="Gradescope's submission_metadata.json.")] = None,
 ):
     try:
+        sandbox.keep_out({submission: "submission", results.absolute().parent: "folder of results", course: "course"})
         found = graded(submission, json.loads(course.read_text()), told(metadata))
     except Exception as e:                        # without a score Gradescope says that the autograder failed; a zero would be the student's
         traceback.print_exc()                     # for instructors only: it may name hidden inputs

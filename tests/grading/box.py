@@ -1,16 +1,14 @@
-"""The sandbox: one worker process with one student's file, to which the trusted parent talks in plain data only.
+"""One worker process with one student's file, to which the trusted parent talks in plain data only.
 
-On Linux the worker lives in bubblewrap: it sees Python, NumPy, the file and the lessons as handed out, all read-only; no network, no
-other process, no solutions, no tests.  Elsewhere it is a process with nothing around it, and what comes of it is no grade.
+On Linux the worker lives in the sandbox, and sees Python, NumPy, the file and the lessons as handed out.  Elsewhere it is a process with nothing around it,
+and what comes of it is no grade.
 """
 
 import contextlib
-import glob
 import json
 import os
 import queue
 import re
-import secrets
 import shutil
 import signal
 import subprocess
@@ -18,20 +16,16 @@ import sys
 import tempfile
 import threading
 import time
-from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 
 from solutions.checks import BadInput, Diverged
 
-from . import shipping, wire
+from . import sandbox, shipping, wire
 
 HERE = Path(__file__).resolve().parent
 LIMITS = {"AS": 2 << 30, "CPU": 150, "NPROC": 4, "FSIZE": 16 << 20, "NOFILE": 64, "CORE": 0}     # [bytes], [s], [-], [bytes], [-], [bytes]
-ENVIRONMENT = {"PATH": "/usr/bin:/bin", "HOME": "/tmp", "LANG": "C.UTF-8", "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1",
-               "MKL_NUM_THREADS": "1", "PYTHONHASHSEED": "0"}
-HIDDEN = ("solutions", "lessons", "validate", "tests", "pybullet*", "pymunk*", "physics_animation_workbook*", "__editable__*")
 READY_WITHIN = 30.0          # [s]: starting takes 0.2, on a machine that does nothing else
 IMPORT_WITHIN = 10.0         # a student's file may take so long to load [s]
 MOST_ENTRIES = 1_000_000     # of all arrays that a student's code hands to one of our functions [-]: the tests need 10⁴
@@ -54,59 +48,6 @@ class Lost(StudentError):
 
 class Late(StudentError):
     """One of our own functions, with what the student's code handed it, takes too long."""
-
-
-# ---------------------------------------------------------------------------------------------- the command
-
-def sandbox_command(python, binds):
-    """bwrap's arguments: read-only /usr, interpreter and environment, the binds {from: to}, an empty /tmp, and nothing else."""
-    interpreter, environment = Path(python).resolve().parent.parent, Path(python).absolute().parent.parent
-    command = [shutil.which("bwrap") or "bwrap", "--unshare-pid", "--unshare-net", "--unshare-ipc", "--unshare-uts", "--unshare-cgroup-try", "--die-with-parent",
-               "--new-session", "--clearenv", "--hostname", "box", "--cap-drop", "ALL"]
-    for name, value in ENVIRONMENT.items():
-        command += ["--setenv", name, value]
-    command += ["--ro-bind", "/usr", "/usr", "--proc", "/proc", "--dev", "/dev", "--perms", "1777", "--size", str(32 << 20), "--tmpfs", "/tmp"]
-    for folder in ("bin", "sbin", "lib", "lib64"):
-        if os.path.islink(f"/{folder}"):
-            command += ["--symlink", os.readlink(f"/{folder}"), f"/{folder}"]
-        elif os.path.isdir(f"/{folder}"):
-            command += ["--ro-bind", f"/{folder}", f"/{folder}"]
-    for folder in dict.fromkeys((interpreter, environment)):
-        if not folder.is_relative_to("/usr"):
-            for parent in reversed(folder.parents[:-1]):               # bwrap would make them for root only
-                command += ["--dir", str(parent)]
-            command += ["--ro-bind", str(folder), str(folder)]
-    for source, target in binds.items():
-        command += ["--dir", os.path.dirname(target), "--ro-bind", str(source), target]
-    for pattern in HIDDEN:
-        for path in glob.glob(f"{environment}/lib/python*/site-packages/{pattern}"):
-            command += ["--tmpfs", path] if os.path.isdir(path) else ["--ro-bind", "/dev/null", path]
-    command += ["--remount-ro", "/dev", "--remount-ro", "/", "--chdir", "/tmp"]
-    if os.geteuid() == 0:    # the limit of processes does not bind root: become somebody who owns nothing, then give up making users
-        somebody = str(60000 + secrets.randbelow(5000))
-        command += ["--cap-add", "CAP_SETUID", "--cap-add", "CAP_SETGID", "--cap-add", "CAP_SETPCAP", "setpriv", "--reuid", somebody,
-                    "--regid", somebody, "--clear-groups", "--no-new-privs", "--inh-caps=-all", "--bounding-set=-all",
-                    "bwrap", "--die-with-parent", "--dev-bind", "/", "/"]
-    return command + ["--unshare-user", "--disable-userns"]
-
-
-@lru_cache(maxsize=1)
-def no_sandbox_because():
-    """Why code cannot be locked in here; an empty string when it can."""
-    if not shutil.which("bwrap"):
-        return "bubblewrap is not installed"
-    try:
-        trial = subprocess.run([*sandbox_command(sys.executable, {}), "true"], capture_output=True, text=True, timeout=30, env=ENVIRONMENT)
-    except (OSError, subprocess.TimeoutExpired) as e:
-        return f"bubblewrap does not start: {e}"
-    return "" if trial.returncode == 0 else f"bubblewrap may not make a sandbox here: {trial.stderr.strip()[:200]}"
-
-
-def sandbox_for_tests(skip, fail):
-    """Without a sandbox the tests of the grader cannot say anything: they fail where WORKBOOK_SANDBOX=required, as in CI, and else say so and are left out."""
-    if no_sandbox_because():
-        leave = fail if os.environ.get("WORKBOOK_SANDBOX") == "required" else skip
-        leave(f"the grader is not tested here: {no_sandbox_because()}. Install it (Debian: apt-get install bubblewrap)")
 
 
 # ---------------------------------------------------------------------------------------------- the worker
@@ -139,13 +80,13 @@ class Box:
         (self.folder / f"{lesson}.py").write_bytes(text)
         (self.folder / f"{lesson}.py").chmod(0o444)
         config = {"lesson": lesson, "exercises": exercises, "earlier": {name: list(functions) for name, functions in earlier.items()}}
-        if no_sandbox_because():
+        if sandbox.unavailable():
             inside = {"wire": str(HERE), "given": str(given), "student": str(self.folder)}
-            limits, before = {name: value for name, value in limits.items() if name != "NPROC"}, []
+            limits, self.binds = {name: value for name, value in limits.items() if name != "NPROC"}, None
         else:
             inside = {"wire": "/box", "given": "/given", "student": "/student"}
-            before = sandbox_command(sys.executable, {**{HERE / file: f"/box/{file}" for file in ("wire.py", "shipping.py", "worker.py")}, given: "/given", self.folder: "/student"})
-        self.command = [*before, sys.executable, "-I", "-B", "-u", f"{inside['wire']}/worker.py", json.dumps({**config, **inside, "limits": limits})]
+            self.binds = {**{HERE / file: f"/box/{file}" for file in ("wire.py", "shipping.py", "worker.py")}, given: "/given", self.folder: "/student"}
+        self.program = [sys.executable, "-I", "-B", "-u", f"{inside['wire']}/worker.py", json.dumps({**config, **inside, "limits": limits})]
 
     # -- functions and records on the wire
 
@@ -230,9 +171,7 @@ class Box:
             self.broken = e
 
     def start(self):
-        environment = {**ENVIRONMENT, **{k: os.environ[k] for k in ("SYSTEMROOT",) if k in os.environ}}     # --clearenv leaves /proc/1/environ
-        self.process = process = subprocess.Popen(self.command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                                  env=environment, start_new_session=True)
+        self.process = process = sandbox.started(self.binds, self.program, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         self.inbox, self.outbox, self.own, self.names = queue.Queue(4), queue.Queue(64), {}, {}
         self.peer = wire.Peer(self.send, self.receive, self.resolve, self.name_of, self.record, describe, self.error,
                               fatal=(KeyboardInterrupt, wire.WireError, Lost, Late))
@@ -277,8 +216,19 @@ class Box:
         if frame is None:
             raise self.lost("it took too long" if self.budget > 0.0 else "the time for the whole submission is used up")
         if isinstance(frame, Exception):
-            raise self.lost(str(frame))
+            raise self.lost(f"{frame}{self.last_word()}")
         return frame
+
+    def last_word(self):
+        """Why the worker ended, if it did and if the system says so."""
+        try:
+            code = self.process.wait(timeout=0.5)
+        except subprocess.TimeoutExpired:                              # it has closed the wire, and lives
+            return ""
+        number = -code if code < 0 else code - 128                     # bwrap ends with 128 + the signal of the worker
+        if number == signal.SIGSYS:
+            return ": it made a system call that no lesson needs"
+        return f" ({signal.Signals(number).name})" if number in set(signal.Signals) else ""
 
     def lost(self, why):
         self.stop()

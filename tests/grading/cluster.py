@@ -21,7 +21,7 @@ from importlib.metadata import version
 from solutions.checks import BadInput
 from validate import binding
 
-from . import box, local, marking
+from . import local, marking, sandbox
 
 CONNECT_WITHIN = 5.0         # [s]: a scheduler answers in milliseconds
 WORKERLESS = 30.0            # so long a cluster may be without any worker [s]: a nanny starts a new one in 2
@@ -93,13 +93,13 @@ def refusal(thing, unfit):
 
 def parcel(submission, settings):
     """What travels to a worker: everything that it needs, as bytes."""
-    return pickle.dumps((submission, settings, makeup(settings.code)))
+    return pickle.dumps((submission, settings, makeup(settings.code), sandbox.private))
 
 
 def makeup(code):
     """What marks depend on besides the submission: {thing: which}."""
     return {"workbook": code, "Python": f"{sys.version_info.major}.{sys.version_info.minor}", "numpy": version("numpy"),
-            "pytest": version("pytest"), "sandbox": box.no_sandbox_because() or "bubblewrap"}
+            "pytest": version("pytest"), "sandbox": sandbox.unavailable() or "bubblewrap"}
 
 
 def graded(client, address, todo, settings):
@@ -166,8 +166,12 @@ def asked(parcel):
         raise RuntimeError(f"the grading process ended unexpectedly ({run.returncode}): {' '.join(last)[:300]}") from None
 
 
-def answer(submission, settings, theirs):
-    """What `asked` returns, in the process of its own; without a submission only whether this worker may grade."""
+def answer(submission, settings, theirs, private):
+    """What `asked` returns, in the process of its own; without a submission only whether this worker may grade.  private: what the sandbox must hide, if it is here, too."""
+    try:
+        sandbox.keep_out(private)
+    except BadInput as e:
+        return str(e), None, ""
     ours = makeup(marking.code_digest(settings.lessons))
     unfit = "; ".join(f"with {thing} {ours[thing]} instead of {theirs[thing]}" for thing in theirs if ours[thing] != theirs[thing])
     return (unfit, None, "") if unfit or submission is None else ("", *local.marked(submission, settings))

@@ -4,14 +4,15 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context
 
-from . import marking
+from . import marking, sandbox
 
 
 def results(jobs, todo, settings):
     """(student, result, "") or (student, None, why the grader failed), as they come."""
     waiting = {s.student: s for s in todo}
     for attempt in (1, 2):                               # a grading process that died takes others' work along: once more, one at a time
-        pool = ProcessPoolExecutor(max(1, min(jobs, len(waiting))) if attempt == 1 else 1, mp_context=get_context("spawn"))
+        pool = ProcessPoolExecutor(max(1, min(jobs, len(waiting))) if attempt == 1 else 1, mp_context=get_context("spawn"),
+                                   initializer=sandbox.keep_out, initargs=(sandbox.private,))
         try:
             futures = {pool.submit(marked, s, settings): s.student for s in waiting.values()}
             for future in as_completed(futures):

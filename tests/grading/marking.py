@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from validate import binding
 
-from . import box, points, remote
+from . import points, remote, sandbox
 from .submissions import spelt_out
 
 BUDGET = 60.0                # of one lesson of one submission, all calls together [s]: the worked one takes 1
@@ -29,7 +29,7 @@ class Settings(NamedTuple):
 
     def digest(self, submission):
         """Changes when a submission has to be graded again."""
-        return hashlib.sha256(repr((self, submission.digest(), box.no_sandbox_because())).encode()).hexdigest()
+        return hashlib.sha256(repr((self, submission.digest(), sandbox.unavailable())).encode()).hexdigest()
 
 
 def settings(lessons, seed):
@@ -48,7 +48,7 @@ def manifest(lessons):
 
 def code_digest(lessons=None):
     """Fingerprint of everything that decides about points in these lessons, or in all of them; the same wherever the workbook lies."""
-    grader = ("box", "expect", "marking", "plugin", "points", "remote", "shipping", "wire", "worker")
+    grader = ("box", "calls", "expect", "marking", "plugin", "points", "remote", "sandbox", "shipping", "wire", "worker")
     files = {*binding.SOLUTIONS.glob("*.py"), *(points.TESTS / f"test_{lesson}.py" for lesson in lessons or binding.lesson_names()),
              *(points.TESTS / "grading" / f"{name}.py" for name in grader), *(binding.ROOT / "validate" / f"{name}.py" for name in ("binding", "generate"))}
     return hashlib.sha256(b"".join(file.name.encode() + file.read_bytes() for file in sorted(files))).hexdigest()[:12]
@@ -65,7 +65,7 @@ def mark(submission, settings):
     tests = [verdict(row, found, row[0] in submission.files) for row in settings.manifest]
     return {"student": submission.student, "problems": list(submission.problems), "timestamp": submission.timestamp,
             "handed_in": sorted(submission.files), "tests": tests, "printed": printed, "seconds": round(time.monotonic() - began, 2),
-            "no_grade": box.no_sandbox_because(), "digest": settings.digest(submission)}
+            "no_grade": sandbox.unavailable(), "digest": settings.digest(submission)}
 
 
 def mark_lesson(lesson, text, seed):
