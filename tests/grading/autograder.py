@@ -17,7 +17,7 @@ from solutions.checks import BadInput
 from validate.__main__ import writable, write_whole
 from validate.binding import ROOT
 
-from . import marking, pages, points, sandbox, submissions
+from . import children, marking, pages, points, sandbox, submissions
 from .__main__ import chosen
 from .release import tracked
 
@@ -112,7 +112,8 @@ def graded(folder, course, metadata):
     """What Gradescope gets to read.  Handed in and due are as Gradescope says, where it does."""
     settings = marking.settings(tuple(course["lessons"]), course["seed"])
     users, assignment = metadata.get("users") or [{}], metadata.get("assignment") or {}
-    submission = submissions.read(folder, users[0].get("email") or "submission", settings.lessons)
+    with children.Limited() as limited:
+        submission = submissions.read(folder, users[0].get("email") or "submission", settings.lessons, limited)
     if when := moment(metadata.get("created_at")):
         submission = submission._replace(timestamp=when)
     due = moment((users[0].get("assignment") or {}).get("due_date") or assignment.get("due_date"))      # one's own, where it was extended

@@ -21,7 +21,7 @@ from importlib.metadata import version
 from solutions.checks import BadInput
 from validate import binding
 
-from . import local, marking, sandbox
+from . import children, local, marking, sandbox
 
 CONNECT_WITHIN = 5.0         # [s]: a scheduler answers in milliseconds
 WORKERLESS = 30.0            # so long a cluster may be without any worker [s]: a nanny starts a new one in 2
@@ -188,7 +188,7 @@ def orphaned(parent, folder):
 def main():
     channel = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)                                                      # nothing else may get in between
-    with tempfile.TemporaryDirectory(prefix="grading-") as tempfile.tempdir:
+    with children.temporary() as tempfile.tempdir:
         threading.Thread(target=orphaned, args=(os.getppid(), tempfile.tempdir), daemon=True).start()
         json.dump(answer(*pickle.load(sys.stdin.buffer)), channel)
         channel.close()

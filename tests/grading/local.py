@@ -1,19 +1,16 @@
 """Grade on this machine, several submissions at a time, each in a process of its own while it lasts."""
 
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import as_completed
 from concurrent.futures.process import BrokenProcessPool
-from multiprocessing import get_context
 
-from . import marking, sandbox
+from . import children, marking, sandbox
 
 
 def results(jobs, todo, settings):
     """(student, result, "") or (student, None, why the grader failed), as they come."""
     waiting = {s.student: s for s in todo}
     for attempt in (1, 2):                               # a grading process that died takes others' work along: once more, one at a time
-        pool = ProcessPoolExecutor(max(1, min(jobs, len(waiting))) if attempt == 1 else 1, mp_context=get_context("spawn"),
-                                   initializer=sandbox.keep_out, initargs=(sandbox.private,))
-        try:
+        with children.Pool(max(1, min(jobs, len(waiting))) if attempt == 1 else 1, sandbox.keep_out, sandbox.private) as pool:
             futures = {pool.submit(marked, s, settings): s.student for s in waiting.values()}
             for future in as_completed(futures):
                 try:
@@ -22,8 +19,6 @@ def results(jobs, todo, settings):
                     continue
                 waiting.pop(futures[future])
                 yield futures[future], result, why
-        finally:
-            pool.shutdown(wait=True, cancel_futures=True)
         if not waiting:
             return
     for student in waiting:

@@ -7,12 +7,11 @@ import contextlib
 import hashlib
 import re
 import time
-from pathlib import Path
 from typing import NamedTuple
 
 from validate import binding
 
-from . import points, remote, sandbox
+from . import children, points, remote, sandbox
 from .submissions import spelt_out
 
 BUDGET = 60.0                # of one lesson of one submission, all calls together [s]: the worked one takes 1
@@ -96,19 +95,13 @@ def mark_lesson(lesson, text, seed):
 @contextlib.contextmanager
 def bounded():
     """Let this process have only so much more memory; beyond, NumPy raises MemoryError in the test that asked for it."""
-    try:
-        import resource
-        now = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
-        before, hard = resource.getrlimit(resource.RLIMIT_AS)
-    except (ImportError, OSError):                                     # no Linux, so no sandbox either
-        yield
-        return
-    limits = [now + MEMORY, *(limit for limit in (before, hard) if limit != resource.RLIM_INFINITY)]
-    resource.setrlimit(resource.RLIMIT_AS, (min(limits), hard))
+    before = children.bound(MEMORY)
     try:
         yield
     finally:
-        resource.setrlimit(resource.RLIMIT_AS, (before, hard))
+        if before:
+            import resource
+            resource.setrlimit(resource.RLIMIT_AS, before)
 
 
 def verdict(row, found, handed_in):

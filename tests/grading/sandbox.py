@@ -83,7 +83,7 @@ def command(binds, filter):
     around += ["--remount-ro", "/dev", "--chdir", "/tmp"]
     locked = ["--unshare-user", "--disable-userns", "--seccomp", str(filter)]
     if os.geteuid() != 0:
-        return [*around, "--remount-ro", "/", *locked]
+        return [*around, "--dir", "/proc", "--remount-ro", "/", *locked]
     # the limit of processes does not bind root: become somebody who owns nothing, then give up making users; bwrap needs /proc for that, and hides it
     somebody = str(60000 + secrets.randbelow(5000))
     return [*around, "--proc", "/proc", "--remount-ro", "/", "--cap-add", "CAP_SETUID", "--cap-add", "CAP_SETGID", "--cap-add", "CAP_SETPCAP", "setpriv", "--reuid", somebody,
