@@ -236,8 +236,8 @@ def zipped(path, entries, packed=zipfile.ZIP_DEFLATED):
 
 
 def read(path, lessons=("integrators", "springs")):
-    with children.Limited() as limited:
-        one = submissions.read(path, path.stem, lessons, limited)
+    with children.reader() as child:
+        one = submissions.read(path, path.stem, lessons, child)
     assert not any(FORBIDDEN.search(problem) for problem in one.problems)
     return one
 
@@ -372,11 +372,11 @@ def evil_entries(path):
 
 def packed_by(method):
     def make(path):
-        """A gigabyte in a kilobyte, of which Python unpacks all at once, however little is asked for."""
+        """Hundreds of megabytes in a kilobyte, of which Python unpacks all at once, however little is asked for."""
         with zipfile.ZipFile(path, "w") as archive:
             archive.writestr("springs.py", LESSON)
             with archive.open(zipped_entry("integrators.py", method), "w", force_zip64=True) as file:
-                for _ in range(20):
+                for _ in range(6):
                     file.write(bytes(50 << 20))
     return make
 
@@ -464,24 +464,23 @@ def many_tasks(kind):
     return bytearray(2 * children.LITTLE) if kind == "memory" else os._exit(1)
 
 
-def test_a_reader_of_archives_has_little_memory_and_time_and_is_replaced_when_it_ends(monkeypatch):
-    with children.Limited() as limited:
+def test_a_reader_of_archives_has_little_memory_and_time_and_is_replaced_when_it_ends():
+    with children.reader() as child:
         with pytest.raises(MemoryError):
-            limited(many_tasks, "memory")
+            child(many_tasks, "memory")
+        with pytest.raises(children.Ended):
+            child(many_tasks, "end")
+        assert child(os.getpid) not in (child(os.getppid), os.getpid())
         with pytest.raises(TimeoutError):
-            limited(many_tasks, "end")
-        assert limited(os.getpid) not in (limited(os.getppid), os.getpid())
+            child(slow)
         with pytest.raises(TimeoutError):
-            limited(slow)
-        monkeypatch.setattr(children, "PATIENCE", 1.0)
-        with pytest.raises(TimeoutError):
-            limited(any, iter(int, 1))                                 # a loop that no signal and no thread of its own can end
-        assert limited(os.getpid) != os.getpid()
+            child(any, iter(int, 1), patience=1.0)                     # a loop that no signal and no thread of its own can end
+        assert child(os.getpid) != os.getpid()
 
 
 def slow():
     children.WITHIN = 0.2
-    return children.timed(many_tasks, ("time",))
+    return children.timed(many_tasks, "time")
 
 
 def test_hostile_names_do_not_stop_a_class(tmp_path):

@@ -112,12 +112,15 @@ def graded(folder, course, metadata):
     """What Gradescope gets to read.  Handed in and due are as Gradescope says, where it does."""
     settings = marking.settings(tuple(course["lessons"]), course["seed"])
     users, assignment = metadata.get("users") or [{}], metadata.get("assignment") or {}
-    with children.Limited() as limited:
-        submission = submissions.read(folder, users[0].get("email") or "submission", settings.lessons, limited)
+    with children.reader() as child:
+        submission = submissions.read(folder, users[0].get("email") or "submission", settings.lessons, child)
     if when := moment(metadata.get("created_at")):
         submission = submission._replace(timestamp=when)
     due = moment((users[0].get("assignment") or {}).get("due_date") or assignment.get("due_date"))      # one's own, where it was extended
-    return pages.gradescope(marking.mark(submission, settings), settings, pages.Terms(due, course["late"]))
+    result = marking.mark(submission, settings)
+    if result["again"]:
+        result = marking.again(submission, settings, result)
+    return pages.gradescope(result, settings, pages.Terms(due, course["late"]))
 
 
 def told(metadata):

@@ -22,12 +22,15 @@ import numpy as np
 
 from solutions.checks import BadInput, Diverged
 
-from . import sandbox, shipping, wire
+from . import points, sandbox, shipping, wire
+from .meter import LOOK, Meter
 
 HERE = Path(__file__).resolve().parent
 LIMITS = {"AS": 2 << 30, "CPU": 150, "NPROC": 4, "FSIZE": 16 << 20, "NOFILE": 64, "CORE": 0}     # [bytes], [s], [-], [bytes], [-], [bytes]
-READY_WITHIN = 30.0          # [s]: starting takes 0.2, on a machine that does nothing else
-IMPORT_WITHIN = 10.0         # a student's file may take so long to load [s]
+READY_WITHIN = 60.0          # [s]: starting takes 0.2, on a machine that does nothing else
+IMPORT_WITHIN = 10.0         # a student's file may take so long to load [s of its own]
+CROWDED = 10.0               # so many times as long as its own time may pass before a call is given up: then it is tried once more, alone [-]
+LAST_WORD_WITHIN = 3.0       # [s]: a worker that has closed the wire ends so soon, or lives on
 MOST_ENTRIES = 1_000_000     # of all arrays that a student's code hands to one of our functions [-]: the tests need 10⁴
 DEEPEST = 16                 # calls inside calls, there and back [-]: the tests need 4
 PRINTED = 20_000             # of what is printed, so much is kept [bytes]
@@ -66,15 +69,16 @@ class Box:
     """One lesson's file of one submission.  Calls of its functions start the worker, and start another one when it was lost.
 
     exercises: functions that the file must answer · text: the file, as bytes · given: folder of the lessons as handed out · earlier: {lesson: {exercise function: worked one}} that
-    the file may build on · budget [s] for all calls together · begin(limit) allows the next calls so many seconds together.
-    secret: no word of the student's code is kept with its errors, since it may know secret inputs · failed: what the grader itself could not do.
+    the file may build on · budget [s] for all calls together · begin(limit) allows the next calls so many seconds together.  Seconds are the worker's own (see Meter).
+    secret: no word of the student's code is kept with its errors, since it may know secret inputs · failed: what the grader itself could not do ·
+    late: the time was up, or the system ended the worker, for which others may be the cause.
     """
 
     def __init__(self, lesson, exercises, text, given, earlier, budget, records=(), limits=LIMITS):
         self.earlier, self.budget, self.printed, self.process, self.broken, self.depth = earlier, budget, b"", None, None, 0
-        self.lesson, self.lines, self.secret, self.failed = lesson, text.count(b"\n") + 1, False, None
-        self.records = {kind.__name__: kind for kind in records}
-        self.until = time.monotonic() + budget
+        self.lesson, self.lines, self.secret, self.failed, self.late = lesson, text.count(b"\n") + 1, False, None, False
+        self.records, self.meter = {kind.__name__: kind for kind in records}, Meter()
+        self.begin(budget)
         self.folder = Path(tempfile.mkdtemp(prefix="workbook-"))
         self.folder.chmod(0o755)
         (self.folder / f"{lesson}.py").write_bytes(text)
@@ -134,16 +138,17 @@ class Box:
         """The next calls may take so long, all together [s].  A worker that has said something unasked is replaced: it would answer past the question."""
         if self.process and self.depth == 0 and not self.inbox.empty():
             self.stop()
-        self.until = time.monotonic() + min(limit, max(self.budget, 0.0))
+        limit = max(0.0, min(limit, self.budget - self.meter.used))
+        self.until, self.patience = self.meter.used + limit, time.monotonic() + CROWDED * limit
 
     def call(self, name, arguments):
         """What the worker's function of that name returns; raises what it raised, or Lost."""
         if self.broken:
             raise self.broken
         remember(self.records, arguments)
-        if self.process is None and self.budget <= 0.0:
-            raise Lost("the time for the whole submission is used up")
-        began, self.depth = time.monotonic(), self.depth + 1
+        if self.meter.used >= self.until:
+            raise self.too_long()
+        self.depth += 1
         try:
             if self.process is None:
                 self.start()
@@ -151,11 +156,10 @@ class Box:
         except wire.WireError as e:
             raise self.lost(f"the program sent no plain data: {e}") from None
         except Late:
-            raise self.lost("it took too long") from None
+            raise self.too_long() from None
         finally:
             self.depth -= 1
-            if self.depth == 0:
-                self.budget -= time.monotonic() - began
+            self.meter.look(False)
 
     def open(self):
         """Import the file.  When that fails every later call fails in the same way, at once."""
@@ -190,42 +194,63 @@ class Box:
             self.stop()
             self.failed = RuntimeError(f"the grader cannot start its sandbox: {self.printed[-500:].decode(errors='replace')}")
             raise self.failed
+        self.meter.follow(process)
 
     def serve(self, name, arguments):
         """Work one of our functions for the student's code, if what it hands over is of a sane size."""
         if (sum(array.size for array in wire.arrays_in(arguments)) > MOST_ENTRIES or self.depth > DEEPEST
                 or not name.startswith(("test:", "solution:"))):
             raise wire.WireError("a call that no test asks for")
-        with alarm(self.until - time.monotonic()) if self.depth == 1 else contextlib.nullcontext():
-            self.peer.served(name, arguments)
+        if self.depth > 1:
+            return self.peer.served(name, arguments)
+        began = time.thread_time()
+        try:
+            with points.alarm(self.until - self.meter.used, Late, own=True):
+                self.peer.served(name, arguments)
+        finally:
+            self.meter.used += time.thread_time() - began
 
     def send(self, frame):
         """Hand a frame to the worker."""
-        try:
-            self.outbox.put(frame, timeout=max(0.01, self.until - time.monotonic()))
-        except queue.Full:
-            raise self.lost("it asks, and does not listen to the answers") from None
+        while True:
+            try:
+                return self.outbox.put(frame, timeout=LOOK)
+            except queue.Full:                                         # it asks, and does not listen to the answers
+                self.look(True)
 
     def receive(self):
         """The next frame."""
-        left = self.until - time.monotonic()
-        try:
-            frame = self.inbox.get(timeout=max(0.0, left)) if left > 0.0 else None
-        except queue.Empty:
-            frame = None
-        if frame is None:
-            raise self.lost("it took too long" if self.budget > 0.0 else "the time for the whole submission is used up")
+        while True:
+            if self.meter.due():
+                self.look(self.inbox.empty() and not self.outbox.unfinished_tasks and not arriving(self.process.stdout))
+            try:
+                frame = self.inbox.get(timeout=LOOK)
+                break
+            except queue.Empty:
+                pass
         if isinstance(frame, Exception):
             raise self.lost(f"{frame}{self.last_word()}")
         return frame
 
+    def look(self, owes):
+        """See what time the worker has taken, and end it when that is too much."""
+        self.meter.look(owes)
+        if self.meter.used >= self.until or time.monotonic() >= self.patience:
+            raise self.too_long()
+
+    def too_long(self):
+        self.late = True
+        return self.lost("it took too long" if self.meter.used < self.budget else "the time for the whole submission is used up")
+
     def last_word(self):
         """Why the worker ended, if it did and if the system says so."""
         try:
-            code = self.process.wait(timeout=0.5)
+            code = self.process.wait(timeout=LAST_WORD_WITHIN)
         except subprocess.TimeoutExpired:                              # it has closed the wire, and lives
+            self.meter.used += LAST_WORD_WITHIN
             return ""
         number = -code if code < 0 else code - 128                     # bwrap ends with 128 + the signal of the worker
+        self.late |= number == signal.SIGKILL                          # perhaps there was no memory left, and it was nobody's fault
         if number == signal.SIGSYS:
             return ": it made a system call that no lesson needs"
         return f" ({signal.Signals(number).name})" if number in set(signal.Signals) else ""
@@ -281,24 +306,17 @@ def _writing(process, inbox, outbox):
         while (frame := outbox.get()) is not None:
             process.stdin.write(frame)
             process.stdin.flush()
+            outbox.task_done()
 
 
-@contextlib.contextmanager
-def alarm(seconds):
-    """Raise Late after so long, also inside a loop of ours; only in a main thread, and where the system has an alarm clock."""
-    if not hasattr(signal, "setitimer") or threading.current_thread() is not threading.main_thread():
-        yield
-        return
-
-    def ring(*_):
-        raise Late()
-    before = signal.signal(signal.SIGALRM, ring)
-    signal.setitimer(signal.ITIMER_REAL, max(0.01, seconds))
+def arriving(stream):
+    """Whether there is something in a pipe that we have not read yet."""
     try:
-        yield
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
-        signal.signal(signal.SIGALRM, before)
+        import fcntl
+        import termios
+        return any(fcntl.ioctl(stream.fileno(), termios.FIONREAD, bytes(4)))
+    except (ImportError, OSError, ValueError):
+        return False
 
 
 def describe(e):

@@ -12,7 +12,7 @@ import tempfile
 import threading
 import time
 from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
+from concurrent.futures.process import BrokenProcessPool as Ended
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -122,40 +122,44 @@ def bound(more):
     return before
 
 
-class Limited:
-    """Calls functions in a child of little memory, and in a new one when that has ended."""
+class Child:
+    """Calls functions in one process that has called begin(*arguments), and in a new one when that has ended."""
 
-    def __init__(self):
-        self.pool = None
+    def __init__(self, begin, *arguments):
+        self.begin, self.pool = (begin, *arguments), None
 
     def __enter__(self):
         return self
 
     def __exit__(self, *error):
         if self.pool:
-            self.pool.__exit__(*(error or (None,)))
+            self.pool.__exit__(*error)
             self.pool = None
 
-    def __call__(self, function, *arguments):
-        """What the function returns there.  Raises what it raises, MemoryError, or TimeoutError."""
-        self.pool = self.pool or Pool(1, bound, LITTLE)
+    def __call__(self, function, *arguments, patience=None):
+        """What the function returns there.  Raises what it raises, Ended, or TimeoutError when it does not end within so many seconds."""
+        self.pool = self.pool or Pool(1, *self.begin)
         try:
-            return self.pool.submit(timed, function, arguments).result(timeout=PATIENCE)
-        except (BrokenProcessPool, TimeoutError) as e:
+            return self.pool.submit(function, *arguments).result(timeout=patience)
+        except (Ended, TimeoutError) as e:
             self.__exit__(type(e))
-            raise TimeoutError("its reading ended") from None
+            raise
 
 
-def timed(function, arguments):
+def reader():
+    """A child of little memory, to read archives in."""
+    return Child(bound, LITTLE)
+
+
+def timed(function, *arguments):
     """The function's result, or TimeoutError after so long on the processor."""
-    if not hasattr(signal, "setitimer"):
-        return function(*arguments)
-
     def ring(*_):
         raise TimeoutError("it takes too long")
-    signal.signal(signal.SIGPROF, ring)
-    signal.setitimer(signal.ITIMER_PROF, WITHIN)
+    if hasattr(signal, "setitimer"):
+        signal.signal(signal.SIGPROF, ring)
+        signal.setitimer(signal.ITIMER_PROF, WITHIN)
     try:
         return function(*arguments)
     finally:
-        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        if hasattr(signal, "setitimer"):
+            signal.setitimer(signal.ITIMER_PROF, 0.0)

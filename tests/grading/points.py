@@ -2,6 +2,9 @@
 
 import contextlib
 import io
+import signal
+import threading
+import time
 from pathlib import Path
 from typing import NamedTuple
 
@@ -15,11 +18,37 @@ TESTS = Path(__file__).resolve().parent.parent
 PUBLIC = "public"            # the seed of everyone's own tests
 LIMIT = 20.0                 # a grading test may take this long [s]: the slowest takes 2, on two shared cores
 READING = "reading the file"   # the quantity where a file could not be loaded
+DURATION = "the time it takes"   # the quantity where a test did not end
 BOX_LIMIT = 10.0             # and so long in the sandbox [s]
 
 
 class TooLong(Exception):
     """A test that has run out of its time."""
+
+
+@contextlib.contextmanager
+def alarm(seconds, error, own=False):
+    """Raise that error after so long, also inside a loop; in a main thread only, and where the system has an alarm clock.  An alarm around it goes on.
+
+    own: count only the time of this process on the processor, so that it is no matter what else the machine does.
+    """
+    if not hasattr(signal, "setitimer") or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    clock, number, now = (signal.ITIMER_PROF, signal.SIGPROF, time.process_time) if own else (signal.ITIMER_REAL, signal.SIGALRM, time.monotonic)
+
+    def ring(*arguments):
+        if 0.0 < left < seconds:                                       # it was the other's time
+            around(*arguments)
+        raise error()
+    left, began = signal.getitimer(clock)[0], now()
+    around = signal.signal(number, ring)
+    signal.setitimer(clock, max(0.01, min(seconds, left or seconds)))
+    try:
+        yield
+    finally:
+        signal.setitimer(clock, max(0.01, left - (now() - began)) if left else 0.0)
+        signal.signal(number, around)
 
 
 class Outcome(NamedTuple):
@@ -83,7 +112,7 @@ def outcome(mark, name, excinfo):
     kind = type(error).__name__
     said = f"{kind}: {error}"
     if isinstance(error, TooLong):
-        return Outcome(exercise, name, points, "not yet", "the time it takes", f"an answer within {LIMIT:g} s", "none", "",
+        return Outcome(exercise, name, points, "not yet", DURATION, f"an answer within {LIMIT:g} s", "none", "",
                        "does a loop of yours never end? Count its rounds, and stop after so many")
     if not _in_a_test(excinfo):
         return unreadable(Outcome(exercise, name, points, "not run"), error, _line(error))

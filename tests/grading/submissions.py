@@ -42,25 +42,28 @@ def read_all(folder, lessons):
     if not folder.is_dir():
         raise BadInput(f"submissions {str(folder)!r}", "not a folder", "name the folder that holds one folder or zip a student")
     found = {}
-    with children.Limited() as limited:
+    with children.reader() as child:
         for path in sorted(folder.iterdir()):
             if path.name.startswith((".", "__")) or not (path.is_symlink() or path.is_dir() or path.suffix.lower() == ".zip"):
                 continue
             student = spelt_out(path.stem if path.suffix.lower() == ".zip" else path.name)
             if student in found:
                 raise BadInput(f"student {student!r}", "there as a folder and as a zip", "keep one of them")
-            found[student] = read(path, student, lessons, limited)
+            found[student] = read(path, student, lessons, child)
     if not found:
         raise BadInput(f"submissions {str(folder)!r}", "empty", "put one folder or zip a student into it")
     return list(found.values())
 
 
-def read(path, student, lessons, limited):
-    """One submission; whatever is wrong with it becomes a sentence, not an error.  limited: calls a function in a child."""
+def read(path, student, lessons, child):
+    """One submission; whatever is wrong with it becomes a sentence, not an error.  child: one of `children.reader`."""
     if path.is_symlink():
         return Submission(student, {}, ("it is a link to somewhere else, which is not followed",), "")
     try:
-        files, problems, when = limited(contents, from_zip, path, lessons) if path.is_file() else contents(from_folder, path, lessons)
+        if path.is_file():
+            files, problems, when = child(children.timed, contents, from_zip, path, lessons, patience=children.PATIENCE)
+        else:
+            files, problems, when = contents(from_folder, path, lessons)
     except Exception as e:                                             # BadZipFile, ValueError, MemoryError, zlib.error, struct.error …
         return Submission(student, {}, (f"it cannot be read: {type(e).__name__}",), "")
     return Submission(student, files, problems, moment(when))
