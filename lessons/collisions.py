@@ -12,13 +12,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput, check_finite, check_motion, check_positive
+from solutions.checks import (UNIT, BadInput, WrongShape, check_array, check_field, check_normal, check_positive, check_shape, checked_run, finite_array, finite_number,
+                     positive_number)
 from solutions.vectors import cross, dot
 
 NEVER = np.inf               # the time of what does not happen in this step [s]
 FLAT = 1e-12                 # a triangle of less than this times its longest edge squared has no normal but round-off [-]
 PARALLEL = 1e-12             # sin² of the angle below which two edges count as parallel [-]
 STOP = 1e-14                 # where GJK stops: it knows a distance to this times the size of the bodies [-]
+SMALLEST, LARGEST = 1e-100, 1e100       # sizes of bodies whose squares neither vanish nor overflow [m]
 GJK_STEPS = 100              # far more than any pair of bodies has needed [-]
 LEAF = 8                     # boxes in a leaf of a tree: testing so few is quicker than going down further [-]
 EDGES_WIN_BY = 1e-9          # how much farther [m] a pair of edges must separate than any face: equal ones would take turns
@@ -89,8 +91,9 @@ def make_plane(coefficients):
 
     Raises BadInput where all but d are zero: that is no plane, and what is not finite.
     """
-    y = np.array(coefficients, dtype=float)
-    check_finite("coefficient of a plane", y)
+    y = finite_array("a coefficient of a plane", coefficients)
+    if y.shape not in ((3,), (4,)):
+        raise WrongShape("the coefficients of a plane", y.shape, "(4,), or (3,) in 2D")
     length = np.sqrt(y[:-1] @ y[:-1])
     if length == 0.0:
         raise BadInput("the normal of a plane", 0.0, "give one of a, b, c another value than zero")
@@ -123,7 +126,7 @@ def plane_impact_time(t, dt, x_0, x_1, r, plane):
 def some_normal(r):
     """Given.  r/|r|; where r is zero, the last axis: every direction is as good then, and one has to be taken."""
     length = np.sqrt(r @ r)
-    if length > 0.0:
+    if length != 0.0:
         return r / length
     n = 0.0 * r
     n[-1] = 1.0
@@ -218,9 +221,11 @@ def flight(step, gap, impact_time, t, x, v, dt, steps, p):
 
     Raises BadInput for a step that is not positive, and a state that is not finite.
     """
-    check_motion(x, v, dt)
+    t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
+    check_array("position x [m]", x, 2)
     x, v = x.copy(), v.copy()
     for k in range(len(x)):
+        finite_number("gap at the start [m]", gap(x[k], p))
         for n in range(steps):
             if v[k] @ v[k] > 0.0:
                 x[k], v[k] = step(gap, impact_time, t + n * dt, x[k], v[k], dt, p)
@@ -339,7 +344,7 @@ def ball_box(x, r, box):
     """Contact of a ball (a) of radius r at x (3,) and a Box (b), also where the centre of the ball is inside.
 
     y = Rᵀ (x − x_box);   outside: the ball_contact with the point x_box + R q, q_i = y_i but not beyond ±half_i, of radius 0
-    inside (|y_i| < half_i for all i): the way out is through the nearest face, along the axis i of the least depth half_i − |y_i|:
+    inside (|y_i| ≤ half_i for all i), the faces included: the way out is through the nearest face, along the axis i of the least depth half_i − |y_i|:
         n = sign(y_i) times that axis, sign(0) = 1;   gap = −depth − r,   p_a = x − r n,   p_b = x + depth n
 
     column(box.R, i) is axis i.
@@ -368,10 +373,9 @@ def points_plane(x, plane):
 
 def check_boxes(low, high):
     """Given.  Raise BadInput for a box that is inside out or not finite, with its first such edge, and where there is no box at all."""
-    if len(low) == 0:
-        raise BadInput("the number of boxes", 0, "give one at least")
-    check_finite("corner of a box [m]", low)
-    check_finite("corner of a box [m]", high)
+    check_array("the lower corners of the boxes [m]", low, 2)
+    check_array("the upper corners of the boxes [m]", high, 2)
+    check_shape("the upper corners of the boxes", high, low.shape)
     for i in range(len(low)):
         for c in range(low.shape[1]):
             if low[i, c] > high[i, c]:
@@ -409,6 +413,7 @@ def all_pairs(low, high):
 
     n (n − 1)/2 tests, see boxes_touch: ten times as many boxes take a hundred times as long.  Begin with  found = [(0, 0) for _ in range(0)],
     an empty list of pairs (so that the compiled copy knows what will be in it), append to it, and return as_pairs(found).
+    Raises what check_boxes raises; call it first.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 6.10: all_pairs")
@@ -454,6 +459,7 @@ def build_tree(low, high):
     Each level of the tree takes time in proportion to n, and there are about log₂(n/LEAF) levels.  See check_boxes.
     *Source:* median split; deck B, "Bounding volume hierarchies".
     """
+    low, high = finite_array("corner of a box [m]", low), finite_array("corner of a box [m]", high)
     check_boxes(low, high)
     n, d = low.shape
     numbers = np.zeros((3, 2 * n), np.int64)
@@ -522,8 +528,8 @@ def outward(a, i):
     """Given.  Unit normal (2,) out of edge i of a polygon a (k, 2), counter-clockwise.  Raises BadInput for an edge without length."""
     e = a[(i + 1) % len(a)] - a[i]
     length = np.sqrt(e @ e)
-    if length == 0.0:
-        raise BadInput("the length of an edge [m]", 0.0, "leave out corners that are there twice")
+    if not 0.0 < length < np.inf:
+        raise BadInput("the length of an edge [m]", length, "give finite corners, each of them once")
     return np.array([e[1], -e[0]]) / length
 
 
@@ -585,6 +591,8 @@ def polygon_contacts(a, b):
     its two ends behind the reference are the points of contact.  So an edge on an edge is two points: the lecture's point–point.
     *Source:* deck A, "Edge/edge collisions are modeled as point/point"; Catto 2006 for the clipping.
     """
+    for thing, corners in (("the corners of polygon a [m]", a), ("the corners of polygon b [m]", b)):
+        check_field(thing, corners, (len(corners), 2))
     (gap_a, i), (gap_b, j) = separating_edge(a, b), separating_edge(b, a)
     if max(gap_a, gap_b) > 0.0:
         return Contacts(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(2), np.zeros(0))
@@ -594,6 +602,20 @@ def polygon_contacts(a, b):
     t = np.array([-n[1], n[0]])                                      # from p to q: counter-clockwise
     y = clip(clip(facing_edge(other, n), t, t @ q), -t, -(t @ p))
     return against_face(y, n, p, flipped)
+
+
+def make_box(x, R, half):
+    """Given.  A Box; raises BadInput unless half is positive, and R (3, 3) is orthonormal: its columns are the axes of the box."""
+    x, R, half = finite_array("centre of a box [m]", x), finite_array("axes R of a box [-]", R), finite_array("half edges of a box [m]", half)
+    for thing, y, shape in (("the centre of a box", x, (3,)), ("the axes R of a box", R, (3, 3)), ("the half edges of a box", half, (3,))):
+        check_shape(thing, y, shape)
+    for k in range(3):
+        check_positive("half an edge of a box [m]", half[k])
+        check_normal(R[:, k])
+    skewness = np.abs(R.T @ R - np.eye(3)).max()
+    if skewness > UNIT:
+        raise BadInput("the largest product of two axes of a box [-]", skewness, "give axes at right angles")
+    return Box(x, R, half)
 
 
 def half_width(box, n):
@@ -659,6 +681,8 @@ def box_box(a, b):
     *Source:* Gottschalk, Lin and Manocha 1996; Catto 2006.
     """
     gap, n, k = box_separation(a, b)
+    if not np.isfinite(gap):
+        raise BadInput("the gap between two boxes [m]", gap, "give both of them finite places, axes and sizes")
     if gap > 0.0:
         return Contacts(np.zeros((0, 3)), np.zeros((0, 3)), n, np.zeros(0))
     if k >= 6:
@@ -709,6 +733,7 @@ def nearest_part(p, q):
     *Source:* Gilbert, Johnson and Keerthi 1988.
     """
     y = p - q
+    y = y / np.abs(y).max()                              # weights have no unit; products of eight lengths must not overflow
     k, G, least = len(y), y @ y.T, np.inf
     delta, weights = np.zeros((2**k, k)), np.zeros(k)
     for subset in range(1, 2**k):
@@ -724,6 +749,18 @@ def nearest_part(p, q):
                 least, weights = v @ v, trial
     keep = weights > 0.0
     return p[keep], q[keep], weights[keep]
+
+
+def check_hulls(a, b):
+    """Given.  Raise BadInput unless a (k, d) and b (m, d) are points of two bodies: some of each, in one dimension, finite, and of a size
+    whose square is a number.
+    """
+    check_array("the points of body a [m]", a, 2)
+    check_array("the points of body b [m]", b, 2)
+    check_shape("a point of body b", b[0], a[0].shape)
+    size = max(np.abs(a).max(), np.abs(b).max())
+    if size > LARGEST or 0.0 < size < SMALLEST:
+        raise BadInput("the size of two bodies [m]", size, "scale both to about one metre, and the distance back")
 
 
 def far_enough(v, w):
@@ -744,6 +781,7 @@ def gjk(a, b):
         i = support(a, −v),  j = support(b, v),  w = a_i − b_j    the point of the differences that is farthest towards 0
         stop where far_enough(v, w);  else add a_i to p and b_j to q, and keep of them what counts: nearest_part(p, q)
     The answer is ball_contact(Σ weight p, 0, Σ weight q, 0).  Where they overlap it has a gap of 0 (or round-off) and no normal of any meaning.
+    Raises what check_hulls raises; call it first.
     *Source:* Gilbert, Johnson and Keerthi 1988.
     """
     # YOUR CODE HERE
@@ -819,8 +857,7 @@ def flock_energy(x, v, p):
 
 
 def make_flock(radius, reach, k, align, gather):
-    """Given.  A Flock; raises BadInput for a length or a k that is not positive."""
-    check_positive("radius [m]", radius)
-    check_positive("reach [m]", reach)
-    check_positive("k [m⁴/s²]", k)
-    return Flock(radius, reach, k, align, gather)
+    """Given.  A Flock; raises BadInput for a length or a k that is not positive, and for what is not finite."""
+    lengths = positive_number("radius [m]", radius), positive_number("reach [m]", reach)
+    pulls = finite_number("align [1/s]", align), finite_number("gather [1/s²]", gather)
+    return Flock(*lengths, positive_number("k [m⁴/s²]", k), *pulls)

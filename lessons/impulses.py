@@ -6,22 +6,24 @@ u [m/s] velocity of a's contact point as seen from b's, u_n = n · u its part al
 
 Velocities after an impact have a ⁺.  An impact is so short that nothing moves and no other force counts.  A body that cannot be moved has
 inv_mass = 0 and inv_inertia = 0.  In the plane r × n is the number r_x n_y − r_y n_x, and omega is a number, counter-clockwise.
-*Left out:* finding out who touches whom (lesson 6); contacts that last (lesson 9).
+*Left out:* finding out who touches whom (lesson 6).  Contacts that last, as in a stack, are not part of the lessons yet.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput, Diverged, check_end, check_finite, check_motion
-from solutions.friction import check_friction, tangential
+from solutions.checks import (BadInput, Diverged, check_array, check_end, check_field, check_finite, check_friction, check_normal, check_not_negative,
+                     check_positive, check_restitution, check_shape, checked_run, finite_array, finite_number, number, positive_number)
+from solutions.friction import tangential
 from solutions.integrators import symplectic_euler_step
 from solutions.rotation import cross, point_velocity, solve3
+from solutions.vectors import norm
 
-UNIT = 1e-9                  # how far from 1 a normal's length may be handed in [-]: any rounding is far below
 IMPACTS = 10_000             # in one step [-]; a ball of e = 0.8 has 165 before the next is closer than the spacing of floats
-SWEEPS = 10_000              # over several contact points [-]; four under a box need about a hundred
-SETTLED = 1e-14              # largest change in a sweep over the largest speed at the beginning [-]: a hundred roundings
+SWEEPS = 2000                # over several contact points [-]; four under a box need about a hundred
+STIFFEST = 1e-40             # determinant of K over its trace cubed, below which K has no inverse [-]: products of it vanish
+SETTLED = 1e-14              # largest change in a sweep over the largest |v| + |ω||r| at the beginning [-]: a hundred roundings
 
 
 class Flat(NamedTuple):
@@ -71,31 +73,21 @@ class Discs(NamedTuple):
 
 # ---------------------------------------------------------------------------------------------- what may be asked
 
-def check_restitution(e):
-    """Given.  Raise BadInput unless 0 ≤ e ≤ 1: above 1 every impact would make energy."""
-    if not 0.0 <= e <= 1.0:
-        raise BadInput("restitution e [-]", e, "give a number from 0 to 1")
-
-
 def check_inverse_mass(k):
     """Given.  Raise BadInput unless k [1/kg] is above zero: of two bodies that cannot be moved neither can give way."""
     if not (k > 0.0 and np.isfinite(k)):
         raise BadInput("inverse mass of two bodies at their contact [1/kg]", k, "let one of them have a finite mass")
 
 
-def check_normal(n):
-    """Given.  Raise BadInput unless n (d,) is a unit vector."""
-    length = np.sqrt(n @ n)
-    if not abs(length - 1.0) <= UNIT:
-        raise BadInput("length of a normal [-]", length, "give a unit vector")
-
-
 def check_contact(u, n, K, mu):
-    """Given.  Raise BadInput unless n is a unit vector, μ ≥ 0, u finite, and K gives way along n."""
+    """Given.  Raise BadInput unless n is a unit vector, μ ≥ 0, u finite, and K gives way along n, and in every other direction."""
     check_normal(n)
     check_friction(mu)
     check_finite("relative velocity u [m/s]", u)
     check_inverse_mass(n @ times(K, n))
+    determinant = K[0] @ cross(K[1], K[2])
+    if not determinant > STIFFEST * (K[0, 0] + K[1, 1] + K[2, 2]) ** 3:
+        raise BadInput("determinant of K [1/kg³]", determinant, "give a K that gives way in every direction")
 
 
 def times(A, b):
@@ -248,7 +240,7 @@ def cone_impulse(u, n, K, w, mu):
 def contact_impulse(u, n, K, e, mu):
     """Given.  J (3,) [N s] of an impact with friction: cone_impulse with Newton's  n · u⁺ = −e n · u;  0 where they separate."""
     check_restitution(e)
-    return cone_impulse(u, n, K, max(0.0, -e * (u @ n)), mu) if u @ n < 0.0 else np.zeros(3)
+    return np.zeros(3) if u @ n >= 0.0 else cone_impulse(u, n, K, -e * (u @ n), mu)
 
 
 def energy_change(u, K, J):
@@ -269,7 +261,7 @@ def gap_multiplier(phi, u_n, k, dt):
 
     φ⁺ = φ + dt (u_n + k λ),       0 ≤ φ⁺  ⊥  λ ≥ 0:    either the gap stays open and λ = 0, or it closes and λ is just what that takes
 
-    φ ≥ 0 [m] gap now, u_n [m/s] its rate before λ, k [1/kg].  Raises what check_inverse_mass raises.
+    φ ≥ 0 [m] gap now, u_n [m/s] its rate before λ, k [1/kg].  Raises what check_inverse_mass raises, and check_positive("step dt [s]", dt).
     *Source:* deck B, the gap function and its complementarity; Moreau 1988.
     """
     # YOUR CODE HERE
@@ -341,7 +333,7 @@ def fly(x, v, a, t):
 
 def lie(x, v, a, t, n):
     """Given.  (x, v) after t [s] of a ball that lies on its plane: it slides along without friction; a support pushes, and never pulls."""
-    return fly(x, tangential(v, n), a - min(0.0, a @ n) * n, t)
+    return fly(x, tangential(v, n), a - np.minimum(0.0, a @ n) * n, t)
 
 
 def backtracking_step(acceleration, t, x, v, dt, p):
@@ -360,15 +352,26 @@ def backtracking_step(acceleration, t, x, v, dt, p):
     raise NotImplementedError("Exercise 7.16: backtracking_step")
 
 
+def check_over_plane(p, d):
+    """Given.  Raise BadInput for an e outside 0 … 1, and unless gravity, the point and the unit normal of a plane have d coordinates."""
+    check_restitution(finite_number("restitution e [-]", p.e))
+    check_field("gravity [m/s²]", p.gravity, (d,))
+    check_field("point of the plane [m]", p.point, (d,))
+    check_field("normal of the plane [-]", p.n, (d,))
+    check_normal(p.n)
+
+
 def drop_all(step, acceleration, t, x, v, dt, steps, p):
     """Given.  The states (x, v), each (copies, d), of copies of a Drop that know nothing of each other, after so many steps of one method.
 
     Raises BadInput for a step that is not positive, an e outside 0 … 1, a normal that is not one, a state that is not finite; Diverged when
     the end is not finite.
     """
-    check_motion(x, v, dt)
-    check_restitution(p.e)
-    check_normal(p.n)
+    t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
+    check_array("position x [m]", x, 2)
+    check_over_plane(p, x.shape[1])
+    for thing, value in (("stiffness over mass [1/s²]", p.stiffness), ("damping over mass [1/s]", p.damping)):
+        check_not_negative(thing, number(thing, value))
     x, v = x.copy(), v.copy()
     for k in range(x.shape[0]):
         x_k, v_k = x[k], v[k]
@@ -423,11 +426,15 @@ def backtracking_spin_step(acceleration, t, x, v, omega, dt, p):
 
 def spin_all(step, acceleration, t, x, v, omega, dt, steps, p):
     """Given.  (x, v, ω), each (copies, 3), of copies of a Spinner after so many steps of one method; errors as in drop_all, or for μ < 0."""
-    check_motion(x, v, dt)
-    check_restitution(p.e)
-    check_friction(p.mu)
-    check_normal(p.n)
-    check_finite("angular velocity ω [rad/s]", omega)
+    t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
+    check_field("position x [m]", x, (len(x), 3))
+    omega = finite_array("angular velocity ω [rad/s]", omega)
+    check_shape("the angular velocity ω", omega, x.shape)
+    check_over_plane(p, 3)
+    check_friction(number("friction μ [-]", p.mu))
+    check_positive("inverse mass [1/kg]", number("inverse mass [1/kg]", p.inv_mass))
+    check_field("inverse inertia [1/(kg m²)]", p.inv_inertia, (3, 3))
+    positive_number("radius [m]", p.radius)
     x, v, omega = x.copy(), v.copy(), omega.copy()
     for k in range(x.shape[0]):
         x_k, v_k, omega_k = x[k], v[k], omega[k]
@@ -449,7 +456,7 @@ def meeting_time(x, v, i, j, reach, dt):
     for k in range(x.shape[1]):
         dx, dv = x[i, k] - x[j, k], v[i, k] - v[j, k]
         closing, apart, speed = closing - dx * dv, apart + dx * dx, speed + dv * dv
-    apart = max(0.0, apart)
+    apart = np.maximum(0.0, apart)
     squared = closing * closing - speed * apart
     return min(dt, apart / (closing + np.sqrt(squared))) if closing > 0.0 and squared >= 0.0 else dt
 
@@ -485,13 +492,13 @@ def separated(x, i, j, p):
     Only positions change: whoever starts inside another is separated, and not thrown out.
     """
     distance, n = normal_between(x, i, j)
-    share = max(0.0, p.radius[i] + p.radius[j] - distance) / (p.inv_mass[i] + p.inv_mass[j])
+    share = np.maximum(0.0, p.radius[i] + p.radius[j] - distance) / (p.inv_mass[i] + p.inv_mass[j])
     return x[i] + share * p.inv_mass[i] * n, x[j] - share * p.inv_mass[j] * n
 
 
 def drift(x, v, dt):
     """Given.  x + dt v, body by body: compiled loops over short rows cost less than arrays of two dimensions."""
-    x = x.copy()
+    x = 1.0 * x
     for k in range(x.shape[0]):
         x[k] += dt * v[k]
     return x
@@ -499,7 +506,7 @@ def drift(x, v, dt):
 
 def projecting_discs_step(x, v, dt, p):
     """Given.  Advance discs by one step, then treat all that overlap, pair by pair; first order."""
-    x, v = drift(x, v, dt), v.copy()
+    x, v = drift(x, v, dt), 1.0 * v
     for i in range(x.shape[0]):
         for j in range(i):
             if overlap(x, i, j, p.radius[i] + p.radius[j]):
@@ -513,7 +520,7 @@ def backtracking_discs_step(x, v, dt, p):
 
     Of impacts at the same moment the first pair in the list goes first: a choice.
     """
-    left, v = dt, v.copy()
+    left, v = dt, 1.0 * v
     for _ in range(IMPACTS):
         tau, first, second = left, 0, 0
         for i in range(x.shape[0]):
@@ -531,8 +538,12 @@ def backtracking_discs_step(x, v, dt, p):
 
 def discs_all(step, x, v, dt, steps, p):
     """Given.  (x, v), each (copies, bodies, d), of copies of some discs after so many steps of one method; errors as in drop_all."""
-    check_motion(x, v, dt)
-    check_restitution(p.e)
+    _, x, v, dt, steps = checked_run(0.0, x, v, dt, steps)
+    check_array("position x [m]", x, 3)
+    check_restitution(finite_number("restitution e [-]", p.e))
+    for thing, values in (("radius of a disc [m]", p.radius), ("inverse mass of a disc [1/kg]", p.inv_mass)):
+        check_field(thing, values, x.shape[1:2])
+        check_not_negative(thing, values.min())
     x, v = x.copy(), v.copy()
     for k in range(x.shape[0]):
         x_k, v_k = x[k], v[k]
@@ -545,30 +556,127 @@ def discs_all(step, x, v, dt, steps, p):
 
 # ---------------------------------------------------------------------------------------------- several impacts at once
 
+def check_impacts(body, r, n, e, mu):
+    """Given.  Raise BadInput unless a Solid, its offsets r (points, 3), as many unit normals n, e and μ are what an impact can be made of."""
+    check_restitution(finite_number("restitution e [-]", e))
+    check_friction(number("friction μ [-]", mu))
+    check_positive("inverse mass [1/kg]", number("inverse mass [1/kg]", body.inv_mass))
+    check_field("velocity v [m/s]", body.v, (3,))
+    check_field("angular velocity ω [rad/s]", body.omega, (3,))
+    check_field("inverse inertia [1/(kg m²)]", body.inv_inertia, (3, 3))
+    check_field("offsets r of the points [m]", r, (len(r), 3))
+    check_field("normals n of the points [-]", n, r.shape)
+    for i in range(len(n)):
+        check_normal(n[i])
+
+
 def one_after_the_other(body, r, n, e, mu):
-    """Given.  A Solid after an impact at several points, as in solve_impacts, but each point once, in turn.
+    """Given.  (Solid, residual [m/s]) after an impact at several points, as in solve_impacts, but each point once, in turn.
 
     Each finds the body as the one before has left it, so that the result depends on their order: two ends of an edge leave at
     different speeds.
     """
-    for i in range(r.shape[0]):
-        u = point_velocity(body.v, body.omega, r[i])
-        body = push(body, r[i], contact_impulse(u, n[i], point_inverse_mass(r[i], body.inv_mass, body.inv_inertia), e, mu))
-    return body
+    check_impacts(body, r, n, e, mu)
+    w, Js, after = rebound_speeds(body, r, n, e), np.zeros(r.shape), body
+    for i in range(len(r)):
+        u = point_velocity(after.v, after.omega, r[i])
+        Js[i] = contact_impulse(u, n[i], point_inverse_mass(r[i], body.inv_mass, body.inv_inertia), e, mu)
+        after = push(after, r[i], Js[i])
+    return after, impact_residual(after, r, n, Js, w, mu)
+
+
+def rebound_speeds(body, r, n, e):
+    """Given.  wᵢ = max(0, −e nᵢ · uᵢ) [m/s] (points,): Newton's restitution of the velocities before the impact."""
+    w = np.zeros(len(r))
+    for i in range(len(r)):
+        w[i] = np.maximum(0.0, -e * (n[i] @ point_velocity(body.v, body.omega, r[i])))
+    return w
+
+
+def largest_speed(body, r):
+    """Given.  Largest |v| + |ω||rᵢ| [m/s]: the velocity of a point is a sum of these two, and is rounded like them, however small it is."""
+    reach = 0.0
+    for i in range(len(r)):
+        reach = max(reach, norm(r[i]))
+    return norm(body.v) + norm(body.omega) * reach
+
+
+def impact_residual(after, r, n, Js, w, mu):
+    """Given.  How far [m/s] impulses Js (points, 3) are from the law of cone_impulse: the largest velocity by which it would still change
+    one of the points, each asked alone; 0 where the law holds at all of them.
+    """
+    worst = 0.0
+    for i in range(len(r)):
+        K = point_inverse_mass(r[i], after.inv_mass, after.inv_inertia)
+        u = point_velocity(after.v, after.omega, r[i]) - times(K, Js[i])
+        worst = np.maximum(worst, np.abs(times(K, cone_impulse(u, n[i], K, w[i], mu) - Js[i])).max())
+    return worst
+
+
+def into_cone(J, n, mu):
+    """Given.  The impulse (3,) of Coulomb's cone |J_t| ≤ μ J_n that is nearest to J (3,)."""
+    J_n, J_t, beta = J @ n, tangential(J, n), np.arctan(mu)
+    size = np.sqrt(J_t @ J_t)
+    if J_n >= 0.0 and size * np.cos(beta) <= J_n * np.sin(beta):
+        return J
+    along_rim = np.maximum(0.0, J_n * np.cos(beta) + size * np.sin(beta))
+    return along_rim * (np.cos(beta) * n + np.sin(beta) / size * J_t) if size > 0.0 else np.maximum(0.0, J_n) * n
+
+
+def most_dissipative_impact(body, r, n, e, mu):
+    """Given.  (Solid, residual [m/s]) after an impact at several points at once, for which the law of solve_impacts has no answer or
+    its sweeps do not find it.
+
+    Of all impulses inside the cones take those that leave the least kinetic energy: a convex problem, which always has an answer.  Each
+    point in turn goes down the gradient of the energy, its own velocity uᵢ, and back into its cone:  Jᵢ ← into_cone(Jᵢ − uᵢ/tr Kᵢ).
+    Scale all of them to the least energy, s = 1, and rebound with s = 1 + e (Poisson's restitution), or with less, so that no point goes
+    into the other body.  It never gains energy: over s that is a parabola, and s = 1 + e loses 1 − e² of what s = 1 loses.
+    *Source:* Moreau 1973, maximum dissipation; Anitescu 2006, the convex problem; Poisson 1817, the two phases.
+    """
+    before = np.zeros((len(r), 3))
+    for i in range(len(r)):
+        before[i] = point_velocity(body.v, body.omega, r[i])
+    w, Js, after, speed = rebound_speeds(body, r, n, e), np.zeros((len(r), 3)), body, largest_speed(body, r)
+    for _ in range(SWEEPS):
+        change = 0.0
+        for i in range(len(r)):
+            K = point_inverse_mass(r[i], body.inv_mass, body.inv_inertia)
+            u = point_velocity(after.v, after.omega, r[i])
+            J = into_cone(Js[i] - u / (K[0, 0] + K[1, 1] + K[2, 2]), n[i], mu) - Js[i]
+            change, after = np.maximum(change, np.abs(times(K, J)).max()), push(after, r[i], J)
+            Js[i] += J
+        if change <= SETTLED * speed:
+            break
+    gain, curvature, share = 0.0, 0.0, 1.0 + e
+    for i in range(len(r)):
+        u = point_velocity(after.v, after.omega, r[i])
+        gain, curvature = gain + Js[i] @ before[i], curvature + Js[i] @ (u - before[i])
+        leaves, would_leave = n[i] @ before[i], np.maximum(0.0, n[i] @ u)
+        if leaves > would_leave:                         # the impact slows this point: it may come to rest along n, not turn round
+            share = np.minimum(share, leaves / (leaves - would_leave))
+    share *= -gain / curvature if gain < 0.0 else 0.0
+    after = body
+    for i in range(len(r)):
+        Js[i] *= share
+        after = push(after, r[i], Js[i])
+    return after, impact_residual(after, r, n, Js, w, mu)
 
 
 def solve_impacts(body, r, n, e, mu):
-    """A Solid after an impact at several points at once, offsets r (points, 3), normals n (points, 3), with what cannot be moved.
+    """(Solid, residual [m/s]) after an impact at several points at once, offsets r (points, 3), normals n (points, 3), with what cannot
+    be moved.
 
-    uᵢ = v + ω × rᵢ;  wᵢ = max(0, −e nᵢ · uᵢ)  from the velocities before the impact, and  Jᵢ = 0.  Then sweep over all points:
-        take back the point's own impulse:   u = uᵢ − Kᵢ Jᵢ,    Kᵢ = point_inverse_mass(rᵢ, 1/m, I⁻¹)
+    wᵢ = rebound_speeds(body, r, n, e), from the velocities before the impact, and  Jᵢ = 0.  Then sweep over all points:
+        uᵢ = v + ω × rᵢ;  take back the point's own impulse:   u = uᵢ − Kᵢ Jᵢ,    Kᵢ = point_inverse_mass(rᵢ, 1/m, I⁻¹)
         ask what it should be now:           J = cone_impulse(u, nᵢ, Kᵢ, wᵢ, μ);    push the body by J − Jᵢ at rᵢ;    Jᵢ ← J
-    until in a sweep no impulse changed a component of its point's velocity, Kᵢ (J − Jᵢ), by more than SETTLED times the largest |uᵢ| before.
+    The residual of a sweep is the largest component of a velocity Kᵢ (J − Jᵢ) by which an impulse changed its own point.  It has settled
+    when that is at most SETTLED times largest_speed(body, r).  Where SWEEPS sweeps are not enough, return most_dissipative_impact(body, r, n, e, μ), given above, of the body
+    before the impact: with much friction the law can be without an answer, and its residual says so.
 
     Together: the order of the points does not matter in the end, and what met the floor flat leaves it flat.
-    Raises what check_restitution raises, call it first; Diverged when SWEEPS sweeps are not enough.
+    Raises what check_impacts raises; call it first.
     *Source:* Gauss–Seidel sweeps, as in Guendelman et al. 2003; deck B, "Multi-contact problems".
-    *Left out:* how an impact travels from point to point; contacts between many bodies (lesson 9).
+    *Left out:* how an impact travels from point to point; contacts between many bodies.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 7.17: solve_impacts")

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solutions.checks import Diverged, check_end, check_motion
+from solutions.checks import Diverged, check_end, check_positive, checked_run
 
 NEWTON_TOLERANCE = 1e-12     # last correction over the size of the velocity [-]: well above round-off, 2e-16
 NEWTON_LIMIT = 30            # corrections [-]; from a sane guess Newton doubles its digits and needs fewer than 8
@@ -119,9 +119,9 @@ def newton_matrix(acceleration, t, x, v, dt, p):
 
     It is the derivative of the residual  r(v) = v − vₙ − dt a(t, xₙ + dt v, v)  that Newton's method drives to zero.
     """
-    matrix = np.eye(v.size, dtype=v.dtype)
+    matrix = np.eye(v.size)
     for k in range(v.size):
-        ahead, behind = v.copy(), v.copy()
+        ahead, behind = 1.0 * v, 1.0 * v                             # in floats, also where v was given in whole numbers
         ahead.ravel()[k] += DIFFERENCE_STEP * max(1.0, abs(v.ravel()[k]))
         behind.ravel()[k] -= DIFFERENCE_STEP * max(1.0, abs(v.ravel()[k]))
         change = acceleration(t, x + dt * ahead, ahead, p) - acceleration(t, x + dt * behind, behind, p)
@@ -179,7 +179,7 @@ def advance(step, acceleration, t, x, v, dt, steps, p):
 
     Raises BadInput for a step that is not positive or a state that is not finite, Diverged when the end is not finite.
     """
-    check_motion(x, v, dt)
+    t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
     for n in range(steps):
         x, v = step(acceleration, t + n * dt, x, v, dt, p)
     check_end(x, v, dt)
@@ -188,6 +188,7 @@ def advance(step, acceleration, t, x, v, dt, steps, p):
 
 def trajectory(step, acceleration, t, x, v, dt, steps, p):
     """Given.  Times (steps + 1,) and states (steps + 1, …) of the same run, the start included: ts, xs, vs."""
+    t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
     ts = t + dt * np.arange(steps + 1)
     xs = np.zeros((steps + 1,) + x.shape)
     vs = np.zeros((steps + 1,) + v.shape)
@@ -238,7 +239,8 @@ def observed_order(dts, errors):
 
     error ≈ C dtᵏ   ⇒   k = Σ (ξ − ξ̄)(η − η̄) / Σ (ξ − ξ̄)²,   ξ = log dt, η = log error
 
-    dts and errors are (n,) arrays of positive numbers.
+    dts and errors are (n,) arrays of positive numbers.  Raises BadInput for one that is not: check_positive("step dt [s]", dt) and
+    check_positive("error [-]", error).  A run without any error says nothing about an order.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 1.10: observed_order")

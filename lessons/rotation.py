@@ -8,14 +8,15 @@ Vectors are in world coordinates, unless the name ends in _body.  The axes of th
 
 Every method is a function  step(torque, t, q, L, dt, body) → (q, L)  at t + dt.  torque(t, q, L, body) returns (3,) [N m] and gets
 body, any record with a field I_body, untouched.  L itself is the state, so that without a torque it is kept to the last digit.
-*Left out:* contacts, but for a ball on a floor; lessons 6, 7 and 9 build them.
+*Left out:* contacts, but for a ball on a floor; lessons 6 and 7 find them and answer them.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput, Diverged, check_end, check_finite, check_motion, check_positive
+from solutions.checks import BadInput, Diverged, check_end, check_finite, check_positive, check_shape, checked_run, finite_array, finite_number, positive_number, whole_number
+from solutions.friction import cone_radius
 
 NEWTON_TOLERANCE = 1e-12     # last correction over the size of the unknown [-]: Newton squares it, so what is left is round-off
 NEWTON_LIMIT = 30            # corrections [-]; from a sane guess Newton doubles its digits and needs fewer than 6
@@ -56,6 +57,7 @@ class Ball(NamedTuple):
 
 def check_moments(I_body):
     """Given.  Raise BadInput unless some distribution of mass has these principal moments: positive, none above the sum of the others."""
+    check_shape("the principal moments", I_body, (3,))
     for k in range(3):
         check_positive("a principal moment of inertia [kg m²]", I_body[k])
         if I_body[k] > (I_body[(k + 1) % 3] + I_body[(k + 2) % 3]) * (1.0 + FLAT):
@@ -64,10 +66,9 @@ def check_moments(I_body):
 
 def make_body(m, I_body):
     """Given.  A Body from a number and three; raises BadInput for a mass or moments that no body has."""
-    check_positive("mass m [kg]", m)
-    moments = np.array(I_body, dtype=float)
+    moments = finite_array("principal moments [kg m²]", I_body)
     check_moments(moments)
-    return Body(float(m), moments)
+    return Body(positive_number("mass m [kg]", m), moments)
 
 
 # ---------------------------------------------------------------------------------------------- rotational movement
@@ -294,11 +295,11 @@ def rolling_load(t, x, v, q, omega, ball):
     r = np.array([0.0, 0.0, -ball.radius])
     slip = point_velocity(v, omega, r) + ball.dt * ball.gravity
     slip[2] = 0.0
-    size, support = np.sqrt(np.sum(slip * slip)), -ball.m * ball.gravity[2]
+    size, support = np.sqrt(np.sum(slip * slip)), max(0.0, -ball.m * ball.gravity[2])
     K = 1.0 / ball.m + ball.radius * ball.radius / ball.I_body[0]
     f = np.zeros(3)
-    if size > 0.0:
-        f = -min(ball.mu * support, size / (K * ball.dt)) / size * slip
+    if size != 0.0:
+        f = -np.minimum(cone_radius(ball.mu, support), size / (K * ball.dt)) / size * slip
     return ball.m * ball.gravity + np.array([f[0], f[1], support]), cross(r, f)
 
 
@@ -504,23 +505,28 @@ def composed_midpoint_step(torque, t, q, L, dt, body):
 # ---------------------------------------------------------------------------------------------- many steps
 
 def check_rotation(q):
-    """Given.  Raise BadInput unless the quaternion handed in has length 1."""
+    """Given.  Raise BadInput unless q is a quaternion of length 1."""
+    check_shape("the quaternion q", q, (4,))
     length = np.sqrt(np.sum(q * q))
     if not abs(length - 1.0) <= UNIT_TOLERANCE:
         raise BadInput("length of the quaternion q [-]", length, "divide q by it: an orientation has length 1")
 
 
-def check_tumbling(q, L, dt, I_body):
-    """Given.  Raise BadInput for a step that is not positive, a quaternion that is no rotation, moments that no body has, an L that is not finite."""
-    check_positive("step dt [s]", dt)
+def checked_rotation(t, q, L, dt, steps, I_body):
+    """Given.  (t, q, L, dt, steps) in float64, as tumble asks for them.
+
+    Raises BadInput for a step that is not positive, a quaternion that is no rotation, moments that no body has, an L that is not finite.
+    """
+    q, L = finite_array("quaternion q [-]", q), finite_array("angular momentum L [kg m²/s]", L)
     check_rotation(q)
+    check_shape("the angular momentum L", L, (3,))
     check_moments(I_body)
-    check_finite("angular momentum L [kg m²/s]", L)
+    return finite_number("time t [s]", t), q, L, positive_number("step dt [s]", dt), whole_number("number of steps", steps, 0)
 
 
 def tumble(step, torque, t, q, L, dt, steps, body):
-    """Given.  The state (q, L) after so many steps of one method; raises what check_tumbling raises, and Diverged when the end is not finite."""
-    check_tumbling(q, L, dt, body.I_body)
+    """Given.  The state (q, L) after so many steps of one method; raises what checked_rotation raises, and Diverged when the end is not finite."""
+    t, q, L, dt, steps = checked_rotation(t, q, L, dt, steps, body.I_body)
     for n in range(steps):
         q, L = step(torque, t + n * dt, q, L, dt, body)
     check_end(q, L, dt)
@@ -529,6 +535,7 @@ def tumble(step, torque, t, q, L, dt, steps, body):
 
 def tumbling(step, torque, t, q, L, dt, steps, body):
     """Given.  Times (steps + 1,), orientations (steps + 1, 4) and angular momenta (steps + 1, 3) of the same run, the start included."""
+    t, q, L, dt, steps = checked_rotation(t, q, L, dt, steps, body.I_body)
     ts = t + dt * np.arange(steps + 1)
     qs, Ls = np.zeros((steps + 1, 4)), np.zeros((steps + 1, 3))
     qs[0], Ls[0] = q, L
@@ -540,11 +547,13 @@ def tumbling(step, torque, t, q, L, dt, steps, body):
 
 def move(step, load, t, x, v, q, omega, dt, steps, body):
     """Given.  The state (x, v, q, ω) after so many steps of a rigid body, like rigid_body_step; raises what tumble raises."""
-    check_positive("mass m [kg]", body.m)
-    check_motion(x, v, dt)
-    check_rotation(q)
-    check_moments(body.I_body)
-    check_finite("angular velocity ω [rad/s]", omega)
+    positive_number("mass m [kg]", body.m)
+    t, q, omega, dt, steps = checked_rotation(t, q, omega, dt, steps, body.I_body)
+    t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
+    check_shape("the position x", x, (3,))
+    F, tau = load(t, x, v, q, omega, body)
+    check_finite("force at the start [N]", F)
+    check_finite("torque at the start [N m]", tau)
     for n in range(steps):
         x, v, q, omega = step(load, t + n * dt, x, v, q, omega, dt, body)
     check_end(x, v, dt)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput, Diverged, check_finite, check_positive
+from solutions.checks import BadInput, Diverged, WrongShape, check_indices, check_positive, check_shape, finite_array, one_each
 from solutions.integrators import average_velocity_step
 
 GRAVITY = 9.81                # g [m/s²], near the ground; deck A rounds it to 9.8
@@ -45,6 +45,7 @@ def universal_gravity(x_a, x_b, m_a, m_b, G):
     F = G m_a m_b / r²  along the line from a to b,   r = |x_b − x_a|
 
     Near the ground, with b the Earth, it is m_a g.
+    Raises BadInput for two bodies in one place: check_positive("distance of two bodies [m]", r).
     *Source:* deck A, "Friction (2)" and "Gravity"; Newton 1687.
     """
     # YOUR CODE HERE
@@ -171,23 +172,42 @@ def make_mesh(x, m, fixed, pairs, k, k_d, gravity, wind, k_v):
     """Given.  A Mesh whose springs rest at the lengths they have at x.
 
     x (n, d); m [kg], k and k_d are numbers or one each; fixed lists point numbers; pairs (s, 2); gravity and wind (d,).
-    Raises BadInput for a mass that is not positive, a state that is not finite, a spring of no length.
+    Raises BadInput for a mass that is not positive, a state that is not finite, a point number that is none, a spring of no length,
+    a negative stiffness, damper or viscosity, gravity or wind of another dimension than x.
     """
-    check_finite("a position of the mesh [m]", x)
-    masses = np.broadcast_to(np.asarray(m, dtype=float), len(x))
-    for mass in masses:
-        check_positive("a mass of the mesh [kg]", mass)
-    inv_mass = 1.0 / masses
-    inv_mass[list(fixed)] = 0.0
-    i, j = np.ascontiguousarray(pairs[:, 0]), np.ascontiguousarray(pairs[:, 1])
-    rest = np.sqrt(np.sum((x[j] - x[i]) ** 2, axis=1))
+    x = finite_array("a position of the mesh [m]", x)
+    inv_mass = inverse_masses("a mass of the mesh [kg]", m, fixed, x)
+    i, j, rest = measured_links("spring", x, pairs)
     for s in np.flatnonzero(rest == 0.0):
         raise BadInput(f"the length of spring {s} from point {i[s]} to {j[s]} [m]", 0.0, "move its ends apart")
+    gravity, wind = finite_array("gravity [m/s²]", gravity), finite_array("wind [N]", wind)
+    check_shape("gravity", gravity, x.shape[1:])
+    check_shape("wind", wind, x.shape[1:])
+    stiffness, damper = one_each("stiffness k [N/m]", k, len(i)), one_each("damper k_d [N s/m]", k_d, len(i))
+    return Mesh(inv_mass, gravity, wind, one_each("viscosity k_v [N s/m]", k_v, 1)[0], i, j, rest, stiffness, damper)
 
-    def each(value):
-        return np.full(len(i), value, dtype=float) if np.ndim(value) == 0 else np.array(value, dtype=float)
 
-    return Mesh(inv_mass, np.array(gravity, dtype=float), np.array(wind, dtype=float), float(k_v), i, j, rest, each(k), each(k_d))
+def inverse_masses(thing, m, fixed, x):
+    """Given.  (n,) 1/m of points x (n, d), 0 for those in `fixed`; m is a number or one each.  Raises BadInput."""
+    if x.ndim != 2 or x.size == 0:
+        raise WrongShape("the points x", x.shape, "(n, d), a row for each point")
+    masses = one_each(thing, m, len(x))
+    for mass in masses:
+        check_positive(thing, mass)
+    inv_mass = 1.0 / masses
+    inv_mass[check_indices("the number of a fixed point", fixed, len(x))] = 0.0
+    return inv_mass
+
+
+def measured_links(kind, x, pairs):
+    """Given.  (i, j, length), each (s,), of links between the points x (n, d) from pairs (s, 2) of their numbers.  Raises BadInput."""
+    pairs = check_indices(f"a point number of a {kind}", pairs, len(x))
+    if pairs.size == 0:
+        pairs = pairs.reshape(0, 2)
+    if pairs.ndim != 2 or pairs.shape[1] != 2:
+        raise WrongShape("the pairs", pairs.shape, "(s, 2), two point numbers in each row")
+    i, j = np.ascontiguousarray(pairs[:, 0]), np.ascontiguousarray(pairs[:, 1])
+    return i, j, np.sqrt(np.sum((x[j] - x[i]) ** 2, axis=1))
 
 
 def randomised(value, spread, u):
@@ -221,7 +241,7 @@ def spring_stiffness(x, mesh):
 
 def apply_blocks(y, i, j, block):
     """Given.  (n, d): Σ over springs of block · (y_i − y_j), added at i and subtracted at j."""
-    out = np.zeros_like(y)
+    out = np.zeros(y.shape)
     for s in range(i.size):
         for a in range(y.shape[1]):
             total = 0.0

@@ -13,7 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .checks import BadInput, Diverged, check_end, check_finite, check_motion, check_positive
+from .checks import (BadInput, Diverged, check_array, check_end, check_field, check_friction, check_normal, check_restitution, check_shape, checked_run,
+                     finite_array, finite_number, number, positive_number)
 
 HALVINGS = 60                # of an interval of time: 2⁻⁶⁰ of a step is below the spacing of floats
 EVENTS = 8                   # stops and starts in one step [-]; a force that reverses more often needs a shorter step
@@ -52,12 +53,6 @@ class InBowl(NamedTuple):
 
 # ---------------------------------------------------------------------------------------------- at rest and sliding
 
-def check_friction(mu):
-    """Given.  Raise BadInput unless μ is zero or more; infinity is a number here: it holds against everything."""
-    if not mu >= 0.0:
-        raise BadInput("friction μ [-]", mu, "give a number of zero or above")
-
-
 def tangential(y, n):
     """Given.  The part of y (d,) along a surface of unit normal n:  y − (y · n) n."""
     return y - (y @ n) * n
@@ -66,7 +61,7 @@ def tangential(y, n):
 def cone_radius(mu, F_N):
     """Given.  μ F_N, the most that friction can be; without load 0, even where μ = ∞.  Raises BadInput for a negative μ."""
     check_friction(mu)
-    return mu * F_N if F_N > 0.0 else 0.0
+    return 0.0 if F_N <= 0.0 else mu * F_N               # in this order, so that a load of NaN is not taken for none
 
 
 def normal_force(F, n):
@@ -77,7 +72,7 @@ def normal_force(F, n):
     *Source:* deck A, "Resting contact", "Normal force".
     """
     ### BEGIN SOLUTION 3.1
-    return max(0.0, -(F @ n))
+    return np.maximum(0.0, -(F @ n))
     ### END SOLUTION
 
 
@@ -143,7 +138,7 @@ def friction_impulse(v_t, m, j_n, mu):
     ### BEGIN SOLUTION 3.5
     speed = np.sqrt(v_t @ v_t)
     limit = cone_radius(mu, j_n)
-    return -m * v_t if m * speed <= limit else -limit / speed * v_t
+    return -m * v_t if m * speed <= limit else -np.minimum(limit, m * speed) / speed * v_t
     ### END SOLUTION
 
 
@@ -158,8 +153,8 @@ def pyramid_impulse(v_t, m, j_n, mu, t_1, t_2):
     """
     ### BEGIN SOLUTION 3.6
     limit = cone_radius(mu, j_n)
-    first = max(-limit, min(limit, m * (v_t @ t_1)))
-    second = max(-limit, min(limit, m * (v_t @ t_2)))
+    first = np.maximum(-limit, np.minimum(limit, m * (v_t @ t_1)))
+    second = np.maximum(-limit, np.minimum(limit, m * (v_t @ t_2)))
     return -first * t_1 - second * t_2
     ### END SOLUTION
 
@@ -171,15 +166,17 @@ def make_block(n, mu_s, mu_k, gravity, push, omega):
 
     Raises BadInput for a negative μ, for μ_k above μ_s (then it could neither hold nor slide), for what is not finite.
     """
+    mu_s, mu_k = number("static friction μ_s [-]", mu_s), number("kinetic friction μ_k [-]", mu_k)
     check_friction(mu_s)
     check_friction(mu_k)
     if mu_k > mu_s:
         raise BadInput("kinetic friction μ_k [-]", mu_k, f"give at most the static μ_s = {mu_s}")
-    n, gravity, push = (np.array(y, dtype=float) for y in (n, gravity, push))
-    check_positive("length of the normal n [-]", np.linalg.norm(n))
-    check_finite("gravity [m/s²]", gravity)
-    check_finite("push over mass [m/s²]", push)
-    return Block(n / np.linalg.norm(n), float(mu_s), float(mu_k), gravity, push, float(omega))
+    n, gravity, push = finite_array("normal n [-]", n), finite_array("gravity [m/s²]", gravity), finite_array("push over mass [m/s²]", push)
+    check_array("normal n", n, 1)
+    length = positive_number("length of the normal n [-]", np.linalg.norm(n))
+    for thing, y in (("gravity", gravity), ("push over mass", push)):
+        check_shape(thing, y, n.shape[:1])
+    return Block(n / length, mu_s, mu_k, gravity, push, finite_number("angular frequency ω [rad/s]", omega))
 
 
 def driven_acceleration(t, x, v, p):
@@ -231,7 +228,7 @@ def slip_direction(acceleration, t, x, v, p):
     """
     ### BEGIN SOLUTION 3.8
     speed = np.sqrt(v @ v)
-    if speed > 0.0:
+    if speed != 0.0:
         return v / speed
     a = acceleration(t, x, v, p)
     a_t = tangential(a, p.n)
@@ -330,6 +327,10 @@ def event_step(acceleration, t, x, v, dt, p):
 
 def slip_times(acceleration, t, x, v, dt, steps, p):
     """Given.  (k, 2) [s]: when each slip begins and ends; the last ends with the run if the block is still sliding then."""
+    t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
+    check_normal(p.n)
+    check_shape("the position x", x, p.n.shape)
+    finite_array("acceleration at the start [m/s²]", acceleration(t, x, v, p))
     times = np.zeros((EVENTS * steps, 2))
     k, slipping = 0, False
     for step in range(steps):
@@ -456,14 +457,19 @@ def gripping_step(acceleration, surface, t, x, v, dt, p):
 def contact_motion(step, acceleration, surface, t, x, v, dt, steps, p):
     """Given.  The state (x, v) of a particle after so many steps of one method.
 
-    Raises BadInput for a mass or a step that is not positive, a negative μ, an e outside 0 … 1 or a state that is not finite,
-    Diverged when the end is not finite.
+    Raises BadInput for a mass or a step that is not positive, a negative μ, an e outside 0 … 1, a state that is not finite, and a
+    surface whose normal at x is no unit vector; Diverged when the end is not finite.
     """
-    check_positive("mass m [kg]", p.m)
-    check_friction(p.mu)
-    if not 0.0 <= p.e <= 1.0:
-        raise BadInput("restitution e [-]", p.e, "give a number from 0 to 1")
-    check_motion(x, v, dt)
+    t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
+    positive_number("mass m [kg]", p.m)
+    check_friction(number("friction μ [-]", p.mu))
+    check_restitution(finite_number("restitution e [-]", p.e))
+    check_field("gravity [m/s²]", p.gravity, x.shape)
+    phi, n = surface(x, p)
+    finite_number("gap at the start [m]", phi)
+    check_field("normal at the start [-]", n, x.shape)
+    if np.any(n):                                        # in the middle of a bowl there is no normal
+        check_normal(n)
     for n in range(steps):
         x, v = step(acceleration, surface, t + n * dt, x, v, dt, p)
     check_end(x, v, dt)

@@ -14,12 +14,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .checks import BadInput, Diverged, check_finite, check_positive
+from .checks import BadInput, Diverged, check_positive, check_shape, finite_array, one_each, whole_number
 from .integrators import solve
 from .rotation import angular_acceleration, cross, product, quaternion_update, rotate, unrotate
+from .springs import inverse_masses, measured_links
 
 NEWTON_TOLERANCE = 1e-12     # last correction over the longest link [-]: Newton squares it, so what is left is round-off
 NEWTON_LIMIT = 40            # corrections [-]; from a sane guess Newton doubles its digits and needs fewer than 8
+TRACE = 1e-13                # compliance over w dt² of a link [-]: far below the pull of all links, far above round-off
+FIRST_TRACE = 1e-10          # the same while the gaps are still closing: what redundant links then disagree about is larger than round-off
 
 
 class Net(NamedTuple):
@@ -105,7 +108,7 @@ def projection(C, gradients, inv_mass):
             total += inv_mass[k] * gradients[k, c] * gradients[k, c]
     if total == 0.0:
         raise BadInput("Σ w |∇C|² of a constraint", 0.0, "let one of its points have a mass and a gradient")
-    corrections = np.zeros_like(gradients)
+    corrections = np.zeros(gradients.shape)
     for k in range(inv_mass.size):
         for c in range(d):
             corrections[k, c] = -C / total * inv_mass[k] * gradients[k, c]
@@ -117,7 +120,7 @@ def projection(C, gradients, inv_mass):
 
 def falling_acceleration(t, x, v, net):
     """Given.  a (n, d) [m/s²]: gravity for everything that has a mass."""
-    a = np.zeros_like(x)
+    a = np.zeros(x.shape)
     for k in range(x.shape[0]):
         if net.inv_mass[k] > 0.0:
             for c in range(x.shape[1]):
@@ -159,8 +162,10 @@ def newton_correction(x, lam, goal, dt, net):
 
     wanted:  x − x_pred − dt² W Σ λₛ ∇Cₛ(x) = 0  and  Cₛ(x) = 0.      Linear about the guess, with the new λ, of both:
         (1 − dt² W Σ λₛ ∇²Cₛ) Δx − dt² W Jᵀ λ_new = x_pred − x
-        J Δx                                      = −C
-    The λ that is handed in counts in ∇²C only.  (Λ = dt² λ is the better unknown: of one size with x.)
+        J Δx − ε dt² (λ_new − λ)                  = −C              ε = TRACE (w_i + w_j) of each link
+    ε is a trace of compliance, on the change of λ: where Newton's method comes to rest it is not there.  It decides between multipliers
+    that do the same, where links are redundant (a square with both diagonals): without it the matrix has no inverse there.
+    (Λ = dt² λ is the better unknown: of one size with x.)
 
     W: the inverse mass of each coordinate of x.ravel();  (C, J) = constraints(x, net);  goal (n, d) is x_pred.
     ∇²C of a link: H = (1 − n nᵀ)/l for the ends (i, i) and (j, j), −H for (i, j) and (j, i);  l = C + rest.
@@ -170,11 +175,12 @@ def newton_correction(x, lam, goal, dt, net):
     ### BEGIN SOLUTION 8.4
     d, size = x.shape[1], x.size
     C, J = constraints(x, net)
-    A, right, change = np.zeros((size + C.size, size + C.size)), np.zeros(size + C.size), np.zeros_like(x)
+    A, right, change = np.zeros((size + C.size, size + C.size)), np.zeros(size + C.size), np.zeros(x.shape)
     for k in range(size):
         A[k, k], right[k] = 1.0, goal[k // d, k % d] - x[k // d, k % d]
     for s in range(C.size):
-        right[size + s] = -C[s]
+        trace = TRACE * (net.inv_mass[net.i[s]] + net.inv_mass[net.j[s]])
+        A[size + s, size + s], right[size + s] = -trace, -C[s] - trace * dt * dt * lam[s]
         for e in (net.i[s], net.j[s]):
             for a in range(e * d, e * d + d):
                 A[size + s, a], A[a, size + s] = J[s, a], -net.inv_mass[e] * J[s, a]
@@ -195,7 +201,8 @@ def projection_step(acceleration, t, x, v, dt, net):
     x_pred = predict(…);  from the guess (x, λ = 0) add newton_correction's Δx, and take its λ, until |Δx| of every coordinate is at
     most NEWTON_TOLERANCE times the longest link;  then  vₙ₊₁ = (xₙ₊₁ − xₙ)/dt.
 
-    Raises Diverged("the projection did not converge at dt [s]", dt, "take a smaller step") after NEWTON_LIMIT rounds.
+    Raises Diverged("the projection did not converge at dt [s]", dt, "take a smaller step, or slacken what is taut") after NEWTON_LIMIT rounds: where no
+    finite λ holds the links, too, as in a rope that is taut between two fixed ends and pulled aside.
     *Source:* deck B, "Projection method"; an implicit Euler method: it takes energy, and more with longer steps.
     """
     ### BEGIN SOLUTION 8.5
@@ -206,7 +213,7 @@ def projection_step(acceleration, t, x, v, dt, net):
         new = new + change
         if np.max(np.abs(change)) <= NEWTON_TOLERANCE * longest:
             return new, (new - x) / dt
-    raise Diverged("the projection did not converge at dt [s]", dt, "take a smaller step")
+    raise Diverged("the projection did not converge at dt [s]", dt, "take a smaller step, or slacken what is taut")
     ### END SOLUTION
 
 
@@ -222,23 +229,27 @@ def rattle_step(acceleration, t, x, v, dt, net):
     new = x + dt * v + 0.5 * dt * dt * acceleration(t, x, v, net)
     for _ in range(NEWTON_LIMIT):
         C, J_new = constraints(new, net)
-        change = pushed(J, solve(met(J_new, J, net), -C), net)
+        change = pushed(J, solve(met(J_new, J, net, FIRST_TRACE), -C), net)               # each round removes what the trace left
         new = new + change
-        if np.max(np.abs(change)) <= NEWTON_TOLERANCE * np.max(net.rest):
+        if max(np.max(np.abs(change)), np.max(np.abs(C))) <= NEWTON_TOLERANCE * np.max(net.rest):
             v = (new - x) / dt + 0.5 * dt * acceleration(t + dt, new, v, net)
             _, J = constraints(new, net)
-            return new, v - pushed(J, solve(met(J, J, net), rates(J, v)), net)
-    raise Diverged("the projection did not converge at dt [s]", dt, "take a smaller step")
+            return new, v - pushed(J, solve(met(J, J, net, TRACE), rates(J, v)), net)
+    raise Diverged("the projection did not converge at dt [s]", dt, "take a smaller step, or slacken what is taut")
 
 
-def met(J, K, net):
-    """Given.  J W Kᵀ (s, s): how each constraint, with the gradients J, answers a push along the gradients K of each."""
+def met(J, K, net, trace):
+    """Given.  J W Kᵀ (s, s): how each constraint, with the gradients J, answers a push along the gradients K of each.
+
+    A trace of w_i + w_j is added on the diagonal, so that redundant links have an inverse, too.
+    """
     d, A = J.shape[1] // net.inv_mass.size, np.zeros((J.shape[0], K.shape[0]))
     for s in range(J.shape[0]):
         for k in (net.i[s], net.j[s]):                                   # no other point of row s counts
             for r in range(K.shape[0]):
                 for c in range(k * d, k * d + d):
                     A[s, r] += net.inv_mass[k] * J[s, c] * K[r, c]
+        A[s, s] += trace * (net.inv_mass[net.i[s]] + net.inv_mass[net.j[s]])
     return A
 
 
@@ -274,7 +285,7 @@ def distance_sweep(x, net):
     *Source:* deck B, "Loop over all constraints = 1 iteration"; Müller et al. 2006, eqs. 10, 11.
     """
     ### BEGIN SOLUTION 8.6
-    x, d = x.copy(), x.shape[1]
+    x, d = 1.0 * x, x.shape[1]
     for s in range(net.i.size):
         i, j = net.i[s], net.j[s]
         squared = 0.0
@@ -380,7 +391,7 @@ def keep_outside(surface, x, inv_mass, obstacle):
     *Source:* Müller et al. 2006, section 3.4; deck B, "Project particle out".
     """
     ### BEGIN SOLUTION 8.11
-    x = x.copy()
+    x = 1.0 * x
     for k in range(x.shape[0]):
         phi, n = surface(x[k], obstacle)
         if phi < 0.0 and inv_mass[k] > 0.0:
@@ -391,7 +402,7 @@ def keep_outside(surface, x, inv_mass, obstacle):
 
 def fold_sweep(x, cloth):
     """Given.  Positions after one visit to every fold of a cloth."""
-    x = x.copy()
+    x = 1.0 * x
     for h in range(cloth.fold.size):
         corners, w = np.zeros((4, 3)), np.zeros(4)
         for k in range(4):
@@ -422,8 +433,9 @@ def compliant_multiplier(C, Lam, weight, alpha, dt):
     ΔΛ = (−C − α̃ Λ)/(weight + α̃),      α̃ = α/dt²          weight = Σ w |∇C|²
 
     Λ = λ dt² is what earlier visits of this step have added up to.  It comes to rest where C = −α̃ Λ = −α λ: Hooke's law.
-    Raises BadInput("compliance α [m/N]", α, "give zero or more") for a negative one (NaN, too), and
-    BadInput("Σ w |∇C|² of a constraint", 0.0, "let one of its points have a mass and a gradient") for a weight of 0.
+    Raises BadInput("compliance α [m/N]", α, "give zero or more") for a negative one (NaN, too),
+    BadInput("Σ w |∇C|² of a constraint", 0.0, "let one of its points have a mass and a gradient") for a weight of 0, and
+    BadInput("step dt [s]", dt, "give a number above zero") for a step that is not positive (NaN, too).
     *Source:* Macklin, Müller and Chentanez 2016, eq. 18.
     """
     ### BEGIN SOLUTION 8.12
@@ -431,6 +443,8 @@ def compliant_multiplier(C, Lam, weight, alpha, dt):
         raise BadInput("compliance α [m/N]", alpha, "give zero or more")
     if weight == 0.0:
         raise BadInput("Σ w |∇C|² of a constraint", 0.0, "let one of its points have a mass and a gradient")
+    if not dt > 0.0:
+        raise BadInput("step dt [s]", dt, "give a number above zero")
     scaled = alpha / (dt * dt)
     return (-C - scaled * Lam) / (weight + scaled)
     ### END SOLUTION
@@ -446,7 +460,7 @@ def compliant_sweep(x, Lam, dt, net):
     *Source:* Macklin et al. 2016, algorithm 1.
     """
     ### BEGIN SOLUTION 8.13
-    x, Lam, d = x.copy(), Lam.copy(), x.shape[1]
+    x, Lam, d = 1.0 * x, 1.0 * Lam, x.shape[1]
     for s in range(net.i.size):
         i, j = net.i[s], net.j[s]
         squared = 0.0
@@ -548,7 +562,7 @@ def volume_gradient(x, faces):
     *Source:* Müller et al. 2006, section 4.2, balloons; the divergence theorem.
     """
     ### BEGIN SOLUTION 8.18
-    V, gradient = 0.0, np.zeros_like(x)
+    V, gradient = 0.0, np.zeros(x.shape)
     for f in range(faces.shape[0]):
         a, b, c = x[faces[f, 0]], x[faces[f, 1]], x[faces[f, 2]]
         across = cross(b, c) / 6.0
@@ -585,35 +599,22 @@ def make_net(x, m, fixed, pairs, alpha, stiffness, gravity, sweeps):
 
     x (n, d); m [kg], alpha [m/N] and stiffness [-] are numbers or one each; fixed lists point numbers; pairs (s, 2); gravity (d,).
     Raises BadInput for a mass that is not positive, a state that is not finite, a link without length or between two immovable
-    points, a negative compliance, a stiffness outside 0 … 1 or equal to 0, fewer than one sweep.
+    points, a negative compliance, a stiffness outside 0 … 1 or equal to 0, fewer than one sweep, a point number that is none, gravity
+    of another dimension than x.
     """
-    check_finite("a position of the net [m]", x)
-    check_finite("gravity [m/s²]", np.array(gravity, dtype=float))
-    masses = np.broadcast_to(np.asarray(m, dtype=float), len(x))
-    for mass in masses:
-        check_positive("a mass of the net [kg]", mass)
-    inv_mass = 1.0 / masses
-    inv_mass[list(fixed)] = 0.0
-    i, j = (np.ascontiguousarray(np.asarray(pairs, dtype=np.int64).reshape(-1, 2)[:, k]) for k in (0, 1))
-    rest = np.sqrt(np.sum((x[j] - x[i]) ** 2, axis=1))
-    alphas, shares = (np.broadcast_to(np.asarray(y, dtype=float), len(i)).copy() for y in (alpha, stiffness))
+    x, gravity = finite_array("a position of the net [m]", x), finite_array("gravity [m/s²]", gravity)
+    inv_mass = inverse_masses("a mass of the net [kg]", m, fixed, x)
+    check_shape("gravity", gravity, x.shape[1:])
+    i, j, rest = measured_links("link", x, pairs)
+    alphas, shares = one_each("compliance α [m/N]", alpha, len(i)), one_each("stiffness of a link [-]", stiffness, len(i))
     for s in range(len(i)):
         if rest[s] == 0.0:
             raise BadInput(f"the length of link {s} from point {i[s]} to {j[s]} [m]", 0.0, "move its ends apart")
         if inv_mass[i[s]] + inv_mass[j[s]] == 0.0:
             raise BadInput(f"the inverse mass at link {s} from point {i[s]} to {j[s]} [1/kg]", 0.0, "leave out links between immovable points")
-        check_compliance(alphas[s])
         if not 0.0 < shares[s] <= 1.0:
             raise BadInput(f"the stiffness of link {s} [-]", shares[s], "give a number above 0, up to 1")
-    if sweeps < 1:
-        raise BadInput("sweeps in a step", sweeps, "give 1 or more")
-    return Net(inv_mass, np.array(gravity, dtype=float), i, j, rest, shares, alphas, int(sweeps))
-
-
-def check_compliance(alpha):
-    """Given.  Raise BadInput unless α is finite, and zero or more."""
-    if not (alpha >= 0.0 and np.isfinite(alpha)):
-        raise BadInput("compliance α [m/N]", alpha, "give zero or more")
+    return Net(inv_mass, gravity, i, j, rest, shares, alphas, whole_number("sweeps in a step", sweeps, 1))
 
 
 def shared_edges(faces):

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .checks import BadInput, Diverged, check_finite, check_positive
+from .checks import BadInput, Diverged, WrongShape, check_indices, check_positive, check_shape, finite_array, one_each
 from .integrators import average_velocity_step
 
 GRAVITY = 9.81                # g [m/s²], near the ground; deck A rounds it to 9.8
@@ -45,11 +45,14 @@ def universal_gravity(x_a, x_b, m_a, m_b, G):
     F = G m_a m_b / r²  along the line from a to b,   r = |x_b − x_a|
 
     Near the ground, with b the Earth, it is m_a g.
+    Raises BadInput for two bodies in one place: check_positive("distance of two bodies [m]", r).
     *Source:* deck A, "Friction (2)" and "Gravity"; Newton 1687.
     """
     ### BEGIN SOLUTION 2.1
     r = x_b - x_a
-    return G * m_a * m_b / np.sum(r * r) ** 1.5 * r
+    distance = np.sqrt(np.sum(r * r))
+    check_positive("distance of two bodies [m]", distance)
+    return G * m_a * m_b / distance**3 * r
     ### END SOLUTION
 
 
@@ -101,7 +104,7 @@ def soft_contact_force(C, C_rate, gradient, k, k_d):
     ### BEGIN SOLUTION 2.5
     if C >= 0.0:
         return 0.0 * gradient
-    return max(0.0, -(k * C + k_d * C_rate)) * gradient
+    return np.maximum(0.0, -(k * C + k_d * C_rate)) * gradient
     ### END SOLUTION
 
 
@@ -147,7 +150,7 @@ def spring_forces(x, v, mesh):
     *Source:* deck A, "spring.point1.force += force; spring.point2.force -= force".
     """
     ### BEGIN SOLUTION 2.7
-    force = np.zeros_like(x)
+    force = np.zeros(x.shape)
     for s in range(mesh.i.size):
         i, j = mesh.i[s], mesh.j[s]
         x_i, x_j, v_i, v_j, force_i, force_j = x[i], x[j], v[i], v[j], force[i], force[j]      # views of the rows
@@ -178,7 +181,7 @@ def mesh_acceleration(t, x, v, mesh):
     """
     ### BEGIN SOLUTION 2.8
     force = spring_forces(x, v, mesh)
-    a = np.zeros_like(x)
+    a = np.zeros(x.shape)
     for n in range(x.shape[0]):
         if mesh.inv_mass[n] > 0.0:
             for c in range(x.shape[1]):
@@ -222,23 +225,42 @@ def make_mesh(x, m, fixed, pairs, k, k_d, gravity, wind, k_v):
     """Given.  A Mesh whose springs rest at the lengths they have at x.
 
     x (n, d); m [kg], k and k_d are numbers or one each; fixed lists point numbers; pairs (s, 2); gravity and wind (d,).
-    Raises BadInput for a mass that is not positive, a state that is not finite, a spring of no length.
+    Raises BadInput for a mass that is not positive, a state that is not finite, a point number that is none, a spring of no length,
+    a negative stiffness, damper or viscosity, gravity or wind of another dimension than x.
     """
-    check_finite("a position of the mesh [m]", x)
-    masses = np.broadcast_to(np.asarray(m, dtype=float), len(x))
-    for mass in masses:
-        check_positive("a mass of the mesh [kg]", mass)
-    inv_mass = 1.0 / masses
-    inv_mass[list(fixed)] = 0.0
-    i, j = np.ascontiguousarray(pairs[:, 0]), np.ascontiguousarray(pairs[:, 1])
-    rest = np.sqrt(np.sum((x[j] - x[i]) ** 2, axis=1))
+    x = finite_array("a position of the mesh [m]", x)
+    inv_mass = inverse_masses("a mass of the mesh [kg]", m, fixed, x)
+    i, j, rest = measured_links("spring", x, pairs)
     for s in np.flatnonzero(rest == 0.0):
         raise BadInput(f"the length of spring {s} from point {i[s]} to {j[s]} [m]", 0.0, "move its ends apart")
+    gravity, wind = finite_array("gravity [m/s²]", gravity), finite_array("wind [N]", wind)
+    check_shape("gravity", gravity, x.shape[1:])
+    check_shape("wind", wind, x.shape[1:])
+    stiffness, damper = one_each("stiffness k [N/m]", k, len(i)), one_each("damper k_d [N s/m]", k_d, len(i))
+    return Mesh(inv_mass, gravity, wind, one_each("viscosity k_v [N s/m]", k_v, 1)[0], i, j, rest, stiffness, damper)
 
-    def each(value):
-        return np.full(len(i), value, dtype=float) if np.ndim(value) == 0 else np.array(value, dtype=float)
 
-    return Mesh(inv_mass, np.array(gravity, dtype=float), np.array(wind, dtype=float), float(k_v), i, j, rest, each(k), each(k_d))
+def inverse_masses(thing, m, fixed, x):
+    """Given.  (n,) 1/m of points x (n, d), 0 for those in `fixed`; m is a number or one each.  Raises BadInput."""
+    if x.ndim != 2 or x.size == 0:
+        raise WrongShape("the points x", x.shape, "(n, d), a row for each point")
+    masses = one_each(thing, m, len(x))
+    for mass in masses:
+        check_positive(thing, mass)
+    inv_mass = 1.0 / masses
+    inv_mass[check_indices("the number of a fixed point", fixed, len(x))] = 0.0
+    return inv_mass
+
+
+def measured_links(kind, x, pairs):
+    """Given.  (i, j, length), each (s,), of links between the points x (n, d) from pairs (s, 2) of their numbers.  Raises BadInput."""
+    pairs = check_indices(f"a point number of a {kind}", pairs, len(x))
+    if pairs.size == 0:
+        pairs = pairs.reshape(0, 2)
+    if pairs.ndim != 2 or pairs.shape[1] != 2:
+        raise WrongShape("the pairs", pairs.shape, "(s, 2), two point numbers in each row")
+    i, j = np.ascontiguousarray(pairs[:, 0]), np.ascontiguousarray(pairs[:, 1])
+    return i, j, np.sqrt(np.sum((x[j] - x[i]) ** 2, axis=1))
 
 
 def randomised(value, spread, u):
@@ -272,7 +294,7 @@ def spring_stiffness(x, mesh):
     for s in range(mesh.i.size):
         r = x[mesh.j[s]] - x[mesh.i[s]]
         length = np.sqrt(np.sum(r * r))
-        across = mesh.k[s] * max(0.0, 1.0 - mesh.rest[s] / length)
+        across = mesh.k[s] * np.maximum(0.0, 1.0 - mesh.rest[s] / length)
         for a in range(d):
             K[s, a, a] = across
             for b in range(d):
@@ -285,7 +307,7 @@ def spring_stiffness(x, mesh):
 
 def apply_blocks(y, i, j, block):
     """Given.  (n, d): Σ over springs of block · (y_i − y_j), added at i and subtracted at j."""
-    out = np.zeros_like(y)
+    out = np.zeros(y.shape)
     for s in range(i.size):
         for a in range(y.shape[1]):
             total = 0.0
@@ -317,9 +339,9 @@ def conjugate_gradients(apply, A, right):
     *Source:* Hestenes and Stiefel 1952; Shewchuk 1994.
     """
     ### BEGIN SOLUTION 2.12
-    y = np.zeros_like(right)
-    r = right.copy()
-    p = right.copy()
+    y = np.zeros(right.shape)
+    r = 1.0 * right
+    p = 1.0 * right
     squared = np.sum(r * r)
     enough = CG_TOLERANCE * CG_TOLERANCE * squared
     for _ in range(10 * right.size):
@@ -351,7 +373,7 @@ def implicit_mesh_step(acceleration, t, x, v, dt, mesh):
     K, D = spring_stiffness(x, mesh)
     pull = apply_blocks(v, mesh.i, mesh.j, K)
     diagonal = np.zeros(x.shape[0])
-    right = np.zeros_like(x)
+    right = np.zeros(x.shape)
     for n in range(x.shape[0]):
         if mesh.inv_mass[n] > 0.0:
             diagonal[n] = 1.0 / mesh.inv_mass[n] + dt * mesh.k_v

@@ -2,14 +2,22 @@
 
 import numpy as np
 import pytest
-from scipy.optimize import nnls
 
+from .brute import area, differences, distance, facets, outline
 from .grading.expect import NotYet, between, close, numbers, raises
 from solutions.checks import BadInput
 
 exercise = pytest.mark.exercise
 # Lengths are below 30 m, times below 10 s, and each answer takes a few dozen operations, each rounded by 1.1e-16 of that:
 ROUND_OFF = 1e-12
+# What brute force knows, over the size: 1e-13 at a thousand sizes from the origin, over angles of 0.01 rad, times ten
+KNOWN = 1e-10
+EDGES_WIN_BY = 1e-9          # how much farther [m] a pair of edges must separate than any face, as the lesson says
+
+
+def places(draw, d=3):
+    """(size, place) of small, middling and large bodies [m], at the origin and a thousand sizes away from it."""
+    return [(size, far * size * draw(-1.0, 1.0, d)) for size in (1e-6, 1.0, 1e3) for far in (0.0, 1e3)]
 
 
 def rotation(draw):
@@ -63,14 +71,14 @@ def fall(lesson, draw, d, r):
     return draw(1.0, 5.0), draw(0.01, 0.5), touch - s * move, touch + (1.0 - s) * move, lesson.Plane(rows[0], float(-rows[0] @ foot)), s
 
 
-@exercise("6.2", points=0.5, hint="d₁ and d₂ are distances of the skin, not of the centre: E less r, and r less E")
+@exercise("6.2", points=0.25, hint="d₁ and d₂ are distances of the skin, not of the centre: E less r, and r less E")
 def test_a_ball_meets_a_plane_where_its_skin_does(lesson, draw):
     for d, r in ((2, draw(0.1, 0.5)), (3, draw(0.1, 0.5)), (3, 0.0)):
         t, dt, x_0, x_1, plane, s = fall(lesson, draw, d, r)
         close("time of impact [s]", lesson.plane_impact_time(t, dt, x_0, x_1, r, plane), t + s * dt, ROUND_OFF, given=f"t = {t}, dt = {dt}, {x_0} to {x_1}, r = {r}, {plane}")
 
 
-@exercise("6.2", points=0.5, hint="d₁ ≤ 0: it touches already, at t; d₂ < 0: it does not get there, NEVER")
+@exercise("6.2", points=0.25, hint="d₁ ≤ 0: it touches already, at t; d₂ < 0: it does not get there, NEVER")
 def test_who_touches_already_touches_now_and_who_does_not_arrive_never(lesson, draw):
     r = draw(0.1, 0.5)
     t, dt, x_0, x_1, plane, s = fall(lesson, draw, 3, r)
@@ -82,9 +90,35 @@ def test_who_touches_already_touches_now_and_who_does_not_arrive_never(lesson, d
         close("time of impact of a ball that is in already [s]", lesson.plane_impact_time(t, dt, x_1, end, r, plane), t, 0.0, given)
 
 
+@exercise("6.2", points=0.5,
+          hint="d₁ ≤ 0 comes first, wherever the ball goes; then d₂ < 0; d₂ = 0 still arrives, at the end of the step")
+def test_a_ball_of_any_size_meets_a_plane_only_if_it_comes_through_from_above(lesson, draw):
+    """The gap changes evenly.  Both ends are known to 1e-13 of the size, and differ by 0.4 of it at least."""
+    for size, place in places(draw):
+        for sides in ((1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)):
+            rows, r, t, dt = axes(draw, 3), size * draw(0.01, 2.0), draw(1.0, 5.0), draw(0.01, 0.5)
+            gaps, plane = size * draw(0.2, 3.0, 2) * sides, lesson.Plane(rows[0], float(-rows[0] @ place))
+            x_0, x_1 = (place + (r + gap) * rows[0] + size * draw(-3.0, 3.0) * rows[1] for gap in gaps)
+            got = lesson.plane_impact_time(t, dt, x_0, x_1, r, plane)
+            given = f"t = {t}, dt = {dt}, gaps {gaps}, {x_0} to {x_1}, r = {r}, {plane}"
+            if sides == (1.0, 1.0):
+                never("time of impact of a ball that stays above [s]", got, given)
+            else:
+                share = gaps[0] / (gaps[0] - gaps[1]) if gaps[0] > 0.0 else 0.0
+                close("time of impact [s]", got, t + share * dt, 1e-11, given)
+    # whole numbers: no round-off
+    level, r, x = float(draw.whole(-4, 4)), float(draw.whole(1, 3)), draw(-3.0, 3.0, 2)
+    floor = lesson.Plane(np.array([0.0, 0.0, 1.0]), -level)
+    above, on = np.array([*x, level + r + 2.0]), np.array([*x, level + r])
+    close("time of impact of a ball that touches and leaves [s]",
+          lesson.plane_impact_time(3.0, 0.5, on, above, r, floor), 3.0, 0.0)
+    close("time of impact at the end of the step [s]", lesson.plane_impact_time(3.0, 0.5, above, on, r, floor), 3.5,
+          0.0)
+
+
 # ---------------------------------------------------------------------------------------------- a cylinder along the x axis
 
-@exercise("6.3", points=1, hint="the nearest point of the axis has the same x coordinate, and zeros")
+@exercise("6.3", points=0.5, hint="the nearest point of the axis has the same x coordinate, and zeros")
 def test_a_ball_and_a_cylinder_are_nearest_across_the_axis(lesson, draw):
     R, r, along = draw(0.5, 1.5), draw(0.1, 0.4), draw(-5.0, 5.0)
     for gap in (draw(0.1, 2.0), -draw(0.05, 0.3), -0.9 * (R + r)):
@@ -98,6 +132,23 @@ def test_a_ball_and_a_cylinder_are_nearest_across_the_axis(lesson, draw):
     close("n along the axis there", c.n[0], 0.0, ROUND_OFF)
 
 
+@exercise("6.3", points=0.5,
+          hint="of all points of the axis (s, 0, 0) the nearest to the ball has s = x₀, wherever the ball is")
+def test_no_point_of_the_axis_is_nearer_than_the_one_of_the_contact(lesson, draw):
+    for size, place in places(draw):
+        for phi in (0.0, 0.5 * np.pi, np.pi, draw(0.0, 2.0 * np.pi)):
+            out, r, R = size * 10.0 ** draw(-2.0, 1.0), size * draw(0.01, 2.0), size * draw(0.01, 2.0)
+            x = np.array([place[0], out * np.cos(phi), out * np.sin(phi)])
+            axis = np.zeros((201, 3))
+            axis[:, 0] = x[0] + out * np.linspace(-1.0, 1.0, 201)        # the one in the middle is x[0] itself
+            q = axis[np.argmin(np.linalg.norm(axis - x, axis=1))]
+            n = (x - q) / np.linalg.norm(x - q)
+            c, given = lesson.cylinder_contact(x, r, R), f"x = {x}, r = {r}, R = {R}"
+            close("n of the contact: from b to a", c.n, n, KNOWN, given)
+            close("gap, p_a and p_b of the contact over the size [-]", np.concatenate(([c.gap], c.p_a, c.p_b)) / size,
+                  np.concatenate(([np.linalg.norm(x - q) - r - R], x - r * n, q + R * n)) / size, KNOWN, given)
+
+
 def flight(draw, rho, beside, far, length, begin=None):
     """(x_0, x_1): straight on for `length` across the axis (and some way along it), from `far` before it, passing it at `beside`."""
     phi, x = draw(0.0, 2.0 * np.pi), draw(-3.0, 3.0, 2)
@@ -106,7 +157,7 @@ def flight(draw, rho, beside, far, length, begin=None):
     return np.append(x[0], y), np.append(x[1], y + length * e)
 
 
-@exercise("6.4", points=1, hint="the first of the two roots; the coordinate along the axis does not matter")
+@exercise("6.4", points=0.5, hint="the first of the two roots; the coordinate along the axis does not matter")
 def test_the_first_root_is_when_it_touches_from_walking_to_ten_kilometres_a_second(lesson, draw):
     """At `beside` from the axis the path enters the circle ρ at √(ρ² − beside²) before the axis; lengths are rounded by 1e-16·1000."""
     R, r, dt = draw(0.5, 1.5), draw(0.05, 0.3), 0.1
@@ -151,7 +202,43 @@ def test_a_grazing_shot_from_afar_loses_no_digits(lesson, draw):
         close("way to the impact over ρ [-]", way / rho, 1e3 - np.sqrt(2e-9 - 1e-18), 5e-8, given=f"{x_0} to {x_1}, r = {r}, R = {R}")
 
 
-@exercise("6.5", points=0.5, hint="s = (p − a) · (b − a)/|b − a|², held between 0 and 1")
+def touches_first(draw, got, t, dt, x_0, x_1, rho, size, given):
+    """The distance from the axis along the path proves `got`: its square is convex, so it first falls and then rises.
+
+    |y|² is known to 1e-15 of (10 size)², so that |y| near ρ > 0.1 size is known to 1e-12 of the size.
+    """
+    y, w = x_0[1:], (x_1 - x_0)[1:]
+    nearest = y + min(1.0, max(0.0, -(y @ w) / (w @ w))) * w
+    if np.linalg.norm(y) <= rho:
+        close("time of impact of a ball that touches already [s]", got, t, 0.0, given)
+    elif np.linalg.norm(nearest) > rho:
+        never("time of impact of a ball that does not come so near [s]", got, given)
+    else:
+        s = (float(numbers("time of impact [s]", got, (), given)) - t) / dt
+        between("time of impact, as a share of the step [-]", s, 0.0, 1.0 + 1e-12, given)
+        close("distance from the axis then, less R + r, over the size [-]", (np.linalg.norm(y + s * w) - rho) / size,
+              0.0, 1e-11, given)
+        between("change of that distance then: coming nearer [-]", (y + s * w) @ w / size**2, -np.inf, 1e-9, given)
+
+
+@exercise("6.4", points=0.5,
+          hint="C ≤ 0: it begins inside; B ≥ 0: it moves away; D < 0: it misses; s > 1: it comes later, s = 1 does not")
+def test_any_path_touches_the_cylinder_first_where_it_enters(lesson, draw):
+    for size, place in places(draw):
+        for _ in range(6):
+            r, R, t, dt = size * draw(0.05, 1.0), size * draw(0.05, 1.0), draw(0.0, 2.0), draw(0.1, 1.0)
+            x_0, x_1 = size * draw(-3.0, 3.0, (2, 3)) + place * np.array([1.0, 0.0, 0.0])
+            given = f"t = {t}, dt = {dt}, {x_0} to {x_1}, r = {r}, R = {R}"
+            touches_first(draw, lesson.cylinder_impact_time(t, dt, x_0, x_1, r, R), t, dt, x_0, x_1, R + r, size, given)
+    rho, m = float(draw.whole(2, 5)), float(draw.whole(2, 5))            # whole numbers: no round-off
+    begin, end = np.array([1.0, -m * rho, 0.0]), np.array([3.0, -rho, 0.0])
+    close("time of impact at the end of the step [s]",
+          lesson.cylinder_impact_time(2.0, 0.5, begin, end, 1.0, rho - 1.0), 2.5, 0.0, f"ρ = {rho}, {begin} to {end}")
+    close("time of impact of a ball that touches and leaves [s]",
+          lesson.cylinder_impact_time(2.0, 0.5, end, begin, 1.0, rho - 1.0), 2.0, 0.0, f"ρ = {rho}, {end} to {begin}")
+
+
+@exercise("6.5", points=0.25, hint="s = (p − a) · (b − a)/|b − a|², held between 0 and 1")
 def test_the_nearest_point_of_a_segment_is_its_foot_or_an_end(lesson, draw):
     for d in (2, 3):
         rows, a, length = axes(draw, d), draw(-3.0, 3.0, d), draw(0.5, 4.0)
@@ -161,13 +248,34 @@ def test_the_nearest_point_of_a_segment_is_its_foot_or_an_end(lesson, draw):
             close("nearest point of the segment [m]", lesson.closest_on_segment(p, a, b), expected, ROUND_OFF, given=f"p = {p}, a = {a}, b = {b}")
 
 
-@exercise("6.5", points=0.5, hint="where a and b are the same point: raise BadInput with its length")
+@exercise("6.5", points=0.25, hint="where a and b are the same point: raise BadInput with its length")
 def test_a_segment_without_length_is_refused(lesson, draw):
     for d in (2, 3):
         a = draw(-3.0, 3.0, d)
         raises("a segment from a point to itself", BadInput, lesson.closest_on_segment, draw(-3.0, 3.0, d), a, a.copy())
         tiny = a + 1e-7
         close("nearest point of a very short segment [m]", lesson.closest_on_segment(tiny + 1.0, a, tiny), tiny, ROUND_OFF)
+
+
+def is_nearest(quantity, q, p, corners, size, given=""):
+    """q is the point of the hull of the corners nearest to p: it is in it, and no corner is beyond q along p − q."""
+    q = numbers(f"{quantity} [m]", q, p.shape, given)
+    between(f"{quantity}: how far it is from its body, over the size [-]", distance(q[None], corners) / size, 0.0,
+            KNOWN, given)
+    between(f"{quantity}: how far a corner is beyond it along p − q, over the size [-]",
+            ((corners - q) @ (p - q)).max() / size**2, -1.0, KNOWN, given)
+
+
+@exercise("6.5", points=0.5,
+          hint="p − q makes no acute angle with the segment as seen from its nearest point q: hold s between 0 and 1")
+def test_no_point_of_a_segment_is_nearer_at_any_size_and_place(lesson, draw):
+    for d in (2, 3):
+        for size, place in places(draw, d):
+            for length in (1e-2, 1.0):
+                p, a = place + size * draw(-1.0, 1.0, (2, d))
+                b = a + length * size * axes(draw, d)[0]
+                is_nearest("nearest point of the segment", lesson.closest_on_segment(p, a, b), p, np.stack((a, b)),
+                           size, f"p = {p}, a = {a}, b = {b}")
 
 
 def seen_along(draw, shadow):
@@ -177,7 +285,8 @@ def seen_along(draw, shadow):
     return [np.array([draw(-3.0, 3.0), c * y - s * z, s * y + c * z]) for y, z in shadow]
 
 
-@exercise("6.6", points=0.5, hint="all three y_i z_j − z_i y_j of one sign: the axis goes through the face, wherever the corners are")
+@exercise("6.6", points=0.25,
+          hint="all three y_i z_j − z_i y_j of one sign: the axis goes through the face, wherever the corners are")
 def test_a_cylinder_that_pierces_a_face_is_found_though_corners_and_edges_are_clear(lesson, draw):
     R, r = draw(0.2, 0.5), draw(0.01, 0.1)
     for order in (1, -1):
@@ -186,7 +295,7 @@ def test_a_cylinder_that_pierces_a_face_is_found_though_corners_and_edges_are_cl
         close("gap of a pierced face [m]", lesson.triangle_cylinder_gap(*corners, r, R), -R - r, ROUND_OFF, given=f"corners {corners}, r = {r}, R = {R}")
 
 
-@exercise("6.6", points=0.5, hint="elsewhere the least edge_axis_distance of the three edges, less R + r")
+@exercise("6.6", points=0.25, hint="elsewhere the least edge_axis_distance of the three edges, less R + r")
 def test_elsewhere_the_nearest_edge_decides(lesson, draw):
     R, r = draw(0.2, 0.5), draw(0.01, 0.1)
     for height in (draw(0.6, 2.0), draw(0.05, 0.2)):
@@ -201,6 +310,24 @@ def test_elsewhere_the_nearest_edge_decides(lesson, draw):
     close("gap of a triangle with an edge along the axis [m]", lesson.triangle_cylinder_gap(*corners, r, R), height - R - r, ROUND_OFF, given=f"corners {corners}")
 
 
+@exercise("6.6", points=0.5,
+          hint="the shadow along x is a triangle: its distance from 0, less R + r; it is 0 where the axis goes through")
+def test_a_triangle_is_as_far_from_the_axis_as_its_shadow_is_from_the_origin(lesson, draw):
+    """Brute force: of all points of the shadow the one nearest to 0, by non-negative least squares."""
+    for size, _ in places(draw):
+        r, R = size * draw(0.01, 0.5), size * draw(0.1, 1.0)
+        corners = size * draw(-2.0, 2.0, (3, 3))
+        obtuse, thin, beside = corners.copy(), corners.copy(), corners.copy()
+        obtuse[2] = 0.5 * (corners[0] + corners[1]) + 0.1 * (corners[2] - corners[0])
+        # seen from its edge
+        thin[2] = corners[0] + draw(0.2, 0.8) * (corners[1] - corners[0]) + [size, 0.0, 0.0]
+        beside[:, 1] += 3.0 * size
+        for x in (corners, obtuse, thin, beside, 0.1 * corners, corners[::-1] + [0.0, 0.0, size]):
+            gap = distance(x[:, 1:], np.zeros((1, 2))) - R - r
+            got = lesson.triangle_cylinder_gap(*(row.copy() for row in x), r, R)
+            close("gap over the size [-]", got / size, gap / size, KNOWN, f"corners {x.tolist()}, r = {r}, R = {R}")
+
+
 # ---------------------------------------------------------------------------------------------- narrow phase
 
 def triangle(draw):
@@ -210,7 +337,7 @@ def triangle(draw):
     return [at + u * rows[0] + w * rows[1] for u, w in flat], rows[2]
 
 
-@exercise("6.7", points=0.5, hint="the foot on the plane where that is inside; all three edges where it is not")
+@exercise("6.7", points=0.25, hint="the foot on the plane where that is inside; all three edges where it is not")
 def test_the_nearest_point_of_a_triangle_is_inside_on_an_edge_or_a_corner(lesson, draw):
     """p = q + y has q for its nearest point exactly when y makes no acute angle with the triangle as seen from q."""
     for side in (1.0, -1.0):
@@ -230,7 +357,8 @@ def test_the_nearest_point_of_a_triangle_is_inside_on_an_edge_or_a_corner(lesson
             close("nearest point of the triangle [m]", lesson.closest_on_triangle(p, *corners), q, ROUND_OFF, given=f"p = {p}, corners {corners}")
 
 
-@exercise("6.7", points=0.5, hint="|N| ≤ FLAT times the longest edge squared: BadInput; a small triangle is none of that")
+@exercise("6.7", points=0.25,
+          hint="|N| ≤ FLAT times the longest edge squared: BadInput; a small triangle is none of that")
 def test_a_triangle_without_area_is_refused_and_a_small_one_is_not(lesson, draw):
     a, b, p = draw(-3.0, 3.0, 3), draw(-3.0, 3.0, 3), draw(-3.0, 3.0, 3)
     for c in (a + draw(0.2, 0.8) * (b - a), b.copy(), a + 1.5 * (b - a)):
@@ -240,7 +368,21 @@ def test_a_triangle_without_area_is_refused_and_a_small_one_is_not(lesson, draw)
     close("nearest point of a small triangle [m]", lesson.closest_on_triangle(np.array([3e-7, 2e-7, 0.5]), *small), [3e-7, 2e-7, 0.0], ROUND_OFF)
 
 
-@exercise("6.8", points=0.5, hint="turn the centre into the box's own axes with Rᵀ, clamp it there, and turn the point back with R")
+@exercise("6.7", points=0.5,
+          hint="compare all three edges: near an obtuse corner p is outside of two of them, and either may be nearer")
+def test_no_point_of_a_triangle_is_nearer_be_it_acute_obtuse_or_a_needle(lesson, draw):
+    for size, place in places(draw):
+        # the third corner, over the length of a b
+        for flat in ((0.5, 0.9), (0.5, 0.1), (-1.0, 0.5), (2.0, 0.5), (0.5, 0.01)):
+            rows, turn = axes(draw, 3), draw.whole(0, 2)
+            corners = place + size * np.roll([[0.0, 0.0], [1.0, 0.0], flat], turn, axis=0) @ rows[:2]
+            for p in place + size * (draw(-2.0, 3.0, (4, 2)) @ rows[:2] + draw(-0.2, 0.2, (4, 1)) * rows[2]):
+                q = lesson.closest_on_triangle(p, *(row.copy() for row in corners))
+                is_nearest("nearest point of the triangle", q, p, corners, size, f"p = {p}, corners {corners.tolist()}")
+
+
+@exercise("6.8", points=0.25,
+          hint="turn the centre into the box's own axes with Rᵀ, clamp it there, and turn the point back with R")
 def test_a_ball_outside_is_nearest_to_the_clamped_point(lesson, draw):
     r = draw(0.1, 0.5)
     for beyond in ((1, 0, 0), (0, -1, 0), (0, 1, 1), (-1, 0, 1), (1, -1, 1)):
@@ -252,7 +394,8 @@ def test_a_ball_outside_is_nearest_to_the_clamped_point(lesson, draw):
         same_contact(lesson.ball_box(x, r, box), x - r * n, q, n, np.linalg.norm(away) - r, 1e-11, f"x = {x}, r = {r}, {box}")
 
 
-@exercise("6.8", points=0.5, hint="inside, the least half_i − |y_i| tells the face; n leads out of it, and p_b is on it")
+@exercise("6.8", points=0.25,
+          hint="inside, the least half_i − |y_i| tells the face; n leads out of it, and p_b is on it")
 def test_a_ball_whose_centre_is_inside_leaves_by_the_nearest_face(lesson, draw):
     for axis in range(3):
         for sign in (1.0, -1.0):
@@ -264,11 +407,53 @@ def test_a_ball_whose_centre_is_inside_leaves_by_the_nearest_face(lesson, draw):
     middle = lesson.ball_box(box.x, r, lesson.Box(box.x, box.R, np.array([2.0, 1.0, 3.0])))
     close("n of a ball in the very middle: along the shortest half, up or down", np.abs(middle.n @ box.R), [0.0, 1.0, 0.0], 1e-11)
     close("gap there [m]", middle.gap, -1.0 - r, 1e-11)
+    cube = lesson.Box(np.zeros(3), np.eye(3), 0.5 * np.ones(3))
+    for axis in range(3):
+        for sign in (1.0, -1.0):
+            n, off = sign * np.eye(3)[axis], np.array([0.25, 0.125, -0.25])
+            for place in (0.5 - 1e-9, 0.5, 0.5 + 1e-9):
+                x = np.where(np.arange(3) == axis, sign * place, off)
+                given = f"x = {x}, on or beside a face of {cube}"
+                same_contact(lesson.ball_box(x, r, cube), x - r * n, x + (0.5 - place) * n, n, place - 0.5 - r, 1e-11, given)
+
+
+def corners_of(box):
+    """The eight corners (8, 3) of a box [m]."""
+    signs = np.array([[i, j, k] for i in (-1.0, 1.0) for j in (-1.0, 1.0) for k in (-1.0, 1.0)])
+    return box.x + signs * box.half @ box.R.T
+
+
+@exercise("6.8", points=0.5,
+          hint="outside: the nearest point of the box; inside: the nearest of the six faces, the least half_i − |y_i|")
+def test_a_ball_touches_a_cube_a_plank_or_a_rod_at_its_nearest_point_or_face(lesson, draw):
+    """Brute force: the hull of the corners and its facets."""
+    for size, place in places(draw):
+        for half in ((1.0, 1.0, 1.0), (1.0, 0.05, 0.7), (0.1, 1.0, 0.08)):
+            half, r = size * np.array(half) * draw(0.9, 1.1, 3), size * draw(0.01, 1.0)
+            box = lesson.Box(place + size * draw(-1.0, 1.0, 3), rotation(draw), half)
+            corners, inside = corners_of(box), draw(-0.95, 0.95, 3)
+            normals, offsets = facets(corners - box.x)
+            for y in (inside, 1.1 * inside / np.abs(inside).max(), draw(1.1, 3.0, 3) * np.sign(inside),
+                      inside * [1.0, 1.0, 0.0] + [0.0, 0.0, 2.0]):
+                x = box.x + box.R @ (y * box.half)
+                c, given = lesson.ball_box(x, r, box), f"x = {x}, r = {r}, {box}"
+                if np.abs(y).max() > 1.0:
+                    is_nearest("p_b of a ball outside", c.p_b, x, corners, size, given)
+                    expected = np.linalg.norm(x - c.p_b)
+                else:
+                    expected = ((x - box.x) @ normals.T + offsets).max()
+                    between("p_b of a ball inside, beyond the skin over the size [-]",
+                            ((c.p_b - box.x) @ normals.T + offsets).max() / size, -KNOWN, KNOWN, given)
+                close("gap over the size [-]", c.gap / size, (expected - r) / size, KNOWN, given)
+                close("p_a − p_b over the size: gap times n [-]", (c.p_a - c.p_b) / size,
+                      c.gap * np.asarray(c.n) / size, KNOWN, given)
+                close("p_a over the size: x − r n [-]", (c.p_a - x) / size, -r * np.asarray(c.n) / size, KNOWN, given)
 
 
 # ---------------------------------------------------------------------------------------------- broad phase
 
-@exercise("6.9", points=1, hint="from the smaller of low and low + move to the larger of high and high + move, coordinate by coordinate")
+@exercise("6.9", points=0.5,
+          hint="from the smaller of low and low + move to the larger of high and high + move, coordinate by coordinate")
 def test_a_swept_box_holds_the_box_at_every_moment_and_no_more(lesson, draw):
     for d in (2, 3):
         low, move = draw(-3.0, 3.0, d), draw(0.5, 5.0, d) * (2 * np.array([draw.whole(0, 1) for _ in range(d)]) - 1)
@@ -278,6 +463,20 @@ def test_a_swept_box_holds_the_box_at_every_moment_and_no_more(lesson, draw):
             got = lesson.swept_box(low, high, way)
             close("low corner of the swept box [m]", got[0], (low + s * way).min(axis=0), ROUND_OFF, given=f"low {low}, high {high}, move {way}")
             close("high corner of the swept box [m]", got[1], (high + s * way).max(axis=0), ROUND_OFF, given=f"low {low}, high {high}, move {way}")
+
+
+@exercise("6.9", points=0.5, hint="each coordinate on its own: one may go up while another goes down and a third stays")
+def test_a_swept_box_is_the_box_around_a_hundred_moments_whichever_way_it_goes(lesson, draw):
+    s = np.linspace(0.0, 1.0, 101)[:, None]
+    for d in (2, 3):
+        for size, place in places(draw, d):
+            for ways in np.stack(np.meshgrid(*[[-1.0, 0.0, 1.0]] * d), axis=-1).reshape(-1, d):
+                low, move = place + size * draw(-3.0, 3.0, d), size * ways * 10.0 ** draw(-2.0, 1.0, d)
+                high = low + size * 10.0 ** draw(-2.0, 1.0, d)
+                got, given = lesson.swept_box(low, high, move), f"low {low}, high {high}, move {move}"
+                around = np.stack(((low + s * move).min(axis=0), (high + s * move).max(axis=0)))
+                close("corners of the swept box, less those of the box, over the size [-]",
+                      (np.stack(got) - (low, high)) / size, (around - (low, high)) / size, KNOWN, given)
 
 
 def boxes(draw, n, d, wide):
@@ -301,7 +500,7 @@ def same_pairs(quantity, got, expected, given=""):
     close(quantity, got[np.lexsort(got.T[::-1])], expected, 0.0, given)
 
 
-@exercise("6.10", points=1, hint="every i, every j > i; a common face, edge or corner counts as touching")
+@exercise("6.10", points=0.5, hint="every i, every j > i; a common face, edge or corner counts as touching")
 def test_brute_force_finds_every_pair_once(lesson, draw):
     for d, wide in ((2, 12.0), (3, 6.0)):
         low, high = boxes(draw, 30, d, wide)
@@ -309,9 +508,37 @@ def test_brute_force_finds_every_pair_once(lesson, draw):
         same_pairs("pairs that touch", lesson.all_pairs(low, high), expected[expected[:, 0] < expected[:, 1]], given=f"30 boxes in {d}D")
     far = 10.0 * np.arange(6.0).reshape(3, 2)
     same_pairs("pairs of boxes that are all apart", lesson.all_pairs(far, far + 1.0), np.zeros((0, 2)))
+    raises("boxes that are inside out", BadInput, lesson.all_pairs, far + 1.0, far)
+    raises("a box whose corner is no number", BadInput, lesson.all_pairs, far, np.where(np.arange(6).reshape(3, 2) == 5, np.nan, far + 1.0))
 
 
-@exercise("6.11", points=1, hint="both children with the other node; both leaves: touching_items(a, i, b, j, found)")
+def crowds(draw, d):
+    """(name, low, high): boxes that are single, nested, tiny, flat, far away, alike, or below zero."""
+    low, high = boxes(draw, 25, d, 8.0)
+    middle, half = draw(-3.0, 3.0, d), np.arange(1.0, 13.0)[:, None] * draw(0.1, 1.0, d)
+    flat = np.where(np.arange(d) == 0, low, high)
+    return [("a single box", low[:1], high[:1]),
+            ("two boxes that touch", low[:2], low[:2] + 8.0),
+            ("two boxes that are apart", np.stack((low[0], low[0] + 9.0)), np.stack((low[0] + 1.0, low[0] + 10.0))),
+            ("boxes one inside the other", middle - half, middle + half),
+            ("tiny boxes", 1e-7 * low, 1e-7 * high),
+            ("flat boxes", low, flat),
+            ("boxes far away", low + 2.0**30, high + 2.0**30),
+            ("boxes that are all alike", 0.0 * low - 1.0, 0.0 * high + 1.0),
+            ("boxes below zero", low - 20.0, high - 20.0)]
+
+
+@exercise("6.10", points=0.5,
+          hint="count from the first to the last, also of one or two; what is inside another touches it")
+def test_pairs_of_crowds_of_any_kind_are_those_of_the_definition(lesson, draw):
+    for d in (2, 3):
+        for name, low, high in crowds(draw, d):
+            expected = touching(low, high, low, high)
+            same_pairs(f"pairs of {name}", lesson.all_pairs(low, high), expected[expected[:, 0] < expected[:, 1]],
+                       f"low {low.tolist()}, high {high.tolist()}")
+
+
+@exercise("6.11", points=0.75, hint="both children with the other node; both leaves: touching_items(a, i, b, j, found)")
 def test_two_trees_find_the_pairs_that_brute_force_finds(lesson, draw):
     for d, n, m, wide in ((2, 60, 25, 20.0), (3, 40, 90, 9.0), (3, 3, 70, 5.0)):
         a, b = boxes(draw, n, d, wide), boxes(draw, m, d, wide)
@@ -321,7 +548,7 @@ def test_two_trees_find_the_pairs_that_brute_force_finds(lesson, draw):
     same_pairs("pairs of trees that are apart", lesson.find_intersections(apart, trees[1]), np.zeros((0, 2)))
 
 
-@exercise("6.11", points=1, hint="go down only where the boxes of the two nodes touch: that is what saves the work")
+@exercise("6.11", points=0.75, hint="go down only where the boxes of the two nodes touch: that is what saves the work")
 def test_what_is_in_a_node_out_of_reach_is_not_looked_at(lesson, draw):
     """A tree that says of one of the root's children that it is far away: nothing of that half may be found."""
     a, b = boxes(draw, 50, 2, 9.0), boxes(draw, 40, 2, 9.0)
@@ -339,6 +566,20 @@ def test_what_is_in_a_node_out_of_reach_is_not_looked_at(lesson, draw):
         same_pairs("pairs, when a half of tree b says that it is far away", lesson.find_intersections(other, lying), seen[np.lexsort(seen.T[::-1])], given="40 and 50 boxes")
 
 
+@exercise("6.11", points=0.5,
+          hint="a tree may be a single leaf, child 0 and all; compare girths only where neither is a leaf")
+def test_trees_of_crowds_of_any_kind_find_the_pairs_that_brute_force_finds(lesson, draw):
+    for d in (2, 3):
+        for name, low, high in crowds(draw, d):
+            size, centre = (high - low).max() + np.ptp(low), low.mean(axis=0)
+            other_low = centre + size * draw(-0.6, 0.6, (20, d))
+            other_high = other_low + 0.3 * size * draw(0.0, 1.0, (20, d))
+            trees = lesson.build_tree(low, high), lesson.build_tree(other_low, other_high)
+            expected = touching(low, high, other_low, other_high)
+            same_pairs(f"pairs of {name} and twenty others", lesson.find_intersections(*trees), expected,
+                       f"low {low.tolist()}, high {high.tolist()}")
+
+
 # ---------------------------------------------------------------------------------------------- separating axes
 
 def polygon(draw, k):
@@ -348,7 +589,7 @@ def polygon(draw, k):
     return draw(-3.0, 3.0, 2) + radius * np.stack((np.cos(turn), np.sin(turn)), axis=1), radius
 
 
-@exercise("6.12", points=0.5, hint="of each edge the least n · (b_j − a_i), of all edges the greatest of those")
+@exercise("6.12", points=0.25, hint="of each edge the least n · (b_j − a_i), of all edges the greatest of those")
 def test_the_edge_that_separates_best_is_the_one_a_corner_points_at(lesson, draw):
     """Beside the middle of an edge, by less than a tenth of the size, every other edge line is farther inside."""
     for k in (3, 5, 6):
@@ -365,13 +606,51 @@ def test_the_edge_that_separates_best_is_the_one_a_corner_points_at(lesson, draw
             close("number of that edge", got[1], i, 0.0, given=f"a = {a.tolist()}, b = {b.tolist()}")
 
 
-@exercise("6.12", points=0.5, hint="outward(a, i) refuses an edge without length: use it")
+@exercise("6.12", points=0.25, hint="outward(a, i) refuses an edge without length: use it")
 def test_an_edge_without_length_is_refused(lesson, draw):
     a, _ = polygon(draw, 4)
     raises("a corner that is there twice", BadInput, lesson.separating_edge, np.stack((a[0], a[1], a[1], a[2])), a)
 
 
-@exercise("6.13", points=0.5, hint="add the crossing y_i + s_i/(s_i − s_j)(y_j − y_i) wherever an edge changes sides")
+def shapes(draw):
+    """Convex polygons of size 1 [m] about 0, counter-clockwise: random, obtuse, a needle, a square, regular."""
+    turn, flat = 2.0 * np.pi * np.arange(7) / 7, axes(draw, 2)
+    obtuse = np.array([[-0.5, 0.0], [0.5, 0.0], [draw(0.6, 0.8), 0.1]])
+    square = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])
+    needle = draw(-0.5, 0.5, (6, 2)) * [1.0, 0.05]
+    regular = 0.5 * np.stack((np.cos(turn), np.sin(turn)), axis=1)
+    return [outline(points) for points in (draw(-0.5, 0.5, (9, 2)), obtuse @ flat, needle @ flat, square, regular)]
+
+
+def gaps_of_edges(a, b):
+    """(k,) the least n_i · (b_j − a_i) of each edge i of a, all edges and corners at once."""
+    e = np.roll(a, -1, axis=0) - a
+    n = np.stack((e[:, 1], -e[:, 0]), axis=1) / np.linalg.norm(e, axis=1, keepdims=True)
+    return np.min(n @ b.T - np.sum(n * a, axis=1)[:, None], axis=1)
+
+
+@exercise("6.12", points=0.5,
+          hint="of all edges the greatest gap: not the one nearest to zero, nor the first above zero")
+def test_polygons_apart_overlapping_nested_and_far_away_are_separated_as_the_hull_of_all_differences_says(lesson, draw):
+    """The facet of the hull of all differences with the greatest offset belongs to the better edge of both polygons."""
+    for size, place in places(draw, 2):
+        for apart in (0.0, draw(0.0, 0.3), draw(0.3, 1.0), draw(1.0, 1.5), 1e2):
+            a, b = (shapes(draw)[draw.whole(0, 4)] for _ in range(2))
+            b = b * (0.2 if draw.whole(0, 3) == 0 else 1.0) + apart * axes(draw, 2)[0]
+            a, b = place + size * a, place + size * b
+            given, found = f"a = {a.tolist()}, b = {b.tolist()}", []
+            for first, second in ((a, b), (b, a)):
+                gaps = gaps_of_edges(first, second)
+                gap, i = lesson.separating_edge(first, second)
+                close("greatest gap of all edges over the size [-]", gap / size, gaps.max() / size, KNOWN, given)
+                close("gap of the edge that it names, over the size [-]", gaps[int(i)] / size, gaps.max() / size, KNOWN,
+                      given)
+                found.append(gap)
+            close("the better of both polygons' gaps: of the hull of all differences, over the size [-]",
+                  max(found) / size, facets(differences(a, b))[1].max() / size, KNOWN, given)
+
+
+@exercise("6.13", points=0.25, hint="add the crossing y_i + s_i/(s_i − s_j)(y_j − y_i) wherever an edge changes sides")
 def test_a_cut_polygon_has_the_corners_of_what_is_left(lesson, draw):
     """A rectangle of edges l and h, cut at f l; a corner of it cut off; all of it; nothing of it."""
     for d in (2, 3):
@@ -413,6 +692,31 @@ def test_a_cut_segment_keeps_two_ends(lesson, draw):
     close("a segment that is not cut [m]", lesson.clip(np.stack((a, b)), rows[0], float(rows[0] @ b) + 1.0), [a, b], 0.0)
 
 
+@exercise("6.13", points=0.25,
+          hint="what is left on the one side and on the other make up the polygon: nothing twice, nothing lost")
+def test_what_two_opposite_cuts_leave_makes_up_the_polygon(lesson, draw):
+    """Each part lies in the polygon and on its own side.  If both areas add up to the polygon's, nothing is missing."""
+    for d in (2, 3):
+        for size, place in places(draw, d):
+            rows = axes(draw, d)
+            for flat in shapes(draw):
+                y, direction = place + size * flat @ rows[:2], draw(0.0, 2.0 * np.pi)
+                n = np.cos(direction) * rows[0] + np.sin(direction) * rows[1]
+                across, tip, total = float(n @ place + size * draw(-0.5, 0.5)), float((y @ n).max() - 2e-4 * size), 0.0
+                offset = tip if draw.whole(0, 2) == 0 else across        # that cuts off next to nothing
+                given = f"y = {y.tolist()}, n = {n}, d = {offset}"
+                for side in (1.0, -1.0):
+                    left = np.asarray(lesson.clip(y, side * n, side * offset), dtype=float)
+                    seen = (left - place) @ rows[:2].T / size
+                    for corner in seen:
+                        between("corner of what is left, beyond the polygon, over the size [-]",
+                                distance(corner[None], flat), 0.0, KNOWN, given)
+                    between("corner of what is left, beyond the cut, over the size [-]",
+                            max(side * (left @ n - offset) / size, default=0.0), -10.0, KNOWN, given)
+                    total += area(seen)
+                close("areas of both parts over that of the polygon [-]", total / area(flat), 1.0, 100.0 * KNOWN, given)
+
+
 def turned(axis, angle):
     """The rotation about coordinate axis 0, 1 or 2."""
     c, s, R = np.cos(angle), np.sin(angle), np.eye(3)
@@ -421,7 +725,7 @@ def turned(axis, angle):
     return R
 
 
-@exercise("6.14", points=0.5, hint="|r · axis| less both half_widths; the greatest of all; n from b to a")
+@exercise("6.14", points=0.25, hint="|r · axis| less both half_widths; the greatest of all; n from b to a")
 def test_boxes_are_as_far_apart_as_their_nearest_corner_and_face_or_edges(lesson, draw):
     """A corner above a face, or edge across edge: the distance along that axis is the true one, and no axis can show more."""
     Q = rotation(draw)
@@ -443,7 +747,8 @@ def test_boxes_are_as_far_apart_as_their_nearest_corner_and_face_or_edges(lesson
                 close("number of its axis", got[2], number, 0.0, given=f"{first}, {second}")
 
 
-@exercise("6.14", points=0.5, hint="axes 6 to 14 lie across an edge of each; where the edges are parallel candidate_axis is zeros: leave it out")
+@exercise("6.14", points=0.25,
+          hint="axes 6 to 14 lie across an edge of each; candidate_axis of parallel edges is zeros: leave it out")
 def test_two_edges_across_each_other_separate_and_equal_axes_leave_it_to_a_face(lesson, draw):
     Q, at, half = rotation(draw), draw(-3.0, 3.0, 3), draw(0.8, 1.5, 3)
     roll_a, roll_b, gap = draw(0.6, 0.9), draw(0.6, 0.9), draw(0.05, 0.5)
@@ -465,15 +770,75 @@ def test_two_edges_across_each_other_separate_and_equal_axes_leave_it_to_a_face(
     close("number of its axis: the first of those that show it", got[2], 2, 0.0, given=f"{flush}")
 
 
+def gaps_of_axes(a, b):
+    """(15,) gap of two boxes along each axis, from their corners; −∞ for those that are zeros.  (15, 3) the axes."""
+    across = np.cross(a.R.T[:, None], b.R.T[None]).reshape(9, 3)
+    parallel = np.sum(across**2, axis=1) < 1e-12
+    axes = np.concatenate((a.R.T, b.R.T, across / np.where(parallel, 1.0, np.linalg.norm(across, axis=1))[:, None]))
+    p, q = (corners_of(a) - b.x) @ axes.T, (corners_of(b) - b.x) @ axes.T
+    gaps = np.maximum(p.min(axis=0) - q.max(axis=0), q.min(axis=0) - p.max(axis=0))
+    return np.where(np.concatenate((np.zeros(6, bool), parallel)), -np.inf, gaps), axes
+
+
+def pairs_of_boxes(draw, lesson, size, place):
+    """Boxes turned in any way, or parallel to each other, one inside the other, side by side, flat, or far apart."""
+    R, Q = rotation(draw), rotation(draw)
+    quarter = np.ascontiguousarray(R[:, [1, 2, 0]])
+    cube, plank, any_half = np.ones(3), np.array([1.0, 0.05, 0.5]), draw(0.3, 1.0, 3)
+    cases = [(Q, cube, any_half, draw(0.5, 2.5)), (Q, any_half, plank, draw(0.2, 1.5)),
+             (Q, plank, plank, draw(0.0, 0.5)),
+             (Q, cube, 0.3 * cube, 0.0), (Q, cube, any_half, 1e3), (quarter, cube, any_half, draw(0.0, 3.0)),
+             (R, cube, cube, draw(0.1, 1.0)), (R, any_half, plank, draw(0.0, 1.0)), (R, cube, 0.3 * any_half, 0.1),
+             (R, any_half, any_half, 0.0), (R @ turned(2, 1e-8), cube, any_half, draw(0.1, 1.0)),
+             (R @ turned(2, 1e-3), cube, any_half, 1.0)]
+    for R_b, half_a, half_b, apart in cases:
+        a = lesson.Box(place + size * apart * axes(draw, 3)[0], R, size * half_a)
+        yield a, lesson.Box(place, np.ascontiguousarray(R_b), size * half_b)
+    for k in range(15 if size == 1.0 else 0):                            # far along each axis, which is then the best
+        a, b = lesson.Box(place, R, cube), lesson.Box(place, Q, any_half)
+        yield a._replace(x=place + 30.0 * gaps_of_axes(a, b)[1][k]), b
+
+
+@exercise("6.14", points=0.5,
+          hint="an axis that is zeros has a gap of 0, more than any of boxes that overlap: leave it out")
+def test_boxes_turned_parallel_nested_and_far_apart_are_separated_by_the_best_of_their_axes(lesson, draw):
+    """Boxes that overlap are as deep as the nearest facet of the hull of all differences is from 0.
+
+    If boxes are apart, the greatest offset of its facets is a lower bound of the gap, and their distance an upper one.
+    """
+    for size, place in places(draw):
+        for a, b in pairs_of_boxes(draw, lesson, size, place):
+            (gap, n, k), (gaps, candidates), given = lesson.box_separation(a, b), gaps_of_axes(a, b), f"{a}, {b}"
+            known = KNOWN * (size + np.abs(a.x - b.x).max())
+            close("greatest gap over what is known of it [-]",
+                  (gap - max(gaps[:6].max(), gaps[6:].max())) / max(known, EDGES_WIN_BY), 0.0, 1.0 + KNOWN, given)
+            n, k = numbers("n", n, (3,), given), int(k)
+            between("gap of the axis that it names, less the greatest [m]", gaps[k] - gap, -known, known, given)
+            between("gain over any face of an axis across two edges, where it names one [m]",
+                    gaps[k] - gaps[:6].max() if k >= 6 else 1.0, EDGES_WIN_BY - known, 1e9, given)
+            close("n is that axis, either way round [-]", np.abs(n @ candidates[k]), 1.0, KNOWN, given)
+            close("size of n [-]", n @ n, 1.0, KNOWN, given)
+            between("n · r: from b to a [m]", n @ (a.x - b.x), -known, 1e9, given)
+            p, q = corners_of(a) - b.x, corners_of(b) - b.x
+            hull = facets(differences(p, q) / size)[1].max() * size
+            if hull <= 0.0:
+                close("depth of boxes that overlap, less that of the hull of all differences, over what is known [-]",
+                      (gap - hull) / max(known, EDGES_WIN_BY), 0.0, 1.0 + KNOWN, given)
+            else:
+                between("gap of boxes that are apart [m]", gap, hull - max(known, EDGES_WIN_BY), distance(p, q) + known,
+                        given)
+
+
 # ---------------------------------------------------------------------------------------------- any two convex bodies
 
 def holds(quantity, p, points, given=""):
-    """p is in the hull of the points: weights ≥ 0 with sum 1 exist; non-negative least squares find them to 1e-13 or so of their size."""
-    left = nnls(np.vstack((points.T, np.ones(len(points)))), np.append(numbers(quantity, p, (points.shape[1],), given), 1.0))[1]
-    between(quantity + ": how far it is from its body [m]", left, 0.0, 1e-9, given)
+    """p is in the hull of the points."""
+    p = numbers(quantity, p, (points.shape[1],), given)
+    between(quantity + ": how far it is from its body [m]", distance(p[None], points), 0.0, 1e-9, given)
 
 
-@exercise("6.15", points=1, hint="v = weights @ (p − q); support of a along −v, of b along v; stop, or take the new pair in and keep what counts")
+@exercise("6.15", points=0.75,
+          hint="v = weights @ (p − q); support of a along −v, of b along v; stop, or add the new pair and keep what counts")
 def test_the_distance_of_two_bodies_is_proved_by_two_points_and_a_plane(lesson, draw):
     """Two points of the bodies show that they are no farther apart than that, and a slab between them, that they are no nearer."""
     for d, k, m in ((2, 5, 7), (3, 8, 6), (3, 1, 9), (3, 20, 20)):
@@ -490,7 +855,8 @@ def test_the_distance_of_two_bodies_is_proved_by_two_points_and_a_plane(lesson, 
     close("the same for two balls of 400 corners [m]", (a @ c.n).min() - (b @ c.n).max(), c.gap, 1e-11, given="centres 2.5 m apart")
 
 
-@exercise("6.15", points=1, hint="far_enough also says when they overlap: then v is 0, and there is nothing left to be found")
+@exercise("6.15", points=0.75,
+          hint="far_enough also says when they overlap: then v is 0, and there is nothing left to be found")
 def test_bodies_that_overlap_have_no_distance_and_flat_ones_do_not_confuse(lesson, draw):
     for d in (2, 3):
         a = draw(-1.0, 1.0, (12, d)) + 0.0
@@ -502,6 +868,29 @@ def test_bodies_that_overlap_have_no_distance_and_flat_ones_do_not_confuse(lesso
     close("distance of two squares in one plane [m]", lesson.gjk(a, b).gap, gap, 1e-11, given=f"gap {gap} m")
     close("distance of two squares face to face [m]", lesson.gjk(a, square @ rows[:2] + gap * rows[2]).gap, gap, 1e-11, given=f"gap {gap} m")
     close("distance of two squares that share a side [m]", lesson.gjk(a, (square + np.array([1.0, 0.0])) @ rows[:2]).gap, 0.0, 1e-11)
+    raises("a body with a corner that is no number", BadInput, lesson.gjk, a, np.where(np.arange(12).reshape(4, 3) == 11, np.nan, b))
+    raises("bodies whose squares are no numbers", BadInput, lesson.gjk, 1e200 * a, 1e200 * b)
+
+
+def bodies(draw, d):
+    """Points of bodies of size 1 [m] about 0: random, one point, on a line, in a plane, a cube, a needle."""
+    cube = np.stack(np.meshgrid(*[[-0.5, 0.5]] * d), axis=-1).reshape(-1, d)
+    line = draw(-0.5, 0.5, (5, 1)) * axes(draw, d)[0]
+    plane, needle = draw(-0.5, 0.5, (8, 2)) @ axes(draw, d)[:2], draw(-0.5, 0.5, (9, d)) * np.linspace(1.0, 0.01, d)
+    return [draw(-0.5, 0.5, (10, d)), draw(-0.5, 0.5, (1, d)), line, plane, cube, needle]
+
+
+@exercise("6.15", points=0.5, hint="nearest corners need not be the nearest points: keep pairs, and weigh them")
+def test_bodies_of_any_kind_are_as_far_apart_as_least_squares_over_all_differences_says(lesson, draw):
+    for d in (2, 3):
+        for size, place in places(draw, d):
+            for apart in (0.0, draw(0.1, 0.8), draw(0.8, 2.0), 1e2):
+                a, b = (bodies(draw, d)[draw.whole(0, 5)] for _ in range(2))
+                a, b = place + size * a, place + size * (b + apart * axes(draw, d)[0])
+                c, given = lesson.gjk(a, b), f"a = {a.tolist()}, b = {b.tolist()}"
+                close("distance over the size [-]", c.gap / size, distance(a, b) / size, KNOWN, given)
+                close("p_a − p_b over the size: gap times n [-]", (np.asarray(c.p_a) - c.p_b) / size,
+                      c.gap * np.asarray(c.n) / size, KNOWN, given)
 
 
 # ---------------------------------------------------------------------------------------------- avoidance

@@ -1,14 +1,19 @@
 """Lesson 4 is right when L = I ω, when tensors turn, move and add as bodies do, and when meshes have their volume integrals."""
 
+from collections import Counter
+
 import numpy as np
 import pytest
+from scipy.spatial import Delaunay
 
+from .brute import solid
 from .grading.expect import close, raises
 from solutions.checks import BadInput
 
 exercise = pytest.mark.exercise
 # Masses below 5 kg, lengths below 3 m, speeds below 20 m/s, a dozen terms: numbers below 1e3, each rounded by 1.1e-16 of itself
 ROUNDED = 1e-11
+SIZES = (1e-6, 1.0, 1e3)     # of bodies [m]
 
 
 def cloud(draw, n):
@@ -239,7 +244,7 @@ def test_parts_without_mass_are_refused(lesson, draw):
     raises("a body and a hole as heavy: together 0 kg", BadInput, lesson.combine, np.array([1.0, -1.0]), x, I)
 
 
-@exercise("4.13", points=1, hint="the columns of R are the axes, in the order of the moments: I R = R diag(moments)")
+@exercise("4.13", points=0.75, hint="the columns of R are the axes, in the order of the moments: I R = R diag(moments)")
 def test_principal_axes_are_where_l_is_parallel_to_omega(lesson, draw):
     R, moments = rotation(draw), np.sort(draw(1.0, 3.0, 3))
     I = R @ np.diag(moments) @ R.T
@@ -250,7 +255,7 @@ def test_principal_axes_are_where_l_is_parallel_to_omega(lesson, draw):
     close("Rᵀ R [-]: unit vectors, across each other", np.asarray(axes).T @ np.asarray(axes), np.eye(3), ROUNDED, given)
 
 
-@exercise("4.13", points=0.5, hint="when the determinant of R is −1, change the sign of a column")
+@exercise("4.13", points=0.25, hint="when the determinant of R is −1, change the sign of a column")
 def test_principal_axes_are_right_handed(lesson, draw):
     tensors = [np.diag([2.0, 1.0, 3.0]), np.diag([1.0, 2.0, 3.0]), np.diag([3.0, 2.0, 1.0]), np.diag([2.0, 3.0, 1.0])]
     tensors += [tensor(*cloud(draw, 5)) for _ in range(8)]
@@ -264,12 +269,32 @@ def test_principal_axes_are_right_handed(lesson, draw):
         close("the tensor that was handed in", I, kept, 0.0)
 
 
+@exercise("4.13", points=0.5,
+          hint="of equal moments many axes are right, but all are right-handed unit vectors across each other")
+def test_principal_moments_are_the_roots_of_the_characteristic_polynomial_at_any_size(lesson, draw):
+    """det(I − λ) = −λ³ + tr I λ² − ½(tr² I − tr I²) λ + det I.  Roots 0.2 apart are known to about 1e-14."""
+    low, middle, high = 0.5 + draw(0.0, 0.3), 1.0 + draw(0.0, 0.3), 1.5 + draw(0.0, 0.3)
+    for size in (1e-30, 1e-6, 1.0, 1e6, 1e30):
+        for moments in ([low, middle, high], [low, middle, middle], [low, low, high], [low, low, low]):
+            I = turned(moments, rotation(draw))
+            trace, roots = np.trace(I), np.array(moments)
+            if len(set(moments)) == 3:
+                roots = np.sort(np.roots([1.0, -trace, 0.5 * (trace**2 - np.trace(I @ I)), -np.linalg.det(I)]).real)
+            found, axes = lesson.principal_axes(size * I)
+            found, axes, given = np.asarray(found) / size, np.asarray(axes), f"I = {(size * I).tolist()}"
+            close("principal moments over the size [-]", found, roots, ROUNDED, given)
+            close("R diag(moments) Rᵀ over the size [-]", axes @ np.diag(found) @ axes.T, I, ROUNDED, given)
+            close("axes in turn: first × second is the third [-]", np.cross(axes[:, 0], axes[:, 1]), axes[:, 2],
+                  ROUNDED, given)
+
+
 def turned(moments, R):
     I = R @ np.diag(moments) @ R.T
     return 0.5 * (I + I.T)
 
 
-@exercise("4.14", points=0.5, hint="in this order: finite, symmetric, smallest moment above zero, largest no more than the sum of the others")
+@exercise("4.14", points=0.25,
+          hint="in this order: finite, symmetric, smallest moment above zero, largest no more than the sum of the others")
 def test_impossible_tensors_are_refused(lesson, draw):
     low, middle, R = draw(0.5, 1.0), draw(1.0, 1.5), rotation(draw)
     impossible = {
@@ -292,7 +317,8 @@ def test_impossible_tensors_are_refused(lesson, draw):
     raises("a moment above the sum of the others", BadInput, lesson.check_inertia, np.diag([low, 3.0 * middle, middle]), naming=[3.0 * middle])
 
 
-@exercise("4.14", points=0.5, hint="round-off must not condemn a thin plate, I₃ = I₁ + I₂: allow ε = TENSOR_ROUND_OFF of it")
+@exercise("4.14", points=0.25,
+          hint="round-off must not condemn a thin plate, I₃ = I₁ + I₂: allow ε = TENSOR_ROUND_OFF of it")
 def test_possible_tensors_pass(lesson, draw):
     low, middle = draw(0.5, 1.0), draw(1.0, 1.5)
     lesson.check_inertia(np.diag([low, low, low]))
@@ -305,6 +331,27 @@ def test_possible_tensors_pass(lesson, draw):
         lesson.check_inertia(turned([low, middle, low + middle], rotation(draw)))
         m, r = cloud(draw, 5)
         lesson.check_inertia(tensor(m, r) + 0.01 * np.eye(3))
+
+
+@exercise("4.14", points=0.5,
+          hint="each limit is a share of the tensor's own size: as strict for a bacterium as for a ship")
+def test_a_tensor_is_possible_exactly_when_its_mass_is_nowhere_below_zero(lesson, draw):
+    """∫ x², ∫ y², ∫ z² dm along the principal axes, (I₂ + I₃ − I₁)/2 and so on, are not negative; one may be zero."""
+    for size in (1e-24, 1e-9, 1.0, 1e9, 1e24):
+        for share in (1.0, 0.0, 1e-9, -1e-9, -0.5):
+            for k in range(3):
+                second = draw(0.1, 2.0, 3)
+                second[k] *= share
+                I = size * turned(np.sum(second) - second, rotation(draw))
+                if share >= 0.0:
+                    lesson.check_inertia(I)
+                else:
+                    raises("less than no mass along an axis", BadInput, lesson.check_inertia, I)
+        line, crooked = size * np.diag([0.0, 1.0, 1.0]), size * np.diag(1.0 + draw(0.0, 0.5, 3))
+        crooked[0, 2] += 1e-9 * size
+        raises("a line of points: no moment about itself", BadInput, lesson.check_inertia, line)
+        raises("an entry unlike the one across the diagonal", BadInput, lesson.check_inertia, crooked,
+               naming=[1e-9 * size])
 
 
 # ---------------------------------------------------------------------------------------------- triangle meshes
@@ -348,7 +395,8 @@ def compare_integrals(lesson, what, x, faces, expected, given):
     close(f"∫x xᵀ dV of {what} [m⁵]", second, expected[2], ROUNDED, given)
 
 
-@exercise("4.15", points=1, hint="w = a · (b × c) is six times the tetrahedron's volume; s = a + b + c belongs into first and second")
+@exercise("4.15", points=0.75,
+          hint="w = a · (b × c) is six times the tetrahedron's volume; s = a + b + c belongs into first and second")
 def test_integrals_over_a_tetrahedron_are_those_of_its_corners(lesson, draw):
     x = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]) + draw(-0.2, 0.2, (4, 3)) + draw(-2.0, 2.0, 3)
     V, s = np.linalg.det(x[1:] - x[0]) / 6.0, x.sum(axis=0)
@@ -357,7 +405,8 @@ def test_integrals_over_a_tetrahedron_are_those_of_its_corners(lesson, draw):
     compare_integrals(lesson, "a tetrahedron away from the origin", x, TETRAHEDRON, expected, f"corners {x.tolist()}")
 
 
-@exercise("4.15", points=1, hint="add up over all triangles with the sign of w: what juts out over the body must be taken away again")
+@exercise("4.15", points=0.75,
+          hint="add up over all triangles with the sign of w: what juts out over the body must be taken away again")
 def test_integrals_over_boxes_and_an_angle_are_products(lesson, draw):
     size, centre = draw(0.3, 1.5, 3), draw(-2.0, 2.0, 3)
     expected = of_boxes([(centre - 0.5 * size, centre + 0.5 * size)])
@@ -368,7 +417,56 @@ def test_integrals_over_boxes_and_an_angle_are_products(lesson, draw):
     compare_integrals(lesson, "an L, which is not convex", x, faces, expected, f"legs {a:.4g}, {b:.4g}, thickness {t:.4g}, height {height:.4g}")
 
 
-@exercise("4.16", points=0.5, hint="every edge i → j needs a j → i; an odd triangle, turned round or doubled, breaks that; name a corner where it is open")
+def of_tetrahedron(x):
+    """(V ≥ 0, ∫x, ∫x xᵀ) of a tetrahedron (4, 3); in barycentric coordinates ∫λᵢλⱼ dV = V (1 + δᵢⱼ)/20 (Dirichlet)."""
+    V, s = abs(np.linalg.det(x[1:] - x[0])) / 6.0, x.sum(axis=0)
+    return V, V / 4.0 * s, V / 20.0 * (x.T @ x + np.outer(s, s))
+
+
+def added(parts):
+    """The sum of integrals [(share, (V, ∫x, ∫x xᵀ))]."""
+    return [sum(share * integrals[k] for share, integrals in parts) for k in range(3)]
+
+
+def lumps(draw, place):
+    """(name, corners, faces, integrals) of random bodies of size 1 at a place [m]: convex, dented, hollow.
+
+    The integrals are those of the tetrahedra into which Delaunay's method divides them.
+    """
+    x, faces = solid(draw(-0.5, 0.5, (12, 3)) * [1.0, 1.0, draw(0.1, 1.0)] + place)
+    whole = added([(1.0, of_tetrahedron(x[t])) for t in Delaunay(x).simplices])
+    yield "a lump", x, faces, whole
+    centre, corners = whole[1] / whole[0], x[faces[0]]
+    tip = draw(0.3, 0.9) * (centre - corners.mean(axis=0)) + corners.mean(axis=0)
+    dent = np.array([[faces[0, k], faces[0, (k + 1) % 3], len(x)] for k in range(3)])
+    lost = of_tetrahedron(np.concatenate((corners, [tip])))
+    dented = added([(1.0, whole), (-1.0, lost)])
+    yield "a lump with a dent", np.concatenate((x, [tip])), np.concatenate((faces[1:], dent)), dented
+    inner = centre + 0.5 * (x - centre)
+    hole = added([(1.0, of_tetrahedron(inner[t])) for t in Delaunay(x).simplices])
+    hollow = added([(1.0, whole), (-1.0, hole)])
+    yield "a lump with a cavity", np.concatenate((x, inner)), np.concatenate((faces, faces[:, ::-1] + len(x))), hollow
+
+
+@exercise("4.15", points=0.5,
+          hint="keep every sign: the integrals of a cavity, or of a mesh turned inside-out, are negative")
+def test_integrals_over_lumps_dents_and_cavities_are_those_of_their_tetrahedra(lesson, draw):
+    for size in SIZES:
+        for far in (0.0, 3.0):
+            for name, x, faces, expected in lumps(draw, far * draw(-1.0, 1.0, 3)):
+                for what, sign, mesh in ((name, 1.0, faces),
+                                         (f"{name} inside-out", -1.0, np.ascontiguousarray(faces[:, ::-1]))):
+                    V, first, second = lesson.mesh_integrals(size * x, mesh)
+                    given = f"corners {(size * x).tolist()}, triangles {mesh.tolist()}"
+                    close(f"∫dV of {what}, over its size [-]", V / size**3, sign * expected[0], ROUNDED, given)
+                    close(f"∫x dV of {what}, over its size [-]", np.asarray(first) / size**4, sign * expected[1],
+                          ROUNDED, given)
+                    close(f"∫x xᵀ dV of {what}, over its size [-]", np.asarray(second) / size**5, sign * expected[2],
+                          ROUNDED, given)
+
+
+@exercise("4.16", points=0.25,
+          hint="every edge i → j needs a j → i; an odd triangle, turned round or doubled, breaks that; name a corner where it is open")
 def test_open_and_crooked_meshes_are_refused(lesson, draw):
     x, faces = box_mesh(draw(0.3, 1.5, 3), np.zeros(3))
     k = draw.whole(0, len(faces) - 1)
@@ -385,7 +483,8 @@ def test_open_and_crooked_meshes_are_refused(lesson, draw):
     raises("a number that no corner has", BadInput, lesson.check_closed, len(x), np.where(faces == len(x) - 1, 77, faces), naming=[77])
 
 
-@exercise("4.16", points=0.5, hint="compare what is there with what goes back, edge by edge; how the triangles are ordered does not matter")
+@exercise("4.16", points=0.25,
+          hint="compare what is there with what goes back, edge by edge; how the triangles are ordered does not matter")
 def test_closed_meshes_pass(lesson, draw):
     lesson.check_closed(4, TETRAHEDRON)
     x, faces = box_mesh(draw(0.3, 1.5, 3), np.zeros(3))
@@ -396,7 +495,33 @@ def test_closed_meshes_pass(lesson, draw):
     lesson.check_closed(6, np.concatenate([TETRAHEDRON, np.array([0, 1, 4, 5])[TETRAHEDRON]]))           # two that share an edge: it is there twice, and back twice
 
 
-@exercise("4.17", points=1, hint="subtract V c cᵀ before you form the trace: the tensor is about the centre of mass")
+def open_corners(faces):
+    """Corners of edges i → j that are not met by as many edges j → i."""
+    there = Counter((int(f[k]), int(f[(k + 1) % 3])) for f in faces for k in range(3))
+    return sorted({corner for i, j in there if there[i, j] != there[j, i] for corner in (i, j)})
+
+
+@exercise("4.16", points=0.5,
+          hint="count every edge i → j and every edge j → i: they must be as many, whatever numbers the corners have")
+def test_lumps_are_closed_until_a_triangle_is_lost_turned_doubled_or_misplaced(lesson, draw):
+    for name, x, original, _ in lumps(draw, np.zeros(3)):
+        count = len(x) + 3                                               # three corners that no triangle uses
+        for _ in range(3):
+            faces = np.argsort(draw(0.0, 1.0, count))[original]
+            faces = np.ascontiguousarray(np.roll(faces, draw.whole(0, 2),
+                                                 axis=1)[np.argsort(draw(0.0, 1.0, len(faces)))])
+            lesson.check_closed(count, faces)
+            k, turned_round, misplaced = draw.whole(0, len(faces) - 1), faces.copy(), faces.copy()
+            turned_round[k] = faces[k, ::-1]
+            misplaced[k, 0] = next(c for c in range(count) if c not in faces[k])
+            lost, doubled = np.delete(faces, k, axis=0), np.concatenate((faces, faces[k:k + 1]))
+            for what, broken in (("lost", lost), ("turned", turned_round), ("doubled", doubled),
+                                 ("misplaced", misplaced)):
+                raises(f"{name} with a triangle {what}", BadInput, lesson.check_closed, count, broken,
+                       naming=open_corners(broken))
+
+
+@exercise("4.17", points=0.75, hint="subtract V c cᵀ before you form the trace: the tensor is about the centre of mass")
 def test_a_mesh_has_the_mass_centre_and_tensor_of_its_body(lesson, draw):
     density, size, centre = draw(0.5, 2.0), draw(0.3, 1.5, 3), draw(-2.0, 2.0, 3)
     x, faces = box_mesh(size, centre)
@@ -417,7 +542,7 @@ def test_a_mesh_has_the_mass_centre_and_tensor_of_its_body(lesson, draw):
     close("its tensor about the centre [kg m²]", found_I, expected, ROUNDED, given)
 
 
-@exercise("4.17", points=0.5, hint="integrate about a corner, x − x[0], and add x[0] to the centre in the end")
+@exercise("4.17", points=0.25, hint="integrate about a corner, x − x[0], and add x[0] to the centre in the end")
 def test_a_mesh_far_from_the_origin_keeps_its_digits(lesson, draw):
     density, size = draw(0.5, 2.0), draw(0.5, 1.5, 3)
     far = np.round(draw(0.5, 1.0, 3) * np.array([1e5, -1e5, 1e5]))
@@ -441,3 +566,24 @@ def test_meshes_without_an_inside_are_refused(lesson, draw):
     for _ in range(8):                                                 # one of them has a volume of round-off above zero
         flat = np.column_stack([x[:, :2], x[:, :2] @ draw(-0.5, 0.5, 2)])
         raises("a box pressed flat, all corners in one plane", BadInput, lesson.mesh_body, 1.0, flat, faces)
+    for size in (1.0, 1e3, 1e6):                                       # of a large one the round-off is large as well
+        flat = size * np.column_stack([x[:, :2], x[:, :2] @ draw(-0.5, 0.5, 2)])
+        raises("a large box pressed flat", BadInput, lesson.mesh_body, 1.0, flat, faces)
+
+
+@exercise("4.17", points=0.5,
+          hint="the centre is first/volume, not the mean of the corners; a small body is as good as a large one")
+def test_a_lump_of_any_size_and_place_has_the_mass_centre_and_tensor_of_its_tetrahedra(lesson, draw):
+    for size in SIZES:
+        for far in (0.0, 1e3):
+            place, density = far * draw(-1.0, 1.0, 3), draw(0.5, 2.0)
+            for name, x, faces, (V, first, second) in lumps(draw, np.zeros(3)):
+                mass, centre, I = lesson.mesh_body(density, size * (x + place), faces)
+                C = second - np.outer(first, first) / V
+                given = f"density {density}, corners {(size * (x + place)).tolist()}, triangles {faces.tolist()}"
+                # corners a thousand sizes away are rounded by 1e-13 of the size
+                close(f"mass of {name} over density and size [-]", mass / density / size**3, V, ROUNDED, given)
+                close(f"centre of mass of {name}, less where it was put, over the size [-]",
+                      np.asarray(centre) / size - place, first / V, ROUNDED, given)
+                close(f"tensor of {name} over density and size [-]", np.asarray(I) / density / size**5,
+                      np.trace(C) * np.eye(3) - C, ROUNDED, given)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from .grading.expect import between, close, raises
-from solutions.checks import Diverged
+from solutions.checks import BadInput, Diverged
 
 exercise = pytest.mark.exercise
 
@@ -180,3 +180,6 @@ def test_observed_order_is_the_slope_between_logarithms(lesson, draw):
     errors = errors * draw(0.5, 2.0, 4)
     slope = np.polyfit(np.log(dts), np.log(errors), 1)[0]
     close("order of a noisy series, by least squares", lesson.observed_order(dts, errors), slope, 1e-13)
+    last = np.arange(4) == 3
+    raises("a run without error", BadInput, lesson.observed_order, dts, np.where(last, 0.0, errors))
+    raises("a step backwards", BadInput, lesson.observed_order, np.where(last, -dts, dts), errors)

@@ -65,4 +65,4 @@ def test_a_lesson_that_cannot_be_loaded_is_told_and_the_engines_run_alone(tmp_pa
     result = measured("stick_slip", 50)
     case = next(iter(result["cases"].values()))
     assert case["ours"] == [] and case["engines"] and scene_of("stick_slip").TITLE
-    assert "lessons/friction.py cannot be loaded, line 1: SyntaxError" in capsys.readouterr().out
+    assert "friction.py cannot be loaded: SyntaxError: invalid syntax (friction.py, line 1)" in capsys.readouterr().out

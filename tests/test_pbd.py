@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from scipy.spatial import ConvexHull
 
-from .grading.expect import close, raises
+from .brute import solid
+from .grading.expect import between, close, raises
 from solutions.checks import BadInput, Diverged
 
 exercise = pytest.mark.exercise
@@ -11,6 +13,11 @@ G = 9.81                     # [m/s²]
 # Everything drawn is below 10 in its unit, and what is compared takes a few dozen operations, each rounded by 1.1e-16 of that:
 ROUND_OFF = 1e-12
 TINY = 1e-30                 # a complex step: its square vanishes beside 1, so that a derivative is exact to round-off
+
+
+def places(draw, d):
+    """(size, place) of small, middling and large bodies [m], at the origin and a thousand sizes away from it."""
+    return [(size, far * size * draw(-1.0, 1.0, d)) for size in (1e-10, 1.0, 1e3) for far in (0.0, 1e3)]
 
 
 def direction(draw, d):
@@ -45,7 +52,8 @@ def lengths(x, p):
 
 # ---------------------------------------------------------------------------------------------- one constraint
 
-@exercise("8.1", points=0.5, hint="C is positive where the points are too far apart; n points from j to i, and has length 1")
+@exercise("8.1", points=0.25,
+          hint="C is positive where the points are too far apart; n points from j to i, and has length 1")
 def test_a_link_knows_how_much_too_long_it_is_and_where_its_ends_should_go(lesson, draw):
     for d in (2, 3):
         x_j, n, length, rest = draw(-2.0, 2.0, d), direction(draw, d), draw(0.5, 3.0), draw(0.5, 3.0)
@@ -55,10 +63,27 @@ def test_a_link_knows_how_much_too_long_it_is_and_where_its_ends_should_go(lesso
         close("its gradient for i [-]", gradient, n, ROUND_OFF, given=given)
 
 
-@exercise("8.1", points=0.5, hint="no length, no direction: raise BadInput as the docstring says, before dividing")
+@exercise("8.1", points=0.25, hint="no length, no direction: raise BadInput as the docstring says, before dividing")
 def test_a_link_whose_ends_coincide_is_refused(lesson, draw):
     x = draw(-2.0, 2.0, 2)
     raises("a link whose ends coincide", BadInput, lesson.distance_constraint, x, x.copy(), draw(0.5, 2.0))
+
+
+@exercise("8.1", points=0.5,
+          hint="C keeps its sign, and n does not depend on it: too long or too short, n points from j to i")
+def test_taking_C_n_back_makes_a_link_right_be_it_too_long_too_short_small_or_far_away(lesson, draw):
+    """A thousand sizes from the origin places are rounded by 1e-13 of the size."""
+    for d in (2, 3):
+        for size, place in places(draw, d):
+            for share in (0.0, draw(0.1, 0.9), 1.0, draw(1.1, 5.0)):
+                x_i, rest = place + size * draw(0.3, 3.0) * direction(draw, d), share * size
+                C, n = lesson.distance_constraint(x_i, place, rest)
+                n, given = np.asarray(n, dtype=float), f"x_i = {x_i} m, x_j = {place} m, rest = {rest} m"
+                close("length of the link after x_i ← x_i − C n, over the size [-]",
+                      np.linalg.norm(x_i - C * n - place) / size, share, ROUND_OFF * 10.0, given)
+                close("length of n [-]", n @ n, 1.0, ROUND_OFF, given)
+                close("length of the link by n · (x_i − x_j), over the size [-]", n @ (x_i - place) / size,
+                      np.linalg.norm(x_i - place) / size, ROUND_OFF, given)
 
 
 @exercise("8.2", points=1, hint="Λ = −C/Σ w|∇C|², the same for all points; each point then moves by w Λ along its own gradient")
@@ -66,9 +91,12 @@ def test_a_projection_meets_a_linear_constraint_at_once_and_shares_it_by_inverse
     for k, d in ((2, 2), (4, 3)):
         gradients, w, C = draw(-2.0, 2.0, (k, d)), draw(0.2, 2.0, k), draw(0.5, 2.0) * (2 * draw.whole(0, 1) - 1)
         w[0] = 0.0
+        small = np.asarray(lesson.projection(1e-6 * C, 1e-6 * gradients, 1e-6 * w), dtype=float)
         moved = np.asarray(lesson.projection(C, gradients, w), dtype=float)
         given = f"C = {C}, ∇C = {gradients.tolist()}, w = {w}"
         close("C + Σ ∇C · Δx: what is left of a linear constraint", C + np.sum(gradients * moved), 0.0, ROUND_OFF, given=given)
+        close("corrections where C, ∇C and w are a millionth of that: the same [m]", small, moved, ROUND_OFF * 10.0,
+              given=given)
         close("correction of an immovable point [m]", moved[0], np.zeros(d), 0.0, given=given)
         share = moved[1:] / w[1:, None] / gradients[1:]
         close("Δx/(w ∇C): one number for all points and coordinates", share, np.full_like(share, share[0, 0]), ROUND_OFF * np.abs(share).max() / np.abs(gradients).min(), given=given)
@@ -92,7 +120,7 @@ def swirl(t, x, v, p):
 def test_points_are_predicted_to_go_on_and_fall_and_immovable_ones_only_to_go_on(lesson, draw):
     for d in (2, 3):
         x, v, t, dt = draw(-1.0, 1.0, (3, d)), draw(-1.0, 1.0, (3, d)), draw(0.5, 2.0), draw(0.05, 0.5)
-        p = net(lesson, [1.0, 0.0, draw(0.5, 2.0)], [(0, 1)], 1.0, d)
+        p = net(lesson, [draw(1.5, 9.0), 0.0, draw(0.1, 0.7)], [(0, 1)], 1.0, d)
         before = x.copy()
         expected = x + dt * v + dt * dt * swirl(t, x, v, p) * np.array([[1.0], [0.0], [1.0]])
         close("predicted positions [m]", lesson.predict(swirl, t, x, v, dt, p), expected, ROUND_OFF, given=f"x = {x.tolist()}, v = {v.tolist()}, t = {t} s, dt = {dt} s")
@@ -155,13 +183,23 @@ def test_after_a_step_every_link_has_its_length_and_nothing_is_pushed_from_outsi
 
 @exercise("8.5", points=0.5, hint="raise Diverged when NEWTON_LIMIT rounds were not enough; ask every coordinate of Δx")
 def test_a_pendulum_goes_where_its_string_is_in_line_with_the_prediction(lesson, draw):
-    n, length, dt = direction(draw, 2), draw(0.5, 2.0), draw(0.02, 0.1)
-    x = np.stack((np.zeros(2), length * n))
-    v = np.stack((np.zeros(2), draw(-2.0, 2.0, 2)))
-    p = net(lesson, [0.0, draw(0.5, 2.0)], [(0, 1)], length)
-    goal = x[1] + dt * v[1] + dt * dt * p.gravity
-    new, _ = lesson.projection_step(lesson.falling_acceleration, 0.0, x, v, dt, p)
-    close("pendulum after a step [m]", new, [np.zeros(2), length * goal / np.linalg.norm(goal)], 1e-11, given=f"x = {x.tolist()} m, v = {v.tolist()} m/s, dt = {dt} s")
+    dt = draw(0.02, 0.1)
+    for size in (1e-3, 1.0, 1e6):
+        for quarter in range(4):                     # so that each coordinate once goes up and once down
+            angle, length = draw(0.1, 1.4) + 0.5 * np.pi * quarter, size * draw(0.5, 2.0)
+            out, speed = np.array([np.cos(angle), np.sin(angle)]), size * draw(2.0, 4.0) * (2 * draw.whole(0, 1) - 1)
+            x, v = np.stack((np.zeros(2), length * out)), np.stack((np.zeros(2), speed * np.array([-out[1], out[0]])))
+            p = net(lesson, [0.0, draw(0.5, 2.0)], [(0, 1)], length, g=G * size)
+            goal = x[1] + dt * v[1] + dt * dt * p.gravity
+            new, _ = lesson.projection_step(lesson.falling_acceleration, 0.0, x, v, dt, p)
+            close("pendulum after a step, over its size [-]", np.asarray(new) / size,
+                  [np.zeros(2), length / size * goal / np.linalg.norm(goal)], 1e-11,
+                  given=f"x = {x.tolist()} m, v = {v.tolist()} m/s, dt = {dt} s, g = {G * size} m/s²")
+    triangle = np.array([[0.0, 0.0], [1.0, 0.2], [0.3, 0.9]])
+    once, twice = ([(0, 1), (1, 2), (2, 0)] + [(1, 2)] * more for more in (0, 1))
+    ends = [lesson.projection_step(lesson.falling_acceleration, 0.0, triangle, 0.0 * triangle, dt, p)[0]
+            for p in (net(lesson, [0.0, 1.0, 2.0], pairs, [np.linalg.norm(triangle[i] - triangle[j]) for i, j in pairs]) for pairs in (once, twice))]
+    close("a triangle with one link given twice, after a step [m]", ends[1], ends[0], 1e-10, given=f"x = {triangle.tolist()} m, dt = {dt} s")
     far = draw(2.2, 3.0)
     between = np.array([[0.0, 0.0], [0.5 * far, draw(0.3, 0.9)], [far, 0.0]])
     short = net(lesson, [0.0, 1.0, 0.0], [(0, 1), (1, 2)], 1.0)
@@ -174,8 +212,8 @@ def test_a_pendulum_goes_where_its_string_is_in_line_with_the_prediction(lesson,
 def test_a_visit_takes_its_share_of_the_error_and_leaves_the_centre_of_mass(lesson, draw):
     for d in (2, 3):
         s, w = draw(0.2, 0.9), draw(0.3, 2.0, 2)
-        x, rest = np.stack((draw(-1.0, 1.0, d), draw(2.0, 3.0, d))), draw(0.3, 0.8)
-        for share in (1.0, s):
+        x = np.stack((draw(-1.0, 1.0, d), draw(2.0, 3.0, d)))
+        for share, rest in ((1.0, draw(0.3, 0.8)), (s, draw(0.3, 0.8)), (s, draw(8.0, 9.0))):
             p = net(lesson, w, [(0, 1)], rest, d, share)
             before, new = x.copy(), np.asarray(lesson.distance_sweep(x, p), dtype=float)
             given = f"x = {x.tolist()} m, w = {w}, rest = {rest} m, stiffness {share}"
@@ -197,8 +235,20 @@ def test_a_sweep_visits_one_link_after_the_other_and_leaves_the_immovable_alone(
     new = lesson.distance_sweep(x, p)
     close("positions after a sweep [m]", new, expected, ROUND_OFF, given=f"x = {x.tolist()} m, {p}")
     close("the immovable point [m]", np.asarray(new)[0], x[0], 0.0)
+    small = lesson.distance_sweep(1e-7 * x, p._replace(rest=1e-7 * p.rest))
+    close("positions of a net of a ten millionth of the size [1e-7 m]", np.asarray(small) * 1e7, expected,
+          ROUND_OFF * 10.0)
     x[1] = x[0]
     raises("a link whose ends coincide", BadInput, lesson.distance_sweep, x, p)
+
+
+def carried_along(step, lesson, draw, x, dt, p):
+    """An immovable point goes on with the velocity that it has."""
+    v = np.stack((draw(1.0, 2.0, 2), np.zeros(2)))
+    new, v_new = step(lesson.falling_acceleration, 0.0, x, v, dt, p)
+    close("where an immovable point is that moves [m]", np.asarray(new)[0], x[0] + dt * v[0], ROUND_OFF,
+          given=f"v = {v[0]} m/s, dt = {dt} s")
+    close("its velocity [m/s]", np.asarray(v_new)[0], v[0], ROUND_OFF / dt, given=f"v = {v[0]} m/s, dt = {dt} s")
 
 
 @exercise("8.7", points=1, hint="predict, then net.sweeps sweeps, then the velocity from what was moved")
@@ -218,17 +268,19 @@ def test_a_weight_on_one_link_sags_by_what_its_sweeps_leave(lesson, draw):
         expected = -length - S * (sag + G * dt * dt - dt * fast[1, 1])
         close("a weight that was thrown, after a step [m]", np.asarray(new)[1, 1], expected, ROUND_OFF, given=f"v = {fast[1]} m/s, {given}")
         close("its velocity [m/s]: what it has moved, over dt", np.asarray(v)[1, 1], (expected - x[1, 1]) / dt, ROUND_OFF / dt, given=given)
+        carried_along(lesson.pbd_step, lesson, draw, x, dt, p)
 
 
 @exercise("8.8", points=0.5, hint="S = (1 − s)ⁿ is what the sweeps leave; the sag is where falling by g dt² and being put back balance")
 def test_the_sag_is_where_falling_and_projecting_balance(lesson, draw):
-    g, dt, s, sweeps = draw(1.0, 20.0), draw(0.01, 0.1), draw(0.2, 0.8), draw.whole(1, 6)
-    sag = 0.0
-    for _ in range(400):                             # it converges by a factor S ≤ 0.8 each time
-        sag = sag + g * dt * dt
-        for _ in range(sweeps):
-            sag -= s * sag
-    close("sag [m]", lesson.pbd_sag(g, dt, s, sweeps), sag, ROUND_OFF, given=f"g = {g} m/s², dt = {dt} s, s = {s}, n = {sweeps}")
+    for sweeps in (1, draw.whole(2, 6), draw.whole(7, 12)):
+        g, dt, s, sag = draw(1.0, 20.0), draw(0.01, 0.1), draw(0.2, 0.8), 0.0
+        for _ in range(400):                         # it converges by a factor S ≤ 0.8 each time
+            sag = sag + g * dt * dt
+            for _ in range(sweeps):
+                sag -= s * sag
+        close("sag [m]", lesson.pbd_sag(g, dt, s, sweeps), sag, ROUND_OFF,
+              given=f"g = {g} m/s², dt = {dt} s, s = {s}, n = {sweeps}")
     close("sag of full stiffness [m]", lesson.pbd_sag(g, dt, 1.0, 1), 0.0, 0.0)
 
 
@@ -254,7 +306,8 @@ def angle(x):
     return np.arctan2(np.cross(c, d) @ e, c @ d)
 
 
-@exercise("8.9", points=1, hint="flat is 0; atan2 with (N_c × N_d) · e/|e| knows which way it is folded; take C into (−π, π]")
+@exercise("8.9", points=0.75,
+          hint="flat is 0; atan2 with (N_c × N_d) · e/|e| knows which way it is folded; take C into (−π, π]")
 def test_a_fold_knows_its_angle_and_its_side(lesson, draw):
     for phi, wanted in ((draw(0.2, 2.5), draw(-0.5, 0.5)), (-draw(0.2, 2.5), draw(-0.5, 0.5)), (0.0, 0.0), (3.0, -draw(0.5, 2.5)), (-3.0, draw(0.5, 2.5))):
         x = folded(draw, phi)
@@ -262,11 +315,18 @@ def test_a_fold_knows_its_angle_and_its_side(lesson, draw):
         expected += 2.0 * np.pi * (float(expected <= -np.pi) - float(expected > np.pi))
         close("angle, as the test has made it [rad]", abs(angle(x)), abs(phi), 1e-11)
         close("C of a fold [rad]", lesson.fold_constraint(x, wanted)[0], expected, 1e-11, given=f"corners {x.tolist()} m, wanted {wanted} rad")
-    x[3] = x[0]
-    raises("a triangle without area", BadInput, lesson.fold_constraint, x, 0.0)
+    for wing in (2, 3):
+        flat = x.copy()
+        flat[wing] = x[0]
+        raises("a triangle without area", BadInput, lesson.fold_constraint, flat, 0.0)
+    # the angle of this sheet is exactly 0
+    sheet = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, -1.0, 0.0]])
+    close("C of a flat sheet that wants to be folded by π, or by −π [rad]",
+          [lesson.fold_constraint(sheet, turn)[0] for turn in (np.pi, -np.pi)], [np.pi, np.pi], 0.0)
 
 
-@exercise("8.9", points=1, hint="wings move the angle by |e|/|N| each, along their normals; what the edge does follows from leverage, β, and from Σ = 0")
+@exercise("8.9", points=0.75,
+          hint="wings move the angle by |e|/|N| each, along their normals; what the edge does follows from leverage, β, and from Σ = 0")
 def test_the_gradient_of_a_fold_is_the_slope_of_its_angle_and_pushes_nothing_from_outside(lesson, draw):
     for phi in (draw(0.3, 2.0), -draw(0.3, 2.0), 0.0):
         x, h = folded(draw, phi), 1e-5
@@ -282,7 +342,37 @@ def test_the_gradient_of_a_fold_is_the_slope_of_its_angle_and_pushes_nothing_fro
         close("Σ x × ∇C: no torque from outside", np.cross(x, got).sum(axis=0), np.zeros(3), ROUND_OFF * 10.0, given=f"corners {x.tolist()} m")
 
 
-@exercise("8.10", points=0.5, hint="|x − centre| − radius: positive outside; n points away from the centre, and is 0 there")
+def smooth_angle(x):
+    """The same angle by the tangent of its half, which takes complex numbers as well: away from ±π."""
+    e = (x[1] - x[0]) / np.sqrt(np.sum((x[1] - x[0]) ** 2))
+    c, d = (y - np.sum(y * e) * e for y in (x[2] - x[0], x[0] - x[3]))
+    return 2.0 * np.arctan(np.sum(np.cross(c, d) * e) / (np.sqrt(np.sum(c * c) * np.sum(d * d)) + np.sum(c * d)))
+
+
+@exercise("8.9", points=0.5,
+          hint="beside an obtuse angle β is below 0 or above 1: leave it so; and a small fold is a fold")
+def test_folds_with_acute_and_obtuse_wings_have_the_slope_of_their_angle_at_any_size(lesson, draw):
+    """The slope by a complex step, exact to round-off; tan ½θ is below 15, heights are above 0.3 of the size."""
+    for size, place in places(draw, 3):
+        for foot_c in (draw(-1.5, -0.3), draw(0.1, 0.9), draw(1.3, 2.5)):
+            for foot_d in (draw(-1.5, -0.3), draw(0.1, 0.9), draw(1.3, 2.5)):
+                phi, e = draw(-2.9, 2.9), direction(draw, 3)
+                up = np.cross(e, direction(draw, 3))
+                up = up / np.linalg.norm(up)
+                side = np.cross(up, e)
+                beyond = -np.cos(phi) * side - np.sin(phi) * up
+                wings = foot_c * e + draw(0.3, 1.5) * side, foot_d * e + draw(0.3, 1.5) * beyond
+                x = np.stack((np.zeros(3), e, *wings))
+                slope = np.array([smooth_angle(x + 1j * TINY * move.reshape(4, 3)).imag / TINY
+                                  for move in np.eye(12)]).reshape(4, 3)
+                C, gradient = lesson.fold_constraint(place + size * x, 0.0)
+                given = f"corners {(place + size * x).tolist()} m"
+                close("C of a fold [rad]", C, smooth_angle(x), 1e-10, given)
+                close("its gradient times the size [rad]", size * np.asarray(gradient), slope, 1e-9, given)
+
+
+@exercise("8.10", points=0.25,
+          hint="|x − centre| − radius: positive outside; n points away from the centre, and is 0 there")
 def test_a_ball_knows_how_far_away_its_skin_is(lesson, draw):
     for d in (2, 3):
         ball = lesson.Obstacle(draw(-2.0, 2.0, d), draw(0.5, 2.0), np.zeros(d), np.eye(d)[0])
@@ -296,7 +386,30 @@ def test_a_ball_knows_how_far_away_its_skin_is(lesson, draw):
         close("normal in the middle [-]", normal, np.zeros(d), 0.0)
 
 
-@exercise("8.11", points=1, hint="only where φ < 0, only what can move, and straight along n by −φ")
+@exercise("8.10", points=0.25,
+          hint="|x − centre| − radius wherever x is, close to the middle and far away; a radius of 0 is no exception")
+def test_no_point_of_the_skin_is_nearer_than_the_gap_says(lesson, draw):
+    for d in (2, 3):
+        for size, place in places(draw, d):
+            skin = np.array([direction(draw, d) for _ in range(20)])
+            for radius in (0.0, 1.0):
+                for distance in (1e-3, draw(0.1, 0.9), draw(1.1, 3.0)):
+                    n = direction(draw, d)
+                    ball = lesson.Obstacle(place, radius * size, np.zeros(d), np.eye(d)[0])
+                    x = place + size * distance * n
+                    phi, normal = lesson.ball_gap(x, ball)
+                    normal, given = np.asarray(normal, dtype=float), f"{ball}, x = {x} m"
+                    close("gap over the size [-]", phi / size, distance - radius, ROUND_OFF * 10.0, given)
+                    close("normal, which a thousand sizes away is known to 1e-13 of the distance [-]", normal, n, 1e-9,
+                          given)
+                    close("x − φ n from the centre, over the size [-]: on the skin",
+                          np.linalg.norm(x - phi * normal - place) / size, radius, ROUND_OFF * 10.0, given)
+                    others = np.linalg.norm(x - place - radius * size * skin, axis=1).min() / size
+                    between("how much nearer another point of the skin is, over the size [-]", abs(phi) / size - others,
+                            -1e9, ROUND_OFF * 10.0, given)
+
+
+@exercise("8.11", points=0.5, hint="only where φ < 0, only what can move, and straight along n by −φ")
 def test_what_has_got_inside_is_put_onto_the_skin_and_the_rest_is_left_alone(lesson, draw):
     n, tangent = direction(draw, 3), direction(draw, 3)
     tangent = np.cross(n, tangent)
@@ -312,12 +425,31 @@ def test_what_has_got_inside_is_put_onto_the_skin_and_the_rest_is_left_alone(les
     close("the x that was handed in: return a new array", x, before, 0.0)
 
 
+@exercise("8.11", points=0.5,
+          hint="each point has its own φ and n; how heavy it is does not matter, only whether it can move")
+def test_every_point_goes_to_the_nearest_point_outside_however_many_how_deep_and_how_heavy(lesson, draw):
+    for size, place in places(draw, 3):
+        n = direction(draw, 3)
+        floor, x, w = lesson.Obstacle(np.zeros(3), 0.0, place, n), place + size * draw(-2.0, 2.0,
+                                                                                       (12, 3)), 10.0 ** draw(-3.0, 3.0,
+                                                                                                              12)
+        w[draw.whole(0, 11)] = 0.0
+        heights = (x - place) @ n
+        new = np.asarray(lesson.keep_outside(lesson.floor_gap, x, w, floor), dtype=float)
+        inside, given = (heights < 0.0) & (w > 0.0), f"heights {heights} m over the floor {floor}, w = {w}"
+        close("points that stay where they are [m]", new[~inside], x[~inside], 0.0, given)
+        close("heights of the others afterwards, over the size [-]", (new[inside] - place) @ n / size,
+              np.zeros(inside.sum()), ROUND_OFF * 10.0, given)
+        close("how far they have moved, over the size [-]: no farther than needed",
+              np.linalg.norm(new - x, axis=1)[inside] / size, -heights[inside] / size, ROUND_OFF * 10.0, given)
+
+
 # ---------------------------------------------------------------------------------------------- XPBD
 
 @exercise("8.12", points=0.5, hint="(−C − α̃ Λ)/(weight + α̃) with α̃ = α/dt²: after the visit C + α̃ Λ is zero")
 def test_after_a_visit_a_compliant_constraint_obeys_hookes_law(lesson, draw):
-    for alpha in (0.0, draw(0.001, 0.1)):
-        C, Lam, weight, dt = draw(-1.0, 1.0), draw(-1.0, 1.0), draw(0.2, 2.0), draw(0.05, 0.5)
+    for alpha, side, other in ((0.0, 1, 1), (0.0, -1, 1), (draw(0.001, 0.1), 1, -1), (draw(0.001, 0.1), -1, -1)):
+        C, Lam, weight, dt = side * draw(0.1, 1.0), other * draw(0.1, 1.0), draw(0.2, 2.0), draw(0.05, 0.5)
         change = lesson.compliant_multiplier(C, Lam, weight, alpha, dt)
         given = f"C = {C} m, Λ = {Lam} N s², weight {weight} /kg, α = {alpha} m/N, dt = {dt} s"
         close("C + α λ after a visit [m]", C + weight * change + alpha * (Lam + change) / dt**2, 0.0, 1e-10, given=given)
@@ -329,13 +461,14 @@ def test_a_negative_compliance_and_a_constraint_without_mass_are_refused(lesson,
         raises("a compliance that is none", BadInput, lesson.compliant_multiplier, 0.1, 0.0, 1.0, alpha, 0.1)
     for alpha in (0.0, draw(0.001, 0.1)):
         raises("a constraint with no free mass", BadInput, lesson.compliant_multiplier, 0.1, 0.0, 0.0, alpha, 0.1)
+        raises("a step of no time", BadInput, lesson.compliant_multiplier, 0.1, 0.0, 1.0, alpha, 0.0)
 
 
 @exercise("8.13", points=1, hint="Λ of each link goes on from where it was; add w ΔΛ n to i and take it from j")
 def test_a_visit_to_a_spring_leaves_it_in_balance_with_what_it_has_pulled(lesson, draw):
     for d in (2, 3):
         x, w = np.stack((draw(-1.0, 1.0, d), draw(2.0, 3.0, d))), draw(0.3, 2.0, 2)
-        p = net(lesson, w, [(0, 1)], draw(0.5, 1.0), d, 0.4, draw(0.001, 0.1))
+        p = net(lesson, w, [(0, 1)], draw(0.5, 1.0) if d == 2 else draw(8.0, 9.0), d, 0.4, draw(0.001, 0.1))
         Lam, dt, before = np.array([-draw(0.1, 0.5)]), draw(0.1, 0.4), x.copy()
         kept = Lam.copy()
         new, total = lesson.compliant_sweep(x, Lam, dt, p)
@@ -361,6 +494,9 @@ def test_springs_are_visited_one_after_the_other(lesson, draw):
     second = -between_ / (2.0 * w + soft[1])
     close("Λ after a sweep [N s²]", Lam, [first, second], 1e-11, given=f"x = {x.tolist()} m, dt = {dt} s, {p}")
     close("positions after a sweep [m]", new, x + np.outer([0.0, w * first - w * second, w * second], n), 1e-11, given=f"x = {x.tolist()} m, dt = {dt} s, {p}")
+    small, _ = lesson.compliant_sweep(1e-7 * x, np.zeros(2), dt, p._replace(rest=1e-7 * p.rest))
+    close("positions of a net of a ten millionth of the size [1e-7 m]", np.asarray(small) * 1e7,
+          np.asarray(new, dtype=float), 1e-11)
     x[1] = x[0]
     raises("a link whose ends coincide", BadInput, lesson.compliant_sweep, x, np.zeros(2), dt, p)
 
@@ -381,6 +517,7 @@ def test_one_spring_is_implicit_euler_whatever_the_step_and_the_sweeps(lesson, d
         hanging = np.array([[0.0, 0.0], [0.0, -rest - m * G / k]])
         new, _ = lesson.xpbd_step(lesson.falling_acceleration, 0.0, hanging, 0.0 * v, dt, p)
         close("where a weight hangs after a step [m]: m g/k lower", new, hanging, 1e-11, given=given)
+        carried_along(lesson.xpbd_step, lesson, draw, x, dt, p)
 
 
 # ---------------------------------------------------------------------------------------------- rigid bodies
@@ -398,7 +535,8 @@ def body(draw):
 def test_a_point_of_a_body_gives_way_as_an_impulse_there_would_make_it(lesson, draw):
     """An impulse n at r gives v = n/m and ω = I⁻¹(r × n): the point moves along n with n·(v + ω × r)."""
     q, R, m, I_body = body(draw)
-    for r in (draw(-1.0, 1.0, 3), np.zeros(3)):
+    for r, m in ((draw(-1.0, 1.0, 3), m), (np.zeros(3), m), (draw(-1.0, 1.0, 3), 0.1 * m),
+                 (draw(-1.0, 1.0, 3), 10.0 * m)):
         n = direction(draw, 3)
         omega = R @ np.diag(1.0 / I_body) @ R.T @ np.cross(r, n)
         close("generalised inverse mass [1/kg]", lesson.generalised_inverse_mass(q, r, n, m, I_body), n @ (n / m + np.cross(omega, r)), ROUND_OFF,
@@ -418,6 +556,9 @@ def turn_of(q_new, q_old):
 def test_a_push_beside_the_centre_moves_and_turns_a_body(lesson, draw):
     q, R, m, I_body = body(draw)
     x, r, p = draw(-1.0, 1.0, 3), draw(-1.0, 1.0, 3), draw(-1.0, 1.0, 3)
+    for other in (0.1 * m, 10.0 * m):
+        close("centre of mass of a body of another mass [m]", lesson.push_body(x, q, r, p, other, I_body)[0],
+              x + p / other, ROUND_OFF * 10.0, given=f"p = {p} kg m, m = {other} kg")
     new, turned = lesson.push_body(x, q, r, p, m, I_body)
     given = f"q = {q}, r = {r} m, p = {p} kg m, m = {m} kg, I = {I_body}"
     close("centre of mass [m]", new, x + p / m, ROUND_OFF, given=given)
@@ -445,7 +586,8 @@ def test_a_turn_has_the_rate_that_leads_from_one_orientation_to_the_other(lesson
 CUBE = np.array([[0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4], [2, 6, 3], [3, 6, 7], [0, 4, 2], [2, 4, 6], [1, 3, 5], [3, 7, 5]])
 
 
-@exercise("8.18", points=1, hint="a sixth of a · (b × c) for every face; its slope with a is b × c/6, and so on in turns")
+@exercise("8.18", points=0.5,
+          hint="a sixth of a · (b × c) for every face; its slope with a is b × c/6, and so on in turns")
 def test_a_closed_surface_knows_its_volume_and_how_its_corners_change_it(lesson, draw):
     """A box between three drawn vectors has the volume |u · (v × w)|; the volume is linear in each coordinate of a corner."""
     u, v, w = (np.eye(3)[k] * draw(1.0, 2.0) + draw(-0.3, 0.3, 3) for k in range(3))
@@ -460,3 +602,28 @@ def test_a_closed_surface_knows_its_volume_and_how_its_corners_change_it(lesson,
         y = x.copy()
         y[k] += change
         close("how one corner changes the volume [m³]", gradient[k] @ change, lesson.volume_gradient(y, CUBE)[0] - V, 1e-11, given=f"corners {x.tolist()} m, corner {k} by {change} m")
+
+
+def volume(x, faces, o):
+    """Σ of the tetrahedra from o to each face [m³], of complex numbers as well."""
+    a, b, c = (x[faces[:, k]] - o for k in range(3))
+    return np.sum(a * np.cross(b, c)) / 6.0
+
+
+@exercise("8.18", points=0.5,
+          hint="keep every sign: a surface turned inside-out has a negative volume and the opposite slope")
+def test_lumps_small_and_large_and_inside_out_have_the_volume_of_their_hull_and_its_slope(lesson, draw):
+    """Brute force: the volume of the convex hull; its slope by a complex step of tetrahedra about their middle."""
+    for size in (1e-6, 1.0, 1e3):
+        for far in (0.0, 3.0):
+            x, faces = solid(draw(-0.5, 0.5, (10, 3)) + far * draw(-1.0, 1.0, 3))
+            middle, moves = x.mean(axis=0), np.eye(x.size).reshape(-1, *x.shape)
+            slope = np.array([volume(x + 1j * TINY * move, faces, middle).imag / TINY
+                              for move in moves]).reshape(x.shape)
+            for what, sign, turned in (("a lump", 1.0, faces),
+                                       ("a lump inside-out", -1.0, np.ascontiguousarray(faces[:, ::-1]))):
+                V, gradient = lesson.volume_gradient(size * x, turned)
+                given = f"corners {(size * x).tolist()} m, triangles {turned.tolist()}"
+                close(f"volume of {what}, over its size [-]", V / size**3, sign * ConvexHull(x).volume, 1e-11, given)
+                close(f"slope of the volume of {what}, over its size [-]", np.asarray(gradient) / size**2, sign * slope,
+                      1e-11, given)

@@ -319,3 +319,13 @@ def test_own_file_that_cannot_be_loaded_leaves_what_is_given(unpacked, tmp_path)
     run = subprocess.run([sys.executable, "-c", textwrap.dedent(program)], cwd=unpacked, capture_output=True, text=True,
                          env={**os.environ, "WORKBOOK_LESSONS": str(tmp_path)})
     assert "2.0 advance None" in run.stdout, run.stderr
+
+
+def test_a_lesson_is_checked_though_one_that_it_builds_on_does_not_load(unpacked, tmp_path):
+    for name in lesson_names():
+        source = (SOLUTIONS / f"{name}.py").read_text()
+        (tmp_path / f"{name}.py").write_text(generate.stub(source, generate.exercises(source), elsewhere={"checks", "vectors"}))
+    (tmp_path / "integrators.py").write_text("def euler_step(:\n")
+    said = run_in(unpacked, "pytest", f"--of={tmp_path}", "--tb=line", "-p", "no:cacheprovider", *(f"--exercise={n}" for n in ("2.7", "2.9", "7.1"))).stdout
+    assert re.search(r"^ +2\.7  (\d)", said, re.M) and re.search(r"^ +7\.1  1 of 1$", said, re.M) and re.search(r"^ +2\.9  0 of", said, re.M), said
+    assert "integrators.py cannot be loaded: SyntaxError: invalid syntax (integrators.py, line 1)" in said

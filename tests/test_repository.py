@@ -39,3 +39,15 @@ def test_the_player_in_space_was_built_from_its_source_and_can_stand_inside_a_pa
     bundle = (folder / "player3d.js").read_text()
     assert sha256((folder / "player3d" / "source.js").read_bytes()).hexdigest()[:16] in bundle.splitlines()[0]
     assert "</script" not in bundle and "SPDX-License-Identifier: MIT" in bundle
+
+
+def test_no_text_names_a_lesson_that_there_is_not():
+    from validate import binding
+    there = {int(re.match(r'"""Lesson (\d+)', (SOLUTIONS / f"{name}.py").read_text())[1]) for name in binding.lesson_names()}
+    assert there == set(range(1, len(there) + 1))
+    folders = (SOLUTIONS, ROOT / "validate", ROOT / "notebooks", ROOT / "docs", ROOT / "tests")
+    files = [ROOT / "README.md", ROOT / "CONTRIBUTING.md"]
+    files += [path for folder in folders for path in folder.rglob("*") if path.suffix in (".py", ".md", ".ipynb", ".html")]
+    for path in files:
+        for named in re.findall(r"\blessons? (\d+(?:(?:, | and | to |–)\d+)*)", path.read_text(encoding="utf-8"), re.I):
+            assert {int(number) for number in re.findall(r"\d+", named)} <= there, f"{path}: lesson {named}"

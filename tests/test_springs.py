@@ -30,6 +30,7 @@ def test_gravity_is_the_slope_of_its_potential_and_weighs_us_on_earth(lesson, dr
     # r > 1 m: round-off of forces below 110 N
     close("force on a, minus the slope of −G m_a m_b/r [N]", lesson.universal_gravity(a, b, m_a, m_b, G), expected, 1e-12)
     close("force on b [N]: opposite", lesson.universal_gravity(b, a, m_b, m_a, G), -expected, 1e-12)
+    raises("two bodies in one place", BadInput, lesson.universal_gravity, a, a, m_a, m_b, G)
 
 
 @exercise("2.2", points=1, hint="the wind's force, minus k_v times v; nothing is divided, for k_v may be 0")

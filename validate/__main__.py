@@ -1,13 +1,9 @@
 """The command line: `validate` measures scenes and writes the report, `validate list` names them, `validate record` keeps traces."""
 
-import json
 import os
-import sys
 import tempfile
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from concurrent.futures.process import BrokenProcessPool
 from enum import Enum
-from multiprocessing import get_context
+from math import isfinite
 from pathlib import Path
 from typing import Annotated, Optional
 
@@ -19,9 +15,12 @@ from rich.table import Table
 from solutions.checks import BadInput
 
 from . import binding, engines
+from .processes import Ended, alone_in, ending_once, one_sentence, workers
+from .store import SUBSET, lessons_of, store_for
 
 app = typer.Typer(add_completion=False, invoke_without_command=True, rich_markup_mode=None, pretty_exceptions_enable=False,
-                  help="Hold every scene against its truth and against the engines; write the report.")
+                  help="Hold every scene against its truth and against the engines; write the report.  With --scene or --lesson, only their part of the report "
+                       f"in OUT is made anew.  If the rest of it was made by other code or with other options, it stays as it is, and theirs goes into OUT/{SUBSET}.")
 console = Console()
 
 
@@ -45,21 +44,37 @@ def validate(
 ):
     if context.invoked_subcommand:
         return
+    from . import measure
     names = chosen(scene or [], lesson or [])
     there(of, names)
     plan = plan_of(of, names, plain, quick, [e.value for e in engine or []], overrides(set_ or [], names))
-    folder = writable(out)
-    raise typer.Exit(run(names, plan, jobs, folder))
+    try:
+        with workers(jobs) as pool:
+            for _ in pool.each({name: (measure.load, name, of) for name in names}):
+                pass
+            with alone_in(writable(out)):
+                code = run(names, plan, pool, out)
+    except Ended as e:
+        console.print(f"Interrupted. What was finished is kept in {out}: the same command goes on from there.", soft_wrap=True)
+        code = e.code
+    raise typer.Exit(code)
 
 
 @app.command("list")
 def list_scenes():
     """Name every scene and its lesson."""
     table = Table("scene", "lesson", "what it is", box=None, header_style="bold")
-    for name in chosen([], []):
-        module = binding.bind_scene(name)
-        table.add_row(name, module.LESSON, (module.__doc__ or "").strip().splitlines()[0])
+    scenes, broken = {}, []
+    for name in binding.scene_names():
+        try:
+            scenes[name] = binding.bind_scene(name)
+        except BadInput as e:
+            broken.append(e)
+    for name in ordered(scenes):
+        table.add_row(name, scenes[name].LESSON, (scenes[name].__doc__ or "").strip().splitlines()[0])
     console.print(table)
+    for why in broken:
+        raise why
 
 
 @app.command("record")
@@ -78,18 +93,27 @@ def record(scene: Annotated[Optional[list[str]], typer.Option(help="Only this sc
 
 def chosen(scenes, lessons):
     """The scenes that were asked for; all of them when nothing was.  Raises BadInput for a name that is none."""
-    for name in scenes:
-        binding.bind_scene(name)
     for name in lessons:
         binding.bind(name)
-    wanted = {n: binding.bind_scene(n).LESSON for n in scenes or binding.scene_names()}
-    return [n for lesson in binding.lesson_names() for n in sorted(wanted) if wanted[n] == lesson and (scenes or not lessons or lesson in lessons)]
+    for name in scenes or binding.scene_names():
+        binding.bind_scene(name)
+    return [n for n in ordered(scenes or binding.scene_names()) if scenes or not lessons or binding.bind_scene(n).LESSON in lessons]
+
+
+def ordered(names):
+    """Scenes in the order of the course."""
+    lessons = binding.lesson_names()
+    return sorted(set(names), key=lambda name: (lessons.index(binding.bind_scene(name).LESSON), name))
 
 
 def there(of, names):
-    """Raises BadInput when the worked answers are asked for in a copy of the workbook that is without them."""
-    without = sorted({lesson for lesson in (binding.bind_scene(n).LESSON for n in names) if binding.withheld(lesson)})
-    if binding.subject_folder(of) == binding.SOLUTIONS and without:
+    """Raises BadInput when answers are asked for that are not there."""
+    folder = binding.subject_folder(of)
+    lessons = {m.lesson for n in names for m in binding.bind_scene(n).METHODS} | set(lessons_of(names))
+    if missing := sorted(f"{lesson}.py" for lesson in lessons if not (folder / f"{lesson}.py").is_file()):
+        raise BadInput(f"folder {str(of)!r}", f"without {', '.join(missing)}", "put the lesson files there, or name lessons that are there with --lesson")
+    without = [lesson for lesson in lessons_of(names) if binding.withheld(lesson)]
+    if folder == binding.SOLUTIONS and without:
         raise BadInput("this copy of the workbook", f"without worked answers of {', '.join(without)}", "give --of lessons --plain")
 
 
@@ -114,22 +138,34 @@ def plan_of(of, names, plain, quick, wanted, changes):
 
 def overrides(pairs, names):
     """((name, value), …) from NAME=VALUE.  Raises BadInput for what is no number or no parameter, or for more than one scene."""
+    from . import measure
     changes = []
     for pair in pairs:
         name, _, text = pair.partition("=")
         if len(names) != 1:
             raise BadInput(f"--set {pair}", f"meant for {len(names)} scenes", "name one with --scene")
-        first = next(iter(binding.bind_scene(names[0]).CASES.values()))
-        if name not in first._fields:
-            raise BadInput(f"parameter {name!r}", f"unknown in {names[0]}", f"choose from: {', '.join(first._fields)}")
-        try:
-            changes.append((name, type(getattr(first, name))(text)))
-        except ValueError:
-            raise BadInput(f"parameter {name}", repr(text), "give a number") from None
+        cases = list(binding.bind_scene(names[0]).CASES.values())
+        if name not in cases[0]._fields:
+            raise BadInput(f"parameter {name!r}", f"unknown in {names[0]}", f"choose from: {', '.join(cases[0]._fields)}")
+        changes.append((name, value_of(name, text, [getattr(case, name) for case in cases])))
     if changes:
         scene = binding.bind_scene(names[0])
-        scene.start(next(iter(scene.CASES.values()))._replace(**dict(changes)))          # raises BadInput for impossible values
+        with measure.changed(names[0], changes):
+            scene.start(next(iter(scene.CASES.values()))._replace(**dict(changes)))      # raises BadInput for impossible values
     return tuple(changes)
+
+
+def value_of(name, text, known):
+    """A parameter's new value, of the kind of the known ones; words only from among them.  Raises BadInput for anything else."""
+    kind = type(known[0])
+    try:
+        value = kind(text)
+    except ValueError:
+        value = None
+    if value is None or (kind is float and not isfinite(value)) or (kind is str and value not in known):
+        wanted = {int: "give a whole number", float: "give a finite number"}.get(kind) or f"choose from: {'; '.join(dict.fromkeys(known))}"
+        raise BadInput(f"parameter {name}", repr(text), wanted)
+    return value
 
 
 def writable(out):
@@ -145,78 +181,19 @@ def writable(out):
 
 # ---------------------------------------------------------------------------------------------- the run
 
-def run(names, plan, jobs, out):
+def run(names, plan, pool, out):
     """Measure, report, and say how it went: 0, or 1 when something departs from its truth without having been predicted."""
-    from . import report
     from .report import summary
-    store = Store(out, plan, names)
-    try:
-        with Progress(TextColumn("{task.description:22}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), console=console) as bars:
-            measure_errors(store, names, plan, jobs, bars)
-            measure_times(store, names, plan, bars)
-            results, stability = store.results(names), store.stability(names)
-            front = report.write(out, results, stability, plan, jobs, bars)
-    except KeyboardInterrupt:
-        console.print(f"Interrupted. What was finished is kept in {out}: the same command goes on from there.")
-        return 130
-    store.finish()
-    departures = summary.show(console, results, stability)
+    store = store_for(out, plan, names)
+    with Progress(TextColumn("{task.description:22}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), console=console) as bars:
+        measure_errors(store, names, plan, pool, bars)
+        measure_times(store, names, plan, pool, bars)
+        front = report_on(store, names, plan, pool, bars)
+    departures = summary.show(console, store.results(names), store.stability(names))
+    if store.out != out:
+        console.print(f"\nOther scenes in {out} were measured with other code or options: their report stays as it is.", highlight=False, soft_wrap=True)
     console.print(f"\nThe report lies in [bold]{front}[/bold]", highlight=False, soft_wrap=True)
     return 1 if departures else 0
-
-
-class Store:
-    """Results on disk, one file each.  A run that was interrupted is continued; a finished one is measured anew."""
-
-    def __init__(self, out, plan, names):
-        self.folder, self.mark = out / "results", out / "results" / "unfinished.json"
-        self.folder.mkdir(exist_ok=True)
-        stamp = {"plan": list(map(str, plan)), "code": code_digest(plan.of), "names": names}
-        if not (self.mark.is_file() and json.loads(self.mark.read_text()) == stamp):
-            for old in self.folder.glob("*.json"):
-                old.unlink()
-            write_whole(self.mark, stamp)
-
-    def path(self, kind, name):
-        return self.folder / f"{name}.{kind}.json"
-
-    def has(self, kind, name):
-        return self.path(kind, name).is_file()
-
-    def get(self, kind, name):
-        return json.loads(self.path(kind, name).read_text())
-
-    def put(self, kind, name, value):
-        write_whole(self.path(kind, name), value)
-
-    def results(self, names):
-        return [{**self.get("errors", name), "times": self.get("times", name)} for name in names]
-
-    def stability(self, names):
-        return [case for lesson in lessons_of(names) for case in self.get("stability", lesson)]
-
-    def finish(self):
-        self.mark.unlink(missing_ok=True)
-
-
-def write_whole(path, value):
-    """Write JSON so that a reader never sees half of it."""
-    draft = path.with_suffix(".part")
-    draft.write_text(json.dumps(value, ensure_ascii=False, allow_nan=False))
-    draft.replace(path)
-
-
-def code_digest(of):
-    """Fingerprint of all code that a result depends on."""
-    package = Path(__file__).parent
-    files = {*package.rglob("*.py"), *binding.SOLUTIONS.glob("*.py"), *binding.subject_folder(of).glob("*.py")}
-    return binding.fingerprint(files)
-
-
-def lessons_of(names):
-    """The lessons of these scenes, in the order of the course."""
-    there = {binding.bind_scene(name).LESSON for name in names}
-    return [lesson for lesson in binding.lesson_names() if lesson in there]
 
 
 def mixed(names):
@@ -226,47 +203,45 @@ def mixed(names):
     return sorted(names, key=turns.get)
 
 
-def measure_errors(store, names, plan, jobs, bars):
-    """Errors of every scene and then the stability cases, several processes at a time: compiling is most of it."""
+def measure_errors(store, names, plan, pool, bars):
+    """Errors of every scene and then the stability cases, several at a time: compiling is most of it."""
     from . import measure
     tasks = {**{("errors", n): (measure.errors, n, plan) for n in mixed(names)},
              **{("stability", lesson): (measure.stability_cases, lesson, plan) for lesson in lessons_of(names)}}
     todo = {key: call for key, call in tasks.items() if not store.has(*key)}
     bar = bars.add_task("errors and stability", total=len(tasks), completed=len(tasks) - len(todo))
-    if jobs == 1 or len(todo) <= 1:
-        for key, (function, *arguments) in todo.items():
-            store.put(*key, function(*arguments))
-            bars.advance(bar)
-        return
-    pool = ProcessPoolExecutor(min(jobs, len(todo)), mp_context=get_context("spawn"))
-    try:
-        waiting = {pool.submit(*call): key for key, call in todo.items()}
-        for done in as_completed(waiting):
-            store.put(*waiting[done], done.result())
-            bars.advance(bar)
-    except BrokenProcessPool:
-        raise BadInput("a measuring process", "gone", "the machine may be short of memory: try --jobs 1") from None
-    finally:
-        pool.shutdown(wait=False, cancel_futures=True)
+    for key, value in pool.each(todo):
+        store.put(*key, value)
+        bars.advance(bar)
 
 
-def measure_times(store, names, plan, bars):
+def measure_times(store, names, plan, pool, bars):
     """Run times, one scene after the other and nothing beside them."""
     from . import measure
     todo = [n for n in names if not store.has("times", n)]
     bar = bars.add_task("run times", total=len(names), completed=len(names) - len(todo))
     for name in todo:
-        store.put("times", name, measure.times(name, plan, store.get("errors", name)))
-        bars.advance(bar)
+        for key, value in pool.each({("times", name): (measure.times, name, plan, store.get("errors", name))}):
+            store.put(*key, value)
+            bars.advance(bar)
+
+
+def report_on(store, names, plan, pool, bars):
+    """Write the report of these scenes and of those that were measured before with the same code and plan; the path of its front page."""
+    from . import report
+    shown = ordered(store.scenes())
+    results, stability = store.results(shown), store.stability(shown)
+    pages = report.files(results, stability)
+    store.note(pages=sorted({*store.state["pages"], *pages}))        # before they are written: should that be interrupted, the next report knows of them
+    front = report.write(store.out, results, stability, plan, pool, bars, store.measured)
+    store.finish(names, pages)
+    return front
 
 
 def main(arguments=None):
-    """Run the command line; bad input ends with one sentence and exit code 2."""
-    try:
+    """Run the command line."""
+    with one_sentence("validate"), ending_once():
         app(arguments, prog_name="validate")
-    except BadInput as e:
-        print(f"validate: {e}", file=sys.stderr)
-        sys.exit(2)
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ import io
 import multiprocessing
 import sys
 from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 
 import pytest
 
@@ -15,12 +16,18 @@ PROCESSES = multiprocessing.get_context("forkserver" if "forkserver" in multipro
 PROCESSES.set_forkserver_preload(["validate.warm"])
 
 
+class Ended(Exception):
+    """The code under test has ended its process."""
+
+
 def run(*arguments):
-    """What pytest prints; whatever the code under test does to its process, this one survives."""
+    """What pytest prints.  Raises Ended when the code under test ends its process; this one survives."""
     vars(sys.modules["__main__"]).setdefault("__spec__", None)        # IPython's %reset takes it away, and multiprocessing asks for it
     with ProcessPoolExecutor(1, mp_context=PROCESSES) as process:
-        said = process.submit(quiet, *arguments)
-        return str(said.exception() or said.result())
+        try:
+            return process.submit(quiet, *arguments).result()
+        except BrokenProcessPool:
+            raise Ended() from None
 
 
 def quiet(*arguments):

@@ -15,15 +15,19 @@ import os
 import re
 import shutil
 import sys
+import traceback
 import types
 import uuid
 import warnings
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 
 from solutions.checks import BadInput
+
+from .loading import LOAD_WITHIN, Unloadable, alarm, answer_for_what_is_missing, stand_in, unloadable
 
 ROOT = Path(__file__).resolve().parent.parent
 SOLUTIONS, SCENES = ROOT / "solutions", ROOT / "validate" / "scenes"
@@ -46,12 +50,12 @@ def lesson_names(folder=SOLUTIONS):
     def place(path):
         number = re.match(r'"""Lesson (\d+)', path.read_text(encoding="utf-8", errors="replace"))
         return int(number[1]) if number else 99, path.stem
-    return [path.stem for path in sorted((path for path in Path(folder).glob("*.py") if path.stem not in GIVEN), key=place)]
+    return [path.stem for path in sorted((path for path in Path(folder).glob("*.py") if path.stem not in GIVEN and path.is_file()), key=place)]
 
 
 def withheld(lesson, folder=SOLUTIONS):
     """Functions of a lesson that still wait for their body: in solutions/ none, but all in a copy of the workbook without worked answers."""
-    return set(re.findall(r'raise NotImplementedError\("Exercise [\d.]+: (\w+)"\)', (Path(folder) / f"{lesson}.py").read_text()))
+    return set(re.findall(r'raise NotImplementedError\("Exercise [\d.]+: (\w+)"\)', (Path(folder) / f"{lesson}.py").read_text("utf-8", "replace")))
 
 
 def scene_names():
@@ -63,16 +67,27 @@ def bind(lesson, of="solutions", compiled=False):
     """The module of one lesson, as saved just now.  Raises BadInput for an unknown subject or lesson."""
     folder = subject_folder(of)
     if not (folder / f"{lesson}.py").is_file():
+        if lesson in lesson_names():
+            why, remedy = f"there is no such file in {folder}", "put it back, or name the folder that has it"
+            raise Unloadable(f"{folder.name}/{lesson}.py", why, remedy)
         known = ", ".join(lesson_names(folder)) or "none"
         raise BadInput(f"lesson {lesson!r}", f"not in {folder}", f"choose from: {known}")
     return world(of, compiled).lesson(lesson)
 
 
 def bind_scene(scene, of="solutions", compiled=False):
-    """The module of one scene, its lesson functions taken from that subject.  Raises BadInput for an unknown scene."""
+    """The module of one scene, its lesson functions taken from that subject.  Raises BadInput for an unknown scene, and where something does not load."""
     if scene not in scene_names():
         raise BadInput(f"scene {scene!r}", "unknown", "`validate list` names them all")
-    return world(of, compiled).scene(scene)
+    try:
+        return world(of, compiled).scene(scene)
+    except BadInput:
+        raise
+    except (Exception, SystemExit) as e:                             # code that somebody is working on may do anything
+        places = [(f.filename, f.lineno) for f in traceback.extract_tb(e.__traceback__)] + ([(e.filename, e.lineno)] if isinstance(e, SyntaxError) else [])
+        ours = [f"file {file!r}, line {line}," for file, line in places if Path(file).parent in (SCENES, SOLUTIONS, subject_folder(of))]
+        why = (str(getattr(e, "msg", e)).splitlines() or [""])[0]
+        raise BadInput((ours or [f"scene {scene!r} of {str(of)!r}"])[-1], f"not loadable ({type(e).__name__}: {why})", "mend it first") from None
 
 
 def world(of="solutions", compiled=False):
@@ -91,7 +106,7 @@ def digest_of(folder):
 
 def fingerprint(files, more=""):
     """Twelve digits that change with any of these files."""
-    text = b"".join(str(path).encode() + path.read_bytes() for path in sorted(files))
+    text = b"".join(str(path).encode() + path.read_bytes() for path in sorted(files) if path.is_file())
     return hashlib.sha256(text + more.encode()).hexdigest()[:12]
 
 
@@ -134,17 +149,54 @@ class PlainWorld:
 PLAIN = PlainWorld()
 
 
+def _siblings(file):
+    """Names of the files beside a subject's file that it imports."""
+    named = re.findall(r"^from \.(\w+) import", file.read_text(encoding="utf-8", errors="replace"), re.M)
+    return {name for name in named if (file.parent / f"{name}.py").is_file()}
+
+
 class World:
     """Copies of the subject's lessons and of the scenes, under a package name of their own, that refer to each other."""
 
     def __init__(self, folder, digest, speed="plain"):
         self.name, self.folder, self.done = f"_{speed}_{digest}", folder, {}
+        self.stuck, self.loading = {}, set()                             # {lesson: its Unloadable}, lessons being loaded
         for package, path in {"": [], ".solutions": [SOLUTIONS], ".subject": [folder], ".scenes": [SCENES]}.items():
             module = sys.modules[self.name + package] = types.ModuleType(self.name + package)
             module.__path__ = [str(p) for p in path]
 
     def lesson(self, name):
-        return self._load("subject", name)
+        """A lesson of the subject.  Raises the same Unloadable every time when its file cannot be loaded."""
+        if name not in self.stuck and ("subject", name) not in self.done:
+            self._load_safely(name)
+        if name in self.stuck:
+            raise self.stuck[name].with_traceback(None)
+        return self.done["subject", name]
+
+    def _load_safely(self, name):
+        """Load a file that may hold anything.  What is given in a sibling stands in for it where it cannot be loaded."""
+        file = self.folder / f"{name}.py"
+        self.loading.add(name)
+        try:
+            for sibling in _siblings(file) - self.loading:
+                self._make_sure_of(sibling)
+            with alarm(LOAD_WITHIN), warnings.catch_warnings():
+                warnings.simplefilter("ignore")                          # of a stray backslash in a docstring
+                answer_for_what_is_missing(self._load("subject", name))
+        except KeyboardInterrupt:
+            raise
+        except BaseException as e:                                       # SystemExit, TooLong and classes of the student's own
+            self.stuck[name] = unloadable(file, e)
+        finally:
+            self.loading.remove(name)
+
+    def _make_sure_of(self, sibling):
+        try:
+            self.lesson(sibling)
+        except Unloadable as e:
+            known = sibling in lesson_names()
+            given, exercises = (vars(PLAIN.lesson(sibling)), withheld(sibling)) if known else ({}, ())
+            sys.modules[f"{self.name}.subject.{sibling}"] = stand_in(sibling, given, exercises, str(e))
 
     def scene(self, name):
         return self._load("scenes", name)
@@ -292,12 +344,25 @@ def _short_of_words():
         arrayobj.raise_with_shape_context = shapes_differ
 
 
+@lru_cache(maxsize=1)
+def _full_disk_is_no_error():
+    """Let numba go on where the disk takes no more: what it cannot keep is compiled anew next time."""
+    from numba.core.caching import Cache
+    keep = Cache.save_overload
+
+    def keep_if_possible(cache, signature, data):
+        with suppress(OSError):
+            keep(cache, signature, data)
+    Cache.save_overload = keep_if_possible
+
+
 def _use_cache(digest):
     """Point numba at this world's folder, and delete the folders of worlds long gone."""
     import numba
     from numba.core.config import _OptLevel
     _without_addresses()
     _short_of_words()
+    _full_disk_is_no_error()
     numba.config.OPT, numba.config.LOOP_VECTORIZE = _OptLevel(1), 0                   # same speed here, a third of the compiling
     warnings.filterwarnings("ignore", message="Cannot cache compiled function")      # then it is compiled anew, that is all
     folder = CACHE / digest

@@ -6,9 +6,10 @@ repeats with garbage collection off; a loop shorter than a tenth of a millisecon
 
 import gc
 import inspect
-import json
 import time
 import warnings
+from contextlib import contextmanager
+from functools import wraps
 from pathlib import Path
 from typing import NamedTuple
 
@@ -18,6 +19,7 @@ from solutions.checks import BadInput
 
 from . import binding, engines, stability
 from .scene import EXACT, ROUND_OFF
+from .store import read_whole
 
 RECORDED = Path(__file__).resolve().parent / "recorded"
 WARM_UPS, REPEATS, PROBE = 2, 7, 64
@@ -48,6 +50,37 @@ class Plan(NamedTuple):
     def repeats(self):
         """How often each run is timed: seldomer where somebody waits."""
         return 3 if self.most_steps else REPEATS
+
+
+def load(name, of):
+    """Load a scene with those answers.  Raises BadInput when one of them does not load."""
+    binding.bind_scene(name, of)
+
+
+@contextmanager
+def changed(name, changes):
+    """In the block a scene runs with these parameters: numbers may overflow without a warning, and what it cannot compute ends in BadInput."""
+    if not changes:
+        yield
+        return
+    try:
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore")
+            yield
+    except (BadInput, OSError):
+        raise
+    except Exception as e:                                           # a truth, a bound or an engine is made for parameters near the scene's own
+        values = ", ".join(f"{parameter} = {value}" for parameter, value in changes)
+        raise BadInput(f"scene {name} with {values}", f"not computable ({type(e).__name__}: {e})", "choose a value nearer to the scene's own") from None
+
+
+def with_overrides(measuring):
+    """The same, in such a block."""
+    @wraps(measuring)
+    def measured(name, plan, *more):
+        with changed(name, plan.overrides):
+            return measuring(name, plan, *more)
+    return measured
 
 
 # ---------------------------------------------------------------------------------------------- running a scene
@@ -132,6 +165,7 @@ def shown_order(rows, floor):
 
 # ---------------------------------------------------------------------------------------------- errors
 
+@with_overrides
 def errors(name, plan):
     """Everything about a scene but its run times: a dict that JSON can hold."""
     scene = binding.bind_scene(name, plan.of)
@@ -274,12 +308,17 @@ def judged(scene, label, p, truth, runs, order):
     return result
 
 
-def recorded(name, case, label):
-    """The trace of one engine run on one case from the repository, or None."""
+def trace(name):
+    """All that the repository keeps of a scene's runs of pybullet, or None.  Raises BadInput for a damaged file."""
     path = RECORDED / f"{name}.json"
-    if not path.is_file():
-        return None
-    record = json.loads(path.read_text())
+    return read_whole(path, dict, f"make it anew: validate record --scene {name}") if path.is_file() else None
+
+
+def recorded(name, case, label):
+    """The trace of one engine run on one case from the repository, or None for what was not recorded.  Raises BadInput where the scene's file is missing."""
+    record = trace(name) or {"runs": {}}
+    if not record["runs"] and label.startswith("pybullet"):
+        raise BadInput(f"file '{RECORDED / name}.json'", "missing or empty", f"restore it, or make it where pybullet is installed: validate record --scene {name}")
     runs = record["runs"].get(case, {}).get(label)
     return runs and {"source": f"recorded, {record['stamp']}", "runs": runs, "seconds": record["seconds"].get(label)}
 
@@ -311,9 +350,8 @@ def picture(name, scene, plan, p, usable):
             seen[engine.label] = engine_frames(engine, p, dt, per_frame)
             break
     frames = {label: [scene.points(observed, p).tolist() for observed in film] for label, film in seen.items()}
-    record = RECORDED / f"{name}.json"
-    if record.is_file() and not plan.overrides and not any(label.startswith("py") for label in seen):
-        frames["pybullet, recorded"] = json.loads(record.read_text())["frames"]
+    if not plan.overrides and not any(label.startswith("py") for label in seen) and (record := trace(name)):
+        frames["pybullet, recorded"] = record["frames"]
     return {"seconds": seconds, "frames": frames, "links": links(scene, p), "dt": dt, "space": in_space(scene, seen, p, seconds)}
 
 
@@ -362,7 +400,8 @@ def engine_frames(engine, p, dt, per_frame):
 def stability_cases(lesson, plan):
     """The stability cases of a lesson, as data."""
     found = stability.cases(lesson, plan.of, "compiled" in plan.speeds)
-    return jsonable([{**case._asdict(), "findings": [f._asdict() for f in case.findings], "picture": case.picture._asdict()} for case in found])
+    return jsonable([{**case._asdict(), "findings": [f._asdict() for f in case.findings], "picture": case.picture and case.picture._asdict()}
+                     for case in found])
 
 
 # ---------------------------------------------------------------------------------------------- times
@@ -376,6 +415,7 @@ class Timed(NamedTuple):
     prepare: object          # (steps, dt) → (the function to time, what to do after)
 
 
+@with_overrides
 def times(name, plan, result):
     """Run times of the first case, joined with the errors already found: [{label, speed, steps, error, seconds, low, high}]."""
     scene = binding.bind_scene(name, plan.of)

@@ -5,6 +5,7 @@ The learner's folder is `lessons/`, or the one that the environment variable WOR
 
 import json
 import os
+import re
 import tempfile
 import uuid
 from html import escape
@@ -14,7 +15,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 from IPython.display import HTML, Markdown, display
 
+from solutions.checks import BadInput
+
 from . import aside, binding, measure
+from .loading import lacks, waiting
 from .report import plots, space, words
 
 TESTS = binding.ROOT / "tests"
@@ -40,9 +44,7 @@ class Unreadable:
         self.why = why
 
     def __getattr__(self, name):
-        def stuck(*_):
-            raise NotImplementedError(self.why)
-        return stuck
+        return waiting(self.why)
 
 
 latest = {}                  # {lesson: what `mine` gave last}
@@ -57,12 +59,22 @@ def mine(lesson):
     return latest[lesson]
 
 
+def source_of(lesson, function):
+    """The text of your function as saved just now, whether the file loads or not."""
+    file = folder() / f"{lesson}.py"
+    found = re.search(rf"^def {function}\(.*?(?=^\S|\Z)", file.read_text(encoding="utf-8", errors="replace"), re.M | re.S)
+    return found[0].rstrip() if found else lacks(file, function)
+
+
 def _say_unreadable(lesson, e):
     """Say in one sentence why a lesson could not be loaded; the sentence."""
-    at_fault, where = (Path(e.filename).stem, f", line {e.lineno}") if isinstance(e, SyntaxError) and e.filename else (lesson, "")
-    why = f"lessons/{at_fault}.py cannot be loaded{where}: {type(e).__name__}: {e}"
-    display(HTML(f'<p style="color:{COLOUR["not yet"]}"><b>{escape(why)}</b></p>'))
+    why = str(e) if isinstance(e, BadInput) else f"lessons/{lesson}.py cannot be loaded: {type(e).__name__}: {e}"
+    _say(why)
     return why
+
+
+def _say(sentence):
+    display(HTML(f'<p style="color:{COLOUR["not yet"]}"><b>{escape(sentence)}</b></p>'))
 
 
 class StandIn:
@@ -137,8 +149,13 @@ def check(exercise):
     lesson = _lesson_of(exercise)
     with tempfile.TemporaryDirectory() as scratch:
         file = Path(scratch) / "outcomes.json"
-        said = aside.run(str(TESTS / f"test_{lesson}.py"), f"--of={folder().resolve()}", f"--exercise={exercise}", f"--outcomes={file}",
-                         f"--rootdir={binding.ROOT}", "--tb=line")
+        try:
+            said = aside.run(str(TESTS / f"test_{lesson}.py"), f"--of={folder().resolve()}", f"--exercise={exercise}", f"--outcomes={file}",
+                             f"--rootdir={binding.ROOT}", "--tb=line")
+        except aside.Ended:
+            _say(f"The check of exercise {exercise} ended without an answer: lessons/{lesson}.py ends the program, "
+                 "or asks for more memory than there is.")
+            return
         outcomes = json.loads(file.read_text()) if file.is_file() else []
     if not outcomes:
         raise RuntimeError(f"the check of exercise {exercise} did not run:\n{said}")
@@ -150,7 +167,7 @@ def _lesson_of(exercise):
         tests = TESTS / f"test_{lesson}.py"
         if tests.is_file() and f'"{exercise}"' in tests.read_text():
             return lesson
-    raise binding.BadInput(f"exercise {exercise!r}", "unknown", 'give its number in quotes, like check("1.2")')
+    raise BadInput(f"exercise {exercise!r}", "unknown", 'give its number in quotes, like check("1.2")')
 
 
 class _Answer:
@@ -170,18 +187,19 @@ class _Answer:
             yield ("still open" if f"Exercise {self.exercise}:" in waits else "it waits for"), waits
         elif self.open:
             first = next(o for o in self.open if o["status"] == "not yet")
-            for name in ("quantity", "given", "expected", "got", "tolerance", "hint"):
+            for name in ("quantity", "given", "expected", "got", "tolerance", "hint", "printed"):
                 if first[name]:
                     yield name, first[name]
 
     def __repr__(self):
         (title, points), *rest = self.lines()
-        return "\n".join([f"{title} ({points})", *(f"    {name:10} {value}" for name, value in rest)])
+        indented = ((name, value.replace("\n", f"\n{'':15}")) for name, value in rest)
+        return "\n".join([f"{title} ({points})", *(f"    {name:10} {value}" for name, value in indented)])
 
     def _repr_html_(self):
         (title, points), *rest = self.lines()
-        rows = "".join(f'<tr><td style="text-align:left;color:#5b666e;padding:.1rem 1rem .1rem 0">{escape(n)}</td>'
-                       f'<td style="text-align:left">{escape(v)}</td></tr>' for n, v in rest)
+        rows = "".join(f'<tr><td style="text-align:left;vertical-align:top;color:#5b666e;padding:.1rem 1rem .1rem 0">{escape(n)}</td>'
+                       f'<td style="text-align:left;white-space:pre-wrap">{escape(v)}</td></tr>' for n, v in rest)
         return (f'<div style="border-left:4px solid {COLOUR[self.state]};padding:.3rem .8rem;margin:.3rem 0">'
                 f'<b style="color:{COLOUR[self.state]}">{escape(title)}</b> ({points})<table style="margin:0">{rows}</table></div>')
 

@@ -4,6 +4,7 @@ import json
 import platform
 
 from . import binding, engines, measure
+from .store import whole
 
 
 def record(name):
@@ -27,7 +28,8 @@ def record(name):
     }
     measure.RECORDED.mkdir(exist_ok=True)
     path = measure.RECORDED / f"{name}.json"
-    path.write_text(json.dumps(measure.jsonable(trace), indent=None, separators=(",", ":")) + "\n")
+    with whole(path) as draft:
+        draft.write_text(json.dumps(measure.jsonable(trace), separators=(",", ":")) + "\n")
     return path
 
 

@@ -62,7 +62,7 @@ class Case(NamedTuple):
     title: str
     lesson: str
     findings: list
-    picture: Picture
+    picture: Picture | None
 
 
 def finding(case, claim, quantity, bound, measured, tolerance, words):
@@ -588,7 +588,16 @@ def cases(lesson, of="solutions", compiled=True):
                 found.append(examine(number, of, compiled))
             except NotImplementedError:
                 pass
+            except Exception as e:                                   # a subject's code may do anything: say it, and go on
+                found.append(broken_off(number, e))
     return found
+
+
+def broken_off(number, error):
+    """The case of which a subject's answers left nothing but an error."""
+    title, _, lesson = CASES[number]
+    words = f"{type(error).__name__}: {(str(error).splitlines() or [''])[0]}"
+    return Case(number, title, lesson, [finding(number, f"The case comes to its end, which here was {words}.", "cases that do [of 1]", 1, 0, 0.0, words)], None)
 
 
 def findings(of="solutions", compiled=True):

@@ -21,8 +21,9 @@ from pathlib import Path
 import numpy as np
 
 from solutions.checks import BadInput, Diverged
+from validate.loading import alarm
 
-from . import points, sandbox, shipping, wire
+from . import sandbox, shipping, wire
 from .meter import LOOK, Meter
 
 HERE = Path(__file__).resolve().parent
@@ -205,7 +206,7 @@ class Box:
             return self.peer.served(name, arguments)
         began = time.thread_time()
         try:
-            with points.alarm(self.until - self.meter.used, Late, own=True):
+            with alarm(self.until - self.meter.used, Late, own=True):
                 self.peer.served(name, arguments)
         finally:
             self.meter.used += time.thread_time() - began

@@ -1,32 +1,55 @@
-"""The few ways in which a grading test compares.  A failure carries quantity, expected, got and tolerance as data."""
+"""The few ways in which a grading test compares.  A failure carries quantity, expected, got and tolerance as data.
+
+What a student reads is written here, too: four digits, more only where expected and got would look alike.
+"""
 
 import re
+from math import floor, log10
 
 import numpy as np
+
+DIGITS, MOST_DIGITS = 4, 7   # of a number, where four tell it apart, and at most
+FEW = 4                      # so many numbers are shown whole; of more the first that differs
+MOST_NUMBERS = (12, 6, 3)    # of one array among the inputs; the later ones where the text is still too long
+LONGEST = 300                # of a text [characters]
+MARGIN = re.compile(r"(?<=\[) | (?=[\],])")                            # as NumPy prints arrays: [ 1.   -0.25]
+BETWEEN = re.compile(r"(?:(?<=[\d.\]])|(?<=nan|inf)) (?=-?(?:[\d\[]|nan|inf))")
+FLOAT = re.compile(r"(?<![\w.])-?\d+\.\d*(?:e[-+]?\d+)?")
+NOTHING = "None: does every way through your function end in a return?"
+ROUNDING, NEARLY = 1e-15, 1e-6          # relative differences: nobody means the one, and a test means the other
 
 
 class NotYet(AssertionError):
     """An answer that is not right yet.
 
-    quantity and tolerance may be shown to anyone.  given (the inputs), expected and got may not when the inputs are secret;
-    then error, the size of what is wrong, stands in for them.
+    quantity and tolerance may be shown to anyone.  given (the inputs), expected and got may not when the inputs are
+    secret; then error, the size of what is wrong, stands in for them.
     """
 
     def __init__(self, quantity, expected, got, tolerance, error="", given=""):
-        self.quantity, self.expected, self.got, self.tolerance, self.error, self.given = quantity, expected, got, tolerance, error, given
-        super().__init__(f"{quantity}{f' ({given})' if given else ''}: expected {expected}, got {got}, tolerance {tolerance}")
+        self.quantity, self.tolerance, self.error = quantity, tolerance, error
+        self.expected, self.got, self.given = tidy(expected, MOST_DIGITS), tidy(got, MOST_DIGITS), tidy(given)
+        words = {"expected": self.expected, "got": self.got, "tolerance": tolerance}
+        told = ", ".join(f"{name} {text}" for name, text in words.items() if text)
+        super().__init__(f"{quantity}{f' ({self.given})' if self.given else ''}: {told}")
 
+
+# ---------------------------------------------------------------------------------------------- comparing
 
 def numbers(quantity, got, shape, given=""):
     """got as a float array, or NotYet when it is not one of that shape or holds NaN or infinity."""
+    if got is None:
+        raise NotYet(quantity, of_shape(shape), NOTHING, "", "None", given)
     try:
         array = np.asarray(got, dtype=float)
     except (TypeError, ValueError):
-        raise NotYet(quantity, f"an array of shape {shape}", f"a {type(got).__name__}", "", f"a {type(got).__name__}", given) from None
+        kind = f"a {type(got).__name__}"
+        raise NotYet(quantity, of_shape(shape), kind, "", kind, given) from None
     if array.shape != shape:
-        raise NotYet(quantity, f"an array of shape {shape}", f"shape {array.shape}", "", f"shape {array.shape}", given)
+        raise NotYet(quantity, of_shape(shape), of_shape(array.shape), "", f"shape {array.shape}", given)
     if not np.all(np.isfinite(array)):
-        raise NotYet(quantity, "finite numbers", show(array), "", "not finite", given)
+        first = first_of(~np.isfinite(array))
+        raise NotYet(quantity, "finite numbers", f"{number(array[first])}{place(first)}", "", "not finite", given)
     return array
 
 
@@ -36,14 +59,18 @@ def close(quantity, got, expected, tolerance, given=""):
     array = numbers(quantity, got, expected.shape, given)
     off = np.abs(array - expected)
     if not np.all(off <= tolerance):
-        raise NotYet(quantity, show(expected), show(array), f"{tolerance:.1e}" if tolerance else "none: exactly this", f"{np.max(off):.1e} off", given)
+        allowed = f"{tolerance:.1e}" if tolerance else "none: exactly this"
+        texts = compared(expected, array, ~(off <= tolerance))
+        raise NotYet(quantity, *texts, allowed, f"{np.max(off):.1e} off", given)
 
 
 def between(quantity, got, low, high, given=""):
     """low ≤ got ≤ high, for one number."""
-    number = float(numbers(quantity, got, (), given))
-    if not low <= number <= high:
-        raise NotYet(quantity, f"{low:.6g} to {high:.6g}", f"{number:.6g}", "", f"{max(low - number, number - high):.1e} off", given)
+    value = float(numbers(quantity, got, (), given))
+    if not low <= value <= high:
+        edge, shown = apart(low if value < low else high, value)
+        ends = (edge, number(high)) if value < low else (number(low), edge)
+        raise NotYet(quantity, " to ".join(ends), shown, "", f"{max(low - value, value - high):.1e} off", given)
 
 
 def raises(quantity, error, function, *arguments, naming=()):
@@ -60,13 +87,103 @@ def raises(quantity, error, function, *arguments, naming=()):
             raise NotYet(quantity, error.__name__, f"{type(e).__name__}: {e}", "", "another error") from None
         said = [float(number) for number in re.findall(r"-?\d+\.?\d*(?:e[-+]?\d+)?|-?inf|nan", str(e))]
         if naming and not any(abs(a - b) <= 1e-6 * abs(b) for a in said for b in naming):
-            raise NotYet(f"{quantity}: the value that {error.__name__} names", " or ".join(f"{value:.7g}" for value in naming), str(e), "", "another value") from None
+            quantity = f"{quantity}: the value that {error.__name__} names"
+            values = " or ".join(f"{value:.{MOST_DIGITS}g}" for value in naming)
+            raise NotYet(quantity, values, str(e), "", "another value") from None
     else:
         raise NotYet(quantity, f"{error.__name__} to be raised", "no error", "", "no error")
 
 
-def show(array):
-    """A number or a small array in seven digits; of a large one the beginning."""
-    flat = np.ravel(array)
-    text = ", ".join(f"{x:.7g}" for x in flat[:9]) + (", …" if flat.size > 9 else "")
-    return text if np.ndim(array) == 0 else f"({text})"
+# ---------------------------------------------------------------------------------------------- what is read
+
+def number(x, digits=DIGITS):
+    """A number in so many digits, or in as many as it has before its point; a whole one as it is."""
+    x = float(x)
+    if not np.isfinite(x) or x == 0.0:
+        return f"{abs(x) if x == 0.0 else x:g}"
+    whole = floor(log10(abs(x))) + 1
+    return f"{x:.{max(digits, whole if whole <= MOST_DIGITS else 0)}g}"
+
+
+def apart(a, b):
+    """Two numbers in as few digits as tell them apart; what is nearer than seven digits can tell as a difference."""
+    for digits in range(DIGITS, MOST_DIGITS + 1):
+        texts = number(a, digits), number(b, digits)
+        last_place = 10.0 ** (floor(log10(max(abs(a), abs(b)))) + 1 - digits)
+        if texts[0] != texts[1] and abs(b - a) >= last_place:
+            return texts
+    return number(a), plus(number(a), b - a)
+
+
+def compared(expected, got, differs):
+    """(expected, got) in words: a few numbers whole, of more the first that differs, and how many do."""
+    first = first_of(differs)
+    if expected.size > FEW:
+        a, b = apart(expected[first], got[first])
+        return a + place(first), f"{b}{place(first)}; {np.count_nonzero(differs)} of {expected.size} entries differ"
+    entries = zip(expected.flat, got.flat, differs.flat)
+    pairs = [apart(a, b) if wrong else (number(a), number(b)) for a, b, wrong in entries]
+    texts = tuple(", ".join(column) for column in zip(*pairs))
+    return texts if expected.ndim == 0 else tuple(f"({text})" for text in texts)
+
+
+def of_shape(shape):
+    return f"an array of shape {shape}" if shape else "a number"
+
+
+def first_of(mask):
+    """Index of the first true entry."""
+    return tuple(int(i[0]) for i in np.nonzero(mask)) if mask.ndim else ()
+
+
+def place(index):
+    return f" at [{', '.join(map(str, index))}]" if index else ""
+
+
+def plus(text, difference):
+    return f"{text} {'-' if difference < 0.0 else '+'} {abs(difference):.2g}"
+
+
+def tidy(text, digits=DIGITS):
+    """A text as people write it: without NumPy's words, with short numbers, and of a long array the beginning."""
+    text = " ".join(re.sub(r"\bnp\.\w+\(([^()]*)\)|\bnp\.(True|False)_", r"\1\2", str(text)).split())
+    text = re.sub(r"\barray\(\[\], shape=\([^)]*\)(, dtype=\w+)?\)", "[]", text)
+    text = re.sub(r"\barray\(([^()]*?)(, dtype=\w+)?\)", r"\1", text)
+    text = re.sub(r"(?<=\w)=(?=[^\s=])", " = ", text)
+    text = _in_brackets(text, lambda array: BETWEEN.sub(", ", MARGIN.sub("", array)))
+    text = FLOAT.sub(lambda match: _shortened(float(match[0]), digits), text)
+    for most in MOST_NUMBERS:
+        cut = _in_brackets(text, lambda array: _beginning(array, most))
+        if len(cut) <= LONGEST:
+            return cut
+    return cut[:LONGEST - 2].rpartition(" ")[0] + " …"
+
+
+def _shortened(x, digits):
+    """A number in so many digits; one that is almost as short as 0.5 was made so, and says so: 0.5 - 1e-11."""
+    text = number(x, digits)
+    rest, short = x - float(text), len(text.partition("e")[0].replace(".", "").strip("-0")) <= 2
+    return plus(text, rest) if short and ROUNDING * abs(x) < abs(rest) < NEARLY * abs(x) else text
+
+
+def _in_brackets(text, change):
+    """The text with every outermost [array] changed."""
+    parts, depth, begin = [], 0, 0
+    for k, character in enumerate(text):
+        depth += (character == "[") - (character == "]" and depth > 0)
+        if character == "[" and depth == 1:
+            parts.append(text[begin:k])
+            begin = k
+        elif character == "]" and depth == 0:
+            parts.append(change(text[begin:k + 1]))
+            begin = k + 1
+    return "".join(parts) + text[begin:]
+
+
+def _beginning(array, most):
+    """An array's text; of one with more numbers than that the first of them."""
+    found = list(re.finditer(r"[^\s,\[\]]+", array))
+    if len(found) <= most:
+        return array
+    kept = array[:found[most - 1].end()]
+    return f"{kept}, …{']' * (kept.count('[') - kept.count(']'))}"

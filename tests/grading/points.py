@@ -2,53 +2,26 @@
 
 import contextlib
 import io
-import signal
-import threading
-import time
+import os
+import traceback
 from pathlib import Path
 from typing import NamedTuple
 
 import pytest
 
 from solutions.checks import BadInput
+from validate.loading import TooLong, Unloadable, remedy_for, words_of
 
-from .expect import NotYet
+from .expect import MOST_DIGITS, NotYet, tidy
 
 TESTS = Path(__file__).resolve().parent.parent
+OURS = {TESTS, TESTS.parent / "validate", Path(os.__file__).parent}                      # no subject's file is in here
 PUBLIC = "public"            # the seed of everyone's own tests
 LIMIT = 20.0                 # a grading test may take this long [s]: the slowest takes 2, on two shared cores
 READING = "reading the file"   # the quantity where a file could not be loaded
 DURATION = "the time it takes"   # the quantity where a test did not end
 BOX_LIMIT = 10.0             # and so long in the sandbox [s]
-
-
-class TooLong(Exception):
-    """A test that has run out of its time."""
-
-
-@contextlib.contextmanager
-def alarm(seconds, error, own=False):
-    """Raise that error after so long, also inside a loop; in a main thread only, and where the system has an alarm clock.  An alarm around it goes on.
-
-    own: count only the time of this process on the processor, so that it is no matter what else the machine does.
-    """
-    if not hasattr(signal, "setitimer") or threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    clock, number, now = (signal.ITIMER_PROF, signal.SIGPROF, time.process_time) if own else (signal.ITIMER_REAL, signal.SIGALRM, time.monotonic)
-
-    def ring(*arguments):
-        if 0.0 < left < seconds:                                       # it was the other's time
-            around(*arguments)
-        raise error()
-    left, began = signal.getitimer(clock)[0], now()
-    around = signal.signal(number, ring)
-    signal.setitimer(clock, max(0.01, min(seconds, left or seconds)))
-    try:
-        yield
-    finally:
-        signal.setitimer(clock, max(0.01, left - (now() - began)) if left else 0.0)
-        signal.signal(number, around)
+LINES, PRINTED = 20, 2000    # of what a subject prints, so much is shown [lines, characters]
 
 
 class Outcome(NamedTuple):
@@ -64,6 +37,7 @@ class Outcome(NamedTuple):
     hint: str = ""
     error: str = ""          # the size of what is wrong, in place of expected and got where the inputs are secret
     given: str = ""          # the inputs, in words
+    printed: str = ""        # by a subject in this process, while the test failed
 
 
 class Points:
@@ -89,8 +63,19 @@ class Points:
         report = yield
         mark = item.get_closest_marker("exercise")
         if mark and (call.when == "call" or (call.excinfo and call.when == "setup")):
-            self.keep(item, outcome(mark, name_of(item), call.excinfo))
+            found = outcome(mark, name_of(item), call.excinfo)
+            self.keep(item, found._replace(printed=beginning(report.capstdout)) if call.excinfo else found)
+            if call.when == "setup" and isinstance(call.excinfo.value, BadInput):
+                report.longrepr = str(call.excinfo.value)            # how it came to that is not the student's
         return report
+
+
+def beginning(text):
+    """The first lines of what was printed, what is no text in it written as numbers."""
+    lines = text.expandtabs(4)[:PRINTED + 1].splitlines()
+    kept = "\n".join(lines[:LINES])[:PRINTED]
+    shown = "".join(c if c.isprintable() or c == "\n" else f"\\x{ord(c):02x}" for c in kept)
+    return f"{shown}\n…" if len(lines) > LINES or len(text) > PRINTED else shown
 
 
 def name_of(item):
@@ -105,50 +90,47 @@ def outcome(mark, name, excinfo):
         return Outcome(exercise, name, points, "passed")
     error = excinfo.value
     if isinstance(error, NotImplementedError):
-        return Outcome(exercise, name, points, "not attempted", got=str(error), hint=hint)
+        return Outcome(exercise, name, points, "not attempted", got=words_of(error), hint=hint)
     if isinstance(error, NotYet):
         words = map(str, (error.quantity, error.expected, error.got, error.tolerance, hint, error.error, error.given))
         return Outcome(exercise, name, points, "not yet", *words)
-    kind = type(error).__name__
-    said = f"{kind}: {error}"
     if isinstance(error, TooLong):
         return Outcome(exercise, name, points, "not yet", DURATION, f"an answer within {LIMIT:g} s", "none", "",
                        "does a loop of yours never end? Count its rounds, and stop after so many")
-    if not _in_a_test(excinfo):
-        return unreadable(Outcome(exercise, name, points, "not run"), error, _line(error))
-    place = _place(excinfo)
-    return Outcome(exercise, name, points, "not yet", "the call itself", "an answer", f"{said}{place}", "", _advice(error, hint), f"{kind}{place}")
+    if not any(Path(entry.filename).name.startswith("test_") for entry in _frames(error)):
+        return unreadable(Outcome(exercise, name, points, "not run"), error, "")
+    kind, place, said = type(error).__name__, _place(error), tidy(words_of(error), MOST_DIGITS)
+    return Outcome(exercise, name, points, "not yet", "the call itself", "an answer", f"{kind}: {said}{place}", "",
+                   _advice(error, said, hint), f"{kind}{place}")
 
 
 def unreadable(o, error, place):
-    """The Outcome of a test whose subject could not even be loaded; Python's own sentence may name the place already."""
-    place = "" if place and place in str(error) else place
-    return o._replace(status="not yet", quantity=READING, expected="a module that loads", got=f"{type(error).__name__}: {error}{place}",
-                      hint="mend this first: nothing in the file can be tested before", error=f"{type(error).__name__}{place}")
+    """The Outcome of a test whose subject could not even be loaded."""
+    told = f"{type(error).__name__}: {error}{'' if place in str(error) else place}"
+    reason, remedy = (error.reason, error.remedy) if isinstance(error, Unloadable) else (told, remedy_for(told, place))
+    hint = f"{remedy}; until then nothing in the file can be tested"
+    return o._replace(status="not yet", quantity=READING, got=reason, hint=hint, error=f"{type(error).__name__}{place}")
 
 
-def _in_a_test(excinfo):
-    return any(entry.path.name.startswith("test_") for entry in excinfo.traceback)
+def _frames(error):
+    return traceback.extract_tb(error.__traceback__)
 
 
-def _line(error):
-    return f" (line {error.lineno})" if isinstance(error, SyntaxError) and error.lineno and "line" not in str(error) else ""
-
-
-def _place(excinfo):
+def _place(error):
     """Where in the subject's own file it happened."""
-    if hasattr(excinfo.value, "where"):                              # the sandbox says
-        return f" ({excinfo.value.where})" if excinfo.value.where else ""
-    inside = [entry for entry in excinfo.traceback if TESTS not in entry.path.parents and "site-packages" not in entry.path.parts]
-    return f" ({inside[-1].path.name}, line {inside[-1].lineno + 1})" if inside else ""
+    if hasattr(error, "where"):                                      # the sandbox says
+        return f" ({error.where})" if error.where else ""
+    files = [(Path(entry.filename), entry.lineno) for entry in _frames(error) if not entry.filename.startswith("<")]
+    own = [f" ({file.name}, line {line})" for file, line in files
+           if "site-packages" not in file.parts and not OURS.intersection(file.parents)]
+    return own[-1] if own else ""
 
 
-def _advice(error, hint):
+def _advice(error, said, hint):
     """A hint for what Python says, where that is more to the point than the hint for the physics."""
-    text = str(error)
-    if "NoneType" in text:
+    if "NoneType" in said:
         return "your function gave None: does every way through it end in a return?"
-    if "to unpack" in text:
+    if "to unpack" in said:
         return "return as many values as the docstring says, in its order"
     if isinstance(error, NameError):
         return "a name is misspelt, or was never given a value"
@@ -172,7 +154,7 @@ def grade_each(lesson, subjects, seed=PUBLIC, collect=False):
     points = Points()
     with contextlib.redirect_stdout(io.StringIO()):                   # without what only takes time: other people's plugins, and collecting garbage
         pytest.main([str(TESTS / f"test_{lesson}.py"), f"--rootdir={TESTS.parent}", "--tb=no", "-p", "no:cacheprovider",
-                     "-p", "no:unraisableexception", "--disable-plugin-autoload", f"--seed={seed}", *["--collect-only"] * collect], plugins=[Given(), points])
+                     "-p", "no:unraisableexception", "--disable-plugin-autoload", f"--seed={seed}", "-Wignore", *["--collect-only"] * collect], plugins=[Given(), points])
     return {name: points.outcomes.get(name, []) for name in subjects}
 
 

@@ -1,28 +1,67 @@
 """Wrong answers that must lose an exercise's points, and right ones, written differently, that must keep them.
 
-One module a lesson.  A mutant is a function with the name of the one it stands in for, and a decorator that says what it is.
+One module per lesson.  A wrong answer has one fault only, and its kind proves it: without the fault the answer passes.
+
+edit         the worked answer with one replacement in one line of its text
+variant      made by a factory with one argument that differs from its default; its defaults make a right answer
+written out  neither of these: WRITTEN_OUT describes its one fault
 """
 
+import functools
+import inspect
 from typing import Callable, NamedTuple
+
+from validate.generate import exercises
+
+WRITTEN_OUT = {}             # {(exercise, story): its one fault}
 
 
 class Mutant(NamedTuple):
     exercise: str
+    name: str                # of the function that it stands in for
     story: str               # what is wrong, or what is different
     right: bool
     function: Callable
+    kind: str = "written out"
+    faults: int = 0          # replacements in the text, or arguments that differ from their defaults
+    factory: Callable = None
 
 
-def collection():
-    """Two decorators, wrong(exercise, story) and right(exercise, story), and the list that they fill."""
-    mutants = []
+def variants(make):
+    """A factory of answers that notes which of its arguments differ from their defaults."""
+    signature = inspect.signature(make)
+
+    @functools.wraps(make)
+    def noting(*arguments, **named):
+        bound, answer = signature.bind(*arguments, **named), make(*arguments, **named)
+        faults = sum(value is not signature.parameters[name].default for name, value in bound.arguments.items())
+        answer.made = "variant", faults, noting
+        return answer
+    return noting
+
+
+def collection(worked):
+    """wrong(exercise, story)(function), right likewise, edit(exercise, story, old, new), and the list that they fill."""
+    mutants, names = [], exercises(inspect.getsource(worked))
 
     def keep(right):
         def marked(exercise, story):
             def decorate(function):
-                mutants.append(Mutant(exercise, story, right, function))
+                mutant = Mutant(exercise, names[exercise], story, right, function, *getattr(function, "made", ()))
+                whole = (exercise, 0, mutant.factory)
+                if mutant.factory and whole not in [(m.exercise, m.faults, m.factory) for m in mutants] and not right:
+                    keep(True)(exercise, f"{mutant.factory.__name__} with its defaults")(mutant.factory())
+                mutants.append(mutant)
                 return function
             return decorate
         return marked
 
-    return keep(False), keep(True), mutants
+    def edit(exercise, story, old, new):
+        name = names[exercise]
+        assert old in inspect.getsource(getattr(worked, name)), f"{exercise}, {story}: the worked answer has no {old!r}"
+        head, mark, answer = inspect.getsource(getattr(worked, name)).partition("### BEGIN SOLUTION")
+        space = dict(vars(worked))
+        exec(compile(head + mark + answer.replace(old, new), worked.__file__, "exec"), space)
+        mutants.append(Mutant(exercise, name, story, False, space[name], "edit", answer.count(old) + old.count("\n")))
+
+    return keep(False), keep(True), edit, mutants

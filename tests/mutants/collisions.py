@@ -4,9 +4,9 @@ import numpy as np
 
 from solutions import collisions as worked
 from solutions.checks import BadInput
-from . import collection
+from . import collection, variants
 
-wrong, right, MUTANTS = collection()
+wrong, right, edit, MUTANTS = collection(worked)
 NEVER = np.inf
 
 
@@ -15,13 +15,14 @@ def size(y):
 
 
 # 6.1 ------------------------------------------------------------------------------------------------------------
-def distance(f):
+@variants
+def distance(f=lambda p, plane: sum(a * b for a, b in zip(plane.n, p)) + plane.d):
     def plane_distance(p, plane):
         return f(p, plane)
     return plane_distance
 
 
-right("6.1", "as a sum")(distance(lambda p, plane: sum(a * b for a, b in zip(plane.n, p)) + plane.d))
+right("6.1", "as a sum")(distance())
 wrong("6.1", "d with the wrong sign")(distance(lambda p, plane: p @ plane.n - plane.d))
 wrong("6.1", "without its sign")(distance(lambda p, plane: abs(p @ plane.n + plane.d)))
 wrong("6.1", "forgets d")(distance(lambda p, plane: p @ plane.n))
@@ -29,6 +30,7 @@ wrong("6.1", "only which side")(distance(lambda p, plane: np.sign(p @ plane.n + 
 
 
 # 6.2 ------------------------------------------------------------------------------------------------------------
+@variants
 def impact(skin=1.0, after_skin=1.0, share=lambda d_1, d_2: d_1 / (d_1 + d_2), inside=lambda t: t, late=True, start=1.0):
     def plane_impact_time(t, dt, x_0, x_1, r, plane):
         d_1 = worked.plane_distance(x_0, plane) - skin * r
@@ -42,7 +44,10 @@ def impact(skin=1.0, after_skin=1.0, share=lambda d_1, d_2: d_1 / (d_1 + d_2), i
 
 
 right("6.2", "with new names")(impact())
-wrong("6.2", "a point for a ball")(impact(skin=0.0, after_skin=0.0))
+edit("6.2", "a point for a ball", "plane_distance(x_0, plane) - r, r - plane_distance(x_1, plane)",
+     "plane_distance(x_0, plane), -plane_distance(x_1, plane)")
+edit("6.2", "what touches and leaves was never there", "before <= 0.0", "before < 0.0")
+edit("6.2", "what arrives at the end does not", "after < 0.0", "after <= 0.0")
 wrong("6.2", "the skin only before")(impact(after_skin=0.0))
 wrong("6.2", "d₂ over the sum")(impact(share=lambda d_1, d_2: d_2 / (d_1 + d_2)))
 wrong("6.2", "the middle of the step")(impact(share=lambda d_1, d_2: 0.5))
@@ -52,6 +57,7 @@ wrong("6.2", "forgets t")(impact(start=0.0))
 
 
 # 6.3 ------------------------------------------------------------------------------------------------------------
+@variants
 def beside(foot=lambda x: np.array([x[0], 0.0, 0.0]), swap=False, radius=lambda R: R, own=lambda r: r):
     def cylinder_contact(x, r, R):
         a, b = (x, own(r)), (foot(x), radius(R))
@@ -74,6 +80,7 @@ def cylinder_contact(x, r, R):
 
 
 # 6.4 ------------------------------------------------------------------------------------------------------------
+@variants
 def root(which=-1.0, naive=False, rho=lambda R, r: R + r, three=False, window=True, leaving=True, inside=lambda t: t, t_0=1.0):
     def cylinder_impact_time(t, dt, x_0, x_1, r, R):
         first = 0 if three else 1
@@ -99,16 +106,14 @@ wrong("6.4", "later steps, too")(root(window=False))
 wrong("6.4", "also behind")(root(leaving=False))
 wrong("6.4", "when it is in already, never")(root(inside=lambda t: NEVER))
 wrong("6.4", "forgets t")(root(t_0=0.0))
-
-
-@wrong("6.4", "the discrete test at the end of the step")
-def cylinder_impact_time(t, dt, x_0, x_1, r, R):
-    if size(x_0[1:]) <= R + r:
-        return t
-    return t + dt if size(x_1[1:]) <= R + r else NEVER
+edit("6.4", "the discrete test at the end of the step", "C / (np.sqrt(D) - B)",
+     "1.0 if x_1[1:] @ x_1[1:] <= rho * rho else 2.0")
+edit("6.4", "what arrives at the end does not", "s > 1.0", "s >= 1.0")
+edit("6.4", "what touches and leaves was never there", "C <= 0.0", "C < 0.0")
 
 
 # 6.5 ------------------------------------------------------------------------------------------------------------
+@variants
 def foot(low=0.0, high=1.0, checked=True, begin="a", unit=False):
     def closest_on_segment(p, a, b):
         e = b - a
@@ -121,33 +126,20 @@ def foot(low=0.0, high=1.0, checked=True, begin="a", unit=False):
 
 
 right("6.5", "with a clamp")(foot())
-wrong("6.5", "a line for a segment")(foot(low=-np.inf, high=np.inf))
 wrong("6.5", "a ray for a segment")(foot(high=np.inf))
 wrong("6.5", "divides by the length once")(foot(unit=True))
 wrong("6.5", "begins at p")(foot(begin="p"))
-
-
-@wrong("6.5", "takes a segment without length")
-def closest_on_segment(p, a, b):
-    e = b - a
-    return a + min(1.0, max(0.0, (p - a) @ e / (e @ e))) * e if e @ e > 0.0 else a
-
-
-@wrong("6.5", "the nearer end")
-def closest_on_segment(p, a, b):
-    if size(b - a) == 0.0:
-        raise BadInput("a segment", 0.0, "give two ends")
-    return a if size(p - a) < size(p - b) else b
-
-
-@wrong("6.5", "refuses what is short")
-def closest_on_segment(p, a, b):
-    if size(b - a) < 1e-6:
-        raise BadInput("a segment", 0.0, "give two ends")
-    return worked.closest_on_segment(p, a, b)
+edit("6.5", "a line for a segment", "np.minimum(1.0, np.maximum(0.0, (p - a) @ along / length_squared))",
+     "(p - a) @ along / length_squared")
+edit("6.5", "takes a segment without length",
+     'raise BadInput("the length of an edge [m]", 0.0, "give two different ends")', "return a")
+edit("6.5", "the nearer end", "np.minimum(1.0, np.maximum(0.0, (p - a) @ along / length_squared))",
+     "float((p - a) @ (p - a) > (p - b) @ (p - b))")
+edit("6.5", "refuses what is short", "length_squared == 0.0", "length_squared < 1e-12")
 
 
 # 6.6 ------------------------------------------------------------------------------------------------------------
+@variants
 def face(signs=(1, -1), edges=3, thick=True, pierced=lambda r, R: -R - r, measure=worked.edge_axis_distance):
     def triangle_cylinder_gap(a, b, c, r, R):
         corners = [a, b, c]
@@ -167,12 +159,8 @@ wrong("6.6", "forgets how thick the cloth is")(face(thick=False))
 wrong("6.6", "a pierced face has a gap of zero")(face(pierced=lambda r, R: 0.0))
 
 
-@wrong("6.6", "particles only")
-def triangle_cylinder_gap(a, b, c, r, R):
-    return min(size(a[1:]), size(b[1:]), size(c[1:])) - R - r
-
-
 # 6.7 ------------------------------------------------------------------------------------------------------------
+@variants
 def on_triangle(edges=3, inside=True, clamp=True, checked=True, flat=worked.FLAT, absolute=False):
     def closest_on_triangle(p, a, b, c):
         corners = [a, b, c]
@@ -195,21 +183,25 @@ wrong("6.7", "edges only")(on_triangle(inside=False))
 wrong("6.7", "the plane for the triangle")(on_triangle(clamp=False))
 wrong("6.7", "two edges only")(on_triangle(edges=2))
 wrong("6.7", "takes a triangle without area")(on_triangle(checked=False))
-wrong("6.7", "refuses what is small")(on_triangle(flat=1e-9, absolute=True))
-
-
-@wrong("6.7", "the nearest corner")
-def closest_on_triangle(p, a, b, c):
-    q = worked.closest_on_triangle(p, a, b, c)
-    return min((a, b, c), key=lambda y: size(y - p)) if min(size(q - y) for y in (a, b, c)) < 0.3 * size(b - a) else q
+FIRST_TWO = "nearer(p, closest_on_segment(p, a, b), closest_on_segment(p, b, c))"
+THREE_EDGES = f"nearer(p, {FIRST_TWO}, closest_on_segment(p, c, a))"
+OUTSIDE = "closest_on_segment(p, {0}, {1}) if dot(cross({1} - {0}, q - {0}), N) < 0.0 else "
+edit("6.7", "refuses what is small", "FLAT * longest", "1e-9")
+edit("6.7", "the nearest corner", THREE_EDGES, "nearer(p, nearer(p, a, b), c)")
+edit("6.7", "the first edge that it is outside of", THREE_EDGES,
+     OUTSIDE.format("a", "b") + OUTSIDE.format("b", "c") + "closest_on_segment(p, c, a)")
+edit("6.7", "the last edge that it is outside of", THREE_EDGES,
+     OUTSIDE.format("c", "a") + OUTSIDE.format("b", "c") + "closest_on_segment(p, a, b)")
+edit("6.7", "the first two edges compared from a corner", FIRST_TWO, FIRST_TWO.replace("nearer(p", "nearer(c"))
 
 
 # 6.8 ------------------------------------------------------------------------------------------------------------
+@variants
 def in_box(turn=lambda R, y: R.T @ y, inside=True, pick=np.argmin, depth_sign=-1.0, sign=lambda y: 1.0 if y >= 0.0 else -1.0, out=1.0):
     def ball_box(x, r, box):
         y = turn(box.R, x - box.x)
         depth = box.half - np.abs(y)
-        if not (inside and np.all(depth > 0.0)):
+        if not (inside and np.all(depth >= 0.0)):
             return worked.ball_contact(x, r, box.x + box.R @ np.clip(y, -box.half, box.half), 0.0)
         i = int(pick(depth))
         n = out * sign(y[i]) * box.R[:, i]
@@ -225,25 +217,32 @@ wrong("6.8", "the farthest face")(in_box(pick=np.argmax))
 wrong("6.8", "a gap above zero inside")(in_box(depth_sign=1.0))
 wrong("6.8", "no way out of the middle")(in_box(sign=np.sign))
 wrong("6.8", "n leads in")(in_box(out=-1.0))
+edit("6.8", "what is on a face is outside", "depth[i] < 0.0", "depth[i] <= 0.0")
+edit("6.8", "the face of the largest coordinate", "np.argmin(depth)", "np.argmax(np.abs(y))")
+edit("6.8", "the face of the least share of its half edge", "np.argmin(depth)", "np.argmin(depth / box.half)")
 
 
 # 6.9 ------------------------------------------------------------------------------------------------------------
-def sweep(f):
+@variants
+def sweep(f=lambda low, high, move: (low + np.clip(move, None, 0.0), high + np.clip(move, 0.0, None))):
     def swept_box(low, high, move):
         return f(low, high, move)
     return swept_box
 
 
-right("6.9", "by the parts of the way")(sweep(lambda low, high, move: (low + np.clip(move, None, 0.0), high + np.clip(move, 0.0, None))))
+right("6.9", "by the parts of the way")(sweep())
 wrong("6.9", "where it ends")(sweep(lambda low, high, move: (low + move, high + move)))
 wrong("6.9", "only forwards")(sweep(lambda low, high, move: (low, high + move)))
 wrong("6.9", "larger on every side")(sweep(lambda low, high, move: (low - np.abs(move), high + np.abs(move))))
+edit("6.9", "all coordinates by the largest move", "np.maximum(high, high + move)", "high + max(0.0, np.max(move))")
 wrong("6.9", "does not sweep")(sweep(lambda low, high, move: (low, high)))
 
 
 # 6.10 -----------------------------------------------------------------------------------------------------------
+@variants
 def brute(strict=False, first=lambda i: i + 1, turned=False, some=lambda low: low):
     def all_pairs(low, high):
+        worked.check_boxes(low, high)
         n, found = len(low), []
         for i in range(n):
             for j in range(first(i), n):
@@ -260,10 +259,13 @@ wrong("6.10", "a common face does not count")(brute(strict=True))
 wrong("6.10", "each with itself")(brute(first=lambda i: i))
 wrong("6.10", "each pair twice")(brute(first=lambda i: 0))
 wrong("6.10", "the larger number first")(brute(turned=True))
-wrong("6.10", "neighbours in the list only")(brute(first=lambda i: max(i + 1, len(range(30)) - 3)))
+edit("6.10", "neighbours in the list only", "range(i + 1, len(low))", "range(i + 1, min(i + 2, len(low)))")
+edit("6.10", "takes boxes that are none", "check_boxes(low, high)", "pass")
+edit("6.10", "does not test the last two", "range(len(low))", "range(len(low) - 2)")
 
 
 # 6.11 -----------------------------------------------------------------------------------------------------------
+@variants
 def traversal(prune=True, second=True, leaves=lambda a, i, b, j, found: worked.touching_items(a, i, b, j, found), turned=False, both=True):
     def find_intersections(a, b):
         found = []
@@ -302,6 +304,7 @@ wrong("6.11", "gives up where b's node is bigger")(traversal(both=False))
 
 
 # 6.12 -----------------------------------------------------------------------------------------------------------
+@variants
 def edges(inner=min, outer=max, sign=1.0, centre=False, checked=True, of=lambda a, b: (a, b)):
     def separating_edge(a, b):
         a, b = of(a, b)
@@ -322,9 +325,15 @@ wrong("6.12", "normals that lead in")(edges(sign=-1.0))
 wrong("6.12", "the middle of b for its corners")(edges(centre=True))
 wrong("6.12", "takes an edge without length")(edges(checked=False))
 wrong("6.12", "the edges of b")(edges(of=lambda a, b: (b, a)))
+edit("6.12", "the edge whose gap is nearest to zero", "not gap <= greatest", "abs(gap) < abs(greatest)")
+edit("6.12", "the first edge that separates", "not gap <= greatest", "greatest <= 0.0 and gap > greatest")
+edit("6.12", "the last edge that separates", "not gap <= greatest", "gap > min(greatest, 0.0)")
+edit("6.12", "forgets the first corner of b", "range(len(b))", "range(1, len(b))")
+edit("6.12", "every edge begins at the first corner", "b[j] - a[i]", "b[j] - a[0]")
 
 
 # 6.13 -----------------------------------------------------------------------------------------------------------
+@variants
 def cut(side=1.0, crossing=lambda s_i, s_j: s_i / (s_i - s_j), back=False, add=True, offset=1.0, kept_at=lambda s: s <= 0.0, crosses=lambda a, b: a * b < 0.0):
     def clip(y, n, d):
         k, kept = len(y), []
@@ -348,15 +357,19 @@ wrong("6.13", "only leaves corners out")(cut(add=False))
 wrong("6.13", "drops what is on the plane")(cut(kept_at=lambda s: s < 0.0))
 wrong("6.13", "counts what is on the plane twice")(cut(crosses=lambda a, b: a * b <= 0.0 and a != b))
 wrong("6.13", "forgets d")(cut(offset=0.0))
+edit("6.13", "keeps what is a nanometre outside", "s_i <= 0.0", "s_i <= 1e-9")
+edit("6.13", "adds a crossing only where it goes out", "s_i * s_j < 0.0", "s_i < 0.0 < s_j")
 
 
 # 6.14 -----------------------------------------------------------------------------------------------------------
-def boxes(axes=range(15), room=worked.EDGES_WIN_BY, sign=1.0, zeros=False, width=worked.half_width, choose=lambda new, old: new > old, fixed=False):
+@variants
+def boxes(axes=range(15), room=worked.EDGES_WIN_BY, sign=1.0, width=worked.half_width, choose=lambda new,
+          old: new > old, fixed=False):
     def box_separation(a, b):
         r, best = a.x - b.x, None
         for k in axes:
             n = worked.candidate_axis(a, b, k)
-            if not np.any(n) and not zeros:
+            if not np.any(n):
                 continue
             gap = abs(float(r @ n)) - width(a, n) - width(b, n)
             if best is None or choose(gap, best[0] + (room if k >= 6 else 0.0)):
@@ -371,15 +384,23 @@ wrong("6.14", "the axes of a only")(boxes(axes=range(3)))
 wrong("6.14", "faces only")(boxes(axes=range(6)))
 wrong("6.14", "from a to b")(boxes(sign=-1.0))
 wrong("6.14", "the axis as it comes")(boxes(fixed=True))
-wrong("6.14", "takes axes that are zeros")(boxes(zeros=True, room=0.0, choose=lambda new, old: new >= old))
 wrong("6.14", "the last of equal ones")(boxes(choose=lambda new, old: new >= old))
+edit("6.14", "takes axes that are zeros", "dot(axis, axis) > 0.0", "dot(axis, axis) >= 0.0")
+edit("6.14", "edges win by nothing", "EDGES_WIN_BY if k >= 6", "0.0 if k >= 6")
+edit("6.14", "edges win by a twentieth", "EDGES_WIN_BY if k >= 6", "0.05 * abs(greatest) if k >= 6")
+edit("6.14", "forgets the last axis", "range(15)", "range(14)")
+edit("6.14", "the first axis that separates", "not gap <= greatest +", "greatest <= 0.0 and gap > greatest +")
+edit("6.14", "edges only where no face separates", "not gap <= greatest +", "(k < 6 or greatest < 0.0) and gap > greatest +")
+edit("6.14", "the axis whose gap is nearest to zero", "not gap <= greatest +", "abs(gap) < abs(greatest) +")
 wrong("6.14", "the least gap")(boxes(choose=lambda new, old: new < old))
 wrong("6.14", "the longest half edge for the width")(boxes(width=lambda box, n: float(np.max(box.half))))
 
 
 # 6.15 -----------------------------------------------------------------------------------------------------------
+@variants
 def nearest(steps=worked.GJK_STEPS, along=(-1.0, 1.0), reduce=True, swap=False):
     def gjk(a, b):
+        worked.check_hulls(a, b)
         p, q, weights = a[:1], b[:1], np.ones(1)
         for _ in range(steps):
             v = weights @ (p - q)
@@ -402,15 +423,13 @@ wrong("6.15", "the supports exchanged")(nearest(along=(1.0, -1.0)))
 wrong("6.15", "both along the same way")(nearest(along=(-1.0, -1.0)))
 wrong("6.15", "keeps a single pair")(nearest(reduce=False))
 wrong("6.15", "n from a to b")(nearest(swap=True))
-
-
-@wrong("6.15", "the nearest corners")
-def gjk(a, b):
-    i, j = np.unravel_index(np.argmin(np.linalg.norm(a[:, None] - b[None], axis=2)), (len(a), len(b)))
-    return worked.ball_contact(a[i], 0.0, b[j], 0.0)
+edit("6.15", "takes bodies of any size and kind", "check_hulls(a, b)", "pass")
+edit("6.15", "a corner of each for the points between them", "weights @ p, 0.0, weights @ q, 0.0",
+     "p[0], 0.0, q[0], 0.0")
 
 
 # 6.16 -----------------------------------------------------------------------------------------------------------
+@variants
 def field(strength=lambda g, reach: (1.0 / g - 1.0 / reach) / g**2, sign=1.0, checked=True, skin=True, ends=True, unit=True):
     def repulsion(x, centre, radius, reach, k):
         r = x - centre
@@ -434,6 +453,7 @@ wrong("6.16", "the way itself for its direction")(field(unit=False))
 
 
 # 6.17 -----------------------------------------------------------------------------------------------------------
+@variants
 def swerve(side=-1.0, half=2.0, power=2, window=True, behind=True, wide=True, left=1.0, rest=True, need=lambda radius, offset: radius - offset):
     def steer(x, v, centre, radius, ahead):
         speed = size(v)
@@ -460,8 +480,4 @@ wrong("6.17", "head on to the right")(swerve(left=-1.0))
 wrong("6.17", "waits head on")(swerve(left=0.0))
 wrong("6.17", "starts by itself")(swerve(rest=False))
 wrong("6.17", "leaves room for all of the radius")(swerve(need=lambda radius, offset: radius))
-
-
-@wrong("6.17", "brakes")
-def steer(x, v, centre, radius, ahead):
-    return worked.steer(x, v, centre, radius, ahead) - 0.1 * v * (size(worked.steer(x, v, centre, radius, ahead)) > 0.0)
+edit("6.17", "brakes", "tau**2 * aside", "tau**2 * aside - 0.1 * v")

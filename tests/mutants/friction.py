@@ -1,11 +1,13 @@
 """Lesson 3: friction with a sign, a mass, a step or a case of its own gone astray."""
 
+import functools
+
 import numpy as np
 
 from solutions import friction as worked
-from . import collection
+from . import collection, variants
 
-wrong, right, MUTANTS = collection()
+wrong, right, edit, MUTANTS = collection(worked)
 tangential, cone_radius = worked.tangential, worked.cone_radius
 
 
@@ -50,6 +52,7 @@ def normal_force(F, n):
 
 
 # 3.2 ------------------------------------------------------------------------------------------------------------
+@variants
 def holding(sign=-1.0, rim=True, clamp=True, load=lambda F, n: max(0.0, -(F @ n)), part=tangential, checked=True, safe=True):
     """Static friction by a clamp, with parts that may be wrong."""
     def static_friction(F, n, mu_s):
@@ -78,6 +81,7 @@ def static_friction(F, n, mu_s):
 
 
 # 3.3 ------------------------------------------------------------------------------------------------------------
+@variants
 def braking(sign=-1.0, direction=lambda F, v, n: unit(tangential(v, n)), load=lambda F, n: max(0.0, -(F @ n)), scale=lambda v: 1.0):
     def kinetic_friction(F, v, n, mu_k):
         return sign * cone_radius(mu_k, load(F, n)) * scale(v) * direction(F, v, n)
@@ -101,6 +105,7 @@ def kinetic_friction(F, v, n, mu_k):
 
 
 # 3.4 ------------------------------------------------------------------------------------------------------------
+@variants
 def on_slope(holds=lambda theta, mu_s, mu_k: np.tan(theta) <= mu_s, slides=lambda theta, mu_s, mu_k: np.sin(theta) - mu_k * np.cos(theta)):
     def incline_acceleration(theta, mu_s, mu_k, g):
         worked.check_friction(mu_s)
@@ -123,6 +128,7 @@ def incline_acceleration(theta, mu_s, mu_k, g):
 
 
 # 3.5 ------------------------------------------------------------------------------------------------------------
+@variants
 def dissipating(sign=-1.0, stop=lambda m, speed: m * speed, choose=min, limit=cone_radius, exactly=True):
     def friction_impulse(v_t, m, j_n, mu):
         size_J = choose(limit(mu, j_n), stop(m, size(v_t)))
@@ -154,6 +160,7 @@ def friction_impulse(v_t, m, j_n, mu):
 
 
 # 3.6 ------------------------------------------------------------------------------------------------------------
+@variants
 def square(sign=-1.0, mass=True, clamp=lambda y, limit: np.clip(y, -limit, limit), second=True, width=1.0):
     def pyramid_impulse(v_t, m, j_n, mu, t_1, t_2):
         tangents = np.stack([t_1, t_2 if second else 0.0 * t_2])
@@ -175,6 +182,7 @@ def pyramid_impulse(v_t, m, j_n, mu, t_1, t_2):
 
 
 # 3.7 ------------------------------------------------------------------------------------------------------------
+@variants
 def block_step(rest=True, at_rest="mu_s", moving="mu_k", late=0.0, old=False, against="new", once=True, load=worked.normal_force, speed=1.0,
                still=lambda v: size(v) == 0.0, holds=lambda pull, limit: pull <= limit, turns=True):
     """A step of a block with friction as a vector of its own, with terms that may be wrong."""
@@ -219,6 +227,7 @@ def sliding_step(acceleration, t, x, v, dt, p):
 
 
 # 3.8 ------------------------------------------------------------------------------------------------------------
+@variants
 def heading(moving=lambda v, a_t: v, limit="mu_s", sign=1.0, scaled=True, ask=lambda pull, hold: pull > hold, clock=1.0, load=worked.normal_force, least=0.0):
     def slip_direction(acceleration, t, x, v, p):
         a = acceleration(clock * t, x, v, p)
@@ -244,6 +253,7 @@ wrong("3.8", "the clock stands still")(heading(clock=0.0))
 
 
 # 3.9 ------------------------------------------------------------------------------------------------------------
+@variants
 def first_stop(halvings=60, whole=True, begin=0.0, length=lambda middle, dt: middle, towards=1.0, end=lambda a, b: b):
     def stopping_time(acceleration, t, x, v, dt, d, p):
         def moves(tau):
@@ -285,6 +295,7 @@ def stopping_time(acceleration, t, x, v, dt, d, p):
 
 
 # 3.10 -----------------------------------------------------------------------------------------------------------
+@variants
 def first_slip(halvings=60, since=lambda t, tau: t + tau, whole=True, slips=lambda d: size(d) > 0.0):
     def breakaway_time(acceleration, t, x, v, dt, p):
         def breaks(tau):
@@ -300,7 +311,6 @@ def first_slip(halvings=60, since=lambda t, tau: t + tau, whole=True, slips=lamb
 
 right("3.10", "with a question of its own")(first_slip())
 wrong("3.10", "the kinetic limit")(lambda acceleration, t, x, v, dt, p: first_slip()(acceleration, t, x, v, dt, p._replace(mu_s=p.mu_k)))
-MUTANTS[-1].function.__name__ = "breakaway_time"
 
 
 @wrong("3.10", "the load of now")
@@ -319,10 +329,10 @@ wrong("3.10", "asks about now")(first_slip(since=lambda t, tau: t))
 wrong("3.10", "holds while it slips")(first_slip(slips=lambda d: size(d) == 0.0))
 wrong("3.10", "returns the moment, not the time to it")(
     lambda acceleration, t, x, v, dt, p: t + first_slip()(acceleration, t, x, v, dt, p))
-MUTANTS[-1].function.__name__ = "breakaway_time"
 
 
 # 3.11 -----------------------------------------------------------------------------------------------------------
+@variants
 def event(exactly=True, whole=False, waits=True, rest=False, moves=True):
     def until_event(acceleration, t, x, v, dt, p):
         d = worked.slip_direction(acceleration, t, x, v, p)
@@ -353,6 +363,7 @@ def until_event(acceleration, t, x, v, dt, p):
 
 
 # 3.12 -----------------------------------------------------------------------------------------------------------
+@variants
 def hollow(sign=-1.0, inside=1.0, centred=True, axial=True, scaled=True, safe=True):
     def bowl_gap(x, p):
         r = x - p.centre if centred else x
@@ -375,6 +386,7 @@ wrong("3.12", "divides by no distance")(hollow(safe=False))
 
 
 # 3.13 -----------------------------------------------------------------------------------------------------------
+@variants
 def impact(leaves=True, bounce=lambda e: 1.0 + e, mass=True, slip=tangential, sign=1.0, friction=worked.friction_impulse, mass_n=True):
     def contact_impulse(v, n, m, e, mu):
         v_n = v @ n
@@ -398,11 +410,10 @@ wrong("3.13", "no friction")(impact(friction=lambda v_t, m, j_n, mu: 0.0 * v_t))
 wrong("3.13", "grips always")(impact(friction=lambda v_t, m, j_n, mu: -m * v_t))
 wrong("3.13", "friction as if e = 0")(
     lambda v, n, m, e, mu: (1.0 + e) * worked.contact_impulse(v, n, m, 0.0, 0.0) + tangential(worked.contact_impulse(v, n, m, 0.0, mu), n))
-MUTANTS[-1].function.__name__ = "contact_impulse"
 
 
 # 3.14 and 3.16 --------------------------------------------------------------------------------------------------
-def particle_step(name, grip=0.0, old=False, back=-1.0, asked="new", mass=True, only_inwards=False, both_ways=False, doubled=False,
+def particle_step(grip=0.0, old=False, back=-1.0, asked="new", mass=True, only_inwards=False, both_ways=False, doubled=False,
                   reached=0.0, half=1.0, depth=lambda phi: -phi, once=True, clock=1.0, moving=lambda moved, x, v, dt: moved):
     """A step of a particle and what a surface does to it, with terms that may be wrong."""
     def step(acceleration, surface, t, x, v, dt, p):
@@ -418,29 +429,29 @@ def particle_step(name, grip=0.0, old=False, back=-1.0, asked="new", mass=True, 
             x_new = x_new + grip * worked.grip_correction(moving(moved, x, v, dt), n, max(0.0, depth(phi)), p.mu)
         J = worked.contact_impulse(v_free, n, p.m, p.e, p.mu)
         return x_new, v_free + J / (p.m if mass else 1.0) * (2.0 if doubled else 1.0)
-    step.__name__ = name
     return step
 
 
-for number, name, grip in (("3.14", "contact_step", 0.0), ("3.16", "gripping_step", 1.0)):
-    right(number, "with new names")(particle_step(name, grip))
-    wrong(number, "moves with the old velocity")(particle_step(name, grip, old=True))
-    wrong(number, "puts it in deeper")(particle_step(name, grip, back=1.0))
-    wrong(number, "does not put it back")(particle_step(name, grip, back=0.0))
-    wrong(number, "puts it half the way back")(particle_step(name, grip, half=0.5))
-    wrong(number, "asks for the gap before it moves")(particle_step(name, grip, asked="old"))
-    wrong(number, "forgets to divide by the mass")(particle_step(name, grip, mass=False))
-    wrong(number, "leaves what is inside and leaves")(particle_step(name, grip, only_inwards=True))
-    wrong(number, "every particle is in contact")(particle_step(name, grip, reached=np.inf))
-    wrong(number, "forgets dt")(particle_step(name, grip, once=False))
-    wrong(number, "the clock stands still")(particle_step(name, grip, clock=0.0))
-    wrong(number, "in contact a millimetre too early")(particle_step(name, grip, reached=1e-3))
-wrong("3.14", "grips as well")(particle_step("contact_step", 1.0))
-wrong("3.16", "does not grip")(particle_step("gripping_step", 0.0))
-wrong("3.16", "grips forwards")(particle_step("gripping_step", -1.0))
-wrong("3.16", "grips on the way out")(particle_step("gripping_step", 1.0, both_ways=True))
-wrong("3.16", "a depth below zero")(particle_step("gripping_step", 1.0, depth=lambda phi: phi))
-wrong("3.16", "grips the displacement of the old velocity")(particle_step("gripping_step", 1.0, moving=lambda moved, x, v, dt: dt * v))
+contact, gripping = variants(particle_step), variants(functools.partial(particle_step, grip=1.0))
+for number, particle in (("3.14", contact), ("3.16", gripping)):
+    right(number, "with new names")(particle())
+    wrong(number, "moves with the old velocity")(particle(old=True))
+    wrong(number, "puts it in deeper")(particle(back=1.0))
+    wrong(number, "does not put it back")(particle(back=0.0))
+    wrong(number, "puts it half the way back")(particle(half=0.5))
+    wrong(number, "asks for the gap before it moves")(particle(asked="old"))
+    wrong(number, "forgets to divide by the mass")(particle(mass=False))
+    wrong(number, "leaves what is inside and leaves")(particle(only_inwards=True))
+    wrong(number, "every particle is in contact")(particle(reached=np.inf))
+    wrong(number, "forgets dt")(particle(once=False))
+    wrong(number, "the clock stands still")(particle(clock=0.0))
+    wrong(number, "in contact a millimetre too early")(particle(reached=1e-3))
+wrong("3.14", "grips as well")(contact(grip=1.0))
+wrong("3.16", "does not grip")(gripping(grip=0.0))
+wrong("3.16", "grips forwards")(gripping(grip=-1.0))
+wrong("3.16", "grips on the way out")(gripping(both_ways=True))
+wrong("3.16", "a depth below zero")(gripping(depth=lambda phi: phi))
+wrong("3.16", "grips the displacement of the old velocity")(gripping(moving=lambda moved, x, v, dt: dt * v))
 
 
 @wrong("3.14", "changes its input")
@@ -452,6 +463,7 @@ def contact_step(acceleration, surface, t, x, v, dt, p):
 
 
 # 3.15 -----------------------------------------------------------------------------------------------------------
+@variants
 def grip(sign=-1.0, part=tangential, limit=lambda mu, depth: mu * depth, choose=min):
     def grip_correction(moved, n, depth, mu):
         s = part(moved, n)

@@ -3,10 +3,10 @@
 import numpy as np
 
 from solutions import integrators as worked
-from solutions.checks import Diverged
-from . import collection
+from solutions.checks import Diverged, check_positive
+from . import collection, variants
 
-wrong, right, MUTANTS = collection()
+wrong, right, edit, MUTANTS = collection(worked)
 
 
 # 1.1 ------------------------------------------------------------------------------------------------------------
@@ -73,7 +73,8 @@ def midpoint_step(acceleration, t, x, v, dt, p):
 
 
 # 1.3 ------------------------------------------------------------------------------------------------------------
-def runge_kutta(nodes, weights):
+@variants
+def runge_kutta(nodes=(0, 0.5, 0.5, 1), weights=(1 / 6, 1 / 3, 1 / 3, 1 / 6)):
     """A method as a table: each slope is reached along the slope before it, nodes · dt away."""
     def step(acceleration, t, x, v, dt, p):
         slope, total_x, total_v = (v, acceleration(t, x, v, p)), 0.0, 0.0
@@ -82,14 +83,13 @@ def runge_kutta(nodes, weights):
             slope = v_c, acceleration(t + c * dt, x + c * dt * slope[0], v_c, p)
             total_x, total_v = total_x + w * slope[0], total_v + w * slope[1]
         return x + dt * total_x, v + dt * total_v
-    step.__name__ = "rk4_step"
     return step
 
 
-wrong("1.3", "equal weights")(runge_kutta((0, 0.5, 0.5, 1), (1 / 4, 1 / 4, 1 / 4, 1 / 4)))
-wrong("1.3", "weights of the middle and the ends swapped")(runge_kutta((0, 0.5, 0.5, 1), (1 / 3, 1 / 6, 1 / 6, 1 / 3)))
-wrong("1.3", "last slope in the middle")(runge_kutta((0, 0.5, 0.5, 0.5), (1 / 6, 1 / 3, 1 / 3, 1 / 6)))
-right("1.3", "from its table")(runge_kutta((0, 0.5, 0.5, 1), (1 / 6, 1 / 3, 1 / 3, 1 / 6)))
+wrong("1.3", "equal weights")(runge_kutta(weights=(1 / 4, 1 / 4, 1 / 4, 1 / 4)))
+wrong("1.3", "weights of the middle and the ends swapped")(runge_kutta(weights=(1 / 3, 1 / 6, 1 / 6, 1 / 3)))
+wrong("1.3", "last slope in the middle")(runge_kutta(nodes=(0, 0.5, 0.5, 0.5)))
+right("1.3", "from its table")(runge_kutta())
 
 
 @wrong("1.3", "position by Euler, velocity by Runge–Kutta")
@@ -186,6 +186,7 @@ def verlet_step(acceleration, t, x, v, dt, p):
 
 
 # 1.7 ------------------------------------------------------------------------------------------------------------
+@variants
 def implicit_euler(time=1.0, place=1.0, limit=30, corrections=30):
     """Newton's method with the acceleration at a time and place that may be wrong."""
     def implicit_euler_step(acceleration, t, x, v, dt, p):
@@ -267,15 +268,15 @@ def implicit_midpoint_step(acceleration, t, x, v, dt, p):
 
 
 # 1.9 ------------------------------------------------------------------------------------------------------------
-def columns(acceleration):
+@variants
+def columns(acceleration=worked.oscillator_acceleration):
     def of(step, omega, zeta, dt):
         p, one, zero = worked.Oscillator(omega, zeta), np.ones(1), np.zeros(1)
         return np.hstack([np.array(step(acceleration, 0.0, *state, dt, p)) for state in ((one, zero), (zero, one))])
-    of.__name__ = "amplification_matrix"
     return of
 
 
-right("1.9", "columns stacked")(columns(worked.oscillator_acceleration))
+right("1.9", "columns stacked")(columns())
 wrong("1.9", "forgets the damping")(columns(lambda t, x, v, p: -p.omega**2 * x))
 
 
@@ -307,4 +308,10 @@ def observed_order(dts, errors):
 
 @right("1.10", "polyfit")
 def observed_order(dts, errors):
+    for dt, error in zip(dts, errors):
+        check_positive("step dt [s]", dt)
+        check_positive("error [-]", error)
     return np.polyfit(np.log(dts), np.log(errors), 1)[0]
+
+
+edit("1.10", "leaves runs without error to the logarithm", 'check_positive("error [-]", errors[n])', "pass")

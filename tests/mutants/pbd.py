@@ -4,9 +4,9 @@ import numpy as np
 
 from solutions import pbd as worked
 from solutions.checks import BadInput, Diverged
-from . import collection
+from . import collection, variants
 
-wrong, right, MUTANTS = collection()
+wrong, right, edit, MUTANTS = collection(worked)
 NO_LENGTH = BadInput("the length of a link [m]", 0.0, "keep its ends apart")
 NO_WEIGHT = BadInput("Σ w |∇C|² of a constraint", 0.0, "let one of its points have a mass and a gradient")
 
@@ -16,6 +16,7 @@ def size(y):
 
 
 # 8.1 ------------------------------------------------------------------------------------------------------------
+@variants
 def link(sign=1.0, scaled=True, absolute=False, towards=1.0, squared=False, checked=True, ratio=False):
     def distance_constraint(x_i, x_j, rest):
         r, length = x_i - x_j, size(x_i - x_j)
@@ -37,9 +38,13 @@ wrong("8.1", "never too short")(link(absolute=True))
 wrong("8.1", "squares of lengths")(link(squared=True))
 wrong("8.1", "the strain")(link(ratio=True))
 wrong("8.1", "takes ends that coincide")(link(checked=False))
+edit("8.1", "refuses what is short", "length == 0.0", "length < 1e-9")
+edit("8.1", "never too long", "length - rest", "min(0.0, length - rest)")
+edit("8.1", "towards where it should go", "r / length", "r / length * np.sign(rest - length)")
 
 
 # 8.2 ------------------------------------------------------------------------------------------------------------
+@variants
 def projecting(sign=-1.0, mass=True, total=lambda w, g: np.sum(w * np.sum(g * g, axis=1)), checked=True):
     def projection(C, gradients, inv_mass):
         s = total(inv_mass, gradients)
@@ -58,16 +63,13 @@ wrong("8.2", "forgets the masses below")(projecting(total=lambda w, g: np.sum(g 
 wrong("8.2", "takes gradients for unit vectors")(projecting(total=lambda w, g: np.sum(w)))
 wrong("8.2", "half of it")(projecting(sign=-0.5))
 wrong("8.2", "takes what nothing can meet")(projecting(checked=False))
-
-
-@wrong("8.2", "every point on its own")
-def projection(C, gradients, inv_mass):
-    if not np.any(inv_mass) or not np.any(gradients):
-        raise NO_WEIGHT
-    return -C * gradients / np.sum(gradients * gradients, axis=1, keepdims=True) * (inv_mass > 0.0)[:, None]
+edit("8.2", "every point on its own", "-C / total * inv_mass[k]",
+     "-C / np.sum(gradients[k] ** 2) * (inv_mass[k] > 0.0)")
+edit("8.2", "refuses what is light", "total == 0.0", "total < 1e-6")
 
 
 # 8.3 ------------------------------------------------------------------------------------------------------------
+@variants
 def predicting(half=1.0, stops=False, falls=False, clock=1.0, speed=1.0, changes=False):
     def predict(acceleration, t, x, v, dt, net):
         free = (net.inv_mass > 0.0)[:, None]
@@ -87,10 +89,12 @@ wrong("8.3", "immovable points fall")(predicting(falls=True))
 wrong("8.3", "the clock stands still")(predicting(clock=0.0))
 wrong("8.3", "the force of rest")(predicting(speed=0.0))
 wrong("8.3", "changes its input")(predicting(changes=True))
+edit("8.3", "what is heavy falls more slowly", "dt * dt * a[k, c]", "dt * dt * a[k, c] * min(1.0, net.inv_mass[k])")
 wrong("8.3", "no force")(predicting(half=0.0))
 
 
 # 8.4 ------------------------------------------------------------------------------------------------------------
+@variants
 def newton(curved=1.0, per_row=True, scale=lambda dt: dt * dt, sign=1.0, from_goal=1.0, difference=False, across=True):
     def newton_correction(x, lam, goal, dt, net):
         d, n, s = x.shape[1], x.size, net.i.size
@@ -124,14 +128,16 @@ wrong("8.4", "second derivatives along the link only")(newton(across=False))
 
 
 # 8.5 ------------------------------------------------------------------------------------------------------------
-def projecting_step(rounds=40, enough=1e-12, speed=lambda new, x, goal, v, dt: (new - x) / dt, start="x", gives_up=True, force=True):
+@variants
+def projecting_step(enough=lambda done, change, longest: change <= 1e-12 * longest, speed=lambda new, x, goal, v,
+                    dt: (new - x) / dt, start="x", gives_up=True, force=True):
     def projection_step(acceleration, t, x, v, dt, net):
         goal = worked.predict(acceleration, t, x, v, dt, net)
         new, lam = (x if start == "x" else goal).copy(), np.zeros(net.i.size)
-        for _ in range(rounds):
+        for done in range(worked.NEWTON_LIMIT):
             change, found = worked.newton_correction(new, lam, goal if force else x, dt, net)
             new, lam = new + change, found
-            if np.abs(change).max() <= enough * net.rest.max():
+            if enough(done, np.abs(change).max(), net.rest.max()):
                 return new, speed(new, x, goal, v, dt)
         if gives_up:
             raise Diverged("the projection did not converge at dt [s]", dt, "take a smaller step")
@@ -140,8 +146,11 @@ def projecting_step(rounds=40, enough=1e-12, speed=lambda new, x, goal, v, dt: (
 
 
 right("8.5", "from the prediction")(projecting_step(start="goal"))
-wrong("8.5", "one round")(projecting_step(rounds=1, gives_up=False))
-wrong("8.5", "two rounds")(projecting_step(rounds=2, gives_up=False))
+wrong("8.5", "one round")(projecting_step(enough=lambda done, change, longest: True))
+wrong("8.5", "two rounds")(projecting_step(enough=lambda done, change, longest: done == 1))
+wrong("8.5", "a trillionth of a metre, however large the net")(projecting_step(enough=lambda done, change,
+                                                                               longest: change <= 1e-12))
+edit("8.5", "asks only how far up and to the right", "np.max(np.abs(change))", "np.max(change)")
 wrong("8.5", "does not say that it failed")(projecting_step(gives_up=False))
 wrong("8.5", "keeps the predicted velocity")(projecting_step(speed=lambda new, x, goal, v, dt: (goal - x) / dt))
 wrong("8.5", "keeps the old velocity")(projecting_step(speed=lambda new, x, goal, v, dt: v))
@@ -150,6 +159,7 @@ wrong("8.5", "the velocity without dt")(projecting_step(speed=lambda new, x, goa
 
 
 # 8.6 ------------------------------------------------------------------------------------------------------------
+@variants
 def sweeping(stiff=True, by_mass=True, sign=1.0, jacobi=False, backwards=False, changes=False, checked=True, held=True):
     def distance_sweep(x, net):
         seen = x.copy()
@@ -180,9 +190,13 @@ wrong("8.6", "from the last to the first")(sweeping(backwards=True))
 wrong("8.6", "changes its input")(sweeping(changes=True))
 wrong("8.6", "takes ends that coincide")(sweeping(checked=False))
 wrong("8.6", "moves the immovable")(sweeping(held=False))
+edit("8.6", "a thread: never too short", "share = net.stiffness[s]",
+     "share = net.stiffness[s] * (squared > net.rest[s] ** 2)")
+edit("8.6", "refuses what is short", "squared == 0.0", "squared < 1e-12")
 
 
 # 8.7 ------------------------------------------------------------------------------------------------------------
+@variants
 def dynamics(sweeps=lambda n: n, speed=lambda new, x, goal, v, dt: (new - x) / dt, begin="goal"):
     def pbd_step(acceleration, t, x, v, dt, net):
         goal = worked.predict(acceleration, t, x, v, dt, net)
@@ -200,9 +214,11 @@ wrong("8.7", "no sweep")(dynamics(sweeps=lambda n: 0))
 wrong("8.7", "keeps the predicted velocity")(dynamics(speed=lambda new, x, goal, v, dt: (goal - x) / dt))
 wrong("8.7", "keeps the old velocity")(dynamics(speed=lambda new, x, goal, v, dt: v))
 wrong("8.7", "no force")(dynamics(begin="x"))
+edit("8.7", "an immovable point is at rest", "(new - x) / dt", "(new - x) / dt * (net.inv_mass > 0.0)[:, None]")
 
 
 # 8.8 ------------------------------------------------------------------------------------------------------------
+@variants
 def sagging(left=lambda s, n: (1.0 - s) ** n, step=lambda dt: dt * dt, below=lambda S: 1.0 - S, above=lambda S: S):
     def pbd_sag(g, dt, stiffness, sweeps):
         S = left(stiffness, sweeps)
@@ -211,15 +227,16 @@ def sagging(left=lambda s, n: (1.0 - s) ** n, step=lambda dt: dt * dt, below=lam
 
 
 right("8.8", "by what is put back")(lambda g, dt, stiffness, sweeps: g * dt**2 / (1.0 - (1.0 - stiffness) ** sweeps) - g * dt**2)
-MUTANTS[-1].function.__name__ = "pbd_sag"
 wrong("8.8", "what the sweeps take, not what they leave")(sagging(left=lambda s, n: s**n))
 wrong("8.8", "falls once only")(sagging(below=lambda S: 1.0))
 wrong("8.8", "before the sweeps")(sagging(above=lambda S: 1.0))
 wrong("8.8", "falls by ½ g dt²")(sagging(step=lambda dt: 0.5 * dt * dt))
+edit("8.8", "no more than five sweeps", "** sweeps", "** min(sweeps, 5)")
 wrong("8.8", "n times as stiff")(sagging(left=lambda s, n: max(0.0, 1.0 - n * s)))
 
 
 # 8.9 ------------------------------------------------------------------------------------------------------------
+@variants
 def folding(angle="atan2", wrapped=lambda C: np.pi - (np.pi - C) % (2.0 * np.pi), sign=1.0, wings=1.0, leverage=True, closed=True, checked=True, swapped=False, slope=1.0):
     def fold_constraint(x, fold):
         a, b, c, d = x
@@ -253,9 +270,17 @@ wrong("8.9", "half of each wing to each end of the edge")(folding(leverage=False
 wrong("8.9", "leverage of the other end")(folding(swapped=True))
 wrong("8.9", "pushes from outside")(folding(closed=False))
 wrong("8.9", "takes a triangle without area")(folding(checked=False))
+edit("8.9", "leverage of c held between 0 and 1", "np.sum((b - c) * e) / squared",
+     "min(1.0, max(0.0, np.sum((b - c) * e) / squared))")
+edit("8.9", "leverage of d held between 0 and 1", "np.sum((b - d) * e) / squared",
+     "min(1.0, max(0.0, np.sum((b - d) * e) / squared))")
+edit("8.9", "taken into [−π, π)", "np.ceil((turn - np.pi) / (2.0 * np.pi))", "np.floor((turn + np.pi) / (2.0 * np.pi))")
+edit("8.9", "asks for the area of one triangle only", "squared_c == 0.0 or squared_d == 0.0", "squared_d == 0.0")
+edit("8.9", "refuses what is small", "squared_c == 0.0 or squared_d == 0.0", "squared_c < 1e-9 or squared_d < 1e-9")
 
 
 # 8.10 -----------------------------------------------------------------------------------------------------------
+@variants
 def ball(sign=1.0, n_sign=1.0, centred=True, scaled=True, safe=True):
     def ball_gap(x, obstacle):
         r = x - obstacle.centre if centred else x
@@ -267,7 +292,8 @@ def ball(sign=1.0, n_sign=1.0, centred=True, scaled=True, safe=True):
 
 
 right("8.10", "with norm")(ball())
-wrong("8.10", "a bowl")(ball(sign=-1.0, n_sign=-1.0))
+edit("8.10", "a bowl", "distance - obstacle.radius, r / distance", "obstacle.radius - distance, -r / distance")
+edit("8.10", "a middle of a micrometre", "distance > 0.0", "distance > 1e-6")
 wrong("8.10", "positive inside")(ball(sign=-1.0))
 wrong("8.10", "inwards")(ball(n_sign=-1.0))
 wrong("8.10", "around the origin")(ball(centred=False))
@@ -276,6 +302,7 @@ wrong("8.10", "divides by no distance")(ball(safe=False))
 
 
 # 8.11 -----------------------------------------------------------------------------------------------------------
+@variants
 def outside(asks=lambda phi: phi < 0.0, sign=-1.0, held=True, changes=False, share=1.0):
     def keep_outside(surface, x, inv_mass, obstacle):
         new = x if changes else x.copy()
@@ -295,9 +322,13 @@ wrong("8.11", "deeper")(outside(sign=1.0))
 wrong("8.11", "half of the way")(outside(share=0.5))
 wrong("8.11", "moves the immovable")(outside(held=False))
 wrong("8.11", "changes its input")(outside(changes=True))
+edit("8.11", "five centimetres are not inside", "phi < 0.0", "phi < -0.05")
+edit("8.11", "what is heavy moves less", "x[k] -= phi * n", "x[k] -= min(1.0, inv_mass[k]) * phi * n")
+edit("8.11", "all like the first", "surface(x[k], obstacle)", "surface(x[0], obstacle)")
 
 
 # 8.12 -----------------------------------------------------------------------------------------------------------
+@variants
 def giving(memory=1.0, scale=lambda alpha, dt: alpha / dt**2, sign=-1.0, below=1.0, checked=True, weighed=True, nan=True):
     def compliant_multiplier(C, Lam, weight, alpha, dt):
         if checked and (alpha < 0.0 or nan and alpha != alpha):
@@ -306,6 +337,8 @@ def giving(memory=1.0, scale=lambda alpha, dt: alpha / dt**2, sign=-1.0, below=1
             if weighed:
                 raise NO_WEIGHT
             return 0.0
+        if not dt > 0.0:
+            raise BadInput("step dt [s]", dt, "give a number above zero")
         soft = scale(alpha, dt)
         return (sign * C - memory * soft * Lam) / (weight + below * soft)
     return compliant_multiplier
@@ -318,11 +351,14 @@ wrong("8.12", "α dt²")(giving(scale=lambda alpha, dt: alpha * dt**2))
 wrong("8.12", "soft above, stiff below")(giving(below=0.0))
 wrong("8.12", "the wrong way")(giving(sign=1.0))
 wrong("8.12", "takes a negative compliance")(giving(checked=False))
+edit("8.12", "the error without its sign", "-C - scaled", "-abs(C) - scaled")
+edit("8.12", "takes a step backwards", "not dt > 0.0", "dt == 0.0 and C < 0.0")
 wrong("8.12", "takes NaN")(giving(nan=False))
 wrong("8.12", "takes a constraint with no free mass")(giving(weighed=False))
 
 
 # 8.13 -----------------------------------------------------------------------------------------------------------
+@variants
 def soft_sweep(adds=True, kept=True, jacobi=False, mass=True, sign=1.0, changes=False, checked=True, one_alpha=False, weight=1.0, stiffness=False):
     def compliant_sweep(x, Lam, dt, net):
         seen, new, total = x.copy(), (x if changes else x.copy()), (Lam if changes else Lam.copy())
@@ -355,9 +391,11 @@ wrong("8.13", "takes ends that coincide")(soft_sweep(checked=False))
 wrong("8.13", "one compliance for all")(soft_sweep(one_alpha=True))
 wrong("8.13", "PBD's stiffness on top")(soft_sweep(stiffness=True))
 wrong("8.13", "half of the weight")(soft_sweep(weight=0.5))
+edit("8.13", "a thread: never too short", "length - net.rest[s]", "max(0.0, length - net.rest[s])")
 
 
 # 8.14 -----------------------------------------------------------------------------------------------------------
+@variants
 def soft_step(anew=False, sweeps=lambda n: n, hard=False, speed=lambda new, x, v, dt: (new - x) / dt, begin=0.0):
     def xpbd_step(acceleration, t, x, v, dt, net):
         new, Lam = worked.predict(acceleration, t, x, v, dt, net), np.full(net.i.size, begin)
@@ -374,10 +412,12 @@ wrong("8.14", "Λ = 1 to begin with")(soft_step(begin=1.0))
 wrong("8.14", "PBD after all")(soft_step(hard=True))
 wrong("8.14", "no sweep")(soft_step(sweeps=lambda n: 0))
 wrong("8.14", "keeps the old velocity")(soft_step(speed=lambda new, x, v, dt: v))
+edit("8.14", "an immovable point is at rest", "(new - x) / dt", "(new - x) / dt * (net.inv_mass > 0.0)[:, None]")
 wrong("8.14", "half of the velocity")(soft_step(speed=lambda new, x, v, dt: 0.5 * (new - x) / dt))
 
 
 # 8.15 -----------------------------------------------------------------------------------------------------------
+@variants
 def readiness(turned=True, arm=np.cross, centre=1.0, moments=lambda I: 1.0 / I, back=False):
     def generalised_inverse_mass(q, r, n, m, I_body):
         turn = arm(r, n)
@@ -393,10 +433,12 @@ wrong("8.15", "turned the wrong way")(readiness(back=True))
 wrong("8.15", "does not move, only turns")(readiness(centre=0.0))
 wrong("8.15", "does not turn")(readiness(arm=lambda r, n: 0.0 * r))
 wrong("8.15", "the arm along n")(readiness(arm=lambda r, n: (r @ n) * n))
+edit("8.15", "right only for masses above 1 kg", "1.0 / m", "1.0 / max(m, 1.0)")
 wrong("8.15", "multiplies by the moments")(readiness(moments=lambda I: I))
 
 
 # 8.16 -----------------------------------------------------------------------------------------------------------
+@variants
 def pushed(mass=True, sign=1.0, turned=True, half=1.0, unit=True, moves=1.0):
     def push_body(x, q, r, p, m, I_body):
         arm = sign * np.cross(r, p)
@@ -412,10 +454,13 @@ wrong("8.16", "turns the other way")(pushed(sign=-1.0))
 wrong("8.16", "moments about the world's axes")(pushed(turned=False))
 wrong("8.16", "turns twice as far")(pushed(half=2.0))
 wrong("8.16", "a quaternion of another length")(pushed(unit=False))
+edit("8.16", "right only for masses above 1 kg", "p / m", "p / max(m, 1.0)")
+edit("8.16", "right only for masses below 1 kg", "p / m", "p / min(m, 1.0)")
 wrong("8.16", "turns only")(pushed(moves=0.0))
 
 
 # 8.17 -----------------------------------------------------------------------------------------------------------
+@variants
 def rate(order=False, scale=2.0, by_w=True, per_step=True, sign=1.0, back=True):
     def turning_rate(q_old, q_new, dt):
         turned_back = q_old * np.array([1.0, -1.0, -1.0, -1.0]) if back else q_old
@@ -434,6 +479,7 @@ wrong("8.17", "the product of both")(rate(back=False))
 
 
 # 8.18 -----------------------------------------------------------------------------------------------------------
+@variants
 def enclosed(share=6.0, order=(0, 1, 2), slope_share=6.0, sign=1.0, only_first=False):
     def volume_gradient(x, faces):
         corners = x[faces[:, list(order)]]
@@ -452,13 +498,6 @@ wrong("8.18", "inside out")(enclosed(order=(0, 2, 1)))
 wrong("8.18", "a third")(enclosed(share=3.0))
 wrong("8.18", "a third in the slope")(enclosed(slope_share=3.0))
 wrong("8.18", "the first corner only")(enclosed(only_first=True))
-
-
-@wrong("8.18", "counts a corner of several faces once")
-def volume_gradient(x, faces):
-    gradient = np.zeros_like(x)
-    a, b, c = (x[faces[:, k]] for k in range(3))
-    gradient[faces[:, 0]] += np.cross(b, c) / 6.0
-    gradient[faces[:, 1]] += np.cross(c, a) / 6.0
-    gradient[faces[:, 2]] += np.cross(a, b) / 6.0
-    return np.sum(a * np.cross(b, c)) / 6.0, gradient
+edit("8.18", "the volume without its sign", "return V, gradient", "return abs(V), gradient")
+edit("8.18", "no surface is inside-out", "return V, gradient", "return abs(V), np.sign(V) * gradient")
+edit("8.18", "the last face of a corner only", "gradient[faces[f, 0]] += across", "gradient[faces[f, 0]] = across")

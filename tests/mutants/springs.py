@@ -3,10 +3,10 @@
 import numpy as np
 
 from solutions import integrators, springs as worked
-from solutions.checks import BadInput, Diverged
-from . import collection
+from solutions.checks import BadInput, Diverged, check_positive
+from . import collection, variants
 
-wrong, right, MUTANTS = collection()
+wrong, right, edit, MUTANTS = collection(worked)
 
 
 # 2.1 ------------------------------------------------------------------------------------------------------------
@@ -29,7 +29,11 @@ def universal_gravity(x_a, x_b, m_a, m_b, G):
 @right("2.1", "magnitude times direction")
 def universal_gravity(x_a, x_b, m_a, m_b, G):
     distance = np.linalg.norm(x_b - x_a)
+    check_positive("distance of two bodies [m]", distance)
     return G * m_a * m_b / distance**2 * ((x_b - x_a) / distance)
+
+
+edit("2.1", "takes two bodies in one place", 'check_positive("distance of two bodies [m]", distance)', "pass")
 
 
 # 2.2 ------------------------------------------------------------------------------------------------------------
@@ -150,6 +154,7 @@ def short_way(theta, rest):
     return np.angle(np.exp(1j * (theta - rest)))
 
 
+@variants
 def angular_spring(angle=short_way, power=2, hinge=1.0, order=(0, 1, 2), checked=True):
     """The forces through complex numbers, with an angle, arm or hinge that may be wrong."""
     def angular_spring_forces(x_a, x_b, x_c, rest, k):
@@ -178,6 +183,7 @@ wrong("2.6", "silent about an arm without length")(angular_spring(checked=False)
 
 
 # 2.7 ------------------------------------------------------------------------------------------------------------
+@variants
 def by_matrices(tension=worked.spring_tension, add=np.add.at, other=1.0, unit=True, rate=None, checked=True):
     """All springs at once, with a tension, a sum or a far end that may be wrong."""
     def spring_forces(x, v, mesh):
@@ -243,6 +249,7 @@ def over_mass(force, inv_mass):
     return force * inv_mass
 
 
+@variants
 def newton(gravity=lambda g, inv_mass: g, air=over_mass, springs=over_mass, fixed=True):
     """a = g + F/m for all points at once, with terms that may be wrong."""
     def mesh_acceleration(t, x, v, mesh):
@@ -265,7 +272,8 @@ wrong("2.8", "springs the wrong way")(newton(springs=lambda f, inv_mass: -f * in
 
 
 # 2.9 ------------------------------------------------------------------------------------------------------------
-def loop(step):
+@variants
+def loop(step=integrators.average_velocity_step):
     """The system moved by some step of lesson 1."""
     def mass_spring_damper_step(t, x, v, dt, mesh):
         return step(worked.mesh_acceleration, t, x, v, dt, mesh)
@@ -297,6 +305,7 @@ def inside(r, c, rows, cols):
     return 0 <= r < rows and 0 <= c < cols
 
 
+@variants
 def numbering(number=lambda r, c, rows, cols: r * cols + c, exists=inside, row=lambda i, j: [i, j], kind=int, empty=True, turned=False):
     """Pairs of a grid with a number or an edge that may be wrong."""
     def grid_pairs(rows, cols, offsets):
@@ -325,6 +334,7 @@ wrong("2.10", "nodes outside, offsets inside")(numbering(turned=True))
 
 
 # 2.11 -----------------------------------------------------------------------------------------------------------
+@variants
 def blocks(sideways=lambda stretch: max(0.0, stretch), along=1.0, damper=lambda k_d, nn: k_d * nn, sign=1.0):
     """K and D by outer products, with parts that may be wrong."""
     def spring_stiffness(x, mesh):
@@ -349,6 +359,7 @@ wrong("2.11", "derivative of F without the minus")(blocks(sign=-1.0))
 
 
 # 2.12 -----------------------------------------------------------------------------------------------------------
+@variants
 def descent(conjugate=True, tolerance=1e-10, rounds=10, start=0.0, silent=False, copied=True, zero=True):
     """Conjugate gradients with the conjugacy written out, β = −(r·Ap)/(p·Ap), and with parts that may be wrong."""
     def conjugate_gradients(apply, A, right):
@@ -408,6 +419,7 @@ def conjugate_gradients(apply, A, right):
 
 
 # 2.13 -----------------------------------------------------------------------------------------------------------
+@variants
 def large_step(ahead=1.0, damping=1.0, viscosity=1.0, stiffness=1.0, old=False, late=0.0, held=True, massive=True):
     """Linearly implicit Euler as one dense system, with terms that may be wrong."""
     def implicit_mesh_step(acceleration, t, x, v, dt, mesh):

@@ -1,45 +1,59 @@
 """Write the report: one folder of static pages that need no network, and the same content as JSON."""
 
 import json
-import shutil
-from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import get_context
 from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, select_autoescape
 
 from ..binding import bind_scene
+from ..store import whole
 from . import plots, space, words
 
 HERE = Path(__file__).parent
 
 
-def write(out, results, stability, plan, jobs, bars):
-    """Pages, pictures and report.json in a folder; the path of the front page."""
+def pictures(results, stability):
+    """(plot, file, data, the scene or lesson that it is of) of every still picture."""
+    refined = [r for r in results if r["still"] != ""]
+    return [*((plots.convergence, f"{r['scene']}-steps.svg", r, r["scene"]) for r in refined),
+            *((plots.work_precision, f"{r['scene']}-times.svg", r, r["scene"]) for r in refined),
+            *((plots.stability, f"stability-{case['number']}.svg", case, case["lesson"]) for case in stability if case["picture"])]
+
+
+def copied(results):
+    """Files that come with the pages as they are."""
+    return ("style.css", "player.js", *(["player3d.js"] if any(r["picture"]["space"] for r in results) else []))
+
+
+def files(results, stability):
+    """The names of all files of a report."""
+    return {"index.html", "report.json", *(["stability.html"] if stability else []), *copied(results), *(f"{r['scene']}.html" for r in results),
+            *(name for _, name, _, _ in pictures(results, stability))}
+
+
+def write(out, results, stability, plan, pool, bars, measured):
+    """Pages, pictures and report.json in a folder; the path of the front page.  measured(scene or lesson) → when that was [ns]: newer pictures stay."""
     pages = Environment(loader=PackageLoader("validate", "report"), autoescape=select_autoescape(), trim_blocks=True, lstrip_blocks=True)
     pages.filters.update(seconds=words.seconds, number=words.number, percent=words.percent, factor=words.factor, order=words.order)
     pages.tests["reaches"] = lambda row: any(t is not None for t in row.values())
     pages.globals.update(run=words.run(plan), playable=plots.playable, verdict=words.verdict, judge=words.judge, arrow_colours=space.ARROWS)
 
-    refined = [r for r in results if r["still"] != ""]
-    pictures = [(plots.convergence, out / f"{r['scene']}-steps.svg", r) for r in refined]
-    pictures += [(plots.work_precision, out / f"{r['scene']}-times.svg", r) for r in refined]
-    pictures += [(plots.stability, out / f"stability-{case['number']}.svg", case) for case in stability]
-    bar = bars.add_task("report", total=len(pictures) + 1)
-    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn"), initializer=plots.style) as pool:
-        for _ in pool.map(plots.draw, *zip(*pictures)):
-            bars.advance(bar)
+    calls = {name: (plots.draw, plot, out / name, data) for plot, name, data, of in pictures(results, stability)
+             if not (out / name).is_file() or (out / name).stat().st_mtime_ns <= measured(of)}
+    bar = bars.add_task("report", total=len(calls) + 1)
+    for _ in pool.each(calls):
+        bars.advance(bar)
 
-    for result in results:
-        page = pages.get_template("scene.html").render(r=result, parameters=words.parameters(bind_scene(result["scene"])),
-                                                       findings=words.findings(result), others=results,
-                                                       cases=[c for c in stability if c["lesson"] == result["lesson"]])
-        (out / f"{result['scene']}.html").write_text(page)
-    (out / "stability.html").write_text(pages.get_template("stability.html").render(cases=stability))
-    front = out / "index.html"
-    front.write_text(pages.get_template("front.html").render(rows=[words.row(r) for r in results], cases=stability, results=results))
-    (out / "report.json").write_text(json.dumps({"run": words.run(plan), "scenes": results, "stability": stability}, ensure_ascii=False, indent=1))
-    for name in ("style.css", "player.js", *(["player3d.js"] if any(r["picture"]["space"] for r in results) else [])):
-        shutil.copyfile(HERE / name, out / name)
+    texts = {f"{r['scene']}.html": pages.get_template("scene.html").render(
+        r=r, parameters=words.parameters(bind_scene(r["scene"])), findings=words.findings(r), others=results,
+        cases=[c for c in stability if c["lesson"] == r["lesson"]]) for r in results}
+    if stability:
+        texts["stability.html"] = pages.get_template("stability.html").render(cases=stability)
+    texts["index.html"] = pages.get_template("front.html").render(rows=[words.row(r) for r in results], cases=stability, results=results)
+    texts["report.json"] = json.dumps({"run": words.run(plan), "scenes": results, "stability": stability}, ensure_ascii=False, indent=1)
+    texts |= {name: (HERE / name).read_text(encoding="utf-8") for name in copied(results)}
+    for name, text in texts.items():
+        with whole(out / name) as draft:
+            draft.write_bytes(text.encode())
     bars.advance(bar)
-    return front
+    return out / "index.html"

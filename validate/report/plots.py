@@ -1,11 +1,13 @@
 """The still pictures.  Colours: Okabe and Ito 2008, told apart by colour-blind readers; every curve has a marker too."""
 
 import re
+import warnings
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
+from ..store import whole
 from .words import judge
 
 LOOKS = {                       # label: colour, marker
@@ -145,7 +147,10 @@ def show(plot, result):
 def draw(plot, path, data):
     """Draw one of the plots into a file, without a screen."""
     plt.switch_backend("svg")
-    plot(path, data)
+    style()
+    with whole(path) as draft, warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore")                              # of a diagram in which every run was lost
+        plot(draft, data)
 
 
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -178,7 +183,7 @@ def _finish(figure, axes, path, title):
     if path is None:
         plt.show()
         return
-    figure.savefig(path, metadata={"Date": None})
+    figure.savefig(path, format="svg", metadata={"Date": None})
     plt.close(figure)
 
 

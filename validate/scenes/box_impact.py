@@ -73,7 +73,8 @@ def start(p):
 
 def run(step, acceleration, state, p, dt, steps):
     body, r, n, mu = state
-    return step(body, r, n, p.e, mu), r, n, mu
+    after, _ = step(body, r, n, p.e, mu)
+    return after, r, n, mu
 
 
 def observe(state, p):

@@ -126,4 +126,4 @@ def published():
 
 NEEDS = ("one ball", "one force at one point", "the lecture's loop")
 LEAVES_OUT = {"detection of the contact": "the ball starts on the floor and stays there; lesson 6 finds contacts",
-              "a support that may be wrong": "N = mg cos β, because nothing moves up or down; lesson 9 solves for it"}
+              "a force of the support that is solved for": "N = mg cos β, because nothing moves up or down"}

@@ -1,0 +1,54 @@
+"""Geometry by brute force: slow, simple, and without a line of the lessons."""
+
+import numpy as np
+from scipy.optimize import nnls
+from scipy.spatial import ConvexHull
+
+
+def differences(a, b):
+    """All a_i − b_j (k m, d): two bodies touch where their hull holds 0."""
+    return (a[:, None] - b[None]).reshape(-1, a.shape[1])
+
+
+def nearest_to_zero(y):
+    """The point (d,) of the hull of y (k, d) that is nearest to 0.
+
+    Least squares of Σ λ y = 0 and Σ λ = 1 with λ = s μ ≥ 0, Σ μ = 1, leave s²|Σ μ y|² + (1 − s)².  The least of it over s is |Σ μ y|²/(1 + |Σ μ y|²),
+    and it grows with |Σ μ y|: the μ are those of the nearest point.
+    """
+    size = np.abs(y).max() or 1.0
+    weights, _ = nnls(np.vstack((y.T / size, np.ones(len(y)))), np.append(np.zeros(y.shape[1]), 1.0))
+    return weights @ y / weights.sum()
+
+
+def distance(a, b):
+    """Distance [m] of the hulls of a (k, d) and b (m, d); 0 where they overlap."""
+    return float(np.linalg.norm(nearest_to_zero(differences(a, b))))
+
+
+def facets(y):
+    """(normals (f, d), offsets (f,)) of the hull of y (k, d): inside it normal · p + offset ≤ 0."""
+    equations = ConvexHull(y).equations
+    return equations[:, :-1], equations[:, -1]
+
+
+def outline(points):
+    """The corners of the hull of points (k, 2), counter-clockwise."""
+    return np.ascontiguousarray(points[ConvexHull(points).vertices])
+
+
+def area(y):
+    """Area [m²] of a polygon (k, 2), counter-clockwise."""
+    return 0.5 * float(np.sum(y[:, 0] * np.roll(y[:, 1], -1) - y[:, 1] * np.roll(y[:, 0], -1))) if len(y) else 0.0
+
+
+def solid(points):
+    """(corners (k, 3), faces (f, 3)) of the hull of points, the faces counter-clockwise as seen from outside."""
+    hull = ConvexHull(points)
+    number = np.full(len(points), -1)
+    number[hull.vertices] = np.arange(len(hull.vertices))
+    faces, x = number[hull.simplices], points[hull.vertices]
+    a, b, c = x[faces[:, 0]], x[faces[:, 1]], x[faces[:, 2]]
+    inwards = np.sum(np.cross(b - a, c - a) * hull.equations[:, :3], axis=1) < 0.0
+    faces[inwards] = faces[inwards, ::-1]
+    return np.ascontiguousarray(x), np.ascontiguousarray(faces, dtype=np.int64)
