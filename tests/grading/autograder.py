@@ -14,7 +14,8 @@ from typing import Annotated, Optional
 import typer
 
 from solutions.checks import BadInput
-from validate.__main__ import writable, write_whole
+from validate.__main__ import writable
+from validate.store import write_whole
 from validate.binding import ROOT
 
 from . import children, marking, pages, points, sandbox, submissions
