@@ -4,6 +4,7 @@ import contextlib
 import json
 import os
 import re
+import resource
 import shutil
 import socket
 import stat
@@ -20,7 +21,7 @@ import pytest
 from validate.binding import ROOT
 
 from .attacks import ATTACKS, HONEST, SOLVED
-from .grading import box, marking, plugin, points, remote, submissions
+from .grading import box, children, marking, plugin, points, remote, sandbox, submissions
 
 SEED = "a secret"
 PATIENCE = 1.0               # of a test in the sandbox, in place of BOX_LIMIT [s]
@@ -31,8 +32,8 @@ MARK = f"ATTACKED_{os.getpid()}"
 
 
 @pytest.fixture(scope="session", autouse=True)
-def sandbox():
-    box.sandbox_for_tests(pytest.skip, pytest.fail)
+def _sandbox():
+    sandbox.for_tests(pytest.skip, pytest.fail)
 
 
 @pytest.fixture(scope="session")
@@ -54,7 +55,7 @@ def trial(folder, settings, monkeypatch, tmp_path_factory):
     monkeypatch.setattr(plugin, "BOX_LIMIT", PATIENCE)
     monkeypatch.setattr(box, "IMPORT_WITHIN", 3.0 * PATIENCE)
     monkeypatch.setattr(marking, "BUDGET", BUDGET)
-    monkeypatch.setitem(box.ENVIRONMENT, MARK, "1")
+    monkeypatch.setitem(sandbox.ENVIRONMENT, MARK, "1")
     monkeypatch.setenv("TOKEN", "TOKEN-OF-THE-GRADER")
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path_factory.mktemp("boxes")))
 
@@ -208,7 +209,6 @@ def test_the_worked_functions_of_earlier_lessons_are_no_hole(name, body, trial, 
 
 
 def test_the_grading_process_has_its_memory_and_its_limits_back(trial, settings):
-    import resource
     before = resource.getrlimit(resource.RLIMIT_AS)
     result = graded(written(next(case for case in ATTACKS if case.name == "broadcasting")), settings)
     assert "MemoryError" in json.dumps([test for test in result["tests"] if test["exercise"] == "1.7"])
@@ -218,7 +218,7 @@ def test_the_grading_process_has_its_memory_and_its_limits_back(trial, settings)
 def test_a_sandbox_that_does_not_start_is_no_zero(trial, settings, monkeypatch):
     start = box.Box.start
     monkeypatch.setattr(box, "READY_WITHIN", 0.5)
-    monkeypatch.setattr(box.Box, "start", lambda self: (setattr(self, "command", ["sleep", "60"]) if self.printed else None, start(self)))
+    monkeypatch.setattr(box.Box, "start", lambda self: (setattr(self, "program", ["/bin/sleep", "60"]) if self.printed else None, start(self)))
     with pytest.raises(RuntimeError, match="cannot start"), nothing_left():
         text = HONEST + "import os\nprint('loaded', flush=True)\ndef euler_step(*a):\n    os._exit(0)\n"
         marking.mark(submissions.Submission("unlucky", {"integrators": text.encode()}, (), ""), settings["integrators"])
@@ -236,9 +236,8 @@ def zipped(path, entries, packed=zipfile.ZIP_DEFLATED):
 
 
 def read(path, lessons=("integrators", "springs")):
-    began = time.monotonic()
-    one = submissions.read(path, path.stem, lessons)
-    assert time.monotonic() - began < 5.0
+    with children.reader() as child:
+        one = submissions.read(path, path.stem, lessons, child)
     assert not any(FORBIDDEN.search(problem) for problem in one.problems)
     return one
 
@@ -371,11 +370,51 @@ def evil_entries(path):
     zipped(path, {"\x1b]0;owned\x07\u202e/integrators.py": bytes(1 << 20), "\x1b[2J/\r\n/integrators.py": LESSON * 100_000, "springs.py": LESSON})
 
 
-@pytest.mark.parametrize("make", [encrypted, broken_stream, bomb, nested, slip, link_inside, evil_entries])
+def packed_by(method):
+    def make(path):
+        """Hundreds of megabytes in a kilobyte, of which Python unpacks all at once, however little is asked for."""
+        with zipfile.ZipFile(path, "w") as archive:
+            archive.writestr("springs.py", LESSON)
+            with archive.open(zipped_entry("integrators.py", method), "w", force_zip64=True) as file:
+                for _ in range(6):
+                    file.write(bytes(50 << 20))
+    return make
+
+
+def zipped_entry(name, method):
+    entry = zipfile.ZipInfo(name)
+    entry.compress_type = method
+    return entry
+
+
+def nul_in_a_name(path):
+    """integrators.py for Python, and a picture for whoever looks at the whole name."""
+    data = zipped(path, {"integrators.py+.png": LESSON, "springs.py": LESSON}, zipfile.ZIP_STORED).read_bytes()
+    path.write_bytes(data.replace(b"integrators.py+.png", b"integrators.py\0.png"))
+
+
+def lies_about_its_size(path):
+    """Two bytes by its header, and a megabyte in truth."""
+    data = bytearray(zipped(path, {"integrators.py": bytes(1 << 20), "springs.py": LESSON}).read_bytes())
+    for at in (22, data.index(b"PK\x01\x02") + 24):
+        data[at:at + 4] = struct.pack("<I", 2)
+    path.write_bytes(data)
+
+
+@pytest.mark.parametrize("make", [encrypted, broken_stream, bomb, nested, slip, link_inside, evil_entries, nul_in_a_name, lies_about_its_size])
 def test_tricks_with_zips_leave_the_other_file_readable(make, tmp_path):
     make(tmp_path / "mallory.zip")
-    assert read(tmp_path / "mallory.zip").files == {"springs": LESSON}
+    one = read(tmp_path / "mallory.zip")
+    assert one.files == {"springs": LESSON} and (one.problems or make in (nested, slip))
     assert {path.name for path in tmp_path.iterdir()} <= {"mallory.zip", "inner.zip"}
+
+
+@pytest.mark.parametrize("method, word", [(zipfile.ZIP_BZIP2, "bzip2"), (zipfile.ZIP_LZMA, "lzma")])
+def test_nothing_is_unpacked_that_takes_gigabytes_for_a_kilobyte(method, word, tmp_path):
+    packed_by(method)(tmp_path / "mallory.zip")
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss        # [KiB]
+    assert read(tmp_path / "mallory.zip").problems == (f"integrators.py is packed by {word} and not by deflate, as an ordinary zip is, and was not read",)
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 200_000
 
 
 def many(path):
@@ -403,6 +442,45 @@ def test_a_zip_that_cannot_be_read_is_a_sentence(make, tmp_path):
     make(tmp_path / "mallory.zip")
     one = read(tmp_path / "mallory.zip")
     assert not one.files and len(one.problems) == 1
+
+
+def endless_names(path):
+    """As long as names can be, in a zip that is as large as it may be: each would be told as a problem."""
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_BZIP2) as archive:
+        for n in range(200):
+            archive.writestr(f"{n}{'x' * 65_000}/integrators.py", b"")
+
+
+def test_what_is_told_about_a_zip_is_short(tmp_path):
+    endless_names(tmp_path / "mallory.zip")
+    one = read(tmp_path / "mallory.zip")
+    assert len(one.problems) == submissions.MOST_PROBLEMS + 1 and one.problems[-1] == "and 180 more of the kind"
+    assert max(map(len, one.problems)) < 2 * submissions.LONGEST
+
+
+def many_tasks(kind):
+    while kind == "time":
+        pass
+    return bytearray(2 * children.LITTLE) if kind == "memory" else os._exit(1)
+
+
+def test_a_reader_of_archives_has_little_memory_and_time_and_is_replaced_when_it_ends():
+    with children.reader() as child:
+        with pytest.raises(MemoryError):
+            child(many_tasks, "memory")
+        with pytest.raises(children.Ended):
+            child(many_tasks, "end")
+        assert child(os.getpid) not in (child(os.getppid), os.getpid())
+        with pytest.raises(TimeoutError):
+            child(slow)
+        with pytest.raises(TimeoutError):
+            child(any, iter(int, 1), patience=1.0)                     # a loop that no signal and no thread of its own can end
+        assert child(os.getpid) != os.getpid()
+
+
+def slow():
+    children.WITHIN = 0.2
+    return children.timed(many_tasks, "time")
 
 
 def test_hostile_names_do_not_stop_a_class(tmp_path):

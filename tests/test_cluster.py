@@ -169,7 +169,7 @@ def test_a_workbook_elsewhere_is_accepted_and_one_that_differs_is_refused(tmp_pa
 
 
 def test_a_worker_that_is_refused_when_a_submission_reaches_it_ends_the_run(settings):
-    theirs = pickle.dumps((small_class()[1], settings, cluster.makeup("another digest")))
+    theirs = pickle.dumps((small_class()[1], settings, cluster.makeup("another digest"), {}, None))
     unfit, result, why = cluster.asked(theirs)
     assert "instead of another digest" in unfit and result is None and not why
     for arrived in (unfit, result, why), ModuleNotFoundError("No module named 'tests'"):
@@ -192,7 +192,7 @@ class Done:
 def test_a_grading_process_that_breaks_is_an_error_of_the_grader(settings):
     assert cluster.fetched(Done(RuntimeError("a worker\ndied"))) == (None, "RuntimeError: a worker died")
     with pytest.raises(RuntimeError, match="ended unexpectedly .*TypeError"):
-        cluster.asked(pickle.dumps((None, settings, None)))
+        cluster.asked(pickle.dumps((None, settings, None, {}, None)))
 
 
 def test_what_is_no_cluster_is_told_in_one_sentence(tmp_path, settings, monkeypatch):

@@ -6,18 +6,19 @@ import os
 import shutil
 import subprocess
 import sys
+import tempfile
 import time
 
 import pytest
 
 from validate import binding
 
-from .grading import box, example, points, remote
+from .grading import example, points, remote, sandbox
 
 
 @pytest.fixture(scope="module", autouse=True)
-def sandbox():
-    box.sandbox_for_tests(pytest.skip, pytest.fail)
+def _sandbox():
+    sandbox.for_tests(pytest.skip, pytest.fail)
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +45,7 @@ def graded(submissions, out, *more):
     run = subprocess.run([sys.executable, "-m", "tests.grading", str(submissions), "--out", str(out), "--lesson", "integrators",
                           "--seed", "a secret", *more], cwd=binding.ROOT, capture_output=True, text=True)
     assert run.returncode == 0, run.stdout + run.stderr
-    with open(out / "grades.csv", newline="") as file:
+    with open(os.path.join(out, "grades.csv"), newline="") as file:
         return {row["student_id"]: row for row in csv.DictReader(file)}
 
 
@@ -97,18 +98,44 @@ def test_an_interrupted_run_keeps_what_it_has_and_goes_on_from_there(top, tmp_pa
     assert len(rows) == 3 and all((results / name).stat().st_mtime_ns == when for name, when in kept.items())
 
 
+SPY = """
+import os, sys
+for here, _, names in os.walk(sys.prefix):
+    for name in names:
+        if name in ("seed.txt", "grades.csv", "ada.json") or "{0}" in here and name.endswith((".py", ".zip")):
+            print("FOUND", here, name)
+print("LOOKED")
+"""
+
+
+def test_a_class_below_the_environment_is_not_read_by_its_students(top):
+    """As in an image that has everything below /usr: answers, seed and other students' files may not come along with Python's own."""
+    with tempfile.TemporaryDirectory(dir=os.path.join(sys.prefix, "lib")) as place:
+        os.chmod(place, 0o755)
+        spy = os.path.join(place, "class", "spy")
+        os.makedirs(spy)
+        shutil.copytree(top / "class" / "bob", os.path.join(place, "class", "bob"))
+        with open(os.path.join(spy, "integrators.py"), "w") as file:
+            file.write(SPY.replace("{0}", os.path.basename(place)))
+        graded(os.path.join(place, "class"), os.path.join(place, "out"))
+        with open(os.path.join(place, "out", "results", "spy.json")) as file:
+            printed = json.load(file)["printed"]["integrators"]
+    assert "LOOKED" in printed and "FOUND" not in printed
+
+
 @pytest.mark.parametrize("arguments, names", [
     (["no/such/folder"], "no/such/folder"),
     (["{empty}"], "put one folder or zip a student into it"),
     (["{class}", "--lesson", "juggling"], "juggling"),
     (["{class}", "--due", "tomorrow"], "2026-11-30T23:59"),
     (["{class}", "--roster", "{list}"], "student_id"),
+    (["{class}", "--out", sys.prefix], "every student's program can read"),
 ])
 def test_bad_input_is_one_sentence_and_exit_code_2(top, tmp_path, arguments, names):
     (tmp_path / "empty").mkdir()
     (tmp_path / "list.csv").write_text("name\nAda\n")
     filled = [a.format(empty=tmp_path / "empty", list=tmp_path / "list.csv", **{"class": top / "class"}) for a in arguments]
-    run = subprocess.run([sys.executable, "-m", "tests.grading", *filled, "--out", str(tmp_path / "out")], cwd=binding.ROOT,
+    run = subprocess.run([sys.executable, "-m", "tests.grading", *(["--out", str(tmp_path / "out")] if "--out" not in filled else []), *filled], cwd=binding.ROOT,
                          capture_output=True, text=True)
     assert run.returncode == 2 and names in run.stderr and len(run.stderr.strip().splitlines()) == 1
     assert not (tmp_path / "out" / "grades.csv").exists()

@@ -15,7 +15,7 @@ from validate import binding, loading, notebook
 from validate.binding import ROOT, SOLUTIONS, lesson_names
 from validate.generate import stub
 
-from .grading import box, example, marking
+from .grading import example, marking, sandbox
 from .kernels import kernel, ran
 
 pytestmark = pytest.mark.xdist_group("notebooks")        # one kernel at a time, see test_notebooks
@@ -225,7 +225,7 @@ def test_validate_ends_in_one_sentence(tmp_path, kind):
 
 @pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "an error without words"])   # it ends the worker
 def test_the_grader_says_the_same_and_gives_no_points(kind):
-    box.sandbox_for_tests(pytest.skip, pytest.fail)
+    sandbox.for_tests(pytest.skip, pytest.fail)
     broken = KINDS[kind]
     text = broken.text if isinstance(broken.text, bytes) else broken.text.encode()
     outcomes = [outcome for _, outcome in marking.mark_lesson("integrators", text, "a secret")[0]]

@@ -34,22 +34,30 @@ class TooLong(BaseException):
 
 
 @contextlib.contextmanager
-def alarm(seconds):
-    """Raise TooLong after so many seconds; only in a main thread, and where the system has an alarm clock."""
+def alarm(seconds, error=TooLong, own=False):
+    """Raise that error after so long, even inside a loop.  Only in a main thread, and where the system has an alarm clock; an alarm around
+    this one goes on.
+
+    own: count only the time that this process spends on the processor, whatever else the machine does.
+    """
     if not hasattr(signal, "setitimer") or threading.current_thread() is not threading.main_thread():
         yield
         return
+    wall = signal.ITIMER_REAL, signal.SIGALRM, time.monotonic
+    clock, number, now = (signal.ITIMER_PROF, signal.SIGPROF, time.process_time) if own else wall
 
-    def ring(*_):
-        raise TooLong(f"still running after {seconds:g} s")
-    began, before = time.monotonic(), signal.signal(signal.SIGALRM, ring)
-    left, _ = signal.setitimer(signal.ITIMER_REAL, seconds)
+    def ring(*arguments):
+        if 0.0 < left < seconds:                                     # it was the outer alarm's time
+            around(*arguments)
+        raise error(f"still running after {seconds:g} s")
+    left, began = signal.getitimer(clock)[0], now()
+    around = signal.signal(number, ring)
+    signal.setitimer(clock, max(0.01, min(seconds, left or seconds)))
     try:
         yield
-    finally:                                                         # an alarm around this one goes on
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
-        signal.signal(signal.SIGALRM, before)
-        signal.setitimer(signal.ITIMER_REAL, max(1e-3, left - (time.monotonic() - began)) if left else 0.0)
+    finally:
+        signal.setitimer(clock, max(0.01, left - (now() - began)) if left else 0.0)
+        signal.signal(number, around)
 
 
 # ---------------------------------------------------------------------------------------------- what is said

@@ -111,14 +111,11 @@ def euler_step(acceleration, t, x, v, dt, p):
                 pass
     return x, v
 """)
-looks("tracing", """
+looks("memory of the others", """
 # to read the expected values in the parent's memory
-import ctypes, os
-libc = ctypes.CDLL(None)
-for pid in [os.getppid(), *range(1, 200)]:
+import os
+for pid in range(1, 200):
     if pid != os.getpid():
-        if libc.ptrace(16, pid, None, None) == 0:
-            print("FOUND a process to trace:", pid)
         try:
             open(f"/proc/{pid}/mem", "rb").read(1)
             print("FOUND memory of", pid)
@@ -126,9 +123,8 @@ for pid in [os.getppid(), *range(1, 200)]:
             pass
 """)
 looks("higher limits", """
-# time, memory and processes without end; another user, another root
-import ctypes, os, resource
-libc = ctypes.CDLL(None)
+# time, memory and processes without end
+import resource
 for limit in (resource.RLIMIT_AS, resource.RLIMIT_CPU, resource.RLIMIT_NPROC, resource.RLIMIT_FSIZE, resource.RLIMIT_NOFILE):
     before = resource.getrlimit(limit)
     try:
@@ -136,11 +132,6 @@ for limit in (resource.RLIMIT_AS, resource.RLIMIT_CPU, resource.RLIMIT_NPROC, re
         print("FOUND a limit to raise:", limit)
     except (ValueError, OSError):
         pass
-for flag in (0x10000000, 0x00020000, 0x40000000):                  # new user, mount and network namespaces
-    if libc.unshare(flag) == 0:
-        print("FOUND a namespace to make:", hex(flag))
-if libc.mount(b"none", b"/tmp", b"tmpfs", 0, None) == 0 or os.getuid() == 0 and libc.setuid(1) == 0 and libc.mount(b"none", b"/box", b"tmpfs", 0, None) == 0:
-    print("FOUND a way to mount")
 """)
 looks("the network", """
 # a friend answers, or is told the inputs
@@ -151,9 +142,9 @@ for family, place in ((socket.AF_INET, ("1.1.1.1", 53)), (socket.AF_INET, ("10.0
         s.settimeout(0.2)
         s.connect(place)
         print("FOUND a connection:", place)
+        s.close()
     except OSError:
         pass
-    s.close()
 try:
     socket.setdefaulttimeout(0.2)
     print("FOUND a name:", socket.gethostbyname("example.org"))

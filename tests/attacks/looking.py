@@ -55,7 +55,7 @@ for pattern in ("__editable__*", "physics_animation_workbook*/**", "solutions/*"
 looks("/proc of the others", """
 # the parent's environment and command line hold the seed
 import os
-for pid in filter(str.isdigit, os.listdir("/proc")):
+for pid in filter(str.isdigit, os.listdir("/proc") if os.path.isdir("/proc") else ()):
     for name in ("environ", "cmdline", "maps", "cwd", "root", "fd"):
         place = f"/proc/{pid}/{name}"
         try:
@@ -75,7 +75,7 @@ for number in range(0, 256):
     except OSError:
         continue
     if stat.S_ISREG(about.st_mode) or stat.S_ISDIR(about.st_mode) or stat.S_ISSOCK(about.st_mode):
-        print("FOUND", number, os.readlink(f"/proc/self/fd/{number}"))
+        print("FOUND", number, about)
 """)
 attack("gc", "the expected values are somewhere among the objects", """
 import gc

@@ -18,7 +18,7 @@ from validate.__main__ import writable
 from validate.processes import alone_in, one_sentence
 from validate.store import whole, write_whole
 
-from . import box, local, marking, pages, submissions
+from . import local, marking, pages, sandbox, submissions
 
 console = Console()
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
@@ -40,6 +40,7 @@ def grade(
     terms = pages.Terms(deadline(due), late)
     people = submissions.roster(roster) if roster else {}
     handed_in = submissions.read_all(class_, lessons)
+    sandbox.keep_out({class_: "submissions", out: "output folder", **({roster: "class list"} if roster else {})})
     with alone_in(writable(out)):
         settings = marking.settings(lessons, secret(out, seed))
         raise typer.Exit(run(handed_in, settings, people, terms, jobs, executor, out))
@@ -81,8 +82,8 @@ def secret(folder, seed):
 
 def run(handed_in, settings, people, terms, jobs, executor, out):
     """Grade what is not graded yet, write every file, and say how it went: 0, or 1 when the grader failed on a submission."""
-    if box.no_sandbox_because():
-        console.print(f"NOT A GRADE: {box.no_sandbox_because()}. Students' code runs without a sandbox; use this to check yourself only.", style="bold red")
+    if sandbox.unavailable():
+        console.print(f"NOT A GRADE: {sandbox.unavailable()}. Students' code runs without a sandbox; use this to check yourself only.", style="bold red")
     kept = out / "results"
     kept.mkdir(exist_ok=True)
     results, todo, failed = {}, [], {}

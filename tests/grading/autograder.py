@@ -18,7 +18,7 @@ from validate.__main__ import writable
 from validate.store import write_whole
 from validate.binding import ROOT
 
-from . import marking, pages, points, submissions
+from . import children, marking, pages, points, sandbox, submissions
 from .__main__ import chosen
 from .release import tracked
 
@@ -37,7 +37,7 @@ set -euo pipefail
 source=${AUTOGRADER:-/autograder}/source
 export DEBIAN_FRONTEND=noninteractive
 apt-get update
-apt-get install -y bubblewrap
+apt-get install -y bubblewrap libseccomp2
 apt-get install -y python3.11 python3.11-venv || apt-get install -y python3 python3-venv     # not every Ubuntu has 3.11
 python=$(command -v python3.11 || command -v python3)
 "$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "Python 3.11 or newer is needed: choose a newer Ubuntu" >&2; exit 1; }
@@ -102,6 +102,7 @@ def run(
     metadata: Annotated[Optional[Path], typer.Option(help="Gradescope's submission_metadata.json.")] = None,
 ):
     try:
+        sandbox.keep_out({submission: "submission", results.absolute().parent: "folder of results", course: "course"})
         found = graded(submission, json.loads(course.read_text()), told(metadata))
     except Exception as e:                        # without a score Gradescope says that the autograder failed; a zero would be the student's
         traceback.print_exc()                     # for instructors only: it may name hidden inputs
@@ -114,11 +115,15 @@ def graded(folder, course, metadata):
     """What Gradescope gets to read.  Handed in and due are as Gradescope says, where it does."""
     settings = marking.settings(tuple(course["lessons"]), course["seed"])
     users, assignment = metadata.get("users") or [{}], metadata.get("assignment") or {}
-    submission = submissions.read(folder, users[0].get("email") or "submission", settings.lessons)
+    with children.reader() as child:
+        submission = submissions.read(folder, users[0].get("email") or "submission", settings.lessons, child)
     if when := moment(metadata.get("created_at")):
         submission = submission._replace(timestamp=when)
     due = moment((users[0].get("assignment") or {}).get("due_date") or assignment.get("due_date"))      # one's own, where it was extended
-    return pages.gradescope(marking.mark(submission, settings), settings, pages.Terms(due, course["late"]))
+    result = marking.mark(submission, settings)
+    if result["again"]:
+        result = marking.again(submission, settings, result)
+    return pages.gradescope(result, settings, pages.Terms(due, course["late"]))
 
 
 def told(metadata):

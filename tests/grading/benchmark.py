@@ -17,7 +17,7 @@ from rich.console import Console
 from tests import attacks
 from validate import binding
 
-from . import box, example, local, marking, submissions
+from . import example, local, marking, sandbox, submissions
 
 CLASS, HOSTILE, JOBS, SAMPLE = 200, 20, 2, 8
 LESSONS = ("integrators", "springs")
@@ -48,8 +48,8 @@ def plain(path):
 
 
 def main():
-    if box.no_sandbox_because():
-        console.print(f"There is nothing to measure: {box.no_sandbox_because()}.")
+    if sandbox.unavailable():
+        console.print(f"There is nothing to measure: {sandbox.unavailable()}.")
         return 2
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)

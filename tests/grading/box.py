@@ -1,16 +1,14 @@
-"""The sandbox: one worker process with one student's file, to which the trusted parent talks in plain data only.
+"""One worker process with one student's file, to which the trusted parent talks in plain data only.
 
-On Linux the worker lives in bubblewrap: it sees Python, NumPy, the file and the lessons as handed out, all read-only; no network, no
-other process, no solutions, no tests.  Elsewhere it is a process with nothing around it, and what comes of it is no grade.
+On Linux the worker lives in the sandbox, and sees Python, NumPy, the file and the lessons as handed out.  Elsewhere it is a process with nothing around it,
+and what comes of it is no grade.
 """
 
 import contextlib
-import glob
 import json
 import os
 import queue
 import re
-import secrets
 import shutil
 import signal
 import subprocess
@@ -18,22 +16,22 @@ import sys
 import tempfile
 import threading
 import time
-from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 
 from solutions.checks import BadInput, Diverged
+from validate.loading import alarm
 
-from . import shipping, wire
+from . import sandbox, shipping, wire
+from .meter import LOOK, Meter
 
 HERE = Path(__file__).resolve().parent
 LIMITS = {"AS": 2 << 30, "CPU": 150, "NPROC": 4, "FSIZE": 16 << 20, "NOFILE": 64, "CORE": 0}     # [bytes], [s], [-], [bytes], [-], [bytes]
-ENVIRONMENT = {"PATH": "/usr/bin:/bin", "HOME": "/tmp", "LANG": "C.UTF-8", "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1",
-               "MKL_NUM_THREADS": "1", "PYTHONHASHSEED": "0"}
-HIDDEN = ("solutions", "lessons", "validate", "tests", "pybullet*", "pymunk*", "physics_animation_workbook*", "__editable__*")
-READY_WITHIN = 30.0          # [s]: starting takes 0.2, on a machine that does nothing else
-IMPORT_WITHIN = 10.0         # a student's file may take so long to load [s]
+READY_WITHIN = 60.0          # [s]: starting takes 0.2, on a machine that does nothing else
+IMPORT_WITHIN = 10.0         # a student's file may take so long to load [s of its own]
+CROWDED = 10.0               # so many times as long as its own time may pass before a call is given up: then it is tried once more, alone [-]
+LAST_WORD_WITHIN = 3.0       # [s]: a worker that has closed the wire ends so soon, or lives on
 MOST_ENTRIES = 1_000_000     # of all arrays that a student's code hands to one of our functions [-]: the tests need 10⁴
 DEEPEST = 16                 # calls inside calls, there and back [-]: the tests need 4
 PRINTED = 20_000             # of what is printed, so much is kept [bytes]
@@ -56,59 +54,6 @@ class Late(StudentError):
     """One of our own functions, with what the student's code handed it, takes too long."""
 
 
-# ---------------------------------------------------------------------------------------------- the command
-
-def sandbox_command(python, binds):
-    """bwrap's arguments: read-only /usr, interpreter and environment, the binds {from: to}, an empty /tmp, and nothing else."""
-    interpreter, environment = Path(python).resolve().parent.parent, Path(python).absolute().parent.parent
-    command = [shutil.which("bwrap") or "bwrap", "--unshare-pid", "--unshare-net", "--unshare-ipc", "--unshare-uts", "--unshare-cgroup-try", "--die-with-parent",
-               "--new-session", "--clearenv", "--hostname", "box", "--cap-drop", "ALL"]
-    for name, value in ENVIRONMENT.items():
-        command += ["--setenv", name, value]
-    command += ["--ro-bind", "/usr", "/usr", "--proc", "/proc", "--dev", "/dev", "--perms", "1777", "--size", str(32 << 20), "--tmpfs", "/tmp"]
-    for folder in ("bin", "sbin", "lib", "lib64"):
-        if os.path.islink(f"/{folder}"):
-            command += ["--symlink", os.readlink(f"/{folder}"), f"/{folder}"]
-        elif os.path.isdir(f"/{folder}"):
-            command += ["--ro-bind", f"/{folder}", f"/{folder}"]
-    for folder in dict.fromkeys((interpreter, environment)):
-        if not folder.is_relative_to("/usr"):
-            for parent in reversed(folder.parents[:-1]):               # bwrap would make them for root only
-                command += ["--dir", str(parent)]
-            command += ["--ro-bind", str(folder), str(folder)]
-    for source, target in binds.items():
-        command += ["--dir", os.path.dirname(target), "--ro-bind", str(source), target]
-    for pattern in HIDDEN:
-        for path in glob.glob(f"{environment}/lib/python*/site-packages/{pattern}"):
-            command += ["--tmpfs", path] if os.path.isdir(path) else ["--ro-bind", "/dev/null", path]
-    command += ["--remount-ro", "/dev", "--remount-ro", "/", "--chdir", "/tmp"]
-    if os.geteuid() == 0:    # the limit of processes does not bind root: become somebody who owns nothing, then give up making users
-        somebody = str(60000 + secrets.randbelow(5000))
-        command += ["--cap-add", "CAP_SETUID", "--cap-add", "CAP_SETGID", "--cap-add", "CAP_SETPCAP", "setpriv", "--reuid", somebody,
-                    "--regid", somebody, "--clear-groups", "--no-new-privs", "--inh-caps=-all", "--bounding-set=-all",
-                    "bwrap", "--die-with-parent", "--dev-bind", "/", "/"]
-    return command + ["--unshare-user", "--disable-userns"]
-
-
-@lru_cache(maxsize=1)
-def no_sandbox_because():
-    """Why code cannot be locked in here; an empty string when it can."""
-    if not shutil.which("bwrap"):
-        return "bubblewrap is not installed"
-    try:
-        trial = subprocess.run([*sandbox_command(sys.executable, {}), "true"], capture_output=True, text=True, timeout=30, env=ENVIRONMENT)
-    except (OSError, subprocess.TimeoutExpired) as e:
-        return f"bubblewrap does not start: {e}"
-    return "" if trial.returncode == 0 else f"bubblewrap may not make a sandbox here: {trial.stderr.strip()[:200]}"
-
-
-def sandbox_for_tests(skip, fail):
-    """Without a sandbox the tests of the grader cannot say anything: they fail where WORKBOOK_SANDBOX=required, as in CI, and else say so and are left out."""
-    if no_sandbox_because():
-        leave = fail if os.environ.get("WORKBOOK_SANDBOX") == "required" else skip
-        leave(f"the grader is not tested here: {no_sandbox_because()}. Install it (Debian: apt-get install bubblewrap)")
-
-
 # ---------------------------------------------------------------------------------------------- the worker
 
 class Call:
@@ -125,27 +70,28 @@ class Box:
     """One lesson's file of one submission.  Calls of its functions start the worker, and start another one when it was lost.
 
     exercises: functions that the file must answer · text: the file, as bytes · given: folder of the lessons as handed out · earlier: {lesson: {exercise function: worked one}} that
-    the file may build on · budget [s] for all calls together · begin(limit) allows the next calls so many seconds together.
-    secret: no word of the student's code is kept with its errors, since it may know secret inputs · failed: what the grader itself could not do.
+    the file may build on · budget [s] for all calls together · begin(limit) allows the next calls so many seconds together.  Seconds are the worker's own (see Meter).
+    secret: no word of the student's code is kept with its errors, since it may know secret inputs · failed: what the grader itself could not do ·
+    late: the time was up, or the system ended the worker, for which others may be the cause.
     """
 
     def __init__(self, lesson, exercises, text, given, earlier, budget, records=(), limits=LIMITS):
         self.earlier, self.budget, self.printed, self.process, self.broken, self.depth = earlier, budget, b"", None, None, 0
-        self.lesson, self.lines, self.secret, self.failed = lesson, text.count(b"\n") + 1, False, None
-        self.records = {kind.__name__: kind for kind in records}
-        self.until = time.monotonic() + budget
+        self.lesson, self.lines, self.secret, self.failed, self.late = lesson, text.count(b"\n") + 1, False, None, False
+        self.records, self.meter = {kind.__name__: kind for kind in records}, Meter()
+        self.begin(budget)
         self.folder = Path(tempfile.mkdtemp(prefix="workbook-"))
         self.folder.chmod(0o755)
         (self.folder / f"{lesson}.py").write_bytes(text)
         (self.folder / f"{lesson}.py").chmod(0o444)
         config = {"lesson": lesson, "exercises": exercises, "earlier": {name: list(functions) for name, functions in earlier.items()}}
-        if no_sandbox_because():
+        if sandbox.unavailable():
             inside = {"wire": str(HERE), "given": str(given), "student": str(self.folder)}
-            limits, before = {name: value for name, value in limits.items() if name != "NPROC"}, []
+            limits, self.binds = {name: value for name, value in limits.items() if name != "NPROC"}, None
         else:
             inside = {"wire": "/box", "given": "/given", "student": "/student"}
-            before = sandbox_command(sys.executable, {**{HERE / file: f"/box/{file}" for file in ("wire.py", "shipping.py", "worker.py")}, given: "/given", self.folder: "/student"})
-        self.command = [*before, sys.executable, "-I", "-B", "-u", f"{inside['wire']}/worker.py", json.dumps({**config, **inside, "limits": limits})]
+            self.binds = {**{HERE / file: f"/box/{file}" for file in ("wire.py", "shipping.py", "worker.py")}, given: "/given", self.folder: "/student"}
+        self.program = [sys.executable, "-I", "-B", "-u", f"{inside['wire']}/worker.py", json.dumps({**config, **inside, "limits": limits})]
 
     # -- functions and records on the wire
 
@@ -193,16 +139,17 @@ class Box:
         """The next calls may take so long, all together [s].  A worker that has said something unasked is replaced: it would answer past the question."""
         if self.process and self.depth == 0 and not self.inbox.empty():
             self.stop()
-        self.until = time.monotonic() + min(limit, max(self.budget, 0.0))
+        limit = max(0.0, min(limit, self.budget - self.meter.used))
+        self.until, self.patience = self.meter.used + limit, time.monotonic() + CROWDED * limit
 
     def call(self, name, arguments):
         """What the worker's function of that name returns; raises what it raised, or Lost."""
         if self.broken:
             raise self.broken
         remember(self.records, arguments)
-        if self.process is None and self.budget <= 0.0:
-            raise Lost("the time for the whole submission is used up")
-        began, self.depth = time.monotonic(), self.depth + 1
+        if self.meter.used >= self.until:
+            raise self.too_long()
+        self.depth += 1
         try:
             if self.process is None:
                 self.start()
@@ -210,11 +157,10 @@ class Box:
         except wire.WireError as e:
             raise self.lost(f"the program sent no plain data: {e}") from None
         except Late:
-            raise self.lost("it took too long") from None
+            raise self.too_long() from None
         finally:
             self.depth -= 1
-            if self.depth == 0:
-                self.budget -= time.monotonic() - began
+            self.meter.look(False)
 
     def open(self):
         """Import the file.  When that fails every later call fails in the same way, at once."""
@@ -230,9 +176,7 @@ class Box:
             self.broken = e
 
     def start(self):
-        environment = {**ENVIRONMENT, **{k: os.environ[k] for k in ("SYSTEMROOT",) if k in os.environ}}     # --clearenv leaves /proc/1/environ
-        self.process = process = subprocess.Popen(self.command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                                  env=environment, start_new_session=True)
+        self.process = process = sandbox.started(self.binds, self.program, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         self.inbox, self.outbox, self.own, self.names = queue.Queue(4), queue.Queue(64), {}, {}
         self.peer = wire.Peer(self.send, self.receive, self.resolve, self.name_of, self.record, describe, self.error,
                               fatal=(KeyboardInterrupt, wire.WireError, Lost, Late))
@@ -251,34 +195,66 @@ class Box:
             self.stop()
             self.failed = RuntimeError(f"the grader cannot start its sandbox: {self.printed[-500:].decode(errors='replace')}")
             raise self.failed
+        self.meter.follow(process)
 
     def serve(self, name, arguments):
         """Work one of our functions for the student's code, if what it hands over is of a sane size."""
         if (sum(array.size for array in wire.arrays_in(arguments)) > MOST_ENTRIES or self.depth > DEEPEST
                 or not name.startswith(("test:", "solution:"))):
             raise wire.WireError("a call that no test asks for")
-        with alarm(self.until - time.monotonic()) if self.depth == 1 else contextlib.nullcontext():
-            self.peer.served(name, arguments)
+        if self.depth > 1:
+            return self.peer.served(name, arguments)
+        began = time.thread_time()
+        try:
+            with alarm(self.until - self.meter.used, Late, own=True):
+                self.peer.served(name, arguments)
+        finally:
+            self.meter.used += time.thread_time() - began
 
     def send(self, frame):
         """Hand a frame to the worker."""
-        try:
-            self.outbox.put(frame, timeout=max(0.01, self.until - time.monotonic()))
-        except queue.Full:
-            raise self.lost("it asks, and does not listen to the answers") from None
+        while True:
+            try:
+                return self.outbox.put(frame, timeout=LOOK)
+            except queue.Full:                                         # it asks, and does not listen to the answers
+                self.look(True)
 
     def receive(self):
         """The next frame."""
-        left = self.until - time.monotonic()
-        try:
-            frame = self.inbox.get(timeout=max(0.0, left)) if left > 0.0 else None
-        except queue.Empty:
-            frame = None
-        if frame is None:
-            raise self.lost("it took too long" if self.budget > 0.0 else "the time for the whole submission is used up")
+        while True:
+            if self.meter.due():
+                self.look(self.inbox.empty() and not self.outbox.unfinished_tasks and not arriving(self.process.stdout))
+            try:
+                frame = self.inbox.get(timeout=LOOK)
+                break
+            except queue.Empty:
+                pass
         if isinstance(frame, Exception):
-            raise self.lost(str(frame))
+            raise self.lost(f"{frame}{self.last_word()}")
         return frame
+
+    def look(self, owes):
+        """See what time the worker has taken, and end it when that is too much."""
+        self.meter.look(owes)
+        if self.meter.used >= self.until or time.monotonic() >= self.patience:
+            raise self.too_long()
+
+    def too_long(self):
+        self.late = True
+        return self.lost("it took too long" if self.meter.used < self.budget else "the time for the whole submission is used up")
+
+    def last_word(self):
+        """Why the worker ended, if it did and if the system says so."""
+        try:
+            code = self.process.wait(timeout=LAST_WORD_WITHIN)
+        except subprocess.TimeoutExpired:                              # it has closed the wire, and lives
+            self.meter.used += LAST_WORD_WITHIN
+            return ""
+        number = -code if code < 0 else code - 128                     # bwrap ends with 128 + the signal of the worker
+        self.late |= number == signal.SIGKILL                          # perhaps there was no memory left, and it was nobody's fault
+        if number == signal.SIGSYS:
+            return ": it made a system call that no lesson needs"
+        return f" ({signal.Signals(number).name})" if number in set(signal.Signals) else ""
 
     def lost(self, why):
         self.stop()
@@ -331,24 +307,17 @@ def _writing(process, inbox, outbox):
         while (frame := outbox.get()) is not None:
             process.stdin.write(frame)
             process.stdin.flush()
+            outbox.task_done()
 
 
-@contextlib.contextmanager
-def alarm(seconds):
-    """Raise Late after so long, also inside a loop of ours; only in a main thread, and where the system has an alarm clock."""
-    if not hasattr(signal, "setitimer") or threading.current_thread() is not threading.main_thread():
-        yield
-        return
-
-    def ring(*_):
-        raise Late()
-    before = signal.signal(signal.SIGALRM, ring)
-    signal.setitimer(signal.ITIMER_REAL, max(0.01, seconds))
+def arriving(stream):
+    """Whether there is something in a pipe that we have not read yet."""
     try:
-        yield
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
-        signal.signal(signal.SIGALRM, before)
+        import fcntl
+        import termios
+        return any(fcntl.ioctl(stream.fileno(), termios.FIONREAD, bytes(4)))
+    except (ImportError, OSError, ValueError):
+        return False
 
 
 def describe(e):

@@ -16,17 +16,18 @@ import sys
 import tempfile
 import threading
 import time
+from collections import deque
 from importlib.metadata import version
 
 from solutions.checks import BadInput
 from validate import binding
 
-from . import box, local, marking
+from . import children, local, marking, sandbox
 
 CONNECT_WITHIN = 5.0         # [s]: a scheduler answers in milliseconds
 WORKERLESS = 30.0            # so long a cluster may be without any worker [s]: a nanny starts a new one in 2
 LOOK_AFTER = 1.0             # while nothing comes, see so often whether the cluster is still there [s]
-PATIENCE = 5.0 * marking.BUDGET     # of a lesson [s]: the student's budget, and four times that for the tests' own work on a busy machine
+AHEAD = 4                    # submissions that wait on the cluster for each that is being graded [-]: all of a large class would fill the scheduler's memory
 
 
 # ---------------------------------------------------------------------------------------------- here
@@ -91,50 +92,73 @@ def refusal(thing, unfit):
     return BadInput(thing, unfit, "give it the workbook and the locked versions that are here, start it again, and repeat the command")
 
 
-def parcel(submission, settings):
-    """What travels to a worker: everything that it needs, as bytes."""
-    return pickle.dumps((submission, settings, makeup(settings.code)))
+def parcel(submission, settings, first=None):
+    """What travels to a worker: everything that it needs, as bytes.  first: the result of a first try, of which a part is done again."""
+    return pickle.dumps((submission, settings, makeup(settings.code), sandbox.private, first))
 
 
 def makeup(code):
     """What marks depend on besides the submission: {thing: which}."""
     return {"workbook": code, "Python": f"{sys.version_info.major}.{sys.version_info.minor}", "numpy": version("numpy"),
-            "pytest": version("pytest"), "sandbox": box.no_sandbox_because() or "bubblewrap"}
+            "pytest": version("pytest"), "sandbox": sandbox.unavailable() or "bubblewrap"}
 
 
 def graded(client, address, todo, settings):
-    """Hand everything over, and wait.  Dask gives what a dead worker had to another one."""
-    waiting, finished, seen = {}, queue.Queue(), time.monotonic()
+    """Hand everything over, and wait.  What timed out or failed is tried once more at the end, when a machine does nothing else."""
+    again = []
     try:
-        for submission in todo:
-            future = client.submit(asked, parcel(submission, settings), pure=False, retries=1)
-            waiting[future] = submission.student
-            future.add_done_callback(finished.put)
-        while waiting:
-            try:
-                future = finished.get(timeout=LOOK_AFTER)
-            except queue.Empty:
-                seen = time.monotonic() if workers_of(client) else seen
-                if time.monotonic() - seen > WORKERLESS:
-                    break
-                continue
-            if future.status == "pending":                             # its worker died after the last word
-                future.add_done_callback(finished.put)
-            elif future in waiting and future.status != "cancelled":   # cancelled: the scheduler is gone
-                result, why = fetched(future)
-                yield waiting.pop(future), result, why
-        for student in waiting.values():
-            yield student, None, f"the cluster at {address} has gone away"
+        for submission, result, why in outcomes(client, address, [(submission, None) for submission in todo], settings):
+            if workers_of(client) and (why or result["again"]):
+                again.append((submission, result))
+            else:
+                yield submission.student, result, why
+        machines = {worker.rpartition(":")[0]: worker for worker in workers_of(client)}
+        for submission, result, why in outcomes(client, address, again, settings, [*machines.values()]):
+            yield submission.student, result, why
     finally:                                                           # also when the run is interrupted: what waits is cancelled with it
         client.close(timeout=CONNECT_WITHIN)
 
 
+def outcomes(client, address, todo, settings, alone=None):
+    """(submission, result, why), as they come.  Dask gives what a dead worker had to another one.  alone: workers that do one at a time."""
+    waiting, running, finished, seen = deque(todo), {}, queue.Queue(), time.monotonic()
+    free, room = deque(alone or ()), threads_of(client)
+    while waiting or running:
+        while waiting and (free if alone else len(running) < AHEAD * room):
+            submission, first = waiting.popleft()
+            place = {"workers": [free.popleft()], "allow_other_workers": True} if alone else {}          # if that one has gone
+            future = client.submit(asked, parcel(submission, settings, first), pure=False, retries=1, **place)
+            running[future] = submission, place.get("workers", ())
+            future.add_done_callback(finished.put)
+        try:
+            future = finished.get(timeout=LOOK_AFTER)
+        except queue.Empty:
+            now = threads_of(client)
+            room, seen = now or room, time.monotonic() if now else seen
+            if time.monotonic() - seen > WORKERLESS:
+                break
+            continue
+        if future.status == "pending":                                 # its worker died after the last word
+            future.add_done_callback(finished.put)
+        elif future in running and future.status != "cancelled":       # cancelled: the scheduler is gone
+            submission, place = running.pop(future)
+            free.extend(place)
+            yield submission, *fetched(future)
+    for submission in [*(s for s, _ in running.values()), *(s for s, _ in waiting)]:
+        yield submission, None, f"the cluster at {address} has gone away"
+
+
+def threads_of(client):
+    """How many submissions the cluster grades at a time; 0 when it does not answer."""
+    return sum(workers_of(client).values())
+
+
 def workers_of(client):
-    """Addresses of the workers; none when the scheduler does not answer."""
+    """{address of a worker: its threads}; none when the scheduler does not answer."""
     try:
-        return [*client.nthreads()] if client.status == "running" else []
+        return dict(client.nthreads()) if client.status == "running" else {}
     except Exception:                                                  # whatever Dask says when it is cut off
-        return []
+        return {}
 
 
 def fetched(future):
@@ -154,11 +178,11 @@ def fetched(future):
 
 def asked(parcel):
     """(why this worker may not grade, result, why the grader failed), from a process of its own.  Raises RuntimeError when that breaks."""
-    lessons = len(pickle.loads(parcel)[1].lessons)
+    patience = marking.patience(pickle.loads(parcel)[1])
     try:
-        run = subprocess.run([sys.executable, "-m", __name__], cwd=binding.ROOT, input=parcel, capture_output=True, timeout=PATIENCE * lessons)
+        run = subprocess.run([sys.executable, "-m", __name__], cwd=binding.ROOT, input=parcel, capture_output=True, timeout=patience)
     except subprocess.TimeoutExpired:
-        raise RuntimeError(f"the grading process did not end within {PATIENCE * lessons:g} s") from None
+        raise RuntimeError(f"the grading process did not end within {patience:g} s") from None
     try:
         return tuple(json.loads(run.stdout))
     except ValueError:
@@ -166,11 +190,15 @@ def asked(parcel):
         raise RuntimeError(f"the grading process ended unexpectedly ({run.returncode}): {' '.join(last)[:300]}") from None
 
 
-def answer(submission, settings, theirs):
-    """What `asked` returns, in the process of its own; without a submission only whether this worker may grade."""
+def answer(submission, settings, theirs, private, first=None):
+    """What `asked` returns, in the process of its own; without a submission only whether this worker may grade.  private: what the sandbox must hide, if it is here, too."""
+    try:
+        sandbox.keep_out(private)
+    except BadInput as e:
+        return str(e), None, ""
     ours = makeup(marking.code_digest(settings.lessons))
     unfit = "; ".join(f"with {thing} {ours[thing]} instead of {theirs[thing]}" for thing in theirs if ours[thing] != theirs[thing])
-    return (unfit, None, "") if unfit or submission is None else ("", *local.marked(submission, settings))
+    return (unfit, None, "") if unfit or submission is None else ("", *local.marked(submission, settings, first))
 
 
 def orphaned(parent, folder):
@@ -184,7 +212,7 @@ def orphaned(parent, folder):
 def main():
     channel = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)                                                      # nothing else may get in between
-    with tempfile.TemporaryDirectory(prefix="grading-") as tempfile.tempdir:
+    with children.temporary() as tempfile.tempdir:
         threading.Thread(target=orphaned, args=(os.getppid(), tempfile.tempdir), daemon=True).start()
         json.dump(answer(*pickle.load(sys.stdin.buffer)), channel)
         channel.close()

@@ -1,37 +1,57 @@
 """Grade on this machine, several submissions at a time, each in a process of its own while it lasts."""
 
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from concurrent.futures.process import BrokenProcessPool
-from multiprocessing import get_context
+from collections import deque
+from concurrent.futures import FIRST_COMPLETED, wait
 
-from . import marking
+from . import children, marking, sandbox
+
+DIED = "the grading process ended unexpectedly, or hung"
 
 
 def results(jobs, todo, settings):
-    """(student, result, "") or (student, None, why the grader failed), as they come."""
-    waiting = {s.student: s for s in todo}
-    for attempt in (1, 2):                               # a grading process that died takes others' work along: once more, one at a time
-        pool = ProcessPoolExecutor(max(1, min(jobs, len(waiting))) if attempt == 1 else 1, mp_context=get_context("spawn"))
+    """(student, result, "") or (student, None, why the grader failed), as they come.
+
+    Where the time was up or the grader failed, others may have been the cause: that is tried once more at the end, alone.
+    """
+    again = []
+    for submission, result, why in together(jobs, todo, settings):
+        if why or result["again"]:
+            again.append((submission, result))
+        else:
+            yield submission.student, result, ""
+    with children.Child(sandbox.keep_out, sandbox.private) as child:
+        for submission, first in again:
+            try:
+                yield submission.student, *child(marked, submission, settings, first, patience=marking.patience(settings))
+            except (children.Ended, TimeoutError):
+                yield submission.student, None, DIED
+
+
+def together(jobs, todo, settings):
+    """(submission, result, why the grader failed), as they come.  A process that dies or hangs takes down what the others are at; the rest is done by new ones."""
+    waiting = deque(todo)
+    while waiting:
+        running = {}
         try:
-            futures = {pool.submit(marked, s, settings): s.student for s in waiting.values()}
-            for future in as_completed(futures):
-                try:
-                    result, why = future.result()
-                except BrokenProcessPool:
-                    continue
-                waiting.pop(futures[future])
-                yield futures[future], result, why
-        finally:
-            pool.shutdown(wait=True, cancel_futures=True)
-        if not waiting:
-            return
-    for student in waiting:
-        yield student, None, "the grading process ended unexpectedly"
+            with children.Pool(max(1, min(jobs, len(waiting))), sandbox.keep_out, sandbox.private) as pool:
+                while waiting or running:
+                    while waiting and len(running) < jobs:
+                        running[pool.submit(marked, waiting[0], settings)] = waiting[0]
+                        waiting.popleft()
+                    done = wait(running, timeout=marking.patience(settings), return_when=FIRST_COMPLETED).done
+                    if not done:
+                        raise children.Ended()
+                    for future in done:
+                        result, why = future.result()
+                        yield running.pop(future), result, why
+        except children.Ended:
+            for submission in running.values():
+                yield submission, None, DIED
 
 
-def marked(submission, settings):
-    """(result, "") or (None, why the grader failed)."""
+def marked(submission, settings, first=None):
+    """(result, "") or (None, why the grader failed).  first: the result of a first try, of which a part is done again."""
     try:
-        return marking.mark(submission, settings), ""
+        return marking.again(submission, settings, first) if first else marking.mark(submission, settings), ""
     except Exception as e:
         return None, f"{type(e).__name__}: {e}"

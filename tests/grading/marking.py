@@ -7,12 +7,12 @@ import contextlib
 import hashlib
 import re
 import time
-from pathlib import Path
 from typing import NamedTuple
 
 from validate import binding
 
-from . import box, points, remote
+from . import children, points, remote, sandbox
+from .box import CROWDED
 from .submissions import spelt_out
 
 BUDGET = 60.0                # of one lesson of one submission, all calls together [s]: the worked one takes 1
@@ -29,7 +29,7 @@ class Settings(NamedTuple):
 
     def digest(self, submission):
         """Changes when a submission has to be graded again."""
-        return hashlib.sha256(repr((self, submission.digest(), box.no_sandbox_because())).encode()).hexdigest()
+        return hashlib.sha256(repr((self, submission.digest(), sandbox.unavailable())).encode()).hexdigest()
 
 
 def settings(lessons, seed):
@@ -48,35 +48,49 @@ def manifest(lessons):
 
 def code_digest(lessons=None):
     """Fingerprint of everything that decides about points in these lessons, or in all of them; the same wherever the workbook lies."""
-    grader = ("box", "expect", "marking", "plugin", "points", "remote", "shipping", "wire", "worker")
+    grader = ("box", "calls", "expect", "marking", "meter", "plugin", "points", "remote", "sandbox", "shipping", "wire", "worker")
     files = {*binding.SOLUTIONS.glob("*.py"), *(points.TESTS / f"test_{lesson}.py" for lesson in lessons or binding.lesson_names()),
              *(points.TESTS / "grading" / f"{name}.py" for name in grader), *(binding.ROOT / "validate" / f"{name}.py" for name in ("binding", "generate"))}
     return hashlib.sha256(b"".join(file.name.encode() + file.read_bytes() for file in sorted(files))).hexdigest()[:12]
 
 
+def patience(settings):
+    """A grading process that takes longer hangs [s]: each call has several times its own time, and the tests as much again for their own work."""
+    return 2.0 * CROWDED * BUDGET * len(settings.lessons)
+
+
 def mark(submission, settings):
     """The result of one submission, in types that JSON knows.  Raises RuntimeError when the grader itself fails: that is never a zero."""
-    began, found, printed = time.monotonic(), {}, {}
+    began, found, printed, again = time.monotonic(), {}, {}, []
     for lesson in settings.lessons:
         if lesson in submission.files:
             with bounded():
-                outcomes, printed[lesson] = mark_lesson(lesson, submission.files[lesson], settings.seed)
+                outcomes, printed[lesson], late = mark_lesson(lesson, submission.files[lesson], settings.seed)
             found.update({(lesson, kind, o.test): o for kind, o in outcomes})
+            again += [lesson] * late
     tests = [verdict(row, found, row[0] in submission.files) for row in settings.manifest]
     return {"student": submission.student, "problems": list(submission.problems), "timestamp": submission.timestamp,
             "handed_in": sorted(submission.files), "tests": tests, "printed": printed, "seconds": round(time.monotonic() - began, 2),
-            "no_grade": box.no_sandbox_because(), "digest": settings.digest(submission)}
+            "again": again, "no_grade": sandbox.unavailable(), "digest": settings.digest(submission)}
+
+
+def again(submission, settings, first):
+    """The result of a second try.  Only the lessons are marked again whose time was up in the first."""
+    second = mark(submission._replace(files={lesson: submission.files[lesson] for lesson in first["again"]}), settings)
+    tests = {(t["lesson"], t["test"]): t for t in second["tests"] if t["lesson"] in first["again"]}
+    return {**first, "tests": [tests.get((t["lesson"], t["test"]), t) for t in first["tests"]], "printed": {**first["printed"], **second["printed"]},
+            "seconds": round(first["seconds"] + second["seconds"], 2), "again": []}
 
 
 def mark_lesson(lesson, text, seed):
-    """[(visible or hidden, Outcome), …] of one file, and what it printed in the visible tests."""
+    """([(visible or hidden, Outcome), …] of one file, what it printed in the visible tests, whether the time was up)."""
     place = remote.box_of(lesson, text, BUDGET)
     try:
         place.open()
         if place.broken:
             where = f" ({place.broken.where})" if getattr(place.broken, "where", "") else ""
-            return [("visible", points.unreadable(o, place.broken, where)) for o in points.grade(lesson, None, collect=True)], readable(
-                place.printed.decode(errors="replace"))
+            unread = [("visible", points.unreadable(o, place.broken, where)) for o in points.grade(lesson, None, collect=True)]
+            return unread, readable(place.printed.decode(errors="replace")), place.late
         subject = remote.lesson_in(place, lesson)
         outcomes = [("visible", o) for o in points.grade(lesson, subject, seed=points.PUBLIC)]
         printed = readable(place.printed.decode(errors="replace"))
@@ -88,7 +102,7 @@ def mark_lesson(lesson, text, seed):
             outcomes += [("hidden", o) for o in points.grade(lesson, subject, lambda exercise, test: test in passed, seed)]
         if place.failed:                                               # pytest has caught it: it must not become a zero
             raise place.failed
-        return outcomes, printed
+        return outcomes, printed, place.late or any(o.quantity == points.DURATION for _, o in outcomes)
     finally:
         place.close()
 
@@ -96,19 +110,13 @@ def mark_lesson(lesson, text, seed):
 @contextlib.contextmanager
 def bounded():
     """Let this process have only so much more memory; beyond, NumPy raises MemoryError in the test that asked for it."""
-    try:
-        import resource
-        now = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
-        before, hard = resource.getrlimit(resource.RLIMIT_AS)
-    except (ImportError, OSError):                                     # no Linux, so no sandbox either
-        yield
-        return
-    limits = [now + MEMORY, *(limit for limit in (before, hard) if limit != resource.RLIM_INFINITY)]
-    resource.setrlimit(resource.RLIMIT_AS, (min(limits), hard))
+    before = children.bound(MEMORY)
     try:
         yield
     finally:
-        resource.setrlimit(resource.RLIMIT_AS, (before, hard))
+        if before:
+            import resource
+            resource.setrlimit(resource.RLIMIT_AS, before)
 
 
 def verdict(row, found, handed_in):

@@ -28,7 +28,7 @@ HERE = Path(__file__).resolve().parent
 STYLES = (binding.ROOT / "validate" / "report" / "style.css", HERE / "templates" / "grades.css")
 COLUMNS = ("assignment", "duedate", "timestamp", "student_id", "last_name", "first_name", "email",
            "raw_score", "late_submission_penalty", "score", "max_score")                # as nbgrader exports them
-MOST_PROBLEMS = 20           # of a submission that are shown [-]: a hostile zip has thousands
+MOST_PROBLEMS = submissions.MOST_PROBLEMS + 5          # of a submission that are shown [-]: its own, and what is added here
 MOST_BARS = 20               # of the histogram [-]: what a phone has room for
 SHOWN = ("quantity", "given", "expected", "got", "tolerance")
 INPUTS = {"visible": "with the public inputs", "hidden": "with other inputs"}
@@ -166,10 +166,8 @@ def sheet(result, settings, terms, person=None):
     problems = list(result["problems"]) or ["no lesson file is in it"] * (not result["handed_in"])
     if days is None:
         problems.append(f"when it was handed in is not known ({line(result['timestamp']) or 'no date'}): nothing is taken off for being late")
-    if len(problems) > MOST_PROBLEMS:
-        problems = [*problems[:MOST_PROBLEMS], f"and {len(problems) - MOST_PROBLEMS} more of the kind"]
     student, accounts = result["student"], accounts_of(tests, result["handed_in"], days, settings, terms)
-    return Sheet(student, person or submissions.Person(student), file_name(student), result, tests, accounts, days, tuple(problems))
+    return Sheet(student, person or submissions.Person(student), file_name(student), result, tests, accounts, days, tuple(problems[:MOST_PROBLEMS]))
 
 
 def lateness(one, terms):

@@ -19,6 +19,7 @@ OURS = {TESTS, TESTS.parent / "validate", Path(os.__file__).parent}             
 PUBLIC = "public"            # the seed of everyone's own tests
 LIMIT = 20.0                 # a grading test may take this long [s]: the slowest takes 2, on two shared cores
 READING = "reading the file"   # the quantity where a file could not be loaded
+DURATION = "the time it takes"   # the quantity where a test did not end
 BOX_LIMIT = 10.0             # and so long in the sandbox [s]
 LINES, PRINTED = 20, 2000    # of what a subject prints, so much is shown [lines, characters]
 
@@ -94,7 +95,7 @@ def outcome(mark, name, excinfo):
         words = map(str, (error.quantity, error.expected, error.got, error.tolerance, hint, error.error, error.given))
         return Outcome(exercise, name, points, "not yet", *words)
     if isinstance(error, TooLong):
-        return Outcome(exercise, name, points, "not yet", "the time it takes", f"an answer within {LIMIT:g} s", "none", "",
+        return Outcome(exercise, name, points, "not yet", DURATION, f"an answer within {LIMIT:g} s", "none", "",
                        "does a loop of yours never end? Count its rounds, and stop after so many")
     if not any(Path(entry.filename).name.startswith("test_") for entry in _frames(error)):
         return unreadable(Outcome(exercise, name, points, "not run"), error, "")

@@ -1,4 +1,7 @@
-"""What students handed in: one folder or zip each.  Nothing is unpacked, followed or executed; only the lesson files' bytes are read."""
+"""What students handed in: one folder or zip each.  Nothing is unpacked, followed or executed; only the lesson files' bytes are read.
+
+A zip is read in a child of little memory and time, and only what is stored or deflated: other ways of packing take gigabytes for a kilobyte.
+"""
 
 import csv
 import hashlib
@@ -11,10 +14,14 @@ from typing import NamedTuple
 
 from solutions.checks import BadInput
 
+from . import children
+
 LARGEST = 1 << 18            # of a lesson file [bytes]: ten times the worked one
 DEEPEST = 4                  # folders between the top and the file
 MOST_ENTRIES = 5000          # of a zip or a folder [-]: more is not a submission
 LARGEST_ZIP = 1 << 25        # [bytes]: its list of entries is read before they can be counted
+MOST_PROBLEMS = 20           # of a submission that are told [-]: a hostile zip has thousands
+LONGEST = 200                # of a sentence about one [characters]: a name may have 65,535
 
 
 class Submission(NamedTuple):
@@ -35,27 +42,38 @@ def read_all(folder, lessons):
     if not folder.is_dir():
         raise BadInput(f"submissions {str(folder)!r}", "not a folder", "name the folder that holds one folder or zip a student")
     found = {}
-    for path in sorted(folder.iterdir()):
-        if path.name.startswith((".", "__")) or not (path.is_symlink() or path.is_dir() or path.suffix.lower() == ".zip"):
-            continue
-        student = spelt_out(path.stem if path.suffix.lower() == ".zip" else path.name)
-        if student in found:
-            raise BadInput(f"student {student!r}", "there as a folder and as a zip", "keep one of them")
-        found[student] = read(path, student, lessons)
+    with children.reader() as child:
+        for path in sorted(folder.iterdir()):
+            if path.name.startswith((".", "__")) or not (path.is_symlink() or path.is_dir() or path.suffix.lower() == ".zip"):
+                continue
+            student = spelt_out(path.stem if path.suffix.lower() == ".zip" else path.name)
+            if student in found:
+                raise BadInput(f"student {student!r}", "there as a folder and as a zip", "keep one of them")
+            found[student] = read(path, student, lessons, child)
     if not found:
         raise BadInput(f"submissions {str(folder)!r}", "empty", "put one folder or zip a student into it")
     return list(found.values())
 
 
-def read(path, student, lessons):
-    """One submission; whatever is wrong with it becomes a sentence, not an error."""
+def read(path, student, lessons, child):
+    """One submission; whatever is wrong with it becomes a sentence, not an error.  child: one of `children.reader`."""
     if path.is_symlink():
         return Submission(student, {}, ("it is a link to somewhere else, which is not followed",), "")
     try:
-        files, problems, when = (from_zip if path.is_file() else from_folder)(path, lessons)
-    except Exception as e:                                             # BadZipFile, ValueError, zlib.error, struct.error …
+        if path.is_file():
+            files, problems, when = child(children.timed, contents, from_zip, path, lessons, patience=children.PATIENCE)
+        else:
+            files, problems, when = contents(from_folder, path, lessons)
+    except Exception as e:                                             # BadZipFile, ValueError, MemoryError, zlib.error, struct.error …
         return Submission(student, {}, (f"it cannot be read: {type(e).__name__}",), "")
-    return Submission(student, files, tuple(map(spelt_out, problems)), moment(when))
+    return Submission(student, files, problems, moment(when))
+
+
+def contents(find, path, lessons):
+    """What is found there: the files, the first problems, fit to be shown, and the date."""
+    files, problems, when = find(path, lessons)
+    told = [spelt_out(problem[:LONGEST]) + " …" * (len(problem) > LONGEST) for problem in problems[:MOST_PROBLEMS]]
+    return files, (*told, *[f"and {len(problems) - MOST_PROBLEMS} more of the kind"][:len(problems) > MOST_PROBLEMS]), when
 
 
 def moment(when):
@@ -130,8 +148,8 @@ def from_zip(path, lessons):
         for entry in entries:
             name = entry.filename.replace("\\", "/")
             if lesson := wanted(name, lessons):
-                if stat.S_ISLNK(entry.external_attr >> 16):
-                    problems.append(f"{name} is a link, and was not read")
+                if wrong := unfit(entry):
+                    problems.append(f"{name} {wrong}, and was not read")
                 else:
                     candidates.setdefault(lesson, []).append(name)
         by_name = {entry.filename.replace("\\", "/"): entry for entry in entries}
@@ -142,6 +160,17 @@ def from_zip(path, lessons):
             except Exception as e:                                     # encrypted, broken, packed in a way that Python does not know
                 problems.append(f"{place} cannot be read: {type(e).__name__}")
     return files, problems, path.stat().st_mtime
+
+
+def unfit(entry):
+    """Why an entry of a zip is not read, or ""."""
+    if "\0" in entry.orig_filename:
+        return "has a name that goes on behind a NUL"
+    if stat.S_ISLNK(entry.external_attr >> 16):
+        return "is a link"
+    if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+        return f"is packed by {zipfile.compressor_names.get(entry.compress_type, f'method {entry.compress_type}')} and not by deflate, as an ordinary zip is"
+    return ""
 
 
 def keep(files, lesson, place, text, problems):

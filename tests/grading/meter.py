@@ -1,0 +1,58 @@
+"""How long a worker has worked: on the processor, or asleep.  What it waits because others have the processor is not its time.
+
+So busy neighbours cost nobody anything.  Where the system does not tell (no /proc), all time counts that passes while we wait for the worker.
+"""
+
+import time
+from pathlib import Path
+
+LOOK = 0.05                  # so often we look how a worker is that has not answered [s]
+MOST = 4.0 * LOOK            # of what has passed since the last look, so much counts as sleep: we may have waited for the processor ourselves [s]
+
+
+class Meter:
+    """Counts the seconds of one worker after the other."""
+
+    def __init__(self):
+        self.used, self.process, self.looked, self.worked = 0.0, None, time.monotonic(), 0.0
+
+    def follow(self, process):
+        """From now on count the worker that this process has started, which has just said that it is ready."""
+        self.process, self.looked = worker_of(process), time.monotonic()
+        self.worked = self.processor()
+
+    def look(self, owes):
+        """Count what has passed since the last look.  owes: it is the worker's turn."""
+        now, worked = time.monotonic(), self.processor()
+        passed, busy = min(now - self.looked, MOST), max(0.0, worked - self.worked)
+        self.looked, self.worked = now, worked
+        self.used += busy + (max(0.0, passed - busy) if owes and self.sleeps() else 0.0)
+
+    def due(self):
+        """Whether it is time for another look."""
+        return time.monotonic() - self.looked >= LOOK
+
+    def processor(self):
+        """Seconds that all threads of the worker have had the processor."""
+        try:
+            return time.clock_gettime(~self.process << 3 | 2)          # clock_getcpuclockid(3) of another process
+        except (AttributeError, OSError, TypeError):                   # no such clock, or it has ended
+            return self.worked
+
+    def sleeps(self):
+        """Whether it neither runs nor waits for processor or disk."""
+        try:
+            return Path(f"/proc/{self.process}/stat").read_text().rpartition(")")[2].split()[0] not in ("R", "D")
+        except OSError:
+            return True
+
+
+def worker_of(process):
+    """Its number: the last in a chain of only children, since bwrap's own processes come before it."""
+    number = process.pid
+    try:
+        while children := Path(f"/proc/{number}/task/{number}/children").read_text().split():
+            number = int(children[0])
+    except OSError:
+        pass
+    return number
