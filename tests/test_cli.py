@@ -328,8 +328,16 @@ def test_a_parameter_that_a_scene_cannot_compute_with_is_named(capsys, tmp_path,
     assert len(error.splitlines()) == 1
 
 
-def test_an_interrupted_recording_says_so(capsys, monkeypatch):
-    monkeypatch.setattr(record, "record", lambda name: signal.raise_signal(signal.SIGINT))
+def turned():
+    try:
+        signal.raise_signal(signal.SIGINT)
+    except BaseException:
+        raise ImportError("initialization failed") from None
+
+
+@pytest.mark.parametrize("interrupted", [lambda: signal.raise_signal(signal.SIGINT), turned], ids=["as it is", "as another error"])
+def test_an_interrupted_recording_says_so(capsys, monkeypatch, interrupted):
+    monkeypatch.setattr(record, "record", lambda name: interrupted())
     before = {number: signal.getsignal(number) for number in processes.ENDING}
     try:
         code, _, error = run(capsys, "record", "--scene", "throw")

@@ -10,6 +10,7 @@ import os
 import signal
 import sys
 import threading
+import time
 import traceback
 from contextlib import contextmanager
 from multiprocessing import connection, get_context, parent_process, resource_tracker
@@ -22,6 +23,7 @@ except ImportError:                                                  # Windows
     import msvcrt
 
 ENDING = (signal.SIGINT, signal.SIGTERM)
+QUIET = 2.0                                                          # after Ctrl-C, another one is ignored for so long [s]
 PR_SET_PDEATHSIG = 1                                                 # of Linux's <sys/prctl.h>
 
 # BadInput is constructed from the parts of its sentence; an exception is unpickled from the sentence itself
@@ -53,11 +55,13 @@ def one_sentence(program):
 
 @contextmanager
 def ending_once():
-    """Raise Ended for the first Ctrl-C or SIGTERM and ignore all later ones, which would disturb the cleaning up."""
+    """Raise Ended for Ctrl-C or SIGTERM.  A second one is ignored while the first is taking effect."""
+    seen = []                                                        # (when, which signal)
+
     def end(number, frame):
-        for each in ENDING:
-            signal.signal(each, signal.SIG_IGN)
-        raise Ended(number)
+        if not seen or time.monotonic() - seen[-1][0] > QUIET:       # later: something has swallowed the first
+            seen.append((time.monotonic(), number))
+            raise Ended(number)
 
     before = {each: signal.getsignal(each) for each in ENDING}
     heeded = [each for each in ENDING if before[each] != signal.SIG_IGN]             # a background job ignores Ctrl-C
@@ -65,10 +69,13 @@ def ending_once():
         signal.signal(each, end)
     try:
         yield
+    except Exception as e:
+        if seen:                                                     # an import turns Ended into an ImportError
+            raise Ended(seen[-1][1]) from e
+        raise
     finally:
         for each in heeded:
-            if signal.getsignal(each) is end:
-                signal.signal(each, before[each])
+            signal.signal(each, signal.SIG_IGN if seen else before[each])
 
 
 @contextmanager
