@@ -261,7 +261,7 @@ def unrotate(q, r):
 
 
 def body_component(q, r, k):
-    """Given.  The k-th body coordinate of a vector with world coordinates r, without the other two; q need not be an array."""
+    """Given.  The k-th body coordinate of a vector with world coordinates r, without the other two."""
     x, y, z, w = q[1], q[2], q[3], q[0]
     if k == 0:
         return (w * w + x * x - y * y - z * z) * r[0] + 2.0 * ((x * y + w * z) * r[1] + (x * z - w * y) * r[2])
@@ -271,14 +271,14 @@ def body_component(q, r, k):
 
 
 def about_axis(q, k, angle):
-    """Given.  The body turned about its own k-th axis:  q (cos ½angle, sin ½angle 𝐞ₖ), as a tuple (faster than an array)."""
+    """Given.  The body turned about its own k-th axis:  q (cos ½angle, sin ½angle 𝐞ₖ)."""
     c, s = np.cos(0.5 * angle), np.sin(0.5 * angle)
     x, y, z, w = q[1], q[2], q[3], q[0]
     if k == 0:
-        return w * c - x * s, x * c + w * s, y * c + z * s, z * c - y * s
+        return np.array([w * c - x * s, x * c + w * s, y * c + z * s, z * c - y * s])
     if k == 1:
-        return w * c - y * s, x * c - z * s, y * c + w * s, z * c + x * s
-    return w * c - z * s, x * c + y * s, y * c - x * s, z * c + w * s
+        return np.array([w * c - y * s, x * c - z * s, y * c + w * s, z * c + x * s])
+    return np.array([w * c - z * s, x * c + y * s, y * c - x * s, z * c + w * s])
 
 
 def solve3(a, b, c, r):
