@@ -139,8 +139,11 @@ def _place(excinfo):
     """Where in the subject's own file it happened."""
     if hasattr(excinfo.value, "where"):                              # the sandbox says
         return f" ({excinfo.value.where})" if excinfo.value.where else ""
-    inside = [entry for entry in excinfo.traceback if TESTS not in entry.path.parents and "site-packages" not in entry.path.parts]
-    return f" ({inside[-1].path.name}, line {inside[-1].lineno + 1})" if inside else ""
+    for entry in reversed(excinfo.traceback):
+        path = Path(entry.path)                                      # a str for frames such as <frozen importlib._bootstrap>
+        if TESTS not in path.parents and "site-packages" not in path.parts:
+            return f" ({path.name}, line {entry.lineno + 1})"
+    return ""
 
 
 def _advice(error, hint):
