@@ -176,3 +176,18 @@ def test_a_right_answer_is_right_in_longer_numbers():
 def test_numbers_of_any_kind_go_over_the_wire(value, expected):
     got = wire.unpack(*wire.read(io.BytesIO(wire.pack(value))))
     assert np.array_equal(got, expected) and (got.dtype.str[1:] in wire.DTYPES if isinstance(got, np.ndarray) else type(got) is type(expected))
+
+
+@pytest.mark.xfail(strict=True, reason="the given about_axis returns a tuple, which cannot be multiplied by a number: it has to return an array")
+def test_the_vector_form_of_a_product_serves_the_exercises_that_use_it():
+    """a₀b₀ − 𝐚·𝐛 and a₀𝐛 + b₀𝐚 + 𝐚×𝐛, as the hint of 5.8 has it, instead of four sums."""
+    text = example.worked("rotation") + (
+        "\n\ndef product(a, b):\n    vector = a[0] * b[1:] + b[0] * a[1:] + np.cross(a[1:], b[1:])\n"
+        "    return np.array([a[0] * b[0] - np.dot(a[1:], b[1:]), *vector])\n")
+    place = remote.box_of("rotation", text.encode(), 60.0)
+    try:
+        place.open()
+        score = points.score(points.grade("rotation", remote.lesson_in(place, "rotation"), seed="another"))
+    finally:
+        place.close()
+    assert all(earned == possible for earned, possible in score.values())
