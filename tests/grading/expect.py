@@ -9,7 +9,7 @@ class NotYet(AssertionError):
     """An answer that is not right yet.
 
     quantity and tolerance may be shown to anyone.  given (the inputs), expected and got may not when the inputs are secret;
-    then error, the size of what is wrong, stands in for them.
+    then error, in few words, stands in for them.
     """
 
     def __init__(self, quantity, expected, got, tolerance, error="", given=""):
@@ -36,14 +36,14 @@ def close(quantity, got, expected, tolerance, given=""):
     array = numbers(quantity, got, expected.shape, given)
     off = np.abs(array - expected)
     if not np.all(off <= tolerance):
-        raise NotYet(quantity, show(expected), show(array), f"{tolerance:.1e}" if tolerance else "none: exactly this", f"{np.max(off):.1e} off", given)
+        raise NotYet(quantity, show(expected), show(array), f"{tolerance:.1e}" if tolerance else "none: exactly this", how_far(np.max(off), np.max(np.abs(expected))), given)
 
 
 def between(quantity, got, low, high, given=""):
     """low ≤ got ≤ high, for one number."""
     number = float(numbers(quantity, got, (), given))
     if not low <= number <= high:
-        raise NotYet(quantity, f"{low:.6g} to {high:.6g}", f"{number:.6g}", "", f"{max(low - number, number - high):.1e} off", given)
+        raise NotYet(quantity, f"{low:.6g} to {high:.6g}", f"{number:.6g}", "", how_far(max(low - number, number - high), max(abs(low), abs(high))), given)
 
 
 def raises(quantity, error, function, *arguments, naming=()):
@@ -63,6 +63,15 @@ def raises(quantity, error, function, *arguments, naming=()):
             raise NotYet(f"{quantity}: the value that {error.__name__} names", " or ".join(f"{value:.7g}" for value in naming), str(e), "", "another value") from None
     else:
         raise NotYet(quantity, f"{error.__name__} to be raised", "no error", "", "no error")
+
+
+OFF = ("slightly off", "clearly off", "grossly off")
+
+
+def how_far(off, size):
+    """One of three words, by the part of what is expected that it is off: below a hundredth, below all of it, beyond.  Where zero is expected, of one unit."""
+    part = off / (size or 1.0)
+    return OFF[0] if part < 0.01 else OFF[1] if part < 1.0 else OFF[2]
 
 
 def show(array):
