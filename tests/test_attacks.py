@@ -21,7 +21,7 @@ import pytest
 from validate.binding import ROOT
 
 from .attacks import ATTACKS, HONEST, SOLVED
-from .grading import box, children, marking, plugin, points, remote, sandbox, submissions
+from .grading import box, children, expect, marking, plugin, points, remote, sandbox, submissions
 
 SEED = "a secret"
 PATIENCE = 1.0               # of a test in the sandbox, in place of BOX_LIMIT [s]
@@ -140,7 +140,7 @@ def test_an_attack_gains_nothing_and_touches_nobody(case, trial, settings):
     assert earned(result) == {**NOTHING, "1.10": 0 if case.lost else 2}, f"{case.gain}\n{result}"
     text = harmless(result)
     assert not [word for word in case.shows if word in text]
-    assert not secrets_in(result)
+    assert not secrets_in(result, settings["integrators"].manifest)
 
 
 def test_honest_files_keep_their_points_among_the_attacks(trial, settings, monkeypatch):
@@ -174,18 +174,38 @@ def written(case):
     return HONEST + case.text.replace("{KNOWN}", known()).replace("{PUBLIC}", f"np.array({public})")
 
 
-TOLD = re.compile(r"about 1e[+-]\d\d off|more than 1000 off|less than 1e-15 off|an array of another shape|not finite|"
-                  r"an? [a-z]+|[A-Z][A-Za-z]+|not yet|not attempted|")
-
-
-def secrets_in(result):
+def secrets_in(result, manifest):
     """What is told about a test with secret inputs beyond the few words that may be; digits of the inputs wherever they are."""
     hidden = [test for test in result["tests"] if test["kind"] == "hidden"]
-    more = [test["says"] for test in hidden if not TOLD.fullmatch(test["says"].get("got", "")) or {"given", "expected"} & set(test["says"])]
+    hints = {row[3]: row[5] for row in manifest}
+    more = [test for test in hidden if test["status"] == "not yet" and (
+        test["says"]["got"] not in marking.WORDS or set(test["says"]) != {"quantity", "got"} or test["hint"] != hints[test["test"]])]
     text = json.dumps([hidden, result["printed"]])
     digits = [number for test in TESTS for part in inputs(SEED, test) for number in np.ravel(part)
               if f"{abs(number):.6f}"[2:] in text or str(int(1e9 * abs(number))) in text]
     return more + digits
+
+
+@pytest.mark.parametrize("error", ["", "x", "1.2e-03 off", "shape (123, 4)", "a Secret123", "an AttributeError", "not finite", "no error", "another value", "Secret123",
+                                   "ValueError (integrators.py, line 123)", *expect.OFF])
+def test_with_secret_inputs_a_test_says_one_of_few_words(error):
+    o = points.Outcome("1.1", "test_it", 1.0, "not yet", "x after a step", "12.3", "12.4", "1.2345e-9", "a hint", error, "x = 12.3")
+    said = marking.says(o, "hidden")
+    assert said == {"quantity": "x after a step", "got": said["got"]} and said["got"] in marking.WORDS and len(marking.WORDS) <= 6
+    row = ("integrators", "1.1", "euler_step", "test_it", 1.0, "the hint of the exercise")
+    told = marking.verdict(row, {("integrators", "visible", "test_it"): o._replace(status="passed"), ("integrators", "hidden", "test_it"): o._replace(status="not attempted")}, True)
+    assert told["status"] == "not yet" and told["hint"] == "the hint of the exercise"      # also where the program says that it was not attempted
+
+
+@pytest.mark.parametrize("got, word", [(1.001, 0), (1.5, 1), (-0.5, 2), (1e300, 2), (np.array([1.0]), None)])
+def test_an_error_has_one_of_three_sizes(got, word):
+    for compare in (lambda: expect.close("x", got, 1.0, 1e-9), lambda: expect.between("x", got, 1.0, 1.0)):
+        with pytest.raises(expect.NotYet) as told:
+            compare()
+        assert told.value.error == (expect.OFF[word] if word is not None else "shape (1,)")
+    with pytest.raises(expect.NotYet) as told:
+        expect.close("residual", np.array([0.0, 1e-3]), np.zeros(2), 1e-9)
+    assert told.value.error == "slightly off"
 
 
 # ---------------------------------------------------------------------------------------------- the parent's own time and memory

@@ -609,6 +609,10 @@ def test_the_edge_that_separates_best_is_the_one_a_corner_points_at(lesson, draw
 @exercise("6.12", points=0.25, hint="outward(a, i) refuses an edge without length: use it")
 def test_an_edge_without_length_is_refused(lesson, draw):
     a, _ = polygon(draw, 4)
+    gap, e = draw(0.1, 1.0), a[1] - a[0]
+    width = np.linalg.norm(e)
+    got = lesson.separating_edge(a, a + (width + gap) * np.array([e[1], -e[0]]) / width)
+    close("gap between two squares beside each other [m]", got[0], gap, ROUND_OFF, given=f"a = {a.tolist()}")
     raises("a corner that is there twice", BadInput, lesson.separating_edge, np.stack((a[0], a[1], a[1], a[2])), a)
 
 
@@ -914,7 +918,9 @@ def test_the_field_is_the_slope_of_its_potential(lesson, draw):
 
 @exercise("6.16", points=0.5, hint="a gap of zero or below has no field: raise BadInput with it")
 def test_who_is_inside_an_obstacle_hears_so(lesson, draw):
-    centre, radius = draw(-3.0, 3.0, 2), draw(0.3, 1.0)
+    centre, radius, gap, way = draw(-3.0, 3.0, 2), draw(0.3, 1.0), draw(0.3, 0.6), axes(draw, 2)[0]
+    # (1/g − 1)/g² < 26 m/s², and g = |x − centre| − radius is known to 1e-15 of 0.3
+    close("acceleration outside [m/s²]", lesson.repulsion(centre + (radius + gap) * way, centre, radius, 1.0, 1.0), (1.0 / gap - 1.0) / gap**2 * way, 1e-11, given=f"gap {gap} m")
     for distance in (0.0, draw(0.1, 0.9)):
         raises("a place inside the obstacle", BadInput, lesson.repulsion, centre + distance * radius * axes(draw, 2)[0], centre, radius, 1.0, 1.0)
 

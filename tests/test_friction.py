@@ -67,14 +67,19 @@ def test_static_friction_does_what_it_can_beyond_its_cone(lesson, draw):
 @exercise("3.2", points=0.5, hint="no load, no friction: cone_radius(mu_s, normal_force(F, n)) is 0 then, even for μ_s = ∞")
 def test_what_is_lifted_feels_no_friction(lesson, draw):
     axes = frame(draw, 3)
-    lifting = along_surface(draw, axes, draw(1.0, 5.0)) + draw(1.0, 5.0) * axes[0]
+    pull = along_surface(draw, axes, draw(1.0, 5.0))
+    close("friction on a body that is pressed [N]", lesson.static_friction(pull - axes[0], axes[0], np.inf), -pull, ROUND_OFF, given=f"pull {pull} N, load 1 N, μ = ∞")
+    lifting = pull + draw(1.0, 5.0) * axes[0]
     for mu in (draw(0.2, 1.5), np.inf):
         close("friction on a body that is lifted [N]", lesson.static_friction(lifting, axes[0], mu), np.zeros(3), 0.0, given=f"F = {lifting} N, μ = {mu}")
 
 
 @exercise("3.2", points=0.5, hint="let cone_radius compute μ_s F_N: it refuses a negative μ")
 def test_negative_friction_is_refused(lesson, draw):
-    raises("a negative μ_s", BadInput, lesson.static_friction, np.array([1.0, -5.0]), np.array([0.0, 1.0]), -draw(0.1, 1.0))
+    pull, n = draw(0.5, 1.5), np.array([0.0, 1.0])
+    F = np.array([pull, -5.0])
+    close("friction with a positive μ_s [N]", lesson.static_friction(F, n, draw(0.4, 1.0)), [-pull, 0.0], ROUND_OFF, given=f"F = {F} N")
+    raises("a negative μ_s", BadInput, lesson.static_friction, F, n, -draw(0.1, 1.0))
 
 
 @exercise("3.3", points=0.5, hint="against the motion, not against F; its size is μ_k F_N, whatever the speed is")
@@ -95,6 +100,7 @@ def test_kinetic_friction_needs_a_motion_and_a_load(lesson, draw):
     axes, mu = frame(draw, 3), draw(0.2, 1.0)
     F = along_surface(draw, axes, draw(1.0, 9.0))
     still, moving = np.zeros(3), along_surface(draw, axes, draw(1.0, 3.0))
+    close("kinetic friction under a load of 1 N [N]", lesson.kinetic_friction(F - axes[0], moving, axes[0], mu), -mu * moving / np.linalg.norm(moving), 1e-11, given=f"F = {F} N")
     close("kinetic friction at rest [N]", lesson.kinetic_friction(F - axes[0], still, axes[0], mu), still, 0.0, given=f"F = {F} N")
     close("kinetic friction without load [N]", lesson.kinetic_friction(F + axes[0], moving, axes[0], mu), still, 0.0, given=f"F = {F} N")
 

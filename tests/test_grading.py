@@ -1,6 +1,8 @@
 """A class is graded fairly: points for what is right, reasons for the rest, the same every time, and nothing lost."""
 
 import csv
+import fractions
+import io
 import json
 import os
 import shutil
@@ -9,11 +11,12 @@ import sys
 import tempfile
 import time
 
+import numpy as np
 import pytest
 
 from validate import binding
 
-from .grading import example, points, remote, sandbox
+from .grading import example, points, remote, sandbox, wire
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -151,3 +154,39 @@ def test_the_sandbox_gives_the_same_points_as_the_same_tests_in_one_process():
         finally:
             place.close()
         assert inside == points.score(points.grade(lesson, binding.bind(lesson), seed="another")), lesson
+
+
+def test_a_right_answer_is_right_in_longer_numbers():
+    text = example.worked("integrators") + (
+        "\n\ndef as_others(function):\n    return lambda *a: tuple(np.asarray(part, np.longdouble) for part in function(*a))\n\n\n"
+        "euler_step, midpoint_step, rk4_step = map(as_others, (euler_step, midpoint_step, rk4_step))\n")
+    place = remote.box_of("integrators", text.encode(), 60.0)
+    try:
+        place.open()
+        score = points.score(points.grade("integrators", remote.lesson_in(place, "integrators"), seed="another"))
+    finally:
+        place.close()
+    assert all(score[exercise][0] == score[exercise][1] for exercise in ("1.1", "1.2", "1.3"))
+
+
+@pytest.mark.parametrize("value, expected", [
+    (np.longdouble(0.5), 0.5), (np.float16(2.0), 2.0), (np.uint8(3), 3), (np.bool_(True), True), (fractions.Fraction(1, 4), 0.25),
+    (np.full(3, 0.5, np.longdouble), [0.5] * 3), (np.array([1, 2], np.int16), [1, 2]), (np.array([2**64 - 1], np.uint64), [2.0**64]),
+    (np.array([1.0, fractions.Fraction(1, 2), 3], object), [1.0, 0.5, 3.0]), (np.array([1j], np.complex64), [1j])])
+def test_numbers_of_any_kind_go_over_the_wire(value, expected):
+    got = wire.unpack(*wire.read(io.BytesIO(wire.pack(value))))
+    assert np.array_equal(got, expected) and (got.dtype.str[1:] in wire.DTYPES if isinstance(got, np.ndarray) else type(got) is type(expected))
+
+
+def test_the_vector_form_of_a_product_serves_the_exercises_that_use_it():
+    """a₀b₀ − 𝐚·𝐛 and a₀𝐛 + b₀𝐚 + 𝐚×𝐛, as the hint of 5.8 has it, instead of four sums."""
+    text = example.worked("rotation") + (
+        "\n\ndef product(a, b):\n    vector = a[0] * b[1:] + b[0] * a[1:] + np.cross(a[1:], b[1:])\n"
+        "    return np.array([a[0] * b[0] - np.dot(a[1:], b[1:]), *vector])\n")
+    place = remote.box_of("rotation", text.encode(), 60.0)
+    try:
+        place.open()
+        score = points.score(points.grade("rotation", remote.lesson_in(place, "rotation"), seed="another"))
+    finally:
+        place.close()
+    assert all(earned == possible for earned, possible in score.values())

@@ -67,7 +67,8 @@ def test_a_response_turns_the_normal_velocity_and_keeps_the_rest(lesson, draw):
 def test_a_response_leaves_alone_what_leaves(lesson, draw):
     for d in (2, 3):
         n = unit(draw, d)
-        v = across(n, draw(-5.0, 5.0, d)) + draw(0.1, 3.0) * n
+        v, k = across(n, draw(-5.0, 5.0, d)) + draw(0.1, 3.0) * n, draw(0.1, 0.9)
+        close("velocity after the response to what comes [m/s]", lesson.kinematic_response(v - 2.0 * (v @ n) * n, n, k), across(n, v) + k * (v @ n) * n, ROUND_OFF)
         close("velocity of what leaves [m/s]", lesson.kinematic_response(v, n, draw(0.1, 0.9)), v, 0.0, given=f"v = {v} m/s, n = {n}")
 
 
@@ -111,6 +112,8 @@ def test_two_bodies_part_with_e_times_their_speed_and_keep_their_momentum(lesson
 
 @exercise("7.4", points=0.5, hint="check_restitution and check_inverse_mass first: they refuse what has no physics")
 def test_impossible_restitutions_and_two_immovable_bodies_are_refused(lesson, draw):
+    e, k = draw(0.1, 0.9), draw(0.5, 2.0)
+    close("impulse with a possible restitution [N s]", lesson.impulse_size(-1.0, k, e), (1.0 + e) / k, ROUND_OFF, given=f"u_n = -1 m/s, k = {k} /kg, e = {e}")
     for e in (-draw(0.1, 1.0), draw(1.1, 2.0), np.nan):
         raises("a restitution outside 0 to 1", BadInput, lesson.impulse_size, -1.0, 1.0, e)
     raises("two bodies that cannot be moved", BadInput, lesson.impulse_size, -1.0, 0.0, 0.5)
@@ -190,8 +193,16 @@ def meeting(draw, n, slip, u_n):
     return u_n * n + slip / np.linalg.norm(t) * t
 
 
+def hit_centrally(lesson, draw):
+    """An ordinary contact comes first: zeros, or a refusal of everything, are right for special ones, too.  u = w n − K J makes J = j n the impulse that sticks."""
+    n, K = contact(draw)
+    J, w = draw(0.5, 2.0) * n, draw(0.1, 0.5)
+    close("impulse of an ordinary contact [N s]", lesson.cone_impulse(w * n - K @ J, n, K, w, draw(0.1, 1.0)), J, 1e-11, given=f"n = {n}, K = {K.tolist()}, w = {w} m/s")
+
+
 @exercise("7.10", points=0.25, hint="n · u ≥ w: there is nothing to do, J = 0")
 def test_contacts_that_part_fast_enough_get_no_impulse(lesson, draw):
+    hit_centrally(lesson, draw)
     n, K = contact(draw)
     for u_n, w in ((draw(0.5, 2.0), 0.0), (draw(1.1, 2.0), draw(0.1, 1.0))):
         got = lesson.cone_impulse(meeting(draw, n, draw(0.5, 3.0), u_n), n, K, w, draw(0.1, 1.0))
@@ -254,6 +265,7 @@ def test_a_contact_slides_where_sticking_would_have_to_pull(lesson, draw):
 
 @exercise("7.10", points=0.5, hint="call check_contact first")
 def test_contacts_without_physics_are_refused(lesson, draw):
+    hit_centrally(lesson, draw)
     n, K = contact(draw)
     u = meeting(draw, n, 1.0, -1.0)
     for what, arguments in (("a negative friction", (u, n, K, 0.0, -draw(0.1, 1.0))), ("a zero normal", (u, STILL, K, 0.0, 0.3)), ("a normal of length 2", (u, 2.0 * n, K, 0.0, 0.3)),
@@ -433,7 +445,9 @@ def test_a_backtracking_step_follows_a_bouncing_ball_exactly(lesson, draw):
 def test_a_step_leaves_its_input_alone_and_says_when_impacts_have_no_end(lesson, draw):
     p, t, pull, along = drop(draw, lesson, 2, 1.0)
     x, v = p.point + draw(0.5e-4, 1e-4) * p.n, 0.0 * t
-    before = x.copy()
+    before, high = x.copy(), p.point + 5.0 * p.n
+    flown, _ = lesson.backtracking_step(lesson.falling_acceleration, 0.0, high, v, 0.1, p)
+    close("position after 0.1 s of free fall [m]", flown, high + 0.005 * (along * t - pull * p.n), 1e-11, given=f"{p}")
     lesson.backtracking_step(lesson.falling_acceleration, 0.0, x, v, 0.1, p)
     close("the position that was handed in [m]", x, before, 0.0)
     close("the velocity that was handed in [m/s]", v, np.zeros(2), 0.0)

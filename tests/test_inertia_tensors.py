@@ -50,6 +50,7 @@ def test_a_body_balances_on_its_centre_of_mass(lesson, draw):
 @exercise("4.1", points=0.5, hint='after summing the masses: check_positive("total mass [kg]", M)')
 def test_what_has_no_mass_has_no_centre(lesson, draw):
     m, x = cloud(draw, 2)
+    close("total mass of what has some [kg]", lesson.centre_of_mass(m, x)[0], sum(m), ROUNDED, f"m = {m}")
     raises("two masses of 0 kg", BadInput, lesson.centre_of_mass, 0.0 * m, x)
     raises("a mass and its negative: together 0 kg", BadInput, lesson.centre_of_mass, np.array([m[0], -m[0]]), x)
     raises("negative masses", BadInput, lesson.centre_of_mass, -m, x)
@@ -240,7 +241,8 @@ def test_parts_make_the_body_that_their_points_make(lesson, draw):
 
 @exercise("4.12", points=0.5, hint="centre_of_mass raises BadInput for you: call it")
 def test_parts_without_mass_are_refused(lesson, draw):
-    x, I = draw(-1.0, 1.0, (2, 3)), np.stack([np.eye(3), np.eye(3)])
+    x, I, m = draw(-1.0, 1.0, (2, 3)), np.stack([np.eye(3), np.eye(3)]), draw(0.5, 3.0, 2)
+    close("mass of two parts that have some [kg]", lesson.combine(m, x, I)[0], sum(m), ROUNDED, f"m = {m}")
     raises("a body and a hole as heavy: together 0 kg", BadInput, lesson.combine, np.array([1.0, -1.0]), x, I)
 
 
@@ -306,6 +308,7 @@ def test_impossible_tensors_are_refused(lesson, draw):
         "moments 1, 1 and 1e-15: nearly a line": turned([1e-15 * middle, middle, middle], np.eye(3)),
         "a moment 1e-12 above the sum of the others": np.diag([low, middle, (low + middle) * (1.0 + 1e-12)]),
     }
+    lesson.check_inertia(np.diag([low, middle, middle]))               # a possible one passes
     for what, I in impossible.items():
         raises(what, BadInput, lesson.check_inertia, I)
     for i, j in ((0, 1), (0, 2), (2, 1)):
@@ -321,6 +324,7 @@ def test_impossible_tensors_are_refused(lesson, draw):
           hint="round-off must not condemn a thin plate, I₃ = I₁ + I₂: allow ε = TENSOR_ROUND_OFF of it")
 def test_possible_tensors_pass(lesson, draw):
     low, middle = draw(0.5, 1.0), draw(1.0, 1.5)
+    raises("an impossible tensor, with a negative moment", BadInput, lesson.check_inertia, np.diag([-low, middle, middle]))
     lesson.check_inertia(np.diag([low, low, low]))
     lesson.check_inertia(np.diag([1e-6 * low, low, low]))              # a needle
     lesson.check_inertia(1e-9 * np.diag([low, middle, low + middle]))  # a plate, small and light
@@ -476,6 +480,7 @@ def test_open_and_crooked_meshes_are_refused(lesson, draw):
               "one triangle twice": np.concatenate([faces, faces[k:k + 1]]),
               "a tube: both lids missing, though the areas of the rest add up to nothing": faces[4:],
               "a number that no corner has": np.where(faces == len(x) - 1, len(x), faces), "a negative number": np.where(faces == 0, -1, faces)}
+    lesson.check_closed(len(x), faces)                                 # a closed one passes
     for what, wrong in broken.items():
         raises(what, BadInput, lesson.check_closed, len(x), np.ascontiguousarray(wrong))
     k = int(np.flatnonzero(np.all(faces > 0, axis=1))[0])
@@ -486,6 +491,7 @@ def test_open_and_crooked_meshes_are_refused(lesson, draw):
 @exercise("4.16", points=0.25,
           hint="compare what is there with what goes back, edge by edge; how the triangles are ordered does not matter")
 def test_closed_meshes_pass(lesson, draw):
+    raises("an open mesh: a tetrahedron without one of its sides", BadInput, lesson.check_closed, 4, TETRAHEDRON[1:])
     lesson.check_closed(4, TETRAHEDRON)
     x, faces = box_mesh(draw(0.3, 1.5, 3), np.zeros(3))
     lesson.check_closed(len(x), faces)
@@ -556,7 +562,9 @@ def test_a_mesh_far_from_the_origin_keeps_its_digits(lesson, draw):
 
 @exercise("4.17", points=0.5, hint="check the density, the corners, the edges; then the volume: below zero, the mesh is inside-out")
 def test_meshes_without_an_inside_are_refused(lesson, draw):
-    x, faces = box_mesh(draw(0.3, 1.5, 3), draw(-1.0, 1.0, 3))
+    size = draw(0.3, 1.5, 3)
+    x, faces = box_mesh(size, draw(-1.0, 1.0, 3))
+    close("mass of a box at 1 kg/m³ [kg]", lesson.mesh_body(1.0, x, faces)[0], np.prod(size), ROUNDED, f"size = {size}")
     for density in (0.0, -1.0, np.nan):
         raises(f"density {density} kg/m³", BadInput, lesson.mesh_body, density, x, faces)
     raises("a mesh turned inside-out", BadInput, lesson.mesh_body, 1.0, x, np.ascontiguousarray(faces[:, ::-1]))

@@ -65,7 +65,8 @@ def test_a_link_knows_how_much_too_long_it_is_and_where_its_ends_should_go(lesso
 
 @exercise("8.1", points=0.25, hint="no length, no direction: raise BadInput as the docstring says, before dividing")
 def test_a_link_whose_ends_coincide_is_refused(lesson, draw):
-    x = draw(-2.0, 2.0, 2)
+    x, n, length, rest = draw(-2.0, 2.0, 2), direction(draw, 2), draw(0.5, 3.0), draw(0.5, 3.0)
+    close("constraint of a link with a length [m]", lesson.distance_constraint(x + length * n, x, rest)[0], length - rest, ROUND_OFF, given=f"{length} m long, rest = {rest} m")
     raises("a link whose ends coincide", BadInput, lesson.distance_constraint, x, x.copy(), draw(0.5, 2.0))
 
 
@@ -104,7 +105,9 @@ def test_a_projection_meets_a_linear_constraint_at_once_and_shares_it_by_inverse
 
 @exercise("8.2", points=0.5, hint="when Σ w|∇C|² is 0 nothing can move: raise BadInput instead of dividing by it")
 def test_a_constraint_that_nothing_can_meet_is_refused(lesson, draw):
-    gradients = draw(0.5, 2.0, (2, 3))
+    gradients, C = draw(0.5, 2.0, (2, 3)), draw(0.5, 1.0)
+    moved = np.asarray(lesson.projection(C, gradients, np.ones(2)), dtype=float)
+    close("C + Σ ∇C · Δx of a constraint that can be met", C + np.sum(gradients * moved), 0.0, ROUND_OFF, given=f"C = {C}, ∇C = {gradients.tolist()}")
     raises("a constraint between immovable points", BadInput, lesson.projection, draw(0.5, 1.0), gradients, np.zeros(2))
     raises("a constraint without a gradient", BadInput, lesson.projection, draw(0.5, 1.0), 0.0 * gradients, np.ones(2))
 
@@ -457,6 +460,9 @@ def test_after_a_visit_a_compliant_constraint_obeys_hookes_law(lesson, draw):
 
 @exercise("8.12", points=0.5, hint="ask `not alpha >= 0.0`, which NaN answers, too; and a weight of 0 before you divide")
 def test_a_negative_compliance_and_a_constraint_without_mass_are_refused(lesson, draw):
+    C, alpha = draw(0.1, 1.0), draw(0.001, 0.1)
+    change = lesson.compliant_multiplier(C, 0.0, 1.0, alpha, 0.1)
+    close("C + α λ after an ordinary visit [m]", C + change + alpha * change / 0.1**2, 0.0, 1e-10, given=f"C = {C} m, α = {alpha} m/N")
     for alpha in (-draw(0.001, 0.1), np.nan):
         raises("a compliance that is none", BadInput, lesson.compliant_multiplier, 0.1, 0.0, 1.0, alpha, 0.1)
     for alpha in (0.0, draw(0.001, 0.1)):

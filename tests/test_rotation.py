@@ -210,7 +210,11 @@ def test_the_third_way_turns_about_omega_by_twice_an_arc_tangent(lesson, draw):
 
 @exercise("5.10", points=0.25, hint="normalise with unit: it raises BadInput where there is nothing to normalise")
 def test_a_quaternion_of_length_zero_is_refused(lesson, draw):
-    raises("q = 0", BadInput, lesson.quaternion_update, np.zeros(4), spin_of(draw), 0.1)
+    q, omega = orientation(draw), spin_of(draw)
+    rate = np.linalg.norm(omega)
+    close("orientation of a q that has a length, after 0.1 s", turn(lesson.quaternion_update(q, omega, 0.1)), about(2.0 * np.arctan(0.05 * rate) / rate * omega) @ turn(q),
+          EXACT, given=f"q = {q}, ω = {omega}")
+    raises("q = 0", BadInput, lesson.quaternion_update, np.zeros(4), omega, 0.1)
 
 
 # ---------------------------------------------------------------------------------------------- the lecture's loop
@@ -353,8 +357,18 @@ def test_newtons_method_finds_the_root_of_a_step_too_long_for_going_round_the_eq
               given=f"I_body = {I_body}, ω in the body {omega_body}, dt = {dt}")
 
 
+def turn_once(lesson, draw):
+    """An ordinary turn comes first: who returns the q that was handed in, or refuses everything, keeps energies and leaves resting bodies, too."""
+    q, I_body, omega, dt = orientation(draw), moments(draw), spin_of(draw), draw(0.1, 0.4)
+    L = inertia(q, I_body) @ omega
+    before, after = turn(q).T @ L, turn(lesson.midpoint_turn(q, L, I_body, dt)).T @ L
+    m = 0.5 * (before + after)
+    close("ℓ_new − ℓ − dt m × w of an ordinary turn [kg m²/s]", after - before - dt * np.cross(m, m / I_body), np.zeros(3), 1e-11, given=f"ω = {omega}, dt = {dt}")
+
+
 @exercise("5.16", points=0.5, hint="does Newton's method go on until the correction is small? Then a turn changes the energy in its last digits only")
 def test_the_midpoint_turn_keeps_the_energy_however_often(lesson, draw):
+    turn_once(lesson, draw)
     q, I_body, omega = orientation(draw), moments(draw), spin_of(draw)
     L, dt = inertia(q, I_body) @ omega, 0.3
     energy = lambda q: 0.5 * np.sum((turn(q).T @ L) ** 2 / I_body)
@@ -366,12 +380,14 @@ def test_the_midpoint_turn_keeps_the_energy_however_often(lesson, draw):
 
 @exercise("5.16", points=0.25, hint="at rest m = 0, and 0 ≤ 0 must end the loop")
 def test_the_midpoint_turn_leaves_a_resting_body(lesson, draw):
+    turn_once(lesson, draw)
     q, I_body = orientation(draw), moments(draw)
     close("q of a body at rest", lesson.midpoint_turn(q, np.zeros(3), I_body, 0.1), q, EXACT)
 
 
 @exercise("5.16", points=0.25, hint="when the loop ends without an answer, raise Diverged: do not turn by whatever m is then")
 def test_the_midpoint_turn_solves_its_equation_or_says_that_it_did_not(lesson, draw):
+    turn_once(lesson, draw)
     raises("an L that is not a number", Diverged, lesson.midpoint_turn, orientation(draw), np.full(3, np.nan), moments(draw), 0.1)
     for _ in range(20):                                                  # ten radians a step and more: Newton's method often loses its way
         q, I_body, omega, dt = orientation(draw), moments(draw), spin_of(draw), draw(5.0, 20.0)

@@ -133,7 +133,10 @@ def test_an_angular_spring_takes_the_short_way_round(lesson, draw):
 
 @exercise("2.6", points=0.5, hint="when the squared length of either arm is 0.0, raise BadInput before you divide by it")
 def test_an_angular_spring_refuses_an_arm_without_length(lesson, draw):
-    a, b, c = hinge(draw, draw(1.0, 2.0))
+    rest, k = draw(2.2, 2.8), draw(2.0, 4.0)
+    a, b, c = points = hinge(draw, draw(1.0, 2.0))
+    force = np.array(lesson.angular_spring_forces(a, b, c, rest, k))
+    close("forces of arms that have a length [N]", force, -slope(lambda y: angular_energy(y, rest, k), points), 1e-12)
     raises("a = b", BadInput, lesson.angular_spring_forces, b, b, c, draw(0.5, 1.5), draw(2.0, 4.0))
     raises("c = b", BadInput, lesson.angular_spring_forces, a, b, b, draw(0.5, 1.5), draw(2.0, 4.0))
 
@@ -198,6 +201,9 @@ def test_dampers_are_the_slope_of_the_dissipation_and_let_a_mesh_turn_freely(les
 def test_springs_push_nothing_from_outside(lesson, draw):
     for d in (1, 2, 3):
         x, v, mesh = tetrahedron(lesson, draw, d)
+        at_rest, l = lesson.spring_forces(x, 0.0 * v, mesh), lengths(x, mesh)
+        # forces T along the springs do the work −Σ T l where everything grows to twice its size; round-off as below, of ten such terms
+        close(f"Σ F · x of springs at rest in {d}D [N m]", np.sum(at_rest * x), -np.sum(mesh.k * (l - mesh.rest) * l), 1e-11)
         force = lesson.spring_forces(x, v, mesh)
         # round-off of forces below 200 N, on levers of about 2 m
         close(f"sum of all forces in {d}D [N]", force.sum(axis=0), np.zeros(d), 1e-12)
@@ -207,6 +213,8 @@ def test_springs_push_nothing_from_outside(lesson, draw):
 @exercise("2.7", points=0.5, hint="when the squared length is 0.0, raise BadInput before you divide by it")
 def test_a_spring_without_length_is_refused(lesson, draw):
     x, v, mesh = tetrahedron(lesson, draw, 2)
+    expected = -slope(lambda x: 0.5 * np.sum(mesh.k * (lengths(x, mesh) - mesh.rest) ** 2), x)
+    close("forces of springs that have a length [N]", lesson.spring_forces(x, 0.0 * v, mesh), expected, 1e-12)
     x[3] = x[1]
     raises("two ends in one place", BadInput, lesson.spring_forces, x, v, mesh)
 

@@ -23,7 +23,7 @@ class NotYet(AssertionError):
     """An answer that is not right yet.
 
     quantity and tolerance may be shown to anyone.  given (the inputs), expected and got may not when the inputs are
-    secret; then error, the size of what is wrong, stands in for them.
+    secret; then error, in few words, stands in for them.
     """
 
     def __init__(self, quantity, expected, got, tolerance, error="", given=""):
@@ -61,7 +61,7 @@ def close(quantity, got, expected, tolerance, given=""):
     if not np.all(off <= tolerance):
         allowed = f"{tolerance:.1e}" if tolerance else "none: exactly this"
         texts = compared(expected, array, ~(off <= tolerance))
-        raise NotYet(quantity, *texts, allowed, f"{np.max(off):.1e} off", given)
+        raise NotYet(quantity, *texts, allowed, how_far(np.max(off), np.max(np.abs(expected))), given)
 
 
 def between(quantity, got, low, high, given=""):
@@ -70,7 +70,8 @@ def between(quantity, got, low, high, given=""):
     if not low <= value <= high:
         edge, shown = apart(low if value < low else high, value)
         ends = (edge, number(high)) if value < low else (number(low), edge)
-        raise NotYet(quantity, " to ".join(ends), shown, "", f"{max(low - value, value - high):.1e} off", given)
+        off = how_far(max(low - value, value - high), max(abs(low), abs(high)))
+        raise NotYet(quantity, " to ".join(ends), shown, "", off, given)
 
 
 def raises(quantity, error, function, *arguments, naming=()):
@@ -92,6 +93,18 @@ def raises(quantity, error, function, *arguments, naming=()):
             raise NotYet(quantity, values, str(e), "", "another value") from None
     else:
         raise NotYet(quantity, f"{error.__name__} to be raised", "no error", "", "no error")
+
+
+OFF = ("slightly off", "clearly off", "grossly off")
+
+
+def how_far(off, size):
+    """One of three words for an error: below a hundredth of the expected size, below all of it, beyond.
+
+    Where zero is expected, the size is one unit.  A number here would leak a digit of a secret input with each attempt.
+    """
+    part = off / (size or 1.0)
+    return OFF[0] if part < 0.01 else OFF[1] if part < 1.0 else OFF[2]
 
 
 # ---------------------------------------------------------------------------------------------- what is read

@@ -11,12 +11,14 @@ from typing import NamedTuple
 
 from validate import binding
 
-from . import children, points, remote, sandbox
+from . import children, expect, points, remote, sandbox
 from .box import CROWDED
 from .submissions import spelt_out
 
 BUDGET = 60.0                # of one lesson of one submission, all calls together [s]: the worked one takes 1
 MEMORY = 2 << 30             # so much may the grader's own process grow by what a student's code hands back, which broadcasts [bytes]
+OTHER_NUMBERS, NOT_REFUSED, NO_ANSWER = "not an array of finite numbers of the right shape", "not the error that the docstring asks for", "an error, or no answer"
+WORDS = (*expect.OFF, OTHER_NUMBERS, NOT_REFUSED, NO_ANSWER)
 PRINTED = 2000               # of what a student's code prints, so much is shown [characters]
 
 
@@ -129,27 +131,27 @@ def verdict(row, found, handed_in):
             why = "it was not run" if handed_in else f"{lesson}.py was not handed in"
             return {**base, "status": "not run" if handed_in else "not handed in", "earned": 0, "kind": kind, "says": {"got": why}}
         if o.status != "passed":
-            return {**base, "status": o.status, "earned": 0, "kind": kind, "hint": readable(o.hint), "says": says(o, kind)}
+            told = {"status": "not yet"} if kind == "hidden" else {"status": o.status, "hint": readable(o.hint)}       # the hint may follow from the error
+            return {**base, **told, "earned": 0, "kind": kind, "says": says(o, kind)}
     return {**base, "status": "passed", "earned": worth, "kind": "", "says": {}}
 
 
 def says(o, kind):
-    """What a student may read about a test.  With secret inputs only the size of the error is told, nothing that they could be read off."""
-    told = {"quantity": o.quantity, "given": o.given, "expected": o.expected, "got": o.got, "tolerance": o.tolerance}
+    """What a student may read about a test.  With secret inputs it is what was compared and one of a few words: a program that knows the inputs could
+    write them into anything else, a tolerance that follows from its answer or the name of an error."""
     if kind == "hidden":
-        told = {"quantity": o.quantity, "got": roughly(o.error) or o.status, "tolerance": o.tolerance}
+        return {"quantity": readable(o.quantity), "got": in_a_word(o.error)}
+    told = {"quantity": o.quantity, "given": o.given, "expected": o.expected, "got": o.got, "tolerance": o.tolerance}
     return {name: readable(text) for name, text in told.items() if text}
 
 
-def roughly(error):
-    """The size of an error by its power of ten, and no shape: a program that knows secret inputs could write them into the digits."""
-    if error.startswith("shape "):
-        return "an array of another shape"
-    size = re.fullmatch(r"(\S+) off", error)
-    if not size:
+def in_a_word(error):
+    """One of WORDS for whatever was wrong."""
+    if error in expect.OFF:
         return error
-    number = float(size[1])
-    return "more than 1000 off" if number >= 1000.0 else "less than 1e-15 off" if number < 1e-15 else f"about 1{size[1][size[1].index('e'):]} off"
+    if error in ("no error", "another error", "another value"):
+        return NOT_REFUSED
+    return OTHER_NUMBERS if re.match(r"shape |an? |not finite$", error) else NO_ANSWER
 
 
 def readable(text):

@@ -9,6 +9,7 @@ Nothing is unpickled, and every size is checked before memory is asked for.  *Le
 
 import json
 import math
+import numbers
 import struct
 
 import numpy as np
@@ -16,6 +17,7 @@ import numpy as np
 MAGIC, HEADER = b"WBK1", struct.Struct("<4sIQ")
 MAX_TREE, MAX_ARRAYS, MAX_DEPTH = 1 << 18, 1 << 25, 24                 # [bytes], [bytes], [-]: the tests need a hundredth
 DTYPES = {"b1", "u1", "i4", "i8", "f4", "f8", "c16"}
+MOST_INT = 2**63 - 1
 MESSAGES = {"call": [(str, tuple)], "error": [(tuple, str, str)]}      # what follows the kind of a message; a value's is looked at in `answer`
 
 
@@ -32,12 +34,12 @@ def pack(value, name_of=None):
             raise WireError("nested too deep")
         if value is None or type(value) in (bool, int, float, str):
             return value
-        if isinstance(value, np.generic):
-            return tree(value.item())
+        if isinstance(value, np.bool_):
+            return bool(value)
+        if isinstance(value, numbers.Real):                            # also of NumPy, long ones and fractions: a right answer may be any
+            return int(value) if isinstance(value, numbers.Integral) else float(value)
         if isinstance(value, np.ndarray):
-            plain = np.array(value, order="C", subok=False)            # a copy without tricks
-            if plain.dtype.str[1:] not in DTYPES:
-                raise WireError(f"an array of {plain.dtype} is not plain data")
+            plain = usual(np.array(value, order="C", subok=False))     # a copy without tricks
             arrays.append(plain.astype(plain.dtype.newbyteorder("<")).tobytes())
             return {"a": [plain.dtype.str[1:], list(plain.shape)]}
         if isinstance(value, tuple) and hasattr(value, "_fields"):
@@ -50,6 +52,20 @@ def pack(value, name_of=None):
 
     head = json.dumps(tree(value)).encode()
     return HEADER.pack(MAGIC, len(head), sum(map(len, arrays))) + head + b"".join(arrays)
+
+
+def usual(array):
+    """An array of numbers as one of the kinds that go over the wire.  Raises WireError for what holds no numbers."""
+    kind = array.dtype.kind
+    if array.dtype.str[1:] in DTYPES:
+        return array
+    if kind == "O" and all(isinstance(x, numbers.Real) for x in array.flat) or kind == "f":
+        return array.astype("f8")
+    if kind in "iu":
+        return array.astype("f8" if array.size and array.max() > MOST_INT else "i8")
+    if kind == "c":
+        return array.astype("c16")
+    raise WireError(f"an array of {array.dtype} is not plain data")
 
 
 def read(stream):
