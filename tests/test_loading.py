@@ -18,7 +18,7 @@ from validate.generate import stub
 from .grading import example, marking, sandbox
 from .kernels import kernel, ran
 
-pytestmark = pytest.mark.xdist_group("notebooks")        # one kernel at a time, see test_notebooks
+pytestmark = pytest.mark.xdist_group("checks of a notebook")          # they start the process that checks are copied from
 WORKED = example.worked("integrators")
 FIRST, LAST = 1, WORKED.count("\n") + 1                  # of the file's own lines, and of those that are added
 CALLS = stub((SOLUTIONS / "integrators.py").read_text()) + "euler_step(0, 0, 0, 0, 0, 0)\n"
@@ -147,6 +147,7 @@ def test_a_file_that_is_gone_is_named(told, tmp_path):
         notebook.check("1.1")
         notebook.mine("integrators")
     said = told(call)
+    assert "has no euler_step" in notebook.source_of("integrators", "euler_step")
     assert said.count("there is no such file") == 2 and "Exercise 1.1: not yet" in said
     assert "lessons/integrators.py cannot be loaded" in said
 

@@ -62,7 +62,8 @@ def mine(lesson):
 def source_of(lesson, function):
     """The text of your function as saved just now, whether the file loads or not."""
     file = folder() / f"{lesson}.py"
-    found = re.search(rf"^def {function}\(.*?(?=^\S|\Z)", file.read_text(encoding="utf-8", errors="replace"), re.M | re.S)
+    text = file.read_text(encoding="utf-8", errors="replace") if file.is_file() else ""
+    found = re.search(rf"^def {function}\(.*?(?=^\S|\Z)", text, re.M | re.S)
     return found[0].rstrip() if found else lacks(file, function)
 
 
@@ -78,7 +79,10 @@ def _say(sentence):
 
 
 class StandIn:
-    """In place of worked answers that are not in this copy: your lesson, as `mine` gave it last; where it cannot be loaded, what is given in it."""
+    """In place of worked answers that are not in this copy: your lesson, as `mine` gave it last.
+
+    Where it cannot be loaded, what is given in it.
+    """
 
     def __init__(self, lesson, withheld):
         self.lesson, self.withheld = lesson, withheld
@@ -96,8 +100,8 @@ def answers(lesson):
     withheld = binding.withheld(lesson)
     if not withheld:
         return binding.bind(lesson)
-    display(HTML(f"<p>The worked answers of {escape(lesson)} are not in this copy of the workbook: your own functions stand in for them. "
-                 "What a figure calls truth does not come from them.</p>"))
+    display(HTML(f"<p>The worked answers of {escape(lesson)} are not in this copy of the workbook: your own functions stand in "
+                 "for them. What a figure calls truth does not come from them.</p>"))
     mine(lesson)
     return StandIn(lesson, withheld)
 
@@ -150,8 +154,8 @@ def check(exercise):
     with tempfile.TemporaryDirectory() as scratch:
         file = Path(scratch) / "outcomes.json"
         try:
-            said = aside.run(str(TESTS / f"test_{lesson}.py"), f"--of={folder().resolve()}", f"--exercise={exercise}", f"--outcomes={file}",
-                             f"--rootdir={binding.ROOT}", "--tb=line")
+            said = aside.run(str(TESTS / f"test_{lesson}.py"), f"--of={folder().resolve()}", f"--exercise={exercise}",
+                             f"--outcomes={file}", f"--rootdir={binding.ROOT}", "--tb=line")
         except aside.Ended:
             _say(f"The check of exercise {exercise} ended without an answer: lessons/{lesson}.py ends the program, "
                  "or asks for more memory than there is.")

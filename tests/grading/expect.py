@@ -120,6 +120,8 @@ def number(x, digits=DIGITS):
 
 def apart(a, b):
     """Two numbers in as few digits as tell them apart; what is nearer than seven digits can tell as a difference."""
+    if not np.isfinite(b - a):
+        return number(a), number(b)
     for digits in range(DIGITS, MOST_DIGITS + 1):
         texts = number(a, digits), number(b, digits)
         last_place = 10.0 ** (floor(log10(max(abs(a), abs(b)))) + 1 - digits)

@@ -153,8 +153,9 @@ def grade_each(lesson, subjects, seed=PUBLIC, collect=False):
 
     points = Points()
     with contextlib.redirect_stdout(io.StringIO()):                   # without what only takes time: other people's plugins, and collecting garbage
-        pytest.main([str(TESTS / f"test_{lesson}.py"), f"--rootdir={TESTS.parent}", "--tb=no", "-p", "no:cacheprovider",
-                     "-p", "no:unraisableexception", "--disable-plugin-autoload", f"--seed={seed}", "-Wignore", *["--collect-only"] * collect], plugins=[Given(), points])
+        pytest.main([str(TESTS / f"test_{lesson}.py"), f"--rootdir={TESTS.parent}", "--tb=no", "-Wignore", "-p", "no:cacheprovider",
+                     "-p", "no:unraisableexception", "--disable-plugin-autoload", f"--seed={seed}", *["--collect-only"] * collect],
+                    plugins=[Given(), points])
     return {name: points.outcomes.get(name, []) for name in subjects}
 
 
