@@ -18,7 +18,7 @@ from validate.generate import stub
 from .grading import example, marking, sandbox
 from .kernels import kernel, ran
 
-pytestmark = pytest.mark.xdist_group("checks of a notebook")          # they start the process that checks are copied from
+pytestmark = pytest.mark.xdist_group("checks of a notebook")          # they share a process that checks are copied from
 WORKED = example.worked("integrators")
 FIRST, LAST = 1, WORKED.count("\n") + 1                  # of the file's own lines, and of those that are added
 CALLS = stub((SOLUTIONS / "integrators.py").read_text()) + "euler_step(0, 0, 0, 0, 0, 0)\n"
@@ -150,6 +150,18 @@ def test_a_file_that_is_gone_is_named(told, tmp_path):
     assert "has no euler_step" in notebook.source_of("integrators", "euler_step")
     assert said.count("there is no such file") == 2 and "Exercise 1.1: not yet" in said
     assert "lessons/integrators.py cannot be loaded" in said
+
+
+def test_bad_input_of_a_check_ends_in_one_sentence(told, monkeypatch):
+    def call():
+        notebook.check("1.99")
+        notebook.check(1.10)                                         # without quotes this is 1.1
+        monkeypatch.setenv("WORKBOOK_LESSONS", "no/such/folder")
+        notebook.check("1.1")
+        notebook.mine("integrators")
+    said = told(call).splitlines()
+    expected = ("1.99", "in quotes", "no/such/folder", "no/such/folder")
+    assert len(said) == 4 and all(words in sentence for words, sentence in zip(expected, said)), said
 
 
 def test_an_error_without_words_in_a_call_is_named(told):

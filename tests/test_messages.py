@@ -11,7 +11,7 @@ from validate import binding, notebook
 from .grading import example, marking, points, sandbox
 from .grading.expect import LONGEST, NotYet, between, close, numbers, raises, tidy
 
-pytestmark = pytest.mark.xdist_group("checks of a notebook")          # they start the process that checks are copied from
+pytestmark = pytest.mark.xdist_group("checks of a notebook")          # they share a process that checks are copied from
 
 
 def told(comparison, *arguments, **more):

@@ -150,11 +150,15 @@ def _unfrozen(value):
 
 def check(exercise):
     """Run the grader's tests of one exercise on your code as saved just now: not attempted, not yet, or passed."""
-    lesson = _lesson_of(exercise)
+    try:
+        lesson, own = _lesson_of(exercise), binding.subject_folder(folder())
+    except BadInput as e:
+        _say(str(e))
+        return
     with tempfile.TemporaryDirectory() as scratch:
         file = Path(scratch) / "outcomes.json"
         try:
-            said = aside.run(str(TESTS / f"test_{lesson}.py"), f"--of={folder().resolve()}", f"--exercise={exercise}",
+            said = aside.run(str(TESTS / f"test_{lesson}.py"), f"--of={own}", f"--exercise={exercise}",
                              f"--outcomes={file}", f"--rootdir={binding.ROOT}", "--tb=line")
         except aside.Ended:
             _say(f"The check of exercise {exercise} ended without an answer: lessons/{lesson}.py ends the program, "
@@ -169,7 +173,7 @@ def check(exercise):
 def _lesson_of(exercise):
     for lesson in binding.lesson_names():                              # its tests name it, whether the answers are in this copy or not
         tests = TESTS / f"test_{lesson}.py"
-        if tests.is_file() and f'"{exercise}"' in tests.read_text():
+        if isinstance(exercise, str) and tests.is_file() and f'"{exercise}"' in tests.read_text():
             return lesson
     raise BadInput(f"exercise {exercise!r}", "unknown", 'give its number in quotes, like check("1.2")')
 

@@ -149,7 +149,8 @@ class Pure:
 
     def __getattr__(self, name):
         if isinstance(self.subject, types.ModuleType) and name not in vars(self.subject):
-            raise NotYet("the file", f"a function {name}", lacks(Path(self.subject.__file__), name), "", "no such function")
+            file = Path(self.subject.__file__)
+            raise NotYet("the file", f"a function {name}", lacks(file, name), "", "no such function")
         value = getattr(self.subject, name)
         if not callable(value) or isinstance(value, type):
             return value
