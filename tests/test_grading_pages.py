@@ -108,7 +108,7 @@ def test_the_csv_has_the_columns_of_nbgrader_and_a_row_for_every_student_and_les
                  {n: submissions.Person(n) for n in ("zoe", "kim")})
     text = (tmp_path / "grades.csv").read_bytes().decode()
     assert text.splitlines()[0] == ("assignment,duedate,timestamp,student_id,last_name,first_name,email,"
-                                    "raw_score,late_submission_penalty,score,max_score")
+                                    "raw_score,late_submission_penalty,score,max_score,problems")
     rows = rows_of(tmp_path)
     assert [(r["student_id"], r["assignment"]) for r in rows] == [(n, lesson) for n in ("ada", "kim", "max", "zoe") for lesson in LESSONS]
     assert [r["score"] for r in rows] == ["6", "0", "0", "0", "", "", "6", "4"]           # the grader's failure is no zero

@@ -27,7 +27,9 @@ from . import marking, points, submissions
 HERE = Path(__file__).resolve().parent
 STYLES = (binding.ROOT / "validate" / "report" / "style.css", HERE / "templates" / "grades.css")
 COLUMNS = ("assignment", "duedate", "timestamp", "student_id", "last_name", "first_name", "email",
-           "raw_score", "late_submission_penalty", "score", "max_score")                # as nbgrader exports them
+           "raw_score", "late_submission_penalty", "score", "max_score",                # as nbgrader exports them
+           "problems")       # and what is wrong with the files
+MOST_TOLD = 20               # students that are named on the screen [-]: the page has them all
 MOST_PROBLEMS = submissions.MOST_PROBLEMS + 5          # of a submission that are shown [-]: its own, and what is added here
 MOST_BARS = 20               # of the histogram [-]: what a phone has room for
 SHOWN = ("quantity", "given", "expected", "got", "tolerance")
@@ -312,12 +314,13 @@ def table(sheets, failed, settings, people, terms):
     for student in sorted({*graded, *failed, *people}):
         one, person = graded.get(student), people.get(student) or submissions.Person(student)
         no_grade = one.result["no_grade"] if one else warning
+        problems = " | ".join([*["not on the class list"][:bool(people) and student not in people], *([failed[student]] if student in failed else one.problems if one else [])])
         for lesson in settings.lessons:
             account = one.accounts[lesson] if one else Account(False, 0.0, 0.0, 0.0, maxima[lesson])
             scores = ("", "", "") if student in failed else map(number, (account.raw, account.penalty, account.score))
             rows.writerow([cell(f"{lesson} (NOT A GRADE: {no_grade})" if no_grade else lesson), terms.due,
                            cell(one.result["timestamp"] if account.handed_in else ""), cell(student), cell(person.last_name),
-                           cell(person.first_name), cell(person.email), *scores, number(account.maximum)])
+                           cell(person.first_name), cell(person.email), *scores, number(account.maximum), cell(problems)])
     return text.getvalue()
 
 
@@ -337,16 +340,17 @@ def templates():
     return pages
 
 
-def write(out, results, failed, settings, people, terms):
+def write(out, results, failed, settings, people, terms, overlooked=()):
     """Pages, CSV and JSON in a folder; the path of the front page.
 
-    results: as marking.mark gives them · failed: {student: why the grader failed} · people: {student: Person}, the class list, or {}.
+    results: as marking.mark gives them · failed: {student: why there are no points} · people: {student: Person}, the class list, or {} ·
+    overlooked: sentences about files that are nobody's.
     """
     sheets = sorted((sheet(r, settings, terms, people.get(r["student"])) for r in results), key=lambda s: s.student)
     files = {f"students/{s.file}.html": student_page(s, terms) for s in sheets}
     files |= {f"gradescope/{s.file}.json": as_json(gradescope(s.result, settings, terms)) for s in sheets}
     files["grades.csv"] = table(sheets, failed, settings, people, terms)
-    files["index.html"] = class_page(sheets, failed, settings, people, terms)
+    files["index.html"] = class_page(sheets, failed, settings, people, terms, overlooked)
     for folder in ("students", "gradescope"):
         (out / folder).mkdir(parents=True, exist_ok=True)
     for student in {*failed, *people} - {s.student for s in sheets}:                     # what an earlier run found is not so any more
@@ -363,12 +367,12 @@ def student_page(one, terms):
                                                            warning=one.result["no_grade"])
 
 
-def class_page(sheets, failed, settings, people, terms):
+def class_page(sheets, failed, settings, people, terms, overlooked):
     """The instructor's page."""
     absent = [people[student] for student in sorted({*people} - {s.student for s in sheets} - {*failed})]
     picture = histogram([s.total("score") for s in sheets], sum(row[4] for row in settings.manifest)) if sheets else None
     return templates().get_template("class.html").render(
-        sheets=sheets, failed=sorted(failed.items()), settings=settings, people=people, terms=terms, absent=absent, picture=picture,
+        sheets=sheets, failed=sorted(failed.items()), overlooked=overlooked, settings=settings, people=people, terms=terms, absent=absent, picture=picture,
         lessons=by_lesson(sheets, settings), hardest=hardest(sheets, settings), causes=causes(sheets), warning=warning_of(sheets))
 
 
@@ -383,8 +387,20 @@ def write_whole(path, text):
     draft.replace(path)
 
 
+def show_intake(console, intake):
+    """Print what is wrong with the files, before the grading begins."""
+    problems = [(one.student, problem) for one in intake.submissions for problem in one.problems]
+    for student, problem in problems[:MOST_TOLD]:
+        console.print(f"[bold]{escape(line(student))}[/bold]: {escape(line(problem))}", highlight=False, soft_wrap=True)
+    for told in intake.overlooked[:MOST_TOLD]:
+        console.print(escape(line(told)), highlight=False, soft_wrap=True)
+    more = len(problems[MOST_TOLD:]) + len(intake.overlooked[MOST_TOLD:])
+    if more:
+        console.print(f"… and {more} more, which are on the page of the class")
+
+
 def show(console, results, failed, settings):
-    """Print the class in short: points by lesson, the hardest exercises, and where the grader failed.  Late penalties are not in it."""
+    """Print the class in short: points by lesson, the hardest exercises, and who is not graded.  Late penalties are not in it."""
     sheets = [sheet(r, settings, Terms("", 0.0)) for r in results]
     summary = Table(header_style="bold", box=None, pad_edge=False)
     for column in ("lesson", "handed in", "mean", "median", "of"):
@@ -400,5 +416,4 @@ def show(console, results, failed, settings):
     if warning_of(sheets):
         console.print(f"NOT A GRADE: {escape(line(warning_of(sheets)))}", style="bold red", highlight=False)
     for student, why in sorted(failed.items()):
-        console.print(f"[bold red]The grader failed on {escape(line(student))}[/bold red], who has no points and no zero: {escape(line(why))}",
-                      highlight=False)
+        console.print(f"[bold red]Not graded: {escape(line(student))}[/bold red], who has no points and no zero: {escape(line(why))}", highlight=False, soft_wrap=True)
