@@ -5,6 +5,7 @@ import os
 import secrets
 import sys
 from datetime import datetime
+from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated, Optional
 
@@ -17,7 +18,7 @@ from validate import binding
 from validate.__main__ import writable
 from validate.store import write_whole
 
-from . import local, marking, pages, sandbox, submissions
+from . import local, marking, pages, sandbox, similar, submissions
 
 console = Console()
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
@@ -97,10 +98,16 @@ def run(intake, settings, people, terms, jobs, executor, out):
     except KeyboardInterrupt:
         console.print(f"Interrupted. What was graded is kept in {out}: the same command goes on from there.")
         return 130
-    front = pages.write(out, [results[s.student] for s in handed_in if s.student in results], failed, settings, people, terms, intake.overlooked)
+    front = pages.write(out, [results[s.student] for s in handed_in if s.student in results], failed, settings, people, terms, about(intake, settings))
     pages.show(console, [*results.values()], failed, settings)
     console.print(f"\nThe class lies in [bold]{front}[/bold]", highlight=False, soft_wrap=True)
     return 1 if failed else 0
+
+
+def about(intake, settings):
+    """What the page says of this run."""
+    versions = f"workbook {settings.code}, Python {sys.version.split()[0]}, NumPy {version('numpy')}"
+    return pages.Run(intake.overlooked, similar.alike(intake.submissions, settings.lessons), datetime.now().isoformat(timespec="seconds"), versions, pages.fingerprint(settings.seed))
 
 
 def before(path, digest):
