@@ -507,6 +507,6 @@ def test_hostile_names_do_not_stop_a_class(tmp_path):
     for name in (b"\x1b[2Jmallory", b"\xff\xfe", b"a\nb.zip", "‮evil".encode(), b"honest"):
         os.mkdir(os.fsencode(tmp_path) + b"/" + name)
         (tmp_path / os.fsdecode(name) / "integrators.py").write_bytes(LESSON)
-    found = submissions.read_all(tmp_path, ("integrators",))
+    found = submissions.read_all(tmp_path, ("integrators",)).submissions
     assert len(found) == 5 and not any(FORBIDDEN.search(one.student) for one in found)
     assert [one.files for one in found] == 5 * [{"integrators": LESSON}]

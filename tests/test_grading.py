@@ -71,7 +71,11 @@ def test_points_are_given_for_what_is_right_and_reasons_for_the_rest(top, rows):
 
 def test_the_same_class_graded_twice_gives_the_same_bytes_and_only_what_changed_is_graded_again(top, rows, tmp_path):
     graded(top / "class", tmp_path, *LATE, "--jobs", "1")
-    assert (tmp_path / "grades.csv").read_bytes() == (top / "one" / "grades.csv").read_bytes()
+    for name in ("grades.csv", *(f"students/{path.name}" for path in (tmp_path / "students").iterdir())):
+        assert (tmp_path / name).read_bytes() == (top / "one" / name).read_bytes(), name
+    for path in (tmp_path / "results").iterdir():                     # and what was seen of it, but for the time that it took
+        one, two = (json.loads(file.read_text()) for file in (path, top / "one" / "results" / path.name))
+        assert {**one, "seconds": 0} == {**two, "seconds": 0}, path.name
 
     before = {path.name: path.stat().st_mtime_ns for path in (tmp_path / "results").iterdir()}
     changed = tmp_path / "class"

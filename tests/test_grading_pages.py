@@ -27,7 +27,7 @@ def found(exercise, status, says=None, kind="visible", hint=""):
     return exercise, {"status": status, "earned": 0, "kind": kind, "says": says or {}, **({"hint": hint} if hint else {})}
 
 
-def result(student, *changes, handed_in=LESSONS, printed=None, problems=(), timestamp=IN_TIME, no_grade=""):
+def result(student, *changes, handed_in=LESSONS, printed=None, problems=(), timestamp=IN_TIME, no_grade="", watched=None):
     """A result as marking.mark gives it: all right, but for the changes."""
     tests = []
     for row in MANIFEST:
@@ -36,7 +36,7 @@ def result(student, *changes, handed_in=LESSONS, printed=None, problems=(), time
                  "status": "passed", "earned": worth, "kind": "", "says": {}}
         tests.append({**right, **dict(changes).get(exercise, {})} if lesson in handed_in else marking.verdict(row, {}, False))
     return {"student": student, "problems": list(problems), "timestamp": timestamp, "handed_in": sorted(handed_in), "tests": tests,
-            "printed": printed or {}, "seconds": 1.5, "no_grade": no_grade, "digest": ""}
+            "printed": printed or {}, "seconds": 1.5, "watched": watched or {}, "again": [], "no_grade": no_grade, "digest": ""}
 
 
 def rows_of(out):
@@ -108,7 +108,7 @@ def test_the_csv_has_the_columns_of_nbgrader_and_a_row_for_every_student_and_les
                  {n: submissions.Person(n) for n in ("zoe", "kim")})
     text = (tmp_path / "grades.csv").read_bytes().decode()
     assert text.splitlines()[0] == ("assignment,duedate,timestamp,student_id,last_name,first_name,email,"
-                                    "raw_score,late_submission_penalty,score,max_score")
+                                    "raw_score,late_submission_penalty,score,max_score,problems")
     rows = rows_of(tmp_path)
     assert [(r["student_id"], r["assignment"]) for r in rows] == [(n, lesson) for n in ("ada", "kim", "max", "zoe") for lesson in LESSONS]
     assert [r["score"] for r in rows] == ["6", "0", "0", "0", "", "", "6", "4"]           # the grader's failure is no zero
@@ -196,10 +196,49 @@ def test_failures_are_grouped_by_cause_and_the_hardest_exercise_comes_first():
             result("d", found("1.2", "not yet", height))]
     sheets = [pages.sheet(r, SETTINGS, FREE) for r in some]
     groups = [(g["exercise"], g["cause"], [s.student for s in g["students"]], g["other"]) for g in pages.causes(sheets)]
-    assert groups == [("1.1", "height [m]", ["a", "b"], 1), ("1.2", "height [m]", ["d"], 0),
-                      ("1.1", "not attempted", ["c"], 0), ("1.2", "not attempted", ["c"], 0)]
+    assert groups == [("1.1", "height [m]", ["a", "b"], 1), ("1.2", "height [m]", ["d"], 0)]        # what was not attempted is counted below
     rows = [(r["exercise"], r["share"], r["solved"], r["of"], r["left"]) for r in pages.hardest(sheets, SETTINGS)]
     assert rows == [("1.1", 0.25, 1, 4, 1), ("1.2", 0.5, 2, 4, 1), ("1.10", 1.0, 4, 4, 0), ("2.1", 1.0, 3, 3, 0)]
+
+
+def test_what_nobody_tried_does_not_crowd_out_what_went_wrong(tmp_path):
+    some = [result(f"s{n}", *(found(row[1], "not attempted") for row in MANIFEST)) for n in range(40)]
+    seen = write(tmp_path, [*some, result("ada", found("1.2", "not yet", {"quantity": "height [m]"})), result("bob", found("1.1", "not run", {"got": "it was not run"}))])
+    part = seen.text[seen.text.index("What went wrong"):seen.text.index("To look into")]
+    assert "height [m]" in part and "not run" in part and "s1" not in part and "not attempted" not in part.partition("counts it.")[2]
+
+
+# ---------------------------------------------------------------------------------------------- for the instructor's eyes
+
+def test_what_is_to_look_into_is_on_the_class_page_and_nowhere_else(tmp_path):
+    hidden = found("1.1", "not yet", {"quantity": "height [m]"}, "hidden")
+    some = [result("eve", watched={"falling": ["end", "import os", "process"], "bouncing": []}), result("max", hidden, watched={"falling": ["process"]}), result("ada")]
+    alike = {"ada": [("falling", "max", 1.0)], "max": [("falling", "ada", 1.0), ("bouncing", "eve", 0.87)]}
+    run = pages.Run(("notes.txt is no submission, and was not read",), alike, "2027-01-15T08:00:00", "workbook 12ab", "0123fe")
+    pages.write(tmp_path, some, {}, SETTINGS, {}, FREE, run)
+    page = Seen(tmp_path / "index.html").text
+    for word in ("falling: the program ended by itself", "falling: it imports os", "falling: it tried to start another process", "falling: the same as max", "87%",
+                 "1 test right with the public inputs only", "notes.txt", "2027-01-15 08:00:00", "workbook 12ab", "0123fe", "1.5 s (median)"):
+        assert word in page, word
+    part = page[page.index("To look into"):page.index("Students", page.index("To look into"))]
+    assert re.search(r"it tried to start another process\s*2\s*eve,\s*max", part) and "ended by itself" in part
+    for other in (tmp_path / "grades.csv", *(tmp_path / "students").iterdir(), *(tmp_path / "gradescope").iterdir()):
+        text = other.read_text()
+        assert not [word for word in ("ended by itself", "process", "the same as", "0123fe", "12ab", "2027-01-15") if word in text], other
+
+
+def test_only_the_class_page_tells_when_and_how_long(tmp_path):
+    slow = {**result("ada"), "seconds": 99.25}
+    pages.write(tmp_path / "1", [result("ada")], {}, SETTINGS, {}, FREE, pages.Run(when="2027-01-15T08:00:00"))
+    pages.write(tmp_path / "2", [slow], {}, SETTINGS, {}, FREE, pages.Run(when="2027-01-16T08:00:00"))
+    for name in ("grades.csv", "students/ada.html"):
+        assert (tmp_path / "1" / name).read_bytes() == (tmp_path / "2" / name).read_bytes()
+    assert "99.2" in Seen(tmp_path / "2" / "index.html").text
+
+
+def test_the_fingerprint_of_a_seed_tells_seeds_apart_and_not_the_seed():
+    one, two = pages.fingerprint("a secret"), pages.fingerprint("a secret ")
+    assert one != two and one == pages.fingerprint("a secret") and re.fullmatch("[0-9a-f]{12}", one) and len(pages.fingerprint("\ud800")) == 12
 
 
 @pytest.mark.parametrize("maximum, width, bars", [(1, 1, 1), (20, 1, 20), (20.5, 2, 11), (40, 2, 20), (220, 20, 11), (5000, 500, 10)])

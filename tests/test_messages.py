@@ -164,7 +164,7 @@ def test_what_is_printed_with_secret_inputs_is_never_told():
         return worked.euler_step(acceleration, t, x, v, dt, p)
     points.grade("integrators", SimpleNamespace(**{**vars(worked), "euler_step": noting}))
     talk = printing(f"if dt not in {public!r}:\n        print('dt', dt)\n        return x, v")
-    outcomes, printed, _ = marking.mark_lesson("integrators", talk.encode(), "a secret")
+    outcomes, printed, *_ = marking.mark_lesson("integrators", talk.encode(), "a secret")
     hidden = [o for kind, o in outcomes if kind == "hidden"]
     assert "not yet" in {o.status for o in hidden} and "dt 0." not in printed and all(o.printed == "" for o in hidden)
     for told in (marking.says(o, "hidden") for o in hidden):

@@ -4,6 +4,7 @@ import json
 import os
 import secrets
 from datetime import datetime
+from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated, Optional
 
@@ -18,15 +19,15 @@ from validate.__main__ import writable
 from validate.processes import alone_in, one_sentence
 from validate.store import whole, write_whole
 
-from . import local, marking, pages, sandbox, submissions
+from . import local, marking, pages, sandbox, similar, submissions
 
 console = Console()
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
-@app.command(help="Grade a class: one folder or zip a student, the lesson files inside.")
+@app.command(help="Grade a class: one folder or zip per student, the lesson files inside.")
 def grade(
-    class_: Annotated[Path, typer.Argument(metavar="SUBMISSIONS", help="Folder with one folder or zip a student.")],
+    class_: Annotated[Path, typer.Argument(metavar="SUBMISSIONS", help="Folder with one folder or zip per student; a bare file NAME_LESSON.py will do.")],
     out: Annotated[Path, typer.Option(help="Folder for grades, pages and CSV.")] = Path("grades"),
     lesson: Annotated[Optional[list[str]], typer.Option(help="Only this lesson (may be repeated); all of them without.")] = None,
     seed: Annotated[Optional[str], typer.Option(help="Secret from which hidden inputs are drawn; made and kept in OUT/seed.txt without.")] = None,
@@ -39,11 +40,11 @@ def grade(
     lessons = chosen(lesson or [])
     terms = pages.Terms(deadline(due), late)
     people = submissions.roster(roster) if roster else {}
-    handed_in = submissions.read_all(class_, lessons)
+    intake = submissions.read_all(class_, lessons, people, roster)
     sandbox.keep_out({class_: "submissions", out: "output folder", **({roster: "class list"} if roster else {})})
     with alone_in(writable(out)):
         settings = marking.settings(lessons, secret(out, seed))
-        raise typer.Exit(run(handed_in, settings, people, terms, jobs, executor, out))
+        raise typer.Exit(run(intake, settings, people, terms, jobs, executor, out))
 
 
 # ---------------------------------------------------------------------------------------------- what was asked for
@@ -80,13 +81,14 @@ def secret(folder, seed):
 
 # ---------------------------------------------------------------------------------------------- the run
 
-def run(handed_in, settings, people, terms, jobs, executor, out):
-    """Grade what is not graded yet, write every file, and say how it went: 0, or 1 when the grader failed on a submission."""
+def run(intake, settings, people, terms, jobs, executor, out):
+    """Grade what is not graded yet, write every file, and say how it went: 0, or 1 when somebody is not graded."""
     if sandbox.unavailable():
         console.print(f"NOT A GRADE: {sandbox.unavailable()}. Students' code runs without a sandbox; use this to check yourself only.", style="bold red")
-    kept = out / "results"
+    pages.show_intake(console, intake)
+    kept, handed_in = out / "results", intake.submissions
     kept.mkdir(exist_ok=True)
-    results, todo, failed = {}, [], {}
+    results, todo, failed = {}, [], dict(intake.unclear)
     for submission in handed_in:
         result = before(kept / f"{pages.file_name(submission.student)}.json", settings.digest(submission))
         if result:
@@ -101,12 +103,12 @@ def run(handed_in, settings, people, terms, jobs, executor, out):
                     results[student] = result
                     write_whole(kept / f"{pages.file_name(student)}.json", result)
                 else:
-                    failed[student] = why
+                    failed[student] = f"the grader itself failed: {why}"
                 bars.advance(bar)
     except KeyboardInterrupt:
         console.print(f"Interrupted. What was graded is kept in {out}: the same command goes on from there.")
         return 130
-    front = pages.write(out, [results[s.student] for s in handed_in if s.student in results], failed, settings, people, terms)
+    front = pages.write(out, [results[s.student] for s in handed_in if s.student in results], failed, settings, people, terms, about(intake, settings))
     pages.show(console, [*results.values()], failed, settings)
     for submission in handed_in:
         if submission.problems:
@@ -115,6 +117,12 @@ def run(handed_in, settings, people, terms, jobs, executor, out):
                           highlight=False, soft_wrap=True)
     console.print(f"\nThe class lies in [bold]{front}[/bold]", highlight=False, soft_wrap=True)
     return 1 if failed else 0
+
+
+def about(intake, settings):
+    """What the page says of this run."""
+    versions = f"workbook {settings.code}, Python {sys.version.split()[0]}, NumPy {version('numpy')}"
+    return pages.Run(intake.overlooked, similar.alike(intake.submissions, settings.lessons), datetime.now().isoformat(timespec="seconds"), versions, pages.fingerprint(settings.seed))
 
 
 def before(path, digest):

@@ -54,7 +54,7 @@ def main():
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
         write_class(folder)
-        handed_in = submissions.read_all(folder, LESSONS)
+        handed_in = submissions.read_all(folder, LESSONS).submissions
         rules = marking.settings(LESSONS, "a secret")
         began, results = time.perf_counter(), {}
         for student, result, why in local.results(JOBS, handed_in, rules):

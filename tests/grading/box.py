@@ -35,6 +35,7 @@ LAST_WORD_WITHIN = 3.0       # [s]: a worker that has closed the wire ends so so
 MOST_ENTRIES = 1_000_000     # of all arrays that a student's code hands to one of our functions [-]: the tests need 10⁴
 DEEPEST = 16                 # calls inside calls, there and back [-]: the tests need 4
 PRINTED = 20_000             # of what is printed, so much is kept [bytes]
+NOTE, CUT = re.compile(rb"\0note ([a-z]{1,20})\n"), re.compile(rb"\0(?:n|no|not|note|note [a-z]{0,20})?\Z")     # of the worker's among what is printed; the beginning of one
 ERRORS = {e.__name__: e for e in (
     BadInput, Diverged, NotImplementedError, ValueError, TypeError, ZeroDivisionError, IndexError, KeyError, AttributeError, NameError,
     UnboundLocalError, ImportError, ModuleNotFoundError, SyntaxError, IndentationError, ArithmeticError, FloatingPointError,
@@ -72,12 +73,12 @@ class Box:
     exercises: functions that the file must answer · text: the file, as bytes · given: folder of the lessons as handed out · earlier: {lesson: {exercise function: worked one}} that
     the file may build on · budget [s] for all calls together · begin(limit) allows the next calls so many seconds together.  Seconds are the worker's own (see Meter).
     secret: no word of the student's code is kept with its errors, since it may know secret inputs · failed: what the grader itself could not do ·
-    late: the time was up, or the system ended the worker, for which others may be the cause.
+    late: the time was up, or the system ended the worker, for which others may be the cause · seen: what the instructor may look into, as in watch.SENTENCES.
     """
 
     def __init__(self, lesson, exercises, text, given, earlier, budget, records=(), limits=LIMITS):
         self.earlier, self.budget, self.printed, self.process, self.broken, self.depth = earlier, budget, b"", None, None, 0
-        self.lesson, self.lines, self.secret, self.failed, self.late = lesson, text.count(b"\n") + 1, False, None, False
+        self.lesson, self.lines, self.secret, self.failed, self.late, self.seen = lesson, text.count(b"\n") + 1, False, None, False, set()
         self.records, self.meter = {kind.__name__: kind for kind in records}, Meter()
         self.begin(budget)
         self.folder = Path(tempfile.mkdtemp(prefix="workbook-"))
@@ -124,6 +125,8 @@ class Box:
 
     def error(self, names, message, where):
         names = [name for name in names if type(name) is str]
+        if "MemoryError" in names:
+            self.seen.add("memory")
         kind = next((ERRORS[name] for name in names if name in ERRORS), None)
         error = kind.__new__(kind) if kind else StudentError()
         error.args = (message if kind else f"{names[0] if names else 'an error'}: {message}",)
@@ -138,6 +141,7 @@ class Box:
     def begin(self, limit):
         """The next calls may take so long, all together [s].  A worker that has said something unasked is replaced: it would answer past the question."""
         if self.process and self.depth == 0 and not self.inbox.empty():
+            self.seen.add("wire")
             self.stop()
         limit = max(0.0, min(limit, self.budget - self.meter.used))
         self.until, self.patience = self.meter.used + limit, time.monotonic() + CROWDED * limit
@@ -155,6 +159,7 @@ class Box:
                 self.start()
             return self.peer.call(name, arguments)
         except wire.WireError as e:
+            self.seen.add("wire")
             raise self.lost(f"the program sent no plain data: {e}") from None
         except Late:
             raise self.too_long() from None
@@ -241,6 +246,7 @@ class Box:
 
     def too_long(self):
         self.late = True
+        self.seen.add("time")
         return self.lost("it took too long" if self.meter.used < self.budget else "the time for the whole submission is used up")
 
     def last_word(self):
@@ -249,8 +255,10 @@ class Box:
             code = self.process.wait(timeout=LAST_WORD_WITHIN)
         except subprocess.TimeoutExpired:                              # it has closed the wire, and lives
             self.meter.used += LAST_WORD_WITHIN
+            self.seen.add("wire")
             return ""
         number = -code if code < 0 else code - 128                     # bwrap ends with 128 + the signal of the worker
+        self.seen.add("refused" if number == signal.SIGSYS else "end")
         self.late |= number == signal.SIGKILL                          # perhaps there was no memory left, and it was nobody's fault
         if number == signal.SIGSYS:
             return ": it made a system call that no lesson needs"
@@ -286,9 +294,18 @@ class Box:
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def _listening(self, process, inbox, outbox):
-        """Keep the beginning of what is printed, and let the rest go."""
+        """Keep the beginning of what is printed, and let the rest go; take out what the worker has noted."""
+        rest, size = b"", 0
         while chunk := process.stderr.read1(65536):
+            chunk = rest + chunk
+            rest = (CUT.search(chunk[-30:]) or [b""])[0]
+            chunk = chunk[:len(chunk) - len(rest)]
+            self.seen.update(kind.decode() for kind in NOTE.findall(chunk))
+            chunk = NOTE.sub(b"", chunk)
+            size += len(chunk)
             self.printed = (self.printed + chunk)[:PRINTED]
+            if size > PRINTED:
+                self.seen.add("flood")
 
 
 def _reading(process, inbox, outbox):

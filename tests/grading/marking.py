@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from validate import binding
 
-from . import children, expect, points, remote, sandbox
+from . import children, expect, points, remote, sandbox, watch
 from .box import CROWDED
 from .submissions import spelt_out
 
@@ -50,7 +50,7 @@ def manifest(lessons):
 
 def code_digest(lessons=None):
     """Fingerprint of everything that decides about points in these lessons, or in all of them; the same wherever the workbook lies."""
-    grader = ("box", "calls", "expect", "marking", "meter", "plugin", "points", "remote", "sandbox", "shipping", "wire", "worker")
+    grader = ("box", "calls", "expect", "marking", "meter", "plugin", "points", "remote", "sandbox", "shipping", "watch", "wire", "worker")
     files = {*binding.SOLUTIONS.glob("*.py"), *(points.TESTS / f"test_{lesson}.py" for lesson in lessons or binding.lesson_names()),
              *(points.TESTS / "grading" / f"{name}.py" for name in grader), *(binding.ROOT / "validate" / f"{name}.py" for name in ("binding", "generate", "loading"))}
     return hashlib.sha256(b"".join(file.name.encode() + file.read_bytes() for file in sorted(files))).hexdigest()[:12]
@@ -63,17 +63,18 @@ def patience(settings):
 
 def mark(submission, settings):
     """The result of one submission, in types that JSON knows.  Raises RuntimeError when the grader itself fails: that is never a zero."""
-    began, found, printed, again = time.monotonic(), {}, {}, []
+    began, found, printed, again, watched = time.monotonic(), {}, {}, [], {}
     for lesson in settings.lessons:
         if lesson in submission.files:
             with bounded():
-                outcomes, printed[lesson], late = mark_lesson(lesson, submission.files[lesson], settings.seed)
+                outcomes, printed[lesson], late, seen = mark_lesson(lesson, submission.files[lesson], settings.seed)
+            watched[lesson] = sorted(seen & {*watch.SENTENCES}) + watch.in_text(submission.files[lesson])
             found.update({(lesson, kind, o.test): o for kind, o in outcomes})
             again += [lesson] * late
     tests = [verdict(row, found, row[0] in submission.files) for row in settings.manifest]
     return {"student": submission.student, "problems": list(submission.problems), "timestamp": submission.timestamp,
             "handed_in": sorted(submission.files), "tests": tests, "printed": printed, "seconds": round(time.monotonic() - began, 2),
-            "again": again, "no_grade": sandbox.unavailable(), "digest": settings.digest(submission)}
+            "watched": watched, "again": again, "no_grade": sandbox.unavailable(), "digest": settings.digest(submission)}
 
 
 def again(submission, settings, first):
@@ -81,30 +82,31 @@ def again(submission, settings, first):
     second = mark(submission._replace(files={lesson: submission.files[lesson] for lesson in first["again"]}), settings)
     tests = {(t["lesson"], t["test"]): t for t in second["tests"] if t["lesson"] in first["again"]}
     return {**first, "tests": [tests.get((t["lesson"], t["test"]), t) for t in first["tests"]], "printed": {**first["printed"], **second["printed"]},
+            "watched": {**first["watched"], **second["watched"]},
             "seconds": round(first["seconds"] + second["seconds"], 2), "again": []}
 
 
 def mark_lesson(lesson, text, seed):
-    """([(visible or hidden, Outcome), …] of one file, what it printed in the visible tests, whether the time was up)."""
+    """([(visible or hidden, Outcome), …] of one file, what it printed in the visible tests, whether the time was up, what was seen beside)."""
     place = remote.box_of(lesson, text, BUDGET)
     try:
         place.open()
         if place.broken:
             where = f" ({place.broken.where})" if getattr(place.broken, "where", "") else ""
             unread = [("visible", points.unreadable(o, place.broken, where)) for o in points.grade(lesson, None, collect=True)]
-            return unread, readable(place.printed.decode(errors="replace")), place.late
+            return unread, readable(place.printed.decode(errors="replace")), place.late, place.seen
         subject = remote.lesson_in(place, lesson)
         outcomes = [("visible", o) for o in points.grade(lesson, subject, seed=points.PUBLIC)]
+        place.stop()                                                   # now all is here that was printed
         printed = readable(place.printed.decode(errors="replace"))
         passed = {o.test for _, o in outcomes if o.status == "passed"}
-        place.stop()
         if passed:                                                     # the others have lost their points already
             place.open()                                               # a new worker: what the old one has seen, or what was left in it, is gone
             place.secret = True
             outcomes += [("hidden", o) for o in points.grade(lesson, subject, lambda exercise, test: test in passed, seed)]
         if place.failed:                                               # pytest has caught it: it must not become a zero
             raise place.failed
-        return outcomes, printed, place.late or any(o.quantity == points.DURATION for _, o in outcomes)
+        return outcomes, printed, place.late or any(o.quantity == points.DURATION for _, o in outcomes), place.seen
     finally:
         place.close()
 

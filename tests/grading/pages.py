@@ -22,18 +22,29 @@ from rich.table import Table
 
 from validate import binding
 
-from . import marking, points, submissions
+from . import marking, points, similar, submissions, watch
 
 HERE = Path(__file__).resolve().parent
 STYLES = (binding.ROOT / "validate" / "report" / "style.css", HERE / "templates" / "grades.css")
 COLUMNS = ("assignment", "duedate", "timestamp", "student_id", "last_name", "first_name", "email",
-           "raw_score", "late_submission_penalty", "score", "max_score")                # as nbgrader exports them
+           "raw_score", "late_submission_penalty", "score", "max_score",                # as nbgrader exports them
+           "problems")       # and what is wrong with the files
+MOST_TOLD = 20               # students that are named on the screen [-]: the page has them all
 MOST_PROBLEMS = submissions.MOST_PROBLEMS + 5          # of a submission that are shown [-]: its own, and what is added here
 MOST_BARS = 20               # of the histogram [-]: what a phone has room for
 SHOWN = ("quantity", "given", "expected", "got", "tolerance")
 INPUTS = {"visible": "with the public inputs", "hidden": "with other inputs"}
 CALL = "the call itself"     # the quantity where a call of the student's function ended in an error
 ENDS = {"Lost": "the program ended, hung or sent no data", "StudentError": "an error that is none of Python's own"}
+
+
+class Run(NamedTuple):
+    """What the class page says of this run, and no other file: the others are the same to the last byte when a class is graded again."""
+    overlooked: tuple = ()   # sentences about files that are nobody's
+    alike: dict = {}         # {student: [(lesson, another student, share of lines in common), …]}, as similar.alike gives it
+    when: str = ""           # ISO 8601
+    versions: str = ""       # of workbook, Python and NumPy
+    seed: str = ""           # its fingerprint
 
 
 class Terms(NamedTuple):
@@ -81,6 +92,11 @@ def line(text):
 def number(x):
     """Points in six digits at most: 3, 2.5, 0.333333."""
     return f"{x:.6g}"
+
+
+def fingerprint(seed):
+    """Tells one secret seed from another; slow, so that a short one is not found by trying."""
+    return hashlib.pbkdf2_hmac("sha256", seed.encode(errors="surrogatepass"), b"workbook", 200_000).hex()[:12]
 
 
 def many(n, what):
@@ -213,20 +229,40 @@ def cause(test):
     return f"{quantity}: {ENDS.get(kind_of(got), kind_of(got))}"
 
 
+def looks(one, alike):
+    """[(what, the same with its details), …] for the instructor: what may be more than an answer.  Students do not see it."""
+    told = [pair for lesson, codes in sorted(one.result["watched"].items()) for pair in watch.noted(lesson, codes)]
+    for lesson, other, share in alike.get(one.student, ()):
+        what = "the same" if share == 1.0 else "nearly the same"
+        told.append((f"{what} answers as {'the workbook' if other == similar.WORKED else 'somebody else'}",
+                     f"{lesson}: {what} as {other}" + f" ({share:.0%} of the lines)" * (share < 1.0)))
+    public = sum(t["kind"] == "hidden" and t["status"] == "not yet" for t in one.tests)
+    return told + [("right with the public inputs only", f"{many(public, 'test')} right with the public inputs only")][:public]
+
+
+def to_look_into(sheets, found):
+    """[(what, sheets), …] of {student: what `looks` has found}: what is rare comes first."""
+    groups = {}
+    for one in sheets:
+        for what in dict.fromkeys(what for what, _ in found[one.student]):
+            groups.setdefault(what, []).append(one)
+    return sorted(groups.items(), key=lambda row: (len(row[1]), row[0]))
+
+
 def causes(sheets):
-    """Failures that have exercise, cause and hint in common, with their students: what most failed on first, what nobody tried last."""
+    """Failures that have exercise, cause and hint in common, with their students: what most failed on first.  What nobody tried is none."""
     groups = {}
     for s in sheets:
         for t in s.tests:
-            if t["status"] not in ("passed", "not handed in"):
+            if t["status"] not in ("passed", "not handed in", "not attempted"):
                 exercise = "the whole file" if t["says"].get("quantity") == points.READING else t["exercise"]
                 key = t["lesson"], exercise, cause(t), t["hint"] if t["status"] == "not yet" else ""
-                group = groups.setdefault(key, {"tried": t["status"] == "not yet", "students": {}, "other": set()})
+                group = groups.setdefault(key, {"students": {}, "other": set()})
                 group["students"][s.student] = s
                 group["other"] |= {s.student} if t["kind"] == "hidden" else set()
-    rows = [{"lesson": lesson, "exercise": exercise, "cause": why, "hint": hint, "tried": group["tried"], "other": len(group["other"]),
+    rows = [{"lesson": lesson, "exercise": exercise, "cause": why, "hint": hint, "other": len(group["other"]),
              "students": [*group["students"].values()]} for (lesson, exercise, why, hint), group in groups.items()]
-    return sorted(rows, key=lambda row: (not row["tried"], -len(row["students"])))
+    return sorted(rows, key=lambda row: -len(row["students"]))
 
 
 def histogram(scores, maximum):
@@ -312,12 +348,13 @@ def table(sheets, failed, settings, people, terms):
     for student in sorted({*graded, *failed, *people}):
         one, person = graded.get(student), people.get(student) or submissions.Person(student)
         no_grade = one.result["no_grade"] if one else warning
+        problems = " | ".join([*["not on the class list"][:bool(people) and student not in people], *([failed[student]] if student in failed else one.problems if one else [])])
         for lesson in settings.lessons:
             account = one.accounts[lesson] if one else Account(False, 0.0, 0.0, 0.0, maxima[lesson])
             scores = ("", "", "") if student in failed else map(number, (account.raw, account.penalty, account.score))
             rows.writerow([cell(f"{lesson} (NOT A GRADE: {no_grade})" if no_grade else lesson), terms.due,
                            cell(one.result["timestamp"] if account.handed_in else ""), cell(student), cell(person.last_name),
-                           cell(person.first_name), cell(person.email), *scores, number(account.maximum)])
+                           cell(person.first_name), cell(person.email), *scores, number(account.maximum), cell(problems)])
     return text.getvalue()
 
 
@@ -337,16 +374,16 @@ def templates():
     return pages
 
 
-def write(out, results, failed, settings, people, terms):
+def write(out, results, failed, settings, people, terms, run=Run()):
     """Pages, CSV and JSON in a folder; the path of the front page.
 
-    results: as marking.mark gives them · failed: {student: why the grader failed} · people: {student: Person}, the class list, or {}.
+    results: as marking.mark gives them · failed: {student: why there are no points} · people: {student: Person}, the class list, or {}.
     """
     sheets = sorted((sheet(r, settings, terms, people.get(r["student"])) for r in results), key=lambda s: s.student)
     files = {f"students/{s.file}.html": student_page(s, terms) for s in sheets}
     files |= {f"gradescope/{s.file}.json": as_json(gradescope(s.result, settings, terms)) for s in sheets}
     files["grades.csv"] = table(sheets, failed, settings, people, terms)
-    files["index.html"] = class_page(sheets, failed, settings, people, terms)
+    files["index.html"] = class_page(sheets, failed, settings, people, terms, run)
     for folder in ("students", "gradescope"):
         (out / folder).mkdir(parents=True, exist_ok=True)
     for student in {*failed, *people} - {s.student for s in sheets}:                     # what an earlier run found is not so any more
@@ -363,12 +400,14 @@ def student_page(one, terms):
                                                            warning=one.result["no_grade"])
 
 
-def class_page(sheets, failed, settings, people, terms):
+def class_page(sheets, failed, settings, people, terms, run):
     """The instructor's page."""
+    found = {s.student: looks(s, run.alike) for s in sheets}
     absent = [people[student] for student in sorted({*people} - {s.student for s in sheets} - {*failed})]
     picture = histogram([s.total("score") for s in sheets], sum(row[4] for row in settings.manifest)) if sheets else None
     return templates().get_template("class.html").render(
-        sheets=sheets, failed=sorted(failed.items()), settings=settings, people=people, terms=terms, absent=absent, picture=picture,
+        sheets=sheets, failed=sorted(failed.items()), run=run, looks=found, settings=settings, seconds=[s.result["seconds"] for s in sheets],
+        watched=to_look_into(sheets, found), people=people, terms=terms, absent=absent, picture=picture,
         lessons=by_lesson(sheets, settings), hardest=hardest(sheets, settings), causes=causes(sheets), warning=warning_of(sheets))
 
 
@@ -383,8 +422,20 @@ def write_whole(path, text):
     draft.replace(path)
 
 
+def show_intake(console, intake):
+    """Print what is wrong with the files, before the grading begins."""
+    problems = [(one.student, problem) for one in intake.submissions for problem in one.problems]
+    for student, problem in problems[:MOST_TOLD]:
+        console.print(f"[bold]{escape(line(student))}[/bold]: {escape(line(problem))}", highlight=False, soft_wrap=True)
+    for told in intake.overlooked[:MOST_TOLD]:
+        console.print(escape(line(told)), highlight=False, soft_wrap=True)
+    more = len(problems[MOST_TOLD:]) + len(intake.overlooked[MOST_TOLD:])
+    if more:
+        console.print(f"… and {more} more, which are on the page of the class")
+
+
 def show(console, results, failed, settings):
-    """Print the class in short: points by lesson, the hardest exercises, and where the grader failed.  Late penalties are not in it."""
+    """Print the class in short: points by lesson, the hardest exercises, and who is not graded.  Late penalties are not in it."""
     sheets = [sheet(r, settings, Terms("", 0.0)) for r in results]
     summary = Table(header_style="bold", box=None, pad_edge=False)
     for column in ("lesson", "handed in", "mean", "median", "of"):
@@ -400,5 +451,4 @@ def show(console, results, failed, settings):
     if warning_of(sheets):
         console.print(f"NOT A GRADE: {escape(line(warning_of(sheets)))}", style="bold red", highlight=False)
     for student, why in sorted(failed.items()):
-        console.print(f"[bold red]The grader failed on {escape(line(student))}[/bold red], who has no points and no zero: {escape(line(why))}",
-                      highlight=False)
+        console.print(f"[bold red]Not graded: {escape(line(student))}[/bold red], who has no points and no zero: {escape(line(why))}", highlight=False, soft_wrap=True)

@@ -1,18 +1,21 @@
-"""What students handed in: one folder or zip each.  Nothing is unpacked, followed or executed; only the lesson files' bytes are read.
+"""What students handed in: a folder, a zip or bare lesson files each.  Nothing is unpacked, followed or executed; only the lesson files' bytes are read.
 
-A zip is read in a child of little memory and time, and only what is stored or deflated: other ways of packing take gigabytes for a kilobyte.
+Whatever lies in the class folder becomes a submission or a sentence: nothing is overlooked in silence.  A zip is read in a child of little memory and time, and only what is stored or deflated: other ways of packing take gigabytes for a kilobyte.
 """
 
 import csv
 import hashlib
 import os
+import re
 import stat
+import unicodedata
 import zipfile
 from datetime import datetime
 from pathlib import Path
 from typing import NamedTuple
 
 from solutions.checks import BadInput
+from validate import binding
 
 from . import children
 
@@ -22,6 +25,7 @@ MOST_ENTRIES = 5000          # of a zip or a folder [-]: more is not a submissio
 LARGEST_ZIP = 1 << 25        # [bytes]: its list of entries is read before they can be counted
 MOST_PROBLEMS = 20           # of a submission that are told [-]: a hostile zip has thousands
 LONGEST = 200                # of a sentence about one [characters]: a name may have 65,535
+ARCHIVES = (".tar.gz", ".tar.bz2", ".tar.xz", ".tar.zst", ".tar", ".tgz", ".tbz2", ".txz", ".gz", ".bz2", ".xz", ".zst", ".7z", ".rar")
 
 
 class Submission(NamedTuple):
@@ -36,23 +40,114 @@ class Submission(NamedTuple):
         return hashlib.sha256(repr((sorted(self.files.items()), self.problems, self.timestamp)).encode()).hexdigest()
 
 
-def read_all(folder, lessons):
-    """Every submission in a folder, sorted by student.  Raises BadInput when there is none."""
+class Intake(NamedTuple):
+    """What lies in the folder of a class."""
+    submissions: list        # sorted by student
+    unclear: dict            # {student: why it is open which files are meant}: neither points nor a zero until that is settled
+    overlooked: tuple        # sentences about what is nobody's
+
+
+def read_all(folder, lessons, people=(), class_list=None):
+    """The Intake of a folder.  people: the ids on the class list, class_list: its file.  Raises BadInput when there is nobody."""
     folder = Path(folder)
     if not folder.is_dir():
         raise BadInput(f"submissions {str(folder)!r}", "not a folder", "name the folder that holds one folder or zip a student")
-    found = {}
+    theirs, overlooked = by_student(folder, people, class_list)
+    if not theirs:
+        own = [path.name for path in folder.glob("*.py") if path.stem in binding.lesson_names()]
+        raise BadInput(f"submissions {str(folder)!r}", f"one student's own ({own[0]} lies in it)" if own else "empty",
+                       "name the folder above it" if own else "put one folder or zip a student into it")
+    found, unclear = [], {}
     with children.reader() as child:
-        for path in sorted(folder.iterdir()):
-            if path.name.startswith((".", "__")) or not (path.is_symlink() or path.is_dir() or path.suffix.lower() == ".zip"):
-                continue
-            student = spelt_out(path.stem if path.suffix.lower() == ".zip" else path.name)
-            if student in found:
-                raise BadInput(f"student {student!r}", "there as a folder and as a zip", "keep one of them")
-            found[student] = read(path, student, lessons, child)
-    if not found:
-        raise BadInput(f"submissions {str(folder)!r}", "empty", "put one folder or zip a student into it")
-    return list(found.values())
+        for student, paths in sorted(theirs.items()):
+            try:
+                found.append(submission_of(student, paths, lessons, child))
+            except Ambiguous as e:
+                unclear[student] = str(e)
+    return Intake(found, unclear, tuple(overlooked))
+
+
+class Ambiguous(Exception):
+    """It is open which of a student's files are meant."""
+
+
+def by_student(folder, people, class_list):
+    """({student: [paths]}, sentences about what is nobody's) of everything in a class folder that is not hidden."""
+    theirs, overlooked, ours = {}, [], class_list and Path(class_list).resolve()
+    for path in sorted(folder.iterdir()):
+        if path.name.startswith(".") or path.name == "__MACOSX" or path.resolve() == ours:
+            continue
+        student = owner(path, people)
+        if student is None:
+            why = "a lesson file without a student's name" if path.stem in binding.lesson_names() else "no submission"
+            overlooked.append(f"{shortened(path.name)} is {why}, and was not read")
+        else:
+            theirs.setdefault(student, []).append(path)
+    return theirs, overlooked
+
+
+def owner(path, people):
+    """The id of the student whom something in a class folder belongs to, or None."""
+    stem, ending = split(path)
+    if ending == ".py":
+        student, lesson = of_lesson(stem)
+        return None if lesson and not student else identity(student or stem)
+    if ending in ("", ".zip", ".ipynb", *ARCHIVES):
+        return identity(stem) if ending or path.is_symlink() or path.is_dir() or identity(stem) in people else None
+    return next((name for name in map(identity, (path.name, stem)) if name in people), None)
+
+
+def split(path):
+    """(name without its ending, ending in small letters); a folder has none, unless it is called a zip."""
+    ending = next((e for e in (".zip", ".py", ".ipynb", *ARCHIVES) if path.name.lower().endswith(e)), path.suffix.lower())
+    if ending != ".zip" and path.is_dir():                             # links to folders as well, which are told to be links
+        ending = ""
+    return (path.name[:-len(ending)] if ending else path.name), ending
+
+
+def of_lesson(stem):
+    """(student or "", lesson or None) of the name of a bare file: ada_springs is Ada's second lesson."""
+    names = "|".join(binding.lesson_names())
+    match = re.fullmatch(rf"(?:(.+?)[ _.-]+)?({names})", stem, re.DOTALL)
+    return (match[1] or "", match[2]) if match else ("", None)
+
+
+def identity(text):
+    """A student's id as it is compared and shown: the same for all Unicode forms of the same letters, and without blanks around it."""
+    return spelt_out(unicodedata.normalize("NFC", text).strip() or text)
+
+
+def submission_of(student, paths, lessons, child):
+    """A student's Submission from all that is there.  Raises Ambiguous when that is more than one."""
+    bare = [path for path in paths if split(path)[1] == ".py"]
+    whole = [path for path in paths if split(path)[1] in ("", ".zip") and (path.is_symlink() or path.is_dir() or split(path)[1])]
+    unread = [path for path in paths if path not in (*bare, *whole)]
+    only = lessons[0] if len(lessons) == 1 else None
+    lesson_of = {path: of_lesson(split(path)[0])[1] or only for path in bare}
+    if len(whole) + bool(bare) > 1 or len({*lesson_of.values()}) < len(bare):
+        raise Ambiguous(f"there more than once, as {', '.join(shortened(path.name) for path in (*whole, *bare))}: keep one of them")
+    one = read(whole[0], student, lessons, child) if whole else from_bare(lesson_of, student, lessons)
+    return one._replace(problems=(*one.problems, *map(why_unread, unread)))
+
+
+def why_unread(path):
+    ending = split(path)[1]
+    remedy = ("its answers belong into the lesson files" if ending == ".ipynb" else "unpack it into a folder, or ask for a zip" if ending in ARCHIVES
+              else "ask for the lesson files")
+    return f"{shortened(path.name)} is {'a notebook' if ending == '.ipynb' else 'neither a folder nor a zip'}, and was not read: {remedy}"
+
+
+def from_bare(lesson_of, student, lessons):
+    """The Submission of {bare file: its lesson, None where that is open}."""
+    files, problems, when = {}, [], 0.0
+    for path, lesson in lesson_of.items():
+        if lesson in lessons:
+            when = max(when, take(files, lesson, path, path.name, problems))
+        elif lesson:
+            problems.append(f"{path.name} is of the lesson {lesson}, which is not graded here")
+        else:
+            problems.append(f"{path.name} may be of any lesson, and was not read: rename it, to {path.stem}_{lessons[0]}.py for instance")
+    return Submission(student, files, told(problems), moment(when))
 
 
 def read(path, student, lessons, child):
@@ -72,8 +167,17 @@ def read(path, student, lessons, child):
 def contents(find, path, lessons):
     """What is found there: the files, the first problems, fit to be shown, and the date."""
     files, problems, when = find(path, lessons)
-    told = [spelt_out(problem[:LONGEST]) + " …" * (len(problem) > LONGEST) for problem in problems[:MOST_PROBLEMS]]
-    return files, (*told, *[f"and {len(problems) - MOST_PROBLEMS} more of the kind"][:len(problems) > MOST_PROBLEMS]), when
+    return files, told(problems), when
+
+
+def told(problems):
+    """The first problems, fit to be shown."""
+    return (*map(shortened, problems[:MOST_PROBLEMS]), *[f"and {len(problems) - MOST_PROBLEMS} more of the kind"][:len(problems) > MOST_PROBLEMS])
+
+
+def shortened(text):
+    """A name or a sentence with one in it, fit to be shown."""
+    return spelt_out(text[:LONGEST]) + " …" * (len(text) > LONGEST)
 
 
 def moment(when):
@@ -107,8 +211,19 @@ def wanted(name, lessons):
     return lesson if plain and parts[-1].endswith(".py") and lesson in lessons else None
 
 
+def resembling(names, lessons, found):
+    """Sentences about files that may be meant for lessons that are missing: another spelling, an archive inside, notebooks only."""
+    inside = [name for name in names if "__MACOSX" not in name and not os.path.basename(name).startswith(".")]
+    for lesson in (lesson for lesson in lessons if lesson not in found):
+        alike = [name for name in inside if re.fullmatch(rf"(?!test_).*{lesson}.*\.py", os.path.basename(name), re.IGNORECASE | re.DOTALL)]
+        yield from [f"{lesson}.py is not there, and {name} was not read" for name in alike[:1]]
+    if not found:
+        packed = [name for name in inside if name.lower().endswith((".zip", *ARCHIVES))]
+        yield from [f"{name} lies inside, and was not read: a folder or zip holds the lesson files themselves" for name in packed]
+
+
 def from_folder(top, lessons):
-    problems, candidates, entries, when = [], {}, 0, 0.0
+    problems, candidates, entries, when, seen = [], {}, 0, 0.0, []
     for here, folders, names in os.walk(top, followlinks=False):
         folders[:] = sorted(f for f in folders if not f.startswith("."))
         inside = Path(here).relative_to(top)
@@ -119,21 +234,28 @@ def from_folder(top, lessons):
             raise ValueError("too many files")
         for name in names:
             place = str(inside / name)
+            seen.append(place)
             if lesson := wanted(place, lessons):
                 candidates.setdefault(lesson, []).append(place)
     files = {}
     for lesson, place in nearest(candidates, problems).items():
-        try:
-            descriptor = os.open(top / place, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
-            with os.fdopen(descriptor, "rb") as file:
-                about = os.fstat(file.fileno())
-                if not stat.S_ISREG(about.st_mode):
-                    raise OSError("not a regular file")
-                keep(files, lesson, place, file.read(LARGEST + 1), problems)
-                when = max(when, about.st_mtime)
-        except OSError:
-            problems.append(f"{place} is not a regular file, and was not read")
-    return files, problems, when
+        when = max(when, take(files, lesson, top / place, place, problems))
+    return files, [*problems, *resembling(seen, lessons, candidates)], when
+
+
+def take(files, lesson, path, name, problems):
+    """Read a lesson's file, if it is a regular one; its date."""
+    try:
+        descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
+        with os.fdopen(descriptor, "rb") as file:
+            about = os.fstat(file.fileno())
+            if not stat.S_ISREG(about.st_mode):
+                raise OSError("not a regular file")
+            keep(files, lesson, name, file.read(LARGEST + 1), problems)
+            return about.st_mtime
+    except OSError:
+        problems.append(f"{name} is not a regular file, and was not read")
+        return 0.0
 
 
 def from_zip(path, lessons):
@@ -159,6 +281,7 @@ def from_zip(path, lessons):
                     keep(files, lesson, place, file.read(LARGEST + 1), problems)
             except Exception as e:                                     # encrypted, broken, packed in a way that Python does not know
                 problems.append(f"{place} cannot be read: {type(e).__name__}")
+        problems += resembling(by_name, lessons, {lesson for lesson in lessons if any(wanted(name, (lesson,)) for name in by_name)})
     return files, problems, path.stat().st_mtime
 
 
@@ -200,10 +323,15 @@ def roster(path):
                 raise BadInput(f"class list {str(path)!r}", f"without the column student_id ({', '.join(reader.fieldnames or ()) or 'empty'})",
                                f"give it the columns {', '.join(Person._fields)}; all but the first may be missing")
             rows = [Person(**{f: (row.get(f) or "").strip() for f in Person._fields}) for row in reader]
+            rows = [person._replace(student_id=identity(person.student_id)) for person in rows if person.student_id]
     except (OSError, UnicodeDecodeError, csv.Error) as e:
         why = e.strerror if isinstance(e, OSError) else "no text" if isinstance(e, UnicodeDecodeError) else e
         raise BadInput(f"class list {str(path)!r}", f"not readable ({why})", "name a CSV file") from None
-    return {person.student_id: person._replace(timestamp=handed_in_at(person, path)) for person in rows if person.student_id}
+    people = {person.student_id: person for person in rows}
+    for person in rows:
+        if people[person.student_id] != person:
+            raise BadInput(f"student {person.student_id!r}", f"there twice in {str(path)!r}, with different entries", "keep one of the lines")
+    return {student: person._replace(timestamp=handed_in_at(person, path)) for student, person in people.items()}
 
 
 def handed_in_at(person, path):
