@@ -3,6 +3,8 @@
 import json
 import os
 import secrets
+import signal
+import sys
 from datetime import datetime
 from importlib.metadata import version
 from pathlib import Path
@@ -139,8 +141,13 @@ def on_cluster(executor, todo, settings):
     return cluster.results(executor, todo, settings)
 
 
+def interrupted(*_):
+    raise KeyboardInterrupt
+
+
 def main(arguments=None):
     """Run the command line."""
+    signal.signal(signal.SIGTERM, interrupted)                         # ends as by Ctrl-C: nothing is left, and what was graded is kept
     with one_sentence("grade"):
         app(arguments, prog_name="grade")
 
