@@ -37,10 +37,13 @@ def along_surface(draw, axes, size):
 @exercise("3.1", points=1, hint="how much of F points against n: −F · n, but never less than zero")
 def test_a_support_answers_what_presses_and_lets_go_of_what_lifts(lesson, draw):
     for d in (2, 3):
-        axes, load = frame(draw, d), draw(1.0, 20.0)
-        n, pull = axes[0], along_surface(draw, axes, draw(1.0, 20.0))
-        close("normal force [N]", lesson.normal_force(pull - load * n, n), load, ROUND_OFF, given=f"load {load} N, n = {n}")
-        close("normal force when F lifts [N]", lesson.normal_force(pull + load * n, n), 0.0, 0.0, given=f"lift {load} N, n = {n}")
+        for load in (draw(1.0, 20.0), 1e-6):
+            axes = frame(draw, d)
+            n, pull = axes[0], along_surface(draw, axes, draw(1.0, 20.0))
+            close("normal force [N]", lesson.normal_force(pull - load * n, n), load, ROUND_OFF,
+                  given=f"load {load} N, n = {n}")
+            close("normal force when F lifts [N]", lesson.normal_force(pull + load * n, n), 0.0, 0.0,
+                  given=f"lift {load} N, n = {n}")
 
 
 @exercise("3.2", points=0.5, hint="inside the cone friction is −F_t, neither more nor less: F + F_s has no part along the surface")
@@ -88,7 +91,7 @@ def test_kinetic_friction_opposes_the_motion_and_does_not_ask_how_fast(lesson, d
         axes, load, mu = frame(draw, d), draw(1.0, 10.0), draw(0.2, 1.0)
         n, F = axes[0], along_surface(draw, axes, draw(1.0, 20.0)) - load * axes[0]
         direction = along_surface(draw, axes, 1.0)
-        for speed, sinking in ((1e-6, 0.0), (draw(0.5, 9.0), 0.0), (draw(0.5, 9.0), draw(-2.0, 2.0))):
+        for speed, sinking in ((1e-12, 0.0), (1e-6, 0.0), (draw(0.5, 9.0), 0.0), (draw(0.5, 9.0), draw(-2.0, 2.0))):
             got = lesson.kinetic_friction(F, speed * direction + sinking * n, n, mu)
             # v_t is known to 1e-16 of v, and gives friction its direction: 1e-15/1e-6 of it at the slowest
             close("friction on a sliding body [N]", got, -mu * load * direction, 1e-8 if speed < 1e-3 else 1e-11,
@@ -102,7 +105,10 @@ def test_kinetic_friction_needs_a_motion_and_a_load(lesson, draw):
     still, moving = np.zeros(3), along_surface(draw, axes, draw(1.0, 3.0))
     close("kinetic friction under a load of 1 N [N]", lesson.kinetic_friction(F - axes[0], moving, axes[0], mu), -mu * moving / np.linalg.norm(moving), 1e-11, given=f"F = {F} N")
     close("kinetic friction at rest [N]", lesson.kinetic_friction(F - axes[0], still, axes[0], mu), still, 0.0, given=f"F = {F} N")
-    close("kinetic friction without load [N]", lesson.kinetic_friction(F + axes[0], moving, axes[0], mu), still, 0.0, given=f"F = {F} N")
+    for friction in (mu, np.inf):
+        close("kinetic friction without load [N]", lesson.kinetic_friction(F + axes[0], moving, axes[0], friction),
+              still, 0.0, given=f"F = {F} N, μ = {friction}")
+    raises("a negative μ_k", BadInput, lesson.kinetic_friction, F - axes[0], moving, axes[0], -mu)
 
 
 @exercise("3.4", points=0.5, hint="it starts with what static friction allows, and then feels the kinetic one: two different μ")
@@ -125,6 +131,7 @@ def test_a_block_holds_up_to_the_angle_whose_tangent_is_mu(lesson, draw):
     between("acceleration just beyond the edge [m/s²]", lesson.incline_acceleration(1.000001 * edge, mu, mu, g), 1e-12, 2e-5 * g, given=f"μ = {mu}")
     close("acceleration where μ_s = ∞ [m/s²]", lesson.incline_acceleration(1.5, np.inf, mu, g), 0.0, 0.0)
     raises("a negative μ_s", BadInput, lesson.incline_acceleration, 0.3, -mu, 0.0, g)
+    raises("a negative μ_k of a block that slides", BadInput, lesson.incline_acceleration, 0.3, 0.0, -mu, g)
 
 
 # ---------------------------------------------------------------------------------------------- Coulomb's cone
@@ -165,7 +172,9 @@ def test_friction_knows_its_limits(lesson, draw):
 
 @exercise("3.6", points=1, hint="each tangent for itself: m v_t · t, but not beyond ±μ j_n, and against the motion")
 def test_a_pyramid_leaves_the_least_energy_that_its_square_allows(lesson, draw):
-    for first, second in ((draw(0.1, 0.9), -draw(0.1, 0.9)), (draw(1.1, 4.0), draw(0.1, 0.9)), (-draw(1.1, 4.0), draw(1.1, 4.0))):
+    for first, second in ((draw(0.1, 0.9), -draw(0.1, 0.9)), (draw(1.1, 4.0), draw(0.1, 0.9)),
+                          (-draw(1.1, 4.0), -draw(0.1, 0.9)), (draw(0.1, 0.9), -draw(1.1, 4.0)),
+                          (-draw(1.1, 4.0), draw(1.1, 4.0))):
         (n, t_1, t_2), m, limit, mu = frame(draw, 3), draw(0.5, 5.0), draw(0.5, 4.0), draw(0.2, 1.5)
         v = limit / m * (first * t_1 + second * t_2)                     # what would stop it, in units of the limit
         J = lesson.pyramid_impulse(v, m, limit / mu, mu, t_1, t_2)
@@ -175,6 +184,9 @@ def test_a_pyramid_leaves_the_least_energy_that_its_square_allows(lesson, draw):
         between("kinetic energy that it leaves [J]", left, 0.0, energies(v, m, grid @ np.stack([t_1, t_2])).min() + ROUND_OFF, given=given)
         expected = [-np.sign(y) * min(abs(y), 1.0) * limit for y in (first, second)]
         close("its parts along t_1, t_2 and n [N s]", np.stack([t_1, t_2, n]) @ J, [*expected, 0.0], ROUND_OFF, given=given)
+    close("impulse where μ = ∞, but j_n = 0 [N s]", lesson.pyramid_impulse(v, m, 0.0, np.inf, t_1, t_2), np.zeros(3),
+          0.0, given=f"v_t = {v}")
+    raises("a negative μ", BadInput, lesson.pyramid_impulse, v, m, limit, -mu, t_1, t_2)
     close("its size over μ j_n where it slides at 45°, across the pyramid's corner", np.linalg.norm(J) / limit, np.sqrt(2.0), ROUND_OFF, given=given)
 
 
@@ -254,7 +266,7 @@ def test_what_moves_a_little_or_along_an_axis_or_turns_round_is_not_at_rest(less
     v = lesson.sliding_step(pull, 0.0, np.zeros(2), speed * along, dt, level)[1]
     close("velocity of a block on a level floor [m/s]", v, (speed - 0.3 * G * dt) * along, ROUND_OFF, given=f"v = {speed * along}, {level}")
     between_the_two, down, tangent, press = slope(draw, lesson, 1.5, 0.5)
-    for slow in (1e-3, 1e-9):
+    for slow in (1e-4, 1e-10):
         v = lesson.sliding_step(pull, 0.0, np.zeros(3), slow * down, dt, between_the_two)[1]
         close("velocity of a block that creeps down a slope [m/s]", v, (slow + 0.5 * tangent * press * dt) * down, ROUND_OFF, given=f"v = {slow} m/s down, {between_the_two}")
     v = lesson.sliding_step(pull, 0.0, np.zeros(3), -0.1 * tangent * press * dt * down, dt, between_the_two)[1]
@@ -291,11 +303,14 @@ def test_a_block_slides_on_or_breaks_away_along_the_pull_or_stays(lesson, draw):
         got = lesson.slip_direction(pull, turn / omega, np.zeros(2), np.zeros(2), p)
         close("direction under a force to and fro, early, in the middle, late in its swing [-]", got, expected, ROUND_OFF, given=f"{p}, t = {turn / omega} s")
     up, along = np.array([0.0, 1.0]), np.array([1.0, 0.0])
-    for name, load, mu, expected in (("without pull or friction: none", -10.0 * up, 0.0, 0.0 * up), ("where |a_t| is μ_s a_n: none", 5.0 * along - 10.0 * up, 0.5, 0.0 * up),
-                                     ("where it is lifted: along the pull", 5.0 * along + 10.0 * up, 0.9, along)):
+    lifted = 5.0 * along + 10.0 * up
+    for name, load, mu, expected in (("without pull or friction: none", -10.0 * up, 0.0, 0.0 * up),
+                                     ("where |a_t| is μ_s a_n: none", 5.0 * along - 10.0 * up, 0.5, 0.0 * up),
+                                     ("where it is lifted: along the pull", lifted, 0.9, along),
+                                     ("where it is lifted and μ = ∞: along the pull", lifted, np.inf, along)):
         got = lesson.slip_direction(pull, 0.0, np.zeros(2), np.zeros(2), block(lesson, up, mu, mu, load))
         close(f"direction from rest {name} [-]", got, expected, 0.0, given=f"a = {load}, n = {up}, μ = {mu}")
-    for slow in (1e-3, 1e-9):
+    for slow in (1e-4, 1e-10):
         got = lesson.slip_direction(pull, 0.0, still, -slow * down, gentle)
         close("direction of a block that creeps [-]", got, -down, ROUND_OFF, given=f"{gentle}, v = {-slow * down}")
 
@@ -351,19 +366,25 @@ def test_a_block_breaks_away_when_the_force_reaches_its_limit(lesson, draw):
 @exercise("3.11", points=0.5, hint="after a stop v is zeros, exactly: the round-off that a slide leaves would count as a motion")
 def test_a_slide_goes_to_its_stop_and_no_further(lesson, draw):
     p, down, tangent, press = slope(draw, lesson, 1.5, 1.2)
-    up, speed = -down, draw(0.5, 3.0)
-    brake = (1.2 + 1.0) * tangent * press
-    stop = speed / brake
-    begin = draw(-1.0, 1.0, 3)
-    tau, x, v = lesson.until_event(lesson.driven_acceleration, 0.0, begin, speed * up, draw(1.5, 3.0) * stop, p)
-    close("time to the stop, uphill [s]", tau, stop, ROUND_OFF, given=f"{p}, v = {speed} m/s")
-    close("where it stops [m]", x - begin, 0.5 * speed * stop * up, ROUND_OFF, given=f"{p}, v = {speed} m/s")
-    close("velocity then [m/s]: exactly none", v, np.zeros(3), 0.0)
+    up, begin, brake = -down, draw(-1.0, 1.0, 3), (1.2 + 1.0) * tangent * press
+    for long in (draw(1.5, 3.0), 1.1, 1.01, 1.001, 1.0001):
+        speed = draw(0.5, 3.0)
+        stop = speed / brake
+        tau, x, v = lesson.until_event(lesson.driven_acceleration, 0.0, begin, speed * up, long * stop, p)
+        close("time to the stop, uphill [s]", tau, stop, ROUND_OFF, given=f"{p}, v = {speed} m/s")
+        close("where it stops [m]", x - begin, 0.5 * speed * stop * up, ROUND_OFF, given=f"{p}, v = {speed} m/s")
+        close("velocity then [m/s]: exactly none", v, np.zeros(3), 0.0)
     part = draw(0.2, 0.8)
     tau, x, v = lesson.until_event(lesson.driven_acceleration, 0.0, begin, speed * up, part * stop, p)
     close("time of a step that is over before [s]", tau, part * stop, 0.0)
     close("velocity after that step [m/s]", v, (1.0 - part) * speed * up, ROUND_OFF, given=f"{p}, v = {speed} m/s, dt = {part * stop} s")
     close("where it is then [m]", x - begin, (part - 0.5 * part * part) * speed * stop * up, ROUND_OFF, given=f"{p}, v = {speed} m/s, dt = {part * stop} s")
+    steep, down, tangent, press = slope(draw, lesson, 0.9, 0.5)
+    dt, a = draw(0.1, 0.5), 0.5 * tangent * press                        # it breaks away at once, and speeds up
+    tau, x, v = lesson.until_event(lesson.driven_acceleration, 0.0, begin, np.zeros(3), dt, steep)
+    close("time of a step that begins at rest on a steep slope [s]", tau, dt, 0.0, given=f"{steep}")
+    close("velocity after it [m/s]", v, a * dt * down, ROUND_OFF, given=f"{steep}, dt = {dt} s")
+    close("how far it has slid [m]", x - begin, 0.5 * a * dt * dt * down, ROUND_OFF, given=f"{steep}, dt = {dt} s")
 
 
 @exercise("3.11", points=0.5, hint="where slip_direction is zeros nothing moves: only the time to the breakaway is to be found")
@@ -406,6 +427,9 @@ def test_a_bowl_and_a_trough_know_how_far_their_wall_is(lesson, draw):
 def test_in_the_middle_of_a_bowl_no_wall_is_the_nearest(lesson, draw):
     p = bowl(lesson, draw, np.zeros(3))
     phi, n = lesson.bowl_gap(p.centre, p)
+    out = frame(draw, 3)[0]
+    close("normal a nanometre from the middle, a place that is known to 1e-16 m [-]",
+          lesson.bowl_gap(p.centre + 1e-9 * out, p)[1], -out, 1e-5, given=f"{p}")
     close("gap in the middle [m]", phi, p.radius, ROUND_OFF, given=f"{p}")
     close("normal in the middle [-]", n, np.zeros(3), 0.0, given=f"{p}")
 
@@ -433,9 +457,11 @@ def test_a_surface_never_pulls_and_without_friction_it_only_reflects(lesson, dra
         v = along_surface(draw, axes, draw(0.5, 3.0)) - draw(0.5, 3.0) * axes[0]
         after = v + np.asarray(lesson.contact_impulse(v, axes[0], m, 1.0, 0.0)) / m
         close("velocity after an elastic impact without friction [m/s]", after, v - 2.0 * (v @ axes[0]) * axes[0], ROUND_OFF, given=f"v = {v} m/s, n = {axes[0]}")
-        head_on = -draw(0.5, 3.0) * axes[0]
-        after = head_on + np.asarray(lesson.contact_impulse(head_on, axes[0], m, e, mu)) / m
-        close("velocity after a head-on impact [m/s]", after, -e * head_on, ROUND_OFF, given=f"v = {head_on} m/s, e = {e}")
+        for speed in (draw(0.5, 3.0), 1e-6):
+            head_on = -speed * axes[0]
+            after = head_on + np.asarray(lesson.contact_impulse(head_on, axes[0], m, e, mu)) / m
+            close("velocity after a head-on impact [m/s]", after, -e * head_on, ROUND_OFF,
+                  given=f"v = {head_on} m/s, e = {e}")
 
 
 def above(lesson, draw, mu, e, theta=0.0, d=3):
@@ -495,11 +521,22 @@ def check_fall(lesson, step, draw, grips):
 @exercise("3.14", points=0.5, hint="put it back by −φ n even when its velocity already leads out; then the velocity stays as it is")
 def test_a_particle_that_is_already_on_its_way_out_is_put_back_and_not_braked(lesson, draw):
     check_way_out(lesson, lesson.contact_step, draw)
+    check_just_touching(lesson, lesson.contact_step, draw)
     theta, dt = draw(0.2, 0.8), draw(0.005, 0.02)
     p, down = above(lesson, draw, 1.5 * np.tan(theta), 0.0, theta)
     x, v = fly(lesson, lesson.contact_step, p, p.point, np.zeros(3), dt, 10)
     close("velocity of a particle that should stay put on a slope [m/s]", v, np.zeros(3), ROUND_OFF, given=f"{p}, dt = {dt} s")
     close("its artificial sliding over time and dt [m/s²]: g sin θ", (x - p.point) / (10 * dt * dt), G * np.sin(theta) * down, 1e-8, given=f"{p}, dt = {dt} s")
+
+
+def check_just_touching(lesson, step, draw):
+    """Whole numbers leave no round-off: a particle that comes to the plane itself, φ = 0, has not got in yet."""
+    e, begin = draw(0.2, 0.9), np.array([float(draw.whole(-3, 3)), 1.0])
+    p, v = lesson.OnPlane(1.0, 0.5, e, np.zeros(2), np.zeros(2), np.array([0.0, 1.0])), np.array([1.0, -2.0])
+    x, v_new = fly(lesson, step, p, begin, v, 0.5, 1)
+    close("place of a particle that just touches [m]", x, begin + 0.5 * v, 0.0,
+          given=f"x = {begin} m, v = {v} m/s, dt = 0.5 s")
+    close("its velocity: not reflected yet [m/s]", v_new, v, 0.0, given=f"x = {begin} m, v = {v} m/s, dt = 0.5 s")
 
 
 def check_way_out(lesson, step, draw):
@@ -514,8 +551,9 @@ def check_way_out(lesson, step, draw):
 
 @exercise("3.15", points=1, hint="friction for positions: −s where |s| ≤ μ depth, else μ depth against s, with s along the surface")
 def test_the_grip_undoes_a_displacement_inside_its_cone(lesson, draw):
-    for share in (draw(0.1, 0.9), draw(1.1, 5.0), 0.0):
-        axes, mu, depth = frame(draw, 3), draw(0.2, 1.5), draw(0.01, 0.1)
+    for share, depth in ((draw(0.1, 0.9), draw(0.01, 0.1)), (draw(1.1, 5.0), draw(0.01, 0.1)), (0.0, 0.1),
+                         (draw(0.1, 0.9), draw(1.0, 5.0)), (draw(1.1, 5.0), 1e-9)):
+        axes, mu = frame(draw, 3), draw(0.2, 1.5)
         s = along_surface(draw, axes, share * mu * depth)
         got = lesson.grip_correction(s - draw(0.5, 2.0) * depth * axes[0], axes[0], depth, mu)
         expected = -s if share <= 1.0 else -s / share
@@ -542,3 +580,11 @@ def test_a_gripping_particle_stays_put_or_slides_as_a_block_does(lesson, draw):
 def test_a_gripping_particle_flies_and_bounces_like_the_other(lesson, draw):
     check_fall(lesson, lesson.gripping_step, draw, 1.0)
     check_way_out(lesson, lesson.gripping_step, draw)
+    check_just_touching(lesson, lesson.gripping_step, draw)
+    level = lesson.OnPlane(1.0, draw(0.2, 0.9), 0.0, np.zeros(2), np.zeros(2), np.array([0.0, 1.0]))
+    deep, v = np.array([0.0, -draw(0.1, 0.5)]), np.array([draw(0.5, 2.0), 0.0])              # v · n is exactly 0
+    x, v_new = fly(lesson, lesson.gripping_step, level, deep, v, 0.1, 1)
+    given = f"x = {deep} m, v = {v} m/s, {level}"
+    close("where a particle inside is put that moves along the surface [m]: nothing grips", x, 0.1 * v, ROUND_OFF,
+          given=given)
+    close("its velocity [m/s]", v_new, v, 0.0, given=given)

@@ -82,7 +82,12 @@ def test_a_penalty_pushes_inside_only_and_never_pulls(lesson, draw):
         close("penalty force [N]", lesson.penalty_force(-depth, v_n, stiffness, damping), stiffness * depth - damping * v_n, 1e-11,
               given=f"φ = {-depth} m, v_n = {v_n} m/s, {stiffness} N/m, {damping} N s/m")
     close("penalty force where the damper would pull [N]", lesson.penalty_force(-depth, draw(1.1, 3.0) * weak, stiffness, damping), 0.0, 0.0)
-    close("penalty force outside [N]", lesson.penalty_force(draw(0.01, 1.0), -draw(0.1, 5.0), stiffness, damping), 0.0, 0.0)
+    fast = draw(1.0, 5.0)
+    # of the height at which the spring would pull as the damper pushes
+    for share in (draw(0.01, 0.9), draw(1.1, 9.0)):
+        above = share * damping * fast / stiffness
+        close("penalty force outside [N]", lesson.penalty_force(above, -fast, stiffness, damping), 0.0, 0.0,
+              given=f"φ = {above} m")
 
 
 # ---------------------------------------------------------------------------------------------- in the plane

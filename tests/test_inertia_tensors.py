@@ -13,7 +13,7 @@ from solutions.checks import BadInput
 exercise = pytest.mark.exercise
 # Masses below 5 kg, lengths below 3 m, speeds below 20 m/s, a dozen terms: numbers below 1e3, each rounded by 1.1e-16 of itself
 ROUNDED = 1e-11
-SIZES = (1e-6, 1.0, 1e3)     # of bodies [m]
+SIZES = (1e-8, 1.0, 1e3)     # of bodies [m]
 
 
 def cloud(draw, n):

@@ -11,6 +11,7 @@ from validate import binding
 
 from .grading.expect import LONGEST, MOST_DIGITS
 from .grading.points import grade, grade_each, score
+from .mutants import collection, variants
 
 LESSONS = binding.lesson_names()
 
@@ -60,6 +61,45 @@ def test_what_a_student_reads_is_short_and_tells_expected_from_got(name):
 def digits_of(number):
     """Significant digits of a number's text."""
     return len(number.partition("e")[0].replace(".", "").strip("0"))
+
+
+def proof(mutant, kept):
+    """How it is shown that a wrong answer has one fault: undo that, and what is left is right; an empty string where it is not."""
+    if mutant.faults != 1:
+        return ""
+    if mutant.kind == "edit":                                            # what is left is the worked answer
+        return "edit"
+    whole = any(m.right and m.faults == 0 and m.exercise == mutant.exercise and m.factory is mutant.factory
+                for m in kept)
+    return "variant" if whole and mutant.kind == "variant" else ""
+
+
+@pytest.mark.parametrize("name", LESSONS)
+def test_every_wrong_answer_has_one_fault_and_proves_it(name):
+    kept = mutants_of(name)
+    proofs = {(m.exercise, m.story): proof(m, kept) for m in kept if not m.right}
+    for kind in ("edit", "variant"):
+        print(f"{name}: {list(proofs.values()).count(kind)} wrong answers have one fault by {kind}")
+    assert not [wrong for wrong, kind in proofs.items() if not kind]
+
+
+def test_what_has_two_faults_or_none_or_no_right_answer_behind_it_proves_nothing():
+    wrong, right, edit, kept = collection(importlib.import_module("solutions.springs"))
+
+    @variants
+    def tension(sign=1.0, damper=1.0):
+        return lambda length, rate, rest, k, k_d: sign * k * (length - rest) + damper * k_d * rate
+    wrong("2.3", "one argument")(tension(sign=-1.0))
+    wrong("2.3", "two arguments")(tension(sign=-1.0, damper=-1.0))
+    wrong("2.3", "none")(tension())
+    wrong("2.3", "written out")(lambda length, rate, rest, k, k_d: 0.0)
+    edit("2.3", "once", "k_d", "0.0 * k_d")
+    edit("2.3", "twice", " * ", " + ")
+    edit("2.3", "nowhere", "no such text", "0.0")
+    edit("2.6", "over two lines", "squared_a == 0.0 or squared_c == 0.0:\n", "False:\n")
+    proofs = {m.story: proof(m, kept) for m in kept if not m.right}
+    assert {story: kind for story, kind in proofs.items() if kind} == {"one argument": "variant", "once": "edit"}
+    assert not [m for m in kept if m.right and m.faults]
 
 
 @pytest.mark.parametrize("name", LESSONS)

@@ -389,7 +389,7 @@ def test_the_midpoint_turn_leaves_a_resting_body(lesson, draw):
 def test_the_midpoint_turn_solves_its_equation_or_says_that_it_did_not(lesson, draw):
     turn_once(lesson, draw)
     raises("an L that is not a number", Diverged, lesson.midpoint_turn, orientation(draw), np.full(3, np.nan), moments(draw), 0.1)
-    for _ in range(20):                                                  # ten radians a step and more: Newton's method often loses its way
+    for _ in range(60):                                                  # ten radians a step and more: Newton's method often loses its way
         q, I_body, omega, dt = orientation(draw), moments(draw), spin_of(draw), draw(5.0, 20.0)
         L = inertia(q, I_body) @ omega
         try:

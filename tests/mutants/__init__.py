@@ -1,10 +1,9 @@
 """Wrong answers that must lose an exercise's points, and right ones, written differently, that must keep them.
 
-One module per lesson.  A wrong answer has one fault only, and its kind proves it: without the fault the answer passes.
+One module per lesson.  A wrong answer has one fault, and the way it is made proves that: without the fault it passes.
 
-edit         the worked answer with one replacement in one line of its text
-variant      made by a factory with one argument that differs from its default; its defaults make a right answer
-written out  neither of these: WRITTEN_OUT describes its one fault
+edit      the worked answer with one replacement in one line of its text
+variant   made by a factory with one argument that differs from its default; the defaults make a right answer
 """
 
 import functools
@@ -13,8 +12,6 @@ from typing import Callable, NamedTuple
 
 from validate.generate import exercises
 
-WRITTEN_OUT = {}             # {(exercise, story): its one fault}
-
 
 class Mutant(NamedTuple):
     exercise: str
@@ -22,8 +19,8 @@ class Mutant(NamedTuple):
     story: str               # what is wrong, or what is different
     right: bool
     function: Callable
-    kind: str = "written out"
-    faults: int = 0          # replacements in the text, or arguments that differ from their defaults
+    kind: str = "written out"     # or edit, or variant
+    faults: int = 0               # replacements in the text, or arguments that differ from their defaults
     factory: Callable = None
 
 
@@ -58,7 +55,6 @@ def collection(worked):
 
     def edit(exercise, story, old, new):
         name = names[exercise]
-        assert old in inspect.getsource(getattr(worked, name)), f"{exercise}, {story}: the worked answer has no {old!r}"
         head, mark, answer = inspect.getsource(getattr(worked, name)).partition("### BEGIN SOLUTION")
         space = dict(vars(worked))
         exec(compile(head + mark + answer.replace(old, new), worked.__file__, "exec"), space)

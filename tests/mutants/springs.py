@@ -10,22 +10,6 @@ wrong, right, edit, MUTANTS = collection(worked)
 
 
 # 2.1 ------------------------------------------------------------------------------------------------------------
-@wrong("2.1", "repels")
-def universal_gravity(x_a, x_b, m_a, m_b, G):
-    return -worked.universal_gravity(x_a, x_b, m_a, m_b, G)
-
-
-@wrong("2.1", "divides by r² and forgets that r has a length")
-def universal_gravity(x_a, x_b, m_a, m_b, G):
-    r = x_b - x_a
-    return G * m_a * m_b / np.sum(r * r) * r
-
-
-@wrong("2.1", "acceleration instead of force")
-def universal_gravity(x_a, x_b, m_a, m_b, G):
-    return worked.universal_gravity(x_a, x_b, 1.0, m_b, G)
-
-
 @right("2.1", "magnitude times direction")
 def universal_gravity(x_a, x_b, m_a, m_b, G):
     distance = np.linalg.norm(x_b - x_a)
@@ -34,119 +18,67 @@ def universal_gravity(x_a, x_b, m_a, m_b, G):
 
 
 edit("2.1", "takes two bodies in one place", 'check_positive("distance of two bodies [m]", distance)', "pass")
+edit("2.1", "repels", "return G", "return -G")
+edit("2.1", "divides by r² and forgets that r has a length", "distance**3", "distance**2")
+edit("2.1", "acceleration instead of force", "G * m_a * m_b", "G * m_b")
 
 
 # 2.2 ------------------------------------------------------------------------------------------------------------
-@wrong("2.2", "viscosity speeds up")
-def air_force(v, wind, k_v):
-    return wind + k_v * v
-
-
-@wrong("2.2", "takes the wind for a velocity")
-def air_force(v, wind, k_v):
-    return k_v * (wind - v)
-
-
-@wrong("2.2", "quadratic")
-def air_force(v, wind, k_v):
-    return wind - k_v * np.abs(v) * v
-
-
-@wrong("2.2", "divides by the viscosity")
-def air_force(v, wind, k_v):
-    return -k_v * (v - wind / k_v)
-
-
 @right("2.2", "viscosity first")
 def air_force(v, wind, k_v):
     return -(k_v * v) + wind
 
 
+edit("2.2", "viscosity speeds up", "wind - k_v * v", "wind + k_v * v")
+edit("2.2", "takes the wind for a velocity", "wind - k_v * v", "k_v * (wind - v)")
+edit("2.2", "quadratic", "k_v * v", "k_v * np.abs(v) * v")
+edit("2.2", "divides by the viscosity", "wind - k_v * v", "-k_v * (v - wind / k_v)")
+
+
 # 2.3 ------------------------------------------------------------------------------------------------------------
-@wrong("2.3", "pushes when stretched")
-def spring_tension(length, rate, rest, k, k_d):
-    return k * (rest - length) + k_d * rate
-
-
-@wrong("2.3", "damper drives")
-def spring_tension(length, rate, rest, k, k_d):
-    return k * (length - rest) - k_d * rate
-
-
-@wrong("2.3", "strain instead of extension")
-def spring_tension(length, rate, rest, k, k_d):
-    return k * (length - rest) / rest + k_d * rate
-
-
-@wrong("2.3", "a rope: never pushes")
-def spring_tension(length, rate, rest, k, k_d):
-    return max(0.0, k * (length - rest) + k_d * rate)
-
-
 @right("2.3", "multiplied out")
 def spring_tension(length, rate, rest, k, k_d):
     return k * length + k_d * rate - k * rest
 
 
+edit("2.3", "pushes when stretched", "length - rest", "rest - length")
+edit("2.3", "damper drives", "+ k_d * rate", "- k_d * rate")
+edit("2.3", "strain instead of extension", "(length - rest)", "(length - rest) / rest")
+edit("2.3", "a rope: never pushes", "k * (length - rest) + k_d * rate", "max(0.0, k * (length - rest) + k_d * rate)")
+edit("2.3", "damps against the extension", "k_d * rate", "k_d * abs(rate) * np.sign(length - rest)")
+
+
 # 2.4 ------------------------------------------------------------------------------------------------------------
-@wrong("2.4", "pushes away")
-def soft_constraint_force(C, C_rate, gradient, k, k_d):
-    return (k * C + k_d * C_rate) * gradient
-
-
-@wrong("2.4", "brings the gradient to length 1")
-def soft_constraint_force(C, C_rate, gradient, k, k_d):
-    return -(k * C + k_d * C_rate) * gradient / np.linalg.norm(gradient)
-
-
-@wrong("2.4", "no damper")
-def soft_constraint_force(C, C_rate, gradient, k, k_d):
-    return -k * C * gradient
-
-
-@wrong("2.4", "one side only")
-def soft_constraint_force(C, C_rate, gradient, k, k_d):
-    return worked.soft_contact_force(C, C_rate, gradient, k, k_d)
-
-
 @right("2.4", "two forces, added")
 def soft_constraint_force(C, C_rate, gradient, k, k_d):
     spring, damper = -k * C * gradient, -k_d * C_rate * gradient
     return spring + damper
 
 
+edit("2.4", "pushes away", "-(k", "(k")
+edit("2.4", "brings the gradient to length 1", "* gradient", "* gradient / np.sqrt(gradient @ gradient)")
+edit("2.4", "no damper", "k_d * C_rate", "0.0")
+edit("2.4", "pulls from one side only", "k * C +", "k * min(C, 0.0) +")
+edit("2.4", "pushes from the other side only", "k * C +", "k * max(C, 0.0) +")
+edit("2.4", "damps one way only", "k_d * C_rate", "k_d * max(C_rate, 0.0)")
+
+
 # 2.5 ------------------------------------------------------------------------------------------------------------
-@wrong("2.5", "pulls a point that leaves")
-def soft_contact_force(C, C_rate, gradient, k, k_d):
-    return -(k * C + k_d * C_rate) * gradient if C < 0.0 else 0.0 * gradient
-
-
-@wrong("2.5", "damps above the surface")
-def soft_contact_force(C, C_rate, gradient, k, k_d):
-    return max(0.0, -(k * C + k_d * C_rate)) * gradient
-
-
-@wrong("2.5", "limits the spring but not the damper")
-def soft_contact_force(C, C_rate, gradient, k, k_d):
-    return (max(0.0, -k * C) - k_d * C_rate) * gradient if C < 0.0 else 0.0 * gradient
-
-
-@wrong("2.5", "already pushes at the surface")
-def soft_contact_force(C, C_rate, gradient, k, k_d):
-    return max(0.0, -(k * C + k_d * C_rate)) * gradient if C <= 0.0 else 0.0 * gradient
-
-
-@wrong("2.5", "a number where the force is none")
-def soft_contact_force(C, C_rate, gradient, k, k_d):
-    return max(0.0, -(k * C + k_d * C_rate)) * gradient if C < 0.0 else 0.0
-
-
 @right("2.5", "by cases")
 def soft_contact_force(C, C_rate, gradient, k, k_d):
     force = np.zeros_like(gradient)
     if C < 0.0 and k * C + k_d * C_rate < 0.0:
         force -= (k * C + k_d * C_rate) * gradient
     return force
+
+
+edit("2.5", "pulls a point that leaves", "max(0.0, -(k * C + k_d * C_rate))", "-(k * C + k_d * C_rate)")
+edit("2.5", "damps above the surface", "C >= 0.0", "False")
+edit("2.5", "limits the spring but not the damper", "max(0.0, -(k * C + k_d * C_rate))",
+     "(max(0.0, -k * C) - k_d * C_rate)")
+edit("2.5", "already pushes at the surface", "C >= 0.0", "C > 0.0")
+edit("2.5", "a number where the force is none", "return 0.0 * gradient", "return 0.0")
+edit("2.5", "a millimetre is not inside", "C >= 0.0", "C >= -1e-3")
 
 
 # 2.6 ------------------------------------------------------------------------------------------------------------
@@ -180,6 +112,8 @@ wrong("2.6", "hinge pushed the wrong way")(angular_spring(hinge=-1.0))
 wrong("2.6", "opens instead of closing")(angular_spring(angle=lambda theta, rest: -short_way(theta, rest)))
 wrong("2.6", "a, c, b")(angular_spring(order=(0, 2, 1)))
 wrong("2.6", "silent about an arm without length")(angular_spring(checked=False))
+edit("2.6", "asks for the length of one arm only", "squared_a == 0.0 or squared_c == 0.0", "squared_a == 0.0")
+edit("2.6", "refuses what is small", "squared_a == 0.0 or squared_c == 0.0", "squared_a < 1e-6 or squared_c < 1e-6")
 
 
 # 2.7 ------------------------------------------------------------------------------------------------------------
@@ -216,32 +150,13 @@ wrong("2.7", "rate without division by l")(by_matrices(rate=lambda r, u, length:
 wrong("2.7", "speed for rate")(by_matrices(rate=lambda r, u, length: np.sqrt(np.sum(u * u, axis=1))))
 wrong("2.7", "rate the other way round")(by_matrices(rate=lambda r, u, length: -np.sum(r * u, axis=1) / length))
 wrong("2.7", "silent about a spring without length")(by_matrices(checked=False))
-
-
-@wrong("2.7", "damps every motion, not only along the spring")
-def spring_forces(x, v, mesh):
-    force = worked.spring_forces(x, np.zeros_like(v), mesh)
-    damped = mesh.k_d[:, None] * (v[mesh.j] - v[mesh.i])
-    np.add.at(force, mesh.i, damped)
-    np.add.at(force, mesh.j, -damped)
-    return force
-
-
-@wrong("2.7", "every spring like the first")
-def spring_forces(x, v, mesh):
-    alike = {name: np.full_like(getattr(mesh, name), getattr(mesh, name)[0]) for name in ("rest", "k", "k_d")}
-    return worked.spring_forces(x, v, mesh._replace(**alike))
-
-
-@wrong("2.7", "nothing on fixed points")
-def spring_forces(x, v, mesh):
-    return worked.spring_forces(x, v, mesh) * (mesh.inv_mass > 0.0)[:, None]
-
-
-@wrong("2.7", "the plane only")
-def spring_forces(x, v, mesh):
-    flat = np.where(np.arange(x.shape[1]) < 2, 1.0, 0.0)
-    return worked.spring_forces(flat * x, flat * v, mesh)
+edit("2.7", "damps every motion, not only along the spring", "force_i[c] +=",
+     "force_i[c] += mesh.k_d[s] * (v_j[c] - v_i[c]) +")
+edit("2.7", "every spring like the first", "mesh.rest[s], mesh.k[s], mesh.k_d[s]",
+     "mesh.rest[0], mesh.k[0], mesh.k_d[0]")
+edit("2.7", "nothing on fixed points", "return force", "return force * (mesh.inv_mass > 0.0)[:, None]")
+edit("2.7", "the plane only", "squared, product = 0.0, 0.0", "squared, product, x_i = 0.0, 0.0, x_i[:2]")
+edit("2.7", "refuses what is small", "squared == 0.0", "squared < 1e-9")
 
 
 # 2.8 ------------------------------------------------------------------------------------------------------------
@@ -269,6 +184,7 @@ wrong("2.8", "springs pull on all masses alike")(newton(springs=lambda f, inv_ma
 wrong("2.8", "forgets the air")(newton(air=lambda a, inv_mass: 0.0))
 wrong("2.8", "multiplies by the mass")(newton(springs=lambda f, inv_mass: f / np.where(inv_mass > 0.0, inv_mass, 1.0)))
 wrong("2.8", "springs the wrong way")(newton(springs=lambda f, inv_mass: -f * inv_mass))
+edit("2.8", "what is heavy is fixed", "mesh.inv_mass[n] > 0.0", "mesh.inv_mass[n] > 0.1")
 
 
 # 2.9 ------------------------------------------------------------------------------------------------------------
@@ -286,18 +202,14 @@ wrong("2.9", "Verlet: exact in free fall, but another loop")(loop(integrators.ve
 wrong("2.9", "midpoint: exact in free fall, but another loop")(loop(integrators.midpoint_step))
 
 
-@wrong("2.9", "changes its input")
-def mass_spring_damper_step(t, x, v, dt, mesh):
-    a = worked.mesh_acceleration(t, x, v, mesh)
-    x += dt * (v + 0.5 * dt * a)
-    v += dt * a
-    return x, v
-
-
 @right("2.9", "the lines of the lecture")
 def mass_spring_damper_step(t, x, v, dt, mesh):
     v_new = v + dt * worked.mesh_acceleration(t, x, v, mesh)
     return x + dt * (v + v_new) / 2.0, v_new
+
+
+edit("2.9", "changes its input", "average_velocity_step(mesh_acceleration, t, x, v, dt, mesh)",
+     "average_velocity_step(mesh_acceleration, t, x, v, dt, mesh)[0], np.add(v, dt * mesh_acceleration(t, x, v, mesh), out=v)")
 
 
 # 2.10 -----------------------------------------------------------------------------------------------------------
@@ -322,8 +234,9 @@ def numbering(number=lambda r, c, rows, cols: r * cols + c, exists=inside, row=l
 right("2.10", "over a list of nodes")(numbering())
 wrong("2.10", "counts along columns")(numbering(number=lambda r, c, rows, cols: c * rows + r))
 wrong("2.10", "multiplies by the rows")(numbering(number=lambda r, c, rows, cols: r * rows + c))
-wrong("2.10", "a torus: the edge comes round")(
-    numbering(number=lambda r, c, rows, cols: r % rows * cols + c % cols, exists=lambda *_: True))
+edit("2.10", "a torus: the edge comes round", "if 0 <= r + dr < rows and 0 <= c + dc < cols",
+     "for r, c, dr, dc in [(r, c, (r + dr) % rows - r, (c + dc) % cols - c)]")
+edit("2.10", "a row below zero exists", "0 <= r + dr < rows", "r + dr < rows")
 wrong("2.10", "asks whether the number exists, not the column")(
     numbering(exists=lambda r, c, rows, cols: 0 <= r * cols + c < rows * cols))
 wrong("2.10", "forgets the left edge")(numbering(exists=lambda r, c, rows, cols: r < rows and c < cols))
@@ -356,6 +269,8 @@ wrong("2.11", "nothing along")(blocks(along=0.0))
 wrong("2.11", "a damper in all directions")(blocks(damper=lambda k_d, nn: k_d * np.eye(len(nn))))
 wrong("2.11", "forgets k_d")(blocks(damper=lambda k_d, nn: nn))
 wrong("2.11", "derivative of F without the minus")(blocks(sign=-1.0))
+edit("2.11", "a spring that is stretched little is slack", "1.0 - mesh.rest[s] / length",
+     "0.85 - mesh.rest[s] / length")
 
 
 # 2.12 -----------------------------------------------------------------------------------------------------------
@@ -390,32 +305,11 @@ wrong("2.12", "never gives up: returns whatever it has")(descent(silent=True))
 wrong("2.12", "starts from ones, with the residual of zeros")(descent(start=1.0))
 wrong("2.12", "uses up the right-hand side")(descent(copied=False))
 wrong("2.12", "divides zero by zero")(descent(zero=False))
-
-
-@wrong("2.12", "the ratio upside down")
-def conjugate_gradients(apply, A, right):
-    y, r, p = np.zeros_like(right), right.copy(), right.copy()
-    for _ in range(10 * right.size):
-        squared = np.sum(r * r)
-        if squared <= worked.CG_TOLERANCE**2 * np.sum(right * right):
-            return y
-        alpha = squared / np.sum(p * apply(p, A))
-        y += alpha * p
-        r -= alpha * apply(p, A)
-        p = r + squared / np.sum(r * r) * p
-    raise Diverged("conjugate gradients did not converge: |r|²", np.nan, "the matrix must be positive definite")
-
-
-@wrong("2.12", "residuals in place of conjugate directions: r + p")
-def conjugate_gradients(apply, A, right):
-    y, r, p = np.zeros_like(right), right.copy(), right.copy()
-    for _ in range(10 * right.size):
-        squared = np.sum(r * r)
-        if squared <= worked.CG_TOLERANCE**2 * np.sum(right * right):
-            return y
-        alpha = squared / np.sum(p * apply(p, A))
-        y, r, p = y + alpha * p, r - alpha * apply(p, A), r + p
-    raise Diverged("conjugate gradients did not converge: |r|²", np.nan, "the matrix must be positive definite")
+edit("2.12", "the ratio upside down", "squared / before", "before / squared")
+edit("2.12", "residuals in place of conjugate directions: r + p", "squared / before * p", "p")
+edit("2.12", "a tolerance in the unit of the right-hand side", "CG_TOLERANCE * CG_TOLERANCE * squared",
+     "CG_TOLERANCE * CG_TOLERANCE")
+edit("2.12", "the tolerance not squared", "CG_TOLERANCE * CG_TOLERANCE * squared", "CG_TOLERANCE * squared")
 
 
 # 2.13 -----------------------------------------------------------------------------------------------------------
@@ -458,13 +352,7 @@ wrong("2.13", "moves with the old velocity")(large_step(old=True))
 wrong("2.13", "acceleration at the end of the step")(large_step(late=1.0))
 wrong("2.13", "fixed points give way")(large_step(held=False))
 wrong("2.13", "forgets the mass on the right")(large_step(massive=False))
-
-
-@wrong("2.13", "symplectic Euler")
-def implicit_mesh_step(acceleration, t, x, v, dt, mesh):
-    return integrators.symplectic_euler_step(acceleration, t, x, v, dt, mesh)
-
-
-@wrong("2.13", "fully implicit Euler, by Newton's method")
-def implicit_mesh_step(acceleration, t, x, v, dt, mesh):
-    return integrators.implicit_euler_step(acceleration, t, x, v, dt, mesh)
+edit("2.13", "fully implicit Euler, by Newton's method", "a = acceleration(t, x, v, mesh)",
+     "from solutions.integrators import implicit_euler_step as step; return step(acceleration, t, x, v, dt, mesh)")
+edit("2.13", "symplectic Euler", "conjugate_gradients(apply_step_matrix, A, right)", "dt * a")
+edit("2.13", "what is heavy is fixed", "mesh.inv_mass[n] > 0.0", "mesh.inv_mass[n] > 0.1")
