@@ -72,9 +72,9 @@ def soft_contact_force(C, C_rate, gradient, k, k_d):
     return force
 
 
-edit("2.5", "pulls a point that leaves", "max(0.0, -(k * C + k_d * C_rate))", "-(k * C + k_d * C_rate)")
+edit("2.5", "pulls a point that leaves", "np.maximum(0.0, -(k * C + k_d * C_rate))", "-(k * C + k_d * C_rate)")
 edit("2.5", "damps above the surface", "C >= 0.0", "False")
-edit("2.5", "limits the spring but not the damper", "max(0.0, -(k * C + k_d * C_rate))",
+edit("2.5", "limits the spring but not the damper", "np.maximum(0.0, -(k * C + k_d * C_rate))",
      "(max(0.0, -k * C) - k_d * C_rate)")
 edit("2.5", "already pushes at the surface", "C >= 0.0", "C > 0.0")
 edit("2.5", "a number where the force is none", "return 0.0 * gradient", "return 0.0")
