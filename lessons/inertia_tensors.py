@@ -41,7 +41,8 @@ def centre_of_mass(m, x):
     M = Σ mᵢ,   X = Σ mᵢ xᵢ / M            m (n,), x (n, 3)
 
     The centre moves as if it were one point of mass M with all forces on it: M Ẍ = F = Σ fᵢ.
-    Raises BadInput unless M is above zero: check_positive("total mass [kg]", M).
+    A single mass may be zero, or negative: then it is a hole.
+    Raises BadInput unless M is finite and above zero: check_positive("total mass [kg]", M).
     *Source:* deck A, "Center of Mass".
     """
     # YOUR CODE HERE
@@ -127,7 +128,7 @@ def capsule_inertia(m, radius, length):
         Ixx = Iyy = m_c (3 radius² + h²)/12 + m_s (⅖ radius² + ¼ h² + ⅜ h radius)
         Izz = ½ m_c radius² + ⅖ m_s radius²
 
-    length = 0 is a ball.
+    length = 0 is a ball, radius = 0 a rod; with both zero there is no body.
     *Source:* the parallel-axis theorem, below; Eberly, "Game physics", 2003.
     """
     # YOUR CODE HERE

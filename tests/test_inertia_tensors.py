@@ -45,6 +45,12 @@ def test_a_body_balances_on_its_centre_of_mass(lesson, draw):
     close("Σ mᵢ (xᵢ − X): what gravity would turn the body with [kg m]", balance, np.zeros(3), ROUNDED, f"m = {m}, x = {x.tolist()}")
     _, X = lesson.centre_of_mass(m[:1], x[:1])
     close("centre of a single point [m]: the point", X, x[0], ROUNDED, f"x = {x[0]}")
+    hole = np.array([m[0] + m[1], -m[1], 0.0])                         # its masses add up to m[0], which is above zero
+    for unit in (1e-12, 1.0, 1e12):
+        given = f"m = {unit * hole}, x = {x[:3].tolist()}"
+        M, X = lesson.centre_of_mass(unit * hole, x[:3])
+        close("total mass of a point, a hole and nothing, over its size [-]", M / unit, m[0], ROUNDED, given)
+        close("their centre of mass [m]", X, hole @ x[:3] / m[0], ROUNDED, given)
 
 
 @exercise("4.1", points=0.5, hint='after summing the masses: check_positive("total mass [kg]", M)')
@@ -54,6 +60,8 @@ def test_what_has_no_mass_has_no_centre(lesson, draw):
     raises("two masses of 0 kg", BadInput, lesson.centre_of_mass, 0.0 * m, x)
     raises("a mass and its negative: together 0 kg", BadInput, lesson.centre_of_mass, np.array([m[0], -m[0]]), x)
     raises("negative masses", BadInput, lesson.centre_of_mass, -m, x)
+    for wrong in (np.nan, np.inf):
+        raises(f"a mass of {wrong} kg", BadInput, lesson.centre_of_mass, np.array([m[0], wrong]), x)
 
 
 @exercise("4.2", points=0.5, hint="each velocity counts as much as its mass: Σ mᵢ vᵢ, a vector")
@@ -102,6 +110,9 @@ def test_tensor_of_points_gives_their_angular_momentum_and_energy(lesson, draw):
         close("I ω, against Σ r × m v [kg m²/s]", I @ omega, m @ np.cross(r, v), ROUNDED, given)
         close("½ ω·I ω, against Σ ½ m v² [J]", 0.5 * omega @ I @ omega, 0.5 * m @ np.sum(v * v, axis=1), ROUNDED, given)
     close("I − Iᵀ [kg m²]: symmetric", I - I.T, np.zeros((3, 3)), ROUNDED, f"m = {m}, r = {r.tolist()}")
+    hole = lesson.point_mass_inertia(np.append(m, -m[0]), np.append(r, r[:1], axis=0))
+    close("I with a hole, as heavy, at the first point [kg m²]: as without the two", hole, tensor(m[1:], r[1:]),
+          ROUNDED, f"m = {m}, r = {r.tolist()}")
 
 
 @exercise("4.4", points=0.5, hint="a point on the x axis resists about y and z, not about x")
@@ -158,21 +169,34 @@ def capsule_pieces(r, h):
 @exercise("4.6", points=0.5, hint="two fifths of m R², the same on all three places of the diagonal, zeros elsewhere")
 def test_tensor_of_a_ball_is_its_volume_integral(lesson, draw):
     m, r = draw(0.5, 5.0), draw(0.2, 2.0)
-    close("tensor of a ball [kg m²]", lesson.sphere_inertia(m, r), by_slices(m, ball_pieces(r)), ROUNDED, f"m = {m:.4g}, R = {r:.4g}")
+    for mass, what in ((m, "ball"), (-m, "hole of ball shape")):
+        close(f"tensor of a {what} [kg m²]", lesson.sphere_inertia(mass, r), by_slices(mass, ball_pieces(r)), ROUNDED,
+              f"m = {mass:.4g}, R = {r:.4g}")
 
 
 @exercise("4.7", points=1, hint="the axis is z: only Izz has ½ m R²; across it, m (3R² + h²)/12")
 def test_tensor_of_a_cylinder_is_its_volume_integral(lesson, draw):
     m, r, h = draw(0.5, 5.0), draw(0.2, 1.0), draw(1.2, 2.0)
     expected = by_slices(m, [(-0.5 * h, 0.5 * h, lambda z: r * r + 0.0 * z)])
-    close("tensor of a cylinder [kg m²]", lesson.cylinder_inertia(m, r, h), expected, ROUNDED, f"m = {m:.4g}, R = {r:.4g}, length = {h:.4g}")
+    for sign, what in ((1.0, "cylinder"), (-1.0, "hole of cylinder shape")):
+        given = f"m = {sign * m:.4g}, R = {r:.4g}, length = {h:.4g}"
+        close(f"tensor of a {what} [kg m²]", lesson.cylinder_inertia(sign * m, r, h), sign * expected, ROUNDED, given)
+    disc, rod = m * r * r * np.diag([0.25, 0.25, 0.5]), m * h * h / 12.0 * np.diag([1.0, 1.0, 0.0])
+    close("tensor of a disc, a cylinder of length 0 [kg m²]", lesson.cylinder_inertia(m, r, 0.0), disc, ROUNDED,
+          f"m = {m:.4g}, R = {r:.4g}")
+    close("tensor of a rod, a cylinder of radius 0 [kg m²]", lesson.cylinder_inertia(m, 0.0, h), rod, ROUNDED,
+          f"m = {m:.4g}, length = {h:.4g}")
 
 
 @exercise("4.8", points=1, hint="the half balls are not balls at ±h/2: their centres are ⅜ R further out, which gives the term ⅜ h R")
 def test_tensor_of_a_capsule_is_its_volume_integral(lesson, draw):
     m, r, h = draw(0.5, 5.0), draw(0.2, 1.0), draw(0.5, 2.0)
     expected = by_slices(m, capsule_pieces(r, h))
-    close("tensor of a capsule [kg m²]", lesson.capsule_inertia(m, r, h), expected, ROUNDED, f"m = {m:.4g}, R = {r:.4g}, length = {h:.4g}")
+    for sign, what in ((1.0, "capsule"), (-1.0, "hole of capsule shape")):
+        for size in (1e-12, 1.0, 1e6):
+            found = np.asarray(lesson.capsule_inertia(sign * m, size * r, size * h)) / size**2
+            close(f"tensor of a {what} over its size squared [kg]", found, sign * expected, ROUNDED,
+                  f"m = {sign * m:.4g}, R = {size * r:.4g}, length = {size * h:.4g}")
 
 
 @exercise("4.8", points=0.5, hint="with length = 0 all mass is in the two half balls, and they make a ball")
@@ -180,6 +204,9 @@ def test_a_capsule_without_length_is_a_ball_and_a_long_one_a_rod(lesson, draw):
     m, r = draw(0.5, 5.0), draw(0.2, 1.0)
     ball = 0.4 * m * r * r * np.eye(3)
     close("tensor of a capsule of length 0 [kg m²]", lesson.capsule_inertia(m, r, 0.0), ball, ROUNDED, f"m = {m:.4g}, R = {r:.4g}")
+    rod = m * r * r / 12.0 * np.diag([1.0, 1.0, 0.0])
+    close("tensor of a capsule of radius 0, a rod [kg m²]", lesson.capsule_inertia(m, 0.0, r), rod, ROUNDED,
+          f"m = {m:.4g}, length = {r:.4g}")
     # a thin one: the caps hold 4/3 R/h of the mass and reach R further out, which moves m h²/12 by less than 6 R/h of itself
     h = 1e5 * r
     rod = np.asarray(lesson.capsule_inertia(m, r, h))[0, 0] / (m * h * h / 12.0)
@@ -204,8 +231,13 @@ def test_the_inverse_in_world_axes_turns_l_back_into_omega(lesson, draw):
     # a tensor with moments above 1 kg m²: its inverse is below 1, and I⁻¹ I is rounded by 1e-16 times moments below 1e3
     I_body, R = tensor(m, r) + np.eye(3), rotation(draw)
     I = tensor(m, r @ R.T) + np.eye(3)
-    inverse = np.asarray(lesson.world_inverse_inertia(I_body, R))
-    close("I⁻¹ I in world axes [-]", inverse @ I, np.eye(3), ROUNDED, f"I_body = {I_body.tolist()}, R = {R.tolist()}")
+    for size in (1e-30, 1e-5, 1.0, 1e30):
+        inverse = np.asarray(lesson.world_inverse_inertia(size * I_body, R))
+        close("I⁻¹ I in world axes [-]", inverse @ (size * I), np.eye(3), ROUNDED,
+              f"I_body = {(size * I_body).tolist()}, R = {R.tolist()}")
+    for axis in range(3):                                              # NumPy's own error for a singular matrix will do
+        raises("a line of points, which has no inverse", ValueError, lesson.world_inverse_inertia,
+               np.diag(1.0 - np.eye(3)[axis]), np.eye(3))
 
 
 # ---------------------------------------------------------------------------------------------- composite bodies
@@ -295,6 +327,10 @@ def turned(moments, R):
     return 0.5 * (I + I.T)
 
 
+ENTRY, ASYMMETRY = "an entry of the inertia tensor [kg m²]", "the asymmetry of an inertia tensor [kg m²]"
+SMALLEST, LARGEST = "the smallest principal moment [kg m²]", "the largest principal moment [kg m²]"
+
+
 @exercise("4.14", points=0.25,
           hint="in this order: finite, symmetric, smallest moment above zero, largest no more than the sum of the others")
 def test_impossible_tensors_are_refused(lesson, draw):
@@ -315,9 +351,16 @@ def test_impossible_tensors_are_refused(lesson, draw):
         for size, part in ((1.0, 0.1), (1e-9, 0.1), (1.0, 1e-9)):
             I = size * np.diag([low, middle, middle])
             I[i, j] += part * size
-            raises(f"two different entries I{i}{j} and I{j}{i}", BadInput, lesson.check_inertia, I, naming=[part * size])
-    raises("a negative moment", BadInput, lesson.check_inertia, np.diag([middle, -low, middle]), naming=[-low])
-    raises("a moment above the sum of the others", BadInput, lesson.check_inertia, np.diag([low, 3.0 * middle, middle]), naming=[3.0 * middle])
+            raises(f"two different entries I{i}{j} and I{j}{i}", BadInput, lesson.check_inertia, I,
+                   naming=[part * size], thing=ASYMMETRY)
+        for wrong in (np.nan, np.inf, -np.inf):
+            I = np.diag([low, middle, middle])
+            I[i, j] = I[j, i] = wrong
+            raises(f"{wrong} off the diagonal", BadInput, lesson.check_inertia, I, thing=ENTRY)
+    raises("a negative moment", BadInput, lesson.check_inertia, np.diag([middle, -low, middle]),
+           naming=[-low], thing=SMALLEST)
+    raises("a moment above the sum of the others", BadInput, lesson.check_inertia, np.diag([low, 3.0 * middle, middle]),
+           naming=[3.0 * middle], thing=LARGEST)
 
 
 @exercise("4.14", points=0.25,
@@ -483,6 +526,8 @@ def test_open_and_crooked_meshes_are_refused(lesson, draw):
     lesson.check_closed(len(x), faces)                                 # a closed one passes
     for what, wrong in broken.items():
         raises(what, BadInput, lesson.check_closed, len(x), np.ascontiguousarray(wrong))
+    # alone and numbered by triangles, i · 1 + j, its edges there and back would be the same list
+    raises("one triangle alone", BadInput, lesson.check_closed, 3, np.array([[0, 1, 2]]), naming=[0, 1, 2])
     k = int(np.flatnonzero(np.all(faces > 0, axis=1))[0])
     raises("a triangle missing that has no corner 0", BadInput, lesson.check_closed, len(x), np.delete(faces, k, axis=0), naming=faces[k].tolist())
     raises("a number that no corner has", BadInput, lesson.check_closed, len(x), np.where(faces == len(x) - 1, 77, faces), naming=[77])
@@ -560,16 +605,23 @@ def test_a_mesh_far_from_the_origin_keeps_its_digits(lesson, draw):
     close("centre of mass, 10⁵ m away [m]", found_x, far, 1e-10, given)
 
 
-@exercise("4.17", points=0.5, hint="check the density, the corners, the edges; then the volume: below zero, the mesh is inside-out")
+@exercise("4.17", points=0.25,
+          hint="check the density, the corners, the edges; then the volume: below zero, the mesh is inside-out")
 def test_meshes_without_an_inside_are_refused(lesson, draw):
     size = draw(0.3, 1.5, 3)
     x, faces = box_mesh(size, draw(-1.0, 1.0, 3))
     close("mass of a box at 1 kg/m³ [kg]", lesson.mesh_body(1.0, x, faces)[0], np.prod(size), ROUNDED, f"size = {size}")
-    for density in (0.0, -1.0, np.nan):
+    for density in (0.0, -1.0, np.nan, np.inf):
         raises(f"density {density} kg/m³", BadInput, lesson.mesh_body, density, x, faces)
     raises("a mesh turned inside-out", BadInput, lesson.mesh_body, 1.0, x, np.ascontiguousarray(faces[:, ::-1]))
     raises("an open mesh", BadInput, lesson.mesh_body, 1.0, x, faces[1:])
     raises("a corner at NaN", BadInput, lesson.mesh_body, 1.0, np.where(x == x[3], np.nan, x), faces)
+    for wrong in (np.nan, np.inf):
+        raises(f"a corner at {wrong} that no triangle uses", BadInput, lesson.mesh_body, 1.0,
+               np.append(x, [[0.0, wrong, 0.0]], axis=0), faces)
+    for number in (-1, len(x), 77):
+        raises("a number that no corner has", BadInput, lesson.mesh_body, 1.0, x,
+               np.where(faces == len(x) - 1, number, faces))
     raises("two triangles back to back", BadInput, lesson.mesh_body, 1.0, x, np.array([[0, 1, 2], [0, 2, 1]]))
     for _ in range(8):                                                 # one of them has a volume of round-off above zero
         flat = np.column_stack([x[:, :2], x[:, :2] @ draw(-0.5, 0.5, 2)])
@@ -577,6 +629,30 @@ def test_meshes_without_an_inside_are_refused(lesson, draw):
     for size in (1.0, 1e3, 1e6):                                       # of a large one the round-off is large as well
         flat = size * np.column_stack([x[:, :2], x[:, :2] @ draw(-0.5, 0.5, 2)])
         raises("a large box pressed flat", BadInput, lesson.mesh_body, 1.0, flat, faces)
+
+
+def sheets(draw, share):
+    """(corners, faces, volume) of boxes with V = share · ε e³, ε = 1e-14.
+
+    A corner at the origin comes first: nothing is rounded away.  The others are all above that corner, or all below it.
+    """
+    for size in SIZES:
+        a, b = size * draw(0.3, 1.5, 2)
+        edges = np.array([a, b, share * 1e-14 * max(a, b) ** 3 / (a * b)])
+        x, faces = box_mesh(edges, 0.5 * edges)
+        yield x, faces, np.prod(edges)
+        yield -x, np.ascontiguousarray(faces[:, ::-1]), np.prod(edges)
+
+
+@exercise("4.17", points=0.25,
+          hint="the volume is compared with ε e³, e the largest of all |x − o|; zero is not the limit")
+def test_what_is_thinner_than_round_off_has_no_inside(lesson, draw):
+    for x, faces, V in sheets(draw, 100.0):
+        given = f"corners {x.tolist()}, triangles {faces.tolist()}"
+        close("mass of a thin sheet over density and volume [-]", lesson.mesh_body(1.0, x, faces)[0] / V, 1.0, 1e-9,
+              given)
+    for x, faces, _ in sheets(draw, 0.01):
+        raises("a sheet thinner than round-off", BadInput, lesson.mesh_body, 1.0, x, faces)
 
 
 @exercise("4.17", points=0.5,

@@ -110,6 +110,15 @@ def test_an_error_is_told_without_the_words_of_numpy():
     assert error.expected == "ValueError" and error.got == "KeyError: '[0.1, 0.25] and 0.1003333 and (0.25,)'"
 
 
+def test_an_error_may_have_to_name_a_certain_thing():
+    def call():
+        raise ValueError("the length is 2: give another")
+    raises("length", ValueError, call, naming=[2.0], thing="the length")
+    error = told(raises, ValueError, call, thing="the width")
+    assert error.quantity.endswith("the thing that ValueError names")
+    assert error.expected == "the width" and error.got == "the length is 2: give another"
+
+
 def test_a_failure_in_one_line_has_all_of_it():
     error = told(close, 1.0, 2.0, 0.0, given=f"x = {np.float64(0.123456)}")
     assert str(error) == "quantity [m] (x = 0.1235): expected 2, got 1, tolerance none: exactly this"

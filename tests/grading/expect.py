@@ -74,10 +74,10 @@ def between(quantity, got, low, high, given=""):
         raise NotYet(quantity, " to ".join(ends), shown, "", off, given)
 
 
-def raises(quantity, error, function, *arguments, naming=()):
+def raises(quantity, error, function, *arguments, naming=(), thing=""):
     """The call raises an error of that class (or of one of that name: compiled and sandboxed code have their own).
 
-    naming: values of which the error's sentence must name one, to 1e-6 of it.
+    naming: values of which the error's sentence must name one, to 1e-6 of it.  thing: how the sentence must begin.
     """
     try:
         function(*arguments)
@@ -91,6 +91,9 @@ def raises(quantity, error, function, *arguments, naming=()):
             quantity = f"{quantity}: the value that {error.__name__} names"
             values = " or ".join(f"{value:.{MOST_DIGITS}g}" for value in naming)
             raise NotYet(quantity, values, str(e), "", "another value") from None
+        if not str(e).startswith(thing):
+            quantity = f"{quantity}: the thing that {error.__name__} names"
+            raise NotYet(quantity, thing, str(e), "", "another value") from None
     else:
         raise NotYet(quantity, f"{error.__name__} to be raised", "no error", "", "no error")
 

@@ -24,6 +24,11 @@ edit("4.1", "mean position, whatever the masses", "m @ x / M", "np.sum(x, axis=0
 edit("4.1", "forgets to divide by the mass", "m @ x / M", "m @ x")
 edit("4.1", "divides by the number of points", "m @ x / M", "m @ x / m.size")
 edit("4.1", "divides by zero", 'check_positive("total mass [kg]", M)', "pass")
+POSITIVE = 'check_positive("total mass [kg]", M)'
+edit("4.1", "refuses a hole among the points", POSITIVE, 'for k in m: check_positive("mass [kg]", k)')
+edit("4.1", "lets NaN pass", POSITIVE, 'if M <= 0.0: raise BadInput("total mass [kg]", M, "give some")')
+edit("4.1", "lets infinity pass", POSITIVE, 'if not M > 0.0: raise BadInput("total mass [kg]", M, "give some")')
+edit("4.1", "refuses less than a microgram", POSITIVE, 'check_positive("total mass [kg]", M if M > 1e-9 else 0.0)')
 
 
 # 4.2 ------------------------------------------------------------------------------------------------------------
@@ -68,6 +73,7 @@ edit("4.4", "plus sign off the diagonal", TENSOR, TENSOR.replace("-", ""))
 edit("4.4", "second moments for the tensor", TENSOR, "[[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]")
 edit("4.4", "diagonal only", TENSOR, "[[yy + zz, 0.0, 0.0], [0.0, xx + zz, 0.0], [0.0, 0.0, xx + yy]]")
 edit("4.4", "distance from the point instead of from the axis", TENSOR, "np.eye(3) * (xx + yy + zz)")
+edit("4.4", "a hole taken for a body", "xx, yy, zz =", "m = np.abs(m); xx, yy, zz =")
 
 
 # 4.5 ------------------------------------------------------------------------------------------------------------
@@ -94,6 +100,8 @@ edit("4.6", "a shell, two thirds", "0.4 * m", "2.0 / 3.0 * m")
 edit("4.6", "the diameter", "radius * radius", "4.0 * radius * radius")
 edit("4.6", "filled everywhere", "np.eye(3)", "np.ones((3, 3))")
 edit("4.6", "the sum of all three moments", "0.4 * m", "1.2 * m")
+edit("4.6", "a hole taken for a body", "0.4 * m", "0.4 * abs(m)")
+edit("4.6", "refuses holes", "0.4 * m", '0.4 * (check_positive("mass m [kg]", m) or m)')
 
 
 # 4.7 ------------------------------------------------------------------------------------------------------------
@@ -106,6 +114,11 @@ edit("4.7", "axis along y", "across, 0.5 * m * radius * radius", "0.5 * m * radi
 edit("4.7", "rod across, without its thickness", "3.0 * radius * radius + length * length", "length * length")
 edit("4.7", "half the length", "length * length", "0.25 * length * length")
 edit("4.7", "a hoop about its axis", "0.5 * m * radius * radius", "m * radius * radius")
+edit("4.7", "refuses holes", "across = m", 'check_positive("mass m [kg]", m); across = m')
+edit("4.7", "refuses a disc", "across = m", 'check_positive("length [m]", length); across = m')
+edit("4.7", "refuses a rod", "across = m", 'check_positive("radius [m]", radius); across = m')
+edit("4.7", "a density, which a disc has not", "across = m", "m = m / length * length; across = m")
+edit("4.7", "a density, which a rod has not", "across = m", "m = m / radius**2 * radius**2; across = m")
 
 
 # 4.8 ------------------------------------------------------------------------------------------------------------
@@ -138,6 +151,11 @@ edit("4.8", "the box around it, as an engine does",
      "np.diag(np.array([across, across, 0.5 * m_c * rr + 0.4 * m_s * rr]))",
      "box_inertia(m, np.array([2.0 * radius, 2.0 * radius, length + 2.0 * radius]))")
 edit("4.8", "length over all", "rr, hh =", "length = max(0.0, length - 2.0 * radius); rr, hh =")
+edit("4.8", "refuses holes", "m_c = m", 'check_positive("mass m [kg]", m); m_c = m')
+edit("4.8", "refuses a rod", "m_c = m", 'check_positive("radius [m]", radius); m_c = m')
+edit("4.8", "shares by volumes, which a rod has not", "length / (length + 4.0 / 3.0 * radius)",
+     "(np.pi * rr * length) / (np.pi * rr * length + 4.0 / 3.0 * np.pi * rr * radius)")
+edit("4.8", "a ball when shorter than a micrometre", "m_c = m * length", "m_c = 0.0 if length < 1e-6 else m * length")
 
 
 # 4.9 ------------------------------------------------------------------------------------------------------------
@@ -162,6 +180,9 @@ edit("4.10", "not inverted", "inverse(I_body)", "I_body")
 edit("4.10", "turned the other way", "inverse(I_body), R)", "inverse(I_body), R.T)")
 edit("4.10", "one over each entry of the diagonal", "inverse(I_body)", "np.diag(1.0 / np.diag(I_body))")
 edit("4.10", "stays in the body's axes", "world_inertia(inverse(I_body), R)", "inverse(I_body)")
+edit("4.10", "an inverse of what has none", "inverse(I_body)", "np.linalg.pinv(I_body)")
+edit("4.10", "refuses what is small", "inverse(I_body)",
+     "inverse(I_body if abs(np.linalg.det(I_body)) > 1e-12 else 0.0 * I_body)")
 
 
 # 4.11 -----------------------------------------------------------------------------------------------------------
@@ -267,6 +288,12 @@ right("4.14", "with eigenvalues only")(judged())
 edit("4.14", "looks at the diagonal instead of the principal moments", "moments, _ = principal_axes(I)",
      "moments = np.sort(np.diag(I))")
 edit("4.14", "a sum in kg m², blind to small bodies", "(1.0 + TENSOR_ROUND_OFF)", "1.0 + TENSOR_ROUND_OFF")
+edit("4.14", "NaN passes off the diagonal", "kg m²]\", I)", "kg m²]\", np.diag(I))")
+edit("4.14", "copies the words for the largest moment", "the largest principal moment", "the smallest principal moment")
+edit("4.14", "copies the words for the smallest moment", "the smallest principal moment",
+     "the largest principal moment")
+edit("4.14", "copies the words for the asymmetry", "the asymmetry of an inertia", "an entry of the inertia")
+edit("4.14", "copies the words for an entry", "an entry of the inertia", "the asymmetry of an inertia")
 
 
 # 4.15 -----------------------------------------------------------------------------------------------------------
@@ -302,7 +329,8 @@ edit("4.15", "middle of the triangle, not of the tetrahedron", "w / 24.0", "w / 
 
 # 4.16 -----------------------------------------------------------------------------------------------------------
 @variants
-def closing(ranged=True, directed=True, counted=True, twice=True, spare=True, named=lambda edges: edges[0][0]):
+def closing(ranged=True, directed=True, counted=True, twice=True, spare=True, named=lambda edges: edges[0][0],
+            number=lambda i, j, faces: (i, j)):
     """Every edge is met by as many that go back, with questions that may be wrong or too many."""
     def check_closed(count, faces):
         if ranged and not 0 <= faces.min() <= faces.max() < count:
@@ -311,8 +339,10 @@ def closing(ranged=True, directed=True, counted=True, twice=True, spare=True, na
         every = [(int(i), int(j)) for f in faces for i, j in zip(f, np.roll(f, -1))]
         either = [tuple(sorted(edge)) for edge in every]
         if directed:
-            alone = [(i, j) for i,
-                     j in every if (every.count((i, j)) != every.count((j, i)) if counted else (j, i) not in every)]
+            there = [number(i, j, faces) for i, j in every]
+            back = [number(j, i, faces) for i, j in every]
+            alone = [edge for edge, i, j in zip(every, there, back)
+                     if (there.count(i) != there.count(j) if counted else j not in there)]
         else:
             alone = [edge for edge in either if either.count(edge) % 2]
         if alone or not twice and len(set(every)) < len(every) or not spare and len(set(faces.ravel())) < count:
@@ -327,6 +357,7 @@ wrong("4.16", "does not look at the numbers")(closing(ranged=False))
 wrong("4.16", "names corner 0, whichever is open")(closing(named=lambda edges: 0))
 wrong("4.16", "wants every edge once there and once back")(closing(twice=False))
 wrong("4.16", "wants every corner to be used")(closing(spare=False))
+wrong("4.16", "numbers the edges by triangles, not by corners")(closing(number=lambda i, j, faces: i * len(faces) + j))
 
 
 # 4.17 -----------------------------------------------------------------------------------------------------------
@@ -373,3 +404,12 @@ edit("4.17", "lets a flat mesh pass when round-off is kind", "TENSOR_ROUND_OFF *
 edit("4.17", "refuses what is small, whatever its shape", "TENSOR_ROUND_OFF * np.max(np.abs(offsets)) ** 3",
      "TENSOR_ROUND_OFF")
 edit("4.17", "a length for a volume", "np.max(np.abs(offsets)) ** 3", "np.max(np.abs(offsets))")
+edit("4.17", "how far the others are above the first corner, not from it", "np.max(np.abs(offsets))", "np.max(offsets)")
+edit("4.17", "how far the others are below the first corner, not from it", "np.max(np.abs(offsets))",
+     "np.max(-offsets)")
+edit("4.17", "lets numbers pass that no corner has", "x.shape[0], faces", "np.max(faces) + 1, faces")
+edit("4.17", "lets an infinite density pass", 'check_positive("density [kg/m³]", density)',
+     'if not density > 0.0: raise BadInput("density [kg/m³]", density, "give some")')
+edit("4.17", "a thousand times too tolerant", "TENSOR_ROUND_OFF * np.max", "1e-17 * np.max")
+edit("4.17", "a thousand times too strict", "TENSOR_ROUND_OFF * np.max", "1e-11 * np.max")
+edit("4.17", "looks at the corners of triangles only", "[m]\", x)", "[m]\", x[np.unique(faces % x.shape[0])])")
