@@ -20,7 +20,7 @@ from .rotation import angular_acceleration, cross, product, quaternion_update, r
 from .springs import inverse_masses, measured_links
 
 NEWTON_TOLERANCE = 1e-12     # last correction over the longest link [-]: Newton squares it, so what is left is round-off
-NEWTON_LIMIT = 40            # corrections [-]; from a sane guess Newton doubles its digits and needs fewer than 8
+NEWTON_LIMIT = 40            # corrections [-]: 4 to 7 where points move a tenth of a link per step, 30 and more where some move a whole link
 TRACE = 1e-13                # compliance over w dt² of a link [-]: far below the pull of all links, far above round-off
 FIRST_TRACE = 1e-10          # the same while the gaps are still closing: what redundant links then disagree about is larger than round-off
 
@@ -163,9 +163,11 @@ def newton_correction(x, lam, goal, dt, net):
     wanted:  x − x_pred − dt² W Σ λₛ ∇Cₛ(x) = 0  and  Cₛ(x) = 0.      Linear about the guess, with the new λ, of both:
         (1 − dt² W Σ λₛ ∇²Cₛ) Δx − dt² W Jᵀ λ_new = x_pred − x
         J Δx − ε dt² (λ_new − λ)                  = −C              ε = TRACE (w_i + w_j) of each link
-    ε is a trace of compliance, on the change of λ: where Newton's method comes to rest it is not there.  It decides between multipliers
-    that do the same, where links are redundant (a square with both diagonals): without it the matrix has no inverse there.
-    (Λ = dt² λ is the better unknown: of one size with x.)
+    ε is a trace of compliance.  It acts on the change λ_new − λ, not on λ: where Newton's method comes to rest the change is 0, and so
+    is its effect.  It decides between multipliers that do the same, where links are redundant (a square with both diagonals): without
+    it the matrix has no inverse there.
+    Λ = dt² λ_new is the better unknown, because it is of one size with x.  The second row for it, with −ε on the diagonal:
+        J Δx − ε Λ = −C − ε dt² λ
 
     W: the inverse mass of each coordinate of x.ravel();  (C, J) = constraints(x, net);  goal (n, d) is x_pred.
     ∇²C of a link: H = (1 − n nᵀ)/l for the ends (i, i) and (j, j), −H for (i, j) and (j, i);  l = C + rest.
@@ -282,6 +284,7 @@ def distance_sweep(x, net):
     That is projection() for two points, times s.  Returns a new array.  (For speed the worked answer sums over the coordinates in a
     loop; what projection returns is as right.)
     Raises BadInput("the length of a link [m]", 0.0, "keep its ends apart") when the ends of a link coincide.
+    A link between two immovable points does not occur: make_net refuses it.
     *Source:* deck B, "Loop over all constraints = 1 iteration"; Müller et al. 2006, eqs. 10, 11.
     """
     ### BEGIN SOLUTION 8.6
@@ -435,7 +438,7 @@ def compliant_multiplier(C, Lam, weight, alpha, dt):
     Λ = λ dt² is what earlier visits of this step have added up to.  It comes to rest where C = −α̃ Λ = −α λ: Hooke's law.
     Raises BadInput("compliance α [m/N]", α, "give zero or more") for a negative one (NaN, too),
     BadInput("Σ w |∇C|² of a constraint", 0.0, "let one of its points have a mass and a gradient") for a weight of 0, and
-    BadInput("step dt [s]", dt, "give a number above zero") for a step that is not positive (NaN, too).
+    BadInput("step dt [s]", dt, "give a number above zero") for a step that is not positive: 0, negative or NaN (∞ is positive).
     *Source:* Macklin, Müller and Chentanez 2016, eq. 18.
     """
     ### BEGIN SOLUTION 8.12

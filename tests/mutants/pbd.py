@@ -39,6 +39,7 @@ wrong("8.1", "squares of lengths")(link(squared=True))
 wrong("8.1", "the strain")(link(ratio=True))
 wrong("8.1", "takes ends that coincide")(link(checked=False))
 edit("8.1", "refuses what is short", "length == 0.0", "length < 1e-9")
+edit("8.1", "a picometre is no length", "length == 0.0", "length < 1e-12")
 edit("8.1", "never too long", "length - rest", "min(0.0, length - rest)")
 edit("8.1", "towards where it should go", "r / length", "r / length * np.sign(rest - length)")
 
@@ -66,6 +67,8 @@ wrong("8.2", "takes what nothing can meet")(projecting(checked=False))
 edit("8.2", "every point on its own", "-C / total * inv_mass[k]",
      "-C / np.sum(gradients[k] ** 2) * (inv_mass[k] > 0.0)")
 edit("8.2", "refuses what is light", "total == 0.0", "total < 1e-6")
+edit("8.2", "refuses only where all masses are infinite or all gradients 0", "total == 0.0",
+     "np.all(inv_mass == 0.0) or np.all(gradients == 0.0)")
 
 
 # 8.3 ------------------------------------------------------------------------------------------------------------
@@ -91,6 +94,9 @@ wrong("8.3", "the force of rest")(predicting(speed=0.0))
 wrong("8.3", "changes its input")(predicting(changes=True))
 edit("8.3", "what is heavy falls more slowly", "dt * dt * a[k, c]", "dt * dt * a[k, c] * min(1.0, net.inv_mass[k])")
 wrong("8.3", "no force")(predicting(half=0.0))
+edit("8.3", "what is heavy is immovable", "net.inv_mass[k] > 0.0", "net.inv_mass[k] > 1e-6")
+edit("8.3", "changes what the acceleration has returned", "a = acceleration(t, x, v, net)",
+     "a = acceleration(t, x, v, net)\n    a[net.inv_mass == 0.0] = 0.0")
 
 
 # 8.4 ------------------------------------------------------------------------------------------------------------
@@ -109,8 +115,9 @@ def newton(curved=1.0, per_row=True, scale=lambda dt: dt * dt, sign=1.0, from_go
             bend[i, j] -= H
             bend[j, i] -= H
         push = W[:, None] * J.T if per_row else J.T * W.max()
-        A = np.block([[np.eye(n) - curved * dt * dt * W[:, None] * bend, -sign * push], [J, np.zeros((s, s))]])
-        found = np.linalg.solve(A, np.concatenate((from_goal * (goal - x).ravel(), -C)))
+        trace = worked.TRACE * (net.inv_mass[net.i] + net.inv_mass[net.j])
+        A = np.block([[np.eye(n) - curved * dt * dt * W[:, None] * bend, -sign * push], [J, np.diag(-trace)]])
+        found = np.linalg.solve(A, np.concatenate((from_goal * (goal - x).ravel(), -C - trace * dt * dt * lam)))
         return found[:n].reshape(x.shape), found[n:] / scale(dt) + (lam if difference else 0.0)
     return newton_correction
 
@@ -125,6 +132,11 @@ wrong("8.4", "multipliers of the other sign")(newton(sign=-1.0))
 wrong("8.4", "away from the prediction")(newton(from_goal=-1.0))
 wrong("8.4", "adds the old λ")(newton(difference=True))
 wrong("8.4", "second derivatives along the link only")(newton(across=False))
+edit("8.4", "no trace of compliance", "TRACE * (net.inv_mass[net.i[s]] + net.inv_mass[net.j[s]])", "0.0")
+edit("8.4", "the trace acts on λ, not on its change", " - trace * dt * dt * lam[s]", "")
+edit("8.4", "the trace without the masses", "TRACE * (net.inv_mass[net.i[s]] + net.inv_mass[net.j[s]])", "TRACE * 2.0")
+edit("8.4", "link s joins points s and s + 1", "for s in range(C.size):",
+     "net = net._replace(i=np.arange(C.size), j=np.arange(C.size) + 1)\n    for s in range(C.size):")
 
 
 # 8.5 ------------------------------------------------------------------------------------------------------------
@@ -145,7 +157,6 @@ def projecting_step(enough=lambda done, change, longest: change <= 1e-12 * longe
     return projection_step
 
 
-right("8.5", "from the prediction")(projecting_step(start="goal"))
 wrong("8.5", "one round")(projecting_step(enough=lambda done, change, longest: True))
 wrong("8.5", "two rounds")(projecting_step(enough=lambda done, change, longest: done == 1))
 wrong("8.5", "a trillionth of a metre, however large the net")(projecting_step(enough=lambda done, change,
@@ -156,6 +167,17 @@ wrong("8.5", "keeps the predicted velocity")(projecting_step(speed=lambda new, x
 wrong("8.5", "keeps the old velocity")(projecting_step(speed=lambda new, x, goal, v, dt: v))
 wrong("8.5", "forgets the prediction")(projecting_step(force=False))
 wrong("8.5", "the velocity without dt")(projecting_step(speed=lambda new, x, goal, v, dt: new - x))
+wrong("8.5", "begins at the prediction")(projecting_step(start="goal"))
+edit("8.5", "puts immovable points back", "new = new + change",
+     "change[net.inv_mass == 0.0] = 0.0\n        new = new + change")
+edit("8.5", "gravity for any acceleration", "predict(acceleration, t,", "predict(falling_acceleration, t,")
+edit("8.5", "the acceleration at t + dt", "predict(acceleration, t,", "predict(acceleration, t + dt,")
+edit("8.5", "λ = 0 in every round", "change, lam = newton", "change, _ = newton")
+edit("8.5", "the first link for the longest", "np.max(net.rest)", "net.rest[0]")
+edit("8.5", "the last link for the longest", "np.max(net.rest)", "net.rest[-1]")
+edit("8.5", "no more than eight rounds", "range(NEWTON_LIMIT)", "range(8)")
+edit("8.5", "takes NaN for an end", "np.max(np.abs(change)) <= NEWTON_TOLERANCE * longest",
+     "not np.max(np.abs(change)) > NEWTON_TOLERANCE * longest")
 
 
 # 8.6 ------------------------------------------------------------------------------------------------------------
@@ -193,6 +215,9 @@ wrong("8.6", "moves the immovable")(sweeping(held=False))
 edit("8.6", "a thread: never too short", "share = net.stiffness[s]",
      "share = net.stiffness[s] * (squared > net.rest[s] ** 2)")
 edit("8.6", "refuses what is short", "squared == 0.0", "squared < 1e-12")
+edit("8.6", "link s joins points s and s + 1", "i, j = net.i[s], net.j[s]", "i, j = s, s + 1")
+edit("8.6", "the rest length of the first link", "net.rest[s]", "net.rest[0]")
+edit("8.6", "the stiffness of the first link", "net.stiffness[s]", "net.stiffness[0]")
 
 
 # 8.7 ------------------------------------------------------------------------------------------------------------
@@ -215,6 +240,8 @@ wrong("8.7", "keeps the predicted velocity")(dynamics(speed=lambda new, x, goal,
 wrong("8.7", "keeps the old velocity")(dynamics(speed=lambda new, x, goal, v, dt: v))
 wrong("8.7", "no force")(dynamics(begin="x"))
 edit("8.7", "an immovable point is at rest", "(new - x) / dt", "(new - x) / dt * (net.inv_mass > 0.0)[:, None]")
+edit("8.7", "gravity for any acceleration", "predict(acceleration, t,", "predict(falling_acceleration, t,")
+edit("8.7", "the acceleration at t + dt", "predict(acceleration, t,", "predict(acceleration, t + dt,")
 
 
 # 8.8 ------------------------------------------------------------------------------------------------------------
@@ -275,6 +302,8 @@ edit("8.9", "leverage of c held between 0 and 1", "np.sum((b - c) * e) / squared
 edit("8.9", "leverage of d held between 0 and 1", "np.sum((b - d) * e) / squared",
      "min(1.0, max(0.0, np.sum((b - d) * e) / squared))")
 edit("8.9", "taken into [−π, π)", "np.ceil((turn - np.pi) / (2.0 * np.pi))", "np.floor((turn + np.pi) / (2.0 * np.pi))")
+edit("8.9", "goes round once", "np.ceil((turn - np.pi) / (2.0 * np.pi))",
+     "np.sign(np.ceil((turn - np.pi) / (2.0 * np.pi)))")
 edit("8.9", "asks for the area of one triangle only", "squared_c == 0.0 or squared_d == 0.0", "squared_d == 0.0")
 edit("8.9", "refuses what is small", "squared_c == 0.0 or squared_d == 0.0", "squared_c < 1e-9 or squared_d < 1e-9")
 
@@ -294,6 +323,7 @@ def ball(sign=1.0, n_sign=1.0, centred=True, scaled=True, safe=True):
 right("8.10", "with norm")(ball())
 edit("8.10", "a bowl", "distance - obstacle.radius, r / distance", "obstacle.radius - distance, -r / distance")
 edit("8.10", "a middle of a micrometre", "distance > 0.0", "distance > 1e-6")
+edit("8.10", "a middle of the size of round-off", "distance > 0.0", "distance > 1e-14")
 wrong("8.10", "positive inside")(ball(sign=-1.0))
 wrong("8.10", "inwards")(ball(n_sign=-1.0))
 wrong("8.10", "around the origin")(ball(centred=False))
@@ -325,6 +355,7 @@ wrong("8.11", "changes its input")(outside(changes=True))
 edit("8.11", "five centimetres are not inside", "phi < 0.0", "phi < -0.05")
 edit("8.11", "what is heavy moves less", "x[k] -= phi * n", "x[k] -= min(1.0, inv_mass[k]) * phi * n")
 edit("8.11", "all like the first", "surface(x[k], obstacle)", "surface(x[0], obstacle)")
+edit("8.11", "the floor for any surface", "surface(x[k], obstacle)", "floor_gap(x[k], obstacle)")
 
 
 # 8.12 -----------------------------------------------------------------------------------------------------------
@@ -353,6 +384,8 @@ wrong("8.12", "the wrong way")(giving(sign=1.0))
 wrong("8.12", "takes a negative compliance")(giving(checked=False))
 edit("8.12", "the error without its sign", "-C - scaled", "-abs(C) - scaled")
 edit("8.12", "takes a step backwards", "not dt > 0.0", "dt == 0.0 and C < 0.0")
+edit("8.12", "takes a step of NaN", "not dt > 0.0", "dt <= 0.0")
+edit("8.12", "takes a step below zero", "not dt > 0.0", "dt == 0.0")
 wrong("8.12", "takes NaN")(giving(nan=False))
 wrong("8.12", "takes a constraint with no free mass")(giving(weighed=False))
 
@@ -392,6 +425,8 @@ wrong("8.13", "one compliance for all")(soft_sweep(one_alpha=True))
 wrong("8.13", "PBD's stiffness on top")(soft_sweep(stiffness=True))
 wrong("8.13", "half of the weight")(soft_sweep(weight=0.5))
 edit("8.13", "a thread: never too short", "length - net.rest[s]", "max(0.0, length - net.rest[s])")
+edit("8.13", "link s joins points s and s + 1", "i, j = net.i[s], net.j[s]", "i, j = s, s + 1")
+edit("8.13", "the rest length of the first link", "net.rest[s]", "net.rest[0]")
 
 
 # 8.14 -----------------------------------------------------------------------------------------------------------
@@ -414,6 +449,9 @@ wrong("8.14", "no sweep")(soft_step(sweeps=lambda n: 0))
 wrong("8.14", "keeps the old velocity")(soft_step(speed=lambda new, x, v, dt: v))
 edit("8.14", "an immovable point is at rest", "(new - x) / dt", "(new - x) / dt * (net.inv_mass > 0.0)[:, None]")
 wrong("8.14", "half of the velocity")(soft_step(speed=lambda new, x, v, dt: 0.5 * (new - x) / dt))
+edit("8.14", "one Λ per point", "np.zeros(net.i.size)", "np.zeros(x.shape[0])")
+edit("8.14", "gravity for any acceleration", "predict(acceleration, t,", "predict(falling_acceleration, t,")
+edit("8.14", "the acceleration at t + dt", "predict(acceleration, t,", "predict(acceleration, t + dt,")
 
 
 # 8.15 -----------------------------------------------------------------------------------------------------------
@@ -476,6 +514,8 @@ wrong("8.17", "not for −q")(rate(by_w=False))
 wrong("8.17", "an angle, no rate")(rate(per_step=False))
 wrong("8.17", "backwards")(rate(sign=-1.0))
 wrong("8.17", "the product of both")(rate(back=False))
+edit("8.17", "needs an axis to turn about", "return 2.0 / (turn[0] * dt) * turn[1:]",
+     "size = np.sqrt(np.sum(turn[1:] ** 2))\n    return 2.0 * size / (turn[0] * dt) * (turn[1:] / size)")
 
 
 # 8.18 -----------------------------------------------------------------------------------------------------------
@@ -501,3 +541,4 @@ wrong("8.18", "the first corner only")(enclosed(only_first=True))
 edit("8.18", "the volume without its sign", "return V, gradient", "return abs(V), gradient")
 edit("8.18", "no surface is inside-out", "return V, gradient", "return abs(V), np.sign(V) * gradient")
 edit("8.18", "the last face of a corner only", "gradient[faces[f, 0]] += across", "gradient[faces[f, 0]] = across")
+edit("8.18", "leaves out the corners of no face", "return V, gradient", "return V, gradient[np.unique(faces)]")
