@@ -21,7 +21,7 @@ from solutions.rotation import cross, point_velocity, solve3
 from solutions.vectors import norm
 
 IMPACTS = 10_000             # in one step [-]; a ball of e = 0.8 has 165 before the next is closer than the spacing of floats
-SWEEPS = 2000                # over several contact points [-]; four under a box need about a hundred
+SWEEPS = 2000                # over several contact points [-]; four under a box need about a hundred, points close together thousands
 STIFFEST = 1e-40             # determinant of K over its trace cubed, below which K has no inverse [-]: products of it vanish
 SETTLED = 1e-14              # largest change in a sweep over the largest |v| + |ω||r| at the beginning [-]: a hundred roundings
 
@@ -288,6 +288,7 @@ def bouncing_time(v_n, a_n, e):
 
     T = 2v_n/|a_n| · (1 + e + e² + …) = 2v_n/(|a_n| (1 − e));      0 where v_n ≤ 0;      ∞ where a_n ≥ 0 or e = 1
 
+    Where both are the case it is 0: what does not leave does not bounce.
     Infinitely many impacts, and over in a finite time.
     *Source:* flights of 2v/|a|, each e times as long as the one before; the geometric series.
     """

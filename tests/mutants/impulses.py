@@ -35,6 +35,7 @@ wrong("7.1", "turns all of v round")(response(all_of_v=True))
 wrong("7.1", "pulls in")(response(sign=1.0))
 edit("7.1", "changes its input", "v - (1.0 + k) * v_n * n", "np.subtract(v, (1.0 + k) * v_n * n, out=v)")
 edit("7.1", "lets what comes slowly pass", "v_n >= 0.0", "v_n >= -1e-3")
+edit("7.1", "ten nanometres per second are none", "v_n >= 0.0", "v_n >= -1e-8")
 
 
 # 7.2 ------------------------------------------------------------------------------------------------------------
@@ -58,6 +59,7 @@ wrong("7.2", "the damper pushes on")(penalty(damper=1.0))
 wrong("7.2", "no damper")(penalty(damper=0.0))
 wrong("7.2", "the spring pulls in")(penalty(spring=1.0))
 edit("7.2", "a millimetre is not inside", "phi >= 0.0", "phi >= -1e-3")
+edit("7.2", "damps what only touches", "phi >= 0.0", "phi > 0.0")
 wrong("7.2", "damps outside, too")(penalty(inside=lambda phi: True))
 
 
@@ -82,6 +84,7 @@ wrong("7.3", "b as seen from a")(seen(sign=-1.0))
 wrong("7.3", "does not turn")(seen(turns=0.0))
 wrong("7.3", "each at the other's offset")(seen(swap=True))
 edit("7.3", "the turn of b added", "- turn_b", "+ turn_b")
+edit("7.3", "a wall is at rest", "- b.v", "- (b.v if b.inv_mass else 0.0)")
 
 
 # 7.4 ------------------------------------------------------------------------------------------------------------
@@ -102,6 +105,9 @@ wrong("7.4", "pulls at what separates")(size(leaves=False))
 wrong("7.4", "takes any restitution")(size(checks=(worked.check_inverse_mass,)))
 edit("7.4", "two walls", "check_inverse_mass(k)", "pass")
 edit("7.4", "lets what comes slowly pass", "u_n >= 0.0", "u_n >= -1e-3")
+edit("7.4", "what separates may have any restitution", "check_restitution(e)",
+     "if u_n >= 0.0:\n        return 0.0\n    check_restitution(e)")
+edit("7.4", "two walls that separate", "check_inverse_mass(k)", "if u_n < 0.0:\n        check_inverse_mass(k)")
 
 
 # 7.5 and 7.7 ----------------------------------------------------------------------------------------------------
@@ -140,6 +146,7 @@ wrong("7.7", "× r from the wrong side")(solid_k(sign=-1.0))
 wrong("7.7", "forgets the masses")(solid_k(mass=0.0))
 wrong("7.7", "without the last × r")(solid_k(back=lambda turn, r: turn))
 edit("7.7", "the inertia tensor of a for its inverse", "times(a.inv_inertia,", "times(np.linalg.pinv(a.inv_inertia),")
+edit("7.7", "against a wall a does not turn", "n @ turn_a", "(n @ turn_a if b.inv_mass else 0.0)")
 
 
 # 7.6 ------------------------------------------------------------------------------------------------------------
@@ -230,6 +237,9 @@ wrong("7.10", "compares all of the impulse with the cone")(cone(sticks=lambda J_
 wrong("7.10", "lets be what parts too slowly")(cone(enough=lambda w: 0.0))
 wrong("7.10", "half the friction")(cone(rim=lambda mu: 0.5 * mu))
 edit("7.10", "sticks as if K were a number", "solve3(K[0], K[1], K[2], w * n - u)", "(w * n - u) / (n @ times(K, n))")
+edit("7.10", "stops what parts just fast enough", "u @ n >= w", "u @ n > w")
+edit("7.10", "a nanometre per second too slow is fast enough", "u @ n >= w", "u @ n >= w - 1e-9")
+edit("7.10", "a small impulse has no side", "np.sin(beta) / size", "(np.sin(beta) / size if size > 1e-9 else 0.0)")
 
 
 # 7.11 -----------------------------------------------------------------------------------------------------------
@@ -279,6 +289,15 @@ wrong("7.12", "pulls open gaps together")(multiplier(clamp=False))
 wrong("7.12", "times k")(multiplier(over=lambda k: k))
 wrong("7.12", "two walls")(multiplier(check=False))
 edit("7.12", "takes a step of no time", 'check_positive("step dt [s]", dt)', "dt = dt or 1.0")
+edit("7.12", "takes a step back in time", 'check_positive("step dt [s]", dt)', 'check_positive("step dt [s]", abs(dt))')
+edit("7.12", "takes a step that is not a number", 'check_positive("step dt [s]", dt)',
+     'check_positive("step dt [s]", 1.0 if dt != dt else dt)')
+edit("7.12", "any step where the gap opens", 'check_positive("step dt [s]", dt)',
+     'if u_n >= 0.0:\n        return 0.0\n    check_positive("step dt [s]", dt)')
+edit("7.12", "two walls that do not meet", "check_inverse_mass(k)",
+     "if phi + dt * u_n > 0.0:\n        return 0.0\n    check_inverse_mass(k)")
+edit("7.12", "closes by less than a nanometre", "-(phi / dt + u_n) / k)",
+     "-(phi / dt + u_n) / k if phi + dt * u_n <= -1e-9 else 0.0)")
 edit("7.12", "waits until the gap is closed", "np.maximum(0.0, -(phi / dt + u_n) / k)",
      "max(0.0, -u_n / k) if phi <= 0.0 else 0.0")
 
@@ -318,6 +337,9 @@ wrong("7.13", "divides by next to nothing")(moment(stable=False))
 edit("7.13", "without acceleration", "phi = np.maximum(0.0, phi)", "phi, a_n = max(0.0, phi), 0.0")
 edit("7.13", "what is inside is as far outside", "phi = np.maximum(0.0, phi)", "phi = abs(phi)")
 edit("7.13", "what is there at once is not there", "return np.minimum(tau, dt)", "return tau if 0.0 < tau < dt else dt")
+edit("7.13", "what rests there without a pull meets at once", "squared = v_n * v_n",
+     "if phi == 0.0 and v_n <= 0.0 and a_n <= 0.0:\n        return 0.0\n    squared = v_n * v_n")
+edit("7.13", "a micrometre touches", "np.maximum(0.0, phi)", "phi if phi > 1e-6 else 0.0")
 
 
 # 7.14 -----------------------------------------------------------------------------------------------------------
@@ -342,6 +364,10 @@ def bouncing_time(v_n, a_n, e):
 wrong("7.14", "the way up only")(zeno(flight=1.0))
 edit("7.14", "what is nearly elastic never ends", "e == 1.0", "e > 0.99")
 edit("7.14", "slow bounces take no time", "v_n <= 0.0", "v_n <= 1e-3")
+edit("7.14", "what does not leave bounces for ever", "if v_n <= 0.0:",
+     "if a_n >= 0.0 or e == 1.0:\n        return np.inf\n    if v_n <= 0.0:")
+edit("7.14", "a hundred thousandth below 1 is 1", "e == 1.0", "np.isclose(e, 1.0)")
+edit("7.14", "20,000 flights", "-2.0 * v_n / (a_n * (1.0 - e))", "sum(-2.0 * v_n * e**k / a_n for k in range(20_000))")
 wrong("7.14", "one flight")(zeno(sum=lambda e: 1.0))
 wrong("7.14", "1 + e")(zeno(sum=lambda e: 1.0 + e))
 wrong("7.14", "a time below zero")(zeno(down=False))
@@ -367,6 +393,13 @@ wrong("7.15", "leaves it inside")(project(back=0.0))
 wrong("7.15", "does not bounce")(project(response=lambda v, n, e: tangential(v, n)))
 wrong("7.15", "asks before it moves")(project(asked="old"))
 edit("7.15", "a tenth of a millimetre is not inside", "phi < 0.0", "phi < -1e-4")
+edit("7.15", "a nanometre is not inside", "phi < 0.0", "phi < -1e-9")
+edit("7.15", "turns round what leaves", "kinematic_response(v, p.n, p.e)", "v - (1.0 + p.e) * (v @ p.n) * p.n")
+edit("7.15", "puts back only what goes in", "phi < 0.0", "phi < 0.0 and v @ p.n < 0.0")
+edit("7.15", "gravity for every acceleration", "acceleration(t, x, v, p)", "p.gravity")
+edit("7.15", "the acceleration at the end of the step", "acceleration(t, x, v, p)", "acceleration(t + dt, x, v, p)")
+edit("7.15", "the acceleration where it would be", "acceleration(t, x, v, p)", "acceleration(t, x + dt * v, v, p)")
+edit("7.15", "the acceleration at rest", "acceleration(t, x, v, p)", "acceleration(t, x, 0.0 * v, p)")
 wrong("7.15", "forgets dt")(project(once=False))
 
 
@@ -405,6 +438,15 @@ wrong("7.16", "every impact elastic")(back_to(bounce=lambda e: 1.0))
 edit("7.16", "projects instead", "a, left = acceleration(t, x, v, p), dt",
      "return projecting_step(acceleration, t, x, v, dt, p)")
 edit("7.16", "lies as soon as it is slow", "bouncing_time(v @ p.n, a @ p.n, p.e) <= left", "v @ p.n < 1e-3")
+edit("7.16", "lies below a micrometre per second", "bouncing_time(v @ p.n, a @ p.n, p.e) <= left", "v @ p.n < 1e-6")
+edit("7.16", "gravity for every acceleration", "acceleration(t, x, v, p)", "p.gravity")
+edit("7.16", "the acceleration at the end of the step", "acceleration(t, x, v, p)", "acceleration(t + dt, x, v, p)")
+edit("7.16", "a new acceleration after each impact", "x = x - gap(x, p) * p.n",
+     "x = x - gap(x, p) * p.n\n        a = acceleration(t + dt - left, x, v, p)")
+edit("7.16", "leaves inside what begins there", "x = x - gap(x, p) * p.n", "pass")
+edit("7.16", "what begins inside does not bounce", "a, left = acceleration(t, x, v, p), dt",
+     "a, left = acceleration(t, x, v, p), dt\n    if gap(x, p) < 0.0 and v @ p.n < 0.0:\n"
+     "        x, v = x - gap(x, p) * p.n, tangential(v, p.n)")
 wrong("7.16", "what lies does not slide")(back_to(lie=lambda x, v, a, t, n: (x, 0.0 * v)))
 
 
@@ -451,3 +493,17 @@ edit("7.17", "rebounds with the speed of the centre", "point_velocity(after.v, a
 edit("7.17", "settled to a hundred billionth of a metre per second", "SETTLED * speed", "1e-11")
 edit("7.17", "nothing where the law has no answer", "most_dissipative_impact(body, r, n, e, mu)", "(body, residual)")
 edit("7.17", "friction of 1 at most", "w[i], mu)", "w[i], min(mu, 1.0))")
+edit("7.17", "what the last sweep has left where the law has no answer", "return most_dissipative_impact(body, r, n, e, mu)",
+     "return after, residual")
+edit("7.17", "without friction where the law has no answer", "most_dissipative_impact(body, r, n, e, mu)",
+     "most_dissipative_impact(body, r, n, e, 0.0)")
+edit("7.17", "100 sweeps", "range(SWEEPS)", "range(100)")
+edit("7.17", "500 sweeps", "range(SWEEPS)", "range(500)")
+edit("7.17", "an impulse for a velocity", "np.abs(times(K, J - Js[i])).max()", "np.abs(J - Js[i]).max()")
+edit("7.17", "rounding without the rotation", "largest_speed(body, r)", "norm(body.v)")
+edit("7.17", "rounding of the points' velocities", "largest_speed(body, r)",
+     "max([norm(point_velocity(body.v, body.omega, arm)) for arm in r])")
+edit("7.17", "no change if it is against the axes", "np.abs(times(K, J - Js[i])).max()", "times(K, J - Js[i]).max()")
+edit("7.17", "the residual of the last point", "residual = max(residual, ", "residual = max(0.0, ")
+edit("7.17", "the residual of the first point", "residual = max(residual, ", "residual = max(residual, (i == 0) * ")
+edit("7.17", "checks the restitution only", "check_impacts(body, r, n, e, mu)", "check_restitution(e)")
