@@ -940,6 +940,13 @@ def holds(quantity, p, points, given=""):
     between(quantity + ": how far it is from its body [m]", distance(p[None], points), 0.0, 1e-9, given)
 
 
+def spiral(count):
+    """Points (count, 3) of the unit sphere on a spiral from pole to pole, evenly spread."""
+    k = np.arange(count) + 0.5
+    z, phi = 1.0 - 2.0 * k / count, k * np.pi * (3.0 - np.sqrt(5.0))
+    return np.stack((np.sqrt(1.0 - z * z) * np.cos(phi), np.sqrt(1.0 - z * z) * np.sin(phi), z), axis=1)
+
+
 @exercise("6.15", points=0.75,
           hint="v = weights @ (p − q); support of a along −v, of b along v; stop, or add the new pair and keep what counts")
 def test_the_distance_of_two_bodies_is_proved_by_two_points_and_a_plane(lesson, draw):
@@ -956,6 +963,12 @@ def test_the_distance_of_two_bodies_is_proved_by_two_points_and_a_plane(lesson, 
     a, b = round_ones / np.linalg.norm(round_ones, axis=2, keepdims=True) + np.array([[[2.5, 0.3, 0.2]], [[0.0, 0.0, 0.0]]])
     c = lesson.gjk(a, b)
     close("the same for two balls of 400 corners [m]", (a @ c.n).min() - (b @ c.n).max(), c.gap, 1e-11, given="centres 2.5 m apart")
+    for count, centre in ((600, (1.1, 0.6, -0.6)), (200, (1.002, 0.6, 0.4))):         # these take more than twenty
+        disc = spiral(count)
+        a, b = disc * [0.001, 1.0, 1.0], disc * [1.0, 0.001, 1.0] + np.array(centre)
+        c = lesson.gjk(a, b)
+        close(f"the same for two flat bodies of {count} corners [m]", (a @ c.n).min() - (b @ c.n).max(), c.gap, KNOWN,
+              given="two ellipsoids with axes of 1 m, 1 m and 1 mm")
 
 
 @exercise("6.15", points=0.75,
