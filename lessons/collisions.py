@@ -167,7 +167,11 @@ def cylinder_impact_time(t, dt, x_0, x_1, r, R):
 
     With y the coordinates (1, 2) of x_0, w those of x_1 − x_0 and ρ = R + r:  |y + s w|² = ρ² is  A s² + 2 B s + C = 0,
     A = w · w,   B = y · w,   C = y · y − ρ²,   D = B² − A C = A ρ² − (y₀ w₁ − y₁ w₀)²
-    first root  s = C/(−B + √D),   t* = t + s dt;        the last form of D loses no digits where a fast ball only grazes, that of s none where it is close already
+    first root  s = C/(−B + √D),   t* = t + s dt
+
+    Use the last form of D, because B² − A C cancels where a fast ball only grazes.  Use this form of s, because
+    (−B − √D)/A cancels more.  Where the ball is close already, C cancels in any form: the share s is then known to the
+    round-off of |y| over the gap.
 
     t where it touches already (C ≤ 0); NEVER where it does not approach (B ≥ 0), misses (D < 0) or comes later (s > 1).
     *Source:* deck B, the worked question, part 2.
@@ -503,7 +507,8 @@ def find_intersections(a, b):
         both are leaves        test the pairs of their items: touching_items(a, i, b, j, found)
 
     Keep a list of the pairs (i, j) that are still to be looked at, [(0, 0)] at first; end with as_pairs(found), see all_pairs.
-    child 0 marks a leaf; the children of i are a.child[i] and a.child[i] + 1.
+    child 0 means no child: i is a leaf.  Elsewhere the children of i are a.child[i] and a.child[i] + 1.
+    A loop that never ends has taken the child 0 of a leaf for a node: that is the root again.
     *Source:* deck B, "FindIntersections(node₁, node₂)".
     """
     # YOUR CODE HERE
@@ -551,7 +556,8 @@ def clip(y, n, d):
 
     Around the polygon: keep corner i if s_i = n · y_i − d ≤ 0; then, if s_i and s_j of the next corner j differ in sign (s_i s_j < 0), add
         y_i + s_i/(s_i − s_j) (y_j − y_i)
-    A segment (k = 2) has one edge only: there is no crossing from its second corner back to its first.  It may be that nothing is left: an array of no rows.
+    A segment (k = 2) has one edge only: there is no crossing from its second corner back to its first.  It may be that nothing is left: an array
+    of no rows.  So y may have no row either, or one: what a first cut leaves goes into the next.
     *Source:* Sutherland and Hodgman 1974.
     """
     # YOUR CODE HERE
@@ -640,8 +646,9 @@ def box_separation(a, b):
     """(gap [m], n, k): the axis of the 15 that separates two Boxes best, as a unit normal from b to a, and its number.
 
     gap along an axis:   |r · axis| − half_width(a, axis) − half_width(b, axis),     r = x_a − x_b
-    Of all axes the one of the greatest gap; those across two edges (k ≥ 6) must exceed what the others give by EDGES_WIN_BY, and of equal
-    ones the first counts.  candidate_axis(a, b, k) gives axis k; leave out those that are zeros.  n = ±axis, so that n · r ≥ 0.
+    Of all axes the one of the greatest gap; those across two edges (k ≥ 6) must exceed what the best of the faces, k < 6, gives, and any
+    edges before them, by EDGES_WIN_BY.  Of equal ones the first counts.  candidate_axis(a, b, k) gives axis k; leave out those
+    that are zeros.  n = ±axis, so that n · r ≥ 0.
 
     gap > 0: they are that far apart along n at least.  gap ≤ 0: they overlap, and −gap along n is the shortest way out.
     *Source:* Gottschalk, Lin and Manocha 1996.

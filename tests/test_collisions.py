@@ -15,9 +15,13 @@ KNOWN = 1e-10
 EDGES_WIN_BY = 1e-9          # how much farther [m] a pair of edges must separate than any face, as the lesson says
 
 
+# Sizes of small, middling and large bodies [m].  Powers of two: what is exact at one size is exact at the others.
+SIZES = (2.0**-30, 1.0, 2.0**30)
+
+
 def places(draw, d=3):
     """(size, place) of small, middling and large bodies [m], at the origin and a thousand sizes away from it."""
-    return [(size, far * size * draw(-1.0, 1.0, d)) for size in (1e-6, 1.0, 1e3) for far in (0.0, 1e3)]
+    return [(size, far * size * draw(-1.0, 1.0, d)) for size in SIZES for far in (0.0, 1e3)]
 
 
 def rotation(draw):
@@ -39,7 +43,9 @@ def axes(draw, d):
 
 def never(quantity, got, given=""):
     """The answer says that it does not happen: infinity."""
-    if not (np.ndim(got) == 0 and float(got) == np.inf):
+    if got is None or np.ndim(got) > 0 or np.asarray(got).dtype.kind not in "iuf":
+        numbers(quantity, got, (), given)
+    if not float(got) == np.inf:
         raise NotYet(quantity, "NEVER", f"{got}", "none: exactly this", "another time", given)
 
 
@@ -55,12 +61,13 @@ def same_contact(got, p_a, p_b, n, gap, tolerance, given=""):
 
 @exercise("6.1", points=1, hint="n · p + d; the unit normal and d come with the plane")
 def test_a_plane_knows_how_far_a_point_is_and_on_which_side(lesson, draw):
-    for d in (2, 3):
-        rows, foot = axes(draw, d), draw(-3.0, 3.0, d)
+    for d, size in ((2, 1.0), *((3, size) for size in SIZES)):
+        rows, foot = axes(draw, d), size * draw(-3.0, 3.0, d)
         plane = lesson.Plane(rows[0], float(-rows[0] @ foot))
-        for height in (draw(0.1, 3.0), 0.0, -draw(0.1, 3.0)):
-            p = foot + height * rows[0] + draw(-2.0, 2.0) * rows[1]
-            close("signed distance [m]", lesson.plane_distance(p, plane), height, ROUND_OFF, given=f"p = {p}, {plane}")
+        for height in (size * draw(0.1, 3.0), 0.0, -size * draw(0.1, 3.0)):
+            p = foot + height * rows[0] + size * draw(-2.0, 2.0) * rows[1]
+            close("signed distance [m]", lesson.plane_distance(p, plane), height, ROUND_OFF * size,
+                  given=f"p = {p}, {plane}")
 
 
 def fall(lesson, draw, d, r):
@@ -114,6 +121,11 @@ def test_a_ball_of_any_size_meets_a_plane_only_if_it_comes_through_from_above(le
           lesson.plane_impact_time(3.0, 0.5, on, above, r, floor), 3.0, 0.0)
     close("time of impact at the end of the step [s]", lesson.plane_impact_time(3.0, 0.5, above, on, r, floor), 3.5,
           0.0)
+    for size in SIZES:                                                   # from half a nanometre above at the least size
+        floor, on = lesson.Plane(floor.n, -size * level), size * np.array([0.0, 1.0, level + r])
+        above = on + 0.5 * size * floor.n
+        close("time of impact at the end of the step [s]", lesson.plane_impact_time(3.0, 0.5, above, on, size * r, floor),
+              3.5, 0.0, f"{above} to {on}, r = {size * r}, {floor}")
 
 
 # ---------------------------------------------------------------------------------------------- a cylinder along the x axis
@@ -236,6 +248,16 @@ def test_any_path_touches_the_cylinder_first_where_it_enters(lesson, draw):
           lesson.cylinder_impact_time(2.0, 0.5, begin, end, 1.0, rho - 1.0), 2.5, 0.0, f"ρ = {rho}, {begin} to {end}")
     close("time of impact of a ball that touches and leaves [s]",
           lesson.cylinder_impact_time(2.0, 0.5, end, begin, 1.0, rho - 1.0), 2.0, 0.0, f"ρ = {rho}, {end} to {begin}")
+    for size in SIZES:
+        begin, end = size * np.array([1.0, -rho - 0.5, 0.0]), size * np.array([1.0, -rho, 0.0])
+        close("time of impact at the end of a step by half the size [s]",
+              lesson.cylinder_impact_time(2.0, 0.5, begin, end, size, size * (rho - 1.0)), 2.5, 0.0,
+              f"{begin} to {end}, r = {size}, R = {size * (rho - 1.0)}")
+        # D is exactly 0 here
+        begin, end = size * np.array([1.0, -m, rho]), size * np.array([2.0, m, rho])
+        close("time of impact of a ball that only grazes [s]",
+              lesson.cylinder_impact_time(2.0, 0.5, begin, end, size, size * (rho - 1.0)), 2.25, ROUND_OFF,
+              f"{begin} to {end}, r = {size}, R = {size * (rho - 1.0)}")
 
 
 @exercise("6.5", points=0.25, hint="s = (p − a) · (b − a)/|b − a|², held between 0 and 1")
@@ -253,6 +275,13 @@ def test_a_segment_without_length_is_refused(lesson, draw):
     for d in (2, 3):
         a = draw(-3.0, 3.0, d)
         raises("a segment from a point to itself", BadInput, lesson.closest_on_segment, draw(-3.0, 3.0, d), a, a.copy())
+        for k in range(2 * d):                                           # along a coordinate axis, either way
+            a, b, s = draw(-3.0, 3.0, d), np.zeros(d), draw(0.1, 0.9)
+            b[k % d] = draw(0.5, 4.0) * (1.0 if k < d else -1.0)
+            aside = np.where(np.arange(d) == k % d, 0.0, draw(-3.0, 3.0, d))
+            close("nearest point of a segment along a coordinate axis [m]",
+                  lesson.closest_on_segment(a + s * b + aside, a, a + b), a + s * b, ROUND_OFF,
+                  f"p = {a + s * b + aside}, a = {a}, b = {a + b}")
         tiny = a + 1e-7
         close("nearest point of a very short segment [m]", lesson.closest_on_segment(tiny + 1.0, a, tiny), tiny, ROUND_OFF)
 
@@ -289,10 +318,13 @@ def seen_along(draw, shadow):
           hint="all three y_i z_j − z_i y_j of one sign: the axis goes through the face, wherever the corners are")
 def test_a_cylinder_that_pierces_a_face_is_found_though_corners_and_edges_are_clear(lesson, draw):
     R, r = draw(0.2, 0.5), draw(0.01, 0.1)
-    for order in (1, -1):
+    for order, size in ((order, size) for order in (1, -1) for size in SIZES):
         angles = np.array([0.0, 2.1, 4.2]) + draw(-0.3, 0.3, 3)
         corners = seen_along(draw, [(draw(4.0, 6.0) * np.cos(a), draw(4.0, 6.0) * np.sin(a)) for a in angles])[::order]
-        close("gap of a pierced face [m]", lesson.triangle_cylinder_gap(*corners, r, R), -R - r, ROUND_OFF, given=f"corners {corners}, r = {r}, R = {R}")
+        corners = [size * corner for corner in corners]
+        close("gap of a pierced face over the size [-]",
+              lesson.triangle_cylinder_gap(*corners, size * r, size * R) / size, -R - r, ROUND_OFF,
+              f"corners {corners}, r = {size * r}, R = {size * R}")
 
 
 @exercise("6.6", points=0.25, hint="elsewhere the least edge_axis_distance of the three edges, less R + r")
@@ -305,6 +337,13 @@ def test_elsewhere_the_nearest_edge_decides(lesson, draw):
             for k in range(3):
                 corners = seen_along(draw, shadow[k:] + shadow[:k])
                 close("gap of a triangle beside the axis [m]", lesson.triangle_cylinder_gap(*corners, r, R), height - R - r, ROUND_OFF, given=f"corners {corners}, r = {r}, R = {R}")
+    for way in np.array([(1.0, 0.0), (0.0, -1.0), (-3.0, 4.0)]):
+        # whole numbers: seen from its edge, in line with the axis, so that all three y_i z_j − z_i y_j are exactly 0
+        shares = float(draw.whole(1, 4)) * np.array([1.0, 4.0, 2.0])
+        corners = [np.array([draw(-3.0, 3.0), *(share * way)]) for share in shares]
+        close("gap of a triangle whose plane holds the axis, all of it on one side [m]",
+              lesson.triangle_cylinder_gap(*corners, r, R), shares.min() * np.linalg.norm(way) - R - r, ROUND_OFF,
+              f"corners {corners}, r = {r}, R = {R}")
     a = np.array([0.0, height, 0.0])
     corners = a, a + np.array([draw(1.0, 3.0), 0.0, 0.0]), np.array([0.0, height + 1.0, draw(-1.0, 1.0)])
     close("gap of a triangle with an edge along the axis [m]", lesson.triangle_cylinder_gap(*corners, r, R), height - R - r, ROUND_OFF, given=f"corners {corners}")
@@ -366,6 +405,11 @@ def test_a_triangle_without_area_is_refused_and_a_small_one_is_not(lesson, draw)
     raises("three corners in one point", BadInput, lesson.closest_on_triangle, p, a, a.copy(), a.copy())
     small = 1e-6 * np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.3, 0.7, 0.0]])
     close("nearest point of a small triangle [m]", lesson.closest_on_triangle(np.array([3e-7, 2e-7, 0.5]), *small), [3e-7, 2e-7, 0.0], ROUND_OFF)
+    for high in (1e-7, 1e-9):                                            # |N| is high, 1000 times FLAT and more
+        needle = [np.array(corner) for corner in ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.5, high, 0.0))]
+        p = np.array([draw(0.4, 0.6), 0.5 * high, draw(0.5, 2.0)])
+        close("nearest point of a needle [m]", lesson.closest_on_triangle(p, *needle), [p[0], p[1], 0.0], ROUND_OFF,
+              f"p = {p}, corners {needle}")
 
 
 @exercise("6.7", points=0.5,
@@ -405,7 +449,7 @@ def test_a_ball_whose_centre_is_inside_leaves_by_the_nearest_face(lesson, draw):
             n, x = sign * box.R[:, axis], box.x + box.R @ local
             same_contact(lesson.ball_box(x, r, box), x - r * n, x + depth * n, n, -depth - r, 1e-11, f"x = {x}, r = {r}, {box}")
     middle = lesson.ball_box(box.x, r, lesson.Box(box.x, box.R, np.array([2.0, 1.0, 3.0])))
-    close("n of a ball in the very middle: along the shortest half, up or down", np.abs(middle.n @ box.R), [0.0, 1.0, 0.0], 1e-11)
+    close("n of a ball in the very middle: along the axis of the shortest half, sign(0) = 1", middle.n, box.R[:, 1], 1e-11)
     close("gap there [m]", middle.gap, -1.0 - r, 1e-11)
     cube = lesson.Box(np.zeros(3), np.eye(3), 0.5 * np.ones(3))
     for axis in range(3):
@@ -415,6 +459,13 @@ def test_a_ball_whose_centre_is_inside_leaves_by_the_nearest_face(lesson, draw):
                 x = np.where(np.arange(3) == axis, sign * place, off)
                 given = f"x = {x}, on or beside a face of {cube}"
                 same_contact(lesson.ball_box(x, r, cube), x - r * n, x + (0.5 - place) * n, n, place - 0.5 - r, 1e-11, given)
+    for size in SIZES:                                                   # just outside an edge: 4e-13 m at the least size
+        cube, out = lesson.Box(np.zeros(3), np.eye(3), size * np.ones(3)), size * 2.0**-11
+        x, n, gap = np.array([size + out, 0.25 * size, -size - out]), np.array([1.0, 0.0, -1.0]) / np.sqrt(2.0), np.sqrt(2.0) * out
+        c, given = lesson.ball_box(x, size, cube), f"x = {x}, r = {size}, just outside an edge of {cube}"
+        close("n of the contact: from b to a", c.n, n, 1e-11, given)
+        close("gap, p_a and p_b of the contact over the size [-]", np.concatenate(([c.gap], c.p_a, c.p_b)) / size,
+              np.concatenate(([gap - size], x - size * n, x - gap * n)) / size, 1e-11, given)
 
 
 def corners_of(box):
@@ -521,7 +572,7 @@ def crowds(draw, d):
             ("two boxes that touch", low[:2], low[:2] + 8.0),
             ("two boxes that are apart", np.stack((low[0], low[0] + 9.0)), np.stack((low[0] + 1.0, low[0] + 10.0))),
             ("boxes one inside the other", middle - half, middle + half),
-            ("tiny boxes", 1e-7 * low, 1e-7 * high),
+            ("tiny boxes", 2.0**-40 * low, 2.0**-40 * high),
             ("flat boxes", low, flat),
             ("boxes far away", low + 2.0**30, high + 2.0**30),
             ("boxes that are all alike", 0.0 * low - 1.0, 0.0 * high + 1.0),
@@ -544,6 +595,12 @@ def test_two_trees_find_the_pairs_that_brute_force_finds(lesson, draw):
         a, b = boxes(draw, n, d, wide), boxes(draw, m, d, wide)
         trees = lesson.build_tree(*a), lesson.build_tree(*b)
         same_pairs("pairs (item of a, item of b)", lesson.find_intersections(*trees), touching(*a, *b), given=f"{n} and {m} boxes in {d}D")
+    itself = lesson.build_tree(*b)
+    same_pairs("pairs of a tree and itself: (i, j), (j, i) and (i, i)", lesson.find_intersections(itself, itself),
+               touching(*b, *b), given="70 boxes in 3D")
+    expected = touching(*b, *b)
+    same_pairs("what tree_pairs makes of it", lesson.tree_pairs(*b), expected[expected[:, 0] < expected[:, 1]],
+               given="70 boxes in 3D")
     apart = lesson.build_tree(a[0] + 100.0, a[1] + 100.0)
     same_pairs("pairs of trees that are apart", lesson.find_intersections(apart, trees[1]), np.zeros((0, 2)))
 
@@ -566,7 +623,7 @@ def test_what_is_in_a_node_out_of_reach_is_not_looked_at(lesson, draw):
         same_pairs("pairs, when a half of tree b says that it is far away", lesson.find_intersections(other, lying), seen[np.lexsort(seen.T[::-1])], given="40 and 50 boxes")
 
 
-@exercise("6.11", points=0.5,
+@exercise("6.11", points=0.25,
           hint="a tree may be a single leaf, child 0 and all; compare girths only where neither is a leaf")
 def test_trees_of_crowds_of_any_kind_find_the_pairs_that_brute_force_finds(lesson, draw):
     for d in (2, 3):
@@ -578,6 +635,23 @@ def test_trees_of_crowds_of_any_kind_find_the_pairs_that_brute_force_finds(lesso
             expected = touching(low, high, other_low, other_high)
             same_pairs(f"pairs of {name} and twenty others", lesson.find_intersections(*trees), expected,
                        f"low {low.tolist()}, high {high.tolist()}")
+
+
+def rods(draw, n, axis):
+    """n rods along an axis, 0 or 1, far apart across it, at one of forty heights: few of those along 0 and 1 touch, but all leaves of their trees do."""
+    low = np.floor(draw(0.0, 40.0, (n, 3)))
+    low[:, 1 - axis], low[:, axis] = 1e3 * draw(0.0, 1.0, n), 0.0
+    high = low.copy()
+    high[:, axis] = 1e3
+    return low, high
+
+
+@exercise("6.11", points=0.25, hint="go on until the list of pairs is empty: no number of rounds is enough for all trees")
+def test_trees_of_which_every_leaf_touches_every_other_are_searched_to_the_end(lesson, draw):
+    """64 leaves against 128: 16383 pairs of nodes."""
+    a, b = rods(draw, 288, 0), rods(draw, 576, 1)
+    got = lesson.find_intersections(lesson.build_tree(*a), lesson.build_tree(*b))
+    same_pairs("pairs of rods along x and rods along y", got, touching(*a, *b), given="288 and 576 rods")
 
 
 # ---------------------------------------------------------------------------------------------- separating axes
@@ -654,7 +728,7 @@ def test_polygons_apart_overlapping_nested_and_far_away_are_separated_as_the_hul
                   max(found) / size, facets(differences(a, b))[1].max() / size, KNOWN, given)
 
 
-@exercise("6.13", points=0.25, hint="add the crossing y_i + s_i/(s_i − s_j)(y_j − y_i) wherever an edge changes sides")
+@exercise("6.13", points=0.125, hint="add the crossing y_i + s_i/(s_i − s_j)(y_j − y_i) wherever an edge changes sides")
 def test_a_cut_polygon_has_the_corners_of_what_is_left(lesson, draw):
     """A rectangle of edges l and h, cut at f l; a corner of it cut off; all of it; nothing of it."""
     for d in (2, 3):
@@ -674,6 +748,25 @@ def test_a_cut_polygon_has_the_corners_of_what_is_left(lesson, draw):
             close(f"corners of a rectangle {name}, in their order [m]", np.roll(got, best, axis=0), expected, ROUND_OFF, given=f"y = {y.tolist()}, n = {n}, d = {offset}")
 
 
+@exercise("6.13", points=0.125, hint="a cut may add a corner, and polygons may have any number: make room for all of them")
+def test_a_polygon_of_many_corners_loses_one_and_gains_two(lesson, draw):
+    """Cut across the middle of the two edges that meet at its first corner."""
+    for k in (3, 7, 9, 12, 15, 20, 40):
+        y, _ = polygon(draw, k)
+        n = y[0] - y.mean(axis=0)
+        n, before, after = n / np.linalg.norm(n), 0.5 * (y[0] + y[-1]), 0.5 * (y[0] + y[1])
+        given = f"a regular polygon of {k} corners"
+        got = numbers("corners of what is left [m]", lesson.clip(y, n, float(n @ (0.5 * (before + after)))), (k + 1, 2), given)
+        expected = np.concatenate((after[None], y[1:], before[None]))
+        first = np.argmin(np.abs(got - expected[0]).sum(axis=1))
+        close("corners of what is left, in their order [m]", np.roll(got, -first, axis=0), expected, ROUND_OFF, given)
+
+
+def corners_left(quantity, got, d, given):
+    """got as rows of d numbers, of however many corners."""
+    return numbers(quantity, got, (len(got) if hasattr(got, "__len__") else 0, d), given)
+
+
 @exercise("6.13", points=0.25, hint="a corner exactly on the plane, s_i = 0, is kept, and adds no crossing")
 def test_a_corner_on_the_plane_is_kept_once(lesson, draw):
     for d in (2, 3):
@@ -687,13 +780,17 @@ def test_a_corner_on_the_plane_is_kept_once(lesson, draw):
 
 @exercise("6.13", points=0.25, hint="a segment has one edge: do not come back from its second corner to its first")
 def test_a_cut_segment_keeps_two_ends(lesson, draw):
-    rows, a, f = axes(draw, 2), draw(-3.0, 3.0, 2), draw(0.2, 0.8)
-    b = a + draw(1.0, 3.0) * rows[0] + draw(-0.5, 0.5) * rows[1]
-    middle = a + f * (b - a)
-    for n, first, second in ((rows[0], a, middle), (-rows[0], middle, b)):
-        got = numbers("ends of a cut segment [m]", lesson.clip(np.stack((a, b)), n, float(n @ middle)), (2, 2), given=f"{a} to {b}")
-        close("ends of a cut segment, in the order of their place [m]", got[np.argsort(got @ rows[0])], [first, second], ROUND_OFF, given=f"{a} to {b}")
-    close("a segment that is not cut [m]", lesson.clip(np.stack((a, b)), rows[0], float(rows[0] @ b) + 1.0), [a, b], 0.0)
+    for d in (2, 3):
+        rows, a, f = axes(draw, d), draw(-3.0, 3.0, d), draw(0.2, 0.8)
+        b = a + draw(1.0, 3.0) * rows[0] + draw(-0.5, 0.5) * rows[1]
+        middle = a + f * (b - a)
+        for n, first, second in ((rows[0], a, middle), (-rows[0], middle, b)):
+            got = numbers("ends of a cut segment [m]", lesson.clip(np.stack((a, b)), n, float(n @ middle)), (2, d), given=f"{a} to {b}")
+            close("ends of a cut segment, in the order of their place [m]", got[np.argsort(got @ rows[0])], [first, second], ROUND_OFF, given=f"{a} to {b}")
+        close("a segment that is not cut [m]", lesson.clip(np.stack((a, b)), rows[0], float(rows[0] @ b) + 1.0), [a, b], 0.0)
+        for y, offset, rows_left in ((np.zeros((0, d)), 1.0, 0), (a[None], float(rows[0] @ a) + 1.0, 1), (a[None], float(rows[0] @ a) - 1.0, 0)):
+            close(f"what is left of {len(y)} corners [m]", lesson.clip(y.copy(), rows[0], offset), y[:rows_left], 0.0,
+                  f"y of shape {y.shape}")
 
 
 @exercise("6.13", points=0.25,
@@ -710,7 +807,8 @@ def test_what_two_opposite_cuts_leave_makes_up_the_polygon(lesson, draw):
                 offset = tip if draw.whole(0, 2) == 0 else across        # that cuts off next to nothing
                 given = f"y = {y.tolist()}, n = {n}, d = {offset}"
                 for side in (1.0, -1.0):
-                    left = np.asarray(lesson.clip(y, side * n, side * offset), dtype=float)
+                    got = lesson.clip(y, side * n, side * offset)
+                    left = corners_left("corners of what is left [m]", got, d, given)
                     seen = (left - place) @ rows[:2].T / size
                     for corner in seen:
                         between("corner of what is left, beyond the polygon, over the size [-]",
@@ -816,13 +914,14 @@ def test_boxes_turned_parallel_nested_and_far_apart_are_separated_by_the_best_of
             known = KNOWN * (size + np.abs(a.x - b.x).max())
             close("greatest gap over what is known of it [-]",
                   (gap - max(gaps[:6].max(), gaps[6:].max())) / max(known, EDGES_WIN_BY), 0.0, 1.0 + KNOWN, given)
+            between("gap less the best of the faces' [m]", gap - gaps[:6].max(), -known, np.inf, given)
             n, k = numbers("n", n, (3,), given), int(k)
             between("gap of the axis that it names, less the greatest [m]", gaps[k] - gap, -known, known, given)
             between("gain over any face of an axis across two edges, where it names one [m]",
-                    gaps[k] - gaps[:6].max() if k >= 6 else 1.0, EDGES_WIN_BY - known, 1e9, given)
+                    gaps[k] - gaps[:6].max() if k >= 6 else 1.0, EDGES_WIN_BY - known, np.inf, given)
             close("n is that axis, either way round [-]", np.abs(n @ candidates[k]), 1.0, KNOWN, given)
             close("size of n [-]", n @ n, 1.0, KNOWN, given)
-            between("n · r: from b to a [m]", n @ (a.x - b.x), -known, 1e9, given)
+            between("n · r: from b to a [m]", n @ (a.x - b.x), -known, np.inf, given)
             p, q = corners_of(a) - b.x, corners_of(b) - b.x
             hull = facets(differences(p, q) / size)[1].max() * size
             if hull <= 0.0:
@@ -839,6 +938,13 @@ def holds(quantity, p, points, given=""):
     """p is in the hull of the points."""
     p = numbers(quantity, p, (points.shape[1],), given)
     between(quantity + ": how far it is from its body [m]", distance(p[None], points), 0.0, 1e-9, given)
+
+
+def spiral(count):
+    """Points (count, 3) of the unit sphere on a spiral from pole to pole, evenly spread."""
+    k = np.arange(count) + 0.5
+    z, phi = 1.0 - 2.0 * k / count, k * np.pi * (3.0 - np.sqrt(5.0))
+    return np.stack((np.sqrt(1.0 - z * z) * np.cos(phi), np.sqrt(1.0 - z * z) * np.sin(phi), z), axis=1)
 
 
 @exercise("6.15", points=0.75,
@@ -860,6 +966,12 @@ def test_the_distance_of_two_bodies_is_proved_by_two_points_and_a_plane(lesson, 
         c = lesson.gjk(a, b)
         close("the same for two balls of 400 corners [m]", (a @ c.n).min() - (b @ c.n).max(), c.gap, 1e-11,
               given="centres 2.5 m apart")
+    for count, centre in ((600, (1.1, 0.6, -0.6)), (200, (1.002, 0.6, 0.4))):         # these take more than twenty
+        disc = spiral(count)
+        a, b = disc * [0.001, 1.0, 1.0], disc * [1.0, 0.001, 1.0] + np.array(centre)
+        c = lesson.gjk(a, b)
+        close(f"the same for two flat bodies of {count} corners [m]", (a @ c.n).min() - (b @ c.n).max(), c.gap, KNOWN,
+              given="two ellipsoids with axes of 1 m, 1 m and 1 mm")
 
 
 @exercise("6.15", points=0.75,
@@ -924,6 +1036,14 @@ def test_who_is_inside_an_obstacle_hears_so(lesson, draw):
     centre, radius, gap, way = draw(-3.0, 3.0, 2), draw(0.3, 1.0), draw(0.3, 0.6), axes(draw, 2)[0]
     # (1/g − 1)/g² < 26 m/s², and g = |x − centre| − radius is known to 1e-15 of 0.3
     close("acceleration outside [m/s²]", lesson.repulsion(centre + (radius + gap) * way, centre, radius, 1.0, 1.0), (1.0 / gap - 1.0) / gap**2 * way, 1e-11, given=f"gap {gap} m")
+    for size, k in ((size, k) for size in SIZES for k in range(2)):      # exact: sums of two powers of two
+        corner, e, wide = size * np.array([2.0, -1.0]), np.eye(2)[k], 2.0 * size
+        raises("a place on the skin of an obstacle", BadInput, lesson.repulsion, corner + wide * e, corner, wide, size, 1.0)
+        for near in (0.5, 2.0**-8, 2.0**-20):
+            g, strength = near * size, (1.0 / near - 1.0) / near**2 / size**3
+            got = lesson.repulsion(corner - (wide + g) * e, corner, wide, size, 1.0)
+            close("acceleration near the skin over k (1/g − 1/reach)/g² [-]", got / strength, -e, ROUND_OFF,
+                  f"gap {g} m, radius {wide} m, reach {size} m, k = 1")
     for distance in (0.0, draw(0.1, 0.9)):
         raises("a place inside the obstacle", BadInput, lesson.repulsion, centre + distance * radius * axes(draw, 2)[0], centre, radius, 1.0, 1.0)
 
@@ -949,7 +1069,12 @@ def test_nobody_swerves_without_need_and_head_on_they_turn_left(lesson, draw):
     for name, centre, velocity in (("behind it", off(-1.0, 0.1), v), ("too far ahead", off(5.0, 0.1), v), ("far enough aside", off(1.0, 1.1 * radius), v),
                                    ("at rest", off(1.0, 0.1), 0.0 * v)):
         close(f"acceleration for what is {name} [m/s²]", lesson.steer(x, velocity, centre, radius, 4.0), np.zeros(2), 0.0, given=f"x = {x}, v = {velocity}, centre {centre}")
-    x, v, left = np.array([1.0, 2.0]), np.array([2.0, 0.0]), np.array([0.0, 1.0])               # whole numbers: the offset is exactly 0
-    for turn in (1.0, -1.0):
-        close("acceleration when heading for the centre [m/s²]", lesson.steer(x, turn * v, x + turn * 2.0 * v, radius, 4.0), 0.5 * radius * turn * left, ROUND_OFF,
-              given=f"radius {radius}")
+    for size, e in ((size, np.roll([turn, 0.0], k)) for size in SIZES for k in range(2) for turn in (1.0, -1.0)):
+        # sums of powers of two: the offset is exact
+        x, v, left = size * np.array([1.0, 2.0]), 2.0 * size * e, np.array([-e[1], e[0]])
+        for tau, offset in ((tau, offset) for tau in (0.25, 2.0) for offset in (0.0, *(s * 2.0**-k for k in (10, 20, 30) for s in (1, -1)))):
+            centre = x + tau * v + offset * size * left
+            expected = 2.0 * (1.0 - abs(offset)) / tau**2 * (left if offset <= 0.0 else -left)
+            close("acceleration when heading for the centre, or just beside it, over the size [1/s²]",
+                  lesson.steer(x, v, centre, size, 4.0) / size, expected, 1e-10,
+                  f"x = {x}, v = {v}, radius {size}, passes {offset * size} to the right of the centre after {tau} s")

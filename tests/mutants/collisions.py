@@ -27,6 +27,7 @@ wrong("6.1", "d with the wrong sign")(distance(lambda p, plane: p @ plane.n - pl
 wrong("6.1", "without its sign")(distance(lambda p, plane: abs(p @ plane.n + plane.d)))
 wrong("6.1", "forgets d")(distance(lambda p, plane: p @ plane.n))
 wrong("6.1", "only which side")(distance(lambda p, plane: np.sign(p @ plane.n + plane.d)))
+edit("6.1", "on the plane within a micrometre", "plane.d", "plane.d if abs(p @ plane.n + plane.d) > 1e-6 else 0.0")
 
 
 # 6.2 ------------------------------------------------------------------------------------------------------------
@@ -54,6 +55,7 @@ wrong("6.2", "the middle of the step")(impact(share=lambda d_1, d_2: 0.5))
 wrong("6.2", "when it is in already, never")(impact(inside=lambda t: NEVER))
 wrong("6.2", "extrapolates")(impact(late=False))
 wrong("6.2", "forgets t")(impact(start=0.0))
+edit("6.2", "touches within a nanometre", "before <= 0.0", "before <= 1e-9")
 
 
 # 6.3 ------------------------------------------------------------------------------------------------------------
@@ -110,6 +112,11 @@ edit("6.4", "the discrete test at the end of the step", "C / (np.sqrt(D) - B)",
      "1.0 if x_1[1:] @ x_1[1:] <= rho * rho else 2.0")
 edit("6.4", "what arrives at the end does not", "s > 1.0", "s >= 1.0")
 edit("6.4", "what touches and leaves was never there", "C <= 0.0", "C < 0.0")
+edit("6.4", "who only grazes misses", "D < 0.0", "D <= 0.0")
+edit("6.4", "who moves by less than a micrometre does not come", "B >= 0.0", "A < 1e-12 or B >= 0.0")
+edit("6.4", "who moves by less than a nanometre does not come", "B >= 0.0", "A < 1e-18 or B >= 0.0")
+edit("6.4", "touches where C is small", "C <= 0.0", "C <= 1e-12")
+edit("6.4", "touches where C is tiny", "C <= 0.0", "C <= 1e-15")
 
 
 # 6.5 ------------------------------------------------------------------------------------------------------------
@@ -136,6 +143,8 @@ edit("6.5", "takes a segment without length",
 edit("6.5", "the nearer end", "np.minimum(1.0, np.maximum(0.0, (p - a) @ along / length_squared))",
      "float((p - a) @ (p - a) > (p - b) @ (p - b))")
 edit("6.5", "refuses what is short", "length_squared == 0.0", "length_squared < 1e-12")
+edit("6.5", "refuses segments along a coordinate axis", "length_squared == 0.0", "np.any(a == b)")
+edit("6.5", "refuses less than a nanometre", "length_squared == 0.0", "length_squared < 1e-18")
 
 
 # 6.6 ------------------------------------------------------------------------------------------------------------
@@ -157,6 +166,12 @@ wrong("6.6", "two edges only")(face(edges=2))
 wrong("6.6", "corners only")(face(measure=lambda a, b: size(a[1:])))
 wrong("6.6", "forgets how thick the cloth is")(face(thick=False))
 wrong("6.6", "a pierced face has a gap of zero")(face(pierced=lambda r, R: 0.0))
+edit("6.6", "a triangle seen from its edge is pierced", "np.all(turns > 0.0) or np.all(turns < 0.0)",
+     "np.all(turns >= 0.0) or np.all(turns <= 0.0)")
+edit("6.6", "three equal signs, zeros as well", "np.all(turns > 0.0) or np.all(turns < 0.0)",
+     "np.all(np.sign(turns) == np.sign(turns[0]))")
+edit("6.6", "signs with a tolerance", "np.all(turns > 0.0) or np.all(turns < 0.0)",
+     "np.all(turns > 1e-12) or np.all(turns < -1e-12)")
 
 
 # 6.7 ------------------------------------------------------------------------------------------------------------
@@ -193,6 +208,8 @@ edit("6.7", "the first edge that it is outside of", THREE_EDGES,
 edit("6.7", "the last edge that it is outside of", THREE_EDGES,
      OUTSIDE.format("c", "a") + OUTSIDE.format("b", "c") + "closest_on_segment(p, a, b)")
 edit("6.7", "the first two edges compared from a corner", FIRST_TWO, FIRST_TWO.replace("nearer(p", "nearer(c"))
+edit("6.7", "refuses needles: forgets the root of N · N", "np.sqrt(dot(N, N)) > FLAT * longest",
+     "dot(N, N) > FLAT * longest**2")
 
 
 # 6.8 ------------------------------------------------------------------------------------------------------------
@@ -220,6 +237,8 @@ wrong("6.8", "n leads in")(in_box(out=-1.0))
 edit("6.8", "what is on a face is outside", "depth[i] < 0.0", "depth[i] <= 0.0")
 edit("6.8", "the face of the largest coordinate", "np.argmin(depth)", "np.argmax(np.abs(y))")
 edit("6.8", "the face of the least share of its half edge", "np.argmin(depth)", "np.argmin(depth / box.half)")
+edit("6.8", "sign(0) = -1", "y[i] >= 0.0", "y[i] > 0.0")
+edit("6.8", "inside up to a picometre outside", "depth[i] < 0.0", "depth[i] < -1e-12")
 
 
 # 6.9 ------------------------------------------------------------------------------------------------------------
@@ -262,6 +281,8 @@ wrong("6.10", "the larger number first")(brute(turned=True))
 edit("6.10", "neighbours in the list only", "range(i + 1, len(low))", "range(i + 1, min(i + 2, len(low)))")
 edit("6.10", "takes boxes that are none", "check_boxes(low, high)", "pass")
 edit("6.10", "does not test the last two", "range(len(low))", "range(len(low) - 2)")
+edit("6.10", "touch up to a nanometre apart", "boxes_touch(low, high, i, low, high, j)",
+     "boxes_touch(low - 5e-10, high + 5e-10, i, low - 5e-10, high + 5e-10, j)")
 
 
 # 6.11 -----------------------------------------------------------------------------------------------------------
@@ -301,6 +322,11 @@ wrong("6.11", "forgets the second child")(traversal(second=False))
 wrong("6.11", "all items of leaves that touch")(traversal(leaves=every_item))
 wrong("6.11", "b before a")(traversal(turned=True))
 wrong("6.11", "gives up where b's node is bigger")(traversal(both=False))
+edit("6.11", "each pair of a tree's own nodes once", "if boxes_touch(", "if not (a is b and i > j) and boxes_touch(")
+edit("6.11", "a thousand pairs of nodes at most", "while len(waiting) > 0",
+     "for _ in (k for k in range(1000) if waiting)")
+edit("6.11", "ten thousand pairs of nodes at most", "while len(waiting) > 0",
+     "for _ in (k for k in range(10000) if waiting)")
 
 
 # 6.12 -----------------------------------------------------------------------------------------------------------
@@ -330,6 +356,8 @@ edit("6.12", "the first edge that separates", "not gap <= greatest", "greatest <
 edit("6.12", "the last edge that separates", "not gap <= greatest", "gap > min(greatest, 0.0)")
 edit("6.12", "forgets the first corner of b", "range(len(b))", "range(1, len(b))")
 edit("6.12", "every edge begins at the first corner", "b[j] - a[i]", "b[j] - a[0]")
+edit("6.12", "the least begins with a gigametre", "outward(a, i), np.inf", "outward(a, i), 1e9")
+edit("6.12", "the greatest begins with a megametre below zero", "-np.inf", "-1e6")
 
 
 # 6.13 -----------------------------------------------------------------------------------------------------------
@@ -359,6 +387,13 @@ wrong("6.13", "counts what is on the plane twice")(cut(crosses=lambda a, b: a * 
 wrong("6.13", "forgets d")(cut(offset=0.0))
 edit("6.13", "keeps what is a nanometre outside", "s_i <= 0.0", "s_i <= 1e-9")
 edit("6.13", "adds a crossing only where it goes out", "s_i * s_j < 0.0", "s_i < 0.0 < s_j")
+edit("6.13", "segments in a plane only", "k > 2", "y.shape != (2, 2)")
+edit("6.13", "fails where nothing is left already", "kept[:m].copy()",
+     "kept[:m].copy() if (y @ n - d).max() > 0.0 else y.copy()")
+edit("6.13", "room for 8 corners", "2 * len(y)", "8")
+edit("6.13", "room for 10 corners", "2 * len(y)", "10")
+edit("6.13", "room for 16 corners", "2 * len(y)", "16")
+edit("6.13", "room for 20 corners", "2 * len(y)", "20")
 
 
 # 6.14 -----------------------------------------------------------------------------------------------------------
@@ -394,6 +429,8 @@ edit("6.14", "edges only where no face separates", "not gap <= greatest +", "(k 
 edit("6.14", "the axis whose gap is nearest to zero", "not gap <= greatest +", "abs(gap) < abs(greatest) +")
 wrong("6.14", "the least gap")(boxes(choose=lambda new, old: new < old))
 wrong("6.14", "the longest half edge for the width")(boxes(width=lambda box, n: float(np.max(box.half))))
+edit("6.14", "the greatest begins with a megametre below zero", "-np.inf", "-1e6")
+edit("6.14", "faces must win as well", "EDGES_WIN_BY if k >= 6 else 0.0", "EDGES_WIN_BY")
 
 
 # 6.15 -----------------------------------------------------------------------------------------------------------
@@ -426,6 +463,10 @@ wrong("6.15", "n from a to b")(nearest(swap=True))
 edit("6.15", "takes bodies of any size and kind", "check_hulls(a, b)", "pass")
 edit("6.15", "a corner of each for the points between them", "weights @ p, 0.0, weights @ q, 0.0",
      "p[0], 0.0, q[0], 0.0")
+edit("6.15", "gives up after eight steps", "range(GJK_STEPS)", "range(8)")
+edit("6.15", "gives up after twelve steps", "range(GJK_STEPS)", "range(12)")
+edit("6.15", "gives up after twenty steps", "range(GJK_STEPS)", "range(20)")
+edit("6.15", "overlap below a nanometre", "if far_enough(", "if v @ v < 1e-18 or far_enough(")
 
 
 # 6.16 -----------------------------------------------------------------------------------------------------------
@@ -438,7 +479,7 @@ def field(strength=lambda g, reach: (1.0 / g - 1.0 / reach) / g**2, sign=1.0, ch
             raise BadInput("the gap [m]", g, "start outside")
         if ends and g >= reach:
             return 0.0 * r
-        return sign * k * strength(max(g, 1e-3), reach) * (r / max(size(r), 1e-300) if unit else r)
+        return sign * k * strength(g, reach) * (r / max(size(r), 1e-300) if unit else r)
     return repulsion
 
 
@@ -450,6 +491,13 @@ wrong("6.16", "from the centre on")(field(skin=False))
 wrong("6.16", "goes on beyond its reach")(field(ends=False))
 wrong("6.16", "takes a place inside")(field(checked=False))
 wrong("6.16", "the way itself for its direction")(field(unit=False))
+edit("6.16", "takes a place on the skin", "not g > 0.0", "g < 0.0")
+edit("6.16", "refuses what is nearer than a micrometre", "not g > 0.0", "g < 1e-6")
+edit("6.16", "no more than a million m/s²", "k * (1.0 / g - 1.0 / reach) / (g * g * distance)",
+     "min(k * (1.0 / g - 1.0 / reach) / (g * g), 1e6) / distance")
+edit("6.16", "no gap below a millimetre", "g = distance - radius",
+     "g = max(distance - radius, 1e-3 * (distance > radius))")
+edit("6.16", "measures its reach from the centre", "g >= reach", "distance >= reach")
 
 
 # 6.17 -----------------------------------------------------------------------------------------------------------
@@ -481,3 +529,10 @@ wrong("6.17", "waits head on")(swerve(left=0.0))
 wrong("6.17", "starts by itself")(swerve(rest=False))
 wrong("6.17", "leaves room for all of the radius")(swerve(need=lambda radius, offset: radius))
 edit("6.17", "brakes", "tau**2 * aside", "tau**2 * aside - 0.1 * v")
+edit("6.17", "at rest where v[0] is zero", "speed == 0.0", "v[0] == 0.0")
+edit("6.17", "at rest below a millimetre per second", "speed == 0.0", "speed < 1e-3")
+edit("6.17", "left along x only", "np.array([-e[1], e[0]])", "np.array([0.0, e[0]])")
+edit("6.17", "head-on within a hundredth of the radius", "offset > 0.0", "offset >= 0.01 * radius")
+edit("6.17", "head-on within a micrometre", "offset > 0.0", "offset >= 1e-6")
+edit("6.17", "head-on where it is close to zero", "offset > 0.0", "not np.isclose(offset, 0.0)")
+edit("6.17", "minds no disc that it is in", "offset >= radius", "offset >= radius or np.sqrt(r @ r) <= radius")
