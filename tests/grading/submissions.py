@@ -190,7 +190,7 @@ def moment(when):
 
 def spelt_out(text):
     """Text with its control, format and broken characters written as their numbers: names may hold any."""
-    return "".join(c if c.isprintable() else f"\\x{ord(c):02x}" for c in text)
+    return text if text.isprintable() else "".join(c if c.isprintable() else f"\\x{ord(c):02x}" for c in text)
 
 
 def nearest(candidates, problems):
