@@ -1,4 +1,4 @@
-"""Whatever lies in the class folder is graded or named: nothing is overlooked without a word, and nobody stops the class."""
+"""Whatever lies in the class folder is graded or named: nothing is overlooked, and nobody stops the class."""
 
 import csv
 import os
@@ -42,7 +42,8 @@ def by_student(intake):
     return {one.student: one for one in intake.submissions}
 
 
-# ---------------------------------------------------------------------------------------------- files that are no folder and no zip
+# ---------------------------------------------------------------------- files that are no folder and no zip
+
 
 @pytest.mark.parametrize("ending", [".tar.gz", ".tgz", ".TAR.XZ", ".tar", ".7z", ".rar", ".ipynb"])
 def test_what_cannot_be_opened_is_its_students_and_says_so(tmp_path, ending):
@@ -56,7 +57,9 @@ def test_what_was_unpacked_by_hand_is_graded_and_the_archive_beside_it_is_named(
     folder(tmp_path / "ada")
     tarred(tmp_path / "ada.tar.gz")
     ada = by_student(submissions.read_all(tmp_path, LESSONS))["ada"]
-    assert sorted(ada.files) == ["integrators", "springs"] and len(ada.problems) == 1 and "ada.tar.gz" in ada.problems[0]
+    assert (
+        sorted(ada.files) == ["integrators", "springs"] and len(ada.problems) == 1 and "ada.tar.gz" in ada.problems[0]
+    )
 
 
 def test_bare_lesson_files_of_a_student_belong_together(tmp_path):
@@ -73,13 +76,13 @@ def test_bare_lesson_files_of_a_student_belong_together(tmp_path):
 def test_a_bare_file_with_only_a_students_name_is_the_one_lesson_that_is_graded(tmp_path):
     (tmp_path / "ada.py").write_bytes(TEXT)
     assert by_student(submissions.read_all(tmp_path, ("springs",)))["ada"].files == {"springs": TEXT}
-    ada, = submissions.read_all(tmp_path, LESSONS).submissions
-    assert not ada.files and "ada_integrators.py" in ada.problems[0]                     # of which lesson? the remedy is its name
+    (ada,) = submissions.read_all(tmp_path, LESSONS).submissions
+    assert not ada.files and "ada_integrators.py" in ada.problems[0]  # of which lesson? the remedy is its name
 
 
 def test_a_bare_file_of_another_lesson_is_not_taken_for_the_one_that_is_graded(tmp_path):
     (tmp_path / "ada_friction.py").write_bytes(TEXT)
-    ada, = submissions.read_all(tmp_path, ("springs",)).submissions
+    (ada,) = submissions.read_all(tmp_path, ("springs",)).submissions
     assert ada.student == "ada" and not ada.files and "friction" in ada.problems[0]
 
 
@@ -88,10 +91,19 @@ def test_two_bare_files_of_one_lesson_leave_open_which_is_meant(tmp_path):
     (tmp_path / "ada_springs.py").write_bytes(TEXT)
     (tmp_path / "ada-springs.py").write_bytes(TEXT)
     intake = submissions.read_all(tmp_path, LESSONS)
-    assert [*by_student(intake)] == ["bob"] and all(name in intake.unclear["ada"] for name in ("ada_springs.py", "ada-springs.py"))
+    assert [*by_student(intake)] == ["bob"] and all(
+        name in intake.unclear["ada"] for name in ("ada_springs.py", "ada-springs.py")
+    )
 
 
-@pytest.mark.parametrize("make", [lambda path: path.symlink_to(path.parent / "bob" / "springs.py"), os.mkfifo, lambda path: path.write_bytes(bytes(1 << 19))])
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda path: path.symlink_to(path.parent / "bob" / "springs.py"),
+        os.mkfifo,
+        lambda path: path.write_bytes(bytes(1 << 19)),
+    ],
+)
 def test_tricks_with_bare_files_are_named_and_not_read(make, tmp_path):
     folder(tmp_path / "bob")
     make(tmp_path / "ada_springs.py")
@@ -119,7 +131,7 @@ def test_other_files_are_named_unless_they_are_the_class_list_or_hidden(tmp_path
     (tmp_path / "__MACOSX").mkdir()
     intake = submissions.read_all(tmp_path, LESSONS, {"ada": submissions.Person("ada")}, tmp_path / "list.csv")
     assert len(intake.overlooked) == 1 and "notes\\x1b[2J.txt" in intake.overlooked[0]
-    assert "ada.docx" in by_student(intake)["ada"].problems[0]                           # she is on the list
+    assert "ada.docx" in by_student(intake)["ada"].problems[0]  # she is on the list
     assert any("list.csv" in told for told in submissions.read_all(tmp_path, LESSONS).overlooked)
 
 
@@ -134,13 +146,20 @@ def test_what_nearly_is_a_lesson_file_is_named_where_the_lesson_is_missing(tmp_p
         archive.writestr("notebooks/02_springs.ipynb", TEXT)
         archive.writestr("my_springs.py", TEXT)
     found = by_student(submissions.read_all(tmp_path, LESSONS))
-    assert not found["ada"].files and all(any(name in told for told in found["ada"].problems) for name in ("Integrators.py", "springs (1).py"))
+    assert not found["ada"].files and all(
+        any(name in told for told in found["ada"].problems) for name in ("Integrators.py", "springs (1).py")
+    )
     assert not any("other.py" in told for told in found["ada"].problems)
     assert "workbook.zip" in " ".join(found["bob"].problems)
-    assert [*found["cem"].files] == ["integrators"] and len(found["cem"].problems) == 1 and "my_springs.py" in found["cem"].problems[0]
+    assert (
+        [*found["cem"].files] == ["integrators"]
+        and len(found["cem"].problems) == 1
+        and "my_springs.py" in found["cem"].problems[0]
+    )
 
 
-# ---------------------------------------------------------------------------------------------- one student, more than once
+# ---------------------------------------------------------------------- one student, more than once
+
 
 def test_a_student_who_is_there_twice_is_not_graded_and_all_others_are(tmp_path):
     folder(tmp_path / "ada")
@@ -157,14 +176,17 @@ def test_a_class_in_which_nobody_is_clear_is_still_told_who(tmp_path):
     assert [*submissions.read_all(tmp_path, LESSONS).unclear] == ["ada"]
 
 
-# ---------------------------------------------------------------------------------------------- one id, two spellings
+# ---------------------------------------------------------------------- one id, two spellings
 
-@pytest.mark.parametrize("listed, handed_in", [(NFC, NFD), (NFD, NFC), ("ada", "ada "), ("a\u200bda", "a\u200bda"), ("a\xa0b", "a\xa0b")])
+
+@pytest.mark.parametrize(
+    "listed, handed_in", [(NFC, NFD), (NFD, NFC), ("ada", "ada "), ("a\u200bda", "a\u200bda"), ("a\xa0b", "a\xa0b")]
+)
 def test_an_id_is_the_same_in_whatever_way_it_is_written(tmp_path, listed, handed_in):
     folder(tmp_path / "class" / handed_in)
     (tmp_path / "list.csv").write_text(f"student_id,last_name\n{listed},Lovelace\n", encoding="utf-8")
     people = submissions.roster(tmp_path / "list.csv")
-    one, = submissions.read_all(tmp_path / "class", LESSONS, people).submissions
+    (one,) = submissions.read_all(tmp_path / "class", LESSONS, people).submissions
     assert [*people] == [one.student] and people[one.student].student_id == one.student and one.student.isprintable()
 
 
@@ -185,7 +207,8 @@ def test_a_class_list_that_contradicts_itself_is_refused(tmp_path):
     assert [*submissions.roster(tmp_path / "list.csv")] == [NFC]
 
 
-# ---------------------------------------------------------------------------------------------- the command
+# ---------------------------------------------------------------------- the command
+
 
 def test_the_command_says_all_of_it_on_the_terminal_on_the_page_and_in_the_csv(tmp_path):
     sandbox.for_tests(pytest.skip, pytest.fail)
@@ -199,9 +222,24 @@ def test_the_command_says_all_of_it_on_the_terminal_on_the_page_and_in_the_csv(t
     (top / NFD).mkdir()
     (top / NFD / "integrators.py").write_bytes(blank)
     (top / "list.csv").write_text(f"student_id\nada\nbob\ncem\n{NFC}\n", encoding="utf-8")
-    run = subprocess.run([sys.executable, "-m", "tests.grading", str(top), "--out", str(tmp_path / "out"), "--lesson", "integrators",
-                          "--roster", str(top / "list.csv")], cwd=binding.ROOT, capture_output=True, text=True)
-    assert run.returncode == 1, run.stdout + run.stderr                # somebody has no points yet
+    run = subprocess.run(
+        [
+            sys.executable,
+            "-m",
+            "tests.grading",
+            str(top),
+            "--out",
+            str(tmp_path / "out"),
+            "--lesson",
+            "integrators",
+            "--roster",
+            str(top / "list.csv"),
+        ],
+        cwd=binding.ROOT,
+        capture_output=True,
+        text=True,
+    )
+    assert run.returncode == 1, run.stdout + run.stderr  # somebody has no points yet
     page = (tmp_path / "out" / "index.html").read_text()
     for word in ("ada.zip", "bob.tar.gz", "notes.txt"):
         assert word in run.stdout, word
@@ -209,6 +247,9 @@ def test_the_command_says_all_of_it_on_the_terminal_on_the_page_and_in_the_csv(t
     with open(tmp_path / "out" / "grades.csv", newline="", encoding="utf-8") as file:
         rows = {row["student_id"]: row for row in csv.DictReader(file)}
     assert [*rows] == sorted(["ada", "bob", "cem", NFC])
-    assert rows["ada"]["score"] == "" and "ada.zip" in rows["ada"]["problems"]           # no points, and no zero
+    assert rows["ada"]["score"] == "" and "ada.zip" in rows["ada"]["problems"]  # no points, and no zero
     assert rows["bob"]["score"] == "0" and "bob.tar.gz" in rows["bob"]["problems"]
-    assert rows["cem"]["score"] == "0" and rows["cem"]["problems"] == rows[NFC]["problems"] == "" != rows["cem"]["timestamp"]
+    assert (
+        rows["cem"]["score"] == "0"
+        and rows["cem"]["problems"] == rows[NFC]["problems"] == "" != rows["cem"]["timestamp"]
+    )

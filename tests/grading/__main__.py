@@ -29,7 +29,8 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 
 @app.command(help="Grade a class: one folder or zip per student, the lesson files inside.")
 def grade(
-    class_: Annotated[Path, typer.Argument(metavar="SUBMISSIONS", help="Folder with one folder or zip per student; a bare file NAME_LESSON.py will do.")],
+    class_: Annotated[Path, typer.Argument(
+        metavar="SUBMISSIONS", help="Folder with one folder or zip per student; a bare file NAME_LESSON.py will do.")],
     out: Annotated[Path, typer.Option(help="Folder for grades, pages and CSV.")] = Path("grades"),
     lesson: Annotated[Optional[list[str]], typer.Option(help="Only this lesson (may be repeated); all of them without.")] = None,
     seed: Annotated[Optional[str], typer.Option(help="Secret from which hidden inputs are drawn; made and kept in OUT/seed.txt without.")] = None,
@@ -110,7 +111,8 @@ def run(intake, settings, people, terms, jobs, executor, out):
     except KeyboardInterrupt:
         console.print(f"Interrupted. What was graded is kept in {out}: the same command goes on from there.")
         return 130
-    front = pages.write(out, [results[s.student] for s in handed_in if s.student in results], failed, settings, people, terms, about(intake, settings))
+    graded = [results[s.student] for s in handed_in if s.student in results]
+    front = pages.write(out, graded, failed, settings, people, terms, about(intake, settings))
     pages.show(console, [*results.values()], failed, settings)
     for submission in handed_in:
         if submission.problems:
@@ -124,7 +126,8 @@ def run(intake, settings, people, terms, jobs, executor, out):
 def about(intake, settings):
     """What the page says of this run."""
     versions = f"workbook {settings.code}, Python {sys.version.split()[0]}, NumPy {version('numpy')}"
-    return pages.Run(intake.overlooked, similar.alike(intake.submissions, settings.lessons), datetime.now().isoformat(timespec="seconds"), versions, pages.fingerprint(settings.seed))
+    alike, now = similar.alike(intake.submissions, settings.lessons), datetime.now().isoformat(timespec="seconds")
+    return pages.Run(intake.overlooked, alike, now, versions, pages.fingerprint(settings.seed))
 
 
 def before(path, digest):

@@ -1,79 +1,279 @@
-"""`python -m tests.grading.benchmark`: 200 submissions, a tenth of them hostile or broken, against plain pytest on the same files.
+"""`python -m tests.grading.benchmark`: what a submission costs, and how long 10,000 of them take.
 
-A submission's cost is the time of the grading processes, divided by their number; plain pytest's is that of two runs, with the public and
-with the secret inputs, two at a time as the grader does it.  Honest and hostile are told apart: a loop that never ends costs its whole budget.
+Measured: a class of which a tenth is hostile or broken, on Dask with 2 and with 4 workers; plain pytest on the same
+files; the files of 10,000 made from the results.  Simulated from these: 10,000 submissions on 1 to 64 workers, of
+which one in a hundred is lost.
+
+All is in seconds of the processor, which neighbours on the machine change little; time by the clock is shown beside
+it.  The simulation takes one core for each worker.  For a submission that sleeps or loops, the clock counts: it uses
+up its budget whatever the processor does.
 """
 
+import heapq
+import json
+import pickle
+import random
+import resource
 import subprocess
 import sys
 import tempfile
 import time
-from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from math import ceil
 from pathlib import Path
-from statistics import mean
+from statistics import mean, median
+from typing import Annotated
 
+import typer
 from rich.console import Console
+from rich.table import Table
 
 from tests import attacks
 from validate import binding
+from validate.store import write_whole
 
-from . import example, local, marking, sandbox, submissions
+from . import cluster, example, marking, pages, sandbox, similar, submissions
 
-CLASS, HOSTILE, JOBS, SAMPLE = 200, 20, 2, 8
 LESSONS = ("integrators", "springs")
+WORKERS, SIMULATED = (2, 4), (1, 2, 4, 8, 16, 32, 64)
+LARGE = 10_000               # submissions of the large class [-]
+LOST = 0.01                  # share of the workers that are lost during the run [-]: one at least, where there are two
+RUNS = 20                    # of the simulation, each with other times and losses [-]
+EVERY = 10                   # one in so many is hostile [-]
+MEANWHILE = ("handing over", "results")                # what one process does while the workers grade …
+AFTER = ("answers that are alike", "pages, CSV, Gradescope")           # … and after that
+SAMPLE = 4                   # honest submissions that plain pytest runs [-]
 console = Console()
 
 
-def write_class(folder):
-    """Honest students, each with another part of the work done, and hostile ones."""
-    files, texts = example.files(), [a.text for a in attacks.ATTACKS if a.text]
-    for n in range(CLASS):
-        place = folder / f"s{n:03d}" / "lessons"
+class Measured:
+    """Seconds by the clock and of the processor, and the largest process [MiB]."""
+    wall = cpu = memory = 0.0
+
+
+@contextmanager
+def measured(whose):
+    """A Measured that is filled in when the block ends."""
+    found, before, began = Measured(), resource.getrusage(whose), time.perf_counter()
+    yield found
+    after = resource.getrusage(whose)
+    found.wall, found.memory = time.perf_counter() - began, after.ru_maxrss / 1024
+    found.cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+# ---------------------------------------------------------------------- a class that is really graded
+
+def class_of(count, folder):
+    """Honest students, each with another part of the work done, and hostile ones: (submissions, hostile students)."""
+    files, texts, hostile = example.files(), [a.text for a in attacks.ATTACKS if a.text], set()
+    for n in range(count):
+        place = folder / f"s{n:05d}"
         place.mkdir(parents=True)
-        if n % (CLASS // HOSTILE) == 0:
-            (place / "integrators.py").write_text(attacks.HONEST + texts[n % len(texts)])
-            (place / "springs.py").write_text(files["ada"]["springs"])
-        else:
-            for lesson, text in files[("ada", "ada", "bob", "cem", "dia")[n % 5]].items():
-                (place / f"{lesson}.py").write_text(text)
+        theirs = files[("ada", "ada", "bob", "cem", "dia")[n % 5]]
+        if n % EVERY == 0:
+            hostile.add(place.name)
+            evil = attacks.HONEST + texts[n // EVERY % len(texts)]
+            theirs = {"integrators": evil, "springs": files["ada"]["springs"]}
+        for lesson, text in theirs.items():
+            (place / f"{lesson}.py").write_text(text)
+    return submissions.read_all(folder, LESSONS).submissions, hostile
 
 
-def plain(path):
-    """Seconds of two ordinary runs of pytest."""
-    began = time.perf_counter()
+def on_dask(count, handed_in, rules):
+    """(results, Measured) of a scheduler and so many workers on this machine, their start included."""
+    from tests.test_cluster import cluster_of
+    results = {}
+    with measured(resource.RUSAGE_CHILDREN) as found, tempfile.TemporaryDirectory() as scratch:
+        with cluster_of(count, Path(scratch)) as (address, _):
+            for student, result, why in cluster.results(address, handed_in, rules):
+                results[student] = result
+                if why:
+                    console.print(f"{student}: {why}")
+    return results, found
+
+
+def plain(texts, folder):
+    """Two ordinary runs of pytest, with the public and with a secret seed."""
+    for lesson, text in texts.items():
+        (folder / f"{lesson}.py").write_bytes(text)
     for seed in ("public", "a secret"):
-        subprocess.run([sys.executable, "-m", "pytest", *(f"tests/test_{lesson}.py" for lesson in LESSONS), f"--of={path}", f"--seed={seed}",
-                        "-p", "no:cacheprovider", "--tb=no"], cwd=binding.ROOT, capture_output=True)
-    return time.perf_counter() - began
+        files = [f"tests/test_{lesson}.py" for lesson in LESSONS]
+        options = [f"--of={folder}", f"--seed={seed}", "-p", "no:cacheprovider", "--tb=no"]
+        subprocess.run([sys.executable, "-m", "pytest", *files, *options], cwd=binding.ROOT, capture_output=True)
 
 
-def main():
+def ordinary(handed_in):
+    """Seconds of the processor of plain pytest for one submission."""
+    with measured(resource.RUSAGE_CHILDREN) as found:
+        for one in handed_in:
+            with tempfile.TemporaryDirectory() as folder:
+                plain(one.files, Path(folder))
+    return found.cpu / len(handed_in)
+
+
+# ---------------------------------------------------------------------- the files of a large class
+
+def files_of(results, rules):
+    """{step: Measured} of what one process does for LARGE submissions beside grading, with results like those."""
+    texts = [json.dumps(result) for result in results]
+    sources = example.files()
+    many, steps = [submitted(f"s{n:05d}", sources["ada"], n) for n in range(LARGE)], {}
+    terms = pages.Terms("2026-11-30T23:59:00", 10.0)
+    with tempfile.TemporaryDirectory() as scratch:
+        out = Path(scratch)
+        (out / "results").mkdir()
+        with measured(resource.RUSAGE_SELF) as steps["handing over"]:
+            for one in many:
+                cluster.parcel(one, rules)
+        everybody = [{**json.loads(texts[n % len(texts)]), "student": one.student} for n, one in enumerate(many)]
+        with measured(resource.RUSAGE_SELF) as steps["results"]:
+            for result in everybody:
+                write_whole(out / "results" / f"{result['student']}.json", result)
+        with measured(resource.RUSAGE_SELF) as steps["answers that are alike"]:
+            alike = similar.alike(many, rules.lessons)
+        with measured(resource.RUSAGE_SELF) as steps["pages, CSV, Gradescope"]:
+            pages.write(out, everybody, {}, rules, {}, terms, pages.Run(alike=alike))
+        with measured(resource.RUSAGE_SELF) as steps["reading results again"]:
+            for result in everybody:
+                json.loads((out / "results" / f"{result['student']}.json").read_text())
+    return steps
+
+
+def submitted(student, texts, n):
+    return submissions.Submission(student, {lesson: varied(text, n) for lesson, text in texts.items()}, (), "")
+
+
+def varied(text, n):
+    """A student's text like no other's: a fifth of its assignments are changed."""
+    draw = random.Random(n)
+
+    def changed(line):
+        return f"{line} + {draw.randrange(99)} * n" if " = " in line and draw.random() < 0.2 else line
+    return "\n".join(map(changed, text.splitlines())).encode()
+
+
+# ---------------------------------------------------------------------- a large class on many workers
+
+def makespan(costs, workers, draw):
+    """Seconds until all are graded, by workers that take the next one as they get free.
+
+    One in a hundred workers, and one at least, is lost at some moment of the run and does not come back.  What it
+    had begun is begun again, at the end, which is the worst.
+    """
+    lost = ceil(LOST * workers) if workers > 1 else 0
+    about = sum(costs) / workers
+    ends = [about * draw.random() if n < lost else float("inf") for n in range(workers)]
+    free, waiting, last = [(0.0, n) for n in range(workers)], list(reversed(costs)), 0.0
+    while waiting:
+        now, worker = heapq.heappop(free)
+        if now >= ends[worker]:
+            continue
+        cost = waiting.pop()
+        if now + cost > ends[worker]:
+            waiting.insert(0, cost)
+            continue
+        last = max(last, now + cost)
+        heapq.heappush(free, (now + cost, worker))
+    return last
+
+
+def simulated(costs, serial):
+    """[(workers, hours of grading, hours with what one process does at the end, share of the perfect speed-up)]"""
+    rows = []
+    for workers in SIMULATED:
+        times = []
+        for run in range(RUNS):
+            draw = random.Random(run)
+            times.append(makespan(draw.choices(costs, k=LARGE), workers, draw))
+        rows.append((workers, mean(times) / 3600, (mean(times) + serial) / 3600))
+    whole = rows[0][2]
+    return [(*row, whole / row[2] / row[0]) for row in rows]
+
+
+# ---------------------------------------------------------------------- the command
+
+def costs_of(results, hostile, cpu):
+    """Seconds of each submission on a core of its own.
+
+    An honest one has what the clock said, less what it waited for others: together as much as the processor worked.
+    What a hostile one took by the clock stays, because it may have slept.
+    """
+    honest = [r["seconds"] for student, r in results.items() if r and student not in hostile]
+    evil = [r["seconds"] for student, r in results.items() if r and student in hostile]
+    scale = min(1.0, cpu / (sum(honest) + sum(evil)))
+    start = max(0.0, (cpu - scale * (sum(honest) + sum(evil))) / len(results))       # of processes: not in `seconds`
+    return [start + scale * s for s in honest], [start + s for s in evil]
+
+
+def printed(title, columns, rows):
+    shown = Table(title=title, title_justify="left", header_style="bold", box=None, pad_edge=False)
+    for n, column in enumerate(columns):
+        shown.add_column(column, justify="right" if n else "left")
+    for row in rows:
+        shown.add_row(*map(str, row))
+    console.print(shown, "")
+
+
+def graded(handed_in, hostile, rules):
+    """Grade the class with 2 and with 4 workers, and print what that took; (results, seconds of the processor) of 2."""
+    rows, count, first = [], len(handed_in), None
+    for workers in WORKERS:
+        results, found = on_dask(workers, handed_in, rules)
+        first = first or (results, found.cpu)
+        done = sum(result is not None for result in results.values())
+        rows.append((workers, f"{done} of {count}", f"{found.wall:.0f}", f"{found.cpu:.0f}", f"{found.cpu / count:.1f}",
+                     f"{found.cpu / found.wall:.2f}", f"{found.memory:.0f}"))
+    printed(f"{count} submissions of {len(LESSONS)} lessons, {len(hostile)} of them hostile or broken",
+            ("workers", "graded", "clock [s]", "processor [s]", "each [s]", "cores busy", "largest process [MiB]"),
+            rows)
+    return first
+
+
+def compared(handed_in, hostile, results, honest, evil):
+    """Print the cost of a submission beside that of plain pytest, and what hostile ones have gained."""
+    alone = ordinary([one for one in handed_in if one.student not in hostile][:SAMPLE])
+    stolen = sum(t["earned"] for s in hostile if results[s] for t in results[s]["tests"]
+                 if t["lesson"] == "integrators" and t["exercise"] != "1.10")          # 1.10 is right in all of them
+    console.print(f"an honest one: {mean(honest):.1f} s (median {median(honest):.1f}); plain pytest on the same files: "
+                  f"{alone:.1f} s; ratio {mean(honest) / alone:.2f}")
+    console.print(f"a hostile or broken one: {mean(evil):.1f} s by the clock, {max(evil):.1f} at most; "
+                  f"they gained {stolen:g} points\n")
+
+
+def sizes(one, result, rules):
+    """Print what travels to a worker and back."""
+    there, settings, back = len(cluster.parcel(one, rules)), len(pickle.dumps(rules)), len(json.dumps(result))
+    console.print(f"To a worker go {there / 1024:.0f} KiB, {settings / 1024:.0f} of them settings; "
+                  f"{back / 1024:.0f} KiB come back.\n")
+
+
+def benchmark(count: Annotated[int, typer.Option("--submissions", min=EVERY, help="To be really graded.")] = 40):
     if sandbox.unavailable():
         console.print(f"There is nothing to measure: {sandbox.unavailable()}.")
-        return 2
+        raise typer.Exit(2)
+    rules = marking.settings(LESSONS, "a secret")
     with tempfile.TemporaryDirectory() as scratch:
-        folder = Path(scratch)
-        write_class(folder)
-        handed_in = submissions.read_all(folder, LESSONS).submissions
-        rules = marking.settings(LESSONS, "a secret")
-        began, results = time.perf_counter(), {}
-        for student, result, why in local.results(JOBS, handed_in, rules):
-            results[student] = result
-            if why:
-                console.print(f"{student}: {why}")
-        seconds = time.perf_counter() - began
-        hostile = {s.student for s in handed_in[::CLASS // HOSTILE]}
-        sample = [folder / s.student / "lessons" for s in handed_in if s.student not in hostile][:SAMPLE]
-        with ThreadPoolExecutor(JOBS) as pool:
-            ordinary = mean(pool.map(plain, sample))
-    honest = mean(results[s.student]["seconds"] for s in handed_in if s.student not in hostile and results[s.student])
-    evil = mean(results[student]["seconds"] for student in hostile if results[student])
-    stolen = sum(t["earned"] for student in hostile for t in results[student]["tests"] if t["lesson"] == "integrators" and t["exercise"] != "1.10")
-    console.print(f"{sum(r is not None for r in results.values())} of {CLASS} graded in {seconds:.0f} s by {JOBS} processes")
-    console.print(f"an honest one: {honest:.1f} s; plain pytest on the same files: {ordinary:.1f} s; so {honest - ordinary:+.1f} s each")
-    console.print(f"a hostile or broken one: {evil:.1f} s, and the {HOSTILE} of them gained {stolen:g} points beside their honest function's")
-    return 0
+        handed_in, hostile = class_of(count, Path(scratch))
+    results, cpu = graded(handed_in, hostile, rules)
+    honest, evil = costs_of(results, hostile, cpu)
+    compared(handed_in, hostile, results, honest, evil)
+
+    steps = files_of([result for result in results.values() if result], rules)
+    printed(f"What one process does for {LARGE:,} submissions",
+            ("step", "processor [s]", "each [ms]", "memory so far [MiB]"),
+            [(name, f"{found.cpu:.1f}", f"{1000 * found.cpu / LARGE:.2f}", f"{found.memory:.0f}")
+             for name, found in steps.items()])
+    sizes(handed_in[1], results[handed_in[1].student], rules)
+
+    after = sum(steps[name].cpu for name in AFTER)
+    printed(f"{LARGE:,} submissions, simulated from these figures: 1 % of the workers lost, {RUNS} runs each",
+            ("workers", "grading [h]", "with the files [h]", "of the perfect speed-up"),
+            [(workers, f"{grading:.2f}", f"{whole:.2f}", f"{part:.0%}")
+             for workers, grading, whole, part in simulated(honest + evil, after)])
+    limit = LARGE * mean(honest + evil) / sum(steps[name].cpu for name in MEANWHILE)
+    console.print(f"The grading itself is the bottleneck up to about {limit:.0f} workers; beyond, it is the one process "
+                  "that hands submissions over and keeps the results.")
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    typer.run(benchmark)

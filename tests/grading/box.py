@@ -35,7 +35,8 @@ LAST_WORD_WITHIN = 3.0       # [s]: a worker that has closed the wire ends so so
 MOST_ENTRIES = 1_000_000     # of all arrays that a student's code hands to one of our functions [-]: the tests need 10⁴
 DEEPEST = 16                 # calls inside calls, there and back [-]: the tests need 4
 PRINTED = 20_000             # of what is printed, so much is kept [bytes]
-NOTE, CUT = re.compile(rb"\0note ([a-z]{1,20})\n"), re.compile(rb"\0(?:n|no|not|note|note [a-z]{0,20})?\Z")     # of the worker's among what is printed; the beginning of one
+NOTE = re.compile(rb"\0note ([a-z]{1,20})\n")         # of the worker's, among what is printed
+CUT = re.compile(rb"\0(?:n|no|not|note|note [a-z]{0,20})?\Z")            # the beginning of one
 ERRORS = {e.__name__: e for e in (
     BadInput, Diverged, NotImplementedError, ValueError, TypeError, ZeroDivisionError, IndexError, KeyError, AttributeError, NameError,
     UnboundLocalError, ImportError, ModuleNotFoundError, SyntaxError, IndentationError, ArithmeticError, FloatingPointError,

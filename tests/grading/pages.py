@@ -39,9 +39,9 @@ ENDS = {"Lost": "the program ended, hung or sent no data", "StudentError": "an e
 
 
 class Run(NamedTuple):
-    """What the class page says of this run, and no other file: the others are the same to the last byte when a class is graded again."""
+    """What the class page says of this run, and no other file: the others stay the same when a class is graded again."""
     overlooked: tuple = ()   # sentences about files that are nobody's
-    alike: dict = {}         # {student: [(lesson, another student, share of lines in common), …]}, as similar.alike gives it
+    alike: dict = {}         # {student: [(lesson, another student, share of lines in common), …]}
     when: str = ""           # ISO 8601
     versions: str = ""       # of workbook, Python and NumPy
     seed: str = ""           # its fingerprint
@@ -230,7 +230,7 @@ def cause(test):
 
 
 def looks(one, alike):
-    """[(what, the same with its details), …] for the instructor: what may be more than an answer.  Students do not see it."""
+    """[(what, the same with its details), …] of what may be more than an answer: for the instructor, not for students."""
     told = [pair for lesson, codes in sorted(one.result["watched"].items()) for pair in watch.noted(lesson, codes)]
     for lesson, other, share in alike.get(one.student, ()):
         what = "the same" if share == 1.0 else "nearly the same"
@@ -250,7 +250,10 @@ def to_look_into(sheets, found):
 
 
 def causes(sheets):
-    """Failures that have exercise, cause and hint in common, with their students: what most failed on first.  What nobody tried is none."""
+    """Failures that have exercise, cause and hint in common, with their students, the most frequent first.
+
+    What was not attempted is no failure.
+    """
     groups = {}
     for s in sheets:
         for t in s.tests:
@@ -348,13 +351,15 @@ def table(sheets, failed, settings, people, terms):
     for student in sorted({*graded, *failed, *people}):
         one, person = graded.get(student), people.get(student) or submissions.Person(student)
         no_grade = one.result["no_grade"] if one else warning
-        problems = " | ".join([*["not on the class list"][:bool(people) and student not in people], *([failed[student]] if student in failed else one.problems if one else [])])
+        problems = [failed[student]] if student in failed else one.problems if one else []
+        stranger = ["not on the class list"] * (bool(people) and student not in people)
         for lesson in settings.lessons:
             account = one.accounts[lesson] if one else Account(False, 0.0, 0.0, 0.0, maxima[lesson])
             scores = ("", "", "") if student in failed else map(number, (account.raw, account.penalty, account.score))
             rows.writerow([cell(f"{lesson} (NOT A GRADE: {no_grade})" if no_grade else lesson), terms.due,
                            cell(one.result["timestamp"] if account.handed_in else ""), cell(student), cell(person.last_name),
-                           cell(person.first_name), cell(person.email), *scores, number(account.maximum), cell(problems)])
+                           cell(person.first_name), cell(person.email), *scores, number(account.maximum),
+                           cell(" | ".join([*stranger, *problems]))])
     return text.getvalue()
 
 
@@ -377,7 +382,7 @@ def templates():
 def write(out, results, failed, settings, people, terms, run=Run()):
     """Pages, CSV and JSON in a folder; the path of the front page.
 
-    results: as marking.mark gives them · failed: {student: why there are no points} · people: {student: Person}, the class list, or {}.
+    results: as marking.mark gives them · failed: {student: why there are no points} · people: the class list, or {}.
     """
     sheets = sorted((sheet(r, settings, terms, people.get(r["student"])) for r in results), key=lambda s: s.student)
     files = {f"students/{s.file}.html": student_page(s, terms) for s in sheets}
@@ -406,7 +411,8 @@ def class_page(sheets, failed, settings, people, terms, run):
     absent = [people[student] for student in sorted({*people} - {s.student for s in sheets} - {*failed})]
     picture = histogram([s.total("score") for s in sheets], sum(row[4] for row in settings.manifest)) if sheets else None
     return templates().get_template("class.html").render(
-        sheets=sheets, failed=sorted(failed.items()), run=run, looks=found, settings=settings, seconds=[s.result["seconds"] for s in sheets],
+        sheets=sheets, failed=sorted(failed.items()), run=run, looks=found, settings=settings,
+        seconds=[s.result["seconds"] for s in sheets],
         watched=to_look_into(sheets, found), people=people, terms=terms, absent=absent, picture=picture,
         lessons=by_lesson(sheets, settings), hardest=hardest(sheets, settings), causes=causes(sheets), warning=warning_of(sheets))
 
@@ -435,7 +441,7 @@ def show_intake(console, intake):
 
 
 def show(console, results, failed, settings):
-    """Print the class in short: points by lesson, the hardest exercises, and who is not graded.  Late penalties are not in it."""
+    """Print the class in short: points by lesson before late penalties, the hardest exercises, and who is not graded."""
     sheets = [sheet(r, settings, Terms("", 0.0)) for r in results]
     summary = Table(header_style="bold", box=None, pad_edge=False)
     for column in ("lesson", "handed in", "mean", "median", "of"):
@@ -451,4 +457,5 @@ def show(console, results, failed, settings):
     if warning_of(sheets):
         console.print(f"NOT A GRADE: {escape(line(warning_of(sheets)))}", style="bold red", highlight=False)
     for student, why in sorted(failed.items()):
-        console.print(f"[bold red]Not graded: {escape(line(student))}[/bold red], who has no points and no zero: {escape(line(why))}", highlight=False, soft_wrap=True)
+        who = f"[bold red]Not graded: {escape(line(student))}[/bold red], who has no points and no zero"
+        console.print(f"{who}: {escape(line(why))}", highlight=False, soft_wrap=True)

@@ -1,7 +1,8 @@
 """Submissions that are alike: the same answers, or nearly, whatever their names, blanks and comments.
 
-Only lines are compared that the lesson as handed out does not have, each with its variables' names taken away, in pairs with the next line.
-Pairs that many have are what the exercise asks for, and say nothing; the rest is compared.  *Source:* Schleimer, Wilkerson, Aiken, Winnowing (SIGMOD 2003).
+Only lines are compared that the lesson as handed out does not have, each with its variables' names taken away, in
+pairs with the next line.  Pairs that many have are what the exercise asks for, and say nothing; the rest is compared.
+*Source:* Schleimer, Wilkerson, Aiken, Winnowing (SIGMOD 2003).
 """
 
 import re
@@ -19,7 +20,10 @@ MOST = 5                     # others that are told of one file [-]
 LONGEST, MOST_LINES = 400, 3000      # of a file so much is compared [bytes of a line, lines]
 WORKED = "the worked answers"
 WORD = re.compile(rb"[A-Za-z_]\w*")
-KEPT = frozenset(b"and as assert break class continue def del elif else except finally for from if import in is lambda not or pass raise return try while with yield True False None np".split())
+KEPT = frozenset(b"""
+    and as assert break class continue def del elif else except finally for from if import in is lambda not or pass
+    raise return try while with yield True False None np
+""".split())
 
 
 def alike(handed_in, lessons):
@@ -31,13 +35,19 @@ def alike(handed_in, lessons):
             for a, b in ((one, other), (other, one)):
                 if a != WORKED:
                     found[a].append((lesson, b, share))
-    return {student: sorted(pairs, key=lambda pair: (-pair[2], pair[0], pair[1] != WORKED, pair[1]))[:MOST] for student, pairs in found.items()}
+    return {student: sorted(pairs, key=_order)[:MOST] for student, pairs in found.items()}
+
+
+def _order(pair):
+    lesson, other, share = pair
+    return -share, lesson, other != WORKED, other
 
 
 @lru_cache
 def handed_out(lesson):
     """The lines of a lesson as handed out, without blanks."""
-    return frozenset(b"".join(line.split()) for line in (binding.ROOT / "lessons" / f"{lesson}.py").read_bytes().splitlines())
+    text = (binding.ROOT / "lessons" / f"{lesson}.py").read_bytes()
+    return frozenset(b"".join(line.split()) for line in text.splitlines())
 
 
 def own_lines(text, lesson):
@@ -66,7 +76,7 @@ def pairs_of(texts):
         yield from ((a, b, 1.0) for n, a in enumerate(group) for b in group[n + 1:n + 1 + MOST])
         if len(group) > MOST + 1:                                      # the last ones are told of the first
             yield from ((group[0], b, 1.0) for b in group[MOST + 1:])
-    having = defaultdict(list)                                         # {pair of lines: the first of each group with it}
+    having = defaultdict(list)                                       # {pair of lines: the first of each group with it}
     for lines, group in same.items():
         for pair in {*zip(lines, lines[1:])}:
             having[hash(pair)].append(group[0])

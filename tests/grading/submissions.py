@@ -1,6 +1,8 @@
-"""What students handed in: a folder, a zip or bare lesson files each.  Nothing is unpacked, followed or executed; only the lesson files' bytes are read.
+"""What students handed in: a folder, a zip or bare lesson files each.
 
-Whatever lies in the class folder becomes a submission or a sentence: nothing is overlooked in silence.  A zip is read in a child of little memory and time, and only what is stored or deflated: other ways of packing take gigabytes for a kilobyte.
+Nothing is unpacked, followed or executed; only the lesson files' bytes are read.  Whatever lies in the class folder
+becomes a submission or a sentence: nothing is overlooked in silence.  A zip is read in a child of little memory and
+time, and only what is stored or deflated: other ways of packing take gigabytes for a kilobyte.
 """
 
 import csv
@@ -25,7 +27,8 @@ MOST_ENTRIES = 5000          # of a zip or a folder [-]: more is not a submissio
 LARGEST_ZIP = 1 << 25        # [bytes]: its list of entries is read before they can be counted
 MOST_PROBLEMS = 20           # of a submission that are told [-]: a hostile zip has thousands
 LONGEST = 200                # of a sentence about one [characters]: a name may have 65,535
-ARCHIVES = (".tar.gz", ".tar.bz2", ".tar.xz", ".tar.zst", ".tar", ".tgz", ".tbz2", ".txz", ".gz", ".bz2", ".xz", ".zst", ".7z", ".rar")
+ARCHIVES = (*".tar.gz .tar.bz2 .tar.xz .tar.zst .tar .tgz .tbz2 .txz .gz .bz2 .xz .zst .7z .rar".split(),)
+OPENED = (".zip", ".py", ".ipynb")
 
 
 class Submission(NamedTuple):
@@ -43,12 +46,12 @@ class Submission(NamedTuple):
 class Intake(NamedTuple):
     """What lies in the folder of a class."""
     submissions: list        # sorted by student
-    unclear: dict            # {student: why it is open which files are meant}: neither points nor a zero until that is settled
+    unclear: dict            # {student: why it is open which files are meant}: neither points nor a zero until then
     overlooked: tuple        # sentences about what is nobody's
 
 
 def read_all(folder, lessons, people=(), class_list=None):
-    """The Intake of a folder.  people: the ids on the class list, class_list: its file.  Raises BadInput when there is nobody."""
+    """The Intake of a folder.  people: the ids on the class list, class_list: its file.  Raises BadInput without any."""
     folder = Path(folder)
     if not folder.is_dir():
         raise BadInput(f"submissions {str(folder)!r}", "not a folder", "name the folder that holds one folder or zip a student")
@@ -99,8 +102,9 @@ def owner(path, people):
 
 def split(path):
     """(name without its ending, ending in small letters); a folder has none, unless it is called a zip."""
-    ending = next((e for e in (".zip", ".py", ".ipynb", *ARCHIVES) if path.name.lower().endswith(e)), path.suffix.lower())
-    if ending != ".zip" and path.is_dir():                             # links to folders as well, which are told to be links
+    name = path.name.lower()
+    ending = next((e for e in (*OPENED, *ARCHIVES) if name.endswith(e)), path.suffix.lower())
+    if ending != ".zip" and path.is_dir():                             # or a link to one
         ending = ""
     return (path.name[:-len(ending)] if ending else path.name), ending
 
@@ -113,28 +117,30 @@ def of_lesson(stem):
 
 
 def identity(text):
-    """A student's id as it is compared and shown: the same for all Unicode forms of the same letters, and without blanks around it."""
+    """A student's id as it is compared and shown: one for all Unicode forms of its letters, without blanks around it."""
     return spelt_out(unicodedata.normalize("NFC", text).strip() or text)
 
 
 def submission_of(student, paths, lessons, child):
     """A student's Submission from all that is there.  Raises Ambiguous when that is more than one."""
     bare = [path for path in paths if split(path)[1] == ".py"]
-    whole = [path for path in paths if split(path)[1] in ("", ".zip") and (path.is_symlink() or path.is_dir() or split(path)[1])]
+    whole = [path for path in paths if split(path)[1] == ".zip" or not split(path)[1] and (path.is_symlink() or path.is_dir())]
     unread = [path for path in paths if path not in (*bare, *whole)]
     only = lessons[0] if len(lessons) == 1 else None
     lesson_of = {path: of_lesson(split(path)[0])[1] or only for path in bare}
     if len(whole) + bool(bare) > 1 or len({*lesson_of.values()}) < len(bare):
-        raise Ambiguous(f"there more than once, as {', '.join(shortened(path.name) for path in (*whole, *bare))}: keep one of them")
+        names = ", ".join(shortened(path.name) for path in (*whole, *bare))
+        raise Ambiguous(f"there more than once, as {names}: keep one of them")
     one = read(whole[0], student, lessons, child) if whole else from_bare(lesson_of, student, lessons)
     return one._replace(problems=(*one.problems, *map(why_unread, unread)))
 
 
 def why_unread(path):
     ending = split(path)[1]
-    remedy = ("its answers belong into the lesson files" if ending == ".ipynb" else "unpack it into a folder, or ask for a zip" if ending in ARCHIVES
-              else "ask for the lesson files")
-    return f"{shortened(path.name)} is {'a notebook' if ending == '.ipynb' else 'neither a folder nor a zip'}, and was not read: {remedy}"
+    if ending == ".ipynb":
+        return f"{shortened(path.name)} is a notebook, and was not read: the answers belong into the lesson files"
+    remedy = "unpack it into a folder, or ask for a zip" if ending in ARCHIVES else "ask for the lesson files"
+    return f"{shortened(path.name)} is neither a folder nor a zip, and was not read: {remedy}"
 
 
 def from_bare(lesson_of, student, lessons):
@@ -146,7 +152,8 @@ def from_bare(lesson_of, student, lessons):
         elif lesson:
             problems.append(f"{path.name} is of the lesson {lesson}, which is not graded here")
         else:
-            problems.append(f"{path.name} may be of any lesson, and was not read: rename it, to {path.stem}_{lessons[0]}.py for instance")
+            example = f"{path.stem}_{lessons[0]}.py"
+            problems.append(f"{path.name} may be of any lesson, and was not read: rename it, to {example} for instance")
     return Submission(student, files, told(problems), moment(when))
 
 
@@ -172,7 +179,8 @@ def contents(find, path, lessons):
 
 def told(problems):
     """The first problems, fit to be shown."""
-    return (*map(shortened, problems[:MOST_PROBLEMS]), *[f"and {len(problems) - MOST_PROBLEMS} more of the kind"][:len(problems) > MOST_PROBLEMS])
+    more = [f"and {len(problems) - MOST_PROBLEMS} more of the kind"] * (len(problems) > MOST_PROBLEMS)
+    return (*map(shortened, problems[:MOST_PROBLEMS]), *more)
 
 
 def shortened(text):
@@ -190,7 +198,7 @@ def moment(when):
 
 def spelt_out(text):
     """Text with its control, format and broken characters written as their numbers: names may hold any."""
-    return "".join(c if c.isprintable() else f"\\x{ord(c):02x}" for c in text)
+    return text if text.isprintable() else "".join(c if c.isprintable() else f"\\x{ord(c):02x}" for c in text)
 
 
 def nearest(candidates, problems):
@@ -212,14 +220,16 @@ def wanted(name, lessons):
 
 
 def resembling(names, lessons, found):
-    """Sentences about files that may be meant for lessons that are missing: another spelling, an archive inside, notebooks only."""
+    """Sentences about files that may be meant for lessons that are missing: another spelling, an archive inside."""
     inside = [name for name in names if "__MACOSX" not in name and not os.path.basename(name).startswith(".")]
     for lesson in (lesson for lesson in lessons if lesson not in found):
-        alike = [name for name in inside if re.fullmatch(rf"(?!test_).*{lesson}.*\.py", os.path.basename(name), re.IGNORECASE | re.DOTALL)]
+        pattern = re.compile(rf"(?!test_).*{lesson}.*\.py", re.IGNORECASE | re.DOTALL)
+        alike = [name for name in inside if pattern.fullmatch(os.path.basename(name))]
         yield from [f"{lesson}.py is not there, and {name} was not read" for name in alike[:1]]
     if not found:
         packed = [name for name in inside if name.lower().endswith((".zip", *ARCHIVES))]
-        yield from [f"{name} lies inside, and was not read: a folder or zip holds the lesson files themselves" for name in packed]
+        remedy = "a folder or zip holds the lesson files themselves"
+        yield from [f"{name} lies inside, and was not read: {remedy}" for name in packed]
 
 
 def from_folder(top, lessons):
@@ -281,7 +291,7 @@ def from_zip(path, lessons):
                     keep(files, lesson, place, file.read(LARGEST + 1), problems)
             except Exception as e:                                     # encrypted, broken, packed in a way that Python does not know
                 problems.append(f"{place} cannot be read: {type(e).__name__}")
-        problems += resembling(by_name, lessons, {lesson for lesson in lessons if any(wanted(name, (lesson,)) for name in by_name)})
+        problems += resembling(by_name, lessons, {wanted(name, lessons) for name in by_name} - {None})
     return files, problems, path.stat().st_mtime
 
 
@@ -330,7 +340,8 @@ def roster(path):
     people = {person.student_id: person for person in rows}
     for person in rows:
         if people[person.student_id] != person:
-            raise BadInput(f"student {person.student_id!r}", f"there twice in {str(path)!r}, with different entries", "keep one of the lines")
+            what = f"there twice in {str(path)!r}, with different entries"
+            raise BadInput(f"student {person.student_id!r}", what, "keep one of the lines")
     return {student: person._replace(timestamp=handed_in_at(person, path)) for student, person in people.items()}
 
 

@@ -159,39 +159,40 @@ def describe(e):
 
 # ---------------------------------------------------------------------------------------------- what the instructor may look into
 
-NOTED = {"os.fork": "process", "os.forkpty": "process", "os.posix_spawn": "process", "os.system": "process", "os.exec": "process", "subprocess.Popen": "process",
-         "os.kill": "signal", "os.killpg": "signal", "signal.pthread_kill": "signal",
-         "os.remove": "write", "os.rename": "write", "os.mkdir": "write", "os.rmdir": "write", "os.truncate": "write", "os.link": "write", "os.symlink": "write", "os.chmod": "write",
-         "os.listdir": "read", "os.scandir": "read", "gc.get_objects": "inside", "gc.get_referrers": "inside", "gc.get_referents": "inside", "sys.settrace": "inside",
-         "sys.setprofile": "inside", "sys._current_frames": "inside", "resource.setrlimit": "limit", "resource.prlimit": "limit"}
+NOTED = {event: kind for kind, events in {
+    "process": "os.fork os.forkpty os.posix_spawn os.system os.exec subprocess.Popen",
+    "signal": "os.kill os.killpg signal.pthread_kill",
+    "write": "os.remove os.rename os.mkdir os.rmdir os.truncate os.link os.symlink os.chmod",
+    "read": "open os.listdir os.scandir",
+    "inside": "gc.get_objects gc.get_referrers gc.get_referents sys.settrace sys.setprofile sys._current_frames",
+    "limit": "resource.setrlimit resource.prlimit",
+}.items() for event in events.split()}
+FAMILIES = {"socket.": "network", "ctypes.": "native"}
 
 
 def watcher():
-    """An audit hook that notes what a lesson has no need of, each kind once, as "\\0note KIND\\n" among what is printed.  The parent takes it out again.
+    """An audit hook that notes what a lesson has no need of, each kind once, as "\\0note KIND\\n" among what is printed.
 
-    All that it uses is its own: the student's code may change everything else here.
+    The parent takes it out again.  All that it uses is its own: the student's code may change everything else here.
     """
-    descriptor, write, told, kinds, text, size = os.dup(2), os.write, set(), dict(NOTED), str, len
-    ours = tuple({sys.prefix, sys.base_prefix, os.path.realpath(sys.base_prefix), os.path.dirname(os.__file__), config["given"], config["student"], config["wire"], os.devnull})
-    writing, kind_of, add = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND, type, told.add
-    failed = Exception
+    descriptor, write, told, kinds, families = os.dup(2), os.write, set(), dict(NOTED), dict(FAMILIES)
+    places = {sys.prefix, sys.base_prefix, os.path.realpath(sys.base_prefix), os.path.dirname(os.__file__), os.devnull}
+    ours = (*places, config["given"], config["student"], config["wire"])
+    writing = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
+    kind_of, text, failed = type, str, Exception
 
     def hook(event, arguments):
-        kind = kinds.get(event)
-        if kind is None:
-            kind = "network" if event.startswith("socket.") else "native" if event.startswith("ctypes.") else "read" if event == "open" else None
-            if kind is None:
-                return
+        kind = kinds.get(event) or families.get(event[:7])
         if kind == "read":
             path = arguments[0]
-            if kind_of(path) is not text:
+            if kind_of(path) is not text:                              # a descriptor, which has been opened before
                 return
             if event == "open" and arguments[2] & writing and path != "/dev/null":
                 kind = "write"
             elif path.startswith(ours):
                 return
-        if kind not in told:
-            add(kind)
+        if kind and kind not in told:
+            told.add(kind)
             try:
                 write(descriptor, b"\0note " + kind.encode() + b"\n")
             except failed:                                             # standard error is closed: the student's program goes on all the same

@@ -1,0 +1,44 @@
+"""The simulation of a large class: its arithmetic, and what a lost worker costs."""
+
+import random
+
+import pytest
+
+from .grading import benchmark
+
+
+@pytest.mark.parametrize("workers", [1, 2, 8, 64])
+def test_nobody_is_lost_and_no_worker_does_two_at_a_time(workers, monkeypatch):
+    draw = random.Random(3)
+    costs = [draw.uniform(1.0, 9.0) for _ in range(2000)]
+    least = sum(costs) / workers
+    monkeypatch.setattr(benchmark, "LOST", 0.0)
+    whole = benchmark.makespan(costs, workers, random.Random(4))
+    assert least <= whole <= least + max(costs)  # Graham's bound for any order
+    monkeypatch.setattr(benchmark, "LOST", 0.01)
+    after = benchmark.makespan(costs, workers, random.Random(4))
+    survivors = workers - (workers > 1)
+    assert whole <= after <= sum(costs) / survivors + 3.0 * max(costs)
+
+
+def test_what_a_lost_worker_had_begun_is_done_by_another():
+    class Half(random.Random):
+        def random(self):
+            return 0.5
+
+    # 2 workers, 4 submissions of 10 s: 20 s each; one is lost after 10 s, between two, so 30 s remain for the other
+    assert benchmark.makespan([10.0] * 4, 2, Half()) == 30.0
+    # 5 of 8 s: one is lost after 10 s, in its second; the other does four in all
+    assert benchmark.makespan([8.0] * 5, 2, Half()) == 32.0
+
+
+def test_an_honest_submission_costs_what_the_processor_worked_and_a_sleeper_what_the_clock_says():
+    results = {"ada": {"seconds": 4.0}, "bob": {"seconds": 4.0}, "eve": {"seconds": 2.0}}
+    honest, evil = benchmark.costs_of(results, {"eve"}, cpu=5.0)  # half of the time they waited for each other
+    assert honest == [2.0, 2.0] and evil == [2.0]
+    honest, evil = benchmark.costs_of(results, {"eve"}, cpu=13.0)  # a second each to start processes
+    assert honest == [5.0, 5.0] and evil == [3.0]
+
+
+def test_files_of_many_are_measured_on_results_that_differ(monkeypatch):
+    assert len({benchmark.varied("a = 1\n" * 50, n) for n in range(20)}) == 20
