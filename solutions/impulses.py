@@ -21,7 +21,7 @@ from .rotation import cross, point_velocity, solve3
 from .vectors import norm
 
 IMPACTS = 10_000             # in one step [-]; a ball of e = 0.8 has 165 before the next is closer than the spacing of floats
-SWEEPS = 2000                # over several contact points [-]; four under a box need about a hundred, points close together thousands
+SWEEPS = 2000                # over several contact points [-]; four under a box need about a hundred, points close together more than a thousand
 STIFFEST = 1e-40             # determinant of K over its trace cubed, below which K has no inverse [-]: products of it vanish
 SETTLED = 1e-14              # largest change in a sweep over the largest |v| + |ω||r| at the beginning [-]: a hundred roundings
 
