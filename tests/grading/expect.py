@@ -106,6 +106,8 @@ def how_far(off, size):
 
     Where zero is expected, the size is one unit.  A number here would leak a digit of a secret input with each attempt.
     """
+    if not np.isfinite(off):
+        return OFF[2]
     part = off / (size or 1.0)
     return OFF[0] if part < 0.01 else OFF[1] if part < 1.0 else OFF[2]
 

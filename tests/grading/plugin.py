@@ -6,6 +6,8 @@ With --of only the grading tests run.
 
 import hashlib
 import json
+import signal
+import threading
 import types
 from pathlib import Path
 
@@ -33,6 +35,8 @@ def pytest_addoption(parser):
 
 
 def pytest_configure(config):
+    if signal.getsignal(signal.SIGINT) == signal.SIG_IGN and threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGINT, signal.default_int_handler)     # a shell's background ignores Ctrl-C, and so would all that we start
     if hasattr(config.option, "loadscopereorder"):               # of pytest-xdist, which would take groups of one test last, and they are the longest
         config.option.loadscopereorder = False
     if config.getoption("--of"):
