@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput, Diverged, check_positive, check_shape, finite_array, one_each, whole_number
+from solutions.checks import BadInput, Diverged, check_positive, check_shape, finite_array, float_copy, one_each, whole_number
 from solutions.integrators import solve
 from solutions.rotation import angular_acceleration, cross, product, quaternion_update, rotate, unrotate
 from solutions.springs import inverse_masses, measured_links
@@ -315,7 +315,7 @@ def keep_outside(surface, x, inv_mass, obstacle):
 
 def fold_sweep(x, cloth):
     """Given.  Positions after one visit to every fold of a cloth."""
-    x = 1.0 * x
+    x = float_copy(x)
     for h in range(cloth.fold.size):
         corners, w = np.zeros((4, 3)), np.zeros(4)
         for k in range(4):
@@ -340,15 +340,15 @@ def cloth_step(acceleration, t, x, v, dt, cloth):
 
 # ---------------------------------------------------------------------------------------------- XPBD: a compliance of its own
 
-def compliant_multiplier(C, Lam, weight, alpha, dt):
+def compliant_multiplier(C, Lam, weight, alpha_scaled):
     """ΔΛ [N s²] for one visit to a constraint that gives way: a spring of stiffness 1/α, at any step and any number of sweeps.
 
     ΔΛ = (−C − α̃ Λ)/(weight + α̃),      α̃ = α/dt²          weight = Σ w |∇C|²
 
     Λ = λ dt² is what earlier visits of this step have added up to.  It comes to rest where C = −α̃ Λ = −α λ: Hooke's law.
-    Raises BadInput("compliance α [m/N]", α, "give zero or more") for a negative one (NaN, too),
-    BadInput("Σ w |∇C|² of a constraint", 0.0, "let one of its points have a mass and a gradient") for a weight of 0, and
-    BadInput("step dt [s]", dt, "give a number above zero") for a step that is not positive: 0, negative or NaN (∞ is positive).
+    alpha_scaled is α̃: it is the same for all visits of a step, so the caller divides once.
+    Raises BadInput("scaled compliance α/dt² [1/kg]", α̃, "give zero or more") for a negative one (NaN, too), and
+    BadInput("Σ w |∇C|² of a constraint", 0.0, "let one of its points have a mass and a gradient") for a weight of 0.
     *Source:* Macklin, Müller and Chentanez 2016, eq. 18.
     """
     # YOUR CODE HERE
@@ -358,7 +358,7 @@ def compliant_multiplier(C, Lam, weight, alpha, dt):
 def compliant_sweep(x, Lam, dt, net):
     """(x (n, d), Λ (s,)) after one visit to every link, in their order, each as compliant as its α says.
 
-    ΔΛ = compliant_multiplier(C, Λₛ, w_i + w_j, αₛ, dt);      Λₛ ← Λₛ + ΔΛ,   x_i ← x_i + w_i ΔΛ n,   x_j ← x_j − w_j ΔΛ n
+    ΔΛ = compliant_multiplier(C, Λₛ, w_i + w_j, αₛ/dt²);      Λₛ ← Λₛ + ΔΛ,   x_i ← x_i + w_i ΔΛ n,   x_j ← x_j − w_j ΔΛ n
 
     C and n as in distance_constraint, where the visits before have left the ends.  Returns new arrays.
     Raises what distance_constraint and compliant_multiplier raise.
@@ -454,7 +454,7 @@ def balloon_step(acceleration, t, x, v, dt, balloon):
         weight = 0.0
         for k in range(x.shape[0]):
             weight += net.inv_mass[k] * np.sum(gradient[k] * gradient[k])
-        change = compliant_multiplier(V - balloon.volume, air, weight, balloon.alpha, dt)
+        change = compliant_multiplier(V - balloon.volume, air, weight, balloon.alpha / (dt * dt))
         air += change
         for k in range(x.shape[0]):
             new[k] += change * net.inv_mass[k] * gradient[k]

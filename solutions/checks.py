@@ -139,6 +139,11 @@ def finite_array(thing, values):
     return array
 
 
+def float_copy(values):
+    """A copy of an array in float64: it may be changed, and whole numbers in it become numbers with a fraction."""
+    return np.asarray(values, np.float64).copy()
+
+
 def check_positive(thing, value):
     """Raise BadInput unless the number is finite and above zero (NaN is neither)."""
     if not (value > 0.0 and np.isfinite(value)):

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .checks import (BadInput, Diverged, check_array, check_end, check_field, check_finite, check_friction, check_normal, check_not_negative,
-                     check_positive, check_restitution, check_shape, checked_run, finite_array, finite_number, number, positive_number)
+                     check_positive, check_restitution, check_shape, checked_run, finite_array, finite_number, float_copy, number, positive_number)
 from .friction import tangential
 from .integrators import symplectic_euler_step
 from .rotation import cross, point_velocity, solve3
@@ -567,7 +567,7 @@ def separated(x, i, j, p):
 
 def drift(x, v, dt):
     """Given.  x + dt v, body by body: compiled loops over short rows cost less than arrays of two dimensions."""
-    x = 1.0 * x
+    x = float_copy(x)
     for k in range(x.shape[0]):
         x[k] += dt * v[k]
     return x
@@ -575,7 +575,7 @@ def drift(x, v, dt):
 
 def projecting_discs_step(x, v, dt, p):
     """Given.  Advance discs by one step, then treat all that overlap, pair by pair; first order."""
-    x, v = drift(x, v, dt), 1.0 * v
+    x, v = drift(x, v, dt), float_copy(v)
     for i in range(x.shape[0]):
         for j in range(i):
             if overlap(x, i, j, p.radius[i] + p.radius[j]):
@@ -589,7 +589,7 @@ def backtracking_discs_step(x, v, dt, p):
 
     Of impacts at the same moment the first pair in the list goes first: a choice.
     """
-    left, v = dt, 1.0 * v
+    left, v = dt, float_copy(v)
     for _ in range(IMPACTS):
         tau, first, second = left, 0, 0
         for i in range(x.shape[0]):

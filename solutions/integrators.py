@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .checks import Diverged, check_end, check_positive, checked_run
+from .checks import Diverged, check_end, check_positive, checked_run, float_copy
 
 NEWTON_TOLERANCE = 1e-12     # last correction over the size of the velocity [-]: well above round-off, 2e-16
 NEWTON_LIMIT = 30            # corrections [-]; from a sane guess Newton doubles its digits and needs fewer than 8
@@ -141,7 +141,7 @@ def newton_matrix(acceleration, t, x, v, dt, p):
     """
     matrix = np.eye(v.size)
     for k in range(v.size):
-        ahead, behind = 1.0 * v, 1.0 * v                             # in floats, also where v was given in whole numbers
+        ahead, behind = float_copy(v), float_copy(v)
         ahead.ravel()[k] += DIFFERENCE_STEP * max(1.0, abs(v.ravel()[k]))
         behind.ravel()[k] -= DIFFERENCE_STEP * max(1.0, abs(v.ravel()[k]))
         change = acceleration(t, x + dt * ahead, ahead, p) - acceleration(t, x + dt * behind, behind, p)

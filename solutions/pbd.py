@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .checks import BadInput, Diverged, check_positive, check_shape, finite_array, one_each, whole_number
+from .checks import BadInput, Diverged, check_positive, check_shape, finite_array, float_copy, one_each, whole_number
 from .integrators import solve
 from .rotation import angular_acceleration, cross, product, quaternion_update, rotate, unrotate
 from .springs import inverse_masses, measured_links
@@ -288,7 +288,7 @@ def distance_sweep(x, net):
     *Source:* deck B, "Loop over all constraints = 1 iteration"; Müller et al. 2006, eqs. 10, 11.
     """
     ### BEGIN SOLUTION 8.6
-    x, d = 1.0 * x, x.shape[1]
+    x, d = float_copy(x), x.shape[1]
     for s in range(net.i.size):
         i, j = net.i[s], net.j[s]
         squared = 0.0
@@ -394,7 +394,7 @@ def keep_outside(surface, x, inv_mass, obstacle):
     *Source:* Müller et al. 2006, section 3.4; deck B, "Project particle out".
     """
     ### BEGIN SOLUTION 8.11
-    x = 1.0 * x
+    x = float_copy(x)
     for k in range(x.shape[0]):
         phi, n = surface(x[k], obstacle)
         if phi < 0.0 and inv_mass[k] > 0.0:
@@ -405,7 +405,7 @@ def keep_outside(surface, x, inv_mass, obstacle):
 
 def fold_sweep(x, cloth):
     """Given.  Positions after one visit to every fold of a cloth."""
-    x = 1.0 * x
+    x = float_copy(x)
     for h in range(cloth.fold.size):
         corners, w = np.zeros((4, 3)), np.zeros(4)
         for k in range(4):
@@ -430,40 +430,38 @@ def cloth_step(acceleration, t, x, v, dt, cloth):
 
 # ---------------------------------------------------------------------------------------------- XPBD: a compliance of its own
 
-def compliant_multiplier(C, Lam, weight, alpha, dt):
+def compliant_multiplier(C, Lam, weight, alpha_scaled):
     """ΔΛ [N s²] for one visit to a constraint that gives way: a spring of stiffness 1/α, at any step and any number of sweeps.
 
     ΔΛ = (−C − α̃ Λ)/(weight + α̃),      α̃ = α/dt²          weight = Σ w |∇C|²
 
     Λ = λ dt² is what earlier visits of this step have added up to.  It comes to rest where C = −α̃ Λ = −α λ: Hooke's law.
-    Raises BadInput("compliance α [m/N]", α, "give zero or more") for a negative one (NaN, too),
-    BadInput("Σ w |∇C|² of a constraint", 0.0, "let one of its points have a mass and a gradient") for a weight of 0, and
-    BadInput("step dt [s]", dt, "give a number above zero") for a step that is not positive: 0, negative or NaN (∞ is positive).
+    alpha_scaled is α̃: it is the same for all visits of a step, so the caller divides once.
+    Raises BadInput("scaled compliance α/dt² [1/kg]", α̃, "give zero or more") for a negative one (NaN, too), and
+    BadInput("Σ w |∇C|² of a constraint", 0.0, "let one of its points have a mass and a gradient") for a weight of 0.
     *Source:* Macklin, Müller and Chentanez 2016, eq. 18.
     """
     ### BEGIN SOLUTION 8.12
-    if not alpha >= 0.0:
-        raise BadInput("compliance α [m/N]", alpha, "give zero or more")
+    if not alpha_scaled >= 0.0:
+        raise BadInput("scaled compliance α/dt² [1/kg]", alpha_scaled, "give zero or more")
     if weight == 0.0:
         raise BadInput("Σ w |∇C|² of a constraint", 0.0, "let one of its points have a mass and a gradient")
-    if not dt > 0.0:
-        raise BadInput("step dt [s]", dt, "give a number above zero")
-    scaled = alpha / (dt * dt)
-    return (-C - scaled * Lam) / (weight + scaled)
+    return (-C - alpha_scaled * Lam) / (weight + alpha_scaled)
     ### END SOLUTION
 
 
 def compliant_sweep(x, Lam, dt, net):
     """(x (n, d), Λ (s,)) after one visit to every link, in their order, each as compliant as its α says.
 
-    ΔΛ = compliant_multiplier(C, Λₛ, w_i + w_j, αₛ, dt);      Λₛ ← Λₛ + ΔΛ,   x_i ← x_i + w_i ΔΛ n,   x_j ← x_j − w_j ΔΛ n
+    ΔΛ = compliant_multiplier(C, Λₛ, w_i + w_j, αₛ/dt²);      Λₛ ← Λₛ + ΔΛ,   x_i ← x_i + w_i ΔΛ n,   x_j ← x_j − w_j ΔΛ n
 
     C and n as in distance_constraint, where the visits before have left the ends.  Returns new arrays.
     Raises what distance_constraint and compliant_multiplier raise.
     *Source:* Macklin et al. 2016, algorithm 1.
     """
     ### BEGIN SOLUTION 8.13
-    x, Lam, d = 1.0 * x, 1.0 * Lam, x.shape[1]
+    x, Lam, d = float_copy(x), float_copy(Lam), x.shape[1]
+    per_square = 1.0 / (dt * dt)
     for s in range(net.i.size):
         i, j = net.i[s], net.j[s]
         squared = 0.0
@@ -472,7 +470,7 @@ def compliant_sweep(x, Lam, dt, net):
         if squared == 0.0:
             raise BadInput("the length of a link [m]", 0.0, "keep its ends apart")
         length = np.sqrt(squared)
-        change = compliant_multiplier(length - net.rest[s], Lam[s], net.inv_mass[i] + net.inv_mass[j], net.alpha[s], dt)
+        change = compliant_multiplier(length - net.rest[s], Lam[s], net.inv_mass[i] + net.inv_mass[j], net.alpha[s] * per_square)
         Lam[s] += change
         for c in range(d):
             push = change / length * (x[i, c] - x[j, c])
@@ -587,7 +585,7 @@ def balloon_step(acceleration, t, x, v, dt, balloon):
         weight = 0.0
         for k in range(x.shape[0]):
             weight += net.inv_mass[k] * np.sum(gradient[k] * gradient[k])
-        change = compliant_multiplier(V - balloon.volume, air, weight, balloon.alpha, dt)
+        change = compliant_multiplier(V - balloon.volume, air, weight, balloon.alpha / (dt * dt))
         air += change
         for k in range(x.shape[0]):
             new[k] += change * net.inv_mass[k] * gradient[k]

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .checks import BadInput, Diverged, check_end, check_finite, check_positive, check_shape, checked_run, finite_array, finite_number, positive_number, whole_number
+from .checks import BadInput, Diverged, check_end, check_finite, check_positive, check_shape, checked_run, finite_array, finite_number, float_copy, positive_number, whole_number
 from .friction import cone_radius
 
 NEWTON_TOLERANCE = 1e-12     # last correction over the size of the unknown [-]: Newton squares it, so what is left is round-off
@@ -169,7 +169,7 @@ def axis_angle_update(R, omega, dt):
     *Source:* deck A, "Extract axis-angle from ω(t) and rotate columns of R(t)"; Rodrigues 1840.
     """
     ### BEGIN SOLUTION 5.7
-    turned = 1.0 * R
+    turned = float_copy(R)
     rate = np.sqrt(np.sum(omega * omega))
     if rate != 0.0:
         n, c, s = omega / rate, np.cos(rate * dt), np.sin(rate * dt)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .checks import BadInput, Diverged, WrongShape, check_indices, check_positive, check_shape, finite_array, one_each
+from .checks import BadInput, Diverged, WrongShape, check_indices, check_positive, check_shape, finite_array, float_copy, one_each
 from .integrators import average_velocity_step
 
 GRAVITY = 9.81                # g [m/s²], near the ground; deck A rounds it to 9.8
@@ -340,8 +340,8 @@ def conjugate_gradients(apply, A, right):
     """
     ### BEGIN SOLUTION 2.12
     y = np.zeros(right.shape)
-    r = 1.0 * right
-    p = 1.0 * right
+    r = float_copy(right)
+    p = float_copy(right)
     squared = np.sum(r * r)
     enough = CG_TOLERANCE * CG_TOLERANCE * squared
     for _ in range(10 * right.size):

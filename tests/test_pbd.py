@@ -540,26 +540,24 @@ def test_every_point_goes_to_the_nearest_point_outside_however_many_how_deep_and
 
 # ---------------------------------------------------------------------------------------------- XPBD
 
-@exercise("8.12", points=0.5, hint="(−C − α̃ Λ)/(weight + α̃) with α̃ = α/dt²: after the visit C + α̃ Λ is zero")
+@exercise("8.12", points=0.5, hint="(−C − α̃ Λ)/(weight + α̃): after the visit C + α̃ Λ is zero")
 def test_after_a_visit_a_compliant_constraint_obeys_hookes_law(lesson, draw):
     for alpha, side, other in ((0.0, 1, 1), (0.0, -1, 1), (draw(0.001, 0.1), 1, -1), (draw(0.001, 0.1), -1, -1)):
         C, Lam, weight, dt = side * draw(0.1, 1.0), other * draw(0.1, 1.0), draw(0.2, 2.0), draw(0.05, 0.5)
-        change = lesson.compliant_multiplier(C, Lam, weight, alpha, dt)
+        change = lesson.compliant_multiplier(C, Lam, weight, alpha / dt**2)
         given = f"C = {C} m, Λ = {Lam} N s², weight {weight} /kg, α = {alpha} m/N, dt = {dt} s"
         close("C + α λ after a visit [m]", C + weight * change + alpha * (Lam + change) / dt**2, 0.0, 1e-10, given=given)
 
 
-@exercise("8.12", points=0.5, hint="ask `not alpha >= 0.0`, which NaN answers, too; and a weight of 0 before you divide")
+@exercise("8.12", points=0.5, hint="ask `not alpha_scaled >= 0.0`, which NaN answers, too; and a weight of 0 before you divide")
 def test_a_negative_compliance_and_a_constraint_without_mass_are_refused(lesson, draw):
     C, alpha = draw(0.1, 1.0), draw(0.001, 0.1)
-    change = lesson.compliant_multiplier(C, 0.0, 1.0, alpha, 0.1)
+    change = lesson.compliant_multiplier(C, 0.0, 1.0, alpha / 0.1**2)
     close("C + α λ after an ordinary visit [m]", C + change + alpha * change / 0.1**2, 0.0, 1e-10, given=f"C = {C} m, α = {alpha} m/N")
     for alpha in (-draw(0.001, 0.1), np.nan):
-        raises("a compliance that is none", BadInput, lesson.compliant_multiplier, 0.1, 0.0, 1.0, alpha, 0.1)
+        raises("a compliance that is none", BadInput, lesson.compliant_multiplier, 0.1, 0.0, 1.0, alpha)
     for alpha in (0.0, draw(0.001, 0.1)):
-        raises("a constraint with no free mass", BadInput, lesson.compliant_multiplier, 0.1, 0.0, 0.0, alpha, 0.1)
-        for dt in (0.0, -draw(0.05, 0.5), np.nan):
-            raises("a step dt that is 0, below 0 or NaN", BadInput, lesson.compliant_multiplier, 0.1, 0.0, 1.0, alpha, dt)
+        raises("a constraint with no free mass", BadInput, lesson.compliant_multiplier, 0.1, 0.0, 0.0, alpha)
 
 
 @exercise("8.13", points=1, hint="Λ of each link goes on from where it was; add w ΔΛ n to i and take it from j")

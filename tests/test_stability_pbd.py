@@ -56,7 +56,7 @@ WRONG = [                    # case, the function that it examines, what is put 
     (83, "rattle_step", worked.projection_step),
     (84, "xpbd_step", once),
     (85, "distance_constraint", lambda x_i, x_j, rest: (0.0, x_i)),
-    (85, "compliant_multiplier", lambda C, Lam, weight, alpha, dt: 0.0),
+    (85, "compliant_multiplier", lambda C, Lam, weight, alpha_scaled: 0.0),
     (85, "fold_constraint", lambda x, fold: (0.0, x)),
     (86, "hung_step", lambda t, x, v, q, omega, dt, rod: (x + dt * v, v + dt * rod.gravity, q, omega)),
     (86, "balloon_step", lambda acceleration, t, x, v, dt, ball: worked.xpbd_step(acceleration, t, x, v, dt, ball.net)),

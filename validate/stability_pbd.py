@@ -238,7 +238,7 @@ def case_85(lesson):
         lambda: make(stiffness=0.0), lambda: make(stiffness=1.5), lambda: make(sweeps=0), lambda: make(gravity=(0.0, np.inf)),
         lambda: lesson.distance_constraint(x[0], x[0], 1.0), lambda: lesson.projection(1.0, np.ones((2, 3)), np.zeros(2)), lambda: lesson.projection(1.0, np.zeros((2, 3)), np.ones(2)),
         lambda: lesson.distance_sweep(same, net([1.0, 1.0])), lambda: lesson.compliant_sweep(same, np.zeros(2), 0.1, net([1.0, 1.0])), lambda: lesson.fold_constraint(three, 0.0), lambda: lesson.fold_constraint(flat, 0.0),
-        lambda: lesson.compliant_multiplier(0.1, 0.0, 1.0, -1e-3, 0.1), lambda: lesson.compliant_multiplier(0.1, 0.0, 0.0, 0.0, 0.1), lambda: lesson.compliant_multiplier(0.1, 0.0, 1.0, np.nan, 0.1),
+        lambda: lesson.compliant_multiplier(0.1, 0.0, 1.0, -1e-3), lambda: lesson.compliant_multiplier(0.1, 0.0, 0.0, 0.0), lambda: lesson.compliant_multiplier(0.1, 0.0, 1.0, np.nan),
     )
     refused = sum(refuses(call) for call in asked)
     found = [finding(85, "What no physics can be done with is refused by name.", f"calls that end in BadInput [of {len(asked)}]", len(asked), refused, 0.0, f"{refused} of {len(asked)} impossible inputs are refused.")]
