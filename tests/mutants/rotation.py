@@ -119,7 +119,7 @@ wrong("5.7", "half the angle")(rodrigues(angle=lambda rate, dt: 0.5 * rate * dt)
 wrong("5.7", "forgets the part along the axis")(rodrigues(along=0.0))
 wrong("5.7", "divides by zero at rest")(rodrigues(rest=False))
 wrong("5.7", "turns only for a second")(rodrigues(angle=lambda rate, dt: rate))
-edit("5.7", "changes its input", "turned = 1.0 * R", "turned = R")
+edit("5.7", "changes its input", "turned = float_copy(R)", "turned = R")
 edit("5.7", "a milliradian a second is rest", "rate != 0.0", "rate > 1e-3")
 edit("5.7", "the sine without its sign", "np.sin(rate * dt)", "np.sqrt(1.0 - np.cos(rate * dt) ** 2)")
 edit("5.7", "no more than half a turn", "np.cos(rate * dt), np.sin(rate * dt)",
