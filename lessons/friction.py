@@ -13,8 +13,22 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solutions.checks import (BadInput, Diverged, check_array, check_end, check_field, check_friction, check_normal, check_restitution, check_shape, checked_run,
-                     finite_array, finite_number, number, positive_number)
+from solutions.checks import (
+    BadInput,
+    Diverged,
+    check_array,
+    check_end,
+    check_field,
+    check_friction,
+    check_normal,
+    check_restitution,
+    check_shape,
+    checked_run,
+    finite_array,
+    finite_number,
+    number,
+    positive_number,
+)
 
 HALVINGS = 60                # of an interval of time: 2⁻⁶⁰ of a step is below the spacing of floats
 EVENTS = 8                   # stops and starts in one step [-]; a force that reverses more often needs a shorter step

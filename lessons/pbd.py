@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solutions.checks import BadInput, Diverged, check_positive, check_shape, finite_array, float_copy, one_each, whole_number
+from solutions.checks import BadInput, Diverged, check_shape, finite_array, float_copy, one_each, whole_number
 from solutions.integrators import solve
 from solutions.rotation import angular_acceleration, cross, product, quaternion_update, rotate, unrotate
 from solutions.springs import inverse_masses, measured_links

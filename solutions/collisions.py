@@ -12,8 +12,20 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .checks import (UNIT, BadInput, WrongShape, check_array, check_field, check_normal, check_positive, check_shape, checked_run, finite_array, finite_number,
-                     positive_number)
+from .checks import (
+    UNIT,
+    BadInput,
+    WrongShape,
+    check_array,
+    check_field,
+    check_normal,
+    check_positive,
+    check_shape,
+    checked_run,
+    finite_array,
+    finite_number,
+    positive_number,
+)
 from .vectors import cross, dot
 
 NEVER = np.inf               # the time of what does not happen in this step [s]

@@ -13,8 +13,26 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .checks import (BadInput, Diverged, check_array, check_end, check_field, check_finite, check_friction, check_normal, check_not_negative,
-                     check_positive, check_restitution, check_shape, checked_run, finite_array, finite_number, float_copy, number, positive_number)
+from .checks import (
+    BadInput,
+    Diverged,
+    check_array,
+    check_end,
+    check_field,
+    check_finite,
+    check_friction,
+    check_normal,
+    check_not_negative,
+    check_positive,
+    check_restitution,
+    check_shape,
+    checked_run,
+    finite_array,
+    finite_number,
+    float_copy,
+    number,
+    positive_number,
+)
 from .friction import tangential
 from .integrators import symplectic_euler_step
 from .rotation import cross, point_velocity, solve3

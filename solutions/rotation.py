@@ -15,7 +15,20 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .checks import BadInput, Diverged, check_end, check_finite, check_positive, check_shape, checked_run, finite_array, finite_number, float_copy, positive_number, whole_number
+from .checks import (
+    BadInput,
+    Diverged,
+    check_end,
+    check_finite,
+    check_positive,
+    check_shape,
+    checked_run,
+    finite_array,
+    finite_number,
+    float_copy,
+    positive_number,
+    whole_number,
+)
 from .friction import cone_radius
 
 NEWTON_TOLERANCE = 1e-12     # last correction over the size of the unknown [-]: Newton squares it, so what is left is round-off

@@ -11,7 +11,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .checks import BadInput, Diverged, WrongShape, check_indices, check_positive, check_shape, finite_array, float_copy, one_each
+from .checks import (
+    BadInput,
+    Diverged,
+    WrongShape,
+    check_indices,
+    check_positive,
+    check_shape,
+    finite_array,
+    float_copy,
+    one_each,
+)
 from .integrators import average_velocity_step
 
 GRAVITY = 9.81                # g [m/s²], near the ground; deck A rounds it to 9.8

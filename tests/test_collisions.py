@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from solutions.checks import BadInput
+
 from .brute import area, differences, distance, facets, outline
 from .grading.expect import NotYet, between, close, numbers, raises
-from solutions.checks import BadInput
 
 exercise = pytest.mark.exercise
 # Lengths are below 30 m, times below 10 s, and each answer takes a few dozen operations, each rounded by 1.1e-16 of that:

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from .grading.expect import between, close, raises
 from solutions.checks import BadInput
+
+from .grading.expect import between, close, raises
 
 exercise = pytest.mark.exercise
 G = 9.81                     # [m/s²]

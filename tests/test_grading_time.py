@@ -12,7 +12,7 @@ import pytest
 from validate import loading
 
 from .attacks import HONEST, SOLVED
-from .grading import box, children, local, marking, points, remote, sandbox, submissions
+from .grading import box, children, local, marking, remote, sandbox, submissions
 
 pytestmark = pytest.mark.xdist_group("time")
 LIMIT = 1.0                  # of the calls of a test here [s]

@@ -1,13 +1,12 @@
 """The instructor sees who to look into: what a program tried, how it ended, and whose answers are alike."""
 
-import os
 
 import pytest
 
 from validate import binding
 
 from . import attacks
-from .grading import box, example, marking, pages, points, sandbox, similar, submissions, watch
+from .grading import example, marking, pages, sandbox, similar, submissions, watch
 from .test_attacks import folder, settings, trial  # noqa: F401      the trial tests, with little patience
 
 
@@ -61,7 +60,7 @@ SEEN = {
 
 
 @pytest.mark.parametrize("code, body", [(code, body) for code, bodies in SEEN.items() for body in bodies])
-def test_what_a_program_tries_is_seen(code, body, trial, settings):  # noqa: F811
+def test_what_a_program_tries_is_seen(code, body, trial, settings):
     seen = watched(attacks.HONEST + IN_A_CALL.format(body), settings)
     assert code in seen and code in watch.SENTENCES, seen
 
@@ -76,7 +75,7 @@ def test_what_a_program_tries_is_seen(code, body, trial, settings):  # noqa: F81
         "builtins.isinstance = None",
     ],
 )
-def test_what_is_seen_is_not_hidden_by_noise(cover, trial, settings):  # noqa: F811
+def test_what_is_seen_is_not_hidden_by_noise(cover, trial, settings):
     body = (
         "import builtins, os, sys\nkept = builtins.isinstance\ntry:\n    "
         + cover
@@ -85,7 +84,7 @@ def test_what_is_seen_is_not_hidden_by_noise(cover, trial, settings):  # noqa: F
     assert "process" in watched(attacks.HONEST + body, settings)
 
 
-def test_a_note_of_ours_is_no_part_of_what_is_printed(trial, settings):  # noqa: F811
+def test_a_note_of_ours_is_no_part_of_what_is_printed(trial, settings):
     text = (
         attacks.HONEST
         + "import os\nprint('before', flush=True)\ntry:\n    os.fork()\nexcept OSError:\n    pass\n"
@@ -253,7 +252,7 @@ def test_the_documentations_own_class_has_somebody_to_look_into(tmp_path):
     assert not looks["cem"]
 
 
-def test_nearly_every_hostile_file_is_seen(trial, settings):  # noqa: F811
+def test_nearly_every_hostile_file_is_seen(trial, settings):
     """A sample here, one of each family; a wrong answer of a strange type is only that."""
     names = (
         "a loop in a call",

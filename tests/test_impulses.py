@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, nnls
 
-from .grading.expect import between, close, raises
 from solutions.checks import BadInput, Diverged
+
+from .grading.expect import between, close, raises
 
 exercise = pytest.mark.exercise
 # Everything drawn is below 30 in its unit, and what is compared takes a few dozen operations, each rounded by 1.1e-16 of that:

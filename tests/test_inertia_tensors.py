@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from scipy.spatial import Delaunay
 
+from solutions.checks import BadInput
+
 from .brute import solid
 from .grading.expect import close, raises
-from solutions.checks import BadInput
 
 exercise = pytest.mark.exercise
 # Masses below 5 kg, lengths below 3 m, speeds below 20 m/s, a dozen terms: numbers below 1e3, each rounded by 1.1e-16 of itself

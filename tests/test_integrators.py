@@ -5,8 +5,9 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from .grading.expect import between, close, raises
 from solutions.checks import BadInput, Diverged
+
+from .grading.expect import between, close, raises
 
 exercise = pytest.mark.exercise
 

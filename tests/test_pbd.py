@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
+from solutions.checks import BadInput, Diverged
+
 from .brute import solid
 from .grading.expect import between, close, raises
-from solutions.checks import BadInput, Diverged
 
 exercise = pytest.mark.exercise
 G = 9.81                     # [m/s²]

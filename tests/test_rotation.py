@@ -5,8 +5,9 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from .grading.expect import between, close, raises
 from solutions.checks import BadInput, Diverged
+
+from .grading.expect import between, close, raises
 
 exercise = pytest.mark.exercise
 EXACT = 1e-12                # a formula of a few dozen roundings, 1e-16 each, of numbers below 100

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from .grading.expect import between, close, raises
 from solutions.checks import BadInput, Diverged
+
+from .grading.expect import between, close, raises
 
 exercise = pytest.mark.exercise
 

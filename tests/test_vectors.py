@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from .grading.expect import close, raises
 from solutions.checks import BadInput
+
+from .grading.expect import close, raises
 
 
 def test_products_are_those_of_numpy(lesson, draw):

@@ -1,6 +1,6 @@
 """Time and memory without end."""
 
-from . import attack, attacks
+from . import attack
 
 attack("a loop at import", "tests × time-out", "while True:\n    pass\n", lost=True)
 attack("sleep at import", "tests × time-out", "import time\ntime.sleep(3600)\n", lost=True)

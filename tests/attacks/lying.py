@@ -2,7 +2,6 @@
 
 from . import attack, attacks
 
-
 LIAR = """
 class Liar(np.ndarray):
     __eq__ = __le__ = __lt__ = __ge__ = lambda self, other: np.ones(3, bool)

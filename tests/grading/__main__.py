@@ -8,7 +8,7 @@ import sys
 from datetime import datetime
 from importlib.metadata import version
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import Annotated
 
 import typer
 from rich.console import Console
@@ -32,13 +32,13 @@ def grade(
     class_: Annotated[Path, typer.Argument(
         metavar="SUBMISSIONS", help="Folder with one folder or zip per student; a bare file NAME_LESSON.py will do.")],
     out: Annotated[Path, typer.Option(help="Folder for grades, pages and CSV.")] = Path("grades"),
-    lesson: Annotated[Optional[list[str]], typer.Option(help="Only this lesson (may be repeated); all of them without.")] = None,
-    seed: Annotated[Optional[str], typer.Option(help="Secret from which hidden inputs are drawn; made and kept in OUT/seed.txt without.")] = None,
-    due: Annotated[Optional[str], typer.Option(metavar="YYYY-MM-DDTHH:MM", help="When it was due.")] = None,
+    lesson: Annotated[list[str] | None, typer.Option(help="Only this lesson (may be repeated); all of them without.")] = None,
+    seed: Annotated[str | None, typer.Option(help="Secret from which hidden inputs are drawn; made and kept in OUT/seed.txt without.")] = None,
+    due: Annotated[str | None, typer.Option(metavar="YYYY-MM-DDTHH:MM", help="When it was due.")] = None,
     late: Annotated[float, typer.Option(min=0.0, max=100.0, help="Percent of the maximum taken off for each day begun after that.")] = 0.0,
-    roster: Annotated[Optional[Path], typer.Option(help="CSV: student_id, last_name, first_name, email, timestamp.")] = None,
+    roster: Annotated[Path | None, typer.Option(help="CSV: student_id, last_name, first_name, email, timestamp.")] = None,
     jobs: Annotated[int, typer.Option(min=1, help="Submissions at a time.")] = max(1, min(8, os.cpu_count() or 1)),
-    executor: Annotated[Optional[str], typer.Option(metavar="tcp://HOST:PORT", help="Hand the submissions to this Dask scheduler.")] = None,
+    executor: Annotated[str | None, typer.Option(metavar="tcp://HOST:PORT", help="Hand the submissions to this Dask scheduler.")] = None,
 ):
     lessons = chosen(lesson or [])
     terms = pages.Terms(deadline(due), late)

@@ -9,21 +9,21 @@ import zipfile
 from datetime import datetime
 from math import ceil
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import Annotated
 
 import typer
 
 from solutions.checks import BadInput
 from validate.__main__ import writable
-from validate.store import write_whole
 from validate.binding import ROOT
+from validate.store import write_whole
 
 from . import children, marking, pages, points, sandbox, submissions
 from .__main__ import chosen
 from .release import tracked
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
-Lessons = Annotated[Optional[list[str]], typer.Option(help="Only this lesson (may be repeated); all of them without.")]
+Lessons = Annotated[list[str] | None, typer.Option(help="Only this lesson (may be repeated); all of them without.")]
 Dirty = Annotated[bool, typer.Option("--dirty", help="Take tracked files as they lie there, committed or not.")]
 
 
@@ -99,7 +99,7 @@ def run(
     submission: Annotated[Path, typer.Argument(help="Folder of what was handed in.")],
     results: Annotated[Path, typer.Argument(help="results.json to write.")],
     course: Annotated[Path, typer.Option(help="Lessons, seed and late penalty.")],
-    metadata: Annotated[Optional[Path], typer.Option(help="Gradescope's submission_metadata.json.")] = None,
+    metadata: Annotated[Path | None, typer.Option(help="Gradescope's submission_metadata.json.")] = None,
 ):
     try:
         sandbox.keep_out({submission: "submission", results.absolute().parent: "folder of results", course: "course"})

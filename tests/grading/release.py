@@ -24,9 +24,9 @@ import tempfile
 import textwrap
 import warnings
 import zipfile
-from functools import lru_cache
+from functools import cache
 from pathlib import Path
-from typing import Annotated, NamedTuple, Optional
+from typing import Annotated, NamedTuple
 
 import typer
 
@@ -60,8 +60,8 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 @app.command(help="Write the students' zip; it is refused when an answer would leak.")
 def release(
     out: Annotated[Path, typer.Option(help="The zip to write.")] = Path("workbook.zip"),
-    with_solutions: Annotated[Optional[str], typer.Option(metavar="[=LESSON,LESSON]", help="Worked answers of these lessons, or of all.")] = None,
-    lesson: Annotated[Optional[list[str]], typer.Option(help="Only this lesson (may be repeated), and the earlier ones that it builds on.")] = None,
+    with_solutions: Annotated[str | None, typer.Option(metavar="[=LESSON,LESSON]", help="Worked answers of these lessons, or of all.")] = None,
+    lesson: Annotated[list[str] | None, typer.Option(help="Only this lesson (may be repeated), and the earlier ones that it builds on.")] = None,
     dirty: Annotated[bool, typer.Option("--dirty", help="Take tracked files as they lie there, committed or not.")] = False,
 ):
     if out.exists() and not zipfile.is_zipfile(out):
@@ -145,10 +145,10 @@ def openings(notebooks):
     return made_by(tuple("".join(cell["source"]) for cell in cells)).encode()
 
 
-@lru_cache(maxsize=None)
+@cache
 def made_by(cells):
     """The JSON of everything that these cells hand to `opening`."""
-    from validate import notebook                                    # brings matplotlib along
+    from validate import notebook  # brings matplotlib along
     made, opening = {}, notebook.opening
     notebook.opening = lambda number, make: made.update({number: notebook.frozen(make())})        # gives None: then nothing is shown
     try:
@@ -190,7 +190,7 @@ def imported(path):
     return named_in(read(path), tuple(path.split("/")[:-1]))
 
 
-@lru_cache(maxsize=None)
+@cache
 def named_in(text, package):
     """Paths of the modules that a text in that package may import."""
     package, names = list(package), set()
@@ -277,7 +277,7 @@ class Searched(NamedTuple):
     bodies: set[tuple[str, str]]     # (function, its body)
 
 
-@lru_cache(maxsize=None)                          # lessons and solutions quote the same texts
+@cache                          # lessons and solutions quote the same texts
 def searched(text):
     statements, bodies = set(), set()
     for tree in filter(None, map(parsed, [text, *(match[2] for match in FENCE.finditer(text))])):
@@ -308,7 +308,7 @@ def parsed(text):
         return None
 
 
-@lru_cache(maxsize=None)
+@cache
 def texts(path, text):
     """The text itself, and every text that it quotes and that is long enough: strings of JSON and Python, lists of strings as one."""
     found = [text]

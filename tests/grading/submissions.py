@@ -124,7 +124,7 @@ def identity(text):
 def submission_of(student, paths, lessons, child):
     """A student's Submission from all that is there.  Raises Ambiguous when that is more than one."""
     bare = [path for path in paths if split(path)[1] == ".py"]
-    whole = [path for path in paths if split(path)[1] == ".zip" or not split(path)[1] and (path.is_symlink() or path.is_dir())]
+    whole = [path for path in paths if split(path)[1] == ".zip" or (not split(path)[1] and (path.is_symlink() or path.is_dir()))]
     unread = [path for path in paths if path not in (*bare, *whole)]
     only = lessons[0] if len(lessons) == 1 else None
     lesson_of = {path: of_lesson(split(path)[0])[1] or only for path in bare}

@@ -59,7 +59,7 @@ def usual(array):
     kind = array.dtype.kind
     if array.dtype.str[1:] in DTYPES:
         return array
-    if kind == "O" and all(isinstance(x, numbers.Real) for x in array.flat) or kind == "f":
+    if (kind == "O" and all(isinstance(x, numbers.Real) for x in array.flat)) or kind == "f":
         return array.astype("f8")
     if kind in "iu":
         return array.astype("f8" if array.size and array.max() > MOST_INT else "i8")

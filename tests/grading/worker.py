@@ -24,9 +24,9 @@ with contextlib.suppress(ImportError):                                 # there i
             resource.setrlimit(getattr(resource, f"RLIMIT_{limit}"), (value, value))
 
 sys.path.insert(0, config["wire"])
-import numpy  # noqa: E402, F401         before the student's file, or it would count against the time of the first test
-import shipping  # noqa: E402
-import wire  # noqa: E402
+import numpy  # noqa: F401         before the student's file, or it would count against the time of the first test
+import shipping
+import wire
 
 incoming, outgoing = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
 os.dup2(os.open(os.devnull, os.O_RDONLY), 0)

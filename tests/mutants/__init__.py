@@ -8,7 +8,8 @@ variant   made by a factory with one argument that differs from its default; the
 
 import functools
 import inspect
-from typing import Callable, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
 from validate.generate import exercises
 

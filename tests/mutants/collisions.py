@@ -4,6 +4,7 @@ import numpy as np
 
 from solutions import collisions as worked
 from solutions.checks import BadInput
+
 from . import collection, variants
 
 wrong, right, edit, MUTANTS = collection(worked)

@@ -5,6 +5,7 @@ import functools
 import numpy as np
 
 from solutions import friction as worked
+
 from . import collection, variants
 
 wrong, right, edit, MUTANTS = collection(worked)
@@ -160,7 +161,7 @@ def block_step(rest=True, at_rest="mu_s", moving="mu_k", late=0.0, old=False, ag
         limit = (dt if once else 1.0) * cone_radius(getattr(p, moving), a_n)
         direction = unit(free if against == "new" else v if size(v) > 0.0 else a_t)
         v_new = free - direction * (min(limit, size(free)) if speed else limit)
-        v_new = 0.0 * v if speed and (size(free) <= limit or not turns and v_new @ v < 0.0) else v_new
+        v_new = 0.0 * v if speed and (size(free) <= limit or (not turns and v_new @ v < 0.0)) else v_new
         return x + dt * (v if old else v_new), v_new
     return sliding_step
 
@@ -278,7 +279,7 @@ def event(exactly=True, whole=False, waits=True, rest=False, moves=True):
             return (worked.breakaway_time(acceleration, t, x, v, dt, p) if waits else dt), x, v
         tau = worked.stopping_time(acceleration, t, x, v, dt, d, p)
         x_new, v_new = worked.slide(acceleration, t, x, v, dt if whole else tau, d, p)
-        if exactly and tau < dt or rest:
+        if (exactly and tau < dt) or rest:
             v_new = np.zeros_like(v)
         return tau, (x_new if moves else x), v_new
     return until_event

@@ -5,6 +5,7 @@ import numpy as np
 from solutions import impulses as worked
 from solutions.checks import Diverged, check_positive
 from solutions.rotation import cross, point_velocity, skew
+
 from . import collection, variants
 
 wrong, right, edit, MUTANTS = collection(worked)
@@ -308,7 +309,7 @@ def moment(inside=True, back=True, limit=True, pull=2.0, stable=True):
     def impact_time(phi, v_n, a_n, dt):
         phi = max(0.0, phi) if inside else phi
         squared = v_n * v_n - pull * a_n * phi
-        if squared < 0.0 or v_n >= 0.0 and (a_n >= 0.0 or not back):
+        if squared < 0.0 or (v_n >= 0.0 and (a_n >= 0.0 or not back)):
             return dt
         s = np.sqrt(squared)
         with np.errstate(all="ignore"):
@@ -323,7 +324,7 @@ def moment(inside=True, back=True, limit=True, pull=2.0, stable=True):
 @right("7.13", "2φ/(s − v) for both, but for what comes back from the plane itself")
 def impact_time(phi, v_n, a_n, dt):
     phi = max(phi, 0.0)
-    if v_n >= 0.0 and a_n >= 0.0 or v_n**2 < 2.0 * a_n * phi:
+    if (v_n >= 0.0 and a_n >= 0.0) or v_n**2 < 2.0 * a_n * phi:
         return dt
     s = (v_n**2 - 2.0 * a_n * phi) ** 0.5
     return min(dt, 2.0 * phi / (s - v_n) if v_n < 0.0 else (v_n + s) / -a_n)
@@ -348,7 +349,7 @@ def zeno(flight=2.0, sum=lambda e: 1.0 - e, down=True, endless=True, falls=True)
     def bouncing_time(v_n, a_n, e):
         if down and v_n <= 0.0:
             return 0.0
-        if endless and e == 1.0 or falls and a_n >= 0.0:
+        if (endless and e == 1.0) or (falls and a_n >= 0.0):
             return np.inf
         return flight * v_n / (-a_n * sum(e)) if sum(e) else 0.0
     return bouncing_time

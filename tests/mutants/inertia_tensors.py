@@ -4,6 +4,7 @@ import numpy as np
 
 from solutions import inertia_tensors as worked
 from solutions.checks import BadInput, check_finite, check_positive
+
 from . import collection, variants
 
 wrong, right, edit, MUTANTS = collection(worked)
@@ -345,7 +346,7 @@ def closing(ranged=True, directed=True, counted=True, twice=True, spare=True, na
                      if (there.count(i) != there.count(j) if counted else j not in there)]
         else:
             alone = [edge for edge in either if either.count(edge) % 2]
-        if alone or not twice and len(set(every)) < len(every) or not spare and len(set(faces.ravel())) < count:
+        if alone or (not twice and len(set(every)) < len(every)) or (not spare and len(set(faces.ravel())) < count):
             raise BadInput("a corner on an open edge: number", named(alone or every), "close the mesh")
     return check_closed
 

@@ -4,6 +4,7 @@ import numpy as np
 
 from solutions import integrators as worked
 from solutions.checks import Diverged, check_positive
+
 from . import collection, variants
 
 wrong, right, edit, MUTANTS = collection(worked)

@@ -4,6 +4,7 @@ import numpy as np
 
 from solutions import pbd as worked
 from solutions.checks import BadInput, Diverged
+
 from . import collection, variants
 
 wrong, right, edit, MUTANTS = collection(worked)
@@ -362,7 +363,7 @@ edit("8.11", "the floor for any surface", "surface(x[k], obstacle)", "floor_gap(
 @variants
 def giving(memory=1.0, sign=-1.0, below=1.0, checked=True, weighed=True, nan=True):
     def compliant_multiplier(C, Lam, weight, alpha_scaled):
-        if checked and (alpha_scaled < 0.0 or nan and alpha_scaled != alpha_scaled):
+        if checked and (alpha_scaled < 0.0 or (nan and alpha_scaled != alpha_scaled)):
             raise BadInput("scaled compliance α/dt² [1/kg]", alpha_scaled, "give zero or more")
         if weight == 0.0:
             if weighed:

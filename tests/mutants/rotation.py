@@ -4,6 +4,7 @@ import numpy as np
 
 from solutions import rotation as worked
 from solutions.checks import Diverged
+
 from . import collection, variants
 
 wrong, right, edit, MUTANTS = collection(worked)

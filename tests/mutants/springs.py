@@ -2,8 +2,10 @@
 
 import numpy as np
 
-from solutions import integrators, springs as worked
+from solutions import integrators
+from solutions import springs as worked
 from solutions.checks import BadInput, Diverged, check_positive
+
 from . import collection, variants
 
 wrong, right, edit, MUTANTS = collection(worked)
