@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from validate.binding import ROOT
+from validate.modules import ROOT
 
 from .attacks import ATTACKS, HONEST, SOLVED
 from .grading import box, children, expect, marking, plugin, points, remote, sandbox, submissions

@@ -14,7 +14,7 @@ import yaml
 
 from solutions.checks import BadInput
 from tests.grading import autograder, marking, sandbox
-from validate.binding import ROOT
+from validate.modules import ROOT
 
 SEED = "known to nobody"
 

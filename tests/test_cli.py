@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from validate import __main__ as cli
-from validate import binding, engines, measure, processes, record, report, store
+from validate import modules, engines, measure, processes, record, report, store
 from validate.generate import exercises, stub
 from validate.report import plots, summary
 
@@ -59,7 +59,7 @@ def test_bad_input_is_told_in_one_sentence_and_nothing_is_written(capsys, tmp_pa
     (lambda path: [p.unlink() for p in path.parent.iterdir()], "without inertia_tensors.py"),
 ], ids=["missing", "syntax", "import", "error", "exit", "encoding", "empty folder"])
 def test_answers_that_are_not_there_or_do_not_load_are_named_in_one_sentence(capsys, tmp_path, here, change, says):
-    shutil.copytree(binding.ROOT / "lessons", tmp_path / "answers")
+    shutil.copytree(modules.ROOT / "lessons", tmp_path / "answers")
     lesson = tmp_path / "answers" / "inertia_tensors.py"
     change(lesson)
     code, _, error = run(capsys, "--scene", "tensors", "--of", str(lesson.parent), "--out", str(tmp_path / "report"))
@@ -70,9 +70,9 @@ def test_answers_that_are_not_there_or_do_not_load_are_named_in_one_sentence(cap
 
 
 def test_answers_that_end_in_errors_depart_and_end_nothing_else(capsys, tmp_path, here):
-    shutil.copytree(binding.ROOT / "lessons", tmp_path / "answers")
+    shutil.copytree(modules.ROOT / "lessons", tmp_path / "answers")
     lesson = tmp_path / "answers" / "inertia_tensors.py"
-    source = (binding.SOLUTIONS / lesson.name).read_text()
+    source = (modules.SOLUTIONS / lesson.name).read_text()
     wrong = "\ndef world_inverse_inertia(I_body, R):\n    return {}[1]\n\ndef combine(m, x, I):\n    return x['I']\n"
     lesson.write_text(stub(source, exercises(source)) + wrong)
     out = tmp_path / "report"
@@ -84,10 +84,10 @@ def test_answers_that_end_in_errors_depart_and_end_nothing_else(capsys, tmp_path
 
 def test_a_scene_that_does_not_load_is_named_and_hides_no_other(capsys, tmp_path, monkeypatch):
     (tmp_path / "broken.py").write_text('"""A scene."""\n\nfrom nowhere import nothing\n')
-    names, folders = binding.scene_names(), sys.modules["validate.scenes"].__path__
-    monkeypatch.setattr(binding, "scene_names", lambda: sorted([*names, "broken"]))
+    names, folders = modules.scene_names(), sys.modules["validate.scenes"].__path__
+    monkeypatch.setattr(modules, "scene_names", lambda: sorted([*names, "broken"]))
     monkeypatch.setattr(sys.modules["validate.scenes"], "__path__", [*folders, str(tmp_path)])
-    monkeypatch.setattr(binding, "SCENES", tmp_path)
+    monkeypatch.setattr(modules, "SCENES", tmp_path)
     code, said, error = run(capsys, "list")
     assert code == 2 and all(name in said for name in names)
     assert "broken.py', line 3" in error and len(error.splitlines()) == 1
@@ -111,7 +111,7 @@ def test_an_engine_that_is_asked_for_and_missing_is_named(capsys, tmp_path, monk
 
 def test_list_names_every_scene(capsys):
     code, out, _ = run(capsys, "list")
-    assert code == 0 and all(name in out for name in binding.scene_names())
+    assert code == 0 and all(name in out for name in modules.scene_names())
 
 
 # ---------------------------------------------------------------------------------------------- runs
@@ -355,12 +355,12 @@ def test_an_interrupted_recording_says_so(capsys, monkeypatch, interrupted):
     (["--of=no/such/folder"], "no/such/folder"),
 ])
 def test_the_tests_name_what_they_cannot_find(arguments, said):
-    asked = subprocess.run([sys.executable, "-m", "pytest", *arguments], cwd=binding.ROOT, capture_output=True, text=True)
+    asked = subprocess.run([sys.executable, "-m", "pytest", *arguments], cwd=modules.ROOT, capture_output=True, text=True)
     assert asked.returncode == 4 and said in asked.stderr and len(asked.stderr.strip().splitlines()) == 1
 
 
 def test_one_exercise_loads_one_test_file():
-    asked = subprocess.run([sys.executable, "-m", "pytest", "--of=lessons", "--exercise=8.1", "--collect-only", "-q", "-v"], cwd=binding.ROOT,
+    asked = subprocess.run([sys.executable, "-m", "pytest", "--of=lessons", "--exercise=8.1", "--collect-only", "-q", "-v"], cwd=modules.ROOT,
                            capture_output=True, text=True)
     assert "test_pbd.py" in asked.stdout and not set(re.findall(r"test_\w+\.py", asked.stdout)) - {"test_pbd.py"}
 

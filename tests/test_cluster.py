@@ -18,7 +18,7 @@ import pytest
 from solutions.checks import BadInput
 from tests.grading import cluster, marking
 from tests.grading.submissions import Submission
-from validate.binding import ROOT
+from validate.modules import ROOT
 
 pytestmark = pytest.mark.xdist_group("cluster")
 LESSON = "inertia_tensors"   # its tests are the quickest

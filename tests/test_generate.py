@@ -7,7 +7,7 @@ import pytest
 
 from solutions.checks import BadInput
 from validate import generate
-from validate.binding import ROOT, SOLUTIONS
+from validate.modules import ROOT, SOLUTIONS
 
 
 def test_lessons_are_what_the_solutions_give():

@@ -14,7 +14,7 @@ import time
 import numpy as np
 import pytest
 
-from validate import binding
+from validate import modules
 
 from .grading import example, points, remote, sandbox, wire
 
@@ -46,7 +46,7 @@ pytestmark = pytest.mark.xdist_group("a graded class")
 def graded(submissions, out, *more):
     """Run `grade` as an instructor does; the rows of its CSV by student."""
     run = subprocess.run([sys.executable, "-m", "tests.grading", str(submissions), "--out", str(out), "--lesson", "integrators",
-                          "--seed", "a secret", *more], cwd=binding.ROOT, capture_output=True, text=True)
+                          "--seed", "a secret", *more], cwd=modules.ROOT, capture_output=True, text=True)
     assert run.returncode == 0, run.stdout + run.stderr
     with open(os.path.join(out, "grades.csv"), newline="") as file:
         return {row["student_id"]: row for row in csv.DictReader(file)}
@@ -92,7 +92,7 @@ def test_an_interrupted_run_keeps_what_it_has_and_goes_on_from_there(top, tmp_pa
         shutil.copy(top / "class" / "cem.zip", tmp_path / "class" / f"{student}.zip")
     command = [sys.executable, "-m", "tests.grading", str(tmp_path / "class"), "--out", str(tmp_path / "out"), "--lesson", "integrators",
                "--seed", "a secret", "--jobs", "1"]
-    run = subprocess.Popen(command, cwd=binding.ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    run = subprocess.Popen(command, cwd=modules.ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     results = tmp_path / "out" / "results"
     deadline = time.monotonic() + 60.0
     while not (results.is_dir() and list(results.glob("*.json"))) and time.monotonic() < deadline:
@@ -142,7 +142,7 @@ def test_bad_input_is_one_sentence_and_exit_code_2(top, tmp_path, arguments, nam
     (tmp_path / "empty").mkdir()
     (tmp_path / "list.csv").write_text("name\nAda\n")
     filled = [a.format(empty=tmp_path / "empty", list=tmp_path / "list.csv", **{"class": top / "class"}) for a in arguments]
-    run = subprocess.run([sys.executable, "-m", "tests.grading", *(["--out", str(tmp_path / "out")] if "--out" not in filled else []), *filled], cwd=binding.ROOT,
+    run = subprocess.run([sys.executable, "-m", "tests.grading", *(["--out", str(tmp_path / "out")] if "--out" not in filled else []), *filled], cwd=modules.ROOT,
                          capture_output=True, text=True)
     assert run.returncode == 2 and names in run.stderr and len(run.stderr.strip().splitlines()) == 1
     assert not (tmp_path / "out" / "grades.csv").exists()
@@ -150,14 +150,14 @@ def test_bad_input_is_one_sentence_and_exit_code_2(top, tmp_path, arguments, nam
 
 def test_the_sandbox_gives_the_same_points_as_the_same_tests_in_one_process():
     """Every mutant could be tried; a wrong step and the solutions are enough to see that nothing is lost on the wire."""
-    for lesson in binding.lesson_names():
+    for lesson in modules.lesson_names():
         place = remote.box_of(lesson, example.worked(lesson).encode(), 60.0)
         try:
             place.open()
             inside = points.score(points.grade(lesson, remote.lesson_in(place, lesson), seed="another"))
         finally:
             place.close()
-        assert inside == points.score(points.grade(lesson, binding.bind(lesson), seed="another")), lesson
+        assert inside == points.score(points.grade(lesson, modules.bind(lesson), seed="another")), lesson
 
 
 def test_a_right_answer_is_right_in_longer_numbers():

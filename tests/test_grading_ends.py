@@ -11,7 +11,7 @@ import time
 import psutil
 import pytest
 
-from validate.binding import ROOT
+from validate.modules import ROOT
 
 from .grading import children, sandbox
 

@@ -11,7 +11,7 @@ import zipfile
 import pytest
 
 from solutions.checks import BadInput
-from validate import binding
+from validate import modules
 
 from .grading import sandbox, submissions
 
@@ -213,7 +213,7 @@ def test_a_class_list_that_contradicts_itself_is_refused(tmp_path):
 def test_the_command_says_all_of_it_on_the_terminal_on_the_page_and_in_the_csv(tmp_path):
     sandbox.for_tests(pytest.skip, pytest.fail)
     top = tmp_path / "class"
-    blank = (binding.ROOT / "lessons" / "integrators.py").read_bytes()
+    blank = (modules.ROOT / "lessons" / "integrators.py").read_bytes()
     folder(top / "ada", "integrators")
     zipped(top / "ada.zip")
     tarred(top / "bob.tar.gz")
@@ -235,7 +235,7 @@ def test_the_command_says_all_of_it_on_the_terminal_on_the_page_and_in_the_csv(t
             "--roster",
             str(top / "list.csv"),
         ],
-        cwd=binding.ROOT,
+        cwd=modules.ROOT,
         capture_output=True,
         text=True,
     )

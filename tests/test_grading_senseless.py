@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput, Diverged
-from validate import binding
+from validate import modules
 from validate.generate import exercises
 
 from .grading import points
@@ -88,10 +88,10 @@ BODIES = {
 }
 
 
-@pytest.mark.parametrize("name", binding.lesson_names())
+@pytest.mark.parametrize("name", modules.lesson_names())
 def test_senseless_answers_earn_nothing(name):
-    module, subjects = vars(binding.bind(name)), {}
-    for exercise, function in exercises((binding.SOLUTIONS / f"{name}.py").read_text()).items():
+    module, subjects = vars(modules.bind(name)), {}
+    for exercise, function in exercises((modules.SOLUTIONS / f"{name}.py").read_text()).items():
         for body, make in BODIES.items():
             changed = types.SimpleNamespace(**{**module, function: make(module[function])})
             subjects[f"{exercise}: {body}"] = changed, lambda number, test, exercise=exercise: number == exercise

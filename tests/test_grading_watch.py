@@ -3,7 +3,7 @@
 
 import pytest
 
-from validate import binding
+from validate import modules
 
 from . import attacks
 from .grading import example, marking, pages, sandbox, similar, submissions, watch
@@ -96,7 +96,7 @@ def test_a_note_of_ours_is_no_part_of_what_is_printed(trial, settings):
     assert result["printed"]["integrators"].split() == ["before", "after"]
 
 
-@pytest.mark.parametrize("name", binding.lesson_names())
+@pytest.mark.parametrize("name", modules.lesson_names())
 def test_honest_work_leaves_nothing_to_look_into(name):
     result = marking.mark(
         submissions.Submission("ada", {name: example.worked(name).encode()}, (), ""),
@@ -181,7 +181,7 @@ def kinetic(m, v):
 
 
 def handed_in(**texts):
-    blank = (binding.ROOT / "lessons" / "integrators.py").read_text()
+    blank = (modules.ROOT / "lessons" / "integrators.py").read_text()
     return [
         submissions.Submission(name, {"integrators": (blank + text).encode()}, (), "") for name, text in texts.items()
     ]
@@ -215,7 +215,7 @@ def test_those_who_have_not_begun_and_those_who_worked_alone_are_not_alike():
 
 
 def test_the_worked_answers_are_known():
-    first = binding.lesson_names()[0]
+    first = modules.lesson_names()[0]
     ((lesson, other, share),) = similar.alike(
         [submissions.Submission("ada", {first: example.worked(first).encode()}, (), "")], (first,)
     )["ada"]

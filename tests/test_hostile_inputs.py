@@ -23,7 +23,7 @@ from hypothesis import strategies as st
 
 from solutions import collisions, friction, impulses, integrators, rotation
 from solutions.checks import BadInput, Diverged
-from validate import binding
+from validate import modules
 
 from .grading import points
 
@@ -108,10 +108,10 @@ ANOTHER_PROBLEM = {                                        # places where anothe
 def ordinary(tmp_path_factory):
     """{(lesson, function): (the function, some ordinary calls)} of every public function."""
     folder = tmp_path_factory.mktemp("recording") / "answers"
-    shutil.copytree(binding.SOLUTIONS, folder)
+    shutil.copytree(modules.SOLUTIONS, folder)
     found = {}
-    for lesson in binding.lesson_names():
-        module, plain = binding.bind(lesson, folder), binding.bind(lesson)
+    for lesson in modules.lesson_names():
+        module, plain = modules.bind(lesson, folder), modules.bind(lesson)
         calls = {name: [] for name, f in vars(module).items()
                  if isinstance(f, types.FunctionType) and f.__module__ == module.__name__ and not name.startswith("_")}
         for name in calls:
@@ -304,7 +304,7 @@ TWO_AT_ONCE = st.sampled_from([(lesson, name, k) for lesson, names in STARTED.it
 def test_two_hostile_values_at_once_end_in_a_sentence_or_in_numbers(which, draw):
     """What one bad value hides from its own check, another one must not let through."""
     lesson, name, k = which
-    function, call = getattr(binding.bind(lesson), name), STARTED[lesson][name][k]
+    function, call = getattr(modules.bind(lesson), name), STARTED[lesson][name][k]
     places = [path for path in leaves(call) if not isinstance(path[-1], str)]           # arguments; a law's own records are the law's
     for path in draw.draw(st.lists(st.sampled_from(places), min_size=1, max_size=2, unique=True)):
         kind = draw.draw(st.sampled_from((*NUMBERS, *SHAPES)))

@@ -5,7 +5,7 @@ import pytest
 
 from solutions import collisions, friction, impulses, integrators, pbd, rotation, springs
 from solutions.checks import BadInput, Diverged
-from validate import binding
+from validate import modules
 
 UP, DOWN = np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.0, -9.81])
 ROPE, PAIRS, WEIGHT = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]), np.array([[0, 1], [1, 2]]), np.array([0.0, -9.81])
@@ -129,10 +129,10 @@ def test_gjk_refuses_sizes_whose_squares_are_no_numbers():
 
 @pytest.mark.parametrize("speed", ["plain", "compiled"])
 def test_no_time_at_all_is_refused_by_a_multiplier(speed):
-    if speed == "compiled" and not binding.can_compile():
+    if speed == "compiled" and not modules.can_compile():
         pytest.skip("numba has no wheel for this machine")
     with pytest.raises(BadInput, match="step dt"):
-        binding.bind("impulses", compiled=speed == "compiled").gap_multiplier(0.1, -1.0, 1.0, 0.0)
+        modules.bind("impulses", compiled=speed == "compiled").gap_multiplier(0.1, -1.0, 1.0, 0.0)
 
 
 # ---------------------------------------------------------------------------------------------- impacts at several points

@@ -13,7 +13,7 @@ import time
 
 import pytest
 
-from validate.binding import ROOT, SOLUTIONS, can_compile
+from validate.modules import ROOT, SOLUTIONS, can_compile
 from validate.generate import exercises, stub
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals, disks and limits are those of POSIX")
@@ -138,9 +138,9 @@ def test_a_file_that_cannot_be_written_is_named_in_one_sentence(tmp_path):
 COMPILED = """
 import pathlib, sys
 import numpy as np
-from validate import binding
-binding.CACHE = pathlib.Path(sys.argv[1])
-vectors = binding.world("solutions", compiled=True).lesson("vectors")
+from validate import modules
+numba_twins.CACHE = pathlib.Path(sys.argv[1])
+vectors = modules.module_set("solutions", compiled=True).lesson("vectors")
 print(vectors.dot(np.array([1.0, 2.0, 3.0]), np.array([4.0, 5.0, 6.0])))
 """
 

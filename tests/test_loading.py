@@ -11,8 +11,8 @@ from typing import NamedTuple
 import nbformat
 import pytest
 
-from validate import binding, loading, notebook
-from validate.binding import ROOT, SOLUTIONS, lesson_names
+from validate import modules, loading, notebook
+from validate.modules import ROOT, SOLUTIONS, lesson_names
 from validate.generate import stub
 
 from .grading import example, marking, sandbox
@@ -185,7 +185,7 @@ def test_the_engines_run_alone_where_a_lesson_that_the_scene_needs_does_not_load
 
 
 def test_without_worked_answers_what_is_given_stands_in_for_a_file_that_does_not_load(told, monkeypatch):
-    monkeypatch.setattr("validate.binding.withheld", lambda lesson: {"euler_step"})
+    monkeypatch.setattr("validate.modules.withheld", lambda lesson: {"euler_step"})
     worked = []
     said = told(lambda: worked.append(notebook.answers("integrators")), integrators=SYNTAX)
     assert "lessons/integrators.py cannot be loaded" in said and worked[0].Oscillator(2.0, 0.0).omega == 2.0
@@ -254,22 +254,22 @@ def test_a_lesson_loads_though_one_that_it_builds_on_does_not(tmp_path):
     (tmp_path / "integrators.py").write_text(SYNTAX)
     text = "from .integrators import Oscillator, advance, my_own\n\ntwice = lambda x: 2.0 * x\n"
     (tmp_path / "springs.py").write_text(text)
-    lesson = binding.bind("springs", tmp_path)
+    lesson = modules.bind("springs", tmp_path)
     assert lesson.twice(2.0) == 4.0 and lesson.Oscillator(3.0, 0.0).omega == 3.0
-    assert lesson.advance is binding.bind("integrators").advance
+    assert lesson.advance is modules.bind("integrators").advance
     with pytest.raises(NotImplementedError, match=r"integrators.py cannot be loaded: SyntaxError.*line 1"):
         lesson.my_own(1.0)
     for _ in range(2):
         with pytest.raises(loading.Unloadable, match="integrators.py cannot be loaded"):
-            binding.bind("integrators", tmp_path)
+            modules.bind("integrators", tmp_path)
 
 
 def test_lessons_that_import_each_other_do_not_wait_for_each_other(tmp_path):
     (tmp_path / "integrators.py").write_text("from .springs import b\na = 1\n")
     (tmp_path / "springs.py").write_text("from .integrators import a\nb = 1\n")
-    assert binding.bind("integrators", tmp_path).a == 1
+    assert modules.bind("integrators", tmp_path).a == 1
     with pytest.raises(loading.Unloadable, match="cannot be loaded: ImportError.*line 1"):
-        binding.bind("springs", tmp_path)
+        modules.bind("springs", tmp_path)
 
 
 needs_alarm = pytest.mark.skipif(not hasattr(loading.signal, "setitimer"), reason="no alarm clock: no loop is stopped")
@@ -280,10 +280,10 @@ STUBBORN_LOOP = "while True:\n    try:\n        x = 1\n    except Exception:\n  
 @needs_alarm
 @pytest.mark.parametrize("loop", [PLAIN_LOOP, STUBBORN_LOOP], ids=["plain", "stubborn"])
 def test_a_file_whose_loop_never_ends_is_given_up(tmp_path, monkeypatch, loop):
-    monkeypatch.setattr(binding, "LOAD_WITHIN", 0.2)
+    monkeypatch.setattr(modules, "LOAD_WITHIN", 0.2)
     (tmp_path / "integrators.py").write_text(f"x = 0\n{loop}")
     with pytest.raises(loading.Unloadable, match=r"still running after 0.2 s \(integrators.py, line [2-6]\)\."):
-        binding.bind("integrators", tmp_path)
+        modules.bind("integrators", tmp_path)
 
 
 @needs_alarm

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from validate import binding, notebook
+from validate import modules, notebook
 
 from .grading import example, marking, points, sandbox
 from .grading.expect import LONGEST, NotYet, between, close, numbers, raises, tidy
@@ -166,7 +166,7 @@ def test_of_much_that_is_printed_the_beginning_is_shown(monkeypatch, tmp_path, p
 def test_what_is_printed_with_secret_inputs_is_never_told():
     """Right with the public inputs, wrong and talkative with all others."""
     sandbox.for_tests(pytest.skip, pytest.fail)
-    worked, public = binding.bind("integrators"), set()
+    worked, public = modules.bind("integrators"), set()
 
     def noting(acceleration, t, x, v, dt, p):
         public.add(float(dt))

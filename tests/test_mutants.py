@@ -7,13 +7,13 @@ import types
 
 import pytest
 
-from validate import binding
+from validate import modules
 
 from .grading.expect import LONGEST, MOST_DIGITS
 from .grading.points import grade, grade_each, score
 from .mutants import collection, variants
 
-LESSONS = binding.lesson_names()
+LESSONS = modules.lesson_names()
 
 
 def mutants_of(name):
@@ -30,7 +30,7 @@ def all_mutants():
 @functools.cache
 def grades_of(name):
     """Outcomes of each mutant of a lesson, all from one run of its tests."""
-    module = vars(binding.bind(name))
+    module = vars(modules.bind(name))
 
     def subject(mutant):
         changed = types.SimpleNamespace(**{**module, mutant.name: mutant.function})
@@ -105,7 +105,7 @@ def test_what_has_two_faults_or_none_or_no_right_answer_behind_it_proves_nothing
 @pytest.mark.parametrize("name", LESSONS)
 def test_every_exercise_has_three_wrong_answers_and_a_right_one(name):
     from validate.generate import exercises
-    numbers = set(exercises((binding.SOLUTIONS / f"{name}.py").read_text()))
+    numbers = set(exercises((modules.SOLUTIONS / f"{name}.py").read_text()))
     kept = mutants_of(name)
     for number in numbers:
         assert sum(m.exercise == number and not m.right for m in kept) >= 3, number
@@ -114,9 +114,9 @@ def test_every_exercise_has_three_wrong_answers_and_a_right_one(name):
 
 @pytest.mark.parametrize("name", LESSONS)
 def test_solutions_score_everything_and_stubs_nothing(name):
-    full, empty = (score(grade(name, binding.bind(name, of))) for of in ("solutions", "lessons"))
+    full, empty = (score(grade(name, modules.bind(name, of))) for of in ("solutions", "lessons"))
     assert sum(possible for _, possible in full.values()) == 20
     assert all(earned == possible for earned, possible in full.values())
     assert all(earned == 0 for earned, _ in empty.values())
     from validate.generate import exercises
-    assert list(full) == list(empty) and set(full) == set(exercises((binding.SOLUTIONS / f"{name}.py").read_text()))
+    assert list(full) == list(empty) and set(full) == set(exercises((modules.SOLUTIONS / f"{name}.py").read_text()))

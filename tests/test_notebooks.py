@@ -5,7 +5,7 @@ import re
 import nbformat
 import pytest
 
-from validate.binding import ROOT, SOLUTIONS, lesson_names
+from validate.modules import ROOT, SOLUTIONS, lesson_names
 from validate.generate import exercises, stub
 
 from .kernels import kernel, ran

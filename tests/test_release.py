@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from validate import generate
-from validate.binding import ROOT, SOLUTIONS, lesson_names
+from validate.modules import ROOT, SOLUTIONS, lesson_names
 
 from .grading import release
 from .kernels import kernel, ran

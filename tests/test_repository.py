@@ -4,7 +4,7 @@ import re
 import tomllib
 from hashlib import sha256
 
-from validate.binding import ROOT, SOLUTIONS
+from validate.modules import ROOT, SOLUTIONS
 
 
 def test_the_lock_names_only_the_public_index():
@@ -27,11 +27,11 @@ def test_solutions_import_nothing_but_numpy_typing_and_their_siblings():
 
 
 def test_every_lesson_has_its_notebook_tests_mutants_and_scenes():
-    from validate import binding
-    for name in binding.lesson_names():
+    from validate import modules
+    for name in modules.lesson_names():
         assert list((ROOT / "notebooks").glob(f"*_{name}.ipynb")), name
         assert (ROOT / "tests" / f"test_{name}.py").is_file() and (ROOT / "tests" / "mutants" / f"{name}.py").is_file()
-        assert any(binding.bind_scene(s).LESSON == name for s in binding.scene_names())
+        assert any(modules.bind_scene(s).LESSON == name for s in modules.scene_names())
 
 
 def test_the_player_in_space_was_built_from_its_source_and_can_stand_inside_a_page():
@@ -42,8 +42,8 @@ def test_the_player_in_space_was_built_from_its_source_and_can_stand_inside_a_pa
 
 
 def test_no_text_names_a_lesson_that_there_is_not():
-    from validate import binding
-    there = {int(re.match(r'"""Lesson (\d+)', (SOLUTIONS / f"{name}.py").read_text())[1]) for name in binding.lesson_names()}
+    from validate import modules
+    there = {int(re.match(r'"""Lesson (\d+)', (SOLUTIONS / f"{name}.py").read_text())[1]) for name in modules.lesson_names()}
     assert there == set(range(1, len(there) + 1))
     folders = (SOLUTIONS, ROOT / "validate", ROOT / "notebooks", ROOT / "docs", ROOT / "tests")
     files = [ROOT / "README.md", ROOT / "CONTRIBUTING.md"]

@@ -7,13 +7,13 @@ import pytest
 
 from solutions import integrators
 from solutions.checks import BadInput
-from validate import binding, engines, measure
+from validate import modules, engines, measure
 from validate.generate import stub
 from validate.report import words
 
-SCENES = binding.scene_names()
-MOVING = [n for n in SCENES if measure.still(binding.bind_scene(n)) is None]
-REFINED = [n for n in SCENES if measure.still(binding.bind_scene(n)) != ""]
+SCENES = modules.scene_names()
+MOVING = [n for n in SCENES if measure.still(modules.bind_scene(n)) is None]
+REFINED = [n for n in SCENES if measure.still(modules.bind_scene(n)) != ""]
 LIVE = tuple(name for name in engines.NAMES if engines.installed(name))
 BRIEF = measure.Plan(speeds=("plain",), live=LIVE, most_steps=500)
 
@@ -25,29 +25,29 @@ def scenes(names):
 
 @scenes(SCENES)
 def test_a_truth_reproduces_what_was_published(name):
-    scene = binding.bind_scene(name)
+    scene = modules.bind_scene(name)
     p = next(iter(scene.CASES.values()))
     for t, expected, tolerance in getattr(scene, "PUBLISHED", ()):
         assert np.allclose(scene.truth(p, t), expected, rtol=0.0, atol=tolerance)
 
 
-@scenes([n for n in SCENES if hasattr(binding.bind_scene(n), "published")])
+@scenes([n for n in SCENES if hasattr(modules.bind_scene(n), "published")])
 def test_what_a_scene_claims_beside_its_motion_holds(name):
-    for claim, found, expected, tolerance in binding.bind_scene(name).published():
+    for claim, found, expected, tolerance in modules.bind_scene(name).published():
         assert np.all(np.abs(np.asarray(found) - expected) <= tolerance), f"{claim}: {found}, expected {expected} ± {tolerance}"
 
 
 @scenes(MOVING)
 def test_a_truth_begins_where_the_scene_begins(name):
-    scene = binding.bind_scene(name)
+    scene = modules.bind_scene(name)
     for p in scene.CASES.values():
         begin = scene.observe(scene.start(p), p)
         assert np.allclose(scene.truth(p, 0.0), begin, rtol=0.0, atol=1e-9 * (1.0 + np.abs(begin).max()))
 
 
-@scenes([n for n in SCENES if hasattr(binding.bind_scene(n), "poses")])
+@scenes([n for n in SCENES if hasattr(modules.bind_scene(n), "poses")])
 def test_a_body_is_shown_by_a_place_and_a_rotation_where_the_motion_has_it(name):
-    scene = binding.bind_scene(name)
+    scene = modules.bind_scene(name)
     p = next(iter(scene.CASES.values()))
     for t in (0.0, 0.37 * scene.T, scene.T):
         observed = np.array(scene.truth(p, t), dtype=float)
@@ -58,7 +58,7 @@ def test_a_body_is_shown_by_a_place_and_a_rotation_where_the_motion_has_it(name)
 
 @scenes(REFINED)
 def test_steps_span_two_decades(name):
-    steps = binding.bind_scene(name).STEPS
+    steps = modules.bind_scene(name).STEPS
     assert list(steps) == sorted(steps) and steps[-1] >= 100 * steps[0]
 
 
@@ -72,7 +72,7 @@ def test_nothing_departs_from_truth_without_having_been_predicted(name):
 
 
 def test_a_wrong_tensor_departs_and_a_table_without_motion_has_all_its_numbers(tmp_path):
-    text = stub((binding.SOLUTIONS / "inertia_tensors.py").read_text(), {f"4.{k}" for k in range(1, 18)})
+    text = stub((modules.SOLUTIONS / "inertia_tensors.py").read_text(), {f"4.{k}" for k in range(1, 18)})
     assert text.count("0.375 * length * radius") == 1
     (tmp_path / "inertia_tensors.py").write_text(text.replace("0.375 * length * radius", "0.5 * length * radius"))
     result = measure.errors("tensors", measure.Plan(of=str(tmp_path), speeds=("plain",), live=()))
@@ -84,7 +84,7 @@ def test_a_wrong_tensor_departs_and_a_table_without_motion_has_all_its_numbers(t
 
 
 def test_an_engine_that_leaves_its_own_rule_departs(monkeypatch):
-    scene = binding.bind_scene("tensors")
+    scene = modules.bind_scene("tensors")
     why, rule = scene.WHY["pybullet, automatic"]
     monkeypatch.setitem(scene.WHY, "pybullet, automatic", (why, lambda p, t: rule(p, t) * 1.001))
     result = measure.errors("tensors", measure.Plan(speeds=("plain",), live=()))
@@ -92,7 +92,7 @@ def test_an_engine_that_leaves_its_own_rule_departs(monkeypatch):
 
 
 def test_a_wrong_method_departs(tmp_path):
-    text = stub((binding.SOLUTIONS / "integrators.py").read_text(), {f"1.{k}" for k in range(1, 11)})
+    text = stub((modules.SOLUTIONS / "integrators.py").read_text(), {f"1.{k}" for k in range(1, 11)})
     (tmp_path / "integrators.py").write_text(text.replace("return x + dt * v_mid, v + dt *", "return x + dt * v, v + dt *"))
     result = measure.errors("oscillator", measure.Plan(of=str(tmp_path), speeds=("plain",), live=(), most_steps=2000))
     verdicts = {c["label"]: c["right"] for c in result["cases"]["under-damped"]["ours"]}
@@ -106,9 +106,9 @@ def test_stubs_are_not_attempted_and_depart_from_nothing():
     assert words.verdict(result["cases"]["under-damped"]["ours"])[1] == "open"
 
 
-@scenes([n for n in SCENES if any(e.label.startswith("pybullet") for e in binding.bind_scene(n).ENGINES)])
+@scenes([n for n in SCENES if any(e.label.startswith("pybullet") for e in modules.bind_scene(n).ENGINES)])
 def test_without_pybullet_its_record_stands_in_and_says_so(name):
-    scene = binding.bind_scene(name)
+    scene = modules.bind_scene(name)
     case, p = next(iter(scene.CASES.items()))
     truth = np.array(scene.truth(p, scene.T), dtype=float)
     curves = [measure.engine_curve(name, scene, case, engine, p, truth, measure.Plan(speeds=("plain",), live=()))
@@ -144,7 +144,7 @@ def test_a_state_must_be_finite(value):
 
 def test_a_method_with_a_law_of_its_own_must_follow_that_law(tmp_path):
     """With the cone in its place the pyramid would agree with the truth: that is a departure, too."""
-    text = (binding.SOLUTIONS / "friction.py").read_text()
+    text = (modules.SOLUTIONS / "friction.py").read_text()
     pyramid = "pyramid_impulse(v_free, 1.0, normal_force(pull, p.n), p.mu_k, t_1, t_2)"
     assert pyramid in text
     for replacement, expected in ((pyramid, True), ("friction_impulse(v_free, 1.0, normal_force(pull, p.n), p.mu_k)", False)):

@@ -14,7 +14,7 @@ from rich.table import Table
 from solutions import pbd, springs
 from solutions.integrators import observed_order
 
-from . import binding
+from . import modules
 
 REPEATS = 9
 
@@ -72,7 +72,7 @@ def step_times(contenders):
 
 def compiled_run(n_springs, steps):
     """A function that takes so many compiled symplectic Euler steps of a net, already compiled."""
-    world = binding.world(compiled=True)
+    world = modules.module_set(compiled=True)
     step, mesh_acceleration = world.lesson("integrators").symplectic_euler_step, world.lesson("springs").mesh_acceleration
     advance, (x, v, mesh) = world.lesson("integrators").advance, net(n_springs)
     advance(step, mesh_acceleration, 0.0, x, v, 1e-4, 1, mesh)
@@ -112,7 +112,7 @@ def boxes(n, seed=1):
 
 def pair_search():
     """Pairs of boxes by two trees: the growth of its cost, the tree made anew each time, and the cost of testing all pairs."""
-    lesson, sizes = binding.world(compiled=True).lesson("collisions"), np.array([1000, 10_000, 100_000])
+    lesson, sizes = modules.module_set(compiled=True).lesson("collisions"), np.array([1000, 10_000, 100_000])
     times = step_times({(name, n): (lambda find=getattr(lesson, name), b=boxes(n): find(*b), 1)
                         for name, n in (*(("tree_pairs", n) for n in sizes), ("all_pairs", 1000), ("all_pairs", 10_000))})
     growth = times["tree_pairs", 100_000] / times["tree_pairs", 1000]
@@ -126,12 +126,12 @@ def pair_search():
 
 def cloth_frame():
     """A frame of a cloth of 100 × 100 weights, 20 sweeps of PBD and of XPBD, over the 1/60 s that it has."""
-    from .chains import weave
+    from .reference.pbd import weave
     side, sweeps, frame = 100, 20, 1.0 / 60.0
     flat = weave(side, 0.01, 1e-4, 1e3, 9.81)
     threads = flat.pairs[:2 * side * (side - 1)]
     net = pbd.make_net(flat.x, flat.m, flat.held, threads, 1e-4, 1.0, (0.0, 0.0, -flat.g), sweeps)
-    lesson, advance = binding.world(compiled=True).lesson("pbd"), binding.world(compiled=True).lesson("integrators").advance
+    lesson, advance = modules.module_set(compiled=True).lesson("pbd"), modules.module_set(compiled=True).lesson("integrators").advance
 
     def frames(step, substeps, net):
         run = lambda: advance(step, lesson.falling_acceleration, 0.0, flat.x, 0.0 * flat.x, frame / substeps, substeps, net)
@@ -146,7 +146,7 @@ def memory():
     """Peak memory of a process that takes steps with a million springs."""
     code = ("import resource; from validate.benchmark import compiled_run; compiled_run(1_000_000, 5)(); "
             "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)")
-    peak = int(subprocess.run([sys.executable, "-c", code], cwd=binding.ROOT, capture_output=True, text=True, check=True).stdout)
+    peak = int(subprocess.run([sys.executable, "-c", code], cwd=modules.ROOT, capture_output=True, text=True, check=True).stdout)
     gib = peak * (1 if sys.platform == "darwin" else 1024) / 2**30                     # kB on Linux, bytes on macOS
     yield "a million springs, peak memory", "within 4 GiB", f"{gib:.2f} GiB", gib <= 4.0
 
@@ -155,11 +155,11 @@ def imports():
     """Importing a lesson, NumPy included, in a new process; beside NumPy alone."""
     def seconds(module):
         code = f"import time; t = time.perf_counter(); import {module}; print(time.perf_counter() - t)"
-        laps = [float(subprocess.run([sys.executable, "-c", code], cwd=binding.ROOT, capture_output=True, text=True, check=True).stdout)
+        laps = [float(subprocess.run([sys.executable, "-c", code], cwd=modules.ROOT, capture_output=True, text=True, check=True).stdout)
                 for _ in range(5)]
         return float(np.median(laps))
     alone = seconds("numpy")
-    for name in binding.lesson_names():
+    for name in modules.lesson_names():
         taken = seconds(f"solutions.{name}")
         yield f"import of lesson {name}", "under 0.3 s", f"{taken:.2f} s  (NumPy alone {alone:.2f} s)", taken < 0.3
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from solutions.checks import BadInput
 
-from .binding import ROOT, SOLUTIONS, lesson_names
+from .modules import ROOT, SOLUTIONS, lesson_names
 
 LESSONS = ROOT / "lessons"
 ANSWER = re.compile(r"^(?P<indent> *)### BEGIN SOLUTION (?P<exercise>\d+\.\d+)\n.*?^ *### END SOLUTION *\n", re.M | re.S)

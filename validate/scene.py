@@ -1,101 +1,154 @@
-"""What a scene may say of itself: the records that scene files are written with, and their defaults.
+"""The records that a scene consists of.  They are checked when a scene is loaded, before anything runs.
 
-A scene is a module in `validate/scenes/`.  It must define
-    TITLE, LESSON             name for people, and the lesson that it belongs to
-    CASES                     {name: Params}: the first is timed and drawn, all are checked
-    T                         output time [s]
-    STEPS                     numbers of steps over T, coarse to fine: they divide T, and span two decades
-    METHODS                   tuple of Method: which of our steps to run
-    start(p) → state          a tuple of arrays, ready for run; checks p
-    acceleration              (t, x, v, p) → a [m/s²]: the law of the scene, its own or a lesson's
-    run(step, acceleration, state, p, dt, steps) → state        hands over to a lesson's stepping loop: that is timed, and
-                              in a compiled world step, acceleration and loop are compiled
-    observe(state, p)         flat array: what is compared with the truth at T
-    truth(p, t)               the same quantities at time t
-    UNCERTAINTY               of the truth, relative
-    tolerance(p, dt)          {order, or label of an engine or a method: largest relative error}, derived before looking
-    ENGINES                   tuple of Engine
-    points(observed, p)       (n, 2) drawing coordinates [m] of what was observed
-    NEEDS, LEAVES_OUT         what the scene calls; {what it does without: (p → (state, p) with it put in), or why not yet}
-and may define
-    LINKS(p)                  pairs of points to join in the picture
-    WITHOUT                   why some methods or engines that a reader would expect are not there, in one sentence without its full stop
-    FULL_ONLY                 functions of methods that are too slow here for a quick validation
-    PLAIN_IN_QUICK            functions of methods that plain Python has done here before the compiler has: a quick validation does not compile them
-    bodies(p)                 shapes of validate/report/space.py: the motion is then shown in space, and its points in small;
-    poses(observed, p)        (bodies, 7) place and quaternion (w, x, y, z) of each;
-    arrows(observed, p)       {name: (from, to)} [m], such as ω and L;   TRAIL: number of the body whose way is drawn;   GROUND: draw z = 0
-    FULL_CASES                names of cases that are too dear for a quick validation
-    FILM                      how much of the motion the moving picture shows [s]; T without it
-    PUBLISHED                 ((time, observed, tolerance), …) of the first case, from elsewhere
-    ORDERS                    {method's function: order here}, where it differs from the usual; EXACT means no error but round-off
-    WHY                       {label of an engine or a method: (why it departs from the truth, in one sentence; its own law (p, t),
-                              like truth)}: it is held against its own law, and the report says how far that is from the truth
-    CAN(name, p)              whether that method (by its function) or engine (by its label) can do that case at all; without it all can
-    STILL                     nothing moves: what the fineness dt = T/steps means, in words, "size of a triangle, 1/n [-]".  T is 1, no start is
-                              compared, the picture stands.  When nothing can be refined either, STILL is "" and STEPS (1,): then the report
-                              has no diagrams but a table of numbers, under the names that QUANTITIES(p) gives to what is observed
+A scene is a file in `validate/scenes/<lesson>/` that ends with one `SCENE = Scene(...)`.
+`validate/scenes/integrators/oscillator.py` is the model.
 """
 
-from typing import Callable, NamedTuple
+from collections.abc import Callable
+from dataclasses import MISSING, dataclass, field, fields
+from typing import NamedTuple, get_args, get_origin, get_type_hints
 
-EXACT = "exact"
-LATE_LEAPFROG = "1 to 2"     # the order that leapfrog shows when its first velocity belongs to half a step before or after
+from solutions.checks import BadInput
+
+EXACT = "exact"              # an order: no error but round-off
+LATE_LEAPFROG = "1 to 2"     # an order: leapfrog whose first velocity belongs to half a step before or after
 ROUND_OFF = 2.3e-16          # spacing of floats around 1, rounded up [-]
+PYMUNK, PYBULLET = "pymunk", "pybullet"
+PRODUCTS = (PYMUNK, PYBULLET)
 
 
 class Method(NamedTuple):
-    """One of our steps."""
-    function: str
-    label: str
-    order: int
-    lesson: str = "integrators"
-
-
-EULER = Method("euler_step", "Euler", 1)
-MIDPOINT = Method("midpoint_step", "midpoint", 2)
-RK4 = Method("rk4_step", "Runge–Kutta 4", 4)
-AVERAGE_VELOCITY = Method("average_velocity_step", "average velocity", 1)
-SYMPLECTIC_EULER = Method("symplectic_euler_step", "symplectic Euler", 1)
-VERLET = Method("verlet_step", "Verlet", 2)
-IMPLICIT_EULER = Method("implicit_euler_step", "implicit Euler", 1)
-IMPLICIT_MIDPOINT = Method("implicit_midpoint_step", "implicit midpoint", 2)
-IMPLICIT_MESH = Method("implicit_mesh_step", "implicit mesh", 1, "springs")
-TRIANGLES = Method("mesh_body", "triangles", 2, "inertia_tensors")
-POINTS = Method("point_mass_inertia", "points", 1, "inertia_tensors")
-PARTS = Method("combine", "parts", 2, "inertia_tensors")
-SLIDING = Method("sliding_step", "sliding", 1, "friction")
-PYRAMID = Method("pyramid_step", "pyramid", 1, "friction")
-EVENT = Method("event_step", "event", 2, "friction")
-CONTACT = Method("contact_step", "contact", 1, "friction")
-GRIPPING = Method("gripping_step", "gripping", 1, "friction")
-
-INTEGRATORS = (EULER, MIDPOINT, RK4, AVERAGE_VELOCITY, SYMPLECTIC_EULER, VERLET, IMPLICIT_EULER, IMPLICIT_MIDPOINT)
-ONE_OF_EACH_ORDER = (SYMPLECTIC_EULER, VERLET, RK4)                  # enough for a quick run; oscillator and throw show the others
-LEFT_TO_FULL = tuple(method.function for method in INTEGRATORS if method not in ONE_OF_EACH_ORDER)
+    """One of our steps.  All of them stand in `validate/methods.py`."""
+    function: str            # its name in the lesson
+    label: str               # its name for people
+    order: int               # of convergence, where a scene does not say otherwise
+    lesson: str
+    colour: str
+    marker: str
 
 
 class Engine(NamedTuple):
-    """One way to set up an engine: make(p, dt) gives a World."""
-    label: str               # "pymunk", "pymunk, leapfrog start": the engine's name comes first
-    make: Callable
-    order: int               # expected
-    settings: str            # for people: what was set, and to what
-    most_steps: int | None = None            # the finest step that is worth the engine's time
+    """One way to set up an engine."""
+    product: str             # PYMUNK or PYBULLET
+    variant: str             # "" for the settings that match textbook physics, else their name
+    make: Callable           # (p, dt) → EngineRun
+    order: int | str         # expected order of convergence
+    settings: str            # what was set, and to what, for people
+    most_steps: int | None = None            # the largest number of steps that is worth the engine's time
+
+    @property
+    def label(self):
+        """Its name for people."""
+        return f"{self.product}, {self.variant}" if self.variant else self.product
 
 
-class World(NamedTuple):
-    """An engine at work: step() advances it by dt, read() observes it, close() ends it."""
-    step: Callable
-    read: Callable
-    close: Callable
+class EngineRun(NamedTuple):
+    """A running engine."""
+    step: Callable           # () → None: advance by dt
+    read: Callable           # () → what a scene observes
+    close: Callable          # () → None: free its resources
+
+
+class Departure(NamedTuple):
+    """Why a method or an engine departs from the truth, and the law that it follows instead."""
+    reason: str              # the end of a sentence that begins with "because"
+    own_law: Callable        # (p, t) → the same quantities as truth(p, t)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scene:
+    """One physical situation: its truth, our methods, the engines, and the tolerance derived for each.
+
+    p is one of the `cases`: a NamedTuple of parameters, whose fields are annotated with their meaning and unit.
+    """
+    title: str
+    lesson: str
+    cases: dict              # {name: p}; the first is timed and drawn, all are checked
+    duration: float          # T, the output time [s]; 1 where nothing moves
+    steps: tuple             # numbers of steps over T, coarse to fine: they divide T and span two decades
+    methods: tuple           # of Method
+    start: Callable          # (p) → state, a tuple of arrays; refuses impossible parameters
+    run: Callable            # (step, acceleration, state, p, dt, steps) → state: only this is timed
+    observe: Callable        # (state, p) → flat array that is compared with the truth at T
+    truth: Callable          # (p, t) → the same quantities
+    truth_uncertainty: float  # of the truth, relative [-]
+    tolerance: Callable      # (p, dt) → {order, or label of a method or an engine: largest relative error}
+    points: Callable         # (observed, p) → (n, 2) drawing coordinates [m]
+    engines: tuple = ()      # of Engine
+    uses: tuple = ()         # what the scene needs, in words
+    ablations: dict = field(default_factory=dict)        # {what it omits: p → (state, p) with it put in, or why not}
+    acceleration: Callable | None = None     # (t, x, v, p) → a [m/s²]: the law; compiled where the lessons are
+    expected_departures: dict = field(default_factory=dict)      # {label: Departure}
+    orders: dict = field(default_factory=dict)           # {method's function: order here}, where it is not the usual one
+    supports: Callable | None = None         # (method's function or engine's label, p) → bool; without it all support all
+    omitted_methods: str = ""                # why methods or engines that a reader expects are missing
+    slow_methods: tuple = ()                 # functions of methods that only --full runs
+    slow_cases: tuple = ()                   # names of cases that only --full runs
+    uncompiled_in_quick: tuple = ()          # functions of methods that plain Python finishes before numba compiles them
+    moves: bool = True                       # False: nothing moves; no start is compared with the truth
+    refinement: str = "step dt [s]"          # what dt = T/steps stands for; "" where nothing can be refined: steps is (1,)
+    quantity_names: Callable | None = None   # (p) → names of what is observed, for a scene that shows a table of numbers
+    published_states: tuple = ()             # ((time, observed, tolerance), …) of the first case, from elsewhere
+    sanity_checks: Callable | None = None    # () → ((claim, found, expected, tolerance), …) about the truth itself
+    links: Callable | None = None            # (p) → pairs of points that the picture joins
+    film_seconds: float | None = None        # how much of the motion the film shows [s]; T without it
+    bodies: Callable | None = None           # (p) → shapes of validate/drawing.py: the film is then shown in 3D
+    poses: Callable | None = None            # (observed, p) → (bodies, 7) position and quaternion (w, x, y, z) of each
+    arrows: Callable | None = None           # (observed, p) → {name: (from, to)} [m], such as ω and L
+    trail: int | None = None                 # number of the body whose path is drawn
+    ground: bool = False                     # draw the plane z = 0
+    story: str = ""                          # the module's docstring, filled in when the scene is loaded
+
+    def __post_init__(self):
+        for f in fields(self):
+            check_type(f"field {f.name!r} of scene {self.title!r}", getattr(self, f.name), f.type)
+        if self.cases and self.bodies and not self.poses:
+            raise BadInput(f"field 'poses' of scene {self.title!r}", "missing", "say where each body of `bodies` is")
+
+    @property
+    def parameters(self):
+        """p of the first case."""
+        return next(iter(self.cases.values()))
+
+    @property
+    def refined(self):
+        """Whether anything can be refined, so that there is an error over dt."""
+        return bool(self.refinement)
+
+
+def check_type(thing, value, kind):
+    """Raise BadInput unless a value has the type that its field was declared with."""
+    allowed = get_args(kind) if get_origin(kind) is not None and get_origin(kind) is not Callable else (kind,)
+    for one in allowed or (kind,):
+        if one is Callable or get_origin(one) is Callable:
+            if callable(value):
+                return
+        elif one is float and isinstance(value, (int, float)) and not isinstance(value, bool):
+            return
+        elif isinstance(value, one):
+            return
+    names = " or ".join(getattr(one, "__name__", str(one)) for one in allowed or (kind,))
+    raise BadInput(thing, f"of type {type(value).__name__}", f"give {names}")
+
+
+def field_names(required=False):
+    """Names of the fields of a Scene."""
+    return [f.name for f in fields(Scene)
+            if not required or (f.default is MISSING and f.default_factory is MISSING)]
 
 
 def by_order(rate, T, dt):
-    """{order k: largest relative error at T} of a method whose local error is (rate dt)ᵏ⁺¹ a step.
+    """{order k: largest relative error at T} of a method whose local error is (rate dt)ᵏ⁺¹ per step.
 
-    rate [1/s] is the fastest rate at which anything in the scene changes: T/dt steps add up to  rate T (rate dt)ᵏ.
-    Round-off adds up like T/dt spacings at worst; Newton's method stops at 1e-12.
+    rate [1/s] is the fastest rate at which anything in the scene changes.  T/dt steps add up to  rate T (rate dt)ᵏ.
+    Round-off adds up to T/dt spacings at worst.  Newton's method stops at 1e-12.
     """
     limits = {k: rate * T * (rate * dt) ** k + 1e-12 + T / dt * ROUND_OFF for k in (1, 2, 4)}
     return {**limits, EXACT: 1e-12 + T / dt * ROUND_OFF}
+
+
+def parameter_table(p):
+    """[(name, value, meaning)] of the parameters of a case; the meaning is the text in the annotation of the field."""
+    hints = get_type_hints(type(p), include_extras=True)
+    return [(name, value, getattr(hints[name], "__metadata__", ("",))[0])
+            for name, value in p._asdict().items() if isinstance(value, (int, float, str))]

@@ -7,7 +7,8 @@ from importlib.metadata import version
 
 from solutions.checks import BadInput
 
-from . import binding, engines
+from . import engines, modules
+from .scene import PRODUCTS
 
 SUBSET = "subset"            # folder, inside the report's, for scenes that cannot join that report
 
@@ -45,10 +46,10 @@ def read_whole(path, kind, remedy):
 
 def code_digest(of):
     """Fingerprint of everything that a result depends on: code, recorded traces and installed versions."""
-    package, subject = binding.ROOT / "validate", binding.subject_folder(of)
-    files = {*package.rglob("*.py"), *package.glob("recorded/*.json"), *subject.glob("*.py"), *binding.SOLUTIONS.glob("*.py")}
-    installed = version("numpy"), version("scipy"), binding._numba_version(), *map(engines.installed, engines.NAMES)
-    return binding.fingerprint(files, f"{sys.version} {installed}")
+    package, subject = modules.ROOT / "validate", modules.subject_folder(of)
+    files = {*package.rglob("*.py"), *package.glob("recorded/*.json"), *subject.glob("*.py"), *modules.SOLUTIONS.glob("*.py")}
+    installed = version("numpy"), version("scipy"), modules.numba_version(), *map(engines.installed, PRODUCTS)
+    return modules.fingerprint(files, f"{sys.version} {installed}")
 
 
 def store_for(out, plan, names):
@@ -66,8 +67,8 @@ def store_for(out, plan, names):
 
 def lessons_of(names):
     """The lessons of these scenes, in the order of the course."""
-    there = {binding.bind_scene(name).LESSON for name in names}
-    return [lesson for lesson in binding.lesson_names() if lesson in there]
+    there = {modules.bind_scene(name).lesson for name in names}
+    return [lesson for lesson in modules.lesson_names() if lesson in there]
 
 
 class Store:
@@ -120,7 +121,7 @@ class Store:
 
     def scenes(self):
         """The scenes with all of their results, from this run or an earlier one."""
-        return [n for n in binding.scene_names() if self.path("errors", n).is_file() and self.path("times", n).is_file()]
+        return [n for n in modules.scene_names() if self.path("errors", n).is_file() and self.path("times", n).is_file()]
 
     def results(self, names):
         return [{**self.get("errors", name), "times": self.get("times", name)} for name in names]

@@ -15,7 +15,7 @@ def found(text, where):
 
 looks("import solutions", STEAL + """
 # the worked answers of this lesson
-for name in ("solutions.integrators", "solutions", "solutions.springs", "lessons.springs", "validate.binding", "tests.test_integrators", "tests.mutants.integrators"):
+for name in ("solutions.integrators", "solutions", "solutions.springs", "lessons.springs", "validate.modules", "tests.test_integrators", "tests.mutants.integrators"):
     try:
         module = __import__(name, fromlist=["euler_step"])
         if hasattr(module, "euler_step") or not name.startswith(("solutions", "lessons")):

@@ -16,7 +16,7 @@ from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from solutions.checks import BadInput
-from validate import binding
+from validate import modules
 from validate.__main__ import writable
 from validate.processes import alone_in, one_sentence
 from validate.store import whole, write_whole
@@ -55,8 +55,8 @@ def grade(
 def chosen(lessons):
     """The lessons to grade, in the order of the course.  Raises BadInput for one that there is not."""
     for name in lessons:
-        binding.bind(name)
-    return [n for n in binding.lesson_names() if not lessons or n in lessons]
+        modules.bind(name)
+    return [n for n in modules.lesson_names() if not lessons or n in lessons]
 
 
 def deadline(text):

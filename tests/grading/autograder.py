@@ -15,7 +15,7 @@ import typer
 
 from solutions.checks import BadInput
 from validate.__main__ import writable
-from validate.binding import ROOT
+from validate.modules import ROOT
 from validate.store import write_whole
 
 from . import children, marking, pages, points, sandbox, submissions

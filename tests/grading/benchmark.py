@@ -29,7 +29,7 @@ from rich.console import Console
 from rich.table import Table
 
 from tests import attacks
-from validate import binding
+from validate import modules
 from validate.store import write_whole
 
 from . import cluster, example, marking, pages, sandbox, similar, submissions
@@ -99,7 +99,7 @@ def plain(texts, folder):
     for seed in ("public", "a secret"):
         files = [f"tests/test_{lesson}.py" for lesson in LESSONS]
         options = [f"--of={folder}", f"--seed={seed}", "-p", "no:cacheprovider", "--tb=no"]
-        subprocess.run([sys.executable, "-m", "pytest", *files, *options], cwd=binding.ROOT, capture_output=True)
+        subprocess.run([sys.executable, "-m", "pytest", *files, *options], cwd=modules.ROOT, capture_output=True)
 
 
 def ordinary(handed_in):

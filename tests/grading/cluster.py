@@ -20,7 +20,7 @@ from collections import deque
 from importlib.metadata import version
 
 from solutions.checks import BadInput
-from validate import binding
+from validate import modules
 
 from . import children, local, marking, sandbox
 
@@ -180,7 +180,7 @@ def asked(parcel):
     """(why this worker may not grade, result, why the grader failed), from a process of its own.  Raises RuntimeError when that breaks."""
     patience = marking.patience(pickle.loads(parcel)[1])
     try:
-        run = subprocess.run([sys.executable, "-m", __name__], cwd=binding.ROOT, input=parcel, capture_output=True, timeout=patience)
+        run = subprocess.run([sys.executable, "-m", __name__], cwd=modules.ROOT, input=parcel, capture_output=True, timeout=patience)
     except subprocess.TimeoutExpired:
         raise RuntimeError(f"the grading process did not end within {patience:g} s") from None
     try:

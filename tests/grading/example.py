@@ -9,7 +9,7 @@ import zipfile
 from pathlib import Path
 
 from solutions.checks import BadInput
-from validate import binding, generate
+from validate import modules, generate
 
 PEOPLE = """student_id,last_name,first_name,email
 ada,Lovelace,Ada,ada@example.org
@@ -24,14 +24,14 @@ DATE = (2026, 11, 20, 12, 0, 0)
 
 def worked(lesson):
     """The text of a lesson with every exercise answered, as a student would hand it in."""
-    source = (binding.SOLUTIONS / f"{lesson}.py").read_text()
+    source = (modules.SOLUTIONS / f"{lesson}.py").read_text()
     return generate.stub(source, solved=generate.exercises(source))
 
 
 def files():
     """{student: {lesson: text}}."""
-    first, second, *_ = binding.lesson_names()
-    stubs = {name: (binding.ROOT / "lessons" / f"{name}.py").read_text() for name in (first, second)}
+    first, second, *_ = modules.lesson_names()
+    stubs = {name: (modules.ROOT / "lessons" / f"{name}.py").read_text() for name in (first, second)}
     right = {name: worked(name) for name in (first, second)}
     wrong = right[first].replace("v + dt * acceleration(t, x, v, p)\n", "v + acceleration(t, x, v, p)\n", 1)
     return {"ada": right, "bob": {first: wrong, second: stubs[second]}, "cem": stubs, "dia": {first: right[first], second: right[second] + "\n)(\n"},

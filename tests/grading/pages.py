@@ -20,12 +20,12 @@ from markupsafe import Markup
 from rich.markup import escape
 from rich.table import Table
 
-from validate import binding
+from validate import modules
 
 from . import marking, points, similar, submissions, watch
 
 HERE = Path(__file__).resolve().parent
-STYLES = (binding.ROOT / "validate" / "report" / "style.css", HERE / "templates" / "grades.css")
+STYLES = (modules.ROOT / "validate" / "report" / "style.css", HERE / "templates" / "grades.css")
 COLUMNS = ("assignment", "duedate", "timestamp", "student_id", "last_name", "first_name", "email",
            "raw_score", "late_submission_penalty", "score", "max_score",                # as nbgrader exports them
            "problems")       # and what is wrong with the files

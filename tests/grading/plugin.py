@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput
-from validate import binding
+from validate import modules
 from validate.loading import alarm, lacks
 
 from . import wire
@@ -41,7 +41,7 @@ def pytest_configure(config):
         config.option.loadscopereorder = False
     if config.getoption("--of"):
         try:
-            binding.subject_folder(config.getoption("--of"))
+            modules.subject_folder(config.getoption("--of"))
         except BadInput as e:
             raise pytest.UsageError(str(e)) from None
         config.option.tbstyle = "short" if config.option.tbstyle == "auto" else config.option.tbstyle     # of a student's file, not of ours
@@ -54,7 +54,7 @@ def pytest_configure(config):
 
 def tests_of(exercise=""):
     """The test files that name an exercise: one, if it exists; without one those of every lesson."""
-    files = (TESTS / f"test_{lesson}.py" for lesson in binding.lesson_names())
+    files = (TESTS / f"test_{lesson}.py" for lesson in modules.lesson_names())
     return [path for path in files if path.is_file() and (not exercise or f'"{exercise}"' in path.read_text(encoding="utf-8"))]
 
 
@@ -116,12 +116,12 @@ def lesson(request):
         return Pure(subject)
     name, of = request.path.stem.removeprefix("test_"), request.config.getoption("--of") or "solutions"
     if request.param == "plain":
-        return Pure(binding.bind(name, of))
-    if not binding.can_compile():
+        return Pure(modules.bind(name, of))
+    if not modules.can_compile():
         pytest.skip("numba has no wheel for this machine: the compiled twins are not tested")
     if request.node.get_closest_marker("counts_calls"):
         pytest.skip("counts the calls of a Python function, which compiled code cannot call")
-    return Compiled(binding.bind(name, of, compiled=True))
+    return Compiled(modules.bind(name, of, compiled=True))
 
 
 class Draw:

@@ -31,9 +31,9 @@ from typing import Annotated, NamedTuple
 import typer
 
 from solutions.checks import BadInput
-from validate import binding, generate
+from validate import modules, generate
 from validate.__main__ import writable
-from validate.binding import ROOT
+from validate.modules import ROOT
 from validate.processes import one_sentence
 
 TOP = "workbook"                                  # folder that the zip unpacks to
@@ -66,7 +66,7 @@ def release(
 ):
     if out.exists() and not zipfile.is_zipfile(out):
         raise BadInput(f"--out {str(out)!r}", "there, and no zip", "name another file")
-    chosen = with_earlier(known(lesson or binding.lesson_names()))
+    chosen = with_earlier(known(lesson or modules.lesson_names()))
     worked = set(chosen) if with_solutions == EVERY else set(known([n for n in (with_solutions or "").split(",") if n]))
     if missing := (with_earlier(worked) - worked) | (worked - chosen):
         raise BadInput(f"--with-solutions={','.join(sorted(worked))}", f"without {', '.join(sorted(missing))}",
@@ -86,13 +86,13 @@ EVERY = "*"
 
 
 def source(lesson):
-    return (binding.SOLUTIONS / f"{lesson}.py").read_text(encoding="utf-8")
+    return (modules.SOLUTIONS / f"{lesson}.py").read_text(encoding="utf-8")
 
 
 def known(names):
     """The names.  Raises BadInput for one that is no lesson."""
     for name in names:
-        binding.bind(name)
+        modules.bind(name)
     return names
 
 
@@ -102,7 +102,7 @@ def with_earlier(names):
     while waiting:
         name = waiting.pop()
         found.add(name)
-        waiting += set(re.findall(r"^from \.(\w+) import", source(name), re.M)) - binding.GIVEN - found
+        waiting += set(re.findall(r"^from \.(\w+) import", source(name), re.M)) - modules.GIVEN - found
     return found
 
 
@@ -123,14 +123,14 @@ def tracked(dirty):
 
 def contents(paths, lessons, worked, answers):
     """{path in the zip: bytes}."""
-    scenes = {name for name in binding.scene_names() if binding.bind_scene(name).LESSON in lessons}
-    others = set(binding.lesson_names()) - lessons
+    scenes = {name for name in modules.scene_names() if modules.bind_scene(name).LESSON in lessons}
+    others = set(modules.lesson_names()) - lessons
     chosen = {path for path in paths if wanted(Path(path), lessons, others, scenes)}
     files = {path: read(path) for path in with_imports(chosen, paths)}
     for name in lessons:
         solved = set(generate.exercises(source(name))) if name in worked else ()
         files[f"solutions/{name}.py"] = generate.stub(source(name), solved, elsewhere=()).encode()
-        files[f"lessons/{name}.py"] = generate.stub(source(name), elsewhere=binding.GIVEN | worked).encode()
+        files[f"lessons/{name}.py"] = generate.stub(source(name), elsewhere=modules.GIVEN | worked).encode()
     files["lessons/__init__.py"] = generate.lessons()["__init__.py"].encode()
     files[ANSWERS] = read(ANSWERS) if answers else NO_ANSWERS.encode()
     if not worked >= lessons:
@@ -169,7 +169,7 @@ def wanted(path, lessons, others, scenes):
     if folder == "notebooks":
         return path.stem.partition("_")[2] not in others
     if folder == "solutions":
-        return path.suffix == ".py" and path.stem in binding.GIVEN
+        return path.suffix == ".py" and path.stem in modules.GIVEN
     return folder in ("validate", "docs") or path.as_posix() in ALWAYS | {PLUGIN} | {f"tests/test_{name}.py" for name in lessons}
 
 
@@ -370,7 +370,7 @@ def sentences(text):
 
 def refuse_leaks(files, worked, answers_too):
     """Raise BadInput, in one sentence, for the first thing in the zip that no student may have."""
-    hidden = [answer for name in binding.lesson_names() if name not in worked for answer in answers_of(name)]
+    hidden = [answer for name in modules.lesson_names() if name not in worked for answer in answers_of(name)]
     signs = signs_of(hidden)
     secret = set() if answers_too else sentences((ROOT / ANSWERS).read_text(encoding="utf-8"))
     for path, data in sorted(files.items()):

@@ -9,20 +9,20 @@ import types
 from functools import lru_cache
 from pathlib import Path
 
-from validate import binding, generate
+from validate import modules, generate
 
 from .box import Box, Call
 
 
 def exercises(lesson):
     """{"1.2": "midpoint_step", …}."""
-    return generate.exercises((binding.SOLUTIONS / f"{lesson}.py").read_text())
+    return generate.exercises((modules.SOLUTIONS / f"{lesson}.py").read_text())
 
 
 def builds_on(lesson):
     """The earlier lessons that a lesson imports, and that those import."""
-    found = [name for name in re.findall(r"^from \.(\w+) import", (binding.SOLUTIONS / f"{lesson}.py").read_text(), re.M)
-             if name in binding.lesson_names()]
+    found = [name for name in re.findall(r"^from \.(\w+) import", (modules.SOLUTIONS / f"{lesson}.py").read_text(), re.M)
+             if name in modules.lesson_names()]
     return list(dict.fromkeys([*found, *(further for name in found for further in builds_on(name))]))
 
 
@@ -34,9 +34,9 @@ def handout():
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     for name, text in generate.lessons().items():
         (folder / name).write_text(text)
-    for name in sorted(binding.GIVEN - {"__init__"}):
-        if (binding.SOLUTIONS / f"{name}.py").is_file():
-            (folder / f"{name}.py").write_text((binding.SOLUTIONS / f"{name}.py").read_text())
+    for name in sorted(modules.GIVEN - {"__init__"}):
+        if (modules.SOLUTIONS / f"{name}.py").is_file():
+            (folder / f"{name}.py").write_text((modules.SOLUTIONS / f"{name}.py").read_text())
     return folder
 
 

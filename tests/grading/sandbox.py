@@ -15,7 +15,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from solutions.checks import BadInput
-from validate.binding import ROOT
+from validate.modules import ROOT
 
 from . import calls
 

@@ -9,7 +9,7 @@ import re
 from collections import Counter, defaultdict
 from functools import lru_cache
 
-from validate import binding
+from validate import modules
 
 from . import example
 
@@ -46,7 +46,7 @@ def _order(pair):
 @lru_cache
 def handed_out(lesson):
     """The lines of a lesson as handed out, without blanks."""
-    text = (binding.ROOT / "lessons" / f"{lesson}.py").read_bytes()
+    text = (modules.ROOT / "lessons" / f"{lesson}.py").read_bytes()
     return frozenset(b"".join(line.split()) for line in text.splitlines())
 
 

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from solutions.checks import BadInput
-from validate import binding
+from validate import modules
 
 from . import children
 
@@ -57,7 +57,7 @@ def read_all(folder, lessons, people=(), class_list=None):
         raise BadInput(f"submissions {str(folder)!r}", "not a folder", "name the folder that holds one folder or zip a student")
     theirs, overlooked = by_student(folder, people, class_list)
     if not theirs:
-        own = [path.name for path in folder.glob("*.py") if path.stem in binding.lesson_names()]
+        own = [path.name for path in folder.glob("*.py") if path.stem in modules.lesson_names()]
         raise BadInput(f"submissions {str(folder)!r}", f"one student's own ({own[0]} lies in it)" if own else "empty",
                        "name the folder above it" if own else "put one folder or zip a student into it")
     found, unclear = [], {}
@@ -82,7 +82,7 @@ def by_student(folder, people, class_list):
             continue
         student = owner(path, people)
         if student is None:
-            why = "a lesson file without a student's name" if path.stem in binding.lesson_names() else "no submission"
+            why = "a lesson file without a student's name" if path.stem in modules.lesson_names() else "no submission"
             overlooked.append(f"{shortened(path.name)} is {why}, and was not read")
         else:
             theirs.setdefault(student, []).append(path)
@@ -111,7 +111,7 @@ def split(path):
 
 def of_lesson(stem):
     """(student or "", lesson or None) of the name of a bare file: ada_springs is Ada's second lesson."""
-    names = "|".join(binding.lesson_names())
+    names = "|".join(modules.lesson_names())
     match = re.fullmatch(rf"(?:(.+?)[ _.-]+)?({names})", stem, re.DOTALL)
     return (match[1] or "", match[2]) if match else ("", None)
 

@@ -5,20 +5,21 @@ from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, select_autoescape
 
-from ..binding import bind_scene
 from ..store import whole
-from . import plots, space, words
+from . import plots, words
 
 HERE = Path(__file__).parent
+ARROWS = ("#e69f00", "#cc79a7", "#009e73")      # as in player3d/source.js
+PLAYER_3D = HERE / "player3d.js"
 
 
 def pictures(results, stability):
     """(plot, file, data, the scene or lesson that it is of) of every still picture."""
-    refined = [r for r in results if r["still"] != ""]
+    refined = [r for r in results if r["refinement"]]
     drawn = [case for case in stability if case["picture"]]
     return [*((plots.convergence, f"{r['scene']}-steps.svg", r, r["scene"]) for r in refined),
             *((plots.work_precision, f"{r['scene']}-times.svg", r, r["scene"]) for r in refined),
-            *((plots.stability, f"stability-{case['number']}.svg", case, case["lesson"]) for case in drawn)]
+            *((plots.stability, f"stability-{case['lesson']}-{case['slug']}.svg", case, case["lesson"]) for case in drawn)]
 
 
 def copied(results):
@@ -32,15 +33,16 @@ def files(results, stability):
             *(f"{r['scene']}.html" for r in results), *(name for _, name, _, _ in pictures(results, stability))}
 
 
-def write(out, results, stability, plan, pool, bars, measured):
-    """Pages, pictures and report.json in a folder; the path of the front page.
+def write(out, results, stability, about, pool, bars, measured):
+    """Write pages, pictures and report.json into a folder; return the path of the front page.
 
+    about says what the report was made with: a plain record that stands at the foot of every page.
     measured(scene or lesson) is when its results were written [ns]: pictures newer than that are not drawn again.
     """
     pages = Environment(loader=PackageLoader("validate", "report"), autoescape=select_autoescape(), trim_blocks=True, lstrip_blocks=True)
     pages.filters.update(seconds=words.seconds, number=words.number, percent=words.percent, factor=words.factor, order=words.order)
     pages.tests["reaches"] = lambda row: any(t is not None for t in row.values())
-    pages.globals.update(run=words.run(plan), playable=plots.playable, verdict=words.verdict, judge=words.judge, arrow_colours=space.ARROWS)
+    pages.globals.update(run=about, verdict=words.verdict, judge=words.judge, arrow_colours=ARROWS)
 
     calls = {name: (plots.draw, plot, out / name, data) for plot, name, data, of in pictures(results, stability)
              if not (out / name).is_file() or (out / name).stat().st_mtime_ns <= measured(of)}
@@ -49,13 +51,13 @@ def write(out, results, stability, plan, pool, bars, measured):
         bars.advance(bar)
 
     texts = {f"{r['scene']}.html": pages.get_template("scene.html").render(
-        r=r, parameters=words.parameters(bind_scene(r["scene"])), findings=words.findings(r), others=results,
+        r=r, findings=words.findings(r), others=results,
         cases=[c for c in stability if c["lesson"] == r["lesson"]]) for r in results}
     if stability:
         texts["stability.html"] = pages.get_template("stability.html").render(cases=stability)
     rows = [words.row(r) for r in results]
     texts["index.html"] = pages.get_template("front.html").render(rows=rows, cases=stability, results=results)
-    data = {"run": words.run(plan), "scenes": results, "stability": stability}
+    data = {"run": about, "scenes": results, "stability": stability}
     texts["report.json"] = json.dumps(data, ensure_ascii=False, indent=1)
     texts |= {name: (HERE / name).read_text(encoding="utf-8") for name in copied(results)}
     for name, text in texts.items():

@@ -5,15 +5,14 @@ const reduced = matchMedia("(prefers-reduced-motion: reduce)").matches;
 
 function play(canvas) {
   const picture = JSON.parse(document.getElementById(canvas.dataset.picture).textContent);
-  const runs = Object.entries(picture.frames);
-  const all = runs.flatMap(([, frames]) => frames.flat());
+  const runs = picture.films;
+  const all = runs.flatMap(run => run.frames.flat());
   const xs = all.map(p => p[0]), ys = all.map(p => p[1]);
   let [x0, x1, y0, y1] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
   const size = Math.max(x1 - x0, y1 - y0, 1e-9), pad = 0.08 * size;
   if (y1 - y0 < 0.25 * size) { const c = (y0 + y1) / 2; y0 = c - 0.125 * size; y1 = c + 0.125 * size; }
   if (x1 - x0 < 0.25 * size) { const c = (x0 + x1) / 2; x0 = c - 0.125 * size; x1 = c + 0.125 * size; }
   x0 -= pad; x1 += pad; y0 -= pad; y1 += pad;
-  const kinds = runs.map(([label]) => label === "truth" ? "truth" : /^py/.test(label) ? "engine" : "ours");
   const ratio = window.devicePixelRatio || 1, small = canvas.dataset.small !== undefined;
   const width = canvas.clientWidth, height = canvas.clientHeight;
   canvas.width = width * ratio; canvas.height = height * ratio;
@@ -22,14 +21,14 @@ function play(canvas) {
   const scale = Math.min(width / (x1 - x0), height / (y1 - y0));
   const left = (width - scale * (x1 - x0)) / 2, bottom = (height - scale * (y1 - y0)) / 2;
   const at = p => [left + scale * (p[0] - x0), height - bottom - scale * (p[1] - y0)];
-  const last = runs[0][1].length - 1, seconds = Math.min(12, Math.max(3, picture.seconds));
+  const last = runs[0].frames.length - 1, seconds = Math.min(12, Math.max(3, picture.seconds));
 
   function draw(time) {
     const k = reduced ? last : Math.floor(time / 1000 / seconds * last) % (last + 1);
     pen.clearRect(0, 0, width, height);
-    runs.forEach(([, frames], r) => {
-      const kind = kinds[r], points = frames[Math.min(k, frames.length - 1)].map(at);
-      pen.strokeStyle = pen.fillStyle = picture.colours[r];
+    runs.forEach(({role: kind, colour, frames}) => {
+      const points = frames[Math.min(k, frames.length - 1)].map(at);
+      pen.strokeStyle = pen.fillStyle = colour;
       pen.lineWidth = kind === "truth" ? (small ? 3 : 6) : 1.5;
       pen.setLineDash(kind === "engine" ? [4, 3] : []);
       const moving = points.length - 1;

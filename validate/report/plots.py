@@ -7,26 +7,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
+from .. import methods
+from ..results import Verdict
 from ..store import whole
-from .words import judge
 
-LOOKS = {                       # label: colour, marker
-    "Euler": ("#E69F00", "o"), "midpoint": ("#56B4E9", "^"), "Runge–Kutta 4": ("#009E73", "s"), "average velocity": ("#CC79A7", "v"),
-    "symplectic Euler": ("#D55E00", "D"), "Verlet": ("#0072B2", "P"), "implicit Euler": ("#8C6D31", "<"),
-    "implicit midpoint": ("#6A51A3", ">"), "implicit mesh": ("#7F7F7F", "h"), "triangles": ("#0072B2", "^"), "points": ("#E69F00", "o"),
-    "parts": ("#009E73", "s"),
-    "ω*R, renormalised": ("#8C6D31", "<"), "axis–angle": ("#E69F00", "o"), "quaternion": ("#CC79A7", "v"), "gyroscopic term": ("#D55E00", "D"),
-    "gyroscopic, implicit": ("#7F7F7F", "h"), "midpoint turn": ("#6A51A3", ">"), "splitting": ("#56B4E9", "^"),
-    "splitting, composed": ("#0072B2", "P"), "midpoint, composed": ("#B07CC6", "d"), "the lecture's loop": ("#0072B2", "P"),
-    "sliding": ("#0072B2", "o"), "pyramid": ("#D55E00", "D"), "event": ("#009E73", "s"), "contact": ("#E69F00", "v"),
-    "gripping": ("#56B4E9", "^"),
-    "continuous": ("#0072B2", "P"), "discrete": ("#D55E00", "D"), "brute force": ("#E69F00", "o"), "trees": ("#0072B2", "P"), "narrow phase": ("#009E73", "s"),
-    "GJK": ("#CC79A7", "v"), "separating axes": ("#E69F00", "o"),
-    "penalty": ("#D55E00", "D"), "projecting": ("#0072B2", "o"), "backtracking": ("#009E73", "s"), "together": ("#009E73", "s"), "one after the other": ("#D55E00", "D"),
-    "projection": ("#E69F00", "o"), "PBD": ("#D55E00", "D"), "XPBD": ("#56B4E9", "^"), "RATTLE": ("#009E73", "s"),
-}
-ENGINE_LOOKS = {"pymunk": ("#000000", "x"), "pybullet": ("#5A5A5A", "+")}
-OURS_MOVING = ("#0072B2", "#009E73", "#CC79A7", "#E69F00")
 ROUND_OFF = 1e-12               # relative error of a run of many steps that is exact [-]
 TOP = 10.0                      # errors above this, and failures, are drawn here, as crosses [-]
 
@@ -37,24 +21,13 @@ def style():
                          "legend.frameon": False, "svg.hashsalt": "workbook"})
 
 
-def look(label):
-    """Colour, marker and line of a curve: engines are dotted, and their variants differ by their dots."""
-    if label in LOOKS:
-        return (*LOOKS[label], "-")
-    product, _, variant = label.partition(", ")
-    colour, marker = ENGINE_LOOKS[product]
-    return colour, marker, {"": "-", "default": ":"}.get(variant, "--")
-
-
-def playable(picture):
-    """A moving picture with a colour for each of its runs: truth grey, engines vermilion, ours blue and on."""
-    own = iter(OURS_MOVING * 3)
-    colours = ["#8f8f8f" if label == "truth" else "#D55E00" if label.startswith("py") else next(own) for label in picture["frames"]]
-    return {**picture, "colours": colours}
+def looks(result):
+    """{label: (colour, marker, line)} of every curve of a scene."""
+    return {c["label"]: (c["colour"], c["marker"], c["line"]) for one in result["cases"].values() for c in one["ours"] + one["engines"]}
 
 
 def error_label(result):
-    return "relative error [-]" if result["still"] else f"relative error at t = {result['T']:g} s [-]"
+    return "relative error [-]" if not result["moves"] else f"relative error at t = {result['T']:g} s [-]"
 
 
 def floor(result):
@@ -74,16 +47,16 @@ def convergence(path, result):
     case, bottom = next(iter(result["cases"].values())), floor(result)
     figure, axes = plt.subplots()
     for c in case["ours"] + case["engines"]:
-        if judge(c)[0] == "not attempted":
+        if Verdict(c["verdict"]) is Verdict.NOT_ATTEMPTED or not c["rows"]:
             continue
-        colour, marker, line = look(c["label"])
+        colour, marker, line = c["colour"], c["marker"], c["line"]
         lost = [r["dt"] for r in c["rows"] if r["error"] is None or r["error"] >= TOP]
         seen = [(r["dt"], np.nan if r["dt"] in lost else max(r["error"], bottom)) for r in c["rows"]]           # a line has a gap where a run was lost
         order = f": {c['order']:.2f}" if c["order"] is not None else ""
         if len(lost) < len(seen):
             axes.loglog(*zip(*seen), color=colour, marker=marker, ls=line, ms=5, lw=1.3, label=c["label"] + order)
         axes.plot(lost, [TOP] * len(lost), color=colour, marker="X", ls="", ms=7, clip_on=False)
-    axes.set(xlabel=result["still"] or "step dt [s]", ylabel=error_label(result), xscale="log", yscale="log")
+    axes.set(xlabel=result["refinement"], ylabel=error_label(result), xscale="log", yscale="log")
     axes.axhline(TOP, color="#999999", lw=0.6)
     axes.annotate("failed, or error above 10", (0.01, TOP), xycoords=("axes fraction", "data"), va="bottom", fontsize=8, color="#555555")
     _ground(axes, bottom)
@@ -93,11 +66,11 @@ def convergence(path, result):
 def work_precision(path, result):
     """Error against run time: compiled solid, plain faint, engines dark."""
     figure, axes = plt.subplots()
-    bottom = floor(result)
+    bottom, look = floor(result), looks(result)
     rows = [{**r, "error": max(r["error"], bottom)} for r in result["times"]["rows"] if r["error"] < TOP]
     compiled = any(r["speed"] == "compiled" for r in rows)
     for label, speed in dict.fromkeys((r["label"], r["speed"]) for r in rows):
-        colour, marker, line = look(label)
+        colour, marker, line = look[label]
         mine = sorted((r["steps"], r["seconds"], r["error"], r["low"], r["high"]) for r in rows if (r["label"], r["speed"]) == (label, speed))
         _, x, y, low, high = zip(*mine)
         plain = compiled and speed == "plain"
@@ -107,7 +80,7 @@ def work_precision(path, result):
     if compiled and any(r["speed"] == "plain" for r in rows):
         axes.plot([], [], color="#555555", ls=":", marker=".", label="the same, plain Python")
     _ground(axes, bottom)
-    axes.set(xlabel="run time [s]" if result["still"] else "run time of the stepping loop [s]", ylabel=error_label(result))
+    axes.set(xlabel="run time of the stepping loop [s]" if result["moves"] else "run time [s]", ylabel=error_label(result))
     _finish(figure, axes, path, "compiled, and engines" if compiled else "plain Python, and engines")
 
 
@@ -131,11 +104,12 @@ THEORY_OR_MEASURED = re.compile(r"^theory, |, (theory|measured)$|: .*$")
 def series_colours(labels):
     """A colour each: a method has its own, theory and measurement of one thing share theirs, and no two things have one."""
     things, colours = [THEORY_OR_MEASURED.sub("", label) for label in labels], {}
+    known = {method.label: method.colour for method in vars(methods).values() if isinstance(method, methods.Method)}
     for thing in things:
-        own = max((name for name in LOOKS if thing.startswith(name)), key=len, default=None)
-        if own and LOOKS[own][0] not in colours.values():
-            colours[thing] = LOOKS[own][0]
-    free = iter([colour for colour in dict.fromkeys(look[0] for look in LOOKS.values()) if colour not in colours.values()])
+        own = max((name for name in known if thing.startswith(name)), key=len, default=None)
+        if own and known[own] not in colours.values():
+            colours[thing] = known[own]
+    free = iter([colour for colour in dict.fromkeys(known.values()) if colour not in colours.values()])
     return [colours[thing] if thing in colours else colours.setdefault(thing, next(free, "#000000")) for thing in things]
 
 

@@ -1,36 +1,61 @@
-"""The table that a run ends with."""
+"""The table that a run ends with: at most 80 columns, one line per scene."""
+
+from collections import Counter
 
 from rich.table import Table
 
+from ..results import Verdict
+from ..scene import EXACT, PRODUCTS
 from . import words
 
-COLOURS = {"agrees": "green", "predicted": "green", "departs": "bold red", "open": "yellow", "none": "dim"}
+SIGNS = {Verdict.DEPARTS: ("✗", "bold red"), Verdict.AGREES: ("✓", "green"), Verdict.FOLLOWS_OWN_LAW: ("≈", "green"),
+         Verdict.UNDECIDED: ("○", "yellow"), Verdict.NOT_ATTEMPTED: ("○", "yellow")}
+LEGEND = ("✓ agrees   ≈ departs as predicted   ✗ departs   ○ undecided or not attempted\n"
+          "order: the highest of ours.   faster: the engine's time to its smallest error,\n"
+          "over our time to the same error; the smaller of the two engines' ratios.")
 
 
 def show(console, results, stability):
-    """Print a line a scene; the number of departures that nobody predicted."""
+    """Print the table and what fails; return the number of departures that nobody predicted."""
     table = Table(header_style="bold", box=None, pad_edge=False)
-    for column in ("scene", "ours", "pymunk", "pybullet", "order (expected)", "best engine error: theirs / ours"):
-        table.add_column(column, no_wrap=column == "scene", overflow="fold")
+    for column in ("scene", "ours", *PRODUCTS, "order", "faster"):
+        table.add_column(column, no_wrap=True, justify="right" if column in ("order", "faster") else "left")
     departures = 0
     for result in results:
-        row = words.row(result)
-        every = [c for one in result["cases"].values() for c in one["ours"] + one["engines"]]
-        departures += sum(c["right"] is False for c in every)
-        best = f"{row['best']['label']} {words.order(row['best'])}" if row["best"] else "–"
-        faster = ", ".join(f"{n} {words.factor(a['ratio'])}" for n, a in row["advantages"].items()) or "–"
-        table.add_row(result["scene"], coloured(row["ours"]), *(coloured(v) for v, _ in row["engines"].values()), best, faster)
+        cases = result["cases"].values()
+        ours, engines = ([c for one in cases for c in one[kind]] for kind in ("ours", "engines"))
+        departures += sum(Verdict(c["verdict"]) is Verdict.DEPARTS for c in ours + engines)
+        of_each = (signs([c for c in engines if c["product"] == name]) for name in PRODUCTS)
+        table.add_row(result["scene"], signs(ours), *of_each, best_order(result), faster(result))
     console.print(table)
+    console.print(LEGEND, style="dim", highlight=False)
 
-    found = [f for case in stability for f in case["findings"]]
-    failed = [f for f in found if not f["holds"]]
+    found = [(case, f) for case in stability for f in case["findings"]]
+    failed = [(case, f) for case, f in found if not f["holds"]]
     if found:
         console.print(f"Stability: {len(found) - len(failed)} of {len(found)} findings hold.")
-    for f in failed:
-        console.print(f"  [bold red]case {f['case']}[/bold red] {f['claim']}: bound {f['bound']}, measured {f['measured']}")
+    for case, f in failed:
+        console.print(f"  [bold red]{case['lesson']}/{case['slug']}[/bold red] {f['claim']} "
+                      f"Predicted {f['predicted']}, measured {f['measured']}.")
     return departures + len(failed)
 
 
-def coloured(verdict):
-    text, kind = verdict
-    return f"[{COLOURS[kind]}]{text}[/{COLOURS[kind]}]"
+def signs(curves):
+    """How many of these curves have each verdict, such as ✓ 8 ≈ 1."""
+    count = Counter(SIGNS[Verdict(c["verdict"])] for c in curves)
+    return " ".join(f"[{style}]{sign} {count[sign, style]}[/{style}]" for sign, style in dict.fromkeys(SIGNS.values())
+                    if count[sign, style]) or "–"
+
+
+def best_order(result):
+    """The highest order that one of our methods shows."""
+    best = words.row(result)["best"]
+    if best is None:
+        return "–"
+    return EXACT if best["expected"] == EXACT else f"{best['order']:.2f}"
+
+
+def faster(result):
+    """The smaller of our advantages over the two engines."""
+    ratios = [a["ratio"] for a in words.row(result)["advantages"].values() if a["ratio"]]
+    return words.factor(min(ratios)) if ratios else "–"

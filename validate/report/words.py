@@ -1,16 +1,13 @@
 """What the numbers say, in words."""
 
-import inspect
-import platform
-import re
 from collections import Counter
-from datetime import date
 
-from .. import engines
-from ..binding import _numba_version, can_compile
-from ..scene import EXACT
+from ..results import Verdict, is_right
+from ..scene import EXACT, PRODUCTS
 
-NAMES = {"pymunk": "pymunk", "pybullet": "pybullet"}
+KINDS = {Verdict.AGREES: "agrees", Verdict.FOLLOWS_OWN_LAW: "predicted", Verdict.DEPARTS: "departs",
+         Verdict.UNDECIDED: "open", Verdict.NOT_ATTEMPTED: "open"}             # classes of the style sheet
+TEXTS = {Verdict.FOLLOWS_OWN_LAW: "departs as predicted"}                      # the others are called by their own word
 
 
 def number(x, digits=3):
@@ -56,112 +53,109 @@ def order(curve):
     return f"{'–' if curve['order'] is None else format(curve['order'], '.2f')} ({curve['expected']})"
 
 
-def run(plan):
-    """What the report was made with."""
-    live = [f"{n} {engines.installed(n)} live" if n in plan.live else f"{n} recorded" for n in engines.NAMES]
-    compiled = f"numba {_numba_version()}" if can_compile() else "numba not installed: plain speed only"
-    return {"of": str(plan.of), "mode": "quick" if plan.quick else "full", "engines": live, "compiler": compiled,
-            "speeds": list(plan.speeds), "repeats": plan.repeats(), "machine": f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",
-            "date": date.today().isoformat()}
-
-
 def judge(curve):
-    """One word for a curve's verdict, and its kind: agrees, predicted, departs or open."""
-    if curve["right"] is None:
-        return ("not attempted" if "not attempted" in curve["why"] else "undecided"), "open"
-    if not curve["right"]:
-        return "departs", "departs"
-    return ("departs as predicted", "predicted") if curve.get("reason") else ("agrees", "agrees")
+    """(text, kind) of a curve's verdict; the kind is a class of the style sheet."""
+    verdict = Verdict(curve["verdict"])
+    return TEXTS.get(verdict, verdict.value), KINDS[verdict]
 
 
 def verdict(curves):
     """The same for several curves at once: the worst of them, with a count."""
-    count = Counter(judge(c)[0] for c in curves)
+    count = Counter(Verdict(c["verdict"]) for c in curves)
     if not curves:
         return "not done here", "none"
-    for text, kind in (("departs", "departs"), ("not attempted", "open")):
-        if count[text]:
-            return f"{count[text]} of {len(curves)} {text}", kind
-    parts = [f"{text} ({count[word]})" for word, text in
-             (("agrees", "agrees"), ("departs as predicted", "as predicted"), ("undecided", "undecided")) if count[word]]
-    return ", ".join(parts), "open" if count["undecided"] == len(curves) else "agrees"
-
-
-def parameters(scene):
-    """[(name, value, meaning)] of the first case; the meaning is the comment beside the field."""
-    p = next(iter(scene.CASES.values()))
-    meanings = dict(re.findall(r"^    (\w+): [^#\n]*#\s*(.+)$", inspect.getsource(type(p)), flags=re.M))
-    return [(name, value, meanings.get(name, "")) for name, value in p._asdict().items() if isinstance(value, (int, float, str))]
+    for one in (Verdict.DEPARTS, Verdict.NOT_ATTEMPTED):
+        if count[one]:
+            return f"{count[one]} of {len(curves)} {one.value}", KINDS[one]
+    parts = [f"{one.value} ({count[one]})" for one in (Verdict.AGREES, Verdict.FOLLOWS_OWN_LAW, Verdict.UNDECIDED) if count[one]]
+    return ", ".join(parts), "open" if count[Verdict.UNDECIDED] == len(curves) else "agrees"
 
 
 def row(result):
-    """A line of the front page."""
-    case = next(iter(result["cases"].values()))
-    every = [c for one in result["cases"].values() for c in one["ours"]]
-    witnesses = {name: [c for one in result["cases"].values() for c in one["engines"] if c["label"].split(",")[0] == name] for name in NAMES}
-    best = max((c for c in case["ours"] if c["right"] and not c["reason"] and (c["order"] is not None or c["expected"] == EXACT)),
-               key=lambda c: (c["expected"] == EXACT, c["order"] or 0.0), default=None)
-    own_laws = {c["label"] for c in case["engines"] if c.get("reason")}
-    advantages = {}
-    for a in result["times"]["advantage"]:                               # to be as wrong as another law is no race
-        name = a["engine"].split(",")[0]
-        if a["engine"] not in own_laws and (name not in advantages or a["error"] < advantages[name]["error"]):
-            advantages[name] = a
-    return {"result": result, "ours": verdict(every), "engines": {n: (verdict(c), c[0]["source"] if c else "") for n, c in witnesses.items()},
-            "best": best, "advantages": advantages, "left_out": result["times"]["left_out"]}
+    """One scene on the front page."""
+    first = next(iter(result["cases"].values()))
+    cases = result["cases"].values()
+    ours = [c for one in cases for c in one["ours"]]
+    engines = {name: [c for one in cases for c in one["engines"] if c["product"] == name] for name in PRODUCTS}
+    return {
+        "result": result,
+        "ours": verdict(ours),
+        "engines": {name: (verdict(curves), curves[0]["source"] if curves else "") for name, curves in engines.items()},
+        "best": best_order(first["ours"]),
+        "advantages": best_advantages(first["engines"], result["times"]["advantage"]),
+        "ablations": result["times"]["ablations"],
+    }
+
+
+def best_order(curves):
+    """The curve of ours that agrees and shows the highest order."""
+    known = [c for c in curves if Verdict(c["verdict"]) is Verdict.AGREES and (c["order"] is not None or c["expected"] == EXACT)]
+    return max(known, key=lambda c: (c["expected"] == EXACT, c["order"] or 0.0), default=None)
+
+
+def best_advantages(curves, advantages):
+    """{product: the race to its smallest error}.  To be as wrong as another law is no race."""
+    own_laws = {c["label"] for c in curves if c["departure_reason"]}
+    best = {}
+    for a in sorted(advantages, key=lambda a: -a["error"]):
+        if a["engine"] not in own_laws:
+            best[a["product"]] = a
+    return best
 
 
 def findings(result):
-    """Sentences, the most important first."""
-    return [*_ours(result), *(f"{sentence}." for sentence in result["without"]), *_witnesses(result), *_times(result), *_left_out(result), *_parity(result)]
+    """Sentences, the most important first, and what was left out at the end."""
+    notes = (f"{sentence}." for sentence in result["notes"])
+    return [*_ours(result), *_engines_of(result), *_times(result), *_ablations(result), *_parity(result), *notes]
 
 
 def _ours(result):
     every = [(n, c) for n, one in result["cases"].items() for c in one["ours"]]
-    wrong = [(n, c) for n, c in every if c["right"] is False]
+    wrong = [(n, c) for n, c in every if is_right(c) is False]
     for n, c in wrong:
-        yield f"{c['label']} ({n}) {c['why']}."
+        yield f"{c['label']} ({n}) {c['message']}."
     waiting = {}
     for _, c in every:
-        if c["right"] is None:
-            waiting.setdefault(c["why"], {})[c["label"]] = None
+        if is_right(c) is None:
+            waiting.setdefault(c["message"], {})[c["label"]] = None
     for why, labels in waiting.items():
         yield f"{', '.join(labels)}: {why}."
-    shown = [c for c in next(iter(result["cases"].values()))["ours"] if c["order"] is not None and c["right"]]
+    shown = [c for c in next(iter(result["cases"].values()))["ours"] if c["order"] is not None and is_right(c)]
     if shown:
-        yield "Measured orders of convergence: " + ", ".join(f"{c['label']} {c['order']:.2f} ({c['expected']})" for c in shown) + "; the expected order is in brackets."
+        orders = ", ".join(f"{c['label']} {c['order']:.2f} ({c['expected']})" for c in shown)
+        yield f"Measured orders of convergence, with the expected order in brackets: {orders}."
     for c in next(iter(result["cases"].values()))["ours"]:
-        if c["right"] and c["reason"]:
-            yield f"{c['label']} converges to another law because {c['reason']}: {percent(c['departs'])} away from the truth."
-    exact = [c["label"] for c in next(iter(result["cases"].values()))["ours"] if c["expected"] == "exact" and c["right"]]
-    if exact and result["still"] != "":
+        if Verdict(c["verdict"]) is Verdict.FOLLOWS_OWN_LAW:
+            yield f"{c['label']} converges to another law because {c['departure_reason']}: {percent(c['departure'])} away from the truth."
+    exact = [c["label"] for c in next(iter(result["cases"].values()))["ours"] if c["expected"] == EXACT and is_right(c)]
+    if exact and result["refinement"]:
         yield f"Exact up to round-off at every step, as derived: {', '.join(exact)}."
 
 
-def _witnesses(result):
-    """What engines do: in the first case of a motion; of what stands still, in every case where they depart."""
-    if result["still"] is None:
+def _engines_of(result):
+    """What the engines do: for a motion in its first case, else in every case in which they depart."""
+    if result["moves"]:
         yield from _engines(next(iter(result["cases"].values())))
         return
     for name, case in result["cases"].items():
         for c in case["engines"]:
-            if c.get("reason") and c["right"]:
-                yield (f"{name[0].upper()}{name[1:]}: {c['label']} is {percent(c['rows'][-1]['error'])} off because {c['reason']}; "
-                       f"that rule alone gives {percent(c['departs'])}.")
-            elif c["right"] is False:
-                yield f"{name[0].upper()}{name[1:]}: {c['label']} {c['why']}, and nothing that the scene says predicts it."
+            if Verdict(c["verdict"]) is Verdict.FOLLOWS_OWN_LAW:
+                yield (f"{name[0].upper()}{name[1:]}: {c['label']} is {percent(c['rows'][-1]['error'])} off because {c['departure_reason']}; "
+                       f"that rule alone gives {percent(c['departure'])}.")
+            elif is_right(c) is False:
+                yield f"{name[0].upper()}{name[1:]}: {c['label']} {c['message']}, and nothing that the scene says predicts it."
 
 
 def _engines(case):
     for c in case["engines"]:
         clear = [r for r in c["rows"] if r["error"] is not None]
         if not clear:
-            yield f"{c['label']}: {c['why']}."
-        elif c["right"] is False:
-            yield f"{c['label']} {c['why']}, and nothing that the scene says predicts it."
-        elif c.get("reason"):
-            yield (f"{c['label']} stays {percent(clear[-1]['error'])} away from the truth because {c['reason']}: that law alone predicts "
-                   f"{percent(c['departs'])}, and the engine converges to it" + (f" with order {c['order']:.2f}." if c["order"] else "."))
+            yield f"{c['label']}: {c['message']}."
+        elif is_right(c) is False:
+            yield f"{c['label']} {c['message']}, and nothing that the scene says predicts it."
+        elif c["departure_reason"]:
+            yield (f"{c['label']} stays {percent(clear[-1]['error'])} away from the truth because {c['departure_reason']}: that law alone predicts "
+                   f"{percent(c['departure'])}, and the engine converges to it" + (f" with order {c['order']:.2f}." if c["order"] else "."))
         else:
             shown = f", with order {c['order']:.2f} where {c['expected']} is expected" if c["order"] is not None and c["expected"] else ""
             yield f"{c['label']} agrees with the truth to {percent(clear[-1]['error'])} at its finest step{shown}."
@@ -170,20 +164,22 @@ def _engines(case):
 def _times(result):
     for a in result["times"]["advantage"]:
         if a["ratio"]:
-            yield (f"The smallest error that {a['engine']} was timed at is {percent(a['error'])}, in {seconds(a['seconds'])}; ours ({a['method']}, {a['speed']}) "
-                   f"gets there in {seconds(a['ours'])}: {factor(a['ratio'])}{' the speed' if not 0.5 < a['ratio'] < 2 else ''}.")
+            sooner = f", {factor(a['ratio'])}" if 0.5 < a["ratio"] < 2 else f": {factor(a['ratio'])} the speed"
+            yield (f"{a['engine']} reaches an error of {percent(a['error'])} in {seconds(a['seconds'])}. "
+                   f"Our {a['method']} ({a['speed']}) reaches it in {seconds(a['ours'])}{sooner}.")
         else:
-            yield f"None of those runs of ours that were timed reaches the {percent(a['error'])} of {a['engine']}, {seconds(a['seconds'])}."
+            yield (f"{a['engine']} reaches an error of {percent(a['error'])} in {seconds(a['seconds'])}. "
+                   "None of our timed runs reaches it.")
 
 
-def _left_out(result):
-    for row in result["times"]["left_out"]:
-        if row["saves"] is not None:
+def _ablations(result):
+    for row in result["times"]["ablations"]:
+        if row["cost"] is not None:
             same = "the motion is the same" if row["same"] else "but the motion changes: look into it"
-            yield f"Putting in {row['what']} makes a step {row['saves']:.2f} times as long; {same}."
+            yield f"Putting in {row['what']} makes a step {row['cost']:.2f} times as long; {same}."
 
 
 def _parity(result):
     if result["parity"] is not None:
-        yield ("Where there are both, plain and compiled runs agree to the last bit." if result["parity"] == 0.0 else
-               f"Where there are both, plain and compiled runs differ by at most {number(result['parity'])}, relative.")
+        yield ("Plain and compiled runs agree to the last bit." if result["parity"] == 0.0 else
+               f"Plain and compiled runs differ by at most {number(result['parity'])}, relative.")

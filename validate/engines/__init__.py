@@ -1,0 +1,48 @@
+"""The two engines, set up to match textbook mechanics, and whether they are installed.
+
+`bullet.py` and `chipmunk.py` wrap one engine each.  The other files hold set-ups that several scenes of a lesson share.
+
+Both engines are first order: pybullet does v += a dt, then x += v dt; pymunk does x += v dt, then v += a dt.  With a first
+velocity that belongs to half a step before (pybullet, −½ a dt) or after (pymunk, +½ a dt) they become leapfrog, which is
+second order where forces are smooth.
+"""
+
+import ctypes
+import importlib
+import os
+import sys
+from importlib.metadata import PackageNotFoundError, version
+
+from solutions.checks import BadInput
+
+from ..scene import PRODUCTS
+
+
+def installed(engine):
+    """The engine's version, or None.  Raises BadInput for an unknown name."""
+    if engine not in PRODUCTS:
+        raise BadInput(f"engine {engine!r}", "unknown", f"choose from: {', '.join(PRODUCTS)}")
+    try:
+        return version(engine)
+    except PackageNotFoundError:
+        return None
+
+
+def quiet_import(name):
+    """The module, without the line that its C code prints when it is loaded."""
+    if name in sys.modules:
+        return sys.modules[name]
+    sys.stdout.flush()
+    sys.stderr.flush()
+    kept, nowhere = [os.dup(1), os.dup(2)], os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(nowhere, 1)
+        os.dup2(nowhere, 2)
+        module = importlib.import_module(name)
+        ctypes.CDLL(None).fflush(None)               # the line sits in the C library's buffer
+        return module
+    finally:
+        for original, copy in zip((1, 2), kept):
+            os.dup2(copy, original)
+            os.close(copy)
+        os.close(nowhere)

@@ -1,0 +1,235 @@
+"""Errors of every method and engine of a scene, the orders that they show, and the verdicts on them."""
+
+import warnings
+from typing import NamedTuple
+
+import numpy as np
+
+from solutions.checks import BadInput
+
+from .. import engines
+from ..methods import ENGINE_LOOKS, VARIANT_LINES
+from ..modules import report_text
+from ..results import Role, Verdict, jsonable
+from ..scene import ROUND_OFF, parameter_table
+from . import film, traces
+from .select import select, with_overrides
+
+ASYMPTOTIC = 0.5             # limits above this are not compared with a run [-]
+
+
+class Outcome(NamedTuple):
+    """What a run observed at T, or why it could not."""
+    observed: np.ndarray | None
+    failure: str | None = None
+    attempted: bool = True
+
+
+@with_overrides
+def errors(name, plan):
+    """Everything about a scene but its run times: a dict that JSON can hold."""
+    selection = select(name, plan)
+    scene, cases = selection.scene, {}
+    for case, p in selection.cases.items():
+        with_engines = not cases or not plan.quick or not scene.moves    # a quick run asks engines for one case of a motion
+        cases[case] = case_errors(selection, case, p, with_engines)
+    _, first = selection.first
+    return jsonable({
+        "scene": name, "title": scene.title, "lesson": scene.lesson, "story": scene.story,
+        "moves": scene.moves, "refinement": scene.refinement, "T": scene.duration,
+        "uncertainty": scene.truth_uncertainty, "truth_story": report_text(scene.truth), "uses": list(scene.uses),
+        "parameters": parameter_table(scene.parameters), "notes": selection.notes, "cases": cases,
+        "parity": parity(selection, first), "picture": film.picture(selection, first, labels_that_agree({"cases": cases})),
+        "law": report_text(scene.acceleration) if scene.acceleration else "", "limits": report_text(scene.tolerance),
+    })
+
+
+def case_errors(selection, case, p, with_engines):
+    """One case: its truth, and the curves of our methods and the engines."""
+    scene = selection.scene
+    truth = np.array(scene.truth(p, scene.duration), dtype=float)
+    return {
+        "params": p._asdict() if hasattr(p, "_asdict") else {},
+        "truth": truth.tolist(),
+        "quantities": scene.quantity_names(p) if scene.quantity_names else [],
+        "ours": [method_curve(selection, method, p, truth) for method in selection.methods_for(p)],
+        "engines": [engine_curve(selection, case, e, p, truth) for e in selection.engines_for(p)] if with_engines else [],
+    }
+
+
+# ---------------------------------------------------------------------------------------------- runs
+
+def run_to_end(scene, step, p, steps):
+    """The Outcome of one of our methods at T."""
+    try:
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore")
+            state = scene.run(step, scene.acceleration, scene.start(p), p, scene.duration / steps, steps)
+            observed = scene.observe(state, p)
+    except ArithmeticError as e:
+        return Outcome(None, str(e))
+    except np.linalg.LinAlgError as e:
+        return Outcome(None, f"Newton's matrix is singular: {e}")
+    except NotImplementedError as e:
+        return Outcome(None, f"{Verdict.NOT_ATTEMPTED.value}: {e}", attempted=False)
+    except BadInput:
+        raise
+    except Exception as e:                                           # a subject's code may do anything: say it, and go on
+        return Outcome(None, f"{type(e).__name__}: {str(e).strip().splitlines()[0] if str(e).strip() else ''}")
+    return finite(observed)
+
+
+def run_engine_to_end(scene, engine, p, steps):
+    """The Outcome of an engine after so many steps."""
+    world = engine.make(p, scene.duration / steps)
+    try:
+        for _ in range(steps):
+            world.step()
+        observed = np.array(world.read(), dtype=float)
+    finally:
+        world.close()
+    return finite(observed)
+
+
+def finite(observed):
+    """The Outcome of a run that ended."""
+    return Outcome(observed) if np.all(np.isfinite(observed)) else Outcome(None, "not finite")
+
+
+def relative(observed, truth):
+    """|observed − truth| / |truth|, Euclidean norms over everything observed; absolute where the truth is zero."""
+    size = np.linalg.norm(truth)
+    return float(np.linalg.norm(observed - truth) / (size if size > 0.0 else 1.0))
+
+
+# ---------------------------------------------------------------------------------------------- curves
+
+def method_curve(selection, method, p, truth):
+    """The errors of one of our methods over the sweep."""
+    scene, step = selection.fastest(method)
+    runs = [(n, run_to_end(scene, step, p, n)) for n in selection.steps]
+    order = scene.orders.get(method.function, method.order)
+    found = judged(scene, method.label, p, truth, runs, order)
+    look = {"role": Role.OURS, "colour": method.colour, "marker": method.marker, "line": "-"}
+    return {**found, **look, "observed": [] if scene.moves else observations(runs)}
+
+
+def engine_curve(selection, case, engine, p, truth):
+    """An engine's errors: live where it is installed, recorded where it is not."""
+    scene = selection.scene
+    colour, marker = ENGINE_LOOKS[engine.product]
+    about = {"role": Role.ENGINE, "product": engine.product, "variant": engine.variant, "settings": engine.settings,
+             "colour": colour, "marker": marker, "line": VARIANT_LINES.get(engine.variant, "--")}
+    if selection.is_live(engine):
+        source = f"live, {engine.product} {engines.installed(engine.product)}"
+        runs = [(n, run_engine_to_end(scene, engine, p, n)) for n in engine_steps(selection, engine, p)]
+    else:
+        record = traces.recorded(selection.name, case, engine)
+        if record is None:
+            message = f"{engine.product} is not installed here and this case was never recorded"
+            nothing = {"label": engine.label, "rows": [], "order": None, "expected": engine.order, "verdict": Verdict.UNDECIDED}
+            return {**about, **nothing, "source": "missing", "message": message, "departure_reason": "", "observed": []}
+        source = record["source"]
+        runs = [(r["steps"], Outcome(np.array(r["observed"]) if r["observed"] else None, r["failure"])) for r in record["runs"]]
+    found = judged(scene, engine.label, p, truth, runs, engine.order)
+    return {**about, **found, "source": source, "observed": observations(runs)}
+
+
+def engine_steps(selection, engine, p):
+    """The numbers of steps that an engine runs: in a quick validation without the last, which is half of its time."""
+    scene = selection.scene
+    last_but_one = scene.steps[-2:][0]
+    enough = allowed(scene, p, engine.label, engine.order, last_but_one) < ASYMPTOTIC
+    finest = last_but_one if selection.plan.quick and enough else scene.steps[-1]
+    return [n for n in selection.steps if n <= min(engine.most_steps or n, finest)]
+
+
+def observations(runs):
+    """What each run observed, as data."""
+    return [{"steps": n, "observed": o.observed, "failure": o.failure} for n, o in runs]
+
+
+def allowed(scene, p, label, order, steps):
+    """The largest relative error that theory allows a method or an engine at so many steps."""
+    limits = scene.tolerance(p, scene.duration / steps)
+    return limits[label] if label in limits else limits[order]
+
+
+def judged(scene, label, p, truth, runs, order):
+    """The curve of a method or an engine.  Where the scene gives it its own law, it must follow that law."""
+    def limit(steps):
+        return allowed(scene, p, label, order, steps)
+
+    found = curve(scene, label, truth, runs, order, limit)
+    departure = scene.expected_departures.get(label)
+    if departure is None:
+        return {**found, "departure_reason": ""}
+    own = np.array(departure.own_law(p, scene.duration), dtype=float)
+    by_own_law = curve(scene, label, own, runs, order, limit)
+    if by_own_law["verdict"] is Verdict.AGREES:
+        by_own_law["verdict"] = Verdict.FOLLOWS_OWN_LAW
+    return {**by_own_law, "rows": found["rows"], "departure_reason": departure.reason,
+            "departure": relative(own, truth), "own_law": own}
+
+
+def curve(scene, label, truth, runs, order, limit):
+    """Errors over the sweep, the order that they show, and the verdict.
+
+    A limit holds only where it is small: an expansion in powers of dt says nothing about a step for which it promises 50 %.
+    An order is compared with theory where two steps have small limits.
+    """
+    rows = []
+    for steps, outcome in runs:
+        error = None if outcome.failure else relative(outcome.observed, truth)
+        rows.append({"steps": steps, "dt": scene.duration / steps, "error": error, "limit": limit(steps), "failure": outcome.failure})
+    order_shown = shown_order(rows, 10.0 * scene.truth_uncertainty)
+    verdict, message = verdict_on(rows, runs[-1][1], order, order_shown)
+    return {"label": label, "rows": rows, "order": order_shown, "expected": order, "verdict": verdict, "message": message}
+
+
+def verdict_on(rows, finest, order, order_shown):
+    """(Verdict, message) on the rows of a curve; `finest` is the Outcome at the finest step."""
+    small = [r for r in rows if r["limit"] < ASYMPTOTIC]
+    ratios = [r["error"] / r["limit"] for r in small if r["error"] is not None]
+    if not finest.attempted:
+        return Verdict.NOT_ATTEMPTED, finest.failure
+    if finest.failure:
+        return Verdict.DEPARTS, f"fails at the finest step: {finest.failure}"
+    if not ratios:
+        return Verdict.UNDECIDED, "the sweep is too coarse to judge: theory allows 50 % at its finest step"
+    if max(ratios) > 1.0:
+        return Verdict.DEPARTS, f"departs from truth by {max(ratios):.3g} times what theory allows"
+    too_low = order in (1, 2, 4) and order_shown is not None and order_shown < order - 0.3
+    if too_low and len(small) >= 2:
+        return Verdict.DEPARTS, f"converges with order {order_shown:.2f}, theory says {order}"
+    return Verdict.AGREES, ""
+
+
+def shown_order(rows, floor):
+    """Order over the finest four runs that are clear of the truth's uncertainty and of round-off; None for fewer than three.
+
+    Runs before one that was lost do not count: what is right in them is right by luck.
+    """
+    lost = [k for k, r in enumerate(rows) if r["error"] is None or r["error"] >= ASYMPTOTIC]
+    clear = [(r["dt"], r["error"]) for r in rows[lost[-1] + 1 if lost else 0:]
+             if r["error"] > max(1e-11 + floor, 100.0 * ROUND_OFF * r["steps"])]
+    return float(np.polyfit(*np.log(clear[-4:]).T, 1)[0]) if len(clear) >= 3 else None
+
+
+# ---------------------------------------------------------------------------------------------- both speeds, and who agrees
+
+def parity(selection, p):
+    """Largest relative difference between the plain and the compiled run of a method; None where no method has both."""
+    differences = []
+    for method in selection.methods_for(p):
+        if len(selection.speeds(method)) == 2:
+            bound = (selection.bound(method, speed) for speed in selection.plan.speeds)
+            a, b = (run_to_end(scene, step, p, scene.steps[0]).observed for scene, step in bound)
+            differences += [relative(a, b)] if a is not None and b is not None else []
+    return max(differences, default=None)
+
+
+def labels_that_agree(result):
+    """Labels of our methods that agree with the truth in the first case."""
+    first = next(iter(result["cases"].values()))
+    return {c["label"] for c in first["ours"] if Verdict(c["verdict"]) is Verdict.AGREES}

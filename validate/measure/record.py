@@ -1,0 +1,61 @@
+"""Record what pybullet does: its readings at T for every case, setting and step, its run times and its film."""
+
+import json
+import platform
+
+from .. import engines
+from ..results import jsonable
+from ..scene import PYBULLET
+from ..store import whole
+from .accuracy import run_engine_to_end
+from .film import FRAMES, engine_frames
+from .select import Plan, select
+from .timing import Timed, interleaved, time_engine
+from .traces import RECORDED
+
+LONGEST = 0.2                # a run that takes longer is not timed [s]
+
+
+def record(name):
+    """Write the record of one scene's pybullet runs; its path, or None for a scene without that engine."""
+    selection = select(name, Plan(speeds=(), quick=False))
+    scene = selection.scene
+    witnesses = [e for e in scene.engines if e.product == PYBULLET]
+    if not witnesses:
+        return None
+    runs = {case: {e.label: readings(selection, e, p) for e in selection.engines_for(p) if e in witnesses}
+            for case, p in scene.cases.items()}
+    p = scene.parameters
+    items = [Timed(e.label, "engine", n, scene.duration / n, time_engine(e, p))
+             for e in witnesses if scene.moves for n in scene.steps if n <= (e.most_steps or n)]
+    timed = interleaved(items, {"engine": LONGEST})
+    record = {
+        "stamp": f"pybullet {engines.installed(PYBULLET)}, {platform.system()} {platform.machine()}, "
+                 f"Python {platform.python_version()}",
+        "settings": {e.label: e.settings for e in witnesses},
+        "runs": runs,
+        "seconds": {e.label: [{"steps": i.steps, **t} for i, t in timed if i.label == e.label] for e in witnesses},
+        "frames": frames(scene, witnesses[-1], p) if scene.moves else [],
+    }
+    RECORDED.mkdir(exist_ok=True)
+    path = RECORDED / f"{name}.json"
+    with whole(path) as draft:
+        draft.write_text(json.dumps(jsonable(record), separators=(",", ":")) + "\n")
+    return path
+
+
+def readings(selection, engine, p):
+    """What the engine reads at T, for each number of steps."""
+    found = []
+    for steps in selection.steps:
+        if steps <= (engine.most_steps or steps):
+            outcome = run_engine_to_end(selection.scene, engine, p, steps)
+            found.append({"steps": steps, "observed": outcome.observed, "failure": outcome.failure})
+    return found
+
+
+def frames(scene, engine, p):
+    """The engine's film in drawing coordinates."""
+    per_frame = max(1, scene.steps[-3] // FRAMES)
+    film = engine_frames(engine, p, (scene.film_seconds or scene.duration) / (per_frame * FRAMES), per_frame)
+    return [scene.points(observed, p).tolist() for observed in film]

@@ -1,0 +1,183 @@
+"""What a run does of a scene: its cases, methods, speeds, engines and steps, and the notes on what it leaves to `--full`."""
+
+import warnings
+from contextlib import contextmanager
+from dataclasses import replace
+from functools import wraps
+from typing import NamedTuple
+
+import numpy as np
+
+from solutions.checks import BadInput
+
+from .. import modules
+from ..scene import Engine, Method, Scene
+
+REPEATS = 7                  # of a timed run
+NOTEBOOK = 0.02              # how long a timed run in a notebook may take [s]
+
+
+class Plan(NamedTuple):
+    """How much to measure."""
+    of: str = "solutions"
+    speeds: tuple = ("plain", "compiled")
+    quick: bool = True
+    live: tuple = ("pymunk", "pybullet")     # engines that are installed; the others come from their records
+    overrides: tuple = ()                    # (name, value) pairs that replace parameters of the first case
+    most_steps: int | None = None            # for a notebook: a shorter sweep, of the first case only
+    changes: tuple = ()                      # for a notebook: (field, value) pairs that replace fields of the Scene
+
+    def time_limits(self):
+        """{speed: how long a single timed run may take [s]}; longer ones are left to --full, and there out."""
+        ours, engine = (NOTEBOOK, NOTEBOOK) if self.most_steps else (0.003, 0.01) if self.quick else (0.5, 1.5)
+        return {"plain": ours, "compiled": ours, "engine": engine}
+
+    def repeats(self):
+        """Number of timed repeats; fewer in a notebook, where the reader is waiting."""
+        return 3 if self.most_steps else REPEATS
+
+
+class Selection(NamedTuple):
+    """What is to be done of one scene."""
+    name: str
+    plan: Plan
+    scene: Scene             # plain, with the subject's lessons
+    cases: dict              # {name: p}
+    methods: tuple           # of Method; a case may support fewer
+    steps: tuple             # numbers of steps over T
+    notes: tuple             # sentences: what is omitted, and what is left to --full
+
+    @property
+    def first(self):
+        """(name, p) of the case that is timed and drawn."""
+        return next(iter(self.cases.items()))
+
+    def methods_for(self, p):
+        """The methods that support this case."""
+        return tuple(m for m in self.methods if supports(self.scene, m, p))
+
+    def engines_for(self, p):
+        """The engines that support this case."""
+        return tuple(e for e in self.scene.engines if supports(self.scene, e, p))
+
+    def is_live(self, engine):
+        """Whether this engine is run here rather than read from its record."""
+        return engine.product in self.plan.live
+
+    def speeds(self, method):
+        """The speeds at which a method runs, the fastest last."""
+        return speeds_of(self.scene, self.plan, method)
+
+    def bound(self, method, speed):
+        """(scene, step): the scene and our step, both plain or both compiled."""
+        compiled = speed == "compiled"
+        scene = bound_scene(self.name, self.plan, compiled)
+        lesson = modules.module_set(self.plan.of, compiled).lesson(method.lesson)
+        return scene, getattr(lesson, method.function)
+
+    def fastest(self, method):
+        """The same at the fastest speed that was asked for."""
+        return self.bound(method, self.speeds(method)[-1])
+
+
+def bound_scene(name, plan, compiled=False):
+    """The Scene of that name with the plan's lessons and changes."""
+    scene = modules.bind_scene(name, plan.of, compiled)
+    return replace(scene, **dict(plan.changes)) if plan.changes else scene
+
+
+def select(name, plan):
+    """The Selection of a scene under a plan."""
+    scene = bound_scene(name, plan)
+    methods = methods_of(scene, plan)
+    return Selection(name, plan, scene, cases_of(scene, plan), methods, sweep(scene, plan), notes_of(scene, plan, methods))
+
+
+def supports(scene, runner, p):
+    """Whether a Method or an Engine of the scene can do this case at all."""
+    name = runner.label if isinstance(runner, Engine) else runner.function
+    return scene.supports is None or scene.supports(name, p)
+
+
+def methods_of(scene, plan):
+    """The methods to run: slow ones only in a full validation, none without a speed."""
+    if not plan.speeds:
+        return ()
+    slow = scene.slow_methods if plan.quick else ()
+    return tuple(m for m in scene.methods if m.function not in slow)
+
+
+def speeds_of(scene, plan, method: Method):
+    """The speeds at which a method runs: plain only where plain Python finishes before numba has compiled."""
+    soon = not scene.refined or method.function in scene.uncompiled_in_quick
+    return ("plain",) if plan.quick and soon and "plain" in plan.speeds else plan.speeds
+
+
+def sweep(scene, plan):
+    """The scene's numbers of steps, and before them three that are too coarse: they show where a method gives up."""
+    first = scene.steps[0]
+    coarse = tuple(n for n in (first // 10, first // 5, first // 2) if n >= 2)
+    return tuple(n for n in coarse + tuple(scene.steps) if n <= (plan.most_steps or n))
+
+
+def cases_of(scene, plan):
+    """The scene's cases; in a notebook only the first of what moves; with overrides the first one, changed."""
+    name, p = next(iter(scene.cases.items()))
+    if plan.overrides:
+        return {f"{name}, changed": p._replace(**dict(plan.overrides))}
+    if plan.most_steps and scene.moves:
+        return {name: p}
+    slow = scene.slow_cases if plan.quick else ()
+    return {case: q for case, q in scene.cases.items() if case not in slow}
+
+
+def notes_of(scene, plan, methods):
+    """Sentences: what the scene omits, and what this run leaves to --full.  A notebook has no --full."""
+    omitted = (scene.omitted_methods[0].upper() + scene.omitted_methods[1:],) if scene.omitted_methods else ()
+    if plan.most_steps or not plan.quick:
+        return omitted
+    slow = [m.label for m in scene.methods if m not in methods]
+    plain = [m.label for m in methods if speeds_of(scene, plan, m) != plan.speeds]
+    finest = "the engines' finest step, where the one before it is fine enough to judge them by"
+    several = len(scene.cases) > 1 and scene.moves and scene.engines
+    left = (
+        (slow, f", to keep this one quick: {', '.join(slow)}"),
+        (scene.slow_cases, f": {', '.join(scene.slow_cases)}"),
+        (several, f": the engines on {', '.join(list(scene.cases)[1:])}"),
+        (len(scene.steps) > 1 and scene.engines, f": {finest}"),
+        (plain, f": the same, compiled: {', '.join(plain)}"),
+        (scene.refined, ": run times of steps coarser than the scene's own sweep"),
+    )
+    return omitted + tuple(f"Left to --full{what}" for present, what in left if present)
+
+
+def load(name, of):
+    """Load a scene with those answers.  Raises BadInput when one of them does not load."""
+    modules.bind_scene(name, of)
+
+
+@contextmanager
+def changed(name, changes):
+    """With changed parameters, do not warn of overflow, and raise BadInput for what the scene cannot compute."""
+    if not changes:
+        yield
+        return
+    try:
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore")
+            yield
+    except (BadInput, OSError):
+        raise
+    except Exception as e:                                           # a truth or an engine takes ordinary values only
+        values = ", ".join(f"{parameter} = {value}" for parameter, value in changes)
+        raise BadInput(f"scene {name} with {values}", f"not computable ({type(e).__name__}: {e})",
+                       "choose a value nearer to the scene's own") from None
+
+
+def with_overrides(measuring):
+    """Let measuring(name, plan, …) run inside `changed`."""
+    @wraps(measuring)
+    def measured(name, plan, *more):
+        with changed(name, plan.overrides):
+            return measuring(name, plan, *more)
+    return measured

@@ -1,0 +1,271 @@
+"""Error against run time.
+
+Only the stepping loop is timed: two warm-ups, then interleaved repeats with garbage collection off.  A loop that is shorter
+than a tenth of a millisecond is repeated inside the clock.  Errors come from separate, identical runs.
+"""
+
+import gc
+import time
+import warnings
+from typing import NamedTuple
+
+import numpy as np
+
+from .. import engines
+from ..engines.bullet import Bullet
+from ..engines.chipmunk import pymunk_space
+from ..results import jsonable
+from ..scene import PYBULLET, PYMUNK
+from . import traces
+from .accuracy import ASYMPTOTIC, labels_that_agree, relative
+from .select import REPEATS, select, with_overrides
+
+WARM_UPS, PROBE = 2, 64
+EXACTLY = 1e-11              # a smaller relative error is round-off: there is no race for it [-]
+LOST = 10.0                  # a run with a larger relative error is not worth timing [-]
+SHORTEST = 1e-4              # a timed loop is repeated until it lasts this long [s]
+TARGETS = (1e-2, 1e-3, 1e-4, 1e-6, 1e-8)
+
+
+class Timed(NamedTuple):
+    """Something with a stepping loop."""
+    label: str
+    speed: str               # plain, compiled, engine
+    steps: int
+    dt: float                # [s]
+    prepare: object          # (steps, dt) → (the function to time, what to do after)
+
+
+@with_overrides
+def times(name, plan, result):
+    """Run times of the first case, joined with the errors already found: [{label, speed, steps, error, seconds, low, high}]."""
+    selection = select(name, plan)
+    scene, (case, p) = selection.scene, selection.first
+    found = worth_timing(selection, result["cases"][case])
+    items = []
+    if scene.refined:                                                # else there is no diagram to time anything for
+        items = [*our_items(selection, p, found), *engine_items(selection, p, found)]
+    timed = [(i.label, i.speed, i.steps, t) for i, t in interleaved(items, plan.time_limits(), plan.repeats())]
+    timed += recorded_times(selection, case, p)
+    rows = [{**t, "label": label, "speed": speed, "steps": n, "error": found[label][n]["error"]}
+            for label, speed, n, t in timed if n in found[label]]
+    done = {(r["label"], r["speed"]) for r in rows}
+    return jsonable({
+        "rows": rows,
+        "untimed": list(dict.fromkeys(f"{i.label} ({i.speed})" for i in items if (i.label, i.speed) not in done)),
+        "baseline": baseline(plan) if scene.moves else {},
+        "time_to_error": times_to_error(rows),
+        "advantage": advantage(rows, result["cases"][case]["engines"]),
+        "ablations": ablations(selection, p, labels_that_agree(result)),
+    })
+
+
+def worth_timing(selection, case):
+    """{label: {steps: row}} of the runs that are worth timing: those not lost, and in a quick run none coarser than the sweep."""
+    quick = selection.plan.quick and not selection.plan.most_steps
+    coarsest = selection.scene.steps[0] if quick else 0
+    return {c["label"]: {r["steps"]: r for r in c["rows"]
+                         if r["error"] is not None and r["error"] < LOST and r["steps"] >= coarsest}
+            for c in case["ours"] + case["engines"]}
+
+
+def our_items(selection, p, found):
+    """What to time of our own methods, at each speed."""
+    for method in selection.methods_for(p):
+        for speed in selection.speeds(method):
+            prepare = time_ours(*selection.bound(method, speed), p)
+            for n in found[method.label]:
+                yield Timed(method.label, speed, n, selection.scene.duration / n, prepare)
+
+
+def engine_items(selection, p, found):
+    """What to time of the engines that are installed."""
+    for engine in selection.engines_for(p):
+        if selection.is_live(engine):
+            for n in found[engine.label]:
+                yield Timed(engine.label, "engine", n, selection.scene.duration / n, time_engine(engine, p))
+
+
+def recorded_times(selection, case, p):
+    """[(label, "recorded", steps, times)] of the engines that are not installed."""
+    return [(e.label, "recorded", row["steps"], row) for e in selection.engines_for(p) if not selection.is_live(e)
+            for row in (traces.recorded(selection.name, case, e) or {}).get("seconds") or []]
+
+
+def time_ours(scene, step, p, state=None):
+    """prepare(steps, dt) for one of our methods."""
+    state = state or scene.start(p)
+
+    def prepare(steps, dt):
+        arguments = step, scene.acceleration, state, p, dt, steps
+        return lambda: scene.run(*arguments), lambda: None
+    return prepare
+
+
+def time_engine(engine, p):
+    """prepare(steps, dt) for an engine."""
+    def prepare(steps, dt):
+        world = engine.make(p, dt)
+
+        def loop():
+            step = world.step
+            for _ in range(steps):
+                step()
+        return loop, world.close
+    return prepare
+
+
+# ---------------------------------------------------------------------------------------------- the clock
+
+def interleaved(items, time_limits, repeats=REPEATS):
+    """[(item, {seconds, low, high})]: medians of interleaved repeats.  Runs longer than `time_limits[speed]` are left out."""
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore")
+        chosen = short_enough(items, time_limits)
+        samples = [[] for _ in chosen]
+        enabled = gc.isenabled()
+        gc.disable()
+        try:
+            for _ in range(repeats):
+                for (item, inner), seconds in zip(chosen, samples):
+                    seconds.append(clock(item, inner))
+        finally:
+            if enabled:
+                gc.enable()
+    return [(item, {"seconds": float(np.median(s)), "low": min(s), "high": max(s)}) for (item, _), s in zip(chosen, samples)]
+
+
+def short_enough(items, time_limits):
+    """[(item, repeats inside the clock)] of what does not take too long, warmed up."""
+    chosen, pace = [], {}                                            # pace: {(label, speed): seconds per step}
+    for item in items:
+        key = item.label, item.speed
+        first = all((i.label, i.speed) != key for i, _ in chosen)
+        limit = time_limits[item.speed] * (3.0 if first else 1.0)    # or a slow one would not be there at all
+        if key not in pace:
+            pace[key] = seconds_per_step(item, limit)
+        if pace[key] * item.steps > limit:
+            continue
+        seconds = min(clock(item, 1) for _ in range(WARM_UPS))
+        pace[key] = seconds / item.steps
+        chosen.append((item, 1 if item.speed == "engine" else max(1, int(SHORTEST / max(seconds, 1e-9)))))
+    return chosen
+
+
+def seconds_per_step(item, limit):
+    """Estimate seconds per step from two steps.
+
+    If that cannot tell whether the run exceeds `limit`, time 64 steps, because call overhead dominates two.
+    """
+    pace = min(clock(item, 1, steps=2) for _ in range(2)) / 2
+    if PROBE < item.steps and limit / item.steps < pace < limit / PROBE:
+        pace = min(clock(item, 1, steps=PROBE) for _ in range(2)) / PROBE
+    return pace
+
+
+def clock(item, inner, steps=None):
+    """Seconds of one stepping loop, or of its first steps."""
+    loop, close = item.prepare(steps or item.steps, item.dt)
+    try:
+        begin = time.perf_counter()
+        for _ in range(inner):
+            loop()
+        return (time.perf_counter() - begin) / inner
+    finally:
+        close()
+
+
+def baseline(plan):
+    """Cost of one step of an empty world [s], the Python call included, for each engine."""
+    costs = {}
+    if PYMUNK in plan.live:
+        space = pymunk_space()
+        costs[PYMUNK] = empty_step(lambda: space.step(1e-3))
+    if PYBULLET in plan.live and engines.installed(PYBULLET):
+        bullet = Bullet(1e-3)
+        costs[PYBULLET] = empty_step(bullet.step)
+        bullet.close()
+    return costs
+
+
+def empty_step(step):
+    """Median seconds per call."""
+    laps = []
+    for _ in range(REPEATS):
+        begin = time.perf_counter()
+        for _ in range(500):
+            step()
+        laps.append((time.perf_counter() - begin) / 500)
+    return float(np.median(laps))
+
+
+# ---------------------------------------------------------------------------------------------- ablations
+
+def ablations(selection, p, agreeing):
+    """[{what, cost: times longer with it put in, same: the motion is unchanged, note}] for what the scene omits."""
+    scene = selection.scene
+    method = max((m for m in scene.methods if m.label in agreeing), key=lambda m: m.order, default=None)
+    if method is None:
+        return []
+    speed = selection.speeds(method)[-1]
+    bound, step = selection.bound(method, speed)
+    steps = scene.steps[min(2, len(scene.steps) - 1)] if speed == "compiled" else scene.steps[0]
+    return [{"what": what, "cost": None, "same": None, "note": extra} if isinstance(extra, str)
+            else with_and_without(bound, step, speed, steps, p, what, *extra(p)) for what, extra in scene.ablations.items()]
+
+
+def with_and_without(scene, step, speed, steps, p, what, state, p_full):
+    """What it costs to put one omitted thing in, and whether the motion stays the same."""
+    dt = scene.duration / steps
+    items = [Timed(which, speed, steps, dt, time_ours(scene, step, *begin))
+             for which, *begin in (("without", p), ("with", p_full, state))]
+    (_, lean), (_, full) = interleaved(items, {speed: np.inf})
+    a = scene.observe(scene.run(step, scene.acceleration, scene.start(p), p, dt, steps), p)
+    b = scene.observe(scene.run(step, scene.acceleration, state, p_full, dt, steps), p)
+    return {"what": what, "cost": full["seconds"] / lean["seconds"], "same": relative(a, b) < 1e-9, "note": ""}
+
+
+# ---------------------------------------------------------------------------------------------- reading the diagram
+
+def times_to_error(rows):
+    """{label (speed): {target error: seconds, or None where the sweep does not get there}}, log-log between points."""
+    table = {}
+    for key in dict.fromkeys((r["label"], r["speed"]) for r in rows):
+        points = sorted((r["error"], r["seconds"]) for r in rows if (r["label"], r["speed"]) == key)
+        table[f"{key[0]} ({key[1]})"] = {f"{target:g}": time_to_error(points, target) for target in TARGETS}
+    return table
+
+
+def time_to_error(points, target):
+    """Least time for that error from (error, seconds) points: the cheapest point that is good enough, or between it and the next."""
+    good = [(s, e) for e, s in points if e <= target]
+    if not good:
+        return None
+    seconds, error = min(good)
+    worse = [(e, s) for e, s in points if e > target and s < seconds]
+    if not worse or error <= 0.0:
+        return seconds
+    e, s = min(worse)
+    fraction = np.log(target / error) / np.log(e / error)
+    return float(np.exp(np.log(seconds) + fraction * (np.log(s) - np.log(seconds))))
+
+
+def advantage(rows, curves):
+    """For each engine that errs: its smallest error, its time for that, our shortest time to get there, and the ratio."""
+    product = {c["label"]: c["product"] for c in curves}
+    result, ours = [], {}
+    for r in rows:
+        if r["speed"] in ("plain", "compiled"):
+            ours.setdefault((r["label"], r["speed"]), []).append((r["error"], r["seconds"]))
+    worth = [r for r in rows if r["speed"] == "engine" and EXACTLY < r["error"] < ASYMPTOTIC]
+    for label in dict.fromkeys(r["label"] for r in worth):
+        best = min((r for r in worth if r["label"] == label), key=lambda r: r["error"])
+        reached = [(t, name, speed) for (name, speed), points in ours.items()
+                   if (t := time_to_error(sorted(points), best["error"]))]
+        quickest = min(reached, default=(None, "", ""))
+        result.append({
+            "engine": label, "product": product[label], "error": best["error"], "seconds": best["seconds"],
+            "ours": quickest[0], "method": quickest[1], "speed": quickest[2],
+            "ratio": best["seconds"] / quickest[0] if quickest[0] else None,
+        })
+    return result

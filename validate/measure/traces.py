@@ -1,0 +1,35 @@
+"""Read the recorded runs of pybullet, for machines without it; `record.py` writes them."""
+
+from pathlib import Path
+
+from solutions.checks import BadInput
+
+from ..results import Role
+from ..scene import PYBULLET
+from ..store import read_whole
+
+RECORDED = Path(__file__).resolve().parent.parent / "recorded"
+
+
+def trace(name):
+    """The record of a scene, or None.  Raises BadInput for a damaged file."""
+    path = RECORDED / f"{name}.json"
+    return read_whole(path, dict, f"restore it, or give: validate record --scene {name}") if path.is_file() else None
+
+
+def recorded(name, case, engine):
+    """The record of one engine run on one case, None if it was not recorded.  Raises BadInput without the scene's file."""
+    record = trace(name) or {"runs": {}}
+    if not record["runs"] and engine.product == PYBULLET:
+        raise BadInput(f"file '{RECORDED / name}.json'", "missing or empty",
+                       f"restore it, or give where pybullet is installed: validate record --scene {name}")
+    runs = record["runs"].get(case, {}).get(engine.label)
+    return runs and {"source": f"recorded, {record['stamp']}", "runs": runs, "seconds": record["seconds"].get(engine.label)}
+
+
+def film_of(name, colour):
+    """The recorded film of pybullet as a list of one entry; empty where there is none."""
+    record = trace(name)
+    if record is None:
+        return []
+    return [{"label": "pybullet, recorded", "role": Role.ENGINE, "colour": colour, "frames": record["frames"]}]

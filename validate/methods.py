@@ -1,0 +1,80 @@
+"""Every method that a scene can name: its function, label, order, lesson, colour and marker.
+
+A new method is one line here.  Colours are those of Okabe and Ito 2008, which colour-blind readers can tell apart,
+and a few more.  Every curve has a marker, too.
+"""
+
+from .scene import Method
+
+# integrators
+EULER = Method("euler_step", "Euler", 1, "integrators", "#E69F00", "o")
+MIDPOINT = Method("midpoint_step", "midpoint", 2, "integrators", "#56B4E9", "^")
+RK4 = Method("rk4_step", "Runge–Kutta 4", 4, "integrators", "#009E73", "s")
+AVERAGE_VELOCITY = Method("average_velocity_step", "average velocity", 1, "integrators", "#CC79A7", "v")
+SYMPLECTIC_EULER = Method("symplectic_euler_step", "symplectic Euler", 1, "integrators", "#D55E00", "D")
+VERLET = Method("verlet_step", "Verlet", 2, "integrators", "#0072B2", "P")
+IMPLICIT_EULER = Method("implicit_euler_step", "implicit Euler", 1, "integrators", "#8C6D31", "<")
+IMPLICIT_MIDPOINT = Method("implicit_midpoint_step", "implicit midpoint", 2, "integrators", "#6A51A3", ">")
+
+# springs
+IMPLICIT_MESH = Method("implicit_mesh_step", "implicit mesh", 1, "springs", "#7F7F7F", "h")
+
+# friction
+SLIDING = Method("sliding_step", "sliding", 1, "friction", "#0072B2", "o")
+PYRAMID = Method("pyramid_step", "pyramid", 1, "friction", "#D55E00", "D")
+EVENT = Method("event_step", "event", 2, "friction", "#009E73", "s")
+CONTACT = Method("contact_step", "contact", 1, "friction", "#E69F00", "v")
+GRIPPING = Method("gripping_step", "gripping", 1, "friction", "#56B4E9", "^")
+
+# inertia_tensors
+TRIANGLES = Method("mesh_body", "triangles", 2, "inertia_tensors", "#0072B2", "^")
+POINTS = Method("point_mass_inertia", "points", 1, "inertia_tensors", "#E69F00", "o")
+PARTS = Method("combine", "parts", 2, "inertia_tensors", "#009E73", "s")
+
+# rotation
+MATRIX = Method("matrix_step", "ω*R, renormalised", 1, "rotation", "#8C6D31", "<")
+AXIS_ANGLE = Method("axis_angle_step", "axis–angle", 1, "rotation", "#E69F00", "o")
+QUATERNION = Method("quaternion_step", "quaternion", 1, "rotation", "#CC79A7", "v")
+GYROSCOPIC = Method("gyroscopic_step", "gyroscopic term", 1, "rotation", "#D55E00", "D")
+IMPLICIT_GYROSCOPIC = Method("implicit_gyroscopic_step", "gyroscopic, implicit", 1, "rotation", "#7F7F7F", "h")
+RUNGE_KUTTA = Method("runge_kutta_step", "Runge–Kutta 4", 4, "rotation", "#009E73", "s")
+MIDPOINT_TURN = Method("midpoint_step", "midpoint turn", 2, "rotation", "#6A51A3", ">")
+SPLITTING = Method("splitting_step", "splitting", 2, "rotation", "#56B4E9", "^")
+COMPOSED_SPLITTING = Method("composed_splitting_step", "splitting, composed", 4, "rotation", "#0072B2", "P")
+COMPOSED_MIDPOINT = Method("composed_midpoint_step", "midpoint, composed", 4, "rotation", "#B07CC6", "d")
+LOOP = Method("rigid_body_step", "the lecture's loop", 1, "rotation", "#0072B2", "P")
+
+# collisions
+DISCRETE = Method("discrete_step", "discrete", 1, "collisions", "#D55E00", "D")
+CONTINUOUS = Method("continuous_step", "continuous", 2, "collisions", "#0072B2", "P")
+BRUTE_FORCE = Method("all_pairs", "brute force", 1, "collisions", "#E69F00", "o")
+GJK = Method("gjk", "GJK", 1, "collisions", "#CC79A7", "v")
+NARROW = Method("ball_contact", "narrow phase", 2, "collisions", "#009E73", "s")
+AXES = Method("box_separation", "separating axes", 2, "collisions", "#E69F00", "o")
+TREES = Method("tree_pairs", "trees", 2, "collisions", "#0072B2", "P")
+
+# impulses
+PENALTY = Method("penalty_step", "penalty", 1, "impulses", "#D55E00", "D")
+PROJECTING = Method("projecting_step", "projecting", 1, "impulses", "#0072B2", "o")
+BACKTRACKING = Method("backtracking_step", "backtracking", 2, "impulses", "#009E73", "s")
+PROJECTING_SPIN = Method("projecting_spin_step", "projecting", 1, "impulses", "#0072B2", "o")
+BACKTRACKING_SPIN = Method("backtracking_spin_step", "backtracking", 2, "impulses", "#009E73", "s")
+PROJECTING_DISCS = Method("projecting_discs_step", "projecting", 1, "impulses", "#0072B2", "o")
+BACKTRACKING_DISCS = Method("backtracking_discs_step", "backtracking", 2, "impulses", "#009E73", "s")
+TOGETHER = Method("solve_impacts", "together", 2, "impulses", "#009E73", "s")
+IN_TURN = Method("one_after_the_other", "one after the other", 2, "impulses", "#D55E00", "D")
+
+# pbd
+PROJECTION = Method("projection_step", "projection", 1, "pbd", "#E69F00", "o")
+PBD = Method("pbd_step", "PBD", 1, "pbd", "#D55E00", "D")
+XPBD = Method("xpbd_step", "XPBD", 1, "pbd", "#56B4E9", "^")
+RATTLE = Method("rattle_step", "RATTLE", 2, "pbd", "#009E73", "s")
+
+INTEGRATORS = (EULER, MIDPOINT, RK4, AVERAGE_VELOCITY, SYMPLECTIC_EULER, VERLET, IMPLICIT_EULER, IMPLICIT_MIDPOINT)
+ONE_OF_EACH_ORDER = (SYMPLECTIC_EULER, VERLET, RK4)                  # enough for most quick runs
+LEFT_TO_FULL = tuple(method.function for method in INTEGRATORS if method not in ONE_OF_EACH_ORDER)
+TURNS = (MATRIX, AXIS_ANGLE, QUATERNION, GYROSCOPIC, IMPLICIT_GYROSCOPIC, RUNGE_KUTTA, MIDPOINT_TURN, SPLITTING,
+         COMPOSED_SPLITTING, COMPOSED_MIDPOINT)
+
+ENGINE_LOOKS = {"pymunk": ("#000000", "x"), "pybullet": ("#5A5A5A", "+")}         # colour and marker
+VARIANT_LINES = {"": "-", "default": ":"}                                         # the other variants are dashed

@@ -1,0 +1,302 @@
+"""What a notebook needs beside the lesson itself: the learner's code as saved just now, the check, pictures.
+
+The learner's folder is `lessons/`, or the one that the environment variable WORKBOOK_LESSONS names.
+"""
+
+import json
+import os
+import re
+import tempfile
+import uuid
+from html import escape
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+from IPython.display import HTML, Markdown, display
+
+from solutions.checks import BadInput
+
+from .. import engines, measure, modules
+from ..loading import lacks, waiting
+from ..measure import film
+from ..report import ARROWS, PLAYER_3D, plots, words
+from ..results import Role
+from ..scene import PRODUCTS
+from . import pytest_process
+
+TESTS = modules.ROOT / "tests"
+OPENINGS, ARRAY = modules.ROOT / "notebooks" / "openings.json", "array"                # made by `release`
+COLOUR = {"passed": "#00684a", "not yet": "#b3261e", "not attempted": "#7a5b00"}
+SIGN = {"passed": "✓", "not yet": "✗", "not attempted": "○"}
+
+plots.style()
+plt.rcParams["figure.figsize"] = (7.2, 3.8)
+
+
+def folder():
+    """Where the learner works."""
+    return Path(os.environ.get("WORKBOOK_LESSONS", modules.ROOT / "lessons"))
+
+
+# ---------------------------------------------------------------------------------------------- the learner's code
+
+class Unreadable:
+    """Stands in for a lesson that cannot be loaded: whatever is taken from it says why."""
+
+    def __init__(self, why):
+        self.why = why
+
+    def __getattr__(self, name):
+        return waiting(self.why)
+
+
+latest = {}                  # {lesson: what `mine` gave last}
+
+
+def mine(lesson):
+    """Your lesson, as saved just now.  A file that cannot be loaded is reported in one sentence, and nothing else breaks."""
+    try:
+        latest[lesson] = modules.bind(lesson, folder())
+    except Exception as e:
+        latest[lesson] = Unreadable(_say_unreadable(lesson, e))
+    return latest[lesson]
+
+
+def source_of(lesson, function):
+    """The text of your function as saved just now, whether the file loads or not."""
+    file = folder() / f"{lesson}.py"
+    text = file.read_text(encoding="utf-8", errors="replace") if file.is_file() else ""
+    found = re.search(rf"^def {function}\(.*?(?=^\S|\Z)", text, re.M | re.S)
+    return found[0].rstrip() if found else lacks(file, function)
+
+
+def _say_unreadable(lesson, e):
+    """Say in one sentence why a lesson could not be loaded; the sentence."""
+    why = str(e) if isinstance(e, BadInput) else f"lessons/{lesson}.py cannot be loaded: {type(e).__name__}: {e}"
+    _say(why)
+    return why
+
+
+def _say(sentence):
+    display(HTML(f'<p style="color:{COLOUR["not yet"]}"><b>{escape(sentence)}</b></p>'))
+
+
+class StandIn:
+    """In place of worked answers that are not in this copy: your lesson, as `mine` gave it last.
+
+    Where it cannot be loaded, what is given in it.
+    """
+
+    def __init__(self, lesson, withheld):
+        self.lesson, self.withheld = lesson, withheld
+
+    def __getattr__(self, name):
+        given = modules.bind(self.lesson)                              # raises BadInput where the whole lesson is not in this copy
+        own = latest[self.lesson]
+        return getattr(given if isinstance(own, Unreadable) and name not in self.withheld else own, name)
+
+
+def answers(lesson):
+    """The worked answers of a lesson.  In a copy of the workbook without them your own functions stand in, and a sentence says so."""
+    if lesson not in modules.lesson_names():
+        return StandIn(lesson, set())
+    withheld = modules.withheld(lesson)
+    if not withheld:
+        return modules.bind(lesson)
+    display(HTML(f"<p>The worked answers of {escape(lesson)} are not in this copy of the workbook: your own functions stand in "
+                 "for them. What a figure calls truth does not come from them.</p>"))
+    mine(lesson)
+    return StandIn(lesson, withheld)
+
+
+def attempt(function, *arguments):
+    """What your function returns; None, and a sentence, when it is not written yet or fails."""
+    try:
+        with np.errstate(all="ignore"):
+            return function(*arguments)
+    except NotImplementedError as e:
+        display(HTML(f'<p style="color:{COLOUR["not attempted"]}">○ {escape(str(e))}: not attempted yet, so it is not drawn.</p>'))
+    except ArithmeticError as e:
+        display(HTML(f'<p style="color:{COLOUR["not yet"]}">✗ {escape(str(e))}.</p>'))
+    except Exception as e:
+        display(HTML(f'<p style="color:{COLOUR["not yet"]}">✗ {escape(type(e).__name__)}: {escape(str(e))}.</p>'))
+    return None
+
+
+def opening(notebook, make):
+    """What `make` gives for a notebook's first picture; in a copy without worked answers what it gave when that copy was made."""
+    made = json.loads(OPENINGS.read_text()) if OPENINGS.is_file() else {}
+    if notebook not in made:
+        return attempt(make)
+    display(HTML("<p>This first picture was made beforehand, by the worked answers.</p>"))
+    return _unfrozen(made[notebook])
+
+
+def frozen(value):
+    """What `make` gave, in types that JSON knows; to five decimals, more than a picture shows."""
+    if isinstance(value, np.ndarray):
+        return {ARRAY: frozen(value.tolist())}
+    if isinstance(value, dict):
+        return {key: frozen(one) for key, one in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [frozen(one) for one in value]
+    return round(float(value), 5) if isinstance(value, (float, np.floating)) else int(value)
+
+
+def _unfrozen(value):
+    if isinstance(value, dict):
+        return np.array(value[ARRAY]) if ARRAY in value else {key: _unfrozen(one) for key, one in value.items()}
+    return [_unfrozen(one) for one in value] if isinstance(value, list) else value
+
+
+# ---------------------------------------------------------------------------------------------- the check
+
+def check(exercise):
+    """Run the grader's tests of one exercise on your code as saved just now: not attempted, not yet, or passed."""
+    try:
+        lesson, own = _lesson_of(exercise), modules.subject_folder(folder())
+    except BadInput as e:
+        _say(str(e))
+        return
+    with tempfile.TemporaryDirectory() as scratch:
+        file = Path(scratch) / "outcomes.json"
+        try:
+            said = pytest_process.run(str(TESTS / f"test_{lesson}.py"), f"--of={own}", f"--exercise={exercise}",
+                             f"--outcomes={file}", f"--rootdir={modules.ROOT}", "--tb=line")
+        except pytest_process.Ended:
+            _say(f"The check of exercise {exercise} ended without an answer: lessons/{lesson}.py ends the program, "
+                 "or asks for more memory than there is.")
+            return
+        outcomes = json.loads(file.read_text()) if file.is_file() else []
+    if not outcomes:
+        raise RuntimeError(f"the check of exercise {exercise} did not run:\n{said}")
+    display(_Answer(exercise, outcomes))
+
+
+def _lesson_of(exercise):
+    for lesson in modules.lesson_names():                              # its tests name it, whether the answers are in this copy or not
+        tests = TESTS / f"test_{lesson}.py"
+        if isinstance(exercise, str) and tests.is_file() and f'"{exercise}"' in tests.read_text():
+            return lesson
+    raise BadInput(f"exercise {exercise!r}", "unknown", 'give its number in quotes, like check("1.2")')
+
+
+class _Answer:
+    """The answer of a check, for people: the worst outcome first; all of it as text and as HTML."""
+
+    def __init__(self, exercise, outcomes):
+        self.exercise, self.outcomes = exercise, outcomes
+        self.open = [o for o in outcomes if o["status"] != "passed"]
+        states = {o["status"] for o in outcomes}
+        self.state = "not yet" if "not yet" in states else "not attempted" if "not attempted" in states else "passed"
+
+    def lines(self):
+        earned = sum(o["points"] for o in self.outcomes if o["status"] == "passed")
+        yield f"{SIGN[self.state]} Exercise {self.exercise}: {self.state}", f"{earned:g} of {sum(o['points'] for o in self.outcomes):g} points"
+        if self.state == "not attempted":
+            waits = self.open[0]["got"]
+            yield ("still open" if f"Exercise {self.exercise}:" in waits else "it waits for"), waits
+        elif self.open:
+            first = next(o for o in self.open if o["status"] == "not yet")
+            for name in ("quantity", "given", "expected", "got", "tolerance", "hint", "printed"):
+                if first[name]:
+                    yield name, first[name]
+
+    def __repr__(self):
+        (title, points), *rest = self.lines()
+        indented = ((name, value.replace("\n", f"\n{'':15}")) for name, value in rest)
+        return "\n".join([f"{title} ({points})", *(f"    {name:10} {value}" for name, value in indented)])
+
+    def _repr_html_(self):
+        (title, points), *rest = self.lines()
+        rows = "".join(f'<tr><td style="text-align:left;vertical-align:top;color:#5b666e;padding:.1rem 1rem .1rem 0">{escape(n)}</td>'
+                       f'<td style="text-align:left;white-space:pre-wrap">{escape(v)}</td></tr>' for n, v in rest)
+        return (f'<div style="border-left:4px solid {COLOUR[self.state]};padding:.3rem .8rem;margin:.3rem 0">'
+                f'<b style="color:{COLOUR[self.state]}">{escape(title)}</b> ({points})<table style="margin:0">{rows}</table></div>')
+
+
+# ---------------------------------------------------------------------------------------------- pictures
+
+def play(frames, seconds, links=(), height=260):
+    """A film: frames = {label: list of (n, 2) arrays [m]}; "truth" is drawn in grey, the others in colour."""
+    roles = [Role.TRUTH if label == "truth" else Role.OURS for label in frames]
+    films = [{"label": label, "role": role.value, "colour": colour,
+              "frames": [np.round(np.asarray(f, dtype=float), 5).tolist() for f in frames[label]]}
+             for label, role, colour in zip(frames, roles, film.colours(roles))]
+    _display({"seconds": seconds, "links": [list(map(int, pair)) for pair in links], "films": films}, height)
+
+
+def _display(picture, height=260):
+    """Show a film in the plane."""
+    name = f"p{uuid.uuid4().hex}"
+    key = " &nbsp; ".join(f'<span style="color:{run["colour"]}">●</span> {escape(run["label"])}' for run in picture["films"])
+    script = (Path(plots.__file__).parent / "player.js").read_text()
+    style = f"width:100%;max-width:46rem;height:{height}px;background:#f6f7f8"
+    display(HTML(f'<canvas data-picture="{name}" style="{style}"></canvas><div>{key}</div>'
+                 f'<script type="application/json" id="{name}">{json.dumps(picture)}</script><script>{script}</script>'))
+
+
+def show3d(bodies, runs, seconds, arrows=None, trail=None, ground=False, height=380):
+    """A film in 3D that turns under the mouse: runs = {label: poses}.  The rest is as in validate/measure/film.py."""
+    runs = {label: (Role.TRUTH if label == "truth" else Role.OURS, poses) for label, poses in runs.items()}
+    _display3d(film.packed(bodies, runs, seconds, arrows, trail, ground), height)
+
+
+def _display3d(picture, height=380):
+    """Show a film in 3D."""
+    name = f"s{uuid.uuid4().hex}"
+    key = [f'<span style="color:{run["colour"]}">■</span> {escape(run["label"])}' for run in picture["runs"]]
+    key += [f'<span style="color:{colour}">→</span> {escape(arrow)}' for arrow, colour in zip(picture["arrows"], ARROWS)]
+    display(HTML(f'<div data-space="{name}" style="width:100%;max-width:46rem;height:{height}px"></div>'
+                 f'<div>{" &nbsp; ".join(key)}</div><script type="application/json" id="{name}">{json.dumps(picture)}</script>'
+                 f'<script>{PLAYER_3D.read_text()}</script>'))
+
+
+def scene_of(name):
+    """A scene with your lesson functions in it; with the workbook's own, and a sentence, where yours cannot be loaded."""
+    return _scene_and_owner(name)[0]
+
+
+def _scene_and_owner(name):
+    """(scene, whether it holds your functions)."""
+    try:
+        return modules.bind_scene(name, folder()), True
+    except Exception as e:
+        scene = modules.bind_scene(name)
+        _say_unreadable(scene.lesson, e)
+        return scene, False
+
+
+def measured(name, most_steps=1000, **changes):
+    """Compare your methods, plain, with the truth and the engines on one scene; return what the report is made of.
+
+    changes replace fields of the Scene, such as steps=(50, 100, 200).  Where your lesson cannot be loaded a sentence says so,
+    and the engines run alone.
+    """
+    _, own = _scene_and_owner(name)
+    plan = measure.Plan(of=str(folder()) if own else "solutions", speeds=("plain",) if own else (),
+                        live=tuple(n for n in PRODUCTS if engines.installed(n)), most_steps=most_steps,
+                        changes=tuple(changes.items()))
+    result = measure.errors(name, plan)
+    return {**result, "times": measure.times(name, plan, result)}
+
+
+def show_motion(result):
+    """The scene's film: truth, your best method, an engine."""
+    picture = result["picture"]
+    if picture["space"]:
+        _display3d(picture["space"])
+    else:
+        _display(picture)
+
+
+def show_precision(result):
+    """Error against step, and error against run time: the two figures of the report, with your methods in them."""
+    plots.show(plots.convergence, result)
+    plots.show(plots.work_precision, result)
+
+
+def show_findings(result):
+    """What the numbers say."""
+    display(Markdown("\n".join(f"- {sentence}" for sentence in words.findings(result))))

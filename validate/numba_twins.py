@@ -1,0 +1,121 @@
+"""How a plain function is compiled with numba: the compiled twins, their cache, and three changes to numba itself.
+
+A twin's cache on disk lies in a folder that is named after a digest of *all* files of its set of modules.  numba looks at one
+file only, so without the digest an edit to an imported sibling would leave a stale caller.
+"""
+
+import os
+import shutil
+import types
+import uuid
+import warnings
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+CACHE = Path(__file__).resolve().parent.parent / ".cache" / "compiled"
+CACHED_SETS = 6              # digests kept on disk: some edits back; older ones are deleted
+
+
+def compiled_twins(module, names, space):
+    """{name: compiled function}, whose globals are `space`, for those functions of a module."""
+    from numba import njit
+    twins = {}
+    for name in names:
+        plain = space[name]
+        copy = types.FunctionType(plain.__code__, space, plain.__name__, plain.__defaults__, plain.__closure__)
+        copy.__module__, copy.__qualname__, copy.__doc__ = module.__name__, plain.__qualname__, plain.__doc__
+        twins[name] = njit(cache=True, error_model="numpy", no_cfunc_wrapper=True)(copy)
+        # numba recognises a function argument in its disk cache by this id alone: make it the same in every process
+        twins[name]._set_uuid(str(uuid.uuid5(uuid.NAMESPACE_URL, f"{module.__name__}.{plain.__qualname__}")))
+    return twins
+
+
+class CachedDispatch:
+    """A compiled function that looks up its machine code by the kinds of its arguments: numba's own search takes 50 µs per call."""
+
+    def __init__(self, twin):
+        self.twin, self.known = twin, {}
+
+    def __call__(self, *arguments):
+        arguments = [a.twin if isinstance(a, CachedDispatch) else a for a in arguments]           # a lesson's function may take another
+        kinds = tuple(map(_kind, arguments))
+        if kinds not in self.known:
+            from numba import typeof
+            exact = tuple(map(typeof, arguments))
+            if exact not in self.twin.overloads:
+                self.twin.compile(exact)
+            self.known[kinds] = self.twin.get_overload(exact)
+        return self.known[kinds](*arguments)
+
+
+def _kind(argument):
+    """The properties of an argument that decide which machine code it needs."""
+    if isinstance(argument, np.ndarray):
+        return argument.dtype, argument.ndim, argument.flags.num
+    if isinstance(argument, tuple):
+        return type(argument), *map(_kind, argument)
+    return argument if hasattr(argument, "py_func") else type(argument)
+
+
+@cache
+def _make_dispatcher_constants_cacheable():
+    """Let numba cache functions that pass a function on: it refuses to, because it would store an address that nobody reads."""
+    import numba.experimental.function_type  # noqa: F401           registers its own way: ours must come after
+    from numba import types
+    from numba.core.imputils import lower_constant
+    lower_constant(types.Dispatcher)(lambda context, builder, kind, function: context.get_dummy_value())
+
+
+@cache
+def _shorten_broadcast_error():
+    """Replace numba's detailed message for `rows[k] = row` by a short one: compiling the detailed one dominates compile time."""
+    from numba.extending import overload
+    from numba.np import arrayobj
+
+    def shapes_differ(src_shapes, index_shape):
+        """Stands in for numba's function of that purpose."""
+
+    @overload(shapes_differ)
+    def _(src_shapes, index_shape):
+        def say(src_shapes, index_shape):
+            raise ValueError("an array does not fit where it is assigned to")
+        return say
+    if hasattr(arrayobj, "raise_with_shape_context"):                # of numba 0.61 and later
+        arrayobj.raise_with_shape_context = shapes_differ
+
+
+@cache
+def _ignore_full_disk():
+    """Let numba go on when the disk is full: it then compiles again next time."""
+    from numba.core.caching import Cache
+    keep = Cache.save_overload
+
+    def keep_if_possible(cache, signature, data):
+        with suppress(OSError):
+            keep(cache, signature, data)
+    Cache.save_overload = keep_if_possible
+
+
+def use_cache(digest):
+    """Point numba at the folder of this digest, and delete the folders of digests long gone."""
+    import numba
+    from numba.core.config import _OptLevel
+    _make_dispatcher_constants_cacheable()
+    _shorten_broadcast_error()
+    _ignore_full_disk()
+    numba.config.OPT, numba.config.LOOP_VECTORIZE = _OptLevel(1), 0                   # same speed, a third of the compile time
+    warnings.filterwarnings("ignore", message="Cannot cache compiled function")      # then it is compiled anew, that is all
+    folder = CACHE / digest
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:                                                  # a read-only installation: compile anew each time
+        import tempfile
+        folder = Path(tempfile.mkdtemp(prefix="workbook-"))
+    os.utime(folder)
+    numba.config.CACHE_DIR = str(folder)
+    digests = sorted(folder.parent.iterdir(), key=lambda path: path.stat().st_mtime, reverse=True)
+    for old in digests[CACHED_SETS:]:
+        shutil.rmtree(old, ignore_errors=True)

@@ -1,0 +1,89 @@
+"""A block that sticks and slips under a periodic force: the reference solution, and the errors that theory allows."""
+
+from functools import cache
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from ..scene import by_order
+
+T = 4.0                      # [s]: two slips
+
+
+class DrivenBlock(NamedTuple):
+    """A block on the floor, pushed to and fro."""
+    force: Annotated[float, "amplitude [N], of F cos ωt"] = 8.0
+    omega: Annotated[float, "[rad/s]"] = 1.0
+    mu: Annotated[float, "friction [-]: holds 7.848 N"] = 0.8
+    m: Annotated[float, "mass [kg]"] = 1.0
+    g: Annotated[float, "gravity [m/s²]"] = 9.81
+
+
+@cache
+def slips(p):
+    """((begin, end, sign, x at the beginning), …): the slips up to T [s], x [m]."""
+    A, hold, w = p.force / p.m, p.mu * p.g, p.omega
+    found, t, x = [], 0.0, 0.0
+    while abs(A) > hold:
+        turn = np.ceil(w * t / np.pi - 1e-12) * np.pi / w                    # the force is strongest where cos ωt = ±1
+        if abs(A * np.cos(w * t)) <= hold:
+            t = turn - np.arccos(hold / A) / w
+        if t >= T:
+            break
+        sign = np.sign(A * np.cos(w * t))
+        speed = lambda s: sign * A / w * (np.sin(w * s) - np.sin(w * t)) - hold * (s - t)
+        s = t + np.linspace(0.0, 2.0 * np.pi / w, 1001)[1:]                  # after a whole swing only friction has done anything
+        k = np.flatnonzero(speed(s) <= 0.0)[0]
+        end = brentq(speed, s[k - 1], s[k], xtol=1e-15, rtol=1e-15)
+        found.append((t, end, sign, x))
+        x += travelled(p, found[-1], end)
+        t = end
+    return tuple(found)
+
+
+def travelled(p, slip, t):
+    """Way [m] since a slip began:  sign · ∫∫ (A |cos| − μg)."""
+    begin, _, sign, _ = slip
+    A, hold, w = p.force / p.m, p.mu * p.g, p.omega
+    s = t - begin
+    return A / w**2 * (np.cos(w * begin) - np.cos(w * t)) - A / w * np.sin(w * begin) * s - sign * 0.5 * hold * s * s
+
+
+def slip_position(p, t):
+    """x(t): during a slip from t₁,  ẍ = A cos ωt ∓ μg  integrated twice; constant between.
+
+    A slip begins where |A cos ωt| = μg, and ends where  ± A/ω (sin ωt − sin ωt₁) = μg (t − t₁);  A = F/m.
+    Source: Den Hartog 1931, forced vibrations with friction; the second equation solved by Brent's method.
+    """
+    x = 0.0
+    for slip in slips(p):
+        if t > slip[0]:
+            x = slip[3] + travelled(p, slip, min(t, slip[1]))
+    return np.array([x])
+
+
+def slip_limits(p, dt):
+    """Friction and the force are smooth within a slip, and where it begins and ends at the limit of friction an event that is found
+    late by dt costs dt² only.
+
+    Order 1 takes the force of the beginning of each step for all of it: in a slip of s seconds in which A |cos ωt| changes by V its
+    velocity goes wrong by ½ dt V.  Order 2, a midpoint step: by dt² Aω² s/24, and the way by dt² Aω s/6 besides.  The velocity at
+    the end over the deceleration there is how late it stops; where the next slip begins in that moment, it is that late times its
+    first acceleration too slow.  What adds up to dt² in order 1 is bounded by Aω dt² s each for the beginning, the end and the sum.
+    The engines know the same forces at the same times; that pymunk moves with the old velocity costs nothing, since a slip begins
+    and ends with none.
+    """
+    A, w, hold = p.force / p.m, p.omega, p.mu * p.g
+    limits, size = by_order(0.0, T, dt), abs(slip_position(p, T)[0])
+    first = second = 0.0
+    late, before = np.zeros(2), -1.0                     # by how much the slip before ended late, in either order, and when
+    for begin, end, sign, _ in slips(p):
+        s, pull = min(end, T) - begin, sign * A * np.cos(w * np.linspace(begin, end, 101))
+        fast = np.array([0.5 * dt * np.ptp(pull), dt * dt * A * w * w * s / 24.0])
+        fast += (late if begin == before else 0.0) * (pull[0] - hold)
+        late, before = fast / (hold - pull[-1]), end
+        first += fast[0] * s + 3.0 * A * w * dt * dt * s
+        second += fast[1] * s + dt * dt * A * w / 6.0 * s
+    limits = {1: limits[1] + first / size, 2: limits[2] + second / size}
+    return {**limits, "pymunk": limits[1], "pybullet": limits[1]}

@@ -1,0 +1,110 @@
+"""Kepler's ellipse: the reference solution of lesson 1's orbits, and the errors that theory allows."""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from ..scene import LATE_LEAPFROG, ROUND_OFF
+
+
+class Planet(NamedTuple):
+    """A planet that starts where it is nearest to its sun."""
+    mu: Annotated[float, "gravity of the sun, G m [m³/s²]"] = 1.0
+    a: Annotated[float, "half the long axis [m]"] = 1.0
+    e: Annotated[float, "eccentricity [-]"] = 0.6
+
+
+def perihelion(p):
+    """(x, v) where the planet is nearest to the sun and fastest: |x| = a (1 − e),  v² = μ (1 + e)/(a (1 − e))."""
+    return np.array([p.a * (1.0 - p.e), 0.0]), np.array([0.0, np.sqrt(p.mu / p.a * (1.0 + p.e) / (1.0 - p.e))])
+
+
+def attraction(x, mu):
+    """a = −μ x/|x|³"""
+    return -mu / np.linalg.norm(x) ** 3 * x
+
+
+def eccentric_anomaly(M, e):
+    """E [rad] from Kepler's equation E − e sin E = M, by Newton's method to round-off.
+
+    It starts at the end of the half turn that M is in: there the left side bends so that no correction overshoots.  So they
+    all have one sign, until round-off takes over.
+    """
+    side = np.sign(np.sin(M))
+    E = np.pi * (np.ceil(M / np.pi) if side > 0.0 else np.floor(M / np.pi))
+    while True:
+        nearer = E - (E - e * np.sin(E) - M) / (1.0 - e * np.cos(E))
+        if not side * (E - nearer) > 0.0:                                  # also where M is not a number
+            return E
+        E = nearer
+
+
+def orbit(x, v, mu, t):
+    """(x, v) at t of a planet that passes x with the velocity v on an ellipse; NaN when it escapes.
+
+    1/a = 2/r − v²/μ,   n = √(μ/a³),   e cos E₀ = 1 − r/a,   e sin E₀ = x·v/√(μa),   E − e sin E = E₀ − e sin E₀ + n t
+    With ψ = E − E₀:   x(t) = f x + g v,   f = 1 − (a/r)(1 − cos ψ),   g = ((r/a) sin ψ + e sin E₀ (1 − cos ψ))/n;
+    v(t) is the time derivative, with ψ̇ = n/(1 − e cos E).
+    Source: Bate, Mueller and White 1971, Fundamentals of astrodynamics, chapter 4.
+    """
+    r, per_a = np.linalg.norm(x), 2.0 / np.linalg.norm(x) - v @ v / mu
+    if per_a <= 0.0:
+        return np.full_like(x, np.nan), np.full_like(v, np.nan)
+    n, r_a, e_cos, e_sin = np.sqrt(mu * per_a**3), r * per_a, 1.0 - r * per_a, x @ v * np.sqrt(per_a / mu)
+    E_0, e = np.arctan2(e_sin, e_cos), np.hypot(e_sin, e_cos)
+    E = eccentric_anomaly(E_0 - e_sin + n * t, e)
+    c, s, rate = np.cos(E - E_0), np.sin(E - E_0), n / (1.0 - e * np.cos(E))
+    return ((1.0 - (1.0 - c) / r_a) * x + (r_a * s + e_sin * (1.0 - c)) / n * v,
+            -s / r_a * rate * x + (r_a * c + e_sin * s) / n * rate * v)
+
+
+def kepler_position(p, t):
+    """Kepler's ellipse: n t = E − e sin E,   n = √(μ/a³),   x = a (cos E − e, √(1 − e²) sin E)
+
+    Areas: r²θ̇ is constant; with the eccentric anomaly E in place of θ that integrates to the first equation.
+    Source: Kepler 1609, Astronomia nova; Goldstein, Classical mechanics, § 3.8.
+    """
+    return orbit(*perihelion(p), p.mu, t)[0]
+
+
+def drift(p, T, dt, k):
+    """Largest relative error of position at T of a method of order k.
+
+    Near the sun a step errs by (rate dt)ᵏ⁺¹ of the velocity, rate = √(μ/r³) at the shortest distance r: in complex time |x| = 0
+    lies about 1/rate away, and that is how fast Taylor's coefficients can grow.  A passage lasts 1/rate: it changes v by
+    (rate dt)ᵏ v, and the energy, relative to μ/2a, by
+        ε_k = 2 (1 + e)/(1 − e) (rate dt)ᵏ.
+    A method of even order does that on the way in and undoes it on the way out, as time reversal demands; only ε_k₊₁ is left
+    at every passage (and nothing by symplectic methods).  One of order 1 leaves ε₁ at every passage.  Kepler's third law: n changes by 3/2 ε, so the phase at T is wrong by
+        φ = 3/2 n T (ε_k + ε_k₊₁ n T/4π)        for even k,
+        φ = 3/2 n T ε₁ (1 + n T/4π)              for k = 1;        in metres |v(T)|/n φ.
+    The two terms may differ in sign: the midpoint method has a lucky step where they cancel.
+    Source: Calvo and Sanz-Serna 1993; Hairer, Lubich, Wanner 2006, X.3 and XI.
+    """
+    n, rate = np.sqrt(p.mu / p.a**3), np.sqrt(p.mu / (p.a * (1.0 - p.e)) ** 3)
+    x, v = orbit(*perihelion(p), p.mu, T)
+    metres = np.linalg.norm(v) / n / np.linalg.norm(x)
+    weight = metres * 1.5 * n * T * 2.0 * (1.0 + p.e) / (1.0 - p.e)        # what a relative error of v at each passage does
+    round_off = weight * (1e-12 + T / dt * ROUND_OFF)
+    return weight * ((rate * dt) ** k + n * T / (4.0 * np.pi) * (rate * dt) ** (1 if k == 1 else k + 1)) + round_off
+
+
+def late_start(p, T, dt, side):
+    """Relative error at T of leapfrog whose first velocity belongs to dt/2 before (side +1) or after (−1) the start.
+
+    Symplectic Euler and the engines are leapfrog that took v(0) for v(∓½dt): exactly the ellipse of a planet with the velocity
+    v(0) ± ½dt a(0).  At the nearest point a is across v, so that energy changes by dt² only: the ellipse turns, its period stays.
+    This error does not grow with time while leapfrog's own does, so that a sweep shows an order between 1 and 2.
+    """
+    x, v = perihelion(p)
+    shifted, _ = orbit(x, v + side * 0.5 * dt * attraction(x, p.mu), p.mu, T)
+    error = np.linalg.norm(shifted - kepler_position(p, T)) / np.linalg.norm(kepler_position(p, T))
+    return error if np.isfinite(error) else 1.0                            # it escapes: nothing is promised
+
+
+def kepler_limits(p, T, dt):
+    """{order or engine label: largest relative error at T}."""
+    smooth = {k: drift(p, T, dt, k) for k in (1, 2, 4)}
+    old, new = late_start(p, T, dt, -1.0) + smooth[2], late_start(p, T, dt, 1.0) + smooth[2]
+    return {**smooth, LATE_LEAPFROG: new, "pymunk": old, "pymunk, leapfrog start": smooth[2],
+            "pybullet": new, "pybullet, leapfrog start": smooth[2]}

@@ -1,0 +1,214 @@
+"""Rigid bodies once more, by other means: the reference solutions of lesson 5.
+
+Nothing here knows the functions of `solutions`.  A free body is solved by Jacobi's elliptic functions, a heavy symmetric top by
+their close relative, and what is left is an integral, taken by Gauss; SciPy's DOP853 on R and L is the second witness.
+"""
+
+from functools import cache
+
+import numpy as np
+from scipy.integrate import solve_ivp
+from scipy.special import ellipj, ellipkinc, ellipkm1
+
+from validate.reference.orientation import about, cross_matrix
+from validate.scene import EXACT, ROUND_OFF, by_order
+
+RTOL, ATOL = 1e-13, 1e-15    # of DOP853, near the least it accepts
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(20)
+PANEL = 1.0                  # radian of the fastest motion in each panel of Gauss's rule, whose error is then (½)⁴⁰/40!: none
+
+
+def integral(f, t, rate):
+    """∫₀ᵗ f, f(ts) of an array, changing no faster than rate [1/s]."""
+    panels = max(1, int(np.ceil(abs(t) * rate / PANEL)))
+    half = 0.5 * t / panels
+    middles = half * (2.0 * np.arange(panels)[:, None] + 1.0)
+    return half * np.sum(WEIGHTS * f(middles + half * NODES))
+
+
+def freely(R, omega_body, I, t, torque=lambda R: np.zeros(3)):
+    """(R, L) after t by DOP853 on R and L in the world, torque(R) in the world: the second witness."""
+    def slope(t, y):
+        R, L = y[:9].reshape(3, 3), y[9:]
+        omega = R @ ((R.T @ L) / I)
+        return np.concatenate((np.cross(omega, R.T).T.ravel(), torque(R)))
+    start = np.concatenate((R.ravel(), R @ (I * omega_body)))
+    end = solve_ivp(slope, (0.0, t), start, method="DOP853", rtol=RTOL, atol=ATOL).y[:, -1]
+    return end[:9].reshape(3, 3), end[9:]
+
+
+# ---------------------------------------------------------------------------------------------- a free body
+
+class FreeTop:
+    """A free body with I₁ < I₂ < I₃ that starts at R = 1 with ω in the body, and L² > 2E I₂: its axis 3 never turns back from L.
+
+    ω = (A₁ cn τ, A₂ sn τ, A₃ dn τ),  τ = nt + τ₀,      A₁² = (2EI₃ − L²)/I₁(I₃ − I₁),  A₂² = (2EI₃ − L²)/I₂(I₃ − I₂),
+    A₃² = (L² − 2EI₁)/I₃(I₃ − I₁),   n² = (I₃ − I₂)(L² − 2EI₁)/I₁I₂I₃,   k² = (I₂ − I₁)(2EI₃ − L²)/(I₃ − I₂)(L² − 2EI₁)
+    About L the body turns at  φ̇ = |L| (I₁ω₁² + I₂ω₂²)/(I₁²ω₁² + I₂²ω₂²).
+
+    2EI₃ − L² and L² − 2EI₁ are summed from squares, so that nothing cancels; 1 − k² likewise.
+    *Source:* Landau and Lifshitz, Mechanics, § 37.
+    """
+
+    @staticmethod
+    def knows(I, omega):
+        """Whether the formulas hold for this body: moments in order, L² > 2E I₂, and not quite about an axis."""
+        a, b, c = I * (I - I[1]) * omega**2                              # their sum: L² − 2E I₂
+        return I[0] < I[1] < I[2] and a + b + c > 0.0 and (omega[0] != 0.0 or omega[1] != 0.0)
+
+    def __init__(self, I, omega):
+        I1, I2, I3 = self.I = np.array(I, dtype=float)
+        squares = self.I * np.array(omega) ** 2
+        wide = (I3 - I1) * squares[0] + (I3 - I2) * squares[1]           # 2EI₃ − L²
+        tall = (I2 - I1) * squares[1] + (I3 - I1) * squares[2]           # L² − 2EI₁
+        self.minor = (I3 - I1) * ((I3 - I2) * squares[2] - (I2 - I1) * squares[0]) / ((I3 - I2) * tall)     # 1 − k²
+        up = np.sign(omega[2]) or 1.0                                    # A₁A₂A₃ > 0 solves Euler's equations
+        self.A = np.array([np.sqrt(wide / (I1 * (I3 - I1))), up * np.sqrt(wide / (I2 * (I3 - I2))), up * np.sqrt(tall / (I3 * (I3 - I1)))])
+        self.n = np.sqrt((I3 - I2) * tall / (I1 * I2 * I3))
+        self.tau = ellipkinc(np.arctan2(omega[1] / self.A[1], omega[0] / self.A[0]), 1.0 - self.minor)
+        self.L = np.linalg.norm(self.I * omega)
+        self.begin = self.frame(0.0)
+
+    def omega(self, t):
+        """ω in the body at the times t: (3, …)."""
+        sn, cn, dn, _ = ellipj(self.n * np.asarray(t) + self.tau, 1.0 - self.minor)
+        return np.array([self.A[0] * cn, self.A[1] * sn, self.A[2] * dn])
+
+    def flips(self):
+        """Times at which ω₂ changes sign, the first two after the start [s]."""
+        K = ellipkm1(self.minor)
+        return (np.array([2.0, 4.0]) * K - self.tau) / self.n
+
+    def precession(self, t):
+        squares = np.moveaxis(self.omega(t) ** 2, 0, -1) * self.I
+        return self.L * (squares[..., 0] + squares[..., 1]) / (self.I[0] * squares[..., 0] + self.I[1] * squares[..., 1])
+
+    def frame(self, t):
+        """(3, 3) from body coordinates to ones whose z is along L, but for a turn about L: its rows seen from the body."""
+        z = self.I * self.omega(t) / self.L
+        x = np.array([z[1], -z[0], 0.0]) / np.hypot(z[0], z[1])
+        return np.stack((x, np.cross(z, x), z))
+
+    def R(self, t):
+        """Orientation (3, 3) at t, from R(0) = 1."""
+        rate = 4.0 * self.L / self.I.min()
+        return self.begin.T @ about(np.array([0.0, 0.0, 1.0]), integral(self.precession, t, rate)) @ self.frame(t)
+
+
+def symmetric_top(I, omega, t):
+    """R(t) = e^(t L*/I₁) e^(t (1 − I₃/I₁) ω₃ 𝐞₃*)  of a free body with I₁ = I₂ that starts at R = 1: ω = L/I₁ + (1 − I₃/I₁) ω₃ 𝐞₃.
+
+    *Source:* Landau and Lifshitz, Mechanics, § 33.
+    """
+    L = I * omega
+    size = np.linalg.norm(L)
+    return about(L / size, size / I[0] * t) @ about(np.array([0.0, 0.0, 1.0]), (1.0 - I[2] / I[0]) * omega[2] * t)
+
+
+# ---------------------------------------------------------------------------------------------- a heavy top
+
+class HeavyTop:
+    """A symmetric top about its pivot, let go at the tilt θ₀ with nothing but its spin ω₃; u = cos θ.
+
+    With  β = 2Mgl/I₁,  α = (I₃ω₃/I₁)²:   u̇² = (u₀ − u)[β(1 − u²) − α(u₀ − u)] = β(u₀ − u)(u − u₁)(u₂ − u)
+        u = u₀ − (u₀ − u₁) (1 − cd²),   cd = sn(κt + K),   κ = ½√(β(u₂ − u₁)),   k² = (u₀ − u₁)/(u₂ − u₁)
+        φ̇ = (I₃ω₃/I₁)(u₀ − u)/(1 − u²)
+    *Source:* Landau and Lifshitz, Mechanics, § 35; Whittaker 1917, § 71.
+    """
+
+    def __init__(self, I1, I3, mgl, tilt, spin):
+        self.a, beta, self.u0 = I3 * spin / I1, 2.0 * mgl / I1, np.cos(tilt)
+        alpha = self.a * self.a
+        root = np.sqrt(alpha * alpha - 4.0 * beta * (alpha * self.u0 - beta))
+        self.u2 = (alpha + root) / (2.0 * beta)
+        self.fall = 2.0 * beta * np.sin(tilt) ** 2 / (alpha - 2.0 * beta * self.u0 + root)      # u₀ − u₁, without cancelling
+        self.u1, self.kappa = self.u0 - self.fall, 0.5 * np.sqrt(beta * (self.u2 - self.u0 + self.fall))
+        self.m = self.fall / (self.u2 - self.u1)
+        self.high = 2.0 * np.sin(0.5 * tilt) ** 2                        # 1 − u₀
+
+    def nutation(self):
+        """Period of θ [s]."""
+        return 2.0 * ellipkm1(1.0 - self.m) / self.kappa
+
+    def drop(self, t):
+        """u₀ − u."""
+        sn, cn, dn, _ = ellipj(self.kappa * np.asarray(t), self.m)
+        return self.fall * (1.0 - self.m) * (sn / dn) ** 2               # 1 − cd² = k′² sd²
+
+    def sine_squared(self, t):
+        return (self.high + self.drop(t)) * (2.0 - self.high - self.drop(t))
+
+    def precession(self, t):
+        return self.a * self.drop(t) / self.sine_squared(t)
+
+    def tips(self, ts):
+        """Horizontal coordinates (n, 2) of the unit vector along the top at these times, one after the other; at 0 it is at (0, −sin θ₀)."""
+        phi = np.cumsum([integral(lambda s: self.precession(begin + s), end - begin, 4.0 * self.a) for begin, end in zip([0.0, *ts], ts)])
+        return np.sqrt(self.sine_squared(ts))[:, None] * np.stack((np.sin(phi), -np.cos(phi)), axis=1)
+
+    def tip(self, t):
+        return self.tips([t])[0]
+
+
+# ---------------------------------------------------------------------------------------------- what a step may get wrong
+
+FIRST_ORDER = ("L kept", "L kept, by columns", "gyroscopic", "gyroscopic, implicit")
+
+
+@cache
+def growth_of_errors(I, omega, T):
+    """(fastest |ω|, ∫ ‖Φ(T, s)‖ |ω̇(s)| ds, {kind of first-order step: its relative error of R at T over dt}) of a free body.
+
+    A step leaves R off by an angle θ, in the body, and ω by δω.  Such errors obey  ė = Je,  whose solution operator is Φ:
+        θ̇ = δω − ω × θ,     I δω̇ = (Iω)* δω − ω* I δω
+    A first-order step adds dt² d to them each time, so that the error at T is dt e(T),  ė = Je + d:
+        L kept (axis–angle, quaternion)                θ: −½ω̇         δω: I⁻¹(Iω × θ), because L is kept
+        L kept, R renormalised by columns              θ: −½ω̇ + κ     δω: likewise;     κ = ½(−ω₂ω₃, ω₁ω₃, −ω₁ω₂)
+        gyroscopic term at the beginning, at the end   θ: +½ω̇         δω: −½ω̈, +½ω̈
+    κ:  1 + dt ω* = QU with Q = exp(dt ω* + dt² κ*) and U upper triangular.
+    *Source:* Hairer, Nørsett, Wanner 1993, II.8, for the global error; the defects d by expansion in dt.
+    """
+    I = np.array(I)
+
+    def parts(w):
+        W, turned = cross_matrix(w), cross_matrix(I * w) / I[:, None]       # turned @ θ: I⁻¹(Iω × θ)
+        w_dot, J_w = turned @ w, turned - W * I / I[:, None]
+        theta = np.stack((-0.5 * w_dot, 0.5 * np.array([-w[1] * w[2], w[0] * w[2], -w[0] * w[1]]) - 0.5 * w_dot), axis=1)
+        J, d = np.zeros((6, 6)), np.zeros((6, 10))
+        J[:3, :3], J[:3, 3:], J[3:, 3:] = -W, np.eye(3), J_w
+        d[:3, 6:8], d[3:, 6:8] = theta, turned @ theta
+        d[:3, 8], d[:3, 9], d[3:, 8], d[3:, 9] = 0.5 * w_dot, 0.5 * w_dot, -0.5 * J_w @ w_dot, 0.5 * J_w @ w_dot
+        return w_dot, J, d
+
+    def slope(t, y):
+        w_dot, J, d = parts(y[:3])
+        return np.concatenate((w_dot, (J @ y[3:].reshape(6, 10) + d).ravel()))
+
+    times = np.linspace(0.0, T, 401)
+    start = np.concatenate((omega, np.hstack((np.eye(6), np.zeros((6, 4)))).ravel()))
+    run = solve_ivp(slope, (0.0, T), start, method="DOP853", rtol=1e-10, atol=1e-12, t_eval=times).y.T
+    ws, Ms = run[:, :3], run[:, 3:].reshape(-1, 6, 10)
+    rate = np.linalg.norm(ws, axis=1).max()
+    scale = np.array([1.0, 1.0, 1.0, rate, rate, rate])                  # δω/rate is a number like θ
+    grown = [np.linalg.norm((Ms[-1, :, :6] @ np.linalg.inv(M[:, :6]) * scale)[:3], 2) for M in Ms]
+    change = [np.linalg.norm(parts(w)[0]) for w in ws]
+    first = np.linalg.norm(Ms[-1, :3, 6:], axis=0) * np.sqrt(2.0 / 3.0)   # |R − R*| = √2 |θ| in Frobenius' norm, and |R*| = √3
+    return float(rate), float(np.trapezoid(np.multiply(grown, change), times)), dict(zip(FIRST_ORDER, map(float, first)))
+
+
+def free_limits(p, T, dt, kinds=FIRST_ORDER):
+    """{order k: largest relative error of R at T} of a step on the free body of p; pybullet's two kinds of body by name.
+
+    First order: the worst of these kinds, χ = C dt, as χ e^χ where the expansion is no longer exact, and what second order allows.
+    Higher orders: a step errs by (rate dt)ᵏ |ω̇| dt where ω changes, which grows by Φ, and by (rate dt)ᵏ⁺¹ in its angle, which adds
+    up.  Round-off, an error of 1e-16 a step, grows like the former.
+    """
+    rate, grown, first = growth_of_errors(tuple(p.moments()), tuple(p.omega()), T)
+    noise, plain = (1.0 + grown / (rate * T)) * T / dt * ROUND_OFF, by_order(rate, T, dt)
+
+    def of_kind(C):
+        chi = min(C * dt, 500.0)                                         # e⁵⁰⁰ is large enough, and finite
+        return chi * np.exp(chi) + higher[2]
+    higher = {k: plain[k] + grown * (rate * dt) ** k + noise for k in (2, 4)}
+    return {**higher, 1: of_kind(max(first[kind] for kind in kinds)), EXACT: plain[EXACT],
+            "pybullet, reduced coordinates": of_kind(first["gyroscopic"]), "pybullet": of_kind(first["gyroscopic, implicit"])}

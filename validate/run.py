@@ -1,0 +1,79 @@
+"""A run: measure what is not measured yet, write the report, and say how it went."""
+
+import platform
+from datetime import date
+
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+from . import engines, measure, modules
+from .scene import PRODUCTS
+from .stability.examine import stability_cases
+from .store import lessons_of, store_for
+
+
+def run(names, plan, pool, out, console):
+    """Measure, report, and return the exit code: 0, or 1 when something departs that nobody predicted."""
+    from .report import summary  # brings matplotlib along
+    store = store_for(out, plan, names)
+    columns = TextColumn("{task.description:22}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn()
+    with Progress(*columns, console=console) as bars:
+        measure_errors(store, names, plan, pool, bars)
+        measure_times(store, names, plan, pool, bars)
+        front = report_on(store, names, plan, pool, bars)
+    departures = summary.show(console, store.results(names), store.stability(names))
+    if store.out != out:
+        console.print(f"\nOther scenes in {out} were measured with other code or options: their report stays as it is.",
+                      highlight=False, soft_wrap=True)
+    console.print(f"\nThe report lies in [bold]{front}[/bold]", highlight=False, soft_wrap=True)
+    return 1 if departures else 0
+
+
+def interleave_by_lesson(names):
+    """The scenes, one of each lesson in turn: neighbours run at the same time, and then compile little twice."""
+    lessons = [modules.bind_scene(name).lesson for name in names]
+    turns = {name: lessons[:k].count(lessons[k]) for k, name in enumerate(names)}
+    return sorted(names, key=turns.get)
+
+
+def measure_errors(store, names, plan, pool, bars):
+    """Errors of every scene and then the stability cases, several at a time: compiling is most of it."""
+    tasks = {**{("errors", n): (measure.errors, n, plan) for n in interleave_by_lesson(names)},
+             **{("stability", lesson): (stability_cases, lesson, plan) for lesson in lessons_of(names)}}
+    todo = {key: call for key, call in tasks.items() if not store.has(*key)}
+    bar = bars.add_task("errors and stability", total=len(tasks), completed=len(tasks) - len(todo))
+    for key, value in pool.each(todo):
+        store.put(*key, value)
+        bars.advance(bar)
+
+
+def measure_times(store, names, plan, pool, bars):
+    """Run times, one scene after the other and nothing beside them."""
+    todo = [n for n in names if not store.has("times", n)]
+    bar = bars.add_task("run times", total=len(names), completed=len(names) - len(todo))
+    for name in todo:
+        for key, value in pool.each({("times", name): (measure.times, name, plan, store.get("errors", name))}):
+            store.put(*key, value)
+            bars.advance(bar)
+
+
+def report_on(store, names, plan, pool, bars):
+    """Write the report of all scenes that were measured with this code and this plan; the path of its front page."""
+    from . import report  # brings matplotlib along
+    shown = modules.in_course_order(store.scenes())
+    results, stability = store.results(shown), store.stability(shown)
+    pages = report.files(results, stability)
+    store.note(pages=sorted({*store.state["pages"], *pages}))        # first, in case writing them is interrupted
+    front = report.write(store.out, results, stability, about(plan), pool, bars, store.measured)
+    store.finish(names, pages)
+    return front
+
+
+def about(plan):
+    """What a report was made with: a plain record for the foot of its pages."""
+    live = [f"{n} {engines.installed(n)} live" if n in plan.live else f"{n} recorded" for n in PRODUCTS]
+    compiler = f"numba {modules.numba_version()}" if modules.can_compile() else "numba not installed: plain speed only"
+    return {
+        "of": str(plan.of), "mode": "quick" if plan.quick else "full", "engines": live, "compiler": compiler,
+        "speeds": list(plan.speeds), "repeats": plan.repeats(), "date": date.today().isoformat(),
+        "machine": f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",
+    }

@@ -1,0 +1,421 @@
+"""How far apart are two bodies, along which normal, and where are they nearest or overlap?  Every pair of shapes of the narrow phase.
+
+Most are rounded hulls: some points, and a radius around what they span.  Truth is a least-squares problem with weights that are not
+negative, or the hull of all differences; the lesson has a formula for each pair, separating axes with clipping, and GJK for all.
+"""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.collisions import (
+    Box,
+    Plane,
+    ball_box,
+    ball_capsule,
+    ball_contact,
+    ball_plane,
+    ball_triangle,
+    box_box,
+    box_corners,
+    box_separation,
+    capsule_capsule,
+    cylinder_hit,
+    gjk,
+    points_plane,
+    polygon_contacts,
+)
+from validate.engines.bullet import Bullet
+from validate.methods import AXES, CONTINUOUS, GJK, NARROW
+from validate.reference.collisions import depth_of, first_root, hull_nearest
+from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Engine, EngineRun, Scene
+
+T = 1.0
+STEPS = (1,)
+METHODS = (NARROW, GJK, AXES, CONTINUOUS)
+
+
+class Params(NamedTuple):
+    pair: str = "ball, ball"
+    r: Annotated[float, "radius of the first [m]"] = 0.3
+    R: Annotated[float, "of the second [m]"] = 0.4
+
+
+CASES = {name: Params(name) for name in (
+    "ball, ball", "ball, plane", "ball, capsule", "capsule, capsule", "ball, triangle", "ball, box", "ball in a box", "box, box (corner)",
+    "box, box (edges)", "axis of a corner", "axis of two edges", "box in a box", "box on a box", "box, plane", "triangle, box", "disc, polygon (2D)", "polygon, polygon (2D)", "rectangles (2D)", "flying disc (2D)")}
+MARGIN = 0.001               # of pybullet: what it rounds boxes off with, and puts around hulls of points [m]
+
+
+# ---------------------------------------------------------------------------------------------- the bodies
+
+def turn(x, y, z):
+    """R (3, 3): about x, then y, then z, by these angles [rad]."""
+    R = np.eye(3)
+    for k, angle in enumerate((x, y, z)):
+        c, s, part = np.cos(angle), np.sin(angle), np.eye(3)
+        i, j = (k + 1) % 3, (k + 2) % 3
+        part[i, i], part[i, j], part[j, i], part[j, j] = c, -s, s, c
+        R = part @ R
+    return R
+
+
+SIGNS = np.array([[i, j, k] for k in (-1.0, 1.0) for j in (-1.0, 1.0) for i in (-1.0, 1.0)])
+WORLD, AT = turn(0.4, -0.7, 1.1), np.array([0.3, -0.2, 0.5])          # everything is turned and moved: no axis is special
+FLAT = np.array([[np.cos(0.4), -np.sin(0.4)], [np.sin(0.4), np.cos(0.4)]])
+SHAPES = {                   # name: (kind, points or (centre, turn, half edges)) of both bodies, before WORLD
+    "ball, ball": (("ball", [(0.0, 0.0, 0.0)]), ("ball", [(0.9, 0.5, -0.4)])),
+    "ball, plane": (("ball", [(0.2, 0.3, 0.8)]), ("plane", None)),
+    "ball, capsule": (("ball", [(1.0, 0.2, 0.5)]), ("capsule", [(-0.5, -0.3, -0.8), (0.2, 0.1, 0.9)])),
+    "capsule, capsule": (("capsule", [(-0.6, 1.2, -0.4), (0.8, 1.1, 0.5)]), ("capsule", [(0.3, -0.2, -0.9), (-0.1, 0.1, 0.8)])),
+    "ball, triangle": (("ball", [(0.3, 0.2, 0.9)]), ("hull", [(-0.5, -0.4, 0.0), (0.9, -0.3, 0.1), (0.2, 0.8, -0.1)])),
+    "ball, box": (("ball", [(1.1, 0.9, 0.1)]), ("box", ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.6, 0.4, 0.5)))),
+    "ball in a box": (("ball", [(0.1, 0.25, -0.1)]), ("box", ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.6, 0.4, 0.5)))),
+    "box, box (corner)": (("box", ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.9, 0.8, 0.3))), ("box", ((0.1, 0.1, 1.1), (0.7, 0.6, 0.2), (0.3, 0.35, 0.4)))),
+    "box, box (edges)": (("box", ((0.0, 0.0, 0.0), (0.7, 0.0, 0.0), (0.9, 0.4, 0.4))), ("box", ((0.0, 0.0, 1.4), (0.0, 0.8, 0.0), (0.4, 0.9, 0.4)))),
+    "box in a box": (("box", ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.9, 0.8, 0.5))), ("box", ((0.2, -0.1, 0.6), (0.3, 0.5, 0.2), (0.3, 0.3, 0.5)))),
+    "box on a box": (("box", ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.9, 0.8, 0.5))), ("box", ((0.7, -0.5, 0.85), (0.0, 0.0, 0.0), (0.6, 0.7, 0.4)))),
+    "box, plane": (("box", ((0.2, -0.1, 0.6), (0.5, 0.4, 0.2), (0.4, 0.5, 0.45))), ("plane", None)),
+    "triangle, box": (("hull", [(1.2, 0.1, 0.9), (1.9, -0.4, 0.6), (1.5, 0.9, 1.3)]), ("box", ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.6, 0.4, 0.5)))),
+    "disc, polygon (2D)": (("ball", [(1.6, 0.9)]), ("hull", [(0.0, -0.6), (0.8, -0.1), (0.5, 0.6), (-0.4, 0.5)])),
+    "polygon, polygon (2D)": (("hull", [(1.1, 0.2), (1.9, -0.1), (2.0, 0.8)]), ("hull", [(0.0, -0.6), (0.8, -0.1), (0.9, 0.6), (-0.4, 0.5)])),
+    "rectangles (2D)": (("hull", [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)]), ("hull", [(1.2, 0.9), (3.4, 0.9), (3.4, 1.7), (1.2, 1.7)])),
+    "flying disc (2D)": (("ball", [(-3.0, 0.35), (1.0, 0.05)]), ("ball", [(0.0, 0.0)])),
+}
+
+
+SHAPES |= {"axis of a corner": SHAPES["box, box (corner)"], "axis of two edges": SHAPES["box, box (edges)"]}
+AXIS_ONLY = ("axis of a corner", "axis of two edges", "box in a box")       # gap and normal: a separating axis knows no nearest points
+
+
+def flat(p):
+    return p.pair.endswith("(2D)")
+
+
+def moved(x, p):
+    """Points (k, d) as the scene has them."""
+    x = np.array(x, dtype=float)
+    return x @ FLAT.T + AT[:2] if flat(p) and p.pair != "flying disc (2D)" else x if flat(p) else x @ WORLD.T + AT
+
+
+def corners(body, p):
+    """Points of a rounded hull."""
+    kind, shape = body
+    if kind != "box":
+        return moved(shape, p)
+    x, angles, half = shape
+    return moved(np.array(x) + SIGNS * np.array(half) @ turn(*angles).T, p)
+
+
+def radii(p):
+    """Around the points of each body [m]."""
+    return [{"ball": r, "capsule": r}.get(kind, 0.0) for (kind, _), r in zip(SHAPES[p.pair], (p.r, p.R))]
+
+
+def box_of(body):
+    """The lesson's Box."""
+    x, angles, half = body[1]
+    return Box(WORLD @ np.array(x) + AT, np.ascontiguousarray(WORLD @ turn(*angles)), np.array(half))
+
+
+def the_plane():
+    """The plane z = 0, moved."""
+    n = np.ascontiguousarray(WORLD[:, 2])
+    return Plane(n, float(-n @ AT))
+
+
+def start(p):
+    return (p,)
+
+
+def quantity_names(p):
+    if p.pair == "flying disc (2D)":
+        return "share of the way [-]", "n_x [-]", "n_y [-]"
+    many = ("points [-]",) if p.pair in MANY else ()
+    return ("gap [m]", *(f"n_{c} [-]" for c in "xyz"[:2 if flat(p) else 3]), *(() if p.pair in AXIS_ONLY else (f"{c} of b [m]" for c in "xyz"[:2 if flat(p) else 3])), *many)
+
+
+MANY = ("box on a box", "rectangles (2D)")           # these touch along an area: b's point is the middle of the points of contact
+
+
+# ---------------------------------------------------------------------------------------------- ours
+
+def run(step, acceleration, state, p, dt, steps):
+    """The lesson's function for this pair; rounded hulls by GJK are the points' own distance, less the radii."""
+    a, b = SHAPES[p.pair]
+    if step.__name__ == "cylinder_hit" or p.pair == "flying disc (2D)":
+        x_0, x_1 = (np.append(0.0, x) for x in np.array(a[1]))
+        c = cylinder_hit(0.0, 1.0, x_0, x_1, p.r, p.R)
+        return (np.array([c.t, *c.n[1:]]),)
+    if p.pair in MANY:
+        c = polygon_contacts(corners(a, p), corners(b, p)) if flat(p) else box_box(box_of(a), box_of(b))
+        return (np.array([c.gap.min(), *c.n, *c.p_b.mean(axis=0), len(c.gap)]),)
+    if p.pair == "box, plane":                                               # the corners below it; of these the deepest
+        c = points_plane(box_corners(box_of(a)), the_plane())
+        k = int(np.argmin(c.gap))
+        return (np.array([c.gap[k], *c.n, *c.p_b[k]]),)
+    if step.__name__ == "gjk":
+        c = gjk(corners(a, p), corners(b, p))
+        r_a, r_b = radii(p)
+        return (np.array([c.gap - r_a - r_b, *c.n, *(c.p_b + r_b * c.n)]),)
+    if step.__name__ == "box_separation":
+        gap, n, _ = box_separation(box_of(a), box_of(b))
+        return (np.array([gap, *n]),)
+    c = narrow(p, a, b)
+    return (np.array([c.gap, *c.n, *c.p_b]),)
+
+
+def narrow(p, a, b):
+    """The Contact of a pair for which the lesson has a formula."""
+    x = corners(a, p)
+    if b[0] == "plane":
+        return ball_plane(x[0], p.r, the_plane())
+    if b[0] == "box":
+        return ball_box(x[0], p.r, box_of(b))
+    y = corners(b, p)
+    if a[0] == "capsule":
+        return capsule_capsule(x[0], x[1], p.r, y[0], y[1], p.R)
+    if b[0] == "capsule":
+        return ball_capsule(x[0], p.r, y[0], y[1], p.R)
+    return ball_triangle(x[0], p.r, *y) if b[0] == "hull" else ball_contact(x[0], p.r, y[0], p.R)
+
+
+def observe(state, p):
+    return np.array(state[0], dtype=float)
+
+
+def supports(name, p):
+    return p.pair in DOES[name]
+
+
+APART = ("ball, ball", "ball, capsule", "capsule, capsule", "ball, triangle", "ball, box", "box, box (corner)", "box, box (edges)", "triangle, box",
+         "disc, polygon (2D)", "polygon, polygon (2D)")
+DOES = {                     # method or engine: the pairs that it can do
+    "ball_contact": ("ball, ball", "ball, plane", "ball, capsule", "capsule, capsule", "ball, triangle", "ball, box", "ball in a box", "box, plane"),
+    "gjk": APART, "box_separation": (*AXIS_ONLY, *MANY), "continuous_step": ("flying disc (2D)",),
+    "pybullet": ("ball, ball", "ball, plane", "ball, capsule", "capsule, capsule", "ball in a box", "box on a box", "box, plane"),
+    "pybullet, round edges": ("ball, box", "box, box (corner)", "box, box (edges)", "box in a box"),
+    "pybullet, hull": ("ball, triangle", "triangle, box"),
+    "pymunk": ("disc, polygon (2D)", "rectangles (2D)", "flying disc (2D)"),
+}
+
+
+# ---------------------------------------------------------------------------------------------- truth
+
+def truth(p, t):
+    """Apart: nearest points of two hulls, by non-negative least squares, less the radii.  Overlapping: the hull of all differences.
+
+    ball, plane    height over the plane, of a box that of its lowest corner;     ball in a box    the nearest of six faces
+    box on a box   the rectangle that both cover: four points of contact;     rectangles    the stretch: two points
+    flying disc    first root of the distance of the centres less r + R, by brentq
+    Source: the definitions of distance and of the Minkowski difference.
+    """
+    a, b = SHAPES[p.pair]
+    if p.pair == "flying disc (2D)":
+        begin, end = np.array(a[1])
+        way = lambda s: begin + s * (end - begin)
+        s = first_root(lambda s: np.hypot(*way(s)) - p.r - p.R, 0.0, -(begin @ (end - begin)) / ((end - begin) @ (end - begin)))
+        return np.array([s, *way(s) / (p.r + p.R)])
+    if p.pair == "rectangles (2D)":                                          # overlap 0.1 m, from x = 1.2 to 2 m, b above a
+        return np.array([-0.1, *(FLAT @ [0.0, -1.0]), *moved([(1.6, 0.9)], p)[0], 2.0])
+    if p.pair == "box on a box":                                             # overlap 0.05 m, x 0.1 … 0.9, y −0.8 … 0.2
+        return np.array([-0.05, *(WORLD @ [0.0, 0.0, -1.0]), *moved([(0.5, -0.3, 0.45)], p)[0], 4.0])
+    if p.pair == "box, plane":                                               # the lowest of its corners, before WORLD turns all
+        x, angles, half = a[1]
+        lowest = min(np.array(x) + SIGNS * np.array(half) @ turn(*angles).T, key=lambda y: y[2])
+        return np.array([lowest[2], *WORLD[:, 2], *moved([(*lowest[:2], 0.0)], p)[0]])
+    if p.pair == "ball, plane":
+        return np.array([a[1][0][2] - p.r, *WORLD[:, 2], *moved([(*a[1][0][:2], 0.0)], p)[0]])
+    if p.pair == "ball in a box":                                            # 0.4 − 0.25 = 0.15 m below the face y = 0.4, which is the nearest
+        return np.array([-0.15 - p.r, *WORLD[:, 1], *moved([(0.1, 0.4, -0.1)], p)[0]])
+    if p.pair == "box in a box":
+        gap, n = depth_of(corners(a, p), corners(b, p))
+        return np.array([gap, *n])
+    x, y = hull_nearest(corners(a, p), corners(b, p))
+    distance = np.linalg.norm(x - y)
+    n, (r_a, r_b) = (x - y) / distance, radii(p)
+    return np.array([distance - r_a - r_b, *n, *(() if p.pair in AXIS_ONLY else y + r_b * n)])
+
+
+
+
+def tolerance(p, dt):
+    """Ours: a few hundred operations on numbers below 3, and normals known to round-off over a distance of 0.1: 1e-12.
+
+    GJK stops when it knows the distance to STOP = 1e-14 of the size; of points, that may leave the root of it; but these bodies have corners,
+    so that the last step is exact.  pybullet's GJK stops when the square of the distance is known to 1e-12 of itself, and its places to 1e-6
+    of the distance: 1e-5 for all.  A hull of points has a margin around it: the gap and the point on it are known to that, no better.
+    pymunk's answers are closed forms.
+    """
+    return {EXACT: 1e-12, "pybullet": 1e-5, "pybullet, round edges": 1e-5, "pybullet, hull": 2.0 * MARGIN / np.linalg.norm(truth(p, T)), "pymunk": 1e-12}
+
+
+# ---------------------------------------------------------------------------------------------- engines
+
+def bullet_body(bullet, body, r, p):
+    """One of the bodies, standing."""
+    pb = bullet.pb
+    kind, shape = body
+    x = corners(body, p) if shape else None
+    R = np.eye(3)
+    if kind == "ball":
+        made, at = pb.createCollisionShape(pb.GEOM_SPHERE, radius=r), x[0]
+    elif kind == "plane":
+        made, R, at = pb.createCollisionShape(pb.GEOM_PLANE), WORLD, AT
+    elif kind == "box":
+        box = box_of(body)
+        made, R, at = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=list(map(float, box.half))), box.R, box.x
+    elif kind == "capsule":
+        along = (x[1] - x[0]) / np.linalg.norm(x[1] - x[0])
+        side = np.cross(along, np.eye(3)[np.argmin(np.abs(along))])
+        side /= np.linalg.norm(side)
+        R, at = np.stack((side, np.cross(along, side), along), axis=1), x.mean(axis=0)
+        made = pb.createCollisionShape(pb.GEOM_CAPSULE, radius=r, height=float(np.linalg.norm(x[1] - x[0])))
+    else:
+        made = pb.createCollisionShape(pb.GEOM_MESH, vertices=x.tolist())
+    return pb.createMultiBody(0.0 if kind == "plane" else 1.0, made, basePosition=list(map(float, at)), baseOrientation=quaternion(R))
+
+
+def quaternion(R):
+    """(x, y, z, w) of a rotation by less than half a turn."""
+    w = 0.5 * np.sqrt(max(1e-9, 1.0 + np.trace(R)))
+    q = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1], 4.0 * w * w]) / (4.0 * w)
+    return (q / np.linalg.norm(q)).tolist()
+
+
+def bullet_make(p, dt):
+    """getClosestPoints within a metre: the points, their distance, and the normal from b to a."""
+    bullet = Bullet(1.0)
+    a, b = (bullet_body(bullet, body, r, p) for body, r in zip(SHAPES[p.pair], (p.r, p.R)))
+
+    def read():
+        if p.pair in MANY:
+            bullet.pb.performCollisionDetection()
+            found = bullet.pb.getContactPoints(a, b)
+        else:
+            found = bullet.pb.getClosestPoints(a, b, 1.0)
+        deepest = min(found, key=lambda c: c[8])
+        on_b = () if p.pair == "box in a box" else np.mean([c[6] for c in found], axis=0) if p.pair in MANY else deepest[6]
+        return np.array([deepest[8], *deepest[7], *on_b, *((len(found),) if p.pair in MANY else ())])
+    return EngineRun(lambda: None, read, bullet.close)
+
+
+def with_round_edges(p, t):
+    """The same with boxes whose edges and corners are rounded off with MARGIN: boxes that much smaller, with that radius around them.
+
+    Source: Bullet, btBoxShape::localGetSupportingVertexWithoutMargin and setMargin, with the margin that pybullet sets.
+    """
+    (a, b), (r_a, r_b) = SHAPES[p.pair], radii(p)
+    (x, m_a), (y, m_b) = core(a, p), core(b, p)
+    if p.pair == "box in a box":
+        gap, n = depth_of(x, y)
+        return np.array([gap - m_a - m_b, *n])
+    x, y = hull_nearest(x, y)
+    n = (x - y) / np.linalg.norm(x - y)
+    return np.array([np.linalg.norm(x - y) - r_a - m_a - r_b - m_b, *n, *(y + (r_b + m_b) * n)])
+
+
+def core(body, p):
+    """(points, margin) of a body as pybullet has it."""
+    if body[0] != "box":
+        return corners(body, p), 0.0
+    x, angles, half = body[1]
+    return corners(("box", (x, angles, np.array(half) - MARGIN)), p), MARGIN
+
+
+def pymunk_make(p, dt):
+    """Its queries: of a point, of two shapes, of a segment with a radius."""
+    import pymunk
+    space = pymunk.Space()
+    a, b = SHAPES[p.pair]
+
+    def read():
+        if p.pair == "flying disc (2D)":
+            disc = pymunk.Circle(space.static_body, p.R)
+            disc.cache_bb()
+            hit = disc.segment_query(*a[1], p.r)
+            return np.array([hit.alpha, *hit.normal])
+        other = pymunk.Poly(space.static_body, corners(b, p).tolist())
+        other.cache_bb()                                                     # a shape on its own is put in its place by this
+        if p.pair == "rectangles (2D)":
+            one = pymunk.Poly(space.static_body, corners(a, p).tolist())
+            one.cache_bb()
+            found = one.shapes_collide(other)
+            on_b = np.mean([c.point_b for c in found.points], axis=0)
+            return np.array([min(c.distance for c in found.points), *(-found.normal), *on_b, len(found.points)])
+        near = other.point_query(tuple(corners(a, p)[0]))
+        return np.array([near.distance - p.r, *near.gradient, *near.point])
+    return EngineRun(lambda: None, read, lambda: None)
+
+
+ENGINES = (
+    Engine(PYBULLET, "", bullet_make, EXACT, "getClosestPoints within 1 m; GEOM_SPHERE, _PLANE, _CAPSULE; for areas getContactPoints after performCollisionDetection"),
+    Engine(PYBULLET, "round edges", bullet_make, EXACT, "getClosestPoints within 1 m; GEOM_BOX"),
+    Engine(PYBULLET, "hull", bullet_make, EXACT, "getClosestPoints within 1 m; GEOM_MESH from corners"),
+    Engine(PYMUNK, "", pymunk_make, EXACT, "point_query, shapes_collide, segment_query with a radius"),
+)
+
+
+# ---------------------------------------------------------------------------------------------- picture
+
+def picture(name):
+    """(points, pairs) of the outlines of both bodies of a 2D case."""
+    p = CASES[name]
+    drawn, pairs = [], []
+    for (kind, shape), r in zip(SHAPES[name], (p.r, p.R)):
+        around = np.linspace(0.0, 2.0 * np.pi, 25)
+        ring = moved(shape, p)[0] + r * np.stack((np.cos(around), np.sin(around)), axis=1) if kind == "ball" else moved(shape, p)
+        first = sum(map(len, drawn))
+        drawn.append(ring)
+        pairs += [(first + i, first + (i + 1) % len(ring)) for i in range(len(ring))]
+    return np.concatenate(drawn), pairs
+
+
+FLAT_CASES = tuple(name for name in CASES if name.endswith("(2D)"))
+
+
+def points(observed, p):
+    """The pairs in the plane, side by side."""
+    drawn, across = [], 0.0
+    for name in FLAT_CASES:
+        x = picture(name)[0]
+        drawn.append(x - [x[:, 0].min() - across, x[:, 1].mean()])
+        across += np.ptp(x[:, 0]) + 0.6
+    return np.concatenate(drawn)
+
+
+def links(p):
+    pairs, first = [], 0
+    for name in FLAT_CASES:
+        x, own = picture(name)
+        pairs += [(first + i, first + j) for i, j in own]
+        first += len(x)
+    return pairs
+
+
+SCENE = Scene(
+    title="Distances and contacts",
+    lesson="collisions",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=METHODS,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-13,          # of a linear system with a condition below 100
+    tolerance=tolerance,
+    engines=ENGINES,
+    expected_departures={"pybullet, round edges": Departure("it rounds the edges and corners of a box off, with a radius of 1 mm", with_round_edges)},
+    orders={method.function: EXACT for method in METHODS},
+    supports=supports,
+    moves=False,
+    refinement="",
+    quantity_names=quantity_names,
+    published_states=((1.0, (0.40453610171, *(WORLD @ [-0.81482, -0.45268, 0.36214]), *(WORLD @ [0.574072, 0.318929, -0.255143] + AT)), 1e-4),),          # √1.22 − 0.7, by hand
+    points=points,
+    links=links,
+    uses=("the shapes of two bodies", "where they are"),
+    ablations={"motion": "continuous detection: the two scenes of points", "finding the pairs": "the scene of pairs", "response": "lesson 7 builds it"},
+)

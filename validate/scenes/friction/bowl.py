@@ -1,0 +1,198 @@
+"""A particle let slide inside a round bowl: without friction it swings for ever, with friction it stays where the wall is not too steep."""
+
+from functools import cache
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+from solutions.checks import check_positive
+from solutions.friction import InBowl, bowl_gap, check_friction, contact_motion
+from solutions.friction import falling_acceleration as acceleration
+from validate.engines.friction import SWEEPS, bullet_in_hollow
+from validate.methods import CONTACT, GRIPPING
+from validate.scene import PYBULLET, Engine, Scene, by_order
+
+T = 2.0                      # [s]: a swing to and fro; with friction it has come to rest
+STEPS = (200, 500, 1000, 2000, 5000, 10000, 20000)
+AT_REST = 1e-6               # [m/s]: what is slower has 1e-13 m to go until friction stops it
+
+
+class Params(NamedTuple):
+    mu: Annotated[float, "friction [-]"] = 0.4
+    radius: Annotated[float, "[m]"] = 1.0
+    degrees: Annotated[float, "let go this far from the bottom, towards x [°]"] = 53.13
+    v0: Annotated[float, "along y, which is the axis of a trough [m/s]"] = 1.5
+    trough: Annotated[float, "1: a trough along y, 0: a bowl"] = 0.0
+    g: Annotated[float, "gravity [m/s²]"] = 9.81
+
+
+CASES = {"rough bowl": Params(), "smooth bowl": Params(mu=0.0), "rough trough": Params(degrees=60.0, v0=0.0, trough=1.0),
+         "smooth trough": Params(mu=0.0, trough=1.0)}
+
+
+def place(p):
+    """(x, v) at the beginning, each (3,); the centre is the origin, z up."""
+    theta = np.radians(p.degrees)
+    return p.radius * np.array([np.sin(theta), 0.0, -np.cos(theta)]), np.array([0.0, p.v0, 0.0])
+
+
+def start(p):
+    for name in ("radius", "g"):
+        check_positive(name, getattr(p, name))
+    check_friction(p.mu)
+    axis = np.array([0.0, p.trough, 0.0])
+    return *place(p), InBowl(1.0, p.mu, 0.0, np.array([0.0, 0.0, -p.g]), np.zeros(3), axis, p.radius)
+
+
+def run(step, acceleration, state, p, dt, steps):
+    x, v, bowl = state
+    x, v = contact_motion(step, acceleration, bowl_gap, 0.0, x, v, dt, steps, bowl)
+    return x, v, bowl
+
+
+def observe(state, p):
+    return state[0]
+
+
+def inward(x, p):
+    """Unit normal of the wall at x, towards the axis or the centre."""
+    r = np.array([x[0], 0.0 if p.trough else x[1], x[2]])
+    return -r / np.linalg.norm(r)
+
+
+def support(x, v, p):
+    """Normal force over mass [m/s²]: what bends the path round with v²/R, beyond what gravity does;  v² without the part along a trough."""
+    round_ = v[0] ** 2 + v[2] ** 2 + (0.0 if p.trough else v[1] ** 2)
+    return round_ / p.radius + p.g * inward(x, p)[2]
+
+
+@cache
+def reference(p):
+    """[(begin, motion), …] and where it rests, or None: one piece for each start, by DOP853."""
+    def law(t, y):
+        x, v = y[:3], y[3:]
+        n, N = inward(x, p), support(x, v, p)
+        return np.concatenate((v, (0.0, 0.0, -p.g) + N * n - p.mu * N * v / max(np.linalg.norm(v), 1e-300)))
+
+    def slow(t, y):
+        return np.linalg.norm(y[3:]) - AT_REST
+    slow.terminal, slow.direction = True, -1
+
+    t, (x, v), pieces = 0.0, place(p), []
+    while t < T:
+        if p.mu > 0.0 and np.linalg.norm(v) <= AT_REST:
+            n = inward(x, p)
+            down = np.array([0.0, 0.0, -1.0]) + n[2] * n
+            if np.linalg.norm(down) <= p.mu * n[2]:
+                return pieces, x
+            v = 1.0001 * AT_REST * down / np.linalg.norm(down)
+        piece = solve_ivp(law, (t, T), np.concatenate((x, v)), method="DOP853", rtol=1e-12, atol=1e-13, dense_output=True, events=slow if p.mu else None)
+        pieces.append((t, piece.sol))
+        t, x, v = piece.t[-1], piece.y[:3, -1], piece.y[3:, -1]
+    return pieces, None
+
+
+def truth(p, t):
+    """x(t) of  ẍ = g + N n − μ N v/|v|,   N = v²/R − g · n  on the wall, by DOP853 at 1e-12; it rests for good where tan θ ≤ μ.
+
+    Source: Newton's law with the constraint |x| = R.
+    """
+    pieces, rest = reference(p)
+    if rest is not None and t >= pieces[-1][1].t_max:
+        return rest
+    return [sol for begin, sol in pieces if begin <= t][-1](t)[:3]
+
+
+def fastest(p):
+    """A bound of the speed [m/s]: all height turned into it."""
+    return np.sqrt(p.v0**2 + 2.0 * p.g * (p.radius + place(p)[0][2]))
+
+
+def tolerance(p, dt):
+    """Nothing changes faster than the pull √(g/R) and the turning v/R; order 1, pybullet too: it is symplectic Euler on planes."""
+    limits = by_order(np.sqrt(p.g / p.radius) + fastest(p) / p.radius, T, dt)
+    return {**limits, "pybullet": limits[1]}
+
+
+def pybullet_make(p, dt):
+    x, v = place(p)
+
+    def wall(x):
+        n = inward(x, p)
+        along = np.array([0.0, x[1] if p.trough else 0.0, 0.0])
+        return along - p.radius * n, n
+
+    world = bullet_in_hollow((0.0, 0.0, -p.g), p.mu, x, v, fastest(p), wall, dt)
+    return world._replace(read=lambda: np.array(world.read()))
+
+
+ENGINES = (
+    Engine(PYBULLET, "", pybullet_make, 1, f"a ball that cannot turn, on the plane that touches the bowl, laid anew before each step; "
+           f"contactSlop 0, solverResidualThreshold 0, {SWEEPS} iterations"),
+)
+
+
+def rest_angle(theta, mu):
+    """Angle θ [rad], from the bottom, at which a particle stops that is let go at rest at θ > 0 and slides down through the bottom.
+
+    w = θ̇² R/g obeys  dw/dθ = 2μ w + 2 (μ cos θ − sin θ)  on the way down:  w = C e^(2μθ) + A cos θ + B sin θ,
+    A = 2(1 − 2μ²)/(1 + 4μ²),   B = 6μ/(1 + 4μ²);   it stops where w is 0 again.
+    *Source:* the linear equation for θ̇², as in any text on friction on a curve.
+    """
+    A, B = 2.0 * (1.0 - 2.0 * mu**2) / (1.0 + 4.0 * mu**2), 6.0 * mu / (1.0 + 4.0 * mu**2)
+    C = -(A * np.cos(theta) + B * np.sin(theta)) * np.exp(-2.0 * mu * theta)
+    w = lambda y: C * np.exp(2.0 * mu * y) + A * np.cos(y) + B * np.sin(y)
+    return brentq(w, -theta, theta - 1e-3, xtol=1e-14)
+
+
+def sanity_checks():
+    """((claim, found, expected, tolerance), …): the truth itself against closed forms."""
+    p, smooth = CASES["rough trough"], CASES["smooth bowl"]
+    x = truth(p, T)
+    rest = rest_angle(np.radians(p.degrees), p.mu)
+    end = reference(smooth)[0][0][1](T)
+    begin = np.concatenate(place(smooth))
+    energy = [0.5 * y[3:] @ y[3:] + smooth.g * y[2] for y in (begin, end)]
+    spin = [y[0] * y[4] - y[1] * y[3] for y in (begin, end)]
+    far = [np.arctan(np.hypot(x[0], 0.0 if q.trough else x[1]) / -x[2]) for q in (CASES["rough bowl"], p) for x in [truth(q, T)]]
+    return (("angle at which the rough trough keeps it [rad]", np.arctan2(x[0], -x[2]), rest, 1e-9),
+            ("steepness of the places where it rests, over μ [-]: at most 1", np.tan(far) / p.mu, 0.5, 0.5),
+            ("energy without friction after 2 s [J/kg]", energy[1], energy[0], 1e-9),
+            ("angular momentum about z without friction [m²/s]", spin[1], spin[0], 1e-9))
+
+
+def points(observed, p):
+    """Seen from the side, slightly from above: the particle, and the rim and the section of the bowl as a line of points."""
+    around = np.linspace(-np.pi, 0.0, 25)
+    wall = p.radius * np.stack([np.cos(around), np.sin(around)], axis=1)
+    return np.concatenate((wall, [[observed[0] + 0.35 * observed[1], observed[2] + 0.2 * observed[1]]]))
+
+
+def links(p):
+    return [(n, n + 1) for n in range(24)]
+
+
+SCENE = Scene(
+    title="Particle in a bowl",
+    lesson="friction",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=(CONTACT, GRIPPING),
+    acceleration=acceleration,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-9,
+    tolerance=tolerance,
+    engines=ENGINES,
+    omitted_methods="the sliding and the event step hold a block on one plane; a bowl has another one at every place",
+    sanity_checks=sanity_checks,
+    points=points,
+    links=links,
+    uses=("three coordinates", "an implicit surface", "one impulse for each contact"),
+    ablations={"rotation: it slides, and does not roll": "lesson 5 builds it", "detection between bodies": "lesson 6 builds it"},
+)

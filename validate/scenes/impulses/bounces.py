@@ -1,0 +1,221 @@
+"""A ball dropped from a metre rebounds with four fifths of its speed, again and again: each apex is 0.64 times the one before."""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from solutions.checks import check_positive
+from solutions.impulses import Drop, check_restitution, drop_all
+from solutions.impulses import falling_acceleration as acceleration
+from validate.engines.bullet import IMPACT_SETTINGS, Impacts
+from validate.engines.chipmunk import pymunk_ball, pymunk_floor, pymunk_space, pymunk_world
+from validate.methods import BACKTRACKING, PENALTY, PROJECTING
+from validate.reference.impulses import APART, COPIES, LATE, delays, soft_bounce
+from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Engine, EngineRun, Scene, by_order
+
+T = 1.9                      # [s]: in the third flight, clear of impacts
+STEPS = (40, 100, 200, 500, 1000, 2500, 10000)
+RADIUS = 0.1                 # of the engines' balls [m]
+
+
+class Params(NamedTuple):
+    e: Annotated[float, "restitution [-]"] = 0.8
+    h: Annotated[float, "dropped from here [m]"] = 1.0
+    slip: Annotated[float, "velocity along the floor [m/s]"] = 0.5
+    space: Annotated[float, "1: three coordinates, 0: two"] = 0.0
+    omega: Annotated[float, "√(stiffness/mass) of the penalty's spring [rad/s]"] = 100.0
+    g: Annotated[float, "gravity [m/s²]"] = 9.81
+
+    def damping(self):
+        """ζ of the penalty's damper that leaves e of the speed:  e = exp(−q (π − 2 atan q)),  q = ζ/√(1 − ζ²); it lets go before it would pull.
+
+        Source: Schwager and Pöschel 2007.
+        """
+        q = brentq(lambda q: q * (np.pi - 2.0 * np.arctan(q)) + np.log(max(self.e, 0.2)), 0.0, 10.0, xtol=1e-15)
+        return q / np.sqrt(1.0 + q * q)
+
+
+CASES = {"plane": Params(), "space": Params(space=1.0), "comes to rest": Params(e=0.5)}
+
+
+def supports(name, p):
+    """The penalty's ball does not come to rest like the others: it goes on swinging inside."""
+    return name != "penalty_step" or p.e >= 0.8
+
+
+def fallen(p):
+    """(height, speed) (COPIES,) at the beginning: each copy was let go a moment earlier than the one before."""
+    before = delays(0.15)
+    return p.h - 0.5 * p.g * before**2, -p.g * before
+
+
+def start(p):
+    for name in ("h", "g", "omega"):
+        check_positive(name, getattr(p, name))
+    check_restitution(p.e)
+    d = 3 if p.space else 2
+    up = np.zeros(d)
+    up[-1] = 1.0
+    x, v = np.zeros((COPIES, d)), np.zeros((COPIES, d))
+    x[:, -1], v[:, -1] = fallen(p)
+    v[:, 0] = p.slip
+    return x, v, Drop(p.e, -p.g * up, np.zeros(d), up, p.omega**2, 2.0 * p.damping() * p.omega)
+
+
+def run(step, acceleration, state, p, dt, steps):
+    x, v, drop = state
+    x, v = drop_all(step, acceleration, 0.0, x, v, dt, steps, drop)
+    return x, v, drop
+
+
+def observe(state, p):
+    """Way along the floor, height, and both velocities, of each copy."""
+    x, v, _ = state
+    return np.stack((x[:, 0], x[:, -1], v[:, 0], v[:, -1]), axis=1).ravel()
+
+
+def impacts(p):
+    """When a ball dropped at 0 meets the floor, one impact after the other, and its speed before each."""
+    v, t = np.sqrt(2.0 * p.g * p.h), np.sqrt(2.0 * p.h / p.g)
+    while v > 1e-15:
+        yield t, v
+        v *= p.e
+        t += 2.0 * v / p.g
+
+
+def flight(p, t):
+    """(height, speed) at t after it was dropped."""
+    y, v, since = p.h, 0.0, 0.0
+    for moment, speed in impacts(p):
+        if moment > t:
+            since = t - since
+            return y + v * since - 0.5 * p.g * since**2, v - p.g * since
+        y, v, since = 0.0, p.e * speed, moment
+    return 0.0, 0.0
+
+
+def seen(p, t, each):
+    """What is observed of all copies, each(k) the height and speed of one."""
+    return np.array([(p.slip * t, *each(k)[:1], p.slip, *each(k)[1:]) for k in range(COPIES)]).ravel()
+
+
+def truth(p, t):
+    """Parabolas from impact to impact, eᵏ √(2gh) the speed after the k-th; at rest from  √(2h/g) (1 + e)/(1 − e)  on.
+
+    Source: deck A, coefficient of restitution; the geometric series.
+    """
+    before = delays(0.15)
+    return seen(p, t, lambda k: flight(p, t + before[k]))
+
+
+def soft(p, t):
+    """The same over a floor of springs and dampers, in closed form from arc to arc."""
+    y, v = fallen(p)
+    return seen(p, t, lambda k: soft_bounce(y[k], v[k], t, p.g, p.omega, p.damping()))
+
+
+def tolerance(p, dt):
+    """An impact is seen late by LATE steps at most; who leaves from below, with e v, needs 1/e of that to get out: L = LATE dt/e.
+
+    So after every impact the speed is off by  s ← e (s + g L),  because it was met so much later, and the time by  τ ← τ + L + 2s/g,  the
+    next flight being longer by 2s/g.  At T, a after the last impact, the height is off by |v| τ + s a + ½ g dt a and the speed by
+    g τ + s + g dt.  A ball that lies is as deep as its first impact left it, v₁ L at most, or leaps with the g dt of a step.
+    The penalty's spring keeps ½v² + ½ω²x² − ½ω² dt x v, so that entering and leaving at |x| ≤ v dt costs (ω dt)² of the speed, and its
+    damper, at one end of the step, ζω dt.
+    """
+    exact, L = by_order(1.0 / T, T, dt)[EXACT], LATE * dt / p.e
+    fast = np.sqrt(2.0 * p.g * p.h)
+
+    def off(before, kick):
+        s = tau = since = 0.0
+        for moment, speed in impacts(p):
+            if moment > T + before:
+                a = T + before - since
+                return abs(flight(p, T + before)[1]) * tau + s * a + 0.5 * p.g * dt * a, p.g * (tau + dt) + s
+            s, since = p.e * (s + p.g * L) + kick * speed, moment
+            tau += L + 2.0 * s / p.g
+        return (fast * L, p.g * L) if since - before + tau < T else (np.inf, np.inf)
+
+    def limit(kick):
+        worst = np.max([np.abs(off(before, kick)) for before in delays(0.15)], axis=0)
+        return np.linalg.norm(worst) * np.sqrt(COPIES) / np.linalg.norm(truth(p, T)) + exact
+    late = limit(0.0)
+    return {1: late, EXACT: exact, "penalty": limit((p.omega * dt) ** 2 + p.damping() * p.omega * dt), "pymunk": late, "pybullet": late}
+
+
+def pymunk_make(p, dt):
+    space = pymunk_space((0.0, -p.g))
+    pymunk_floor(space)
+    balls = [pymunk_ball(space, 1.0, 1.0, RADIUS, (APART * k, y + RADIUS), (p.slip, v), 0.0, p.e, 0.0) for k, (y, v) in enumerate(zip(*fallen(p)))]
+    read = lambda: np.array([(b.position.x - APART * k, b.position.y - RADIUS, *b.velocity) for k, b in enumerate(balls)]).ravel()
+    return pymunk_world(space, dt, read)
+
+
+def pybullet_make(p, dt):
+    bullet = Impacts(dt, (0.0, 0.0, -p.g))
+    bullet.plane()
+    balls = [bullet.ball(1.0, 1.0, RADIUS, (0.0, APART * k, y + RADIUS), (p.slip, 0.0, v), (0.0,) * 3, p.e, 0.0) for k, (y, v) in enumerate(zip(*fallen(p)))]
+
+    def read():
+        x, v = (np.array([get(b) for b in balls]) for get in (bullet.position, bullet.velocity))
+        return np.stack((x[:, 0], x[:, 2] - RADIUS, v[:, 0], v[:, 2]), axis=1).ravel()
+    return EngineRun(bullet.step, read, bullet.close)
+
+
+ENGINES = (
+    Engine(PYMUNK, "", pymunk_make, 1, f"{COPIES} circles on a thick segment; collision_slop 1e-5"),
+    Engine(PYBULLET, "", pybullet_make, 1, f"{COPIES} spheres on a GEOM_PLANE; {IMPACT_SETTINGS}", most_steps=2500),
+)
+
+
+def sanity_checks():
+    p = Params()
+    flights = [moment for moment, _ in zip(impacts(p), range(4))]
+    apexes = [flight(p, 0.5 * (a + b))[0] for (a, _), (b, _) in zip(flights, flights[1:])]
+    return (("the first three apexes [m]", apexes, (0.64, 0.4096, 0.262144), 1e-14),
+            ("it lies from [s]", list(impacts(p))[-1][0], 4.063712769, 5e-10),
+            ("it lies from, by the series [s]", np.sqrt(2.0 / p.g) * 1.8 / 0.2, 4.063712769, 5e-10),
+            ("a hard spring is a hard floor, but for π/ω an impact: off by [-]", np.linalg.norm(soft(p._replace(omega=1e5), T) - truth(p, T)) / np.linalg.norm(truth(p, T)), 0.0, 1e-3))
+
+
+def points(observed, p):
+    """The first copy over the floor."""
+    return np.array([[-0.2, 0.0], [2.6, 0.0], observed[:2]])
+
+
+def links(p):
+    return [(0, 1)]
+
+
+def in_space(p):
+    """The same motion with a third coordinate carried along."""
+    p = p._replace(space=1.0)
+    return start(p), p
+
+
+SCENE = Scene(
+    title="Bounces",
+    lesson="impulses",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=(PENALTY, PROJECTING, BACKTRACKING),
+    acceleration=acceleration,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-14,
+    tolerance=tolerance,
+    engines=ENGINES,
+    expected_departures={"penalty": Departure("its floor is a spring that takes 30 ms to turn the ball round, whatever the step", soft)},
+    orders={"backtracking_step": EXACT},          # a parabola between impacts whose moments are found
+    supports=supports,
+    sanity_checks=sanity_checks,
+    points=points,
+    links=links,
+    film_seconds=4.5,          # [s]: until it lies
+    uses=("two coordinates", "one plane", "one number e for each impact"),
+    ablations={"the third dimension": in_space, "rotation: nothing turns the ball": "the scene spinning_bounce puts it in", "detection": "one ball, one plane; lesson 6 finds contacts"},
+)

@@ -1,0 +1,144 @@
+"""Five equal balls in a row, and one that arrives: how many leave?  With gaps between them mechanics knows; when they touch it does not."""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import check_positive
+from solutions.impulses import Discs, discs_all
+from validate.engines.bullet import IMPACT_SETTINGS, Impacts
+from validate.engines.chipmunk import pymunk_ball, pymunk_space, pymunk_world
+from validate.methods import BACKTRACKING_DISCS, PROJECTING_DISCS
+from validate.reference.impulses import APART, COPIES, delays
+from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Scene, by_order
+
+T = 0.4                      # [s]: all is over after 0.16
+STEPS = (20, 50, 100, 200, 500, 2000, 5000)
+BALLS = 5
+WINDOW = 0.05                # the first ball of the copies begins up to so much later on its way [s]
+
+
+class Params(NamedTuple):
+    gap: Annotated[float, "between neighbours [m]; 0: they touch"] = 0.02
+    away: Annotated[float, "of the first ball from the second [m]"] = 0.1
+    v: Annotated[float, "speed of the first [m/s]"] = 1.0
+    R: Annotated[float, "radius [m]"] = 0.05
+
+
+CASES = {"with gaps": Params(), "touching": Params(gap=0.0)}
+
+
+def start(p):
+    for name in ("away", "v", "R"):
+        check_positive(name, getattr(p, name))
+    x, v = np.zeros((COPIES, BALLS, 2)), np.zeros((COPIES, BALLS, 2))
+    x[:, 1:, 0] = 2.0 * p.R + p.away + (2.0 * p.R + p.gap) * np.arange(BALLS - 1)
+    x[:, 0, 0] = p.v * delays(WINDOW)
+    v[:, 0, 0] = p.v
+    return x, v, Discs(np.full(BALLS, p.R), np.ones(BALLS), 1.0)
+
+
+def run(step, acceleration, state, p, dt, steps):
+    x, v, discs = state
+    x, v = discs_all(step, x, v, dt, steps, discs)
+    return x, v, discs
+
+
+def seen(x, v, p):
+    """With gaps: place and velocity of each ball.  Touching: momentum and twice the energy, over the mass; who has them is another matter."""
+    if p.gap > 0.0:
+        return np.concatenate((x, v), axis=1).ravel()
+    return np.stack((np.sum(v, axis=1), np.sum(v**2, axis=1)), axis=1).ravel()
+
+
+def observe(state, p):
+    return seen(state[0][:, :, 0], state[1][:, :, 0], p)
+
+
+def truth(p, t):
+    """With gaps the velocity goes from ball to ball, each time e = 1 and equal masses; it is the last that leaves: (0, 0, 0, 0, 1).
+
+    Touching balls meet all at once, and five velocities have two conditions only: momentum and energy.  (Both engines end with
+    (−½, 0, ½, ½, ½) here, whatever the step, and our steps with (0, 0, 0, 0, 1).)
+    Source: Newton; for what touching balls may do, Herrmann and Schmälzle 1981.
+    """
+    x, v, _ = start(p)
+    x, v = x[:, :, 0], v[:, :, 0]
+    if p.gap == 0.0:
+        return seen(x, v, p)
+    for k, before in enumerate(delays(WINDOW)):
+        began = 0.0                                                      # when ball i began to move
+        for i in range(BALLS):
+            stops = began + (p.away - p.v * before if i == 0 else p.gap) / p.v if i < BALLS - 1 else np.inf
+            x[k, i] += p.v * np.clip(t - began, 0.0, stops - began)
+            v[k, i] = p.v if began <= t < stops else 0.0
+            began = stops
+    return seen(x, v, p)
+
+
+def tolerance(p, dt):
+    """Each of four impacts is seen up to a step late, and until then a ball goes v dt too far: four times that for the last; being moved
+    apart costs a ball that much once more.  A step in which a ball crosses a whole gap sees two impacts as one: then anything may be.
+    Touching balls keep momentum and energy exactly, whoever gets them.
+    """
+    exact = by_order(1.0 / T, T, dt)[EXACT]
+    if p.gap == 0.0:
+        late = exact if p.v * dt < p.R else np.inf                      # in a longer step the first may pass the centre of the second
+        return {1: late, EXACT: exact, "pymunk": late, "pybullet": late}
+    late = 5.0 * p.v * dt * np.sqrt(BALLS * COPIES) / np.linalg.norm(truth(p, T)) + exact if 2.0 * p.v * dt < p.gap else np.inf
+    return {1: late, EXACT: exact, "pymunk": late, "pybullet": late}
+
+
+def pymunk_make(p, dt):
+    space, (x, v, _) = pymunk_space(), start(p)
+    space.iterations = 50
+    balls = [pymunk_ball(space, 1.0, 1.0, p.R, (x[k, i, 0], APART * k), v[k, i], 0.0, 1.0, 0.0) for k in range(COPIES) for i in range(BALLS)]
+
+    def read():
+        rows = np.array([(b.position.x, b.velocity.x) for b in balls]).reshape(COPIES, BALLS, 2)
+        return seen(rows[:, :, 0], rows[:, :, 1], p)
+    return pymunk_world(space, dt, read)
+
+
+def pybullet_make(p, dt):
+    bullet, (x, v, _) = Impacts(dt), start(p)
+    balls = [bullet.ball(1.0, 1.0, p.R, (x[k, i, 0], APART * k, 0.0), (*v[k, i], 0.0), (0.0,) * 3, 1.0, 0.0) for k in range(COPIES) for i in range(BALLS)]
+
+    def read():
+        rows = np.array([(bullet.position(b)[0], bullet.velocity(b)[0]) for b in balls]).reshape(COPIES, BALLS, 2)
+        return seen(rows[:, :, 0], rows[:, :, 1], p)
+    return EngineRun(bullet.step, read, bullet.close)
+
+
+ENGINES = (
+    Engine(PYMUNK, "", pymunk_make, 1, f"{COPIES} rows of circles; 50 iterations, collision_slop 1e-5"),
+    Engine(PYBULLET, "", pybullet_make, 1, f"{COPIES} rows of spheres; {IMPACT_SETTINGS}", most_steps=500),
+)
+
+
+def points(observed, p):
+    """The centres of the first row; touching balls at their places before, for want of others."""
+    x = observed[:BALLS] if p.gap > 0.0 else start(p)[0][0, :, 0]
+    return np.round(np.stack((x, np.zeros(BALLS)), axis=1), 5)
+
+
+SCENE = Scene(
+    title="Cradle",
+    lesson="impulses",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=(PROJECTING_DISCS, BACKTRACKING_DISCS),
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-15,
+    tolerance=tolerance,
+    engines=ENGINES,
+    orders={"backtracking_discs_step": EXACT},
+    points=points,
+    uses=("one coordinate", "the order of the impacts"),
+    ablations={"the strings": "they would turn straight lines into arcs", "the stiffness of the balls": "it decides who leaves when balls touch; rigid bodies have none",
+              "rotation and friction": "impacts along the line of centres do not ask for them"},
+)

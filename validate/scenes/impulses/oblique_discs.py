@@ -1,0 +1,171 @@
+"""A disc strikes another off its centre: without friction all that counts is the line between their centres at the moment they touch."""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import check_positive
+from solutions.impulses import Discs, check_restitution, discs_all
+from validate.engines.bullet import IMPACT_SETTINGS, Impacts
+from validate.engines.chipmunk import pymunk_ball, pymunk_space, pymunk_world
+from validate.methods import BACKTRACKING_DISCS, PROJECTING_DISCS
+from validate.reference.impulses import APART, COPIES, delays
+from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Scene, by_order
+
+T = 1.0                      # [s]: they meet before half of it
+STEPS = (20, 50, 100, 200, 500, 2000, 5000)
+WINDOW = 0.1                 # the copies begin up to so much later on their way [s]
+
+
+class Params(NamedTuple):
+    m1: Annotated[float, "mass of the one that moves [kg]"] = 1.0
+    m2: Annotated[float, "of the one that rests [kg]"] = 2.0
+    v: Annotated[float, "speed, along x [m/s]"] = 4.0
+    R: Annotated[float, "radius of both [m]"] = 0.25
+    offset: Annotated[float, "of the second centre in +y, over the sum of the radii [-]"] = 0.6
+    e: Annotated[float, "restitution [-]"] = 0.9
+    away: Annotated[float, "distance that is to go until they meet [m]"] = 1.6
+    space: Annotated[float, "1: three coordinates, 0: two"] = 0.0
+
+
+CASES = {"discs": Params(), "spheres": Params(space=1.0)}
+
+
+def start(p):
+    for name in ("m1", "m2", "v", "R", "away"):
+        check_positive(name, getattr(p, name))
+    check_restitution(p.e)
+    x, v = np.zeros((COPIES, 2, 3 if p.space else 2)), np.zeros((COPIES, 2, 3 if p.space else 2))
+    x[:, 0, 0] = p.v * delays(WINDOW) - p.away
+    x[:, 1, :2] = 2.0 * p.R * normal(p)
+    v[:, 0, 0] = p.v
+    return x, v, Discs(np.full(2, p.R), np.array([1.0 / p.m1, 1.0 / p.m2]), p.e)
+
+
+def run(step, acceleration, state, p, dt, steps):
+    x, v, discs = state
+    x, v = discs_all(step, x, v, dt, steps, discs)
+    return x, v, discs
+
+
+def observe(state, p):
+    """Places and velocities of both, of each copy: (COPIES, 8), flat."""
+    x, v, _ = state
+    return np.concatenate((x[:, :, :2], v[:, :, :2]), axis=2).ravel()
+
+
+def normal(p):
+    """From the first to the second, where they meet: (cos θ, sin θ), sin θ = offset."""
+    return np.array([np.sqrt(1.0 - p.offset**2), p.offset])
+
+
+def after(p):
+    """Velocities (2,), (2,) [m/s] when they have parted."""
+    n = normal(p)
+    j = (1.0 + p.e) * p.v * n[0] / (1.0 / p.m1 + 1.0 / p.m2)
+    return np.array([p.v, 0.0]) - j / p.m1 * n, j / p.m2 * n
+
+
+def truth(p, t):
+    """Straight lines;  j = (1 + e) v cos θ/(1/m₁ + 1/m₂)  along the line of centres, sin θ = offset.
+
+    Source: deck A, "Computing impulse", without rotation.
+    """
+    v1, v2 = after(p)
+    rest, rows = 2.0 * p.R * normal(p), []
+    for before in delays(WINDOW):
+        since = t + before - p.away / p.v
+        if since < 0.0:
+            rows.append((p.v * since, 0.0, p.v, 0.0, *rest, 0.0, 0.0))
+        else:
+            rows.append((*(since * v1), *v1, *(rest + since * v2), *v2))
+    return np.ravel(rows)
+
+
+def tolerance(p, dt):
+    """Seen up to a step late, the two overlap: the first is up to s = v dt too far, and the line of centres at atan(sin θ/(cos θ − s/D)).
+
+    So much, Δθ, does the normal turn, and the impulse (1 + e) m v (n · x) n with it, by that times Δθ at most; what follows is a wrong
+    velocity and a growing distance.  Besides, the first goes on as before for s, and both are moved apart by what they overlap, s at most.
+    """
+    exact, s = by_order(1.0 / T, T, dt)[EXACT], p.v * dt / (2.0 * p.R)
+    c = normal(p)[0]
+    if s >= c:                                                           # it may pass the other before anybody looks
+        return {1: np.inf, EXACT: exact, "pymunk": np.inf, "pybullet": np.inf}
+    turned = np.arctan2(p.offset, c - s) - np.arctan2(p.offset, c)
+    impulse = (1.0 + p.e) * p.v / (1.0 / p.m1 + 1.0 / p.m2) * turned
+    wrong = np.hypot(impulse / p.m1, impulse / p.m2)
+    since = T + WINDOW - p.away / p.v
+    off = np.hypot(wrong, wrong * since + 3.0 * p.v * dt)
+    late = off * np.sqrt(COPIES) / np.linalg.norm(truth(p, T)) + exact
+    return {1: late, EXACT: exact, "pymunk": late, "pybullet": late}
+
+
+def pymunk_make(p, dt):
+    space, (x, v, _) = pymunk_space(), start(p)
+    discs = [pymunk_ball(space, m, 1.0, p.R, x[k, i, :2] + (0.0, APART * k), v[k, i, :2], 0.0, p.e if i else 1.0, 0.0)
+             for k in range(COPIES) for i, m in enumerate((p.m1, p.m2))]
+    read = lambda: np.array([(*(np.array(b.position) - (0.0, APART * (k // 2))), *b.velocity) for k, b in enumerate(discs)]).ravel()
+    return pymunk_world(space, dt, read)
+
+
+def pybullet_make(p, dt):
+    bullet, (x, v, _) = Impacts(dt), start(p)
+    balls = [bullet.ball(m, 1.0, p.R, (*x[k, i, :2], APART * k), (*v[k, i, :2], 0.0), (0.0,) * 3, p.e if i else 1.0, 0.0)
+             for k in range(COPIES) for i, m in enumerate((p.m1, p.m2))]
+    read = lambda: np.array([(*bullet.position(b)[:2], *bullet.velocity(b)[:2]) for b in balls]).ravel()
+    return EngineRun(bullet.step, read, bullet.close)
+
+
+ENGINES = (
+    Engine(PYMUNK, "", pymunk_make, 1, f"{COPIES} pairs of circles; no other setting matters"),
+    Engine(PYBULLET, "", pybullet_make, 1, f"{COPIES} pairs of spheres; {IMPACT_SETTINGS}", most_steps=500),
+)
+
+
+def sanity_checks():
+    p = Params()
+    v1, v2 = after(p)
+    return (("velocity of the first [m/s]", v1, (0.757333, -2.432), 5e-7), ("of the second [m/s]", v2, (1.621333, 1.216), 5e-7),
+            ("momentum [kg m/s]", p.m1 * v1 + p.m2 * v2, (4.0, 0.0), 1e-14))
+
+
+def points(observed, p):
+    """The first pair, each with six corners for its rim."""
+    around = np.linspace(0.0, 2.0 * np.pi, 7)[:-1]
+    rim = p.R * np.stack((np.cos(around), np.sin(around)), axis=1)
+    return np.round(np.concatenate((observed[0:2] + rim, observed[4:6] + rim)), 4)
+
+
+def links(p):
+    return [(i + k, i + (k + 1) % 6) for i in (0, 6) for k in range(6)]
+
+
+def in_space(p):
+    """The same motion with a third coordinate carried along."""
+    p = p._replace(space=1.0)
+    return start(p), p
+
+
+SCENE = Scene(
+    title="Oblique discs",
+    lesson="impulses",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=(PROJECTING_DISCS, BACKTRACKING_DISCS),
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-15,
+    tolerance=tolerance,
+    engines=ENGINES,
+    orders={"backtracking_discs_step": EXACT},
+    sanity_checks=sanity_checks,
+    points=points,
+    links=links,
+    uses=("two coordinates", "two radii", "one number e for the impact"),
+    ablations={"the third dimension": in_space, "rotation: without friction nothing turns a disc": "the scene spinning_bounce puts it in",
+              "detection: the only pair is asked each time": "lesson 6 finds pairs among many"},
+)

@@ -1,0 +1,170 @@
+"""A spinning ball meets the floor: friction takes from its slip what the cone allows, or all of it; then it leaves rolling."""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import check_positive
+from solutions.friction import check_friction
+from solutions.impulses import Spinner, check_restitution, spin_all
+from solutions.impulses import falling_acceleration as acceleration
+from validate.engines.bullet import IMPACT_ITERATIONS, IMPACT_SETTINGS, Impacts
+from validate.engines.chipmunk import pymunk_ball, pymunk_floor, pymunk_space, pymunk_world
+from validate.methods import BACKTRACKING_SPIN, PROJECTING_SPIN
+from validate.reference.impulses import APART, COPIES, delays
+from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Scene, by_order
+
+T = 1.0                      # [s]: it meets the floor after half of it
+STEPS = (20, 50, 100, 200, 500, 2000, 10000)
+WINDOW = 0.2                 # the copies begin up to so much later on their way [s]
+
+
+class Params(NamedTuple):
+    shape: Annotated[float, "I/mR² [-]: 2/5 for a sphere, 1/2 for a disc"] = 0.4
+    mu: Annotated[float, "friction [-]"] = 0.1
+    e: Annotated[float, "restitution [-]"] = 0.6
+    v: Annotated[float, "along the floor [m/s]"] = 3.0
+    fall: Annotated[float, "towards it [m/s]"] = 4.0
+    rim: Annotated[float, "Rω, by which the spin adds to the slip [m/s]"] = 2.0
+    h: Annotated[float, "height at the start [m]"] = 2.0
+    R: Annotated[float, "radius [m]"] = 0.1
+    m: Annotated[float, "mass [kg]"] = 1.0
+
+
+CASES = {"sphere slips": Params(), "sphere grips": Params(mu=0.5), "disc slips": Params(shape=0.5), "disc grips": Params(shape=0.5, mu=0.5)}
+
+
+def supports(name, p):
+    """A disc for the engine of the plane, a sphere for that of space."""
+    return name != "pybullet" or p.shape == 0.4
+
+
+def start(p):
+    for name in ("shape", "R", "m", "h", "fall"):
+        check_positive(name, getattr(p, name))
+    check_restitution(p.e)
+    check_friction(p.mu)
+    before = delays(WINDOW)
+    x, v, omega = np.zeros((COPIES, 3)), np.zeros((COPIES, 3)), np.zeros((COPIES, 3))
+    x[:, 0], x[:, 2] = p.v * before, p.h - p.fall * before
+    v[:, 0], v[:, 2], omega[:, 1] = p.v, -p.fall, -p.rim / p.R          # the lowest point moves with −Rω_y
+    up = np.array([0.0, 0.0, 1.0])
+    return x, v, omega, Spinner(p.e, p.mu, 1.0 / p.m, np.eye(3) / (p.shape * p.m * p.R**2), p.R, np.zeros(3), np.zeros(3), up)
+
+
+def run(step, acceleration, state, p, dt, steps):
+    x, v, omega, ball = state
+    x, v, omega = spin_all(step, acceleration, 0.0, x, v, omega, dt, steps, ball)
+    return x, v, omega, ball
+
+
+def observe(state, p):
+    """Place, velocity and speed of the rim of each copy."""
+    x, v, omega, _ = state
+    return np.stack((x[:, 0], x[:, 2], v[:, 0], v[:, 2], -p.R * omega[:, 1]), axis=1).ravel()
+
+
+def after(p):
+    """(v, Rω) when it has left the floor: slip v + Rω; friction gives at most μ m (1 + e) |v_n|, and what it needs to end the slip."""
+    needed = (p.v + p.rim) / (1.0 + 1.0 / p.shape)
+    given = min(p.mu * (1.0 + p.e) * p.fall, needed)
+    return p.v - given, p.rim - given / p.shape
+
+
+def truth(p, t):
+    """Straight lines;  at the floor  v_n⁺ = −e v_n,  v⁺ = v − J/m,  Rω⁺ = Rω − J R²/I,  J = min(μ(1 + e) m |v_n|, m (v + Rω)/(1 + mR²/I)).
+
+    Source: linear and angular momentum about the point that touches; it grips where Coulomb's cone allows that.
+    """
+    v, rim = after(p)
+    rows = []
+    for before in delays(WINDOW):
+        since = t + before - p.h / p.fall
+        if since < 0.0:
+            rows.append((p.v * (t + before), -p.fall * since, p.v, -p.fall, p.rim))
+        else:
+            rows.append((p.v * p.h / p.fall + v * since, p.e * p.fall * since, v, p.e * p.fall, rim))
+    return np.ravel(rows)
+
+
+def tolerance(p, dt):
+    """The impact is seen up to a step late.  Until then the ball goes on as before, so that it is off by (v⁺ − v) dt; put back on the floor,
+    it lacks the e |v_n| dt that it would have risen.  Velocities are right: nothing depends on where it is.
+    """
+    v, _ = after(p)
+    exact = by_order(1.0 / T, T, dt)[EXACT]
+    late = np.hypot(p.v - v, (1.0 + p.e) * p.fall) * dt * np.sqrt(COPIES) / np.linalg.norm(truth(p, T)) + exact
+    return {1: late, EXACT: exact, "pymunk": late, "pybullet": late}
+
+
+def pymunk_make(p, dt):
+    space = pymunk_space()
+    space.iterations = IMPACT_ITERATIONS
+    pymunk_floor(space)
+    balls = [pymunk_ball(space, p.m, p.shape * p.m * p.R**2, p.R, (APART * k + p.v * before, p.h - p.fall * before + p.R), (p.v, -p.fall), p.rim / p.R, p.e, p.mu)
+             for k, before in enumerate(delays(WINDOW))]
+    read = lambda: np.array([(b.position.x - APART * k, b.position.y - p.R, *b.velocity, p.R * b.angular_velocity) for k, b in enumerate(balls)]).ravel()
+    return pymunk_world(space, dt, read)
+
+
+def pybullet_make(p, dt):
+    bullet = Impacts(dt)
+    bullet.plane()
+    balls = [bullet.ball(p.m, p.shape * p.m * p.R**2, p.R, (p.v * before, APART * k, p.h - p.fall * before + p.R), (p.v, 0.0, -p.fall), (0.0, -p.rim / p.R, 0.0), p.e, p.mu)
+             for k, before in enumerate(delays(WINDOW))]
+
+    def read():
+        x, v, omega = (np.array([get(b) for b in balls]) for get in (bullet.position, bullet.velocity, bullet.omega))
+        return np.stack((x[:, 0], x[:, 2] - p.R, v[:, 0], v[:, 2], -p.R * omega[:, 1]), axis=1).ravel()
+    return EngineRun(bullet.step, read, bullet.close)
+
+
+ENGINES = (
+    Engine(PYMUNK, "", pymunk_make, 1, f"{COPIES} circles on a thick segment; {IMPACT_ITERATIONS} iterations"),
+    Engine(PYBULLET, "", pybullet_make, 1, f"{COPIES} spheres on a GEOM_PLANE; {IMPACT_SETTINGS}", most_steps=2000),
+)
+
+
+def sanity_checks():
+    found = [after(p) for p in CASES.values()]
+    return (("v and Rω afterwards [m/s]", found, ((2.36, 0.4), (11.0 / 7.0, -11.0 / 7.0), (2.36, 0.72), (4.0 / 3.0, -4.0 / 3.0)), 1e-14),)
+
+
+def points(observed, p):
+    """The first copy: its centre, and a spoke that turns."""
+    x, z, v, _, rim = observed[:5]
+    before = delays(WINDOW)[0]
+    t = before + x / p.v if rim == p.rim else p.h / p.fall + (x - p.v * p.h / p.fall) / v
+    turned = (p.rim * min(t, p.h / p.fall) + rim * max(0.0, t - p.h / p.fall)) / p.R
+    centre = np.array([x, z + p.R])
+    return np.array([[-0.2, 0.0], [3.2, 0.0], centre, centre + p.R * np.array([np.cos(turned), np.sin(turned)])])
+
+
+def links(p):
+    return [(0, 1), (2, 3)]
+
+
+SCENE = Scene(
+    title="Spinning bounce",
+    lesson="impulses",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=(PROJECTING_SPIN, BACKTRACKING_SPIN),
+    acceleration=acceleration,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-15,
+    tolerance=tolerance,
+    engines=ENGINES,
+    orders={"backtracking_spin_step": EXACT},
+    supports=supports,
+    sanity_checks=sanity_checks,
+    points=points,
+    links=links,
+    uses=("one ball", "one angular velocity", "one impulse in a cone"),
+    ablations={"gravity": "it would bend the path, and is part of the step: the scene bounces has it", "orientation": "nobody sees how far a plain ball has turned",
+              "detection": "one ball, one plane; lesson 6 finds contacts"},
+)

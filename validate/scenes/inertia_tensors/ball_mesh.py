@@ -1,0 +1,156 @@
+"""A ball made of triangles, or filled with points: how fine must it be until its tensor is that of the ball?"""
+
+from functools import lru_cache
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import check_positive
+from validate.engines.bullet import Bullet
+from validate.methods import POINTS, TRIANGLES
+from validate.scene import EXACT, PYBULLET, Departure, Engine, EngineRun, Scene
+
+T = 1.0
+STEPS = (1, 2, 5, 10, 20, 50, 100)
+
+
+class Params(NamedTuple):
+    radius: Annotated[float, "[m]"] = 0.5
+    density: Annotated[float, "[kg/m³]"] = 1000.0
+
+
+CASES = {"ball": Params()}
+
+
+def start(p):
+    for name in ("radius", "density"):
+        check_positive(name, getattr(p, name))
+    return (p,)
+
+
+@lru_cache(maxsize=32)
+def triangles(n, radius):
+    """Corners and triangles of an octahedron, each face cut into n² triangles, all corners pushed out onto the sphere."""
+    number, faces = {}, []
+
+    def corner(i, j, k):
+        return number.setdefault((i, j, k), len(number))
+
+    for sx, sy, sz in ((x, y, z) for x in (1, -1) for y in (1, -1) for z in (1, -1)):
+        at = lambda i, j: corner(sx * i, sy * j, sz * (n - i - j))
+        for i in range(n):
+            for j in range(n - i):
+                faces.append((at(i, j), at(i + 1, j), at(i, j + 1))[::sx * sy * sz])
+                if i + j < n - 1:
+                    faces.append((at(i + 1, j), at(i + 1, j + 1), at(i, j + 1))[::sx * sy * sz])
+    x = np.array(list(number), dtype=float)
+    return radius / np.sqrt(np.sum(x * x, axis=1))[:, None] * x, np.array(faces)
+
+
+@lru_cache(maxsize=32)
+def cells(n, radius, density):
+    """Masses and places of the middles of those cells, 2 radius/n wide, that lie inside the ball."""
+    h = 2.0 * radius / n
+    middle = h * (np.arange(n) + 0.5) - radius
+    x = np.stack(np.meshgrid(middle, middle, middle, indexing="ij"), axis=-1).reshape(-1, 3)
+    x = np.ascontiguousarray(x[np.sum(x * x, axis=1) < radius * radius])
+    return np.full(len(x), density * h**3), x
+
+
+def run(step, acceleration, state, p, dt, steps):
+    """The lesson's function on triangles or points; they are made beforehand, and not timed."""
+    if step.__name__ == "mesh_body":
+        return step(p.density, *triangles(steps, p.radius))
+    return (step(*cells(steps, p.radius, p.density)),)
+
+
+def observe(state, p):
+    """All entries of the tensor [kg m²]."""
+    return np.ravel(state[-1])
+
+
+def truth(p, t):
+    """I = ⅖ m R² 1,  m = 4/3 π ρ R³
+
+    Source: the volume integral of x² over a ball is 4/15 π R⁵.
+    """
+    return np.ravel(8.0 / 15.0 * np.pi * p.density * p.radius**5 * np.eye(3))
+
+
+def tolerance(p, dt):
+    """Moments grow with the body: what lies between two balls has a moment between theirs, which go with R⁵.
+
+    Triangles: on an octahedron, 1/√3 away, an equilateral triangle of edge √2/n has its corners √2/(n √3) from its middle, and pushed
+    out onto the sphere they are seen at most √3 times as far apart: within α = √2/n of the direction of the middle.  So the
+    triangle does not come nearer than R cos α:  0 ≤ error ≤ 1 − cos⁵α, of second order.
+    Points: a cell that the sphere cuts is within its half diagonal, √3 R/n, of the sphere; each cell also lacks its own moment,
+    m h²/6, h = 2R/n, against ⅖ m R²:  error ≤ (1 + √3/n)⁵ − 1 + 5/(3n²), of first order at worst.
+    pybullet's own rule knows no n: round-off.
+    """
+    n = 1.0 / dt
+    alpha = min(np.sqrt(2.0) / n, 0.5 * np.pi)
+    return {2: 1.0 - np.cos(alpha) ** 5 + 1e-12, 1: (1.0 + np.sqrt(3.0) / n) ** 5 - 1.0 + 5.0 / (3.0 * n * n), "pybullet, hull": 1e-12}
+
+
+def by_fat_box(p, t):
+    """m (b² + c²)/12 of the cube around the ball, 6 mm wider than it: pybullet puts its margin of 1 mm on three times on each side.
+
+    Source: Bullet, btPolyhedralConvexShape: recalcLocalAabb, getNonvirtualAabb and calculateLocalInertia each add it.
+    """
+    m, edge = 4.0 / 3.0 * np.pi * p.density * p.radius**3, 2.0 * p.radius + 0.006
+    return np.ravel(0.08333333 * m * 2.0 * edge**2 * np.eye(3))
+
+
+def bullet_make(p, dt):
+    """The hull of the same corners, of the mass of the ball: its first step makes the body, the others do nothing."""
+    bullet, made = Bullet(1.0), []
+    x = triangles(round(1.0 / dt), p.radius)[0].tolist()
+    m = 4.0 / 3.0 * np.pi * p.density * p.radius**3
+
+    def step():
+        if not made:
+            shape = bullet.pb.createCollisionShape(bullet.pb.GEOM_MESH, vertices=x)
+            made.append(bullet.pb.createMultiBody(m, shape))
+
+    def read():
+        return np.ravel(np.diag(bullet.pb.getDynamicsInfo(made[0], -1)[2]))
+
+    return EngineRun(step, read, bullet.close)
+
+
+ENGINES = (Engine(PYBULLET, "hull", bullet_make, EXACT, "GEOM_MESH from corners, createMultiBody with the mass of the ball", most_steps=20),)
+
+
+def points(observed, p):
+    """The triangles for n = 4, from a little above."""
+    x, _ = triangles(4, p.radius)
+    return x @ np.array([[0.8, -0.2], [0.6, 0.25], [0.0, 0.95]])
+
+
+def links(p):
+    return sorted({tuple(sorted((int(i), int(j)))) for f in triangles(4, p.radius)[1] for i, j in zip(f, np.roll(f, -1))})
+
+
+SCENE = Scene(
+    title="Ball of triangles",
+    lesson="inertia_tensors",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=(TRIANGLES, POINTS),
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-15,
+    tolerance=tolerance,
+    engines=ENGINES,
+    expected_departures={"pybullet, hull": Departure("it takes the cube around the hull for the hull, and makes it 6 mm larger", by_fat_box)},
+    uncompiled_in_quick=("mesh_body", "point_mass_inertia"),          # sooner run than compiled
+    moves=False,
+    refinement="fineness 1/n [-]: n triangles a quarter of the equator, n points a diameter",
+    points=points,
+    links=links,
+    uses=("corners and triangles", "or points with masses"),
+    ablations={"motion": "lesson 5 turns bodies", "a density that varies inside": "points can have it, triangles cannot"},
+)

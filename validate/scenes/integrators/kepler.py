@@ -1,0 +1,86 @@
+"""A planet runs around its sun sixteen times on an ellipse, and every method is asked where it is in the end."""
+
+
+import numpy as np
+
+from solutions.checks import BadInput, check_positive
+from solutions.integrators import advance
+from validate.engines.integrators import KEPLER_ENGINES
+from validate.methods import INTEGRATORS, LEFT_TO_FULL
+from validate.reference.integrators import Planet, kepler_limits, kepler_position, perihelion
+from validate.scene import LATE_LEAPFROG, Scene
+
+T = 100.0                    # [s]: sixteen revolutions
+STEPS = (2000, 5000, 10000, 20000, 50000, 100000, 150000, 200000)
+# Euler, average velocity and implicit Euler gain or lose energy at every passage, see drift: they are drawn, but no step here is one
+# at which theory promises anything.
+
+
+CASES = {"e = 0.6": Planet()}
+
+
+def acceleration(t, x, v, p):
+    """a = −μ x/|x|³"""
+    squared = 0.0
+    for coordinate in x:
+        squared += coordinate * coordinate
+    return -p.mu / (squared * np.sqrt(squared)) * x
+
+
+def start(p):
+    for name in ("mu", "a"):
+        check_positive(name, getattr(p, name))
+    if not 0.0 <= p.e < 1.0:
+        raise BadInput("the eccentricity e", p.e, "give a number from 0 up to, but not including, 1")
+    return perihelion(p)
+
+
+def run(step, acceleration, state, p, dt, steps):
+    x, v = state
+    return advance(step, acceleration, 0.0, x, v, dt, steps, p)
+
+
+def observe(state, p):
+    return state[0][:2]
+
+
+def tolerance(p, dt):
+    """Order 2 and 4 drift in phase; symplectic Euler and both engines are leapfrog, started half a step late or early."""
+    return kepler_limits(p, T, dt)
+
+
+def points(observed, p):
+    """The sun, and the planet."""
+    return np.array([[0.0, 0.0], [observed[0], observed[1]]])
+
+
+def in_space(p):
+    """The same motion with z carried along."""
+    x, v = start(p)
+    return (np.append(x, 0.0), np.append(v, 0.0)), p
+
+
+SCENE = Scene(
+    title="Kepler",
+    lesson="integrators",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=INTEGRATORS,
+    acceleration=acceleration,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=kepler_position,
+    truth_uncertainty=1e-12,          # the truth's: round-off in the energy, v²/2 − μ/r, grows with time as in drift(): 3e-13
+    tolerance=tolerance,
+    engines=KEPLER_ENGINES,
+    orders={"symplectic_euler_step": LATE_LEAPFROG},          # see late_start
+    slow_methods=LEFT_TO_FULL,
+    published_states=((100.0, (-0.104183204, -0.694741716), 1e-9),),          # its velocity is then (1.236177763, 0.564623251) m/s
+    points=points,
+    film_seconds=12.6,          # two revolutions [s]
+    uses=("one point in the plane", "one step function"),
+    ablations={"the third dimension": in_space, "the motion of the sun": "the lighter the planet, the less it matters",
+              "steps that adapt to the distance": "beyond this workbook", "rotation": "lesson 5 builds it"},
+)

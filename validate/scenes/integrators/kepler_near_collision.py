@@ -1,0 +1,82 @@
+"""A comet on a long ellipse: at its nearest a nineteenth of its farthest distance from the sun, where all the error is made."""
+
+import numpy as np
+
+from solutions.checks import BadInput, check_positive
+from solutions.integrators import advance
+from validate.engines.integrators import KEPLER_ENGINES
+from validate.methods import INTEGRATORS, LEFT_TO_FULL
+from validate.reference.integrators import Planet, kepler_limits, kepler_position, perihelion
+from validate.scene import LATE_LEAPFROG, Scene
+
+T = 20.0                     # [s]: three revolutions
+STEPS = (2000, 5000, 10000, 20000, 50000, 100000, 200000)
+
+CASES = {"e = 0.9": Planet(e=0.9)}
+
+
+def acceleration(t, x, v, p):
+    """a = −μ x/|x|³"""
+    squared = 0.0
+    for coordinate in x:
+        squared += coordinate * coordinate
+    return -p.mu / (squared * np.sqrt(squared)) * x
+
+
+def start(p):
+    for name in ("mu", "a"):
+        check_positive(name, getattr(p, name))
+    if not 0.0 <= p.e < 1.0:
+        raise BadInput("the eccentricity e", p.e, "give a number from 0 up to, but not including, 1")
+    return perihelion(p)
+
+
+def run(step, acceleration, state, p, dt, steps):
+    x, v = state
+    return advance(step, acceleration, 0.0, x, v, dt, steps, p)
+
+
+def observe(state, p):
+    return state[0][:2]
+
+
+def tolerance(p, dt):
+    """As in kepler.  The rate at the nearest point, √(μ/r³), is 32 times the mean one: most steps are wasted far away."""
+    return kepler_limits(p, T, dt)
+
+
+def points(observed, p):
+    """The sun, and the planet."""
+    return np.array([[0.0, 0.0], [observed[0], observed[1]]])
+
+
+def in_space(p):
+    """The same motion with z carried along."""
+    x, v = start(p)
+    return (np.append(x, 0.0), np.append(v, 0.0)), p
+
+
+SCENE = Scene(
+    title="Kepler, near collision",
+    lesson="integrators",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=INTEGRATORS,
+    acceleration=acceleration,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=kepler_position,
+    truth_uncertainty=1e-12,          # the truth's, as in kepler: 1e-13
+    tolerance=tolerance,
+    engines=KEPLER_ENGINES,
+    orders={"symplectic_euler_step": LATE_LEAPFROG},          # see late_start
+    slow_methods=LEFT_TO_FULL,
+    published_states=((20.0, (-1.295266251, 0.400393896), 1e-9),),
+    points=points,
+    film_seconds=12.6,          # two revolutions [s]
+    uses=("one point in the plane", "one step function"),
+    ablations={"the third dimension": in_space, "steps that adapt to the distance": "beyond this workbook",
+              "rotation": "lesson 5 builds it"},
+)

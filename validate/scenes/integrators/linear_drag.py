@@ -1,0 +1,154 @@
+"""A pellet shot up in syrup: drag in proportion to speed bends the parabola until it comes down almost straight."""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import check_positive
+from solutions.integrators import advance
+from validate.engines.bullet import Bullet, hidden_damping
+from validate.engines.chipmunk import pymunk_space, pymunk_world
+from validate.methods import INTEGRATORS, LEFT_TO_FULL
+from validate.scene import PYBULLET, PYMUNK, Engine, EngineRun, Scene, by_order
+
+T = 1.97599434               # [s]: when it is back at the height of the start
+STEPS = (10, 20, 50, 100, 200, 500, 1000, 2000)
+
+
+class Params(NamedTuple):
+    vx: Annotated[float, "shot with this velocity [m/s], y up"] = 2.54
+    vy: float = 12.7
+    k: Annotated[float, "drag over mass [1/s]"] = 1.0
+    g: Annotated[float, "gravity [m/s²]"] = 9.81456
+
+
+CASES = {"shot": Params()}
+# Landing time and range are published to 8 decimals: half a unit of the time, at the 6.7 m/s of the landing, is 3.4e-8 m.
+
+
+def acceleration(t, x, v, p):
+    """a = −g ŷ − k v"""
+    a = -p.k * v
+    a[1] -= p.g
+    return a
+
+
+def start(p):
+    check_positive("k", p.k)
+    return np.zeros(2), np.array([p.vx, p.vy])
+
+
+def run(step, acceleration, state, p, dt, steps):
+    x, v = state
+    return advance(step, acceleration, 0.0, x, v, dt, steps, p)
+
+
+def observe(state, p):
+    return state[0][:2]
+
+
+def truth(p, t):
+    """x(t) = v∞ t + (v₀ − v∞)(1 − e^(−kt))/k,   v∞ = −(g/k) ŷ
+
+    v − v∞ obeys u̇ = −k u, so it decays as e^(−kt); integrate once more.  It lands when (v_y + g/k)(1 − e^(−kt)) = g t.
+    Source: Marion and Thornton, Classical dynamics, chapter 2 (motion in a resisting medium).
+    """
+    v_0, v_end = np.array([p.vx, p.vy]), np.array([0.0, -p.g / p.k])
+    return v_end * t - (v_0 - v_end) * np.expm1(-p.k * t) / p.k
+
+
+def tolerance(p, dt):
+    """Only the term that decays, |v₀ − v∞|/k long, can be wrong, at the rate k; relative to x(T), which is ten times shorter.
+
+    Both engines move first-order and take drag at the beginning of a step, or shrink v by e^(−k dt): order 1 with rate k.  Half
+    a step in the first velocity would not help, because drag answers to it.  The hidden damping has its fastest rate,
+    0.04 (1 + 2|v|), at the greater of the first speed and the terminal one.
+    """
+    scale = np.hypot(p.vx, p.vy + p.g / p.k) / p.k / np.linalg.norm(truth(p, T))
+    limits = {k: scale * limit for k, limit in by_order(p.k, T, dt).items()}
+    fastest = max(np.hypot(p.vx, p.vy), p.g / p.k)
+    hidden = scale * by_order(p.k + 0.04 * (1.0 + 2.0 * fastest), T, dt)[1]
+    return {**limits, "pybullet, default": hidden,
+            **dict.fromkeys(("pymunk", "pymunk, own damping", "pybullet", "pybullet, own damping"), limits[1])}
+
+
+def pymunk_make(p, dt, own=False):
+    """Drag as a force before each step, or as the space's damping: the part of the velocity that is left after a second.
+
+    Chipmunk moves first and then applies the force: forward Euler, which is harmless here because drag depends on v alone.
+    """
+    import pymunk
+    space = pymunk_space((0.0, -p.g))
+    if own:
+        space.damping = np.exp(-p.k)
+    body = pymunk.Body(1.0, 1.0)
+    body.velocity = (p.vx, p.vy)
+    space.add(body)
+
+    def step():
+        body.force = (-p.k * body.velocity.x, -p.k * body.velocity.y)            # used up by the step
+        space.step(dt)
+
+    read = lambda: np.array([body.position.x, body.position.y])
+    return pymunk_world(space, dt, read) if own else EngineRun(step, read, lambda: None)
+
+
+def pybullet_make(p, dt, default=False, own=False):
+    """Drag as a force before each step, or as the body's own damping: the part of the velocity that is lost in a second."""
+    bullet = Bullet(dt, (0.0, -p.g, 0.0))
+    body = bullet.point_mass(1.0, (0.0, 0.0, 0.0), (p.vx, p.vy, 0.0), default)
+    if own:
+        bullet.pb.changeDynamics(body, -1, linearDamping=-np.expm1(-p.k))
+
+    def step():
+        v = bullet.velocity(body)
+        bullet.push(body, (-p.k * v[0], -p.k * v[1], 0.0), bullet.position(body))
+        bullet.step()
+
+    return EngineRun(bullet.step if own else step, lambda: np.array(bullet.position(body)[:2]), bullet.close)
+
+
+ENGINES = (
+    Engine(PYMUNK, "", pymunk_make, 1, "force applied each step"),
+    Engine(PYMUNK, "own damping", lambda p, dt: pymunk_make(p, dt, own=True), 1,
+           "space.damping = e^(−k): what is left after a second"),
+    Engine(PYBULLET, "default", lambda p, dt: pybullet_make(p, dt, default=True), 1,
+           "createMultiBody as it comes; force applied each step"),
+    Engine(PYBULLET, "", pybullet_make, 1, "useMaximalCoordinates=1, no damping; force applied each step"),
+    Engine(PYBULLET, "own damping", lambda p, dt: pybullet_make(p, dt, own=True), 1,
+           "useMaximalCoordinates=1, linearDamping = 1 − e^(−k): what is lost in a second"),
+)
+
+
+def points(observed, p):
+    return observed[None, :]
+
+
+def in_space(p):
+    """The same motion with z carried along."""
+    return (np.zeros(3), np.array([p.vx, p.vy, 0.0])), p
+
+
+SCENE = Scene(
+    title="Linear drag",
+    lesson="integrators",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=INTEGRATORS,
+    acceleration=acceleration,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-14,          # (1 − e^(−kt)) and gt are ten times as large as their difference
+    tolerance=tolerance,
+    engines=ENGINES,
+    expected_departures={"pybullet, default": hidden_damping(acceleration, start)},
+    slow_methods=LEFT_TO_FULL,
+    uncompiled_in_quick=("symplectic_euler_step", "verlet_step"),          # sooner run than compiled
+    published_states=((1.97599434, (2.18789655, 0.0), 4e-8),),
+    points=points,
+    uses=("one point in the plane", "one step function"),
+    ablations={"the third dimension": in_space, "rotation": "lesson 5 builds it", "detection of the ground": "lesson 6 builds it"},
+)

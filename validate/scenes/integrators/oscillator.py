@@ -1,0 +1,145 @@
+"""A mass on a spring with a damper beside it, let go at one metre: the problem that every method is judged by."""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import check_positive
+from solutions.integrators import Oscillator, advance
+from solutions.integrators import oscillator_acceleration as acceleration
+from validate.engines.bullet import Bullet, hidden_damping
+from validate.engines.chipmunk import pymunk_space, pymunk_world
+from validate.methods import INTEGRATORS
+from validate.scene import PYBULLET, PYMUNK, Engine, EngineRun, Scene, by_order
+
+T = 2.0                      # [s]: three periods
+STEPS = (100, 200, 500, 1000, 2000, 5000, 10000, 20000)
+
+
+class Params(NamedTuple):
+    m: Annotated[float, "mass [kg]"] = 1.0
+    k: Annotated[float, "stiffness [N/m]"] = 100.0
+    c: Annotated[float, "damper [N s/m]"] = 1.0
+    x0: Annotated[float, "released here, at rest [m]"] = 1.0
+
+
+CASES = {"under-damped": Params(), "undamped": Params(c=0.0), "critically damped": Params(k=1.0, c=2.0), "over-damped": Params(k=1.0, c=5.0)}
+
+
+def oscillator(p):
+    """The lesson's parameters:  ω = √(k/m),  ζ = c / 2√(km)."""
+    return Oscillator(float(np.sqrt(p.k / p.m)), float(0.5 * p.c / np.sqrt(p.k * p.m)))
+
+
+def start(p):
+    for name in ("m", "k"):
+        check_positive(name, getattr(p, name))
+    return np.array([p.x0]), np.zeros(1)
+
+
+def run(step, acceleration, state, p, dt, steps):
+    x, v = state
+    return advance(step, acceleration, 0.0, x, v, dt, steps, oscillator(p))
+
+
+def observe(state, p):
+    return state[0][:1]
+
+
+def truth(p, t):
+    """x(t) = e^(−δt) x₀ (cos σt + δ/σ sin σt),  δ = c/2m,  σ² = k/m − δ²;  cosh and sinh when σ² < 0, 1 + δt at σ = 0.
+
+    Source: any text of mechanics; e.g. Landau and Lifshitz, Mechanics, § 25.
+    """
+    delta = p.c / (2.0 * p.m)
+    squared = p.k / p.m - delta**2
+    sigma = np.sqrt(abs(squared))
+    if squared > 0.0:
+        shape = np.cos(sigma * t) + delta / sigma * np.sin(sigma * t)
+    elif squared < 0.0:
+        shape = np.cosh(sigma * t) + delta / sigma * np.sinh(sigma * t)
+    else:
+        shape = 1.0 + delta * t
+    return np.array([p.x0 * np.exp(-delta * t) * shape])
+
+
+def tolerance(p, dt):
+    """The fastest rate is ω + c/m; relative to x(T), which damping has made e^(δT) smaller than the motion was.
+
+    Both engines are symplectic Euler with the damper at one end of the step: they err like ours of order 1; and like ours of
+    order 2 when they start half a step ahead and nothing depends on velocity.
+    """
+    rate, shrunk = np.sqrt(p.k / p.m) + p.c / p.m, p.x0 / abs(truth(p, T)[0])
+    limits = {k: shrunk * limit for k, limit in by_order(rate, T, dt).items()}
+    leapfrog = limits[2] if p.c == 0.0 else limits[1]
+    return {**limits, "pymunk": limits[1], "pymunk, leapfrog start": leapfrog,
+            "pybullet": limits[1], "pybullet, default": limits[1], "pybullet, leapfrog start": leapfrog}
+
+
+def pymunk_make(p, dt, ahead=0.0):
+    """A DampedSpring of rest length 2 m to a static point; its damper acts as e^(−c dt/m), its force at the new position."""
+    import pymunk
+    space = pymunk_space()
+    body = pymunk.Body(p.m, 1.0)
+    body.position = (p.x0, 0.0)
+    body.velocity = (ahead * dt * acceleration(0.0, p.x0, 0.0, oscillator(p)), 0.0)
+    space.add(body, pymunk.DampedSpring(space.static_body, body, (-2.0, 0.0), (0.0, 0.0), 2.0, p.k, p.c))
+    return pymunk_world(space, dt, lambda: np.array([body.position.x]))
+
+
+def pybullet_make(p, dt, ahead=0.0, default=False):
+    """The force of the spring and the damper, computed from the state before each step."""
+    bullet = Bullet(dt)
+    body = bullet.point_mass(p.m, (p.x0, 0.0, 0.0), (-ahead * dt * acceleration(0.0, p.x0, 0.0, oscillator(p)), 0.0, 0.0), default)
+
+    def step():
+        x, v = bullet.position(body), bullet.velocity(body)
+        bullet.push(body, (-p.k * x[0] - p.c * v[0], 0.0, 0.0), x)
+        bullet.step()
+
+    return EngineRun(step, lambda: np.array([bullet.position(body)[0]]), bullet.close)
+
+
+ENGINES = (
+    Engine(PYMUNK, "", pymunk_make, 1, "DampedSpring; no other setting matters without contact"),
+    Engine(PYMUNK, "leapfrog start", lambda p, dt: pymunk_make(p, dt, ahead=0.5), 1, "first velocity + ½ a dt: second order without a damper"),
+    Engine(PYBULLET, "default", lambda p, dt: pybullet_make(p, dt, default=True), 1, "createMultiBody as it comes"),
+    Engine(PYBULLET, "", pybullet_make, 1, "useMaximalCoordinates=1, no damping; force applied each step"),
+    Engine(PYBULLET, "leapfrog start", lambda p, dt: pybullet_make(p, dt, ahead=0.5), 1, "first velocity − ½ a dt: second order without a damper"),
+)
+
+
+def points(observed, p):
+    return np.array([[-2.0, 0.0], [observed[0], 0.0]])
+
+
+def links(p):
+    return [(0, 1)]
+
+
+def in_space(p):
+    """The same motion with y and z carried along."""
+    return (np.array([p.x0, 0.0, 0.0]), np.zeros(3)), p
+
+
+SCENE = Scene(
+    title="Oscillator",
+    lesson="integrators",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=INTEGRATORS,
+    acceleration=acceleration,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-14,
+    tolerance=tolerance,
+    engines=ENGINES,
+    expected_departures={"pybullet, default": hidden_damping(lambda t, x, v, p: acceleration(t, x, v, oscillator(p)), start)},
+    points=points,
+    links=links,
+    uses=("one coordinate", "one step function"),
+    ablations={"the second and third dimension": in_space, "rotation": "lesson 5 builds it", "detection of contacts": "lesson 6 builds it"},
+)

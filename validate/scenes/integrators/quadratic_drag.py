@@ -1,0 +1,149 @@
+"""A parachutist falls from rest: drag grows with the square of speed, until it carries the weight."""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import check_positive
+from solutions.integrators import advance
+from validate.engines.bullet import Bullet, hidden_damping
+from validate.engines.chipmunk import pymunk_space
+from validate.methods import INTEGRATORS, LEFT_TO_FULL
+from validate.scene import PYBULLET, PYMUNK, Engine, EngineRun, Scene, by_order
+
+T = 3.0                      # [s]: three times what it takes to gain the terminal speed without air
+STEPS = (15, 30, 60, 150, 300, 600, 1500, 3000)
+
+
+class Params(NamedTuple):
+    m: Annotated[float, "mass [kg]"] = 1.0
+    c: Annotated[float, "drag over speed squared [kg/m]"] = 0.1
+    g: Annotated[float, "gravity [m/s²]"] = 9.81
+
+
+CASES = {"falling": Params()}
+
+
+def acceleration(t, x, v, p):
+    """a = g x̂ − (c/m) |v| v          x points down"""
+    a = -p.c / p.m * np.sqrt(v @ v) * v
+    a[0] += p.g
+    return a
+
+
+def start(p):
+    for name in ("m", "c", "g"):
+        check_positive(name, getattr(p, name))
+    return np.zeros(1), np.zeros(1)
+
+
+def run(step, acceleration, state, p, dt, steps):
+    x, v = state
+    return advance(step, acceleration, 0.0, x, v, dt, steps, p)
+
+
+def observe(state, p):
+    return state[0][:1]
+
+
+def terminal_speed(p):
+    """v∞ = √(m g/c): where drag carries the weight [m/s]"""
+    return np.sqrt(p.m * p.g / p.c)
+
+
+def truth(p, t):
+    """x(t) = (v∞²/g) ln cosh(g t/v∞),   v(t) = v∞ tanh(g t/v∞)
+
+    v̇ = g (1 − v²/v∞²): separate, ∫dv/(1 − v²/v∞²) = v∞ artanh(v/v∞) = g t; then integrate tanh.
+    ln cosh s = s + ln(1 + e^(−2s)) − ln 2 does not overflow.
+    Source: Taylor, Classical mechanics, § 2.4.
+    """
+    s = p.g * t / terminal_speed(p)
+    return np.array([terminal_speed(p) ** 2 / p.g * (s + np.log1p(np.exp(-2.0 * s)) - np.log(2.0))])
+
+
+def tolerance(p, dt):
+    """The fastest rate is |∂a/∂v| = 2g/v∞ at the terminal speed, and what is wrong is as long as v∞ over that rate.
+
+    Both engines move first-order and take drag at the beginning of a step: order 1.  The hidden damping adds 0.04 (1 + 2v) to
+    the rate; v∞ bounds the speed with it, too.
+    """
+    v_end, depth = terminal_speed(p), truth(p, T)[0]
+
+    def limits(rate):
+        return {k: v_end / rate / depth * limit for k, limit in by_order(rate, T, dt).items()}
+
+    rate = 2.0 * p.g / v_end
+    ours = limits(rate)
+    return {**ours, "pymunk": ours[1], "pybullet": ours[1], "pybullet, default": limits(rate + 0.04 * (1.0 + 2.0 * v_end))[1]}
+
+
+def pymunk_make(p, dt):
+    """Drag as a force before each step.  Chipmunk moves first: forward Euler, harmless here because drag depends on v alone."""
+    import pymunk
+    space = pymunk_space((p.g, 0.0))
+    body = pymunk.Body(p.m, 1.0)
+    space.add(body)
+
+    def step():
+        v = body.velocity.x
+        body.force = (-p.c * abs(v) * v, 0.0)                                    # used up by the step
+        space.step(dt)
+
+    return EngineRun(step, lambda: np.array([body.position.x]), lambda: None)
+
+
+def pybullet_make(p, dt, default=False):
+    """Drag as a force before each step."""
+    bullet = Bullet(dt, (p.g, 0.0, 0.0))
+    body = bullet.point_mass(p.m, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), default)
+
+    def step():
+        v = bullet.velocity(body)[0]
+        bullet.push(body, (-p.c * abs(v) * v, 0.0, 0.0), bullet.position(body))
+        bullet.step()
+
+    return EngineRun(step, lambda: np.array([bullet.position(body)[0]]), bullet.close)
+
+
+ENGINES = (
+    Engine(PYMUNK, "", pymunk_make, 1, "force applied each step"),
+    Engine(PYBULLET, "default", lambda p, dt: pybullet_make(p, dt, default=True), 1,
+           "createMultiBody as it comes; force applied each step"),
+    Engine(PYBULLET, "", pybullet_make, 1, "useMaximalCoordinates=1, no damping; force applied each step"),
+)
+
+
+def points(observed, p):
+    return np.array([[0.0, -observed[0]]])
+
+
+def in_space(p):
+    """The same fall with two sideways coordinates carried along."""
+    return (np.zeros(3), np.zeros(3)), p
+
+
+SCENE = Scene(
+    title="Quadratic drag",
+    lesson="integrators",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=INTEGRATORS,
+    acceleration=acceleration,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-14,
+    tolerance=tolerance,
+    engines=ENGINES,
+    expected_departures={"pybullet, default": hidden_damping(acceleration, start)},
+    slow_methods=LEFT_TO_FULL,
+    uncompiled_in_quick=("symplectic_euler_step", "verlet_step"),          # sooner run than compiled
+    published_states=((3.0, (22.80837567,), 5e-9),),          # the depth; the speed is then 9.852684396 m/s
+    points=points,
+    uses=("one coordinate", "one step function"),
+    ablations={"the second and third dimension": in_space, "rotation": "lesson 5 builds it",
+              "detection of the ground": "lesson 6 builds it"},
+)

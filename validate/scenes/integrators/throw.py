@@ -1,0 +1,130 @@
+"""A stone thrown from a cliff, without air: most methods trace its parabola exactly, three miss it by ½ g h t."""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.integrators import advance
+from validate.engines.bullet import Bullet, hidden_damping
+from validate.engines.chipmunk import pymunk_space, pymunk_world
+from validate.methods import INTEGRATORS
+from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Scene, by_order
+
+T = 10.0                     # [s]
+STEPS = (10, 20, 50, 100, 200, 500, 1000, 2000)
+# One step with a constant a moves the stone by dt v + ½dt² a, and its velocity by dt a.  Every method gets the velocity right;
+# those whose position moves with the mean of old and new velocity, or with the one in the middle, get the position right too.
+
+
+class Params(NamedTuple):
+    vx: Annotated[float, "thrown with this velocity [m/s], z up"] = -2.0
+    vy: float = 2.0
+    vz: float = 8.0
+    g: Annotated[float, "gravity [m/s²]"] = 9.81
+
+
+CASES = {"thrown": Params()}
+
+
+def acceleration(t, x, v, p):
+    """a = −g ẑ"""
+    a = np.zeros_like(v)
+    a[2] = -p.g
+    return a
+
+
+def start(p):
+    return np.zeros(3), np.array([p.vx, p.vy, p.vz])
+
+
+def run(step, acceleration, state, p, dt, steps):
+    x, v = state
+    return advance(step, acceleration, 0.0, x, v, dt, steps, p)
+
+
+def observe(state, p):
+    return state[0]
+
+
+def truth(p, t):
+    """x(t) = v₀ t − ½ g t² ẑ
+
+    Source: Galilei 1638, fourth day; a = −g ẑ integrated twice.
+    """
+    return np.array([p.vx * t, p.vy * t, p.vz * t - 0.5 * p.g * t * t])
+
+
+def tolerance(p, dt):
+    """The bias of order 1, exactly: moved with the old velocity it arrives at Σ dt v(n dt) = x(T) + ½ g dt T ẑ, with the new at − ½.
+
+    pymunk moves with the old velocity and errs upwards, pybullet with the new and errs downwards: their mean is exact.  Half a
+    step of gravity in the first velocity takes the bias away.  With damping the fastest rate is that of 0.04 v (1 + |v|) at the
+    greater of the first speed and the terminal one, where 0.04 v (1 + v) = g.
+    """
+    limits = by_order(0.0, T, dt)
+    bias = 0.5 * p.g * dt * T / np.linalg.norm(truth(p, T)) + limits[EXACT]
+    fastest = max(np.linalg.norm(start(p)[1]), 0.5 * (np.sqrt(1.0 + 100.0 * p.g) - 1.0))
+    damped = by_order(0.04 * (1.0 + 2.0 * fastest), T, dt)[1]
+    return {**limits, 1: bias, "pymunk": bias, "pymunk, leapfrog start": limits[EXACT],
+            "pybullet": bias, "pybullet, default": damped, "pybullet, leapfrog start": limits[EXACT]}
+
+
+def pymunk_make(p, dt, ahead=0.0):
+    """Two dimensions are enough: the vertical plane of the throw, turned back into space when read."""
+    import pymunk
+    space = pymunk_space((0.0, -p.g))
+    body = pymunk.Body(1.0, 1.0)
+    heading, speed = np.arctan2(p.vy, p.vx), np.hypot(p.vx, p.vy)
+    body.velocity = (speed, p.vz - ahead * dt * p.g)
+    space.add(body)
+    ahead_x, ahead_y = np.cos(heading), np.sin(heading)
+    return pymunk_world(space, dt, lambda: np.array([ahead_x * body.position.x, ahead_y * body.position.x, body.position.y]))
+
+
+def pybullet_make(p, dt, ahead=0.0, default=False):
+    """A free body under the engine's own gravity."""
+    bullet = Bullet(dt, (0.0, 0.0, -p.g))
+    body = bullet.point_mass(1.0, (0.0, 0.0, 0.0), (p.vx, p.vy, p.vz + ahead * dt * p.g), default)
+    return EngineRun(bullet.step, lambda: np.array(bullet.position(body)), bullet.close)
+
+
+ENGINES = (
+    Engine(PYMUNK, "", pymunk_make, 1, "as it comes: it has no damping by default"),
+    Engine(PYMUNK, "leapfrog start", lambda p, dt: pymunk_make(p, dt, ahead=0.5), EXACT, "first velocity + ½ a dt"),
+    Engine(PYBULLET, "default", lambda p, dt: pybullet_make(p, dt, default=True), 1, "createMultiBody as it comes"),
+    Engine(PYBULLET, "", pybullet_make, 1, "useMaximalCoordinates=1, no damping"),
+    Engine(PYBULLET, "leapfrog start", lambda p, dt: pybullet_make(p, dt, ahead=0.5), EXACT, "first velocity − ½ a dt"),
+)
+
+
+def points(observed, p):
+    """Seen from the side of the throw."""
+    heading = np.arctan2(p.vy, p.vx)
+    return np.array([[np.cos(heading) * observed[0] + np.sin(heading) * observed[1], observed[2]]])
+
+
+SCENE = Scene(
+    title="Throw",
+    lesson="integrators",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=INTEGRATORS,
+    acceleration=acceleration,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-15,
+    tolerance=tolerance,
+    engines=ENGINES,
+    expected_departures={"pybullet, default": hidden_damping(acceleration, start)},
+    orders={f"{name}_step": EXACT for name in ("midpoint", "rk4", "average_velocity", "verlet", "implicit_midpoint")},
+    slow_methods=("implicit_euler_step", "implicit_midpoint_step"),          # not what this scene is about, and half of its compiling
+    uncompiled_in_quick=tuple(m.function for m in INTEGRATORS if m.order < 4),          # sooner run than compiled
+    published_states=((10.0, (-20.0, 20.0, -410.5), 1e-12),),          # by hand, exactly: only round-off may differ
+    points=points,
+    uses=("one point in space", "one step function"),
+    ablations={"air": "the scenes with linear and quadratic drag have it", "rotation": "lesson 5 builds it",
+              "detection of the ground": "lesson 6 builds it"},
+)

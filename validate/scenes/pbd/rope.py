@@ -1,0 +1,158 @@
+"""A rope of weights on strings is let go horizontal: while it falls its end is whipped round, and every method is asked for every weight."""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import BadInput, check_positive
+from solutions.integrators import advance
+from solutions.pbd import falling_acceleration as acceleration
+from solutions.pbd import make_net
+from validate.engines.pbd import ITERATIONS, SHARE, bullet_rope, pymunk_rope
+from validate.methods import PBD, PROJECTION, RATTLE, XPBD
+from validate.reference.pbd import rope_energy, rope_lag, rope_motion, rope_places, rope_rates
+from validate.scene import PYBULLET, PYMUNK, Departure, Engine, Scene, by_order
+
+T = 1.0                      # [s]
+STEPS = (50, 100, 200, 600, 1000, 2000, 5000)
+
+
+class Params(NamedTuple):
+    links: Annotated[int, "N [-]"] = 10
+    l: Annotated[float, "length of each [m]"] = 0.1
+    m: Annotated[float, "each weight [kg]"] = 0.1
+    sweeps: Annotated[int, "of PBD and XPBD in a step [-]"] = 10
+    g: Annotated[float, "gravity [m/s²]"] = 9.81
+
+
+CASES = {"10 links": Params(), "50 links": Params(links=50)}
+
+
+def straight(p):
+    """(N, 2): the weights to begin with, the rope along x."""
+    return p.l * np.stack((np.arange(1.0, p.links + 1), np.zeros(p.links)), axis=1)
+
+
+def start(p):
+    for name in ("links", "l", "m", "g"):
+        check_positive(name, getattr(p, name))
+    if p.sweeps < 1:
+        raise BadInput("sweeps in a step", p.sweeps, "give 1 or more")
+    x, n = np.concatenate((np.zeros((1, 2)), straight(p))), np.arange(p.links)
+    return x, 0.0 * x, make_net(x, p.m, [0], np.stack((n, n + 1), axis=1), 0.0, 1.0, (0.0, -p.g), p.sweeps)
+
+
+def run(step, acceleration, state, p, dt, steps):
+    x, v, net = state
+    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, net)
+    return x, v, net
+
+
+def observe(state, p):
+    return state[0][1:, :2].ravel()
+
+
+def truth(p, t):
+    """Every weight, from the angles of the links, which therefore keep their length: tensions and angular accelerations by Newton's law,
+    moved by DOP853 at 1e-12.  Nothing is projected.
+    """
+    theta = rope_motion(p.links, p.l, p.m, p.g, T).sol(t)[:p.links]
+    return rope_places(theta, p.l).ravel()
+
+
+def of_bodies(p, t):
+    """The same for weights that turn with the link above them and have a moment of inertia: Lagrange's equations, by DOP853."""
+    theta = rope_motion(p.links, p.l, p.m, p.g, T, SHARE * p.m * p.l**2).sol(t)[:p.links]
+    return rope_places(theta, p.l).ravel()
+
+
+def tolerance(p, dt):
+    """First order by rope_lag: what DOP853 says of the modified equation; beyond it a step errs by (ρ dt)³, dt² ∫ρ³ dt in all, where ρ(t) is
+    the rope's own fastest rate at that time (rope_rates).
+
+    PBD and XPBD stop their sweeps before all links have their length.  Even a single sweep leaves a link too long by no more than the
+    tension moves a weight in a step, T dt²/m (stability case 81 has it exactly): up to N times as much in place, and a share of
+    that over l in the forces, ∫ρ dt times.
+    """
+    one, three, pull = rope_rates(p.links, p.l, p.m, p.g, T)
+    size, of = np.linalg.norm(truth(p, T)), (p.links, p.l, p.m, p.g, T)
+    second = three * dt**2 + by_order(0.0, T, dt)[2]
+    first = rope_lag(*of, late=1.0, ahead=0.5) / size * dt + second
+    soft = p.links**1.5 * pull / p.m * dt**2 * (1.0 + one) / size
+    witness = rope_lag(*of, ahead=-0.5) / size * dt + second
+    bodies = rope_lag(*of, inertia=SHARE * p.m * p.l**2, ahead=0.5) / np.linalg.norm(of_bodies(p, T)) * dt + second
+    return {1: first, 2: second, "PBD": first + soft, "XPBD": first + soft, "pymunk": witness, "pybullet": bodies}
+
+
+def supports(name, p):
+    """The projection method for ropes that its matrix is not too large for."""
+    return p.links <= 20 or name != "projection_step"
+
+
+def pymunk_make(p, dt):
+    return pymunk_rope(straight(p), p.l, p.m, p.g, dt, np.ravel)
+
+
+def pybullet_make(p, dt):
+    return bullet_rope(straight(p), p.m, p.g, SHARE * p.m * p.l**2, dt, np.ravel)
+
+
+ENGINES = (
+    Engine(PYMUNK, "", pymunk_make, 1, f"PinJoints between masses that cannot turn; error_bias 0, {ITERATIONS} iterations for each link", 5000),
+    Engine(PYBULLET, "", pybullet_make, 1, f"JOINT_POINT2POINT, useMaximalCoordinates=1, erp 1, {ITERATIONS} iterations for each link; weights with I = {SHARE} m l²", 5000),
+)
+
+
+def sanity_checks():
+    """((claim, found, expected, tolerance), …): the truth itself, against what must hold of it."""
+    claims = []
+    for name, p in CASES.items():
+        motion = rope_motion(p.links, p.l, p.m, p.g, T)
+        energies = [rope_energy(motion.sol(t), p.l, p.m, p.g) for t in np.linspace(0.0, T, 21)]
+        claims.append((f"{name}: energy gained over the weight times the length", np.ptp(energies) / (p.m * p.g * p.l * p.links**2), 0.0, 1e-9))
+    p = CASES["10 links"]
+    angles = [rope_motion(p.links, p.l, p.m, p.g, T, inertia).y[:p.links, -1] for inertia in (0.0, 1e-9 * p.m * p.l**2)]
+    claims.append(("10 links: from tensions and from Lagrange's equations [rad]", np.abs(angles[0] - angles[1]).max(), 0.0, 1e-6))
+    return tuple(claims)
+
+
+def points(observed, p):
+    return np.round(np.concatenate((np.zeros((1, 2)), observed.reshape(-1, 2))), 4)
+
+
+def links(p):
+    return [(n, n + 1) for n in range(p.links)]
+
+
+def in_space(p):
+    """The same motion with a third coordinate carried along."""
+    x, v, net = start(p)
+    wide = lambda y: np.concatenate((y, np.zeros((len(y), 1))), axis=1)
+    return (wide(x), wide(v), net._replace(gravity=np.append(net.gravity, 0.0))), p
+
+
+SCENE = Scene(
+    title="Rope",
+    lesson="pbd",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=(PROJECTION, PBD, XPBD, RATTLE),
+    acceleration=acceleration,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-9,
+    tolerance=tolerance,
+    engines=ENGINES,
+    expected_departures={"pybullet": Departure(f"our weights there must have a moment of inertia, for its solver sweeps over three axes: with {SHARE} m l² each turns with the link above it", of_bodies)},
+    supports=supports,
+    omitted_methods="the projection method has a dense matrix of all points and links; for a long rope it would take a sparse one",
+    slow_cases=("50 links",),          # its theory alone takes seconds
+    sanity_checks=sanity_checks,
+    points=points,
+    links=links,
+    uses=("two coordinates", "links, one after the other", "one step function"),
+    ablations={"the third dimension": in_space, "contact of the rope with itself": "lesson 6 finds it", "bending stiffness": "cloth_step of this lesson has it"},
+)

@@ -1,0 +1,130 @@
+"""A body with three different moments, spun about its middle axis with a hundredth of disturbance: it turns over, as tennis rackets do."""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.rotation import Body, check_moments, tumble
+from solutions.rotation import no_torque as acceleration
+from validate import drawing
+from validate.drawing import axes_seen, omega_and_L, pose
+from validate.engines.rotation import FREE_ENGINES
+from validate.methods import TURNS
+from validate.reference.orientation import quaternion_matrix
+from validate.reference.rotation import FreeTop, free_limits, freely
+from validate.scene import Scene
+
+T = 10.0                     # [s]: it turns over at 6.06 s, and is about to set out for the next time
+STEPS = (500, 1000, 2000, 5000, 10000, 20000, 50000)
+
+
+class Params(NamedTuple):
+    I1: Annotated[float, "principal moments of inertia [kg m²]"] = 1.0
+    I2: float = 2.0
+    I3: float = 3.0
+    w1: Annotated[float, "ω in the body at the start [rad/s]"] = 0.01
+    w2: float = 2.0
+    w3: float = 0.01
+
+    def moments(self):
+        return np.array([self.I1, self.I2, self.I3])
+
+    def omega(self):
+        return np.array([self.w1, self.w2, self.w3])
+
+
+CASES = {"one flip": Params(), "calm about the largest moment": Params(w1=0.01, w2=0.02, w3=2.0)}
+
+
+def start(p):
+    check_moments(p.moments())
+    return np.array([1.0, 0.0, 0.0, 0.0]), p.moments() * p.omega(), Body(1.0, p.moments())
+
+
+def run(step, acceleration, state, p, dt, steps):
+    q, L, body = state
+    q, L = tumble(step, acceleration, 0.0, q, L, dt, steps, body)
+    return q, L, body
+
+
+def observe(state, p):
+    """R, its nine numbers: they do not tell q from −q."""
+    w, x, y, z = state[0]
+    return quaternion_matrix(w, x, y, z).ravel()
+
+
+def truth(p, t):
+    """ω by Jacobi's sn, cn, dn; about L the body turns at |L| (I₁ω₁² + I₂ω₂²)/(I₁²ω₁² + I₂²ω₂²), integrated by Gauss's rule (FreeTop).
+
+    Where the moments are not in order, or L² < 2E I₂, by DOP853.
+    Source: Landau and Lifshitz, Mechanics, § 37.
+    """
+    if FreeTop.knows(p.moments(), p.omega()):
+        return FreeTop(p.moments(), p.omega()).R(t).ravel()
+    return (freely(np.eye(3), p.omega(), p.moments(), t)[0] if t > 0.0 else np.eye(3)).ravel()
+
+
+def tolerance(p, dt):
+    """free_limits: errors grow as neighbouring motions part; the constants of first-order steps, pybullet's among them, in closed form."""
+    return free_limits(p, T, dt)
+
+
+ENGINES = FREE_ENGINES
+
+
+def points(observed, p):
+    return axes_seen(observed)
+
+
+def links(p):
+    return [(0, 1), (0, 2), (0, 3)]
+
+
+def bodies(p):
+    """A plate of one kilogram with these moments: Iᵢ = m(aⱼ² + aₖ²)/3 for half sizes a, drawn thicker than it is."""
+    a = np.sqrt(1.5 * np.maximum(0.0, np.sum(p.moments()) - 2.0 * p.moments()))
+    return [drawing.box(np.maximum(a, 0.05 * a.max()))]
+
+
+def poses(observed, p):
+    return [pose(np.zeros(3), np.reshape(observed, (3, 3)))]
+
+
+def arrows(observed, p):
+    return omega_and_L(observed, p, 4.0)
+
+
+def sanity_checks():
+    p = Params()
+    top = FreeTop(p.moments(), p.omega())
+    flip = top.flips()[0]
+    R, L = freely(np.eye(3), p.omega(), p.moments(), T)
+    return (("the flip [s]", flip, 6.06, 5e-3), ("ω₂ at the flip [rad/s]", top.omega(flip)[1], 0.0, 1e-10),
+            ("R at T, by DOP853", truth(p, T), R.ravel(), 1e-10), ("ω in the body at T, by DOP853", top.omega(T), R.T @ L / p.moments(), 1e-10))
+
+
+SCENE = Scene(
+    title="Asymmetric top",
+    lesson="rotation",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=TURNS,
+    acceleration=acceleration,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-11,          # 1 − k² = 5e-5 is known to 2e-16/5e-5, and the instant of the flip like its logarithm
+    tolerance=tolerance,
+    engines=ENGINES,
+    slow_methods=("composed_midpoint_step",),
+    sanity_checks=sanity_checks,
+    points=points,
+    links=links,
+    bodies=bodies,
+    poses=poses,
+    arrows=arrows,
+    uses=("one orientation", "one angular momentum", "one step function"),
+    ablations={"position": "x += dt P/M goes on beside it and touches nothing", "contacts": "lessons 6 and 7 build them"},
+)

@@ -1,0 +1,174 @@
+"""A fast top leans a little and is let go: its tip draws small arches, which meet in cusps, around the vertical."""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import BadInput, check_positive
+from solutions.rotation import Top, check_moments, exponential, tumble
+from solutions.rotation import heavy_top_torque as acceleration
+from validate import drawing
+from validate.engines.bullet import Rigid
+from validate.methods import TURNS
+from validate.reference.orientation import about
+from validate.reference.rotation import HeavyTop, freely
+from validate.scene import PYBULLET, ROUND_OFF, Engine, EngineRun, Scene, by_order
+
+T = 2.0                      # [s]: nearly three nutations
+STEPS = (500, 1000, 2000, 5000, 10000, 20000, 50000)
+
+
+class Params(NamedTuple):
+    I1: Annotated[float, "moment across the axis, about the pivot [kg m²]"] = 5.0
+    I3: Annotated[float, "moment about the axis [kg m²]"] = 1.0
+    mgl: Annotated[float, "weight times the distance from the pivot to the centre of mass [N m]"] = 20.0
+    tilt: Annotated[float, "at the start [rad]"] = 0.05
+    spin: Annotated[float, "ω₃ [rad/s]"] = 50.0
+
+    def moments(self):
+        return np.array([self.I1, self.I1, self.I3])
+
+
+CASES = {"fast": Params()}
+LENGTH, G = 1.0, 9.81        # for pybullet: from the pivot to the centre of mass [m], gravity [m/s²]; only Mgl counts
+
+
+def start(p):
+    check_moments(p.moments())
+    check_positive("Mgl [N m]", p.mgl)
+    if not 0.0 < p.tilt < np.pi:
+        raise BadInput("the tilt [rad]", p.tilt, "give a number between 0 and π")
+    if not (p.I3 * p.spin / p.I1) ** 2 > 4.0 * p.mgl / p.I1:
+        raise BadInput("the spin [rad/s]", p.spin, "let the top spin fast enough to stand, ω₃² > 4 I₁ Mgl/I₃²")
+    q = exponential(np.array([p.tilt, 0.0, 0.0]))
+    return q, about(np.array([1.0, 0.0, 0.0]), p.tilt) @ np.array([0.0, 0.0, p.I3 * p.spin]), Top(p.moments(), p.mgl)
+
+
+def run(step, acceleration, state, p, dt, steps):
+    q, L, top = state
+    q, L = tumble(step, acceleration, 0.0, q, L, dt, steps, top)
+    return q, L, top
+
+
+def observe(state, p):
+    """Where the tip is, seen from above: the horizontal coordinates of the unit vector along the top."""
+    w, x, y, z = state[0]
+    return np.array([2.0 * (x * z + w * y), 2.0 * (y * z - w * x)])
+
+
+def truth(p, t):
+    """θ by Jacobi's sn and dn, φ by Gauss's rule (HeavyTop): the tip is at sin θ (sin φ, −cos φ).
+
+    Source: Landau and Lifshitz, Mechanics, § 35.
+    """
+    return HeavyTop(p.I1, p.I3, p.mgl, p.tilt, p.spin).tip(t)
+
+
+def tolerance(p, dt):
+    """The fastest rate is the spin.  Near the vertical the tip obeys a linear equation, so that it errs in proportion to its distance.
+
+    Round-off is that of q, 1e-16 a step beside a tip at sin θ₀ at least.  pybullet takes the gyroscopic term at the end of the step
+    (maximal coordinates) or at its beginning (reduced), about the centre of mass and not about the pivot: I = I₁ − ml².  Seen from
+    the body its tip turns at Ω = (I₃/I − 1) ω₃, and e^(iΩdt) ≈ 1 + iΩdt is too long by ½(Ω dt)² a step.
+    """
+    limits = {k: limit + T / dt * ROUND_OFF / np.sin(p.tilt) for k, limit in by_order(p.spin, T, dt).items()}
+    turning = (p.I3 / (p.I1 - mass(p) * LENGTH**2) - 1.0) * p.spin
+    witness = limits[1] + 0.5 * turning**2 * dt * T
+    return {**limits, "pybullet": witness, "pybullet, reduced coordinates": witness}
+
+
+def mass(p):
+    return p.mgl / (G * LENGTH)
+
+
+def pybullet_make(maximal):
+    def make(p, dt):
+        """A body held at its pivot by a point-to-point constraint; its moments are about the centre of mass: I₁ − ml²."""
+        across = p.I1 - mass(p) * LENGTH**2
+        R = about(np.array([1.0, 0.0, 0.0]), p.tilt)
+        axis = R[:, 2]
+        bullet = Rigid(dt, (0.0, 0.0, -G), iterations=200, erp=1.0)
+        body = bullet.body(mass(p), (across, across, p.I3), LENGTH * axis, p.spin * axis, maximal, R=R)
+        bullet.pivot(body, (0.0, 0.0, -LENGTH), maximal)
+        return EngineRun(bullet.step, lambda: bullet.R(body)[:2, 2], bullet.close)
+    return make
+
+
+SETTINGS = "pivot: JOINT_POINT2POINT, 200 iterations, erp 1; no damping"
+ENGINES = (
+    Engine(PYBULLET, "reduced coordinates", pybullet_make(False), 1, f"createMultiBody, no clamp of velocity; {SETTINGS}"),
+    Engine(PYBULLET, "", pybullet_make(True), 1, f"useMaximalCoordinates=1; {SETTINGS}"),
+)
+
+
+def points(observed, p):
+    return np.vstack((np.zeros(2), observed))
+
+
+def links(p):
+    return [(0, 1)]
+
+
+
+
+def bodies(p):
+    """Only the upper end of the top's axle, a metre from its point, or nobody would see the arches; and a plumb line over the point."""
+    reach = np.sin(p.tilt)
+    return [drawing.cylinder(0.03 * reach, reach), drawing.sphere(0.07 * reach), drawing.cylinder(0.01 * reach, reach)]
+
+
+def poses(observed, p):
+    """Turned out of the vertical the shortest way: nobody sees how far a round axle has spun."""
+    x, y, z = tip = axis(observed)
+    q = np.array([1.0 + z, -y, x, 0.0])
+    q /= np.linalg.norm(q)
+    middle = 0.5 * np.sin(p.tilt)
+    return [np.append((1.0 - middle) * tip, q), np.append(tip, q), (0.0, 0.0, 1.0 - middle, 1.0, 0.0, 0.0, 0.0)]
+
+
+def axis(observed):
+    """The unit vector (3,) along the top, from what is seen of it from above."""
+    return np.append(observed, np.sqrt(1.0 - observed @ observed))
+
+
+def arrows(observed, p):
+    """ω, but for the thousandth of it that lies across the axis, and the torque Mgl 𝐳 × 𝐞₃ that pushes L sideways."""
+    x, y, _ = tip = axis(observed)
+    return {"ω": (tip, tip + np.sin(p.tilt) * tip), "τ": (tip, tip + np.array([-y, x, 0.0]))}
+
+
+def sanity_checks():
+    p = Params()
+    top, R = HeavyTop(*p), about(np.array([1.0, 0.0, 0.0]), p.tilt)
+    tip = freely(R, np.array([0.0, 0.0, p.spin]), p.moments(), T, lambda R: np.cross(R[:, 2], [0.0, 0.0, -p.mgl]))[0][:2, 2]
+    return (("energy [J]", 0.5 * p.I3 * p.spin**2 + p.mgl * np.cos(p.tilt), 1269.975, 5e-4),
+            ("least and largest tilt [°]", np.degrees(np.arccos([top.u0, top.u1])), (2.864789, 3.125582), 5e-7),
+            ("nutation [s]", top.nutation(), 0.685458497, 5e-10), ("the tip at T, by DOP853", truth(p, T), tip, 1e-12))
+
+
+SCENE = Scene(
+    title="Heavy top",
+    lesson="rotation",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=TURNS,
+    acceleration=acceleration,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-12,
+    tolerance=tolerance,
+    engines=ENGINES,
+    slow_methods=("matrix_step", "axis_angle_step", "implicit_gyroscopic_step", "midpoint_step", "composed_midpoint_step"),          # the asymmetric top has them
+    sanity_checks=sanity_checks,
+    points=points,
+    links=links,
+    bodies=bodies,
+    poses=poses,
+    arrows=arrows,
+    trail=1,          # the tip
+    uses=("one orientation", "one angular momentum", "one torque", "one step function"),
+    ablations={"the pivot's force": "taken about the pivot, it has no torque", "friction at the pivot": "lesson 3 has friction"},
+)

@@ -1,0 +1,151 @@
+"""A ball lets itself go on a slope and rolls: two sevenths of its weight's pull are spent on turning it."""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import BadInput, check_positive
+from solutions.rotation import Ball, move
+from solutions.rotation import rolling_load as acceleration
+from validate import drawing
+from validate.drawing import pose
+from validate.engines.rotation import rolling_ball
+from validate.methods import LOOP
+from validate.reference.orientation import about
+from validate.scene import PYBULLET, ROUND_OFF, Engine, Scene
+
+T = 1.0                      # [s]
+STEPS = (50, 100, 200, 500, 1000, 2000, 5000)
+
+
+class Params(NamedTuple):
+    slope: Annotated[float, "of the floor [°]"] = 15.0
+    radius: Annotated[float, "[m]"] = 0.05
+    m: Annotated[float, "mass [kg]"] = 0.5
+    mu: Annotated[float, "friction [-]; it rolls from 2/7 tan 15° = 0.077 on"] = 0.5
+    g: Annotated[float, "gravity [m/s²]"] = 9.81
+
+
+CASES = {"15°": Params(), "hardly rough enough": Params(mu=0.077)}
+
+
+def ball(p, dt):
+    slope = np.radians(p.slope)
+    return Ball(p.m, np.full(3, 0.4 * p.m * p.radius**2), p.radius, p.mu, p.g * np.array([np.sin(slope), 0.0, -np.cos(slope)]), dt)
+
+
+def start(p):
+    for name in ("radius", "m", "g"):
+        check_positive(name, getattr(p, name))
+    if not p.mu >= 2.0 / 7.0 * np.tan(np.radians(p.slope)):
+        raise BadInput("the friction μ", p.mu, "give 2/7 tan(slope) or more: with less it slides")
+    return np.array([0.0, 0.0, p.radius]), np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3)
+
+
+def run(step, acceleration, state, p, dt, steps):
+    x, v, q, omega = state
+    return move(step, acceleration, 0.0, x, v, q, omega, dt, steps, ball(p, dt))
+
+
+def observe(state, p):
+    """Way down the slope s [m], speed v and rim speed rω [m/s]."""
+    return np.array([state[0][0], state[1][0], p.radius * state[3][1]])
+
+
+def truth(p, t):
+    """v = rω = at,  s = ½at²,  a = g sin β/(1 + I/mr²) = (5/7) g sin β.
+
+    Source: m v̇ = m g sin β − f,  I ω̇ = r f,  v = rω; deck B, "sticking: any force in the cone".
+    """
+    a = acceleration_down(p)
+    return np.array([0.5 * a * t * t, a * t, a * t])
+
+
+def acceleration_down(p):
+    return 5.0 / 7.0 * p.g * np.sin(np.radians(p.slope))
+
+
+def tolerance(p, dt):
+    """A step that moves with the new velocity arrives ½ a dt T too far, the engine's too; v and ω are exact, for the force is constant."""
+    limit = 0.5 * acceleration_down(p) * dt * T / np.linalg.norm(truth(p, T)) + 1e-12 + T / dt * ROUND_OFF
+    return {1: limit, "pybullet": limit, "pybullet, reduced coordinates": limit}
+
+
+def pybullet_make(maximal):
+    return lambda p, dt: rolling_ball(ball(p, dt), np.zeros(3), maximal, dt)
+
+
+ENGINES = (
+    Engine(PYBULLET, "reduced coordinates", pybullet_make(False), 1, "createMultiBody on a GEOM_PLANE, slanted gravity; 100 iterations, no residual threshold, no slop, no damping"),
+    Engine(PYBULLET, "", pybullet_make(True), 1, "the same with useMaximalCoordinates=1"),
+)
+
+
+def points(observed, p):
+    """The slope from the side: the centre, and a mark on the rim, which has turned by s/r."""
+    slope, s = np.radians(p.slope), observed[0]
+    down, up = np.array([np.cos(slope), -np.sin(slope)]), np.array([np.sin(slope), np.cos(slope)])
+    turned = s / p.radius
+    centre = s * down + p.radius * up
+    return np.stack((centre, centre + p.radius * (np.sin(turned) * down + np.cos(turned) * up), np.zeros(2), 1.1 * down))
+
+
+def links(p):
+    return [(0, 1), (2, 3)]
+
+
+def bodies(p):
+    """The ball, and a board for a slope."""
+    return [drawing.sphere(p.radius), drawing.box((0.6, 0.15, 0.005))]
+
+
+def axes(p):
+    """Unit vectors (3,) down the slope, along it, and out of it."""
+    slope = np.radians(p.slope)
+    return np.array([np.cos(slope), 0.0, -np.sin(slope)]), np.array([0.0, 1.0, 0.0]), np.array([np.sin(slope), 0.0, np.cos(slope)])
+
+
+def poses(observed, p):
+    down, along, out = axes(p)
+    s = observed[0]
+    return [pose(s * down + p.radius * out, about(along, s / p.radius)), pose(0.5 * down - 0.005 * out, about(along, np.radians(p.slope)))]
+
+
+def arrows(observed, p):
+    """v, and ω as long as the speed of the rim: the same, because it rolls."""
+    down, along, out = axes(p)
+    s, v, rim = observed
+    centre = s * down + p.radius * out
+    return {"v": (centre, centre + 0.15 * v * down), "ω": (centre, centre + 0.15 * rim * along)}
+
+
+def sanity_checks():
+    s, v, _ = truth(Params(), T)
+    return (("speed after 1 s [m/s]", v, 1.813582, 5e-7), ("way after 1 s [m]", s, 0.906791, 5e-7))
+
+
+SCENE = Scene(
+    title="Rolling down",
+    lesson="rotation",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=(LOOP,),
+    acceleration=acceleration,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-15,
+    tolerance=tolerance,
+    engines=ENGINES,
+    sanity_checks=sanity_checks,
+    points=points,
+    links=links,
+    bodies=bodies,
+    poses=poses,
+    arrows=arrows,
+    uses=("one ball", "one force at one point", "the lecture's loop"),
+    ablations={"detection of the contact": "the ball starts on the floor and stays there; lesson 6 finds contacts",
+              "a force of the support that is solved for": "N = mg cos β, because nothing moves up or down"},
+)

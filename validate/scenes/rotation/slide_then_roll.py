@@ -1,0 +1,167 @@
+"""A ball bowled without spin slides, is turned by the friction that brakes it, and from one instant on rolls for ever."""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import check_positive
+from solutions.rotation import Ball, move
+from solutions.rotation import rolling_load as acceleration
+from validate import drawing
+from validate.drawing import pose
+from validate.engines.chipmunk import pymunk_space, pymunk_world
+from validate.engines.rotation import rolling_ball
+from validate.methods import LOOP
+from validate.reference.orientation import about
+from validate.scene import PYBULLET, PYMUNK, ROUND_OFF, Engine, Scene
+
+T = 1.5                      # [s]
+STEPS = (60, 120, 300, 600, 1200, 3000, 6000)
+
+
+class Params(NamedTuple):
+    shape: Annotated[float, "I/mR² [-]: 2/5 for a sphere, 1/2 for a disc"] = 0.4
+    v0: Annotated[float, "speed at the start [m/s]"] = 5.0
+    mu: Annotated[float, "friction [-]"] = 0.2
+    R: Annotated[float, "radius [m]"] = 0.1
+    m: Annotated[float, "mass [kg]"] = 2.0
+    g: Annotated[float, "gravity [m/s²]"] = 9.81
+
+
+CASES = {"sphere": Params(), "disc": Params(shape=0.5)}
+
+
+def ball(p, dt):
+    return Ball(p.m, np.full(3, p.shape * p.m * p.R**2), p.R, p.mu, np.array([0.0, 0.0, -p.g]), dt)
+
+
+def start(p):
+    for name in ("shape", "R", "m", "mu", "g"):
+        check_positive(name, getattr(p, name))
+    return np.array([0.0, 0.0, p.R]), np.array([p.v0, 0.0, 0.0]), np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3)
+
+
+def run(step, acceleration, state, p, dt, steps):
+    x, v, q, omega = state
+    return move(step, acceleration, 0.0, x, v, q, omega, dt, steps, ball(p, dt))
+
+
+def observe(state, p):
+    """Way x [m], speed v and rim speed Rω [m/s]."""
+    return np.array([state[0][0], state[1][0], p.R * state[3][1]])
+
+
+def rolls_from(p):
+    """When slipping ends [s]: v₀ − μg t = Rω = μg t mR²/I."""
+    return p.v0 / (p.mu * p.g * (1.0 + 1.0 / p.shape))
+
+
+def truth(p, t):
+    """v = v₀ − μgt and Rω = μgt mR²/I until they meet at t* = v₀/(μg(1 + mR²/I)); from then on both are v₀/(1 + I/mR²).
+
+    Source: Newton and Euler with f = μmg; deck A, friction; 5/7 of the speed is left to a sphere, 2/3 to a disc.
+    """
+    sliding, brake = min(t, rolls_from(p)), p.mu * p.g
+    v = p.v0 - brake * sliding
+    return np.array([p.v0 * sliding - 0.5 * brake * sliding**2 + v * (t - sliding), v, brake * sliding / p.shape])
+
+
+def tolerance(p, dt):
+    """While it slides, a step that moves with the new velocity falls ½ μg dt behind each second, one with the old gets as much ahead.
+
+    In the step in which it begins to roll the velocity is off by μg dt at most, for dt; after it both velocities are exact, though
+    pymunk's friction may act for one step more or less: another μg dt².
+    """
+    brake = p.mu * p.g
+    bias = (0.5 * brake * dt * rolls_from(p) + 2.0 * brake * dt * dt) / np.linalg.norm(truth(p, T))
+    limit = bias + 1e-12 + T / dt * ROUND_OFF
+    return {1: limit, "pymunk": limit, "pybullet": limit, "pybullet, reduced coordinates": limit}
+
+
+def pymunk_make(p, dt):
+    """A circle with that moment, which overlaps the floor by a micrometre: pymunk needs an overlap to see a contact."""
+    import pymunk
+    space = pymunk_space((0.0, -p.g))
+    space.iterations = 50
+    body = pymunk.Body(p.m, p.shape * p.m * p.R**2)
+    body.position, body.velocity = (0.0, p.R - 1e-6), (p.v0, 0.0)
+    shape, floor = pymunk.Circle(body, p.R), pymunk.Segment(space.static_body, (-10.0, 0.0), (100.0, 0.0), 0.0)
+    shape.friction, floor.friction = p.mu, 1.0           # pymunk multiplies the two
+    space.add(body, shape, floor)
+    return pymunk_world(space, dt, lambda: np.array([body.position.x, body.velocity.x, -p.R * body.angular_velocity]))
+
+
+def pybullet_make(maximal):
+    return lambda p, dt: rolling_ball(ball(p, dt), np.array([p.v0, 0.0, 0.0]), maximal, dt)
+
+
+ENGINES = (
+    Engine(PYMUNK, "", pymunk_make, 1, "50 iterations; the circle starts 1e-6 m inside the floor"),
+    Engine(PYBULLET, "reduced coordinates", pybullet_make(False), 1, "createMultiBody on a GEOM_PLANE; 100 iterations, no residual threshold, no slop, no damping"),
+    Engine(PYBULLET, "", pybullet_make(True), 1, "the same with useMaximalCoordinates=1"),
+)
+
+
+def points(observed, p):
+    """From the side: the centre, and how far the rim has come, both along the floor."""
+    x, v, rim = observed
+    return np.array([[x, p.R], [x, p.R + 0.2 * v], [x + 0.05, p.R], [x + 0.05, p.R + 0.2 * rim], [0.0, 0.0], [6.0, 0.0]])
+
+
+def links(p):
+    return [(0, 1), (2, 3), (4, 5)]
+
+
+
+
+def bodies(p):
+    return [drawing.sphere(p.R)]
+
+
+def poses(observed, p):
+    """Its rim has come ½ (Rω)²/(μg mR²/I) while it slid, and since then as far as the ball: what is beyond (v₀² − v²)/2μg."""
+    x, v, rim = observed
+    brake = p.mu * p.g
+    way = 0.5 * rim**2 * p.shape / brake + max(0.0, x - (p.v0**2 - v**2) / (2.0 * brake))
+    return [pose(np.array([x, 0.0, p.R]), about(np.array([0.0, 1.0, 0.0]), way / p.R))]
+
+
+def arrows(observed, p):
+    """v, and ω as long as the speed of the rim: the same as soon as it rolls."""
+    x, v, rim = observed
+    centre = np.array([x, 0.0, p.R])
+    return {"v": (centre, centre + np.array([0.2 * v, 0.0, 0.0])), "ω": (centre, centre + np.array([0.0, 0.2 * rim, 0.0]))}
+
+
+def sanity_checks():
+    sphere, disc = CASES["sphere"], CASES["disc"]
+    return (("a sphere rolls from [s]", rolls_from(sphere), 0.728120, 5e-7), ("its speed then [m/s]", truth(sphere, T)[1:], 25.0 / 7.0, 1e-14),
+            ("a disc rolls from [s]", rolls_from(disc), 0.849473, 5e-7), ("its speed then [m/s]", truth(disc, T)[1:], 10.0 / 3.0, 1e-14))
+
+
+SCENE = Scene(
+    title="Slide, then roll",
+    lesson="rotation",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=(LOOP,),
+    acceleration=acceleration,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-15,
+    tolerance=tolerance,
+    engines=ENGINES,
+    sanity_checks=sanity_checks,
+    points=points,
+    links=links,
+    bodies=bodies,
+    poses=poses,
+    arrows=arrows,
+    ground=True,
+    uses=("one ball", "one force at one point", "the lecture's loop"),
+    ablations={"detection of the contact": "the ball starts on the floor and stays there; lesson 6 finds contacts",
+              "a force of the support that is solved for": "N = mg, because nothing moves up or down"},
+)

@@ -1,0 +1,160 @@
+"""A rod on a torsion spring, turned by one radian and let go: alone, as a pendulum without its spring, and with both."""
+
+from functools import cache
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from scipy.integrate import solve_ivp
+from scipy.special import ellipj, ellipk
+
+from solutions.checks import check_positive
+from solutions.integrators import advance
+from solutions.springs import angular_spring_forces
+from validate.engines.chipmunk import pymunk_space, pymunk_world
+from validate.methods import INTEGRATORS, LEFT_TO_FULL
+from validate.scene import PYMUNK, Engine, Scene, by_order
+
+T = 2.5                      # [s]: about two periods; no case is then at a turning point, where errors of phase do not show
+STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
+HINGE, DOWN = np.zeros(2), np.array([0.0, -1.0])                  # where the rod turns, and the end of the arm that is fixed [m]
+UNCERTAINTY = 1e-12          # DOP853's, where both act; the closed forms are ten times better
+
+
+class Params(NamedTuple):
+    kappa: Annotated[float, "torsion spring [N m/rad]; 0: there is none"] = 10.0
+    g: Annotated[float, "gravity [m/s²]; negative: the rod stands instead of hanging"] = 0.0
+    m: Annotated[float, "uniform rod [kg]"] = 1.0
+    length: Annotated[float, "[m], hinged at one end"] = 1.0
+    theta0: Annotated[float, "first angle from the vertical, counter-clockwise [rad]"] = 1.0
+
+
+CASES = {"spring": Params(), "gravity": Params(kappa=0.0, g=9.81), "spring and gravity": Params(g=9.81),
+         "standing": Params(g=-9.81), "spring, other side": Params(theta0=-1.0)}
+
+
+def inertia(p):
+    """About the hinge [kg m²]."""
+    return p.m * p.length**2 / 3.0
+
+
+def acceleration(t, x, v, p):
+    """θ̈ = (r × F_c − ½ m g length sin θ)/I,   r = length (sin θ, −cos θ),   F_c by angular_spring_forces on the rod's end.
+
+    The other arm hangs straight down and is fixed; F_c ⊥ r has the moment −κ θ about the hinge, whatever the arm's length.
+    """
+    r = np.array([p.length * np.sin(x[0]), -p.length * np.cos(x[0])])
+    F_c = angular_spring_forces(DOWN, HINGE, r, 0.0, p.kappa)[2]
+    moment = r[0] * F_c[1] - r[1] * F_c[0] - 0.5 * p.m * p.g * p.length * np.sin(x[0])
+    return np.array([moment * 3.0 / (p.m * p.length * p.length)])
+
+
+def start(p):
+    for name in ("m", "length"):
+        check_positive(name, getattr(p, name))
+    return np.array([p.theta0]), np.zeros(1)
+
+
+def run(step, acceleration, state, p, dt, steps):
+    x, v = state
+    return advance(step, acceleration, 0.0, x, v, dt, steps, p)
+
+
+def observe(state, p):
+    return state[0][:1]
+
+
+def truth(p, t):
+    """θ(t) of the spring alone: θ₀ cos ωt, ω² = κ/I;  of gravity alone: 2 arcsin(k sn(K + ωt, k²)), ω² = m g length/2I,
+    k = sin ½θ₀.
+
+    Of both: θ̈ = −(κ θ + ½ m g length sin θ)/I, by DOP853 at a relative tolerance of 1e-13.
+    Source: for gravity, Landau and Lifshitz, Mechanics, § 11, in Jacobi's functions; I = m length²/3.
+    """
+    if p.g == 0.0:
+        return np.array([p.theta0 * np.cos(np.sqrt(p.kappa / inertia(p)) * t)])
+    if p.kappa == 0.0 and p.g > 0.0:
+        omega, k = np.sqrt(0.5 * p.m * p.g * p.length / inertia(p)), np.sin(0.5 * p.theta0)
+        sn = ellipj(ellipk(k * k) + omega * t, k * k)[0]
+        return np.array([2.0 * np.arcsin(k * sn)])
+    return reference(p)(t)
+
+
+@cache
+def reference(p):
+    law = lambda t, y: (y[1], -(p.kappa * y[0] + 0.5 * p.m * p.g * p.length * np.sin(y[0])) / inertia(p))
+    run = solve_ivp(law, (0.0, T), (p.theta0, 0.0), method="DOP853", rtol=1e-13, atol=1e-15, dense_output=True)
+    return lambda t: (run.y[:, -1] if t == T else run.sol(t))[:1]
+
+
+def tolerance(p, dt):
+    """The fastest rate is that of spring and gravity pulling together; relative to θ(T), smaller than θ₀.
+
+    pymunk moves the centre of the rod and turns it, then pulls the end back to the hinge: symplectic Euler, order 1.  What the
+    hinge has to undo each step, ½ length θ̇² dt, is of the same order at the same rate: θ̇ ≤ rate θ₀ and θ₀ ≤ 1.
+    """
+    rate = np.sqrt((p.kappa + 0.5 * p.m * abs(p.g) * p.length) / inertia(p))
+    shrunk = abs(p.theta0 / truth(p, T)[0])
+    limits = {k: shrunk * limit + UNCERTAINTY for k, limit in by_order(rate, T, dt).items()}
+    return {**limits, "pymunk": limits[1]}
+
+
+def pymunk_make(p, dt):
+    """The rod about its centre, a PivotJoint at its end, a DampedRotarySpring to the ground; hanging is angle 0."""
+    import pymunk
+    space = pymunk_space((0.0, -p.g))
+    body = pymunk.Body(p.m, p.m * p.length**2 / 12.0)
+    body.position, body.angle = (0.5 * p.length * np.sin(p.theta0), -0.5 * p.length * np.cos(p.theta0)), p.theta0
+    hinge = pymunk.PivotJoint(space.static_body, body, (0.0, 0.0), (0.0, 0.5 * p.length))
+    hinge.error_bias = 0.0                               # all drift is undone in the next step: then it stays second order
+    space.add(body, hinge, pymunk.DampedRotarySpring(space.static_body, body, 0.0, p.kappa, 0.0))
+    return pymunk_world(space, dt, lambda: np.array([body.angle]))
+
+
+ENGINES = (Engine(PYMUNK, "", pymunk_make, 1, "DampedRotarySpring and PivotJoint, error_bias = 0"),)
+
+
+def points(observed, p):
+    theta = observed[0]
+    return p.length * np.array([[0.0, 0.0], [np.sin(theta), -np.cos(theta)]])
+
+
+def links(p):
+    return [(0, 1)]
+
+
+def sanity_checks():
+    """((claim, found, expected, tolerance), …): special values, for a test to assert.
+
+    The period of a pendulum let go at one radian is 1.0663 of a small one's: 2K(sin ½)/π.
+    """
+    p = CASES["gravity"]
+    small = 2.0 * np.pi * np.sqrt(2.0 * inertia(p) / (p.m * p.g * p.length))
+    period = small * 2.0 / np.pi * ellipk(np.sin(0.5 * p.theta0) ** 2)
+    return (("period over that of small swings [-]", period / small, 1.0663, 5e-5),
+            ("angle after a period [rad]", truth(p, period)[0], p.theta0, 1e-12),
+            ("angle after a quarter [rad]", truth(p, 0.25 * period)[0], 0.0, 1e-12))
+
+
+SCENE = Scene(
+    title="Angular spring",
+    lesson="springs",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=INTEGRATORS,
+    acceleration=acceleration,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=UNCERTAINTY,
+    tolerance=tolerance,
+    engines=ENGINES,
+    slow_methods=LEFT_TO_FULL,
+    sanity_checks=sanity_checks,
+    points=points,
+    links=links,
+    uses=("one angle", "angular_spring_forces for its moment", "one step function"),
+    ablations={"the hinge as a constraint": "lesson 8 builds it", "rotation in space": "lesson 5 builds it",
+              "detection of contacts": "lesson 6 builds it"},
+)

@@ -1,0 +1,149 @@
+"""Ten masses on ten springs, hung one below the other and let go where the springs are still unstretched."""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import check_positive
+from solutions.integrators import advance
+from solutions.springs import make_mesh
+from solutions.springs import mesh_acceleration as acceleration
+from validate.engines.springs import pymunk_net
+from validate.methods import IMPLICIT_MESH, INTEGRATORS
+from validate.reference.springs import Net, by_mode, state_of
+from validate.scene import PYMUNK, Engine, Scene
+
+T = 1.5                      # [s]: two and a half periods of the slowest mode
+STEPS = (200, 500, 1000, 2000, 5000, 10000, 20000)
+# the first two build a dense matrix at every correction, and the third takes seconds to compile: spring_net shows it
+UNCERTAINTY = 1e-13          # 200 radians of the fastest mode, each rounded to 2e-16
+
+
+class Params(NamedTuple):
+    springs: Annotated[int, "N [-]"] = 10
+    m: Annotated[float, "each mass [kg]"] = 0.1
+    k: Annotated[float, "each spring [N/m]"] = 500.0
+    rest: Annotated[float, "its natural length [m]"] = 0.1
+    k_d: Annotated[float, "damper beside each spring [N s/m]"] = 0.05
+    k_v: Annotated[float, "viscosity on each mass [N s/m]"] = 0.0
+    g: Annotated[float, "gravity [m/s²]"] = 9.81
+
+
+# k_v = 2 m ω₁ is critical for the slowest mode, and every other mode then decays as fast: e^(−ω₁ T) = 1.3e-7 is left
+CASES = {"let go": Params(), "undamped": Params(k_d=0.0), "at rest": Params(k_d=0.0, k_v=2.113)}
+
+
+def net(p):
+    """A line of points, downward positive: the ceiling at 0, mass n at n · rest."""
+    n = np.arange(p.springs + 1)
+    x = p.rest * n[:, None].astype(float)
+    pairs = np.stack((n[:-1], n[1:]), axis=1)
+    return Net(x, 0.0 * x, (0,), pairs, np.full(p.springs, p.rest), p.m, p.k, p.k_d, p.k_v, np.array([p.g]), np.zeros(1))
+
+
+def start(p):
+    for name in ("springs", "m", "k", "rest"):
+        check_positive(name, getattr(p, name))
+    return state_of(net(p), make_mesh)
+
+
+def run(step, acceleration, state, p, dt, steps):
+    x, v, mesh = state
+    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, mesh)
+    return x, v, mesh
+
+
+def observe(state, p):
+    """How far each mass hangs below its place on unstretched springs [m]."""
+    return state[0][1:, 0] - p.rest * np.arange(1, p.springs + 1)
+
+
+def modes(p):
+    """(omega, c, shapes): ω_j² = 4 k/m sin²(β_j/2),  c_j = (k_d ω_j²/k + k_v/m),  shape_nj = 2/√(2N+1) sin(n β_j).
+
+    β_j = (2j − 1) π/(2N + 1) makes the spring below the last mass, which is not there, carry nothing: sin Nβ = sin (N+1)β.
+    """
+    n = np.arange(1, p.springs + 1)
+    beta = (2 * n - 1) * np.pi / (2 * p.springs + 1)
+    omega = 2.0 * np.sqrt(p.k / p.m) * np.sin(0.5 * beta)
+    return omega, p.k_d / p.k * omega**2 + p.k_v / p.m, 2.0 / np.sqrt(2 * p.springs + 1) * np.sin(np.outer(n, beta))
+
+
+def static_extension(p):
+    """How far each mass hangs below its unstretched place at rest [m]: spring i carries the N + 1 − i masses below it."""
+    return np.cumsum(p.m * p.g / p.k * np.arange(p.springs, 0, -1))
+
+
+def truth(p, t):
+    """x(t) = x_rest − Σ_j shape_j q_j e^(−δt) (cos σt + δ/σ sin σt),  q = shapesᵀ x_rest,  δ = c_j/2,  σ² = ω_j² − δ².
+
+    Each mode of the chain is a damped oscillator about the static extension m g N(N+1)/2k at the tip.
+    Source: normal modes of a chain with one fixed and one free end; e.g. Goldstein, Classical Mechanics, ch. 6.
+    """
+    omega, c, shapes = modes(p)
+    delta = 0.5 * c
+    sigma = np.sqrt((omega**2 - delta**2).astype(complex))       # imaginary where over-damped: cos and sin become cosh and sinh
+    shape = np.exp(-delta * t) * (np.cos(sigma * t) + delta * t * np.sinc(sigma * t / np.pi)).real
+    return static_extension(p) - shapes @ (shape * (shapes.T @ static_extension(p)))
+
+
+def tolerance(p, dt):
+    """Each mode on its own (by_mode): the system is linear.  pymunk is symplectic Euler, its dampers one by one: order 1."""
+    omega, c, shapes = modes(p)
+    amplitude = np.abs(shapes.T @ static_extension(p))
+    limits = by_mode(omega, c, amplitude, np.linalg.norm(truth(p, T)), T, dt, UNCERTAINTY)
+    return {**limits, "pymunk": limits[1]}
+
+
+ENGINES = (
+    Engine(PYMUNK, "", lambda p, dt: pymunk_net(net(p), dt, lambda x: observe((x,), p)), 1, "DampedSpring between point masses"),
+)
+
+
+def points(observed, p):
+    y = -np.concatenate(([0.0], observed + p.rest * np.arange(1, p.springs + 1)))
+    return np.stack((np.zeros_like(y), y), axis=1)
+
+
+def links(p):
+    return [(n, n + 1) for n in range(p.springs)]
+
+
+def sanity_checks():
+    """((claim, found, expected, tolerance), …): the numbers of the lecture, for a test to assert."""
+    p = CASES["at rest"]
+    slowest = modes(p)[0][0]
+    left = (1.0 + slowest * T) * np.exp(-slowest * T)            # of the motion after T, critically damped
+    tip = 0.10791                                                # m g N(N+1)/2k [m]
+    return (("the tip's static extension [m]", static_extension(p)[-1], tip, 1e-15),
+            ("the tip at T, nearly at rest [m]", truth(p, T)[-1], tip, 2.0 * left * tip))
+
+
+def in_space(p):
+    """The same motion with two more coordinates carried along."""
+    return state_of(net(p).padded(), make_mesh), p
+
+
+SCENE = Scene(
+    title="Hanging springs",
+    lesson="springs",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=INTEGRATORS + (IMPLICIT_MESH,),
+    acceleration=acceleration,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=UNCERTAINTY,
+    tolerance=tolerance,
+    engines=ENGINES,
+    slow_methods=("implicit_euler_step", "implicit_midpoint_step", "implicit_mesh_step"),
+    sanity_checks=sanity_checks,
+    points=points,
+    links=links,
+    uses=("one coordinate", "springs with dampers", "one step function"),
+    ablations={"the second and third dimension": in_space, "rotation": "lesson 5 builds it",
+              "contact between masses": "lesson 6 builds it"},
+)

@@ -1,0 +1,117 @@
+"""A net of two metres at 24 frames a second: one of the lecture's steps a frame tears it, with four its worst node is 3 cm off, with sixteen 8 mm."""
+
+from functools import cache
+
+import numpy as np
+
+from solutions.checks import check_positive
+from solutions.integrators import advance, amplification_matrix, average_velocity_step
+from solutions.springs import make_mesh
+from solutions.springs import mesh_acceleration as acceleration
+from validate.engines.springs import pymunk_net
+from validate.methods import IMPLICIT_MESH, INTEGRATORS
+from validate.reference.springs import SquareNet, modes, motion, net_limits, square_net, state_of
+from validate.scene import PYMUNK, Engine, Scene
+
+FRAMES_PER_SECOND = 24
+SAMPLES = (1, 4, 16, 64, 256)              # steps a frame [-]
+T = 1.0                                    # [s]
+STEPS = tuple(FRAMES_PER_SECOND * samples for samples in SAMPLES)
+# the first two build a dense matrix at every correction, and the third takes seconds to compile: spring_net shows it
+UNCERTAINTY = 1e-12
+
+# The lecture's step multiplies a mode by |λ|, |λ|² = 1 − c dt + ½ω² dt².  Dampers give c = τω² with τ = k_d/k = 6 ms, so every
+# mode grows alike when dt > 2τ = 12 ms: with one sample a frame (42 ms), not with four (10 ms).
+CASES = {"net": SquareNet(spacing=0.5, shear=1, k=20.0, k_d=0.12, wind=0.1)}
+
+
+def start(p):
+    for name in ("n", "spacing", "m", "k"):
+        check_positive(name, getattr(p, name))
+    return state_of(square_net(p), make_mesh)
+
+
+def run(step, acceleration, state, p, dt, steps):
+    x, v, mesh = state
+    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, mesh)
+    return x, v, mesh
+
+
+def observe(state, p):
+    return state[0][:, :2].ravel()
+
+
+@cache
+def reference(p):
+    return motion(square_net(p), T)
+
+
+def truth(p, t):
+    """Every node, by DOP853 with forces of its own, at a relative tolerance of 1e-13: thousands of samples a frame."""
+    return reference(p)(t).ravel()
+
+
+def tolerance(p, dt):
+    """Each mode on its own, with the room that large motion needs (net_limits); pymunk is symplectic Euler, order 1."""
+    limits = net_limits(square_net, p, np.linalg.norm(truth(p, T)), T, dt, UNCERTAINTY)
+    return {**limits, "pymunk": limits[1]}
+
+
+ENGINES = (Engine(PYMUNK, "", lambda p, dt: pymunk_net(square_net(p), dt, np.ravel), 1, "DampedSpring between point masses"),)
+
+
+def points(observed, p):
+    return observed.reshape(-1, 2)
+
+
+def links(p):
+    return square_net(p).pairs.tolist()
+
+
+def sanity_checks():
+    """((claim, found, expected, tolerance), …): how the fastest mode grows in one of the lecture's steps, for a test to assert.
+
+    |λ₁ λ₂| = det A = (1 − ½ω²dt²)(1 − c dt) + ω² dt (dt − ½c dt²) = 1 − c dt + ½ω² dt²;  |λ|² while the pair is complex.
+    """
+    omega, c = (values[-1] for values in modes(square_net(CASES["net"]))[:2])
+    claims = []
+    for samples in SAMPLES[:3]:
+        dt = 1.0 / (FRAMES_PER_SECOND * samples)
+        A = amplification_matrix(average_velocity_step, omega, 0.5 * c / omega, dt)
+        claims.append((f"det A, {samples} samples a frame [-]", np.linalg.det(A), 1.0 - c * dt + 0.5 * (omega * dt) ** 2, 1e-12))
+    p = CASES["net"]
+    for samples, said, digit in ((4, 0.03, 0.005), (16, 0.008, 0.0005)):                 # of the story, rounded to one digit
+        steps = round(FRAMES_PER_SECOND * samples * T)
+        off = observe(run(average_velocity_step, acceleration, start(p), p, T / steps, steps), p) - truth(p, T)
+        claims.append((f"how far its worst node is off, {samples} of the lecture's steps a frame [m]", np.linalg.norm(points(off, p), axis=1).max(), said, digit))
+    return tuple(claims)
+
+
+def in_space(p):
+    """The same motion with a third coordinate carried along."""
+    return state_of(square_net(p).padded(), make_mesh), p
+
+
+SCENE = Scene(
+    title="1, 4, 16 samples a frame",
+    lesson="springs",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=INTEGRATORS + (IMPLICIT_MESH,),
+    acceleration=acceleration,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=UNCERTAINTY,
+    tolerance=tolerance,
+    engines=ENGINES,
+    slow_methods=("implicit_euler_step", "implicit_midpoint_step", "implicit_mesh_step"),
+    sanity_checks=sanity_checks,
+    points=points,
+    links=links,
+    uses=("two coordinates", "springs with dampers", "one step function"),
+    ablations={"the third dimension": in_space, "rotation": "lesson 5 builds it",
+              "contact of the net with itself": "lesson 6 builds it"},
+)

@@ -1,0 +1,118 @@
+"""A square net, held along its upper edge and let go in a side wind: threads alone, then diagonals, then every second node."""
+
+from functools import cache
+
+import numpy as np
+
+from solutions.checks import check_positive
+from solutions.integrators import advance
+from solutions.springs import BEND, SHEAR, STRUCTURAL, grid_pairs, make_mesh
+from solutions.springs import mesh_acceleration as acceleration
+from validate.engines.springs import pymunk_net
+from validate.methods import IMPLICIT_MESH, INTEGRATORS, LEFT_TO_FULL
+from validate.reference.springs import SquareNet, modes, motion, net_limits, rest_positions, square_net, state_of
+from validate.scene import PYMUNK, Engine, Scene
+
+T = 0.6                      # [s]: two bounces, and half a swing of the threads alone
+STEPS = (50, 100, 200, 500, 1000, 2000, 5000)
+UNCERTAINTY = 1e-12
+
+
+CASES = {"structural": SquareNet(), "with shear": SquareNet(shear=1), "with shear and bend": SquareNet(shear=1, bend=1)}
+
+
+def start(p):
+    for name in ("n", "spacing", "m", "k"):
+        check_positive(name, getattr(p, name))
+    return state_of(square_net(p), make_mesh)
+
+
+def run(step, acceleration, state, p, dt, steps):
+    x, v, mesh = state
+    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, mesh)
+    return x, v, mesh
+
+
+def observe(state, p):
+    return state[0][:, :2].ravel()
+
+
+@cache
+def reference(p):
+    return motion(square_net(p), T)
+
+
+def truth(p, t):
+    """Every node, by DOP853 with forces of its own, at a relative tolerance of 1e-13."""
+    return reference(p)(t).ravel()
+
+
+def tolerance(p, dt):
+    """Each mode on its own, with the room that large motion needs (net_limits); pymunk is symplectic Euler, order 1."""
+    limits = net_limits(square_net, p, np.linalg.norm(truth(p, T)), T, dt, UNCERTAINTY)
+    return {**limits, "pymunk": limits[1]}
+
+
+ENGINES = (Engine(PYMUNK, "", lambda p, dt: pymunk_net(square_net(p), dt, np.ravel), 1, "DampedSpring between point masses"),)
+
+
+def points(observed, p):
+    return observed.reshape(-1, 2)
+
+
+def links(p):
+    return square_net(p).pairs.tolist()
+
+
+def sanity_checks():
+    """((claim, found, expected, tolerance), …): what must hold of the springs and at rest, for a test to assert.
+
+    With viscosity 2 m ω, critical for the slowest mode, every mode dies like (1 + ωt) e^(−ωt): at ωt = 35 that is 2e-14.
+    """
+    claims = []
+    for name, p in CASES.items():
+        offsets = STRUCTURAL + SHEAR * p.shear + BEND * p.bend
+        ours = {tuple(sorted(pair)) for pair in grid_pairs(p.n, p.n, offsets).tolist()}
+        lattice = set(map(tuple, square_net(p).pairs.tolist()))
+        claims.append((f"{name}: springs on which grid and lattice differ", len(ours ^ lattice), 0, 0))
+
+        rest = rest_positions(square_net(p))
+        _, v, mesh = start(p)
+        pull = np.abs(acceleration(0.0, rest, v, mesh)).max()
+        claims.append((f"{name}: acceleration where Newton's method finds rest [m/s²]", pull, 0.0, 1e-10))
+
+        slowest = modes(square_net(p))[0][0]
+        later = 35.0 / slowest
+        settled = motion(square_net(p._replace(k_v=2.0 * p.m * slowest)), later)(later)
+        claims.append((f"{name}: from there to where the damped net settles [m]", np.abs(settled - rest).max(), 0.0, 1e-11))
+    return tuple(claims)
+
+
+def in_space(p):
+    """The same motion with a third coordinate carried along."""
+    return state_of(square_net(p).padded(), make_mesh), p
+
+
+SCENE = Scene(
+    title="Spring net",
+    lesson="springs",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=INTEGRATORS + (IMPLICIT_MESH,),
+    acceleration=acceleration,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=UNCERTAINTY,
+    tolerance=tolerance,
+    engines=ENGINES,
+    slow_methods=LEFT_TO_FULL,          # of these the implicit ones build a dense matrix at every correction
+    sanity_checks=sanity_checks,
+    points=points,
+    links=links,
+    uses=("two coordinates", "springs with dampers", "one step function"),
+    ablations={"the third dimension": in_space, "rotation": "lesson 5 builds it",
+              "contact of the net with itself": "lesson 6 builds it"},
+)

@@ -1,0 +1,1 @@
+"""Stability and extreme cases, one file per lesson."""

@@ -1,0 +1,61 @@
+"""Run stability cases with the lessons of a subject."""
+
+from importlib import import_module
+from pathlib import Path
+
+import numpy as np
+
+from .. import modules
+from ..results import jsonable
+from .case import CASES, Examined, finding
+
+
+def cases_of(lesson):
+    """{slug: Case} of a lesson, in the order of its file; empty for a lesson without cases."""
+    if Path(__file__).with_name(f"{lesson}.py").is_file():
+        import_module(f".{lesson}", __package__)
+    return CASES.get(lesson, {})
+
+
+def all_cases():
+    """Every case, in the order of the course."""
+    return [case for lesson in modules.lesson_names() for case in cases_of(lesson).values()]
+
+
+def subject_of(case, of="solutions", compiled=True):
+    """The lesson that a case examines, from that subject; compiled where the case says so."""
+    return modules.module_set(of, compiled and case.compiled and modules.can_compile()).lesson(case.lesson)
+
+
+def examine(case, of="solutions", compiled=True):
+    """The findings and the picture of one case."""
+    with np.errstate(all="ignore"):              # overflow is what an unstable run does
+        return Examined(case.slug, case.title, case.lesson, *case.examine(subject_of(case, of, compiled)))
+
+
+def stability_cases(lesson, plan):
+    """Every case of a lesson whose exercises have been attempted, as data."""
+    found = []
+    for case in cases_of(lesson).values():
+        try:
+            found.append(examine(case, plan.of, "compiled" in plan.speeds))
+        except NotImplementedError:
+            pass
+        except Exception as e:                                       # a subject's code may do anything
+            found.append(broken_off(case, e))
+    return [stored(one) for one in found]
+
+
+def broken_off(case, error):
+    """A case that ended in an error of the subject's code: a finding that does not hold."""
+    words = f"{type(error).__name__}: {(str(error).splitlines() or [''])[0]}"
+    lost = finding(claim=f"The case runs without an error; here it ended in {words}.",
+                   quantity="cases without an error [of 1]", predicted=1, measured=0, tolerance=0.0, observation=words)
+    return Examined(case.slug, case.title, case.lesson, [lost], None)
+
+
+def stored(examined):
+    """An examined case as data that JSON can hold."""
+    findings = [{**f._asdict(), "holds": f.holds} for f in examined.findings]
+    picture = examined.picture._asdict() if examined.picture else None
+    return jsonable({**examined._asdict(), "findings": findings, "picture": picture})

@@ -1,0 +1,472 @@
+"""What do impulses do where they are pressed hardest?  Theory's numbers against those that the functions of lesson 7 find.
+
+Cases 18 to 20 and 71 to 73.  Edges are found by bisection of runs or of impacts, never by asking a formula.
+*Source:* Painlevé 1895 for the rod; each case derives what it adds.
+"""
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from solutions.checks import Diverged
+from validate.reference.impulses import COPIES
+from validate.stability.case import DOTS, EDGE, LINE, Picture, bisect, case, finding, refuses, series
+
+G = 9.81                     # [m/s²]
+ROUND_OFF = 1e-12            # of numbers below 30, after a few hundred operations, each rounded by 1.1e-16 of that
+UP = np.array([0.0, 1.0, 0.0])
+ACROSS = np.array([1.0, 0.0, 0.0])
+STEEPEST = np.degrees(np.arctan(2.0))                                    # of all rods the one for which Painlevé's trouble begins first [°]
+
+
+# ---------------------------------------------------------------------------------------------- a rod on its tip
+
+def rod(lesson, degrees):
+    """K (3, 3) of the lower tip of a uniform rod of 2 m and 1 kg that leans by that angle from the floor; y is up, and it turns about z.
+
+    With c, s the cosine and sine:  K = (1 + 3s², −3sc; −3sc, 1 + 3c²) in x and y.
+    """
+    theta = np.radians(degrees)
+    return lesson.point_inverse_mass(np.array([-np.cos(theta), -np.sin(theta), 0.0]), 1.0, np.diag([0.0, 3.0, 3.0]))
+
+
+def against_the_first_slip(K, mu, side):
+    """n · K d for a d whose friction opposes the slip before the impact: what impulses with that rule are divided by [1/kg]."""
+    return UP @ (K @ (UP + mu * side * ACROSS))
+
+
+@case("painleve-rod", "Painlevé's rod", compiled=False)
+def painleve_rod(lesson):
+    """A rod on its tip, pushed over a rough floor: friction against the slip presses the tip in harder than the impulse lifts it.
+
+    d = n + μ t:  n · K d = 1 + 3c² − 3μ sc,  zero first at tan θ = 2, for μ = 4/3.  From there on a rule that fixes friction against the
+    first slip divides by zero, or pulls.  cone_impulse puts friction where sticking would have it.  All J that end the normal motion that way
+    lie on a line from the frictionless impulse to the sticking one; energy is convex along it, and neither of its ends gains any with e = 0.
+    """
+    found = []
+    edge = bisect(lambda mu: min(against_the_first_slip(rod(lesson, a), mu, 1.0) for a in (STEEPEST - 1.0, STEEPEST, STEEPEST + 1.0)) <= 0.0, 0.1, 10.0)
+    found.append(finding(
+        claim="Friction against the first slip jams a leaning rod from μ = 4/3 on.",
+        quantity="least friction that jams a rod of slope 2 [-]",
+        predicted=4.0 / 3.0,
+        measured=edge,
+        tolerance=2.0 * EDGE,
+        observation=f"At tan θ = 2 the impulse of that rule is divided by zero at μ = {edge:.5f}.",
+    ))
+    finite = tried = 0
+    gained = wrong = size = 0.0
+    for mu in (1.34, 2.0, 10.0, np.inf):
+        for degrees in np.linspace(1.0, 89.0, 45):
+            K = rod(lesson, degrees)
+            for slip in (-3.0, -0.3, 0.0, 0.3, 3.0):
+                u = slip * ACROSS - UP
+                J = lesson.contact_impulse(u, UP, K, 0.0, mu)
+                tried, finite = tried + 1, finite + bool(np.all(np.isfinite(J)))
+                gained, wrong = max(gained, lesson.energy_change(u, K, J)), max(wrong, abs(UP @ (u + K @ J)))
+                ends = max(np.linalg.norm(np.linalg.solve(K, u)), 1.0 / K[1, 1])
+                size = max(size, np.linalg.norm(J) / ends)
+    found += [
+        finding(
+            claim="Every impact of every rod ends with a finite impulse.",
+            quantity=f"finite impulses [of {tried}]",
+            predicted=tried,
+            measured=finite,
+            tolerance=0.0,
+            observation=f"{finite} of {tried} impacts at μ from 1.34 to ∞ end in a finite impulse.",
+        ),
+        finding(
+            claim="No impact with e = 0 makes energy.",
+            quantity="largest gain of energy [J]",
+            predicted=0.0,
+            measured=max(0.0, gained),
+            tolerance=ROUND_OFF,
+            observation=f"The most that an impact gained is {max(0.0, gained):.0e} J, of some 5 J.",
+        ),
+        finding(
+            claim="The tip stays on the floor.",
+            quantity="largest normal velocity after the impact [m/s]",
+            predicted=0.0,
+            measured=wrong,
+            tolerance=ROUND_OFF,
+            observation=f"After the impact the tip leaves with {wrong:.0e} m/s at most.",
+        ),
+        finding(
+            claim="No impulse is larger than the larger of the frictionless one and the one that sticks.",
+            quantity="largest impulse over that, or 1 [-]",
+            predicted=1.0,
+            measured=max(1.0, size),
+            tolerance=ROUND_OFF,
+            observation=f"The largest impulse is {size:.3f} of that bound.",
+        ),
+    ]
+    fine = np.linspace(2.0, 88.0, 173)
+    naive = np.array([1.0 / against_the_first_slip(rod(lesson, a), 2.0, 1.0) for a in fine])
+    flat, steep = (fine < STEEPEST) & (0.0 < naive) & (naive < 4.0), (fine > STEEPEST) & (0.0 < naive) & (naive < 4.0)
+    ours = [lesson.contact_impulse(-3.0 * ACROSS - UP, UP, rod(lesson, a), 0.0, 2.0)[1] for a in fine]
+    return found, Picture("A rod pushed over a rough floor, μ = 2", "angle from the floor [°]", "normal impulse over m v [-]", [
+        series("friction against the first slip, flatter rods", fine[flat], naive[flat], LINE),
+        series("friction against the first slip, steeper rods", fine[steep], naive[steep], LINE), series("cone_impulse", fine[::6], ours[::6], DOTS)],
+        "Between 37° and 79° the common rule has no impulse at all: it would be infinite, or a pull. The cone's does not notice.")
+
+
+# ---------------------------------------------------------------------------------------------- deep overlap
+
+@case("deep-overlap", "Deep overlap", compiled=False)
+def deep_overlap(lesson):
+    """What overlaps by a quarter is moved apart, and nothing else: the work of the correction is m g times the depth, and no speed comes of it.
+
+    A ball at rest a depth d inside its floor has after one projecting step v = e g dt, which the fall of that step has left, and is on
+    the floor.  The penalty method stores ½ k d² in its spring instead: it throws the ball out with √(ω² d² − 2 g d).
+    """
+    found, radius, dt = [], 0.5, 0.01
+    depth = 0.25 * radius
+    p = lesson.Drop(0.5, np.array([0.0, -G]), np.zeros(2), np.array([0.0, 1.0]), 1e6, 0.0)
+    x, v = lesson.projecting_step(lesson.falling_acceleration, 0.0, np.array([0.0, -depth]), np.zeros(2), dt, p)
+    found += [
+        finding(
+            claim="A ball inside its floor is put on it.",
+            quantity="height after one step [m]",
+            predicted=0.0,
+            measured=x[1],
+            tolerance=ROUND_OFF,
+            observation=f"A ball {depth} m deep is at {x[1]:g} m after one step.",
+        ),
+        finding(
+            claim="The work of that is m g times the depth, and nothing else.",
+            quantity="energy that it has gained [J/kg]",
+            predicted=G * depth + 0.5 * (0.5 * G * dt) ** 2,
+            measured=G * (x[1] + depth) + 0.5 * v @ v,
+            tolerance=ROUND_OFF,
+            observation=(f"Being put on the floor has given it {G * (x[1] + depth) + 0.5 * v @ v:.5f} J/kg; g times "
+                         f"the depth is {G * depth:.5f}."),
+        ),
+        finding(
+            claim="It gets no speed from that: what it has is e g dt, from the fall of that step.",
+            quantity="speed after one step [m/s]",
+            predicted=0.5 * G * dt,
+            measured=np.hypot(*v),
+            tolerance=ROUND_OFF,
+            observation=f"It leaves with {np.hypot(*v):.4f} m/s, which is e g dt.",
+        ),
+    ]
+    speeds, depths, omega, tiny = [], np.linspace(0.05, 0.5, 6) * radius, 1000.0, 1e-6
+    for d in depths:
+        x, v, here = np.array([[0.0, -d]]), np.zeros((1, 2)), 0
+        while x[0, 1] < 0.0 and here < 1000:
+            x, v = lesson.drop_all(lesson.penalty_step, lesson.falling_acceleration, 0.0, x, v, tiny, 20, p)
+            here += 1
+        speeds.append(v[0, 1])
+    law = np.sqrt(omega**2 * depths**2 - 2.0 * G * depths)
+    found.append(finding(
+        claim="The penalty method throws the same ball out: its spring was loaded.",
+        quantity=f"speed out of a depth of {depths[2]:g} m at ω = 1000/s [m/s]",
+        predicted=law[2],
+        measured=speeds[2],
+        tolerance=law[2] * omega * tiny + G * 20.0 * tiny,
+        observation=f"From {depths[2]:g} m the penalty throws a ball that was at rest out with {speeds[2]:.1f} m/s.",
+    ))
+    discs = lesson.Discs(np.full(5, radius), np.array([1.0, 0.5, 1.0, 2.0, 1.0]), 0.8)
+    row = np.stack((0.75 * 2.0 * radius * np.arange(5.0), np.zeros(5)), axis=1)
+    apart, still = lesson.discs_all(lesson.projecting_discs_step, row[None], np.zeros((1, 5, 2)), dt, 400, discs)
+    middle = [(1.0 / discs.inv_mass) @ places / np.sum(1.0 / discs.inv_mass) for places in (row, apart[0])]
+    overlap = max(0.0, (2.0 * radius - np.diff(apart[0, :, 0])).max())
+    found += [
+        finding(
+            claim="Five discs in a row, each a quarter inside the next, come apart.",
+            quantity="largest overlap after 400 steps [m]",
+            predicted=0.0,
+            measured=overlap,
+            tolerance=ROUND_OFF,
+            observation=f"After 400 steps the largest overlap is {overlap:.0e} m.",
+        ),
+        finding(
+            claim="Not one of them moves then.",
+            quantity="largest speed [m/s]",
+            predicted=0.0,
+            measured=np.abs(still).max(),
+            tolerance=0.0,
+            observation=f"The fastest of them has {np.abs(still).max():g} m/s.",
+        ),
+        finding(
+            claim="And their centre of mass stays where it was.",
+            quantity="way of the centre of mass [m]",
+            predicted=0.0,
+            measured=np.linalg.norm(middle[1] - middle[0]),
+            tolerance=ROUND_OFF,
+            observation=f"Their centre of mass has moved by {np.linalg.norm(middle[1] - middle[0]):.0e} m.",
+        ),
+    ]
+    same = np.zeros((1, 2, 2))
+    x, v = lesson.discs_all(lesson.projecting_discs_step, same, same, dt, 1, lesson.Discs(np.full(2, radius), np.ones(2), 0.8))
+    found.append(finding(
+        claim="Two discs on one point have no normal between them, and still come apart.",
+        quantity="distance after one step [m]",
+        predicted=2.0 * radius,
+        measured=np.linalg.norm(x[0, 0] - x[0, 1]),
+        tolerance=ROUND_OFF,
+        observation=f"Two discs on one point are {np.linalg.norm(x[0, 0] - x[0, 1]):g} m apart after one step.",
+    ))
+    return found, Picture("A ball let go inside its floor", "depth [m]", "speed with which it leaves [m/s]", [
+        series("penalty, theory", depths, law, LINE), series("penalty, measured", depths, speeds, DOTS),
+        series("projecting: e g dt", depths, np.full(len(depths), 0.5 * G * dt), LINE)], "A spring that is found loaded goes off; a projection is not a spring.")
+
+
+# ---------------------------------------------------------------------------------------------- Zeno, and far away
+
+def bouncing(lesson, e, T, steps, place=(0.0, 0.0), copies=1):
+    """(x, v) of copies that are let go at 1 m, each a little earlier than the one before, over a plane that is at `place`."""
+    p = lesson.Drop(e, np.array([0.0, -G]), np.array(place), np.array([0.0, 1.0]), 1.0, 0.0)
+    before = 0.01 * np.arange(copies)
+    x = np.stack((np.zeros(copies), 1.0 - 0.5 * G * before**2), axis=1) + p.point
+    v = np.stack((0.5 * np.ones(copies), -G * before), axis=1)
+    return lesson.drop_all(lesson.backtracking_step, lesson.falling_acceleration, 0.0, x, v, T / steps, steps, p)
+
+
+@case("zeno-and-far-away", "Zeno's bounce, and far from the origin", compiled=False)
+def zeno_and_far_away(lesson):
+    """Infinitely many bounces end after √(2h/g) (1 + e)/(1 − e); and 10⁵ m from the origin a scene is as good as its floats are dense.
+
+    Far away a place is rounded to half a spacing, twice at a step.  What N steps have added up, N spacings, is an error of the height at
+    which a ball meets its plane; a height that is off by δ costs g δ/v of speed and δ/v of time at an impact with v, and a flight later
+    both have grown by no more than (1 + 2/e): three impacts make less than (1 + 2/e)³ = 43 of it.
+    """
+    found, es = [], (0.3, 0.5, 0.8, 0.9, 0.95)
+    stops = []
+    for e in es:
+        end = np.sqrt(2.0 / G) * (1.0 + e) / (1.0 - e)
+        stops.append(bisect(lambda T: bouncing(lesson, e, T, 1)[1][0, 1] == 0.0, 0.5, 2.0 * end))
+        if e in (0.5, 0.8, 0.95):
+            found.append(finding(
+                claim="A ball stops bouncing after √(2h/g) (1 + e)/(1 − e).",
+                quantity=f"time to the stop for e = {e:g} [s]",
+                predicted=end,
+                measured=stops[-1],
+                tolerance=EDGE * end,
+                observation=f"With e = {e:g} a ball dropped from 1 m lies still from {stops[-1]:.5f} s on.",
+            ))
+    x, v = bouncing(lesson, 0.8, 5.0, 500)
+    found.append(finding(
+        claim="In steps it comes to the same rest, on the plane to the last digit.",
+        quantity="height and speed after 5 s in 500 steps [m, m/s]",
+        predicted=0.0,
+        measured=np.hypot(x[0, 1], v[0, 1]),
+        tolerance=ROUND_OFF,
+        observation=f"After 500 steps it lies at {x[0, 1]:.0e} m with {v[0, 1]:g} m/s.",
+    ))
+    steps, near = 190, bouncing(lesson, 0.8, 1.9, 190, copies=COPIES)
+    errors, far = [], 10.0 ** np.arange(2, 9)
+    for distance in far:
+        place = distance * np.array([1.0, -0.8])
+        x, v = bouncing(lesson, 0.8, 1.9, steps, place, COPIES)
+        errors.append(np.sqrt(np.mean((x - place - near[0]) ** 2)))
+    bound = 43.0 * steps * np.spacing(1e5)
+    found.append(finding(
+        claim="10⁵ m away the error is that of the floats there, added up over the steps.",
+        quantity="error of place at (10⁵, −8·10⁴) m after 190 steps [m]",
+        predicted=0.0,
+        measured=errors[3],
+        tolerance=bound,
+        observation=(f"At (10⁵, −8·10⁴) m the place is off by {errors[3]:.1e} m; floats are {np.spacing(1e5):.1e} m "
+                     "apart there."),
+    ))
+    slope = np.polyfit(np.log10(far), np.log10(errors), 1)[0]
+    found.append(finding(
+        claim="It grows in proportion to the distance, as the spacing of floats does.",
+        quantity="order of its growth from 10² to 10⁸ m [-]",
+        predicted=1.0,
+        measured=slope,
+        tolerance=0.15,
+        observation=f"From 10² to 10⁸ m it grows with the power {slope:.3f} of the distance.",
+    ))
+    return found, Picture("Far from the origin", "log₁₀ of the distance [m]", "log₁₀ of the error [m]", [
+        series("spacing of floats", np.log10(far), np.log10(np.spacing(far)), LINE), series("the bound of 190 steps", np.log10(far), np.log10(43.0 * steps * np.spacing(far)), LINE),
+        series("measured", np.log10(far), np.log10(errors), DOTS)], "Nothing but the spacing of floats is to blame: the error follows it over six decades.")
+
+
+# ---------------------------------------------------------------------------------------------- the penalty's price
+
+def swings_up(lesson, h_omega, zeta, steps=500):
+    """Whether a ball that rests on its penalty spring, disturbed by 10⁻⁹ of its depth, has swung up to 10⁻³ of it."""
+    omega = 100.0
+    sag = G / omega**2
+    p = lesson.Drop(0.5, np.array([0.0, -G]), np.zeros(2), np.array([0.0, 1.0]), omega**2, 2.0 * zeta * omega)
+    x, v = np.array([[0.0, -sag * (1.0 + 1e-9)]]), np.zeros((1, 2))
+    try:
+        x, v = lesson.drop_all(lesson.penalty_step, lesson.falling_acceleration, 0.0, x, v, h_omega / omega, steps, p)
+    except Diverged:
+        return True
+    return max(abs(x[0, 1] + sag), abs(v[0, 1]) / omega) > 1e-3 * sag
+
+
+@case("penalty-stability", "The price of a penalty", compiled=False)
+def penalty_stability(lesson):
+    """The penalty's spring is stable for ω dt < 2(√(1 + ζ²) − ζ), and a ball at rest hangs in it by m g/k = g/ω².
+
+    Just beyond, at ω dt (1 + ε), an undamped swing grows by √(8ε) a step: 500 steps make 10⁶ of it from ε = 9.5e-5 on, so that the edge is
+    found that much late; with a damper the growth is 2ε a step or more: 2,000 steps find it at ε = ln 10⁶/4000 = 3.5e-3 at most.
+    """
+    found, zetas = [], (0.0, 0.1, 0.3, 0.6, 1.0)
+    edges = [bisect(lambda y: swings_up(lesson, y, zeta, 500 if zeta == 0.0 else 2000), 0.2, 3.0) for zeta in zetas]
+    law = lambda zeta: 2.0 * (np.sqrt(1.0 + zeta**2) - zeta)
+    for zeta, edge in zip(zetas, edges):
+        late = (np.log(1e6) / 500.0) ** 2 / 8.0 if zeta == 0.0 else np.log(1e6) / 4000.0
+        found.append(finding(
+            claim="A penalty's spring wants steps shorter than 2(√(1 + ζ²) − ζ)/ω.",
+            quantity=f"largest ω dt that stays bounded, ζ = {zeta:g} [-]",
+            predicted=law(zeta),
+            measured=edge,
+            tolerance=law(zeta) * (late + EDGE),
+            observation=f"At ζ = {zeta:g} a ball on its penalty spring swings up from ω dt = {edge:.4f} on.",
+        ))
+    depths = []
+    for omega in (30.0, 100.0, 300.0):
+        p = lesson.Drop(0.5, np.array([0.0, -G]), np.zeros(2), np.array([0.0, 1.0]), omega**2, 2.0 * omega)
+        x, _ = lesson.drop_all(lesson.penalty_step, lesson.falling_acceleration, 0.0, np.zeros((1, 2)), np.zeros((1, 2)), 0.1 / omega, 1000, p)
+        depths.append(-x[0, 1])
+        found.append(finding(
+            claim="What rests on a penalty spring sinks in by m g/k.",
+            quantity=f"depth at rest, ω = {omega:g}/s [m]",
+            predicted=G / omega**2,
+            measured=depths[-1],
+            tolerance=ROUND_OFF,
+            observation=(f"At ω = {omega:g}/s a resting ball is {1e3 * depths[-1]:.3f} mm deep; steps must stay below "
+                         f"{2e3 / omega:.1f} ms."),
+        ))
+    fine = np.linspace(0.0, 1.0, 101)
+    return found, Picture("Penalty: the longest step", "damping ratio ζ [-]", "ω dt [-]", [series("theory", fine, law(fine), LINE), series("measured", zetas, edges, DOTS)],
+                          "A floor twice as hard asks for steps 1.4 times as short, and a damper makes it worse, not better.")
+
+
+# ---------------------------------------------------------------------------------------------- energy out of nothing
+
+def most_gained(lesson, K, e):
+    """The most energy [J] that an impact with u_n = −1 m/s and e gains when it sticks, over all slips."""
+    def lost(slip):
+        u = slip * ACROSS - UP
+        return -lesson.energy_change(u, K, lesson.contact_impulse(u, UP, K, e, np.inf))
+    return -minimize_scalar(lost, bounds=(-5.0, 5.0), method="bounded", options={"xatol": 1e-9}).fun
+
+
+def least_gaining(K):
+    """The restitution from which on an impact may gain energy:  e* = 1/√(K_nn (K⁻¹)_nn)."""
+    return 1.0 / np.sqrt(K[1, 1] * np.linalg.inv(K)[1, 1])
+
+
+@case("energy-gain", "Energy out of nothing", compiled=False)
+def energy_gain(lesson):
+    """Newton's restitution with friction gains energy when e > 1/√(K_nn (K⁻¹)_nn), at the wrong slip; for the rod 2/√((1 + 3c²)(1 + 3s²)).
+
+    A J that sticks gives ½ (e² u_n² n · K⁻¹n − u · K⁻¹u), most where u · K⁻¹u is least for its u_n, which is u_n²/K_nn.  On the way from
+    the frictionless impulse to the sticking one energy is a convex function, so that no sliding impact gains if both of them do not.
+    """
+    found, angles = [], (10.0, 20.0, 30.0, 45.0, 60.0, 75.0)
+    edges = [bisect(lambda e: most_gained(lesson, rod(lesson, a), e) > 0.0, 0.3, 1.0) for a in angles]
+    law = lambda a: 2.0 / np.sqrt((1.0 + 3.0 * np.cos(np.radians(a)) ** 2) * (1.0 + 3.0 * np.sin(np.radians(a)) ** 2))
+    for a, edge in zip(angles, edges):
+        if a in (30.0, 45.0, 75.0):
+            found.append(finding(
+                claim="A leaning rod can gain energy from e = 2/√((1 + 3cos²θ)(1 + 3sin²θ)) on.",
+                quantity=f"least restitution that gains, rod at {a:g}° [-]",
+                predicted=law(a),
+                measured=edge,
+                tolerance=10.0 * EDGE,
+                observation=f"A rod at {a:g}° gains energy at some slip from e = {edge:.5f} on.",
+            ))
+    rng = np.random.default_rng(18)
+    broken = gained = dead = 0
+    for _ in range(1500):
+        r, moments = rng.uniform(-1.0, 1.0, 3), rng.uniform(0.2, 2.0, 3)
+        K, u = lesson.point_inverse_mass(r, 1.0, np.diag(1.0 / moments)), rng.normal(size=3)
+        u[1], e, mu = -abs(u[1]) - 0.01, rng.uniform(), rng.uniform(0.0, 2.0)
+        more = lesson.energy_change(u, K, lesson.contact_impulse(u, UP, K, e, mu)) > ROUND_OFF
+        gained += more
+        broken += more and e < least_gaining(K)
+        dead += lesson.energy_change(u, K, lesson.contact_impulse(u, UP, K, 0.0, mu)) > ROUND_OFF
+    found += [
+        finding(
+            claim="Below that restitution no impact gains, sliding or sticking, in the plane or in space.",
+            quantity="impacts that gain below it [of 1500]",
+            predicted=0,
+            measured=broken,
+            tolerance=0.0,
+            observation=f"Of 1,500 random impacts {gained} gain energy, {broken} of them below the bound.",
+        ),
+        finding(
+            claim="Without restitution none gains.",
+            quantity="impacts with e = 0 that gain [of 1500]",
+            predicted=0,
+            measured=dead,
+            tolerance=0.0,
+            observation=f"With e = 0 {dead} of 1,500 impacts gain energy.",
+        ),
+    ]
+    K, worst = rod(lesson, 45.0), 0.0
+    for e in (0.0, 0.5, 1.0):
+        u = 2.0 * ACROSS - UP
+        worst = max(worst, abs(lesson.energy_change(u, K, lesson.contact_impulse(u, UP, K, e, 0.0)) + 0.5 * (1.0 - e * e) / K[1, 1]))
+    found.append(finding(
+        claim="Without friction an impact loses ½ (1 − e²) u_n²/k.",
+        quantity="largest departure for e = 0, ½, 1 [J]",
+        predicted=0.0,
+        measured=worst,
+        tolerance=ROUND_OFF,
+        observation=f"Frictionless impacts lose what theory says, within {worst:.0e} J.",
+    ))
+    fine = np.linspace(0.0, 90.0, 181)
+    return found, Picture("When restitution with friction gains energy", "angle of the rod from the floor [°]", "restitution e [-]", [
+        series("theory: it may gain above", fine, law(fine), LINE), series("measured", angles, edges, DOTS)],
+        "At 45° a sticking impact gains energy from e = 0.8 on, if the slip is just right; upright or flat it never does.")
+
+
+# ---------------------------------------------------------------------------------------------- what has no physics
+
+@case("invalid-impacts", "Impacts that have no physics", compiled=False)
+def invalid_impacts(lesson):
+    """Impacts that have no physics are refused by name and value; those that only look so are solved."""
+    u, n, K, zero = np.array([1.0, -2.0, 0.5]), UP, np.eye(3), np.zeros(3)
+    body, r = lesson.Solid(u, zero, 1.0, np.eye(3)), np.zeros((1, 3))
+    drop = lesson.Drop(0.5, np.array([0.0, -G]), np.zeros(2), np.array([0.0, 1.0]), 1.0, 0.0)
+    fall = (lesson.falling_acceleration, 0.0, np.ones((1, 2)), np.zeros((1, 2)), 0.1, 1)
+    asked = (
+        ("impulse_size", (-1.0, 1.0, 1.5), "1.5"), ("impulse_size", (-1.0, 1.0, -0.5), "-0.5"), ("impulse_size", (-1.0, 0.0, 0.5), "0.0"),
+        ("cone_impulse", (u, n, K, 0.0, -0.3), "-0.3"), ("cone_impulse", (u, zero, K, 0.0, 0.3), "0.0"), ("cone_impulse", (u, n, 0.0 * K, 0.0, 0.3), "0.0"),
+        ("cone_impulse", (np.nan * u, n, K, 0.0, 0.3), "nan"), ("contact_impulse", (u, n, K, 2.0, 0.3), "2.0"), ("gap_multiplier", (0.1, -1.0, 0.0, 0.1), "0.0"),
+        ("solve_impacts", (body, r, n[None], 1.25, 0.3), "1.25"), ("solve_impacts", (body, r, n[None], 0.5, -0.3), "-0.3"),
+        ("drop_all", (lesson.projecting_step, *fall, drop._replace(e=1.5)), "1.5"), ("drop_all", (lesson.backtracking_step, *fall, drop._replace(n=np.zeros(2))), "0.0"),
+        ("drop_all", (lesson.backtracking_step, fall[0], 0.0, np.full((1, 2), np.inf), *fall[3:], drop), "inf"),
+        ("discs_all", (lesson.projecting_discs_step, np.zeros((1, 2, 2)), np.zeros((1, 2, 2)), 0.1, 1, lesson.Discs(np.ones(2), np.ones(2), -1.0)), "-1.0"),
+    )
+    refused = sum(refuses(getattr(lesson, name), arguments, value) for name, arguments, value in asked)
+    found = [finding(
+        claim=("Restitution outside 0 to 1, negative friction, no normal, two immovable bodies and no number are "
+               "refused, with their value."),
+        quantity=f"calls that name the value in their error [of {len(asked)}]",
+        predicted=len(asked),
+        measured=refused,
+        tolerance=0.0,
+        observation=f"{refused} of {len(asked)} such calls end in a sentence that names the value.",
+    )]
+    exponents, worst = np.linspace(-6.0, 8.0, 15), 0.0
+    sizes = []
+    for y in exponents:
+        J = lesson.contact_impulse(10.0**y * u, n, K, 0.5, 0.3)
+        sizes.append(np.linalg.norm(J) / 10.0**y)
+        worst = max(worst, abs(n @ (10.0**y * u + K @ J) - 10.0**y) / 10.0**y)
+    found.append(finding(
+        claim="An impact has no scale of its own: from a micrometre to 10⁸ m a second.",
+        quantity="largest error of the rebound, over the speed [-]",
+        predicted=0.0,
+        measured=worst,
+        tolerance=ROUND_OFF,
+        observation=f"Over fourteen decades of speed the rebound is right within {worst:.0e}.",
+    ))
+    J = lesson.contact_impulse(u, n, np.diag([1e6, 1.0, 1e-6]) + 1e-7 * np.ones((3, 3)), 0.5, np.inf)
+    found.append(finding(
+        claim="Infinite friction ends in a finite impulse, whatever the inertias.",
+        quantity="rebound with μ = ∞ and inertias over twelve decades [m/s]",
+        predicted=1.0,
+        measured=n @ (u + (np.diag([1e6, 1.0, 1e-6]) + 1e-7 * np.ones((3, 3))) @ J),
+        tolerance=1e-9,
+        observation="With μ = ∞ and inertias over twelve decades the impact ends as it should.",
+    ))
+    return found, Picture("The same impact at any speed", "log₁₀ of the speed [m/s]", "impulse over m v [-]", [
+        series("theory", exponents, np.full(15, 3.0 * np.hypot(1.0, 0.3)), LINE), series("contact_impulse", exponents, sizes, DOTS)], "Coulomb's cone and Newton's restitution have no length and no time.")
