@@ -133,6 +133,25 @@ def test_no_cell_is_a_formula(tmp_path, text):
         assert row[name].lstrip()[0] not in "=+-@＝" and not set(row[name]) & set("\t\r\n"), name
 
 
+SPLIT = ["a;=1+1", "a|=1+1", "a,=1+1", "a\t=1+1", "a; =1+1", "a;＝1+1", "a;＋1", "a;－1", "a;＠A1", "a;b;@A1", 'a;"=1+1"', "=1;=2"]
+
+
+@pytest.mark.parametrize("text", SPLIT)
+@pytest.mark.parametrize("separator", [";", "|", ",", "\t"])
+def test_no_cell_becomes_a_formula_where_a_spreadsheet_splits_it(tmp_path, text, separator):
+    person = submissions.Person("ada", text, text, text)
+    write(tmp_path, [result("ada", problems=[text, text])], people={"ada": person})
+    row = rows_of(tmp_path)[0]
+    for name in ("last_name", "first_name", "email", "problems"):
+        parts = [part.lstrip(' "') for part in row[name].split(separator)]
+        assert not [part for part in parts if part[:1] in tuple("=+-@＝＋－＠")], (name, row[name])
+
+
+@pytest.mark.parametrize("text", ["Müller-Lüdenscheidt", "O'Neil, Ann-Marie", "ada+b@example.org", "a = b; c - d"])
+def test_an_ordinary_cell_stays_as_it_is(text):
+    assert pages.cell(text) == text
+
+
 # ---------------------------------------------------------------------------------------------- Gradescope
 
 def test_gradescope_gets_every_test_of_the_manifest_whatever_happened():

@@ -35,6 +35,7 @@ MOST_BARS = 20               # of the histogram [-]: what a phone has room for
 SHOWN = ("quantity", "given", "expected", "got", "tolerance")
 INPUTS = {"visible": "with the public inputs", "hidden": "with other inputs"}
 CALL = "the call itself"     # the quantity where a call of the student's function ended in an error
+FORMULA = re.compile(r"""(^|[;|,\t])(?=[\s"']*[=+\-@＝＋－＠])""")        # what begins so, at the start or after a separator
 ENDS = {"Lost": "the program ended, hung or sent no data", "StudentError": "an error that is none of Python's own"}
 
 
@@ -128,9 +129,12 @@ def file_name(student):
 
 
 def cell(text):
-    """A text that no spreadsheet runs as a formula, also where it trims blanks or takes the wide signs of East Asian keyboards."""
-    text = line(text)
-    return f"'{text}" if text.lstrip()[:1] in tuple("=+-@＝＋－＠") else text
+    """A text that no spreadsheet runs as a formula.
+
+    It may split cells at other separators than ours, trim blanks and quotes, and take the wide signs of East Asian
+    keyboards.  Each part that begins as a formula gets an apostrophe.
+    """
+    return FORMULA.sub(r"\1'", line(text))
 
 
 # ---------------------------------------------------------------------------------------------- points
