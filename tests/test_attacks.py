@@ -486,7 +486,7 @@ def test_a_large_zip_makes_no_large_result(tmp_path, trial, settings):
 
 def test_long_names_in_a_file_make_no_large_result(trial, settings):
     names = [f"{n}{'x' * 15_000}" for n in "abcdefghijkl"]
-    text = "".join(f"try:\n    import {name}\nexcept ImportError:\n    pass\n" for name in names)
+    text = "".join(f"try:\n    from {name} import x\nexcept ImportError:\n    pass\n" for name in names)
     harmless(graded(HONEST + text, settings))
 
 
