@@ -3,8 +3,9 @@
 import random
 
 import pytest
+import typer
 
-from .grading import benchmark
+from .grading import benchmark, rehearsal, sandbox
 
 
 @pytest.mark.parametrize("workers", [1, 2, 8, 64])
@@ -42,3 +43,25 @@ def test_an_honest_submission_costs_what_the_processor_worked_and_a_sleeper_what
 
 def test_files_of_many_are_measured_on_results_that_differ(monkeypatch):
     assert len({benchmark.varied("a = 1\n" * 50, n) for n in range(20)}) == 20
+
+
+def test_hostile_neighbours_cost_an_honest_class_nothing(tmp_path):
+    sandbox.for_tests(pytest.skip, pytest.fail)
+    (one,) = rehearsal.rehearse(tmp_path, 5, 1, [4])
+    assert (one.honest, one.hostile, one.full) == (4, 1, 4) and one.fair()
+
+
+def test_a_rehearsal_has_a_fifth_of_hostile_files_of_many_kinds(tmp_path):
+    evil = rehearsal.make(tmp_path, 200)
+    texts = [(tmp_path / student / "integrators.py").read_text() for student in evil]
+    assert len(evil) == 40 == len(set(texts)) and len([*tmp_path.iterdir()]) == 200
+
+
+def test_nothing_hostile_is_run_without_a_sandbox(monkeypatch):
+    monkeypatch.setattr(sandbox, "unavailable", lambda: "there is none")
+    monkeypatch.setattr(rehearsal, "rehearse", lambda *_: pytest.fail("it ran"))
+    monkeypatch.setattr(benchmark, "class_of", lambda *_: pytest.fail("it ran"))
+    for command in (benchmark.class_, benchmark.scale):
+        with pytest.raises(typer.Exit) as end:
+            command()
+        assert end.value.exit_code == 2

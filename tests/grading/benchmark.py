@@ -1,4 +1,4 @@
-"""`python -m tests.grading.benchmark`: what a submission costs, and how long 10,000 of them take.
+"""`python -m tests.grading.benchmark scale`: what a submission costs, and how long 10,000 of them take.
 
 Measured: a class of which a tenth is hostile or broken, on Dask with 2 and with 4 workers; plain pytest on the same
 files; the files of 10,000 made from the results.  Simulated from these: 10,000 submissions on 1 to 64 workers, of
@@ -11,14 +11,18 @@ up its budget whatever the processor does.
 
 import heapq
 import json
+import os
 import pickle
+import platform
 import random
+import re
 import resource
 import subprocess
 import sys
 import tempfile
 import time
 from contextlib import contextmanager
+from datetime import date
 from math import ceil
 from pathlib import Path
 from statistics import mean, median
@@ -32,7 +36,7 @@ from tests import attacks
 from validate import binding
 from validate.store import write_whole
 
-from . import cluster, example, marking, pages, sandbox, similar, submissions
+from . import cluster, example, marking, pages, rehearsal, sandbox, similar, submissions
 
 LESSONS = ("integrators", "springs")
 WORKERS, SIMULATED = (2, 4), (1, 2, 4, 8, 16, 32, 64)
@@ -44,6 +48,7 @@ MEANWHILE = ("handing over", "results")                # what one process does w
 AFTER = ("answers that are alike", "pages, CSV, Gradescope")           # … and after that
 SAMPLE = 4                   # honest submissions that plain pytest runs [-]
 console = Console()
+app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
 class Measured:
@@ -247,10 +252,44 @@ def sizes(one, result, rules):
                   f"{back / 1024:.0f} KiB come back.\n")
 
 
-def benchmark(count: Annotated[int, typer.Option("--submissions", min=EVERY, help="To be really graded.")] = 40):
+def need_sandbox():
+    """Hostile files must never run without a sandbox."""
     if sandbox.unavailable():
-        console.print(f"There is nothing to measure: {sandbox.unavailable()}.")
+        console.print(f"There is nothing to measure: {sandbox.unavailable()}.", highlight=False, soft_wrap=True)
         raise typer.Exit(2)
+
+
+def machine():
+    """Date, cores and processor, for the documentation."""
+    info = Path("/proc/cpuinfo")
+    names = re.findall(r"model name\s*: (.*)", info.read_text()) if info.is_file() else []
+    return f"{date.today()}, {os.cpu_count()} cores, {(names or [platform.machine()])[0]}"
+
+
+@app.command("class", help="Grade one class with hostile submissions several times: fair, and the same bytes.")
+def class_(size: Annotated[int, typer.Option(min=5, help="Submissions, a fifth of them hostile.")] = 200,
+           runs: Annotated[int, typer.Option(min=1, help="So often with each number of jobs.")] = 3,
+           jobs: Annotated[list[int], typer.Option(help="Submissions at a time (may be repeated).")] = (2, 4)):
+    need_sandbox()
+    console.print(machine())
+    seen = []
+    with tempfile.TemporaryDirectory() as scratch:
+        for one in rehearsal.rehearse(scratch, size, runs, jobs):
+            seen.append(one)
+            console.print(f"--jobs {one.jobs}: {one.wall:.0f} s by the clock, {one.cpu:.0f} s of the processor, "
+                          f"{one.cpu / size:.2f} s per submission; full marks for {one.full} of {one.honest} honest ones "
+                          f"({one.honest_seconds:.1f} s each, median); {one.hostile} hostile ones gained {one.gained:g} points "
+                          f"({one.hostile_seconds:.1f} s each, median); bytes {one.digest}", highlight=False, soft_wrap=True)
+    same = len({one.digest for one in seen}) == 1
+    fair = all(one.fair() for one in seen)
+    console.print(f"{'Every' if fair else 'NOT every'} run is fair; the bytes are {'the same' if same else 'NOT the same'}.")
+    raise typer.Exit(0 if fair and same else 1)
+
+
+@app.command(help="What a submission costs, and how long 10,000 of them take on 1 to 64 workers.")
+def scale(count: Annotated[int, typer.Option("--submissions", min=EVERY, help="To be really graded.")] = 40):
+    need_sandbox()
+    console.print(machine())
     rules = marking.settings(LESSONS, "a secret")
     with tempfile.TemporaryDirectory() as scratch:
         handed_in, hostile = class_of(count, Path(scratch))
@@ -276,4 +315,4 @@ def benchmark(count: Annotated[int, typer.Option("--submissions", min=EVERY, hel
 
 
 if __name__ == "__main__":
-    typer.run(benchmark)
+    app()
