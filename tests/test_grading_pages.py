@@ -276,6 +276,46 @@ def test_the_graders_failures_come_first_and_old_pages_of_theirs_go(tmp_path):
     assert "Nothing is graded" in write(tmp_path / "none", [], {"bob": "RuntimeError"}).text
 
 
+# ---------------------------------------------------------------------------------------------- a large class
+
+@pytest.mark.parametrize("make, folder", [("student_page", "students"), ("row_of", "gradescope")])
+def test_a_page_is_written_before_the_next_one_is_made(tmp_path, monkeypatch, make, folder):
+    made, there = getattr(pages, make), []
+
+    def seen(one, *more):
+        there.append(len([*(tmp_path / folder).iterdir()]))
+        return made(one, *more)
+    monkeypatch.setattr(pages, make, seen)
+    write(tmp_path, [result(n) for n in "abcdef"])
+    assert sorted({*there}) == [0, 1, 2, 3, 4, 5]
+
+
+class Counted(list):
+    """A list that counts how often somebody goes through it."""
+    times = 0
+
+    def __iter__(self):
+        self.times += 1
+        return super().__iter__()
+
+
+def test_the_class_in_numbers_goes_through_a_students_tests_once_whatever_the_number_of_exercises():
+    sheets = [pages.sheet(result(n), SETTINGS, FREE) for n in "abc"]
+    for work in (lambda s: pages.hardest(s, SETTINGS), pages.causes, lambda s: [*pages.lessons_of(s[0])],
+                 lambda s: pages.accounts_of(s[0].tests, LESSONS, 0, SETTINGS, FREE)):
+        counted = [s._replace(tests=Counted(s.tests)) for s in sheets]
+        work(counted)
+        assert max(s.tests.times for s in counted) == 1
+
+
+def test_a_cause_that_a_large_class_shares_names_the_first_students_only(tmp_path):
+    some = [result(f"s{n:04d}", found("1.1", "not yet", {"quantity": "height [m]"})) for n in range(pages.MOST_NAMED + 50)]
+    seen = write(tmp_path, some)
+    part = seen.text[seen.text.index("What went wrong"):seen.text.index("To look into")]
+    assert f"s{pages.MOST_NAMED - 1:04d}" in part and f"s{pages.MOST_NAMED:04d}" not in part and "50 others" in part
+    assert f"s{pages.MOST_NAMED + 49:04d}" in seen.text                # in the table of students
+
+
 # ---------------------------------------------------------------------------------------------- not a grade
 
 def test_every_file_says_when_it_is_not_a_grade_and_why(tmp_path):
