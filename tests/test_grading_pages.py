@@ -133,7 +133,8 @@ def test_no_cell_is_a_formula(tmp_path, text):
         assert row[name].lstrip()[0] not in "=+-@＝" and not set(row[name]) & set("\t\r\n"), name
 
 
-SPLIT = ["a;=1+1", "a|=1+1", "a,=1+1", "a\t=1+1", "a; =1+1", "a;＝1+1", "a;＋1", "a;－1", "a;＠A1", "a;b;@A1", 'a;"=1+1"', "=1;=2"]
+SPLIT = ["a;=1+1", "a|=1+1", "a,=1+1", "a\t=1+1", "a; =1+1", "a;＝1+1", "a;＋1", "a;－1", "a;＠A1", "a;b;@A1",
+         'a;"=1+1"', "=1;=2"]
 
 
 @pytest.mark.parametrize("text", SPLIT)
@@ -309,7 +310,8 @@ def test_the_class_in_numbers_goes_through_a_students_tests_once_whatever_the_nu
 
 
 def test_a_cause_that_a_large_class_shares_names_the_first_students_only(tmp_path):
-    some = [result(f"s{n:04d}", found("1.1", "not yet", {"quantity": "height [m]"})) for n in range(pages.MOST_NAMED + 50)]
+    wrong = found("1.1", "not yet", {"quantity": "height [m]"})
+    some = [result(f"s{n:04d}", wrong) for n in range(pages.MOST_NAMED + 50)]
     seen = write(tmp_path, some)
     part = seen.text[seen.text.index("What went wrong"):seen.text.index("To look into")]
     assert f"s{pages.MOST_NAMED - 1:04d}" in part and f"s{pages.MOST_NAMED:04d}" not in part and "50 others" in part

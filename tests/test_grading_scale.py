@@ -33,12 +33,9 @@ def test_what_a_lost_worker_had_begun_is_done_by_another():
     assert benchmark.makespan([8.0] * 5, 2, Half()) == 32.0
 
 
-def test_an_honest_submission_costs_what_the_processor_worked_and_a_sleeper_what_the_clock_says():
-    results = {"ada": {"seconds": 4.0}, "bob": {"seconds": 4.0}, "eve": {"seconds": 2.0}}
-    honest, evil = benchmark.costs_of(results, {"eve"}, cpu=5.0)  # half of the time they waited for each other
-    assert honest == [2.0, 2.0] and evil == [2.0]
-    honest, evil = benchmark.costs_of(results, {"eve"}, cpu=13.0)  # a second each to start processes
-    assert honest == [5.0, 5.0] and evil == [3.0]
+def test_a_submission_costs_what_the_clock_says_and_the_start_of_its_process():
+    results = {"ada": {"seconds": 4.0}, "bob": {"seconds": 3.0}, "eve": {"seconds": 2.0}, "lost": None}
+    assert benchmark.costs_of(results, {"eve"}, start=0.5) == ([4.5, 3.5], [2.5])
 
 
 def test_files_of_many_are_measured_on_results_that_differ(monkeypatch):

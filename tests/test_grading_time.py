@@ -206,8 +206,9 @@ def test_a_worker_that_does_not_listen_leaves_no_thread_behind():
 
 
 def test_what_waits_to_be_read_is_given_up_with_its_worker():
-    inbox, over, frames = queue.Queue(1), threading.Event(), io.BytesIO(100 * box.wire.pack(("value", 0, [])))
-    thread = threading.Thread(target=box._reading, args=(types.SimpleNamespace(stdout=frames), inbox, None, over), daemon=True)
+    inbox, over = queue.Queue(1), threading.Event()
+    worker = types.SimpleNamespace(stdout=io.BytesIO(100 * box.wire.pack(("value", 0, []))))
+    thread = threading.Thread(target=box._reading, args=(worker, inbox, None, over), daemon=True)
     thread.start()
     time.sleep(0.2)
     assert inbox.full() and thread.is_alive()

@@ -78,8 +78,9 @@ def secret(folder, seed):
         remedy = "write the secret into it" if kept else "give a secret, or leave --seed out"
         raise BadInput(f"file {str(file)!r}" if kept else "--seed", "empty", remedy)
     if os.name == "posix" and file.is_file() and file.stat().st_mode & 0o077:
-        console.print(f"{file} could be read by others on this machine, and is closed to them now: if one of them may be "
-                      "a student, give another --seed.", style="bold red", highlight=False, markup=False, soft_wrap=True)
+        said = "could be read by others on this machine, and is closed to them now"
+        console.print(f"{file} {said}: if one of them may be a student, give another --seed.", style="bold red",
+                      highlight=False, markup=False, soft_wrap=True)
     with whole(file) as draft:
         draft.unlink(missing_ok=True)
         draft.touch(0o600)                                             # before the secret is in it

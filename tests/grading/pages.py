@@ -36,7 +36,7 @@ MOST_BARS = 20               # of the histogram [-]: what a phone has room for
 SHOWN = ("quantity", "given", "expected", "got", "tolerance")
 INPUTS = {"visible": "with the public inputs", "hidden": "with other inputs"}
 CALL = "the call itself"     # the quantity where a call of the student's function ended in an error
-FORMULA = re.compile(r"""(^|[;|,\t])(?=[\s"']*[=+\-@＝＋－＠])""")        # what begins so, at the start or after a separator
+FORMULA = re.compile(r"""(^|[;|,\t])(?=[\s"']*[=+\-@＝＋－＠])""")     # at the start or after a separator
 ENDS = {"Lost": "the program ended, hung or sent no data", "StudentError": "an error that is none of Python's own"}
 
 
@@ -399,8 +399,8 @@ def templates():
     """The pages' templates; what they show is cleaned and escaped, and their style is in them."""
     pages = Environment(loader=FileSystemLoader(HERE / "templates"), autoescape=True, finalize=clean, trim_blocks=True, lstrip_blocks=True)
     pages.filters.update(line=line, breakable=breakable, number=number, claim=claim, many=many)
-    pages.globals.update(style=Markup("".join(css.read_text(encoding="utf-8") for css in STYLES)), SHOWN=SHOWN, INPUTS=INPUTS,
-                         READING=points.READING, MOST_NAMED=MOST_NAMED, mean=mean, median=median)
+    style = Markup("".join(css.read_text(encoding="utf-8") for css in STYLES))
+    pages.globals.update(style=style, SHOWN=SHOWN, INPUTS=INPUTS, READING=points.READING, MOST_NAMED=MOST_NAMED, mean=mean, median=median)
     return pages
 
 
@@ -415,7 +415,7 @@ def write(out, results, failed, settings, people, terms, run=Run()):
     for student in {*failed, *people} - {s.student for s in sheets}:                     # what an earlier run found is not so any more
         (out / "students" / f"{file_name(student)}.html").unlink(missing_ok=True)
         (out / "gradescope" / f"{file_name(student)}.json").unlink(missing_ok=True)
-    for s in sheets:                                                   # one by one: those of a large class fill the memory
+    for s in sheets:                                                   # one by one: many would fill the memory
         write_whole(out / "students" / f"{s.file}.html", student_page(s, terms))
         write_whole(out / "gradescope" / f"{s.file}.json", as_json(sheet_for_gradescope(s, terms)))
     write_whole(out / "grades.csv", table(sheets, failed, settings, people, terms))

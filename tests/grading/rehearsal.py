@@ -30,7 +30,7 @@ class Found(NamedTuple):
     """What one run of the class gave."""
     jobs: int
     wall: float              # by the clock [s]
-    cpu: float               # of the processor, all processes together [s]
+    cpu: float               # of the processor, by the grader's own processes: the system counts no ended sandbox [s]
     full: int                # honest submissions with full marks [-]
     honest: int              # honest submissions [-]
     gained: float            # points of hostile ones, beyond what they have honestly
@@ -44,7 +44,7 @@ class Found(NamedTuple):
 
 
 def hostile_texts(count):
-    """So many hostile files, spread evenly over all kinds; the first is the last kind, because endless loops come first."""
+    """So many hostile files, spread evenly over all kinds; the last kind first, because the first are slow ones."""
     kinds = attacks.ATTACKS[::-1]
     return [attacks.HONEST + kinds[n * len(kinds) // count % len(kinds)].text for n in range(count)]
 
