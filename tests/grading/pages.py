@@ -400,7 +400,8 @@ def templates():
     pages = Environment(loader=FileSystemLoader(HERE / "templates"), autoescape=True, finalize=clean, trim_blocks=True, lstrip_blocks=True)
     pages.filters.update(line=line, breakable=breakable, number=number, claim=claim, many=many)
     style = Markup("".join(css.read_text(encoding="utf-8") for css in STYLES))
-    pages.globals.update(style=style, SHOWN=SHOWN, INPUTS=INPUTS, READING=points.READING, MOST_NAMED=MOST_NAMED, mean=mean, median=median)
+    pages.globals.update(style=style, SHOWN=SHOWN, INPUTS=INPUTS, READING=points.READING, MOST_NAMED=MOST_NAMED)
+    pages.globals.update(mean=mean, median=median)
     return pages
 
 
