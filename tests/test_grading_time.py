@@ -10,6 +10,7 @@ import threading
 import time
 import types
 
+import numpy as np
 import pytest
 
 from validate import loading
@@ -215,6 +216,36 @@ def test_what_waits_to_be_read_is_given_up_with_its_worker():
     over.set()
     thread.join(5.0)
     assert not thread.is_alive()
+
+
+TWO_ANSWERS = """
+import json, os, struct, sys, time
+def observed_order(dts, errors):
+    head, out = json.dumps(["value", 1.0, []]).encode(), sys.modules["__main__"].outgoing
+    out.write(struct.pack("<4sIQ", b"WBK1", len(head), 0) + head)
+    out.flush()
+    time.sleep(0.3)
+    return 2.0
+"""
+
+
+def test_a_second_answer_is_seen_however_late_it_comes():
+    with opened(TWO_ANSWERS) as place:
+        place.begin(LIMIT)
+        assert place.call("lesson:observed_order", (1.0, 1.0)) == 1.0
+        first = place.process
+        place.begin(LIMIT)                                             # the second answer is still to come
+        assert place.process is not first and "wire" in place.seen
+        assert place.call("lesson:observed_order", (1.0, 1.0)) == 1.0
+
+
+def test_an_honest_worker_is_kept_from_test_to_test():
+    with opened("") as place:
+        first = place.process
+        for _ in range(3):
+            place.begin(LIMIT)
+            place.call("lesson:euler_step", (lambda *a: a[1], 0.0, np.ones(2), np.ones(2), 0.1, None))
+        assert place.process is first and not place.seen
 
 
 # ---------------------------------------------------------------------------------------------- the second try

@@ -9,6 +9,7 @@ import json
 import os
 import queue
 import re
+import secrets
 import shutil
 import signal
 import subprocess
@@ -141,12 +142,31 @@ class Box:
     # -- the conversation
 
     def begin(self, limit):
-        """The next calls may take so long, all together [s].  A worker that has said something unasked is replaced: it would answer past the question."""
-        if self.process and self.depth == 0 and not self.inbox.empty():
+        """The next calls may take so long, all together [s].
+
+        A worker that has said something unasked is replaced: it would answer past the question.
+        """
+        self.allow(limit)
+        if self.process and self.depth == 0 and not self.quiet():
             self.seen.add("wire")
             self.stop()
+        self.allow(limit)
+
+    def allow(self, limit):
+        """Count the time from now on."""
         limit = max(0.0, min(limit, self.budget - self.meter.used))
         self.until, self.patience = self.meter.used + limit, time.monotonic() + CROWDED * limit
+
+    def quiet(self):
+        """Whether the worker has said nothing unasked.
+
+        What it has said comes before its echo, so that this does not depend on how fast anything is.
+        """
+        word = secrets.token_hex(8)
+        try:
+            return self.call("echo", (word,)) == word and self.inbox.empty()
+        except Exception:                                              # Lost, or whatever it has sent
+            return False
 
     def call(self, name, arguments):
         """What the worker's function of that name returns; raises what it raised, or Lost."""
