@@ -478,6 +478,18 @@ def test_what_is_told_about_a_zip_is_short(tmp_path):
     assert max(map(len, one.problems)) < 2 * submissions.LONGEST
 
 
+def test_a_large_zip_makes_no_large_result(tmp_path, trial, settings):
+    endless_names(tmp_path / "mallory.zip")
+    assert (tmp_path / "mallory.zip").stat().st_size > 24 << 20
+    harmless(marking.mark(read(tmp_path / "mallory.zip"), settings["integrators"]))
+
+
+def test_long_names_in_a_file_make_no_large_result(trial, settings):
+    names = [f"{n}{'x' * 15_000}" for n in "abcdefghijkl"]
+    text = "".join(f"try:\n    from {name} import x\nexcept ImportError:\n    pass\n" for name in names)
+    harmless(graded(HONEST + text, settings))
+
+
 def many_tasks(kind):
     while kind == "time":
         pass

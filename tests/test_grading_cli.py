@@ -1,6 +1,7 @@
 """What an instructor's commands say when something is not as it should be: one sentence, at once, and exit code 2."""
 
 import errno
+import os
 from pathlib import Path
 
 import pytest
@@ -76,3 +77,39 @@ def test_release_finds_its_output_unwritable_before_it_begins(capsys, tmp_path, 
     (tmp_path / "file").touch()
     code, _, error = run(capsys, release, "--dirty", "--out", tmp_path / "file" / "workbook.zip")
     assert code == 2 and "not writable" in error and "--out" in error and len(error.splitlines()) == 1
+
+
+def mode(path):
+    return path.stat().st_mode & 0o777
+
+
+@pytest.mark.skipif(os.name != "posix", reason="modes of files mean nothing here")
+@pytest.mark.parametrize("given", [[], ["--seed", "a secret"]])
+def test_a_secret_is_read_by_its_owner_only(capsys, tmp_path, handed_in, given):
+    (tmp_path / "grades").mkdir()
+    (tmp_path / "grades" / ".seed.txt.part").touch(0o666)              # of a run that was killed
+    before = os.umask(0)
+    try:
+        said = run(capsys, grade, *handed_in, *given)[1]
+    finally:
+        os.umask(before)
+    assert mode(tmp_path / "grades" / "seed.txt") == 0o600 and "seed.txt" not in said
+
+
+@pytest.mark.skipif(os.name != "posix", reason="modes of files mean nothing here")
+def test_a_secret_that_others_could_read_is_named_once_and_closed(capsys, tmp_path, handed_in):
+    (tmp_path / "grades").mkdir()
+    file = tmp_path / "grades" / "seed.txt"
+    file.write_text("a secret\n")
+    file.chmod(0o644)
+    said = " ".join(run(capsys, grade, *handed_in)[1].split())
+    assert said.count("seed.txt could be read by others on this machine") == 1
+    assert mode(file) == 0o600 and file.read_text() == "a secret\n"
+    assert "could be read" not in run(capsys, grade, *handed_in)[1]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="modes of files mean nothing here")
+def test_a_secret_is_closed_before_it_is_written(tmp_path, monkeypatch):
+    seen, write = [], Path.write_text
+    monkeypatch.setattr(Path, "write_text", lambda file, text: (seen.append(mode(file)), write(file, text)))
+    assert grade.secret(tmp_path, "a secret") == "a secret" and seen == [0o600]

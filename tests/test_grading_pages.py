@@ -133,6 +133,26 @@ def test_no_cell_is_a_formula(tmp_path, text):
         assert row[name].lstrip()[0] not in "=+-@＝" and not set(row[name]) & set("\t\r\n"), name
 
 
+SPLIT = ["a;=1+1", "a|=1+1", "a,=1+1", "a\t=1+1", "a; =1+1", "a;＝1+1", "a;＋1", "a;－1", "a;＠A1", "a;b;@A1",
+         'a;"=1+1"', "=1;=2"]
+
+
+@pytest.mark.parametrize("text", SPLIT)
+@pytest.mark.parametrize("separator", [";", "|", ",", "\t"])
+def test_no_cell_becomes_a_formula_where_a_spreadsheet_splits_it(tmp_path, text, separator):
+    person = submissions.Person("ada", text, text, text)
+    write(tmp_path, [result("ada", problems=[text, text])], people={"ada": person})
+    row = rows_of(tmp_path)[0]
+    for name in ("last_name", "first_name", "email", "problems"):
+        parts = [part.lstrip(' "') for part in row[name].split(separator)]
+        assert not [part for part in parts if part[:1] in tuple("=+-@＝＋－＠")], (name, row[name])
+
+
+@pytest.mark.parametrize("text", ["Müller-Lüdenscheidt", "O'Neil, Ann-Marie", "ada+b@example.org", "a = b; c - d"])
+def test_an_ordinary_cell_stays_as_it_is(text):
+    assert pages.cell(text) == text
+
+
 # ---------------------------------------------------------------------------------------------- Gradescope
 
 def test_gradescope_gets_every_test_of_the_manifest_whatever_happened():
@@ -255,6 +275,47 @@ def test_the_graders_failures_come_first_and_old_pages_of_theirs_go(tmp_path):
     assert seen.text.index("RuntimeError: no sandbox") < seen.text.index("2 students handed in")
     assert [p.name for p in sorted(tmp_path.glob("*/*"))] == ["ada.json", "ada.html"]
     assert "Nothing is graded" in write(tmp_path / "none", [], {"bob": "RuntimeError"}).text
+
+
+# ---------------------------------------------------------------------------------------------- a large class
+
+@pytest.mark.parametrize("make, folder", [("student_page", "students"), ("row_of", "gradescope")])
+def test_a_page_is_written_before_the_next_one_is_made(tmp_path, monkeypatch, make, folder):
+    made, there = getattr(pages, make), []
+
+    def seen(one, *more):
+        there.append(len([*(tmp_path / folder).iterdir()]))
+        return made(one, *more)
+    monkeypatch.setattr(pages, make, seen)
+    write(tmp_path, [result(n) for n in "abcdef"])
+    assert sorted({*there}) == [0, 1, 2, 3, 4, 5]
+
+
+class Counted(list):
+    """A list that counts how often somebody goes through it."""
+    times = 0
+
+    def __iter__(self):
+        self.times += 1
+        return super().__iter__()
+
+
+def test_the_class_in_numbers_goes_through_a_students_tests_once_whatever_the_number_of_exercises():
+    sheets = [pages.sheet(result(n), SETTINGS, FREE) for n in "abc"]
+    for work in (lambda s: pages.hardest(s, SETTINGS), pages.causes, lambda s: [*pages.lessons_of(s[0])],
+                 lambda s: pages.accounts_of(s[0].tests, LESSONS, 0, SETTINGS, FREE)):
+        counted = [s._replace(tests=Counted(s.tests)) for s in sheets]
+        work(counted)
+        assert max(s.tests.times for s in counted) == 1
+
+
+def test_a_cause_that_a_large_class_shares_names_the_first_students_only(tmp_path):
+    wrong = found("1.1", "not yet", {"quantity": "height [m]"})
+    some = [result(f"s{n:04d}", wrong) for n in range(pages.MOST_NAMED + 50)]
+    seen = write(tmp_path, some)
+    part = seen.text[seen.text.index("What went wrong"):seen.text.index("To look into")]
+    assert f"s{pages.MOST_NAMED - 1:04d}" in part and f"s{pages.MOST_NAMED:04d}" not in part and "50 others" in part
+    assert f"s{pages.MOST_NAMED + 49:04d}" in seen.text                # in the table of students
 
 
 # ---------------------------------------------------------------------------------------------- not a grade

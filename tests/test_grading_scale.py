@@ -3,8 +3,9 @@
 import random
 
 import pytest
+import typer
 
-from .grading import benchmark
+from .grading import benchmark, rehearsal, sandbox
 
 
 @pytest.mark.parametrize("workers", [1, 2, 8, 64])
@@ -32,13 +33,32 @@ def test_what_a_lost_worker_had_begun_is_done_by_another():
     assert benchmark.makespan([8.0] * 5, 2, Half()) == 32.0
 
 
-def test_an_honest_submission_costs_what_the_processor_worked_and_a_sleeper_what_the_clock_says():
-    results = {"ada": {"seconds": 4.0}, "bob": {"seconds": 4.0}, "eve": {"seconds": 2.0}}
-    honest, evil = benchmark.costs_of(results, {"eve"}, cpu=5.0)  # half of the time they waited for each other
-    assert honest == [2.0, 2.0] and evil == [2.0]
-    honest, evil = benchmark.costs_of(results, {"eve"}, cpu=13.0)  # a second each to start processes
-    assert honest == [5.0, 5.0] and evil == [3.0]
+def test_a_submission_costs_what_the_clock_says_and_the_start_of_its_process():
+    results = {"ada": {"seconds": 4.0}, "bob": {"seconds": 3.0}, "eve": {"seconds": 2.0}, "lost": None}
+    assert benchmark.costs_of(results, {"eve"}, start=0.5) == ([4.5, 3.5], [2.5])
 
 
 def test_files_of_many_are_measured_on_results_that_differ(monkeypatch):
     assert len({benchmark.varied("a = 1\n" * 50, n) for n in range(20)}) == 20
+
+
+def test_hostile_neighbours_cost_an_honest_class_nothing(tmp_path):
+    sandbox.for_tests(pytest.skip, pytest.fail)
+    (one,) = rehearsal.rehearse(tmp_path, 5, 1, [4])
+    assert (one.honest, one.hostile, one.full) == (4, 1, 4) and one.fair()
+
+
+def test_a_rehearsal_has_a_fifth_of_hostile_files_of_many_kinds(tmp_path):
+    evil = rehearsal.make(tmp_path, 200)
+    texts = [(tmp_path / student / "integrators.py").read_text() for student in evil]
+    assert len(evil) == 40 == len(set(texts)) and len([*tmp_path.iterdir()]) == 200
+
+
+def test_nothing_hostile_is_run_without_a_sandbox(monkeypatch):
+    monkeypatch.setattr(sandbox, "unavailable", lambda: "there is none")
+    monkeypatch.setattr(rehearsal, "rehearse", lambda *_: pytest.fail("it ran"))
+    monkeypatch.setattr(benchmark, "class_of", lambda *_: pytest.fail("it ran"))
+    for command in (benchmark.class_, benchmark.scale):
+        with pytest.raises(typer.Exit) as end:
+            command()
+        assert end.value.exit_code == 2

@@ -1,12 +1,16 @@
 """Time is the submission's own: what neighbours take costs nobody a point, what sleeps or loops is ended, and what timed out is tried once more, alone."""
 
 import contextlib
+import io
 import os
+import queue
 import subprocess
 import sys
 import threading
 import time
+import types
 
+import numpy as np
 import pytest
 
 from validate import loading
@@ -146,6 +150,102 @@ def test_no_alarm_is_left():
     thread.start()
     thread.join()
     assert signal.getitimer(signal.ITIMER_REAL)[0] == 0.0
+
+
+def test_a_callback_leaves_the_tests_own_alarm_as_it_was():
+    text = "\ndef observed_order(f, errors):\n    return f(0.0, 1.0, 1.0, None)\n"
+    asked = []
+
+    def counted(t, x, v, p):
+        asked.append(t)
+        return x
+    with opened(text) as place, pytest.raises(loading.TooLong), loading.alarm(0.5, loading.TooLong, own=True):
+        place.begin(LIMIT)
+        assert place.call("lesson:observed_order", (counted, 1.0)) == 1.0 and asked == [0.0]
+        until = time.monotonic() + 30.0
+        while time.monotonic() < until:                                # the test itself goes on for ever
+            pass
+
+
+# ---------------------------------------------------------------------------------------------- the end of a worker
+
+FLOOD = """
+import json, os, struct, sys
+def observed_order(dts, errors):
+    head, out = json.dumps(["value", 3.0, []]).encode(), sys.modules["__main__"].outgoing
+    frame = struct.pack("<4sIQ", b"WBK1", len(head), 0) + head
+    while True:
+        out.write(1000 * frame)
+"""
+
+
+def test_a_worker_that_floods_leaves_no_thread_behind_on_a_slow_machine(monkeypatch):
+    read = box.wire.read
+
+    def slowly(stream):
+        time.sleep(0.2)
+        return read(stream)
+    with opened(FLOOD) as place:
+        monkeypatch.setattr(box.wire, "read", slowly)
+        place.begin(60.0)
+        assert place.call("lesson:observed_order", (1.0, 1.0)) == 3.0
+        threads = place.threads
+        place.stop()
+        assert not [thread for thread in threads if thread.is_alive()] and place.process is None
+
+
+def test_a_worker_that_does_not_listen_leaves_no_thread_behind():
+    with opened("\nimport time\ndef observed_order(dts, errors):\n    time.sleep(60.0)\n") as place:
+        place.begin(60.0)
+        for _ in range(64):
+            place.send(bytes(100_000))                                 # more than the pipe and the queue hold together
+            if place.outbox.full():
+                break
+        threads = place.threads
+        place.stop()
+        assert not [thread for thread in threads if thread.is_alive()]
+
+
+def test_what_waits_to_be_read_is_given_up_with_its_worker():
+    inbox, over = queue.Queue(1), threading.Event()
+    worker = types.SimpleNamespace(stdout=io.BytesIO(100 * box.wire.pack(("value", 0, []))))
+    thread = threading.Thread(target=box._reading, args=(worker, inbox, None, over), daemon=True)
+    thread.start()
+    time.sleep(0.2)
+    assert inbox.full() and thread.is_alive()
+    over.set()
+    thread.join(5.0)
+    assert not thread.is_alive()
+
+
+TWO_ANSWERS = """
+import json, os, struct, sys, time
+def observed_order(dts, errors):
+    head, out = json.dumps(["value", 1.0, []]).encode(), sys.modules["__main__"].outgoing
+    out.write(struct.pack("<4sIQ", b"WBK1", len(head), 0) + head)
+    out.flush()
+    time.sleep(0.3)
+    return 2.0
+"""
+
+
+def test_a_second_answer_is_seen_however_late_it_comes():
+    with opened(TWO_ANSWERS) as place:
+        place.begin(LIMIT)
+        assert place.call("lesson:observed_order", (1.0, 1.0)) == 1.0
+        first = place.process
+        place.begin(LIMIT)                                             # the second answer is still to come
+        assert place.process is not first and "wire" in place.seen
+        assert place.call("lesson:observed_order", (1.0, 1.0)) == 1.0
+
+
+def test_an_honest_worker_is_kept_from_test_to_test():
+    with opened("") as place:
+        first = place.process
+        for _ in range(3):
+            place.begin(LIMIT)
+            place.call("lesson:euler_step", (lambda *a: a[1], 0.0, np.ones(2), np.ones(2), 0.1, None))
+        assert place.process is first and not place.seen
 
 
 # ---------------------------------------------------------------------------------------------- the second try

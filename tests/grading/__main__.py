@@ -77,7 +77,13 @@ def secret(folder, seed):
     if not seed:
         remedy = "write the secret into it" if kept else "give a secret, or leave --seed out"
         raise BadInput(f"file {str(file)!r}" if kept else "--seed", "empty", remedy)
+    if os.name == "posix" and file.is_file() and file.stat().st_mode & 0o077:
+        said = "could be read by others on this machine, and is closed to them now"
+        console.print(f"{file} {said}: if one of them may be a student, give another --seed.", style="bold red",
+                      highlight=False, markup=False, soft_wrap=True)
     with whole(file) as draft:
+        draft.unlink(missing_ok=True)
+        draft.touch(0o600)                                             # before the secret is in it
         draft.write_text(f"{seed}\n")
     return seed
 

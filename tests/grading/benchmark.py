@@ -1,24 +1,28 @@
-"""`python -m tests.grading.benchmark`: what a submission costs, and how long 10,000 of them take.
+"""`python -m tests.grading.benchmark scale`: what a submission costs, and how long 10,000 of them take.
 
 Measured: a class of which a tenth is hostile or broken, on Dask with 2 and with 4 workers; plain pytest on the same
 files; the files of 10,000 made from the results.  Simulated from these: 10,000 submissions on 1 to 64 workers, of
 which one in a hundred is lost.
 
-All is in seconds of the processor, which neighbours on the machine change little; time by the clock is shown beside
-it.  The simulation takes one core for each worker.  For a submission that sleeps or loops, the clock counts: it uses
-up its budget whatever the processor does.
+A submission costs what the clock says while two are graded on two cores, the start of its process included.  The
+system does not count what the processor does for a sandbox that is ended, so seconds of the processor are those of
+the grader's own processes.  The simulation takes one core for each worker.  Busy neighbours make all of it larger.
 """
 
 import heapq
 import json
+import os
 import pickle
+import platform
 import random
+import re
 import resource
 import subprocess
 import sys
 import tempfile
 import time
 from contextlib import contextmanager
+from datetime import date
 from math import ceil
 from pathlib import Path
 from statistics import mean, median
@@ -32,7 +36,7 @@ from tests import attacks
 from validate import modules
 from validate.store import write_whole
 
-from . import cluster, example, marking, pages, sandbox, similar, submissions
+from . import cluster, example, marking, pages, rehearsal, sandbox, similar, submissions
 
 LESSONS = ("integrators", "springs")
 WORKERS, SIMULATED = (2, 4), (1, 2, 4, 8, 16, 32, 64)
@@ -44,6 +48,7 @@ MEANWHILE = ("handing over", "results")                # what one process does w
 AFTER = ("answers that are alike", "pages, CSV, Gradescope")           # … and after that
 SAMPLE = 4                   # honest submissions that plain pytest runs [-]
 console = Console()
+app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
 class Measured:
@@ -103,12 +108,12 @@ def plain(texts, folder):
 
 
 def ordinary(handed_in):
-    """Seconds of the processor of plain pytest for one submission."""
-    with measured(resource.RUSAGE_CHILDREN) as found:
-        for one in handed_in:
-            with tempfile.TemporaryDirectory() as folder:
-                plain(one.files, Path(folder))
-    return found.cpu / len(handed_in)
+    """Seconds by the clock of plain pytest for one submission."""
+    began = time.perf_counter()
+    for one in handed_in:
+        with tempfile.TemporaryDirectory() as folder:
+            plain(one.files, Path(folder))
+    return (time.perf_counter() - began) / len(handed_in)
 
 
 # ---------------------------------------------------------------------- the files of a large class
@@ -192,17 +197,20 @@ def simulated(costs, serial):
 
 # ---------------------------------------------------------------------- the command
 
-def costs_of(results, hostile, cpu):
-    """Seconds of each submission on a core of its own.
+def start_of(rules):
+    """Seconds to start the process that grades one submission on a worker, here one that has nothing to grade."""
+    times = []
+    for _ in range(3):
+        began = time.perf_counter()
+        cluster.asked(cluster.parcel(None, rules))
+        times.append(time.perf_counter() - began)
+    return min(times)
 
-    An honest one has what the clock said, less what it waited for others: together as much as the processor worked.
-    What a hostile one took by the clock stays, because it may have slept.
-    """
-    honest = [r["seconds"] for student, r in results.items() if r and student not in hostile]
-    evil = [r["seconds"] for student, r in results.items() if r and student in hostile]
-    scale = min(1.0, cpu / (sum(honest) + sum(evil)))
-    start = max(0.0, (cpu - scale * (sum(honest) + sum(evil))) / len(results))       # of processes: not in `seconds`
-    return [start + scale * s for s in honest], [start + s for s in evil]
+
+def costs_of(results, hostile, start):
+    """([seconds of each honest submission], [of hostile ones]) by the clock, the start of a process included."""
+    found = [(student in hostile, start + r["seconds"]) for student, r in results.items() if r]
+    return [s for evil, s in found if not evil], [s for evil, s in found if evil]
 
 
 def printed(title, columns, rows):
@@ -215,16 +223,17 @@ def printed(title, columns, rows):
 
 
 def graded(handed_in, hostile, rules):
-    """Grade the class with 2 and with 4 workers, and print what that took; (results, seconds of the processor) of 2."""
+    """Grade the class with 2 and with 4 workers, and print what that took; the results of 2."""
     rows, count, first = [], len(handed_in), None
     for workers in WORKERS:
         results, found = on_dask(workers, handed_in, rules)
-        first = first or (results, found.cpu)
+        first = first or results
         done = sum(result is not None for result in results.values())
-        rows.append((workers, f"{done} of {count}", f"{found.wall:.0f}", f"{found.cpu:.0f}", f"{found.cpu / count:.1f}",
-                     f"{found.cpu / found.wall:.2f}", f"{found.memory:.0f}"))
+        rows.append((workers, f"{done} of {count}", f"{found.wall:.0f}", f"{found.wall / count:.2f}",
+                     f"{found.cpu / count:.2f}", f"{found.memory:.0f}"))
     printed(f"{count} submissions of {len(LESSONS)} lessons, {len(hostile)} of them hostile or broken",
-            ("workers", "graded", "clock [s]", "processor [s]", "each [s]", "cores busy", "largest process [MiB]"),
+            ("workers", "graded", "clock [s]", "clock, each [s]", "grader's processor, each [s]",
+             "largest process [MiB]"),
             rows)
     return first
 
@@ -247,15 +256,56 @@ def sizes(one, result, rules):
                   f"{back / 1024:.0f} KiB come back.\n")
 
 
-def benchmark(count: Annotated[int, typer.Option("--submissions", min=EVERY, help="To be really graded.")] = 40):
+def need_sandbox():
+    """Hostile files must never run without a sandbox."""
     if sandbox.unavailable():
-        console.print(f"There is nothing to measure: {sandbox.unavailable()}.")
+        console.print(f"There is nothing to measure: {sandbox.unavailable()}.", highlight=False, soft_wrap=True)
         raise typer.Exit(2)
+
+
+def machine():
+    """Date, cores and processor, for the documentation."""
+    info = Path("/proc/cpuinfo")
+    names = re.findall(r"model name\s*: (.*)", info.read_text()) if info.is_file() else []
+    return f"{date.today()}, {os.cpu_count()} cores, {(names or [platform.machine()])[0]}"
+
+
+@app.command("class", help="Grade one class with hostile submissions several times: fair, and the same bytes.")
+def class_(size: Annotated[int, typer.Option(min=5, help="Submissions, a fifth of them hostile.")] = 200,
+           runs: Annotated[int, typer.Option(min=1, help="So often with each number of jobs.")] = 3,
+           jobs: Annotated[list[int], typer.Option(help="Submissions at a time (may be repeated).")] = (2, 4)):
+    need_sandbox()
+    console.print(machine())
+    seen = []
+    with tempfile.TemporaryDirectory() as scratch:
+        for one in rehearsal.rehearse(scratch, size, runs, jobs):
+            seen.append(one)
+            console.print(told(one, size), highlight=False, soft_wrap=True)
+    same = len({one.digest for one in seen}) == 1
+    fair = all(one.fair() for one in seen)
+    console.print(f"{'Every' if fair else 'NOT every'} run is fair.")
+    console.print(f"The bytes are {'the same' if same else 'NOT the same'} in all runs.")
+    raise typer.Exit(0 if fair and same else 1)
+
+
+def told(one, size):
+    """A line about one run of a class."""
+    return (f"--jobs {one.jobs}: {one.wall:.0f} s by the clock, {one.wall / size:.2f} s per submission, of which "
+            f"the grader's own processes had {one.cpu / size:.2f} s of the processor; full marks for {one.full} of "
+            f"{one.honest} honest ones ({one.honest_seconds:.1f} s each, median); {one.hostile} hostile ones gained "
+            f"{one.gained:g} points ({one.hostile_seconds:.1f} s each, median); bytes {one.digest}")
+
+
+@app.command(help="What a submission costs, and how long 10,000 of them take on 1 to 64 workers.")
+def scale(count: Annotated[int, typer.Option("--submissions", min=EVERY, help="To be really graded.")] = 40):
+    need_sandbox()
+    console.print(machine())
     rules = marking.settings(LESSONS, "a secret")
     with tempfile.TemporaryDirectory() as scratch:
         handed_in, hostile = class_of(count, Path(scratch))
-    results, cpu = graded(handed_in, hostile, rules)
-    honest, evil = costs_of(results, hostile, cpu)
+    results, start = graded(handed_in, hostile, rules), start_of(rules)
+    honest, evil = costs_of(results, hostile, start)
+    console.print(f"{start:.1f} s of each are the start of a process")
     compared(handed_in, hostile, results, honest, evil)
 
     steps = files_of([result for result in results.values() if result], rules)
@@ -276,4 +326,4 @@ def benchmark(count: Annotated[int, typer.Option("--submissions", min=EVERY, hel
 
 
 if __name__ == "__main__":
-    typer.run(benchmark)
+    app()

@@ -9,6 +9,7 @@ import json
 import os
 import queue
 import re
+import secrets
 import shutil
 import signal
 import subprocess
@@ -31,6 +32,7 @@ LIMITS = {"AS": 2 << 30, "CPU": 150, "NPROC": 4, "FSIZE": 16 << 20, "NOFILE": 64
 READY_WITHIN = 60.0          # [s]: starting takes 0.2, on a machine that does nothing else
 IMPORT_WITHIN = 10.0         # a student's file may take so long to load [s of its own]
 CROWDED = 10.0               # so many times as long as its own time may pass before a call is given up: then it is tried once more, alone [-]
+ENDED_WITHIN = 60.0          # [s]: the pipes of a sandbox close 0.01 after its end, on a quiet machine
 LAST_WORD_WITHIN = 3.0       # [s]: a worker that has closed the wire ends so soon, or lives on
 MOST_ENTRIES = 1_000_000     # of all arrays that a student's code hands to one of our functions [-]: the tests need 10⁴
 DEEPEST = 16                 # calls inside calls, there and back [-]: the tests need 4
@@ -140,12 +142,31 @@ class Box:
     # -- the conversation
 
     def begin(self, limit):
-        """The next calls may take so long, all together [s].  A worker that has said something unasked is replaced: it would answer past the question."""
-        if self.process and self.depth == 0 and not self.inbox.empty():
+        """The next calls may take so long, all together [s].
+
+        A worker that has said something unasked is replaced: it would answer past the question.
+        """
+        self.allow(limit)
+        if self.process and self.depth == 0 and not self.quiet():
             self.seen.add("wire")
             self.stop()
+        self.allow(limit)
+
+    def allow(self, limit):
+        """Count the time from now on."""
         limit = max(0.0, min(limit, self.budget - self.meter.used))
         self.until, self.patience = self.meter.used + limit, time.monotonic() + CROWDED * limit
+
+    def quiet(self):
+        """Whether the worker has said nothing unasked.
+
+        What it has said comes before its echo, so that this does not depend on how fast anything is.
+        """
+        word = secrets.token_hex(8)
+        try:
+            return self.call("echo", (word,)) == word and self.inbox.empty()
+        except Exception:                                              # Lost, or whatever it has sent
+            return False
 
     def call(self, name, arguments):
         """What the worker's function of that name returns; raises what it raised, or Lost."""
@@ -189,7 +210,8 @@ class Box:
         self.peer.served = self.peer.serve
         self.peer.serve = self.serve
         self.peer.may_change = lambda name: name.rpartition(":")[2].startswith("solve_")     # all else is pure, or the tests could be moved
-        self.threads = [threading.Thread(target=task, args=(process, self.inbox, self.outbox), daemon=True)
+        self.over = threading.Event()
+        self.threads = [threading.Thread(target=task, args=(process, self.inbox, self.outbox, self.over), daemon=True)
                         for task in (_reading, _writing, self._listening)]
         for thread in self.threads:
             thread.start()
@@ -275,15 +297,12 @@ class Box:
             with contextlib.suppress(OSError):
                 os.killpg(self.process.pid, 9) if os.name == "posix" else self.process.kill()
             self.process.wait()
-            with contextlib.suppress(queue.Full):
-                self.outbox.put_nowait(None)
-            until = time.monotonic() + 3.0
+            self.over.set()
+            emptied(self.outbox)
+            self.outbox.put_nowait(None)
+            until = time.monotonic() + (LAST_WORD_WITHIN if self.binds is None else ENDED_WITHIN)
             for thread in self.threads:                                # they end with the worker's pipes
-                while thread.is_alive() and time.monotonic() < until:
-                    with contextlib.suppress(queue.Empty):             # which may be full of frames
-                        while True:
-                            self.inbox.get_nowait()
-                    thread.join(0.002)
+                thread.join(max(0.0, until - time.monotonic()))
             if not any(thread.is_alive() for thread in self.threads):
                 for pipe in (self.process.stdin, self.process.stdout, self.process.stderr):
                     with contextlib.suppress(OSError):                 # what could not be written any more
@@ -294,7 +313,7 @@ class Box:
         self.stop()
         shutil.rmtree(self.folder, ignore_errors=True)
 
-    def _listening(self, process, inbox, outbox):
+    def _listening(self, process, inbox, outbox, over):
         """Keep the beginning of what is printed, and let the rest go; take out what the worker has noted."""
         rest, size = b"", 0
         while chunk := process.stderr.read1(65536):
@@ -309,23 +328,34 @@ class Box:
                 self.seen.add("flood")
 
 
-def _reading(process, inbox, outbox):
+def _reading(process, inbox, outbox, over):
+    """Hand on what the worker sends, until the worker is over: then nobody takes it any more."""
+    def hand_on(frame):
+        while not over.is_set():
+            with contextlib.suppress(queue.Full):
+                return inbox.put(frame, timeout=LOOK)
     try:
-        while (frame := wire.read(process.stdout)) is not None:
-            inbox.put(frame, timeout=60.0)
-        inbox.put(StudentError("the program ended before it answered"))
-    except Exception as e:                                             # also a queue that nobody empties any more
-        with contextlib.suppress(queue.Full):
-            inbox.put_nowait(StudentError(f"the program sent no plain data: {e}"))
+        while not over.is_set() and (frame := wire.read(process.stdout)) is not None:
+            hand_on(frame)
+        hand_on(StudentError("the program ended before it answered"))
+    except Exception as e:
+        hand_on(StudentError(f"the program sent no plain data: {e}"))
 
 
-def _writing(process, inbox, outbox):
+def _writing(process, inbox, outbox, over):
     """In a thread of its own: a worker that never reads must not stop the parent."""
     with contextlib.suppress(OSError, ValueError):
-        while (frame := outbox.get()) is not None:
+        while (frame := outbox.get()) is not None and not over.is_set():
             process.stdin.write(frame)
             process.stdin.flush()
             outbox.task_done()
+
+
+def emptied(line):
+    """Take everything out of a queue."""
+    with contextlib.suppress(queue.Empty):
+        while True:
+            line.get_nowait()
 
 
 def arriving(stream):

@@ -31,10 +31,12 @@ COLUMNS = ("assignment", "duedate", "timestamp", "student_id", "last_name", "fir
            "problems")       # and what is wrong with the files
 MOST_TOLD = 20               # students that are named on the screen [-]: the page has them all
 MOST_PROBLEMS = submissions.MOST_PROBLEMS + 5          # of a submission that are shown [-]: its own, and what is added here
+MOST_NAMED = 200             # students of one cause whom the class page names [-]: the table of students has them all
 MOST_BARS = 20               # of the histogram [-]: what a phone has room for
 SHOWN = ("quantity", "given", "expected", "got", "tolerance")
 INPUTS = {"visible": "with the public inputs", "hidden": "with other inputs"}
 CALL = "the call itself"     # the quantity where a call of the student's function ended in an error
+FORMULA = re.compile(r"""(^|[;|,\t])(?=[\s"']*[=+\-@＝＋－＠])""")     # at the start or after a separator
 ENDS = {"Lost": "the program ended, hung or sent no data", "StudentError": "an error that is none of Python's own"}
 
 
@@ -128,9 +130,12 @@ def file_name(student):
 
 
 def cell(text):
-    """A text that no spreadsheet runs as a formula, also where it trims blanks or takes the wide signs of East Asian keyboards."""
-    text = line(text)
-    return f"'{text}" if text.lstrip()[:1] in tuple("=+-@＝＋－＠") else text
+    """A text that no spreadsheet runs as a formula.
+
+    It may split cells at other separators than ours, trim blanks and quotes, and take the wide signs of East Asian
+    keyboards.  Each part that begins as a formula gets an apostrophe.
+    """
+    return FORMULA.sub(r"\1'", line(text))
 
 
 # ---------------------------------------------------------------------------------------------- points
@@ -162,11 +167,19 @@ def days_late(timestamp, due):
     return max(0, -((until - when) // timedelta(days=1)))
 
 
+def grouped(tests, *names):
+    """{value of that entry, or values of those: its tests}, in the order in which they come."""
+    groups = {}
+    for t in tests:
+        groups.setdefault(t[names[0]] if len(names) == 1 else tuple(t[name] for name in names), []).append(t)
+    return groups
+
+
 def accounts_of(tests, handed_in, days, settings, terms):
     """{lesson: Account}.  A penalty takes no more than there is."""
-    accounts = {}
+    accounts, of = {}, grouped(tests, "lesson")
     for lesson in settings.lessons:
-        mine = [t for t in tests if t["lesson"] == lesson]
+        mine = of.get(lesson, ())
         raw, maximum = sum(t["earned"] for t in mine), sum(t["points"] for t in mine)
         penalty = min(raw, terms.late / 100.0 * maximum * (days or 0))
         accounts[lesson] = Account(lesson in handed_in, raw, penalty, raw - penalty, maximum)
@@ -207,15 +220,20 @@ def by_lesson(sheets, settings):
 
 def hardest(sheets, settings):
     """Exercises by the share of their points that was earned by those who handed the lesson in, the smallest first."""
+    counts = {}                                                        # {exercise: [earned, points, solved, of, left]}
+    for s in sheets:
+        for (lesson, exercise), tests in grouped(s.tests, "lesson", "exercise").items():
+            if s.accounts[lesson].handed_in:
+                states = {t["status"] for t in tests}
+                one = (sum(t["earned"] for t in tests), sum(t["points"] for t in tests), states == {"passed"}, 1,
+                       states == {"not attempted"})
+                counts[lesson, exercise] = [a + b for a, b in zip(counts.get((lesson, exercise), 5 * [0]), one)]
     rows = []
     for lesson, exercise, function in dict.fromkeys(row[:3] for row in settings.manifest):
-        theirs = [[t for t in s.tests if (t["lesson"], t["exercise"]) == (lesson, exercise)]
-                  for s in sheets if s.accounts[lesson].handed_in]
-        if theirs:
-            rows.append({"lesson": lesson, "exercise": exercise, "function": function,
-                         "share": sum(t["earned"] for tests in theirs for t in tests) / sum(t["points"] for tests in theirs for t in tests),
-                         "solved": sum(all(t["status"] == "passed" for t in tests) for tests in theirs), "of": len(theirs),
-                         "left": sum(all(t["status"] == "not attempted" for t in tests) for tests in theirs)})
+        if (lesson, exercise) in counts:
+            earned, worth, solved, of, left = counts[lesson, exercise]
+            rows.append({"lesson": lesson, "exercise": exercise, "function": function, "share": earned / worth,
+                         "solved": solved, "of": of, "left": left})
     return sorted(rows, key=lambda row: row["share"])
 
 
@@ -294,9 +312,10 @@ def lessons_of(one):
 
     Tests that failed in the very same words share a remark: a file that does not load says so once.
     """
+    theirs = grouped(one.tests, "lesson")
     for lesson, account in one.accounts.items():
         exercises, remarks = {}, {}
-        for t in (t for t in one.tests if t["lesson"] == lesson):
+        for t in theirs.get(lesson, ()):
             exercises.setdefault(t["exercise"], []).append(t)
             if t["status"] not in ("passed", "not attempted", "not handed in"):
                 remarks.setdefault((t["kind"], t["hint"], json.dumps(t["says"])), []).append(t)
@@ -317,11 +336,16 @@ def word(states):
 # ---------------------------------------------------------------------------------------------- for other programs
 
 def gradescope(result, settings, terms):
-    """Gradescope's results.json, as a dict: a row for every test of the manifest, whatever happened to it.
+    """Gradescope's results.json for a result, as a dict."""
+    return sheet_for_gradescope(sheet(result, settings, terms), terms)
+
+
+def sheet_for_gradescope(one, terms):
+    """The same for a Sheet: a row for every test of the manifest, whatever happened to it.
 
     score is after the late penalty and beats the sum of the rows.  *Source:* Gradescope, Autograder Specifications.
     """
-    one = sheet(result, settings, terms)
+    result = one.result
     warning = result["no_grade"] and f"NOT A GRADE ({line(result['no_grade'])})"
     lines = [warning, clean(lateness(one, terms)), *map(line, one.problems)]
     return {"score": round(one.total("score"), 6), "visibility": "visible", "stdout_visibility": "hidden",
@@ -375,7 +399,9 @@ def templates():
     """The pages' templates; what they show is cleaned and escaped, and their style is in them."""
     pages = Environment(loader=FileSystemLoader(HERE / "templates"), autoescape=True, finalize=clean, trim_blocks=True, lstrip_blocks=True)
     pages.filters.update(line=line, breakable=breakable, number=number, claim=claim, many=many)
-    pages.globals.update(style=Markup("".join(css.read_text(encoding="utf-8") for css in STYLES)), SHOWN=SHOWN, INPUTS=INPUTS, READING=points.READING, mean=mean, median=median)
+    style = Markup("".join(css.read_text(encoding="utf-8") for css in STYLES))
+    pages.globals.update(style=style, SHOWN=SHOWN, INPUTS=INPUTS, READING=points.READING, MOST_NAMED=MOST_NAMED)
+    pages.globals.update(mean=mean, median=median)
     return pages
 
 
@@ -385,17 +411,16 @@ def write(out, results, failed, settings, people, terms, run=Run()):
     results: as marking.mark gives them · failed: {student: why there are no points} · people: the class list, or {}.
     """
     sheets = sorted((sheet(r, settings, terms, people.get(r["student"])) for r in results), key=lambda s: s.student)
-    files = {f"students/{s.file}.html": student_page(s, terms) for s in sheets}
-    files |= {f"gradescope/{s.file}.json": as_json(gradescope(s.result, settings, terms)) for s in sheets}
-    files["grades.csv"] = table(sheets, failed, settings, people, terms)
-    files["index.html"] = class_page(sheets, failed, settings, people, terms, run)
     for folder in ("students", "gradescope"):
         (out / folder).mkdir(parents=True, exist_ok=True)
     for student in {*failed, *people} - {s.student for s in sheets}:                     # what an earlier run found is not so any more
         (out / "students" / f"{file_name(student)}.html").unlink(missing_ok=True)
         (out / "gradescope" / f"{file_name(student)}.json").unlink(missing_ok=True)
-    for name, text in files.items():
-        write_whole(out / name, text)
+    for s in sheets:                                                   # one by one: many would fill the memory
+        write_whole(out / "students" / f"{s.file}.html", student_page(s, terms))
+        write_whole(out / "gradescope" / f"{s.file}.json", as_json(sheet_for_gradescope(s, terms)))
+    write_whole(out / "grades.csv", table(sheets, failed, settings, people, terms))
+    write_whole(out / "index.html", class_page(sheets, failed, settings, people, terms, run))
     return out / "index.html"
 
 

@@ -32,13 +32,15 @@ IMPORT = re.compile(
 WORDS = re.compile(
     rb"(?<![\w.])(__import__|__builtins__|eval|exec|compile|globals|open)(?=[ \t]*[(\[.])"
     rb"|(?<=\.)(__subclasses__|__globals__|_getframe)\b")
+LONGEST = 40                 # of a module's name that are told [characters]: a file may name one of its own length
 MOST = 12                    # imports and words of one file that are told [-]
 
 
 def in_text(text):
     """Imports and words in a lesson file that no lesson needs: ["import os", "use eval"]."""
     lines = b"\n".join(line for line in text.splitlines() if not line.lstrip().startswith(b"#"))
-    found = [f"import {name}" for name in dict.fromkeys(modules_in(lines)) if name not in NEEDED and name.isidentifier()]
+    names = [name for name in dict.fromkeys(modules_in(lines)) if name not in NEEDED and name.isidentifier()]
+    found = [f"import {name[:LONGEST]}" for name in names]
     found += [f"use {(a or b).decode()}" for a, b in dict.fromkeys(WORDS.findall(lines))]
     return found[:MOST]
 

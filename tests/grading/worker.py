@@ -108,6 +108,8 @@ def resolve(name):
     kind, _, rest = name.partition(":")
     if kind == "given":
         return getattr(given(), rest)
+    if name == "echo":
+        return lambda text: text
     if name == "import":
         return lambda: importlib.import_module(LESSON) and None
     return students(rest) if kind == "lesson" else own[name] if kind in ("own", "code") else remote(name)
