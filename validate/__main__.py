@@ -154,7 +154,7 @@ def plan_of(of, names, plain, quick, wanted, changes):
 
 def overrides(pairs, names):
     """((name, value), …) from NAME=VALUE.  Raises BadInput for what is no number or no parameter, or for more than one scene."""
-    from .measure.select import changed
+    from .measure.selection import changed
     changes = []
     for pair in pairs:
         name, _, text = pair.partition("=")

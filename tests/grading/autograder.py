@@ -163,7 +163,7 @@ STEP = """      - name: {name}
         uses: classroom-resources/autograding-command-grader@v1
         with:
           test-name: {name}
-          command: .venv/bin/pytest tests/test_{lesson}.py --of=lessons --exercise={exercise}
+          command: .venv/bin/pytest tests/lessons/test_{lesson}.py --of=lessons --exercise={exercise}
           timeout: {minutes}
           max-score: {points}
 """

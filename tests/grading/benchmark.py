@@ -86,7 +86,7 @@ def class_of(count, folder):
 
 def on_dask(count, handed_in, rules):
     """(results, Measured) of a scheduler and so many workers on this machine, their start included."""
-    from tests.test_cluster import cluster_of
+    from tests.grading.test_cluster import cluster_of
     results = {}
     with measured(resource.RUSAGE_CHILDREN) as found, tempfile.TemporaryDirectory() as scratch:
         with cluster_of(count, Path(scratch)) as (address, _):
@@ -102,7 +102,7 @@ def plain(texts, folder):
     for lesson, text in texts.items():
         (folder / f"{lesson}.py").write_bytes(text)
     for seed in ("public", "a secret"):
-        files = [f"tests/test_{lesson}.py" for lesson in LESSONS]
+        files = [f"tests/lessons/test_{lesson}.py" for lesson in LESSONS]
         options = [f"--of={folder}", f"--seed={seed}", "-p", "no:cacheprovider", "--tb=no"]
         subprocess.run([sys.executable, "-m", "pytest", *files, *options], cwd=modules.ROOT, capture_output=True)
 

@@ -9,7 +9,7 @@ import zipfile
 from pathlib import Path
 
 from solutions.checks import BadInput
-from validate import modules, generate
+from validate import generate, modules
 
 PEOPLE = """student_id,last_name,first_name,email
 ada,Lovelace,Ada,ada@example.org

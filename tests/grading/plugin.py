@@ -20,9 +20,7 @@ from validate.loading import alarm, lacks
 
 from . import wire
 from .expect import NotYet
-from .points import BOX_LIMIT, LIMIT, PUBLIC, Points, name_of, score
-
-TESTS = Path(__file__).resolve().parent.parent
+from .points import BOX_LIMIT, LESSONS, LIMIT, PUBLIC, TESTS, Points, name_of, score
 
 
 def pytest_addoption(parser):
@@ -54,14 +52,14 @@ def pytest_configure(config):
 
 def tests_of(exercise=""):
     """The test files that name an exercise: one, if it exists; without one those of every lesson."""
-    files = (TESTS / f"test_{lesson}.py" for lesson in modules.lesson_names())
+    files = (LESSONS / f"test_{lesson}.py" for lesson in modules.lesson_names())
     return [path for path in files if path.is_file() and (not exercise or f'"{exercise}"' in path.read_text(encoding="utf-8"))]
 
 
 def pytest_ignore_collect(collection_path, config):
     """With --of or --exercise, do not even load what has no test of it."""
     exercises = config.getoption("--exercise") or [""] * bool(config.getoption("--of"))
-    if exercises and collection_path.parent == TESTS and collection_path.suffix == ".py":
+    if exercises and collection_path.is_relative_to(TESTS) and collection_path.suffix == ".py":
         return not any(collection_path in tests_of(exercise) for exercise in exercises) or None
 
 

@@ -15,6 +15,7 @@ from validate.loading import TooLong, Unloadable, remedy_for, words_of
 from .expect import MOST_DIGITS, NotYet, tidy
 
 TESTS = Path(__file__).resolve().parent.parent
+LESSONS = TESTS / "lessons"  # the grading tests
 OURS = {TESTS, TESTS.parent / "validate", Path(os.__file__).parent}                      # no subject's file is in here
 PUBLIC = "public"            # the seed of everyone's own tests
 LIMIT = 20.0                 # a grading test may take this long [s]: the slowest takes 2, on two shared cores
@@ -153,7 +154,7 @@ def grade_each(lesson, subjects, seed=PUBLIC, collect=False):
 
     points = Points()
     with contextlib.redirect_stdout(io.StringIO()):                   # without what only takes time: other people's plugins, and collecting garbage
-        pytest.main([str(TESTS / f"test_{lesson}.py"), f"--rootdir={TESTS.parent}", "--tb=no", "-Wignore", "-p", "no:cacheprovider",
+        pytest.main([str(LESSONS / f"test_{lesson}.py"), f"--rootdir={TESTS.parent}", "--tb=no", "-Wignore", "-p", "no:cacheprovider",
                      "-p", "no:unraisableexception", "--disable-plugin-autoload", f"--seed={seed}", *["--collect-only"] * collect],
                     plugins=[Given(), points])
     return {name: points.outcomes.get(name, []) for name in subjects}

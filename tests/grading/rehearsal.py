@@ -16,7 +16,7 @@ from statistics import median
 from typing import NamedTuple
 
 from tests import attacks
-from validate import binding
+from validate import modules
 
 from . import example
 
@@ -71,7 +71,7 @@ def graded(folder, out, jobs, evil):
     command = [sys.executable, "-m", "tests.grading", str(folder), "--out", str(out), "--lesson", LESSON,
                "--seed", SEED, "--jobs", str(jobs)]
     before, began = used(), time.monotonic()
-    run = subprocess.run(command, cwd=binding.ROOT, capture_output=True, text=True)
+    run = subprocess.run(command, cwd=modules.ROOT, capture_output=True, text=True)
     wall, cpu = time.monotonic() - began, used() - before
     if run.returncode:
         raise RuntimeError(f"grade ended with {run.returncode}: {run.stdout[-500:]}{run.stderr[-500:]}")

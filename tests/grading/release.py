@@ -31,7 +31,7 @@ from typing import Annotated, NamedTuple
 import typer
 
 from solutions.checks import BadInput
-from validate import modules, generate
+from validate import generate, modules
 from validate.__main__ import writable
 from validate.modules import ROOT
 from validate.processes import one_sentence
@@ -123,7 +123,7 @@ def tracked(dirty):
 
 def contents(paths, lessons, worked, answers):
     """{path in the zip: bytes}."""
-    scenes = {name for name in modules.scene_names() if modules.bind_scene(name).LESSON in lessons}
+    scenes = {name for name in modules.scene_names() if modules.bind_scene(name).lesson in lessons}
     others = set(modules.lesson_names()) - lessons
     chosen = {path for path in paths if wanted(Path(path), lessons, others, scenes)}
     files = {path: read(path) for path in with_imports(chosen, paths)}
@@ -164,18 +164,20 @@ def wanted(path, lessons, others, scenes):
     folder = path.parts[0]
     if path.as_posix() in AUTHORS:
         return False
-    if path.parts[:2] in (("validate", "scenes"), ("validate", "recorded")):
-        return path.stem in scenes | {"__init__"}
+    if path.parts[:2] in (("validate", "scenes"), ("validate", "recorded")) and path.stem != "__init__":
+        return path.stem in scenes
+    if folder == "validate" and (path.stem in others or path.parent.name in others):
+        return False
     if folder == "notebooks":
         return path.stem.partition("_")[2] not in others
     if folder == "solutions":
         return path.suffix == ".py" and path.stem in modules.GIVEN
-    return folder in ("validate", "docs") or path.as_posix() in ALWAYS | {PLUGIN} | {f"tests/test_{name}.py" for name in lessons}
+    return folder in ("validate", "docs") or path.as_posix() in ALWAYS | {PLUGIN} | {f"tests/lessons/test_{name}.py" for name in lessons}
 
 
 def with_imports(chosen, paths):
-    """Those files, and what they import of tests/ and validate/scenes/."""
-    there = {path for path in paths if path.startswith(("tests/", "validate/scenes/"))}
+    """Those files, and what they import of tests/ and validate/."""
+    there = {path for path in paths if path.startswith(("tests/", "validate/"))}
     found, waiting = set(), sorted(chosen)
     while waiting:
         path = waiting.pop()

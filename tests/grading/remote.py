@@ -9,7 +9,7 @@ import types
 from functools import lru_cache
 from pathlib import Path
 
-from validate import modules, generate
+from validate import generate, modules
 
 from .box import Box, Call
 

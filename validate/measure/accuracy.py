@@ -13,7 +13,7 @@ from ..modules import report_text
 from ..results import Role, Verdict, jsonable
 from ..scene import ROUND_OFF, parameter_table
 from . import film, traces
-from .select import select, with_overrides
+from .selection import select, with_overrides
 
 ASYMPTOTIC = 0.5             # limits above this are not compared with a run [-]
 

@@ -9,7 +9,7 @@ from ..scene import PYBULLET
 from ..store import whole
 from .accuracy import run_engine_to_end
 from .film import FRAMES, engine_frames
-from .select import Plan, select
+from .selection import Plan, select
 from .timing import Timed, interleaved, time_engine
 from .traces import RECORDED
 

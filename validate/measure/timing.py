@@ -18,7 +18,7 @@ from ..results import jsonable
 from ..scene import PYBULLET, PYMUNK
 from . import traces
 from .accuracy import ASYMPTOTIC, labels_that_agree, relative
-from .select import REPEATS, select, with_overrides
+from .selection import REPEATS, select, with_overrides
 
 WARM_UPS, PROBE = 2, 64
 EXACTLY = 1e-11              # a smaller relative error is round-off: there is no race for it [-]

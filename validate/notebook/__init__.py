@@ -25,7 +25,7 @@ from ..results import Role
 from ..scene import PRODUCTS
 from . import pytest_process
 
-TESTS = modules.ROOT / "tests"
+TESTS = modules.ROOT / "tests" / "lessons"
 OPENINGS, ARRAY = modules.ROOT / "notebooks" / "openings.json", "array"                # made by `release`
 COLOUR = {"passed": "#00684a", "not yet": "#b3261e", "not attempted": "#7a5b00"}
 SIGN = {"passed": "✓", "not yet": "✗", "not attempted": "○"}

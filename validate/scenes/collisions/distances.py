@@ -257,7 +257,7 @@ def bullet_body(bullet, body, r, p):
     pb = bullet.pb
     kind, shape = body
     x = corners(body, p) if shape else None
-    R = np.eye(3)
+    R, at = np.eye(3), np.zeros(3)
     if kind == "ball":
         made, at = pb.createCollisionShape(pb.GEOM_SPHERE, radius=r), x[0]
     elif kind == "plane":

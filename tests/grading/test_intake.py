@@ -1,0 +1,255 @@
+"""Whatever lies in the class folder is graded or named: nothing is overlooked, and nobody stops the class."""
+
+import csv
+import os
+import subprocess
+import sys
+import tarfile
+import unicodedata
+import zipfile
+
+import pytest
+
+from solutions.checks import BadInput
+from validate import modules
+
+from . import sandbox, submissions
+
+LESSONS = ("integrators", "springs")
+TEXT = b"x = 1\n"
+NFC, NFD = (unicodedata.normalize(form, "Zoë Müller") for form in ("NFC", "NFD"))
+
+
+def folder(path, *lessons):
+    path.mkdir(parents=True)
+    for lesson in lessons or LESSONS:
+        (path / f"{lesson}.py").write_bytes(TEXT)
+
+
+def zipped(path):
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("integrators.py", TEXT)
+
+
+def tarred(path):
+    (path.parent / "source.py").write_bytes(TEXT)
+    with tarfile.open(path, "w:gz") as archive:
+        archive.add(path.parent / "source.py", "integrators.py")
+    (path.parent / "source.py").unlink()
+
+
+def by_student(intake):
+    return {one.student: one for one in intake.submissions}
+
+
+# ---------------------------------------------------------------------- files that are no folder and no zip
+
+
+@pytest.mark.parametrize("ending", [".tar.gz", ".tgz", ".TAR.XZ", ".tar", ".7z", ".rar", ".ipynb"])
+def test_what_cannot_be_opened_is_its_students_and_says_so(tmp_path, ending):
+    folder(tmp_path / "bob")
+    tarred(tmp_path / f"ada.byron{ending}")
+    ada = by_student(submissions.read_all(tmp_path, LESSONS))["ada.byron"]
+    assert not ada.files and len(ada.problems) == 1 and f"ada.byron{ending}" in ada.problems[0]
+
+
+def test_what_was_unpacked_by_hand_is_graded_and_the_archive_beside_it_is_named(tmp_path):
+    folder(tmp_path / "ada")
+    tarred(tmp_path / "ada.tar.gz")
+    ada = by_student(submissions.read_all(tmp_path, LESSONS))["ada"]
+    assert (
+        sorted(ada.files) == ["integrators", "springs"] and len(ada.problems) == 1 and "ada.tar.gz" in ada.problems[0]
+    )
+
+
+def test_bare_lesson_files_of_a_student_belong_together(tmp_path):
+    for name in ("ada_integrators.py", "ada-springs.py", "b.o_b integrators.py"):
+        (tmp_path / name).write_bytes(TEXT + name.encode())
+    os.utime(tmp_path / "ada_integrators.py", (1.8e9, 1.8e9))
+    os.utime(tmp_path / "ada-springs.py", (1.7e9, 1.7e9))
+    found = by_student(submissions.read_all(tmp_path, LESSONS))
+    assert found["ada"].files == {"integrators": TEXT + b"ada_integrators.py", "springs": TEXT + b"ada-springs.py"}
+    assert found["ada"].timestamp == submissions.moment(1.8e9) and found["ada"].problems == ()
+    assert [*found["b.o_b"].files] == ["integrators"]
+
+
+def test_a_bare_file_with_only_a_students_name_is_the_one_lesson_that_is_graded(tmp_path):
+    (tmp_path / "ada.py").write_bytes(TEXT)
+    assert by_student(submissions.read_all(tmp_path, ("springs",)))["ada"].files == {"springs": TEXT}
+    (ada,) = submissions.read_all(tmp_path, LESSONS).submissions
+    assert not ada.files and "ada_integrators.py" in ada.problems[0]  # of which lesson? the remedy is its name
+
+
+def test_a_bare_file_of_another_lesson_is_not_taken_for_the_one_that_is_graded(tmp_path):
+    (tmp_path / "ada_friction.py").write_bytes(TEXT)
+    (ada,) = submissions.read_all(tmp_path, ("springs",)).submissions
+    assert ada.student == "ada" and not ada.files and "friction" in ada.problems[0]
+
+
+def test_two_bare_files_of_one_lesson_leave_open_which_is_meant(tmp_path):
+    folder(tmp_path / "bob")
+    (tmp_path / "ada_springs.py").write_bytes(TEXT)
+    (tmp_path / "ada-springs.py").write_bytes(TEXT)
+    intake = submissions.read_all(tmp_path, LESSONS)
+    assert [*by_student(intake)] == ["bob"] and all(
+        name in intake.unclear["ada"] for name in ("ada_springs.py", "ada-springs.py")
+    )
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda path: path.symlink_to(path.parent / "bob" / "springs.py"),
+        os.mkfifo,
+        lambda path: path.write_bytes(bytes(1 << 19)),
+    ],
+)
+def test_tricks_with_bare_files_are_named_and_not_read(make, tmp_path):
+    folder(tmp_path / "bob")
+    make(tmp_path / "ada_springs.py")
+    ada = by_student(submissions.read_all(tmp_path, LESSONS))["ada"]
+    assert not ada.files and len(ada.problems) == 1
+
+
+def test_lesson_files_beside_the_students_are_nobodys_and_named(tmp_path):
+    folder(tmp_path / "bob")
+    (tmp_path / "springs.py").write_bytes(TEXT)
+    intake = submissions.read_all(tmp_path, LESSONS)
+    assert [*by_student(intake)] == ["bob"] and any("springs.py" in told for told in intake.overlooked)
+
+
+def test_a_students_own_folder_in_place_of_the_class_is_told_with_its_remedy(tmp_path):
+    folder(tmp_path / "ada")
+    with pytest.raises(BadInput, match="the folder above"):
+        submissions.read_all(tmp_path / "ada", LESSONS)
+
+
+def test_other_files_are_named_unless_they_are_the_class_list_or_hidden(tmp_path):
+    folder(tmp_path / "bob")
+    for name in ("list.csv", ".DS_Store", "notes\x1b[2J.txt", "ada.docx"):
+        (tmp_path / name).write_bytes(TEXT)
+    (tmp_path / "__MACOSX").mkdir()
+    intake = submissions.read_all(tmp_path, LESSONS, {"ada": submissions.Person("ada")}, tmp_path / "list.csv")
+    assert len(intake.overlooked) == 1 and "notes\\x1b[2J.txt" in intake.overlooked[0]
+    assert "ada.docx" in by_student(intake)["ada"].problems[0]  # she is on the list
+    assert any("list.csv" in told for told in submissions.read_all(tmp_path, LESSONS).overlooked)
+
+
+def test_what_nearly_is_a_lesson_file_is_named_where_the_lesson_is_missing(tmp_path):
+    for name in ("Integrators.py", "springs (1).py", "other.py"):
+        (tmp_path / "ada" / "lessons").mkdir(parents=True, exist_ok=True)
+        (tmp_path / "ada" / "lessons" / name).write_bytes(TEXT)
+    (tmp_path / "bob").mkdir()
+    zipped(tmp_path / "bob" / "workbook.zip")
+    with zipfile.ZipFile(tmp_path / "cem.zip", "w") as archive:
+        archive.writestr("integrators.py", TEXT)
+        archive.writestr("notebooks/02_springs.ipynb", TEXT)
+        archive.writestr("my_springs.py", TEXT)
+    found = by_student(submissions.read_all(tmp_path, LESSONS))
+    assert not found["ada"].files and all(
+        any(name in told for told in found["ada"].problems) for name in ("Integrators.py", "springs (1).py")
+    )
+    assert not any("other.py" in told for told in found["ada"].problems)
+    assert "workbook.zip" in " ".join(found["bob"].problems)
+    assert (
+        [*found["cem"].files] == ["integrators"]
+        and len(found["cem"].problems) == 1
+        and "my_springs.py" in found["cem"].problems[0]
+    )
+
+
+# ---------------------------------------------------------------------- one student, more than once
+
+
+def test_a_student_who_is_there_twice_is_not_graded_and_all_others_are(tmp_path):
+    folder(tmp_path / "ada")
+    zipped(tmp_path / "ada.zip")
+    folder(tmp_path / "bob")
+    intake = submissions.read_all(tmp_path, LESSONS)
+    assert [*by_student(intake)] == ["bob"]
+    assert "ada.zip" in intake.unclear["ada"] and "keep one" in intake.unclear["ada"]
+
+
+def test_a_class_in_which_nobody_is_clear_is_still_told_who(tmp_path):
+    folder(tmp_path / "ada")
+    zipped(tmp_path / "ada.zip")
+    assert [*submissions.read_all(tmp_path, LESSONS).unclear] == ["ada"]
+
+
+# ---------------------------------------------------------------------- one id, two spellings
+
+
+@pytest.mark.parametrize(
+    "listed, handed_in", [(NFC, NFD), (NFD, NFC), ("ada", "ada "), ("a\u200bda", "a\u200bda"), ("a\xa0b", "a\xa0b")]
+)
+def test_an_id_is_the_same_in_whatever_way_it_is_written(tmp_path, listed, handed_in):
+    folder(tmp_path / "class" / handed_in)
+    (tmp_path / "list.csv").write_text(f"student_id,last_name\n{listed},Lovelace\n", encoding="utf-8")
+    people = submissions.roster(tmp_path / "list.csv")
+    (one,) = submissions.read_all(tmp_path / "class", LESSONS, people).submissions
+    assert [*people] == [one.student] and people[one.student].student_id == one.student and one.student.isprintable()
+
+
+def test_two_folders_whose_names_differ_in_their_unicode_form_only_are_one_student_twice(tmp_path):
+    folder(tmp_path / NFC)
+    folder(tmp_path / NFD)
+    if len(list(tmp_path.iterdir())) == 1:
+        pytest.skip("this file system takes both for one")
+    intake = submissions.read_all(tmp_path, LESSONS)
+    assert not intake.submissions and [*intake.unclear] == [NFC]
+
+
+def test_a_class_list_that_contradicts_itself_is_refused(tmp_path):
+    (tmp_path / "list.csv").write_text(f"student_id,last_name\n{NFC},A\n{NFD},B\n", encoding="utf-8")
+    with pytest.raises(BadInput, match="there twice"):
+        submissions.roster(tmp_path / "list.csv")
+    (tmp_path / "list.csv").write_text(f"student_id,last_name\n{NFC},A\n{NFD},A\n", encoding="utf-8")
+    assert [*submissions.roster(tmp_path / "list.csv")] == [NFC]
+
+
+# ---------------------------------------------------------------------- the command
+
+
+def test_the_command_says_all_of_it_on_the_terminal_on_the_page_and_in_the_csv(tmp_path):
+    sandbox.for_tests(pytest.skip, pytest.fail)
+    top = tmp_path / "class"
+    blank = (modules.ROOT / "lessons" / "integrators.py").read_bytes()
+    folder(top / "ada", "integrators")
+    zipped(top / "ada.zip")
+    tarred(top / "bob.tar.gz")
+    (top / "cem_integrators.py").write_bytes(blank)
+    (top / "notes.txt").write_bytes(TEXT)
+    (top / NFD).mkdir()
+    (top / NFD / "integrators.py").write_bytes(blank)
+    (top / "list.csv").write_text(f"student_id\nada\nbob\ncem\n{NFC}\n", encoding="utf-8")
+    run = subprocess.run(
+        [
+            sys.executable,
+            "-m",
+            "tests.grading",
+            str(top),
+            "--out",
+            str(tmp_path / "out"),
+            "--lesson",
+            "integrators",
+            "--roster",
+            str(top / "list.csv"),
+        ],
+        cwd=modules.ROOT,
+        capture_output=True,
+        text=True,
+    )
+    assert run.returncode == 1, run.stdout + run.stderr  # somebody has no points yet
+    page = (tmp_path / "out" / "index.html").read_text()
+    for word in ("ada.zip", "bob.tar.gz", "notes.txt"):
+        assert word in run.stdout, word
+        assert word in page, word
+    with open(tmp_path / "out" / "grades.csv", newline="", encoding="utf-8") as file:
+        rows = {row["student_id"]: row for row in csv.DictReader(file)}
+    assert [*rows] == sorted(["ada", "bob", "cem", NFC])
+    assert rows["ada"]["score"] == "" and "ada.zip" in rows["ada"]["problems"]  # no points, and no zero
+    assert rows["bob"]["score"] == "0" and "bob.tar.gz" in rows["bob"]["problems"]
+    assert (
+        rows["cem"]["score"] == "0"
+        and rows["cem"]["problems"] == rows[NFC]["problems"] == "" != rows["cem"]["timestamp"]
+    )

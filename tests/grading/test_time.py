@@ -1,0 +1,303 @@
+"""Time is the submission's own: what neighbours take costs nobody a point, what sleeps or loops is ended, and what timed out is tried once more, alone."""
+
+import contextlib
+import io
+import os
+import queue
+import subprocess
+import sys
+import threading
+import time
+import types
+
+import numpy as np
+import pytest
+
+from validate import loading
+
+from ..attacks import HONEST, SOLVED
+from . import box, children, local, marking, remote, sandbox, submissions
+
+pytestmark = pytest.mark.xdist_group("time")
+LIMIT = 1.0                  # of the calls of a test here [s]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _sandbox():
+    sandbox.for_tests(pytest.skip, pytest.fail)
+
+
+@contextlib.contextmanager
+def opened(text):
+    place = remote.box_of("integrators", (HONEST + text).encode(), 60.0)
+    try:
+        place.open()
+        assert place.broken is None
+        yield place
+    finally:
+        place.close()
+
+
+@contextlib.contextmanager
+def crowd(count=5):
+    """This process and what it starts share one core with so many that want all of it."""
+    before = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {min(before)})
+    hogs = [subprocess.Popen([sys.executable, "-S", "-c", "while True: pass"], start_new_session=True) for _ in range(count)]
+    try:
+        yield
+    finally:
+        for hog in hogs:
+            hog.kill()
+            hog.wait()
+        os.sched_setaffinity(0, before)
+
+
+BUSY = "\nimport time\ndef observed_order(dts, errors):\n    began = time.process_time()\n    while time.process_time() - began < 0.5:\n        pass\n    return 3.0\n"
+
+
+def test_busy_neighbours_take_none_of_a_submissions_time():
+    with opened(BUSY) as place, crowd():
+        began = time.monotonic()
+        place.begin(LIMIT)
+        assert place.call("lesson:observed_order", (1.0, 1.0)) == 3.0
+        assert time.monotonic() - began > LIMIT                        # by the clock on the wall it would have been ended
+        assert 0.5 <= place.meter.used < LIMIT and not place.late
+
+
+def test_busy_neighbours_take_none_of_the_time_of_calls_to_and_fro():
+    text = "\ndef euler_step(acceleration, t, x, v, dt, p):\n    for _ in range(300):\n        x = acceleration(t, x, v, p)\n    return x, v\n"
+    calls = []
+
+    def counted(t, x, v, p):
+        calls.append(t)
+        return x + 1.0
+    with opened(text) as place, crowd():
+        place.begin(LIMIT)
+        assert place.call("lesson:euler_step", (counted, 0.0, 0.0, 0.0, 0.1, None))[0] == 300.0
+        assert len(calls) == 300 and not place.late
+
+
+@pytest.mark.parametrize("body", ["time.sleep(60.0)", "[time.sleep(0.01) for _ in range(6000)]", "os.kill(os.getpid(), signal.SIGSTOP)", "threading.Event().wait(60.0)",
+                                  "[None for _ in iter(int, 1)]", "[hashlib.sha256(bytes(1000)) and time.sleep(0.001) for _ in range(60_000)]"])
+def test_who_sleeps_or_loops_is_ended(body):
+    with opened(f"\nimport hashlib, os, signal, threading, time\ndef observed_order(dts, errors):\n    {body}\n") as place:
+        place.begin(LIMIT)
+        with pytest.raises(box.Lost, match="it took too long"):
+            place.call("lesson:observed_order", (1.0, 1.0))
+        assert place.late and LIMIT <= place.meter.used < 3.0 * LIMIT
+
+
+def test_many_short_calls_count_together():
+    with opened("\nimport time\ndef observed_order(dts, errors):\n    began = time.process_time()\n    while time.process_time() - began < 0.01:\n        pass\n") as place:
+        place.begin(LIMIT)
+        with pytest.raises(box.Lost, match="it took too long"):
+            for _ in range(1000):
+                place.call("lesson:observed_order", (1.0, 1.0))
+        assert place.late and LIMIT <= place.meter.used < 2.0 * LIMIT
+
+
+def test_what_the_grader_works_for_a_submission_is_the_submissions_time():
+    def slow(t, x, v, p):
+        began = time.process_time()
+        while time.process_time() - began < 0.1:
+            pass
+        return x
+    with opened("\ndef observed_order(f, errors):\n    for _ in range(60):\n        f(0.0, 1.0, 1.0, None)\n    return 3.0\n") as place:
+        place.begin(LIMIT)
+        with pytest.raises(box.Lost, match="it took too long"):
+            place.call("lesson:observed_order", (slow, 1.0))
+        assert place.late and place.meter.used >= 0.9 * LIMIT            # two clocks of one process, looked at in turn
+
+
+def test_all_calls_together_have_a_budget():
+    with opened(BUSY) as place:
+        place.budget = place.meter.used + 0.2
+        place.begin(LIMIT)
+        with pytest.raises(box.Lost, match="the time for the whole submission is used up"):
+            place.call("lesson:observed_order", (1.0, 1.0))
+        place.begin(LIMIT)
+        with pytest.raises(box.Lost, match="the time for the whole submission is used up"):
+            place.call("lesson:observed_order", (1.0, 1.0))
+
+
+# ---------------------------------------------------------------------------------------------- alarms
+
+@pytest.mark.parametrize("own", [False, True])
+def test_an_alarm_goes_on_after_one_inside_it(own):
+    with pytest.raises(loading.TooLong), loading.alarm(0.3, loading.TooLong, own):
+        with loading.alarm(60.0, box.Late, own):
+            pass
+        until = time.monotonic() + 60.0
+        while time.monotonic() < until:
+            pass
+
+
+@pytest.mark.parametrize("own", [False, True])
+def test_an_alarm_rings_inside_a_longer_one(own):
+    with pytest.raises(loading.TooLong), loading.alarm(0.3, loading.TooLong, own), loading.alarm(60.0, box.Late, own):
+        until = time.monotonic() + 60.0
+        while time.monotonic() < until:
+            pass
+
+
+def test_no_alarm_is_left():
+    import signal
+    with loading.alarm(60.0, loading.TooLong), loading.alarm(60.0, loading.TooLong, own=True):
+        pass
+    assert signal.getitimer(signal.ITIMER_REAL)[0] == signal.getitimer(signal.ITIMER_PROF)[0] == 0.0
+    thread = threading.Thread(target=lambda: loading.alarm(1.0, loading.TooLong).__enter__())
+    thread.start()
+    thread.join()
+    assert signal.getitimer(signal.ITIMER_REAL)[0] == 0.0
+
+
+def test_a_callback_leaves_the_tests_own_alarm_as_it_was():
+    text = "\ndef observed_order(f, errors):\n    return f(0.0, 1.0, 1.0, None)\n"
+    asked = []
+
+    def counted(t, x, v, p):
+        asked.append(t)
+        return x
+    with opened(text) as place, pytest.raises(loading.TooLong), loading.alarm(0.5, loading.TooLong, own=True):
+        place.begin(LIMIT)
+        assert place.call("lesson:observed_order", (counted, 1.0)) == 1.0 and asked == [0.0]
+        until = time.monotonic() + 30.0
+        while time.monotonic() < until:                                # the test itself goes on for ever
+            pass
+
+
+# ---------------------------------------------------------------------------------------------- the end of a worker
+
+FLOOD = """
+import json, os, struct, sys
+def observed_order(dts, errors):
+    head, out = json.dumps(["value", 3.0, []]).encode(), sys.modules["__main__"].outgoing
+    frame = struct.pack("<4sIQ", b"WBK1", len(head), 0) + head
+    while True:
+        out.write(1000 * frame)
+"""
+
+
+def test_a_worker_that_floods_leaves_no_thread_behind_on_a_slow_machine(monkeypatch):
+    read = box.wire.read
+
+    def slowly(stream):
+        time.sleep(0.2)
+        return read(stream)
+    with opened(FLOOD) as place:
+        monkeypatch.setattr(box.wire, "read", slowly)
+        place.begin(60.0)
+        assert place.call("lesson:observed_order", (1.0, 1.0)) == 3.0
+        threads = place.threads
+        place.stop()
+        assert not [thread for thread in threads if thread.is_alive()] and place.process is None
+
+
+def test_a_worker_that_does_not_listen_leaves_no_thread_behind():
+    with opened("\nimport time\ndef observed_order(dts, errors):\n    time.sleep(60.0)\n") as place:
+        place.begin(60.0)
+        for _ in range(64):
+            place.send(bytes(100_000))                                 # more than the pipe and the queue hold together
+            if place.outbox.full():
+                break
+        threads = place.threads
+        place.stop()
+        assert not [thread for thread in threads if thread.is_alive()]
+
+
+def test_what_waits_to_be_read_is_given_up_with_its_worker():
+    inbox, over = queue.Queue(1), threading.Event()
+    worker = types.SimpleNamespace(stdout=io.BytesIO(100 * box.wire.pack(("value", 0, []))))
+    thread = threading.Thread(target=box._reading, args=(worker, inbox, None, over), daemon=True)
+    thread.start()
+    time.sleep(0.2)
+    assert inbox.full() and thread.is_alive()
+    over.set()
+    thread.join(5.0)
+    assert not thread.is_alive()
+
+
+TWO_ANSWERS = """
+import json, os, struct, sys, time
+def observed_order(dts, errors):
+    head, out = json.dumps(["value", 1.0, []]).encode(), sys.modules["__main__"].outgoing
+    out.write(struct.pack("<4sIQ", b"WBK1", len(head), 0) + head)
+    out.flush()
+    time.sleep(0.3)
+    return 2.0
+"""
+
+
+def test_a_second_answer_is_seen_however_late_it_comes():
+    with opened(TWO_ANSWERS) as place:
+        place.begin(LIMIT)
+        assert place.call("lesson:observed_order", (1.0, 1.0)) == 1.0
+        first = place.process
+        place.begin(LIMIT)                                             # the second answer is still to come
+        assert place.process is not first and "wire" in place.seen
+        assert place.call("lesson:observed_order", (1.0, 1.0)) == 1.0
+
+
+def test_an_honest_worker_is_kept_from_test_to_test():
+    with opened("") as place:
+        first = place.process
+        for _ in range(3):
+            place.begin(LIMIT)
+            place.call("lesson:euler_step", (lambda *a: a[1], 0.0, np.ones(2), np.ones(2), 0.1, None))
+        assert place.process is first and not place.seen
+
+
+# ---------------------------------------------------------------------------------------------- the second try
+
+@pytest.fixture(scope="module")
+def settings():
+    return marking.settings(("integrators", "springs"), "a secret")
+
+
+def submission(student, text, lesson="integrators"):
+    return submissions.Submission(student, {lesson: text.encode()}, (), "")
+
+
+def test_what_may_be_others_fault_is_noted(settings):
+    lost = marking.mark(submission("ada", "import os, signal\nos.kill(os.getpid(), signal.SIGKILL)\n"), settings)
+    own = marking.mark(submission("bob", "import os\nos._exit(1)\n"), settings)
+    assert lost["again"] == ["integrators"] and own["again"] == []
+
+
+def test_a_second_try_replaces_what_timed_out_and_nothing_else(settings):
+    first = marking.mark(submission("ada", "raise ValueError\n"), settings)
+    first = {**first, "again": ["integrators"], "seconds": 10.0}
+    (student, result, why), = alone(first, settings)
+    assert student == "ada" and not why and result["again"] == [] and result["digest"] == first["digest"] and result["seconds"] > 10.0
+    passed = {t["exercise"] for t in result["tests"] if t["status"] == "passed"}
+    assert {"1.1", "1.2"} <= passed and all(t["status"] == "not handed in" for t in result["tests"] if t["lesson"] == "springs")
+
+
+def alone(first, settings):
+    """What local.results makes of that first try."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(local, "together", lambda jobs, todo, settings: [(todo[0], first, "")])
+        return [*local.results(1, [submission("ada", SOLVED)], settings)]
+
+
+class Killer(submissions.Submission):
+    """Ends the process that gets to grade it."""
+
+    def __reduce__(self):
+        return os._exit, (1,)
+
+
+def test_who_brings_down_the_grader_brings_down_nobody_else(settings):
+    honest = [submission(f"s{n}", SOLVED) for n in range(3)]
+    killers = [Killer(f"k{n}", {}, (), "") for n in range(2)]
+    found = {student: (result, why) for student, result, why in local.results(2, [killers[0], *honest, killers[1]], settings)}
+    assert {student: why for student, (_, why) in found.items() if why} == {"k0": local.DIED, "k1": local.DIED}
+    assert all("1.1" in {t["exercise"] for t in found[s.student][0]["tests"] if t["status"] == "passed"} for s in honest)
+
+
+def test_a_child_is_replaced_when_it_ends():
+    with children.Child(len, ()) as child:
+        with pytest.raises(children.Ended):
+            child(os._exit, 1)
+        assert child(os.getpid) not in (os.getpid(), child(os.getppid))

@@ -1,0 +1,68 @@
+"""The notebooks run from first cell to last with nothing attempted, half done and solved; stored without outputs."""
+
+import re
+
+import nbformat
+import pytest
+
+from validate.modules import ROOT, SOLUTIONS, lesson_names
+from validate.generate import exercises, stub
+
+from .kernels import kernel, ran
+
+HASTE = """import validate.notebook, matplotlib
+from validate.measure import selection
+matplotlib.rcParams["figure.dpi"] = 20
+selection.NOTEBOOK = 0.002
+%config InlineBackend.print_figure_kwargs = {"bbox_inches": None}"""          # nobody looks at these figures, and nobody reads these times
+NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
+STATES = {"nothing attempted": 0.0, "half done": 0.5, "solved": 1.0}          # share of the exercises, from the first on
+
+
+def answered(state):
+    """{lesson: exercises that are solved in that state}."""
+    every = {name: list(exercises((SOLUTIONS / f"{name}.py").read_text())) for name in lesson_names()}
+    return {name: set(numbers[:round(STATES[state] * len(numbers))]) for name, numbers in every.items()}
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_a_notebook_is_stored_without_outputs(path):
+    for cell in nbformat.read(path, as_version=4).cells:
+        assert cell.cell_type != "code" or (not cell.outputs and cell.execution_count is None)
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_a_notebook_runs_to_its_end_and_its_checks_say_the_state(path, tmp_path):
+    """One kernel, as at a student's desk: run from first cell to last, write more of the lessons, forget every name, run again.
+
+    A check whose exercise is as it was in the state before is not asked again.
+    """
+    known = {}
+    cells = [cell.source for cell in nbformat.read(path, as_version=4).cells if cell.cell_type == "code"]
+    with kernel(ROOT / "notebooks") as client:
+        ran(client, HASTE)
+        for state, solved in ((state, answered(state)) for state in STATES):
+            for name in lesson_names():
+                (tmp_path / state).mkdir(exist_ok=True)
+                (tmp_path / state / f"{name}.py").write_text(stub((SOLUTIONS / f"{name}.py").read_text(), solved[name]))
+            ran(client, f"%reset -f\n%env WORKBOOK_LESSONS={tmp_path / state}")
+            for source in cells:
+                asked = re.match(r'check\("([\d.]+)"\)', source)
+                expected = "passed" if asked and any(asked[1] in numbers for numbers in solved.values()) else "not attempted"
+                if asked and known.get(asked[1]) == expected:
+                    continue
+                said = ran(client, source)
+                if asked:
+                    assert f"Exercise {asked[1]}: {expected}" in said, f"{state}: {said}"
+                    known[asked[1]] = expected
+
+
+def test_a_lesson_that_cannot_be_loaded_is_told_and_the_engines_run_alone(tmp_path, monkeypatch, capsys):
+    from validate.notebook import measured, scene_of
+    (tmp_path / "friction.py").write_text("def normal_force(:\n")
+    monkeypatch.setenv("WORKBOOK_LESSONS", str(tmp_path))
+    monkeypatch.setattr("validate.notebook.display", lambda shown: print(shown.data))
+    result = measured("stick_slip", 50)
+    case = next(iter(result["cases"].values()))
+    assert case["ours"] == [] and case["engines"] and scene_of("stick_slip").title
+    assert "friction.py cannot be loaded: SyntaxError: invalid syntax (friction.py, line 1)" in capsys.readouterr().out

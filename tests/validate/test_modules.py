@@ -1,0 +1,102 @@
+"""One text, two speeds: the twin is the same code, its cache is found again, and it cannot go stale."""
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from solutions.checks import BadInput
+from validate import modules
+
+needs_numba = pytest.mark.skipif(not modules.can_compile(), reason="numba has no wheel for this machine: there are no compiled twins")
+
+
+def in_a_new_process(code, *arguments):
+    """What a fresh interpreter prints."""
+    done = subprocess.run([sys.executable, "-c", code, *map(str, arguments)], cwd=modules.ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.strip()
+
+
+@needs_numba
+def test_an_edit_to_an_imported_sibling_is_seen_by_the_compiled_twin(tmp_path):
+    (tmp_path / "upper.py").write_text("from .lower import base\n\n\ndef doubled(x):\n    return 2.0 * base(x)\n")
+    ask = "import sys; from validate.modules import bind; print(bind('upper', sys.argv[1], compiled=True).doubled(3.0))"
+    (tmp_path / "lower.py").write_text("def base(x):\n    return x + 1.0\n")
+    assert in_a_new_process(ask, tmp_path) == "8.0"
+    os.utime(tmp_path / "lower.py", (1, 1))                        # the date of the file must not matter, only what is in it
+    assert in_a_new_process(ask, tmp_path) == "8.0"
+    (tmp_path / "lower.py").write_text("def base(x):\n    return x + 5.0\n")
+    assert in_a_new_process(ask, tmp_path) == "16.0"
+
+
+@needs_numba
+def test_an_edit_is_seen_within_one_process_too(tmp_path):
+    for number in (1.0, 2.0):
+        (tmp_path / "lower.py").write_text(f"def base(x):\n    return x + {number}\n")
+        assert modules.bind("lower", tmp_path).base(0.0) == number
+        assert modules.bind("lower", tmp_path, compiled=True).base(0.0) == number
+
+
+@needs_numba
+@pytest.mark.parametrize("function, call", [
+    ("advance", "lesson.advance(lesson.verlet_step, lesson.oscillator_acceleration, 0.0, np.ones(1), np.zeros(1), 0.1, 3, lesson.Oscillator(1.0, 0.0))"),
+    ("amplification_matrix", "lesson.amplification_matrix(lesson.euler_step, 1.0, 0.0, 0.1)"),          # hands a function on
+])
+def test_a_second_process_compiles_nothing(function, call):
+    ask = f"""
+import numpy as np
+from validate.modules import bind
+lesson = bind("integrators", compiled=True)
+{call}
+print(sum(lesson.{function}.stats.cache_misses.values()))
+"""
+    in_a_new_process(ask)
+    assert in_a_new_process(ask) == "0"
+
+
+@needs_numba
+def test_plain_and_compiled_give_the_same_bits_and_the_plain_module_stays_plain():
+    plain, twin = modules.bind("integrators"), modules.bind("integrators", compiled=True)
+    ends = [m.advance(m.rk4_step, m.oscillator_acceleration, 0.0, np.ones(1), np.zeros(1), 0.01, 100, m.Oscillator(3.0, 0.1)) for m in (plain, twin)]
+    assert np.array_equal(*ends)
+    assert not hasattr(plain.rk4_step, "py_func") and hasattr(twin.rk4_step, "py_func")
+
+
+@needs_numba
+def test_a_twin_raises_the_same_errors_with_the_value_in_them():
+    twin = modules.bind("integrators", compiled=True)
+    with pytest.raises(BadInput, match="-0.5"):
+        twin.advance(twin.rk4_step, twin.oscillator_acceleration, 0.0, np.ones(1), np.zeros(1), -0.5, 1, twin.Oscillator(1.0, 0.0))
+
+
+def test_a_scene_uses_the_subject_it_is_bound_to(tmp_path):
+    text = (modules.SOLUTIONS / "integrators.py").read_text().replace("from .", "from solutions.")
+    (tmp_path / "integrators.py").write_text(text + "\n\ndef advance(step, acceleration, t, x, v, dt, steps, p):\n    return x + 42.0, v\n")
+    scene = modules.bind_scene("oscillator", tmp_path)
+    p = scene.parameters
+    assert scene.run(None, None, scene.start(p), p, 0.1, 1)[0] == p.x0 + 42.0
+    assert modules.bind_scene("oscillator").run.__globals__["advance"].__module__ == "solutions.integrators"
+
+
+@pytest.mark.parametrize("call, names", [
+    (lambda: modules.bind("juggling"), "juggling"),
+    (lambda: modules.bind("integrators", "no/such/folder"), "no/such/folder"),
+    (lambda: modules.bind_scene("moonwalk"), "moonwalk"),
+])
+def test_what_is_unknown_is_named_with_a_remedy(call, names):
+    with pytest.raises(BadInput) as caught:
+        call()
+    assert names in str(caught.value) and ": " in str(caught.value) and "\n" not in str(caught.value)
+
+
+@needs_numba
+def test_a_scene_may_hand_a_function_of_its_lesson_to_a_compiled_loop():
+    """The bowl's run gives bowl_gap to contact_motion: both are twins, and the motion is the plain one."""
+    plain, fast = modules.bind_scene("bowl"), modules.bind_scene("bowl", compiled=True)
+    p = plain.cases["rough bowl"]
+    ends = [scene.observe(scene.run(modules.module_set(compiled=c).lesson("friction").gripping_step, scene.acceleration, scene.start(p), p, 0.01, 20), p)
+            for scene, c in ((plain, False), (fast, True))]
+    assert np.array_equal(*ends)

@@ -1,0 +1,159 @@
+"""Every scene: its truth reproduces the published numbers, our methods and the engines keep to it, and a wrong method would be seen."""
+
+import math
+
+import numpy as np
+import pytest
+
+from solutions import integrators
+from solutions.checks import BadInput
+from validate import engines, measure, modules
+from validate.generate import stub
+from validate.measure.accuracy import engine_curve
+from validate.measure.selection import select
+from validate.measure.timing import time_to_error
+from validate.report import words
+from validate.results import Verdict, is_right
+from validate.scene import PRODUCTS, PYBULLET
+
+SCENES = modules.scene_names()
+MOVING = [n for n in SCENES if modules.bind_scene(n).moves]
+REFINED = [n for n in SCENES if modules.bind_scene(n).refined]
+LIVE = tuple(name for name in PRODUCTS if engines.installed(name))
+BRIEF = measure.Plan(speeds=("plain",), live=LIVE, most_steps=500)
+
+
+def scenes(names):
+    """For each of these scenes; all tests of a scene in one process, which then computes its truth once."""
+    return pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.xdist_group(f"scene {name}")) for name in names])
+
+
+@scenes(SCENES)
+def test_a_truth_reproduces_what_was_published(name):
+    scene = modules.bind_scene(name)
+    p = scene.parameters
+    for t, expected, tolerance in scene.published_states:
+        assert np.allclose(scene.truth(p, t), expected, rtol=0.0, atol=tolerance)
+
+
+@scenes([n for n in SCENES if modules.bind_scene(n).sanity_checks])
+def test_what_a_scene_claims_beside_its_motion_holds(name):
+    for claim, found, expected, tolerance in modules.bind_scene(name).sanity_checks():
+        assert np.all(np.abs(np.asarray(found) - expected) <= tolerance), f"{claim}: {found}, expected {expected} ± {tolerance}"
+
+
+@scenes(MOVING)
+def test_a_truth_begins_where_the_scene_begins(name):
+    scene = modules.bind_scene(name)
+    for p in scene.cases.values():
+        begin = scene.observe(scene.start(p), p)
+        assert np.allclose(scene.truth(p, 0.0), begin, rtol=0.0, atol=1e-9 * (1.0 + np.abs(begin).max()))
+
+
+@scenes([n for n in SCENES if modules.bind_scene(n).poses])
+def test_a_body_is_shown_by_a_place_and_a_rotation_where_the_motion_has_it(name):
+    scene = modules.bind_scene(name)
+    p = scene.parameters
+    for t in (0.0, 0.37 * scene.duration, scene.duration):
+        observed = np.array(scene.truth(p, t), dtype=float)
+        poses = np.array(scene.poses(observed, p), dtype=float)
+        assert poses.shape == (len(scene.bodies(p)), 7) and np.all(np.isfinite(poses))
+        assert np.allclose(np.linalg.norm(poses[:, 3:], axis=1), 1.0, rtol=0.0, atol=1e-12)      # rounding of quaternions of R
+
+
+@scenes(REFINED)
+def test_steps_span_two_decades(name):
+    steps = modules.bind_scene(name).steps
+    assert list(steps) == sorted(steps) and steps[-1] >= 100 * steps[0]
+
+
+@scenes(SCENES)
+def test_nothing_departs_from_truth_without_having_been_predicted(name):
+    result = measure.errors(name, BRIEF)
+    for case in result["cases"].values():
+        for curve in case["ours"] + case["engines"]:
+            assert Verdict(curve["verdict"]) is not Verdict.DEPARTS, f"{curve['label']} {curve['message']}"
+    assert result["picture"]["films"][0]["role"] == "truth" and result["picture"]["films"][0]["frames"]
+
+
+def test_a_wrong_tensor_departs_and_a_table_without_motion_has_all_its_numbers(tmp_path):
+    text = stub((modules.SOLUTIONS / "inertia_tensors.py").read_text(), {f"4.{k}" for k in range(1, 18)})
+    assert text.count("0.375 * length * radius") == 1
+    (tmp_path / "inertia_tensors.py").write_text(text.replace("0.375 * length * radius", "0.5 * length * radius"))
+    result = measure.errors("tensors", measure.Plan(of=str(tmp_path), speeds=("plain",), live=()))
+    verdicts = {case: is_right(one["ours"][0]) for case, one in result["cases"].items()}
+    assert verdicts.pop("capsule") is False and all(verdicts.values())
+    for case in result["cases"].values():
+        for curve in case["ours"] + [e for e in case["engines"] if e["source"] != "missing"]:
+            assert len(curve["observed"][-1]["observed"]) == len(case["truth"]) == len(case["quantities"])
+
+
+def test_an_engine_that_leaves_its_own_rule_departs(monkeypatch):
+    departures = modules.bind_scene("tensors").expected_departures
+    departure = departures["pybullet, automatic"]
+    wrong = departure._replace(own_law=lambda p, t: departure.own_law(p, t) * 1.001)
+    monkeypatch.setitem(departures, "pybullet, automatic", wrong)
+    result = measure.errors("tensors", measure.Plan(speeds=("plain",), live=()))
+    assert {is_right(e) for one in result["cases"].values() for e in one["engines"] if e["label"] == "pybullet, automatic"} == {False}
+
+
+def test_a_wrong_method_departs(tmp_path):
+    text = stub((modules.SOLUTIONS / "integrators.py").read_text(), {f"1.{k}" for k in range(1, 11)})
+    (tmp_path / "integrators.py").write_text(text.replace("return x + dt * v_mid, v + dt *", "return x + dt * v, v + dt *"))
+    result = measure.errors("oscillator", measure.Plan(of=str(tmp_path), speeds=("plain",), live=(), most_steps=2000))
+    verdicts = {c["label"]: is_right(c) for c in result["cases"]["under-damped"]["ours"]}
+    assert verdicts["midpoint"] is False and verdicts["Verlet"] is True
+
+
+def test_stubs_are_not_attempted_and_depart_from_nothing():
+    result = measure.errors("oscillator", measure.Plan(of="lessons", speeds=("plain",), live=(), most_steps=200))
+    for curve in result["cases"]["under-damped"]["ours"]:
+        assert Verdict(curve["verdict"]) is Verdict.NOT_ATTEMPTED and "Exercise" in curve["message"]
+    assert words.verdict(result["cases"]["under-damped"]["ours"])[1] == "open"
+
+
+@scenes([n for n in SCENES if any(e.product == PYBULLET for e in modules.bind_scene(n).engines)])
+def test_without_pybullet_its_record_stands_in_and_says_so(name):
+    selection = select(name, measure.Plan(speeds=("plain",), live=()))
+    case, p = selection.first
+    truth = np.array(selection.scene.truth(p, selection.scene.duration), dtype=float)
+    curves = [engine_curve(selection, case, engine, p, truth) for engine in selection.engines_for(p) if engine.product == PYBULLET]
+    assert curves and all(c["source"].startswith("recorded, pybullet") and c["rows"] for c in curves)
+
+
+def test_same_scene_same_bits():
+    first, second = (measure.errors("oscillator", measure.Plan(speeds=("plain",), live=LIVE, most_steps=100)) for _ in range(2))
+    assert first == second
+
+
+def test_time_to_an_error_is_read_between_points():
+    points = [(1e-1, 1.0), (1e-3, 100.0)]
+    assert time_to_error(points, 1e-2) == pytest.approx(10.0)
+    assert time_to_error(points, 1e-4) is None
+    assert time_to_error(points, 1.0) == 1.0
+
+
+@pytest.mark.parametrize("value", [0.0, -1.0, math.nan, math.inf])
+def test_a_step_must_be_positive_and_finite(value):
+    with pytest.raises(BadInput, match="step dt"):
+        integrators.advance(integrators.euler_step, integrators.oscillator_acceleration, 0.0, np.ones(1), np.ones(1), value, 1,
+                            integrators.Oscillator(1.0, 0.0))
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf])
+def test_a_state_must_be_finite(value):
+    with pytest.raises(BadInput, match=str(value)):
+        integrators.advance(integrators.euler_step, integrators.oscillator_acceleration, 0.0, np.array([value]), np.ones(1), 0.1, 1,
+                            integrators.Oscillator(1.0, 0.0))
+
+
+def test_a_method_with_a_law_of_its_own_must_follow_that_law(tmp_path):
+    """With the cone in its place the pyramid would agree with the truth: that is a departure, too."""
+    text = (modules.SOLUTIONS / "friction.py").read_text()
+    pyramid = "pyramid_impulse(v_free, 1.0, normal_force(pull, p.n), p.mu_k, t_1, t_2)"
+    assert pyramid in text
+    for replacement, expected in ((pyramid, True), ("friction_impulse(v_free, 1.0, normal_force(pull, p.n), p.mu_k)", False)):
+        (tmp_path / "friction.py").write_text(text.replace("from .", "from solutions.").replace(pyramid, replacement))
+        result = measure.errors("stopping_block", measure.Plan(of=str(tmp_path), speeds=("plain",), live=(), most_steps=200))
+        verdicts = {c["label"]: is_right(c) for c in result["cases"]["heading 22.5°"]["ours"]}
+        assert verdicts["pyramid"] is expected and verdicts["sliding"] is True

@@ -1,0 +1,107 @@
+"""Theory's bounds of stability are found again by experiment, and a wrong method does not find them."""
+
+import re
+import types
+from functools import cache
+
+import numpy as np
+import pytest
+
+from solutions.checks import BadInput
+from validate.stability.case import EDGE, bisect, finding
+from validate.stability.examine import all_cases, examine, subject_of
+
+examined = cache(examine)
+CASES = {f"{case.lesson}/{case.slug}": case for case in all_cases()}
+every_case = pytest.mark.parametrize("case", [
+    pytest.param(case, id=name, marks=pytest.mark.xdist_group(f"compiled test_{case.lesson}"))       # compiled there anyway
+    for name, case in CASES.items()])
+
+
+@every_case
+def test_experiment_finds_the_bound_that_theory_gives(case):
+    lost = [f for f in examined(case).findings if not f.holds]
+    assert not lost, "\n".join(f"{f.quantity}: theory {f.predicted}, measured {f.measured}, tolerance {f.tolerance}" for f in lost)
+
+
+@every_case
+def test_a_picture_holds_plain_finite_numbers(case):
+    for label, xs, ys, style in examined(case).picture.series:
+        assert type(xs) is type(ys) is list and len(xs) == len(ys) and np.all(np.isfinite(xs + ys)), label
+        assert style in ("line", "dots")
+
+
+@every_case
+def test_every_finding_says_what_it_claims_in_sentences(case):
+    found = examined(case).findings
+    for f in found:
+        assert f.claim.endswith(".") and f.observation.endswith(".") and f.quantity.endswith("]")
+    assert len({f.quantity for f in found}) == len(found)
+
+
+def test_slugs_can_stand_in_an_address_and_are_unique_within_a_lesson():
+    for name, case in CASES.items():
+        assert re.fullmatch(r"[a-z0-9]+(-[a-z0-9]+)*", case.slug), name
+    assert len(CASES) == len(all_cases())
+
+
+WRONG = [                         # case, the method that it examines, what is put in its place
+    ("integrators/explicit-euler", "euler_step", "symplectic_euler_step"),
+    ("integrators/symplectic-euler", "symplectic_euler_step", "euler_step"),
+    ("integrators/midpoint", "midpoint_step", "euler_step"),
+    ("integrators/rk4", "rk4_step", "midpoint_step"),
+    ("integrators/implicit-euler", "implicit_euler_step", "implicit_midpoint_step"),
+    ("integrators/phase-error", "verlet_step", "midpoint_step"),
+    ("integrators/phase-error", "implicit_midpoint_step", "implicit_euler_step"),
+    ("integrators/stiff-pair", "implicit_euler_step", "symplectic_euler_step"),
+    ("integrators/robertson", "implicit_euler_step", "implicit_midpoint_step"),
+    ("rotation/gyroscopic-drift", "gyroscopic_step", "implicit_gyroscopic_step"),
+    ("rotation/gyroscopic-drift", "matrix_step", "axis_angle_step"),
+    ("rotation/gyroscopic-drift", "midpoint_step", "quaternion_step"),
+    ("rotation/fast-spin", "splitting_step", "quaternion_step"),
+    ("rotation/slender-body", "midpoint_step", "runge_kutta_step"),
+    ("rotation/sleeping-top", "composed_splitting_step", "quaternion_step"),
+]
+
+
+@pytest.mark.parametrize(("name", "method", "wrong"), [
+    pytest.param(n, m, w, id=f"{n}-{w}_as_{m}", marks=pytest.mark.xdist_group(f"compiled test_{CASES[n].lesson}"))
+    for n, m, w in WRONG])
+def test_a_wrong_method_does_not_find_the_bound(name, method, wrong):
+    lesson = subject_of(CASES[name])
+    subject = types.SimpleNamespace(**{**vars(lesson), method: getattr(lesson, wrong)})
+    with np.errstate(all="ignore"):
+        found, _ = CASES[name].examine(subject)
+    assert not all(f.holds for f in found)
+
+
+def about_the_world(density, x, faces):
+    lesson = subject_of(CASES["inertia_tensors/far-from-origin"])
+    V, first, second = lesson.mesh_integrals(x, faces)
+    C = second - np.outer(first, first) / V
+    return lesson.Body(density * V, first / V, density * (np.trace(C) * np.eye(3) - C))
+
+
+def without_tolerance(I):
+    moments = np.linalg.eigvalsh(I)
+    if moments[0] <= 0.0 or moments[2] > moments[0] + moments[1]:
+        raise BadInput("a tensor", moments[2], "give another")
+
+
+@pytest.mark.parametrize(("slug", "method", "function"), [
+    ("far-from-origin", "mesh_body", about_the_world), ("thin-bodies", "check_inertia", without_tolerance)])
+def test_a_wrong_tensor_does_not_find_the_bound(slug, method, function):
+    case = CASES[f"inertia_tensors/{slug}"]
+    subject = types.SimpleNamespace(**{**vars(subject_of(case)), method: function})
+    assert not all(f.holds for f in case.examine(subject)[0])
+
+
+def test_a_measurement_that_failed_is_a_finding_that_does_not_hold():
+    for measured in (np.nan, np.inf):
+        assert not finding(claim="", quantity="", predicted=1.0, measured=measured, tolerance=0.1, observation="").holds
+
+
+def test_bisection_says_so_when_there_is_no_edge():
+    assert bisect(lambda h: True, 0.05, 4.0) == 0.0
+    assert bisect(lambda h: False, 0.05, 4.0) == np.inf
+    assert bisect(lambda h: h > np.pi, 0.05, 4.0) == pytest.approx(np.pi, rel=EDGE)

@@ -1,0 +1,74 @@
+"""A wrong function of lesson 8 does not find the sags, the sweeps and the losses that theory gives the right one."""
+
+import types
+
+import numpy as np
+import pytest
+
+from solutions import pbd as worked
+from validate.stability.examine import cases_of, subject_of
+
+
+def hooke(acceleration, t, x, v, dt, net):
+    """A compliance that is a stiffness in PBD's sense."""
+    return worked.pbd_step(acceleration, t, x, v, dt, net._replace(stiffness=1.0 / (1.0 + net.alpha / dt)))
+
+
+def forgetful(acceleration, t, x, v, dt, net):
+    """Λ = 0 at every sweep."""
+    new = worked.predict(acceleration, t, x, v, dt, net)
+    for _ in range(net.sweeps):
+        new, _ = worked.compliant_sweep(new, np.zeros(net.i.size), dt, net)
+    return new, (new - x) / dt
+
+
+def jacobi(x, net):
+    """All links at once."""
+    new = x.copy()
+    for s in range(net.i.size):
+        alone = net._replace(i=net.i[s:s + 1], j=net.j[s:s + 1], rest=net.rest[s:s + 1], stiffness=net.stiffness[s:s + 1])
+        new += worked.distance_sweep(x, alone) - x
+    return new
+
+
+def by_jacobi(acceleration, t, x, v, dt, net):
+    new = worked.predict(acceleration, t, x, v, dt, net)
+    for _ in range(net.sweeps):
+        new = jacobi(new, net)
+    return new, (new - x) / dt
+
+
+def once(acceleration, t, x, v, dt, net):
+    return worked.pbd_step(acceleration, t, x, v, dt, net._replace(sweeps=1))
+
+
+WRONG = [                    # case, the function that it examines, what is put in its place
+    ("stiffness-depends-on-dt", "pbd_step", worked.xpbd_step),
+    ("stiffness-depends-on-dt", "pbd_step", once),
+    ("stiffness-depends-on-dt", "pbd_sag", lambda g, dt, s, n: g * dt * dt * (1.0 - s) ** n),
+    ("compliance", "xpbd_step", worked.pbd_step),
+    ("compliance", "xpbd_step", hooke),
+    ("compliance", "xpbd_step", forgetful),
+    ("unconverged-iterations", "pbd_step", once),
+    ("unconverged-iterations", "pbd_step", by_jacobi),
+    ("mass-ratio", "distance_sweep", jacobi),
+    ("projection-dissipation", "pbd_step", worked.rattle_step),
+    ("projection-dissipation", "rattle_step", worked.projection_step),
+    ("substeps-vs-iterations", "xpbd_step", once),
+    ("extremes", "distance_constraint", lambda x_i, x_j, rest: (0.0, x_i)),
+    ("extremes", "compliant_multiplier", lambda C, Lam, weight, alpha_scaled: 0.0),
+    ("extremes", "fold_constraint", lambda x, fold: (0.0, x)),
+    ("primitives", "hung_step", lambda t, x, v, q, omega, dt, rod: (x + dt * v, v + dt * rod.gravity, q, omega)),
+    ("primitives", "balloon_step", lambda acceleration, t, x, v, dt, ball: worked.xpbd_step(acceleration, t, x, v, dt, ball.net)),
+    ("primitives", "cloth_step", lambda acceleration, t, x, v, dt, cloth: worked.pbd_step(acceleration, t, x, v, dt, cloth.net)),
+    ("primitives", "fold_sweep", lambda x, cloth: x),
+]
+
+
+@pytest.mark.parametrize(("slug", "name", "wrong"), WRONG, ids=[f"{n}-{name}-{k}" for k, (n, name, _) in enumerate(WRONG)])
+def test_a_wrong_function_does_not_find_what_theory_says(slug, name, wrong):
+    case = cases_of("pbd")[slug]
+    lesson = types.SimpleNamespace(**{**vars(subject_of(case)), name: wrong})
+    with np.errstate(all="ignore"):
+        found, _ = case.examine(lesson)
+    assert not all(f.holds for f in found)
