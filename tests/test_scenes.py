@@ -1,4 +1,4 @@
-"""Every scene: its truth reproduces the published numbers, our methods and the engines keep to it, and a wrong method would be seen."""
+"""In every scene the reference solution agrees with published values, no method departs, and a wrong one would."""
 
 import math
 
@@ -19,12 +19,13 @@ BRIEF = measure.Plan(speeds=("plain",), live=LIVE, most_steps=500)
 
 
 def scenes(names):
-    """For each of these scenes; all tests of a scene in one process, which then computes its truth once."""
-    return pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.xdist_group(f"scene {name}")) for name in names])
+    """Run a test for each of these scenes. Tests of one scene share a process, which computes its reference once."""
+    each = [pytest.param(name, marks=pytest.mark.xdist_group(f"scene {name}")) for name in names]
+    return pytest.mark.parametrize("name", each)
 
 
 @scenes(SCENES)
-def test_a_truth_reproduces_what_was_published(name):
+def test_a_truth_reproduces_published_values(name):
     scene = binding.bind_scene(name)
     p = next(iter(scene.CASES.values()))
     for t, expected, tolerance in getattr(scene, "PUBLISHED", ()):
@@ -32,13 +33,14 @@ def test_a_truth_reproduces_what_was_published(name):
 
 
 @scenes([n for n in SCENES if hasattr(binding.bind_scene(n), "published")])
-def test_what_a_scene_claims_beside_its_motion_holds(name):
+def test_published_claims_other_than_the_motion_hold(name):
     for claim, found, expected, tolerance in binding.bind_scene(name).published():
-        assert np.all(np.abs(np.asarray(found) - expected) <= tolerance), f"{claim}: {found}, expected {expected} ± {tolerance}"
+        error = np.abs(np.asarray(found) - expected)
+        assert np.all(error <= tolerance), f"{claim}: {found}, expected {expected} ± {tolerance}"
 
 
 @scenes(MOVING)
-def test_a_truth_begins_where_the_scene_begins(name):
+def test_a_truth_starts_at_the_start_of_the_scene(name):
     scene = binding.bind_scene(name)
     for p in scene.CASES.values():
         begin = scene.observe(scene.start(p), p)
@@ -46,14 +48,15 @@ def test_a_truth_begins_where_the_scene_begins(name):
 
 
 @scenes([n for n in SCENES if hasattr(binding.bind_scene(n), "poses")])
-def test_a_body_is_shown_by_a_place_and_a_rotation_where_the_motion_has_it(name):
+def test_poses_are_positions_and_unit_quaternions_along_the_motion(name):
     scene = binding.bind_scene(name)
     p = next(iter(scene.CASES.values()))
     for t in (0.0, 0.37 * scene.T, scene.T):
         observed = np.array(scene.truth(p, t), dtype=float)
         poses = np.array(scene.poses(observed, p), dtype=float)
         assert poses.shape == (len(scene.bodies(p)), 7) and np.all(np.isfinite(poses))
-        assert np.allclose(np.linalg.norm(poses[:, 3:], axis=1), 1.0, rtol=0.0, atol=1e-12)      # rounding of quaternions of R
+        # round-off of quaternions computed from R
+        assert np.allclose(np.linalg.norm(poses[:, 3:], axis=1), 1.0, rtol=0.0, atol=1e-12)
 
 
 @scenes(REFINED)
@@ -88,12 +91,14 @@ def test_an_engine_that_leaves_its_own_rule_departs(monkeypatch):
     why, rule = scene.WHY["pybullet, automatic"]
     monkeypatch.setitem(scene.WHY, "pybullet, automatic", (why, lambda p, t: rule(p, t) * 1.001))
     result = measure.errors("tensors", measure.Plan(speeds=("plain",), live=()))
-    assert {e["right"] for one in result["cases"].values() for e in one["engines"] if e["label"] == "pybullet, automatic"} == {False}
+    curves = [e for one in result["cases"].values() for e in one["engines"]]
+    assert {e["right"] for e in curves if e["label"] == "pybullet, automatic"} == {False}
 
 
 def test_a_wrong_method_departs(tmp_path):
     text = stub((binding.SOLUTIONS / "integrators.py").read_text(), {f"1.{k}" for k in range(1, 11)})
-    (tmp_path / "integrators.py").write_text(text.replace("return x + dt * v_mid, v + dt *", "return x + dt * v, v + dt *"))
+    wrong = text.replace("return x + dt * v_mid, v + dt *", "return x + dt * v, v + dt *")
+    (tmp_path / "integrators.py").write_text(wrong)
     result = measure.errors("oscillator", measure.Plan(of=str(tmp_path), speeds=("plain",), live=(), most_steps=2000))
     verdicts = {c["label"]: c["right"] for c in result["cases"]["under-damped"]["ours"]}
     assert verdicts["midpoint"] is False and verdicts["Verlet"] is True
@@ -107,7 +112,7 @@ def test_stubs_are_not_attempted_and_depart_from_nothing():
 
 
 @scenes([n for n in SCENES if any(e.label.startswith("pybullet") for e in binding.bind_scene(n).ENGINES)])
-def test_without_pybullet_its_record_stands_in_and_says_so(name):
+def test_without_pybullet_its_record_replaces_it_and_is_labelled(name):
     scene = binding.bind_scene(name)
     case, p = next(iter(scene.CASES.items()))
     truth = np.array(scene.truth(p, scene.T), dtype=float)
@@ -116,12 +121,13 @@ def test_without_pybullet_its_record_stands_in_and_says_so(name):
     assert curves and all(c["source"].startswith("recorded, pybullet") and c["rows"] for c in curves)
 
 
-def test_same_scene_same_bits():
-    first, second = (measure.errors("oscillator", measure.Plan(speeds=("plain",), live=LIVE, most_steps=100)) for _ in range(2))
+def test_the_same_scene_gives_the_same_bits():
+    plan = measure.Plan(speeds=("plain",), live=LIVE, most_steps=100)
+    first, second = (measure.errors("oscillator", plan) for _ in range(2))
     assert first == second
 
 
-def test_time_to_an_error_is_read_between_points():
+def test_time_to_an_error_is_interpolated_between_points():
     points = [(1e-1, 1.0), (1e-3, 100.0)]
     assert measure.time_to(points, 1e-2) == pytest.approx(10.0)
     assert measure.time_to(points, 1e-4) is None
@@ -131,24 +137,26 @@ def test_time_to_an_error_is_read_between_points():
 @pytest.mark.parametrize("value", [0.0, -1.0, math.nan, math.inf])
 def test_a_step_must_be_positive_and_finite(value):
     with pytest.raises(BadInput, match="step dt"):
-        integrators.advance(integrators.euler_step, integrators.oscillator_acceleration, 0.0, np.ones(1), np.ones(1), value, 1,
-                            integrators.Oscillator(1.0, 0.0))
+        integrators.advance(integrators.euler_step, integrators.oscillator_acceleration, 0.0,
+                            np.ones(1), np.ones(1), value, 1, integrators.Oscillator(1.0, 0.0))
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf])
 def test_a_state_must_be_finite(value):
     with pytest.raises(BadInput, match=str(value)):
-        integrators.advance(integrators.euler_step, integrators.oscillator_acceleration, 0.0, np.array([value]), np.ones(1), 0.1, 1,
-                            integrators.Oscillator(1.0, 0.0))
+        integrators.advance(integrators.euler_step, integrators.oscillator_acceleration, 0.0,
+                            np.array([value]), np.ones(1), 0.1, 1, integrators.Oscillator(1.0, 0.0))
 
 
 def test_a_method_with_a_law_of_its_own_must_follow_that_law(tmp_path):
-    """With the cone in its place the pyramid would agree with the truth: that is a departure, too."""
+    """If the pyramid used the cone's impulse, it would agree with the reference solution. That is a departure, too."""
     text = (binding.SOLUTIONS / "friction.py").read_text()
     pyramid = "pyramid_impulse(v_free, 1.0, normal_force(pull, p.n), p.mu_k, t_1, t_2)"
     assert pyramid in text
-    for replacement, expected in ((pyramid, True), ("friction_impulse(v_free, 1.0, normal_force(pull, p.n), p.mu_k)", False)):
+    cone = "friction_impulse(v_free, 1.0, normal_force(pull, p.n), p.mu_k)"
+    for replacement, expected in ((pyramid, True), (cone, False)):
         (tmp_path / "friction.py").write_text(text.replace("from .", "from solutions.").replace(pyramid, replacement))
-        result = measure.errors("stopping_block", measure.Plan(of=str(tmp_path), speeds=("plain",), live=(), most_steps=200))
+        result = measure.errors("stopping_block",
+                                measure.Plan(of=str(tmp_path), speeds=("plain",), live=(), most_steps=200))
         verdicts = {c["label"]: c["right"] for c in result["cases"]["heading 22.5°"]["ours"]}
         assert verdicts["pyramid"] is expected and verdicts["sliding"] is True

@@ -1,4 +1,4 @@
-"""Theory's bounds of stability are found again by experiment, and a wrong method does not find them."""
+"""Experiments find the stability bounds that theory gives, and a wrong method does not have them."""
 
 import types
 from functools import lru_cache
@@ -10,14 +10,23 @@ from solutions.checks import BadInput
 from validate import stability
 
 examine = lru_cache(maxsize=None)(stability.examine)
-numbers = pytest.mark.parametrize("number", [pytest.param(n, id=f"{n}-{name.replace(' ', '_')}", marks=pytest.mark.xdist_group(f"compiled test_{lesson}"))
-                                             for n, (name, _, lesson) in stability.CASES.items()])          # where its functions are compiled anyway
+
+
+def with_its_lesson(*values, number, name):
+    """A parameter in the process of its lesson's tests, which compiles the same functions."""
+    lesson = stability.CASES[number][2]
+    return pytest.param(*values, id=f"{number}-{name}", marks=pytest.mark.xdist_group(f"compiled test_{lesson}"))
+
+
+numbers = pytest.mark.parametrize("number", [with_its_lesson(n, number=n, name=name.replace(" ", "_"))
+                                             for n, (name, _, _) in stability.CASES.items()])
 
 
 @numbers
 def test_experiment_finds_the_bound_that_theory_gives(number):
     lost = [f for f in examine(number).findings if not f.holds]
-    assert not lost, "\n".join(f"{f.quantity}: theory {f.bound}, measured {f.measured}, tolerance {f.tolerance}" for f in lost)
+    lines = [f"{f.quantity}: theory {f.bound}, measured {f.measured}, tolerance {f.tolerance}" for f in lost]
+    assert not lost, "\n".join(lines)
 
 
 @numbers
@@ -29,14 +38,14 @@ def test_a_picture_holds_plain_finite_numbers(number):
 
 
 @numbers
-def test_every_finding_says_what_it_claims_in_sentences(number):
+def test_every_finding_is_stated_in_sentences_with_a_unit(number):
     found = examine(number).findings
     for f in found:
         assert f.case == number and f.claim.endswith(".") and f.words.endswith(".") and f.quantity.endswith("]")
     assert len({f.quantity for f in found}) == len(found)
 
 
-WRONG = [                         # case, the method that it examines, what is put in its place
+WRONG = [                         # case, method, the method that replaces it
     (1, "euler_step", "symplectic_euler_step"),
     (2, "symplectic_euler_step", "euler_step"),
     (3, "midpoint_step", "euler_step"),
@@ -55,8 +64,8 @@ WRONG = [                         # case, the method that it examines, what is p
 ]
 
 
-@pytest.mark.parametrize("number, method, wrong", [pytest.param(n, m, w, id=f"{n}-{w}_as_{m}", marks=pytest.mark.xdist_group(f"compiled test_{stability.CASES[n][2]}"))
-                                                   for n, m, w in WRONG])
+@pytest.mark.parametrize(("number", "method", "wrong"), [with_its_lesson(n, m, w, number=n, name=f"{w}_as_{m}")
+                                                         for n, m, w in WRONG])
 def test_a_wrong_method_does_not_find_the_bound(number, method, wrong):
     lesson = stability.lesson_of(number)
     subject = types.SimpleNamespace(**{**vars(lesson), method: getattr(lesson, wrong)})
@@ -77,19 +86,19 @@ def without_tolerance(I):
         raise BadInput("a tensor", moments[2], "give another")
 
 
-@pytest.mark.parametrize("number, function", [(40, about_the_world), (41, without_tolerance)], ids=["40", "41"])
+@pytest.mark.parametrize(("number", "function"), [(40, about_the_world), (41, without_tolerance)], ids=["40", "41"])
 def test_a_wrong_tensor_does_not_find_the_bound(number, function):
     method = {40: "mesh_body", 41: "check_inertia"}[number]
     subject = types.SimpleNamespace(**{**vars(stability.lesson_of(number)), method: function})
     assert not all(f.holds for f in stability.CASES[number][1](subject)[0])
 
 
-def test_a_measurement_that_failed_is_a_finding_that_does_not_hold():
+def test_a_failed_measurement_is_a_finding_that_does_not_hold():
     for measured in (np.nan, np.inf):
         assert not stability.finding(1, "", "", 1.0, measured, 0.1, "").holds
 
 
-def test_bisection_says_so_when_there_is_no_edge():
+def test_bisection_without_an_edge_returns_zero_or_infinity():
     assert stability.bisect(lambda h: True, 0.05, 4.0) == 0.0
     assert stability.bisect(lambda h: False, 0.05, 4.0) == np.inf
     assert stability.bisect(lambda h: h > np.pi, 0.05, 4.0) == pytest.approx(np.pi, rel=stability.EDGE)

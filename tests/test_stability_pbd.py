@@ -1,4 +1,4 @@
-"""A wrong function of lesson 8 does not find the sags, the sweeps and the losses that theory gives the right one."""
+"""Wrong functions of lesson 8 do not have the sags, the convergence and the energy losses that theory gives."""
 
 import types
 
@@ -10,7 +10,7 @@ from validate import stability
 
 
 def hooke(acceleration, t, x, v, dt, net):
-    """A compliance that is a stiffness in PBD's sense."""
+    """Compliance converted to a PBD stiffness."""
     return worked.pbd_step(acceleration, t, x, v, dt, net._replace(stiffness=1.0 / (1.0 + net.alpha / dt)))
 
 
@@ -23,10 +23,11 @@ def forgetful(acceleration, t, x, v, dt, net):
 
 
 def jacobi(x, net):
-    """All links at once."""
+    """All links at once, from the same positions."""
     new = x.copy()
     for s in range(net.i.size):
-        alone = net._replace(i=net.i[s:s + 1], j=net.j[s:s + 1], rest=net.rest[s:s + 1], stiffness=net.stiffness[s:s + 1])
+        alone = net._replace(i=net.i[s:s + 1], j=net.j[s:s + 1],
+                             rest=net.rest[s:s + 1], stiffness=net.stiffness[s:s + 1])
         new += worked.distance_sweep(x, alone) - x
     return new
 
@@ -42,7 +43,7 @@ def once(acceleration, t, x, v, dt, net):
     return worked.pbd_step(acceleration, t, x, v, dt, net._replace(sweeps=1))
 
 
-WRONG = [                    # case, the function that it examines, what is put in its place
+WRONG = [                    # case, function, the function that replaces it
     (9, "pbd_step", worked.xpbd_step),
     (9, "pbd_step", once),
     (9, "pbd_sag", lambda g, dt, s, n: g * dt * dt * (1.0 - s) ** n),
@@ -65,7 +66,7 @@ WRONG = [                    # case, the function that it examines, what is put 
 ]
 
 
-@pytest.mark.parametrize("number, name, wrong", WRONG, ids=[f"{n}-{name}-{k}" for k, (n, name, _) in enumerate(WRONG)])
+@pytest.mark.parametrize(("number", "name", "wrong"), WRONG, ids=[f"{w[0]}-{w[1]}-{k}" for k, w in enumerate(WRONG)])
 def test_a_wrong_function_does_not_find_what_theory_says(number, name, wrong):
     lesson = types.SimpleNamespace(**{**vars(stability.lesson_of(number)), name: wrong})
     with np.errstate(all="ignore"):
