@@ -478,7 +478,6 @@ def test_a_ball_outside_is_nearest_to_the_clamped_point(lesson, draw):
     for beyond in ((1, 0, 0), (0, -1, 0), (0, 1, 1), (-1, 0, 1), (1, -1, 1)):
         box = lesson.Box(draw(-3.0, 3.0, 3), rotation(draw), draw(0.3, 2.0, 3))
         out = draw(0.2, 1.0, 3) * np.array(beyond)
-        out = draw(0.2, 1.0, 3) * np.array(beyond)
         local = np.where(np.array(beyond) == 0, draw(-0.9, 0.9, 3), np.array(beyond)) * box.half
         q, away = box.x + box.R @ local, box.R @ out
         n, x = away / np.linalg.norm(away), q + away
