@@ -61,7 +61,7 @@ def same_contact(got, p_a, p_b, n, gap, tolerance, given=""):
 # ---------------------------------------------------------------------------------------------- points and planes
 
 @exercise("6.1", points=1, hint="n · p + d, with the plane's unit normal n and its d")
-def test_a_plane_knows_how_far_a_point_is_and_on_which_side(lesson, draw):
+def test_the_distance_to_a_plane_has_a_sign_for_its_side(lesson, draw):
     for d, size in ((2, 1.0), *((3, size) for size in SIZES)):
         rows, foot = axes(draw, d), size * draw(-3.0, 3.0, d)
         plane = lesson.Plane(rows[0], float(-rows[0] @ foot))
@@ -82,7 +82,7 @@ def fall(lesson, draw, d, r):
 
 
 @exercise("6.2", points=0.25, hint="d₁ and d₂ measure the ball's surface, not its centre: d₁ = E − r, d₂ = r − E")
-def test_a_ball_meets_a_plane_where_its_skin_does(lesson, draw):
+def test_a_ball_meets_a_plane_when_its_surface_does(lesson, draw):
     for d, r in ((2, draw(0.1, 0.5)), (3, draw(0.1, 0.5)), (3, 0.0)):
         t, dt, x_0, x_1, plane, s = fall(lesson, draw, d, r)
         close("time of impact [s]", lesson.plane_impact_time(t, dt, x_0, x_1, r, plane), t + s * dt, ROUND_OFF,
@@ -90,7 +90,7 @@ def test_a_ball_meets_a_plane_where_its_skin_does(lesson, draw):
 
 
 @exercise("6.2", points=0.25, hint="d₁ ≤ 0: it already touches, at t; d₂ < 0: it does not arrive, NEVER")
-def test_who_touches_already_touches_now_and_who_does_not_arrive_never(lesson, draw):
+def test_a_touching_ball_meets_the_plane_at_once_and_one_that_does_not_arrive_never(lesson, draw):
     r = draw(0.1, 0.5)
     t, dt, x_0, x_1, plane, s = fall(lesson, draw, 3, r)
     given = f"t = {t}, dt = {dt}, {x_0} to {x_1}, r = {r}, {plane}"
@@ -188,7 +188,7 @@ def flight(draw, rho, beside, far, length, begin=None):
 
 
 @exercise("6.4", points=0.5, hint="take the first of the two roots; the coordinate along the axis does not matter")
-def test_the_first_root_is_when_it_touches_from_walking_to_ten_kilometres_a_second(lesson, draw):
+def test_the_first_root_is_the_time_of_impact_at_20_m_per_s_and_at_10_km_per_s(lesson, draw):
     """A path at distance `beside` from the axis enters the circle of radius ρ at √(ρ² − beside²) before the axis.
 
     The round-off of lengths is 1e-16·1000.
@@ -212,7 +212,7 @@ def test_the_first_root_is_when_it_touches_from_walking_to_ten_kilometres_a_seco
 
 @exercise("6.4", points=0.5,
           hint="C ≤ 0: already touches; B ≥ 0: moves away, or along the axis; D < 0: misses; s > 1: comes later")
-def test_who_passes_by_leaves_or_comes_later_is_not_hit(lesson, draw):
+def test_a_ball_that_misses_leaves_or_arrives_later_has_no_impact(lesson, draw):
     R, r, t, dt = draw(0.5, 1.5), draw(0.05, 0.3), draw(1.0, 5.0), draw(0.01, 0.2)
     rho = R + r
     x_0, x_1 = flight(draw, rho, draw(1.05, 2.0) * rho, draw(3.0, 5.0), 10.0)
@@ -368,7 +368,7 @@ def test_a_cylinder_that_pierces_a_face_is_found_though_corners_and_edges_are_cl
 
 
 @exercise("6.6", points=0.25, hint="otherwise the least edge_axis_distance of the three edges, minus R + r")
-def test_elsewhere_the_nearest_edge_decides(lesson, draw):
+def test_the_nearest_edge_gives_the_gap_of_a_face_that_is_not_pierced(lesson, draw):
     R, r = draw(0.2, 0.5), draw(0.01, 0.1)
     for height in (draw(0.6, 2.0), draw(0.05, 0.2)):
         wide, high = draw(1.0, 5.0, 2), height + draw(1.0, 3.0)
@@ -670,7 +670,7 @@ def test_two_trees_find_the_pairs_that_brute_force_finds(lesson, draw):
 
 
 @exercise("6.11", points=0.75, hint="descend only where the boxes of the two nodes touch: that saves the work")
-def test_what_is_in_a_node_out_of_reach_is_not_looked_at(lesson, draw):
+def test_nodes_that_do_not_touch_are_not_searched(lesson, draw):
     """In a false tree, the box of one child of the root is far away. No item of that half may be found."""
     a, b = boxes(draw, 50, 2, 9.0), boxes(draw, 40, 2, 9.0)
     true, other = lesson.build_tree(*a), lesson.build_tree(*b)
@@ -1149,7 +1149,7 @@ def test_the_field_is_the_slope_of_its_potential(lesson, draw):
 
 
 @exercise("6.16", points=0.5, hint="there is no field where the gap is zero or negative: raise BadInput with the gap")
-def test_who_is_inside_an_obstacle_hears_so(lesson, draw):
+def test_a_position_inside_an_obstacle_is_refused(lesson, draw):
     centre, radius, gap = draw(-3.0, 3.0, 2), draw(0.3, 1.0), draw(0.3, 0.6)
     way = axes(draw, 2)[0]
     # (1/g − 1)/g² < 26 m/s², and the error of g = |x − centre| − radius is 1e-15 of 0.3.
@@ -1170,7 +1170,7 @@ def test_who_is_inside_an_obstacle_hears_so(lesson, draw):
 
 
 @exercise("6.17", points=0.5, hint="½ a τ² = radius − |y|, away from the side of the centre")
-def test_held_until_it_passes_it_just_gets_past(lesson, draw):
+def test_the_steering_acceleration_just_clears_the_obstacle(lesson, draw):
     for side in (1.0, -1.0):
         rows = axes(draw, 2)
         x, speed, radius = draw(-3.0, 3.0, 2), draw(0.5, 3.0), draw(0.5, 2.0)
@@ -1187,7 +1187,7 @@ def test_held_until_it_passes_it_just_gets_past(lesson, draw):
 
 @exercise("6.17", points=0.5,
           hint="obstacle behind, too far ahead, far enough aside, or at rest: 0; straight ahead: turn left")
-def test_nobody_swerves_without_need_and_head_on_they_turn_left(lesson, draw):
+def test_nothing_swerves_without_need_and_head_on_it_turns_left(lesson, draw):
     rows = axes(draw, 2)
     x, speed, radius = draw(-3.0, 3.0, 2), draw(0.5, 3.0), draw(0.5, 2.0)
     v, left = speed * rows[0], np.array([-rows[0][1], rows[0][0]])

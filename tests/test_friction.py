@@ -36,7 +36,7 @@ def along_surface(draw, axes, size):
 # ---------------------------------------------------------------------------------------------- at rest and sliding
 
 @exercise("3.1", points=1, hint="the part of F against n: −F · n, but never less than zero")
-def test_a_support_answers_what_presses_and_lets_go_of_what_lifts(lesson, draw):
+def test_a_support_balances_a_pressing_force_and_exerts_none_on_a_lifted_body(lesson, draw):
     for d in (2, 3):
         for load in (draw(1.0, 20.0), 1e-6):
             axes = frame(draw, d)
@@ -49,7 +49,7 @@ def test_a_support_answers_what_presses_and_lets_go_of_what_lifts(lesson, draw):
 
 @exercise("3.2", points=0.5,
           hint="inside the cone friction is −F_t, neither more nor less: F + F_s has no tangential part")
-def test_static_friction_holds_what_is_inside_its_cone(lesson, draw):
+def test_static_friction_balances_a_pull_inside_its_cone(lesson, draw):
     for d in (2, 3):
         axes, load, mu = frame(draw, d), draw(1.0, 20.0), draw(0.2, 1.5)
         for share, friction in ((draw(0.1, 0.95), mu), (draw(2.0, 5.0), np.inf), (0.0, mu), (0.0, 0.0)):
@@ -61,7 +61,7 @@ def test_static_friction_holds_what_is_inside_its_cone(lesson, draw):
 
 @exercise("3.2", points=0.5,
           hint="beyond the cone its magnitude is μ_s F_N, where F_N is the normal force of F; it points against F_t")
-def test_static_friction_does_what_it_can_beyond_its_cone(lesson, draw):
+def test_static_friction_reaches_its_limit_beyond_its_cone(lesson, draw):
     for d in (2, 3):
         axes, load, mu = frame(draw, d), draw(1.0, 10.0), draw(0.2, 1.0)
         for friction in (mu, 0.0):
@@ -74,7 +74,7 @@ def test_static_friction_does_what_it_can_beyond_its_cone(lesson, draw):
 
 @exercise("3.2", points=0.5,
           hint="without a load there is no friction: cone_radius(mu_s, normal_force(F, n)) is then 0, even for μ_s = ∞")
-def test_what_is_lifted_feels_no_friction(lesson, draw):
+def test_a_lifted_body_feels_no_friction(lesson, draw):
     axes = frame(draw, 3)
     pull = along_surface(draw, axes, draw(1.0, 5.0))
     close("friction on a body that is pressed [N]", lesson.static_friction(pull - axes[0], axes[0], np.inf),
@@ -95,7 +95,7 @@ def test_negative_friction_is_refused(lesson, draw):
 
 
 @exercise("3.3", points=0.5, hint="it points against the motion, not against F; its size is μ_k F_N at every speed")
-def test_kinetic_friction_opposes_the_motion_and_does_not_ask_how_fast(lesson, draw):
+def test_kinetic_friction_opposes_the_motion_with_a_size_independent_of_speed(lesson, draw):
     for d in (2, 3):
         axes, load, mu = frame(draw, d), draw(1.0, 10.0), draw(0.2, 1.0)
         n, F = axes[0], along_surface(draw, axes, draw(1.0, 20.0)) - load * axes[0]
@@ -186,7 +186,7 @@ def test_friction_leaves_the_least_energy_that_the_cone_allows(lesson, draw):
 @exercise("3.5", points=0.5,
           hint="v_t = 0 has no direction: return zeros; μ = 0 gives no friction, μ = ∞ "
                "stops every motion; use −m v_t itself, so that exactly zero is left")
-def test_friction_knows_its_limits(lesson, draw):
+def test_friction_is_exact_in_the_limits_of_rest_and_of_zero_and_infinite_mu(lesson, draw):
     for d in (2, 3):
         # For one vector in seven, unit vector times length differs from the vector in the last digit.
         for v in draw(-1.0, 1.0, (40, d)):
@@ -254,7 +254,7 @@ def run(lesson, step, p, x, v, dt, steps, t=0.0):
 
 @exercise("3.7", points=0.5,
           hint="move the position with the new velocity; when the block stops, v + friction_impulse(…) is exactly zero")
-def test_a_thrown_block_stops_for_good_where_it_should(lesson, draw):
+def test_a_sliding_block_stops_at_the_right_distance_and_stays(lesson, draw):
     """Σ dt v is at most ½ v₀ dt below the true distance.
 
     It is v₀²/2μg − ½ v₀ dt + ½ f(1 − f) μ g dt², where f is the fraction of the last step.
@@ -317,7 +317,7 @@ def test_friction_shortens_the_velocity_that_the_pull_alone_would_give(lesson, d
 @exercise("3.7", points=0.5,
           hint="at rest means that every component of v is zero; at |a_t| = μ_s a_n the block still holds; "
                "a lifted block, a_n = 0, feels no friction")
-def test_what_moves_a_little_or_along_an_axis_or_turns_round_is_not_at_rest(lesson, draw):
+def test_a_block_that_creeps_or_reverses_or_moves_along_an_axis_is_not_at_rest(lesson, draw):
     pull = lesson.driven_acceleration
     dt = draw(0.01, 0.05)
     up, along = np.array([0.0, 1.0]), np.array([1.0, 0.0])
@@ -499,7 +499,7 @@ def bowl(lesson, draw, axis, d=3, m=1.0, mu=0.0, e=0.0):
 
 
 @exercise("3.12", points=0.5, hint="radius − |r|: positive inside; n points inward, −r/|r|, and is the gradient of φ")
-def test_a_bowl_and_a_trough_know_how_far_their_wall_is(lesson, draw):
+def test_the_gap_of_a_bowl_and_a_trough_is_the_distance_to_the_wall(lesson, draw):
     for d, axis in ((2, np.zeros(2)), (3, np.zeros(3)), (3, frame(draw, 3)[0])):
         p = bowl(lesson, draw, axis, d)
         for share in (draw(0.2, 0.9), draw(1.1, 2.0)):
@@ -514,7 +514,7 @@ def test_a_bowl_and_a_trough_know_how_far_their_wall_is(lesson, draw):
 
 
 @exercise("3.12", points=0.5, hint="at the centre r = 0: return n = 0 there instead of dividing by zero")
-def test_in_the_middle_of_a_bowl_no_wall_is_the_nearest(lesson, draw):
+def test_the_normal_is_zero_at_the_centre_of_a_bowl(lesson, draw):
     p = bowl(lesson, draw, np.zeros(3))
     phi, n = lesson.bowl_gap(p.centre, p)
     out = frame(draw, 3)[0]
@@ -626,7 +626,7 @@ def check_fall(lesson, step, draw, grips):
 
 @exercise("3.14", points=0.5,
           hint="put the particle back by −φ n even if its velocity already points out; then do not change its velocity")
-def test_a_particle_that_is_already_on_its_way_out_is_put_back_and_not_braked(lesson, draw):
+def test_a_leaving_particle_inside_is_put_back_and_keeps_its_velocity(lesson, draw):
     check_way_out(lesson, lesson.contact_step, draw)
     check_just_touching(lesson, lesson.contact_step, draw)
     theta, dt = draw(0.2, 0.8), draw(0.005, 0.02)

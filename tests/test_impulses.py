@@ -74,7 +74,7 @@ def test_a_response_turns_the_normal_velocity_and_keeps_the_rest(lesson, draw):
 
 
 @exercise("7.1", points=0.5, hint="where v · n ≥ 0 the particle is already leaving: return v unchanged")
-def test_a_response_leaves_alone_what_leaves(lesson, draw):
+def test_a_response_does_not_change_a_leaving_velocity(lesson, draw):
     for d in (2, 3):
         n = unit(draw, d)
         v = across(n, draw(-5.0, 5.0, d)) + draw(0.1, 3.0) * n
@@ -325,7 +325,7 @@ def test_too_little_friction_slides_on_the_rim_of_the_cone(lesson, draw):
 
 @exercise("7.10", points=0.5,
           hint="compare |J_t|, not |J|, with μ J_n; where 0 < n · u < w the bodies separate too slowly: push")
-def test_a_cone_as_wide_as_the_sticking_impulse_needs_holds_also_what_parts_too_slowly(lesson, draw):
+def test_a_wide_enough_cone_sticks_also_where_bodies_separate_too_slowly(lesson, draw):
     """With u = w n − K J, the sticking impulse is J."""
     for slow in (False, True):
         n, K = contact(draw)
@@ -372,7 +372,7 @@ def test_contacts_without_physics_are_refused(lesson, draw):
 
 
 @exercise("7.11", points=1, hint="J times the mean of the velocities before and after: J · u + ½ J · K J")
-def test_the_energy_of_an_impact_is_what_the_bodies_lose(lesson, draw):
+def test_the_energy_of_an_impact_is_what_both_bodies_gain(lesson, draw):
     r_a, r_b, v_a, v_b, w_a, w_b, drawn = (draw(-1.0, 1.0, 3) for _ in range(7))
     m_a, m_b = draw(0.5, 3.0), draw(0.5, 3.0)
     inverse_a, inverse_b = inertia(draw), inertia(draw)
@@ -442,7 +442,7 @@ def test_the_moment_of_impact_is_a_root_of_the_gap(lesson, draw):
 
 @exercise("7.13", points=0.25,
           hint="if the gap never closes: dt; at or below the surface φ counts as 0; do not divide by a tiny a_n")
-def test_what_never_meets_and_what_touches_already(lesson, draw):
+def test_the_impact_time_is_dt_without_an_impact_and_zero_for_a_ball_pressed_in(lesson, draw):
     phi, speed, dt = draw(0.5, 2.0), draw(0.5, 2.0), draw(5.0, 9.0)
     for v_n, a_n in ((speed, 0.0),
                      (0.0, 0.0),
@@ -536,7 +536,7 @@ def swaying(t, x, v, p):
 @exercise("7.15", points=0.5,
           hint="kinematic_response keeps the velocity of a leaving ball; evaluate "
                "acceleration(t, x, v, p) at the start of the step")
-def test_a_projecting_step_puts_back_what_leaves_and_asks_for_the_acceleration(lesson, draw):
+def test_a_projecting_step_puts_back_a_leaving_ball_and_evaluates_the_acceleration(lesson, draw):
     for d in (2, 3):
         p, t, _, along = drop(draw, lesson, d)
         dt, speed, slip, depth = draw(0.01, 0.05), draw(1.0, 5.0), draw(1.0, 3.0), draw(0.5, 1.0)
@@ -556,7 +556,7 @@ def test_a_projecting_step_puts_back_what_leaves_and_asks_for_the_acceleration(l
 
 @exercise("7.15", points=0.5,
           hint="first v, then x; if x is then inside, reverse the normal velocity and move x back along n")
-def test_a_projecting_step_repairs_what_is_inside_at_its_end(lesson, draw):
+def test_a_projecting_step_reflects_and_puts_back_a_ball_that_ends_inside(lesson, draw):
     for d in (2, 3):
         p, t, pull, along = drop(draw, lesson, d)
         dt, speed, slip = draw(0.01, 0.05), draw(1.0, 5.0), draw(1.0, 3.0)
@@ -592,7 +592,7 @@ def bounced(h, t, pull, e):
 @exercise("7.16", points=0.25,
           hint="evaluate the acceleration once, at t, x and v; a ball that starts inside is "
                "put back onto the plane, x − φ n, and bounces")
-def test_a_backtracking_step_keeps_its_first_acceleration_and_puts_back_what_begins_inside(lesson, draw):
+def test_a_backtracking_step_keeps_its_first_acceleration_and_puts_back_a_ball_inside(lesson, draw):
     for inside in (True, False):
         p, t, _, _ = drop(draw, lesson, 3)
         time, dt = draw(0.5, 1.0), draw(0.02, 0.05)
@@ -642,7 +642,7 @@ def test_a_backtracking_step_follows_a_bouncing_ball_exactly(lesson, draw):
 @exercise("7.16", points=0.25,
           hint="do not change x and v: write x = x + …, not x += …; "
                "after IMPACTS impacts raise Diverged")
-def test_a_step_leaves_its_input_alone_and_says_when_impacts_have_no_end(lesson, draw):
+def test_a_backtracking_step_keeps_its_input_and_raises_diverged_after_too_many_impacts(lesson, draw):
     p, t, pull, along = drop(draw, lesson, 2, 1.0)
     x, v = p.point + draw(0.5e-4, 1e-4) * p.n, 0.0 * t
     before, high = x.copy(), p.point + 5.0 * p.n
@@ -658,7 +658,7 @@ def test_a_step_leaves_its_input_alone_and_says_when_impacts_have_no_end(lesson,
 
 @exercise("7.16", points=0.25,
           hint="if bouncing_time is at most the remaining time, the ball lies on the plane from then on: lie(…)")
-def test_a_ball_that_has_bounced_for_the_last_time_lies(lesson, draw):
+def test_a_ball_lies_on_the_plane_after_its_last_bounce(lesson, draw):
     for e in (0.0, draw(0.3, 0.8)):
         p, t, pull, along = drop(draw, lesson, 3, e)
         h, slip = draw(0.5, 2.0), draw(1.0, 3.0)
@@ -759,7 +759,7 @@ def test_the_order_of_the_points_does_not_matter_and_sliding_points_slide(lesson
 @exercise("7.17", points=0.25,
           hint="compare with largest_speed; the residual is that of the last sweep; "
                "if the sweeps do not settle, return most_dissipative_impact")
-def test_the_residual_tells_what_has_settled_from_what_cannot(lesson, draw):
+def test_the_residual_is_small_exactly_if_the_sweeps_can_settle(lesson, draw):
     """A rolling ball settles at once. A body between two walls can rebound from neither: only v · n = 0 is possible."""
     n = unit(draw, 3)
     radius, along, e = draw(0.05, 0.5), across(n, draw(5.0, 20.0) * unit(draw, 3)), draw(0.2, 0.8)

@@ -57,7 +57,7 @@ def test_a_body_balances_on_its_centre_of_mass(lesson, draw):
 
 
 @exercise("4.1", points=0.5, hint='after summing the masses: check_positive("total mass [kg]", M)')
-def test_what_has_no_mass_has_no_centre(lesson, draw):
+def test_a_body_without_mass_has_no_centre_of_mass(lesson, draw):
     m, x = cloud(draw, 2)
     close("total mass of two points [kg]", lesson.centre_of_mass(m, x)[0], sum(m), ROUNDED, f"m = {m}")
     raises("two masses of 0 kg", BadInput, lesson.centre_of_mass, 0.0 * m, x)
@@ -284,7 +284,7 @@ def test_away_from_its_centre_a_body_resists_like_a_point_more(lesson, draw):
 
 @exercise("4.12", points=1,
           hint="shift each tensor from its own centre xᵢ to the common one: the offset is xᵢ − X, the mass mᵢ")
-def test_parts_make_the_body_that_their_points_make(lesson, draw):
+def test_combined_parts_equal_the_body_of_all_their_points(lesson, draw):
     clouds = [cloud(draw, n) for n in (draw.whole(3, 4), draw.whole(2, 5), draw.whole(4, 6))]
     clouds[1] = (-0.2 * clouds[1][0], clouds[1][1])                      # a hole, lighter than the other parts
     m = np.array([k.sum() for k, _ in clouds])
@@ -710,7 +710,7 @@ def sheets(draw, share):
 
 @exercise("4.17", points=0.25,
           hint="compare the volume with ε e³, e the largest of all |x − o|, not with zero")
-def test_what_is_thinner_than_round_off_has_no_inside(lesson, draw):
+def test_a_sheet_thinner_than_round_off_has_no_volume(lesson, draw):
     for x, faces, V in sheets(draw, 100.0):
         given = f"corners {x.tolist()}, triangles {faces.tolist()}"
         close("mass of a thin sheet over density and volume [-]", lesson.mesh_body(1.0, x, faces)[0] / V, 1.0, 1e-9,

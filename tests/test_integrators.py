@@ -157,7 +157,7 @@ def test_an_implicit_step_solves_its_own_equation_however_long_it_is(lesson, dra
 
 
 @exercise("1.7", points=0.5, hint="if the loop ends without a return, raise Diverged as the docstring says")
-def test_implicit_euler_says_so_when_newton_finds_no_root(lesson, draw):
+def test_implicit_euler_raises_diverged_when_newton_finds_no_root(lesson, draw):
     """w = v + s dt (1 + w²) has no real root once 4 s dt (v + s dt) > 1."""
     x, v, dt = draw(-1.0, 1.0, 1), draw(0.0, 1.0, 1), draw(5.0, 15.0)
     p = Drive(draw(0.5, 2.0), 0.0)

@@ -65,7 +65,7 @@ def lengths(x, p):
 
 @exercise("8.1", points=0.25,
           hint="C is positive where the points are too far apart; n points from j to i and has length 1")
-def test_a_link_knows_how_much_too_long_it_is_and_where_its_ends_should_go(lesson, draw):
+def test_a_distance_constraint_gives_the_extension_and_its_gradient(lesson, draw):
     for d in (2, 3):
         x_j = draw(-2.0, 2.0, d)
         n = direction(draw, d)
@@ -88,7 +88,7 @@ def test_a_link_whose_ends_coincide_is_refused(lesson, draw):
 
 @exercise("8.1", points=0.5,
           hint="C has a sign, but n does not depend on it: n points from j to i for long and for short links")
-def test_taking_C_n_back_makes_a_link_right_be_it_too_long_too_short_small_or_far_away(lesson, draw):
+def test_subtracting_C_n_restores_the_rest_length_at_any_size_and_place(lesson, draw):
     """A thousand sizes from the origin, the round-off of positions is 1e-13 sizes."""
     for d in (2, 3):
         for size, place in places(draw, d):
@@ -126,7 +126,7 @@ def test_a_projection_meets_a_linear_constraint_at_once_and_shares_it_by_inverse
 
 
 @exercise("8.2", points=0.5, hint="if Σ w|∇C|² is 0 nothing can move: raise BadInput instead of dividing by it")
-def test_a_constraint_that_nothing_can_meet_is_refused(lesson, draw):
+def test_a_constraint_that_cannot_be_satisfied_is_refused(lesson, draw):
     gradients, C = draw(0.5, 2.0, (2, 3)), draw(0.5, 1.0)
     moved = np.asarray(lesson.projection(C, gradients, np.ones(2)), dtype=float)
     close("C + Σ ∇C · Δx of a constraint that can be satisfied", C + np.sum(gradients * moved), 0.0, ROUND_OFF,
@@ -151,7 +151,7 @@ def growing(t, x, v, p):
 
 
 @exercise("8.3", points=0.5, hint="dt² a, not ½ dt² a; where inv_mass is 0, omit the acceleration but not the velocity")
-def test_points_are_predicted_to_go_on_and_fall_and_immovable_ones_only_to_go_on(lesson, draw):
+def test_free_points_are_predicted_with_and_immovable_ones_without_acceleration(lesson, draw):
     for d in (2, 3):
         x, v = draw(-1.0, 1.0, (4, d)), draw(-1.0, 1.0, (4, d))
         t, dt = draw(0.5, 2.0), draw(0.05, 0.5)
@@ -181,7 +181,7 @@ def equations(x, lam, goal, dt, p):
 @exercise("8.4", points=1,
           hint="both rows of the docstring: the matrix contains −dt² W Σ λ ∇²C "
                "beside 1, and the unknown is the new λ itself")
-def test_a_newton_round_solves_the_equations_as_they_are_about_its_guess(lesson, draw):
+def test_a_newton_iteration_solves_the_equations_linearised_at_its_guess(lesson, draw):
     """Check f + f'·(Δx, Δλ) = 0, with f' along that direction from a complex step."""
     for d, held in ((2, True), (3, False)):
         x, p = chain(lesson, draw, 3, d, held)
@@ -220,7 +220,7 @@ def test_links_that_hang_at_rest_carry_what_is_below_them(lesson, draw):
 @exercise("8.4", points=0.5,
           hint="each link has ε = TRACE (w_i + w_j), which acts on the change of λ: −ε on "
                "the diagonal, −C − ε dt² λ on the right (for Λ)")
-def test_links_that_do_the_same_share_a_change_of_their_multipliers_by_the_trace(lesson, draw):
+def test_redundant_links_share_a_change_of_their_multipliers_by_the_trace(lesson, draw):
     """Three collinear points, each linked to both others: the multipliers s = (1, 1, −1) move nothing.
 
     s · (second row of the docstring), with s J = 0 and C = 0, gives Σ s ε (λ_new − λ) = 0.
@@ -270,7 +270,7 @@ def carried_along(step, lesson, draw, x, dt, p, left):
 @exercise("8.5", points=0.5,
           hint="the velocity is the displacement of the points over dt; "
                "repeat Newton's iterations until nothing changes")
-def test_after_a_step_every_link_has_its_length_and_nothing_is_pushed_from_outside(lesson, draw):
+def test_after_a_step_every_link_has_its_length_and_momentum_changes_only_by_gravity(lesson, draw):
     x, p = chain(lesson, draw, 3, 2, held=False)
     p = p._replace(rest=lengths(x, p))
     v = draw(-1.0, 1.0, x.shape)
@@ -463,7 +463,7 @@ def angle(x):
 @exercise("8.9", points=0.75,
           hint="flat is 0; atan2 with (N_c × N_d) · e/|e| gives the sign; "
                "reduce C to (−π, π], however far outside it is")
-def test_a_fold_knows_its_angle_and_its_side(lesson, draw):
+def test_the_fold_constraint_is_the_signed_angle_minus_the_wanted_one(lesson, draw):
     cases = ((draw(0.2, 2.5), draw(-0.5, 0.5)), (-draw(0.2, 2.5), draw(-0.5, 0.5)), (0.0, 0.0),
              (3.0, -draw(0.5, 2.5)), (-3.0, draw(0.5, 2.5)),
              (draw(0.2, 2.5), draw(12.5, 15.0)), (-draw(0.2, 2.5), -draw(12.5, 15.0)))
@@ -488,7 +488,7 @@ def test_a_fold_knows_its_angle_and_its_side(lesson, draw):
 @exercise("8.9", points=0.75,
           hint="each wing changes the angle by |e|/|N| along its normal; the gradient "
                "of the edge follows from the lever arm β and from Σ = 0")
-def test_the_gradient_of_a_fold_is_the_slope_of_its_angle_and_pushes_nothing_from_outside(lesson, draw):
+def test_the_gradient_of_a_fold_is_that_of_its_angle_without_net_force_or_torque(lesson, draw):
     for phi in (draw(0.3, 2.0), -draw(0.3, 2.0), 0.0):
         x = folded(draw, phi)
         h = 1e-5
@@ -537,7 +537,7 @@ def test_folds_with_acute_and_obtuse_wings_have_the_slope_of_their_angle_at_any_
 
 @exercise("8.10", points=0.25,
           hint="|x − centre| − radius: positive outside; n points away from the centre, and is 0 at the centre")
-def test_a_ball_knows_how_far_away_its_skin_is(lesson, draw):
+def test_the_gap_of_a_ball_is_the_distance_to_its_surface(lesson, draw):
     for d in (2, 3):
         ball = lesson.Obstacle(draw(-2.0, 2.0, d), draw(0.5, 2.0), np.zeros(d), np.eye(d)[0])
         for distance in (draw(0.1, 0.4), draw(2.5, 4.0)):
@@ -552,7 +552,7 @@ def test_a_ball_knows_how_far_away_its_skin_is(lesson, draw):
 
 @exercise("8.10", points=0.25,
           hint="|x − centre| − radius wherever x is, near the centre and far away; a radius of 0 is allowed")
-def test_no_point_of_the_skin_is_nearer_than_the_gap_says(lesson, draw):
+def test_no_point_of_the_surface_is_nearer_than_the_gap(lesson, draw):
     for d in (2, 3):
         for size, place in places(draw, d):
             skin = np.array([direction(draw, d) for _ in range(20)])
@@ -585,7 +585,7 @@ def balloon(x, obstacle):
 @exercise("8.11", points=0.5,
           hint="move only movable points with φ < 0, along n by −φ; "
                "use φ and n of the surface that is passed in")
-def test_what_has_got_inside_is_put_onto_the_skin_and_the_rest_is_left_alone(lesson, draw):
+def test_points_inside_are_moved_to_the_surface_and_all_others_stay(lesson, draw):
     n, tangent = direction(draw, 3), direction(draw, 3)
     tangent = np.cross(n, tangent)
     floor = lesson.Obstacle(np.zeros(3), 0.0, draw(-1.0, 1.0, 3), n)
@@ -656,7 +656,7 @@ def test_a_negative_compliance_and_a_constraint_without_mass_are_refused(lesson,
 
 
 @exercise("8.13", points=1, hint="Λ of each link continues from its old value; add w ΔΛ n to i and subtract it from j")
-def test_a_visit_to_a_spring_leaves_it_in_balance_with_what_it_has_pulled(lesson, draw):
+def test_after_a_visit_a_spring_satisfies_hookes_law_with_its_total_multiplier(lesson, draw):
     for d in (2, 3):
         x = np.stack((draw(-1.0, 1.0, d), draw(2.0, 3.0, d)))
         w = draw(0.3, 2.0, 2)
@@ -749,7 +749,7 @@ def body(draw):
 
 
 @exercise("8.15", points=1, hint="1/m plus the squares of r × n, in body coordinates, over the moments")
-def test_a_point_of_a_body_gives_way_as_an_impulse_there_would_make_it(lesson, draw):
+def test_the_generalised_inverse_mass_is_the_response_to_a_unit_impulse(lesson, draw):
     """An impulse n at r gives v = n/m and ω = I⁻¹(r × n), so the point moves along n with n·(v + ω × r)."""
     q, R, mass, I_body = body(draw)
     for r, m in ((draw(-1.0, 1.0, 3), mass), (np.zeros(3), mass), (draw(-1.0, 1.0, 3), 0.1 * mass),
@@ -815,7 +815,7 @@ CUBE = np.array([[0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4
 
 @exercise("8.18", points=0.5,
           hint="a sixth of a · (b × c) for each face; its gradient with respect to a is b × c/6, and so on cyclically")
-def test_a_closed_surface_knows_its_volume_and_how_its_corners_change_it(lesson, draw):
+def test_a_closed_surface_has_the_right_volume_and_volume_gradient(lesson, draw):
     """A box spanned by u, v and w has the volume |u · (v × w)|. The volume is linear in each corner."""
     u, v, w = (np.eye(3)[k] * draw(1.0, 2.0) + draw(-0.3, 0.3, 3) for k in range(3))
     corners = np.array([[k & 1, k >> 1 & 1, k >> 2] for k in range(8)])

@@ -147,7 +147,7 @@ def test_the_state_changes_as_newton_and_euler_say(lesson, draw):
 @exercise("5.6", points=1.5,
           hint="first R + dt ω* R; then its columns: the first to length 1, the second perpendicular "
                "to the first, the third by a cross product")
-def test_the_first_way_keeps_a_matrix_orthonormal(lesson, draw):
+def test_the_matrix_update_keeps_a_matrix_orthonormal(lesson, draw):
     R, omega, dt = turn(orientation(draw)), spin_of(draw), draw(0.1, 0.4)
     kept = R.copy()
     got = np.asarray(lesson.matrix_update(R, omega, dt))
@@ -163,7 +163,7 @@ def test_the_first_way_keeps_a_matrix_orthonormal(lesson, draw):
 @exercise("5.7", points=0.75,
           hint="Rodrigues: r cos θ + (n × r) sin θ + n (n·r)(1 − cos θ), for each column "
                "separately; test for |ω| = 0 before dividing")
-def test_the_second_way_is_exact_at_constant_omega(lesson, draw):
+def test_the_axis_angle_update_is_exact_at_constant_omega(lesson, draw):
     R, omega, dt = turn(orientation(draw)), spin_of(draw), draw(0.5, 3.0)
     kept = R.copy()
     got = lesson.axis_angle_update(R, omega, dt)
@@ -176,7 +176,7 @@ def test_the_second_way_is_exact_at_constant_omega(lesson, draw):
 
 @exercise("5.7", points=0.75,
           hint="only |ω| = 0 is rest; use the whole angle in sin θ and cos θ, also beyond one turn and for dt < 0")
-def test_the_second_way_turns_by_any_angle_at_any_rate(lesson, draw):
+def test_the_axis_angle_update_turns_by_any_angle_at_any_rate(lesson, draw):
     """The angle |ω| dt is below 30 and has a relative error of 1e-16."""
     for quarter in (0, 1, 2, 3, 4, 7, 15):
         for rate in (1e-12, 1e-4, 1.0, 1e6):
@@ -224,7 +224,7 @@ def test_a_quaternion_turns_as_its_matrix_does(lesson, draw):
 @exercise("5.10", points=0.75,
           hint="the product (0, ω) q, with ω on the left because it is in world "
                "coordinates; times ½ dt; then normalise")
-def test_the_third_way_turns_about_omega_by_twice_an_arc_tangent(lesson, draw):
+def test_the_quaternion_update_turns_about_omega_by_twice_an_arc_tangent(lesson, draw):
     q, omega, dt = orientation(draw), spin_of(draw), draw(0.1, 0.5)
     kept = q.copy()
     rate = np.linalg.norm(omega)
@@ -355,7 +355,7 @@ def test_only_the_middle_axis_tumbles(lesson, draw):
 @exercise("5.15", points=0.5,
           hint="rotate (0, 0, 1) to find the top's axis; gravity pulls its tip down, "
                "so the torque is horizontal and perpendicular to the axis")
-def test_the_torque_on_a_top_is_the_slope_of_its_height(lesson, draw):
+def test_the_torque_on_a_top_is_the_derivative_of_its_energy(lesson, draw):
     for upwards in (1.0, -1.0):
         q = orientation(draw)
         mgl, L = draw(1.0, 5.0), draw(-1.0, 1.0, 3)
@@ -404,7 +404,7 @@ def test_the_midpoint_turn_solves_its_own_equation(lesson, draw):
 
 @exercise("5.16", points=0.25,
           hint="use Newton's method with the derivative: for long steps fixed-point iteration does not converge")
-def test_newtons_method_finds_the_root_of_a_step_too_long_for_going_round_the_equation(lesson, draw):
+def test_newtons_method_converges_where_fixed_point_iteration_diverges(lesson, draw):
     """About an outer axis k, a fixed-point iteration m ← ℓ + ½dt m × w multiplies a small error by ρ > 1: it diverges.
 
     ρ = ½dt |spin| √((I_k − I_i)(I_k − I_j)/(I_i I_j)). Newton's method took at most 5 corrections in 200,000 such
@@ -467,7 +467,7 @@ def test_the_midpoint_turn_leaves_a_resting_body(lesson, draw):
 
 @exercise("5.16", points=0.25,
           hint="if the loop ends without convergence, raise Diverged: do not rotate with the last m")
-def test_the_midpoint_turn_solves_its_equation_or_says_that_it_did_not(lesson, draw):
+def test_the_midpoint_turn_solves_its_equation_or_raises_diverged(lesson, draw):
     turn_once(lesson, draw)
     raises("an L that is not a number", Diverged,
            lesson.midpoint_turn, orientation(draw), np.full(3, np.nan), moments(draw), 0.1)
@@ -670,7 +670,7 @@ def refused(lesson, **changed):
     return str(caught.value)
 
 
-def test_what_is_no_rotation_and_no_body_is_refused_by_name_and_value(lesson):
+def test_an_invalid_rotation_or_body_is_refused_by_name_and_value(lesson):
     zero = refused(lesson, q=np.zeros(4))
     assert "quaternion" in zero and "0.0" in zero
     assert "1.1" in refused(lesson, q=np.array([1.1, 0.0, 0.0, 0.0]))

@@ -20,7 +20,7 @@ def slope(f, y):
 # ---------------------------------------------------------------------------------------------- single forces
 
 @exercise("2.1", points=1, hint="x_b − x_a has the right direction but length r: divide it by r³")
-def test_gravity_is_the_slope_of_its_potential_and_weighs_us_on_earth(lesson, draw):
+def test_gravity_is_the_gradient_of_its_potential_and_gives_our_weight_on_earth(lesson, draw):
     earth, foot, m = np.zeros(3), np.array([0.0, 0.0, 6.371e6]), draw(50.0, 90.0)
     force = lesson.universal_gravity(foot, earth, m, 5.972e24, 6.67430e-11)
     close("weight at the Earth's surface [N]", force, [0.0, 0.0, -m * 9.8], 0.003 * m * 9.8, given=f"{m:.4g} kg")
@@ -36,7 +36,7 @@ def test_gravity_is_the_slope_of_its_potential_and_weighs_us_on_earth(lesson, dr
 
 
 @exercise("2.2", points=1, hint="the wind force minus k_v v; do not divide by k_v, which may be 0")
-def test_air_pushes_points_at_rest_and_lets_go_of_those_that_fly_with_it(lesson, draw):
+def test_air_pushes_resting_points_and_exerts_no_force_on_points_at_wind_speed(lesson, draw):
     wind, k_v, (speed, push) = draw(-3.0, 3.0, 2), draw(0.3, 0.8), draw(2.0, 5.0, 2)
     v = np.stack([0.0 * wind, wind / k_v, 2.0 * wind / k_v])
     given = f"F_wind = {wind} N, k_v = {k_v:.4g} N s/m"
@@ -64,7 +64,7 @@ def test_a_spring_carries_a_weight_and_a_damper_a_sinking_one(lesson, draw):
 
 
 @exercise("2.4", points=1, hint="the number −(k C + k_d Ċ) times the vector ∇C, which need not have length 1")
-def test_a_soft_constraint_is_the_slope_of_its_energy_and_brakes_across_only(lesson, draw):
+def test_a_soft_constraint_is_the_gradient_of_its_energy_and_damps_only_along_the_gradient(lesson, draw):
     k, k_d = draw(20.0, 40.0), draw(3.0, 6.0)
     x, gradient = draw(-0.5, 0.5, 3), draw(1.0, 2.0, 3)
     distance = draw(0.5, 1.5)
@@ -134,7 +134,7 @@ def angular_energy(points, rest, k):
 
 @exercise("2.6", points=1,
           hint="θ = arctan2(r_a × r_c, r_a · r_c); the force on each end is k(θ − rest)/|r|, perpendicular to its arm")
-def test_an_angular_spring_is_the_slope_of_its_energy_and_pushes_nothing_from_outside(lesson, draw):
+def test_an_angular_spring_is_the_gradient_of_its_energy_without_net_force_or_torque(lesson, draw):
     theta, k = draw(1.0, 2.5), draw(2.0, 4.0)
     for rest in (theta - draw(0.5, 1.5), theta + draw(1.5, 2.5)):
         points = hinge(draw, theta)
@@ -212,7 +212,7 @@ def lengths(x, mesh):
 
 @exercise("2.7", points=1,
           hint="add T r/l at point i and −T r/l at j to the forces of the other springs; each spring has its own k")
-def test_spring_forces_are_the_slope_of_the_elastic_energy(lesson, draw):
+def test_spring_forces_are_the_gradient_of_the_elastic_energy(lesson, draw):
     for d in (1, 2, 3):
         x, v, mesh = tetrahedron(lesson, draw, d)
         energy = lambda x, mesh=mesh: 0.5 * np.sum(mesh.k * (lengths(x, mesh) - mesh.rest) ** 2)
@@ -223,7 +223,7 @@ def test_spring_forces_are_the_slope_of_the_elastic_energy(lesson, draw):
 
 
 @exercise("2.7", points=1, hint="l̇ = r · (v_j − v_i)/l; k_d belongs to the same spring as the ends")
-def test_dampers_are_the_slope_of_the_dissipation_and_let_a_mesh_turn_freely(lesson, draw):
+def test_dampers_are_the_gradient_of_the_dissipation_and_let_a_mesh_rotate_freely(lesson, draw):
     for d in (1, 2, 3):
         x, v, mesh = tetrahedron(lesson, draw, d)
         at_rest = lesson.spring_forces(x, 0.0 * v, mesh)
@@ -239,7 +239,7 @@ def test_dampers_are_the_slope_of_the_dissipation_and_let_a_mesh_turn_freely(les
 
 
 @exercise("2.7", points=0.5, hint="subtract at j what you add at i, whether or not one of the points is fixed")
-def test_springs_push_nothing_from_outside(lesson, draw):
+def test_springs_exert_no_net_force_and_no_net_torque(lesson, draw):
     for d in (1, 2, 3):
         x, v, mesh = tetrahedron(lesson, draw, d)
         at_rest, l = lesson.spring_forces(x, 0.0 * v, mesh), lengths(x, mesh)
@@ -432,7 +432,7 @@ def times(y, A):
 
 @exercise("2.12", points=1,
           hint="sum over all entries; start with a copy of right; raise Diverged if the loop ends without convergence")
-def test_conjugate_gradients_solve_positive_systems_and_own_up_to_others(lesson, draw):
+def test_conjugate_gradients_solve_positive_systems_and_raise_diverged_for_others(lesson, draw):
     n = draw.whole(16, 24)
     # a chain of springs with both ends held
     chain = 2.0 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1)
