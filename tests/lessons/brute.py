@@ -1,4 +1,4 @@
-"""Geometry by brute force: slow, simple, and without a line of the lessons."""
+"""Geometry by brute force: slow, simple, and independent of the lessons."""
 
 import numpy as np
 from scipy.optimize import nnls
@@ -6,15 +6,15 @@ from scipy.spatial import ConvexHull
 
 
 def differences(a, b):
-    """All a_i − b_j (k m, d): two bodies touch where their hull holds 0."""
+    """All a_i − b_j (k m, d): two bodies touch if the hull of these contains 0."""
     return (a[:, None] - b[None]).reshape(-1, a.shape[1])
 
 
 def nearest_to_zero(y):
     """The point (d,) of the hull of y (k, d) that is nearest to 0.
 
-    Least squares of Σ λ y = 0 and Σ λ = 1 with λ = s μ ≥ 0, Σ μ = 1, leave s²|Σ μ y|² + (1 − s)².  The least of it over s is |Σ μ y|²/(1 + |Σ μ y|²),
-    and it grows with |Σ μ y|: the μ are those of the nearest point.
+    Least squares of Σ λ y = 0 and Σ λ = 1, with λ = s μ ≥ 0 and Σ μ = 1, minimise s²|Σ μ y|² + (1 − s)².
+    Its minimum over s is |Σ μ y|²/(1 + |Σ μ y|²). This grows with |Σ μ y|, so the μ are those of the nearest point.
     """
     size = np.abs(y).max() or 1.0
     weights, _ = nnls(np.vstack((y.T / size, np.ones(len(y)))), np.append(np.zeros(y.shape[1]), 1.0))
@@ -27,7 +27,7 @@ def distance(a, b):
 
 
 def facets(y):
-    """(normals (f, d), offsets (f,)) of the hull of y (k, d): inside it normal · p + offset ≤ 0."""
+    """(normals (f, d), offsets (f,)) of the hull of y (k, d): inside the hull, normal · p + offset ≤ 0."""
     equations = ConvexHull(y).equations
     return equations[:, :-1], equations[:, -1]
 

@@ -1,6 +1,6 @@
-"""Notebooks run in a kernel of their own, as at a student's desk, by clients that wait by blocking.
+"""Run the cells of a notebook in a kernel of its own, as a student does, with a blocking client.
 
-(nbclient waits by asyncio; on a busy machine that may overlook an answer, and then it sits out its whole time.)
+nbclient waits with asyncio. On a busy machine that may miss a reply, and then waits until its timeout.
 """
 
 import contextlib
@@ -15,9 +15,11 @@ LONGEST = 120                # of one cell [s]
 
 @contextlib.contextmanager
 def kernel(folder):
-    """A client of a new kernel that works in that folder."""
-    with tempfile.TemporaryDirectory() as place:                      # two kernels that start together may choose the same port, but not the same file
-        manager = KernelManager(kernel_name="python3", **({"transport": "ipc", "ip": f"{place}/kernel"} if zmq.has("ipc") else {}))
+    """A client of a new kernel with that working folder."""
+    # Two kernels that start at the same time may choose the same port, but not the same file.
+    with tempfile.TemporaryDirectory() as place:
+        manager = KernelManager(kernel_name="python3",
+                                **{"transport": "ipc", "ip": f"{place}/kernel"} if zmq.has("ipc") else {})
         manager.start_kernel(cwd=folder)
         client = manager.blocking_client()
         try:
@@ -30,8 +32,9 @@ def kernel(folder):
 
 
 def ran(client, source):
-    """What a cell puts out, as text; an assertion fails when it raises."""
+    """The output of a cell as text; an assertion fails if the cell raises."""
     said = []
-    reply = client.execute_interactive(source, timeout=LONGEST, allow_stdin=False, output_hook=lambda message: said.append(message["content"]))["content"]
+    hook = lambda message: said.append(message["content"])
+    reply = client.execute_interactive(source, timeout=LONGEST, allow_stdin=False, output_hook=hook)["content"]
     assert reply["status"] == "ok", "\n".join([source, *reply.get("traceback", ())])
     return json.dumps(said, ensure_ascii=False, default=str)

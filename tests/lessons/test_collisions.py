@@ -1,4 +1,4 @@
-"""Lesson 6 is right when distances are the least ones, times the first ones, and a hierarchy finds the pairs that brute force finds."""
+"""Lesson 6: distances are the least, times of impact the first, and a hierarchy finds the same pairs as brute force."""
 
 import numpy as np
 import pytest
@@ -9,24 +9,24 @@ from .brute import area, differences, distance, facets, outline
 from ..grading.expect import NotYet, between, close, numbers, raises
 
 exercise = pytest.mark.exercise
-# Lengths are below 30 m, times below 10 s, and each answer takes a few dozen operations, each rounded by 1.1e-16 of that:
+# Lengths are below 30 m and times below 10 s. A result takes a few dozen operations, each with a round-off of 1.1e-16.
 ROUND_OFF = 1e-12
-# What brute force knows, over the size: 1e-13 at a thousand sizes from the origin, over angles of 0.01 rad, times ten
+# Error of brute force over the size: 1e-13 at a thousand sizes from the origin, over angles of 0.01 rad, times ten.
 KNOWN = 1e-10
-EDGES_WIN_BY = 1e-9          # how much farther [m] a pair of edges must separate than any face, as the lesson says
+EDGES_WIN_BY = 1e-9          # a pair of edges must separate by this much more [m] than any face, as the lesson says
 
 
-# Sizes of small, middling and large bodies [m].  Powers of two: what is exact at one size is exact at the others.
+# Sizes of small, medium and large bodies [m]. Powers of two: what is exact at one size is exact at the others.
 SIZES = (2.0**-30, 1.0, 2.0**30)
 
 
 def places(draw, d=3):
-    """(size, place) of small, middling and large bodies [m], at the origin and a thousand sizes away from it."""
+    """(size, place) of small, medium and large bodies [m], at the origin and a thousand sizes away from it."""
     return [(size, far * size * draw(-1.0, 1.0, d)) for size in SIZES for far in (0.0, 1e3)]
 
 
 def rotation(draw):
-    """A drawn rotation (3, 3): columns n, t_1, t_2, none along an axis of the coordinates."""
+    """A drawn rotation (3, 3): columns n, t_1, t_2, none along a coordinate axis."""
     q = np.concatenate((draw(0.4, 1.0, 1), draw(0.2, 0.6, 3)))
     w, x, y, z = q / np.linalg.norm(q)
     return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
@@ -35,7 +35,7 @@ def rotation(draw):
 
 
 def axes(draw, d):
-    """d unit vectors, at right angles to each other, as rows."""
+    """d orthogonal unit vectors as rows."""
     if d == 3:
         return np.ascontiguousarray(rotation(draw).T)
     turn = draw(0.2, 1.3) + 0.5 * np.pi * draw.whole(0, 3)
@@ -43,7 +43,7 @@ def axes(draw, d):
 
 
 def never(quantity, got, given=""):
-    """The answer says that it does not happen: infinity."""
+    """The answer must be infinity: there is no impact."""
     if got is None or np.ndim(got) > 0 or np.asarray(got).dtype.kind not in "iuf":
         numbers(quantity, got, (), given)
     if not float(got) == np.inf:
@@ -51,7 +51,7 @@ def never(quantity, got, given=""):
 
 
 def same_contact(got, p_a, p_b, n, gap, tolerance, given=""):
-    """All fields of a contact."""
+    """Compare all fields of a contact."""
     close("n of the contact: from b to a", got.n, n, tolerance, given)
     close("gap of the contact [m]", got.gap, gap, tolerance, given)
     close("p_a of the contact [m]", got.p_a, p_a, tolerance, given)
@@ -60,8 +60,8 @@ def same_contact(got, p_a, p_b, n, gap, tolerance, given=""):
 
 # ---------------------------------------------------------------------------------------------- points and planes
 
-@exercise("6.1", points=1, hint="n · p + d; the unit normal and d come with the plane")
-def test_a_plane_knows_how_far_a_point_is_and_on_which_side(lesson, draw):
+@exercise("6.1", points=1, hint="n · p + d, with the plane's unit normal n and its d")
+def test_the_distance_to_a_plane_has_a_sign_for_its_side(lesson, draw):
     for d, size in ((2, 1.0), *((3, size) for size in SIZES)):
         rows, foot = axes(draw, d), size * draw(-3.0, 3.0, d)
         plane = lesson.Plane(rows[0], float(-rows[0] @ foot))
@@ -73,39 +73,47 @@ def test_a_plane_knows_how_far_a_point_is_and_on_which_side(lesson, draw):
 
 def fall(lesson, draw, d, r):
     """(t, dt, x_0, x_1, plane, s): a ball that touches a plane after the fraction s of a step."""
-    rows, foot, s = axes(draw, d), draw(-3.0, 3.0, d), draw(0.1, 0.9)
+    rows, foot = axes(draw, d), draw(-3.0, 3.0, d)
+    s = draw(0.1, 0.9)
     move = -draw(1.0, 9.0) * rows[0] + draw(-5.0, 5.0) * rows[1]
     touch = foot + r * rows[0]
-    return draw(1.0, 5.0), draw(0.01, 0.5), touch - s * move, touch + (1.0 - s) * move, lesson.Plane(rows[0], float(-rows[0] @ foot)), s
+    plane = lesson.Plane(rows[0], float(-rows[0] @ foot))
+    return draw(1.0, 5.0), draw(0.01, 0.5), touch - s * move, touch + (1.0 - s) * move, plane, s
 
 
-@exercise("6.2", points=0.25, hint="d₁ and d₂ are distances of the skin, not of the centre: E less r, and r less E")
-def test_a_ball_meets_a_plane_where_its_skin_does(lesson, draw):
+@exercise("6.2", points=0.25, hint="d₁ and d₂ measure the ball's surface, not its centre: d₁ = E − r, d₂ = r − E")
+def test_a_ball_meets_a_plane_when_its_surface_does(lesson, draw):
     for d, r in ((2, draw(0.1, 0.5)), (3, draw(0.1, 0.5)), (3, 0.0)):
         t, dt, x_0, x_1, plane, s = fall(lesson, draw, d, r)
-        close("time of impact [s]", lesson.plane_impact_time(t, dt, x_0, x_1, r, plane), t + s * dt, ROUND_OFF, given=f"t = {t}, dt = {dt}, {x_0} to {x_1}, r = {r}, {plane}")
+        close("time of impact [s]", lesson.plane_impact_time(t, dt, x_0, x_1, r, plane), t + s * dt, ROUND_OFF,
+              given=f"t = {t}, dt = {dt}, {x_0} to {x_1}, r = {r}, {plane}")
 
 
-@exercise("6.2", points=0.25, hint="d₁ ≤ 0: it touches already, at t; d₂ < 0: it does not get there, NEVER")
-def test_who_touches_already_touches_now_and_who_does_not_arrive_never(lesson, draw):
+@exercise("6.2", points=0.25, hint="d₁ ≤ 0: it already touches, at t; d₂ < 0: it does not arrive, NEVER")
+def test_a_touching_ball_meets_the_plane_at_once_and_one_that_does_not_arrive_never(lesson, draw):
     r = draw(0.1, 0.5)
     t, dt, x_0, x_1, plane, s = fall(lesson, draw, 3, r)
     given = f"t = {t}, dt = {dt}, {x_0} to {x_1}, r = {r}, {plane}"
     short = x_0 + 0.9 * s * (x_1 - x_0)
-    never("time of impact of a step that ends before [s]", lesson.plane_impact_time(t, dt, x_0, short, r, plane), given)
-    never("time of impact of a ball that flies off [s]", lesson.plane_impact_time(t, dt, x_0, 2.0 * x_0 - x_1, r, plane), given)
+    never("time of impact if the step ends before it [s]", lesson.plane_impact_time(t, dt, x_0, short, r, plane), given)
+    never("time of impact of a ball that flies off [s]",
+          lesson.plane_impact_time(t, dt, x_0, 2.0 * x_0 - x_1, r, plane), given)
     for end in (x_0, 2.0 * x_1 - x_0):
-        close("time of impact of a ball that is in already [s]", lesson.plane_impact_time(t, dt, x_1, end, r, plane), t, 0.0, given)
+        close("time of impact of a ball that already overlaps [s]", lesson.plane_impact_time(t, dt, x_1, end, r, plane),
+              t, 0.0, given)
 
 
 @exercise("6.2", points=0.5,
-          hint="d₁ ≤ 0 comes first, wherever the ball goes; then d₂ < 0; d₂ = 0 still arrives, at the end of the step")
+          hint="check d₁ ≤ 0 first, wherever the ball goes; then d₂ < 0; with d₂ = 0 it arrives at the end of the step")
 def test_a_ball_of_any_size_meets_a_plane_only_if_it_comes_through_from_above(lesson, draw):
-    """The gap changes evenly.  Both ends are known to 1e-13 of the size, and differ by 0.4 of it at least."""
+    """The gap changes linearly. Both ends are known to 1e-13 of the size and differ by at least 0.4 sizes."""
     for size, place in places(draw):
         for sides in ((1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)):
-            rows, r, t, dt = axes(draw, 3), size * draw(0.01, 2.0), draw(1.0, 5.0), draw(0.01, 0.5)
-            gaps, plane = size * draw(0.2, 3.0, 2) * sides, lesson.Plane(rows[0], float(-rows[0] @ place))
+            rows = axes(draw, 3)
+            r = size * draw(0.01, 2.0)
+            t, dt = draw(1.0, 5.0), draw(0.01, 0.5)
+            gaps = size * draw(0.2, 3.0, 2) * sides
+            plane = lesson.Plane(rows[0], float(-rows[0] @ place))
             x_0, x_1 = (place + (r + gap) * rows[0] + size * draw(-3.0, 3.0) * rows[1] for gap in gaps)
             got = lesson.plane_impact_time(t, dt, x_0, x_1, r, plane)
             given = f"t = {t}, dt = {dt}, gaps {gaps}, {x_0} to {x_1}, r = {r}, {plane}"
@@ -122,57 +130,69 @@ def test_a_ball_of_any_size_meets_a_plane_only_if_it_comes_through_from_above(le
           lesson.plane_impact_time(3.0, 0.5, on, above, r, floor), 3.0, 0.0)
     close("time of impact at the end of the step [s]", lesson.plane_impact_time(3.0, 0.5, above, on, r, floor), 3.5,
           0.0)
-    for size in SIZES:                                                   # from half a nanometre above at the least size
+    for size in SIZES:                                                   # half a nanometre above at the smallest size
         floor, on = lesson.Plane(floor.n, -size * level), size * np.array([0.0, 1.0, level + r])
         above = on + 0.5 * size * floor.n
-        close("time of impact at the end of the step [s]", lesson.plane_impact_time(3.0, 0.5, above, on, size * r, floor),
-              3.5, 0.0, f"{above} to {on}, r = {size * r}, {floor}")
+        close("time of impact at the end of the step [s]",
+              lesson.plane_impact_time(3.0, 0.5, above, on, size * r, floor), 3.5, 0.0,
+              f"{above} to {on}, r = {size * r}, {floor}")
 
 
-# ---------------------------------------------------------------------------------------------- a cylinder along the x axis
+# ---------------------------------------------------------------------------------------------- cylinder along x
 
-@exercise("6.3", points=0.5, hint="the nearest point of the axis has the same x coordinate, and zeros")
+@exercise("6.3", points=0.5, hint="the nearest point of the axis has the ball's x coordinate, and y = z = 0")
 def test_a_ball_and_a_cylinder_are_nearest_across_the_axis(lesson, draw):
     R, r, along = draw(0.5, 1.5), draw(0.1, 0.4), draw(-5.0, 5.0)
     for gap in (draw(0.1, 2.0), -draw(0.05, 0.3), -0.9 * (R + r)):
         phi = draw(0.0, 2.0 * np.pi)
         n, foot = np.array([0.0, np.cos(phi), np.sin(phi)]), np.array([along, 0.0, 0.0])
         x = foot + (R + r + gap) * n
-        same_contact(lesson.cylinder_contact(x, r, R), x - r * n, foot + R * n, n, gap, 1e-11, f"x = {x}, r = {r}, R = {R}")       # n is known to 1e-16·5/0.06
+        # The error of n is 1e-16·5/0.06.
+        same_contact(lesson.cylinder_contact(x, r, R), x - r * n, foot + R * n,
+                     n, gap, 1e-11, f"x = {x}, r = {r}, R = {R}")
     c = lesson.cylinder_contact(np.array([along, 0.0, 0.0]), r, R)
     close("gap of a ball on the axis [m]", c.gap, -R - r, ROUND_OFF)
-    close("size of n there", np.linalg.norm(numbers("n", c.n, (3,))), 1.0, ROUND_OFF)
-    close("n along the axis there", c.n[0], 0.0, ROUND_OFF)
+    close("length of n there", np.linalg.norm(numbers("n", c.n, (3,))), 1.0, ROUND_OFF)
+    close("component of n along the axis there", c.n[0], 0.0, ROUND_OFF)
 
 
 @exercise("6.3", points=0.5,
-          hint="of all points of the axis (s, 0, 0) the nearest to the ball has s = x₀, wherever the ball is")
+          hint="of all points (s, 0, 0) of the axis, the nearest to the ball has s = x₀, wherever the ball is")
 def test_no_point_of_the_axis_is_nearer_than_the_one_of_the_contact(lesson, draw):
     for size, place in places(draw):
         for phi in (0.0, 0.5 * np.pi, np.pi, draw(0.0, 2.0 * np.pi)):
-            out, r, R = size * 10.0 ** draw(-2.0, 1.0), size * draw(0.01, 2.0), size * draw(0.01, 2.0)
+            out = size * 10.0 ** draw(-2.0, 1.0)
+            r, R = size * draw(0.01, 2.0), size * draw(0.01, 2.0)
             x = np.array([place[0], out * np.cos(phi), out * np.sin(phi)])
             axis = np.zeros((201, 3))
-            axis[:, 0] = x[0] + out * np.linspace(-1.0, 1.0, 201)        # the one in the middle is x[0] itself
+            axis[:, 0] = x[0] + out * np.linspace(-1.0, 1.0, 201)        # the middle one is x[0] itself
             q = axis[np.argmin(np.linalg.norm(axis - x, axis=1))]
             n = (x - q) / np.linalg.norm(x - q)
-            c, given = lesson.cylinder_contact(x, r, R), f"x = {x}, r = {r}, R = {R}"
+            gap = np.linalg.norm(x - q) - r - R
+            c = lesson.cylinder_contact(x, r, R)
+            given = f"x = {x}, r = {r}, R = {R}"
             close("n of the contact: from b to a", c.n, n, KNOWN, given)
             close("gap, p_a and p_b of the contact over the size [-]", np.concatenate(([c.gap], c.p_a, c.p_b)) / size,
-                  np.concatenate(([np.linalg.norm(x - q) - r - R], x - r * n, q + R * n)) / size, KNOWN, given)
+                  np.concatenate(([gap], x - r * n, q + R * n)) / size, KNOWN, given)
 
 
 def flight(draw, rho, beside, far, length, begin=None):
-    """(x_0, x_1): straight on for `length` across the axis (and some way along it), from `far` before it, passing it at `beside`."""
+    """(x_0, x_1): a path of `length` across the axis and some way along it.
+
+    It starts at a distance `far` before the axis and passes it at a distance `beside`.
+    """
     phi, x = draw(0.0, 2.0 * np.pi), draw(-3.0, 3.0, 2)
     e, across = np.array([np.cos(phi), np.sin(phi)]), np.array([-np.sin(phi), np.cos(phi)])
     y = -far * e + beside * across
     return np.append(x[0], y), np.append(x[1], y + length * e)
 
 
-@exercise("6.4", points=0.5, hint="the first of the two roots; the coordinate along the axis does not matter")
-def test_the_first_root_is_when_it_touches_from_walking_to_ten_kilometres_a_second(lesson, draw):
-    """At `beside` from the axis the path enters the circle ρ at √(ρ² − beside²) before the axis; lengths are rounded by 1e-16·1000."""
+@exercise("6.4", points=0.5, hint="take the first of the two roots; the coordinate along the axis does not matter")
+def test_the_first_root_is_the_time_of_impact_at_20_m_per_s_and_at_10_km_per_s(lesson, draw):
+    """A path at distance `beside` from the axis enters the circle of radius ρ at √(ρ² − beside²) before the axis.
+
+    The round-off of lengths is 1e-16·1000.
+    """
     R, r, dt = draw(0.5, 1.5), draw(0.05, 0.3), 0.1
     for speed in (20.0, 100.0, 1e4):
         length, share = speed * dt, draw(-0.9, 0.9)
@@ -181,65 +201,79 @@ def test_the_first_root_is_when_it_touches_from_walking_to_ten_kilometres_a_seco
         way = far - (R + r) * np.sqrt(1.0 - share**2)
         t, before = draw(1.0, 5.0), x_1.copy()
         got = lesson.cylinder_impact_time(t, dt, x_0, x_1, r, R)
-        close("the place that was handed in: do not change x_1 [m]", x_1, before, 0.0)
+        close("input x_1 after the call: do not change it [m]", x_1, before, 0.0)
         if way < length:
-            close("time of impact [s]", got, t + way / speed, 1e-11, given=f"t = {t}, dt = {dt}, {x_0} to {x_1}, r = {r}, R = {R}")
+            close("time of impact [s]", got, t + way / speed, 1e-11,
+                  given=f"t = {t}, dt = {dt}, {x_0} to {x_1}, r = {r}, R = {R}")
         else:
-            never("time of impact after the end of the step [s]", got, given=f"t = {t}, dt = {dt}, {x_0} to {x_1}, r = {r}, R = {R}")
+            never("time of impact after the end of the step [s]", got,
+                  given=f"t = {t}, dt = {dt}, {x_0} to {x_1}, r = {r}, R = {R}")
 
 
-@exercise("6.4", points=0.5, hint="C ≤ 0: touches already; B ≥ 0: moves away, or not across at all; D < 0: passes by; s > 1: later")
-def test_who_passes_by_leaves_or_comes_later_is_not_hit(lesson, draw):
+@exercise("6.4", points=0.5,
+          hint="C ≤ 0: already touches; B ≥ 0: moves away, or along the axis; D < 0: misses; s > 1: comes later")
+def test_a_ball_that_misses_leaves_or_arrives_later_has_no_impact(lesson, draw):
     R, r, t, dt = draw(0.5, 1.5), draw(0.05, 0.3), draw(1.0, 5.0), draw(0.01, 0.2)
     rho = R + r
     x_0, x_1 = flight(draw, rho, draw(1.05, 2.0) * rho, draw(3.0, 5.0), 10.0)
-    never("time of impact of one who passes by [s]", lesson.cylinder_impact_time(t, dt, x_0, x_1, r, R), f"{x_0} to {x_1}, r = {r}, R = {R}")
+    never("time of impact of a ball that misses [s]", lesson.cylinder_impact_time(t, dt, x_0, x_1, r, R),
+          f"{x_0} to {x_1}, r = {r}, R = {R}")
     x_0, x_1 = flight(draw, rho, draw(-0.8, 0.8) * rho, draw(4.0, 6.0), draw(0.5, 1.5))
-    never("time of impact of one who comes later [s]", lesson.cylinder_impact_time(t, dt, x_0, x_1, r, R), f"{x_0} to {x_1}, r = {r}, R = {R}")
-    never("time of impact of one who leaves [s]", lesson.cylinder_impact_time(t, dt, x_0, 20.0 * x_0 - 19.0 * x_1, r, R), f"{x_0}, away, r = {r}, R = {R}")
+    never("time of impact of a ball that arrives too late [s]", lesson.cylinder_impact_time(t, dt, x_0, x_1, r, R),
+          f"{x_0} to {x_1}, r = {r}, R = {R}")
+    never("time of impact of a ball that moves away [s]",
+          lesson.cylinder_impact_time(t, dt, x_0, 20.0 * x_0 - 19.0 * x_1, r, R), f"{x_0}, away, r = {r}, R = {R}")
     aside = x_0 + np.array([draw(1.0, 9.0), 0.0, 0.0])
-    never("time of impact of one who flies along the axis [s]", lesson.cylinder_impact_time(t, dt, x_0, aside, r, R), f"{x_0} to {aside}")
+    never("time of impact of a ball that flies along the axis [s]",
+          lesson.cylinder_impact_time(t, dt, x_0, aside, r, R),
+          f"{x_0} to {aside}")
     inside = np.append(x_0[0], draw(0.1, 0.6, 2) * rho)
     for end in (inside, x_0):
-        close("time of impact of one who is in already [s]", lesson.cylinder_impact_time(t, dt, inside, end, r, R), t, 0.0, given=f"{inside} to {end}")
+        close("time of impact of a ball that overlaps [s]", lesson.cylinder_impact_time(t, dt, inside, end, r, R),
+              t, 0.0, given=f"{inside} to {end}")
 
 
-@exercise("6.4", points=0.5, hint="D = A ρ² − (y₀ w₁ − y₁ w₀)²: in B² − A C the digits that count are lost")
+@exercise("6.4", points=0.5, hint="D = A ρ² − (y₀ w₁ − y₁ w₀)²: in B² − A C the significant digits cancel")
 def test_a_grazing_shot_from_afar_loses_no_digits(lesson, draw):
-    """From 1000ρ, passing at (1 − 1e-9)ρ: the cross product is known to 2e-13ρ, the entry at √(2e-9)ρ = 4.5e-5ρ to 2e-13/4.5e-5 = 5e-9ρ."""
+    """From 1000ρ, the ball passes at (1 − 1e-9)ρ and enters at √(2e-9)ρ = 4.5e-5ρ before the axis.
+
+    The cross product is known to 2e-13ρ, so the entry is known to 2e-13/4.5e-5 = 5e-9ρ.
+    """
     for _ in range(5):
         R, r = draw(0.5, 1.5), draw(0.05, 0.3)
         rho = R + r
         x_0, x_1 = flight(draw, rho, (1.0 - 1e-9) * rho, 1e3 * rho, 2e3 * rho)
         way = 2e3 * rho * lesson.cylinder_impact_time(0.0, 1.0, x_0, x_1, r, R)
-        close("way to the impact over ρ [-]", way / rho, 1e3 - np.sqrt(2e-9 - 1e-18), 5e-8, given=f"{x_0} to {x_1}, r = {r}, R = {R}")
+        close("distance to the impact over ρ [-]", way / rho, 1e3 - np.sqrt(2e-9 - 1e-18), 5e-8,
+              given=f"{x_0} to {x_1}, r = {r}, R = {R}")
 
 
 def touches_first(draw, got, t, dt, x_0, x_1, rho, size, given):
-    """The distance from the axis along the path proves `got`: its square is convex, so it first falls and then rises.
+    """Check `got` with the distance from the axis along the path: its square is convex, so it falls first, then rises.
 
-    |y|² is known to 1e-15 of (10 size)², so that |y| near ρ > 0.1 size is known to 1e-12 of the size.
+    |y|² is known to 1e-15 of (10 size)², so |y| near ρ > 0.1 size is known to 1e-12 of the size.
     """
     y, w = x_0[1:], (x_1 - x_0)[1:]
     nearest = y + min(1.0, max(0.0, -(y @ w) / (w @ w))) * w
     if np.linalg.norm(y) <= rho:
-        close("time of impact of a ball that touches already [s]", got, t, 0.0, given)
+        close("time of impact of a ball that already touches [s]", got, t, 0.0, given)
     elif np.linalg.norm(nearest) > rho:
-        never("time of impact of a ball that does not come so near [s]", got, given)
+        never("time of impact of a ball that does not come close enough [s]", got, given)
     else:
         s = (float(numbers("time of impact [s]", got, (), given)) - t) / dt
-        between("time of impact, as a share of the step [-]", s, 0.0, 1.0 + 1e-12, given)
-        close("distance from the axis then, less R + r, over the size [-]", (np.linalg.norm(y + s * w) - rho) / size,
+        between("time of impact as a fraction of the step [-]", s, 0.0, 1.0 + 1e-12, given)
+        close("distance from the axis then, minus R + r, over the size [-]", (np.linalg.norm(y + s * w) - rho) / size,
               0.0, 1e-11, given)
-        between("change of that distance then: coming nearer [-]", (y + s * w) @ w / size**2, -np.inf, 1e-9, given)
+        between("rate of change of that distance [-]: approaching", (y + s * w) @ w / size**2, -np.inf, 1e-9, given)
 
 
 @exercise("6.4", points=0.5,
-          hint="C ≤ 0: it begins inside; B ≥ 0: it moves away; D < 0: it misses; s > 1: it comes later, s = 1 does not")
+          hint="C ≤ 0: it starts inside; B ≥ 0: it moves away; D < 0: it misses; s > 1: it arrives later; s = 1 counts")
 def test_any_path_touches_the_cylinder_first_where_it_enters(lesson, draw):
     for size, place in places(draw):
         for _ in range(6):
-            r, R, t, dt = size * draw(0.05, 1.0), size * draw(0.05, 1.0), draw(0.0, 2.0), draw(0.1, 1.0)
+            r, R = size * draw(0.05, 1.0), size * draw(0.05, 1.0)
+            t, dt = draw(0.0, 2.0), draw(0.1, 1.0)
             x_0, x_1 = size * draw(-3.0, 3.0, (2, 3)) + place * np.array([1.0, 0.0, 0.0])
             given = f"t = {t}, dt = {dt}, {x_0} to {x_1}, r = {r}, R = {R}"
             touches_first(draw, lesson.cylinder_impact_time(t, dt, x_0, x_1, r, R), t, dt, x_0, x_1, R + r, size, given)
@@ -254,29 +288,33 @@ def test_any_path_touches_the_cylinder_first_where_it_enters(lesson, draw):
         close("time of impact at the end of a step by half the size [s]",
               lesson.cylinder_impact_time(2.0, 0.5, begin, end, size, size * (rho - 1.0)), 2.5, 0.0,
               f"{begin} to {end}, r = {size}, R = {size * (rho - 1.0)}")
-        # D is exactly 0 here
+        # D is exactly 0 here.
         begin, end = size * np.array([1.0, -m, rho]), size * np.array([2.0, m, rho])
         close("time of impact of a ball that only grazes [s]",
               lesson.cylinder_impact_time(2.0, 0.5, begin, end, size, size * (rho - 1.0)), 2.25, ROUND_OFF,
               f"{begin} to {end}, r = {size}, R = {size * (rho - 1.0)}")
 
 
-@exercise("6.5", points=0.25, hint="s = (p − a) · (b − a)/|b − a|², held between 0 and 1")
+@exercise("6.5", points=0.25, hint="s = (p − a) · (b − a)/|b − a|², clamped to 0 … 1")
 def test_the_nearest_point_of_a_segment_is_its_foot_or_an_end(lesson, draw):
     for d in (2, 3):
-        rows, a, length = axes(draw, d), draw(-3.0, 3.0, d), draw(0.5, 4.0)
-        b, aside = a + length * rows[0], draw(0.1, 3.0) * rows[1]
+        rows, a = axes(draw, d), draw(-3.0, 3.0, d)
+        length = draw(0.5, 4.0)
+        b = a + length * rows[0]
+        aside = draw(0.1, 3.0) * rows[1]
         s = draw(0.1, 0.9)
-        for p, expected in ((a + s * (b - a) + aside, a + s * (b - a)), (a - s * (b - a) + aside, a), (b + s * (b - a) - aside, b), (a, a)):
-            close("nearest point of the segment [m]", lesson.closest_on_segment(p, a, b), expected, ROUND_OFF, given=f"p = {p}, a = {a}, b = {b}")
+        on = a + s * (b - a)
+        for p, expected in ((on + aside, on), (a - s * (b - a) + aside, a), (b + s * (b - a) - aside, b), (a, a)):
+            close("nearest point of the segment [m]", lesson.closest_on_segment(p, a, b), expected, ROUND_OFF,
+                  given=f"p = {p}, a = {a}, b = {b}")
 
 
-@exercise("6.5", points=0.25, hint="where a and b are the same point: raise BadInput with its length")
+@exercise("6.5", points=0.25, hint="if a and b are the same point, raise BadInput with the length")
 def test_a_segment_without_length_is_refused(lesson, draw):
     for d in (2, 3):
         a = draw(-3.0, 3.0, d)
         raises("a segment from a point to itself", BadInput, lesson.closest_on_segment, draw(-3.0, 3.0, d), a, a.copy())
-        for k in range(2 * d):                                           # along a coordinate axis, either way
+        for k in range(2 * d):                                           # along each coordinate axis, both directions
             a, b, s = draw(-3.0, 3.0, d), np.zeros(d), draw(0.1, 0.9)
             b[k % d] = draw(0.5, 4.0) * (1.0 if k < d else -1.0)
             aside = np.where(np.arange(d) == k % d, 0.0, draw(-3.0, 3.0, d))
@@ -284,20 +322,21 @@ def test_a_segment_without_length_is_refused(lesson, draw):
                   lesson.closest_on_segment(a + s * b + aside, a, a + b), a + s * b, ROUND_OFF,
                   f"p = {a + s * b + aside}, a = {a}, b = {a + b}")
         tiny = a + 1e-7
-        close("nearest point of a very short segment [m]", lesson.closest_on_segment(tiny + 1.0, a, tiny), tiny, ROUND_OFF)
+        close("nearest point of a very short segment [m]", lesson.closest_on_segment(tiny + 1.0, a, tiny),
+              tiny, ROUND_OFF)
 
 
 def is_nearest(quantity, q, p, corners, size, given=""):
-    """q is the point of the hull of the corners nearest to p: it is in it, and no corner is beyond q along p − q."""
+    """Check that q is the point of the hull nearest to p: q is in the hull, and no corner is beyond q along p − q."""
     q = numbers(f"{quantity} [m]", q, p.shape, given)
-    between(f"{quantity}: how far it is from its body, over the size [-]", distance(q[None], corners) / size, 0.0,
+    between(f"{quantity}: distance from its body over the size [-]", distance(q[None], corners) / size, 0.0,
             KNOWN, given)
-    between(f"{quantity}: how far a corner is beyond it along p − q, over the size [-]",
+    between(f"{quantity}: how far a corner lies beyond it along p − q, over the size [-]",
             ((corners - q) @ (p - q)).max() / size**2, -1.0, KNOWN, given)
 
 
 @exercise("6.5", points=0.5,
-          hint="p − q makes no acute angle with the segment as seen from its nearest point q: hold s between 0 and 1")
+          hint="from the nearest point q, p − q makes no acute angle with the segment: clamp s to 0 … 1")
 def test_no_point_of_a_segment_is_nearer_at_any_size_and_place(lesson, draw):
     for d in (2, 3):
         for size, place in places(draw, d):
@@ -309,14 +348,14 @@ def test_no_point_of_a_segment_is_nearer_at_any_size_and_place(lesson, draw):
 
 
 def seen_along(draw, shadow):
-    """Corners (3,) whose coordinates (1, 2) are those (2,), turned by a drawn angle, with drawn x."""
+    """Corners (3,) whose coordinates (1, 2) are those of `shadow`, rotated by a drawn angle, with drawn x."""
     phi = draw(0.0, 2.0 * np.pi)
     c, s = np.cos(phi), np.sin(phi)
     return [np.array([draw(-3.0, 3.0), c * y - s * z, s * y + c * z]) for y, z in shadow]
 
 
 @exercise("6.6", points=0.25,
-          hint="all three y_i z_j − z_i y_j of one sign: the axis goes through the face, wherever the corners are")
+          hint="all three y_i z_j − z_i y_j have one sign: the axis passes through the face, wherever the corners are")
 def test_a_cylinder_that_pierces_a_face_is_found_though_corners_and_edges_are_clear(lesson, draw):
     R, r = draw(0.2, 0.5), draw(0.01, 0.1)
     for order, size in ((order, size) for order in (1, -1) for size in SIZES):
@@ -328,41 +367,45 @@ def test_a_cylinder_that_pierces_a_face_is_found_though_corners_and_edges_are_cl
               f"corners {corners}, r = {size * r}, R = {size * R}")
 
 
-@exercise("6.6", points=0.25, hint="elsewhere the least edge_axis_distance of the three edges, less R + r")
-def test_elsewhere_the_nearest_edge_decides(lesson, draw):
+@exercise("6.6", points=0.25, hint="otherwise the least edge_axis_distance of the three edges, minus R + r")
+def test_the_nearest_edge_gives_the_gap_of_a_face_that_is_not_pierced(lesson, draw):
     R, r = draw(0.2, 0.5), draw(0.01, 0.1)
     for height in (draw(0.6, 2.0), draw(0.05, 0.2)):
         wide, high = draw(1.0, 5.0, 2), height + draw(1.0, 3.0)
-        edge, corner = [(-wide[0], height), (wide[1], height), (draw(-1.0, 1.0), high)], [(0.0, height), (wide[0], high), (-wide[1], high)]
+        edge = [(-wide[0], height), (wide[1], height), (draw(-1.0, 1.0), high)]
+        corner = [(0.0, height), (wide[0], high), (-wide[1], high)]
         for shadow in (edge, corner):
             for k in range(3):
                 corners = seen_along(draw, shadow[k:] + shadow[:k])
-                close("gap of a triangle beside the axis [m]", lesson.triangle_cylinder_gap(*corners, r, R), height - R - r, ROUND_OFF, given=f"corners {corners}, r = {r}, R = {R}")
+                close("gap of a triangle beside the axis [m]", lesson.triangle_cylinder_gap(*corners, r, R),
+                      height - R - r, ROUND_OFF, given=f"corners {corners}, r = {r}, R = {R}")
     for way in np.array([(1.0, 0.0), (0.0, -1.0), (-3.0, 4.0)]):
-        # whole numbers: seen from its edge, in line with the axis, so that all three y_i z_j − z_i y_j are exactly 0
+        # Whole numbers: the triangle's plane contains the axis, and all three y_i z_j − z_i y_j are exactly 0.
         shares = float(draw.whole(1, 4)) * np.array([1.0, 4.0, 2.0])
         corners = [np.array([draw(-3.0, 3.0), *(share * way)]) for share in shares]
-        close("gap of a triangle whose plane holds the axis, all of it on one side [m]",
+        close("gap of a triangle whose plane contains the axis, which does not pass through it [m]",
               lesson.triangle_cylinder_gap(*corners, r, R), shares.min() * np.linalg.norm(way) - R - r, ROUND_OFF,
               f"corners {corners}, r = {r}, R = {R}")
     a = np.array([0.0, height, 0.0])
     corners = a, a + np.array([draw(1.0, 3.0), 0.0, 0.0]), np.array([0.0, height + 1.0, draw(-1.0, 1.0)])
-    close("gap of a triangle with an edge along the axis [m]", lesson.triangle_cylinder_gap(*corners, r, R), height - R - r, ROUND_OFF, given=f"corners {corners}")
+    close("gap of a triangle with an edge along the axis [m]", lesson.triangle_cylinder_gap(*corners, r, R),
+          height - R - r, ROUND_OFF, given=f"corners {corners}")
 
 
 @exercise("6.6", points=0.5,
-          hint="the shadow along x is a triangle: its distance from 0, less R + r; it is 0 where the axis goes through")
+          hint="the projection along x is a triangle: its distance from 0, minus R + r; 0 if the axis passes through")
 def test_a_triangle_is_as_far_from_the_axis_as_its_shadow_is_from_the_origin(lesson, draw):
-    """Brute force: of all points of the shadow the one nearest to 0, by non-negative least squares."""
+    """Brute force: non-negative least squares finds the point of the projection nearest to 0."""
     for size, _ in places(draw):
         r, R = size * draw(0.01, 0.5), size * draw(0.1, 1.0)
         corners = size * draw(-2.0, 2.0, (3, 3))
         obtuse, thin, beside = corners.copy(), corners.copy(), corners.copy()
         obtuse[2] = 0.5 * (corners[0] + corners[1]) + 0.1 * (corners[2] - corners[0])
-        # seen from its edge
+        # seen edge-on
         thin[2] = corners[0] + draw(0.2, 0.8) * (corners[1] - corners[0]) + [size, 0.0, 0.0]
         beside[:, 1] += 3.0 * size
-        for x in (corners, obtuse, thin, beside, 0.1 * corners, corners[::-1] + [0.0, 0.0, size]):
+        shifted = corners[::-1] + np.array([0.0, 0.0, size])
+        for x in (corners, obtuse, thin, beside, 0.1 * corners, shifted):
             gap = distance(x[:, 1:], np.zeros((1, 2))) - R - r
             got = lesson.triangle_cylinder_gap(*(row.copy() for row in x), r, R)
             close("gap over the size [-]", got / size, gap / size, KNOWN, f"corners {x.tolist()}, r = {r}, R = {R}")
@@ -371,15 +414,15 @@ def test_a_triangle_is_as_far_from_the_axis_as_its_shadow_is_from_the_origin(les
 # ---------------------------------------------------------------------------------------------- narrow phase
 
 def triangle(draw):
-    """(corners, unit normal): no angle below 0.4 rad, in a drawn plane."""
+    """(corners, unit normal) of a triangle in a drawn plane, no angle below 0.4 rad."""
     rows, at, size = axes(draw, 3), draw(-3.0, 3.0, 3), draw(0.5, 3.0)
     flat = size * np.array([[0.0, 0.0], [1.0, 0.0], [draw(0.2, 0.8), draw(0.5, 1.0)]])
     return [at + u * rows[0] + w * rows[1] for u, w in flat], rows[2]
 
 
-@exercise("6.7", points=0.25, hint="the foot on the plane where that is inside; all three edges where it is not")
+@exercise("6.7", points=0.25, hint="the foot point on the plane if it is inside; otherwise compare all three edges")
 def test_the_nearest_point_of_a_triangle_is_inside_on_an_edge_or_a_corner(lesson, draw):
-    """p = q + y has q for its nearest point exactly when y makes no acute angle with the triangle as seen from q."""
+    """p = q + y has q as its nearest point exactly when y makes no acute angle with the triangle at q."""
     for side in (1.0, -1.0):
         corners, n = triangle(draw)
         up = side * draw(0.1, 2.0) * n
@@ -394,19 +437,21 @@ def test_the_nearest_point_of_a_triangle_is_inside_on_an_edge_or_a_corner(lesson
             away = -(b - a) / np.linalg.norm(b - a) - (c - a) / np.linalg.norm(c - a)
             cases += [(on + draw(0.1, 2.0) * out / np.linalg.norm(out) + up, on), (a + draw(0.1, 2.0) * away + up, a)]
         for p, q in cases:
-            close("nearest point of the triangle [m]", lesson.closest_on_triangle(p, *corners), q, ROUND_OFF, given=f"p = {p}, corners {corners}")
+            close("nearest point of the triangle [m]", lesson.closest_on_triangle(p, *corners), q, ROUND_OFF,
+                  given=f"p = {p}, corners {corners}")
 
 
 @exercise("6.7", points=0.25,
-          hint="|N| ≤ FLAT times the longest edge squared: BadInput; a small triangle is none of that")
+          hint="|N| ≤ FLAT times the longest edge squared: BadInput; a small triangle is not flat")
 def test_a_triangle_without_area_is_refused_and_a_small_one_is_not(lesson, draw):
     a, b, p = draw(-3.0, 3.0, 3), draw(-3.0, 3.0, 3), draw(-3.0, 3.0, 3)
     for c in (a + draw(0.2, 0.8) * (b - a), b.copy(), a + 1.5 * (b - a)):
         raises("three corners on one line", BadInput, lesson.closest_on_triangle, p, a, b, c)
     raises("three corners in one point", BadInput, lesson.closest_on_triangle, p, a, a.copy(), a.copy())
     small = 1e-6 * np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.3, 0.7, 0.0]])
-    close("nearest point of a small triangle [m]", lesson.closest_on_triangle(np.array([3e-7, 2e-7, 0.5]), *small), [3e-7, 2e-7, 0.0], ROUND_OFF)
-    for high in (1e-7, 1e-9):                                            # |N| is high, 1000 times FLAT and more
+    close("nearest point of a small triangle [m]", lesson.closest_on_triangle(np.array([3e-7, 2e-7, 0.5]), *small),
+          [3e-7, 2e-7, 0.0], ROUND_OFF)
+    for high in (1e-7, 1e-9):                                            # |N| is high: 1000 times FLAT or more
         needle = [np.array(corner) for corner in ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.5, high, 0.0))]
         p = np.array([draw(0.4, 0.6), 0.5 * high, draw(0.5, 2.0)])
         close("nearest point of a needle [m]", lesson.closest_on_triangle(p, *needle), [p[0], p[1], 0.0], ROUND_OFF,
@@ -414,10 +459,10 @@ def test_a_triangle_without_area_is_refused_and_a_small_one_is_not(lesson, draw)
 
 
 @exercise("6.7", points=0.5,
-          hint="compare all three edges: near an obtuse corner p is outside of two of them, and either may be nearer")
+          hint="compare all three edges: near an obtuse corner p is outside two of them, and either may be nearer")
 def test_no_point_of_a_triangle_is_nearer_be_it_acute_obtuse_or_a_needle(lesson, draw):
     for size, place in places(draw):
-        # the third corner, over the length of a b
+        # third corner, in units of the length of a b
         for flat in ((0.5, 0.9), (0.5, 0.1), (-1.0, 0.5), (2.0, 0.5), (0.5, 0.01)):
             rows, turn = axes(draw, 3), draw.whole(0, 2)
             corners = place + size * np.roll([[0.0, 0.0], [1.0, 0.0], flat], turn, axis=0) @ rows[:2]
@@ -427,7 +472,7 @@ def test_no_point_of_a_triangle_is_nearer_be_it_acute_obtuse_or_a_needle(lesson,
 
 
 @exercise("6.8", points=0.25,
-          hint="turn the centre into the box's own axes with Rᵀ, clamp it there, and turn the point back with R")
+          hint="rotate the centre into the box's axes with Rᵀ, clamp it there, and rotate the point back with R")
 def test_a_ball_outside_is_nearest_to_the_clamped_point(lesson, draw):
     r = draw(0.1, 0.5)
     for beyond in ((1, 0, 0), (0, -1, 0), (0, 1, 1), (-1, 0, 1), (1, -1, 1)):
@@ -436,22 +481,26 @@ def test_a_ball_outside_is_nearest_to_the_clamped_point(lesson, draw):
         local = np.where(np.array(beyond) == 0, draw(-0.9, 0.9, 3), np.array(beyond)) * box.half
         q, away = box.x + box.R @ local, box.R @ out
         n, x = away / np.linalg.norm(away), q + away
-        same_contact(lesson.ball_box(x, r, box), x - r * n, q, n, np.linalg.norm(away) - r, 1e-11, f"x = {x}, r = {r}, {box}")
+        same_contact(lesson.ball_box(x, r, box), x - r * n, q, n,
+                     np.linalg.norm(away) - r, 1e-11, f"x = {x}, r = {r}, {box}")
 
 
 @exercise("6.8", points=0.25,
-          hint="inside, the least half_i − |y_i| tells the face; n leads out of it, and p_b is on it")
+          hint="inside, the least half_i − |y_i| determines the face; n points out of it, and p_b lies on it")
 def test_a_ball_whose_centre_is_inside_leaves_by_the_nearest_face(lesson, draw):
     for axis in range(3):
         for sign in (1.0, -1.0):
-            box, r, depth = lesson.Box(draw(-3.0, 3.0, 3), rotation(draw), draw(1.0, 2.0, 3)), draw(0.1, 0.5), draw(0.1, 0.4)
+            box = lesson.Box(draw(-3.0, 3.0, 3), rotation(draw), draw(1.0, 2.0, 3))
+            r, depth = draw(0.1, 0.5), draw(0.1, 0.4)
             local = draw(-0.4, 0.4, 3)
             local[axis] = sign * (box.half[axis] - depth)
             n, x = sign * box.R[:, axis], box.x + box.R @ local
-            same_contact(lesson.ball_box(x, r, box), x - r * n, x + depth * n, n, -depth - r, 1e-11, f"x = {x}, r = {r}, {box}")
+            same_contact(lesson.ball_box(x, r, box), x - r * n, x + depth * n,
+                         n, -depth - r, 1e-11, f"x = {x}, r = {r}, {box}")
     middle = lesson.ball_box(box.x, r, lesson.Box(box.x, box.R, np.array([2.0, 1.0, 3.0])))
-    close("n of a ball in the very middle: along the axis of the shortest half, sign(0) = 1", middle.n, box.R[:, 1], 1e-11)
-    close("gap there [m]", middle.gap, -1.0 - r, 1e-11)
+    close("n of a ball at the centre: along the axis of the shortest half, sign(0) = 1", middle.n,
+          box.R[:, 1], 1e-11)
+    close("gap of a ball at the centre [m]", middle.gap, -1.0 - r, 1e-11)
     cube = lesson.Box(np.zeros(3), np.eye(3), 0.5 * np.ones(3))
     for axis in range(3):
         for sign in (1.0, -1.0):
@@ -459,11 +508,15 @@ def test_a_ball_whose_centre_is_inside_leaves_by_the_nearest_face(lesson, draw):
             for place in (0.5 - 1e-9, 0.5, 0.5 + 1e-9):
                 x = np.where(np.arange(3) == axis, sign * place, off)
                 given = f"x = {x}, on or beside a face of {cube}"
-                same_contact(lesson.ball_box(x, r, cube), x - r * n, x + (0.5 - place) * n, n, place - 0.5 - r, 1e-11, given)
-    for size in SIZES:                                                   # just outside an edge: 4e-13 m at the least size
+                same_contact(lesson.ball_box(x, r, cube), x - r * n,
+                             x + (0.5 - place) * n, n, place - 0.5 - r, 1e-11, given)
+    # just outside an edge: 4e-13 m at the smallest size
+    for size in SIZES:
         cube, out = lesson.Box(np.zeros(3), np.eye(3), size * np.ones(3)), size * 2.0**-11
-        x, n, gap = np.array([size + out, 0.25 * size, -size - out]), np.array([1.0, 0.0, -1.0]) / np.sqrt(2.0), np.sqrt(2.0) * out
-        c, given = lesson.ball_box(x, size, cube), f"x = {x}, r = {size}, just outside an edge of {cube}"
+        x = np.array([size + out, 0.25 * size, -size - out])
+        n, gap = np.array([1.0, 0.0, -1.0]) / np.sqrt(2.0), np.sqrt(2.0) * out
+        c = lesson.ball_box(x, size, cube)
+        given = f"x = {x}, r = {size}, just outside an edge of {cube}"
         close("n of the contact: from b to a", c.n, n, 1e-11, given)
         close("gap, p_a and p_b of the contact over the size [-]", np.concatenate(([c.gap], c.p_a, c.p_b)) / size,
               np.concatenate(([gap - size], x - size * n, x - gap * n)) / size, 1e-11, given)
@@ -494,7 +547,7 @@ def test_a_ball_touches_a_cube_a_plank_or_a_rod_at_its_nearest_point_or_face(les
                     expected = np.linalg.norm(x - c.p_b)
                 else:
                     expected = ((x - box.x) @ normals.T + offsets).max()
-                    between("p_b of a ball inside, beyond the skin over the size [-]",
+                    between("p_b of a ball inside: distance beyond the surface over the size [-]",
                             ((c.p_b - box.x) @ normals.T + offsets).max() / size, -KNOWN, KNOWN, given)
                 close("gap over the size [-]", c.gap / size, (expected - r) / size, KNOWN, given)
                 close("p_a − p_b over the size: gap times n [-]", (c.p_a - c.p_b) / size,
@@ -505,83 +558,91 @@ def test_a_ball_touches_a_cube_a_plank_or_a_rod_at_its_nearest_point_or_face(les
 # ---------------------------------------------------------------------------------------------- broad phase
 
 @exercise("6.9", points=0.5,
-          hint="from the smaller of low and low + move to the larger of high and high + move, coordinate by coordinate")
+          hint="from the smaller of low and low + move to the larger of high and high + move, per coordinate")
 def test_a_swept_box_holds_the_box_at_every_moment_and_no_more(lesson, draw):
     for d in (2, 3):
-        low, move = draw(-3.0, 3.0, d), draw(0.5, 5.0, d) * (2 * np.array([draw.whole(0, 1) for _ in range(d)]) - 1)
+        low = draw(-3.0, 3.0, d)
+        move = draw(0.5, 5.0, d) * (2 * np.array([draw.whole(0, 1) for _ in range(d)]) - 1)
         high = low + draw(0.2, 2.0, d)
         for way in (move, np.zeros(d)):
             s = np.linspace(0.0, 1.0, 5)[:, None]
             got = lesson.swept_box(low, high, way)
-            close("low corner of the swept box [m]", got[0], (low + s * way).min(axis=0), ROUND_OFF, given=f"low {low}, high {high}, move {way}")
-            close("high corner of the swept box [m]", got[1], (high + s * way).max(axis=0), ROUND_OFF, given=f"low {low}, high {high}, move {way}")
+            close("low corner of the swept box [m]", got[0], (low + s * way).min(axis=0), ROUND_OFF,
+                  given=f"low {low}, high {high}, move {way}")
+            close("high corner of the swept box [m]", got[1], (high + s * way).max(axis=0), ROUND_OFF,
+                  given=f"low {low}, high {high}, move {way}")
 
 
-@exercise("6.9", points=0.5, hint="each coordinate on its own: one may go up while another goes down and a third stays")
+@exercise("6.9", points=0.5, hint="treat each coordinate separately: one may increase while another decreases or stays")
 def test_a_swept_box_is_the_box_around_a_hundred_moments_whichever_way_it_goes(lesson, draw):
     s = np.linspace(0.0, 1.0, 101)[:, None]
     for d in (2, 3):
         for size, place in places(draw, d):
             for ways in np.stack(np.meshgrid(*[[-1.0, 0.0, 1.0]] * d), axis=-1).reshape(-1, d):
-                low, move = place + size * draw(-3.0, 3.0, d), size * ways * 10.0 ** draw(-2.0, 1.0, d)
+                low = place + size * draw(-3.0, 3.0, d)
+                move = size * ways * 10.0 ** draw(-2.0, 1.0, d)
                 high = low + size * 10.0 ** draw(-2.0, 1.0, d)
-                got, given = lesson.swept_box(low, high, move), f"low {low}, high {high}, move {move}"
+                got = lesson.swept_box(low, high, move)
+                given = f"low {low}, high {high}, move {move}"
                 around = np.stack(((low + s * move).min(axis=0), (high + s * move).max(axis=0)))
-                close("corners of the swept box, less those of the box, over the size [-]",
+                close("corners of the swept box, minus those of the box, over the size [-]",
                       (np.stack(got) - (low, high)) / size, (around - (low, high)) / size, KNOWN, given)
 
 
 def boxes(draw, n, d, wide):
-    """n boxes with corners on a grid of whole numbers, so that some share a face, an edge or a corner exactly; some are flat."""
+    """n boxes with whole-number corners, so that some share a face, an edge or a corner exactly; some are flat."""
     low = np.floor(draw(0.0, wide, (n, d)))
     return low, low + np.floor(draw(0.0, 3.5, (n, d)))
 
 
 def touching(low_a, high_a, low_b, high_b):
-    """Numbers (m, 2) of all boxes of a and of b that have a point in common, sorted."""
+    """Index pairs (m, 2) of all boxes of a and b with a point in common, sorted."""
     return np.argwhere(np.all((low_a[:, None] <= high_b[None]) & (low_b[None] <= high_a[:, None]), axis=2))
 
 
 def same_pairs(quantity, got, expected, given=""):
-    """The same pairs, in any order."""
+    """Compare pairs in any order."""
     got = np.asarray(got)
     if got.ndim != 2 or got.shape[1:] != (2,):
         raise NotYet(quantity, "an array of shape (m, 2)", f"shape {got.shape}", "", f"shape {got.shape}", given)
     if len(got) != len(expected):
-        raise NotYet(quantity, f"{len(expected)} pairs", f"{len(got)} pairs", "none: exactly these", "another number of pairs", given)
+        raise NotYet(quantity, f"{len(expected)} pairs", f"{len(got)} pairs", "none: exactly these",
+                     "another number of pairs", given)
     close(quantity, got[np.lexsort(got.T[::-1])], expected, 0.0, given)
 
 
-@exercise("6.10", points=0.5, hint="every i, every j > i; a common face, edge or corner counts as touching")
+@exercise("6.10", points=0.5, hint="every i and every j > i; a common face, edge or corner counts as touching")
 def test_brute_force_finds_every_pair_once(lesson, draw):
     for d, wide in ((2, 12.0), (3, 6.0)):
         low, high = boxes(draw, 30, d, wide)
         expected = touching(low, high, low, high)
-        same_pairs("pairs that touch", lesson.all_pairs(low, high), expected[expected[:, 0] < expected[:, 1]], given=f"30 boxes in {d}D")
+        same_pairs("pairs that touch", lesson.all_pairs(low, high), expected[expected[:, 0] < expected[:, 1]],
+                   given=f"30 boxes in {d}D")
     far = 10.0 * np.arange(6.0).reshape(3, 2)
     same_pairs("pairs of boxes that are all apart", lesson.all_pairs(far, far + 1.0), np.zeros((0, 2)))
     raises("boxes that are inside out", BadInput, lesson.all_pairs, far + 1.0, far)
-    raises("a box whose corner is no number", BadInput, lesson.all_pairs, far, np.where(np.arange(6).reshape(3, 2) == 5, np.nan, far + 1.0))
+    raises("a box with a corner that is not a number", BadInput,
+           lesson.all_pairs, far, np.where(np.arange(6).reshape(3, 2) == 5, np.nan, far + 1.0))
 
 
 def crowds(draw, d):
-    """(name, low, high): boxes that are single, nested, tiny, flat, far away, alike, or below zero."""
+    """(name, low, high) of sets of boxes: single, nested, tiny, flat, far away, identical, negative."""
     low, high = boxes(draw, 25, d, 8.0)
     middle, half = draw(-3.0, 3.0, d), np.arange(1.0, 13.0)[:, None] * draw(0.1, 1.0, d)
     flat = np.where(np.arange(d) == 0, low, high)
     return [("a single box", low[:1], high[:1]),
             ("two boxes that touch", low[:2], low[:2] + 8.0),
-            ("two boxes that are apart", np.stack((low[0], low[0] + 9.0)), np.stack((low[0] + 1.0, low[0] + 10.0))),
+            ("two separate boxes", np.stack((low[0], low[0] + 9.0)), np.stack((low[0] + 1.0, low[0] + 10.0))),
             ("boxes one inside the other", middle - half, middle + half),
             ("tiny boxes", 2.0**-40 * low, 2.0**-40 * high),
             ("flat boxes", low, flat),
             ("boxes far away", low + 2.0**30, high + 2.0**30),
-            ("boxes that are all alike", 0.0 * low - 1.0, 0.0 * high + 1.0),
-            ("boxes below zero", low - 20.0, high - 20.0)]
+            ("identical boxes", 0.0 * low - 1.0, 0.0 * high + 1.0),
+            ("boxes with negative coordinates", low - 20.0, high - 20.0)]
 
 
 @exercise("6.10", points=0.5,
-          hint="count from the first to the last, also of one or two; what is inside another touches it")
+          hint="loop from the first to the last box, also for one or two; a box inside another touches it")
 def test_pairs_of_crowds_of_any_kind_are_those_of_the_definition(lesson, draw):
     for d in (2, 3):
         for name, low, high in crowds(draw, d):
@@ -590,25 +651,27 @@ def test_pairs_of_crowds_of_any_kind_are_those_of_the_definition(lesson, draw):
                        f"low {low.tolist()}, high {high.tolist()}")
 
 
-@exercise("6.11", points=0.75, hint="both children with the other node; both leaves: touching_items(a, i, b, j, found)")
+@exercise("6.11", points=0.75,
+          hint="pair both children with the other node; for two leaves: touching_items(a, i, b, j, found)")
 def test_two_trees_find_the_pairs_that_brute_force_finds(lesson, draw):
     for d, n, m, wide in ((2, 60, 25, 20.0), (3, 40, 90, 9.0), (3, 3, 70, 5.0)):
         a, b = boxes(draw, n, d, wide), boxes(draw, m, d, wide)
         trees = lesson.build_tree(*a), lesson.build_tree(*b)
-        same_pairs("pairs (item of a, item of b)", lesson.find_intersections(*trees), touching(*a, *b), given=f"{n} and {m} boxes in {d}D")
+        same_pairs("pairs (item of a, item of b)", lesson.find_intersections(*trees), touching(*a, *b),
+                   given=f"{n} and {m} boxes in {d}D")
     itself = lesson.build_tree(*b)
     same_pairs("pairs of a tree and itself: (i, j), (j, i) and (i, i)", lesson.find_intersections(itself, itself),
                touching(*b, *b), given="70 boxes in 3D")
     expected = touching(*b, *b)
-    same_pairs("what tree_pairs makes of it", lesson.tree_pairs(*b), expected[expected[:, 0] < expected[:, 1]],
+    same_pairs("result of tree_pairs", lesson.tree_pairs(*b), expected[expected[:, 0] < expected[:, 1]],
                given="70 boxes in 3D")
     apart = lesson.build_tree(a[0] + 100.0, a[1] + 100.0)
     same_pairs("pairs of trees that are apart", lesson.find_intersections(apart, trees[1]), np.zeros((0, 2)))
 
 
-@exercise("6.11", points=0.75, hint="go down only where the boxes of the two nodes touch: that is what saves the work")
-def test_what_is_in_a_node_out_of_reach_is_not_looked_at(lesson, draw):
-    """A tree that says of one of the root's children that it is far away: nothing of that half may be found."""
+@exercise("6.11", points=0.75, hint="descend only where the boxes of the two nodes touch: that saves the work")
+def test_nodes_that_do_not_touch_are_not_searched(lesson, draw):
+    """In a false tree, the box of one child of the root is far away. No item of that half may be found."""
     a, b = boxes(draw, 50, 2, 9.0), boxes(draw, 40, 2, 9.0)
     true, other = lesson.build_tree(*a), lesson.build_tree(*b)
     for half in (1, 2):
@@ -619,13 +682,15 @@ def test_what_is_in_a_node_out_of_reach_is_not_looked_at(lesson, draw):
         hidden = true.order[true.first[half]:true.first[half] + true.count[half]]
         expected = touching(*a, *b)
         seen = expected[~np.isin(expected[:, 0], hidden)]
-        same_pairs("pairs, when a half of tree a says that it is far away", lesson.find_intersections(lying, other), seen, given="50 and 40 boxes")
+        same_pairs("pairs, where the box of one half of tree a is far away", lesson.find_intersections(lying, other),
+                   seen, given="50 and 40 boxes")
         seen = seen[:, ::-1]
-        same_pairs("pairs, when a half of tree b says that it is far away", lesson.find_intersections(other, lying), seen[np.lexsort(seen.T[::-1])], given="40 and 50 boxes")
+        same_pairs("pairs, where the box of one half of tree b is far away", lesson.find_intersections(other, lying),
+                   seen[np.lexsort(seen.T[::-1])], given="40 and 50 boxes")
 
 
 @exercise("6.11", points=0.25,
-          hint="a tree may be a single leaf, child 0 and all; compare girths only where neither is a leaf")
+          hint="a tree may be a single leaf with child 0; compare girths only if neither node is a leaf")
 def test_trees_of_crowds_of_any_kind_find_the_pairs_that_brute_force_finds(lesson, draw):
     for d in (2, 3):
         for name, low, high in crowds(draw, d):
@@ -639,7 +704,10 @@ def test_trees_of_crowds_of_any_kind_find_the_pairs_that_brute_force_finds(lesso
 
 
 def rods(draw, n, axis):
-    """n rods along an axis, 0 or 1, far apart across it, at one of forty heights: few of those along 0 and 1 touch, but all leaves of their trees do."""
+    """n rods along axis 0 or 1, far apart across it, each at one of forty heights.
+
+    Few rods along 0 touch rods along 1, but all leaves of their trees do.
+    """
     low = np.floor(draw(0.0, 40.0, (n, 3)))
     low[:, 1 - axis], low[:, axis] = 1e3 * draw(0.0, 1.0, n), 0.0
     high = low.copy()
@@ -647,9 +715,10 @@ def rods(draw, n, axis):
     return low, high
 
 
-@exercise("6.11", points=0.25, hint="go on until the list of pairs is empty: no number of rounds is enough for all trees")
+@exercise("6.11", points=0.25,
+          hint="continue until the list of pairs is empty: no fixed number of rounds is enough for every tree")
 def test_trees_of_which_every_leaf_touches_every_other_are_searched_to_the_end(lesson, draw):
-    """64 leaves against 128: 16383 pairs of nodes."""
+    """64 leaves against 128 give 16383 pairs of nodes."""
     a, b = rods(draw, 288, 0), rods(draw, 576, 1)
     got = lesson.find_intersections(lesson.build_tree(*a), lesson.build_tree(*b))
     same_pairs("pairs of rods along x and rods along y", got, touching(*a, *b), given="288 and 576 rods")
@@ -658,15 +727,15 @@ def test_trees_of_which_every_leaf_touches_every_other_are_searched_to_the_end(l
 # ---------------------------------------------------------------------------------------------- separating axes
 
 def polygon(draw, k):
-    """A regular polygon, counter-clockwise, about a drawn centre: corners (k, 2), and half the width between centre and edges."""
+    """A regular polygon, counter-clockwise, about a drawn centre: corners (k, 2), and the radius of its corners."""
     turn = draw(0.0, 2.0 * np.pi) + 2.0 * np.pi * np.arange(k) / k
     radius = draw(1.0, 2.0)
     return draw(-3.0, 3.0, 2) + radius * np.stack((np.cos(turn), np.sin(turn)), axis=1), radius
 
 
-@exercise("6.12", points=0.25, hint="of each edge the least n · (b_j − a_i), of all edges the greatest of those")
+@exercise("6.12", points=0.25, hint="for each edge the least n · (b_j − a_i); of all edges the greatest of those")
 def test_the_edge_that_separates_best_is_the_one_a_corner_points_at(lesson, draw):
-    """Beside the middle of an edge, by less than a tenth of the size, every other edge line is farther inside."""
+    """Beside the middle of an edge, within a tenth of the size, every other edge gives a smaller gap."""
     for k in (3, 5, 6):
         a, radius = polygon(draw, k)
         for share in (draw(0.02, 0.08), -draw(0.02, 0.08)):
@@ -677,11 +746,12 @@ def test_the_edge_that_separates_best_is_the_one_a_corner_points_at(lesson, draw
             tip = 0.5 * (a[i] + a[(i + 1) % k]) + gap * n
             b = np.stack((tip, tip + draw(0.5, 1.0) * n - 0.3 * t, tip + draw(1.1, 2.0) * n + 0.3 * t)[::-1])
             got = lesson.separating_edge(a, b)
-            close("gap along the edge that separates best [m]", got[0], gap, ROUND_OFF, given=f"a = {a.tolist()}, b = {b.tolist()}")
+            close("gap along the best separating edge [m]", got[0], gap, ROUND_OFF,
+                  given=f"a = {a.tolist()}, b = {b.tolist()}")
             close("number of that edge", got[1], i, 0.0, given=f"a = {a.tolist()}, b = {b.tolist()}")
 
 
-@exercise("6.12", points=0.25, hint="outward(a, i) refuses an edge without length: use it")
+@exercise("6.12", points=0.25, hint="outward(a, i) refuses an edge of zero length: use it")
 def test_an_edge_without_length_is_refused(lesson, draw):
     a, _ = polygon(draw, 4)
     gap, e = draw(0.1, 1.0), a[1] - a[0]
@@ -692,7 +762,7 @@ def test_an_edge_without_length_is_refused(lesson, draw):
 
 
 def shapes(draw):
-    """Convex polygons of size 1 [m] about 0, counter-clockwise: random, obtuse, a needle, a square, regular."""
+    """Convex polygons of size 1 [m] around 0, counter-clockwise: random, obtuse, a needle, a square, regular."""
     turn, flat = 2.0 * np.pi * np.arange(7) / 7, axes(draw, 2)
     obtuse = np.array([[-0.5, 0.0], [0.5, 0.0], [draw(0.6, 0.8), 0.1]])
     square = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])
@@ -702,119 +772,143 @@ def shapes(draw):
 
 
 def gaps_of_edges(a, b):
-    """(k,) the least n_i · (b_j − a_i) of each edge i of a, all edges and corners at once."""
+    """(k,) the least n_i · (b_j − a_i) of each edge i of a, computed for all edges and corners at once."""
     e = np.roll(a, -1, axis=0) - a
     n = np.stack((e[:, 1], -e[:, 0]), axis=1) / np.linalg.norm(e, axis=1, keepdims=True)
     return np.min(n @ b.T - np.sum(n * a, axis=1)[:, None], axis=1)
 
 
 @exercise("6.12", points=0.5,
-          hint="of all edges the greatest gap: not the one nearest to zero, nor the first above zero")
+          hint="take the greatest gap of all edges: not the one nearest to zero, nor the first positive one")
 def test_polygons_apart_overlapping_nested_and_far_away_are_separated_as_the_hull_of_all_differences_says(lesson, draw):
-    """The facet of the hull of all differences with the greatest offset belongs to the better edge of both polygons."""
+    """The facet of the hull of all differences with the greatest offset gives the best edge of both polygons."""
     for size, place in places(draw, 2):
         for apart in (0.0, draw(0.0, 0.3), draw(0.3, 1.0), draw(1.0, 1.5), 1e2):
             a, b = (shapes(draw)[draw.whole(0, 4)] for _ in range(2))
             b = b * (0.2 if draw.whole(0, 3) == 0 else 1.0) + apart * axes(draw, 2)[0]
             a, b = place + size * a, place + size * b
-            given, found = f"a = {a.tolist()}, b = {b.tolist()}", []
+            given = f"a = {a.tolist()}, b = {b.tolist()}"
+            found = []
             for first, second in ((a, b), (b, a)):
                 gaps = gaps_of_edges(first, second)
                 gap, i = lesson.separating_edge(first, second)
                 close("greatest gap of all edges over the size [-]", gap / size, gaps.max() / size, KNOWN, given)
-                close("gap of the edge that it names, over the size [-]", gaps[int(i)] / size, gaps.max() / size, KNOWN,
+                close("gap of the returned edge, over the size [-]", gaps[int(i)] / size, gaps.max() / size, KNOWN,
                       given)
                 found.append(gap)
-            close("the better of both polygons' gaps: of the hull of all differences, over the size [-]",
+            close("greater gap of both polygons, over the size [-]: that of the hull of all differences",
                   max(found) / size, facets(differences(a, b))[1].max() / size, KNOWN, given)
 
 
-@exercise("6.13", points=0.125, hint="add the crossing y_i + s_i/(s_i − s_j)(y_j − y_i) wherever an edge changes sides")
+@exercise("6.13", points=0.125, hint="add the crossing y_i + s_i/(s_i − s_j)(y_j − y_i) where an edge changes sides")
 def test_a_cut_polygon_has_the_corners_of_what_is_left(lesson, draw):
-    """A rectangle of edges l and h, cut at f l; a corner of it cut off; all of it; nothing of it."""
+    """A rectangle with edges l and h: cut at f l, with one corner cut off, not cut, and cut away."""
     for d in (2, 3):
-        rows, at, (long, high), f = axes(draw, d), draw(-3.0, 3.0, d), draw(1.0, 3.0, 2), draw(0.2, 0.8)
-        local = lambda corners: at + np.array(corners) @ rows[:2]
+        rows = axes(draw, d)
+        at = draw(-3.0, 3.0, d)
+        (long, high), f = draw(1.0, 3.0, 2), draw(0.2, 0.8)
+        local = lambda corners, at=at, rows=rows: at + np.array(corners) @ rows[:2]
         y = local([(0.0, 0.0), (long, 0.0), (long, high), (0.0, high)])
         level = f * long + float(at @ rows[0])
         slant = (rows[0] + rows[1]) / np.sqrt(2.0)
         off = f * min(long, high)
-        cuts = (("cut across", rows[0], level, local([(0, 0), (f * long, 0), (f * long, high), (0, high)])),
-                ("cut from the other side", -rows[0], -level, local([(f * long, 0), (long, 0), (long, high), (f * long, high)])),
-                ("cut to a corner", slant, float(at @ slant) + off / np.sqrt(2.0), local([(0, 0), (off, 0), (0, off)])),
-                ("not cut at all", rows[0], level + long, y), ("cut away", rows[0], level - long, np.zeros((0, d))))
+        left = local([(0, 0), (f * long, 0), (f * long, high), (0, high)])
+        right = local([(f * long, 0), (long, 0), (long, high), (f * long, high)])
+        corner = local([(0, 0), (off, 0), (0, off)])
+        cuts = (("cut across", rows[0], level, left),
+                ("cut from the other side", -rows[0], -level, right),
+                ("with all but a corner cut off", slant, float(at @ slant) + off / np.sqrt(2.0), corner),
+                ("that is not cut", rows[0], level + long, y),
+                ("that is cut away", rows[0], level - long, np.zeros((0, d))))
         for name, n, offset, expected in cuts:
-            got = numbers(f"corners of a rectangle {name} [m]", lesson.clip(y, n, offset), expected.shape, given=f"y = {y.tolist()}, n = {n}, d = {offset}")
-            best = min(range(max(1, len(expected))), key=lambda k: np.abs(np.roll(got, k, axis=0) - expected).max(initial=0.0))
-            close(f"corners of a rectangle {name}, in their order [m]", np.roll(got, best, axis=0), expected, ROUND_OFF, given=f"y = {y.tolist()}, n = {n}, d = {offset}")
+            got = numbers(f"corners of a rectangle {name} [m]", lesson.clip(y, n, offset), expected.shape,
+                          given=f"y = {y.tolist()}, n = {n}, d = {offset}")
+            best = min(range(max(1, len(expected))),
+                       key=lambda k: np.abs(np.roll(got, k, axis=0) - expected).max(initial=0.0))
+            close(f"corners of a rectangle {name}, in order [m]", np.roll(got, best, axis=0), expected, ROUND_OFF,
+                  given=f"y = {y.tolist()}, n = {n}, d = {offset}")
 
 
-@exercise("6.13", points=0.125, hint="a cut may add a corner, and polygons may have any number: make room for all of them")
+@exercise("6.13", points=0.125,
+          hint="a cut may add a corner, and a polygon may have any number: reserve space for all of them")
 def test_a_polygon_of_many_corners_loses_one_and_gains_two(lesson, draw):
-    """Cut across the middle of the two edges that meet at its first corner."""
+    """The cut passes through the midpoints of the two edges at the first corner."""
     for k in (3, 7, 9, 12, 15, 20, 40):
         y, _ = polygon(draw, k)
         n = y[0] - y.mean(axis=0)
-        n, before, after = n / np.linalg.norm(n), 0.5 * (y[0] + y[-1]), 0.5 * (y[0] + y[1])
+        n = n / np.linalg.norm(n)
+        before, after = 0.5 * (y[0] + y[-1]), 0.5 * (y[0] + y[1])
         given = f"a regular polygon of {k} corners"
-        got = numbers("corners of what is left [m]", lesson.clip(y, n, float(n @ (0.5 * (before + after)))), (k + 1, 2), given)
+        got = numbers("remaining corners [m]", lesson.clip(y, n, float(n @ (0.5 * (before + after)))),
+                      (k + 1, 2), given)
         expected = np.concatenate((after[None], y[1:], before[None]))
         first = np.argmin(np.abs(got - expected[0]).sum(axis=1))
-        close("corners of what is left, in their order [m]", np.roll(got, -first, axis=0), expected, ROUND_OFF, given)
+        close("remaining corners, in order [m]", np.roll(got, -first, axis=0), expected, ROUND_OFF, given)
 
 
 def corners_left(quantity, got, d, given):
-    """got as rows of d numbers, of however many corners."""
+    """got as rows of d numbers, for any number of corners."""
     return numbers(quantity, got, (len(got) if hasattr(got, "__len__") else 0, d), given)
 
 
-@exercise("6.13", points=0.25, hint="a corner exactly on the plane, s_i = 0, is kept, and adds no crossing")
+@exercise("6.13", points=0.25, hint="a corner exactly on the plane, s_i = 0, is kept and adds no crossing")
 def test_a_corner_on_the_plane_is_kept_once(lesson, draw):
     for d in (2, 3):
-        wide, high = float(draw.whole(1, 4)), float(draw.whole(1, 4))                 # whole numbers: s is exactly 0
+        wide, high = float(draw.whole(1, 4)), float(draw.whole(1, 4))    # whole numbers: s is exactly 0
         y, n = np.zeros((4, d)), np.zeros(d)
-        y[:, :2], n[0] = [(0.0, 0.0), (wide, 0.0), (wide, high), (0.0, high)], 1.0
-        close("corners of a rectangle that only touches the plane [m]", lesson.clip(y, n, wide), y, 0.0, given=f"y = {y.tolist()}")
-        left = numbers("corners of a rectangle of which an edge is left [m]", lesson.clip(y, n, 0.0), (2, d), given=f"y = {y.tolist()}")
-        close("corners of a rectangle of which an edge is left, in the order of their place [m]", left[np.argsort(left[:, 1])], y[[0, 3]], 0.0, given=f"y = {y.tolist()}")
+        y[:, :2] = [(0.0, 0.0), (wide, 0.0), (wide, high), (0.0, high)]
+        n[0] = 1.0
+        close("corners of a rectangle that only touches the plane [m]", lesson.clip(y, n, wide), y, 0.0,
+              given=f"y = {y.tolist()}")
+        left = numbers("corners of a rectangle of which one edge remains [m]", lesson.clip(y, n, 0.0), (2, d),
+                       given=f"y = {y.tolist()}")
+        close("corners of a rectangle of which one edge remains, sorted by position [m]",
+              left[np.argsort(left[:, 1])], y[[0, 3]], 0.0, given=f"y = {y.tolist()}")
 
 
-@exercise("6.13", points=0.25, hint="a segment has one edge: do not come back from its second corner to its first")
+@exercise("6.13", points=0.25, hint="a segment has one edge: do not return from its second corner to its first")
 def test_a_cut_segment_keeps_two_ends(lesson, draw):
     for d in (2, 3):
         rows, a, f = axes(draw, d), draw(-3.0, 3.0, d), draw(0.2, 0.8)
         b = a + draw(1.0, 3.0) * rows[0] + draw(-0.5, 0.5) * rows[1]
         middle = a + f * (b - a)
         for n, first, second in ((rows[0], a, middle), (-rows[0], middle, b)):
-            got = numbers("ends of a cut segment [m]", lesson.clip(np.stack((a, b)), n, float(n @ middle)), (2, d), given=f"{a} to {b}")
-            close("ends of a cut segment, in the order of their place [m]", got[np.argsort(got @ rows[0])], [first, second], ROUND_OFF, given=f"{a} to {b}")
-        close("a segment that is not cut [m]", lesson.clip(np.stack((a, b)), rows[0], float(rows[0] @ b) + 1.0), [a, b], 0.0)
-        for y, offset, rows_left in ((np.zeros((0, d)), 1.0, 0), (a[None], float(rows[0] @ a) + 1.0, 1), (a[None], float(rows[0] @ a) - 1.0, 0)):
-            close(f"what is left of {len(y)} corners [m]", lesson.clip(y.copy(), rows[0], offset), y[:rows_left], 0.0,
+            got = numbers("ends of a cut segment [m]", lesson.clip(np.stack((a, b)), n, float(n @ middle)), (2, d),
+                          given=f"{a} to {b}")
+            close("ends of a cut segment, sorted by position [m]", got[np.argsort(got @ rows[0])],
+                  [first, second], ROUND_OFF, given=f"{a} to {b}")
+        close("a segment that is not cut [m]", lesson.clip(np.stack((a, b)), rows[0], float(rows[0] @ b) + 1.0),
+              [a, b], 0.0)
+        level = float(rows[0] @ a)
+        for y, offset, rows_left in ((np.zeros((0, d)), 1.0, 0), (a[None], level + 1.0, 1), (a[None], level - 1.0, 0)):
+            close(f"what remains of {len(y)} corners [m]", lesson.clip(y.copy(), rows[0], offset), y[:rows_left], 0.0,
                   f"y of shape {y.shape}")
 
 
 @exercise("6.13", points=0.25,
-          hint="what is left on the one side and on the other make up the polygon: nothing twice, nothing lost")
+          hint="the parts on both sides together make up the polygon: nothing twice, nothing lost")
 def test_what_two_opposite_cuts_leave_makes_up_the_polygon(lesson, draw):
-    """Each part lies in the polygon and on its own side.  If both areas add up to the polygon's, nothing is missing."""
+    """Each part lies in the polygon and on its own side. If both areas add up to the polygon's, nothing is missing."""
     for d in (2, 3):
         for size, place in places(draw, d):
             rows = axes(draw, d)
             for flat in shapes(draw):
-                y, direction = place + size * flat @ rows[:2], draw(0.0, 2.0 * np.pi)
+                y = place + size * flat @ rows[:2]
+                direction = draw(0.0, 2.0 * np.pi)
                 n = np.cos(direction) * rows[0] + np.sin(direction) * rows[1]
-                across, tip, total = float(n @ place + size * draw(-0.5, 0.5)), float((y @ n).max() - 2e-4 * size), 0.0
-                offset = tip if draw.whole(0, 2) == 0 else across        # that cuts off next to nothing
+                across = float(n @ place + size * draw(-0.5, 0.5))
+                tip = float((y @ n).max() - 2e-4 * size)                 # a cut here removes almost nothing
+                total = 0.0
+                offset = tip if draw.whole(0, 2) == 0 else across
                 given = f"y = {y.tolist()}, n = {n}, d = {offset}"
                 for side in (1.0, -1.0):
                     got = lesson.clip(y, side * n, side * offset)
-                    left = corners_left("corners of what is left [m]", got, d, given)
+                    left = corners_left("remaining corners [m]", got, d, given)
                     seen = (left - place) @ rows[:2].T / size
                     for corner in seen:
-                        between("corner of what is left, beyond the polygon, over the size [-]",
+                        between("remaining corner: distance from the polygon over the size [-]",
                                 distance(corner[None], flat), 0.0, KNOWN, given)
-                    between("corner of what is left, beyond the cut, over the size [-]",
+                    between("remaining corner: distance beyond the cut over the size [-]",
                             max(side * (left @ n - offset) / size, default=0.0), -10.0, KNOWN, given)
                     total += area(seen)
                 close("areas of both parts over that of the polygon [-]", total / area(flat), 1.0, 100.0 * KNOWN, given)
@@ -828,53 +922,56 @@ def turned(axis, angle):
     return R
 
 
-@exercise("6.14", points=0.25, hint="|r · axis| less both half_widths; the greatest of all; n from b to a")
+@exercise("6.14", points=0.25, hint="|r · axis| minus both half_widths; the greatest of all axes; n from b to a")
 def test_boxes_are_as_far_apart_as_their_nearest_corner_and_face_or_edges(lesson, draw):
-    """A corner above a face, or edge across edge: the distance along that axis is the true one, and no axis can show more."""
+    """A corner above a face, or edge across edge: the distance along that axis is exact, and no axis can give more."""
     Q = rotation(draw)
     a_half, b_half = draw(1.0, 2.0, 3), draw(0.5, 0.8, 3)
-    tilted = turned(0, draw(0.55, 0.8)) @ turned(1, draw(0.5, 0.7))          # some corner of b is the lowest, by far
+    tilted = turned(0, draw(0.55, 0.8)) @ turned(1, draw(0.5, 0.7))      # one corner of b is by far the lowest
     for gap in (draw(0.05, 0.5), -draw(0.005, 0.02)):
         for axis, sign in ((0, 1.0), (2, -1.0)):
             n_local = np.roll(np.array([0.0, 0.0, sign]), axis - 2)
             R_b = np.roll(tilted, axis - 2, axis=0)
             corners = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)]) * b_half @ R_b.T
             tip = corners[np.argmin(corners @ n_local)]
-            at = (a_half[axis] + gap) * n_local - tip                        # the tip above the middle of the face
+            at = (a_half[axis] + gap) * n_local - tip                    # the corner is above the middle of the face
             a = lesson.Box(draw(-3.0, 3.0, 3), Q, a_half)
             b = lesson.Box(a.x + Q @ at, Q @ R_b, b_half)
             for first, second, way, number in ((a, b, -1.0, axis), (b, a, 1.0, 3 + axis)):
                 got = lesson.box_separation(first, second)
                 close("gap of a corner above a face [m]", got[0], gap, ROUND_OFF, given=f"{first}, {second}")
-                close("its normal, from b to a", got[1], way * Q @ n_local, ROUND_OFF, given=f"{first}, {second}")
-                close("number of its axis", got[2], number, 0.0, given=f"{first}, {second}")
+                close("normal of a corner above a face, from b to a", got[1], way * Q @ n_local, ROUND_OFF,
+                      given=f"{first}, {second}")
+                close("number of the separating axis", got[2], number, 0.0, given=f"{first}, {second}")
 
 
 @exercise("6.14", points=0.25,
-          hint="axes 6 to 14 lie across an edge of each; candidate_axis of parallel edges is zeros: leave it out")
+          hint="axes 6 to 14 are perpendicular to an edge of each box; parallel edges give a zero axis: skip it")
 def test_two_edges_across_each_other_separate_and_equal_axes_leave_it_to_a_face(lesson, draw):
     Q, at, half = rotation(draw), draw(-3.0, 3.0, 3), draw(0.8, 1.5, 3)
     roll_a, roll_b, gap = draw(0.6, 0.9), draw(0.6, 0.9), draw(0.05, 0.5)
-    R_a, R_b = turned(0, roll_a), turned(1, roll_b)                          # an edge of a along x on top, one of b along y below
+    # an edge of a along x on top, an edge of b along y at the bottom
+    R_a, R_b = turned(0, roll_a), turned(1, roll_b)
     top = half[1] * np.sin(roll_a) + half[2] * np.cos(roll_a)
     low = half[0] * np.sin(roll_b) + half[2] * np.cos(roll_b)
     y_top = half[1] * np.cos(roll_a) - half[2] * np.sin(roll_a)
     x_low = -half[2] * np.sin(roll_b) + half[0] * np.cos(roll_b)
     for depth in (gap, -0.05 * gap):
         a = lesson.Box(at, Q @ R_a, half)
-        b = lesson.Box(at + Q @ np.array([-x_low, y_top, top + low + depth]), Q @ R_b, half)         # its lowest edge over the middle of a's
+        # the lowest edge of b is above the middle of the highest edge of a
+        b = lesson.Box(at + Q @ np.array([-x_low, y_top, top + low + depth]), Q @ R_b, half)
         got = lesson.box_separation(a, b)
-        close("gap of two edges across each other [m]", got[0], depth, ROUND_OFF, given=f"{a}, {b}")
-        close("its normal, from b to a", got[1], -Q[:, 2], 1e-11, given=f"{a}, {b}")
-        close("number of its axis: edge 0 of a, edge 1 of b", got[2], 7, 0.0, given=f"{a}, {b}")
+        close("gap of two crossing edges [m]", got[0], depth, ROUND_OFF, given=f"{a}, {b}")
+        close("normal of two crossing edges, from b to a", got[1], -Q[:, 2], 1e-11, given=f"{a}, {b}")
+        close("number of the axis of two crossing edges: edge 0 of a, edge 1 of b", got[2], 7, 0.0, given=f"{a}, {b}")
     flush = lesson.Box(at, Q, half), lesson.Box(at + Q @ np.array([0.0, 0.0, 2.0 * half[2] + gap]), Q, half)
     got = lesson.box_separation(*flush)
-    close("gap of two boxes flush with each other [m]", got[0], gap, ROUND_OFF, given=f"{flush}")
-    close("number of its axis: the first of those that show it", got[2], 2, 0.0, given=f"{flush}")
+    close("gap of two aligned boxes [m]", got[0], gap, ROUND_OFF, given=f"{flush}")
+    close("number of the axis of two aligned boxes: the first of equal ones", got[2], 2, 0.0, given=f"{flush}")
 
 
 def gaps_of_axes(a, b):
-    """(15,) gap of two boxes along each axis, from their corners; −∞ for those that are zeros.  (15, 3) the axes."""
+    """(15,) gap of two boxes along each axis, from their corners, −∞ for a zero axis; and the axes (15, 3)."""
     across = np.cross(a.R.T[:, None], b.R.T[None]).reshape(9, 3)
     parallel = np.sum(across**2, axis=1) < 1e-12
     axes = np.concatenate((a.R.T, b.R.T, across / np.where(parallel, 1.0, np.linalg.norm(across, axis=1))[:, None]))
@@ -884,7 +981,7 @@ def gaps_of_axes(a, b):
 
 
 def pairs_of_boxes(draw, lesson, size, place):
-    """Boxes turned in any way, or parallel to each other, one inside the other, side by side, flat, or far apart."""
+    """Boxes in general orientation, parallel, nested, side by side, flat, or far apart."""
     R, Q = rotation(draw), rotation(draw)
     quarter = np.ascontiguousarray(R[:, [1, 2, 0]])
     cube, plank, any_half = np.ones(3), np.array([1.0, 0.05, 0.5]), draw(0.3, 1.0, 3)
@@ -897,40 +994,42 @@ def pairs_of_boxes(draw, lesson, size, place):
     for R_b, half_a, half_b, apart in cases:
         a = lesson.Box(place + size * apart * axes(draw, 3)[0], R, size * half_a)
         yield a, lesson.Box(place, np.ascontiguousarray(R_b), size * half_b)
-    for k in range(15 if size == 1.0 else 0):                            # far along each axis, which is then the best
+    for k in range(15 if size == 1.0 else 0):                            # far apart along each axis, the best one
         a, b = lesson.Box(place, R, cube), lesson.Box(place, Q, any_half)
         yield a._replace(x=place + 30.0 * gaps_of_axes(a, b)[1][k]), b
 
 
 @exercise("6.14", points=0.5,
-          hint="an axis that is zeros has a gap of 0, more than any of boxes that overlap: leave it out")
+          hint="a zero axis gives a gap of 0, which is greater than that of overlapping boxes: skip it")
 def test_boxes_turned_parallel_nested_and_far_apart_are_separated_by_the_best_of_their_axes(lesson, draw):
-    """Boxes that overlap are as deep as the nearest facet of the hull of all differences is from 0.
+    """Overlapping boxes are as deep as the nearest facet of the hull of all differences is from 0.
 
-    If boxes are apart, the greatest offset of its facets is a lower bound of the gap, and their distance an upper one.
+    For separate boxes, the greatest offset of its facets is a lower bound of the gap, their distance an upper bound.
     """
     for size, place in places(draw):
         for a, b in pairs_of_boxes(draw, lesson, size, place):
-            (gap, n, k), (gaps, candidates), given = lesson.box_separation(a, b), gaps_of_axes(a, b), f"{a}, {b}"
+            gap, n, k = lesson.box_separation(a, b)
+            gaps, candidates = gaps_of_axes(a, b)
+            given = f"{a}, {b}"
             known = KNOWN * (size + np.abs(a.x - b.x).max())
-            close("greatest gap over what is known of it [-]",
+            close("error of the greatest gap over its uncertainty [-]",
                   (gap - max(gaps[:6].max(), gaps[6:].max())) / max(known, EDGES_WIN_BY), 0.0, 1.0 + KNOWN, given)
-            between("gap less the best of the faces' [m]", gap - gaps[:6].max(), -known, np.inf, given)
+            between("gap minus the best gap of the faces [m]", gap - gaps[:6].max(), -known, np.inf, given)
             n, k = numbers("n", n, (3,), given), int(k)
-            between("gap of the axis that it names, less the greatest [m]", gaps[k] - gap, -known, known, given)
-            between("gain over any face of an axis across two edges, where it names one [m]",
+            between("gap of the returned axis, minus the greatest [m]", gaps[k] - gap, -known, known, given)
+            between("gain over all faces, if the returned axis belongs to two edges [m]",
                     gaps[k] - gaps[:6].max() if k >= 6 else 1.0, EDGES_WIN_BY - known, np.inf, given)
-            close("n is that axis, either way round [-]", np.abs(n @ candidates[k]), 1.0, KNOWN, given)
+            close("n · returned axis: parallel, with either sign [-]", np.abs(n @ candidates[k]), 1.0, KNOWN, given)
             close("size of n [-]", n @ n, 1.0, KNOWN, given)
             between("n · r: from b to a [m]", n @ (a.x - b.x), -known, np.inf, given)
             p, q = corners_of(a) - b.x, corners_of(b) - b.x
             hull = facets(differences(p, q) / size)[1].max() * size
             if hull <= 0.0:
-                close("depth of boxes that overlap, less that of the hull of all differences, over what is known [-]",
+                close("depth of overlapping boxes, minus that of the hull of all differences, over its uncertainty [-]",
                       (gap - hull) / max(known, EDGES_WIN_BY), 0.0, 1.0 + KNOWN, given)
             else:
-                between("gap of boxes that are apart [m]", gap, hull - max(known, EDGES_WIN_BY), distance(p, q) + known,
-                        given)
+                low = hull - max(known, EDGES_WIN_BY)
+                between("gap of separate boxes [m]", gap, low, distance(p, q) + known, given)
 
 
 # ---------------------------------------------------------------------------------------------- any two convex bodies
@@ -938,78 +1037,88 @@ def test_boxes_turned_parallel_nested_and_far_apart_are_separated_by_the_best_of
 def holds(quantity, p, points, given=""):
     """p is in the hull of the points."""
     p = numbers(quantity, p, (points.shape[1],), given)
-    between(quantity + ": how far it is from its body [m]", distance(p[None], points), 0.0, 1e-9, given)
+    between(quantity + ": distance from its body [m]", distance(p[None], points), 0.0, 1e-9, given)
 
 
 def spiral(count):
-    """Points (count, 3) of the unit sphere on a spiral from pole to pole, evenly spread."""
+    """Points (count, 3) on the unit sphere, evenly distributed on a spiral from pole to pole."""
     k = np.arange(count) + 0.5
     z, phi = 1.0 - 2.0 * k / count, k * np.pi * (3.0 - np.sqrt(5.0))
     return np.stack((np.sqrt(1.0 - z * z) * np.cos(phi), np.sqrt(1.0 - z * z) * np.sin(phi), z), axis=1)
 
 
 @exercise("6.15", points=0.75,
-          hint="v = weights @ (p − q); support of a along −v, of b along v; stop, or add the new pair and keep what counts")
+          hint="v = weights @ (p − q); support of a along −v, of b along v; stop, "
+               "or add the new pair and keep the pairs that matter")
 def test_the_distance_of_two_bodies_is_proved_by_two_points_and_a_plane(lesson, draw):
-    """Two points of the bodies show that they are no farther apart than that, and a slab between them, that they are no nearer."""
+    """Two points of the bodies prove an upper bound of the distance, and a slab between the bodies a lower bound."""
     for d, k, m in ((2, 5, 7), (3, 8, 6), (3, 1, 9), (3, 20, 20)):
         way = axes(draw, d)[0]
         a, b = draw(-1.0, 1.0, (k, d)), draw(-1.0, 1.0, (m, d)) + draw(2.5, 6.0) * way * np.sqrt(d)
-        c, given = lesson.gjk(a, b), f"a = {a.tolist()}, b = {b.tolist()}"
+        c = lesson.gjk(a, b)
+        given = f"a = {a.tolist()}, b = {b.tolist()}"
         holds("p_a", c.p_a, a, given)
         holds("p_b", c.p_b, b, given)
-        close("p_a − p_b − gap n [m]", np.asarray(c.p_a) - c.p_b - c.gap * np.asarray(c.n), np.zeros(d), ROUND_OFF, given)
-        close("room between two planes across n that the bodies do not pass [m]", (a @ c.n).min() - (b @ c.n).max(), c.gap, 1e-11, given)
-    for _ in range(3):                                                       # most of these take seven steps and more
+        close("p_a − p_b − gap n [m]", np.asarray(c.p_a) - c.p_b - c.gap * np.asarray(c.n),
+              np.zeros(d), ROUND_OFF, given)
+        close("width of the slab across n between the bodies [m]", (a @ c.n).min() - (b @ c.n).max(),
+              c.gap, 1e-11, given)
+    for _ in range(3):                                                   # most of these take seven steps or more
         round_ones = draw(-1.0, 1.0, (2, 400, 3))
         a, b = round_ones / np.linalg.norm(round_ones, axis=2, keepdims=True)
         a = a + 2.5 * axes(draw, 3)[0]
         c = lesson.gjk(a, b)
-        close("the same for two balls of 400 corners [m]", (a @ c.n).min() - (b @ c.n).max(), c.gap, 1e-11,
+        close("width of the slab between two balls of 400 corners [m]", (a @ c.n).min() - (b @ c.n).max(), c.gap, 1e-11,
               given="centres 2.5 m apart")
-    for count, centre in ((600, (1.1, 0.6, -0.6)), (200, (1.002, 0.6, 0.4))):         # these take more than twenty
+    for count, centre in ((600, (1.1, 0.6, -0.6)), (200, (1.002, 0.6, 0.4))):    # these take more than twenty steps
         disc = spiral(count)
         a, b = disc * [0.001, 1.0, 1.0], disc * [1.0, 0.001, 1.0] + np.array(centre)
         c = lesson.gjk(a, b)
-        close(f"the same for two flat bodies of {count} corners [m]", (a @ c.n).min() - (b @ c.n).max(), c.gap, KNOWN,
-              given="two ellipsoids with axes of 1 m, 1 m and 1 mm")
+        close(f"width of the slab between two flat bodies of {count} corners [m]",
+              (a @ c.n).min() - (b @ c.n).max(), c.gap, KNOWN, given="two ellipsoids with axes of 1 m, 1 m and 1 mm")
 
 
 @exercise("6.15", points=0.75,
-          hint="far_enough also says when they overlap: then v is 0, and there is nothing left to be found")
+          hint="far_enough also detects overlap: v is then 0, and the search ends")
 def test_bodies_that_overlap_have_no_distance_and_flat_ones_do_not_confuse(lesson, draw):
     for d in (2, 3):
         a = draw(-1.0, 1.0, (12, d)) + 0.0
-        a[:2 * d] = np.concatenate((np.eye(d), -np.eye(d)))                   # its hull holds the ball of 1/√3 about 0
-        close("distance of bodies that overlap [m]", lesson.gjk(a, draw(-1.0, 1.0, (7, d)) * 0.2 + 0.05).gap, 0.0, 1e-11, given=f"a = {a.tolist()}")
+        a[:2 * d] = np.concatenate((np.eye(d), -np.eye(d)))              # its hull contains the ball of 1/√3 about 0
+        close("distance of bodies that overlap [m]", lesson.gjk(a, draw(-1.0, 1.0, (7, d)) * 0.2 + 0.05).gap,
+              0.0, 1e-11, given=f"a = {a.tolist()}")
     rows, gap = axes(draw, 3), draw(0.2, 2.0)
     square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     a, b = square @ rows[:2], (square + np.array([1.0 + gap, 0.25])) @ rows[:2]
     close("distance of two squares in one plane [m]", lesson.gjk(a, b).gap, gap, 1e-11, given=f"gap {gap} m")
-    close("distance of two squares face to face [m]", lesson.gjk(a, square @ rows[:2] + gap * rows[2]).gap, gap, 1e-11, given=f"gap {gap} m")
-    close("distance of two squares that share a side [m]", lesson.gjk(a, (square + np.array([1.0, 0.0])) @ rows[:2]).gap, 0.0, 1e-11)
-    raises("a body with a corner that is no number", BadInput, lesson.gjk, a, np.where(np.arange(12).reshape(4, 3) == 11, np.nan, b))
-    raises("bodies whose squares are no numbers", BadInput, lesson.gjk, 1e200 * a, 1e200 * b)
+    close("distance of two squares face to face [m]", lesson.gjk(a, square @ rows[:2] + gap * rows[2]).gap, gap, 1e-11,
+          given=f"gap {gap} m")
+    close("distance of two squares with a common side [m]",
+          lesson.gjk(a, (square + np.array([1.0, 0.0])) @ rows[:2]).gap, 0.0, 1e-11)
+    raises("a body with a corner that is not a number", BadInput,
+           lesson.gjk, a, np.where(np.arange(12).reshape(4, 3) == 11, np.nan, b))
+    raises("bodies whose squared coordinates overflow", BadInput, lesson.gjk, 1e200 * a, 1e200 * b)
 
 
 def bodies(draw, d):
-    """Points of bodies of size 1 [m] about 0: random, one point, on a line, in a plane, a cube, a needle."""
+    """Points of bodies of size 1 [m] around 0: random, one point, on a line, in a plane, a cube, a needle."""
     cube = np.stack(np.meshgrid(*[[-0.5, 0.5]] * d), axis=-1).reshape(-1, d)
     line = draw(-0.5, 0.5, (5, 1)) * axes(draw, d)[0]
-    plane, needle = draw(-0.5, 0.5, (8, 2)) @ axes(draw, d)[:2], draw(-0.5, 0.5, (9, d)) * np.linspace(1.0, 0.01, d)
+    plane = draw(-0.5, 0.5, (8, 2)) @ axes(draw, d)[:2]
+    needle = draw(-0.5, 0.5, (9, d)) * np.linspace(1.0, 0.01, d)
     return [draw(-0.5, 0.5, (10, d)), draw(-0.5, 0.5, (1, d)), line, plane, cube, needle]
 
 
-@exercise("6.15", points=0.5, hint="nearest corners need not be the nearest points: keep pairs, and weigh them")
+@exercise("6.15", points=0.5, hint="the nearest points need not be corners: keep pairs of corners, with weights")
 def test_bodies_of_any_kind_are_as_far_apart_as_least_squares_over_all_differences_says(lesson, draw):
     for d in (2, 3):
         for size, place in places(draw, d):
             for apart in (0.0, draw(0.1, 0.8), draw(0.8, 2.0), 1e2):
                 a, b = (bodies(draw, d)[draw.whole(0, 5)] for _ in range(2))
                 a, b = place + size * a, place + size * (b + apart * axes(draw, d)[0])
-                c, given = lesson.gjk(a, b), f"a = {a.tolist()}, b = {b.tolist()}"
+                c = lesson.gjk(a, b)
+                given = f"a = {a.tolist()}, b = {b.tolist()}"
                 expected = distance(a, b) / size
-                # |v|² is rounded by 1e-16 of the size squared: of bodies that touch, |v| is known to the root of that
+                # |v|² has a round-off of 1e-16 size². For touching bodies the error of |v| is the root of that.
                 close("distance over the size [-]", c.gap / size, expected, KNOWN if expected > 0.01 else 1e-8, given)
                 close("p_a − p_b over the size: gap times n [-]", (np.asarray(c.p_a) - c.p_b) / size,
                       c.gap * np.asarray(c.n) / size, KNOWN, given)
@@ -1017,67 +1126,84 @@ def test_bodies_of_any_kind_are_as_far_apart_as_least_squares_over_all_differenc
 
 # ---------------------------------------------------------------------------------------------- avoidance
 
-@exercise("6.16", points=0.5, hint="k (1/g − 1/reach)/g², away from the centre; nothing from g = reach on")
+@exercise("6.16", points=0.5, hint="k (1/g − 1/reach)/g², away from the centre; zero for g ≥ reach")
 def test_the_field_is_the_slope_of_its_potential(lesson, draw):
-    """Simpson's rule on a over a way of 2h across a gap of 0.3 m and more is wrong by h⁴·a⁗/90 of a, a⁗ ≤ 360/g⁴: 2e-9 for h = 2e-3."""
+    """Integrate a over 2h by Simpson's rule, at a gap of 0.3 m or more.
+
+    The relative error is h⁴ a⁗/(90 a) with a⁗ ≤ 360 a/g⁴: 2e-9 for h = 2e-3.
+    """
     for d in (2, 3):
-        centre, radius, reach, k = draw(-3.0, 3.0, d), draw(0.3, 1.0), draw(0.8, 2.0), draw(0.5, 2.0)
-        way, g, h = axes(draw, d)[0], draw(0.3, 0.6) , 2e-3
-        U = lambda g: 0.5 * k * (1.0 / g - 1.0 / reach) ** 2
-        near, here, far = (numbers("acceleration [m/s²]", lesson.repulsion(centre + (radius + s) * way, centre, radius, reach, k), (d,)) for s in (g - h, g, g + h))
+        centre = draw(-3.0, 3.0, d)
+        radius, reach, k = draw(0.3, 1.0), draw(0.8, 2.0), draw(0.5, 2.0)
+        way, g, h = axes(draw, d)[0], draw(0.3, 0.6), 2e-3
+        field = [lesson.repulsion(centre + (radius + s) * way, centre, radius, reach, k) for s in (g - h, g, g + h)]
+        near, here, far = (numbers("acceleration [m/s²]", a, (d,)) for a in field)
+        before, after = (0.5 * k * (1.0 / s - 1.0 / reach) ** 2 for s in (g - h, g + h))
         given = f"gap {g} m, radius {radius} m, reach {reach} m, k = {k}"
         mean = (near + 4.0 * here + far) @ way / 6.0
-        close("its work over the loss of potential [-]", mean * 2.0 * h / (U(g - h) - U(g + h)), 1.0, 1e-8, given)
-        close("its part across [m/s²]", here - (here @ way) * way, np.zeros(d), 1e-9, given)
+        close("work over loss of potential [-]", mean * 2.0 * h / (before - after), 1.0, 1e-8, given)
+        close("tangential component of the acceleration [m/s²]", here - (here @ way) * way, np.zeros(d), 1e-9, given)
         for beyond in (reach, draw(1.1, 3.0) * reach):
             got = lesson.repulsion(centre + (radius + beyond + 1e-9) * way, centre, radius, reach, k)
             close("acceleration out of reach [m/s²]", got, np.zeros(d), 0.0, given)
 
 
-@exercise("6.16", points=0.5, hint="a gap of zero or below has no field: raise BadInput with it")
-def test_who_is_inside_an_obstacle_hears_so(lesson, draw):
-    centre, radius, gap, way = draw(-3.0, 3.0, 2), draw(0.3, 1.0), draw(0.3, 0.6), axes(draw, 2)[0]
-    # (1/g − 1)/g² < 26 m/s², and g = |x − centre| − radius is known to 1e-15 of 0.3
-    close("acceleration outside [m/s²]", lesson.repulsion(centre + (radius + gap) * way, centre, radius, 1.0, 1.0), (1.0 / gap - 1.0) / gap**2 * way, 1e-11, given=f"gap {gap} m")
+@exercise("6.16", points=0.5, hint="there is no field where the gap is zero or negative: raise BadInput with the gap")
+def test_a_position_inside_an_obstacle_is_refused(lesson, draw):
+    centre, radius, gap = draw(-3.0, 3.0, 2), draw(0.3, 1.0), draw(0.3, 0.6)
+    way = axes(draw, 2)[0]
+    # (1/g − 1)/g² < 26 m/s², and the error of g = |x − centre| − radius is 1e-15 of 0.3.
+    close("acceleration outside [m/s²]", lesson.repulsion(centre + (radius + gap) * way, centre, radius, 1.0, 1.0),
+          (1.0 / gap - 1.0) / gap**2 * way, 1e-11, given=f"gap {gap} m")
     for size, k in ((size, k) for size in SIZES for k in range(2)):      # exact: sums of two powers of two
         corner, e, wide = size * np.array([2.0, -1.0]), np.eye(2)[k], 2.0 * size
-        raises("a place on the skin of an obstacle", BadInput, lesson.repulsion, corner + wide * e, corner, wide, size, 1.0)
+        raises("a position on the surface of an obstacle", BadInput,
+               lesson.repulsion, corner + wide * e, corner, wide, size, 1.0)
         for near in (0.5, 2.0**-8, 2.0**-20):
             g, strength = near * size, (1.0 / near - 1.0) / near**2 / size**3
             got = lesson.repulsion(corner - (wide + g) * e, corner, wide, size, 1.0)
-            close("acceleration near the skin over k (1/g − 1/reach)/g² [-]", got / strength, -e, ROUND_OFF,
+            close("acceleration near the surface over k (1/g − 1/reach)/g² [-]", got / strength, -e, ROUND_OFF,
                   f"gap {g} m, radius {wide} m, reach {size} m, k = 1")
-    for distance in (0.0, draw(0.1, 0.9)):
-        raises("a place inside the obstacle", BadInput, lesson.repulsion, centre + distance * radius * axes(draw, 2)[0], centre, radius, 1.0, 1.0)
+    for share in (0.0, draw(0.1, 0.9)):
+        raises("a position inside the obstacle", BadInput,
+               lesson.repulsion, centre + share * radius * axes(draw, 2)[0], centre, radius, 1.0, 1.0)
 
 
-@exercise("6.17", points=0.5, hint="½ a τ² = radius − |y|, away from the side on which the centre is")
-def test_held_until_it_passes_it_just_gets_past(lesson, draw):
+@exercise("6.17", points=0.5, hint="½ a τ² = radius − |y|, away from the side of the centre")
+def test_the_steering_acceleration_just_clears_the_obstacle(lesson, draw):
     for side in (1.0, -1.0):
-        rows, x, speed, radius = axes(draw, 2), draw(-3.0, 3.0, 2), draw(0.5, 3.0), draw(0.5, 2.0)
+        rows = axes(draw, 2)
+        x, speed, radius = draw(-3.0, 3.0, 2), draw(0.5, 3.0), draw(0.5, 2.0)
         tau, offset = draw(0.5, 3.0), side * draw(0.1, 0.9) * radius
-        v, centre = speed * rows[0], x + speed * tau * rows[0] + offset * rows[1]
+        v = speed * rows[0]
+        centre = x + speed * tau * rows[0] + offset * rows[1]
         a = numbers("acceleration [m/s²]", lesson.steer(x, v, centre, radius, 4.0), (2,))
         given = f"x = {x}, v = {v}, centre {centre}, radius {radius}"
-        close("its part along v [m/s²]", a @ rows[0], 0.0, 1e-11, given)
+        close("component of the acceleration along v [m/s²]", a @ rows[0], 0.0, 1e-11, given)
         passed = x + tau * v + 0.5 * tau**2 * a
-        close("where it passes the centre, seen from there [m]", passed - centre, -np.sign(offset) * radius * rows[1], 1e-11, given)
+        close("position relative to the centre when passing it [m]", passed - centre,
+              -np.sign(offset) * radius * rows[1], 1e-11, given)
 
 
-@exercise("6.17", points=0.5, hint="behind it, too far ahead, far enough aside, at rest: 0; straight on: to the left")
-def test_nobody_swerves_without_need_and_head_on_they_turn_left(lesson, draw):
-    rows, x, speed, radius = axes(draw, 2), draw(-3.0, 3.0, 2), draw(0.5, 3.0), draw(0.5, 2.0)
+@exercise("6.17", points=0.5,
+          hint="obstacle behind, too far ahead, far enough aside, or at rest: 0; straight ahead: turn left")
+def test_nothing_swerves_without_need_and_head_on_it_turns_left(lesson, draw):
+    rows = axes(draw, 2)
+    x, speed, radius = draw(-3.0, 3.0, 2), draw(0.5, 3.0), draw(0.5, 2.0)
     v, left = speed * rows[0], np.array([-rows[0][1], rows[0][0]])
     off = lambda tau, offset: x + speed * tau * rows[0] + offset * rows[1]
-    for name, centre, velocity in (("behind it", off(-1.0, 0.1), v), ("too far ahead", off(5.0, 0.1), v), ("far enough aside", off(1.0, 1.1 * radius), v),
-                                   ("at rest", off(1.0, 0.1), 0.0 * v)):
-        close(f"acceleration for what is {name} [m/s²]", lesson.steer(x, velocity, centre, radius, 4.0), np.zeros(2), 0.0, given=f"x = {x}, v = {velocity}, centre {centre}")
+    cases = {"an obstacle behind": (off(-1.0, 0.1), v), "an obstacle too far ahead": (off(5.0, 0.1), v),
+             "an obstacle far enough aside": (off(1.0, 1.1 * radius), v), "a walker at rest": (off(1.0, 0.1), 0.0 * v)}
+    for name, (centre, velocity) in cases.items():
+        close(f"acceleration for {name} [m/s²]", lesson.steer(x, velocity, centre, radius, 4.0),
+              np.zeros(2), 0.0, given=f"x = {x}, v = {velocity}, centre {centre}")
     for size, e in ((size, np.roll([turn, 0.0], k)) for size in SIZES for k in range(2) for turn in (1.0, -1.0)):
-        # sums of powers of two: the offset is exact
+        # Sums of powers of two: the offset is exact.
         x, v, left = size * np.array([1.0, 2.0]), 2.0 * size * e, np.array([-e[1], e[0]])
-        for tau, offset in ((tau, offset) for tau in (0.25, 2.0) for offset in (0.0, *(s * 2.0**-k for k in (10, 20, 30) for s in (1, -1)))):
+        offsets = [0.0] + [s * 2.0**-k for k in (10, 20, 30) for s in (1, -1)]
+        for tau, offset in ((tau, offset) for tau in (0.25, 2.0) for offset in offsets):
             centre = x + tau * v + offset * size * left
             expected = 2.0 * (1.0 - abs(offset)) / tau**2 * (left if offset <= 0.0 else -left)
-            close("acceleration when heading for the centre, or just beside it, over the size [1/s²]",
+            close("acceleration when heading for the centre, or slightly beside it, over the size [1/s²]",
                   lesson.steer(x, v, centre, size, 4.0) / size, expected, 1e-10,
                   f"x = {x}, v = {v}, radius {size}, passes {offset * size} to the right of the centre after {tau} s")

@@ -1,4 +1,4 @@
-"""Lesson 3 is right when a support pushes only, friction takes all the energy that its cone allows, and what should stay put stays."""
+"""Lesson 3: a support only pushes, friction removes all the energy its cone allows, and a held block stays at rest."""
 
 import numpy as np
 import pytest
@@ -10,12 +10,12 @@ from ..grading.expect import between, close, raises
 
 exercise = pytest.mark.exercise
 G = 9.81                     # [m/s²]
-# Everything drawn is below 30 in its unit, and what is compared takes a few dozen operations, each rounded by 1.1e-16 of that:
+# All drawn values are below 30 in their unit. A result takes a few dozen operations, each with a round-off of 1.1e-16.
 ROUND_OFF = 1e-12
 
 
 def frame(draw, d):
-    """Rows n, t_1 (, t_2): a unit normal and unit tangents, drawn, in d dimensions; none along an axis of the coordinates."""
+    """Rows n, t_1 (, t_2): a drawn unit normal and unit tangents in d dimensions, none along a coordinate axis."""
     turn = draw(0.2, 1.3) + 0.5 * np.pi * draw.whole(0, 3)
     n, t_1 = np.array([-np.sin(turn), np.cos(turn)]), np.array([np.cos(turn), np.sin(turn)])
     if d == 2:
@@ -26,7 +26,7 @@ def frame(draw, d):
 
 
 def along_surface(draw, axes, size):
-    """A vector of that length along the surface, in a drawn direction."""
+    """A vector of length `size` along the surface, in a drawn direction."""
     if len(axes) == 2:
         return size * axes[1] * (2 * draw.whole(0, 1) - 1)
     heading = draw(0.0, 2.0 * np.pi)
@@ -35,8 +35,8 @@ def along_surface(draw, axes, size):
 
 # ---------------------------------------------------------------------------------------------- at rest and sliding
 
-@exercise("3.1", points=1, hint="how much of F points against n: −F · n, but never less than zero")
-def test_a_support_answers_what_presses_and_lets_go_of_what_lifts(lesson, draw):
+@exercise("3.1", points=1, hint="the part of F against n: −F · n, but never less than zero")
+def test_a_support_balances_a_pressing_force_and_exerts_none_on_a_lifted_body(lesson, draw):
     for d in (2, 3):
         for load in (draw(1.0, 20.0), 1e-6):
             axes = frame(draw, d)
@@ -47,89 +47,107 @@ def test_a_support_answers_what_presses_and_lets_go_of_what_lifts(lesson, draw):
                   given=f"lift {load} N, n = {n}")
 
 
-@exercise("3.2", points=0.5, hint="inside the cone friction is −F_t, neither more nor less: F + F_s has no part along the surface")
-def test_static_friction_holds_what_is_inside_its_cone(lesson, draw):
+@exercise("3.2", points=0.5,
+          hint="inside the cone friction is −F_t, neither more nor less: F + F_s has no tangential part")
+def test_static_friction_balances_a_pull_inside_its_cone(lesson, draw):
     for d in (2, 3):
         axes, load, mu = frame(draw, d), draw(1.0, 20.0), draw(0.2, 1.5)
         for share, friction in ((draw(0.1, 0.95), mu), (draw(2.0, 5.0), np.inf), (0.0, mu), (0.0, 0.0)):
             pull = along_surface(draw, axes, share * mu * load)
             got = lesson.static_friction(pull - load * axes[0], axes[0], friction)
-            close("friction on a body that holds [N]", got, -pull, ROUND_OFF, given=f"pull {pull} N, load {load} N, μ = {friction}")
+            close("friction on a body that holds [N]", got, -pull, ROUND_OFF,
+                  given=f"pull {pull} N, load {load} N, μ = {friction}")
 
 
-@exercise("3.2", points=0.5, hint="beyond the cone its size is μ_s F_N, with the normal force of F itself, and it points against F_t")
-def test_static_friction_does_what_it_can_beyond_its_cone(lesson, draw):
+@exercise("3.2", points=0.5,
+          hint="beyond the cone its magnitude is μ_s F_N, where F_N is the normal force of F; it points against F_t")
+def test_static_friction_reaches_its_limit_beyond_its_cone(lesson, draw):
     for d in (2, 3):
         axes, load, mu = frame(draw, d), draw(1.0, 10.0), draw(0.2, 1.0)
         for friction in (mu, 0.0):
             pull = along_surface(draw, axes, draw(1.1, 3.0) * mu * load)
             got = lesson.static_friction(pull - load * axes[0], axes[0], friction)
             expected = -friction * load * pull / np.linalg.norm(pull)
-            close("friction on a body that gives way [N]", got, expected, ROUND_OFF, given=f"pull {pull} N, load {load} N, μ = {friction}")
+            close("friction on a body that slips [N]", got, expected, ROUND_OFF,
+                  given=f"pull {pull} N, load {load} N, μ = {friction}")
 
 
-@exercise("3.2", points=0.5, hint="no load, no friction: cone_radius(mu_s, normal_force(F, n)) is 0 then, even for μ_s = ∞")
-def test_what_is_lifted_feels_no_friction(lesson, draw):
+@exercise("3.2", points=0.5,
+          hint="without a load there is no friction: cone_radius(mu_s, normal_force(F, n)) is then 0, even for μ_s = ∞")
+def test_a_lifted_body_feels_no_friction(lesson, draw):
     axes = frame(draw, 3)
     pull = along_surface(draw, axes, draw(1.0, 5.0))
-    close("friction on a body that is pressed [N]", lesson.static_friction(pull - axes[0], axes[0], np.inf), -pull, ROUND_OFF, given=f"pull {pull} N, load 1 N, μ = ∞")
+    close("friction on a body that is pressed [N]", lesson.static_friction(pull - axes[0], axes[0], np.inf),
+          -pull, ROUND_OFF, given=f"pull {pull} N, load 1 N, μ = ∞")
     lifting = pull + draw(1.0, 5.0) * axes[0]
     for mu in (draw(0.2, 1.5), np.inf):
-        close("friction on a body that is lifted [N]", lesson.static_friction(lifting, axes[0], mu), np.zeros(3), 0.0, given=f"F = {lifting} N, μ = {mu}")
+        close("friction on a body that is lifted [N]", lesson.static_friction(lifting, axes[0], mu), np.zeros(3), 0.0,
+              given=f"F = {lifting} N, μ = {mu}")
 
 
 @exercise("3.2", points=0.5, hint="let cone_radius compute μ_s F_N: it refuses a negative μ")
 def test_negative_friction_is_refused(lesson, draw):
     pull, n = draw(0.5, 1.5), np.array([0.0, 1.0])
     F = np.array([pull, -5.0])
-    close("friction with a positive μ_s [N]", lesson.static_friction(F, n, draw(0.4, 1.0)), [-pull, 0.0], ROUND_OFF, given=f"F = {F} N")
+    close("friction with a positive μ_s [N]", lesson.static_friction(F, n, draw(0.4, 1.0)), [-pull, 0.0], ROUND_OFF,
+          given=f"F = {F} N")
     raises("a negative μ_s", BadInput, lesson.static_friction, F, n, -draw(0.1, 1.0))
 
 
-@exercise("3.3", points=0.5, hint="against the motion, not against F; its size is μ_k F_N, whatever the speed is")
-def test_kinetic_friction_opposes_the_motion_and_does_not_ask_how_fast(lesson, draw):
+@exercise("3.3", points=0.5, hint="it points against the motion, not against F; its size is μ_k F_N at every speed")
+def test_kinetic_friction_opposes_the_motion_with_a_size_independent_of_speed(lesson, draw):
     for d in (2, 3):
         axes, load, mu = frame(draw, d), draw(1.0, 10.0), draw(0.2, 1.0)
         n, F = axes[0], along_surface(draw, axes, draw(1.0, 20.0)) - load * axes[0]
         direction = along_surface(draw, axes, 1.0)
         for speed, sinking in ((1e-12, 0.0), (1e-6, 0.0), (draw(0.5, 9.0), 0.0), (draw(0.5, 9.0), draw(-2.0, 2.0))):
             got = lesson.kinetic_friction(F, speed * direction + sinking * n, n, mu)
-            # v_t is known to 1e-16 of v, and gives friction its direction: 1e-15/1e-6 of it at the slowest
+            # Friction has the direction of v_t, whose round-off is 1e-16 of v.
             close("friction on a sliding body [N]", got, -mu * load * direction, 1e-8 if speed < 1e-3 else 1e-11,
                   given=f"F = {F} N, speed {speed} m/s, sinking {sinking} m/s, μ = {mu}")
 
 
-@exercise("3.3", points=0.5, hint="where v_t is zero there is no direction to oppose: return zeros before you divide")
+@exercise("3.3", points=0.5, hint="where v_t is zero there is no direction to oppose: return zeros before dividing")
 def test_kinetic_friction_needs_a_motion_and_a_load(lesson, draw):
     axes, mu = frame(draw, 3), draw(0.2, 1.0)
     F = along_surface(draw, axes, draw(1.0, 9.0))
     still, moving = np.zeros(3), along_surface(draw, axes, draw(1.0, 3.0))
-    close("kinetic friction under a load of 1 N [N]", lesson.kinetic_friction(F - axes[0], moving, axes[0], mu), -mu * moving / np.linalg.norm(moving), 1e-11, given=f"F = {F} N")
-    close("kinetic friction at rest [N]", lesson.kinetic_friction(F - axes[0], still, axes[0], mu), still, 0.0, given=f"F = {F} N")
+    close("kinetic friction under a load of 1 N [N]", lesson.kinetic_friction(F - axes[0], moving, axes[0], mu),
+          -mu * moving / np.linalg.norm(moving), 1e-11, given=f"F = {F} N")
+    close("kinetic friction at rest [N]", lesson.kinetic_friction(F - axes[0], still, axes[0], mu), still, 0.0,
+          given=f"F = {F} N")
     for friction in (mu, np.inf):
         close("kinetic friction without load [N]", lesson.kinetic_friction(F + axes[0], moving, axes[0], friction),
               still, 0.0, given=f"F = {F} N, μ = {friction}")
     raises("a negative μ_k", BadInput, lesson.kinetic_friction, F - axes[0], moving, axes[0], -mu)
 
 
-@exercise("3.4", points=0.5, hint="it starts with what static friction allows, and then feels the kinetic one: two different μ")
+@exercise("3.4", points=0.5,
+          hint="static friction decides whether the block starts to slide, kinetic friction acts while it slides")
 def test_a_block_slides_when_the_slope_is_steeper_than_the_cone_is_wide(lesson, draw):
     theta, g = draw(0.2, 1.2), draw(1.0, 15.0)
-    down, n, weight = np.array([np.cos(theta), -np.sin(theta)]), np.array([np.sin(theta), np.cos(theta)]), np.array([0.0, -g])
+    down, n = np.array([np.cos(theta), -np.sin(theta)]), np.array([np.sin(theta), np.cos(theta)])
+    weight = np.array([0.0, -g])
     mu_s, mu_k = draw(0.6, 0.95) * np.tan(theta), draw(0.1, 0.5) * np.tan(theta)
     given = f"θ = {theta} rad, μ_s = {mu_s}, μ_k = {mu_k}, g = {g} m/s²"
-    expected = weight @ down - mu_k * abs(weight @ n)                     # the forces as arrows, drawn in the world's coordinates
-    close("acceleration down the slope [m/s²]", lesson.incline_acceleration(theta, mu_s, mu_k, g), expected, ROUND_OFF, given=given)
-    close("without friction [m/s²]", lesson.incline_acceleration(theta, 0.0, 0.0, g), weight @ down, ROUND_OFF, given=given)
+    # the force vectors in world coordinates
+    expected = weight @ down - mu_k * abs(weight @ n)
+    close("acceleration down the slope [m/s²]", lesson.incline_acceleration(theta, mu_s, mu_k, g), expected, ROUND_OFF,
+          given=given)
+    close("without friction [m/s²]", lesson.incline_acceleration(theta, 0.0, 0.0, g), weight @ down, ROUND_OFF,
+          given=given)
 
 
-@exercise("3.4", points=0.5, hint="sin θ ≤ μ_s cos θ: it holds, also where the kinetic friction alone would let it slide")
+@exercise("3.4", points=0.5,
+          hint="where sin θ ≤ μ_s cos θ the block holds, even if μ_k alone could not hold it")
 def test_a_block_holds_up_to_the_angle_whose_tangent_is_mu(lesson, draw):
     mu, g = draw(0.2, 1.5), draw(1.0, 15.0)
     edge = np.arctan(mu)
     for theta, mu_k in ((0.0, mu), (draw(0.2, 0.9) * edge, mu), (0.999999 * edge, 0.1 * mu)):
-        close("acceleration of a block that holds [m/s²]", lesson.incline_acceleration(theta, mu, mu_k, g), 0.0, 0.0, given=f"θ = {theta}, μ_s = {mu}, μ_k = {mu_k}")
-    between("acceleration just beyond the edge [m/s²]", lesson.incline_acceleration(1.000001 * edge, mu, mu, g), 1e-12, 2e-5 * g, given=f"μ = {mu}")
+        close("acceleration of a block that holds [m/s²]", lesson.incline_acceleration(theta, mu, mu_k, g), 0.0, 0.0,
+              given=f"θ = {theta}, μ_s = {mu}, μ_k = {mu_k}")
+    between("acceleration just beyond the edge [m/s²]", lesson.incline_acceleration(1.000001 * edge, mu, mu, g),
+            1e-12, 2e-5 * g, given=f"μ = {mu}")
     close("acceleration where μ_s = ∞ [m/s²]", lesson.incline_acceleration(1.5, np.inf, mu, g), 0.0, 0.0)
     raises("a negative μ_s", BadInput, lesson.incline_acceleration, 0.3, -mu, 0.0, g)
     raises("a negative μ_k of a block that slides", BadInput, lesson.incline_acceleration, 0.3, 0.0, -mu, g)
@@ -142,69 +160,90 @@ def energies(v, m, impulses):
     return 0.5 * m * np.sum((v + impulses / m) ** 2, axis=1)
 
 
-@exercise("3.5", points=1, hint="slide: size μ j_n, against v_t; stop: −m v_t, where that is smaller")
+@exercise("3.5", points=1, hint="slide: magnitude μ j_n, against v_t; stop: −m v_t, where that is smaller")
 def test_friction_leaves_the_least_energy_that_the_cone_allows(lesson, draw):
-    for share in (draw(0.1, 0.9), draw(1.1, 4.0)):                       # of the impulse that would stop it
-        axes, m, mu, speed = frame(draw, 3), draw(0.5, 5.0), draw(0.2, 1.5), draw(0.5, 5.0)
-        v, j_n = along_surface(draw, axes, speed), share * m * speed / mu
+    for share in (draw(0.1, 0.9), draw(1.1, 4.0)):                       # of the impulse that would stop the body
+        axes = frame(draw, 3)
+        m, mu, speed = draw(0.5, 5.0), draw(0.2, 1.5), draw(0.5, 5.0)
+        v = along_surface(draw, axes, speed)
+        j_n = share * m * speed / mu
         J = lesson.friction_impulse(v, m, j_n, mu)
         given = f"v_t = {v} m/s, m = {m} kg, j_n = {j_n} N s, μ = {mu}"
-        close("impulse out of the surface [N s]", np.asarray(J) @ axes[0], 0.0, ROUND_OFF, given=given)
-        between("its size [N s]: inside the cone", np.linalg.norm(J), 0.0, mu * j_n + ROUND_OFF, given=given)
-        around, out = np.meshgrid(np.linspace(0.0, 2.0 * np.pi, 181), np.linspace(0.0, 1.0, 21))
-        allowed = mu * j_n * (out * np.cos(around)).ravel()[:, None] * axes[1] + mu * j_n * (out * np.sin(around)).ravel()[:, None] * axes[2]
+        close("normal component of the impulse [N s]", np.asarray(J) @ axes[0], 0.0, ROUND_OFF, given=given)
+        between("magnitude of the impulse [N s]: inside the cone", np.linalg.norm(J), 0.0, mu * j_n + ROUND_OFF,
+                given=given)
+        angle, radius = np.meshgrid(np.linspace(0.0, 2.0 * np.pi, 181), np.linspace(0.0, 1.0, 21))
+        along_t_1 = mu * j_n * (radius * np.cos(angle)).ravel()
+        along_t_2 = mu * j_n * (radius * np.sin(angle)).ravel()
+        allowed = along_t_1[:, None] * axes[1] + along_t_2[:, None] * axes[2]
         left = energies(v, m, np.asarray(J, dtype=float)[None])[0]
-        between("kinetic energy that it leaves [J]: no other impulse of the cone leaves less", left, 0.0, energies(v, m, allowed).min() + ROUND_OFF, given=given)
-        close("speed that is left [m/s]", np.linalg.norm(v + J / m), max(0.0, 1.0 - share) * speed, ROUND_OFF, given=given)
+        between("remaining kinetic energy [J]: the least that any impulse in the cone leaves", left,
+                0.0, energies(v, m, allowed).min() + ROUND_OFF, given=given)
+        close("remaining speed [m/s]", np.linalg.norm(v + J / m), max(0.0, 1.0 - share) * speed, ROUND_OFF,
+              given=given)
 
 
-@exercise("3.5", points=0.5, hint="v_t = 0 has no direction: return zeros; μ = 0 takes nothing, and μ = ∞ stops everything; −m v_t itself leaves nothing")
-def test_friction_knows_its_limits(lesson, draw):
+@exercise("3.5", points=0.5,
+          hint="v_t = 0 has no direction: return zeros; μ = 0 gives no friction, μ = ∞ "
+               "stops every motion; use −m v_t itself, so that exactly zero is left")
+def test_friction_is_exact_in_the_limits_of_rest_and_of_zero_and_infinite_mu(lesson, draw):
     for d in (2, 3):
-        for v in draw(-1.0, 1.0, (40, d)):                               # one in seven of them is not a unit vector times its length, to the last digit
-            close("velocity that is left where it stops [m/s]: exactly none", v + lesson.friction_impulse(v, 1.0, 10.0, 1.0), 0.0 * v, 0.0, given=f"v_t = {v}, m = 1 kg")
-    v, m, j_n, still = draw(1.0, 3.0, 2), draw(0.5, 5.0), draw(0.1, 2.0), np.zeros(2)
+        # For one vector in seven, unit vector times length differs from the vector in the last digit.
+        for v in draw(-1.0, 1.0, (40, d)):
+            close("remaining velocity of a body that stops [m/s]: exactly zero",
+                  v + lesson.friction_impulse(v, 1.0, 10.0, 1.0), 0.0 * v, 0.0, given=f"v_t = {v}, m = 1 kg")
+    v, m, j_n = draw(1.0, 3.0, 2), draw(0.5, 5.0), draw(0.1, 2.0)
+    still = np.zeros(2)
     close("impulse at rest [N s]", lesson.friction_impulse(still, m, j_n, draw(0.2, 1.0)), still, 0.0)
     close("impulse where μ = 0 [N s]", lesson.friction_impulse(v, m, j_n, 0.0), still, 0.0, given=f"v_t = {v}")
-    close("impulse where μ = ∞ [N s]: stops it", lesson.friction_impulse(v, m, j_n, np.inf), -m * v, ROUND_OFF, given=f"v_t = {v}, m = {m}")
-    close("impulse where μ = ∞, but j_n = 0 [N s]", lesson.friction_impulse(v, m, 0.0, np.inf), still, 0.0, given=f"v_t = {v}")
+    close("impulse where μ = ∞ [N s]: stops the body", lesson.friction_impulse(v, m, j_n, np.inf), -m * v, ROUND_OFF,
+          given=f"v_t = {v}, m = {m}")
+    close("impulse where μ = ∞, but j_n = 0 [N s]", lesson.friction_impulse(v, m, 0.0, np.inf), still, 0.0,
+          given=f"v_t = {v}")
     raises("a negative μ", BadInput, lesson.friction_impulse, v, m, j_n, -1.0)
 
 
-@exercise("3.6", points=1, hint="each tangent for itself: m v_t · t, but not beyond ±μ j_n, and against the motion")
+@exercise("3.6", points=1, hint="treat each tangent separately: −m v_t · t, limited to ±μ j_n")
 def test_a_pyramid_leaves_the_least_energy_that_its_square_allows(lesson, draw):
     for first, second in ((draw(0.1, 0.9), -draw(0.1, 0.9)), (draw(1.1, 4.0), draw(0.1, 0.9)),
                           (-draw(1.1, 4.0), -draw(0.1, 0.9)), (draw(0.1, 0.9), -draw(1.1, 4.0)),
                           (-draw(1.1, 4.0), draw(1.1, 4.0))):
-        (n, t_1, t_2), m, limit, mu = frame(draw, 3), draw(0.5, 5.0), draw(0.5, 4.0), draw(0.2, 1.5)
-        v = limit / m * (first * t_1 + second * t_2)                     # what would stop it, in units of the limit
+        n, t_1, t_2 = frame(draw, 3)
+        m, limit, mu = draw(0.5, 5.0), draw(0.5, 4.0), draw(0.2, 1.5)
+        v = limit / m * (first * t_1 + second * t_2)                     # first, second: stopping impulse over limit
         J = lesson.pyramid_impulse(v, m, limit / mu, mu, t_1, t_2)
         given = f"m v_t = {m * v} N s, μ j_n = {limit} N s, t_1 = {t_1}, t_2 = {t_2}"
-        grid = limit * np.stack(np.meshgrid(np.linspace(-1.0, 1.0, 41), np.linspace(-1.0, 1.0, 41)), axis=-1).reshape(-1, 2)
+        ticks = np.linspace(-1.0, 1.0, 41)
+        grid = limit * np.stack(np.meshgrid(ticks, ticks), axis=-1).reshape(-1, 2)
         left = energies(v, m, np.asarray(J, dtype=float)[None])[0]
-        between("kinetic energy that it leaves [J]", left, 0.0, energies(v, m, grid @ np.stack([t_1, t_2])).min() + ROUND_OFF, given=given)
+        between("remaining kinetic energy [J]", left,
+                0.0, energies(v, m, grid @ np.stack([t_1, t_2])).min() + ROUND_OFF, given=given)
         expected = [-np.sign(y) * min(abs(y), 1.0) * limit for y in (first, second)]
-        close("its parts along t_1, t_2 and n [N s]", np.stack([t_1, t_2, n]) @ J, [*expected, 0.0], ROUND_OFF, given=given)
+        close("components of the impulse along t_1, t_2 and n [N s]", np.stack([t_1, t_2, n]) @ J, [*expected, 0.0],
+              ROUND_OFF, given=given)
     close("impulse where μ = ∞, but j_n = 0 [N s]", lesson.pyramid_impulse(v, m, 0.0, np.inf, t_1, t_2), np.zeros(3),
           0.0, given=f"v_t = {v}")
     raises("a negative μ", BadInput, lesson.pyramid_impulse, v, m, limit, -mu, t_1, t_2)
-    close("its size over μ j_n where it slides at 45°, across the pyramid's corner", np.linalg.norm(J) / limit, np.sqrt(2.0), ROUND_OFF, given=given)
+    close("magnitude over μ j_n where the body slides at 45°, to the pyramid's corner", np.linalg.norm(J) / limit,
+          np.sqrt(2.0), ROUND_OFF, given=given)
 
 
 # ---------------------------------------------------------------------------------------------- a block in time
 
 def block(lesson, n, mu_s, mu_k, gravity, push=None, omega=0.0):
-    """A Block without the lesson's own checks."""
+    """A Block that the lesson has not checked."""
     push = np.zeros(len(n)) if push is None else push
-    return lesson.Block(np.array(n, dtype=float), mu_s, mu_k, np.array(gravity, dtype=float), np.array(push, dtype=float), omega)
+    return lesson.Block(np.array(n, dtype=float), mu_s, mu_k,
+                        np.array(gravity, dtype=float), np.array(push, dtype=float), omega)
 
 
 def slope(draw, lesson, mu_s_over, mu_k_over, d=3):
-    """(Block on a drawn slope, unit vector down it, tan θ, g cos θ): both μ over tan θ as given."""
+    """(Block on a drawn slope, unit vector down it, tan θ, g cos θ), with the given ratios of both μ to tan θ."""
     axes, theta = frame(draw, d), draw(0.3, 1.0)
     down = along_surface(draw, axes, 1.0)
     gravity = G * (np.sin(theta) * down - np.cos(theta) * axes[0])
-    return block(lesson, axes[0], mu_s_over * np.tan(theta), mu_k_over * np.tan(theta), gravity), down, np.tan(theta), G * np.cos(theta)
+    p = block(lesson, axes[0], mu_s_over * np.tan(theta), mu_k_over * np.tan(theta), gravity)
+    return p, down, np.tan(theta), G * np.cos(theta)
 
 
 def run(lesson, step, p, x, v, dt, steps, t=0.0):
@@ -213,102 +252,133 @@ def run(lesson, step, p, x, v, dt, steps, t=0.0):
     return x, v
 
 
-@exercise("3.7", points=0.5, hint="the position moves with the new velocity; v + friction_impulse(…) is exactly zero when it stops")
-def test_a_thrown_block_stops_for_good_where_it_should(lesson, draw):
-    """Σ dt v over the steps is v₀²/2μg − ½ v₀ dt + ½ f(1 − f) μ g dt², f the fraction of a step at the end: short by ½ v₀ dt at most."""
+@exercise("3.7", points=0.5,
+          hint="move the position with the new velocity; when the block stops, v + friction_impulse(…) is exactly zero")
+def test_a_sliding_block_stops_at_the_right_distance_and_stays(lesson, draw):
+    """Σ dt v is at most ½ v₀ dt below the true distance.
+
+    It is v₀²/2μg − ½ v₀ dt + ½ f(1 − f) μ g dt², where f is the fraction of the last step.
+    """
     for d in (2, 3):
-        axes, mu, speed, dt = frame(draw, d), draw(0.2, 0.8), draw(1.0, 4.0), draw(0.01, 0.03)
+        axes = frame(draw, d)
+        mu, speed, dt = draw(0.2, 0.8), draw(1.0, 4.0), draw(0.01, 0.03)
         p, v0 = block(lesson, axes[0], mu, mu, -G * axes[0]), along_surface(draw, axes, speed)
         x, v = run(lesson, lesson.sliding_step, p, np.zeros(d), v0, dt, int(speed / (mu * G * dt)) + 2)
-        given, exact = f"v = {v0} m/s, μ = {mu}, dt = {dt} s", speed**2 / (2.0 * mu * G)
-        close("velocity at last [m/s]: exactly none", v, np.zeros(d), 0.0, given=given)
-        between("distance over the true one [-]", (x @ v0) / speed / exact, 1.0 - 0.5 * speed * dt / exact - ROUND_OFF, 1.0, given=given)
-        close("distance off its line [m]", x - (x @ v0) * v0 / speed**2, np.zeros(d), ROUND_OFF, given=given)
+        given = f"v = {v0} m/s, μ = {mu}, dt = {dt} s"
+        exact = speed**2 / (2.0 * mu * G)
+        close("final velocity [m/s]: exactly zero", v, np.zeros(d), 0.0, given=given)
+        between("distance over the exact distance [-]", (x @ v0) / speed / exact,
+                1.0 - 0.5 * speed * dt / exact - ROUND_OFF, 1.0, given=given)
+        close("distance from the line of motion [m]", x - (x @ v0) * v0 / speed**2, np.zeros(d), ROUND_OFF, given=given)
         again = run(lesson, lesson.sliding_step, p, x, v, dt, 3)
-        close("position, three steps later [m]", again[0], x, 0.0, given=given)
+        close("position three steps later [m]", again[0], x, 0.0, given=given)
 
 
-@exercise("3.7", points=0.5, hint="at rest ask μ_s, in motion take μ_k; both with the normal force of this slope")
+@exercise("3.7", points=0.5, hint="use μ_s at rest and μ_k in motion, both with the normal force of this slope")
 def test_a_block_on_a_slope_holds_slides_and_keeps_sliding(lesson, draw):
     dt, steps = draw(0.01, 0.05), 20
-    held, down, _, _ = slope(draw, lesson, 1.001, draw(0.1, 0.5))
+    held, down_held, _, _ = slope(draw, lesson, 1.001, draw(0.1, 0.5))
     x, v = run(lesson, lesson.sliding_step, held, np.zeros(3), np.zeros(3), dt, steps)
     close("position of a block that holds [m]", x, np.zeros(3), 0.0, given=f"{held}")
     close("velocity of a block that holds [m/s]", v, np.zeros(3), 0.0, given=f"{held}")
-    gives_way, other, _, _ = slope(draw, lesson, 0.999, draw(0.1, 0.8))
-    for p, down, v0 in ((held, down, draw(0.5, 2.0)), (gives_way, other, 0.0)):
+    loose, other, _, _ = slope(draw, lesson, 0.999, draw(0.1, 0.8))
+    for p, down, v0 in ((held, down_held, draw(0.5, 2.0)), (loose, other, 0.0)):
         press = -(p.gravity @ p.n)
-        a, t = p.gravity @ down - p.mu_k * press, steps * dt             # v = v₀ + a t at every step: Σ dt v = v₀ t + ½ a t (t + dt)
+        # v = v₀ + a t at every step, so Σ dt v = v₀ t + ½ a t (t + dt).
+        a, t = p.gravity @ down - p.mu_k * press, steps * dt
         x, v = run(lesson, lesson.sliding_step, p, np.zeros(3), v0 * down, dt, steps)
-        close("position of a block that slides down [m]", x, (v0 * t + 0.5 * a * t * (t + dt)) * down, 1e-10, given=f"{p}, v = {v0} m/s")
+        close("position of a block that slides down [m]", x, (v0 * t + 0.5 * a * t * (t + dt)) * down, 1e-10,
+              given=f"{p}, v = {v0} m/s")
         close("velocity of a block that slides down [m/s]", v, (v0 + a * t) * down, 1e-10, given=f"{p}, v = {v0} m/s")
 
 
-@exercise("3.7", points=0.5, hint="pull first, v* = v + dt a_t; friction then acts against v*, at most μ_k a_n dt, with a at the time t")
+@exercise("3.7", points=0.5,
+          hint="first the pull: v* = v + dt a_t; friction then acts against v*, at most μ_k a_n dt, with a at time t")
 def test_friction_shortens_the_velocity_that_the_pull_alone_would_give(lesson, draw):
-    axes, mu, omega, t, dt = frame(draw, 3), draw(0.2, 0.6), draw(1.0, 3.0), draw(0.5, 1.5), draw(0.01, 0.05)
+    axes = frame(draw, 3)
+    mu, omega, t, dt = draw(0.2, 0.6), draw(1.0, 3.0), draw(0.5, 1.5), draw(0.01, 0.05)
     push = along_surface(draw, axes, draw(1.0, 5.0)) - draw(0.5, 2.0) * axes[0]
     p = block(lesson, axes[0], mu, mu, -G * axes[0], push, omega)
-    x, v = along_surface(draw, axes, 1.0), along_surface(draw, axes, draw(1.0, 3.0))
+    x = along_surface(draw, axes, 1.0)
+    v = along_surface(draw, axes, draw(1.0, 3.0))
     before = x.copy(), v.copy()
     x_new, v_new = lesson.sliding_step(lesson.driven_acceleration, t, x, v, dt, p)
-    given, now = f"{p}, t = {t} s, dt = {dt} s, v = {v} m/s", push * np.cos(omega * t)
+    given = f"{p}, t = {t} s, dt = {dt} s, v = {v} m/s"
+    now = push * np.cos(omega * t)
     free = v + dt * (now - (now @ axes[0]) * axes[0])
-    close("velocity across the free one [m/s]", np.cross(v_new, free), np.zeros(3), ROUND_OFF, given=given)
-    close("speed that friction takes in a step, over dt [m/s²]", (np.linalg.norm(free) - np.linalg.norm(v_new)) / dt, mu * (G - now @ axes[0]), 1e-10, given=given)
-    close("how far it moves, over dt [m/s]", (x_new - x) / dt, v_new, 1e-11, given=given)
-    close("the x and v that were handed in: return new arrays", np.array((x, v)), np.array(before), 0.0)
+    close("velocity × frictionless velocity [m²/s²]: parallel", np.cross(v_new, free), np.zeros(3), ROUND_OFF,
+          given=given)
+    close("speed lost to friction in a step, over dt [m/s²]", (np.linalg.norm(free) - np.linalg.norm(v_new)) / dt,
+          mu * (G - now @ axes[0]), 1e-10, given=given)
+    close("displacement over dt [m/s]", (x_new - x) / dt, v_new, 1e-11, given=given)
+    close("input x and v after the call: return new arrays", np.array((x, v)), np.array(before), 0.0)
 
 
-@exercise("3.7", points=0.5, hint="at rest means that all of v is zero; |a_t| = μ_s a_n still holds; what is lifted, a_n = 0, feels no friction")
-def test_what_moves_a_little_or_along_an_axis_or_turns_round_is_not_at_rest(lesson, draw):
-    pull, dt, up, along = lesson.driven_acceleration, draw(0.01, 0.05), np.array([0.0, 1.0]), np.array([1.0, 0.0])
+@exercise("3.7", points=0.5,
+          hint="at rest means that every component of v is zero; at |a_t| = μ_s a_n the block still holds; "
+               "a lifted block, a_n = 0, feels no friction")
+def test_a_block_that_creeps_or_reverses_or_moves_along_an_axis_is_not_at_rest(lesson, draw):
+    pull = lesson.driven_acceleration
+    dt = draw(0.01, 0.05)
+    up, along = np.array([0.0, 1.0]), np.array([1.0, 0.0])
     level, speed = block(lesson, up, 0.8, 0.3, -G * up), draw(1.0, 3.0)
     v = lesson.sliding_step(pull, 0.0, np.zeros(2), speed * along, dt, level)[1]
-    close("velocity of a block on a level floor [m/s]", v, (speed - 0.3 * G * dt) * along, ROUND_OFF, given=f"v = {speed * along}, {level}")
+    close("velocity of a block on a level floor [m/s]", v, (speed - 0.3 * G * dt) * along, ROUND_OFF,
+          given=f"v = {speed * along}, {level}")
     between_the_two, down, tangent, press = slope(draw, lesson, 1.5, 0.5)
     for slow in (1e-4, 1e-10):
         v = lesson.sliding_step(pull, 0.0, np.zeros(3), slow * down, dt, between_the_two)[1]
-        close("velocity of a block that creeps down a slope [m/s]", v, (slow + 0.5 * tangent * press * dt) * down, ROUND_OFF, given=f"v = {slow} m/s down, {between_the_two}")
+        close("velocity of a block that creeps down a slope [m/s]", v,
+              (slow + 0.5 * tangent * press * dt) * down, ROUND_OFF, given=f"v = {slow} m/s down, {between_the_two}")
     v = lesson.sliding_step(pull, 0.0, np.zeros(3), -0.1 * tangent * press * dt * down, dt, between_the_two)[1]
-    close("velocity of a block that the pull turns round [m/s]", v, 0.4 * tangent * press * dt * down, ROUND_OFF, given=f"{between_the_two}, dt = {dt} s")
+    close("velocity of a block that the pull reverses [m/s]", v, 0.4 * tangent * press * dt * down, ROUND_OFF,
+          given=f"{between_the_two}, dt = {dt} s")
     lifted = block(lesson, up, 0.8, 0.3, G * up + 2.0 * along)
     for speed in (0.0, draw(1.0, 3.0)):
         v = lesson.sliding_step(pull, 0.0, np.zeros(2), speed * along, dt, lifted)[1]
-        close("velocity of a block that is lifted [m/s]: no friction", v, (speed + 2.0 * dt) * along, ROUND_OFF, given=f"v = {speed} m/s, {lifted}")
+        close("velocity of a block that is lifted [m/s]: no friction", v, (speed + 2.0 * dt) * along, ROUND_OFF,
+              given=f"v = {speed} m/s, {lifted}")
     edge = block(lesson, up, 0.5, 0.1, 5.0 * along - 10.0 * up)
-    close("velocity where |a_t| is μ_s a_n [m/s]: it holds", lesson.sliding_step(pull, 0.0, np.zeros(2), np.zeros(2), dt, edge)[1], np.zeros(2), 0.0, given=f"{edge}")
+    close("velocity where |a_t| is μ_s a_n [m/s]: the block holds",
+          lesson.sliding_step(pull, 0.0, np.zeros(2), np.zeros(2), dt, edge)[1], np.zeros(2), 0.0, given=f"{edge}")
 
 
 def on_the_line(draw, lesson, mu, amplitude, omega):
-    """(Block, unit vector): it lies flat, and a force to and fro along that vector has `amplitude` times what friction can hold."""
+    """(Block on a level floor, unit vector): along it a force oscillates with `amplitude` times the friction limit."""
     axes = frame(draw, 2)
     to = along_surface(draw, axes, 1.0)
     return block(lesson, axes[0], mu, mu, -G * axes[0], amplitude * mu * G * to, omega), to
 
 
-@exercise("3.8", points=1, hint="a moving block goes on where it goes, v/|v|; one at rest goes where it is pulled, if that is beyond μ_s a_n")
+@exercise("3.8", points=1,
+          hint="a moving block slides along v/|v|; a block at rest slides "
+               "along the pull, if the pull exceeds μ_s a_n")
 def test_a_block_slides_on_or_breaks_away_along_the_pull_or_stays(lesson, draw):
-    steep, down, _, press = slope(draw, lesson, draw(0.5, 0.95), 0.3)
+    steep, down, _, _ = slope(draw, lesson, draw(0.5, 0.95), 0.3)
     still, across = np.zeros(3), np.cross(steep.n, down)
     pull = lesson.driven_acceleration
-    close("direction from rest on a steep slope [-]", lesson.slip_direction(pull, 0.0, still, still, steep), down, ROUND_OFF, given=f"{steep}")
+    close("direction from rest on a steep slope [-]", lesson.slip_direction(pull, 0.0, still, still, steep),
+          down, ROUND_OFF, given=f"{steep}")
     v = draw(0.5, 3.0) * across
-    close("direction of a block that crosses it [-]", lesson.slip_direction(pull, 0.0, still, v, steep), across, ROUND_OFF, given=f"{steep}, v = {v}")
+    close("direction of a block that crosses it [-]", lesson.slip_direction(pull, 0.0, still, v, steep),
+          across, ROUND_OFF, given=f"{steep}, v = {v}")
     gentle = steep._replace(mu_s=1.001 * np.tan(np.arcsin(steep.gravity @ down / G)))
-    close("direction from rest where it holds [-]: none", lesson.slip_direction(pull, 0.0, still, still, gentle), still, 0.0, given=f"{gentle}")
-    close("direction of a block on its way up [-]", lesson.slip_direction(pull, 0.0, still, -v, gentle), -across, ROUND_OFF, given=f"{gentle}, v = {-v}")
+    close("direction from rest where it holds [-]: none", lesson.slip_direction(pull, 0.0, still, still, gentle),
+          still, 0.0, given=f"{gentle}")
+    close("direction of a block on its way up [-]", lesson.slip_direction(pull, 0.0, still, -v, gentle),
+          -across, ROUND_OFF, given=f"{gentle}, v = {-v}")
     omega = draw(1.0, 3.0)
     p, to = on_the_line(draw, lesson, draw(0.3, 0.9), draw(1.1, 2.0), omega)
     for turn, expected in ((0.0, to), (0.5 * np.pi, 0.0 * to), (np.pi, -to)):
         got = lesson.slip_direction(pull, turn / omega, np.zeros(2), np.zeros(2), p)
-        close("direction under a force to and fro, early, in the middle, late in its swing [-]", got, expected, ROUND_OFF, given=f"{p}, t = {turn / omega} s")
+        close("slip direction under an oscillating force, early, in the middle, late in its half-period [-]", got,
+              expected, ROUND_OFF, given=f"{p}, t = {turn / omega} s")
     up, along = np.array([0.0, 1.0]), np.array([1.0, 0.0])
     lifted = 5.0 * along + 10.0 * up
     for name, load, mu, expected in (("without pull or friction: none", -10.0 * up, 0.0, 0.0 * up),
                                      ("where |a_t| is μ_s a_n: none", 5.0 * along - 10.0 * up, 0.5, 0.0 * up),
-                                     ("where it is lifted: along the pull", lifted, 0.9, along),
-                                     ("where it is lifted and μ = ∞: along the pull", lifted, np.inf, along)):
+                                     ("of a lifted block: along the pull", lifted, 0.9, along),
+                                     ("of a lifted block with μ = ∞: along the pull", lifted, np.inf, along)):
         got = lesson.slip_direction(pull, 0.0, np.zeros(2), np.zeros(2), block(lesson, up, mu, mu, load))
         close(f"direction from rest {name} [-]", got, expected, 0.0, given=f"a = {load}, n = {up}, μ = {mu}")
     for slow in (1e-4, 1e-10):
@@ -316,93 +386,111 @@ def test_a_block_slides_on_or_breaks_away_along_the_pull_or_stays(lesson, draw):
         close("direction of a block that creeps [-]", got, -down, ROUND_OFF, given=f"{gentle}, v = {-slow * down}")
 
 
-@exercise("3.9", points=0.5, hint="the speed along d falls to zero once: keep the half of the interval in which it does, HALVINGS times")
+@exercise("3.9", points=0.5,
+          hint="the speed along d reaches zero once: keep the half of the interval that contains it, HALVINGS times")
 def test_a_sliding_block_stops_after_v_over_mu_g(lesson, draw):
     p, _ = on_the_line(draw, lesson, draw(0.3, 0.9), 0.0, 0.0)
     d, speed = -np.array([p.n[1], -p.n[0]]), draw(0.5, 3.0)
     stop = speed / (p.mu_k * G)
     for dt, expected, tolerance in ((draw(1.1, 9.0) * stop, stop, ROUND_OFF), (draw(0.1, 0.9) * stop, None, 0.0)):
         got = lesson.stopping_time(lesson.driven_acceleration, 0.0, np.zeros(2), speed * d, dt, d, p)
-        close("time to the stop [s], or the whole step where it does not stop", got, dt if expected is None else expected, tolerance, given=f"v = {speed} m/s, μ = {p.mu_k}, dt = {dt} s")
+        close("time to the stop [s], or the whole step if it does not stop", got,
+              dt if expected is None else expected, tolerance, given=f"v = {speed} m/s, μ = {p.mu_k}, dt = {dt} s")
 
 
-@exercise("3.9", points=1, hint="a slide of length τ must see the forces of its own middle: pass t, and τ for its dt")
+@exercise("3.9", points=1, hint="a slide of length τ takes the forces at its own midpoint: pass t, and τ as its dt")
 def test_a_pushed_block_stops_where_a_slide_of_that_length_ends_at_rest(lesson, draw):
-    """The midpoint slide has v(τ) = v + τ (push cos ω(t + ½τ) − μ g) along the line: its root by Brent's method."""
+    """Brent's method finds the root of v(τ) = v + τ (push cos ω(t + ½τ) − μ g), the velocity of a midpoint slide."""
     omega, t = draw(1.0, 2.0), draw(0.1, 0.3)
     p, to = on_the_line(draw, lesson, draw(0.3, 0.6), draw(0.5, 0.9), omega)
     speed, amplitude = draw(0.1, 0.4), p.push @ to
 
     def along(tau):
         return speed + tau * (amplitude * np.cos(omega * (t + 0.5 * tau)) - p.mu_k * G)
+
     stop = brentq(along, 0.0, 4.0, xtol=1e-14)
     got = lesson.stopping_time(lesson.driven_acceleration, t, np.zeros(2), speed * to, 1.5 * stop, to, p)
-    # at the root v falls with more than 0.1 μ g > 0.3 m/s², and is known to 1e-14
+    # At the root v falls with more than 0.1 μ g > 0.3 m/s² and has an error of 1e-14.
     close("time to the stop under a push [s]", got, stop, 1e-11, given=f"{p}, v = {speed} m/s, t = {t} s")
     from_rest = p._replace(push=draw(1.2, 2.0) * p.mu_s * G * to)
     amplitude, speed = from_rest.push @ to, 0.0
     stop = brentq(along, 1e-3, 2.0 * (np.pi / omega - t), xtol=1e-14)
     got = lesson.stopping_time(lesson.driven_acceleration, t, np.zeros(2), np.zeros(2), 1.5 * stop, to, from_rest)
-    close("time to the stop of a slip that begins at rest [s]", got, stop, 1e-11, given=f"{from_rest}, t = {t} s")
+    close("time to the stop of a slide that starts at rest [s]", got, stop, 1e-11, given=f"{from_rest}, t = {t} s")
 
 
-@exercise("3.10", points=1, hint="ask slip_direction with v = 0 at t + τ, not at t: any(…) tells slipping from holding")
+@exercise("3.10", points=1, hint="call slip_direction with v = 0 at t + τ, not at t; the block slips if any(…) is true")
 def test_a_block_breaks_away_when_the_force_reaches_its_limit(lesson, draw):
-    """|cos ωt| = 1/amplitude: the block holds from then until the force has turned round."""
+    """The block holds from |cos ωt| = 1/amplitude until the reversed force reaches the same size."""
     omega, amplitude = draw(1.0, 3.0), draw(1.1, 2.0)
-    p, to = on_the_line(draw, lesson, draw(0.3, 0.9), amplitude, omega)
+    p, _ = on_the_line(draw, lesson, draw(0.3, 0.9), amplitude, omega)
     holds, slips = np.arccos(1.0 / amplitude) / omega, (np.pi - np.arccos(1.0 / amplitude)) / omega
     t = holds + draw(0.1, 0.5) * (slips - holds)
     rest = np.zeros(2)
-    for dt, expected, tolerance in ((slips - t + draw(0.2, 0.8) * (np.pi / omega - slips), slips - t, 1e-13), (draw(0.2, 0.9) * (slips - t), None, 0.0)):
+    late = slips - t + draw(0.2, 0.8) * (np.pi / omega - slips)
+    early = draw(0.2, 0.9) * (slips - t)
+    for dt, expected, tolerance in ((late, slips - t, 1e-13), (early, None, 0.0)):
         got = lesson.breakaway_time(lesson.driven_acceleration, t, rest, rest, dt, p)
-        close("time to the slip [s], or the whole step where it holds", got, dt if expected is None else expected, tolerance, given=f"{p}, t = {t} s, dt = {dt} s")
-    lift = draw(0.2, 0.8) * (amplitude - 1.0) * G                             # a_n = g − lift cos ωt: slips where A |cos| = μ_s (g + lift |cos|), A = amplitude μ_s g
+        close("time to the slip [s], or the whole step if it holds", got,
+              dt if expected is None else expected, tolerance, given=f"{p}, t = {t} s, dt = {dt} s")
+    # a_n = g − lift cos ωt: the block slips where A |cos| = μ_s (g + lift |cos|), with A = amplitude μ_s g.
+    lift = draw(0.2, 0.8) * (amplitude - 1.0) * G
     both = p._replace(push=p.push + lift * p.n, mu_k=0.5 * p.mu_s)
-    t, slips = 0.5 * np.pi / omega, np.arccos(-1.0 / (amplitude - lift / G)) / omega
+    t = 0.5 * np.pi / omega
+    slips = np.arccos(-1.0 / (amplitude - lift / G)) / omega
     got = lesson.breakaway_time(lesson.driven_acceleration, t, rest, rest, 0.5 * (slips + np.pi / omega) - t, both)
-    close("time to the slip under a load that varies, μ_k half of μ_s [s]", got, slips - t, 1e-13, given=f"{both}, t = {t} s")
+    close("time to the slip under a varying load, with μ_k half of μ_s [s]", got, slips - t, 1e-13,
+          given=f"{both}, t = {t} s")
 
 
-@exercise("3.11", points=0.5, hint="after a stop v is zeros, exactly: the round-off that a slide leaves would count as a motion")
+@exercise("3.11", points=0.5,
+          hint="after a stop set v to exact zeros: a remaining round-off would count as motion")
 def test_a_slide_goes_to_its_stop_and_no_further(lesson, draw):
     p, down, tangent, press = slope(draw, lesson, 1.5, 1.2)
-    up, begin, brake = -down, draw(-1.0, 1.0, 3), (1.2 + 1.0) * tangent * press
+    up, begin = -down, draw(-1.0, 1.0, 3)
+    brake = (1.2 + 1.0) * tangent * press
     for long in (draw(1.5, 3.0), 1.1, 1.01, 1.001, 1.0001):
         speed = draw(0.5, 3.0)
         stop = speed / brake
         tau, x, v = lesson.until_event(lesson.driven_acceleration, 0.0, begin, speed * up, long * stop, p)
         close("time to the stop, uphill [s]", tau, stop, ROUND_OFF, given=f"{p}, v = {speed} m/s")
-        close("where it stops [m]", x - begin, 0.5 * speed * stop * up, ROUND_OFF, given=f"{p}, v = {speed} m/s")
-        close("velocity then [m/s]: exactly none", v, np.zeros(3), 0.0)
+        close("displacement until the stop [m]", x - begin, 0.5 * speed * stop * up, ROUND_OFF,
+              given=f"{p}, v = {speed} m/s")
+        close("velocity after the stop [m/s]: exactly zero", v, np.zeros(3), 0.0)
     part = draw(0.2, 0.8)
     tau, x, v = lesson.until_event(lesson.driven_acceleration, 0.0, begin, speed * up, part * stop, p)
-    close("time of a step that is over before [s]", tau, part * stop, 0.0)
-    close("velocity after that step [m/s]", v, (1.0 - part) * speed * up, ROUND_OFF, given=f"{p}, v = {speed} m/s, dt = {part * stop} s")
-    close("where it is then [m]", x - begin, (part - 0.5 * part * part) * speed * stop * up, ROUND_OFF, given=f"{p}, v = {speed} m/s, dt = {part * stop} s")
+    close("time of a step that ends before the stop [s]", tau, part * stop, 0.0)
+    close("velocity after that step [m/s]", v, (1.0 - part) * speed * up, ROUND_OFF,
+          given=f"{p}, v = {speed} m/s, dt = {part * stop} s")
+    close("displacement in that step [m]", x - begin, (part - 0.5 * part * part) * speed * stop * up, ROUND_OFF,
+          given=f"{p}, v = {speed} m/s, dt = {part * stop} s")
     steep, down, tangent, press = slope(draw, lesson, 0.9, 0.5)
-    dt, a = draw(0.1, 0.5), 0.5 * tangent * press                        # it breaks away at once, and speeds up
+    dt, a = draw(0.1, 0.5), 0.5 * tangent * press                        # the block slips at once and accelerates
     tau, x, v = lesson.until_event(lesson.driven_acceleration, 0.0, begin, np.zeros(3), dt, steep)
-    close("time of a step that begins at rest on a steep slope [s]", tau, dt, 0.0, given=f"{steep}")
-    close("velocity after it [m/s]", v, a * dt * down, ROUND_OFF, given=f"{steep}, dt = {dt} s")
-    close("how far it has slid [m]", x - begin, 0.5 * a * dt * dt * down, ROUND_OFF, given=f"{steep}, dt = {dt} s")
+    close("time of a step that starts at rest on a steep slope [s]", tau, dt, 0.0, given=f"{steep}")
+    close("velocity after that step [m/s]", v, a * dt * down, ROUND_OFF, given=f"{steep}, dt = {dt} s")
+    close("displacement in that step [m]", x - begin, 0.5 * a * dt * dt * down, ROUND_OFF,
+          given=f"{steep}, dt = {dt} s")
 
 
-@exercise("3.11", points=0.5, hint="where slip_direction is zeros nothing moves: only the time to the breakaway is to be found")
+@exercise("3.11", points=0.5,
+          hint="where slip_direction returns zeros nothing moves: find only the time to the breakaway")
 def test_a_block_at_rest_waits_for_its_breakaway(lesson, draw):
     omega, amplitude = draw(1.0, 3.0), draw(1.1, 2.0)
-    p, to = on_the_line(draw, lesson, draw(0.3, 0.9), amplitude, omega)
-    slips, begin = (np.pi - np.arccos(1.0 / amplitude)) / omega, draw(-1.0, 1.0, 2)
+    p, _ = on_the_line(draw, lesson, draw(0.3, 0.9), amplitude, omega)
+    slips = (np.pi - np.arccos(1.0 / amplitude)) / omega
+    begin = draw(-1.0, 1.0, 2)
     t = np.arccos(1.0 / amplitude) / omega * draw(1.05, 1.2)
     t = min(t, 0.5 * np.pi / omega)
     tau, x, v = lesson.until_event(lesson.driven_acceleration, t, begin, np.zeros(2), slips - t + 0.01, p)
     close("time to the breakaway [s]", tau, slips - t, ROUND_OFF, given=f"{p}, t = {t} s")
-    close("position and velocity meanwhile", np.array((x, v)), np.array((begin, np.zeros(2))), 0.0, given=f"{p}, t = {t} s")
+    close("position and velocity meanwhile", np.array((x, v)), np.array((begin, np.zeros(2))), 0.0,
+          given=f"{p}, t = {t} s")
     tau, x, v = lesson.until_event(lesson.driven_acceleration, t, begin, np.zeros(2), 0.5 * (slips - t), p)
-    close("time of a step that is over before [s]", tau, 0.5 * (slips - t), 0.0, given=f"{p}, t = {t} s")
+    close("time of a step that ends before the breakaway [s]", tau, 0.5 * (slips - t), 0.0, given=f"{p}, t = {t} s")
 
 
-# ---------------------------------------------------------------------------------------------- a particle and a surface
+# ---------------------------------------------------------------------------------------------- particle and surface
 
 def bowl(lesson, draw, axis, d=3, m=1.0, mu=0.0, e=0.0):
     gravity = np.zeros(d)
@@ -410,8 +498,8 @@ def bowl(lesson, draw, axis, d=3, m=1.0, mu=0.0, e=0.0):
     return lesson.InBowl(m, mu, e, gravity, draw(-2.0, 2.0, d), axis, draw(0.5, 3.0))
 
 
-@exercise("3.12", points=0.5, hint="radius − |r|: positive inside; n points inwards, −r/|r|, and is the slope of φ")
-def test_a_bowl_and_a_trough_know_how_far_their_wall_is(lesson, draw):
+@exercise("3.12", points=0.5, hint="radius − |r|: positive inside; n points inward, −r/|r|, and is the gradient of φ")
+def test_the_gap_of_a_bowl_and_a_trough_is_the_distance_to_the_wall(lesson, draw):
     for d, axis in ((2, np.zeros(2)), (3, np.zeros(3)), (3, frame(draw, 3)[0])):
         p = bowl(lesson, draw, axis, d)
         for share in (draw(0.2, 0.9), draw(1.1, 2.0)):
@@ -420,25 +508,27 @@ def test_a_bowl_and_a_trough_know_how_far_their_wall_is(lesson, draw):
             x = p.centre + share * p.radius * out + 1.7 * axis
             phi, n = lesson.bowl_gap(x, p)
             given = f"{p}, x = {x} m"
-            close("gap φ [m]: positive inside, negative beyond the wall", phi, (1.0 - share) * p.radius, ROUND_OFF, given=given)
-            close("normal n [-]: inwards", n, -out, ROUND_OFF, given=given)
+            close("gap φ [m]: positive inside, negative beyond the wall", phi, (1.0 - share) * p.radius, ROUND_OFF,
+                  given=given)
+            close("normal n [-]: inward", n, -out, ROUND_OFF, given=given)
 
 
-@exercise("3.12", points=0.5, hint="in the middle r = 0: return n = 0 there instead of dividing by it")
-def test_in_the_middle_of_a_bowl_no_wall_is_the_nearest(lesson, draw):
+@exercise("3.12", points=0.5, hint="at the centre r = 0: return n = 0 there instead of dividing by zero")
+def test_the_normal_is_zero_at_the_centre_of_a_bowl(lesson, draw):
     p = bowl(lesson, draw, np.zeros(3))
     phi, n = lesson.bowl_gap(p.centre, p)
     out = frame(draw, 3)[0]
-    close("normal a nanometre from the middle, a place that is known to 1e-16 m [-]",
+    close("normal 1 nm from the centre [-]: the position has an error of 1e-16 m",
           lesson.bowl_gap(p.centre + 1e-9 * out, p)[1], -out, 1e-5, given=f"{p}")
-    close("gap in the middle [m]", phi, p.radius, ROUND_OFF, given=f"{p}")
-    close("normal in the middle [-]", n, np.zeros(3), 0.0, given=f"{p}")
+    close("gap at the centre [m]", phi, p.radius, ROUND_OFF, given=f"{p}")
+    close("normal at the centre [-]", n, np.zeros(3), 0.0, given=f"{p}")
 
 
-@exercise("3.13", points=1, hint="n · v⁺ = −e n · v: j_n = −(1 + e) m v · n; the mass belongs into both impulses")
+@exercise("3.13", points=1, hint="n · v⁺ = −e n · v: j_n = −(1 + e) m v · n; both impulses contain the mass")
 def test_a_particle_leaves_with_e_times_its_normal_speed_and_friction_takes_mu_times_what_that_took(lesson, draw):
     for slips in (True, False):
-        axes, m, e, v_n = frame(draw, 3), draw(0.5, 5.0), draw(0.0, 1.0), draw(0.5, 5.0)
+        axes = frame(draw, 3)
+        m, e, v_n = draw(0.5, 5.0), draw(0.0, 1.0), draw(0.5, 5.0)
         mu, speed = draw(0.1, 0.5), (draw(1.2, 3.0) if slips else draw(0.2, 0.9))
         slip = along_surface(draw, axes, speed * mu * (1.0 + e) * v_n)
         v = slip - v_n * axes[0]
@@ -446,18 +536,22 @@ def test_a_particle_leaves_with_e_times_its_normal_speed_and_friction_takes_mu_t
         given = f"v = {v} m/s, n = {axes[0]}, m = {m} kg, e = {e}, μ = {mu}"
         after = v + np.asarray(J) / m
         close("normal velocity after [m/s]", after @ axes[0], e * v_n, ROUND_OFF, given=given)
-        close("tangential velocity after [m/s]", after - (after @ axes[0]) * axes[0], max(0.0, 1.0 - 1.0 / speed) * slip, ROUND_OFF, given=given)
+        close("tangential velocity after [m/s]", after - (after @ axes[0]) * axes[0],
+              max(0.0, 1.0 - 1.0 / speed) * slip, ROUND_OFF, given=given)
 
 
-@exercise("3.13", points=1, hint="v · n ≥ 0 means that it leaves: then the surface does nothing at all")
+@exercise("3.13", points=1, hint="v · n ≥ 0 means that the particle is leaving: the impulse is then zero")
 def test_a_surface_never_pulls_and_without_friction_it_only_reflects(lesson, draw):
     for d in (2, 3):
-        axes, m, mu, e = frame(draw, d), draw(0.5, 5.0), draw(0.1, 1.0), draw(0.0, 1.0)
+        axes = frame(draw, d)
+        m, mu, e = draw(0.5, 5.0), draw(0.1, 1.0), draw(0.0, 1.0)
         leaving = along_surface(draw, axes, draw(0.5, 3.0)) + draw(0.1, 2.0) * axes[0]
-        close("impulse on a particle that leaves [N s]", lesson.contact_impulse(leaving, axes[0], m, e, mu), np.zeros(d), 0.0, given=f"v = {leaving} m/s, n = {axes[0]}")
+        close("impulse on a leaving particle [N s]", lesson.contact_impulse(leaving, axes[0], m, e, mu),
+              np.zeros(d), 0.0, given=f"v = {leaving} m/s, n = {axes[0]}")
         v = along_surface(draw, axes, draw(0.5, 3.0)) - draw(0.5, 3.0) * axes[0]
         after = v + np.asarray(lesson.contact_impulse(v, axes[0], m, 1.0, 0.0)) / m
-        close("velocity after an elastic impact without friction [m/s]", after, v - 2.0 * (v @ axes[0]) * axes[0], ROUND_OFF, given=f"v = {v} m/s, n = {axes[0]}")
+        close("velocity after an elastic impact without friction [m/s]", after,
+              v - 2.0 * (v @ axes[0]) * axes[0], ROUND_OFF, given=f"v = {v} m/s, n = {axes[0]}")
         for speed in (draw(0.5, 3.0), 1e-6):
             head_on = -speed * axes[0]
             after = head_on + np.asarray(lesson.contact_impulse(head_on, axes[0], m, e, mu)) / m
@@ -466,7 +560,7 @@ def test_a_surface_never_pulls_and_without_friction_it_only_reflects(lesson, dra
 
 
 def above(lesson, draw, mu, e, theta=0.0, d=3):
-    """(OnPlane, unit vector down): a particle of drawn mass over a plane of slope θ, gravity across it but for the slope."""
+    """(OnPlane, unit vector down): a particle of drawn mass above a plane inclined by θ against gravity."""
     axes = frame(draw, d)
     down = along_surface(draw, axes, 1.0)
     gravity = G * (np.sin(theta) * down - np.cos(theta) * axes[0])
@@ -483,74 +577,95 @@ def fly(lesson, step, p, x, v, dt, steps):
     return x, v
 
 
-@exercise("3.14", points=0.5, hint="velocity first, then position with the new velocity; only then ask for the gap, at the new position")
+@exercise("3.14", points=0.5,
+          hint="update the velocity, then the position with the new velocity; evaluate the gap at the new position")
 def test_a_particle_falls_hits_and_bounces_with_its_own_restitution(lesson, draw):
     check_fall(lesson, lesson.contact_step, draw, 0.0)
 
 
 def check_fall(lesson, step, draw, grips):
-    """Free flight is symplectic Euler; at the wall v_n turns to −e v_n, and the particle is put back onto the plane.
+    """Free flight is symplectic Euler. At the wall v_n becomes −e v_n, and the particle is put back onto the plane.
 
-    grips: 1 where friction also takes μ times the depth from its way along the plane, 0 where it does not.
+    grips: 1 if friction also removes μ times the depth from the tangential displacement, 0 if not.
     """
     p, down = above(lesson, draw, draw(0.05, 0.3), draw(0.2, 0.9))
-    dt, v, height = 0.01, draw(3.0, 5.0) * down - draw(0.5, 1.0) * p.n, draw(1.0, 2.0)
+    dt = 0.01
+    v = draw(3.0, 5.0) * down - draw(0.5, 1.0) * p.n
+    height = draw(1.0, 2.0)
     begin = p.point + height * p.n
     kept = begin.copy(), v.copy()
     x, v_new = fly(lesson, step, p, begin, v, dt, 5)
-    close("velocity after 5 steps of free flight [m/s]", v_new, v + 0.05 * p.gravity, ROUND_OFF, given=f"{p}, v = {v} m/s")
-    close("position after them [m]: moved with the new velocity", x, begin + 0.05 * v + 0.5 * 0.05 * 0.06 * p.gravity, ROUND_OFF, given=f"{p}, v = {v} m/s")
-    close("the x and v that were handed in: return new arrays", np.array((begin, v)), np.array(kept), 0.0)
+    close("velocity after 5 steps of free flight [m/s]", v_new, v + 0.05 * p.gravity, ROUND_OFF,
+          given=f"{p}, v = {v} m/s")
+    close("position after 5 steps of free flight [m]: moved with the new velocity", x,
+          begin + 0.05 * v + 0.5 * 0.05 * 0.06 * p.gravity, ROUND_OFF, given=f"{p}, v = {v} m/s")
+    close("input x and v after the call: return new arrays", np.array((begin, v)), np.array(kept), 0.0)
 
     t = draw(0.3, 1.0)
     x, v_new = step(swinging_acceleration, lesson.plane_gap, t, begin, v, dt, p)
-    close("velocity under a weight that swings, a(t) = g cos t [m/s]", v_new, v + dt * np.cos(t) * p.gravity, ROUND_OFF, given=f"{p}, v = {v} m/s, t = {t} s")
+    close("velocity where gravity varies, a(t) = g cos t [m/s]", v_new, v + dt * np.cos(t) * p.gravity, ROUND_OFF,
+          given=f"{p}, v = {v} m/s, t = {t} s")
     x, v_new = fly(lesson, step, p, p.point + 5e-4 * p.n, 3.0 * down - 1e-3 * dt * p.gravity, dt * 1e-3, 1)
-    close("height of a particle that slides by, half a millimetre above [m]", (x - p.point) @ p.n, 5e-4, 1e-11, given=f"{p}")
-    close("its velocity [m/s]", v_new, 3.0 * down, ROUND_OFF, given=f"{p}")
+    close("height of a particle that passes half a millimetre above the plane [m]", (x - p.point) @ p.n, 5e-4, 1e-11,
+          given=f"{p}")
+    close("velocity of a particle that passes half a millimetre above [m/s]", v_new, 3.0 * down, ROUND_OFF,
+          given=f"{p}")
 
-    close_by = p.point + draw(0.1, 0.5) * dt * p.n                       # a step at more than 0.5 m/s leads into the plane
-    pressed = v - 1.0 * p.n + dt * p.gravity                             # what arrives at the wall
+    # With more than 0.5 m/s towards the plane, one step ends below it.
+    close_by = p.point + draw(0.1, 0.5) * dt * p.n
+    pressed = v - 1.0 * p.n + dt * p.gravity                             # velocity at the wall
     x, v_new = fly(lesson, step, p, close_by, v - 1.0 * p.n, dt, 1)
     arrives, slip = -(pressed @ p.n), pressed @ down
     given = f"{p}, x = {close_by} m, v = {v - p.n} m/s, dt = {dt} s"
     depth = dt * arrives - (close_by - p.point) @ p.n
-    close("where it is after an impact [m]: on the plane", x, p.point + (dt * slip - grips * p.mu * depth) * down, ROUND_OFF, given=given)
-    close("velocity after an impact [m/s]", v_new, p.e * arrives * p.n + (slip - p.mu * (1.0 + p.e) * arrives) * down, ROUND_OFF, given=given)
+    close("position after an impact [m]: on the plane", x,
+          p.point + (dt * slip - grips * p.mu * depth) * down, ROUND_OFF, given=given)
+    close("velocity after an impact [m/s]", v_new,
+          p.e * arrives * p.n + (slip - p.mu * (1.0 + p.e) * arrives) * down, ROUND_OFF, given=given)
 
 
-@exercise("3.14", points=0.5, hint="put it back by −φ n even when its velocity already leads out; then the velocity stays as it is")
-def test_a_particle_that_is_already_on_its_way_out_is_put_back_and_not_braked(lesson, draw):
+@exercise("3.14", points=0.5,
+          hint="put the particle back by −φ n even if its velocity already points out; then do not change its velocity")
+def test_a_leaving_particle_inside_is_put_back_and_keeps_its_velocity(lesson, draw):
     check_way_out(lesson, lesson.contact_step, draw)
     check_just_touching(lesson, lesson.contact_step, draw)
     theta, dt = draw(0.2, 0.8), draw(0.005, 0.02)
     p, down = above(lesson, draw, 1.5 * np.tan(theta), 0.0, theta)
     x, v = fly(lesson, lesson.contact_step, p, p.point, np.zeros(3), dt, 10)
-    close("velocity of a particle that should stay put on a slope [m/s]", v, np.zeros(3), ROUND_OFF, given=f"{p}, dt = {dt} s")
-    close("its artificial sliding over time and dt [m/s²]: g sin θ", (x - p.point) / (10 * dt * dt), G * np.sin(theta) * down, 1e-8, given=f"{p}, dt = {dt} s")
+    close("velocity of a particle at rest on a slope [m/s]", v, np.zeros(3), ROUND_OFF,
+          given=f"{p}, dt = {dt} s")
+    close("artificial displacement over time and dt [m/s²]: g sin θ", (x - p.point) / (10 * dt * dt),
+          G * np.sin(theta) * down, 1e-8, given=f"{p}, dt = {dt} s")
 
 
 def check_just_touching(lesson, step, draw):
-    """Whole numbers leave no round-off: a particle that comes to the plane itself, φ = 0, has not got in yet."""
-    e, begin = draw(0.2, 0.9), np.array([float(draw.whole(-3, 3)), 1.0])
-    p, v = lesson.OnPlane(1.0, 0.5, e, np.zeros(2), np.zeros(2), np.array([0.0, 1.0])), np.array([1.0, -2.0])
+    """A particle that ends exactly on the plane, φ = 0, has not penetrated. Whole numbers avoid round-off here."""
+    e = draw(0.2, 0.9)
+    begin = np.array([float(draw.whole(-3, 3)), 1.0])
+    p = lesson.OnPlane(1.0, 0.5, e, np.zeros(2), np.zeros(2), np.array([0.0, 1.0]))
+    v = np.array([1.0, -2.0])
     x, v_new = fly(lesson, step, p, begin, v, 0.5, 1)
-    close("place of a particle that just touches [m]", x, begin + 0.5 * v, 0.0,
+    close("position of a particle that just touches [m]", x, begin + 0.5 * v, 0.0,
           given=f"x = {begin} m, v = {v} m/s, dt = 0.5 s")
-    close("its velocity: not reflected yet [m/s]", v_new, v, 0.0, given=f"x = {begin} m, v = {v} m/s, dt = 0.5 s")
+    close("velocity of a particle that just touches [m/s]: unchanged", v_new, v, 0.0,
+          given=f"x = {begin} m, v = {v} m/s, dt = 0.5 s")
 
 
 def check_way_out(lesson, step, draw):
     p, down = above(lesson, draw, draw(0.3, 0.9), draw(0.2, 0.9))
-    dt, v = 0.01, draw(1.0, 2.0) * down + draw(1.0, 2.0) * p.n
+    dt = 0.01
+    v = draw(1.0, 2.0) * down + draw(1.0, 2.0) * p.n
     deep = p.point - draw(0.1, 0.5) * p.n
     x, v_new = fly(lesson, step, p, deep, v, dt, 1)
     given = f"{p}, x = {deep} m, v = {v} m/s"
-    close("velocity of a particle inside the obstacle, on its way out [m/s]", v_new, v + dt * p.gravity, ROUND_OFF, given=given)
-    close("where it is put [m]: straight out", x, p.point + dt * (v @ down) * down, ROUND_OFF, given=given)
+    close("velocity of a leaving particle inside the obstacle [m/s]", v_new, v + dt * p.gravity, ROUND_OFF,
+          given=given)
+    close("position of a leaving particle inside the obstacle [m]: put back along n", x,
+          p.point + dt * (v @ down) * down, ROUND_OFF, given=given)
 
 
-@exercise("3.15", points=1, hint="friction for positions: −s where |s| ≤ μ depth, else μ depth against s, with s along the surface")
+@exercise("3.15", points=1,
+          hint="friction for positions: −s where |s| ≤ μ depth, otherwise μ depth against s; s is tangential")
 def test_the_grip_undoes_a_displacement_inside_its_cone(lesson, draw):
     for share, depth in ((draw(0.1, 0.9), draw(0.01, 0.1)), (draw(1.1, 5.0), draw(0.01, 0.1)), (0.0, 0.1),
                          (draw(0.1, 0.9), draw(1.0, 5.0)), (draw(1.1, 5.0), 1e-9)):
@@ -558,34 +673,39 @@ def test_the_grip_undoes_a_displacement_inside_its_cone(lesson, draw):
         s = along_surface(draw, axes, share * mu * depth)
         got = lesson.grip_correction(s - draw(0.5, 2.0) * depth * axes[0], axes[0], depth, mu)
         expected = -s if share <= 1.0 else -s / share
-        close("tangential correction [m]", got, expected, ROUND_OFF, given=f"s = {s} m, n = {axes[0]}, depth {depth} m, μ = {mu}")
+        close("tangential correction [m]", got, expected, ROUND_OFF,
+              given=f"s = {s} m, n = {axes[0]}, depth {depth} m, μ = {mu}")
     straight = lesson.grip_correction(np.array([0.0, -1e-3]), np.array([0.0, 1.0]), 1e-3, 0.5)
-    close("tangential correction where it moved straight into the wall [m]: none", straight, np.zeros(2), 0.0)
+    close("tangential correction of a displacement along −n [m]: none", straight, np.zeros(2), 0.0)
 
 
-@exercise("3.16", points=0.5, hint="φ < 0 and v · n < 0: correct along the surface as well, with what this step moved and −φ as the depth")
+@exercise("3.16", points=0.5,
+          hint="where φ < 0 and v · n < 0, also correct the tangential displacement of this step, with depth −φ")
 def test_a_gripping_particle_stays_put_or_slides_as_a_block_does(lesson, draw):
     theta, dt, steps = draw(0.2, 0.8), draw(0.005, 0.02), 10
     p, down = above(lesson, draw, draw(1.01, 2.0) * np.tan(theta), 0.0, theta)
     x, v = fly(lesson, lesson.gripping_step, p, p.point, np.zeros(3), dt, steps)
-    close("where a particle that should stay put is [m]", x, p.point, ROUND_OFF, given=f"{p}, dt = {dt} s")
-    close("its velocity [m/s]", v, np.zeros(3), ROUND_OFF, given=f"{p}, dt = {dt} s")
+    close("position of a particle at rest on a slope [m]", x, p.point, ROUND_OFF, given=f"{p}, dt = {dt} s")
+    close("velocity of a particle at rest on a slope [m/s]", v, np.zeros(3), ROUND_OFF, given=f"{p}, dt = {dt} s")
     p, down = above(lesson, draw, draw(0.1, 0.9) * np.tan(theta), 0.0, theta)
     x, v = fly(lesson, lesson.gripping_step, p, p.point, np.zeros(3), dt, steps)
     a, t = G * (np.sin(theta) - p.mu * np.cos(theta)), steps * dt
-    close("velocity of one that slides [m/s]", v, a * t * down, ROUND_OFF, given=f"{p}, dt = {dt} s")
-    close("where it is [m]: symplectic Euler's a t(t + dt)/2", x - p.point, 0.5 * a * t * (t + dt) * down, ROUND_OFF, given=f"{p}, dt = {dt} s")
+    close("velocity of a sliding particle [m/s]", v, a * t * down, ROUND_OFF, given=f"{p}, dt = {dt} s")
+    close("displacement of a sliding particle [m]: symplectic Euler's a t(t + dt)/2", x - p.point,
+          0.5 * a * t * (t + dt) * down, ROUND_OFF, given=f"{p}, dt = {dt} s")
 
 
-@exercise("3.16", points=0.5, hint="free flight, impact and way out are those of contact_step; on the way out nothing grips")
+@exercise("3.16", points=0.5,
+          hint="free flight, impact and leaving are as in contact_step; do not correct the slip of a leaving particle")
 def test_a_gripping_particle_flies_and_bounces_like_the_other(lesson, draw):
     check_fall(lesson, lesson.gripping_step, draw, 1.0)
     check_way_out(lesson, lesson.gripping_step, draw)
     check_just_touching(lesson, lesson.gripping_step, draw)
     level = lesson.OnPlane(1.0, draw(0.2, 0.9), 0.0, np.zeros(2), np.zeros(2), np.array([0.0, 1.0]))
-    deep, v = np.array([0.0, -draw(0.1, 0.5)]), np.array([draw(0.5, 2.0), 0.0])              # v · n is exactly 0
+    deep = np.array([0.0, -draw(0.1, 0.5)])
+    v = np.array([draw(0.5, 2.0), 0.0])                                  # v · n is exactly 0
     x, v_new = fly(lesson, lesson.gripping_step, level, deep, v, 0.1, 1)
     given = f"x = {deep} m, v = {v} m/s, {level}"
-    close("where a particle inside is put that moves along the surface [m]: nothing grips", x, 0.1 * v, ROUND_OFF,
-          given=given)
-    close("its velocity [m/s]", v_new, v, 0.0, given=given)
+    close("position of a particle inside that moves along the surface [m]: no tangential correction", x, 0.1 * v,
+          ROUND_OFF, given=given)
+    close("velocity of a particle inside that moves along the surface [m/s]", v_new, v, 0.0, given=given)

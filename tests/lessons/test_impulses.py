@@ -1,4 +1,4 @@
-"""Lesson 7 is right when momentum is kept, bodies rebound with −e u_n, friction stays in its cone, and the moment of impact is found."""
+"""Lesson 7: impulses conserve momentum, rebound with −e u_n, stay in the friction cone, and act when bodies meet."""
 
 import numpy as np
 import pytest
@@ -9,30 +9,33 @@ from solutions.checks import BadInput, Diverged
 from ..grading.expect import between, close, raises
 
 exercise = pytest.mark.exercise
-# Everything drawn is below 30 in its unit, and what is compared takes a few dozen operations, each rounded by 1.1e-16 of that:
+# All drawn values are below 30 in their unit. A result takes a few dozen operations, each with a round-off of 1.1e-16.
 ROUND_OFF = 1e-12
-TINY = 1e-20                 # the same with all lengths or velocities this much smaller must be right as well: no law here has a scale
+# No law here has a scale: results must also be right with all lengths or velocities smaller by this factor.
+TINY = 1e-20
 STILL = np.zeros(3)
 
 
 def unit(draw, d):
-    """A unit vector along no axis of the coordinates."""
+    """A drawn unit vector that is parallel to no coordinate axis."""
     n = draw(0.3, 1.0, d) * np.array([2 * draw.whole(0, 1) - 1 for _ in range(d)])
     return n / np.linalg.norm(n)
 
 
 def across(n, y):
-    """What y has along the surface."""
+    """The tangential part of y."""
     return y - (y @ n) * n
 
 
 def flat(draw, lesson):
     """A drawn body in the plane."""
-    return lesson.Flat(draw(-3.0, 3.0, 2), draw(1.0, 5.0) * (2 * draw.whole(0, 1) - 1), draw(0.3, 2.0), draw(0.5, 5.0))
+    v = draw(-3.0, 3.0, 2)
+    omega = draw(1.0, 5.0) * (2 * draw.whole(0, 1) - 1)
+    return lesson.Flat(v, omega, draw(0.3, 2.0), draw(0.5, 5.0))
 
 
 def inertia(draw):
-    """I⁻¹ (3, 3) of a drawn body, none of its axes along those of the coordinates: all eigenvalues between 0.5 and 5."""
+    """I⁻¹ (3, 3) of a drawn body: eigenvalues between 0.5 and 5, principal axes not along the coordinate axes."""
     Q, _ = np.linalg.qr(draw(-1.0, 1.0, (3, 3)))
     return Q @ np.diag(draw(0.5, 5.0, 3)) @ Q.T
 
@@ -43,194 +46,246 @@ def solid(draw, lesson):
 
 
 def answer(r, inv_mass, inv_inertia, J):
-    """Change (3,) of velocity of the point r of a body at which J acts."""
+    """Velocity change (3,) of the point r of a body to which the impulse J is applied at r."""
     return inv_mass * J + np.cross(inv_inertia @ np.cross(r, J), r)
 
 
 def contact(draw):
-    """(n, K): a drawn normal, and what impulses do to the relative velocity of two drawn bodies."""
-    r, inv_mass, inv_inertia = draw(-1.0, 1.0, 3), draw(0.3, 2.0), inertia(draw)
+    """(n, K): a drawn normal, and a matrix K that maps an impulse to a change of relative velocity."""
+    r, inv_mass = draw(-1.0, 1.0, 3), draw(0.3, 2.0)
+    inv_inertia = inertia(draw)
     return unit(draw, 3), np.stack([answer(r, inv_mass, inv_inertia, axis) for axis in np.eye(3)], axis=1)
 
 
 # ---------------------------------------------------------------------------------------------- response and penalty
 
-@exercise("7.1", points=0.5, hint="only the part along n changes: it is turned round and multiplied by k")
+@exercise("7.1", points=0.5, hint="only the normal component changes: reverse it and multiply it by k")
 def test_a_response_turns_the_normal_velocity_and_keeps_the_rest(lesson, draw):
     for d, k, slow in ((2, draw(0.1, 0.9), 1.0), (3, draw(0.1, 0.9), 1.0), (3, 0.0, 1.0), (2, 1.0, 1.0),
                        (3, draw(0.1, 0.9), 1e-6)):
         n = unit(draw, d)
         v = across(n, draw(-5.0, 5.0, d)) - slow * draw(0.5, 5.0) * n
         got = np.asarray(lesson.kinematic_response(v, n, k))
-        close("velocity after the response [m/s]", got, across(n, v) - k * (v @ n) * n, ROUND_OFF, given=f"v = {v} m/s, n = {n}, k = {k}")
+        close("velocity after the response [m/s]", got, across(n, v) - k * (v @ n) * n, ROUND_OFF,
+              given=f"v = {v} m/s, n = {n}, k = {k}")
         got = np.asarray(lesson.kinematic_response(TINY * v, n, k))
-        close("velocity after the response to what is slow [m/s]", got, TINY * (across(n, v) - k * (v @ n) * n),
+        close("velocity after the response, slow particle [m/s]", got, TINY * (across(n, v) - k * (v @ n) * n),
               TINY * ROUND_OFF, given=f"v = {TINY * v} m/s, n = {n}, k = {k}")
 
 
-@exercise("7.1", points=0.5, hint="v · n ≥ 0: it leaves by itself, and nothing happens")
-def test_a_response_leaves_alone_what_leaves(lesson, draw):
+@exercise("7.1", points=0.5, hint="where v · n ≥ 0 the particle is already leaving: return v unchanged")
+def test_a_response_does_not_change_a_leaving_velocity(lesson, draw):
     for d in (2, 3):
         n = unit(draw, d)
-        v, k = across(n, draw(-5.0, 5.0, d)) + draw(0.1, 3.0) * n, draw(0.1, 0.9)
-        close("velocity after the response to what comes [m/s]", lesson.kinematic_response(v - 2.0 * (v @ n) * n, n, k), across(n, v) + k * (v @ n) * n, ROUND_OFF)
-        close("velocity of what leaves [m/s]", lesson.kinematic_response(v, n, draw(0.1, 0.9)), v, 0.0, given=f"v = {v} m/s, n = {n}")
+        v = across(n, draw(-5.0, 5.0, d)) + draw(0.1, 3.0) * n
+        k = draw(0.1, 0.9)
+        got = lesson.kinematic_response(v - 2.0 * (v @ n) * n, n, k)
+        close("velocity after the response, approaching particle [m/s]", got, across(n, v) + k * (v @ n) * n, ROUND_OFF)
+        close("velocity of a leaving particle [m/s]", lesson.kinematic_response(v, n, draw(0.1, 0.9)), v, 0.0,
+              given=f"v = {v} m/s, n = {n}")
 
 
-@exercise("7.2", points=1, hint="spring against the depth −φ, damper against v_n; never below zero, and nothing outside")
+@exercise("7.2", points=1,
+          hint="the spring acts on the depth −φ, the damper on v_n; the force is never negative, and zero outside")
 def test_a_penalty_pushes_inside_only_and_never_pulls(lesson, draw):
     stiffness, damping, depth = draw(5.0, 30.0), draw(0.5, 3.0), draw(0.1, 0.9)
     close("penalty force a micrometre inside [N]", lesson.penalty_force(-1e-6, 0.0, stiffness, damping),
           1e-6 * stiffness, ROUND_OFF)
-    weak = depth * stiffness / damping                                   # the outward speed at which the damper takes all of the spring's force
+    # At this outward speed the damper cancels the spring force.
+    weak = depth * stiffness / damping
     for v_n in (-draw(0.1, 5.0), 0.0, draw(0.1, 0.9) * weak):
-        close("penalty force [N]", lesson.penalty_force(-depth, v_n, stiffness, damping), stiffness * depth - damping * v_n, 1e-11,
+        close("penalty force [N]", lesson.penalty_force(-depth, v_n, stiffness, damping),
+              stiffness * depth - damping * v_n, 1e-11,
               given=f"φ = {-depth} m, v_n = {v_n} m/s, {stiffness} N/m, {damping} N s/m")
-    close("penalty force where the damper would pull [N]", lesson.penalty_force(-depth, draw(1.1, 3.0) * weak, stiffness, damping), 0.0, 0.0)
+    close("penalty force where the damper would pull [N]",
+          lesson.penalty_force(-depth, draw(1.1, 3.0) * weak, stiffness, damping), 0.0, 0.0)
     fast = draw(1.0, 5.0)
-    # of the height at which the spring would pull as the damper pushes
+    # share: height as a fraction of the height at which the spring pull would cancel the damper push.
     for share in (draw(0.01, 0.9), draw(1.1, 9.0)):
         above = share * damping * fast / stiffness
         close("penalty force outside [N]", lesson.penalty_force(above, -fast, stiffness, damping), 0.0, 0.0,
               given=f"φ = {above} m")
-    close("penalty force on what touches and comes in [N]", lesson.penalty_force(0.0, -draw(0.1, 5.0), stiffness, damping), 0.0, 0.0)
+    close("penalty force at the surface, approaching particle [N]",
+          lesson.penalty_force(0.0, -draw(0.1, 5.0), stiffness, damping), 0.0, 0.0)
 
 
 # ---------------------------------------------------------------------------------------------- in the plane
 
 def turned(r, angle):
-    return np.array([np.cos(angle) * r[0] - np.sin(angle) * r[1], np.sin(angle) * r[0] + np.cos(angle) * r[1]])
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([c * r[0] - s * r[1], s * r[0] + c * r[1]])
 
 
-@exercise("7.3", points=1, hint="a point moves with its body and round its centre: ω (−r_y, r_x); then a's minus b's")
+@exercise("7.3", points=1,
+          hint="a point moves with its body and around its centre: ω (−r_y, r_x); subtract b's velocity from a's")
 def test_contact_points_move_as_their_bodies_carry_them(lesson, draw):
-    """Central differences over 2h of points that turn with ω < 5 at r < 2: wrong by h² ω³ r/6 = 4e-9 and by rounding, 1e-15/h = 1e-10."""
-    a, b, r_a, r_b, h = flat(draw, lesson), flat(draw, lesson), draw(-1.4, 1.4, 2), draw(-1.4, 1.4, 2), 1e-5
+    """Compare with central differences over 2h.
+
+    With ω < 5 and r < 2 their error is h² ω³ r/6 = 4e-9, and round-off adds 1e-15/h = 1e-10.
+    """
+    a, b = flat(draw, lesson), flat(draw, lesson)
+    r_a, r_b = draw(-1.4, 1.4, 2), draw(-1.4, 1.4, 2)
+    h = 1e-5
     apart = [h * k * (a.v - b.v) + turned(r_a, k * h * a.omega) - turned(r_b, k * h * b.omega) for k in (1, -1)]
-    # nothing pushes a moving wall, but it moves: one of the two may be that
-    walls = a._replace(inv_mass=0.0, inv_inertia=0.0), b._replace(inv_mass=0.0, inv_inertia=0.0)
-    for a, b in ((a, b), (a, walls[1]), (walls[0], b)):
-        close("relative velocity [m/s]", lesson.flat_relative_velocity(a, b, r_a, r_b), (apart[0] - apart[1]) / (2.0 * h), 1e-8, given=f"a = {a}, b = {b}, r_a = {r_a}, r_b = {r_b}")
+    # An immovable wall can still have a velocity: a or b may be one.
+    wall_a, wall_b = (body._replace(inv_mass=0.0, inv_inertia=0.0) for body in (a, b))
+    pairs = (a, b), (a, wall_b), (wall_a, b)
+    for a, b in pairs:
+        close("relative velocity [m/s]", lesson.flat_relative_velocity(a, b, r_a, r_b),
+              (apart[0] - apart[1]) / (2.0 * h), 1e-8, given=f"a = {a}, b = {b}, r_a = {r_a}, r_b = {r_b}")
 
 
 @exercise("7.4", points=0.5, hint="j = −(1 + e) u_n/k, with k = 1/m_a + 1/m_b; and never a pull")
 def test_two_bodies_part_with_e_times_their_speed_and_keep_their_momentum(lesson, draw):
     for e, slow in ((draw(0.1, 0.9), 1.0), (0.0, 1.0), (1.0, 1.0), (draw(0.1, 0.9), 1e-6)):
-        m_a, m_b, v_a, v_b = draw(0.5, 5.0), draw(0.5, 5.0), slow * draw(-5.0, -1.0), slow * draw(0.5, 5.0)
+        m_a, m_b = draw(0.5, 5.0), draw(0.5, 5.0)
+        v_a, v_b = slow * draw(-5.0, -1.0), slow * draw(0.5, 5.0)
         j = float(lesson.impulse_size(v_a - v_b, 1.0 / m_a + 1.0 / m_b, e))
         after = v_a + j / m_a - (v_b - j / m_b)
         close("relative velocity after [m/s]", after, e * (v_b - v_a), slow * ROUND_OFF,
               given=f"m = {m_a}, {m_b} kg, v = {v_a}, {v_b} m/s, e = {e}")
-    close("impulse on what separates [N s]", lesson.impulse_size(draw(0.1, 3.0), 1.0, 0.5), 0.0, 0.0)
+    close("impulse on separating bodies [N s]", lesson.impulse_size(draw(0.1, 3.0), 1.0, 0.5), 0.0, 0.0)
 
 
-@exercise("7.4", points=0.5, hint="check_restitution and check_inverse_mass first: they refuse what has no physics")
+@exercise("7.4", points=0.5, hint="call check_restitution and check_inverse_mass first: they refuse impossible values")
 def test_impossible_restitutions_and_two_immovable_bodies_are_refused(lesson, draw):
     e, k = draw(0.1, 0.9), draw(0.5, 2.0)
-    close("impulse with a possible restitution [N s]", lesson.impulse_size(-1.0, k, e), (1.0 + e) / k, ROUND_OFF, given=f"u_n = -1 m/s, k = {k} /kg, e = {e}")
-    for u_n in (-1.0, 1.0):                                              # of what meets, and of what separates
+    close("impulse with a possible restitution [N s]", lesson.impulse_size(-1.0, k, e), (1.0 + e) / k, ROUND_OFF,
+          given=f"u_n = -1 m/s, k = {k} /kg, e = {e}")
+    for u_n in (-1.0, 1.0):                                              # approaching, separating
         for e in (-draw(0.1, 1.0), draw(1.1, 2.0), np.nan):
             raises(f"a restitution outside 0 to 1, with u_n = {u_n} m/s", BadInput, lesson.impulse_size, u_n, 1.0, e)
-        raises(f"two bodies that cannot be moved, with u_n = {u_n} m/s", BadInput, lesson.impulse_size, u_n, 0.0, 0.5)
+        raises(f"two immovable bodies, with u_n = {u_n} m/s", BadInput, lesson.impulse_size, u_n, 0.0, 0.5)
 
 
-@exercise("7.5", points=1, hint="each body gives way by 1/m, and by (r × n)²/I because it turns; add up both bodies")
+@exercise("7.5", points=1, hint="each body contributes 1/m, and (r × n)²/I because it rotates; add both bodies")
 def test_a_unit_impulse_drives_two_flat_bodies_apart_by_k(lesson, draw):
     for fixed in (False, True):
-        a, b, r_a, r_b, n = flat(draw, lesson), flat(draw, lesson), draw(-1.0, 1.0, 2), draw(-1.0, 1.0, 2), unit(draw, 2)
+        a, b = flat(draw, lesson), flat(draw, lesson)
+        r_a, r_b = draw(-1.0, 1.0, 2), draw(-1.0, 1.0, 2)
+        n = unit(draw, 2)
         if fixed:
             b = lesson.Flat(b.v, b.omega, 0.0, 0.0)
         apart = 0.0
         for body, r in ((a, r_a), (b, r_b)):
             spin = body.inv_inertia * (r[0] * n[1] - r[1] * n[0])
             apart += n @ (body.inv_mass * n + spin * np.array([-r[1], r[0]]))
-        close("k [1/kg]", lesson.flat_inverse_mass(a, b, r_a, r_b, n), apart, ROUND_OFF, given=f"a = {a}, b = {b}, r_a = {r_a}, r_b = {r_b}, n = {n}")
+        close("k [1/kg]", lesson.flat_inverse_mass(a, b, r_a, r_b, n), apart, ROUND_OFF,
+              given=f"a = {a}, b = {b}, r_a = {r_a}, r_b = {r_b}, n = {n}")
 
 
 @exercise("7.6", points=1, hint="v gains J/m, and ω gains (r_x J_y − r_y J_x)/I")
 def test_an_impulse_changes_both_momenta_of_a_flat_body(lesson, draw):
-    body, r, J, x = flat(draw, lesson), draw(-1.0, 1.0, 2), draw(-3.0, 3.0, 2), draw(-2.0, 2.0, 2)
+    body = flat(draw, lesson)
+    r, J, x = draw(-1.0, 1.0, 2), draw(-3.0, 3.0, 2), draw(-2.0, 2.0, 2)
     after = lesson.flat_push(body, r, J)
     given = f"{body}, r = {r} m, J = {J} N s"
-    close("momentum that it gains [N s]", (np.asarray(after.v) - body.v) / body.inv_mass, J, ROUND_OFF, given=given)
-    momenta = [b.omega / body.inv_inertia + float(np.cross([*x, 0.0], [*np.asarray(b.v) / body.inv_mass, 0.0])[2]) for b in (body, after)]
+    close("momentum gained [N s]", (np.asarray(after.v) - body.v) / body.inv_mass, J, ROUND_OFF, given=given)
+    momenta = []
+    for b in (body, after):
+        P = np.asarray(b.v) / body.inv_mass
+        orbital = float(np.cross([*x, 0.0], [*P, 0.0])[2])
+        momenta.append(b.omega / body.inv_inertia + orbital)
     point = x + r
-    close("angular momentum about the origin that it gains [N m s]", momenta[1] - momenta[0], point[0] * J[1] - point[1] * J[0], 1e-11, given=given)
-    close("its inverse mass and inertia", [after.inv_mass, after.inv_inertia], [body.inv_mass, body.inv_inertia], 0.0, given=given)
+    close("angular momentum gained about the origin [N m s]", momenta[1] - momenta[0],
+          point[0] * J[1] - point[1] * J[0], 1e-11, given=given)
+    close("inverse mass and inertia after the impulse", [after.inv_mass, after.inv_inertia],
+          [body.inv_mass, body.inv_inertia], 0.0, given=given)
     wall = lesson.flat_push(lesson.Flat(body.v, body.omega, 0.0, 0.0), r, J)
-    close("velocity of what cannot be moved [m/s, rad/s]", [*wall.v, wall.omega], [*body.v, body.omega], 0.0, given=given)
+    close("velocity of an immovable body [m/s, rad/s]", [*wall.v, wall.omega], [*body.v, body.omega], 0.0, given=given)
 
 
 # ---------------------------------------------------------------------------------------------- in space
 
-@exercise("7.7", points=1, hint="n · [(I⁻¹ (r × n)) × r]: an impulse n makes the body turn by I⁻¹ (r × n), and the point moves with × r")
+@exercise("7.7", points=1,
+          hint="n · [(I⁻¹ (r × n)) × r]: an impulse n changes ω by I⁻¹ (r × n), and that moves the point with × r")
 def test_a_unit_impulse_drives_two_solid_bodies_apart_by_k(lesson, draw):
-    a, b, r_a, r_b, n = solid(draw, lesson), solid(draw, lesson), draw(-1.0, 1.0, 3), draw(-1.0, 1.0, 3), unit(draw, 3)
+    a, b = solid(draw, lesson), solid(draw, lesson)
+    r_a, r_b = draw(-1.0, 1.0, 3), draw(-1.0, 1.0, 3)
+    n = unit(draw, 3)
     wall = lesson.Solid(STILL, STILL, 0.0, np.zeros((3, 3)))
-    for a, b in ((a, b), (a, wall), (wall, b)):
+    pairs = (a, b), (a, wall), (wall, b)
+    for a, b in pairs:
         expected = n @ (answer(r_a, a.inv_mass, a.inv_inertia, n) + answer(r_b, b.inv_mass, b.inv_inertia, n))
-        close("k [1/kg]", lesson.inverse_mass(a, b, r_a, r_b, n), expected, ROUND_OFF, given=f"a = {a}, b = {b}, r_a = {r_a}, r_b = {r_b}, n = {n}")
+        close("k [1/kg]", lesson.inverse_mass(a, b, r_a, r_b, n), expected, ROUND_OFF,
+              given=f"a = {a}, b = {b}, r_a = {r_a}, r_b = {r_b}, n = {n}")
 
 
-@exercise("7.7", points=0.5, hint="a body that is hit along its centre does not turn, and one with inv_mass = 0 gives way by nothing")
+@exercise("7.7", points=0.5,
+          hint="a central impulse does not change ω; a body with inv_mass = 0 contributes nothing")
 def test_bodies_hit_along_their_centres_only_have_their_masses(lesson, draw):
     a, b, n = solid(draw, lesson), solid(draw, lesson), unit(draw, 3)
     arms = draw(0.1, 1.0) * n, -draw(0.1, 1.0) * n
-    close("k of a central impact [1/kg]", lesson.inverse_mass(a, b, *arms, n), a.inv_mass + b.inv_mass, ROUND_OFF, given=f"a = {a}, b = {b}, n = {n}")
+    close("k of a central impact [1/kg]", lesson.inverse_mass(a, b, *arms, n), a.inv_mass + b.inv_mass, ROUND_OFF,
+          given=f"a = {a}, b = {b}, n = {n}")
     wall = lesson.Solid(STILL, STILL, 0.0, np.zeros((3, 3)))
-    close("k against a wall [1/kg]", lesson.inverse_mass(a, wall, arms[0], draw(-1.0, 1.0, 3), n), a.inv_mass, ROUND_OFF, given=f"a = {a}, n = {n}")
+    close("k against a wall [1/kg]", lesson.inverse_mass(a, wall, arms[0], draw(-1.0, 1.0, 3), n),
+          a.inv_mass, ROUND_OFF, given=f"a = {a}, n = {n}")
 
 
 @exercise("7.8", points=1, hint="+ r_a × J for a, − r_b × J for b")
 def test_an_impulse_between_two_bodies_keeps_the_angular_momentum_of_both_together(lesson, draw):
     x_a, r_a, r_b, J, L_a, L_b = (draw(-2.0, 2.0, 3) for _ in range(6))
-    x_b = x_a + r_a - r_b                                                # they meet at one point
+    x_b = x_a + r_a - r_b                                                # both offsets end at the contact point
     got = np.array([np.asarray(L) for L in lesson.angular_momenta(L_a, L_b, r_a, r_b, J)])
     given = f"L_a = {L_a}, L_b = {L_b}, r_a = {r_a}, r_b = {r_b}, J = {J}"
-    close("what both gain about the origin [N m s]", got[0] - L_a + np.cross(x_a, J) + got[1] - L_b - np.cross(x_b, J), STILL, 1e-11, given=given)
-    close("what a gains about its centre, with J and across it [N m s]", [(got[0] - L_a) @ J, (got[0] - L_a) @ np.cross(r_a, J)],
-          [0.0, np.cross(r_a, J) @ np.cross(r_a, J)], 1e-10, given=given)
+    gain_a, gain_b = got[0] - L_a, got[1] - L_b
+    both = gain_a + np.cross(x_a, J) + gain_b - np.cross(x_b, J)
+    close("angular momentum gained about the origin by both [N m s]", both, STILL, 1e-11, given=given)
+    torque = np.cross(r_a, J)
+    close("angular momentum gained by a about its centre, along J and along r_a × J", [gain_a @ J, gain_a @ torque],
+          [0.0, torque @ torque], 1e-10, given=given)
 
 
 # ---------------------------------------------------------------------------------------------- friction, and energy
 
-@exercise("7.9", points=1, hint="try an impulse along each axis: it changes the point's velocity by J/m + (I⁻¹ (r × J)) × r")
+@exercise("7.9", points=1,
+          hint="apply a unit impulse along each axis: it changes the point's velocity by J/m + (I⁻¹ (r × J)) × r")
 def test_an_impulse_moves_its_own_point_by_K_J(lesson, draw):
-    r, inv_mass, inv_inertia, J = draw(-1.0, 1.0, 3), draw(0.3, 2.0), inertia(draw), draw(-3.0, 3.0, 3)
+    r, inv_mass = draw(-1.0, 1.0, 3), draw(0.3, 2.0)
+    inv_inertia = inertia(draw)
+    J = draw(-3.0, 3.0, 3)
     given = f"r = {r} m, 1/m = {inv_mass} 1/kg, I⁻¹ = {inv_inertia.tolist()}, J = {J} N s"
     K = np.asarray(lesson.point_inverse_mass(r, inv_mass, inv_inertia))
-    close("K [1/kg]: its shape, and that it is symmetric", K, K.T if K.shape == (3, 3) else np.zeros((3, 3)), ROUND_OFF, given=given)
+    transposed = K.T if K.shape == (3, 3) else np.zeros((3, 3))
+    close("K [1/kg]: shape and symmetry", K, transposed, ROUND_OFF, given=given)
     close("K J [m/s]", K @ J, answer(r, inv_mass, inv_inertia, J), ROUND_OFF, given=given)
-    close("K of what cannot be moved [1/kg]", lesson.point_inverse_mass(r, 0.0, np.zeros((3, 3))), np.zeros((3, 3)), 0.0, given=given)
+    close("K of an immovable body [1/kg]", lesson.point_inverse_mass(r, 0.0, np.zeros((3, 3))),
+          np.zeros((3, 3)), 0.0, given=given)
 
 
 def meeting(draw, n, slip, u_n):
-    """u with that normal velocity and that size along the surface, in a drawn direction."""
+    """u with normal component u_n and tangential magnitude slip, in a drawn tangential direction."""
     t = across(n, unit(draw, 3))
     return u_n * n + slip / np.linalg.norm(t) * t
 
 
 def hit_centrally(lesson, draw):
-    """An ordinary contact comes first: zeros, or a refusal of everything, are right for special ones, too.  u = w n − K J makes J = j n the impulse that sticks."""
+    """Check an ordinary contact first, because an answer that returns zeros or always raises passes the special cases.
+
+    With u = w n − K J, the impulse J = j n is the one that sticks.
+    """
     n, K = contact(draw)
     J, w = draw(0.5, 2.0) * n, draw(0.1, 0.5)
-    close("impulse of an ordinary contact [N s]", lesson.cone_impulse(w * n - K @ J, n, K, w, draw(0.1, 1.0)), J, 1e-11, given=f"n = {n}, K = {K.tolist()}, w = {w} m/s")
+    got = lesson.cone_impulse(w * n - K @ J, n, K, w, draw(0.1, 1.0))
+    close("impulse of an ordinary contact [N s]", got, J, 1e-11, given=f"n = {n}, K = {K.tolist()}, w = {w} m/s")
 
 
-@exercise("7.10", points=0.25, hint="n · u ≥ w: there is nothing to do, J = 0")
+@exercise("7.10", points=0.25, hint="where n · u ≥ w there is nothing to do: J = 0")
 def test_contacts_that_part_fast_enough_get_no_impulse(lesson, draw):
     hit_centrally(lesson, draw)
     n, K = contact(draw)
     for u_n, w in ((draw(0.5, 2.0), 0.0), (draw(1.1, 2.0), draw(0.1, 1.0))):
         got = lesson.cone_impulse(meeting(draw, n, draw(0.5, 3.0), u_n), n, K, w, draw(0.1, 1.0))
-        close("impulse on what separates [N s]", got, STILL, 0.0, given=f"n · u = {u_n} m/s, w = {w} m/s")
+        close("impulse on separating bodies [N s]", got, STILL, 0.0, given=f"n · u = {u_n} m/s, w = {w} m/s")
     _, K = contact(draw)
-    n = np.eye(3)[draw.whole(0, 2)]                                      # along an axis n · u is exact: just w
+    n = np.eye(3)[draw.whole(0, 2)]                                      # along an axis, n · u is exactly w
     slip = across(n, draw(0.5, 3.0, 3))
-    slip = slip if n @ np.linalg.solve(K, slip) < 0.0 else -slip         # to the side to which sticking would push, not pull
+    # in the direction in which a sticking impulse would push, not pull
+    slip = slip if n @ np.linalg.solve(K, slip) < 0.0 else -slip
     for w in (0.0, draw(0.1, 1.0)):
         got = lesson.cone_impulse(slip + w * n, n, K, w, np.inf)
-        close("impulse on what separates at w and slides [N s]", got, STILL, 0.0,
+        close("impulse on bodies that separate at w and slide [N s]", got, STILL, 0.0,
               given=f"u = {slip + w * n} m/s, n = {n}, w = {w} m/s, μ = inf")
 
 
@@ -240,30 +295,38 @@ def test_enough_friction_leaves_nothing_along_the_surface(lesson, draw):
         n, K = contact(draw)
         u = meeting(draw, n, 0.05, -draw(2.0, 4.0))
         stick = np.linalg.solve(K, w * n - u)
-        if stick @ n <= 0.0:                                             # possible for odd K only: then no cone holds it
+        # Only an unusual K makes sticking pull. Then no cone contains the impulse.
+        if stick @ n <= 0.0:
             continue
-        # K's condition number is below 100 here: its inverse is known to 1e-14 of what is below 30
-        close("relative velocity after sticking [m/s]", u + K @ lesson.cone_impulse(u, n, K, w, mu), w * n, 1e-11, given=f"u = {u} m/s, n = {n}, K = {K.tolist()}, w = {w} m/s")
+        # The condition number of K is below 100 here, so K⁻¹ times a vector below 30 has an error below 1e-12.
+        close("relative velocity after sticking [m/s]", u + K @ lesson.cone_impulse(u, n, K, w, mu), w * n, 1e-11,
+              given=f"u = {u} m/s, n = {n}, K = {K.tolist()}, w = {w} m/s")
 
 
-@exercise("7.10", points=0.5, hint="slide: |J_t| = μ J_n, J_t to the side of the stick's J_t, and the size so that n · u⁺ = w")
+@exercise("7.10", points=0.5,
+          hint="slide: |J_t| = μ J_n, J_t in the direction of the sticking J_t, the size such that n · u⁺ = w")
 def test_too_little_friction_slides_on_the_rim_of_the_cone(lesson, draw):
-    for share, w, size in ((draw(0.1, 0.9), 0.0, 1.0), (draw(0.1, 0.9), draw(0.1, 2.0), 1.0), (0.0, draw(0.1, 1.0), 1.0),
+    for share, w, size in ((draw(0.1, 0.9), 0.0, 1.0),
+                           (draw(0.1, 0.9), draw(0.1, 2.0), 1.0),
+                           (0.0, draw(0.1, 1.0), 1.0),
                            (draw(0.1, 0.9), TINY * draw(0.1, 2.0), TINY)):
         n, K = contact(draw)
         u = size * meeting(draw, n, draw(1.0, 3.0), -draw(0.5, 2.0))
         stick = np.linalg.solve(K, w * n - u)
-        along = across(n, stick) / np.linalg.norm(across(n, stick))
-        mu = share * (np.linalg.norm(across(n, stick)) / (stick @ n) if stick @ n > 0.0 else 1.0)
+        size_t = np.linalg.norm(across(n, stick))
+        along = across(n, stick) / size_t
+        mu = share * (size_t / (stick @ n) if stick @ n > 0.0 else 1.0)
         J = np.asarray(lesson.cone_impulse(u, n, K, w, mu))
         given = f"u = {u} m/s, n = {n}, K = {K.tolist()}, w = {w} m/s, μ = {mu}"
         close("normal velocity after the impact [m/s]", n @ (u + K @ J), w, 1e-11 * size, given=given)
-        close("impulse along the surface [N s]: μ J_n, to the side of the stick's", across(n, J), mu * (J @ n) * along, 1e-10 * size, given=given)
+        close("tangential impulse [N s]: μ J_n in the sticking direction", across(n, J), mu * (J @ n) * along,
+              1e-10 * size, given=given)
 
 
-@exercise("7.10", points=0.5, hint="compare |J_t|, not |J|, with μ J_n; and where 0 < n · u < w they separate too slowly: push")
-def test_a_cone_as_wide_as_the_sticking_impulse_needs_holds_also_what_parts_too_slowly(lesson, draw):
-    """u = w n − K J makes J the impulse that sticks, whatever J is."""
+@exercise("7.10", points=0.5,
+          hint="compare |J_t|, not |J|, with μ J_n; where 0 < n · u < w the bodies separate too slowly: push")
+def test_a_wide_enough_cone_sticks_also_where_bodies_separate_too_slowly(lesson, draw):
+    """With u = w n − K J, the sticking impulse is J."""
     for slow in (False, True):
         n, K = contact(draw)
         rho, t = draw(0.05, 0.2), across(n, unit(draw, 3))
@@ -271,10 +334,12 @@ def test_a_cone_as_wide_as_the_sticking_impulse_needs_holds_also_what_parts_too_
         w = n @ K @ J + draw(0.1, 0.5) if slow else draw(0.1, 0.5)
         u = w * n - K @ J
         got = lesson.cone_impulse(u, n, K, w, 1.3 * rho)
-        close("impulse that sticks [N s]", got, J, 1e-11, given=f"u = {u} m/s, n = {n}, K = {K.tolist()}, w = {w} m/s, μ = {1.3 * rho}")
+        close("impulse that sticks [N s]", got, J, 1e-11,
+              given=f"u = {u} m/s, n = {n}, K = {K.tolist()}, w = {w} m/s, μ = {1.3 * rho}")
 
 
-@exercise("7.10", points=0.5, hint="a stick that would have to pull, J_n < 0, is in no cone: slide; with β = arctan μ that works for μ = ∞, too")
+@exercise("7.10", points=0.5,
+          hint="a sticking impulse that pulls, J_n < 0, is in no cone: slide; β = arctan μ also handles μ = ∞")
 def test_a_contact_slides_where_sticking_would_have_to_pull(lesson, draw):
     n, K = contact(draw)
     side = across(n, K @ n) / np.linalg.norm(across(n, K @ n))
@@ -284,9 +349,10 @@ def test_a_contact_slides_where_sticking_would_have_to_pull(lesson, draw):
         got = np.asarray(lesson.cone_impulse(u, n, K, w, mu))
         given = f"u = {u} m/s, n = {n}, K = {K.tolist()}, w = {w} m/s, μ = {mu}"
         close("normal velocity after the impact [m/s]", n @ (u + K @ got), w, 1e-10, given=given)
-        between("impulse out of the surface [N s]: it never pulls", got @ n, -ROUND_OFF, 1e3, given=given)
+        between("normal impulse [N s]: never a pull", got @ n, -ROUND_OFF, 1e3, given=given)
         beta = np.arctan(mu)
-        close("impulse across the rim of the cone [N s]: none", np.cos(beta) * across(n, got) - np.sin(beta) * (got @ n) * side, STILL, 1e-10, given=given)
+        close("impulse perpendicular to the rim of the cone [N s]: none",
+              np.cos(beta) * across(n, got) - np.sin(beta) * (got @ n) * side, STILL, 1e-10, given=given)
 
 
 @exercise("7.10", points=0.5, hint="call check_contact first")
@@ -294,19 +360,27 @@ def test_contacts_without_physics_are_refused(lesson, draw):
     hit_centrally(lesson, draw)
     n, K = contact(draw)
     u = meeting(draw, n, 1.0, -1.0)
-    for what, arguments in (("a negative friction", (u, n, K, 0.0, -draw(0.1, 1.0))), ("a zero normal", (u, STILL, K, 0.0, 0.3)), ("a normal of length 2", (u, 2.0 * n, K, 0.0, 0.3)),
-                            ("two bodies that cannot be moved", (u, n, np.zeros((3, 3)), 0.0, 0.3)), ("a velocity that is not a number", (np.nan * u, n, K, 0.0, 0.3))):
-        raises(what, BadInput, lesson.cone_impulse, *arguments)
+    refused = {
+        "a negative friction": (u, n, K, 0.0, -draw(0.1, 1.0)),
+        "a zero normal": (u, STILL, K, 0.0, 0.3),
+        "a normal of length 2": (u, 2.0 * n, K, 0.0, 0.3),
+        "two immovable bodies": (u, n, np.zeros((3, 3)), 0.0, 0.3),
+        "a velocity that is not a number": (np.nan * u, n, K, 0.0, 0.3),
+    }
+    for case, arguments in refused.items():
+        raises(case, BadInput, lesson.cone_impulse, *arguments)
 
 
-@exercise("7.11", points=1, hint="J times the mean of the velocity before and after: J · u + ½ J · K J")
-def test_the_energy_of_an_impact_is_what_the_bodies_lose(lesson, draw):
-    (r_a, r_b, v_a, v_b, w_a, w_b, drawn) = (draw(-1.0, 1.0, 3) for _ in range(7))
-    m_a, m_b, inverse_a, inverse_b = draw(0.5, 3.0), draw(0.5, 3.0), inertia(draw), inertia(draw)
+@exercise("7.11", points=1, hint="J times the mean of the velocities before and after: J · u + ½ J · K J")
+def test_the_energy_of_an_impact_is_what_both_bodies_gain(lesson, draw):
+    r_a, r_b, v_a, v_b, w_a, w_b, drawn = (draw(-1.0, 1.0, 3) for _ in range(7))
+    m_a, m_b = draw(0.5, 3.0), draw(0.5, 3.0)
+    inverse_a, inverse_b = inertia(draw), inertia(draw)
 
     def energy(m, v, inv_inertia, omega):
         return 0.5 * m * v @ v + 0.5 * omega @ np.linalg.solve(inv_inertia, omega)
-    for share in (1.0, -1.0, 0.01, -0.01):                               # a small one gains or loses by its sign
+
+    for share in (1.0, -1.0, 0.01, -0.01):                               # the sign of a small J decides gain or loss
         J = share * drawn
         after_a = energy(m_a, v_a + J / m_a, inverse_a, w_a + inverse_a @ np.cross(r_a, J))
         after_b = energy(m_b, v_b - J / m_b, inverse_b, w_b - inverse_b @ np.cross(r_b, J))
@@ -320,9 +394,11 @@ def test_the_energy_of_an_impact_is_what_the_bodies_lose(lesson, draw):
 
 # ---------------------------------------------------------------------------------------------- when
 
-@exercise("7.12", points=1, hint="either φ + dt u_n stays above zero and λ = 0, or λ makes φ + dt (u_n + k λ) zero")
+@exercise("7.12", points=1, hint="either φ + dt u_n stays positive and λ = 0, or λ makes φ + dt (u_n + k λ) zero")
 def test_gap_and_multiplier_are_never_below_zero_and_one_of_them_is_zero(lesson, draw):
-    for closes, size in ((draw(1.1, 5.0), 1.0), (draw(1.1, 5.0), TINY), (draw(0.1, 0.9), 1.0), (0.0, 1.0), (-draw(0.5, 2.0), 1.0)):        # of the gap, in this step
+    # closes: distance travelled in this step as a fraction of the gap
+    cases = ((draw(1.1, 5.0), 1.0), (draw(1.1, 5.0), TINY), (draw(0.1, 0.9), 1.0), (0.0, 1.0), (-draw(0.5, 2.0), 1.0))
+    for closes, size in cases:
         phi, k, dt = size * draw(0.01, 0.5), draw(0.3, 3.0), draw(0.01, 0.1)
         u_n = -closes * phi / dt
         lam = float(lesson.gap_multiplier(phi, u_n, k, dt))
@@ -333,7 +409,8 @@ def test_gap_and_multiplier_are_never_below_zero_and_one_of_them_is_zero(lesson,
         close("multiplier times gap", lam * after, 0.0, 1e-9 * size**2, given=given)             # λ is below 1,000 here
     close("multiplier of a resting contact [N s]", lesson.gap_multiplier(0.0, -1.0, 2.0, 0.1), 0.5, ROUND_OFF)
     for u_n in (-draw(2.0, 5.0), draw(0.5, 2.0)):                        # the gap closes, or opens
-        raises(f"two bodies that cannot be moved, with u_n = {u_n:.4g} m/s", BadInput, lesson.gap_multiplier, 0.1, u_n, 0.0, 0.1)
+        raises(f"two immovable bodies, with u_n = {u_n:.4g} m/s", BadInput,
+               lesson.gap_multiplier, 0.1, u_n, 0.0, 0.1)
         for dt in (0.0, -0.1, np.nan):
             raises(f"a step of {dt} s, with u_n = {u_n:.4g} m/s", BadInput, lesson.gap_multiplier, 0.1, u_n, 1.0, dt)
 
@@ -343,38 +420,53 @@ def height(phi, v_n, a_n):
 
 
 @exercise("7.13", points=0.75,
-          hint="the root at which the gap closes: the first for v_n < 0, the second where it comes back")
+          hint="take the root at which the gap closes: the first for v_n < 0, the second if the ball comes back")
 def test_the_moment_of_impact_is_a_root_of_the_gap(lesson, draw):
     phi, speed = draw(0.2, 2.0), draw(0.5, 5.0)
-    for v_n, a_n in ((-speed, -draw(1.0, 10.0)), (speed, -draw(1.0, 10.0)), (0.0, -draw(1.0, 10.0)), (-speed, draw(0.1, 0.9) * speed**2 / (2.0 * phi)), (-speed, 0.0)):
+    for v_n, a_n in ((-speed, -draw(1.0, 10.0)),
+                     (speed, -draw(1.0, 10.0)),
+                     (0.0, -draw(1.0, 10.0)),
+                     (-speed, draw(0.1, 0.9) * speed**2 / (2.0 * phi)),
+                     (-speed, 0.0)):
         top = v_n / -a_n if a_n < 0.0 and v_n > 0.0 else 0.0
         end = speed / a_n if a_n > 0.0 else 20.0
         expected = brentq(height(phi, v_n, a_n), top, end, xtol=1e-15, rtol=1e-14)
         given = f"φ = {phi} m, v_n = {v_n} m/s, a_n = {a_n} m/s²"
-        # the root is as well known as φ is, 1e-16 of it over the speed there, which is above 0.1
+        # The error of the root is that of φ, 1e-16, divided by the speed at the root, which is above 0.1.
         close("time of impact [s]", lesson.impact_time(phi, v_n, a_n, 1e3), expected, 1e-11, given=given)
-        close("time of impact with all lengths 1e-20 times as large [s]", lesson.impact_time(TINY * phi, TINY * v_n, TINY * a_n, 1e3), expected, 1e-11, given=given)
-        close("where the step ends before it [s]", lesson.impact_time(phi, v_n, a_n, 0.9 * expected), 0.9 * expected, ROUND_OFF, given=given)
+        close("time of impact with all lengths multiplied by 1e-20 [s]",
+              lesson.impact_time(TINY * phi, TINY * v_n, TINY * a_n, 1e3), expected, 1e-11, given=given)
+        close("time of impact if the step ends first [s]: dt", lesson.impact_time(phi, v_n, a_n, 0.9 * expected),
+              0.9 * expected, ROUND_OFF, given=given)
 
 
 @exercise("7.13", points=0.25,
-          hint="never closes: dt; touches or is inside: φ counts as 0; a tiny a_n must not be divided by")
-def test_what_never_meets_and_what_touches_already(lesson, draw):
+          hint="if the gap never closes: dt; at or below the surface φ counts as 0; do not divide by a tiny a_n")
+def test_the_impact_time_is_dt_without_an_impact_and_zero_for_a_ball_pressed_in(lesson, draw):
     phi, speed, dt = draw(0.5, 2.0), draw(0.5, 2.0), draw(5.0, 9.0)
-    for v_n, a_n in ((speed, 0.0), (0.0, 0.0), (speed, draw(0.1, 2.0)), (-speed, draw(1.1, 3.0) * speed**2 / (2.0 * phi))):
-        close("time of an impact that never comes [s]: dt", lesson.impact_time(phi, v_n, a_n, dt), dt, 0.0, given=f"φ = {phi}, v_n = {v_n}, a_n = {a_n}, dt = {dt}")
+    for v_n, a_n in ((speed, 0.0),
+                     (0.0, 0.0),
+                     (speed, draw(0.1, 2.0)),
+                     (-speed, draw(1.1, 3.0) * speed**2 / (2.0 * phi))):
+        close("time of an impact that never comes [s]: dt", lesson.impact_time(phi, v_n, a_n, dt), dt, 0.0,
+              given=f"φ = {phi}, v_n = {v_n}, a_n = {a_n}, dt = {dt}")
     for inside in (0.0, -draw(0.01, 0.1)):
-        close("time to the impact of what is there and goes in [s]", lesson.impact_time(inside, -speed, -1.0, dt), 0.0, 0.0, given=f"φ = {inside}")
-        close("time to the impact of what lies there [s]", lesson.impact_time(inside, 0.0, -1.0, dt), 0.0, 0.0, given=f"φ = {inside}")
-        close("time of an impact of what lies there and is not pulled [s]: dt", lesson.impact_time(inside, 0.0, 0.0, dt), dt, 0.0, given=f"φ = {inside}, v_n = 0, a_n = 0, dt = {dt}")
-        close("time until it is back, thrown from there [s]", lesson.impact_time(inside, speed, -2.0, dt), speed, ROUND_OFF, given=f"φ = {inside}, v_n = {speed}")
-    close("time of impact where a_n is next to nothing [s]", lesson.impact_time(phi, -speed, -1e-14, dt), phi / speed, ROUND_OFF, given=f"φ = {phi}, v_n = {-speed}")
+        close("time of impact of a ball that moves inward [s]", lesson.impact_time(inside, -speed, -1.0, dt),
+              0.0, 0.0, given=f"φ = {inside}")
+        close("time of impact of a ball at rest that is pulled in [s]", lesson.impact_time(inside, 0.0, -1.0, dt),
+              0.0, 0.0, given=f"φ = {inside}")
+        close("time of impact of a ball at rest without acceleration [s]: dt",
+              lesson.impact_time(inside, 0.0, 0.0, dt), dt, 0.0, given=f"φ = {inside}, v_n = 0, a_n = 0, dt = {dt}")
+        close("time until a ball thrown from there comes back [s]", lesson.impact_time(inside, speed, -2.0, dt),
+              speed, ROUND_OFF, given=f"φ = {inside}, v_n = {speed}")
+    close("time of impact where a_n is nearly zero [s]", lesson.impact_time(phi, -speed, -1e-14, dt),
+          phi / speed, ROUND_OFF, given=f"φ = {phi}, v_n = {-speed}")
 
 
 @exercise("7.13", points=0.5,
-          hint="for any signs of φ, v_n and a_n: draw the parabola, and find where it first comes down to zero")
+          hint="φ, v_n and a_n may have any sign: draw the parabola and find where it first falls to zero")
 def test_the_gap_is_open_until_the_moment_of_impact_and_closes_there_whatever_the_signs(lesson, draw):
-    """Brute force: the parabola at 400 moments.  It is known to 1e-15 of its terms, of which there are a few."""
+    """Evaluate the parabola at 400 times. Its round-off is 1e-15 of its terms, and 1e-14 of them is allowed."""
     for side in (1.0, 0.0, -1.0):
         for up in (1.0, 0.0, -1.0):
             for pull in (1.0, 1e-12, 0.0, -1e-12, -1.0):
@@ -385,17 +477,19 @@ def test_the_gap_is_open_until_the_moment_of_impact_and_closes_there_whatever_th
                     given = f"φ = {phi} m, v_n = {v_n} m/s, a_n = {a_n} m/s², dt = {dt} s"
                     known = 1e-14 * (abs(phi) + abs(v_n) * dt + abs(a_n) * dt * dt)
                     between("time of impact [s]", tau, 0.0, dt, given)
-                    between("least gap before it [m]", gap(tau * np.linspace(0.0, 1.0, 400)).min(), -known, np.inf,
-                            given)
+                    least = gap(tau * np.linspace(0.0, 1.0, 400)).min()
+                    between("least gap before it [m]", least, -known, np.inf, given)
                     if tau < dt:
-                        close("gap then [m]", gap(tau), 0.0, known, given)
-                        between("change of the gap a little later [m/s]", v_n + a_n * (tau + 1e-9 * dt), -np.inf, 0.0,
-                                given)
+                        close("gap at that time [m]", gap(tau), 0.0, known, given)
+                        rate = v_n + a_n * (tau + 1e-9 * dt)
+                        between("change of the gap shortly after [m/s]", rate, -np.inf, 0.0, given)
 
 
-@exercise("7.14", points=0.5, hint="add up flights of 2v/|a|, each e times as long as the one before; three cases have no such sum")
+@exercise("7.14", points=0.5,
+          hint="add flights of 2v/|a|, each e times as long as the one before; three cases have no finite sum")
 def test_all_bounces_together_take_a_finite_time(lesson, draw):
-    for v_n, e, flights in ((1e-6 * draw(0.5, 5.0), draw(0.1, 0.9), 600), (1e-3 * draw(0.5, 5.0), 0.995, 12_000),
+    for v_n, e, flights in ((1e-6 * draw(0.5, 5.0), draw(0.1, 0.9), 600),
+                            (1e-3 * draw(0.5, 5.0), 0.995, 12_000),
                             (draw(0.5, 5.0), draw(0.1, 0.9), 600)):
         a_n = -draw(1.0, 10.0)
         total, speed = 0.0, v_n
@@ -404,26 +498,29 @@ def test_all_bounces_together_take_a_finite_time(lesson, draw):
         close("time of all bounces [s]", lesson.bouncing_time(v_n, a_n, e), total, 1e-11 * v_n,
               given=f"v_n = {v_n} m/s, a_n = {a_n} m/s², e = {e}")
     close("without restitution [s]: one flight", lesson.bouncing_time(v_n, a_n, 0.0), -2.0 * v_n / a_n, ROUND_OFF)
-    close("time of what does not leave [s]", [float(lesson.bouncing_time(v, a_n, e)) for v in (0.0, -v_n)], [0.0, 0.0], 0.0)
+    close("bouncing time of a ball that does not leave [s]",
+          [float(lesson.bouncing_time(v, a_n, e)) for v in (0.0, -v_n)], [0.0, 0.0], 0.0)
     for a, restitution in ((0.0, e), (-a_n, e), (a_n, 1.0)):
         assert_endless(lesson.bouncing_time(v_n, a, restitution), f"a_n = {a} m/s², e = {restitution}")
-        close("time of what does not leave, though what leaves would bounce for ever [s]", [float(lesson.bouncing_time(v, a, restitution)) for v in (0.0, -v_n)],
-              [0.0, 0.0], 0.0, given=f"v_n = 0 and {-v_n} m/s, a_n = {a} m/s², e = {restitution}")
+        close("bouncing time of a ball that does not leave, where a leaving one bounces forever [s]",
+              [float(lesson.bouncing_time(v, a, restitution)) for v in (0.0, -v_n)], [0.0, 0.0], 0.0,
+              given=f"v_n = 0 and {-v_n} m/s, a_n = {a} m/s², e = {restitution}")
     for less in (draw(0.5, 2.0) * 1e-4, draw(1.0, 5.0) * 1e-6, draw(1.0, 5.0) * 1e-10):
-        # the same sum begins again after the first flight, with e v_n; a sum of 1/less flights is known to 1e-15 of itself
+        # Without the first flight the sum starts again with e v_n. A sum of 1/less flights has a relative error 1e-15.
         times = np.array([float(lesson.bouncing_time(v, a_n, 1.0 - less)) for v in (v_n, (1.0 - less) * v_n)])
-        close("time of all bounces less that of all but the first [s]", times[0] - times[1], 2.0 * v_n / -a_n, 1e-14 * v_n / less,
-              given=f"v_n = {v_n} m/s, a_n = {a_n} m/s², e = 1 - {less}")
+        close("time of all bounces minus that of all but the first [s]", times[0] - times[1],
+              2.0 * v_n / -a_n, 1e-14 * v_n / less, given=f"v_n = {v_n} m/s, a_n = {a_n} m/s², e = 1 - {less}")
 
 
 def assert_endless(time, given):
-    between("1/(1 + time) of what bounces for ever [1/s]: infinite time gives 0", 1.0 / (1.0 + float(time)), 0.0, 0.0, given=given)
+    between("1/(1 + bouncing time) of endless bounces [1/s]: 0, as the time is infinite", 1.0 / (1.0 + float(time)),
+            0.0, 0.0, given=given)
 
 
-# ---------------------------------------------------------------------------------------------- a ball over a plane, in time
+# ---------------------------------------------------------------------------------------------- a ball above a plane
 
 def drop(draw, lesson, d, e=None):
-    """(Drop over a drawn plane, with gravity against its normal and along it, a tangent, pull along n, pull along the tangent)."""
+    """(Drop above a drawn plane, a tangent, gravity along −n, gravity along the tangent)."""
     n, pull, along = unit(draw, d), draw(5.0, 10.0), draw(0.5, 2.0)
     t = across(n, unit(draw, d)[::-1])
     t = t / np.linalg.norm(t)
@@ -432,20 +529,23 @@ def drop(draw, lesson, d, e=None):
 
 
 def swaying(t, x, v, p):
-    """An acceleration that depends on all that it is given."""
+    """An acceleration that depends on all its arguments."""
     return np.cos(t) * p.gravity + 0.5 * x - 0.5 * v
 
 
-@exercise("7.15", points=0.5, hint="kinematic_response leaves alone what leaves; the acceleration is acceleration(t, x, v, p) at the beginning")
-def test_a_projecting_step_puts_back_what_leaves_and_asks_for_the_acceleration(lesson, draw):
+@exercise("7.15", points=0.5,
+          hint="kinematic_response keeps the velocity of a leaving ball; evaluate "
+               "acceleration(t, x, v, p) at the start of the step")
+def test_a_projecting_step_puts_back_a_leaving_ball_and_evaluates_the_acceleration(lesson, draw):
     for d in (2, 3):
-        p, t, pull, along = drop(draw, lesson, d)
+        p, t, _, along = drop(draw, lesson, d)
         dt, speed, slip, depth = draw(0.01, 0.05), draw(1.0, 5.0), draw(1.0, 3.0), draw(0.5, 1.0)
         x, v = p.point - depth * p.n, slip * t + speed * p.n
         got = lesson.projecting_step(lesson.falling_acceleration, 0.0, x, v, dt, p)
         given = f"φ = {-depth} m, v = {v} m/s, dt = {dt} s, {p}"
-        close("position of what was inside and leaves [m]", got[0], p.point + dt * (slip + dt * along) * t, 1e-11, given=given)
-        close("velocity of what was inside and leaves [m/s]", got[1], v + dt * p.gravity, 1e-11, given=given)
+        close("position of a ball that starts inside and leaves [m]", got[0], p.point + dt * (slip + dt * along) * t,
+              1e-11, given=given)
+        close("velocity of a ball that starts inside and leaves [m/s]", got[1], v + dt * p.gravity, 1e-11, given=given)
         time, x = draw(0.5, 1.0), p.point + depth * p.n
         got = lesson.projecting_step(swaying, time, x, v, dt, p)
         v_new = v + dt * swaying(time, x, v, p)
@@ -454,14 +554,17 @@ def test_a_projecting_step_puts_back_what_leaves_and_asks_for_the_acceleration(l
         close("position after a step outside [m]", got[0], x + dt * v_new, 1e-11, given=given)
 
 
-@exercise("7.15", points=0.5, hint="v, then x; and where x is inside: v is turned round, x is put back along n")
-def test_a_projecting_step_repairs_what_is_inside_at_its_end(lesson, draw):
+@exercise("7.15", points=0.5,
+          hint="first v, then x; if x is then inside, reverse the normal velocity and move x back along n")
+def test_a_projecting_step_reflects_and_puts_back_a_ball_that_ends_inside(lesson, draw):
     for d in (2, 3):
         p, t, pull, along = drop(draw, lesson, d)
         dt, speed, slip = draw(0.01, 0.05), draw(1.0, 5.0), draw(1.0, 3.0)
         v = slip * t - speed * p.n
-        moved = dt * (speed + dt * pull)                                 # so far down it goes in this step
-        for share, hits, size in ((draw(0.1, 0.9), True, 1.0), (draw(1.1, 3.0), False, 1.0), (0.99999, True, 1.0), (draw(0.1, 0.9), True, TINY)):
+        moved = dt * (speed + dt * pull)                                 # normal distance travelled in this step
+        cases = ((draw(0.1, 0.9), True, 1.0), (draw(1.1, 3.0), False, 1.0),
+                 (0.99999, True, 1.0), (draw(0.1, 0.9), True, TINY))
+        for share, hits, size in cases:
             x = p.point + share * moved * p.n
             scaled = p._replace(gravity=size * p.gravity, point=size * p.point)
             got = lesson.projecting_step(lesson.falling_acceleration, 0.0, size * x, size * v, dt, scaled)
@@ -474,7 +577,7 @@ def test_a_projecting_step_repairs_what_is_inside_at_its_end(lesson, draw):
 
 
 def bounced(h, t, pull, e):
-    """Height and speed of a ball dropped from h, by the closed form, a flight at a time."""
+    """Height and normal velocity of a ball dropped from h, in closed form, flight by flight."""
     v, left = np.sqrt(2.0 * pull * h), t
     if left < v / pull:
         return h - 0.5 * pull * left**2, -pull * left
@@ -486,16 +589,20 @@ def bounced(h, t, pull, e):
     return v * left - 0.5 * pull * left**2, v - pull * left
 
 
-@exercise("7.16", points=0.25, hint="ask for the acceleration once, at t, x and v; what begins inside is put back onto the plane, x − φ n, and bounces")
-def test_a_backtracking_step_keeps_its_first_acceleration_and_puts_back_what_begins_inside(lesson, draw):
+@exercise("7.16", points=0.25,
+          hint="evaluate the acceleration once, at t, x and v; a ball that starts inside is "
+               "put back onto the plane, x − φ n, and bounces")
+def test_a_backtracking_step_keeps_its_first_acceleration_and_puts_back_a_ball_inside(lesson, draw):
     for inside in (True, False):
-        p, t, pull, along = drop(draw, lesson, 3)
-        time, dt, v = draw(0.5, 1.0), draw(0.02, 0.05), draw(1.0, 3.0) * t - draw(3.0, 5.0) * p.n
+        p, t, _, _ = drop(draw, lesson, 3)
+        time, dt = draw(0.5, 1.0), draw(0.02, 0.05)
+        v = draw(1.0, 3.0) * t - draw(3.0, 5.0) * p.n
         phi = -draw(0.1, 1.0) if inside else draw(0.2, 0.7) * dt * -(v @ p.n)
         x = p.point + phi * p.n
         a = swaying(time, x, v, p)
         tau = 0.0 if inside else brentq(height(phi, v @ p.n, a @ p.n), 0.0, dt, xtol=1e-16, rtol=1e-14)
-        hit, left = v + tau * a, dt - tau                                # p.e · 2.5 m/s is more than what a takes from it in dt
+        # The rebound speed, p.e · 2.5 m/s, is more than a takes from it in dt: there is one impact.
+        hit, left = v + tau * a, dt - tau
         place = p.point + across(p.n, tau * v + 0.5 * tau**2 * a)
         bounce = hit - (1.0 + p.e) * (hit @ p.n) * p.n
         got = lesson.backtracking_step(swaying, time, x, v, dt, p)
@@ -504,62 +611,73 @@ def test_a_backtracking_step_keeps_its_first_acceleration_and_puts_back_what_beg
         close("velocity after one impact [m/s]", got[1], bounce + left * a, 1e-11, given=given)
 
 
-@exercise("7.16", points=0.75, hint="fly to the impact, turn the velocity round, go on with what is left; several impacts may be in one step")
+@exercise("7.16", points=0.75,
+          hint="fly to the impact, bounce, continue with the remaining time; "
+               "one step may contain several impacts")
 def test_a_backtracking_step_follows_a_bouncing_ball_exactly(lesson, draw):
     for d, size in ((2, 1.0), (3, 1.0), (3, 1e-8)):
         p, t, pull, along = drop(draw, lesson, d)
         h, slip = size * draw(0.5, 2.0), draw(1.0, 3.0)
         fall = np.sqrt(2.0 * h / pull)
-        for time in (draw(0.3, 0.9) * fall, fall + draw(0.2, 0.8) * 2.0 * p.e * fall, fall + 2.0 * fall * (p.e + draw(0.2, 0.8) * p.e**2)):
+        second, third = 2.0 * p.e * fall, 2.0 * p.e**2 * fall
+        times = (draw(0.3, 0.9) * fall, fall + draw(0.2, 0.8) * second, fall + second + draw(0.2, 0.8) * third)
+        for time in times:
             x, v = lesson.backtracking_step(lesson.falling_acceleration, 0.0, p.point + h * p.n, slip * t, time, p)
             up, speed = bounced(h, time, pull, p.e)
+            place = p.point + up * p.n + (slip * time + 0.5 * along * time**2) * t
+            velocity = speed * p.n + (slip + along * time) * t
             given = f"dropped from {h} m with {slip} m/s along the plane, after {time} s, {p}"
-            # round-off of a place, 1e-15, over a height of 1e-8 makes 1e-7 of the speed, 4e-4, and of the height
-            close("position [m]", x, p.point + up * p.n + (slip * time + 0.5 * along * time**2) * t,
-                  1e-10 * max(size, 1e-3), given=given)
-            close("velocity [m/s]", v, speed * p.n + (slip + along * time) * t, 1e-10, given=given)
+            # Position round-off, 1e-15, is 1e-7 of a height of 1e-8, and so of the speed, 4e-4, and of later heights.
+            close("position [m]", x, place, 1e-10 * max(size, 1e-3), given=given)
+            close("velocity [m/s]", v, velocity, 1e-10, given=given)
             if size == 1.0:
                 scaled = p._replace(gravity=TINY * p.gravity, point=TINY * p.point)
-                x, v = lesson.backtracking_step(lesson.falling_acceleration, 0.0, scaled.point + TINY * h * p.n, TINY * slip * t, time, scaled)
+                x, v = lesson.backtracking_step(lesson.falling_acceleration, 0.0,
+                                                scaled.point + TINY * h * p.n, TINY * slip * t, time, scaled)
                 given = f"dropped from {TINY * h} m with {TINY * slip} m/s along the plane, after {time} s, {scaled}"
-                close("position where all is small [m]", x, TINY * (p.point + up * p.n + (slip * time + 0.5 * along * time**2) * t), TINY * 1e-10, given=given)
-                close("velocity where all is small [m/s]", v, TINY * (speed * p.n + (slip + along * time) * t), TINY * 1e-10, given=given)
+                close("position with all lengths tiny [m]", x, TINY * place, TINY * 1e-10, given=given)
+                close("velocity with all lengths tiny [m/s]", v, TINY * velocity, TINY * 1e-10, given=given)
 
 
-@exercise("7.16", points=0.25, hint="start from x and v without changing them: x = x + …, not x += …; and after IMPACTS impacts raise Diverged")
-def test_a_step_leaves_its_input_alone_and_says_when_impacts_have_no_end(lesson, draw):
+@exercise("7.16", points=0.25,
+          hint="do not change x and v: write x = x + …, not x += …; "
+               "after IMPACTS impacts raise Diverged")
+def test_a_backtracking_step_keeps_its_input_and_raises_diverged_after_too_many_impacts(lesson, draw):
     p, t, pull, along = drop(draw, lesson, 2, 1.0)
     x, v = p.point + draw(0.5e-4, 1e-4) * p.n, 0.0 * t
     before, high = x.copy(), p.point + 5.0 * p.n
     flown, _ = lesson.backtracking_step(lesson.falling_acceleration, 0.0, high, v, 0.1, p)
     close("position after 0.1 s of free fall [m]", flown, high + 0.005 * (along * t - pull * p.n), 1e-11, given=f"{p}")
     lesson.backtracking_step(lesson.falling_acceleration, 0.0, x, v, 0.1, p)
-    close("the position that was handed in [m]", x, before, 0.0)
-    close("the velocity that was handed in [m/s]", v, np.zeros(2), 0.0)
-    # a flight of a ball that loses nothing, from 0.1 mm, lasts 2 √(2h/a) < 0.013 s: 10,000 of them end before 130 s
-    raises("a step of 1000 s with more than IMPACTS impacts", Diverged, lesson.backtracking_step, lesson.falling_acceleration, 0.0, x, v, 1000.0, p)
+    close("input position after the call [m]", x, before, 0.0)
+    close("input velocity after the call [m/s]", v, np.zeros(2), 0.0)
+    # Without energy loss, flights from a height of 0.1 mm last 2 √(2h/a) < 0.013 s: 10,000 of them end before 130 s.
+    raises("a step of 1000 s with more than IMPACTS impacts", Diverged,
+           lesson.backtracking_step, lesson.falling_acceleration, 0.0, x, v, 1000.0, p)
 
 
-@exercise("7.16", points=0.25, hint="where bouncing_time fits into what is left it lies on the plane from there on: lie(…)")
-def test_a_ball_that_has_bounced_for_the_last_time_lies(lesson, draw):
+@exercise("7.16", points=0.25,
+          hint="if bouncing_time is at most the remaining time, the ball lies on the plane from then on: lie(…)")
+def test_a_ball_lies_on_the_plane_after_its_last_bounce(lesson, draw):
     for e in (0.0, draw(0.3, 0.8)):
         p, t, pull, along = drop(draw, lesson, 3, e)
         h, slip = draw(0.5, 2.0), draw(1.0, 3.0)
         fall = np.sqrt(2.0 * h / pull)
         rest = fall * (1.0 + e) / (1.0 - e)
         x, v, time = p.point + h * p.n, slip * t, 0.0
-        for dt in (draw(1.01, 1.5) * rest, draw(0.1, 0.5), 1e-6):        # the second and the third begin at rest
+        for dt in (draw(1.01, 1.5) * rest, draw(0.1, 0.5), 1e-6):        # the second and third steps start at rest
             x, v = lesson.backtracking_step(lesson.falling_acceleration, time, x, v, dt, p)
             time += dt
             given = f"dropped from {h} m, after {time} s, {p}"
-            close("position of what lies on the plane [m]", x, p.point + (slip * time + 0.5 * along * time**2) * t, 1e-9, given=given)
-            close("its velocity [m/s]", v, (slip + along * time) * t, 1e-10, given=given)
+            close("position of a ball that lies on the plane [m]", x,
+                  p.point + (slip * time + 0.5 * along * time**2) * t, 1e-9, given=given)
+            close("velocity of a ball that lies on the plane [m/s]", v, (slip + along * time) * t, 1e-10, given=given)
 
 
 # ---------------------------------------------------------------------------------------------- several impacts at once
 
 def together(body, r, n, e, rough):
-    """(v⁺, ω⁺) by least squares: all conditions at all points in one system;  rough: nothing is left along the surface."""
+    """(v⁺, ω⁺) from one least-squares system of the conditions at all points; rough: no tangential velocity remains."""
     M = np.zeros((6, 6))
     M[:3, :3], M[3:, 3:] = body.inv_mass * np.eye(3), body.inv_inertia
     rows, wanted = [], []
@@ -575,12 +693,14 @@ def together(body, r, n, e, rough):
 
 
 def falling_box(draw, lesson, points):
-    """(Solid, r, n): a box that falls without turning, and meets the floor with so many corners: 1, 2 or 4."""
+    """(Solid, r, n): a falling box that does not rotate and lands on 1, 2 or 4 corners."""
     half, m = draw(0.1, 0.3, 3), draw(0.5, 2.0)
     moments = m / 3.0 * (half @ half - half**2)
     tilt = {1: (draw(0.3, 0.9), draw(0.3, 0.9)), 2: (draw(0.3, 0.9), 0.0), 4: (0.0, 0.0)}[points]
     c, s = np.cos(tilt), np.sin(tilt)
-    R = np.array([[1.0, 0.0, 0.0], [0.0, c[0], -s[0]], [0.0, s[0], c[0]]]) @ np.array([[c[1], 0.0, s[1]], [0.0, 1.0, 0.0], [-s[1], 0.0, c[1]]])
+    about_x = np.array([[1.0, 0.0, 0.0], [0.0, c[0], -s[0]], [0.0, s[0], c[0]]])
+    about_y = np.array([[c[1], 0.0, s[1]], [0.0, 1.0, 0.0], [-s[1], 0.0, c[1]]])
+    R = about_x @ about_y
     corners = np.array([[a, b, z] for a in (-1.0, 1.0) for b in (-1.0, 1.0) for z in (-1.0, 1.0)]) * half @ R.T
     lowest = corners[corners[:, 2] < corners[:, 2].min() + 1e-9]
     body = lesson.Solid(np.array([0.0, 0.0, -draw(1.0, 3.0)]), np.zeros(3), 1.0 / m, R @ np.diag(1.0 / moments) @ R.T)
@@ -588,25 +708,27 @@ def falling_box(draw, lesson, points):
 
 
 @exercise("7.17", points=0.25,
-          hint="the w are those before the impact; each point takes its own impulse back before it asks for the new one; sweep until nothing changes")
+          hint="w comes from the velocities before the impact; at each point take back its old impulse "
+               "before computing the new one; sweep until nothing changes")
 def test_a_box_that_lands_on_a_corner_an_edge_or_a_face_leaves_as_all_its_points_demand(lesson, draw):
-    """Sweeps stop at changes of 1e-14 of 3 m/s; what is still to come is at most some hundred times as much; ω is v over 0.1 m."""
+    """Sweeps stop at changes of 1e-14 of 3 m/s. The remaining error is some hundred times that. ω is v over 0.1 m."""
     r, n, J_n = draw(-1.0, 1.0, 3), unit(draw, 3), draw(0.5, 2.0)
     body, t = solid(draw, lesson), across(n, unit(draw, 3))
     t = t / np.linalg.norm(t) * np.sign(n @ answer(r, body.inv_mass, body.inv_inertia, t))
     J, e = J_n * (n + 1.5 * t), draw(0.1, 0.9)
     change = answer(r, body.inv_mass, body.inv_inertia, J)
-    # rebounds with e, and sticks
+    # This velocity makes J the impulse that rebounds with e and sticks.
     held = body._replace(v=e / (1.0 + e) * (n @ change) * n - change, omega=np.zeros(3))
-    (got, _), given = lesson.solve_impacts(held, r[None], n[None], e, 2.0), f"r = {r}, n = {n}, e = {e}, μ = 2, {held}"
-    close("velocity of a body that friction of 1.5 times the load holds [m/s]", got.v, held.v + body.inv_mass * J,
-          1e-10, given)
-    close("its angular velocity [rad/s]", got.omega, body.inv_inertia @ np.cross(r, J), 1e-10, given)
+    got, _ = lesson.solve_impacts(held, r[None], n[None], e, 2.0)
+    given = f"r = {r}, n = {n}, e = {e}, μ = 2, {held}"
+    close("velocity of a body that sticks with a friction of 1.5 J_n [m/s]", got.v, held.v + body.inv_mass * J, 1e-10,
+          given)
+    close("angular velocity of a body that sticks [rad/s]", got.omega, body.inv_inertia @ np.cross(r, J), 1e-10, given)
     for points in (1, 2, 4):
         for mu in (0.0, np.inf):
             e = draw(0.1, 0.9)
             body, r, n = falling_box(draw, lesson, points)
-            got, residual = lesson.solve_impacts(body, r, n, e, mu)
+            got, _ = lesson.solve_impacts(body, r, n, e, mu)
             given = f"{points} points, r = {r.tolist()}, e = {e}, μ = {mu}, {body}"
             expected = together(body, r, n, e, mu > 0.0)
             close("velocity after the impact [m/s]", got.v, expected[:3], 1e-10, given=given)
@@ -614,16 +736,19 @@ def test_a_box_that_lands_on_a_corner_an_edge_or_a_face_leaves_as_all_its_points
 
 
 @exercise("7.17", points=0.25,
-          hint="an impulse is inside its cone, whatever the other points do; and check_impacts comes first")
+          hint="each impulse is inside its cone, whatever the other points do; call check_impacts first")
 def test_the_order_of_the_points_does_not_matter_and_sliding_points_slide(lesson, draw):
     body, r, n = falling_box(draw, lesson, 2)
-    body = body._replace(v=body.v + draw(0.5, 2.0) * np.array([1.0, 0.0, 0.0]) + draw(0.5, 2.0) * np.array([0.0, 1.0, 0.0]))
+    slide = draw(0.5, 2.0) * np.array([1.0, 0.0, 0.0]) + draw(0.5, 2.0) * np.array([0.0, 1.0, 0.0])
+    body = body._replace(v=body.v + slide)
     e, mu = draw(0.1, 0.5), draw(0.05, 0.1)
     (one, _), (other, _) = (lesson.solve_impacts(body, r[order], n, e, mu) for order in ([0, 1], [1, 0]))
     given = f"r = {r.tolist()}, e = {e}, μ = {mu}, {body}"
-    close("velocity with the points in the other order [m/s, rad/s]", [*other.v, *other.omega], [*one.v, *one.omega], 1e-9, given=given)
+    close("velocity with the points in the other order [m/s, rad/s]", [*other.v, *other.omega],
+          [*one.v, *one.omega], 1e-9, given=given)
     P = (np.asarray(one.v) - body.v) / body.inv_mass
-    between("impulse along the floor over μ times that out of it [-]", np.hypot(P[0], P[1]) / (mu * P[2]), 0.5, 1.0 + 1e-9, given=given)
+    between("tangential impulse over μ times normal impulse [-]", np.hypot(P[0], P[1]) / (mu * P[2]),
+            0.5, 1.0 + 1e-9, given=given)
     for corner in r:
         u = np.asarray(one.v) + np.cross(one.omega, corner)
         close("speed at which each point leaves [m/s]", u[2], -e * body.v[2], 1e-10, given=given)
@@ -632,9 +757,10 @@ def test_the_order_of_the_points_does_not_matter_and_sliding_points_slide(lesson
 
 
 @exercise("7.17", points=0.25,
-          hint="compare with largest_speed; the residual is that of the last sweep; where none settles, most_dissipative_impact answers")
-def test_the_residual_tells_what_has_settled_from_what_cannot(lesson, draw):
-    """A ball that rolls settles at once.  A body between two walls can rebound from neither: what is left of it is v · n = 0."""
+          hint="compare with largest_speed; the residual is that of the last sweep; "
+               "if the sweeps do not settle, return most_dissipative_impact")
+def test_the_residual_is_small_exactly_if_the_sweeps_can_settle(lesson, draw):
+    """A rolling ball settles at once. A body between two walls can rebound from neither: only v · n = 0 is possible."""
     n = unit(draw, 3)
     radius, along, e = draw(0.05, 0.5), across(n, draw(5.0, 20.0) * unit(draw, 3)), draw(0.2, 0.8)
     v = along - draw(0.05, 0.2) * n
@@ -642,8 +768,8 @@ def test_the_residual_tells_what_has_settled_from_what_cannot(lesson, draw):
     got, residual = lesson.solve_impacts(ball, -radius * n[None], n[None], e, draw(0.1, 0.9))
     given = f"a ball of radius {radius} that rolls with v = {v}, n = {n}, e = {e}"
     close("velocity along n after the impact [m/s]", got.v @ n, -e * (v @ n), 1e-12, given)
-    between("residual of what settles [m/s]", residual, 0.0, 1e-12, given)
-    # walls squeeze a body as hard as they like: with friction nothing moves at the points.  That is the least energy
+    between("residual after the sweeps have settled [m/s]", residual, 0.0, 1e-12, given)
+    # The walls can press as hard as they like, so friction stops both points. That state has the least energy.
     body = lesson.Solid(v, draw(-5.0, 5.0, 3), 1.0, np.eye(3) / (0.4 * radius**2))
     arms, walls = radius * (np.stack((-n, n)) + 0.2 * draw(-1.0, 1.0, 3)), np.stack((n, -n))
     comes = -(n @ (v + np.cross(body.omega, arms[0])))
@@ -655,15 +781,16 @@ def test_the_residual_tells_what_has_settled_from_what_cannot(lesson, draw):
         given = f"a body between two walls, r = {arms[order].tolist()}, n = {walls[order].tolist()}, {body}"
         close("velocity between two walls with friction [m/s]", got.v, expected[:3], 1e-7, given)
         close("angular velocity between two walls [rad/s]", got.omega, expected[3:], 1e-6, given)
-        between("residual of what cannot settle [m/s]", residual, 0.1 * e * comes, 10.0 * comes, given)
+        between("residual where the sweeps cannot settle [m/s]", residual, 0.1 * e * comes, 10.0 * comes, given)
 
 
 def close_pair(draw, lesson, m, height):
-    """(Solid at rest, r (2, 3), d, n, x): two points at ±x d and height x below the centre of a body that they hardly can turn.
+    """(Solid at rest, r (2, 3), d, n, x): points at ±x d, a distance height · x along −n, on a body that hardly turns.
 
-    Each sweep leaves (1 − a)²/(1 + a)² of the error, a = m x²/I: 1,100 to 1,600 sweeps to 1e-14.
+    Each sweep reduces the error by a factor (1 − a)²/(1 + a)², where a = m x²/I: 1,100 to 1,600 sweeps to 1e-14.
     """
-    n = -np.abs(unit(draw, 3))                                           # all its components are negative, as those of the changes
+    # All components are negative, as are those of the velocity changes.
+    n = -np.abs(unit(draw, 3))
     d, x = across(n, unit(draw, 3)), draw(0.05, 0.2)
     d = d / np.linalg.norm(d)
     body = lesson.Solid(STILL, STILL, 1.0 / m, draw(0.0045, 0.006) / (m * x * x) * np.eye(3))
@@ -671,34 +798,41 @@ def close_pair(draw, lesson, m, height):
 
 
 @exercise("7.17", points=0.25,
-          hint="SWEEPS sweeps; the residual: the largest |component| of Kᵢ (J − Jᵢ) of all points, compared with SETTLED largest_speed(body, r)")
+          hint="at most SWEEPS sweeps; the residual is the largest |component| of Kᵢ (J − Jᵢ) of all "
+               "points; compare it with SETTLED largest_speed(body, r)")
 def test_points_close_together_take_many_sweeps_whatever_the_body_weighs_and_however_it_moves(lesson, draw):
-    """Two points stick: u⁺ = w n at both.  Points that leave by themselves, first and last, change nothing.  Then it rolls, u is small."""
+    """Two points stick: u⁺ = w n at both.
+
+    The light body also has a first and a last point that leave by themselves and change nothing. The second body rolls,
+    so that u is small.
+    """
     down, e = draw(1.0, 3.0), draw(0.2, 0.8)
-    body, r, d, n, x = close_pair(draw, lesson, 1e-6, 0.0)
-    light = body._replace(v=0.1 * down * d - down * n, omega=draw(30.0, 60.0) * down / x * d)
-    leaves = draw(10.0, 20.0) * x * np.cross(n, d)
+    body, sticks, d, n_1, x = close_pair(draw, lesson, 1e-6, 0.0)
+    light = body._replace(v=0.1 * down * d - down * n_1, omega=draw(30.0, 60.0) * down / x * d)
+    leaves = draw(10.0, 20.0) * x * np.cross(n_1, d)
+    with_leaving = np.vstack((leaves, sticks, 1.5 * leaves))
     body, rolls_on, d, n_2, x = close_pair(draw, lesson, 1.0, 1.0)
     turn = draw(5.0, 10.0) / x
     rolls = body._replace(v=turn * x * np.cross(d, n_2) + 1e-4 * down * (0.3 * d - n_2), omega=turn * d)
-    for body, r, n, stick in ((light, np.vstack((leaves, r, 1.5 * leaves)), n, slice(1, 3)), (rolls, rolls_on, n_2, slice(0, 2))):
+    for body, r, n, stick in ((light, with_leaving, n_1, slice(1, 3)), (rolls, rolls_on, n_2, slice(0, 2))):
         normals = np.tile(n, (len(r), 1))
         got, residual = lesson.solve_impacts(body, r, normals, e, np.inf)
         expected = together(body, r[stick], normals[stick], e, True)
         given = f"r = {r.tolist()}, n = {n}, e = {e}, μ = inf, {body}"
         close("velocity after the impact [m/s]", got.v, expected[:3], 1e-9, given)
         close("angular velocity after the impact [rad/s]", got.omega, expected[3:], 1e-8, given)
-        between("residual of what settles [m/s]", residual, 0.0, 1e-9, given)
+        between("residual after the sweeps have settled [m/s]", residual, 0.0, 1e-9, given)
 
 
 def least_change(body, r, n, e):
-    """(v⁺, ω⁺) without friction: every point leaves with wᵢ at least, and the change has the least kinetic energy.
+    """(v⁺, ω⁺) without friction: every point leaves with at least wᵢ, and the change has the least kinetic energy.
 
-    The change is M^½ y with the least |y| of all A y ≥ h.  Non-negative least squares find it: Lawson and Hanson 1974,
-    chapter 23.
+    The change is M^½ y, where |y| is the least of all y with A y ≥ h. Non-negative least squares finds it: Lawson and
+    Hanson 1974, chapter 23.
     """
     half, G = np.zeros((6, 6)), np.hstack((n, np.cross(r, n)))
-    half[:3, :3], half[3:, 3:] = np.sqrt(body.inv_mass) * np.eye(3), np.linalg.cholesky(body.inv_inertia)
+    half[:3, :3] = np.sqrt(body.inv_mass) * np.eye(3)
+    half[3:, 3:] = np.linalg.cholesky(body.inv_inertia)
     before = np.concatenate((body.v, body.omega))
     u = G @ before
     rows = np.vstack(((G @ half).T, np.maximum(0.0, -e * u) - u))
@@ -708,9 +842,9 @@ def least_change(body, r, n, e):
 
 
 def tumbling(draw, lesson):
-    """(Solid, r, n): a rod of which one end leaves, boxes that fall and turn, bodies between some surfaces."""
+    """(Solid, r, n): a rod with one leaving end, falling boxes that rotate, bodies between one to three surfaces."""
     m, half, down = draw(0.5, 2.0), draw(0.3, 1.0), draw(1.0, 3.0)
-    # an impulse at one end drives the other down by a third or more of it
+    # An impulse at one end drives the other end down by at least a third of its own change.
     up = draw(0.1, 0.4) * down
     moments = m * half**2 / 3.0 * np.array([0.01, 1.0, 1.0])
     v, omega = np.array([0.0, 0.0, 0.5 * (up - down)]), np.array([0.0, 0.5 * (up + down) / half, 0.0])
@@ -719,26 +853,28 @@ def tumbling(draw, lesson):
     for points, omega in ((2, draw(-5.0, 5.0, 3)), (4, np.array([draw(15.0, 40.0), 0.0, draw(-5.0, 5.0)]))):
         body, r, n = falling_box(draw, lesson, points)
         yield body._replace(v=body.v + np.append(draw(-2.0, 2.0, 2), 0.0), omega=omega), r, n
-    # on a triangle: the sweeps need far more where two are close
+    # The points form a triangle, because points close together take many more sweeps.
     for points in (1, 2, 3):
         up, turn = unit(draw, 3), 2.0 * np.pi / 3.0 * np.arange(points)
         side = across(up, unit(draw, 3))
         side = draw(0.5, 1.0) * side / np.linalg.norm(side)
-        r = np.cos(turn)[:, None] * side + np.sin(turn)[:, None] * np.cross(up, side) + 0.1 * draw(-1.0, 1.0,
-                                                                                                   (points, 3))
+        circle = np.cos(turn)[:, None] * side + np.sin(turn)[:, None] * np.cross(up, side)
+        r = circle + 0.1 * draw(-1.0, 1.0, (points, 3))
         n = up + 0.4 * draw(-1.0, 1.0, (points, 3))
         body = solid(draw, lesson)
         yield body._replace(v=body.v - 4.0 * up), r - 0.3 * up, n / np.linalg.norm(n, axis=1, keepdims=True)
 
 
 @exercise("7.17", points=0.5,
-          hint="each point has its own normal and its own wᵢ ≥ 0: what leaves by itself must leave at least so fast")
+          hint="each point has its own normal and its own wᵢ ≥ 0; a point that leaves must leave at least with wᵢ")
 def test_without_friction_a_tumbling_body_changes_no_more_than_all_its_points_demand(lesson, draw):
-    """Sweeps stop at changes of 1e-14 of 10 m/s.  A hundred times as much may be missing; ω is v over 0.1 m."""
+    """Sweeps stop at changes of 1e-14 of 10 m/s. The error may be a hundred times that. ω is v over 0.1 m."""
     for body, r, n in tumbling(draw, lesson):
         for slow in (1.0, 1e-6):
-            e, moving = draw(0.1, 0.9), body._replace(v=slow * body.v, omega=slow * body.omega)
-            (got, _), expected = lesson.solve_impacts(moving, r, n, e, 0.0), least_change(moving, r, n, e)
+            e = draw(0.1, 0.9)
+            moving = body._replace(v=slow * body.v, omega=slow * body.omega)
+            got, _ = lesson.solve_impacts(moving, r, n, e, 0.0)
+            expected = least_change(moving, r, n, e)
             given = f"r = {r.tolist()}, n = {n.tolist()}, e = {e}, {moving}"
             close("velocity after the impact [m/s]", got.v, expected[:3], 1e-9 * slow, given)
             close("angular velocity after the impact [rad/s]", got.omega, expected[3:], 1e-8 * slow, given)

@@ -1,4 +1,4 @@
-"""Lesson 1 is right when each method has its own stability function, its order, and keeps what it should keep."""
+"""Lesson 1: each method has its stability function and its order, and implicit steps solve their equations."""
 
 from typing import NamedTuple
 
@@ -11,7 +11,8 @@ from ..grading.expect import between, close, raises
 
 exercise = pytest.mark.exercise
 
-METHODS = {     # method: exercise, points for its matrix, for its order, the order, where in the step it reads the clock {c: weight}
+# method: exercise, points for its matrix, points for its order, order, times at which it evaluates a {c: weight}
+METHODS = {
     "euler_step": ("1.1", 1, 1, 1, {0: 1}),
     "midpoint_step": ("1.2", 1, 1, 2, {0.5: 1}),
     "rk4_step": ("1.3", 1, 2, 4, {0: 1 / 6, 0.5: 2 / 3, 1: 1 / 6}),
@@ -22,21 +23,23 @@ METHODS = {     # method: exercise, points for its matrix, for its order, the or
     "implicit_midpoint_step": ("1.8", 0.5, 1, 2, {0.5: 1}),
 }
 HINTS = {
-    "1.1": "x gains dt times the old v, v gains dt times a: both slopes belong to the beginning of the step",
-    "1.2": "take half an Euler step, then a whole step from the beginning along the slopes found there, with a at t + ½dt",
-    "1.3": "each slope is reached along the one before it; weights 1/6, 1/3, 1/3, 1/6, for x and v alike",
-    "1.4": "new velocity by Euler first, then the position with the mean of old and new velocity",
-    "1.5": "velocity first; the position then moves with the new velocity",
-    "1.6": "the position takes ½dt² a; the new acceleration belongs to tₙ + dt, the new position and the predicted velocity v + dt a",
-    "1.7": "the acceleration belongs to tₙ + dt, to x + dt w and to w; start from w = v.copy(), and subtract the Newton correction",
-    "1.8": "half a step of implicit Euler gives the middle: the end is as far again beyond it",
+    "1.1": "x gains dt times the old v, v gains dt times a: both derivatives are taken at the start of the step",
+    "1.2": "take half an Euler step; then a whole step from the start with the derivatives found there, a at t + ½dt",
+    "1.3": "each stage starts from the derivative of the one before; weights 1/6, 1/3, 1/3, 1/6 for both x and v",
+    "1.4": "first the new velocity by Euler, then the position with the mean of old and new velocity",
+    "1.5": "first the velocity; then the position with the new velocity",
+    "1.6": "x gains dt v + ½dt² a; the new acceleration is that at tₙ + dt, "
+           "the new position and the predicted velocity v + dt a",
+    "1.7": "a is evaluated at tₙ + dt, x + dt w and w; start from w = v.copy(), and subtract the Newton correction",
+    "1.8": "half a step of implicit Euler leads to the midpoint: the end is as far again beyond it",
 }
 
 
 def cases(*indices):
     """One pytest case for each method: its name and the listed columns, marked with its exercise."""
     def case(name, row, points):
-        return pytest.param(name, *(row[i] for i in indices), id=name, marks=exercise(row[0], points=points, hint=HINTS[row[0]]))
+        return pytest.param(name, *(row[i] for i in indices), id=name,
+                            marks=exercise(row[0], points=points, hint=HINTS[row[0]]))
     return [case(name, row, row[2] if indices else row[1]) for name, row in METHODS.items()]
 
 
@@ -44,13 +47,13 @@ def expected_matrix(name, omega, zeta, h):
     """A of one step on the damped oscillator: the method's stability function at hB for those that have one."""
     B = np.array([[0.0, 1.0], [-omega**2, -2.0 * zeta * omega]])
     one, z = np.eye(2), h * B
-    kick = np.array([[1.0, 0.0], [z[1, 0], 1.0 + z[1, 1]]])                       # v ← v + h a
-    kick_ahead = one + np.array([[0.0, 0.0], [0.5 * z[1, 0], 0.5 * z[1, 1]]])     # v ← v + ½h a
+    kick = np.array([[1.0, 0.0], [z[1, 0], 1.0 + z[1, 1]]])              # v ← v + h a
+    drift_by_mean = np.array([[1.0, 0.0], [0.0, 0.0]]) + 0.5 * h * np.array([one[1] + kick[1], [0.0, 0.0]])
     return {
         "euler_step": lambda: one + z,
         "midpoint_step": lambda: one + z + z @ z / 2,
         "rk4_step": lambda: one + z + z @ z / 2 + z @ z @ z / 6 + z @ z @ z @ z / 24,
-        "average_velocity_step": lambda: np.array([one[0], [0.0, 0.0]]) + np.array([0.5 * h * (one[1] + kick[1]), kick[1]]),
+        "average_velocity_step": lambda: drift_by_mean + np.array([[0.0, 0.0], kick[1]]),
         "symplectic_euler_step": lambda: np.array([[1.0, h], [0.0, 1.0]]) @ kick,
         "verlet_step": lambda: verlet_matrix(B, h),
         "implicit_euler_step": lambda: np.linalg.inv(one - z),
@@ -59,7 +62,7 @@ def expected_matrix(name, omega, zeta, h):
 
 
 def verlet_matrix(B, h):
-    """x⁺ = x + hv + ½h²a;  v⁺ = v + ½h(a + b·(x⁺, v + ha)), with a = b·(x, v), b the lower row of B."""
+    """x⁺ = x + hv + ½h²a and v⁺ = v + ½h(a + b·(x⁺, v + ha)), with a = b·(x, v) and b the lower row of B."""
     x, v, b = np.array([1.0, 0.0]), np.array([0.0, 1.0]), B[1]
     x_new = x + h * v + 0.5 * h * h * b
     return np.array([x_new, v + 0.5 * h * (b + b[0] * x_new + b[1] * (v + h * b))])
@@ -68,14 +71,16 @@ def verlet_matrix(B, h):
 @pytest.mark.parametrize("method", cases())
 def test_one_step_has_the_amplification_matrix_of_the_method(lesson, draw, method):
     omega, zeta, dt = draw(2.0, 4.0), draw(0.1, 0.4), draw(0.05, 0.15)
-    p, expected = lesson.Oscillator(omega, zeta), expected_matrix(method, omega, zeta, dt)
+    p = lesson.Oscillator(omega, zeta)
+    expected = expected_matrix(method, omega, zeta, dt)
     for x0, v0 in draw(-1.0, 1.0, (3, 2)):
         before = np.array([x0]), np.array([v0])
         x, v = lesson.advance(getattr(lesson, method), lesson.oscillator_acceleration, 0.0, *before, dt, 1, p)
-        # Newton stops at 1e-12 |w|, |w|² < ω²x² + v² < 17, which the midpoint doubles; the rest is round-off of numbers below 20
+        # Newton stops at 1e-12 |w|, with |w|² < ω²x² + v² < 17, and the midpoint doubles that.
+        # The rest is round-off of numbers below 20.
         close("x and v [m, m/s] after one step", [x[0], v[0]], expected @ [x0, v0], 1e-11,
               given=f"ω = {omega:.4g}/s, ζ = {zeta:.4g}, dt = {dt:.4g} s, from x = {x0:.4g} m and v = {v0:.4g} m/s")
-        close("the x and v that were handed in: return new arrays", np.ravel(before), [x0, v0], 0.0)
+        close("input x and v after the call: return new arrays", np.ravel(before), [x0, v0], 0.0)
 
 
 class Drive(NamedTuple):
@@ -84,12 +89,12 @@ class Drive(NamedTuple):
 
 
 def driven_pendula(t, x, v, p):
-    """a = −sin x − c v + s cos t, entry by entry: depends on time, position and velocity, and on nothing linearly."""
+    """a = −sin x − c v + s cos t, entry by entry: it depends on time, position and velocity, and is not linear."""
     return -np.sin(x) - p.drag * v + p.strength * np.cos(t)
 
 
-def driven_truth(p, t, x, v, T):
-    """x and v, one row each, of driven pendula after T, by DOP853 at its tightest tolerance (global error below 1e-12)."""
+def driven_reference(p, t, x, v, T):
+    """x and v, one row each, of driven pendula after T, by DOP853 at its tightest tolerance; error below 1e-12."""
     from scipy.integrate import solve_ivp
     start = np.stack([x, v])
 
@@ -97,54 +102,69 @@ def driven_truth(p, t, x, v, T):
         x, v = y.reshape(start.shape)
         return np.concatenate([v, driven_pendula(t, x, v, p)])
 
-    return solve_ivp(slopes, (t, t + T), start.ravel(), method="DOP853", rtol=3e-14, atol=1e-14).y[:, -1].reshape(start.shape)
+    end = solve_ivp(slopes, (t, t + T), start.ravel(), method="DOP853", rtol=3e-14, atol=1e-14).y[:, -1]
+    return end.reshape(start.shape)
 
 
-@pytest.mark.parametrize("method, order, clock", cases(3, 4))
+@pytest.mark.parametrize(("method", "order", "clock"), cases(3, 4))
 def test_halving_the_step_divides_the_error_by_two_to_the_order(lesson, draw, method, order, clock):
-    step, t, dt, push = getattr(lesson, method), draw(1.4, 1.9), draw(0.05, 0.1), Drive(draw(5e-4, 1e-3), 0.0)
+    step = getattr(lesson, method)
+    t, dt = draw(1.4, 1.9), draw(0.05, 0.1)
+    push = Drive(draw(5e-4, 1e-3), 0.0)
     _, kicked = lesson.advance(step, driven_pendula, t, np.zeros(2), np.zeros(2), dt, 1, push)
     mean = sum(weight * np.cos(t + c * dt) for c, weight in clock.items())
-    # |cos| < ½ from 1.4 to 2.0: x < ½dt² push, and the pendulum pulls as little; a clock wrong by ½dt changes the mean by 0.4 dt
-    close("gain of velocity over dt times push: does a get the right time?", kicked / (dt * push.strength), [mean, mean],
-          0.5 * dt * dt, given=f"dt = {dt:.4g} s, t = {t:.4g} s")
+    # |cos| < ½ from 1.4 to 2.0, so x < ½dt² push, and the pendulum's own acceleration is as small.
+    # A time that is wrong by ½dt changes the mean by 0.4 dt.
+    close("gain of velocity over dt times push: is a evaluated at the right time?", kicked / (dt * push.strength),
+          [mean, mean], 0.5 * dt * dt, given=f"dt = {dt:.4g} s, t = {t:.4g} s")
 
-    p, x, v, T = Drive(draw(0.5, 0.9), draw(0.2, 0.4)), draw(-1.5, 1.5, 3), draw(-1.5, 1.5, 3), draw(1.2, 1.6)
-    end = driven_truth(p, t, x, v, T)
+    p = Drive(draw(0.5, 0.9), draw(0.2, 0.4))
+    x, v = draw(-1.5, 1.5, 3), draw(-1.5, 1.5, 3)
+    T = draw(1.2, 1.6)
+    end = driven_reference(p, t, x, v, T)
     errors = []
     for n in (32, 64, 128):
         got = np.array(lesson.advance(step, driven_pendula, t, x.copy(), v.copy(), T / n, n, p))
-        # ½dt² |(a, ȧ)| in each step, and |(a, ȧ)| < 3, grows by no more than eᵗ: ½dt · 3 (e^1.6 − 1) < 6 dt
+        # Each step has an error of ½dt² |(a, ȧ)|, |(a, ȧ)| < 3, growing by at most eᵗ: ½dt · 3 (e^1.6 − 1) < 6 dt.
         close(f"x and v after {n} steps [rad, rad/s]", got, end, 6.0 * T / n)
         errors.append(np.abs(got - end).max())
-    # no rate is above 1.5/s, so the next term of the expansion is below 5 dt of this one: dt = 1/20 … 1/80 s moves the mean
-    # order by less than 5 (1/20 − 1/80)/(2 ln 2) = 0.14, and the truth's own 1e-12, beside errors of 2e-11, by 0.04
-    between("order of convergence over the last two halvings", np.log2(errors[0] / errors[2]) / 2.0, order - 0.2, order + 0.2)
+    # No rate is above 1.5/s, so the next term of the expansion is below 5 dt of this one.
+    # From dt = 1/20 to 1/80 s it moves the mean order by less than 5 (1/20 − 1/80)/(2 ln 2) = 0.14.
+    # The reference solution's own 1e-12 moves it by 0.04, beside errors of 2e-11.
+    between("order of convergence over the last two halvings", np.log2(errors[0] / errors[2]) / 2.0,
+            order - 0.2, order + 0.2)
 
 
-@pytest.mark.parametrize("method, share", [
-    pytest.param("implicit_euler_step", 1.0, marks=exercise("1.7", points=1, hint=HINTS["1.7"] + "; repeat until the correction is small enough")),
+@pytest.mark.parametrize(("method", "share"), [
+    pytest.param("implicit_euler_step", 1.0, marks=exercise(
+        "1.7", points=1, hint=HINTS["1.7"] + "; repeat until the correction is small enough")),
     pytest.param("implicit_midpoint_step", 0.5, marks=exercise("1.8", points=0.5, hint=HINTS["1.8"]))])
 def test_an_implicit_step_solves_its_own_equation_however_long_it_is(lesson, draw, method, share):
-    """v⁺ = v + dt a and x⁺ = x + dt v at the same moment of the step: its end, or its middle."""
+    """v⁺ = v + dt a and x⁺ = x + dt v, both evaluated at the end of the step, or at its midpoint."""
     for dt in (draw(0.3, 0.6), draw(0.6, 0.9)):
-        t, x, v, p = draw(1.0, 3.0), draw(-3.0, 3.0, 2), draw(-1.5, 1.5, 2), Drive(draw(0.5, 0.9), draw(1.0, 1.5))
+        t, x, v = draw(1.0, 3.0), draw(-3.0, 3.0, 2), draw(-1.5, 1.5, 2)
+        p = Drive(draw(0.5, 0.9), draw(1.0, 1.5))
         x_new, v_new = lesson.advance(getattr(lesson, method), driven_pendula, t, x, v, dt, 1, p)
-        there, given = (x + share * (x_new - x), v + share * (v_new - v)), f"dt = {dt:.4g} s"
+        there = x + share * (x_new - x), v + share * (v_new - v)
+        given = f"dt = {dt:.4g} s"
         rest = v_new - v - dt * driven_pendula(t + share * dt, *there, p)
-        # Newton's residual r has r′ = 1 + c dt + dt² cos x from 1 to 3.2 and r″ < dt³: an error e < 2.9 shrinks at once, to ½e²dt³/r′.
-        # The last correction is below 1e-12 |w|, |w| < (|v| + 1.9 dt)/(1 + c dt) < 1.7; half a step doubles it, but has r′ < 1.9
+        # Newton's residual r has r′ = 1 + c dt + dt² cos x from 1 to 3.2 and r″ < dt³.
+        # An error e < 2.9 shrinks at once, to ½e²dt³/r′.
+        # The last correction is below 1e-12 |w|, with |w| < (|v| + 1.9 dt)/(1 + c dt) < 1.7.
+        # Half a step doubles it, but there r′ < 1.9.
         close("v⁺ − v − dt a after the step [m/s]", rest, [0.0, 0.0], 1e-11, given)
         close("x⁺ − x − dt v after the step [m]", x_new - x - dt * there[1], [0.0, 0.0], 1e-11, given)
 
 
-@exercise("1.7", points=0.5, hint="when the loop ends without a return, raise Diverged as the docstring says")
-def test_implicit_euler_says_so_when_newton_finds_no_root(lesson, draw):
+@exercise("1.7", points=0.5, hint="if the loop ends without a return, raise Diverged as the docstring says")
+def test_implicit_euler_raises_diverged_when_newton_finds_no_root(lesson, draw):
     """w = v + s dt (1 + w²) has no real root once 4 s dt (v + s dt) > 1."""
-    x, v, dt, p = draw(-1.0, 1.0, 1), draw(0.0, 1.0, 1), draw(5.0, 15.0), Drive(draw(0.5, 2.0), 0.0)
+    x, v, dt = draw(-1.0, 1.0, 1), draw(0.0, 1.0, 1), draw(5.0, 15.0)
+    p = Drive(draw(0.5, 2.0), 0.0)
     _, w = lesson.implicit_euler_step(runaway, 0.0, x, v, 0.002 * dt, p)
-    # with s dt < 0.06 and w < 2 the equation is steeper than 0.7; the last correction is below 1e-12 |w|
-    close("w − v − s dt (1 + w²) after a short step, which has one [m/s]", w - v - 0.002 * dt * p.strength * (1.0 + w * w), [0.0], 1e-11)
+    # With s dt < 0.06 and w < 2 the slope is above 0.7. The last correction is below 1e-12 |w|.
+    close("w − v − s dt (1 + w²) after a short step, which has a solution [m/s]",
+          w - v - 0.002 * dt * p.strength * (1.0 + w * w), [0.0], 1e-11)
     raises("a step without a solution", Diverged, lesson.implicit_euler_step, runaway, 0.0, x, v, dt, p)
 
 
@@ -152,15 +172,18 @@ def runaway(t, x, v, p):
     return p.strength * (1.0 + v * v)
 
 
-@exercise("1.9", points=1, hint="one column for each starting state: where the step takes (1, 0), and where (0, 1)")
+@exercise("1.9", points=1, hint="one column for each starting state: the results of a step from (1, 0) and from (0, 1)")
 def test_amplification_matrix_moves_states_as_the_method_does(lesson, draw):
     omega, zeta, dt = draw(2.0, 4.0), draw(0.1, 0.4), draw(0.05, 0.15)
-    given, expected = f"ω = {omega:.4g}/s, ζ = {zeta:.4g}, dt = {dt:.4g} s", expected_matrix("euler_step", omega, zeta, dt)
-    drift, kick = np.array([[1.0, dt], [0.0, 1.0]]), expected - [[0.0, dt], [0.0, 0.0]]
+    given = f"ω = {omega:.4g}/s, ζ = {zeta:.4g}, dt = {dt:.4g} s"
+    expected = expected_matrix("euler_step", omega, zeta, dt)
+    drift = np.array([[1.0, dt], [0.0, 1.0]])
+    kick = expected - [[0.0, dt], [0.0, 0.0]]
     # round-off of numbers below 3
-    close("A of a step that only drifts", lesson.amplification_matrix(drift_only, omega, zeta, dt), drift, 1e-14, given)
+    close("A of a step without acceleration", lesson.amplification_matrix(drift_only, omega, zeta, dt), drift, 1e-14,
+          given)
     A = lesson.amplification_matrix(drift_then_kick, omega, zeta, dt)
-    close("A of position first, then velocity", A, kick @ drift, 1e-14, given)
+    close("A of a step that updates the position first", A, kick @ drift, 1e-14, given)
 
 
 def drift_only(acceleration, t, x, v, dt, p):
@@ -172,15 +195,18 @@ def drift_then_kick(acceleration, t, x, v, dt, p):
     return x, v + dt * acceleration(t, x, v, p)
 
 
-@exercise("1.10", points=1, hint="subtract the means of log dt and of log error, then divide the sum of products by the sum of squares")
+@exercise("1.10", points=1,
+          hint="subtract the means of log dt and log error; divide the sum of products by the sum of squares")
 def test_observed_order_is_the_slope_between_logarithms(lesson, draw):
-    dts, order, C = draw(0.5, 1.0, 4) * [0.1, 1.0, 0.3, 0.03], draw(1.0, 4.0), draw(2.0, 9.0)
+    dts = draw(0.5, 1.0, 4) * [0.1, 1.0, 0.3, 0.03]
+    order, C = draw(1.0, 4.0), draw(2.0, 9.0)
     errors = C * dts**order
-    # round-off of logarithms below 20, over a spread of more than 2
-    close("order of a power of dt", lesson.observed_order(dts, errors), order, 1e-13, given=f"error = {C:.4g} dt^{order:.4g}")
+    # round-off of logarithms below 20, with a spread of more than 2
+    close("order of a power of dt", lesson.observed_order(dts, errors), order, 1e-13,
+          given=f"error = {C:.4g} dt^{order:.4g}")
     errors = errors * draw(0.5, 2.0, 4)
     slope = np.polyfit(np.log(dts), np.log(errors), 1)[0]
     close("order of a noisy series, by least squares", lesson.observed_order(dts, errors), slope, 1e-13)
     last = np.arange(4) == 3
-    raises("a run without error", BadInput, lesson.observed_order, dts, np.where(last, 0.0, errors))
-    raises("a step backwards", BadInput, lesson.observed_order, np.where(last, -dts, dts), errors)
+    raises("an error of zero", BadInput, lesson.observed_order, dts, np.where(last, 0.0, errors))
+    raises("a negative step", BadInput, lesson.observed_order, np.where(last, -dts, dts), errors)

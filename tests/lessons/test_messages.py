@@ -1,4 +1,4 @@
-"""What a check says: in few digits, the first entry that differs, never the same words for expected and got."""
+"""Messages of a check: few digits, the first entry that differs, and never the same text for expected and got."""
 
 from types import SimpleNamespace
 from typing import NamedTuple
@@ -11,21 +11,21 @@ from validate import modules, notebook
 from ..grading import example, marking, points, sandbox
 from ..grading.expect import LONGEST, NotYet, between, close, numbers, raises, tidy
 
-pytestmark = pytest.mark.xdist_group("checks of a notebook")          # they share a process that checks are copied from
+pytestmark = pytest.mark.xdist_group("checks of a notebook")             # they share a process that forks the checks
 
 
 def told(comparison, *arguments, **more):
-    """The NotYet that a comparison ends in."""
+    """The NotYet that a comparison raises."""
     with pytest.raises(NotYet) as error:
         comparison("quantity [m]", *arguments, **more)
     return error.value
 
 
-@pytest.mark.parametrize("expected, got, said", [
+@pytest.mark.parametrize(("expected", "got", "said"), [
     (1.23456789, 2.0, ("1.235", "2")),
     (1.23456789, 1.2349, ("1.2346", "1.2349")),
     (1.23456789, 1.23457, ("1.234568", "1.23457")),
-    (1.00049, 1.00051, ("1.00049", "1.00051")),                    # at four digits they would be a thousandth apart
+    (1.00049, 1.00051, ("1.00049", "1.00051")),                          # in four digits they would be 0.001 apart
     (1.23456789, 1.23456789 + 1e-9, ("1.235", "1.235 + 1e-09")),
     (0.1, 0.1 - 1e-12, ("0.1", "0.1 - 1e-12")),
     (0.0, -3e-17, ("0", "-3e-17")),
@@ -40,7 +40,7 @@ def test_two_numbers_have_four_digits_or_as_many_as_tell_them_apart(expected, go
     assert (error.expected, error.got) == said
 
 
-def test_random_numbers_never_look_alike_and_say_how_far_they_are_apart():
+def test_random_numbers_never_look_alike_and_show_their_difference():
     rng = np.random.default_rng(4)
     for _ in range(20_000):
         a = rng.standard_normal() * 10.0 ** rng.integers(-12, 12)
@@ -60,7 +60,7 @@ def test_a_few_entries_are_shown_whole_and_of_more_the_first_that_differs():
     other[1, 2], other[2, 0] = 5.25, -1.0
     error = told(close, other, matrix, 1e-6)
     assert (error.expected, error.got) == ("5 at [1, 2]", "5.25 at [1, 2]; 2 of 9 entries differ")
-    assert error.error == "clearly off"                              # of the worst, as the grader tells it
+    assert error.error == "clearly off"                              # of the worst entry, as the grader reports it
     other[1, 2] = np.nan
     assert told(numbers, other, (3, 3)).got == "nan at [1, 2]"
 
@@ -72,7 +72,7 @@ def test_a_range_shows_which_end_was_missed():
     assert (error.expected, error.got) == ("0 to 1", "1 + 1e-12")
 
 
-@pytest.mark.parametrize("got, said", [
+@pytest.mark.parametrize(("got", "said"), [
     (None, "None: does every way through your function end in a return?"), ("left", "a str"), (3.0, "a number"),
     (np.zeros(2), "an array of shape (2,)"), ((1.0, (2.0, 3.0)), "a tuple"), ((1.0, np.inf, 2.0), "inf at [1]")])
 def test_what_is_no_such_array_is_named(got, said):
@@ -80,7 +80,7 @@ def test_what_is_no_such_array_is_named(got, said):
 
 
 class Ball(NamedTuple):
-    """A record, as the lessons have them."""
+    """A record, as in the lessons."""
     x: np.ndarray
     radius: float
     faces: np.ndarray = np.zeros((0, 3))
@@ -103,14 +103,14 @@ def test_a_long_array_is_cut_and_no_text_is_longer_than_a_student_reads():
     assert len(tidy("word " * 500)) <= LONGEST
 
 
-def test_an_error_is_told_without_the_words_of_numpy():
+def test_an_error_is_reported_without_the_words_of_numpy():
     def call():
         raise KeyError(f"{np.array([0.1, 0.25])} and {0.1 + 1e-3 / 3.0!r} and {(np.float64(0.25),)}")
     error = told(raises, ValueError, call)
     assert error.expected == "ValueError" and error.got == "KeyError: '[0.1, 0.25] and 0.1003333 and (0.25,)'"
 
 
-def test_an_error_may_have_to_name_a_certain_thing():
+def test_an_error_may_be_required_to_name_a_thing():
     def call():
         raise ValueError("the length is 2: give another")
     raises("length", ValueError, call, naming=[2.0], thing="the length")
@@ -119,15 +119,15 @@ def test_an_error_may_have_to_name_a_certain_thing():
     assert error.expected == "the width" and error.got == "the length is 2: give another"
 
 
-def test_a_failure_in_one_line_has_all_of_it():
+def test_a_failure_in_one_line_is_complete():
     error = told(close, 1.0, 2.0, 0.0, given=f"x = {np.float64(0.123456)}")
     assert str(error) == "quantity [m] (x = 0.1235): expected 2, got 1, tolerance none: exactly this"
 
 
 # ---------------------------------------------------------------------------------------------- what a student prints
 
-BODY = "return x + dt * v, v + dt *"                     # how the answer of 1.1 begins
-ESCAPE = r"\x1b[31m"                                     # as a student writes it
+BODY = "return x + dt * v, v + dt *"                                     # the first line of the answer to 1.1
+ESCAPE = r"\x1b[31m"                                                     # as in a student's source text
 
 
 def printing(lines):
@@ -136,7 +136,7 @@ def printing(lines):
 
 
 def checked(monkeypatch, tmp_path, text):
-    """What a check of the first exercise of that file shows, in both of its forms."""
+    """The result of a check of the first exercise of that file, as text and as HTML."""
     (tmp_path / "integrators.py").write_text(text)
     shown = []
     monkeypatch.setenv("WORKBOOK_LESSONS", str(tmp_path))
@@ -151,20 +151,20 @@ def test_what_a_function_prints_is_shown_with_the_test_that_failed(monkeypatch, 
     assert ESCAPE in text and ESCAPE in html and "\x1b" not in text + html and "white-space:pre-wrap" in html
 
 
-def test_what_a_right_function_prints_is_not_in_the_way(monkeypatch, tmp_path):
+def test_output_of_a_right_function_is_not_shown(monkeypatch, tmp_path):
     text, _ = checked(monkeypatch, tmp_path, printing("print('here')"))
     assert "Exercise 1.1: passed" in text and "here" not in text
 
 
 @pytest.mark.parametrize("printed", ["'word ' * 100_000", "'\\n'.join(map(str, range(100_000)))"])
-def test_of_much_that_is_printed_the_beginning_is_shown(monkeypatch, tmp_path, printed):
+def test_long_output_is_cut_after_its_beginning(monkeypatch, tmp_path, printed):
     text, html = checked(monkeypatch, tmp_path, printing(f"print({printed})\n    return x, v"))
     assert len(text) < points.PRINTED + 1000 and len(text.splitlines()) < points.LINES + 10 and "…" in text
     assert len(html) < 3 * points.PRINTED
 
 
-def test_what_is_printed_with_secret_inputs_is_never_told():
-    """Right with the public inputs, wrong and talkative with all others."""
+def test_output_with_secret_inputs_is_never_reported():
+    """The answer is right for the public inputs, and wrong and talkative for all others."""
     sandbox.for_tests(pytest.skip, pytest.fail)
     worked, public = modules.bind("integrators"), set()
 

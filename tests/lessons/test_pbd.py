@@ -1,4 +1,4 @@
-"""Lesson 8 is right when a projection does what its constraint asks, no more, shares it by mass, and a spring stays a spring at any step."""
+"""Lesson 8: a projection satisfies its constraint and shares it by mass, and a spring is a spring at any step."""
 
 import numpy as np
 import pytest
@@ -11,21 +11,21 @@ from ..grading.expect import between, close, raises
 
 exercise = pytest.mark.exercise
 G = 9.81                     # [m/s²]
-# Everything drawn is below 10 in its unit, and what is compared takes a few dozen operations, each rounded by 1.1e-16 of that:
+# All drawn values are below 10 in their unit. A result takes a few dozen operations, each with a round-off of 1.1e-16.
 ROUND_OFF = 1e-12
-TINY = 1e-30                 # a complex step: its square vanishes beside 1, so that a derivative is exact to round-off
+TINY = 1e-30                 # complex step: its square vanishes beside 1, so a derivative is exact to round-off
 
 
 def places(draw, d):
-    """(size, place) of small, middling and large bodies [m], at the origin and a thousand sizes away from it.
+    """(size, place) of small, medium and large bodies [m], at the origin and a thousand sizes away from it.
 
-    The smallest is below the round-off of what measures a metre: no fixed threshold lets it through.
+    The smallest size is below the round-off of a metre, so an answer with a fixed threshold fails.
     """
     return [(size, far * size * draw(-1.0, 1.0, d)) for size in (1e-20, 1.0, 1e3) for far in (0.0, 1e3)]
 
 
 def direction(draw, d):
-    """A unit vector (d,), drawn."""
+    """A drawn unit vector (d,)."""
     y = draw(-1.0, 1.0, d)
     while not 0.1 < np.linalg.norm(y) < 1.0:
         y = draw(-1.0, 1.0, d)
@@ -33,20 +33,23 @@ def direction(draw, d):
 
 
 def net(lesson, inv_mass, pairs, rest, d=2, stiffness=1.0, alpha=0.0, sweeps=1, g=G):
-    """A Net without the lesson's own checks; gravity against the last coordinate."""
+    """A Net that the lesson has not checked; gravity along the negative last axis."""
     pairs = np.array(pairs, dtype=np.int64)
     gravity = np.zeros(d)
     gravity[-1] = -g
     each = lambda y: np.broadcast_to(np.array(y, dtype=float), len(pairs)).copy()
-    return lesson.Net(np.array(inv_mass, dtype=float), gravity, pairs[:, 0].copy(), pairs[:, 1].copy(), each(rest), each(stiffness), each(alpha), sweeps)
+    return lesson.Net(np.array(inv_mass, dtype=float), gravity, pairs[:, 0].copy(),
+                      pairs[:, 1].copy(), each(rest), each(stiffness), each(alpha), sweeps)
 
 
 def chain(lesson, draw, links, d=2, held=True, **more):
-    """(x, Net) of a zigzag of drawn masses whose links are about as long as they should be.
+    """(x, Net) of a zigzag of drawn masses whose links have nearly their rest lengths.
 
-    The links run from the last to the first, and every other one has its ends swapped: the number of a link is not that of a point.
+    The links run from the last to the first, and every other link has its ends swapped, so that the index of a link is
+    not that of a point.
     """
-    x = np.cumsum(np.concatenate((np.zeros((1, d)), [draw(0.8, 1.2) * direction(draw, d) for _ in range(links)])), axis=0)
+    x = np.cumsum(np.concatenate((np.zeros((1, d)), [draw(0.8, 1.2) * direction(draw, d) for _ in range(links)])),
+                  axis=0)
     inv_mass = 1.0 / draw(0.5, 2.0, links + 1)
     if held:
         inv_mass[0] = 0.0
@@ -61,33 +64,40 @@ def lengths(x, p):
 # ---------------------------------------------------------------------------------------------- one constraint
 
 @exercise("8.1", points=0.25,
-          hint="C is positive where the points are too far apart; n points from j to i, and has length 1")
-def test_a_link_knows_how_much_too_long_it_is_and_where_its_ends_should_go(lesson, draw):
+          hint="C is positive where the points are too far apart; n points from j to i and has length 1")
+def test_a_distance_constraint_gives_the_extension_and_its_gradient(lesson, draw):
     for d in (2, 3):
-        x_j, n, length, rest = draw(-2.0, 2.0, d), direction(draw, d), draw(0.5, 3.0), draw(0.5, 3.0)
+        x_j = draw(-2.0, 2.0, d)
+        n = direction(draw, d)
+        length, rest = draw(0.5, 3.0), draw(0.5, 3.0)
         C, gradient = lesson.distance_constraint(x_j + length * n, x_j, rest)
         given = f"x_i = {x_j + length * n} m, x_j = {x_j} m, rest = {rest} m"
         close("constraint C [m]", C, length - rest, ROUND_OFF, given=given)
-        close("its gradient for i [-]", gradient, n, ROUND_OFF, given=given)
+        close("gradient of C with respect to x_i [-]", gradient, n, ROUND_OFF, given=given)
 
 
-@exercise("8.1", points=0.25, hint="no length, no direction: raise BadInput as the docstring says, before dividing")
+@exercise("8.1", points=0.25, hint="without a length there is no direction: raise BadInput before dividing")
 def test_a_link_whose_ends_coincide_is_refused(lesson, draw):
-    x, n, length, rest = draw(-2.0, 2.0, 2), direction(draw, 2), draw(0.5, 3.0), draw(0.5, 3.0)
-    close("constraint of a link with a length [m]", lesson.distance_constraint(x + length * n, x, rest)[0], length - rest, ROUND_OFF, given=f"{length} m long, rest = {rest} m")
+    x = draw(-2.0, 2.0, 2)
+    n = direction(draw, 2)
+    length, rest = draw(0.5, 3.0), draw(0.5, 3.0)
+    close("constraint of a link with a length [m]", lesson.distance_constraint(x + length * n, x, rest)[0],
+          length - rest, ROUND_OFF, given=f"{length} m long, rest = {rest} m")
     raises("a link whose ends coincide", BadInput, lesson.distance_constraint, x, x.copy(), draw(0.5, 2.0))
 
 
 @exercise("8.1", points=0.5,
-          hint="C keeps its sign, and n does not depend on it: too long or too short, n points from j to i")
-def test_taking_C_n_back_makes_a_link_right_be_it_too_long_too_short_small_or_far_away(lesson, draw):
-    """A thousand sizes from the origin places are rounded by 1e-13 of the size."""
+          hint="C has a sign, but n does not depend on it: n points from j to i for long and for short links")
+def test_subtracting_C_n_restores_the_rest_length_at_any_size_and_place(lesson, draw):
+    """A thousand sizes from the origin, the round-off of positions is 1e-13 sizes."""
     for d in (2, 3):
         for size, place in places(draw, d):
             for share in (0.0, draw(0.1, 0.9), 1.0, draw(1.1, 5.0)):
-                x_i, rest = place + size * draw(0.3, 3.0) * direction(draw, d), share * size
+                x_i = place + size * draw(0.3, 3.0) * direction(draw, d)
+                rest = share * size
                 C, n = lesson.distance_constraint(x_i, place, rest)
-                n, given = np.asarray(n, dtype=float), f"x_i = {x_i} m, x_j = {place} m, rest = {rest} m"
+                n = np.asarray(n, dtype=float)
+                given = f"x_i = {x_i} m, x_j = {place} m, rest = {rest} m"
                 close("length of the link after x_i ← x_i − C n, over the size [-]",
                       np.linalg.norm(x_i - C * n - place) / size, share, ROUND_OFF * 10.0, given)
                 close("length of n [-]", n @ n, 1.0, ROUND_OFF, given)
@@ -95,61 +105,70 @@ def test_taking_C_n_back_makes_a_link_right_be_it_too_long_too_short_small_or_fa
                       np.linalg.norm(x_i - place) / size, ROUND_OFF, given)
 
 
-@exercise("8.2", points=1, hint="Λ = −C/Σ w|∇C|², the same for all points; each point then moves by w Λ along its own gradient")
+@exercise("8.2", points=1,
+          hint="Λ = −C/Σ w|∇C|² is the same for all points; each point moves by w Λ along its own gradient")
 def test_a_projection_meets_a_linear_constraint_at_once_and_shares_it_by_inverse_mass(lesson, draw):
     for k, d in ((2, 2), (4, 3)):
-        gradients, w, C = draw(-2.0, 2.0, (k, d)), draw(0.2, 2.0, k), draw(0.5, 2.0) * (2 * draw.whole(0, 1) - 1)
+        gradients, w = draw(-2.0, 2.0, (k, d)), draw(0.2, 2.0, k)
+        C = draw(0.5, 2.0) * (2 * draw.whole(0, 1) - 1)
         w[0] = 0.0
         small = np.asarray(lesson.projection(1e-6 * C, 1e-6 * gradients, 1e-6 * w), dtype=float)
         moved = np.asarray(lesson.projection(C, gradients, w), dtype=float)
         given = f"C = {C}, ∇C = {gradients.tolist()}, w = {w}"
-        close("C + Σ ∇C · Δx: what is left of a linear constraint", C + np.sum(gradients * moved), 0.0, ROUND_OFF, given=given)
-        close("corrections where C, ∇C and w are a millionth of that: the same [m]", small, moved, ROUND_OFF * 10.0,
+        close("C + Σ ∇C · Δx: remaining error of a linear constraint", C + np.sum(gradients * moved), 0.0, ROUND_OFF,
+              given=given)
+        close("corrections if C, ∇C and w are a million times smaller: the same [m]", small, moved, ROUND_OFF * 10.0,
               given=given)
         close("correction of an immovable point [m]", moved[0], np.zeros(d), 0.0, given=given)
         share = moved[1:] / w[1:, None] / gradients[1:]
-        close("Δx/(w ∇C): one number for all points and coordinates", share, np.full_like(share, share[0, 0]), ROUND_OFF * np.abs(share).max() / np.abs(gradients).min(), given=given)
+        close("Δx/(w ∇C): the same for all points and coordinates", share,
+              np.full_like(share, share[0, 0]), ROUND_OFF * np.abs(share).max() / np.abs(gradients).min(), given=given)
 
 
-@exercise("8.2", points=0.5, hint="when Σ w|∇C|² is 0 nothing can move: raise BadInput instead of dividing by it")
-def test_a_constraint_that_nothing_can_meet_is_refused(lesson, draw):
+@exercise("8.2", points=0.5, hint="if Σ w|∇C|² is 0 nothing can move: raise BadInput instead of dividing by it")
+def test_a_constraint_that_cannot_be_satisfied_is_refused(lesson, draw):
     gradients, C = draw(0.5, 2.0, (2, 3)), draw(0.5, 1.0)
     moved = np.asarray(lesson.projection(C, gradients, np.ones(2)), dtype=float)
-    close("C + Σ ∇C · Δx of a constraint that can be met", C + np.sum(gradients * moved), 0.0, ROUND_OFF, given=f"C = {C}, ∇C = {gradients.tolist()}")
+    close("C + Σ ∇C · Δx of a constraint that can be satisfied", C + np.sum(gradients * moved), 0.0, ROUND_OFF,
+          given=f"C = {C}, ∇C = {gradients.tolist()}")
     raises("a constraint between immovable points", BadInput, lesson.projection, draw(0.5, 1.0), gradients, np.zeros(2))
     raises("a constraint without a gradient", BadInput, lesson.projection, draw(0.5, 1.0), 0.0 * gradients, np.ones(2))
     gradients[1] = 0.0
-    raises("a constraint whose only point with a mass has no gradient", BadInput, lesson.projection, C, gradients,
+    raises("a constraint whose only movable point has a zero gradient", BadInput, lesson.projection, C, gradients,
            np.array([0.0, draw(0.5, 2.0)]))
 
 
 # ---------------------------------------------------------------------------------------------- the projection method
 
 def swirl(t, x, v, p):
-    """An acceleration that depends on all that it is given."""
+    """An acceleration that depends on all its arguments."""
     return t * x - 2.0 * v + p.gravity
 
 
 def growing(t, x, v, p):
-    """An acceleration that is an array of the caller's: v itself."""
+    """An acceleration that returns an array of the caller: v itself."""
     return v
 
 
-@exercise("8.3", points=0.5, hint="dt² a, not ½ dt² a; where inv_mass is 0 leave the force out, but not the velocity")
-def test_points_are_predicted_to_go_on_and_fall_and_immovable_ones_only_to_go_on(lesson, draw):
+@exercise("8.3", points=0.5, hint="dt² a, not ½ dt² a; where inv_mass is 0, omit the acceleration but not the velocity")
+def test_free_points_are_predicted_with_and_immovable_ones_without_acceleration(lesson, draw):
     for d in (2, 3):
-        x, v, t, dt = draw(-1.0, 1.0, (4, d)), draw(-1.0, 1.0, (4, d)), draw(0.5, 2.0), draw(0.05, 0.5)
+        x, v = draw(-1.0, 1.0, (4, d)), draw(-1.0, 1.0, (4, d))
+        t, dt = draw(0.5, 2.0), draw(0.05, 0.5)
         p = net(lesson, [draw(1.5, 9.0), 0.0, draw(0.1, 0.7), 10.0 ** draw(-15.0, -9.0)], [(0, 1)], 1.0, d)
-        before, free = x.copy(), np.array([[1.0], [0.0], [1.0], [1.0]])
+        before = x.copy()
+        free = np.array([[1.0], [0.0], [1.0], [1.0]])
         given = f"1/m = {p.inv_mass} /kg, x = {x.tolist()}, v = {v.tolist()}, t = {t} s, dt = {dt} s"
-        close("predicted positions [m]", lesson.predict(swirl, t, x, v, dt, p), x + dt * v + dt * dt * swirl(t, x, v, p) * free, ROUND_OFF, given=given)
-        close("the x that was handed in: return a new array", x, before, 0.0)
+        close("predicted positions [m]", lesson.predict(swirl, t, x, v, dt, p),
+              x + dt * v + dt * dt * swirl(t, x, v, p) * free, ROUND_OFF, given=given)
+        close("input x after the call: return a new array", x, before, 0.0)
         expected = x + dt * v + dt * dt * v * free
-        close("predicted positions where the acceleration returns v itself [m]", lesson.predict(growing, t, x, v, dt, p), expected, ROUND_OFF, given=given)
+        close("predicted positions where the acceleration returns v itself [m]",
+              lesson.predict(growing, t, x, v, dt, p), expected, ROUND_OFF, given=given)
 
 
 def equations(x, lam, goal, dt, p):
-    """What Newton's method makes zero: (x − x_pred − dt² W Σ λ∇C, C), of complex numbers as well."""
+    """The equations f = 0 of Newton's method: (x − x_pred − dt² W Σ λ∇C, C), also for complex numbers."""
     r = x[p.i] - x[p.j]
     length = np.sqrt(np.sum(r * r, axis=1))
     pull = lam[:, None] * r / length[:, None]
@@ -159,123 +178,161 @@ def equations(x, lam, goal, dt, p):
     return np.concatenate(((x - goal - dt * dt * p.inv_mass[:, None] * force).ravel(), length - p.rest))
 
 
-@exercise("8.4", points=1, hint="both rows of the docstring: the matrix needs −dt² W Σ λ ∇²C beside 1, and the unknown is the new λ itself")
-def test_a_newton_round_solves_the_equations_as_they_are_about_its_guess(lesson, draw):
-    """f + f'·(Δx, Δλ) = 0 with f' along that direction by a complex step."""
+@exercise("8.4", points=1,
+          hint="both rows of the docstring: the matrix contains −dt² W Σ λ ∇²C "
+               "beside 1, and the unknown is the new λ itself")
+def test_a_newton_iteration_solves_the_equations_linearised_at_its_guess(lesson, draw):
+    """Check f + f'·(Δx, Δλ) = 0, with f' along that direction from a complex step."""
     for d, held in ((2, True), (3, False)):
         x, p = chain(lesson, draw, 3, d, held)
-        lam, goal, dt = draw(-5.0, 5.0, 3), x + draw(-0.1, 0.1, x.shape), draw(0.1, 0.3)
+        lam = draw(-5.0, 5.0, 3)
+        goal = x + draw(-0.1, 0.1, x.shape)
+        dt = draw(0.1, 0.3)
         change, new = lesson.newton_correction(x, lam, goal, dt, p)
         change, new = np.asarray(change, dtype=float), np.asarray(new, dtype=float)
         given = f"x = {x.tolist()}, λ = {lam}, x_pred = {goal.tolist()}, dt = {dt} s, {p}"
         slope = equations(x + 1j * TINY * change, lam + 1j * TINY * (new - lam), goal, dt, p).imag / TINY
-        # a matrix of numbers up to 1/dt² ≤ 100 of a condition below 1e4
-        close("equations about the guess, with the correction put in [m]", equations(x, lam, goal, dt, p) + slope, np.zeros(x.size + 3), 1e-10, given=given)
+        # The matrix has entries up to 1/dt² ≤ 100 and a condition number below 1e4.
+        close("linearised equations with the correction inserted [m]", equations(x, lam, goal, dt, p) + slope,
+              np.zeros(x.size + 3), 1e-10, given=given)
 
 
-@exercise("8.4", points=0.5, hint="λ is in newtons: divide Λ = dt² λ by dt² at the end; W stands on the left of Jᵀ, by rows")
+@exercise("8.4", points=0.5,
+          hint="λ is in newtons: divide Λ = dt² λ by dt² at the end; W multiplies Jᵀ from the left, row by row")
 def test_links_that_hang_at_rest_carry_what_is_below_them(lesson, draw):
-    """The guess is the solution, so that the trace, which acts on the change of λ, is not there."""
+    """The guess is the solution, so TRACE, which acts on the change of λ, has no effect."""
     for links in (1, 3):
-        rest, masses, dt = draw(0.5, 1.5, links), draw(0.5, 3.0, links), draw(0.01, 0.3)
+        rest, masses = draw(0.5, 1.5, links), draw(0.5, 3.0, links)
+        dt = draw(0.01, 0.3)
         x = np.zeros((links + 1, 2))
         x[1:, 1] = -np.cumsum(rest)
         p = net(lesson, [0.0, *(1.0 / masses)], [(k, k + 1) for k in range(links)], rest)
-        goal, below = x.copy(), -G * np.cumsum(masses[::-1])[::-1]
+        goal = x.copy()
+        below = -G * np.cumsum(masses[::-1])[::-1]
         goal[1:, 1] -= dt * dt * G
         change, lam = lesson.newton_correction(x, below, goal, dt, p)
         given = f"masses {masses} kg, links {rest} m, λ = {below} N, dt = {dt} s"
-        close("correction of what hangs at rest [m]", change, np.zeros_like(x), ROUND_OFF, given=given)
-        # λ comes from Λ = dt² λ > 1e-3 N s², known to 1e-15
+        close("correction of a chain that hangs at rest [m]", change, np.zeros_like(x), ROUND_OFF, given=given)
+        # λ comes from Λ = dt² λ > 1e-3 N s², whose error is 1e-15.
         close("multipliers λ [N]: minus the weight below", lam, below, 1e-9, given=given)
 
 
 @exercise("8.4", points=0.5,
-          hint="ε = TRACE (w_i + w_j) of each link, against the change of λ: −ε on the diagonal, −C − ε dt² λ on the right (for Λ)")
-def test_links_that_do_the_same_share_a_change_of_their_multipliers_by_the_trace(lesson, draw):
-    """Three points on a line, each linked to both others: multipliers s = (1, 1, −1) move nothing.
+          hint="each link has ε = TRACE (w_i + w_j), which acts on the change of λ: −ε on "
+               "the diagonal, −C − ε dt² λ on the right (for Λ)")
+def test_redundant_links_share_a_change_of_their_multipliers_by_the_trace(lesson, draw):
+    """Three collinear points, each linked to both others: the multipliers s = (1, 1, −1) move nothing.
 
-    s · (second row of the docstring), where s J = 0 and C = 0, leaves Σ s ε (λ_new − λ) = 0.
-    ε is 1e-13 beside w_i + w_j, which is rounded by 1e-16: it acts to a thousandth, and a few dozen operations to some per cent.
+    s · (second row of the docstring), with s J = 0 and C = 0, gives Σ s ε (λ_new − λ) = 0.
+    ε is 1e-13 of w_i + w_j, whose round-off is 1e-16. So ε is effective to a thousandth, and after a few dozen
+    operations to a few per cent.
     """
-    dt, w, gaps = draw(0.1, 0.3), np.array([0.25, 1.0, 4.0]), 2.0 ** np.array([draw.whole(-1, 1), draw.whole(-1, 1)])
-    x = np.array([[0.0, 0.0], [gaps[0], 0.0], [gaps[0] + gaps[1], 0.0]])          # in powers of two: C is exactly 0
+    dt = draw(0.1, 0.3)
+    w = np.array([0.25, 1.0, 4.0])
+    gaps = 2.0 ** np.array([draw.whole(-1, 1), draw.whole(-1, 1)])
+    # In powers of two C is exactly 0.
+    x = np.array([[0.0, 0.0], [gaps[0], 0.0], [gaps[0] + gaps[1], 0.0]])
     p = net(lesson, w, [(1, 0), (2, 1), (2, 0)], [gaps[0], gaps[1], gaps[0] + gaps[1]])
-    pull, lam, s = draw(-1.0, 1.0, 3), draw(-1.0, 1.0, 3), np.array([1.0, 1.0, -1.0])
-    lam[0] = draw(20.0, 40.0)                                                    # the link with the least ε changes most
-    goal = equations(x, pull, 0.0 * x, dt, p)[:6].reshape(3, 2)                  # so that x with these multipliers is a solution
+    pull, lam = draw(-1.0, 1.0, 3), draw(-1.0, 1.0, 3)
+    s = np.array([1.0, 1.0, -1.0])
+    # The link with the least ε changes most.
+    lam[0] = draw(20.0, 40.0)
+    # This goal makes x with the multipliers `pull` a solution.
+    goal = equations(x, pull, 0.0 * x, dt, p)[:6].reshape(3, 2)
     change, new = lesson.newton_correction(x, lam, goal, dt, p)
-    new, given = np.asarray(new, dtype=float), f"x = {x.tolist()} m, w = {w} /kg, λ = {lam} N, dt = {dt} s"
-    close("correction of what is in balance [m]", change, 0.0 * x, ROUND_OFF, given=given)
+    new = np.asarray(new, dtype=float)
+    given = f"x = {x.tolist()} m, w = {w} /kg, λ = {lam} N, dt = {dt} s"
+    close("correction of points in equilibrium [m]", change, 0.0 * x, ROUND_OFF, given=given)
     shares = p.inv_mass[p.i] + p.inv_mass[p.j]
     expected = pull - s * np.sum(s * shares * (pull - lam)) / np.sum(shares)
-    close("multipliers λ of links that do the same [N]", new, expected, 0.5, given=given)
+    close("multipliers λ of redundant links [N]", new, expected, 0.5, given=given)
 
 
 def carried_along(step, lesson, draw, x, dt, p, left):
-    """An immovable point goes on with the velocity that it has; one link pulls the other, whatever accelerates it, and leaves that share of its error."""
-    v, t = np.stack((draw(1.0, 2.0, 2), draw(-0.5, 0.5, 2))), draw(0.5, 2.0)
+    """Check a step of an immovable moving point and a point that hangs from it.
+
+    The immovable point keeps its velocity. The other has its own acceleration. The link keeps the share `left` of its
+    error.
+    """
+    v = np.stack((draw(1.0, 2.0, 2), draw(-0.5, 0.5, 2)))
+    t = draw(0.5, 2.0)
     new, v_new = step(swirl, t, x, v, dt, p)
     held = x[0] + dt * v[0]
     r = x[1] + dt * v[1] + dt * dt * swirl(t, x, v, p)[1] - held
     error = np.linalg.norm(r) - p.rest[0]
     expected = np.stack((held, held + (p.rest[0] + left * error) * r / np.linalg.norm(r)))
     given = f"x = {x.tolist()} m, v = {v.tolist()} m/s, t = {t} s, dt = {dt} s, a = t x − 2 v + g, {p}"
-    close("an immovable point that moves, and one that hangs from it and is accelerated by a law of its own [m]", new, expected, 1e-11, given=given)
-    close("their velocities [m/s]", v_new, (expected - x) / dt, 1e-11 / dt, given=given)
+    close("positions of an immovable moving point and of an accelerated point that hangs from it [m]", new,
+          expected, 1e-11, given=given)
+    close("velocities of both points [m/s]", v_new, (expected - x) / dt, 1e-11 / dt, given=given)
 
 
-@exercise("8.5", points=0.5, hint="the velocity is what the points have really moved, over dt; repeat Newton's rounds until nothing changes")
-def test_after_a_step_every_link_has_its_length_and_nothing_is_pushed_from_outside(lesson, draw):
+@exercise("8.5", points=0.5,
+          hint="the velocity is the displacement of the points over dt; "
+               "repeat Newton's iterations until nothing changes")
+def test_after_a_step_every_link_has_its_length_and_momentum_changes_only_by_gravity(lesson, draw):
     x, p = chain(lesson, draw, 3, 2, held=False)
     p = p._replace(rest=lengths(x, p))
-    v, dt = draw(-1.0, 1.0, x.shape), draw(0.02, 0.1)
+    v = draw(-1.0, 1.0, x.shape)
+    dt = draw(0.02, 0.1)
     new, v_new = lesson.projection_step(lesson.falling_acceleration, 0.0, x, v, dt, p)
     new, v_new = np.asarray(new, dtype=float), np.asarray(v_new, dtype=float)
-    given, m = f"x = {x.tolist()} m, v = {v.tolist()} m/s, dt = {dt} s, {p}", 1.0 / p.inv_mass
+    given = f"x = {x.tolist()} m, v = {v.tolist()} m/s, dt = {dt} s, {p}"
+    m = 1.0 / p.inv_mass
     close("lengths of the links after a step [m]", lengths(new, p), p.rest, 1e-11, given=given)
-    close("velocity [m/s]: what it has moved, over dt", v_new, (new - x) / dt, 1e-11, given=given)
-    close("momentum after a step [kg m/s]: what gravity gave", m @ v_new, m @ v + dt * m.sum() * p.gravity, 1e-11, given=given)
+    close("velocity [m/s]: displacement over dt", v_new, (new - x) / dt, 1e-11, given=given)
+    close("momentum after a step [kg m/s]: changed only by gravity", m @ v_new, m @ v + dt * m.sum() * p.gravity, 1e-11,
+          given=given)
     length = draw(0.5, 2.0)
-    x, p = np.array([[0.0, 0.0], [0.0, -length]]), net(lesson, [0.0, draw(0.5, 2.0)], [(0, 1)], length)
+    x = np.array([[0.0, 0.0], [0.0, -length]])
+    p = net(lesson, [0.0, draw(0.5, 2.0)], [(0, 1)], length)
     carried_along(lesson.projection_step, lesson, draw, x, dt, p, 0.0)
 
 
 @exercise("8.5", points=0.25,
-          hint="begin at x with λ = 0, hand λ on from round to round, allow NEWTON_LIMIT of them, and measure Δx by the longest link")
+          hint="start at x with λ = 0, pass λ from iteration to iteration, allow NEWTON_LIMIT "
+               "of them, and compare Δx with the longest link")
 def test_fast_points_and_short_links_converge_from_where_the_step_begins(lesson, draw):
     turn = draw(0.0, 2.0 * np.pi)
-    R, dt = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]), 0.1
-    # thrown through its pivot: from x Newton finds the place on the near side of it, against the prediction
-    x, v = np.array([[0.0, 0.0], [1.0, 0.0]]) @ R.T, np.array([[0.0, 0.0], [-draw(14.0, 16.0), draw(0.5, 1.5)]]) @ R.T
+    R = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    dt = 0.1
+    # The ball is thrown through its pivot. Starting at x, Newton finds the solution on the near side.
+    x = np.array([[0.0, 0.0], [1.0, 0.0]]) @ R.T
+    v = np.array([[0.0, 0.0], [-draw(14.0, 16.0), draw(0.5, 1.5)]]) @ R.T
     goal = x[1] + dt * v[1]
-    new, _ = lesson.projection_step(lesson.falling_acceleration, 0.0, x, v, dt, net(lesson, [0.0, draw(0.5, 2.0)], [(0, 1)], 1.0, g=0.0))
-    close("a pendulum thrown through its pivot, after a step [m]", new, [np.zeros(2), -goal / np.linalg.norm(goal)], 1e-10,
-          given=f"x = {x.tolist()} m, v = {v.tolist()} m/s, dt = {dt} s, no gravity")
-    # a chain that Newton needs 13 rounds for, from every side
+    new, _ = lesson.projection_step(lesson.falling_acceleration, 0.0, x, v, dt,
+                                    net(lesson, [0.0, draw(0.5, 2.0)], [(0, 1)], 1.0, g=0.0))
+    close("positions of a pendulum thrown through its pivot [m]", new, [np.zeros(2), -goal / np.linalg.norm(goal)],
+          1e-10, given=f"x = {x.tolist()} m, v = {v.tolist()} m/s, dt = {dt} s, no gravity")
+    # This chain takes 13 Newton iterations, in every orientation.
     x = np.array([[0.0, 0.0], [0.08, 0.63], [-0.14, 0.56], [0.57, -0.32]]) @ R.T
     v = np.array([[0.0, 0.0], [18.8, -8.4], [3.6, 15.8], [-19.0, 13.0]]) @ R.T
     p = net(lesson, [0.0, 10.0, 100.0, 0.01], [(0, 1), (1, 2), (2, 3)], np.linalg.norm(x[1:] - x[:-1], axis=1), g=0.0)
     new, _ = lesson.projection_step(lesson.falling_acceleration, 0.0, x, v, dt, p)
-    close("lengths of the links of a fast chain after a step [m]", lengths(np.asarray(new, dtype=float), p), p.rest, 1e-11,
-          given=f"x = {x.tolist()} m, v = {v.tolist()} m/s, dt = {dt} s, no gravity, {p}")
-    # one link is a millionth of the other
-    for rest in ((1e-6, 1.0), (1.0, 1e-6)):                                      # at 50 m round-off is 7e-15 m: far above 1e-12 of the short link
+    close("lengths of the links of a fast chain after a step [m]", lengths(np.asarray(new, dtype=float), p),
+          p.rest, 1e-11, given=f"x = {x.tolist()} m, v = {v.tolist()} m/s, dt = {dt} s, no gravity, {p}")
+    # One link is a million times shorter than the other. At 50 m the round-off is 7e-15 m, far more than 1e-12 of the
+    # short link.
+    for rest in ((1e-6, 1.0), (1.0, 1e-6)):
         x = np.array([[50.0, 0.0], [50.0 + rest[0], 0.0], [50.0 + rest[0], rest[1]]]) @ R.T
         p = net(lesson, [0.0, draw(0.5, 2.0), draw(0.5, 2.0)], [(0, 1), (1, 2)], rest, g=1e-4)
         new, _ = lesson.projection_step(lesson.falling_acceleration, 0.0, x, 0.0 * x, 0.01, p)
-        close("lengths of a long and a short link after a step [m]", lengths(np.asarray(new, dtype=float), p), rest, 1e-11,
-              given=f"x = {x.tolist()} m, at rest, dt = 0.01 s, g = 1e-4 m/s², {p}")
+        close("lengths of a long and a short link after a step [m]", lengths(np.asarray(new, dtype=float), p),
+              rest, 1e-11, given=f"x = {x.tolist()} m, at rest, dt = 0.01 s, g = 1e-4 m/s², {p}")
 
 
-@exercise("8.5", points=0.25, hint="raise Diverged when NEWTON_LIMIT rounds were not enough; ask every coordinate of Δx")
+@exercise("8.5", points=0.25,
+          hint="raise Diverged if NEWTON_LIMIT iterations were not enough; test every coordinate of Δx")
 def test_a_pendulum_goes_where_its_string_is_in_line_with_the_prediction(lesson, draw):
     dt = draw(0.02, 0.1)
     for size in (1e-3, 1.0, 1e6):
-        for quarter in range(4):                     # so that each coordinate once goes up and once down
-            angle, length = draw(0.1, 1.4) + 0.5 * np.pi * quarter, size * draw(0.5, 2.0)
-            out, speed = np.array([np.cos(angle), np.sin(angle)]), size * draw(2.0, 4.0) * (2 * draw.whole(0, 1) - 1)
-            x, v = np.stack((np.zeros(2), length * out)), np.stack((np.zeros(2), speed * np.array([-out[1], out[0]])))
+        for quarter in range(4):                                         # each coordinate moves up once and down once
+            angle = draw(0.1, 1.4) + 0.5 * np.pi * quarter
+            length = size * draw(0.5, 2.0)
+            out = np.array([np.cos(angle), np.sin(angle)])
+            speed = size * draw(2.0, 4.0) * (2 * draw.whole(0, 1) - 1)
+            x = np.stack((np.zeros(2), length * out))
+            v = np.stack((np.zeros(2), speed * np.array([-out[1], out[0]])))
             p = net(lesson, [0.0, draw(0.5, 2.0)], [(0, 1)], length, g=G * size)
             goal = x[1] + dt * v[1] + dt * dt * p.gravity
             new, _ = lesson.projection_step(lesson.falling_acceleration, 0.0, x, v, dt, p)
@@ -283,39 +340,50 @@ def test_a_pendulum_goes_where_its_string_is_in_line_with_the_prediction(lesson,
                   [np.zeros(2), length / size * goal / np.linalg.norm(goal)], 1e-11,
                   given=f"x = {x.tolist()} m, v = {v.tolist()} m/s, dt = {dt} s, g = {G * size} m/s²")
     triangle = np.array([[0.0, 0.0], [1.0, 0.2], [0.3, 0.9]])
-    once, twice = ([(0, 1), (1, 2), (2, 0)] + [(1, 2)] * more for more in (0, 1))
-    ends = [lesson.projection_step(lesson.falling_acceleration, 0.0, triangle, 0.0 * triangle, dt, p)[0]
-            for p in (net(lesson, [0.0, 1.0, 2.0], pairs, [np.linalg.norm(triangle[i] - triangle[j]) for i, j in pairs]) for pairs in (once, twice))]
-    close("a triangle with one link given twice, after a step [m]", ends[1], ends[0], 1e-10, given=f"x = {triangle.tolist()} m, dt = {dt} s")
+    links = [(0, 1), (1, 2), (2, 0)]
+    ends = []
+    for pairs in (links, [*links, (1, 2)]):
+        p = net(lesson, [0.0, 1.0, 2.0], pairs, [np.linalg.norm(triangle[i] - triangle[j]) for i, j in pairs])
+        new, _ = lesson.projection_step(lesson.falling_acceleration, 0.0, triangle, 0.0 * triangle, dt, p)
+        ends.append(new)
+    close("a triangle with one link given twice, after a step [m]", ends[1], ends[0], 1e-10,
+          given=f"x = {triangle.tolist()} m, dt = {dt} s")
     far = draw(2.2, 3.0)
     between = np.array([[0.0, 0.0], [0.5 * far, draw(0.3, 0.9)], [far, 0.0]])
     short = net(lesson, [0.0, 1.0, 0.0], [(0, 1), (1, 2)], 1.0)
-    raises("two links that are too short for the points that hold them", Diverged, lesson.projection_step, lesson.falling_acceleration, 0.0, between, 0.0 * between, dt, short)
+    raises("two links that are too short for their immovable ends", Diverged,
+           lesson.projection_step, lesson.falling_acceleration, 0.0, between, 0.0 * between, dt, short)
     short.gravity[1] = np.nan
-    # plain, this is Diverged; compiled, solve itself refuses NaN
-    raises("positions that become NaN, which no comparison is true of", Exception, lesson.projection_step, lesson.falling_acceleration, 0.0, between, 0.0 * between, dt, short)
+    # Plain Python raises Diverged; in compiled code solve itself refuses NaN.
+    raises("positions that become NaN, for which every comparison is false", Exception,
+           lesson.projection_step, lesson.falling_acceleration, 0.0, between, 0.0 * between, dt, short)
 
 
 # ---------------------------------------------------------------------------------------------- position-based dynamics
 
-@exercise("8.6", points=1, hint="each end by its own w over w_i + w_j, and both by the link's stiffness; the centre of mass stays")
+@exercise("8.6", points=1,
+          hint="each end moves by its w over w_i + w_j, both times the stiffness; the centre of mass stays")
 def test_a_visit_takes_its_share_of_the_error_and_leaves_the_centre_of_mass(lesson, draw):
     for d in (2, 3):
         s, w = draw(0.2, 0.9), draw(0.3, 2.0, 2)
         x = np.stack((draw(-1.0, 1.0, d), draw(2.0, 3.0, d)))
         for share, rest in ((1.0, draw(0.3, 0.8)), (s, draw(0.3, 0.8)), (s, draw(8.0, 9.0))):
             p = net(lesson, w, [(0, 1)], rest, d, share)
-            before, new = x.copy(), np.asarray(lesson.distance_sweep(x, p), dtype=float)
+            before = x.copy()
+            new = np.asarray(lesson.distance_sweep(x, p), dtype=float)
             given = f"x = {x.tolist()} m, w = {w}, rest = {rest} m, stiffness {share}"
-            close("length after a visit [m]", lengths(new, p), rest + (1.0 - share) * (lengths(x, p) - rest), ROUND_OFF, given=given)
+            close("length after a visit [m]", lengths(new, p), rest + (1.0 - share) * (lengths(x, p) - rest), ROUND_OFF,
+                  given=given)
             close("centre of mass [m]", (1.0 / w) @ new, (1.0 / w) @ x, ROUND_OFF * 10.0, given=given)
-            close("the x that was handed in: return a new array", x, before, 0.0)
+            close("input x after the call: return a new array", x, before, 0.0)
 
 
-@exercise("8.6", points=0.5, hint="one after the other: a link starts from where the ones before it have put its ends")
+@exercise("8.6", points=0.5, hint="visit the links in order: each starts from the positions that the earlier ones left")
 def test_a_sweep_visits_one_link_after_the_other_and_leaves_the_immovable_alone(lesson, draw):
-    """Points 0 (held), 2, 1 on a line: the second visit starts from where the first has put point 2."""
-    n, begin, share, w = direction(draw, 3), draw(-1.0, 1.0, 3), draw(0.3, 1.0, 2), draw(0.5, 2.0, 2)
+    """Points 0 (held), 2, 1 on a line: the second visit starts from the position of point 2 after the first."""
+    n = direction(draw, 3)
+    begin = draw(-1.0, 1.0, 3)
+    share, w = draw(0.3, 1.0, 2), draw(0.5, 2.0, 2)
     gaps, rest = np.array([draw(1.1, 1.5), draw(0.5, 0.9)]), draw(0.8, 1.2, 2)
     x = begin + np.outer([0.0, gaps[0] + gaps[1], gaps[0]], n)
     p = net(lesson, [0.0, *w], [(0, 2), (2, 1)], rest, 3, share)
@@ -324,15 +392,15 @@ def test_a_sweep_visits_one_link_after_the_other_and_leaves_the_immovable_alone(
     expected = begin + np.outer([0.0, gaps[0] + gaps[1] - w[0] * taken, first + w[1] * taken], n)
     new = lesson.distance_sweep(x, p)
     close("positions after a sweep [m]", new, expected, ROUND_OFF, given=f"x = {x.tolist()} m, {p}")
-    close("the immovable point [m]", np.asarray(new)[0], x[0], 0.0)
+    close("position of the immovable point [m]", np.asarray(new)[0], x[0], 0.0)
     small = lesson.distance_sweep(1e-7 * x, p._replace(rest=1e-7 * p.rest))
-    close("positions of a net of a ten millionth of the size [1e-7 m]", np.asarray(small) * 1e7, expected,
+    close("positions of a net ten million times smaller [1e-7 m]", np.asarray(small) * 1e7, expected,
           ROUND_OFF * 10.0)
     x[2] = x[0]
     raises("a link whose ends coincide", BadInput, lesson.distance_sweep, x, p)
 
 
-@exercise("8.7", points=1, hint="predict, then net.sweeps sweeps, then the velocity from what was moved")
+@exercise("8.7", points=1, hint="predict, then net.sweeps sweeps, then the velocity from the displacement")
 def test_a_weight_on_one_link_sags_by_what_its_sweeps_leave(lesson, draw):
     for sweeps in (1, draw.whole(2, 5)):
         s, dt, length = draw(0.2, 0.8), draw(0.01, 0.1), draw(0.5, 2.0)
@@ -342,33 +410,38 @@ def test_a_weight_on_one_link_sags_by_what_its_sweeps_leave(lesson, draw):
         p = net(lesson, [0.0, draw(0.2, 5.0)], [(0, 1)], length, 2, s, 0.0, sweeps)
         given = f"x = {x.tolist()} m, dt = {dt} s, {p}"
         new, v = lesson.pbd_step(lesson.falling_acceleration, 0.0, x, 0.0 * x, dt, p)
-        close("a weight where it should rest, after a step [m]", new, x, ROUND_OFF, given=given)
-        close("its velocity [m/s]", v, 0.0 * x, ROUND_OFF / dt, given=given)
+        close("weight that starts at its equilibrium, position after a step [m]", new, x, ROUND_OFF, given=given)
+        close("weight that starts at its equilibrium, velocity after a step [m/s]", v, 0.0 * x, ROUND_OFF / dt,
+              given=given)
         fast = np.array([[0.0, 0.0], [0.0, draw(1.0, 2.0)]])
         new, v = lesson.pbd_step(lesson.falling_acceleration, 0.0, x, fast, dt, p)
         expected = -length - S * (sag + G * dt * dt - dt * fast[1, 1])
-        close("a weight that was thrown, after a step [m]", np.asarray(new)[1, 1], expected, ROUND_OFF, given=f"v = {fast[1]} m/s, {given}")
-        close("its velocity [m/s]: what it has moved, over dt", np.asarray(v)[1, 1], (expected - x[1, 1]) / dt, ROUND_OFF / dt, given=given)
+        close("thrown weight, position after a step [m]", np.asarray(new)[1, 1], expected, ROUND_OFF,
+              given=f"v = {fast[1]} m/s, {given}")
+        close("thrown weight, velocity after a step [m/s]: displacement over dt", np.asarray(v)[1, 1],
+              (expected - x[1, 1]) / dt, ROUND_OFF / dt, given=given)
         carried_along(lesson.pbd_step, lesson, draw, x, dt, p, S)
 
 
-@exercise("8.8", points=0.5, hint="S = (1 − s)ⁿ is what the sweeps leave; the sag is where falling by g dt² and being put back balance")
+@exercise("8.8", points=0.5,
+          hint="the sweeps leave the share S = (1 − s)ⁿ; at the sag, they take back exactly the fall g dt²")
 def test_the_sag_is_where_falling_and_projecting_balance(lesson, draw):
     for sweeps in (1, draw.whole(2, 6), draw.whole(7, 12)):
-        g, dt, s, sag = draw(1.0, 20.0), draw(0.01, 0.1), draw(0.2, 0.8), 0.0
-        for _ in range(400):                         # it converges by a factor S ≤ 0.8 each time
+        g, dt, s = draw(1.0, 20.0), draw(0.01, 0.1), draw(0.2, 0.8)
+        sag = 0.0
+        for _ in range(400):                                             # each round multiplies the error by S ≤ 0.8
             sag = sag + g * dt * dt
             for _ in range(sweeps):
                 sag -= s * sag
         close("sag [m]", lesson.pbd_sag(g, dt, s, sweeps), sag, ROUND_OFF,
               given=f"g = {g} m/s², dt = {dt} s, s = {s}, n = {sweeps}")
-    close("sag of full stiffness [m]", lesson.pbd_sag(g, dt, 1.0, 1), 0.0, 0.0)
+    close("sag with full stiffness [m]", lesson.pbd_sag(g, dt, 1.0, 1), 0.0, 0.0)
 
 
 # ---------------------------------------------------------------------------------------------- folds and obstacles
 
 def folded(draw, phi):
-    """(4, 3): two drawn triangles with a common edge, folded by φ, in a drawn place of space."""
+    """(4, 3): two drawn triangles with a common edge, folded by φ, at a drawn position."""
     e, up = direction(draw, 3), direction(draw, 3)
     up = np.cross(e, up)
     up = up / np.linalg.norm(up)
@@ -380,7 +453,7 @@ def folded(draw, phi):
 
 
 def angle(x):
-    """The angle of a fold, by what is seen along its edge: how far wing d is from being opposite to wing c."""
+    """The angle of a fold, seen along its edge: how far wing d deviates from being opposite to wing c."""
     e = x[1] - x[0]
     e = e / np.linalg.norm(e)
     c, d = (y - (y @ e) * e for y in (x[2] - x[0], x[0] - x[3]))
@@ -388,54 +461,62 @@ def angle(x):
 
 
 @exercise("8.9", points=0.75,
-          hint="flat is 0; atan2 with (N_c × N_d) · e/|e| knows which way it is folded; take C into (−π, π], however far outside it is")
-def test_a_fold_knows_its_angle_and_its_side(lesson, draw):
-    for phi, wanted in ((draw(0.2, 2.5), draw(-0.5, 0.5)), (-draw(0.2, 2.5), draw(-0.5, 0.5)), (0.0, 0.0), (3.0, -draw(0.5, 2.5)), (-3.0, draw(0.5, 2.5)),
-                        (draw(0.2, 2.5), draw(12.5, 15.0)), (-draw(0.2, 2.5), -draw(12.5, 15.0))):
+          hint="flat is 0; atan2 with (N_c × N_d) · e/|e| gives the sign; "
+               "reduce C to (−π, π], however far outside it is")
+def test_the_fold_constraint_is_the_signed_angle_minus_the_wanted_one(lesson, draw):
+    cases = ((draw(0.2, 2.5), draw(-0.5, 0.5)), (-draw(0.2, 2.5), draw(-0.5, 0.5)), (0.0, 0.0),
+             (3.0, -draw(0.5, 2.5)), (-3.0, draw(0.5, 2.5)),
+             (draw(0.2, 2.5), draw(12.5, 15.0)), (-draw(0.2, 2.5), -draw(12.5, 15.0)))
+    for phi, wanted in cases:
         x = folded(draw, phi)
         expected = angle(x) - wanted
         while not -np.pi < expected <= np.pi:
             expected -= 2.0 * np.pi * np.sign(expected)
-        close("angle, as the test has made it [rad]", abs(angle(x)), abs(phi), 1e-11)
-        close("C of a fold [rad]", lesson.fold_constraint(x, wanted)[0], expected, 1e-11, given=f"corners {x.tolist()} m, wanted {wanted} rad")
+        close("angle constructed by the test [rad]", abs(angle(x)), abs(phi), 1e-11)
+        close("C of a fold [rad]", lesson.fold_constraint(x, wanted)[0], expected, 1e-11,
+              given=f"corners {x.tolist()} m, wanted {wanted} rad")
     for wing in (2, 3):
         flat = x.copy()
         flat[wing] = x[0]
         raises("a triangle without area", BadInput, lesson.fold_constraint, flat, 0.0)
-    # the angle of this sheet is exactly 0
+    # The angle of this sheet is exactly 0.
     sheet = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, -1.0, 0.0]])
-    close("C of a flat sheet that wants to be folded by π, or by −π [rad]",
+    close("C of a flat sheet with a wanted angle of π, or −π [rad]",
           [lesson.fold_constraint(sheet, turn)[0] for turn in (np.pi, -np.pi)], [np.pi, np.pi], 0.0)
 
 
 @exercise("8.9", points=0.75,
-          hint="wings move the angle by |e|/|N| each, along their normals; what the edge does follows from leverage, β, and from Σ = 0")
-def test_the_gradient_of_a_fold_is_the_slope_of_its_angle_and_pushes_nothing_from_outside(lesson, draw):
+          hint="each wing changes the angle by |e|/|N| along its normal; the gradient "
+               "of the edge follows from the lever arm β and from Σ = 0")
+def test_the_gradient_of_a_fold_is_that_of_its_angle_without_net_force_or_torque(lesson, draw):
     for phi in (draw(0.3, 2.0), -draw(0.3, 2.0), 0.0):
-        x, h = folded(draw, phi), 1e-5
+        x = folded(draw, phi)
+        h = 1e-5
         got = np.asarray(lesson.fold_constraint(x, 0.2)[1], dtype=float)
         slope = np.zeros((4, 3))
         for k in range(12):
             y = np.zeros(12)
             y[k] = h
             slope.flat[k] = (angle(x + y.reshape(4, 3)) - angle(x - y.reshape(4, 3))) / (2.0 * h)
-        # central differences: h²/6 of a third derivative below 1e2, and 1e-16/h of round-off
+        # Central differences: h²/6 times a third derivative below 1e2, and a round-off of 1e-16/h.
         close("gradient of the angle [rad/m]", got, slope, 1e-8, given=f"corners {x.tolist()} m")
-        close("Σ ∇C: no force from outside", got.sum(axis=0), np.zeros(3), ROUND_OFF * 10.0, given=f"corners {x.tolist()} m")
-        close("Σ x × ∇C: no torque from outside", np.cross(x, got).sum(axis=0), np.zeros(3), ROUND_OFF * 10.0, given=f"corners {x.tolist()} m")
+        close("Σ ∇C: no net force", got.sum(axis=0), np.zeros(3), ROUND_OFF * 10.0,
+              given=f"corners {x.tolist()} m")
+        close("Σ x × ∇C: no net torque", np.cross(x, got).sum(axis=0), np.zeros(3), ROUND_OFF * 10.0,
+              given=f"corners {x.tolist()} m")
 
 
 def smooth_angle(x):
-    """The same angle by the tangent of its half, which takes complex numbers as well: away from ±π."""
+    """The same angle from the tangent of its half, also for complex numbers; not near ±π."""
     e = (x[1] - x[0]) / np.sqrt(np.sum((x[1] - x[0]) ** 2))
     c, d = (y - np.sum(y * e) * e for y in (x[2] - x[0], x[0] - x[3]))
     return 2.0 * np.arctan(np.sum(np.cross(c, d) * e) / (np.sqrt(np.sum(c * c) * np.sum(d * d)) + np.sum(c * d)))
 
 
 @exercise("8.9", points=0.5,
-          hint="beside an obtuse angle β is below 0 or above 1: leave it so; and a small fold is a fold")
+          hint="beside an obtuse angle β is below 0 or above 1: do not clamp it; a small fold is not degenerate")
 def test_folds_with_acute_and_obtuse_wings_have_the_slope_of_their_angle_at_any_size(lesson, draw):
-    """The slope by a complex step, exact to round-off; tan ½θ is below 15, heights are above 0.3 of the size."""
+    """The complex step is exact to round-off. tan ½θ is below 15, and the heights are above 0.3 sizes."""
     for size, place in places(draw, 3):
         for foot_c in (draw(-1.5, -0.3), draw(0.1, 0.9), draw(1.3, 2.5)):
             for foot_d in (draw(-1.5, -0.3), draw(0.1, 0.9), draw(1.3, 2.5)):
@@ -451,12 +532,12 @@ def test_folds_with_acute_and_obtuse_wings_have_the_slope_of_their_angle_at_any_
                 C, gradient = lesson.fold_constraint(place + size * x, 0.0)
                 given = f"corners {(place + size * x).tolist()} m"
                 close("C of a fold [rad]", C, smooth_angle(x), 1e-10, given)
-                close("its gradient times the size [rad]", size * np.asarray(gradient), slope, 1e-9, given)
+                close("gradient of C times the size [rad]", size * np.asarray(gradient), slope, 1e-9, given)
 
 
 @exercise("8.10", points=0.25,
-          hint="|x − centre| − radius: positive outside; n points away from the centre, and is 0 there")
-def test_a_ball_knows_how_far_away_its_skin_is(lesson, draw):
+          hint="|x − centre| − radius: positive outside; n points away from the centre, and is 0 at the centre")
+def test_the_gap_of_a_ball_is_the_distance_to_its_surface(lesson, draw):
     for d in (2, 3):
         ball = lesson.Obstacle(draw(-2.0, 2.0, d), draw(0.5, 2.0), np.zeros(d), np.eye(d)[0])
         for distance in (draw(0.1, 0.4), draw(2.5, 4.0)):
@@ -465,13 +546,13 @@ def test_a_ball_knows_how_far_away_its_skin_is(lesson, draw):
             close("gap of a ball [m]", phi, distance - ball.radius, ROUND_OFF, given=f"{ball}, {distance} m along {n}")
             close("normal of a ball [-]", normal, n, ROUND_OFF, given=f"{ball}, {distance} m along {n}")
         phi, normal = lesson.ball_gap(ball.centre, ball)
-        close("gap in the middle [m]", phi, -ball.radius, ROUND_OFF)
-        close("normal in the middle [-]", normal, np.zeros(d), 0.0)
+        close("gap at the centre [m]", phi, -ball.radius, ROUND_OFF)
+        close("normal at the centre [-]", normal, np.zeros(d), 0.0)
 
 
 @exercise("8.10", points=0.25,
-          hint="|x − centre| − radius wherever x is, close to the middle and far away; a radius of 0 is no exception")
-def test_no_point_of_the_skin_is_nearer_than_the_gap_says(lesson, draw):
+          hint="|x − centre| − radius wherever x is, near the centre and far away; a radius of 0 is allowed")
+def test_no_point_of_the_surface_is_nearer_than_the_gap(lesson, draw):
     for d in (2, 3):
         for size, place in places(draw, d):
             skin = np.array([direction(draw, d) for _ in range(20)])
@@ -481,61 +562,70 @@ def test_no_point_of_the_skin_is_nearer_than_the_gap_says(lesson, draw):
                     ball = lesson.Obstacle(place, radius * size, np.zeros(d), np.eye(d)[0])
                     x = place + size * distance * n
                     phi, normal = lesson.ball_gap(x, ball)
-                    normal, given = np.asarray(normal, dtype=float), f"{ball}, x = {x} m"
+                    normal = np.asarray(normal, dtype=float)
+                    given = f"{ball}, x = {x} m"
                     close("gap over the size [-]", phi / size, distance - radius, ROUND_OFF * 10.0, given)
-                    close("normal, which a thousand sizes away is known to 1e-13 of the distance [-]", normal, n, 1e-9,
+                    close("normal [-]: known to 1e-13 of the distance a thousand sizes away", normal, n, 1e-9,
                           given)
-                    close("x − φ n from the centre, over the size [-]: on the skin",
+                    close("distance of x − φ n from the centre, over the size [-]: on the surface",
                           np.linalg.norm(x - phi * normal - place) / size, radius, ROUND_OFF * 10.0, given)
                     others = np.linalg.norm(x - place - radius * size * skin, axis=1).min() / size
-                    between("how much nearer another point of the skin is, over the size [-]", abs(phi) / size - others,
+                    nearer = abs(phi) / size - others
+                    between("how much nearer another point of the surface is, over the size [-]", nearer,
                             -1e9, ROUND_OFF * 10.0, given)
 
 
 def balloon(x, obstacle):
-    """A surface that no lesson has: (φ, n) of a ball twice as large as it says."""
+    """A surface that is not in the lesson: (φ, n) of a ball with twice its radius."""
     r = x - obstacle.centre
     distance = np.sqrt(np.sum(r * r))
     return distance - 2.0 * obstacle.radius, r / distance
 
 
-@exercise("8.11", points=0.5, hint="only where φ < 0, only what can move, straight along n by −φ; φ and n are those of the surface that was handed in")
-def test_what_has_got_inside_is_put_onto_the_skin_and_the_rest_is_left_alone(lesson, draw):
+@exercise("8.11", points=0.5,
+          hint="move only movable points with φ < 0, along n by −φ; "
+               "use φ and n of the surface that is passed in")
+def test_points_inside_are_moved_to_the_surface_and_all_others_stay(lesson, draw):
     n, tangent = direction(draw, 3), direction(draw, 3)
     tangent = np.cross(n, tangent)
     floor = lesson.Obstacle(np.zeros(3), 0.0, draw(-1.0, 1.0, 3), n)
     heights = np.array([-draw(0.1, 0.5), draw(0.1, 0.5), -draw(0.1, 0.5), 0.0])
     x = floor.point + np.outer(heights, n) + np.outer(draw(-1.0, 1.0, 4), tangent)
-    before, w = x.copy(), np.array([draw(0.5, 2.0), 1.0, 0.0, 1.0])
+    before = x.copy()
+    w = np.array([draw(0.5, 2.0), 1.0, 0.0, 1.0])
     new = np.asarray(lesson.keep_outside(lesson.floor_gap, x, w, floor), dtype=float)
-    given = f"heights {heights} m over the floor {floor}, w = {w}"
-    close("where a point inside is put [m]", new[0], x[0] - heights[0] * n, ROUND_OFF, given=given)
-    close("points outside, and immovable ones [m]", new[1:3], x[1:3], 0.0, given=given)
-    close("a point on the skin [m]", new[3], x[3], ROUND_OFF, given=given)
-    close("the x that was handed in: return a new array", x, before, 0.0)
+    given = f"heights {heights} m above the floor {floor}, w = {w}"
+    close("new position of a point inside [m]", new[0], x[0] - heights[0] * n, ROUND_OFF, given=given)
+    close("positions of points outside, and of immovable points [m]", new[1:3], x[1:3], 0.0, given=given)
+    close("position of a point on the surface [m]", new[3], x[3], ROUND_OFF, given=given)
+    close("input x after the call: return a new array", x, before, 0.0)
     ball = floor._replace(centre=draw(-1.0, 1.0, 3), radius=draw(0.5, 1.0))
-    out, distances = np.stack((n, -n, tangent / np.linalg.norm(tangent))), 2.0 * ball.radius * np.array([draw(0.2, 0.9), draw(0.2, 0.9), draw(1.1, 2.0)])
+    out = np.stack((n, -n, tangent / np.linalg.norm(tangent)))
+    distances = 2.0 * ball.radius * np.array([draw(0.2, 0.9), draw(0.2, 0.9), draw(1.1, 2.0)])
     x = ball.centre + out * distances[:, None]
-    close("points in and out of a ball of twice the radius, by a surface of our own [m]", lesson.keep_outside(balloon, x, np.ones(3), ball),
-          ball.centre + out * np.maximum(distances, 2.0 * ball.radius)[:, None], ROUND_OFF * 10.0, given=f"x = {x.tolist()} m, {ball}")
+    close("points inside and outside a ball of twice the radius, a surface of the test [m]",
+          lesson.keep_outside(balloon, x, np.ones(3), ball),
+          ball.centre + out * np.maximum(distances, 2.0 * ball.radius)[:, None], ROUND_OFF * 10.0,
+          given=f"x = {x.tolist()} m, {ball}")
 
 
 @exercise("8.11", points=0.5,
-          hint="each point has its own φ and n; how heavy it is does not matter, only whether it can move")
+          hint="each point has its own φ and n; its mass does not matter, only whether it is movable")
 def test_every_point_goes_to_the_nearest_point_outside_however_many_how_deep_and_how_heavy(lesson, draw):
     for size, place in places(draw, 3):
         n = direction(draw, 3)
-        floor, x, w = lesson.Obstacle(np.zeros(3), 0.0, place, n), place + size * draw(-2.0, 2.0,
-                                                                                       (12, 3)), 10.0 ** draw(-3.0, 3.0,
-                                                                                                              12)
+        floor = lesson.Obstacle(np.zeros(3), 0.0, place, n)
+        x = place + size * draw(-2.0, 2.0, (12, 3))
+        w = 10.0 ** draw(-3.0, 3.0, 12)
         w[draw.whole(0, 11)] = 0.0
         heights = (x - place) @ n
         new = np.asarray(lesson.keep_outside(lesson.floor_gap, x, w, floor), dtype=float)
-        inside, given = (heights < 0.0) & (w > 0.0), f"heights {heights} m over the floor {floor}, w = {w}"
+        inside = (heights < 0.0) & (w > 0.0)
+        given = f"heights {heights} m above the floor {floor}, w = {w}"
         close("points that stay where they are [m]", new[~inside], x[~inside], 0.0, given)
-        close("heights of the others afterwards, over the size [-]", (new[inside] - place) @ n / size,
+        close("new heights of the other points, over the size [-]", (new[inside] - place) @ n / size,
               np.zeros(inside.sum()), ROUND_OFF * 10.0, given)
-        close("how far they have moved, over the size [-]: no farther than needed",
+        close("displacements over the size [-]: no farther than needed",
               np.linalg.norm(new - x, axis=1)[inside] / size, -heights[inside] / size, ROUND_OFF * 10.0, given)
 
 
@@ -544,44 +634,58 @@ def test_every_point_goes_to_the_nearest_point_outside_however_many_how_deep_and
 @exercise("8.12", points=0.5, hint="(−C − α̃ Λ)/(weight + α̃): after the visit C + α̃ Λ is zero")
 def test_after_a_visit_a_compliant_constraint_obeys_hookes_law(lesson, draw):
     for alpha, side, other in ((0.0, 1, 1), (0.0, -1, 1), (draw(0.001, 0.1), 1, -1), (draw(0.001, 0.1), -1, -1)):
-        C, Lam, weight, dt = side * draw(0.1, 1.0), other * draw(0.1, 1.0), draw(0.2, 2.0), draw(0.05, 0.5)
+        C, Lam = side * draw(0.1, 1.0), other * draw(0.1, 1.0)
+        weight, dt = draw(0.2, 2.0), draw(0.05, 0.5)
         change = lesson.compliant_multiplier(C, Lam, weight, alpha / dt**2)
         given = f"C = {C} m, Λ = {Lam} N s², weight {weight} /kg, α = {alpha} m/N, dt = {dt} s"
-        close("C + α λ after a visit [m]", C + weight * change + alpha * (Lam + change) / dt**2, 0.0, 1e-10, given=given)
+        close("C + α λ after a visit [m]", C + weight * change + alpha * (Lam + change) / dt**2, 0.0, 1e-10,
+              given=given)
 
 
-@exercise("8.12", points=0.5, hint="ask `not alpha_scaled >= 0.0`, which NaN answers, too; and a weight of 0 before you divide")
+@exercise("8.12", points=0.5,
+          hint="test `not alpha_scaled >= 0.0`, which is also true for NaN; test for a weight of 0 before dividing")
 def test_a_negative_compliance_and_a_constraint_without_mass_are_refused(lesson, draw):
     C, alpha = draw(0.1, 1.0), draw(0.001, 0.1)
     change = lesson.compliant_multiplier(C, 0.0, 1.0, alpha / 0.1**2)
-    close("C + α λ after an ordinary visit [m]", C + change + alpha * change / 0.1**2, 0.0, 1e-10, given=f"C = {C} m, α = {alpha} m/N")
+    close("C + α λ after an ordinary visit [m]", C + change + alpha * change / 0.1**2, 0.0, 1e-10,
+          given=f"C = {C} m, α = {alpha} m/N")
     for alpha in (-draw(0.001, 0.1), np.nan):
-        raises("a compliance that is none", BadInput, lesson.compliant_multiplier, 0.1, 0.0, 1.0, alpha)
+        raises("an invalid compliance", BadInput, lesson.compliant_multiplier, 0.1, 0.0, 1.0, alpha)
     for alpha in (0.0, draw(0.001, 0.1)):
-        raises("a constraint with no free mass", BadInput, lesson.compliant_multiplier, 0.1, 0.0, 0.0, alpha)
+        raises("a constraint without movable mass", BadInput, lesson.compliant_multiplier, 0.1, 0.0, 0.0, alpha)
 
 
-@exercise("8.13", points=1, hint="Λ of each link goes on from where it was; add w ΔΛ n to i and take it from j")
-def test_a_visit_to_a_spring_leaves_it_in_balance_with_what_it_has_pulled(lesson, draw):
+@exercise("8.13", points=1, hint="Λ of each link continues from its old value; add w ΔΛ n to i and subtract it from j")
+def test_after_a_visit_a_spring_satisfies_hookes_law_with_its_total_multiplier(lesson, draw):
     for d in (2, 3):
-        x, w = np.stack((draw(-1.0, 1.0, d), draw(2.0, 3.0, d))), draw(0.3, 2.0, 2)
+        x = np.stack((draw(-1.0, 1.0, d), draw(2.0, 3.0, d)))
+        w = draw(0.3, 2.0, 2)
         p = net(lesson, w, [(0, 1)], draw(0.5, 1.0) if d == 2 else draw(8.0, 9.0), d, 0.4, draw(0.001, 0.1))
-        Lam, dt, before = np.array([-draw(0.1, 0.5)]), draw(0.1, 0.4), x.copy()
-        kept = Lam.copy()
+        Lam = np.array([-draw(0.1, 0.5)])
+        dt = draw(0.1, 0.4)
+        before, kept = x.copy(), Lam.copy()
         new, total = lesson.compliant_sweep(x, Lam, dt, p)
         new, total = np.asarray(new, dtype=float), np.asarray(total, dtype=float)
         given = f"x = {x.tolist()} m, Λ = {Lam}, dt = {dt} s, {p}"
-        close("C + α λ after a visit [m]", lengths(new, p) - p.rest + p.alpha * total / dt**2, np.zeros(1), 1e-11, given=given)
+        close("C + α λ after a visit [m]", lengths(new, p) - p.rest + p.alpha * total / dt**2, np.zeros(1), 1e-11,
+              given=given)
         pull = (total - Lam) * (x[0] - x[1]) / np.linalg.norm(x[0] - x[1])
-        close("how both ends moved [m]: by w and ΔΛ, along the link", new - x, np.stack((w[0] * pull, -w[1] * pull)), 1e-11, given=given)
-        close("the x that was handed in: return a new array", x, before, 0.0)
-        close("the Λ that was handed in: return a new array", Lam, kept, 0.0)
+        close("displacements of both ends [m]: by w and ΔΛ, along the link", new - x,
+              np.stack((w[0] * pull, -w[1] * pull)), 1e-11, given=given)
+        close("input x after the call: return a new array", x, before, 0.0)
+        close("input Λ after the call: return a new array", Lam, kept, 0.0)
 
 
-@exercise("8.13", points=0.5, hint="every link has its own Λ and α, and starts from where the ones before it have put its ends")
+@exercise("8.13", points=0.5,
+          hint="each link has its own Λ and α, and starts from the positions that the earlier ones left")
 def test_springs_are_visited_one_after_the_other(lesson, draw):
-    """Points 0 (held), 2, 1 on a line: the first visit pulls point 2 towards 0 by −w ΔΛ, which lengthens the second link."""
-    n, begin, dt, w = direction(draw, 2), draw(-1.0, 1.0, 2), draw(0.1, 0.4), draw(0.5, 2.0, 2)
+    """Points 0 (held), 2, 1 on a line.
+
+    The first visit pulls point 2 towards 0 by −w ΔΛ, which lengthens the second link.
+    """
+    n = direction(draw, 2)
+    begin = draw(-1.0, 1.0, 2)
+    dt, w = draw(0.1, 0.4), draw(0.5, 2.0, 2)
     stretch, rest, alpha = draw(0.1, 0.5, 2), draw(0.8, 1.2, 2), draw(0.001, 0.1, 2)
     middle, end = rest[0] + stretch[0], rest.sum() + stretch.sum()
     x = begin + np.outer([0.0, end, middle], n)
@@ -591,34 +695,42 @@ def test_springs_are_visited_one_after_the_other(lesson, draw):
     first = -stretch[0] / (w[1] + soft[0])
     second = -(stretch[1] - w[1] * first) / (w[0] + w[1] + soft[1])
     close("Λ after a sweep [N s²]", Lam, [first, second], 1e-11, given=f"x = {x.tolist()} m, dt = {dt} s, {p}")
-    close("positions after a sweep [m]", new, begin + np.outer([0.0, end + w[0] * second, middle + w[1] * (first - second)], n), 1e-11,
+    close("positions after a sweep [m]", new,
+          begin + np.outer([0.0, end + w[0] * second, middle + w[1] * (first - second)], n), 1e-11,
           given=f"x = {x.tolist()} m, dt = {dt} s, {p}")
     small, _ = lesson.compliant_sweep(1e-7 * x, np.zeros(2), dt, p._replace(rest=1e-7 * p.rest))
-    close("positions of a net of a ten millionth of the size [1e-7 m]", np.asarray(small) * 1e7,
+    close("positions of a net ten million times smaller [1e-7 m]", np.asarray(small) * 1e7,
           np.asarray(new, dtype=float), 1e-11)
     x[2] = x[0]
     raises("a link whose ends coincide", BadInput, lesson.compliant_sweep, x, np.zeros(2), dt, p)
 
 
-@exercise("8.14", points=1, hint="Λ begins with a zero for each link at every step, and is handed from sweep to sweep within it")
+@exercise("8.14", points=1,
+          hint="at every step Λ starts with a zero for each link, and is passed from sweep to sweep within the step")
 def test_one_spring_is_implicit_euler_whatever_the_step_and_the_sweeps(lesson, draw):
-    """v⁺ = (v − dt (k/m) s + dt (−g))/(1 + dt² k/m),  s the stretch: implicit Euler of m s̈ = −k s − m g, in y; along a line it stays one."""
+    """Implicit Euler of m ÿ = k s − m g along a line: v⁺ = (v + dt (k/m) s − dt g)/(1 + dt² k/m).
+
+    v is the velocity ẏ, and s the stretch of the spring, from which the weight hangs.
+    """
     for sweeps in (1, draw.whole(2, 6)):
-        m, k, rest, dt = draw(0.3, 3.0), draw(10.0, 500.0), draw(0.5, 1.5), draw(0.01, 0.2)
+        m, k = draw(0.3, 3.0), draw(10.0, 500.0)
+        rest, dt = draw(0.5, 1.5), draw(0.01, 0.2)
         stretch, speed = draw(-0.2, 0.2), draw(-1.0, 1.0)
-        x, v = np.array([[0.0, 0.0], [0.0, -rest - stretch]]), np.array([[0.0, 0.0], [0.0, speed]])
+        x = np.array([[0.0, 0.0], [0.0, -rest - stretch]])
+        v = np.array([[0.0, 0.0], [0.0, speed]])
         p = net(lesson, [0.0, 1.0 / m], [(0, 1)], rest, 2, 1.0, 1.0 / k, sweeps)
         given = f"m = {m} kg, k = {k} N/m, dt = {dt} s, stretch {stretch} m, v = {speed} m/s, {sweeps} sweeps"
         new, v_new = lesson.xpbd_step(lesson.falling_acceleration, 0.0, x, v, dt, p)
         expected = (speed + dt * (k / m * stretch - G)) / (1.0 + dt * dt * k / m)
-        close("velocity after a step [m/s]: implicit Euler's", np.asarray(v_new)[1, 1], expected, 1e-10, given=given)
+        close("velocity after a step [m/s]: as by implicit Euler", np.asarray(v_new)[1, 1], expected, 1e-10,
+              given=given)
         close("position after a step [m]", np.asarray(new)[1, 1], x[1, 1] + dt * expected, 1e-11, given=given)
         hanging = np.array([[0.0, 0.0], [0.0, -rest - m * G / k]])
         new, _ = lesson.xpbd_step(lesson.falling_acceleration, 0.0, hanging, 0.0 * v, dt, p)
-        close("where a weight hangs after a step [m]: m g/k lower", new, hanging, 1e-11, given=given)
+        close("position of a weight at its equilibrium after a step [m]: m g/k lower", new, hanging, 1e-11, given=given)
         soft = 1.0 / (k * dt * dt)
         carried_along(lesson.xpbd_step, lesson, draw, x, dt, p, soft / (1.0 / m + soft))
-        # three springs side by side: more links than points, each with a Λ of its own
+        # Three parallel springs: more links than points, each with its own Λ.
         soft = soft * draw(0.5, 2.0, 3)
         side_by_side = net(lesson, [0.0, 1.0 / m], [(0, 1)] * 3, rest, 2, 1.0, soft * dt * dt)
         carried_along(lesson.xpbd_step, lesson, draw, x, dt, side_by_side, np.prod(soft / (1.0 / m + soft)))
@@ -627,28 +739,30 @@ def test_one_spring_is_implicit_euler_whatever_the_step_and_the_sweeps(lesson, d
 # ---------------------------------------------------------------------------------------------- rigid bodies
 
 def body(draw):
-    """(q, R, m, I_body): a drawn orientation, and R by Rodrigues' formula."""
+    """(q, R, m, I_body): a drawn orientation as a quaternion and as a matrix by Rodrigues' formula."""
     axis, turn = direction(draw, 3), draw(0.3, 2.5)
     K = np.array([[0.0, -axis[2], axis[1]], [axis[2], 0.0, -axis[0]], [-axis[1], axis[0], 0.0]])
     R = np.eye(3) + np.sin(turn) * K + (1.0 - np.cos(turn)) * K @ K
     low = draw(0.5, 1.0, 2)
-    return np.append(np.cos(0.5 * turn), np.sin(0.5 * turn) * axis), R, draw(0.5, 3.0), np.array([low[0], low[1], draw(0.95, 1.0) * low.sum()])
+    q = np.append(np.cos(0.5 * turn), np.sin(0.5 * turn) * axis)
+    return q, R, draw(0.5, 3.0), np.array([low[0], low[1], draw(0.95, 1.0) * low.sum()])
 
 
-@exercise("8.15", points=1, hint="r × n in the body's coordinates, squared over the moments; 1/m beside it")
-def test_a_point_of_a_body_gives_way_as_an_impulse_there_would_make_it(lesson, draw):
-    """An impulse n at r gives v = n/m and ω = I⁻¹(r × n): the point moves along n with n·(v + ω × r)."""
-    q, R, m, I_body = body(draw)
-    for r, m in ((draw(-1.0, 1.0, 3), m), (np.zeros(3), m), (draw(-1.0, 1.0, 3), 0.1 * m),
-                 (draw(-1.0, 1.0, 3), 10.0 * m)):
+@exercise("8.15", points=1, hint="1/m plus the squares of r × n, in body coordinates, over the moments")
+def test_the_generalised_inverse_mass_is_the_response_to_a_unit_impulse(lesson, draw):
+    """An impulse n at r gives v = n/m and ω = I⁻¹(r × n), so the point moves along n with n·(v + ω × r)."""
+    q, R, mass, I_body = body(draw)
+    for r, m in ((draw(-1.0, 1.0, 3), mass), (np.zeros(3), mass), (draw(-1.0, 1.0, 3), 0.1 * mass),
+                 (draw(-1.0, 1.0, 3), 10.0 * mass)):
         n = direction(draw, 3)
         omega = R @ np.diag(1.0 / I_body) @ R.T @ np.cross(r, n)
-        close("generalised inverse mass [1/kg]", lesson.generalised_inverse_mass(q, r, n, m, I_body), n @ (n / m + np.cross(omega, r)), ROUND_OFF,
+        close("generalised inverse mass [1/kg]", lesson.generalised_inverse_mass(q, r, n, m, I_body),
+              n @ (n / m + np.cross(omega, r)), ROUND_OFF,
               given=f"q = {q}, r = {r} m, n = {n}, m = {m} kg, I = {I_body}")
 
 
 def turn_of(q_new, q_old):
-    """Matrix by which a body has turned, from two quaternions."""
+    """The rotation matrix from one orientation to another, given as quaternions."""
     def matrix(q):
         w, v = q[0], q[1:]
         K = np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
@@ -656,12 +770,13 @@ def turn_of(q_new, q_old):
     return matrix(q_new) @ matrix(q_old).T
 
 
-@exercise("8.16", points=1.5, hint="the turn is I⁻¹(r × p), in the world; quaternion_update(q, turn, 1.0) turns by it and keeps |q| = 1")
+@exercise("8.16", points=1.5,
+          hint="the rotation vector is I⁻¹(r × p), in world coordinates; quaternion_update(q, turn, 1.0) applies it")
 def test_a_push_beside_the_centre_moves_and_turns_a_body(lesson, draw):
     q, R, m, I_body = body(draw)
     x, r, p = draw(-1.0, 1.0, 3), draw(-1.0, 1.0, 3), draw(-1.0, 1.0, 3)
     for other in (0.1 * m, 10.0 * m):
-        close("centre of mass of a body of another mass [m]", lesson.push_body(x, q, r, p, other, I_body)[0],
+        close("centre of mass of a body with another mass [m]", lesson.push_body(x, q, r, p, other, I_body)[0],
               x + p / other, ROUND_OFF * 10.0, given=f"p = {p} kg m, m = {other} kg")
     new, turned = lesson.push_body(x, q, r, p, m, I_body)
     given = f"q = {q}, r = {r} m, p = {p} kg m, m = {m} kg, I = {I_body}"
@@ -669,68 +784,77 @@ def test_a_push_beside_the_centre_moves_and_turns_a_body(lesson, draw):
     turned = np.asarray(turned, dtype=float)
     close("length of the quaternion [-]", np.linalg.norm(turned), 1.0, ROUND_OFF, given=given)
     turn = R @ np.diag(1.0 / I_body) @ R.T @ np.cross(r, p)
-    angle, axis = 2.0 * np.arctan(0.5 * np.linalg.norm(turn)), turn / np.linalg.norm(turn)
+    angle = 2.0 * np.arctan(0.5 * np.linalg.norm(turn))
+    axis = turn / np.linalg.norm(turn)
     K = np.array([[0.0, -axis[2], axis[1]], [axis[2], 0.0, -axis[0]], [-axis[1], axis[0], 0.0]])
-    close("by what matrix it has turned [-]", turn_of(turned, q), np.eye(3) + np.sin(angle) * K + (1.0 - np.cos(angle)) * K @ K, 1e-11, given=given)
+    close("matrix of its rotation [-]", turn_of(turned, q),
+          np.eye(3) + np.sin(angle) * K + (1.0 - np.cos(angle)) * K @ K, 1e-11, given=given)
 
 
-@exercise("8.17", points=0.5, hint="Δq = q_new q̄_old; twice its vector over its first number, over dt")
+@exercise("8.17", points=0.5, hint="Δq = q_new q̄_old; twice its vector part over its scalar part, over dt")
 def test_a_turn_has_the_rate_that_leads_from_one_orientation_to_the_other(lesson, draw):
     q, _, _, _ = body(draw)
-    axis, angle, dt = direction(draw, 3), draw(0.1, 2.0), draw(0.05, 0.5)
+    axis = direction(draw, 3)
+    angle, dt = draw(0.1, 2.0), draw(0.05, 0.5)
     half, s = np.cos(0.5 * angle), np.sin(0.5 * angle)
     a, v = q[0], q[1:]
     turned = np.append(half * a - s * axis @ v, half * v + a * s * axis + s * np.cross(axis, v))
     for still in (q, np.array([1.0, 0.0, 0.0, 0.0])):
-        close("rate of what does not turn [rad/s]", lesson.turning_rate(still, still.copy(), dt), np.zeros(3), ROUND_OFF, given=f"q = {still}, dt = {dt} s")
+        close("angular velocity of a body that does not turn [rad/s]", lesson.turning_rate(still, still.copy(), dt),
+              np.zeros(3), ROUND_OFF, given=f"q = {still}, dt = {dt} s")
     for sign in (1.0, -1.0):
-        close("rate of a turn [rad/s]", lesson.turning_rate(q, sign * turned, dt), 2.0 * np.tan(0.5 * angle) / dt * axis, 1e-10, given=f"q = {q}, {angle} rad about {axis} in {dt} s")
+        close("angular velocity of a turn [rad/s]", lesson.turning_rate(q, sign * turned, dt),
+              2.0 * np.tan(0.5 * angle) / dt * axis, 1e-10, given=f"q = {q}, {angle} rad about {axis} in {dt} s")
 
 
 # ---------------------------------------------------------------------------------------------- a soft ball
 
-CUBE = np.array([[0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4], [2, 6, 3], [3, 6, 7], [0, 4, 2], [2, 4, 6], [1, 3, 5], [3, 7, 5]])
+CUBE = np.array([[0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4],
+                 [2, 6, 3], [3, 6, 7], [0, 4, 2], [2, 4, 6], [1, 3, 5], [3, 7, 5]])
 
 
 @exercise("8.18", points=0.5,
-          hint="a sixth of a · (b × c) for every face; its slope with a is b × c/6, and so on in turns")
-def test_a_closed_surface_knows_its_volume_and_how_its_corners_change_it(lesson, draw):
-    """A box between three drawn vectors has the volume |u · (v × w)|; the volume is linear in each coordinate of a corner."""
+          hint="a sixth of a · (b × c) for each face; its gradient with respect to a is b × c/6, and so on cyclically")
+def test_a_closed_surface_has_the_right_volume_and_volume_gradient(lesson, draw):
+    """A box spanned by u, v and w has the volume |u · (v × w)|. The volume is linear in each corner."""
     u, v, w = (np.eye(3)[k] * draw(1.0, 2.0) + draw(-0.3, 0.3, 3) for k in range(3))
     corners = np.array([[k & 1, k >> 1 & 1, k >> 2] for k in range(8)])
     x = np.append(draw(-2.0, 2.0, 3) + corners @ np.stack((u, v, w)), draw(-2.0, 2.0, (1, 3)), axis=0)
     V, gradient = lesson.volume_gradient(x, CUBE)
     close("volume of a slanting box [m³]", V, u @ np.cross(v, w), 1e-11, given=f"corners {x.tolist()} m")
     gradient = np.asarray(gradient, dtype=float)
-    close("slope of the volume with corner 8, which is in no face [m²]", gradient[8:], np.zeros((1, 3)), 0.0, given=f"corners {x.tolist()} m")
-    close("Σ ∇V [m²]: pushed as a whole it keeps its volume", gradient.sum(axis=0), np.zeros(3), 1e-11, given=f"corners {x.tolist()} m")
+    close("gradient of the volume at corner 8, which is in no face [m²]", gradient[8:], np.zeros((1, 3)), 0.0,
+          given=f"corners {x.tolist()} m")
+    close("Σ ∇V [m²]: a translation keeps the volume", gradient.sum(axis=0), np.zeros(3), 1e-11,
+          given=f"corners {x.tolist()} m")
     change = draw(-0.5, 0.5, 3)
     for k in (0, 3, 6):
         y = x.copy()
         y[k] += change
-        close("how one corner changes the volume [m³]", gradient[k] @ change, lesson.volume_gradient(y, CUBE)[0] - V, 1e-11, given=f"corners {x.tolist()} m, corner {k} by {change} m")
+        close("change of volume if one corner moves [m³]", gradient[k] @ change,
+              lesson.volume_gradient(y, CUBE)[0] - V, 1e-11, given=f"corners {x.tolist()} m, corner {k} by {change} m")
 
 
 def volume(x, faces, o):
-    """Σ of the tetrahedra from o to each face [m³], of complex numbers as well."""
+    """Σ of the tetrahedra from o to each face [m³], also for complex numbers."""
     a, b, c = (x[faces[:, k]] - o for k in range(3))
     return np.sum(a * np.cross(b, c)) / 6.0
 
 
 @exercise("8.18", points=0.5,
-          hint="keep every sign: a surface turned inside-out has a negative volume and the opposite slope")
+          hint="keep every sign: an inside-out surface has a negative volume and the opposite gradient")
 def test_lumps_small_and_large_and_inside_out_have_the_volume_of_their_hull_and_its_slope(lesson, draw):
-    """Brute force: the volume of the convex hull; its slope by a complex step of tetrahedra about their middle."""
+    """Brute force: the volume of the convex hull, and a complex step of tetrahedra from the mean of the corners."""
     for size in (1e-6, 1.0, 1e3):
         for far in (0.0, 3.0):
             x, faces = solid(draw(-0.5, 0.5, (10, 3)) + far * draw(-1.0, 1.0, 3))
             middle, moves = x.mean(axis=0), np.eye(x.size).reshape(-1, *x.shape)
             slope = np.array([volume(x + 1j * TINY * move, faces, middle).imag / TINY
                               for move in moves]).reshape(x.shape)
-            for what, sign, turned in (("a lump", 1.0, faces),
+            for name, sign, turned in (("a lump", 1.0, faces),
                                        ("a lump inside-out", -1.0, np.ascontiguousarray(faces[:, ::-1]))):
                 V, gradient = lesson.volume_gradient(size * x, turned)
                 given = f"corners {(size * x).tolist()} m, triangles {turned.tolist()}"
-                close(f"volume of {what}, over its size [-]", V / size**3, sign * ConvexHull(x).volume, 1e-11, given)
-                close(f"slope of the volume of {what}, over its size [-]", np.asarray(gradient) / size**2, sign * slope,
-                      1e-11, given)
+                close(f"volume of {name}, over its size [-]", V / size**3, sign * ConvexHull(x).volume, 1e-11, given)
+                close(f"gradient of the volume of {name}, over its size [-]", np.asarray(gradient) / size**2,
+                      sign * slope, 1e-11, given)

@@ -1,4 +1,4 @@
-"""Lesson 5 is right when bodies turn as Rodrigues and Euler say, keep L and energy as promised, and flip when theory says."""
+"""Lesson 5: bodies turn as Rodrigues and Euler say, keep L and energy as promised, and flip when theory says."""
 
 from typing import NamedTuple
 
@@ -10,17 +10,17 @@ from solutions.checks import BadInput, Diverged
 from ..grading.expect import between, close, raises
 
 exercise = pytest.mark.exercise
-EXACT = 1e-12                # a formula of a few dozen roundings, 1e-16 each, of numbers below 100
+EXACT = 1e-12                # a few dozen operations, each with a round-off of 1e-16, on numbers below 100
 
 
 def orientation(draw):
-    """A drawn unit quaternion, far from 0 before it is normalised."""
+    """A drawn unit quaternion; before normalisation it is far from 0."""
     q = np.concatenate((draw(0.3, 1.0, 1), draw(-1.0, 1.0, 3)))
     return q / np.linalg.norm(q)
 
 
 def about(phi):
-    """The matrix of a turn about phi/|phi| by |phi|: 1 + sin θ n* + (1 − cos θ) n*², with n* = (n × x, n × y, n × z)."""
+    """The matrix of a rotation about φ/|φ| by |φ|: 1 + sin θ n* + (1 − cos θ) n*², n* = (n × x, n × y, n × z)."""
     angle = np.linalg.norm(phi)
     if angle == 0.0:
         return np.eye(3)
@@ -33,20 +33,20 @@ def unit_of(y):
 
 
 def turn(q):
-    """The matrix of a quaternion (w, 𝐪), of whatever length: by 2 atan(|𝐪|/w) about 𝐪."""
+    """The matrix of a quaternion (w, 𝐪) of any length: a rotation by 2 atan(|𝐪|/w) about 𝐪."""
     w, vector = float(q[0]), np.array([float(q[1]), float(q[2]), float(q[3])])
     size = np.linalg.norm(vector)
     return about(2.0 * np.arctan2(size, w) * vector / size) if size > 0.0 else np.eye(3)
 
 
 def moments(draw):
-    """Principal moments [kg m²] between 1.7 and 4.2 that some body has, no two closer than 0.2: smallest, middle, largest."""
+    """Possible principal moments [kg m²] between 1.7 and 4.2, smallest first, no two closer than 0.2."""
     a, b, c = draw(2.0, 2.5), draw(1.2, 1.7), draw(0.5, 1.0)             # Σ m x², Σ m y², Σ m z²
     return np.array([b + c, a + c, a + b])
 
 
 def spin_of(draw):
-    """A drawn angular velocity [rad/s], every component between 0.5 and 1.5 in size."""
+    """A drawn angular velocity [rad/s]; the magnitude of each component is between 0.5 and 1.5."""
     return draw(0.5, 1.5, 3) * np.where(draw(-1.0, 1.0, 3) < 0.0, -1.0, 1.0)
 
 
@@ -57,19 +57,22 @@ def inertia(q, I_body):
 
 
 def freely(q, omega, I_body, t):
-    """Orientation (3, 3) of a body without torque after t, by DOP853 on R and ω_body; global error below 1e-11."""
+    """Orientation (3, 3) of a torque-free body after t, by DOP853 on R and ω_body; global error below 1e-11."""
     from scipy.integrate import solve_ivp
+
     def slope(t, y):
         R, w = y[:9].reshape(3, 3), y[9:]
         return np.concatenate(((np.cross(w, R) * -1.0).ravel(), np.cross(I_body * w, w) / I_body))
+
     R = turn(q)
-    end = solve_ivp(slope, (0.0, t), np.concatenate((R.ravel(), R.T @ omega)), method="DOP853", rtol=1e-13, atol=1e-14).y[:9, -1]
+    begin = np.concatenate((R.ravel(), R.T @ omega))
+    end = solve_ivp(slope, (0.0, t), begin, method="DOP853", rtol=1e-13, atol=1e-14).y[:9, -1]
     return end.reshape(3, 3)
 
 
 # ---------------------------------------------------------------------------------------------- rotational movement
 
-@exercise("5.1", points=1, hint="the first row gives the x of a × b, which is a_y b_z − a_z b_y: (0, −a_z, a_y)")
+@exercise("5.1", points=1, hint="the first row gives the x component of a × b, a_y b_z − a_z b_y: (0, −a_z, a_y)")
 def test_a_skew_matrix_multiplies_like_a_cross_product(lesson, draw):
     a, b = draw(-2.0, 2.0, 3), draw(-2.0, 2.0, 3)
     matrix = lesson.skew(a)
@@ -77,23 +80,27 @@ def test_a_skew_matrix_multiplies_like_a_cross_product(lesson, draw):
     close("a* e for the three axes e, as columns", matrix, np.cross(a, np.eye(3)).T, EXACT, given=f"a = {a}")
 
 
-@exercise("5.2", points=0.5, hint="the body carries the point along with v, and its turning adds ω × r, in this order")
+@exercise("5.2", points=0.5, hint="the point moves with v, plus ω × r because the body rotates, in this order")
 def test_a_point_moves_as_the_body_carries_it(lesson, draw):
-    v, omega, r, h = draw(-2.0, 2.0, 3), draw(-2.0, 2.0, 3), draw(-1.0, 1.0, 3), 1e-4
+    v, omega, r = draw(-2.0, 2.0, 3), draw(-2.0, 2.0, 3), draw(-1.0, 1.0, 3)
+    h = 1e-4
     before, after = (s * h * v + about(s * h * omega) @ r for s in (-1.0, 1.0))
     # h²/6 |ω|³ |r| < 1e-8/6 · 42 · 1.8 = 1.3e-7
-    close("velocity of the point [m/s]", lesson.point_velocity(v, omega, r), (after - before) / (2.0 * h), 2e-7, given=f"v = {v}, ω = {omega}, r = {r}")
+    close("velocity of the point [m/s]", lesson.point_velocity(v, omega, r), (after - before) / (2.0 * h), 2e-7,
+          given=f"v = {v}, ω = {omega}, r = {r}")
 
 
-@exercise("5.3", points=1, hint="each force adds itself to F, and (pᵢ − x) × fᵢ to τ, in this order; x is the centre of mass")
+@exercise("5.3", points=1,
+          hint="each force adds fᵢ to F and (pᵢ − x) × fᵢ to τ, in this order; x is the centre of mass")
 def test_forces_add_up_to_a_force_and_a_torque(lesson, draw):
     many = draw.whole(8, 12)
-    x, points, forces = draw(-1.0, 1.0, 3), draw(-2.0, 2.0, (many, 3)), draw(-5.0, 5.0, (many, 3))
+    x = draw(-1.0, 1.0, 3)
+    points, forces = draw(-2.0, 2.0, (many, 3)), draw(-5.0, 5.0, (many, 3))
     kept = points.copy(), forces.copy()
     F, tau = lesson.total_load(x, points, forces)
     close("total force [N]", F, forces.sum(axis=0), EXACT)
     close("torque about the centre of mass [N m]", tau, np.cross(points - x, forces).sum(axis=0), EXACT)
-    close("the points and forces that were handed in: leave them", np.array((points, forces)), np.array(kept), 0.0)
+    close("input points and forces after the call: unchanged", np.array((points, forces)), np.array(kept), 0.0)
     F, tau = lesson.total_load(x, points[:2], np.array([forces[0], -forces[0]]))
     close("total force of a couple [N]", F, np.zeros(3), EXACT)
     close("torque of a couple [N m], about any point", tau, np.cross(points[0] - points[1], forces[0]), EXACT)
@@ -101,66 +108,81 @@ def test_forces_add_up_to_a_force_and_a_torque(lesson, draw):
     close("torque of a force at the centre of mass [N m]", tau, np.zeros(3), EXACT)
 
 
-@exercise("5.4", points=1, hint="Rᵀ takes L into the body, there divide entry by entry by I_body, and R takes the result back")
+@exercise("5.4", points=1,
+          hint="Rᵀ transforms L to body coordinates; divide there by I_body, entry by entry; R transforms back")
 def test_angular_momentum_gives_back_the_angular_velocity(lesson, draw):
     q, I_body, omega = orientation(draw), moments(draw), draw(-3.0, 3.0, 3)
     L = inertia(q, I_body) @ omega
     got = lesson.angular_velocity(turn(q), L, I_body)
     close("ω of a body with L = I ω [rad/s]", got, omega, EXACT, given=f"ω = {omega}, I_body = {I_body}")
-    close("ω about a principal axis: along it [rad/s]", lesson.angular_velocity(np.eye(3), np.array([0.0, 2.0 * I_body[1], 0.0]), I_body), [0.0, 2.0, 0.0], EXACT)
+    close("ω about a principal axis: along it [rad/s]",
+          lesson.angular_velocity(np.eye(3), np.array([0.0, 2.0 * I_body[1], 0.0]), I_body), [0.0, 2.0, 0.0], EXACT)
 
 
-@exercise("5.5", points=1, hint="divide P by the mass, and let skew(ω) act on R from the left; F and τ are the other two")
+@exercise("5.5", points=1,
+          hint="ẋ is P over the mass, and Ṙ is skew(ω) R; the other two are F and τ")
 def test_the_state_changes_as_newton_and_euler_say(lesson, draw):
-    q, I_body, omega, m, h = orientation(draw), moments(draw), spin_of(draw), draw(1.0, 3.0), 1e-4
-    R, P, F, tau = turn(q), draw(-2.0, 2.0, 3), draw(-2.0, 2.0, 3), draw(-2.0, 2.0, 3)
+    q = orientation(draw)
+    I_body = moments(draw)
+    omega = spin_of(draw)
+    m = draw(1.0, 3.0)
+    h = 1e-4
+    R = turn(q)
+    P, F, tau = draw(-2.0, 2.0, 3), draw(-2.0, 2.0, 3), draw(-2.0, 2.0, 3)
     S = lesson.State(draw(-1.0, 1.0, 3), R, P, inertia(q, I_body) @ omega)
     light, heavy = (lesson.state_derivative(S, F, tau, lesson.Body(share * m, I_body))[0] for share in (0.1, 10.0))
     x_rate, R_rate, P_rate, L_rate = lesson.state_derivative(S, F, tau, lesson.Body(m, I_body))
     before, after = (about(s * h * omega) @ R for s in (-1.0, 1.0))
-    close("ẋ of a body ten times as light, as it is, ten times as heavy [m/s]", [light, x_rate, heavy],
+    close("ẋ of a body a tenth, once and ten times as heavy [m/s]", [light, x_rate, heavy],
           [10.0 * P / m, P / m, 0.1 * P / m], EXACT * 10.0)
     # h²/6 |ω|³ < 1e-8/6 · 18
-    close("Ṙ: how fast the axes of the body turn [1/s]", R_rate, (after - before) / (2.0 * h), 5e-8, given=f"ω = {omega}")
+    close("Ṙ: rate of change of the body's axes [1/s]", R_rate, (after - before) / (2.0 * h), 5e-8,
+          given=f"ω = {omega}")
     close("Ṗ [N]", P_rate, F, 0.0)
     close("L̇ [N m]", L_rate, tau, 0.0)
 
 
-# ---------------------------------------------------------------------------------------------- three ways to turn a body
+# ---------------------------------------------------------------------------------------------- three rotation updates
 
-@exercise("5.6", points=1.5, hint="R + dt ω* R first; then the columns in turn: length 1, perpendicular to the first, and the third by a cross product")
-def test_the_first_way_keeps_a_matrix_orthonormal(lesson, draw):
+@exercise("5.6", points=1.5,
+          hint="first R + dt ω* R; then its columns: the first to length 1, the second perpendicular "
+               "to the first, the third by a cross product")
+def test_the_matrix_update_keeps_a_matrix_orthonormal(lesson, draw):
     R, omega, dt = turn(orientation(draw)), spin_of(draw), draw(0.1, 0.4)
     kept = R.copy()
     got = np.asarray(lesson.matrix_update(R, omega, dt))
     moved = R + dt * np.cross(omega, R.T).T
     Q, upper = np.linalg.qr(moved)
-    close("orientation, against a QR factorisation of R + dt ω* R", got, Q * np.sign(np.diag(upper)), EXACT, given=f"ω = {omega}, dt = {dt}")
+    close("orientation, compared with a QR factorisation of R + dt ω* R", got, Q * np.sign(np.diag(upper)), EXACT,
+          given=f"ω = {omega}, dt = {dt}")
     close("R Rᵀ of the result", got @ got.T, np.eye(3), EXACT)
-    close("the R that was handed in: leave it", R, kept, 0.0)
+    close("input R after the call: unchanged", R, kept, 0.0)
     close("orientation at ω = 0", lesson.matrix_update(R, np.zeros(3), dt), R, EXACT)
 
 
 @exercise("5.7", points=0.75,
-          hint="Rodrigues: r cos θ + (n × r) sin θ + n (n·r)(1 − cos θ), each column on its own; ask for |ω| = 0 before you divide")
-def test_the_second_way_is_exact_at_constant_omega(lesson, draw):
+          hint="Rodrigues: r cos θ + (n × r) sin θ + n (n·r)(1 − cos θ), for each column "
+               "separately; test for |ω| = 0 before dividing")
+def test_the_axis_angle_update_is_exact_at_constant_omega(lesson, draw):
     R, omega, dt = turn(orientation(draw)), spin_of(draw), draw(0.5, 3.0)
     kept = R.copy()
     got = lesson.axis_angle_update(R, omega, dt)
     close("orientation after dt", got, about(dt * omega) @ R, EXACT, given=f"ω = {omega}, dt = {dt}")
-    close("the R that was handed in: leave it", R, kept, 0.0)
+    close("input R after the call: unchanged", R, kept, 0.0)
     back = lesson.axis_angle_update(np.asarray(got, dtype=float), omega, -dt)
     close("orientation after dt and −dt: back", back, R, EXACT)
     close("orientation at ω = 0: R itself", lesson.axis_angle_update(R, np.zeros(3), dt), R, 0.0)
 
 
 @exercise("5.7", points=0.75,
-          hint="only |ω| = 0 is rest; take sin θ and cos θ of the whole angle, beyond a turn and for dt < 0, too")
-def test_the_second_way_turns_by_any_angle_at_any_rate(lesson, draw):
-    """The angle |ω| dt is known to 1e-16 of itself, and it is below 30."""
+          hint="only |ω| = 0 is rest; use the whole angle in sin θ and cos θ, also beyond one turn and for dt < 0")
+def test_the_axis_angle_update_turns_by_any_angle_at_any_rate(lesson, draw):
+    """The angle |ω| dt is below 30 and has a relative error of 1e-16."""
     for quarter in (0, 1, 2, 3, 4, 7, 15):
         for rate in (1e-12, 1e-4, 1.0, 1e6):
-            R, n, angle = turn(orientation(draw)), unit_of(draw(-1.0, 1.0, 3)), 0.5 * np.pi * (quarter + draw(0.1, 0.9))
+            R = turn(orientation(draw))
+            n = unit_of(draw(-1.0, 1.0, 3))
+            angle = 0.5 * np.pi * (quarter + draw(0.1, 0.9))
             for side in (1.0, -1.0):
                 got = lesson.axis_angle_update(R, rate * n, side * angle / rate)
                 close("orientation after dt", got, about(side * angle * n) @ R, EXACT,
@@ -168,7 +190,7 @@ def test_the_second_way_turns_by_any_angle_at_any_rate(lesson, draw):
 
 
 def pauli(q):
-    """A quaternion as a complex (2, 2) matrix: products of the matrices are those of the quaternions."""
+    """A quaternion as a complex (2, 2) matrix: matrix products are quaternion products."""
     w, x, y, z = q
     return np.array([[w - 1j * z, -y - 1j * x], [y - 1j * x, w + 1j * z]])
 
@@ -176,27 +198,33 @@ def pauli(q):
 @exercise("5.8", points=1, hint="scalar: a₀b₀ − 𝐚·𝐛; vector: a₀𝐛 + b₀𝐚 + 𝐚×𝐛; i j = k, but j i = −k")
 def test_quaternions_multiply_like_paulis_matrices(lesson, draw):
     pairs = draw(-2.0, 2.0, (8, 2, 4))
-    pairs[:2, :, 0] = 0.0                                                # two without a scalar: the product's is −𝐚·𝐛, of either sign
+    # Two pairs have no scalar part: the scalar part of the product is −𝐚·𝐛, of either sign.
+    pairs[:2, :, 0] = 0.0
     pairs[1, 1] = pairs[1, 0]
     for a, b in pairs:
         expected = pauli(a) @ pauli(b)
         got = np.asarray(lesson.product(a, b))
-        close("the product of two quaternions", got, [expected[0, 0].real, -expected[0, 1].imag, expected[1, 0].real, -expected[0, 0].imag], EXACT,
+        close("the product of two quaternions", got,
+              [expected[0, 0].real, -expected[0, 1].imag, expected[1, 0].real, -expected[0, 0].imag], EXACT,
               given=f"a = {a}, b = {b}")
         close("|a b| − |a| |b|", np.linalg.norm(got) - np.linalg.norm(a) * np.linalg.norm(b), 0.0, EXACT)
 
 
-@exercise("5.9", points=1, hint="the products with w change sign across the diagonal: 2(xy − wz) above it, 2(xy + wz) below")
+@exercise("5.9", points=1,
+          hint="the terms with w have opposite signs across the diagonal: 2(xy − wz) above it, 2(xy + wz) below")
 def test_a_quaternion_turns_as_its_matrix_does(lesson, draw):
     q = orientation(draw)
     close("matrix of the quaternion", lesson.rotation_matrix(q), turn(q), EXACT, given=f"q = {q}")
     close("matrix of its negative: the same", lesson.rotation_matrix(-q), turn(q), EXACT)
     half = np.sqrt(0.5)
-    close("a quarter turn about z takes x to", np.asarray(lesson.rotation_matrix(np.array([half, 0.0, 0.0, half])))[:, 0], [0.0, 1.0, 0.0], EXACT)
+    close("x axis after a quarter turn about z",
+          np.asarray(lesson.rotation_matrix(np.array([half, 0.0, 0.0, half])))[:, 0], [0.0, 1.0, 0.0], EXACT)
 
 
-@exercise("5.10", points=0.75, hint="the product (0, ω) q, with ω on the left because it is in world coordinates; half of it times dt; then unit")
-def test_the_third_way_turns_about_omega_by_twice_an_arc_tangent(lesson, draw):
+@exercise("5.10", points=0.75,
+          hint="the product (0, ω) q, with ω on the left because it is in world "
+               "coordinates; times ½ dt; then normalise")
+def test_the_quaternion_update_turns_about_omega_by_twice_an_arc_tangent(lesson, draw):
     q, omega, dt = orientation(draw), spin_of(draw), draw(0.1, 0.5)
     kept = q.copy()
     rate = np.linalg.norm(omega)
@@ -206,50 +234,62 @@ def test_the_third_way_turns_about_omega_by_twice_an_arc_tangent(lesson, draw):
     close("orientation after dt, as a matrix", turn(got), expected, EXACT, given=f"ω = {omega}, dt = {dt}")
     close("orientation after dt and −dt: back, as a matrix",
           turn(lesson.quaternion_update(np.asarray(got, dtype=float), omega, -dt)), turn(q), EXACT)
-    close("the q that was handed in: leave it", q, kept, 0.0)
+    close("input q after the call: unchanged", q, kept, 0.0)
 
 
-@exercise("5.10", points=0.25, hint="normalise with unit: it raises BadInput where there is nothing to normalise")
+@exercise("5.10", points=0.25, hint="normalise with unit: it raises BadInput for a quaternion of length zero")
 def test_a_quaternion_of_length_zero_is_refused(lesson, draw):
     q, omega = orientation(draw), spin_of(draw)
     rate = np.linalg.norm(omega)
-    close("orientation of a q that has a length, after 0.1 s", turn(lesson.quaternion_update(q, omega, 0.1)), about(2.0 * np.arctan(0.05 * rate) / rate * omega) @ turn(q),
-          EXACT, given=f"q = {q}, ω = {omega}")
+    close("orientation after 0.1 s, for a q that is not zero", turn(lesson.quaternion_update(q, omega, 0.1)),
+          about(2.0 * np.arctan(0.05 * rate) / rate * omega) @ turn(q), EXACT, given=f"q = {q}, ω = {omega}")
     raises("q = 0", BadInput, lesson.quaternion_update, np.zeros(4), omega, 0.1)
 
 
 # ---------------------------------------------------------------------------------------------- the lecture's loop
 
-@exercise("5.11", points=1, hint="all three terms in the body: τ, ω and Iω = I_body ω; the gyroscopic one with a minus; rotate the result back")
+@exercise("5.11", points=1,
+          hint="compute τ, ω and Iω = I_body ω in body coordinates; the "
+               "gyroscopic term has a minus sign; rotate the result back")
 def test_a_body_speeds_up_as_eulers_equations_say(lesson, draw):
-    q, I_body, omega, tau = orientation(draw), moments(draw), draw(-3.0, 3.0, 3), draw(-2.0, 2.0, 3)
+    q = orientation(draw)
+    I_body = moments(draw)
+    omega, tau = draw(-3.0, 3.0, 3), draw(-2.0, 2.0, 3)
     I = inertia(q, I_body)
     got = lesson.angular_acceleration(q, omega, tau, I_body)
-    close("ω̇ [rad/s²]", got, np.linalg.solve(I, tau - np.cross(omega, I @ omega)), EXACT, given=f"q = {q}, ω = {omega}, τ = {tau}, I_body = {I_body}")
+    close("ω̇ [rad/s²]", got, np.linalg.solve(I, tau - np.cross(omega, I @ omega)), EXACT,
+          given=f"q = {q}, ω = {omega}, τ = {tau}, I_body = {I_body}")
     along = 2.0 * turn(q)[:, 1]
     small = lesson.angular_acceleration(q, 1e-6 * omega, 1e-12 * tau, I_body)
-    close("ω̇ where ω is a millionth of that, and τ a trillionth [1e-12 rad/s²]", 1e12 * np.asarray(small),
+    close("ω̇ with ω a million and τ a trillion times smaller [1e-12 rad/s²]", 1e12 * np.asarray(small),
           np.asarray(got), EXACT * 10.0)
-    close("ω̇ about a principal axis, without torque [rad/s²]", lesson.angular_acceleration(q, along, np.zeros(3), I_body), np.zeros(3), EXACT)
+    close("ω̇ about a principal axis, without torque [rad/s²]",
+          lesson.angular_acceleration(q, along, np.zeros(3), I_body), np.zeros(3), EXACT)
     close("ω̇ of a ball [rad/s²]: τ/I", lesson.angular_acceleration(q, omega, tau, 2.0 * np.ones(3)), 0.5 * tau, EXACT)
 
 
 def swirling_load(t, x, v, q, omega, body):
-    """A force and a torque that depend on everything, so that nothing may be stale."""
+    """A force and a torque that depend on all arguments, so that an outdated one is detected."""
     F = body.m * np.array([np.cos(t) - v[0], x[2] - x[0], 1.0 - q[1]])
     return F, np.array([x[1] - omega[0], v[1] + q[0], np.sin(t) - omega[2]])
 
 
-@exercise("5.12", points=1, hint="load at the old state, F over m; then v and ω; then x and q with the new v and the new ω")
+@exercise("5.12", points=1,
+          hint="evaluate load at the old state, divide F by m; update v and ω; then x and q with the new v and ω")
 def test_one_step_of_the_loop_is_velocities_first(lesson, draw):
     for m in (draw(0.01, 0.1), draw(1.0, 3.0), draw(20.0, 90.0)):
         t, dt = draw(0.5, 1.5), draw(0.1, 0.3)
-        x, v, q, omega, I_body = draw(-1.0, 1.0, 3), draw(-1.0, 1.0, 3), orientation(draw), spin_of(draw), moments(draw)
-        body, kept = lesson.Body(m, I_body), [a.copy() for a in (x, v, q, omega)]
+        x, v = draw(-1.0, 1.0, 3), draw(-1.0, 1.0, 3)
+        q = orientation(draw)
+        omega = spin_of(draw)
+        I_body = moments(draw)
+        body = lesson.Body(m, I_body)
+        kept = [a.copy() for a in (x, v, q, omega)]
         x_new, v_new, q_new, omega_new = lesson.rigid_body_step(swirling_load, t, x, v, q, omega, dt, body)
         F, tau = swirling_load(t, x, v, q, omega, body)
         I = inertia(q, I_body)
-        faster, turned = v + dt * F / m, omega + dt * np.linalg.solve(I, tau - np.cross(omega, I @ omega))
+        faster = v + dt * F / m
+        turned = omega + dt * np.linalg.solve(I, tau - np.cross(omega, I @ omega))
         rate = np.linalg.norm(turned)
         after = about(2.0 * np.arctan(0.5 * rate * dt) / rate * turned) @ turn(q)
         close("v after one step [m/s]", v_new, faster, EXACT)
@@ -257,121 +297,160 @@ def test_one_step_of_the_loop_is_velocities_first(lesson, draw):
         close("ω after one step [rad/s]", omega_new, turned, EXACT)
         close("length of q after one step", np.linalg.norm(q_new), 1.0, EXACT)
         close("orientation after one step, as a matrix", turn(q_new), after, EXACT)
-        close("the state that was handed in: return new arrays", np.concatenate((x, v, q, omega)), np.concatenate(kept),
-              0.0)
+        close("input state after the call: return new arrays", np.concatenate((x, v, q, omega)),
+              np.concatenate(kept), 0.0)
 
 
 def unloaded(t, x, v, q, omega, body):
     return np.zeros(3), np.zeros(3)
 
 
-@exercise("5.12", points=1, hint="does q turn with the new ω? Does ω feel the gyroscopic term, though there is no torque?")
+@exercise("5.12", points=1,
+          hint="does q turn with the new ω? Is the gyroscopic term there although there is no torque?")
 def test_the_loop_converges_to_the_free_motion_of_a_body(lesson, draw):
-    q, I_body, omega, v, T = orientation(draw), moments(draw), spin_of(draw), draw(-1.0, 1.0, 3), 1.0
-    truth, body, errors = freely(q, omega, I_body, T), lesson.Body(2.0, I_body), []
+    q = orientation(draw)
+    I_body = moments(draw)
+    omega = spin_of(draw)
+    v = draw(-1.0, 1.0, 3)
+    T = 1.0
+    truth = freely(q, omega, I_body, T)
+    body = lesson.Body(2.0, I_body)
+    errors = []
     for n in (100, 200):
         x, _, q_end, _ = lesson.move(lesson.rigid_body_step, unloaded, 0.0, np.zeros(3), v, q, omega, T / n, n, body)
-        # local error ½dt² of |ω̈|, |ω̇| |ω| < 2.6² + 2.6³ = 24: 12 dt after 1 s, and e^2.6 = 13 for neighbours that part
+        # Local error ½dt² of |ω̈| and |ω̇| |ω|, which are below 2.6² + 2.6³ = 24: 12 dt after 1 s, growing by e^2.6 = 13.
         close("orientation after a second, as a matrix", turn(q_end), truth, 160.0 / n)
-        close("x after a second: as far as v carries it [m]", x, T * v, EXACT)
+        close("x after a second: moved by v [m]", x, T * v, EXACT)
         errors.append(np.abs(turn(q_end) - truth).max())
-    # first order: the error halves, up to terms dt |ω| < 3 % of it and what they add where the first term happens to be small
+    # First order: the error halves, up to terms dt |ω| < 3 % of it, which matter more if the first term is small.
     between("error at 200 steps over error at 100", errors[1] / errors[0], 0.4, 0.6)
 
 
-@exercise("5.13", points=0.5, hint="½ Σ Lₖ²/Iₖ over the coordinates of L in the body: unrotate it first")
+@exercise("5.13", points=0.5, hint="½ Σ Lₖ²/Iₖ over the components of L in body coordinates: unrotate L first")
 def test_kinetic_energy_is_that_of_omega(lesson, draw):
     q, I_body, omega = orientation(draw), moments(draw), draw(-3.0, 3.0, 3)
     I = inertia(q, I_body)
-    close("energy of rotation [J]", lesson.kinetic_energy(q, I @ omega, I_body), 0.5 * omega @ I @ omega, 1e-11, given=f"ω = {omega}, I_body = {I_body}")
+    close("rotational energy [J]", lesson.kinetic_energy(q, I @ omega, I_body), 0.5 * omega @ I @ omega, 1e-11,
+          given=f"ω = {omega}, I_body = {I_body}")
 
 
-@exercise("5.14", points=1, hint="(I_k − I_i)(I_j − I_k) is positive only when I_k lies between the others; where it is negative the rate is 0")
+@exercise("5.14", points=1,
+          hint="(I_k − I_i)(I_j − I_k) is positive only if I_k lies between the "
+               "others; if it is negative, the rate is 0")
 def test_only_the_middle_axis_tumbles(lesson, draw):
-    I_body, spin = np.roll(moments(draw), draw.whole(0, 2)), draw(1.0, 4.0)
+    I_body = np.roll(moments(draw), draw.whole(0, 2))
+    spin = draw(1.0, 4.0)
     for k in range(3):
         i, j = (k + 1) % 3, (k + 2) % 3
-        # Euler's equations about ω_k = spin: İ ω_i = (I_j − I_k) ω_j spin, and so on round
-        growth = np.linalg.eigvals(spin * np.array([[0.0, (I_body[j] - I_body[k]) / I_body[i]], [(I_body[k] - I_body[i]) / I_body[j], 0.0]]))
-        close(f"rate about axis {k} [1/s]", lesson.tumbling_rate(I_body, k, spin), growth.real.max(), 1e-7, given=f"I_body = {I_body}, spin = {spin}")
-        close(f"rate about axis {k}, spun the other way [1/s]", lesson.tumbling_rate(I_body, k, -spin), growth.real.max(), 1e-7)
+        # Euler's equations about ω_k = spin: I_i ω̇_i = (I_j − I_k) ω_j spin, and cyclically.
+        to_i, to_j = (I_body[j] - I_body[k]) / I_body[i], (I_body[k] - I_body[i]) / I_body[j]
+        growth = np.linalg.eigvals(spin * np.array([[0.0, to_i], [to_j, 0.0]]))
+        close(f"rate about axis {k} [1/s]", lesson.tumbling_rate(I_body, k, spin), growth.real.max(), 1e-7,
+              given=f"I_body = {I_body}, spin = {spin}")
+        close(f"rate about axis {k}, rotating the other way [1/s]", lesson.tumbling_rate(I_body, k, -spin),
+              growth.real.max(), 1e-7)
     close("rate of a ball [1/s]", lesson.tumbling_rate(2.0 * np.ones(3), 0, spin), 0.0, 0.0)
 
 
-@exercise("5.15", points=0.5, hint="rotate (0, 0, 1) to find the top's axis; gravity pulls its tip down, so the torque is horizontal and across the axis")
-def test_the_torque_on_a_top_is_the_slope_of_its_height(lesson, draw):
+@exercise("5.15", points=0.5,
+          hint="rotate (0, 0, 1) to find the top's axis; gravity pulls its tip down, "
+               "so the torque is horizontal and perpendicular to the axis")
+def test_the_torque_on_a_top_is_the_derivative_of_its_energy(lesson, draw):
     for upwards in (1.0, -1.0):
-        q, mgl, L, h = orientation(draw), draw(1.0, 5.0), draw(-1.0, 1.0, 3), 1e-4
+        q = orientation(draw)
+        mgl, L = draw(1.0, 5.0), draw(-1.0, 1.0, 3)
+        h = 1e-4
         if turn(q)[2, 2] * upwards < 0.0:
-            q = np.array([-q[1], q[0], -q[3], q[2]])                     # turned about its own first axis by π
+            q = np.array([-q[1], q[0], -q[3], q[2]])                     # rotated by π about its own first axis
         tau = lesson.heavy_top_torque(draw(0.0, 1.0), q, L, lesson.Top(np.array([2.0, 2.0, 1.0]), mgl))
-        height = lambda phi: (about(phi) @ turn(q))[2, 2]
+        height = lambda phi, q=q: (about(phi) @ turn(q))[2, 2]
         slope = [-mgl * (height(h * e) - height(-h * e)) / (2.0 * h) for e in np.eye(3)]
         # h²/6 · mgl = 8e-9
         close("torque [N m]: minus the change of Mgl e_z per radian about x, y, z", tau, slope, 2e-8,
               given=f"q = {q}, Mgl = {mgl}")
 
 
-# ---------------------------------------------------------------------------------------------- turns and their composition
+# ---------------------------------------------------------------------------------------------- rotations, composed
 
 @exercise("5.16", points=0.75,
-          hint="w = m/I_body with the m of the last round; q on the left, (1, ½dt w) on the right, for w belongs to the body")
+          hint="w = m/I_body with the m of the last iteration; q on the left, (1, ½dt "
+               "w) on the right, because w is in body coordinates")
 def test_the_midpoint_turn_solves_its_own_equation(lesson, draw):
-    q, I_body, omega, dt = orientation(draw), moments(draw), spin_of(draw), draw(0.1, 0.4)
+    q = orientation(draw)
+    I_body = moments(draw)
+    omega = spin_of(draw)
+    dt = draw(0.1, 0.4)
     kept, L = q.copy(), inertia(q, I_body) @ omega
     q_new = lesson.midpoint_turn(q, L, I_body, dt)
     close("length of the new quaternion", np.linalg.norm(q_new), 1.0, EXACT)
     before, after = turn(q).T @ L, turn(q_new).T @ L
     m = 0.5 * (before + after)
     w = m / I_body
-    # Newton's last correction is below 1e-12 of |m| < 11, and squared by its own method
-    close("ℓ_new − ℓ − dt m × w in body coordinates [kg m²/s]", after - before - dt * np.cross(m, w), np.zeros(3), 1e-11, given=f"ω = {omega}, dt = {dt}")
+    # Newton's last correction is below 1e-12 of |m| < 11, and the remaining error is its square.
+    close("ℓ_new − ℓ − dt m × w in body coordinates [kg m²/s]", after - before - dt * np.cross(m, w),
+          np.zeros(3), 1e-11, given=f"ω = {omega}, dt = {dt}")
     rate = np.linalg.norm(w)
     expected = turn(q) @ about(2.0 * np.arctan(0.5 * rate * dt) / rate * w)
     close("orientation after dt, as a matrix", turn(q_new), expected, 1e-11)
-    for size in (1e6, 1e-6):                                             # the same motion: the correction is small when it is small beside m
+    # Scaling L and I_body does not change the motion: a correction is small only relative to m.
+    for size in (1e6, 1e-6):
         scaled = lesson.midpoint_turn(q, size * L, size * I_body, dt)
-        close("the same of a body a million times as heavy, or as light", turn(scaled), expected, 1e-11, given=f"I_body = {size * I_body}, dt = {dt}")
-    close("the q that was handed in: leave it", q, kept, 0.0)
-    long = lesson.midpoint_turn((1.0 + 5e-10) * q, L, I_body, dt)            # as long as check_rotation lets pass
-    close("length of the quaternion that comes of one that is too long by 5e-10", np.linalg.norm(long), 1.0, EXACT)
+        close("orientation of a body a million times as heavy, or as light", turn(scaled), expected, 1e-11,
+              given=f"I_body = {size * I_body}, dt = {dt}")
+    close("input q after the call: unchanged", q, kept, 0.0)
+    long = lesson.midpoint_turn((1.0 + 5e-10) * q, L, I_body, dt)        # check_rotation accepts this length
+    close("length of the new quaternion if the old one is too long by 5e-10", np.linalg.norm(long), 1.0, EXACT)
 
 
 @exercise("5.16", points=0.25,
-          hint="Newton's method, with its derivative: of long steps a root is not found by going round the equation")
-def test_newtons_method_finds_the_root_of_a_step_too_long_for_going_round_the_equation(lesson, draw):
-    """About an outer axis k each round m ← ℓ + ½dt m × w multiplies a small error of m by ρ > 1: it never settles.
+          hint="use Newton's method with the derivative: for long steps fixed-point iteration does not converge")
+def test_newtons_method_converges_where_fixed_point_iteration_diverges(lesson, draw):
+    """About an outer axis k, a fixed-point iteration m ← ℓ + ½dt m × w multiplies a small error by ρ > 1: it diverges.
 
-    ρ = ½dt |spin| √((I_k − I_i)(I_k − I_j)/(I_i I_j)).  In 200,000 such steps Newton's method took 5 corrections at most.
+    ρ = ½dt |spin| √((I_k − I_i)(I_k − I_j)/(I_i I_j)). Newton's method took at most 5 corrections in 200,000 such
+    steps.
     """
     for k in (0, 2, 0, 2, 0, 2):
-        q, I_body, spin, rho = orientation(draw), moments(draw), draw(0.5, 1.5), draw(1.5, 2.5)
-        omega_body, i, j = 0.05 * spin * draw(-1.0, 1.0, 3), (k + 1) % 3, (k + 2) % 3
+        q = orientation(draw)
+        I_body = moments(draw)
+        spin, rho = draw(0.5, 1.5), draw(1.5, 2.5)
+        omega_body = 0.05 * spin * draw(-1.0, 1.0, 3)
+        i, j = (k + 1) % 3, (k + 2) % 3
         omega_body[k] = spin
         dt = 2.0 * rho / spin / np.sqrt((I_body[k] - I_body[i]) * (I_body[k] - I_body[j]) / (I_body[i] * I_body[j]))
         before = I_body * omega_body
         after = turn(lesson.midpoint_turn(q, turn(q) @ before, I_body, float(dt))).T @ turn(q) @ before
         m = 0.5 * (before + after)
-        # a correction of 1e-12 |m| < 1e-11, times dt |w| < 30
+        # The last correction is 1e-12 |m| < 1e-11, times dt |w| < 30.
         close("ℓ_new − ℓ − dt m × w after a long step [kg m²/s]", after - before - dt * np.cross(m, m / I_body),
               np.zeros(3), 1e-9,
               given=f"I_body = {I_body}, ω in the body {omega_body}, dt = {dt}")
 
 
 def turn_once(lesson, draw):
-    """An ordinary turn comes first: who returns the q that was handed in, or refuses everything, keeps energies and leaves resting bodies, too."""
-    q, I_body, omega, dt = orientation(draw), moments(draw), spin_of(draw), draw(0.1, 0.4)
+    """Check an ordinary turn first.
+
+    An answer that returns its input or always raises would also keep energies and leave a resting body alone.
+    """
+    q = orientation(draw)
+    I_body = moments(draw)
+    omega = spin_of(draw)
+    dt = draw(0.1, 0.4)
     L = inertia(q, I_body) @ omega
     before, after = turn(q).T @ L, turn(lesson.midpoint_turn(q, L, I_body, dt)).T @ L
     m = 0.5 * (before + after)
-    close("ℓ_new − ℓ − dt m × w of an ordinary turn [kg m²/s]", after - before - dt * np.cross(m, m / I_body), np.zeros(3), 1e-11, given=f"ω = {omega}, dt = {dt}")
+    close("ℓ_new − ℓ − dt m × w of an ordinary turn [kg m²/s]", after - before - dt * np.cross(m, m / I_body),
+          np.zeros(3), 1e-11, given=f"ω = {omega}, dt = {dt}")
 
 
-@exercise("5.16", points=0.5, hint="does Newton's method go on until the correction is small? Then a turn changes the energy in its last digits only")
+@exercise("5.16", points=0.5,
+          hint="does Newton's method continue until the correction is small? Then a "
+               "turn changes the energy only by round-off")
 def test_the_midpoint_turn_keeps_the_energy_however_often(lesson, draw):
     turn_once(lesson, draw)
     q, I_body, omega = orientation(draw), moments(draw), spin_of(draw)
-    L, dt = inertia(q, I_body) @ omega, 0.3
+    L = inertia(q, I_body) @ omega
+    dt = 0.3
     energy = lambda q: 0.5 * np.sum((turn(q).T @ L) ** 2 / I_body)
     begin = energy(q)
     for _ in range(200):
@@ -386,15 +465,21 @@ def test_the_midpoint_turn_leaves_a_resting_body(lesson, draw):
     close("q of a body at rest", lesson.midpoint_turn(q, np.zeros(3), I_body, 0.1), q, EXACT)
 
 
-@exercise("5.16", points=0.25, hint="when the loop ends without an answer, raise Diverged: do not turn by whatever m is then")
-def test_the_midpoint_turn_solves_its_equation_or_says_that_it_did_not(lesson, draw):
+@exercise("5.16", points=0.25,
+          hint="if the loop ends without convergence, raise Diverged: do not rotate with the last m")
+def test_the_midpoint_turn_solves_its_equation_or_raises_diverged(lesson, draw):
     turn_once(lesson, draw)
-    raises("an L that is not a number", Diverged, lesson.midpoint_turn, orientation(draw), np.full(3, np.nan), moments(draw), 0.1)
-    for _ in range(60):                                                  # ten radians a step and more: Newton's method often loses its way
-        q, I_body, omega, dt = orientation(draw), moments(draw), spin_of(draw), draw(5.0, 20.0)
+    raises("an L that is not a number", Diverged,
+           lesson.midpoint_turn, orientation(draw), np.full(3, np.nan), moments(draw), 0.1)
+    # At ten radians per step and more, Newton's method often fails to converge.
+    for _ in range(60):
+        q = orientation(draw)
+        I_body = moments(draw)
+        omega = spin_of(draw)
+        dt = draw(5.0, 20.0)
         L = inertia(q, I_body) @ omega
         try:
-            with np.errstate(all="ignore"):                              # to overflow is one way of finding out
+            with np.errstate(all="ignore"):                              # an overflow is one form of divergence
                 q_new = lesson.midpoint_turn(q, L, I_body, dt)
         except NotImplementedError:
             raise
@@ -404,42 +489,56 @@ def test_the_midpoint_turn_solves_its_equation_or_says_that_it_did_not(lesson, d
             continue
         before, after = turn(q).T @ L, turn(q_new).T @ L
         m = 0.5 * (before + after)
-        # a correction of 1e-12 |m| < 1e-11, times dt |w| < 60, and as much again from the turn
-        close("ℓ_new − ℓ − dt m × w after a very long step [kg m²/s]", after - before - dt * np.cross(m, m / I_body), np.zeros(3), 1e-8,
-              given=f"ω = {omega}, dt = {dt}")
+        # The last correction is 1e-12 |m| < 1e-11, times dt |w| < 60, and the rotation adds as much again.
+        close("ℓ_new − ℓ − dt m × w after a very long step [kg m²/s]", after - before - dt * np.cross(m, m / I_body),
+              np.zeros(3), 1e-8, given=f"ω = {omega}, dt = {dt}")
 
 
-@exercise("5.17", points=0.5, hint="rates (1/I_a − 1/I_b) L_a about a, likewise about c, both on the right of q; dt/I_b L about L, on its left: with two equal moments the sum is exact")
+@exercise("5.17", points=0.5,
+          hint="on the right of q: angles (1/I_a − 1/I_b) L_a dt about a, and likewise about c; on its left: dt/I_b L "
+               "about L; for two equal moments this is exact")
 def test_the_splitting_turn_is_exact_when_two_moments_are_equal(lesson, draw):
-    across, along, q, omega, dt = draw(2.0, 3.0), draw(1.0, 1.8), orientation(draw), spin_of(draw), draw(0.5, 2.0)
+    across, along = draw(2.0, 3.0), draw(1.0, 1.8)
+    q = orientation(draw)
+    omega = spin_of(draw)
+    dt = draw(0.5, 2.0)
     for k in range(3):
-        I_body, e = np.full(3, across), np.eye(3)[k]
+        I_body = np.full(3, across)
+        e = np.eye(3)[k]
         I_body[k] = along
         L = inertia(q, I_body) @ omega
         spin = (1.0 - along / across) * (turn(q).T @ omega @ e)
         expected = about(dt / across * L) @ turn(q) @ about(dt * spin * e)
         got = lesson.splitting_turn(q, L, I_body, dt)
-        close(f"length of the new quaternion, axis {k} the odd one", np.linalg.norm(got), 1.0, EXACT)
-        close(f"orientation after dt, axis {k} the odd one", turn(got), expected, EXACT, given=f"I_body = {I_body}, ω = {omega}, dt = {dt}")
+        close(f"length of the new quaternion, where moment {k} differs", np.linalg.norm(got), 1.0, EXACT)
+        close(f"orientation after dt, where moment {k} differs", turn(got), expected, EXACT,
+              given=f"I_body = {I_body}, ω = {omega}, dt = {dt}")
 
 
-@exercise("5.17", points=1, hint="half of a, all of c, half of a: each L component from the quaternion reached so far; a turn by −dt must undo one by dt")
+@exercise("5.17", points=1,
+          hint="half of a, all of c, half of a: compute each component of L with the current "
+               "quaternion; a turn by −dt must undo one by dt")
 def test_the_splitting_turn_is_reversible_and_of_second_order(lesson, draw):
-    q, I_body, omega, T = orientation(draw), np.roll(moments(draw), draw.whole(0, 2)), spin_of(draw), 1.0
-    kept, L = q.copy(), inertia(q, I_body) @ omega
+    q = orientation(draw)
+    I_body = np.roll(moments(draw), draw.whole(0, 2))
+    omega = spin_of(draw)
+    T = 1.0
+    kept = q.copy()
+    L = inertia(q, I_body) @ omega
     there = np.asarray(lesson.splitting_turn(q, L, I_body, 0.3), dtype=float)
     back = lesson.splitting_turn(there, L, I_body, -0.3)
     close("orientation after dt and −dt: back", turn(back), turn(q), EXACT)
-    close("the q that was handed in: leave it", q, kept, 0.0)
-    long = lesson.splitting_turn((1.0 + 5e-10) * q, L, I_body, 0.3)          # as long as check_rotation lets pass
-    close("length of the quaternion that comes of one that is too long by 5e-10", np.linalg.norm(long), 1.0, EXACT)
-    truth, errors = freely(q, omega, I_body, T), []
+    close("input q after the call: unchanged", q, kept, 0.0)
+    long = lesson.splitting_turn((1.0 + 5e-10) * q, L, I_body, 0.3)      # check_rotation accepts this length
+    close("length of the new quaternion if the old one is too long by 5e-10", np.linalg.norm(long), 1.0, EXACT)
+    truth = freely(q, omega, I_body, T)
+    errors = []
     for n in (10, 20, 40):
         now = q
         for _ in range(n):
             now = np.asarray(lesson.splitting_turn(now, L, I_body, T / n), dtype=float)
         errors.append(np.abs(turn(now) - truth).max())
-    # the error has even powers of dt only: the next one is (|ω| dt)² < 2 % of the first
+    # The error has only even powers of dt: the next term is (|ω| dt)² < 2 % of the first.
     between("error at 20 steps over error at 10", errors[1] / errors[0], 0.22, 0.28)
     between("error at 40 steps over error at 20", errors[2] / errors[1], 0.24, 0.26)
 
@@ -450,7 +549,7 @@ class Growth(NamedTuple):
 
 
 def bent_step(torque, t, q, L, dt, body):
-    """A reversible step of second order for L̇ = rate L + push cos t, written so that the answer is known: half a push, growth, half a push."""
+    """A reversible second-order step for L̇ = rate L + push cos t, with a known result: half push, growth, half push."""
     L = L + 0.5 * dt * torque(t, q, L, body)
     L = L * (1.0 + 0.5 * dt * body.rate) / (1.0 - 0.5 * dt * body.rate)
     return q, L + 0.5 * dt * torque(t + dt, q, L, body)
@@ -460,10 +559,14 @@ def waves(t, q, L, body):
     return body.push * np.cos(t) * np.ones(3)
 
 
-@exercise("5.18", points=1, hint="shares γ, γ, 1 − 4γ, γ, γ of dt; the third is negative; move the clock along with each")
+@exercise("5.18", points=1,
+          hint="fractions γ, γ, 1 − 4γ, γ, γ of dt; the third is negative; advance t with each of them")
 def test_five_reversible_substeps_make_fourth_order(lesson, draw):
-    q, L, t, growth = orientation(draw), draw(0.5, 1.5, 3), draw(0.0, 1.0), Growth(draw(-1.5, -0.5), draw(0.5, 1.0))
-    gamma, kept = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0)), L.copy()
+    q = orientation(draw)
+    L, t = draw(0.5, 1.5, 3), draw(0.0, 1.0)
+    growth = Growth(draw(-1.5, -0.5), draw(0.5, 1.0))
+    gamma = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
+    kept = L.copy()
     for push, dt in ((0.0, draw(0.3, 0.6)), (growth.push, draw(0.3, 0.6))):
         p = growth._replace(push=push)
         _, got = lesson.compose(bent_step, waves, t, q, L, dt, p)
@@ -473,45 +576,61 @@ def test_five_reversible_substeps_make_fourth_order(lesson, draw):
             expected = (expected + 0.5 * h * push * np.cos(now)) * (1.0 + 0.5 * h * p.rate) / (1.0 - 0.5 * h * p.rate)
             now += h
             expected = expected + 0.5 * h * push * np.cos(now)
-        close(f"L after one composed step {'with' if push else 'without'} a push that depends on time", got, expected, EXACT, given=f"t = {t}, dt = {dt}")
-    close("the L that was handed in: leave it", L, kept, 0.0)
+        close(f"L after one composed step {'with' if push else 'without'} a time-dependent push", got,
+              expected, EXACT, given=f"t = {t}, dt = {dt}")
+    close("input L after the call: unchanged", L, kept, 0.0)
     p = growth._replace(push=0.0)
-    errors = [np.abs(np.log(np.asarray(lesson.compose(bent_step, waves, 0.0, q, L, dt, p)[1]) / L) - p.rate * dt).max() for dt in (0.4, 0.2)]
-    # the logarithm is rate dt + C dt⁵ + C′ dt⁷ + …: odd powers only, because the step is reversible
-    between("error of one step over that of half of it: 2⁵", errors[0] / errors[1], 30.0, 34.0)
+    errors = []
+    for dt in (0.4, 0.2):
+        _, got = lesson.compose(bent_step, waves, 0.0, q, L, dt, p)
+        errors.append(np.abs(np.log(np.asarray(got) / L) - p.rate * dt).max())
+    # The logarithm is rate dt + C dt⁵ + C′ dt⁷ + …: only odd powers, because the step is reversible.
+    between("error of one step over that of a step half as long: 2⁵", errors[0] / errors[1], 30.0, 34.0)
 
 
-# ---------------------------------------------------------------------------------------------- what is given
+# ---------------------------------------------------------------------------------------------- given functions
 
-STEPS = {"matrix": 1, "axis_angle": 1, "quaternion": 1, "gyroscopic": 1, "implicit_gyroscopic": 1, "runge_kutta": 4, "midpoint": 2,
-         "splitting": 2, "composed_splitting": 4, "composed_midpoint": 4}
+# Orders of convergence.
+STEPS = {"matrix": 1, "axis_angle": 1, "quaternion": 1, "gyroscopic": 1, "implicit_gyroscopic": 1, "runge_kutta": 4,
+         "midpoint": 2, "splitting": 2, "composed_splitting": 4, "composed_midpoint": 4}
+CONSERVING = ("matrix", "axis_angle", "quaternion", "runge_kutta", "midpoint", "splitting", "composed_splitting",
+              "composed_midpoint")
 
 
 @pytest.mark.parametrize("name", STEPS)
 def test_every_step_converges_with_its_order_to_a_tilted_heavy_top(lesson, draw, name):
-    """Truth: DOP853 on R and L in the world, with none of the lesson's functions."""
+    """The reference solution is DOP853 on R and L in world coordinates, without any function of the lesson."""
     from scipy.integrate import solve_ivp
-    q, I_body, omega, mgl, T = orientation(draw), moments(draw), spin_of(draw), draw(1.0, 2.0), 1.0
+    q = orientation(draw)
+    I_body = moments(draw)
+    omega = spin_of(draw)
+    mgl = draw(1.0, 2.0)
+    T = 1.0
 
     def slope(t, y):
         R, L = y[:9].reshape(3, 3), y[9:]
         omega = np.linalg.solve(R @ np.diag(I_body) @ R.T, L)
         return np.concatenate((np.cross(omega, R.T).T.ravel(), np.cross(R[:, 2], [0.0, 0.0, -mgl])))
+
     L = inertia(q, I_body) @ omega
-    end = solve_ivp(slope, (0.0, T), np.concatenate((turn(q).ravel(), L)), method="DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
-    top, errors, order = lesson.Top(I_body, mgl), [], STEPS[name]
+    begin = np.concatenate((turn(q).ravel(), L))
+    end = solve_ivp(slope, (0.0, T), begin, method="DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
+    top, order = lesson.Top(I_body, mgl), STEPS[name]
+    errors = []
     for n in (40, 80):
         q_end, L_end = lesson.tumble(getattr(lesson, f"{name}_step"), lesson.heavy_top_torque, 0.0, q, L, T / n, n, top)
         errors.append(np.abs(np.concatenate((turn(q_end).ravel(), L_end)) - end).max())
-    # the next term of the expansion is dt |ω| < 7 % of the first, and more of it where the first happens to be small
+    # The next term of the expansion is dt |ω| < 7 % of the first, or more if the first is small.
     between("order of convergence", np.log2(errors[0] / errors[1]), order - 0.4, order + 0.4)
 
 
-@pytest.mark.parametrize("name", ["matrix", "axis_angle", "quaternion", "runge_kutta", "midpoint", "splitting", "composed_splitting", "composed_midpoint"])
+@pytest.mark.parametrize("name", CONSERVING)
 def test_without_torque_angular_momentum_is_kept_to_the_last_digit(lesson, draw, name):
     q, I_body, omega = orientation(draw), moments(draw), spin_of(draw)
     L = inertia(q, I_body) @ omega
-    _, after = lesson.tumble(getattr(lesson, f"{name}_step"), lesson.heavy_top_torque, 0.0, q, L, 0.05, 100, lesson.Top(I_body, 0.0))     # weightless
+    # without gravity
+    _, after = lesson.tumble(getattr(lesson, f"{name}_step"), lesson.heavy_top_torque,
+                             0.0, q, L, 0.05, 100, lesson.Top(I_body, 0.0))
     close("L after 100 steps [kg m²/s]", after, L, 0.0)
 
 
@@ -521,11 +640,12 @@ def test_given_conversions_agree_with_those_of_this_file(lesson, draw):
     close("unrotate", lesson.unrotate(q, r), turn(q).T @ r, EXACT)
     close("body_component", [lesson.body_component(q, r, k) for k in range(3)], turn(q).T @ r, EXACT)
     close("exponential", turn(lesson.exponential(phi)), about(phi), EXACT)
-    close("exponential of nothing", lesson.exponential(np.zeros(3)), [1.0, 0.0, 0.0, 0.0], 0.0)
+    close("exponential of zero", lesson.exponential(np.zeros(3)), [1.0, 0.0, 0.0, 0.0], 0.0)
     for k in range(3):
         turned = turn(q) @ about(phi[k] * np.eye(3)[k])
         close("about_axis", turn(lesson.about_axis(q, k, phi[k])), turned, EXACT)
-    for axis in (*np.eye(3), r / np.linalg.norm(r)):                     # half turns: each of the four numbers is the largest once
+    # Near half turns about these axes, each of the four components of q is the largest once.
+    for axis in (*np.eye(3), r / np.linalg.norm(r)):
         for angle in (0.1, 3.0):
             R = about(angle * axis)
             close("quaternion_of", turn(lesson.quaternion_of(R)), R, EXACT)
@@ -533,27 +653,34 @@ def test_given_conversions_agree_with_those_of_this_file(lesson, draw):
     close("solve3", np.stack([a, b, c], axis=1) @ lesson.solve3(a, b, c, r), r, 1e-11)
 
 
-@pytest.mark.parametrize("moments, axis", [((1.0, 2.0, 3.0), 1), ((2.0, 1.0, 3.0), 0), ((3.0, 1.0, 2.0), 2), ((1.0, 1.0, 2.0), (0, 1)),
-                                           ((2.0, 1.0, 2.0), (0, 2)), ((1.0, 2.0, 2.0), (1, 2))])
+@pytest.mark.parametrize(("moments", "axis"), [
+    ((1.0, 2.0, 3.0), 1), ((2.0, 1.0, 3.0), 0), ((3.0, 1.0, 2.0), 2),
+    ((1.0, 1.0, 2.0), (0, 1)), ((2.0, 1.0, 2.0), (0, 2)), ((1.0, 2.0, 2.0), (1, 2))])
 def test_the_middle_axis_is_found_wherever_it_is(lesson, moments, axis):
     assert lesson.middle_axis(np.array(moments)) in np.atleast_1d(axis)
 
 
 def refused(lesson, **changed):
-    """What tumble raises when one thing about a sane run is changed."""
-    sane = {"q": np.array([1.0, 0.0, 0.0, 0.0]), "L": np.ones(3), "dt": 0.1, "I_body": np.array([1.0, 2.0, 2.5]), **changed}
+    """The message with which tumble refuses a valid run after one of its inputs is changed."""
+    valid = {"q": np.array([1.0, 0.0, 0.0, 0.0]), "L": np.ones(3), "dt": 0.1, "I_body": np.array([1.0, 2.0, 2.5])}
+    run = {**valid, **changed}
     with pytest.raises(BadInput) as caught:
-        lesson.tumble(lesson.splitting_step, lesson.heavy_top_torque, 0.0, sane["q"], sane["L"], sane["dt"], 1, lesson.Top(sane["I_body"], 1.0))
+        lesson.tumble(lesson.splitting_step, lesson.heavy_top_torque, 0.0, run["q"],
+                      run["L"], run["dt"], 1, lesson.Top(run["I_body"], 1.0))
     return str(caught.value)
 
 
-def test_what_is_no_rotation_and_no_body_is_refused_by_name_and_value(lesson):
-    assert "quaternion" in refused(lesson, q=np.zeros(4)) and "0.0" in refused(lesson, q=np.zeros(4))
+def test_an_invalid_rotation_or_body_is_refused_by_name_and_value(lesson):
+    zero = refused(lesson, q=np.zeros(4))
+    assert "quaternion" in zero and "0.0" in zero
     assert "1.1" in refused(lesson, q=np.array([1.1, 0.0, 0.0, 0.0]))
     assert "nan" in refused(lesson, q=np.array([np.nan, 0.0, 0.0, 0.0]))
-    assert "principal moment" in refused(lesson, I_body=np.array([1.0, 2.0, 3.5])) and "3.5" in refused(lesson, I_body=np.array([1.0, 2.0, 3.5]))
-    assert "-1.0" in refused(lesson, I_body=np.array([-1.0, 2.0, 2.0])) and "0.0" in refused(lesson, I_body=np.array([1.0, 0.0, 1.0]))
-    assert "inf" in refused(lesson, L=np.array([np.inf, 0.0, 0.0])) and "-0.1" in refused(lesson, dt=-0.1)
+    impossible = refused(lesson, I_body=np.array([1.0, 2.0, 3.5]))
+    assert "principal moment" in impossible and "3.5" in impossible
+    assert "-1.0" in refused(lesson, I_body=np.array([-1.0, 2.0, 2.0]))
+    assert "0.0" in refused(lesson, I_body=np.array([1.0, 0.0, 1.0]))
+    assert "inf" in refused(lesson, L=np.array([np.inf, 0.0, 0.0]))
+    assert "-0.1" in refused(lesson, dt=-0.1)
 
 
 def test_flat_and_thin_bodies_are_bodies(lesson):

@@ -1,9 +1,9 @@
 """Wrong answers that must lose an exercise's points, and right ones, written differently, that must keep them.
 
-One module per lesson.  A wrong answer has one fault, and the way it is made proves that: without the fault it passes.
+One module per lesson. A wrong answer has exactly one fault. How it is made proves this: without the fault it passes.
 
 edit      the worked answer with one replacement in one line of its text
-variant   made by a factory with one argument that differs from its default; the defaults make a right answer
+variant   a factory's answer with one argument that differs from its default; with the defaults the answer is right
 """
 
 import functools
@@ -16,17 +16,17 @@ from validate.generate import exercises
 
 class Mutant(NamedTuple):
     exercise: str
-    name: str                # of the function that it stands in for
+    name: str                # of the function that it replaces
     story: str               # what is wrong, or what is different
     right: bool
     function: Callable
     kind: str = "written out"     # or edit, or variant
-    faults: int = 0               # replacements in the text, or arguments that differ from their defaults
+    faults: int = 0               # number of replacements, or of arguments that differ from their defaults
     factory: Callable = None
 
 
 def variants(make):
-    """A factory of answers that notes which of its arguments differ from their defaults."""
+    """A factory of answers that records how many of its arguments differ from their defaults."""
     signature = inspect.signature(make)
 
     @functools.wraps(make)
@@ -39,7 +39,7 @@ def variants(make):
 
 
 def collection(worked):
-    """wrong(exercise, story)(function), right likewise, edit(exercise, story, old, new), and the list that they fill."""
+    """Return wrong(exercise, story)(function), right likewise, edit(exercise, story, old, new), and their list."""
     mutants, names = [], exercises(inspect.getsource(worked))
 
     def keep(right):

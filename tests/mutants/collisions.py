@@ -1,4 +1,4 @@
-"""Lesson 6: detection with a side, a root, a clamp or a case of its own gone astray."""
+"""Lesson 6: collision detection with a wrong side, root, clamp or case."""
 
 import numpy as np
 
@@ -27,13 +27,14 @@ right("6.1", "as a sum")(distance())
 wrong("6.1", "d with the wrong sign")(distance(lambda p, plane: p @ plane.n - plane.d))
 wrong("6.1", "without its sign")(distance(lambda p, plane: abs(p @ plane.n + plane.d)))
 wrong("6.1", "forgets d")(distance(lambda p, plane: p @ plane.n))
-wrong("6.1", "only which side")(distance(lambda p, plane: np.sign(p @ plane.n + plane.d)))
-edit("6.1", "on the plane within a micrometre", "plane.d", "plane.d if abs(p @ plane.n + plane.d) > 1e-6 else 0.0")
+wrong("6.1", "only the sign")(distance(lambda p, plane: np.sign(p @ plane.n + plane.d)))
+edit("6.1", "zero within a micrometre", "plane.d", "plane.d if abs(p @ plane.n + plane.d) > 1e-6 else 0.0")
 
 
 # 6.2 ------------------------------------------------------------------------------------------------------------
 @variants
-def impact(skin=1.0, after_skin=1.0, share=lambda d_1, d_2: d_1 / (d_1 + d_2), inside=lambda t: t, late=True, start=1.0):
+def impact(skin=1.0, after_skin=1.0, share=lambda d_1, d_2: d_1 / (d_1 + d_2), inside=lambda t: t,
+           late=True, start=1.0):
     def plane_impact_time(t, dt, x_0, x_1, r, plane):
         d_1 = worked.plane_distance(x_0, plane) - skin * r
         d_2 = after_skin * r - worked.plane_distance(x_1, plane)
@@ -48,13 +49,13 @@ def impact(skin=1.0, after_skin=1.0, share=lambda d_1, d_2: d_1 / (d_1 + d_2), i
 right("6.2", "with new names")(impact())
 edit("6.2", "a point for a ball", "plane_distance(x_0, plane) - r, r - plane_distance(x_1, plane)",
      "plane_distance(x_0, plane), -plane_distance(x_1, plane)")
-edit("6.2", "what touches and leaves was never there", "before <= 0.0", "before < 0.0")
-edit("6.2", "what arrives at the end does not", "after < 0.0", "after <= 0.0")
-wrong("6.2", "the skin only before")(impact(after_skin=0.0))
+edit("6.2", "no impact if it touches and leaves", "before <= 0.0", "before < 0.0")
+edit("6.2", "no impact at the end of the step", "after < 0.0", "after <= 0.0")
+wrong("6.2", "subtracts r only before")(impact(after_skin=0.0))
 wrong("6.2", "d₂ over the sum")(impact(share=lambda d_1, d_2: d_2 / (d_1 + d_2)))
 wrong("6.2", "the middle of the step")(impact(share=lambda d_1, d_2: 0.5))
-wrong("6.2", "when it is in already, never")(impact(inside=lambda t: NEVER))
-wrong("6.2", "extrapolates")(impact(late=False))
+wrong("6.2", "never, if it already overlaps")(impact(inside=lambda t: NEVER))
+wrong("6.2", "extrapolates beyond the step")(impact(late=False))
 wrong("6.2", "forgets t")(impact(start=0.0))
 edit("6.2", "touches within a nanometre", "before <= 0.0", "before <= 1e-9")
 
@@ -84,7 +85,8 @@ def cylinder_contact(x, r, R):
 
 # 6.4 ------------------------------------------------------------------------------------------------------------
 @variants
-def root(which=-1.0, naive=False, rho=lambda R, r: R + r, three=False, window=True, leaving=True, inside=lambda t: t, t_0=1.0):
+def root(which=-1.0, naive=False, rho=lambda R, r: R + r, three=False,
+         window=True, leaving=True, inside=lambda t: t, t_0=1.0):
     def cylinder_impact_time(t, dt, x_0, x_1, r, R):
         first = 0 if three else 1
         y, w, reach = x_0[first:], (x_1 - x_0)[first:], rho(R, r)
@@ -101,21 +103,21 @@ def root(which=-1.0, naive=False, rho=lambda R, r: R + r, three=False, window=Tr
 
 right("6.4", "by the parts of the path")(root())
 wrong("6.4", "the second root")(root(which=1.0))
-wrong("6.4", "the formula from school")(root(naive=True))
+wrong("6.4", "the textbook root")(root(naive=True))
 wrong("6.4", "forgets the ball")(root(rho=lambda R, r: R))
 wrong("6.4", "forgets the cylinder")(root(rho=lambda R, r: r))
 wrong("6.4", "a sphere for a cylinder")(root(three=True))
 wrong("6.4", "later steps, too")(root(window=False))
 wrong("6.4", "also behind")(root(leaving=False))
-wrong("6.4", "when it is in already, never")(root(inside=lambda t: NEVER))
+wrong("6.4", "never, if it already overlaps")(root(inside=lambda t: NEVER))
 wrong("6.4", "forgets t")(root(t_0=0.0))
 edit("6.4", "the discrete test at the end of the step", "C / (np.sqrt(D) - B)",
      "1.0 if x_1[1:] @ x_1[1:] <= rho * rho else 2.0")
-edit("6.4", "what arrives at the end does not", "s > 1.0", "s >= 1.0")
-edit("6.4", "what touches and leaves was never there", "C <= 0.0", "C < 0.0")
-edit("6.4", "who only grazes misses", "D < 0.0", "D <= 0.0")
-edit("6.4", "who moves by less than a micrometre does not come", "B >= 0.0", "A < 1e-12 or B >= 0.0")
-edit("6.4", "who moves by less than a nanometre does not come", "B >= 0.0", "A < 1e-18 or B >= 0.0")
+edit("6.4", "no impact at the end of the step", "s > 1.0", "s >= 1.0")
+edit("6.4", "no impact if it touches and leaves", "C <= 0.0", "C < 0.0")
+edit("6.4", "a grazing ball misses", "D < 0.0", "D <= 0.0")
+edit("6.4", "ignores steps below a micrometre", "B >= 0.0", "A < 1e-12 or B >= 0.0")
+edit("6.4", "ignores steps below a nanometre", "B >= 0.0", "A < 1e-18 or B >= 0.0")
 edit("6.4", "touches where C is small", "C <= 0.0", "C <= 1e-12")
 edit("6.4", "touches where C is tiny", "C <= 0.0", "C <= 1e-15")
 
@@ -136,14 +138,14 @@ def foot(low=0.0, high=1.0, checked=True, begin="a", unit=False):
 right("6.5", "with a clamp")(foot())
 wrong("6.5", "a ray for a segment")(foot(high=np.inf))
 wrong("6.5", "divides by the length once")(foot(unit=True))
-wrong("6.5", "begins at p")(foot(begin="p"))
+wrong("6.5", "starts at p")(foot(begin="p"))
 edit("6.5", "a line for a segment", "np.minimum(1.0, np.maximum(0.0, (p - a) @ along / length_squared))",
      "(p - a) @ along / length_squared")
-edit("6.5", "takes a segment without length",
+edit("6.5", "accepts a segment of zero length",
      'raise BadInput("the length of an edge [m]", 0.0, "give two different ends")', "return a")
 edit("6.5", "the nearer end", "np.minimum(1.0, np.maximum(0.0, (p - a) @ along / length_squared))",
      "float((p - a) @ (p - a) > (p - b) @ (p - b))")
-edit("6.5", "refuses what is short", "length_squared == 0.0", "length_squared < 1e-12")
+edit("6.5", "refuses short segments", "length_squared == 0.0", "length_squared < 1e-12")
 edit("6.5", "refuses segments along a coordinate axis", "length_squared == 0.0", "np.any(a == b)")
 edit("6.5", "refuses less than a nanometre", "length_squared == 0.0", "length_squared < 1e-18")
 
@@ -165,9 +167,9 @@ wrong("6.6", "edges only")(face(signs=()))
 wrong("6.6", "one side of the face only")(face(signs=(1,)))
 wrong("6.6", "two edges only")(face(edges=2))
 wrong("6.6", "corners only")(face(measure=lambda a, b: size(a[1:])))
-wrong("6.6", "forgets how thick the cloth is")(face(thick=False))
+wrong("6.6", "forgets r")(face(thick=False))
 wrong("6.6", "a pierced face has a gap of zero")(face(pierced=lambda r, R: 0.0))
-edit("6.6", "a triangle seen from its edge is pierced", "np.all(turns > 0.0) or np.all(turns < 0.0)",
+edit("6.6", "treats an edge-on triangle as pierced", "np.all(turns > 0.0) or np.all(turns < 0.0)",
      "np.all(turns >= 0.0) or np.all(turns <= 0.0)")
 edit("6.6", "three equal signs, zeros as well", "np.all(turns > 0.0) or np.all(turns < 0.0)",
      "np.all(np.sign(turns) == np.sign(turns[0]))")
@@ -198,15 +200,15 @@ right("6.7", "in a loop")(on_triangle())
 wrong("6.7", "edges only")(on_triangle(inside=False))
 wrong("6.7", "the plane for the triangle")(on_triangle(clamp=False))
 wrong("6.7", "two edges only")(on_triangle(edges=2))
-wrong("6.7", "takes a triangle without area")(on_triangle(checked=False))
+wrong("6.7", "accepts a triangle without area")(on_triangle(checked=False))
 FIRST_TWO = "nearer(p, closest_on_segment(p, a, b), closest_on_segment(p, b, c))"
 THREE_EDGES = f"nearer(p, {FIRST_TWO}, closest_on_segment(p, c, a))"
 OUTSIDE = "closest_on_segment(p, {0}, {1}) if dot(cross({1} - {0}, q - {0}), N) < 0.0 else "
-edit("6.7", "refuses what is small", "FLAT * longest", "1e-9")
+edit("6.7", "refuses small inputs", "FLAT * longest", "1e-9")
 edit("6.7", "the nearest corner", THREE_EDGES, "nearer(p, nearer(p, a, b), c)")
-edit("6.7", "the first edge that it is outside of", THREE_EDGES,
+edit("6.7", "the first edge with p outside", THREE_EDGES,
      OUTSIDE.format("a", "b") + OUTSIDE.format("b", "c") + "closest_on_segment(p, c, a)")
-edit("6.7", "the last edge that it is outside of", THREE_EDGES,
+edit("6.7", "the last edge with p outside", THREE_EDGES,
      OUTSIDE.format("c", "a") + OUTSIDE.format("b", "c") + "closest_on_segment(p, a, b)")
 edit("6.7", "the first two edges compared from a corner", FIRST_TWO, FIRST_TWO.replace("nearer(p", "nearer(c"))
 edit("6.7", "refuses needles: forgets the root of N · N", "np.sqrt(dot(N, N)) > FLAT * longest",
@@ -215,7 +217,8 @@ edit("6.7", "refuses needles: forgets the root of N · N", "np.sqrt(dot(N, N)) >
 
 # 6.8 ------------------------------------------------------------------------------------------------------------
 @variants
-def in_box(turn=lambda R, y: R.T @ y, inside=True, pick=np.argmin, depth_sign=-1.0, sign=lambda y: 1.0 if y >= 0.0 else -1.0, out=1.0):
+def in_box(turn=lambda R, y: R.T @ y, inside=True, pick=np.argmin,
+           depth_sign=-1.0, sign=lambda y: 1.0 if y >= 0.0 else -1.0, out=1.0):
     def ball_box(x, r, box):
         y = turn(box.R, x - box.x)
         depth = box.half - np.abs(y)
@@ -228,18 +231,18 @@ def in_box(turn=lambda R, y: R.T @ y, inside=True, pick=np.argmin, depth_sign=-1
 
 
 right("6.8", "with clip")(in_box())
-wrong("6.8", "turns the wrong way")(in_box(turn=lambda R, y: R @ y))
-wrong("6.8", "does not turn")(in_box(turn=lambda R, y: y))
+wrong("6.8", "rotates the wrong way")(in_box(turn=lambda R, y: R @ y))
+wrong("6.8", "does not rotate")(in_box(turn=lambda R, y: y))
 wrong("6.8", "no case for the inside")(in_box(inside=False))
 wrong("6.8", "the farthest face")(in_box(pick=np.argmax))
 wrong("6.8", "a gap above zero inside")(in_box(depth_sign=1.0))
-wrong("6.8", "no way out of the middle")(in_box(sign=np.sign))
-wrong("6.8", "n leads in")(in_box(out=-1.0))
-edit("6.8", "what is on a face is outside", "depth[i] < 0.0", "depth[i] <= 0.0")
+wrong("6.8", "zero normal at the centre")(in_box(sign=np.sign))
+wrong("6.8", "n points inward")(in_box(out=-1.0))
+edit("6.8", "treats a point on a face as outside", "depth[i] < 0.0", "depth[i] <= 0.0")
 edit("6.8", "the face of the largest coordinate", "np.argmin(depth)", "np.argmax(np.abs(y))")
 edit("6.8", "the face of the least share of its half edge", "np.argmin(depth)", "np.argmin(depth / box.half)")
 edit("6.8", "sign(0) = -1", "y[i] >= 0.0", "y[i] > 0.0")
-edit("6.8", "inside up to a picometre outside", "depth[i] < 0.0", "depth[i] < -1e-12")
+edit("6.8", "treats a picometre outside as inside", "depth[i] < 0.0", "depth[i] < -1e-12")
 
 
 # 6.9 ------------------------------------------------------------------------------------------------------------
@@ -251,7 +254,7 @@ def sweep(f=lambda low, high, move: (low + np.clip(move, None, 0.0), high + np.c
 
 
 right("6.9", "by the parts of the way")(sweep())
-wrong("6.9", "where it ends")(sweep(lambda low, high, move: (low + move, high + move)))
+wrong("6.9", "only the end position")(sweep(lambda low, high, move: (low + move, high + move)))
 wrong("6.9", "only forwards")(sweep(lambda low, high, move: (low, high + move)))
 wrong("6.9", "larger on every side")(sweep(lambda low, high, move: (low - np.abs(move), high + np.abs(move))))
 edit("6.9", "all coordinates by the largest move", "np.maximum(high, high + move)", "high + max(0.0, np.max(move))")
@@ -280,7 +283,7 @@ wrong("6.10", "each with itself")(brute(first=lambda i: i))
 wrong("6.10", "each pair twice")(brute(first=lambda i: 0))
 wrong("6.10", "the larger number first")(brute(turned=True))
 edit("6.10", "neighbours in the list only", "range(i + 1, len(low))", "range(i + 1, min(i + 2, len(low)))")
-edit("6.10", "takes boxes that are none", "check_boxes(low, high)", "pass")
+edit("6.10", "accepts invalid boxes", "check_boxes(low, high)", "pass")
 edit("6.10", "does not test the last two", "range(len(low))", "range(len(low) - 2)")
 edit("6.10", "touch up to a nanometre apart", "boxes_touch(low, high, i, low, high, j)",
      "boxes_touch(low - 5e-10, high + 5e-10, i, low - 5e-10, high + 5e-10, j)")
@@ -288,7 +291,8 @@ edit("6.10", "touch up to a nanometre apart", "boxes_touch(low, high, i, low, hi
 
 # 6.11 -----------------------------------------------------------------------------------------------------------
 @variants
-def traversal(prune=True, second=True, leaves=lambda a, i, b, j, found: worked.touching_items(a, i, b, j, found), turned=False, both=True):
+def traversal(prune=True, second=True, turned=False, both=True,
+              leaves=lambda a, i, b, j, found: worked.touching_items(a, i, b, j, found)):
     def find_intersections(a, b):
         found = []
 
@@ -318,7 +322,7 @@ def every_item(a, i, b, j, found):
 
 
 right("6.11", "as a recursion")(traversal())
-wrong("6.11", "looks everywhere")(traversal(prune=False))
+wrong("6.11", "never prunes")(traversal(prune=False))
 wrong("6.11", "forgets the second child")(traversal(second=False))
 wrong("6.11", "all items of leaves that touch")(traversal(leaves=every_item))
 wrong("6.11", "b before a")(traversal(turned=True))
@@ -348,9 +352,9 @@ def edges(inner=min, outer=max, sign=1.0, centre=False, checked=True, of=lambda 
 right("6.12", "with min and max")(edges())
 wrong("6.12", "the farthest corner")(edges(inner=max))
 wrong("6.12", "the worst edge")(edges(outer=min))
-wrong("6.12", "normals that lead in")(edges(sign=-1.0))
+wrong("6.12", "normals that point inward")(edges(sign=-1.0))
 wrong("6.12", "the middle of b for its corners")(edges(centre=True))
-wrong("6.12", "takes an edge without length")(edges(checked=False))
+wrong("6.12", "accepts an edge of zero length")(edges(checked=False))
 wrong("6.12", "the edges of b")(edges(of=lambda a, b: (b, a)))
 edit("6.12", "the edge whose gap is nearest to zero", "not gap <= greatest", "abs(gap) < abs(greatest)")
 edit("6.12", "the first edge that separates", "not gap <= greatest", "greatest <= 0.0 and gap > greatest")
@@ -363,7 +367,8 @@ edit("6.12", "the greatest begins with a megametre below zero", "-np.inf", "-1e6
 
 # 6.13 -----------------------------------------------------------------------------------------------------------
 @variants
-def cut(side=1.0, crossing=lambda s_i, s_j: s_i / (s_i - s_j), back=False, add=True, offset=1.0, kept_at=lambda s: s <= 0.0, crosses=lambda a, b: a * b < 0.0):
+def cut(side=1.0, crossing=lambda s_i, s_j: s_i / (s_i - s_j), back=False, add=True,
+        offset=1.0, kept_at=lambda s: s <= 0.0, crosses=lambda a, b: a * b < 0.0):
     def clip(y, n, d):
         k, kept = len(y), []
         s = [side * float(n @ p - offset * d) for p in y]
@@ -382,14 +387,14 @@ wrong("6.13", "keeps the other side")(cut(side=-1.0))
 wrong("6.13", "cuts in the middle of an edge")(cut(crossing=lambda s_i, s_j: 0.5))
 wrong("6.13", "the crossing from the other end")(cut(crossing=lambda s_i, s_j: s_j / (s_j - s_i)))
 wrong("6.13", "there and back along a segment")(cut(back=True))
-wrong("6.13", "only leaves corners out")(cut(add=False))
-wrong("6.13", "drops what is on the plane")(cut(kept_at=lambda s: s < 0.0))
-wrong("6.13", "counts what is on the plane twice")(cut(crosses=lambda a, b: a * b <= 0.0 and a != b))
+wrong("6.13", "only removes corners")(cut(add=False))
+wrong("6.13", "drops corners on the plane")(cut(kept_at=lambda s: s < 0.0))
+wrong("6.13", "counts corners on the plane twice")(cut(crosses=lambda a, b: a * b <= 0.0 and a != b))
 wrong("6.13", "forgets d")(cut(offset=0.0))
-edit("6.13", "keeps what is a nanometre outside", "s_i <= 0.0", "s_i <= 1e-9")
+edit("6.13", "keeps corners a nanometre outside", "s_i <= 0.0", "s_i <= 1e-9")
 edit("6.13", "adds a crossing only where it goes out", "s_i * s_j < 0.0", "s_i < 0.0 < s_j")
 edit("6.13", "segments in a plane only", "k > 2", "y.shape != (2, 2)")
-edit("6.13", "fails where nothing is left already", "kept[:m].copy()",
+edit("6.13", "fails for an empty polygon", "kept[:m].copy()",
      "kept[:m].copy() if (y @ n - d).max() > 0.0 else y.copy()")
 edit("6.13", "room for 8 corners", "2 * len(y)", "8")
 edit("6.13", "room for 10 corners", "2 * len(y)", "10")
@@ -419,19 +424,20 @@ right("6.14", "with a tuple")(boxes())
 wrong("6.14", "the axes of a only")(boxes(axes=range(3)))
 wrong("6.14", "faces only")(boxes(axes=range(6)))
 wrong("6.14", "from a to b")(boxes(sign=-1.0))
-wrong("6.14", "the axis as it comes")(boxes(fixed=True))
+wrong("6.14", "does not orient the axis")(boxes(fixed=True))
 wrong("6.14", "the last of equal ones")(boxes(choose=lambda new, old: new >= old))
-edit("6.14", "takes axes that are zeros", "dot(axis, axis) > 0.0", "dot(axis, axis) >= 0.0")
-edit("6.14", "edges win by nothing", "EDGES_WIN_BY if k >= 6", "0.0 if k >= 6")
+edit("6.14", "accepts zero axes", "dot(axis, axis) > 0.0", "dot(axis, axis) >= 0.0")
+edit("6.14", "edges need no advantage", "EDGES_WIN_BY if k >= 6", "0.0 if k >= 6")
 edit("6.14", "edges win by a twentieth", "EDGES_WIN_BY if k >= 6", "0.05 * abs(greatest) if k >= 6")
 edit("6.14", "forgets the last axis", "range(15)", "range(14)")
 edit("6.14", "the first axis that separates", "not gap <= greatest +", "greatest <= 0.0 and gap > greatest +")
-edit("6.14", "edges only where no face separates", "not gap <= greatest +", "(k < 6 or greatest < 0.0) and gap > greatest +")
+edit("6.14", "edges only where no face separates",
+     "not gap <= greatest +", "(k < 6 or greatest < 0.0) and gap > greatest +")
 edit("6.14", "the axis whose gap is nearest to zero", "not gap <= greatest +", "abs(gap) < abs(greatest) +")
 wrong("6.14", "the least gap")(boxes(choose=lambda new, old: new < old))
 wrong("6.14", "the longest half edge for the width")(boxes(width=lambda box, n: float(np.max(box.half))))
 edit("6.14", "the greatest begins with a megametre below zero", "-np.inf", "-1e6")
-edit("6.14", "faces must win as well", "EDGES_WIN_BY if k >= 6 else 0.0", "EDGES_WIN_BY")
+edit("6.14", "faces need an advantage, too", "EDGES_WIN_BY if k >= 6 else 0.0", "EDGES_WIN_BY")
 
 
 # 6.15 -----------------------------------------------------------------------------------------------------------
@@ -458,10 +464,10 @@ right("6.15", "with vstack")(nearest())
 wrong("6.15", "a single step")(nearest(steps=1))
 wrong("6.15", "gives up after five steps")(nearest(steps=5))
 wrong("6.15", "the supports exchanged")(nearest(along=(1.0, -1.0)))
-wrong("6.15", "both along the same way")(nearest(along=(-1.0, -1.0)))
+wrong("6.15", "both along the same direction")(nearest(along=(-1.0, -1.0)))
 wrong("6.15", "keeps a single pair")(nearest(reduce=False))
 wrong("6.15", "n from a to b")(nearest(swap=True))
-edit("6.15", "takes bodies of any size and kind", "check_hulls(a, b)", "pass")
+edit("6.15", "checks nothing", "check_hulls(a, b)", "pass")
 edit("6.15", "a corner of each for the points between them", "weights @ p, 0.0, weights @ q, 0.0",
      "p[0], 0.0, q[0], 0.0")
 edit("6.15", "gives up after eight steps", "range(GJK_STEPS)", "range(8)")
@@ -472,7 +478,8 @@ edit("6.15", "overlap below a nanometre", "if far_enough(", "if v @ v < 1e-18 or
 
 # 6.16 -----------------------------------------------------------------------------------------------------------
 @variants
-def field(strength=lambda g, reach: (1.0 / g - 1.0 / reach) / g**2, sign=1.0, checked=True, skin=True, ends=True, unit=True):
+def field(strength=lambda g, reach: (1.0 / g - 1.0 / reach) / g**2,
+          sign=1.0, checked=True, skin=True, ends=True, unit=True):
     def repulsion(x, centre, radius, reach, k):
         r = x - centre
         g = size(r) - (radius if skin else 0.0)
@@ -490,10 +497,10 @@ wrong("6.16", "the potential for the force")(field(strength=lambda g, reach: 0.5
 wrong("6.16", "one power too few")(field(strength=lambda g, reach: (1.0 / g - 1.0 / reach) / g))
 wrong("6.16", "from the centre on")(field(skin=False))
 wrong("6.16", "goes on beyond its reach")(field(ends=False))
-wrong("6.16", "takes a place inside")(field(checked=False))
-wrong("6.16", "the way itself for its direction")(field(unit=False))
-edit("6.16", "takes a place on the skin", "not g > 0.0", "g < 0.0")
-edit("6.16", "refuses what is nearer than a micrometre", "not g > 0.0", "g < 1e-6")
+wrong("6.16", "accepts a position inside")(field(checked=False))
+wrong("6.16", "the offset itself for its direction")(field(unit=False))
+edit("6.16", "accepts a position on the surface", "not g > 0.0", "g < 0.0")
+edit("6.16", "refuses gaps below a micrometre", "not g > 0.0", "g < 1e-6")
 edit("6.16", "no more than a million m/s²", "k * (1.0 / g - 1.0 / reach) / (g * g * distance)",
      "min(k * (1.0 / g - 1.0 / reach) / (g * g), 1e6) / distance")
 edit("6.16", "no gap below a millimetre", "g = distance - radius",
@@ -503,7 +510,8 @@ edit("6.16", "measures its reach from the centre", "g >= reach", "distance >= re
 
 # 6.17 -----------------------------------------------------------------------------------------------------------
 @variants
-def swerve(side=-1.0, half=2.0, power=2, window=True, behind=True, wide=True, left=1.0, rest=True, need=lambda radius, offset: radius - offset):
+def swerve(side=-1.0, half=2.0, power=2, window=True, behind=True, wide=True,
+           left=1.0, rest=True, need=lambda radius, offset: radius - offset):
     def steer(x, v, centre, radius, ahead):
         speed = size(v)
         if speed == 0.0:
@@ -522,13 +530,13 @@ right("6.17", "with new names")(swerve())
 wrong("6.17", "towards it")(swerve(side=1.0))
 wrong("6.17", "half as much")(swerve(half=1.0))
 wrong("6.17", "divides by τ once")(swerve(power=1))
-wrong("6.17", "flees what is behind")(swerve(behind=False))
-wrong("6.17", "looks ahead without end")(swerve(window=False))
-wrong("6.17", "swerves for what is aside")(swerve(wide=False))
+wrong("6.17", "avoids an obstacle behind")(swerve(behind=False))
+wrong("6.17", "no limit of time ahead")(swerve(window=False))
+wrong("6.17", "avoids an obstacle that is aside")(swerve(wide=False))
 wrong("6.17", "head on to the right")(swerve(left=-1.0))
-wrong("6.17", "waits head on")(swerve(left=0.0))
-wrong("6.17", "starts by itself")(swerve(rest=False))
-wrong("6.17", "leaves room for all of the radius")(swerve(need=lambda radius, offset: radius))
+wrong("6.17", "does nothing head on")(swerve(left=0.0))
+wrong("6.17", "accelerates from rest")(swerve(rest=False))
+wrong("6.17", "avoids by the whole radius")(swerve(need=lambda radius, offset: radius))
 edit("6.17", "brakes", "tau**2 * aside", "tau**2 * aside - 0.1 * v")
 edit("6.17", "at rest where v[0] is zero", "speed == 0.0", "v[0] == 0.0")
 edit("6.17", "at rest below a millimetre per second", "speed == 0.0", "speed < 1e-3")
@@ -536,4 +544,4 @@ edit("6.17", "left along x only", "np.array([-e[1], e[0]])", "np.array([0.0, e[0
 edit("6.17", "head-on within a hundredth of the radius", "offset > 0.0", "offset >= 0.01 * radius")
 edit("6.17", "head-on within a micrometre", "offset > 0.0", "offset >= 1e-6")
 edit("6.17", "head-on where it is close to zero", "offset > 0.0", "not np.isclose(offset, 0.0)")
-edit("6.17", "minds no disc that it is in", "offset >= radius", "offset >= radius or np.sqrt(r @ r) <= radius")
+edit("6.17", "ignores a disc that it is inside", "offset >= radius", "offset >= radius or np.sqrt(r @ r) <= radius")

@@ -1,4 +1,4 @@
-"""Lesson 3: friction with a sign, a mass, a step or a case of its own gone astray."""
+"""Lesson 3: friction with a wrong sign, mass, step or case."""
 
 import functools
 
@@ -28,11 +28,11 @@ def normal_force(F, n):
 
 
 edit("3.1", "with the sign of F · n", "-(F @ n)", "F @ n")
-edit("3.1", "pulls at what is lifted", "np.maximum(0.0, -(F @ n))", "-(F @ n)")
+edit("3.1", "pulls at a lifted body", "np.maximum(0.0, -(F @ n))", "-(F @ n)")
 edit("3.1", "all of F presses", "np.maximum(0.0, -(F @ n))", "np.sqrt(F @ F) * (F @ n < 0.0)")
 edit("3.1", "the last coordinate only", "-(F @ n)", "-F[-1]")
 edit("3.1", "a vector", "np.maximum(0.0, -(F @ n))", "max(0.0, -(F @ n)) * n")
-edit("3.1", "what presses little does not press", "np.maximum(0.0, -(F @ n))", "max(0.0, -(F @ n)) * (F @ n < -1e-3)")
+edit("3.1", "ignores a small load", "np.maximum(0.0, -(F @ n))", "max(0.0, -(F @ n)) * (F @ n < -1e-3)")
 
 
 # 3.2 ------------------------------------------------------------------------------------------------------------
@@ -50,19 +50,20 @@ def holding(sign=-1.0, rim=True, clamp=True, load=lambda F, n: max(0.0, -(F @ n)
 
 right("3.2", "by a clamp")(holding())
 wrong("3.2", "pushes on")(holding(sign=1.0))
-wrong("3.2", "gives up beyond the cone")(holding(rim=False))
+wrong("3.2", "no friction beyond the cone")(holding(rim=False))
 wrong("3.2", "holds everything")(holding(clamp=False))
 wrong("3.2", "cancels the whole of F")(holding(part=lambda F, n: F))
 wrong("3.2", "the normal force is the size of F")(holding(load=lambda F, n: size(F)))
-wrong("3.2", "takes a lift for a load")(holding(load=lambda F, n: abs(F @ n)))
-wrong("3.2", "takes a negative μ")(holding(checked=False))
-edit("3.2", "∞ times nothing", "cone_radius(mu_s, normal_force(F, n))", "cone_radius(mu_s, 1.0) * normal_force(F, n)")
+wrong("3.2", "takes a lifting force for a load")(holding(load=lambda F, n: abs(F @ n)))
+wrong("3.2", "accepts a negative μ")(holding(checked=False))
+edit("3.2", "multiplies ∞ by 0", "cone_radius(mu_s, normal_force(F, n))", "cone_radius(mu_s, 1.0) * normal_force(F, n)")
 edit("3.2", "always on the rim", "size <= limit", "size == 0.0")
 
 
 # 3.3 ------------------------------------------------------------------------------------------------------------
 @variants
-def braking(sign=-1.0, direction=lambda F, v, n: unit(tangential(v, n)), load=lambda F, n: max(0.0, -(F @ n)), scale=lambda v: 1.0):
+def braking(sign=-1.0, direction=lambda F, v, n: unit(tangential(v, n)),
+            load=lambda F, n: max(0.0, -(F @ n)), scale=lambda v: 1.0):
     def kinetic_friction(F, v, n, mu_k):
         return sign * cone_radius(mu_k, load(F, n)) * scale(v) * direction(F, v, n)
     return kinetic_friction
@@ -74,16 +75,17 @@ wrong("3.3", "against the pull")(braking(direction=lambda F, v, n: unit(tangenti
 wrong("3.3", "against all of v")(braking(direction=lambda F, v, n: unit(v)))
 wrong("3.3", "grows with the speed")(braking(scale=lambda v: size(v)))
 wrong("3.3", "the load is the size of F")(braking(load=lambda F, n: size(F)))
-wrong("3.3", "a lift brakes, too")(braking(load=lambda F, n: abs(F @ n)))
-edit("3.3", "divides by no speed", "speed > 0.0", "True")
-edit("3.3", "slow is at rest", "speed > 0.0", "speed > 1e-9")
-edit("3.3", "takes a negative μ, and ∞ times nothing", "cone_radius(mu_k, normal_force(F, n))",
+wrong("3.3", "brakes a lifted body, too")(braking(load=lambda F, n: abs(F @ n)))
+edit("3.3", "divides by a speed of zero", "speed > 0.0", "True")
+edit("3.3", "treats a slow body as at rest", "speed > 0.0", "speed > 1e-9")
+edit("3.3", "accepts a negative μ, and multiplies ∞ by 0", "cone_radius(mu_k, normal_force(F, n))",
      "mu_k * normal_force(F, n)")
 
 
 # 3.4 ------------------------------------------------------------------------------------------------------------
 @variants
-def on_slope(holds=lambda theta, mu_s, mu_k: np.tan(theta) <= mu_s, slides=lambda theta, mu_s, mu_k: np.sin(theta) - mu_k * np.cos(theta)):
+def on_slope(holds=lambda theta, mu_s, mu_k: np.tan(theta) <= mu_s,
+             slides=lambda theta, mu_s, mu_k: np.sin(theta) - mu_k * np.cos(theta)):
     def incline_acceleration(theta, mu_s, mu_k, g):
         worked.check_friction(mu_s)
         worked.check_friction(mu_k)
@@ -92,14 +94,16 @@ def on_slope(holds=lambda theta, mu_s, mu_k: np.tan(theta) <= mu_s, slides=lambd
 
 
 right("3.4", "by the tangent")(on_slope())
-wrong("3.4", "static friction in motion")(on_slope(slides=lambda theta, mu_s, mu_k: np.sin(theta) - mu_s * np.cos(theta)))
+wrong("3.4", "static friction in motion")(
+    on_slope(slides=lambda theta, mu_s, mu_k: np.sin(theta) - mu_s * np.cos(theta)))
 wrong("3.4", "kinetic friction at rest")(on_slope(holds=lambda theta, mu_s, mu_k: np.tan(theta) <= mu_k))
-wrong("3.4", "sine and cosine exchanged")(on_slope(slides=lambda theta, mu_s, mu_k: np.cos(theta) - mu_k * np.sin(theta)))
+wrong("3.4", "sine and cosine exchanged")(
+    on_slope(slides=lambda theta, mu_s, mu_k: np.cos(theta) - mu_k * np.sin(theta)))
 wrong("3.4", "sin θ against μ")(on_slope(holds=lambda theta, mu_s, mu_k: np.sin(theta) <= mu_s))
 wrong("3.4", "never holds")(on_slope(holds=lambda theta, mu_s, mu_k: False))
-wrong("3.4", "friction on the level")(on_slope(slides=lambda theta, mu_s, mu_k: np.sin(theta) - mu_k))
-edit("3.4", "takes a negative μ_s", "cone_radius(mu_s, np.cos(theta))", "mu_s * np.cos(theta)")
-edit("3.4", "takes a negative μ_k", "cone_radius(mu_k, np.cos(theta))", "mu_k * np.cos(theta)")
+wrong("3.4", "friction on level ground")(on_slope(slides=lambda theta, mu_s, mu_k: np.sin(theta) - mu_k))
+edit("3.4", "accepts a negative μ_s", "cone_radius(mu_s, np.cos(theta))", "mu_s * np.cos(theta)")
+edit("3.4", "accepts a negative μ_k", "cone_radius(mu_k, np.cos(theta))", "mu_k * np.cos(theta)")
 
 
 # 3.5 ------------------------------------------------------------------------------------------------------------
@@ -111,16 +115,16 @@ def dissipating(sign=-1.0, stop=lambda m, speed: m * speed, choose=min, limit=co
     return friction_impulse
 
 
-right("3.5", "by its size")(dissipating())
-wrong("3.5", "leaves what round-off leaves")(dissipating(exactly=False))
+right("3.5", "by its magnitude")(dissipating())
+wrong("3.5", "leaves a round-off velocity")(dissipating(exactly=False))
 wrong("3.5", "along the motion")(dissipating(sign=1.0))
 wrong("3.5", "forgets the mass")(dissipating(stop=lambda m, speed: speed))
-wrong("3.5", "the greater one")(dissipating(choose=max))
+wrong("3.5", "the larger of both impulses")(dissipating(choose=max))
 wrong("3.5", "always slides")(dissipating(choose=lambda limit, stop: limit))
 wrong("3.5", "always stops")(dissipating(choose=lambda limit, stop: stop))
 wrong("3.5", "forgets μ")(dissipating(limit=lambda mu, j_n: worked.check_friction(mu) or j_n))
-wrong("3.5", "takes a negative μ")(dissipating(limit=lambda mu, j_n: mu * j_n if j_n > 0.0 else 0.0))
-edit("3.5", "divides by no speed", "m * speed <= limit", "0.0 < m * speed <= limit")
+wrong("3.5", "accepts a negative μ")(dissipating(limit=lambda mu, j_n: mu * j_n if j_n > 0.0 else 0.0))
+edit("3.5", "divides by a speed of zero", "m * speed <= limit", "0.0 < m * speed <= limit")
 edit("3.5", "changes its input", "-m * v_t if", "np.multiply(v_t, -m, out=v_t) if")
 
 
@@ -140,7 +144,7 @@ wrong("3.6", "no clamp from below")(square(clamp=np.minimum))
 wrong("3.6", "one tangent only")(square(second=False))
 wrong("3.6", "inside the cone: half the area")(square(width=np.sqrt(0.5)))
 edit("3.6", "a cone", "limit = cone_radius(mu, j_n)", "return friction_impulse(v_t, m, j_n, mu)")
-edit("3.6", "takes a negative μ, and ∞ times nothing", "cone_radius(mu, j_n)", "mu * j_n")
+edit("3.6", "accepts a negative μ, and multiplies ∞ by 0", "cone_radius(mu, j_n)", "mu * j_n")
 edit("3.6", "no clamp of the second tangent from above", "np.maximum(-limit, np.minimum(limit, m * (v_t @ t_2)))",
      "max(-limit, m * (v_t @ t_2))")
 edit("3.6", "no clamp of the second tangent from below", "np.maximum(-limit, np.minimum(limit, m * (v_t @ t_2)))",
@@ -149,9 +153,10 @@ edit("3.6", "no clamp of the second tangent from below", "np.maximum(-limit, np.
 
 # 3.7 ------------------------------------------------------------------------------------------------------------
 @variants
-def block_step(rest=True, at_rest="mu_s", moving="mu_k", late=0.0, old=False, against="new", once=True, load=worked.normal_force, speed=1.0,
-               still=lambda v: size(v) == 0.0, holds=lambda pull, limit: pull <= limit, turns=True):
-    """A step of a block with friction as a vector of its own, with terms that may be wrong."""
+def block_step(rest=True, at_rest="mu_s", moving="mu_k", late=0.0, old=False, against="new",
+               once=True, load=worked.normal_force, speed=1.0, still=lambda v: size(v) == 0.0,
+               holds=lambda pull, limit: pull <= limit, turns=True):
+    """A step of a block that computes friction as a vector, with terms that may be wrong."""
     def sliding_step(acceleration, t, x, v, dt, p):
         a = acceleration(t + late * dt, x, v, p)
         a_n, a_t = load(a, p.n), tangential(a, p.n)
@@ -169,25 +174,27 @@ def block_step(rest=True, at_rest="mu_s", moving="mu_k", late=0.0, old=False, ag
 right("3.7", "by a unit vector")(block_step())
 wrong("3.7", "kinetic friction at rest")(block_step(at_rest="mu_k"))
 wrong("3.7", "static friction in motion")(block_step(moving="mu_s"))
-wrong("3.7", "does not ask whether it holds")(block_step(rest=False))
-wrong("3.7", "reads the clock at the end")(block_step(late=1.0))
+wrong("3.7", "does not test whether it holds")(block_step(rest=False))
+wrong("3.7", "evaluates at t + dt")(block_step(late=1.0))
 wrong("3.7", "moves with the old velocity")(block_step(old=True))
-wrong("3.7", "friction as a force: goes to and fro")(block_step(speed=0.0))
+wrong("3.7", "friction as a force: the block oscillates")(block_step(speed=0.0))
 wrong("3.7", "friction without dt")(block_step(once=False))
 wrong("3.7", "against the old velocity")(block_step(against="old"))
-wrong("3.7", "at rest where a coordinate of v is zero")(block_step(still=lambda v: bool(np.any(v == 0.0))))
-wrong("3.7", "at rest below a millimetre a second")(block_step(still=lambda v: size(v) <= 1e-3))
-wrong("3.7", "at rest below a nanometre a second")(block_step(still=lambda v: size(v) <= 1e-9))
-wrong("3.7", "slips on the edge of the cone")(block_step(holds=lambda pull, limit: pull < limit))
-wrong("3.7", "what turns round stops")(block_step(turns=False))
-wrong("3.7", "what is lifted is pressed")(block_step(load=lambda a, n: abs(a @ n)))
+wrong("3.7", "at rest if one coordinate of v is zero")(block_step(still=lambda v: bool(np.any(v == 0.0))))
+wrong("3.7", "at rest below a millimetre per second")(block_step(still=lambda v: size(v) <= 1e-3))
+wrong("3.7", "at rest below a nanometre per second")(block_step(still=lambda v: size(v) <= 1e-9))
+wrong("3.7", "slips exactly on the edge of the cone")(block_step(holds=lambda pull, limit: pull < limit))
+wrong("3.7", "stops a block that reverses")(block_step(turns=False))
+wrong("3.7", "treats a lifted block as loaded")(block_step(load=lambda a, n: abs(a @ n)))
 wrong("3.7", "the load is the size of a")(block_step(load=lambda a, n: size(a)))
 edit("3.7", "changes its input", "v = v + dt * a_t", "v += dt * a_t")
 
 
 # 3.8 ------------------------------------------------------------------------------------------------------------
 @variants
-def heading(moving=lambda v, a_t: v, limit="mu_s", sign=1.0, scaled=True, ask=lambda pull, hold: pull > hold, clock=1.0, load=worked.normal_force, least=0.0):
+def heading(moving=lambda v, a_t: v, limit="mu_s", sign=1.0, scaled=True,
+            ask=lambda pull, hold: pull > hold, clock=1.0, load=worked.normal_force,
+            least=0.0):
     def slip_direction(acceleration, t, x, v, p):
         a = acceleration(clock * t, x, v, p)
         a_t, a_n = tangential(a, p.n), load(a, p.n)
@@ -199,17 +206,17 @@ def heading(moving=lambda v, a_t: v, limit="mu_s", sign=1.0, scaled=True, ask=la
 
 
 right("3.8", "all cases from one pull")(heading())
-wrong("3.8", "a moving block goes where it is pulled")(heading(moving=lambda v, a_t: a_t))
+wrong("3.8", "a moving block slides along the pull")(heading(moving=lambda v, a_t: a_t))
 wrong("3.8", "kinetic friction at rest")(heading(limit="mu_k"))
 wrong("3.8", "against the pull")(heading(sign=-1.0))
 wrong("3.8", "no unit vector")(heading(scaled=False))
-wrong("3.8", "slips on the edge of the cone")(heading(ask=lambda pull, hold: pull >= hold))
-wrong("3.8", "what is lifted is pressed")(heading(load=lambda a, n: abs(a @ n)))
-wrong("3.8", "at rest below a micrometre a second")(heading(least=1e-6))
+wrong("3.8", "slips exactly on the edge of the cone")(heading(ask=lambda pull, hold: pull >= hold))
+wrong("3.8", "treats a lifted block as loaded")(heading(load=lambda a, n: abs(a @ n)))
+wrong("3.8", "at rest below a micrometre per second")(heading(least=1e-6))
 wrong("3.8", "always breaks away")(heading(ask=lambda pull, hold: True))
 wrong("3.8", "never breaks away")(heading(ask=lambda pull, hold: False))
-wrong("3.8", "the clock stands still")(heading(clock=0.0))
-edit("3.8", "∞ times nothing", "cone_radius(p.mu_s, normal_force(a, p.n))", "p.mu_s * normal_force(a, p.n)")
+wrong("3.8", "does not advance t")(heading(clock=0.0))
+edit("3.8", "multiplies ∞ by 0", "cone_radius(p.mu_s, normal_force(a, p.n))", "p.mu_s * normal_force(a, p.n)")
 
 
 # 3.9 ------------------------------------------------------------------------------------------------------------
@@ -227,15 +234,15 @@ def first_stop(halvings=60, whole=True, begin=0.0, length=lambda middle, dt: mid
     return stopping_time
 
 
-right("3.9", "with a question of its own")(first_stop())
+right("3.9", "with its own test")(first_stop())
 wrong("3.9", "ten halvings")(first_stop(halvings=10))
-right("3.9", "does not ask about the whole step: halving finds its end")(first_stop(whole=False))
-wrong("3.9", "the forces of later")(first_stop(begin=1.0))
+right("3.9", "does not test the whole step: bisection finds its end")(first_stop(whole=False))
+wrong("3.9", "forces at a later time")(first_stop(begin=1.0))
 wrong("3.9", "returns the first half, however late it stops")(first_stop(end=lambda a, b: 0.5 * a))
-wrong("3.9", "the speed against d")(first_stop(towards=-1.0))
+wrong("3.9", "speed with the wrong sign")(first_stop(towards=-1.0))
 BRAKE = "cone_radius(p.mu_k, normal_force(acceleration(t, x, v, p), p.n))"
-edit("3.9", "v over μ g, whatever pushes", "moving, stopped = 0.0, dt", f"return min(dt, v @ d / {BRAKE})")
-edit("3.9", "the deceleration of now", "moving, stopped = 0.0, dt",
+edit("3.9", "v over μ g, without the push", "moving, stopped = 0.0, dt", f"return min(dt, v @ d / {BRAKE})")
+edit("3.9", "the deceleration at t", "moving, stopped = 0.0, dt",
      f"return min(dt, v @ d / abs({BRAKE} - acceleration(t, x, v, p) @ d))")
 edit("3.9", "the speed whatever its direction: never stops", "slide(acceleration, t, x, v, dt, d, p)[1] @ d > 0.0",
      "np.any(slide(acceleration, t, x, v, dt, d, p)[1])")
@@ -256,18 +263,18 @@ def first_slip(halvings=60, since=lambda t, tau: t + tau, whole=True, slips=lamb
     return breakaway_time
 
 
-right("3.10", "with a question of its own")(first_slip())
+right("3.10", "with its own test")(first_slip())
 
 
 wrong("3.10", "ten halvings")(first_slip(halvings=10))
 wrong("3.10", "counts from zero")(first_slip(since=lambda t, tau: tau))
-wrong("3.10", "asks about now")(first_slip(since=lambda t, tau: t))
-wrong("3.10", "holds while it slips")(first_slip(slips=lambda d: size(d) == 0.0))
+wrong("3.10", "tests at t")(first_slip(since=lambda t, tau: t))
+wrong("3.10", "the two tests exchanged")(first_slip(slips=lambda d: size(d) == 0.0))
 edit("3.10", "the kinetic limit", "if not np.any", "p = p._replace(mu_s=p.mu_k)\n    if not np.any")
 LOAD_OF_NOW = "p._replace(gravity=p.gravity + np.cos(p.omega * t) * (p.push - along), push=along)"
-edit("3.10", "the load of now", "if not np.any",
+edit("3.10", "the load at t", "if not np.any",
      f"along = tangential(p.push, p.n); p = {LOAD_OF_NOW}\n    if not np.any")
-edit("3.10", "returns the moment, not the time to it", "return slips", "return t + slips")
+edit("3.10", "returns the time, not the duration", "return slips", "return t + slips")
 
 
 # 3.11 -----------------------------------------------------------------------------------------------------------
@@ -286,14 +293,14 @@ def event(exactly=True, whole=False, waits=True, rest=False, moves=True):
 
 
 right("3.11", "with new names")(event())
-wrong("3.11", "leaves what round-off leaves of v")(event(exactly=False))
+wrong("3.11", "leaves a round-off velocity after a stop")(event(exactly=False))
 wrong("3.11", "slides for the whole step")(event(whole=True))
-wrong("3.11", "never wakes up")(event(waits=False))
+wrong("3.11", "never breaks away")(event(waits=False))
 wrong("3.11", "stops at the end of every step")(event(rest=True))
 wrong("3.11", "does not move")(event(moves=False))
 edit("3.11", "a moving block only", "d = slip_direction(acceleration, t, x, v, p)",
      "d = v / max(1e-300, np.sqrt(v @ v))")
-edit("3.11", "what stops near the end of the step goes on", "tau == dt", "tau >= 0.99 * dt")
+edit("3.11", "does not stop near the end of the step", "tau == dt", "tau >= 0.99 * dt")
 
 
 # 3.12 -----------------------------------------------------------------------------------------------------------
@@ -315,14 +322,15 @@ wrong("3.12", "negative inside")(hollow(inside=-1.0))
 wrong("3.12", "around the origin")(hollow(centred=False))
 wrong("3.12", "every trough a bowl")(hollow(axial=False))
 wrong("3.12", "no unit vector")(hollow(scaled=False))
-wrong("3.12", "divides by no distance")(hollow(safe=False))
+wrong("3.12", "divides by a distance of zero")(hollow(safe=False))
 edit("3.12", "a ball instead of a bowl", "p.radius - distance, -r / distance", "distance - p.radius, r / distance")
-edit("3.12", "a middle of a micrometre", "distance > 0.0", "distance > 1e-6")
+edit("3.12", "treats a micrometre around the centre as the centre", "distance > 0.0", "distance > 1e-6")
 
 
 # 3.13 -----------------------------------------------------------------------------------------------------------
 @variants
-def impact(leaves=True, bounce=lambda e: 1.0 + e, mass=True, slip=tangential, sign=1.0, friction=worked.friction_impulse, mass_n=True):
+def impact(leaves=True, bounce=lambda e: 1.0 + e, mass=True, slip=tangential,
+           sign=1.0, friction=worked.friction_impulse, mass_n=True):
     def contact_impulse(v, n, m, e, mu):
         v_n = v @ n
         if leaves and v_n >= 0.0:
@@ -333,7 +341,7 @@ def impact(leaves=True, bounce=lambda e: 1.0 + e, mass=True, slip=tangential, si
 
 
 right("3.13", "by the same law")(impact())
-wrong("3.13", "sucks at what leaves")(impact(leaves=False))
+wrong("3.13", "pulls at a leaving body")(impact(leaves=False))
 wrong("3.13", "e for 1 + e")(impact(bounce=lambda e: e))
 wrong("3.13", "1 − e")(impact(bounce=lambda e: 1.0 - e))
 wrong("3.13", "no restitution")(impact(bounce=lambda e: 1.0))
@@ -342,15 +350,16 @@ wrong("3.13", "forgets the mass in friction")(impact(mass=False))
 wrong("3.13", "forgets the mass in the normal impulse")(impact(mass_n=False))
 wrong("3.13", "friction against all of v")(impact(slip=lambda v, n: v))
 wrong("3.13", "no friction")(impact(friction=lambda v_t, m, j_n, mu: 0.0 * v_t))
-wrong("3.13", "grips always")(impact(friction=lambda v_t, m, j_n, mu: -m * v_t))
+wrong("3.13", "always sticks")(impact(friction=lambda v_t, m, j_n, mu: -m * v_t))
 edit("3.13", "friction as if e = 0", "tangential(v, n), m, j_n, mu", "tangential(v, n), m, -m * v_n, mu")
-edit("3.13", "what comes slowly does not come", "v_n >= 0.0", "v_n >= -1e-3")
+edit("3.13", "ignores slow impacts", "v_n >= 0.0", "v_n >= -1e-3")
 
 
 # 3.14 and 3.16 --------------------------------------------------------------------------------------------------
-def particle_step(grip=0.0, old=False, back=-1.0, asked="new", mass=True, only_inwards=False, both_ways=False, doubled=False,
-                  reached=0.0, half=1.0, depth=lambda phi: -phi, once=True, clock=1.0, moving=lambda moved, x, v, dt: moved):
-    """A step of a particle and what a surface does to it, with terms that may be wrong."""
+def particle_step(grip=0.0, old=False, back=-1.0, asked="new", mass=True, only_inwards=False,
+                  both_ways=False, doubled=False, reached=0.0, half=1.0, depth=lambda phi: -phi,
+                  once=True, clock=1.0, moving=lambda moved, x, v, dt: moved):
+    """A step of a particle with contact, with terms that may be wrong."""
     def step(acceleration, surface, t, x, v, dt, p):
         v_free = v + (dt if once else 1.0) * acceleration(clock * t, x, v, p)
         moved = dt * (v if old else v_free)
@@ -381,15 +390,15 @@ for number, particle in (("3.14", contact), ("3.16", gripping)):
     wrong(number, "forgets dt")(particle(once=False))
     wrong(number, "the clock stands still")(particle(clock=0.0))
     wrong(number, "in contact a millimetre too early")(particle(reached=1e-3))
-wrong("3.14", "grips as well")(contact(grip=1.0))
+wrong("3.14", "grips too")(contact(grip=1.0))
 wrong("3.16", "does not grip")(gripping(grip=0.0))
 wrong("3.16", "grips forwards")(gripping(grip=-1.0))
 wrong("3.16", "grips on the way out")(gripping(both_ways=True))
 wrong("3.16", "a depth below zero")(gripping(depth=lambda phi: phi))
 wrong("3.16", "grips the displacement of the old velocity")(gripping(moving=lambda moved, x, v, dt: dt * v))
 edit("3.14", "changes its input", "v = v + dt * acceleration(t, x, v, p)", "v += dt * acceleration(t, x, v, p)")
-edit("3.14", "in contact where it only touches", "phi < 0.0", "phi <= 0.0")
-edit("3.16", "in contact where it only touches", "phi < 0.0", "phi <= 0.0")
+edit("3.14", "contact at φ = 0", "phi < 0.0", "phi <= 0.0")
+edit("3.16", "contact at φ = 0", "phi < 0.0", "phi <= 0.0")
 edit("3.16", "grips what moves along the surface", "v @ n < 0.0", "v @ n <= 0.0")
 
 

@@ -1,4 +1,4 @@
-"""Lesson 7: impacts with a sign, a mass, a lever arm or a case of their own gone astray."""
+"""Lesson 7: impacts with a wrong sign, mass, lever arm or case."""
 
 import numpy as np
 
@@ -31,12 +31,12 @@ def kinematic_response(v, n, k):
 
 wrong("7.1", "k for 1 + k")(response(bounce=lambda k: k))
 wrong("7.1", "1 − k")(response(bounce=lambda k: 1.0 - k))
-wrong("7.1", "sucks at what leaves")(response(leaves=False))
-wrong("7.1", "turns all of v round")(response(all_of_v=True))
+wrong("7.1", "pulls at a leaving body")(response(leaves=False))
+wrong("7.1", "reverses all of v")(response(all_of_v=True))
 wrong("7.1", "pulls in")(response(sign=1.0))
 edit("7.1", "changes its input", "v - (1.0 + k) * v_n * n", "np.subtract(v, (1.0 + k) * v_n * n, out=v)")
-edit("7.1", "lets what comes slowly pass", "v_n >= 0.0", "v_n >= -1e-3")
-edit("7.1", "ten nanometres per second are none", "v_n >= 0.0", "v_n >= -1e-8")
+edit("7.1", "ignores slow approach", "v_n >= 0.0", "v_n >= -1e-3")
+edit("7.1", "ignores ten nanometres per second", "v_n >= 0.0", "v_n >= -1e-8")
 
 
 # 7.2 ------------------------------------------------------------------------------------------------------------
@@ -55,12 +55,12 @@ def penalty_force(phi, v_n, stiffness, damping):
     return f if depth > 0.0 and f > 0.0 else 0.0
 
 
-wrong("7.2", "pulls back what leaves fast")(penalty(pulls=True))
+wrong("7.2", "pulls back a fast leaving body")(penalty(pulls=True))
 wrong("7.2", "the damper pushes on")(penalty(damper=1.0))
 wrong("7.2", "no damper")(penalty(damper=0.0))
 wrong("7.2", "the spring pulls in")(penalty(spring=1.0))
-edit("7.2", "a millimetre is not inside", "phi >= 0.0", "phi >= -1e-3")
-edit("7.2", "damps what only touches", "phi >= 0.0", "phi > 0.0")
+edit("7.2", "ignores a depth of a millimetre", "phi >= 0.0", "phi >= -1e-3")
+edit("7.2", "damps at φ = 0", "phi >= 0.0", "phi > 0.0")
 wrong("7.2", "damps outside, too")(penalty(inside=lambda phi: True))
 
 
@@ -82,7 +82,7 @@ def flat_relative_velocity(a, b, r_a, r_b):
 
 wrong("7.3", "turns clockwise")(seen(side=-1.0))
 wrong("7.3", "b as seen from a")(seen(sign=-1.0))
-wrong("7.3", "does not turn")(seen(turns=0.0))
+wrong("7.3", "does not rotate")(seen(turns=0.0))
 wrong("7.3", "each at the other's offset")(seen(swap=True))
 edit("7.3", "the turn of b added", "- turn_b", "+ turn_b")
 edit("7.3", "a wall is at rest", "- b.v", "- (b.v if b.inv_mass else 0.0)")
@@ -90,7 +90,8 @@ edit("7.3", "a wall is at rest", "- b.v", "- (b.v if b.inv_mass else 0.0)")
 
 # 7.4 ------------------------------------------------------------------------------------------------------------
 @variants
-def size(bounce=lambda e: 1.0 + e, over=lambda k: 1.0 / k, leaves=True, checks=(worked.check_restitution, worked.check_inverse_mass)):
+def size(bounce=lambda e: 1.0 + e, over=lambda k: 1.0 / k, leaves=True,
+         checks=(worked.check_restitution, worked.check_inverse_mass)):
     def impulse_size(u_n, k, e):
         for check in checks:
             check(e if check is worked.check_restitution else k)
@@ -102,20 +103,22 @@ right("7.4", "the checks in a loop")(size())
 wrong("7.4", "no restitution")(size(bounce=lambda e: 1.0))
 wrong("7.4", "1 − e")(size(bounce=lambda e: 1.0 - e))
 wrong("7.4", "times k")(size(over=lambda k: k))
-wrong("7.4", "pulls at what separates")(size(leaves=False))
-wrong("7.4", "takes any restitution")(size(checks=(worked.check_inverse_mass,)))
-edit("7.4", "two walls", "check_inverse_mass(k)", "pass")
-edit("7.4", "lets what comes slowly pass", "u_n >= 0.0", "u_n >= -1e-3")
-edit("7.4", "what separates may have any restitution", "check_restitution(e)",
+wrong("7.4", "pulls at separating bodies")(size(leaves=False))
+wrong("7.4", "accepts any restitution")(size(checks=(worked.check_inverse_mass,)))
+edit("7.4", "accepts two immovable bodies", "check_inverse_mass(k)", "pass")
+edit("7.4", "ignores slow approach", "u_n >= 0.0", "u_n >= -1e-3")
+edit("7.4", "accepts any restitution for separating bodies", "check_restitution(e)",
      "if u_n >= 0.0:\n        return 0.0\n    check_restitution(e)")
-edit("7.4", "two walls that separate", "check_inverse_mass(k)", "if u_n < 0.0:\n        check_inverse_mass(k)")
+edit("7.4", "accepts two immovable bodies that separate",
+     "check_inverse_mass(k)", "if u_n < 0.0:\n        check_inverse_mass(k)")
 
 
 # 7.5 and 7.7 ----------------------------------------------------------------------------------------------------
 @variants
 def flat_k(power=2, second=True, over=False, arm=lambda r, n: r[0] * n[1] - r[1] * n[0], mass=1.0):
     def flat_inverse_mass(a, b, r_a, r_b, n):
-        turn = lambda body, r: abs(arm(r, n)) ** power * (1.0 / max(body.inv_inertia, 1e-300) if over else body.inv_inertia)
+        factor = lambda body: 1.0 / max(body.inv_inertia, 1e-300) if over else body.inv_inertia
+        turn = lambda body, r: abs(arm(r, n)) ** power * factor(body)
         return mass * (a.inv_mass + b.inv_mass) + turn(a, r_a) + (turn(b, r_b) if second else 0.0)
     return flat_inverse_mass
 
@@ -155,7 +158,8 @@ edit("7.7", "against a wall a does not turn", "n @ turn_a", "(n @ turn_a if b.in
 def pushed(mass=lambda m: m, inertia=lambda i: i, side=1.0, turns=True):
     def flat_push(body, r, J):
         torque = side * (r[0] * J[1] - r[1] * J[0]) if turns else 0.0
-        return worked.Flat(body.v + mass(body.inv_mass) * J, body.omega + inertia(body.inv_inertia) * torque, body.inv_mass, body.inv_inertia)
+        return worked.Flat(body.v + mass(body.inv_mass) * J,
+                           body.omega + inertia(body.inv_inertia) * torque, body.inv_mass, body.inv_inertia)
     return flat_push
 
 
@@ -163,7 +167,7 @@ right("7.6", "by a torque")(pushed())
 wrong("7.6", "mass for its inverse")(pushed(mass=lambda m: 1.0 / m if m else 0.0))
 wrong("7.6", "inertia for its inverse")(pushed(inertia=lambda i: 1.0 / i if i else 0.0))
 wrong("7.6", "turns the other way")(pushed(side=-1.0))
-wrong("7.6", "does not turn")(pushed(turns=False))
+wrong("7.6", "does not rotate")(pushed(turns=False))
 
 
 # 7.8 ------------------------------------------------------------------------------------------------------------
@@ -205,7 +209,8 @@ wrong("7.9", "a number for the tensor")(K_of(middle=lambda inv: np.trace(inv) / 
 
 # 7.10 -----------------------------------------------------------------------------------------------------------
 @variants
-def cone(check=True, parts=True, enough=lambda w: w, goal=lambda w: w, rim=lambda mu: mu, side="stick", clamp="rim", sticks=lambda J_t, J_n, mu: J_t <= mu * J_n):
+def cone(check=True, parts=True, enough=lambda w: w, goal=lambda w: w, rim=lambda mu: mu,
+         side="stick", clamp="rim", sticks=lambda J_t, J_n, mu: J_t <= mu * J_n):
     def cone_impulse(u, n, K, w, mu):
         if check:
             worked.check_contact(u, n, K, mu)
@@ -227,20 +232,21 @@ def cone(check=True, parts=True, enough=lambda w: w, goal=lambda w: w, rim=lambd
 
 right("7.10", "by NumPy's solver")(cone())
 wrong("7.10", "checks nothing")(cone(check=False))
-wrong("7.10", "pulls at what separates")(cone(parts=False))
+wrong("7.10", "pulls at separating bodies")(cone(parts=False))
 wrong("7.10", "never rebounds")(cone(goal=lambda w: 0.0))
 wrong("7.10", "never sticks")(cone(sticks=lambda J_t, J_n, mu: False))
 wrong("7.10", "always sticks")(cone(sticks=lambda J_t, J_n, mu: True))
 wrong("7.10", "against the slip before the impact")(cone(side="slip"))
 wrong("7.10", "keeps the stick's normal impulse")(cone(clamp="cut"))
 wrong("7.10", "pulls where sticking would have to")(cone(sticks=lambda J_t, J_n, mu: J_t <= mu * abs(J_n)))
-wrong("7.10", "compares all of the impulse with the cone")(cone(sticks=lambda J_t, J_n, mu: np.hypot(J_t, J_n) <= mu * J_n))
-wrong("7.10", "lets be what parts too slowly")(cone(enough=lambda w: 0.0))
+wrong("7.10", "compares all of the impulse with the cone")(
+    cone(sticks=lambda J_t, J_n, mu: np.hypot(J_t, J_n) <= mu * J_n))
+wrong("7.10", "ignores bodies that separate too slowly")(cone(enough=lambda w: 0.0))
 wrong("7.10", "half the friction")(cone(rim=lambda mu: 0.5 * mu))
 edit("7.10", "sticks as if K were a number", "solve3(K[0], K[1], K[2], w * n - u)", "(w * n - u) / (n @ times(K, n))")
-edit("7.10", "stops what parts just fast enough", "u @ n >= w", "u @ n > w")
-edit("7.10", "a nanometre per second too slow is fast enough", "u @ n >= w", "u @ n >= w - 1e-9")
-edit("7.10", "a small impulse has no side", "np.sin(beta) / size", "(np.sin(beta) / size if size > 1e-9 else 0.0)")
+edit("7.10", "pushes bodies that separate exactly at w", "u @ n >= w", "u @ n > w")
+edit("7.10", "tolerates a nanometre per second below w", "u @ n >= w", "u @ n >= w - 1e-9")
+edit("7.10", "a small impulse has no direction", "np.sin(beta) / size", "(np.sin(beta) / size if size > 1e-9 else 0.0)")
 
 
 # 7.11 -----------------------------------------------------------------------------------------------------------
@@ -277,7 +283,7 @@ def multiplier(gap=1.0, clamp=True, over=lambda k: 1.0 / k, check=True):
     return gap_multiplier
 
 
-@right("7.12", "asks first whether the gap stays open")
+@right("7.12", "tests first whether the gap stays open")
 def gap_multiplier(phi, u_n, k, dt):
     worked.check_inverse_mass(k)
     check_positive("step dt [s]", dt)
@@ -288,14 +294,14 @@ def gap_multiplier(phi, u_n, k, dt):
 wrong("7.12", "does not ask how wide the gap is")(multiplier(gap=0.0))
 wrong("7.12", "pulls open gaps together")(multiplier(clamp=False))
 wrong("7.12", "times k")(multiplier(over=lambda k: k))
-wrong("7.12", "two walls")(multiplier(check=False))
-edit("7.12", "takes a step of no time", 'check_positive("step dt [s]", dt)', "dt = dt or 1.0")
-edit("7.12", "takes a step back in time", 'check_positive("step dt [s]", dt)', 'check_positive("step dt [s]", abs(dt))')
-edit("7.12", "takes a step that is not a number", 'check_positive("step dt [s]", dt)',
+wrong("7.12", "accepts two immovable bodies")(multiplier(check=False))
+edit("7.12", "accepts a step of zero", 'check_positive("step dt [s]", dt)', "dt = dt or 1.0")
+edit("7.12", "accepts a negative step", 'check_positive("step dt [s]", dt)', 'check_positive("step dt [s]", abs(dt))')
+edit("7.12", "accepts a step that is not a number", 'check_positive("step dt [s]", dt)',
      'check_positive("step dt [s]", 1.0 if dt != dt else dt)')
-edit("7.12", "any step where the gap opens", 'check_positive("step dt [s]", dt)',
+edit("7.12", "accepts any step if the gap opens", 'check_positive("step dt [s]", dt)',
      'if u_n >= 0.0:\n        return 0.0\n    check_positive("step dt [s]", dt)')
-edit("7.12", "two walls that do not meet", "check_inverse_mass(k)",
+edit("7.12", "accepts two immovable bodies that do not meet", "check_inverse_mass(k)",
      "if phi + dt * u_n > 0.0:\n        return 0.0\n    check_inverse_mass(k)")
 edit("7.12", "closes by less than a nanometre", "-(phi / dt + u_n) / k)",
      "-(phi / dt + u_n) / k if phi + dt * u_n <= -1e-9 else 0.0)")
@@ -330,17 +336,17 @@ def impact_time(phi, v_n, a_n, dt):
     return min(dt, 2.0 * phi / (s - v_n) if v_n < 0.0 else (v_n + s) / -a_n)
 
 
-wrong("7.13", "what is inside meets later")(moment(inside=False))
-wrong("7.13", "what goes up never comes down")(moment(back=False))
+wrong("7.13", "a ball inside meets later")(moment(inside=False))
+wrong("7.13", "a rising ball never comes down")(moment(back=False))
 wrong("7.13", "beyond the end of the step")(moment(limit=False))
 wrong("7.13", "half the acceleration")(moment(pull=1.0))
-wrong("7.13", "divides by next to nothing")(moment(stable=False))
+wrong("7.13", "divides by a tiny acceleration")(moment(stable=False))
 edit("7.13", "without acceleration", "phi = np.maximum(0.0, phi)", "phi, a_n = max(0.0, phi), 0.0")
-edit("7.13", "what is inside is as far outside", "phi = np.maximum(0.0, phi)", "phi = abs(phi)")
-edit("7.13", "what is there at once is not there", "return np.minimum(tau, dt)", "return tau if 0.0 < tau < dt else dt")
-edit("7.13", "what rests there without a pull meets at once", "squared = v_n * v_n",
+edit("7.13", "treats depth as height", "phi = np.maximum(0.0, phi)", "phi = abs(phi)")
+edit("7.13", "ignores an immediate impact", "return np.minimum(tau, dt)", "return tau if 0.0 < tau < dt else dt")
+edit("7.13", "a resting ball without acceleration meets at once", "squared = v_n * v_n",
      "if phi == 0.0 and v_n <= 0.0 and a_n <= 0.0:\n        return 0.0\n    squared = v_n * v_n")
-edit("7.13", "a micrometre touches", "np.maximum(0.0, phi)", "phi if phi > 1e-6 else 0.0")
+edit("7.13", "treats a micrometre as contact", "np.maximum(0.0, phi)", "phi if phi > 1e-6 else 0.0")
 
 
 # 7.14 -----------------------------------------------------------------------------------------------------------
@@ -363,17 +369,17 @@ def bouncing_time(v_n, a_n, e):
 
 
 wrong("7.14", "the way up only")(zeno(flight=1.0))
-edit("7.14", "what is nearly elastic never ends", "e == 1.0", "e > 0.99")
+edit("7.14", "nearly elastic bounces never end", "e == 1.0", "e > 0.99")
 edit("7.14", "slow bounces take no time", "v_n <= 0.0", "v_n <= 1e-3")
-edit("7.14", "what does not leave bounces for ever", "if v_n <= 0.0:",
+edit("7.14", "a ball that does not leave bounces forever", "if v_n <= 0.0:",
      "if a_n >= 0.0 or e == 1.0:\n        return np.inf\n    if v_n <= 0.0:")
-edit("7.14", "a hundred thousandth below 1 is 1", "e == 1.0", "np.isclose(e, 1.0)")
+edit("7.14", "treats e within 1e-5 of 1 as 1", "e == 1.0", "np.isclose(e, 1.0)")
 edit("7.14", "20,000 flights", "-2.0 * v_n / (a_n * (1.0 - e))", "sum(-2.0 * v_n * e**k / a_n for k in range(20_000))")
 wrong("7.14", "one flight")(zeno(sum=lambda e: 1.0))
 wrong("7.14", "1 + e")(zeno(sum=lambda e: 1.0 + e))
 wrong("7.14", "a time below zero")(zeno(down=False))
 wrong("7.14", "e = 1 ends at once")(zeno(endless=False))
-wrong("7.14", "comes back without a pull")(zeno(falls=False))
+wrong("7.14", "comes back without acceleration")(zeno(falls=False))
 
 
 # 7.15 -----------------------------------------------------------------------------------------------------------
@@ -392,11 +398,11 @@ wrong("7.15", "moves with the old velocity")(project(old=True))
 wrong("7.15", "puts it in deeper")(project(back=1.0))
 wrong("7.15", "leaves it inside")(project(back=0.0))
 wrong("7.15", "does not bounce")(project(response=lambda v, n, e: tangential(v, n)))
-wrong("7.15", "asks before it moves")(project(asked="old"))
-edit("7.15", "a tenth of a millimetre is not inside", "phi < 0.0", "phi < -1e-4")
-edit("7.15", "a nanometre is not inside", "phi < 0.0", "phi < -1e-9")
-edit("7.15", "turns round what leaves", "kinematic_response(v, p.n, p.e)", "v - (1.0 + p.e) * (v @ p.n) * p.n")
-edit("7.15", "puts back only what goes in", "phi < 0.0", "phi < 0.0 and v @ p.n < 0.0")
+wrong("7.15", "evaluates the gap before it moves")(project(asked="old"))
+edit("7.15", "ignores a tenth of a millimetre", "phi < 0.0", "phi < -1e-4")
+edit("7.15", "ignores a nanometre", "phi < 0.0", "phi < -1e-9")
+edit("7.15", "reverses a leaving ball", "kinematic_response(v, p.n, p.e)", "v - (1.0 + p.e) * (v @ p.n) * p.n")
+edit("7.15", "puts back only an approaching ball", "phi < 0.0", "phi < 0.0 and v @ p.n < 0.0")
 edit("7.15", "gravity for every acceleration", "acceleration(t, x, v, p)", "p.gravity")
 edit("7.15", "the acceleration at the end of the step", "acceleration(t, x, v, p)", "acceleration(t + dt, x, v, p)")
 edit("7.15", "the acceleration where it would be", "acceleration(t, x, v, p)", "acceleration(t, x + dt * v, v, p)")
@@ -406,7 +412,8 @@ wrong("7.15", "forgets dt")(project(once=False))
 
 # 7.16 -----------------------------------------------------------------------------------------------------------
 @variants
-def back_to(rest=True, goes_on=True, once=False, silent=False, changes=False, fly=worked.fly, lie=worked.lie, bounce=lambda e: e):
+def back_to(rest=True, goes_on=True, once=False, silent=False, changes=False,
+            fly=worked.fly, lie=worked.lie, bounce=lambda e: e):
     def backtracking_step(acceleration, t, x, v, dt, p):
         a, left, given = acceleration(t, x, v, p), dt, x
         for _ in range(1 if once else worked.IMPACTS):
@@ -431,9 +438,9 @@ def back_to(rest=True, goes_on=True, once=False, silent=False, changes=False, fl
 
 right("7.16", "with new names")(back_to())
 wrong("7.16", "stops at the impact")(back_to(goes_on=False))
-wrong("7.16", "gives up without a word")(back_to(silent=True))
+wrong("7.16", "never raises Diverged")(back_to(silent=True))
 wrong("7.16", "changes its input")(back_to(changes=True))
-wrong("7.16", "one impact a step")(back_to(once=True))
+wrong("7.16", "one impact per step")(back_to(once=True))
 wrong("7.16", "flies without the half of a t²")(back_to(fly=lambda x, v, a, t: (x + t * v, v + t * a)))
 wrong("7.16", "every impact elastic")(back_to(bounce=lambda e: 1.0))
 edit("7.16", "projects instead", "a, left = acceleration(t, x, v, p), dt",
@@ -444,17 +451,18 @@ edit("7.16", "gravity for every acceleration", "acceleration(t, x, v, p)", "p.gr
 edit("7.16", "the acceleration at the end of the step", "acceleration(t, x, v, p)", "acceleration(t + dt, x, v, p)")
 edit("7.16", "a new acceleration after each impact", "x = x - gap(x, p) * p.n",
      "x = x - gap(x, p) * p.n\n        a = acceleration(t + dt - left, x, v, p)")
-edit("7.16", "leaves inside what begins there", "x = x - gap(x, p) * p.n", "pass")
-edit("7.16", "what begins inside does not bounce", "a, left = acceleration(t, x, v, p), dt",
+edit("7.16", "does not put back a ball that starts inside", "x = x - gap(x, p) * p.n", "pass")
+edit("7.16", "a ball that starts inside does not bounce", "a, left = acceleration(t, x, v, p), dt",
      "a, left = acceleration(t, x, v, p), dt\n    if gap(x, p) < 0.0 and v @ p.n < 0.0:\n"
      "        x, v = x - gap(x, p) * p.n, tangential(v, p.n)")
-wrong("7.16", "what lies does not slide")(back_to(lie=lambda x, v, a, t, n: (x, 0.0 * v)))
+wrong("7.16", "a resting ball does not slide")(back_to(lie=lambda x, v, a, t, n: (x, 0.0 * v)))
 
 
 # 7.17 -----------------------------------------------------------------------------------------------------------
 @variants
-def sweeping(sweeps=3000, before=True, takes_back=True, friction=lambda mu: mu, check=worked.check_impacts, push=worked.push, rebound=lambda e: e,
-             report=lambda residual: residual, jammed=worked.most_dissipative_impact):
+def sweeping(sweeps=3000, before=True, takes_back=True, friction=lambda mu: mu, check=worked.check_impacts,
+             push=worked.push, rebound=lambda e: e, report=lambda residual: residual,
+             jammed=worked.most_dissipative_impact):
     def solve_impacts(body, r, n, e, mu):
         check(body, r, n, e, mu)
         start, speed = body, worked.largest_speed(body, r)
@@ -483,20 +491,21 @@ wrong("7.17", "five sweeps")(sweeping(sweeps=5))
 wrong("7.17", "restitution of what the sweep has left")(sweeping(before=False))
 wrong("7.17", "without friction")(sweeping(friction=lambda mu: 0.0))
 wrong("7.17", "never rebounds")(sweeping(rebound=lambda e: 0.0))
-wrong("7.17", "does not turn")(sweeping(push=lambda body, r, J: body._replace(v=body.v + body.inv_mass * J)))
-wrong("7.17", "takes any restitution")(sweeping(check=lambda *_: None))
-wrong("7.17", "says that nothing is left")(sweeping(report=lambda residual: 0.0))
+wrong("7.17", "does not rotate")(sweeping(push=lambda body, r, J: body._replace(v=body.v + body.inv_mass * J)))
+wrong("7.17", "accepts any restitution")(sweeping(check=lambda *_: None))
+wrong("7.17", "returns a residual of zero")(sweeping(report=lambda residual: 0.0))
 edit("7.17", "one after the other", "check_impacts(body, r, n, e, mu)", "return one_after_the_other(body, r, n, e, mu)")
 edit("7.17", "all points leave alike", "cone_impulse(u, n[i], K, w[i], mu)", "cone_impulse(u, n[i], K, w.max(), mu)")
 edit("7.17", "none rebounds", "cone_impulse(u, n[i], K, w[i], mu)", "cone_impulse(u, n[i], K, 0.0, mu)")
 edit("7.17", "one normal for all points", "cone_impulse(u, n[i]", "cone_impulse(u, n[0]")
 edit("7.17", "rebounds with the speed of the centre", "point_velocity(after.v, after.omega, r[i])", "after.v")
-edit("7.17", "settled to a hundred billionth of a metre per second", "SETTLED * speed", "1e-11")
-edit("7.17", "nothing where the law has no answer", "most_dissipative_impact(body, r, n, e, mu)", "(body, residual)")
+edit("7.17", "settled at an absolute 1e-11 m/s", "SETTLED * speed", "1e-11")
+edit("7.17", "the body before the impact, if the sweeps do not settle",
+     "most_dissipative_impact(body, r, n, e, mu)", "(body, residual)")
 edit("7.17", "friction of 1 at most", "w[i], mu)", "w[i], min(mu, 1.0))")
-edit("7.17", "what the last sweep has left where the law has no answer", "return most_dissipative_impact(body, r, n, e, mu)",
-     "return after, residual")
-edit("7.17", "without friction where the law has no answer", "most_dissipative_impact(body, r, n, e, mu)",
+edit("7.17", "the result of the last sweep, if the sweeps do not settle",
+     "return most_dissipative_impact(body, r, n, e, mu)", "return after, residual")
+edit("7.17", "without friction, if the sweeps do not settle", "most_dissipative_impact(body, r, n, e, mu)",
      "most_dissipative_impact(body, r, n, e, 0.0)")
 edit("7.17", "100 sweeps", "range(SWEEPS)", "range(100)")
 edit("7.17", "500 sweeps", "range(SWEEPS)", "range(500)")

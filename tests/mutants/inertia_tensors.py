@@ -1,4 +1,4 @@
-"""Lesson 4: wrong signs, halves for wholes, tensors about the wrong point; and the other ways of writing what is right."""
+"""Lesson 4: wrong signs, halves for wholes, tensors about the wrong point; and alternative right answers."""
 
 import numpy as np
 
@@ -27,8 +27,8 @@ edit("4.1", "divides by the number of points", "m @ x / M", "m @ x / m.size")
 edit("4.1", "divides by zero", 'check_positive("total mass [kg]", M)', "pass")
 POSITIVE = 'check_positive("total mass [kg]", M)'
 edit("4.1", "refuses a hole among the points", POSITIVE, 'for k in m: check_positive("mass [kg]", k)')
-edit("4.1", "lets NaN pass", POSITIVE, 'if M <= 0.0: raise BadInput("total mass [kg]", M, "give some")')
-edit("4.1", "lets infinity pass", POSITIVE, 'if not M > 0.0: raise BadInput("total mass [kg]", M, "give some")')
+edit("4.1", "accepts NaN", POSITIVE, 'if M <= 0.0: raise BadInput("total mass [kg]", M, "give some")')
+edit("4.1", "accepts infinity", POSITIVE, 'if not M > 0.0: raise BadInput("total mass [kg]", M, "give some")')
 edit("4.1", "refuses less than a microgram", POSITIVE, 'check_positive("total mass [kg]", M if M > 1e-9 else 0.0)')
 
 
@@ -134,7 +134,8 @@ def capsule(across=lambda r, h: 0.4 * r * r + 0.25 * h * h + 0.375 * h * r):
 
 
 wrong("4.8", "half balls centred on the ends of the cylinder")(capsule(lambda r, h: 0.4 * r * r + 0.25 * h * h))
-wrong("4.8", "half balls moved as if from their flat faces")(capsule(lambda r, h: 0.4 * r * r + (0.5 * h + 0.375 * r) ** 2))
+wrong("4.8", "half balls moved as if from their flat faces")(
+    capsule(lambda r, h: 0.4 * r * r + (0.5 * h + 0.375 * r) ** 2))
 wrong("4.8", "minus sign in the last term")(capsule(lambda r, h: 0.4 * r * r + 0.25 * h * h - 0.375 * h * r))
 
 
@@ -144,7 +145,8 @@ def capsule_inertia(m, radius, length):
     half = 0.5 * (m - m_c)
     up, out = np.array([0.0, 0.0, 0.375 * radius]), np.array([0.0, 0.0, 0.5 * length + 0.375 * radius])
     own = worked.parallel_axes(worked.sphere_inertia(half, radius), -half, up)
-    return worked.cylinder_inertia(m_c, radius, length) + worked.parallel_axes(own, half, out) + worked.parallel_axes(own, half, -out)
+    halves = worked.parallel_axes(own, half, out) + worked.parallel_axes(own, half, -out)
+    return worked.cylinder_inertia(m_c, radius, length) + halves
 
 
 edit("4.8", "mass shared by length", "4.0 / 3.0 * radius", "2.0 * radius")
@@ -182,7 +184,7 @@ edit("4.10", "turned the other way", "inverse(I_body), R)", "inverse(I_body), R.
 edit("4.10", "one over each entry of the diagonal", "inverse(I_body)", "np.diag(1.0 / np.diag(I_body))")
 edit("4.10", "stays in the body's axes", "world_inertia(inverse(I_body), R)", "inverse(I_body)")
 edit("4.10", "an inverse of what has none", "inverse(I_body)", "np.linalg.pinv(I_body)")
-edit("4.10", "refuses what is small", "inverse(I_body)",
+edit("4.10", "refuses small inputs", "inverse(I_body)",
      "inverse(I_body if abs(np.linalg.det(I_body)) > 1e-12 else 0.0 * I_body)")
 
 
@@ -204,7 +206,7 @@ edit("4.11", "changes its input", f"I + {POINT}", f"np.add(I, {POINT}, out=I)")
 # 4.12 -----------------------------------------------------------------------------------------------------------
 @variants
 def carried(offset=lambda y, X: y - X, body=lambda M, X, I: worked.Body(M, X, I)):
-    """The parts' tensors, each carried by offset(x, X)."""
+    """The parts' tensors, each shifted by offset(x, X)."""
     def combine(m, x, I):
         M, X = worked.centre_of_mass(m, x)
         return body(M, X, sum(worked.parallel_axes(J, k, offset(y, X)) for k, y, J in zip(m, x, I)))
@@ -222,7 +224,7 @@ def combine(m, x, I):
     return M, X, worked.parallel_axes(np.sum(I, axis=0) + worked.point_mass_inertia(m, x), -M, X)
 
 
-edit("4.12", "carried with the mass of all", "m[n]", "M")
+edit("4.12", "shifted with the total mass", "m[n]", "M")
 edit("4.12", "divides by zero", "centre_of_mass(m, x)", "np.sum(m), m @ x / np.sum(m)")
 
 
@@ -243,12 +245,12 @@ def principal_axes(I):
 
 
 edit("4.13", "left-handed half of the time", "dot(R[:, 0], cross(R[:, 1], R[:, 2])) < 0.0", "False")
-edit("4.13", "turns a row round", "R[:, 2] = -R[:, 2]", "R[2] = -R[2]")
+edit("4.13", "reverses a row", "R[:, 2] = -R[:, 2]", "R[2] = -R[2]")
 edit("4.13", "moments in no order", "np.linalg.eigh(I)", "np.linalg.eig(I)")
 edit("4.13", "axes in rows", "return moments, R", "return moments, R.T")
 edit("4.13", "descending", "return moments, R", "return moments[::-1], -R[:, ::-1]")
 edit("4.13", "diagonal entries for moments", "return moments, R", "return np.sort(np.diag(I)), R")
-edit("4.13", "turns all three columns round in the end", "return moments, R", "return moments, -R")
+edit("4.13", "reverses all three columns at the end", "return moments, R", "return moments, -R")
 
 
 # 4.14 -----------------------------------------------------------------------------------------------------------
@@ -256,7 +258,7 @@ edit("4.13", "turns all three columns round in the end", "return moments, R", "r
 def judged(lowest=lambda a, c: a <= 1e-14 * c, highest=lambda a, b, c: c > (a + b) * (1.0 + 1e-14), symmetric=True,
            finite=True,
            asymmetry=lambda I: np.max(np.abs(I - I.T)), equal=1e-14, named=lambda a, c: (a, c)):
-    """A check with these two questions about the moments."""
+    """A check with these two tests of the moments."""
     def check_inertia(I):
         if finite:
             check_finite("an entry of the inertia tensor [kg m²]", I)
@@ -272,24 +274,24 @@ def judged(lowest=lambda a, c: a <= 1e-14 * c, highest=lambda a, b, c: c > (a + 
     return check_inertia
 
 
-wrong("4.14", "never asks about the sum")(judged(highest=lambda a, b, c: False))
-wrong("4.14", "lets next to nothing pass")(judged(lambda a, c: a <= 0.0))
+wrong("4.14", "does not test the sum")(judged(highest=lambda a, b, c: False))
+wrong("4.14", "accepts moments near zero")(judged(lambda a, c: a <= 0.0))
 wrong("4.14", "a tolerance of 1e-14 kg m²")(judged(lambda a, c: a <= 1e-14))
 wrong("4.14", "a thousand million times too tolerant")(judged(highest=lambda a, b, c: c > (a + b) * (1.0 + 1e-9)))
 wrong("4.14", "asks Ixy and Iyx only")(judged(asymmetry=lambda I: abs(I[0, 1] - I[1, 0])))
 wrong("4.14", "wants symmetry to the last digit")(judged(equal=0.0))
-wrong("4.14", "is content with NumPy's idea of close")(judged(equal=1e-5))
+wrong("4.14", "tests symmetry with NumPy's isclose")(judged(equal=1e-5))
 wrong("4.14", "names another moment")(judged(named=lambda a, c: (c, a)))
-wrong("4.14", "lets zero pass")(judged(lambda a, c: a < 0.0))
-wrong("4.14", "a plate is condemned by round-off")(judged(highest=lambda a, b, c: c >= a + b))
+wrong("4.14", "accepts zero")(judged(lambda a, c: a < 0.0))
+wrong("4.14", "refuses a plate because of round-off")(judged(highest=lambda a, b, c: c >= a + b))
 wrong("4.14", "does not look below the diagonal")(judged(symmetric=False))
-wrong("4.14", "NaN passes")(judged(finite=False))
+wrong("4.14", "accepts NaN")(judged(finite=False))
 wrong("4.14", "a tolerance in kg m², blind to small bodies")(judged(lambda a, c: a <= 1e-6))
 right("4.14", "with eigenvalues only")(judged())
 edit("4.14", "looks at the diagonal instead of the principal moments", "moments, _ = principal_axes(I)",
      "moments = np.sort(np.diag(I))")
 edit("4.14", "a sum in kg m², blind to small bodies", "(1.0 + TENSOR_ROUND_OFF)", "1.0 + TENSOR_ROUND_OFF")
-edit("4.14", "NaN passes off the diagonal", "kg m²]\", I)", "kg m²]\", np.diag(I))")
+edit("4.14", "accepts NaN off the diagonal", "kg m²]\", I)", "kg m²]\", np.diag(I))")
 edit("4.14", "copies the words for the largest moment", "the largest principal moment", "the smallest principal moment")
 edit("4.14", "copies the words for the smallest moment", "the smallest principal moment",
      "the largest principal moment")
@@ -304,12 +306,10 @@ def integrals(x, faces):
     return np.sum(w) / 6.0, w @ s / 24.0, sum((u.T * w) @ u for u in (a, b, c, s)) / 120.0
 
 
-@right("4.15", "all triangles at once")
-def mesh_integrals(x, faces):
-    return integrals(x, faces)
+right("4.15", "all triangles at once")(integrals)
 
 
-@right("4.15", "seen from the middle of the corners, and carried back")
+@right("4.15", "relative to the mean of the corners, and shifted back")
 def mesh_integrals(x, faces):
     o = np.mean(x, axis=0)
     V, first, second = integrals(x - o, faces)
@@ -332,10 +332,10 @@ edit("4.15", "middle of the triangle, not of the tetrahedron", "w / 24.0", "w / 
 @variants
 def closing(ranged=True, directed=True, counted=True, twice=True, spare=True, named=lambda edges: edges[0][0],
             number=lambda i, j, faces: (i, j)):
-    """Every edge is met by as many that go back, with questions that may be wrong or too many."""
+    """Each edge needs as many reversed edges, with tests that may be wrong or too many."""
     def check_closed(count, faces):
         if ranged and not 0 <= faces.min() <= faces.max() < count:
-            raise BadInput("a triangle's corner", [k for k in faces.ravel() if not 0 <= k < count][0],
+            raise BadInput("a triangle's corner", next(k for k in faces.ravel() if not 0 <= k < count),
                            "give a number of a corner")
         every = [(int(i), int(j)) for f in faces for i, j in zip(f, np.roll(f, -1))]
         either = [tuple(sorted(edge)) for edge in every]
@@ -353,10 +353,10 @@ def closing(ranged=True, directed=True, counted=True, twice=True, spare=True, na
 
 right("4.16", "counting every edge")(closing())
 wrong("4.16", "counts the triangles at each edge, whatever their direction")(closing(directed=False))
-wrong("4.16", "looks for a partner, but not for as many")(closing(counted=False))
+wrong("4.16", "looks for one reversed edge, not for equal counts")(closing(counted=False))
 wrong("4.16", "does not look at the numbers")(closing(ranged=False))
 wrong("4.16", "names corner 0, whichever is open")(closing(named=lambda edges: 0))
-wrong("4.16", "wants every edge once there and once back")(closing(twice=False))
+wrong("4.16", "wants each edge exactly once in each direction")(closing(twice=False))
 wrong("4.16", "wants every corner to be used")(closing(spare=False))
 wrong("4.16", "numbers the edges by triangles, not by corners")(closing(number=lambda i, j, faces: i * len(faces) + j))
 
@@ -385,7 +385,9 @@ def mesh_body(density, x, faces):
         corners = np.stack([0.0 * x[0], x[i] - x[0], x[j] - x[0], x[k] - x[0]])
         V, s = np.linalg.det(corners[1:]) / 6.0, corners.sum(axis=0)
         second = V / 20.0 * (corners.T @ corners + np.outer(s, s)) - V * np.outer(s, s) / 16.0
-        m, centres, tensors = m + [density * V], centres + [s / 4.0], tensors + [density * from_covariance(second)]
+        m.append(density * V)
+        centres.append(s / 4.0)
+        tensors.append(density * from_covariance(second))
     body = worked.combine(np.array(m), np.stack(centres), np.stack(tensors))
     return whole.m, x[0] + body.x, body.I
 
@@ -401,15 +403,16 @@ edit("4.17", "the mean of the corners for the centre", "x[0] + centre", "np.sum(
 edit("4.17", "the tensor about the mean of the corners", "first / volume", "np.sum(offsets, axis=0) / x.shape[0]")
 edit("4.17", "a mesh inside-out gets the volume it should have had", "volume <= TENSOR", "abs(volume) <= TENSOR")
 edit("4.17", "does not check that the mesh is closed", "check_closed(x.shape[0], faces)", "pass")
-edit("4.17", "lets a flat mesh pass when round-off is kind", "TENSOR_ROUND_OFF * np.max(np.abs(offsets)) ** 3", "0.0")
+edit("4.17", "accepts a flat mesh if its round-off volume is positive",
+     "TENSOR_ROUND_OFF * np.max(np.abs(offsets)) ** 3", "0.0")
 edit("4.17", "refuses what is small, whatever its shape", "TENSOR_ROUND_OFF * np.max(np.abs(offsets)) ** 3",
      "TENSOR_ROUND_OFF")
 edit("4.17", "a length for a volume", "np.max(np.abs(offsets)) ** 3", "np.max(np.abs(offsets))")
 edit("4.17", "how far the others are above the first corner, not from it", "np.max(np.abs(offsets))", "np.max(offsets)")
 edit("4.17", "how far the others are below the first corner, not from it", "np.max(np.abs(offsets))",
      "np.max(-offsets)")
-edit("4.17", "lets numbers pass that no corner has", "x.shape[0], faces", "np.max(faces) + 1, faces")
-edit("4.17", "lets an infinite density pass", 'check_positive("density [kg/m³]", density)',
+edit("4.17", "accepts indices of no corner", "x.shape[0], faces", "np.max(faces) + 1, faces")
+edit("4.17", "accepts an infinite density", 'check_positive("density [kg/m³]", density)',
      'if not density > 0.0: raise BadInput("density [kg/m³]", density, "give some")')
 edit("4.17", "a thousand times too tolerant", "TENSOR_ROUND_OFF * np.max", "1e-17 * np.max")
 edit("4.17", "a thousand times too strict", "TENSOR_ROUND_OFF * np.max", "1e-11 * np.max")

@@ -1,4 +1,4 @@
-"""Lesson 1: the mistakes that students make with a step, and the other ways of writing it."""
+"""Lesson 1: typical mistakes in a step, and alternative right answers."""
 
 import numpy as np
 
@@ -22,7 +22,7 @@ edit("1.1", "moves with the new velocity", "x + dt * v,", "x + dt * (v + dt * ac
 edit("1.1", "forgets dt in the velocity", "v + dt * acceleration", "v + acceleration")
 edit("1.1", "evaluates at the end of the step", "acceleration(t, x, v, p)", "acceleration(t, x + dt * v, v, p)")
 edit("1.1", "changes its input", "v + dt * acceleration(t, x, v, p)", "np.add(v, dt * acceleration(t, x, v, p), out=v)")
-edit("1.1", "reads the clock at the end", "acceleration(t, x", "acceleration(t + dt, x")
+edit("1.1", "evaluates at t + dt", "acceleration(t, x", "acceleration(t + dt, x")
 
 
 # 1.2 ------------------------------------------------------------------------------------------------------------
@@ -41,7 +41,7 @@ edit("1.2", "forgets to move the clock", "acceleration(t + 0.5 * dt", "accelerat
 # 1.3 ------------------------------------------------------------------------------------------------------------
 @variants
 def runge_kutta(nodes=(0, 0.5, 0.5, 1), weights=(1 / 6, 1 / 3, 1 / 3, 1 / 6)):
-    """A method as a table: each slope is reached along the slope before it, nodes · dt away."""
+    """A Runge–Kutta method from its table: each stage starts nodes · dt along the slope of the one before."""
     def step(acceleration, t, x, v, dt, p):
         slope, total_x, total_v = (v, acceleration(t, x, v, p)), 0.0, 0.0
         for c, w in zip(nodes, weights):
@@ -57,9 +57,9 @@ wrong("1.3", "weights of the middle and the ends swapped")(runge_kutta(weights=(
 wrong("1.3", "last slope in the middle")(runge_kutta(nodes=(0, 0.5, 0.5, 0.5)))
 right("1.3", "from its table")(runge_kutta())
 edit("1.3", "position by Euler, velocity by Runge–Kutta", "x + dt / 6.0 * (v + 2.0 * v2 + 2.0 * v3 + v4)", "x + dt * v")
-edit("1.3", "the clock stands still in the middle", "acceleration(t + 0.5 * dt, x + 0.5 * dt * v2",
+edit("1.3", "does not advance t to the midpoint", "acceleration(t + 0.5 * dt, x + 0.5 * dt * v2",
      "acceleration(t, x + 0.5 * dt * v2")
-edit("1.3", "the clock stands still at the end", "acceleration(t + dt", "acceleration(t")
+edit("1.3", "does not advance t to the end", "acceleration(t + dt", "acceleration(t")
 
 
 # 1.4 ------------------------------------------------------------------------------------------------------------
@@ -105,7 +105,7 @@ edit("1.6", "new acceleration at the old time", "acceleration(t + dt", "accelera
 @variants
 def implicit_euler(time=1.0, place=1.0, enough=lambda k, delta, w: delta <= 1e-12 * max(1.0, np.max(np.abs(w))),
                    silent=False):
-    """Newton's method with an acceleration, a question or an end that may be wrong."""
+    """Newton's method with an acceleration, a stopping test or an end that may be wrong."""
     def implicit_euler_step(acceleration, t, x, v, dt, p):
         w = v.copy()
         for k in range(worked.NEWTON_LIMIT):
@@ -120,22 +120,26 @@ def implicit_euler(time=1.0, place=1.0, enough=lambda k, delta, w: delta <= 1e-1
     return implicit_euler_step
 
 
-right("1.7", "with a question for the end")(implicit_euler())
+right("1.7", "with a stopping test")(implicit_euler())
 wrong("1.7", "acceleration at the old time")(implicit_euler(time=0.0))
 wrong("1.7", "acceleration at the old place")(implicit_euler(place=0.0))
-wrong("1.7", "never gives up: returns whatever it has")(implicit_euler(silent=True))
+wrong("1.7", "never raises: returns the last iterate")(implicit_euler(silent=True))
 wrong("1.7", "one linearised step, no loop")(implicit_euler(enough=lambda k, delta, w: True))
 wrong("1.7", "stops at a tenth")(implicit_euler(enough=lambda k, delta, w: delta <= 0.1))
 edit("1.7", "one Euler step instead of an equation", "w = v.copy()",
      "w = v + dt * acceleration(t, x, v, p); return x + dt * w, w")
-edit("1.7", "asks only how much faster", "np.max(np.abs(delta))", "np.max(delta)")
+edit("1.7", "tests only positive corrections", "np.max(np.abs(delta))", "np.max(delta)")
 
 
 @right("1.7", "by SciPy's root finder")
 def implicit_euler_step(acceleration, t, x, v, dt, p):
     from scipy.optimize import root
-    found = root(lambda w: w - v.ravel() - dt * acceleration(t + dt, x + dt * w.reshape(v.shape), w.reshape(v.shape), p).ravel(),
-                 v.ravel(), tol=1e-13)
+
+    def residual(flat):
+        w = flat.reshape(v.shape)
+        return (w - v - dt * acceleration(t + dt, x + dt * w, w, p)).ravel()
+
+    found = root(residual, v.ravel(), tol=1e-13)
     if np.max(np.abs(found.fun)) > 1e-10:
         raise Diverged("Newton's method did not converge at dt [s]", dt, "take a smaller step")
     w = found.x.reshape(v.shape)
@@ -180,7 +184,7 @@ def observed_order(dts, errors):
     return np.polyfit(np.log(dts), np.log(errors), 1)[0]
 
 
-edit("1.10", "leaves runs without error to the logarithm", 'check_positive("error [-]", errors[n])', "pass")
+edit("1.10", "accepts an error of zero", 'check_positive("error [-]", errors[n])', "pass")
 edit("1.10", "slope without logarithms", "xi = np.log(dts) - np.mean(np.log(dts))",
      "return np.polyfit(dts, errors, 1)[0]")
 edit("1.10", "only the two ends", "np.sum(xi * eta) / np.sum(xi * xi)", "(eta[-1] - eta[0]) / (xi[-1] - xi[0])")

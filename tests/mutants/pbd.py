@@ -1,4 +1,4 @@
-"""Lesson 8: projections with a sign, a mass, a step or an order of their own gone astray."""
+"""Lesson 8: projections with a wrong sign, mass, step or order."""
 
 import numpy as np
 
@@ -38,9 +38,9 @@ wrong("8.1", "no unit vector")(link(scaled=False))
 wrong("8.1", "never too short")(link(absolute=True))
 wrong("8.1", "squares of lengths")(link(squared=True))
 wrong("8.1", "the strain")(link(ratio=True))
-wrong("8.1", "takes ends that coincide")(link(checked=False))
-edit("8.1", "refuses what is short", "length == 0.0", "length < 1e-9")
-edit("8.1", "a picometre is no length", "length == 0.0", "length < 1e-12")
+wrong("8.1", "accepts coincident ends")(link(checked=False))
+edit("8.1", "refuses short segments", "length == 0.0", "length < 1e-9")
+edit("8.1", "treats a picometre as zero", "length == 0.0", "length < 1e-12")
 edit("8.1", "never too long", "length - rest", "min(0.0, length - rest)")
 edit("8.1", "towards where it should go", "r / length", "r / length * np.sign(rest - length)")
 
@@ -59,15 +59,15 @@ def projecting(sign=-1.0, mass=True, total=lambda w, g: np.sum(w * np.sum(g * g,
 
 
 right("8.2", "all points at once")(projecting())
-wrong("8.2", "makes it worse")(projecting(sign=1.0))
+wrong("8.2", "moves the wrong way")(projecting(sign=1.0))
 wrong("8.2", "every point alike")(projecting(mass=False))
 wrong("8.2", "forgets the masses below")(projecting(total=lambda w, g: np.sum(g * g)))
 wrong("8.2", "takes gradients for unit vectors")(projecting(total=lambda w, g: np.sum(w)))
 wrong("8.2", "half of it")(projecting(sign=-0.5))
-wrong("8.2", "takes what nothing can meet")(projecting(checked=False))
+wrong("8.2", "accepts an unsatisfiable constraint")(projecting(checked=False))
 edit("8.2", "every point on its own", "-C / total * inv_mass[k]",
      "-C / np.sum(gradients[k] ** 2) * (inv_mass[k] > 0.0)")
-edit("8.2", "refuses what is light", "total == 0.0", "total < 1e-6")
+edit("8.2", "refuses small masses", "total == 0.0", "total < 1e-6")
 edit("8.2", "refuses only where all masses are infinite or all gradients 0", "total == 0.0",
      "np.all(inv_mass == 0.0) or np.all(gradients == 0.0)")
 
@@ -90,13 +90,13 @@ right("8.3", "with a mask")(predicting())
 wrong("8.3", "half of the force")(predicting(half=0.5))
 wrong("8.3", "immovable points stop")(predicting(stops=True))
 wrong("8.3", "immovable points fall")(predicting(falls=True))
-wrong("8.3", "the clock stands still")(predicting(clock=0.0))
+wrong("8.3", "does not advance t")(predicting(clock=0.0))
 wrong("8.3", "the force of rest")(predicting(speed=0.0))
 wrong("8.3", "changes its input")(predicting(changes=True))
-edit("8.3", "what is heavy falls more slowly", "dt * dt * a[k, c]", "dt * dt * a[k, c] * min(1.0, net.inv_mass[k])")
+edit("8.3", "heavy points fall more slowly", "dt * dt * a[k, c]", "dt * dt * a[k, c] * min(1.0, net.inv_mass[k])")
 wrong("8.3", "no force")(predicting(half=0.0))
-edit("8.3", "what is heavy is immovable", "net.inv_mass[k] > 0.0", "net.inv_mass[k] > 1e-6")
-edit("8.3", "changes what the acceleration has returned", "a = acceleration(t, x, v, net)",
+edit("8.3", "treats heavy points as immovable", "net.inv_mass[k] > 0.0", "net.inv_mass[k] > 1e-6")
+edit("8.3", "changes the array that the acceleration returned", "a = acceleration(t, x, v, net)",
      "a = acceleration(t, x, v, net)\n    a[net.inv_mass == 0.0] = 0.0")
 
 
@@ -158,12 +158,12 @@ def projecting_step(enough=lambda done, change, longest: change <= 1e-12 * longe
     return projection_step
 
 
-wrong("8.5", "one round")(projecting_step(enough=lambda done, change, longest: True))
-wrong("8.5", "two rounds")(projecting_step(enough=lambda done, change, longest: done == 1))
+wrong("8.5", "one iteration")(projecting_step(enough=lambda done, change, longest: True))
+wrong("8.5", "two iterations")(projecting_step(enough=lambda done, change, longest: done == 1))
 wrong("8.5", "a trillionth of a metre, however large the net")(projecting_step(enough=lambda done, change,
                                                                                longest: change <= 1e-12))
-edit("8.5", "asks only how far up and to the right", "np.max(np.abs(change))", "np.max(change)")
-wrong("8.5", "does not say that it failed")(projecting_step(gives_up=False))
+edit("8.5", "tests only positive corrections", "np.max(np.abs(change))", "np.max(change)")
+wrong("8.5", "does not raise Diverged")(projecting_step(gives_up=False))
 wrong("8.5", "keeps the predicted velocity")(projecting_step(speed=lambda new, x, goal, v, dt: (goal - x) / dt))
 wrong("8.5", "keeps the old velocity")(projecting_step(speed=lambda new, x, goal, v, dt: v))
 wrong("8.5", "forgets the prediction")(projecting_step(force=False))
@@ -173,11 +173,11 @@ edit("8.5", "puts immovable points back", "new = new + change",
      "change[net.inv_mass == 0.0] = 0.0\n        new = new + change")
 edit("8.5", "gravity for any acceleration", "predict(acceleration, t,", "predict(falling_acceleration, t,")
 edit("8.5", "the acceleration at t + dt", "predict(acceleration, t,", "predict(acceleration, t + dt,")
-edit("8.5", "λ = 0 in every round", "change, lam = newton", "change, _ = newton")
+edit("8.5", "λ = 0 in every iteration", "change, lam = newton", "change, _ = newton")
 edit("8.5", "the first link for the longest", "np.max(net.rest)", "net.rest[0]")
 edit("8.5", "the last link for the longest", "np.max(net.rest)", "net.rest[-1]")
-edit("8.5", "no more than eight rounds", "range(NEWTON_LIMIT)", "range(8)")
-edit("8.5", "takes NaN for an end", "np.max(np.abs(change)) <= NEWTON_TOLERANCE * longest",
+edit("8.5", "at most eight iterations", "range(NEWTON_LIMIT)", "range(8)")
+edit("8.5", "accepts NaN as converged", "np.max(np.abs(change)) <= NEWTON_TOLERANCE * longest",
      "not np.max(np.abs(change)) > NEWTON_TOLERANCE * longest")
 
 
@@ -191,8 +191,8 @@ def sweeping(stiff=True, by_mass=True, sign=1.0, jacobi=False, backwards=False, 
         for s in reversed(order) if backwards else order:
             i, j = net.i[s], net.j[s]
             r = (seen if jacobi else new)[i] - (seen if jacobi else new)[j]
-            w_i, w_j = (net.inv_mass[i], net.inv_mass[j]) if by_mass else (float(net.inv_mass[i] > 0.0), float(net.inv_mass[j] > 0.0))
-            w_i, w_j = (w_i, w_j) if held else (1.0, 1.0)
+            weight = lambda k: net.inv_mass[k] if by_mass else float(net.inv_mass[k] > 0.0)
+            w_i, w_j = (weight(i), weight(j)) if held else (1.0, 1.0)
             if not r.any():
                 if checked:
                     raise NO_LENGTH
@@ -211,11 +211,11 @@ wrong("8.6", "the wrong way")(sweeping(sign=-1.0))
 wrong("8.6", "all links at once")(sweeping(jacobi=True))
 wrong("8.6", "from the last to the first")(sweeping(backwards=True))
 wrong("8.6", "changes its input")(sweeping(changes=True))
-wrong("8.6", "takes ends that coincide")(sweeping(checked=False))
+wrong("8.6", "accepts coincident ends")(sweeping(checked=False))
 wrong("8.6", "moves the immovable")(sweeping(held=False))
 edit("8.6", "a thread: never too short", "share = net.stiffness[s]",
      "share = net.stiffness[s] * (squared > net.rest[s] ** 2)")
-edit("8.6", "refuses what is short", "squared == 0.0", "squared < 1e-12")
+edit("8.6", "refuses short segments", "squared == 0.0", "squared < 1e-12")
 edit("8.6", "link s joins points s and s + 1", "i, j = net.i[s], net.j[s]", "i, j = s, s + 1")
 edit("8.6", "the rest length of the first link", "net.rest[s]", "net.rest[0]")
 edit("8.6", "the stiffness of the first link", "net.stiffness[s]", "net.stiffness[0]")
@@ -254,8 +254,9 @@ def sagging(left=lambda s, n: (1.0 - s) ** n, step=lambda dt: dt * dt, below=lam
     return pbd_sag
 
 
-right("8.8", "by what is put back")(lambda g, dt, stiffness, sweeps: g * dt**2 / (1.0 - (1.0 - stiffness) ** sweeps) - g * dt**2)
-wrong("8.8", "what the sweeps take, not what they leave")(sagging(left=lambda s, n: s**n))
+right("8.8", "by what is put back")(
+    lambda g, dt, stiffness, sweeps: g * dt**2 / (1.0 - (1.0 - stiffness) ** sweeps) - g * dt**2)
+wrong("8.8", "the share that the sweeps remove, not what they leave")(sagging(left=lambda s, n: s**n))
 wrong("8.8", "falls once only")(sagging(below=lambda S: 1.0))
 wrong("8.8", "before the sweeps")(sagging(above=lambda S: 1.0))
 wrong("8.8", "falls by ½ g dt²")(sagging(step=lambda dt: 0.5 * dt * dt))
@@ -265,7 +266,8 @@ wrong("8.8", "n times as stiff")(sagging(left=lambda s, n: max(0.0, 1.0 - n * s)
 
 # 8.9 ------------------------------------------------------------------------------------------------------------
 @variants
-def folding(angle="atan2", wrapped=lambda C: np.pi - (np.pi - C) % (2.0 * np.pi), sign=1.0, wings=1.0, leverage=True, closed=True, checked=True, swapped=False, slope=1.0):
+def folding(angle="atan2", wrapped=lambda C: np.pi - (np.pi - C) % (2.0 * np.pi), sign=1.0,
+            wings=1.0, leverage=True, closed=True, checked=True, swapped=False, slope=1.0):
     def fold_constraint(x, fold):
         a, b, c, d = x
         e, N_c, N_d = b - a, np.cross(a - c, b - c), np.cross(b - d, a - d)
@@ -274,7 +276,10 @@ def folding(angle="atan2", wrapped=lambda C: np.pi - (np.pi - C) % (2.0 * np.pi)
         e_hat = e / size(e)
         with np.errstate(all="ignore"):
             phi = np.arctan2(np.cross(N_c, N_d) @ e_hat, N_c @ N_d)
-            phi = phi if angle == "atan2" else np.arccos(np.clip(N_c @ N_d / size(N_c) / size(N_d), -1.0, 1.0)) if angle == "acos" else np.pi - phi
+            if angle == "acos":
+                phi = np.arccos(np.clip(N_c @ N_d / size(N_c) / size(N_d), -1.0, 1.0))
+            elif angle != "atan2":
+                phi = np.pi - phi
             C = wrapped(sign * phi - fold)
             g_c, g_d = (-wings * size(e) ** slope * N / (N @ N) for N in (N_c, N_d))
         share = ((b - c) @ e / (e @ e), (b - d) @ e / (e @ e)) if leverage else (0.5, 0.5)
@@ -296,17 +301,17 @@ wrong("8.9", "gradients of the other sign")(folding(wings=-1.0))
 wrong("8.9", "gradients without the edge's length")(folding(slope=0.0))
 wrong("8.9", "half of each wing to each end of the edge")(folding(leverage=False))
 wrong("8.9", "leverage of the other end")(folding(swapped=True))
-wrong("8.9", "pushes from outside")(folding(closed=False))
-wrong("8.9", "takes a triangle without area")(folding(checked=False))
+wrong("8.9", "net force not zero")(folding(closed=False))
+wrong("8.9", "accepts a triangle without area")(folding(checked=False))
 edit("8.9", "leverage of c held between 0 and 1", "np.sum((b - c) * e) / squared",
      "min(1.0, max(0.0, np.sum((b - c) * e) / squared))")
 edit("8.9", "leverage of d held between 0 and 1", "np.sum((b - d) * e) / squared",
      "min(1.0, max(0.0, np.sum((b - d) * e) / squared))")
 edit("8.9", "taken into [−π, π)", "np.ceil((turn - np.pi) / (2.0 * np.pi))", "np.floor((turn + np.pi) / (2.0 * np.pi))")
-edit("8.9", "goes round once", "np.ceil((turn - np.pi) / (2.0 * np.pi))",
+edit("8.9", "removes one full turn only", "np.ceil((turn - np.pi) / (2.0 * np.pi))",
      "np.sign(np.ceil((turn - np.pi) / (2.0 * np.pi)))")
-edit("8.9", "asks for the area of one triangle only", "squared_c == 0.0 or squared_d == 0.0", "squared_d == 0.0")
-edit("8.9", "refuses what is small", "squared_c == 0.0 or squared_d == 0.0", "squared_c < 1e-9 or squared_d < 1e-9")
+edit("8.9", "tests the area of one triangle only", "squared_c == 0.0 or squared_d == 0.0", "squared_d == 0.0")
+edit("8.9", "refuses small inputs", "squared_c == 0.0 or squared_d == 0.0", "squared_c < 1e-9 or squared_d < 1e-9")
 
 
 # 8.10 -----------------------------------------------------------------------------------------------------------
@@ -323,13 +328,13 @@ def ball(sign=1.0, n_sign=1.0, centred=True, scaled=True, safe=True):
 
 right("8.10", "with norm")(ball())
 edit("8.10", "a bowl", "distance - obstacle.radius, r / distance", "obstacle.radius - distance, -r / distance")
-edit("8.10", "a middle of a micrometre", "distance > 0.0", "distance > 1e-6")
-edit("8.10", "a middle of the size of round-off", "distance > 0.0", "distance > 1e-14")
+edit("8.10", "treats a micrometre around the centre as the centre", "distance > 0.0", "distance > 1e-6")
+edit("8.10", "treats round-off around the centre as the centre", "distance > 0.0", "distance > 1e-14")
 wrong("8.10", "positive inside")(ball(sign=-1.0))
 wrong("8.10", "inwards")(ball(n_sign=-1.0))
 wrong("8.10", "around the origin")(ball(centred=False))
 wrong("8.10", "no unit vector")(ball(scaled=False))
-wrong("8.10", "divides by no distance")(ball(safe=False))
+wrong("8.10", "divides by a distance of zero")(ball(safe=False))
 
 
 # 8.11 -----------------------------------------------------------------------------------------------------------
@@ -346,7 +351,7 @@ def outside(asks=lambda phi: phi < 0.0, sign=-1.0, held=True, changes=False, sha
 
 
 right("8.11", "with a new array")(outside())
-right("8.11", "on the skin is as good as inside")(outside(asks=lambda phi: phi <= 0.0))
+right("8.11", "treats the surface as inside")(outside(asks=lambda phi: phi <= 0.0))
 wrong("8.11", "pulls everything onto the skin")(outside(asks=lambda phi: True))
 wrong("8.11", "pulls in what is outside")(outside(asks=lambda phi: phi > 0.0))
 wrong("8.11", "deeper")(outside(sign=1.0))
@@ -354,7 +359,7 @@ wrong("8.11", "half of the way")(outside(share=0.5))
 wrong("8.11", "moves the immovable")(outside(held=False))
 wrong("8.11", "changes its input")(outside(changes=True))
 edit("8.11", "five centimetres are not inside", "phi < 0.0", "phi < -0.05")
-edit("8.11", "what is heavy moves less", "x[k] -= phi * n", "x[k] -= min(1.0, inv_mass[k]) * phi * n")
+edit("8.11", "heavy points move less", "x[k] -= phi * n", "x[k] -= min(1.0, inv_mass[k]) * phi * n")
 edit("8.11", "all like the first", "surface(x[k], obstacle)", "surface(x[0], obstacle)")
 edit("8.11", "the floor for any surface", "surface(x[k], obstacle)", "floor_gap(x[k], obstacle)")
 
@@ -377,15 +382,16 @@ right("8.12", "in two lines")(giving())
 wrong("8.12", "forgets what it has pulled")(giving(memory=0.0))
 wrong("8.12", "soft above, stiff below")(giving(below=0.0))
 wrong("8.12", "the wrong way")(giving(sign=1.0))
-wrong("8.12", "takes a negative compliance")(giving(checked=False))
+wrong("8.12", "accepts a negative compliance")(giving(checked=False))
 edit("8.12", "the error without its sign", "-C - alpha_scaled", "-abs(C) - alpha_scaled")
-wrong("8.12", "takes NaN")(giving(nan=False))
-wrong("8.12", "takes a constraint with no free mass")(giving(weighed=False))
+wrong("8.12", "accepts NaN")(giving(nan=False))
+wrong("8.12", "accepts a constraint without movable mass")(giving(weighed=False))
 
 
 # 8.13 -----------------------------------------------------------------------------------------------------------
 @variants
-def soft_sweep(adds=True, kept=True, jacobi=False, mass=True, sign=1.0, changes=False, checked=True, one_alpha=False, weight=1.0, stiffness=False, power=2):
+def soft_sweep(adds=True, kept=True, jacobi=False, mass=True, sign=1.0, changes=False,
+               checked=True, one_alpha=False, weight=1.0, stiffness=False, power=2):
     def compliant_sweep(x, Lam, dt, net):
         seen, new, total = x.copy(), (x if changes else x.copy()), (Lam if changes else Lam.copy())
         for s in range(net.i.size):
@@ -397,7 +403,8 @@ def soft_sweep(adds=True, kept=True, jacobi=False, mass=True, sign=1.0, changes=
                 continue
             w_i, w_j = net.inv_mass[i], net.inv_mass[j]
             alpha = net.alpha[0] if one_alpha else net.alpha[s]
-            change = worked.compliant_multiplier(size(r) - net.rest[s], total[s] if kept else 0.0, weight * (w_i + w_j), alpha / dt**power)
+            change = worked.compliant_multiplier(size(r) - net.rest[s], total[s] if kept else 0.0,
+                                                 weight * (w_i + w_j), alpha / dt**power)
             change *= net.stiffness[s] if stiffness else 1.0
             total[s] = total[s] + change if adds else change
             new[i] = new[i] + sign * (w_i if mass else 1.0) * change * r / size(r)
@@ -413,7 +420,7 @@ wrong("8.13", "all links at once")(soft_sweep(jacobi=True))
 wrong("8.13", "forgets the masses")(soft_sweep(mass=False))
 wrong("8.13", "the wrong way")(soft_sweep(sign=-1.0))
 wrong("8.13", "changes its input")(soft_sweep(changes=True))
-wrong("8.13", "takes ends that coincide")(soft_sweep(checked=False))
+wrong("8.13", "accepts coincident ends")(soft_sweep(checked=False))
 wrong("8.13", "one compliance for all")(soft_sweep(one_alpha=True))
 wrong("8.13", "PBD's stiffness on top")(soft_sweep(stiffness=True))
 wrong("8.13", "α without dt²")(soft_sweep(power=0))
@@ -465,7 +472,7 @@ right("8.15", "with NumPy's product")(readiness())
 wrong("8.15", "moments about the world's axes")(readiness(turned=False))
 wrong("8.15", "turned the wrong way")(readiness(back=True))
 wrong("8.15", "does not move, only turns")(readiness(centre=0.0))
-wrong("8.15", "does not turn")(readiness(arm=lambda r, n: 0.0 * r))
+wrong("8.15", "does not rotate")(readiness(arm=lambda r, n: 0.0 * r))
 wrong("8.15", "the arm along n")(readiness(arm=lambda r, n: (r @ n) * n))
 edit("8.15", "right only for masses above 1 kg", "1.0 / m", "1.0 / max(m, 1.0)")
 wrong("8.15", "multiplies by the moments")(readiness(moments=lambda I: I))
@@ -510,7 +517,7 @@ wrong("8.17", "not for −q")(rate(by_w=False))
 wrong("8.17", "an angle, no rate")(rate(per_step=False))
 wrong("8.17", "backwards")(rate(sign=-1.0))
 wrong("8.17", "the product of both")(rate(back=False))
-edit("8.17", "needs an axis to turn about", "return 2.0 / (turn[0] * dt) * turn[1:]",
+edit("8.17", "fails without rotation", "return 2.0 / (turn[0] * dt) * turn[1:]",
      "size = np.sqrt(np.sum(turn[1:] ** 2))\n    return 2.0 * size / (turn[0] * dt) * (turn[1:] / size)")
 
 

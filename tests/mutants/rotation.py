@@ -1,4 +1,4 @@
-"""Lesson 5: signs, sides, frames and halves that go astray, and the other ways of writing a rotation."""
+"""Lesson 5: wrong signs, sides, frames and halves, and alternative right answers."""
 
 import numpy as np
 
@@ -61,7 +61,8 @@ edit("5.4", "R and its transpose exchanged", "R @ ((R.T @ L) / I_body)", "R.T @ 
 
 # 5.5 ------------------------------------------------------------------------------------------------------------
 @variants
-def derivative(mass=lambda m: m, turn=lambda omega, R: worked.skew(omega) @ R, omega=worked.angular_velocity, torque=lambda tau, omega, L: tau):
+def derivative(mass=lambda m: m, turn=lambda omega, R: worked.skew(omega) @ R,
+               omega=worked.angular_velocity, torque=lambda tau, omega, L: tau):
     """Ṡ with parts that may be wrong."""
     def state_derivative(S, F, tau, body):
         w = omega(S.R, S.L, body.I_body)
@@ -121,7 +122,7 @@ wrong("5.7", "forgets the part along the axis")(rodrigues(along=0.0))
 wrong("5.7", "divides by zero at rest")(rodrigues(rest=False))
 wrong("5.7", "turns only for a second")(rodrigues(angle=lambda rate, dt: rate))
 edit("5.7", "changes its input", "turned = float_copy(R)", "turned = R")
-edit("5.7", "a milliradian a second is rest", "rate != 0.0", "rate > 1e-3")
+edit("5.7", "treats a milliradian per second as rest", "rate != 0.0", "rate > 1e-3")
 edit("5.7", "the sine without its sign", "np.sin(rate * dt)", "np.sqrt(1.0 - np.cos(rate * dt) ** 2)")
 edit("5.7", "no more than half a turn", "np.cos(rate * dt), np.sin(rate * dt)",
      "np.cos(min(rate * dt, np.pi)), np.sin(min(rate * dt, np.pi))")
@@ -132,7 +133,7 @@ edit("5.7", "no more than a turn", "np.cos(rate * dt), np.sin(rate * dt)",
 # 5.8 ------------------------------------------------------------------------------------------------------------
 @variants
 def hamilton(dot=-1.0, twist=1.0, mixed=(1.0, 1.0), scalar=0, close=lambda c: c):
-    """Scalar and vector parts, with signs and places that may be wrong."""
+    """Scalar and vector parts, with signs and positions that may be wrong."""
     def product(a, b):
         a, b = np.roll(a, -scalar), np.roll(b, -scalar)
         vector = mixed[0] * a[0] * b[1:] + mixed[1] * b[0] * a[1:] + twist * np.cross(a[1:], b[1:])
@@ -216,13 +217,13 @@ def angular_acceleration(q, omega, tau, I_body):
 
 edit("5.11", "moments of the body, axes of the world", "omega_body = unrotate(q, omega)",
      "return (tau - cross(omega, I_body * omega)) / I_body")
-edit("5.11", "small torques are none", "unrotate(q, tau)", "unrotate(q, tau) * (np.sum(tau * tau) > 1e-12)")
+edit("5.11", "ignores small torques", "unrotate(q, tau)", "unrotate(q, tau) * (np.sum(tau * tau) > 1e-12)")
 
 
 # 5.12 -----------------------------------------------------------------------------------------------------------
 @variants
 def loop(late=0.0, old_v=False, old_omega=False, gyro=True, mass=True, turned=worked.quaternion_update, first=False):
-    """Deck B's loop with an order of things that may be wrong."""
+    """Deck B's loop with an order that may be wrong."""
     def rigid_body_step(load, t, x, v, q, omega, dt, body):
         F, tau = load(t + late * dt, x + (dt * v if first else 0.0), v, q, omega, body)
         if not gyro:
@@ -317,7 +318,7 @@ def midpoint(gyro=1.0, newton=True, enough=lambda n, change, m: change <= 1e-12 
 
 
 right("5.16", "by NumPy's solver")(midpoint())
-wrong("5.16", "goes round the equation")(midpoint(newton=False))
+wrong("5.16", "fixed-point iteration")(midpoint(newton=False))
 wrong("5.16", "until the change is small in kg m²/s")(midpoint(enough=lambda n, change, m: change <= 1e-12))
 wrong("5.16", "one correction")(midpoint(enough=lambda n, change, m: True))
 wrong("5.16", "two corrections: not there yet")(midpoint(enough=lambda n, change, m: n == 1))
@@ -334,16 +335,17 @@ wrong("5.16", "does not normalise")(
     midpoint(close=lambda q, w, dt: worked.product(q, np.concatenate(([1.0], 0.5 * dt * w)))))
 wrong("5.16", "normalises the turn, not its result")(
     midpoint(close=lambda q, w, dt: worked.product(q, worked.unit(np.concatenate(([1.0], 0.5 * dt * w))))))
-wrong("5.16", "gives up on a body at rest")(midpoint(enough=lambda n, change, m: change < 1e-12 * np.max(np.abs(m))))
-edit("5.16", "never says so: turns by whatever Newton's method has",
+wrong("5.16", "fails for a body at rest")(midpoint(enough=lambda n, change, m: change < 1e-12 * np.max(np.abs(m))))
+edit("5.16", "never raises: rotates by the last iterate",
      'raise Diverged("Newton\'s method did not converge at dt [s]", dt, "take a smaller step")',
      "return unit(product(q, np.array([1.0, 0.5 * dt * w[0], 0.5 * dt * w[1], 0.5 * dt * w[2]])))")
 
 
 # 5.17 -----------------------------------------------------------------------------------------------------------
 @variants
-def splitting(order="aca", middle=worked.middle_axis, fresh=True, whole=1.0, left=True, sign=1.0, close=worked.unit, slow=lambda I, k, b: 1.0 / I[k] - 1.0 / I[b]):
-    """A sequence of exact turns about axes of the body, half where one comes twice, with parts that may be wrong."""
+def splitting(order="aca", middle=worked.middle_axis, fresh=True, whole=1.0, left=True, sign=1.0,
+              close=worked.unit, slow=lambda I, k, b: 1.0 / I[k] - 1.0 / I[b]):
+    """A sequence of exact turns about body axes, half a turn if an axis occurs twice, with parts that may be wrong."""
     def splitting_turn(q, L, I_body, dt):
         b = middle(I_body)
         axis = {"a": (b + 1) % 3, "c": (b + 2) % 3}
@@ -366,9 +368,10 @@ wrong("5.17", "forgets the turn about L")(splitting(whole=0.0))
 wrong("5.17", "about L of the world, on the side of the body")(splitting(left=False))
 wrong("5.17", "turns about its axes the other way")(splitting(sign=-1.0))
 wrong("5.17", "the whole energy of a and c: L²/2I_b counted twice")(splitting(slow=lambda I, k, b: 1.0 / I[k]))
-wrong("5.17", "differences of moments, not of their inverses")(splitting(slow=lambda I, k, b: 1.0 / (I[k] - I[b]) if I[k] != I[b] else 0.0))
+wrong("5.17", "differences of moments, not of their inverses")(
+    splitting(slow=lambda I, k, b: 1.0 / (I[k] - I[b]) if I[k] != I[b] else 0.0))
 wrong("5.17", "always takes the first axis for the middle one")(splitting(middle=lambda I: 0))
-edit("5.17", "does not normalise in the end", "unit(product(exponential(dt / I_body[b] * L), turned))",
+edit("5.17", "does not normalise at the end", "unit(product(exponential(dt / I_body[b] * L), turned))",
      "product(exponential(dt / I_body[b] * L), turned)")
 edit("5.17", "turns about its axes the whole way twice", "dt * (1.0 / I_body[a] - 1.0 / I_body[b]), dt * (1.0",
      "2.0 * dt * (1.0 / I_body[a] - 1.0 / I_body[b]), 2.0 * dt * (1.0")
@@ -380,7 +383,7 @@ G, G3 = worked.SUZUKI, 1.0 / (2.0 - 2.0 ** (1.0 / 3.0))
 
 @variants
 def composed(shares=(G, G, 1.0 - 4.0 * G, G, G), clock=1.0):
-    """Substeps with shares of dt."""
+    """Substeps with fractions of dt."""
     def compose(step, torque, t, q, L, dt, body):
         for share in shares:
             q, L = step(torque, t, q, L, share * dt, body)
@@ -395,4 +398,4 @@ wrong("5.18", "the third forwards: more than one step in all")(composed([G, G, 4
 wrong("5.18", "forgets the third")(composed([G, G, G, G]))
 wrong("5.18", "Yoshida's three shares: fourth order, but another method")(composed([G3, 1.0 - 2.0 * G3, G3]))
 wrong("5.18", "the negative one first")(composed([1.0 - 4.0 * G, G, G, G, G]))
-wrong("5.18", "the clock stands still")(composed(clock=0.0))
+wrong("5.18", "does not advance t")(composed(clock=0.0))

@@ -1,4 +1,4 @@
-"""Lesson 2: signs, masses and neighbours that go astray, and the other ways of writing forces."""
+"""Lesson 2: wrong signs, masses and neighbours, and alternative right answers."""
 
 import numpy as np
 
@@ -19,7 +19,7 @@ def universal_gravity(x_a, x_b, m_a, m_b, G):
     return G * m_a * m_b / distance**2 * ((x_b - x_a) / distance)
 
 
-edit("2.1", "takes two bodies in one place", 'check_positive("distance of two bodies [m]", distance)', "pass")
+edit("2.1", "accepts coincident bodies", 'check_positive("distance of two bodies [m]", distance)', "pass")
 edit("2.1", "repels", "return G", "return -G")
 edit("2.1", "divides by r² and forgets that r has a length", "distance**3", "distance**2")
 edit("2.1", "acceleration instead of force", "G * m_a * m_b", "G * m_b")
@@ -79,8 +79,8 @@ edit("2.5", "damps above the surface", "C >= 0.0", "False")
 edit("2.5", "limits the spring but not the damper", "np.maximum(0.0, -(k * C + k_d * C_rate))",
      "(max(0.0, -k * C) - k_d * C_rate)")
 edit("2.5", "already pushes at the surface", "C >= 0.0", "C > 0.0")
-edit("2.5", "a number where the force is none", "return 0.0 * gradient", "return 0.0")
-edit("2.5", "a millimetre is not inside", "C >= 0.0", "C >= -1e-3")
+edit("2.5", "returns a number for zero force", "return 0.0 * gradient", "return 0.0")
+edit("2.5", "ignores a depth of a millimetre", "C >= 0.0", "C >= -1e-3")
 
 
 # 2.6 ------------------------------------------------------------------------------------------------------------
@@ -90,7 +90,7 @@ def short_way(theta, rest):
 
 @variants
 def angular_spring(angle=short_way, power=2, hinge=1.0, order=(0, 1, 2), checked=True):
-    """The forces through complex numbers, with an angle, arm or hinge that may be wrong."""
+    """The forces by complex numbers, with an angle, arm or hinge that may be wrong."""
     def angular_spring_forces(x_a, x_b, x_c, rest, k):
         r_a, r_c = (complex(*(x - x_b)) for x in (x_a, x_c))
         if r_a * r_c == 0.0:
@@ -113,9 +113,9 @@ wrong("2.6", "no force on the hinge")(angular_spring(hinge=0.0))
 wrong("2.6", "hinge pushed the wrong way")(angular_spring(hinge=-1.0))
 wrong("2.6", "opens instead of closing")(angular_spring(angle=lambda theta, rest: -short_way(theta, rest)))
 wrong("2.6", "a, c, b")(angular_spring(order=(0, 2, 1)))
-wrong("2.6", "silent about an arm without length")(angular_spring(checked=False))
-edit("2.6", "asks for the length of one arm only", "squared_a == 0.0 or squared_c == 0.0", "squared_a == 0.0")
-edit("2.6", "refuses what is small", "squared_a == 0.0 or squared_c == 0.0", "squared_a < 1e-6 or squared_c < 1e-6")
+wrong("2.6", "accepts an arm of zero length")(angular_spring(checked=False))
+edit("2.6", "tests the length of one arm only", "squared_a == 0.0 or squared_c == 0.0", "squared_a == 0.0")
+edit("2.6", "refuses small inputs", "squared_a == 0.0 or squared_c == 0.0", "squared_a < 1e-6 or squared_c < 1e-6")
 
 
 # 2.7 ------------------------------------------------------------------------------------------------------------
@@ -130,7 +130,8 @@ def by_matrices(tension=worked.spring_tension, add=np.add.at, other=1.0, unit=Tr
                 raise BadInput("the length of a spring [m]", 0.0, "keep its ends apart: it has no direction")
             length = np.where(length == 0.0, 1.0, length)
         lengthening = np.sum(r * u, axis=1) / length if rate is None else rate(r, u, length)
-        pull = tension(length, lengthening, mesh.rest, mesh.k, mesh.k_d)[:, None] * r / (length[:, None] if unit else 1.0)
+        T = tension(length, lengthening, mesh.rest, mesh.k, mesh.k_d)
+        pull = T[:, None] * r / (length[:, None] if unit else 1.0)
         force = np.zeros_like(x)
         add(force, mesh.i, pull)
         add(force, mesh.j, -other * pull)
@@ -143,7 +144,7 @@ def overwrite(force, at, pull):
 
 
 right("2.7", "all springs at once")(by_matrices())
-wrong("2.7", "one spring a point survives")(by_matrices(add=overwrite))
+wrong("2.7", "keeps one spring per point")(by_matrices(add=overwrite))
 wrong("2.7", "pushes instead of pulling")(by_matrices(tension=lambda *a: -worked.spring_tension(*a)))
 wrong("2.7", "the far end feels nothing")(by_matrices(other=0.0))
 wrong("2.7", "both ends the same way")(by_matrices(other=-1.0))
@@ -151,14 +152,14 @@ wrong("2.7", "r instead of r/l")(by_matrices(unit=False))
 wrong("2.7", "rate without division by l")(by_matrices(rate=lambda r, u, length: np.sum(r * u, axis=1)))
 wrong("2.7", "speed for rate")(by_matrices(rate=lambda r, u, length: np.sqrt(np.sum(u * u, axis=1))))
 wrong("2.7", "rate the other way round")(by_matrices(rate=lambda r, u, length: -np.sum(r * u, axis=1) / length))
-wrong("2.7", "silent about a spring without length")(by_matrices(checked=False))
+wrong("2.7", "accepts a spring of zero length")(by_matrices(checked=False))
 edit("2.7", "damps every motion, not only along the spring", "force_i[c] +=",
      "force_i[c] += mesh.k_d[s] * (v_j[c] - v_i[c]) +")
 edit("2.7", "every spring like the first", "mesh.rest[s], mesh.k[s], mesh.k_d[s]",
      "mesh.rest[0], mesh.k[0], mesh.k_d[0]")
 edit("2.7", "nothing on fixed points", "return force", "return force * (mesh.inv_mass > 0.0)[:, None]")
 edit("2.7", "the plane only", "squared, product = 0.0, 0.0", "squared, product, x_i = 0.0, 0.0, x_i[:2]")
-edit("2.7", "refuses what is small", "squared == 0.0", "squared < 1e-9")
+edit("2.7", "refuses small inputs", "squared == 0.0", "squared < 1e-9")
 
 
 # 2.8 ------------------------------------------------------------------------------------------------------------
@@ -186,13 +187,13 @@ wrong("2.8", "springs pull on all masses alike")(newton(springs=lambda f, inv_ma
 wrong("2.8", "forgets the air")(newton(air=lambda a, inv_mass: 0.0))
 wrong("2.8", "multiplies by the mass")(newton(springs=lambda f, inv_mass: f / np.where(inv_mass > 0.0, inv_mass, 1.0)))
 wrong("2.8", "springs the wrong way")(newton(springs=lambda f, inv_mass: -f * inv_mass))
-edit("2.8", "what is heavy is fixed", "mesh.inv_mass[n] > 0.0", "mesh.inv_mass[n] > 0.1")
+edit("2.8", "treats heavy points as fixed", "mesh.inv_mass[n] > 0.0", "mesh.inv_mass[n] > 0.1")
 
 
 # 2.9 ------------------------------------------------------------------------------------------------------------
 @variants
 def loop(step=integrators.average_velocity_step):
-    """The system moved by some step of lesson 1."""
+    """The system advanced by some step of lesson 1."""
     def mass_spring_damper_step(t, x, v, dt, mesh):
         return step(worked.mesh_acceleration, t, x, v, dt, mesh)
     return mass_spring_damper_step
@@ -211,7 +212,8 @@ def mass_spring_damper_step(t, x, v, dt, mesh):
 
 
 edit("2.9", "changes its input", "average_velocity_step(mesh_acceleration, t, x, v, dt, mesh)",
-     "average_velocity_step(mesh_acceleration, t, x, v, dt, mesh)[0], np.add(v, dt * mesh_acceleration(t, x, v, mesh), out=v)")
+     "average_velocity_step(mesh_acceleration, t, x, v, dt, mesh)[0], "
+     "np.add(v, dt * mesh_acceleration(t, x, v, mesh), out=v)")
 
 
 # 2.10 -----------------------------------------------------------------------------------------------------------
@@ -220,7 +222,8 @@ def inside(r, c, rows, cols):
 
 
 @variants
-def numbering(number=lambda r, c, rows, cols: r * cols + c, exists=inside, row=lambda i, j: [i, j], kind=int, empty=True, turned=False):
+def numbering(number=lambda r, c, rows, cols: r * cols + c, exists=inside,
+              row=lambda i, j: [i, j], kind=int, empty=True, turned=False):
     """Pairs of a grid with a number or an edge that may be wrong."""
     def grid_pairs(rows, cols, offsets):
         nodes = [(r, c) for r in range(rows) for c in range(cols)]
@@ -236,15 +239,15 @@ def numbering(number=lambda r, c, rows, cols: r * cols + c, exists=inside, row=l
 right("2.10", "over a list of nodes")(numbering())
 wrong("2.10", "counts along columns")(numbering(number=lambda r, c, rows, cols: c * rows + r))
 wrong("2.10", "multiplies by the rows")(numbering(number=lambda r, c, rows, cols: r * rows + c))
-edit("2.10", "a torus: the edge comes round", "if 0 <= r + dr < rows and 0 <= c + dc < cols",
+edit("2.10", "a torus: wraps around the edge", "if 0 <= r + dr < rows and 0 <= c + dc < cols",
      "for r, c, dr, dc in [(r, c, (r + dr) % rows - r, (c + dc) % cols - c)]")
 edit("2.10", "a row below zero exists", "0 <= r + dr < rows", "r + dr < rows")
-wrong("2.10", "asks whether the number exists, not the column")(
+wrong("2.10", "tests the index, not the column")(
     numbering(exists=lambda r, c, rows, cols: 0 <= r * cols + c < rows * cols))
 wrong("2.10", "forgets the left edge")(numbering(exists=lambda r, c, rows, cols: r < rows and c < cols))
 wrong("2.10", "every pair twice")(numbering(row=lambda i, j: [[i, j], [j, i]]))
-wrong("2.10", "numbers that are no integers")(numbering(kind=float))
-wrong("2.10", "no shape without pairs")(numbering(empty=False))
+wrong("2.10", "indices that are not integers")(numbering(kind=float))
+wrong("2.10", "wrong shape without pairs")(numbering(empty=False))
 wrong("2.10", "nodes outside, offsets inside")(numbering(turned=True))
 
 
@@ -266,7 +269,7 @@ def blocks(sideways=lambda stretch: max(0.0, stretch), along=1.0, damper=lambda 
 right("2.11", "by outer products")(blocks())
 wrong("2.11", "the sideways push of a compressed spring")(blocks(sideways=lambda stretch: stretch))
 wrong("2.11", "nothing sideways")(blocks(sideways=lambda stretch: 0.0))
-wrong("2.11", "as stiff across as along")(blocks(sideways=lambda stretch: 1.0))
+wrong("2.11", "as stiff perpendicular as along")(blocks(sideways=lambda stretch: 1.0))
 wrong("2.11", "nothing along")(blocks(along=0.0))
 wrong("2.11", "a damper in all directions")(blocks(damper=lambda k_d, nn: k_d * np.eye(len(nn))))
 wrong("2.11", "forgets k_d")(blocks(damper=lambda k_d, nn: nn))
@@ -303,9 +306,9 @@ right("2.12", "conjugacy written out")(descent())
 wrong("2.12", "steepest descent")(descent(conjugate=False))
 wrong("2.12", "stops at a thousandth")(descent(tolerance=1e-3))
 wrong("2.12", "stops after as many rounds as unknowns")(descent(rounds=1))
-wrong("2.12", "never gives up: returns whatever it has")(descent(silent=True))
+wrong("2.12", "never raises: returns the last iterate")(descent(silent=True))
 wrong("2.12", "starts from ones, with the residual of zeros")(descent(start=1.0))
-wrong("2.12", "uses up the right-hand side")(descent(copied=False))
+wrong("2.12", "changes the right-hand side")(descent(copied=False))
 wrong("2.12", "divides zero by zero")(descent(zero=False))
 edit("2.12", "the ratio upside down", "squared / before", "before / squared")
 edit("2.12", "residuals in place of conjugate directions: r + p", "squared / before * p", "p")
@@ -334,7 +337,7 @@ def large_step(ahead=1.0, damping=1.0, viscosity=1.0, stiffness=1.0, old=False, 
 
 
 def dense(blocks_of, mesh, n, d):
-    """The (nd, nd) matrix with one block a spring: + at (i, i) and (j, j), − at (i, j) and (j, i)."""
+    """The (nd, nd) matrix with one block per spring: + at (i, i) and (j, j), − at (i, j) and (j, i)."""
     whole = np.zeros((n, d, n, d))
     for i, j, block in zip(mesh.i, mesh.j, blocks_of):
         whole[i, :, i] += block
@@ -352,9 +355,9 @@ wrong("2.13", "viscosity explicit")(large_step(viscosity=0.0))
 wrong("2.13", "springs explicit")(large_step(stiffness=0.0))
 wrong("2.13", "moves with the old velocity")(large_step(old=True))
 wrong("2.13", "acceleration at the end of the step")(large_step(late=1.0))
-wrong("2.13", "fixed points give way")(large_step(held=False))
+wrong("2.13", "fixed points move")(large_step(held=False))
 wrong("2.13", "forgets the mass on the right")(large_step(massive=False))
 edit("2.13", "fully implicit Euler, by Newton's method", "a = acceleration(t, x, v, mesh)",
      "from solutions.integrators import implicit_euler_step as step; return step(acceleration, t, x, v, dt, mesh)")
 edit("2.13", "symplectic Euler", "conjugate_gradients(apply_step_matrix, A, right)", "dt * a")
-edit("2.13", "what is heavy is fixed", "mesh.inv_mass[n] > 0.0", "mesh.inv_mass[n] > 0.1")
+edit("2.13", "treats heavy points as fixed", "mesh.inv_mass[n] > 0.0", "mesh.inv_mass[n] > 0.1")
