@@ -154,15 +154,23 @@ def waiting(why):
 def answer_for_what_is_missing(module):
     """Let a lesson have, for every name that its file lacks, a function that says so."""
     def absent(name):
-        if name.startswith("_"):                                     # Python and IPython ask for such names
-            raise AttributeError(name)
+        refuse_private(name)
         return waiting(lacks(Path(module.__file__), name))
     vars(module).setdefault("__getattr__", absent)
 
 
+def refuse_private(name):
+    """Raise AttributeError for a name that begins with _: Python, IPython and hypothesis ask every module for such names."""
+    if name.startswith("_"):
+        raise AttributeError(name)
+
+
 def stand_in(name, given, exercises, why):
     """A module in place of one that cannot be loaded: it has what is given, and all else waits."""
+    def absent(name):
+        refuse_private(name)
+        return waiting(why)
     module = types.ModuleType(name)
     vars(module).update({n: value for n, value in given.items() if not n.startswith("__")})
-    vars(module).update({**dict.fromkeys(exercises, waiting(why)), "__getattr__": lambda _: waiting(why)})
+    vars(module).update({**dict.fromkeys(exercises, waiting(why)), "__getattr__": absent})
     return module
