@@ -1,4 +1,6 @@
-"""The command line: `validate` measures scenes and writes the report, `validate list` names them, `validate record` keeps traces."""
+"""The command line: `validate` measures scenes and writes the report, `validate list` names them,
+`validate record` keeps traces.
+"""
 
 import os
 import tempfile
@@ -18,28 +20,39 @@ from .processes import Ended, alone_in, ending_once, one_sentence, workers
 from .scene import PRODUCTS
 from .store import SUBSET, lessons_of
 
-app = typer.Typer(add_completion=False, invoke_without_command=True, rich_markup_mode=None, pretty_exceptions_enable=False,
-                  help="Hold every scene against its truth and against the engines; write the report.  "
-                       "--scene and --lesson update their part of the report in OUT.  If its other scenes were measured "
-                       "with other code or other options, that report stays as it is, and the scenes that you name get "
-                       f"a report of their own in OUT/{SUBSET}.")
+HELP = (
+    "Compare every scene with its truth and with the engines; write the report.  "
+    "--scene and --lesson update their part of the report in OUT.  If its other scenes were measured with other code "
+    f"or other options, that report stays as it is, and the scenes that you name get their own in OUT/{SUBSET}.")
+app = typer.Typer(add_completion=False, invoke_without_command=True, rich_markup_mode=None,
+                  pretty_exceptions_enable=False, help=HELP)
 console = Console()
 
 
 EngineName = StrEnum("EngineName", [(name, name) for name in PRODUCTS])
 
 
+ONE_SCENE = typer.Option(help="Only this scene (may be repeated).")
+ONE_LESSON = typer.Option(help="Only the scenes of this lesson (may be repeated).")
+ANSWERS = typer.Option(help="Whose answers: solutions, lessons or a folder of lesson files.")
+SPEED = typer.Option("--plain/--compiled", help="One speed only; both without this option.")
+DEPTH = typer.Option("--quick/--full", help="Time only short runs, or all of them.")
+LIVE = typer.Option(help="Run only this engine live (may be repeated).")
+CHANGE = typer.Option("--set", metavar="NAME=VALUE", help="Change a parameter of one scene's first case.")
+PROCESSES = typer.Option(min=1, help="Processes for everything that is not timed.")
+
+
 @app.callback()
 def validate(
     context: typer.Context,
-    scene: Annotated[list[str] | None, typer.Option(help="Only this scene (may be repeated).")] = None,
-    lesson: Annotated[list[str] | None, typer.Option(help="Only the scenes of this lesson (may be repeated).")] = None,
-    of: Annotated[str, typer.Option(help="Whose answers: solutions, lessons or a folder of lesson files.")] = "solutions",
-    plain: Annotated[bool | None, typer.Option("--plain/--compiled", help="One speed only; both without this option.")] = None,
-    quick: Annotated[bool, typer.Option("--quick/--full", help="Time only short runs, or all of them.")] = True,
-    engine: Annotated[list[EngineName] | None, typer.Option(help="Run only this engine live (may be repeated).")] = None,
-    set_: Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Change a parameter of one scene's first case.")] = None,
-    jobs: Annotated[int, typer.Option(min=1, help="Processes for everything that is not timed.")] = max(1, min(4, os.cpu_count() or 1)),
+    scene: Annotated[list[str] | None, ONE_SCENE] = None,
+    lesson: Annotated[list[str] | None, ONE_LESSON] = None,
+    of: Annotated[str, ANSWERS] = "solutions",
+    plain: Annotated[bool | None, SPEED] = None,
+    quick: Annotated[bool, DEPTH] = True,
+    engine: Annotated[list[EngineName] | None, LIVE] = None,
+    set_: Annotated[list[str] | None, CHANGE] = None,
+    jobs: Annotated[int, PROCESSES] = max(1, min(4, os.cpu_count() or 1)),
     out: Annotated[Path, typer.Option(help="Folder of the report.")] = Path("report"),
 ):
     if context.invoked_subcommand:
@@ -79,11 +92,12 @@ def list_scenes():
 
 
 @app.command("record")
-def record(scene: Annotated[list[str] | None, typer.Option(help="Only this scene (may be repeated).")] = None):
+def record(scene: Annotated[list[str] | None, ONE_SCENE] = None):
     """Keep the traces of pybullet in the repository, for machines without it."""
     from .measure.record import record as write_record
     if not engines.installed("pybullet"):
-        raise BadInput("engine 'pybullet'", "not installed", "record where it is: Linux x86-64 with Python 3.11 or older")
+        raise BadInput("engine 'pybullet'", "not installed",
+                       "record where it is: Linux x86-64 with Python 3.11 or older")
     names, broken = select_scenes(scene or [], [])
     for name in names:
         path = write_record(name)
@@ -107,7 +121,8 @@ def loadable_scenes():
 
 
 def select_scenes(scenes, lessons):
-    """(names, {name: BadInput}): the scenes that were asked for, all of them when nothing was, and those that do not load.
+    """(names, {name: BadInput}): the scenes that were asked for, all of them when nothing was, and those that do not
+    load.
 
     Raises BadInput for a name that is none, and for a named scene that does not load.
     """
@@ -130,7 +145,8 @@ def require_answers(of, names):
                        "put the lesson files there, or name lessons that are there with --lesson")
     without = [lesson for lesson in lessons_of(names) if modules.withheld(lesson)]
     if folder == modules.SOLUTIONS and without:
-        raise BadInput("this copy of the workbook", f"without worked answers of {', '.join(without)}", "give --of lessons --plain")
+        raise BadInput("this copy of the workbook", f"without worked answers of {', '.join(without)}",
+                       "give --of lessons --plain")
 
 
 def plan_of(of, names, plain, quick, wanted, changes):
@@ -145,15 +161,19 @@ def plan_of(of, names, plain, quick, wanted, changes):
         raise BadInput("numba", "not installed", "install it, or use --plain")
     waiting = {name: count for name in {modules.bind_scene(n).lesson for n in names}
                if (folder / f"{name}.py").is_file() and (count := len(modules.withheld(name, folder)))}
-    if not modules.can_compile() or (waiting and plain is None):                     # a function without a body has no type
+    if not modules.can_compile() or (waiting and plain is None):  # a function without a body has no type
         speeds = ("plain",)
         if waiting:
-            console.print(f"Plain speed only, until every exercise is done: {', '.join(f'{n} of {name} wait' for name, n in sorted(waiting.items()))}.")
+            left = ", ".join(f"{n} of {name} wait" for name, n in sorted(waiting.items()))
+            console.print(f"Plain speed only, until every exercise is done: {left}.")
     return Plan(of, speeds, quick, live, changes)
 
 
 def overrides(pairs, names):
-    """((name, value), …) from NAME=VALUE.  Raises BadInput for what is no number or no parameter, or for more than one scene."""
+    """((name, value), …) from NAME=VALUE.
+
+    Raises BadInput for what is no number or no parameter, or for more than one scene.
+    """
     from .measure.selection import changed
     changes = []
     for pair in pairs:
@@ -191,7 +211,8 @@ def writable(out):
         with tempfile.TemporaryFile(dir=out):
             pass
     except OSError as e:
-        raise BadInput(f"output folder {str(out)!r}", f"not writable ({e.strerror})", "name another with --out") from None
+        raise BadInput(f"output folder {str(out)!r}", f"not writable ({e.strerror})",
+                       "name another with --out") from None
     return out
 
 

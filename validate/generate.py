@@ -12,14 +12,17 @@ from solutions.checks import BadInput
 from .modules import ROOT, SOLUTIONS, lesson_names
 
 LESSONS = ROOT / "lessons"
-ANSWER = re.compile(r"^(?P<indent> *)### BEGIN SOLUTION (?P<exercise>\d+\.\d+)\n.*?^ *### END SOLUTION *\n", re.M | re.S)
+ANSWER = re.compile(r"^(?P<indent> *)### BEGIN SOLUTION (?P<exercise>\d+\.\d+)\n"
+                    r".*?^ *### END SOLUTION *\n", re.M | re.S)
 FUNCTION = re.compile(r"^def (\w+)", re.M)
 
 
 def stub(source, solved=(), elsewhere=None):
-    """The text of a lesson: every answer but the solved ones replaced by a NotImplementedError that names exercise and function.
+    """The text of a lesson: every answer but the solved ones replaced by a NotImplementedError that names exercise
+    and function.
 
-    It imports the siblings named in `elsewhere` from solutions, and the others from beside it; without `elsewhere`, all from solutions.
+    It imports the siblings named in `elsewhere` from solutions, and the others from beside it; without `elsewhere`,
+    all from solutions.
     """
     def empty(match):
         function = FUNCTION.findall(source, 0, match.start())[-1]
@@ -30,8 +33,11 @@ def stub(source, solved=(), elsewhere=None):
 
     text = ANSWER.sub(empty, source)
     if re.search(r"(BEGIN|END) SOLUTION", text):
-        raise BadInput("a solution marker", "unpaired or without its exercise number", "write ### BEGIN SOLUTION 1.2 … ### END SOLUTION")
-    return re.sub(r"^from \.(\w+) import", lambda m: f"from solutions.{m[1]} import" if elsewhere is None or m[1] in elsewhere else m[0],
+        raise BadInput("a solution marker", "unpaired or without its exercise number",
+                       "write ### BEGIN SOLUTION 1.2 … ### END SOLUTION")
+    def from_where(m):
+        return f"from solutions.{m[1]} import" if elsewhere is None or m[1] in elsewhere else m[0]
+    return re.sub(r"^from \.(\w+) import", from_where,
                   text, flags=re.M)
 
 
@@ -43,7 +49,8 @@ def exercises(source):
 def lessons():
     """{file name: text} of everything that belongs into lessons/."""
     texts = {f"{name}.py": stub((SOLUTIONS / f"{name}.py").read_text()) for name in lesson_names()}
-    return {"__init__.py": '"""Your copy of the lessons: each function waits for its body.  Start with notebooks/00_start_here.ipynb."""\n', **texts}
+    about = "Your copy of the lessons: each function waits for its body.  Start with notebooks/00_start_here.ipynb."
+    return {"__init__.py": f'"""{about}"""\n', **texts}
 
 
 def differing(folder=None):
@@ -57,8 +64,8 @@ def worked_in(folder=None):
     """Files in which somebody has answered something: an exercise's function is there, but no longer raises."""
     def answered(path):
         text, solution = path.read_text(), SOLUTIONS / path.name
-        return solution.is_file() and any(f"def {function}(" in text and f'"Exercise {exercise}: {function}"' not in text
-                                          for exercise, function in exercises(solution.read_text()).items())
+        numbered = exercises(solution.read_text()).items() if solution.is_file() else ()
+        return any(f"def {name}(" in text and f'"Exercise {number}: {name}"' not in text for number, name in numbered)
     return sorted(path.name for path in Path(folder or LESSONS).glob("*.py") if answered(path))
 
 
@@ -69,11 +76,13 @@ def main(arguments):
     changed = differing()
     if arguments == ["--check"]:
         if changed:
-            print(f"lessons/ is not what solutions/ gives ({', '.join(changed)}): run python -m validate.generate", file=sys.stderr)
+            print(f"lessons/ is not what solutions/ gives ({', '.join(changed)}): run python -m validate.generate",
+                  file=sys.stderr)
         return 1 if changed else 0
     answered = worked_in()
     if answered and arguments != ["--force"]:
-        print(f"lessons/ holds answers ({', '.join(answered)}): move them away, or overwrite them with --force", file=sys.stderr)
+        print(f"lessons/ holds answers ({', '.join(answered)}): move them away, or overwrite them with --force",
+              file=sys.stderr)
         return 2
     texts = lessons()
     for name in changed:

@@ -35,7 +35,9 @@ class TooLong(BaseException):
 
 @contextlib.contextmanager
 def alarm(seconds, error=TooLong, own=False):
-    """Raise that error after so long, even inside a loop.  Only in a main thread, and where the system has an alarm clock; an alarm around
+    """Raise that error after so long, even inside a loop.
+
+    Only in a main thread, and where the system has an alarm clock; an alarm around
     this one goes on.
 
     own: count only the time that this process spends on the processor, whatever else the machine does.
@@ -160,7 +162,9 @@ def answer_for_what_is_missing(module):
 
 
 def refuse_private(name):
-    """Raise AttributeError for a name that begins with _: Python, IPython and hypothesis ask every module for such names."""
+    """Raise AttributeError for a name that begins with _: Python,
+    IPython and hypothesis ask every module for such names.
+    """
     if name.startswith("_"):
         raise AttributeError(name)
 

@@ -1,9 +1,9 @@
 """Load any lesson or scene, plain or compiled, with the lesson functions of a chosen subject.
 
-A *module set* is one consistent set of modules: the lessons of a subject (`solutions`, `lessons` or a folder) and the scenes
-that use them.  The plain set of `solutions` is simply the imported packages.  Every other set is a fresh copy of those files
-under a package name of its own.  In it, each function that came from `solutions` is replaced by the subject's function or by
-its compiled twin.  Nothing is decorated, and the imported packages stay as they are.
+A *module set* is one consistent set of modules: the lessons of a subject (`solutions`, `lessons` or a folder) and the
+scenes that use them.  The plain set of `solutions` is simply the imported packages.  Every other set is a fresh copy
+of those files under a package name of its own.  In it, each function that came from `solutions` is replaced by the
+subject's function or by its compiled twin.  Nothing is decorated, and the imported packages stay as they are.
 """
 
 import hashlib
@@ -28,7 +28,7 @@ from .scene import Scene, field_names
 ROOT = Path(__file__).resolve().parent.parent
 SOLUTIONS, SCENES = ROOT / "solutions", ROOT / "validate" / "scenes"
 GIVEN = {"__init__", "checks", "vectors"}
-LAW = "acceleration"         # the function of a scene that is compiled, with all that it calls; loops are in the lessons
+LAW = "acceleration"  # the function of a scene that is compiled, with all that it calls; loops are in the lessons
 
 
 def subject_folder(of):
@@ -44,18 +44,22 @@ def lesson_names(folder=SOLUTIONS):
     def place(path):
         number = re.match(r'"""Lesson (\d+)', path.read_text(encoding="utf-8", errors="replace"))
         return int(number[1]) if number else 99, path.stem
-    return [path.stem for path in sorted((path for path in Path(folder).glob("*.py") if path.stem not in GIVEN and path.is_file()), key=place)]
+    files = (path for path in Path(folder).glob("*.py") if path.stem not in GIVEN and path.is_file())
+    return [path.stem for path in sorted(files, key=place)]
 
 
 def withheld(lesson, folder=SOLUTIONS):
-    """Functions of a lesson that still wait for their body: in solutions/ none, but all in a copy of the workbook without worked answers."""
+    """Functions of a lesson that still wait for their body:
+    in solutions/ none, but all in a copy of the workbook without worked answers.
+    """
     text = (Path(folder) / f"{lesson}.py").read_text(encoding="utf-8", errors="replace")
     return set(re.findall(r'raise NotImplementedError\("Exercise [\d.]+: (\w+)"\)', text))
 
 
 def scene_files():
     """{name: path} of every scene: one file each in a folder per lesson."""
-    return {path.stem: path for path in sorted(SCENES.glob("*/*.py"), key=lambda path: path.stem) if path.stem != "__init__"}
+    files = sorted(SCENES.glob("*/*.py"), key=lambda path: path.stem)
+    return {path.stem: path for path in files if path.stem != "__init__"}
 
 
 def scene_names():
@@ -110,7 +114,8 @@ def module_set(of="solutions", compiled=False):
 def digest_of(folder):
     """Fingerprint of every file that a module set of this subject is made of, and of the compiler."""
     compiler = f"{numba_version()} {sys.version} {os.environ.get('NUMBA_BOUNDSCHECK', '')}"
-    return fingerprint({*SOLUTIONS.glob("*.py"), *SCENES.glob("*/*.py"), *folder.glob("*.py"), Path(__file__), Path(__file__).with_name("numba_twins.py")}, compiler)
+    ours = Path(__file__), Path(__file__).with_name("numba_twins.py")
+    return fingerprint({*SOLUTIONS.glob("*.py"), *SCENES.glob("*/*.py"), *folder.glob("*.py"), *ours}, compiler)
 
 
 def fingerprint(files, more=""):
@@ -140,14 +145,19 @@ def _module_set(folder, compiled, digest):
 
 
 def record_of(module, name):
-    """The SCENE of a scene's module, with its story.  Raises BadInput when it is missing or belongs to another lesson."""
+    """The SCENE of a scene's module, with its story.
+
+    Raises BadInput when it is missing or belongs to another lesson.
+    """
     scene = getattr(module, "SCENE", None)
     if not isinstance(scene, Scene):
         required = ", ".join(field_names(required=True))
-        raise BadInput(f"scene {name!r}", "without a record", f"end its file with SCENE = Scene(...), which needs {required}")
+        raise BadInput(f"scene {name!r}", "without a record",
+                       f"end its file with SCENE = Scene(...), which needs {required}")
     folder = scene_files()[name].parent.name
     if scene.lesson != folder:
-        raise BadInput(f"scene {name!r} of lesson {scene.lesson!r}", f"in the folder of {folder!r}", "move the file, or correct the field 'lesson'")
+        raise BadInput(f"scene {name!r} of lesson {scene.lesson!r}", f"in the folder of {folder!r}",
+                       "move the file, or correct the field 'lesson'")
     return replace(scene, story=report_text(module))
 
 
@@ -180,11 +190,13 @@ def _siblings(file):
 
 
 class ModuleSet:
-    """Copies of the subject's lessons and of the scenes, under a package name of their own, that refer to each other."""
+    """Copies of the subject's lessons and of the scenes, under a package name of their own,
+    that refer to each other.
+    """
 
     def __init__(self, folder, digest, speed="plain"):
         self.name, self.folder, self.done = f"_{speed}_{digest}", folder, {}
-        self.stuck, self.loading = {}, set()                             # {lesson: its Unloadable}, lessons being loaded
+        self.stuck, self.loading = {}, set()  # {lesson: its Unloadable}, lessons being loaded
         for package, path in {"": [], ".solutions": [SOLUTIONS], ".subject": [folder], ".scenes": [SCENES]}.items():
             module = sys.modules[self.name + package] = types.ModuleType(self.name + package)
             module.__path__ = [str(p) for p in path]
@@ -198,7 +210,10 @@ class ModuleSet:
         return self.done["subject", name]
 
     def _load_safely(self, name):
-        """Load a file that may hold anything.  What is given in a sibling stands in for it where it cannot be loaded."""
+        """Load a file that may hold anything.
+
+        What is given in a sibling stands in for it where it cannot be loaded.
+        """
         file = self.folder / f"{name}.py"
         self.loading.add(name)
         try:
@@ -209,7 +224,7 @@ class ModuleSet:
                 answer_for_what_is_missing(self._load("subject", name))
         except KeyboardInterrupt:
             raise
-        except BaseException as e:                                       # SystemExit, TooLong and classes of the student's own
+        except BaseException as e:  # SystemExit, TooLong and classes of the student's own
             self.stuck[name] = unloadable(file, e)
         finally:
             self.loading.remove(name)
@@ -268,7 +283,10 @@ class ModuleSet:
 
 
 class CompiledModules(ModuleSet):
-    """The same, compiled: every function of a lesson, and the law of a scene.  A scene's run is plain and calls compiled lessons."""
+    """The same, compiled: every function of a lesson, and the law of a scene.
+
+    A scene's run is plain and calls compiled lessons.
+    """
 
     def __init__(self, folder, digest):
         super().__init__(folder, digest, "compiled")
@@ -283,12 +301,14 @@ class CompiledModules(ModuleSet):
     def _finish(self, package, module):
         if package != "scenes":
             vars(module).update(self._redirected(package, module))
-            own = {name for name, f in vars(module).items() if isinstance(f, types.FunctionType) and f.__module__ == module.__name__}
+            own = {name for name, f in vars(module).items()
+                   if isinstance(f, types.FunctionType) and f.__module__ == module.__name__}
             vars(module).update(compiled_twins(module, own, vars(module)))
             return
         space = {**vars(module), **self._redirected(package, module)}           # what compiled functions see
         plain = vars(module_set(self.folder).scene_module(module.__name__.rpartition(".")[2]))
-        lessons = {name: CachedDispatch(twin) for name, twin in self._redirected(package, module).items() if hasattr(twin, "py_func")}
+        lessons = {name: CachedDispatch(twin) for name, twin in self._redirected(package, module).items()
+                   if hasattr(twin, "py_func")}
         space |= compiled_twins(module, _called_from(space, LAW, module.__name__), space)
         run = types.FunctionType(plain["run"].__code__, {**plain, **lessons}, "run")
         record = replace(plain["SCENE"], run=run, acceleration=space.get(LAW))

@@ -1,7 +1,7 @@
 """How a plain function is compiled with numba: the compiled twins, their cache, and three changes to numba itself.
 
-A twin's cache on disk lies in a folder that is named after a digest of *all* files of its set of modules.  numba looks at one
-file only, so without the digest an edit to an imported sibling would leave a stale caller.
+A twin's cache on disk lies in a folder that is named after a digest of *all* files of its set of modules.  numba
+looks at one file only, so without the digest an edit to an imported sibling would leave a stale caller.
 """
 
 import os
@@ -34,13 +34,16 @@ def compiled_twins(module, names, space):
 
 
 class CachedDispatch:
-    """A compiled function that looks up its machine code by the kinds of its arguments: numba's own search takes 50 µs per call."""
+    """A compiled function that looks up its machine code by the kinds of its arguments:
+    numba's own search takes 50 µs per call.
+    """
 
     def __init__(self, twin):
         self.twin, self.known = twin, {}
 
     def __call__(self, *arguments):
-        arguments = [a.twin if isinstance(a, CachedDispatch) else a for a in arguments]           # a lesson's function may take another
+        # a lesson's function may take another
+        arguments = [a.twin if isinstance(a, CachedDispatch) else a for a in arguments]
         kinds = tuple(map(_kind, arguments))
         if kinds not in self.known:
             from numba import typeof
@@ -62,8 +65,10 @@ def _kind(argument):
 
 @cache
 def _make_dispatcher_constants_cacheable():
-    """Let numba cache functions that pass a function on: it refuses to, because it would store an address that nobody reads."""
-    import numba.experimental.function_type  # noqa: F401           registers its own way: ours must come after
+    """Let numba cache functions that pass a function on: it refuses to,
+    because it would store an address that nobody reads.
+    """
+    import numba.experimental.function_type  # noqa: F401
     from numba import types
     from numba.core.imputils import lower_constant
     lower_constant(types.Dispatcher)(lambda context, builder, kind, function: context.get_dummy_value())
@@ -71,7 +76,9 @@ def _make_dispatcher_constants_cacheable():
 
 @cache
 def _shorten_broadcast_error():
-    """Replace numba's detailed message for `rows[k] = row` by a short one: compiling the detailed one dominates compile time."""
+    """Replace numba's detailed message for `rows[k] = row` by a short one:
+    compiling the detailed one dominates compile time.
+    """
     from numba.extending import overload
     from numba.np import arrayobj
 
@@ -106,8 +113,8 @@ def use_cache(digest):
     _make_dispatcher_constants_cacheable()
     _shorten_broadcast_error()
     _ignore_full_disk()
-    numba.config.OPT, numba.config.LOOP_VECTORIZE = _OptLevel(1), 0                   # same speed, a third of the compile time
-    warnings.filterwarnings("ignore", message="Cannot cache compiled function")      # then it is compiled anew, that is all
+    numba.config.OPT, numba.config.LOOP_VECTORIZE = _OptLevel(1), 0  # same speed, a third of the compile time
+    warnings.filterwarnings("ignore", message="Cannot cache compiled function")  # then it is compiled anew, that is all
     folder = CACHE / digest
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -23,7 +23,7 @@ except ImportError:                                                  # Windows
     import msvcrt
 
 ENDING = (signal.SIGINT, signal.SIGTERM)
-QUIET = 2.0                                                          # after Ctrl-C, another one is ignored for so long [s]
+QUIET = 2.0  # after Ctrl-C, another one is ignored for so long [s]
 PR_SET_PDEATHSIG = 1                                                 # of Linux's <sys/prctl.h>
 
 # BadInput is constructed from the parts of its sentence; an exception is unpickled from the sentence itself

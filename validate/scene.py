@@ -79,15 +79,15 @@ class Scene:
     ablations: dict = field(default_factory=dict)        # {what it omits: p → (state, p) with it put in, or why not}
     acceleration: Callable | None = None     # (t, x, v, p) → a [m/s²]: the law; compiled where the lessons are
     expected_departures: dict = field(default_factory=dict)      # {label: Departure}
-    orders: dict = field(default_factory=dict)           # {method's function: order here}, where it is not the usual one
-    supports: Callable | None = None         # (method's function or engine's label, p) → bool; without it all support all
+    orders: dict = field(default_factory=dict)  # {method's function: order here}, where it is not the usual one
+    supports: Callable | None = None  # (method's function or engine's label, p) → bool; without it all support all
     omitted_methods: str = ""                # why methods or engines that a reader expects are missing
     slow_methods: tuple = ()                 # functions of methods that only --full runs
     slow_cases: tuple = ()                   # names of cases that only --full runs
-    uncompiled_in_quick: tuple = ()          # functions of methods that plain Python finishes before numba compiles them
+    uncompiled_in_quick: tuple = ()  # functions of methods that plain Python finishes before numba compiles them
     moves: bool = True                       # False: nothing moves; no start is compared with the truth
-    refinement: str = "step dt [s]"          # what dt = T/steps stands for; "" where nothing can be refined: steps is (1,)
-    quantity_names: Callable | None = None   # (p) → names of what is observed, for a scene that shows a table of numbers
+    refinement: str = "step dt [s]"  # what dt = T/steps stands for; "" where nothing can be refined: steps is (1,)
+    quantity_names: Callable | None = None  # (p) → names of what is observed, for a scene that shows a table of numbers
     published_states: tuple = ()             # ((time, observed, tolerance), …) of the first case, from elsewhere
     sanity_checks: Callable | None = None    # () → ((claim, found, expected, tolerance), …) about the truth itself
     links: Callable | None = None            # (p) → pairs of points that the picture joins

@@ -47,7 +47,8 @@ def read_whole(path, kind, remedy):
 def code_digest(of):
     """Fingerprint of everything that a result depends on: code, recorded traces and installed versions."""
     package, subject = modules.ROOT / "validate", modules.subject_folder(of)
-    files = {*package.rglob("*.py"), *package.glob("recorded/*.json"), *subject.glob("*.py"), *modules.SOLUTIONS.glob("*.py")}
+    files = {*package.rglob("*.py"), *package.glob("recorded/*.json"),
+             *subject.rglob("*.py"), *modules.SOLUTIONS.rglob("*.py")}
     installed = version("numpy"), version("scipy"), modules.numba_version(), *map(engines.installed, PRODUCTS)
     return modules.fingerprint(files, f"{sys.version} {installed}")
 
@@ -121,7 +122,8 @@ class Store:
 
     def scenes(self):
         """The scenes with all of their results, from this run or an earlier one."""
-        return [n for n in modules.scene_names() if self.path("errors", n).is_file() and self.path("times", n).is_file()]
+        return [n for n in modules.scene_names()
+                if self.path("errors", n).is_file() and self.path("times", n).is_file()]
 
     def results(self, names):
         return [{**self.get("errors", name), "times": self.get("times", name)} for name in names]

@@ -31,7 +31,8 @@ def errors(name, plan):
     selection = select(name, plan)
     scene, cases = selection.scene, {}
     for case, p in selection.cases.items():
-        with_engines = not cases or not plan.quick or not scene.moves    # a quick run asks engines for one case of a motion
+        # a quick run asks engines for one case of a motion
+        with_engines = not cases or not plan.quick or not scene.moves
         cases[case] = case_errors(selection, case, p, with_engines)
     _, first = selection.first
     return jsonable({
@@ -39,7 +40,8 @@ def errors(name, plan):
         "moves": scene.moves, "refinement": scene.refinement, "T": scene.duration,
         "uncertainty": scene.truth_uncertainty, "truth_story": report_text(scene.truth), "uses": list(scene.uses),
         "parameters": parameter_table(scene.parameters), "notes": selection.notes, "cases": cases,
-        "parity": parity(selection, first), "picture": film.picture(selection, first, labels_that_agree({"cases": cases})),
+        "parity": parity(selection, first),
+        "picture": film.picture(selection, first, labels_that_agree({"cases": cases})),
         "law": report_text(scene.acceleration) if scene.acceleration else "", "limits": report_text(scene.tolerance),
     })
 
@@ -48,12 +50,13 @@ def case_errors(selection, case, p, with_engines):
     """One case: its truth, and the curves of our methods and the engines."""
     scene = selection.scene
     truth = np.array(scene.truth(p, scene.duration), dtype=float)
+    engines_here = selection.engines_for(p) if with_engines else ()
     return {
         "params": p._asdict() if hasattr(p, "_asdict") else {},
         "truth": truth.tolist(),
         "quantities": scene.quantity_names(p) if scene.quantity_names else [],
         "ours": [method_curve(selection, method, p, truth) for method in selection.methods_for(p)],
-        "engines": [engine_curve(selection, case, e, p, truth) for e in selection.engines_for(p)] if with_engines else [],
+        "engines": [engine_curve(selection, case, e, p, truth) for e in engines_here],
     }
 
 
@@ -74,7 +77,7 @@ def run_to_end(scene, step, p, steps):
         return Outcome(None, f"{Verdict.NOT_ATTEMPTED.value}: {e}", attempted=False)
     except BadInput:
         raise
-    except Exception as e:                                           # a subject's code may do anything: say it, and go on
+    except Exception as e:  # a subject's code may do anything: say it, and go on
         return Outcome(None, f"{type(e).__name__}: {str(e).strip().splitlines()[0] if str(e).strip() else ''}")
     return finite(observed)
 
@@ -127,10 +130,12 @@ def engine_curve(selection, case, engine, p, truth):
         record = traces.recorded(selection.name, case, engine)
         if record is None:
             message = f"{engine.product} is not installed here and this case was never recorded"
-            nothing = {"label": engine.label, "rows": [], "order": None, "expected": engine.order, "verdict": Verdict.UNDECIDED}
+            nothing = {"label": engine.label, "rows": [], "order": None, "expected": engine.order,
+                       "verdict": Verdict.UNDECIDED}
             return {**about, **nothing, "source": "missing", "message": message, "departure_reason": "", "observed": []}
         source = record["source"]
-        runs = [(r["steps"], Outcome(np.array(r["observed"]) if r["observed"] else None, r["failure"])) for r in record["runs"]]
+        runs = [(r["steps"], Outcome(np.array(r["observed"]) if r["observed"] else None, r["failure"]))
+                for r in record["runs"]]
     found = judged(scene, engine.label, p, truth, runs, engine.order)
     return {**about, **found, "source": source, "observed": observations(runs)}
 
@@ -175,16 +180,18 @@ def judged(scene, label, p, truth, runs, order):
 def curve(scene, label, truth, runs, order, limit):
     """Errors over the sweep, the order that they show, and the verdict.
 
-    A limit holds only where it is small: an expansion in powers of dt says nothing about a step for which it promises 50 %.
-    An order is compared with theory where two steps have small limits.
+    A limit holds only where it is small: an expansion in powers of dt says nothing about a step for which it promises
+    50 %. An order is compared with theory where two steps have small limits.
     """
     rows = []
     for steps, outcome in runs:
         error = None if outcome.failure else relative(outcome.observed, truth)
-        rows.append({"steps": steps, "dt": scene.duration / steps, "error": error, "limit": limit(steps), "failure": outcome.failure})
+        rows.append({"steps": steps, "dt": scene.duration / steps, "error": error, "limit": limit(steps),
+                     "failure": outcome.failure})
     order_shown = shown_order(rows, 10.0 * scene.truth_uncertainty)
     verdict, message = verdict_on(rows, runs[-1][1], order, order_shown)
-    return {"label": label, "rows": rows, "order": order_shown, "expected": order, "verdict": verdict, "message": message}
+    return {"label": label, "rows": rows, "order": order_shown, "expected": order,
+            "verdict": verdict, "message": message}
 
 
 def verdict_on(rows, finest, order, order_shown):
@@ -206,7 +213,8 @@ def verdict_on(rows, finest, order, order_shown):
 
 
 def shown_order(rows, floor):
-    """Order over the finest four runs that are clear of the truth's uncertainty and of round-off; None for fewer than three.
+    """Order over the finest four runs that are clear of the truth's uncertainty and of round-off; None for fewer
+    than three.
 
     Runs before one that was lost do not count: what is right in them is right by luck.
     """
@@ -216,7 +224,7 @@ def shown_order(rows, floor):
     return float(np.polyfit(*np.log(clear[-4:]).T, 1)[0]) if len(clear) >= 3 else None
 
 
-# ---------------------------------------------------------------------------------------------- both speeds, and who agrees
+# ------------------------------------------------------------------------------------------ both speeds, and who agrees
 
 def parity(selection, p):
     """Largest relative difference between the plain and the compiled run of a method; None where no method has both."""

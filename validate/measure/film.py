@@ -32,13 +32,16 @@ def picture(selection, p, agreeing):
     runs = films(scene, shown, p)
     if not selection.plan.overrides and not any(role is Role.ENGINE for role, _ in shown.values()):
         runs += traces.film_of(selection.name, COLOURS[Role.ENGINE][0])
-    return {"seconds": seconds, "dt": dt, "links": links(scene, p), "films": runs, "space": in_space(scene, shown, p, seconds)}
+    return {"seconds": seconds, "dt": dt, "links": links(scene, p), "films": runs,
+            "space": in_space(scene, shown, p, seconds)}
 
 
 def films(scene, shown, p):
     """[{label, role, colour, frames}] in drawing coordinates."""
-    return [{"label": label, "role": role, "colour": colour, "frames": [scene.points(observed, p).tolist() for observed in film]}
-            for (label, (role, film)), colour in zip(shown.items(), colours(role for role, _ in shown.values()))]
+    each = zip(shown.items(), colours(role for role, _ in shown.values()))
+    return [{"label": label, "role": role, "colour": colour,
+             "frames": [scene.points(observed, p).tolist() for observed in film]}
+            for (label, (role, film)), colour in each]
 
 
 def colours(roles):
@@ -79,7 +82,8 @@ def packed(bodies, runs, seconds, arrows=None, trail=None, ground=False):
         frames = np.hstack([poses, pointers]).astype("<f4")
         entries.append({"label": label, "look": Role(role).value, "colour": colour,
                         "frames": base64.b64encode(frames.tobytes()).decode()})
-    return {"seconds": float(seconds), "ground": ground, "trail": trail, "arrows": names, "bodies": list(bodies), "runs": entries}
+    return {"seconds": float(seconds), "ground": ground, "trail": trail, "arrows": names, "bodies": list(bodies),
+            "runs": entries}
 
 
 def links(scene, p):

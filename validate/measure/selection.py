@@ -1,4 +1,6 @@
-"""What a run does of a scene: its cases, methods, speeds, engines and steps, and the notes on what it leaves to `--full`."""
+"""What a run does of a scene: its cases, methods, speeds, engines and steps,
+and the notes on what it leaves to `--full`.
+"""
 
 import warnings
 from contextlib import contextmanager
@@ -90,7 +92,8 @@ def select(name, plan):
     """The Selection of a scene under a plan."""
     scene = bound_scene(name, plan)
     methods = methods_of(scene, plan)
-    return Selection(name, plan, scene, cases_of(scene, plan), methods, sweep(scene, plan), notes_of(scene, plan, methods))
+    notes = notes_of(scene, plan, methods)
+    return Selection(name, plan, scene, cases_of(scene, plan), methods, sweep(scene, plan), notes)
 
 
 def supports(scene, runner, p):

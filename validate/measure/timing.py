@@ -1,7 +1,7 @@
 """Error against run time.
 
-Only the stepping loop is timed: two warm-ups, then interleaved repeats with garbage collection off.  A loop that is shorter
-than a tenth of a millisecond is repeated inside the clock.  Errors come from separate, identical runs.
+Only the stepping loop is timed: two warm-ups, then interleaved repeats with garbage collection off.  A loop that is
+shorter than a tenth of a millisecond is repeated inside the clock.  Errors come from separate, identical runs.
 """
 
 import gc
@@ -38,7 +38,9 @@ class Timed(NamedTuple):
 
 @with_overrides
 def times(name, plan, result):
-    """Run times of the first case, joined with the errors already found: [{label, speed, steps, error, seconds, low, high}]."""
+    """Run times of the first case, joined with the errors already found:
+    [{label, speed, steps, error, seconds, low, high}].
+    """
     selection = select(name, plan)
     scene, (case, p) = selection.scene, selection.first
     found = worth_timing(selection, result["cases"][case])
@@ -61,7 +63,9 @@ def times(name, plan, result):
 
 
 def worth_timing(selection, case):
-    """{label: {steps: row}} of the runs that are worth timing: those not lost, and in a quick run none coarser than the sweep."""
+    """{label: {steps: row}} of the runs that are worth timing:
+    those not lost, and in a quick run none coarser than the sweep.
+    """
     quick = selection.plan.quick and not selection.plan.most_steps
     coarsest = selection.scene.steps[0] if quick else 0
     return {c["label"]: {r["steps"]: r for r in c["rows"]
@@ -118,7 +122,10 @@ def time_engine(engine, p):
 # ---------------------------------------------------------------------------------------------- the clock
 
 def interleaved(items, time_limits, repeats=REPEATS):
-    """[(item, {seconds, low, high})]: medians of interleaved repeats.  Runs longer than `time_limits[speed]` are left out."""
+    """[(item, {seconds, low, high})]: medians of interleaved repeats.
+
+    Runs longer than `time_limits[speed]` are left out.
+    """
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         chosen = short_enough(items, time_limits)
@@ -132,7 +139,8 @@ def interleaved(items, time_limits, repeats=REPEATS):
         finally:
             if enabled:
                 gc.enable()
-    return [(item, {"seconds": float(np.median(s)), "low": min(s), "high": max(s)}) for (item, _), s in zip(chosen, samples)]
+    return [(item, {"seconds": float(np.median(s)), "low": min(s), "high": max(s)})
+            for (item, _), s in zip(chosen, samples)]
 
 
 def short_enough(items, time_limits):
@@ -210,8 +218,13 @@ def ablations(selection, p, agreeing):
     speed = selection.speeds(method)[-1]
     bound, step = selection.bound(method, speed)
     steps = scene.steps[min(2, len(scene.steps) - 1)] if speed == "compiled" else scene.steps[0]
-    return [{"what": what, "cost": None, "same": None, "note": extra} if isinstance(extra, str)
-            else with_and_without(bound, step, speed, steps, p, what, *extra(p)) for what, extra in scene.ablations.items()]
+    rows = []
+    for what, extra in scene.ablations.items():
+        if isinstance(extra, str):
+            rows.append({"what": what, "cost": None, "same": None, "note": extra})
+        else:
+            rows.append(with_and_without(bound, step, speed, steps, p, what, *extra(p)))
+    return rows
 
 
 def with_and_without(scene, step, speed, steps, p, what, state, p_full):
@@ -237,7 +250,9 @@ def times_to_error(rows):
 
 
 def time_to_error(points, target):
-    """Least time for that error from (error, seconds) points: the cheapest point that is good enough, or between it and the next."""
+    """Least time for that error from (error, seconds) points:
+    the cheapest point that is good enough, or between it and the next.
+    """
     good = [(s, e) for e, s in points if e <= target]
     if not good:
         return None
@@ -251,7 +266,9 @@ def time_to_error(points, target):
 
 
 def advantage(rows, curves):
-    """For each engine that errs: its smallest error, its time for that, our shortest time to get there, and the ratio."""
+    """For each engine that errs: its smallest error, its time for that, our shortest time to get there,
+    and the ratio.
+    """
     product = {c["label"]: c["product"] for c in curves}
     result, ours = [], {}
     for r in rows:

@@ -18,13 +18,17 @@ def trace(name):
 
 
 def recorded(name, case, engine):
-    """The record of one engine run on one case, None if it was not recorded.  Raises BadInput without the scene's file."""
+    """The record of one engine run on one case, None if it was not recorded.
+
+    Raises BadInput without the scene's file.
+    """
     record = trace(name) or {"runs": {}}
     if not record["runs"] and engine.product == PYBULLET:
         raise BadInput(f"file '{RECORDED / name}.json'", "missing or empty",
                        f"restore it, or give where pybullet is installed: validate record --scene {name}")
     runs = record["runs"].get(case, {}).get(engine.label)
-    return runs and {"source": f"recorded, {record['stamp']}", "runs": runs, "seconds": record["seconds"].get(engine.label)}
+    return runs and {"source": f"recorded, {record['stamp']}", "runs": runs,
+                     "seconds": record["seconds"].get(engine.label)}
 
 
 def film_of(name, colour):

@@ -55,7 +55,10 @@ latest = {}                  # {lesson: what `mine` gave last}
 
 
 def mine(lesson):
-    """Your lesson, as saved just now.  A file that cannot be loaded is reported in one sentence, and nothing else breaks."""
+    """Your lesson, as saved just now.
+
+    A file that cannot be loaded is reported in one sentence, and nothing else breaks.
+    """
     try:
         latest[lesson] = modules.bind(lesson, folder())
     except Exception as e:
@@ -92,19 +95,23 @@ class StandIn:
         self.lesson, self.withheld = lesson, withheld
 
     def __getattr__(self, name):
-        given = modules.bind(self.lesson)                              # raises BadInput where the whole lesson is not in this copy
+        given = modules.bind(self.lesson)  # raises BadInput where the whole lesson is not in this copy
         own = latest[self.lesson]
         return getattr(given if isinstance(own, Unreadable) and name not in self.withheld else own, name)
 
 
 def answers(lesson):
-    """The worked answers of a lesson.  In a copy of the workbook without them your own functions stand in, and a sentence says so."""
+    """The worked answers of a lesson.
+
+    In a copy of the workbook without them your own functions stand in, and a sentence says so.
+    """
     if lesson not in modules.lesson_names():
         return StandIn(lesson, set())
     withheld = modules.withheld(lesson)
     if not withheld:
         return modules.bind(lesson)
-    display(HTML(f"<p>The worked answers of {escape(lesson)} are not in this copy of the workbook: your own functions stand in "
+    display(HTML(f"<p>The worked answers of {escape(lesson)} are not in this copy of the workbook: your own functions "
+                 "stand in "
                  "for them. What a figure calls truth does not come from them.</p>"))
     mine(lesson)
     return StandIn(lesson, withheld)
@@ -116,7 +123,8 @@ def attempt(function, *arguments):
         with np.errstate(all="ignore"):
             return function(*arguments)
     except NotImplementedError as e:
-        display(HTML(f'<p style="color:{COLOUR["not attempted"]}">○ {escape(str(e))}: not attempted yet, so it is not drawn.</p>'))
+        colour = COLOUR["not attempted"]
+        display(HTML(f'<p style="color:{colour}">○ {escape(str(e))}: not attempted yet, so it is not drawn.</p>'))
     except ArithmeticError as e:
         display(HTML(f'<p style="color:{COLOUR["not yet"]}">✗ {escape(str(e))}.</p>'))
     except Exception as e:
@@ -125,7 +133,9 @@ def attempt(function, *arguments):
 
 
 def opening(notebook, make):
-    """What `make` gives for a notebook's first picture; in a copy without worked answers what it gave when that copy was made."""
+    """What `make` gives for a notebook's first picture; in a copy without worked answers what it gave when that copy
+    was made.
+    """
     made = json.loads(OPENINGS.read_text()) if OPENINGS.is_file() else {}
     if notebook not in made:
         return attempt(make)
@@ -175,7 +185,7 @@ def check(exercise):
 
 
 def _lesson_of(exercise):
-    for lesson in modules.lesson_names():                              # its tests name it, whether the answers are in this copy or not
+    for lesson in modules.lesson_names():  # its tests name it, whether the answers are in this copy or not
         tests = TESTS / f"test_{lesson}.py"
         if isinstance(exercise, str) and tests.is_file() and f'"{exercise}"' in tests.read_text():
             return lesson
@@ -193,7 +203,8 @@ class _Answer:
 
     def lines(self):
         earned = sum(o["points"] for o in self.outcomes if o["status"] == "passed")
-        yield f"{SIGN[self.state]} Exercise {self.exercise}: {self.state}", f"{earned:g} of {sum(o['points'] for o in self.outcomes):g} points"
+        possible = sum(o["points"] for o in self.outcomes)
+        yield f"{SIGN[self.state]} Exercise {self.exercise}: {self.state}", f"{earned:g} of {possible:g} points"
         if self.state == "not attempted":
             waits = self.open[0]["got"]
             yield ("still open" if f"Exercise {self.exercise}:" in waits else "it waits for"), waits
@@ -210,10 +221,12 @@ class _Answer:
 
     def _repr_html_(self):
         (title, points), *rest = self.lines()
-        rows = "".join(f'<tr><td style="text-align:left;vertical-align:top;color:#5b666e;padding:.1rem 1rem .1rem 0">{escape(n)}</td>'
+        name_style = "text-align:left;vertical-align:top;color:#5b666e;padding:.1rem 1rem .1rem 0"
+        rows = "".join(f'<tr><td style="{name_style}">{escape(n)}</td>'
                        f'<td style="text-align:left;white-space:pre-wrap">{escape(v)}</td></tr>' for n, v in rest)
         return (f'<div style="border-left:4px solid {COLOUR[self.state]};padding:.3rem .8rem;margin:.3rem 0">'
-                f'<b style="color:{COLOUR[self.state]}">{escape(title)}</b> ({points})<table style="margin:0">{rows}</table></div>')
+                f'<b style="color:{COLOUR[self.state]}">{escape(title)}</b> ({points})'
+                f'<table style="margin:0">{rows}</table></div>')
 
 
 # ---------------------------------------------------------------------------------------------- pictures
@@ -230,11 +243,13 @@ def play(frames, seconds, links=(), height=260):
 def _display(picture, height=260):
     """Show a film in the plane."""
     name = f"p{uuid.uuid4().hex}"
-    key = " &nbsp; ".join(f'<span style="color:{run["colour"]}">●</span> {escape(run["label"])}' for run in picture["films"])
+    runs = picture["films"]
+    key = " &nbsp; ".join(f'<span style="color:{run["colour"]}">●</span> {escape(run["label"])}' for run in runs)
     script = (Path(plots.__file__).parent / "player.js").read_text()
     style = f"width:100%;max-width:46rem;height:{height}px;background:#f6f7f8"
     display(HTML(f'<canvas data-picture="{name}" style="{style}"></canvas><div>{key}</div>'
-                 f'<script type="application/json" id="{name}">{json.dumps(picture)}</script><script>{script}</script>'))
+                 f'<script type="application/json" id="{name}">{json.dumps(picture)}</script>'
+                 f'<script>{script}</script>'))
 
 
 def show3d(bodies, runs, seconds, arrows=None, trail=None, ground=False, height=380):
@@ -247,14 +262,18 @@ def _display3d(picture, height=380):
     """Show a film in 3D."""
     name = f"s{uuid.uuid4().hex}"
     key = [f'<span style="color:{run["colour"]}">■</span> {escape(run["label"])}' for run in picture["runs"]]
-    key += [f'<span style="color:{colour}">→</span> {escape(arrow)}' for arrow, colour in zip(picture["arrows"], ARROWS)]
+    key += [f'<span style="color:{colour}">→</span> {escape(arrow)}'
+            for arrow, colour in zip(picture["arrows"], ARROWS)]
     display(HTML(f'<div data-space="{name}" style="width:100%;max-width:46rem;height:{height}px"></div>'
-                 f'<div>{" &nbsp; ".join(key)}</div><script type="application/json" id="{name}">{json.dumps(picture)}</script>'
+                 f'<div>{" &nbsp; ".join(key)}</div>'
+                 f'<script type="application/json" id="{name}">{json.dumps(picture)}</script>'
                  f'<script>{PLAYER_3D.read_text()}</script>'))
 
 
 def scene_of(name):
-    """A scene with your lesson functions in it; with the workbook's own, and a sentence, where yours cannot be loaded."""
+    """A scene with your lesson functions in it; with the workbook's own, and a sentence,
+    where yours cannot be loaded.
+    """
     return _scene_and_owner(name)[0]
 
 
@@ -271,8 +290,8 @@ def _scene_and_owner(name):
 def measured(name, most_steps=1000, **changes):
     """Compare your methods, plain, with the truth and the engines on one scene; return what the report is made of.
 
-    changes replace fields of the Scene, such as steps=(50, 100, 200).  Where your lesson cannot be loaded a sentence says so,
-    and the engines run alone.
+    changes replace fields of the Scene, such as steps=(50, 100, 200).  Where your lesson cannot be loaded a sentence
+    says so, and the engines run alone.
     """
     _, own = _scene_and_owner(name)
     plan = measure.Plan(of=str(folder()) if own else "solutions", speeds=("plain",) if own else (),

@@ -4,8 +4,8 @@ import gc
 import tempfile
 from pathlib import Path
 
-import scipy.integrate  # noqa: F401        many tests want them
-import scipy.optimize  # noqa: F401
+import scipy.integrate
+import scipy.optimize
 import scipy.special  # noqa: F401
 
 from .pytest_process import quiet

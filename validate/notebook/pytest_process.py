@@ -1,6 +1,7 @@
 """pytest in a process of its own, for the checks of a notebook.
 
-Where the system can fork, that process is a copy of one that has its imports behind it: an answer in 0.2 s in place of 0.5.
+Where the system can fork, that process is a copy of one that has its imports behind it: an answer in 0.2 s in place
+of 0.5.
 """
 
 import contextlib
@@ -12,7 +13,8 @@ from concurrent.futures.process import BrokenProcessPool
 
 import pytest
 
-PROCESSES = multiprocessing.get_context("forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn")
+FORKS = "forkserver" in multiprocessing.get_all_start_methods()
+PROCESSES = multiprocessing.get_context("forkserver" if FORKS else "spawn")
 PROCESSES.set_forkserver_preload(["validate.notebook.preload"])
 
 
@@ -22,7 +24,8 @@ class Ended(Exception):
 
 def run(*arguments):
     """What pytest prints.  Raises Ended when the code under test ends its process; this one survives."""
-    vars(sys.modules["__main__"]).setdefault("__spec__", None)        # IPython's %reset takes it away, and multiprocessing asks for it
+    # IPython's %reset takes it away, and multiprocessing asks for it
+    vars(sys.modules["__main__"]).setdefault("__spec__", None)
     with ProcessPoolExecutor(1, mp_context=PROCESSES) as process:
         try:
             return process.submit(quiet, *arguments).result()

@@ -19,7 +19,8 @@ def pictures(results, stability):
     drawn = [case for case in stability if case["picture"]]
     return [*((plots.convergence, f"{r['scene']}-steps.svg", r, r["scene"]) for r in refined),
             *((plots.work_precision, f"{r['scene']}-times.svg", r, r["scene"]) for r in refined),
-            *((plots.stability, f"stability-{case['lesson']}-{case['slug']}.svg", case, case["lesson"]) for case in drawn)]
+            *((plots.stability, f"stability-{case['lesson']}-{case['slug']}.svg", case, case["lesson"])
+              for case in drawn)]
 
 
 def copied(results):
@@ -39,8 +40,10 @@ def write(out, results, stability, about, pool, bars, measured):
     about says what the report was made with: a plain record that stands at the foot of every page.
     measured(scene or lesson) is when its results were written [ns]: pictures newer than that are not drawn again.
     """
-    pages = Environment(loader=PackageLoader("validate", "report"), autoescape=select_autoescape(), trim_blocks=True, lstrip_blocks=True)
-    pages.filters.update(seconds=words.seconds, number=words.number, percent=words.percent, factor=words.factor, order=words.order)
+    pages = Environment(loader=PackageLoader("validate", "report"), autoescape=select_autoescape(),
+                        trim_blocks=True, lstrip_blocks=True)
+    pages.filters.update(seconds=words.seconds, number=words.number, percent=words.percent, factor=words.factor,
+                         order=words.order)
     pages.tests["reaches"] = lambda row: any(t is not None for t in row.values())
     pages.globals.update(run=about, verdict=words.verdict, judge=words.judge, arrow_colours=ARROWS)
 

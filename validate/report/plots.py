@@ -1,4 +1,7 @@
-"""The still pictures.  Colours: Okabe and Ito 2008, told apart by colour-blind readers; every curve has a marker too."""
+"""The still pictures.
+
+Colours: Okabe and Ito 2008, told apart by colour-blind readers; every curve has a marker too.
+"""
 
 import re
 import warnings
@@ -12,6 +15,7 @@ from ..results import Verdict
 from ..store import whole
 
 ROUND_OFF = 1e-12               # relative error of a run of many steps that is exact [-]
+NOTE = {"xycoords": ("axes fraction", "data"), "fontsize": 8, "color": "#555555"}
 TOP = 10.0                      # errors above this, and failures, are drawn here, as crosses [-]
 
 
@@ -23,7 +27,8 @@ def style():
 
 def looks(result):
     """{label: (colour, marker, line)} of every curve of a scene."""
-    return {c["label"]: (c["colour"], c["marker"], c["line"]) for one in result["cases"].values() for c in one["ours"] + one["engines"]}
+    curves = (c for one in result["cases"].values() for c in one["ours"] + one["engines"])
+    return {c["label"]: (c["colour"], c["marker"], c["line"]) for c in curves}
 
 
 def error_label(result):
@@ -39,7 +44,7 @@ def _ground(axes, bottom):
     """Name the line on which runs lie that are right to the last digit that can be told, if there are any."""
     if any(np.any(np.asarray(line.get_ydata(), dtype=float) == bottom) for line in axes.lines):
         axes.axhline(bottom, color="#999999", lw=0.6)
-        axes.annotate("no error that can be told", (0.01, bottom), xycoords=("axes fraction", "data"), va="top", fontsize=8, color="#555555")
+        axes.annotate("no error that can be told", (0.01, bottom), va="top", **NOTE)
 
 
 def convergence(path, result):
@@ -51,14 +56,15 @@ def convergence(path, result):
             continue
         colour, marker, line = c["colour"], c["marker"], c["line"]
         lost = [r["dt"] for r in c["rows"] if r["error"] is None or r["error"] >= TOP]
-        seen = [(r["dt"], np.nan if r["dt"] in lost else max(r["error"], bottom)) for r in c["rows"]]           # a line has a gap where a run was lost
+        # a line has a gap where a run was lost
+        seen = [(r["dt"], np.nan if r["dt"] in lost else max(r["error"], bottom)) for r in c["rows"]]
         order = f": {c['order']:.2f}" if c["order"] is not None else ""
         if len(lost) < len(seen):
             axes.loglog(*zip(*seen), color=colour, marker=marker, ls=line, ms=5, lw=1.3, label=c["label"] + order)
         axes.plot(lost, [TOP] * len(lost), color=colour, marker="X", ls="", ms=7, clip_on=False)
     axes.set(xlabel=result["refinement"], ylabel=error_label(result), xscale="log", yscale="log")
     axes.axhline(TOP, color="#999999", lw=0.6)
-    axes.annotate("failed, or error above 10", (0.01, TOP), xycoords=("axes fraction", "data"), va="bottom", fontsize=8, color="#555555")
+    axes.annotate("failed, or error above 10", (0.01, TOP), va="bottom", **NOTE)
     _ground(axes, bottom)
     _finish(figure, axes, path, "method: measured order")
 
@@ -71,16 +77,20 @@ def work_precision(path, result):
     compiled = any(r["speed"] == "compiled" for r in rows)
     for label, speed in dict.fromkeys((r["label"], r["speed"]) for r in rows):
         colour, marker, line = look[label]
-        mine = sorted((r["steps"], r["seconds"], r["error"], r["low"], r["high"]) for r in rows if (r["label"], r["speed"]) == (label, speed))
+        mine = sorted((r["steps"], r["seconds"], r["error"], r["low"], r["high"]) for r in rows
+                      if (r["label"], r["speed"]) == (label, speed))
         _, x, y, low, high = zip(*mine)
         plain = compiled and speed == "plain"
-        axes.loglog(x, y, color=colour, marker=marker, ls=":" if plain else line, ms=3 if plain else 5, lw=0.9 if plain else 1.4,
-                    alpha=0.55 if plain else 1.0, label=None if plain else label + (" (recorded)" if speed == "recorded" else ""))
+        faint = {"ls": ":", "ms": 3, "lw": 0.9, "alpha": 0.55}
+        name = f"{label} (recorded)" if speed == "recorded" else label
+        strong = {"ls": line, "ms": 5, "lw": 1.4, "label": name}
+        axes.loglog(x, y, color=colour, marker=marker, **(faint if plain else strong))
         axes.hlines(y, low, high, color=colour, lw=0.8, alpha=0.5)
     if compiled and any(r["speed"] == "plain" for r in rows):
         axes.plot([], [], color="#555555", ls=":", marker=".", label="the same, plain Python")
     _ground(axes, bottom)
-    axes.set(xlabel="run time of the stepping loop [s]" if result["moves"] else "run time [s]", ylabel=error_label(result))
+    time_label = "run time of the stepping loop [s]" if result["moves"] else "run time [s]"
+    axes.set(xlabel=time_label, ylabel=error_label(result))
     _finish(figure, axes, path, "compiled, and engines" if compiled else "plain Python, and engines")
 
 
@@ -93,7 +103,8 @@ def stability(path, case):
     colours = series_colours([label for label, *_ in picture["series"]])
     for (label, xs, ys, mark), colour in zip(picture["series"], colours):
         few = len(xs) <= 60
-        axes.plot(xs, ys, {"line": "-", "dots": "o"}[mark], color=colour, label=label, ms=5 if few else 2, lw=1.4, zorder=3 if mark == "line" else 2)
+        style, order = {"line": ("-", 3), "dots": ("o", 2)}[mark]
+        axes.plot(xs, ys, style, color=colour, label=label, ms=5 if few else 2, lw=1.4, zorder=order)
     axes.set(xlabel=picture["x_label"], ylabel=picture["y_label"], title=picture["title"])
     _finish(figure, axes, path, None)
 
@@ -102,7 +113,9 @@ THEORY_OR_MEASURED = re.compile(r"^theory, |, (theory|measured)$|: .*$")
 
 
 def series_colours(labels):
-    """A colour each: a method has its own, theory and measurement of one thing share theirs, and no two things have one."""
+    """A colour each: a method has its own, theory and measurement of one thing share theirs,
+    and no two things have one.
+    """
     things, colours = [THEORY_OR_MEASURED.sub("", label) for label in labels], {}
     known = {method.label: method.colour for method in vars(methods).values() if isinstance(method, methods.Method)}
     for thing in things:
@@ -110,7 +123,10 @@ def series_colours(labels):
         if own and known[own] not in colours.values():
             colours[thing] = known[own]
     free = iter([colour for colour in dict.fromkeys(known.values()) if colour not in colours.values()])
-    return [colours[thing] if thing in colours else colours.setdefault(thing, next(free, "#000000")) for thing in things]
+    for thing in things:
+        if thing not in colours:
+            colours[thing] = next(free, "#000000")
+    return [colours[thing] for thing in things]
 
 
 def show(plot, result):
@@ -138,7 +154,9 @@ def _power(x, _):
 
 
 def _tick(axis):
-    """On a logarithmic axis name powers of ten, and over fewer than two of them 2 and 5 as well; more would run into each other."""
+    """On a logarithmic axis name powers of ten, and over fewer than two of them 2 and 5 as well;
+    more would run into each other.
+    """
     if axis.get_scale() == "log":
         few = np.ptp(np.log10(axis.get_view_interval())) < 2.0
         axis.set_major_formatter(FuncFormatter(_power))
@@ -151,8 +169,10 @@ def _finish(figure, axes, path, title):
     _tick(axes.yaxis)
     if not axes.get_legend_handles_labels()[0]:
         axes.plot([], [], label=" ")
-        axes.text(0.5, 0.5, "nothing to draw: no method has been attempted", transform=axes.transAxes, ha="center", color="#555555")
-    axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=8.5, title=title, title_fontsize=8.5, alignment="left")
+        axes.text(0.5, 0.5, "nothing to draw: no method has been attempted", transform=axes.transAxes, ha="center",
+                  color="#555555")
+    axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=8.5, title=title, title_fontsize=8.5,
+                alignment="left")
     _margins(figure, axes, title)
     if path is None:
         plt.show()

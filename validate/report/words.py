@@ -34,7 +34,9 @@ def seconds(t):
 def percent(x):
     if x is None:
         return "–"
-    return f"{100 * x:.0f} %" if x >= 0.995 else f"{100 * x:.2g} %" if x >= 1e-6 or x == 0.0 else f"{number(100 * x, 2)} %"
+    if x >= 0.995:
+        return f"{100 * x:.0f} %"
+    return f"{100 * x:.2g} %" if x >= 1e-6 or x == 0.0 else f"{number(100 * x, 2)} %"
 
 
 def factor(x):
@@ -67,7 +69,8 @@ def verdict(curves):
     for one in (Verdict.DEPARTS, Verdict.NOT_ATTEMPTED):
         if count[one]:
             return f"{count[one]} of {len(curves)} {one.value}", KINDS[one]
-    parts = [f"{one.value} ({count[one]})" for one in (Verdict.AGREES, Verdict.FOLLOWS_OWN_LAW, Verdict.UNDECIDED) if count[one]]
+    shown = Verdict.AGREES, Verdict.FOLLOWS_OWN_LAW, Verdict.UNDECIDED
+    parts = [f"{one.value} ({count[one]})" for one in shown if count[one]]
     return ", ".join(parts), "open" if count[Verdict.UNDECIDED] == len(curves) else "agrees"
 
 
@@ -89,7 +92,8 @@ def row(result):
 
 def best_order(curves):
     """The curve of ours that agrees and shows the highest order."""
-    known = [c for c in curves if Verdict(c["verdict"]) is Verdict.AGREES and (c["order"] is not None or c["expected"] == EXACT)]
+    agreeing = [c for c in curves if Verdict(c["verdict"]) is Verdict.AGREES]
+    known = [c for c in agreeing if c["order"] is not None or c["expected"] == EXACT]
     return max(known, key=lambda c: (c["expected"] == EXACT, c["order"] or 0.0), default=None)
 
 
@@ -126,7 +130,8 @@ def _ours(result):
         yield f"Measured orders of convergence, with the expected order in brackets: {orders}."
     for c in next(iter(result["cases"].values()))["ours"]:
         if Verdict(c["verdict"]) is Verdict.FOLLOWS_OWN_LAW:
-            yield f"{c['label']} converges to another law because {c['departure_reason']}: {percent(c['departure'])} away from the truth."
+            yield (f"{c['label']} converges to another law because {c['departure_reason']}. "
+                   f"That law is {percent(c['departure'])} away from the truth.")
     exact = [c["label"] for c in next(iter(result["cases"].values()))["ours"] if c["expected"] == EXACT and is_right(c)]
     if exact and result["refinement"]:
         yield f"Exact up to round-off at every step, as derived: {', '.join(exact)}."
@@ -140,10 +145,10 @@ def _engines_of(result):
     for name, case in result["cases"].items():
         for c in case["engines"]:
             if Verdict(c["verdict"]) is Verdict.FOLLOWS_OWN_LAW:
-                yield (f"{name[0].upper()}{name[1:]}: {c['label']} is {percent(c['rows'][-1]['error'])} off because {c['departure_reason']}; "
-                       f"that rule alone gives {percent(c['departure'])}.")
+                yield (f"{name[0].upper()}{name[1:]}: {c['label']} is {percent(c['rows'][-1]['error'])} off because "
+                       f"{c['departure_reason']}. That rule alone gives {percent(c['departure'])}.")
             elif is_right(c) is False:
-                yield f"{name[0].upper()}{name[1:]}: {c['label']} {c['message']}, and nothing that the scene says predicts it."
+                yield f"{name[0].upper()}{name[1:]}: {c['label']} {c['message']}; the scene does not predict it."
 
 
 def _engines(case):
@@ -152,12 +157,15 @@ def _engines(case):
         if not clear:
             yield f"{c['label']}: {c['message']}."
         elif is_right(c) is False:
-            yield f"{c['label']} {c['message']}, and nothing that the scene says predicts it."
+            yield f"{c['label']} {c['message']}; the scene does not predict it."
         elif c["departure_reason"]:
-            yield (f"{c['label']} stays {percent(clear[-1]['error'])} away from the truth because {c['departure_reason']}: that law alone predicts "
-                   f"{percent(c['departure'])}, and the engine converges to it" + (f" with order {c['order']:.2f}." if c["order"] else "."))
+            order_shown = f" with order {c['order']:.2f}" if c["order"] else ""
+            yield (f"{c['label']} stays {percent(clear[-1]['error'])} away from the truth because "
+                   f"{c['departure_reason']}. "
+                   f"That law alone predicts {percent(c['departure'])}, and the engine converges to it{order_shown}.")
         else:
-            shown = f", with order {c['order']:.2f} where {c['expected']} is expected" if c["order"] is not None and c["expected"] else ""
+            known = c["order"] is not None and c["expected"]
+            shown = f", with order {c['order']:.2f} where {c['expected']} is expected" if known else ""
             yield f"{c['label']} agrees with the truth to {percent(clear[-1]['error'])} at its finest step{shown}."
 
 
