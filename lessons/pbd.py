@@ -18,9 +18,9 @@ import numpy as np
 
 from solutions.checks import BadInput, Diverged, check_shape, finite_array, float_copy, one_each, whole_number
 from solutions.integrators import solve
-from solutions.rotation import angular_acceleration, cross, product, quaternion_update, rotate, unrotate
+from solutions.rotation import angular_acceleration, product, quaternion_update, rotate, unrotate
 from solutions.springs import inverse_masses, measured_links
-from solutions.vectors import dot
+from solutions.vectors import cross, dot
 
 __all__ = [
     "NEWTON_LIMIT", "TRACE", "Balloon", "Cloth", "Hung", "Net", "Obstacle", "ball_gap",

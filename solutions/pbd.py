@@ -18,9 +18,9 @@ import numpy as np
 
 from .checks import BadInput, Diverged, check_shape, finite_array, float_copy, one_each, whole_number
 from .integrators import solve
-from .rotation import angular_acceleration, cross, product, quaternion_update, rotate, unrotate
+from .rotation import angular_acceleration, product, quaternion_update, rotate, unrotate
 from .springs import inverse_masses, measured_links
-from .vectors import dot
+from .vectors import cross, dot
 
 __all__ = [
     "NEWTON_LIMIT", "TRACE", "Balloon", "Cloth", "Hung", "Net", "Obstacle", "ball_gap",
