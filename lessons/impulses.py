@@ -701,11 +701,10 @@ def most_dissipative_impact(body, r, n, e, mu):
 
     With much friction its law can be without an answer, or its sweeps may not find one.  Of all impulses inside the
     cones, take those that leave the least kinetic energy: a convex problem, which always has an answer.  Each point in
-    turn follows the gradient of the energy, its own velocity uᵢ, and returns to its cone:  Jᵢ ← into_cone(Jᵢ −
-    uᵢ/tr Kᵢ). Scale all impulses by s.  s = 1 leaves the least energy, and s = 1 + e is Poisson's restitution;
+    turn follows the gradient of the energy, its own velocity uᵢ, and returns to its cone:
+    Jᵢ ← into_cone(Jᵢ − uᵢ/tr Kᵢ).  Scale all impulses by s.  s = 1 leaves the least energy, and s = 1 + e is Poisson's restitution;
     s is smaller where a point would otherwise move into the other body.  This never gains energy: the energy is
-    a parabola in s, and
-    s = 1 + e loses 1 − e² of what s = 1 loses.
+    a parabola in s, and s = 1 + e loses 1 − e² of what s = 1 loses.
     *Source:* Moreau 1973, maximum dissipation; Anitescu 2006, the convex problem; Poisson 1817, the two phases.
     """
     before = np.zeros((len(r), 3))
@@ -751,11 +750,11 @@ def solve_impacts(body, r, n, e, mu):
         new impulse of the point:                   J = cone_impulse(u, nᵢ, Kᵢ, wᵢ, μ)
         push the body by J − Jᵢ at rᵢ;    Jᵢ ← J
     The residual of a sweep is the largest component of all changes of velocity Kᵢ (J − Jᵢ) of a point by its
-    own impulse. The sweeps end when the residual is at most SETTLED times largest_speed(body, r).  If SWEEPS
+    own impulse.  The sweeps end when the residual is at most SETTLED times largest_speed(body, r).  If SWEEPS
     sweeps are not enough, return most_dissipative_impact(body, r, n, e, μ), given above, of the body before the
     impact: with much friction the law can be without an answer, and then the residual shows that.
 
-    The order of the points does not matter at convergence: a box that lands flat stays flat.
+    The order of the points does not matter at convergence: a box that lands flat leaves the floor flat.
     Raises what check_impacts raises; call it first.
     *Source:* Gauss–Seidel sweeps, as in Guendelman et al. 2003; second lecture deck, “Multi-contact problems”.
     *Left out:* how an impact travels from point to point; contacts between many bodies.

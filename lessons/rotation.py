@@ -4,11 +4,12 @@
 
 Symbols: x (3,) [m] centre of mass · v [m/s] · P [kg m/s] · R (3, 3), q (4,) = (w, x, y, z) orientation: both
 convert body to world coordinates · ω (3,) [rad/s] · L (3,) [kg m²/s] · τ (3,) [N m] · I_body (3,) [kg m²]
-principal moments. Vectors are in world coordinates, unless the name ends in _body.  The axes of the body are
+principal moments.
+Vectors are in world coordinates, unless the name ends in _body.  The axes of the body are
 its principal axes, which lesson 4 computes.
 
 Every method is a function  step(torque, t, q, L, dt, body) → (q, L)  at t + dt.  torque(t, q, L, body) returns
-(3,) [N m]. body is any record with a field I_body and is passed on unchanged.  The state is L itself, so that
+(3,) [N m].  body is any record with a field I_body and is passed on unchanged.  The state is L itself, so that
 without a torque it is kept to the last digit.
 *Left out:* contacts, except of a ball on a floor; lesson 6 finds contacts and lesson 7 resolves them.
 """
