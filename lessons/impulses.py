@@ -702,7 +702,8 @@ def most_dissipative_impact(body, r, n, e, mu):
     With much friction its law can be without an answer, or its sweeps may not find one.  Of all impulses inside the
     cones, take those that leave the least kinetic energy: a convex problem, which always has an answer.  Each point in
     turn follows the gradient of the energy, its own velocity uᵢ, and returns to its cone:
-    Jᵢ ← into_cone(Jᵢ − uᵢ/tr Kᵢ).  Scale all impulses by s.  s = 1 leaves the least energy, and s = 1 + e is Poisson's restitution;
+    Jᵢ ← into_cone(Jᵢ − uᵢ/tr Kᵢ).  Scale all impulses by s.
+    s = 1 leaves the least energy, and s = 1 + e is Poisson's restitution;
     s is smaller where a point would otherwise move into the other body.  This never gains energy: the energy is
     a parabola in s, and s = 1 + e loses 1 − e² of what s = 1 loses.
     *Source:* Moreau 1973, maximum dissipation; Anitescu 2006, the convex problem; Poisson 1817, the two phases.
