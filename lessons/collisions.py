@@ -1,11 +1,13 @@
-"""Lesson 6.  Collisions: who touches whom, when and where.
+"""Lesson 6.  Collisions: which bodies touch, when and where.
 
-Symbols: x (d,) centre, p (d,) any point [m] · r, R [m] radii · n (d,) unit normal, from b to a · gap [m], below zero where two
-bodies overlap · E(p) [m] signed distance from a plane · low, high (n, d) [m] corners of n boxes along the axes · t, dt [s].
+Symbols: x (d,) centre, p (d,) any point [m] · r, R [m] radii · n (d,) unit normal, from b to a · gap [m],
+negative where two bodies overlap · E(p) [m] signed distance from a plane · low, high (n, d) [m] corners of n
+boxes along the axes · t, dt [s].
 
-*Detection* says who touches whom, where and when: pure geometry, and all of this lesson but its end.  *Avoidance* acts before anything
-touches: it needs detection with a wide reach, and forces.  *Response* changes velocities once something touches: lesson 7.
-*Left out:* bodies that turn during the step, and shapes that are not convex (cut them up).
+*Detection* finds which bodies touch, where and when.  It is pure geometry, and all of this lesson but its end.
+*Avoidance* acts before contact; it needs detection with a large reach, and forces.
+*Response* changes velocities after contact: lesson 7.
+*Left out:* bodies that rotate during the step, and non-convex shapes (divide them into convex parts).
 """
 
 from typing import NamedTuple
@@ -28,27 +30,42 @@ from solutions.checks import (
 )
 from solutions.vectors import cross, dot
 
-NEVER = np.inf               # the time of what does not happen in this step [s]
-FLAT = 1e-12                 # a triangle of less than this times its longest edge squared has no normal but round-off [-]
+__all__ = [
+    "EDGES_WIN_BY", "FLAT", "GJK_STEPS", "NEVER", "STOP", "Box", "Contact", "Contacts", "Flock",
+    "Plane", "Target", "Tree", "all_pairs", "ball_box", "ball_capsule", "ball_contact",
+    "ball_plane", "ball_triangle", "box_box", "box_corners", "box_separation", "boxes_touch",
+    "build_tree", "candidate_axis", "capsule_capsule", "check_boxes", "check_hulls", "clip",
+    "closest_on_segment", "closest_on_triangle", "column", "continuous_step", "cylinder_contact",
+    "cylinder_gap", "cylinder_hit", "cylinder_impact_time", "cylinder_time", "discrete_step",
+    "edge_axis_distance", "enclose", "far_enough", "find_intersections", "flight",
+    "flock_acceleration", "girth", "gjk", "half_width", "halve", "make_box", "make_flock",
+    "make_plane", "nearer", "nearest_part", "outward", "plane_distance", "plane_gap",
+    "plane_impact_time", "plane_time", "points_plane", "polygon_contacts", "repulsion",
+    "separating_edge", "steer", "support", "swept_box", "touching_items", "tree_pairs",
+    "triangle_cylinder_gap",
+]
+
+NEVER = np.inf               # time of an event that does not occur in this step [s]
+FLAT = 1e-12                 # area over longest edge squared below which a triangle's normal is round-off [-]
 PARALLEL = 1e-12             # sin² of the angle below which two edges count as parallel [-]
-STOP = 1e-14                 # where GJK stops: it knows a distance to this times the size of the bodies [-]
-SMALLEST, LARGEST = 1e-100, 1e100       # sizes of bodies whose squares neither vanish nor overflow [m]
-GJK_STEPS = 100              # far more than any pair of bodies has needed [-]
-LEAF = 8                     # boxes in a leaf of a tree: testing so few is quicker than going down further [-]
-EDGES_WIN_BY = 1e-9          # how much farther [m] a pair of edges must separate than any face: equal ones would take turns
+STOP = 1e-14                 # tolerance of GJK: error of the distance over the size of the bodies [-]
+SMALLEST, LARGEST = 1e-100, 1e100       # sizes of bodies whose squares neither underflow nor overflow [m]
+GJK_STEPS = 100              # far more than any tested pair of bodies has needed [-]
+LEAF = 8                     # boxes in a leaf of a tree [-]: testing so few is faster than descending further
+EDGES_WIN_BY = 1e-9          # how much better than faces a pair of edges must separate [m]; prevents alternation
 
 
 class Contact(NamedTuple):
-    """What detection hands over: where two bodies touch, or are nearest.  The lecture calls it p₁, p₂, n and t*."""
+    """The result of detection: where two bodies touch, or are nearest.  The lecture writes p₁, p₂, n and t*."""
     p_a: np.ndarray          # (d,) the point on a [m]
     p_b: np.ndarray          # (d,) the point on b [m]
     n: np.ndarray            # (d,) unit normal, from b to a
-    gap: float               # (p_a − p_b) · n [m]: below zero they overlap
-    t: float                 # when [s]; NEVER where they do not meet
+    gap: float               # (p_a − p_b) · n [m]: negative where they overlap
+    t: float                 # time of contact [s]; NEVER where they do not meet
 
 
 class Contacts(NamedTuple):
-    """The same for an area of contact, held by k of its points, which share one normal."""
+    """The same for an area of contact, represented by k of its points with a common normal."""
     p_a: np.ndarray          # (k, d) [m]
     p_b: np.ndarray          # (k, d) [m]
     n: np.ndarray            # (d,)
@@ -56,52 +73,52 @@ class Contacts(NamedTuple):
 
 
 class Plane(NamedTuple):
-    """All p with n · p + d = 0; bodies belong on the side to which n points."""
+    """All p with n · p + d = 0; the free side is the one to which n points."""
     n: np.ndarray            # (3,) or (2,) unit normal
     d: float                 # [m]
 
 
 class Box(NamedTuple):
-    """A box in space."""
+    """A box in 3D."""
     x: np.ndarray            # (3,) centre [m]
     R: np.ndarray            # (3, 3) its axes, as columns
     half: np.ndarray         # (3,) half of its edges [m]
 
 
 class Target(NamedTuple):
-    """What a ball flies at: a plane, or the cylinder about the x axis."""
+    """The target of a ball: a plane, or the cylinder about the x axis."""
     r: float                 # radius of the ball [m]
     R: float                 # radius of the cylinder [m]
     plane: Plane
 
 
 class Tree(NamedTuple):
-    """A hierarchy of boxes around n items; node 0 is the root, and holds all."""
+    """A hierarchy of boxes around n items; node 0 is the root, which contains all items."""
     low: np.ndarray          # (m, d) corners of the box around each node [m]
     high: np.ndarray         # (m, d)
-    child: np.ndarray        # (m,) its first child, the second one is the next node; 0: it is a leaf
-    first: np.ndarray        # (m,) its items are order[first], …
-    count: np.ndarray        # (m,) … so many
+    child: np.ndarray        # (m,) number of the first child, the second follows it; 0 marks a leaf
+    first: np.ndarray        # (m,) the items of a node are order[first], …
+    count: np.ndarray        # (m,) … this many
     order: np.ndarray        # (n,) numbers of the items
-    item_low: np.ndarray     # (n, d) the boxes of the items themselves [m], in the order of `order`: those of a leaf lie side by side
+    item_low: np.ndarray     # (n, d) boxes of the items [m], sorted like `order`: those of one leaf are adjacent
     item_high: np.ndarray    # (n, d)
 
 
 class Flock(NamedTuple):
-    """How the members of a flock mind each other."""
-    radius: float            # of one of them [m]
-    reach: float             # the gap at which they notice each other [m]
-    k: float                 # how much they shy away from each other [m⁴/s²]
-    align: float             # how quickly they take on the velocity of those in reach [1/s]
-    gather: float            # how strongly they are drawn to the middle of all [1/s²]
+    """Parameters of a flock."""
+    radius: float            # of each member [m]
+    reach: float             # gap within which members react to each other [m]
+    k: float                 # strength of the repulsion [m⁴/s²]
+    align: float             # rate of adapting to the velocity of members in reach [1/s]
+    gather: float            # strength of the pull to the middle of the flock [1/s²]
 
 
 # ---------------------------------------------------------------------------------------------- points and planes
 
 def make_plane(coefficients):
-    """Given.  The Plane of a x + b y + c z + d = 0 from (a, b, c, d), or in 2D (a, b, d), of whatever length.
+    """Given.  Make the Plane of a x + b y + c z + d = 0 from (a, b, c, d), or in 2D (a, b, d), of any length.
 
-    Raises BadInput where all but d are zero: that is no plane, and what is not finite.
+    Raises BadInput where all but d are zero, and for values that are not finite.
     """
     y = finite_array("a coefficient of a plane", coefficients)
     if y.shape not in ((3,), (4,)):
@@ -113,30 +130,31 @@ def make_plane(coefficients):
 
 
 def plane_distance(p, plane):
-    """How far p (d,) is on the right side of a plane [m]; below zero it is on the wrong one, and that is the discrete test.
+    """Return the signed distance [m] of p (d,) from a plane; negative on the wrong side: the discrete test.
 
     E(p) = a x + b y + c z + d = n · p + d
 
-    *Source:* deck A, "Detect collision: point–plane".
+    *Source:* first lecture deck, “Detect collision: point–plane”.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 6.1: plane_distance")
 
 
 def plane_impact_time(t, dt, x_0, x_1, r, plane):
-    """When [s] a ball of radius r that goes straight from x_0 at t to x_1 at t + dt touches a plane: the continuous test.
+    """Return the time [s] at which a ball of radius r touches a plane: the continuous test.
 
-    t* = t + dt d₁/(d₁ + d₂)         d₁ = E(x_0) − r above it before,   d₂ = r − E(x_1) below it after
+    The ball moves straight from x_0 at t to x_1 at t + dt.  r = 0: a point.
+    t* = t + dt d₁/(d₁ + d₂)         d₁ = E(x_0) − r above the plane before,   d₂ = r − E(x_1) below it after
 
-    t where it touches already (d₁ ≤ 0), NEVER where it does not get there (d₂ < 0).  r = 0: a point.
-    *Source:* deck A, "Time of impact".
+    t where it already touches (d₁ ≤ 0), NEVER where it does not reach the plane (d₂ < 0).
+    *Source:* first lecture deck, “Time of impact”.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 6.2: plane_impact_time")
 
 
 def some_normal(r):
-    """Given.  r/|r|; where r is zero, the last axis: every direction is as good then, and one has to be taken."""
+    """Given.  Return r/|r|, or the last axis where r is zero: there every direction is equally good."""
     length = np.sqrt(r @ r)
     if length != 0.0:
         return r / length
@@ -146,7 +164,7 @@ def some_normal(r):
 
 
 def ball_contact(x_a, r_a, x_b, r_b):
-    """Given.  The Contact of two balls; with r_b = 0 of a ball and a point.  Most of what is round comes down to this.
+    """Given.  Return the Contact of two balls; with r_b = 0 of a ball and a point.  Most round shapes reduce to this.
 
     n = (x_a − x_b)/|x_a − x_b|,   gap = |x_a − x_b| − r_a − r_b,   p_a = x_a − r_a n,   p_b = x_b + r_b n
     """
@@ -156,44 +174,45 @@ def ball_contact(x_a, r_a, x_b, r_b):
 
 
 def ball_plane(x, r, plane):
-    """Given.  The Contact of a ball (a) and a plane (b)."""
+    """Given.  Return the Contact of a ball (a) and a plane (b)."""
     distance = plane_distance(x, plane)
     return Contact(x - r * plane.n, x - distance * plane.n, plane.n, distance - r, 0.0)
 
 
-# ---------------------------------------------------------------------------------------------- a cylinder along the x axis
+# ------------------------------------------------------------------------------------------ a cylinder along the x axis
 
 def cylinder_contact(x, r, R):
-    """Contact of a ball (a) of radius r at x (3,) and the endless cylinder (b) of radius R about the x axis: the discrete test.
+    """Return the Contact of a ball (a) at x (3,) and the infinite cylinder (b) about the x axis: the discrete test.
 
-    The nearest point of the axis is q = (x₀, 0, 0): it is the Contact of a ball r at x and a ball R at q, see ball_contact.
-
-    *Source:* deck B, the worked question, part 1.
+    r is the radius of the ball, R that of the cylinder.  The nearest point of the axis is q = (x₀, 0, 0), so
+    this is the ball_contact of a ball of radius r at x and a ball of radius R at q.
+    *Source:* second lecture deck, the worked question, part 1.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 6.3: cylinder_contact")
 
 
 def cylinder_impact_time(t, dt, x_0, x_1, r, R):
-    """When [s] a ball that goes straight from x_0 (3,) at t to x_1 at t + dt first touches that cylinder: the continuous test.
+    """Return the time [s] at which a ball first touches that cylinder: the continuous test.
 
+    The ball moves straight from x_0 (3,) at t to x_1 at t + dt.
     With y the coordinates (1, 2) of x_0, w those of x_1 − x_0 and ρ = R + r:  |y + s w|² = ρ² is  A s² + 2 B s + C = 0,
     A = w · w,   B = y · w,   C = y · y − ρ²,   D = B² − A C = A ρ² − (y₀ w₁ − y₁ w₀)²
     first root  s = C/(−B + √D),   t* = t + s dt
 
-    Use the last form of D, because B² − A C cancels where a fast ball only grazes.  Use this form of s, because
-    (−B − √D)/A cancels more.  Where the ball is close already, C cancels in any form: the share s is then known to the
-    round-off of |y| over the gap.
+    Use the last form of D, because B² − A C cancels if a fast ball barely grazes the cylinder.  Use this form of s,
+    because (−B − √D)/A cancels more.  If the ball is already close, C cancels in any form: the share s is then known to
+    the round-off of |y| over the gap.
 
-    t where it touches already (C ≤ 0); NEVER where it does not approach (B ≥ 0), misses (D < 0) or comes later (s > 1).
-    *Source:* deck B, the worked question, part 2.
+    t where it already touches (C ≤ 0); NEVER where it does not approach (B ≥ 0), misses (D < 0) or comes later (s > 1).
+    *Source:* second lecture deck, the worked question, part 2.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 6.4: cylinder_impact_time")
 
 
 def cylinder_hit(t, dt, x_0, x_1, r, R):
-    """Given.  The Contact at the time of impact; where there is none, the one at the end of the step, with t = NEVER."""
+    """Given.  Return the Contact at the time of impact; without impact that at the end of the step, with t = NEVER."""
     moment = cylinder_impact_time(t, dt, x_0, x_1, r, R)
     s = (moment - t) / dt if moment < NEVER else 1.0
     c = cylinder_contact(x_0 + s * (x_1 - x_0), r, R)
@@ -201,39 +220,44 @@ def cylinder_hit(t, dt, x_0, x_1, r, R):
 
 
 def plane_gap(x, p):
-    """Given.  Gap [m] between a ball at x (3,) and the plane of a Target."""
+    """Given.  Return the gap [m] between a ball at x (3,) and the plane of a Target."""
     return plane_distance(x, p.plane) - p.r
 
 
 def plane_time(t, dt, x_0, x_1, p):
-    """Given.  Its plane_impact_time [s]."""
+    """Given.  Return the plane_impact_time [s] of a Target."""
     return plane_impact_time(t, dt, x_0, x_1, p.r, p.plane)
 
 
 def cylinder_gap(x, p):
-    """Given.  Gap [m] between a ball at x (3,) and the cylinder of a Target."""
+    """Given.  Return the gap [m] between a ball at x (3,) and the cylinder of a Target."""
     return cylinder_contact(x, p.r, p.R).gap
 
 
 def cylinder_time(t, dt, x_0, x_1, p):
-    """Given.  Its cylinder_impact_time [s]."""
+    """Given.  Return the cylinder_impact_time [s] of a Target."""
     return cylinder_impact_time(t, dt, x_0, x_1, p.r, p.R)
 
 
 def discrete_step(gap, impact_time, t, x, v, dt, p):
-    """Given.  (x, v) of a ball that stays where the discrete test finds it: looked at after each step, it is in by up to |v| dt, or past."""
+    """Given.  Advance a ball by dt and stop it if it then overlaps the target; return (x, v).
+
+    Tested only at the end of a step, it can penetrate by up to |v| dt or pass through.
+    """
     x = x + dt * v
     return x, 0.0 * v if gap(x, p) < 0.0 else v
 
 
 def continuous_step(gap, impact_time, t, x, v, dt, p):
-    """Given.  (x, v) of a ball that stays where the continuous test finds it: exactly where it touches, however long the step is."""
+    """Given.  Advance a ball by dt, but stop it at the point of contact, however long the step is; return (x, v)."""
     moment = impact_time(t, dt, x, x + dt * v, p)
-    return (x + (moment - t) * v, 0.0 * v) if moment < NEVER else (x + dt * v, v)
+    if moment < NEVER:
+        return x + (moment - t) * v, 0.0 * v
+    return x + dt * v, v
 
 
 def flight(step, gap, impact_time, t, x, v, dt, steps, p):
-    """Given.  (x, v), each (n, 3), of n balls that fly straight, one test a step, until they are found to touch; then they stay.
+    """Given.  Return (x, v), each (n, 3), of n balls that fly straight, with one test per step, and stop at contact.
 
     Raises BadInput for a step that is not positive, and a state that is not finite.
     """
@@ -249,51 +273,52 @@ def flight(step, gap, impact_time, t, x, v, dt, steps, p):
 
 
 def closest_on_segment(p, a, b):
-    """The point (d,) of the segment from a to b (d,) that is nearest to p (d,).
+    """Return the point (d,) of the segment from a to b (d,) that is nearest to p (d,).
 
-    a + s (b − a),     s = (p − a) · (b − a)/|b − a|²,  but not below 0 and not above 1
+    a + s (b − a),     s = (p − a) · (b − a)/|b − a|²,  limited to 0 ≤ s ≤ 1
 
-    Raises BadInput for a segment without length.
+    Raises BadInput for a segment of zero length.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 6.5: closest_on_segment")
 
 
 def edge_axis_distance(a, b):
-    """Given.  How far [m] an edge of a cloth from a to b (3,) is from the x axis."""
+    """Given.  Return the distance [m] of an edge of a cloth, from a to b (3,), from the x axis."""
     y_a, y_b = a[1:], b[1:]
-    if y_a[0] == y_b[0] and y_a[1] == y_b[1]:                        # along the axis: seen from its end a point
+    if y_a[0] == y_b[0] and y_a[1] == y_b[1]:                        # parallel to the axis: a point in this view
         return np.sqrt(y_a @ y_a)
     q = closest_on_segment(0.0 * y_a, y_a, y_b)
     return np.sqrt(q @ q)
 
 
 def triangle_cylinder_gap(a, b, c, r, R):
-    """Gap [m] between a triangle of a cloth, with corners a, b, c (3,) and half as thick as r, and the cylinder of cylinder_contact.
+    """Return the gap [m] between a triangle of a cloth and the cylinder of cylinder_contact.
 
-    Seen along the x axis the cylinder is a disc about 0.  Where the shadow of the triangle covers 0, the axis goes through the face:
-        gap = −R − r                              the three  y_i z_j − z_i y_j  over (a, b), (b, c), (c, a) are all > 0 or all < 0
+    a, b, c (3,) are the corners, r is half the thickness of the cloth.  Seen along the x axis the cylinder is a
+    disc about 0.  Where the projected triangle contains 0, the axis passes through the face:
+        gap = −R − r                              y_i z_j − z_i y_j  over (a, b), (b, c), (c, a) are all > 0 or all < 0
     elsewhere the nearest point is on an edge:
         gap = least edge_axis_distance − R − r    of the three edges
 
-    All corners may be far outside while an edge or the face is not: testing the particles of a cloth is not enough.
-    *Source:* deck B, the worked question, part 3.
+    All corners can be far outside while an edge or the face is not: testing the particles of a cloth is not enough.
+    *Source:* second lecture deck, the worked question, part 3.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 6.6: triangle_cylinder_gap")
 
 
-# ---------------------------------------------------------------------------------------------- narrow phase: round shapes
+# ------------------------------------------------------------------------------------------- narrow phase: round shapes
 
 def nearer(p, q, other):
-    """Given.  That one of q and other (d,) which is nearer to p (d,)."""
+    """Given.  Return q or other (d,), whichever is nearer to p (d,)."""
     return q if (q - p) @ (q - p) <= (other - p) @ (other - p) else other
 
 
 def closest_on_triangle(p, a, b, c):
-    """The point (3,) of the triangle a b c that is nearest to p (3,).
+    """Return the point (3,) of the triangle a b c that is nearest to p (3,).
 
-    N = (b − a) × (c − a),    q = p − ((p − a) · N/N · N) N         the foot of p on the triangle's plane
+    N = (b − a) × (c − a),    q = p − ((p − a) · N/N · N) N         the projection of p on the triangle's plane
     q where it is inside: ((b − a) × (q − a)) · N ≥ 0, and the same for b, c and for c, a;
     elsewhere the nearest of the closest_on_segment of the three edges, see nearer
 
@@ -304,17 +329,19 @@ def closest_on_triangle(p, a, b, c):
 
 
 def ball_triangle(x, r, a, b, c):
-    """Given.  The Contact of a ball (a) and a triangle (b)."""
+    """Given.  Return the Contact of a ball (a) and a triangle (b)."""
     return ball_contact(x, r, closest_on_triangle(x, a, b, c), 0.0)
 
 
 def nearer_pair(p, q, other_p, other_q):
-    """Given.  That one of the pairs (p, q) and (other_p, other_q) whose points are nearer to each other."""
-    return (p, q) if (q - p) @ (q - p) <= (other_q - other_p) @ (other_q - other_p) else (other_p, other_q)
+    """Given.  Return (p, q) or (other_p, other_q), whichever points are nearer to each other."""
+    if (q - p) @ (q - p) <= (other_q - other_p) @ (other_q - other_p):
+        return p, q
+    return other_p, other_q
 
 
 def closest_segments(a, b, c, d):
-    """Given.  (p, q): the points of the segments a b and c d that are nearest to each other.
+    """Given.  Return (p, q): the points of the segments a b and c d that are nearest to each other.
 
     Either one of them is an end, or both are inside: there |a + s u − c − t w|² is least (u = b − a, w = d − c).
     *Source:* Lumelsky 1985.
@@ -323,32 +350,34 @@ def closest_segments(a, b, c, d):
     p, q = nearer_pair(p, q, closest_on_segment(c, a, b), c)
     p, q = nearer_pair(p, q, closest_on_segment(d, a, b), d)
     u, w, r = b - a, d - c, a - c
-    D = (u @ u) * (w @ w) - (u @ w) ** 2
-    if D > PARALLEL * (u @ u) * (w @ w):
-        s, t = ((u @ w) * (r @ w) - (w @ w) * (r @ u)) / D, ((u @ u) * (r @ w) - (u @ w) * (r @ u)) / D
+    uu, ww, uw = u @ u, w @ w, u @ w
+    D = uu * ww - uw**2
+    if D > PARALLEL * uu * ww:
+        s = (uw * (r @ w) - ww * (r @ u)) / D
+        t = (uu * (r @ w) - uw * (r @ u)) / D
         if 0.0 <= s <= 1.0 and 0.0 <= t <= 1.0:
             p, q = nearer_pair(p, q, a + s * u, c + t * w)
     return p, q
 
 
 def capsule_capsule(a, b, r_a, c, d, r_b):
-    """Given.  The Contact of two capsules: about the segments a b and c d, with radii r_a and r_b."""
+    """Given.  Return the Contact of two capsules: about the segments a b and c d, with radii r_a and r_b."""
     p, q = closest_segments(a, b, c, d)
     return ball_contact(p, r_a, q, r_b)
 
 
 def ball_capsule(x, r, a, b, r_b):
-    """Given.  The Contact of a ball (a) and a capsule (b) of radius r_b about the segment from a to b."""
+    """Given.  Return the Contact of a ball (a) and a capsule (b) of radius r_b about the segment from a to b."""
     return ball_contact(x, r, closest_on_segment(x, a, b), r_b)
 
 
 def column(R, i):
-    """Given.  Axis i (3,) of a box, as an array of its own."""
+    """Given.  Return axis i (3,) of a box, as a new array."""
     return np.array([R[0, i], R[1, i], R[2, i]])
 
 
 def box_corners(box):
-    """Given.  The eight corners (8, 3) of a Box [m]."""
+    """Given.  Return the eight corners (8, 3) of a Box [m]."""
     corners = np.zeros((8, 3))
     for k in range(8):
         side = np.array([1.0 if k & 1 else -1.0, 1.0 if k & 2 else -1.0, 1.0 if k & 4 else -1.0])
@@ -357,10 +386,11 @@ def box_corners(box):
 
 
 def ball_box(x, r, box):
-    """Contact of a ball (a) of radius r at x (3,) and a Box (b), also where the centre of the ball is inside.
+    """Return the Contact of a ball (a) of radius r at x (3,) and a Box (b), even where the ball's centre is inside.
 
-    y = Rᵀ (x − x_box);   outside: the ball_contact with the point x_box + R q, q_i = y_i but not beyond ±half_i, of radius 0
-    inside (|y_i| ≤ half_i for all i), the faces included: the way out is through the nearest face, along the axis i of the least depth half_i − |y_i|:
+    y = Rᵀ (x − x_box);   outside: the ball_contact with the point x_box + R q of radius 0, q_i = y_i limited to ±half_i
+    inside or on a face (|y_i| ≤ half_i for all i): leave through the nearest face, along the axis i of the least depth
+    half_i − |y_i|:
         n = sign(y_i) times that axis, sign(0) = 1;   gap = −depth − r,   p_a = x − r n,   p_b = x + depth n
 
     column(box.R, i) is axis i.
@@ -371,7 +401,7 @@ def ball_box(x, r, box):
 
 
 def points_plane(x, plane):
-    """Given.  The Contacts of a body with corners x (k, d) (a) and a plane (b): those corners that are not above it."""
+    """Given.  Return the Contacts of a body with corners x (k, d) (a) and a plane (b): all corners not above it."""
     m = 0
     p_a, gap = np.zeros(x.shape), np.zeros(len(x))
     for i in range(len(x)):
@@ -388,7 +418,7 @@ def points_plane(x, plane):
 # ---------------------------------------------------------------------------------------------- broad phase
 
 def check_boxes(low, high):
-    """Given.  Raise BadInput for a box that is inside out or not finite, with its first such edge, and where there is no box at all."""
+    """Given.  Raise BadInput unless there is a box, and all are finite with low ≤ high; names the first such edge."""
     check_array("the lower corners of the boxes [m]", low, 2)
     check_array("the upper corners of the boxes [m]", high, 2)
     check_shape("the upper corners of the boxes", high, low.shape)
@@ -399,17 +429,19 @@ def check_boxes(low, high):
 
 
 def swept_box(low, high, move):
-    """(low, high), each (d,): the box around everything that a box low, high (d,) passes on its way by move (d,) [m].
+    """Return (low, high), each (d,): the box around the path of a box low, high (d,) that moves by move (d,) [m].
 
-    It reaches from the smaller to the larger of where each face begins and ends.  What it does not touch, the body does not hit.
-    *Source:* deck A, "Swept volumes".  *Left out:* that the swept volume itself is smaller than the box around it.
+    Each face of it is at the outermost of the first and last position of that face.  If nothing touches it, the body
+    hits nothing.
+    *Source:* first lecture deck, “Swept volumes”.
+    *Left out:* the swept volume itself is smaller than the box around it.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 6.9: swept_box")
 
 
 def boxes_touch(low_a, high_a, i, low_b, high_b, j):
-    """Given.  Whether box i of some boxes and box j of others have a point in common: they must in every coordinate."""
+    """Given.  Return whether box i of one set and box j of another overlap or touch: they must in every coordinate."""
     for c in range(low_a.shape[1]):
         if low_a[i, c] > high_b[j, c] or low_b[j, c] > high_a[i, c]:
             return False
@@ -417,7 +449,7 @@ def boxes_touch(low_a, high_a, i, low_b, high_b, j):
 
 
 def as_pairs(found):
-    """Given.  A list of pairs of numbers as an array (m, 2)."""
+    """Given.  Return a list of pairs of numbers as an array (m, 2)."""
     pairs = np.zeros((len(found), 2), np.int64)
     for k in range(len(found)):
         pairs[k, 0], pairs[k, 1] = found[k]
@@ -425,10 +457,11 @@ def as_pairs(found):
 
 
 def all_pairs(low, high):
-    """(m, 2): the numbers i < j of all boxes low, high (n, d) that touch each other, each pair once, by testing every pair.
+    """Return (m, 2): the numbers i < j of all boxes low, high (n, d) that touch, each pair once, by testing every pair.
 
-    n (n − 1)/2 tests, see boxes_touch: ten times as many boxes take a hundred times as long.  Begin with  found = [(0, 0) for _ in range(0)],
-    an empty list of pairs (so that the compiled copy knows what will be in it), append to it, and return as_pairs(found).
+    These are n (n − 1)/2 tests with boxes_touch: ten times as many boxes take a hundred times as long.
+    Begin with the empty list  found = [(0, 0) for _ in range(0)],  from which the compiler infers its type.
+    Append pairs, and return as_pairs(found).
     Raises what check_boxes raises; call it first.
     """
     # YOUR CODE HERE
@@ -436,13 +469,17 @@ def all_pairs(low, high):
 
 
 def enclose(tree, node):
-    """Given.  For build_tree, while the items are still in the order of its input: put the box around the items of a node into the tree; return the coordinate in which their middles lie farthest apart."""
+    """Given.  Store the box around the items of a node; return the axis along which their middles spread most.
+
+    For build_tree, while the items are still in the order of its input.
+    """
     widest, axis = -1.0, 0
     for c in range(tree.item_low.shape[1]):
         low, high, first, last = np.inf, -np.inf, np.inf, -np.inf
         for k in range(tree.first[node], tree.first[node] + tree.count[node]):
             a, b = tree.item_low[tree.order[k], c], tree.item_high[tree.order[k], c]
-            low, high, first, last = min(low, a), max(high, b), min(first, a + b), max(last, a + b)
+            low, high = min(low, a), max(high, b)
+            first, last = min(first, a + b), max(last, a + b)
         tree.low[node, c], tree.high[node, c] = low, high
         if last - first > widest:
             widest, axis = last - first, c
@@ -450,11 +487,13 @@ def enclose(tree, node):
 
 
 def halve(tree, first, count, axis):
-    """Given.  For build_tree as well: reorder tree.order[first:first + count] in place, so that the half with the lesser middles along an axis comes first.
+    """Given.  Reorder tree.order[first:first + count] in place: the half with the smaller middles along an axis first.
 
-    *Source:* Hoare 1961, "Algorithm 65: find": it takes time in proportion to count.
+    For build_tree.
+    *Source:* Hoare 1961, “Algorithm 65: find”: it takes time in proportion to count.
     """
-    order, low, high, k = tree.order, first, first + count - 1, first + count // 2
+    order = tree.order
+    low, high, k = first, first + count - 1, first + count // 2
     while low < high:
         pivot = tree.item_low[order[(low + high) // 2], axis] + tree.item_high[order[(low + high) // 2], axis]
         i, j = low, high
@@ -470,17 +509,20 @@ def halve(tree, first, count, axis):
 
 
 def build_tree(low, high):
-    """Given.  The Tree of boxes low, high (n, d): halve the items along the coordinate in which they are spread most, down to LEAF.
+    """Given.  Return the Tree of boxes low, high (n, d): halve the items along the axis of largest spread, to LEAF.
 
     Each level of the tree takes time in proportion to n, and there are about log₂(n/LEAF) levels.  See check_boxes.
-    *Source:* median split; deck B, "Bounding volume hierarchies".
+    *Source:* median split; second lecture deck, “Bounding volume hierarchies”.
     """
-    low, high = finite_array("corner of a box [m]", low), finite_array("corner of a box [m]", high)
+    low = finite_array("corner of a box [m]", low)
+    high = finite_array("corner of a box [m]", high)
     check_boxes(low, high)
     n, d = low.shape
     numbers = np.zeros((3, 2 * n), np.int64)
-    tree = Tree(np.zeros((2 * n, d)), np.zeros((2 * n, d)), numbers[0], numbers[1], numbers[2], np.arange(n), low, high)
-    tree.count[0], node, nodes = n, 0, 1
+    corners = np.zeros((2, 2 * n, d))
+    tree = Tree(corners[0], corners[1], numbers[0], numbers[1], numbers[2], np.arange(n), low, high)
+    tree.count[0] = n
+    node, nodes = 0, 1
     while node < nodes:
         axis, first, count = enclose(tree, node), tree.first[node], tree.count[node]
         if count > LEAF:
@@ -495,7 +537,7 @@ def build_tree(low, high):
 
 
 def girth(tree, node):
-    """Given.  Sum of the edges of a node's box [m]: which of two nodes is the bigger one."""
+    """Given.  Return the sum of the edges of a node's box [m], as a measure of its size."""
     total = 0.0
     for c in range(tree.low.shape[1]):
         total += tree.high[node, c] - tree.low[node, c]
@@ -503,7 +545,7 @@ def girth(tree, node):
 
 
 def touching_items(a, i, b, j, found):
-    """Given.  Append to the list `found` the pairs of items, one of leaf i of a, one of leaf j of b, whose own boxes touch."""
+    """Given.  Append to `found` all pairs of an item of leaf i of a and one of leaf j of b whose boxes touch."""
     for k in range(a.first[i], a.first[i] + a.count[i]):
         for m in range(b.first[j], b.first[j] + b.count[j]):
             if boxes_touch(a.item_low, a.item_high, k, b.item_low, b.item_high, m):
@@ -511,24 +553,28 @@ def touching_items(a, i, b, j, found):
 
 
 def find_intersections(a, b):
-    """(m, 2): the pairs (item of a, item of b) whose boxes touch, each once, by going down two Trees together.
+    """Return (m, 2): the pairs (item of a, item of b) whose boxes touch, each once, by a joint descent of two Trees.
 
-    FindIntersections(i, j), from (0, 0) on, where the boxes of the nodes i of a and j of b touch (boxes_touch; elsewhere: nothing):
-        neither is a leaf      FindIntersections with each child of the bigger node (girth; of i where they are equal) and the other node
-        one is a leaf          with each child of the one that is not, and the leaf
+    FindIntersections(i, j), first of (0, 0), does nothing unless the boxes of node i of a and node j of b touch
+    (boxes_touch).  If they do:
+        neither is a leaf      FindIntersections of each child of the larger node (girth; i if equal) with the other one
+        one is a leaf          FindIntersections of each child of the other one with the leaf
         both are leaves        test the pairs of their items: touching_items(a, i, b, j, found)
 
-    Keep a list of the pairs (i, j) that are still to be looked at, [(0, 0)] at first; end with as_pairs(found), see all_pairs.
-    child 0 means no child: i is a leaf.  Elsewhere the children of i are a.child[i] and a.child[i] + 1.
-    A loop that never ends has taken the child 0 of a leaf for a node: that is the root again.
-    *Source:* deck B, "FindIntersections(node₁, node₂)".
+    Keep a list of the pairs (i, j) still to visit, at first [(0, 0)], and one of found pairs as in all_pairs; return
+    as_pairs(found).  Node i is a leaf if a.child[i] = 0.  Otherwise its children are a.child[i] and a.child[i] + 1.
+    If your loop never ends, it has taken the child 0 of a leaf for a node, which is the root.
+    *Source:* second lecture deck, “FindIntersections(node₁, node₂)”.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 6.11: find_intersections")
 
 
 def tree_pairs(low, high):
-    """Given.  What all_pairs gives, in another order, by a tree that is held against itself: it finds (i, j) and (j, i), and all (i, i)."""
+    """Given.  Return the pairs of all_pairs, in another order, by a tree tested against itself.
+
+    That test finds (i, j), (j, i) and all (i, i); only i < j is kept.
+    """
     tree = build_tree(low, high)
     pairs = find_intersections(tree, tree)
     m = 0
@@ -539,10 +585,13 @@ def tree_pairs(low, high):
     return pairs[:m].copy()
 
 
-# ---------------------------------------------------------------------------------------------- narrow phase: separating axes
+# ---------------------------------------------------------------------------------------- narrow phase: separating axes
 
 def outward(a, i):
-    """Given.  Unit normal (2,) out of edge i of a polygon a (k, 2), counter-clockwise.  Raises BadInput for an edge without length."""
+    """Given.  Return the outward unit normal (2,) of edge i of a polygon a (k, 2), counter-clockwise.
+
+    Raises BadInput for an edge of zero length.
+    """
     e = a[(i + 1) % len(a)] - a[i]
     length = np.sqrt(e @ e)
     if not 0.0 < length < np.inf:
@@ -551,11 +600,12 @@ def outward(a, i):
 
 
 def separating_edge(a, b):
-    """(gap [m], i): the edge i of the convex polygon a (k, 2) that separates it best from b (m, 2), and how far.
+    """Return (gap [m], i): the edge i of the convex polygon a (k, 2) that separates it best from b (m, 2), and its gap.
 
-    gap of edge i:  the least  n_i · (b_j − a_i)  of all corners j of b,  n_i = outward(a, i);    of all edges the one of the greatest gap
+    gap of edge i:  the least  n_i · (b_j − a_i)  of all corners j of b,  n_i = outward(a, i).    Return the greatest
 
-    Above zero: a line along this edge separates them.  Below, of both polygons: they overlap, and this is the shortest way out.
+    A positive gap: a line along this edge separates the polygons.  If the gaps of both polygons are negative, they
+    overlap, and the greater gap is the shortest way out.
     Corners are counter-clockwise.
     *Source:* the separating axis theorem; Gottschalk, Lin and Manocha 1996.
     """
@@ -564,12 +614,13 @@ def separating_edge(a, b):
 
 
 def clip(y, n, d):
-    """What is left of a convex polygon, or of a segment, with corners y (k, 2) or (k, 3) when everything with n · p > d is cut off.
+    """Return the part with n · p ≤ d of a convex polygon, or of a segment, with corners y (k, 2) or (k, 3).
 
-    Around the polygon: keep corner i if s_i = n · y_i − d ≤ 0; then, if s_i and s_j of the next corner j differ in sign (s_i s_j < 0), add
+    For each corner i in order: keep it if s_i = n · y_i − d ≤ 0.  Then, if s_i and s_j of the next corner j differ in
+    sign (s_i s_j < 0), add
         y_i + s_i/(s_i − s_j) (y_j − y_i)
-    A segment (k = 2) has one edge only: there is no crossing from its second corner back to its first.  It may be that nothing is left: an array
-    of no rows.  So y may have no row either, or one: what a first cut leaves goes into the next.
+    A segment (k = 2) has only one edge: there is no crossing from its second corner back to its first.  If nothing is
+    left, return an array without rows.  y itself may have no row, or one: it can be the result of another cut.
     *Source:* Sutherland and Hodgman 1974.
     """
     # YOUR CODE HERE
@@ -577,12 +628,12 @@ def clip(y, n, d):
 
 
 def against_face(y, n, p, flipped):
-    """Given.  Contacts of corners y (k, d) with a face through p, outward normal n (d,): those that are not beyond it.
+    """Given.  Return the Contacts of the corners y (k, d) not beyond a face through p with outward normal n (d,).
 
     The face belongs to a, and y to b; flipped: the other way round.
     """
-    m, d = 0, y.shape[1]
-    on_y, on_face, gap = np.zeros((len(y), d)), np.zeros((len(y), d)), np.zeros(len(y))
+    m = 0
+    on_y, on_face, gap = np.zeros(y.shape), np.zeros(y.shape), np.zeros(len(y))
     for i in range(len(y)):
         s = n @ (y[i] - p)
         if s <= 0.0:
@@ -593,7 +644,7 @@ def against_face(y, n, p, flipped):
 
 
 def facing_edge(a, n):
-    """Given.  The edge (2, 2) of a polygon whose outward normal is most against n (2,)."""
+    """Given.  Return the edge (2, 2) of a polygon whose outward normal is most opposed to n (2,)."""
     least, edge = np.inf, 0
     for i in range(len(a)):
         against = outward(a, i) @ n
@@ -603,15 +654,17 @@ def facing_edge(a, n):
 
 
 def polygon_contacts(a, b):
-    """Given.  Contacts of two convex polygons, counter-clockwise; none where they are apart.
+    """Given.  Return the Contacts of two convex polygons, counter-clockwise; none where they are apart.
 
-    The edge that separates best is the reference; the edge of the other that faces it most is cut to its width, and what is left of
-    its two ends behind the reference are the points of contact.  So an edge on an edge is two points: the lecture's point–point.
-    *Source:* deck A, "Edge/edge collisions are modeled as point/point"; Catto 2006 for the clipping.
+    The edge that separates best is the reference.  The edge of the other polygon that faces it most is clipped to its
+    width.  The ends of that edge behind the reference are the contact points.  Edge on edge therefore gives two points:
+    the point–point contact of the lecture.
+    *Source:* first lecture deck, “Edge/edge collisions are modeled as point/point”; Catto 2006 for the clipping.
     """
     for thing, corners in (("the corners of polygon a [m]", a), ("the corners of polygon b [m]", b)):
         check_field(thing, corners, (len(corners), 2))
-    (gap_a, i), (gap_b, j) = separating_edge(a, b), separating_edge(b, a)
+    gap_a, i = separating_edge(a, b)
+    gap_b, j = separating_edge(b, a)
     if max(gap_a, gap_b) > 0.0:
         return Contacts(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(2), np.zeros(0))
     flipped = gap_b > gap_a
@@ -623,10 +676,13 @@ def polygon_contacts(a, b):
 
 
 def make_box(x, R, half):
-    """Given.  A Box; raises BadInput unless half is positive, and R (3, 3) is orthonormal: its columns are the axes of the box."""
-    x, R, half = finite_array("centre of a box [m]", x), finite_array("axes R of a box [-]", R), finite_array("half edges of a box [m]", half)
-    for thing, y, shape in (("the centre of a box", x, (3,)), ("the axes R of a box", R, (3, 3)), ("the half edges of a box", half, (3,))):
-        check_shape(thing, y, shape)
+    """Given.  Make a Box; raises BadInput unless half is positive and the axes, columns of R (3, 3), orthonormal."""
+    x = finite_array("centre of a box [m]", x)
+    R = finite_array("axes R of a box [-]", R)
+    half = finite_array("half edges of a box [m]", half)
+    check_shape("the centre of a box", x, (3,))
+    check_shape("the axes R of a box", R, (3, 3))
+    check_shape("the half edges of a box", half, (3,))
     for k in range(3):
         check_positive("half an edge of a box [m]", half[k])
         check_normal(R[:, k])
@@ -637,7 +693,7 @@ def make_box(x, R, half):
 
 
 def half_width(box, n):
-    """Given.  How far [m] a Box reaches from its centre along the unit vector n:  Σ half_i |axis_i · n|."""
+    """Given.  Return how far [m] a Box extends from its centre along the unit vector n:  Σ half_i |axis_i · n|."""
     total = 0.0
     for i in range(3):
         total += box.half[i] * abs(box.R[0, i] * n[0] + box.R[1, i] * n[1] + box.R[2, i] * n[2])
@@ -645,7 +701,10 @@ def half_width(box, n):
 
 
 def candidate_axis(a, b, k):
-    """Given.  Axis k of the 15 that can separate two Boxes: 3 of a, 3 of b, 9 across an edge of each; zeros where those are parallel."""
+    """Given.  Return axis k of the 15 that can separate two Boxes: 3 of a, 3 of b, 9 perpendicular to an edge of each.
+
+    Those 9 are zeros where the edges are parallel.
+    """
     if k < 3:
         return column(a.R, k)
     if k < 6:
@@ -655,14 +714,15 @@ def candidate_axis(a, b, k):
 
 
 def box_separation(a, b):
-    """(gap [m], n, k): the axis of the 15 that separates two Boxes best, as a unit normal from b to a, and its number.
+    """Return (gap [m], n, k): the best separating axis of two Boxes, as a unit normal from b to a, and its number.
 
     gap along an axis:   |r · axis| − half_width(a, axis) − half_width(b, axis),     r = x_a − x_b
-    Of all axes the one of the greatest gap; those across two edges (k ≥ 6) must exceed what the best of the faces, k < 6, gives, and any
-    edges before them, by EDGES_WIN_BY.  Of equal ones the first counts.  candidate_axis(a, b, k) gives axis k; leave out those
-    that are zeros.  n = ±axis, so that n · r ≥ 0.
+    Choose the axis of the greatest gap.  An axis of two edges (k ≥ 6) must exceed the best face, k < 6, and any edges
+    before it by EDGES_WIN_BY.  Of equal gaps the first counts.  candidate_axis(a, b, k) returns axis k; skip those that
+    are zeros.  n = ±axis, such that n · r ≥ 0.
 
-    gap > 0: they are that far apart along n at least.  gap ≤ 0: they overlap, and −gap along n is the shortest way out.
+    gap > 0: the boxes are at least that far apart along n.  gap ≤ 0: they overlap, and −gap along n is the shortest way
+    out.
     *Source:* Gottschalk, Lin and Manocha 1996.
     """
     # YOUR CODE HERE
@@ -670,7 +730,7 @@ def box_separation(a, b):
 
 
 def box_face(box, n):
-    """Given.  (corners (4, 3), i, outward normal (3,)) of the face of a Box whose normal is most along n; i is its axis."""
+    """Given.  Return (corners (4, 3), i, outward normal (3,)) of the face of a Box most along n; i is its axis."""
     i, most = 0, -1.0
     for k in range(3):
         along = abs(column(box.R, k) @ n)
@@ -678,12 +738,13 @@ def box_face(box, n):
             i, most = k, along
     out = column(box.R, i) if column(box.R, i) @ n >= 0.0 else -column(box.R, i)
     j, k = (i + 1) % 3, (i + 2) % 3
-    u, w, middle = box.half[j] * column(box.R, j), box.half[k] * column(box.R, k), box.x + box.half[i] * out
+    u, w = box.half[j] * column(box.R, j), box.half[k] * column(box.R, k)
+    middle = box.x + box.half[i] * out
     return np.stack((middle + u + w, middle - u + w, middle - u - w, middle + u - w)), i, out
 
 
 def box_edge(box, i, n):
-    """Given.  (end, end) of the edge along axis i of a Box that lies farthest along n."""
+    """Given.  Return (end, end) of the edge along axis i of a Box that lies farthest along n."""
     x, along = box.x, box.half[i] * column(box.R, i)
     for k in range(3):
         if k != i:
@@ -693,10 +754,10 @@ def box_edge(box, i, n):
 
 
 def box_box(a, b):
-    """Given.  Contacts of two Boxes; none where they are apart.
+    """Given.  Return the Contacts of two Boxes; none where they are apart.
 
-    A face separates best: the face of the other box that faces it most is cut off at its four sides, and what is left behind the face are up
-    to eight points.  Two edges do: one point, where the edges are nearest.
+    If a face separates best, the opposite face of the other box is clipped at its four sides, and the corners
+    behind the face are up to eight contact points.  If two edges do, there is one point, where the edges are nearest.
     *Source:* Gottschalk, Lin and Manocha 1996; Catto 2006.
     """
     gap, n, k = box_separation(a, b)
@@ -705,7 +766,8 @@ def box_box(a, b):
     if gap > 0.0:
         return Contacts(np.zeros((0, 3)), np.zeros((0, 3)), n, np.zeros(0))
     if k >= 6:
-        (p, q), (s, t) = box_edge(a, (k - 6) // 3, -n), box_edge(b, (k - 6) % 3, n)
+        p, q = box_edge(a, (k - 6) // 3, -n)
+        s, t = box_edge(b, (k - 6) % 3, n)
         p, q = closest_segments(p, q, s, t)
         return Contacts(np.stack((p,)), np.stack((q,)), n, np.array([gap]))
     flipped = k >= 3
@@ -719,10 +781,10 @@ def box_box(a, b):
     return against_face(left, out, y[0], flipped)
 
 
-# ---------------------------------------------------------------------------------------------- narrow phase: any two convex bodies
+# ---------------------------------------------------------------------------------- narrow phase: any two convex bodies
 
 def support(x, n):
-    """Given.  Number of that point of x (k, d) which lies farthest along n (d,)."""
+    """Given.  Return the number of the point of x (k, d) that lies farthest along n (d,)."""
     farthest, best = -np.inf, 0
     for i in range(len(x)):
         if x[i] @ n > farthest:
@@ -731,7 +793,10 @@ def support(x, n):
 
 
 def cofactor(delta, G, rest, j):
-    """Given.  Δ_j of the points `rest` (bits of a whole number) and point j:  Σ Δ_i(rest) (y_i · y_k − y_i · y_j), k the first of rest."""
+    """Given.  Return Δ_j of the points `rest` (bits of an integer) and point j.
+
+    Δ_j = Σ Δ_i(rest) (y_i · y_k − y_i · y_j), with k the first of rest.
+    """
     if rest == 0:
         return 1.0
     k = 0
@@ -745,14 +810,14 @@ def cofactor(delta, G, rest, j):
 
 
 def nearest_part(p, q):
-    """Given.  (p, q, weights) of those of the points p, q (k, d) that span the part nearest to 0 of what y = p − q spans; k is 5 at most.
+    """Given.  Return (p, q, weights) of those points p, q (k, d) that span the part of the hull of y = p − q next to 0.
 
-    The point nearest to 0 is Σ weight y, weights > 0 with sum 1.  Johnson's cofactors give it for every subset of the points; where they
-    are all positive it lies inside that subset, and the subset whose point is nearest is the one.
+    The nearest point is Σ weight y, with weights > 0 and sum 1; k is at most 5.  Johnson's cofactors give it for every
+    subset of the points.  Where they are all positive, it lies inside that subset; the nearest of these points counts.
     *Source:* Gilbert, Johnson and Keerthi 1988.
     """
     y = p - q
-    y = y / np.abs(y).max()                              # weights have no unit; products of eight lengths must not overflow
+    y = y / np.abs(y).max()                              # weights are ratios; products of 8 lengths must not overflow
     k, G, least = len(y), y @ y.T, np.inf
     delta, weights = np.zeros((2**k, k)), np.zeros(k)
     for subset in range(1, 2**k):
@@ -771,8 +836,9 @@ def nearest_part(p, q):
 
 
 def check_hulls(a, b):
-    """Given.  Raise BadInput unless a (k, d) and b (m, d) are points of two bodies: some of each, in one dimension, finite, and of a size
-    whose square is a number.
+    """Given.  Raise BadInput unless a (k, d) and b (m, d) are finite points of two bodies, at least one of each.
+
+    Their size must have a square that neither underflows nor overflows.
     """
     check_array("the points of body a [m]", a, 2)
     check_array("the points of body b [m]", b, 2)
@@ -783,23 +849,25 @@ def check_hulls(a, b):
 
 
 def far_enough(v, w):
-    """Given.  Whether v (d,) is the nearest point to 0, when the body reaches no nearer along −v than w (d,): to STOP of their size.
+    """Given.  Return whether v (d,) is the nearest point to 0, to STOP of the size, if none is beyond w (d,) along −v.
 
-    |v|² − v · w ≤ STOP |v| |w|:  v · w/|v| is a lower bound of the distance, and |v| an upper one.
+    |v|² − v · w ≤ STOP |v| |w|:  v · w/|v| is a lower bound of the distance, and |v| an upper bound.
     """
     size_v, size_w = np.sqrt(v @ v), np.sqrt(w @ w)
     return v @ v - v @ w <= STOP * size_v * size_w or size_v <= STOP * size_w
 
 
 def gjk(a, b):
-    """Contact of two convex bodies, the hulls of the points a (k, d) and b (m, d): their nearest points and their distance.
+    """Return the Contact of two convex bodies, the hulls of the points a (k, d) and b (m, d), at their nearest points.
 
-    The body of all differences, y = p − q, is as far from 0 as they are from each other.  From one point of each, p = a[:1], q = b[:1],
-    weights = np.ones(1), and at most GJK_STEPS times:
+    The set of all differences y = p − q is as far from 0 as the bodies are from each other.  Start from one
+    point of each,
+    p = a[:1], q = b[:1], weights = np.ones(1).  At most GJK_STEPS times:
         v = Σ weight (p − q)                                      the nearest point so far
-        i = support(a, −v),  j = support(b, v),  w = a_i − b_j    the point of the differences that is farthest towards 0
-        stop where far_enough(v, w);  else add a_i to p and b_j to q, and keep of them what counts: nearest_part(p, q)
-    The answer is ball_contact(Σ weight p, 0, Σ weight q, 0).  Where they overlap it has a gap of 0 (or round-off) and no normal of any meaning.
+        i = support(a, −v),  j = support(b, v),  w = a_i − b_j    the difference that is farthest towards 0
+        stop if far_enough(v, w);  otherwise append a_i to p and b_j to q, and reduce them with nearest_part(p, q)
+    Return ball_contact(Σ weight p, 0, Σ weight q, 0).  Where the bodies overlap it has a gap of 0 (or round-off), and
+    its normal is meaningless.
     Raises what check_hulls raises; call it first.
     *Source:* Gilbert, Johnson and Keerthi 1988.
     """
@@ -810,40 +878,42 @@ def gjk(a, b):
 # ---------------------------------------------------------------------------------------------- avoidance
 
 def repulsion(x, centre, radius, reach, k):
-    """Acceleration (d,) [m/s²] at x (d,) in a force field around an obstacle: it pushes away, without limit towards the skin.
+    """Return the acceleration (d,) [m/s²] at x (d,) in the repulsive field of an obstacle; unbounded near its surface.
 
     a = k (1/g − 1/reach)/g² n        for a gap g = |x − centre| − radius below reach,     0 beyond
-    It is −∇U of  U = ½ k (1/g − 1/reach)²:  whoever comes with less energy than infinite never touches.
+    It is −∇U of  U = ½ k (1/g − 1/reach)²:  a body of finite energy never touches the obstacle.
 
     n: unit vector from the centre to x.  k in m⁴/s².  Raises BadInput for a gap of zero or below.
-    *Source:* deck A, "Collision avoidance: force fields"; Khatib 1986.
+    *Source:* first lecture deck, “Collision avoidance: force fields”; Khatib 1986.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 6.16: repulsion")
 
 
 def steer(x, v, centre, radius, ahead):
-    """Acceleration (2,) [m/s²], across v, with which somebody at x going with v (2,) just gets past a disc that is in the way.
+    """Return the acceleration (2,) [m/s²], across v, that just steers a body at x with v (2,) around a disc in its way.
 
-    e = v/|v|,   r = centre − x,   τ = r · e/|v|                  when it passes the centre
-    y = r − (r · e) e                                             how far it passes beside it, |y|
+    e = v/|v|,   r = centre − x,   τ = r · e/|v|                  time until it passes the centre
+    y = r − (r · e) e                                             offset from the centre when it passes: −y
     a = −2 (radius − |y|)/τ² · y/|y|      if 0 < τ < ahead [s] and |y| < radius;  else 0
 
-    Held for τ, it moves aside by ½ a τ² = radius − |y|.  Where it heads for the very centre (y = 0) it goes left: −y/|y| = (−e₁, e₀).
-    radius [m]: of the disc, and its own, and what room it wants to leave.  At rest (v = 0): 0.
-    *Source:* deck A, "Collision avoidance: steer to avoid"; Reynolds 1999.
+    Applied for τ, it moves the body aside by ½ a τ² = radius − |y|.  If the body heads for the exact centre (y = 0), it
+    turns left: −y/|y| = (−e₁, e₀).
+    radius [m] is the sum of the disc's radius, the body's own and the clearance.  At rest (v = 0): 0.
+    *Source:* first lecture deck, “Collision avoidance: steer to avoid”; Reynolds 1999.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 6.17: steer")
 
 
 def flock_acceleration(t, x, v, p):
-    """Given.  (n, d) [m/s²] of a flock at x, v (n, d): keep clear, go along with those near you, and stay together.
+    """Given.  Return the accelerations (n, d) [m/s²] of a flock at x, v (n, d): separation, alignment and gathering.
 
     a_i = Σ_j repulsion(x_i, x_j, 2 radius, reach, k) + Σ_near align (v_j − v_i) + gather (x̄ − x_i)
 
-    Separation and gathering have potentials, and alignment only takes energy: it cannot grow, so U stays finite, so nobody collides.
-    *Source:* deck A, "as in flocking"; Reynolds 1987 for the three rules.
+    Separation and gathering have potentials, and alignment only removes energy.  The energy therefore cannot grow, U
+    stays finite, and no members collide.
+    *Source:* first lecture deck, “as in flocking”; Reynolds 1987 for the three rules.
     """
     a, middle = np.zeros(x.shape), np.zeros(x.shape[1])
     for i in range(len(x)):
@@ -861,7 +931,7 @@ def flock_acceleration(t, x, v, p):
 
 
 def flock_energy(x, v, p):
-    """Given.  ½ Σ |v|² + Σ_pairs ½ k (1/g − 1/reach)² + ½ gather Σ |x − x̄|²  [m²/s²]: what flock_acceleration cannot let grow."""
+    """Given.  Return ½ Σ |v|² + Σ_pairs ½ k (1/g − 1/reach)² + ½ gather Σ |x − x̄|²  [m²/s²], which never grows."""
     energy, middle = 0.0, np.zeros(x.shape[1])
     for i in range(len(x)):
         middle += x[i] / len(x)
@@ -876,7 +946,7 @@ def flock_energy(x, v, p):
 
 
 def make_flock(radius, reach, k, align, gather):
-    """Given.  A Flock; raises BadInput for a length or a k that is not positive, and for what is not finite."""
+    """Given.  Make a Flock; raises BadInput for a length or a k that is not positive, or values that are not finite."""
     lengths = positive_number("radius [m]", radius), positive_number("reach [m]", reach)
     pulls = finite_number("align [1/s]", align), finite_number("gather [1/s²]", gather)
     return Flock(*lengths, positive_number("k [m⁴/s²]", k), *pulls)

@@ -1,19 +1,19 @@
 """Lesson 4.  Resistance to rotation: centre of mass, momenta, and the inertia tensor.
 
     P = M v        mass resists a change of velocity: one number, the same in all directions
-    L = I ω        the tensor resists a change of rotation: a symmetric matrix, another in each direction
+    L = I ω        the tensor resists a change of rotation: a symmetric matrix, different in each direction
 
-Symbols: m [kg] · x [m] position · v [m/s] · X [m] centre of mass · r [m] offset from it · P [kg m/s] linear and L [kg m²/s]
-angular momentum · omega [rad/s] · I (3, 3) [kg m²] inertia tensor, I_body in the body's own axes · R (3, 3) rotation from
-body to world: its columns are the body's axes.  Vectors are (3,), float.
+Symbols: m [kg] · x [m] position · v [m/s] · X [m] centre of mass · r [m] offset from it · P [kg m/s] linear and
+L [kg m²/s] angular momentum · omega [rad/s] · I (3, 3) [kg m²] inertia tensor, I_body in body axes ·
+R (3, 3) rotation from body to world: its columns are the body's axes.  Vectors are (3,), float.
 
-    I = ⎡ Ixx  Ixy  Ixz ⎤      Ixx =  ∫ (y² + z²) dm    resistance about x: what counts is the distance from the axis
-        ⎢ Ixy  Iyy  Iyz ⎥      Ixy = −∫ x y dm          how turning about x also drags the body about y
+    I = ⎡ Ixx  Ixy  Ixz ⎤      Ixx =  ∫ (y² + z²) dm    resistance about x: the distance from the axis counts
+        ⎢ Ixy  Iyy  Iyz ⎥      Ixy = −∫ x y dm          coupling: rotation about x gives L a component along y
         ⎣ Ixz  Iyz  Izz ⎦
 
-The minus sign is part of the entry.  A deck that writes Ixy = Σ m x y calls that number the product of inertia, and puts −Ixy
-into the matrix: without it L = I ω would be wrong.
-*Left out:* bodies that bend; how the body turns under this tensor, which is lesson 5.
+The minus sign is part of the entry.  Some texts write Ixy = Σ m x y, call that number the product of inertia,
+and put −Ixy into the matrix.  Without the minus sign, L = I ω would be wrong.
+*Left out:* bodies that deform; the rotation of a body with this tensor, which is lesson 5.
 """
 
 from typing import NamedTuple
@@ -23,11 +23,18 @@ import numpy as np
 from solutions.checks import BadInput, check_finite, check_positive
 from solutions.vectors import cross, dot, inverse
 
-TENSOR_ROUND_OFF = 1e-14      # a moment is known this well, relative to the largest [-]: a few dozen roundings of 1.1e-16
+__all__ = [
+    "TENSOR_ROUND_OFF", "Body", "angular_momentum", "box_inertia", "capsule_inertia",
+    "centre_of_mass", "check_closed", "check_inertia", "combine", "cylinder_inertia",
+    "linear_momentum", "mesh_body", "mesh_integrals", "parallel_axes", "point_mass_inertia",
+    "principal_axes", "sphere_inertia", "world_inertia", "world_inverse_inertia",
+]
+
+TENSOR_ROUND_OFF = 1e-14      # accuracy of a moment relative to the largest [-]: a few dozen roundings of 1.1e-16
 
 
 class Body(NamedTuple):
-    """What rigid motion needs to know of a body."""
+    """The properties of a body that determine its rigid motion."""
     m: float                  # mass [kg]
     x: np.ndarray             # (3,) centre of mass [m]
     I: np.ndarray             # (3, 3) inertia tensor about the centre of mass [kg m²]
@@ -36,37 +43,37 @@ class Body(NamedTuple):
 # ---------------------------------------------------------------------------------------------- momenta of points
 
 def centre_of_mass(m, x):
-    """Total mass M [kg] and centre of mass X (3,) [m] of n points: (M, X).
+    """Return (M, X): total mass M [kg] and centre of mass X (3,) [m] of n points.
 
     M = Σ mᵢ,   X = Σ mᵢ xᵢ / M            m (n,), x (n, 3)
 
-    The centre moves as if it were one point of mass M with all forces on it: M Ẍ = F = Σ fᵢ.
-    A single mass may be zero, or negative: then it is a hole.
+    The centre moves like a single point of mass M under the sum of all forces: M Ẍ = F = Σ fᵢ.
+    A single mass may be zero, or negative for a hole.
     Raises BadInput unless M is finite and above zero: check_positive("total mass [kg]", M).
-    *Source:* deck A, "Center of Mass".
+    *Source:* first lecture deck, “Center of Mass”.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 4.1: centre_of_mass")
 
 
 def linear_momentum(m, v):
-    """P [kg m/s] (3,) of n points: m (n,), v (n, 3).
+    """Return P [kg m/s] (3,) of n points: m (n,), v (n, 3).
 
-    P = Σ mᵢ vᵢ = M Ẋ,   dP/dt = F         constant when nothing pushes from outside
+    P = Σ mᵢ vᵢ = M Ẋ,   dP/dt = F         constant without external forces
 
-    *Source:* deck A, "Linear Momentum".
+    *Source:* first lecture deck, “Linear Momentum”.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 4.2: linear_momentum")
 
 
 def angular_momentum(m, x, v, about):
-    """L [kg m²/s] (3,) of n points about the point `about` (3,): m (n,), x and v (n, 3).
+    """Return L [kg m²/s] (3,) of n points about the point `about` (3,): m (n,), x and v (n, 3).
 
     L = Σ (xᵢ − about) × mᵢ vᵢ,   dL/dt = τ = Σ (xᵢ − about) × fᵢ
 
-    When the points turn as one body with ω about their centre of mass, L about the centre is I ω.
-    *Source:* deck A, "Angular Momentum".
+    If the points rotate as one body with ω about their centre of mass, L about the centre is I ω.
+    *Source:* first lecture deck, “Angular Momentum”.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 4.3: angular_momentum")
@@ -75,44 +82,44 @@ def angular_momentum(m, x, v, about):
 # ---------------------------------------------------------------------------------------------- tensors
 
 def point_mass_inertia(m, r):
-    """I [kg m²] (3, 3) of n points at offsets r (n, 3) [m] from the point that I is about; m (n,).
+    """Return I [kg m²] (3, 3) of n points with masses m (n,) at offsets r (n, 3) [m] from the reference point of I.
 
-    Ixx = Σ m (y² + z²),   Ixy = Iyx = −Σ m x y,   and so on round;   in one line  I = Σ m (|r|² 1 − r rᵀ)
+    Ixx = Σ m (y² + z²),   Ixy = Iyx = −Σ m x y,   and so on cyclically;   in one line  I = Σ m (|r|² 1 − r rᵀ)
 
-    *Source:* deck A, "Inertia Tensor"; the signs of Ixy as at the top of this file.
+    *Source:* first lecture deck, “Inertia Tensor”; the signs of Ixy as at the top of this file.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 4.4: point_mass_inertia")
 
 
 def box_inertia(m, size):
-    """I_body [kg m²] (3, 3) of a uniform box about its centre; size (3,) [m] whole edges along x, y, z.
+    """Return I_body [kg m²] (3, 3) of a uniform box about its centre; size (3,) [m] is its full edges along x, y, z.
 
     Ixx = ∫∫∫ ρ (y² + z²) dx dy dz = m (b² + c²)/12,   a, b, c = size
 
     m < 0 is allowed, here and below: a hole is a body of negative mass.
-    *Source:* deck A, "Inertia Tensor", the volume integral.
+    *Source:* first lecture deck, “Inertia Tensor”, the volume integral.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 4.5: box_inertia")
 
 
 def sphere_inertia(m, radius):
-    """I_body [kg m²] (3, 3) of a uniform ball about its centre: ⅖ m radius² about every axis.
+    """Return I_body [kg m²] (3, 3) of a uniform ball about its centre: ⅖ m radius² about every axis.
 
-    Its three moments are equal and add up to  ∫ 2 r² dm = 2 m/(4/3 π R³) ∫ r² 4π r² dr = 6/5 m R².
-    *Source:* deck A, "Inertia Tensor", the volume integral.
+    Its three moments are equal, and their sum is  ∫ 2 r² dm = 2 m/(4/3 π R³) ∫ r² 4π r² dr = 6/5 m R².
+    *Source:* first lecture deck, “Inertia Tensor”, the volume integral.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 4.6: sphere_inertia")
 
 
 def cylinder_inertia(m, radius, length):
-    """I_body [kg m²] (3, 3) of a uniform cylinder about its centre; its axis is z.
+    """Return I_body [kg m²] (3, 3) of a uniform cylinder about its centre; its axis is z.
 
     Izz = ½ m radius²,   Ixx = Iyy = m (3 radius² + length²)/12
 
-    length → 0 is a disc, radius → 0 a rod.
+    The limit length → 0 is a disc, radius → 0 a rod.
     *Source:* any text of mechanics; e.g. Landau and Lifshitz, Mechanics, § 32.
     """
     # YOUR CODE HERE
@@ -120,16 +127,18 @@ def cylinder_inertia(m, radius, length):
 
 
 def capsule_inertia(m, radius, length):
-    """I_body [kg m²] (3, 3) of a uniform capsule about its centre: a cylinder along z of that length, and half a ball on each end.
+    """Return I_body [kg m²] (3, 3) of a uniform capsule about its centre: a cylinder along z with two half balls.
 
-    The mass is shared out by volume, m_c to the cylinder and m_s to the two half balls together:
+    `length` is that of the cylinder.  The mass is divided in proportion to volume, m_c for the cylinder and m_s
+    for the two half balls together:
         m_c = m length/(length + 4/3 radius),   m_s = m − m_c
-    Half a ball has its centre ⅜ radius above its flat face; with h = length and both parts moved to the capsule's centre
+    The centre of a half ball is ⅜ radius above its flat face.  With h = length and both parts moved to the
+    capsule's centre
         Ixx = Iyy = m_c (3 radius² + h²)/12 + m_s (⅖ radius² + ¼ h² + ⅜ h radius)
         Izz = ½ m_c radius² + ⅖ m_s radius²
 
     length = 0 is a ball, radius = 0 a rod; with both zero there is no body.
-    *Source:* the parallel-axis theorem, below; Eberly, "Game physics", 2003.
+    *Source:* the parallel-axis theorem, below; Eberly, “Game physics”, 2003.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 4.8: capsule_inertia")
@@ -138,24 +147,24 @@ def capsule_inertia(m, radius, length):
 # ---------------------------------------------------------------------------------------------- from body to world
 
 def world_inertia(I_body, R):
-    """I [kg m²] (3, 3) in world axes of a body that is turned by R.
+    """Return I [kg m²] (3, 3) in world axes of a body with orientation R.
 
-    I = R I_body Rᵀ        read from the right: ω into the body's axes, times its own tensor, and L back into the world
+    I = R I_body Rᵀ        from right to left: convert ω to body axes, multiply by I_body, convert L back to world axes
 
-    I_body never changes; I changes whenever the body turns.
-    *Source:* deck A, I(t) = R(t) I_body R(t)ᵀ.
+    I_body is constant; I changes whenever the body rotates.
+    *Source:* first lecture deck, I(t) = R(t) I_body R(t)ᵀ.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 4.9: world_inertia")
 
 
 def world_inverse_inertia(I_body, R):
-    """I⁻¹ [1/(kg m²)] (3, 3) in world axes: what turns a torque into a change of ω.
+    """Return I⁻¹ [1/(kg m²)] (3, 3) in world axes: it converts a torque to a change of ω.
 
-    I⁻¹ = R I_body⁻¹ Rᵀ        because R⁻¹ = Rᵀ: inverted once, in the body's axes, and only turned afterwards
+    I⁻¹ = R I_body⁻¹ Rᵀ        because R⁻¹ = Rᵀ: invert in body axes, then rotate
 
     inverse, given in vectors.py, inverts a symmetric matrix.
-    *Source:* deck A.
+    *Source:* first lecture deck.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 4.10: world_inverse_inertia")
@@ -164,11 +173,12 @@ def world_inverse_inertia(I_body, R):
 # ---------------------------------------------------------------------------------------------- composite bodies
 
 def parallel_axes(I, m, d):
-    """The tensor [kg m²] (3, 3) about a point at the offset d (3,) [m] from the centre of mass, from I about the centre itself.
+    """Return the tensor [kg m²] (3, 3) about a point at the offset d (3,) [m] from the centre, from I about the centre.
 
-    I + m (|d|² 1 − d dᵀ)        the body, and all its mass as a point at the distance d
+    I + m (|d|² 1 − d dᵀ)        the body, plus its mass as a single point at the distance d
 
-    The centre is where a body turns most easily.  With −m the same formula leads back from there to the centre.
+    The moments are smallest about the centre of mass.  The same formula with −m leads back from the point to
+    the centre.
     *Source:* Huygens 1673; Steiner 1840.
     """
     # YOUR CODE HERE
@@ -176,11 +186,11 @@ def parallel_axes(I, m, d):
 
 
 def combine(m, x, I):
-    """The Body of n bodies that are fastened to each other: m (n,), their centres x (n, 3), tensors I (n, 3, 3) about these.
+    """Return the Body of n rigidly connected bodies: m (n,), their centres x (n, 3), tensors I (n, 3, 3) about these.
 
-    M, X = centre_of_mass,   I = Σ of all Iᵢ, each carried to X by parallel_axes
+    M, X = centre_of_mass,   I = Σ of all Iᵢ, each moved to X by parallel_axes
 
-    A body of negative mass is a hole.  All axes are parallel: turn an Iᵢ by world_inertia first where a part is turned.
+    A body of negative mass is a hole.  All tensors are in the same axes: use world_inertia first for a rotated part.
     Raises BadInput like centre_of_mass.
     """
     # YOUR CODE HERE
@@ -188,11 +198,12 @@ def combine(m, x, I):
 
 
 def principal_axes(I):
-    """Principal moments (3,) [kg m²], ascending, and axes R (3, 3), columns of a right-handed frame: (moments, R).
+    """Return (moments, R): principal moments (3,) [kg m²], ascending, and axes R (3, 3), right-handed columns.
 
-    I = R diag(moments) Rᵀ        about such an axis, and about no other, L is parallel to ω
+    I = R diag(moments) Rᵀ        L is parallel to ω about these axes, and about no others
 
-    np.linalg.eigh(I) gives moments and columns, but the columns may be left-handed, det R = −1: then turn the last one round.
+    np.linalg.eigh(I) returns moments and columns, but these can be left-handed, det R = −1: then reverse the
+    last column.
     *Source:* Euler 1765; Landau and Lifshitz, Mechanics, § 32.
     """
     # YOUR CODE HERE
@@ -200,15 +211,16 @@ def principal_axes(I):
 
 
 def check_inertia(I):
-    """Raise BadInput unless I (3, 3) can be the tensor of a body with thickness; with I₁ ≤ I₂ ≤ I₃ its principal moments:
+    """Raise BadInput unless I (3, 3) can be the tensor of a body with thickness.
 
-    "an entry of the inertia tensor [kg m²]"           infinite or NaN                  (check_finite says it)
+    I₁ ≤ I₂ ≤ I₃ are its principal moments and ε = TENSOR_ROUND_OFF.  The name of the thing in BadInput is one of
+    "an entry of the inertia tensor [kg m²]"           infinite or NaN                  (from check_finite)
     "the asymmetry of an inertia tensor [kg m²]"       max|I − Iᵀ| > ε max|I|
-    "the smallest principal moment [kg m²]"            I₁ ≤ ε I₃: nothing would resist; a line of points has I₁ = 0
-    "the largest principal moment [kg m²]"             I₃ > (I₁ + I₂)(1 + ε): impossible, since I₁ + I₂ − I₃ = 2 ∫ z² dm ≥ 0
+    "the smallest principal moment [kg m²]"            I₁ ≤ ε I₃: no resistance; a line of points has I₁ = 0
+    "the largest principal moment [kg m²]"             I₃ > (I₁ + I₂)(1 + ε): impossible, I₁ + I₂ − I₃ = 2 ∫ z² dm ≥ 0
 
-    These words are the thing that BadInput names, its value is the entry, asymmetry or moment; ε = TENSOR_ROUND_OFF.
-    A plate without thickness has I₃ = I₁ + I₂, and passes.
+    Its value is the entry, the asymmetry or the moment.
+    A plate without thickness has I₃ = I₁ + I₂ and is accepted.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 4.14: check_inertia")
@@ -217,17 +229,18 @@ def check_inertia(I):
 # ---------------------------------------------------------------------------------------------- triangle meshes
 
 def mesh_integrals(x, faces):
-    """Integrals over the inside of a closed mesh: (volume ∫dV, first ∫x dV (3,), second ∫x xᵀ dV (3, 3)), about the origin.
+    """Return integrals over a closed mesh, about the origin: (volume ∫dV, first ∫x dV (3,), second ∫x xᵀ dV (3, 3)).
 
     x (n, 3) [m] corners; faces (k, 3) numbers of corners, counter-clockwise as seen from outside.
 
-    Each triangle a, b, c makes a tetrahedron with the origin, of volume w/6,  w = a · (b × c).  Where the origin sees the
-    triangle's back, w is negative, and what juts out is taken away again.  With s = a + b + c
+    Each triangle a, b, c and the origin form a tetrahedron of volume w/6,  w = a · (b × c).  If the origin is
+    on the outer side of the triangle, w is negative, and the tetrahedron is subtracted.  With s = a + b + c
 
         volume = Σ w/6,   first = Σ w/24 s,   second = Σ w/120 (a aᵀ + b bᵀ + c cᵀ + s sᵀ)
 
-    are exact: the integrands are polynomials.
-    *Source:* Mirtich 1996 and Eberly 2002, "Polyhedral mass properties", do the same with the divergence theorem.
+    The sums are exact, because the integrands are polynomials.
+    The worked answer writes out the products in loops: arrays of three numbers for each triangle would take longer.
+    *Source:* Mirtich 1996 and Eberly 2002, “Polyhedral mass properties”, do the same with the divergence theorem.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 4.15: mesh_integrals")
@@ -237,28 +250,30 @@ def check_closed(count, faces):
     """Raise BadInput unless the triangles close a surface and agree on its outside; count is the number of corners.
 
     "a triangle's corner"                      a number that is not one of 0 … count − 1
-    "a corner on an open edge: number"         the beginning of an edge without a partner
+    "a corner on an open edge: number"         the first corner of an edge without a partner
 
-    A triangle (i, j, k) has the edges i → j, j → k, k → i.  In a closed mesh whose triangles are all counter-clockwise as seen
-    from outside, every edge i → j is met by an edge j → i of a neighbour: as often there as back.
-    (An edge i → j is the whole number i · count + j; sorted, the edges there and the edges back must be the same list.)
+    A triangle (i, j, k) has the edges i → j, j → k, k → i.  In a closed mesh whose triangles are all
+    counter-clockwise as seen from outside, every edge i → j has a partner j → i in a neighbour: both occur
+    equally often. (Represent an edge i → j by the integer i · count + j.  Sorted, the edges and the reversed
+    edges are the same list.)
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 4.16: check_closed")
 
 
 def mesh_body(density, x, faces):
-    """The Body of uniform density [kg/m³] that a closed mesh encloses: corners x (n, 3) [m], faces (k, 3).
+    """Return the Body of uniform density [kg/m³] inside a closed mesh: corners x (n, 3) [m], faces (k, 3).
 
-    With (V, S, Q) the mesh_integrals of x − o, taken about a point o of the body itself, the first corner:
+    Let (V, S, Q) be the mesh_integrals of x − o, about a point o of the body itself, the first corner:
         m = ρ V,   centre = o + c,  c = S/V,   C = Q − V c cᵀ,   I = ρ (tr C 1 − C)
 
-    About the origin of the world each tetrahedron would reach from there to its triangle: at the distance D products of D⁵ would have
-    to cancel, and half of the digits of a body of one metre would be gone at D = 30 m.
+    About the origin of the world, each tetrahedron would extend from there to its triangle.  At the distance D terms of
+    size D⁵ would cancel, and a body of one metre would lose half of its digits at D = 30 m.
 
-    Raises BadInput unless the density is positive (check_positive), the corners are finite and the mesh is closed (check_closed);
-    and with "the volume inside the mesh [m³]" unless V > ε e³, e = max|x − o| over all coordinates, ε = TENSOR_ROUND_OFF: then its
-    triangles are clockwise, or it is flat and its volume nothing but round-off.
+    Raises BadInput unless the density is positive (check_positive), the corners are finite and the mesh is closed
+    (check_closed).  Raises it with "the volume inside the mesh [m³]" unless V > ε e³, e = max|x − o| over all
+    coordinates,
+    ε = TENSOR_ROUND_OFF: then its triangles are clockwise, or it is flat and its volume only round-off.
     *Source:* as for mesh_integrals.
     """
     # YOUR CODE HERE

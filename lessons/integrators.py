@@ -1,12 +1,14 @@
-"""Lesson 1.  From acceleration to motion: eight ways to take one step.
+"""Lesson 1.  From acceleration to motion: eight methods for one time step.
 
     ẋ = v,   v̇ = a(t, x, v)
 
-Symbols: t [s] time · x [m] position · v [m/s] velocity · a [m/s²] acceleration · dt [s] step · p parameters of the scene.
+Symbols: t [s] time · x [m] position · v [m/s] velocity · a [m/s²] acceleration · dt [s] step · p parameters of
+the scene.
 
-Every method is a function  step(acceleration, t, x, v, dt, p) → (x, v)  at t + dt.  x and v are float arrays of one shape,
-whatever it is; acceleration(t, x, v, p) returns an array of that shape and gets p, untouched, as its last argument.
-*Left out:* everything that is not a smooth acceleration; contacts come with lesson 3.
+Every method is a function  step(acceleration, t, x, v, dt, p) → (x, v)  at t + dt.  x and v are float arrays of
+the same shape, which may be any.  acceleration(t, x, v, p) returns an array of that shape; p is passed on to it
+unchanged.
+*Left out:* everything that is not a smooth acceleration; contacts begin with lesson 3.
 """
 
 from typing import NamedTuple
@@ -15,9 +17,16 @@ import numpy as np
 
 from solutions.checks import Diverged, check_end, check_positive, checked_run, float_copy
 
+__all__ = [
+    "NEWTON_LIMIT", "ROUND_OFF", "Oscillator", "advance", "amplification_matrix",
+    "average_velocity_step", "euler_step", "implicit_euler_step", "implicit_midpoint_step",
+    "midpoint_step", "newton_matrix", "observed_order", "oscillator_acceleration", "rk4_step",
+    "solve", "spectral_radius", "symplectic_euler_step", "trajectory", "verlet_step",
+]
+
 NEWTON_TOLERANCE = 1e-12     # last correction over the size of the velocity [-]: well above round-off, 2e-16
-NEWTON_LIMIT = 30            # corrections [-]; from a sane guess Newton doubles its digits and needs fewer than 8
-ROUND_OFF = 1e-15            # a few spacings of floats [-]: no position is known better than this, relative to its size
+NEWTON_LIMIT = 30            # corrections [-]; from a good guess Newton doubles its digits and needs fewer than 8
+ROUND_OFF = 1e-15            # a few spacings of floats [-]: the relative accuracy of any position
 DIFFERENCE_STEP = 6e-6       # ∛(2.2e-16) [-]: balances truncation against round-off in a central difference
 
 
@@ -29,21 +38,21 @@ def euler_step(acceleration, t, x, v, dt, p):
     xₙ₊₁ = xₙ + dt vₙ
     vₙ₊₁ = vₙ + dt a(tₙ, xₙ, vₙ)
 
-    Evaluates the acceleration once.  An undamped oscillator gains energy at every step.
-    *Source:* deck A, "Euler method".
+    Evaluates the acceleration once.  An undamped oscillator gains energy in every step.
+    *Source:* first lecture deck, “Euler method”.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 1.1: euler_step")
 
 
 def midpoint_step(acceleration, t, x, v, dt, p):
-    """Advance one step along the slope at its middle, which half an Euler step finds; second order.
+    """Advance one step along the slope at its middle, which half an Euler step reaches; second order.
 
     x½ = xₙ + ½dt vₙ                      v½ = vₙ + ½dt a(tₙ, xₙ, vₙ)
     xₙ₊₁ = xₙ + dt v½                     vₙ₊₁ = vₙ + dt a(tₙ + ½dt, x½, v½)
 
     Evaluates the acceleration twice.
-    *Source:* deck A, "Midpoint method".
+    *Source:* first lecture deck, “Midpoint method”.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 1.2: midpoint_step")
@@ -64,7 +73,7 @@ def rk4_step(acceleration, t, x, v, dt, p):
     vₙ₊₁ = vₙ + dt (a₁/6 + a₂/3 + a₃/3 + a₄/6)
 
     Evaluates the acceleration four times.
-    *Source:* deck A, k₁/6 + k₂/3 + k₃/3 + k₄/6.
+    *Source:* first lecture deck, k₁/6 + k₂/3 + k₃/3 + k₄/6.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 1.3: rk4_step")
@@ -77,7 +86,7 @@ def average_velocity_step(acceleration, t, x, v, dt, p):
     xₙ₊₁ = xₙ + ½dt (vₙ + vₙ₊₁)
 
     Exact when the acceleration is constant.
-    *Source:* deck A, the last lines of "Mass-Spring-Damper System".
+    *Source:* first lecture deck, the last lines of “Mass-Spring-Damper System”.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 1.4: average_velocity_step")
@@ -91,7 +100,7 @@ def symplectic_euler_step(acceleration, t, x, v, dt, p):
     vₙ₊₁ = vₙ + dt a(tₙ, xₙ, vₙ)
     xₙ₊₁ = xₙ + dt vₙ₊₁                    with the new velocity
 
-    *Source:* Hairer, Lubich, Wanner 2003, "Geometric numerical integration illustrated by the Störmer–Verlet method".
+    *Source:* Hairer, Lubich, Wanner 2003, “Geometric numerical integration illustrated by the Störmer–Verlet method”.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 1.5: symplectic_euler_step")
@@ -104,8 +113,8 @@ def verlet_step(acceleration, t, x, v, dt, p):
     xₙ₊₁ = xₙ + dt vₙ + ½dt² aₙ
     vₙ₊₁ = vₙ + ½dt (aₙ + aₙ₊₁),           aₙ₊₁ = a(tₙ + dt, xₙ₊₁, vₙ + dt aₙ)
 
-    The velocity inside aₙ₊₁ is an Euler prediction: it matters only where the acceleration depends on velocity, and
-    there it keeps the method of second order.
+    The velocity inside aₙ₊₁ is an Euler prediction.  It matters only for accelerations that depend on velocity; for
+    those it preserves second order.
     *Source:* Swope et al. 1982; the prediction: Groot and Warren 1997 with λ = 1.
     """
     # YOUR CODE HERE
@@ -115,9 +124,10 @@ def verlet_step(acceleration, t, x, v, dt, p):
 # ---------------------------------------------------------------------------------------------- implicit methods
 
 def newton_matrix(acceleration, t, x, v, dt, p):
-    """Given.  The (n, n) matrix  1 − dt ∂a/∂v (t, x + dt v, v)  over the n entries of v, by central differences.
+    """Given.  Return the (n, n) matrix  1 − dt ∂a/∂v (t, x + dt v, v)  over the n entries of v, by central differences.
 
-    It is the derivative of the residual  r(v) = v − vₙ − dt a(t, xₙ + dt v, v)  that Newton's method drives to zero.
+    It is the derivative of the residual  r(v) = v − vₙ − dt a(t, xₙ + dt v, v),  of which Newton's method finds
+    the zero.
     """
     matrix = np.eye(v.size)
     for k in range(v.size):
@@ -131,42 +141,43 @@ def newton_matrix(acceleration, t, x, v, dt, p):
 
 
 def solve(matrix, right):
-    """Given.  The y with matrix · y = right: (n, n) and (n,) arrays."""
+    """Given.  Return the y with matrix · y = right: (n, n) and (n,) arrays."""
     return np.linalg.solve(matrix, right)
 
 
 def implicit_euler_step(acceleration, t, x, v, dt, p):
-    """Advance one step along the slope at its end; first order, and stable on a decaying system for every step.
+    """Advance one step along the slope at its end; first order, and stable on a decaying system for every step size.
 
     vₙ₊₁ = vₙ + dt a(tₙ + dt, xₙ + dt vₙ₊₁, vₙ₊₁)
     xₙ₊₁ = xₙ + dt vₙ₊₁
 
-    The first line is an equation for vₙ₊₁ =: w.  Newton's method solves it: start from a copy of vₙ as w and repeat, at most
-    NEWTON_LIMIT times,
+    The first line is an equation for vₙ₊₁ =: w.  Solve it by Newton's method: start from a copy of vₙ as w and
+    repeat, at most NEWTON_LIMIT times,
         r = w − vₙ − dt a(tₙ + dt, xₙ + dt w, w)
-        w ← w − δ,    newton_matrix(acceleration, tₙ + dt, xₙ, w, dt, p) · δ = r     (given above, and so is solve)
-    until max|δ| ≤ NEWTON_TOLERANCE · max(1, max|w|) + ROUND_OFF · max|xₙ| / dt.  (The last term: what the rounding of a
-    position far from the origin looks like as a velocity.)  r and δ are flat, (n,): use .ravel() and .reshape(v.shape).
+        w ← w − δ,    newton_matrix(acceleration, tₙ + dt, xₙ, w, dt, p) · δ = r
+    until max|δ| ≤ NEWTON_TOLERANCE · max(1, max|w|) + ROUND_OFF · max|xₙ| / dt.  The last term is the round-off of a
+    position far from the origin, expressed as a velocity.
+    newton_matrix and solve are given above.  r and δ are flat, (n,): use .ravel() and .reshape(v.shape).
 
-    Raises Diverged("Newton's method did not converge at dt [s]", dt, "take a smaller step") when they are used up;
-    solve raises LinAlgError where the 1 in the matrix is lost beside dt² k/m, when that is above 10¹⁶.
-    *Source:* Hairer and Wanner 1996, "Solving ordinary differential equations II", IV.3 and IV.8.
+    Raises Diverged("Newton's method did not converge at dt [s]", dt, "take a smaller step") after NEWTON_LIMIT
+    corrections.  solve raises LinAlgError where the 1 in the matrix is lost beside dt² k/m, above 10¹⁶.
+    *Source:* Hairer and Wanner 1996, “Solving ordinary differential equations II”, IV.3 and IV.8.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 1.7: implicit_euler_step")
 
 
 def implicit_midpoint_step(acceleration, t, x, v, dt, p):
-    """Advance one step along the slope at the middle of the step itself; second order, keeps an oscillator's energy exactly.
+    """Advance one step along the slope at the middle of the step itself; second order, exact energy of an oscillator.
 
     x½ = ½(xₙ + xₙ₊₁),   v½ = ½(vₙ + vₙ₊₁)
     xₙ₊₁ = xₙ + dt v½
     vₙ₊₁ = vₙ + dt a(tₙ + ½dt, x½, v½)
 
-    (x½, v½) is where half a step of implicit Euler arrives; the other half goes on along the same slope.
+    (x½, v½) is the result of half a step of implicit Euler.  The other half continues along the same slope.
 
     Raises Diverged like implicit_euler_step.
-    *Source:* Hairer, Lubich, Wanner 2006, "Geometric numerical integration", II.1 and IV.2.
+    *Source:* Hairer, Lubich, Wanner 2006, “Geometric numerical integration”, II.1 and IV.2.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 1.8: implicit_midpoint_step")
@@ -175,9 +186,10 @@ def implicit_midpoint_step(acceleration, t, x, v, dt, p):
 # ---------------------------------------------------------------------------------------------- many steps
 
 def advance(step, acceleration, t, x, v, dt, steps, p):
-    """Given.  The state (x, v) after so many steps of one method.
+    """Given.  Return the state (x, v) after `steps` steps of one method.
 
-    Raises BadInput for a step that is not positive or a state that is not finite, Diverged when the end is not finite.
+    Raises BadInput for a step that is not positive or a state that is not finite, Diverged when the final state is not
+    finite.
     """
     t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
     for n in range(steps):
@@ -187,11 +199,11 @@ def advance(step, acceleration, t, x, v, dt, steps, p):
 
 
 def trajectory(step, acceleration, t, x, v, dt, steps, p):
-    """Given.  Times (steps + 1,) and states (steps + 1, …) of the same run, the start included: ts, xs, vs."""
+    """Given.  Return ts (steps + 1,), xs and vs (steps + 1, …): times and states of the same run, with the start."""
     t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
     ts = t + dt * np.arange(steps + 1)
-    xs = np.zeros((steps + 1,) + x.shape)
-    vs = np.zeros((steps + 1,) + v.shape)
+    xs = np.zeros((steps + 1, *x.shape))
+    vs = np.zeros((steps + 1, *v.shape))
     xs[0], vs[0] = x, v
     for n in range(steps):
         x, v = advance(step, acceleration, t + n * dt, x, v, dt, 1, p)
@@ -202,22 +214,22 @@ def trajectory(step, acceleration, t, x, v, dt, steps, p):
 # ---------------------------------------------------------------------------------------------- how good is a method?
 
 class Oscillator(NamedTuple):
-    """The test problem of all stability: ẍ = −ω² x − 2ζω ẋ."""
+    """The test problem for stability: ẍ = −ω² x − 2ζω ẋ."""
     omega: float         # undamped angular frequency ω [rad/s]
     zeta: float          # damping ratio ζ [-]: 1 is critical
 
 
 def oscillator_acceleration(t, x, v, p):
-    """Given.  a = −ω² x − 2ζω v  [m/s²] of an Oscillator p."""
+    """Given.  Return a = −ω² x − 2ζω v  [m/s²] of an Oscillator p."""
     return -p.omega * p.omega * x - 2.0 * p.zeta * p.omega * v
 
 
 def amplification_matrix(step, omega, zeta, dt):
-    """The (2, 2) matrix A of one step on an oscillator: (xₙ₊₁, vₙ₊₁)ᵀ = A (xₙ, vₙ)ᵀ.
+    """Return the (2, 2) matrix A of one step on an oscillator: (xₙ₊₁, vₙ₊₁)ᵀ = A (xₙ, vₙ)ᵀ.
 
-    Column 1 is where the step takes (x, v) = (1, 0), column 2 where it takes (0, 1): states are arrays of shape (1,),
-    the acceleration is oscillator_acceleration, its parameters an Oscillator.
-    The method is stable where no eigenvalue of A is longer than 1.
+    Column 1 is the result of the step from (x, v) = (1, 0), column 2 that from (0, 1).  States are arrays of
+    shape (1,), the acceleration is oscillator_acceleration, its parameters an Oscillator.
+    The method is stable if no eigenvalue of A has an absolute value above 1.
     *Source:* Hairer and Wanner 1996, IV.2.
     """
     # YOUR CODE HERE
@@ -225,7 +237,7 @@ def amplification_matrix(step, omega, zeta, dt):
 
 
 def spectral_radius(matrix):
-    """Given.  Length of the longer eigenvalue of a real (2, 2) matrix: the growth of the motion in one step."""
+    """Given.  Return the largest absolute eigenvalue of a real (2, 2) matrix: the growth of the motion per step."""
     half_trace = 0.5 * (matrix[0, 0] + matrix[1, 1])
     determinant = matrix[0, 0] * matrix[1, 1] - matrix[0, 1] * matrix[1, 0]
     discriminant = half_trace * half_trace - determinant
@@ -235,12 +247,13 @@ def spectral_radius(matrix):
 
 
 def observed_order(dts, errors):
-    """Order of convergence that a series of runs shows: the slope of log(error) over log(dt), by least squares.
+    """Return the observed order of convergence of a series of runs: the slope of log(error) over log(dt).
 
-    error ≈ C dtᵏ   ⇒   k = Σ (ξ − ξ̄)(η − η̄) / Σ (ξ − ξ̄)²,   ξ = log dt, η = log error
+    error ≈ C dtᵏ   ⇒   k = Σ (ξ − ξ̄)(η − η̄) / Σ (ξ − ξ̄)²,   ξ = log dt, η = log error;  least squares
 
-    dts and errors are (n,) arrays of positive numbers.  Raises BadInput for one that is not: check_positive("step dt [s]", dt) and
-    check_positive("error [-]", error).  A run without any error says nothing about an order.
+    dts and errors are (n,) arrays of positive numbers.
+    Raises BadInput for one that is not: check_positive("step dt [s]", dt) and check_positive("error [-]", error).
+    A run with an error of exactly 0 gives no information about the order.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 1.10: observed_order")

@@ -1,13 +1,15 @@
-"""Lesson 8.  Constraints by projection: move the points first, then put them where they may be.
+"""Lesson 8.  Constraints by projection: move the points freely first, then move them to where the constraints hold.
 
     Cⱼ(x) = 0 for every constraint j,      xₙ₊₁ = x_pred + Σⱼ M⁻¹ λⱼ ∇Cⱼ(xₙ₊₁) dt²,      vₙ₊₁ = (xₙ₊₁ − xₙ)/dt
 
-Symbols: x (n, d) [m] positions of n points in d dimensions · v (n, d) [m/s] · inv_mass (n,), w [1/kg] (0: immovable) · C constraint
-[m] or [rad] or [m³] · ∇C its gradient · λ [N] multiplier: the tension of a link, with its sign turned · α [m/N] compliance, one over stiffness ·
-q (4,) = (w, x, y, z) orientation · ω (3,) [rad/s] · n unit normal or direction, from b (or j) to a (or i).
+Symbols: x (n, d) [m] positions of n points in d dimensions · v (n, d) [m/s] · inv_mass (n,), w [1/kg] (0: immovable) ·
+C constraint [m] or [rad] or [m³] · ∇C its gradient · λ [N] multiplier: minus the tension of a link ·
+α [m/N] compliance, one over stiffness · q (4,) = (w, x, y, z) orientation · ω (3,) [rad/s] ·
+n unit normal or direction, from b (or j) to a (or i).
 
-A method for points is a function  step(acceleration, t, x, v, dt, net) → (x, v)  at t + dt, as in lesson 1; net gets through untouched.
-*Left out:* friction (lesson 3 puts it into such a step), collision of a cloth with itself (lesson 6 finds it).
+A method for points is a function  step(acceleration, t, x, v, dt, net) → (x, v)  at t + dt, as in lesson 1.
+The step passes net on unchanged.
+*Left out:* friction (lesson 3 adds it to such a step); collision of a cloth with itself (lesson 6 finds it).
 """
 
 from typing import NamedTuple
@@ -16,29 +18,40 @@ import numpy as np
 
 from solutions.checks import BadInput, Diverged, check_shape, finite_array, float_copy, one_each, whole_number
 from solutions.integrators import solve
-from solutions.rotation import angular_acceleration, cross, product, quaternion_update, rotate, unrotate
+from solutions.rotation import angular_acceleration, product, quaternion_update, rotate, unrotate
 from solutions.springs import inverse_masses, measured_links
+from solutions.vectors import cross, dot
 
-NEWTON_TOLERANCE = 1e-12     # last correction over the longest link [-]: Newton squares it, so what is left is round-off
-NEWTON_LIMIT = 40            # corrections [-]: 4 to 7 where points move a tenth of a link per step, 30 and more where some move a whole link
+__all__ = [
+    "NEWTON_LIMIT", "TRACE", "Balloon", "Cloth", "Hung", "Net", "Obstacle", "ball_gap",
+    "balloon_step", "cloth_step", "compliant_multiplier", "compliant_sweep", "constraints",
+    "distance_constraint", "distance_sweep", "falling_acceleration", "floor_gap", "fold_constraint",
+    "fold_sweep", "generalised_inverse_mass", "hung_step", "keep_outside", "make_net", "met",
+    "newton_correction", "pbd_sag", "pbd_step", "predict", "projection", "projection_step",
+    "push_body", "pushed", "rates", "rattle_step", "shared_edges", "turning_rate",
+    "volume_gradient", "xpbd_step",
+]
+
+NEWTON_TOLERANCE = 1e-12     # last correction over the longest link [-]; Newton squares it, so only round-off remains
+NEWTON_LIMIT = 40            # corrections [-]: 4 to 7 for moves of 1/10 link per step, 30 and more for a whole link
 TRACE = 1e-13                # compliance over w dt² of a link [-]: far below the pull of all links, far above round-off
-FIRST_TRACE = 1e-10          # the same while the gaps are still closing: what redundant links then disagree about is larger than round-off
+FIRST_TRACE = 1e-10          # the same while the gaps still close: redundant links then disagree by more than round-off
 
 
 class Net(NamedTuple):
     """Points and the links between them: a pendulum, a rope, a cloth."""
-    inv_mass: np.ndarray     # (n,) [1/kg]; 0 is a point that nothing moves but its own velocity
+    inv_mass: np.ndarray     # (n,) [1/kg]; 0: immovable, neither forces nor links change its velocity
     gravity: np.ndarray      # (d,) [m/s²]
     i: np.ndarray            # (s,) one end of each link
     j: np.ndarray            # (s,) the other
-    rest: np.ndarray         # (s,) its length [m]
-    stiffness: np.ndarray    # (s,) share of the error that PBD takes at each visit [-], above 0 and up to 1
-    alpha: np.ndarray        # (s,) compliance that XPBD gives it [m/N]; 0: inextensible
-    sweeps: int              # visits to every link in a step
+    rest: np.ndarray         # (s,) its rest length [m]
+    stiffness: np.ndarray    # (s,) share of the error that PBD removes per visit [-], above 0 and up to 1
+    alpha: np.ndarray        # (s,) compliance of the link in XPBD [m/N]; 0: inextensible
+    sweeps: int              # visits to every link per step
 
 
 class Obstacle(NamedTuple):
-    """A ball that does not move, over a floor: what a cloth falls on."""
+    """A ball that does not move, above a floor, for a cloth to fall on."""
     centre: np.ndarray       # (d,) [m]
     radius: float            # [m]; 0: no ball
     point: np.ndarray        # (d,) a point of the floor [m]
@@ -48,18 +61,18 @@ class Obstacle(NamedTuple):
 class Cloth(NamedTuple):
     """A net whose faces resist folding."""
     net: Net
-    hinges: np.ndarray       # (h, 4) points a, b, c, d of each: edge a–b, the faces' other corners c and d
-    fold: np.ndarray         # (h,) angle that each wants [rad]; 0 is flat
-    stiffness: float         # share of the error of a fold that is taken at each visit [-]
+    hinges: np.ndarray       # (h, 4) points a, b, c, d of each fold: edge a–b, other corners c and d of its faces
+    fold: np.ndarray         # (h,) rest angle of each fold [rad]; 0 is flat
+    stiffness: float         # share of the error of a fold that is removed per visit [-]
     obstacle: Obstacle
 
 
 class Balloon(NamedTuple):
-    """A closed net full of air."""
+    """A closed net filled with air."""
     net: Net
     faces: np.ndarray        # (f, 3) corners, counter-clockwise seen from outside
-    volume: float            # that it wants [m³]
-    alpha: float             # compliance of the air [m³/(N/m²)]: 0 keeps the volume
+    volume: float            # rest volume [m³]
+    alpha: float             # compliance of the air [m³/(N/m²)]; 0 keeps the volume
     obstacle: Obstacle
 
 
@@ -70,31 +83,34 @@ class Hung(NamedTuple):
     gravity: np.ndarray      # (3,) [m/s²]
     pivot: np.ndarray        # (3,) [m]
     arm_body: np.ndarray     # (3,) from the centre of mass to the pivot, in the body's coordinates [m]
-    sweeps: int              # projections in a step
+    sweeps: int              # projections per step
 
 
 # ---------------------------------------------------------------------------------------------- one constraint
 
 def distance_constraint(x_i, x_j, rest):
-    """(C, n) of the constraint that two points (d,) are `rest` apart: how much too far they are [m], and its gradient for i.
+    """Return (C, n): by how much two points (d,) are farther apart than `rest` [m], and the gradient of C for point i.
 
     C = |x_i − x_j| − rest,      n = ∇ᵢC = (x_i − x_j)/|x_i − x_j|,      ∇ⱼC = −n
 
-    Raises BadInput("the length of a link [m]", 0.0, "keep its ends apart") when the ends coincide: then it has no direction.
-    *Source:* deck B, "Inextensible spring between particles i and j".
+    Raises BadInput("the length of a link [m]", 0.0, "keep its ends apart") when the ends coincide, because the
+    link then has no direction.
+    *Source:* second lecture deck, “Inextensible spring between particles i and j”.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 8.1: distance_constraint")
 
 
 def projection(C, gradients, inv_mass):
-    """Corrections (k, d) [m] of the k points of one constraint that make it hold, as far as its gradients (k, d) tell.
+    """Return the corrections (k, d) [m] of the k points of one constraint that satisfy it to first order.
 
-    Δxₖ = wₖ Λ ∇ₖC,      Λ = −C / Σ wₖ |∇ₖC|²          Λ = Δλ dt²: the step cancels, so it is not asked for
+    Δxₖ = wₖ Λ ∇ₖC,      Λ = −C / Σ wₖ |∇ₖC|²          Λ = Δλ dt²: dt cancels, so it is not an argument
 
-    Each goes along its gradient, and by its inverse mass: what is heavy moves little, and Σ mₖ Δxₖ = Λ Σ ∇ₖC.
-    Raises BadInput("Σ w |∇C|² of a constraint", 0.0, "let one of its points have a mass and a gradient") where nothing can move.
-    *Source:* deck B, "Applying a constraint force"; Müller et al. 2006, section 3.3.
+    C is the value of the constraint and gradients (k, d) are its ∇ₖC.  Each point moves along its gradient, in
+    proportion to its inverse mass: heavy points move little, and Σ mₖ Δxₖ = Λ Σ ∇ₖC.
+    Raises BadInput("Σ w |∇C|² of a constraint", 0.0, "let one of its points have a mass and a gradient") where
+    no point can move.
+    *Source:* second lecture deck, “Applying a constraint force”; Müller et al. 2006, section 3.3.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 8.2: projection")
@@ -103,7 +119,7 @@ def projection(C, gradients, inv_mass):
 # ---------------------------------------------------------------------------------------------- the projection method
 
 def falling_acceleration(t, x, v, net):
-    """Given.  a (n, d) [m/s²]: gravity for everything that has a mass."""
+    """Given.  Return a (n, d) [m/s²]: gravity for every movable point, 0 for the others."""
     a = np.zeros(x.shape)
     for k in range(x.shape[0]):
         if net.inv_mass[k] > 0.0:
@@ -113,91 +129,100 @@ def falling_acceleration(t, x, v, net):
 
 
 def predict(acceleration, t, x, v, dt, net):
-    """Where the points (n, d) would be at t + dt if there were no constraints:  x_pred = x + dt v + dt² a(t, x, v).
+    """Return the positions (n, d) at t + dt without constraints:  x_pred = x + dt v + dt² a(t, x, v).
 
-    An immovable point, inv_mass = 0, feels no force: there a counts as 0, and it goes on with the v that it has.
-    *Source:* deck B, q_pred = qₙ + vₙ Δt + M⁻¹ f Δt².
+    An immovable point (inv_mass = 0) feels no force: its a counts as 0, and it keeps its velocity v.
+    *Source:* second lecture deck, q_pred = qₙ + vₙ Δt + M⁻¹ f Δt².
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 8.3: predict")
 
 
 def constraints(x, net):
-    """Given.  (C (s,), J (s, n d)) of all links: C as in distance_constraint; row s of J is the gradient of Cₛ by x.ravel()."""
+    """Given.  Return (C (s,), J (s, n d)) of all links: C as in distance_constraint, row s of J = ∂Cₛ/∂x.ravel()."""
     d = x.shape[1]
     C, J = np.zeros(net.i.size), np.zeros((net.i.size, x.size))
     for s in range(net.i.size):
         i, j = net.i[s], net.j[s]
         C[s], n = distance_constraint(x[i], x[j], net.rest[s])
         for c in range(d):
-            J[s, i * d + c], J[s, j * d + c] = n[c], -n[c]
+            J[s, i * d + c] = n[c]
+            J[s, j * d + c] = -n[c]
     return C, J
 
 
 def newton_correction(x, lam, goal, dt, net):
-    """(Δx (n, d) [m], λ (s,) [N]): one round of Newton's method for positions and multipliers at once, from a guess (x, λ).
+    """Return (Δx (n, d) [m], λ (s,) [N]): one Newton iteration for positions and multipliers together.
 
-    wanted:  x − x_pred − dt² W Σ λₛ ∇Cₛ(x) = 0  and  Cₛ(x) = 0.      Linear about the guess, with the new λ, of both:
+    It solves  x − x_pred − dt² W Σ λₛ ∇Cₛ(x) = 0  and  Cₛ(x) = 0.  Both equations, linearised about the guess
+    (x, λ), with the new multipliers λ_new as unknowns:
         (1 − dt² W Σ λₛ ∇²Cₛ) Δx − dt² W Jᵀ λ_new = x_pred − x
         J Δx − ε dt² (λ_new − λ)                  = −C              ε = TRACE (w_i + w_j) of each link
-    ε is a trace of compliance.  It acts on the change λ_new − λ, not on λ: where Newton's method comes to rest the change is 0, and so
-    is its effect.  It decides between multipliers that do the same, where links are redundant (a square with both diagonals): without
-    it the matrix has no inverse there.
-    Λ = dt² λ_new is the better unknown, because it is of one size with x.  The second row for it, with −ε on the diagonal:
-        J Δx − ε Λ = −C − ε dt² λ
+    ε is a very small compliance.  It acts on the change λ_new − λ, not on λ: when Newton's method has converged, the
+    change is 0 and ε has no effect.  Redundant links (a square with both diagonals) have many equivalent
+    multipliers.  ε selects among them; without it the matrix has no inverse there.
+    Use Λ = dt² λ_new as the unknown, because its size is comparable to that of x.  The second equation becomes
+        J Δx − ε Λ = −C − ε dt² λ          with −ε on the diagonal
 
-    W: the inverse mass of each coordinate of x.ravel();  (C, J) = constraints(x, net);  goal (n, d) is x_pred.
+    W is the inverse mass of each coordinate of x.ravel();  (C, J) = constraints(x, net);  goal (n, d) is x_pred.
     ∇²C of a link: H = (1 − n nᵀ)/l for the ends (i, i) and (j, j), −H for (i, j) and (j, i);  l = C + rest.
-    solve(matrix, right) solves it.
-    *Source:* deck B, "Solve for q and λ₁, λ₂, … simultaneously using Newton's method".
+    Solve the system with solve(matrix, right).  The worked answer fills the matrix entry by entry, because block
+    assignments take several times as long to compile.
+    *Source:* second lecture deck, “Solve for q and λ₁, λ₂, … simultaneously using Newton's method”.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 8.4: newton_correction")
 
 
 def projection_step(acceleration, t, x, v, dt, net):
-    """Advance a net by one step of the lecture's projection method: all λ at once, so that every link has its length; first order.
+    """Advance a net by one step of the lecture's projection method: all λ together, every link exact; first order.
 
-    x_pred = predict(…);  from the guess (x, λ = 0) add newton_correction's Δx, and take its λ, until |Δx| of every coordinate is at
-    most NEWTON_TOLERANCE times the longest link;  then  vₙ₊₁ = (xₙ₊₁ − xₙ)/dt.
+    x_pred = predict(…).  Start from the guess (x, λ = 0).  Add Δx of newton_correction and take its λ, until |Δx|
+    of every coordinate is at most NEWTON_TOLERANCE times the longest link.  Then  vₙ₊₁ = (xₙ₊₁ − xₙ)/dt.
 
-    Raises Diverged("the projection did not converge at dt [s]", dt, "take a smaller step, or slacken what is taut") after NEWTON_LIMIT rounds: where no
-    finite λ holds the links, too, as in a rope that is taut between two fixed ends and pulled aside.
-    *Source:* deck B, "Projection method"; an implicit Euler method: it takes energy, and more with longer steps.
+    Raises Diverged("the projection did not converge at dt [s]", dt, "take a smaller step, or slacken what is taut")
+    after NEWTON_LIMIT iterations.  That includes nets which no finite λ can hold, such as a rope that is taut
+    between two fixed ends and pulled sideways.
+    *Source:* second lecture deck, “Projection method”; an implicit Euler method, which loses more energy with
+    longer steps.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 8.5: projection_step")
 
 
 def rattle_step(acceleration, t, x, v, dt, net):
-    """Given.  The same, with the gradients taken where the step begins, and with a velocity that obeys the links: second order.
+    """Given.  The same, with the gradients at the start of the step and a velocity that obeys the links: second order.
 
     x' = x + dt v + ½dt² a + W J(x)ᵀΛ  with C(x') = 0,      v' = (x' − x)/dt + ½dt a' + W J(x')ᵀμ  with J(x') v' = 0
 
-    It takes no energy: beyond the lecture, and what the projection method is measured by.
+    It loses no energy.  It is not in the lecture; it serves as the standard for the projection method.
     *Source:* Ryckaert et al. 1977 (SHAKE), Andersen 1983 (RATTLE).
     """
     _, J = constraints(x, net)
     new = x + dt * v + 0.5 * dt * dt * acceleration(t, x, v, net)
     for _ in range(NEWTON_LIMIT):
         C, J_new = constraints(new, net)
-        change = pushed(J, solve(met(J_new, J, net, FIRST_TRACE), -C), net)               # each round removes what the trace left
+        Lam = solve(met(J_new, J, net, FIRST_TRACE), -C)                 # the next round removes the error of the trace
+        change = pushed(J, Lam, net)
         new = new + change
         if max(np.max(np.abs(change)), np.max(np.abs(C))) <= NEWTON_TOLERANCE * np.max(net.rest):
             v = (new - x) / dt + 0.5 * dt * acceleration(t + dt, new, v, net)
             _, J = constraints(new, net)
-            return new, v - pushed(J, solve(met(J, J, net, TRACE), rates(J, v)), net)
+            mu = solve(met(J, J, net, TRACE), rates(J, v))
+            return new, v - pushed(J, mu, net)
     raise Diverged("the projection did not converge at dt [s]", dt, "take a smaller step, or slacken what is taut")
 
 
 def met(J, K, net, trace):
-    """Given.  J W Kᵀ (s, s): how each constraint, with the gradients J, answers a push along the gradients K of each.
+    """Given.  Return J W Kᵀ (s, s): the change of each constraint (gradients J) by a push along each gradient of K.
 
-    A trace of w_i + w_j is added on the diagonal, so that redundant links have an inverse, too.
+    The trace, times w_i + w_j, is added on the diagonal, so that the matrix of redundant links has an inverse, too.
+    The loops visit only the two ends of each link; a product of the whole matrices takes longer.
     """
-    d, A = J.shape[1] // net.inv_mass.size, np.zeros((J.shape[0], K.shape[0]))
+    d = J.shape[1] // net.inv_mass.size
+    A = np.zeros((J.shape[0], K.shape[0]))
     for s in range(J.shape[0]):
-        for k in (net.i[s], net.j[s]):                                   # no other point of row s counts
+        for k in (net.i[s], net.j[s]):                                   # row s is 0 for all other points
             for r in range(K.shape[0]):
                 for c in range(k * d, k * d + d):
                     A[s, r] += net.inv_mass[k] * J[s, c] * K[r, c]
@@ -206,7 +231,7 @@ def met(J, K, net, trace):
 
 
 def pushed(J, Lam, net):
-    """Given.  W JᵀΛ (n, d) [m]: where multipliers Λ (s,) move the points."""
+    """Given.  Return W JᵀΛ (n, d) [m]: how far the multipliers Λ (s,) move the points."""
     d = J.shape[1] // net.inv_mass.size
     moved = np.zeros((net.inv_mass.size, d))
     for s in range(Lam.size):
@@ -217,25 +242,23 @@ def pushed(J, Lam, net):
 
 
 def rates(J, v):
-    """Given.  J v (s,) [m/s]: how fast each constraint is being left."""
-    rate = np.zeros(J.shape[0])
-    for s in range(J.shape[0]):
-        rate[s] = np.sum(J[s] * v.ravel())
-    return rate
+    """Given.  Return J v (s,) [m/s]: the rate of change of each constraint."""
+    return J @ v.ravel()
 
 
 # ---------------------------------------------------------------------------------------------- position-based dynamics
 
 def distance_sweep(x, net):
-    """Positions (n, d) after one visit to every link, in their order: each is projected where the ones before have left its ends.
+    """Return the positions (n, d) after one visit to every link, in order; each visit uses the ends as left so far.
 
     Δx_i = −s w_i/(w_i + w_j) C n,      Δx_j = +s w_j/(w_i + w_j) C n          s: the stiffness of the link
 
-    That is projection() for two points, times s.  Returns a new array.  (For speed the worked answer sums over the coordinates in a
-    loop; what projection returns is as right.)
+    These are the corrections of projection() for two points, times s.  Returns a new array.
+    The worked answer sums over the coordinates in a loop, because a small array costs more than the arithmetic in
+    it.  Calling projection is equally correct.
     Raises BadInput("the length of a link [m]", 0.0, "keep its ends apart") when the ends of a link coincide.
     A link between two immovable points does not occur: make_net refuses it.
-    *Source:* deck B, "Loop over all constraints = 1 iteration"; Müller et al. 2006, eqs. 10, 11.
+    *Source:* second lecture deck, “Loop over all constraints = 1 iteration”; Müller et al. 2006, eqs. 10, 11.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 8.6: distance_sweep")
@@ -244,22 +267,24 @@ def distance_sweep(x, net):
 def pbd_step(acceleration, t, x, v, dt, net):
     """Advance a net by one step of position-based dynamics; first order once its sweeps have converged.
 
-    x_pred = predict(…);   net.sweeps times distance_sweep;   vₙ₊₁ = (xₙ₊₁ − xₙ)/dt
+    x_pred = predict(…);   distance_sweep net.sweeps times;   vₙ₊₁ = (xₙ₊₁ − xₙ)/dt
 
-    *Source:* deck B, "Position-based dynamics"; Müller et al. 2006, algorithm 1.
+    *Source:* second lecture deck, “Position-based dynamics”; Müller et al. 2006, algorithm 1.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 8.7: pbd_step")
 
 
 def pbd_sag(g, dt, stiffness, sweeps):
-    """How far too low [m] a weight rests that hangs from a single link under PBD: the softness of what should not stretch.
+    """Return the sag [m] of a weight that hangs at rest from a single link under PBD; an inextensible link has none.
 
-    At rest a step lowers it by g dt², and the sweeps leave the share S = (1 − s)ⁿ of any error:
+    At rest each step lowers the weight by g dt², and the sweeps leave the share S = (1 − s)ⁿ of any error:
         (sag + g dt²) S = sag,      sag = g dt² S/(1 − S)
 
-    s: stiffness, above 0 and up to 1; n: sweeps.  Not a property of the link: halve the step, and it is a quarter.
-    *Source:* Müller et al. 2006, section 3.3, for S; deck B, "If not enough iterations, constraints appear soft!".
+    s: stiffness, above 0 and up to 1; n: sweeps.  The sag is not a property of the link: half the step gives a
+    quarter of it.
+    *Source:* Müller et al. 2006, section 3.3, for S; second lecture deck, “If not enough iterations, constraints
+    appear soft!”.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 8.8: pbd_sag")
@@ -268,67 +293,71 @@ def pbd_sag(g, dt, stiffness, sweeps):
 # ---------------------------------------------------------------------------------------------- folds and obstacles
 
 def fold_constraint(x, fold):
-    """(C [rad], ∇C (4, 3) [rad/m]) of the constraint that two triangles with a common edge are folded by the angle `fold`.
+    """Return (C [rad], ∇C (4, 3) [rad/m]): the error of the fold angle of two triangles with a common edge.
 
-    x (4, 3): a, b the edge, c and d the other corners.      e = b − a
+    x (4, 3) holds the corners: a and b of the edge, c and d opposite to it.      e = b − a
     N_c = (a − c) × (b − c),   N_d = (b − d) × (a − d)          normals, both on one side of a flat sheet
     θ = atan2((N_c × N_d) · e/|e|,  N_c · N_d),      C = θ − fold, taken into (−π, π]
 
     ∇_c = −|e| N_c/|N_c|²,      ∇_d = −|e| N_d/|N_d|²
-    ∇_a = −β_c ∇_c − β_d ∇_d,   β_c = (b − c)·e/|e|²,  β_d = (b − d)·e/|e|²          so much of a wing's height hangs on a
-    ∇_b = −∇_a − ∇_c − ∇_d                                                            nothing is pushed from outside
+    ∇_a = −β_c ∇_c − β_d ∇_d,   β_c = (b − c)·e/|e|²,  β_d = (b − d)·e/|e|²          leverage of each wing at a
+    ∇_b = −∇_a − ∇_c − ∇_d                                                            no net force from outside
 
-    Raises BadInput("the area of a triangle at a fold [m²]", 0.0, "keep its corners apart") when a triangle has none.
-    *Source:* Müller et al. 2006, section 4.1, for the constraint; Bridson et al. 2003 for an angle that is smooth where it is flat.
+    Raises BadInput("the area of a triangle at a fold [m²]", 0.0, "keep its corners apart") for a triangle without area.
+    *Source:* Müller et al. 2006, section 4.1, for the constraint; Bridson et al. 2003 for an angle that is smooth at
+    a flat fold.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 8.9: fold_constraint")
 
 
 def ball_gap(x, obstacle):
-    """(φ, n) of a ball that nothing may enter: distance [m] of x (d,) from its skin, negative inside, and the unit normal outwards.
+    """Return (φ, n) of a solid ball: distance [m] of x (d,) from its surface, negative inside, and the outward normal.
 
-    φ = |x − centre| − radius,      n = ∇φ = (x − centre)/|x − centre|;      in the very middle n = 0
+    φ = |x − centre| − radius,      n = ∇φ = (x − centre)/|x − centre|,  a unit vector;      n = 0 at the centre
 
-    *Source:* Müller et al. 2006, section 3.4; lesson 3 has the hollow one.
+    *Source:* Müller et al. 2006, section 3.4; the hollow ball is in lesson 3.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 8.10: ball_gap")
 
 
 def floor_gap(x, obstacle):
-    """Given.  (φ, n) of the floor:  φ = (x − point) · n."""
+    """Given.  Return (φ, n) of the floor:  φ = (x − point) · n."""
     return np.sum((x - obstacle.point) * obstacle.n), obstacle.n
 
 
 def keep_outside(surface, x, inv_mass, obstacle):
-    """Positions (n, d) with every point that has got into an obstacle put back onto its skin: the constraint φ ≥ 0, one point each.
+    """Return the positions (n, d) with every movable point that is inside an obstacle moved back to its surface.
 
+    The constraint of each point is φ ≥ 0.
     (φ, n) = surface(x_k, obstacle);   where φ < 0 and the point can move (w_k > 0):   x_k ← x_k − φ n
 
-    An inequality acts one way: a point outside is left alone.  Returns a new array.
-    *Source:* Müller et al. 2006, section 3.4; deck B, "Project particle out".
+    An inequality acts in one direction only: a point outside is left alone.  Returns a new array.
+    *Source:* Müller et al. 2006, section 3.4; second lecture deck, “Project particle out”.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 8.11: keep_outside")
 
 
 def fold_sweep(x, cloth):
-    """Given.  Positions after one visit to every fold of a cloth."""
+    """Given.  Return the positions after one visit to every fold of a cloth."""
     x = float_copy(x)
     for h in range(cloth.fold.size):
         corners, w = np.zeros((4, 3)), np.zeros(4)
+        points = cloth.hinges[h]
         for k in range(4):
-            corners[k], w[k] = x[cloth.hinges[h, k]], cloth.net.inv_mass[cloth.hinges[h, k]]
+            corners[k] = x[points[k]]
+            w[k] = cloth.net.inv_mass[points[k]]
         C, gradients = fold_constraint(corners, cloth.fold[h])
         corrections = projection(cloth.stiffness * C, gradients, w)
         for k in range(4):
-            x[cloth.hinges[h, k]] += corrections[k]
+            x[points[k]] += corrections[k]
     return x
 
 
 def cloth_step(acceleration, t, x, v, dt, cloth):
-    """Given.  pbd_step for a cloth that resists folding and meets a ball and a floor."""
+    """Given.  Advance a cloth by one step: pbd_step with folds that resist bending, a ball and a floor."""
     new = predict(acceleration, t, x, v, dt, cloth.net)
     for _ in range(cloth.net.sweeps):
         new = distance_sweep(new, cloth.net)
@@ -338,16 +367,16 @@ def cloth_step(acceleration, t, x, v, dt, cloth):
     return new, (new - x) / dt
 
 
-# ---------------------------------------------------------------------------------------------- XPBD: a compliance of its own
+# ---------------------------------------------------------------------------------------------- XPBD: compliant links
 
 def compliant_multiplier(C, Lam, weight, alpha_scaled):
-    """ΔΛ [N s²] for one visit to a constraint that gives way: a spring of stiffness 1/α, at any step and any number of sweeps.
+    """Return ΔΛ [N s²] for one visit to a compliant constraint: a spring of stiffness 1/α for any step and any sweeps.
 
     ΔΛ = (−C − α̃ Λ)/(weight + α̃),      α̃ = α/dt²          weight = Σ w |∇C|²
 
-    Λ = λ dt² is what earlier visits of this step have added up to.  It comes to rest where C = −α̃ Λ = −α λ: Hooke's law.
-    alpha_scaled is α̃: it is the same for all visits of a step, so the caller divides once.
-    Raises BadInput("scaled compliance α/dt² [1/kg]", α̃, "give zero or more") for a negative one (NaN, too), and
+    Λ = λ dt² is the sum of the ΔΛ of earlier visits in this step.  At convergence C = −α̃ Λ = −α λ: Hooke's law.
+    alpha_scaled is α̃.  It is the same for all visits of a step, so the caller divides once.
+    Raises BadInput("scaled compliance α/dt² [1/kg]", α̃, "give zero or more") for a negative α̃ or NaN, and
     BadInput("Σ w |∇C|² of a constraint", 0.0, "let one of its points have a mass and a gradient") for a weight of 0.
     *Source:* Macklin, Müller and Chentanez 2016, eq. 18.
     """
@@ -356,11 +385,13 @@ def compliant_multiplier(C, Lam, weight, alpha_scaled):
 
 
 def compliant_sweep(x, Lam, dt, net):
-    """(x (n, d), Λ (s,)) after one visit to every link, in their order, each as compliant as its α says.
+    """Return (x (n, d), Λ (s,)) after one visit to every link, in order, with the compliance α of each.
 
-    ΔΛ = compliant_multiplier(C, Λₛ, w_i + w_j, αₛ/dt²);      Λₛ ← Λₛ + ΔΛ,   x_i ← x_i + w_i ΔΛ n,   x_j ← x_j − w_j ΔΛ n
+    ΔΛ = compliant_multiplier(C, Λₛ, w_i + w_j, αₛ/dt²)
+    Λₛ ← Λₛ + ΔΛ,   x_i ← x_i + w_i ΔΛ n,   x_j ← x_j − w_j ΔΛ n
 
-    C and n as in distance_constraint, where the visits before have left the ends.  Returns new arrays.
+    C and n are those of distance_constraint, for the ends as the earlier visits have left them.  Returns new arrays.
+    The worked answer sums over the coordinates in a loop, for speed, as in distance_sweep.
     Raises what distance_constraint and compliant_multiplier raise.
     *Source:* Macklin et al. 2016, algorithm 1.
     """
@@ -369,10 +400,11 @@ def compliant_sweep(x, Lam, dt, net):
 
 
 def xpbd_step(acceleration, t, x, v, dt, net):
-    """Advance a net by one step of XPBD: pbd_step with compliant_sweep, and Λ = 0 at the beginning of every step; first order.
+    """Advance a net by one step of XPBD: pbd_step with compliant_sweep, from Λ = 0 in every step; first order.
 
-    Many short steps with one sweep each are worth more than one step with as many sweeps: dt² makes every link heavier to move.
-    *Source:* Macklin et al. 2016; Macklin et al. 2019, "Small steps in physics simulation".
+    Many short steps with one sweep each are better than one long step with as many sweeps, because the
+    inertia m/dt² of the points then outweighs the forces of the links.
+    *Source:* Macklin et al. 2016; Macklin et al. 2019, “Small steps in physics simulation”.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 8.14: xpbd_step")
@@ -381,23 +413,25 @@ def xpbd_step(acceleration, t, x, v, dt, net):
 # ---------------------------------------------------------------------------------------------- rigid bodies
 
 def generalised_inverse_mass(q, r, n, m, I_body):
-    """w [1/kg]: how readily a point of a rigid body, at the offset r (3,) [m] from its centre of mass, gives way along n (3,).
+    """Return w [1/kg] of a point of a rigid body: how easily it moves along n (3,), at the offset r (3,) [m].
 
-    w = 1/m + (r × n)ᵀ I⁻¹ (r × n)          I⁻¹ = R I_body⁻¹ Rᵀ: unrotate(q, ·) turns a vector into the body's coordinates
+    w = 1/m + (r × n)ᵀ I⁻¹ (r × n)          I⁻¹ = R I_body⁻¹ Rᵀ: unrotate(q, ·) converts a vector to body coordinates
 
-    r and n in the world's coordinates.  A point mass has w = 1/m; far from the centre of mass a body is light.
-    *Source:* Müller et al. 2020, "Detailed rigid body simulation with extended position based dynamics", eqs. 2, 3.
+    r starts at the centre of mass.  r and n are in world coordinates.  For a point mass w = 1/m; with its offset
+    from the line along n through the centre of mass, w increases.
+    *Source:* Müller et al. 2020, “Detailed rigid body simulation with extended position based dynamics”, eqs. 2, 3.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 8.15: generalised_inverse_mass")
 
 
 def push_body(x, q, r, p, m, I_body):
-    """(x (3,), q (4,)) of a rigid body after p (3,) [kg m] has been applied at the offset r (3,) from its centre of mass.
+    """Return (x (3,), q (4,)) of a rigid body after p (3,) [kg m] acts at the offset r (3,) from its centre of mass.
 
     x ← x + p/m,      q ← quaternion_update(q, I⁻¹ (r × p), 1)          p = λ dt² ∇C: an impulse times a time
 
-    Everything in the world's coordinates; rotate and unrotate (lesson 5) lead to the body's, where I is the diagonal I_body.
+    All vectors are in world coordinates.  rotate and unrotate (lesson 5) convert from and to body coordinates, in
+    which I is the diagonal I_body.
     *Source:* Müller et al. 2020, eqs. 6 to 9.
     """
     # YOUR CODE HERE
@@ -405,11 +439,12 @@ def push_body(x, q, r, p, m, I_body):
 
 
 def turning_rate(q_old, q_new, dt):
-    """ω [rad/s] (3,) that quaternion_update would need to lead from one orientation to the other in dt: the v = Δx/dt of rotations.
+    """Return ω [rad/s] (3,) with which quaternion_update leads from q_old to q_new in dt: v = Δx/dt for rotations.
 
     Δq = q_new q̄_old = (Δ₀, 𝚫),      ω = 2 𝚫/(Δ₀ dt)          q̄ = (w, −x, −y, −z);   the same for q and −q
 
-    product(a, b) multiplies quaternions (lesson 5).  *Left out:* half a turn in one step, Δ₀ = 0.
+    product(a, b) multiplies quaternions (lesson 5).
+    *Left out:* half a turn in one step, Δ₀ = 0.
     *Source:* Müller et al. 2020, algorithm 2; the division by Δ₀ makes it the exact inverse of quaternion_update.
     """
     # YOUR CODE HERE
@@ -417,9 +452,13 @@ def turning_rate(q_old, q_new, dt):
 
 
 def hung_step(t, x, v, q, omega, dt, body):
-    """Given.  Advance a Hung body by one step: (x, v, q, ω); first order.  Its pivot is one constraint, C = |x + r − pivot|."""
-    new, turned = x + dt * v + dt * dt * body.gravity, omega + dt * angular_acceleration(q, omega, np.zeros(3), body.I_body)
-    turned = quaternion_update(q, turned, dt)
+    """Given.  Advance a Hung body by one step: (x, v, q, ω); first order.
+
+    Its pivot is one constraint, C = |x + r − pivot|.
+    """
+    new = x + dt * v + dt * dt * body.gravity
+    omega_pred = omega + dt * angular_acceleration(q, omega, np.zeros(3), body.I_body)
+    turned = quaternion_update(q, omega_pred, dt)
     for _ in range(body.sweeps):
         r = rotate(turned, body.arm_body)
         gap = new + r - body.pivot
@@ -433,10 +472,10 @@ def hung_step(t, x, v, q, omega, dt, body):
 # ---------------------------------------------------------------------------------------------- a soft ball
 
 def volume_gradient(x, faces):
-    """(V [m³], ∇V (n, 3) [m²]) of a closed surface with corners x (n, 3) and triangles faces (f, 3).
+    """Return (V [m³], ∇V (n, 3) [m²]) of a closed surface with corners x (n, 3) and triangles faces (f, 3).
 
-    V = Σ a · (b × c)/6 over the faces (a, b, c), counter-clockwise seen from outside;      each adds to
-    ∇_a V:  b × c/6,      ∇_b V:  c × a/6,      ∇_c V:  a × b/6
+    V = Σ a · (b × c)/6 over the faces (a, b, c), counter-clockwise seen from outside.  Each face adds
+    b × c/6 to ∇_a V,      c × a/6 to ∇_b V,      a × b/6 to ∇_c V
 
     *Source:* Müller et al. 2006, section 4.2, balloons; the divergence theorem.
     """
@@ -445,15 +484,19 @@ def volume_gradient(x, faces):
 
 
 def balloon_step(acceleration, t, x, v, dt, balloon):
-    """Given.  xpbd_step for a closed net whose volume is one more constraint, above a floor.  Links first, then the air, then the floor."""
+    """Given.  Advance a closed net above a floor by one step: xpbd_step with the volume as one more constraint.
+
+    Each sweep visits the links first, then the air, then the floor.
+    """
     net = balloon.net
-    new, Lam, air = predict(acceleration, t, x, v, dt, net), np.zeros(net.i.size), 0.0
+    new = predict(acceleration, t, x, v, dt, net)
+    Lam, air = np.zeros(net.i.size), 0.0
     for _ in range(net.sweeps):
         new, Lam = compliant_sweep(new, Lam, dt, net)
         V, gradient = volume_gradient(new, balloon.faces)
         weight = 0.0
         for k in range(x.shape[0]):
-            weight += net.inv_mass[k] * np.sum(gradient[k] * gradient[k])
+            weight += net.inv_mass[k] * dot(gradient[k], gradient[k])
         change = compliant_multiplier(V - balloon.volume, air, weight, balloon.alpha / (dt * dt))
         air += change
         for k in range(x.shape[0]):
@@ -465,34 +508,42 @@ def balloon_step(acceleration, t, x, v, dt, balloon):
 # ---------------------------------------------------------------------------------------------- building
 
 def make_net(x, m, fixed, pairs, alpha, stiffness, gravity, sweeps):
-    """Given.  A Net whose links have the lengths that they have at x.
+    """Given.  Make a Net whose links have their lengths at x as rest lengths.
 
-    x (n, d); m [kg], alpha [m/N] and stiffness [-] are numbers or one each; fixed lists point numbers; pairs (s, 2); gravity (d,).
-    Raises BadInput for a mass that is not positive, a state that is not finite, a link without length or between two immovable
-    points, a negative compliance, a stiffness outside 0 … 1 or equal to 0, fewer than one sweep, a point number that is none, gravity
-    of another dimension than x.
+    x (n, d); m [kg], alpha [m/N] and stiffness [-] are numbers or one each; fixed lists point numbers; pairs (s, 2);
+    gravity (d,).
+    Raises BadInput for a mass that is not positive, a state that is not finite, a link of zero length or between two
+    immovable points, a negative compliance, a stiffness outside 0 … 1 or equal to 0, fewer than one sweep, a point
+    number out of range, gravity of another dimension than x.
     """
-    x, gravity = finite_array("a position of the net [m]", x), finite_array("gravity [m/s²]", gravity)
+    x = finite_array("a position of the net [m]", x)
+    gravity = finite_array("gravity [m/s²]", gravity)
     inv_mass = inverse_masses("a mass of the net [kg]", m, fixed, x)
     check_shape("gravity", gravity, x.shape[1:])
     i, j, rest = measured_links("link", x, pairs)
-    alphas, shares = one_each("compliance α [m/N]", alpha, len(i)), one_each("stiffness of a link [-]", stiffness, len(i))
+    alphas = one_each("compliance α [m/N]", alpha, len(i))
+    shares = one_each("stiffness of a link [-]", stiffness, len(i))
     for s in range(len(i)):
+        link = f"link {s} from point {i[s]} to {j[s]}"
         if rest[s] == 0.0:
-            raise BadInput(f"the length of link {s} from point {i[s]} to {j[s]} [m]", 0.0, "move its ends apart")
+            raise BadInput(f"the length of {link} [m]", 0.0, "move its ends apart")
         if inv_mass[i[s]] + inv_mass[j[s]] == 0.0:
-            raise BadInput(f"the inverse mass at link {s} from point {i[s]} to {j[s]} [1/kg]", 0.0, "leave out links between immovable points")
+            raise BadInput(f"the inverse mass at {link} [1/kg]", 0.0, "leave out links between immovable points")
         if not 0.0 < shares[s] <= 1.0:
             raise BadInput(f"the stiffness of link {s} [-]", shares[s], "give a number above 0, up to 1")
     return Net(inv_mass, gravity, i, j, rest, shares, alphas, whole_number("sweeps in a step", sweeps, 1))
 
 
 def shared_edges(faces):
-    """Given.  (edges (e, 2), hinges (h, 4)) of triangles (f, 3): every edge once, and a, b, c, d for each that two of them share."""
+    """Given.  Return (edges (e, 2), hinges (h, 4)) of triangles (f, 3): every edge once, and the folds.
+
+    A hinge is (a, b, c, d) of an edge that two triangles share: its ends a and b, the other corners c and d.
+    """
     found = {}
     for face in np.asarray(faces):
         for k in range(3):
             a, b, c = face[k], face[(k + 1) % 3], face[(k + 2) % 3]
             found.setdefault((min(a, b), max(a, b)), []).append((a, b, c))
     hinges = [(*two[0], two[1][2]) for two in found.values() if len(two) == 2]
-    return np.array(sorted(found), dtype=np.int64), np.array(hinges, dtype=np.int64).reshape(-1, 4)
+    edges = np.array(sorted(found), dtype=np.int64)
+    return edges, np.array(hinges, dtype=np.int64).reshape(-1, 4)

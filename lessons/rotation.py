@@ -1,14 +1,17 @@
-"""Lesson 5.  A rigid body on its own.
+"""Lesson 5.  A single rigid body.
 
     ẋ = P/M,   Ṙ = ω* R,   Ṗ = F,   L̇ = τ           with   ω = I⁻¹ L,   I = R I_body Rᵀ
 
-Symbols: x (3,) [m] centre of mass · v [m/s] · P [kg m/s] · R (3, 3), q (4,) = (w, x, y, z) orientation: both turn coordinates of the
-body into those of the world · ω (3,) [rad/s] · L (3,) [kg m²/s] · τ (3,) [N m] · I_body (3,) [kg m²] principal moments.
-Vectors are in world coordinates, unless the name ends in _body.  The axes of the body are its principal axes; lesson 4 finds them.
+Symbols: x (3,) [m] centre of mass · v [m/s] · P [kg m/s] · R (3, 3), q (4,) = (w, x, y, z) orientation: both
+convert body to world coordinates · ω (3,) [rad/s] · L (3,) [kg m²/s] · τ (3,) [N m] · I_body (3,) [kg m²]
+principal moments.
+Vectors are in world coordinates, unless the name ends in _body.  The axes of the body are
+its principal axes, which lesson 4 computes.
 
-Every method is a function  step(torque, t, q, L, dt, body) → (q, L)  at t + dt.  torque(t, q, L, body) returns (3,) [N m] and gets
-body, any record with a field I_body, untouched.  L itself is the state, so that without a torque it is kept to the last digit.
-*Left out:* contacts, but for a ball on a floor; lessons 6 and 7 find them and answer them.
+Every method is a function  step(torque, t, q, L, dt, body) → (q, L)  at t + dt.  torque(t, q, L, body) returns
+(3,) [N m].  body is any record with a field I_body and is passed on unchanged.  The state is L itself, so that
+without a torque it is kept to the last digit.
+*Left out:* contacts, except of a ball on a floor; lesson 6 finds contacts and lesson 7 resolves them.
 """
 
 from typing import NamedTuple
@@ -30,16 +33,30 @@ from solutions.checks import (
     whole_number,
 )
 from solutions.friction import cone_radius
+from solutions.vectors import cross, dot, norm
 
-NEWTON_TOLERANCE = 1e-12     # last correction over the size of the unknown [-]: Newton squares it, so what is left is round-off
-NEWTON_LIMIT = 30            # corrections [-]; from a sane guess Newton doubles its digits and needs fewer than 6
-UNIT_TOLERANCE = 1e-9        # how far from 1 a quaternion's length may be handed in [-]: a thousand times what ten million steps round off
-FLAT = 1e-12                 # of a flat body I₁ + I₂ = I₃; rounding may break that by so much [-]
+__all__ = [
+    "FLAT", "NEWTON_LIMIT", "SUZUKI", "Ball", "Body", "State", "Top", "about_axis",
+    "angular_acceleration", "angular_momentum", "angular_velocity", "axis_angle_step",
+    "axis_angle_update", "body_component", "check_moments", "check_rotation", "compose",
+    "composed_midpoint_step", "composed_splitting_step", "exponential", "gyroscopic_step",
+    "heavy_top_torque", "implicit_gyroscopic_step", "kinetic_energy", "make_body", "matrix_step",
+    "matrix_update", "middle_axis", "midpoint_step", "midpoint_turn", "move", "no_torque",
+    "point_velocity", "product", "quaternion_of", "quaternion_step", "quaternion_update",
+    "rigid_body_step", "rolling_load", "rotate", "rotation_matrix", "runge_kutta_step", "skew",
+    "solve3", "splitting_step", "splitting_turn", "state_derivative", "total_load", "tumble",
+    "tumbling", "tumbling_rate", "unit", "unrotate",
+]
+
+NEWTON_TOLERANCE = 1e-12     # last correction over the unknown [-]; Newton squares it, so only round-off remains
+NEWTON_LIMIT = 30            # corrections [-]; from a good guess Newton doubles its digits and needs fewer than 6
+UNIT_TOLERANCE = 1e-9        # allowed error of a given quaternion's length [-]: 1000 times the round-off of 10⁷ steps
+FLAT = 1e-12                 # a flat body has I₁ + I₂ = I₃; round-off may violate that by this share [-]
 SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))      # share of the step in each of four substeps [-]: 4γ³ + (1 − 4γ)³ = 0
 
 
 class State(NamedTuple):
-    """The lecture's S(t), and its derivative."""
+    """The state S(t) of the lecture, or its derivative."""
     x: np.ndarray            # (3,) position of the centre of mass [m]
     R: np.ndarray            # (3, 3) orientation: its columns are the axes of the body
     P: np.ndarray            # (3,) momentum [kg m/s]
@@ -47,38 +64,40 @@ class State(NamedTuple):
 
 
 class Body(NamedTuple):
-    """What a rigid body is, as far as its motion goes."""
+    """The constant properties of a rigid body."""
     m: float                 # mass [kg]
     I_body: np.ndarray       # (3,) principal moments of inertia [kg m²]
 
 
 class Top(NamedTuple):
-    """A body that turns about a fixed point on its third axis."""
+    """A body that rotates about a fixed point on its third axis."""
     I_body: np.ndarray       # (3,) principal moments about the pivot [kg m²]
     mgl: float               # weight times the distance from the pivot to the centre of mass [N m]
 
 
 class Ball(NamedTuple):
-    """A ball, or whatever rolls with three equal moments, on a horizontal floor."""
+    """A ball, or any round body with three equal moments, on a horizontal floor."""
     m: float                 # mass [kg]
     I_body: np.ndarray       # (3,) moments of inertia [kg m²]
     radius: float            # [m]
     mu: float                # friction [-]
-    gravity: np.ndarray      # (3,) [m/s²]; a floor that slopes is a horizontal one under a gravity that slants
-    dt: float                # step [s]: so long friction will act before it is asked again
+    gravity: np.ndarray      # (3,) [m/s²]; for a sloping floor, tilt gravity instead
+    dt: float                # step [s]: friction acts for this time before it is computed again
 
 
 def check_moments(I_body):
-    """Given.  Raise BadInput unless some distribution of mass has these principal moments: positive, none above the sum of the others."""
+    """Given.  Raise BadInput unless these are moments of a body: positive, none above the sum of the others."""
     check_shape("the principal moments", I_body, (3,))
     for k in range(3):
         check_positive("a principal moment of inertia [kg m²]", I_body[k])
-        if I_body[k] > (I_body[(k + 1) % 3] + I_body[(k + 2) % 3]) * (1.0 + FLAT):
-            raise BadInput("a principal moment of inertia [kg m²]", I_body[k], "no distribution of mass has it; keep it below the sum of the other two")
+        others = I_body[(k + 1) % 3] + I_body[(k + 2) % 3]
+        if I_body[k] > others * (1.0 + FLAT):
+            raise BadInput("a principal moment of inertia [kg m²]", I_body[k],
+                           "no distribution of mass has it; keep it below the sum of the other two")
 
 
 def make_body(m, I_body):
-    """Given.  A Body from a number and three; raises BadInput for a mass or moments that no body has."""
+    """Given.  Make a Body from a number and three; raises BadInput for a mass or moments that no body has."""
     moments = finite_array("principal moments [kg m²]", I_body)
     check_moments(moments)
     return Body(positive_number("mass m [kg]", m), moments)
@@ -86,118 +105,116 @@ def make_body(m, I_body):
 
 # ---------------------------------------------------------------------------------------------- rotational movement
 
-def cross(a, b):
-    """Given.  a × b of two vectors (3,); written out, because that is ten times as fast as NumPy's."""
-    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
-
-
 def skew(a):
-    """The matrix a* (3, 3) with  a* b = a × b  for every b.
+    """Return the matrix a* (3, 3) with  a* b = a × b  for every b.
 
          ⎛  0   −a_z   a_y ⎞
     a* = ⎜  a_z   0   −a_x ⎟
          ⎝ −a_y  a_x    0  ⎠
 
-    *Source:* deck A, "Rotational Movement".
+    *Source:* first lecture deck, “Rotational Movement”.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 5.1: skew")
 
 
 def point_velocity(v, omega, r):
-    """Velocity [m/s] (3,) of the point of a body at the offset r [m] from its centre of mass:  v + ω × r.
+    """Return the velocity [m/s] (3,) of the point of a body at the offset r [m] from its centre of mass:  v + ω × r.
 
-    *Source:* deck A, "Rotational Movement": a = b + r(t).
+    cross(a, b) is the cross product.
+    *Source:* first lecture deck, “Rotational Movement”: a = b + r(t).
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 5.2: point_velocity")
 
 
 def total_load(x, points, forces):
-    """Force F [N] (3,) and torque τ [N m] (3,) about the centre of mass x of forces (n, 3) that act at points (n, 3) [m].
+    """Return force F [N] (3,) and torque τ [N m] (3,) about the centre of mass x of forces (n, 3) at points (n, 3) [m].
 
     F = Σ fᵢ,   τ = Σ (pᵢ − x) × fᵢ
 
-    *Source:* deck A, "Center of Mass"; deck B, "Simulation loop".
+    *Source:* first lecture deck, “Center of Mass”; second lecture deck, “Simulation loop”.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 5.3: total_load")
 
 
 def angular_velocity(R, L, I_body):
-    """ω [rad/s] (3,) of a body with the angular momentum L:  ω = I⁻¹ L,  I⁻¹ = R I_body⁻¹ Rᵀ.
+    """Return ω [rad/s] (3,) of a body with the angular momentum L:  ω = I⁻¹ L,  I⁻¹ = R I_body⁻¹ Rᵀ.
 
-    In the body's own coordinates the inertia is a diagonal, (I₁, I₂, I₃) = I_body: turn L there with Rᵀ, divide, turn back.
-    *Source:* deck A, "Angular Momentum", "Inertia Tensor".
+    In body coordinates the inertia tensor is diagonal, (I₁, I₂, I₃) = I_body: convert L with Rᵀ, divide, convert back.
+    *Source:* first lecture deck, “Angular Momentum”, “Inertia Tensor”.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 5.4: angular_velocity")
 
 
 def state_derivative(S, F, tau, body):
-    """Ṡ as a State:  ẋ = P/M,  Ṙ = ω* R,  Ṗ = F,  L̇ = τ,  for a State S and a Body; ω = angular_velocity(R, L, I_body).
+    """Return Ṡ as a State:  ẋ = P/M,  Ṙ = ω* R,  Ṗ = F,  L̇ = τ,  for a State S and a Body.
 
-    *Source:* deck A, S(t) and its derivative; Baraff 1997.
+    ω = angular_velocity(R, L, I_body)
+
+    *Source:* first lecture deck, S(t) and its derivative; Baraff 1997.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 5.5: state_derivative")
 
 
-# ---------------------------------------------------------------------------------------------- three ways to turn a body
+# ----------------------------------------------------------------------------------------- three updates of orientation
 
 def matrix_update(R, omega, dt):
-    """Orientation (3, 3) after dt at ω, first way:  R + dt ω* R, and then renormalised; first order.
+    """Return the orientation (3, 3) after dt at ω, first way:  R + dt ω* R, then renormalised; first order.
 
-    Renormalising (Gram and Schmidt): bring the first column to length 1; take from the second its part along the first, and
-    bring it to length 1; the third is first × second.
-    *Source:* deck A, "Update Orientation".
+    Renormalise by Gram and Schmidt: scale the first column to length 1; subtract from the second its part along the
+    first, and scale it to length 1; the third is first × second.
+    *Source:* first lecture deck, “Update Orientation”.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 5.6: matrix_update")
 
 
 def axis_angle_update(R, omega, dt):
-    """Orientation (3, 3) after dt at ω, second way: every column r of R is turned about the axis n by the angle θ.
+    """Return the orientation (3, 3) after dt at ω, second way: rotate every column r of R about the axis n by θ.
 
     θ = |ω| dt,   n = ω/|ω|
     r ← cos θ r + sin θ n × r + (1 − cos θ)(n · r) n
 
-    Exact while ω does not change.  Where ω = 0 nothing turns: a copy of R.
-    *Source:* deck A, "Extract axis-angle from ω(t) and rotate columns of R(t)"; Rodrigues 1840.
+    Exact for constant ω.  Where ω = 0, return a copy of R.
+    *Source:* first lecture deck, “Extract axis-angle from ω(t) and rotate columns of R(t)”; Rodrigues 1840.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 5.7: axis_angle_update")
 
 
 def product(a, b):
-    """The quaternion a b (4,) of two of them, each (w, x, y, z): first b turns, then a.
+    """Return the product a b (4,) of two quaternions (w, x, y, z): the rotation by b, followed by that by a.
 
     (a₀, 𝐚)(b₀, 𝐛) = (a₀b₀ − 𝐚·𝐛,  a₀𝐛 + b₀𝐚 + 𝐚×𝐛)
 
-    *Source:* Hamilton 1844; deck A, "Use quaternions".
+    *Source:* Hamilton 1844; first lecture deck, “Use quaternions”.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 5.8: product")
 
 
 def rotation_matrix(q):
-    """The matrix R (3, 3) of a unit quaternion:  R r = q (0, r) q̄.
+    """Return the matrix R (3, 3) of a unit quaternion:  R r = q (0, r) q̄.
 
         ⎛ 1 − 2(y² + z²)   2(xy − wz)       2(xz + wy)     ⎞
     R = ⎜ 2(xy + wz)       1 − 2(x² + z²)   2(yz − wx)     ⎟
         ⎝ 2(xz − wy)       2(yz + wx)       1 − 2(x² + y²) ⎠
 
     q and −q are the same orientation.
-    *Source:* deck B, "rotation (matrix R or quaternion q)".
+    *Source:* second lecture deck, “rotation (matrix R or quaternion q)”.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 5.9: rotation_matrix")
 
 
 def unit(q):
-    """Given.  q / |q|: the nearest quaternion that is a rotation.
+    """Given.  Return q / |q|: the nearest unit quaternion.
 
-    Raises BadInput when there is none because q = 0, Diverged when a step has led to one that is not finite.
+    Raises BadInput for q = 0, and Diverged for a q that is not finite, as a step may produce.
     """
     length = np.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
     if length == 0.0:
@@ -208,39 +225,39 @@ def unit(q):
 
 
 def quaternion_update(q, omega, dt):
-    """Orientation (4,) after dt at ω, third way:  q + dt q̇  with  q̇ = ½ (0, ω) q,  and then normalised by unit; first order.
+    """Return the orientation (4,) after dt at ω, third way:  q + dt q̇  with  q̇ = ½ (0, ω) q,  then unit; first order.
 
-    Turns about ω as it should, but by 2 atan(½|ω| dt) instead of |ω| dt: never more than half a turn.
-    *Source:* deck A, "Use quaternions"; deck B, "Don't forget to normalize q".
+    The axis of rotation is exact, but the angle is 2 atan(½|ω| dt) instead of |ω| dt: never more than half a turn.
+    *Source:* first lecture deck, “Use quaternions”; second lecture deck, “Don't forget to normalize q”.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 5.10: quaternion_update")
 
 
-# ---------------------------------------------------------------------------------------------- small change
+# --------------------------------------------------------------------------------------------- rotations by quaternions
 
 def exponential(phi):
-    """Given.  The quaternion (4,) of a rotation about the axis φ/|φ| by the angle |φ| [rad]: (cos ½|φ|, sin ½|φ| φ/|φ|)."""
-    angle = np.sqrt(phi[0] * phi[0] + phi[1] * phi[1] + phi[2] * phi[2])
+    """Given.  Return the quaternion (4,) of a rotation by |φ| [rad] about φ/|φ|: (cos ½|φ|, sin ½|φ| φ/|φ|)."""
+    angle = norm(phi)
     s = 0.5 if angle == 0.0 else np.sin(0.5 * angle) / angle
     return np.array([np.cos(0.5 * angle), s * phi[0], s * phi[1], s * phi[2]])
 
 
 def rotate(q, r):
-    """Given.  World coordinates of a vector with body coordinates r:  r + 2w 𝐪×r + 2𝐪×(𝐪×r),  q = (w, 𝐪)."""
-    a, b, c = q[2] * r[2] - q[3] * r[1], q[3] * r[0] - q[1] * r[2], q[1] * r[1] - q[2] * r[0]
+    """Given.  Return the world coordinates of a vector with body coordinates r:  r + 2w 𝐪×r + 2𝐪×(𝐪×r),  q = (w, 𝐪)."""
+    a, b, c = q[2] * r[2] - q[3] * r[1], q[3] * r[0] - q[1] * r[2], q[1] * r[1] - q[2] * r[0]      # 𝐪×r
     return np.array([r[0] + 2.0 * (q[0] * a + q[2] * c - q[3] * b),
                      r[1] + 2.0 * (q[0] * b + q[3] * a - q[1] * c),
                      r[2] + 2.0 * (q[0] * c + q[1] * b - q[2] * a)])
 
 
 def unrotate(q, r):
-    """Given.  Body coordinates of a vector with world coordinates r: rotate the other way round."""
+    """Given.  Return the body coordinates of a vector with world coordinates r: the inverse of rotate."""
     return rotate(np.array([-q[0], q[1], q[2], q[3]]), r)
 
 
 def body_component(q, r, k):
-    """Given.  The k-th body coordinate of a vector with world coordinates r, without the other two."""
+    """Given.  Return the k-th body coordinate of a vector with world coordinates r, without computing the other two."""
     x, y, z, w = q[1], q[2], q[3], q[0]
     if k == 0:
         return (w * w + x * x - y * y - z * z) * r[0] + 2.0 * ((x * y + w * z) * r[1] + (x * z - w * y) * r[2])
@@ -250,7 +267,7 @@ def body_component(q, r, k):
 
 
 def about_axis(q, k, angle):
-    """Given.  The body turned about its own k-th axis:  q (cos ½angle, sin ½angle 𝐞ₖ)."""
+    """Given.  Return the orientation after a rotation about the body's k-th axis:  q (cos ½angle, sin ½angle 𝐞ₖ)."""
     c, s = np.cos(0.5 * angle), np.sin(0.5 * angle)
     x, y, z, w = q[1], q[2], q[3], q[0]
     if k == 0:
@@ -261,54 +278,54 @@ def about_axis(q, k, angle):
 
 
 def solve3(a, b, c, r):
-    """Given.  The u (3,) with  u₀ a + u₁ b + u₂ c = r  for columns a, b, c (3,), by Cramer's rule."""
+    """Given.  Return the u (3,) with  u₀ a + u₁ b + u₂ c = r  for columns a, b, c (3,), by Cramer's rule."""
     bc = cross(b, c)
-    det = np.sum(a * bc)
-    return np.array([np.sum(r * bc), np.sum(a * cross(r, c)), np.sum(a * cross(b, r))]) / det
+    return np.array([dot(r, bc), dot(a, cross(r, c)), dot(a, cross(b, r))]) / dot(a, bc)
 
 
 def angular_momentum(q, omega, I_body):
-    """Given.  L = I ω [kg m²/s] (3,)."""
+    """Given.  Return L = I ω [kg m²/s] (3,)."""
     return rotate(q, I_body * unrotate(q, omega))
 
 
 # ---------------------------------------------------------------------------------------------- the lecture's loop
 
 def angular_acceleration(q, omega, tau, I_body):
-    """ω̇ = I⁻¹ (τ − ω × Iω) [rad/s²] (3,): the last term, the gyroscopic one, makes things tumble without any torque.
+    """Return ω̇ = I⁻¹ (τ − ω × Iω) [rad/s²] (3,); the gyroscopic term ω × Iω makes a body tumble without any torque.
 
-    rotate and unrotate, given above, take vectors from body to world coordinates and back.
-    *Source:* deck B, "Rigid bodies"; Euler 1758.
+    rotate and unrotate, given above, convert vectors from body to world coordinates and back.
+    *Source:* second lecture deck, “Rigid bodies”; Euler 1758.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 5.11: angular_acceleration")
 
 
 def rigid_body_step(load, t, x, v, q, omega, dt, body):
-    """Advance a rigid body by one step, as the lecture does: (x, v, q, ω) at t + dt; first order.
+    """Advance a rigid body by one step, as in the lecture; return (x, v, q, ω) at t + dt; first order.
 
     forces and torques:   F, τ = load(t, x, v, q, ω, body)
     velocities:           v ← v + dt F/m,     ω ← ω + dt ω̇
     positions:            x ← x + dt v,       q ← quaternion_update, both with the new velocities
 
-    body is any record with fields m and I_body; load gets it untouched.
-    *Source:* deck B, "Simulation loop".
+    body is any record with fields m and I_body; load receives it unchanged.
+    *Source:* second lecture deck, “Simulation loop”.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 5.12: rigid_body_step")
 
 
 def rolling_load(t, x, v, q, omega, ball):
-    """Given.  Weight, support and friction of a Ball on a floor across z, with gravity from any side: F [N], τ [N m], each (3,).
+    """Given.  Return F [N] and τ [N m], each (3,), of a Ball on a floor across z: weight, support and friction.
 
-    Friction stops the slip u of the lowest point by the end of the step, if μN is enough for that, or else does what μN can:
-        f = −min(μN, |u′|/(K dt)) u′/|u′|      u′ = u + dt g_t: the slip that there would be without,   K = 1/m + radius²/I
-    *Source:* deck B, Coulomb's law; lesson 7 does the same for bodies of any shape.
+    Gravity may have any direction.  Friction stops the slip u of the lowest point by the end of the step, within μN:
+        f = −min(μN, |u′|/(K dt)) u′/|u′|      u′ = u + dt g_t: the slip without friction,   K = 1/m + radius²/I
+    *Source:* second lecture deck, Coulomb's law; lesson 7 does the same for bodies of any shape.
     """
     r = np.array([0.0, 0.0, -ball.radius])
     slip = point_velocity(v, omega, r) + ball.dt * ball.gravity
     slip[2] = 0.0
-    size, support = np.sqrt(np.sum(slip * slip)), max(0.0, -ball.m * ball.gravity[2])
+    size = norm(slip)
+    support = max(0.0, -ball.m * ball.gravity[2])
     K = 1.0 / ball.m + ball.radius * ball.radius / ball.I_body[0]
     f = np.zeros(3)
     if size != 0.0:
@@ -317,7 +334,7 @@ def rolling_load(t, x, v, q, omega, ball):
 
 
 def kinetic_energy(q, L, I_body):
-    """Energy of rotation [J]:  ½ ω·L = Σ Lₖ²/2Iₖ  over the body coordinates Lₖ of L.
+    """Return the energy of rotation [J]:  ½ ω·L = Σ Lₖ²/2Iₖ  over the body coordinates Lₖ of L.
 
     *Source:* Landau and Lifshitz, Mechanics, § 32.
     """
@@ -326,24 +343,24 @@ def kinetic_energy(q, L, I_body):
 
 
 def tumbling_rate(I_body, k, spin):
-    """Rate [1/s] at which a disturbance of the spin [rad/s] about the k-th principal axis grows as e^(rate·t); 0 where it does not.
+    """Return the rate [1/s] at which a disturbance of a rotation about the k-th principal axis grows as e^(rate·t).
 
-    rate = |spin| √((I_k − I_i)(I_j − I_k) / (I_i I_j))          i, j: the other two axes
+    rate = |spin| √((I_k − I_i)(I_j − I_k) / (I_i I_j))          i, j: the other two axes;  spin [rad/s]
 
-    Under the root stands a positive number for the axis of the middle moment only: the tennis-racket theorem.
-    *Source:* deck B, "Tennis racket theorem"; Euler's equations, linear about ω = spin 𝐞ₖ.
+    The radicand is positive only for the axis of the middle moment: the tennis-racket theorem.  Elsewhere return 0.
+    *Source:* second lecture deck, “Tennis racket theorem”; Euler's equations, linearised about ω = spin 𝐞ₖ.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 5.14: tumbling_rate")
 
 
 def no_torque(t, q, L, body):
-    """Given.  τ = 0: a body on its own."""
+    """Given.  Return τ = 0: a free body."""
     return np.zeros(3)
 
 
 def heavy_top_torque(t, q, L, top):
-    """τ [N m] (3,) of gravity, −z, about the pivot of a Top whose centre of mass lies on its third axis 𝐞 = R (0, 0, 1).
+    """Return τ [N m] (3,) of gravity, −z, about the pivot of a Top with its centre of mass on its axis 𝐞 = R (0, 0, 1).
 
     τ = l𝐞 × (−Mg ẑ) = Mgl (−e_y, e_x, 0)
 
@@ -356,27 +373,27 @@ def heavy_top_torque(t, q, L, top):
 # ---------------------------------------------------------------------------------------------- steps of first order
 
 def matrix_step(torque, t, q, L, dt, body):
-    """Given.  L ← L + dt τ, then the lecture's first update with ω = I⁻¹ L; first order."""
+    """Given.  L ← L + dt τ, then matrix_update with ω = I⁻¹ L; first order."""
     L = L + dt * torque(t, q, L, body)
     R = rotation_matrix(q)
-    return quaternion_of(matrix_update(R, angular_velocity(R, L, body.I_body), dt)), L
-
+    R = matrix_update(R, angular_velocity(R, L, body.I_body), dt)
+    return quaternion_of(R), L
 
 def axis_angle_step(torque, t, q, L, dt, body):
-    """Given.  The same with the second update."""
+    """Given.  The same with axis_angle_update."""
     L = L + dt * torque(t, q, L, body)
     R = rotation_matrix(q)
-    return quaternion_of(axis_angle_update(R, angular_velocity(R, L, body.I_body), dt)), L
-
+    R = axis_angle_update(R, angular_velocity(R, L, body.I_body), dt)
+    return quaternion_of(R), L
 
 def quaternion_step(torque, t, q, L, dt, body):
-    """Given.  The same with the third."""
+    """Given.  The same with quaternion_update."""
     L = L + dt * torque(t, q, L, body)
     return quaternion_update(q, angular_velocity(rotation_matrix(q), L, body.I_body), dt), L
 
 
 def gyroscopic_step(torque, t, q, L, dt, body):
-    """Given.  Deck B's loop, whose state is ω: the gyroscopic term at the beginning of the step.  |L| is not kept."""
+    """Given.  The loop of the second lecture deck: state ω, gyroscopic term explicit.  |L| is not conserved."""
     omega = angular_velocity(rotation_matrix(q), L, body.I_body)
     omega = omega + dt * angular_acceleration(q, omega, torque(t, q, L, body), body.I_body)
     q = quaternion_update(q, omega, dt)
@@ -384,10 +401,10 @@ def gyroscopic_step(torque, t, q, L, dt, body):
 
 
 def implicit_gyroscopic_step(torque, t, q, L, dt, body):
-    """Given.  The same with the gyroscopic term at the end of the step, by one step of Newton's method, as some engines have it.
+    """Given.  The same with an implicit gyroscopic term, by one iteration of Newton's method, as in some engines.
 
     (I + dt (ω* I − (Iω)*)) Δω = dt (τ − ω × Iω)  in body coordinates.
-    *Source:* Catto 2015, "Numerical methods".
+    *Source:* Catto 2015, “Numerical methods”.
     """
     I, L_body = body.I_body, unrotate(q, L)
     omega, one = L_body / I, np.eye(3)
@@ -399,7 +416,9 @@ def implicit_gyroscopic_step(torque, t, q, L, dt, body):
 
 
 def quaternion_of(R):
-    """Given.  The unit quaternion (4,) of a rotation matrix; the largest of its four numbers is found first, so that nothing cancels.
+    """Given.  Return the unit quaternion (4,) of a rotation matrix.
+
+    Its largest component is computed first, to avoid cancellation.
 
     *Source:* Shepperd 1978.
     """
@@ -413,15 +432,17 @@ def quaternion_of(R):
     i = (k + 1) % 3
     j = 3 - k - i
     q = np.zeros(4)
-    q[0], q[1 + k] = R[j, i] - R[i, j], 1.0 + R[k, k] - R[i, i] - R[j, j]
-    q[1 + i], q[1 + j] = R[i, k] + R[k, i], R[j, k] + R[k, j]
+    q[0] = R[j, i] - R[i, j]
+    q[1 + k] = 1.0 + R[k, k] - R[i, i] - R[j, j]
+    q[1 + i] = R[i, k] + R[k, i]
+    q[1 + j] = R[j, k] + R[k, j]
     return unit(q)
 
 
-# ---------------------------------------------------------------------------------------------- steps that keep what nature keeps
+# ---------------------------------------------------------------------------------------------- steps that conserve
 
 def runge_kutta_step(torque, t, q, L, dt, body):
-    """Given.  Lesson 1's classical method on q̇ = ½ (0, ω) q, L̇ = τ, then q normalised; fourth order, and keeps no energy."""
+    """Given.  Runge–Kutta 4 of lesson 1 for q̇ = ½ (0, ω) q, L̇ = τ, then q normalised; fourth order, energy drifts."""
     rate_1, tau_1 = _slope(torque, t, q, L, body)
     rate_2, tau_2 = _slope(torque, t + 0.5 * dt, q + 0.5 * dt * rate_1, L + 0.5 * dt * tau_1, body)
     rate_3, tau_3 = _slope(torque, t + 0.5 * dt, q + 0.5 * dt * rate_2, L + 0.5 * dt * tau_2, body)
@@ -431,32 +452,34 @@ def runge_kutta_step(torque, t, q, L, dt, body):
 
 
 def _slope(torque, t, q, L, body):
-    """q̇ and L̇."""
+    """Given.  Return q̇ and L̇."""
     omega = angular_velocity(rotation_matrix(q), L, body.I_body)
     return 0.5 * product(np.array([0.0, omega[0], omega[1], omega[2]]), q), torque(t, q, L, body)
 
 
 def midpoint_turn(q, L, I_body, dt):
-    """Orientation (4,) of a body after dt without torque, by the implicit midpoint rule; second order, keeps the energy to round-off.
+    """Return the orientation (4,) of a free body after dt by the implicit midpoint rule; second order, exact energy.
 
-    With the body coordinates ℓ of L at the beginning (unrotate), ask for those half-way, m:
+    Let ℓ be the body coordinates of L at the start (unrotate).  Find those at the middle of the step, m:
         m = ℓ + ½dt m × w,    w = m/I_body
     Newton's method: start from a copy of ℓ and repeat, at most NEWTON_LIMIT times,
         r = m − ℓ − ½dt m × w;     column k of its derivative:  𝐞ₖ + ½dt (w − m/Iₖ) × 𝐞ₖ
         m ← m − δ,   δ = solve3(three columns, r)
-    until max|δ| ≤ NEWTON_TOLERANCE max|m|.  Then, with w = m/I_body of the last m, the body turns about w as in quaternion_update,
-    but on its own side:   q ← unit(q (1, ½dt w)).
-    The new ℓ is then 2m − ℓ: as long as ℓ, and of the same energy, since  (2m − ℓ)² − ℓ² = 4m·(m − ℓ) = 0,  and alike with /I.
+    until max|δ| ≤ NEWTON_TOLERANCE max|m|.  Finally take w = m/I_body from the last m and update q as in
+    quaternion_update, but multiply from the right, because w is in body coordinates:   q ← unit(q (1, ½dt w)).
+    The new ℓ is then 2m − ℓ.  It has the length and the energy of the old one, because
+    (2m − ℓ)² − ℓ² = 4m·(m − ℓ) = 0,  and likewise with /I.
 
-    Raises Diverged("Newton's method did not converge at dt [s]", dt, "take a smaller step") when the corrections are used up.
-    *Source:* Hairer, Lubich, Wanner 2006, "Geometric numerical integration", IV.2; Cayley 1846 for the turn.
+    Raises Diverged("Newton's method did not converge at dt [s]", dt, "take a smaller step") after NEWTON_LIMIT
+    corrections.
+    *Source:* Hairer, Lubich, Wanner 2006, “Geometric numerical integration”, IV.2; Cayley 1846 for the update.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 5.16: midpoint_turn")
 
 
 def middle_axis(I_body):
-    """Given.  Number of the axis whose moment is neither the largest nor the smallest; the first such where moments are equal."""
+    """Given.  Return the number of the axis with the middle moment; the first possible one where moments are equal."""
     for k in range(2):
         if (I_body[(k + 1) % 3] - I_body[k]) * (I_body[k] - I_body[(k + 2) % 3]) >= 0.0:
             return k
@@ -464,41 +487,42 @@ def middle_axis(I_body):
 
 
 def splitting_turn(q, L, I_body, dt):
-    """Orientation (4,) of a body after dt without torque, as four turns that are each exact; second order, the energy error stays bounded.
+    """Return the orientation (4,) of a free body after dt by four exact rotations; second order, bounded energy error.
 
     Let b be the middle_axis, a and c the two that follow it (b + 1 and b + 2, modulo 3).  The energy is a sum of three,
         L²/2I_b  +  ½(1/I_a − 1/I_b) L_a²  +  ½(1/I_c − 1/I_b) L_c²
-    and each alone moves the body in a way that is known.  The first turns it about L, by dt/I_b L: a product with
-    exponential(dt/I_b L) on the left, and it does not matter when.  The second turns it about its own axis a by the angle
-    dt (1/I_a − 1/I_b) L_a,  L_a = body_component(q, L, a)  of the q reached so far:  about_axis.  The third likewise about c.  In turn:
+    and the motion by each term alone is known.  The first rotates the body about L, by dt/I_b L: multiply by
+    exponential(dt/I_b L) from the left; it commutes with the others.  The second rotates it about its own axis a by the
+    angle dt (1/I_a − 1/I_b) L_a:  about_axis, with  L_a = body_component(q, L, a)  of the latest q.  The third does the
+    same about c.  Order of the rotations:
         half of a,  all of c,  half of a,  about L          and unit at the end
     Exact when two moments are equal.
-    *Source:* Touma and Wisdom 1994; Fassò 2003, "Comparison of splitting algorithms for the rigid body".
+    *Source:* Touma and Wisdom 1994; Fassò 2003, “Comparison of splitting algorithms for the rigid body”.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 5.17: splitting_turn")
 
 
 def midpoint_step(torque, t, q, L, dt, body):
-    """Given.  Half of the torque's push on L, midpoint_turn, the other half; second order, and reversible."""
+    """Given.  Half of the angular impulse of the torque, midpoint_turn, the other half; second order, reversible."""
     L = L + 0.5 * dt * torque(t, q, L, body)
     q = midpoint_turn(q, L, body.I_body, dt)
     return q, L + 0.5 * dt * torque(t + dt, q, L, body)
 
 
 def splitting_step(torque, t, q, L, dt, body):
-    """Given.  Half of the torque's push on L, splitting_turn, the other half; second order, and reversible."""
+    """Given.  Half of the angular impulse of the torque, splitting_turn, the other half; second order, reversible."""
     L = L + 0.5 * dt * torque(t, q, L, body)
     q = splitting_turn(q, L, body.I_body, dt)
     return q, L + 0.5 * dt * torque(t + dt, q, L, body)
 
 
 def compose(step, torque, t, q, L, dt, body):
-    """(q, L) after five substeps of a reversible step of second order, the third one backwards; fourth order.
+    """Return (q, L) after five substeps of a reversible second-order step, the third one backwards; fourth order.
 
     γ dt, γ dt, (1 − 4γ) dt, γ dt, γ dt          γ = SUZUKI = 1/(4 − ∛4)
 
-    Each begins at the time where the one before it ended.  What the step keeps, five of it keep.
+    Each begins at the time where the previous one ended.  The composition conserves whatever the step conserves.
     *Source:* Suzuki 1990; Hairer, Lubich, Wanner 2006, II.4.
     """
     # YOUR CODE HERE
@@ -506,12 +530,12 @@ def compose(step, torque, t, q, L, dt, body):
 
 
 def composed_splitting_step(torque, t, q, L, dt, body):
-    """Given.  compose of splitting_step: fourth order, L exact where nothing pushes it, bounded energy error."""
+    """Given.  compose of splitting_step: fourth order, L exact without torque, bounded energy error."""
     return compose(splitting_step, torque, t, q, L, dt, body)
 
 
 def composed_midpoint_step(torque, t, q, L, dt, body):
-    """Given.  compose of midpoint_step: fourth order, L and, without torque, energy to round-off."""
+    """Given.  compose of midpoint_step: fourth order; without torque, L exact and energy to round-off."""
     return compose(midpoint_step, torque, t, q, L, dt, body)
 
 
@@ -526,19 +550,25 @@ def check_rotation(q):
 
 
 def checked_rotation(t, q, L, dt, steps, I_body):
-    """Given.  (t, q, L, dt, steps) in float64, as tumble asks for them.
+    """Given.  Return (t, q, L, dt, steps) in float64, as tumble needs them.
 
-    Raises BadInput for a step that is not positive, a quaternion that is no rotation, moments that no body has, an L that is not finite.
+    Raises BadInput for a step that is not positive, a quaternion that is not a rotation, moments that no body has, an L
+    that is not finite.
     """
-    q, L = finite_array("quaternion q [-]", q), finite_array("angular momentum L [kg m²/s]", L)
+    q = finite_array("quaternion q [-]", q)
+    L = finite_array("angular momentum L [kg m²/s]", L)
     check_rotation(q)
     check_shape("the angular momentum L", L, (3,))
     check_moments(I_body)
-    return finite_number("time t [s]", t), q, L, positive_number("step dt [s]", dt), whole_number("number of steps", steps, 0)
+    t, dt = finite_number("time t [s]", t), positive_number("step dt [s]", dt)
+    return t, q, L, dt, whole_number("number of steps", steps, 0)
 
 
 def tumble(step, torque, t, q, L, dt, steps, body):
-    """Given.  The state (q, L) after so many steps of one method; raises what checked_rotation raises, and Diverged when the end is not finite."""
+    """Given.  Return the state (q, L) after `steps` steps of one method.
+
+    Raises what checked_rotation raises, and Diverged when the final state is not finite.
+    """
     t, q, L, dt, steps = checked_rotation(t, q, L, dt, steps, body.I_body)
     for n in range(steps):
         q, L = step(torque, t + n * dt, q, L, dt, body)
@@ -547,7 +577,7 @@ def tumble(step, torque, t, q, L, dt, steps, body):
 
 
 def tumbling(step, torque, t, q, L, dt, steps, body):
-    """Given.  Times (steps + 1,), orientations (steps + 1, 4) and angular momenta (steps + 1, 3) of the same run, the start included."""
+    """Given.  Return times (steps + 1,), orientations (steps + 1, 4) and L (steps + 1, 3), with the start."""
     t, q, L, dt, steps = checked_rotation(t, q, L, dt, steps, body.I_body)
     ts = t + dt * np.arange(steps + 1)
     qs, Ls = np.zeros((steps + 1, 4)), np.zeros((steps + 1, 3))
@@ -559,7 +589,7 @@ def tumbling(step, torque, t, q, L, dt, steps, body):
 
 
 def move(step, load, t, x, v, q, omega, dt, steps, body):
-    """Given.  The state (x, v, q, ω) after so many steps of a rigid body, like rigid_body_step; raises what tumble raises."""
+    """Given.  Return (x, v, q, ω) after `steps` steps of a rigid body; raises what tumble raises."""
     positive_number("mass m [kg]", body.m)
     t, q, omega, dt, steps = checked_rotation(t, q, omega, dt, steps, body.I_body)
     t, x, v, dt, steps = checked_run(t, x, v, dt, steps)

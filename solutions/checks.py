@@ -1,20 +1,27 @@
-"""What may go wrong, said in one sentence.  Given: every lesson may raise these, none has to define them."""
+"""Errors and checks.  Given: every lesson may raise these errors, and none has to define them."""
 
 import numpy as np
 
-COUNTABLE = 1e15             # whole numbers up to here are exact in floats [-]
-UNIT = 1e-9                  # how far from 1 the length of a unit vector may be [-]: any rounding is far below
+__all__ = [
+    "UNIT", "BadInput", "Diverged", "WrongShape", "check_array", "check_end", "check_field",
+    "check_finite", "check_friction", "check_indices", "check_normal", "check_not_negative",
+    "check_positive", "check_restitution", "check_shape", "checked_run", "finite_array",
+    "finite_number", "float_copy", "number", "one_each", "positive_number", "whole_number",
+]
+
+COUNTABLE = 1e15             # integers up to this size are exact in floats [-]
+UNIT = 1e-9                  # allowed error of the length of a unit vector [-]: far above round-off
 
 
 class BadInput(ValueError):
-    """A value that no physics can be done with: names the thing, its value and the remedy."""
+    """A value that makes no physical sense: names the thing, its value and the remedy."""
 
     def __init__(self, thing, value, remedy):
         super().__init__(f"{thing} is {value}: {remedy}")
 
 
 class WrongShape(BadInput):
-    """An array of another shape than expected: names the array, its shape, and the shape or the number of dimensions to give."""
+    """An array of the wrong shape: names the array, its shape, and the expected shape or number of dimensions."""
 
     def __init__(self, thing, shape, expected):
         wanted = f"at least one number, in {expected} dimensions" if isinstance(expected, int) else expected
@@ -22,7 +29,7 @@ class WrongShape(BadInput):
 
 
 class Diverged(ArithmeticError):
-    """A computation that left the numbers behind: says what happened, at which value of what, and the remedy."""
+    """A computation that gave no finite or no converged result: says what happened, at which value, and the remedy."""
 
     def __init__(self, what, value, remedy):
         super().__init__(f"{what} = {value}: {remedy}")
@@ -35,19 +42,19 @@ def check_shape(thing, values, shape):
 
 
 def check_array(thing, values, dimensions):
-    """Raise BadInput unless values is an array of finite numbers, not empty, with so many dimensions."""
+    """Raise BadInput unless values is a non-empty array of finite numbers with this number of dimensions."""
     found = -1
     try:
         found = values.ndim
     except Exception:
-        raise BadInput(thing, "not an array", "wrap it in np.array")
+        raise BadInput(thing, "not an array", "wrap it in np.array")       # noqa: B904   numba knows no `from`
     if found != dimensions or values.size == 0:
         raise WrongShape(thing, values.shape, dimensions)
     check_finite(thing, values)
 
 
 def check_field(thing, values, shape):
-    """Raise BadInput unless a field of a record is an array of finite numbers of that shape."""
+    """Raise BadInput unless a field of a record is an array of finite numbers of this shape."""
     check_array(thing, values, len(shape))
     check_shape(thing, values, shape)
 
@@ -60,19 +67,19 @@ def check_normal(n):
 
 
 def check_restitution(e):
-    """Raise BadInput unless 0 ≤ e ≤ 1: above 1 every impact would make energy."""
+    """Raise BadInput unless 0 ≤ e ≤ 1; above 1 every impact would gain energy."""
     if not 0.0 <= e <= 1.0:
         raise BadInput("restitution e [-]", e, "give a number from 0 to 1")
 
 
 def check_friction(mu):
-    """Raise BadInput unless μ is zero or more; infinity is allowed: it holds against everything."""
+    """Raise BadInput unless μ is zero or more; infinity is allowed and prevents any slip."""
     if not mu >= 0.0:
         raise BadInput("friction μ [-]", mu, "give a number of zero or above")
 
 
 def check_indices(thing, numbers, count):
-    """numbers as an array of int64.  Raises BadInput unless each is one of 0 … count − 1: −1 is not the last one here."""
+    """Return numbers as an array of int64.  Raises BadInput unless all are in 0 … count − 1; −1 is not the last one."""
     values = finite_array(thing, numbers)
     for number in values.ravel():
         if number != np.floor(number) or not 0 <= number < count:
@@ -81,7 +88,7 @@ def check_indices(thing, numbers, count):
 
 
 def one_each(thing, value, count):
-    """(count,) finite numbers of zero or more, from one number for all or from one each.  Raises BadInput."""
+    """Return (count,) finite numbers of zero or more, from one number for all or from one each.  Raises BadInput."""
     values = finite_array(thing, value)
     if values.ndim > 0:
         check_shape(thing, values, (count,))
@@ -90,20 +97,20 @@ def one_each(thing, value, count):
     return np.full(count, values) if values.ndim == 0 else values.copy()
 
 
-# ---------------------------------------------------------------------------------------------- what a person gives
+# ---------------------------------------------------------------------------------------------- values from the user
 
 def number(thing, value):
-    """value as a float, which may be infinite or NaN.  Raises BadInput for a list, None or a word."""
+    """Return value as a float, which may be infinite or NaN.  Raises BadInput for a list, None or text."""
     converted = np.nan
     try:
         converted = float(value)
     except Exception:
-        raise BadInput(thing, "not a number", "give a number")
+        raise BadInput(thing, "not a number", "give a number")             # noqa: B904   numba knows no `from`
     return converted
 
 
 def finite_number(thing, value):
-    """value as a float.  Raises BadInput unless it is a finite number."""
+    """Return value as a float.  Raises BadInput unless it is a finite number."""
     converted = number(thing, value)
     if not np.isfinite(converted):
         raise BadInput(thing, converted, "give a finite number")
@@ -111,14 +118,14 @@ def finite_number(thing, value):
 
 
 def positive_number(thing, value):
-    """value as a float.  Raises BadInput unless it is a finite number above zero."""
+    """Return value as a float.  Raises BadInput unless it is a finite number above zero."""
     converted = finite_number(thing, value)
     check_positive(thing, converted)
     return converted
 
 
 def whole_number(thing, value, least):
-    """value as an int.  Raises BadInput unless it is a whole number that is not below `least`, and that can be counted to."""
+    """Return value as an int.  Raises BadInput unless it is a whole number from `least` to COUNTABLE."""
     converted = finite_number(thing, value)
     if converted != np.floor(converted) or not least <= converted <= COUNTABLE:
         raise BadInput(thing, converted, "give a whole number that is neither too small nor too large to count to")
@@ -126,55 +133,57 @@ def whole_number(thing, value, least):
 
 
 def finite_array(thing, values):
-    """values as an array of float64: whole numbers are converted, because arithmetic in whole numbers drops every fraction.
+    """Return values as an array of float64; integers are converted, because integer arithmetic drops fractions.
 
-    Raises BadInput for what is no array of numbers, and with the first entry that is infinite or not a number.
+    Raises BadInput for anything but an array of numbers, and for the first entry that is infinite or not a number.
     """
     array = np.zeros(0)
     try:
         array = np.asarray(values, np.float64)
-    except Exception:                                    # rows of different lengths, words
-        raise BadInput(thing, "not an array of numbers", "give numbers only, in rows of equal length")
+    except Exception:                                    # rows of different lengths, text;  numba knows no `from`:
+        raise BadInput(thing, "not an array of numbers", "give numbers only, in rows of equal length")     # noqa: B904
     check_finite(thing, array)
     return array
 
 
 def float_copy(values):
-    """A copy of an array in float64: it may be changed, and whole numbers in it become numbers with a fraction."""
+    """Return a copy of an array in float64: it can be changed, and integers become floats."""
     return np.asarray(values, np.float64).copy()
 
 
 def check_positive(thing, value):
-    """Raise BadInput unless the number is finite and above zero (NaN is neither)."""
+    """Raise BadInput unless the number is finite and above zero; NaN is neither."""
     if not (value > 0.0 and np.isfinite(value)):
         raise BadInput(thing, value, "give a finite number above zero")
 
 
 def check_not_negative(thing, value):
-    """Raise BadInput unless the number is finite, and zero or above."""
+    """Raise BadInput unless the number is finite, and zero or more."""
     if not (value >= 0.0 and np.isfinite(value)):
         raise BadInput(thing, value, "give a finite number of zero or above")
 
 
 def check_finite(thing, values):
-    """Raise BadInput with the first entry of the array that is infinite or not a number."""
+    """Raise BadInput for the first entry of the array that is infinite or not a number."""
     for value in values.ravel():
         if not np.isfinite(value):
             raise BadInput(thing, value, "give finite numbers only")
 
 
 def checked_run(t, x, v, dt, steps):
-    """(t, x, v, dt, steps) in float64, as every loop over steps asks for them before its first step.
+    """Return (t, x, v, dt, steps) in float64, as every loop over steps needs them before its first step.
 
-    Raises BadInput for a step that is not positive, a number of steps that is not one, a state that is not finite, and for
-    positions and velocities of different shapes.
+    Raises BadInput for a step that is not positive, a number of steps that is not whole or is negative, a state that is
+    not finite, and for positions and velocities of different shapes.
     """
-    x, v = finite_array("position x [m]", x), finite_array("velocity v [m/s]", v)
+    x = finite_array("position x [m]", x)
+    v = finite_array("velocity v [m/s]", v)
     check_shape("the velocity v", v, x.shape)
-    return finite_number("time t [s]", t), x, v, positive_number("step dt [s]", dt), whole_number("number of steps", steps, 0)
+    t, dt = finite_number("time t [s]", t), positive_number("step dt [s]", dt)
+    return t, x, v, dt, whole_number("number of steps", steps, 0)
 
 
 def check_end(x, v, dt):
-    """Raise Diverged unless the state is still finite.  Every loop over steps calls this after its last step."""
+    """Raise Diverged unless the state is finite.  Every loop over steps calls this after its last step."""
     if not (np.all(np.isfinite(x)) and np.all(np.isfinite(v))):
         raise Diverged("the motion is no longer finite at dt [s]", dt, "take a smaller step, or an implicit method")

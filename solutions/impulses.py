@@ -1,12 +1,14 @@
-"""Lesson 7.  Impulses: collisions that take no time.
+"""Lesson 7.  Impulses: collisions of zero duration.
 
-Symbols: a, b two bodies · v [m/s], omega [rad/s], r [m] offset of the contact point from a centre of mass · n unit normal, from b to a ·
-u [m/s] velocity of a's contact point as seen from b's, u_n = n · u its part along n · J, j [N s] impulse on a; b gets −J · e [-] restitution ·
-μ [-] friction · K [1/kg] what an impulse does to u: u⁺ = u + K J, and k = n · K n · φ [m] gap, n = ∇φ · λ [N s] multiplier of the gap.
+Symbols: a, b two bodies · v [m/s], omega [rad/s] · r [m] offset of the contact point from a centre of mass ·
+n unit normal, from b to a · u [m/s] velocity of a's contact point relative to b's, u_n = n · u its normal part ·
+J, j [N s] impulse on a; b receives −J · e [-] restitution · μ [-] friction · K [1/kg] the response of u to an impulse:
+u⁺ = u + K J, and k = n · K n · φ [m] gap, n = ∇φ · λ [N s] multiplier of the gap.
 
-Velocities after an impact have a ⁺.  An impact is so short that nothing moves and no other force counts.  A body that cannot be moved has
-inv_mass = 0 and inv_inertia = 0.  In the plane r × n is the number r_x n_y − r_y n_x, and omega is a number, counter-clockwise.
-*Left out:* finding out who touches whom (lesson 6).  Contacts that last, as in a stack, are not part of the lessons yet.
+Velocities after an impact have a ⁺.  An impact is so short that positions do not change and other forces do not count.
+An immovable body has inv_mass = 0 and inv_inertia = 0.  In the plane r × n is the number r_x n_y − r_y n_x, and omega
+is a number, counter-clockwise.
+*Left out:* finding contacts (lesson 6).  Lasting contacts, as in a stack, are not part of the lessons yet.
 """
 
 from typing import NamedTuple
@@ -35,13 +37,25 @@ from .checks import (
 )
 from .friction import tangential
 from .integrators import symplectic_euler_step
-from .rotation import cross, point_velocity, solve3
-from .vectors import norm
+from .rotation import point_velocity, solve3
+from .vectors import cross, dot, norm
 
-IMPACTS = 10_000             # in one step [-]; a ball of e = 0.8 has 165 before the next is closer than the spacing of floats
-SWEEPS = 2000                # over several contact points [-]; four under a box need about a hundred, points close together more than a thousand
-STIFFEST = 1e-40             # determinant of K over its trace cubed, below which K has no inverse [-]: products of it vanish
-SETTLED = 1e-14              # largest change in a sweep over the largest |v| + |ω||r| at the beginning [-]: a hundred roundings
+__all__ = [
+    "IMPACTS", "SETTLED", "SWEEPS", "Discs", "Drop", "Flat", "Solid", "Spinner", "angular_momenta",
+    "backtracking_discs_step", "backtracking_spin_step", "backtracking_step", "bouncing_time",
+    "check_contact", "check_impacts", "check_inverse_mass", "cone_impulse", "contact_impulse",
+    "discs_all", "drift", "drop_all", "energy_change", "falling_acceleration", "flat_inverse_mass",
+    "flat_push", "flat_relative_velocity", "fly", "gap", "gap_multiplier", "impact_time",
+    "impulse_size", "inverse_mass", "kinematic_response", "largest_speed", "lie",
+    "most_dissipative_impact", "one_after_the_other", "overlap", "penalty_force", "penalty_step",
+    "point_inverse_mass", "projecting_discs_step", "projecting_spin_step", "projecting_step",
+    "push", "relative_velocity", "separated", "solve_impacts", "spin_all", "times",
+]
+
+IMPACTS = 10_000             # per step [-]; with e = 0.8, 165 impacts bring the next below the spacing of floats
+SWEEPS = 2000                # over contact points [-]; four under a box need about 100, close ones more than 1000
+STIFFEST = 1e-40             # det K over (tr K)³ below which K has no inverse [-]: products in it underflow
+SETTLED = 1e-14              # largest change in a sweep over the largest initial |v| + |ω||r| [-]: a hundred roundings
 
 
 class Flat(NamedTuple):
@@ -61,44 +75,44 @@ class Solid(NamedTuple):
 
 
 class Drop(NamedTuple):
-    """A ball that does not turn, over a plane."""
+    """A ball without rotation, above a plane."""
     e: float                 # restitution [-]
     gravity: np.ndarray      # (d,) [m/s²]
-    point: np.ndarray        # (d,) where its centre is when it lies on the plane [m]
+    point: np.ndarray        # (d,) position of its centre when it touches the plane [m]
     n: np.ndarray            # (d,) unit normal of the plane
-    stiffness: float         # of the penalty's spring over the mass, ω² [1/s²]
-    damping: float           # of its damper over the mass [1/s]
+    stiffness: float         # of the penalty spring over the mass, ω² [1/s²]
+    damping: float           # of the penalty damper over the mass [1/s]
 
 
 class Spinner(NamedTuple):
-    """A ball that turns, over a plane."""
+    """A rotating ball above a plane."""
     e: float                 # restitution [-]
     mu: float                # friction [-]
     inv_mass: float          # [1/kg]
     inv_inertia: np.ndarray  # (3, 3), the same about any axis [1/(kg m²)]
     radius: float            # [m]
     gravity: np.ndarray      # (3,) [m/s²]
-    point: np.ndarray        # (3,) where its centre is when it lies on the plane [m]
+    point: np.ndarray        # (3,) position of its centre when it touches the plane [m]
     n: np.ndarray            # (3,) unit normal of the plane
 
 
 class Discs(NamedTuple):
-    """Discs or balls without friction, and without a force between their impacts."""
+    """Discs or balls without friction and without forces between impacts."""
     radius: np.ndarray       # (bodies,) [m]
     inv_mass: np.ndarray     # (bodies,) [1/kg]
     e: float                 # restitution [-]
 
 
-# ---------------------------------------------------------------------------------------------- what may be asked
+# ---------------------------------------------------------------------------------------------- checks
 
 def check_inverse_mass(k):
-    """Given.  Raise BadInput unless k [1/kg] is above zero: of two bodies that cannot be moved neither can give way."""
+    """Given.  Raise BadInput unless k [1/kg] is above zero and finite: two immovable bodies have k = 0."""
     if not (k > 0.0 and np.isfinite(k)):
         raise BadInput("inverse mass of two bodies at their contact [1/kg]", k, "let one of them have a finite mass")
 
 
 def check_contact(u, n, K, mu):
-    """Given.  Raise BadInput unless n is a unit vector, μ ≥ 0, u finite, and K gives way along n, and in every other direction."""
+    """Given.  Raise BadInput unless n is a unit vector, μ ≥ 0, u finite, and K positive along n and not singular."""
     check_normal(n)
     check_friction(mu)
     check_finite("relative velocity u [m/s]", u)
@@ -109,19 +123,19 @@ def check_contact(u, n, K, mu):
 
 
 def times(A, b):
-    """Given.  A b of a matrix (3, 3) and a vector (3,); written out, because compiling that costs a tenth of A @ b."""
-    return np.array([A[0, 0] * b[0] + A[0, 1] * b[1] + A[0, 2] * b[2],
-                     A[1, 0] * b[0] + A[1, 1] * b[1] + A[1, 2] * b[2],
-                     A[2, 0] * b[0] + A[2, 1] * b[1] + A[2, 2] * b[2]])
+    """Given.  Return A b of a matrix (3, 3) and a vector (3,); it compiles much faster than A @ b."""
+    return np.array([dot(A[0], b), dot(A[1], b), dot(A[2], b)])
 
 
-# ---------------------------------------------------------------------------------------------- without any physics, and with a spring
+# ----------------------------------------------------------------------------------------- kinematic, and with a spring
 
 def kinematic_response(v, n, k):
-    """Velocity (d,) of a point after it has hit a fixed surface:  v⁺ = v − (1 + k)(v · n) n,  and v⁺ = v where it leaves, v · n ≥ 0.
+    """Return the velocity (d,) of a point after it hits a fixed surface; unchanged where it leaves, v · n ≥ 0.
 
-    It turns the normal velocity round and keeps the share k of it; k = 0.8 looks like a ball.  Along the surface nothing changes.
-    *Source:* deck A, "Kinematic response".
+    v⁺ = v − (1 + k)(v · n) n
+
+    The normal velocity is reversed and scaled by k; k = 0.8 looks like a ball.  The tangential velocity is unchanged.
+    *Source:* first lecture deck, “Kinematic response”.
     """
     ### BEGIN SOLUTION 7.1
     v_n = v @ n
@@ -130,12 +144,12 @@ def kinematic_response(v, n, k):
 
 
 def penalty_force(phi, v_n, stiffness, damping):
-    """Force [N] along n of a spring and a damper that push a body out of where it should not be; they never pull.
+    """Return the force [N] along n of a spring and a damper that push a body out of an obstacle; they never pull.
 
     f = max(0, −stiffness φ − damping v_n)  while φ < 0;     0 outside
 
-    φ [m] gap, v_n [m/s] its rate, stiffness [N/m], damping [N s/m].  For forces over mass hand in k/m and c/m.
-    *Source:* deck A, "Penalty method".
+    φ [m] gap, v_n [m/s] its rate, stiffness [N/m], damping [N s/m].  For a force over mass pass k/m and c/m.
+    *Source:* first lecture deck, “Penalty method”.
     """
     ### BEGIN SOLUTION 7.2
     return 0.0 if phi >= 0.0 else np.maximum(0.0, -stiffness * phi - damping * v_n)
@@ -145,16 +159,16 @@ def penalty_force(phi, v_n, stiffness, damping):
 # ---------------------------------------------------------------------------------------------- in the plane
 
 def flat_cross(r, f):
-    """Given.  r × f in the plane, a number:  r_x f_y − r_y f_x."""
+    """Given.  Return r × f in the plane, a number:  r_x f_y − r_y f_x."""
     return r[0] * f[1] - r[1] * f[0]
 
 
 def flat_relative_velocity(a, b, r_a, r_b):
-    """u (2,) [m/s]: how fast the contact point of a Flat body a moves as seen from that of b, each at its offset r (2,).
+    """Return u (2,) [m/s]: velocity of a's contact point relative to b's, for Flat bodies with offsets r_a, r_b (2,).
 
     u = (v_a + ω_a × r_a) − (v_b + ω_b × r_b),       ω × r = ω (−r_y, r_x)  in the plane
 
-    *Source:* deck A, "Relative Velocity".
+    *Source:* first lecture deck, “Relative Velocity”.
     """
     ### BEGIN SOLUTION 7.3
     turn_a = a.omega * np.array([-r_a[1], r_a[0]])
@@ -164,13 +178,14 @@ def flat_relative_velocity(a, b, r_a, r_b):
 
 
 def impulse_size(u_n, k, e):
-    """j ≥ 0 [N s]: how hard two bodies push each other apart that meet with u_n [m/s] and rebound with −e u_n.
+    """Return the impulse j ≥ 0 [N s] between two bodies that meet with u_n [m/s] and separate with −e u_n.
 
-    j = −(1 + e) u_n/k,      and 0 where they separate by themselves, u_n ≥ 0
+    j = −(1 + e) u_n/k,      and 0 where they are already separating, u_n ≥ 0
 
-    k [1/kg]: the velocity by which j = 1 drives their contact points apart; without rotation k = 1/m_a + 1/m_b.
+    k [1/kg]: the change of u_n by j = 1 N s, over that j; without rotation k = 1/m_a + 1/m_b.
     Raises what check_restitution and check_inverse_mass raise; call them first.
-    *Source:* deck A, "Computing impulse", 1st: objects cannot rotate; deck B, "Coefficient of restitution".
+    *Source:* first lecture deck, “Computing impulse”, 1st: objects cannot rotate; second lecture deck, “Coefficient of
+    restitution”.
     """
     ### BEGIN SOLUTION 7.4
     check_restitution(e)
@@ -180,9 +195,11 @@ def impulse_size(u_n, k, e):
 
 
 def flat_inverse_mass(a, b, r_a, r_b, n):
-    """k [1/kg] of two Flat bodies that can turn:  k = 1/m_a + 1/m_b + (r_a × n)²/I_a + (r_b × n)²/I_b,   r × n: flat_cross.
+    """Return k [1/kg] of two Flat bodies that can rotate.
 
-    *Source:* deck A, "Computing impulse", in the plane.
+    k = 1/m_a + 1/m_b + (r_a × n)²/I_a + (r_b × n)²/I_b          r × n: flat_cross
+
+    *Source:* first lecture deck, “Computing impulse”, in the plane.
     """
     ### BEGIN SOLUTION 7.5
     lever_a, lever_b = flat_cross(r_a, n), flat_cross(r_b, n)
@@ -191,29 +208,36 @@ def flat_inverse_mass(a, b, r_a, r_b, n):
 
 
 def flat_push(body, r, J):
-    """The Flat body after an impulse J (2,) [N s] at the offset r:  v⁺ = v + J/m,   ω⁺ = ω + (r × J)/I;   masses as they are.
+    """Return the Flat body after an impulse J (2,) [N s] at the offset r, with the same masses.
 
-    *Source:* deck A, the updates after "Computing impulse".
+    v⁺ = v + J/m,   ω⁺ = ω + (r × J)/I
+
+    *Source:* first lecture deck, the updates after “Computing impulse”.
     """
     ### BEGIN SOLUTION 7.6
-    return Flat(body.v + body.inv_mass * J, body.omega + body.inv_inertia * flat_cross(r, J), body.inv_mass, body.inv_inertia)
+    v = body.v + body.inv_mass * J
+    omega = body.omega + body.inv_inertia * flat_cross(r, J)
+    return Flat(v, omega, body.inv_mass, body.inv_inertia)
     ### END SOLUTION
 
 
 # ---------------------------------------------------------------------------------------------- in space
 
 def relative_velocity(a, b, r_a, r_b):
-    """Given.  u (3,) [m/s] of two Solid bodies:  (v_a + ω_a × r_a) − (v_b + ω_b × r_b).
+    """Given.  Return u (3,) [m/s] of two Solid bodies:  (v_a + ω_a × r_a) − (v_b + ω_b × r_b).
 
-    *Source:* deck A, "Relative Velocity".
+    *Source:* first lecture deck, “Relative Velocity”.
     """
     return point_velocity(a.v, a.omega, r_a) - point_velocity(b.v, b.omega, r_b)
 
 
 def inverse_mass(a, b, r_a, r_b, n):
-    """k [1/kg] of two Solid bodies:  k = 1/m_a + 1/m_b + n · [(I_a⁻¹ (r_a × n)) × r_a] + n · [(I_b⁻¹ (r_b × n)) × r_b].
+    """Return k [1/kg] of two Solid bodies.
 
-    *Source:* deck A, "Computing impulse".
+    k = 1/m_a + 1/m_b + n · [(I_a⁻¹ (r_a × n)) × r_a] + n · [(I_b⁻¹ (r_b × n)) × r_b]
+
+    times(A, b) multiplies a matrix and a vector.
+    *Source:* first lecture deck, “Computing impulse”.
     """
     ### BEGIN SOLUTION 7.7
     turn_a = cross(times(a.inv_inertia, cross(r_a, n)), r_a)
@@ -223,15 +247,19 @@ def inverse_mass(a, b, r_a, r_b, n):
 
 
 def push(body, r, J):
-    """Given.  The Solid body after an impulse J (3,) [N s] at the offset r:  v⁺ = v + J/m,   ω⁺ = ω + I⁻¹ (r × J)."""
-    return Solid(body.v + body.inv_mass * J, body.omega + times(body.inv_inertia, cross(r, J)), body.inv_mass, body.inv_inertia)
+    """Given.  Return the Solid body after an impulse J (3,) [N s] at r:  v⁺ = v + J/m,   ω⁺ = ω + I⁻¹ (r × J)."""
+    v = body.v + body.inv_mass * J
+    omega = body.omega + times(body.inv_inertia, cross(r, J))
+    return Solid(v, omega, body.inv_mass, body.inv_inertia)
 
 
 def angular_momenta(L_a, L_b, r_a, r_b, J):
-    """(L_a⁺, L_b⁺), each (3,) [kg m²/s], about their own centres, after J on a and −J on b:  L_a + r_a × J,   L_b − r_b × J.
+    """Return (L_a⁺, L_b⁺), each (3,) [kg m²/s], about the bodies' own centres, after J on a and −J on b.
 
-    The same impact without any inertia tensor: where L is the state, as in lesson 5, this is the update.
-    *Source:* deck A, "LA += rA × J, LB −= rB × J".
+    L_a⁺ = L_a + r_a × J,   L_b⁺ = L_b − r_b × J
+
+    No inertia tensor is needed.  Where L is the state, as in lesson 5, this is the update.
+    *Source:* first lecture deck, “LA += rA × J, LB −= rB × J”.
     """
     ### BEGIN SOLUTION 7.8
     return L_a + cross(r_a, J), L_b - cross(r_b, J)
@@ -241,13 +269,12 @@ def angular_momenta(L_a, L_b, r_a, r_b, J):
 # ---------------------------------------------------------------------------------------------- friction, and energy
 
 def point_inverse_mass(r, inv_mass, inv_inertia):
-    """K [1/kg], (3, 3): an impulse J at the offset r changes the velocity of that very point by K J.
+    """Return K [1/kg], (3, 3): an impulse J at the offset r changes the velocity of that point by K J.
 
     K = 1/m − r* I⁻¹ r*          r* = skew(r) of lesson 5
 
-    Its column k is what an impulse of 1 N s along axis k does to the velocity.  K is symmetric, and all zeros for a body that cannot be
-    moved.  Between two bodies u changes by (K_a + K_b) J.
-
+    Column k is the change of velocity by an impulse of 1 N s along axis k.  K is symmetric, and zero for an immovable
+    body.  Between two bodies u changes by (K_a + K_b) J.
     *Source:* Mirtich and Canny 1995; Baraff 1997.
     """
     ### BEGIN SOLUTION 7.9
@@ -261,17 +288,20 @@ def point_inverse_mass(r, inv_mass, inv_inertia):
 
 
 def cone_impulse(u, n, K, w, mu):
-    """J (3,) [N s] that makes two contact points with u (3,) separate at w ≥ 0 [m/s], n · u⁺ = w, within the cone |J_t| ≤ μ J_n.
+    """Return J (3,) [N s] in the cone |J_t| ≤ μ J_n after which two contact points separate at w ≥ 0 [m/s], n · u⁺ = w.
 
-    n · u ≥ w:    J = 0, they separate by themselves, and fast enough.       Otherwise, also where they separate too slowly, 0 < n · u < w:
-    stick:        J = K⁻¹ (w n − u)                         which leaves u⁺ = w n, nothing along the surface; if |J_t| ≤ μ J_n, this is J.
-    slide:        J = j d,   d = n cos β + sin β J_t/|J_t|  on the rim of the cone, tan β = μ, to the side to which sticking would push:
-                  j = (w − n · u)/(n · K d)                 J_t = tangential(J, n) is that of the stick's J
+    n · u ≥ w:    J = 0: they already separate fast enough
+    otherwise, also where they separate too slowly, 0 < n · u < w:
+    stick:        J = K⁻¹ (w n − u), after which u⁺ = w n has no tangential part; if |J_t| ≤ μ J_n, this is J.
+    slide:        J = j d,   j = (w − n · u)/(n · K d)
+                  d = n cos β + sin β J_t/|J_t|   is on the rim of the cone, tan β = μ, on the side of the stick's J,
+                                                  with J_t = tangential(J, n) of that J
 
-    n · K d > 0 for every μ, infinity included: for the stick's J it is, and d leans less towards J_t than that does.
+    n · K d > 0 for every μ, infinity included: it holds for the stick's J, and d leans less towards J_t than that J.
     solve3 of lesson 5 solves for J, given the columns of K.  Raises what check_contact raises; call it first.
-    *Source:* Coulomb's law on velocities after the impact; deck B, "Coulomb's law".  The side of the rim is a choice (see the notebook).
-    *Left out:* slip that turns while the impact lasts.
+    *Source:* Coulomb's law on velocities after the impact; second lecture deck, “Coulomb's law”.  The side of
+    the rim is a modelling choice (see the notebook).
+    *Left out:* slip that changes direction during the impact.
     """
     ### BEGIN SOLUTION 7.10
     check_contact(u, n, K, mu)
@@ -289,16 +319,19 @@ def cone_impulse(u, n, K, w, mu):
 
 
 def contact_impulse(u, n, K, e, mu):
-    """Given.  J (3,) [N s] of an impact with friction: cone_impulse with Newton's  n · u⁺ = −e n · u;  0 where they separate."""
+    """Given.  Return J (3,) [N s] of an impact with friction: cone_impulse with w = −e n · u;  0 if they separate."""
     check_restitution(e)
     return np.zeros(3) if u @ n >= 0.0 else cone_impulse(u, n, K, -e * (u @ n), mu)
 
 
 def energy_change(u, K, J):
-    """Kinetic energy [J] that an impulse J at a contact gives both bodies together:  ΔE = J · u + ½ J · K J  =  J · (u + u⁺)/2.
+    """Return the kinetic energy [J] that both bodies together gain by an impulse J at a contact; negative: lost.
 
-    Negative: lost.  Without friction it is −½ (1 − e²) u_n²/k.  A J that sticks gives ½ (e² u_n² n · K⁻¹n − u · K⁻¹u), and that may be
-    above zero: Newton's restitution looks at normal velocities only, but friction can turn tangential into normal motion.
+    ΔE = J · u + ½ J · K J  =  J · (u + u⁺)/2
+
+    Without friction it is −½ (1 − e²) u_n²/k.  With a sticking J it is ½ (e² u_n² n · K⁻¹n − u · K⁻¹u), which can be
+    positive: Newton's restitution concerns normal velocities only, but friction can convert tangential to
+    normal motion.
     *Source:* ½ m v² and ½ ω · Iω before and after; Kane and Levinson 1985 for the gain.
     """
     ### BEGIN SOLUTION 7.11
@@ -309,12 +342,13 @@ def energy_change(u, K, J):
 # ---------------------------------------------------------------------------------------------- when
 
 def gap_multiplier(phi, u_n, k, dt):
-    """λ ≥ 0 [N s] with which a contact answers in a step of dt, so that the gap is not below zero at its end; the impulse is J = λ ∇φ.
+    """Return λ ≥ 0 [N s] of a contact in a step of dt after which the gap is not below zero; the impulse is J = λ ∇φ.
 
-    φ⁺ = φ + dt (u_n + k λ),       0 ≤ φ⁺  ⊥  λ ≥ 0:    either the gap stays open and λ = 0, or it closes and λ is just what that takes
+    φ⁺ = φ + dt (u_n + k λ),       0 ≤ φ⁺  ⊥  λ ≥ 0:    either the gap stays open and λ = 0, or λ closes it exactly
 
-    φ ≥ 0 [m] gap now, u_n [m/s] its rate before λ, k [1/kg].  Raises what check_inverse_mass raises, and check_positive("step dt [s]", dt).
-    *Source:* deck B, the gap function and its complementarity; Moreau 1988.
+    φ ≥ 0 [m] the present gap, u_n [m/s] its rate before λ, k [1/kg].
+    Raises what check_inverse_mass raises, and check_positive("step dt [s]", dt).
+    *Source:* second lecture deck, the gap function and its complementarity; Moreau 1988.
     """
     ### BEGIN SOLUTION 7.12
     check_inverse_mass(k)
@@ -324,15 +358,15 @@ def gap_multiplier(phi, u_n, k, dt):
 
 
 def impact_time(phi, v_n, a_n, dt):
-    """After how long [s] a gap φ [m] closes that has the rate v_n [m/s] and the constant acceleration a_n [m/s²]; dt if not in this step.
+    """Return the time [s] until a gap φ [m] with rate v_n [m/s] and acceleration a_n [m/s²] closes, at most dt.
 
-    φ + v_n τ + ½ a_n τ² = 0  with the gap closing there; what is inside already, φ < 0, counts as φ = 0: it touches.
+    φ + v_n τ + ½ a_n τ² = 0  with the gap closing at τ; a_n is constant.  A negative gap counts as φ = 0: it touches.
     s = √(v_n² − 2 a_n φ)
-    v_n < 0:                  τ = 2φ/(s − v_n)                        the same as (−v_n − s)/a_n, but it does not divide by a small a_n
-    v_n ≥ 0 and a_n < 0:      τ = −(v_n + s)/a_n                      it comes back
-    v_n ≥ 0 and a_n ≥ 0, or no real s:   it never closes
+    v_n < 0:                  τ = 2φ/(s − v_n)           equals (−v_n − s)/a_n, without division by a small a_n
+    v_n ≥ 0 and a_n < 0:      τ = −(v_n + s)/a_n         it comes back
+    v_n ≥ 0 and a_n ≥ 0, or no real s:   it never closes: dt
 
-    *Source:* deck A, "time of impact"; deck B, "go back to time of impact"; the quadratic formula.
+    *Source:* first lecture deck, “time of impact”; second lecture deck, “go back to time of impact”; quadratic formula.
     """
     ### BEGIN SOLUTION 7.13
     phi = np.maximum(0.0, phi)
@@ -346,12 +380,12 @@ def impact_time(phi, v_n, a_n, dt):
 
 
 def bouncing_time(v_n, a_n, e):
-    """For how long [s] a ball goes on bouncing that has just left its plane with v_n [m/s], under a constant a_n [m/s²]: Zeno's sum.
+    """Return the time [s] for which a ball keeps bouncing that leaves its plane with v_n [m/s], at constant a_n [m/s²].
 
     T = 2v_n/|a_n| · (1 + e + e² + …) = 2v_n/(|a_n| (1 − e));      0 where v_n ≤ 0;      ∞ where a_n ≥ 0 or e = 1
 
-    Where both are the case it is 0: what does not leave does not bounce.
-    Infinitely many impacts, and over in a finite time.
+    Where both conditions hold it is 0: a ball that does not leave does not bounce.
+    These are infinitely many impacts in a finite time (Zeno).
     *Source:* flights of 2v/|a|, each e times as long as the one before; the geometric series.
     """
     ### BEGIN SOLUTION 7.14
@@ -363,32 +397,32 @@ def bouncing_time(v_n, a_n, e):
     ### END SOLUTION
 
 
-# ---------------------------------------------------------------------------------------------- a ball over a plane, in time
+# ---------------------------------------------------------------------------------------- a ball above a plane, in time
 
 def falling_acceleration(t, x, v, p):
-    """Given.  a = g  [m/s²]."""
+    """Given.  Return a = g  [m/s²]."""
     return p.gravity
 
 
 def gap(x, p):
-    """Given.  φ [m] of a ball over its plane:  (x − point) · n."""
+    """Given.  Return the gap φ [m] between a ball and its plane:  (x − point) · n."""
     return (x - p.point) @ p.n
 
 
 def penalty_step(acceleration, t, x, v, dt, p):
-    """Given.  Advance a Drop by symplectic Euler with the penalty's spring and damper for the plane; first order, stable for ω dt < 2."""
+    """Given.  Advance a Drop by symplectic Euler with a penalty spring and damper; first order, stable for ω dt < 2."""
     push = penalty_force(gap(x, p), v @ p.n, p.stiffness, p.damping)
     v = v + dt * (acceleration(t, x, v, p) + push * p.n)
     return x + dt * v, v
 
 
 def projecting_step(acceleration, t, x, v, dt, p):
-    """Advance a Drop by one step, and put right at its end what went wrong on the way; first order.
+    """Advance a Drop by one step, and correct velocity and position at its end if it is below the plane; first order.
 
-    v ← v + dt a(t, x, v),    x ← x + dt v                       as usual, the velocity first
+    v ← v + dt a(t, x, v),    x ← x + dt v                       as usual, velocity first
     φ = gap(x, p) < 0:        v ← kinematic_response(v, n, e),   x ← x − φ n
 
-    *Source:* deck B, time stepping, "Option 2".
+    *Source:* second lecture deck, time stepping, “Option 2”.
     """
     ### BEGIN SOLUTION 7.15
     v = v + dt * acceleration(t, x, v, p)
@@ -402,26 +436,26 @@ def projecting_step(acceleration, t, x, v, dt, p):
 
 
 def fly(x, v, a, t):
-    """Given.  (x, v) after t [s] under a constant acceleration a:  x + t v + ½ t² a,  v + t a."""
+    """Given.  Return (x, v) after t [s] under a constant acceleration a:  x + t v + ½ t² a,  v + t a."""
     return x + t * v + 0.5 * t * t * a, v + t * a
 
 
 def lie(x, v, a, t, n):
-    """Given.  (x, v) after t [s] of a ball that lies on its plane: it slides along without friction; a support pushes, and never pulls."""
+    """Given.  Return (x, v) after t [s] of a ball that slides on its plane without friction, or is lifted off."""
     return fly(x, tangential(v, n), a - np.minimum(0.0, a @ n) * n, t)
 
 
 def backtracking_step(acceleration, t, x, v, dt, p):
     """Advance a Drop by one step, impact by impact; exact while the acceleration is constant.
 
-    a = acceleration(t, x, v, p), for the whole step.  While there is something left of dt, at most IMPACTS times:
+    a = acceleration(t, x, v, p), for the whole step.  While some time `left` of dt remains, at most IMPACTS times:
     τ = impact_time(φ, v · n, a · n, left),     φ = gap(x, p);     (x, v) = fly(x, v, a, τ);     left ← left − τ
-    where nothing is left: done.                Otherwise it is on the plane:
-    v ← kinematic_response(v, n, e),            x ← x − gap(x, p) n                                   (which is round-off)
-    if bouncing_time(v · n, a · n, e) ≤ left:   all its bounces end within this step: return lie(x, v, a, left, n)
+    if nothing is left: done.                   Otherwise the ball is on the plane:
+    v ← kinematic_response(v, n, e),            x ← x − gap(x, p) n                        which removes round-off
+    if bouncing_time(v · n, a · n, e) ≤ left:   all bounces end within this step: return lie(x, v, a, left, n)
 
     Raises Diverged after IMPACTS impacts.
-    *Source:* deck B, time stepping, "Option 1".
+    *Source:* second lecture deck, time stepping, “Option 1”.
     """
     ### BEGIN SOLUTION 7.16
     a, left = acceleration(t, x, v, p), dt
@@ -440,7 +474,7 @@ def backtracking_step(acceleration, t, x, v, dt, p):
 
 
 def check_over_plane(p, d):
-    """Given.  Raise BadInput for an e outside 0 … 1, and unless gravity, the point and the unit normal of a plane have d coordinates."""
+    """Given.  Raise BadInput for an e outside 0 … 1, and unless gravity, point and unit normal have d coordinates."""
     check_restitution(finite_number("restitution e [-]", p.e))
     check_field("gravity [m/s²]", p.gravity, (d,))
     check_field("point of the plane [m]", p.point, (d,))
@@ -449,16 +483,16 @@ def check_over_plane(p, d):
 
 
 def drop_all(step, acceleration, t, x, v, dt, steps, p):
-    """Given.  The states (x, v), each (copies, d), of copies of a Drop that know nothing of each other, after so many steps of one method.
+    """Given.  Return (x, v), each (copies, d), of independent copies of a Drop after `steps` steps of one method.
 
-    Raises BadInput for a step that is not positive, an e outside 0 … 1, a normal that is not one, a state that is not finite; Diverged when
-    the end is not finite.
+    Raises BadInput for a step that is not positive, an e outside 0 … 1, a normal that is not a unit vector, a
+    state that is not finite; Diverged when the final state is not finite.
     """
     t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
     check_array("position x [m]", x, 2)
     check_over_plane(p, x.shape[1])
-    for thing, value in (("stiffness over mass [1/s²]", p.stiffness), ("damping over mass [1/s]", p.damping)):
-        check_not_negative(thing, number(thing, value))
+    check_not_negative("stiffness over mass [1/s²]", number("stiffness over mass [1/s²]", p.stiffness))
+    check_not_negative("damping over mass [1/s]", number("damping over mass [1/s]", p.damping))
     x, v = x.copy(), v.copy()
     for k in range(x.shape[0]):
         x_k, v_k = x[k], v[k]
@@ -469,12 +503,13 @@ def drop_all(step, acceleration, t, x, v, dt, steps, p):
     return x, v
 
 
-# ---------------------------------------------------------------------------------------------- a ball that turns
+# ---------------------------------------------------------------------------------------------- a rotating ball
 
 def spinning_impact(v, omega, p):
-    """Given.  (v, ω) of a Spinner after it has hit its plane: at the offset −radius n, with contact_impulse."""
+    """Given.  Return (v, ω) of a Spinner after contact_impulse of its plane at the offset −radius n."""
     r = -p.radius * p.n
-    J = contact_impulse(point_velocity(v, omega, r), p.n, point_inverse_mass(r, p.inv_mass, p.inv_inertia), p.e, p.mu)
+    K = point_inverse_mass(r, p.inv_mass, p.inv_inertia)
+    J = contact_impulse(point_velocity(v, omega, r), p.n, K, p.e, p.mu)
     return v + p.inv_mass * J, omega + times(p.inv_inertia, cross(r, J))
 
 
@@ -488,19 +523,19 @@ def projecting_spin_step(acceleration, t, x, v, omega, dt, p):
 
 
 def put_on_plane(x, p):
-    """Given.  The place (d,) on the plane of p that is nearest to x:  x − φ n."""
+    """Given.  Return the point (d,) of the plane of p that is nearest to x:  x − φ n."""
     return x - gap(x, p) * p.n
 
 
 def fly_to_plane(x, v, a, left, p):
-    """Given.  (x, v, what is then left of `left` [s]): on, under a constant acceleration, to the plane of p or to the end, whichever is first."""
+    """Given.  Fly at constant acceleration to the plane of p, at most for `left` [s]; return (x, v, time then left)."""
     tau = impact_time(gap(x, p), v @ p.n, a @ p.n, left)
     x, v = fly(x, v, a, tau)
     return x, v, left - tau
 
 
 def backtracking_spin_step(acceleration, t, x, v, omega, dt, p):
-    """Given.  Advance a Spinner impact by impact; exact while the acceleration is constant.  Raises Diverged after IMPACTS impacts."""
+    """Given.  Advance a Spinner impact by impact; exact at constant acceleration.  Raises Diverged as for a Drop."""
     a = acceleration(t, x, v, p)
     x, v, left = fly_to_plane(x, v, a, dt, p)
     for _ in range(IMPACTS):
@@ -512,7 +547,10 @@ def backtracking_spin_step(acceleration, t, x, v, omega, dt, p):
 
 
 def spin_all(step, acceleration, t, x, v, omega, dt, steps, p):
-    """Given.  (x, v, ω), each (copies, 3), of copies of a Spinner after so many steps of one method; errors as in drop_all, or for μ < 0."""
+    """Given.  Return (x, v, ω), each (copies, 3), of copies of a Spinner after `steps` steps of one method.
+
+    Raises the errors of drop_all, and BadInput for μ < 0.
+    """
     t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
     check_field("position x [m]", x, (len(x), 3))
     omega = finite_array("angular velocity ω [rad/s]", omega)
@@ -532,24 +570,29 @@ def spin_all(step, acceleration, t, x, v, omega, dt, steps, p):
     return x, v, omega
 
 
-# ---------------------------------------------------------------------------------------------- discs that meet
+# ---------------------------------------------------------------------------------------------- discs that collide
 
 def meeting_time(x, v, i, j, reach, dt):
-    """Given.  When [s] two round things i and j meet, reach [m] the sum of their radii; dt if not before.
+    """Given.  Return the time [s] until two round bodies i and j meet, at most dt; reach [m] is the sum of their radii.
 
-    |Δx + τ Δv| = reach, with the distance falling; what overlaps and comes closer meets now.
+    |Δx + τ Δv| = reach, with decreasing distance.  Bodies that overlap and approach meet now.
+    The loop over coordinates is for speed: this runs for every pair.
     """
     closing, apart, speed = 0.0, -reach * reach, 0.0
     for k in range(x.shape[1]):
         dx, dv = x[i, k] - x[j, k], v[i, k] - v[j, k]
-        closing, apart, speed = closing - dx * dv, apart + dx * dx, speed + dv * dv
+        closing -= dx * dv
+        apart += dx * dx
+        speed += dv * dv
     apart = np.maximum(0.0, apart)
     squared = closing * closing - speed * apart
-    return min(dt, apart / (closing + np.sqrt(squared))) if closing > 0.0 and squared >= 0.0 else dt
+    if closing > 0.0 and squared >= 0.0:
+        return min(dt, apart / (closing + np.sqrt(squared)))
+    return dt
 
 
 def overlap(x, i, j, reach):
-    """Given.  Whether two round things are closer than the sum of their radii, reach [m]."""
+    """Given.  Return whether two round bodies are closer than the sum of their radii, reach [m]."""
     squared = 0.0
     for k in range(x.shape[1]):
         squared += (x[i, k] - x[j, k]) ** 2
@@ -557,7 +600,7 @@ def overlap(x, i, j, reach):
 
 
 def normal_between(x, i, j):
-    """Given.  (distance [m], unit normal (d,) from disc j to disc i).  Two on one point have none: then any will do, the first axis."""
+    """Given.  Return (distance [m], unit normal (d,) from disc j to i); the first axis where the centres coincide."""
     n = x[i] - x[j]
     distance = np.sqrt(n @ n)
     if distance == 0.0:
@@ -567,16 +610,17 @@ def normal_between(x, i, j):
 
 
 def disc_impact(x, v, i, j, p):
-    """Given.  (v_i, v_j), each (d,), after disc i has met disc j without friction: the impulse j n of impulse_size."""
+    """Given.  Return (v_i, v_j), each (d,), after discs i and j meet without friction: the impulse of impulse_size."""
     _, n = normal_between(x, i, j)
     size = impulse_size((v[i] - v[j]) @ n, p.inv_mass[i] + p.inv_mass[j], p.e)
     return v[i] + p.inv_mass[i] * size * n, v[j] - p.inv_mass[j] * size * n
 
 
 def separated(x, i, j, p):
-    """Given.  (x_i, x_j), each (d,), with two discs that overlap moved apart along their normal until they touch, the lighter the farther.
+    """Given.  Return (x_i, x_j), each (d,): two discs moved apart along their normal until they no longer overlap.
 
-    Only positions change: whoever starts inside another is separated, and not thrown out.
+    The lighter one moves farther.  Only positions change: discs that start inside each other are separated without
+    gaining speed.
     """
     distance, n = normal_between(x, i, j)
     share = np.maximum(0.0, p.radius[i] + p.radius[j] - distance) / (p.inv_mass[i] + p.inv_mass[j])
@@ -584,7 +628,7 @@ def separated(x, i, j, p):
 
 
 def drift(x, v, dt):
-    """Given.  x + dt v, body by body: compiled loops over short rows cost less than arrays of two dimensions."""
+    """Given.  Return x + dt v, body by body: compiled loops over short rows cost less than two-dimensional arrays."""
     x = float_copy(x)
     for k in range(x.shape[0]):
         x[k] += dt * v[k]
@@ -592,7 +636,7 @@ def drift(x, v, dt):
 
 
 def projecting_discs_step(x, v, dt, p):
-    """Given.  Advance discs by one step, then treat all that overlap, pair by pair; first order."""
+    """Given.  Advance discs by one step, then treat all overlapping pairs one by one; first order."""
     x, v = drift(x, v, dt), float_copy(v)
     for i in range(x.shape[0]):
         for j in range(i):
@@ -605,7 +649,7 @@ def projecting_discs_step(x, v, dt, p):
 def backtracking_discs_step(x, v, dt, p):
     """Given.  Advance discs impact by impact, the earliest first; exact.  Raises Diverged after IMPACTS impacts.
 
-    Of impacts at the same moment the first pair in the list goes first: a choice.
+    Of simultaneous impacts, the first pair in the list goes first: a choice.
     """
     left, v = dt, float_copy(v)
     for _ in range(IMPACTS):
@@ -624,7 +668,7 @@ def backtracking_discs_step(x, v, dt, p):
 
 
 def discs_all(step, x, v, dt, steps, p):
-    """Given.  (x, v), each (copies, bodies, d), of copies of some discs after so many steps of one method; errors as in drop_all."""
+    """Given.  Return (x, v), each (copies, bodies, d), of copies of discs after `steps` steps; raises as drop_all."""
     _, x, v, dt, steps = checked_run(0.0, x, v, dt, steps)
     check_array("position x [m]", x, 3)
     check_restitution(finite_number("restitution e [-]", p.e))
@@ -644,7 +688,7 @@ def discs_all(step, x, v, dt, steps, p):
 # ---------------------------------------------------------------------------------------------- several impacts at once
 
 def check_impacts(body, r, n, e, mu):
-    """Given.  Raise BadInput unless a Solid, its offsets r (points, 3), as many unit normals n, e and μ are what an impact can be made of."""
+    """Given.  Raise BadInput unless a Solid, offsets r and unit normals n (points, 3), e and μ define an impact."""
     check_restitution(finite_number("restitution e [-]", e))
     check_friction(number("friction μ [-]", mu))
     check_positive("inverse mass [1/kg]", number("inverse mass [1/kg]", body.inv_mass))
@@ -658,22 +702,25 @@ def check_impacts(body, r, n, e, mu):
 
 
 def one_after_the_other(body, r, n, e, mu):
-    """Given.  (Solid, residual [m/s]) after an impact at several points, as in solve_impacts, but each point once, in turn.
+    """Given.  Return (Solid, residual [m/s]) after an impact at several points, each treated once, in order.
 
-    Each finds the body as the one before has left it, so that the result depends on their order: two ends of an edge leave at
-    different speeds.
+    Each impulse starts from the body as the previous one left it, so the result depends on the order: the two
+    ends of an edge leave at different speeds.
     """
     check_impacts(body, r, n, e, mu)
-    w, Js, after = rebound_speeds(body, r, n, e), np.zeros(r.shape), body
+    w = rebound_speeds(body, r, n, e)
+    Js = np.zeros(r.shape)
+    after = body
     for i in range(len(r)):
         u = point_velocity(after.v, after.omega, r[i])
-        Js[i] = contact_impulse(u, n[i], point_inverse_mass(r[i], body.inv_mass, body.inv_inertia), e, mu)
+        K = point_inverse_mass(r[i], body.inv_mass, body.inv_inertia)
+        Js[i] = contact_impulse(u, n[i], K, e, mu)
         after = push(after, r[i], Js[i])
     return after, impact_residual(after, r, n, Js, w, mu)
 
 
 def rebound_speeds(body, r, n, e):
-    """Given.  wᵢ = max(0, −e nᵢ · uᵢ) [m/s] (points,): Newton's restitution of the velocities before the impact."""
+    """Given.  Return wᵢ = max(0, −e nᵢ · uᵢ) [m/s] (points,): Newton's restitution, from velocities before impact."""
     w = np.zeros(len(r))
     for i in range(len(r)):
         w[i] = np.maximum(0.0, -e * (n[i] @ point_velocity(body.v, body.omega, r[i])))
@@ -681,7 +728,10 @@ def rebound_speeds(body, r, n, e):
 
 
 def largest_speed(body, r):
-    """Given.  Largest |v| + |ω||rᵢ| [m/s]: the velocity of a point is a sum of these two, and is rounded like them, however small it is."""
+    """Given.  Return the largest |v| + |ω||rᵢ| [m/s].
+
+    The velocity of a point is a sum of these two, so its round-off is relative to them, however small the sum is.
+    """
     reach = 0.0
     for i in range(len(r)):
         reach = max(reach, norm(r[i]))
@@ -689,57 +739,70 @@ def largest_speed(body, r):
 
 
 def impact_residual(after, r, n, Js, w, mu):
-    """Given.  How far [m/s] impulses Js (points, 3) are from the law of cone_impulse: the largest velocity by which it would still change
-    one of the points, each asked alone; 0 where the law holds at all of them.
+    """Given.  Return the residual [m/s] of impulses Js (points, 3) in the law of cone_impulse; 0 where the law holds.
+
+    It is the largest component of a velocity by which the law, applied to one point alone, would still change
+    that point.
     """
     worst = 0.0
     for i in range(len(r)):
         K = point_inverse_mass(r[i], after.inv_mass, after.inv_inertia)
         u = point_velocity(after.v, after.omega, r[i]) - times(K, Js[i])
-        worst = np.maximum(worst, np.abs(times(K, cone_impulse(u, n[i], K, w[i], mu) - Js[i])).max())
+        J = cone_impulse(u, n[i], K, w[i], mu)
+        worst = np.maximum(worst, np.abs(times(K, J - Js[i])).max())
     return worst
 
 
 def into_cone(J, n, mu):
-    """Given.  The impulse (3,) of Coulomb's cone |J_t| ≤ μ J_n that is nearest to J (3,)."""
-    J_n, J_t, beta = J @ n, tangential(J, n), np.arctan(mu)
+    """Given.  Return the impulse (3,) in Coulomb's cone |J_t| ≤ μ J_n that is nearest to J (3,)."""
+    J_n, J_t = J @ n, tangential(J, n)
+    beta = np.arctan(mu)
     size = np.sqrt(J_t @ J_t)
     if J_n >= 0.0 and size * np.cos(beta) <= J_n * np.sin(beta):
         return J
+    if size == 0.0:
+        return np.maximum(0.0, J_n) * n
     along_rim = np.maximum(0.0, J_n * np.cos(beta) + size * np.sin(beta))
-    return along_rim * (np.cos(beta) * n + np.sin(beta) / size * J_t) if size > 0.0 else np.maximum(0.0, J_n) * n
+    return along_rim * (np.cos(beta) * n + np.sin(beta) / size * J_t)
 
 
 def most_dissipative_impact(body, r, n, e, mu):
-    """Given.  (Solid, residual [m/s]) after an impact at several points at once, for which the law of solve_impacts has no answer or
-    its sweeps do not find it.
+    """Given.  Return (Solid, residual [m/s]) after simultaneous impacts for which solve_impacts finds no answer.
 
-    Of all impulses inside the cones take those that leave the least kinetic energy: a convex problem, which always has an answer.  Each
-    point in turn goes down the gradient of the energy, its own velocity uᵢ, and back into its cone:  Jᵢ ← into_cone(Jᵢ − uᵢ/tr Kᵢ).
-    Scale all of them to the least energy, s = 1, and rebound with s = 1 + e (Poisson's restitution), or with less, so that no point goes
-    into the other body.  It never gains energy: over s that is a parabola, and s = 1 + e loses 1 − e² of what s = 1 loses.
+    With much friction its law can be without an answer, or its sweeps may not find one.  Of all impulses inside the
+    cones, take those that leave the least kinetic energy: a convex problem, which always has an answer.  Each point in
+    turn follows the gradient of the energy, its own velocity uᵢ, and returns to its cone:
+    Jᵢ ← into_cone(Jᵢ − uᵢ/tr Kᵢ).  Scale all impulses by s.
+    s = 1 leaves the least energy, and s = 1 + e is Poisson's restitution;
+    s is smaller where a point would otherwise move into the other body.  This never gains energy: the energy is
+    a parabola in s, and s = 1 + e loses 1 − e² of what s = 1 loses.
     *Source:* Moreau 1973, maximum dissipation; Anitescu 2006, the convex problem; Poisson 1817, the two phases.
     """
     before = np.zeros((len(r), 3))
     for i in range(len(r)):
         before[i] = point_velocity(body.v, body.omega, r[i])
-    w, Js, after, speed = rebound_speeds(body, r, n, e), np.zeros((len(r), 3)), body, largest_speed(body, r)
+    w = rebound_speeds(body, r, n, e)
+    Js = np.zeros((len(r), 3))
+    after, speed = body, largest_speed(body, r)
     for _ in range(SWEEPS):
         change = 0.0
         for i in range(len(r)):
             K = point_inverse_mass(r[i], body.inv_mass, body.inv_inertia)
             u = point_velocity(after.v, after.omega, r[i])
             J = into_cone(Js[i] - u / (K[0, 0] + K[1, 1] + K[2, 2]), n[i], mu) - Js[i]
-            change, after = np.maximum(change, np.abs(times(K, J)).max()), push(after, r[i], J)
+            change = np.maximum(change, np.abs(times(K, J)).max())
+            after = push(after, r[i], J)
             Js[i] += J
         if change <= SETTLED * speed:
             break
     gain, curvature, share = 0.0, 0.0, 1.0 + e
     for i in range(len(r)):
         u = point_velocity(after.v, after.omega, r[i])
-        gain, curvature = gain + Js[i] @ before[i], curvature + Js[i] @ (u - before[i])
-        leaves, would_leave = n[i] @ before[i], np.maximum(0.0, n[i] @ u)
-        if leaves > would_leave:                         # the impact slows this point: it may come to rest along n, not turn round
+        gain += Js[i] @ before[i]
+        curvature += Js[i] @ (u - before[i])
+        leaves = n[i] @ before[i]
+        would_leave = np.maximum(0.0, n[i] @ u)
+        if leaves > would_leave:                         # the impact slows this point: it may stop along n, not reverse
             share = np.minimum(share, leaves / (leaves - would_leave))
     share *= -gain / curvature if gain < 0.0 else 0.0
     after = body
@@ -750,24 +813,28 @@ def most_dissipative_impact(body, r, n, e, mu):
 
 
 def solve_impacts(body, r, n, e, mu):
-    """(Solid, residual [m/s]) after an impact at several points at once, offsets r (points, 3), normals n (points, 3), with what cannot
-    be moved.
+    """Return (Solid, residual [m/s]) after simultaneous impacts at several points with immovable bodies.
 
-    wᵢ = rebound_speeds(body, r, n, e), from the velocities before the impact, and  Jᵢ = 0.  Then sweep over all points:
-        uᵢ = v + ω × rᵢ;  take back the point's own impulse:   u = uᵢ − Kᵢ Jᵢ,    Kᵢ = point_inverse_mass(rᵢ, 1/m, I⁻¹)
-        ask what it should be now:           J = cone_impulse(u, nᵢ, Kᵢ, wᵢ, μ);    push the body by J − Jᵢ at rᵢ;    Jᵢ ← J
-    The residual of a sweep is the largest component of a velocity Kᵢ (J − Jᵢ) by which an impulse changed its own point.  It has settled
-    when that is at most SETTLED times largest_speed(body, r).  Where SWEEPS sweeps are not enough, return most_dissipative_impact(body, r, n, e, μ), given above, of the body
-    before the impact: with much friction the law can be without an answer, and its residual says so.
+    r (points, 3) are the offsets and n (points, 3) the normals.  wᵢ = rebound_speeds(body, r, n, e), from the
+    velocities before the impact, and  Jᵢ = 0.  Then sweep over all points:
+        velocity without the point's own impulse:   u = v + ω × rᵢ − Kᵢ Jᵢ,    Kᵢ = point_inverse_mass(rᵢ, 1/m, I⁻¹)
+        new impulse of the point:                   J = cone_impulse(u, nᵢ, Kᵢ, wᵢ, μ)
+        push the body by J − Jᵢ at rᵢ;    Jᵢ ← J
+    The residual of a sweep is the largest component of all changes of velocity Kᵢ (J − Jᵢ) of a point by its
+    own impulse.  The sweeps end when the residual is at most SETTLED times largest_speed(body, r).  If SWEEPS
+    sweeps are not enough, return most_dissipative_impact(body, r, n, e, μ), given above, of the body before the
+    impact: with much friction the law can be without an answer, and then the residual shows that.
 
-    Together: the order of the points does not matter in the end, and what met the floor flat leaves it flat.
+    The order of the points does not matter at convergence: a box that lands flat leaves the floor flat.
     Raises what check_impacts raises; call it first.
-    *Source:* Gauss–Seidel sweeps, as in Guendelman et al. 2003; deck B, "Multi-contact problems".
+    *Source:* Gauss–Seidel sweeps, as in Guendelman et al. 2003; second lecture deck, “Multi-contact problems”.
     *Left out:* how an impact travels from point to point; contacts between many bodies.
     """
     ### BEGIN SOLUTION 7.17
     check_impacts(body, r, n, e, mu)
-    w, Js, after, speed = rebound_speeds(body, r, n, e), np.zeros((len(r), 3)), body, largest_speed(body, r)
+    w = rebound_speeds(body, r, n, e)
+    Js = np.zeros((len(r), 3))
+    after, speed = body, largest_speed(body, r)
     for _ in range(SWEEPS):
         residual = 0.0
         for i in range(len(r)):

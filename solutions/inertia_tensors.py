@@ -1,19 +1,19 @@
 """Lesson 4.  Resistance to rotation: centre of mass, momenta, and the inertia tensor.
 
     P = M v        mass resists a change of velocity: one number, the same in all directions
-    L = I ω        the tensor resists a change of rotation: a symmetric matrix, another in each direction
+    L = I ω        the tensor resists a change of rotation: a symmetric matrix, different in each direction
 
-Symbols: m [kg] · x [m] position · v [m/s] · X [m] centre of mass · r [m] offset from it · P [kg m/s] linear and L [kg m²/s]
-angular momentum · omega [rad/s] · I (3, 3) [kg m²] inertia tensor, I_body in the body's own axes · R (3, 3) rotation from
-body to world: its columns are the body's axes.  Vectors are (3,), float.
+Symbols: m [kg] · x [m] position · v [m/s] · X [m] centre of mass · r [m] offset from it · P [kg m/s] linear and
+L [kg m²/s] angular momentum · omega [rad/s] · I (3, 3) [kg m²] inertia tensor, I_body in body axes ·
+R (3, 3) rotation from body to world: its columns are the body's axes.  Vectors are (3,), float.
 
-    I = ⎡ Ixx  Ixy  Ixz ⎤      Ixx =  ∫ (y² + z²) dm    resistance about x: what counts is the distance from the axis
-        ⎢ Ixy  Iyy  Iyz ⎥      Ixy = −∫ x y dm          how turning about x also drags the body about y
+    I = ⎡ Ixx  Ixy  Ixz ⎤      Ixx =  ∫ (y² + z²) dm    resistance about x: the distance from the axis counts
+        ⎢ Ixy  Iyy  Iyz ⎥      Ixy = −∫ x y dm          coupling: rotation about x gives L a component along y
         ⎣ Ixz  Iyz  Izz ⎦
 
-The minus sign is part of the entry.  A deck that writes Ixy = Σ m x y calls that number the product of inertia, and puts −Ixy
-into the matrix: without it L = I ω would be wrong.
-*Left out:* bodies that bend; how the body turns under this tensor, which is lesson 5.
+The minus sign is part of the entry.  Some texts write Ixy = Σ m x y, call that number the product of inertia,
+and put −Ixy into the matrix.  Without the minus sign, L = I ω would be wrong.
+*Left out:* bodies that deform; the rotation of a body with this tensor, which is lesson 5.
 """
 
 from typing import NamedTuple
@@ -23,11 +23,18 @@ import numpy as np
 from .checks import BadInput, check_finite, check_positive
 from .vectors import cross, dot, inverse
 
-TENSOR_ROUND_OFF = 1e-14      # a moment is known this well, relative to the largest [-]: a few dozen roundings of 1.1e-16
+__all__ = [
+    "TENSOR_ROUND_OFF", "Body", "angular_momentum", "box_inertia", "capsule_inertia",
+    "centre_of_mass", "check_closed", "check_inertia", "combine", "cylinder_inertia",
+    "linear_momentum", "mesh_body", "mesh_integrals", "parallel_axes", "point_mass_inertia",
+    "principal_axes", "sphere_inertia", "world_inertia", "world_inverse_inertia",
+]
+
+TENSOR_ROUND_OFF = 1e-14      # accuracy of a moment relative to the largest [-]: a few dozen roundings of 1.1e-16
 
 
 class Body(NamedTuple):
-    """What rigid motion needs to know of a body."""
+    """The properties of a body that determine its rigid motion."""
     m: float                  # mass [kg]
     x: np.ndarray             # (3,) centre of mass [m]
     I: np.ndarray             # (3, 3) inertia tensor about the centre of mass [kg m²]
@@ -36,14 +43,14 @@ class Body(NamedTuple):
 # ---------------------------------------------------------------------------------------------- momenta of points
 
 def centre_of_mass(m, x):
-    """Total mass M [kg] and centre of mass X (3,) [m] of n points: (M, X).
+    """Return (M, X): total mass M [kg] and centre of mass X (3,) [m] of n points.
 
     M = Σ mᵢ,   X = Σ mᵢ xᵢ / M            m (n,), x (n, 3)
 
-    The centre moves as if it were one point of mass M with all forces on it: M Ẍ = F = Σ fᵢ.
-    A single mass may be zero, or negative: then it is a hole.
+    The centre moves like a single point of mass M under the sum of all forces: M Ẍ = F = Σ fᵢ.
+    A single mass may be zero, or negative for a hole.
     Raises BadInput unless M is finite and above zero: check_positive("total mass [kg]", M).
-    *Source:* deck A, "Center of Mass".
+    *Source:* first lecture deck, “Center of Mass”.
     """
     ### BEGIN SOLUTION 4.1
     M = np.sum(m)
@@ -53,11 +60,11 @@ def centre_of_mass(m, x):
 
 
 def linear_momentum(m, v):
-    """P [kg m/s] (3,) of n points: m (n,), v (n, 3).
+    """Return P [kg m/s] (3,) of n points: m (n,), v (n, 3).
 
-    P = Σ mᵢ vᵢ = M Ẋ,   dP/dt = F         constant when nothing pushes from outside
+    P = Σ mᵢ vᵢ = M Ẋ,   dP/dt = F         constant without external forces
 
-    *Source:* deck A, "Linear Momentum".
+    *Source:* first lecture deck, “Linear Momentum”.
     """
     ### BEGIN SOLUTION 4.2
     return m @ v
@@ -65,12 +72,12 @@ def linear_momentum(m, v):
 
 
 def angular_momentum(m, x, v, about):
-    """L [kg m²/s] (3,) of n points about the point `about` (3,): m (n,), x and v (n, 3).
+    """Return L [kg m²/s] (3,) of n points about the point `about` (3,): m (n,), x and v (n, 3).
 
     L = Σ (xᵢ − about) × mᵢ vᵢ,   dL/dt = τ = Σ (xᵢ − about) × fᵢ
 
-    When the points turn as one body with ω about their centre of mass, L about the centre is I ω.
-    *Source:* deck A, "Angular Momentum".
+    If the points rotate as one body with ω about their centre of mass, L about the centre is I ω.
+    *Source:* first lecture deck, “Angular Momentum”.
     """
     ### BEGIN SOLUTION 4.3
     L = np.zeros(3)
@@ -83,11 +90,11 @@ def angular_momentum(m, x, v, about):
 # ---------------------------------------------------------------------------------------------- tensors
 
 def point_mass_inertia(m, r):
-    """I [kg m²] (3, 3) of n points at offsets r (n, 3) [m] from the point that I is about; m (n,).
+    """Return I [kg m²] (3, 3) of n points with masses m (n,) at offsets r (n, 3) [m] from the reference point of I.
 
-    Ixx = Σ m (y² + z²),   Ixy = Iyx = −Σ m x y,   and so on round;   in one line  I = Σ m (|r|² 1 − r rᵀ)
+    Ixx = Σ m (y² + z²),   Ixy = Iyx = −Σ m x y,   and so on cyclically;   in one line  I = Σ m (|r|² 1 − r rᵀ)
 
-    *Source:* deck A, "Inertia Tensor"; the signs of Ixy as at the top of this file.
+    *Source:* first lecture deck, “Inertia Tensor”; the signs of Ixy as at the top of this file.
     """
     ### BEGIN SOLUTION 4.4
     xx, yy, zz = np.sum(m * r[:, 0] * r[:, 0]), np.sum(m * r[:, 1] * r[:, 1]), np.sum(m * r[:, 2] * r[:, 2])
@@ -97,12 +104,12 @@ def point_mass_inertia(m, r):
 
 
 def box_inertia(m, size):
-    """I_body [kg m²] (3, 3) of a uniform box about its centre; size (3,) [m] whole edges along x, y, z.
+    """Return I_body [kg m²] (3, 3) of a uniform box about its centre; size (3,) [m] is its full edges along x, y, z.
 
     Ixx = ∫∫∫ ρ (y² + z²) dx dy dz = m (b² + c²)/12,   a, b, c = size
 
     m < 0 is allowed, here and below: a hole is a body of negative mass.
-    *Source:* deck A, "Inertia Tensor", the volume integral.
+    *Source:* first lecture deck, “Inertia Tensor”, the volume integral.
     """
     ### BEGIN SOLUTION 4.5
     aa, bb, cc = size[0] * size[0], size[1] * size[1], size[2] * size[2]
@@ -111,10 +118,10 @@ def box_inertia(m, size):
 
 
 def sphere_inertia(m, radius):
-    """I_body [kg m²] (3, 3) of a uniform ball about its centre: ⅖ m radius² about every axis.
+    """Return I_body [kg m²] (3, 3) of a uniform ball about its centre: ⅖ m radius² about every axis.
 
-    Its three moments are equal and add up to  ∫ 2 r² dm = 2 m/(4/3 π R³) ∫ r² 4π r² dr = 6/5 m R².
-    *Source:* deck A, "Inertia Tensor", the volume integral.
+    Its three moments are equal, and their sum is  ∫ 2 r² dm = 2 m/(4/3 π R³) ∫ r² 4π r² dr = 6/5 m R².
+    *Source:* first lecture deck, “Inertia Tensor”, the volume integral.
     """
     ### BEGIN SOLUTION 4.6
     return 0.4 * m * radius * radius * np.eye(3)
@@ -122,11 +129,11 @@ def sphere_inertia(m, radius):
 
 
 def cylinder_inertia(m, radius, length):
-    """I_body [kg m²] (3, 3) of a uniform cylinder about its centre; its axis is z.
+    """Return I_body [kg m²] (3, 3) of a uniform cylinder about its centre; its axis is z.
 
     Izz = ½ m radius²,   Ixx = Iyy = m (3 radius² + length²)/12
 
-    length → 0 is a disc, radius → 0 a rod.
+    The limit length → 0 is a disc, radius → 0 a rod.
     *Source:* any text of mechanics; e.g. Landau and Lifshitz, Mechanics, § 32.
     """
     ### BEGIN SOLUTION 4.7
@@ -136,16 +143,18 @@ def cylinder_inertia(m, radius, length):
 
 
 def capsule_inertia(m, radius, length):
-    """I_body [kg m²] (3, 3) of a uniform capsule about its centre: a cylinder along z of that length, and half a ball on each end.
+    """Return I_body [kg m²] (3, 3) of a uniform capsule about its centre: a cylinder along z with two half balls.
 
-    The mass is shared out by volume, m_c to the cylinder and m_s to the two half balls together:
+    `length` is that of the cylinder.  The mass is divided in proportion to volume, m_c for the cylinder and m_s
+    for the two half balls together:
         m_c = m length/(length + 4/3 radius),   m_s = m − m_c
-    Half a ball has its centre ⅜ radius above its flat face; with h = length and both parts moved to the capsule's centre
+    The centre of a half ball is ⅜ radius above its flat face.  With h = length and both parts moved to the
+    capsule's centre
         Ixx = Iyy = m_c (3 radius² + h²)/12 + m_s (⅖ radius² + ¼ h² + ⅜ h radius)
         Izz = ½ m_c radius² + ⅖ m_s radius²
 
     length = 0 is a ball, radius = 0 a rod; with both zero there is no body.
-    *Source:* the parallel-axis theorem, below; Eberly, "Game physics", 2003.
+    *Source:* the parallel-axis theorem, below; Eberly, “Game physics”, 2003.
     """
     ### BEGIN SOLUTION 4.8
     rr, hh = radius * radius, length * length
@@ -159,12 +168,12 @@ def capsule_inertia(m, radius, length):
 # ---------------------------------------------------------------------------------------------- from body to world
 
 def world_inertia(I_body, R):
-    """I [kg m²] (3, 3) in world axes of a body that is turned by R.
+    """Return I [kg m²] (3, 3) in world axes of a body with orientation R.
 
-    I = R I_body Rᵀ        read from the right: ω into the body's axes, times its own tensor, and L back into the world
+    I = R I_body Rᵀ        from right to left: convert ω to body axes, multiply by I_body, convert L back to world axes
 
-    I_body never changes; I changes whenever the body turns.
-    *Source:* deck A, I(t) = R(t) I_body R(t)ᵀ.
+    I_body is constant; I changes whenever the body rotates.
+    *Source:* first lecture deck, I(t) = R(t) I_body R(t)ᵀ.
     """
     ### BEGIN SOLUTION 4.9
     return R @ I_body @ R.T
@@ -172,12 +181,12 @@ def world_inertia(I_body, R):
 
 
 def world_inverse_inertia(I_body, R):
-    """I⁻¹ [1/(kg m²)] (3, 3) in world axes: what turns a torque into a change of ω.
+    """Return I⁻¹ [1/(kg m²)] (3, 3) in world axes: it converts a torque to a change of ω.
 
-    I⁻¹ = R I_body⁻¹ Rᵀ        because R⁻¹ = Rᵀ: inverted once, in the body's axes, and only turned afterwards
+    I⁻¹ = R I_body⁻¹ Rᵀ        because R⁻¹ = Rᵀ: invert in body axes, then rotate
 
     inverse, given in vectors.py, inverts a symmetric matrix.
-    *Source:* deck A.
+    *Source:* first lecture deck.
     """
     ### BEGIN SOLUTION 4.10
     return world_inertia(inverse(I_body), R)
@@ -187,11 +196,12 @@ def world_inverse_inertia(I_body, R):
 # ---------------------------------------------------------------------------------------------- composite bodies
 
 def parallel_axes(I, m, d):
-    """The tensor [kg m²] (3, 3) about a point at the offset d (3,) [m] from the centre of mass, from I about the centre itself.
+    """Return the tensor [kg m²] (3, 3) about a point at the offset d (3,) [m] from the centre, from I about the centre.
 
-    I + m (|d|² 1 − d dᵀ)        the body, and all its mass as a point at the distance d
+    I + m (|d|² 1 − d dᵀ)        the body, plus its mass as a single point at the distance d
 
-    The centre is where a body turns most easily.  With −m the same formula leads back from there to the centre.
+    The moments are smallest about the centre of mass.  The same formula with −m leads back from the point to
+    the centre.
     *Source:* Huygens 1673; Steiner 1840.
     """
     ### BEGIN SOLUTION 4.11
@@ -200,11 +210,11 @@ def parallel_axes(I, m, d):
 
 
 def combine(m, x, I):
-    """The Body of n bodies that are fastened to each other: m (n,), their centres x (n, 3), tensors I (n, 3, 3) about these.
+    """Return the Body of n rigidly connected bodies: m (n,), their centres x (n, 3), tensors I (n, 3, 3) about these.
 
-    M, X = centre_of_mass,   I = Σ of all Iᵢ, each carried to X by parallel_axes
+    M, X = centre_of_mass,   I = Σ of all Iᵢ, each moved to X by parallel_axes
 
-    A body of negative mass is a hole.  All axes are parallel: turn an Iᵢ by world_inertia first where a part is turned.
+    A body of negative mass is a hole.  All tensors are in the same axes: use world_inertia first for a rotated part.
     Raises BadInput like centre_of_mass.
     """
     ### BEGIN SOLUTION 4.12
@@ -217,11 +227,12 @@ def combine(m, x, I):
 
 
 def principal_axes(I):
-    """Principal moments (3,) [kg m²], ascending, and axes R (3, 3), columns of a right-handed frame: (moments, R).
+    """Return (moments, R): principal moments (3,) [kg m²], ascending, and axes R (3, 3), right-handed columns.
 
-    I = R diag(moments) Rᵀ        about such an axis, and about no other, L is parallel to ω
+    I = R diag(moments) Rᵀ        L is parallel to ω about these axes, and about no others
 
-    np.linalg.eigh(I) gives moments and columns, but the columns may be left-handed, det R = −1: then turn the last one round.
+    np.linalg.eigh(I) returns moments and columns, but these can be left-handed, det R = −1: then reverse the
+    last column.
     *Source:* Euler 1765; Landau and Lifshitz, Mechanics, § 32.
     """
     ### BEGIN SOLUTION 4.13
@@ -233,49 +244,55 @@ def principal_axes(I):
 
 
 def check_inertia(I):
-    """Raise BadInput unless I (3, 3) can be the tensor of a body with thickness; with I₁ ≤ I₂ ≤ I₃ its principal moments:
+    """Raise BadInput unless I (3, 3) can be the tensor of a body with thickness.
 
-    "an entry of the inertia tensor [kg m²]"           infinite or NaN                  (check_finite says it)
+    I₁ ≤ I₂ ≤ I₃ are its principal moments and ε = TENSOR_ROUND_OFF.  The name of the thing in BadInput is one of
+    "an entry of the inertia tensor [kg m²]"           infinite or NaN                  (from check_finite)
     "the asymmetry of an inertia tensor [kg m²]"       max|I − Iᵀ| > ε max|I|
-    "the smallest principal moment [kg m²]"            I₁ ≤ ε I₃: nothing would resist; a line of points has I₁ = 0
-    "the largest principal moment [kg m²]"             I₃ > (I₁ + I₂)(1 + ε): impossible, since I₁ + I₂ − I₃ = 2 ∫ z² dm ≥ 0
+    "the smallest principal moment [kg m²]"            I₁ ≤ ε I₃: no resistance; a line of points has I₁ = 0
+    "the largest principal moment [kg m²]"             I₃ > (I₁ + I₂)(1 + ε): impossible, I₁ + I₂ − I₃ = 2 ∫ z² dm ≥ 0
 
-    These words are the thing that BadInput names, its value is the entry, asymmetry or moment; ε = TENSOR_ROUND_OFF.
-    A plate without thickness has I₃ = I₁ + I₂, and passes.
+    Its value is the entry, the asymmetry or the moment.
+    A plate without thickness has I₃ = I₁ + I₂ and is accepted.
     """
     ### BEGIN SOLUTION 4.14
     check_finite("an entry of the inertia tensor [kg m²]", I)
     asymmetry = np.max(np.abs(I - I.T))
     if asymmetry > TENSOR_ROUND_OFF * np.max(np.abs(I)):
-        raise BadInput("the asymmetry of an inertia tensor [kg m²]", asymmetry, "give equal entries on both sides of the diagonal")
+        raise BadInput("the asymmetry of an inertia tensor [kg m²]", asymmetry,
+                       "give equal entries on both sides of the diagonal")
     moments, _ = principal_axes(I)
     if moments[0] <= TENSOR_ROUND_OFF * moments[2]:
-        raise BadInput("the smallest principal moment [kg m²]", moments[0], "give a body of positive mass, and some thickness")
+        raise BadInput("the smallest principal moment [kg m²]", moments[0],
+                       "give a body of positive mass, and some thickness")
     if moments[2] > (moments[0] + moments[1]) * (1.0 + TENSOR_ROUND_OFF):
-        raise BadInput("the largest principal moment [kg m²]", moments[2], "no body has more than the sum of its other two")
+        raise BadInput("the largest principal moment [kg m²]", moments[2],
+                       "no body has more than the sum of its other two")
     ### END SOLUTION
 
 
 # ---------------------------------------------------------------------------------------------- triangle meshes
 
 def mesh_integrals(x, faces):
-    """Integrals over the inside of a closed mesh: (volume ∫dV, first ∫x dV (3,), second ∫x xᵀ dV (3, 3)), about the origin.
+    """Return integrals over a closed mesh, about the origin: (volume ∫dV, first ∫x dV (3,), second ∫x xᵀ dV (3, 3)).
 
     x (n, 3) [m] corners; faces (k, 3) numbers of corners, counter-clockwise as seen from outside.
 
-    Each triangle a, b, c makes a tetrahedron with the origin, of volume w/6,  w = a · (b × c).  Where the origin sees the
-    triangle's back, w is negative, and what juts out is taken away again.  With s = a + b + c
+    Each triangle a, b, c and the origin form a tetrahedron of volume w/6,  w = a · (b × c).  If the origin is
+    on the outer side of the triangle, w is negative, and the tetrahedron is subtracted.  With s = a + b + c
 
         volume = Σ w/6,   first = Σ w/24 s,   second = Σ w/120 (a aᵀ + b bᵀ + c cᵀ + s sᵀ)
 
-    are exact: the integrands are polynomials.
-    *Source:* Mirtich 1996 and Eberly 2002, "Polyhedral mass properties", do the same with the divergence theorem.
+    The sums are exact, because the integrands are polynomials.
+    The worked answer writes out the products in loops: arrays of three numbers for each triangle would take longer.
+    *Source:* Mirtich 1996 and Eberly 2002, “Polyhedral mass properties”, do the same with the divergence theorem.
     """
     ### BEGIN SOLUTION 4.15
     volume, first, second = 0.0, np.zeros(3), np.zeros((3, 3))
     for f in range(faces.shape[0]):
         a, b, c = x[faces[f, 0]], x[faces[f, 1]], x[faces[f, 2]]
-        w = a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
+        bc_x, bc_y, bc_z = b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2], b[0] * c[1] - b[1] * c[0]
+        w = a[0] * bc_x + a[1] * bc_y + a[2] * bc_z
         volume += w / 6.0
         for i in range(3):
             s = a[i] + b[i] + c[i]
@@ -293,11 +310,12 @@ def check_closed(count, faces):
     """Raise BadInput unless the triangles close a surface and agree on its outside; count is the number of corners.
 
     "a triangle's corner"                      a number that is not one of 0 … count − 1
-    "a corner on an open edge: number"         the beginning of an edge without a partner
+    "a corner on an open edge: number"         the first corner of an edge without a partner
 
-    A triangle (i, j, k) has the edges i → j, j → k, k → i.  In a closed mesh whose triangles are all counter-clockwise as seen
-    from outside, every edge i → j is met by an edge j → i of a neighbour: as often there as back.
-    (An edge i → j is the whole number i · count + j; sorted, the edges there and the edges back must be the same list.)
+    A triangle (i, j, k) has the edges i → j, j → k, k → i.  In a closed mesh whose triangles are all
+    counter-clockwise as seen from outside, every edge i → j has a partner j → i in a neighbour: both occur
+    equally often. (Represent an edge i → j by the integer i · count + j.  Sorted, the edges and the reversed
+    edges are the same list.)
     """
     ### BEGIN SOLUTION 4.16
     there, back = np.zeros(faces.size, dtype=np.int64), np.zeros(faces.size, dtype=np.int64)
@@ -305,8 +323,10 @@ def check_closed(count, faces):
         for k in range(3):
             i, j = faces[f, k], faces[f, (k + 1) % 3]
             if i < 0 or i >= count:
-                raise BadInput("a triangle's corner", i, "give numbers from 0 up to, but not including, the number of corners")
-            there[3 * f + k], back[3 * f + k] = i * count + j, j * count + i
+                raise BadInput("a triangle's corner", i,
+                               "give numbers from 0 up to, but not including, the number of corners")
+            there[3 * f + k] = i * count + j
+            back[3 * f + k] = j * count + i
     there.sort()
     back.sort()
     for k in range(there.size):
@@ -317,17 +337,18 @@ def check_closed(count, faces):
 
 
 def mesh_body(density, x, faces):
-    """The Body of uniform density [kg/m³] that a closed mesh encloses: corners x (n, 3) [m], faces (k, 3).
+    """Return the Body of uniform density [kg/m³] inside a closed mesh: corners x (n, 3) [m], faces (k, 3).
 
-    With (V, S, Q) the mesh_integrals of x − o, taken about a point o of the body itself, the first corner:
+    Let (V, S, Q) be the mesh_integrals of x − o, about a point o of the body itself, the first corner:
         m = ρ V,   centre = o + c,  c = S/V,   C = Q − V c cᵀ,   I = ρ (tr C 1 − C)
 
-    About the origin of the world each tetrahedron would reach from there to its triangle: at the distance D products of D⁵ would have
-    to cancel, and half of the digits of a body of one metre would be gone at D = 30 m.
+    About the origin of the world, each tetrahedron would extend from there to its triangle.  At the distance D terms of
+    size D⁵ would cancel, and a body of one metre would lose half of its digits at D = 30 m.
 
-    Raises BadInput unless the density is positive (check_positive), the corners are finite and the mesh is closed (check_closed);
-    and with "the volume inside the mesh [m³]" unless V > ε e³, e = max|x − o| over all coordinates, ε = TENSOR_ROUND_OFF: then its
-    triangles are clockwise, or it is flat and its volume nothing but round-off.
+    Raises BadInput unless the density is positive (check_positive), the corners are finite and the mesh is closed
+    (check_closed).  Raises it with "the volume inside the mesh [m³]" unless V > ε e³, e = max|x − o| over all
+    coordinates,
+    ε = TENSOR_ROUND_OFF: then its triangles are clockwise, or it is flat and its volume only round-off.
     *Source:* as for mesh_integrals.
     """
     ### BEGIN SOLUTION 4.17
@@ -341,5 +362,6 @@ def mesh_body(density, x, faces):
                        "give one that is not flat, its triangles counter-clockwise as seen from outside")
     centre = first / volume
     covariance = second - volume * np.outer(centre, centre)
-    return Body(density * volume, x[0] + centre, density * (np.trace(covariance) * np.eye(3) - covariance))
+    tensor = density * (np.trace(covariance) * np.eye(3) - covariance)
+    return Body(density * volume, x[0] + centre, tensor)
     ### END SOLUTION

@@ -1,7 +1,8 @@
 """Lesson 2.  Forces, and the mass-spring-damper system.
 
-Symbols: x (n, d) [m] positions of n points in d dimensions · v (n, d) [m/s] · F [N] · m [kg], inv_mass [1/kg] (0 holds a point
-fixed) · k [N/m] stiffness · k_d [N s/m] damper · k_v [N s/m] viscosity · l [m] length of a spring, rest its natural one.
+Symbols: x (n, d) [m] positions of n points in d dimensions · v (n, d) [m/s] · F [N] · m [kg], inv_mass [1/kg]
+(0: a fixed point) · k [N/m] stiffness · k_d [N s/m] damper · k_v [N s/m] viscosity · l [m] length of a spring, rest
+its natural length.
 
 A spring joins points i and j.  Its tension pulls i towards j and j towards i: two forces, equal and opposite.
 *Left out:* collisions of the points with each other; bending and torsion of a rod with thickness.
@@ -24,7 +25,16 @@ from .checks import (
 )
 from .integrators import average_velocity_step
 
-GRAVITY = 9.81                # g [m/s²], near the ground; deck A rounds it to 9.8
+__all__ = [
+    "BEND", "CG_TOLERANCE", "GRAVITY", "SHEAR", "STRUCTURAL", "G", "Mesh", "StepMatrix",
+    "air_force", "angular_spring_forces", "apply_step_matrix", "conjugate_gradients", "grid_pairs",
+    "implicit_mesh_step", "inverse_masses", "make_mesh", "mass_spring_damper_step",
+    "measured_links", "mesh_acceleration", "randomised", "soft_constraint_force",
+    "soft_contact_force", "spring_forces", "spring_stiffness", "spring_tension",
+    "universal_gravity",
+]
+
+GRAVITY = 9.81                # g [m/s²], near the ground; the first lecture deck rounds it to 9.8
 G = 6.67430e-11               # gravitational constant [m³/(kg s²)], CODATA 2018
 
 STRUCTURAL = ((0, 1), (1, 0))     # (rows, columns) from a node of a grid to its partner: along the threads
@@ -35,7 +45,7 @@ CG_TOLERANCE = 1e-10          # residual over right-hand side [-]: far below the
 
 
 class Mesh(NamedTuple):
-    """Everything about a mass-spring-damper system that does not move."""
+    """The constant properties of a mass-spring-damper system."""
     inv_mass: np.ndarray      # (n,) 1/m [1/kg]; 0 is a fixed point
     gravity: np.ndarray       # (d,) [m/s²]
     wind: np.ndarray          # (d,) force of the wind on each point [N]
@@ -50,13 +60,13 @@ class Mesh(NamedTuple):
 # ---------------------------------------------------------------------------------------------- single forces
 
 def universal_gravity(x_a, x_b, m_a, m_b, G):
-    """Force [N] (d,) on body a: Newton's attraction towards body b.
+    """Return the force [N] (d,) on body a: Newton's attraction towards body b.
 
     F = G m_a m_b / r²  along the line from a to b,   r = |x_b − x_a|
 
-    Near the ground, with b the Earth, it is m_a g.
-    Raises BadInput for two bodies in one place: check_positive("distance of two bodies [m]", r).
-    *Source:* deck A, "Friction (2)" and "Gravity"; Newton 1687.
+    Near the ground, with the Earth as b, it is m_a g.
+    Raises BadInput for two bodies at the same place: check_positive("distance of two bodies [m]", r).
+    *Source:* first lecture deck, “Friction (2)” and “Gravity”; Newton 1687.
     """
     ### BEGIN SOLUTION 2.1
     r = x_b - x_a
@@ -67,12 +77,13 @@ def universal_gravity(x_a, x_b, m_a, m_b, G):
 
 
 def air_force(v, wind, k_v):
-    """Force [N] of the air on points that move with v [m/s]: the wind pushes, viscosity holds back.
+    """Return the force [N] of the air on points with velocity v [m/s]: wind plus viscous drag.
 
     F = F_wind − k_v v
 
-    wind [N] is the force on a point at rest.  v and wind are arrays that broadcast, (n, d) and (d,), or one coordinate of each.
-    *Source:* deck A, "Viscosity", and "initialize force with wind".
+    wind [N] is the force on a point at rest.  v and wind are arrays that broadcast, (n, d) and (d,), or one
+    coordinate of each.
+    *Source:* first lecture deck, “Viscosity”, and “initialize force with wind”.
     """
     ### BEGIN SOLUTION 2.2
     return wind - k_v * v
@@ -80,11 +91,11 @@ def air_force(v, wind, k_v):
 
 
 def spring_tension(length, rate, rest, k, k_d):
-    """Tension [N] of a spring with a damper beside it; negative where it pushes.
+    """Return the tension [N] of a spring with a parallel damper; a negative tension pushes.
 
-    T = k (l − rest) + k_d l̇          l̇ [m/s]: how fast it lengthens
+    T = k (l − rest) + k_d l̇          l̇ [m/s], here `rate`: the rate of lengthening
 
-    *Source:* deck A, "Damping", whose sign is that of the force on the moving end.
+    *Source:* first lecture deck, “Damping”; its sign is that of the force on the moving end.
     """
     ### BEGIN SOLUTION 2.3
     return k * (length - rest) + k_d * rate
@@ -92,12 +103,12 @@ def spring_tension(length, rate, rest, k, k_d):
 
 
 def soft_constraint_force(C, C_rate, gradient, k, k_d):
-    """Force [N] (d,) that holds a point softly to the constraint C(x) = 0: fixing to a surface, a path, a point.
+    """Return the force [N] (d,) that pulls a point softly onto the constraint C(x) = 0: a surface, a path or a point.
 
     F = −(k C + k_d Ċ) ∇C
 
     C [m] and Ċ = ∇C · v [m/s] are floats, gradient ∇C (d,) [-].
-    *Source:* deck A, "Soft constraints", "Fix to surface"; Witkin and Baraff 1997.
+    *Source:* first lecture deck, “Soft constraints”, “Fix to surface”; Witkin and Baraff 1997.
     """
     ### BEGIN SOLUTION 2.4
     return -(k * C + k_d * C_rate) * gradient
@@ -105,11 +116,11 @@ def soft_constraint_force(C, C_rate, gradient, k, k_d):
 
 
 def soft_contact_force(C, C_rate, gradient, k, k_d):
-    """Force [N] (d,) that keeps a point softly on the side C(x) ≥ 0 of a surface: the same spring, but it never pulls.
+    """Return the force [N] (d,) that keeps a point softly on the side C(x) ≥ 0: the same spring, but it never pulls.
 
     F = max(0, −(k C + k_d Ċ)) ∇C   where C < 0;   0 elsewhere
 
-    *Source:* deck A, "Non-penetration".
+    *Source:* first lecture deck, “Non-penetration”.
     """
     ### BEGIN SOLUTION 2.5
     if C >= 0.0:
@@ -119,20 +130,22 @@ def soft_contact_force(C, C_rate, gradient, k, k_d):
 
 
 def angular_spring_forces(x_a, x_b, x_c, rest, k):
-    """Forces [N] (2,) on a, b and c, in the plane, of an angular spring at b that wants the angle `rest` from arm a to arm c.
+    """Return the forces [N] (2,) on a, b and c of a plane angular spring at b, with the rest angle `rest` [rad].
 
-    θ = angle from r_a = x_a − x_b to r_c = x_c − x_b, counter-clockwise, with θ − rest taken into (−π, π]
-    F_c = −k (θ − rest) r_c⊥ / |r_c|²         r⊥ = (−r_y, r_x) turns r counter-clockwise
+    θ is the angle from r_a = x_a − x_b to r_c = x_c − x_b, counter-clockwise.  Take θ − rest into (−π, π].
+    F_c = −k (θ − rest) r_c⊥ / |r_c|²         r⊥ = (−r_y, r_x) is r turned 90° counter-clockwise
     F_a = +k (θ − rest) r_a⊥ / |r_a|²
-    F_b = −F_a − F_c                          nothing is pushed from outside
+    F_b = −F_a − F_c                          no net force from outside
 
-    k [N m/rad].  Derivative of the energy ½k(θ − rest)².
-    Raises BadInput("the arm of an angular spring [m]", 0.0, "keep its ends away from its hinge") when an arm has no length.
-    *Source:* deck A, "Angular springs".
+    k [N m/rad].  The forces derive from the energy ½k(θ − rest)².
+    Raises BadInput("the arm of an angular spring [m]", 0.0, "keep its ends away from its hinge") for an arm of
+    zero length.
+    *Source:* first lecture deck, “Angular springs”.
     """
     ### BEGIN SOLUTION 2.6
     r_a, r_c = x_a - x_b, x_c - x_b
-    squared_a, squared_c = r_a[0] * r_a[0] + r_a[1] * r_a[1], r_c[0] * r_c[0] + r_c[1] * r_c[1]
+    squared_a = r_a[0] * r_a[0] + r_a[1] * r_a[1]
+    squared_c = r_c[0] * r_c[0] + r_c[1] * r_c[1]
     if squared_a == 0.0 or squared_c == 0.0:
         raise BadInput("the arm of an angular spring [m]", 0.0, "keep its ends away from its hinge")
     theta = np.arctan2(r_a[0] * r_c[1] - r_a[1] * r_c[0], r_a[0] * r_c[0] + r_a[1] * r_c[1])
@@ -148,22 +161,24 @@ def angular_spring_forces(x_a, x_b, x_c, rest, k):
 # ---------------------------------------------------------------------------------------------- the system
 
 def spring_forces(x, v, mesh):
-    """Forces (n, d) [N] of all springs on all points.
+    """Return the forces (n, d) [N] of all springs on all points.
 
     For each spring:  r = x_j − x_i,   l = |r|,   l̇ = r · (v_j − v_i) / l,   T = spring_tension(l, l̇, …)
                       F_i += T r/l,    F_j −= T r/l
 
-    On fixed points too: mesh_acceleration holds them.  (For speed the worked answer sums over the d coordinates in a loop, since
-    small arrays cost more than the arithmetic in them; array expressions are as right.  But beware: F[i] += f with arrays of
-    point numbers counts a point that occurs twice only once.)
-    Raises BadInput("the length of a spring [m]", 0.0, "keep its ends apart") when its ends coincide: then it has no direction.
-    *Source:* deck A, "spring.point1.force += force; spring.point2.force -= force".
+    Include the forces on fixed points; mesh_acceleration holds those points.
+    The worked answer sums over the d coordinates in a loop, because a small array costs more than the arithmetic in
+    it.  Array expressions are equally correct, with one trap: if i holds a point twice, F[i] += f adds only once.
+    Raises BadInput("the length of a spring [m]", 0.0, "keep its ends apart") when the ends coincide, because the
+    spring then has no direction.
+    *Source:* first lecture deck, “spring.point1.force += force; spring.point2.force -= force”.
     """
     ### BEGIN SOLUTION 2.7
     force = np.zeros(x.shape)
     for s in range(mesh.i.size):
         i, j = mesh.i[s], mesh.j[s]
-        x_i, x_j, v_i, v_j, force_i, force_j = x[i], x[j], v[i], v[j], force[i], force[j]      # views of the rows
+        x_i, x_j, v_i, v_j = x[i], x[j], v[i], v[j]
+        force_i, force_j = force[i], force[j]                            # views: a change is a change of force
 
         squared, product = 0.0, 0.0
         for c in range(x_i.size):
@@ -183,11 +198,12 @@ def spring_forces(x, v, mesh):
 
 
 def mesh_acceleration(t, x, v, mesh):
-    """Acceleration (n, d) [m/s²] of every point of a mesh; fixed points have none, so one that is at rest stays there.
+    """Return the acceleration (n, d) [m/s²] of every point of a mesh; a fixed point has none.
 
     a = g + F/m,   F = springs + air          a = 0 where inv_mass = 0
 
-    *Source:* deck A, "Mass-Spring-Damper System".
+    The worked answer loops over points and coordinates, because temporary arrays would make a step a fifth slower.
+    *Source:* first lecture deck, “Mass-Spring-Damper System”.
     """
     ### BEGIN SOLUTION 2.8
     force = spring_forces(x, v, mesh)
@@ -202,11 +218,11 @@ def mesh_acceleration(t, x, v, mesh):
 
 
 def mass_spring_damper_step(t, x, v, dt, mesh):
-    """Advance the whole system by one step, as the lecture does: (x, v) at t + dt.
+    """Advance the whole system by one step, as in the lecture; return (x, v) at t + dt.
 
-    wind on every point · spring-damper forces on the two ends · a = g + F/m · v_new = v + dt a · x += dt (v + v_new)/2
+    wind on every point · spring and damper forces on both ends · a = g + F/m · v_new = v + dt a · x += dt (v + v_new)/2
 
-    *Source:* deck A, "Mass-Spring-Damper System".
+    *Source:* first lecture deck, “Mass-Spring-Damper System”.
     """
     ### BEGIN SOLUTION 2.9
     return average_velocity_step(mesh_acceleration, t, x, v, dt, mesh)
@@ -216,12 +232,12 @@ def mass_spring_damper_step(t, x, v, dt, mesh):
 # ---------------------------------------------------------------------------------------------- building a mesh
 
 def grid_pairs(rows, cols, offsets):
-    """Pairs (s, 2) of node numbers that springs join in a grid; node (r, c) has number r · cols + c.
+    """Return the pairs (s, 2) of nodes that springs join in a grid; node (r, c) has the number r · cols + c.
 
-    For every offset (dr, dc), for every node from the first to the last: (node, node at r + dr, c + dc) where there is one.
-    STRUCTURAL, SHEAR and BEND are such offsets; add the tuples to have several connectivities.
+    For every offset (dr, dc), and for every node from the first to the last: the pair (node, node at r + dr, c + dc),
+    if that node exists.  STRUCTURAL, SHEAR and BEND are such offsets; add the tuples to combine them.
     Returns integers; an empty list of pairs has shape (0, 2).
-    *Source:* deck A, "Multiple connectivity"; Provot 1995 for the three names.
+    *Source:* first lecture deck, “Multiple connectivity”; Provot 1995 for the three names.
     """
     ### BEGIN SOLUTION 2.10
     pairs = [node for dr, dc in offsets for r in range(rows) for c in range(cols)
@@ -232,26 +248,29 @@ def grid_pairs(rows, cols, offsets):
 
 
 def make_mesh(x, m, fixed, pairs, k, k_d, gravity, wind, k_v):
-    """Given.  A Mesh whose springs rest at the lengths they have at x.
+    """Given.  Make a Mesh whose springs have their lengths at x as natural lengths.
 
     x (n, d); m [kg], k and k_d are numbers or one each; fixed lists point numbers; pairs (s, 2); gravity and wind (d,).
-    Raises BadInput for a mass that is not positive, a state that is not finite, a point number that is none, a spring of no length,
-    a negative stiffness, damper or viscosity, gravity or wind of another dimension than x.
+    Raises BadInput for a mass that is not positive, a state that is not finite, a point number out of range, a spring
+    of zero length, a negative stiffness, damper or viscosity, gravity or wind of another dimension than x.
     """
     x = finite_array("a position of the mesh [m]", x)
     inv_mass = inverse_masses("a mass of the mesh [kg]", m, fixed, x)
     i, j, rest = measured_links("spring", x, pairs)
     for s in np.flatnonzero(rest == 0.0):
         raise BadInput(f"the length of spring {s} from point {i[s]} to {j[s]} [m]", 0.0, "move its ends apart")
-    gravity, wind = finite_array("gravity [m/s²]", gravity), finite_array("wind [N]", wind)
+    gravity = finite_array("gravity [m/s²]", gravity)
+    wind = finite_array("wind [N]", wind)
     check_shape("gravity", gravity, x.shape[1:])
     check_shape("wind", wind, x.shape[1:])
-    stiffness, damper = one_each("stiffness k [N/m]", k, len(i)), one_each("damper k_d [N s/m]", k_d, len(i))
-    return Mesh(inv_mass, gravity, wind, one_each("viscosity k_v [N s/m]", k_v, 1)[0], i, j, rest, stiffness, damper)
+    stiffness = one_each("stiffness k [N/m]", k, len(i))
+    damper = one_each("damper k_d [N s/m]", k_d, len(i))
+    viscosity = one_each("viscosity k_v [N s/m]", k_v, 1)[0]
+    return Mesh(inv_mass, gravity, wind, viscosity, i, j, rest, stiffness, damper)
 
 
 def inverse_masses(thing, m, fixed, x):
-    """Given.  (n,) 1/m of points x (n, d), 0 for those in `fixed`; m is a number or one each.  Raises BadInput."""
+    """Given.  Return 1/m (n,) of points x (n, d), 0 if in `fixed`; m is a number or one each.  Raises BadInput."""
     if x.ndim != 2 or x.size == 0:
         raise WrongShape("the points x", x.shape, "(n, d), a row for each point")
     masses = one_each(thing, m, len(x))
@@ -263,7 +282,10 @@ def inverse_masses(thing, m, fixed, x):
 
 
 def measured_links(kind, x, pairs):
-    """Given.  (i, j, length), each (s,), of links between the points x (n, d) from pairs (s, 2) of their numbers.  Raises BadInput."""
+    """Given.  Return (i, j, length), each (s,), of the links between points x (n, d) with numbers pairs (s, 2).
+
+    Raises BadInput for a number out of range and WrongShape for pairs of another shape.
+    """
     pairs = check_indices(f"a point number of a {kind}", pairs, len(x))
     if pairs.size == 0:
         pairs = pairs.reshape(0, 2)
@@ -274,14 +296,14 @@ def measured_links(kind, x, pairs):
 
 
 def randomised(value, spread, u):
-    """Given.  value · (1 + spread (2u − 1)): between ±spread of the value for u in [0, 1), a number or an array of draws."""
+    """Given.  Return value · (1 + spread (2u − 1)): the value ± spread, for a draw or an array of draws u in [0, 1)."""
     return value * (1.0 + spread * (2.0 * u - 1.0))
 
 
 # ---------------------------------------------------------------------------------------------- stiff meshes
 
 class StepMatrix(NamedTuple):
-    """The sparse matrix A = M + dt k_v − dt ∂F/∂v − dt² ∂F/∂x of a mesh: a diagonal, and one block a spring."""
+    """The sparse matrix A = M + dt k_v − dt ∂F/∂v − dt² ∂F/∂x of a mesh: a diagonal, and one block per spring."""
     diagonal: np.ndarray      # (n,) m + dt k_v [kg]; 0 for a fixed point
     i: np.ndarray             # (s,)
     j: np.ndarray             # (s,)
@@ -289,13 +311,14 @@ class StepMatrix(NamedTuple):
 
 
 def spring_stiffness(x, mesh):
-    """Blocks K [N/m] and D [N s/m], each (s, d, d): how the force on i answers when i moves, and when it gets faster.
+    """Return the blocks K [N/m] and D [N s/m], each (s, d, d): minus the derivatives of the force on i by x_i and v_i.
 
     K = −∂F_i/∂x_i = k n nᵀ + k max(0, 1 − rest/l) (1 − n nᵀ)          n = r/l,  r = x_j − x_i
     D = −∂F_i/∂v_i = k_d n nᵀ
 
-    j answers alike, and each answers the other's motion with the opposite sign.  Left out, so that the matrix stays
-    positive: the sideways push of a compressed spring (the max), and the damper's share of ∂F/∂x.
+    The blocks of j are the same, and those of one end by the motion of the other have the opposite sign.
+    *Left out,* so that the matrix stays positive: the sideways push of a compressed spring (hence the max), and the
+    share of the damper in ∂F/∂x.  The worked answer fills the blocks entry by entry, which compiles fastest.
     *Source:* Baraff and Witkin 1998; Choi and Ko 2002 for the max.
     """
     ### BEGIN SOLUTION 2.11
@@ -303,12 +326,13 @@ def spring_stiffness(x, mesh):
     K, D = np.zeros((mesh.i.size, d, d)), np.zeros((mesh.i.size, d, d))
     for s in range(mesh.i.size):
         r = x[mesh.j[s]] - x[mesh.i[s]]
-        length = np.sqrt(np.sum(r * r))
+        squared = np.sum(r * r)
+        length = np.sqrt(squared)
         across = mesh.k[s] * np.maximum(0.0, 1.0 - mesh.rest[s] / length)
         for a in range(d):
             K[s, a, a] = across
             for b in range(d):
-                nn = r[a] * r[b] / (length * length)
+                nn = r[a] * r[b] / squared
                 K[s, a, b] += (mesh.k[s] - across) * nn
                 D[s, a, b] = mesh.k_d[s] * nn
     return K, D
@@ -316,7 +340,10 @@ def spring_stiffness(x, mesh):
 
 
 def apply_blocks(y, i, j, block):
-    """Given.  (n, d): Σ over springs of block · (y_i − y_j), added at i and subtracted at j."""
+    """Given.  Return Σ over springs of block · (y_i − y_j), added at i and subtracted at j, (n, d).
+
+    The loops over coordinates make it fast: conjugate_gradients calls it in every iteration.
+    """
     out = np.zeros(y.shape)
     for s in range(i.size):
         for a in range(y.shape[1]):
@@ -329,7 +356,7 @@ def apply_blocks(y, i, j, block):
 
 
 def apply_step_matrix(y, A):
-    """Given.  A · y for a StepMatrix, (n, d); the rows of fixed points are 0."""
+    """Given.  Return A · y for a StepMatrix, (n, d); the rows of fixed points are 0."""
     out = apply_blocks(y, A.i, A.j, A.block)
     for n in range(y.shape[0]):
         for c in range(y.shape[1]):
@@ -338,14 +365,14 @@ def apply_step_matrix(y, A):
 
 
 def conjugate_gradients(apply, A, right):
-    """The y with apply(y, A) = right, for a symmetric positive definite apply; right and y are arrays of one shape.
+    """Return the y with apply(y, A) = right, for a symmetric positive definite apply; right and y have the same shape.
 
     y = 0,  r = right,  p = r;  repeat
         α = (r·r) / (p·Ap),   y += α p,   r_new = r − α Ap,   p = r_new + (r_new·r_new)/(r·r) p
     until |r| ≤ CG_TOLERANCE |right|.  A right-hand side of zeros has the solution zeros.
 
     Raises Diverged("conjugate gradients did not converge: |r|²", |r|², "the matrix must be positive definite") after
-    10 · (size of right) rounds.
+    10 · (size of right) iterations.
     *Source:* Hestenes and Stiefel 1952; Shewchuk 1994.
     """
     ### BEGIN SOLUTION 2.12
@@ -361,22 +388,23 @@ def conjugate_gradients(apply, A, right):
         alpha = squared / np.sum(p * Ap)
         y += alpha * p
         r -= alpha * Ap
-        before, squared = squared, np.sum(r * r)
+        before = squared
+        squared = np.sum(r * r)
         p = r + squared / before * p
     raise Diverged("conjugate gradients did not converge: |r|²", squared, "the matrix must be positive definite")
     ### END SOLUTION
 
 
 def implicit_mesh_step(acceleration, t, x, v, dt, mesh):
-    """Advance a mesh one step by linearly implicit Euler: stable for any stiffness, first order.
+    """Advance a mesh by one step of linearly implicit Euler: stable for any stiffness, first order.
 
     (M + dt k_v − dt ∂F/∂v − dt² ∂F/∂x) Δv = dt (M a + dt ∂F/∂x v)        a = acceleration(t, x, v, mesh)
     vₙ₊₁ = vₙ + Δv,   xₙ₊₁ = xₙ + dt vₙ₊₁
 
-    With K, D = spring_stiffness: the matrix is a StepMatrix with diagonal m + dt k_v (0 for a fixed point) and blocks
-    dt² K + dt D; and ∂F/∂x v = −apply_blocks(v, i, j, K).  The right-hand side of a fixed point is 0.
-    Solved by conjugate_gradients with apply_step_matrix.
-    *Source:* Baraff and Witkin 1998, "Large steps in cloth simulation".
+    K, D = spring_stiffness(x, mesh).  The matrix is a StepMatrix with the diagonal m + dt k_v (0 for a fixed point)
+    and the blocks dt² K + dt D.  ∂F/∂x v = −apply_blocks(v, i, j, K).  The right-hand side of a fixed point is 0.
+    Solve with conjugate_gradients and apply_step_matrix.
+    *Source:* Baraff and Witkin 1998, “Large steps in cloth simulation”.
     """
     ### BEGIN SOLUTION 2.13
     a = acceleration(t, x, v, mesh)
@@ -387,8 +415,7 @@ def implicit_mesh_step(acceleration, t, x, v, dt, mesh):
     for n in range(x.shape[0]):
         if mesh.inv_mass[n] > 0.0:
             diagonal[n] = 1.0 / mesh.inv_mass[n] + dt * mesh.k_v
-            for c in range(x.shape[1]):
-                right[n, c] = dt * (a[n, c] / mesh.inv_mass[n] - dt * pull[n, c])
+            right[n] = dt * (a[n] / mesh.inv_mass[n] - dt * pull[n])
     A = StepMatrix(diagonal, mesh.i, mesh.j, dt * dt * K + dt * D)
     v = v + conjugate_gradients(apply_step_matrix, A, right)
     return x + dt * v, v

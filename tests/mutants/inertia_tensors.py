@@ -316,8 +316,7 @@ def mesh_integrals(x, faces):
     return V, first + V * o, second + np.outer(first, o) + np.outer(o, first) + V * np.outer(o, o)
 
 
-SIX_VOLUMES = ("a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2])"
-               " + a[2] * (b[0] * c[1] - b[1] * c[0])")
+SIX_VOLUMES = "a[0] * bc_x + a[1] * bc_y + a[2] * bc_z"
 SECOND = "w / 120.0 * (a[i] * a[j] + b[i] * b[j] + c[i] * c[j] + s * (a[j] + b[j] + c[j]))"
 edit("4.15", "volumes without their signs", SIX_VOLUMES, f"abs({SIX_VOLUMES})")
 edit("4.15", "the whole volume without its sign", "return volume, first", "return abs(volume), first")

@@ -65,10 +65,10 @@ wrong("8.2", "forgets the masses below")(projecting(total=lambda w, g: np.sum(g 
 wrong("8.2", "takes gradients for unit vectors")(projecting(total=lambda w, g: np.sum(w)))
 wrong("8.2", "half of it")(projecting(sign=-0.5))
 wrong("8.2", "accepts an unsatisfiable constraint")(projecting(checked=False))
-edit("8.2", "every point on its own", "-C / total * inv_mass[k]",
-     "-C / np.sum(gradients[k] ** 2) * (inv_mass[k] > 0.0)")
-edit("8.2", "refuses small masses", "total == 0.0", "total < 1e-6")
-edit("8.2", "refuses only where all masses are infinite or all gradients 0", "total == 0.0",
+edit("8.2", "every point on its own", "-C / weight * inv_mass[:, None]",
+     "-C / np.sum(gradients**2, axis=1)[:, None] * (inv_mass > 0.0)[:, None]")
+edit("8.2", "refuses small masses", "weight == 0.0", "weight < 1e-6")
+edit("8.2", "refuses only where all masses are infinite or all gradients 0", "weight == 0.0",
      "np.all(inv_mass == 0.0) or np.all(gradients == 0.0)")
 
 
@@ -93,9 +93,9 @@ wrong("8.3", "immovable points fall")(predicting(falls=True))
 wrong("8.3", "does not advance t")(predicting(clock=0.0))
 wrong("8.3", "the force of rest")(predicting(speed=0.0))
 wrong("8.3", "changes its input")(predicting(changes=True))
-edit("8.3", "heavy points fall more slowly", "dt * dt * a[k, c]", "dt * dt * a[k, c] * min(1.0, net.inv_mass[k])")
+edit("8.3", "heavy points fall more slowly", "free = net.inv_mass > 0.0", "free = np.minimum(1.0, net.inv_mass)")
 wrong("8.3", "no force")(predicting(half=0.0))
-edit("8.3", "treats heavy points as immovable", "net.inv_mass[k] > 0.0", "net.inv_mass[k] > 1e-6")
+edit("8.3", "treats heavy points as immovable", "net.inv_mass > 0.0", "net.inv_mass > 1e-6")
 edit("8.3", "changes the array that the acceleration returned", "a = acceleration(t, x, v, net)",
      "a = acceleration(t, x, v, net)\n    a[net.inv_mass == 0.0] = 0.0")
 
@@ -303,10 +303,10 @@ wrong("8.9", "half of each wing to each end of the edge")(folding(leverage=False
 wrong("8.9", "leverage of the other end")(folding(swapped=True))
 wrong("8.9", "net force not zero")(folding(closed=False))
 wrong("8.9", "accepts a triangle without area")(folding(checked=False))
-edit("8.9", "leverage of c held between 0 and 1", "np.sum((b - c) * e) / squared",
-     "min(1.0, max(0.0, np.sum((b - c) * e) / squared))")
-edit("8.9", "leverage of d held between 0 and 1", "np.sum((b - d) * e) / squared",
-     "min(1.0, max(0.0, np.sum((b - d) * e) / squared))")
+edit("8.9", "leverage of c held between 0 and 1", "dot(b - c, e) / squared",
+     "min(1.0, max(0.0, dot(b - c, e) / squared))")
+edit("8.9", "leverage of d held between 0 and 1", "dot(b - d, e) / squared",
+     "min(1.0, max(0.0, dot(b - d, e) / squared))")
 edit("8.9", "taken into [−π, π)", "np.ceil((turn - np.pi) / (2.0 * np.pi))", "np.floor((turn + np.pi) / (2.0 * np.pi))")
 edit("8.9", "removes one full turn only", "np.ceil((turn - np.pi) / (2.0 * np.pi))",
      "np.sign(np.ceil((turn - np.pi) / (2.0 * np.pi)))")

@@ -92,7 +92,7 @@ def matrix_update(R, omega, dt):
 
 
 edit("5.6", "does not renormalise", "first, second = M[:, 0].copy(), M[:, 1].copy()", "return M")
-edit("5.6", "brings the columns to length 1 and leaves them oblique", "np.sum(first * second) * first", "0.0")
+edit("5.6", "brings the columns to length 1 and leaves them oblique", "dot(first, second) * first", "0.0")
 edit("5.6", "the third column inside out", "cross(first, second)", "cross(second, first)")
 edit("5.6", "ω of the body", "skew(omega) @ R", "R @ skew(omega)")
 edit("5.6", "forgets dt", "dt * (skew(omega) @ R)", "skew(omega) @ R")
