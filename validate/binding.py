@@ -33,7 +33,7 @@ ROOT = Path(__file__).resolve().parent.parent
 SOLUTIONS, SCENES = ROOT / "solutions", ROOT / "validate" / "scenes"
 CACHE = ROOT / ".cache" / "compiled"
 CACHED_WORLDS = 6              # digests kept on disk: a handful of edits back; older ones are deleted
-GIVEN = {"__init__", "checks", "vectors"}
+GIVEN = {"__init__", "checks", "support", "vectors"}            # support is a folder: geometry and records
 LAW = "acceleration"           # of a scene this is compiled, and what it calls; the loops are in the lessons
 
 
@@ -105,7 +105,7 @@ def world(of="solutions", compiled=False):
 def digest_of(folder):
     """Fingerprint of every file that a world of this subject is made of, and of the compiler."""
     compiler = f"{_numba_version()} {sys.version} {os.environ.get('NUMBA_BOUNDSCHECK', '')}"
-    return fingerprint({*SOLUTIONS.glob("*.py"), *SCENES.glob("*.py"), *folder.glob("*.py"), Path(__file__)}, compiler)
+    return fingerprint({*SOLUTIONS.rglob("*.py"), *SCENES.glob("*.py"), *folder.glob("*.py"), Path(__file__)}, compiler)
 
 
 def fingerprint(files, more=""):
@@ -230,7 +230,7 @@ class World:
         meant = {}
         for name, value in vars(module).items():
             home = value.__name__ if isinstance(value, types.ModuleType) else getattr(value, "__module__", None) or ""
-            source, _, origin = home.removeprefix(f"{self.name}.").rpartition(".")
+            source, _, origin = home.removeprefix(f"{self.name}.").partition(".")                  # origin: friction, or support.arms
             if source not in ("solutions", "subject"):
                 continue
             if isinstance(value, type):

@@ -31,7 +31,7 @@ def stub(source, solved=(), elsewhere=None):
     text = ANSWER.sub(empty, source)
     if re.search(r"(BEGIN|END) SOLUTION", text):
         raise BadInput("a solution marker", "unpaired or without its exercise number", "write ### BEGIN SOLUTION 1.2 … ### END SOLUTION")
-    return re.sub(r"^from \.(\w+) import", lambda m: f"from solutions.{m[1]} import" if elsewhere is None or m[1] in elsewhere else m[0],
+    return re.sub(r"^from \.([\w.]+) import", lambda m: f"from solutions.{m[1]} import" if elsewhere is None or m[1].partition(".")[0] in elsewhere else m[0],
                   text, flags=re.M)
 
 

@@ -46,7 +46,7 @@ def read_whole(path, kind, remedy):
 def code_digest(of):
     """Fingerprint of everything that a result depends on: code, recorded traces and installed versions."""
     package, subject = binding.ROOT / "validate", binding.subject_folder(of)
-    files = {*package.rglob("*.py"), *package.glob("recorded/*.json"), *subject.glob("*.py"), *binding.SOLUTIONS.glob("*.py")}
+    files = {*package.rglob("*.py"), *package.glob("recorded/*.json"), *subject.glob("*.py"), *binding.SOLUTIONS.rglob("*.py")}
     installed = version("numpy"), version("scipy"), binding._numba_version(), *map(engines.installed, engines.NAMES)
     return binding.fingerprint(files, f"{sys.version} {installed}")
 

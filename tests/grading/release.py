@@ -169,7 +169,7 @@ def wanted(path, lessons, others, scenes):
     if folder == "notebooks":
         return path.stem.partition("_")[2] not in others
     if folder == "solutions":
-        return path.suffix == ".py" and path.stem in binding.GIVEN
+        return path.suffix == ".py" and Path(path.parts[1]).stem in binding.GIVEN
     return folder in ("validate", "docs") or path.as_posix() in ALWAYS | {PLUGIN} | {f"tests/test_{name}.py" for name in lessons}
 
 
