@@ -234,12 +234,12 @@ def has_left_margin(low, high, wide_low, wide_high):
 
 
 def velocity_sweep_2d(v, omega, J, aim, give, contacts, arms, pile):
-    """(v, omega, J) in the plane after one visit to every contact, each as if alone: cone_sweep without a matrix.
+    """(v, omega, J) in the plane after one visit to every contact, each as if alone: a sweep without a matrix.
 
     u = velocity of a's contact point less that of b's: (v_x − ω r_y, v_y + ω r_x) with r = arms.r_a[k], arms.r_b[k]
     J_n ← max(0, J_n + (aim − u_n − give k_n J_n)/(k_n (1 + give)))           along n;   k_n = arms.k_n[k]
     J_t ← J_t − u_t/k_t, but at most μ J_n in size, with the new J_n          along t = (−n_y, n_x);   k_t = arms.k_t[k]
-    Then the change of J acts on a, and minus that on b:   v += J/m,   ω += (r × J)/I
+    Both use the same u.  Then the change of J acts on a, and minus that on b:   v += J/m,   ω += (r × J)/I
 
     v (n + p, 2), omega (n + p,), J (m, 2) in x and y, aim and give (m,); masses and mu from pile.  μ = ∞ sticks where
     J_n > 0.  Returns new arrays.
