@@ -28,6 +28,7 @@ from .vectors import dot
 
 CONVERGED = 1e-13            # residual over the terms that it is a sum of [-]: a thousand roundings
 SWEEPS = 50_000              # of solve_contacts [-]; a stack of 20 needs 5,000
+PUSH = 3.0                   # at which bodies part that begin inside each other [m/s]: they are not to be thrown out
 PIVOTS = 1000                # of solve_lcp, per contact [-]; it has needed two per contact
 
 
@@ -369,10 +370,11 @@ def velocity_sweep(v, omega, J, aim, give, contacts, arms, inv_mass, inv_inertia
 
 
 def contact_targets(gap, dt, pile):
-    """Given.  (aim, give), each (m,), of soft_contact for all contacts."""
+    """Given.  (aim, give), each (m,), of soft_contact for all contacts; none aims at parting faster than PUSH."""
     aim, give = np.empty(gap.size), np.empty(gap.size)
     for k in range(gap.size):
         aim[k], give[k] = soft_contact(gap[k], pile.hertz, pile.zeta, dt)
+        aim[k] = min(aim[k], PUSH)
     return aim, give
 
 
