@@ -283,7 +283,7 @@ def advance_pile_2d(bounds, find_contacts, state, dt, steps, pile):
     sweep at rest, which takes back the velocity that only served to push bodies apart.
     Raises BadInput for hertz that a substep cannot carry, Diverged with the residual where bodies sink into each other.
     """
-    dt, steps = checked_pile(state, dt, steps, pile)
+    state, dt, steps = checked_pile(state, dt, steps, pile)
     h, wide_low, wide_high, residual, allowed = dt / pile.substeps, pile.half + np.inf, pile.half, 0.0, np.inf
     (x, q, v, omega, contacts, J), falls = state, (pile.inv_mass > 0.0)[:, None]
     pairs = Pairs(contacts.first, contacts.b)
@@ -313,7 +313,7 @@ def advance_pile_2d(bounds, find_contacts, state, dt, steps, pile):
 
 def advance_pile(bounds, find_contacts, state, dt, steps, pile):
     """Given.  The same in space, with ball_bounds and round_contacts, or box_bounds and box_contacts."""
-    dt, steps = checked_pile(state, dt, steps, pile)
+    state, dt, steps = checked_pile(state, dt, steps, pile)
     h, wide_low, wide_high, residual, allowed = dt / pile.substeps, pile.half + np.inf, pile.half, 0.0, np.inf
     (x, q, v, omega, contacts, J), falls = state, (pile.inv_mass > 0.0)[:, None]
     pairs = Pairs(contacts.first, contacts.b)

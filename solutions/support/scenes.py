@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..checks import (BadInput, Diverged, check_field, check_friction, check_indices, check_normal, check_not_negative, check_positive, check_shape,
+from ..checks import (BadInput, Diverged, check_field, check_finite, check_friction, check_indices, check_normal, check_not_negative, check_positive, check_shape,
                       finite_array, number, positive_number, whole_number)
 from .contact_points import ContactSet
 
@@ -168,18 +168,27 @@ def make_pile(x, q, m, inertia, half, planes, gravity, mu, substeps, hertz, zeta
 
 
 def checked_pile(state, dt, steps, pile):
-    """(dt, steps), converted.  Raises BadInput for a step or a number of steps that is none, hertz that a substep does not carry, and
-    a state that is not finite."""
+    """(PileState, dt, steps), converted to float64.
+
+    Raises BadInput for a step or a number of steps that is none, hertz that a substep does not carry, what is not finite, and quaternions
+    without length.
+    """
     dt, steps = positive_number("step dt [s]", dt), whole_number("number of steps", steps, 0)
+    check_positive("a substep [s]", dt / pile.substeps)
     product = pile.hertz * dt / pile.substeps
     if not product <= HIGHEST * (1.0 + 1e-9):
         raise BadInput("hertz of the contacts times a substep [-]", product, "give at most 1/3: take more substeps, or fewer hertz")
-    for thing, values in (("position x [m]", state.x), ("velocity v [m/s]", state.v)):
-        check_field(thing, values, (len(pile.inv_mass), pile.half.shape[1]))
-    finite_array("orientation q", state.q)
-    finite_array("angular velocity ω [rad/s]", state.omega)
-    finite_array("impulse J [N s]", state.J)
-    return dt, steps
+    check_friction(pile.mu)
+    check_finite("planes", pile.planes)
+    x, q = finite_array("position x [m]", state.x), finite_array("orientation q", state.q)
+    v, omega = finite_array("velocity v [m/s]", state.v), finite_array("angular velocity ω [rad/s]", state.omega)
+    for thing, values in (("position x [m]", x), ("velocity v [m/s]", v)):
+        check_shape(thing, values, (len(pile.inv_mass), pile.half.shape[1]))
+    if q.ndim == 2:
+        check_shape("orientation q", q, (len(x), 4))
+        for i in range(q.shape[0]):
+            check_positive("length of a quaternion [-]", np.sum(q[i] ** 2))
+    return PileState(x, q, v, omega, state.contacts, finite_array("impulse J [N s]", state.J)), dt, steps
 
 
 def check_overlap(contacts, v, dt, half, allowed, residual):
