@@ -6,7 +6,7 @@ u [m/s] velocity of a's contact point as seen from b's, u_n = n · u its part al
 
 Velocities after an impact have a ⁺.  An impact is so short that nothing moves and no other force counts.  A body that cannot be moved has
 inv_mass = 0 and inv_inertia = 0.  In the plane r × n is the number r_x n_y − r_y n_x, and omega is a number, counter-clockwise.
-*Left out:* finding out who touches whom (lesson 6).  Contacts that last, as in a stack, are not part of the lessons yet.
+*Left out:* finding out who touches whom (lesson 6).  Contacts that last, as in a stack: lesson 9.
 """
 
 from typing import NamedTuple
