@@ -336,9 +336,10 @@ def velocity_sweep_2d(v, omega, J, aim, give, contacts, arms, pile):
         u_y = v[a, 1] + omega[a] * a_x - v[b, 1] - omega[b] * b_x
         u_n, u_t = n_x * u_x + n_y * u_y, n_x * u_y - n_y * u_x
         J_n, J_t = n_x * J[k, 0] + n_y * J[k, 1], n_x * J[k, 1] - n_y * J[k, 0]
-        J_n = np.maximum(0.0, J_n + (aim[k] - u_n - give[k] * k_n * J_n) / (k_n * (1.0 + give[k])))
-        limit = pile.mu * J_n if J_n > 0.0 else 0.0
-        J_t = np.minimum(np.maximum(J_t - u_t / arms.k_t[k], -limit), limit)
+        J_n += (aim[k] - u_n - give[k] * k_n * J_n) / (k_n * (1.0 + give[k]))
+        J_n = 0.0 if J_n <= 0.0 else J_n                                 # a NaN stays one
+        J_t, limit = J_t - u_t / arms.k_t[k], pile.mu * J_n if J_n > 0.0 else 0.0
+        J_t = -limit if J_t < -limit else limit if J_t > limit else J_t
         d_x, d_y = J_n * n_x - J_t * n_y - J[k, 0], J_n * n_y + J_t * n_x - J[k, 1]
         J[k, 0] += d_x
         J[k, 1] += d_y

@@ -135,9 +135,12 @@ def box_pair_2d(x, turn, half, i, j, reach, c, m):
     d, u, w = (x[j, 0] - x[i, 0], x[j, 1] - x[i, 1]), (turn[i, 0], turn[i, 1]), (turn[j, 0], turn[j, 1])
     u_y, w_y = (-u[1], u[0]), (-w[1], w[0])
     a_x, a_y = face_gap_2d(d, u, half[i, 0], w, half[j, 0], half[j, 1]), face_gap_2d(d, u_y, half[i, 1], w, half[j, 0], half[j, 1])
+    of_a = max(a_x, a_y)
+    if of_a > reach:
+        return m
     b_x, b_y = face_gap_2d(d, w, half[j, 0], u, half[i, 0], half[i, 1]), face_gap_2d(d, w_y, half[j, 1], u, half[i, 0], half[i, 1])
-    of_a, of_b = max(a_x, a_y), max(b_x, b_y)
-    if max(of_a, of_b) > reach:
+    of_b = max(b_x, b_y)
+    if of_b > reach:
         return m
     if of_a + PREFER_FIRST >= of_b:
         owner, sign, along_x = i, -1.0, a_x >= a_y

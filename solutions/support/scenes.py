@@ -202,10 +202,14 @@ def check_overlap(contacts, v, dt, half, allowed, residual):
     if not np.isfinite(fastest):
         raise Diverged("the largest velocity of a body [m/s]", fastest, "take more substeps, or shorter steps")
     for k in range(contacts.a.size):
-        size = np.min(half[contacts.a[k]])
-        if contacts.b[k] < n:
-            size = min(size, np.min(half[contacts.b[k]]))
-        deepest = max(deepest, (-contacts.gap[k] - 2.0 * dt * fastest) / size)
+        sunk = -contacts.gap[k] - 2.0 * dt * fastest
+        if sunk > 0.0:
+            size = half[contacts.a[k], 0]
+            for c in range(half.shape[1]):
+                size = min(size, half[contacts.a[k], c])
+                if contacts.b[k] < n:
+                    size = min(size, half[contacts.b[k], c])
+            deepest = max(deepest, sunk / size)
     if deepest > allowed:
         raise Diverged("bodies sink into each other; the residual of their contacts [m/s]", residual, "take more substeps, shorter steps, or more equal masses")
     return min(allowed, max(TOO_DEEP, DEEPER * deepest))
