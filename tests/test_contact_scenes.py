@@ -265,6 +265,61 @@ def test_bodies_that_begin_inside_each_other_part_and_are_not_thrown_out(fast):
         assert np.all(np.isfinite(end.x)) and np.max(np.abs(end.v)) < 5.0 and np.max(end.x[:2, 1]) < 2.5
 
 
+def tilted(degrees):
+    """A plane through the origin, rising to the right."""
+    theta = np.radians(degrees)
+    return (-np.sin(theta), np.cos(theta), 0.0)
+
+
+@pytest.mark.parametrize("degrees", [45.0, 80.0, 89.0])
+def test_a_disc_in_a_wedge_is_held_by_both_walls(fast, degrees):
+    """Without friction each wall carries m g/(2 cos θ): 28.65 weights at 89°.  Errors there are as much larger as the wedge is steep: sweeps contract by cos² 2θ."""
+    state, pile = pile_2d([(0.0, 0.5 / np.cos(np.radians(degrees)))], [(0.5, 0.5)], 1.0, shape="disc", mu=0.0, planes=[tilted(degrees), tilted(-degrees)])
+    end = run(fast, state, pile, 5.0, "disc")
+    force = np.linalg.norm(end.J, axis=1) * pile.substeps / DT
+    assert len(force) == 2 and np.max(np.abs(force / (0.5 * G / np.cos(np.radians(degrees))) - 1.0)) < 1e-3
+    assert np.max(np.abs(end.v)) < 1e-3 and abs(end.x[0, 0]) < 1e-3
+
+
+def test_infinite_friction_holds_a_box_at_any_slope_and_none_lets_it_go(fast):
+    theta = np.radians(40.0)
+    at = 0.5 * np.array([-np.sin(theta), np.cos(theta)])
+    for mu, expected in ((np.inf, 0.0), (0.0, G * np.sin(theta))):
+        state, pile = pile_2d([at], [(0.5, 0.5)], 1.0, theta, mu=mu, planes=[tilted(40.0)])
+        end = run(fast, state, pile, 1.0)
+        assert abs(np.linalg.norm(end.v[0]) - expected) < 2e-3 and abs(end.q[0] - theta) < 1e-3, mu
+
+
+def test_small_discs_stand_beside_a_hundred_times_larger_one(fast):
+    """The large one is 10,000 times as heavy.  Under it they could not be carried; beside it nothing disturbs them."""
+    x = [(0.0, 1.0)] + [(1.5 + 0.05 * k, 0.01) for k in range(5)]
+    state, pile = pile_2d(x, [(1.0, 1.0)] + [(0.01, 0.01)] * 5, [1e4] + [1.0] * 5, shape="disc", margin=0.002)
+    end = run(fast, state, pile, 2.0, "disc")
+    assert np.max(np.abs(end.x[:6] - state.x[:6])) < 1e-4 and np.max(np.abs(end.v)) < 1e-6
+
+
+def test_long_steps_with_enough_substeps_hold_a_stack(fast):
+    state, pile = unit_stack(2, np.ones(5), substeps=8, hertz=80.0)
+    end = run(fast, state, pile, 6.0, dt=1.0 / 30.0)
+    assert np.max(np.abs(carried(end, pile, 5, 1.0 / 30.0) / (G * np.arange(5, 0, -1)) - 1.0)) < 1e-5
+
+
+def test_a_body_that_begins_inside_a_wall_comes_out_gently(fast):
+    state, pile = pile_2d([(0.0, -2.0)], [(0.5, 0.5)], 1.0)
+    states = plain.pile_trajectory(fast.advance_pile_2d, fast.box_bounds_2d, fast.box_contacts_2d, state, DT, 480, pile)
+    heights, speeds = np.array([one.x[0, 1] for one in states]), np.array([one.v[0, 1] for one in states])
+    assert np.all(np.diff(heights)[:200] > 0.0) and abs(heights[-1] - 0.5) < 1e-2 and np.max(speeds) <= 3.0 and np.max(heights) < 0.6
+
+
+def test_the_cost_of_a_step_grows_with_the_number_of_bodies(fast):
+    """Pairs looked at by the grid, rather than time: within a factor of two per body from 100 to 10,000 bodies."""
+    def pairs(n):
+        k = np.arange(n)
+        low = np.stack((0.2 * (k % 50), 0.2 * (k // 50)), axis=1)
+        return len(fast.near_pairs(low - 0.005, low + 0.205, np.array([(0.0, 1.0, 0.0)])).partner) / n
+    assert pairs(10_000) < 2.0 * pairs(100)
+
+
 def test_hertz_beyond_a_third_of_the_substeps_are_refused(fast):
     state, pile = unit_stack(2, np.ones(2), substeps=2, hertz=161.0)
     with pytest.raises(BadInput, match="hertz of the contacts"):
