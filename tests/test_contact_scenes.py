@@ -304,6 +304,20 @@ def test_long_steps_with_enough_substeps_hold_a_stack(fast):
     assert np.max(np.abs(carried(end, pile, 5, 1.0 / 30.0) / (G * np.arange(5, 0, -1)) - 1.0)) < 1e-3                  # measured 1.6e-4
 
 
+def test_an_overlap_is_removed_without_leaving_a_velocity(fast):
+    state, pile = pile_2d([(0.0, 0.49)], [(0.5, 0.5)], 1.0, shape="disc")
+    end = run(fast, state, pile, DT, "disc")
+    assert end.x[0, 1] > 0.49 + 1e-4 and abs(end.v[0, 1]) < 1e-12
+
+
+def test_a_falling_body_closes_its_gap_once_however_many_substeps(fast):
+    """Soft contacts let it in by give/(1 + give) of what it would go in a substep: 0.11 mm with four.  It falls 4 mm in a step."""
+    for substeps in (1, 4, 16):
+        state, pile = pile_2d([(0.0, 0.501)], [(0.5, 0.5)], 1.0, shape="disc", substeps=substeps, hertz=60.0)
+        end = run(fast, state._replace(v=np.array([(0.0, -1.0), (0.0, 0.0)])), pile, DT, "disc")
+        assert abs(end.x[0, 1] - 0.5) < 2e-4 and abs(end.v[0, 1]) < 1e-12 + (substeps == 1), (substeps, end.x[0], end.v[0])
+
+
 def test_a_body_that_begins_inside_a_wall_comes_out_gently(fast):
     state, pile = pile_2d([(0.0, -2.0)], [(0.5, 0.5)], 1.0)
     states = plain.pile_trajectory(fast.advance_pile_2d, fast.box_bounds_2d, fast.box_contacts_2d, state, DT, 480, pile)
