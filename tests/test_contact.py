@@ -88,6 +88,11 @@ def enumerated(A, b):
     raise AssertionError("no set of contacts fits")
 
 
+def half_turn(n):
+    """ρ of a stack of n, by the double angle."""
+    return 0.5 * (1.0 + np.cos(np.pi / n))
+
+
 def contraction(A, b, solution, sweep, before=400, over=20):
     """Error after a sweep over error before, once the slowest part of the error is all that is left."""
     lam = np.zeros(len(b))
@@ -204,7 +209,7 @@ def test_two_elastic_balls_and_a_wall_count_the_digits_of_pi(lesson, draw):
 @exercise("9.4", points=0.5, hint="use what the sweep has just changed, not what was there before it; that is Jacobi's method")
 def test_the_error_shrinks_by_the_factor_of_theory(lesson, draw):
     n, r = draw.whole(5, 9), draw(5.0, 30.0)
-    for name, masses, rho in ((f"a stack of {n}", [1.0] * n, np.cos(0.5 * np.pi / n) ** 2), ("a heavy body on a light one", [1.0, r], r / (1.0 + r))):
+    for name, masses, rho in ((f"a stack of {n}", [1.0] * n, half_turn(n)), ("a heavy body on a light one", [1.0, r], 1.0 - 1.0 / (1.0 + r))):
         A, b, forces = chain(masses)
         got = contraction(A, b, forces, lambda lam: lesson.gauss_seidel_sweep(A, b, lam, 1.0), 60)
         close(f"contraction factor of {name} [-]", got, rho, 1e-3 * (1.0 - rho), given=f"masses {np.array(masses)}")
@@ -238,7 +243,7 @@ def test_a_heavy_body_on_a_light_one_contracts_slowly(lesson, draw):
 def test_the_contraction_factor_at_the_best_relaxation_is_omega_minus_one(lesson, draw):
     """At the best ω two eigenvalues meet: their computed size is known to the root of round-off, 1e-7 for these matrices."""
     for n in (2, draw.whole(3, 12)):
-        omega, rho = lesson.best_relaxation(np.cos(0.5 * np.pi / n) ** 2)
+        omega, rho = lesson.best_relaxation(half_turn(n))
         close("best relaxation ω [-]", omega, 2.0 / (1.0 + np.sin(0.5 * np.pi / n)), ROUND_OFF, given=f"a stack of {n}")
         close("its contraction factor [-]", rho, spectral_radius(iteration_matrix(chain(np.ones(n))[0], 2.0 / (1.0 + np.sin(0.5 * np.pi / n)))), 1e-6, given=f"a stack of {n}")
     close("(ω, ρ_ω) where one sweep is enough [-]", lesson.best_relaxation(0.0), (1.0, 0.0), ROUND_OFF)
