@@ -2,14 +2,14 @@
 
     0 ≤ λ  ⊥  A λ + b ≥ 0,      A = G M⁻¹ Gᵀ,      |J_t| ≤ μ J_n
 
-Symbols: contact k lies between bodies a[k] and b[k] · n unit normal, from b to a · r offset of the contact point from a
-centre · u [m/s] velocity of a's contact point relative to b's, u_n = n · u · J [N s] impulse on a; b receives −J ·
-λ normal impulses · G (2m, 3n) contact rows · M⁻¹ (3n,) inverse masses of all coordinates · A (2m, 2m) [1/kg] Delassus
-matrix · b [m/s] relative velocities without impulses · k_n, k_t [1/kg] effective inverse masses, the diagonal of A ·
-μ [-] friction · ω [-] relaxation · ρ [-] contraction factor: error after a sweep over the error before it.
-
-First exactly, in the plane, with matrices: small scenes, and a residual that judges any answer.  Then quickly: piles.
-*Left out:* restitution of many contacts at once (no law decides it, only conventions); sleeping; rolling resistance.
+Symbols: a ContactSet (support/contact_points.py) holds of each contact k the bodies a[k] and b[k], the unit normal n[k]
+from b to a, the place p[k] and the gap[k] · r = p − x offset from a centre · u [m/s] velocity of a's contact point
+relative to b's, u_n = n · u · J [N s] impulse on a; b receives −J · λ normal impulses · G (2m, 3n) contact rows ·
+M⁻¹ (3n,) inverse masses of all coordinates · A (2m, 2m) [1/kg] Delassus matrix · b [m/s] relative velocities without
+impulses · k_n, k_t [1/kg] effective inverse masses, the diagonal of A · μ [-] friction · ω [-] relaxation ·
+ρ [-] contraction factor: error after a sweep over the error before it.
+First exactly, in the plane, with matrices: small scenes.  Then quickly, with arrays: piles.
+*Left out:* restitution of many contacts (no law decides it, only conventions); sleeping; rolling resistance.
 """
 
 import numpy as np
@@ -27,7 +27,7 @@ from solutions.support.tuples import minus, plus, put, row, scaled
 from solutions.vectors import dot
 
 CONVERGED = 1e-13            # residual over the terms that it is a sum of [-]: a thousand roundings
-SWEEPS = 50_000              # of solve_contacts [-]; a stack of 20 needs 5,000
+SWEEPS = 50_000              # of solve_contacts [-]; a stack of 20 needs 3,800
 PUSH = 3.0                   # at which bodies part that begin inside each other [m/s]: they are not to be thrown out
 PIVOTS = 1000                # of solve_lcp, per contact [-]; it has needed two per contact
 
@@ -292,8 +292,7 @@ def advance_pile_2d(bounds, find_contacts, state, dt, steps, pile):
         if has_left_margin(low, high, wide_low, wide_high):
             wide_low, wide_high = low - pile.margin, high + pile.margin
             pairs = near_pairs(wide_low, wide_high, pile.planes)
-        old = contacts
-        contacts = find_contacts(x, turn, pile.half, pile.planes, pairs, 0.5 * pile.margin)
+        old, contacts = contacts, find_contacts(x, turn, pile.half, pile.planes, pairs, 0.5 * pile.margin)
         allowed = check_overlap(contacts, v, dt, pile.half, allowed, residual)
         arms = arms_2d(x, pile.inv_mass, pile.inv_inertia, contacts)
         J, gap = kept_impulses(contacts, old, J, pile.margin), contacts.gap
@@ -322,8 +321,7 @@ def advance_pile(bounds, find_contacts, state, dt, steps, pile):
         if has_left_margin(low, high, wide_low, wide_high):
             wide_low, wide_high = low - pile.margin, high + pile.margin
             pairs = near_pairs(wide_low, wide_high, pile.planes)
-        old = contacts
-        contacts = find_contacts(x, turn, pile.half, pile.planes, pairs, 0.5 * pile.margin)
+        old, contacts = contacts, find_contacts(x, turn, pile.half, pile.planes, pairs, 0.5 * pile.margin)
         allowed = check_overlap(contacts, v, dt, pile.half, allowed, residual)
         inv_inertia = world_inertia(turn, pile.inv_inertia)
         arms = arms_3d(x, pile.inv_mass, inv_inertia, contacts)
