@@ -2,7 +2,7 @@
 
     0 ≤ λ  ⊥  A λ + b ≥ 0,      A = G M⁻¹ Gᵀ,      |J_t| ≤ μ J_n
 
-Symbols: a ContactSet (support/contact_points.py) holds of each contact k the bodies a[k] and b[k], the unit normal n[k],
+Symbols: a ContactSet (support/contact_points.py) holds of each contact k its bodies a[k] and b[k], unit normal n[k],
 pointing from b to a, the place p[k] and the gap[k] · r = p − x offset from a centre · u [m/s] velocity of a's contact
 point relative to b's, u_n = n · u · J [N s] impulse on a; b receives −J · λ normal impulses · G (2m, 3n) contact rows ·
 M⁻¹ (3n,) inverse masses of all coordinates · A (2m, 2m) [1/kg] Delassus matrix · b [m/s] relative velocities without
