@@ -8,7 +8,7 @@ u⁺ = u + K J, and k = n · K n · φ [m] gap, n = ∇φ · λ [N s] multiplier
 Velocities after an impact have a ⁺.  An impact is so short that positions do not change and other forces do not count.
 An immovable body has inv_mass = 0 and inv_inertia = 0.  In the plane r × n is the number r_x n_y − r_y n_x, and omega
 is a number, counter-clockwise.
-*Left out:* finding contacts (lesson 6).  Lasting contacts, as in a stack, are not part of the lessons yet.
+*Left out:* finding contacts (lesson 6).  Lasting contacts, as in a stack (lesson 9).
 """
 
 from typing import NamedTuple

@@ -36,8 +36,9 @@ def stub(source, solved=(), elsewhere=None):
         raise BadInput("a solution marker", "unpaired or without its exercise number",
                        "write ### BEGIN SOLUTION 1.2 … ### END SOLUTION")
     def from_where(m):
-        return f"from solutions.{m[1]} import" if elsewhere is None or m[1] in elsewhere else m[0]
-    return re.sub(r"^from \.(\w+) import", from_where,
+        given = elsewhere is None or m[1].partition(".")[0] in elsewhere
+        return f"from solutions.{m[1]} import" if given else m[0]
+    return re.sub(r"^from \.([\w.]+) import", from_where,
                   text, flags=re.M)
 
 

@@ -27,7 +27,7 @@ from .scene import Scene, field_names
 
 ROOT = Path(__file__).resolve().parent.parent
 SOLUTIONS, SCENES = ROOT / "solutions", ROOT / "validate" / "scenes"
-GIVEN = {"__init__", "checks", "vectors"}
+GIVEN = {"__init__", "checks", "support", "vectors"}           # support is a folder: geometry and records
 LAW = "acceleration"  # the function of a scene that is compiled, with all that it calls; loops are in the lessons
 
 
@@ -115,7 +115,7 @@ def digest_of(folder):
     """Fingerprint of every file that a module set of this subject is made of, and of the compiler."""
     compiler = f"{numba_version()} {sys.version} {os.environ.get('NUMBA_BOUNDSCHECK', '')}"
     ours = Path(__file__), Path(__file__).with_name("numba_twins.py")
-    return fingerprint({*SOLUTIONS.glob("*.py"), *SCENES.glob("*/*.py"), *folder.glob("*.py"), *ours}, compiler)
+    return fingerprint({*SOLUTIONS.rglob("*.py"), *SCENES.glob("*/*.py"), *folder.glob("*.py"), *ours}, compiler)
 
 
 def fingerprint(files, more=""):
@@ -270,7 +270,7 @@ class ModuleSet:
         meant = {}
         for name, value in vars(module).items():
             home = value.__name__ if isinstance(value, types.ModuleType) else getattr(value, "__module__", None) or ""
-            source, _, origin = home.removeprefix(f"{self.name}.").rpartition(".")
+            source, _, origin = home.removeprefix(f"{self.name}.").partition(".")                  # origin: friction, or support.arms
             if source not in ("solutions", "subject"):
                 continue
             if isinstance(value, type):

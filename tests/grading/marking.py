@@ -51,7 +51,7 @@ def manifest(lessons):
 def code_digest(lessons=None):
     """Fingerprint of everything that decides about points in these lessons, or in all of them; the same wherever the workbook lies."""
     grader = ("box", "calls", "expect", "marking", "meter", "plugin", "points", "remote", "sandbox", "shipping", "watch", "wire", "worker")
-    files = {*modules.SOLUTIONS.glob("*.py"), *(points.LESSONS / f"test_{lesson}.py" for lesson in lessons or modules.lesson_names()),
+    files = {*modules.SOLUTIONS.rglob("*.py"), *(points.LESSONS / f"test_{lesson}.py" for lesson in lessons or modules.lesson_names()),
              *(points.TESTS / "grading" / f"{name}.py" for name in grader), *(modules.ROOT / "validate" / f"{name}.py" for name in ("modules", "generate", "loading"))}
     return hashlib.sha256(b"".join(file.name.encode() + file.read_bytes() for file in sorted(files))).hexdigest()[:12]
 

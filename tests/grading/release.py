@@ -171,7 +171,7 @@ def wanted(path, lessons, others, scenes):
     if folder == "notebooks":
         return path.stem.partition("_")[2] not in others
     if folder == "solutions":
-        return path.suffix == ".py" and path.stem in modules.GIVEN
+        return path.suffix == ".py" and Path(path.parts[1]).stem in modules.GIVEN
     return folder in ("validate", "docs") or path.as_posix() in ALWAYS | {PLUGIN} | {f"tests/lessons/test_{name}.py" for name in lessons}
 
 

@@ -34,6 +34,7 @@ def handout():
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     for name, text in generate.lessons().items():
         (folder / name).write_text(text)
+    shutil.copytree(modules.SOLUTIONS / "support", folder / "support", ignore=shutil.ignore_patterns("__pycache__"))
     for name in sorted(modules.GIVEN - {"__init__"}):
         if (modules.SOLUTIONS / f"{name}.py").is_file():
             (folder / f"{name}.py").write_text((modules.SOLUTIONS / f"{name}.py").read_text())

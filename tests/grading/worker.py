@@ -54,6 +54,9 @@ class Finder:
         if full == LESSON:
             return importlib.util.spec_from_file_location(full, os.path.join(config["student"], f"{name}.py"))
         file = os.path.join(config["given"], f"{name}.py")
+        if full == "solutions.support":                                    # what is in it finds the usual way
+            folder = os.path.join(config["given"], name)
+            return importlib.util.spec_from_file_location(full, os.path.join(folder, "__init__.py"), submodule_search_locations=[folder])
         if package in ("lessons", "solutions") and (name in config["earlier"] or name in ("checks", "vectors")):
             return importlib.util.spec_from_file_location(full, file, loader=Handout(full, file))
         return None

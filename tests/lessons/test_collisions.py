@@ -5,8 +5,8 @@ import pytest
 
 from solutions.checks import BadInput
 
-from .brute import area, differences, distance, facets, outline
 from ..grading.expect import NotYet, between, close, numbers, raises
+from .brute import area, differences, distance, facets, outline
 
 exercise = pytest.mark.exercise
 # Lengths are below 30 m and times below 10 s. A result takes a few dozen operations, each with a round-off of 1.1e-16.

@@ -21,7 +21,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from solutions import collisions, friction, impulses, integrators, rotation
+from solutions import collisions, contact, friction, impulses, integrators, rotation
 from solutions.checks import BadInput, Diverged
 from validate import modules
 
@@ -47,6 +47,8 @@ arms, normals = np.array([[0.1, 0.2, -0.3], [-0.1, 0.2, -0.3]]), np.stack((up, u
 rope, links = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]), np.array([[0, 1], [1, 2]])
 weight, calm = np.array([0.0, -9.81]), np.array([0.5, 0.0])
 oscillator = integrators.Oscillator(3.0, 0.1)
+boxes = (np.array([[0.0, 0.5], [0.2, 1.45]]), np.zeros(2), 1.0, 0.2, 0.5 * np.ones((2, 2)), np.array([[0.0, 1.0, 0.0]]), weight, 0.5, 2, 60.0, 10.0, 0.02)
+balls = (np.array([[0.0, 0.0, 0.5], [0.1, 0.0, 1.45]]), np.tile(q, (2, 1)), 1.0, 0.1 * np.ones((2, 3)), 0.5 * np.ones((2, 3)), np.array([[*up, 0.0]]), down, 0.5, 2, 60.0, 10.0, 0.02)
 
 # Arguments that follow the step of each loop.
 OSCILLATION = (integrators.oscillator_acceleration, 0.0, np.ones(2), np.zeros(2), 0.1, 3, oscillator)
@@ -93,6 +95,11 @@ STARTED = {
         "solve_impacts": [IMPACTS],
         "one_after_the_other": [IMPACTS]},
     "pbd": {"make_net": [(rope, 0.1, [0], links, 1e-6, 1.0, weight, 4)]},
+    "contact": {
+        "make_contacts": [(np.array([1, 2]), np.array([0, 1]), np.array([[0.0, 0.0], [0.0, 1.0]]), np.array([[0.0, 1.0], [0.0, 1.0]]), np.array([0.0, 1.0, 2.0]))],
+        "make_pile_2d": [boxes], "make_pile": [balls],
+        "advance_pile_2d": [(contact.box_bounds_2d, contact.box_contacts_2d, contact.make_pile_2d(*boxes)[0], 0.004, 2, contact.make_pile_2d(*boxes)[1])],
+        "advance_pile": [(contact.ball_bounds, contact.round_contacts, contact.make_pile(*balls)[0], 0.004, 2, contact.make_pile(*balls)[1])]},
 }
 # Inner functions that trust an earlier check. They may lose a NaN and divide by zero.
 TRUSTED = {
@@ -113,7 +120,8 @@ TRUSTED = {
 FREE = {name for names in TRUSTED.values() for name in names}
 PATIENCE = 5.0               # time limit of one call [s]; ordinary calls take milliseconds
 # These functions do not check the records of an acceleration or a surface that they are given.
-LAWS = {"advance", "trajectory", "contact_motion", "tumble", "tumbling", "move", "slip_times", "flight"}
+LAWS = {"advance", "trajectory", "advance_pile_2d", "advance_pile", "pile_trajectory", "contact_motion", "tumble",
+        "tumbling", "move", "slip_times", "flight"}
 
 
 # Arguments for which another shape is another valid problem.

@@ -8,8 +8,8 @@ from scipy.spatial import Delaunay
 
 from solutions.checks import BadInput
 
-from .brute import solid
 from ..grading.expect import close, raises
+from .brute import solid
 
 exercise = pytest.mark.exercise
 # Masses below 5 kg, lengths below 3 m, speeds below 20 m/s, a dozen terms: numbers below 1e3 with round-off 1.1e-16.

@@ -11,9 +11,9 @@ from typing import NamedTuple
 import nbformat
 import pytest
 
-from validate import modules, loading, notebook
-from validate.modules import ROOT, SOLUTIONS, lesson_names
+from validate import loading, modules, notebook
 from validate.generate import stub
+from validate.modules import ROOT, SOLUTIONS, lesson_names
 
 from ..grading import example, marking, sandbox
 from .kernels import kernel, ran

@@ -5,8 +5,8 @@ import re
 import nbformat
 import pytest
 
-from validate.modules import ROOT, SOLUTIONS, lesson_names
 from validate.generate import exercises, stub
+from validate.modules import ROOT, SOLUTIONS, lesson_names
 
 from .kernels import kernel, ran
 

@@ -6,8 +6,8 @@ from scipy.spatial import ConvexHull
 
 from solutions.checks import BadInput, Diverged
 
-from .brute import solid
 from ..grading.expect import between, close, raises
+from .brute import solid
 
 exercise = pytest.mark.exercise
 G = 9.81                     # [m/s²]

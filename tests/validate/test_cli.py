@@ -384,7 +384,7 @@ def test_an_interrupted_recording_says_so(capsys, monkeypatch, interrupted):
 # ---------------------------------------------------------------------------------------------- pytest and the page
 
 @pytest.mark.parametrize("arguments, said", [
-    (["--of=lessons", "--exercise=9.9"], "ERROR: exercise '9.9' is unknown"),
+    (["--of=lessons", "--exercise=99.9"], "ERROR: exercise '99.9' is unknown"),
     (["--of=no/such/folder"], "no/such/folder"),
 ])
 def test_the_tests_name_what_they_cannot_find(arguments, said):

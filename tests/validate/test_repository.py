@@ -20,10 +20,10 @@ def test_both_locks_hold_the_same_versions():
 
 
 def test_solutions_import_nothing_but_numpy_typing_and_their_siblings():
-    for path in SOLUTIONS.glob("*.py"):
+    for path in SOLUTIONS.rglob("*.py"):
         for line in path.read_text().splitlines():
             if re.match(r"(import|from) ", line):
-                assert re.match(r"import numpy as np$|from typing import NamedTuple$|from \.\w+ import ", line), f"{path.name}: {line}"
+                assert re.match(r"import numpy as np$|from typing import NamedTuple$|from \.[\w.]+ import ", line), f"{path.name}: {line}"
 
 
 def test_every_lesson_has_its_notebook_tests_mutants_and_scenes():

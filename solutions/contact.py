@@ -1,0 +1,480 @@
+"""Lesson 9.  Contact: many contacts at once.
+
+    0 ≤ λ  ⊥  A λ + b ≥ 0,      A = G M⁻¹ Gᵀ,      |J_t| ≤ μ J_n
+
+Symbols: a ContactSet (support/contact_points.py) holds of each contact k its bodies a[k] and b[k], unit normal n[k],
+pointing from b to a, the place p[k] and the gap[k] · r = p − x offset from a centre · u [m/s] velocity of a's contact
+point relative to b's, u_n = n · u · J [N s] impulse on a; b receives −J · λ normal impulses · G (2m, 3n) contact rows ·
+M⁻¹ (3n,) inverse masses of all coordinates · A (2m, 2m) [1/kg] Delassus matrix · b [m/s] relative velocities without
+impulses · k_n, k_t [1/kg] effective inverse masses, the diagonal of A · μ [-] friction · ω [-] relaxation ·
+ρ [-] contraction factor: error after a sweep over the error before it.
+First exactly, in the plane, with matrices: small scenes.  Then quickly, with arrays: piles.
+*Left out:* restitution of many contacts (no law decides it, only conventions); sleeping; rolling resistance.
+"""
+
+import numpy as np
+
+from .checks import Diverged, check_end
+from .integrators import solve
+from .support.arms import (
+    Arms,
+    apply_impulse,
+    apply_impulses,
+    apply_impulses_2d,
+    arms_2d,
+    arms_3d,
+    normal_velocities,
+    normal_velocities_2d,
+    point_velocity_of,
+    turn_freely,
+    turn_quaternions,
+    world_inertia,
+)
+from .support.broad_phase import Pairs, near_pairs
+from .support.contact_points import (
+    ContactSet,
+    ball_bounds,
+    box_bounds,
+    box_bounds_2d,
+    box_contacts,
+    box_contacts_2d,
+    disc_bounds,
+    round_contacts,
+)
+from .support.scenes import (
+    Pile,
+    PileState,
+    check_independent,
+    check_overlap,
+    check_scene,
+    checked_pile,
+    inverse_masses,
+    make_contacts,
+    make_pile,
+    make_pile_2d,
+)
+from .support.tuples import minus, plus, put, row, scaled
+from .vectors import dot
+
+CONVERGED = 1e-13            # residual over the terms that it is a sum of [-]: a thousand roundings
+SWEEPS = 50_000              # of solve_contacts [-]; a stack of 20 needs 3,800
+PUSH = 3.0                   # at which bodies part that begin inside each other [m/s]: they are not to be thrown out
+PIVOTS = 1000                # of solve_lcp, per contact [-]; it has needed two per contact
+
+
+# ---------------------------------------------------------------------- exactly: all contacts in matrices
+
+def contact_rows(x, contacts):
+    """G (2m, 3n): relative velocities of all contacts from velocities (v_x, v_y, ω) of all bodies, centres x (n, 2).
+
+    u = G v,     row 2k: n · u of contact k,     row 2k + 1: t · u, with t = (−n_y, n_x)
+
+    A direction d (n or t) has the entries (d_x, d_y, r_a × d) at body a and −(d_x, d_y, r_b × d) at body b.  All others
+    are 0.  r = p − x of that body, and r × d = r_x d_y − r_y d_x.
+    *Source:* the relative velocity of lesson 7, for all contacts at once.
+    """
+    ### BEGIN SOLUTION 9.1
+    G = np.zeros((2 * contacts.a.size, 3 * x.shape[0]))
+    for k in range(contacts.a.size):
+        n_x, n_y = contacts.n[k, 0], contacts.n[k, 1]
+        for s, d_x, d_y in ((2 * k, n_x, n_y), (2 * k + 1, -n_y, n_x)):
+            for body, sign in ((contacts.a[k], 1.0), (contacts.b[k], -1.0)):
+                r_x, r_y = contacts.p[k, 0] - x[body, 0], contacts.p[k, 1] - x[body, 1]
+                G[s, 3 * body] = sign * d_x
+                G[s, 3 * body + 1] = sign * d_y
+                G[s, 3 * body + 2] = sign * (r_x * d_y - r_y * d_x)
+    return G
+    ### END SOLUTION
+
+
+def delassus_matrix(G, w):
+    """A [1/kg] (rows, rows): entry (r, s) is the relative velocity along row r due to a unit impulse along row s.
+
+    A = G M⁻¹ Gᵀ          w = M⁻¹, the diagonal (columns of G,)
+
+    A is symmetric.  Impulses J lead to u = A J + b, with b = G v.  Contacts that share no movable body have entry 0.
+    *Source:* Delassus 1917; Moreau 1988.
+    """
+    ### BEGIN SOLUTION 9.2
+    return (G * w) @ np.ascontiguousarray(G.T)
+    ### END SOLUTION
+
+
+def complementarity_residual(A, b, lam):
+    """How far [m/s] normal impulses λ (m,) are from the law 0 ≤ λ ⊥ A λ + b ≥ 0.
+
+    largest |min(A_kk λ_k, (A λ + b)_k)|          A_kk turns the impulse into a velocity
+
+    It is 0 exactly if no contact pulls, no contact approaches, and none that separates pushes.
+    *Source:* min(x, y) = 0 if and only if x ≥ 0, y ≥ 0 and x y = 0; Cottle, Pang and Stone 1992.
+    """
+    ### BEGIN SOLUTION 9.3
+    return np.max(np.abs(np.minimum(np.diag(A) * lam, A @ lam + b)))
+    ### END SOLUTION
+
+
+def gauss_seidel_sweep(A, b, lam, omega):
+    """Impulses (m,) after one sweep of projected Gauss–Seidel over all contacts in their order, with relaxation ω.
+
+    λ_k ← max(0, λ_k − ω u_k/A_kk),      u_k = Σ_l A_kl λ_l + b_k  with those of λ that are new already
+
+    With ω = 1 each contact in turn stops approaching, as if it were alone.  Returns a new array.
+    *Source:* Cryer 1971.  Sequential impulses (Catto 2006) are the same with ω = 1.
+    """
+    ### BEGIN SOLUTION 9.4
+    lam = lam.copy()
+    for k in range(lam.size):
+        lam[k] = np.maximum(0.0, lam[k] - omega * (A[k] @ lam + b[k]) / A[k, k])
+    return lam
+    ### END SOLUTION
+
+
+def stack_contraction(n):
+    """ρ of Gauss–Seidel on a frictionless stack of n equal bodies on the ground:  cos²(π/2n).
+
+    Jacobi's iteration on that A has the eigenvalues cos((2j − 1) π/2n), and Gauss–Seidel has their squares.
+    *Source:* Young 1971; the matrix is tridiagonal.
+    """
+    ### BEGIN SOLUTION 9.5
+    return np.cos(0.5 * np.pi / n) ** 2
+    ### END SOLUTION
+
+
+def mass_ratio_contraction(r):
+    """ρ of Gauss–Seidel for a body of mass r m on one of mass m on the ground:  r/(1 + r).
+
+    A = [[1, −1], [−1, 1 + 1/r]]/m, and for two contacts ρ = A₀₁ A₁₀/(A₀₀ A₁₁).
+    *Source:* both equations by hand.
+    """
+    ### BEGIN SOLUTION 9.6
+    return r / (1.0 + r)
+    ### END SOLUTION
+
+
+def best_relaxation(rho):
+    """(ω, ρ_ω): the relaxation that converges fastest where Gauss–Seidel contracts by ρ, and its contraction factor.
+
+    ω = 2/(1 + √(1 − ρ)),      ρ_ω = ω − 1          for chains: each contact shares bodies with two others at most
+
+    For the stack √(1 − ρ) = sin(π/2n).  The number of sweeps then grows as n, and no longer as n².
+    *Source:* Young 1971.
+    """
+    ### BEGIN SOLUTION 9.7
+    omega = 2.0 / (1.0 + np.sqrt(1.0 - rho))
+    return omega, omega - 1.0
+    ### END SOLUTION
+
+
+def solve_lcp(A, b):
+    """λ (m,) with 0 ≤ λ ⊥ A λ + b ≥ 0, exact but for round-off: Murty's least-index method.
+
+    Guess which contacts push: at first none.  Then repeat, at most PIVOTS m times:
+        Find λ with (A λ + b)_k = 0 for those that push and λ_k = 0 for the others.  solve of lesson 1 does it, if the
+        rows of the others are those of the identity.
+        A contact is wrong if it pushes and λ_k < −ε_k/A_kk, or if it does not and (A λ + b)_k < −ε_k, where
+        ε_k = CONVERGED (Σ_l |A_kl λ_l| + |b_k|) is round-off.
+        If none is wrong, return λ.  Else only the wrong one of least index changes sides.
+    For a positive definite A no guess comes twice, so it ends.
+    Raises what check_independent(A) raises; call it first.  After the last round raises
+    Diverged("complementarity residual [m/s]", complementarity_residual(A, b, λ), "use projected Gauss–Seidel").
+    *Source:* Murty 1974.
+    """
+    ### BEGIN SOLUTION 9.8
+    check_independent(A)
+    m = b.size
+    pushes, lam = np.zeros(m, np.bool_), np.zeros(m)
+    for _ in range(PIVOTS * m):
+        matrix, right = np.eye(m), np.zeros(m)
+        for k in range(m):
+            if pushes[k]:
+                matrix[k], right[k] = A[k], -b[k]
+        lam = solve(matrix, right)
+        u, epsilon, wrong = A @ lam + b, CONVERGED * (np.abs(A) @ np.abs(lam) + np.abs(b)), -1
+        for k in range(m - 1, -1, -1):
+            if (lam[k] < -epsilon[k] / A[k, k]) if pushes[k] else (u[k] < -epsilon[k]):
+                wrong = k
+        if wrong < 0:
+            return lam
+        pushes[wrong] = not pushes[wrong]
+    raise Diverged("complementarity residual [m/s]", complementarity_residual(A, b, lam), "use projected Gauss–Seidel")
+    ### END SOLUTION
+
+
+def cone_residual(A, b, J, mu):
+    """How far [m/s] impulses J (2m,) are from the laws of Signorini and Coulomb at all contacts, with friction mu (m,).
+
+    With u = A J + b, each contact by itself would change its impulse to
+        J_n' = max(0, J_n − u_n/k_n),       J_t' = J_t − u_t/k_t, but at most μ J_n in size (0 where J_n ≤ 0)
+    The residual is the largest k_n |J_n' − J_n| or k_t |J_t' − J_t|.  J and u hold (n, t) of one contact after the
+    other; k_n and k_t are on the diagonal of A.  It is 0 exactly where the laws hold, for any solver's J; μ = ∞, too.
+    *Source:* the natural map: J = P(J − u/k), P the projection onto what the laws allow; Acary and Brogliato 2008.
+    """
+    ### BEGIN SOLUTION 9.9
+    u, worst = A @ J + b, 0.0
+    for n in range(0, J.size, 2):
+        t = n + 1
+        limit = mu[n // 2] * J[n] if J[n] > 0.0 else 0.0
+        J_n = np.maximum(0.0, J[n] - u[n] / A[n, n])
+        J_t = np.minimum(np.maximum(J[t] - u[t] / A[t, t], -limit), limit)
+        worst = np.maximum(worst, np.maximum(A[n, n] * np.abs(J_n - J[n]), A[t, t] * np.abs(J_t - J[t])))
+    return worst
+    ### END SOLUTION
+
+
+def cone_sweep(A, b, J, mu):
+    """Impulses (2m,) after one sweep of projected Gauss–Seidel with friction: at each contact J_n, then J_t.
+
+    J_n ← max(0, J_n − u_n/k_n),      J_t ← J_t − u_t/k_t, but at most μ J_n in size (0 where J_n = 0)
+
+    Each u comes from the newest J, and the limit from the new J_n.  Layout and μ are those of cone_residual, and what a
+    sweep leaves unchanged has no residual.  Returns a new array.
+    *Source:* Jourdan, Alart and Jean 1998; Catto 2006.
+    """
+    ### BEGIN SOLUTION 9.10
+    J = J.copy()
+    for n in range(0, J.size, 2):
+        t = n + 1
+        J[n] = np.maximum(0.0, J[n] - (A[n] @ J + b[n]) / A[n, n])
+        limit = mu[n // 2] * J[n] if J[n] > 0.0 else 0.0
+        J[t] = np.minimum(np.maximum(J[t] - (A[t] @ J + b[t]) / A[t, t], -limit), limit)
+    return J
+    ### END SOLUTION
+
+
+def solve_contacts(A, b, mu):
+    """Given.  J (2m,) by cone_sweep from 0 until cone_residual is at most CONVERGED times the largest (|A||J| + |b|)_k.
+
+    Raises Diverged with the residual after SWEEPS sweeps: a mass ratio of a million is too much for it.
+    """
+    J, residual = np.zeros(b.size), np.inf
+    for _ in range(SWEEPS // 10):
+        for _ in range(10):
+            J = cone_sweep(A, b, J, mu)
+        residual = cone_residual(A, b, J, mu)
+        if residual <= CONVERGED * np.max(np.abs(A) @ np.abs(J) + np.abs(b)):
+            return J
+    raise Diverged("residual of the contacts [m/s]", residual, "use a direct solver, or more equal masses")
+
+
+def contact_forces(x, inv_mass, inv_inertia, contacts, load, mu):
+    """(F (m, 2) [N], a (n, 3) [m/s², rad/s²]): forces (F_n, F_t) at the contacts of bodies at rest, and accelerations.
+
+    At rest the laws hold for forces and accelerations as they do for impulses and velocities: solve_contacts(A, b, μ)
+    gives F from  b = G M⁻¹ load,  and then  a = M⁻¹ (load + Gᵀ F).  inverse_masses(inv_mass, inv_inertia) is M⁻¹ (3n,).
+
+    x (n, 2), inv_mass (n,), inv_inertia (n,), load (n, 3) [N, N, N m] force and torque on each body, mu (m,).
+    A scene stays at rest where a = 0.  A contact is released when its F_n reaches 0.
+    Raises what check_scene(x, inv_mass, inv_inertia, contacts, load, mu) raises; call it first.
+    *Left out:* which of several F is the real one where supports are redundant; sums and moments are right.
+    """
+    ### BEGIN SOLUTION 9.11
+    check_scene(x, inv_mass, inv_inertia, contacts, load, mu)
+    G, w = contact_rows(x, contacts), inverse_masses(inv_mass, inv_inertia)
+    F = solve_contacts(delassus_matrix(G, w), G @ (w * load.ravel()), mu)
+    a = w * (load.ravel() + np.ascontiguousarray(G.T) @ F)
+    return F.reshape(-1, 2), a.reshape(-1, 3)
+    ### END SOLUTION
+
+
+# ---------------------------------------------------------------------- quickly: piles in arrays
+
+def soft_contact(gap, hertz, zeta, dt):
+    """(aim [m/s], give [-]) of a contact that is a damped spring: it asks for u_n = aim − give k_n J_n.
+
+    gap > 0:     aim = −gap/dt, which just closes the gap in this step;      give = 0
+    gap ≤ 0:     aim = −s gap/(dt (2ζ + s)),      give = 1/(s (2ζ + s)),      s = 2π hertz dt
+
+    That is an implicit Euler step of a spring (2π hertz)²/k_n with the damping ratio ζ.  Under a force F the gap comes
+    to rest at −k_n F/(2π hertz)², whatever dt is.  gap [m], hertz [1/s], zeta [-], dt [s].
+    *Source:* Catto 2011, "Soft constraints"; lesson 8's compliance, for a contact.
+    """
+    ### BEGIN SOLUTION 9.12
+    if gap > 0.0:
+        return -gap / dt, 0.0
+    s = 2.0 * np.pi * hertz * dt
+    return -s * gap / (dt * (2.0 * zeta + s)), 1.0 / (s * (2.0 * zeta + s))
+    ### END SOLUTION
+
+
+def friction_disc(J, limit):
+    """The point of the disc |J| ≤ limit that is nearest to J: J, or limit J/|J|.  Both are tuples of three numbers.
+
+    Two separate limits along two tangents would allow √2 times the friction along the diagonal.
+    """
+    ### BEGIN SOLUTION 9.13
+    size = np.sqrt(dot(J, J))
+    return scaled(limit / size, J) if size > limit else scaled(1.0, J)
+    ### END SOLUTION
+
+
+def kept_impulses(contacts, old, J_old, near):
+    """J (m, d) [N s] to begin a step with, the warm start: each contact takes over the impulse of an old one.
+
+    That is the nearest contact of `old` between the same two bodies, if it is closer than `near` [m]; else J is 0.
+    contacts and old are ContactSets; J_old belongs to old.  old.first says where the contacts of each body a are.
+    *Source:* Catto 2006.
+    """
+    ### BEGIN SOLUTION 9.14
+    J, d = np.zeros(contacts.p.shape), contacts.p.shape[1]
+    for k in range(contacts.a.size):
+        i, nearest = contacts.a[k], near * near
+        for s in range(old.first[i], old.first[i + 1]):
+            if old.b[s] == contacts.b[k]:
+                squared = 0.0
+                for c in range(d):
+                    squared += (contacts.p[k, c] - old.p[s, c]) ** 2
+                if squared < nearest:
+                    nearest = squared
+                    for c in range(d):
+                        J[k, c] = J_old[s, c]
+    return J
+    ### END SOLUTION
+
+
+def has_left_margin(low, high, wide_low, wide_high):
+    """Whether the box of any body, corners low and high (n, d), is not inside its widened box, wide_low and wide_high.
+
+    As long as none has left, only pairs that the last search found (with the widened boxes) can touch.  NaN has left.
+    """
+    ### BEGIN SOLUTION 9.15
+    for i in range(low.shape[0]):
+        for c in range(low.shape[1]):
+            if not (wide_low[i, c] <= low[i, c] and high[i, c] <= wide_high[i, c]):
+                return True
+    return False
+    ### END SOLUTION
+
+
+def velocity_sweep_2d(v, omega, J, aim, give, contacts, arms, pile):
+    """(v, omega, J) in the plane after one visit to every contact, each as if alone: a sweep without a matrix.
+
+    u = velocity of a's contact point less that of b's: (v_x − ω r_y, v_y + ω r_x) with r = arms.r_a[k], arms.r_b[k]
+    J_n ← max(0, J_n + (aim − u_n − give k_n J_n)/(k_n (1 + give)))           along n;   k_n = arms.k_n[k]
+    J_t ← J_t − u_t/k_t, but at most μ J_n in size, with the new J_n          along t = (−n_y, n_x);   k_t = arms.k_t[k]
+    Both use the same u.  Then the change of J acts on a, and minus that on b:   v += J/m,   ω += (r × J)/I
+
+    v (n + p, 2), omega (n + p,), J (m, 2) in x and y, aim and give (m,); masses and mu from pile.  μ = ∞ sticks where
+    J_n > 0.  Returns new arrays.
+    *Source:* sequential impulses, Catto 2006; aim and give: see soft_contact.
+    """
+    ### BEGIN SOLUTION 9.16
+    v, omega, J, inv_mass, inv_inertia = v.copy(), omega.copy(), J.copy(), pile.inv_mass, pile.inv_inertia
+    for k in range(contacts.a.size):
+        a, b, n_x, n_y, k_n = contacts.a[k], contacts.b[k], contacts.n[k, 0], contacts.n[k, 1], arms.k_n[k]
+        a_x, a_y, b_x, b_y = arms.r_a[k, 0], arms.r_a[k, 1], arms.r_b[k, 0], arms.r_b[k, 1]
+        u_x = v[a, 0] - omega[a] * a_y - v[b, 0] + omega[b] * b_y
+        u_y = v[a, 1] + omega[a] * a_x - v[b, 1] - omega[b] * b_x
+        u_n, u_t = n_x * u_x + n_y * u_y, n_x * u_y - n_y * u_x
+        J_n, J_t = n_x * J[k, 0] + n_y * J[k, 1], n_x * J[k, 1] - n_y * J[k, 0]
+        J_n += (aim[k] - u_n - give[k] * k_n * J_n) / (k_n * (1.0 + give[k]))
+        J_n = 0.0 if J_n <= 0.0 else J_n                                 # a NaN stays one
+        J_t, limit = J_t - u_t / arms.k_t[k], pile.mu * J_n if J_n > 0.0 else 0.0
+        J_t = -limit if J_t < -limit else limit if J_t > limit else J_t
+        d_x, d_y = J_n * n_x - J_t * n_y - J[k, 0], J_n * n_y + J_t * n_x - J[k, 1]
+        J[k, 0], J[k, 1] = J[k, 0] + d_x, J[k, 1] + d_y
+        v[a, 0] += inv_mass[a] * d_x
+        v[a, 1] += inv_mass[a] * d_y
+        omega[a] += inv_inertia[a] * (a_x * d_y - a_y * d_x)
+        v[b, 0] -= inv_mass[b] * d_x
+        v[b, 1] -= inv_mass[b] * d_y
+        omega[b] -= inv_inertia[b] * (b_x * d_y - b_y * d_x)
+    return v, omega, J
+    ### END SOLUTION
+
+
+def velocity_sweep(v, omega, J, aim, give, contacts, arms, inv_mass, inv_inertia, mu):
+    """Given.  The same in space: J_t in the disc of friction, inv_inertia (n + p, 3, 3) in the world."""
+    v, omega, J = v.copy(), omega.copy(), J.copy()
+    for k in range(contacts.a.size):
+        a, b, k_n, old = contacts.a[k], contacts.b[k], arms.k_n[k], row(J, k)
+        n, r_a, r_b = row(contacts.n, k), row(arms.r_a, k), row(arms.r_b, k)
+        u = minus(point_velocity_of(v, omega, a, r_a), point_velocity_of(v, omega, b, r_b))
+        J_n = dot(n, old)
+        J_n = np.maximum(0.0, J_n + (aim[k] - dot(n, u) - give[k] * k_n * J_n) / (k_n * (1.0 + give[k])))
+        stick = plus(old, -1.0 / arms.k_t[k], u)
+        J_t = friction_disc(plus(stick, -dot(n, stick), n), mu * J_n if J_n > 0.0 else 0.0)
+        put(J, k, plus(J_t, J_n, n))
+        apply_impulse(v, omega, a, r_a, minus(row(J, k), old), inv_mass, inv_inertia)
+        apply_impulse(v, omega, b, r_b, minus(old, row(J, k)), inv_mass, inv_inertia)
+    return v, omega, J
+
+
+def contact_targets(gap, dt, pile):
+    """Given.  (aim, give), each (m,), of soft_contact for all contacts; none aims at parting faster than PUSH."""
+    aim, give = np.empty(gap.size), np.empty(gap.size)
+    for k in range(gap.size):
+        aim[k], give[k] = soft_contact(gap[k], pile.hertz, pile.zeta, dt)
+        aim[k] = min(aim[k], PUSH)
+    return aim, give
+
+
+def advance_pile_2d(bounds, find_contacts, state, dt, steps, pile):
+    """Given.  PileState after so many steps in the plane, with disc_bounds and round_contacts, or those of boxes.
+
+    Contacts are found once per step.  A substep: gravity and the last impulses; a sweep of soft contacts; motion; a
+    sweep at rest, which takes back the velocity that only served to push bodies apart.
+    Raises BadInput for hertz that a substep cannot carry, Diverged with the residual where bodies sink into each other.
+    """
+    state, dt, steps = checked_pile(state, dt, steps, pile)
+    h, wide_low, wide_high, residual, allowed = dt / pile.substeps, pile.half + np.inf, pile.half, 0.0, np.inf
+    (x, q, v, omega, contacts, J), falls = state, (pile.inv_mass > 0.0)[:, None]
+    pairs = Pairs(contacts.first, contacts.b)
+    for _ in range(steps):
+        low, high, turn = bounds(x, q, pile.half)
+        if has_left_margin(low, high, wide_low, wide_high):
+            wide_low, wide_high = low - pile.margin, high + pile.margin
+            pairs = near_pairs(wide_low, wide_high, pile.planes)
+        old, contacts = contacts, find_contacts(x, turn, pile.half, pile.planes, pairs, 0.5 * pile.margin)
+        allowed = check_overlap(contacts, v, dt, pile.half, allowed, residual)
+        arms = arms_2d(x, pile.inv_mass, pile.inv_inertia, contacts)
+        J, gap = kept_impulses(contacts, old, J, pile.margin), contacts.gap
+        for _ in range(pile.substeps):
+            aim, give = contact_targets(gap, h, pile)
+            v, omega = v + h * falls * pile.gravity, omega.copy()
+            apply_impulses_2d(v, omega, J, contacts, arms, pile.inv_mass, pile.inv_inertia)
+            v, omega, J = velocity_sweep_2d(v, omega, J, aim, give, contacts, arms, pile)
+            x, q, before = x + h * v, q + h * omega, v
+            gap = gap + h * normal_velocities_2d(v, omega, contacts, arms)
+            aim, give = np.minimum(aim, 0.0), 0.0 * give
+            v, omega, J = velocity_sweep_2d(v, omega, J, aim, give, contacts, arms, pile)
+        residual = np.max(np.abs(v - before))
+    check_end(x, v, dt)
+    return PileState(x, q, v, omega, contacts, J)
+
+
+def advance_pile(bounds, find_contacts, state, dt, steps, pile):
+    """Given.  The same in space, with ball_bounds and round_contacts, or box_bounds and box_contacts."""
+    state, dt, steps = checked_pile(state, dt, steps, pile)
+    h, wide_low, wide_high, residual, allowed = dt / pile.substeps, pile.half + np.inf, pile.half, 0.0, np.inf
+    (x, q, v, omega, contacts, J), falls = state, (pile.inv_mass > 0.0)[:, None]
+    pairs = Pairs(contacts.first, contacts.b)
+    for _ in range(steps):
+        low, high, turn = bounds(x, q, pile.half)
+        if has_left_margin(low, high, wide_low, wide_high):
+            wide_low, wide_high = low - pile.margin, high + pile.margin
+            pairs = near_pairs(wide_low, wide_high, pile.planes)
+        old, contacts = contacts, find_contacts(x, turn, pile.half, pile.planes, pairs, 0.5 * pile.margin)
+        allowed = check_overlap(contacts, v, dt, pile.half, allowed, residual)
+        inv_inertia = world_inertia(turn, pile.inv_inertia)
+        arms = arms_3d(x, pile.inv_mass, inv_inertia, contacts)
+        J, gap = kept_impulses(contacts, old, J, pile.margin), contacts.gap
+        for _ in range(pile.substeps):
+            aim, give = contact_targets(gap, h, pile)
+            v, omega = v + h * falls * pile.gravity, turn_freely(turn, omega, pile.inv_inertia, h)
+            apply_impulses(v, omega, J, contacts, arms, pile.inv_mass, inv_inertia)
+            v, omega, J = velocity_sweep(v, omega, J, aim, give, contacts, arms, pile.inv_mass, inv_inertia, pile.mu)
+            x, q, before = x + h * v, turn_quaternions(q, omega, h), v
+            gap = gap + h * normal_velocities(v, omega, contacts, arms)
+            aim, give = np.minimum(aim, 0.0), 0.0 * give
+            v, omega, J = velocity_sweep(v, omega, J, aim, give, contacts, arms, pile.inv_mass, inv_inertia, pile.mu)
+        residual = np.max(np.abs(v - before))
+    check_end(x, v, dt)
+    return PileState(x, q, v, omega, contacts, J)
+
+
+def pile_trajectory(advance, bounds, find_contacts, state, dt, steps, pile):
+    """Given.  All PileStates, the first included, of so many steps by advance_pile_2d or advance_pile."""
+    states = [state]
+    for _ in range(steps):
+        states.append(advance(bounds, find_contacts, states[-1], dt, 1, pile))
+    return states

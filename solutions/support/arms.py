@@ -1,0 +1,135 @@
+"""What a sweep needs to know of each contact, made once per step; and how free rigid bodies turn."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..vectors import dot
+from .tuples import across, axis, minus, plus, put, row, scaled, times
+
+
+class Arms(NamedTuple):
+    """Offsets and effective inverse masses of m contacts."""
+    r_a: np.ndarray          # (m, d) from the centre of a to the contact [m]
+    r_b: np.ndarray          # (m, d) the same for b [m]
+    k_n: np.ndarray          # (m,) effective inverse mass along the normal [1/kg]
+    k_t: np.ndarray          # (m,) effective inverse mass along the surface [1/kg]: in space a bound for all directions
+
+
+def arms_2d(x, inv_mass, inv_inertia, c):
+    """The Arms of a ContactSet in the plane."""
+    m = c.a.size
+    arms = Arms(np.empty((m, 2)), np.empty((m, 2)), np.empty(m), np.empty(m))
+    for k in range(m):
+        light = inv_mass[c.a[k]] + inv_mass[c.b[k]]
+        arms.k_n[k], arms.k_t[k] = light, light
+        for body, r in ((c.a[k], arms.r_a), (c.b[k], arms.r_b)):
+            r[k, 0], r[k, 1] = c.p[k, 0] - x[body, 0], c.p[k, 1] - x[body, 1]
+            arms.k_n[k] += inv_inertia[body] * (r[k, 0] * c.n[k, 1] - r[k, 1] * c.n[k, 0]) ** 2
+            arms.k_t[k] += inv_inertia[body] * (r[k, 0] * c.n[k, 0] + r[k, 1] * c.n[k, 1]) ** 2
+    return arms
+
+
+def arms_3d(x, inv_mass, inv_inertia, c):
+    """The Arms of a ContactSet in space, inv_inertia (n + p, 3, 3) in the world.
+
+    k_t = tr K − k_n is the sum of both eigenvalues of K along the surface, so at least the larger one.  It must be one number for all
+    directions: only then does a projection onto the disc of friction come to rest where Coulomb's law holds.
+    """
+    m = c.a.size
+    arms = Arms(np.empty((m, 3)), np.empty((m, 3)), np.empty(m), np.empty(m))
+    for k in range(m):
+        n, p = row(c.n, k), row(c.p, k)
+        light, along, trace = inv_mass[c.a[k]] + inv_mass[c.b[k]], 0.0, 0.0
+        for body, r in ((c.a[k], arms.r_a), (c.b[k], arms.r_b)):
+            arm = minus(p, row(x, body))
+            lever = across(arm, n)
+            put(r, k, arm)
+            along += dot(lever, times(inv_inertia, body, lever))
+            both = inv_inertia[body, 0, 0] + inv_inertia[body, 1, 1] + inv_inertia[body, 2, 2]
+            trace += dot(arm, arm) * both - dot(arm, times(inv_inertia, body, arm))
+        arms.k_n[k], arms.k_t[k] = light + along, 2.0 * light + trace - along
+    return arms
+
+
+def apply_impulses_2d(v, omega, J, c, arms, inv_mass, inv_inertia):
+    """Velocities of all bodies after impulses J (m, 2) at their contacts, in place."""
+    for k in range(c.a.size):
+        for body, r, sign in ((c.a[k], arms.r_a, 1.0), (c.b[k], arms.r_b, -1.0)):
+            v[body, 0] += sign * inv_mass[body] * J[k, 0]
+            v[body, 1] += sign * inv_mass[body] * J[k, 1]
+            omega[body] += sign * inv_inertia[body] * (r[k, 0] * J[k, 1] - r[k, 1] * J[k, 0])
+
+
+def apply_impulse(v, omega, i, r, J, inv_mass, inv_inertia):
+    """Velocities of body i after an impulse J at its offset r, in place."""
+    put(v, i, plus(row(v, i), inv_mass[i], J))
+    put(omega, i, plus(row(omega, i), 1.0, times(inv_inertia, i, across(r, J))))
+
+
+def apply_impulses(v, omega, J, c, arms, inv_mass, inv_inertia):
+    """The same as apply_impulses_2d in space."""
+    for k in range(c.a.size):
+        apply_impulse(v, omega, c.a[k], row(arms.r_a, k), row(J, k), inv_mass, inv_inertia)
+        apply_impulse(v, omega, c.b[k], row(arms.r_b, k), scaled(-1.0, row(J, k)), inv_mass, inv_inertia)
+
+
+def point_velocity_of(v, omega, i, r):
+    """Velocity of the point of body i at its offset r, in space."""
+    return plus(row(v, i), 1.0, across(row(omega, i), r))
+
+
+def normal_velocities_2d(v, omega, c, arms):
+    """u_n (m,) [m/s] of all contacts in the plane."""
+    u_n = np.empty(c.a.size)
+    for k in range(c.a.size):
+        a, b = c.a[k], c.b[k]
+        u_x = v[a, 0] - omega[a] * arms.r_a[k, 1] - v[b, 0] + omega[b] * arms.r_b[k, 1]
+        u_y = v[a, 1] + omega[a] * arms.r_a[k, 0] - v[b, 1] - omega[b] * arms.r_b[k, 0]
+        u_n[k] = c.n[k, 0] * u_x + c.n[k, 1] * u_y
+    return u_n
+
+
+def normal_velocities(v, omega, c, arms):
+    """u_n (m,) [m/s] of all contacts in space."""
+    u_n = np.empty(c.a.size)
+    for k in range(c.a.size):
+        u = minus(point_velocity_of(v, omega, c.a[k], row(arms.r_a, k)), point_velocity_of(v, omega, c.b[k], row(arms.r_b, k)))
+        u_n[k] = dot(row(c.n, k), u)
+    return u_n
+
+
+def world_inertia(turn, inv_body):
+    """I⁻¹ = R I_body⁻¹ Rᵀ (n + p, 3, 3) of all bodies, turn (n, 3, 3), from inverse principal moments inv_body (n + p, 3)."""
+    I = np.zeros((inv_body.shape[0], 3, 3))
+    for i in range(turn.shape[0]):
+        for r in range(3):
+            for c in range(3):
+                for e in range(3):
+                    I[i, r, c] += turn[i, r, e] * inv_body[i, e] * turn[i, c, e]
+    return I
+
+
+def turn_freely(turn, omega, inv_body, dt):
+    """ω − dt I⁻¹ (ω × I ω) of n bodies: the gyroscopic term of lesson 5, explicit."""
+    omega = omega.copy()
+    for i in range(turn.shape[0]):
+        w = row(omega, i)
+        a, b, c = dot(axis(turn, i, 0), w), dot(axis(turn, i, 1), w), dot(axis(turn, i, 2), w)
+        I_a, I_b, I_c = 1.0 / inv_body[i, 0], 1.0 / inv_body[i, 1], 1.0 / inv_body[i, 2]
+        w = plus(w, dt * (I_b - I_c) * b * c / I_a, axis(turn, i, 0))
+        w = plus(w, dt * (I_c - I_a) * c * a / I_b, axis(turn, i, 1))
+        put(omega, i, plus(w, dt * (I_a - I_b) * a * b / I_c, axis(turn, i, 2)))
+    return omega
+
+
+def turn_quaternions(q, omega, dt):
+    """quaternion_update of lesson 5 for all bodies."""
+    q = q.copy()
+    for i in range(q.shape[0]):
+        w, a = q[i, 0], (q[i, 1], q[i, 2], q[i, 3])
+        h = (0.5 * dt * omega[i, 0], 0.5 * dt * omega[i, 1], 0.5 * dt * omega[i, 2])
+        w_new, a_new = w - dot(h, a), plus(plus(a, w, h), 1.0, across(h, a))
+        size = np.sqrt(w_new * w_new + dot(a_new, a_new))
+        q[i, 0], q[i, 1], q[i, 2], q[i, 3] = w_new / size, a_new[0] / size, a_new[1] / size, a_new[2] / size
+    return q

@@ -1,0 +1,97 @@
+"""Broad phase: pairs of boxes (along the axes) that overlap, found in a grid of cells.
+
+The boxes of lesson 6 stay where they are for one search.  Here they are wider than the bodies, so that the same pairs serve many steps.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..checks import Diverged
+
+CELLS_PER_BODY = 8           # at most [-]: a body that flies far away must not make the grid huge
+
+
+class Pairs(NamedTuple):
+    """Body i may touch partner[first[i]], …, partner[first[i + 1] − 1], all with greater numbers.  Plane p is body n + p."""
+    first: np.ndarray        # (n + 1,)
+    partner: np.ndarray      # (pairs,)
+
+
+def cell_numbers(low, size):
+    """(cell (n,), stride (d,), cells): the cell of each box's low corner, in a grid that has an empty rim on all sides."""
+    n, d = low.shape
+    cell, stride, cells = np.zeros(n, np.int64), np.ones(d, np.int64), 1
+    for c in range(d):
+        least, last = np.min(low[:, c]), 0
+        stride[c] = cells
+        for i in range(n):
+            place = int((low[i, c] - least) / size) + 1
+            cell[i] += cells * place
+            last = max(last, place)
+        cells *= last + 2
+    return cell, stride, cells
+
+
+def cell_size(low, high):
+    """Edge of the cells [m]: the largest box, or more where so small cells would be too many."""
+    n, d = low.shape
+    size, volume = 0.0, 1.0
+    for c in range(d):
+        size = max(size, np.max(high[:, c] - low[:, c]))
+    for c in range(d):
+        volume *= np.max(low[:, c]) - np.min(low[:, c]) + size
+    if not np.isfinite(volume):
+        raise Diverged("the volume around all bodies", volume, "take more substeps")
+    return max(size, (volume / (CELLS_PER_BODY * n)) ** (1.0 / d))
+
+
+def sorted_by_cell(cell, cells):
+    """(start (cells + 1,), order (n,)): the boxes of cell c are order[start[c]:start[c + 1]].  A counting sort."""
+    start, order = np.zeros(cells + 2, np.int64), np.zeros(cell.size, np.int64)
+    for c in cell:
+        start[c + 2] += 1
+    for c in range(2, start.size):
+        start[c] += start[c - 1]
+    for i in range(cell.size):
+        order[start[cell[i] + 1]] = i
+        start[cell[i] + 1] += 1
+    return start, order
+
+
+def boxes_overlap(low, high, i, j):
+    """Whether boxes i and j overlap or touch."""
+    for c in range(low.shape[1]):
+        if low[i, c] > high[j, c] or low[j, c] > high[i, c]:
+            return False
+    return True
+
+
+def box_reaches(low, high, i, plane):
+    """Whether box i reaches a plane, (n, d) in one row: n · p + d = 0."""
+    d = low.shape[1]
+    distance = plane[d]
+    for c in range(d):
+        distance += plane[c] * (low[i, c] if plane[c] > 0.0 else high[i, c])
+    return distance <= 0.0
+
+
+def near_pairs(low, high, planes):
+    """Pairs of boxes, corners low and high (n, d), that overlap, and of boxes and the planes (p, d + 1) that they reach."""
+    n, d = low.shape
+    cell, stride, cells = cell_numbers(low, cell_size(low, high))
+    start, order = sorted_by_cell(cell, cells)
+    first, partner = np.zeros(n + 1, np.int64), [0 for _ in range(0)]
+    for i in range(n):
+        for around in range(3 ** (d - 1)):                           # rows of three cells that lie side by side in `order`
+            middle = cell[i] + (around % 3 - 1) * stride[1]
+            if d == 3:
+                middle += (around // 3 - 1) * stride[2]
+            for k in range(start[middle - 1], start[middle + 2]):
+                if order[k] > i and boxes_overlap(low, high, i, order[k]):
+                    partner.append(order[k])
+        for p in range(planes.shape[0]):
+            if box_reaches(low, high, i, planes[p]):
+                partner.append(n + p)
+        first[i + 1] = len(partner)
+    return Pairs(first, np.array(partner, dtype=np.int64))

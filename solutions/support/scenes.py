@@ -1,0 +1,229 @@
+"""Scenes with many contacts: their records, and functions that build and check them."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..checks import (
+    BadInput,
+    Diverged,
+    check_field,
+    check_finite,
+    check_friction,
+    check_indices,
+    check_normal,
+    check_not_negative,
+    check_positive,
+    check_shape,
+    finite_array,
+    number,
+    positive_number,
+    whole_number,
+)
+from .contact_points import ContactSet
+
+HIGHEST = 1.0 / 3.0          # hertz times a substep [-]: faster soft contacts make piles tremble
+INDEPENDENT = 1e-12          # least pivot of A over its diagonal [-]: below it a contact repeats what others say
+TOO_DEEP = 0.5               # overlap over the smaller half size that ends a run, if it was not there before [-]
+DEEPER = 1.05                # by which what overlapped at the beginning may go deeper [-]
+
+
+class PileState(NamedTuple):
+    """n bodies and, as further rows that never move, p planes."""
+    x: np.ndarray            # (n + p, d) [m]
+    q: np.ndarray            # (n + p,) angle [rad], or (n + p, 4) unit quaternion
+    v: np.ndarray            # (n + p, d) [m/s]
+    omega: np.ndarray        # (n + p,) or (n + p, 3) [rad/s]
+    contacts: ContactSet     # of the last step
+    J: np.ndarray            # (m, d) their impulses in one substep [N s]
+
+
+class Pile(NamedTuple):
+    """What does not change: bodies, planes and the settings of the solver."""
+    inv_mass: np.ndarray     # (n + p,) [1/kg]; 0 for planes
+    inv_inertia: np.ndarray  # (n + p,), or (n + p, 3) about the principal axes [1/(kg m²)]; 0 for planes
+    half: np.ndarray         # (n, d) half sizes [m]; of what is round its radius d times
+    planes: np.ndarray       # (p, d + 1): n · p + d = 0, bodies on the side of n
+    gravity: np.ndarray      # (d,) [m/s²]
+    mu: float                # friction [-]
+    substeps: int            # per step
+    hertz: float             # frequency of the soft contacts [1/s]
+    zeta: float              # their damping ratio [-]
+    margin: float            # by which boxes are widened, so that pairs serve for many steps [m]
+
+
+# ---------------------------------------------------------------------------------------------- small scenes
+
+def make_contacts(a, b, p, n, inv_mass):
+    """A ContactSet in the plane, all gaps 0: bodies a[k] and b[k] touch at p (m, 2) with unit normals n (m, 2), from b to a.
+
+    Raises BadInput for a body number that is none, a normal that is no unit vector, and for two bodies that cannot move.
+    """
+    inv_mass = finite_array("an inverse mass [1/kg]", inv_mass)
+    a, b = check_indices("a body of a contact", a, inv_mass.size), check_indices("a body of a contact", b, inv_mass.size)
+    p, n = finite_array("a contact point [m]", p), finite_array("a normal [-]", n)
+    check_shape("the bodies a", a, (a.size,))
+    check_shape("the bodies b", b, (a.size,))
+    check_field("the contact points p", p, (a.size, 2))
+    check_field("the normals n", n, (a.size, 2))
+    for k in range(a.size):
+        check_normal(n[k])
+        if a[k] == b[k]:
+            raise BadInput("both bodies of a contact", a[k], "name two bodies")
+        check_positive("inverse mass of both bodies of a contact [1/kg]", inv_mass[a[k]] + inv_mass[b[k]])
+    return ContactSet(np.zeros(1, np.int64), a, b, n, p, np.zeros(a.size))
+
+
+def inverse_masses(inv_mass, inv_inertia):
+    """M⁻¹ (3n,): 1/m, 1/m, 1/I of every body, from inv_mass (n,) and inv_inertia (n,)."""
+    w = np.zeros(3 * inv_mass.size)
+    for i in range(inv_mass.size):
+        w[3 * i], w[3 * i + 1], w[3 * i + 2] = inv_mass[i], inv_mass[i], inv_inertia[i]
+    return w
+
+
+def check_scene(x, inv_mass, inv_inertia, contacts, load, mu):
+    """Raise BadInput unless these are what contact_forces can be asked about."""
+    check_field("the centres x [m]", x, (len(x), 2))
+    check_field("the inverse masses [1/kg]", inv_mass, (len(x),))
+    check_field("the inverse inertias [1/(kg m²)]", inv_inertia, (len(x),))
+    check_field("the load [N, N, N m]", load, (len(x), 3))
+    check_shape("the friction μ", mu, contacts.a.shape)
+    for k in range(mu.size):
+        check_friction(mu[k])
+    for i in range(len(x)):
+        check_not_negative("an inverse mass [1/kg]", inv_mass[i])
+        check_not_negative("an inverse inertia [1/(kg m²)]", inv_inertia[i])
+
+
+def check_independent(A):
+    """Raise BadInput unless A is positive definite: all pivots of elimination above INDEPENDENT times the diagonal."""
+    U = 1.0 * A
+    for k in range(A.shape[0]):
+        if not U[k, k] > INDEPENDENT * A[k, k]:
+            raise BadInput("a pivot of the Delassus matrix [1/kg]", U[k, k], "leave out contacts that others make redundant")
+        for r in range(k + 1, A.shape[0]):
+            U[r] = U[r] - U[r, k] / U[k, k] * U[k]
+
+
+# ---------------------------------------------------------------------------------------------- piles
+
+def check_pile(x, half, planes, d):
+    """Raise BadInput unless these arrays describe bodies and planes in d dimensions."""
+    check_field("the centres x [m]", x, (len(x), d))
+    check_field("the half sizes [m]", half, (len(x), d))
+    check_field("the planes", planes, (len(planes), d + 1))
+    for size in half.ravel():
+        check_positive("half size of a body [m]", size)
+    for p in range(len(planes)):
+        check_normal(planes[p, :d])
+
+
+def inverse(thing, values, count, planes):
+    """1/values, one each, and 0 for each plane.  Raises BadInput unless all are above zero."""
+    values = finite_array(thing, values)
+    if values.size != 1:
+        check_shape(thing, values, (count,))
+    values = np.zeros(count) + values.ravel()
+    for value in values:
+        check_positive(thing, value)
+    return np.concatenate((1.0 / values, np.zeros(planes)))
+
+
+def no_contacts(n, d):
+    """The ContactSet of n bodies before their first step."""
+    nobody = np.zeros(0, np.int64)
+    return ContactSet(np.zeros(n + 1, np.int64), nobody, nobody, np.zeros((0, d)), np.zeros((0, d)), np.zeros(0))
+
+
+def settings(mu, substeps, hertz, zeta, margin):
+    """The last five fields of a Pile, checked."""
+    mu = number("friction μ [-]", mu)
+    check_friction(mu)
+    return (mu, whole_number("number of substeps", substeps, 1), positive_number("hertz of the contacts [1/s]", hertz),
+            positive_number("damping ratio ζ of the contacts [-]", zeta), positive_number("margin [m]", margin))
+
+
+def make_pile_2d(x, q, m, inertia, half, planes, gravity, mu, substeps, hertz, zeta, margin):
+    """(PileState, Pile) of discs or boxes at rest in the plane, centres x (n, 2), angles q (n,), and lines planes (p, 3).
+
+    m [kg] and inertia [kg m²] are numbers or one each; half (n, 2) half sizes [m], of a disc its radius twice.
+    Raises BadInput for sizes, masses or settings that are not above zero, and planes without a unit normal.
+    """
+    x, half, planes = finite_array("a centre x [m]", x), finite_array("a half size [m]", half), finite_array("a plane", planes)
+    q, gravity = finite_array("an angle q [rad]", q), finite_array("gravity [m/s²]", gravity)
+    check_pile(x, half, planes, 2)
+    n, p = len(x), len(planes)
+    check_field("the angles q [rad]", q, (n,))
+    check_field("gravity [m/s²]", gravity, (2,))
+    mu, substeps, hertz, zeta, margin = settings(mu, substeps, hertz, zeta, margin)
+    state = PileState(np.concatenate((x, np.zeros((p, 2)))), np.concatenate((q, np.zeros(p))), np.zeros((n + p, 2)), np.zeros(n + p), no_contacts(n, 2), np.zeros((0, 2)))
+    return state, Pile(inverse("mass [kg]", m, n, p), inverse("moment of inertia [kg m²]", inertia, n, p), half, planes, gravity, mu, substeps, hertz, zeta, margin)
+
+
+def make_pile(x, q, m, inertia, half, planes, gravity, mu, substeps, hertz, zeta, margin):
+    """(PileState, Pile) of spheres or boxes at rest in space, as in make_pile_2d: x (n, 3), unit quaternions q (n, 4), planes (p, 4).
+
+    inertia (n, 3): principal moments [kg m²].
+    """
+    x, half, planes = finite_array("a centre x [m]", x), finite_array("a half size [m]", half), finite_array("a plane", planes)
+    q, gravity, inertia = finite_array("a quaternion q [-]", q), finite_array("gravity [m/s²]", gravity), finite_array("a moment of inertia [kg m²]", inertia)
+    check_pile(x, half, planes, 3)
+    n, p = len(x), len(planes)
+    check_field("the quaternions q [-]", q, (n, 4))
+    check_field("gravity [m/s²]", gravity, (3,))
+    check_field("the moments of inertia [kg m²]", inertia, (n, 3))
+    for i in range(n):
+        check_normal(q[i])
+    mu, substeps, hertz, zeta, margin = settings(mu, substeps, hertz, zeta, margin)
+    inv_inertia = inverse("moment of inertia [kg m²]", inertia.ravel(), 3 * n, 3 * p).reshape(-1, 3)
+    state = PileState(np.concatenate((x, np.zeros((p, 3)))), np.concatenate((q, np.tile(np.array([1.0, 0.0, 0.0, 0.0]), p).reshape(p, 4))), np.zeros((n + p, 3)), np.zeros((n + p, 3)), no_contacts(n, 3), np.zeros((0, 3)))
+    return state, Pile(inverse("mass [kg]", m, n, p), inv_inertia, half, planes, gravity, mu, substeps, hertz, zeta, margin)
+
+
+def checked_pile(state, dt, steps, pile):
+    """(PileState, dt, steps), converted to float64.
+
+    Raises BadInput for a step or a number of steps that is none, hertz that a substep does not carry, what is not finite, and quaternions
+    without length.
+    """
+    dt, steps = positive_number("step dt [s]", dt), whole_number("number of steps", steps, 0)
+    check_positive("a substep [s]", dt / pile.substeps)
+    product = pile.hertz * dt / pile.substeps
+    if not product <= HIGHEST * (1.0 + 1e-9):
+        raise BadInput("hertz of the contacts times a substep [-]", product, "give at most 1/3: take more substeps, or fewer hertz")
+    check_friction(pile.mu)
+    check_finite("planes", pile.planes)
+    x, q = finite_array("position x [m]", state.x), finite_array("orientation q", state.q)
+    v, omega = finite_array("velocity v [m/s]", state.v), finite_array("angular velocity ω [rad/s]", state.omega)
+    for thing, values in (("position x [m]", x), ("velocity v [m/s]", v)):
+        check_shape(thing, values, (len(pile.inv_mass), pile.half.shape[1]))
+    if q.ndim == 2:
+        check_shape("orientation q", q, (len(x), 4))
+        for i in range(q.shape[0]):
+            check_positive("length of a quaternion [-]", np.sum(q[i] ** 2))
+    return PileState(x, q, v, omega, state.contacts, finite_array("impulse J [N s]", state.J)), dt, steps
+
+
+def check_overlap(contacts, v, dt, half, allowed, residual):
+    """The overlap, over the smaller half size of both bodies, that is allowed from now on: TOO_DEEP, or what was there at the beginning
+    if that is more (then `allowed` is ∞).
+
+    What moves fast may go as far in during a step as the bodies move in it.  Raises Diverged with the residual [m/s] of the contacts where
+    bodies sink into each other all the same, or where a velocity is no number.
+    """
+    deepest, fastest, n = 0.0, np.max(np.abs(v)), half.shape[0]
+    if not np.isfinite(fastest):
+        raise Diverged("the largest velocity of a body [m/s]", fastest, "take more substeps, or shorter steps")
+    for k in range(contacts.a.size):
+        sunk = -contacts.gap[k] - 2.0 * dt * fastest
+        if sunk > 0.0:
+            size = half[contacts.a[k], 0]
+            for c in range(half.shape[1]):
+                size = min(size, half[contacts.a[k], c])
+                if contacts.b[k] < n:
+                    size = min(size, half[contacts.b[k], c])
+            deepest = max(deepest, sunk / size)
+    if deepest > allowed:
+        raise Diverged("bodies sink into each other; the residual of their contacts [m/s]", residual, "take more substeps, shorter steps, or more equal masses")
+    return min(allowed, max(TOO_DEEP, DEEPER * deepest))

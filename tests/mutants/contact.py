@@ -1,0 +1,496 @@
+"""Lesson 9: contacts that pull, look at the wrong body, forget, forgive, or stop too soon."""
+
+import numpy as np
+
+from solutions import contact as worked
+from solutions.checks import Diverged
+from . import collection, variants
+
+wrong, right, edit, MUTANTS = collection(worked)
+
+
+# 9.1 ------------------------------------------------------------------------------------------------------------
+@variants
+def rows(sign_b=-1.0, side=1.0, arm=1.0, swap=False, blocks=False, centre=True):
+    def contact_rows(x, contacts):
+        m, G = len(contacts.a), np.zeros((2 * len(contacts.a), 3 * len(x)))
+        for k in range(m):
+            n = contacts.n[k]
+            t = side * np.array([-n[1], n[0]])
+            for s, d in enumerate((t, n) if swap else (n, t)):
+                row = s * m + k if blocks else 2 * k + s
+                for body, sign in ((contacts.a[k], 1.0), (contacts.b[k], sign_b)):
+                    r = contacts.p[k] - (x[body] if centre else 0.0)
+                    G[row, 3 * body:3 * body + 2] += sign * d
+                    G[row, 3 * body + 2] += sign * arm * (r[0] * d[1] - r[1] * d[0])
+        return G
+    return contact_rows
+
+
+@right("9.1", "one motion after the other")
+def contact_rows(x, contacts):
+    G = np.zeros((2 * len(contacts.a), 3 * len(x)))
+    n = contacts.n
+    t = np.stack((-n[:, 1], n[:, 0]), axis=1)
+    for first, d in ((0, n), (1, t)):
+        for bodies, sign in ((contacts.a, 1.0), (contacts.b, -1.0)):
+            r, k = contacts.p - x[bodies], first + 2 * np.arange(len(bodies))
+            G[k, 3 * bodies] = sign * d[:, 0]
+            G[k, 3 * bodies + 1] = sign * d[:, 1]
+            G[k, 3 * bodies + 2] = sign * np.cross(np.pad(r, ((0, 0), (0, 1))), np.pad(d, ((0, 0), (0, 1))))[:, 2]
+    return G
+
+
+wrong("9.1", "b moves with a")(rows(sign_b=1.0))
+wrong("9.1", "the tangent on the other side")(rows(side=-1.0))
+wrong("9.1", "turns the other way")(rows(arm=-1.0))
+wrong("9.1", "does not turn")(rows(arm=0.0))
+wrong("9.1", "tangent before normal")(rows(swap=True))
+wrong("9.1", "all normals before all tangents")(rows(blocks=True))
+wrong("9.1", "arms from the origin")(rows(centre=False))
+
+
+# 9.2 ------------------------------------------------------------------------------------------------------------
+@variants
+def delassus(masses=lambda w: w, turned=True, diagonal=False):
+    def delassus_matrix(G, w):
+        A = G @ np.diag(masses(w)) @ G.T if turned else G.T @ G
+        return np.diag(np.diag(A)) if diagonal else A
+    return delassus_matrix
+
+
+@right("9.2", "row by row")
+def delassus_matrix(G, w):
+    return np.array([[np.sum(r * w * s) for s in G] for r in G])
+
+
+wrong("9.2", "the root of the masses")(delassus(masses=np.sqrt))
+wrong("9.2", "no masses")(delassus(masses=np.ones_like))
+wrong("9.2", "no turning")(delassus(masses=lambda w: w * np.resize([1.0, 1.0, 0.0], len(w))))
+wrong("9.2", "for bodies, not for contacts")(delassus(turned=False))
+wrong("9.2", "each contact by itself")(delassus(diagonal=True))
+
+
+# 9.3 ------------------------------------------------------------------------------------------------------------
+@variants
+def lcp_residual(size=np.abs, scale=lambda A: np.diag(A), total=np.max, pair=np.minimum, bias=1.0):
+    def complementarity_residual(A, b, lam):
+        return total(size(pair(scale(A) * lam, A @ lam + bias * b)))
+    return complementarity_residual
+
+
+@right("9.3", "contact by contact")
+def complementarity_residual(A, b, lam):
+    worst = 0.0
+    for k in range(len(b)):
+        worst = max(worst, abs(min(A[k, k] * lam[k], A[k] @ lam + b[k])))
+    return worst
+
+
+wrong("9.3", "no sizes")(lcp_residual(size=lambda y: y))
+wrong("9.3", "approach only")(lcp_residual(size=lambda y: np.maximum(0.0, -y)))
+wrong("9.3", "an impulse for a velocity")(lcp_residual(scale=lambda A: 1.0))
+wrong("9.3", "the sum")(lcp_residual(total=np.sum))
+wrong("9.3", "the mean square")(lcp_residual(total=lambda y: np.sqrt(np.mean(y * y))))
+wrong("9.3", "the product")(lcp_residual(pair=np.multiply))
+wrong("9.3", "the larger one")(lcp_residual(pair=np.maximum))
+wrong("9.3", "no b")(lcp_residual(bias=0.0))
+
+
+# 9.4 ------------------------------------------------------------------------------------------------------------
+@variants
+def swept(newest=True, pulls=False, relaxed=True, backwards=False, inside=False, diagonal=True, twice=False):
+    def gauss_seidel_sweep(A, b, lam, omega):
+        old, lam = lam.copy(), lam.copy()
+        order = range(len(lam))
+        for k in (reversed(order) if backwards else [*order, *order] if twice else order):
+            u = A[k] @ (lam if newest else old) + b[k]
+            change = (omega if relaxed else 1.0) * u / (A[k, k] if diagonal else 1.0)
+            free = lam[k] - change if not inside else (1.0 - omega) * lam[k] + omega * max(0.0, lam[k] - u / A[k, k])
+            lam[k] = free if pulls else max(0.0, free)
+        return lam
+    return gauss_seidel_sweep
+
+
+@right("9.4", "keeps the velocities up to date")
+def gauss_seidel_sweep(A, b, lam, omega):
+    lam, u = lam.copy(), A @ lam + b
+    for k in range(len(lam)):
+        change = max(-lam[k], -omega * u[k] / A[k, k])
+        lam[k] += change
+        u = u + change * A[:, k]
+    return lam
+
+
+wrong("9.4", "Jacobi")(swept(newest=False))
+wrong("9.4", "pulls")(swept(pulls=True))
+wrong("9.4", "no relaxation")(swept(relaxed=False))
+wrong("9.4", "from the last to the first")(swept(backwards=True))
+wrong("9.4", "relaxes what is projected already")(swept(inside=True))
+wrong("9.4", "does not divide")(swept(diagonal=False))
+wrong("9.4", "two sweeps")(swept(twice=True))
+edit("9.4", "changes its input", "lam = lam.copy()", "pass")
+edit("9.4", "no b", "+ b[k]", "")
+
+
+# 9.5 to 9.7 -----------------------------------------------------------------------------------------------------
+@variants
+def stack(power=2, half=2.0, shift=0, of=np.cos):
+    return lambda n: of(np.pi / (half * (n + shift))) ** power
+
+
+@right("9.5", "by the double angle")
+def stack_contraction(n):
+    return 0.5 + 0.5 * np.cos(np.pi / n)
+
+
+wrong("9.5", "Jacobi's")(stack(power=1))
+wrong("9.5", "twice the angle")(stack(half=1.0))
+wrong("9.5", "of a stack between two walls")(stack(shift=1))
+wrong("9.5", "the sine")(stack(of=np.sin))
+
+
+@variants
+def ratio(power=1.0, turned=False, plus=1.0):
+    return lambda r: ((1.0 / r if turned else r) / (plus + (1.0 / r if turned else r))) ** power
+
+
+@right("9.6", "by the inverse ratio")
+def mass_ratio_contraction(r):
+    return 1.0 / (1.0 + 1.0 / r)
+
+
+wrong("9.6", "Jacobi's")(ratio(power=0.5))
+wrong("9.6", "the heavy one below")(ratio(turned=True))
+wrong("9.6", "two bodies below")(ratio(plus=2.0))
+edit("9.6", "loses what is left of a heavy one", "r / (1.0 + r)", "1.0 - 1.0 / r")
+
+
+@variants
+def relaxation(root=np.sqrt, of=lambda rho: 1.0 - rho, two=2.0, factor=lambda omega: omega - 1.0):
+    def best_relaxation(rho):
+        omega = two / (1.0 + root(of(rho)))
+        return omega, factor(omega)
+    return best_relaxation
+
+
+@right("9.7", "with the root below")
+def best_relaxation(rho):
+    s = np.sqrt(1.0 - rho)
+    return 2.0 / (1.0 + s), (1.0 - s) / (1.0 + s)
+
+
+wrong("9.7", "no root")(relaxation(root=lambda y: y))
+wrong("9.7", "takes ρ for that of Jacobi")(relaxation(of=lambda rho: 1.0 - rho * rho))
+wrong("9.7", "half as much")(relaxation(two=1.0))
+wrong("9.7", "the factor squared")(relaxation(factor=lambda omega: (omega - 1.0) ** 2))
+wrong("9.7", "ω for the factor")(relaxation(factor=lambda omega: 0.5 * omega))
+
+
+# 9.8 ------------------------------------------------------------------------------------------------------------
+@variants
+def murty(check=worked.check_independent, least=True, sides="both", everything=False, rounds=1000, slack=worked.CONVERGED):
+    def solve_lcp(A, b):
+        check(A)
+        m = len(b)
+        on = np.zeros(m, bool)
+        for _ in range(rounds * m):
+            lam = np.zeros(m)
+            lam[on] = np.linalg.solve(A[np.ix_(on, on)], -b[on])
+            u, epsilon = A @ lam + b, slack * (np.abs(A) @ np.abs(lam) + np.abs(b))
+            bad = np.where(on, (lam < -epsilon / np.diag(A)) & (sides != "on"), (u < -epsilon) & (sides != "off"))
+            wrongs = np.flatnonzero(bad)
+            if len(wrongs) == 0:
+                return lam
+            k = wrongs if everything else wrongs[0] if least else wrongs[-1]
+            on[k] = ~on[k]
+        raise Diverged("complementarity residual [m/s]", worked.complementarity_residual(A, b, lam), "use projected Gauss–Seidel")
+    return solve_lcp
+
+
+@right("9.8", "by enumeration, where that is possible")
+def solve_lcp(A, b):
+    return murty()(A, b)
+
+
+wrong("9.8", "takes redundant contacts")(murty(check=lambda A: None))
+wrong("9.8", "none ever leaves")(murty(sides="on"))
+wrong("9.8", "none ever comes")(murty(sides="off"))
+wrong("9.8", "generous with what is wrong")(murty(slack=1e-2))
+edit("9.8", "solves for the impulses of all", "if pushes[k]:", "if True:")
+edit("9.8", "the bias with the wrong sign", "A[k], -b[k]", "A[k], b[k]")
+edit("9.8", "does not check", "check_independent(A)", "pass")
+edit("9.8", "returns velocities", "return lam", "return u")
+
+
+# 9.9 ------------------------------------------------------------------------------------------------------------
+@variants
+def natural(cone=lambda mu, J: mu * J if J > 0.0 else 0.0, scaled=True, tangents=True, normals=True, two_sided=True, total=max, own=True):
+    def cone_residual(A, b, J, mu):
+        u, sizes = A @ J + b, [0.0]
+        for n in range(0, len(J), 2):
+            k_n, k_t, limit = A[n, n], A[n + 1, n + 1], cone(mu[n // 2] if own else mu[0], J[n])
+            off_n = max(0.0, J[n] - u[n] / k_n) - J[n]
+            off_t = min(max(J[n + 1] - u[n + 1] / k_t, -limit if two_sided else 0.0), limit) - J[n + 1]
+            sizes += [(k_n if scaled else 1.0) * abs(off_n)] * normals + [(k_t if scaled else 1.0) * abs(off_t)] * tangents
+        return total(sizes)
+    return cone_residual
+
+
+@right("9.9", "all at once")
+def cone_residual(A, b, J, mu):
+    u, k = A @ J + b, np.diag(A)
+    free = J - u / k
+    with np.errstate(invalid="ignore"):
+        limit = np.where(J[::2] > 0.0, mu * J[::2], 0.0)
+    free[::2], free[1::2] = np.maximum(0.0, free[::2]), np.clip(free[1::2], -limit, limit)
+    return np.max(k * np.abs(free - J))
+
+
+wrong("9.9", "frictionless")(natural(cone=lambda mu, J: 0.0))
+wrong("9.9", "no limit")(natural(cone=lambda mu, J: np.inf))
+wrong("9.9", "the limit without μ")(natural(cone=lambda mu, J: max(J, 0.0)))
+wrong("9.9", "an impulse for a velocity")(natural(scaled=False))
+wrong("9.9", "normals only")(natural(tangents=False))
+wrong("9.9", "tangents only")(natural(normals=False))
+wrong("9.9", "friction to one side only")(natural(two_sided=False))
+wrong("9.9", "the sum")(natural(total=sum))
+wrong("9.9", "the friction of the first contact for all")(natural(own=False))
+edit("9.9", "no infinite friction", "mu[n // 2] * J[n] if J[n] > 0.0 else 0.0", "mu[n // 2] * np.maximum(0.0, J[n])")
+edit("9.9", "no b", "A @ J + b", "A @ J")
+
+
+# 9.10 -----------------------------------------------------------------------------------------------------------
+@variants
+def coned(new_limit=True, newest=True, pulls=False, share=1.0, two_sided=True, friction_first=False):
+    def cone_sweep(A, b, J, mu):
+        old, J = J.copy(), J.copy()
+
+        def normal(n):
+            free = J[n] - (A[n] @ (J if newest else old) + b[n]) / A[n, n]
+            J[n] = free if pulls else max(0.0, free)
+
+        def tangent(n, J_n):
+            limit = share * mu[n // 2] * J_n if J_n > 0.0 else 0.0
+            J[n + 1] = min(max(J[n + 1] - (A[n + 1] @ (J if newest else old) + b[n + 1]) / A[n + 1, n + 1], -limit if two_sided else 0.0), limit)
+        for n in range(0, len(J), 2):
+            before = J[n]
+            if friction_first:
+                tangent(n, J[n])
+            normal(n)
+            if not friction_first:
+                tangent(n, J[n] if new_limit else before)
+        return J
+    return cone_sweep
+
+
+@right("9.10", "keeps the velocities up to date")
+def cone_sweep(A, b, J, mu):
+    J, u = J.copy(), A @ J + b
+    for k in range(len(J)):
+        free = J[k] - u[k] / A[k, k]
+        limit = mu[k // 2] * J[k - 1] if k % 2 and J[k - 1] > 0.0 else 0.0
+        new = np.clip(free, -limit, limit) if k % 2 else max(0.0, free)
+        u, J[k] = u + A[:, k] * (new - J[k]), new
+    return J
+
+
+wrong("9.10", "the limit of before")(coned(new_limit=False))
+wrong("9.10", "Jacobi")(coned(newest=False))
+wrong("9.10", "pulls")(coned(pulls=True))
+wrong("9.10", "half the friction")(coned(share=0.5))
+wrong("9.10", "friction to one side only")(coned(two_sided=False))
+wrong("9.10", "friction before the normal")(coned(friction_first=True))
+edit("9.10", "changes its input", "J = J.copy()", "pass")
+edit("9.10", "no infinite friction", "mu[n // 2] * J[n] if J[n] > 0.0 else 0.0", "mu[n // 2] * J[n]")
+
+
+# 9.11 -----------------------------------------------------------------------------------------------------------
+@variants
+def forces(check=worked.check_scene, bias=1.0, loaded=1.0, push=1.0, weigh=True):
+    def contact_forces(x, inv_mass, inv_inertia, contacts, load, mu):
+        check(x, inv_mass, inv_inertia, contacts, load, mu)
+        G, w = worked.contact_rows(x, contacts), worked.inverse_masses(inv_mass, inv_inertia)
+        y = load.ravel()
+        F = worked.solve_contacts(worked.delassus_matrix(G, w), bias * (G @ (w * y if weigh else y)), mu)
+        return F.reshape(-1, 2), (w * (loaded * y + push * (G.T @ F))).reshape(-1, 3)
+    return contact_forces
+
+
+@right("9.11", "accelerations first")
+def contact_forces(x, inv_mass, inv_inertia, contacts, load, mu):
+    worked.check_scene(x, inv_mass, inv_inertia, contacts, load, mu)
+    G, w = worked.contact_rows(x, contacts), worked.inverse_masses(inv_mass, inv_inertia)
+    free = w * load.ravel()
+    F = worked.solve_contacts(worked.delassus_matrix(G, w), G @ free, mu)
+    return F.reshape(len(mu), 2), (free + (F @ G) * w).reshape(len(x), 3)
+
+
+wrong("9.11", "no check")(forces(check=lambda *scene: None))
+wrong("9.11", "pushes where it should not")(forces(bias=-1.0))
+wrong("9.11", "half the load")(forces(bias=0.5))
+wrong("9.11", "accelerations without the load")(forces(loaded=0.0))
+wrong("9.11", "accelerations without the contacts")(forces(push=0.0))
+wrong("9.11", "loads are accelerations")(forces(weigh=False))
+edit("9.11", "frictionless", "@ (w * load.ravel()), mu)", "@ (w * load.ravel()), 0.0 * mu)")
+
+
+# 9.12 -----------------------------------------------------------------------------------------------------------
+@variants
+def soft(angular=2.0 * np.pi, damping=2.0, opens=lambda gap, dt: (-gap / dt, 0.0), sign=-1.0, give=1.0, touches=False):
+    def soft_contact(gap, hertz, zeta, dt):
+        if (gap >= 0.0) if touches else (gap > 0.0):
+            return opens(gap, dt)
+        s = angular * hertz * dt
+        return sign * s * gap / (dt * (damping * zeta + s)), give / (s * (damping * zeta + s))
+    return soft_contact
+
+
+@right("9.12", "from stiffness and damper")
+def soft_contact(gap, hertz, zeta, dt):
+    if gap > 0.0:
+        return -gap / dt, 0.0
+    stiffness, damper = (2.0 * np.pi * hertz) ** 2, 4.0 * np.pi * hertz * zeta
+    both = damper + dt * stiffness
+    return -stiffness * gap / both, 1.0 / (dt * both)
+
+
+wrong("9.12", "hertz for angular frequency")(soft(angular=1.0))
+wrong("9.12", "half the damping")(soft(damping=1.0))
+wrong("9.12", "sucks")(soft(sign=1.0))
+wrong("9.12", "hard")(soft(give=0.0))
+wrong("9.12", "twice as soft")(soft(give=2.0))
+wrong("9.12", "keeps a gap open")(soft(opens=lambda gap, dt: (0.0, 0.0)))
+wrong("9.12", "closes a gap by its spring")(soft(opens=lambda gap, dt: (-gap / dt, 0.5)))
+wrong("9.12", "what just touches is open")(soft(touches=True))
+
+
+# 9.13 -----------------------------------------------------------------------------------------------------------
+@variants
+def disc(size=lambda J: np.sqrt(J[0] ** 2 + J[1] ** 2 + J[2] ** 2), inside=lambda size, limit: size <= limit, scale=1.0):
+    def friction_disc(J, limit):
+        length = size(J)
+        return tuple(J) if inside(length, limit) else tuple(scale * limit / length * y for y in J)
+    return friction_disc
+
+
+@right("9.13", "shortens by a factor")
+def friction_disc(J, limit):
+    size = float(np.linalg.norm(J))
+    return tuple(np.array(J) * (1.0 if size <= limit else limit / size))
+
+
+edit("9.13", "a box", "scaled(limit / size, J)", "(min(max(J[0], -limit), limit), min(max(J[1], -limit), limit), min(max(J[2], -limit), limit))")
+wrong("9.13", "forgets an axis")(disc(size=lambda J: np.sqrt(J[0] ** 2 + J[1] ** 2)))
+wrong("9.13", "always on the rim")(disc(inside=lambda size, limit: size == 0.0))
+wrong("9.13", "never limited")(disc(inside=lambda size, limit: True))
+wrong("9.13", "nothing beyond the rim")(disc(scale=0.0))
+wrong("9.13", "squares")(disc(inside=lambda size, limit: size * size <= limit))
+
+
+# 9.14 -----------------------------------------------------------------------------------------------------------
+@variants
+def kept(partner=True, near_enough=lambda d, near: d < near, take=np.argmin, share=1.0, flat=False):
+    def kept_impulses(contacts, old, J_old, near):
+        J = np.zeros(contacts.p.shape)
+        for k in range(len(contacts.a)):
+            same = np.arange(old.first[contacts.a[k]], old.first[contacts.a[k] + 1])
+            same = same[old.b[same] == contacts.b[k]] if partner else same
+            distance = np.linalg.norm((old.p[same] - contacts.p[k])[:, :1 if flat else None], axis=1)
+            if len(same) and near_enough(distance[take(distance)], near):
+                J[k] = share * J_old[same[take(distance)]]
+        return J
+    return kept_impulses
+
+
+@right("9.14", "looks at all old contacts")
+def kept_impulses(contacts, old, J_old, near):
+    J = np.zeros(contacts.p.shape)
+    for k in range(len(contacts.a)):
+        best = near
+        for s in np.flatnonzero((old.a == contacts.a[k]) & (old.b == contacts.b[k])):
+            distance = np.linalg.norm(old.p[s] - contacts.p[k])
+            if distance < best:
+                best, J[k] = distance, J_old[s]
+    return J
+
+
+wrong("9.14", "any partner")(kept(partner=False))
+wrong("9.14", "however far away")(kept(near_enough=lambda d, near: True))
+wrong("9.14", "the first of the pair")(kept(take=lambda distance: 0))
+wrong("9.14", "the farthest")(kept(take=np.argmax))
+wrong("9.14", "half of it")(kept(share=0.5))
+wrong("9.14", "looks along x only")(kept(flat=True))
+wrong("9.14", "the square for the distance")(kept(near_enough=lambda d, near: d * d < near))
+edit("9.14", "starts from nothing", "J[k, c] = J_old[s, c]", "pass")
+
+
+# 9.15 -----------------------------------------------------------------------------------------------------------
+@variants
+def leaves(low_side=True, high_side=True, bodies=slice(None), axes=slice(None), all_of=False, nan=True):
+    def has_left_margin(low, high, wide_low, wide_high):
+        inside = np.ones(low.shape, bool)
+        if low_side:
+            inside &= (wide_low <= low) if nan else ~(wide_low > low)
+        if high_side:
+            inside &= (high <= wide_high) if nan else ~(high > wide_high)
+        inside = inside[bodies, axes]
+        return bool(not inside.any() if all_of else not inside.all())
+    return has_left_margin
+
+
+@right("9.15", "all at once")
+def has_left_margin(low, high, wide_low, wide_high):
+    return bool(not (np.all(wide_low <= low) and np.all(high <= wide_high)))
+
+
+wrong("9.15", "never to the left")(leaves(low_side=False))
+wrong("9.15", "never to the right")(leaves(high_side=False))
+wrong("9.15", "not the last body")(leaves(bodies=slice(None, -1)))
+wrong("9.15", "not the last axis")(leaves(axes=slice(None, -1)))
+wrong("9.15", "all must have left")(leaves(all_of=True))
+wrong("9.15", "loses what is no number")(leaves(nan=False))
+edit("9.15", "the edge itself is outside", "wide_low[i, c] <= low[i, c] and", "wide_low[i, c] < low[i, c] and")
+
+
+# 9.16 -----------------------------------------------------------------------------------------------------------
+@variants
+def velocity_swept(newest=True, b_too=True, spin=1.0, soft=1.0, aims=1.0, pulls=False, cone=True, old_limit=False, other_arm=False):
+    def velocity_sweep_2d(v, omega, J, aim, give, contacts, arms, pile):
+        v, omega, J = v.copy(), omega.copy(), J.copy()
+        v_0, omega_0 = v.copy(), omega.copy()
+        for k in range(len(contacts.a)):
+            a, b, n, k_n = contacts.a[k], contacts.b[k], contacts.n[k], arms.k_n[k]
+            r_a, r_b = arms.r_a[k], (arms.r_a if other_arm else arms.r_b)[k]
+            t, turn = np.array([-n[1], n[0]]), lambda r: np.array([-r[1], r[0]])
+            w, o = (v, omega) if newest else (v_0, omega_0)
+            u = w[a] + o[a] * turn(r_a) - w[b] - o[b] * turn(r_b)
+            J_n = J[k] @ n
+            new_n = J_n + (aims * aim[k] - u @ n - soft * give[k] * k_n * J_n) / (k_n * (1.0 + give[k]))
+            new_n = new_n if pulls else max(0.0, new_n)
+            bound = J_n if old_limit else new_n
+            limit = pile.mu * bound if bound > 0.0 else 0.0
+            new_t = J[k] @ t - (u @ t) / arms.k_t[k]
+            new = new_n * n + (min(max(new_t, -limit), limit) if cone else new_t) * t
+            change, J[k] = new - J[k], new
+            for body, r, sign in ((a, r_a, 1.0), (b, r_b, -1.0))[:2 if b_too else 1]:
+                v[body] += sign * pile.inv_mass[body] * change
+                omega[body] += spin * sign * pile.inv_inertia[body] * (r[0] * change[1] - r[1] * change[0])
+        return v, omega, J
+    return velocity_sweep_2d
+
+
+right("9.16", "with vectors")(velocity_swept())
+wrong("9.16", "Jacobi")(velocity_swept(newest=False))
+wrong("9.16", "b does not feel it")(velocity_swept(b_too=False))
+wrong("9.16", "turns the wrong way")(velocity_swept(spin=-1.0))
+wrong("9.16", "does not turn")(velocity_swept(spin=0.0))
+wrong("9.16", "forgets what a soft contact carries")(velocity_swept(soft=0.0))
+wrong("9.16", "aims at rest")(velocity_swept(aims=0.0))
+wrong("9.16", "pulls")(velocity_swept(pulls=True))
+wrong("9.16", "no cone")(velocity_swept(cone=False))
+wrong("9.16", "the limit of before")(velocity_swept(old_limit=True))
+wrong("9.16", "both arms are those of a")(velocity_swept(other_arm=True))
+edit("9.16", "changes its input", "v.copy(), omega.copy(), J.copy()", "v, omega, J")
+edit("9.16", "the mass of a for b", "v[b, 0] -= inv_mass[b] * d_x", "v[b, 0] -= inv_mass[a] * d_x")
+edit("9.16", "divides by the hard mass", "k_n * (1.0 + give[k])", "k_n")
