@@ -134,6 +134,7 @@ EVERYTHING = {"1.1": 4, "1.2": 4, "1.7": 2, "1.9": 4, "1.10": 2}
 
 # ---------------------------------------------------------------------------------------------- files of students
 
+@pytest.mark.long
 @pytest.mark.parametrize("case", ATTACKS, ids=lambda case: case.name.replace(" ", "_"))
 def test_an_attack_gains_nothing_and_touches_nobody(case, trial, settings):
     result = graded(written(case), settings)
@@ -143,6 +144,7 @@ def test_an_attack_gains_nothing_and_touches_nobody(case, trial, settings):
     assert not secrets_in(result, settings["integrators"].manifest)
 
 
+@pytest.mark.long
 def test_honest_files_keep_their_points_among_the_attacks(trial, settings, monkeypatch):
     monkeypatch.setattr(plugin, "BOX_LIMIT", points.BOX_LIMIT)
     assert earned(graded(HONEST, settings)) == {**NOTHING, "1.10": 2}
@@ -186,6 +188,7 @@ def secrets_in(result, manifest):
     return more + digits
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("error", ["", "x", "1.2e-03 off", "shape (123, 4)", "a Secret123", "an AttributeError", "not finite", "no error", "another value", "Secret123",
                                    "ValueError (integrators.py, line 123)", *expect.OFF])
 def test_with_secret_inputs_a_test_says_one_of_few_words(error):
@@ -197,6 +200,7 @@ def test_with_secret_inputs_a_test_says_one_of_few_words(error):
     assert told["status"] == "not yet" and told["hint"] == "the hint of the exercise"      # also where the program says that it was not attempted
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("got, word", [(1.001, 0), (1.5, 1), (-0.5, 2), (1e300, 2), (np.array([1.0]), None)])
 def test_an_error_has_one_of_three_sizes(got, word):
     for compare in (lambda: expect.close("x", got, 1.0, 1e-9), lambda: expect.between("x", got, 1.0, 1.0)):
@@ -214,6 +218,7 @@ def honest_air(text=""):
     return "import numpy as np\ndef air_force(v, wind, k_v):\n    return wind - k_v * v\n" + text
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name, body", {
     "a worked function of a lesson before, asked for days of work": "from solutions.integrators import implicit_euler_step\n"
     "    implicit_euler_step(acceleration, 0.0, np.zeros(20000), np.zeros(20000), 0.1, 1.0)",
@@ -228,6 +233,7 @@ def test_the_worked_functions_of_earlier_lessons_are_no_hole(name, body, trial, 
     assert not re.search(r"FOUND (?!\[\])", harmless(result))
 
 
+@pytest.mark.long
 def test_the_grading_process_has_its_memory_and_its_limits_back(trial, settings):
     before = resource.getrlimit(resource.RLIMIT_AS)
     result = graded(written(next(case for case in ATTACKS if case.name == "broadcasting")), settings)
@@ -235,6 +241,7 @@ def test_the_grading_process_has_its_memory_and_its_limits_back(trial, settings)
     assert resource.getrlimit(resource.RLIMIT_AS) == before
 
 
+@pytest.mark.long
 def test_a_sandbox_that_does_not_start_is_no_zero(trial, settings, monkeypatch):
     start = box.Box.start
     monkeypatch.setattr(box, "READY_WITHIN", 0.5)
@@ -338,10 +345,12 @@ def test_tricks_with_files_leave_the_other_file_readable(make, tmp_path):
     assert read(top).files == {"springs": LESSON}
 
 
+@pytest.mark.long
 def test_a_date_that_no_calendar_has_is_none():
     assert submissions.moment(2.0**60) == "" == submissions.moment(0.0)          # many file systems keep no such date themselves
 
 
+@pytest.mark.long
 def test_a_submission_that_is_a_link_or_a_pipe_is_nobody(tmp_path):
     (tmp_path / "link").symlink_to(ROOT / "solutions")
     (tmp_path / "link.zip").symlink_to(zipped(tmp_path / "other" / "honest.zip", {"integrators.py": LESSON}))
@@ -421,6 +430,7 @@ def lies_about_its_size(path):
     path.write_bytes(data)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("make", [encrypted, broken_stream, bomb, nested, slip, link_inside, evil_entries, nul_in_a_name, lies_about_its_size])
 def test_tricks_with_zips_leave_the_other_file_readable(make, tmp_path):
     make(tmp_path / "mallory.zip")
@@ -429,6 +439,7 @@ def test_tricks_with_zips_leave_the_other_file_readable(make, tmp_path):
     assert {path.name for path in tmp_path.iterdir()} <= {"mallory.zip", "inner.zip"}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("method, word", [(zipfile.ZIP_BZIP2, "bzip2"), (zipfile.ZIP_LZMA, "lzma")])
 def test_nothing_is_unpacked_that_takes_gigabytes_for_a_kilobyte(method, word, tmp_path):
     packed_by(method)(tmp_path / "mallory.zip")
@@ -457,6 +468,7 @@ def numbers_that_lie(path):
     path.write_bytes(data)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("make", [many, truncated, large, numbers_that_lie, lambda path: path.write_bytes(b"PK"), lambda path: path.write_bytes(b"")])
 def test_a_zip_that_cannot_be_read_is_a_sentence(make, tmp_path):
     make(tmp_path / "mallory.zip")
@@ -471,6 +483,7 @@ def endless_names(path):
             archive.writestr(f"{n}{'x' * 65_000}/integrators.py", b"")
 
 
+@pytest.mark.long
 def test_what_is_told_about_a_zip_is_short(tmp_path):
     endless_names(tmp_path / "mallory.zip")
     one = read(tmp_path / "mallory.zip")
@@ -478,12 +491,14 @@ def test_what_is_told_about_a_zip_is_short(tmp_path):
     assert max(map(len, one.problems)) < 2 * submissions.LONGEST
 
 
+@pytest.mark.long
 def test_a_large_zip_makes_no_large_result(tmp_path, trial, settings):
     endless_names(tmp_path / "mallory.zip")
     assert (tmp_path / "mallory.zip").stat().st_size > 24 << 20
     harmless(marking.mark(read(tmp_path / "mallory.zip"), settings["integrators"]))
 
 
+@pytest.mark.long
 def test_long_names_in_a_file_make_no_large_result(trial, settings):
     names = [f"{n}{'x' * 15_000}" for n in "abcdefghijkl"]
     text = "".join(f"try:\n    from {name} import x\nexcept ImportError:\n    pass\n" for name in names)
@@ -496,6 +511,7 @@ def many_tasks(kind):
     return bytearray(2 * children.LITTLE) if kind == "memory" else os._exit(1)
 
 
+@pytest.mark.long
 def test_a_reader_of_archives_has_little_memory_and_time_and_is_replaced_when_it_ends():
     with children.reader() as child:
         with pytest.raises(MemoryError):
@@ -515,6 +531,7 @@ def slow():
     return children.timed(many_tasks, "time")
 
 
+@pytest.mark.long
 def test_hostile_names_do_not_stop_a_class(tmp_path):
     for name in (b"\x1b[2Jmallory", b"\xff\xfe", b"a\nb.zip", "‮evil".encode(), b"honest"):
         os.mkdir(os.fsencode(tmp_path) + b"/" + name)

@@ -59,12 +59,14 @@ SEEN = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("code, body", [(code, body) for code, bodies in SEEN.items() for body in bodies])
 def test_what_a_program_tries_is_seen(code, body, trial, settings):
     seen = watched(attacks.HONEST + IN_A_CALL.format(body), settings)
     assert code in seen and code in watch.SENTENCES, seen
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "cover",
     [
@@ -84,6 +86,7 @@ def test_what_is_seen_is_not_hidden_by_noise(cover, trial, settings):
     assert "process" in watched(attacks.HONEST + body, settings)
 
 
+@pytest.mark.long
 def test_a_note_of_ours_is_no_part_of_what_is_printed(trial, settings):
     text = (
         attacks.HONEST
@@ -96,6 +99,7 @@ def test_a_note_of_ours_is_no_part_of_what_is_printed(trial, settings):
     assert result["printed"]["integrators"].split() == ["before", "after"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", modules.lesson_names())
 def test_honest_work_leaves_nothing_to_look_into(name):
     result = marking.mark(
@@ -105,6 +109,7 @@ def test_honest_work_leaves_nothing_to_look_into(name):
     assert result["watched"] == {name: []} and all(t["status"] == "passed" for t in result["tests"])
 
 
+@pytest.mark.long
 def test_a_second_try_takes_the_place_of_the_first(monkeypatch):
     first = {
         "again": ["springs"],
@@ -122,6 +127,7 @@ def test_a_second_try_takes_the_place_of_the_first(monkeypatch):
     }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "text, found",
     [
@@ -204,16 +210,19 @@ def test_the_same_answers_are_found_also_when_names_blanks_and_comments_are_chan
     assert alike(ada=OWN, bob=renamed, cem=OTHER) == {("ada", "bob", "integrators"), ("bob", "ada", "integrators")}
 
 
+@pytest.mark.long
 def test_a_copy_with_a_changed_line_or_one_more_function_is_nearly_the_same():
     assert ("bob", "ada", "integrators") in alike(
         ada=OWN + OTHER, bob=(OWN + OTHER).replace("/ 2.0", "* 0.5") + "\ndef more(x):\n    return [3 * n for n in x]\n"
     )
 
 
+@pytest.mark.long
 def test_those_who_have_not_begun_and_those_who_worked_alone_are_not_alike():
     assert not alike(ada=OWN, bob=OTHER, cem="", dov="")
 
 
+@pytest.mark.long
 def test_the_worked_answers_are_known():
     first = modules.lesson_names()[0]
     ((lesson, other, share),) = similar.alike(
@@ -222,6 +231,7 @@ def test_the_worked_answers_are_known():
     assert (lesson, other, share) == (first, similar.WORKED, 1.0)
 
 
+@pytest.mark.long
 def test_hostile_texts_take_no_time_and_no_memory():
     wide = b"x = " + b"(" * 200_000
     many = b"\n".join(b"a%d = %d" % (n, n) for n in range(15_000))
@@ -232,6 +242,7 @@ def test_hostile_texts_take_no_time_and_no_memory():
     assert found == {}
 
 
+@pytest.mark.long
 def test_hundreds_with_one_and_the_same_answer_are_told_in_few_words():
     found = similar.alike(handed_in(**{f"s{n}": OWN for n in range(300)}), ("integrators",))
     assert len(found) == 300 and all(len(pairs) <= similar.MOST for pairs in found.values())
@@ -240,6 +251,7 @@ def test_hundreds_with_one_and_the_same_answer_are_told_in_few_words():
 # ---------------------------------------------------------------------- the page
 
 
+@pytest.mark.long
 def test_the_documentations_own_class_has_somebody_to_look_into(tmp_path):
     intake = submissions.read_all(example.make(tmp_path / "class"), ("integrators",))
     rules = marking.settings(("integrators",), "a secret")
@@ -252,6 +264,7 @@ def test_the_documentations_own_class_has_somebody_to_look_into(tmp_path):
     assert not looks["cem"]
 
 
+@pytest.mark.long
 def test_nearly_every_hostile_file_is_seen(trial, settings):
     """A sample here, one of each family; a wrong answer of a strange type is only that."""
     names = (
