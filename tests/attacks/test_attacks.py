@@ -1,11 +1,13 @@
-"""The grader withstands its students: no attack gains a point, tells a secret, stays behind, or touches another's result."""
+"""The grader withstands hostile submissions.
+
+No attack gains a point, reveals a secret, leaves anything behind, or touches another student's result.
+"""
 
 import contextlib
 import json
 import os
 import re
 import resource
-import shutil
 import socket
 import stat
 import struct
@@ -20,57 +22,20 @@ import pytest
 
 from validate.modules import ROOT
 
-from ..grading import box, children, expect, marking, plugin, points, remote, sandbox, submissions
+from ..grading import box, children, expect, marking, plugin, points, submissions
 from . import ATTACKS, HONEST, SOLVED
+from .trial import BUDGET, MARK, SEED
 
-SEED = "a secret"
-PATIENCE = 1.0               # of a test in the sandbox, in place of BOX_LIMIT [s]
-BUDGET = 12.0                # of a lesson, in place of marking.BUDGET [s]
-SLACK = 20.0                 # what two runs of pytest may take beside the student's budget, on a busy machine [s]
-FORBIDDEN = re.compile(r"[\x00-\x09\x0b-\x1f\x7f-\x9f\u200b-\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
-MARK = f"ATTACKED_{os.getpid()}"
-
-
-@pytest.fixture(scope="session", autouse=True)
-def _sandbox():
-    sandbox.for_tests(pytest.skip, pytest.fail)
-
-
-@pytest.fixture(scope="session")
-def folder(tmp_path_factory):
-    """A workbook of its own with the trial tests."""
-    top = tmp_path_factory.mktemp("trial")
-    (top / "trials").mkdir()                                          # not "tests": a module of that name may be loaded already
-    shutil.copy(ROOT / "pyproject.toml", top)
-    (top / "trials" / "grading").symlink_to(ROOT / "tests" / "grading")
-    for lesson in ("integrators", "springs"):
-        shutil.copy(ROOT / "tests" / "attacks" / f"trial_{lesson}.py", top / "trials" / f"test_{lesson}.py")
-    return top / "trials"
-
-
-@pytest.fixture
-def trial(folder, settings, monkeypatch, tmp_path_factory):
-    """The grader with the trial tests and little patience; what it starts carries a mark in its environment."""
-    monkeypatch.setattr(points, "TESTS", folder)
-    monkeypatch.setattr(plugin, "BOX_LIMIT", PATIENCE)
-    monkeypatch.setattr(box, "IMPORT_WITHIN", 3.0 * PATIENCE)
-    monkeypatch.setattr(marking, "BUDGET", BUDGET)
-    monkeypatch.setitem(sandbox.ENVIRONMENT, MARK, "1")
-    monkeypatch.setenv("TOKEN", "TOKEN-OF-THE-GRADER")
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path_factory.mktemp("boxes")))
-
-
-@pytest.fixture(scope="session")
-def settings(folder):
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(points, "TESTS", folder)
-        remote.handout()                                               # kept as long as the process
-        return {lesson: marking.settings((lesson,), SEED) for lesson in ("integrators", "springs")}
+SLACK = 20.0                 # time of two runs of pytest beside the student's budget, on a busy machine [s]
+FORBIDDEN = re.compile(
+    r"[\x00-\x09\x0b-\x1f\x7f-\x9f"
+    r"\u200b-\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
+)
 
 
 @contextlib.contextmanager
 def nothing_left():
-    """No process, thread, open file or folder of the grader's is there that was not there before."""
+    """Assert that the block leaves no process, thread, open file or folder of the grader behind."""
     before = threads(), descriptors(), folders()
     yield
     until = time.monotonic() + 5.0
@@ -91,12 +56,12 @@ def descriptors():
 
 
 def folders():
-    """Folders that boxes have made in a place of their own."""
+    """Folders that sandboxes have made in their own temporary folder."""
     return set(os.listdir(tempfile.gettempdir()))
 
 
 def processes():
-    """Processes that our boxes have started, and that are still alive."""
+    """Processes that the sandboxes have started and that are still alive."""
     alive = []
     for pid in filter(str.isdigit, os.listdir("/proc")):
         with contextlib.suppress(OSError):
@@ -106,10 +71,11 @@ def processes():
 
 
 def graded(text, settings, lesson="integrators"):
-    """The result of one file, and that nothing is left of it."""
+    """Grade one file, assert that nothing is left of it, and return the result."""
+    file = text.encode() if isinstance(text, str) else text
     with nothing_left():
         began = time.monotonic()
-        result = marking.mark(submissions.Submission("mallory", {lesson: text.encode() if isinstance(text, str) else text}, (), ""), settings[lesson])
+        result = marking.mark(submissions.Submission("mallory", {lesson: file}, (), ""), settings[lesson])
         assert time.monotonic() - began < BUDGET + SLACK
     return result
 
@@ -120,7 +86,7 @@ def earned(result):
 
 
 def harmless(result):
-    """What anybody will read holds no control characters, nor more than a page can bear."""
+    """Assert that a result has no control characters and is not too long for a page; return it as JSON."""
     text = json.dumps(result, ensure_ascii=False)
     assert not FORBIDDEN.search(text.replace("\\n", ""))
     assert not re.search(r"\\u00|\\ud|\\t|\\r", text)
@@ -134,6 +100,7 @@ EVERYTHING = {"1.1": 4, "1.2": 4, "1.7": 2, "1.9": 4, "1.10": 2}
 
 # ---------------------------------------------------------------------------------------------- files of students
 
+@pytest.mark.long
 @pytest.mark.parametrize("case", ATTACKS, ids=lambda case: case.name.replace(" ", "_"))
 def test_an_attack_gains_nothing_and_touches_nobody(case, trial, settings):
     result = graded(written(case), settings)
@@ -143,6 +110,7 @@ def test_an_attack_gains_nothing_and_touches_nobody(case, trial, settings):
     assert not secrets_in(result, settings["integrators"].manifest)
 
 
+@pytest.mark.long
 def test_honest_files_keep_their_points_among_the_attacks(trial, settings, monkeypatch):
     monkeypatch.setattr(plugin, "BOX_LIMIT", points.BOX_LIMIT)
     assert earned(graded(HONEST, settings)) == {**NOTHING, "1.10": 2}
@@ -158,14 +126,16 @@ TESTS = {"test_euler": 3, "test_midpoint": 3, "test_implicit": 2}
 def inputs(seed, test="test_euler"):
     """x, v, p and dt that the trial draws for a test of one step."""
     draw = plugin.Draw(seed, test)
-    return draw(-1.0, 1.0, TESTS[test]), draw(-1.0, 1.0, TESTS[test]), draw(1.0, 9.0), draw(0.05, 0.1)
+    x, v = draw(-1.0, 1.0, TESTS[test]), draw(-1.0, 1.0, TESTS[test])
+    return x, v, draw(1.0, 9.0), draw(0.05, 0.1)
 
 
 def known():
-    """The public inputs with their right answers, as a student who has read the tests may know them."""
+    """The public inputs with their right answers, which a student can find by reading the tests."""
     x, v, p, dt = inputs(points.PUBLIC)
-    still = np.array([0.4, -0.7, 1.1])
-    return repr([(x.tolist(), (x + dt * v).tolist(), (v - dt * p * x).tolist()), (still.tolist(), still.tolist(), still.tolist())])
+    moving = x, x + dt * v, v - dt * p * x
+    still = [0.4, -0.7, 1.1]
+    return repr([tuple(part.tolist() for part in moving), (still, still, still)])
 
 
 def written(case):
@@ -175,59 +145,99 @@ def written(case):
 
 
 def secrets_in(result, manifest):
-    """What is told about a test with secret inputs beyond the few words that may be; digits of the inputs wherever they are."""
+    """Secrets in a result: tests with secret inputs that report more than they may, and digits of those inputs."""
     hidden = [test for test in result["tests"] if test["kind"] == "hidden"]
     hints = {row[3]: row[5] for row in manifest}
-    more = [test for test in hidden if test["status"] == "not yet" and (
-        test["says"]["got"] not in marking.WORDS or set(test["says"]) != {"quantity", "got"} or test["hint"] != hints[test["test"]])]
+    failed = [test for test in hidden if test["status"] == "not yet"]
+    more = [test for test in failed if not reports_little(test, hints[test["test"]])]
     text = json.dumps([hidden, result["printed"]])
-    digits = [number for test in TESTS for part in inputs(SEED, test) for number in np.ravel(part)
-              if f"{abs(number):.6f}"[2:] in text or str(int(1e9 * abs(number))) in text]
-    return more + digits
+    numbers = [abs(number) for test in TESTS for part in inputs(SEED, test) for number in np.ravel(part)]
+    return more + [number for number in numbers if f"{number:.6f}"[2:] in text or str(int(1e9 * number)) in text]
 
 
-@pytest.mark.parametrize("error", ["", "x", "1.2e-03 off", "shape (123, 4)", "a Secret123", "an AttributeError", "not finite", "no error", "another value", "Secret123",
-                                   "ValueError (integrators.py, line 123)", *expect.OFF])
+def reports_little(test, hint):
+    """Whether a failed test reports only the quantity, one of the allowed words and the hint of the exercise."""
+    return test["says"]["got"] in marking.WORDS and set(test["says"]) == {"quantity", "got"} and test["hint"] == hint
+
+
+ERRORS = [
+    "", "x", "1.2e-03 off", "shape (123, 4)", "a Secret123", "an AttributeError", "not finite", "no error",
+    "another value", "Secret123", "ValueError (integrators.py, line 123)", *expect.OFF,
+]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("error", ERRORS)
 def test_with_secret_inputs_a_test_says_one_of_few_words(error):
-    o = points.Outcome("1.1", "test_it", 1.0, "not yet", "x after a step", "12.3", "12.4", "1.2345e-9", "a hint", error, "x = 12.3")
+    numbers = "12.3", "12.4", "1.2345e-9"
+    o = points.Outcome("1.1", "test_it", 1.0, "not yet", "x after a step", *numbers, "a hint", error, "x = 12.3")
     said = marking.says(o, "hidden")
-    assert said == {"quantity": "x after a step", "got": said["got"]} and said["got"] in marking.WORDS and len(marking.WORDS) <= 6
+    assert said == {"quantity": "x after a step", "got": said["got"]}
+    assert said["got"] in marking.WORDS and len(marking.WORDS) <= 6
+
+
+def test_a_program_cannot_call_a_failed_test_with_secret_inputs_not_attempted():
+    o = points.Outcome("1.1", "test_it", 1.0, "not attempted", "x after a step", hint="a hint")
     row = ("integrators", "1.1", "euler_step", "test_it", 1.0, "the hint of the exercise")
-    told = marking.verdict(row, {("integrators", "visible", "test_it"): o._replace(status="passed"), ("integrators", "hidden", "test_it"): o._replace(status="not attempted")}, True)
-    assert told["status"] == "not yet" and told["hint"] == "the hint of the exercise"      # also where the program says that it was not attempted
+    outcomes = {
+        ("integrators", "visible", "test_it"): o._replace(status="passed"),
+        ("integrators", "hidden", "test_it"): o,
+    }
+    verdict = marking.verdict(row, outcomes, True)
+    assert verdict["status"] == "not yet" and verdict["hint"] == "the hint of the exercise"
 
 
-@pytest.mark.parametrize("got, word", [(1.001, 0), (1.5, 1), (-0.5, 2), (1e300, 2), (np.array([1.0]), None)])
+@pytest.mark.long
+@pytest.mark.parametrize(("got", "word"), [(1.001, 0), (1.5, 1), (-0.5, 2), (1e300, 2), (np.array([1.0]), None)])
 def test_an_error_has_one_of_three_sizes(got, word):
+    size = "shape (1,)" if word is None else expect.OFF[word]
     for compare in (lambda: expect.close("x", got, 1.0, 1e-9), lambda: expect.between("x", got, 1.0, 1.0)):
-        with pytest.raises(expect.NotYet) as told:
+        with pytest.raises(expect.NotYet) as failure:
             compare()
-        assert told.value.error == (expect.OFF[word] if word is not None else "shape (1,)")
-    with pytest.raises(expect.NotYet) as told:
+        assert failure.value.error == size
+    with pytest.raises(expect.NotYet) as failure:
         expect.close("residual", np.array([0.0, 1e-3]), np.zeros(2), 1e-9)
-    assert told.value.error == "slightly off"
+    assert failure.value.error == "slightly off"
 
 
-# ---------------------------------------------------------------------------------------------- the parent's own time and memory
+# ---------------------------------------------------------------------------------------------- time and memory
 
 def honest_air(text=""):
     return "import numpy as np\ndef air_force(v, wind, k_v):\n    return wind - k_v * v\n" + text
 
 
-@pytest.mark.parametrize("name, body", {
-    "a worked function of a lesson before, asked for days of work": "from solutions.integrators import implicit_euler_step\n"
-    "    implicit_euler_step(acceleration, 0.0, np.zeros(20000), np.zeros(20000), 0.1, 1.0)",
-    "each asks the other": "from solutions.integrators import euler_step\n    def again(*a):\n        return euler_step(again, *a[:3], 0.1, None)[1]\n"
-    "    print('FOUND', again(0.0, x, v, None))",
-    "a worked function for a lesson that has none": "import solutions.springs, lessons.springs\n    return solutions.springs.implicit_mesh_step(acceleration, t, x, v, dt, mesh)",
-    "the source of a worked function": "import inspect, solutions.integrators as s\n    print('FOUND', [c for c in vars(s) if 'x + dt * v' in (inspect.getsource(s) or '')])",
-}.items())
+USES_OF_WORKED_FUNCTIONS = {
+    "a worked function of a lesson before, asked for days of work": (
+        "from solutions.integrators import implicit_euler_step\n"
+        "    implicit_euler_step(acceleration, 0.0, np.zeros(20000), np.zeros(20000), 0.1, 1.0)"
+    ),
+    "each asks the other": (
+        "from solutions.integrators import euler_step\n"
+        "    def again(*a):\n"
+        "        return euler_step(again, *a[:3], 0.1, None)[1]\n"
+        "    print('FOUND', again(0.0, x, v, None))"
+    ),
+    "a worked function for a lesson that has none": (
+        "import solutions.springs, lessons.springs\n"
+        "    return solutions.springs.implicit_mesh_step(acceleration, t, x, v, dt, mesh)"
+    ),
+    "the source of a worked function": (
+        "import inspect, solutions.integrators as s\n"
+        "    print('FOUND', [c for c in vars(s) if 'x + dt * v' in (inspect.getsource(s) or '')])"
+    ),
+}
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("name", "body"), USES_OF_WORKED_FUNCTIONS.items())
 def test_the_worked_functions_of_earlier_lessons_are_no_hole(name, body, trial, settings):
-    result = graded(honest_air(f"def implicit_mesh_step(acceleration, t, x, v, dt, mesh):\n    {body}\n    return x, v\n"), settings, "springs")
+    step = f"def implicit_mesh_step(acceleration, t, x, v, dt, mesh):\n    {body}\n    return x, v\n"
+    result = graded(honest_air(step), settings, "springs")
     assert earned(result) == {"2.2": 2, "2.13": 0}, name
     assert not re.search(r"FOUND (?!\[\])", harmless(result))
 
 
+@pytest.mark.long
 def test_the_grading_process_has_its_memory_and_its_limits_back(trial, settings):
     before = resource.getrlimit(resource.RLIMIT_AS)
     result = graded(written(next(case for case in ATTACKS if case.name == "broadcasting")), settings)
@@ -235,13 +245,21 @@ def test_the_grading_process_has_its_memory_and_its_limits_back(trial, settings)
     assert resource.getrlimit(resource.RLIMIT_AS) == before
 
 
+@pytest.mark.long
 def test_a_sandbox_that_does_not_start_is_no_zero(trial, settings, monkeypatch):
     start = box.Box.start
+
+    def start_sleeping(self):
+        if self.printed:                                               # a second process, after the file was loaded
+            self.program = ["/bin/sleep", "60"]
+        start(self)
+
     monkeypatch.setattr(box, "READY_WITHIN", 0.5)
-    monkeypatch.setattr(box.Box, "start", lambda self: (setattr(self, "program", ["/bin/sleep", "60"]) if self.printed else None, start(self)))
+    monkeypatch.setattr(box.Box, "start", start_sleeping)
+    text = HONEST + "import os\nprint('loaded', flush=True)\ndef euler_step(*a):\n    os._exit(0)\n"
+    unlucky = submissions.Submission("unlucky", {"integrators": text.encode()}, (), "")
     with pytest.raises(RuntimeError, match="cannot start"), nothing_left():
-        text = HONEST + "import os\nprint('loaded', flush=True)\ndef euler_step(*a):\n    os._exit(0)\n"
-        marking.mark(submissions.Submission("unlucky", {"integrators": text.encode()}, (), ""), settings["integrators"])
+        marking.mark(unlucky, settings["integrators"])
 
 
 # ---------------------------------------------------------------------------------------------- what is handed in
@@ -329,8 +347,21 @@ def a_date_that_no_calendar_has(top):
     os.utime(top / "springs.py", (2**40, 2**40))
 
 
-@pytest.mark.parametrize("make", [links, linked_folder, pipes, sockets, devices, folders_as_files, huge_file, deep_folders, evil_names,
-                                  a_date_that_no_calendar_has])
+TRICKS_WITH_FILES = [
+    links,
+    linked_folder,
+    pipes,
+    sockets,
+    devices,
+    folders_as_files,
+    huge_file,
+    deep_folders,
+    evil_names,
+    a_date_that_no_calendar_has,
+]
+
+
+@pytest.mark.parametrize("make", TRICKS_WITH_FILES)
 def test_tricks_with_files_leave_the_other_file_readable(make, tmp_path):
     top = tmp_path / "mallory"
     top.mkdir()
@@ -338,11 +369,14 @@ def test_tricks_with_files_leave_the_other_file_readable(make, tmp_path):
     assert read(top).files == {"springs": LESSON}
 
 
-def test_a_date_that_no_calendar_has_is_none():
-    assert submissions.moment(2.0**60) == "" == submissions.moment(0.0)          # many file systems keep no such date themselves
+@pytest.mark.long
+def test_a_date_that_no_calendar_has_is_no_date():
+    for seconds in (2.0**60, 0.0):                                     # many file systems cannot keep such a date
+        assert submissions.moment(seconds) == ""
 
 
-def test_a_submission_that_is_a_link_or_a_pipe_is_nobody(tmp_path):
+@pytest.mark.long
+def test_a_submission_that_is_a_link_or_a_pipe_is_not_read(tmp_path):
     (tmp_path / "link").symlink_to(ROOT / "solutions")
     (tmp_path / "link.zip").symlink_to(zipped(tmp_path / "other" / "honest.zip", {"integrators.py": LESSON}))
     os.mkfifo(tmp_path / "pipe.zip")
@@ -351,7 +385,7 @@ def test_a_submission_that_is_a_link_or_a_pipe_is_nobody(tmp_path):
 
 
 def encrypted(path):
-    """An entry that says it is encrypted."""
+    """Write a zip whose entry is flagged as encrypted."""
     data = bytearray(zipped(path, {"integrators.py": LESSON, "springs.py": LESSON}, zipfile.ZIP_STORED).read_bytes())
     data[6] |= 1
     data[data.index(b"PK\x01\x02") + 8] |= 1
@@ -375,7 +409,8 @@ def nested(path):
 
 
 def slip(path):
-    zipped(path, {"../../integrators.py": LESSON, "/integrators.py": LESSON, "a/../integrators.py": LESSON, "..\\integrators.py": LESSON, "springs.py": LESSON})
+    outside = "../../integrators.py", "/integrators.py", "a/../integrators.py", "..\\integrators.py"
+    zipped(path, {**dict.fromkeys(outside, LESSON), "springs.py": LESSON})
 
 
 def link_inside(path):
@@ -387,12 +422,16 @@ def link_inside(path):
 
 
 def evil_entries(path):
-    zipped(path, {"\x1b]0;owned\x07\u202e/integrators.py": bytes(1 << 20), "\x1b[2J/\r\n/integrators.py": LESSON * 100_000, "springs.py": LESSON})
+    zipped(path, {
+        "\x1b]0;owned\x07\u202e/integrators.py": bytes(1 << 20),
+        "\x1b[2J/\r\n/integrators.py": LESSON * 100_000,
+        "springs.py": LESSON,
+    })
 
 
 def packed_by(method):
     def make(path):
-        """Hundreds of megabytes in a kilobyte, of which Python unpacks all at once, however little is asked for."""
+        """Write hundreds of megabytes into a kilobyte; Python unpacks them all even to read one byte."""
         with zipfile.ZipFile(path, "w") as archive:
             archive.writestr("springs.py", LESSON)
             with archive.open(zipped_entry("integrators.py", method), "w", force_zip64=True) as file:
@@ -408,20 +447,34 @@ def zipped_entry(name, method):
 
 
 def nul_in_a_name(path):
-    """integrators.py for Python, and a picture for whoever looks at the whole name."""
+    """Write an entry whose name ends at a NUL byte for Python, and is that of a picture as a whole."""
     data = zipped(path, {"integrators.py+.png": LESSON, "springs.py": LESSON}, zipfile.ZIP_STORED).read_bytes()
     path.write_bytes(data.replace(b"integrators.py+.png", b"integrators.py\0.png"))
 
 
 def lies_about_its_size(path):
-    """Two bytes by its header, and a megabyte in truth."""
+    """Write an entry of a megabyte whose headers say two bytes."""
     data = bytearray(zipped(path, {"integrators.py": bytes(1 << 20), "springs.py": LESSON}).read_bytes())
     for at in (22, data.index(b"PK\x01\x02") + 24):
         data[at:at + 4] = struct.pack("<I", 2)
     path.write_bytes(data)
 
 
-@pytest.mark.parametrize("make", [encrypted, broken_stream, bomb, nested, slip, link_inside, evil_entries, nul_in_a_name, lies_about_its_size])
+TRICKS_WITH_ZIPS = [
+    encrypted,
+    broken_stream,
+    bomb,
+    nested,
+    slip,
+    link_inside,
+    evil_entries,
+    nul_in_a_name,
+    lies_about_its_size,
+]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("make", TRICKS_WITH_ZIPS)
 def test_tricks_with_zips_leave_the_other_file_readable(make, tmp_path):
     make(tmp_path / "mallory.zip")
     one = read(tmp_path / "mallory.zip")
@@ -429,11 +482,13 @@ def test_tricks_with_zips_leave_the_other_file_readable(make, tmp_path):
     assert {path.name for path in tmp_path.iterdir()} <= {"mallory.zip", "inner.zip"}
 
 
-@pytest.mark.parametrize("method, word", [(zipfile.ZIP_BZIP2, "bzip2"), (zipfile.ZIP_LZMA, "lzma")])
-def test_nothing_is_unpacked_that_takes_gigabytes_for_a_kilobyte(method, word, tmp_path):
+@pytest.mark.long
+@pytest.mark.parametrize(("method", "word"), [(zipfile.ZIP_BZIP2, "bzip2"), (zipfile.ZIP_LZMA, "lzma")])
+def test_methods_that_unpack_gigabytes_from_a_kilobyte_are_not_read(method, word, tmp_path):
     packed_by(method)(tmp_path / "mallory.zip")
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss        # [KiB]
-    assert read(tmp_path / "mallory.zip").problems == (f"integrators.py is packed by {word} and not by deflate, as an ordinary zip is, and was not read",)
+    problem = f"integrators.py is packed by {word} and not by deflate, as an ordinary zip is, and was not read"
+    assert read(tmp_path / "mallory.zip").problems == (problem,)
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 200_000
 
 
@@ -457,33 +512,45 @@ def numbers_that_lie(path):
     path.write_bytes(data)
 
 
-@pytest.mark.parametrize("make", [many, truncated, large, numbers_that_lie, lambda path: path.write_bytes(b"PK"), lambda path: path.write_bytes(b"")])
-def test_a_zip_that_cannot_be_read_is_a_sentence(make, tmp_path):
+def two_bytes(path):
+    path.write_bytes(b"PK")
+
+
+def empty(path):
+    path.write_bytes(b"")
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("make", [many, truncated, large, numbers_that_lie, two_bytes, empty])
+def test_a_zip_that_cannot_be_read_is_reported_in_one_sentence(make, tmp_path):
     make(tmp_path / "mallory.zip")
     one = read(tmp_path / "mallory.zip")
     assert not one.files and len(one.problems) == 1
 
 
 def endless_names(path):
-    """As long as names can be, in a zip that is as large as it may be: each would be told as a problem."""
+    """Write names of the greatest length into a zip of the greatest size; each name is a problem to report."""
     with zipfile.ZipFile(path, "w", zipfile.ZIP_BZIP2) as archive:
         for n in range(200):
             archive.writestr(f"{n}{'x' * 65_000}/integrators.py", b"")
 
 
-def test_what_is_told_about_a_zip_is_short(tmp_path):
+@pytest.mark.long
+def test_the_report_about_a_zip_is_short(tmp_path):
     endless_names(tmp_path / "mallory.zip")
     one = read(tmp_path / "mallory.zip")
     assert len(one.problems) == submissions.MOST_PROBLEMS + 1 and one.problems[-1] == "and 180 more of the kind"
     assert max(map(len, one.problems)) < 2 * submissions.LONGEST
 
 
+@pytest.mark.long
 def test_a_large_zip_makes_no_large_result(tmp_path, trial, settings):
     endless_names(tmp_path / "mallory.zip")
     assert (tmp_path / "mallory.zip").stat().st_size > 24 << 20
     harmless(marking.mark(read(tmp_path / "mallory.zip"), settings["integrators"]))
 
 
+@pytest.mark.long
 def test_long_names_in_a_file_make_no_large_result(trial, settings):
     names = [f"{n}{'x' * 15_000}" for n in "abcdefghijkl"]
     text = "".join(f"try:\n    from {name} import x\nexcept ImportError:\n    pass\n" for name in names)
@@ -496,6 +563,7 @@ def many_tasks(kind):
     return bytearray(2 * children.LITTLE) if kind == "memory" else os._exit(1)
 
 
+@pytest.mark.long
 def test_a_reader_of_archives_has_little_memory_and_time_and_is_replaced_when_it_ends():
     with children.reader() as child:
         with pytest.raises(MemoryError):
@@ -506,7 +574,7 @@ def test_a_reader_of_archives_has_little_memory_and_time_and_is_replaced_when_it
         with pytest.raises(TimeoutError):
             child(slow)
         with pytest.raises(TimeoutError):
-            child(any, iter(int, 1), patience=1.0)                     # a loop that no signal and no thread of its own can end
+            child(any, iter(int, 1), patience=1.0)                     # no signal or thread of its own ends this loop
         assert child(os.getpid) != os.getpid()
 
 
@@ -515,6 +583,7 @@ def slow():
     return children.timed(many_tasks, "time")
 
 
+@pytest.mark.long
 def test_hostile_names_do_not_stop_a_class(tmp_path):
     for name in (b"\x1b[2Jmallory", b"\xff\xfe", b"a\nb.zip", "‮evil".encode(), b"honest"):
         os.mkdir(os.fsencode(tmp_path) + b"/" + name)

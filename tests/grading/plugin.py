@@ -29,6 +29,7 @@ def pytest_addoption(parser):
     group.addoption("--compiled", action="store_true", help="test the compiled twins only")
     group.addoption("--exercise", action="append", default=[], metavar="1.2", help="only this exercise (may be repeated)")
     group.addoption("--seed", default=PUBLIC, help="draw the inputs of the tests from this; a class is graded with a secret one")
+    group.addoption("--long", action="store_true", help="run the long tests, too")
     group.addoption("--outcomes", metavar="FILE", help="with --of: write every outcome there, as JSON")
 
 
@@ -84,9 +85,12 @@ def pytest_runtest_call(item):
 
 
 def pytest_collection_modifyitems(config, items):
-    keep = [item for item in items if is_wanted(item, config)]
+    wanted = [item for item in items if is_wanted(item, config)]
+    keep = [item for item in wanted if not is_left_out(item, config)]
+    count_left_out(config, len(wanted) - len(keep))
     if len(keep) < len(items):
-        config.hook.pytest_deselected(items=[item for item in items if not is_wanted(item, config)])
+        kept = {*keep}
+        config.hook.pytest_deselected(items=[item for item in items if item not in kept])
         items[:] = keep
     if config.getoption("--of"):                                     # a student's code may warn, as in the sandbox
         for item in items:
@@ -102,6 +106,25 @@ def is_wanted(item, config):
         _, wanted = config.given[item.callspec.params["lesson"]]
         return wanted(mark.args[0], name_of(item))
     return not exercises or mark.args[0] in exercises
+
+
+def is_left_out(item, config):
+    """Whether this test is long and was not asked for."""
+    return bool(item.get_closest_marker("long")) and not config.getoption("--long")
+
+
+def count_left_out(config, count):
+    """Keep the number of long tests left out, for the summary; a worker of pytest-xdist sends it to the process that prints."""
+    config.long_tests_left_out = count
+    if hasattr(config, "workeroutput"):
+        config.workeroutput["long_tests_left_out"] = count
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node):
+    """Take the number from a worker of pytest-xdist; all workers collect the same tests."""
+    left_out = getattr(node, "workeroutput", {}).get("long_tests_left_out", 0)
+    node.config.long_tests_left_out = max(left_out, getattr(node.config, "long_tests_left_out", 0))
 
 
 @pytest.fixture
@@ -212,6 +235,10 @@ def pytest_sessionfinish(session):
 
 
 def pytest_terminal_summary(terminalreporter, config):
+    left_out = getattr(config, "long_tests_left_out", 0)
+    if left_out:
+        tests, were = ("test", "was") if left_out == 1 else ("tests", "were")
+        terminalreporter.line(f"{left_out} long {tests} {were} left out: pytest --long runs them, too")
     if not hasattr(config, "points") or not config.points.outcomes:
         return
     table = score(config.points.all())

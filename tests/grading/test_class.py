@@ -69,6 +69,7 @@ def test_points_are_given_for_what_is_right_and_reasons_for_the_rest(top, rows):
         assert "<html" in (top / "one" / page).read_text()
 
 
+@pytest.mark.long
 def test_the_same_class_graded_twice_gives_the_same_bytes_and_only_what_changed_is_graded_again(top, rows, tmp_path):
     graded(top / "class", tmp_path, *LATE, "--jobs", "1")
     for name in ("grades.csv", *(f"students/{path.name}" for path in (tmp_path / "students").iterdir())):
@@ -86,6 +87,7 @@ def test_the_same_class_graded_twice_gives_the_same_bytes_and_only_what_changed_
     assert {name for name in after if after[name] != before[name]} == {"bob.json"} and again["bob"]["raw_score"] == "20"
 
 
+@pytest.mark.long
 def test_an_interrupted_run_keeps_what_it_has_and_goes_on_from_there(top, tmp_path):
     for student in ("cem", "dan", "eda"):                              # three who have not begun
         (tmp_path / "class").mkdir(exist_ok=True)
@@ -115,6 +117,7 @@ print("LOOKED")
 """
 
 
+@pytest.mark.long
 def test_a_class_below_the_environment_is_not_read_by_its_students(top):
     """As in an image that has everything below /usr: answers, seed and other students' files may not come along with Python's own."""
     with tempfile.TemporaryDirectory(dir=os.path.join(sys.prefix, "lib")) as place:
@@ -148,6 +151,7 @@ def test_bad_input_is_one_sentence_and_exit_code_2(top, tmp_path, arguments, nam
     assert not (tmp_path / "out" / "grades.csv").exists()
 
 
+@pytest.mark.long
 def test_the_sandbox_gives_the_same_points_as_the_same_tests_in_one_process():
     """Every mutant could be tried; a wrong step and the solutions are enough to see that nothing is lost on the wire."""
     for lesson in modules.lesson_names():

@@ -93,6 +93,7 @@ def without_time(result):
     return {name: value for name, value in result.items() if name != "seconds"}
 
 
+@pytest.mark.long
 def test_a_worker_that_is_killed_half_way_loses_nothing_and_nothing_is_counted_twice(tmp_path, settings):
     everyone = small_class()
     with cluster_of(2, tmp_path) as (address, workers):
@@ -111,6 +112,7 @@ def test_a_worker_that_is_killed_half_way_loses_nothing_and_nothing_is_counted_t
     assert {s: sum(t["earned"] for t in found[s]["tests"]) for s in ("ada", "bea", "cyd", "dov")} == {"ada": 20.0, "bea": 0, "cyd": 0, "dov": 0}
 
 
+@pytest.mark.long
 def test_what_a_killed_worker_had_begun_ends_with_it(settings):
     hangs = Submission("kim", {LESSON: b"while True:\n    pass\n"}, (), "")      # for IMPORT_WITHIN, 10 s
     command = "import sys; from tests.grading import cluster; cluster.asked(sys.stdin.buffer.read())"
@@ -124,6 +126,7 @@ def test_what_a_killed_worker_had_begun_ends_with_it(settings):
         assert not psutil.wait_procs(begun, timeout=5.0)[1]                             # it looks once a second
 
 
+@pytest.mark.long
 def test_a_failure_of_the_grader_and_a_cluster_that_dies_are_told_and_give_no_points(tmp_path, settings, monkeypatch):
     monkeypatch.setattr(cluster, "WORKERLESS", 2.0)
     no_bytes = Submission("ivy", {LESSON: None}, (), "")
@@ -138,6 +141,7 @@ def test_a_failure_of_the_grader_and_a_cluster_that_dies_are_told_and_give_no_po
     assert came[0][1] and all(result is None and address in why for _, result, why in came[1:])
 
 
+@pytest.mark.long
 def test_an_interrupted_run_leaves_nothing_waiting_on_the_cluster(tmp_path, settings):
     with cluster_of(1, tmp_path) as (address, _):
         coming = cluster.results(address, small_class()[1:], settings)
@@ -147,6 +151,7 @@ def test_an_interrupted_run_leaves_nothing_waiting_on_the_cluster(tmp_path, sett
             until(lambda: client.run_on_scheduler(left_over) == (0, 1))                 # no task, and no client but this one
 
 
+@pytest.mark.long
 def test_a_workbook_elsewhere_is_accepted_and_one_that_differs_is_refused(tmp_path, settings):
     copy = tmp_path / "workbook"
     for package in ("solutions", "lessons", "validate", "tests"):
@@ -168,6 +173,7 @@ def test_a_workbook_elsewhere_is_accepted_and_one_that_differs_is_refused(tmp_pa
             process.wait()
 
 
+@pytest.mark.long
 def test_a_worker_that_is_refused_when_a_submission_reaches_it_ends_the_run(settings):
     theirs = pickle.dumps((small_class()[1], settings, cluster.makeup("another digest"), {}, None))
     unfit, result, why = cluster.asked(theirs)
@@ -189,12 +195,14 @@ class Done:
         return self.value
 
 
+@pytest.mark.long
 def test_a_grading_process_that_breaks_is_an_error_of_the_grader(settings):
     assert cluster.fetched(Done(RuntimeError("a worker\ndied"))) == (None, "RuntimeError: a worker died")
     with pytest.raises(RuntimeError, match="ended unexpectedly .*TypeError"):
         cluster.asked(pickle.dumps((None, settings, None, {}, None)))
 
 
+@pytest.mark.long
 def test_what_is_no_cluster_is_told_in_one_sentence(tmp_path, settings, monkeypatch):
     monkeypatch.setattr(cluster, "CONNECT_WITHIN", 1.0)
     for address, said in (("here", "not an address"), ("tcp://127.0.0.1:1", "no Dask scheduler that answers")):
@@ -211,5 +219,6 @@ def test_a_missing_package_is_named_with_its_remedy(settings, monkeypatch):
         cluster.results("tcp://127.0.0.1:1", small_class(), settings)
 
 
+@pytest.mark.long
 def test_nothing_to_do_asks_no_cluster(settings):
     assert list(cluster.results("tcp://127.0.0.1:1", [], settings)) == []

@@ -1,4 +1,7 @@
-"""What a class reads is complete, the same for the same class, harmless whatever students wrote, and never called a grade when it is none."""
+"""The pages of a class are complete, deterministic and harmless whatever students wrote.
+
+They are never called a grade when they are none.
+"""
 
 import csv
 import io
@@ -24,19 +27,52 @@ EVIL = "<script>alert(1)</script>\"'&{{ 7 * 7 }}\x1b[31m\x00\u202e\ud800"
 
 def found(exercise, status, says=None, kind="visible", hint=""):
     """A change to one test of a result."""
-    return exercise, {"status": status, "earned": 0, "kind": kind, "says": says or {}, **({"hint": hint} if hint else {})}
+    change = {"status": status, "earned": 0, "kind": kind, "says": says or {}}
+    if hint:
+        change["hint"] = hint
+    return exercise, change
 
 
-def result(student, *changes, handed_in=LESSONS, printed=None, problems=(), timestamp=IN_TIME, no_grade="", watched=None):
-    """A result as marking.mark gives it: all right, but for the changes."""
-    tests = []
+def result(
+    student, *changes, handed_in=LESSONS, printed=None, problems=(), timestamp=IN_TIME, no_grade="", watched=None
+):
+    """A result as marking.mark returns it: every test has passed, except for the changes."""
+    changed, tests = dict(changes), []
     for row in MANIFEST:
-        lesson, exercise, function, test, worth, hint = row
-        right = {"lesson": lesson, "exercise": exercise, "function": function, "test": test, "points": worth, "hint": hint,
-                 "status": "passed", "earned": worth, "kind": "", "says": {}}
-        tests.append({**right, **dict(changes).get(exercise, {})} if lesson in handed_in else marking.verdict(row, {}, False))
-    return {"student": student, "problems": list(problems), "timestamp": timestamp, "handed_in": sorted(handed_in), "tests": tests,
-            "printed": printed or {}, "seconds": 1.5, "watched": watched or {}, "again": [], "no_grade": no_grade, "digest": ""}
+        lesson, exercise = row[:2]
+        if lesson in handed_in:
+            tests.append({**passed(*row), **changed.get(exercise, {})})
+        else:
+            tests.append(marking.verdict(row, {}, False))
+    return {
+        "student": student,
+        "problems": list(problems),
+        "timestamp": timestamp,
+        "handed_in": sorted(handed_in),
+        "tests": tests,
+        "printed": printed or {},
+        "seconds": 1.5,
+        "watched": watched or {},
+        "again": [],
+        "no_grade": no_grade,
+        "digest": "",
+    }
+
+
+def passed(lesson, exercise, function, test, worth, hint):
+    """The verdict on a test of the manifest that has passed."""
+    return {
+        "lesson": lesson,
+        "exercise": exercise,
+        "function": function,
+        "test": test,
+        "points": worth,
+        "hint": hint,
+        "status": "passed",
+        "earned": worth,
+        "kind": "",
+        "says": {},
+    }
 
 
 def rows_of(out):
@@ -69,54 +105,66 @@ def write(out, results, failed=None, people=None, terms=FREE):
 
 # ---------------------------------------------------------------------------------------------- points
 
-@pytest.mark.parametrize("handed_in, days", [
-    ("2026-11-30T23:59:00", 0), ("2026-11-01T00:00:00", 0), ("2026-11-30T23:59:01", 1), ("2026-12-01T23:59:00", 1),
-    ("2026-12-01T23:59:01", 2), ("yesterday", None), ("", None)])
+@pytest.mark.parametrize(("handed_in", "days"), [
+    ("2026-11-30T23:59:00", 0),
+    ("2026-11-01T00:00:00", 0),
+    ("2026-11-30T23:59:01", 1),
+    ("2026-12-01T23:59:00", 1),
+    ("2026-12-01T23:59:01", 2),
+    ("yesterday", None),
+    ("", None),
+])
 def test_every_day_begun_counts(handed_in, days):
     assert pages.days_late(handed_in, DUE) == days
     assert pages.days_late(handed_in, "") == 0
 
 
 def test_a_time_zone_on_one_side_only_is_no_error():
-    assert pages.days_late("2026-12-24T12:00:00+00:00", DUE) in (24, 25) and pages.days_late(IN_TIME, "2030-01-01T00:00:00+01:00") == 0
+    assert pages.days_late("2026-12-24T12:00:00+00:00", DUE) in (24, 25)
+    assert pages.days_late(IN_TIME, "2030-01-01T00:00:00+01:00") == 0
 
 
 def test_the_penalty_is_a_part_of_the_maximum_and_no_more_than_was_earned(tmp_path):
     late = result("late", found("2.1", "not attempted"), found("1.2", "not attempted"), timestamp="2026-12-02T12:00:00")
     write(tmp_path, [late], terms=pages.Terms(DUE, 10.0))
-    assert [(r["raw_score"], r["late_submission_penalty"], r["score"], r["max_score"]) for r in rows_of(tmp_path)] == [
-        ("3", "1.2", "1.8", "6"), ("0", "0", "0", "4")]                                      # two days: 2 × 10 % of 6
+    scores = [(r["raw_score"], r["late_submission_penalty"], r["score"], r["max_score"]) for r in rows_of(tmp_path)]
+    assert scores == [("3", "1.2", "1.8", "6"), ("0", "0", "0", "4")]                        # two days: 2 × 10 % of 6
     write(tmp_path, [late], terms=pages.Terms(DUE, 100.0))
     assert [(r["late_submission_penalty"], r["score"]) for r in rows_of(tmp_path)] == [("3", "0"), ("0", "0")]
     assert "2 days late" in Seen(tmp_path / "students" / "late.html").text
 
 
-def test_the_class_list_knows_better_when_it_was_handed_in(tmp_path):
+def test_a_time_in_the_class_list_overrides_that_of_the_files(tmp_path):
     person = submissions.Person("ada", "Byron", "Ada", "ada@example.org", "2026-12-01T00:00:00")
-    seen = write(tmp_path, [result("ada")], people={"ada": person}, terms=pages.Terms(DUE, 10.0))
+    terms = pages.Terms(DUE, 10.0)
+    seen = write(tmp_path, [result("ada")], people={"ada": person}, terms=terms)
     row = rows_of(tmp_path)[0]
-    assert (row["timestamp"], row["score"], row["last_name"], row["email"]) == ("2026-12-01T00:00:00", "5.4", "Byron", "ada@example.org")
+    assert (row["timestamp"], row["score"]) == ("2026-12-01T00:00:00", "5.4")
+    assert (row["last_name"], row["email"]) == ("Byron", "ada@example.org")
     assert json.loads((tmp_path / "gradescope" / "ada.json").read_text())["score"] == 9.0 and "1 day" in seen.text
-    seen = write(tmp_path, [result("ada")], people={"ada": person._replace(timestamp="noonish")}, terms=pages.Terms(DUE, 10.0))
+    seen = write(tmp_path, [result("ada")], people={"ada": person._replace(timestamp="noonish")}, terms=terms)
     assert rows_of(tmp_path)[0]["score"] == "6" and "noonish" in seen.text
 
 
 # ---------------------------------------------------------------------------------------------- CSV
 
 def test_the_csv_has_the_columns_of_nbgrader_and_a_row_for_every_student_and_lesson(tmp_path):
-    seen = write(tmp_path, [result("zoe"), result("ada", handed_in=("falling",))], {"max": "RuntimeError: no sandbox"},
-                 {n: submissions.Person(n) for n in ("zoe", "kim")})
+    people = {n: submissions.Person(n) for n in ("zoe", "kim")}
+    graded = [result("zoe"), result("ada", handed_in=("falling",))]
+    seen = write(tmp_path, graded, {"max": "RuntimeError: no sandbox"}, people)
     text = (tmp_path / "grades.csv").read_bytes().decode()
     assert text.splitlines()[0] == ("assignment,duedate,timestamp,student_id,last_name,first_name,email,"
                                     "raw_score,late_submission_penalty,score,max_score,problems")
     rows = rows_of(tmp_path)
-    assert [(r["student_id"], r["assignment"]) for r in rows] == [(n, lesson) for n in ("ada", "kim", "max", "zoe") for lesson in LESSONS]
-    assert [r["score"] for r in rows] == ["6", "0", "0", "0", "", "", "6", "4"]           # the grader's failure is no zero
-    assert [r["max_score"] for r in rows] == ["6", "4"] * 4 and rows[1]["timestamp"] == "" != rows[0]["timestamp"]
+    everybody = [(n, lesson) for n in ("ada", "kim", "max", "zoe") for lesson in LESSONS]
+    assert [(r["student_id"], r["assignment"]) for r in rows] == everybody
+    assert [r["score"] for r in rows] == ["6", "0", "0", "0", "", "", "6", "4"]    # a failure of the grader is no zero
+    assert [r["max_score"] for r in rows] == ["6", "4"] * 4
+    assert rows[0]["timestamp"] and rows[1]["timestamp"] == ""
     assert "kim" in seen.text and "not on the class list" in seen.text
 
 
-def test_the_same_class_gives_the_same_bytes_in_whatever_order_it_came(tmp_path):
+def test_the_same_class_gives_the_same_bytes_in_any_order(tmp_path):
     some = [result(n, found("1.2", "not yet", {"quantity": "height [m]", "got": "3"})) for n in ("b", "A", "c d")]
     write(tmp_path / "1", some, terms=pages.Terms(DUE, 100.0 / 3.0))
     write(tmp_path / "2", some[::-1], terms=pages.Terms(DUE, 100.0 / 3.0))
@@ -155,14 +203,15 @@ def test_an_ordinary_cell_stays_as_it_is(text):
 
 # ---------------------------------------------------------------------------------------------- Gradescope
 
-def test_gradescope_gets_every_test_of_the_manifest_whatever_happened():
+def test_gradescope_gets_every_test_of_the_manifest_even_when_it_did_not_run():
     lacking = result("ada", found("1.1", "not yet", {"quantity": "height [m]", "got": "1.0e-3 off"}, "hidden"))
     lacking["tests"] = lacking["tests"][:2]
     for one in (lacking, result("bob", handed_in=()), result("eve")):
         got = pages.gradescope(one, SETTINGS, FREE)
         assert [(t["number"], t["max_score"]) for t in got["tests"]] == [(row[1], row[4]) for row in MANIFEST]
         assert got["score"] == sum(t["score"] for t in got["tests"]) and "execution_time" not in got
-        assert all(t["status"] == ("passed" if t["score"] else "failed") and t["visibility"] == "visible" for t in got["tests"])
+        for test in got["tests"]:
+            assert test["status"] == ("passed" if test["score"] else "failed") and test["visibility"] == "visible"
     first, second, third, _ = pages.gradescope(lacking, SETTINGS, FREE)["tests"]
     assert first["name"] == "fall: It falls (plain)" and first["tags"] == ["falling"]
     assert first["output"] == "with other inputs\nquantity: height [m]\ngot: 1.0e-3 off\nhint: down, not up"
@@ -176,22 +225,40 @@ def test_gradescopes_score_is_after_the_late_penalty():
 
 # ---------------------------------------------------------------------------------------------- pages
 
-def test_a_student_reads_what_says_has_and_no_more(tmp_path):
-    told = {"quantity": "height [m]", "given": "dropped from 3 m", "expected": "(3, 2)", "got": "(3, 4)", "tolerance": "1.0e-12"}
-    ada = result("ada", found("1.1", "not yet", told), found("1.2", "not yet", {"quantity": "speed [m/s]", "got": "2.0e-1 off"}, "hidden"),
-                 found("1.10", "not attempted"), printed={"falling": "here I am"}, handed_in=("falling",), problems=["bouncing.py is a link"])
+def test_a_students_page_shows_the_reported_fields_and_nothing_else(tmp_path):
+    reported = {
+        "quantity": "height [m]",
+        "given": "dropped from 3 m",
+        "expected": "(3, 2)",
+        "got": "(3, 4)",
+        "tolerance": "1.0e-12",
+    }
+    ada = result(
+        "ada",
+        found("1.1", "not yet", reported),
+        found("1.2", "not yet", {"quantity": "speed [m/s]", "got": "2.0e-1 off"}, "hidden"),
+        found("1.10", "not attempted"),
+        printed={"falling": "here I am"},
+        handed_in=("falling",),
+        problems=["bouncing.py is a link"],
+    )
     write(tmp_path, [ada, result("bob")])
     page = Seen(tmp_path / "students" / "ada.html")
-    for text in (*told.values(), "It falls (plain)", "down, not up", "2.0e-1 off", "at the floor", "here I am", "bouncing.py is a link",
-                 "not attempted", "Not handed in", "With other inputs", "With the public inputs"):
+    answers = "It falls (plain)", "down, not up", "2.0e-1 off", "at the floor", "here I am", "bouncing.py is a link"
+    words = "not attempted", "Not handed in", "With other inputs", "With the public inputs"
+    for text in (*reported.values(), *answers, *words):
         assert text in page.text, text
-    assert page.links == [] and "bob" not in page.text and "secret" not in page.text and "no speed" not in page.text
+    for text in ("bob", "secret", "no speed"):
+        assert text not in page.text, text
+    assert page.links == []
     assert "img" not in page.tags and "link" not in page.tags
 
 
 def test_a_file_that_does_not_load_says_so_once(tmp_path):
-    lost = {"quantity": points.READING, "expected": "a module that loads", "got": "SyntaxError: invalid (falling.py, line 1)"}
-    seen = write(tmp_path, [result(n, *(found(e, "not yet", lost, hint="mend this first") for e in ("1.1", "1.2", "1.10"))) for n in ("ada", "bob")])
+    error = "SyntaxError: invalid (falling.py, line 1)"
+    lost = {"quantity": points.READING, "expected": "a module that loads", "got": error}
+    tests = [found(exercise, "not yet", lost, hint="mend this first") for exercise in ("1.1", "1.2", "1.10")]
+    seen = write(tmp_path, [result("ada", *tests), result("bob", *tests)])
     page = Seen(tmp_path / "students" / "ada.html").text
     assert page.count("SyntaxError") == 1 and page.count("mend this first") == 1 and "down, not up" not in page
     assert "the whole file" in seen.text and seen.text.count("reading the file: SyntaxError") == 1
@@ -200,7 +267,7 @@ def test_a_file_that_does_not_load_says_so_once(tmp_path):
 def test_an_error_of_a_call_is_recognised_by_its_kind():
     def call(a):
         raise ValueError("no such ball")
-    with pytest.raises(ValueError) as error:
+    with pytest.raises(ValueError, match="no such ball") as error:
         call(1)
     mark = pytest.mark.exercise("1.1", points=1, hint="h").mark
     o = points.outcome(mark, "test_it", error)
@@ -211,43 +278,70 @@ def test_an_error_of_a_call_is_recognised_by_its_kind():
 
 def test_failures_are_grouped_by_cause_and_the_hardest_exercise_comes_first():
     height = {"quantity": "height [m]", "got": "1"}
-    some = [result("a", found("1.1", "not yet", height)), result("b", found("1.1", "not yet", {**height, "got": "2"}, "hidden")),
-            result("c", found("1.1", "not attempted"), found("1.2", "not attempted"), handed_in=("falling",)),
-            result("d", found("1.2", "not yet", height))]
+    some = [
+        result("a", found("1.1", "not yet", height)),
+        result("b", found("1.1", "not yet", {**height, "got": "2"}, "hidden")),
+        result("c", found("1.1", "not attempted"), found("1.2", "not attempted"), handed_in=("falling",)),
+        result("d", found("1.2", "not yet", height)),
+    ]
     sheets = [pages.sheet(r, SETTINGS, FREE) for r in some]
     groups = [(g["exercise"], g["cause"], [s.student for s in g["students"]], g["other"]) for g in pages.causes(sheets)]
-    assert groups == [("1.1", "height [m]", ["a", "b"], 1), ("1.2", "height [m]", ["d"], 0)]        # what was not attempted is counted below
+    # exercises that were not attempted have no cause; `hardest` counts them
+    assert groups == [("1.1", "height [m]", ["a", "b"], 1), ("1.2", "height [m]", ["d"], 0)]
     rows = [(r["exercise"], r["share"], r["solved"], r["of"], r["left"]) for r in pages.hardest(sheets, SETTINGS)]
     assert rows == [("1.1", 0.25, 1, 4, 1), ("1.2", 0.5, 2, 4, 1), ("1.10", 1.0, 4, 4, 0), ("2.1", 1.0, 3, 3, 0)]
 
 
-def test_what_nobody_tried_does_not_crowd_out_what_went_wrong(tmp_path):
-    some = [result(f"s{n}", *(found(row[1], "not attempted") for row in MANIFEST)) for n in range(40)]
-    seen = write(tmp_path, [*some, result("ada", found("1.2", "not yet", {"quantity": "height [m]"})), result("bob", found("1.1", "not run", {"got": "it was not run"}))])
+def test_exercises_not_attempted_do_not_crowd_out_the_failures(tmp_path):
+    untouched = [found(row[1], "not attempted") for row in MANIFEST]
+    wrong = result("ada", found("1.2", "not yet", {"quantity": "height [m]"}))
+    lost = result("bob", found("1.1", "not run", {"got": "it was not run"}))
+    seen = write(tmp_path, [*(result(f"s{n}", *untouched) for n in range(40)), wrong, lost])
     part = seen.text[seen.text.index("What went wrong"):seen.text.index("To look into")]
-    assert "height [m]" in part and "not run" in part and "s1" not in part and "not attempted" not in part.partition("counts it.")[2]
+    assert "height [m]" in part and "not run" in part and "s1" not in part
+    assert "not attempted" not in part.partition("counts it.")[2]
 
 
-# ---------------------------------------------------------------------------------------------- for the instructor's eyes
+# ---------------------------------------------------------------------------------------------- for the instructor
 
-def test_what_is_to_look_into_is_on_the_class_page_and_nowhere_else(tmp_path):
-    hidden = found("1.1", "not yet", {"quantity": "height [m]"}, "hidden")
-    some = [result("eve", watched={"falling": ["end", "import os", "process"], "bouncing": []}), result("max", hidden, watched={"falling": ["process"]}), result("ada")]
-    alike = {"ada": [("falling", "max", 1.0)], "max": [("falling", "ada", 1.0), ("bouncing", "eve", 0.87)]}
-    run = pages.Run(("notes.txt is no submission, and was not read",), alike, "2027-01-15T08:00:00", "workbook 12ab", "0123fe")
+LOOK_INTO = (
+    "falling: the program ended by itself",
+    "falling: it imports os",
+    "falling: it tried to start another process",
+    "falling: the same as max",
+    "87%",
+    "1 test right with the public inputs only",
+)
+OF_THE_RUN = "notes.txt", "2027-01-15 08:00:00", "workbook 12ab", "0123fe", "1.5 s (median)"
+
+
+def test_observations_to_look_into_are_on_the_class_page_and_nowhere_else(tmp_path):
+    some = [
+        result("eve", watched={"falling": ["end", "import os", "process"], "bouncing": []}),
+        result("max", found("1.1", "not yet", {"quantity": "height [m]"}, "hidden"), watched={"falling": ["process"]}),
+        result("ada"),
+    ]
+    run = pages.Run(
+        overlooked=("notes.txt is no submission, and was not read",),
+        alike={"ada": [("falling", "max", 1.0)], "max": [("falling", "ada", 1.0), ("bouncing", "eve", 0.87)]},
+        when="2027-01-15T08:00:00",
+        versions="workbook 12ab",
+        seed="0123fe",
+    )
     pages.write(tmp_path, some, {}, SETTINGS, {}, FREE, run)
     page = Seen(tmp_path / "index.html").text
-    for word in ("falling: the program ended by itself", "falling: it imports os", "falling: it tried to start another process", "falling: the same as max", "87%",
-                 "1 test right with the public inputs only", "notes.txt", "2027-01-15 08:00:00", "workbook 12ab", "0123fe", "1.5 s (median)"):
-        assert word in page, word
+    for text in (*LOOK_INTO, *OF_THE_RUN):
+        assert text in page, text
     part = page[page.index("To look into"):page.index("Students", page.index("To look into"))]
     assert re.search(r"it tried to start another process\s*2\s*eve,\s*max", part) and "ended by itself" in part
-    for other in (tmp_path / "grades.csv", *(tmp_path / "students").iterdir(), *(tmp_path / "gradescope").iterdir()):
+    others = *(tmp_path / "students").iterdir(), *(tmp_path / "gradescope").iterdir()
+    for other in (tmp_path / "grades.csv", *others):
         text = other.read_text()
-        assert not [word for word in ("ended by itself", "process", "the same as", "0123fe", "12ab", "2027-01-15") if word in text], other
+        for absent in ("ended by itself", "process", "the same as", "0123fe", "12ab", "2027-01-15"):
+            assert absent not in text, (other, absent)
 
 
-def test_only_the_class_page_tells_when_and_how_long(tmp_path):
+def test_only_the_class_page_has_the_date_and_duration_of_the_run(tmp_path):
     slow = {**result("ada"), "seconds": 99.25}
     pages.write(tmp_path / "1", [result("ada")], {}, SETTINGS, {}, FREE, pages.Run(when="2027-01-15T08:00:00"))
     pages.write(tmp_path / "2", [slow], {}, SETTINGS, {}, FREE, pages.Run(when="2027-01-16T08:00:00"))
@@ -258,10 +352,14 @@ def test_only_the_class_page_tells_when_and_how_long(tmp_path):
 
 def test_the_fingerprint_of_a_seed_tells_seeds_apart_and_not_the_seed():
     one, two = pages.fingerprint("a secret"), pages.fingerprint("a secret ")
-    assert one != two and one == pages.fingerprint("a secret") and re.fullmatch("[0-9a-f]{12}", one) and len(pages.fingerprint("\ud800")) == 12
+    assert one != two and one == pages.fingerprint("a secret")
+    assert re.fullmatch("[0-9a-f]{12}", one) and len(pages.fingerprint("\ud800")) == 12
 
 
-@pytest.mark.parametrize("maximum, width, bars", [(1, 1, 1), (20, 1, 20), (20.5, 2, 11), (40, 2, 20), (220, 20, 11), (5000, 500, 10)])
+@pytest.mark.parametrize(
+    ("maximum", "width", "bars"),
+    [(1, 1, 1), (20, 1, 20), (20.5, 2, 11), (40, 2, 20), (220, 20, 11), (5000, 500, 10)],
+)
 def test_the_histogram_counts_everybody_once(maximum, width, bars):
     scores = [0.0, 0.999 * width, maximum, maximum / 2.0]
     picture = pages.histogram(scores, maximum)
@@ -279,7 +377,7 @@ def test_the_graders_failures_come_first_and_old_pages_of_theirs_go(tmp_path):
 
 # ---------------------------------------------------------------------------------------------- a large class
 
-@pytest.mark.parametrize("make, folder", [("student_page", "students"), ("row_of", "gradescope")])
+@pytest.mark.parametrize(("make", "folder"), [("student_page", "students"), ("row_of", "gradescope")])
 def test_a_page_is_written_before_the_next_one_is_made(tmp_path, monkeypatch, make, folder):
     made, there = getattr(pages, make), []
 
@@ -292,7 +390,7 @@ def test_a_page_is_written_before_the_next_one_is_made(tmp_path, monkeypatch, ma
 
 
 class Counted(list):
-    """A list that counts how often somebody goes through it."""
+    """A list that counts how often it is iterated over."""
     times = 0
 
     def __iter__(self):
@@ -300,7 +398,7 @@ class Counted(list):
         return super().__iter__()
 
 
-def test_the_class_in_numbers_goes_through_a_students_tests_once_whatever_the_number_of_exercises():
+def test_every_statistic_of_the_class_reads_the_tests_of_a_student_once():
     sheets = [pages.sheet(result(n), SETTINGS, FREE) for n in "abc"]
     for work in (lambda s: pages.hardest(s, SETTINGS), pages.causes, lambda s: [*pages.lessons_of(s[0])],
                  lambda s: pages.accounts_of(s[0].tests, LESSONS, 0, SETTINGS, FREE)):
@@ -322,14 +420,17 @@ def test_a_cause_that_a_large_class_shares_names_the_first_students_only(tmp_pat
 
 def test_every_file_says_when_it_is_not_a_grade_and_why(tmp_path):
     why = "bubblewrap is not installed"
-    seen = write(tmp_path, [result("ada", found("1.1", "not attempted"), no_grade=why), result("bob", handed_in=(), no_grade=why)],
-                 people={"kim": submissions.Person("kim")})
-    for text in (seen.text, Seen(tmp_path / "students" / "ada.html").text, Seen(tmp_path / "students" / "bob.html").text):
+    ada = result("ada", found("1.1", "not attempted"), no_grade=why)
+    bob = result("bob", handed_in=(), no_grade=why)
+    seen = write(tmp_path, [ada, bob], people={"kim": submissions.Person("kim")})
+    theirs = [Seen(tmp_path / "students" / f"{student}.html") for student in ("ada", "bob")]
+    for text in (page.text for page in (seen, *theirs)):
         assert "Not a grade" in text and why in text
     assert [r["assignment"] for r in rows_of(tmp_path)] == [f"{lesson} (NOT A GRADE: {why})" for lesson in LESSONS] * 3
     for path in (tmp_path / "gradescope").iterdir():
         got = json.loads(path.read_text())
-        assert all("NOT A GRADE" in text and why in text for text in [got["output"], *(t["name"] for t in got["tests"])])
+        for text in (got["output"], *(test["name"] for test in got["tests"])):
+            assert "NOT A GRADE" in text and why in text
     assert "not a grade" not in write(tmp_path / "grades", [result("ada")]).text.lower()
     assert "GRADE" not in "".join(p.read_text() for p in (tmp_path / "grades").rglob("*.*") if p.suffix != ".html")
 
@@ -337,37 +438,57 @@ def test_every_file_says_when_it_is_not_a_grade_and_why(tmp_path):
 # ---------------------------------------------------------------------------------------------- hostile texts
 
 def hostile(student=EVIL):
-    said = {name: EVIL + name for name in pages.SHOWN}
-    return result(student, found("1.1", "not yet", said, hint=EVIL), found("2.1", "not run", {"got": EVIL}),
-                  found("1.2", "not yet", {"quantity": pages.CALL, "got": "x" * 10 ** 5}, "hidden", EVIL),
-                  printed={"falling": EVIL * 10_000}, problems=[EVIL] * 5000, timestamp=EVIL, no_grade=EVIL)
+    return result(
+        student,
+        found("1.1", "not yet", {name: EVIL + name for name in pages.SHOWN}, hint=EVIL),
+        found("2.1", "not run", {"got": EVIL}),
+        found("1.2", "not yet", {"quantity": pages.CALL, "got": "x" * 10**5}, "hidden", EVIL),
+        printed={"falling": EVIL * 10_000},
+        problems=[EVIL] * 5000,
+        timestamp=EVIL,
+        no_grade=EVIL,
+    )
 
 
-def test_nothing_that_a_student_wrote_becomes_markup_or_a_control_character(tmp_path):
+UNSEEN = re.compile(
+    r"[\x00-\x09\x0b\x0c\x0e-\x1f\x7f-\x9f"
+    r"\u200b-\u200f\u2028-\u202e\u2066-\u2069\ufeff]"
+)
+
+
+def test_no_text_of_a_student_becomes_markup_or_a_control_character(tmp_path):
     person = submissions.Person(EVIL, EVIL, EVIL, EVIL)
     absent = submissions.Person("absent", EVIL, EVIL, EVIL)
     write(tmp_path, [hostile()], {f"{EVIL}2": EVIL}, {EVIL: person, "absent": absent}, pages.Terms(DUE, 5.0))
-    files = [p for p in tmp_path.rglob("*.*")]
+    files = list(tmp_path.rglob("*.*"))
     assert len(files) == 4
     for path in files:
         text = path.read_bytes().decode()                                                # valid UTF-8
-        assert not re.search(r"[\x00-\x09\x0b\x0c\x0e-\x1f\x7f-\x9f\u200b-\u200f\u2028-\u202e\u2066-\u2069\ufeff]", text), path
+        assert not UNSEEN.search(text), path
         assert len(text) < 200_000, path
         if path.suffix == ".html":
             seen = Seen(path)
             assert "script" not in seen.tags and not any(name.startswith("on") for name in seen.attributes)
-            assert "<script>alert(1)</script>" in seen.text and "{{ 7 * 7 }}" in seen.text and r"\x202e" in seen.text
+            for shown in ("<script>alert(1)</script>", "{{ 7 * 7 }}", r"\x202e"):
+                assert shown in seen.text
             assert "default-src 'none'" in text
 
 
-@pytest.mark.parametrize("student", [
-    "<b>", "w" * 200, "with spaces", "../../evil", "a/b", "..", ".", "~", "", "CON", "con.x", "Ada", "ada.", "é", "e\u0301", "\ud800", "\n", "%2e%2e", "a?b#c"])
+STRANGE_IDS = [
+    "<b>", "w" * 200, "with spaces", "../../evil", "a/b", "..", ".", "~", "", "CON",
+    "con.x", "Ada", "ada.", "é", "e\u0301", "\ud800", "\n", "%2e%2e", "a?b#c",
+]
+
+
+@pytest.mark.parametrize("student", STRANGE_IDS)
 def test_file_names_are_safe_and_unique(tmp_path, student):
     name = pages.file_name(student)
-    assert re.fullmatch(r"[A-Za-z0-9_-][A-Za-z0-9_~-]{0,80}", name) and "~" in name[1:] and name == pages.file_name(student)
-    assert pages.file_name(name) != name                                                 # nobody can take another's by choosing an id
+    assert re.fullmatch(r"[A-Za-z0-9_-][A-Za-z0-9_~-]{0,80}", name) and "~" in name[1:]
+    assert name == pages.file_name(student)
+    assert pages.file_name(name) != name                               # no id can be chosen to get another's file
     seen = write(tmp_path, [result(student)])
-    assert f"students/{name}.html" in seen.links and (tmp_path / "students" / f"{name}.html").is_file() and len(list(tmp_path.rglob("*.*"))) == 4
+    assert f"students/{name}.html" in seen.links and (tmp_path / "students" / f"{name}.html").is_file()
+    assert len(list(tmp_path.rglob("*.*"))) == 4
 
 
 def test_plain_ids_keep_their_names_and_no_two_ids_share_one():
@@ -381,8 +502,9 @@ def test_plain_ids_keep_their_names_and_no_two_ids_share_one():
 
 def test_the_screen_shows_lessons_hardest_exercises_and_failures_as_plain_text():
     screen = Console(file=io.StringIO(), width=200)
-    some = [result("ada", found("1.2", "not attempted")), result("bob", handed_in=("falling",), no_grade="[red]why[/red]")]
-    pages.show(screen, some, {"[bold]eve\x1b": "[/x] no sandbox"}, SETTINGS)
+    ada = result("ada", found("1.2", "not attempted"))
+    bob = result("bob", handed_in=("falling",), no_grade="[red]why[/red]")
+    pages.show(screen, [ada, bob], {"[bold]eve\x1b": "[/x] no sandbox"}, SETTINGS)
     text = screen.file.getvalue()
     lines = {first: rest for first, *rest in (line.split() for line in text.splitlines() if line)}
     assert lines["falling"] == ["2", "4.5", "4.5", "6"] and lines["bouncing"] == ["1", "4.0", "4.0", "4"]
@@ -391,16 +513,24 @@ def test_the_screen_shows_lessons_hardest_exercises_and_failures_as_plain_text()
     pages.show(screen, [], {}, SETTINGS)
 
 
-@pytest.mark.parametrize("text", ["student_id,last_name,timestamp\nada,Lovelace,2026-11-30T23:59\n", "student_id;last_name;timestamp\nada;Lovelace;2026-11-30 23:59:00\n",
-                                  "student_id\tlast_name\ttimestamp\nada\tLovelace\t2026-11-30T23:59:00\n"])
+@pytest.mark.parametrize("text", [
+    "student_id,last_name,timestamp\nada,Lovelace,2026-11-30T23:59\n",
+    "student_id;last_name;timestamp\nada;Lovelace;2026-11-30 23:59:00\n",
+    "student_id\tlast_name\ttimestamp\nada\tLovelace\t2026-11-30T23:59:00\n",
+])
 def test_a_class_list_may_come_from_any_spreadsheet(tmp_path, text):
     (tmp_path / "list.csv").write_text(text, encoding="utf-8-sig")
-    assert submissions.roster(tmp_path / "list.csv") == {"ada": submissions.Person("ada", "Lovelace", timestamp="2026-11-30T23:59:00")}
+    ada = submissions.Person("ada", "Lovelace", timestamp="2026-11-30T23:59:00")
+    assert submissions.roster(tmp_path / "list.csv") == {"ada": ada}
 
 
-@pytest.mark.parametrize("content, why", [(None, "No such file"), (b"\x89PNG\r\n\x1a\n\xff", "no text"), (b"name\nAda\n", "without the column student_id"),
-                                          (b"student_id,timestamp\nada,soon\n", "'soon'")])
-def test_what_is_no_class_list_is_told_without_pythons_words(tmp_path, content, why):
+@pytest.mark.parametrize(("content", "why"), [
+    (None, "No such file"),
+    (b"\x89PNG\r\n\x1a\n\xff", "no text"),
+    (b"name\nAda\n", "without the column student_id"),
+    (b"student_id,timestamp\nada,soon\n", "'soon'"),
+])
+def test_a_file_that_is_no_class_list_is_reported_in_plain_words(tmp_path, content, why):
     if content is not None:
         (tmp_path / "list.csv").write_bytes(content)
     with pytest.raises(submissions.BadInput, match=re.escape(why)) as told:

@@ -76,6 +76,7 @@ def run_in(folder, *arguments):
 
 # ---------------------------------------------------------------------------------------------- what goes in
 
+@pytest.mark.long
 def test_the_same_commit_gives_the_same_bytes(released, tmp_path):
     (code, said, first), (_, _, second) = released(), released(out=tmp_path / "again.zip")
     assert code == 0, said
@@ -129,6 +130,7 @@ def test_with_solutions_alone_releases_them_all(released):
     assert files["solutions/answers.md"] == (ROOT / "solutions/answers.md").read_text() and "--of=lessons" not in files["pyproject.toml"]
 
 
+@pytest.mark.long
 def test_a_single_lesson_comes_with_its_scenes_and_what_it_builds_on(released):
     files = files_in(released("--lesson", "integrators")[2])
     assert "lessons/integrators.py" in files and "validate/scenes/integrators/oscillator.py" in files and "notebooks/00_start_here.ipynb" in files
@@ -266,17 +268,20 @@ def test_every_answer_would_be_found_as_code_and_as_text():
 
 # ---------------------------------------------------------------------------------------------- it runs
 
+@pytest.mark.long
 def test_the_tests_run_in_it_and_score_nothing(unpacked):
     said = run_in(unpacked, "pytest", "--of=lessons", "--tb=no", "-p", "no:cacheprovider").stdout
     assert re.search(r"^ +all  0 of " + str(20 * len(lesson_names())), said, re.M), said
 
 
+@pytest.mark.long
 def test_the_command_line_names_the_scenes_and_says_that_there_are_no_worked_answers(unpacked):
     assert "oscillator" in run_in(unpacked, "validate", "list").stdout
     asked = run_in(unpacked, "validate", "--scene", "oscillator")
     assert asked.returncode == 2 and "without worked answers of integrators" in asked.stderr and len(asked.stderr.strip().splitlines()) == 1
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name, checks", [("00_start_here", {"1.1"}), ("01_integrators", {"1.10"})])
 def test_a_notebook_runs_in_it_and_says_what_it_is_without(unpacked, monkeypatch, name, checks):
     monkeypatch.setenv("PYTHONPATH", str(unpacked))
@@ -292,6 +297,7 @@ def test_a_notebook_runs_in_it_and_says_what_it_is_without(unpacked, monkeypatch
     assert all(f"Exercise {number}: not attempted" in said for number in checks)
 
 
+@pytest.mark.long
 def test_own_answers_stand_in_for_worked_ones(unpacked, tmp_path):
     for name in lesson_names():
         source = (SOLUTIONS / f"{name}.py").read_text()
@@ -310,6 +316,7 @@ def test_own_answers_stand_in_for_worked_ones(unpacked, tmp_path):
     assert "[ 0. -2.]" in run.stdout and run.stdout.strip().endswith("None"), run.stderr
 
 
+@pytest.mark.long
 def test_own_file_that_cannot_be_loaded_leaves_what_is_given(unpacked, tmp_path):
     (tmp_path / "integrators.py").write_text("def euler_step(:\n")
     program = """
@@ -322,6 +329,7 @@ def test_own_file_that_cannot_be_loaded_leaves_what_is_given(unpacked, tmp_path)
     assert "2.0 advance None" in run.stdout, run.stderr
 
 
+@pytest.mark.long
 def test_a_lesson_is_checked_though_one_that_it_builds_on_does_not_load(unpacked, tmp_path):
     for name in lesson_names():
         source = (SOLUTIONS / f"{name}.py").read_text()
@@ -387,6 +395,7 @@ def truths(copy, notebook, lessons):
     return json.loads(run.stdout.splitlines()[-1])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("notebook, least", [("01_integrators.ipynb", 5), ("02_springs.ipynb", 5)])
 def test_what_a_notebook_calls_true_does_not_come_from_the_student(unpacked, tmp_path, notebook, least):
     """The student's functions are all a hundredth off: what is drawn as truth is what it is where nothing is written yet."""

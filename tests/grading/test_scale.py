@@ -8,6 +8,7 @@ import typer
 from . import benchmark, rehearsal, sandbox
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("workers", [1, 2, 8, 64])
 def test_nobody_is_lost_and_no_worker_does_two_at_a_time(workers, monkeypatch):
     draw = random.Random(3)
@@ -33,27 +34,32 @@ def test_what_a_lost_worker_had_begun_is_done_by_another():
     assert benchmark.makespan([8.0] * 5, 2, Half()) == 32.0
 
 
+@pytest.mark.long
 def test_a_submission_costs_what_the_clock_says_and_the_start_of_its_process():
     results = {"ada": {"seconds": 4.0}, "bob": {"seconds": 3.0}, "eve": {"seconds": 2.0}, "lost": None}
     assert benchmark.costs_of(results, {"eve"}, start=0.5) == ([4.5, 3.5], [2.5])
 
 
+@pytest.mark.long
 def test_files_of_many_are_measured_on_results_that_differ(monkeypatch):
     assert len({benchmark.varied("a = 1\n" * 50, n) for n in range(20)}) == 20
 
 
+@pytest.mark.long
 def test_hostile_neighbours_cost_an_honest_class_nothing(tmp_path):
     sandbox.for_tests(pytest.skip, pytest.fail)
     (one,) = rehearsal.rehearse(tmp_path, 5, 1, [4])
     assert (one.honest, one.hostile, one.full) == (4, 1, 4) and one.fair()
 
 
+@pytest.mark.long
 def test_a_rehearsal_has_a_fifth_of_hostile_files_of_many_kinds(tmp_path):
     evil = rehearsal.make(tmp_path, 200)
     texts = [(tmp_path / student / "integrators.py").read_text() for student in evil]
     assert len(evil) == 40 == len(set(texts)) and len([*tmp_path.iterdir()]) == 200
 
 
+@pytest.mark.long
 def test_nothing_hostile_is_run_without_a_sandbox(monkeypatch):
     monkeypatch.setattr(sandbox, "unavailable", lambda: "there is none")
     monkeypatch.setattr(rehearsal, "rehearse", lambda *_: pytest.fail("it ran"))

@@ -88,6 +88,7 @@ BODIES = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", modules.lesson_names())
 def test_senseless_answers_earn_nothing(name):
     module, subjects = vars(modules.bind(name)), {}

@@ -56,6 +56,7 @@ def crowd(count=5):
 BUSY = "\nimport time\ndef observed_order(dts, errors):\n    began = time.process_time()\n    while time.process_time() - began < 0.5:\n        pass\n    return 3.0\n"
 
 
+@pytest.mark.long
 def test_busy_neighbours_take_none_of_a_submissions_time():
     with opened(BUSY) as place, crowd():
         began = time.monotonic()
@@ -65,6 +66,7 @@ def test_busy_neighbours_take_none_of_a_submissions_time():
         assert 0.5 <= place.meter.used < LIMIT and not place.late
 
 
+@pytest.mark.long
 def test_busy_neighbours_take_none_of_the_time_of_calls_to_and_fro():
     text = "\ndef euler_step(acceleration, t, x, v, dt, p):\n    for _ in range(300):\n        x = acceleration(t, x, v, p)\n    return x, v\n"
     calls = []
@@ -78,6 +80,7 @@ def test_busy_neighbours_take_none_of_the_time_of_calls_to_and_fro():
         assert len(calls) == 300 and not place.late
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("body", ["time.sleep(60.0)", "[time.sleep(0.01) for _ in range(6000)]", "os.kill(os.getpid(), signal.SIGSTOP)", "threading.Event().wait(60.0)",
                                   "[None for _ in iter(int, 1)]", "[hashlib.sha256(bytes(1000)) and time.sleep(0.001) for _ in range(60_000)]"])
 def test_who_sleeps_or_loops_is_ended(body):
@@ -88,6 +91,7 @@ def test_who_sleeps_or_loops_is_ended(body):
         assert place.late and LIMIT <= place.meter.used < 3.0 * LIMIT
 
 
+@pytest.mark.long
 def test_many_short_calls_count_together():
     with opened("\nimport time\ndef observed_order(dts, errors):\n    began = time.process_time()\n    while time.process_time() - began < 0.01:\n        pass\n") as place:
         place.begin(LIMIT)
@@ -97,6 +101,7 @@ def test_many_short_calls_count_together():
         assert place.late and LIMIT <= place.meter.used < 2.0 * LIMIT
 
 
+@pytest.mark.long
 def test_what_the_grader_works_for_a_submission_is_the_submissions_time():
     def slow(t, x, v, p):
         began = time.process_time()
@@ -110,6 +115,7 @@ def test_what_the_grader_works_for_a_submission_is_the_submissions_time():
         assert place.late and place.meter.used >= 0.9 * LIMIT            # two clocks of one process, looked at in turn
 
 
+@pytest.mark.long
 def test_all_calls_together_have_a_budget():
     with opened(BUSY) as place:
         place.budget = place.meter.used + 0.2
@@ -123,6 +129,7 @@ def test_all_calls_together_have_a_budget():
 
 # ---------------------------------------------------------------------------------------------- alarms
 
+@pytest.mark.long
 @pytest.mark.parametrize("own", [False, True])
 def test_an_alarm_goes_on_after_one_inside_it(own):
     with pytest.raises(loading.TooLong), loading.alarm(0.3, loading.TooLong, own):
@@ -141,6 +148,7 @@ def test_an_alarm_rings_inside_a_longer_one(own):
             pass
 
 
+@pytest.mark.long
 def test_no_alarm_is_left():
     import signal
     with loading.alarm(60.0, loading.TooLong), loading.alarm(60.0, loading.TooLong, own=True):
@@ -152,6 +160,7 @@ def test_no_alarm_is_left():
     assert signal.getitimer(signal.ITIMER_REAL)[0] == 0.0
 
 
+@pytest.mark.long
 def test_a_callback_leaves_the_tests_own_alarm_as_it_was():
     text = "\ndef observed_order(f, errors):\n    return f(0.0, 1.0, 1.0, None)\n"
     asked = []
@@ -179,6 +188,7 @@ def observed_order(dts, errors):
 """
 
 
+@pytest.mark.long
 def test_a_worker_that_floods_leaves_no_thread_behind_on_a_slow_machine(monkeypatch):
     read = box.wire.read
 
@@ -194,6 +204,7 @@ def test_a_worker_that_floods_leaves_no_thread_behind_on_a_slow_machine(monkeypa
         assert not [thread for thread in threads if thread.is_alive()] and place.process is None
 
 
+@pytest.mark.long
 def test_a_worker_that_does_not_listen_leaves_no_thread_behind():
     with opened("\nimport time\ndef observed_order(dts, errors):\n    time.sleep(60.0)\n") as place:
         place.begin(60.0)
@@ -206,6 +217,7 @@ def test_a_worker_that_does_not_listen_leaves_no_thread_behind():
         assert not [thread for thread in threads if thread.is_alive()]
 
 
+@pytest.mark.long
 def test_what_waits_to_be_read_is_given_up_with_its_worker():
     inbox, over = queue.Queue(1), threading.Event()
     worker = types.SimpleNamespace(stdout=io.BytesIO(100 * box.wire.pack(("value", 0, []))))
@@ -229,6 +241,7 @@ def observed_order(dts, errors):
 """
 
 
+@pytest.mark.long
 def test_a_second_answer_is_seen_however_late_it_comes():
     with opened(TWO_ANSWERS) as place:
         place.begin(LIMIT)
@@ -239,6 +252,7 @@ def test_a_second_answer_is_seen_however_late_it_comes():
         assert place.call("lesson:observed_order", (1.0, 1.0)) == 1.0
 
 
+@pytest.mark.long
 def test_an_honest_worker_is_kept_from_test_to_test():
     with opened("") as place:
         first = place.process
@@ -259,12 +273,14 @@ def submission(student, text, lesson="integrators"):
     return submissions.Submission(student, {lesson: text.encode()}, (), "")
 
 
+@pytest.mark.long
 def test_what_may_be_others_fault_is_noted(settings):
     lost = marking.mark(submission("ada", "import os, signal\nos.kill(os.getpid(), signal.SIGKILL)\n"), settings)
     own = marking.mark(submission("bob", "import os\nos._exit(1)\n"), settings)
     assert lost["again"] == ["integrators"] and own["again"] == []
 
 
+@pytest.mark.long
 def test_a_second_try_replaces_what_timed_out_and_nothing_else(settings):
     first = marking.mark(submission("ada", "raise ValueError\n"), settings)
     first = {**first, "again": ["integrators"], "seconds": 10.0}
@@ -288,6 +304,7 @@ class Killer(submissions.Submission):
         return os._exit, (1,)
 
 
+@pytest.mark.long
 def test_who_brings_down_the_grader_brings_down_nobody_else(settings):
     honest = [submission(f"s{n}", SOLVED) for n in range(3)]
     killers = [Killer(f"k{n}", {}, (), "") for n in range(2)]
@@ -296,6 +313,7 @@ def test_who_brings_down_the_grader_brings_down_nobody_else(settings):
     assert all("1.1" in {t["exercise"] for t in found[s.student][0]["tests"] if t["status"] == "passed"} for s in honest)
 
 
+@pytest.mark.long
 def test_a_child_is_replaced_when_it_ends():
     with children.Child(len, ()) as child:
         with pytest.raises(children.Ended):

@@ -98,6 +98,7 @@ def press(run, number, times):
         time.sleep(0.02)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("number, times, jobs", [
     (signal.SIGINT, 1, 2), (signal.SIGINT, 2, 1), (signal.SIGINT, 500, 2), (signal.SIGTERM, 1, 1),
 ], ids=["Ctrl-C", "twice", "again and again", "SIGTERM"])
@@ -110,6 +111,7 @@ def test_a_run_that_is_interrupted_says_so_once_leaves_no_process_and_keeps_what
     assert errors(held).is_file() and not list(held.rglob("*.part")) and not (held / "report" / "index.html").exists()
 
 
+@pytest.mark.long
 def test_a_killed_run_leaves_no_worker_and_its_folder_is_free_again_but_two_runs_never_share_one(held):
     run = started(held)
     kept = errors(held).stat().st_mtime_ns
@@ -145,6 +147,7 @@ print(vectors.dot(np.array([1.0, 2.0, 3.0]), np.array([4.0, 5.0, 6.0])))
 """
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not can_compile(), reason="numba is not installed")
 def test_compiled_code_that_the_disk_does_not_take_runs_all_the_same(tmp_path):
     run = ended(*LIMITED, "1", sys.executable, "-c", COMPILED, str(tmp_path))
@@ -164,6 +167,7 @@ find "$0/report" -name "tensors.errors.json" -newermt 2002-01-01 -o -name index.
 """
 
 
+@pytest.mark.long
 def test_a_full_disk_ends_a_run_in_one_sentence_and_with_room_again_it_goes_on(tmp_path):
     if not shutil.which("unshare"):
         pytest.skip("a small disk needs unshare and mount, as Linux has them")

@@ -1,18 +1,11 @@
 """The instructor sees who to look into: what a program tried, how it ended, and whose answers are alike."""
 
-
 import pytest
 
 from validate import modules
 
 from .. import attacks
-from ..attacks.test_attacks import folder, settings, trial  # noqa: F401      the trial tests, with little patience
-from . import example, marking, pages, sandbox, similar, submissions, watch
-
-
-@pytest.fixture(scope="module", autouse=True)
-def _sandbox():
-    sandbox.for_tests(pytest.skip, pytest.fail)
+from ..grading import example, marking, pages, similar, submissions, watch
 
 
 def watched(text, rules, lesson="integrators"):
@@ -59,12 +52,14 @@ SEEN = {
 }
 
 
-@pytest.mark.parametrize("code, body", [(code, body) for code, bodies in SEEN.items() for body in bodies])
-def test_what_a_program_tries_is_seen(code, body, trial, settings):
+@pytest.mark.long
+@pytest.mark.parametrize(("code", "body"), [(code, body) for code, bodies in SEEN.items() for body in bodies])
+def test_each_forbidden_try_of_a_program_is_seen(code, body, trial, settings):
     seen = watched(attacks.HONEST + IN_A_CALL.format(body), settings)
     assert code in seen and code in watch.SENTENCES, seen
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "cover",
     [
@@ -75,36 +70,48 @@ def test_what_a_program_tries_is_seen(code, body, trial, settings):
         "builtins.isinstance = None",
     ],
 )
-def test_what_is_seen_is_not_hidden_by_noise(cover, trial, settings):
+def test_noise_does_not_hide_a_try(cover, trial, settings):
     body = (
-        "import builtins, os, sys\nkept = builtins.isinstance\ntry:\n    "
-        + cover
-        + "\n    try:\n        os.fork()\n    except OSError:\n        pass\nfinally:\n    builtins.isinstance = kept\n"
+        "import builtins, os, sys\n"
+        "kept = builtins.isinstance\n"
+        "try:\n"
+        f"    {cover}\n"
+        "    try:\n"
+        "        os.fork()\n"
+        "    except OSError:\n"
+        "        pass\n"
+        "finally:\n"
+        "    builtins.isinstance = kept\n"
     )
     assert "process" in watched(attacks.HONEST + body, settings)
 
 
-def test_a_note_of_ours_is_no_part_of_what_is_printed(trial, settings):
-    text = (
-        attacks.HONEST
-        + "import os\nprint('before', flush=True)\ntry:\n    os.fork()\nexcept OSError:\n    pass\n"
-        + "print('after', flush=True)\n"
+@pytest.mark.long
+def test_a_note_of_the_grader_is_not_shown_as_printed_text(trial, settings):
+    body = (
+        "import os\n"
+        "print('before', flush=True)\n"
+        "try:\n"
+        "    os.fork()\n"
+        "except OSError:\n"
+        "    pass\n"
+        "print('after', flush=True)\n"
     )
-    result = marking.mark(
-        submissions.Submission("mallory", {"integrators": text.encode()}, (), ""), settings["integrators"]
-    )
+    text = attacks.HONEST + body
+    submission = submissions.Submission("mallory", {"integrators": text.encode()}, (), "")
+    result = marking.mark(submission, settings["integrators"])
     assert result["printed"]["integrators"].split() == ["before", "after"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", modules.lesson_names())
 def test_honest_work_leaves_nothing_to_look_into(name):
-    result = marking.mark(
-        submissions.Submission("ada", {name: example.worked(name).encode()}, (), ""),
-        marking.settings((name,), "a secret"),
-    )
+    submission = submissions.Submission("ada", {name: example.worked(name).encode()}, (), "")
+    result = marking.mark(submission, marking.settings((name,), "a secret"))
     assert result["watched"] == {name: []} and all(t["status"] == "passed" for t in result["tests"])
 
 
+@pytest.mark.long
 def test_a_second_try_takes_the_place_of_the_first(monkeypatch):
     first = {
         "again": ["springs"],
@@ -113,22 +120,19 @@ def test_a_second_try_takes_the_place_of_the_first(monkeypatch):
         "seconds": 1.0,
         "watched": {"integrators": ["end"], "springs": ["time"]},
     }
-    monkeypatch.setattr(
-        marking, "mark", lambda submission, settings: {**first, "again": [], "watched": {"springs": []}}
-    )
-    assert marking.again(submissions.Submission("ada", {"springs": b""}, (), ""), None, first)["watched"] == {
-        "integrators": ["end"],
-        "springs": [],
-    }
+    second = {**first, "again": [], "watched": {"springs": []}}
+    monkeypatch.setattr(marking, "mark", lambda submission, settings: second)
+    submission = submissions.Submission("ada", {"springs": b""}, (), "")
+    watched = marking.again(submission, None, first)["watched"]
+    assert watched == {"integrators": ["end"], "springs": []}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
-    "text, found",
+    ("text", "found"),
     [
-        (
-            b"import numpy as np\nfrom solutions.checks import BadInput\nfrom typing import NamedTuple\nimport math, abc\n",
-            [],
-        ),
+        (b"import numpy as np\nimport math, abc\n", []),
+        (b"from solutions.checks import BadInput\nfrom typing import NamedTuple\n", []),
         (b"import os\n", ["import os"]),
         (b"def f():\n    from ctypes.util import find\n", ["import ctypes"]),
         (b"x = 1; import numpy as np, sys as s\n", ["import sys"]),
@@ -138,9 +142,9 @@ def test_a_second_try_takes_the_place_of_the_first(monkeypatch):
         (b"\xff\xfe import\0 os\n", []),
         (b"import " + b"a," * 100_000, ["import a"]),
     ],
-    ids=range(9),
+    ids=range(10),
 )
-def test_what_a_file_imports_that_no_lesson_needs_is_seen_in_its_text(text, found):
+def test_imports_that_no_lesson_needs_are_found_in_the_text(text, found):
     assert watch.in_text(text) == found
 
 
@@ -195,44 +199,45 @@ def alike(**texts):
     }
 
 
-def test_the_same_answers_are_found_also_when_names_blanks_and_comments_are_changed():
-    renamed = (
-        OWN.replace("halfway", "mid_time").replace("x_half", "xm").replace("    ", "  ").replace("a = ", "a =   ")
-        + "# all mine\n\n\n"
-    )
-    assert alike(ada=OWN, bob=OWN, cem=OTHER) == {("ada", "bob", "integrators"), ("bob", "ada", "integrators")}
-    assert alike(ada=OWN, bob=renamed, cem=OTHER) == {("ada", "bob", "integrators"), ("bob", "ada", "integrators")}
+def test_the_same_answers_are_found_although_names_blanks_and_comments_differ():
+    renamed = OWN.replace("halfway", "mid_time").replace("x_half", "xm")
+    renamed = renamed.replace("    ", "  ").replace("a = ", "a =   ") + "# all mine\n\n\n"
+    pair = {("ada", "bob", "integrators"), ("bob", "ada", "integrators")}
+    assert alike(ada=OWN, bob=OWN, cem=OTHER) == pair
+    assert alike(ada=OWN, bob=renamed, cem=OTHER) == pair
 
 
+@pytest.mark.long
 def test_a_copy_with_a_changed_line_or_one_more_function_is_nearly_the_same():
-    assert ("bob", "ada", "integrators") in alike(
-        ada=OWN + OTHER, bob=(OWN + OTHER).replace("/ 2.0", "* 0.5") + "\ndef more(x):\n    return [3 * n for n in x]\n"
-    )
+    both = OWN + OTHER
+    more = "\ndef more(x):\n    return [3 * n for n in x]\n"
+    assert ("bob", "ada", "integrators") in alike(ada=both, bob=both.replace("/ 2.0", "* 0.5") + more)
 
 
-def test_those_who_have_not_begun_and_those_who_worked_alone_are_not_alike():
+@pytest.mark.long
+def test_unfinished_files_and_independent_answers_are_not_alike():
     assert not alike(ada=OWN, bob=OTHER, cem="", dov="")
 
 
-def test_the_worked_answers_are_known():
+@pytest.mark.long
+def test_a_copy_of_the_worked_answers_is_found():
     first = modules.lesson_names()[0]
-    ((lesson, other, share),) = similar.alike(
-        [submissions.Submission("ada", {first: example.worked(first).encode()}, (), "")], (first,)
-    )["ada"]
+    submission = submissions.Submission("ada", {first: example.worked(first).encode()}, (), "")
+    ((lesson, other, share),) = similar.alike([submission], (first,))["ada"]
     assert (lesson, other, share) == (first, similar.WORKED, 1.0)
 
 
+@pytest.mark.long
 def test_hostile_texts_take_no_time_and_no_memory():
     wide = b"x = " + b"(" * 200_000
     many = b"\n".join(b"a%d = %d" % (n, n) for n in range(15_000))
     texts = {"a": wide, "b": many, "c": b"\0\xff" * 100_000, "d": b"\n" * 260_000, "e": b"#" * 260_000}
-    found = similar.alike(
-        [submissions.Submission(name, {"integrators": text}, (), "") for name, text in texts.items()], ("integrators",)
-    )
-    assert found == {}
+    some = [submissions.Submission(name, {"integrators": text}, (), "") for name, text in texts.items()]
+    assert similar.alike(some, ("integrators",)) == {}
 
 
-def test_hundreds_with_one_and_the_same_answer_are_told_in_few_words():
+@pytest.mark.long
+def test_hundreds_of_equal_answers_give_a_short_list_per_student():
     found = similar.alike(handed_in(**{f"s{n}": OWN for n in range(300)}), ("integrators",))
     assert len(found) == 300 and all(len(pairs) <= similar.MOST for pairs in found.values())
 
@@ -240,20 +245,20 @@ def test_hundreds_with_one_and_the_same_answer_are_told_in_few_words():
 # ---------------------------------------------------------------------- the page
 
 
-def test_the_documentations_own_class_has_somebody_to_look_into(tmp_path):
+@pytest.mark.long
+def test_the_example_class_has_students_to_look_into(tmp_path):
     intake = submissions.read_all(example.make(tmp_path / "class"), ("integrators",))
     rules = marking.settings(("integrators",), "a secret")
     sheets = [pages.sheet(marking.mark(one, rules), rules, pages.Terms("", 0.0)) for one in intake.submissions]
-    looks = {
-        s.student: " ".join(told for _, told in pages.looks(s, similar.alike(intake.submissions, ("integrators",))))
-        for s in sheets
-    }
+    pairs = similar.alike(intake.submissions, ("integrators",))
+    looks = {s.student: " ".join(told for _, told in pages.looks(s, pairs)) for s in sheets}
     assert "ended by itself" in looks["eve"] and "imports os" in looks["eve"] and "the same as ada" in looks["dia"]
     assert not looks["cem"]
 
 
+@pytest.mark.long
 def test_nearly_every_hostile_file_is_seen(trial, settings):
-    """A sample here, one of each family; a wrong answer of a strange type is only that."""
+    """Try one attack of each family.  Attacks that only return an answer of a strange type leave no trace."""
     names = (
         "a loop in a call",
         "a flood",
@@ -267,8 +272,5 @@ def test_nearly_every_hostile_file_is_seen(trial, settings):
     )
     for name in names:
         case = next(case for case in attacks.ATTACKS if case.name.startswith(name))
-        result = marking.mark(
-            submissions.Submission("mallory", {"integrators": (attacks.HONEST + case.text).encode()}, (), ""),
-            settings["integrators"],
-        )
-        assert set(result["watched"]["integrators"]) & set(watch.SENTENCES), case.name  # not only by what it imports
+        seen = watched(attacks.HONEST + case.text, settings)
+        assert seen & set(watch.SENTENCES), case.name                 # and not only an import in its text
