@@ -1,5 +1,7 @@
 """What must hold of the repository itself."""
 
+import contextlib
+import io
 import re
 import tomllib
 from hashlib import sha256
@@ -51,3 +53,12 @@ def test_no_text_names_a_lesson_that_there_is_not():
     for path in files:
         for named in re.findall(r"\blessons? (\d+(?:(?:, | and | to |–)\d+)*)", path.read_text(encoding="utf-8"), re.I):
             assert {int(number) for number in re.findall(r"\d+", named)} <= there, f"{path}: lesson {named}"
+
+
+def test_the_readme_shows_what_its_example_prints():
+    text = (ROOT / "README.md").read_text()
+    code, printed = re.search(r"<!-- example -->\n```python\n(.*?)```\n\n```\n(.*?)```", text, re.S).groups()
+    said = io.StringIO()
+    with contextlib.redirect_stdout(said):
+        exec(code, {})
+    assert said.getvalue() == printed
