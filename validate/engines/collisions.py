@@ -7,10 +7,16 @@ from validate.scene import EngineRun
 
 PLACE_APART = 1.0            # metre between two copies along the x axis
 
-SWEPT = 0.8                  # radius that pybullet sweeps over that of the ball [-]: with the whole of it a ball sticks to what it grazes
+ENGINE_SPEEDS = (1.0, 1e2, 1e4)                    # of the balls in an engine [m/s]: the lowest, the middle, the highest
 
-RAY_ENDS = 1e-2              # how far in front of a round shape pybullet's rays may end [m]: measured, not derived.  They come near from outside,
-#                              and twenty that were tried beforehand ended up to 1.2 mm early; this allows eight times that
+# radius that pybullet sweeps over that of the ball [-]: with all of it a ball sticks to a surface that it grazes
+SWEPT = 0.8
+SWEPT_SETTINGS = (f"useMaximalCoordinates, ccdSweptSphereRadius {SWEPT:g} r, contactProcessingThreshold, contactERP "
+                  "and contactSlop 0")
+
+# how far in front of a round shape pybullet's rays may end [m]: measured, not derived.  Rays approach from outside;
+# twenty tested beforehand ended up to 1.2 mm early, and this permits eight times that
+RAY_ENDS = 1e-2
 
 
 def across(x):
@@ -24,8 +30,11 @@ def target(bullet, p, grown=0.0):
     if p.R == 0.0:
         shape, turn = pb.createCollisionShape(pb.GEOM_PLANE), [0.0, 0.0, 0.0, 1.0]
     else:
-        shape, turn = pb.createCollisionShape(pb.GEOM_CYLINDER, radius=p.R + grown, height=100.0), [0.0, np.sqrt(0.5), 0.0, np.sqrt(0.5)]
-    body = pb.createMultiBody(0.0, shape, basePosition=[0.0, 0.0, grown if p.R == 0.0 else 0.0], baseOrientation=turn, useMaximalCoordinates=1)
+        shape = pb.createCollisionShape(pb.GEOM_CYLINDER, radius=p.R + grown, height=100.0)
+        turn = [0.0, np.sqrt(0.5), 0.0, np.sqrt(0.5)]
+    body = pb.createMultiBody(
+        0.0, shape, basePosition=[0.0, 0.0, grown if p.R == 0.0 else 0.0], baseOrientation=turn, useMaximalCoordinates=1
+    )
     pb.changeDynamics(body, -1, lateralFriction=0, restitution=0)
     return body
 
@@ -61,8 +70,16 @@ def bullet_swept(p, x, v, dt):
     at, speed, bodies, done = np.array(x), np.linalg.norm(v[0]), [], [False] * len(x)
     for k in range(len(x)):
         body = pb.createMultiBody(1.0, shape, basePosition=x[k].tolist(), useMaximalCoordinates=1)
-        pb.changeDynamics(body, -1, linearDamping=0, angularDamping=0, lateralFriction=0, restitution=0, contactProcessingThreshold=0,
-                          ccdSweptSphereRadius=SWEPT * p.r)
+        pb.changeDynamics(
+            body,
+            -1,
+            linearDamping=0,
+            angularDamping=0,
+            lateralFriction=0,
+            restitution=0,
+            contactProcessingThreshold=0,
+            ccdSweptSphereRadius=SWEPT * p.r,
+        )
         pb.resetBaseVelocity(body, v[k].tolist())
         bodies.append(body)
 

@@ -18,6 +18,13 @@ def impact_times(T):
     return T * (EARLIEST + SPREAD * ((np.arange(COPIES) + 1.0) * GOLDEN % 1.0))
 
 
+def with_balls_that_miss(x, v):
+    """Return (x, v) with as many balls again, a kilometre to the side, which never hit; a broad phase would skip them."""
+    aside = np.array([0.0, 1.0, 0.0])
+    more = np.linalg.norm(v[0]) * np.tile(aside, (COPIES, 1))
+    return np.concatenate((x, x + 1e3 * np.array([0.0, 1.0, 1.0]))), np.concatenate((v, more))
+
+
 def first_root(gap, t_0, t_1):
     """The time between t_0 (gap above zero) and t_1 (below) at which gap(t) is zero, to the last digit."""
     return brentq(gap, t_0, t_1, xtol=1e-300, rtol=4.0 * np.finfo(float).eps)
@@ -31,7 +38,13 @@ def hull_nearest(a, b, weight=1e3):
     *Source:* Lawson and Hanson 1974, chapter 23.
     """
     one, none = np.ones(len(a)), np.zeros(len(a))
-    rows = np.vstack((np.hstack((a.T, -b.T)), weight * np.hstack((one, np.zeros(len(b)))), weight * np.hstack((none, np.ones(len(b))))))
+    rows = np.vstack(
+        (
+            np.hstack((a.T, -b.T)),
+            weight * np.hstack((one, np.zeros(len(b)))),
+            weight * np.hstack((none, np.ones(len(b)))),
+        )
+    )
     shares, _ = nnls(rows, np.append(np.zeros(a.shape[1]), [weight, weight]))
     p, q = a[shares[:len(a)] > 1e-9], b[shares[len(a):] > 1e-9]
     span = np.vstack((p[1:] - p[0], q[0] - q[1:]))
