@@ -20,6 +20,12 @@ class DrivenBlock(NamedTuple):
     g: Annotated[float, "gravity [m/s²]"] = 9.81
 
 
+def block_in_space(x, v, block):
+    """Return the same block with an unused third coordinate."""
+    third = lambda y: np.append(y, 0.0)
+    return third(x), third(v), block._replace(n=third(block.n), gravity=third(block.gravity), push=third(block.push))
+
+
 @cache
 def slips(p):
     """((begin, end, sign, x at the beginning), …): the slips up to T [s], x [m]."""
@@ -33,7 +39,7 @@ def slips(p):
             break
         sign = np.sign(A * np.cos(w * t))
         speed = lambda s: sign * A / w * (np.sin(w * s) - np.sin(w * t)) - hold * (s - t)
-        s = t + np.linspace(0.0, 2.0 * np.pi / w, 1001)[1:]                  # after a whole swing only friction has done anything
+        s = t + np.linspace(0.0, 2.0 * np.pi / w, 1001)[1:]  # after a whole swing only friction has done anything
         k = np.flatnonzero(speed(s) <= 0.0)[0]
         end = brentq(speed, s[k - 1], s[k], xtol=1e-15, rtol=1e-15)
         found.append((t, end, sign, x))
@@ -77,7 +83,9 @@ def slip_limits(p, dt):
     A, w, hold = p.force / p.m, p.omega, p.mu * p.g
     limits, size = by_order(0.0, T, dt), abs(slip_position(p, T)[0])
     first = second = 0.0
-    late, before = np.zeros(2), -1.0                     # by how much the slip before ended late, in either order, and when
+    # by how much the slip before ended late, in either order, and when
+    late = np.zeros(2)
+    before = -1.0
     for begin, end, sign, _ in slips(p):
         s, pull = min(end, T) - begin, sign * A * np.cos(w * np.linspace(begin, end, 101))
         fast = np.array([0.5 * dt * np.ptp(pull), dt * dt * A * w * w * s / 24.0])
