@@ -13,8 +13,7 @@ from validate.scene import LATE_LEAPFROG, Scene
 T = 100.0                    # [s]: sixteen revolutions
 STEPS = (2000, 5000, 10000, 20000, 50000, 100000, 150000, 200000)
 # Euler, average velocity and implicit Euler gain or lose energy at every passage, see drift.  They are drawn, but
-# theory
-# gives no limit for them at any step here.
+# theory gives no limit for them at any step here.
 
 
 CASES = {"e = 0.6": Planet()}

@@ -23,9 +23,8 @@ STEPS = tuple(FRAMES_PER_SECOND * samples for samples in SAMPLES)
 # the first two build a dense matrix at every correction, and the third takes seconds to compile: see spring_net
 UNCERTAINTY = 1e-12
 
-# The lecture's step multiplies a mode by |λ|, |λ|² = 1 − c dt + ½ω² dt².  Dampers give c = τω² with τ = k_d/k = 6
-# ms, so
-# every mode grows if dt > 2τ = 12 ms: with one sample per frame (42 ms), but not with four (10 ms).
+# The lecture's step multiplies a mode by |λ|, |λ|² = 1 − c dt + ½ω² dt².  Dampers give c = τω² with τ = k_d/k = 6 ms.
+# Every mode therefore grows if dt > 2τ = 12 ms: with one sample per frame (42 ms), but not with four (10 ms).
 CASES = {"net": SquareNet(spacing=0.5, shear=1, k=20.0, k_d=0.12, wind=0.1)}
 
 
