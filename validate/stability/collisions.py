@@ -164,7 +164,7 @@ def far_from_origin(lesson):
             predicted=1.0,
             measured=slope,
             tolerance=0.05,
-            observation=f"The error of GJK's distance grows with the power {slope:.3f} of the distance from the origin.",
+            observation=f"The error of GJK's distance grows with the power {slope:.3f} of the distance.",
         ),
         finding(
             claim="The error stays below the spacing of floats there.",

@@ -63,8 +63,7 @@ def far_from_origin(lesson):
     slope, steep = observed_order(far, ours), observed_order(near, naive)
     found = [
         finding(
-            claim=("About a corner of the body, only the rounding of its corners remains: the error grows in proportion "
-                   "to D."),
+            claim="About a corner of the body, only the rounding of its corners remains: the error grows like D.",
             quantity="slope of log error over log D, 64 m to 67,000 km [-]",
             predicted=1.0,
             measured=slope,
