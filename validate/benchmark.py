@@ -1,6 +1,6 @@
 """Speed and memory, as ratios measured in one run: `python -m validate.benchmark`.
 
-Every row says what was asked for and what was found.  Absolute times are shown for orientation only.
+Every row gives the requirement and the result.  Absolute times are shown for orientation only.
 """
 
 import subprocess
@@ -20,17 +20,19 @@ REPEATS = 9
 
 
 def net(n_springs, seed=1):
-    """A square net, slightly disturbed, with about so many structural springs: x, v, mesh."""
+    """Return a square net, slightly disturbed, with about so many structural springs: x, v, mesh."""
     side = int(np.sqrt(n_springs / 2)) + 1
     grid = np.stack(np.meshgrid(np.arange(side), -np.arange(side), indexing="ij"), axis=-1).reshape(-1, 2) * 0.1
     x = grid + 1e-3 * np.random.default_rng(seed).normal(size=grid.shape)
     node = np.arange(side * side).reshape(side, side)
-    pairs = np.concatenate([np.stack([node[:-1].ravel(), node[1:].ravel()], 1), np.stack([node[:, :-1].ravel(), node[:, 1:].ravel()], 1)])
-    return x, np.zeros_like(x), springs.make_mesh(x, 0.01, [0, side - 1], pairs, 50.0, 0.05, (0.0, -9.81), (0.01, 0.0), 0.01)
+    ends = ((node[:-1], node[1:]), (node[:, :-1], node[:, 1:]))
+    pairs = np.concatenate([np.stack([a.ravel(), b.ravel()], 1) for a, b in ends])
+    mesh = springs.make_mesh(x, 0.01, [0, side - 1], pairs, 50.0, 0.05, (0.0, -9.81), (0.01, 0.0), 0.01)
+    return x, np.zeros_like(x), mesh
 
 
 def numpy_forces_add_at(x, v, mesh):
-    """Spring forces as one writes them in NumPy: all springs at once, np.add.at for the ends."""
+    """Compute spring forces in plain NumPy style: all springs at once, np.add.at for the ends."""
     r, u = x[mesh.j] - x[mesh.i], v[mesh.j] - v[mesh.i]
     length = np.sqrt(np.sum(r * r, axis=1))
     tension = mesh.k * (length - mesh.rest) + mesh.k_d * np.sum(r * u, axis=1) / length
@@ -42,17 +44,19 @@ def numpy_forces_add_at(x, v, mesh):
 
 
 def numpy_forces_bincount(x, v, mesh):
-    """The same with the fastest scatter that NumPy has for few columns."""
+    """Compute the same with the fastest scatter that NumPy has for few columns."""
     r, u = x[mesh.j] - x[mesh.i], v[mesh.j] - v[mesh.i]
     length = np.sqrt(np.sum(r * r, axis=1))
     tension = mesh.k * (length - mesh.rest) + mesh.k_d * np.sum(r * u, axis=1) / length
     pull = (tension / length)[:, None] * r
-    columns = [np.bincount(mesh.i, pull[:, c], len(x)) - np.bincount(mesh.j, pull[:, c], len(x)) for c in range(x.shape[1])]
+    columns = [
+        np.bincount(mesh.i, pull[:, c], len(x)) - np.bincount(mesh.j, pull[:, c], len(x)) for c in range(x.shape[1])
+    ]
     return np.stack(columns, axis=1)
 
 
 def numpy_step(forces, x, v, dt, mesh):
-    """Symplectic Euler on the whole mesh, vectorised."""
+    """Take one vectorised symplectic Euler step of the whole mesh."""
     free = (mesh.inv_mass > 0.0)[:, None]
     force = forces(x, v, mesh) + mesh.wind - mesh.k_v * v
     v = v + dt * np.where(free, mesh.gravity + force * mesh.inv_mass[:, None], 0.0)
@@ -60,7 +64,7 @@ def numpy_step(forces, x, v, dt, mesh):
 
 
 def step_times(contenders):
-    """{name: median seconds}, interleaved; contenders = {name: (function, steps in one call)}."""
+    """Return {name: median seconds}, interleaved; contenders = {name: (function, steps per call)}."""
     samples = {name: [] for name in contenders}
     for _ in range(REPEATS):
         for name, (function, steps) in contenders.items():
@@ -71,16 +75,17 @@ def step_times(contenders):
 
 
 def compiled_run(n_springs, steps):
-    """A function that takes so many compiled symplectic Euler steps of a net, already compiled."""
+    """Return a function that takes so many compiled symplectic Euler steps of a net, already compiled."""
     world = modules.module_set(compiled=True)
-    step, mesh_acceleration = world.lesson("integrators").symplectic_euler_step, world.lesson("springs").mesh_acceleration
+    step = world.lesson("integrators").symplectic_euler_step
+    mesh_acceleration = world.lesson("springs").mesh_acceleration
     advance, (x, v, mesh) = world.lesson("integrators").advance, net(n_springs)
     advance(step, mesh_acceleration, 0.0, x, v, 1e-4, 1, mesh)
     return lambda: advance(step, mesh_acceleration, 0.0, x, v, 1e-4, steps, mesh)
 
 
 def thousand_springs():
-    """A step of 1,000 springs: compiled against two ways of vectorising it."""
+    """Compare a compiled step of 1,000 springs with two ways of vectorising it."""
     x, v, mesh = net(1000)
     times = step_times({
         "compiled": (compiled_run(1000, 200), 200),
@@ -90,74 +95,108 @@ def thousand_springs():
     for way, wanted in (("add.at", 10.0), ("bincount", None)):
         ratio = times[way] / times["compiled"]
         asked = f"at least {wanted:g}×" if wanted else "for comparison"
-        yield (f"{mesh.i.size} springs, one step: NumPy with {way} / compiled", asked,
-               f"{ratio:.1f}×  ({times[way] * 1e6:.0f} µs / {times['compiled'] * 1e6:.1f} µs)", wanted is None or ratio >= wanted)
+        yield (
+            f"{mesh.i.size} springs, one step: NumPy with {way} / compiled",
+            asked,
+            f"{ratio:.1f}×  ({times[way] * 1e6:.0f} µs / {times['compiled'] * 1e6:.1f} µs)",
+            wanted is None or ratio >= wanted,
+        )
 
 
 def growth():
-    """Cost of a step against the number of springs; ten steps a run and more, or what a loop asks before its first and after its last would count."""
+    """Measure the cost of a step as a function of the number of springs, with at least ten steps per run.
+
+    Fewer would include the overhead of a loop before its first step and after its last.
+    """
     sizes = np.array([1000, 10_000, 100_000, 1_000_000])
     steps = np.maximum(10, 200_000 // sizes)
     times = step_times({n: (compiled_run(n, k), k) for n, k in zip(sizes, steps)})
     order = observed_order(sizes.astype(float), np.array([times[n] for n in sizes]))
-    yield "cost of a step over 10³ to 10⁶ springs grows as n to the", "1.0 ± 0.1", f"{order:.3f}", abs(order - 1.0) <= 0.1
+    yield (
+        "cost of a step over 10³ to 10⁶ springs grows as n to the",
+        "1.0 ± 0.1",
+        f"{order:.3f}",
+        abs(order - 1.0) <= 0.1,
+    )
 
 
 def boxes(n, seed=1):
-    """Corners low, high (n, 3) of boxes, one for each cubic metre, with about as many neighbours whatever n is."""
+    """Return corners low, high (n, 3) of boxes, one per cubic metre, with about as many neighbours for any n."""
     rng = np.random.default_rng(seed)
     low = rng.uniform(0.0, n ** (1.0 / 3.0), (n, 3))
     return low, low + rng.uniform(0.0, 1.2, (n, 3))
 
 
 def pair_search():
-    """Pairs of boxes by two trees: the growth of its cost, the tree made anew each time, and the cost of testing all pairs."""
+    """Measure pairs of boxes by two trees, rebuilt each time: how the cost grows, and the cost of testing all pairs."""
     lesson, sizes = modules.module_set(compiled=True).lesson("collisions"), np.array([1000, 10_000, 100_000])
-    times = step_times({(name, n): (lambda find=getattr(lesson, name), b=boxes(n): find(*b), 1)
-                        for name, n in (*(("tree_pairs", n) for n in sizes), ("all_pairs", 1000), ("all_pairs", 10_000))})
+    search = lambda find, b: (lambda: find(*b), 1)
+    asked = (*(("tree_pairs", n) for n in sizes), ("all_pairs", 1000), ("all_pairs", 10_000))
+    times = step_times({(name, n): search(getattr(lesson, name), boxes(n)) for name, n in asked})
     growth = times["tree_pairs", 100_000] / times["tree_pairs", 1000]
     most = 100.0 * np.log(1e5) / np.log(1e3)
-    yield ("pairs by trees, 10⁵ boxes over 10³", f"at most n log n: {most:.0f}×", f"{growth:.0f}×  ({times['tree_pairs', 100_000] * 1e3:.0f} ms / {times['tree_pairs', 1000] * 1e3:.1f} ms)",
-           growth <= most)
+    yield (
+        "pairs by trees, 10⁵ boxes over 10³",
+        f"at most n log n: {most:.0f}×",
+        f"{growth:.0f}×  ({times['tree_pairs', 100_000] * 1e3:.0f} ms / {times['tree_pairs', 1000] * 1e3:.1f} ms)",
+        growth <= most,
+    )
     for n in (1000, 10_000):
         ratio = times["all_pairs", n] / times["tree_pairs", n]
         yield f"pairs of {n:,} boxes: brute force / trees", "above 1×", f"{ratio:.1f}×", ratio > 1.0
 
 
 def cloth_frame():
-    """A frame of a cloth of 100 × 100 weights, 20 sweeps of PBD and of XPBD, over the 1/60 s that it has."""
+    """Measure a frame of a cloth of 100 × 100 points, 20 sweeps of PBD and of XPBD, over its 1/60 s."""
     from .reference.pbd import weave
     side, sweeps, frame = 100, 20, 1.0 / 60.0
     flat = weave(side, 0.01, 1e-4, 1e3, 9.81)
     threads = flat.pairs[:2 * side * (side - 1)]
     net = pbd.make_net(flat.x, flat.m, flat.held, threads, 1e-4, 1.0, (0.0, 0.0, -flat.g), sweeps)
-    lesson, advance = modules.module_set(compiled=True).lesson("pbd"), modules.module_set(compiled=True).lesson("integrators").advance
+    lesson = modules.module_set(compiled=True).lesson("pbd")
+    advance = modules.module_set(compiled=True).lesson("integrators").advance
 
     def frames(step, substeps, net):
-        run = lambda: advance(step, lesson.falling_acceleration, 0.0, flat.x, 0.0 * flat.x, frame / substeps, substeps, net)
+        v, dt = 0.0 * flat.x, frame / substeps
+        run = lambda: advance(step, lesson.falling_acceleration, 0.0, flat.x, v, dt, substeps, net)
         run()
         return run, 1
-    ways = {"PBD, 20 sweeps": frames(lesson.pbd_step, 1, net), "XPBD, 20 sweeps": frames(lesson.xpbd_step, 1, net), "XPBD, 20 substeps": frames(lesson.xpbd_step, 20, net._replace(sweeps=1))}
+
+    ways = {
+        "PBD, 20 sweeps": frames(lesson.pbd_step, 1, net),
+        "XPBD, 20 sweeps": frames(lesson.xpbd_step, 1, net),
+        "XPBD, 20 substeps": frames(lesson.xpbd_step, 20, net._replace(sweeps=1)),
+    }
     for name, seconds in step_times(ways).items():
-        yield (f"a cloth of {side} × {side}, {threads.shape[0]} links, {name}: frame over 1/60 s", "at most 1", f"{seconds / frame:.2f}  ({1e3 * seconds:.1f} ms)", seconds <= frame)
+        yield (
+            f"a cloth of {side} × {side}, {threads.shape[0]} links, {name}: frame over 1/60 s",
+            "at most 1",
+            f"{seconds / frame:.2f}  ({1e3 * seconds:.1f} ms)",
+            seconds <= frame,
+        )
+
+
+def printed(code):
+    """Return the output of a new Python process that runs this code."""
+    command = [sys.executable, "-c", code]
+    return subprocess.run(command, cwd=modules.ROOT, capture_output=True, text=True, check=True).stdout
 
 
 def memory():
-    """Peak memory of a process that takes steps with a million springs."""
+    """Measure the peak memory of a process that takes steps with a million springs."""
     code = ("import resource; from validate.benchmark import compiled_run; compiled_run(1_000_000, 5)(); "
             "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)")
-    peak = int(subprocess.run([sys.executable, "-c", code], cwd=modules.ROOT, capture_output=True, text=True, check=True).stdout)
+    peak = int(printed(code))
     gib = peak * (1 if sys.platform == "darwin" else 1024) / 2**30                     # kB on Linux, bytes on macOS
     yield "a million springs, peak memory", "within 4 GiB", f"{gib:.2f} GiB", gib <= 4.0
 
 
 def imports():
-    """Importing a lesson, NumPy included, in a new process; beside NumPy alone."""
+    """Measure the import of a lesson, NumPy included, in a new process, and of NumPy alone."""
     def seconds(module):
         code = f"import time; t = time.perf_counter(); import {module}; print(time.perf_counter() - t)"
-        laps = [float(subprocess.run([sys.executable, "-c", code], cwd=modules.ROOT, capture_output=True, text=True, check=True).stdout)
-                for _ in range(5)]
-        return float(np.median(laps))
+        return float(np.median([float(printed(code)) for _ in range(5)]))
+
     alone = seconds("numpy")
     for name in modules.lesson_names():
         taken = seconds(f"solutions.{name}")

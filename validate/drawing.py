@@ -1,4 +1,4 @@
-"""What a scene says of its picture: shapes, poses, points and arrows, as plain records without a drawing library."""
+"""The records of a scene's picture: shapes, poses, points and arrows, without a drawing library."""
 
 import numpy as np
 
@@ -15,45 +15,53 @@ def sphere(r):
 
 
 def cylinder(r, length):
-    """Along its own z."""
+    """A cylinder along its own z."""
     return {"kind": "cylinder", "r": float(r), "length": float(length)}
 
 
 def capsule(r, length):
-    """Along its own z; length between the centres of its two half spheres."""
+    """A capsule along its own z; length between the centres of its two half spheres."""
     return {"kind": "capsule", "r": float(r), "length": float(length)}
 
 
 def cone(r, length):
-    """Along its own z, its tip in the origin: a top on its point."""
+    """A cone along its own z, its tip in the origin: a top on its point."""
     return {"kind": "cone", "r": float(r), "length": float(length)}
 
 
 def mesh(vertices, triangles):
-    """vertices (n, 3) [m], triangles (m, 3) of their numbers."""
-    return {"kind": "mesh", "vertices": np.round(np.asarray(vertices, dtype=float), 6).tolist(), "triangles": np.asarray(triangles).tolist()}
+    """A mesh of vertices (n, 3) [m] and triangles (m, 3) of their numbers."""
+    return {
+        "kind": "mesh",
+        "vertices": np.round(np.asarray(vertices, dtype=float), 6).tolist(),
+        "triangles": np.asarray(triangles).tolist(),
+    }
 
 
 def seen(tips):
-    """Drawing coordinates (n, 2) of points in space: y to the right, z up, and x slanted towards the reader."""
+    """Return drawing coordinates (n, 2) of points in space: y to the right, z up, and x oblique towards the reader."""
     return np.asarray(tips) @ np.array([[-0.4, -0.3], [1.0, 0.0], [0.0, 1.0]])
 
 
 def axes_seen(R):
-    """The centre of a body and the tips of its three axes, as points to draw."""
+    """Return the centre of a body and the tips of its three axes, as points to draw."""
     return seen(np.vstack((np.zeros(3), np.reshape(R, (3, 3)).T)))
 
 
 def pose(x, R):
-    """(7,): a body at x, turned by R, for the player in space."""
+    """Return the pose (7,) of a body at x with the rotation R, for the 3D player."""
     return np.concatenate((x, quaternion(R)))
 
 
 def omega_and_L(R, p, reach):
-    """The arrows of a free body with p.moments() and p.omega() that started at R = 1, so that L = I ω(0) for ever.
+    """Return the arrows of a free body with p.moments() and p.omega() that started at R = 1.
 
-    L is drawn reach [m] long, and ω at the scale at which its tip stays in the plane across L at L's tip: ω · L = 2E is kept, too.
+    L = I ω(0) is constant and drawn reach [m] long.  ω has the scale at which its tip stays in the plane normal to
+    L at L's tip: ω · L = 2E is kept, too.
     """
     R, I = np.reshape(R, (3, 3)), p.moments()
     L, still = I * p.omega(), np.zeros(3)
-    return {"ω": (still, reach * np.linalg.norm(L) / (L @ p.omega()) * R @ ((R.T @ L) / I)), "L": (still, reach * L / np.linalg.norm(L))}
+    return {
+        "ω": (still, reach * np.linalg.norm(L) / (L @ p.omega()) * R @ ((R.T @ L) / I)),
+        "L": (still, reach * L / np.linalg.norm(L)),
+    }

@@ -1,10 +1,10 @@
 """The two engines, set up to match textbook mechanics, and whether they are installed.
 
-`bullet.py` and `chipmunk.py` wrap one engine each.  The other files hold set-ups that several scenes of a lesson share.
+`bullet.py` and `chipmunk.py` wrap one engine each.  The other files hold set-ups that several scenes of a lesson use.
 
-Both engines are first order: pybullet does v += a dt, then x += v dt; pymunk does x += v dt, then v += a dt.  With a first
-velocity that belongs to half a step before (pybullet, −½ a dt) or after (pymunk, +½ a dt) they become leapfrog, which is
-second order where forces are smooth.
+Both engines are first order: pybullet does v += a dt, then x += v dt; pymunk does x += v dt, then v += a dt.  With a
+first velocity that belongs to half a step before (pybullet, −½ a dt) or after (pymunk, +½ a dt) they become leapfrog,
+which is second order where forces are smooth.
 """
 
 import ctypes
@@ -19,7 +19,7 @@ from ..scene import PRODUCTS
 
 
 def installed(engine):
-    """The engine's version, or None.  Raises BadInput for an unknown name."""
+    """Return the engine's version, or None.  Raises BadInput for an unknown name."""
     if engine not in PRODUCTS:
         raise BadInput(f"engine {engine!r}", "unknown", f"choose from: {', '.join(PRODUCTS)}")
     try:
@@ -29,7 +29,7 @@ def installed(engine):
 
 
 def quiet_import(name):
-    """The module, without the line that its C code prints when it is loaded."""
+    """Return the module, and suppress the line that its C code prints when it is loaded."""
     if name in sys.modules:
         return sys.modules[name]
     sys.stdout.flush()
@@ -39,7 +39,7 @@ def quiet_import(name):
         os.dup2(nowhere, 1)
         os.dup2(nowhere, 2)
         module = importlib.import_module(name)
-        ctypes.CDLL(None).fflush(None)               # the line sits in the C library's buffer
+        ctypes.CDLL(None).fflush(None)               # the line is in the C library's buffer
         return module
     finally:
         for original, copy in zip((1, 2), kept):

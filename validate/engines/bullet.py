@@ -8,12 +8,13 @@ from ..reference.orientation import quaternion
 from ..scene import Departure
 from . import quiet_import
 
-_idle = []                   # numbers of connected clients that are free for another run
+_idle = []                   # connected clients that are free for another run
 IMPACT_ITERATIONS = 50       # of the contact solver
+UPRIGHT = np.eye(3)          # rotation of a body that is not rotated
 
 
 class Client:
-    """pybullet's functions, each bound to one client, so that no call has to name it."""
+    """pybullet's functions, each bound to one client, so that calls do not have to name it."""
 
     def __init__(self, module, number):
         self.module, self.number = module, number
@@ -21,12 +22,12 @@ class Client:
     def __getattr__(self, name):
         value = getattr(self.module, name)
         bound = partial(value, physicsClientId=self.number) if callable(value) else value
-        setattr(self, name, bound)                               # the next call finds it without this detour
+        setattr(self, name, bound)                               # the next call then finds it directly
         return bound
 
 
 class Bullet:
-    """A pybullet client without a window, with the settings that every scene needs.  Bodies have no shape unless given one."""
+    """A pybullet client without a window, with the settings of every scene.  Bodies have no shape by default."""
 
     def __init__(self, dt, gravity=(0.0, 0.0, 0.0)):
         pybullet = quiet_import("pybullet")
@@ -34,14 +35,14 @@ class Bullet:
         self.pb = Client(pybullet, self.client)
         self.pb.setGravity(*map(float, gravity))
         self.pb.setTimeStep(dt)
-        # the residual threshold stops the solver at an absolute velocity, which ruins small steps; the breaking threshold is
-        # global to the process and survives reconnecting, so every scene sets it
+        # the residual threshold stops the solver at an absolute velocity, which ruins small steps; the breaking
+        # threshold is global to the process and survives reconnecting, so every scene sets it
         self.pb.setPhysicsEngineParameter(solverResidualThreshold=0, contactBreakingThreshold=0.02)
 
     def point_mass(self, m, x, v, default=False):
-        """A free body with maximal coordinates: no hidden damping, no velocity clamp.  default: as createMultiBody leaves it."""
-        body = self.pb.createMultiBody(m, basePosition=list(map(float, x)), useMaximalCoordinates=0 if default else 1,
-                                      )
+        """Make a free body in maximal coordinates, without hidden damping or clamp; default: as the engine does."""
+        maximal = 0 if default else 1
+        body = self.pb.createMultiBody(m, basePosition=list(map(float, x)), useMaximalCoordinates=maximal)
         if not default:
             self.pb.changeDynamics(body, -1, linearDamping=0, angularDamping=0)
         self.pb.resetBaseVelocity(body, list(map(float, v)))
@@ -61,31 +62,47 @@ class Bullet:
         self.pb.stepSimulation()
 
     def close(self):
-        """Empty the world and keep its client for the next: connecting takes 20 ms."""
+        """Empty the world and keep its client for the next run, because connecting takes 20 ms."""
         self.pb.resetSimulation()
         _idle.append(self.client)
 
 
 class Rigid(Bullet):
-    """pybullet with bodies that have moments of inertia; `maximal` or reduced coordinates; no hidden damping, no clamp of velocity."""
+    """pybullet with bodies that have moments of inertia, in `maximal` or reduced coordinates.
+
+    No hidden damping, no clamp of velocity.
+    """
 
     def __init__(self, dt, gravity=(0.0, 0.0, 0.0), iterations=50, erp=0.2):
         super().__init__(dt, gravity)
-        # the slop is a depth at which a contact begins to be felt: 1e-5 m take 1.4 ms to fall through, without friction
+        # the slop is the depth at which a contact begins: a fall of 1e-5 m takes 1.4 ms, without friction
         self.pb.setPhysicsEngineParameter(numSolverIterations=iterations, erp=erp, contactSlop=0)
 
-    def body(self, m, I, x, omega, maximal, v=(0.0, 0.0, 0.0), R=np.eye(3), shape=-1, mu=0.0):
-        """A body at x, turned by R; mass and moments go in one call, or the first is lost."""
-        q = np.roll(quaternion(R), -1).tolist()                          # pybullet has w last
-        body = self.pb.createMultiBody(m, shape, basePosition=list(map(float, x)), baseOrientation=q, useMaximalCoordinates=int(maximal))
+    def body(self, m, I, x, omega, maximal, v=(0.0, 0.0, 0.0), R=UPRIGHT, shape=-1, mu=0.0):
+        """Make a body at x with the rotation R; mass and moments go in one call, or the first is lost."""
+        q = np.roll(quaternion(R), -1).tolist()  # pybullet has w last
+        body = self.pb.createMultiBody(
+            m, shape, basePosition=list(map(float, x)), baseOrientation=q, useMaximalCoordinates=int(maximal)
+        )
         unclamped = {} if maximal else {"maxJointVelocity": 1e9}
-        self.pb.changeDynamics(body, -1, mass=m, localInertiaDiagonal=list(map(float, I)), linearDamping=0, angularDamping=0, lateralFriction=mu,
-                               rollingFriction=0, spinningFriction=0, restitution=0, **unclamped)
+        self.pb.changeDynamics(
+            body,
+            -1,
+            mass=m,
+            localInertiaDiagonal=list(map(float, I)),
+            linearDamping=0,
+            angularDamping=0,
+            lateralFriction=mu,
+            rollingFriction=0,
+            spinningFriction=0,
+            restitution=0,
+            **unclamped,
+        )
         self.pb.resetBaseVelocity(body, list(map(float, v)), list(map(float, omega)))
         return body
 
     def R(self, body):
-        """Orientation (3, 3)."""
+        """Return the orientation (3, 3)."""
         q = self.pb.getBasePositionAndOrientation(body)[1]
         return np.array(self.pb.getMatrixFromQuaternion(q)).reshape(3, 3)
 
@@ -93,43 +110,59 @@ class Rigid(Bullet):
         return self.pb.getBaseVelocity(body)[1]
 
     def pivot(self, body, offset, maximal):
-        """Hold the point of the body at this offset from its centre at the origin, to a body of no size that cannot move.
+        """Hold the point of the body at this offset from its centre at the origin, by a fixed body without size.
 
-        (To the world itself bodies with maximal coordinates cannot be held.)
+        (Bodies with maximal coordinates cannot be constrained to the world itself.)
         """
         nail = self.pb.createMultiBody(0, -1, useMaximalCoordinates=int(maximal))
-        self.pb.createConstraint(body, -1, nail, -1, self.pb.JOINT_POINT2POINT, [0, 0, 0], list(map(float, offset)), [0, 0, 0])
+        self.pb.createConstraint(
+            body, -1, nail, -1, self.pb.JOINT_POINT2POINT, [0, 0, 0], list(map(float, offset)), [0, 0, 0]
+        )
 
     def ball(self, radius):
         return self.pb.createCollisionShape(self.pb.GEOM_SPHERE, radius=radius)
 
     def floor(self):
-        """A plane z = 0 of friction 1: pybullet multiplies the two."""
+        """Make a plane z = 0 of friction 1: pybullet multiplies the two coefficients."""
         plane = self.pb.createCollisionShape(self.pb.GEOM_PLANE)
         body = self.pb.createMultiBody(0, plane)
         self.pb.changeDynamics(body, -1, lateralFriction=1.0, rollingFriction=0, spinningFriction=0, restitution=0)
 
     def close(self):
-        """The next world finds the engine's own settings again."""
+        """Restore the engine's own settings for the next world."""
         self.pb.setPhysicsEngineParameter(numSolverIterations=50, erp=0.2, contactSlop=1e-5)
         super().close()
 
 
 class Impacts(Bullet):
-    """pybullet with bodies that rebound as they should: the settings of an impact, and nothing that pushes."""
+    """pybullet with the settings for an impact: exact restitution, and no push-out."""
 
     def __init__(self, dt, gravity=(0.0, 0.0, 0.0)):
         super().__init__(dt, gravity)
-        self.pb.setPhysicsEngineParameter(numSolverIterations=IMPACT_ITERATIONS, contactERP=0, contactSlop=0, restitutionVelocityThreshold=0)
+        self.pb.setPhysicsEngineParameter(
+            numSolverIterations=IMPACT_ITERATIONS, contactERP=0, contactSlop=0, restitutionVelocityThreshold=0
+        )
 
-    def body(self, m, I, shape, x, v, omega, e, mu, R=np.eye(3)):
-        """A body of maximal coordinates; with m = 0 it cannot be moved.  pybullet multiplies e and μ of the two that meet."""
+    def body(self, m, I, shape, x, v, omega, e, mu, R=UPRIGHT):
+        """Make a body of maximal coordinates, fixed if m = 0.  pybullet multiplies e and μ of the two bodies."""
         pb = self.pb
-        q = np.roll(quaternion(R), -1).tolist()                          # w is last
-        body = pb.createMultiBody(m, shape, basePosition=list(map(float, x)), baseOrientation=q, useMaximalCoordinates=1)
+        q = np.roll(quaternion(R), -1).tolist()  # w is last
+        body = pb.createMultiBody(
+            m, shape, basePosition=list(map(float, x)), baseOrientation=q, useMaximalCoordinates=1
+        )
         inertia = {"mass": m, "localInertiaDiagonal": list(map(float, I))} if m else {}
-        pb.changeDynamics(body, -1, **inertia, restitution=e, lateralFriction=mu, linearDamping=0, angularDamping=0, rollingFriction=0, spinningFriction=0,
-                          contactProcessingThreshold=0)
+        pb.changeDynamics(
+            body,
+            -1,
+            **inertia,
+            restitution=e,
+            lateralFriction=mu,
+            linearDamping=0,
+            angularDamping=0,
+            rollingFriction=0,
+            spinningFriction=0,
+            contactProcessingThreshold=0,
+        )
         pb.resetBaseVelocity(body, list(map(float, v)), list(map(float, omega)))
         return body
 
@@ -138,15 +171,18 @@ class Impacts(Bullet):
         return self.body(m, (I, I, I), shape, x, v, omega, e, mu)
 
     def plane(self):
-        """z = 0, with restitution and friction 1."""
-        self.body(0.0, (), self.pb.createCollisionShape(self.pb.GEOM_PLANE), (0.0,) * 3, (0.0,) * 3, (0.0,) * 3, 1.0, 1.0)
+        """Make the plane z = 0, with restitution and friction 1."""
+        zero, plane = (0.0,) * 3, self.pb.createCollisionShape(self.pb.GEOM_PLANE)
+        self.body(0.0, (), plane, zero, zero, zero, 1.0, 1.0)
 
     def omega(self, body):
         return self.pb.getBaseVelocity(body)[1]
 
     def close(self):
-        """The next world finds the engine's own settings again."""
-        self.pb.setPhysicsEngineParameter(numSolverIterations=50, contactERP=0.08, contactSlop=1e-5, restitutionVelocityThreshold=0.2)
+        """Restore the engine's own settings for the next world."""
+        self.pb.setPhysicsEngineParameter(
+            numSolverIterations=50, contactERP=0.08, contactSlop=1e-5, restitutionVelocityThreshold=0.2
+        )
         super().close()
 
 
@@ -155,8 +191,9 @@ IMPACT_SETTINGS = ("maximal coordinates; contactERP 0, contactSlop 0, contactPro
 
 
 def hidden_damping(acceleration, start):
-    """Why a reduced-coordinate body of pybullet departs by default, for a scene's WHY: it feels a − 0.04 v (1 + |v|), |v| the vector's length.
+    """Return the Departure of pybullet's default reduced-coordinate body, which adds −0.04 v (1 + |v|) to a.
 
+    |v| is the length of the vector.
     start(p) → (x, v), each (d,); the law is solved by DOP853.
     *Source:* measured, and in Bullet's btMultiBody.
     """
@@ -166,6 +203,8 @@ def hidden_damping(acceleration, start):
         d = len(begin) // 2
 
         def slope(t, y):
-            return np.concatenate((y[d:], acceleration(t, y[:d], y[d:], p) - 0.04 * y[d:] * (1.0 + np.linalg.norm(y[d:]))))
+            x, v = y[:d], y[d:]
+            return np.concatenate((v, acceleration(t, x, v, p) - 0.04 * v * (1.0 + np.linalg.norm(v))))
+
         return solve_ivp(slope, (0.0, max(t, 1e-9)), begin, method="DOP853", rtol=1e-12, atol=1e-13).y[:d, -1]
     return Departure("its reduced-coordinate bodies carry a hidden damping −0.04 v (1 + |v|)", own_law)

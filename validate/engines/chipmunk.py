@@ -3,7 +3,7 @@ from validate.scene import EngineRun
 
 
 def pymunk_space(gravity=(0.0, 0.0)):
-    """A pymunk.Space without damping, its units metres."""
+    """Make a pymunk.Space without damping, its units metres."""
     import pymunk
     space = pymunk.Space()
     space.gravity = tuple(map(float, gravity))
@@ -12,12 +12,12 @@ def pymunk_space(gravity=(0.0, 0.0)):
 
 
 def pymunk_world(space, dt, read):
-    """The EngineRun of a space."""
+    """Make the EngineRun of a space."""
     return EngineRun(lambda: space.step(dt), read, lambda: None)
 
 
 def pymunk_ball(space, m, I, radius, x, v, omega, e, mu):
-    """A circle; pymunk multiplies e and μ of the two that meet."""
+    """Make a circle; pymunk multiplies e and μ of the two bodies."""
     import pymunk
     body = pymunk.Body(m, I)
     body.position, body.velocity, body.angular_velocity = tuple(map(float, x)), tuple(map(float, v)), float(omega)
@@ -28,7 +28,7 @@ def pymunk_ball(space, m, I, radius, x, v, omega, e, mu):
 
 
 def pymunk_floor(space):
-    """y = 0, the upper side of a beam 10 m thick, through which nothing falls in a step."""
+    """Make the floor y = 0, the upper side of a beam 10 m thick, which no body passes in one step."""
     import pymunk
     floor = pymunk.Segment(space.static_body, (-1000.0, -5.0), (1000.0, -5.0), 5.0)
     floor.elasticity, floor.friction = 1.0, 1.0

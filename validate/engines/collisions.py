@@ -7,31 +7,43 @@ from validate.scene import EngineRun
 
 PLACE_APART = 1.0            # metre between two copies along the x axis
 
-SWEPT = 0.8                  # radius that pybullet sweeps over that of the ball [-]: with the whole of it a ball sticks to what it grazes
+ENGINE_SPEEDS = (1.0, 1e2, 1e4)  # of the balls in an engine [m/s]: the lowest, the middle, the highest
 
-RAY_ENDS = 1e-2              # how far in front of a round shape pybullet's rays may end [m]: measured, not derived.  They come near from outside,
-#                              and twenty that were tried beforehand ended up to 1.2 mm early; this allows eight times that
+# radius that pybullet sweeps over that of the ball [-]: with all of it a ball sticks to a surface that it grazes
+SWEPT = 0.8
+SWEPT_SETTINGS = (f"useMaximalCoordinates, ccdSweptSphereRadius {SWEPT:g} r, contactProcessingThreshold, contactERP "
+                  "and contactSlop 0")
+
+# how far in front of a round shape pybullet's rays may end [m]: measured, not derived.  Rays approach from outside;
+# twenty tested beforehand ended up to 1.2 mm early, and this permits eight times that
+RAY_ENDS = 1e-2
 
 
 def across(x):
-    """The coordinates (1, 2) of places x (n, 3), in one row: nothing ever moves along x."""
+    """Return the coordinates (1, 2) of positions x (n, 3), in one row, because there is no motion along x."""
     return np.ravel(x[:, 1:])
 
 
 def target(bullet, p, grown=0.0):
-    """The obstacle of a scene as a static body: the plane z = 0, or the cylinder about x, its radius grown by that of the ball."""
+    """Make the static obstacle of a scene: the plane z = 0, or the cylinder about x, its radius larger by `grown`."""
     pb = bullet.pb
     if p.R == 0.0:
         shape, turn = pb.createCollisionShape(pb.GEOM_PLANE), [0.0, 0.0, 0.0, 1.0]
     else:
-        shape, turn = pb.createCollisionShape(pb.GEOM_CYLINDER, radius=p.R + grown, height=100.0), [0.0, np.sqrt(0.5), 0.0, np.sqrt(0.5)]
-    body = pb.createMultiBody(0.0, shape, basePosition=[0.0, 0.0, grown if p.R == 0.0 else 0.0], baseOrientation=turn, useMaximalCoordinates=1)
+        shape = pb.createCollisionShape(pb.GEOM_CYLINDER, radius=p.R + grown, height=100.0)
+        turn = [0.0, np.sqrt(0.5), 0.0, np.sqrt(0.5)]
+    body = pb.createMultiBody(
+        0.0, shape, basePosition=[0.0, 0.0, grown if p.R == 0.0 else 0.0], baseOrientation=turn, useMaximalCoordinates=1
+    )
     pb.changeDynamics(body, -1, lateralFriction=0, restitution=0)
     return body
 
 
 def bullet_rays(p, x, v, dt):
-    """A EngineRun of points that fly on by rays, one a step, at an obstacle grown by the radius of the ball; where a ray ends they stay."""
+    """Make an EngineRun of points that move by one ray per step, at an obstacle grown by the radius of the ball.
+
+    A point stops where its ray ends.
+    """
     bullet = Bullet(dt)
     target(bullet, p, p.r)
     at, velocity = np.array(x), np.array(v)
@@ -48,10 +60,11 @@ def bullet_rays(p, x, v, dt):
 
 
 def bullet_swept(p, x, v, dt):
-    """A EngineRun of balls of maximal coordinates with continuous detection; each is read where the step left it in which it was found.
+    """Make an EngineRun of balls in maximal coordinates with continuous detection.
 
-    Their velocity changes only in the step after that, so a ball that went less far than v dt with its old velocity was stopped by the
-    sweep; one whose velocity has changed was found in contact where it was before.
+    Each ball is read at the end of the step that detected its impact.  Its velocity changes only in the step after
+    that.  A ball that moved less than v dt with its old velocity was stopped by the sweep.  A ball whose velocity
+    has changed was found in contact at its previous position.
     """
     bullet = Bullet(dt)
     pb = bullet.pb
@@ -61,8 +74,16 @@ def bullet_swept(p, x, v, dt):
     at, speed, bodies, done = np.array(x), np.linalg.norm(v[0]), [], [False] * len(x)
     for k in range(len(x)):
         body = pb.createMultiBody(1.0, shape, basePosition=x[k].tolist(), useMaximalCoordinates=1)
-        pb.changeDynamics(body, -1, linearDamping=0, angularDamping=0, lateralFriction=0, restitution=0, contactProcessingThreshold=0,
-                          ccdSweptSphereRadius=SWEPT * p.r)
+        pb.changeDynamics(
+            body,
+            -1,
+            linearDamping=0,
+            angularDamping=0,
+            lateralFriction=0,
+            restitution=0,
+            contactProcessingThreshold=0,
+            ccdSweptSphereRadius=SWEPT * p.r,
+        )
         pb.resetBaseVelocity(body, v[k].tolist())
         bodies.append(body)
 
@@ -80,17 +101,18 @@ def bullet_swept(p, x, v, dt):
 
 
 def swept_limit(p, dt):
-    """How far from its place of impact [m] a ball may be found by bullet_swept.
+    """Return the largest distance [m] between the position of bullet_swept and the place of impact.
 
-    Steps shorter than half the swept radius are not swept: then a ball is found in by at most v dt.  Longer ones end where the swept sphere
-    touches, with the ball in by (1 − SWEPT) r, or before, where the ball itself is found in by less.
-    *Source:* Bullet: changeDynamics sets the threshold of motion to half the radius; btDiscreteDynamicsWorld::integrateTransforms.
+    Steps shorter than half the swept radius are not swept: a ball is then at most v dt deep.  Longer steps end
+    where the swept sphere touches, with the ball (1 − SWEPT) r deep, or earlier, where the ball itself is found
+    less deep. *Source:* Bullet: changeDynamics sets the threshold of motion to half the radius;
+    btDiscreteDynamicsWorld::integrateTransforms.
     """
     return p.speed * dt if p.speed * dt < 0.5 * SWEPT * p.r else max((1.0 - SWEPT) * p.r, 0.0)
 
 
 def bullet_boxes(low, high):
-    """A pybullet world with these boxes, standing: (Bullet, their bodies)."""
+    """Make a pybullet world with these boxes at rest: (Bullet, their bodies)."""
     bullet, bodies = Bullet(0.01), []
     for a, b in zip(low, high):
         shape = bullet.pb.createCollisionShape(bullet.pb.GEOM_BOX, halfExtents=(0.5 * (b - a)).tolist())
@@ -99,7 +121,7 @@ def bullet_boxes(low, high):
 
 
 def bullet_closest_pairs(low, high):
-    """Pairs (m, 2) of boxes between which pybullet finds points of contact, asked for every pair."""
+    """Return the pairs (m, 2) of boxes between which pybullet finds points of contact, with one query per pair."""
     bullet, bodies = bullet_boxes(low, high)
     ask = lambda i, j: bullet.pb.getClosestPoints(bodies[i], bodies[j], 0.0)
     found = [(i, j) for i in range(len(low)) for j in range(i + 1, len(low)) if ask(i, j)]
@@ -108,7 +130,10 @@ def bullet_closest_pairs(low, high):
 
 
 def bullet_query_pairs(low, high):
-    """Pairs (m, 2) as pybullet's broad phase knows them: for every box those whose own are in reach of it.  A step makes it take them in."""
+    """Return the pairs (m, 2) of pybullet's broad phase: for every box those whose enlarged boxes overlap it.
+
+    A step is needed to register the boxes.
+    """
     bullet, bodies = bullet_boxes(low, high)
     bullet.step()
     number, found = {body: k for k, body in enumerate(bodies)}, []

@@ -9,7 +9,7 @@ from .chipmunk import pymunk_space, pymunk_world
 
 
 def pymunk_planet(p, dt, ahead=0.0):
-    """Chipmunk calls velocity_func after it has moved the body: the attraction is that at the new position.
+    """Chipmunk calls velocity_func after it has moved the body, so the attraction is that at the new position.
 
     A force applied before step() would be that at the old position: forward Euler, which spirals outwards.
     """
@@ -30,7 +30,7 @@ def pymunk_planet(p, dt, ahead=0.0):
 
 
 def bullet_planet(p, dt, ahead=0.0):
-    """The attraction as a force, from the position before each step.
+    """Apply the attraction as a force, from the position before each step.
 
     By default a body would carry the hidden damping −0.04 v (1 + |v|) and spiral into the sun within 15 s.
     """
@@ -49,7 +49,18 @@ def bullet_planet(p, dt, ahead=0.0):
 
 KEPLER_ENGINES = (
     Engine(PYMUNK, "", pymunk_planet, LATE_LEAPFROG, "attraction in velocity_func", 50_000),
-    Engine(PYMUNK, "leapfrog start", lambda p, dt: pymunk_planet(p, dt, ahead=0.5), 2, "first velocity + ½ a dt", 50_000),
-    Engine(PYBULLET, "", bullet_planet, LATE_LEAPFROG, "useMaximalCoordinates=1, no damping; force applied each step", 50_000),
-    Engine(PYBULLET, "leapfrog start", lambda p, dt: bullet_planet(p, dt, ahead=0.5), 2, "first velocity − ½ a dt", 50_000),
+    Engine(
+        PYMUNK, "leapfrog start", lambda p, dt: pymunk_planet(p, dt, ahead=0.5), 2, "first velocity + ½ a dt", 50_000
+    ),
+    Engine(
+        PYBULLET,
+        "",
+        bullet_planet,
+        LATE_LEAPFROG,
+        "useMaximalCoordinates=1, no damping; force applied each step",
+        50_000,
+    ),
+    Engine(
+        PYBULLET, "leapfrog start", lambda p, dt: bullet_planet(p, dt, ahead=0.5), 2, "first velocity − ½ a dt", 50_000
+    ),
 )

@@ -6,13 +6,17 @@ from validate.engines.bullet import Rigid
 from validate.engines.chipmunk import pymunk_space, pymunk_world
 from validate.scene import EngineRun
 
-ITERATIONS = 10              # of the engines' solvers for each link: news of an impulse goes one link a sweep, to and fro
-
-SHARE = 0.1                  # moment of inertia of a bob in pybullet over m l²: its solver sweeps over three axes, and a point has none
+# of the engines' solvers for each link: an impulse travels one link per sweep, in both directions
+ITERATIONS = 10
+# moment of inertia of a bob in pybullet over m l²: its solver sweeps over three axes, and a point has none
+SHARE = 0.1
 
 
 def pymunk_rope(x, l, m, g, dt, read):
-    """A EngineRun of point masses on PinJoints, held in the origin; x (n, 2) to begin with.  What a step leaves a link off by, the next undoes."""
+    """Make an EngineRun of point masses on PinJoints, held in the origin; x (n, 2) are the initial positions.
+
+    The next step corrects the error that a step leaves in a link.
+    """
     import pymunk
     space = pymunk_space((0.0, -g))
     space.iterations = ITERATIONS * max(len(x), 10)
@@ -30,11 +34,14 @@ def pymunk_rope(x, l, m, g, dt, read):
 
 
 def bullet_rope(x, m, g, inertia, dt, read):
-    """The same of bodies with a moment of inertia that turn with the link above them: point-to-point constraints; z is up."""
+    """Make the same of bodies with a moment of inertia that turn with the link above, by point-to-point constraints.
+
+    z is up.
+    """
     bullet = Rigid(dt, (0.0, 0.0, -g), iterations=ITERATIONS * max(len(x), 10), erp=1.0)
     pb = bullet.pb
     bodies, above = [], np.zeros(2)
-    for k, place in enumerate(x):
+    for place in x:
         body = bullet.body(m, (inertia,) * 3, (place[0], 0.0, place[1]), np.zeros(3), True)
         arm = [float(above[0] - place[0]), 0.0, float(above[1] - place[1])]
         if bodies:
@@ -43,4 +50,5 @@ def bullet_rope(x, m, g, inertia, dt, read):
             bullet.pivot(body, arm, True)
         bodies.append(body)
         above = place
-    return EngineRun(bullet.step, lambda: read(np.array([bullet.position(body) for body in bodies])[:, ::2]), bullet.close)
+    places = lambda: np.array([bullet.position(body) for body in bodies])
+    return EngineRun(bullet.step, lambda: read(places()[:, ::2]), bullet.close)

@@ -7,7 +7,7 @@ from validate.scene import PYBULLET, Engine, EngineRun
 
 
 def free_body(maximal):
-    """make(p, dt) of a free body with p.moments() and p.omega() that starts at R = 1; read: R, flat."""
+    """Return make(p, dt) of a free body with p.moments() and p.omega() that starts at R = 1; read: R, flat."""
     def make(p, dt):
         bullet = Rigid(dt)
         body = bullet.body(1.0, p.moments(), (0.0, 0.0, 0.0), p.omega(), maximal)
@@ -15,15 +15,30 @@ def free_body(maximal):
     return make
 
 FREE_ENGINES = (
-    Engine(PYBULLET, "reduced coordinates", free_body(False), 1, "createMultiBody as it comes, but no damping and no clamp of velocity"),
+    Engine(
+        PYBULLET,
+        "reduced coordinates",
+        free_body(False),
+        1,
+        "createMultiBody with its defaults, but no damping and no clamp of velocity",
+    ),
     Engine(PYBULLET, "", free_body(True), 1, "useMaximalCoordinates=1, no damping"),
 )
 
 
 def rolling_ball(ball, v, maximal, dt):
-    """A EngineRun of a ball, bowled along x on a horizontal floor; read: way, speed and rim speed along it."""
+    """Make an EngineRun of a ball bowled along x on a horizontal floor; read: distance, speed and rim speed."""
     bullet = Rigid(dt, ball.gravity, iterations=100)
     bullet.floor()
-    body = bullet.body(ball.m, ball.I_body, (0.0, 0.0, ball.radius), np.zeros(3), maximal, v=v, shape=bullet.ball(ball.radius), mu=ball.mu)
+    body = bullet.body(
+        ball.m,
+        ball.I_body,
+        (0.0, 0.0, ball.radius),
+        np.zeros(3),
+        maximal,
+        v=v,
+        shape=bullet.ball(ball.radius),
+        mu=ball.mu,
+    )
     read = lambda: np.array([bullet.position(body)[0], bullet.velocity(body)[0], ball.radius * bullet.omega(body)[1]])
     return EngineRun(bullet.step, read, bullet.close)

@@ -12,7 +12,7 @@ T = 4.0                      # [s]: two slips
 
 
 class DrivenBlock(NamedTuple):
-    """A block on the floor, pushed to and fro."""
+    """A block on the floor under a periodic force."""
     force: Annotated[float, "amplitude [N], of F cos ωt"] = 8.0
     omega: Annotated[float, "[rad/s]"] = 1.0
     mu: Annotated[float, "friction [-]: holds 7.848 N"] = 0.8
@@ -20,9 +20,15 @@ class DrivenBlock(NamedTuple):
     g: Annotated[float, "gravity [m/s²]"] = 9.81
 
 
+def block_in_space(x, v, block):
+    """Return the same block with an unused third coordinate."""
+    third = lambda y: np.append(y, 0.0)
+    return third(x), third(v), block._replace(n=third(block.n), gravity=third(block.gravity), push=third(block.push))
+
+
 @cache
 def slips(p):
-    """((begin, end, sign, x at the beginning), …): the slips up to T [s], x [m]."""
+    """Return ((begin, end, sign, x at the beginning), …): the slips up to T [s], x [m]."""
     A, hold, w = p.force / p.m, p.mu * p.g, p.omega
     found, t, x = [], 0.0, 0.0
     while abs(A) > hold:
@@ -32,8 +38,9 @@ def slips(p):
         if t >= T:
             break
         sign = np.sign(A * np.cos(w * t))
-        speed = lambda s: sign * A / w * (np.sin(w * s) - np.sin(w * t)) - hold * (s - t)
-        s = t + np.linspace(0.0, 2.0 * np.pi / w, 1001)[1:]                  # after a whole swing only friction has done anything
+        speed = lambda s, t=t, sign=sign: sign * A / w * (np.sin(w * s) - np.sin(w * t)) - hold * (s - t)
+        # over a whole period the impulse of the force is zero, so friction has stopped the block
+        s = t + np.linspace(0.0, 2.0 * np.pi / w, 1001)[1:]
         k = np.flatnonzero(speed(s) <= 0.0)[0]
         end = brentq(speed, s[k - 1], s[k], xtol=1e-15, rtol=1e-15)
         found.append((t, end, sign, x))
@@ -43,7 +50,7 @@ def slips(p):
 
 
 def travelled(p, slip, t):
-    """Way [m] since a slip began:  sign · ∫∫ (A |cos| − μg)."""
+    """Return the distance [m] since a slip began:  sign · ∫∫ (A |cos| − μg)."""
     begin, _, sign, _ = slip
     A, hold, w = p.force / p.m, p.mu * p.g, p.omega
     s = t - begin
@@ -64,20 +71,24 @@ def slip_position(p, t):
 
 
 def slip_limits(p, dt):
-    """Friction and the force are smooth within a slip, and where it begins and ends at the limit of friction an event that is found
-    late by dt costs dt² only.
+    """Friction and the force are smooth within a slip, so an event found late by dt costs only dt².
 
-    Order 1 takes the force of the beginning of each step for all of it: in a slip of s seconds in which A |cos ωt| changes by V its
-    velocity goes wrong by ½ dt V.  Order 2, a midpoint step: by dt² Aω² s/24, and the way by dt² Aω s/6 besides.  The velocity at
-    the end over the deceleration there is how late it stops; where the next slip begins in that moment, it is that late times its
-    first acceleration too slow.  What adds up to dt² in order 1 is bounded by Aω dt² s each for the beginning, the end and the sum.
-    The engines know the same forces at the same times; that pymunk moves with the old velocity costs nothing, since a slip begins
-    and ends with none.
+    A slip begins and ends at the limit of friction, which is why its detection error is of second order.
+
+    Order 1 uses the force at the beginning of each step for all of it: in a slip of s seconds in which A |cos ωt|
+    changes by V its velocity is wrong by ½ dt V.  Order 2, a midpoint step, is wrong by dt² Aω² s/24, and in
+    addition the distance by dt² Aω s/6.  The velocity error at the end over the deceleration there is the delay of
+    the stop.  If the next slip begins at that moment, its first acceleration is too small by as much time.  In
+    order 1 the terms in dt² are bounded by Aω dt² s each for the beginning, the end and the sum.  The engines use
+    the same forces at the same times.  That pymunk moves with the old velocity has no effect, because a slip begins
+    and ends at rest.
     """
     A, w, hold = p.force / p.m, p.omega, p.mu * p.g
     limits, size = by_order(0.0, T, dt), abs(slip_position(p, T)[0])
     first = second = 0.0
-    late, before = np.zeros(2), -1.0                     # by how much the slip before ended late, in either order, and when
+    # delay of the end of the previous slip, in either order, and its time
+    late = np.zeros(2)
+    before = -1.0
     for begin, end, sign, _ in slips(p):
         s, pull = min(end, T) - begin, sign * A * np.cos(w * np.linspace(begin, end, 101))
         fast = np.array([0.5 * dt * np.ptp(pull), dt * dt * A * w * w * s / 24.0])

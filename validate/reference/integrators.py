@@ -1,4 +1,4 @@
-"""Kepler's ellipse: the reference solution of lesson 1's orbits, and the errors that theory allows."""
+"""Kepler's ellipse: the reference solution of lesson 1's orbits, and the error limits from theory."""
 
 from typing import Annotated, NamedTuple
 
@@ -8,14 +8,14 @@ from ..scene import LATE_LEAPFROG, ROUND_OFF
 
 
 class Planet(NamedTuple):
-    """A planet that starts where it is nearest to its sun."""
+    """A planet that starts at its nearest point to the sun."""
     mu: Annotated[float, "gravity of the sun, G m [m³/s²]"] = 1.0
     a: Annotated[float, "half the long axis [m]"] = 1.0
     e: Annotated[float, "eccentricity [-]"] = 0.6
 
 
 def perihelion(p):
-    """(x, v) where the planet is nearest to the sun and fastest: |x| = a (1 − e),  v² = μ (1 + e)/(a (1 − e))."""
+    """Return (x, v) at the nearest point to the sun: |x| = a (1 − e),  v² = μ (1 + e)/(a (1 − e)), the largest v."""
     return np.array([p.a * (1.0 - p.e), 0.0]), np.array([0.0, np.sqrt(p.mu / p.a * (1.0 + p.e) / (1.0 - p.e))])
 
 
@@ -25,22 +25,22 @@ def attraction(x, mu):
 
 
 def eccentric_anomaly(M, e):
-    """E [rad] from Kepler's equation E − e sin E = M, by Newton's method to round-off.
+    """Solve Kepler's equation E − e sin E = M for E [rad], by Newton's method to round-off.
 
-    It starts at the end of the half turn that M is in: there the left side bends so that no correction overshoots.  So they
-    all have one sign, until round-off takes over.
+    It starts at the end of the half turn that contains M.  There the curvature of the left side prevents overshoot,
+    so all corrections have one sign until round-off.
     """
     side = np.sign(np.sin(M))
     E = np.pi * (np.ceil(M / np.pi) if side > 0.0 else np.floor(M / np.pi))
     while True:
         nearer = E - (E - e * np.sin(E) - M) / (1.0 - e * np.cos(E))
-        if not side * (E - nearer) > 0.0:                                  # also where M is not a number
+        if not side * (E - nearer) > 0.0:                                  # also stops if M is not a number
             return E
         E = nearer
 
 
 def orbit(x, v, mu, t):
-    """(x, v) at t of a planet that passes x with the velocity v on an ellipse; NaN when it escapes.
+    """Return (x, v) at t of a planet that passes x with the velocity v on an ellipse; NaN if it escapes.
 
     1/a = 2/r − v²/μ,   n = √(μ/a³),   e cos E₀ = 1 − r/a,   e sin E₀ = x·v/√(μa),   E − e sin E = E₀ − e sin E₀ + n t
     With ψ = E − E₀:   x(t) = f x + g v,   f = 1 − (a/r)(1 − cos ψ),   g = ((r/a) sin ψ + e sin E₀ (1 − cos ψ))/n;
@@ -61,49 +61,53 @@ def orbit(x, v, mu, t):
 def kepler_position(p, t):
     """Kepler's ellipse: n t = E − e sin E,   n = √(μ/a³),   x = a (cos E − e, √(1 − e²) sin E)
 
-    Areas: r²θ̇ is constant; with the eccentric anomaly E in place of θ that integrates to the first equation.
+    r²θ̇ is constant; with the eccentric anomaly E in place of θ that integrates to the first equation.
     Source: Kepler 1609, Astronomia nova; Goldstein, Classical mechanics, § 3.8.
     """
     return orbit(*perihelion(p), p.mu, t)[0]
 
 
 def drift(p, T, dt, k):
-    """Largest relative error of position at T of a method of order k.
+    """Return the largest relative error of position at T of a method of order k.
 
-    Near the sun a step errs by (rate dt)ᵏ⁺¹ of the velocity, rate = √(μ/r³) at the shortest distance r: in complex time |x| = 0
-    lies about 1/rate away, and that is how fast Taylor's coefficients can grow.  A passage lasts 1/rate: it changes v by
-    (rate dt)ᵏ v, and the energy, relative to μ/2a, by
+    Near the sun a step errs by (rate dt)ᵏ⁺¹ of the velocity, rate = √(μ/r³) at the shortest distance r: in complex
+    time |x| = 0 lies about 1/rate away, which sets the growth of Taylor's coefficients.  A passage lasts 1/rate.  It
+    changes v by (rate dt)ᵏ v, and the energy, relative to μ/2a, by
         ε_k = 2 (1 + e)/(1 − e) (rate dt)ᵏ.
-    A method of even order does that on the way in and undoes it on the way out, as time reversal demands; only ε_k₊₁ is left
-    at every passage (and nothing by symplectic methods).  One of order 1 leaves ε₁ at every passage.  Kepler's third law: n changes by 3/2 ε, so the phase at T is wrong by
+    A method of even order does that on the way in and undoes it on the way out, by time reversal.  Only ε_k₊₁ is left
+    at every passage (and nothing for symplectic methods).  A method of order 1 leaves ε₁ at every passage.  By Kepler's
+    third law n changes by 3/2 ε, so the phase at T is wrong by
         φ = 3/2 n T (ε_k + ε_k₊₁ n T/4π)        for even k,
         φ = 3/2 n T ε₁ (1 + n T/4π)              for k = 1;        in metres |v(T)|/n φ.
-    The two terms may differ in sign: the midpoint method has a lucky step where they cancel.
+    The two terms may differ in sign: for the midpoint method they cancel at one step size.
     Source: Calvo and Sanz-Serna 1993; Hairer, Lubich, Wanner 2006, X.3 and XI.
     """
     n, rate = np.sqrt(p.mu / p.a**3), np.sqrt(p.mu / (p.a * (1.0 - p.e)) ** 3)
     x, v = orbit(*perihelion(p), p.mu, T)
     metres = np.linalg.norm(v) / n / np.linalg.norm(x)
-    weight = metres * 1.5 * n * T * 2.0 * (1.0 + p.e) / (1.0 - p.e)        # what a relative error of v at each passage does
+    # the effect of a relative error of v at each passage
+    weight = metres * 1.5 * n * T * 2.0 * (1.0 + p.e) / (1.0 - p.e)
     round_off = weight * (1e-12 + T / dt * ROUND_OFF)
     return weight * ((rate * dt) ** k + n * T / (4.0 * np.pi) * (rate * dt) ** (1 if k == 1 else k + 1)) + round_off
 
 
 def late_start(p, T, dt, side):
-    """Relative error at T of leapfrog whose first velocity belongs to dt/2 before (side +1) or after (−1) the start.
+    """Return the relative error at T of leapfrog with a first velocity dt/2 before (side +1) or after (−1) the start.
 
-    Symplectic Euler and the engines are leapfrog that took v(0) for v(∓½dt): exactly the ellipse of a planet with the velocity
-    v(0) ± ½dt a(0).  At the nearest point a is across v, so that energy changes by dt² only: the ellipse turns, its period stays.
-    This error does not grow with time while leapfrog's own does, so that a sweep shows an order between 1 and 2.
+    Symplectic Euler and the engines are leapfrog with v(0) in place of v(∓½dt): exactly the ellipse of a planet
+    with the velocity v(0) ± ½dt a(0).  At the nearest point a is normal to v, so the energy changes only by dt²:
+    the ellipse turns, its period stays.  This error does not grow with time while leapfrog's own does, so a sweep
+    of dt shows an order between 1 and 2.
     """
     x, v = perihelion(p)
     shifted, _ = orbit(x, v + side * 0.5 * dt * attraction(x, p.mu), p.mu, T)
     error = np.linalg.norm(shifted - kepler_position(p, T)) / np.linalg.norm(kepler_position(p, T))
-    return error if np.isfinite(error) else 1.0                            # it escapes: nothing is promised
+    # it escapes: no limit
+    return error if np.isfinite(error) else 1.0
 
 
 def kepler_limits(p, T, dt):
-    """{order or engine label: largest relative error at T}."""
+    """Return {order or engine label: largest relative error at T}."""
     smooth = {k: drift(p, T, dt, k) for k in (1, 2, 4)}
     old, new = late_start(p, T, dt, -1.0) + smooth[2], late_start(p, T, dt, 1.0) + smooth[2]
     return {**smooth, LATE_LEAPFROG: new, "pymunk": old, "pymunk, leapfrog start": smooth[2],

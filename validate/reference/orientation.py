@@ -4,25 +4,25 @@ import numpy as np
 
 
 def cross_matrix(a):
-    """(3, 3): times b it is a × b."""
+    """Return (3, 3): times b it is a × b."""
     x, y, z = a
     return np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))
 
 
 def about(axis, angle):
-    """R (3, 3) about a unit vector."""
+    """Return R (3, 3) about a unit vector."""
     K = cross_matrix(axis)
     return np.eye(3) + np.sin(angle) * K + (1.0 - np.cos(angle)) * K @ K
 
 
 def quaternion_matrix(w, x, y, z):
-    """R (3, 3) of a unit quaternion, as a turn by 2 acos w about (x, y, z)."""
+    """Return R (3, 3) of a unit quaternion: a turn by 2 acos w about (x, y, z)."""
     s = np.sqrt(x * x + y * y + z * z)
     return about(np.array([x, y, z]) / s, 2.0 * np.arctan2(s, w)) if s > 0.0 else np.eye(3)
 
 
 def quaternion(R):
-    """The unit quaternion (w, x, y, z), w ≥ 0, of R: the longest row of 4 q qᵀ.
+    """Return the unit quaternion (w, x, y, z), w ≥ 0, of R, from the longest row of 4 q qᵀ.
 
     *Source:* Shepperd 1978.
     """
@@ -36,10 +36,10 @@ def quaternion(R):
 
 
 def relative_turn(R, S):
-    """Angle [rad] of the turn that takes one orientation to the other: |R − S| = 2√2 sin(½ angle) in Frobenius' norm."""
+    """Return the angle [rad] of the turn between two orientations: |R − S| = 2√2 sin(½ angle) in Frobenius' norm."""
     return 2.0 * np.arcsin(min(1.0, np.linalg.norm(R - S) / np.sqrt(8.0)))
 
 
 def leaning(first, second):
-    """R (3, 3): turned about y, then about x."""
+    """Return R (3, 3): a turn about y, then about x."""
     return about(np.array([1.0, 0.0, 0.0]), first) @ about(np.array([0.0, 1.0, 0.0]), second)

@@ -1,7 +1,8 @@
-"""Pendulums, ropes and cloths once more, by other means: what the scenes of lesson 8 hold our steps against, and the engines' ropes.
+"""Reference solutions for the pendulums, ropes and cloths of lesson 8, and for the engines' ropes.
 
-Nothing here knows the functions of `solutions`.  A pendulum is an elliptic function.  A rope is a set of angles, so that its links
-keep their length whatever is done; SciPy's DOP853 moves them.  A cloth is a set of springs: SciPy moves it, and finds where it rests.
+Nothing here uses the functions of `solutions`.  A pendulum is an elliptic function.  A rope is a set of angles, so its
+links keep their length exactly; SciPy's DOP853 integrates them.  A cloth is a set of springs; SciPy integrates it and
+finds its rest state.
 """
 
 from functools import cache
@@ -14,34 +15,36 @@ from scipy.sparse import block_diag, csr_matrix, identity, kron
 from scipy.sparse.linalg import spsolve
 from scipy.special import ellipj, ellipk
 
-RTOL = 1e-12                 # of DOP853; a tenth of it absolute
+RTOL = 1e-12                 # of DOP853; the absolute tolerance is a tenth of it
 
 
 # ---------------------------------------------------------------------------------------------- one link
 
 def pendulum_angle(theta, L, g, t):
-    """Angle [rad] from straight down of a pendulum let go at rest at θ₀, 0 < θ₀ < π:  sin ½θ = k cd(√(g/L) t),  k = sin ½θ₀.
+    """Return the angle [rad] from straight down of a pendulum released at rest at θ₀, 0 < θ₀ < π.
 
+    sin ½θ = k cd(√(g/L) t),  k = sin ½θ₀.
     *Source:* Landau and Lifshitz, Mechanics, § 11.
     """
     k = np.sin(0.5 * theta)
-    sn, cn, dn, _ = ellipj(np.sqrt(g / L) * t, k * k)
+    _, cn, dn, _ = ellipj(np.sqrt(g / L) * t, k * k)
     return 2.0 * np.arcsin(k * cn / dn)
 
 
 def pendulum_period(theta, L, g):
-    """4 √(L/g) K(sin² ½θ₀) [s]."""
+    """Return the period 4 √(L/g) K(sin² ½θ₀) [s]."""
     return 4.0 * np.sqrt(L / g) * ellipk(np.sin(0.5 * theta) ** 2)
 
 
 # ---------------------------------------------------------------------------------------------- many links
 
 def tensions(theta, omega, l, m, g, late=0.0):
-    """T (n,) [N] in the links of a rope of equal points, angles θ from straight down:  the relative acceleration along each link is −l ω².
+    """Return the tensions T (n,) [N] in the links of a rope of equal points with the angles θ from straight down.
 
-    e_k·(a_k − a_{k−1}) = −l ω_k²:   T_{k−1} e_k·u_{k−1} − 2 T_k + T_{k+1} e_k·u_{k+1} = −m l ω_k²;   the first has one point and gravity:
-    −T_1 + T_2 e_1·u_2 = −m (l ω_1² + g cos θ_1).     The tensions pull along u = e + late ω t, t across e; u = e for a real rope.
-    *Source:* Newton's law for every point, with the links as unknowns.
+    The relative acceleration along each link is −l ω²: e_k·(a_k − a_{k−1}) = −l ω_k²:   T_{k−1} e_k·u_{k−1} − 2
+    T_k + T_{k+1} e_k·u_{k+1} = −m l ω_k²;   the first has one point and gravity:  −T_1 + T_2 e_1·u_2 = −m (l
+    ω_1² + g cos θ_1).  The tensions pull along u = e + late ω t, t normal to e; u = e for a real rope. *Source:*
+    Newton's law for every point, with the tensions as unknowns.
     """
     n, apart = theta.size, np.diff(theta)
     bands = np.zeros((3, n))
@@ -55,7 +58,7 @@ def tensions(theta, omega, l, m, g, late=0.0):
 
 
 def rope_slope(l, m, g, late=0.0):
-    """(θ, ω)˙ of such a rope: θ̈ is the relative acceleration across each link, over l."""
+    """Return (θ, ω)˙ of such a rope: θ̈ is the relative acceleration normal to each link, over l."""
     def slope(t, y):
         theta, omega = np.split(y, 2)
         T = tensions(theta, omega, l, m, g, late)
@@ -69,10 +72,10 @@ def rope_slope(l, m, g, late=0.0):
 
 
 def rods_slope(n, l, m, g, inertia):
-    """The same where each point is a body that turns with the link above it, and has a moment of inertia [kg m²] about itself.
+    """Return the same where each point is a body with a moment of inertia [kg m²] that turns with the link above it.
 
-    Σ_j μ_max(k,j) l² (cos(θ_k − θ_j) θ̈_j + sin(θ_k − θ_j) ω_j²) + I θ̈_k + μ_k l g sin θ_k = 0,      μ_k: the mass from k on
-    *Source:* Lagrange's equations.
+    Σ_j μ_max(k,j) l² (cos(θ_k − θ_j) θ̈_j + sin(θ_k − θ_j) ω_j²) + I θ̈_k + μ_k l g sin θ_k = 0,   μ_k: the mass
+    from k on *Source:* Lagrange's equations.
     """
     below = m * (n - np.maximum.outer(np.arange(n), np.arange(n)))
 
@@ -86,7 +89,7 @@ def rods_slope(n, l, m, g, inertia):
 
 @cache
 def rope_motion(n, l, m, g, T, inertia=0.0, late=0.0, ahead=0.0, rtol=RTOL):
-    """solve_ivp's answer for (θ, ω) of a rope let go straight and horizontal along x, with the velocity of `ahead` seconds later."""
+    """Solve for (θ, ω) of a rope released horizontally along x, with the velocity of `ahead` seconds later."""
     slope = rods_slope(n, l, m, g, inertia) if inertia else rope_slope(l, m, g, late)
     start = np.concatenate((np.full(n, 0.5 * np.pi), np.zeros(n)))
     start[n:] = ahead * slope(0.0, start)[n:]
@@ -95,25 +98,28 @@ def rope_motion(n, l, m, g, T, inertia=0.0, late=0.0, ahead=0.0, rtol=RTOL):
 
 @cache
 def rope_lag(n, l, m, g, T, inertia=0.0, late=0.0, ahead=0.0):
-    """|∂x/∂dt| [m/s] of all points at T: how a first-order method errs, to first order in dt, when it differs from the truth by these.
+    """Return |∂x/∂dt| [m/s] of all points at T: the error of a first-order method to first order in dt.
 
-    The projection method takes the links' forces at the end of each step,  xₙ₊₁ − 2xₙ + xₙ₋₁ = dt² (g + W Jᵀ(xₙ₊₁) λₙ₊₁).  Seen from
-    the middle, tensions pull along e + dt ė (late = 1); and x₁ − x₀ = dt² a makes it begin with the velocity of ½dt (ahead = ½).
-    The engines take the links' directions in the middle of that difference (late = 0).  pybullet begins as we do, ahead = ½;
-    pymunk moves before it pulls, x₁ = x₀: ahead = −½.
+    The projection method takes the links' forces at the end of each step,  xₙ₊₁ − 2xₙ + xₙ₋₁ = dt²
+    (g + W Jᵀ(xₙ₊₁) λₙ₊₁). Relative to the middle, tensions pull along e + dt ė (late = 1).  Its start,
+    x₁ − x₀ = dt² a, is that of the velocity ½dt later (ahead = ½).  The engines take the links' directions in the
+    middle of that difference (late = 0).  pybullet begins as we do, ahead = ½; pymunk moves before it pulls,
+    x₁ = x₀: ahead = −½.
     """
-    h = 1e-4                 # [s]: a central difference, off by a relative (ρ h)², with DOP853's 1e-6 over h: 0.01 m/s
-    ends = [rope_places(rope_motion(n, l, m, g, T, inertia, late * dt, ahead * dt, 1e-7).y[:n, -1], l) for dt in (h, -h)]
+    # [s]: a central difference, off by a relative (ρ h)², with DOP853's 1e-6 over h: 0.01 m/s
+    h = 1e-4
+    motion = lambda dt: rope_motion(n, l, m, g, T, inertia, late * dt, ahead * dt, 1e-7)
+    ends = [rope_places(motion(dt).y[:n, -1], l) for dt in (h, -h)]
     return float(np.linalg.norm(ends[0] - ends[1]) / (2.0 * h))
 
 
 def rope_places(theta, l):
-    """(n, 2) [m] of the points of a rope that is held in the origin."""
+    """Return the points (n, 2) [m] of a rope that is held in the origin."""
     return l * np.cumsum(np.stack((np.sin(theta), -np.cos(theta)), axis=1), axis=0)
 
 
 def rope_energy(y, l, m, g):
-    """Energy [J] of (θ, ω)."""
+    """Return the energy [J] of (θ, ω)."""
     theta, omega = np.split(y, 2)
     v = l * np.cumsum(omega[:, None] * np.stack((np.cos(theta), np.sin(theta)), axis=1), axis=0)
     return 0.5 * m * np.sum(v * v) + m * g * np.sum(rope_places(theta, l)[:, 1])
@@ -121,51 +127,58 @@ def rope_energy(y, l, m, g):
 
 @cache
 def rope_rates(n, l, m, g, T):
-    """(∫ρ dt, ∫ρ³ dt, greatest tension [N]) of a rope's own motion, ρ(t) its fastest rate [1/s] at the time.
+    """Return (∫ρ dt, ∫ρ³ dt, greatest tension [N]) of a rope's own motion, ρ(t) its fastest rate [1/s] at the time.
 
-    A link turns with ω_k, and under the tension T its ends swing about it with 2√(T/ml) at most:  ρ = max |ω_k| + 2√(max T/ml).
+    A link turns with ω_k, and under the tension T its ends oscillate about it with at most 2√(T/ml):
+    ρ = max |ω_k| + 2√(max T/ml).
     """
     motion = rope_motion(n, l, m, g, T)
     ts = np.linspace(0.0, T, 401)
     states = motion.sol(ts).T
     pull = np.array([np.abs(tensions(*np.split(y, 2), l, m, g)).max() for y in states])
     rho = np.abs(states[:, n:]).max(axis=1) + 2.0 * np.sqrt(pull / (m * l))
-    return tuple(float(np.trapezoid(rho**k, ts)) for k in (1, 3)) + (float(pull.max()),)
+    return (*(float(np.trapezoid(rho**k, ts)) for k in (1, 3)), float(pull.max()))
 
 
 # ---------------------------------------------------------------------------------------------- a cloth
 
 class Weave(NamedTuple):
-    """Equal masses in a square, joined by springs along threads and both diagonals."""
+    """Equal masses in a square grid, joined by springs along threads and both diagonals."""
     x: np.ndarray            # (n, 3) [m] flat, at natural length
     pairs: np.ndarray        # (s, 2)
     rest: np.ndarray         # (s,) [m]
-    held: tuple              # numbers of the points that do not move
+    held: tuple              # numbers of the fixed points
     m: float                 # [kg]
     k: float                 # [N/m]
     g: float                 # [m/s²], against z
 
     def matrix(self):
-        """B (s, n), sparse: −1 at one end of each spring, +1 at the other; r = B x."""
+        """Return B (s, n), sparse: −1 at one end of each spring, +1 at the other; r = B x."""
         s = np.arange(len(self.pairs))
-        return csr_matrix((np.repeat([-1.0, 1.0], len(s)), (np.tile(s, 2), self.pairs.T.ravel())), (len(s), len(self.x)))
+        entries = (np.repeat([-1.0, 1.0], len(s)), (np.tile(s, 2), self.pairs.T.ravel()))
+        return csr_matrix(entries, (len(s), len(self.x)))
 
     def free(self):
         return ~np.isin(np.arange(len(self.x)), self.held)
 
 
 def weave(n, spacing, m, k, g):
-    """n × n points in the plane y = 0 … −(n − 1) spacing, held at the two corners of y = 0; z is up."""
+    """Return n × n points in the plane y = 0 … −(n − 1) spacing, held at the two corners of y = 0; z is up."""
     r, c = np.divmod(np.arange(n * n), n)
     number = np.arange(n * n).reshape(n, n)
-    pairs = np.concatenate([np.stack((a.ravel(), b.ravel()), axis=1) for a, b in (
-        (number[:, :-1], number[:, 1:]), (number[:-1], number[1:]), (number[:-1, :-1], number[1:, 1:]), (number[:-1, 1:], number[1:, :-1]))])
+    ends = (
+        (number[:, :-1], number[:, 1:]),
+        (number[:-1], number[1:]),
+        (number[:-1, :-1], number[1:, 1:]),
+        (number[:-1, 1:], number[1:, :-1]),
+    )
+    pairs = np.concatenate([np.stack((a.ravel(), b.ravel()), axis=1) for a, b in ends])
     x = spacing * np.stack((c, -r, 0 * c), axis=1).astype(float)
     return Weave(x, pairs, np.linalg.norm(x[pairs[:, 1]] - x[pairs[:, 0]], axis=1), (0, n - 1), m, k, g)
 
 
 def weave_motion(cloth, T, late=0.0, ahead=0.0, rtol=1e-8):
-    """solve_ivp's answer for a cloth let go flat: ẍ = −g − Bᵀ(k (l − rest) n)/m, forces taken at x + late v; begins with ahead ẍ."""
+    """Solve for a cloth released flat: ẍ = −g − Bᵀ(k (l − rest) n)/m, forces at x + late v, first velocity ahead ẍ."""
     B, free = cloth.matrix(), cloth.free()[:, None]
     Bt = B.T.tocsr()
 
@@ -185,8 +198,10 @@ def weave_motion(cloth, T, late=0.0, ahead=0.0, rtol=1e-8):
 
 
 def weave_rest(cloth, begin):
-    """x (n, 3) where a cloth rests: its energy is least there.  Newton's method on the energy, sparse, with as much of the identity added
-    as makes the step lead downhill; begin (n, 3) chooses among the folds that it may hang in.
+    """Return x (n, 3), the rest state of a cloth: the minimum of its energy, by sparse Newton's method.
+
+    As much of the identity is added to the Hessian as makes the step lead downhill.  `begin` (n, 3) chooses among
+    the folds in which the cloth can hang.
 
     U = Σ ½k (l − rest)² + Σ m g z;   ∂²U of a spring:  k n nᵀ + k (1 − rest/l)(1 − n nᵀ)
     """
@@ -203,7 +218,8 @@ def weave_rest(cloth, begin):
         r = B @ x
         length = np.linalg.norm(r, axis=1)
         n = r / length[:, None]
-        pull = wide.T @ (cloth.k * (length - cloth.rest)[:, None] * n).ravel() + np.tile([0.0, 0.0, cloth.m * cloth.g], len(free))
+        weights = np.tile([0.0, 0.0, cloth.m * cloth.g], len(free))
+        pull = wide.T @ (cloth.k * (length - cloth.rest)[:, None] * n).ravel() + weights
         if np.abs(pull).max() < 1e-13:
             break
         slack = cloth.k * (1.0 - cloth.rest / length)

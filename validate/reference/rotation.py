@@ -1,7 +1,8 @@
-"""Rigid bodies once more, by other means: the reference solutions of lesson 5.
+"""Reference solutions of lesson 5: rigid bodies.
 
-Nothing here knows the functions of `solutions`.  A free body is solved by Jacobi's elliptic functions, a heavy symmetric top by
-their close relative, and what is left is an integral, taken by Gauss; SciPy's DOP853 on R and L is the second witness.
+Nothing here uses the functions of `solutions`.  A free body is solved by Jacobi's elliptic functions, a heavy symmetric
+top by related functions.  The integral that remains uses Gauss's rule.  SciPy's DOP853 on R and L is the second
+reference.
 """
 
 from functools import cache
@@ -13,13 +14,13 @@ from scipy.special import ellipj, ellipkinc, ellipkm1
 from validate.reference.orientation import about, cross_matrix
 from validate.scene import EXACT, ROUND_OFF, by_order
 
-RTOL, ATOL = 1e-13, 1e-15    # of DOP853, near the least it accepts
+RTOL, ATOL = 1e-13, 1e-15    # of DOP853, near the smallest it accepts
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(20)
-PANEL = 1.0                  # radian of the fastest motion in each panel of Gauss's rule, whose error is then (½)⁴⁰/40!: none
+PANEL = 1.0  # radian of the fastest motion in each panel of Gauss's rule, whose error (½)⁴⁰/40! is then negligible
 
 
 def integral(f, t, rate):
-    """∫₀ᵗ f, f(ts) of an array, changing no faster than rate [1/s]."""
+    """Return ∫₀ᵗ f, where f(ts) of an array changes no faster than rate [1/s]."""
     panels = max(1, int(np.ceil(abs(t) * rate / PANEL)))
     half = 0.5 * t / panels
     middles = half * (2.0 * np.arange(panels)[:, None] + 1.0)
@@ -27,7 +28,7 @@ def integral(f, t, rate):
 
 
 def freely(R, omega_body, I, t, torque=lambda R: np.zeros(3)):
-    """(R, L) after t by DOP853 on R and L in the world, torque(R) in the world: the second witness."""
+    """Return (R, L) after t by DOP853 on R and L in the world, with torque(R) in the world: the second reference."""
     def slope(t, y):
         R, L = y[:9].reshape(3, 3), y[9:]
         omega = R @ ((R.T @ L) / I)
@@ -40,7 +41,9 @@ def freely(R, omega_body, I, t, torque=lambda R: np.zeros(3)):
 # ---------------------------------------------------------------------------------------------- a free body
 
 class FreeTop:
-    """A free body with I₁ < I₂ < I₃ that starts at R = 1 with ω in the body, and L² > 2E I₂: its axis 3 never turns back from L.
+    """A free body with I₁ < I₂ < I₃ that starts at R = 1 with ω in body coordinates, and L² > 2E I₂.
+
+    Its axis 3 never turns away from L.
 
     ω = (A₁ cn τ, A₂ sn τ, A₃ dn τ),  τ = nt + τ₀,      A₁² = (2EI₃ − L²)/I₁(I₃ − I₁),  A₂² = (2EI₃ − L²)/I₂(I₃ − I₂),
     A₃² = (L² − 2EI₁)/I₃(I₃ − I₁),   n² = (I₃ − I₂)(L² − 2EI₁)/I₁I₂I₃,   k² = (I₂ − I₁)(2EI₃ − L²)/(I₃ − I₂)(L² − 2EI₁)
@@ -52,7 +55,7 @@ class FreeTop:
 
     @staticmethod
     def knows(I, omega):
-        """Whether the formulas hold for this body: moments in order, L² > 2E I₂, and not quite about an axis."""
+        """Return whether the formulas hold for this body: moments in order, L² > 2E I₂, and not quite about an axis."""
         a, b, c = I * (I - I[1]) * omega**2                              # their sum: L² − 2E I₂
         return I[0] < I[1] < I[2] and a + b + c > 0.0 and (omega[0] != 0.0 or omega[1] != 0.0)
 
@@ -62,42 +65,45 @@ class FreeTop:
         wide = (I3 - I1) * squares[0] + (I3 - I2) * squares[1]           # 2EI₃ − L²
         tall = (I2 - I1) * squares[1] + (I3 - I1) * squares[2]           # L² − 2EI₁
         self.minor = (I3 - I1) * ((I3 - I2) * squares[2] - (I2 - I1) * squares[0]) / ((I3 - I2) * tall)     # 1 − k²
-        up = np.sign(omega[2]) or 1.0                                    # A₁A₂A₃ > 0 solves Euler's equations
-        self.A = np.array([np.sqrt(wide / (I1 * (I3 - I1))), up * np.sqrt(wide / (I2 * (I3 - I2))), up * np.sqrt(tall / (I3 * (I3 - I1)))])
+        up = np.sign(omega[2]) or 1.0  # A₁A₂A₃ > 0 solves Euler's equations
+        squared = np.array([wide / (I1 * (I3 - I1)), wide / (I2 * (I3 - I2)), tall / (I3 * (I3 - I1))])
+        self.A = np.array([1.0, up, up]) * np.sqrt(squared)
         self.n = np.sqrt((I3 - I2) * tall / (I1 * I2 * I3))
         self.tau = ellipkinc(np.arctan2(omega[1] / self.A[1], omega[0] / self.A[0]), 1.0 - self.minor)
         self.L = np.linalg.norm(self.I * omega)
         self.begin = self.frame(0.0)
 
     def omega(self, t):
-        """ω in the body at the times t: (3, …)."""
+        """Return ω in body coordinates at the times t: (3, …)."""
         sn, cn, dn, _ = ellipj(self.n * np.asarray(t) + self.tau, 1.0 - self.minor)
         return np.array([self.A[0] * cn, self.A[1] * sn, self.A[2] * dn])
 
     def flips(self):
-        """Times at which ω₂ changes sign, the first two after the start [s]."""
+        """Return the times at which ω₂ changes sign, the first two after the start [s]."""
         K = ellipkm1(self.minor)
         return (np.array([2.0, 4.0]) * K - self.tau) / self.n
 
     def precession(self, t):
         squares = np.moveaxis(self.omega(t) ** 2, 0, -1) * self.I
-        return self.L * (squares[..., 0] + squares[..., 1]) / (self.I[0] * squares[..., 0] + self.I[1] * squares[..., 1])
+        one, two = squares[..., 0], squares[..., 1]
+        return self.L * (one + two) / (self.I[0] * one + self.I[1] * two)
 
     def frame(self, t):
-        """(3, 3) from body coordinates to ones whose z is along L, but for a turn about L: its rows seen from the body."""
+        """Return (3, 3) from body coordinates to ones with z along L, but for a turn about L; rows are body vectors."""
         z = self.I * self.omega(t) / self.L
         x = np.array([z[1], -z[0], 0.0]) / np.hypot(z[0], z[1])
         return np.stack((x, np.cross(z, x), z))
 
     def R(self, t):
-        """Orientation (3, 3) at t, from R(0) = 1."""
+        """Return the orientation (3, 3) at t, from R(0) = 1."""
         rate = 4.0 * self.L / self.I.min()
         return self.begin.T @ about(np.array([0.0, 0.0, 1.0]), integral(self.precession, t, rate)) @ self.frame(t)
 
 
 def symmetric_top(I, omega, t):
-    """R(t) = e^(t L*/I₁) e^(t (1 − I₃/I₁) ω₃ 𝐞₃*)  of a free body with I₁ = I₂ that starts at R = 1: ω = L/I₁ + (1 − I₃/I₁) ω₃ 𝐞₃.
+    """Return R(t) of a free body with I₁ = I₂ that starts at R = 1.
 
+    R(t) = e^(t L*/I₁) e^(t (1 − I₃/I₁) ω₃ 𝐞₃*),  from  ω = L/I₁ + (1 − I₃/I₁) ω₃ 𝐞₃.
     *Source:* Landau and Lifshitz, Mechanics, § 33.
     """
     L = I * omega
@@ -108,7 +114,7 @@ def symmetric_top(I, omega, t):
 # ---------------------------------------------------------------------------------------------- a heavy top
 
 class HeavyTop:
-    """A symmetric top about its pivot, let go at the tilt θ₀ with nothing but its spin ω₃; u = cos θ.
+    """A symmetric top about its pivot, released at the tilt θ₀ with nothing but its spin ω₃; u = cos θ.
 
     With  β = 2Mgl/I₁,  α = (I₃ω₃/I₁)²:   u̇² = (u₀ − u)[β(1 − u²) − α(u₀ − u)] = β(u₀ − u)(u − u₁)(u₂ − u)
         u = u₀ − (u₀ − u₁) (1 − cd²),   cd = sn(κt + K),   κ = ½√(β(u₂ − u₁)),   k² = (u₀ − u₁)/(u₂ − u₁)
@@ -121,18 +127,19 @@ class HeavyTop:
         alpha = self.a * self.a
         root = np.sqrt(alpha * alpha - 4.0 * beta * (alpha * self.u0 - beta))
         self.u2 = (alpha + root) / (2.0 * beta)
-        self.fall = 2.0 * beta * np.sin(tilt) ** 2 / (alpha - 2.0 * beta * self.u0 + root)      # u₀ − u₁, without cancelling
+        # u₀ − u₁, without cancelling
+        self.fall = 2.0 * beta * np.sin(tilt) ** 2 / (alpha - 2.0 * beta * self.u0 + root)
         self.u1, self.kappa = self.u0 - self.fall, 0.5 * np.sqrt(beta * (self.u2 - self.u0 + self.fall))
         self.m = self.fall / (self.u2 - self.u1)
         self.high = 2.0 * np.sin(0.5 * tilt) ** 2                        # 1 − u₀
 
     def nutation(self):
-        """Period of θ [s]."""
+        """Return the period of θ [s]."""
         return 2.0 * ellipkm1(1.0 - self.m) / self.kappa
 
     def drop(self, t):
-        """u₀ − u."""
-        sn, cn, dn, _ = ellipj(self.kappa * np.asarray(t), self.m)
+        """Return u₀ − u."""
+        sn, _, dn, _ = ellipj(self.kappa * np.asarray(t), self.m)
         return self.fall * (1.0 - self.m) * (sn / dn) ** 2               # 1 − cd² = k′² sd²
 
     def sine_squared(self, t):
@@ -142,24 +149,26 @@ class HeavyTop:
         return self.a * self.drop(t) / self.sine_squared(t)
 
     def tips(self, ts):
-        """Horizontal coordinates (n, 2) of the unit vector along the top at these times, one after the other; at 0 it is at (0, −sin θ₀)."""
-        phi = np.cumsum([integral(lambda s: self.precession(begin + s), end - begin, 4.0 * self.a) for begin, end in zip([0.0, *ts], ts)])
+        """Return the horizontal coordinates (n, 2) of the unit vector along the top; at 0 it is at (0, −sin θ₀)."""
+        turned = lambda begin, end: integral(lambda s: self.precession(begin + s), end - begin, 4.0 * self.a)
+        phi = np.cumsum([turned(begin, end) for begin, end in zip([0.0, *ts], ts)])
         return np.sqrt(self.sine_squared(ts))[:, None] * np.stack((np.sin(phi), -np.cos(phi)), axis=1)
 
     def tip(self, t):
         return self.tips([t])[0]
 
 
-# ---------------------------------------------------------------------------------------------- what a step may get wrong
+# ---------------------------------------------------------------------- what a step may get wrong
 
 FIRST_ORDER = ("L kept", "L kept, by columns", "gyroscopic", "gyroscopic, implicit")
 
 
 @cache
 def growth_of_errors(I, omega, T):
-    """(fastest |ω|, ∫ ‖Φ(T, s)‖ |ω̇(s)| ds, {kind of first-order step: its relative error of R at T over dt}) of a free body.
+    """Return the error constants of first-order steps on a free body.
 
-    A step leaves R off by an angle θ, in the body, and ω by δω.  Such errors obey  ė = Je,  whose solution operator is Φ:
+    They are (fastest |ω|, ∫ ‖Φ(T, s)‖ |ω̇(s)| ds, {kind of first-order step: its relative error of R at T over dt}).
+    A step leaves R off by an angle θ, in body coordinates, and ω by δω.  Such errors obey  ė = Je, with propagator Φ:
         θ̇ = δω − ω × θ,     I δω̇ = (Iω)* δω − ω* I δω
     A first-order step adds dt² d to them each time, so that the error at T is dt e(T),  ė = Je + d:
         L kept (axis–angle, quaternion)                θ: −½ω̇         δω: I⁻¹(Iω × θ), because L is kept
@@ -173,7 +182,8 @@ def growth_of_errors(I, omega, T):
     def parts(w):
         W, turned = cross_matrix(w), cross_matrix(I * w) / I[:, None]       # turned @ θ: I⁻¹(Iω × θ)
         w_dot, J_w = turned @ w, turned - W * I / I[:, None]
-        theta = np.stack((-0.5 * w_dot, 0.5 * np.array([-w[1] * w[2], w[0] * w[2], -w[0] * w[1]]) - 0.5 * w_dot), axis=1)
+        kappa = 0.5 * np.array([-w[1] * w[2], w[0] * w[2], -w[0] * w[1]])
+        theta = np.stack((-0.5 * w_dot, kappa - 0.5 * w_dot), axis=1)
         J, d = np.zeros((6, 6)), np.zeros((6, 10))
         J[:3, :3], J[:3, 3:], J[3:, 3:] = -W, np.eye(3), J_w
         d[:3, 6:8], d[3:, 6:8] = theta, turned @ theta
@@ -192,16 +202,18 @@ def growth_of_errors(I, omega, T):
     scale = np.array([1.0, 1.0, 1.0, rate, rate, rate])                  # δω/rate is a number like θ
     grown = [np.linalg.norm((Ms[-1, :, :6] @ np.linalg.inv(M[:, :6]) * scale)[:3], 2) for M in Ms]
     change = [np.linalg.norm(parts(w)[0]) for w in ws]
-    first = np.linalg.norm(Ms[-1, :3, 6:], axis=0) * np.sqrt(2.0 / 3.0)   # |R − R*| = √2 |θ| in Frobenius' norm, and |R*| = √3
-    return float(rate), float(np.trapezoid(np.multiply(grown, change), times)), dict(zip(FIRST_ORDER, map(float, first)))
+    # |R − R*| = √2 |θ| in Frobenius' norm, and |R*| = √3
+    first = np.linalg.norm(Ms[-1, :3, 6:], axis=0) * np.sqrt(2.0 / 3.0)
+    total = np.trapezoid(np.multiply(grown, change), times)
+    return float(rate), float(total), dict(zip(FIRST_ORDER, map(float, first)))
 
 
 def free_limits(p, T, dt, kinds=FIRST_ORDER):
-    """{order k: largest relative error of R at T} of a step on the free body of p; pybullet's two kinds of body by name.
+    """Return {order k: largest relative error of R at T} on the free body of p; pybullet's two kinds of body by name.
 
-    First order: the worst of these kinds, χ = C dt, as χ e^χ where the expansion is no longer exact, and what second order allows.
-    Higher orders: a step errs by (rate dt)ᵏ |ω̇| dt where ω changes, which grows by Φ, and by (rate dt)ᵏ⁺¹ in its angle, which adds
-    up.  Round-off, an error of 1e-16 a step, grows like the former.
+    First order: the worst of these kinds, χ = C dt, as χ e^χ where the expansion is no longer exact, plus the limit
+    of second order.  Higher orders: a step errs by (rate dt)ᵏ |ω̇| dt where ω changes, which grows by Φ, and by
+    (rate dt)ᵏ⁺¹ in its angle, which accumulates.  Round-off, an error of 1e-16 per step, grows like the former.
     """
     rate, grown, first = growth_of_errors(tuple(p.moments()), tuple(p.omega()), T)
     noise, plain = (1.0 + grown / (rate * T)) * T / dt * ROUND_OFF, by_order(rate, T, dt)
@@ -210,5 +222,10 @@ def free_limits(p, T, dt, kinds=FIRST_ORDER):
         chi = min(C * dt, 500.0)                                         # e⁵⁰⁰ is large enough, and finite
         return chi * np.exp(chi) + higher[2]
     higher = {k: plain[k] + grown * (rate * dt) ** k + noise for k in (2, 4)}
-    return {**higher, 1: of_kind(max(first[kind] for kind in kinds)), EXACT: plain[EXACT],
-            "pybullet, reduced coordinates": of_kind(first["gyroscopic"]), "pybullet": of_kind(first["gyroscopic, implicit"])}
+    return {
+        **higher,
+        1: of_kind(max(first[kind] for kind in kinds)),
+        EXACT: plain[EXACT],
+        "pybullet, reduced coordinates": of_kind(first["gyroscopic"]),
+        "pybullet": of_kind(first["gyroscopic, implicit"]),
+    }

@@ -1,8 +1,9 @@
-"""Masses on springs once more, by other means: what the scenes of lesson 2 hold our steps against.
+"""Reference solutions of lesson 2: masses on springs.
 
-Nothing here knows the forces of `solutions`.  A net's springs are one matrix: B (s, n), with −1 at one end of each spring
-and +1 at the other, turns points into springs, r = B x, and its transpose turns tensions back into forces.  SciPy moves it
-(DOP853), Newton's method finds where it rests, and a complex step gives its stiffness, from which follow its modes.
+Nothing here uses the forces of `solutions`.  A net's springs are one matrix: B (s, n), with −1 at one end of each
+spring and +1 at the other, maps points to springs, r = B x, and its transpose maps tensions back to forces.  SciPy
+integrates the net (DOP853), Newton's method finds its rest state, and a complex step gives its stiffness and hence
+its modes.
 """
 
 from functools import cache
@@ -14,15 +15,15 @@ from scipy.optimize import minimize, root
 
 from validate.scene import EXACT, ROUND_OFF
 
-RTOL, ATOL = 1e-13, 1e-15    # of DOP853, near the least it accepts: a step errs by less than it rounds
+RTOL, ATOL = 1e-13, 1e-15    # of DOP853, near the smallest it accepts: a step errs by less than it rounds
 TINY = 1e-30                 # a complex step [m]: its square vanishes beside 1, so the derivative is exact to round-off
 
 
 class Net(NamedTuple):
     """Equal masses, equal springs.  Springs rest at the lengths in `rest`."""
-    x: np.ndarray            # (n, d) first positions [m]
-    v: np.ndarray            # (n, d) first velocities [m/s]
-    fixed: tuple             # numbers of the points that do not move
+    x: np.ndarray            # (n, d) initial positions [m]
+    v: np.ndarray            # (n, d) initial velocities [m/s]
+    fixed: tuple             # numbers of the fixed points
     pairs: np.ndarray        # (s, 2) ends of each spring
     rest: np.ndarray         # (s,) [m]
     m: float                 # [kg]
@@ -33,7 +34,7 @@ class Net(NamedTuple):
     wind: np.ndarray         # (d,) [N] on each point
 
     def spring_matrix(self):
-        """B (s, n)."""
+        """Return B (s, n)."""
         one = np.eye(len(self.x))
         return one[self.pairs[:, 1]] - one[self.pairs[:, 0]]
 
@@ -42,8 +43,8 @@ class Net(NamedTuple):
         return ~np.isin(np.arange(len(self.x)), self.fixed)
 
     def padded(self):
-        """The same net with a third coordinate, in which nothing happens."""
-        pad = lambda a: np.concatenate((a, np.zeros(a.shape[:-1] + (3 - a.shape[-1],))), axis=-1)
+        """Return the same net with an unused third coordinate."""
+        pad = lambda a: np.concatenate((a, np.zeros((*a.shape[:-1], 3 - a.shape[-1]))), axis=-1)
         return self._replace(x=pad(self.x), v=pad(self.v), gravity=pad(self.gravity), wind=pad(self.wind))
 
 
@@ -51,28 +52,40 @@ class SquareNet(NamedTuple):
     """A square net that hangs from its upper edge."""
     n: Annotated[int, "nodes along each side [-]"] = 5
     spacing: Annotated[float, "of the nodes [m]"] = 0.1
-    shear: Annotated[int, "1: springs along both diagonals of each mesh, too"] = 0
-    bend: Annotated[int, "1: springs over the next node, too"] = 0
+    shear: Annotated[int, "1: also springs along both diagonals of each mesh"] = 0
+    bend: Annotated[int, "1: also springs over the next node"] = 0
     m: Annotated[float, "each node [kg]"] = 0.05
     k: Annotated[float, "each spring [N/m]: the uppermost stretch by a tenth"] = 200.0
     k_d: Annotated[float, "its damper [N s/m]"] = 0.1
     k_v: Annotated[float, "viscosity on each node [N s/m]"] = 0.0
-    wind: Annotated[float, "sideways, on each node [N]: a tenth of its weight"] = 0.05
+    wind: Annotated[float, "horizontal, on each node [N]: a tenth of its weight"] = 0.05
     g: Annotated[float, "gravity [m/s²]"] = 9.81
 
 
 def square_net(p):
-    """Node (r, c) is number r n + c; nodes are joined whose squared distance on the lattice is 1, 2 (shear) or 4 (bend)."""
+    """Return the Net: node (r, c) is number r n + c; springs have the squared length 1, 2 (shear) or 4 (bend)."""
     r, c = np.divmod(np.arange(p.n * p.n), p.n)
     squared = (r[:, None] - r) ** 2 + (c[:, None] - c) ** 2
     pairs = np.argwhere(np.triu((squared == 1) | (squared == 2) & bool(p.shear) | (squared == 4) & bool(p.bend)))
     rest = p.spacing * np.sqrt(squared[pairs[:, 0], pairs[:, 1]])
     x = p.spacing * np.stack((c, -r), axis=1)
-    return Net(x, 0.0 * x, tuple(range(p.n)), pairs, rest, p.m, p.k, p.k_d, p.k_v, np.array([0.0, -p.g]), np.array([p.wind, 0.0]))
+    return Net(
+        x,
+        0.0 * x,
+        tuple(range(p.n)),
+        pairs,
+        rest,
+        p.m,
+        p.k,
+        p.k_d,
+        p.k_v,
+        np.array([0.0, -p.g]),
+        np.array([p.wind, 0.0]),
+    )
 
 
 def state_of(net, make_mesh):
-    """(x, v, mesh) for the steps of lesson 2, with its plain make_mesh: numba takes no lists."""
+    """Return (x, v, mesh) for the steps of lesson 2, with its plain make_mesh, because numba takes no lists."""
     mesh = make_mesh(net.x, net.m, net.fixed, net.pairs, net.k, net.k_d, net.gravity, net.wind, net.k_v)
     return net.x.copy(), net.v.copy(), mesh._replace(rest=net.rest)
 
@@ -80,7 +93,10 @@ def state_of(net, make_mesh):
 # ---------------------------------------------------------------------------------------------- truth
 
 def forces(x, v, net, B):
-    """Forces [N] (n, d) on all points:  m g + wind − k_v v − Bᵀ T n,   n = Bx/|Bx|,   T = k (|Bx| − rest) + k_d n · Bv."""
+    """Return the forces [N] (n, d) on all points.
+
+    m g + wind − k_v v − Bᵀ T n,   n = Bx/|Bx|,   T = k (|Bx| − rest) + k_d n · Bv
+    """
     r = B @ x
     length = np.sqrt(np.sum(r * r, axis=1, keepdims=True))
     n = r / length
@@ -89,7 +105,7 @@ def forces(x, v, net, B):
 
 
 def motion(net, T, rtol=RTOL):
-    """x(t) (n, d), a function of t in [0, T], by DOP853.  At T it is the end of the integration; between, an interpolation."""
+    """Return x(t) (n, d) by DOP853, a function of t in [0, T], interpolated between its steps but not at T."""
     B, free, shape = net.spring_matrix(), net.free()[:, None], net.x.shape
 
     def slope(t, y):
@@ -102,10 +118,10 @@ def motion(net, T, rtol=RTOL):
 
 
 def rest_positions(net):
-    """(n, d): where the net rests: energy is least there (SciPy's BFGS), and Newton's method finds the point to round-off.
+    """Return (n, d), the rest state of the net: the minimum of its energy by BFGS, then by Newton's method.
 
-    U = Σ ½k (|Bx| − rest)² − Σ (m g + wind) · x.  Newton alone, from far away, may end where forces vanish but energy does not
-    have its minimum.
+    U = Σ ½k (|Bx| − rest)² − Σ (m g + wind) · x.  Newton's method alone, from far away, may end where the forces
+    vanish but the energy has no minimum.
     """
     B, free = net.spring_matrix(), net.free()
 
@@ -124,14 +140,17 @@ def rest_positions(net):
 
 
 def _jacobian(function, y):
-    """∂function/∂y by complex steps: no difference is taken, nothing cancels."""
+    """Return ∂function/∂y by complex steps, which take no difference and cancel no digits."""
     return np.stack([function(y + 1j * TINY * e).imag / TINY for e in np.eye(y.size)], axis=1)
 
 
-# ---------------------------------------------------------------------------------------------- what a step may get wrong
+# ---------------------------------------------------------------------- what a step may get wrong
 
 def modes(net):
-    """(omega, c, amplitude) of each mode about rest: frequency [rad/s], damping [1/s], first amplitude √(q² + q̇²/ω²) [m]."""
+    """Return (omega, c, amplitude) of each mode about rest: frequency [rad/s], damping [1/s], initial amplitude [m].
+
+    The amplitude is √(q² + q̇²/ω²).
+    """
     B, free, x = net.spring_matrix(), net.free(), rest_positions(net)
     d = x.shape[1]
 
@@ -151,11 +170,12 @@ def modes(net):
 
 
 def by_mode(omega, c, amplitude, size, T, dt, uncertainty):
-    """{order k: largest relative error at T}: each mode errs on its own, at its own rate ω + c and by its own amplitude.
+    """Return {order k: largest relative error at T}: each mode errs on its own, at its rate ω + c and by its amplitude.
 
-    A step that errs by (rate dt)ᵏ⁺¹ multiplies a mode by e^z + δ with |δ| ≤ (rate dt)ᵏ⁺¹, |e^z| ≤ 1; after T/dt steps that is
-    off by at most χ e^χ,  χ = rate T (rate dt)ᵏ:  fast modes may be tiny and still spoil a coarse run by growing.
-    size [m] is that of the truth at T.  Round-off and Newton's method as in scene.by_order.
+    A step that errs by (rate dt)ᵏ⁺¹ multiplies a mode by e^z + δ with |δ| ≤ (rate dt)ᵏ⁺¹, |e^z| ≤ 1.  After T/dt
+    steps that is off by at most χ e^χ,  χ = rate T (rate dt)ᵏ:  fast modes may be tiny and still spoil a coarse run
+    by growing. size [m] is that of the reference solution at T.  Round-off and Newton's method are as in
+    scene.by_order.
     """
     floor = 1e-12 + T / dt * ROUND_OFF + uncertainty
     rate = omega + c
@@ -171,11 +191,11 @@ def _noted(make, p):
 
 
 def net_limits(make, p, size, T, dt, uncertainty):
-    """by_mode for the net that make(p) builds, with √2 times its frequencies at rest, but none above the fastest there can be.
+    """Return by_mode for the net of make(p), with √2 times its frequencies at rest, but none above the largest.
 
-    Let go without tension, threads swing between none and twice what they carry at rest; what holds a slow mode is tension,
-    so its ω² swings between nothing and twice its value.  A spring's stiffness is k along it and k (1 − rest/l) < k across,
-    so no mode of any shape of the net exceeds √(k/m) |B|.
+    Released without tension, threads oscillate between zero and twice their rest tension.  A slow mode is held by
+    tension, so its ω² oscillates between zero and twice its value.  A spring's stiffness is k along it and k
+    (1 − rest/l) < k across, so no mode of any shape of the net exceeds √(k/m) |B|.
     """
     omega, c, amplitude, fastest = _noted(make, p)
     return by_mode(np.minimum(np.sqrt(2.0) * omega, fastest), c, amplitude, size, T, dt, uncertainty)

@@ -15,17 +15,17 @@ LINE, DOTS = "line", "dots"
 
 
 class Finding(NamedTuple):
-    """One bound, and what became of it: it holds where |measured − predicted| ≤ tolerance."""
-    claim: str               # what theory says, in one sentence
-    quantity: str            # what was measured [unit]
-    predicted: float         # theory's number
-    measured: float          # the experiment's
-    tolerance: float         # derived beforehand, in the unit of the quantity
-    observation: str         # what was found, in one sentence
+    """One bound and its check: it holds where |measured − predicted| ≤ tolerance."""
+    claim: str               # the statement of theory, in one sentence
+    quantity: str            # the measured quantity [unit]
+    predicted: float         # the value from theory
+    measured: float          # the value from the experiment
+    tolerance: float         # derived before the experiment, in the unit of the quantity
+    observation: str         # the result of the experiment, in one sentence
 
     @property
     def holds(self):
-        """Whether experiment and theory agree; a measurement that failed is not a number, and does not hold."""
+        """Whether experiment and theory agree; False for a failed measurement, which is NaN."""
         return bool(abs(self.measured - self.predicted) <= self.tolerance)
 
 
@@ -39,16 +39,16 @@ class Picture(NamedTuple):
 
 
 class Case(NamedTuple):
-    """One case before it is run."""
-    slug: str                # its name in addresses
+    """A case before its run."""
+    slug: str                # its part of the address
     title: str
     lesson: str
     examine: Callable        # (lesson) → (findings, Picture)
-    compiled: bool           # False where a run is short, or brings an acceleration of its own
+    compiled: bool           # False for short runs and for runs with an acceleration of their own
 
 
 class Examined(NamedTuple):
-    """One case after it was run."""
+    """A case after its run."""
     slug: str
     title: str
     lesson: str
@@ -56,7 +56,7 @@ class Examined(NamedTuple):
     picture: Picture | None
 
 
-CASES = {}                   # {lesson: {slug: Case}} of the files that were imported so far
+CASES = {}                   # {lesson: {slug: Case}} of the files imported so far
 
 
 def case(slug, title, compiled=True):
@@ -69,19 +69,19 @@ def case(slug, title, compiled=True):
 
 
 def finding(*, claim, quantity, predicted, measured, tolerance, observation):
-    """A Finding in plain floats."""
+    """Make a Finding of plain floats."""
     return Finding(claim, quantity, float(predicted), float(measured), float(tolerance), observation)
 
 
 def series(label, xs, ys, style):
-    """One curve of a Picture in plain floats."""
+    """Make one curve of a Picture of plain floats."""
     return (label, [float(x) for x in xs], [float(y) for y in ys], style)
 
 
 # ---------------------------------------------------------------------------------------------- experiments
 
 def bisect(too_long, low, high):
-    """Where too_long turns from False to True; 0 if it is True at low already, infinite if it is still False at high."""
+    """Return where too_long turns from False to True: 0 if it is True at low, infinite if it is still False at high."""
     if too_long(low):
         return 0.0
     if not too_long(high):
@@ -93,7 +93,7 @@ def bisect(too_long, low, high):
 
 
 def refuses(function, arguments=(), value=""):
-    """Whether a call ends in BadInput, with that value in its sentence."""
+    """Return whether a call raises BadInput with that value in its message."""
     try:
         function(*arguments)
     except BadInput as e:
@@ -102,7 +102,7 @@ def refuses(function, arguments=(), value=""):
 
 
 def refuse(methods, run):
-    """Number of these methods that end in Diverged, as they must, rather than in a number: run(name) → anything."""
+    """Count the methods that raise Diverged instead of returning a number: run(name) → anything."""
     refused = 0
     for method in methods:
         try:

@@ -1,6 +1,7 @@
-"""What does detection miss, and where does it lose its digits?  Lesson 6 at high speed, far away, at a grazing angle, deep inside, and flat.
+"""Limits of collision detection: lesson 6 at high speed, far away, at a grazing angle, deep inside, and flat.
 
-Cases 16 and 61 to 67.  The experiments throw thousands of balls, or put bodies where floats are coarse; none asks a formula for its own answer.
+Cases 16 and 61 to 67.  The experiments throw thousands of balls, or place bodies where floats are coarse.  None of them
+compares a formula with itself.
 """
 
 import numpy as np
@@ -15,20 +16,20 @@ from validate.stability.case import DOTS, LINE, Picture, case, finding, refuses,
 from .. import engines
 
 THROWN = 10_000              # balls, each at its own phase of a step
-FEW = 60                     # … in an engine
+FEW = 60                     # balls in an engine
 SPACING = 2.0**-52           # of floats around 1 [-]
-RADIUS, WALL, STEP = 0.05, 0.01, 1.0 / 240.0                        # of the ball, of the wall [m], of time [s]
-ROUND_OFF = 1e-12            # of numbers below 10, a few hundred roundings
+RADIUS, WALL, STEP = 0.05, 0.01, 1.0 / 240.0                        # of the ball [m], of the wall [m], of time [s]
+ROUND_OFF = 1e-12            # of numbers below 10 after a few hundred roundings
 
 
 # ---------------------------------------------------------------------------------------------- tunnelling
 
 def passed_discretely(lesson, speed, phases):
-    """Share of the balls that get past the wall |z| < WALL/2: not found after any step, or found and put out on its far side."""
+    """Return the share of balls that pass the wall |z| < WALL/2: missed at every step, or ejected on the far side."""
     wall, passed = lesson.Box(np.zeros(3), np.eye(3), np.array([10.0, 10.0, 0.5 * WALL])), 0
     reach, move = RADIUS + 0.5 * WALL, speed * STEP
     for phase in phases:
-        z = reach + phase * move                                    # where it is when it first comes within a step
+        z = reach + phase * move  # at the end of the first step that comes within a step of the wall
         caught = False
         while z > -reach:
             z -= move
@@ -41,7 +42,7 @@ def passed_discretely(lesson, speed, phases):
 
 
 def passed_continuously(lesson, speed, phases):
-    """The same with the time of impact on its near side."""
+    """Return the same share with the time of impact on the wall's near side."""
     front, passed = lesson.Plane(np.array([0.0, 0.0, 1.0]), -0.5 * WALL), 0
     reach, move = RADIUS + 0.5 * WALL, np.array([0.0, 0.0, speed * STEP])
     for phase in phases:
@@ -53,15 +54,17 @@ def passed_continuously(lesson, speed, phases):
 
 
 def passed_bullet(speed, phases):
-    """The same in pybullet, without its continuous detection."""
+    """Return the same share in pybullet without continuous detection."""
     bullet = Bullet(STEP)
     pb = bullet.pb
     pb.setPhysicsEngineParameter(contactERP=0, contactSlop=0, restitutionVelocityThreshold=0)
-    wall = pb.createMultiBody(0.0, pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[20.0, 10.0, 0.5 * WALL]), useMaximalCoordinates=1)
+    box = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[20.0, 10.0, 0.5 * WALL])
+    wall = pb.createMultiBody(0.0, box, useMaximalCoordinates=1)
     pb.changeDynamics(wall, -1, restitution=1, contactProcessingThreshold=0)
     ball, balls = pb.createCollisionShape(pb.GEOM_SPHERE, radius=RADIUS), []
     for k, phase in enumerate(phases):
-        body = pb.createMultiBody(1.0, ball, basePosition=[0.5 * k - 15.0, 0.0, RADIUS + 0.5 * WALL + phase * speed * STEP], useMaximalCoordinates=1)
+        place = [0.5 * k - 15.0, 0.0, RADIUS + 0.5 * WALL + phase * speed * STEP]
+        body = pb.createMultiBody(1.0, ball, basePosition=place, useMaximalCoordinates=1)
         pb.changeDynamics(body, -1, linearDamping=0, angularDamping=0, restitution=1, contactProcessingThreshold=0)
         pb.resetBaseVelocity(body, [0.0, 0.0, -speed])
         balls.append(body)
@@ -73,34 +76,34 @@ def passed_bullet(speed, phases):
 
 
 def law(speed):
-    """Share that gets past: within R + w/2 on the near side of the middle it is caught, and that is all; never below 0."""
+    """Return the share that gets past: a ball is stopped only within R + w/2 of the middle, on the near side."""
     return np.maximum(0.0, 1.0 - (RADIUS + 0.5 * WALL) / (speed * STEP))
 
 
 @case("tunnelling", "Tunnelling through a thin wall", compiled=False)
 def tunnelling(lesson):
-    """A ball of radius R moves by v h a step towards a wall of thickness w.  Where a step ends is spread evenly over v h.
+    """A ball of radius R moves by v h per step towards a wall of thickness w; the step's end is uniform over v h.
 
-    It is found in time where the step ends in front of the middle of the wall, within R + w/2 of it; behind the middle the nearest way
-    out is the far side, and beyond it is not found at all:  missed = 1 − (R + w/2)/(v h).  Phases on an even grid of N give that
-    fraction to 1/N.  The continuous test misses none.
+    The ball is stopped if the step ends in front of the middle of the wall, within R + w/2 of it.  Behind the
+    middle the nearest way out is the far side, and beyond the wall no overlap is found:  missed = 1 − (R + w/2)/(v
+    h).  Phases on an even grid of N give that share to 1/N.  The continuous test misses none.
     """
     found, even = [], (np.arange(THROWN) + 0.5) / THROWN
     for speed in (15.0, 50.0, 1000.0):
         missed = passed_discretely(lesson, speed, even)
         found.append(finding(
-            claim=("The discrete test keeps only those whose step ends in front of the wall's middle, within R + "
-                   "w/2: behind it the near way out is the far side. It misses 1 − (R + w/2)/(v h)."),
+            claim=("The discrete test stops a ball only if a step ends within R + w/2 in front of the wall's middle; "
+                   "behind the middle the nearest way out is the far side. It misses the share 1 − (R + w/2)/(v h)."),
             quantity=f"share of 10⁴ balls of {speed:g} m/s that get past a wall of 1 cm, discrete [-]",
             predicted=law(speed),
             measured=missed,
             tolerance=1.0 / THROWN,
-            observation=f"At {speed:g} m/s {100.0 * missed:.2f} % get past; theory says {100.0 * law(speed):.2f} %.",
+            observation=f"At {speed:g} m/s {100.0 * missed:.2f} % get past; theory gives {100.0 * law(speed):.2f} %.",
         ))
     for speed in (50.0, 1e4):
         missed = passed_continuously(lesson, speed, even)
         found.append(finding(
-            claim="The continuous test misses nobody, at any speed.",
+            claim="The continuous test misses no ball at any speed.",
             quantity=f"share of 10⁴ balls of {speed:g} m/s that get past, continuous [-]",
             predicted=0.0,
             measured=missed,
@@ -114,7 +117,7 @@ def tunnelling(lesson):
     if engines.installed("pybullet"):
         missed = passed_bullet(50.0, few)
         found.append(finding(
-            claim="pybullet without continuous detection misses as many.",
+            claim="pybullet without continuous detection misses the same share.",
             quantity="pybullet: share of 60 balls of 50 m/s that get past [-]",
             predicted=law(50.0),
             measured=missed,
@@ -123,48 +126,70 @@ def tunnelling(lesson):
         ))
         drawn.append(series("pybullet, measured", speeds, [passed_bullet(v, few) for v in speeds], DOTS))
     fine = np.linspace(10.0, 105.0, 100)
-    return found, Picture("Through a wall of 1 cm", "speed [m/s]", "share that gets past [-]", [series("1 − (R + w/2)/(v h), theory", fine, law(fine), LINE), *drawn],
-                          "From 13.2 m/s on a ball of 10 cm (R = 5 cm) may be through the middle of the wall before a step of 1/240 s ends, and is let out behind; from 26.4 m/s on it may not be seen at all. The continuous test lets none pass.")
+    return found, Picture(
+        "Through a wall of 1 cm",
+        "speed [m/s]",
+        "share that gets past [-]",
+        [series("1 − (R + w/2)/(v h), theory", fine, law(fine), LINE), *drawn],
+        ("A ball of 10 cm (R = 5 cm) can pass the middle of the wall within one step of 1/240 s from 13.2 m/s on, "
+         "and is then ejected on the far side. From 26.4 m/s on the discrete test can miss it altogether. The "
+         "continuous test lets none pass."),
+    )
 
 
 # ---------------------------------------------------------------------------------------------- where digits get lost
 
 @case("far-from-origin", "Collisions far from the origin", compiled=False)
 def far_from_origin(lesson):
-    """Two bodies at the distance D from the origin: their corners are rounded to the spacing of floats there, ½ D 2⁻⁵² at most.
+    """Two bodies at a distance D from the origin: their corners are rounded to the floats there, by at most ½ D 2⁻⁵².
 
-    GJK works with differences of corners, which are exact, so that nothing else grows: the error of the distance is ∝ D.  Powers of 2 for
-    D let the spacing grow with it; the mean square over 64 places is known to 9 %, and the slope over 20 doublings to 0.02.
+    GJK works with differences of corners, which are exact, so no other error grows: the error of the distance
+    is ∝ D.  D is a power of 2, so the spacing grows with it.  The mean square over 64 places is known to 9 %, and
+    the slope over 20 doublings to 0.02.
     """
     rng = np.random.default_rng(61)
-    bodies = [(rng.uniform(-0.5, 0.5, (8, 3)), rng.uniform(-0.5, 0.5, (8, 3)) + np.array([2.0, 1.0, 0.5])) for _ in range(64)]
+    bodies = [
+        (rng.uniform(-0.5, 0.5, (8, 3)), rng.uniform(-0.5, 0.5, (8, 3)) + np.array([2.0, 1.0, 0.5])) for _ in range(64)
+    ]
     exact = [np.linalg.norm(np.subtract(*hull_nearest(a, b))) for a, b in bodies]
     away, place = 2.0 ** np.arange(11, 32, 4), np.array([0.7, -0.9, 0.6])
-    errors = np.array([np.sqrt(np.mean([(lesson.gjk(a + D * place, b + D * place).gap - true) ** 2 for (a, b), true in zip(bodies, exact)])) for D in away])
+    gap = lambda a, b, shift: lesson.gjk(a + shift, b + shift).gap
+    squares = lambda D: [(gap(a, b, D * place) - true) ** 2 for (a, b), true in zip(bodies, exact)]
+    errors = np.array([np.sqrt(np.mean(squares(D))) for D in away])
     slope, worst = observed_order(away, errors), errors[-1] / (away[-1] * SPACING)
-    found = [finding(
-        claim="Far from the origin only the rounding of the corners remains: the error grows like D.",
-        quantity="slope of log error over log D, 2 km to 2 million km [-]",
-        predicted=1.0,
-        measured=slope,
-        tolerance=0.05,
-        observation=f"The error of GJK's distance grows with the power {slope:.3f} of the distance from the origin.",
-    ),
-             finding(
-                 claim="It stays below the spacing of floats there.",
-                 quantity="error at 2 million km over the spacing there [-]",
-                 predicted=0.5,
-                 measured=worst,
-                 tolerance=0.5,
-                 observation=f"At 2 million km the distance is wrong by {worst:.2f} spacings of the floats there.",
-             )]
-    return found, Picture("Distances far from the origin", "log₁₀ of D [m]", "log₁₀ of the error [m]",
-                          [series("½ spacing at D", np.log10(away), np.log10(0.5 * SPACING * away), LINE), series("GJK, measured", np.log10(away), np.log10(errors), DOTS)],
-                          "A scene far from the origin loses what its floats lose, and no more: so keep scenes near the origin.")
+    found = [
+        finding(
+            claim="Far from the origin only the rounding of the corners remains: the error grows in proportion to D.",
+            quantity="slope of log error over log D, 2 km to 2 million km [-]",
+            predicted=1.0,
+            measured=slope,
+            tolerance=0.05,
+            observation=f"The error of GJK's distance grows with the power {slope:.3f} of the distance.",
+        ),
+        finding(
+            claim="The error stays below the spacing of floats there.",
+            quantity="error at 2 million km over the spacing there [-]",
+            predicted=0.5,
+            measured=worst,
+            tolerance=0.5,
+            observation=f"At 2 million km the distance is wrong by {worst:.2f} spacings of floats.",
+        ),
+    ]
+    return found, Picture(
+        "Distances far from the origin",
+        "log₁₀ of D [m]",
+        "log₁₀ of the error [m]",
+        [
+            series("½ spacing at D", np.log10(away), np.log10(0.5 * SPACING * away), LINE),
+            series("GJK, measured", np.log10(away), np.log10(errors), DOTS),
+        ],
+        ("Far from the origin the distance is as inaccurate as the coordinates, and no worse. Keep scenes near the "
+         "origin."),
+    )
 
 
 def by_school(y, w, rho):
-    """First root of |y + s w|² = ρ² by B² − A C and −B − √D, whatever digits that costs."""
+    """Return the first root of |y + s w|² = ρ² from B² − A C and −B − √D, with their cancellation."""
     linear, quadratic = float(np.dot(y, w)), float(np.dot(w, w))
     under_the_root = linear**2 - quadratic * float(np.dot(y, y) - rho**2)
     return (-linear - np.sqrt(max(under_the_root, 0.0))) / quadratic
@@ -172,10 +197,11 @@ def by_school(y, w, rho):
 
 @case("grazing-impact", "A grazing shot", compiled=False)
 def grazing_impact(lesson):
-    """A ball from L = 1000ρ away passes the axis at (1 − δ)ρ: it touches √(2δ − δ²)ρ before the nearest point.
+    """A ball from L = 1000ρ passes the axis at (1 − δ)ρ and touches √(2δ − δ²)ρ before the nearest point.
 
-    Coordinates of L are rounded by L 2⁻⁵³, so the offset b is known to that times two, and the root to b/√(ρ² − b²) times as much: 2·10³·1.1e-16·ρ/√(2δ).
-    The school's formula squares L first, and knows ρ² − b² to 10⁶·1.1e-16: for δ = 1e-10 nothing is left of it.
+    Coordinates of size L are rounded by L 2⁻⁵³, so the offset b is known to twice that, and the root to
+    b/√(ρ² − b²) times as much: 2·10³·1.1e-16·ρ/√(2δ).  The textbook formula squares L first and knows ρ² − b² only
+    to 10⁶·1.1e-16; at δ = 1e-10 no digit is left.
     """
     far, rho, found, deltas = 1e3, 1.0, [], 10.0 ** -np.arange(2.0, 12.0)
     turns = np.linspace(0.1, 6.2, 16)
@@ -188,45 +214,62 @@ def grazing_impact(lesson):
             seen.append(2.0 * far * root(y, w) - (far - np.sqrt(2.0 * delta - delta * delta) * rho))
         return np.max(np.abs(seen))
 
-    ours = lambda y, w: lesson.cylinder_impact_time(0.0, 1.0, np.append(0.0, y), np.append(0.0, y + w), 0.25 * rho, 0.75 * rho)
+    ours = lambda y, w: lesson.cylinder_impact_time(
+        0.0, 1.0, np.append(0.0, y), np.append(0.0, y + w), 0.25 * rho, 0.75 * rho
+    )
     limit = lambda delta: 4.0 * far * SPACING * (1.0 + 1.0 / np.sqrt(2.0 * delta))
     for delta in (1e-2, 1e-6, 1e-10):
         got = errors(ours, delta)
         found.append(finding(
-            claim="A grazing shot is known as well as its coordinates let it be.",
+            claim="The place of a grazing impact is known as well as the coordinates permit.",
             quantity=f"error of the place of impact, passing at (1 − {delta:g})ρ [ρ]",
             predicted=0.0,
             measured=got,
             tolerance=limit(delta),
-            observation=(f"Passing at (1 − {delta:g})ρ the place of impact is wrong by {got:.1e}ρ; the rounding of "
-                         f"the coordinates allows {limit(delta):.1e}ρ."),
+            observation=(f"At (1 − {delta:g})ρ the place of impact is wrong by {got:.1e}ρ; the rounding of the "
+                         f"coordinates permits {limit(delta):.1e}ρ."),
         ))
     got = errors(lambda y, w: by_school(y, w, rho), 1e-10)
     found.append(finding(
-        claim=("The school's formula loses all of it: it is wrong by as much as there is, √(2δ)ρ, within a factor of "
-               "ten."),
+        claim=("The textbook formula loses every digit: its error is √(2δ)ρ within a factor of ten, as large as the "
+               "result."),
         quantity="log₁₀ of its error at δ = 1e-10 over √(2δ)ρ [-]",
         predicted=0.0,
         measured=np.log10(max(got, 1e-300) / np.sqrt(2e-10)),
         tolerance=1.0,
-        observation=f"At δ = 1e-10 the school's formula is wrong by {got:.1e}ρ of 1.4e-05ρ.",
+        observation=f"At δ = 1e-10 the textbook formula is wrong by {got:.1e}ρ of 1.4e-05ρ.",
     ))
-    return found, Picture("A grazing shot from 1000ρ", "log₁₀ of δ", "log₁₀ of the error [ρ]", [
-        series("rounding of the coordinates", np.log10(deltas), np.log10([limit(d) for d in deltas]), LINE),
-        series("C/(√D − B), measured", np.log10(deltas), np.log10([max(errors(ours, d), 1e-17) for d in deltas]), DOTS),
-        series("school's formula, measured", np.log10(deltas), np.log10([max(errors(lambda y, w: by_school(y, w, rho), d), 1e-17) for d in deltas]), DOTS)],
-        "The same equation, written in two ways: one keeps the digits that the coordinates have, the other loses three more, for it squares a way of a thousand radii.")
+    return found, Picture(
+        "A grazing shot from 1000ρ",
+        "log₁₀ of δ",
+        "log₁₀ of the error [ρ]",
+        [
+            series("rounding of the coordinates", np.log10(deltas), np.log10([limit(d) for d in deltas]), LINE),
+            series(
+                "C/(√D − B), measured", np.log10(deltas), np.log10([max(errors(ours, d), 1e-17) for d in deltas]), DOTS
+            ),
+            series(
+                "textbook formula, measured",
+                np.log10(deltas),
+                np.log10([max(errors(lambda y, w: by_school(y, w, rho), d), 1e-17) for d in deltas]),
+                DOTS,
+            ),
+        ],
+        ("The same equation written in two ways: one keeps the digits of the coordinates, the other squares a "
+         "distance of a thousand radii and loses three more."),
+    )
 
 
 @case("deep-overlap", "Deep overlap", compiled=False)
 def deep_overlap(lesson):
-    """Deep inside: the way out of a box is never longer than its least half edge, and there is always one normal of length 1.
+    """Deep inside a box the way out is at most the least half edge, and there is always one normal of length 1.
 
-    The depth at y is min_i (half_i − |y_i|): at most the least half edge, in the middle.
+    The depth at y is min_i (half_i − |y_i|), at most the least half edge (in the middle).
     """
     half, found = np.array([0.6, 0.4, 0.5]), []
     box = lesson.Box(np.array([0.3, -0.2, 0.5]), np.eye(3), half)
-    grid = np.stack(np.meshgrid(*[np.linspace(-0.99, 0.99, 11) * h for h in half], indexing="ij"), axis=-1).reshape(-1, 3)
+    axes = [np.linspace(-0.99, 0.99, 11) * h for h in half]
+    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
     contacts = [lesson.ball_box(box.x + y, 0.1, box) for y in grid]
     depths = np.array([-c.gap - 0.1 for c in contacts])
     found.append(finding(
@@ -239,19 +282,23 @@ def deep_overlap(lesson):
     ))
     out = [np.max(np.abs(c.p_b - box.x) - half) for c in contacts]
     found.append(finding(
-        claim="The way out ends on the skin.",
-        quantity="greatest distance of p_b from the skin of the box [m]",
+        claim="The way out ends on the surface.",
+        quantity="greatest distance of p_b from the surface of the box [m]",
         predicted=0.0,
         measured=np.abs(out).max(),
         tolerance=ROUND_OFF,
         observation=f"All points p_b lie on the box, to {np.abs(out).max():.0e} m.",
     ))
     x, here = np.array([0.7, -0.4, 0.2]), lesson.Box(np.array([0.7, -0.4, 0.2]), np.eye(3), half)
-    normals = {"two balls with one centre": lesson.ball_contact(x, 0.3, x, 0.5).n, "a ball on the axis of a cylinder": lesson.cylinder_contact(np.array([0.7, 0.0, 0.0]), 0.1, 0.5).n,
-               "a ball in the middle of a box": lesson.ball_box(x, 0.1, here).n, "two boxes with one centre": lesson.box_separation(here, here)[1]}
+    normals = {
+        "two balls with one centre": lesson.ball_contact(x, 0.3, x, 0.5).n,
+        "a ball on the axis of a cylinder": lesson.cylinder_contact(np.array([0.7, 0.0, 0.0]), 0.1, 0.5).n,
+        "a ball in the middle of a box": lesson.ball_box(x, 0.1, here).n,
+        "two boxes with one centre": lesson.box_separation(here, here)[1],
+    }
     for name, n in normals.items():
         found.append(finding(
-            claim="Where no direction is better than another, one is taken.",
+            claim="Where all directions are equally good, one is chosen.",
             quantity=f"length of n for {name} [-]",
             predicted=1.0,
             measured=np.linalg.norm(n),
@@ -259,17 +306,30 @@ def deep_overlap(lesson):
             observation=f"For {name} n has the length {np.linalg.norm(n):.15g}.",
         ))
     line = np.linspace(-0.55, 0.55, 45)
-    return found, Picture("Out of a box of 1.2 × 0.8 × 1.0 m", "place along x, 0.1 m above the middle [m]", "depth [m]", [
-        series("least distance to a face", line, np.minimum(0.3, 0.6 - np.abs(line)), LINE),
-        series("ball_box, measured", line[::3], [-lesson.ball_box(box.x + np.array([s, 0.1, 0.0]), 0.1, box).gap - 0.1 for s in line[::3]], DOTS)],
-        "In the middle the nearest face is above; towards the ends it is the end. Where two are as near, the normal jumps.")
+    return found, Picture(
+        "Out of a box of 1.2 × 0.8 × 1.0 m",
+        "place along x, 0.1 m above the middle [m]",
+        "depth [m]",
+        [
+            series("least distance to a face", line, np.minimum(0.3, 0.6 - np.abs(line)), LINE),
+            series(
+                "ball_box, measured",
+                line[::3],
+                [-lesson.ball_box(box.x + np.array([s, 0.1, 0.0]), 0.1, box).gap - 0.1 for s in line[::3]],
+                DOTS,
+            ),
+        ],
+        ("In the middle the nearest face is above; near an end it is that end. Where two faces are equally near, the "
+         "normal jumps."),
+    )
 
 
 @case("degenerate-shapes", "Bodies without volume", compiled=False)
 def degenerate_shapes(lesson):
-    """GJK on bodies without volume: points, lines, flat ones, all corners twice, and needles of 10⁻⁶; every distance is known.
+    """GJK on bodies without volume, at known distances: points, lines, flat bodies, doubled corners, needles of 10⁻⁶.
 
-    It stops when the distance is known to 1e-14 of the size of the bodies, below 10 m here, and rounds a few dozen times.
+    GJK stops when the distance is known to 1e-14 of the size of the bodies, here below 10 m, and rounds a few dozen
+    times.
     """
     rng, found, line = np.random.default_rng(64), [], np.linspace(0.0, 1.0, 5)[:, None]
     x, y, z = np.eye(3)
@@ -286,7 +346,8 @@ def degenerate_shapes(lesson):
         "two needles across": (needle, needle[:, [1, 0, 2]] + 0.5 * z - 0.0 * x, None),
     }
     for name, (a, b, distance) in known.items():
-        if distance is None:                                        # an edge of each is nearest, near the middle: its own truth
+        # An edge of each is nearest, near the middle: the reference solution gives the distance.
+        if distance is None:
             p, q = hull_nearest(a, b)
             distance = np.linalg.norm(p - q)
         R = np.linalg.qr(rng.normal(size=(3, 3)))[0]
@@ -302,28 +363,45 @@ def degenerate_shapes(lesson):
     gaps = 10.0 ** -np.arange(0.0, 13.0, 2.0)
     errors = [abs(lesson.gjk(square, square + g * z + 0.3 * x).gap - g) for g in gaps]
     found.append(finding(
-        claim="Two squares nearly in one plane: the distance is known to round-off.",
+        claim="For two squares nearly in one plane the distance is known to round-off.",
         quantity="greatest error for gaps from 1 m to 10⁻¹² m [m]",
         predicted=0.0,
         measured=max(errors),
         tolerance=1e-14 * 4.0,
         observation=f"For gaps down to 10⁻¹² m the error is at most {max(errors):.0e} m.",
     ))
-    return found, Picture("Two squares face to face", "log₁₀ of the gap [m]", "log₁₀ of the distance found [m]", [
-        series("theory", np.log10(gaps), np.log10(gaps), LINE), series("GJK, measured", np.log10(gaps), np.log10([max(lesson.gjk(square, square + g * z + 0.3 * x).gap, 1e-17) for g in gaps]), DOTS)],
-        "Corners on corners and faces on faces, where many simplices are as near: every subset is tried, so that none is missed.")
+    return found, Picture(
+        "Two squares face to face",
+        "log₁₀ of the gap [m]",
+        "log₁₀ of the distance found [m]",
+        [
+            series("theory", np.log10(gaps), np.log10(gaps), LINE),
+            series(
+                "GJK, measured",
+                np.log10(gaps),
+                np.log10([max(lesson.gjk(square, square + g * z + 0.3 * x).gap, 1e-17) for g in gaps]),
+                DOTS,
+            ),
+        ],
+        ("Corner on corner and face on face, where many simplices are equally near: GJK tries every subset, so it "
+         "misses none."),
+    )
 
 
-# ---------------------------------------------------------------------------------------------- avoidance, and what cannot be
+# ---------------------------------------------------------------------- avoidance, and what cannot be
 
 def nearest_approach(lesson, closing, k, reach, steps=10_000):
-    """Least gap [m] of two that fly at each other with that closing speed [m/s], by Verlet's method of lesson 1, and the gap of theory."""
+    """Return the least gap [m] of two bodies that approach head-on at that speed [m/s], and that of theory.
+
+    The run uses Verlet's method of lesson 1.
+    """
     radius, turning = 0.1, 1.0 / (1.0 / reach + closing / np.sqrt(2.0 * k))
     p, dt = lesson.make_flock(radius, reach, k, 0.0, 0.0), 2e-3 * turning / closing
     half = 0.5 * (2.0 * radius + turning) + 4.0 * turning
     half = min(half, 0.5 * (2.0 * radius + reach))
-    begin = 2.0 * half - 2.0 * radius                               # its energy there counts as well
-    x, v = np.array([[-half, 0.0], [half, 0.0]]), np.array([[0.5, 0.0], [-0.5, 0.0]]) * np.sqrt(closing**2 - 2.0 * k * (1.0 / begin - 1.0 / reach) ** 2)
+    begin = 2.0 * half - 2.0 * radius                               # its potential energy there counts as well
+    x = np.array([[-half, 0.0], [half, 0.0]])
+    v = np.array([[0.5, 0.0], [-0.5, 0.0]]) * np.sqrt(closing**2 - 2.0 * k * (1.0 / begin - 1.0 / reach) ** 2)
     least = np.inf
     for n in range(steps):
         x, v = integrators.verlet_step(lesson.flock_acceleration, n * dt, x, v, dt, p)
@@ -336,72 +414,120 @@ def nearest_approach(lesson, closing, k, reach, steps=10_000):
 
 @case("head-on-avoidance", "Avoidance head-on", compiled=False)
 def head_on_avoidance(lesson):
-    """Head-on: two of a flock that close with u from out of reach turn back at a gap g with  ¼ u² = ½ k (1/g − 1/reach)².
+    """Two members of a flock that close head-on with u turn back at a gap g with  ¼ u² = ½ k (1/g − 1/reach)².
 
-    Each has ½ (u/2)².  g = 1/(1/reach + u/√(2k)): above zero at any speed.  Verlet's energy error is (dt/τ)² = 4e-6 times a constant of
-    the potential's steepness, fourth power at most: 4·5/2; the gap follows the energy with a power below one.
+    Each has the kinetic energy ½ (u/2)².  g = 1/(1/reach + u/√(2k)) is above zero at any speed.  Verlet's energy
+    error is (dt/τ)² = 4e-6 times a constant for the steepness of the potential, at most the fourth power: 4·5/2.
+    The gap follows the energy with a power below one.
     """
     found, k, reach = [], 1.0, 1.0
     for closing in (1.0, 10.0, 100.0):
         got, turning = nearest_approach(lesson, closing, k, reach)
         found.append(finding(
-            claim="A field without limit at the skin turns everybody back.",
-            quantity=f"least gap, closing with {closing:g} m/s [m]",
+            claim="A potential that is infinite at contact turns every body back.",
+            quantity=f"least gap at a closing speed of {closing:g} m/s [m]",
             predicted=turning,
             measured=got,
             tolerance=4e-5 * turning,
-            observation=(f"Two that close with {closing:g} m/s come within {got:.6f} m of each other; theory says "
-                         f"{turning:.6f} m."),
+            observation=(f"At a closing speed of {closing:g} m/s the two come within {got:.6f} m of each other; "
+                         f"theory gives {turning:.6f} m."),
         ))
     speeds = 10.0 ** np.linspace(-0.5, 2.0, 5)
     fine = 10.0 ** np.linspace(-0.6, 2.1, 40)
-    return found, Picture("How near do they come?", "log₁₀ of the closing speed [m/s]", "log₁₀ of the least gap [m]", [
-        series("1/(1/reach + u/√(2k)), theory", np.log10(fine), np.log10(1.0 / (1.0 / reach + fine / np.sqrt(2.0 * k))), LINE),
-        series("Verlet, measured", np.log10(speeds), np.log10([nearest_approach(lesson, u, k, reach)[0] for u in speeds]), DOTS)],
-        "Nobody touches, but at high speed they come so near that the step must follow: avoidance is no substitute for detection.")
+    return found, Picture(
+        "How near do they come?",
+        "log₁₀ of the closing speed [m/s]",
+        "log₁₀ of the least gap [m]",
+        [
+            series(
+                "1/(1/reach + u/√(2k)), theory",
+                np.log10(fine),
+                np.log10(1.0 / (1.0 / reach + fine / np.sqrt(2.0 * k))),
+                LINE,
+            ),
+            series(
+                "Verlet, measured",
+                np.log10(speeds),
+                np.log10([nearest_approach(lesson, u, k, reach)[0] for u in speeds]),
+                DOTS,
+            ),
+        ],
+        ("The two never touch, but at high speed they come so near that the step must shrink with the gap. Avoidance "
+         "does not replace detection."),
+    )
 
 
 @case("undefined-distance", "What has no distance", compiled=False)
 def undefined_distance(lesson):
-    """What has no distance is refused with a sentence that names it: no area, no length, inside out, not a number, nothing at all."""
+    """Input without a defined distance is refused by name: no area, no length, inverted, not a number, or empty."""
     a, b, nan = np.zeros(3), np.ones(3), np.array([[0.0, np.nan]])
     flat = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
     asked = {
-        "a plane with no normal": (lesson.make_plane, ((0.0, 0.0, 0.0, 1.0),)), "a plane that is not a number": (lesson.make_plane, ((1.0, np.nan, 0.0, 1.0),)),
-        "a segment without length": (lesson.closest_on_segment, (b, a, a)), "a capsule without length": (lesson.ball_capsule, (b, 0.1, a, a, 0.2)),
-        "a triangle on a line": (lesson.closest_on_triangle, (b, a, np.array([1.0, 0.0, 0.0]), np.array([2.0, 0.0, 0.0]))),
-        "a triangle in a point": (lesson.ball_triangle, (b, 0.1, a, a, a)), "a polygon with a corner twice": (lesson.polygon_contacts, (flat, flat)),
-        "a box inside out": (lesson.build_tree, (np.ones((1, 2)), np.zeros((1, 2)))), "a box that is not a number": (lesson.tree_pairs, (nan, nan)),
-        "no box at all": (lesson.build_tree, (np.zeros((0, 2)), np.zeros((0, 2)))), "a place inside an obstacle": (lesson.repulsion, (a, a, 0.5, 1.0, 1.0)),
-        "a flight that is not a number": (lesson.flight, (lesson.discrete_step, lesson.plane_gap, lesson.plane_time, 0.0, nan, nan, 0.1, 1, ())),
+        "a plane with no normal": (lesson.make_plane, ((0.0, 0.0, 0.0, 1.0),)),
+        "a plane that is not a number": (lesson.make_plane, ((1.0, np.nan, 0.0, 1.0),)),
+        "a segment without length": (lesson.closest_on_segment, (b, a, a)),
+        "a capsule without length": (lesson.ball_capsule, (b, 0.1, a, a, 0.2)),
+        "a triangle on a line": (
+            lesson.closest_on_triangle,
+            (b, a, np.array([1.0, 0.0, 0.0]), np.array([2.0, 0.0, 0.0])),
+        ),
+        "a triangle in a point": (lesson.ball_triangle, (b, 0.1, a, a, a)),
+        "a polygon with a corner twice": (lesson.polygon_contacts, (flat, flat)),
+        "a box inside out": (lesson.build_tree, (np.ones((1, 2)), np.zeros((1, 2)))),
+        "a box that is not a number": (lesson.tree_pairs, (nan, nan)),
+        "no box at all": (lesson.build_tree, (np.zeros((0, 2)), np.zeros((0, 2)))),
+        "a place inside an obstacle": (lesson.repulsion, (a, a, 0.5, 1.0, 1.0)),
+        "a flight that is not a number": (
+            lesson.flight,
+            (lesson.discrete_step, lesson.plane_gap, lesson.plane_time, 0.0, nan, nan, 0.1, 1, ()),
+        ),
         "a flock without reach": (lesson.make_flock, (0.1, 0.0, 1.0, 0.0, 0.0)),
     }
     refused = {name: refuses(*call) for name, call in asked.items()}
     found = [finding(
-        claim="Bad input ends in a typed error.",
+        claim="Bad input raises a typed error.",
         quantity=f"whether {name} is refused [-]",
         predicted=1.0,
         measured=float(ok),
         tolerance=0.0,
-        observation=f"{name[0].upper() + name[1:]} is {'refused' if ok else 'taken'}.",
+        observation=f"{name[0].upper() + name[1:]} is {'refused' if ok else 'accepted'}.",
     ) for name, ok in refused.items()]
     sizes = 10.0 ** -np.arange(0.0, 12.0)
-    heights = [lesson.ball_triangle(np.array([0.2 * s, 0.2 * s, 1.0]), 0.25, a, np.array([s, 0.0, 0.0]), np.array([0.0, s, 0.0])).gap for s in sizes]
-    return found, Picture("Small triangles are none of that", "log₁₀ of the size of a triangle [m]", "gap of a ball above it [m]", [
-        series("theory", np.log10(sizes), np.full(12, 0.75), LINE), series("ball_triangle, measured", np.log10(sizes), heights, DOTS)],
-        "What is refused has no area for its size; what is merely small is measured as any other.")
+    heights = [
+        lesson.ball_triangle(
+            np.array([0.2 * s, 0.2 * s, 1.0]), 0.25, a, np.array([s, 0.0, 0.0]), np.array([0.0, s, 0.0])
+        ).gap
+        for s in sizes
+    ]
+    return found, Picture(
+        "Small triangles are none of that",
+        "log₁₀ of the size of a triangle [m]",
+        "gap of a ball above it [m]",
+        [
+            series("theory", np.log10(sizes), np.full(12, 0.75), LINE),
+            series("ball_triangle, measured", np.log10(sizes), heights, DOTS),
+        ],
+        "A triangle is refused if its area is small for its size. A small triangle is measured like any other.",
+    )
 
 
 def inside(box, points):
-    """How far outside of a box the farthest of these points is [m]; below zero when all are inside."""
+    """Return how far the farthest of these points is outside a box [m]; below zero if all are inside."""
     return max(np.max(np.abs(box.R.T @ (x - box.x)) - box.half) for x in points)
 
 
 def overlapping(rng, n):
-    """n pairs of drawn boxes that overlap, by a quarter of their size at most or so."""
+    """Return n pairs of random boxes that overlap by up to about a quarter of their size."""
     pairs = []
     while len(pairs) < n:
-        a, b = (worked.Box(0.8 * rng.uniform(-1.0, 1.0, 3), np.ascontiguousarray(np.linalg.qr(rng.normal(size=(3, 3)))[0]), rng.uniform(0.3, 1.0, 3)) for _ in range(2))
+        a, b = (
+            worked.Box(
+                0.8 * rng.uniform(-1.0, 1.0, 3),
+                np.ascontiguousarray(np.linalg.qr(rng.normal(size=(3, 3)))[0]),
+                rng.uniform(0.3, 1.0, 3),
+            )
+            for _ in range(2)
+        )
         if worked.box_separation(a, b)[0] < 0.0:
             pairs.append((a, b))
     return pairs
@@ -409,17 +535,19 @@ def overlapping(rng, n):
 
 @case("minimum-translation", "The way out of an overlap", compiled=False)
 def minimum_translation(lesson):
-    """Drawn boxes and polygons that overlap: the way out is one, the shortest as the hull of all differences knows it, and contacts are on both.
+    """Random boxes and polygons that overlap: the way out is the shortest one, and contacts lie on both bodies.
 
-    A box moved by −gap n touches and no more: the separation is then zero.  Points of contact lie within both bodies, but for the depth;
-    the deepest of them is as deep as the axis says where a face is touched; between two edges p_a − p_b = gap n.  Drawn capsules are as far
-    apart as their segments, by non-negative least squares, less the radii.  All to round-off, but boxes may leave EDGES_WIN_BY to a face.
+    The reference is the hull of all differences.  A box moved by −gap n just touches: the separation is then zero.
+    Points of contact lie within both bodies, up to the depth.  Where a face is touched, the deepest is as deep as
+    the axis gives; between two edges p_a − p_b = gap n.  Random capsules are as far apart as their segments, by
+    non-negative least squares, less the radii.  All hold to round-off, except that boxes may leave EDGES_WIN_BY to
+    a face.
     """
     rng, found = np.random.default_rng(67), []
     pairs, worst = overlapping(rng, 100), {"depth": 0.0, "left": 0.0, "outside": -1.0, "deepest": 0.0}
     depths, true = [], []
     for a, b in pairs:
-        gap, n, k = lesson.box_separation(a, b)
+        gap, n, _ = lesson.box_separation(a, b)
         contacts, way = lesson.box_box(a, b), depth_of(corners_of(a), corners_of(b))[0]
         moved = a._replace(x=a.x - gap * n)
         depths.append(-gap)
@@ -432,41 +560,44 @@ def minimum_translation(lesson):
         worst["outside"] = max(worst["outside"], inside(a, contacts.p_a), inside(b, contacts.p_b))
         worst["deepest"] = max(worst["deepest"], abs(contacts.gap.min() - gap))
     room = 2.0 * worked.EDGES_WIN_BY
-    found += [finding(
-        claim="The least overlap of 15 axes is the shortest way out.",
-        quantity="greatest error of the depth of 100 pairs of boxes [m]",
-        predicted=0.0,
-        measured=worst["depth"],
-        tolerance=room,
-        observation=("The depth of 100 pairs of boxes is that of the hull of their differences, to "
-                     f"{worst['depth']:.0e} m."),
-    ),
-              finding(
-                  claim="Moved out by the gap along n, two boxes touch and no more.",
-                  quantity="greatest overlap or gap that is left of 100 pairs [m]",
-                  predicted=0.0,
-                  measured=worst["left"],
-                  tolerance=room,
-                  observation=f"Moved by the gap along n, 100 pairs are left with {worst['left']:.0e} m.",
-              ),
-              finding(
-                  claim="Points of contact lie on both bodies.",
-                  quantity="how far outside of its box the farthest point of contact is, or 0 [m]",
-                  predicted=0.0,
-                  measured=max(0.0, worst["outside"]),
-                  tolerance=1e-11,
-                  observation=(f"No point of contact of 100 pairs is farther than {max(0.0, worst['outside']):.0e} m "
-                               "outside of its box."),
-              ),
-              finding(
-                  claim="The deepest point of contact is as deep as the axis says.",
-                  quantity="greatest difference between the deepest contact and the axis [m]",
-                  predicted=0.0,
-                  measured=worst["deepest"],
-                  tolerance=1e-11,
-                  observation=("The deepest point of contact of 100 pairs is as deep as the axis says, to "
-                               f"{worst['deepest']:.0e} m."),
-              )]
+    found += [
+        finding(
+            claim="The least overlap of 15 axes is the shortest way out.",
+            quantity="greatest error of the depth of 100 pairs of boxes [m]",
+            predicted=0.0,
+            measured=worst["depth"],
+            tolerance=room,
+            observation=("The depth of 100 pairs of boxes equals that of the hull of their differences to "
+                         f"{worst['depth']:.0e} m."),
+        ),
+        finding(
+            claim="Moved out by the gap along n, two boxes just touch.",
+            quantity="greatest overlap or gap left, of 100 pairs [m]",
+            predicted=0.0,
+            measured=worst["left"],
+            tolerance=room,
+            observation=("Moved by the gap along n, 100 pairs are left with an overlap or gap of "
+                         f"{worst['left']:.0e} m."),
+        ),
+        finding(
+            claim="Points of contact lie on both bodies.",
+            quantity="distance of the farthest point of contact outside its box, or 0 [m]",
+            predicted=0.0,
+            measured=max(0.0, worst["outside"]),
+            tolerance=1e-11,
+            observation=(f"No point of contact of 100 pairs is more than {max(0.0, worst['outside']):.0e} m "
+                         "outside its box."),
+        ),
+        finding(
+            claim="The deepest point of contact is as deep as the axis gives.",
+            quantity="greatest difference between the deepest contact and the axis [m]",
+            predicted=0.0,
+            measured=worst["deepest"],
+            tolerance=1e-11,
+            observation=("The deepest point of contact of 100 pairs is as deep as the axis gives, to "
+                         f"{worst['deepest']:.0e} m."),
+        ),
+    ]
     errors = []
     for _ in range(100):
         x = rng.uniform(-1.0, 1.0, (4, 3))
@@ -482,12 +613,15 @@ def minimum_translation(lesson):
     ))
     flat = []
     for _ in range(100):
-        a, b = (rng.uniform(-0.6, 0.6, 2) + np.stack((np.cos(t), np.sin(t)), axis=1) for t in (np.sort(rng.uniform(0.0, 1.2, 5)) + 1.25 * np.arange(5) for _ in range(2)))
+        a, b = (
+            rng.uniform(-0.6, 0.6, 2) + np.stack((np.cos(t), np.sin(t)), axis=1)
+            for t in (np.sort(rng.uniform(0.0, 1.2, 5)) + 1.25 * np.arange(5) for _ in range(2))
+        )
         contacts, way = lesson.polygon_contacts(a, b), depth_of(a, b)[0]
         if way < 0.0 and len(contacts.gap):
             flat.append(abs(contacts.gap.min() - way))
     found.append(finding(
-        claim="Polygons that overlap touch as deep as the hull of their differences says.",
+        claim="The deepest contact of overlapping polygons is as deep as the hull of their differences gives.",
         quantity="greatest error of the deepest contact of 100 pairs of polygons [m]",
         predicted=0.0,
         measured=max(flat, default=np.inf),
@@ -496,12 +630,19 @@ def minimum_translation(lesson):
                      f"{max(flat, default=np.inf):.0e} m."),
     ))
     order = np.argsort(true)
-    return found, Picture("The way out of 100 pairs of boxes", "shortest way out, by the hull of differences [m]", "depth found [m]", [
-        series("equal", np.array(true)[order], np.array(true)[order], LINE), series("separating axes, measured", np.array(true)[order], np.array(depths)[order], DOTS)],
-        "Fifteen axes are all it takes: no other direction is a shorter way out of two boxes.")
+    return found, Picture(
+        "The way out of 100 pairs of boxes",
+        "shortest way out, by the hull of differences [m]",
+        "depth found [m]",
+        [
+            series("equal", np.array(true)[order], np.array(true)[order], LINE),
+            series("separating axes, measured", np.array(true)[order], np.array(depths)[order], DOTS),
+        ],
+        "Fifteen axes are enough: no other direction is a shorter way out of two boxes.",
+    )
 
 
 def corners_of(box):
-    """The eight corners (8, 3) of a box."""
+    """Return the eight corners (8, 3) of a box."""
     signs = np.array([[i, j, k] for i in (-1.0, 1.0) for j in (-1.0, 1.0) for k in (-1.0, 1.0)])
     return box.x + signs * box.half @ box.R.T

@@ -1,7 +1,7 @@
-"""Where does a block stick, and what do the steps of lesson 3 do at the edge?  Theory's numbers against those that runs find.
+"""Stick and slip: the edges and errors of the steps of lesson 3, compared with theory.
 
-Cases 31 to 37.  Edges are found by bisection of runs from rest, never by asking a formula.  What moves less than WAY has not moved.
-*Source:* Coulomb 1785 for the edges; each case derives what it adds.
+Cases 31 to 37.  Edges are found by bisection of runs from rest, never from a formula.  A body that moves less than WAY
+counts as at rest.  *Source:* Coulomb 1785 for the edges; each case derives the rest.
 """
 
 import numpy as np
@@ -15,36 +15,48 @@ from validate.stability.case import DOTS, EDGE, LINE, Picture, bisect, case, fin
 from .. import engines
 
 G = 9.81                     # [m/s²]
-WAY = 1e-9                   # [m]: far above the round-off of a second, far below any slip beyond the edge by 1e-6
-ENGINE_WAY = 2e-5            # [m]: twice the overlap that an engine leaves alone, 1e-5, which is how well it knows a place
-MILLIMETRES = 1e3            # in a metre
-ROUND_OFF = 1e-12            # of numbers below 30, after a thousand steps
+WAY = 1e-9                   # [m]: far above the round-off of one second, far below any slip beyond the edge by 1e-6
+ENGINE_WAY = 2e-5  # [m]: twice the overlap of 1e-5 that an engine tolerates, which limits how well it knows a position
+MILLIMETRES = 1e3            # millimetres per metre
+ROUND_OFF = 1e-12            # of numbers below 30 after a thousand steps
 
 
 def slope(degrees, mu_s, mu_k):
-    """A Block at rest on a slope: x points down it, y out of it."""
+    """Return a Block at rest on a slope: x points down the slope, y out of it."""
     theta = np.radians(degrees)
     return make_block((0.0, 1.0), mu_s, mu_k, (G * np.sin(theta), -G * np.cos(theta)), (0.0, 0.0), 0.0)
 
 
 def particle(degrees, mu):
-    """The same for a particle on an implicit plane."""
+    """Return the same for a particle on an implicit plane."""
     theta = np.radians(degrees)
     return OnPlane(1.0, mu, 0.0, np.array([G * np.sin(theta), -G * np.cos(theta)]), np.zeros(2), np.array([0.0, 1.0]))
 
 
 def moved(lesson, step, degrees, mu_s, mu_k, dt=0.02, steps=50):
-    """How far [m] something slides down in a second, from rest, with a step of this lesson."""
+    """Return the distance [m] that a body slides down from rest in one second with a step of this lesson."""
     still = np.zeros(2)
     if step in ("contact_step", "gripping_step"):
-        x, _ = lesson.contact_motion(getattr(lesson, step), lesson.falling_acceleration, lesson.plane_gap, 0.0, still, still, dt, steps, particle(degrees, mu_s))
+        x, _ = lesson.contact_motion(
+            getattr(lesson, step),
+            lesson.falling_acceleration,
+            lesson.plane_gap,
+            0.0,
+            still,
+            still,
+            dt,
+            steps,
+            particle(degrees, mu_s),
+        )
     else:
-        x, _ = integrators.advance(getattr(lesson, step), lesson.driven_acceleration, 0.0, still, still, dt, steps, slope(degrees, mu_s, mu_k))
+        x, _ = integrators.advance(
+            getattr(lesson, step), lesson.driven_acceleration, 0.0, still, still, dt, steps, slope(degrees, mu_s, mu_k)
+        )
     return x[0]
 
 
 def engine_moved(make, gravity, mu, dt=1.0 / 240.0):
-    """The same with an engine's block."""
+    """Return the same for an engine's block."""
     world = make(gravity, mu, dt)
     try:
         for _ in range(round(1.0 / dt)):
@@ -56,23 +68,32 @@ def engine_moved(make, gravity, mu, dt=1.0 / 240.0):
 
 MAKERS = {
     "pymunk": lambda gravity, mu, dt: pymunk_block(gravity, mu, 0.0, dt, lambda x: x.x),
-    "pybullet": lambda gravity, mu, dt: bullet_block((gravity[0], 0.0, gravity[1]), mu, (0.0, 0.0, 0.0), 0.1, dt, lambda x: x[0]),
+    "pybullet": lambda gravity, mu, dt: bullet_block(
+        (gravity[0], 0.0, gravity[1]), mu, (0.0, 0.0, 0.0), 0.1, dt, lambda x: x[0]
+    ),
 }
-LABEL = {"sliding_step": "sliding", "event_step": "event", "gripping_step": "gripping", "contact_step": "contact", "pyramid_step": "pyramid"}
+LABEL = {
+    "sliding_step": "sliding",
+    "event_step": "event",
+    "gripping_step": "gripping",
+    "contact_step": "contact",
+    "pyramid_step": "pyramid",
+}
 
 
 @case("stick-threshold", "Stick or slip on a slope", compiled=False)
 def stick_threshold(lesson):
     """A block at rest on a slope of angle θ holds from μ = tan θ on.
 
-    Just below, μ = tan θ (1 − ε), it slides with g sin θ ε: a second shows WAY of it when ε > 2 WAY/(g sin θ), below 1e-8 here.
-    An engine knows a place only to ENGINE_WAY.
+    Just below, at μ = tan θ (1 − ε), it slides with g sin θ ε.  In one second it moves WAY if ε > 2 WAY/(g sin θ),
+    which is below 1e-8 here.  An engine knows a position only to ENGINE_WAY.
     """
     found, drawn, angles = [], [], (5.0, 10.0, 20.0, 30.0, 45.0, 60.0)
     for step in ("sliding_step", "event_step", "gripping_step"):
         edges = []
         for degrees in angles:
-            edge = bisect(lambda mu: moved(lesson, step, degrees, mu, 0.5 * mu) < WAY, 0.01, 4.0)
+            slid = lambda mu, step=step, degrees=degrees: moved(lesson, step, degrees, mu, 0.5 * mu)
+            edge = bisect(lambda mu, slid=slid: slid(mu) < WAY, 0.01, 4.0)
             edges.append(edge)
             if degrees in (10.0, 30.0, 60.0):
                 bound = np.tan(np.radians(degrees))
@@ -87,11 +108,12 @@ def stick_threshold(lesson):
                 ))
         drawn.append(series(f"{LABEL[step]}, measured", angles, edges, DOTS))
     theta = np.radians(30.0)
+    gravity = (G * np.sin(theta), -G * np.cos(theta))
     for name, make in MAKERS.items():
         if engines.installed(name):
-            edge = bisect(lambda mu: abs(engine_moved(make, (G * np.sin(theta), -G * np.cos(theta)), mu)) < ENGINE_WAY, 0.3, 1.0)
+            edge = bisect(lambda mu, make=make: abs(engine_moved(make, gravity, mu)) < ENGINE_WAY, 0.3, 1.0)
             found.append(finding(
-                claim="An engine's block holds from μ = tan θ on, as well as it knows where it is.",
+                claim="An engine's block holds from μ = tan θ on, to the accuracy of its position.",
                 quantity=f"{name}: least friction that holds at 30° [-]",
                 predicted=np.tan(theta),
                 measured=edge,
@@ -99,32 +121,41 @@ def stick_threshold(lesson):
                 observation=f"By bisection {name} holds a block at 30° from μ = {edge:.5f} on.",
             ))
     fine = np.linspace(0.0, 62.0, 125)
-    return found, Picture("Stick or slip on a slope", "slope θ [°]", "least friction that holds [-]", [series("tan θ, theory", fine, np.tan(np.radians(fine)), LINE), *drawn],
-                          "Above the line a block stays where it is put, below it slides: three steps of this lesson agree with theory to six digits.")
+    return found, Picture(
+        "Stick or slip on a slope",
+        "slope θ [°]",
+        "least friction that holds [-]",
+        [series("tan θ, theory", fine, np.tan(np.radians(fine)), LINE), *drawn],
+        ("Above the line a block stays at rest, below it slides: three steps of this lesson agree with theory to six "
+         "digits."),
+    )
 
 
 @case("stick-slip-threshold", "Stick and slip under a periodic force", compiled=False)
 def stick_slip_threshold(lesson):
-    """A block under F cos t breaks away when F > μ m g; F = 8 N, m = 1 kg, μ = 0.8: two slips in four seconds.
+    """A block under F cos t breaks away if F > μ m g; with F = 8 N, m = 1 kg and μ = 0.8 it slips twice in 4 s.
 
-    Just above the edge, F = μg + ε, a slip goes 1.5 ε²/F far: ε > √(WAY F/1.5) shows.  The other numbers are those of the scene
-    stick_slip, in closed form; an event step of dt is wrong by dt² Aω² s/24 in speed at the end of a slip of s = 0.59 s, where it
-    loses 0.3 m/s² at least, and in x by dt² (Aω s/6 + Aω² s²/24) a slip; a sliding step by what order 1 allows there.
+    Just above the edge, at F = μg + ε, it slips by 1.5 ε²/F, which shows if ε > √(WAY F/1.5).  The other numbers
+    are those of the scene stick_slip, in closed form.  At the end of a slip of s = 0.59 s an event step of dt is
+    wrong by dt² Aω² s/24 in speed, while the speed falls by at least 0.3 m/s²; per slip x is wrong by dt² (Aω
+    s/6 + Aω² s²/24). A sliding step is wrong by the limit of order 1 of that scene.
     """
     p, hold, found, still = DrivenBlock(), 0.8 * G, [], np.zeros(2)
     driven = make_block((0.0, 1.0), p.mu, p.mu, (0.0, -p.g), (p.force / p.m, 0.0), p.omega)
     for step in ("sliding_step", "event_step"):
-        def moves(force):
-            block = make_block((0.0, 1.0), 0.8, 0.8, (0.0, -G), (force, 0.0), 1.0)
-            return integrators.advance(getattr(lesson, step), lesson.driven_acceleration, 0.0, still, still, 0.01, 100, block)[0][0] > 1e-12
+        def moves(force, step=step):
+            block, take = make_block((0.0, 1.0), 0.8, 0.8, (0.0, -G), (force, 0.0), 1.0), getattr(lesson, step)
+            x, _ = integrators.advance(take, lesson.driven_acceleration, 0.0, still, still, 0.01, 100, block)
+            return x[0] > 1e-12
+
         edge = bisect(moves, 4.0, 16.0)
         found.append(finding(
-            claim="A force to and fro moves the block when its amplitude passes μ m g.",
+            claim="A periodic force moves the block if its amplitude exceeds μ m g.",
             quantity=f"{LABEL[step]}: least amplitude that moves 1 kg at μ = 0.8 [N]",
             predicted=hold,
             measured=edge,
             tolerance=EDGE * hold + np.sqrt(1e-12 * hold / 1.5),
-            observation=f"With the {LABEL[step]} step the block gives way to {edge:.5f} N; μ m g is {hold:.5f} N.",
+            observation=f"With the {LABEL[step]} step the block moves from {edge:.5f} N on; μ m g is {hold:.5f} N.",
         ))
     times = np.array([slip[:2] for slip in slips(p)])
     for dt in (0.05, 0.0125):
@@ -144,7 +175,7 @@ def stick_slip_threshold(lesson):
             ))
         begin = ours[1, 0] if len(ours) == len(times) else np.nan
         found.append(finding(
-            claim="So is the moment at which it begins, and that exactly.",
+            claim="The time at which a slip begins is exact.",
             quantity=f"begin of the second slip, with steps of {MILLIMETRES * dt:g} ms [s]",
             predicted=times[1, 0],
             measured=begin,
@@ -154,12 +185,12 @@ def stick_slip_threshold(lesson):
         end = integrators.advance(lesson.event_step, lesson.driven_acceleration, 0.0, x, v, dt, steps, block)[0][0]
         goal = slip_position(p, T)[0]
         found.append(finding(
-            claim="An event step is of second order, through all stops and starts.",
-            quantity=f"where it is after 4 s, with event steps of {MILLIMETRES * dt:g} ms [m]",
+            claim="An event step is of second order through all stops and starts.",
+            quantity=f"position after 4 s, with event steps of {MILLIMETRES * dt:g} ms [m]",
             predicted=goal,
             measured=end,
             tolerance=slip_limits(p, dt)[2] * abs(goal),
-            observation=(f"Steps of {MILLIMETRES * dt:g} ms leave the block at {MILLIMETRES * end:.5f} mm; the truth "
+            observation=(f"Steps of {MILLIMETRES * dt:g} ms end at {MILLIMETRES * end:.5f} mm; the reference solution "
                          f"is {MILLIMETRES * goal:.5f} mm."),
         ))
     fine, dt = np.linspace(0.0, T, 401), 0.05
@@ -168,15 +199,21 @@ def stick_slip_threshold(lesson):
         x, v, block = np.zeros(2), np.zeros(2), driven
         ts, xs, _ = integrators.trajectory(getattr(lesson, step), lesson.driven_acceleration, 0.0, x, v, dt, 80, block)
         drawn.append(series(f"{LABEL[step]}, dt = {dt} s", ts, MILLIMETRES * xs[:, 0], DOTS))
-    return found, Picture("Stick and slip under 8 N cos t", "t [s]", "x [mm]", drawn,
-                          "The block moves for a third of a second, waits for the force to turn round, and moves the other way.")
+    return found, Picture(
+        "Stick and slip under 8 N cos t",
+        "t [s]",
+        "x [mm]",
+        drawn,
+        "The block moves for a third of a second, rests until the force has reversed, and moves the other way.",
+    )
 
 
 @case("regularised-friction-creeps", "Friction as a force never stops", compiled=False)
 def regularised_friction_creeps(lesson):
-    """Friction as an ordinary force, −μ F_N v/|v| in Euler's method: the last step overshoots by what it has too much, for ever.
+    """Friction as an ordinary force, −μ F_N v/|v|, never stops a block under Euler's method: every step overshoots.
 
-    From |v| < μg dt the next speed is v − μg dt sign v, and the one after that v again: to and fro by μg dt exactly.
+    Once |v| < μg dt the next speed is v − μg dt sign v, and the one after that is v again: v alternates by exactly
+    μg dt.
     """
     mu, found, drawn = 0.3, [], []
     block = make_block((0.0, 1.0), mu, mu, (0.0, -G), (0.0, 0.0), 0.0)
@@ -191,17 +228,20 @@ def regularised_friction_creeps(lesson):
         ts, _, vs = integrators.trajectory(integrators.euler_step, force, 0.0, x, v, dt, steps, block)
         swing = np.ptp(vs[-4:, 0])
         found.append(finding(
-            claim="As a force, friction does not stop a block: its velocity goes to and fro by μ g dt.",
+            claim="As a force, friction does not stop a block: its velocity alternates by μ g dt.",
             quantity=f"swing of the velocity at rest, Euler with steps of {MILLIMETRES * dt:g} ms [m/s]",
             predicted=mu * G * dt,
             measured=swing,
             tolerance=ROUND_OFF,
-            observation=f"With steps of {MILLIMETRES * dt:g} ms the velocity swings by {swing:.6f} m/s for ever.",
+            observation=(f"With steps of {MILLIMETRES * dt:g} ms the velocity alternates by {swing:.6f} m/s without "
+                         "end."),
         ))
-        _, _, stopped = integrators.trajectory(lesson.sliding_step, lesson.driven_acceleration, 0.0, x, v, dt, steps, block)
+        _, _, stopped = integrators.trajectory(
+            lesson.sliding_step, lesson.driven_acceleration, 0.0, x, v, dt, steps, block
+        )
         rest = np.abs(stopped[-4:]).max()
         found.append(finding(
-            claim="As an impulse that takes no more than there is, friction stops it.",
+            claim="As an impulse, limited to the momentum that is left, friction stops the block.",
             quantity=f"speed at rest, sliding steps of {MILLIMETRES * dt:g} ms [m/s]",
             predicted=0.0,
             measured=rest,
@@ -209,15 +249,25 @@ def regularised_friction_creeps(lesson):
             observation=f"With sliding steps of {MILLIMETRES * dt:g} ms the velocity at rest is {rest:g} m/s.",
         ))
         if dt == 0.05:
-            drawn = [series("friction as a force, Euler", ts, vs[:, 0], DOTS), series("friction as an impulse, sliding", ts, stopped[:, 0], LINE)]
-    return found, Picture("A stop that does not come", "t [s]", "velocity [m/s]", drawn, "Friction as a force changes its sign with the velocity, and so the velocity changes its sign at every step.")
+            drawn = [
+                series("friction as a force, Euler", ts, vs[:, 0], DOTS),
+                series("friction as an impulse, sliding", ts, stopped[:, 0], LINE),
+            ]
+    return found, Picture(
+        "A stop that does not come",
+        "t [s]",
+        "velocity [m/s]",
+        drawn,
+        "Friction as a force changes sign with the velocity, and thereby reverses the velocity at every step.",
+    )
 
 
 @case("artificial-sliding", "Artificial sliding", compiled=False)
 def artificial_sliding(lesson):
-    """Artificial sliding: a particle that should stay put is moved by dt² g sin θ a step, and put back across the slope only.
+    """Artificial sliding: a particle that should stay creeps at g sin θ dt.
 
-    It creeps with g sin θ dt.  Friction for positions, up to μ times the depth dt² g cos θ, undoes all of it while tan θ ≤ μ.
+    It is moved by dt² g sin θ per step and corrected along the normal only.  Friction on positions, up to μ times the
+    depth dt² g cos θ, undoes all of it while tan θ ≤ μ.
     """
     degrees, steps, found = 30.0, 200, []
     pull, mu = G * np.sin(np.radians(degrees)), 1.1 * np.tan(np.radians(degrees))
@@ -225,36 +275,44 @@ def artificial_sliding(lesson):
     for dt in (0.04, 0.01, 0.001):
         got = creep("contact_step", dt)
         found.append(finding(
-            claim="Put back only across the slope, a particle at rest creeps with g sin θ dt.",
+            claim="Corrected along the normal only, a particle at rest creeps at g sin θ dt.",
             quantity=f"creep at 30°, contact steps of {MILLIMETRES * dt:g} ms [m/s]",
             predicted=pull * dt,
             measured=got,
             tolerance=ROUND_OFF,
-            observation=(f"With steps of {MILLIMETRES * dt:g} ms a particle that should stay put creeps down with "
+            observation=(f"With steps of {MILLIMETRES * dt:g} ms a particle that should stay creeps at "
                          f"{MILLIMETRES * got:.3f} mm/s."),
         ))
         got = creep("gripping_step", dt)
         found.append(finding(
-            claim="Put back along the slope as well, it stays.",
+            claim="Corrected along the tangent as well, it stays.",
             quantity=f"creep at 30°, gripping steps of {MILLIMETRES * dt:g} ms [m/s]",
             predicted=0.0,
             measured=got,
             tolerance=ROUND_OFF,
-            observation=f"With the tangential correction it creeps with {abs(got):.0e} m/s.",
+            observation=f"With the tangential correction it creeps at {abs(got):.0e} m/s.",
         ))
     dts, fine = np.linspace(0.002, 0.04, 12), np.linspace(0.0, 0.042, 50)
-    return found, Picture("Artificial sliding at 30°", "dt [s]", "creep [m/s]", [
-        series("g sin θ dt, theory", fine, pull * fine, LINE), series("contact, measured", dts, [creep("contact_step", dt) for dt in dts], DOTS),
-        series("gripping, measured", dts, [creep("gripping_step", dt) for dt in dts], DOTS),
-    ], "A method that is right in the limit may still be wrong at every step that you can afford.")
+    return found, Picture(
+        "Artificial sliding at 30°",
+        "dt [s]",
+        "creep [m/s]",
+        [
+            series("g sin θ dt, theory", fine, pull * fine, LINE),
+            series("contact, measured", dts, [creep("contact_step", dt) for dt in dts], DOTS),
+            series("gripping, measured", dts, [creep("gripping_step", dt) for dt in dts], DOTS),
+        ],
+        "This creep vanishes as dt goes to zero, but it is there at every step that you can afford.",
+    )
 
 
 @case("cone-vs-pyramid", "Cone and pyramid", compiled=False)
 def cone_vs_pyramid(lesson):
-    """A pyramid along x and y in place of the cone: thrown at the angle φ a block goes √(cos⁴φ + sin⁴φ) times as far, and turns.
+    """A friction pyramid along x and y: a block launched at the angle φ goes √(cos⁴φ + sin⁴φ) times as far, and turns.
 
-    Each component of v is braked by μg until it is zero: x = v² cos²φ/2μg, y = v² sin²φ/2μg, so it ends at the angle arctan tan²φ.
-    Summed up at the end of each step, a component is short by ½ v_i dt and ahead by ⅛ μg dt² at most (scene stopping_block).
+    Each component of v is decelerated by μg until it is zero: x = v² cos²φ/2μg and y = v² sin²φ/2μg, so the block
+    ends at the angle arctan tan²φ.  Summed at the end of each step, a component is short by ½ v_i dt and ahead by
+    at most ⅛ μg dt² (scene stopping_block).
     """
     v, mu, dt, found = 3.0, 0.3, 0.0005, []
     full, block = v * v / (2.0 * mu * G), make_block((0.0, 0.0, 1.0), mu, mu, (0.0, 0.0, -G), (0.0, 0.0, 0.0), 0.0)
@@ -262,45 +320,71 @@ def cone_vs_pyramid(lesson):
 
     def goes(step, degrees):
         phi = np.radians(degrees)
-        x, _ = integrators.advance(getattr(lesson, step), lesson.driven_acceleration, 0.0, np.zeros(3), v * np.array([np.cos(phi), np.sin(phi), 0.0]), dt, round(1.2 / dt), block)
+        x, _ = integrators.advance(
+            getattr(lesson, step),
+            lesson.driven_acceleration,
+            0.0,
+            np.zeros(3),
+            v * np.array([np.cos(phi), np.sin(phi), 0.0]),
+            dt,
+            round(1.2 / dt),
+            block,
+        )
         return x[:2] / full
 
     for degrees in (0.0, 22.5, 45.0):
         c, s = np.cos(np.radians(degrees)) ** 2, np.sin(np.radians(degrees)) ** 2
-        for step, bound, room in (("sliding_step", 1.0, blurred), ("pyramid_step", np.hypot(c, s), np.sqrt(2.0) * blurred)):
+        for step, bound, room in (
+            ("sliding_step", 1.0, blurred),
+            ("pyramid_step", np.hypot(c, s), np.sqrt(2.0) * blurred),
+        ):
             got = np.linalg.norm(goes(step, degrees))
-            found.append(finding(
-                claim="The cone knows no directions, the pyramid stops a diagonal slide after 1/√2 of the way." if step == "pyramid_step" else "With the cone it goes equally far in all directions.",
-                quantity=f"{LABEL[step]}: way at {degrees:g}° over v²/2μg [-]",
-                predicted=bound,
-                measured=got,
-                tolerance=room,
-                observation=f"At {degrees:g}° the {LABEL[step]} step goes {100.0 * got:.2f} % of the way.",
-            ))
+            found.append(
+                finding(
+                    claim="With the pyramid a diagonal slide stops after 1/√2 of the distance."
+                    if step == "pyramid_step"
+                    else "With the cone the block goes equally far in every direction.",
+                    quantity=f"{LABEL[step]}: distance at {degrees:g}° over v²/2μg [-]",
+                    predicted=bound,
+                    measured=got,
+                    tolerance=room,
+                    observation=f"At {degrees:g}° the {LABEL[step]} step goes {100.0 * got:.2f} % of the distance.",
+                )
+            )
     turned = np.degrees(np.arctan2(*goes("pyramid_step", 22.5)[::-1]))
     bound = np.degrees(np.arctan(np.tan(np.radians(22.5)) ** 2))
     found.append(finding(
-        claim="Between its axes a pyramid also turns the path aside.",
+        claim="Between its axes a pyramid also deflects the path.",
         quantity="pyramid: where a slide at 22.5° ends [°]",
         predicted=bound,
         measured=turned,
         tolerance=np.degrees(2.0 * blurred),
-        observation=f"A block thrown at 22.5° ends at {turned:.2f}°.",
+        observation=f"A block launched at 22.5° ends at {turned:.2f}°.",
     ))
     fine, dots = np.linspace(0.0, 90.0, 91), np.linspace(0.0, 90.0, 13)
     ways = lambda step: [np.linalg.norm(goes(step, phi)) for phi in dots]
-    return found, Picture("Cone and pyramid", "heading [°]", "way over v²/2μg [-]", [
-        series("cone, theory", fine, np.ones_like(fine), LINE), series("pyramid, theory", fine, np.sqrt(np.cos(np.radians(fine)) ** 4 + np.sin(np.radians(fine)) ** 4), LINE),
-        series("sliding, measured", dots, ways("sliding_step"), DOTS), series("pyramid, measured", dots, ways("pyramid_step"), DOTS),
-    ], "A floor with pyramids for cones has a grain like wood: along it a block goes farthest.")
+    return found, Picture(
+        "Cone and pyramid",
+        "heading [°]",
+        "way over v²/2μg [-]",
+        [
+            series("cone, theory", fine, np.ones_like(fine), LINE),
+            series(
+                "pyramid, theory", fine, np.sqrt(np.cos(np.radians(fine)) ** 4 + np.sin(np.radians(fine)) ** 4), LINE
+            ),
+            series("sliding, measured", dots, ways("sliding_step"), DOTS),
+            series("pyramid, measured", dots, ways("pyramid_step"), DOTS),
+        ],
+        "A floor with friction pyramids has a grain like wood: a block goes farthest along it.",
+    )
 
 
 @case("curved-wall-order", "What a round wall costs", compiled=False)
 def curved_wall_order(lesson):
-    """What a round wall costs: in a bowl without friction and gravity a step along the tangent turns the wall by α, tan α = v dt/R.
+    """A curved wall slows a frictionless particle: a step along the tangent turns the wall by α, tan α = v dt/R.
 
-    Only v cos α goes on: 1/v² grows by (dt/R)² at every step,  v_N = v₀/√(1 + N (v₀ dt/R)²):  a speed that is lost to the method,
-    of first order in dt over a given time.
+    The bowl has neither friction nor gravity.  Only v cos α is left, so 1/v² grows by (dt/R)² per step and
+    v_N = v₀/√(1 + N (v₀ dt/R)²).  Over a given time the loss is of first order in dt.
     """
     found, radius, speed = [], 0.5, 2.0
     p = InBowl(1.0, 0.0, 0.0, np.zeros(3), np.zeros(3), np.zeros(3), radius)
@@ -308,54 +392,87 @@ def curved_wall_order(lesson):
 
     def left(dt, t):
         x, v = np.array([radius, 0.0, 0.0]), np.array([0.0, 0.6 * speed, 0.8 * speed])
-        return np.linalg.norm(lesson.contact_motion(lesson.contact_step, lesson.falling_acceleration, lesson.bowl_gap, 0.0, x, v, dt, round(t / dt), p)[1])
+        return np.linalg.norm(
+            lesson.contact_motion(
+                lesson.contact_step, lesson.falling_acceleration, lesson.bowl_gap, 0.0, x, v, dt, round(t / dt), p
+            )[1]
+        )
 
     for dt in (0.05, 0.01, 0.002):
         got = left(dt, 1.0)
         found.append(finding(
-            claim="In a round wall 1/v² grows by (dt/R)² at every step: the method brakes where nothing else does.",
+            claim=("On a curved wall 1/v² grows by (dt/R)² per step: the method dissipates energy that the physics "
+                   "keeps."),
             quantity=f"speed left after 1 s, contact steps of {MILLIMETRES * dt:g} ms [m/s]",
             predicted=law(dt, 1.0),
             measured=got,
             tolerance=ROUND_OFF,
             observation=(f"With steps of {MILLIMETRES * dt:g} ms a particle that should keep its 2 m/s has {got:.4f} "
-                         "m/s after a second."),
+                         "m/s after one second."),
         ))
     fine, dots = np.linspace(0.05, 4.0, 80), np.linspace(0.4, 4.0, 10)
-    drawn = [part for dt in (0.05, 0.01) for part in (series(f"dt = {dt} s, theory", fine, law(dt, fine), LINE), series(f"dt = {dt} s, measured", dots, [left(dt, t) for t in dots], DOTS))]
-    return found, Picture("What a round wall costs", "t [s]", "speed [m/s]", drawn, "Nothing brakes this particle but the corners of the path that the steps make of the wall.")
+    drawn = [
+        part
+        for dt in (0.05, 0.01)
+        for part in (
+            series(f"dt = {dt} s, theory", fine, law(dt, fine), LINE),
+            series(f"dt = {dt} s, measured", dots, [left(dt, t) for t in dots], DOTS),
+        )
+    ]
+    return found, Picture(
+        "What a round wall costs",
+        "t [s]",
+        "speed [m/s]",
+        drawn,
+        "No force slows this particle: the loss comes from the corners of the polygon that replaces the wall.",
+    )
 
 
 @case("extreme-coefficients", "Extreme friction", compiled=False)
 def extreme_coefficients(lesson):
-    """Extremes: no friction, infinite friction, no load, a fast throw; and a negative μ, which must be refused by name.
+    """Extremes: no friction, infinite friction, no load, a fast launch, and a negative μ that must be refused by name.
 
-    A block with μ = ∞ holds at 89.9°, and stops within a step from 10⁶ m/s; with μ = 0 it falls down the slope with g sin θ.
+    A block with μ = ∞ holds at 89.9° and stops from 10⁶ m/s within one step.  With μ = 0 it slides down with g sin θ.
     """
     found, still = [], np.zeros(2)
     F, n, v, minus = np.array([1.0, -2.0]), np.array([0.0, 1.0]), np.array([1.0, -1.0]), -0.3
     bad_block, bad_particle = slope(10.0, 0.3, 0.3)._replace(mu_s=minus, mu_k=minus), particle(10.0, minus)
     t_1 = np.array([1.0, 0.0])
     asked = {
-        "static_friction": (F, n, minus), "kinetic_friction": (F, v, n, minus), "incline_acceleration": (0.1, minus, minus, G),
-        "friction_impulse": (v, 1.0, 1.0, minus), "pyramid_impulse": (v, 1.0, 1.0, minus, t_1, t_1), "contact_impulse": (v, n, 1.0, 0.0, minus),
-        "sliding_step": (lesson.driven_acceleration, 0.0, still, still, 0.1, bad_block), "event_step": (lesson.driven_acceleration, 0.0, still, still, 0.1, bad_block),
-        "contact_motion": (lesson.contact_step, lesson.falling_acceleration, lesson.plane_gap, 0.0, still, still, 0.1, 1, bad_particle),
+        "static_friction": (F, n, minus),
+        "kinetic_friction": (F, v, n, minus),
+        "incline_acceleration": (0.1, minus, minus, G),
+        "friction_impulse": (v, 1.0, 1.0, minus),
+        "pyramid_impulse": (v, 1.0, 1.0, minus, t_1, t_1),
+        "contact_impulse": (v, n, 1.0, 0.0, minus),
+        "sliding_step": (lesson.driven_acceleration, 0.0, still, still, 0.1, bad_block),
+        "event_step": (lesson.driven_acceleration, 0.0, still, still, 0.1, bad_block),
+        "contact_motion": (
+            lesson.contact_step,
+            lesson.falling_acceleration,
+            lesson.plane_gap,
+            0.0,
+            still,
+            still,
+            0.1,
+            1,
+            bad_particle,
+        ),
     }
     refused = sum(refuses(getattr(lesson, name), arguments, "-0.3") for name, arguments in asked.items())
     found.append(finding(
-        claim="A negative friction is refused, with its value.",
+        claim="A negative coefficient of friction is refused, and the message gives its value.",
         quantity="functions that name μ = −0.3 in their error [of 9]",
         predicted=len(asked),
         measured=refused,
         tolerance=0.0,
-        observation=f"{refused} of {len(asked)} functions refuse μ = −0.3 with a sentence that says so.",
+        observation=f"{refused} of {len(asked)} functions refuse μ = −0.3 with a message that contains it.",
     ))
     for step in ("sliding_step", "event_step", "gripping_step"):
         got = moved(lesson, step, 89.9, np.inf, np.inf)
         found.append(finding(
-            claim="Infinite friction holds on any slope that is not a wall.",
-            quantity=f"{LABEL[step]}: way in a second at 89.9°, μ = ∞ [m]",
+            claim="Infinite friction holds on any slope short of the vertical.",
+            quantity=f"{LABEL[step]}: distance in one second at 89.9°, μ = ∞ [m]",
             predicted=0.0,
             measured=got,
             tolerance=WAY,
@@ -365,25 +482,36 @@ def extreme_coefficients(lesson):
         got, dt, steps = moved(lesson, step, 30.0, 0.0, 0.0), 0.02, 50
         bound = 0.5 * G * np.sin(np.radians(30.0)) * steps * dt * (steps + 1) * dt
         found.append(finding(
-            claim="Without friction a block falls down the slope.",
-            quantity=f"{LABEL[step]}: way in a second at 30°, μ = 0 [m]",
+            claim="Without friction a block slides down with g sin θ.",
+            quantity=f"{LABEL[step]}: distance in one second at 30°, μ = 0 [m]",
             predicted=bound,
             measured=got,
             tolerance=ROUND_OFF,
-            observation=(f"With μ = 0 the {LABEL[step]} step goes {got:.6f} m: symplectic Euler's g sin θ t (t + "
-                         "dt)/2."),
+            observation=(f"With μ = 0 the {LABEL[step]} step goes {got:.6f} m, as symplectic Euler does: g sin θ t (t "
+                         "+ dt)/2."),
         ))
-    x, v = lesson.sliding_step(lesson.driven_acceleration, 0.0, still, np.array([1e6, 0.0]), 1e-3, slope(0.0, np.inf, np.inf))
+    fast = np.array([1e6, 0.0])
+    _, v = lesson.sliding_step(lesson.driven_acceleration, 0.0, still, fast, 1e-3, slope(0.0, np.inf, np.inf))
     found.append(finding(
-        claim="Infinite friction stops everything at once, and no number is lost.",
-        quantity="speed a step after 10⁶ m/s, μ = ∞ [m/s]",
+        claim="Infinite friction stops a block within one step, and the result is finite.",
+        quantity="speed one step after 10⁶ m/s, μ = ∞ [m/s]",
         predicted=0.0,
         measured=np.abs(v).max(),
         tolerance=0.0,
         observation=f"One step after 10⁶ m/s on μ = ∞ the speed is {np.abs(v).max():g} m/s.",
     ))
     exponents = np.linspace(-3.0, 6.0, 10)
-    after = [np.linalg.norm(lesson.contact_impulse(10.0**y * np.array([1.0, -1.0]), n, 1.0, 0.5, 0.4)) / 10.0**y for y in exponents]
-    return found, Picture("The same impact at any speed", "log₁₀ of the speed [m/s]", "impulse over m v [-]", [
-        series("theory", exponents, np.full(10, 1.5 * np.hypot(1.0, 0.4)), LINE), series("contact, measured", exponents, after, DOTS)],
-        "From a millimetre to a thousand kilometres a second: Coulomb's law has no scale of its own.")
+    after = [
+        np.linalg.norm(lesson.contact_impulse(10.0**y * np.array([1.0, -1.0]), n, 1.0, 0.5, 0.4)) / 10.0**y
+        for y in exponents
+    ]
+    return found, Picture(
+        "The same impact at any speed",
+        "log₁₀ of the speed [m/s]",
+        "impulse over m v [-]",
+        [
+            series("theory", exponents, np.full(10, 1.5 * np.hypot(1.0, 0.4)), LINE),
+            series("contact, measured", exponents, after, DOTS),
+        ],
+        "From a millimetre to a thousand kilometres per second: Coulomb's law has no characteristic speed.",
+    )

@@ -1,7 +1,7 @@
-"""What do impulses do where they are pressed hardest?  Theory's numbers against those that the functions of lesson 7 find.
+"""Impulses at their limits: the functions of lesson 7 compared with theory.
 
-Cases 18 to 20 and 71 to 73.  Edges are found by bisection of runs or of impacts, never by asking a formula.
-*Source:* Painlevé 1895 for the rod; each case derives what it adds.
+Cases 18 to 20 and 71 to 73.  Edges are found by bisection of runs or of impacts, never from a formula.
+*Source:* Painlevé 1895 for the rod; each case derives the rest.
 """
 
 import numpy as np
@@ -12,45 +12,47 @@ from validate.reference.impulses import COPIES
 from validate.stability.case import DOTS, EDGE, LINE, Picture, bisect, case, finding, refuses, series
 
 G = 9.81                     # [m/s²]
-ROUND_OFF = 1e-12            # of numbers below 30, after a few hundred operations, each rounded by 1.1e-16 of that
+ROUND_OFF = 1e-12            # of numbers below 30 after a few hundred operations, each rounded by 1.1e-16 of its result
 UP = np.array([0.0, 1.0, 0.0])
 ACROSS = np.array([1.0, 0.0, 0.0])
-STEEPEST = np.degrees(np.arctan(2.0))                                    # of all rods the one for which Painlevé's trouble begins first [°]
+STEEPEST = np.degrees(np.arctan(2.0))  # the angle at which Painlevé's paradox needs the least friction [°]
 
 
 # ---------------------------------------------------------------------------------------------- a rod on its tip
 
 def rod(lesson, degrees):
-    """K (3, 3) of the lower tip of a uniform rod of 2 m and 1 kg that leans by that angle from the floor; y is up, and it turns about z.
+    """Return K (3, 3) of the lower tip of a uniform rod of 2 m and 1 kg that leans at that angle from the floor.
 
-    With c, s the cosine and sine:  K = (1 + 3s², −3sc; −3sc, 1 + 3c²) in x and y.
+    y is up, and the rod turns about z.  With c, s the cosine and sine:  K = (1 + 3s², −3sc; −3sc, 1 + 3c²) in x and y.
     """
     theta = np.radians(degrees)
     return lesson.point_inverse_mass(np.array([-np.cos(theta), -np.sin(theta), 0.0]), 1.0, np.diag([0.0, 3.0, 3.0]))
 
 
 def against_the_first_slip(K, mu, side):
-    """n · K d for a d whose friction opposes the slip before the impact: what impulses with that rule are divided by [1/kg]."""
+    """Return n · K d [1/kg] for friction against the slip before the impact; that rule's impulse is divided by it."""
     return UP @ (K @ (UP + mu * side * ACROSS))
 
 
 @case("painleve-rod", "Painlevé's rod", compiled=False)
 def painleve_rod(lesson):
-    """A rod on its tip, pushed over a rough floor: friction against the slip presses the tip in harder than the impulse lifts it.
+    """A rod slides on its tip over a rough floor: friction against the slip drives the tip into the floor.
 
-    d = n + μ t:  n · K d = 1 + 3c² − 3μ sc,  zero first at tan θ = 2, for μ = 4/3.  From there on a rule that fixes friction against the
-    first slip divides by zero, or pulls.  cone_impulse puts friction where sticking would have it.  All J that end the normal motion that way
-    lie on a line from the frictionless impulse to the sticking one; energy is convex along it, and neither of its ends gains any with e = 0.
+    With d = n + μ t,  n · K d = 1 + 3c² − 3μ sc.  It is zero first at tan θ = 2, for μ = 4/3.  From there on a rule
+    that fixes friction against the first slip divides by zero, or pulls.  cone_impulse puts friction in the
+    direction of a sticking impulse.  All J that end the normal motion that way lie on a line from the frictionless
+    impulse to the sticking one.  Energy is convex along it, and neither of its ends gains any with e = 0.
     """
     found = []
-    edge = bisect(lambda mu: min(against_the_first_slip(rod(lesson, a), mu, 1.0) for a in (STEEPEST - 1.0, STEEPEST, STEEPEST + 1.0)) <= 0.0, 0.1, 10.0)
+    near = [rod(lesson, a) for a in (STEEPEST - 1.0, STEEPEST, STEEPEST + 1.0)]
+    edge = bisect(lambda mu: min(against_the_first_slip(K, mu, 1.0) for K in near) <= 0.0, 0.1, 10.0)
     found.append(finding(
-        claim="Friction against the first slip jams a leaning rod from μ = 4/3 on.",
-        quantity="least friction that jams a rod of slope 2 [-]",
+        claim="Friction against the first slip has no solution for a leaning rod from μ = 4/3 on.",
+        quantity="least friction without a solution, rod of slope 2 [-]",
         predicted=4.0 / 3.0,
         measured=edge,
         tolerance=2.0 * EDGE,
-        observation=f"At tan θ = 2 the impulse of that rule is divided by zero at μ = {edge:.5f}.",
+        observation=f"At tan θ = 2 the impulse of that rule has a zero denominator at μ = {edge:.5f}.",
     ))
     finite = tried = 0
     gained = wrong = size = 0.0
@@ -74,12 +76,12 @@ def painleve_rod(lesson):
             observation=f"{finite} of {tried} impacts at μ from 1.34 to ∞ end in a finite impulse.",
         ),
         finding(
-            claim="No impact with e = 0 makes energy.",
+            claim="No impact with e = 0 gains energy.",
             quantity="largest gain of energy [J]",
             predicted=0.0,
             measured=max(0.0, gained),
             tolerance=ROUND_OFF,
-            observation=f"The most that an impact gained is {max(0.0, gained):.0e} J, of some 5 J.",
+            observation=f"The largest gain of an impact is {max(0.0, gained):.0e} J, of about 5 J.",
         ),
         finding(
             claim="The tip stays on the floor.",
@@ -87,10 +89,10 @@ def painleve_rod(lesson):
             predicted=0.0,
             measured=wrong,
             tolerance=ROUND_OFF,
-            observation=f"After the impact the tip leaves with {wrong:.0e} m/s at most.",
+            observation=f"After the impact the normal velocity of the tip is at most {wrong:.0e} m/s.",
         ),
         finding(
-            claim="No impulse is larger than the larger of the frictionless one and the one that sticks.",
+            claim="No impulse exceeds the larger of the frictionless one and the sticking one.",
             quantity="largest impulse over that, or 1 [-]",
             predicted=1.0,
             measured=max(1.0, size),
@@ -102,20 +104,29 @@ def painleve_rod(lesson):
     naive = np.array([1.0 / against_the_first_slip(rod(lesson, a), 2.0, 1.0) for a in fine])
     flat, steep = (fine < STEEPEST) & (0.0 < naive) & (naive < 4.0), (fine > STEEPEST) & (0.0 < naive) & (naive < 4.0)
     ours = [lesson.contact_impulse(-3.0 * ACROSS - UP, UP, rod(lesson, a), 0.0, 2.0)[1] for a in fine]
-    return found, Picture("A rod pushed over a rough floor, μ = 2", "angle from the floor [°]", "normal impulse over m v [-]", [
-        series("friction against the first slip, flatter rods", fine[flat], naive[flat], LINE),
-        series("friction against the first slip, steeper rods", fine[steep], naive[steep], LINE), series("cone_impulse", fine[::6], ours[::6], DOTS)],
-        "Between 37° and 79° the common rule has no impulse at all: it would be infinite, or a pull. The cone's does not notice.")
+    return found, Picture(
+        "A rod pushed over a rough floor, μ = 2",
+        "angle from the floor [°]",
+        "normal impulse over m v [-]",
+        [
+            series("friction against the first slip, flatter rods", fine[flat], naive[flat], LINE),
+            series("friction against the first slip, steeper rods", fine[steep], naive[steep], LINE),
+            series("cone_impulse", fine[::6], ours[::6], DOTS),
+        ],
+        ("Between 37° and 79° the common rule has no solution: its impulse would be infinite, or a pull. The cone's "
+         "impulse stays finite."),
+    )
 
 
 # ---------------------------------------------------------------------------------------------- deep overlap
 
 @case("deep-overlap", "Deep overlap", compiled=False)
 def deep_overlap(lesson):
-    """What overlaps by a quarter is moved apart, and nothing else: the work of the correction is m g times the depth, and no speed comes of it.
+    """Overlapping bodies are moved apart without gaining speed: the correction does the work m g d and no more.
 
-    A ball at rest a depth d inside its floor has after one projecting step v = e g dt, which the fall of that step has left, and is on
-    the floor.  The penalty method stores ½ k d² in its spring instead: it throws the ball out with √(ω² d² − 2 g d).
+    A ball at rest at a depth d inside its floor is on the floor after one projecting step, with v = e g dt from the
+    fall of that step.  The penalty method stores ½ k d² in its spring instead, and ejects the ball with √(ω² d² − 2
+    g d).
     """
     found, radius, dt = [], 0.5, 0.01
     depth = 0.25 * radius
@@ -123,7 +134,7 @@ def deep_overlap(lesson):
     x, v = lesson.projecting_step(lesson.falling_acceleration, 0.0, np.array([0.0, -depth]), np.zeros(2), dt, p)
     found += [
         finding(
-            claim="A ball inside its floor is put on it.",
+            claim="A ball inside the floor is placed on it.",
             quantity="height after one step [m]",
             predicted=0.0,
             measured=x[1],
@@ -131,16 +142,16 @@ def deep_overlap(lesson):
             observation=f"A ball {depth} m deep is at {x[1]:g} m after one step.",
         ),
         finding(
-            claim="The work of that is m g times the depth, and nothing else.",
-            quantity="energy that it has gained [J/kg]",
+            claim="The correction does the work m g times the depth, and no more.",
+            quantity="energy gained [J/kg]",
             predicted=G * depth + 0.5 * (0.5 * G * dt) ** 2,
             measured=G * (x[1] + depth) + 0.5 * v @ v,
             tolerance=ROUND_OFF,
-            observation=(f"Being put on the floor has given it {G * (x[1] + depth) + 0.5 * v @ v:.5f} J/kg; g times "
-                         f"the depth is {G * depth:.5f}."),
+            observation=(f"The correction has given it {G * (x[1] + depth) + 0.5 * v @ v:.5f} J/kg; g times the depth "
+                         f"is {G * depth:.5f}."),
         ),
         finding(
-            claim="It gets no speed from that: what it has is e g dt, from the fall of that step.",
+            claim="It gains no speed from the correction: its speed e g dt comes from the fall of that step.",
             quantity="speed after one step [m/s]",
             predicted=0.5 * G * dt,
             measured=np.hypot(*v),
@@ -157,12 +168,12 @@ def deep_overlap(lesson):
         speeds.append(v[0, 1])
     law = np.sqrt(omega**2 * depths**2 - 2.0 * G * depths)
     found.append(finding(
-        claim="The penalty method throws the same ball out: its spring was loaded.",
-        quantity=f"speed out of a depth of {depths[2]:g} m at ω = 1000/s [m/s]",
+        claim="The penalty method ejects the same ball, because its spring starts compressed.",
+        quantity=f"speed after ejection from a depth of {depths[2]:g} m at ω = 1000/s [m/s]",
         predicted=law[2],
         measured=speeds[2],
         tolerance=law[2] * omega * tiny + G * 20.0 * tiny,
-        observation=f"From {depths[2]:g} m the penalty throws a ball that was at rest out with {speeds[2]:.1f} m/s.",
+        observation=f"From {depths[2]:g} m the penalty method ejects a ball at rest with {speeds[2]:.1f} m/s.",
     ))
     discs = lesson.Discs(np.full(5, radius), np.array([1.0, 0.5, 1.0, 2.0, 1.0]), 0.8)
     row = np.stack((0.75 * 2.0 * radius * np.arange(5.0), np.zeros(5)), axis=1)
@@ -196,7 +207,9 @@ def deep_overlap(lesson):
         ),
     ]
     same = np.zeros((1, 2, 2))
-    x, v = lesson.discs_all(lesson.projecting_discs_step, same, same, dt, 1, lesson.Discs(np.full(2, radius), np.ones(2), 0.8))
+    x, v = lesson.discs_all(
+        lesson.projecting_discs_step, same, same, dt, 1, lesson.Discs(np.full(2, radius), np.ones(2), 0.8)
+    )
     found.append(finding(
         claim="Two discs on one point have no normal between them, and still come apart.",
         quantity="distance after one step [m]",
@@ -205,15 +218,23 @@ def deep_overlap(lesson):
         tolerance=ROUND_OFF,
         observation=f"Two discs on one point are {np.linalg.norm(x[0, 0] - x[0, 1]):g} m apart after one step.",
     ))
-    return found, Picture("A ball let go inside its floor", "depth [m]", "speed with which it leaves [m/s]", [
-        series("penalty, theory", depths, law, LINE), series("penalty, measured", depths, speeds, DOTS),
-        series("projecting: e g dt", depths, np.full(len(depths), 0.5 * G * dt), LINE)], "A spring that is found loaded goes off; a projection is not a spring.")
+    return found, Picture(
+        "A ball released inside its floor",
+        "depth [m]",
+        "speed with which it leaves [m/s]",
+        [
+            series("penalty, theory", depths, law, LINE),
+            series("penalty, measured", depths, speeds, DOTS),
+            series("projecting: e g dt", depths, np.full(len(depths), 0.5 * G * dt), LINE),
+        ],
+        "A spring that starts compressed ejects the ball; a projection stores no energy.",
+    )
 
 
 # ---------------------------------------------------------------------------------------------- Zeno, and far away
 
 def bouncing(lesson, e, T, steps, place=(0.0, 0.0), copies=1):
-    """(x, v) of copies that are let go at 1 m, each a little earlier than the one before, over a plane that is at `place`."""
+    """Return (x, v) of copies released at 1 m over a plane at `place`, each a little earlier than the one before."""
     p = lesson.Drop(e, np.array([0.0, -G]), np.array(place), np.array([0.0, 1.0]), 1.0, 0.0)
     before = 0.01 * np.arange(copies)
     x = np.stack((np.zeros(copies), 1.0 - 0.5 * G * before**2), axis=1) + p.point
@@ -223,17 +244,18 @@ def bouncing(lesson, e, T, steps, place=(0.0, 0.0), copies=1):
 
 @case("zeno-and-far-away", "Zeno's bounce, and far from the origin", compiled=False)
 def zeno_and_far_away(lesson):
-    """Infinitely many bounces end after √(2h/g) (1 + e)/(1 − e); and 10⁵ m from the origin a scene is as good as its floats are dense.
+    """Infinitely many bounces end after √(2h/g) (1 + e)/(1 − e), and far from the origin only floats are coarser.
 
-    Far away a place is rounded to half a spacing, twice at a step.  What N steps have added up, N spacings, is an error of the height at
-    which a ball meets its plane; a height that is off by δ costs g δ/v of speed and δ/v of time at an impact with v, and a flight later
-    both have grown by no more than (1 + 2/e): three impacts make less than (1 + 2/e)³ = 43 of it.
+    At 10⁵ m a position is rounded to half a spacing, twice per step, so N steps add up to an error of N spacings in
+    the height at which a ball meets its plane.  A height wrong by δ changes the speed by g δ/v and the time by δ/v
+    at an impact with v.  One flight later both have grown by at most (1 + 2/e).  Three impacts make less than
+    (1 + 2/e)³ = 43 of it.
     """
     found, es = [], (0.3, 0.5, 0.8, 0.9, 0.95)
     stops = []
     for e in es:
         end = np.sqrt(2.0 / G) * (1.0 + e) / (1.0 - e)
-        stops.append(bisect(lambda T: bouncing(lesson, e, T, 1)[1][0, 1] == 0.0, 0.5, 2.0 * end))
+        stops.append(bisect(lambda T, e=e: bouncing(lesson, e, T, 1)[1][0, 1] == 0.0, 0.5, 2.0 * end))
         if e in (0.5, 0.8, 0.95):
             found.append(finding(
                 claim="A ball stops bouncing after √(2h/g) (1 + e)/(1 − e).",
@@ -241,11 +263,11 @@ def zeno_and_far_away(lesson):
                 predicted=end,
                 measured=stops[-1],
                 tolerance=EDGE * end,
-                observation=f"With e = {e:g} a ball dropped from 1 m lies still from {stops[-1]:.5f} s on.",
+                observation=f"With e = {e:g} a ball dropped from 1 m is at rest from {stops[-1]:.5f} s on.",
             ))
     x, v = bouncing(lesson, 0.8, 5.0, 500)
     found.append(finding(
-        claim="In steps it comes to the same rest, on the plane to the last digit.",
+        claim="The stepped run reaches the same rest, on the plane to the last digit.",
         quantity="height and speed after 5 s in 500 steps [m, m/s]",
         predicted=0.0,
         measured=np.hypot(x[0, 1], v[0, 1]),
@@ -260,32 +282,40 @@ def zeno_and_far_away(lesson):
         errors.append(np.sqrt(np.mean((x - place - near[0]) ** 2)))
     bound = 43.0 * steps * np.spacing(1e5)
     found.append(finding(
-        claim="10⁵ m away the error is that of the floats there, added up over the steps.",
-        quantity="error of place at (10⁵, −8·10⁴) m after 190 steps [m]",
+        claim="10⁵ m away the error is that of the floats there, summed over the steps.",
+        quantity="error of the position at (10⁵, −8·10⁴) m after 190 steps [m]",
         predicted=0.0,
         measured=errors[3],
         tolerance=bound,
-        observation=(f"At (10⁵, −8·10⁴) m the place is off by {errors[3]:.1e} m; floats are {np.spacing(1e5):.1e} m "
-                     "apart there."),
+        observation=(f"At (10⁵, −8·10⁴) m the position is off by {errors[3]:.1e} m; floats are {np.spacing(1e5):.1e} "
+                     "m apart there."),
     ))
     slope = np.polyfit(np.log10(far), np.log10(errors), 1)[0]
     found.append(finding(
-        claim="It grows in proportion to the distance, as the spacing of floats does.",
+        claim="The error grows in proportion to the distance, as the spacing of floats does.",
         quantity="order of its growth from 10² to 10⁸ m [-]",
         predicted=1.0,
         measured=slope,
         tolerance=0.15,
-        observation=f"From 10² to 10⁸ m it grows with the power {slope:.3f} of the distance.",
+        observation=f"From 10² to 10⁸ m the error grows with the power {slope:.3f} of the distance.",
     ))
-    return found, Picture("Far from the origin", "log₁₀ of the distance [m]", "log₁₀ of the error [m]", [
-        series("spacing of floats", np.log10(far), np.log10(np.spacing(far)), LINE), series("the bound of 190 steps", np.log10(far), np.log10(43.0 * steps * np.spacing(far)), LINE),
-        series("measured", np.log10(far), np.log10(errors), DOTS)], "Nothing but the spacing of floats is to blame: the error follows it over six decades.")
+    return found, Picture(
+        "Far from the origin",
+        "log₁₀ of the distance [m]",
+        "log₁₀ of the error [m]",
+        [
+            series("spacing of floats", np.log10(far), np.log10(np.spacing(far)), LINE),
+            series("the bound of 190 steps", np.log10(far), np.log10(43.0 * steps * np.spacing(far)), LINE),
+            series("measured", np.log10(far), np.log10(errors), DOTS),
+        ],
+        "The spacing of floats explains the whole error, which follows it over six decades.",
+    )
 
 
 # ---------------------------------------------------------------------------------------------- the penalty's price
 
 def swings_up(lesson, h_omega, zeta, steps=500):
-    """Whether a ball that rests on its penalty spring, disturbed by 10⁻⁹ of its depth, has swung up to 10⁻³ of it."""
+    """Return whether a ball at rest on its penalty spring, disturbed by 10⁻⁹ of its depth, reaches 10⁻³ of it."""
     omega = 100.0
     sag = G / omega**2
     p = lesson.Drop(0.5, np.array([0.0, -G]), np.zeros(2), np.array([0.0, 1.0]), omega**2, 2.0 * zeta * omega)
@@ -299,31 +329,35 @@ def swings_up(lesson, h_omega, zeta, steps=500):
 
 @case("penalty-stability", "The price of a penalty", compiled=False)
 def penalty_stability(lesson):
-    """The penalty's spring is stable for ω dt < 2(√(1 + ζ²) − ζ), and a ball at rest hangs in it by m g/k = g/ω².
+    """The penalty's spring is stable for ω dt < 2(√(1 + ζ²) − ζ), and a ball at rest compresses it by m g/k = g/ω².
 
-    Just beyond, at ω dt (1 + ε), an undamped swing grows by √(8ε) a step: 500 steps make 10⁶ of it from ε = 9.5e-5 on, so that the edge is
-    found that much late; with a damper the growth is 2ε a step or more: 2,000 steps find it at ε = ln 10⁶/4000 = 3.5e-3 at most.
+    Just beyond, at ω dt (1 + ε), an undamped oscillation grows by √(8ε) per step.  500 steps amplify it by 10⁶ from
+    ε = 9.5e-5 on, so the edge is found that much late.  With a damper the growth is at least 2ε per step, and 2,000
+    steps find the edge at ε = ln 10⁶/4000 = 3.5e-3 at most.
     """
     found, zetas = [], (0.0, 0.1, 0.3, 0.6, 1.0)
-    edges = [bisect(lambda y: swings_up(lesson, y, zeta, 500 if zeta == 0.0 else 2000), 0.2, 3.0) for zeta in zetas]
+    unbounded = lambda y, zeta: swings_up(lesson, y, zeta, 500 if zeta == 0.0 else 2000)
+    edges = [bisect(lambda y, zeta=zeta: unbounded(y, zeta), 0.2, 3.0) for zeta in zetas]
     law = lambda zeta: 2.0 * (np.sqrt(1.0 + zeta**2) - zeta)
     for zeta, edge in zip(zetas, edges):
         late = (np.log(1e6) / 500.0) ** 2 / 8.0 if zeta == 0.0 else np.log(1e6) / 4000.0
         found.append(finding(
-            claim="A penalty's spring wants steps shorter than 2(√(1 + ζ²) − ζ)/ω.",
+            claim="A penalty spring needs steps shorter than 2(√(1 + ζ²) − ζ)/ω.",
             quantity=f"largest ω dt that stays bounded, ζ = {zeta:g} [-]",
             predicted=law(zeta),
             measured=edge,
             tolerance=law(zeta) * (late + EDGE),
-            observation=f"At ζ = {zeta:g} a ball on its penalty spring swings up from ω dt = {edge:.4f} on.",
+            observation=(f"At ζ = {zeta:g} the oscillation of a ball on its penalty spring grows from ω dt = "
+                         f"{edge:.4f} on."),
         ))
     depths = []
     for omega in (30.0, 100.0, 300.0):
         p = lesson.Drop(0.5, np.array([0.0, -G]), np.zeros(2), np.array([0.0, 1.0]), omega**2, 2.0 * omega)
-        x, _ = lesson.drop_all(lesson.penalty_step, lesson.falling_acceleration, 0.0, np.zeros((1, 2)), np.zeros((1, 2)), 0.1 / omega, 1000, p)
+        still, dt = np.zeros((1, 2)), 0.1 / omega
+        x, _ = lesson.drop_all(lesson.penalty_step, lesson.falling_acceleration, 0.0, still, still, dt, 1000, p)
         depths.append(-x[0, 1])
         found.append(finding(
-            claim="What rests on a penalty spring sinks in by m g/k.",
+            claim="A body at rest on a penalty spring sinks in by m g/k.",
             quantity=f"depth at rest, ω = {omega:g}/s [m]",
             predicted=G / omega**2,
             measured=depths[-1],
@@ -332,14 +366,19 @@ def penalty_stability(lesson):
                          f"{2e3 / omega:.1f} ms."),
         ))
     fine = np.linspace(0.0, 1.0, 101)
-    return found, Picture("Penalty: the longest step", "damping ratio ζ [-]", "ω dt [-]", [series("theory", fine, law(fine), LINE), series("measured", zetas, edges, DOTS)],
-                          "A floor twice as hard asks for steps 1.4 times as short, and a damper makes it worse, not better.")
+    return found, Picture(
+        "Penalty: the longest step",
+        "damping ratio ζ [-]",
+        "ω dt [-]",
+        [series("theory", fine, law(fine), LINE), series("measured", zetas, edges, DOTS)],
+        "A floor twice as stiff needs steps 1.4 times as short, and a damper shortens them further.",
+    )
 
 
 # ---------------------------------------------------------------------------------------------- energy out of nothing
 
 def most_gained(lesson, K, e):
-    """The most energy [J] that an impact with u_n = −1 m/s and e gains when it sticks, over all slips."""
+    """Return the largest energy gain [J] of a sticking impact with u_n = −1 m/s and e, over all slips."""
     def lost(slip):
         u = slip * ACROSS - UP
         return -lesson.energy_change(u, K, lesson.contact_impulse(u, UP, K, e, np.inf))
@@ -347,19 +386,20 @@ def most_gained(lesson, K, e):
 
 
 def least_gaining(K):
-    """The restitution from which on an impact may gain energy:  e* = 1/√(K_nn (K⁻¹)_nn)."""
+    """Return the restitution above which an impact can gain energy:  e* = 1/√(K_nn (K⁻¹)_nn)."""
     return 1.0 / np.sqrt(K[1, 1] * np.linalg.inv(K)[1, 1])
 
 
 @case("energy-gain", "Energy out of nothing", compiled=False)
 def energy_gain(lesson):
-    """Newton's restitution with friction gains energy when e > 1/√(K_nn (K⁻¹)_nn), at the wrong slip; for the rod 2/√((1 + 3c²)(1 + 3s²)).
+    """Newton's restitution with friction gains energy if e > 1/√(K_nn (K⁻¹)_nn), at the wrong slip.
 
-    A J that sticks gives ½ (e² u_n² n · K⁻¹n − u · K⁻¹u), most where u · K⁻¹u is least for its u_n, which is u_n²/K_nn.  On the way from
-    the frictionless impulse to the sticking one energy is a convex function, so that no sliding impact gains if both of them do not.
+    For the rod that is 2/√((1 + 3c²)(1 + 3s²)).  A sticking J gives ½ (e² u_n² n · K⁻¹n − u · K⁻¹u).  The gain is
+    largest where u · K⁻¹u is least for its u_n, at u_n²/K_nn.  Energy is a convex function on the line from the
+    frictionless impulse to the sticking one, so no sliding impact gains unless one of the two does.
     """
     found, angles = [], (10.0, 20.0, 30.0, 45.0, 60.0, 75.0)
-    edges = [bisect(lambda e: most_gained(lesson, rod(lesson, a), e) > 0.0, 0.3, 1.0) for a in angles]
+    edges = [bisect(lambda e, a=a: most_gained(lesson, rod(lesson, a), e) > 0.0, 0.3, 1.0) for a in angles]
     law = lambda a: 2.0 / np.sqrt((1.0 + 3.0 * np.cos(np.radians(a)) ** 2) * (1.0 + 3.0 * np.sin(np.radians(a)) ** 2))
     for a, edge in zip(angles, edges):
         if a in (30.0, 45.0, 75.0):
@@ -384,7 +424,7 @@ def energy_gain(lesson):
     found += [
         finding(
             claim="Below that restitution no impact gains, sliding or sticking, in the plane or in space.",
-            quantity="impacts that gain below it [of 1500]",
+            quantity="impacts that gain energy below it [of 1500]",
             predicted=0,
             measured=broken,
             tolerance=0.0,
@@ -392,7 +432,7 @@ def energy_gain(lesson):
         ),
         finding(
             claim="Without restitution none gains.",
-            quantity="impacts with e = 0 that gain [of 1500]",
+            quantity="impacts with e = 0 that gain energy [of 1500]",
             predicted=0,
             measured=dead,
             tolerance=0.0,
@@ -402,48 +442,63 @@ def energy_gain(lesson):
     K, worst = rod(lesson, 45.0), 0.0
     for e in (0.0, 0.5, 1.0):
         u = 2.0 * ACROSS - UP
-        worst = max(worst, abs(lesson.energy_change(u, K, lesson.contact_impulse(u, UP, K, e, 0.0)) + 0.5 * (1.0 - e * e) / K[1, 1]))
+        gained = lesson.energy_change(u, K, lesson.contact_impulse(u, UP, K, e, 0.0))
+        worst = max(worst, abs(gained + 0.5 * (1.0 - e * e) / K[1, 1]))
     found.append(finding(
         claim="Without friction an impact loses ½ (1 − e²) u_n²/k.",
-        quantity="largest departure for e = 0, ½, 1 [J]",
+        quantity="largest difference for e = 0, ½, 1 [J]",
         predicted=0.0,
         measured=worst,
         tolerance=ROUND_OFF,
-        observation=f"Frictionless impacts lose what theory says, within {worst:.0e} J.",
+        observation=f"Frictionless impacts lose what theory gives, to {worst:.0e} J.",
     ))
     fine = np.linspace(0.0, 90.0, 181)
-    return found, Picture("When restitution with friction gains energy", "angle of the rod from the floor [°]", "restitution e [-]", [
-        series("theory: it may gain above", fine, law(fine), LINE), series("measured", angles, edges, DOTS)],
-        "At 45° a sticking impact gains energy from e = 0.8 on, if the slip is just right; upright or flat it never does.")
+    return found, Picture(
+        "When restitution with friction gains energy",
+        "angle of the rod from the floor [°]",
+        "restitution e [-]",
+        [series("theory: it may gain above", fine, law(fine), LINE), series("measured", angles, edges, DOTS)],
+        ("At 45° a sticking impact can gain energy from e = 0.8 on, at one particular slip; upright or flat it never "
+         "does."),
+    )
 
 
 # ---------------------------------------------------------------------------------------------- what has no physics
 
 @case("invalid-impacts", "Impacts that have no physics", compiled=False)
 def invalid_impacts(lesson):
-    """Impacts that have no physics are refused by name and value; those that only look so are solved."""
+    """Impossible impacts are refused by name and value; extreme but valid ones are solved."""
     u, n, K, zero = np.array([1.0, -2.0, 0.5]), UP, np.eye(3), np.zeros(3)
     body, r = lesson.Solid(u, zero, 1.0, np.eye(3)), np.zeros((1, 3))
     drop = lesson.Drop(0.5, np.array([0.0, -G]), np.zeros(2), np.array([0.0, 1.0]), 1.0, 0.0)
     fall = (lesson.falling_acceleration, 0.0, np.ones((1, 2)), np.zeros((1, 2)), 0.1, 1)
+    pair, discs = np.zeros((1, 2, 2)), lesson.Discs(np.ones(2), np.ones(2), -1.0)
     asked = (
-        ("impulse_size", (-1.0, 1.0, 1.5), "1.5"), ("impulse_size", (-1.0, 1.0, -0.5), "-0.5"), ("impulse_size", (-1.0, 0.0, 0.5), "0.0"),
-        ("cone_impulse", (u, n, K, 0.0, -0.3), "-0.3"), ("cone_impulse", (u, zero, K, 0.0, 0.3), "0.0"), ("cone_impulse", (u, n, 0.0 * K, 0.0, 0.3), "0.0"),
-        ("cone_impulse", (np.nan * u, n, K, 0.0, 0.3), "nan"), ("contact_impulse", (u, n, K, 2.0, 0.3), "2.0"), ("gap_multiplier", (0.1, -1.0, 0.0, 0.1), "0.0"),
-        ("solve_impacts", (body, r, n[None], 1.25, 0.3), "1.25"), ("solve_impacts", (body, r, n[None], 0.5, -0.3), "-0.3"),
-        ("drop_all", (lesson.projecting_step, *fall, drop._replace(e=1.5)), "1.5"), ("drop_all", (lesson.backtracking_step, *fall, drop._replace(n=np.zeros(2))), "0.0"),
+        ("impulse_size", (-1.0, 1.0, 1.5), "1.5"),
+        ("impulse_size", (-1.0, 1.0, -0.5), "-0.5"),
+        ("impulse_size", (-1.0, 0.0, 0.5), "0.0"),
+        ("cone_impulse", (u, n, K, 0.0, -0.3), "-0.3"),
+        ("cone_impulse", (u, zero, K, 0.0, 0.3), "0.0"),
+        ("cone_impulse", (u, n, 0.0 * K, 0.0, 0.3), "0.0"),
+        ("cone_impulse", (np.nan * u, n, K, 0.0, 0.3), "nan"),
+        ("contact_impulse", (u, n, K, 2.0, 0.3), "2.0"),
+        ("gap_multiplier", (0.1, -1.0, 0.0, 0.1), "0.0"),
+        ("solve_impacts", (body, r, n[None], 1.25, 0.3), "1.25"),
+        ("solve_impacts", (body, r, n[None], 0.5, -0.3), "-0.3"),
+        ("drop_all", (lesson.projecting_step, *fall, drop._replace(e=1.5)), "1.5"),
+        ("drop_all", (lesson.backtracking_step, *fall, drop._replace(n=np.zeros(2))), "0.0"),
         ("drop_all", (lesson.backtracking_step, fall[0], 0.0, np.full((1, 2), np.inf), *fall[3:], drop), "inf"),
-        ("discs_all", (lesson.projecting_discs_step, np.zeros((1, 2, 2)), np.zeros((1, 2, 2)), 0.1, 1, lesson.Discs(np.ones(2), np.ones(2), -1.0)), "-1.0"),
+        ("discs_all", (lesson.projecting_discs_step, pair, pair, 0.1, 1, discs), "-1.0"),
     )
     refused = sum(refuses(getattr(lesson, name), arguments, value) for name, arguments, value in asked)
     found = [finding(
-        claim=("Restitution outside 0 to 1, negative friction, no normal, two immovable bodies and no number are "
-               "refused, with their value."),
-        quantity=f"calls that name the value in their error [of {len(asked)}]",
+        claim=("Restitution outside 0 to 1, negative friction, a missing normal, two immovable bodies and NaN are "
+               "refused, and the message gives the value."),
+        quantity=f"calls whose error names the value [of {len(asked)}]",
         predicted=len(asked),
         measured=refused,
         tolerance=0.0,
-        observation=f"{refused} of {len(asked)} such calls end in a sentence that names the value.",
+        observation=f"{refused} of {len(asked)} such calls end in a message that names the value.",
     )]
     exponents, worst = np.linspace(-6.0, 8.0, 15), 0.0
     sizes = []
@@ -452,21 +507,29 @@ def invalid_impacts(lesson):
         sizes.append(np.linalg.norm(J) / 10.0**y)
         worst = max(worst, abs(n @ (10.0**y * u + K @ J) - 10.0**y) / 10.0**y)
     found.append(finding(
-        claim="An impact has no scale of its own: from a micrometre to 10⁸ m a second.",
+        claim="An impact has no characteristic speed: the same law holds from a micrometre to 10⁸ m per second.",
         quantity="largest error of the rebound, over the speed [-]",
         predicted=0.0,
         measured=worst,
         tolerance=ROUND_OFF,
-        observation=f"Over fourteen decades of speed the rebound is right within {worst:.0e}.",
+        observation=f"Over fourteen decades of speed the rebound is right to {worst:.0e}.",
     ))
     J = lesson.contact_impulse(u, n, np.diag([1e6, 1.0, 1e-6]) + 1e-7 * np.ones((3, 3)), 0.5, np.inf)
     found.append(finding(
-        claim="Infinite friction ends in a finite impulse, whatever the inertias.",
+        claim="Infinite friction gives a finite impulse for any inertias.",
         quantity="rebound with μ = ∞ and inertias over twelve decades [m/s]",
         predicted=1.0,
         measured=n @ (u + (np.diag([1e6, 1.0, 1e-6]) + 1e-7 * np.ones((3, 3))) @ J),
         tolerance=1e-9,
-        observation="With μ = ∞ and inertias over twelve decades the impact ends as it should.",
+        observation="With μ = ∞ and inertias over twelve decades the impact has the expected rebound.",
     ))
-    return found, Picture("The same impact at any speed", "log₁₀ of the speed [m/s]", "impulse over m v [-]", [
-        series("theory", exponents, np.full(15, 3.0 * np.hypot(1.0, 0.3)), LINE), series("contact_impulse", exponents, sizes, DOTS)], "Coulomb's cone and Newton's restitution have no length and no time.")
+    return found, Picture(
+        "The same impact at any speed",
+        "log₁₀ of the speed [m/s]",
+        "impulse over m v [-]",
+        [
+            series("theory", exponents, np.full(15, 3.0 * np.hypot(1.0, 0.3)), LINE),
+            series("contact_impulse", exponents, sizes, DOTS),
+        ],
+        "Coulomb's cone and Newton's restitution contain no length and no time.",
+    )

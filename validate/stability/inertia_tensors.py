@@ -1,7 +1,7 @@
-"""How far away, how thin, how lopsided may a body be?  Lesson 4 at the edges of what floats and bodies can do.
+"""Inertia tensors at the limits of floats and of bodies: lesson 4 far from the origin, for thin and for invalid bodies.
 
-40  a mesh far from the origin: its corners are rounded to the spacing of floats there, and nothing else may go wrong;
-41  needles, plates, and tensors that no body has: the edge between them.
+40  a mesh far from the origin: its corners are rounded to the spacing of floats there, and no other error may appear;
+41  needles, plates, and impossible tensors: the edge between them.
 """
 
 import numpy as np
@@ -10,15 +10,16 @@ from solutions.checks import BadInput
 from solutions.integrators import observed_order
 from validate.stability.case import DOTS, LINE, Picture, case, finding, series
 
-SPACING = 2.0**-52           # of floats around 1 [-]; a coordinate is rounded by half of it, relative
-PLACES = 64                  # directions in which the body is carried off: the mean square of so many errors is known to 18 %
-CORNER = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.8, 0.0], [0.0, 0.0, 0.6]])     # of a box, cut off [m]
+SPACING = 2.0**-52           # of floats around 1 [-]; a coordinate has half of it as relative rounding error
+PLACES = 64  # directions in which the body is moved: the mean square of so many errors is known to 18 %
+# of a box whose corner is cut off [m]
+CORNER = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.8, 0.0], [0.0, 0.0, 0.6]])
 FACES = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
 FAR = np.array([1e5, -8e4, 5e4])                                                             # [m]
 
 
 def corner_tensor(density, a, b, c):
-    """Tensor of the tetrahedron that cuts a, b, c off the axes: ∫x² = V a²/10, ∫x y = V a b/20, centre a/4."""
+    """Return the tensor of the tetrahedron with the intercepts a, b, c: ∫x² = V a²/10, ∫x y = V a b/20, centre a/4."""
     m = density * a * b * c / 6.0
     return m / 80.0 * np.array([[3.0 * (b * b + c * c), a * b, a * c], [a * b, 3.0 * (a * a + c * c), b * c],
                                 [a * c, b * c, 3.0 * (a * a + b * b)]])
@@ -32,15 +33,17 @@ def error(I):
 
 
 def about_the_world(lesson, x):
-    """The tensor as it comes out when the integrals are taken about the origin of the world, and moved afterwards."""
+    """Return the tensor from integrals about the origin of the world, shifted afterwards."""
     V, first, second = lesson.mesh_integrals(x, FACES)
     C = second - np.outer(first, first) / V
     return np.trace(C) * np.eye(3) - C
 
 
 def mean_error(tensor, distances):
-    """Root of the mean square error at each distance, over the same directions for all."""
-    directions = np.random.default_rng(40).uniform(0.5, 1.0, (PLACES, 3)) * np.random.default_rng(41).choice([-1.0, 1.0], (PLACES, 3))
+    """Return the root-mean-square error at each distance, over the same directions for all."""
+    directions = np.random.default_rng(40).uniform(0.5, 1.0, (PLACES, 3)) * np.random.default_rng(41).choice(
+        [-1.0, 1.0], (PLACES, 3)
+    )
     return np.array([np.sqrt(np.mean([error(tensor(CORNER + D * n)) ** 2 for n in directions])) for D in distances])
 
 
@@ -48,68 +51,81 @@ def mean_error(tensor, distances):
 def far_from_origin(lesson):
     """Corners at the distance D are rounded by D/2^53, and the tensor by five times that over the size: ∝ D.
 
-    About the origin of the world each tetrahedron reaches from there to its triangle: w adds up products of D³, the second moments
-    products of D⁵, each rounded by 1.1e-16 of itself: ∝ D⁵.  Distances are powers of 2, so that the spacing of floats grows with them
-    exactly; slopes over 20 (8) doublings of errors known to 9 % each are known to 0.02 (0.04).  At 4 m the body's own half metre still
-    counts: (3.5/3)⁵ more error there, which lowers the second slope by 0.14.
+    About the origin of the world each tetrahedron reaches from there to its triangle.  w sums products of D³ and
+    the second moments products of D⁵, each rounded by 1.1e-16 of itself: ∝ D⁵.  Distances are powers of 2, so the
+    spacing of floats grows with them exactly.  Slopes over 20 (8) doublings of errors known to 9 % each are known
+    to 0.02 (0.04).  At 4 m the body's own half metre still counts: (3.5/3)⁵ more error there, which lowers the
+    second slope by 0.14.
     """
     near, far = 2.0 ** np.arange(2, 11), 2.0 ** np.arange(6, 27, 4)
-    ours, naive = mean_error(lambda x: lesson.mesh_body(1.0, x, FACES).I, far), mean_error(lambda x: about_the_world(lesson, x), near)
+    ours = mean_error(lambda x: lesson.mesh_body(1.0, x, FACES).I, far)
+    naive = mean_error(lambda x: about_the_world(lesson, x), near)
     slope, steep = observed_order(far, ours), observed_order(near, naive)
-    found = [finding(
-        claim="About a corner of the body, only the rounding of its corners remains: the error grows like D.",
-        quantity="slope of log error over log D, 64 m to 67,000 km [-]",
-        predicted=1.0,
-        measured=slope,
-        tolerance=0.05,
-        observation=f"The error of the tensor grows like D to the power {slope:.3f}.",
-    ),
-             finding(
-                 claim="About the origin of the world, products of D⁵ cancel: the error grows like D⁵.",
-                 quantity="the same for integrals about the world's origin, 4 m to 1 km [-]",
-                 predicted=5.0,
-                 measured=steep,
-                 tolerance=0.2,
-                 observation=(f"There the error grows like D to the power {steep:.2f}: half of the digits are gone at "
-                              f"{lost(near, naive):.0f} m."),
-             )]
-    # the inscribed ball of the body has the radius 3V/area; corners moved by √3 D/2^53 scale it by no more than that over the radius
+    found = [
+        finding(
+            claim="About a corner of the body, only the rounding of its corners remains: the error grows like D.",
+            quantity="slope of log error over log D, 64 m to 67,000 km [-]",
+            predicted=1.0,
+            measured=slope,
+            tolerance=0.05,
+            observation=f"The error of the tensor grows with the power {slope:.3f} of D.",
+        ),
+        finding(
+            claim="About the origin of the world, products of D⁵ cancel: the error grows with D⁵.",
+            quantity="the same for integrals about the world's origin, 4 m to 1 km [-]",
+            predicted=5.0,
+            measured=steep,
+            tolerance=0.2,
+            observation=(f"There the error grows with the power {steep:.2f} of D: half of the digits are lost at "
+                         f"{lost(near, naive):.0f} m."),
+        ),
+    ]
+    # The inscribed ball of the body has the radius 3V/area.  Corners moved by √3 D/2^53 scale it by at most that
+    # over the radius.
+
     edges = CORNER[FACES[:, 1:]] - CORNER[FACES[:, :1]]
     V, area = 0.48 / 6.0, 0.5 * np.sum(np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1))
     allowed = 5.0 * np.sqrt(3.0) * 2.0**16 * 0.5 * SPACING / (3.0 * V / area)
     body = lesson.mesh_body(1.0, CORNER + FAR, FACES)
     away, missed = error(body.I), np.max(np.abs(body.x - FAR - CORNER.sum(axis=0) / 4.0))
-    found += [finding(
-        claim="At (10⁵, −8·10⁴, 5·10⁴) m the tensor has the digits that the corners have.",
-        quantity="relative error of the tensor there [-]",
-        predicted=0.0,
-        measured=away,
-        tolerance=allowed,
-        observation=f"{-np.log10(away):.1f} digits of the tensor are right.",
-    ),
-              finding(
-                  claim="And the centre of mass is where it should be, to a spacing of floats.",
-                  quantity="error of the centre of mass there [m]",
-                  predicted=0.0,
-                  measured=missed,
-                  tolerance=2.0**16 * SPACING,
-                  observation=f"The centre is {missed:.0e} m off.",
-              )]
+    found += [
+        finding(
+            claim="At (10⁵, −8·10⁴, 5·10⁴) m the tensor is as accurate as the corners.",
+            quantity="relative error of the tensor there [-]",
+            predicted=0.0,
+            measured=away,
+            tolerance=allowed,
+            observation=f"{-np.log10(away):.1f} digits of the tensor are right.",
+        ),
+        finding(
+            claim="The centre of mass is right to one spacing of floats.",
+            quantity="error of the centre of mass there [m]",
+            predicted=0.0,
+            measured=missed,
+            tolerance=2.0**16 * SPACING,
+            observation=f"The centre is {missed:.0e} m off.",
+        ),
+    ]
     curves = {"about a corner of the body": (far, ours, DOTS), "about the world's origin": (near, naive, DOTS),
               "∝ D": (far, ours[0] * far / far[0], LINE), "∝ D⁵": (near, naive[0] * (near / near[0]) ** 5, LINE)}
     drawn = [series(label, np.log10(xs), np.log10(ys), style) for label, (xs, ys, style) in curves.items()]
-    return found, Picture("A mesh far from the origin", "log₁₀ of the distance [m]", "log₁₀ of the tensor's relative error [-]", drawn,
-                          "A body of one metre, carried off. The same formulas, taken about one of its corners, lose a digit with every factor "
-                          "of ten; about the origin of the world they lose five.")
+    return found, Picture(
+        "A mesh far from the origin",
+        "log₁₀ of the distance [m]",
+        "log₁₀ of the tensor's relative error [-]",
+        drawn,
+        "A body of one metre, moved away. Taken about one of its corners, the formulas lose one digit per factor of "
+        "ten; about the origin of the world they lose five.",
+    )
 
 
 def lost(distances, errors):
-    """Where the error passes 10⁻⁸ [m]."""
+    """Return the distance at which the error passes 10⁻⁸ [m]."""
     return 10.0 ** np.interp(-8.0, np.log10(errors), np.log10(distances))
 
 
 def last_that_passes(check, good, bad):
-    """The number nearest to bad that is let pass, between one that passes and one that does not; NaN when they do not."""
+    """Bisect for the last accepted number between an accepted and a refused one; NaN if they are not."""
     if not passes(check, good) or passes(check, bad):
         return np.nan
     while True:
@@ -128,61 +144,70 @@ def passes(check, value):
 
 
 def turned(moments, rng):
-    """A tensor with these principal moments, turned at random, and symmetric to the last bit."""
+    """Return a tensor with these principal moments, rotated at random, and symmetric to the last bit."""
     R = np.linalg.qr(rng.standard_normal((3, 3)))[0]
     I = R @ np.diag(moments) @ R.T
     return 0.5 * (I + I.T)
 
 
-@case("thin-bodies", "Needles, plates, and what no body has", compiled=False)
+@case("thin-bodies", "Needles, plates, and impossible tensors", compiled=False)
 def thin_bodies(lesson):
     """I₁ + I₂ − I₃ = 2 ∫ z² dm ≥ 0, and I₁ > 0; both to ε = TENSOR_ROUND_OFF, which round-off must not exceed."""
     epsilon, rng = lesson.TENSOR_ROUND_OFF, np.random.default_rng(41)
     top = last_that_passes(lambda m: lesson.check_inertia(np.diag(np.array([1.0, 2.0, m]))), 2.5, 4.0)
     thin = last_that_passes(lambda m: lesson.check_inertia(np.diag(np.array([m, 1.0, 1.0]))), 0.5, 0.0)
-    found = [finding(
-        claim="No principal moment is above the sum of the other two.",
-        quantity="largest I₃ that passes with I₁ = 1, I₂ = 2 [kg m²]",
-        predicted=3.0,
-        measured=top,
-        tolerance=3.0 * (epsilon + SPACING),
-        observation=f"The edge is found at {top:.15g} kg m².",
-    ),
-             finding(
-                 claim="A needle may be thin, but not a line.",
-                 quantity="smallest I₁/I₃ that passes [-]",
-                 predicted=epsilon,
-                 measured=thin,
-                 tolerance=2.0 * SPACING,
-                 observation=f"Needles pass down to I₁/I₃ = {thin:.3g}.",
-             )]
+    found = [
+        finding(
+            claim="No principal moment is above the sum of the other two.",
+            quantity="largest I₃ that passes with I₁ = 1, I₂ = 2 [kg m²]",
+            predicted=3.0,
+            measured=top,
+            tolerance=3.0 * (epsilon + SPACING),
+            observation=f"The edge is found at {top:.15g} kg m².",
+        ),
+        finding(
+            claim="A needle may be thin, but not of zero thickness.",
+            quantity="smallest I₁/I₃ that passes [-]",
+            predicted=epsilon,
+            measured=thin,
+            tolerance=2.0 * SPACING,
+            observation=f"Needles are accepted down to I₁/I₃ = {thin:.3g}.",
+        ),
+    ]
     thicknesses = np.logspace(-9.0, 0.0, 200)
     plates = [lesson.box_inertia(1.0, np.array([1.0, 0.7, h])) for h in thicknesses]
     refused = sum(not passes(lesson.check_inertia, turned(np.sort(np.diag(I)), rng)) for I in plates)
     found.append(finding(
-        claim="Every plate passes, however thin and however it is turned.",
+        claim="Every plate is accepted, however thin and at any orientation.",
         quantity="plates from 1 nm to 1 m that are refused [of 200]",
         predicted=0,
         measured=refused,
         tolerance=0.0,
-        observation=f"{refused} of 200 turned plates are refused.",
+        observation=f"{refused} of 200 rotated plates are refused.",
     ))
-    # det and cofactors lose the condition number I₃/I₁ in digits, some twenty roundings each
+    # det and cofactors lose the condition number I₃/I₁ in digits, about twenty roundings each
     ratios, worst = 10.0 ** -np.arange(0.0, 13.0), []
     for ratio in ratios:
         I_body, R = turned([ratio, 1.0, 1.0], rng), np.linalg.qr(rng.standard_normal((3, 3)))[0]
-        worst.append(np.max(np.abs(lesson.world_inverse_inertia(I_body, R) @ lesson.world_inertia(I_body, R) - np.eye(3))))
+        worst.append(
+            np.max(np.abs(lesson.world_inverse_inertia(I_body, R) @ lesson.world_inertia(I_body, R) - np.eye(3)))
+        )
     needle = worst[6]
     found.append(finding(
-        claim="The inverse of a needle, I₃/I₁ = 10⁶, has lost six digits, and no more.",
+        claim="The inverse of a needle with I₃/I₁ = 10⁶ loses six digits and no more.",
         quantity="largest entry of I⁻¹I − 1 for I = (10⁻⁶, 1, 1) [-]",
         predicted=0.0,
         measured=needle,
         tolerance=1e6 * 20 * 0.5 * SPACING,
-        observation=f"I⁻¹I departs from 1 by {needle:.1e}.",
+        observation=f"I⁻¹I differs from 1 by {needle:.1e}.",
     ))
     drawn = [series("largest entry of I⁻¹I − 1", -np.log10(ratios), np.log10(worst), DOTS),
              series("twenty roundings times I₃/I₁", -np.log10(ratios), np.log10(20 * 0.5 * SPACING / ratios), LINE)]
-    return found, Picture("Needles", "log₁₀ of I₃/I₁ [-]", "log₁₀ of the departure [-]", drawn,
-                          "The inverse of a turned tensor loses a digit for every factor of ten between the largest and the smallest "
-                          "moment. In its principal axes it would lose none.")
+    return found, Picture(
+        "Needles",
+        "log₁₀ of I₃/I₁ [-]",
+        "log₁₀ of the departure [-]",
+        drawn,
+        "The inverse of a rotated tensor loses a digit per factor of ten between the largest and the smallest "
+        "moment. In its principal axes it would lose none.",
+    )

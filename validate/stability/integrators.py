@@ -1,11 +1,11 @@
-"""How long may a step be?  The bound that theory gives each method, held against the bound that an experiment finds.
+"""Stability limits of the integrators: the longest step that theory permits each method, compared with an experiment.
 
     ẍ = −ω² x − 2ζω ẋ        hω: step times angular frequency [-], ζ: damping ratio [-]
 
-The experiment is always a run of many steps of the lesson's own method, never its formula.  Two oscillators go side by side
-through one run, from (x, v) = (1, 0) and (0, 1): where they end is the (2, 2) matrix M of all N steps together, and one step
-lets the motion grow by |longest eigenvalue of M|^(1/N), whatever the phase in which the run happens to stop.  The edge of
-stability is where that passes 1, found by bisection on hω.
+The experiment is always a run of many steps of the lesson's own method, never its formula.  Two oscillators share
+one run, from (x, v) = (1, 0) and (0, 1).  Their final states form the (2, 2) matrix M of all N steps together, and
+the motion grows per step by |largest eigenvalue of M|^(1/N), independent of the phase at which the run stops.  The
+edge of stability is where that factor passes 1, found by bisection on hω.
 
 The first case draws all methods into one picture.
 *Source:* Hairer and Wanner 1996, "Solving ordinary differential equations II", IV.2; Hairer, Lubich, Wanner 2006.
@@ -19,12 +19,16 @@ from solutions.checks import Diverged
 from validate.methods import INTEGRATORS
 from validate.stability.case import DOTS, EDGE, LINE, Picture, bisect, case, finding, refuse, series
 
-OMEGA = 3.0                  # angular frequency of the runs [rad/s]: not 1, so that h taken for hω would show
-STEPS = 499                  # of one run: a prime, so that no run ends where it began, where eigenvalues meet and round-off grows
-GROWTH = 1e-13               # growth a step is known this well: fifty roundings of 1.1e-16, times ω between x and v, rounded up
-NEWTON = 1e-12               # … with an implicit method its velocity is, where Newton's method stops [m/s]
-NOISE = 1e-9                 # less growth a step is none: far above round-off, far below the 2e-5 of Euler 0.1 % beyond its edge
-SHORTEST, LONGEST = 0.05, 4.0                                                        # hω between which edges are searched
+OMEGA = 3.0                  # angular frequency of the runs [rad/s]: not 1, so that h mistaken for hω would show
+STEPS = 499  # of one run: a prime, so that no run ends at its start, where eigenvalues meet and round-off grows
+# accuracy of the measured growth per step: fifty roundings of 1.1e-16, times ω between x and v, rounded up
+GROWTH = 1e-13
+NEWTON = 1e-12               # accuracy of the velocity of an implicit method, where Newton's method stops [m/s]
+# growth below this counts as stable: far above round-off, far below the 2e-5 of Euler 0.1 % beyond its edge
+NOISE = 1e-9
+# range of hω in which edges are searched
+SHORTEST = 0.05
+LONGEST = 4.0
 
 EXPLICIT, IMPLICIT = INTEGRATORS[:6], INTEGRATORS[6:]
 LABEL = {method.function: method.label for method in INTEGRATORS}
@@ -33,11 +37,13 @@ LABEL = {method.function: method.label for method in INTEGRATORS}
 # ---------------------------------------------------------------------------------------------- the experiment
 
 def growth(lesson, method, h_omega, zeta=0.0, steps=STEPS):
-    """Factor [-] by which one step lets an oscillator's motion grow, from a run of many; infinite when the run breaks off."""
+    """Return the factor [-] by which an oscillator's motion grows per step; infinite if the run diverges."""
     p = lesson.Oscillator(OMEGA, zeta)
     x, v = np.array([1.0, 0.0]), np.array([0.0, 1.0])
     try:
-        end = lesson.advance(getattr(lesson, method), lesson.oscillator_acceleration, 0.0, x, v, h_omega / OMEGA, steps, p)
+        end = lesson.advance(
+            getattr(lesson, method), lesson.oscillator_acceleration, 0.0, x, v, h_omega / OMEGA, steps, p
+        )
     except (Diverged, np.linalg.LinAlgError):
         return np.inf
     factor = float(lesson.spectral_radius(np.array(end))) ** (1.0 / steps)
@@ -49,24 +55,27 @@ def grows(lesson, method, h_omega, zeta=0.0):
 
 
 def edge(lesson, method, zeta):
-    """The hω at which the motion begins to grow, by bisection."""
+    """Return the hω at which the motion begins to grow, by bisection."""
     return bisect(lambda h_omega: grows(lesson, method, h_omega, zeta), SHORTEST, LONGEST)
 
 
 def flips(lesson, method, edges):
-    """How many of these edges {ζ: hω} flip within ±0.1 %: bounded at 0.999 times that step, growing at 1.001 times."""
-    return sum(not grows(lesson, method, 0.999 * h, zeta) and grows(lesson, method, 1.001 * h, zeta) for zeta, h in edges.items())
+    """Count the edges {ζ: hω} that flip within ±0.1 %: bounded at 0.999 times that step, growing at 1.001 times."""
+    return sum(
+        not grows(lesson, method, 0.999 * h, zeta) and grows(lesson, method, 1.001 * h, zeta)
+        for zeta, h in edges.items()
+    )
 
 
 def departure(measured, edges):
-    """Largest relative departure of measured edges {ζ: hω} from theory's; absolute where theory says 0."""
+    """Return the largest relative error of measured edges {ζ: hω}; the absolute error where theory gives 0."""
     return max(abs(measured[zeta] - h) / (h or 1.0) for zeta, h in edges.items())
 
 
 def turning(lesson, method, h_omega, steps, flatness=1.0):
-    """Mean angle [rad] that one step turns the motion by, counted on an ellipse with axes 1 (x) and flatness (v/ω).
+    """Return the mean angle [rad] by which one step turns the motion, on an ellipse with axes 1 (x) and flatness (v/ω).
 
-    Counted on a wrong ellipse the angle would run ahead and fall behind in turns, but gain nothing in the long run.
+    On a wrong ellipse the angle alternately leads and lags, but the mean over many steps stays the same.
     """
     p, x, v = lesson.Oscillator(OMEGA, 0.0), np.ones(1), np.zeros(1)
     angles = np.zeros(steps + 1)
@@ -79,11 +88,16 @@ def turning(lesson, method, h_omega, steps, flatness=1.0):
 # ---------------------------------------------------------------------------------------------- the theory of edges
 
 def runge_kutta_edge(weights, zeta):
-    """Smallest hω > 0 with |R(hs)| = 1:  R(z) = Σ weightsₖ zᵏ,  s = −ζ − √(ζ² − 1), the faster root of s² + 2ζs + 1 = 0."""
+    """Return the smallest hω > 0 with |R(hs)| = 1:  R(z) = Σ weightsₖ zᵏ,  s = −ζ − √(ζ² − 1).
+
+    s is the faster root of s² + 2ζs + 1 = 0.
+    """
     s = -zeta - np.sqrt(complex(zeta * zeta - 1.0))
     R = np.array([w * s**k for k, w in enumerate(weights)])[::-1]
     roots = np.roots(np.polysub(np.polymul(R, R.conj()).real, [1.0]))
-    return min(r.real for r in roots if abs(r.imag) < 1e-6 and r.real > SHORTEST)      # 1e-6: a root this near the axis is real
+    return min(
+        r.real for r in roots if abs(r.imag) < 1e-6 and r.real > SHORTEST
+    )  # 1e-6: a root this near the axis is real
 
 
 def euler_edge(zeta):
@@ -102,7 +116,10 @@ def average_velocity_edge(zeta):
 
 
 def verlet_edge(zeta):
-    """With the predicted velocity:  1 + tr A + det A = 4 − 4ζ hω + (4ζ² − 1)(hω)²  and  1 − tr A + det A = (hω)² (1 − ζ hω)."""
+    """Solve the Jury conditions with the predicted velocity.
+
+    1 + tr A + det A = 4 − 4ζ hω + (4ζ² − 1)(hω)² = 0  for ζ ≤ ½,  1 − tr A + det A = (hω)² (1 − ζ hω) = 0  beyond.
+    """
     return 2.0 / (zeta + np.sqrt(1.0 - 3.0 * zeta * zeta)) if zeta <= 0.5 else 1.0 / zeta
 
 
@@ -117,7 +134,7 @@ EDGES = {
 
 
 def edge_picture(title, measured, sentence):
-    """Theory's edges over ζ as lines, the measured ones as dots: measured = {method: {ζ: hω}}."""
+    """Draw theory's edges over ζ as lines and the measured ones as dots: measured = {method: {ζ: hω}}."""
     drawn = []
     for method, edges in measured.items():
         fine = np.linspace(0.0, max(edges), 121)
@@ -130,7 +147,7 @@ def edge_picture(title, measured, sentence):
 
 @case("stability-limits", "Where each method is stable")
 def stability_limits(lesson):
-    """Every method's edge: six explicit ones end somewhere, the two implicit ones nowhere."""
+    """Every method's edge: six explicit methods have one, the two implicit methods have none."""
     zetas, measured, found = (0.0, 0.1, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0), {}, []
     for method, law in EDGES.items():
         measured[method] = {zeta: edge(lesson, method, zeta) for zeta in zetas}
@@ -139,15 +156,16 @@ def stability_limits(lesson):
         found.append(finding(
             claim=(f"The {LABEL[method]} method is stable up to the step at which an eigenvalue of one step leaves "
                    "the unit circle."),
-            quantity=f"{LABEL[method]}: largest relative departure of the edge over ζ = 0 to 2 [-]",
+            quantity=f"{LABEL[method]}: largest relative error of the edge over ζ = 0 to 2 [-]",
             predicted=0.0,
             measured=worst,
             tolerance=EDGE,
-            observation=f"The edge of the {LABEL[method]} method is where theory puts it, within {worst:.1e}{never}.",
+            observation=f"The edge of the {LABEL[method]} method agrees with theory to {worst:.1e}{never}.",
         ))
     tried = [(h_omega, zeta) for h_omega in (0.1, 1.0, 10.0, 100.0, 1000.0) for zeta in (0.0, 0.5)]
     for method in (m.function for m in IMPLICIT):
-        # seven steps: a velocity left 1e-12 wrong moves x by h 1e-12 = 3e-10 at the longest step, below NOISE
+        # Seven steps: a velocity that is wrong by 1e-12 moves x by h 1e-12 = 3e-10 at the longest step, below NOISE.
+
         stable = sum(growth(lesson, method, *oscillator, steps=7) <= 1.0 + NOISE for oscillator in tried)
         found.append(finding(
             claim=f"The {LABEL[method]} method is stable for every step.",
@@ -158,9 +176,12 @@ def stability_limits(lesson):
             observation=(f"From hω = 0.1 to 1000, undamped and at ζ = 0.5, {stable} of {len(tried)} runs of "
                          f"{LABEL[method]} stay bounded."),
         ))
-    return found, edge_picture("Where each method is stable", measured,
-                               "Below its curve a method is stable, above it the motion grows; implicit Euler and implicit "
-                               "midpoint have no curve, because they are stable everywhere.")
+    return found, edge_picture(
+        "Where each method is stable",
+        measured,
+        "Below its curve a method is stable, above it the motion grows. Implicit Euler and implicit midpoint have no "
+        "curve, because they are stable everywhere.",
+    )
 
 
 @case("explicit-euler", "Explicit Euler")
@@ -171,12 +192,12 @@ def explicit_euler(lesson):
     flipped, worst, tiny = flips(lesson, step, edges), departure(measured, edges), growth(lesson, step, 0.001)
     return [
         finding(
-            claim="Without damping explicit Euler is never stable: a step lets the motion grow by √(1 + (hω)²).",
-            quantity="growth a step, ζ = 0, hω = 0.001 [-]",
+            claim="Without damping explicit Euler is never stable: the motion grows by √(1 + (hω)²) per step.",
+            quantity="growth per step, ζ = 0, hω = 0.001 [-]",
             predicted=np.sqrt(1.0 + 1e-6),
             measured=tiny,
             tolerance=GROWTH,
-            observation=f"Even at a thousandth of a radian a step the motion grows, by {tiny - 1.0:.3e} a step.",
+            observation=f"Even at a thousandth of a radian per step the motion grows, by {tiny - 1.0:.3e} per step.",
         ),
         finding(
             claim="For ζ ≤ 1 it is stable up to hω = 2ζ.",
@@ -184,8 +205,9 @@ def explicit_euler(lesson):
             predicted=1.0,
             measured=measured[0.5],
             tolerance=EDGE,
-            observation=("At half the critical damping the run turns from decay to growth at hω = "
-                         f"{measured[0.5]:.5f}."),
+            observation=(
+                f"At half the critical damping the run turns from decay to growth at hω = {measured[0.5]:.5f}."
+            ),
         ),
         finding(
             claim="For ζ > 1 it is stable up to hω = 2(ζ − √(ζ² − 1)).",
@@ -197,11 +219,11 @@ def explicit_euler(lesson):
         ),
         finding(
             claim="The two formulas hold at every damping ratio.",
-            quantity="largest relative departure of the edge at 7 damping ratios [-]",
+            quantity="largest relative error of the edge at 7 damping ratios [-]",
             predicted=0.0,
             measured=worst,
             tolerance=EDGE,
-            observation=f"From ζ = 0.1 to 3 the measured edge departs from theory by at most {worst:.1e}.",
+            observation=f"From ζ = 0.1 to 3 the measured edge differs from theory by at most {worst:.1e}.",
         ),
         finding(
             claim="The edge flips within ±0.1 %.",
@@ -209,18 +231,24 @@ def explicit_euler(lesson):
             predicted=len(edges),
             measured=flipped,
             tolerance=0.0,
-            observation=(f"At {flipped} of {len(edges)} damping ratios a run stays bounded 0.1 % below the bound, and "
-                         "grows 0.1 % above."),
+            observation=(
+                f"At {flipped} of {len(edges)} damping ratios a run stays bounded 0.1 % below the bound, and "
+                "grows 0.1 % above."
+            ),
         ),
-    ], edge_picture("Explicit Euler: the longest stable step", {step: measured},
-                    "Damping opens explicit Euler's stability up to hω = 2 at ζ = 1; more damping closes it again, because the "
-                    "faster of the two decays becomes too fast for the step.")
+    ], edge_picture(
+        "Explicit Euler: the longest stable step",
+        {step: measured},
+        "Damping raises explicit Euler's limit to hω = 2 at ζ = 1. More damping lowers it again, because the faster "
+        "of the two decays becomes too fast for the step.",
+    )
 
 
 @case("symplectic-euler", "Symplectic Euler")
 def symplectic_euler(lesson):
     """Symplectic Euler:  stable below hω = 2(√(1 + ζ²) − ζ)."""
-    step, edges = "symplectic_euler_step", {zeta: symplectic_euler_edge(zeta) for zeta in (0.0, 0.1, 0.25, 0.5, 1.0, 1.5, 3.0)}
+    step = "symplectic_euler_step"
+    edges = {zeta: symplectic_euler_edge(zeta) for zeta in (0.0, 0.1, 0.25, 0.5, 1.0, 1.5, 3.0)}
     measured = {zeta: edge(lesson, step, zeta) for zeta in edges}
     beside = {zeta: edge(lesson, "euler_step", zeta) for zeta in edges}
     flipped, worst = flips(lesson, step, edges), departure(measured, edges)
@@ -231,8 +259,10 @@ def symplectic_euler(lesson):
             predicted=2.0,
             measured=measured[0.0],
             tolerance=2.0 * EDGE,
-            observation=(f"An undamped oscillator stays bounded up to hω = {measured[0.0]:.5f}: about a third of a "
-                         "period a step."),
+            observation=(
+                f"An undamped oscillator stays bounded up to hω = {measured[0.0]:.5f}: about a third of a period per "
+                "step."
+            ),
         ),
         finding(
             claim="At critical damping it is stable up to hω = 2(√2 − 1).",
@@ -244,11 +274,11 @@ def symplectic_euler(lesson):
         ),
         finding(
             claim="The formula holds at every damping ratio.",
-            quantity="largest relative departure of the edge at 7 damping ratios [-]",
+            quantity="largest relative error of the edge at 7 damping ratios [-]",
             predicted=0.0,
             measured=worst,
             tolerance=EDGE,
-            observation=f"From ζ = 0 to 3 the measured edge departs from theory by at most {worst:.1e}.",
+            observation=f"From ζ = 0 to 3 the measured edge differs from theory by at most {worst:.1e}.",
         ),
         finding(
             claim="The edge flips within ±0.1 %.",
@@ -256,12 +286,17 @@ def symplectic_euler(lesson):
             predicted=len(edges),
             measured=flipped,
             tolerance=0.0,
-            observation=(f"At {flipped} of {len(edges)} damping ratios a run stays bounded 0.1 % below the bound, and "
-                         "grows 0.1 % above."),
+            observation=(
+                f"At {flipped} of {len(edges)} damping ratios a run stays bounded 0.1 % below the bound, and "
+                "grows 0.1 % above."
+            ),
         ),
-    ], edge_picture("Symplectic Euler: the longest stable step", {step: measured, "euler_step": beside},
-                    "Symplectic Euler is stable where explicit Euler never is, without damping; but damping, which it evaluates "
-                    "at the beginning of the step, costs it stability from the start.")
+    ], edge_picture(
+        "Symplectic Euler: the longest stable step",
+        {step: measured, "euler_step": beside},
+        "Without damping symplectic Euler is stable where explicit Euler never is. It evaluates damping at the "
+        "beginning of the step, so any damping lowers its limit.",
+    )
 
 
 @case("midpoint", "Midpoint: slow growth")
@@ -272,27 +307,35 @@ def midpoint(lesson):
     for y in (0.05, 0.2, 1.0):
         rate = growth(lesson, step, y)
         found.append(finding(
-            claim="Without damping the midpoint method always grows, by √(1 + (hω)⁴/4) a step.",
-            quantity=f"growth a step at hω = {y:g} [-]",
+            claim="Without damping the midpoint method always grows, by √(1 + (hω)⁴/4) per step.",
+            quantity=f"growth per step at hω = {y:g} [-]",
             predicted=law(y),
             measured=rate,
             tolerance=GROWTH,
             observation=f"At hω = {y:g} the motion doubles every {np.log(2.0) / np.log(rate):,.0f} steps.",
         ))
     dots, fine = np.linspace(0.1, 1.2, 12), np.linspace(0.0, 1.2, 61)
-    return found, Picture("Midpoint: slow growth", "hω [-]", "growth a step [-]", [
-        series("midpoint, theory", fine, law(fine), LINE),
-        series("midpoint, measured", dots, [growth(lesson, step, y) for y in dots], DOTS),
-        series("Euler, theory", fine, np.sqrt(1.0 + fine**2), LINE),
-        series("Euler, measured", dots, [growth(lesson, "euler_step", y) for y in dots], DOTS),
-    ], "Both methods grow at every step length, but Euler's growth starts with (hω)²/2 and the midpoint method's with (hω)⁴/8.")
+    return found, Picture(
+        "Midpoint: slow growth",
+        "hω [-]",
+        "growth per step [-]",
+        [
+            series("midpoint, theory", fine, law(fine), LINE),
+            series("midpoint, measured", dots, [growth(lesson, step, y) for y in dots], DOTS),
+            series("Euler, theory", fine, np.sqrt(1.0 + fine**2), LINE),
+            series("Euler, measured", dots, [growth(lesson, "euler_step", y) for y in dots], DOTS),
+        ],
+        ("Both methods grow at every step length, but Euler's growth starts with (hω)²/2 and the midpoint method's "
+         "with (hω)⁴/8."),
+    )
 
 
 @case("rk4", "Runge–Kutta 4")
 def rk4(lesson):
-    """Runge–Kutta 4, undamped:  |R(iy)|² = 1 − y⁶/72 + y⁸/576:  stable up to √8.  On the real axis: up to the root of R(−z) = 1.
+    """Runge–Kutta 4, undamped:  |R(iy)|² = 1 − y⁶/72 + y⁸/576, stable up to √8.
 
-    The real axis is an over-damped oscillator: at ζ = 5/4 it decays with the rates λ = 2ω and ½ω.
+    On the real axis it is stable up to the root of R(−z) = 1.  The real axis is an over-damped oscillator: at
+    ζ = 5/4 it decays with the rates λ = 2ω and ½ω.
     """
     step, zeta, fast = "rk4_step", 1.25, 2.0
     real = min(-r.real for r in np.roots((1.0 / 24.0, 1.0 / 6.0, 1.0 / 2.0, 1.0)) if abs(r.imag) < 1e-6)
@@ -328,49 +371,62 @@ def rk4(lesson):
             observation=f"At {flipped} of 2 edges a run stays bounded 0.1 % below the bound, and grows 0.1 % above.",
         ),
         finding(
-            claim="Below its edge it damps: an undamped oscillator loses (hω)⁶/72 − (hω)⁸/576 of its energy a step.",
-            quantity=f"energy lost a step at hω = {y} [-]",
+            claim="Below its edge it damps: an undamped oscillator loses (hω)⁶/72 − (hω)⁸/576 of its energy per step.",
+            quantity=f"energy lost per step at hω = {y} [-]",
             predicted=y**6 / 72.0 - y**8 / 576.0,
             measured=lost,
             tolerance=2.0 * GROWTH,
-            observation=(f"At hω = {y} a step loses {lost:.3e} of the energy, {np.log(2.0) / lost:,.0f} steps for "
-                         "half of it."),
+            observation=(f"At hω = {y} a step loses {lost:.3e} of the energy, so half of it is lost in "
+                         f"{np.log(2.0) / lost:,.0f} steps."),
         ),
         finding(
             claim="At a larger step both terms count: |R|² = 1 − (hω)⁶/72 + (hω)⁸/576.",
-            quantity="energy kept a step at hω = 1 [-]",
+            quantity="energy kept per step at hω = 1 [-]",
             predicted=1.0 - 1.0 / 72.0 + 1.0 / 576.0,
             measured=at_one,
             tolerance=2.0 * GROWTH,
             observation=f"At hω = 1 a step keeps {100.0 * at_one:.4f} % of the energy.",
         ),
-    ], Picture("Runge–Kutta 4 on an undamped oscillator", "hω [-]", "growth a step [-]", [
-        series("theory", fine, law(fine), LINE), series("measured", dots, [growth(lesson, step, y) for y in dots], DOTS),
-    ], "Runge–Kutta 4 takes 0.6 % of the amplitude a step at hω = 1 and half of it at 2.45, where it damps most; beyond 2.828 the motion grows.")
+    ], Picture(
+        "Runge–Kutta 4 on an undamped oscillator",
+        "hω [-]",
+        "growth per step [-]",
+        [
+            series("theory", fine, law(fine), LINE),
+            series("measured", dots, [growth(lesson, step, y) for y in dots], DOTS),
+        ],
+        ("Runge–Kutta 4 loses 0.6 % of the amplitude per step at hω = 1 and half of it at 2.45, where it damps most. "
+         "Beyond 2.828 the motion grows."),
+    )
 
 
 @case("implicit-euler", "Implicit Euler: numerical damping")
 def implicit_euler(lesson):
-    """Implicit Euler, undamped:  |R(iy)| = (1 + y²)^(−½) a step, y = hω: it acts like a damping ratio  ln(1 + y²)/2y ≈ ½y."""
+    """Implicit Euler damps an undamped oscillator:  |R(iy)| = (1 + y²)^(−½) per step, y = hω.
+
+    It acts like a damping ratio  ln(1 + y²)/2y ≈ ½y.
+    """
     step, law = "implicit_euler_step", lambda y: 1.0 / np.sqrt(1.0 + y * y)
-    few, ten_periods = 5, 628                    # few steps: Newton's 1e-12 m/s is absolute, so the motion must not vanish
+    # few steps: Newton's tolerance of 1e-12 m/s is absolute, so the motion must not vanish
+    few = 5
+    ten_periods = 628
     found = []
     for y in (0.1, 1.0, 4.0):
         rate = growth(lesson, step, y, steps=few)
         found.append(finding(
-            claim="Implicit Euler damps what has no damper: the motion shrinks by (1 + (hω)²)^(−1/2) a step.",
-            quantity=f"growth a step at hω = {y:g} [-]",
+            claim="Implicit Euler damps an undamped oscillator: the motion shrinks by (1 + (hω)²)^(−1/2) per step.",
+            quantity=f"growth per step at hω = {y:g} [-]",
             predicted=law(y),
             measured=rate,
             tolerance=OMEGA * NEWTON / law(y) ** few,
-            observation=f"At hω = {y:g} a step takes {100.0 * (1.0 - rate):.3g} % of the amplitude.",
+            observation=f"At hω = {y:g} a step removes {100.0 * (1.0 - rate):.3g} % of the amplitude.",
         ))
     ratio = -np.log(growth(lesson, step, 0.1, steps=few)) / 0.1
     kept = growth(lesson, step, 0.1, steps=ten_periods) ** ten_periods
     found += [
-        # e^(−ζ hω) a step: a growth known to OMEGA NEWTON each of few steps, over hω
+        # e^(−ζ hω) per step: a growth known to OMEGA NEWTON in each of few steps, over hω
         finding(
-            claim="That is the decay that a damping ratio of ln(1 + (hω)²)/2hω, nearly ½hω, would cause.",
+            claim="The decay equals that of a damping ratio of ln(1 + (hω)²)/2hω, nearly ½hω.",
             quantity="numerical damping ratio at hω = 0.1 [-]",
             predicted=np.log(1.01) / 0.2,
             measured=ratio,
@@ -383,30 +439,44 @@ def implicit_euler(lesson):
             predicted=1.01**-314,
             measured=kept,
             tolerance=OMEGA * NEWTON * ten_periods,
-            observation=f"After ten periods at 63 steps a period {100.0 * kept:.2f} % of the amplitude is left.",
+            observation=f"After ten periods at 63 steps per period {100.0 * kept:.2f} % of the amplitude is left.",
         ),
     ]
     dots, fine = np.linspace(0.25, 4.0, 16), np.linspace(0.0, 4.0, 121)
-    return found, Picture("Implicit Euler: numerical damping", "hω [-]", "growth a step [-]", [
-        series("implicit Euler, theory", fine, law(fine), LINE),
-        series("implicit Euler, measured", dots, [growth(lesson, step, y, steps=few) for y in dots], DOTS),
-        series("implicit midpoint, theory", fine, np.ones_like(fine), LINE),
-        series("implicit midpoint, measured", dots, [growth(lesson, "implicit_midpoint_step", y, steps=few) for y in dots], DOTS),
-    ], "Implicit Euler never grows because it always shrinks; implicit midpoint is as stable, and keeps the amplitude.")
+    return found, Picture(
+        "Implicit Euler: numerical damping",
+        "hω [-]",
+        "growth per step [-]",
+        [
+            series("implicit Euler, theory", fine, law(fine), LINE),
+            series("implicit Euler, measured", dots, [growth(lesson, step, y, steps=few) for y in dots], DOTS),
+            series("implicit midpoint, theory", fine, np.ones_like(fine), LINE),
+            series(
+                "implicit midpoint, measured",
+                dots,
+                [growth(lesson, "implicit_midpoint_step", y, steps=few) for y in dots],
+                DOTS,
+            ),
+        ],
+        ("Implicit Euler never grows because it always shrinks. Implicit midpoint is equally stable, and keeps the "
+         "amplitude."),
+    )
 
 
 @case("phase-error", "Verlet and implicit midpoint: phase")
 def phase_error(lesson):
-    """Verlet turns the motion by 2 asin(½hω) a step, implicit midpoint by 2 atan(½hω): energy is kept, phase is not.
+    """Verlet turns the motion by 2 asin(½hω) per step, implicit midpoint by 2 atan(½hω): energy is kept, phase is not.
 
-    Verlet goes round the ellipse  x² (1 − (hω)²/4) + (v/ω)² = const,  implicit midpoint round the circle  x² + (v/ω)² = const.
+    Verlet follows the ellipse  x² (1 − (hω)²/4) + (v/ω)² = const,  implicit midpoint the circle  x² + (v/ω)² = const.
     *Source:* cos θ = ½ tr A; Hairer, Lubich, Wanner 2006, I.5.
     """
     steps, fine, dots, found, drawn = 1000, np.linspace(0.02, 1.6, 80), np.linspace(0.2, 1.6, 8), [], []
     methods = (("verlet_step", np.arcsin, 0.25, GROWTH), ("implicit_midpoint_step", np.arctan, 0.0, OMEGA * NEWTON))
     for step, inverse, flat, known in methods:
-        name, law = LABEL[step], lambda y: 2.0 * inverse(0.5 * y) / y
-        frequency = lambda y: turning(lesson, step, y, steps, np.sqrt(1.0 - flat * y * y)) / y
+        name = LABEL[step]
+        law = lambda y, inverse=inverse: 2.0 * inverse(0.5 * y) / y
+        flatness = lambda y, flat=flat: np.sqrt(1.0 - flat * y * y)
+        frequency = lambda y, step=step, flatness=flatness: turning(lesson, step, y, steps, flatness(y)) / y
         for y in (0.1, 0.5, 1.0):
             got = frequency(y)
             side = "ahead" if got > 1.0 else "behind"
@@ -423,26 +493,26 @@ def phase_error(lesson):
         kept = growth(lesson, step, 0.5)
         found.append(finding(
             claim=f"{name[0].upper()}{name[1:]} keeps the amplitude.",
-            quantity=f"{name}: growth a step at hω = 0.5 [-]",
+            quantity=f"{name}: growth per step at hω = 0.5 [-]",
             predicted=1.0,
             measured=kept,
             tolerance=known,
-            observation=(f"After {STEPS} steps of {name} the amplitude is {kept**STEPS:.10f} of what it was: the "
+            observation=(f"After {STEPS} steps of {name} the amplitude is {kept**STEPS:.10f} of the initial one: the "
                          "error is all in the phase."),
         ))
         drawn += [series(f"{name}, theory", fine, 100.0 * (law(fine) - 1.0), LINE),
                   series(f"{name}, measured", dots, [100.0 * (frequency(y) - 1.0) for y in dots], DOTS)]
     return found, Picture("Phase: too fast and too slow", "hω [-]", "error of the frequency [%]", drawn,
-                          "At small steps Verlet runs ahead by (hω)²/24 and implicit midpoint lags by twice as much; "
+                          "At small steps Verlet leads by (hω)²/24 and implicit midpoint lags by twice as much; "
                           "neither loses energy.")
 
 
 class StiffPair(NamedTuple):
-    """Wall at 0, then a spring, a mass, a spring, a mass; at rest at x = (1, 2)."""
+    """A wall at 0, then a spring, a mass, a spring, a mass; at rest at x = (1, 2)."""
     k1: float = 750.0        # from the wall to mass 1 [N/m]
     k2: float = 1e20         # between the masses [N/m]
     m: float = 1.0           # of each [kg]
-    rest: float = 1.0        # length of each spring at rest [m]
+    rest: float = 1.0        # rest length of each spring [m]
 
 
 def stiff_pair(t, x, v, p):
@@ -453,15 +523,17 @@ def stiff_pair(t, x, v, p):
 
 @case("stiff-pair", "A stiff pair", compiled=False)
 def stiff_pair_case(lesson):
-    """A stiff pair, released at rest from x = (0.5, 1.5): both masses swing as one, ω² = k₁/2m = 375;  ω₂ = √(2k₂/m) = 1.4e10.
+    """A stiff pair, released at rest from x = (0.5, 1.5), moves as one: ω² = k₁/2m = 375,  ω₂ = √(2k₂/m) = 1.4e10.
 
-    The second spring starts unstretched and has to pull with 187.5 N: 1.9e-18 m, below a hundredth of the spacing of floats there.
-    The mean of both turns by atan(hω) a step under implicit Euler, on a spiral, and by 2 atan(½hω) under implicit midpoint, on a
-    circle.  At dt = 10 ms the 1 in  1 + h²k₂  is below round-off, and Newton's matrix is singular.
+    The second spring starts unstretched and must pull with 187.5 N: it stretches by 1.9e-18 m, below a hundredth of the
+    spacing of floats there.  Per step the mean of both turns by atan(hω) on a spiral under implicit Euler, and by
+    2 atan(½hω) on a circle under implicit midpoint.  At dt = 10 ms the 1 in  1 + h²k₂  is below round-off, and Newton's
+    matrix is singular.
     """
     p, dt, steps = StiffPair(), 0.002, 500
     omega, stiff, amplitude = np.sqrt(p.k1 / (2.0 * p.m)), np.sqrt(2.0 * p.k2 / p.m), 0.5
-    newton = NEWTON * omega * amplitude * steps  # [m/s]: a stop at 1e-12 of the fastest velocity, 9.7 m/s, at every step
+    # [m/s]: Newton's tolerance, 1e-12 of the fastest velocity, 9.7 m/s, at every step
+    newton = NEWTON * omega * amplitude * steps
     y = omega * dt
     laws = {"implicit_euler_step": (np.arctan(y), 1.0 / np.sqrt(1.0 + y * y)),
             "implicit_midpoint_step": (2.0 * np.arctan(0.5 * y), 1.0)}
@@ -471,20 +543,20 @@ def stiff_pair_case(lesson):
         turned = np.unwrap(np.arctan2(velocity / omega, -middle))[-1] / (steps * dt)
         left = np.hypot(middle[-1], velocity[-1] / omega)
         size = amplitude * shrink**steps
-        # implicit Euler forgets the stiff mode at every step, implicit midpoint keeps what every step has left of it
+        # implicit Euler removes the stiff mode at every step, implicit midpoint keeps what every step leaves of it
         loose = 2.0 * dt * (newton if shrink == 1.0 else newton / steps) + np.spacing(2.0)
         found += [
             finding(
-                claim="The soft mode swings at the frequency of the method, as if the stiff spring were a rod.",
+                claim="The soft mode oscillates at the frequency of the method, as if the stiff spring were a rod.",
                 quantity=f"{LABEL[step]}: frequency of the soft mode [rad/s]",
                 predicted=angle / dt,
                 measured=turned,
                 tolerance=newton / (omega * size) / (steps * dt),
-                observation=(f"With hω₂ = {dt * stiff:.1e} {LABEL[step]} swings at {turned:.6f} rad/s; the truth is "
-                             f"{omega:.6f}."),
+                observation=(f"With hω₂ = {dt * stiff:.1e} {LABEL[step]} oscillates at {turned:.6f} rad/s; the exact "
+                             f"value is {omega:.6f}."),
             ),
             finding(
-                claim="Its amplitude is what the method makes of an oscillator without any stiff spring.",
+                claim="Its amplitude is that of the same method on an oscillator without a stiff spring.",
                 quantity=f"{LABEL[step]}: amplitude of the soft mode after 1 s [m]",
                 predicted=size,
                 measured=left,
@@ -492,7 +564,7 @@ def stiff_pair_case(lesson):
                 observation=f"After 1 s {LABEL[step]} has {left:.6f} m of {amplitude} m left.",
             ),
             finding(
-                claim="The stiff spring does not blow up: it stays at its length.",
+                claim="The stiff spring stays stable and keeps its length.",
                 quantity=f"{LABEL[step]}: largest stretch of the stiff spring [m]",
                 predicted=0.0,
                 measured=stretch,
@@ -515,13 +587,21 @@ def stiff_pair_case(lesson):
     ))
     fine = np.linspace(0.0, steps * dt, 241)
     drawn.insert(0, series("truth", fine, 1.0 - amplitude * np.cos(omega * fine), LINE))
-    return found, Picture("A stiff pair: motion of the soft mode", "t [s]", "position of mass 1 [m]", drawn,
-                          "The step is ten million times too long for the stiff spring, and both implicit methods follow the soft "
-                          "mode; implicit Euler damps it, implicit midpoint does not.")
+    return found, Picture(
+        "A stiff pair: motion of the soft mode",
+        "t [s]",
+        "position of mass 1 [m]",
+        drawn,
+        "The step is ten million times too long for the stiff spring, and both implicit methods follow the soft "
+        "mode. Implicit Euler damps it, implicit midpoint does not.",
+    )
 
 
 def swing(lesson, step, p, dt, steps):
-    """Times, mean displacement and velocity of the pair, the stiff spring's largest stretch; NaN from where the run breaks off."""
+    """Return times, mean displacement and velocity of the pair, and the stiff spring's largest stretch.
+
+    NaN from the step on at which the run diverges.
+    """
     x, v = np.array([0.5, 1.5]), np.zeros(2)
     xs, vs = np.full((steps + 1, 2), np.nan), np.full((steps + 1, 2), np.nan)
     xs[0], vs[0] = x, v
@@ -532,7 +612,12 @@ def swing(lesson, step, p, dt, steps):
     except (Diverged, np.linalg.LinAlgError):
         pass
     at_rest = np.array([1.0, 2.0]) * p.rest
-    return dt * np.arange(steps + 1), (xs - at_rest).mean(axis=1), vs.mean(axis=1), np.abs(xs[:, 1] - xs[:, 0] - p.rest).max()
+    return (
+        dt * np.arange(steps + 1),
+        (xs - at_rest).mean(axis=1),
+        vs.mean(axis=1),
+        np.abs(xs[:, 1] - xs[:, 0] - p.rest).max(),
+    )
 
 
 END = 1e11                   # of the reaction [s]
@@ -542,14 +627,15 @@ PUBLISHED = np.array([2.08334014970e-8, 8.33336077e-14, 0.99999997917])      # y
 def robertson(t, x, v, p):
     """ẏ₁ = −0.04 y₁ + 10⁴ y₂ y₃,   ẏ₂ = −ẏ₁ − ẏ₃,   ẏ₃ = 3·10⁷ y₂²,  with y in the place of v; x is unused.
 
-    *Source:* Robertson 1966; Hairer and Wanner 1996, IV.10; values at 10¹¹ s: Mazzia and Magherini, "Test set for IVP solvers".
+    *Source:* Robertson 1966; Hairer and Wanner 1996, IV.10; values at 10¹¹ s: Mazzia and Magherini, "Test set for
+    IVP solvers".
     """
     slow, back, fast = 0.04 * v[0], 1e4 * v[1] * v[2], 3e7 * v[1] * v[1]
     return np.array([back - slow, slow - back - fast, fast])
 
 
 def react(lesson, step, ratio):
-    """Times and concentrations of the reaction to END, every time the ratio of the one before it, from 10⁻⁵ s on."""
+    """Return times and concentrations of the reaction from 10⁻⁵ s to END; each time is `ratio` times the one before."""
     ts = END * ratio ** np.arange(-round(16.0 / np.log10(ratio)), 1.0)
     t, x, y, ys = 0.0, np.zeros(3), np.array([1.0, 0.0, 0.0]), []
     for end in ts:
@@ -561,11 +647,13 @@ def react(lesson, step, ratio):
 
 @case("robertson", "Robertson's reaction", compiled=False)
 def robertson_case(lesson):
-    """Robertson's reaction to 10¹¹ s.  Late, y₂ = 4·10⁻⁶ y₁ and  ẏ₁ = −c y₁²,  c = 3·10⁷ (4·10⁻⁶)² = 4.8e-4 /s:  y₁ = 1/ct.
+    """Robertson's reaction to 10¹¹ s, with the steps in a constant ratio.
 
-    Implicit Euler with times tₙ₊₁ = q tₙ turns that into  uₙ₊₁ = uₙ − (q − 1) tₙ c uₙ₊₁²,  solved by uₙ = q/(c tₙ): a relative
-    error of q − 1, first order in the step.  The truth itself is 3.3e-6 away from 1/ct, so the error is known to about that.
-    Explicit Euler sees the fast rate |λ| = 0.04 + 10⁴ y₃ + … and may not step further than 2/|λ|.
+    Late, y₂ = 4·10⁻⁶ y₁ and  ẏ₁ = −c y₁²,  c = 3·10⁷ (4·10⁻⁶)² = 4.8e-4 /s:  y₁ = 1/ct.
+    Implicit Euler with times tₙ₊₁ = q tₙ turns that into  uₙ₊₁ = uₙ − (q − 1) tₙ c uₙ₊₁²,  solved by uₙ = q/(c tₙ).
+    Its relative error is q − 1, first order in the step.  The exact solution differs by 3.3e-6 from 1/ct, so the
+    error is known to about that.  Explicit Euler is limited by the fast rate |λ| = 0.04 + 10⁴ y₃ + … to steps below
+    2/|λ|.
     """
     found = []
     beside = abs(PUBLISHED[0] * 4.8e-4 * END - 1.0)
@@ -576,22 +664,22 @@ def robertson_case(lesson):
             error = ys[-1, k] / PUBLISHED[k] - 1.0
             found.append(finding(
                 claim=f"With times in the ratio q implicit Euler is wrong by q − 1 in {name}: first order.",
-                quantity=f"relative error of {name} at 10¹¹ s, {per_decade} steps a decade [-]",
+                quantity=f"relative error of {name} at 10¹¹ s, {per_decade} steps per decade [-]",
                 predicted=ratio - 1.0,
                 measured=error,
                 tolerance=beside,
                 observation=(f"{len(ts):,} steps reach 10¹¹ s with {name} {100.0 * error:.4f} % above the published "
                              "value."),
             ))
-    # in a step the terms dt·0.04 y₁ < 2 cancel, each rounded by 1.1e-16 of itself some eight times
+    # in a step the terms dt·0.04 y₁ < 2 cancel, each rounded by 1.1e-16 of itself about eight times
     total = ys[-1].sum()
     found.append(finding(
-        claim="Nothing is lost: y₁ + y₂ + y₃ = 1.",
+        claim="The total is conserved: y₁ + y₂ + y₃ = 1.",
         quantity="sum of the concentrations at 10¹¹ s [-]",
         predicted=1.0,
         measured=total,
         tolerance=len(ts) * 16 * 1.1e-16,
-        observation=f"After {len(ts):,} steps the sum departs from 1 by {abs(total - 1.0):.0e}.",
+        observation=f"After {len(ts):,} steps the sum differs from 1 by {abs(total - 1.0):.0e}.",
     ))
     refused = refuse(EXPLICIT, lambda name: react(lesson, name, ratio))
     found.append(finding(
@@ -605,24 +693,32 @@ def robertson_case(lesson):
     longest = 2.0 / fastest_rate(PUBLISHED)
     step = bisect(lambda dt: leaves(lesson, dt), 1e-5, 1e-3)
     found.append(finding(
-        claim="Explicit Euler must not step further than 2/|λ|, even at the end, where nothing seems to move.",
+        claim="Explicit Euler is limited to steps of 2/|λ| even at the end, where the concentrations hardly change.",
         quantity="longest step of explicit Euler at 10¹¹ s [s]",
         predicted=longest,
         measured=step,
         tolerance=EDGE * longest,
-        observation=f"A disturbance of y₂ grows at steps above {step:.5e} s: {END / step:.1e} steps to 10¹¹ s.",
+        observation=(f"A disturbance of y₂ grows at steps above {step:.5e} s, so 10¹¹ s would take {END / step:.1e} "
+                     "steps."),
     ))
     late = ts > 1e3
-    drawn = [series(f"{name}, implicit Euler", np.log10(ts), np.log10(y), LINE) for name, y in zip(("y₁", "y₂", "y₃"), ys.T)]
+    drawn = [
+        series(f"{name}, implicit Euler", np.log10(ts), np.log10(y), LINE) for name, y in zip(("y₁", "y₂", "y₃"), ys.T)
+    ]
     drawn += [series("published", [np.log10(END)] * 3, np.log10(PUBLISHED), DOTS),
               series("1/ct", np.log10(ts[late]), -np.log10(4.8e-4 * ts[late]), LINE)]
-    return found, Picture("Robertson's reaction", "log₁₀ of time [s]", "log₁₀ of concentration [-]", drawn,
-                          f"Sixteen decades of time in {len(ts):,} steps, each {100.0 * (ratio - 1.0):.1f} % longer than the one "
-                          "before: implicit Euler ends that much above the published y₁ and y₂; late y₁ follows 1/ct.")
+    return found, Picture(
+        "Robertson's reaction",
+        "log₁₀ of time [s]",
+        "log₁₀ of concentration [-]",
+        drawn,
+        f"Sixteen decades of time in {len(ts):,} steps, each {100.0 * (ratio - 1.0):.1f} % longer than the one "
+        "before. Implicit Euler ends that much above the published y₁ and y₂; late y₁ follows 1/ct.",
+    )
 
 
 def reached(lesson, ratio):
-    """What implicit Euler reaches, or NaN if it breaks off."""
+    """Return the end of implicit Euler's run, or NaN if it diverges."""
     try:
         return react(lesson, "implicit_euler_step", ratio)
     except (Diverged, np.linalg.LinAlgError):
@@ -630,15 +726,18 @@ def reached(lesson, ratio):
 
 
 def fastest_rate(y):
-    """Largest |eigenvalue| [1/s] of the reaction's Jacobian."""
-    J = np.array([[-0.04, 1e4 * y[2], 1e4 * y[1]], [0.04, -1e4 * y[2] - 6e7 * y[1], -1e4 * y[1]], [0.0, 6e7 * y[1], 0.0]])
+    """Return the largest |eigenvalue| [1/s] of the reaction's Jacobian."""
+    J = np.array(
+        [[-0.04, 1e4 * y[2], 1e4 * y[1]], [0.04, -1e4 * y[2] - 6e7 * y[1], -1e4 * y[1]], [0.0, 6e7 * y[1], 0.0]]
+    )
     return np.abs(np.linalg.eigvals(J)).max()
 
 
 def leaves(lesson, dt):
-    """Whether 1,000 steps of explicit Euler carry a y₂ that is half too large away from its published value.
+    """Return whether 1,000 steps of explicit Euler amplify a y₂ that starts half too large.
 
-    y₂ returns to a value 4·10⁻⁶ of the disturbance off: y₁ has taken up the rest.  Over 1,000 steps that shifts the edge by 2e-9.
+    y₂ returns to a value that differs by 4·10⁻⁶ of the disturbance, because y₁ has taken up the rest.  Over 1,000
+    steps that shifts the edge by 2e-9.
     """
     disturbed = np.array([1.0, 1.5, 1.0]) * PUBLISHED
     try:

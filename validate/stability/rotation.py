@@ -1,8 +1,7 @@
-"""What rotation does to a step: energy that drifts, spins that are too fast, needles, and the spin at which a top falls asleep.
+"""Rotation at its limits: energy drift, fast spins, needles, and the spin below which a sleeping top falls.
 
-Every bound here is a closed form; the experiment is a run of the lesson's own steps.  Cases 11, 14, 15 and 17 of the workbook's list.
-Reached through `stability`, which imports this file at its end: import that one first.
-(pybullet turns a body by π/4 a step at most, 785 rad/s at a millisecond, and says nothing beyond: it has no part in case 14.)
+Every bound here is a closed form; the experiment is a run of the lesson's own steps.  Cases 11, 14, 15 and 17 of the
+workbook's list.  (pybullet silently limits a turn to π/4 per step, 785 rad/s at a millisecond, so case 14 omits it.)
 *Source:* Euler 1758; Landau and Lifshitz, Mechanics, §§ 33 to 37; Klein and Sommerfeld 1897 for the sleeping top.
 """
 
@@ -14,22 +13,26 @@ from validate.reference.orientation import quaternion_matrix, relative_turn
 from validate.reference.rotation import symmetric_top
 from validate.stability.case import DOTS, EDGE, LINE, Picture, bisect, case, finding, series
 
-EPS = 1.2e-16                # of a rounding, relative
+EPS = 1.2e-16                # relative size of a rounding
 LABEL = {method.function: method.label for method in TURNS}
 KEEP_L = [m.function for m in TURNS if not m.function.endswith("gyroscopic_step")]
 AT_START = np.array([1.0, 0.0, 0.0, 0.0])
 
 
 def released(lesson, method, I, omega, dt, steps):
-    """(R, L, energy over its value at the start) of a free body that starts at R = 1 with this ω; Diverged where the step refuses."""
+    """Return (R, L, energy over its initial value) of a free body that starts at R = 1 with this ω.
+
+    Raises Diverged where the step refuses.
+    """
     body = lesson.Body(1.0, np.array(I))
     L = body.I_body * np.array(omega)
     q, end = lesson.tumble(getattr(lesson, method), lesson.no_torque, 0.0, AT_START, L, dt, steps, body)
-    return quaternion_matrix(*q), end, lesson.kinetic_energy(q, end, body.I_body) / lesson.kinetic_energy(AT_START, L, body.I_body)
+    energy = lesson.kinetic_energy(q, end, body.I_body) / lesson.kinetic_energy(AT_START, L, body.I_body)
+    return quaternion_matrix(*q), end, energy
 
 
 def tried(lesson, method, I, omega, dt, steps):
-    """released, or None where the step refuses."""
+    """Return the same, or None where the step refuses."""
     try:
         return released(lesson, method, I, omega, dt, steps)
     except Diverged:
@@ -37,7 +40,7 @@ def tried(lesson, method, I, omega, dt, steps):
 
 
 def energies(lesson, method, I, omega, dt, ts):
-    """Energy over its value at the start at the times ts; the step must not refuse."""
+    """Return the energy over its initial value at the times ts; the step must not refuse."""
     body, q, now, found = lesson.Body(1.0, np.array(I)), AT_START, 0.0, []
     L = body.I_body * np.array(omega)
     begin = lesson.kinetic_energy(q, L, body.I_body)
@@ -54,7 +57,10 @@ CYLINDER, SPUN, MS = (0.04, 0.04, 0.02), (2.0, 4.0, 6.0), 1e-3     # moments [kg
 
 
 def gyroscopic_energy(t, sign):
-    """E/E₀ of a step that takes the gyroscopic term at its beginning (+1) or its end (−1), exactly: ω_⊥² grows by 1 + (Ω dt)² or shrinks."""
+    """Return E/E₀ of a step that takes the gyroscopic term at its beginning (+1) or its end (−1), exactly.
+
+    ω_⊥² is multiplied by 1 + (Ω dt)² per step, or divided by it.
+    """
     I, w = np.array(CYLINDER), np.array(SPUN)
     turn = (I[2] - I[0]) / I[0] * w[2]
     across = I[0] * (w[0] ** 2 + w[1] ** 2) * (1.0 + (turn * MS) ** 2) ** (sign * t / MS)
@@ -62,7 +68,10 @@ def gyroscopic_energy(t, sign):
 
 
 def kept_L_energy(t, times=1.0):
-    """E/E₀ where L is kept and ω is that of the beginning, to first order in dt: u = L₃² obeys  u̇ = ρ u (L² − u),  a logistic."""
+    """Return E/E₀ of a step that keeps L and turns with the first ω, to first order in dt.
+
+    u = L₃² obeys the logistic equation  u̇ = ρ u (L² − u).
+    """
     I, L = np.array(CYLINDER), np.array(CYLINDER) * np.array(SPUN)
     squared, u0 = L @ L, L[2] ** 2
     rate = times * MS * (I[0] - I[2]) * squared / (I[0] ** 2 * I[2])
@@ -73,12 +82,14 @@ def kept_L_energy(t, times=1.0):
 
 @case("gyroscopic-drift", "Gyroscopic drift")
 def gyroscopic_drift(lesson):
-    """A first-order step gains or loses  dE/dt = ±½ dt ω̇ᵀIω̇,  ω̇ seen from the body; for this cylinder ±4.74 % in 10 s at 1 ms.
+    """A first-order step changes the energy by  dE/dt = ±½ dt ω̇ᵀIω̇,  ω̇ in body coordinates.
 
-    Gyroscopic term at the beginning:  I Δω = −dt ω × Iω,  so that ΔE = ½ Δωᵀ I Δω > 0;  at the end, minus that.  Seen from the body the
-    cylinder's ω_⊥ turns at Ω = (I₃ − I₁)/I₁ ω₃, so that explicit Euler multiplies its length by √(1 + (Ω dt)²), implicit Euler divides:
-    exact, because turning about ω moves nothing along ω.  Where L is kept, ℓ ← e^(−dt ω*) ℓ has the same ΔE; renormalising by
-    columns adds  dt² κ  to the turn, κ = ½(−ω₂ω₃, ω₁ω₃, −ω₁ω₂), and for this cylinder twice the drift on top.
+    For this cylinder that is ±4.74 % in 10 s at 1 ms.  With the gyroscopic term at the beginning,  I Δω = −dt
+    ω × Iω,  so ΔE = ½ Δωᵀ I Δω > 0; at the end, minus that.  In body coordinates the cylinder's ω_⊥ turns at
+    Ω = (I₃ − I₁)/I₁ ω₃. Explicit Euler multiplies its length by √(1 + (Ω dt)²), and implicit Euler divides it by
+    the same. That is exact, because a turn about ω does not change ω.  Where L is kept, ℓ ← e^(−dt ω*) ℓ has the
+    same ΔE. Renormalising by columns adds  dt² κ  to the turn, κ = ½(−ω₂ω₃, ω₁ω₃, −ω₁ω₂), and for this cylinder
+    twice the drift on top.
     """
     steps, rate = 10000, np.linalg.norm(SPUN)
     energy = {m: released(lesson, m, CYLINDER, SPUN, MS, steps)[2] - 1.0 for m in LABEL}
@@ -87,9 +98,10 @@ def gyroscopic_drift(lesson):
     first = 0.5 * MS * (w_dot @ (I * w_dot)) * steps * MS / (0.5 * w @ (I * w))
     found = [
         # sinh x = x (1 + x²/6 + …) with x = 2 · drift / share of ω_⊥ in the energy < 0.1
+
         finding(
-            claim="A first-order step changes the energy by ±½ dt ω̇ᵀIω̇ a second.",
-            quantity="half of what lies between both gyroscopic steps after 10 s [-]",
+            claim="A first-order step changes the energy by ±½ dt ω̇ᵀIω̇ per second.",
+            quantity="half the difference between the two gyroscopic steps after 10 s [-]",
             predicted=first,
             measured=0.5 * (energy["gyroscopic_step"] - energy["implicit_gyroscopic_step"]),
             tolerance=0.1**2 / 5.0 * first,
@@ -106,22 +118,23 @@ def gyroscopic_drift(lesson):
             predicted=law,
             measured=energy[method],
             tolerance=20.0 * EPS * steps,
-            observation=f"The {place} of the step: {100.0 * energy[method]:+.4f} %, as the closed form says.",
+            observation=(f"With the term at the {place} of the step the energy changes by "
+                         f"{100.0 * energy[method]:+.4f} %, as in the closed form."),
         ))
     for method, times in (("axis_angle_step", 1.0), ("quaternion_step", 1.0), ("matrix_step", 3.0)):
         law = kept_L_energy(steps * MS, times) - 1.0
         found.append(finding(
-            claim="A step that keeps L and turns with the ω of its beginning gains energy along a logistic curve.",
+            claim="A step that keeps L and turns with its first ω gains energy along a logistic curve.",
             quantity=f"{LABEL[method]}: energy gained in 10 s [-]",
             predicted=law,
             measured=energy[method],
             tolerance=2.0 * rate * MS * law,
-            observation=(f"{LABEL[method]}: {100.0 * energy[method]:+.2f} % in 10 s; L is kept to the last digit all "
-                         "the same."),
+            observation=(f"{LABEL[method]}: {100.0 * energy[method]:+.2f} % in 10 s, although L is kept to the last "
+                         "digit."),
         ))
     for method in ("midpoint_step", "composed_midpoint_step", "splitting_step", "composed_splitting_step"):
         found.append(finding(
-            claim="A step that is exact or of quadratic invariants keeps L and the energy.",
+            claim="A step that is exact or preserves quadratic invariants keeps L and the energy.",
             quantity=f"{LABEL[method]}: energy gained in 10 s [-]",
             predicted=0.0,
             measured=energy[method],
@@ -133,21 +146,35 @@ def gyroscopic_drift(lesson):
              series("theory, gyroscopic, implicit", fine, 100.0 * (gyroscopic_energy(fine, -1) - 1.0), LINE),
              series("theory, L kept", fine, 100.0 * (kept_L_energy(fine) - 1.0), LINE),
              series("theory, renormalised", fine, 100.0 * (kept_L_energy(fine, 3.0) - 1.0), LINE)]
-    drawn += [series(LABEL[m], ts, 100.0 * (energies(lesson, m, CYLINDER, SPUN, MS, ts) - 1.0), DOTS)
-              for m in ("gyroscopic_step", "implicit_gyroscopic_step", "quaternion_step", "matrix_step", "midpoint_step", "splitting_step")]
-    return found, Picture("Energy of a thrown cylinder at 1 ms", "t [s]", "energy gained [%]", drawn,
-                          "First-order steps gain energy or lose it, three times as fast where R is renormalised by columns; the midpoint turn and "
-                          "the splitting keep it.")
+    drawn += [
+        series(LABEL[m], ts, 100.0 * (energies(lesson, m, CYLINDER, SPUN, MS, ts) - 1.0), DOTS)
+        for m in (
+            "gyroscopic_step",
+            "implicit_gyroscopic_step",
+            "quaternion_step",
+            "matrix_step",
+            "midpoint_step",
+            "splitting_step",
+        )
+    ]
+    return found, Picture(
+        "Energy of a thrown cylinder at 1 ms",
+        "t [s]",
+        "energy gained [%]",
+        drawn,
+        "First-order steps gain or lose energy, three times as fast if R is renormalised by columns. The midpoint "
+        "turn and the splitting keep it.",
+    )
 
 
 # ---------------------------------------------------------------------------------------------- too fast
 
 @case("fast-spin", "Spin 10⁴ rad/s")
 def fast_spin(lesson):
-    """A cylinder at 10⁴ rad/s with 10 rad a step: L is a state and does not change; two equal moments make the splitting exact.
+    """A cylinder at 10⁴ rad/s with 10 rad per step keeps L, and two equal moments make the splitting exact.
 
-    Round-off: an angle of N rad is known to some 16 roundings of N/2⁵³.  The gyroscopic term at the beginning multiplies ω_⊥ by
-    √(1 + (Ω dt)²) = √17 a step.
+    L does not change where it is the state.  Round-off: an angle of N rad is known to about 16 roundings of N/2⁵³.
+    The gyroscopic term at the beginning multiplies ω_⊥ by √(1 + (Ω dt)²) = √17 per step.
     """
     fast, steps = (6000.0, 0.0, 8000.0), 1000
     I, L = np.array(CYLINDER), np.array(CYLINDER) * fast
@@ -155,12 +182,12 @@ def fast_spin(lesson):
     lost = max(np.abs(runs[m][1] - L).max() if runs[m] else np.inf for m in KEEP_L)
     angle = (np.linalg.norm(L) / I[0] + abs(1.0 - I[2] / I[0]) * fast[2]) * steps * MS
     found = [finding(
-        claim="Where L is the state, no spin is too fast to keep it.",
+        claim="A step with L as its state keeps L at any spin.",
         quantity=f"largest change of L in {len(KEEP_L)} steps of the lesson [kg m²/s]",
         predicted=0.0,
         measured=lost,
         tolerance=0.0,
-        observation=f"At 10⁴ rad/s and 10 rad a step, {steps:,} steps change no digit of L.",
+        observation=f"At 10⁴ rad/s and 10 rad per step, {steps:,} steps change no digit of L.",
     )]
     for method in ("splitting_step", "composed_splitting_step"):
         off = relative_turn(runs[method][0], symmetric_top(I, np.array(fast), steps * MS))
@@ -176,34 +203,43 @@ def fast_spin(lesson):
     for method in ("midpoint_step", "composed_midpoint_step"):
         gained = runs[method][2] - 1.0 if runs[method] else np.nan
         found.append(finding(
-            claim="The midpoint turn keeps the energy at any spin, if not the orientation.",
+            claim="The midpoint turn keeps the energy at any spin, but not the orientation.",
             quantity=f"{LABEL[method]}: energy gained in 1 s [-]",
             predicted=0.0,
             measured=gained,
             tolerance=5.0 * 20.0 * EPS * steps,
-            observation=f"{LABEL[method]}: {gained:+.0e} of the energy, 10 rad a step.",
+            observation=f"{LABEL[method]}: {gained:+.0e} of the energy at 10 rad per step.",
         ))
     refused = runs["gyroscopic_step"] is None
     found.append(finding(
-        claim=("With the gyroscopic term at the beginning ω_⊥ grows by √17 a step: it must end in an error, not in a "
-               "number."),
+        claim=("With the gyroscopic term at the beginning ω_⊥ grows by √17 per step: the run must end in an error "
+               "instead of a number."),
         quantity="runs that raise Diverged [of 1]",
         predicted=1,
         measured=refused,
         tolerance=0.0,
-        observation=f"The lecture's loop {'refuses' if refused else 'returns a number'}.",
+        observation=f"The lecture's loop {'raises an error' if refused else 'returns a number'}.",
     ))
     spins = np.logspace(1.0, 5.0, 13)
-    drawn = [series("theory, 16 roundings of the angle", np.log10(spins), np.log10(16.0 * EPS * angle / 1e4 * spins), LINE)]
+    drawn = [
+        series("theory, 16 roundings of the angle", np.log10(spins), np.log10(16.0 * EPS * angle / 1e4 * spins), LINE)
+    ]
     for method in ("splitting_step", "midpoint_step", "runge_kutta_step"):
         errors = []
         for spin in spins:
             omega = spin / 1e4 * np.array(fast)
             run = tried(lesson, method, CYLINDER, omega, MS, steps)
-            errors.append(np.log10(max(relative_turn(run[0], symmetric_top(I, omega, steps * MS)), 1e-16)) if run else np.log10(np.pi))
+            off = max(relative_turn(run[0], symmetric_top(I, omega, steps * MS)), 1e-16) if run else np.pi
+            errors.append(np.log10(off))
         drawn.append(series(LABEL[method], np.log10(spins), errors, DOTS))
-    return found, Picture("A cylinder spun ever faster, 1 ms a step", "log₁₀ of the spin [rad/s]", "log₁₀ of the error after 1 s [rad]", drawn,
-                          "The splitting loses only what the angle itself loses to rounding; the others are lost where they turn by about a radian a step.")
+    return found, Picture(
+        "A cylinder at increasing spin, 1 ms per step",
+        "log₁₀ of the spin [rad/s]",
+        "log₁₀ of the error after 1 s [rad]",
+        drawn,
+        ("The splitting loses only the digits that the angle itself loses to rounding. The other steps fail where "
+         "they turn by about a radian per step."),
+    )
 
 
 # ---------------------------------------------------------------------------------------------- a needle
@@ -213,21 +249,21 @@ NEEDLE, PRICKED = (1.0, 1.0, 1e-6), (1.0, 0.5, 1000.0)
 
 @case("slender-body", "A needle")
 def slender_body(lesson):
-    """A needle, I₃ = 10⁻⁶ I₁, one radian a step: L₃ = 10⁻³ is a small difference, known to 10⁻¹⁶ |L| a step, and ω₃ = L₃/I₃.
+    """A needle, I₃ = 10⁻⁶ I₁, one radian per step: L₃ = 10⁻³ is a small difference, known to 10⁻¹⁶ |L| per step.
 
-    Any orientation whatever has an energy between L²/2I₁ and L²/2I₃.
+    ω₃ = L₃/I₃.  Any orientation has an energy between L²/2I₁ and L²/2I₃.
     """
     steps, I, w = 10000, np.array(NEEDLE), np.array(PRICKED)
     L = I * w
     size, energy = np.linalg.norm(L), 0.5 * L @ w
-    blurred = 4.0 * EPS * steps * size                                   # of L₃, were all roundings of one sign
+    blurred = 4.0 * EPS * steps * size                                   # of L₃, if all roundings have one sign
     runs = {m: tried(lesson, m, NEEDLE, PRICKED, MS, steps) for m in LABEL}
     found = []
     for method in ("midpoint_step", "composed_midpoint_step", "splitting_step", "composed_splitting_step"):
         gained = runs[method][2] - 1.0 if runs[method] else np.nan
         many = 5 if method.startswith("composed") else 1
         found.append(finding(
-            claim="The energy of a needle is kept as well as L₃ is known.",
+            claim="The energy of a needle is kept to the accuracy of L₃.",
             quantity=f"{LABEL[method]}: energy gained in 10 s [-]",
             predicted=0.0,
             measured=gained,
@@ -236,17 +272,17 @@ def slender_body(lesson):
         ))
     off = relative_turn(runs["splitting_step"][0], symmetric_top(I, w, steps * MS))
     found.append(finding(
-        claim="Its spin is ω₃ = L₃/I₃, so that the angle is known to T δL₃/2I₃.",
+        claim="Its spin is ω₃ = L₃/I₃, so the angle is known to T δL₃/2I₃.",
         quantity=f"{LABEL['splitting_step']}: error of the orientation after 10 s [rad]",
         predicted=0.0,
         measured=off,
         tolerance=0.5 * blurred / I[2] * steps * MS,
-        observation=f"After 10,000 rad about itself the needle is off by {off:.0e} rad.",
+        observation=f"After 10,000 rad about its axis the needle is off by {off:.0e} rad.",
     ))
     ended = sum(run is None or bool(np.all(np.isfinite(run[0])) and np.isfinite(run[2])) for run in runs.values())
     refused = [LABEL[m] for m, run in runs.items() if run is None]
     found.append(finding(
-        claim="A step ends in finite numbers or says that it cannot.",
+        claim="A step ends in finite numbers or raises an error.",
         quantity=f"steps that do so [of {len(runs)}]",
         predicted=len(runs),
         measured=ended,
@@ -254,57 +290,68 @@ def slender_body(lesson):
         observation=f"Of {len(runs)} steps {len(refused)} refused: {', '.join(refused)}.",
     ))
     bounds = size**2 / (2.0 * I[0]) / energy, size**2 / (2.0 * I[2]) / energy
-    inside = sum(run is None or (1.0 - 1e-9) * bounds[0] <= run[2] <= (1.0 + 1e-9) * bounds[1] for m, run in runs.items() if m in KEEP_L)
+    inside = sum(
+        run is None or (1.0 - 1e-9) * bounds[0] <= run[2] <= (1.0 + 1e-9) * bounds[1]
+        for m, run in runs.items()
+        if m in KEEP_L
+    )
     found.append(finding(
-        claim="Where L is kept the energy stays between L²/2I₁ and L²/2I₃, however wrong the orientation.",
+        claim="Where L is kept the energy stays between L²/2I₁ and L²/2I₃, whatever the error of the orientation.",
         quantity=f"steps that stay inside [of {len(KEEP_L)}]",
         predicted=len(KEEP_L),
         measured=inside,
         tolerance=0.0,
         observation=(f"{inside} of {len(KEEP_L)} steps stay between {bounds[0]:.2f} and {bounds[1]:,.0f} times the "
-                     "energy at the start."),
+                     "initial energy."),
     ))
     ts = np.linspace(0.5, 10.0, 20)
     drawn = [series(LABEL[m], ts, np.log10(energies(lesson, m, NEEDLE, PRICKED, MS, ts)), DOTS)
              for m in ("splitting_step", "midpoint_step", "quaternion_step", "runge_kutta_step")]
     drawn.append(series("greatest possible", (0.0, 10.0), np.log10((bounds[1], bounds[1])), LINE))
     drawn.append(series("least possible", (0.0, 10.0), np.log10((bounds[0], bounds[0])), LINE))
-    return found, Picture("Energy of a needle, one radian a step", "t [s]", "log₁₀ of energy over its value at the start [-]", drawn,
-                          "Splitting and midpoint keep the energy; the others wander between the bounds that L sets.")
+    return found, Picture(
+        "Energy of a needle, one radian per step",
+        "t [s]",
+        "log₁₀ of energy over its value at the start [-]",
+        drawn,
+        "Splitting and midpoint keep the energy; the others vary between the bounds that L sets.",
+    )
 
 
 # ---------------------------------------------------------------------------------------------- a sleeping top
 
 ACROSS, ALONG, MGL = 5.0, 1.0, 20.0                       # I₁, I₃ about the pivot [kg m²], Mgl [N m]
-ASLEEP = 1e-7                # tilt [rad] from which it starts: its square is round-off, so that it obeys a linear equation
-AWAKE = 500.0                # times that tilt: then it has fallen [-]
-WATCHED = 200.0              # how long it is watched [s]
+ASLEEP = 1e-7  # initial tilt [rad]: its square is round-off, so it obeys a linear equation
+AWAKE = 500.0                # a top has fallen at this multiple of that tilt [-]
+WATCHED = 200.0              # duration of a run [s]
 
 
 def tilts(lesson, spin, tilt, dt, seconds, look):
-    """Tilt [rad] of a top that starts at rest but for its spin: at the start, and every so many steps of dt."""
+    """Yield the tilt [rad] of a top released with nothing but its spin: first at the start, then every `look` steps."""
     top = lesson.Top(np.array([ACROSS, ACROSS, ALONG]), MGL)
     q = np.array([np.cos(0.5 * tilt), np.sin(0.5 * tilt), 0.0, 0.0])
     L = ALONG * spin * np.array([0.0, -np.sin(tilt), np.cos(tilt)])
     yield tilt
     for n in range(round(seconds / (dt * look))):
-        q, L = lesson.tumble(lesson.composed_splitting_step, lesson.heavy_top_torque, n * look * dt, q, L, dt, look, top)
+        q, L = lesson.tumble(
+            lesson.composed_splitting_step, lesson.heavy_top_torque, n * look * dt, q, L, dt, look, top
+        )
         yield 2.0 * np.arctan2(np.hypot(q[1], q[2]), np.hypot(q[0], q[3]))
 
 
 def falls(lesson, spin):
-    """Whether the top reaches AWAKE times its tilt, when looked at every half second."""
+    """Return whether the top reaches AWAKE times its tilt at any half second."""
     return any(tilt > AWAKE * ASLEEP for tilt in tilts(lesson, spin, ASLEEP, 0.02, WATCHED, 25))
 
 
 @case("sleeping-top", "A sleeping top")
 def sleeping_top(lesson):
-    """A sleeping top stands iff ω₃² > 4I₁Mgl/I₃²: 20 rad/s here.
+    """A sleeping top stands if and only if ω₃² > 4I₁Mgl/I₃²: 20 rad/s here.
 
-    Near the vertical ξ = θ e^(iφ) obeys  I₁ξ̈ − iI₃ω₃ξ̇ − Mgl ξ = 0,  so that with a = I₃ω₃/2I₁ and λ² = Mgl/I₁ − a²
-        |ξ/ξ₀|² = cosh² λt + (a/λ)² sinh² λt                  from rest
-    which reaches AWAKE in time t when  sinh(λt)/λt ≈ AWAKE/at:  for t = 200 s at λ = 0.006, where ω₃ is λ²I₁/2Mgl = 4e-6 below the edge.
-    One that falls from upright falls as far as  cos θ = I₃²ω₃²/2I₁Mgl − 1.
+    Near the vertical ξ = θ e^(iφ) obeys  I₁ξ̈ − iI₃ω₃ξ̇ − Mgl ξ = 0.  With a = I₃ω₃/2I₁ and λ² = Mgl/I₁ − a²
+        |ξ/ξ₀|² = cosh² λt + (a/λ)² sinh² λt                  from rest,
+    which reaches AWAKE in time t if  sinh(λt)/λt ≈ AWAKE/at:  for t = 200 s at λ = 0.006, where ω₃ is λ²I₁/2Mgl = 4e-6
+    below the edge.  A top that falls from upright falls as far as  cos θ = I₃²ω₃²/2I₁Mgl − 1.
     """
     threshold = np.sqrt(4.0 * ACROSS * MGL) / ALONG
     found_at = bisect(lambda slower: falls(lesson, 2.0 * threshold - slower), 0.8 * threshold, 1.2 * threshold)
@@ -315,7 +362,7 @@ def sleeping_top(lesson):
         predicted=threshold,
         measured=measured,
         tolerance=threshold * (5e-6 + 1.2 * EDGE),
-        observation=f"It falls below {measured:.4f} rad/s, and stands above.",
+        observation=f"The top falls below {measured:.4f} rad/s, and stands above.",
     )]
     flips = falls(lesson, 0.999 * threshold) and not falls(lesson, 1.001 * threshold)
     found.append(finding(
@@ -332,9 +379,11 @@ def sleeping_top(lesson):
         rate = np.sqrt(complex(MGL / ACROSS - a * a))
         law = abs(np.cosh(rate * seconds) + 1j * a / rate * np.sinh(rate * seconds))
         leans = np.array(list(tilts(lesson, spin, ASLEEP, 0.01, seconds, 1)))
-        # fourth order at the faster rate a + |λ| < 3 rad/s: 30 (0.03)⁴; and tilts below 1e-4 rad, whose squares are 1e-8
+        # Fourth order at the faster rate a + |λ| < 3 rad/s: 30 (0.03)⁴.  Tilts are below 1e-4 rad, and their
+        # squares below 1e-8.
+
         found.append(finding(
-            claim="Its tilt grows or swings as a linear equation says.",
+            claim="Its tilt follows a linear equation.",
             quantity=f"tilt after 10 s over its first, at {spin:g} rad/s [-]",
             predicted=law,
             measured=leans[-1] / ASLEEP,
@@ -344,7 +393,9 @@ def sleeping_top(lesson):
         ))
     reached = fallen(lesson, 19.0)
     lowest = (ALONG * 19.0) ** 2 / (2.0 * ACROSS * MGL) - 1.0
-    # between two looks, 10 ms apart, at most ½ü (5 ms)² with ü = Mgl/I₁ (1 − u)² of cos θ; and fourth order as above, with rate 10
+    # Between two samples, 10 ms apart, cos θ changes by at most ½ü (5 ms)² with ü = Mgl/I₁ (1 − u)², u = cos θ.
+    # The method adds its fourth-order error, as above, with rate 10.
+
     found.append(finding(
         claim="A top that falls from upright falls as far as cos θ = I₃²ω₃²/2I₁Mgl − 1.",
         quantity="least cos θ at 19 rad/s [-]",
@@ -355,11 +406,19 @@ def sleeping_top(lesson):
     ))
     spins, fine = np.linspace(12.0, 24.0, 13), np.linspace(12.0, 24.0, 121)
     deepest = lambda spin: np.degrees(np.arccos(min(1.0, (ALONG * spin) ** 2 / (2.0 * ACROSS * MGL) - 1.0)))
-    return found, Picture("How far a sleeping top falls", "spin [rad/s]", "largest tilt [°]", [
-        series("theory", fine, [deepest(s) for s in fine], LINE), series("measured", spins, [np.degrees(fallen(lesson, s)) for s in spins], DOTS),
-    ], "Above 20 rad/s the top stands still upright, as if asleep; below it wakes, leans over as far as its energy lets it, and comes back.")
+    return found, Picture(
+        "How far a sleeping top falls",
+        "spin [rad/s]",
+        "largest tilt [°]",
+        [
+            series("theory", fine, [deepest(s) for s in fine], LINE),
+            series("measured", spins, [np.degrees(fallen(lesson, s)) for s in spins], DOTS),
+        ],
+        ("Above 20 rad/s the top stays upright, asleep. Below that it wakes, tilts as far as its energy permits, and "
+         "comes back."),
+    )
 
 
 def fallen(lesson, spin):
-    """Largest tilt [rad] in 40 s from nearly upright: enough to fall once unless it is within 2 % of the edge."""
+    """Return the largest tilt [rad] in 40 s from nearly upright: enough for one fall unless within 2 % of the edge."""
     return max(tilts(lesson, spin, 1e-5, 0.01, 40.0, 1))

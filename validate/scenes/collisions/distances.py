@@ -1,7 +1,8 @@
-"""How far apart are two bodies, along which normal, and where are they nearest or overlap?  Every pair of shapes of the narrow phase.
+"""Distance, normal, and nearest or overlapping points of two bodies: every pair of shapes of the narrow phase.
 
-Most are rounded hulls: some points, and a radius around what they span.  Truth is a least-squares problem with weights that are not
-negative, or the hull of all differences; the lesson has a formula for each pair, separating axes with clipping, and GJK for all.
+Most shapes are rounded hulls: some points, and a radius around their hull.  The reference solution is a least-squares
+problem with non-negative weights, or the hull of all differences.  The lesson has a formula for each pair, separating
+axes with clipping, and GJK for all.
 """
 
 from typing import Annotated, NamedTuple
@@ -41,16 +42,37 @@ class Params(NamedTuple):
     R: Annotated[float, "of the second [m]"] = 0.4
 
 
-CASES = {name: Params(name) for name in (
-    "ball, ball", "ball, plane", "ball, capsule", "capsule, capsule", "ball, triangle", "ball, box", "ball in a box", "box, box (corner)",
-    "box, box (edges)", "axis of a corner", "axis of two edges", "box in a box", "box on a box", "box, plane", "triangle, box", "disc, polygon (2D)", "polygon, polygon (2D)", "rectangles (2D)", "flying disc (2D)")}
-MARGIN = 0.001               # of pybullet: what it rounds boxes off with, and puts around hulls of points [m]
+CASES = {
+    name: Params(name)
+    for name in (
+        "ball, ball",
+        "ball, plane",
+        "ball, capsule",
+        "capsule, capsule",
+        "ball, triangle",
+        "ball, box",
+        "ball in a box",
+        "box, box (corner)",
+        "box, box (edges)",
+        "axis of a corner",
+        "axis of two edges",
+        "box in a box",
+        "box on a box",
+        "box, plane",
+        "triangle, box",
+        "disc, polygon (2D)",
+        "polygon, polygon (2D)",
+        "rectangles (2D)",
+        "flying disc (2D)",
+    )
+}
+MARGIN = 0.001               # of pybullet: the radius that rounds boxes, and surrounds hulls of points [m]
 
 
 # ---------------------------------------------------------------------------------------------- the bodies
 
 def turn(x, y, z):
-    """R (3, 3): about x, then y, then z, by these angles [rad]."""
+    """Return R (3, 3), which rotates about x, then y, then z, by these angles [rad]."""
     R = np.eye(3)
     for k, angle in enumerate((x, y, z)):
         c, s, part = np.cos(angle), np.sin(angle), np.eye(3)
@@ -61,31 +83,59 @@ def turn(x, y, z):
 
 
 SIGNS = np.array([[i, j, k] for k in (-1.0, 1.0) for j in (-1.0, 1.0) for i in (-1.0, 1.0)])
-WORLD, AT = turn(0.4, -0.7, 1.1), np.array([0.3, -0.2, 0.5])          # everything is turned and moved: no axis is special
+# everything is rotated and moved, so that no axis is special
+WORLD = turn(0.4, -0.7, 1.1)
+AT = np.array([0.3, -0.2, 0.5])
 FLAT = np.array([[np.cos(0.4), -np.sin(0.4)], [np.sin(0.4), np.cos(0.4)]])
-SHAPES = {                   # name: (kind, points or (centre, turn, half edges)) of both bodies, before WORLD
+# {name: (kind, points or (centre, angles, half edges)) of both bodies}, before WORLD
+SHAPES = {
     "ball, ball": (("ball", [(0.0, 0.0, 0.0)]), ("ball", [(0.9, 0.5, -0.4)])),
     "ball, plane": (("ball", [(0.2, 0.3, 0.8)]), ("plane", None)),
     "ball, capsule": (("ball", [(1.0, 0.2, 0.5)]), ("capsule", [(-0.5, -0.3, -0.8), (0.2, 0.1, 0.9)])),
-    "capsule, capsule": (("capsule", [(-0.6, 1.2, -0.4), (0.8, 1.1, 0.5)]), ("capsule", [(0.3, -0.2, -0.9), (-0.1, 0.1, 0.8)])),
+    "capsule, capsule": (
+        ("capsule", [(-0.6, 1.2, -0.4), (0.8, 1.1, 0.5)]),
+        ("capsule", [(0.3, -0.2, -0.9), (-0.1, 0.1, 0.8)]),
+    ),
     "ball, triangle": (("ball", [(0.3, 0.2, 0.9)]), ("hull", [(-0.5, -0.4, 0.0), (0.9, -0.3, 0.1), (0.2, 0.8, -0.1)])),
     "ball, box": (("ball", [(1.1, 0.9, 0.1)]), ("box", ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.6, 0.4, 0.5)))),
     "ball in a box": (("ball", [(0.1, 0.25, -0.1)]), ("box", ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.6, 0.4, 0.5)))),
-    "box, box (corner)": (("box", ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.9, 0.8, 0.3))), ("box", ((0.1, 0.1, 1.1), (0.7, 0.6, 0.2), (0.3, 0.35, 0.4)))),
-    "box, box (edges)": (("box", ((0.0, 0.0, 0.0), (0.7, 0.0, 0.0), (0.9, 0.4, 0.4))), ("box", ((0.0, 0.0, 1.4), (0.0, 0.8, 0.0), (0.4, 0.9, 0.4)))),
-    "box in a box": (("box", ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.9, 0.8, 0.5))), ("box", ((0.2, -0.1, 0.6), (0.3, 0.5, 0.2), (0.3, 0.3, 0.5)))),
-    "box on a box": (("box", ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.9, 0.8, 0.5))), ("box", ((0.7, -0.5, 0.85), (0.0, 0.0, 0.0), (0.6, 0.7, 0.4)))),
+    "box, box (corner)": (
+        ("box", ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.9, 0.8, 0.3))),
+        ("box", ((0.1, 0.1, 1.1), (0.7, 0.6, 0.2), (0.3, 0.35, 0.4))),
+    ),
+    "box, box (edges)": (
+        ("box", ((0.0, 0.0, 0.0), (0.7, 0.0, 0.0), (0.9, 0.4, 0.4))),
+        ("box", ((0.0, 0.0, 1.4), (0.0, 0.8, 0.0), (0.4, 0.9, 0.4))),
+    ),
+    "box in a box": (
+        ("box", ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.9, 0.8, 0.5))),
+        ("box", ((0.2, -0.1, 0.6), (0.3, 0.5, 0.2), (0.3, 0.3, 0.5))),
+    ),
+    "box on a box": (
+        ("box", ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.9, 0.8, 0.5))),
+        ("box", ((0.7, -0.5, 0.85), (0.0, 0.0, 0.0), (0.6, 0.7, 0.4))),
+    ),
     "box, plane": (("box", ((0.2, -0.1, 0.6), (0.5, 0.4, 0.2), (0.4, 0.5, 0.45))), ("plane", None)),
-    "triangle, box": (("hull", [(1.2, 0.1, 0.9), (1.9, -0.4, 0.6), (1.5, 0.9, 1.3)]), ("box", ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.6, 0.4, 0.5)))),
+    "triangle, box": (
+        ("hull", [(1.2, 0.1, 0.9), (1.9, -0.4, 0.6), (1.5, 0.9, 1.3)]),
+        ("box", ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.6, 0.4, 0.5))),
+    ),
     "disc, polygon (2D)": (("ball", [(1.6, 0.9)]), ("hull", [(0.0, -0.6), (0.8, -0.1), (0.5, 0.6), (-0.4, 0.5)])),
-    "polygon, polygon (2D)": (("hull", [(1.1, 0.2), (1.9, -0.1), (2.0, 0.8)]), ("hull", [(0.0, -0.6), (0.8, -0.1), (0.9, 0.6), (-0.4, 0.5)])),
-    "rectangles (2D)": (("hull", [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)]), ("hull", [(1.2, 0.9), (3.4, 0.9), (3.4, 1.7), (1.2, 1.7)])),
+    "polygon, polygon (2D)": (
+        ("hull", [(1.1, 0.2), (1.9, -0.1), (2.0, 0.8)]),
+        ("hull", [(0.0, -0.6), (0.8, -0.1), (0.9, 0.6), (-0.4, 0.5)]),
+    ),
+    "rectangles (2D)": (
+        ("hull", [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)]),
+        ("hull", [(1.2, 0.9), (3.4, 0.9), (3.4, 1.7), (1.2, 1.7)]),
+    ),
     "flying disc (2D)": (("ball", [(-3.0, 0.35), (1.0, 0.05)]), ("ball", [(0.0, 0.0)])),
 }
 
 
 SHAPES |= {"axis of a corner": SHAPES["box, box (corner)"], "axis of two edges": SHAPES["box, box (edges)"]}
-AXIS_ONLY = ("axis of a corner", "axis of two edges", "box in a box")       # gap and normal: a separating axis knows no nearest points
+# These give gap and normal only: a separating axis has no nearest points.
+AXIS_ONLY = ("axis of a corner", "axis of two edges", "box in a box")
 
 
 def flat(p):
@@ -93,13 +143,13 @@ def flat(p):
 
 
 def moved(x, p):
-    """Points (k, d) as the scene has them."""
+    """Return points (k, d) in the coordinates of the scene."""
     x = np.array(x, dtype=float)
     return x @ FLAT.T + AT[:2] if flat(p) and p.pair != "flying disc (2D)" else x if flat(p) else x @ WORLD.T + AT
 
 
 def corners(body, p):
-    """Points of a rounded hull."""
+    """Return the points of a rounded hull."""
     kind, shape = body
     if kind != "box":
         return moved(shape, p)
@@ -108,18 +158,18 @@ def corners(body, p):
 
 
 def radii(p):
-    """Around the points of each body [m]."""
+    """Return the radii around the points of each body [m]."""
     return [{"ball": r, "capsule": r}.get(kind, 0.0) for (kind, _), r in zip(SHAPES[p.pair], (p.r, p.R))]
 
 
 def box_of(body):
-    """The lesson's Box."""
+    """Make the lesson's Box."""
     x, angles, half = body[1]
     return Box(WORLD @ np.array(x) + AT, np.ascontiguousarray(WORLD @ turn(*angles)), np.array(half))
 
 
 def the_plane():
-    """The plane z = 0, moved."""
+    """Make the plane z = 0, moved."""
     n = np.ascontiguousarray(WORLD[:, 2])
     return Plane(n, float(-n @ AT))
 
@@ -132,16 +182,22 @@ def quantity_names(p):
     if p.pair == "flying disc (2D)":
         return "share of the way [-]", "n_x [-]", "n_y [-]"
     many = ("points [-]",) if p.pair in MANY else ()
-    return ("gap [m]", *(f"n_{c} [-]" for c in "xyz"[:2 if flat(p) else 3]), *(() if p.pair in AXIS_ONLY else (f"{c} of b [m]" for c in "xyz"[:2 if flat(p) else 3])), *many)
+    return (
+        "gap [m]",
+        *(f"n_{c} [-]" for c in "xyz"[: 2 if flat(p) else 3]),
+        *(() if p.pair in AXIS_ONLY else (f"{c} of b [m]" for c in "xyz"[: 2 if flat(p) else 3])),
+        *many,
+    )
 
 
-MANY = ("box on a box", "rectangles (2D)")           # these touch along an area: b's point is the middle of the points of contact
+# These touch along an area: b's point is the mean of the points of contact.
+MANY = ("box on a box", "rectangles (2D)")
 
 
 # ---------------------------------------------------------------------------------------------- ours
 
 def run(step, acceleration, state, p, dt, steps):
-    """The lesson's function for this pair; rounded hulls by GJK are the points' own distance, less the radii."""
+    """Run the lesson's function for this pair; GJK on rounded hulls gives the points' own distance, less the radii."""
     a, b = SHAPES[p.pair]
     if step.__name__ == "cylinder_hit" or p.pair == "flying disc (2D)":
         x_0, x_1 = (np.append(0.0, x) for x in np.array(a[1]))
@@ -150,7 +206,8 @@ def run(step, acceleration, state, p, dt, steps):
     if p.pair in MANY:
         c = polygon_contacts(corners(a, p), corners(b, p)) if flat(p) else box_box(box_of(a), box_of(b))
         return (np.array([c.gap.min(), *c.n, *c.p_b.mean(axis=0), len(c.gap)]),)
-    if p.pair == "box, plane":                                               # the corners below it; of these the deepest
+    # the corners below the plane; of these the deepest
+    if p.pair == "box, plane":
         c = points_plane(box_corners(box_of(a)), the_plane())
         k = int(np.argmin(c.gap))
         return (np.array([c.gap[k], *c.n, *c.p_b[k]]),)
@@ -166,7 +223,7 @@ def run(step, acceleration, state, p, dt, steps):
 
 
 def narrow(p, a, b):
-    """The Contact of a pair for which the lesson has a formula."""
+    """Return the Contact of a pair for which the lesson has a formula."""
     x = corners(a, p)
     if b[0] == "plane":
         return ball_plane(x[0], p.r, the_plane())
@@ -188,12 +245,42 @@ def supports(name, p):
     return p.pair in DOES[name]
 
 
-APART = ("ball, ball", "ball, capsule", "capsule, capsule", "ball, triangle", "ball, box", "box, box (corner)", "box, box (edges)", "triangle, box",
-         "disc, polygon (2D)", "polygon, polygon (2D)")
-DOES = {                     # method or engine: the pairs that it can do
-    "ball_contact": ("ball, ball", "ball, plane", "ball, capsule", "capsule, capsule", "ball, triangle", "ball, box", "ball in a box", "box, plane"),
-    "gjk": APART, "box_separation": (*AXIS_ONLY, *MANY), "continuous_step": ("flying disc (2D)",),
-    "pybullet": ("ball, ball", "ball, plane", "ball, capsule", "capsule, capsule", "ball in a box", "box on a box", "box, plane"),
+APART = (
+    "ball, ball",
+    "ball, capsule",
+    "capsule, capsule",
+    "ball, triangle",
+    "ball, box",
+    "box, box (corner)",
+    "box, box (edges)",
+    "triangle, box",
+    "disc, polygon (2D)",
+    "polygon, polygon (2D)",
+)
+# {method or engine: the pairs that it supports}
+DOES = {
+    "ball_contact": (
+        "ball, ball",
+        "ball, plane",
+        "ball, capsule",
+        "capsule, capsule",
+        "ball, triangle",
+        "ball, box",
+        "ball in a box",
+        "box, plane",
+    ),
+    "gjk": APART,
+    "box_separation": (*AXIS_ONLY, *MANY),
+    "continuous_step": ("flying disc (2D)",),
+    "pybullet": (
+        "ball, ball",
+        "ball, plane",
+        "ball, capsule",
+        "capsule, capsule",
+        "ball in a box",
+        "box on a box",
+        "box, plane",
+    ),
     "pybullet, round edges": ("ball, box", "box, box (corner)", "box, box (edges)", "box in a box"),
     "pybullet, hull": ("ball, triangle", "triangle, box"),
     "pymunk": ("disc, polygon (2D)", "rectangles (2D)", "flying disc (2D)"),
@@ -203,30 +290,37 @@ DOES = {                     # method or engine: the pairs that it can do
 # ---------------------------------------------------------------------------------------------- truth
 
 def truth(p, t):
-    """Apart: nearest points of two hulls, by non-negative least squares, less the radii.  Overlapping: the hull of all differences.
+    """Return the reference solution.
 
-    ball, plane    height over the plane, of a box that of its lowest corner;     ball in a box    the nearest of six faces
-    box on a box   the rectangle that both cover: four points of contact;     rectangles    the stretch: two points
-    flying disc    first root of the distance of the centres less r + R, by brentq
+    separate bodies    nearest points of two hulls, by non-negative least squares, less the radii
+    overlapping        the hull of all differences
+    ball, plane        the height over the plane; for a box that of its lowest corner
+    ball in a box      the nearest of six faces
+    box on a box       the rectangle that both cover: four points of contact
+    rectangles         the segment that both cover: two points
+    flying disc        the first root of the distance of the centres less r + R, by brentq
     Source: the definitions of distance and of the Minkowski difference.
     """
     a, b = SHAPES[p.pair]
     if p.pair == "flying disc (2D)":
         begin, end = np.array(a[1])
         way = lambda s: begin + s * (end - begin)
-        s = first_root(lambda s: np.hypot(*way(s)) - p.r - p.R, 0.0, -(begin @ (end - begin)) / ((end - begin) @ (end - begin)))
+        nearest = -(begin @ (end - begin)) / ((end - begin) @ (end - begin))
+        s = first_root(lambda s: np.hypot(*way(s)) - p.r - p.R, 0.0, nearest)
         return np.array([s, *way(s) / (p.r + p.R)])
-    if p.pair == "rectangles (2D)":                                          # overlap 0.1 m, from x = 1.2 to 2 m, b above a
+    if p.pair == "rectangles (2D)":  # overlap 0.1 m, from x = 1.2 to 2 m, b above a
         return np.array([-0.1, *(FLAT @ [0.0, -1.0]), *moved([(1.6, 0.9)], p)[0], 2.0])
     if p.pair == "box on a box":                                             # overlap 0.05 m, x 0.1 … 0.9, y −0.8 … 0.2
         return np.array([-0.05, *(WORLD @ [0.0, 0.0, -1.0]), *moved([(0.5, -0.3, 0.45)], p)[0], 4.0])
-    if p.pair == "box, plane":                                               # the lowest of its corners, before WORLD turns all
+    # the lowest of its corners, before WORLD rotates them
+    if p.pair == "box, plane":
         x, angles, half = a[1]
         lowest = min(np.array(x) + SIGNS * np.array(half) @ turn(*angles).T, key=lambda y: y[2])
         return np.array([lowest[2], *WORLD[:, 2], *moved([(*lowest[:2], 0.0)], p)[0]])
     if p.pair == "ball, plane":
         return np.array([a[1][0][2] - p.r, *WORLD[:, 2], *moved([(*a[1][0][:2], 0.0)], p)[0]])
-    if p.pair == "ball in a box":                                            # 0.4 − 0.25 = 0.15 m below the face y = 0.4, which is the nearest
+    # 0.4 − 0.25 = 0.15 m below the face y = 0.4, which is the nearest
+    if p.pair == "ball in a box":
         return np.array([-0.15 - p.r, *WORLD[:, 1], *moved([(0.1, 0.4, -0.1)], p)[0]])
     if p.pair == "box in a box":
         gap, n = depth_of(corners(a, p), corners(b, p))
@@ -242,18 +336,24 @@ def truth(p, t):
 def tolerance(p, dt):
     """Ours: a few hundred operations on numbers below 3, and normals known to round-off over a distance of 0.1: 1e-12.
 
-    GJK stops when it knows the distance to STOP = 1e-14 of the size; of points, that may leave the root of it; but these bodies have corners,
-    so that the last step is exact.  pybullet's GJK stops when the square of the distance is known to 1e-12 of itself, and its places to 1e-6
-    of the distance: 1e-5 for all.  A hull of points has a margin around it: the gap and the point on it are known to that, no better.
-    pymunk's answers are closed forms.
+    GJK stops when it knows the distance to STOP = 1e-14 of the size.  That may leave points known only to its root,
+    but these bodies have corners, so the last step is exact.  pybullet's GJK stops when the squared distance is
+    known to 1e-12 of itself and the points to 1e-6 of the distance: 1e-5 for all.  Around a hull of points it has a
+    margin, which limits the accuracy of the gap and of the point on it.  pymunk's results are closed forms.
     """
-    return {EXACT: 1e-12, "pybullet": 1e-5, "pybullet, round edges": 1e-5, "pybullet, hull": 2.0 * MARGIN / np.linalg.norm(truth(p, T)), "pymunk": 1e-12}
+    return {
+        EXACT: 1e-12,
+        "pybullet": 1e-5,
+        "pybullet, round edges": 1e-5,
+        "pybullet, hull": 2.0 * MARGIN / np.linalg.norm(truth(p, T)),
+        "pymunk": 1e-12,
+    }
 
 
 # ---------------------------------------------------------------------------------------------- engines
 
 def bullet_body(bullet, body, r, p):
-    """One of the bodies, standing."""
+    """Make one of the bodies, at rest."""
     pb = bullet.pb
     kind, shape = body
     x = corners(body, p) if shape else None
@@ -273,18 +373,19 @@ def bullet_body(bullet, body, r, p):
         made = pb.createCollisionShape(pb.GEOM_CAPSULE, radius=r, height=float(np.linalg.norm(x[1] - x[0])))
     else:
         made = pb.createCollisionShape(pb.GEOM_MESH, vertices=x.tolist())
-    return pb.createMultiBody(0.0 if kind == "plane" else 1.0, made, basePosition=list(map(float, at)), baseOrientation=quaternion(R))
+    m = 0.0 if kind == "plane" else 1.0
+    return pb.createMultiBody(m, made, basePosition=list(map(float, at)), baseOrientation=quaternion(R))
 
 
 def quaternion(R):
-    """(x, y, z, w) of a rotation by less than half a turn."""
+    """Return (x, y, z, w) of a rotation by less than half a turn."""
     w = 0.5 * np.sqrt(max(1e-9, 1.0 + np.trace(R)))
     q = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1], 4.0 * w * w]) / (4.0 * w)
     return (q / np.linalg.norm(q)).tolist()
 
 
 def bullet_make(p, dt):
-    """getClosestPoints within a metre: the points, their distance, and the normal from b to a."""
+    """Use getClosestPoints within one metre: the points, their distance, and the normal from b to a."""
     bullet = Bullet(1.0)
     a, b = (bullet_body(bullet, body, r, p) for body, r in zip(SHAPES[p.pair], (p.r, p.R)))
 
@@ -295,13 +396,16 @@ def bullet_make(p, dt):
         else:
             found = bullet.pb.getClosestPoints(a, b, 1.0)
         deepest = min(found, key=lambda c: c[8])
-        on_b = () if p.pair == "box in a box" else np.mean([c[6] for c in found], axis=0) if p.pair in MANY else deepest[6]
-        return np.array([deepest[8], *deepest[7], *on_b, *((len(found),) if p.pair in MANY else ())])
+        if p.pair in MANY:
+            return np.array([deepest[8], *deepest[7], *np.mean([c[6] for c in found], axis=0), len(found)])
+        on_b = () if p.pair == "box in a box" else deepest[6]
+        return np.array([deepest[8], *deepest[7], *on_b])
+
     return EngineRun(lambda: None, read, bullet.close)
 
 
 def with_round_edges(p, t):
-    """The same with boxes whose edges and corners are rounded off with MARGIN: boxes that much smaller, with that radius around them.
+    """Return the reference solution for boxes with edges and corners rounded by MARGIN: smaller boxes with that radius.
 
     Source: Bullet, btBoxShape::localGetSupportingVertexWithoutMargin and setMargin, with the margin that pybullet sets.
     """
@@ -316,7 +420,7 @@ def with_round_edges(p, t):
 
 
 def core(body, p):
-    """(points, margin) of a body as pybullet has it."""
+    """Return (points, margin) of a body in pybullet."""
     if body[0] != "box":
         return corners(body, p), 0.0
     x, angles, half = body[1]
@@ -324,7 +428,7 @@ def core(body, p):
 
 
 def pymunk_make(p, dt):
-    """Its queries: of a point, of two shapes, of a segment with a radius."""
+    """Use pymunk's queries: of a point, of two shapes, of a segment with a radius."""
     import pymunk
     space = pymunk.Space()
     a, b = SHAPES[p.pair]
@@ -336,7 +440,8 @@ def pymunk_make(p, dt):
             hit = disc.segment_query(*a[1], p.r)
             return np.array([hit.alpha, *hit.normal])
         other = pymunk.Poly(space.static_body, corners(b, p).tolist())
-        other.cache_bb()                                                     # a shape on its own is put in its place by this
+        # places a shape that has no body of its own in a space
+        other.cache_bb()
         if p.pair == "rectangles (2D)":
             one = pymunk.Poly(space.static_body, corners(a, p).tolist())
             one.cache_bb()
@@ -349,7 +454,14 @@ def pymunk_make(p, dt):
 
 
 ENGINES = (
-    Engine(PYBULLET, "", bullet_make, EXACT, "getClosestPoints within 1 m; GEOM_SPHERE, _PLANE, _CAPSULE; for areas getContactPoints after performCollisionDetection"),
+    Engine(
+        PYBULLET,
+        "",
+        bullet_make,
+        EXACT,
+        ("getClosestPoints within 1 m; GEOM_SPHERE, _PLANE, _CAPSULE; for areas getContactPoints after "
+         "performCollisionDetection"),
+    ),
     Engine(PYBULLET, "round edges", bullet_make, EXACT, "getClosestPoints within 1 m; GEOM_BOX"),
     Engine(PYBULLET, "hull", bullet_make, EXACT, "getClosestPoints within 1 m; GEOM_MESH from corners"),
     Engine(PYMUNK, "", pymunk_make, EXACT, "point_query, shapes_collide, segment_query with a radius"),
@@ -359,12 +471,14 @@ ENGINES = (
 # ---------------------------------------------------------------------------------------------- picture
 
 def picture(name):
-    """(points, pairs) of the outlines of both bodies of a 2D case."""
+    """Return (points, pairs) of the outlines of both bodies of a 2D case."""
     p = CASES[name]
     drawn, pairs = [], []
     for (kind, shape), r in zip(SHAPES[name], (p.r, p.R)):
         around = np.linspace(0.0, 2.0 * np.pi, 25)
-        ring = moved(shape, p)[0] + r * np.stack((np.cos(around), np.sin(around)), axis=1) if kind == "ball" else moved(shape, p)
+        ring = moved(shape, p)
+        if kind == "ball":
+            ring = ring[0] + r * np.stack((np.cos(around), np.sin(around)), axis=1)
         first = sum(map(len, drawn))
         drawn.append(ring)
         pairs += [(first + i, first + (i + 1) % len(ring)) for i in range(len(ring))]
@@ -375,7 +489,7 @@ FLAT_CASES = tuple(name for name in CASES if name.endswith("(2D)"))
 
 
 def points(observed, p):
-    """The pairs in the plane, side by side."""
+    """Draw the pairs in the plane, side by side."""
     drawn, across = [], 0.0
     for name in FLAT_CASES:
         x = picture(name)[0]
@@ -393,6 +507,10 @@ def links(p):
     return pairs
 
 
+# gap √1.22 − 0.7, normal and point of the first case, by hand
+BY_HAND = (0.40453610171, *(WORLD @ [-0.81482, -0.45268, 0.36214]), *(WORLD @ [0.574072, 0.318929, -0.255143] + AT))
+
+
 SCENE = Scene(
     title="Distances and contacts",
     lesson="collisions",
@@ -404,18 +522,26 @@ SCENE = Scene(
     run=run,
     observe=observe,
     truth=truth,
-    truth_uncertainty=1e-13,          # of a linear system with a condition below 100
+    truth_uncertainty=1e-13,  # of a linear system with a condition below 100
     tolerance=tolerance,
     engines=ENGINES,
-    expected_departures={"pybullet, round edges": Departure("it rounds the edges and corners of a box off, with a radius of 1 mm", with_round_edges)},
+    expected_departures={
+        "pybullet, round edges": Departure(
+            "it rounds the edges and corners of a box with a radius of 1 mm", with_round_edges
+        )
+    },
     orders={method.function: EXACT for method in METHODS},
     supports=supports,
     moves=False,
     refinement="",
     quantity_names=quantity_names,
-    published_states=((1.0, (0.40453610171, *(WORLD @ [-0.81482, -0.45268, 0.36214]), *(WORLD @ [0.574072, 0.318929, -0.255143] + AT)), 1e-4),),          # √1.22 − 0.7, by hand
+    published_states=((1.0, BY_HAND, 1e-4),),
     points=points,
     links=links,
     uses=("the shapes of two bodies", "where they are"),
-    ablations={"motion": "continuous detection: the two scenes of points", "finding the pairs": "the scene of pairs", "response": "lesson 7 builds it"},
+    ablations={
+        "motion": "continuous detection: the two scenes of points",
+        "finding the pairs": "the scene of pairs",
+        "response": "lesson 7 builds it",
+    },
 )

@@ -1,7 +1,8 @@
-"""Which of n random boxes touch each other?  By testing every pair, and by two trees that are gone down together.
+"""Pairs of n random boxes that touch: found by testing every pair, and by descending two trees together.
 
-Both must find the same pairs, all of them and no others.  With n the boxes fill a larger room, so that each has about as many neighbours:
-the answer grows with n, brute force with n², the trees little faster than n (the benchmark measures it).
+Both must find the same pairs, all of them and no others.  The room grows with n, so each box keeps about as many
+neighbours.  The result then grows with n, the work of brute force with n², and that of the trees little faster than n
+(the benchmark measures it).
 """
 
 from functools import lru_cache
@@ -17,22 +18,28 @@ from validate.scene import EXACT, PYBULLET, Departure, Engine, EngineRun, Scene
 
 T = 1.0
 STEPS = (1,)
-MARGIN = 0.02                # that pybullet's broad phase puts around every box, its contactBreakingThreshold [m]
-MOST_BY_ENGINE = 1000        # boxes; it is asked for each of them by a call from Python
+MARGIN = 0.02                # that pybullet's broad phase adds around every box, its contactBreakingThreshold [m]
+MOST_BY_ENGINE = 1000        # boxes: the query takes one call from Python for each of them
 
 
 class Params(NamedTuple):
     n: Annotated[int, "boxes"] = 100
-    edge: Annotated[float, "their mean edge; there is one for each cubic metre [m]"] = 0.6
+    edge: Annotated[float, "mean edge of the boxes; there is one box per cubic metre [m]"] = 0.6
     seed: int = 1
 
 
-CASES = {"100 boxes": Params(), "1,000 boxes": Params(1000), "200 long boxes": Params(200, 1.5, 2), "10,000 boxes": Params(10_000), "100,000 boxes": Params(100_000)}
+CASES = {
+    "100 boxes": Params(),
+    "1,000 boxes": Params(1000),
+    "200 long boxes": Params(200, 1.5, 2),
+    "10,000 boxes": Params(10_000),
+    "100,000 boxes": Params(100_000),
+}
 
 
 @lru_cache(maxsize=8)
 def boxes(p):
-    """Corners low, high (n, 3) [m]: edges from 0 to twice the mean, somewhere in a cube of n cubic metres."""
+    """Return corners low, high (n, 3) [m]: edges from 0 to twice the mean, at random in a cube of n cubic metres."""
     rng = np.random.default_rng(p.seed)
     low = rng.uniform(0.0, p.n ** (1.0 / 3.0), (p.n, 3))
     return low, low + rng.uniform(0.0, 2.0 * p.edge, (p.n, 3))
@@ -53,7 +60,7 @@ def run(step, acceleration, state, p, dt, steps):
 
 
 def judged(pairs, p):
-    """How many of the true pairs are among these, and how many of these are none, or are there twice."""
+    """Return how many of the reference pairs are among these, and how many of these are wrong or doubled."""
     right = len(set(map(tuple, np.asarray(pairs).tolist())) & true_pairs(p))
     return np.array([right, len(pairs) - right], dtype=float)
 
@@ -64,9 +71,10 @@ def observe(state, p):
 
 @lru_cache(maxsize=8)
 def true_pairs(p, wider=0.0):
-    """The pairs, as a set; wider: with the other of each pair made larger on every side.
+    """Return the pairs as a set; with `wider`, one box of each pair is larger on every side.
 
-    Up to 1,000 boxes by comparing all with all; beyond, sorted along x, each with those that begin before it ends.
+    Up to 1,000 boxes all are compared with all.  Beyond, boxes are sorted along x and compared with those that
+    begin before they end.
     """
     low, high = boxes(p)
     if wider:
@@ -86,27 +94,31 @@ def true_pairs(p, wider=0.0):
 
 
 def truth(p, t):
-    """Two boxes touch where they do in every coordinate: low_a ≤ high_b and low_b ≤ high_a.
+    """Two boxes touch if they do in every coordinate: low_a ≤ high_b and low_b ≤ high_a.
 
-    Source: the definition; compared all with all by NumPy, or sorted along x.
+    Source: the definition; all compared with all by NumPy, or sorted along x.
     """
     return np.array([len(true_pairs(p)), 0.0])
 
 
 def by_wider_boxes(p, t):
-    """The same with boxes MARGIN larger on every side.  Source: Bullet, btCollisionWorld::updateSingleAabb and gContactBreakingThreshold."""
+    """Return the pairs with boxes that are MARGIN larger on every side.
+
+    Source: Bullet, btCollisionWorld::updateSingleAabb and gContactBreakingThreshold.
+    """
     true = true_pairs(p)
     return np.array([len(true), len(true_pairs(p, MARGIN) - true)])
 
 
 def tolerance(p, dt):
-    """None: counts.  A single pair more or less is 1/pairs, above 1e-6 in all cases."""
+    """Counts are exact.  A single pair more or less is 1/pairs, above 1e-6 in all cases."""
     return {EXACT: 1e-9, **{engine.label: 1e-9 for engine in ENGINES}}
 
 
 def supports(name, p):
     """Brute force up to 10,000 boxes; pybullet's closest points for the first case, its query up to MOST_BY_ENGINE."""
-    return {"all_pairs": p.n <= 10_000, "pybullet": p.n <= 200, "pybullet, query": p.n <= MOST_BY_ENGINE}.get(name, True)
+    most = {"all_pairs": 10_000, "pybullet": 200, "pybullet, query": MOST_BY_ENGINE}
+    return p.n <= most.get(name, np.inf)
 
 
 def asked(find):
@@ -114,15 +126,24 @@ def asked(find):
 
 
 ENGINES = (
-    Engine(PYBULLET, "", asked(bullet_closest_pairs), EXACT, "getClosestPoints(distance = 0) for every pair of GEOM_BOX"),
-    Engine(PYBULLET, "query", asked(bullet_query_pairs), EXACT, "getOverlappingObjects with the corners of each box, after a step"),
+    Engine(
+        PYBULLET, "", asked(bullet_closest_pairs), EXACT, "getClosestPoints(distance = 0) for every pair of GEOM_BOX"
+    ),
+    Engine(
+        PYBULLET,
+        "query",
+        asked(bullet_query_pairs),
+        EXACT,
+        "getOverlappingObjects with the corners of each box, after a step",
+    ),
 )
 
 
 def points(observed, p):
-    """The boxes of the first case, seen from above."""
+    """Draw the boxes of the first case, seen from above."""
     low, high = boxes(p)
-    return np.concatenate([np.array([(a[0], a[1]), (b[0], a[1]), (b[0], b[1]), (a[0], b[1])]) for a, b in zip(low[:100], high[:100])])
+    outline = lambda a, b: np.array([(a[0], a[1]), (b[0], a[1]), (b[0], b[1]), (a[0], b[1])])
+    return np.concatenate([outline(a, b) for a, b in zip(low[:100], high[:100])])
 
 
 def links(p):
@@ -143,15 +164,23 @@ SCENE = Scene(
     truth_uncertainty=1e-16,
     tolerance=tolerance,
     engines=ENGINES,
-    expected_departures={"pybullet, query": Departure("its broad phase keeps boxes that are 2 cm larger on every side, so that contacts are known before they happen", by_wider_boxes)},
+    expected_departures={
+        "pybullet, query": Departure(
+            "its broad phase enlarges boxes by 2 cm on every side, to predict contacts",
+            by_wider_boxes,
+        )
+    },
     orders={"tree_pairs": EXACT, "all_pairs": EXACT},
     supports=supports,
-    slow_cases=("10,000 boxes", "100,000 boxes"),          # left to a full validation
+    slow_cases=("10,000 boxes", "100,000 boxes"),  # too slow for a quick validation
     moves=False,
     refinement="",
     quantity_names=quantity_names,
     points=points,
     links=links,
-    uses=("boxes along the axes", "a tree, made anew"),
-    ablations={"motion": "a tree may be mended instead of made anew when little has moved", "what is in the boxes": "the narrow phase of this lesson looks at the pairs"},
+    uses=("boxes along the axes", "a tree, rebuilt"),
+    ablations={
+        "motion": "a tree can be refitted instead of rebuilt if little has moved",
+        "the shapes inside the boxes": "the narrow phase of this lesson tests the pairs",
+    },
 )

@@ -1,7 +1,7 @@
-"""Balls fall on a plane, at 1 to 10⁴ m/s, and stay where they are found to touch it.
+"""Balls fall on a plane at 1 to 10⁴ m/s, and stop where they are found to touch it.
 
-Deck A's test E(p) < 0 after each step finds them up to v dt below; its formula t + dt d₁/(d₁ + d₂) puts them back exactly, since the way is
-straight.  Nobody gets past a plane: it has no other side.
+Deck A's test E(p) < 0 after each step finds them up to v dt below.  Its formula t + dt d₁/(d₁ + d₂) puts them back
+exactly, because the path is straight.  No ball passes a plane: it has no far side.
 """
 
 from typing import Annotated, NamedTuple
@@ -10,15 +10,23 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.collisions import Plane, Target, flight, plane_gap, plane_time
-from validate.engines.collisions import PLACE_APART, SWEPT, across, bullet_rays, bullet_swept, swept_limit
+from validate.engines.collisions import (
+    ENGINE_SPEEDS,
+    PLACE_APART,
+    SWEPT_SETTINGS,
+    across,
+    bullet_rays,
+    bullet_swept,
+    swept_limit,
+)
 from validate.methods import CONTINUOUS, DISCRETE
-from validate.reference.collisions import COPIES, first_root, impact_times
+from validate.reference.collisions import COPIES, first_root, impact_times, with_balls_that_miss
 from validate.scene import EXACT, PYBULLET, ROUND_OFF, Engine, Scene
 
 T = 1.0                      # [s]: every ball has hit by then
 STEPS = (20, 50, 100, 200, 500, 1000, 2000)
-FASTEST_DISCRETE = 10.0     # [m/s]: above, it is in by more than the picture is wide, at every step of the sweep
-TILT = 0.3                   # of the way, from the vertical [rad]
+FASTEST_DISCRETE = 10.0     # [m/s]: above this, a ball is deeper than the picture is wide, at every step of the sweep
+TILT = 0.3                   # of the path, from the vertical [rad]
 
 
 class Params(NamedTuple):
@@ -27,11 +35,17 @@ class Params(NamedTuple):
     R: Annotated[float, "no cylinder here"] = 0.0
 
 
-CASES = {"1 m/s": Params(), "10 m/s": Params(10.0), "100 m/s": Params(100.0), "1,000 m/s": Params(1e3), "10,000 m/s": Params(1e4)}
+CASES = {
+    "1 m/s": Params(),
+    "10 m/s": Params(10.0),
+    "100 m/s": Params(100.0),
+    "1,000 m/s": Params(1e3),
+    "10,000 m/s": Params(1e4),
+}
 
 
 def place(p):
-    """(x, v), each (COPIES, 3): balls that come down side by side, slanting towards y."""
+    """Return (x, v), each (COPIES, 3): balls that come down side by side, tilted towards y."""
     e, k = np.array([0.0, np.sin(TILT), -np.cos(TILT)]), np.arange(COPIES)
     touch = np.stack((PLACE_APART * (k - 0.5 * COPIES), 0.0 * k, 0.0 * k + p.r), axis=1)
     return touch - np.outer(p.speed * impact_times(T), e), np.tile(p.speed * e, (COPIES, 1))
@@ -44,10 +58,9 @@ def start(p):
 
 
 def with_others(p):
-    """(state, p) with as many balls again, a kilometre to the side, which never hit: a broad phase would leave them out."""
+    """Return (state, p) with balls that never hit."""
     x, v, goal = start(p)
-    e = np.array([0.0, 1.0, 0.0])
-    return (np.concatenate((x, x + 1e3 * np.array([0.0, 1.0, 1.0]))), np.concatenate((v, np.linalg.norm(v[0]) * np.tile(e, (COPIES, 1)))), goal), p
+    return (*with_balls_that_miss(x, v), goal), p
 
 
 def run(step, acceleration, state, p, dt, steps):
@@ -61,45 +74,66 @@ def observe(state, p):
 
 
 def truth(p, t):
-    """x₀ + v min(t, t*), t* the root of z − r along the way, by brentq.
+    """x₀ + v min(t, t*), t* the root of z − r along the path, by brentq.
 
     Source: the distance of a point from the plane z = 0.
     """
     found = []
     for y, w in zip(*place(p)):
-        moment = first_root(lambda s: y[2] + s * w[2] - p.r, 0.0, T)
+        moment = first_root(lambda s, y=y, w=w: y[2] + s * w[2] - p.r, 0.0, T)
         found.append(y + min(t, moment) * w)
     return across(np.array(found))
 
 
 def supports(name, p):
-    """The discrete test up to FASTEST_DISCRETE; engines at the least, the middle and the greatest speed."""
-    return p.speed <= FASTEST_DISCRETE if name == "discrete_step" else p.speed in (1.0, 1e2, 1e4) or not name.startswith("pybullet")
+    """The discrete test up to FASTEST_DISCRETE; engines at the lowest, the middle and the highest speed."""
+    if name == "discrete_step":
+        return p.speed <= FASTEST_DISCRETE
+    return p.speed in ENGINE_SPEEDS or not name.startswith("pybullet")
 
 
 def tolerance(p, dt):
-    """Relative to the root of the sum of all squares.
+    """Limits relative to the root of the sum of all squares.
 
-    continuous: a place is rounded by ½ spacing of the farthest one at each of T/dt steps, and on a slanting way 1/cos TILT times as much.
-    discrete: found after the impact by one step at most.  pybullet's rays are exact here: a plane is no round shape.
+    continuous: a position is rounded by ½ spacing of the farthest one at each of T/dt steps, and 1/cos TILT times
+    as much on a tilted path. discrete: detected at most one step late.  pybullet's rays are exact here, because a
+    plane is not rounded.
     """
     size = np.linalg.norm(truth(p, T))
     per_ball = lambda metres: np.sqrt(COPIES) * metres / size
     rounded = per_ball((T / dt + 20.0) * ROUND_OFF * (p.speed * T + PLACE_APART * COPIES) / np.cos(TILT))
-    return {EXACT: rounded, 1: per_ball(p.speed * dt) + rounded, "pybullet, swept": per_ball(swept_limit(p, dt) / np.cos(TILT)) + rounded}
+    return {
+        EXACT: rounded,
+        1: per_ball(p.speed * dt) + rounded,
+        "pybullet, swept": per_ball(swept_limit(p, dt) / np.cos(TILT)) + rounded,
+    }
 
 
 ENGINES = (
-    Engine(PYBULLET, "rays", lambda p, dt: bullet_rays(p, *place(p), dt), EXACT, "one rayTestBatch a step, at a GEOM_PLANE raised by the radius of the balls", most_steps=100),
-    Engine(PYBULLET, "swept", lambda p, dt: bullet_swept(p, *place(p), dt), 0,
-           f"useMaximalCoordinates, ccdSweptSphereRadius {SWEPT:g} r, contactProcessingThreshold, contactERP and contactSlop 0", most_steps=200),
+    Engine(
+        PYBULLET,
+        "rays",
+        lambda p, dt: bullet_rays(p, *place(p), dt),
+        EXACT,
+        "one rayTestBatch per step, at a GEOM_PLANE raised by the radius of the balls",
+        most_steps=100,
+    ),
+    Engine(
+        PYBULLET,
+        "swept",
+        lambda p, dt: bullet_swept(p, *place(p), dt),
+        0,
+        SWEPT_SETTINGS,
+        most_steps=200,
+    ),
 )
 
 
 def points(observed, p):
-    """Seen from the front: the plane as a line, and the lowest points of the balls."""
+    """Draw the plane as a line, and the lowest points of the balls, seen from the front."""
     x = np.reshape(observed, (-1, 2))
-    return np.round(np.concatenate(([[-1.0, 0.0], [1.0, 0.0]], np.stack((0.12 * (np.arange(COPIES) - 0.5 * COPIES), x[:, 1] - p.r), axis=1))), 3)
+    balls = np.stack((0.12 * (np.arange(COPIES) - 0.5 * COPIES), x[:, 1] - p.r), axis=1)
+    return np.round(np.concatenate(([[-1.0, 0.0], [1.0, 0.0]], balls)), 3)
 
 
 def links(p):
@@ -107,11 +141,11 @@ def links(p):
 
 
 def sanity_checks():
-    """((claim, found, expected, tolerance), …): the truth itself."""
+    """Return ((claim, found, expected, tolerance), …) about the reference solution."""
     p = Params(1e4)
     x, (began, v) = truth(p, T).reshape(-1, 2), place(p)
     return (("height of all balls at the end [m]", x[:, 1], p.r, 1e-11),
-            ("times at which they hit [s]", (x[:, 1] - began[:, 2]) / v[:, 2], impact_times(T), 1e-14))
+            ("times of impact [s]", (x[:, 1] - began[:, 2]) / v[:, 2], impact_times(T), 1e-14))
 
 
 SCENE = Scene(
@@ -125,16 +159,21 @@ SCENE = Scene(
     run=run,
     observe=observe,
     truth=truth,
-    truth_uncertainty=1e-13,          # of brentq, times the 7,000 m that the fastest balls have come
+    # of brentq, times the 7,000 m that the fastest balls have travelled
+    truth_uncertainty=1e-13,
     tolerance=tolerance,
     engines=ENGINES,
     orders={"continuous_step": EXACT},
     supports=supports,
-    uncompiled_in_quick=("discrete_step",),          # sooner run than compiled
+    # Plain Python finishes before numba has compiled it.
+    uncompiled_in_quick=("discrete_step",),
     sanity_checks=sanity_checks,
     points=points,
     links=links,
     uses=("a straight way", "two signed distances for each step"),
-    ablations={"balls that never come near, tested at every step": with_others,
-              "gravity: the way would bend": "then the formula is the first step of Newton's method", "response": "lesson 7 builds it"},
+    ablations={
+        "balls that never come near, tested at every step": with_others,
+        "gravity: the path would bend": "then the formula is the first step of Newton's method",
+        "response": "lesson 7 builds it",
+    },
 )

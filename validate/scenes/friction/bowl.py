@@ -1,4 +1,4 @@
-"""A particle let slide inside a round bowl: without friction it swings for ever, with friction it stays where the wall is not too steep."""
+"""A particle slides inside a round bowl: without friction it keeps oscillating, with friction it comes to rest."""
 
 from functools import cache
 from typing import Annotated, NamedTuple
@@ -14,26 +14,30 @@ from validate.engines.friction import SWEEPS, bullet_in_hollow
 from validate.methods import CONTACT, GRIPPING
 from validate.scene import PYBULLET, Engine, Scene, by_order
 
-T = 2.0                      # [s]: a swing to and fro; with friction it has come to rest
+T = 2.0                      # [s]: one oscillation; with friction it has come to rest
 STEPS = (200, 500, 1000, 2000, 5000, 10000, 20000)
-AT_REST = 1e-6               # [m/s]: what is slower has 1e-13 m to go until friction stops it
+AT_REST = 1e-6               # [m/s]: a slower particle has 1e-13 m to go until friction stops it
 
 
 class Params(NamedTuple):
     mu: Annotated[float, "friction [-]"] = 0.4
     radius: Annotated[float, "[m]"] = 1.0
-    degrees: Annotated[float, "let go this far from the bottom, towards x [°]"] = 53.13
-    v0: Annotated[float, "along y, which is the axis of a trough [m/s]"] = 1.5
+    degrees: Annotated[float, "released at this angle from the bottom, towards x [°]"] = 53.13
+    v0: Annotated[float, "along y, the axis of a trough [m/s]"] = 1.5
     trough: Annotated[float, "1: a trough along y, 0: a bowl"] = 0.0
     g: Annotated[float, "gravity [m/s²]"] = 9.81
 
 
-CASES = {"rough bowl": Params(), "smooth bowl": Params(mu=0.0), "rough trough": Params(degrees=60.0, v0=0.0, trough=1.0),
-         "smooth trough": Params(mu=0.0, trough=1.0)}
+CASES = {
+    "rough bowl": Params(),
+    "smooth bowl": Params(mu=0.0),
+    "rough trough": Params(degrees=60.0, v0=0.0, trough=1.0),
+    "smooth trough": Params(mu=0.0, trough=1.0),
+}
 
 
 def place(p):
-    """(x, v) at the beginning, each (3,); the centre is the origin, z up."""
+    """Return the initial (x, v), each (3,); the centre is the origin, z up."""
     theta = np.radians(p.degrees)
     return p.radius * np.array([np.sin(theta), 0.0, -np.cos(theta)]), np.array([0.0, p.v0, 0.0])
 
@@ -57,20 +61,20 @@ def observe(state, p):
 
 
 def inward(x, p):
-    """Unit normal of the wall at x, towards the axis or the centre."""
+    """Return the unit normal of the wall at x, towards the axis or the centre."""
     r = np.array([x[0], 0.0 if p.trough else x[1], x[2]])
     return -r / np.linalg.norm(r)
 
 
 def support(x, v, p):
-    """Normal force over mass [m/s²]: what bends the path round with v²/R, beyond what gravity does;  v² without the part along a trough."""
+    """Return the normal force over mass [m/s²]: gravity, and v²/R for the curved path, v along a trough excluded."""
     round_ = v[0] ** 2 + v[2] ** 2 + (0.0 if p.trough else v[1] ** 2)
     return round_ / p.radius + p.g * inward(x, p)[2]
 
 
 @cache
 def reference(p):
-    """[(begin, motion), …] and where it rests, or None: one piece for each start, by DOP853."""
+    """Return [(begin, motion), …] and the rest position, or None: one piece for each start, by DOP853."""
     def law(t, y):
         x, v = y[:3], y[3:]
         n, N = inward(x, p), support(x, v, p)
@@ -88,15 +92,25 @@ def reference(p):
             if np.linalg.norm(down) <= p.mu * n[2]:
                 return pieces, x
             v = 1.0001 * AT_REST * down / np.linalg.norm(down)
-        piece = solve_ivp(law, (t, T), np.concatenate((x, v)), method="DOP853", rtol=1e-12, atol=1e-13, dense_output=True, events=slow if p.mu else None)
+        piece = solve_ivp(
+            law,
+            (t, T),
+            np.concatenate((x, v)),
+            method="DOP853",
+            rtol=1e-12,
+            atol=1e-13,
+            dense_output=True,
+            events=slow if p.mu else None,
+        )
         pieces.append((t, piece.sol))
         t, x, v = piece.t[-1], piece.y[:3, -1], piece.y[3:, -1]
     return pieces, None
 
 
 def truth(p, t):
-    """x(t) of  ẍ = g + N n − μ N v/|v|,   N = v²/R − g · n  on the wall, by DOP853 at 1e-12; it rests for good where tan θ ≤ μ.
+    """x(t) of  ẍ = g + N n − μ N v/|v|,   N = v²/R − g · n  on the wall, by DOP853 at 1e-12.
 
+    It stays at rest where tan θ ≤ μ.
     Source: Newton's law with the constraint |x| = R.
     """
     pieces, rest = reference(p)
@@ -106,12 +120,12 @@ def truth(p, t):
 
 
 def fastest(p):
-    """A bound of the speed [m/s]: all height turned into it."""
+    """Return a bound of the speed [m/s]: all height converted into it."""
     return np.sqrt(p.v0**2 + 2.0 * p.g * (p.radius + place(p)[0][2]))
 
 
 def tolerance(p, dt):
-    """Nothing changes faster than the pull √(g/R) and the turning v/R; order 1, pybullet too: it is symplectic Euler on planes."""
+    """Nothing changes faster than the rate √(g/R) and the rotation v/R; pybullet is of order 1, like our steps."""
     limits = by_order(np.sqrt(p.g / p.radius) + fastest(p) / p.radius, T, dt)
     return {**limits, "pybullet": limits[1]}
 
@@ -129,13 +143,19 @@ def pybullet_make(p, dt):
 
 
 ENGINES = (
-    Engine(PYBULLET, "", pybullet_make, 1, f"a ball that cannot turn, on the plane that touches the bowl, laid anew before each step; "
-           f"contactSlop 0, solverResidualThreshold 0, {SWEEPS} iterations"),
+    Engine(
+        PYBULLET,
+        "",
+        pybullet_make,
+        1,
+        "a ball that cannot turn, on the tangent plane of the bowl, placed anew before each step; contactSlop 0, "
+        f"solverResidualThreshold 0, {SWEEPS} iterations",
+    ),
 )
 
 
 def rest_angle(theta, mu):
-    """Angle θ [rad], from the bottom, at which a particle stops that is let go at rest at θ > 0 and slides down through the bottom.
+    """Return the angle θ [rad] at which a particle stops that is released at rest at θ > 0 and passes the bottom.
 
     w = θ̇² R/g obeys  dw/dθ = 2μ w + 2 (μ cos θ − sin θ)  on the way down:  w = C e^(2μθ) + A cos θ + B sin θ,
     A = 2(1 − 2μ²)/(1 + 4μ²),   B = 6μ/(1 + 4μ²);   it stops where w is 0 again.
@@ -148,7 +168,7 @@ def rest_angle(theta, mu):
 
 
 def sanity_checks():
-    """((claim, found, expected, tolerance), …): the truth itself against closed forms."""
+    """Return ((claim, found, expected, tolerance), …): the reference solution compared with closed forms."""
     p, smooth = CASES["rough trough"], CASES["smooth bowl"]
     x = truth(p, T)
     rest = rest_angle(np.radians(p.degrees), p.mu)
@@ -156,15 +176,19 @@ def sanity_checks():
     begin = np.concatenate(place(smooth))
     energy = [0.5 * y[3:] @ y[3:] + smooth.g * y[2] for y in (begin, end)]
     spin = [y[0] * y[4] - y[1] * y[3] for y in (begin, end)]
-    far = [np.arctan(np.hypot(x[0], 0.0 if q.trough else x[1]) / -x[2]) for q in (CASES["rough bowl"], p) for x in [truth(q, T)]]
-    return (("angle at which the rough trough keeps it [rad]", np.arctan2(x[0], -x[2]), rest, 1e-9),
-            ("steepness of the places where it rests, over μ [-]: at most 1", np.tan(far) / p.mu, 0.5, 0.5),
+    far = [
+        np.arctan(np.hypot(x[0], 0.0 if q.trough else x[1]) / -x[2])
+        for q in (CASES["rough bowl"], p)
+        for x in [truth(q, T)]
+    ]
+    return (("rest angle in the rough trough [rad]", np.arctan2(x[0], -x[2]), rest, 1e-9),
+            ("slope at the rest positions, over μ [-]: at most 1", np.tan(far) / p.mu, 0.5, 0.5),
             ("energy without friction after 2 s [J/kg]", energy[1], energy[0], 1e-9),
             ("angular momentum about z without friction [m²/s]", spin[1], spin[0], 1e-9))
 
 
 def points(observed, p):
-    """Seen from the side, slightly from above: the particle, and the rim and the section of the bowl as a line of points."""
+    """Draw the particle, and the rim and the section of the bowl, from the side and slightly from above."""
     around = np.linspace(-np.pi, 0.0, 25)
     wall = p.radius * np.stack([np.cos(around), np.sin(around)], axis=1)
     return np.concatenate((wall, [[observed[0] + 0.35 * observed[1], observed[2] + 0.2 * observed[1]]]))
@@ -189,10 +213,14 @@ SCENE = Scene(
     truth_uncertainty=1e-9,
     tolerance=tolerance,
     engines=ENGINES,
-    omitted_methods="the sliding and the event step hold a block on one plane; a bowl has another one at every place",
+    omitted_methods=("the sliding and the event step hold a block on one plane; a bowl has a different one at every "
+                     "point"),
     sanity_checks=sanity_checks,
     points=points,
     links=links,
     uses=("three coordinates", "an implicit surface", "one impulse for each contact"),
-    ablations={"rotation: it slides, and does not roll": "lesson 5 builds it", "detection between bodies": "lesson 6 builds it"},
+    ablations={
+        "rotation: it slides and does not roll": "lesson 5 builds it",
+        "detection between bodies": "lesson 6 builds it",
+    },
 )

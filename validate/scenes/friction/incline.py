@@ -1,4 +1,4 @@
-"""A block on a slope of 30°: let go on a rough and on a smoother one, and thrown up one that is rough enough to keep it."""
+"""A block on a slope of 30°: released on a rough and on a smoother slope, and launched up one that can hold it."""
 
 from typing import Annotated, NamedTuple
 
@@ -10,6 +10,7 @@ from solutions.friction import make_block
 from solutions.integrators import advance
 from validate.engines.friction import SWEEPS, bullet_block, pymunk_block
 from validate.methods import EVENT, SLIDING
+from validate.reference.friction import block_in_space
 from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, Scene, by_order
 
 T = 1.0                      # [s]
@@ -19,15 +20,19 @@ STEPS = (50, 100, 200, 500, 1000, 2000, 5000)
 class Params(NamedTuple):
     degrees: Annotated[float, "slope [°]"] = 30.0
     mu: Annotated[float, "friction, static and kinetic [-]"] = 0.5
-    v0: Annotated[float, "thrown down the slope with this speed [m/s]; up where negative"] = 0.0
+    v0: Annotated[float, "initial speed down the slope [m/s]; up where negative"] = 0.0
     g: Annotated[float, "gravity [m/s²]"] = 9.81
 
 
-CASES = {"slides, μ = 0.5": Params(), "slides, μ = 0.3": Params(mu=0.3), "thrown up, sticks, μ = 0.6": Params(mu=0.6, v0=-2.0)}
+CASES = {
+    "slides, μ = 0.5": Params(),
+    "slides, μ = 0.3": Params(mu=0.3),
+    "thrown up, sticks, μ = 0.6": Params(mu=0.6, v0=-2.0),
+}
 
 
 def tilted(p):
-    """Gravity along the slope and across it, [m/s²]: x points down the slope, y out of it."""
+    """Return gravity along the slope and normal to it [m/s²]: x points down the slope, y out of it."""
     theta = np.radians(p.degrees)
     return p.g * np.sin(theta), -p.g * np.cos(theta)
 
@@ -49,9 +54,9 @@ def observe(state, p):
 
 
 def truth(p, t):
-    """s(t) = v₀ t + ½ a t²,  a = g (sin θ ∓ μ cos θ) while it slides down or up; once at rest it stays if tan θ ≤ μ, else it slides.
+    """s(t) = v₀ t + ½ a t²,  a = g (sin θ ∓ μ cos θ) while it slides down or up; once at rest it stays if tan θ ≤ μ.
 
-    Source: Coulomb 1785; two phases of constant acceleration.
+    Otherwise it slides on.  Source: Coulomb 1785; two phases of constant acceleration.
     """
     along, across = tilted(p)
     stop, s = 0.0, 0.0
@@ -69,11 +74,12 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """A velocity that is right at every step, summed up at the wrong end of each: ½ dt times its change, and no more than that.
+    """The velocity is exact at every step, but summed at one end of each: the error is at most ½ dt times its change.
 
-    Sliding from v₀ for the time T it changes by a T.  Stopping on the way it changes by v₀, and the last, shorter step adds up to
-    ⅛ a dt².  pybullet moves with the new velocity like ours of order 1, pymunk with the old one: the same bound.  A slab of 2 m on
-    two or four contacts settles in SWEEPS sweeps; both begin with the overlap that their engine leaves alone.
+    Sliding from v₀ for the time T it changes by a T.  Stopping on the way it changes by v₀, and the last, shorter
+    step adds up to ⅛ a dt².  pybullet moves with the new velocity like our methods of order 1, pymunk with the old
+    one: the same bound. A slab of 2 m on two or four contacts settles in SWEEPS sweeps; both begin with the overlap
+    that their engine tolerates.
     """
     limits = by_order(0.0, T, dt)
     along, across = tilted(p)
@@ -91,23 +97,36 @@ def pybullet_make(p, dt):
 
 
 ENGINES = (
-    Engine(PYMUNK, "", lambda p, dt: pymunk_block(tilted(p), p.mu, p.v0, dt, lambda x: np.array([x.x])), 1,
-           f"gravity tilted, a slab of 2 m on a line; {SWEEPS} iterations, collision_slop 1e-5"),
-    Engine(PYBULLET, "", pybullet_make, 1,
-           f"gravity tilted, a slab of 2 m on a box; maximal coordinates, solverResidualThreshold 0, {SWEEPS} iterations"),
+    Engine(
+        PYMUNK,
+        "",
+        lambda p, dt: pymunk_block(tilted(p), p.mu, p.v0, dt, lambda x: np.array([x.x])),
+        1,
+        f"gravity tilted, a slab of 2 m on a line; {SWEEPS} iterations, collision_slop 1e-5",
+    ),
+    Engine(
+        PYBULLET,
+        "",
+        pybullet_make,
+        1,
+        f"gravity tilted, a slab of 2 m on a box; maximal coordinates, solverResidualThreshold 0, {SWEEPS} iterations",
+    ),
 )
 
 
 def sanity_checks():
-    """((claim, found, expected, tolerance), …): the numbers of the lecture's slope, from truth itself and from rest."""
+    """Return ((claim, found, expected, tolerance), …): the numbers of the lecture's slope, moving and from rest."""
     found = [2.0 * truth(CASES[name], T)[0] / T**2 for name in ("slides, μ = 0.5", "slides, μ = 0.3")]
     held = truth(Params(mu=float(np.tan(np.radians(30.0))) * 1.000001), T)[0]
-    return (("acceleration at μ = 0.5 [m/s²]", found[0], 0.657145, 5e-7), ("acceleration at μ = 0.3 [m/s²]", found[1], 2.356287, 5e-7),
-            ("way of a block that is held, from rest [m]", held, 0.0, 0.0))
+    return (
+        ("acceleration at μ = 0.5 [m/s²]", found[0], 0.657145, 5e-7),
+        ("acceleration at μ = 0.3 [m/s²]", found[1], 2.356287, 5e-7),
+        ("distance of a block that is held, from rest [m]", held, 0.0, 0.0),
+    )
 
 
 def points(observed, p):
-    """Seen from the side: the ends of the slope, and the block."""
+    """Draw the ends of the slope, and the block, from the side."""
     theta = np.radians(p.degrees)
     down = np.array([np.cos(theta), -np.sin(theta)])
     return np.stack([-0.4 * down, 1.4 * down, observed[0] * down + 0.03 * np.array([np.sin(theta), np.cos(theta)])])
@@ -118,10 +137,8 @@ def links(p):
 
 
 def in_space(p):
-    """The same motion with a third coordinate carried along."""
-    x, v, block = start(p)
-    third = lambda y: np.append(y, 0.0)
-    return (third(x), third(v), block._replace(n=third(block.n), gravity=third(block.gravity), push=third(block.push))), p
+    """The same motion with an unused third coordinate."""
+    return block_in_space(*start(p)), p
 
 
 SCENE = Scene(
@@ -139,11 +156,16 @@ SCENE = Scene(
     truth_uncertainty=1e-15,
     tolerance=tolerance,
     engines=ENGINES,
-    orders={"event_step": EXACT},          # nothing changes between two events, and a midpoint step is exact then
-    omitted_methods="the integrators of lesson 1 do not know when to stop; stability case 33 shows what they do instead",
+    # Nothing changes between two events, and a midpoint step is then exact.
+    orders={"event_step": EXACT},
+    omitted_methods="the integrators of lesson 1 have no stopping condition; stability case 33 shows the effect",
     sanity_checks=sanity_checks,
     points=points,
     links=links,
     uses=("two coordinates", "a normal", "one step of a block that stays on its plane"),
-    ablations={"the third dimension": in_space, "rotation: it does not tip": "lesson 5 builds it", "detection: it does not leave the slope": "lesson 6 builds it"},
+    ablations={
+        "the third dimension": in_space,
+        "rotation: it does not tip": "lesson 5 builds it",
+        "detection: it does not leave the slope": "lesson 6 builds it",
+    },
 )

@@ -1,4 +1,4 @@
-"""A block under a force that swings to and fro, a little stronger than friction can hold: it slips twice in each swing, and sticks between."""
+"""A block under a periodic force slightly stronger than friction: it slips twice per period, and sticks in between."""
 
 
 import numpy as np
@@ -9,7 +9,7 @@ from solutions.friction import make_block, slip_times
 from solutions.integrators import advance
 from validate.engines.friction import MASS, SWEEPS, bullet_block, pymunk_block
 from validate.methods import EVENT, SLIDING
-from validate.reference.friction import DrivenBlock, T, slip_limits, slip_position, slips
+from validate.reference.friction import DrivenBlock, T, block_in_space, slip_limits, slip_position, slips
 from validate.scene import PYBULLET, PYMUNK, Engine, Scene
 
 STEPS = (80, 160, 400, 800, 1600, 4000, 8000)
@@ -36,35 +36,59 @@ def observe(state, p):
 
 
 def push(p, d):
-    """t → force (d,) [N] on the engines' block, whose mass is their own."""
+    """t → force (d,) [N] on the engines' block, whose mass differs."""
     still = (0.0,) * (d - 1)
     return lambda t: (MASS * p.force / p.m * float(np.cos(p.omega * t)), *still)
 
 
+def pymunk_make(p, dt):
+    return pymunk_block((0.0, -p.g), p.mu, 0.0, dt, lambda x: np.array([x.x]), push(p, 2))
+
+
+def pybullet_make(p, dt):
+    still = (0.0, 0.0, 0.0)
+    return bullet_block((0.0, 0.0, -p.g), p.mu, still, 0.1, dt, lambda x: np.array(x[:1]), push(p, 3))
+
+
 ENGINES = (
-    Engine(PYMUNK, "", lambda p, dt: pymunk_block((0.0, -p.g), p.mu, 0.0, dt, lambda x: np.array([x.x]), push(p, 2)), 1,
-           f"a slab of 2 m on a line, the force applied each step; {SWEEPS} iterations, collision_slop 1e-5"),
-    Engine(PYBULLET, "", lambda p, dt: bullet_block((0.0, 0.0, -p.g), p.mu, (0.0, 0.0, 0.0), 0.1, dt, lambda x: np.array(x[:1]), push(p, 3)), 1,
-           f"a slab of 2 m on a box, the force applied each step; maximal coordinates, solverResidualThreshold 0, {SWEEPS} iterations"),
+    Engine(
+        PYMUNK,
+        "",
+        pymunk_make,
+        1,
+        f"a slab of 2 m on a line, the force applied each step; {SWEEPS} iterations, collision_slop 1e-5",
+    ),
+    Engine(
+        PYBULLET,
+        "",
+        pybullet_make,
+        1,
+        ("a slab of 2 m on a box, the force applied each step; maximal coordinates, solverResidualThreshold 0, "
+         f"{SWEEPS} iterations"),
+    ),
 )
 
 
 def sanity_checks():
-    """((claim, found, expected, tolerance), …): the times of the slips, by truth and by our event steps."""
+    """Return ((claim, found, expected, tolerance), …): times of the slips, in closed form and by event steps."""
     p = CASES["F = 8 cos t"]
     times = np.array([[begin, end] for begin, end, _, _ in slips(p)])
     known = np.array([[0.0, 0.338608], [2.946347, 3.532835]])
     x, v, block = start(p)
     steps = 4000
     ours = slip_times(acceleration, 0.0, x, v, T / steps, steps, block)
-    # v(t) at the end of a slip is wrong by dt² Aω² s/24, and falls there with more than μg − A |cos ωt| > 0.3 m/s²
+    # v(t) at the end of a slip is wrong by dt² Aω² s/24, and falls there at more than μg − A |cos ωt| > 0.3 m/s²
     late = (T / steps) ** 2 * p.force * p.omega**2 * 0.6 / 24.0 / 0.3
-    return (("times of the slips [s]", times, known, 5e-7), ("times of the slips, event steps of 1 ms [s]", ours, times, late + 1e-12),
-            ("x after the first slip [m]", slip_position(p, 1.0)[0], 0.00434857, 5e-9), ("x after the second [m]", slip_position(p, T)[0], -0.00869717, 5e-9))
+    return (
+        ("times of the slips [s]", times, known, 5e-7),
+        ("times of the slips, event steps of 1 ms [s]", ours, times, late + 1e-12),
+        ("x after the first slip [m]", slip_position(p, 1.0)[0], 0.00434857, 5e-9),
+        ("x after the second [m]", slip_position(p, T)[0], -0.00869717, 5e-9),
+    )
 
 
 def points(observed, p):
-    """The block, fifty times as far from its place, and the place."""
+    """Draw the block, its displacement magnified fifty times, and its initial place."""
     return np.array([[0.0, 0.0], [50.0 * observed[0], 0.3]])
 
 
@@ -73,10 +97,8 @@ def links(p):
 
 
 def in_space(p):
-    """The same motion with a third coordinate carried along."""
-    x, v, block = start(p)
-    third = lambda y: np.append(y, 0.0)
-    return (third(x), third(v), block._replace(n=third(block.n), gravity=third(block.gravity), push=third(block.push))), p
+    """The same motion with an unused third coordinate."""
+    return block_in_space(*start(p)), p
 
 
 SCENE = Scene(
@@ -98,5 +120,9 @@ SCENE = Scene(
     points=points,
     links=links,
     uses=("two coordinates", "a normal", "one step of a block that stays on its plane"),
-    ablations={"the third dimension": in_space, "rotation: it does not tip": "lesson 5 builds it", "detection: it does not leave the floor": "lesson 6 builds it"},
+    ablations={
+        "the third dimension": in_space,
+        "rotation: it does not tip": "lesson 5 builds it",
+        "detection: it does not leave the floor": "lesson 6 builds it",
+    },
 )

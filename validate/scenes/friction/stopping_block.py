@@ -1,4 +1,4 @@
-"""A block thrown over the floor stops after v²/2μg, whichever way it goes: with a pyramid for the cone it would not."""
+"""A block launched over the floor stops after v²/2μg in every direction; with a friction pyramid it would not."""
 
 from typing import Annotated, NamedTuple
 
@@ -27,7 +27,7 @@ CASES = {"heading 22.5°": Params(), "heading 0°": Params(degrees=0.0), "headin
 
 
 def thrown(p):
-    """The first velocity (3,) [m/s], z up."""
+    """Return the initial velocity (3,) [m/s], z up."""
     heading = np.radians(p.degrees)
     return p.v0 * np.array([np.cos(heading), np.sin(heading), 0.0])
 
@@ -48,7 +48,7 @@ def observe(state, p):
 
 
 def braked(v, t, a):
-    """Way [m] of something that has the speed v ≥ 0 and loses a [m/s²] until it stands."""
+    """Return the distance [m] covered from the speed v ≥ 0 with the deceleration a [m/s²] until it stops."""
     t = np.minimum(t, v / a)
     return v * t - 0.5 * a * t * t
 
@@ -62,16 +62,18 @@ def truth(p, t):
 
 
 def pyramid(p, t):
-    """With a square for the disc: each component is braked by μg as long as it lasts, so that it stops after v_x²/2μg, v_y²/2μg.
+    """With a square for the disc each component is decelerated by μg until it stops, after v_x²/2μg and v_y²/2μg.
 
-    At 45° that is 1/√2 of the way; at 22.5° it turns towards the x axis and stops at 9.7°.
+    At 45° that is 1/√2 of the distance; at 22.5° the block turns towards the x axis and stops at 9.7°.
     """
     return braked(thrown(p)[:2], t, p.mu * p.g)
 
 
 def tolerance(p, dt):
-    """A velocity that is right at every step until it is zero, summed up at the wrong end of each: ½ v₀ dt; the last step is shorter,
-    which adds up to ⅛ μg dt² (see the incline).  The pyramid does so for each component, against a way that is shorter.
+    """The velocity is exact at every step until it is zero, but summed at the wrong end of each: ½ v₀ dt.
+
+    The last step is shorter, which adds up to ⅛ μg dt² (see the incline).  With the pyramid the same holds for each
+    component, relative to a shorter distance.
     """
     limits = by_order(0.0, T, dt)
     v, a = thrown(p)[:2], p.mu * p.g
@@ -81,7 +83,7 @@ def tolerance(p, dt):
 
 
 def pymunk_make(p, dt):
-    """Two dimensions are enough: the vertical plane of the throw, turned back into the floor's when read."""
+    """Use the vertical plane of the launch; positions are rotated back into the floor."""
     ahead = thrown(p)[:2] / p.v0
     return pymunk_block((0.0, -p.g), p.mu, p.v0, dt, lambda x: x.x * ahead)
 
@@ -91,25 +93,48 @@ def pybullet_make(p, dt, pyramid=False):
 
 
 ENGINES = (
-    Engine(PYMUNK, "", pymunk_make, 1, f"the vertical plane of the throw, a slab of 2 m on a line; {SWEEPS} iterations, collision_slop 1e-5"),
-    Engine(PYBULLET, "pyramid", lambda p, dt: pybullet_make(p, dt, pyramid=True), 1, "reduced coordinates, enableConeFriction 0; the rest as in pybullet"),
-    Engine(PYBULLET, "", pybullet_make, 1, f"a slab of 2 m on a box; maximal coordinates, solverResidualThreshold 0, {SWEEPS} iterations"),
+    Engine(
+        PYMUNK,
+        "",
+        pymunk_make,
+        1,
+        f"the vertical plane of the throw, a slab of 2 m on a line; {SWEEPS} iterations, collision_slop 1e-5",
+    ),
+    Engine(
+        PYBULLET,
+        "pyramid",
+        lambda p, dt: pybullet_make(p, dt, pyramid=True),
+        1,
+        "reduced coordinates, enableConeFriction 0; otherwise as in pybullet",
+    ),
+    Engine(
+        PYBULLET,
+        "",
+        pybullet_make,
+        1,
+        f"a slab of 2 m on a box; maximal coordinates, solverResidualThreshold 0, {SWEEPS} iterations",
+    ),
 )
 BOX = "it clamps friction along x and y separately, each to μ F_N"
 
 
 def sanity_checks():
-    """((claim, found, expected, tolerance), …)."""
+    """Return ((claim, found, expected, tolerance), …) about the reference solution."""
     p = Params()
     corner = pyramid(Params(degrees=45.0), T)
     aside = pyramid(p, T)
-    return (("way to the stop [m]", np.linalg.norm(truth(p, T)), 1.529052, 5e-7), ("time to the stop [s]", p.v0 / (p.mu * p.g), 1.019368, 5e-7),
-            ("way with a pyramid at 45° over the true one [-]", np.linalg.norm(corner) / np.linalg.norm(truth(p, T)), np.sqrt(0.5), 1e-14),
-            ("where a pyramid leads from 22.5° [°]", np.degrees(np.arctan2(aside[1], aside[0])), np.degrees(np.arctan(np.tan(np.radians(22.5)) ** 2)), 1e-12))
+    shorter = np.linalg.norm(corner) / np.linalg.norm(truth(p, T))
+    direction, expected = np.arctan2(aside[1], aside[0]), np.arctan(np.tan(np.radians(22.5)) ** 2)
+    return (
+        ("distance to the stop [m]", np.linalg.norm(truth(p, T)), 1.529052, 5e-7),
+        ("time to the stop [s]", p.v0 / (p.mu * p.g), 1.019368, 5e-7),
+        ("distance with a pyramid at 45° over the exact one [-]", shorter, np.sqrt(0.5), 1e-14),
+        ("final direction with a pyramid from 22.5° [°]", np.degrees(direction), np.degrees(expected), 1e-12),
+    )
 
 
 def points(observed, p):
-    """From above."""
+    """Draw the scene from above."""
     return np.array([[0.0, 0.0], [observed[0], observed[1]]])
 
 
@@ -133,10 +158,14 @@ SCENE = Scene(
     tolerance=tolerance,
     engines=ENGINES,
     expected_departures={"pyramid": Departure(BOX, pyramid), "pybullet, pyramid": Departure(BOX, pyramid)},
-    orders={"event_step": EXACT},          # a constant deceleration, and the stop is found
+    # The deceleration is constant, and the stop is found.
+    orders={"event_step": EXACT},
     sanity_checks=sanity_checks,
     points=points,
     links=links,
     uses=("three coordinates", "a normal", "one step of a block that stays on its plane"),
-    ablations={"rotation: it does not turn or tip": "lesson 5 builds it", "detection: it does not leave the floor": "lesson 6 builds it"},
+    ablations={
+        "rotation: it does not turn or tip": "lesson 5 builds it",
+        "detection: it does not leave the floor": "lesson 6 builds it",
+    },
 )

@@ -1,5 +1,6 @@
-"""A ball dropped from a metre rebounds with four fifths of its speed, again and again: each apex is 0.64 times the one before."""
+"""A ball dropped from one metre rebounds with 0.8 of its speed: each apex is 0.64 times the one before."""
 
+from itertools import pairwise
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -28,8 +29,9 @@ class Params(NamedTuple):
     g: Annotated[float, "gravity [m/s²]"] = 9.81
 
     def damping(self):
-        """ζ of the penalty's damper that leaves e of the speed:  e = exp(−q (π − 2 atan q)),  q = ζ/√(1 − ζ²); it lets go before it would pull.
+        """Return the damping ratio ζ of the penalty that leaves e of the speed.
 
+        e = exp(−q (π − 2 atan q)),  q = ζ/√(1 − ζ²).  The penalty ends before its force would pull.
         Source: Schwager and Pöschel 2007.
         """
         q = brentq(lambda q: q * (np.pi - 2.0 * np.arctan(q)) + np.log(max(self.e, 0.2)), 0.0, 10.0, xtol=1e-15)
@@ -40,12 +42,12 @@ CASES = {"plane": Params(), "space": Params(space=1.0), "comes to rest": Params(
 
 
 def supports(name, p):
-    """The penalty's ball does not come to rest like the others: it goes on swinging inside."""
+    """Not the penalty for a ball at rest: it keeps oscillating inside the floor."""
     return name != "penalty_step" or p.e >= 0.8
 
 
 def fallen(p):
-    """(height, speed) (COPIES,) at the beginning: each copy was let go a moment earlier than the one before."""
+    """Return the initial (height, speed) (COPIES,): each copy was released a moment earlier than the one before."""
     before = delays(0.15)
     return p.h - 0.5 * p.g * before**2, -p.g * before
 
@@ -70,13 +72,13 @@ def run(step, acceleration, state, p, dt, steps):
 
 
 def observe(state, p):
-    """Way along the floor, height, and both velocities, of each copy."""
+    """Return distance along the floor, height, and both velocities, of each copy."""
     x, v, _ = state
     return np.stack((x[:, 0], x[:, -1], v[:, 0], v[:, -1]), axis=1).ravel()
 
 
 def impacts(p):
-    """When a ball dropped at 0 meets the floor, one impact after the other, and its speed before each."""
+    """Return the times at which a ball dropped at 0 meets the floor, and its speed before each impact."""
     v, t = np.sqrt(2.0 * p.g * p.h), np.sqrt(2.0 * p.h / p.g)
     while v > 1e-15:
         yield t, v
@@ -85,7 +87,7 @@ def impacts(p):
 
 
 def flight(p, t):
-    """(height, speed) at t after it was dropped."""
+    """Return (height, speed) at t after the release."""
     y, v, since = p.h, 0.0, 0.0
     for moment, speed in impacts(p):
         if moment > t:
@@ -96,7 +98,7 @@ def flight(p, t):
 
 
 def seen(p, t, each):
-    """What is observed of all copies, each(k) the height and speed of one."""
+    """Return the observed quantities of all copies; each(k) gives height and speed of one."""
     return np.array([(p.slip * t, *each(k)[:1], p.slip, *each(k)[1:]) for k in range(COPIES)]).ravel()
 
 
@@ -116,13 +118,14 @@ def soft(p, t):
 
 
 def tolerance(p, dt):
-    """An impact is seen late by LATE steps at most; who leaves from below, with e v, needs 1/e of that to get out: L = LATE dt/e.
+    """An impact is detected at most LATE steps late; a ball that leaves from below takes 1/e of that: L = LATE dt/e.
 
-    So after every impact the speed is off by  s ← e (s + g L),  because it was met so much later, and the time by  τ ← τ + L + 2s/g,  the
-    next flight being longer by 2s/g.  At T, a after the last impact, the height is off by |v| τ + s a + ½ g dt a and the speed by
-    g τ + s + g dt.  A ball that lies is as deep as its first impact left it, v₁ L at most, or leaps with the g dt of a step.
-    The penalty's spring keeps ½v² + ½ω²x² − ½ω² dt x v, so that entering and leaving at |x| ≤ v dt costs (ω dt)² of the speed, and its
-    damper, at one end of the step, ζω dt.
+    It leaves with e v, hence the 1/e.  After every impact the speed is off by  s ← e (s + g L),  because the impact
+    was detected so much later, and the time by  τ ← τ + L + 2s/g,  because the next flight is 2s/g longer.  At T, a
+    after the last impact, the height is off by |v| τ + s a + ½ g dt a and the speed by g τ + s + g dt.  A ball at
+    rest is as deep as its first impact left it, at most v₁ L, or jumps with the g dt of a step. The penalty's
+    spring keeps ½v² + ½ω²x² − ½ω² dt x v, so entering and leaving at |x| ≤ v dt costs (ω dt)² of the speed, and its
+    damper, evaluated at one end of the step, ζω dt.
     """
     exact, L = by_order(1.0 / T, T, dt)[EXACT], LATE * dt / p.e
     fast = np.sqrt(2.0 * p.g * p.h)
@@ -141,21 +144,33 @@ def tolerance(p, dt):
         worst = np.max([np.abs(off(before, kick)) for before in delays(0.15)], axis=0)
         return np.linalg.norm(worst) * np.sqrt(COPIES) / np.linalg.norm(truth(p, T)) + exact
     late = limit(0.0)
-    return {1: late, EXACT: exact, "penalty": limit((p.omega * dt) ** 2 + p.damping() * p.omega * dt), "pymunk": late, "pybullet": late}
+    return {
+        1: late,
+        EXACT: exact,
+        "penalty": limit((p.omega * dt) ** 2 + p.damping() * p.omega * dt),
+        "pymunk": late,
+        "pybullet": late,
+    }
 
 
 def pymunk_make(p, dt):
     space = pymunk_space((0.0, -p.g))
     pymunk_floor(space)
-    balls = [pymunk_ball(space, 1.0, 1.0, RADIUS, (APART * k, y + RADIUS), (p.slip, v), 0.0, p.e, 0.0) for k, (y, v) in enumerate(zip(*fallen(p)))]
-    read = lambda: np.array([(b.position.x - APART * k, b.position.y - RADIUS, *b.velocity) for k, b in enumerate(balls)]).ravel()
-    return pymunk_world(space, dt, read)
+    balls = [
+        pymunk_ball(space, 1.0, 1.0, RADIUS, (APART * k, y + RADIUS), (p.slip, v), 0.0, p.e, 0.0)
+        for k, (y, v) in enumerate(zip(*fallen(p)))
+    ]
+    seen_of = lambda k, b: (b.position.x - APART * k, b.position.y - RADIUS, *b.velocity)
+    return pymunk_world(space, dt, lambda: np.ravel([seen_of(k, b) for k, b in enumerate(balls)]))
 
 
 def pybullet_make(p, dt):
     bullet = Impacts(dt, (0.0, 0.0, -p.g))
     bullet.plane()
-    balls = [bullet.ball(1.0, 1.0, RADIUS, (0.0, APART * k, y + RADIUS), (p.slip, 0.0, v), (0.0,) * 3, p.e, 0.0) for k, (y, v) in enumerate(zip(*fallen(p)))]
+    balls = [
+        bullet.ball(1.0, 1.0, RADIUS, (0.0, APART * k, y + RADIUS), (p.slip, 0.0, v), (0.0,) * 3, p.e, 0.0)
+        for k, (y, v) in enumerate(zip(*fallen(p)))
+    ]
 
     def read():
         x, v = (np.array([get(b) for b in balls]) for get in (bullet.position, bullet.velocity))
@@ -172,15 +187,23 @@ ENGINES = (
 def sanity_checks():
     p = Params()
     flights = [moment for moment, _ in zip(impacts(p), range(4))]
-    apexes = [flight(p, 0.5 * (a + b))[0] for (a, _), (b, _) in zip(flights, flights[1:])]
-    return (("the first three apexes [m]", apexes, (0.64, 0.4096, 0.262144), 1e-14),
-            ("it lies from [s]", list(impacts(p))[-1][0], 4.063712769, 5e-10),
-            ("it lies from, by the series [s]", np.sqrt(2.0 / p.g) * 1.8 / 0.2, 4.063712769, 5e-10),
-            ("a hard spring is a hard floor, but for π/ω an impact: off by [-]", np.linalg.norm(soft(p._replace(omega=1e5), T) - truth(p, T)) / np.linalg.norm(truth(p, T)), 0.0, 1e-3))
+    apexes = [flight(p, 0.5 * (a + b))[0] for (a, _), (b, _) in pairwise(flights)]
+    stiff = soft(p._replace(omega=1e5), T)
+    return (
+        ("the first three apexes [m]", apexes, (0.64, 0.4096, 0.262144), 1e-14),
+        ("it lies from [s]", list(impacts(p))[-1][0], 4.063712769, 5e-10),
+        ("at rest from, by the geometric series [s]", np.sqrt(2.0 / p.g) * 1.8 / 0.2, 4.063712769, 5e-10),
+        (
+            "a stiff spring is a hard floor, except for the π/ω of an impact: relative error [-]",
+            np.linalg.norm(stiff - truth(p, T)) / np.linalg.norm(truth(p, T)),
+            0.0,
+            1e-3,
+        ),
+    )
 
 
 def points(observed, p):
-    """The first copy over the floor."""
+    """Draw the first copy over the floor."""
     return np.array([[-0.2, 0.0], [2.6, 0.0], observed[:2]])
 
 
@@ -189,7 +212,7 @@ def links(p):
 
 
 def in_space(p):
-    """The same motion with a third coordinate carried along."""
+    """The same motion with an unused third coordinate."""
     p = p._replace(space=1.0)
     return start(p), p
 
@@ -209,13 +232,20 @@ SCENE = Scene(
     truth_uncertainty=1e-14,
     tolerance=tolerance,
     engines=ENGINES,
-    expected_departures={"penalty": Departure("its floor is a spring that takes 30 ms to turn the ball round, whatever the step", soft)},
-    orders={"backtracking_step": EXACT},          # a parabola between impacts whose moments are found
+    expected_departures={
+        "penalty": Departure("its floor is a spring that takes 30 ms to reverse the ball, at any step", soft)
+    },
+    # Between impacts at known times the motion is a parabola.
+    orders={"backtracking_step": EXACT},
     supports=supports,
     sanity_checks=sanity_checks,
     points=points,
     links=links,
-    film_seconds=4.5,          # [s]: until it lies
+    film_seconds=4.5,  # [s]: until it is at rest
     uses=("two coordinates", "one plane", "one number e for each impact"),
-    ablations={"the third dimension": in_space, "rotation: nothing turns the ball": "the scene spinning_bounce puts it in", "detection": "one ball, one plane; lesson 6 finds contacts"},
+    ablations={
+        "the third dimension": in_space,
+        "rotation: the ball has no torque": "the scene spinning_bounce puts it in",
+        "detection": "one ball, one plane; lesson 6 finds contacts",
+    },
 )

@@ -1,4 +1,4 @@
-"""A box falls on a corner, an edge or a face: one, two or four points meet the floor in the same moment, and all of them must be right."""
+"""A box falls on a corner, an edge or a face: one, two or four points hit the floor at the same time."""
 
 from typing import Annotated, NamedTuple
 
@@ -17,9 +17,9 @@ T = 1.0
 STEPS = (1,)
 HALF = np.array([0.1, 0.2, 0.3])       # half sizes [m]
 TILT = {"corner": (0.5, 0.7), "edge": (0.5, 0.0), "face": (0.0, 0.0)}                 # about x, then about y [rad]
-OVERLAP = 1e-12              # of the engines' bodies [m]: they see a contact when there is one
+OVERLAP = 1e-12              # of the engines' bodies [m], so that they find a contact
 BRIEF = 1e-12                # their step [s]: nothing moves in it
-ROUGH = 1e6                  # friction that sticks [-]: any cone is wide enough; infinity the engines do not take
+ROUGH = 1e6                  # sticking friction [-]: any cone is wide enough, and the engines do not accept infinity
 
 
 class Params(NamedTuple):
@@ -31,13 +31,24 @@ class Params(NamedTuple):
     fall: Annotated[float, "speed before [m/s]"] = 2.0
 
 
-CASES = {f"{lands}, {'sticks' if rough else 'smooth'}, e = {e:g}{', in the plane' if flat else ''}": Params(lands, e, rough, flat)
-         for flat, places in ((0.0, ("corner", "edge", "face")), (1.0, ("corner", "face"))) for lands in places for rough in (0.0, 1.0) for e in (0.0, 0.5, 1.0)}
+def case_name(p):
+    return f"{p.lands}, {'sticks' if p.rough else 'smooth'}, e = {p.e:g}{', in the plane' if p.flat else ''}"
+
+
+CASES = {
+    case_name(p): p
+    for flat, places in ((0.0, ("corner", "edge", "face")), (1.0, ("corner", "face")))
+    for lands in places
+    for rough in (0.0, 1.0)
+    for e in (0.0, 0.5, 1.0)
+    for p in (Params(lands, e, rough, flat),)
+}
 
 
 def supports(name, p):
-    """Each engine in its own dimensions; points one after the other, where there is more than one."""
-    return {"pymunk": p.flat == 1.0, "pybullet": p.flat == 0.0, "one_after_the_other": p.lands != "corner"}.get(name, True)
+    """Each engine in its own dimensions; points in sequence only where there is more than one."""
+    known = {"pymunk": p.flat == 1.0, "pybullet": p.flat == 0.0, "one_after_the_other": p.lands != "corner"}
+    return known.get(name, True)
 
 
 def moments(p):
@@ -45,7 +56,7 @@ def moments(p):
 
 
 def turned(p):
-    """R (3, 3)."""
+    """Return R (3, 3)."""
     if p.flat:
         c, s = np.cos(TILT[p.lands][0]), np.sin(TILT[p.lands][0])
         return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
@@ -53,13 +64,14 @@ def turned(p):
 
 
 def landing(p):
-    """(y = (v, ω), n, offsets of the points that meet the floor, I⁻¹ in the world)."""
+    """Return (y = (v, ω), n, offsets of the points in contact, I⁻¹ in the world)."""
     up = np.array([0.0, 1.0, 0.0]) if p.flat else np.array([0.0, 0.0, 1.0])
     R = turned(p)
-    sides = np.array([(a, b, c) for a in (-1.0, 1.0) for b in (-1.0, 1.0) for c in ((0.0,) if p.flat else (-1.0, 1.0))])
-    corners = sides * HALF @ R.T
+    both, third = (-1.0, 1.0), (0.0,) if p.flat else (-1.0, 1.0)
+    corners = np.array([(a, b, c) for a in both for b in both for c in third]) * HALF @ R.T
     low = corners @ up
-    return np.concatenate((-p.fall * up, np.zeros(3))), up, corners[low < low.min() + 1e-9], R @ np.diag(1.0 / moments(p)) @ R.T
+    y, inv_inertia = np.concatenate((-p.fall * up, np.zeros(3))), R @ np.diag(1.0 / moments(p)) @ R.T
+    return y, up, corners[low < low.min() + 1e-9], inv_inertia
 
 
 def start(p):
@@ -67,7 +79,8 @@ def start(p):
         check_positive(name, getattr(p, name))
     check_restitution(p.e)
     y, n, r, inv_inertia = landing(p)
-    return Solid(y[:3], y[3:], 1.0 / p.m, np.ascontiguousarray(inv_inertia)), r, np.tile(n, (len(r), 1)), ROUGH * p.rough
+    body = Solid(y[:3], y[3:], 1.0 / p.m, np.ascontiguousarray(inv_inertia))
+    return body, r, np.tile(n, (len(r), 1)), ROUGH * p.rough
 
 
 def run(step, acceleration, state, p, dt, steps):
@@ -77,14 +90,15 @@ def run(step, acceleration, state, p, dt, steps):
 
 
 def observe(state, p):
-    """What the impact changed in velocity and angular velocity."""
+    """Return the change of velocity and angular velocity."""
     return np.concatenate((state[0].v, state[0].omega)) - landing(p)[0]
 
 
 def truth(p, t):
-    """v⁺ − v and ω⁺ − ω for which every point leaves with −e of its own normal velocity, and with nothing along the floor where it sticks:
-    one linear system for all impulses, solved by the pseudo-inverse.
+    """Return v⁺ − v and ω⁺ − ω for which every point leaves with −e of its own normal velocity.
 
+    A point that sticks also has no velocity along the floor.  One linear system for all impulses, solved by the
+    pseudo-inverse.
     Source: Newton's restitution at every point; Mirtich and Canny 1995 for K.
     """
     y, n, r, inv_inertia = landing(p)
@@ -92,16 +106,19 @@ def truth(p, t):
 
 
 def in_turn(p, t):
-    """The same with one point after the other, each once."""
+    """Return the same with the points in sequence, each once."""
     y, n, r, inv_inertia = landing(p)
     return each_in_turn(p.m, inv_inertia, y, r, n, p.e, p.rough) - y
 
 
 def tolerance(p, dt):
-    """Sweeps stop at changes of 1e-14 of 2 m/s; what they would still change is a hundred times that at most, for 2 m/s, and so much more
-    for ω as the box is smaller than a metre.  The engines' boxes overlap by 1e-12 m, over arms of 0.1 m: ten times that, and as much for luck.
+    """Sweeps stop at changes of 1e-14 of 2 m/s, and what remains is at most a hundred times that, for 2 m/s.
+
+    For ω it is larger, as the box is smaller than a metre.  The engines' boxes overlap by 1e-12 m, over arms of 0.1
+    m: ten times that, and a safety factor of ten.
     """
-    ours = 100.0 * 1e-14 / HALF.min()                                  # relative to a change of 2 m/s and more
+    # relative to a change of 2 m/s or more
+    ours = 100.0 * 1e-14 / HALF.min()
     return {EXACT: ours, "pymunk": 1e-10, "pybullet": 1e-10}
 
 
@@ -112,30 +129,41 @@ def pymunk_make(p, dt):
     floor = pymunk.Segment(space.static_body, (-10.0, -1.0), (10.0, -1.0), 1.0)
     floor.elasticity, floor.friction = 1.0, 1.0
     body = pymunk.Body(p.m, moments(p)[2])
-    y, n, r, _ = landing(p)
+    y, _, r, _ = landing(p)
     body.position, body.angle, body.velocity = (0.0, float(-r[0, 1]) - OVERLAP), TILT[p.lands][0], (0.0, -p.fall)
     box = pymunk.Poly.create_box(body, tuple(map(float, 2.0 * HALF[:2])))
     box.elasticity, box.friction = p.e, ROUGH * p.rough
     space.add(floor, body, box)
-    return EngineRun(lambda: space.step(BRIEF), lambda: np.array([*body.velocity, 0.0, 0.0, 0.0, body.angular_velocity]) - y, lambda: None)
+    return EngineRun(
+        lambda: space.step(BRIEF),
+        lambda: np.array([*body.velocity, 0.0, 0.0, 0.0, body.angular_velocity]) - y,
+        lambda: None,
+    )
 
 
 def pybullet_make(p, dt):
-    """Its contacts are taken before anything moves: one step is the impact."""
+    """Its contacts are computed before anything moves: one step is the impact."""
     bullet = Impacts(BRIEF)
     pb = bullet.pb
     bullet.pb.setPhysicsEngineParameter(numSolverIterations=2000)
-    y, n, r, _ = landing(p)
+    y, _, r, _ = landing(p)
     slab = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[5.0, 5.0, 1.0])
     bullet.body(0.0, (), slab, (0.0, 0.0, -1.0), (0.0,) * 3, (0.0,) * 3, 1.0, 1.0)
     shape = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=HALF.tolist())
-    body = bullet.body(p.m, moments(p), shape, (0.0, 0.0, -r[0, 2] - OVERLAP), y[:3], y[3:], p.e, ROUGH * p.rough, R=turned(p))
+    centre = (0.0, 0.0, -r[0, 2] - OVERLAP)
+    body = bullet.body(p.m, moments(p), shape, centre, y[:3], y[3:], p.e, ROUGH * p.rough, R=turned(p))
     return EngineRun(bullet.step, lambda: np.concatenate((bullet.velocity(body), bullet.omega(body))) - y, bullet.close)
 
 
 ENGINES = (
     Engine(PYMUNK, "", pymunk_make, EXACT, "a Poly on a thick Segment, 2,000 iterations"),
-    Engine(PYBULLET, "", pybullet_make, EXACT, "a box on a box; maximal coordinates; contactERP, contactSlop, contactProcessingThreshold 0, 2,000 iterations"),
+    Engine(
+        PYBULLET,
+        "",
+        pybullet_make,
+        EXACT,
+        "a box on a box; maximal coordinates; contactERP, contactSlop, contactProcessingThreshold 0, 2,000 iterations",
+    ),
 )
 
 
@@ -144,21 +172,30 @@ def quantity_names(p):
 
 
 def sanity_checks():
-    """An elastic impact keeps the energy where it is smooth, and one with e = 0 leaves the points at rest where it sticks."""
+    """Check that a smooth elastic impact keeps the energy, and that sticking points with e = 0 end at rest."""
     energies, left = [], []
     for p in CASES.values():
-        y, n, r, inv_inertia = landing(p)
+        y, _, r, inv_inertia = landing(p)
         end = truth(p, T) + y
+        v, omega = end[:3], end[3:]
         if p.e == 1.0 and not p.rough:
-            energies.append((p.m * end[:3] @ end[:3] + end[3:] @ np.linalg.solve(inv_inertia, end[3:])) / (p.m * p.fall**2))
+            energies.append((p.m * v @ v + omega @ np.linalg.solve(inv_inertia, omega)) / (p.m * p.fall**2))
         if p.e == 0.0 and p.rough:
-            left += [np.abs(end[:3] + np.cross(end[3:], arm)).max() for arm in r]
-    return (("energy after elastic impacts over that before [-]", energies, 1.0, 1e-12), ("speed of points that stick, e = 0 [m/s]", left, 0.0, 1e-12),
-            ("a box that lands flat leaves with e of its speed [m/s]", truth(Params("face", 0.5, 1.0), T), (0.0, 0.0, 3.0, 0.0, 0.0, 0.0), 1e-12))
+            left += [np.abs(v + np.cross(omega, arm)).max() for arm in r]
+    return (
+        ("energy after elastic impacts over energy before [-]", energies, 1.0, 1e-12),
+        ("speed of points that stick, e = 0 [m/s]", left, 0.0, 1e-12),
+        (
+            "velocity of a box that lands flat: e times the initial one [m/s]",
+            truth(Params("face", 0.5, 1.0), T),
+            (0.0, 0.0, 3.0, 0.0, 0.0, 0.0),
+            1e-12,
+        ),
+    )
 
 
 def outline(p):
-    """(points (8, 2), pairs) of the box in the moment of the impact, seen from the side."""
+    """Return (points (8, 2), pairs) of the box at the time of the impact, seen from the side."""
     sides = np.array([(a, b, c) for a in (-1.0, 1.0) for b in (-1.0, 1.0) for c in (-1.0, 1.0)])
     x = sides * HALF @ leaning(*TILT[p.lands]).T
     seen = x @ np.array([[0.35, 0.2], [1.0, 0.0], [0.0, 1.0]])
@@ -192,7 +229,11 @@ SCENE = Scene(
     truth_uncertainty=1e-14,
     tolerance=tolerance,
     engines=ENGINES,
-    expected_departures={"one after the other": Departure("each point finds the body as the one before has left it, so that the order of the points counts", in_turn)},
+    expected_departures={
+        "one after the other": Departure(
+            "each point sees the body as the previous one left it, so that the order of the points counts", in_turn
+        )
+    },
     orders={"solve_impacts": EXACT, "one_after_the_other": EXACT},
     supports=supports,
     moves=False,
@@ -201,7 +242,11 @@ SCENE = Scene(
     sanity_checks=sanity_checks,
     points=points,
     links=links,
-    uses=("one body", "the offsets of the points that meet", "sweeps over them until nothing changes"),
-    ablations={"sliding points": "at a sliding point the engines have laws of their own, up to 20 % of the speed away", "time": "an impact takes none",
-              "detection of the points": "lesson 6 finds them"},
+    uses=("one body", "the offsets of the points in contact", "sweeps over them until nothing changes"),
+    ablations={
+        "sliding points": ("at a sliding point the engines have laws of their own, which differ by up to 20 % of the "
+                           "speed"),
+        "time": "an impact takes none",
+        "detection of the points": "lesson 6 finds them",
+    },
 )

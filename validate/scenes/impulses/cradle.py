@@ -1,4 +1,4 @@
-"""Five equal balls in a row, and one that arrives: how many leave?  With gaps between them mechanics knows; when they touch it does not."""
+"""Newton's cradle, five equal balls: with gaps mechanics says how many leave; for touching balls it does not."""
 
 from typing import Annotated, NamedTuple
 
@@ -12,10 +12,10 @@ from validate.methods import BACKTRACKING_DISCS, PROJECTING_DISCS
 from validate.reference.impulses import APART, COPIES, delays
 from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Scene, by_order
 
-T = 0.4                      # [s]: all is over after 0.16
+T = 0.4                      # [s]: all impacts are over after 0.16
 STEPS = (20, 50, 100, 200, 500, 2000, 5000)
 BALLS = 5
-WINDOW = 0.05                # the first ball of the copies begins up to so much later on its way [s]
+WINDOW = 0.05                # spread of the first ball's start over the copies [s]
 
 
 class Params(NamedTuple):
@@ -45,7 +45,7 @@ def run(step, acceleration, state, p, dt, steps):
 
 
 def seen(x, v, p):
-    """With gaps: place and velocity of each ball.  Touching: momentum and twice the energy, over the mass; who has them is another matter."""
+    """With gaps: position and velocity of each ball.  Touching: momentum and twice the energy of all, over the mass."""
     if p.gap > 0.0:
         return np.concatenate((x, v), axis=1).ravel()
     return np.stack((np.sum(v, axis=1), np.sum(v**2, axis=1)), axis=1).ravel()
@@ -56,11 +56,11 @@ def observe(state, p):
 
 
 def truth(p, t):
-    """With gaps the velocity goes from ball to ball, each time e = 1 and equal masses; it is the last that leaves: (0, 0, 0, 0, 1).
+    """With gaps e = 1 and equal masses pass the velocity from ball to ball, and the last one leaves: (0, 0, 0, 0, 1).
 
-    Touching balls meet all at once, and five velocities have two conditions only: momentum and energy.  (Both engines end with
-    (−½, 0, ½, ½, ½) here, whatever the step, and our steps with (0, 0, 0, 0, 1).)
-    Source: Newton; for what touching balls may do, Herrmann and Schmälzle 1981.
+    Touching balls collide simultaneously, and five velocities have only two conditions: momentum and energy.  (Both
+    engines end with (−½, 0, ½, ½, ½) here at any step, and our steps with (0, 0, 0, 0, 1).) Source: Newton; for the
+    possible outcomes of touching balls, Herrmann and Schmälzle 1981.
     """
     x, v, _ = start(p)
     x, v = x[:, :, 0], v[:, :, 0]
@@ -77,22 +77,31 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """Each of four impacts is seen up to a step late, and until then a ball goes v dt too far: four times that for the last; being moved
-    apart costs a ball that much once more.  A step in which a ball crosses a whole gap sees two impacts as one: then anything may be.
-    Touching balls keep momentum and energy exactly, whoever gets them.
+    """Each of four impacts is detected up to one step late; the last ball is off by up to 4 v dt.
+
+    Until it is detected a ball goes v dt too far.  Separating overlapping balls moves each by that much once more.
+    A step in which a ball crosses a whole gap merges two impacts into one; then there is no bound.  Touching balls
+    keep momentum and energy exactly, however they share them.
     """
     exact = by_order(1.0 / T, T, dt)[EXACT]
     if p.gap == 0.0:
-        late = exact if p.v * dt < p.R else np.inf                      # in a longer step the first may pass the centre of the second
+        # In a longer step the first may pass the centre of the second.
+        late = exact if p.v * dt < p.R else np.inf
         return {1: late, EXACT: exact, "pymunk": late, "pybullet": late}
-    late = 5.0 * p.v * dt * np.sqrt(BALLS * COPIES) / np.linalg.norm(truth(p, T)) + exact if 2.0 * p.v * dt < p.gap else np.inf
+    late = np.inf
+    if 2.0 * p.v * dt < p.gap:
+        late = 5.0 * p.v * dt * np.sqrt(BALLS * COPIES) / np.linalg.norm(truth(p, T)) + exact
     return {1: late, EXACT: exact, "pymunk": late, "pybullet": late}
 
 
 def pymunk_make(p, dt):
     space, (x, v, _) = pymunk_space(), start(p)
     space.iterations = 50
-    balls = [pymunk_ball(space, 1.0, 1.0, p.R, (x[k, i, 0], APART * k), v[k, i], 0.0, 1.0, 0.0) for k in range(COPIES) for i in range(BALLS)]
+    balls = [
+        pymunk_ball(space, 1.0, 1.0, p.R, (x[k, i, 0], APART * k), v[k, i], 0.0, 1.0, 0.0)
+        for k in range(COPIES)
+        for i in range(BALLS)
+    ]
 
     def read():
         rows = np.array([(b.position.x, b.velocity.x) for b in balls]).reshape(COPIES, BALLS, 2)
@@ -102,7 +111,11 @@ def pymunk_make(p, dt):
 
 def pybullet_make(p, dt):
     bullet, (x, v, _) = Impacts(dt), start(p)
-    balls = [bullet.ball(1.0, 1.0, p.R, (x[k, i, 0], APART * k, 0.0), (*v[k, i], 0.0), (0.0,) * 3, 1.0, 0.0) for k in range(COPIES) for i in range(BALLS)]
+    balls = [
+        bullet.ball(1.0, 1.0, p.R, (x[k, i, 0], APART * k, 0.0), (*v[k, i], 0.0), (0.0,) * 3, 1.0, 0.0)
+        for k in range(COPIES)
+        for i in range(BALLS)
+    ]
 
     def read():
         rows = np.array([(bullet.position(b)[0], bullet.velocity(b)[0]) for b in balls]).reshape(COPIES, BALLS, 2)
@@ -117,7 +130,7 @@ ENGINES = (
 
 
 def points(observed, p):
-    """The centres of the first row; touching balls at their places before, for want of others."""
+    """Draw the centres of the first row; touching balls at their initial positions, because only sums are observed."""
     x = observed[:BALLS] if p.gap > 0.0 else start(p)[0][0, :, 0]
     return np.round(np.stack((x, np.zeros(BALLS)), axis=1), 5)
 
@@ -139,6 +152,9 @@ SCENE = Scene(
     orders={"backtracking_discs_step": EXACT},
     points=points,
     uses=("one coordinate", "the order of the impacts"),
-    ablations={"the strings": "they would turn straight lines into arcs", "the stiffness of the balls": "it decides who leaves when balls touch; rigid bodies have none",
-              "rotation and friction": "impacts along the line of centres do not ask for them"},
+    ablations={
+        "the strings": "a swinging ball would move on an arc",
+        "the stiffness of the balls": "it decides which balls leave if they touch; rigid bodies have none",
+        "rotation and friction": "central impacts do not depend on it",
+    },
 )

@@ -1,4 +1,4 @@
-"""A disc strikes another off its centre: without friction all that counts is the line between their centres at the moment they touch."""
+"""A disc strikes another off-centre: without friction, only the line between their centres at contact matters."""
 
 from typing import Annotated, NamedTuple
 
@@ -14,17 +14,17 @@ from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Scene, by
 
 T = 1.0                      # [s]: they meet before half of it
 STEPS = (20, 50, 100, 200, 500, 2000, 5000)
-WINDOW = 0.1                 # the copies begin up to so much later on their way [s]
+WINDOW = 0.1                 # spread of the starts over the copies [s]
 
 
 class Params(NamedTuple):
-    m1: Annotated[float, "mass of the one that moves [kg]"] = 1.0
-    m2: Annotated[float, "of the one that rests [kg]"] = 2.0
+    m1: Annotated[float, "mass of the moving disc [kg]"] = 1.0
+    m2: Annotated[float, "mass of the resting disc [kg]"] = 2.0
     v: Annotated[float, "speed, along x [m/s]"] = 4.0
     R: Annotated[float, "radius of both [m]"] = 0.25
-    offset: Annotated[float, "of the second centre in +y, over the sum of the radii [-]"] = 0.6
+    offset: Annotated[float, "offset of the second centre in +y, over the sum of the radii [-]"] = 0.6
     e: Annotated[float, "restitution [-]"] = 0.9
-    away: Annotated[float, "distance that is to go until they meet [m]"] = 1.6
+    away: Annotated[float, "distance to the contact [m]"] = 1.6
     space: Annotated[float, "1: three coordinates, 0: two"] = 0.0
 
 
@@ -49,18 +49,18 @@ def run(step, acceleration, state, p, dt, steps):
 
 
 def observe(state, p):
-    """Places and velocities of both, of each copy: (COPIES, 8), flat."""
+    """Return positions and velocities of both, of each copy: (COPIES, 8), flat."""
     x, v, _ = state
     return np.concatenate((x[:, :, :2], v[:, :, :2]), axis=2).ravel()
 
 
 def normal(p):
-    """From the first to the second, where they meet: (cos θ, sin θ), sin θ = offset."""
+    """Return the direction from the first to the second at contact: (cos θ, sin θ), sin θ = offset."""
     return np.array([np.sqrt(1.0 - p.offset**2), p.offset])
 
 
 def after(p):
-    """Velocities (2,), (2,) [m/s] when they have parted."""
+    """Return the velocities (2,), (2,) [m/s] after the impact."""
     n = normal(p)
     j = (1.0 + p.e) * p.v * n[0] / (1.0 / p.m1 + 1.0 / p.m2)
     return np.array([p.v, 0.0]) - j / p.m1 * n, j / p.m2 * n
@@ -83,14 +83,16 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """Seen up to a step late, the two overlap: the first is up to s = v dt too far, and the line of centres at atan(sin θ/(cos θ − s/D)).
+    """Detected up to one step late, the discs overlap: the first is up to s = v dt too far.
 
-    So much, Δθ, does the normal turn, and the impulse (1 + e) m v (n · x) n with it, by that times Δθ at most; what follows is a wrong
-    velocity and a growing distance.  Besides, the first goes on as before for s, and both are moved apart by what they overlap, s at most.
+    The line of centres is then at atan(sin θ/(cos θ − s/D)).  The normal turns by that difference Δθ, and the impulse
+    (1 + e) m v (n · x) n changes by at most that times Δθ.  The result is a wrong velocity and a growing distance.  In
+    addition the first disc travels s too far, and both are separated by their overlap, at most s.
     """
     exact, s = by_order(1.0 / T, T, dt)[EXACT], p.v * dt / (2.0 * p.R)
     c = normal(p)[0]
-    if s >= c:                                                           # it may pass the other before anybody looks
+    # It may pass the other before the first test.
+    if s >= c:
         return {1: np.inf, EXACT: exact, "pymunk": np.inf, "pybullet": np.inf}
     turned = np.arctan2(p.offset, c - s) - np.arctan2(p.offset, c)
     impulse = (1.0 + p.e) * p.v / (1.0 / p.m1 + 1.0 / p.m2) * turned
@@ -105,14 +107,17 @@ def pymunk_make(p, dt):
     space, (x, v, _) = pymunk_space(), start(p)
     discs = [pymunk_ball(space, m, 1.0, p.R, x[k, i, :2] + (0.0, APART * k), v[k, i, :2], 0.0, p.e if i else 1.0, 0.0)
              for k in range(COPIES) for i, m in enumerate((p.m1, p.m2))]
-    read = lambda: np.array([(*(np.array(b.position) - (0.0, APART * (k // 2))), *b.velocity) for k, b in enumerate(discs)]).ravel()
-    return pymunk_world(space, dt, read)
+    seen_of = lambda k, b: (*(np.array(b.position) - (0.0, APART * (k // 2))), *b.velocity)
+    return pymunk_world(space, dt, lambda: np.ravel([seen_of(k, b) for k, b in enumerate(discs)]))
 
 
 def pybullet_make(p, dt):
     bullet, (x, v, _) = Impacts(dt), start(p)
-    balls = [bullet.ball(m, 1.0, p.R, (*x[k, i, :2], APART * k), (*v[k, i, :2], 0.0), (0.0,) * 3, p.e if i else 1.0, 0.0)
-             for k in range(COPIES) for i, m in enumerate((p.m1, p.m2))]
+    balls = [
+        bullet.ball(m, 1.0, p.R, (*x[k, i, :2], APART * k), (*v[k, i, :2], 0.0), (0.0,) * 3, p.e if i else 1.0, 0.0)
+        for k in range(COPIES)
+        for i, m in enumerate((p.m1, p.m2))
+    ]
     read = lambda: np.array([(*bullet.position(b)[:2], *bullet.velocity(b)[:2]) for b in balls]).ravel()
     return EngineRun(bullet.step, read, bullet.close)
 
@@ -126,12 +131,15 @@ ENGINES = (
 def sanity_checks():
     p = Params()
     v1, v2 = after(p)
-    return (("velocity of the first [m/s]", v1, (0.757333, -2.432), 5e-7), ("of the second [m/s]", v2, (1.621333, 1.216), 5e-7),
-            ("momentum [kg m/s]", p.m1 * v1 + p.m2 * v2, (4.0, 0.0), 1e-14))
+    return (
+        ("velocity of the first [m/s]", v1, (0.757333, -2.432), 5e-7),
+        ("of the second [m/s]", v2, (1.621333, 1.216), 5e-7),
+        ("momentum [kg m/s]", p.m1 * v1 + p.m2 * v2, (4.0, 0.0), 1e-14),
+    )
 
 
 def points(observed, p):
-    """The first pair, each with six corners for its rim."""
+    """Draw the first pair, each with six corners for its rim."""
     around = np.linspace(0.0, 2.0 * np.pi, 7)[:-1]
     rim = p.R * np.stack((np.cos(around), np.sin(around)), axis=1)
     return np.round(np.concatenate((observed[0:2] + rim, observed[4:6] + rim)), 4)
@@ -142,7 +150,7 @@ def links(p):
 
 
 def in_space(p):
-    """The same motion with a third coordinate carried along."""
+    """The same motion with an unused third coordinate."""
     p = p._replace(space=1.0)
     return start(p), p
 
@@ -166,6 +174,9 @@ SCENE = Scene(
     points=points,
     links=links,
     uses=("two coordinates", "two radii", "one number e for the impact"),
-    ablations={"the third dimension": in_space, "rotation: without friction nothing turns a disc": "the scene spinning_bounce puts it in",
-              "detection: the only pair is asked each time": "lesson 6 finds pairs among many"},
+    ablations={
+        "the third dimension": in_space,
+        "rotation: without friction no torque acts on a disc": "the scene spinning_bounce puts it in",
+        "detection: the only pair is tested at every step": "lesson 6 finds pairs among many",
+    },
 )

@@ -1,4 +1,4 @@
-"""A spinning ball meets the floor: friction takes from its slip what the cone allows, or all of it; then it leaves rolling."""
+"""A spinning ball hits the floor: friction removes as much slip as the cone permits; without slip the ball rolls."""
 
 from typing import Annotated, NamedTuple
 
@@ -14,9 +14,9 @@ from validate.methods import BACKTRACKING_SPIN, PROJECTING_SPIN
 from validate.reference.impulses import APART, COPIES, delays
 from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Scene, by_order
 
-T = 1.0                      # [s]: it meets the floor after half of it
+T = 1.0                      # [s]: it hits the floor after half of it
 STEPS = (20, 50, 100, 200, 500, 2000, 10000)
-WINDOW = 0.2                 # the copies begin up to so much later on their way [s]
+WINDOW = 0.2                 # spread of the starts over the copies [s]
 
 
 class Params(NamedTuple):
@@ -25,17 +25,22 @@ class Params(NamedTuple):
     e: Annotated[float, "restitution [-]"] = 0.6
     v: Annotated[float, "along the floor [m/s]"] = 3.0
     fall: Annotated[float, "towards it [m/s]"] = 4.0
-    rim: Annotated[float, "Rω, by which the spin adds to the slip [m/s]"] = 2.0
-    h: Annotated[float, "height at the start [m]"] = 2.0
+    rim: Annotated[float, "Rω, the spin's share of the slip [m/s]"] = 2.0
+    h: Annotated[float, "initial height [m]"] = 2.0
     R: Annotated[float, "radius [m]"] = 0.1
     m: Annotated[float, "mass [kg]"] = 1.0
 
 
-CASES = {"sphere slips": Params(), "sphere grips": Params(mu=0.5), "disc slips": Params(shape=0.5), "disc grips": Params(shape=0.5, mu=0.5)}
+CASES = {
+    "sphere slips": Params(),
+    "sphere grips": Params(mu=0.5),
+    "disc slips": Params(shape=0.5),
+    "disc grips": Params(shape=0.5, mu=0.5),
+}
 
 
 def supports(name, p):
-    """A disc for the engine of the plane, a sphere for that of space."""
+    """A disc for the 2D engine, a sphere for the 3D engine."""
     return name != "pybullet" or p.shape == 0.4
 
 
@@ -47,9 +52,11 @@ def start(p):
     before = delays(WINDOW)
     x, v, omega = np.zeros((COPIES, 3)), np.zeros((COPIES, 3)), np.zeros((COPIES, 3))
     x[:, 0], x[:, 2] = p.v * before, p.h - p.fall * before
-    v[:, 0], v[:, 2], omega[:, 1] = p.v, -p.fall, -p.rim / p.R          # the lowest point moves with −Rω_y
+    # the lowest point moves with −Rω_y
+    v[:, 0], v[:, 2], omega[:, 1] = p.v, -p.fall, -p.rim / p.R
     up = np.array([0.0, 0.0, 1.0])
-    return x, v, omega, Spinner(p.e, p.mu, 1.0 / p.m, np.eye(3) / (p.shape * p.m * p.R**2), p.R, np.zeros(3), np.zeros(3), up)
+    inv_inertia = np.eye(3) / (p.shape * p.m * p.R**2)
+    return x, v, omega, Spinner(p.e, p.mu, 1.0 / p.m, inv_inertia, p.R, np.zeros(3), np.zeros(3), up)
 
 
 def run(step, acceleration, state, p, dt, steps):
@@ -59,22 +66,26 @@ def run(step, acceleration, state, p, dt, steps):
 
 
 def observe(state, p):
-    """Place, velocity and speed of the rim of each copy."""
+    """Return position, velocity and rim speed of each copy."""
     x, v, omega, _ = state
     return np.stack((x[:, 0], x[:, 2], v[:, 0], v[:, 2], -p.R * omega[:, 1]), axis=1).ravel()
 
 
 def after(p):
-    """(v, Rω) when it has left the floor: slip v + Rω; friction gives at most μ m (1 + e) |v_n|, and what it needs to end the slip."""
+    """Return (v, Rω) after the impact.
+
+    The slip is v + Rω.  Friction gives at most μ m (1 + e) |v_n|, and no more than ends the slip.
+    """
     needed = (p.v + p.rim) / (1.0 + 1.0 / p.shape)
     given = min(p.mu * (1.0 + p.e) * p.fall, needed)
     return p.v - given, p.rim - given / p.shape
 
 
 def truth(p, t):
-    """Straight lines;  at the floor  v_n⁺ = −e v_n,  v⁺ = v − J/m,  Rω⁺ = Rω − J R²/I,  J = min(μ(1 + e) m |v_n|, m (v + Rω)/(1 + mR²/I)).
+    """Straight lines with an impact:  v_n⁺ = −e v_n,  v⁺ = v − J/m,  Rω⁺ = Rω − J R²/I.
 
-    Source: linear and angular momentum about the point that touches; it grips where Coulomb's cone allows that.
+    J = min(μ(1 + e) m |v_n|, m (v + Rω)/(1 + mR²/I)).
+    Source: linear and angular momentum about the point of contact; the ball sticks if Coulomb's cone permits.
     """
     v, rim = after(p)
     rows = []
@@ -88,8 +99,10 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """The impact is seen up to a step late.  Until then the ball goes on as before, so that it is off by (v⁺ − v) dt; put back on the floor,
-    it lacks the e |v_n| dt that it would have risen.  Velocities are right: nothing depends on where it is.
+    """The impact is detected up to one step late, and until then the ball goes on as before: it is off by (v⁺ − v) dt.
+
+    Placed on the floor, it lacks the e |v_n| dt by which it should have risen.  Velocities are exact, because they
+    do not depend on the position.
     """
     v, _ = after(p)
     exact = by_order(1.0 / T, T, dt)[EXACT]
@@ -101,17 +114,40 @@ def pymunk_make(p, dt):
     space = pymunk_space()
     space.iterations = IMPACT_ITERATIONS
     pymunk_floor(space)
-    balls = [pymunk_ball(space, p.m, p.shape * p.m * p.R**2, p.R, (APART * k + p.v * before, p.h - p.fall * before + p.R), (p.v, -p.fall), p.rim / p.R, p.e, p.mu)
-             for k, before in enumerate(delays(WINDOW))]
-    read = lambda: np.array([(b.position.x - APART * k, b.position.y - p.R, *b.velocity, p.R * b.angular_velocity) for k, b in enumerate(balls)]).ravel()
-    return pymunk_world(space, dt, read)
+    balls = [
+        pymunk_ball(
+            space,
+            p.m,
+            p.shape * p.m * p.R**2,
+            p.R,
+            (APART * k + p.v * before, p.h - p.fall * before + p.R),
+            (p.v, -p.fall),
+            p.rim / p.R,
+            p.e,
+            p.mu,
+        )
+        for k, before in enumerate(delays(WINDOW))
+    ]
+    seen_of = lambda k, b: (b.position.x - APART * k, b.position.y - p.R, *b.velocity, p.R * b.angular_velocity)
+    return pymunk_world(space, dt, lambda: np.ravel([seen_of(k, b) for k, b in enumerate(balls)]))
 
 
 def pybullet_make(p, dt):
     bullet = Impacts(dt)
     bullet.plane()
-    balls = [bullet.ball(p.m, p.shape * p.m * p.R**2, p.R, (p.v * before, APART * k, p.h - p.fall * before + p.R), (p.v, 0.0, -p.fall), (0.0, -p.rim / p.R, 0.0), p.e, p.mu)
-             for k, before in enumerate(delays(WINDOW))]
+    balls = [
+        bullet.ball(
+            p.m,
+            p.shape * p.m * p.R**2,
+            p.R,
+            (p.v * before, APART * k, p.h - p.fall * before + p.R),
+            (p.v, 0.0, -p.fall),
+            (0.0, -p.rim / p.R, 0.0),
+            p.e,
+            p.mu,
+        )
+        for k, before in enumerate(delays(WINDOW))
+    ]
 
     def read():
         x, v, omega = (np.array([get(b) for b in balls]) for get in (bullet.position, bullet.velocity, bullet.omega))
@@ -127,11 +163,12 @@ ENGINES = (
 
 def sanity_checks():
     found = [after(p) for p in CASES.values()]
-    return (("v and Rω afterwards [m/s]", found, ((2.36, 0.4), (11.0 / 7.0, -11.0 / 7.0), (2.36, 0.72), (4.0 / 3.0, -4.0 / 3.0)), 1e-14),)
+    expected = ((2.36, 0.4), (11.0 / 7.0, -11.0 / 7.0), (2.36, 0.72), (4.0 / 3.0, -4.0 / 3.0))
+    return (("v and Rω afterwards [m/s]", found, expected, 1e-14),)
 
 
 def points(observed, p):
-    """The first copy: its centre, and a spoke that turns."""
+    """Draw the first copy: its centre, and a spoke that turns."""
     x, z, v, _, rim = observed[:5]
     before = delays(WINDOW)[0]
     t = before + x / p.v if rim == p.rim else p.h / p.fall + (x - p.v * p.h / p.fall) / v
@@ -165,6 +202,9 @@ SCENE = Scene(
     points=points,
     links=links,
     uses=("one ball", "one angular velocity", "one impulse in a cone"),
-    ablations={"gravity": "it would bend the path, and is part of the step: the scene bounces has it", "orientation": "nobody sees how far a plain ball has turned",
-              "detection": "one ball, one plane; lesson 6 finds contacts"},
+    ablations={
+        "gravity": "it would bend the path, and is part of the step: the scene bounces has it",
+        "orientation": "the rotation angle of a plain ball cannot be seen",
+        "detection": "one ball, one plane; lesson 6 finds contacts",
+    },
 )

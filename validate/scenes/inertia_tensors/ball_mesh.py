@@ -1,4 +1,4 @@
-"""A ball made of triangles, or filled with points: how fine must it be until its tensor is that of the ball?"""
+"""A ball made of triangles, or filled with points: the fineness at which its tensor becomes that of the ball."""
 
 from functools import lru_cache
 from typing import Annotated, NamedTuple
@@ -30,14 +30,14 @@ def start(p):
 
 @lru_cache(maxsize=32)
 def triangles(n, radius):
-    """Corners and triangles of an octahedron, each face cut into n² triangles, all corners pushed out onto the sphere."""
+    """Return corners and triangles of an octahedron with n² triangles per face, all corners moved onto the sphere."""
     number, faces = {}, []
 
     def corner(i, j, k):
         return number.setdefault((i, j, k), len(number))
 
     for sx, sy, sz in ((x, y, z) for x in (1, -1) for y in (1, -1) for z in (1, -1)):
-        at = lambda i, j: corner(sx * i, sy * j, sz * (n - i - j))
+        at = lambda i, j, sx=sx, sy=sy, sz=sz: corner(sx * i, sy * j, sz * (n - i - j))
         for i in range(n):
             for j in range(n - i):
                 faces.append((at(i, j), at(i + 1, j), at(i, j + 1))[::sx * sy * sz])
@@ -49,7 +49,7 @@ def triangles(n, radius):
 
 @lru_cache(maxsize=32)
 def cells(n, radius, density):
-    """Masses and places of the middles of those cells, 2 radius/n wide, that lie inside the ball."""
+    """Return masses and centres of those cells, 2 radius/n wide, whose centre lies inside the ball."""
     h = 2.0 * radius / n
     middle = h * (np.arange(n) + 0.5) - radius
     x = np.stack(np.meshgrid(middle, middle, middle, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -58,14 +58,14 @@ def cells(n, radius, density):
 
 
 def run(step, acceleration, state, p, dt, steps):
-    """The lesson's function on triangles or points; they are made beforehand, and not timed."""
+    """Run the lesson's function on triangles or points; these are made beforehand and not timed."""
     if step.__name__ == "mesh_body":
         return step(p.density, *triangles(steps, p.radius))
     return (step(*cells(steps, p.radius, p.density)),)
 
 
 def observe(state, p):
-    """All entries of the tensor [kg m²]."""
+    """Return all entries of the tensor [kg m²]."""
     return np.ravel(state[-1])
 
 
@@ -78,22 +78,26 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """Moments grow with the body: what lies between two balls has a moment between theirs, which go with R⁵.
+    """Moments grow with the body: the moment of a body between two balls lies between theirs, which grow with R⁵.
 
-    Triangles: on an octahedron, 1/√3 away, an equilateral triangle of edge √2/n has its corners √2/(n √3) from its middle, and pushed
-    out onto the sphere they are seen at most √3 times as far apart: within α = √2/n of the direction of the middle.  So the
-    triangle does not come nearer than R cos α:  0 ≤ error ≤ 1 − cos⁵α, of second order.
-    Points: a cell that the sphere cuts is within its half diagonal, √3 R/n, of the sphere; each cell also lacks its own moment,
-    m h²/6, h = 2R/n, against ⅖ m R²:  error ≤ (1 + √3/n)⁵ − 1 + 5/(3n²), of first order at worst.
-    pybullet's own rule knows no n: round-off.
+    Triangles: on an octahedron, 1/√3 away, an equilateral triangle of edge √2/n has its corners √2/(n √3) from its
+    centre. Moved onto the sphere they appear at most √3 times as far apart: within α = √2/n of the direction of the
+    centre.  So the triangle does not come nearer than R cos α:  0 ≤ error ≤ 1 − cos⁵α, of second order. Points: a
+    cell that the sphere cuts is within its half diagonal, √3 R/n, of the sphere.  Each cell also lacks its own
+    moment, m h²/6, h = 2R/n, compared with ⅖ m R²:  error ≤ (1 + √3/n)⁵ − 1 + 5/(3n²), at worst of first order.
+    pybullet's own rule does not depend on n: round-off.
     """
     n = 1.0 / dt
     alpha = min(np.sqrt(2.0) / n, 0.5 * np.pi)
-    return {2: 1.0 - np.cos(alpha) ** 5 + 1e-12, 1: (1.0 + np.sqrt(3.0) / n) ** 5 - 1.0 + 5.0 / (3.0 * n * n), "pybullet, hull": 1e-12}
+    return {
+        2: 1.0 - np.cos(alpha) ** 5 + 1e-12,
+        1: (1.0 + np.sqrt(3.0) / n) ** 5 - 1.0 + 5.0 / (3.0 * n * n),
+        "pybullet, hull": 1e-12,
+    }
 
 
 def by_fat_box(p, t):
-    """m (b² + c²)/12 of the cube around the ball, 6 mm wider than it: pybullet puts its margin of 1 mm on three times on each side.
+    """m (b² + c²)/12 of the cube around the ball, 6 mm wider: pybullet adds its margin of 1 mm thrice on each side.
 
     Source: Bullet, btPolyhedralConvexShape: recalcLocalAabb, getNonvirtualAabb and calculateLocalInertia each add it.
     """
@@ -102,7 +106,7 @@ def by_fat_box(p, t):
 
 
 def bullet_make(p, dt):
-    """The hull of the same corners, of the mass of the ball: its first step makes the body, the others do nothing."""
+    """Make the hull of the same corners, with the mass of the ball, in the first step; the others do nothing."""
     bullet, made = Bullet(1.0), []
     x = triangles(round(1.0 / dt), p.radius)[0].tolist()
     m = 4.0 / 3.0 * np.pi * p.density * p.radius**3
@@ -118,17 +122,27 @@ def bullet_make(p, dt):
     return EngineRun(step, read, bullet.close)
 
 
-ENGINES = (Engine(PYBULLET, "hull", bullet_make, EXACT, "GEOM_MESH from corners, createMultiBody with the mass of the ball", most_steps=20),)
+ENGINES = (
+    Engine(
+        PYBULLET,
+        "hull",
+        bullet_make,
+        EXACT,
+        "GEOM_MESH from corners, createMultiBody with the mass of the ball",
+        most_steps=20,
+    ),
+)
 
 
 def points(observed, p):
-    """The triangles for n = 4, from a little above."""
+    """Draw the triangles for n = 4, seen slightly from above."""
     x, _ = triangles(4, p.radius)
     return x @ np.array([[0.8, -0.2], [0.6, 0.25], [0.0, 0.95]])
 
 
 def links(p):
-    return sorted({tuple(sorted((int(i), int(j)))) for f in triangles(4, p.radius)[1] for i, j in zip(f, np.roll(f, -1))})
+    faces = triangles(4, p.radius)[1]
+    return sorted({tuple(sorted((int(i), int(j)))) for f in faces for i, j in zip(f, np.roll(f, -1))})
 
 
 SCENE = Scene(
@@ -145,12 +159,20 @@ SCENE = Scene(
     truth_uncertainty=1e-15,
     tolerance=tolerance,
     engines=ENGINES,
-    expected_departures={"pybullet, hull": Departure("it takes the cube around the hull for the hull, and makes it 6 mm larger", by_fat_box)},
-    uncompiled_in_quick=("mesh_body", "point_mass_inertia"),          # sooner run than compiled
+    expected_departures={
+        "pybullet, hull": Departure(
+            "it takes the cube around the hull for the hull, and makes it 6 mm larger", by_fat_box
+        )
+    },
+    # Plain Python finishes before numba has compiled it.
+    uncompiled_in_quick=("mesh_body", "point_mass_inertia"),
     moves=False,
-    refinement="fineness 1/n [-]: n triangles a quarter of the equator, n points a diameter",
+    refinement="fineness 1/n [-]: n triangles per quarter of the equator, n points per diameter",
     points=points,
     links=links,
     uses=("corners and triangles", "or points with masses"),
-    ablations={"motion": "lesson 5 turns bodies", "a density that varies inside": "points can have it, triangles cannot"},
+    ablations={
+        "motion": "lesson 5 turns bodies",
+        "a density that varies inside": "points can have it, triangles cannot",
+    },
 )

@@ -1,8 +1,9 @@
-"""Thirteen bodies and their inertia tensors: from the lesson, from the volume integral, and as two engines have them.
+"""Thirteen bodies and their inertia tensors: from the lesson, from the volume integral, and from two engines.
 
-Nothing moves here.  pybullet knows balls, boxes and cylinders.  For everything else it takes the box around the shape, and the
-origin of the shape for its centre of mass: a capsule resists 28 % too much, a dumbbell 34 % too little across and 67 % too much
-along its axis.  The remedy is to tell it.  pymunk is right, but for the round ends of its Segment.
+Nothing moves here.  pybullet has formulas for balls, boxes and cylinders.  For every other shape it uses the
+surrounding box, and the origin of the shape as its centre of mass.  The moment of a capsule is 28 % too large; that
+of a dumbbell is 34 % too small across its axis and 67 % too large about it.  The remedy is to set the tensor.
+pymunk is right, except for the round ends of its Segment.
 """
 
 from typing import Annotated, NamedTuple
@@ -38,16 +39,24 @@ class Params(NamedTuple):
 
 
 CASES = {
-    "ball": Params(), "box": Params("box", 2.0, 0.2, 0.4, 0.6), "cylinder": Params("cylinder", 2.0, 0.2, 0.7),
-    "capsule": Params("capsule", 2.0, 0.2, 0.7), "dumbbell": Params("dumbbell", 2.0, 0.2, 0.2, 1.0),
-    "uneven dumbbell": Params("dumbbell", 2.0, 0.2, 0.1, 1.0), "turned bar": Params("turned bar", 2.0, 1.0, 0.2, 0.2),
-    "angle": Params("angle", 2.0, 0.6, 0.5, 0.1, 0.2), "corner of a box": Params("corner", 2.0, 0.4, 0.6, 0.8),
-    "ring (2D)": Params("ring", 2.0, 0.3, 0.2), "triangle (2D)": Params("triangle", 2.0, 1.0, 0.6),
-    "two discs (2D)": Params("two discs", 2.0, 0.2, 0.1, 1.0), "bar with round ends (2D)": Params("round bar", 2.0, 0.2, 0.7),
+    "ball": Params(),
+    "box": Params("box", 2.0, 0.2, 0.4, 0.6),
+    "cylinder": Params("cylinder", 2.0, 0.2, 0.7),
+    "capsule": Params("capsule", 2.0, 0.2, 0.7),
+    "dumbbell": Params("dumbbell", 2.0, 0.2, 0.2, 1.0),
+    "uneven dumbbell": Params("dumbbell", 2.0, 0.2, 0.1, 1.0),
+    "turned bar": Params("turned bar", 2.0, 1.0, 0.2, 0.2),
+    "angle": Params("angle", 2.0, 0.6, 0.5, 0.1, 0.2),
+    "corner of a box": Params("corner", 2.0, 0.4, 0.6, 0.8),
+    "ring (2D)": Params("ring", 2.0, 0.3, 0.2),
+    "triangle (2D)": Params("triangle", 2.0, 1.0, 0.6),
+    "two discs (2D)": Params("two discs", 2.0, 0.2, 0.1, 1.0),
+    "bar with round ends (2D)": Params("round bar", 2.0, 0.2, 0.7),
 }
-FLAT = ("ring", "triangle", "two discs", "round bar")         # these have one moment, about the axis across the plane
-TURN = np.pi / 4.0                                             # of the turned bar about z [rad]
-MARGIN = 0.001                                                 # that pybullet puts around a hull [m]
+# These have one moment, about the axis normal to the plane.
+FLAT = ("ring", "triangle", "two discs", "round bar")
+TURN = np.pi / 4.0                                             # of the rotated bar about z [rad]
+MARGIN = 0.001                                                 # that pybullet adds around a hull [m]
 
 
 def start(p):
@@ -57,18 +66,19 @@ def start(p):
 
 
 def quantity_names(p):
-    return ("I [kg m²]",) if p.shape in FLAT else ("Ixx [kg m²]", "Iyy [kg m²]", "Izz [kg m²]", "Ixy [kg m²]", "Ixz [kg m²]", "Iyz [kg m²]")
+    entries = ("I",) if p.shape in FLAT else ("Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz")
+    return tuple(f"{entry} [kg m²]" for entry in entries)
 
 
 def six(I):
-    """Ixx, Iyy, Izz, Ixy, Ixz, Iyz of a tensor."""
+    """Return Ixx, Iyy, Izz, Ixy, Ixz, Iyz of a tensor."""
     return np.array([I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2]])
 
 
 # ---------------------------------------------------------------------------------------------- ours
 
 def run(step, acceleration, state, p, dt, steps):
-    """The lesson's function on the parts of the body, or on its triangles."""
+    """Run the lesson's function on the parts of the body, or on its triangles."""
     body = step(*(mesh(p) if step.__name__ == "mesh_body" else parts(p)))
     return (body.I,)
 
@@ -78,12 +88,12 @@ def observe(state, p):
 
 
 def supports(name, p):
-    """Triangles have only bodies with flat faces; each engine label says for which shapes it is."""
+    """Only bodies with flat faces have triangles; each engine label says for which shapes it is."""
     return p.shape in SHAPES_OF[name]
 
 
 def parts(p):
-    """(m, x, I) of what the body is put together from; flat bodies are one metre high, which changes nothing about z."""
+    """Return (m, x, I) of the parts of the body; flat bodies are one metre high, which does not affect z."""
     z, upright = np.array([0.0, 0.0, 1.0]), np.eye(3)
     whole = lambda I: (np.array([p.m]), np.zeros((1, 3)), np.stack([I]))
     if p.shape == "ball":
@@ -102,11 +112,12 @@ def parts(p):
         return m, np.stack([0.0 * z, p.c * z]), np.stack([sphere_inertia(m[0], p.a), sphere_inertia(m[1], p.b)])
     if p.shape == "two discs":
         m = shared(p.m, p.a**2, p.b**2)
-        return m, np.stack([0.0 * z, p.c * upright[0]]), np.stack([cylinder_inertia(m[0], p.a, 1.0), cylinder_inertia(m[1], p.b, 1.0)])
+        I = np.stack([cylinder_inertia(m[0], p.a, 1.0), cylinder_inertia(m[1], p.b, 1.0)])
+        return m, np.stack([0.0 * z, p.c * upright[0]]), I
     if p.shape == "ring":                                      # a disc with a hole: a disc of negative mass
         m = shared(p.m, p.a**2, -p.b**2)
         return m, np.zeros((2, 3)), np.stack([cylinder_inertia(m[0], p.a, 1.0), cylinder_inertia(m[1], p.b, 1.0)])
-    if p.shape == "round bar":                                 # half a disc: from the middle of the disc to its own centre, 4r/3π away
+    if p.shape == "round bar":  # half a disc: from the centre of the disc to its own centre of mass, 4r/3π away
         m = shared(p.m, 2.0 * p.a * p.b, 0.5 * np.pi * p.a**2, 0.5 * np.pi * p.a**2)
         off = 4.0 * p.a / (3.0 * np.pi) * upright[0]
         half = parallel_axes(cylinder_inertia(m[1], p.a, 1.0), -m[1], off)
@@ -118,18 +129,18 @@ def parts(p):
 
 
 def shared(m, *volumes):
-    """The mass, shared out by volume."""
+    """Return the masses, in proportion to the volumes."""
     return m * np.array(volumes) / sum(volumes)
 
 
 def boxes_of_angle(p):
-    """(size, centre) of the two boxes of an L: legs a along x and b along y, both c thick, d high."""
+    """Return (size, centre) of the two boxes of an L: legs a along x and b along y, both c thick, d high."""
     return ((np.array([p.a, p.c, p.d]), np.array([0.5 * p.a, 0.5 * p.c, 0.0])),
             (np.array([p.c, p.b - p.c, p.d]), np.array([0.5 * p.c, 0.5 * (p.b + p.c), 0.0])))
 
 
 def outline(p):
-    """Corners (k, 2) of a body that is a prism, counter-clockwise; the first sees all the others."""
+    """Return the corners (k, 2) of a body that is a prism, counter-clockwise; all are visible from the first."""
     return np.array({
         "box": [(-0.5 * p.a, -0.5 * p.b), (0.5 * p.a, -0.5 * p.b), (0.5 * p.a, 0.5 * p.b), (-0.5 * p.a, 0.5 * p.b)],
         "triangle": [(0.0, 0.0), (p.a, 0.0), (0.0, p.b)],
@@ -138,7 +149,7 @@ def outline(p):
 
 
 def surface(p):
-    """Corners and triangles of a body with flat faces, and its volume."""
+    """Return corners and triangles of a body with flat faces, and its volume."""
     if p.shape == "corner":
         x = np.array([[0.0, 0.0, 0.0], [p.a, 0.0, 0.0], [0.0, p.b, 0.0], [0.0, 0.0, p.c]])
         return x, np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]), p.a * p.b * p.c / 6.0
@@ -152,7 +163,7 @@ def surface(p):
 
 
 def mesh(p):
-    """(density, corners, triangles)"""
+    """Return (density, corners, triangles)."""
     x, faces, volume = surface(p)
     return p.m / volume, x, faces
 
@@ -160,10 +171,10 @@ def mesh(p):
 # ---------------------------------------------------------------------------------------------- truth
 
 def truth(p, t):
-    """The volume integral I = ∫ (|r|² 1 − r rᵀ) dm about the centre of mass, by other ways than the lesson's.
+    """The volume integral I = ∫ (|r|² 1 − r rᵀ) dm about the centre of mass, by methods that the lesson does not use.
 
     round about z       slices of squared radius q(z): Izz = ρ π/2 ∫ q² dz,  Ixx = ρ π ∫ (q²/4 + z² q) dz − m Z²;
-                        q is a polynomial, piece by piece, so that Gauss's quadrature is exact
+                        q is piecewise polynomial, so Gauss's quadrature is exact
     of boxes            eight points in each, at ±edge/√12
     corner of a box     ∫x² = V a²/10,  ∫x y = V a b/20
     ring, triangle      ½ m (a² + b²),  m (sum of the squared sides)/36
@@ -174,8 +185,12 @@ def truth(p, t):
     if p.shape in ("ball", "cylinder", "capsule", "dumbbell"):
         return six(revolved(p.m, profile(p)))
     if p.shape == "corner":
-        return six(p.m / 80.0 * np.array([[3.0 * (p.b**2 + p.c**2), p.a * p.b, p.a * p.c], [p.a * p.b, 3.0 * (p.a**2 + p.c**2), p.b * p.c],
-                                          [p.a * p.c, p.b * p.c, 3.0 * (p.a**2 + p.b**2)]]))
+        I = [
+            [3.0 * (p.b**2 + p.c**2), p.a * p.b, p.a * p.c],
+            [p.a * p.b, 3.0 * (p.a**2 + p.c**2), p.b * p.c],
+            [p.a * p.c, p.b * p.c, 3.0 * (p.a**2 + p.b**2)],
+        ]
+        return six(p.m / 80.0 * np.array(I))
     if p.shape == "ring":
         return np.array([0.5 * p.m * (p.a**2 + p.b**2)])
     if p.shape == "triangle":
@@ -189,14 +204,15 @@ def truth(p, t):
     angle = TURN if p.shape == "turned bar" else 0.0
     signs = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)]) / np.sqrt(12.0)
     x = np.concatenate([centre + signs * size for size, centre in boxes])
-    x = np.column_stack([np.cos(angle) * x[:, 0] - np.sin(angle) * x[:, 1], np.sin(angle) * x[:, 0] + np.cos(angle) * x[:, 1], x[:, 2]])
+    c, s = np.cos(angle), np.sin(angle)
+    x = np.column_stack([c * x[:, 0] - s * x[:, 1], s * x[:, 0] + c * x[:, 1], x[:, 2]])
     m = np.repeat(shared(p.m, *(np.prod(size) for size, _ in boxes)), 8) / 8.0
     r = x - m @ x / p.m
     return six(sum(k * (y @ y * np.eye(3) - np.outer(y, y)) for k, y in zip(m, r)))
 
 
 def profile(p):
-    """Pieces (z_low, z_high, q) of a solid of revolution, q(z) its squared radius."""
+    """Return the pieces (z_low, z_high, q) of a solid of revolution, q(z) its squared radius."""
     ball = lambda r, z0: (z0 - r, z0 + r, lambda z: r * r - (z - z0) ** 2)
     if p.shape == "ball":
         return [ball(p.a, 0.0)]
@@ -210,18 +226,24 @@ def profile(p):
 
 
 def revolved(m, pieces):
-    """Tensor of a solid of revolution about its centre of mass."""
+    """Return the tensor of a solid of revolution about its centre of mass."""
     nodes, weights = np.polynomial.legendre.leggauss(6)
     V = first = zz = xx = 0.0
     for low, high, q in pieces:
         z, w = 0.5 * (high + low) + 0.5 * (high - low) * nodes, 0.5 * np.pi * (high - low) * weights
-        V, first, zz, xx = V + w @ q(z), first + w @ (z * q(z)), zz + 0.5 * w @ q(z) ** 2, xx + w @ (0.25 * q(z) ** 2 + z * z * q(z))
+        V = V + w @ q(z)
+        first = first + w @ (z * q(z))
+        zz = zz + 0.5 * w @ q(z) ** 2
+        xx = xx + w @ (0.25 * q(z) ** 2 + z * z * q(z))
     across = m * (xx / V - (first / V) ** 2)
     return np.diag([across, across, m * zz / V])
 
 
 def round_bar(p):
-    """∫ (x² + y²) dm over strips of half width w at x = ½b + a sin θ:  4 ∫ (x² w + w³/3) dx on one side, w = a cos θ at the end."""
+    """Return ∫ (x² + y²) dm over strips of half width w at x = ½b + a sin θ.
+
+    4 ∫ (x² w + w³/3) dx on one side, w = a cos θ at the end.
+    """
     nodes, weights = np.polynomial.legendre.leggauss(40)
     theta, weights = 0.25 * np.pi * (nodes + 1.0), 0.25 * np.pi * weights
     x, w = 0.5 * p.b + p.a * np.sin(theta), p.a * np.cos(theta)
@@ -231,12 +253,13 @@ def round_bar(p):
 
 
 def sanity_checks():
-    """((claim, found, expected, tolerance), …): the numbers in words above, and where pybullet believes a centre of mass to be."""
+    """Return ((claim, found, expected, tolerance), …): the numbers of the docstring, and pybullet's centre of mass."""
     capsule, dumbbell, uneven = CASES["capsule"], CASES["dumbbell"], CASES["uneven dumbbell"]
     too_much = lambda p, k: by_bounding_box(p, T)[k] / truth(p, T)[k] - 1.0
-    claims = (("how much too much a capsule resists across in pybullet [-]", too_much(capsule, 0), 0.28, 0.005),
+    claims = ((("relative excess of a capsule's moment across "
+                "its axis in pybullet [-]"), too_much(capsule, 0), 0.28, 0.005),
               ("and along [-]", too_much(capsule, 2), 0.41, 0.005),
-              ("and a dumbbell across [-]", too_much(dumbbell, 0), -0.34, 0.005),
+              ("the same of a dumbbell [-]", too_much(dumbbell, 0), -0.34, 0.005),
               ("and along [-]", too_much(dumbbell, 2), 0.67, 0.005),
               ("centre of an uneven dumbbell, by the lesson [m]", combine(*parts(uneven)).x, centre(uneven), 1e-15))
     if not installed("pybullet"):
@@ -245,25 +268,25 @@ def sanity_checks():
     body = bullet.pb.createMultiBody(uneven.m, shape_of(bullet.pb, uneven))
     believed = bullet.pb.getDynamicsInfo(body, -1)[3]
     bullet.close()
-    return (*claims, ("the same by pybullet: the origin of the shape [m]", believed, np.zeros(3), 0.0))
+    return (*claims, ("the same in pybullet: the origin of the shape [m]", believed, np.zeros(3), 0.0))
 
 
 
 
 def tolerance(p, dt):
-    """A few dozen operations on numbers of one sign, each rounded by 1.1e-16: 1e-13, for ours and for the engines' own rules alike."""
+    """A few dozen operations on numbers of one sign, each rounded by 1.1e-16: 1e-13, for us and for the engines."""
     return {EXACT: 1e-13, **{engine.label: 1e-13 for engine in ENGINES}}
 
 
 # ---------------------------------------------------------------------------------------------- engines
 
 def box_around(m, size, twelfth=1.0 / 12.0):
-    """Moments of the box that a shape fits into, as entries of a tensor."""
+    """Return the moments of the box around a shape as entries of a tensor."""
     return np.concatenate([m * twelfth * (size @ size - size * size), np.zeros(3)])
 
 
 def extent(p):
-    """Edges [m] of the box, along the axes, that the shape fits into."""
+    """Return the edges [m] of the axis-aligned box around the shape."""
     if p.shape == "capsule":
         return np.array([2.0 * p.a, 2.0 * p.a, p.b + 2.0 * p.a])
     if p.shape == "dumbbell":
@@ -276,15 +299,16 @@ def extent(p):
 
 
 def by_bounding_box(p, t):
-    """m (b² + c²)/12 with the edges of the box around the shape; a capsule's with 0.08333333 for 1/12.
+    """m (b² + c²)/12 with the edges of the box around the shape; for a capsule with 0.08333333 for 1/12.
 
-    Source: Bullet, btCompoundShape::calculateLocalInertia ("approximation: take the inertia from the aabb for now"), btCapsuleShape.
+    Source: Bullet, btCompoundShape::calculateLocalInertia ("approximation: take the inertia from the aabb for now"),
+    btCapsuleShape.
     """
     return box_around(p.m, extent(p), 0.08333333 if p.shape == "capsule" else 1.0 / 12.0)
 
 
 def by_fat_box(p, t):
-    """The same for a hull, whose margin of 1 mm is put on three times on each side, and 0.08333333 for 1/12.
+    """The same for a hull, whose margin of 1 mm is added three times on each side, and 0.08333333 for 1/12.
 
     Source: Bullet, btPolyhedralConvexShape: recalcLocalAabb, getNonvirtualAabb and calculateLocalInertia each add it.
     """
@@ -292,7 +316,7 @@ def by_fat_box(p, t):
 
 
 def by_nothing(p, t):
-    """Zero: Bullet gives triangle meshes no inertia, and no torque turns them."""
+    """Zero: Bullet gives triangle meshes no inertia, so no torque rotates them."""
     return np.zeros(6)
 
 
@@ -302,9 +326,11 @@ def by_flat_box(p, t):
 
 
 def shape_of(pb, p, concave=False):
-    """The collision shape, as a user would write it."""
+    """Make the collision shape, as a user would write it."""
     make = lambda kind, **how: pb.createCollisionShape(kind, **how)
-    several = lambda kind, at, **how: pb.createCollisionShapeArray(shapeTypes=[kind] * len(at), collisionFramePositions=at, **how)
+    several = lambda kind, at, **how: pb.createCollisionShapeArray(
+        shapeTypes=[kind] * len(at), collisionFramePositions=at, **how
+    )
     if p.shape == "ball":
         return make(pb.GEOM_SPHERE, radius=p.a)
     if p.shape == "box":
@@ -315,24 +341,30 @@ def shape_of(pb, p, concave=False):
         return several(pb.GEOM_SPHERE, [[0.0, 0.0, 0.0], [0.0, 0.0, p.c]], radii=[p.a, p.b])
     if p.shape == "turned bar":
         q = [0.0, 0.0, np.sin(0.5 * TURN), np.cos(0.5 * TURN)]
-        return several(pb.GEOM_BOX, [[0.0] * 3], halfExtents=[[0.5 * p.a, 0.5 * p.b, 0.5 * p.c]], collisionFrameOrientations=[q])
+        half = [0.5 * p.a, 0.5 * p.b, 0.5 * p.c]
+        return several(pb.GEOM_BOX, [[0.0] * 3], halfExtents=[half], collisionFrameOrientations=[q])
     if p.shape == "angle":
         boxes = boxes_of_angle(p)
-        return several(pb.GEOM_BOX, [x.tolist() for _, x in boxes], halfExtents=[(0.5 * size).tolist() for size, _ in boxes])
+        halves = [(0.5 * size).tolist() for size, _ in boxes]
+        return several(pb.GEOM_BOX, [x.tolist() for _, x in boxes], halfExtents=halves)
     x, faces, _ = surface(p)
     if concave:
-        return make(pb.GEOM_MESH, vertices=x.tolist(), indices=faces.ravel().tolist(), flags=pb.GEOM_FORCE_CONCAVE_TRIMESH)
+        indices, flags = faces.ravel().tolist(), pb.GEOM_FORCE_CONCAVE_TRIMESH
+        return make(pb.GEOM_MESH, vertices=x.tolist(), indices=indices, flags=flags)
     return make(pb.GEOM_MESH, vertices=x.tolist())
 
 
 def bullet_make(p, dt, concave=False, told=False):
-    """A body of reduced coordinates: of the other kind getDynamicsInfo does not fill in the inertial frame."""
+    """Make a body of reduced coordinates; for maximal ones getDynamicsInfo does not return the inertial frame."""
     bullet = Bullet(1.0)
     pb, frame = bullet.pb, {}
     if told:
         moments, R = np.linalg.eigh(tensor_of(truth(p, 1.0)))
-        R[:, 2] *= np.linalg.det(R)                            # right-handed
-        frame = {"baseInertialFrameOrientation": quaternion(R).tolist(), "baseInertialFramePosition": centre(p).tolist()}
+        R[:, 2] *= np.linalg.det(R)  # right-handed
+        frame = {
+            "baseInertialFrameOrientation": quaternion(R).tolist(),
+            "baseInertialFramePosition": centre(p).tolist(),
+        }
     body = pb.createMultiBody(p.m, shape_of(pb, p, concave), **frame)
     if told:
         pb.changeDynamics(body, -1, mass=p.m, localInertiaDiagonal=moments.tolist())
@@ -346,7 +378,7 @@ def bullet_make(p, dt, concave=False, told=False):
 
 
 def centre(p):
-    """Centre of mass [m] of those bodies that pybullet has to be told about."""
+    """Return the centre of mass [m] of the bodies for which pybullet must be given it."""
     if p.shape == "corner":
         return np.array([p.a, p.b, p.c]) / 4.0
     if p.shape == "angle":
@@ -361,7 +393,10 @@ def tensor_of(entries):
 
 
 def quaternion(R):
-    """(x, y, z, w), as pybullet wants it: the eigenvector, of eigenvalue 3, of a symmetric matrix of R's entries (Bar-Itzhack 2000)."""
+    """Return (x, y, z, w), pybullet's order: an eigenvector of a symmetric matrix of R's entries.
+
+    Its eigenvalue is 3 (Bar-Itzhack 2000).
+    """
     K = np.array([[R[0, 0] - R[1, 1] - R[2, 2], R[1, 0] + R[0, 1], R[2, 0] + R[0, 2], R[2, 1] - R[1, 2]],
                   [R[1, 0] + R[0, 1], R[1, 1] - R[0, 0] - R[2, 2], R[2, 1] + R[1, 2], R[0, 2] - R[2, 0]],
                   [R[2, 0] + R[0, 2], R[2, 1] + R[1, 2], R[2, 2] - R[0, 0] - R[1, 1], R[1, 0] - R[0, 1]],
@@ -370,7 +405,7 @@ def quaternion(R):
 
 
 def pymunk_make(p, dt):
-    """Its moment_for_ functions; two discs as a body that adds up its shapes by density."""
+    """Use pymunk's moment_for_ functions; two discs are a body that sums its shapes by density."""
     import pymunk
     if p.shape == "ring":
         moment = pymunk.moment_for_circle(p.m, p.b, p.a)
@@ -392,36 +427,65 @@ ENGINES = (
     Engine(PYBULLET, "", bullet_make, EXACT, "createMultiBody with the shape and a mass; read by getDynamicsInfo"),
     Engine(PYBULLET, "automatic", bullet_make, EXACT, "createMultiBody as it comes"),
     Engine(PYBULLET, "hull", bullet_make, EXACT, "GEOM_MESH from corners"),
-    Engine(PYBULLET, "concave mesh", lambda p, dt: bullet_make(p, dt, concave=True), EXACT, "GEOM_MESH with GEOM_FORCE_CONCAVE_TRIMESH"),
-    Engine(PYBULLET, "told", lambda p, dt: bullet_make(p, dt, told=True), EXACT,
-           "localInertiaDiagonal and mass in one changeDynamics; baseInertialFramePosition and -Orientation: centre and principal axes"),
+    Engine(
+        PYBULLET,
+        "concave mesh",
+        lambda p, dt: bullet_make(p, dt, concave=True),
+        EXACT,
+        "GEOM_MESH with GEOM_FORCE_CONCAVE_TRIMESH",
+    ),
+    Engine(
+        PYBULLET,
+        "told",
+        lambda p, dt: bullet_make(p, dt, told=True),
+        EXACT,
+        ("localInertiaDiagonal and mass in one changeDynamics; baseInertialFramePosition and -Orientation: centre "
+         "and principal axes"),
+    ),
     Engine(PYMUNK, "", pymunk_make, EXACT, "moment_for_circle, moment_for_poly, or shapes with a density"),
     Engine(PYMUNK, "Segment", pymunk_make, EXACT, "moment_for_segment"),
 )
-SHAPES_OF = {                # method or engine: what it can do
-    "combine": ("ball", "box", "cylinder", "capsule", "dumbbell", "turned bar", "angle", "ring", "two discs", "round bar"),
+# {method or engine: the bodies that it supports}
+SHAPES_OF = {
+    "combine": (
+        "ball",
+        "box",
+        "cylinder",
+        "capsule",
+        "dumbbell",
+        "turned bar",
+        "angle",
+        "ring",
+        "two discs",
+        "round bar",
+    ),
     "mesh_body": ("box", "angle", "corner", "triangle"),
     "pybullet": ("ball", "box", "cylinder"),
     "pybullet, automatic": ("capsule", "dumbbell", "turned bar", "angle"),
-    "pybullet, hull": ("corner",), "pybullet, concave mesh": ("corner",),
+    "pybullet, hull": ("corner",),
+    "pybullet, concave mesh": ("corner",),
     "pybullet, told": ("capsule", "dumbbell", "turned bar", "angle", "corner"),
-    "pymunk": ("ring", "triangle", "two discs"), "pymunk, Segment": ("round bar",),
+    "pymunk": ("ring", "triangle", "two discs"),
+    "pymunk, Segment": ("round bar",),
 }
 
 
 # ---------------------------------------------------------------------------------------------- picture
 
 def silhouette(p):
-    """Closed outline (k, 2) [m] of a body: from the side for what is round about z, from above for the others."""
-    arc = lambda r, x, y, low, high: np.array([(x + r * np.cos(t), y + r * np.sin(t)) for t in np.linspace(low, high, 25)])
+    """Return the closed outline (k, 2) [m] of a body: seen from the side if it is round about z, else from above."""
+    turns = lambda low, high: np.linspace(low, high, 25)
+    arc = lambda r, x, y, low, high: np.array([(x + r * np.cos(t), y + r * np.sin(t)) for t in turns(low, high)])
     if p.shape == "capsule":
         return np.concatenate([arc(p.a, 0.0, 0.5 * p.b, 0.0, np.pi), arc(p.a, 0.0, -0.5 * p.b, np.pi, 2.0 * np.pi)])
     if p.shape == "round bar":
-        return np.concatenate([arc(p.a, 0.5 * p.b, 0.0, -0.5 * np.pi, 0.5 * np.pi), arc(p.a, -0.5 * p.b, 0.0, 0.5 * np.pi, 1.5 * np.pi)])
+        right = arc(p.a, 0.5 * p.b, 0.0, -0.5 * np.pi, 0.5 * np.pi)
+        return np.concatenate([right, arc(p.a, -0.5 * p.b, 0.0, 0.5 * np.pi, 1.5 * np.pi)])
     if p.shape in ("dumbbell", "two discs"):
         far = (0.0, p.c) if p.shape == "dumbbell" else (p.c, 0.0)
         turn = np.arctan2(far[1], far[0]) + np.pi
-        return np.concatenate([arc(p.a, 0.0, 0.0, turn - np.pi, turn + np.pi), arc(p.b, *far, turn, turn + 2.0 * np.pi)])
+        first = arc(p.a, 0.0, 0.0, turn - np.pi, turn + np.pi)
+        return np.concatenate([first, arc(p.b, *far, turn, turn + 2.0 * np.pi)])
     if p.shape in ("ball", "ring"):
         return arc(p.a, 0.0, 0.0, 0.0, 2.0 * np.pi)
     if p.shape == "cylinder":
@@ -433,7 +497,7 @@ def silhouette(p):
 
 
 def gallery():
-    """All outlines, five a row, and the pairs of points that make each of them a line."""
+    """Return all outlines, five per row, and the pairs of points that their lines join."""
     drawn, pairs, across, down = [], [], 0.0, 0.0
     for k, p in enumerate(CASES.values()):
         if k % 5 == 0:
@@ -465,24 +529,34 @@ SCENE = Scene(
     run=run,
     observe=observe,
     truth=truth,
-    truth_uncertainty=1e-14,          # of sums and quadratures of at most a hundred terms, each rounded by 1.1e-16
+    truth_uncertainty=1e-14,  # of sums and quadratures of at most a hundred terms, each rounded by 1.1e-16
     tolerance=tolerance,
     engines=ENGINES,
     expected_departures={
-    "pybullet, automatic": Departure("it takes the box around the shape, along the axes of the shape, for the shape", by_bounding_box),
-    "pybullet, hull": Departure("it takes the box around the hull for the hull, and makes it 6 mm larger", by_fat_box),
-    "pybullet, concave mesh": Departure("it gives triangle meshes no inertia, so that no torque turns them", by_nothing),
-    "pymunk, Segment": Departure("it takes the box around the bar for the bar", by_flat_box),
-},
+        "pybullet, automatic": Departure(
+            "it uses the box around the shape, along the axes of the shape, instead of the shape", by_bounding_box
+        ),
+        "pybullet, hull": Departure(
+            "it uses the box around the hull instead of the hull, and makes it 6 mm larger", by_fat_box
+        ),
+        "pybullet, concave mesh": Departure(
+            "it gives triangle meshes no inertia, so that no torque rotates them", by_nothing
+        ),
+        "pymunk, Segment": Departure("it uses the box around the bar instead of the bar", by_flat_box),
+    },
     orders={"combine": EXACT, "mesh_body": EXACT},
     supports=supports,
     moves=False,
     refinement="",
     quantity_names=quantity_names,
-    published_states=((1.0, (0.072, 0.072, 0.072, 0.0, 0.0, 0.0), 1e-14),),          # ⅖ m R² of the ball
+    published_states=((1.0, (0.072, 0.072, 0.072, 0.0, 0.0, 0.0), 1e-14),),  # ⅖ m R² of the ball
     sanity_checks=sanity_checks,
     points=points,
     links=links,
-    uses=("masses and places of the parts", "or corners and triangles"),
-    ablations={"motion": "lesson 5 turns these bodies", "density that varies": "a body of parts can have it", "collision": "lesson 6 builds it"},
+    uses=("masses and positions of the parts", "or corners and triangles"),
+    ablations={
+        "motion": "lesson 5 rotates these bodies",
+        "density that varies": "a body of parts can have it",
+        "collision": "lesson 6 builds it",
+    },
 )

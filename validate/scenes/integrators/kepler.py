@@ -1,4 +1,4 @@
-"""A planet runs around its sun sixteen times on an ellipse, and every method is asked where it is in the end."""
+"""A planet orbits its sun sixteen times on an ellipse, and every method is compared by its final position."""
 
 
 import numpy as np
@@ -12,8 +12,8 @@ from validate.scene import LATE_LEAPFROG, Scene
 
 T = 100.0                    # [s]: sixteen revolutions
 STEPS = (2000, 5000, 10000, 20000, 50000, 100000, 150000, 200000)
-# Euler, average velocity and implicit Euler gain or lose energy at every passage, see drift: they are drawn, but no step here is one
-# at which theory promises anything.
+# Euler, average velocity and implicit Euler gain or lose energy at every passage, see drift.  They are drawn, but
+# theory gives no limit for them at any step here.
 
 
 CASES = {"e = 0.6": Planet()}
@@ -45,17 +45,17 @@ def observe(state, p):
 
 
 def tolerance(p, dt):
-    """Order 2 and 4 drift in phase; symplectic Euler and both engines are leapfrog, started half a step late or early."""
+    """Order 2 and 4 drift in phase; symplectic Euler and the engines are leapfrog, half a step late or early."""
     return kepler_limits(p, T, dt)
 
 
 def points(observed, p):
-    """The sun, and the planet."""
+    """Draw the sun and the planet."""
     return np.array([[0.0, 0.0], [observed[0], observed[1]]])
 
 
 def in_space(p):
-    """The same motion with z carried along."""
+    """The same motion with an unused z coordinate."""
     x, v = start(p)
     return (np.append(x, 0.0), np.append(v, 0.0)), p
 
@@ -72,15 +72,23 @@ SCENE = Scene(
     run=run,
     observe=observe,
     truth=kepler_position,
-    truth_uncertainty=1e-12,          # the truth's: round-off in the energy, v²/2 − μ/r, grows with time as in drift(): 3e-13
+    # of the reference solution: round-off in the energy, v²/2 − μ/r, grows with time as in drift(): 3e-13
+    truth_uncertainty=1e-12,
     tolerance=tolerance,
     engines=KEPLER_ENGINES,
-    orders={"symplectic_euler_step": LATE_LEAPFROG},          # see late_start
+    orders={"symplectic_euler_step": LATE_LEAPFROG},  # see late_start
     slow_methods=LEFT_TO_FULL,
-    published_states=((100.0, (-0.104183204, -0.694741716), 1e-9),),          # its velocity is then (1.236177763, 0.564623251) m/s
+    published_states=(
+        (100.0, (-0.104183204, -0.694741716), 1e-9),
+    # its velocity is then (1.236177763, 0.564623251) m/s
+    ),
     points=points,
-    film_seconds=12.6,          # two revolutions [s]
+    film_seconds=12.6,  # two revolutions [s]
     uses=("one point in the plane", "one step function"),
-    ablations={"the third dimension": in_space, "the motion of the sun": "the lighter the planet, the less it matters",
-              "steps that adapt to the distance": "beyond this workbook", "rotation": "lesson 5 builds it"},
+    ablations={
+        "the third dimension": in_space,
+        "the motion of the sun": "the lighter the planet, the smaller the effect",
+        "steps that adapt to the distance": "beyond this workbook",
+        "rotation": "lesson 5 builds it",
+    },
 )

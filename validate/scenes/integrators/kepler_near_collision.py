@@ -1,4 +1,4 @@
-"""A comet on a long ellipse: at its nearest a nineteenth of its farthest distance from the sun, where all the error is made."""
+"""A comet on a long ellipse, 19 times as far from the sun as at its nearest, where nearly all of the error is made."""
 
 import numpy as np
 
@@ -41,17 +41,17 @@ def observe(state, p):
 
 
 def tolerance(p, dt):
-    """As in kepler.  The rate at the nearest point, √(μ/r³), is 32 times the mean one: most steps are wasted far away."""
+    """As in kepler.  The rate at the nearest point, √(μ/r³), is 32 times the mean: most steps are wasted far away."""
     return kepler_limits(p, T, dt)
 
 
 def points(observed, p):
-    """The sun, and the planet."""
+    """Draw the sun and the planet."""
     return np.array([[0.0, 0.0], [observed[0], observed[1]]])
 
 
 def in_space(p):
-    """The same motion with z carried along."""
+    """The same motion with an unused z coordinate."""
     x, v = start(p)
     return (np.append(x, 0.0), np.append(v, 0.0)), p
 
@@ -68,7 +68,8 @@ SCENE = Scene(
     run=run,
     observe=observe,
     truth=kepler_position,
-    truth_uncertainty=1e-12,          # the truth's, as in kepler: 1e-13
+    # of the reference solution, as in kepler: 1e-13
+    truth_uncertainty=1e-12,
     tolerance=tolerance,
     engines=KEPLER_ENGINES,
     orders={"symplectic_euler_step": LATE_LEAPFROG},          # see late_start

@@ -1,4 +1,4 @@
-"""A pellet shot up in syrup: drag in proportion to speed bends the parabola until it comes down almost straight."""
+"""A pellet shot up in syrup: linear drag bends the parabola until the pellet falls almost straight down."""
 
 from typing import Annotated, NamedTuple
 
@@ -11,19 +11,20 @@ from validate.engines.chipmunk import pymunk_space, pymunk_world
 from validate.methods import INTEGRATORS, LEFT_TO_FULL
 from validate.scene import PYBULLET, PYMUNK, Engine, EngineRun, Scene, by_order
 
-T = 1.97599434               # [s]: when it is back at the height of the start
+T = 1.97599434               # [s]: at which it is back at the initial height
 STEPS = (10, 20, 50, 100, 200, 500, 1000, 2000)
 
 
 class Params(NamedTuple):
-    vx: Annotated[float, "shot with this velocity [m/s], y up"] = 2.54
+    vx: Annotated[float, "initial velocity [m/s], y up"] = 2.54
     vy: float = 12.7
     k: Annotated[float, "drag over mass [1/s]"] = 1.0
     g: Annotated[float, "gravity [m/s²]"] = 9.81456
 
 
 CASES = {"shot": Params()}
-# Landing time and range are published to 8 decimals: half a unit of the time, at the 6.7 m/s of the landing, is 3.4e-8 m.
+# Landing time and range are published to 8 decimals: half a unit of the time, at the landing speed of 6.7 m/s, is
+# 3.4e-8 m.
 
 
 def acceleration(t, x, v, p):
@@ -58,11 +59,11 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """Only the term that decays, |v₀ − v∞|/k long, can be wrong, at the rate k; relative to x(T), which is ten times shorter.
+    """Only the decaying term, of length |v₀ − v∞|/k, has an error, at the rate k; x(T) is ten times shorter.
 
-    Both engines move first-order and take drag at the beginning of a step, or shrink v by e^(−k dt): order 1 with rate k.  Half
-    a step in the first velocity would not help, because drag answers to it.  The hidden damping has its fastest rate,
-    0.04 (1 + 2|v|), at the greater of the first speed and the terminal one.
+    Both engines are of first order and take drag at the beginning of a step, or multiply v by e^(−k dt): order 1
+    with rate k.  A first velocity half a step later would not help, because drag depends on it.  The hidden damping
+    has its fastest rate, 0.04 (1 + 2|v|), at the greater of the initial speed and the terminal one.
     """
     scale = np.hypot(p.vx, p.vy + p.g / p.k) / p.k / np.linalg.norm(truth(p, T))
     limits = {k: scale * limit for k, limit in by_order(p.k, T, dt).items()}
@@ -73,9 +74,10 @@ def tolerance(p, dt):
 
 
 def pymunk_make(p, dt, own=False):
-    """Drag as a force before each step, or as the space's damping: the part of the velocity that is left after a second.
+    """Drag as a force before each step, or as the space's damping: the share of the velocity left after one second.
 
-    Chipmunk moves first and then applies the force: forward Euler, which is harmless here because drag depends on v alone.
+    Chipmunk moves first and then applies the force.  This forward Euler is harmless here, because drag depends on v
+    alone.
     """
     import pymunk
     space = pymunk_space((0.0, -p.g))
@@ -86,7 +88,7 @@ def pymunk_make(p, dt, own=False):
     space.add(body)
 
     def step():
-        body.force = (-p.k * body.velocity.x, -p.k * body.velocity.y)            # used up by the step
+        body.force = (-p.k * body.velocity.x, -p.k * body.velocity.y)            # the step clears it
         space.step(dt)
 
     read = lambda: np.array([body.position.x, body.position.y])
@@ -94,7 +96,7 @@ def pymunk_make(p, dt, own=False):
 
 
 def pybullet_make(p, dt, default=False, own=False):
-    """Drag as a force before each step, or as the body's own damping: the part of the velocity that is lost in a second."""
+    """Drag as a force before each step, or as the body's own damping: the share of the velocity lost in one second."""
     bullet = Bullet(dt, (0.0, -p.g, 0.0))
     body = bullet.point_mass(1.0, (0.0, 0.0, 0.0), (p.vx, p.vy, 0.0), default)
     if own:
@@ -111,12 +113,12 @@ def pybullet_make(p, dt, default=False, own=False):
 ENGINES = (
     Engine(PYMUNK, "", pymunk_make, 1, "force applied each step"),
     Engine(PYMUNK, "own damping", lambda p, dt: pymunk_make(p, dt, own=True), 1,
-           "space.damping = e^(−k): what is left after a second"),
+           "space.damping = e^(−k): the share left after one second"),
     Engine(PYBULLET, "default", lambda p, dt: pybullet_make(p, dt, default=True), 1,
-           "createMultiBody as it comes; force applied each step"),
+           "createMultiBody with its defaults; force applied each step"),
     Engine(PYBULLET, "", pybullet_make, 1, "useMaximalCoordinates=1, no damping; force applied each step"),
     Engine(PYBULLET, "own damping", lambda p, dt: pybullet_make(p, dt, own=True), 1,
-           "useMaximalCoordinates=1, linearDamping = 1 − e^(−k): what is lost in a second"),
+           "useMaximalCoordinates=1, linearDamping = 1 − e^(−k): the share lost in one second"),
 )
 
 
@@ -125,7 +127,7 @@ def points(observed, p):
 
 
 def in_space(p):
-    """The same motion with z carried along."""
+    """The same motion with an unused z coordinate."""
     return (np.zeros(3), np.array([p.vx, p.vy, 0.0])), p
 
 
@@ -141,14 +143,20 @@ SCENE = Scene(
     run=run,
     observe=observe,
     truth=truth,
-    truth_uncertainty=1e-14,          # (1 − e^(−kt)) and gt are ten times as large as their difference
+    # (1 − e^(−kt)) and gt are ten times as large as their difference
+    truth_uncertainty=1e-14,
     tolerance=tolerance,
     engines=ENGINES,
     expected_departures={"pybullet, default": hidden_damping(acceleration, start)},
     slow_methods=LEFT_TO_FULL,
-    uncompiled_in_quick=("symplectic_euler_step", "verlet_step"),          # sooner run than compiled
+    # Plain Python finishes before numba has compiled it.
+    uncompiled_in_quick=("symplectic_euler_step", "verlet_step"),
     published_states=((1.97599434, (2.18789655, 0.0), 4e-8),),
     points=points,
     uses=("one point in the plane", "one step function"),
-    ablations={"the third dimension": in_space, "rotation": "lesson 5 builds it", "detection of the ground": "lesson 6 builds it"},
+    ablations={
+        "the third dimension": in_space,
+        "rotation": "lesson 5 builds it",
+        "detection of the ground": "lesson 6 builds it",
+    },
 )

@@ -1,4 +1,4 @@
-"""A mass on a spring with a damper beside it, let go at one metre: the problem that every method is judged by."""
+"""A mass on a spring with a damper, released at one metre: the standard problem for comparing methods."""
 
 from typing import Annotated, NamedTuple
 
@@ -20,14 +20,19 @@ class Params(NamedTuple):
     m: Annotated[float, "mass [kg]"] = 1.0
     k: Annotated[float, "stiffness [N/m]"] = 100.0
     c: Annotated[float, "damper [N s/m]"] = 1.0
-    x0: Annotated[float, "released here, at rest [m]"] = 1.0
+    x0: Annotated[float, "initial position, at rest [m]"] = 1.0
 
 
-CASES = {"under-damped": Params(), "undamped": Params(c=0.0), "critically damped": Params(k=1.0, c=2.0), "over-damped": Params(k=1.0, c=5.0)}
+CASES = {
+    "under-damped": Params(),
+    "undamped": Params(c=0.0),
+    "critically damped": Params(k=1.0, c=2.0),
+    "over-damped": Params(k=1.0, c=5.0),
+}
 
 
 def oscillator(p):
-    """The lesson's parameters:  ω = √(k/m),  ζ = c / 2√(km)."""
+    """Return the lesson's parameters:  ω = √(k/m),  ζ = c / 2√(km)."""
     return Oscillator(float(np.sqrt(p.k / p.m)), float(0.5 * p.c / np.sqrt(p.k * p.m)))
 
 
@@ -64,10 +69,10 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """The fastest rate is ω + c/m; relative to x(T), which damping has made e^(δT) smaller than the motion was.
+    """The fastest rate is ω + c/m; relative to x(T), which damping has made e^(δT) smaller than the initial amplitude.
 
-    Both engines are symplectic Euler with the damper at one end of the step: they err like ours of order 1; and like ours of
-    order 2 when they start half a step ahead and nothing depends on velocity.
+    Both engines are symplectic Euler with the damper at one end of the step.  They err like our methods of order 1,
+    and like those of order 2 if they start half a step ahead and no force depends on velocity.
     """
     rate, shrunk = np.sqrt(p.k / p.m) + p.c / p.m, p.x0 / abs(truth(p, T)[0])
     limits = {k: shrunk * limit for k, limit in by_order(rate, T, dt).items()}
@@ -77,7 +82,10 @@ def tolerance(p, dt):
 
 
 def pymunk_make(p, dt, ahead=0.0):
-    """A DampedSpring of rest length 2 m to a static point; its damper acts as e^(−c dt/m), its force at the new position."""
+    """Use a DampedSpring of rest length 2 m to a static point.
+
+    Its damper acts as e^(−c dt/m), its force at the new position.
+    """
     import pymunk
     space = pymunk_space()
     body = pymunk.Body(p.m, 1.0)
@@ -88,9 +96,10 @@ def pymunk_make(p, dt, ahead=0.0):
 
 
 def pybullet_make(p, dt, ahead=0.0, default=False):
-    """The force of the spring and the damper, computed from the state before each step."""
+    """Apply the force of the spring and the damper, computed from the state before each step."""
     bullet = Bullet(dt)
-    body = bullet.point_mass(p.m, (p.x0, 0.0, 0.0), (-ahead * dt * acceleration(0.0, p.x0, 0.0, oscillator(p)), 0.0, 0.0), default)
+    v0 = -ahead * dt * acceleration(0.0, p.x0, 0.0, oscillator(p))
+    body = bullet.point_mass(p.m, (p.x0, 0.0, 0.0), (v0, 0.0, 0.0), default)
 
     def step():
         x, v = bullet.position(body), bullet.velocity(body)
@@ -102,10 +111,22 @@ def pybullet_make(p, dt, ahead=0.0, default=False):
 
 ENGINES = (
     Engine(PYMUNK, "", pymunk_make, 1, "DampedSpring; no other setting matters without contact"),
-    Engine(PYMUNK, "leapfrog start", lambda p, dt: pymunk_make(p, dt, ahead=0.5), 1, "first velocity + ½ a dt: second order without a damper"),
+    Engine(
+        PYMUNK,
+        "leapfrog start",
+        lambda p, dt: pymunk_make(p, dt, ahead=0.5),
+        1,
+        "first velocity + ½ a dt: second order without a damper",
+    ),
     Engine(PYBULLET, "default", lambda p, dt: pybullet_make(p, dt, default=True), 1, "createMultiBody as it comes"),
     Engine(PYBULLET, "", pybullet_make, 1, "useMaximalCoordinates=1, no damping; force applied each step"),
-    Engine(PYBULLET, "leapfrog start", lambda p, dt: pybullet_make(p, dt, ahead=0.5), 1, "first velocity − ½ a dt: second order without a damper"),
+    Engine(
+        PYBULLET,
+        "leapfrog start",
+        lambda p, dt: pybullet_make(p, dt, ahead=0.5),
+        1,
+        "first velocity − ½ a dt: second order without a damper",
+    ),
 )
 
 
@@ -118,7 +139,7 @@ def links(p):
 
 
 def in_space(p):
-    """The same motion with y and z carried along."""
+    """The same motion with unused y and z coordinates."""
     return (np.array([p.x0, 0.0, 0.0]), np.zeros(3)), p
 
 
@@ -137,9 +158,15 @@ SCENE = Scene(
     truth_uncertainty=1e-14,
     tolerance=tolerance,
     engines=ENGINES,
-    expected_departures={"pybullet, default": hidden_damping(lambda t, x, v, p: acceleration(t, x, v, oscillator(p)), start)},
+    expected_departures={
+        "pybullet, default": hidden_damping(lambda t, x, v, p: acceleration(t, x, v, oscillator(p)), start)
+    },
     points=points,
     links=links,
     uses=("one coordinate", "one step function"),
-    ablations={"the second and third dimension": in_space, "rotation": "lesson 5 builds it", "detection of contacts": "lesson 6 builds it"},
+    ablations={
+        "the second and third dimension": in_space,
+        "rotation": "lesson 5 builds it",
+        "detection of contacts": "lesson 6 builds it",
+    },
 )

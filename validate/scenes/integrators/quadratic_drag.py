@@ -1,4 +1,4 @@
-"""A parachutist falls from rest: drag grows with the square of speed, until it carries the weight."""
+"""A parachutist falls from rest: drag grows with the square of the speed until it balances the weight."""
 
 from typing import Annotated, NamedTuple
 
@@ -11,7 +11,7 @@ from validate.engines.chipmunk import pymunk_space
 from validate.methods import INTEGRATORS, LEFT_TO_FULL
 from validate.scene import PYBULLET, PYMUNK, Engine, EngineRun, Scene, by_order
 
-T = 3.0                      # [s]: three times what it takes to gain the terminal speed without air
+T = 3.0                      # [s]: three times the time to reach the terminal speed without air
 STEPS = (15, 30, 60, 150, 300, 600, 1500, 3000)
 
 
@@ -47,7 +47,7 @@ def observe(state, p):
 
 
 def terminal_speed(p):
-    """v∞ = √(m g/c): where drag carries the weight [m/s]"""
+    """Return v∞ = √(m g/c), at which drag balances the weight [m/s]."""
     return np.sqrt(p.m * p.g / p.c)
 
 
@@ -63,10 +63,10 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """The fastest rate is |∂a/∂v| = 2g/v∞ at the terminal speed, and what is wrong is as long as v∞ over that rate.
+    """The fastest rate is |∂a/∂v| = 2g/v∞ at the terminal speed, and the error scales with v∞ over that rate.
 
-    Both engines move first-order and take drag at the beginning of a step: order 1.  The hidden damping adds 0.04 (1 + 2v) to
-    the rate; v∞ bounds the speed with it, too.
+    Both engines are of first order and take drag at the beginning of a step: order 1.  The hidden damping adds 0.04
+    (1 + 2v) to the rate; v∞ bounds the speed with it, too.
     """
     v_end, depth = terminal_speed(p), truth(p, T)[0]
 
@@ -75,11 +75,19 @@ def tolerance(p, dt):
 
     rate = 2.0 * p.g / v_end
     ours = limits(rate)
-    return {**ours, "pymunk": ours[1], "pybullet": ours[1], "pybullet, default": limits(rate + 0.04 * (1.0 + 2.0 * v_end))[1]}
+    return {
+        **ours,
+        "pymunk": ours[1],
+        "pybullet": ours[1],
+        "pybullet, default": limits(rate + 0.04 * (1.0 + 2.0 * v_end))[1],
+    }
 
 
 def pymunk_make(p, dt):
-    """Drag as a force before each step.  Chipmunk moves first: forward Euler, harmless here because drag depends on v alone."""
+    """Apply drag as a force before each step.
+
+    Chipmunk moves first: forward Euler, harmless here because drag depends on v alone.
+    """
     import pymunk
     space = pymunk_space((p.g, 0.0))
     body = pymunk.Body(p.m, 1.0)
@@ -87,14 +95,14 @@ def pymunk_make(p, dt):
 
     def step():
         v = body.velocity.x
-        body.force = (-p.c * abs(v) * v, 0.0)                                    # used up by the step
+        body.force = (-p.c * abs(v) * v, 0.0)                                    # the step clears it
         space.step(dt)
 
     return EngineRun(step, lambda: np.array([body.position.x]), lambda: None)
 
 
 def pybullet_make(p, dt, default=False):
-    """Drag as a force before each step."""
+    """Apply drag as a force before each step."""
     bullet = Bullet(dt, (p.g, 0.0, 0.0))
     body = bullet.point_mass(p.m, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), default)
 
@@ -109,7 +117,7 @@ def pybullet_make(p, dt, default=False):
 ENGINES = (
     Engine(PYMUNK, "", pymunk_make, 1, "force applied each step"),
     Engine(PYBULLET, "default", lambda p, dt: pybullet_make(p, dt, default=True), 1,
-           "createMultiBody as it comes; force applied each step"),
+           "createMultiBody with its defaults; force applied each step"),
     Engine(PYBULLET, "", pybullet_make, 1, "useMaximalCoordinates=1, no damping; force applied each step"),
 )
 
@@ -119,7 +127,7 @@ def points(observed, p):
 
 
 def in_space(p):
-    """The same fall with two sideways coordinates carried along."""
+    """The same fall with two unused sideways coordinates."""
     return (np.zeros(3), np.zeros(3)), p
 
 
@@ -140,8 +148,10 @@ SCENE = Scene(
     engines=ENGINES,
     expected_departures={"pybullet, default": hidden_damping(acceleration, start)},
     slow_methods=LEFT_TO_FULL,
-    uncompiled_in_quick=("symplectic_euler_step", "verlet_step"),          # sooner run than compiled
-    published_states=((3.0, (22.80837567,), 5e-9),),          # the depth; the speed is then 9.852684396 m/s
+    # Plain Python finishes before numba has compiled it.
+    uncompiled_in_quick=("symplectic_euler_step", "verlet_step"),
+    # the depth; the speed is then 9.852684396 m/s
+    published_states=((3.0, (22.80837567,), 5e-9),),
     points=points,
     uses=("one coordinate", "one step function"),
     ablations={"the second and third dimension": in_space, "rotation": "lesson 5 builds it",

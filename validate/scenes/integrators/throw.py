@@ -12,12 +12,13 @@ from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Scene, by
 
 T = 10.0                     # [s]
 STEPS = (10, 20, 50, 100, 200, 500, 1000, 2000)
-# One step with a constant a moves the stone by dt v + ½dt² a, and its velocity by dt a.  Every method gets the velocity right;
-# those whose position moves with the mean of old and new velocity, or with the one in the middle, get the position right too.
+# One step with a constant a moves the stone by dt v + ½dt² a, and changes its velocity by dt a.  Every method gets the
+# velocity right.  Methods that move the position with the mean of old and new velocity, or with the one in the middle,
+# also get the position right.
 
 
 class Params(NamedTuple):
-    vx: Annotated[float, "thrown with this velocity [m/s], z up"] = -2.0
+    vx: Annotated[float, "initial velocity [m/s], z up"] = -2.0
     vy: float = 2.0
     vz: float = 8.0
     g: Annotated[float, "gravity [m/s²]"] = 9.81
@@ -55,11 +56,12 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """The bias of order 1, exactly: moved with the old velocity it arrives at Σ dt v(n dt) = x(T) + ½ g dt T ẑ, with the new at − ½.
+    """The error of order 1 is exact: ½ g dt T ẑ upwards with the old velocity, downwards with the new.
 
-    pymunk moves with the old velocity and errs upwards, pybullet with the new and errs downwards: their mean is exact.  Half a
-    step of gravity in the first velocity takes the bias away.  With damping the fastest rate is that of 0.04 v (1 + |v|) at the
-    greater of the first speed and the terminal one, where 0.04 v (1 + v) = g.
+    With the old velocity x ends at  Σ dt v(n dt) = x(T) + ½ g dt T ẑ.  pymunk moves with the old velocity and errs
+    upwards, pybullet with the new and errs downwards: their mean is exact.  Half a step of gravity in the first
+    velocity removes the error.  With damping the fastest rate is that of 0.04 v (1 + |v|) at the greater of the
+    initial speed and the terminal one, where 0.04 v (1 + v) = g.
     """
     limits = by_order(0.0, T, dt)
     bias = 0.5 * p.g * dt * T / np.linalg.norm(truth(p, T)) + limits[EXACT]
@@ -70,7 +72,7 @@ def tolerance(p, dt):
 
 
 def pymunk_make(p, dt, ahead=0.0):
-    """Two dimensions are enough: the vertical plane of the throw, turned back into space when read."""
+    """Use the vertical plane of the throw; positions are rotated back into space."""
     import pymunk
     space = pymunk_space((0.0, -p.g))
     body = pymunk.Body(1.0, 1.0)
@@ -78,7 +80,8 @@ def pymunk_make(p, dt, ahead=0.0):
     body.velocity = (speed, p.vz - ahead * dt * p.g)
     space.add(body)
     ahead_x, ahead_y = np.cos(heading), np.sin(heading)
-    return pymunk_world(space, dt, lambda: np.array([ahead_x * body.position.x, ahead_y * body.position.x, body.position.y]))
+    read = lambda: np.array([ahead_x * body.position.x, ahead_y * body.position.x, body.position.y])
+    return pymunk_world(space, dt, read)
 
 
 def pybullet_make(p, dt, ahead=0.0, default=False):
@@ -89,7 +92,7 @@ def pybullet_make(p, dt, ahead=0.0, default=False):
 
 
 ENGINES = (
-    Engine(PYMUNK, "", pymunk_make, 1, "as it comes: it has no damping by default"),
+    Engine(PYMUNK, "", pymunk_make, 1, "default settings: no damping"),
     Engine(PYMUNK, "leapfrog start", lambda p, dt: pymunk_make(p, dt, ahead=0.5), EXACT, "first velocity + ½ a dt"),
     Engine(PYBULLET, "default", lambda p, dt: pybullet_make(p, dt, default=True), 1, "createMultiBody as it comes"),
     Engine(PYBULLET, "", pybullet_make, 1, "useMaximalCoordinates=1, no damping"),
@@ -98,7 +101,7 @@ ENGINES = (
 
 
 def points(observed, p):
-    """Seen from the side of the throw."""
+    """Draw the scene from the side of the throw."""
     heading = np.arctan2(p.vy, p.vx)
     return np.array([[np.cos(heading) * observed[0] + np.sin(heading) * observed[1], observed[2]]])
 
@@ -120,11 +123,20 @@ SCENE = Scene(
     engines=ENGINES,
     expected_departures={"pybullet, default": hidden_damping(acceleration, start)},
     orders={f"{name}_step": EXACT for name in ("midpoint", "rk4", "average_velocity", "verlet", "implicit_midpoint")},
-    slow_methods=("implicit_euler_step", "implicit_midpoint_step"),          # not what this scene is about, and half of its compiling
-    uncompiled_in_quick=tuple(m.function for m in INTEGRATORS if m.order < 4),          # sooner run than compiled
-    published_states=((10.0, (-20.0, 20.0, -410.5), 1e-12),),          # by hand, exactly: only round-off may differ
+    slow_methods=(
+        "implicit_euler_step",
+        "implicit_midpoint_step",
+    # irrelevant to this scene, and half of its compile time
+    ),
+    # Plain Python finishes before numba has compiled it.
+    uncompiled_in_quick=tuple(m.function for m in INTEGRATORS if m.order < 4),
+    # by hand, exactly: only round-off may differ
+    published_states=((10.0, (-20.0, 20.0, -410.5), 1e-12),),
     points=points,
     uses=("one point in space", "one step function"),
-    ablations={"air": "the scenes with linear and quadratic drag have it", "rotation": "lesson 5 builds it",
-              "detection of the ground": "lesson 6 builds it"},
+    ablations={
+        "air": "the scenes with linear and quadratic drag have it",
+        "rotation": "lesson 5 builds it",
+        "detection of the ground": "lesson 6 builds it",
+    },
 )

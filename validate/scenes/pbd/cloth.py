@@ -1,4 +1,4 @@
-"""A cloth of 20 × 20 weights is held at two corners and let go flat; and once more it hangs there at rest, and should stay."""
+"""A cloth of 20 × 20 points is held at two corners and released flat; in a second case it should stay at rest."""
 
 from functools import cache
 from typing import Annotated, NamedTuple
@@ -20,12 +20,12 @@ UNCERTAINTY = 1e-10
 
 
 class Params(NamedTuple):
-    n: Annotated[int, "weights along each side [-]"] = 20
+    n: Annotated[int, "points along each side [-]"] = 20
     spacing: Annotated[float, "of the weights [m]"] = 0.05
     m: Annotated[float, "each [kg]"] = 5e-4
-    alpha: Annotated[float, "compliance of each link, along threads and both diagonals [m/N]: one over 200 N/m"] = 0.005
+    alpha: Annotated[float, "compliance of each link, along threads and both diagonals [m/N]: 1/(200 N/m)"] = 0.005
     sweeps: Annotated[int, "in a step [-]"] = 1
-    hanging: Annotated[int, "1: it begins where it would rest"] = 0
+    hanging: Annotated[int, "1: it starts at its rest state"] = 0
     g: Annotated[float, "gravity [m/s²]"] = 9.81
 
 
@@ -38,9 +38,11 @@ def cloth(p):
 
 @cache
 def rest(p):
-    """(n², 3): where SciPy finds the least energy, from a sheet with folds drawn on it."""
+    """Return (n², 3): the state of least energy found by SciPy, from a sheet with folds."""
     flat = cloth(p)
-    x = np.stack((flat.x[:, 0], 0.02 * np.sin(7.0 * flat.x[:, 0]) * flat.x[:, 1] + 0.003 * np.sin(40.0 * flat.x[:, 0] + 30.0 * flat.x[:, 1]), flat.x[:, 1]), axis=1)
+    across, down = flat.x[:, 0], flat.x[:, 1]
+    folds = 0.02 * np.sin(7.0 * across) * down + 0.003 * np.sin(40.0 * across + 30.0 * down)
+    x = np.stack((across, folds, down), axis=1)
     x[list(flat.held)] = flat.x[list(flat.held)]
     return weave_rest(flat, x)
 
@@ -71,41 +73,49 @@ def observe(state, p):
 
 
 def truth(p, t):
-    """Every weight, on springs of stiffness 1/α: let go flat, moved by DOP853 with forces of its own; at rest, the least energy by a
-    sparse Newton method, which does not move.
+    """Springs of stiffness 1/α, observed at every point.
+
+    Released flat: moved by DOP853 with separately coded forces.  At rest: the least energy by a sparse Newton
+    method, which does not move.
     """
     return rest(p).ravel() if p.hanging else reference(p).sol(t)[:3 * p.n**2]
 
 
 @cache
 def lag(p):
-    """|∂x/∂dt| [m/s] at T of implicit Euler,  xₙ₊₁ − 2xₙ + xₙ₋₁ = dt² a(xₙ₊₁): forces of x + dt v, begun with the velocity of ½dt later."""
-    dt = 1e-5                # [s]: a difference; both are known to 1e-9 at least
+    """Return |∂x/∂dt| [m/s] at T of implicit Euler:  xₙ₊₁ − 2xₙ + xₙ₋₁ = dt² a(xₙ₊₁).
+
+    Forces are those of x + dt v, and the start uses the velocity ½dt later.
+    """
+    dt = 1e-5                # [s]: of a finite difference; both values are known to 1e-9 at least
     moved = weave_motion(cloth(p), T, dt, 0.5 * dt, 1e-6).y[:3 * p.n**2, -1]
     return np.linalg.norm(moved - truth(p, T)) / dt
 
 
 def tolerance(p, dt):
-    """A spring's visit is implicit Euler's, and with short steps, dt² < α m, the links of a cloth hardly see each other within a sweep: XPBD
-    errs as implicit Euler does, by its lag times dt; twice that, for the next order is less where this one is below ½.
+    """One visit to a spring is an implicit Euler step.
 
-    With longer steps a single sweep does not get to the end of the cloth: a link is then too long by what its tension moves a weight
-    in a step, at a corner n²/2 weights and g dt² each, and n links may hang on it.
+    With short steps, dt² < α m, the links of a cloth barely interact within a sweep.  XPBD then has the error of
+    implicit Euler, its lag times dt.  The limit is twice that, because the next order is smaller where this one is
+    below ½.  With longer steps a single sweep does not reach the end of the cloth.  A link is then too long by the
+    distance that its tension moves a point in one step: at a corner n²/2 points with g dt² each; n links may hang
+    on it.
     """
     floor, size = by_order(0.0, T, dt)[1] + UNCERTAINTY, np.linalg.norm(truth(p, T)) / p.n
     soft = 0.5 * p.n**3 * p.g * dt**2 / size
     return {1: (0.0 if p.hanging else 2.0 * lag(p) * dt / (p.n * size)) + soft + floor}
 
 
-# pymunk is flat.  pybullet's deformable cloth can be given these links (its springs are the edges of the triangles in a file, so there have to be
-# triangles for both diagonals), equal masses and held corners.  In free fall it is symplectic Euler; but once its springs pull it does not go to the
-# truth: 5 × 5 weights on 20 N/m are off by 1.2, 0.48 and 0.37 % after 0.3 s with steps of 1/240, 1/1000 and 1/4000 s.  No setting that it has
-# reaches the rest, and no law of its own explains it, so that there is nothing to hold it against.
+# pymunk is 2D.  pybullet's deformable cloth can be given these links (its springs are the edges of the triangles in
+# a file, so both diagonals need triangles), equal masses and held corners.  In free fall it is symplectic Euler.  Once
+# its springs pull, it does not converge to the reference solution: 5 × 5 points on 20 N/m are off by 1.2, 0.48 and
+# 0.37 % after 0.3 s with steps of 1/240, 1/1000 and 1/4000 s.  None of its settings reaches the rest state, and no law
+# explains its result, so there is nothing to compare it with.
 ENGINES = ()
 
 
 def sanity_checks():
-    """((claim, found, expected, tolerance), …): what must hold of a cloth at rest."""
+    """Return ((claim, found, expected, tolerance), …): conditions that a cloth at rest must meet."""
     p = CASES["at rest"]
     flat, x = cloth(p), rest(p)
     B, free = flat.matrix(), flat.free()
@@ -114,22 +124,32 @@ def sanity_checks():
     tension = flat.k * (length - flat.rest)
     force = -(B.T @ (tension[:, None] * r / length[:, None])) - [0.0, 0.0, p.m * p.g]
     carried = -force[~free].sum(axis=0) / (p.m * p.g * p.n**2)
-    energy = lambda x: 0.5 * flat.k * np.sum((np.linalg.norm(B @ x, axis=1) - flat.rest) ** 2) + p.m * p.g * np.sum(x[free, 2])
-    bumps = [energy(x + 1e-4 * free[:, None] * bump) - energy(x) for bump in np.random.default_rng(8).normal(size=(20, *x.shape))]
-    return (("force on a weight at rest over its own weight [-]", np.abs(force[free]).max() / (p.m * p.g), 0.0, 1e-10),
-            ("what the two corners hold, sideways and upwards, over the weight of all [-]", carried, (0.0, 0.0, 1.0), 1e-10),
-            ("nudges of 0.1 mm that lower the energy [of 20]", sum(b < 0.0 for b in bumps), 0, 0),
-            ("the longest link over its natural length [-]", (length / flat.rest).max(), 1.055, 0.001))
+    stretch = lambda x: np.linalg.norm(B @ x, axis=1) - flat.rest
+    energy = lambda x: 0.5 * flat.k * np.sum(stretch(x) ** 2) + p.m * p.g * np.sum(x[free, 2])
+    drawn = np.random.default_rng(8).normal(size=(20, *x.shape))
+    bumps = [energy(x + 1e-4 * free[:, None] * bump) - energy(x) for bump in drawn]
+    return (
+        ("force on a point at rest over its weight [-]", np.abs(force[free]).max() / (p.m * p.g), 0.0, 1e-10),
+        (
+            "forces of the two corners, sideways and upwards, over the total weight [-]",
+            carried,
+            (0.0, 0.0, 1.0),
+            1e-10,
+        ),
+        ("displacements of 0.1 mm that lower the energy [of 20]", sum(b < 0.0 for b in bumps), 0, 0),
+        ("longest link over its natural length [-]", (length / flat.rest).max(), 1.055, 0.001),
+    )
 
 
 def points(observed, p):
-    """Every second weight, seen from the side."""
+    """Draw every second point, seen from the side."""
     return np.round(seen(observed.reshape(p.n, p.n, 3)[::2, ::2].reshape(-1, 3)[:, [1, 0, 2]]), 3)
 
 
 def links(p):
     number = np.arange(len(range(0, p.n, 2)) ** 2).reshape(-1, len(range(0, p.n, 2)))
-    return np.concatenate([np.stack((a.ravel(), b.ravel()), axis=1) for a, b in ((number[:, :-1], number[:, 1:]), (number[:-1], number[1:]))]).tolist()
+    ends = ((number[:, :-1], number[:, 1:]), (number[:-1], number[1:]))
+    return np.concatenate([np.stack((a.ravel(), b.ravel()), axis=1) for a, b in ends]).tolist()
 
 
 SCENE = Scene(
@@ -147,10 +167,14 @@ SCENE = Scene(
     truth_uncertainty=UNCERTAINTY,
     tolerance=tolerance,
     engines=ENGINES,
-    omitted_methods="PBD has no stiffness of its own to compare (stability case 9), and Newton's matrix would be dense, of 2,682 unknowns",
+    omitted_methods=("PBD has no stiffness of its own to compare (stability case 9), and Newton's matrix would be "
+                     "dense, with 2,682 unknowns"),
     sanity_checks=sanity_checks,
     points=points,
     links=links,
-    uses=("three coordinates", "links, one after the other", "one step function"),
-    ablations={"bending stiffness": "cloth_step of this lesson has it", "contact of the cloth with itself": "lesson 6 finds it"},
+    uses=("three coordinates", "links, in sequence", "one step function"),
+    ablations={
+        "bending stiffness": "cloth_step of this lesson has it",
+        "contact of the cloth with itself": "lesson 6 finds it",
+    },
 )

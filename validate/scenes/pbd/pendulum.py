@@ -1,4 +1,4 @@
-"""A bob on a string is let go with the string horizontal: projection keeps the string's length, and takes energy."""
+"""A bob is released with its string horizontal: projection keeps the length of the string, but loses energy."""
 
 from typing import Annotated, NamedTuple
 
@@ -13,12 +13,12 @@ from validate.methods import PBD, PROJECTION, RATTLE, XPBD
 from validate.reference.pbd import pendulum_angle, pendulum_period
 from validate.scene import PYBULLET, PYMUNK, Departure, Engine, Scene, by_order
 
-T = 1.5                      # [s]: once through the bottom, and most of the way up
+T = 1.5                      # [s]: once through the lowest point, and most of the way up
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
 
 
 class Params(NamedTuple):
-    degrees: Annotated[float, "let go at rest, this far from straight down [°]"] = 90.0
+    degrees: Annotated[float, "released at rest, at this angle from straight down [°]"] = 90.0
     L: Annotated[float, "length [m]"] = 1.0
     m: Annotated[float, "mass [kg]"] = 1.0
     g: Annotated[float, "gravity [m/s²]"] = 9.81
@@ -35,7 +35,7 @@ def start(p):
     for name in ("L", "m", "g"):
         check_positive(name, getattr(p, name))
     if not 0.0 < p.degrees < 180.0:
-        raise BadInput("the angle at which it is let go [°]", p.degrees, "give a number between 0 and 180")
+        raise BadInput("the initial angle [°]", p.degrees, "give a number between 0 and 180")
     x = np.stack((np.zeros(2), place(np.radians(p.degrees), p)))
     return x, np.zeros((2, 2)), make_net(x, p.m, [0], [(0, 1)], 0.0, 1.0, (0.0, -p.g), 1)
 
@@ -59,18 +59,18 @@ def truth(p, t):
 
 
 def with_inertia(p, t):
-    """A bob with the moment I about itself that turns with its string falls as with the weaker gravity g/(1 + I/mL²)."""
+    """A bob whose moment I about itself turns with the string falls as if gravity were g/(1 + I/mL²)."""
     return place(pendulum_angle(np.radians(p.degrees), p.L, p.g / (1.0 + SHARE), t), p)
 
 
 
 
 def tolerance(p, dt):
-    """Nothing changes faster than the pull √(g/L) and the turning, whose square is 2g(1 − cos θ₀)/L at most.
+    """Nothing changes faster than the rate √(g/L) and the rotation, whose square is at most 2g(1 − cos θ₀)/L.
 
-    With one link PBD, XPBD without compliance and the projection method are one and the same: order 1; RATTLE is of order 2.
-    pymunk is symplectic Euler along the circle, and puts back at once (error_bias 0) what a step leaves it by, ½ω²dt² L.
-    pybullet likewise, with erp 1: order 1 both.
+    With one link PBD, XPBD without compliance and the projection method are identical, of order 1; RATTLE is of
+    order 2. pymunk is symplectic Euler along the circle and corrects at once (error_bias 0) the ½ω²dt² L that a
+    step leaves. pybullet does the same, with erp 1: both are of order 1.
     """
     limits = by_order(np.sqrt(p.g / p.L) + np.sqrt(2.0 * p.g / p.L * (1.0 - np.cos(np.radians(p.degrees)))), T, dt)
     return {**limits, "pymunk": limits[1], "pybullet": limits[1]}
@@ -85,17 +85,28 @@ def pybullet_make(p, dt):
 
 
 ENGINES = (
-    Engine(PYMUNK, "", pymunk_make, 1, f"PinJoint to a mass that cannot turn; error_bias 0, {10 * ITERATIONS} iterations"),
-    Engine(PYBULLET, "", pybullet_make, 1, f"JOINT_POINT2POINT, useMaximalCoordinates=1, erp 1, {10 * ITERATIONS} iterations; a bob with I = {SHARE} mL²"),
+    Engine(
+        PYMUNK, "", pymunk_make, 1, f"PinJoint to a mass that cannot turn; error_bias 0, {10 * ITERATIONS} iterations"
+    ),
+    Engine(
+        PYBULLET,
+        "",
+        pybullet_make,
+        1,
+        f"JOINT_POINT2POINT, useMaximalCoordinates=1, erp 1, {10 * ITERATIONS} iterations; a bob with I = {SHARE} mL²",
+    ),
 )
 
 
 def sanity_checks():
-    """((claim, found, expected, tolerance), …)."""
+    """Return ((claim, found, expected, tolerance), …) about the reference solution."""
     high = CASES["from 170°"]
-    return (("period from horizontal [s]", pendulum_period(0.5 * np.pi, 1.0, 9.81), 2.367841948, 5e-10),
-            ("period from 170° [s]", pendulum_period(np.radians(170.0), 1.0, 9.81), 4.893524274, 5e-10),
-            ("where it is a period later [m]", truth(high, pendulum_period(np.radians(170.0), high.L, high.g)), truth(high, 0.0), 1e-13))
+    period = pendulum_period(np.radians(170.0), high.L, high.g)
+    return (
+        ("period from horizontal [s]", pendulum_period(0.5 * np.pi, 1.0, 9.81), 2.367841948, 5e-10),
+        ("period from 170° [s]", pendulum_period(np.radians(170.0), 1.0, 9.81), 4.893524274, 5e-10),
+        ("position one period later [m]", truth(high, period), truth(high, 0.0), 1e-13),
+    )
 
 
 def points(observed, p):
@@ -107,7 +118,7 @@ def links(p):
 
 
 def in_space(p):
-    """The same motion with a third coordinate carried along."""
+    """The same motion with an unused third coordinate."""
     x, v, net = start(p)
     wide = lambda y: np.concatenate((y, np.zeros((2, 1))), axis=1)
     return (wide(x), wide(v), net._replace(gravity=np.append(net.gravity, 0.0))), p
@@ -128,12 +139,26 @@ SCENE = Scene(
     truth_uncertainty=1e-14,
     tolerance=tolerance,
     engines=ENGINES,
-    expected_departures={"pybullet": Departure(f"our bob there must have a moment of inertia, for its solver sweeps over three axes: with {SHARE} mL² it turns with the string", with_inertia)},
-    slow_methods=("xpbd_step",),          # on a single link that does not stretch it is PBD
-    published_states=((0.0, (1.0, 0.0), 1e-15), (10.0, (0.275087463, -0.961419205), 5e-10), (2.367841948, (1.0, 0.0), 5e-9)),
+    expected_departures={
+        "pybullet": Departure(
+            (f"there our bob must have a moment of inertia, because its solver sweeps over three axes: with {SHARE} "
+             "mL² it turns with the string"),
+            with_inertia,
+        )
+    },
+    # On a single inextensible link it is PBD.
+    slow_methods=("xpbd_step",),
+    published_states=(
+        (0.0, (1.0, 0.0), 1e-15),
+        (10.0, (0.275087463, -0.961419205), 5e-10),
+        (2.367841948, (1.0, 0.0), 5e-9),
+    ),
     sanity_checks=sanity_checks,
     points=points,
     links=links,
     uses=("two coordinates", "one link", "one step function"),
-    ablations={"the third dimension": in_space, "rotation of the bob": "hung_step of this lesson has it: a rigid body on a pivot"},
+    ablations={
+        "the third dimension": in_space,
+        "rotation of the bob": "hung_step of this lesson has it: a rigid body on a pivot",
+    },
 )

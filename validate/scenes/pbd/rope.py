@@ -1,4 +1,4 @@
-"""A rope of weights on strings is let go horizontal: while it falls its end is whipped round, and every method is asked for every weight."""
+"""A rope of points on strings is released horizontally; while it falls its end whips round."""
 
 from typing import Annotated, NamedTuple
 
@@ -21,7 +21,7 @@ class Params(NamedTuple):
     links: Annotated[int, "N [-]"] = 10
     l: Annotated[float, "length of each [m]"] = 0.1
     m: Annotated[float, "each weight [kg]"] = 0.1
-    sweeps: Annotated[int, "of PBD and XPBD in a step [-]"] = 10
+    sweeps: Annotated[int, "of PBD and XPBD per step [-]"] = 10
     g: Annotated[float, "gravity [m/s²]"] = 9.81
 
 
@@ -29,7 +29,7 @@ CASES = {"10 links": Params(), "50 links": Params(links=50)}
 
 
 def straight(p):
-    """(N, 2): the weights to begin with, the rope along x."""
+    """Return (N, 2): the initial positions, with the rope along x."""
     return p.l * np.stack((np.arange(1.0, p.links + 1), np.zeros(p.links)), axis=1)
 
 
@@ -53,26 +53,28 @@ def observe(state, p):
 
 
 def truth(p, t):
-    """Every weight, from the angles of the links, which therefore keep their length: tensions and angular accelerations by Newton's law,
-    moved by DOP853 at 1e-12.  Nothing is projected.
+    """Every point, from the angles of the links, so that links keep their length exactly.
+
+    Tensions and angular accelerations follow from Newton's law, integrated by DOP853 at 1e-12.  Nothing is projected.
     """
     theta = rope_motion(p.links, p.l, p.m, p.g, T).sol(t)[:p.links]
     return rope_places(theta, p.l).ravel()
 
 
 def of_bodies(p, t):
-    """The same for weights that turn with the link above them and have a moment of inertia: Lagrange's equations, by DOP853."""
+    """The same for points with a moment of inertia that turn with the link above: Lagrange's equations, by DOP853."""
     theta = rope_motion(p.links, p.l, p.m, p.g, T, SHARE * p.m * p.l**2).sol(t)[:p.links]
     return rope_places(theta, p.l).ravel()
 
 
 def tolerance(p, dt):
-    """First order by rope_lag: what DOP853 says of the modified equation; beyond it a step errs by (ρ dt)³, dt² ∫ρ³ dt in all, where ρ(t) is
-    the rope's own fastest rate at that time (rope_rates).
+    """First order by rope_lag: the modified equation, integrated by DOP853.
 
-    PBD and XPBD stop their sweeps before all links have their length.  Even a single sweep leaves a link too long by no more than the
-    tension moves a weight in a step, T dt²/m (stability case 81 has it exactly): up to N times as much in place, and a share of
-    that over l in the forces, ∫ρ dt times.
+    Beyond that a step has an error of (ρ dt)³, dt² ∫ρ³ dt in all, where ρ(t) is the rope's fastest rate at that
+    time (rope_rates). PBD and XPBD stop their sweeps before all links have their length.  Even a single sweep
+    leaves a link too long by at most the distance that its tension moves a point in one step, T dt²/m (stability
+    case 81 has it exactly).  That is up to N times as much in position; its share of l changes the forces, ∫ρ dt
+    times.
     """
     one, three, pull = rope_rates(p.links, p.l, p.m, p.g, T)
     size, of = np.linalg.norm(truth(p, T)), (p.links, p.l, p.m, p.g, T)
@@ -85,7 +87,7 @@ def tolerance(p, dt):
 
 
 def supports(name, p):
-    """The projection method for ropes that its matrix is not too large for."""
+    """The projection method for ropes whose matrix is not too large."""
     return p.links <= 20 or name != "projection_step"
 
 
@@ -98,21 +100,38 @@ def pybullet_make(p, dt):
 
 
 ENGINES = (
-    Engine(PYMUNK, "", pymunk_make, 1, f"PinJoints between masses that cannot turn; error_bias 0, {ITERATIONS} iterations for each link", 5000),
-    Engine(PYBULLET, "", pybullet_make, 1, f"JOINT_POINT2POINT, useMaximalCoordinates=1, erp 1, {ITERATIONS} iterations for each link; weights with I = {SHARE} m l²", 5000),
+    Engine(
+        PYMUNK,
+        "",
+        pymunk_make,
+        1,
+        f"PinJoints between masses that cannot turn; error_bias 0, {ITERATIONS} iterations for each link",
+        5000,
+    ),
+    Engine(
+        PYBULLET,
+        "",
+        pybullet_make,
+        1,
+        (f"JOINT_POINT2POINT, useMaximalCoordinates=1, erp 1, {ITERATIONS} iterations for each link; weights with I = "
+         f"{SHARE} m l²"),
+        5000,
+    ),
 )
 
 
 def sanity_checks():
-    """((claim, found, expected, tolerance), …): the truth itself, against what must hold of it."""
+    """Return ((claim, found, expected, tolerance), …): conditions that the reference solution must meet."""
     claims = []
     for name, p in CASES.items():
         motion = rope_motion(p.links, p.l, p.m, p.g, T)
         energies = [rope_energy(motion.sol(t), p.l, p.m, p.g) for t in np.linspace(0.0, T, 21)]
-        claims.append((f"{name}: energy gained over the weight times the length", np.ptp(energies) / (p.m * p.g * p.l * p.links**2), 0.0, 1e-9))
+        gained = np.ptp(energies) / (p.m * p.g * p.l * p.links**2)
+        claims.append((f"{name}: energy gained over the weight times the length", gained, 0.0, 1e-9))
     p = CASES["10 links"]
     angles = [rope_motion(p.links, p.l, p.m, p.g, T, inertia).y[:p.links, -1] for inertia in (0.0, 1e-9 * p.m * p.l**2)]
-    claims.append(("10 links: from tensions and from Lagrange's equations [rad]", np.abs(angles[0] - angles[1]).max(), 0.0, 1e-6))
+    apart = np.abs(angles[0] - angles[1]).max()
+    claims.append(("10 links: from tensions and from Lagrange's equations [rad]", apart, 0.0, 1e-6))
     return tuple(claims)
 
 
@@ -125,7 +144,7 @@ def links(p):
 
 
 def in_space(p):
-    """The same motion with a third coordinate carried along."""
+    """The same motion with an unused third coordinate."""
     x, v, net = start(p)
     wide = lambda y: np.concatenate((y, np.zeros((len(y), 1))), axis=1)
     return (wide(x), wide(v), net._replace(gravity=np.append(net.gravity, 0.0))), p
@@ -146,13 +165,25 @@ SCENE = Scene(
     truth_uncertainty=1e-9,
     tolerance=tolerance,
     engines=ENGINES,
-    expected_departures={"pybullet": Departure(f"our weights there must have a moment of inertia, for its solver sweeps over three axes: with {SHARE} m l² each turns with the link above it", of_bodies)},
+    expected_departures={
+        "pybullet": Departure(
+            ("there our points must have a moment of inertia, because its solver sweeps over three axes: with "
+             f"{SHARE} m l² each turns with the link above it"),
+            of_bodies,
+        )
+    },
     supports=supports,
-    omitted_methods="the projection method has a dense matrix of all points and links; for a long rope it would take a sparse one",
-    slow_cases=("50 links",),          # its theory alone takes seconds
+    omitted_methods=("the projection method has a dense matrix of all points and links; a long rope would need a "
+                     "sparse one"),
+    # The reference solution alone takes seconds.
+    slow_cases=("50 links",),
     sanity_checks=sanity_checks,
     points=points,
     links=links,
-    uses=("two coordinates", "links, one after the other", "one step function"),
-    ablations={"the third dimension": in_space, "contact of the rope with itself": "lesson 6 finds it", "bending stiffness": "cloth_step of this lesson has it"},
+    uses=("two coordinates", "links, in sequence", "one step function"),
+    ablations={
+        "the third dimension": in_space,
+        "contact of the rope with itself": "lesson 6 finds it",
+        "bending stiffness": "cloth_step of this lesson has it",
+    },
 )

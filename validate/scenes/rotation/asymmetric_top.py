@@ -1,4 +1,4 @@
-"""A body with three different moments, spun about its middle axis with a hundredth of disturbance: it turns over, as tennis rackets do."""
+"""A body with three different moments spins about its middle axis, slightly disturbed: it flips like a racket."""
 
 from typing import Annotated, NamedTuple
 
@@ -14,7 +14,7 @@ from validate.reference.orientation import quaternion_matrix
 from validate.reference.rotation import FreeTop, free_limits, freely
 from validate.scene import Scene
 
-T = 10.0                     # [s]: it turns over at 6.06 s, and is about to set out for the next time
+T = 10.0                     # [s]: it flips at 6.06 s, and is about to start the next flip
 STEPS = (500, 1000, 2000, 5000, 10000, 20000, 50000)
 
 
@@ -22,7 +22,7 @@ class Params(NamedTuple):
     I1: Annotated[float, "principal moments of inertia [kg m²]"] = 1.0
     I2: float = 2.0
     I3: float = 3.0
-    w1: Annotated[float, "ω in the body at the start [rad/s]"] = 0.01
+    w1: Annotated[float, "initial ω in body coordinates [rad/s]"] = 0.01
     w2: float = 2.0
     w3: float = 0.01
 
@@ -33,7 +33,7 @@ class Params(NamedTuple):
         return np.array([self.w1, self.w2, self.w3])
 
 
-CASES = {"one flip": Params(), "calm about the largest moment": Params(w1=0.01, w2=0.02, w3=2.0)}
+CASES = {"one flip": Params(), "stable about the largest moment": Params(w1=0.01, w2=0.02, w3=2.0)}
 
 
 def start(p):
@@ -48,15 +48,16 @@ def run(step, acceleration, state, p, dt, steps):
 
 
 def observe(state, p):
-    """R, its nine numbers: they do not tell q from −q."""
+    """Return R, nine numbers, in which q and −q are equal."""
     w, x, y, z = state[0]
     return quaternion_matrix(w, x, y, z).ravel()
 
 
 def truth(p, t):
-    """ω by Jacobi's sn, cn, dn; about L the body turns at |L| (I₁ω₁² + I₂ω₂²)/(I₁²ω₁² + I₂²ω₂²), integrated by Gauss's rule (FreeTop).
+    """ω by Jacobi's sn, cn, dn, and the rotation about L by Gauss's rule (FreeTop).
 
-    Where the moments are not in order, or L² < 2E I₂, by DOP853.
+    About L the body turns at |L| (I₁ω₁² + I₂ω₂²)/(I₁²ω₁² + I₂²ω₂²).  Where the moments are not in order, or L² < 2E I₂,
+    DOP853 is used.
     Source: Landau and Lifshitz, Mechanics, § 37.
     """
     if FreeTop.knows(p.moments(), p.omega()):
@@ -65,7 +66,7 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """free_limits: errors grow as neighbouring motions part; the constants of first-order steps, pybullet's among them, in closed form."""
+    """free_limits: errors grow as neighbouring motions separate; first-order constants are closed forms."""
     return free_limits(p, T, dt)
 
 
@@ -81,7 +82,7 @@ def links(p):
 
 
 def bodies(p):
-    """A plate of one kilogram with these moments: Iᵢ = m(aⱼ² + aₖ²)/3 for half sizes a, drawn thicker than it is."""
+    """Draw a plate of one kilogram with these moments: Iᵢ = m(aⱼ² + aₖ²)/3 for half sizes a, thicker than it is."""
     a = np.sqrt(1.5 * np.maximum(0.0, np.sum(p.moments()) - 2.0 * p.moments()))
     return [drawing.box(np.maximum(a, 0.05 * a.max()))]
 
@@ -99,8 +100,12 @@ def sanity_checks():
     top = FreeTop(p.moments(), p.omega())
     flip = top.flips()[0]
     R, L = freely(np.eye(3), p.omega(), p.moments(), T)
-    return (("the flip [s]", flip, 6.06, 5e-3), ("ω₂ at the flip [rad/s]", top.omega(flip)[1], 0.0, 1e-10),
-            ("R at T, by DOP853", truth(p, T), R.ravel(), 1e-10), ("ω in the body at T, by DOP853", top.omega(T), R.T @ L / p.moments(), 1e-10))
+    return (
+        ("the flip [s]", flip, 6.06, 5e-3),
+        ("ω₂ at the flip [rad/s]", top.omega(flip)[1], 0.0, 1e-10),
+        ("R at T, by DOP853", truth(p, T), R.ravel(), 1e-10),
+        ("ω in body coordinates at T, by DOP853", top.omega(T), R.T @ L / p.moments(), 1e-10),
+    )
 
 
 SCENE = Scene(
@@ -115,7 +120,8 @@ SCENE = Scene(
     run=run,
     observe=observe,
     truth=truth,
-    truth_uncertainty=1e-11,          # 1 − k² = 5e-5 is known to 2e-16/5e-5, and the instant of the flip like its logarithm
+    # 1 − k² = 5e-5 is known to 2e-16/5e-5, and the time of the flip varies as its logarithm
+    truth_uncertainty=1e-11,
     tolerance=tolerance,
     engines=ENGINES,
     slow_methods=("composed_midpoint_step",),
@@ -126,5 +132,8 @@ SCENE = Scene(
     poses=poses,
     arrows=arrows,
     uses=("one orientation", "one angular momentum", "one step function"),
-    ablations={"position": "x += dt P/M goes on beside it and touches nothing", "contacts": "lessons 6 and 7 build them"},
+    ablations={
+        "position": "x += dt P/M runs beside it without any effect",
+        "contacts": "lessons 6 and 7 build them",
+    },
 )

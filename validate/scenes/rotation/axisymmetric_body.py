@@ -1,4 +1,4 @@
-"""A cylinder thrown without a torque: its axis circles about the angular momentum, and every method is asked where it points."""
+"""A cylinder thrown without a torque precesses about its angular momentum; every method is compared by orientation."""
 
 from typing import Annotated, NamedTuple
 
@@ -17,14 +17,14 @@ from validate.reference.orientation import quaternion_matrix
 from validate.reference.rotation import FIRST_ORDER, free_limits, freely, symmetric_top
 from validate.scene import EXACT, Scene
 
-T = 10.0                     # [s]: eight and a half turns about L
+T = 10.0                     # [s]: eight and a half revolutions about L
 STEPS = (500, 1000, 2000, 5000, 10000, 20000, 50000, 100000)
 
 
 class Params(NamedTuple):
     I1: Annotated[float, "the two equal moments of inertia [kg m²]"] = 0.04
     I3: Annotated[float, "about the axis [kg m²]"] = 0.02
-    w1: Annotated[float, "ω in the body at the start [rad/s]"] = 2.0
+    w1: Annotated[float, "initial ω in body coordinates [rad/s]"] = 2.0
     w2: float = 4.0
     w3: float = 6.0
 
@@ -52,21 +52,22 @@ def run(step, acceleration, state, p, dt, steps):
 
 
 def observe(state, p):
-    """R, its nine numbers: they do not tell q from −q."""
+    """Return R, nine numbers, in which q and −q are equal."""
     w, x, y, z = state[0]
     return quaternion_matrix(w, x, y, z).ravel()
 
 
 def truth(p, t):
-    """R(t) = e^(t L*/I₁) e^(t (1 − I₃/I₁) ω₃ 𝐞₃*): the axis circles about L at |L|/I₁ = √29 rad/s, and the body spins about it at 3 rad/s.
+    """R(t) = e^(t L*/I₁) e^(t (1 − I₃/I₁) ω₃ 𝐞₃*): precession about L and spin about the axis.
 
+    The axis precesses at |L|/I₁ = √29 rad/s, and the body spins about it at 3 rad/s.
     Source: Landau and Lifshitz, Mechanics, § 33.
     """
     return symmetric_top(p.moments(), p.omega(), t).ravel()
 
 
 def tolerance(p, dt):
-    """free_limits: the error constants of first-order steps in closed form; pybullet's two kinds of body are two of them."""
+    """free_limits: the error constants of first-order steps in closed form; two are pybullet's two kinds of body."""
     return free_limits(p, T, dt, [kind for kind in FIRST_ORDER if kind != "L kept, by columns"])
 
 
@@ -82,7 +83,7 @@ def links(p):
 
 
 def bodies(p):
-    """A cylinder of one kilogram with these moments: I₃ = ½mr², I₁ = m(3r² + l²)/12."""
+    """Draw a cylinder of one kilogram with these moments: I₃ = ½mr², I₁ = m(3r² + l²)/12."""
     return [drawing.cylinder(np.sqrt(2.0 * p.I3), np.sqrt(12.0 * p.I1 - 6.0 * p.I3))]
 
 
@@ -99,13 +100,20 @@ def sanity_checks():
     L = p.moments() * p.omega()
     by_dop853 = freely(np.eye(3), p.omega(), p.moments(), T)[0]
     known = quaternion_matrix(-0.185871917, 0.195938190, -0.785967065, -0.556161513)
-    return (("precession [rad/s]", np.linalg.norm(L) / p.I1, np.sqrt(29.0), 1e-14), ("spin [rad/s]", (1.0 - p.I3 / p.I1) * p.w3, 3.0, 1e-15),
-            ("R at T, its quaternion known to nine digits", truth(p, T), known.ravel(), 4e-9),
-            ("R at T, by DOP853", truth(p, T), by_dop853.ravel(), 1e-10), *engines_energy(p))
+    return (
+        ("precession [rad/s]", np.linalg.norm(L) / p.I1, np.sqrt(29.0), 1e-14),
+        ("spin [rad/s]", (1.0 - p.I3 / p.I1) * p.w3, 3.0, 1e-15),
+        ("R at T, its quaternion known to nine digits", truth(p, T), known.ravel(), 4e-9),
+        ("R at T, by DOP853", truth(p, T), by_dop853.ravel(), 1e-10),
+        *engines_energy(p),
+    )
 
 
 def engines_energy(p, dt=1e-3, steps=10000):
-    """pybullet's gain and loss of energy, which theory gives exactly: ω_⊥² grows by 1 + (Ω dt)² a step, or shrinks; Ω = (I₃/I₁ − 1) ω₃."""
+    """Return pybullet's exact gain and loss of energy as claims.
+
+    ω_⊥² is multiplied by 1 + (Ω dt)² per step, or divided by it; Ω = (I₃/I₁ − 1) ω₃.
+    """
     if not installed("pybullet"):
         return
     I, w = p.moments(), p.omega()
@@ -119,7 +127,12 @@ def engines_energy(p, dt=1e-3, steps=10000):
         grown = (1.0 + ((p.I3 / p.I1 - 1.0) * p.w3 * dt) ** 2) ** (sign * steps)
         law = (p.I1 * (p.w1**2 + p.w2**2) * grown + p.I3 * p.w3**2) / (I @ w**2)
         # a step rounds the energy by a few 1e-16
-        yield f"energy of pybullet, {kind} coordinates, after 10 s at 1 ms, over that at the start", I @ after**2 / (I @ w**2), law, steps * 2e-15
+        yield (
+            f"energy of pybullet, {kind} coordinates, after 10 s at 1 ms, over the initial one",
+            I @ after**2 / (I @ w**2),
+            law,
+            steps * 2e-15,
+        )
 
 
 SCENE = Scene(
@@ -134,12 +147,22 @@ SCENE = Scene(
     run=run,
     observe=observe,
     truth=truth,
-    truth_uncertainty=1e-14,          # 54 radians about L, each rounded to 2e-16
+    truth_uncertainty=1e-14,  # 54 radians about L, each rounded to 2e-16
     tolerance=tolerance,
     engines=ENGINES,
-    orders={"splitting_step": EXACT, "composed_splitting_step": EXACT},          # two equal moments: all turns but two vanish, and they commute
-    omitted_methods="ω*R with renormalised columns errs by 3,700 dt here, theory says, three times as much as the worst of the others; the asymmetric top has it",
-    slow_methods=("axis_angle_step", "implicit_gyroscopic_step", "midpoint_step", "composed_midpoint_step"),          # the asymmetric top has them
+    orders={
+        "splitting_step": EXACT,
+        "composed_splitting_step": EXACT,
+    # With two equal moments all but two turns vanish, and these commute.
+    },
+    omitted_methods=("by theory ω*R with renormalised columns has the error 3,700 dt here, three times that of the "
+                     "worst of the others; the asymmetric top has it"),
+    slow_methods=(
+        "axis_angle_step",
+        "implicit_gyroscopic_step",
+        "midpoint_step",
+        "composed_midpoint_step",
+    ),  # the asymmetric top has them
     sanity_checks=sanity_checks,
     points=points,
     links=links,
@@ -147,5 +170,8 @@ SCENE = Scene(
     poses=poses,
     arrows=arrows,
     uses=("one orientation", "one angular momentum", "one step function"),
-    ablations={"position": "x += dt P/M goes on beside it and touches nothing", "contacts": "lessons 6 and 7 build them"},
+    ablations={
+        "position": "x += dt P/M runs beside it without any effect",
+        "contacts": "lessons 6 and 7 build them",
+    },
 )

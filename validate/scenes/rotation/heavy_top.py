@@ -1,4 +1,4 @@
-"""A fast top leans a little and is let go: its tip draws small arches, which meet in cusps, around the vertical."""
+"""A fast top is tilted slightly and released: its tip draws small arches, which meet in cusps, around the vertical."""
 
 from typing import Annotated, NamedTuple
 
@@ -30,7 +30,8 @@ class Params(NamedTuple):
 
 
 CASES = {"fast": Params()}
-LENGTH, G = 1.0, 9.81        # for pybullet: from the pivot to the centre of mass [m], gravity [m/s²]; only Mgl counts
+# for pybullet: distance from the pivot to the centre of mass [m], gravity [m/s²]; only Mgl matters
+LENGTH, G = 1.0, 9.81
 
 
 def start(p):
@@ -51,7 +52,7 @@ def run(step, acceleration, state, p, dt, steps):
 
 
 def observe(state, p):
-    """Where the tip is, seen from above: the horizontal coordinates of the unit vector along the top."""
+    """Return the position of the tip seen from above: the horizontal coordinates of the unit vector along the top."""
     w, x, y, z = state[0]
     return np.array([2.0 * (x * z + w * y), 2.0 * (y * z - w * x)])
 
@@ -65,11 +66,13 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """The fastest rate is the spin.  Near the vertical the tip obeys a linear equation, so that it errs in proportion to its distance.
+    """The fastest rate is the spin.
 
-    Round-off is that of q, 1e-16 a step beside a tip at sin θ₀ at least.  pybullet takes the gyroscopic term at the end of the step
-    (maximal coordinates) or at its beginning (reduced), about the centre of mass and not about the pivot: I = I₁ − ml².  Seen from
-    the body its tip turns at Ω = (I₃/I − 1) ω₃, and e^(iΩdt) ≈ 1 + iΩdt is too long by ½(Ω dt)² a step.
+    Near the vertical the tip obeys a linear equation, so its error is proportional to its distance.  Round-off is
+    that of q, 1e-16 per step relative to a tip at sin θ₀ at least.  pybullet takes the gyroscopic term at the end
+    of the step (maximal coordinates) or at its beginning (reduced), about the centre of mass instead of the pivot:
+    I = I₁ − ml².  In body coordinates its tip turns at Ω = (I₃/I − 1) ω₃, and e^(iΩdt) ≈ 1 + iΩdt is too long by
+    ½(Ω dt)² per step.
     """
     limits = {k: limit + T / dt * ROUND_OFF / np.sin(p.tilt) for k, limit in by_order(p.spin, T, dt).items()}
     turning = (p.I3 / (p.I1 - mass(p) * LENGTH**2) - 1.0) * p.spin
@@ -83,7 +86,7 @@ def mass(p):
 
 def pybullet_make(maximal):
     def make(p, dt):
-        """A body held at its pivot by a point-to-point constraint; its moments are about the centre of mass: I₁ − ml²."""
+        """Hold a body at its pivot by a point-to-point constraint; moments are about the centre of mass: I₁ − ml²."""
         across = p.I1 - mass(p) * LENGTH**2
         R = about(np.array([1.0, 0.0, 0.0]), p.tilt)
         axis = R[:, 2]
@@ -96,7 +99,9 @@ def pybullet_make(maximal):
 
 SETTINGS = "pivot: JOINT_POINT2POINT, 200 iterations, erp 1; no damping"
 ENGINES = (
-    Engine(PYBULLET, "reduced coordinates", pybullet_make(False), 1, f"createMultiBody, no clamp of velocity; {SETTINGS}"),
+    Engine(
+        PYBULLET, "reduced coordinates", pybullet_make(False), 1, f"createMultiBody, no clamp of velocity; {SETTINGS}"
+    ),
     Engine(PYBULLET, "", pybullet_make(True), 1, f"useMaximalCoordinates=1; {SETTINGS}"),
 )
 
@@ -112,13 +117,13 @@ def links(p):
 
 
 def bodies(p):
-    """Only the upper end of the top's axle, a metre from its point, or nobody would see the arches; and a plumb line over the point."""
+    """Draw the upper end of the axle, a metre from its point, to show the arches, and a plumb line over the point."""
     reach = np.sin(p.tilt)
     return [drawing.cylinder(0.03 * reach, reach), drawing.sphere(0.07 * reach), drawing.cylinder(0.01 * reach, reach)]
 
 
 def poses(observed, p):
-    """Turned out of the vertical the shortest way: nobody sees how far a round axle has spun."""
+    """Rotate out of the vertical by the shortest turn: the spin of a round axle cannot be seen."""
     x, y, z = tip = axis(observed)
     q = np.array([1.0 + z, -y, x, 0.0])
     q /= np.linalg.norm(q)
@@ -127,12 +132,12 @@ def poses(observed, p):
 
 
 def axis(observed):
-    """The unit vector (3,) along the top, from what is seen of it from above."""
+    """Return the unit vector (3,) along the top, from its position seen from above."""
     return np.append(observed, np.sqrt(1.0 - observed @ observed))
 
 
 def arrows(observed, p):
-    """ω, but for the thousandth of it that lies across the axis, and the torque Mgl 𝐳 × 𝐞₃ that pushes L sideways."""
+    """Return ω, less the thousandth of it across the axis, and the torque Mgl 𝐳 × 𝐞₃ that pushes L sideways."""
     x, y, _ = tip = axis(observed)
     return {"ω": (tip, tip + np.sin(p.tilt) * tip), "τ": (tip, tip + np.array([-y, x, 0.0]))}
 
@@ -140,9 +145,11 @@ def arrows(observed, p):
 def sanity_checks():
     p = Params()
     top, R = HeavyTop(*p), about(np.array([1.0, 0.0, 0.0]), p.tilt)
-    tip = freely(R, np.array([0.0, 0.0, p.spin]), p.moments(), T, lambda R: np.cross(R[:, 2], [0.0, 0.0, -p.mgl]))[0][:2, 2]
+    tip = freely(R, np.array([0.0, 0.0, p.spin]), p.moments(), T, lambda R: np.cross(R[:, 2], [0.0, 0.0, -p.mgl]))[0][
+        :2, 2
+    ]
     return (("energy [J]", 0.5 * p.I3 * p.spin**2 + p.mgl * np.cos(p.tilt), 1269.975, 5e-4),
-            ("least and largest tilt [°]", np.degrees(np.arccos([top.u0, top.u1])), (2.864789, 3.125582), 5e-7),
+            ("smallest and largest tilt [°]", np.degrees(np.arccos([top.u0, top.u1])), (2.864789, 3.125582), 5e-7),
             ("nutation [s]", top.nutation(), 0.685458497, 5e-10), ("the tip at T, by DOP853", truth(p, T), tip, 1e-12))
 
 
@@ -161,14 +168,23 @@ SCENE = Scene(
     truth_uncertainty=1e-12,
     tolerance=tolerance,
     engines=ENGINES,
-    slow_methods=("matrix_step", "axis_angle_step", "implicit_gyroscopic_step", "midpoint_step", "composed_midpoint_step"),          # the asymmetric top has them
+    slow_methods=(
+        "matrix_step",
+        "axis_angle_step",
+        "implicit_gyroscopic_step",
+        "midpoint_step",
+        "composed_midpoint_step",
+    ),  # the asymmetric top has them
     sanity_checks=sanity_checks,
     points=points,
     links=links,
     bodies=bodies,
     poses=poses,
     arrows=arrows,
-    trail=1,          # the tip
+    trail=1,  # the tip
     uses=("one orientation", "one angular momentum", "one torque", "one step function"),
-    ablations={"the pivot's force": "taken about the pivot, it has no torque", "friction at the pivot": "lesson 3 has friction"},
+    ablations={
+        "the pivot's force": "about the pivot it has no torque",
+        "friction at the pivot": "lesson 3 has friction",
+    },
 )

@@ -1,4 +1,4 @@
-"""A ball lets itself go on a slope and rolls: two sevenths of its weight's pull are spent on turning it."""
+"""A ball is released on a slope and rolls: two sevenths of gravity's pull along the slope go into rotation."""
 
 from typing import Annotated, NamedTuple
 
@@ -31,7 +31,14 @@ CASES = {"15°": Params(), "hardly rough enough": Params(mu=0.077)}
 
 def ball(p, dt):
     slope = np.radians(p.slope)
-    return Ball(p.m, np.full(3, 0.4 * p.m * p.radius**2), p.radius, p.mu, p.g * np.array([np.sin(slope), 0.0, -np.cos(slope)]), dt)
+    return Ball(
+        p.m,
+        np.full(3, 0.4 * p.m * p.radius**2),
+        p.radius,
+        p.mu,
+        p.g * np.array([np.sin(slope), 0.0, -np.cos(slope)]),
+        dt,
+    )
 
 
 def start(p):
@@ -48,7 +55,7 @@ def run(step, acceleration, state, p, dt, steps):
 
 
 def observe(state, p):
-    """Way down the slope s [m], speed v and rim speed rω [m/s]."""
+    """Return distance down the slope s [m], speed v and rim speed rω [m/s]."""
     return np.array([state[0][0], state[1][0], p.radius * state[3][1]])
 
 
@@ -66,7 +73,7 @@ def acceleration_down(p):
 
 
 def tolerance(p, dt):
-    """A step that moves with the new velocity arrives ½ a dt T too far, the engine's too; v and ω are exact, for the force is constant."""
+    """A step that moves with the new velocity ends ½ a dt T too far, in the engine too; v and ω are exact."""
     limit = 0.5 * acceleration_down(p) * dt * T / np.linalg.norm(truth(p, T)) + 1e-12 + T / dt * ROUND_OFF
     return {1: limit, "pybullet": limit, "pybullet, reduced coordinates": limit}
 
@@ -76,18 +83,25 @@ def pybullet_make(maximal):
 
 
 ENGINES = (
-    Engine(PYBULLET, "reduced coordinates", pybullet_make(False), 1, "createMultiBody on a GEOM_PLANE, slanted gravity; 100 iterations, no residual threshold, no slop, no damping"),
+    Engine(
+        PYBULLET,
+        "reduced coordinates",
+        pybullet_make(False),
+        1,
+        "createMultiBody on a GEOM_PLANE, slanted gravity; 100 iterations, no residual threshold, no slop, no damping",
+    ),
     Engine(PYBULLET, "", pybullet_make(True), 1, "the same with useMaximalCoordinates=1"),
 )
 
 
 def points(observed, p):
-    """The slope from the side: the centre, and a mark on the rim, which has turned by s/r."""
+    """Draw the slope from the side: the centre, and a mark on the rim, rotated by s/r."""
     slope, s = np.radians(p.slope), observed[0]
     down, up = np.array([np.cos(slope), -np.sin(slope)]), np.array([np.sin(slope), np.cos(slope)])
     turned = s / p.radius
     centre = s * down + p.radius * up
-    return np.stack((centre, centre + p.radius * (np.sin(turned) * down + np.cos(turned) * up), np.zeros(2), 1.1 * down))
+    mark = centre + p.radius * (np.sin(turned) * down + np.cos(turned) * up)
+    return np.stack((centre, mark, np.zeros(2), 1.1 * down))
 
 
 def links(p):
@@ -95,24 +109,31 @@ def links(p):
 
 
 def bodies(p):
-    """The ball, and a board for a slope."""
+    """Draw the ball, and a board for a slope."""
     return [drawing.sphere(p.radius), drawing.box((0.6, 0.15, 0.005))]
 
 
 def axes(p):
-    """Unit vectors (3,) down the slope, along it, and out of it."""
+    """Return unit vectors (3,) down the slope, along it, and out of it."""
     slope = np.radians(p.slope)
-    return np.array([np.cos(slope), 0.0, -np.sin(slope)]), np.array([0.0, 1.0, 0.0]), np.array([np.sin(slope), 0.0, np.cos(slope)])
+    return (
+        np.array([np.cos(slope), 0.0, -np.sin(slope)]),
+        np.array([0.0, 1.0, 0.0]),
+        np.array([np.sin(slope), 0.0, np.cos(slope)]),
+    )
 
 
 def poses(observed, p):
     down, along, out = axes(p)
     s = observed[0]
-    return [pose(s * down + p.radius * out, about(along, s / p.radius)), pose(0.5 * down - 0.005 * out, about(along, np.radians(p.slope)))]
+    return [
+        pose(s * down + p.radius * out, about(along, s / p.radius)),
+        pose(0.5 * down - 0.005 * out, about(along, np.radians(p.slope))),
+    ]
 
 
 def arrows(observed, p):
-    """v, and ω as long as the speed of the rim: the same, because it rolls."""
+    """Return v, and ω as long as the speed of the rim; they are equal because it rolls."""
     down, along, out = axes(p)
     s, v, rim = observed
     centre = s * down + p.radius * out
@@ -121,7 +142,7 @@ def arrows(observed, p):
 
 def sanity_checks():
     s, v, _ = truth(Params(), T)
-    return (("speed after 1 s [m/s]", v, 1.813582, 5e-7), ("way after 1 s [m]", s, 0.906791, 5e-7))
+    return (("speed after 1 s [m/s]", v, 1.813582, 5e-7), ("distance after 1 s [m]", s, 0.906791, 5e-7))
 
 
 SCENE = Scene(
@@ -147,5 +168,5 @@ SCENE = Scene(
     arrows=arrows,
     uses=("one ball", "one force at one point", "the lecture's loop"),
     ablations={"detection of the contact": "the ball starts on the floor and stays there; lesson 6 finds contacts",
-              "a force of the support that is solved for": "N = mg cos β, because nothing moves up or down"},
+              "a force of the support that is solved for": "N = mg cos β, because there is no motion along the normal"},
 )

@@ -1,4 +1,4 @@
-"""A ball bowled without spin slides, is turned by the friction that brakes it, and from one instant on rolls for ever."""
+"""A ball bowled without spin first slides; friction slows and rotates it until it rolls."""
 
 from typing import Annotated, NamedTuple
 
@@ -21,7 +21,7 @@ STEPS = (60, 120, 300, 600, 1200, 3000, 6000)
 
 class Params(NamedTuple):
     shape: Annotated[float, "I/mR² [-]: 2/5 for a sphere, 1/2 for a disc"] = 0.4
-    v0: Annotated[float, "speed at the start [m/s]"] = 5.0
+    v0: Annotated[float, "initial speed [m/s]"] = 5.0
     mu: Annotated[float, "friction [-]"] = 0.2
     R: Annotated[float, "radius [m]"] = 0.1
     m: Annotated[float, "mass [kg]"] = 2.0
@@ -47,12 +47,12 @@ def run(step, acceleration, state, p, dt, steps):
 
 
 def observe(state, p):
-    """Way x [m], speed v and rim speed Rω [m/s]."""
+    """Return distance x [m], speed v and rim speed Rω [m/s]."""
     return np.array([state[0][0], state[1][0], p.R * state[3][1]])
 
 
 def rolls_from(p):
-    """When slipping ends [s]: v₀ − μg t = Rω = μg t mR²/I."""
+    """Return the time at which slipping ends [s]: v₀ − μg t = Rω = μg t mR²/I."""
     return p.v0 / (p.mu * p.g * (1.0 + 1.0 / p.shape))
 
 
@@ -67,10 +67,10 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """While it slides, a step that moves with the new velocity falls ½ μg dt behind each second, one with the old gets as much ahead.
+    """While it slides, a step that moves with the new velocity loses ½ μg dt per second; with the old it gains as much.
 
-    In the step in which it begins to roll the velocity is off by μg dt at most, for dt; after it both velocities are exact, though
-    pymunk's friction may act for one step more or less: another μg dt².
+    In the step in which it begins to roll the velocity is off by at most μg dt, for dt.  After that both velocities are
+    exact, though pymunk's friction may act for one step more or less: another μg dt².
     """
     brake = p.mu * p.g
     bias = (0.5 * brake * dt * rolls_from(p) + 2.0 * brake * dt * dt) / np.linalg.norm(truth(p, T))
@@ -79,7 +79,7 @@ def tolerance(p, dt):
 
 
 def pymunk_make(p, dt):
-    """A circle with that moment, which overlaps the floor by a micrometre: pymunk needs an overlap to see a contact."""
+    """Make a circle with that moment that overlaps the floor by a micrometre, because pymunk needs an overlap."""
     import pymunk
     space = pymunk_space((0.0, -p.g))
     space.iterations = 50
@@ -97,21 +97,26 @@ def pybullet_make(maximal):
 
 ENGINES = (
     Engine(PYMUNK, "", pymunk_make, 1, "50 iterations; the circle starts 1e-6 m inside the floor"),
-    Engine(PYBULLET, "reduced coordinates", pybullet_make(False), 1, "createMultiBody on a GEOM_PLANE; 100 iterations, no residual threshold, no slop, no damping"),
+    Engine(
+        PYBULLET,
+        "reduced coordinates",
+        pybullet_make(False),
+        1,
+        "createMultiBody on a GEOM_PLANE; 100 iterations, no residual threshold, no slop, no damping",
+    ),
     Engine(PYBULLET, "", pybullet_make(True), 1, "the same with useMaximalCoordinates=1"),
 )
 
 
 def points(observed, p):
-    """From the side: the centre, and how far the rim has come, both along the floor."""
+    """Draw the scene from the side: the centre, and the distance of the rim, both along the floor."""
     x, v, rim = observed
-    return np.array([[x, p.R], [x, p.R + 0.2 * v], [x + 0.05, p.R], [x + 0.05, p.R + 0.2 * rim], [0.0, 0.0], [6.0, 0.0]])
+    beside, floor = x + 0.05, [[0.0, 0.0], [6.0, 0.0]]
+    return np.array([[x, p.R], [x, p.R + 0.2 * v], [beside, p.R], [beside, p.R + 0.2 * rim], *floor])
 
 
 def links(p):
     return [(0, 1), (2, 3), (4, 5)]
-
-
 
 
 def bodies(p):
@@ -119,7 +124,10 @@ def bodies(p):
 
 
 def poses(observed, p):
-    """Its rim has come ½ (Rω)²/(μg mR²/I) while it slid, and since then as far as the ball: what is beyond (v₀² − v²)/2μg."""
+    """Return the rotation of the rim.
+
+    The rim moved ½ (Rω)²/(μg mR²/I) while the ball slid, and then the distance of the ball beyond (v₀² − v²)/2μg.
+    """
     x, v, rim = observed
     brake = p.mu * p.g
     way = 0.5 * rim**2 * p.shape / brake + max(0.0, x - (p.v0**2 - v**2) / (2.0 * brake))
@@ -127,16 +135,23 @@ def poses(observed, p):
 
 
 def arrows(observed, p):
-    """v, and ω as long as the speed of the rim: the same as soon as it rolls."""
+    """Return v, and ω as long as the speed of the rim; they are equal as soon as it rolls."""
     x, v, rim = observed
     centre = np.array([x, 0.0, p.R])
-    return {"v": (centre, centre + np.array([0.2 * v, 0.0, 0.0])), "ω": (centre, centre + np.array([0.0, 0.2 * rim, 0.0]))}
+    return {
+        "v": (centre, centre + np.array([0.2 * v, 0.0, 0.0])),
+        "ω": (centre, centre + np.array([0.0, 0.2 * rim, 0.0])),
+    }
 
 
 def sanity_checks():
     sphere, disc = CASES["sphere"], CASES["disc"]
-    return (("a sphere rolls from [s]", rolls_from(sphere), 0.728120, 5e-7), ("its speed then [m/s]", truth(sphere, T)[1:], 25.0 / 7.0, 1e-14),
-            ("a disc rolls from [s]", rolls_from(disc), 0.849473, 5e-7), ("its speed then [m/s]", truth(disc, T)[1:], 10.0 / 3.0, 1e-14))
+    return (
+        ("a sphere rolls from [s]", rolls_from(sphere), 0.728120, 5e-7),
+        ("its speed then [m/s]", truth(sphere, T)[1:], 25.0 / 7.0, 1e-14),
+        ("a disc rolls from [s]", rolls_from(disc), 0.849473, 5e-7),
+        ("its speed then [m/s]", truth(disc, T)[1:], 10.0 / 3.0, 1e-14),
+    )
 
 
 SCENE = Scene(
@@ -163,5 +178,5 @@ SCENE = Scene(
     ground=True,
     uses=("one ball", "one force at one point", "the lecture's loop"),
     ablations={"detection of the contact": "the ball starts on the floor and stays there; lesson 6 finds contacts",
-              "a force of the support that is solved for": "N = mg, because nothing moves up or down"},
+              "a force of the support that is solved for": "N = mg, because there is no vertical motion"},
 )

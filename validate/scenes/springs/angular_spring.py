@@ -1,4 +1,4 @@
-"""A rod on a torsion spring, turned by one radian and let go: alone, as a pendulum without its spring, and with both."""
+"""A rod on a torsion spring is released at one radian: with the spring, as a pendulum without it, and with both."""
 
 from functools import cache
 from typing import Annotated, NamedTuple
@@ -14,18 +14,20 @@ from validate.engines.chipmunk import pymunk_space, pymunk_world
 from validate.methods import INTEGRATORS, LEFT_TO_FULL
 from validate.scene import PYMUNK, Engine, Scene, by_order
 
-T = 2.5                      # [s]: about two periods; no case is then at a turning point, where errors of phase do not show
+T = 2.5  # [s]: about two periods; no case is then at a turning point, where errors of phase do not show
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
-HINGE, DOWN = np.zeros(2), np.array([0.0, -1.0])                  # where the rod turns, and the end of the arm that is fixed [m]
-UNCERTAINTY = 1e-12          # DOP853's, where both act; the closed forms are ten times better
+# the hinge, and the end of the fixed arm [m]
+HINGE = np.zeros(2)
+DOWN = np.array([0.0, -1.0])
+UNCERTAINTY = 1e-12          # of DOP853, where both act; the closed forms are ten times better
 
 
 class Params(NamedTuple):
-    kappa: Annotated[float, "torsion spring [N m/rad]; 0: there is none"] = 10.0
+    kappa: Annotated[float, "torsion spring [N m/rad]; 0: no spring"] = 10.0
     g: Annotated[float, "gravity [m/s²]; negative: the rod stands instead of hanging"] = 0.0
     m: Annotated[float, "uniform rod [kg]"] = 1.0
     length: Annotated[float, "[m], hinged at one end"] = 1.0
-    theta0: Annotated[float, "first angle from the vertical, counter-clockwise [rad]"] = 1.0
+    theta0: Annotated[float, "initial angle from the vertical, counter-clockwise [rad]"] = 1.0
 
 
 CASES = {"spring": Params(), "gravity": Params(kappa=0.0, g=9.81), "spring and gravity": Params(g=9.81),
@@ -33,14 +35,15 @@ CASES = {"spring": Params(), "gravity": Params(kappa=0.0, g=9.81), "spring and g
 
 
 def inertia(p):
-    """About the hinge [kg m²]."""
+    """Return the moment of inertia about the hinge [kg m²]."""
     return p.m * p.length**2 / 3.0
 
 
 def acceleration(t, x, v, p):
-    """θ̈ = (r × F_c − ½ m g length sin θ)/I,   r = length (sin θ, −cos θ),   F_c by angular_spring_forces on the rod's end.
+    """θ̈ = (r × F_c − ½ m g length sin θ)/I,  r = length (sin θ, −cos θ),  F_c by angular_spring_forces on the end.
 
-    The other arm hangs straight down and is fixed; F_c ⊥ r has the moment −κ θ about the hinge, whatever the arm's length.
+    The other arm hangs straight down and is fixed; F_c ⊥ r has the moment −κ θ about the hinge, whatever the arm's
+    length.
     """
     r = np.array([p.length * np.sin(x[0]), -p.length * np.cos(x[0])])
     F_c = angular_spring_forces(DOWN, HINGE, r, 0.0, p.kappa)[2]
@@ -64,10 +67,11 @@ def observe(state, p):
 
 
 def truth(p, t):
-    """θ(t) of the spring alone: θ₀ cos ωt, ω² = κ/I;  of gravity alone: 2 arcsin(k sn(K + ωt, k²)), ω² = m g length/2I,
-    k = sin ½θ₀.
+    """θ(t) of the spring alone, of gravity alone, or of both.
 
-    Of both: θ̈ = −(κ θ + ½ m g length sin θ)/I, by DOP853 at a relative tolerance of 1e-13.
+    spring     θ₀ cos ωt,  ω² = κ/I
+    gravity    2 arcsin(k sn(K + ωt, k²)),  ω² = m g length/2I,  k = sin ½θ₀
+    both       θ̈ = −(κ θ + ½ m g length sin θ)/I, by DOP853 at a relative tolerance of 1e-13
     Source: for gravity, Landau and Lifshitz, Mechanics, § 11, in Jacobi's functions; I = m length²/3.
     """
     if p.g == 0.0:
@@ -87,10 +91,11 @@ def reference(p):
 
 
 def tolerance(p, dt):
-    """The fastest rate is that of spring and gravity pulling together; relative to θ(T), smaller than θ₀.
+    """The fastest rate is that of spring and gravity together; relative to θ(T), smaller than θ₀.
 
-    pymunk moves the centre of the rod and turns it, then pulls the end back to the hinge: symplectic Euler, order 1.  What the
-    hinge has to undo each step, ½ length θ̇² dt, is of the same order at the same rate: θ̇ ≤ rate θ₀ and θ₀ ≤ 1.
+    pymunk moves the centre of the rod and rotates it, then pulls the end back to the hinge: symplectic Euler, order
+    1.  The correction of the hinge per step, ½ length θ̇² dt, is of the same order at the same rate: θ̇ ≤ rate θ₀
+    and θ₀ ≤ 1.
     """
     rate = np.sqrt((p.kappa + 0.5 * p.m * abs(p.g) * p.length) / inertia(p))
     shrunk = abs(p.theta0 / truth(p, T)[0])
@@ -99,13 +104,13 @@ def tolerance(p, dt):
 
 
 def pymunk_make(p, dt):
-    """The rod about its centre, a PivotJoint at its end, a DampedRotarySpring to the ground; hanging is angle 0."""
+    """The rod about its centre, a PivotJoint at its end, a DampedRotarySpring to the ground; angle 0 is hanging."""
     import pymunk
     space = pymunk_space((0.0, -p.g))
     body = pymunk.Body(p.m, p.m * p.length**2 / 12.0)
     body.position, body.angle = (0.5 * p.length * np.sin(p.theta0), -0.5 * p.length * np.cos(p.theta0)), p.theta0
     hinge = pymunk.PivotJoint(space.static_body, body, (0.0, 0.0), (0.0, 0.5 * p.length))
-    hinge.error_bias = 0.0                               # all drift is undone in the next step: then it stays second order
+    hinge.error_bias = 0.0  # all drift is corrected in the next step, which keeps second order
     space.add(body, hinge, pymunk.DampedRotarySpring(space.static_body, body, 0.0, p.kappa, 0.0))
     return pymunk_world(space, dt, lambda: np.array([body.angle]))
 
@@ -123,14 +128,14 @@ def links(p):
 
 
 def sanity_checks():
-    """((claim, found, expected, tolerance), …): special values, for a test to assert.
+    """Return ((claim, found, expected, tolerance), …): special values for a test to assert.
 
-    The period of a pendulum let go at one radian is 1.0663 of a small one's: 2K(sin ½)/π.
+    The period of a pendulum released at one radian is 1.0663 times that of small oscillations: 2K(sin ½)/π.
     """
     p = CASES["gravity"]
     small = 2.0 * np.pi * np.sqrt(2.0 * inertia(p) / (p.m * p.g * p.length))
     period = small * 2.0 / np.pi * ellipk(np.sin(0.5 * p.theta0) ** 2)
-    return (("period over that of small swings [-]", period / small, 1.0663, 5e-5),
+    return (("period over that of small oscillations [-]", period / small, 1.0663, 5e-5),
             ("angle after a period [rad]", truth(p, period)[0], p.theta0, 1e-12),
             ("angle after a quarter [rad]", truth(p, 0.25 * period)[0], 0.0, 1e-12))
 

@@ -1,4 +1,4 @@
-"""A chain of twenty springs between two nails, hung where it would rest if it could not stretch, and let go in a side wind."""
+"""A chain of twenty springs between two nails is released in a side wind, from its rest shape without stretch."""
 
 from functools import cache
 from typing import Annotated, NamedTuple
@@ -16,14 +16,14 @@ from validate.methods import IMPLICIT_MESH, INTEGRATORS, LEFT_TO_FULL
 from validate.reference.springs import Net, forces, motion, net_limits, rest_positions, state_of
 from validate.scene import PYBULLET, PYMUNK, Engine, EngineRun, Scene
 
-T = 1.2                      # [s]: a period of the slowest mode, nearly two of the one that sags
+T = 1.2                      # [s]: one period of the slowest mode, nearly two of the sagging mode
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
-# implicit methods build a dense matrix at every correction, and the mesh's own takes seconds to compile: spring_net shows it
+# implicit methods build a dense matrix at every correction, and the mesh's own takes seconds to compile: see spring_net
 UNCERTAINTY = 1e-11
 
 
 class Params(NamedTuple):
-    links: Annotated[int, "N [-], even: then a point is in the middle"] = 20
+    links: Annotated[int, "N [-], even, so that one point is in the middle"] = 20
     rest: Annotated[float, "length of a link [m]"] = 0.1
     span: Annotated[float, "between the nails [m]"] = 1.5
     m: Annotated[float, "each point between links [kg]"] = 0.02
@@ -34,20 +34,21 @@ class Params(NamedTuple):
     g: Annotated[float, "gravity [m/s²]"] = 9.81
 
 
-# without wind the slowest mode that moves has ω = 8.74 rad/s: δ = k_v/2m = 8.5 /s lets all of them oscillate, and die alike
+# without wind the slowest moving mode has ω = 8.74 rad/s: δ = k_v/2m = 8.5 /s leaves all of them oscillating, with
+# equal decay
 CASES = {"let go": Params(), "at rest": Params(k_d=0.0, k_v=0.34, wind=0.0)}
 
 
 def rigid_chain(p):
-    """(n, 2): where a chain of rigid links rests: link s, counted from a nail, carries V_s = (N/2 + ½ − s) weights."""
+    """Return (n, 2): the rest shape of a chain of rigid links; link s from a nail carries N/2 + ½ − s weights."""
     return hung(p, 0.0)[0]
 
 
 def hung(p, compliance):
-    """(x (n, 2), H): the chain at rest, each link lengthened by compliance times its tension, and its sideways pull H [N].
+    """Return (x (n, 2), H): the chain at rest, with links of that compliance, and its horizontal pull H [N].
 
-    V_s = (N + 1 − 2s)/2 · m g,   T_s = √(H² + V_s²),   link s spans (rest + compliance T_s) (H, −V_s)/T_s;   H from Σ = span
-    *Source:* equilibrium of each point; the one unknown is bracketed and found by Brent's method.
+    V_s = (N + 1 − 2s)/2 · m g,   T_s = √(H² + V_s²),   link s spans (rest + compliance T_s) (H, −V_s)/T_s;   H from
+    Σ = span *Source:* equilibrium of each point; the one unknown is bracketed and found by Brent's method.
     """
     V = 0.5 * (p.links + 1 - 2.0 * np.arange(1, p.links + 1)) * p.m * p.g
 
@@ -62,8 +63,19 @@ def hung(p, compliance):
 
 def net(p):
     x, n = rigid_chain(p), np.arange(p.links + 1)
-    return Net(x, 0.0 * x, (0, p.links), np.stack((n[:-1], n[1:]), axis=1), np.full(p.links, p.rest), p.m, p.k, p.k_d, p.k_v,
-               np.array([0.0, -p.g]), np.array([p.wind, 0.0]))
+    return Net(
+        x,
+        0.0 * x,
+        (0, p.links),
+        np.stack((n[:-1], n[1:]), axis=1),
+        np.full(p.links, p.rest),
+        p.m,
+        p.k,
+        p.k_d,
+        p.k_v,
+        np.array([0.0, -p.g]),
+        np.array([p.wind, 0.0]),
+    )
 
 
 def start(p):
@@ -88,21 +100,22 @@ def reference(p):
 
 
 def truth(p, t):
-    """Every point of the elastic chain, by DOP853 with forces of its own, at a relative tolerance of 1e-13.
+    """Every point of the elastic chain, by DOP853 with separately coded forces, at a relative tolerance of 1e-13.
 
-    At rest it is the discrete catenary: its sag is 0.5895021 m for links that cannot stretch, the continuum's is 0.5886677 m.
+    At rest it is the discrete catenary: its sag is 0.5895021 m for inextensible links, that of the continuum
+    0.5886677 m.
     """
     return reference(p)(t).ravel()
 
 
 def tolerance(p, dt):
-    """Each mode on its own, with the room that large motion needs (net_limits); both engines are symplectic Euler, order 1."""
+    """Each mode on its own, with a margin for large motion (net_limits); both engines are symplectic Euler, order 1."""
     limits = net_limits(net, p, np.linalg.norm(truth(p, T)), T, dt, UNCERTAINTY)
     return {**limits, "pymunk": limits[1], "pybullet": limits[1]}
 
 
 def pybullet_make(p, dt):
-    """A free body a point, all forces computed from the state before each step: for pybullet has no springs."""
+    """Use one free body per point, with all forces from the state before each step, because pybullet has no springs."""
     chain, bullet = net(p).padded(), Bullet(dt)
     B, (x, v) = chain.spring_matrix(), (chain.x.copy(), chain.v.copy())
     bodies = {n: bullet.point_mass(p.m, x[n], v[n]) for n in np.flatnonzero(chain.free())}
@@ -133,7 +146,7 @@ def links(p):
 
 
 def sanity_checks():
-    """((claim, found, expected, tolerance), …): the numbers of the lecture, for a test to assert."""
+    """Return ((claim, found, expected, tolerance), …): the numbers of the lecture, for a test to assert."""
     p = CASES["at rest"]
     x, H = hung(p, 0.0)
     middle, weight = p.links // 2, p.m * p.g
@@ -141,15 +154,18 @@ def sanity_checks():
     elastic = hung(p, 1.0 / p.k)[0]
     later = 4.0                                          # [s]: (1 + δt) e^(−δt) of a metre is left, 6e-14
     settled = motion(net(p), later)(later)
-    return (("sag of rigid links [m]", -x[middle, 1], 0.5895021, 5e-8),
-            ("sideways pull of rigid links [weights]", H / weight, 5.54718, 5e-6),
-            ("sag as k → ∞, extrapolated from two stiffnesses [m]", 2.0 * stiff[1] - stiff[0], 0.5895021, 1e-7),
-            ("elastic rest by Newton's method, from that by H [m]", np.abs(rest_positions(net(p)) - elastic).max(), 0.0, 1e-12),
-            ("where the damped chain settles, from the same [m]", np.abs(settled - elastic).max(), 0.0, 1e-11))
+    by_newton = np.abs(rest_positions(net(p)) - elastic).max()
+    return (
+        ("sag of rigid links [m]", -x[middle, 1], 0.5895021, 5e-8),
+        ("horizontal pull of rigid links [weights]", H / weight, 5.54718, 5e-6),
+        ("sag as k → ∞, extrapolated from two stiffnesses [m]", 2.0 * stiff[1] - stiff[0], 0.5895021, 1e-7),
+        ("elastic rest by Newton's method, from that by H [m]", by_newton, 0.0, 1e-12),
+        ("rest position of the damped chain, from the same [m]", np.abs(settled - elastic).max(), 0.0, 1e-11),
+    )
 
 
 def in_space(p):
-    """The same motion with a third coordinate carried along."""
+    """The same motion with an unused third coordinate."""
     return state_of(net(p).padded(), make_mesh), p
 
 
@@ -159,7 +175,7 @@ SCENE = Scene(
     cases=CASES,
     duration=T,
     steps=STEPS,
-    methods=INTEGRATORS + (IMPLICIT_MESH,),
+    methods=(*INTEGRATORS, IMPLICIT_MESH),
     acceleration=acceleration,
     start=start,
     run=run,
@@ -168,10 +184,14 @@ SCENE = Scene(
     truth_uncertainty=UNCERTAINTY,
     tolerance=tolerance,
     engines=ENGINES,
-    slow_methods=LEFT_TO_FULL + ("implicit_mesh_step",),
+    slow_methods=(*LEFT_TO_FULL, "implicit_mesh_step"),
     sanity_checks=sanity_checks,
     points=points,
     links=links,
     uses=("two coordinates", "springs with dampers", "one step function"),
-    ablations={"the third dimension": in_space, "rotation": "lesson 5 builds it", "contact between links": "lesson 6 builds it"},
+    ablations={
+        "the third dimension": in_space,
+        "rotation": "lesson 5 builds it",
+        "contact between links": "lesson 6 builds it",
+    },
 )

@@ -1,4 +1,4 @@
-"""Ten masses on ten springs, hung one below the other and let go where the springs are still unstretched."""
+"""Ten masses on ten springs, hung one below the other and released with the springs unstretched."""
 
 from typing import Annotated, NamedTuple
 
@@ -15,7 +15,7 @@ from validate.scene import PYMUNK, Engine, Scene
 
 T = 1.5                      # [s]: two and a half periods of the slowest mode
 STEPS = (200, 500, 1000, 2000, 5000, 10000, 20000)
-# the first two build a dense matrix at every correction, and the third takes seconds to compile: spring_net shows it
+# the first two build a dense matrix at every correction, and the third takes seconds to compile: see spring_net
 UNCERTAINTY = 1e-13          # 200 radians of the fastest mode, each rounded to 2e-16
 
 
@@ -34,11 +34,12 @@ CASES = {"let go": Params(), "undamped": Params(k_d=0.0), "at rest": Params(k_d=
 
 
 def net(p):
-    """A line of points, downward positive: the ceiling at 0, mass n at n · rest."""
+    """Return a line of points, downward positive: the ceiling at 0, mass n at n · rest."""
     n = np.arange(p.springs + 1)
     x = p.rest * n[:, None].astype(float)
     pairs = np.stack((n[:-1], n[1:]), axis=1)
-    return Net(x, 0.0 * x, (0,), pairs, np.full(p.springs, p.rest), p.m, p.k, p.k_d, p.k_v, np.array([p.g]), np.zeros(1))
+    rest = np.full(p.springs, p.rest)
+    return Net(x, 0.0 * x, (0,), pairs, rest, p.m, p.k, p.k_d, p.k_v, np.array([p.g]), np.zeros(1))
 
 
 def start(p):
@@ -54,14 +55,15 @@ def run(step, acceleration, state, p, dt, steps):
 
 
 def observe(state, p):
-    """How far each mass hangs below its place on unstretched springs [m]."""
+    """Return the distance of each mass below its place on unstretched springs [m]."""
     return state[0][1:, 0] - p.rest * np.arange(1, p.springs + 1)
 
 
 def modes(p):
-    """(omega, c, shapes): ω_j² = 4 k/m sin²(β_j/2),  c_j = (k_d ω_j²/k + k_v/m),  shape_nj = 2/√(2N+1) sin(n β_j).
+    """Return (omega, c, shapes) of the normal modes.
 
-    β_j = (2j − 1) π/(2N + 1) makes the spring below the last mass, which is not there, carry nothing: sin Nβ = sin (N+1)β.
+    ω_j² = 4 k/m sin²(β_j/2),  c_j = (k_d ω_j²/k + k_v/m),  shape_nj = 2/√(2N+1) sin(n β_j)
+    β_j = (2j − 1) π/(2N + 1) gives zero tension below the last mass, where there is no spring: sin Nβ = sin (N+1)β.
     """
     n = np.arange(1, p.springs + 1)
     beta = (2 * n - 1) * np.pi / (2 * p.springs + 1)
@@ -70,7 +72,7 @@ def modes(p):
 
 
 def static_extension(p):
-    """How far each mass hangs below its unstretched place at rest [m]: spring i carries the N + 1 − i masses below it."""
+    """Return the rest positions below the unstretched ones [m]: spring i carries the N + 1 − i masses below it."""
     return np.cumsum(p.m * p.g / p.k * np.arange(p.springs, 0, -1))
 
 
@@ -82,13 +84,14 @@ def truth(p, t):
     """
     omega, c, shapes = modes(p)
     delta = 0.5 * c
-    sigma = np.sqrt((omega**2 - delta**2).astype(complex))       # imaginary where over-damped: cos and sin become cosh and sinh
+    # imaginary where over-damped: cos and sin become cosh and sinh
+    sigma = np.sqrt((omega**2 - delta**2).astype(complex))
     shape = np.exp(-delta * t) * (np.cos(sigma * t) + delta * t * np.sinc(sigma * t / np.pi)).real
     return static_extension(p) - shapes @ (shape * (shapes.T @ static_extension(p)))
 
 
 def tolerance(p, dt):
-    """Each mode on its own (by_mode): the system is linear.  pymunk is symplectic Euler, its dampers one by one: order 1."""
+    """Each mode on its own (by_mode), as the system is linear.  pymunk is symplectic Euler: order 1."""
     omega, c, shapes = modes(p)
     amplitude = np.abs(shapes.T @ static_extension(p))
     limits = by_mode(omega, c, amplitude, np.linalg.norm(truth(p, T)), T, dt, UNCERTAINTY)
@@ -96,7 +99,13 @@ def tolerance(p, dt):
 
 
 ENGINES = (
-    Engine(PYMUNK, "", lambda p, dt: pymunk_net(net(p), dt, lambda x: observe((x,), p)), 1, "DampedSpring between point masses"),
+    Engine(
+        PYMUNK,
+        "",
+        lambda p, dt: pymunk_net(net(p), dt, lambda x: observe((x,), p)),
+        1,
+        "DampedSpring between point masses",
+    ),
 )
 
 
@@ -110,17 +119,17 @@ def links(p):
 
 
 def sanity_checks():
-    """((claim, found, expected, tolerance), …): the numbers of the lecture, for a test to assert."""
+    """Return ((claim, found, expected, tolerance), …): the numbers of the lecture, for a test to assert."""
     p = CASES["at rest"]
     slowest = modes(p)[0][0]
-    left = (1.0 + slowest * T) * np.exp(-slowest * T)            # of the motion after T, critically damped
+    left = (1.0 + slowest * T) * np.exp(-slowest * T)            # share of the motion left after T, critically damped
     tip = 0.10791                                                # m g N(N+1)/2k [m]
     return (("the tip's static extension [m]", static_extension(p)[-1], tip, 1e-15),
             ("the tip at T, nearly at rest [m]", truth(p, T)[-1], tip, 2.0 * left * tip))
 
 
 def in_space(p):
-    """The same motion with two more coordinates carried along."""
+    """The same motion with two unused coordinates."""
     return state_of(net(p).padded(), make_mesh), p
 
 
@@ -130,7 +139,7 @@ SCENE = Scene(
     cases=CASES,
     duration=T,
     steps=STEPS,
-    methods=INTEGRATORS + (IMPLICIT_MESH,),
+    methods=(*INTEGRATORS, IMPLICIT_MESH),
     acceleration=acceleration,
     start=start,
     run=run,

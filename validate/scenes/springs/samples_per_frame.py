@@ -1,4 +1,7 @@
-"""A net of two metres at 24 frames a second: one of the lecture's steps a frame tears it, with four its worst node is 3 cm off, with sixteen 8 mm."""
+"""A net of two metres at 24 frames per second, with 1 to 256 of the lecture's steps per frame.
+
+With one step per frame it tears; with four its worst node is off by 3 cm, with sixteen by 8 mm.
+"""
 
 from functools import cache
 
@@ -14,14 +17,14 @@ from validate.reference.springs import SquareNet, modes, motion, net_limits, squ
 from validate.scene import PYMUNK, Engine, Scene
 
 FRAMES_PER_SECOND = 24
-SAMPLES = (1, 4, 16, 64, 256)              # steps a frame [-]
+SAMPLES = (1, 4, 16, 64, 256)              # steps per frame [-]
 T = 1.0                                    # [s]
 STEPS = tuple(FRAMES_PER_SECOND * samples for samples in SAMPLES)
-# the first two build a dense matrix at every correction, and the third takes seconds to compile: spring_net shows it
+# the first two build a dense matrix at every correction, and the third takes seconds to compile: see spring_net
 UNCERTAINTY = 1e-12
 
-# The lecture's step multiplies a mode by |λ|, |λ|² = 1 − c dt + ½ω² dt².  Dampers give c = τω² with τ = k_d/k = 6 ms, so every
-# mode grows alike when dt > 2τ = 12 ms: with one sample a frame (42 ms), not with four (10 ms).
+# The lecture's step multiplies a mode by |λ|, |λ|² = 1 − c dt + ½ω² dt².  Dampers give c = τω² with τ = k_d/k = 6 ms.
+# Every mode therefore grows if dt > 2τ = 12 ms: with one sample per frame (42 ms), but not with four (10 ms).
 CASES = {"net": SquareNet(spacing=0.5, shear=1, k=20.0, k_d=0.12, wind=0.1)}
 
 
@@ -47,17 +50,19 @@ def reference(p):
 
 
 def truth(p, t):
-    """Every node, by DOP853 with forces of its own, at a relative tolerance of 1e-13: thousands of samples a frame."""
+    """Every node, by DOP853 with separately coded forces, at a relative tolerance of 1e-13."""
     return reference(p)(t).ravel()
 
 
 def tolerance(p, dt):
-    """Each mode on its own, with the room that large motion needs (net_limits); pymunk is symplectic Euler, order 1."""
+    """Each mode on its own, with a margin for large motion (net_limits); pymunk is symplectic Euler, order 1."""
     limits = net_limits(square_net, p, np.linalg.norm(truth(p, T)), T, dt, UNCERTAINTY)
     return {**limits, "pymunk": limits[1]}
 
 
-ENGINES = (Engine(PYMUNK, "", lambda p, dt: pymunk_net(square_net(p), dt, np.ravel), 1, "DampedSpring between point masses"),)
+ENGINES = (
+    Engine(PYMUNK, "", lambda p, dt: pymunk_net(square_net(p), dt, np.ravel), 1, "DampedSpring between point masses"),
+)
 
 
 def points(observed, p):
@@ -69,26 +74,29 @@ def links(p):
 
 
 def sanity_checks():
-    """((claim, found, expected, tolerance), …): how the fastest mode grows in one of the lecture's steps, for a test to assert.
+    """Return ((claim, found, expected, tolerance), …): the growth of the fastest mode in one of the lecture's steps.
 
-    |λ₁ λ₂| = det A = (1 − ½ω²dt²)(1 − c dt) + ω² dt (dt − ½c dt²) = 1 − c dt + ½ω² dt²;  |λ|² while the pair is complex.
+    |λ₁ λ₂| = det A = (1 − ½ω²dt²)(1 − c dt) + ω² dt (dt − ½c dt²) = 1 − c dt + ½ω² dt²;  |λ|² while the pair is
+    complex.
     """
     omega, c = (values[-1] for values in modes(square_net(CASES["net"]))[:2])
     claims = []
     for samples in SAMPLES[:3]:
         dt = 1.0 / (FRAMES_PER_SECOND * samples)
         A = amplification_matrix(average_velocity_step, omega, 0.5 * c / omega, dt)
-        claims.append((f"det A, {samples} samples a frame [-]", np.linalg.det(A), 1.0 - c * dt + 0.5 * (omega * dt) ** 2, 1e-12))
+        expected = 1.0 - c * dt + 0.5 * (omega * dt) ** 2
+        claims.append((f"det A, {samples} samples per frame [-]", np.linalg.det(A), expected, 1e-12))
     p = CASES["net"]
-    for samples, said, digit in ((4, 0.03, 0.005), (16, 0.008, 0.0005)):                 # of the story, rounded to one digit
+    for samples, said, digit in ((4, 0.03, 0.005), (16, 0.008, 0.0005)):  # of the docstring, rounded to one digit
         steps = round(FRAMES_PER_SECOND * samples * T)
         off = observe(run(average_velocity_step, acceleration, start(p), p, T / steps, steps), p) - truth(p, T)
-        claims.append((f"how far its worst node is off, {samples} of the lecture's steps a frame [m]", np.linalg.norm(points(off, p), axis=1).max(), said, digit))
+        worst = np.linalg.norm(points(off, p), axis=1).max()
+        claims.append((f"error of its worst node, {samples} of the lecture's steps per frame [m]", worst, said, digit))
     return tuple(claims)
 
 
 def in_space(p):
-    """The same motion with a third coordinate carried along."""
+    """The same motion with an unused third coordinate."""
     return state_of(square_net(p).padded(), make_mesh), p
 
 
@@ -98,7 +106,7 @@ SCENE = Scene(
     cases=CASES,
     duration=T,
     steps=STEPS,
-    methods=INTEGRATORS + (IMPLICIT_MESH,),
+    methods=(*INTEGRATORS, IMPLICIT_MESH),
     acceleration=acceleration,
     start=start,
     run=run,

@@ -1,4 +1,7 @@
-"""A square net, held along its upper edge and let go in a side wind: threads alone, then diagonals, then every second node."""
+"""A square net, held along its upper edge, is released in a side wind: threads alone, then two stiffer nets.
+
+The second case adds springs along the diagonals, the third also springs over every second node.
+"""
 
 from functools import cache
 
@@ -13,7 +16,7 @@ from validate.methods import IMPLICIT_MESH, INTEGRATORS, LEFT_TO_FULL
 from validate.reference.springs import SquareNet, modes, motion, net_limits, rest_positions, square_net, state_of
 from validate.scene import PYMUNK, Engine, Scene
 
-T = 0.6                      # [s]: two bounces, and half a swing of the threads alone
+T = 0.6                      # [s]: two bounces, and half an oscillation of the threads alone
 STEPS = (50, 100, 200, 500, 1000, 2000, 5000)
 UNCERTAINTY = 1e-12
 
@@ -43,17 +46,19 @@ def reference(p):
 
 
 def truth(p, t):
-    """Every node, by DOP853 with forces of its own, at a relative tolerance of 1e-13."""
+    """Every node, by DOP853 with separately coded forces, at a relative tolerance of 1e-13."""
     return reference(p)(t).ravel()
 
 
 def tolerance(p, dt):
-    """Each mode on its own, with the room that large motion needs (net_limits); pymunk is symplectic Euler, order 1."""
+    """Each mode on its own, with a margin for large motion (net_limits); pymunk is symplectic Euler, order 1."""
     limits = net_limits(square_net, p, np.linalg.norm(truth(p, T)), T, dt, UNCERTAINTY)
     return {**limits, "pymunk": limits[1]}
 
 
-ENGINES = (Engine(PYMUNK, "", lambda p, dt: pymunk_net(square_net(p), dt, np.ravel), 1, "DampedSpring between point masses"),)
+ENGINES = (
+    Engine(PYMUNK, "", lambda p, dt: pymunk_net(square_net(p), dt, np.ravel), 1, "DampedSpring between point masses"),
+)
 
 
 def points(observed, p):
@@ -65,9 +70,10 @@ def links(p):
 
 
 def sanity_checks():
-    """((claim, found, expected, tolerance), …): what must hold of the springs and at rest, for a test to assert.
+    """Return ((claim, found, expected, tolerance), …): conditions on the springs and on the rest state.
 
-    With viscosity 2 m ω, critical for the slowest mode, every mode dies like (1 + ωt) e^(−ωt): at ωt = 35 that is 2e-14.
+    With viscosity 2 m ω, critical for the slowest mode, every mode decays like (1 + ωt) e^(−ωt): at ωt = 35 that is
+    2e-14.
     """
     claims = []
     for name, p in CASES.items():
@@ -79,17 +85,18 @@ def sanity_checks():
         rest = rest_positions(square_net(p))
         _, v, mesh = start(p)
         pull = np.abs(acceleration(0.0, rest, v, mesh)).max()
-        claims.append((f"{name}: acceleration where Newton's method finds rest [m/s²]", pull, 0.0, 1e-10))
+        claims.append((f"{name}: acceleration at the rest state of Newton's method [m/s²]", pull, 0.0, 1e-10))
 
         slowest = modes(square_net(p))[0][0]
         later = 35.0 / slowest
         settled = motion(square_net(p._replace(k_v=2.0 * p.m * slowest)), later)(later)
-        claims.append((f"{name}: from there to where the damped net settles [m]", np.abs(settled - rest).max(), 0.0, 1e-11))
+        apart = np.abs(settled - rest).max()
+        claims.append((f"{name}: distance from there to the rest state of the damped net [m]", apart, 0.0, 1e-11))
     return tuple(claims)
 
 
 def in_space(p):
-    """The same motion with a third coordinate carried along."""
+    """The same motion with an unused third coordinate."""
     return state_of(square_net(p).padded(), make_mesh), p
 
 
@@ -99,7 +106,7 @@ SCENE = Scene(
     cases=CASES,
     duration=T,
     steps=STEPS,
-    methods=INTEGRATORS + (IMPLICIT_MESH,),
+    methods=(*INTEGRATORS, IMPLICIT_MESH),
     acceleration=acceleration,
     start=start,
     run=run,
