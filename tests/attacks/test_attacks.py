@@ -247,7 +247,7 @@ def test_the_grading_process_has_its_memory_and_its_limits_back(trial, settings)
 
 @pytest.mark.long
 def test_a_sandbox_that_does_not_start_is_no_zero(trial, settings, monkeypatch):
-    start = box.Box.start
+    start = box.Sandbox.start
 
     def start_sleeping(self):
         if self.printed:                                               # a second process, after the file was loaded
@@ -255,7 +255,7 @@ def test_a_sandbox_that_does_not_start_is_no_zero(trial, settings, monkeypatch):
         start(self)
 
     monkeypatch.setattr(box, "READY_WITHIN", 0.5)
-    monkeypatch.setattr(box.Box, "start", start_sleeping)
+    monkeypatch.setattr(box.Sandbox, "start", start_sleeping)
     text = HONEST + "import os\nprint('loaded', flush=True)\ndef euler_step(*a):\n    os._exit(0)\n"
     unlucky = submissions.Submission("unlucky", {"integrators": text.encode()}, (), "")
     with pytest.raises(RuntimeError, match="cannot start"), nothing_left():

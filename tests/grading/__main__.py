@@ -23,22 +23,48 @@ from validate.store import whole, write_whole
 
 from . import local, marking, pages, sandbox, similar, submissions
 
+JOBS = max(1, min(8, os.cpu_count() or 1))
 console = Console()
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
+Class = Annotated[
+    Path,
+    typer.Argument(
+        metavar="SUBMISSIONS",
+        help="Folder with one folder or zip per student; a bare file NAME_LESSON.py will do.",
+    ),
+]
+Out = Annotated[Path, typer.Option(help="Folder for grades, pages and CSV.")]
+Lessons = Annotated[list[str] | None, typer.Option(help="Only this lesson (may be repeated); all of them without.")]
+Seed = Annotated[
+    str | None,
+    typer.Option(help="Secret from which hidden inputs are drawn; made and kept in OUT/seed.txt without."),
+]
+Due = Annotated[str | None, typer.Option(metavar="YYYY-MM-DDTHH:MM", help="When it was due.")]
+Late = Annotated[
+    float,
+    typer.Option(min=0.0, max=100.0, help="Percent of the maximum taken off for each day begun after that."),
+]
+Roster = Annotated[Path | None, typer.Option(help="CSV: student_id, last_name, first_name, email, timestamp.")]
+Jobs = Annotated[int, typer.Option(min=1, help="Submissions at a time.")]
+Executor = Annotated[
+    str | None,
+    typer.Option(metavar="tcp://HOST:PORT", help="Hand the submissions to this Dask scheduler."),
+]
+
+
 @app.command(help="Grade a class: one folder or zip per student, the lesson files inside.")
 def grade(
-    class_: Annotated[Path, typer.Argument(
-        metavar="SUBMISSIONS", help="Folder with one folder or zip per student; a bare file NAME_LESSON.py will do.")],
-    out: Annotated[Path, typer.Option(help="Folder for grades, pages and CSV.")] = Path("grades"),
-    lesson: Annotated[list[str] | None, typer.Option(help="Only this lesson (may be repeated); all of them without.")] = None,
-    seed: Annotated[str | None, typer.Option(help="Secret from which hidden inputs are drawn; made and kept in OUT/seed.txt without.")] = None,
-    due: Annotated[str | None, typer.Option(metavar="YYYY-MM-DDTHH:MM", help="When it was due.")] = None,
-    late: Annotated[float, typer.Option(min=0.0, max=100.0, help="Percent of the maximum taken off for each day begun after that.")] = 0.0,
-    roster: Annotated[Path | None, typer.Option(help="CSV: student_id, last_name, first_name, email, timestamp.")] = None,
-    jobs: Annotated[int, typer.Option(min=1, help="Submissions at a time.")] = max(1, min(8, os.cpu_count() or 1)),
-    executor: Annotated[str | None, typer.Option(metavar="tcp://HOST:PORT", help="Hand the submissions to this Dask scheduler.")] = None,
+    class_: Class,
+    out: Out = Path("grades"),
+    lesson: Lessons = None,
+    seed: Seed = None,
+    due: Due = None,
+    late: Late = 0.0,
+    roster: Roster = None,
+    jobs: Jobs = JOBS,
+    executor: Executor = None,
 ):
     lessons = chosen(lesson or [])
     terms = pages.Terms(deadline(due), late)
@@ -53,7 +79,7 @@ def grade(
 # ---------------------------------------------------------------------------------------------- what was asked for
 
 def chosen(lessons):
-    """The lessons to grade, in the order of the course.  Raises BadInput for one that there is not."""
+    """Return the lessons to grade, in the order of the course.  Raises BadInput for an unknown one."""
     for name in lessons:
         modules.bind(name)
     return [n for n in modules.lesson_names() if not lessons or n in lessons]
@@ -67,9 +93,9 @@ def deadline(text):
 
 
 def secret(folder, seed):
-    """The seed: the one that was given, or the one of this folder, or a new one.  It is kept, so that grading is repeatable.
+    """Return the given seed, the one kept in this folder, or a new one.  It is kept, so that grading is repeatable.
 
-    Raises BadInput for an empty one: everybody could guess it.
+    Raises BadInput for an empty seed, which everybody could guess.
     """
     file = folder / "seed.txt"
     kept = seed is None and file.is_file()
@@ -93,7 +119,8 @@ def secret(folder, seed):
 def run(intake, settings, people, terms, jobs, executor, out):
     """Grade what is not graded yet, write every file, and say how it went: 0, or 1 when somebody is not graded."""
     if sandbox.unavailable():
-        console.print(f"NOT A GRADE: {sandbox.unavailable()}. Students' code runs without a sandbox; use this to check yourself only.", style="bold red")
+        advice = "Students' code runs without a sandbox; use this to check yourself only."
+        console.print(f"NOT A GRADE: {sandbox.unavailable()}. {advice}", style="bold red")
     pages.show_intake(console, intake)
     kept, handed_in = out / "results", intake.submissions
     kept.mkdir(exist_ok=True)
@@ -105,9 +132,11 @@ def run(intake, settings, people, terms, jobs, executor, out):
         else:
             todo.append(submission)
     try:
-        with Progress(TextColumn("{task.description:12}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), console=console) as bars:
+        columns = TextColumn("{task.description:12}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn()
+        with Progress(*columns, console=console) as bars:
             bar = bars.add_task("submissions", total=len(handed_in), completed=len(results))
-            for student, result, why in (on_cluster(executor, todo, settings) if executor else local.results(jobs, todo, settings)):
+            coming = on_cluster(executor, todo, settings) if executor else local.results(jobs, todo, settings)
+            for student, result, why in coming:
                 if result:
                     results[student] = result
                     write_whole(kept / f"{pages.file_name(student)}.json", result)
@@ -156,7 +185,7 @@ def interrupted(*_):
 
 def main(arguments=None):
     """Run the command line."""
-    signal.signal(signal.SIGTERM, interrupted)                         # ends as by Ctrl-C: nothing is left, and what was graded is kept
+    signal.signal(signal.SIGTERM, interrupted)                         # like Ctrl-C: cleans up, keeps results
     with one_sentence("grade"):
         app(arguments, prog_name="grade")
 

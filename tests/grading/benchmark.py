@@ -321,8 +321,10 @@ def scale(count: Annotated[int, typer.Option("--submissions", min=EVERY, help="T
             [(workers, f"{grading:.2f}", f"{whole:.2f}", f"{part:.0%}")
              for workers, grading, whole, part in simulated(honest + evil, after)])
     limit = LARGE * mean(honest + evil) / sum(steps[name].cpu for name in MEANWHILE)
-    console.print(f"The grading itself is the bottleneck up to about {limit:.0f} workers; beyond, it is the one process "
-                  "that hands submissions over and keeps the results.")
+    console.print(
+        f"The grading itself is the bottleneck up to about {limit:.0f} workers; beyond, it is the one process "
+        "that hands submissions over and keeps the results."
+    )
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
-"""One worker process with one student's file, to which the trusted parent talks in plain data only.
+"""One worker process with one student's file, which exchanges only plain data with the trusted parent.
 
-On Linux the worker lives in the sandbox, and sees Python, NumPy, the file and the lessons as handed out.  Elsewhere it is a process with nothing around it,
-and what comes of it is no grade.
+On Linux the worker runs in the sandbox.  There it can read Python, NumPy, the file and the lessons as handed out.
+Elsewhere it is an ordinary process, and its results are not grades.
 """
 
 import contextlib
@@ -28,40 +28,69 @@ from . import sandbox, shipping, wire
 from .meter import LOOK, Meter
 
 HERE = Path(__file__).resolve().parent
-LIMITS = {"AS": 2 << 30, "CPU": 150, "NPROC": 4, "FSIZE": 16 << 20, "NOFILE": 64, "CORE": 0}     # [bytes], [s], [-], [bytes], [-], [bytes]
-READY_WITHIN = 60.0          # [s]: starting takes 0.2, on a machine that does nothing else
-IMPORT_WITHIN = 10.0         # a student's file may take so long to load [s of its own]
-CROWDED = 10.0               # so many times as long as its own time may pass before a call is given up: then it is tried once more, alone [-]
-ENDED_WITHIN = 60.0          # [s]: the pipes of a sandbox close 0.01 after its end, on a quiet machine
-LAST_WORD_WITHIN = 3.0       # [s]: a worker that has closed the wire ends so soon, or lives on
-MOST_ENTRIES = 1_000_000     # of all arrays that a student's code hands to one of our functions [-]: the tests need 10⁴
+LIMITS = {
+    "AS": 2 << 30,           # [bytes]
+    "CPU": 150,              # [s]
+    "NPROC": 4,
+    "FSIZE": 16 << 20,       # [bytes]
+    "NOFILE": 64,
+    "CORE": 0,               # [bytes]
+}
+READY_WITHIN = 60.0          # [s]: starting takes 0.2 on an idle machine
+IMPORT_WITHIN = 10.0         # time to load a student's file [s of its own]
+CROWDED = 10.0               # ratio of elapsed to own time at which a call is given up; then it gets a second try [-]
+ENDED_WITHIN = 60.0          # [s]: the pipes of a sandbox close 0.01 after its end on an idle machine
+LAST_WORD_WITHIN = 3.0       # [s]: a worker that has closed the wire ends in this time, or it still lives
+MOST_ENTRIES = 1_000_000     # of all arrays that a student's code passes to our functions [-]: the tests need 10⁴
 DEEPEST = 16                 # calls inside calls, there and back [-]: the tests need 4
-PRINTED = 20_000             # of what is printed, so much is kept [bytes]
-NOTE = re.compile(rb"\0note ([a-z]{1,20})\n")         # of the worker's, among what is printed
-CUT = re.compile(rb"\0(?:n|no|not|note|note [a-z]{0,20})?\Z")            # the beginning of one
-ERRORS = {e.__name__: e for e in (
-    BadInput, Diverged, NotImplementedError, ValueError, TypeError, ZeroDivisionError, IndexError, KeyError, AttributeError, NameError,
-    UnboundLocalError, ImportError, ModuleNotFoundError, SyntaxError, IndentationError, ArithmeticError, FloatingPointError,
-    OverflowError, RecursionError, MemoryError, np.linalg.LinAlgError)}
+PRINTED = 20_000             # printed text that is kept [bytes]
+NOTE = re.compile(rb"\0note ([a-z]{1,20})\n")         # a note of the worker in the printed text
+CUT = re.compile(rb"\0(?:n|no|not|note|note [a-z]{0,20})?\Z")            # the beginning of a note
+ERRORS = {
+    error.__name__: error
+    for error in (
+        BadInput,
+        Diverged,
+        NotImplementedError,
+        ValueError,
+        TypeError,
+        ZeroDivisionError,
+        IndexError,
+        KeyError,
+        AttributeError,
+        NameError,
+        UnboundLocalError,
+        ImportError,
+        ModuleNotFoundError,
+        SyntaxError,
+        IndentationError,
+        ArithmeticError,
+        FloatingPointError,
+        OverflowError,
+        RecursionError,
+        MemoryError,
+        np.linalg.LinAlgError,
+    )
+}
 
 
 class StudentError(Exception):
-    """The student's program raised an error that is none of Python's usual ones, or ended, or took too long, or sent no data."""
+    """The student's program raised an error of its own kind, ended, took too long, or sent no data."""
     where = ""               # place in the student's file
 
 
 class Lost(StudentError):
-    """… and its worker is gone."""
+    """The program's worker has ended."""
 
 
 class Late(StudentError):
-    """One of our own functions, with what the student's code handed it, takes too long."""
+    """One of our own functions takes too long with the arguments of the student's code."""
 
 
 # ---------------------------------------------------------------------------------------------- the worker
 
 class Call:
-    """A function that lives in the worker."""
+    """A function of the worker."""
 
     def __init__(self, box, name):
         self.box, self.name = box, name
@@ -70,37 +99,53 @@ class Call:
         return self.box.call(self.name, arguments)
 
 
-class Box:
-    """One lesson's file of one submission.  Calls of its functions start the worker, and start another one when it was lost.
+class Sandbox:
+    """One lesson's file of one submission.  Calls of its functions start the worker, and a new one if it was lost.
 
-    exercises: functions that the file must answer · text: the file, as bytes · given: folder of the lessons as handed out · earlier: {lesson: {exercise function: worked one}} that
-    the file may build on · budget [s] for all calls together · begin(limit) allows the next calls so many seconds together.  Seconds are the worker's own (see Meter).
-    secret: no word of the student's code is kept with its errors, since it may know secret inputs · failed: what the grader itself could not do ·
-    late: the time was up, or the system ended the worker, for which others may be the cause · seen: what the instructor may look into, as in watch.SENTENCES.
+    Arguments:
+    exercises: functions that the file must define · text: the file, as bytes · given: folder of the lessons as handed
+    out · earlier: {lesson: {exercise function: worked one}} that the file may import · budget: time of all calls
+    together [s].  Seconds are the worker's own (see Meter).
+
+    Attributes:
+    secret: errors keep no text of the student's code, which may know secret inputs · failed: an error of the grader
+    itself · late: the time was up or the system ended the worker, perhaps because of other processes · seen: codes of
+    watch.SENTENCES that the instructor may look into.
     """
 
     def __init__(self, lesson, exercises, text, given, earlier, budget, records=(), limits=LIMITS):
-        self.earlier, self.budget, self.printed, self.process, self.broken, self.depth = earlier, budget, b"", None, None, 0
-        self.lesson, self.lines, self.secret, self.failed, self.late, self.seen = lesson, text.count(b"\n") + 1, False, None, False, set()
+        self.lesson, self.earlier, self.budget = lesson, earlier, budget
+        self.lines = text.count(b"\n") + 1
+        self.printed, self.seen = b"", set()
+        self.process, self.broken, self.failed = None, None, None
+        self.secret, self.late, self.depth = False, False, 0
         self.records, self.meter = {kind.__name__: kind for kind in records}, Meter()
         self.begin(budget)
         self.folder = Path(tempfile.mkdtemp(prefix="workbook-"))
         self.folder.chmod(0o755)
         (self.folder / f"{lesson}.py").write_bytes(text)
         (self.folder / f"{lesson}.py").chmod(0o444)
-        config = {"lesson": lesson, "exercises": exercises, "earlier": {name: list(functions) for name, functions in earlier.items()}}
+        names = {name: list(functions) for name, functions in earlier.items()}
+        config = {"lesson": lesson, "exercises": exercises, "earlier": names}
         if sandbox.unavailable():
             inside = {"wire": str(HERE), "given": str(given), "student": str(self.folder)}
-            limits, self.binds = {name: value for name, value in limits.items() if name != "NPROC"}, None
+            limits = {name: value for name, value in limits.items() if name != "NPROC"}
+            self.binds = None
         else:
             inside = {"wire": "/box", "given": "/given", "student": "/student"}
-            self.binds = {**{HERE / file: f"/box/{file}" for file in ("wire.py", "shipping.py", "worker.py")}, given: "/given", self.folder: "/student"}
-        self.program = [sys.executable, "-I", "-B", "-u", f"{inside['wire']}/worker.py", json.dumps({**config, **inside, "limits": limits})]
+            ours = {HERE / file: f"/box/{file}" for file in ("wire.py", "shipping.py", "worker.py")}
+            self.binds = {**ours, given: "/given", self.folder: "/student"}
+        whole = json.dumps({**config, **inside, "limits": limits})
+        self.program = [sys.executable, "-I", "-B", "-u", f"{inside['wire']}/worker.py", whole]
 
     # -- functions and records on the wire
 
     def name_of(self, function):
-        """The name under which the worker calls a function.  One that knows nothing goes there as code; the others are called back here."""
+        """Return the name under which the worker calls a function.
+
+        A function that uses only its arguments, numbers and NumPy is sent as code.  The worker calls any other one back
+        in this process.
+        """
         if isinstance(function, Call):
             return function.name
         if function not in self.names:
@@ -142,9 +187,9 @@ class Box:
     # -- the conversation
 
     def begin(self, limit):
-        """The next calls may take so long, all together [s].
+        """Allow the next calls `limit` seconds together.
 
-        A worker that has said something unasked is replaced: it would answer past the question.
+        A worker that has sent a frame unasked is replaced, because its answers would no longer match the calls.
         """
         self.allow(limit)
         if self.process and self.depth == 0 and not self.quiet():
@@ -153,23 +198,24 @@ class Box:
         self.allow(limit)
 
     def allow(self, limit):
-        """Count the time from now on."""
+        """Set the time limits, from now on."""
         limit = max(0.0, min(limit, self.budget - self.meter.used))
-        self.until, self.patience = self.meter.used + limit, time.monotonic() + CROWDED * limit
+        self.until = self.meter.used + limit
+        self.patience = time.monotonic() + CROWDED * limit
 
     def quiet(self):
-        """Whether the worker has said nothing unasked.
+        """Whether the worker has sent nothing unasked.
 
-        What it has said comes before its echo, so that this does not depend on how fast anything is.
+        Anything sent earlier arrives before the echo, so that the result does not depend on timing.
         """
         word = secrets.token_hex(8)
         try:
             return self.call("echo", (word,)) == word and self.inbox.empty()
-        except Exception:                                              # Lost, or whatever it has sent
+        except Exception:                                              # Lost, or an error that the worker has sent
             return False
 
     def call(self, name, arguments):
-        """What the worker's function of that name returns; raises what it raised, or Lost."""
+        """Call the worker's function of that name.  Raises its error, or Lost."""
         if self.broken:
             raise self.broken
         remember(self.records, arguments)
@@ -190,7 +236,7 @@ class Box:
             self.meter.look(False)
 
     def open(self):
-        """Import the file.  When that fails every later call fails in the same way, at once."""
+        """Import the file.  If that fails, every later call raises the same error at once."""
         self.begin(IMPORT_WITHIN)
         try:
             self.call("import", ())
@@ -203,32 +249,39 @@ class Box:
             self.broken = e
 
     def start(self):
-        self.process = process = sandbox.started(self.binds, self.program, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        pipes = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
+        self.process = sandbox.started(self.binds, self.program, **pipes)
         self.inbox, self.outbox, self.own, self.names = queue.Queue(4), queue.Queue(64), {}, {}
-        self.peer = wire.Peer(self.send, self.receive, self.resolve, self.name_of, self.record, describe, self.error,
-                              fatal=(KeyboardInterrupt, wire.WireError, Lost, Late))
+        self.peer = wire.Peer(
+            self.send, self.receive, self.resolve, self.name_of, self.record, describe, self.error,
+            fatal=(KeyboardInterrupt, wire.WireError, Lost, Late),
+        )
         self.peer.served = self.peer.serve
         self.peer.serve = self.serve
-        self.peer.may_change = lambda name: name.rpartition(":")[2].startswith("solve_")     # all else is pure, or the tests could be moved
+        # only these may change their arguments: otherwise a student's code could change the inputs of the tests
+        self.peer.may_change = lambda name: name.rpartition(":")[2].startswith("solve_")
         self.over = threading.Event()
-        self.threads = [threading.Thread(target=task, args=(process, self.inbox, self.outbox, self.over), daemon=True)
-                        for task in (_reading, _writing, self._listening)]
+        arguments = self.process, self.inbox, self.outbox, self.over
+        tasks = _reading, _writing, self._listening
+        self.threads = [threading.Thread(target=task, args=arguments, daemon=True) for task in tasks]
         for thread in self.threads:
             thread.start()
         try:
             ready = self.inbox.get(timeout=READY_WITHIN)
         except queue.Empty:
             ready = None
-        if not isinstance(ready, tuple):                               # no code of the student's has run yet
+        if not isinstance(ready, tuple):                               # the student's code has not run yet
             self.stop()
-            self.failed = RuntimeError(f"the grader cannot start its sandbox: {self.printed[-500:].decode(errors='replace')}")
+            printed = self.printed[-500:].decode(errors="replace")
+            self.failed = RuntimeError(f"the grader cannot start its sandbox: {printed}")
             raise self.failed
-        self.meter.follow(process)
+        self.meter.follow(self.process)
 
     def serve(self, name, arguments):
-        """Work one of our functions for the student's code, if what it hands over is of a sane size."""
-        if (sum(array.size for array in wire.arrays_in(arguments)) > MOST_ENTRIES or self.depth > DEEPEST
-                or not name.startswith(("test:", "solution:"))):
+        """Run one of our functions for the student's code.  Raises WireError if the call is too large or too deep."""
+        entries = sum(array.size for array in wire.arrays_in(arguments))
+        ours = name.startswith(("test:", "solution:"))
+        if not ours or entries > MOST_ENTRIES or self.depth > DEEPEST:
             raise wire.WireError("a call that no test asks for")
         if self.depth > 1:
             return self.peer.served(name, arguments)
@@ -240,18 +293,19 @@ class Box:
             self.meter.used += time.thread_time() - began
 
     def send(self, frame):
-        """Hand a frame to the worker."""
+        """Send a frame to the worker."""
         while True:
             try:
                 return self.outbox.put(frame, timeout=LOOK)
-            except queue.Full:                                         # it asks, and does not listen to the answers
+            except queue.Full:                                         # the worker calls and does not read the answers
                 self.look(True)
 
     def receive(self):
-        """The next frame."""
+        """Wait for the next frame.  Raises Lost if the worker ends or the time is up."""
         while True:
             if self.meter.due():
-                self.look(self.inbox.empty() and not self.outbox.unfinished_tasks and not arriving(self.process.stdout))
+                all_read = not self.outbox.unfinished_tasks
+                self.look(self.inbox.empty() and all_read and not arriving(self.process.stdout))
             try:
                 frame = self.inbox.get(timeout=LOOK)
                 break
@@ -262,7 +316,7 @@ class Box:
         return frame
 
     def look(self, owes):
-        """See what time the worker has taken, and end it when that is too much."""
+        """Measure the worker's time, and end the worker if it has taken too long."""
         self.meter.look(owes)
         if self.meter.used >= self.until or time.monotonic() >= self.patience:
             raise self.too_long()
@@ -270,19 +324,21 @@ class Box:
     def too_long(self):
         self.late = True
         self.seen.add("time")
-        return self.lost("it took too long" if self.meter.used < self.budget else "the time for the whole submission is used up")
+        if self.meter.used < self.budget:
+            return self.lost("it took too long")
+        return self.lost("the time for the whole submission is used up")
 
     def last_word(self):
-        """Why the worker ended, if it did and if the system says so."""
+        """Return why the worker ended, as far as its exit code tells; an empty string if it still runs."""
         try:
             code = self.process.wait(timeout=LAST_WORD_WITHIN)
-        except subprocess.TimeoutExpired:                              # it has closed the wire, and lives
+        except subprocess.TimeoutExpired:                              # it has closed the wire and still runs
             self.meter.used += LAST_WORD_WITHIN
             self.seen.add("wire")
             return ""
         number = -code if code < 0 else code - 128                     # bwrap ends with 128 + the signal of the worker
         self.seen.add("refused" if number == signal.SIGSYS else "end")
-        self.late |= number == signal.SIGKILL                          # perhaps there was no memory left, and it was nobody's fault
+        self.late |= number == signal.SIGKILL                          # other processes may have used up the memory
         if number == signal.SIGSYS:
             return ": it made a system call that no lesson needs"
         return f" ({signal.Signals(number).name})" if number in set(signal.Signals) else ""
@@ -314,7 +370,7 @@ class Box:
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def _listening(self, process, inbox, outbox, over):
-        """Keep the beginning of what is printed, and let the rest go; take out what the worker has noted."""
+        """Keep the beginning of the printed text, drop the rest, and take out the notes of the worker."""
         rest, size = b"", 0
         while chunk := process.stderr.read1(65536):
             chunk = rest + chunk
@@ -329,11 +385,12 @@ class Box:
 
 
 def _reading(process, inbox, outbox, over):
-    """Hand on what the worker sends, until the worker is over: then nobody takes it any more."""
+    """Pass the worker's frames on until the worker is stopped, after which no one takes them from the queue."""
     def hand_on(frame):
         while not over.is_set():
             with contextlib.suppress(queue.Full):
                 return inbox.put(frame, timeout=LOOK)
+
     try:
         while not over.is_set() and (frame := wire.read(process.stdout)) is not None:
             hand_on(frame)
@@ -343,7 +400,7 @@ def _reading(process, inbox, outbox, over):
 
 
 def _writing(process, inbox, outbox, over):
-    """In a thread of its own: a worker that never reads must not stop the parent."""
+    """Write frames to the worker, in a thread, because a worker that never reads must not stop the parent."""
     with contextlib.suppress(OSError, ValueError):
         while (frame := outbox.get()) is not None and not over.is_set():
             process.stdin.write(frame)
@@ -359,7 +416,7 @@ def emptied(line):
 
 
 def arriving(stream):
-    """Whether there is something in a pipe that we have not read yet."""
+    """Whether a pipe holds data that has not been read yet."""
     try:
         import fcntl
         import termios
@@ -369,12 +426,12 @@ def arriving(stream):
 
 
 def describe(e):
-    """An error of our own functions, for the student's code."""
+    """Describe an error of our own functions for the student's code."""
     return [kind.__name__ for kind in type(e).__mro__][:8], str(e)[:300], ""
 
 
 def remember(records, value):
-    """Note the class of every NamedTuple in a value, so that it can come back as one."""
+    """Record the class of every NamedTuple in a value, so that the worker can return one."""
     if isinstance(value, tuple | list):
         if hasattr(value, "_fields"):
             records[type(value).__name__] = type(value)

@@ -1,8 +1,9 @@
 """Which system calls a student's code can make: a filter that bubblewrap loads, compiled by the system's libseccomp.
 
-Only what Python and NumPy need is answered; every other call looks as if the kernel did not have it (ENOSYS), which libraries know how to
-live with.  So there is no second process, no socket, no shared memory outside the limit on the address space, and nothing that two sandboxes
-could signal each other by: no lock, lease, watch or wake-up on a file that both can read.  A call that only an attack makes ends the program.
+Only the calls of Python and NumPy are allowed.  Every other call fails as if the kernel did not have it (ENOSYS), which
+libraries can handle.  A program therefore has no second process, no socket, and no shared memory outside the limit on
+the address space.  Two sandboxes cannot signal each other by a lock, lease, watch or wake-up on a file that both can
+read.  A call that only an attack makes ends the program.
 
 libseccomp compiles for the machine it is on, and its programs end a process that calls through another architecture.
 *Source:* seccomp_rule_add(3), seccomp_export_bpf(3); linux/fcntl.h, linux/futex.h, linux/sched.h.
@@ -16,11 +17,13 @@ from functools import lru_cache
 LIBRARY = "libseccomp.so.2"
 ALLOWED = """
     read readv pread64 preadv write writev pwrite64 pwritev lseek close dup dup2 dup3 pipe pipe2
-    open openat creat stat fstat lstat newfstatat statx access faccessat faccessat2 readlink readlinkat getdents getdents64 getcwd chdir fchdir
+    open openat creat stat fstat lstat newfstatat statx access faccessat faccessat2 readlink readlinkat
+    getdents getdents64 getcwd chdir fchdir
     mkdir mkdirat rmdir unlink unlinkat rename renameat renameat2 ftruncate fsync chmod fchmod fchmodat umask
     select pselect6 poll ppoll
     brk mmap munmap mremap mprotect madvise
-    execve exit exit_group wait4 waitid kill tkill tgkill rt_sigaction rt_sigprocmask rt_sigreturn rt_sigpending rt_sigsuspend sigaltstack restart_syscall pause
+    execve exit exit_group wait4 waitid kill tkill tgkill
+    rt_sigaction rt_sigprocmask rt_sigreturn rt_sigpending rt_sigsuspend sigaltstack restart_syscall pause
     getpid gettid getppid getuid geteuid getgid getegid getgroups getresuid getresgid getpgrp getpgid getsid
     getrlimit setrlimit prlimit64 getrusage times uname getrandom getcpu sched_yield sched_getaffinity
     time gettimeofday clock_gettime clock_getres nanosleep clock_nanosleep alarm getitimer setitimer
@@ -36,12 +39,14 @@ NEVER = """
     setuid setgid setreuid setregid setresuid setresgid setgroups capset
 """.split()
 ARGUMENTS = {                # {call: (which argument, [values])}, all others are refused
-    "fcntl": (1, [0, 1, 2, 3, 4, 1030]),              # F_DUPFD F_GETFD F_SETFD F_GETFL F_SETFL F_DUPFD_CLOEXEC: no locks, leases, hints
+    # F_DUPFD F_GETFD F_SETFD F_GETFL F_SETFL F_DUPFD_CLOEXEC: no locks, leases, hints
+    "fcntl": (1, [0, 1, 2, 3, 4, 1030]),
     "ioctl": (1, [0x5401, 0x5413, 0x5451, 0x5450]),   # TCGETS TIOCGWINSZ FIOCLEX FIONCLEX
 }
 FLAGS = {                    # {call: (which argument, bit that must be set, what it gets without it)}
     "clone": (0, 0x10000, None),                      # CLONE_THREAD
-    "futex": (1, 0x80, errno.EAGAIN),                 # FUTEX_PRIVATE_FLAG; a thread that waits for another's end then asks again and again
+    # FUTEX_PRIVATE_FLAG; a thread that waits for another's end then asks repeatedly
+    "futex": (1, 0x80, errno.EAGAIN),
 }
 KILL, ALLOW = 0x80000000, 0x7FFF0000                  # SCMP_ACT_…
 EQUAL, MASKED = 4, 7                                  # SCMP_CMP_…
@@ -69,13 +74,15 @@ def program():
     if not context:
         raise OSError(errno.ENOMEM, f"{LIBRARY} makes no filter")
     try:
-        library.seccomp_attr_set(context, 2, ctypes.c_uint32(KILL))    # SCMP_FLTATR_ACT_BADARCH: the process, not only the thread
+        # SCMP_FLTATR_ACT_BADARCH: kill the process, not only the thread
+        library.seccomp_attr_set(context, 2, ctypes.c_uint32(KILL))
         for name, action, comparison in rules():
             number = library.seccomp_syscall_resolve_name(name.encode())
-            if number < 0:                                             # not on this architecture, or newer than the library
+            if number < 0:                                             # of another architecture or a newer library
                 continue
             array = (Comparison * 1)(*filter(None, [comparison]))
-            code = library.seccomp_rule_add_array(context, ctypes.c_uint32(action), number, ctypes.c_uint(comparison is not None), array)
+            count = ctypes.c_uint(comparison is not None)
+            code = library.seccomp_rule_add_array(context, ctypes.c_uint32(action), number, count, array)
             if code:
                 raise OSError(-code, f"{LIBRARY} refuses a rule about {name}: {os.strerror(-code)}")
         return exported(library, context)

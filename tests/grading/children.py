@@ -1,7 +1,7 @@
-"""Processes that this one starts: they end when it does, however that ends, and leave no files behind.
+"""Child processes that end when this one ends, for any reason, and leave no files behind.
 
-Each child waits at a pipe whose other end only this process has.  When that closes, the child removes the temporary files and ends at once.  What is left when all
-of them were killed is removed by the next run.
+Each child waits at a pipe whose other end only this process has.  When that end closes, the child removes the temporary
+files and ends at once.  If all of them were killed, the next run removes the files.
 """
 
 import contextlib
@@ -31,7 +31,8 @@ class Pool:
         self.leave = contextlib.ExitStack()
         folder = self.leave.enter_context(temporary())
         end, lifeline = context.Pipe(duplex=False)
-        self.executor = ProcessPoolExecutor(count, mp_context=context, initializer=_begun, initargs=(end, folder, begin, arguments))
+        begun = {"initializer": _begun, "initargs": (end, folder, begin, arguments)}
+        self.executor = ProcessPoolExecutor(count, mp_context=context, **begun)
         self.leave.callback(self.executor.shutdown, wait=True, cancel_futures=True)
         self.lifeline = self.leave.enter_context(lifeline)
         self.submit = self.executor.submit
@@ -81,11 +82,12 @@ def temporary():
 
 
 def remove_leftovers():
-    """Remove folders of runs that were killed: nobody has them locked any more."""
+    """Remove folders of runs that were killed, which no process has locked any more."""
     for folder in Path(tempfile.gettempdir()).glob(f"{PREFIX}*"):
         with contextlib.suppress(OSError):
             about = folder.lstat()
-            if folder.is_dir() and not folder.is_symlink() and about.st_uid == os.geteuid() and time.time() - about.st_mtime > YOUNG:
+            ours = folder.is_dir() and not folder.is_symlink() and about.st_uid == os.geteuid()
+            if ours and time.time() - about.st_mtime > YOUNG:
                 lock = locked(folder)
                 if lock is not None:
                     shutil.rmtree(folder, ignore_errors=True)
@@ -93,7 +95,10 @@ def remove_leftovers():
 
 
 def locked(folder):
-    """A descriptor that keeps a folder locked while this process lives; None when another one has it, or where there are no such locks."""
+    """Return a descriptor that keeps a folder locked while this process lives.
+
+    It is None if another process has the lock, or on systems without such locks.
+    """
     try:
         import fcntl
     except ImportError:
@@ -110,7 +115,7 @@ def locked(folder):
 # ---------------------------------------------------------------------------------------------- limits
 
 def bound(more):
-    """Let this process have only so much more memory [bytes]; the limit that it had before, or None where there are no such limits."""
+    """Limit the growth of this process's memory [bytes]; return the limit before, or None on systems without one."""
     try:
         import resource
         now = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
@@ -137,7 +142,7 @@ class Child:
             self.pool = None
 
     def __call__(self, function, *arguments, patience=None):
-        """What the function returns there.  Raises what it raises, Ended, or TimeoutError when it does not end within so many seconds."""
+        """Call the function in the child.  Raises its error, Ended, or TimeoutError after `patience` seconds."""
         self.pool = self.pool or Pool(1, *self.begin)
         try:
             return self.pool.submit(function, *arguments).result(timeout=patience)
@@ -147,7 +152,7 @@ class Child:
 
 
 def reader():
-    """A child of little memory, to read archives in."""
+    """Start a child with little memory that reads archives."""
     return Child(bound, LITTLE)
 
 

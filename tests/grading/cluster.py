@@ -1,8 +1,9 @@
-"""`grade --executor tcp://HOST:PORT`: the submissions go to a running Dask cluster, and come back marked.
+"""`grade --executor tcp://HOST:PORT`: mark the submissions on a running Dask cluster.
 
-A worker grades each submission in a process of its own, started from the workbook that lies there: so one test run never meets another
-in a process, however many threads a worker has, and what kills the grading does not kill the worker.  --nthreads of a worker is how many
-submissions it grades at a time.  A cluster runs what anybody sends who reaches its ports: keep it in a network of your own.
+A worker grades each submission in a process of its own, started from the workbook on its machine.  Two test runs
+therefore never share a process, and an error that kills the grading process does not kill the worker.  --nthreads of a
+worker is the number of submissions that it grades at a time.  A cluster runs any code sent to its ports: keep it in a
+network of your own.
 """
 
 import json
@@ -25,17 +26,17 @@ from validate import modules
 from . import children, local, marking, sandbox
 
 CONNECT_WITHIN = 5.0         # [s]: a scheduler answers in milliseconds
-WORKERLESS = 30.0            # so long a cluster may be without any worker [s]: a nanny starts a new one in 2
-LOOK_AFTER = 1.0             # while nothing comes, see so often whether the cluster is still there [s]
-AHEAD = 4                    # submissions that wait on the cluster for each that is being graded [-]: all of a large class would fill the scheduler's memory
+WORKERLESS = 30.0            # time that a cluster may be without any worker [s]: a nanny starts a new one in 2
+LOOK_AFTER = 1.0             # interval of checks that the cluster still answers [s]
+AHEAD = 4                    # submissions sent per thread [-]: a whole large class would fill the scheduler's memory
 
 
 # ---------------------------------------------------------------------------------------------- here
 
 def results(address, todo, settings):
-    """(student, result, "") or (student, None, why the grader failed), as they come, each student once.
+    """Generate (student, result, "") or (student, None, why the grader failed), each student once, in any order.
 
-    Raises BadInput when there is no such cluster, no worker, or one whose workbook is not the same as here.
+    Raises BadInput if there is no such cluster, no worker, or one whose workbook differs from this one.
     """
     if not todo:
         return iter(())
@@ -49,18 +50,20 @@ def results(address, todo, settings):
 
 
 def connected(address):
-    """A client of the scheduler there."""
+    """Connect to the scheduler."""
     if not re.fullmatch(r"\w+://\S+:\d+", address):
         raise BadInput(f"--executor {address!r}", "not an address", "write it like tcp://127.0.0.1:8786")
     try:
         from distributed import Client
     except ImportError:
-        raise BadInput("the package distributed", "not installed", "--executor needs it: pip install -c constraints.txt -e '.[cluster]'") from None
+        remedy = "--executor needs it: pip install -c constraints.txt -e '.[cluster]'"
+        raise BadInput("the package distributed", "not installed", remedy) from None
     try:
         return Client(address, timeout=CONNECT_WITHIN, set_as_default=False)
     except (OSError, ValueError) as e:
-        raise BadInput(f"--executor {address}", f"no Dask scheduler that answers ({type(e).__name__})",
-                       "start one there with `dask scheduler`, and name the address that it prints") from None
+        why = f"no Dask scheduler that answers ({type(e).__name__})"
+        remedy = "start one there with `dask scheduler`, and name the address that it prints"
+        raise BadInput(f"--executor {address}", why, remedy) from None
 
 
 def fit(client, address, settings):
@@ -68,10 +71,10 @@ def fit(client, address, settings):
     try:
         client.wait_for_workers(1, timeout=CONNECT_WITHIN)
     except TimeoutError:
-        raise BadInput(f"--executor {address}", "a scheduler without workers",
-                       f"start one on each machine, where the workbook is: `dask worker {address}`") from None
+        remedy = f"start one on each machine, where the workbook is: `dask worker {address}`"
+        raise BadInput(f"--executor {address}", "a scheduler without workers", remedy) from None
     try:
-        client.run_on_scheduler(makeup, settings.code)                 # it unpacks what passes through
+        client.run_on_scheduler(makeup, settings.code)                 # the scheduler unpickles messages, too
     except Exception as e:
         raise refusal(f"the scheduler at {address}", without_workbook(e)) from None
     for worker, answer in client.run(asked, parcel(None, settings), on_error="return").items():
@@ -89,25 +92,32 @@ def in_a_line(error):
 
 
 def refusal(thing, unfit):
-    return BadInput(thing, unfit, "give it the workbook and the locked versions that are here, start it again, and repeat the command")
+    remedy = "give it the workbook and the locked versions that are here, start it again, and repeat the command"
+    return BadInput(thing, unfit, remedy)
 
 
 def parcel(submission, settings, first=None):
-    """What travels to a worker: everything that it needs, as bytes.  first: the result of a first try, of which a part is done again."""
+    """Pickle all that a worker needs.  first: the result of a first try, of which a part is done again."""
     return pickle.dumps((submission, settings, makeup(settings.code), sandbox.private, first))
 
 
 def makeup(code):
-    """What marks depend on besides the submission: {thing: which}."""
-    return {"workbook": code, "Python": f"{sys.version_info.major}.{sys.version_info.minor}", "numpy": version("numpy"),
-            "pytest": version("pytest"), "sandbox": sandbox.unavailable() or "bubblewrap"}
+    """Return the versions on which marks depend besides the submission: {thing: version}."""
+    return {
+        "workbook": code,
+        "Python": f"{sys.version_info.major}.{sys.version_info.minor}",
+        "numpy": version("numpy"),
+        "pytest": version("pytest"),
+        "sandbox": sandbox.unavailable() or "bubblewrap",
+    }
 
 
 def graded(client, address, todo, settings):
-    """Hand everything over, and wait.  What timed out or failed is tried once more at the end, when a machine does nothing else."""
+    """Grade all submissions.  One that timed out or failed is tried once more at the end, alone on a machine."""
     again = []
+    first_tries = [(submission, None) for submission in todo]
     try:
-        for submission, result, why in outcomes(client, address, [(submission, None) for submission in todo], settings):
+        for submission, result, why in outcomes(client, address, first_tries, settings):
             if workers_of(client) and (why or result["again"]):
                 again.append((submission, result))
             else:
@@ -115,18 +125,23 @@ def graded(client, address, todo, settings):
         machines = {worker.rpartition(":")[0]: worker for worker in workers_of(client)}
         for submission, result, why in outcomes(client, address, again, settings, [*machines.values()]):
             yield submission.student, result, why
-    finally:                                                           # also when the run is interrupted: what waits is cancelled with it
+    finally:                                                           # an interrupted run also cancels what waits
         client.close(timeout=CONNECT_WITHIN)
 
 
 def outcomes(client, address, todo, settings, alone=None):
-    """(submission, result, why), as they come.  Dask gives what a dead worker had to another one.  alone: workers that do one at a time."""
+    """Generate (submission, result, why), in any order.
+
+    Dask gives the submissions of a dead worker to another one.  alone: workers that grade one at a time.
+    """
     waiting, running, finished, seen = deque(todo), {}, queue.Queue(), time.monotonic()
     free, room = deque(alone or ()), threads_of(client)
     while waiting or running:
         while waiting and (free if alone else len(running) < AHEAD * room):
             submission, first = waiting.popleft()
-            place = {"workers": [free.popleft()], "allow_other_workers": True} if alone else {}          # if that one has gone
+            place = {}
+            if alone:                                                  # other workers if that one has gone
+                place = {"workers": [free.popleft()], "allow_other_workers": True}
             future = client.submit(asked, parcel(submission, settings, first), pure=False, retries=1, **place)
             running[future] = submission, place.get("workers", ())
             future.add_done_callback(finished.put)
@@ -149,20 +164,20 @@ def outcomes(client, address, todo, settings, alone=None):
 
 
 def threads_of(client):
-    """How many submissions the cluster grades at a time; 0 when it does not answer."""
+    """Return the number of submissions that the cluster grades at a time; 0 if it does not answer."""
     return sum(workers_of(client).values())
 
 
 def workers_of(client):
-    """{address of a worker: its threads}; none when the scheduler does not answer."""
+    """Return {address of a worker: its threads}; empty if the scheduler does not answer."""
     try:
         return dict(client.nthreads()) if client.status == "running" else {}
-    except Exception:                                                  # whatever Dask says when it is cut off
+    except Exception:                                                  # Dask raises errors of many kinds when cut off
         return {}
 
 
 def fetched(future):
-    """(result, "") or (None, why the grader failed)."""
+    """Return (result, "") or (None, why the grader failed)."""
     try:
         unfit, result, why = future.result()
     except ImportError as e:
@@ -177,32 +192,40 @@ def fetched(future):
 # ---------------------------------------------------------------------------------------------- on a worker
 
 def asked(parcel):
-    """(why this worker may not grade, result, why the grader failed), from a process of its own.  Raises RuntimeError when that breaks."""
+    """Grade in a process of its own: (why this worker may not grade, result, why the grader failed).
+
+    Raises RuntimeError if that process breaks.
+    """
     patience = marking.patience(pickle.loads(parcel)[1])
+    command = [sys.executable, "-m", __name__]
     try:
-        run = subprocess.run([sys.executable, "-m", __name__], cwd=modules.ROOT, input=parcel, capture_output=True, timeout=patience)
+        run = subprocess.run(command, cwd=modules.ROOT, input=parcel, capture_output=True, timeout=patience)
     except subprocess.TimeoutExpired:
         raise RuntimeError(f"the grading process did not end within {patience:g} s") from None
     try:
         return tuple(json.loads(run.stdout))
     except ValueError:
-        last = run.stderr.decode(errors="replace").strip().splitlines()[-1:]
-        raise RuntimeError(f"the grading process ended unexpectedly ({run.returncode}): {' '.join(last)[:300]}") from None
+        last = " ".join(run.stderr.decode(errors="replace").strip().splitlines()[-1:])[:300]
+        raise RuntimeError(f"the grading process ended unexpectedly ({run.returncode}): {last}") from None
 
 
 def answer(submission, settings, theirs, private, first=None):
-    """What `asked` returns, in the process of its own; without a submission only whether this worker may grade.  private: what the sandbox must hide, if it is here, too."""
+    """Return what `asked` returns, in the process of its own.
+
+    Without a submission, only check whether this worker may grade.  private: paths that the sandbox must hide.
+    """
     try:
         sandbox.keep_out(private)
     except BadInput as e:
         return str(e), None, ""
     ours = makeup(marking.code_digest(settings.lessons))
-    unfit = "; ".join(f"with {thing} {ours[thing]} instead of {theirs[thing]}" for thing in theirs if ours[thing] != theirs[thing])
+    differ = [thing for thing in theirs if ours[thing] != theirs[thing]]
+    unfit = "; ".join(f"with {thing} {ours[thing]} instead of {theirs[thing]}" for thing in differ)
     return (unfit, None, "") if unfit or submission is None else ("", *local.marked(submission, settings, first))
 
 
 def orphaned(parent, folder):
-    """End when the worker does: another one grades this again."""
+    """End when the worker ends; another one grades the submission again."""
     while os.getppid() == parent:
         time.sleep(1.0)
     shutil.rmtree(folder, ignore_errors=True)
@@ -211,7 +234,7 @@ def orphaned(parent, folder):
 
 def main():
     channel = os.fdopen(os.dup(1), "w")
-    os.dup2(2, 1)                                                      # nothing else may get in between
+    os.dup2(2, 1)                                                      # only the answer goes to standard output
     with children.temporary() as tempfile.tempdir:
         threading.Thread(target=orphaned, args=(os.getppid(), tempfile.tempdir), daemon=True).start()
         json.dump(answer(*pickle.load(sys.stdin.buffer)), channel)

@@ -1,7 +1,7 @@
-"""`python -m tests.grading.example FOLDER`: a class of five to try the grader on, made from the worked answers, and its class list.
+"""`python -m tests.grading.example FOLDER`: make a class of five from the worked answers, and its class list.
 
-ada has everything right (a zip), bob forgets dt in Euler's method, cem has not begun (a zip), dia's second file does not load, eve's first
-file ends the program that imports it.  fay is on the list and hands nothing in.
+ada has everything right (a zip).  bob forgets dt in Euler's method.  cem has not begun (a zip).  dia's second file does
+not load.  eve's first file ends the program that imports it.  fay is on the list and hands nothing in.
 """
 
 import sys
@@ -34,8 +34,13 @@ def files():
     stubs = {name: (modules.ROOT / "lessons" / f"{name}.py").read_text() for name in (first, second)}
     right = {name: worked(name) for name in (first, second)}
     wrong = right[first].replace("v + dt * acceleration(t, x, v, p)\n", "v + acceleration(t, x, v, p)\n", 1)
-    return {"ada": right, "bob": {first: wrong, second: stubs[second]}, "cem": stubs, "dia": {first: right[first], second: right[second] + "\n)(\n"},
-            "eve": {first: "import os\n\nos._exit(0)\n"}}
+    return {
+        "ada": right,
+        "bob": {first: wrong, second: stubs[second]},
+        "cem": stubs,
+        "dia": {first: right[first], second: right[second] + "\n)(\n"},
+        "eve": {first: "import os\n\nos._exit(0)\n"},
+    }
 
 
 def make(folder):

@@ -173,7 +173,7 @@ def tidy(text, digits=DIGITS):
     text = _in_brackets(text, lambda array: BETWEEN.sub(", ", MARGIN.sub("", array)))
     text = FLOAT.sub(lambda match: _shortened(float(match[0]), digits), text)
     for most in MOST_NUMBERS:
-        cut = _in_brackets(text, lambda array: _beginning(array, most))
+        cut = _in_brackets(text, lambda array, most=most: _beginning(array, most))
         if len(cut) <= LONGEST:
             return cut
     return cut[:LONGEST - 2].rpartition(" ")[0] + " …"

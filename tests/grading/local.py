@@ -11,7 +11,7 @@ DIED = "the grading process ended unexpectedly, or hung"
 def results(jobs, todo, settings):
     """(student, result, "") or (student, None, why the grader failed), as they come.
 
-    Where the time was up or the grader failed, others may have been the cause: that is tried once more at the end, alone.
+    If the time was up or the grader failed, other processes may be the cause: it is tried once more at the end, alone.
     """
     again = []
     for submission, result, why in together(jobs, todo, settings):
@@ -22,13 +22,17 @@ def results(jobs, todo, settings):
     with children.Child(sandbox.keep_out, sandbox.private) as child:
         for submission, first in again:
             try:
-                yield submission.student, *child(marked, submission, settings, first, patience=marking.patience(settings))
+                patience = marking.patience(settings)
+                yield submission.student, *child(marked, submission, settings, first, patience=patience)
             except (children.Ended, TimeoutError):
                 yield submission.student, None, DIED
 
 
 def together(jobs, todo, settings):
-    """(submission, result, why the grader failed), as they come.  A process that dies or hangs takes down what the others are at; the rest is done by new ones."""
+    """Generate (submission, result, why the grader failed), in any order.
+
+    A process that dies or hangs ends those of the others, too; new processes do the rest.
+    """
     waiting = deque(todo)
     while waiting:
         running = {}
@@ -50,7 +54,10 @@ def together(jobs, todo, settings):
 
 
 def marked(submission, settings, first=None):
-    """(result, "") or (None, why the grader failed).  first: the result of a first try, of which a part is done again."""
+    """Return (result, "") or (None, why the grader failed).
+
+    first: the result of a first try, of which a part is done again.
+    """
     try:
         return marking.again(submission, settings, first) if first else marking.mark(submission, settings), ""
     except Exception as e:

@@ -1,6 +1,7 @@
-"""Mark one submission: the same tests as everyone's, with the student's code in the sandbox and the judgement out here.
+"""Mark one submission: the student's code runs in the sandbox, and the tests, the same for all, run in this process.
 
-A manifest fixes what there is to earn.  A test that did not pass, for whatever reason, earns nothing of its points and touches no other.
+A manifest lists every test with its points.  A test that did not pass, for any reason, earns nothing and affects no
+other test.
 """
 
 import contextlib
@@ -15,54 +16,84 @@ from . import children, expect, points, remote, sandbox, watch
 from .box import CROWDED
 from .submissions import spelt_out
 
-BUDGET = 60.0                # of one lesson of one submission, all calls together [s]: the worked one takes 1
-MEMORY = 2 << 30             # so much may the grader's own process grow by what a student's code hands back, which broadcasts [bytes]
-OTHER_NUMBERS, NOT_REFUSED, NO_ANSWER = "not an array of finite numbers of the right shape", "not the error that the docstring asks for", "an error, or no answer"
+BUDGET = 60.0                # time of one lesson of one submission, all calls together [s]: the worked one takes 1
+MEMORY = 2 << 30             # growth of the grader's own process, because answers may broadcast to large arrays [bytes]
+OTHER_NUMBERS = "not an array of finite numbers of the right shape"
+NOT_REFUSED = "not the error that the docstring asks for"
+NO_ANSWER = "an error, or no answer"
 WORDS = (*expect.OFF, OTHER_NUMBERS, NOT_REFUSED, NO_ANSWER)
-PRINTED = 2000               # of what a student's code prints, so much is shown [characters]
+PRINTED = 2000               # printed text that is shown [characters]
+GRADER = (
+    "box",
+    "calls",
+    "expect",
+    "marking",
+    "meter",
+    "plugin",
+    "points",
+    "remote",
+    "sandbox",
+    "shipping",
+    "watch",
+    "wire",
+    "worker",
+)
 
 
 class Settings(NamedTuple):
-    """How a class is graded: the same for every submission."""
+    """The settings of grading a class, the same for every submission."""
     lessons: tuple
     seed: str                # secret
     manifest: tuple          # ((lesson, exercise, function, test, points, hint), …)
     code: str                # digest of tests, solutions and grader
 
     def digest(self, submission):
-        """Changes when a submission has to be graded again."""
+        """Return a digest that changes when the submission has to be graded again."""
         return hashlib.sha256(repr((self, submission.digest(), sandbox.unavailable())).encode()).hexdigest()
 
 
 def settings(lessons, seed):
-    """The Settings for these lessons."""
+    """Return the Settings for these lessons."""
     return Settings(tuple(lessons), seed, manifest(lessons), code_digest(lessons))
 
 
 def manifest(lessons):
-    """Every test that gives points, in the order of the lessons."""
+    """List every test that gives points, in the order of the lessons and exercises."""
     rows = []
     for lesson in lessons:
         functions = remote.exercises(lesson)
-        rows += [(lesson, o.exercise, functions[o.exercise], o.test, o.points, o.hint) for o in points.grade(lesson, None, collect=True)]
+        for o in points.grade(lesson, None, collect=True):
+            rows.append((lesson, o.exercise, functions[o.exercise], o.test, o.points, o.hint))
     return tuple(sorted(rows, key=lambda row: (lessons.index(row[0]), [int(n) for n in row[1].split(".")])))
 
 
 def code_digest(lessons=None):
-    """Fingerprint of everything that decides about points in these lessons, or in all of them; the same wherever the workbook lies."""
-    grader = ("box", "calls", "expect", "marking", "meter", "plugin", "points", "remote", "sandbox", "shipping", "watch", "wire", "worker")
-    files = {*modules.SOLUTIONS.rglob("*.py"), *(points.LESSONS / f"test_{lesson}.py" for lesson in lessons or modules.lesson_names()),
-             *(points.TESTS / "grading" / f"{name}.py" for name in grader), *(modules.ROOT / "validate" / f"{name}.py" for name in ("modules", "generate", "loading"))}
+    """Return a digest of all code that decides about points in these lessons, or in all of them.
+
+    It does not depend on where the workbook lies.
+    """
+    files = {
+        *modules.SOLUTIONS.rglob("*.py"),
+        *(points.LESSONS / f"test_{lesson}.py" for lesson in lessons or modules.lesson_names()),
+        *(points.TESTS / "grading" / f"{name}.py" for name in GRADER),
+        *(modules.ROOT / "validate" / f"{name}.py" for name in ("modules", "generate", "loading")),
+    }
     return hashlib.sha256(b"".join(file.name.encode() + file.read_bytes() for file in sorted(files))).hexdigest()[:12]
 
 
 def patience(settings):
-    """A grading process that takes longer hangs [s]: each call has several times its own time, and the tests as much again for their own work."""
+    """Return the time after which a grading process counts as hanging [s].
+
+    Each call may take CROWDED times its own time, and the tests as much again for their own work.
+    """
     return 2.0 * CROWDED * BUDGET * len(settings.lessons)
 
 
 def mark(submission, settings):
-    """The result of one submission, in types that JSON knows.  Raises RuntimeError when the grader itself fails: that is never a zero."""
+    """Return the result of one submission, in types of JSON.
+
+    Raises RuntimeError if the grader itself fails, which is never a zero.
+    """
     began, found, printed, again, watched = time.monotonic(), {}, {}, [], {}
     for lesson in settings.lessons:
         if lesson in submission.files:
@@ -72,48 +103,69 @@ def mark(submission, settings):
             found.update({(lesson, kind, o.test): o for kind, o in outcomes})
             again += [lesson] * late
     tests = [verdict(row, found, row[0] in submission.files) for row in settings.manifest]
-    return {"student": submission.student, "problems": list(submission.problems), "timestamp": submission.timestamp,
-            "handed_in": sorted(submission.files), "tests": tests, "printed": printed, "seconds": round(time.monotonic() - began, 2),
-            "watched": watched, "again": again, "no_grade": sandbox.unavailable(), "digest": settings.digest(submission)}
+    return {
+        "student": submission.student,
+        "problems": list(submission.problems),
+        "timestamp": submission.timestamp,
+        "handed_in": sorted(submission.files),
+        "tests": tests,
+        "printed": printed,
+        "seconds": round(time.monotonic() - began, 2),
+        "watched": watched,
+        "again": again,
+        "no_grade": sandbox.unavailable(),
+        "digest": settings.digest(submission),
+    }
 
 
 def again(submission, settings, first):
-    """The result of a second try.  Only the lessons are marked again whose time was up in the first."""
+    """Return the result of a second try, in which only lessons that ran out of time are marked again."""
     second = mark(submission._replace(files={lesson: submission.files[lesson] for lesson in first["again"]}), settings)
     tests = {(t["lesson"], t["test"]): t for t in second["tests"] if t["lesson"] in first["again"]}
-    return {**first, "tests": [tests.get((t["lesson"], t["test"]), t) for t in first["tests"]], "printed": {**first["printed"], **second["printed"]},
-            "watched": {**first["watched"], **second["watched"]},
-            "seconds": round(first["seconds"] + second["seconds"], 2), "again": []}
+    return {
+        **first,
+        "tests": [tests.get((t["lesson"], t["test"]), t) for t in first["tests"]],
+        "printed": {**first["printed"], **second["printed"]},
+        "watched": {**first["watched"], **second["watched"]},
+        "seconds": round(first["seconds"] + second["seconds"], 2),
+        "again": [],
+    }
 
 
 def mark_lesson(lesson, text, seed):
-    """([(visible or hidden, Outcome), …] of one file, what it printed in the visible tests, whether the time was up, what was seen beside)."""
+    """Mark one file: ([(kind, Outcome), …], printed text, whether the time was up, codes to look into).
+
+    kind is "visible" or "hidden".  The printed text is that of the visible tests only.
+    """
     place = remote.box_of(lesson, text, BUDGET)
     try:
         place.open()
         if place.broken:
             where = f" ({place.broken.where})" if getattr(place.broken, "where", "") else ""
-            unread = [("visible", points.unreadable(o, place.broken, where)) for o in points.grade(lesson, None, collect=True)]
+            tests = points.grade(lesson, None, collect=True)
+            unread = [("visible", points.unreadable(o, place.broken, where)) for o in tests]
             return unread, readable(place.printed.decode(errors="replace")), place.late, place.seen
         subject = remote.lesson_in(place, lesson)
         outcomes = [("visible", o) for o in points.grade(lesson, subject, seed=points.PUBLIC)]
-        place.stop()                                                   # now all is here that was printed
+        place.stop()                                                   # after this the printed text is complete
         printed = readable(place.printed.decode(errors="replace"))
         passed = {o.test for _, o in outcomes if o.status == "passed"}
         if passed:                                                     # the others have lost their points already
-            place.open()                                               # a new worker: what the old one has seen, or what was left in it, is gone
+            place.open()                                               # a new worker, without the state of the old one
             place.secret = True
-            outcomes += [("hidden", o) for o in points.grade(lesson, subject, lambda exercise, test: test in passed, seed)]
-        if place.failed:                                               # pytest has caught it: it must not become a zero
+            hidden = points.grade(lesson, subject, lambda exercise, test: test in passed, seed)
+            outcomes += [("hidden", o) for o in hidden]
+        if place.failed:                                               # pytest has caught it; it must not become a zero
             raise place.failed
-        return outcomes, printed, place.late or any(o.quantity == points.DURATION for _, o in outcomes), place.seen
+        late = place.late or any(o.quantity == points.DURATION for _, o in outcomes)
+        return outcomes, printed, late, place.seen
     finally:
         place.close()
 
 
 @contextlib.contextmanager
 def bounded():
-    """Let this process have only so much more memory; beyond, NumPy raises MemoryError in the test that asked for it."""
+    """Let this process grow by MEMORY at most; beyond, NumPy raises MemoryError in the test that asked for it."""
     before = children.bound(MEMORY)
     try:
         yield
@@ -124,23 +176,29 @@ def bounded():
 
 
 def verdict(row, found, handed_in):
-    """One test of the manifest: passed when it passed with the public inputs and with the secret ones."""
+    """Return the verdict on one test: passed if it passed with the public inputs and with the secret ones."""
     lesson, exercise, function, test, worth, hint = row
     base = {"lesson": lesson, "exercise": exercise, "function": function, "test": test, "points": worth, "hint": hint}
     for kind in ("visible", "hidden"):
         o = found.get((lesson, kind, test))
         if o is None:
+            status = "not run" if handed_in else "not handed in"
             why = "it was not run" if handed_in else f"{lesson}.py was not handed in"
-            return {**base, "status": "not run" if handed_in else "not handed in", "earned": 0, "kind": kind, "says": {"got": why}}
+            return {**base, "status": status, "earned": 0, "kind": kind, "says": {"got": why}}
         if o.status != "passed":
-            told = {"status": "not yet"} if kind == "hidden" else {"status": o.status, "hint": readable(o.hint)}       # the hint may follow from the error
-            return {**base, **told, "earned": 0, "kind": kind, "says": says(o, kind)}
+            failed = {"earned": 0, "kind": kind, "says": says(o, kind)}
+            if kind == "hidden":                                       # status and hint may follow from secret inputs
+                return {**base, "status": "not yet", **failed}
+            return {**base, "status": o.status, "hint": readable(o.hint), **failed}
     return {**base, "status": "passed", "earned": worth, "kind": "", "says": {}}
 
 
 def says(o, kind):
-    """What a student may read about a test.  With secret inputs it is what was compared and one of a few words: a program that knows the inputs could
-    write them into anything else, a tolerance that follows from its answer or the name of an error."""
+    """Return the report that a student may read about a test.
+
+    With secret inputs it has only the quantity and one of WORDS.  A program that knows the inputs could write them
+    into any other field: a tolerance that depends on its answer, or the name of an error.
+    """
     if kind == "hidden":
         return {"quantity": readable(o.quantity), "got": in_a_word(o.error)}
     told = {"quantity": o.quantity, "given": o.given, "expected": o.expected, "got": o.got, "tolerance": o.tolerance}
@@ -148,7 +206,7 @@ def says(o, kind):
 
 
 def in_a_word(error):
-    """One of WORDS for whatever was wrong."""
+    """Return the one of WORDS that describes an error."""
     if error in expect.OFF:
         return error
     if error in ("no error", "another error", "another value"):
@@ -157,6 +215,6 @@ def in_a_word(error):
 
 
 def readable(text):
-    """Text from a student's program, fit to be shown: control and format characters spelt out, and not too much of it."""
+    """Spell out control and format characters in the text of a student's program, and limit its length."""
     shown = "\n".join(map(spelt_out, text[:PRINTED].split("\n")))
     return shown + (" …" if len(text) > PRINTED else "")

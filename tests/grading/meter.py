@@ -1,13 +1,13 @@
-"""How long a worker has worked: on the processor, or asleep.  What it waits because others have the processor is not its time.
+"""Measure the time of a worker: on the processor, or asleep.  Time that it waits for the processor does not count.
 
-So busy neighbours cost nobody anything.  Where the system does not tell (no /proc), all time counts that passes while we wait for the worker.
+Busy neighbours therefore cost nothing.  Without /proc, all time counts that passes while we wait for the worker.
 """
 
 import time
 from pathlib import Path
 
 LOOK = 0.05                  # so often we look how a worker is that has not answered [s]
-MOST = 4.0 * LOOK            # of what has passed since the last look, so much counts as sleep: we may have waited for the processor ourselves [s]
+MOST = 4.0 * LOOK            # most sleep counted per look, because this process may have waited for the processor [s]
 
 
 class Meter:

@@ -1,7 +1,8 @@
-"""One set of tests, several subjects: `pytest --of=solutions|lessons|PATH`, `--compiled`, `--exercise=1.2`, `--seed=anything`.
+"""One set of tests for several subjects: `pytest --of=solutions|lessons|PATH`.
 
+`--compiled`, `--exercise=1.2` and `--seed=anything` choose among the tests and their inputs.
 Without options the subject is `solutions`, plain and compiled, and the tests of the workbook itself run too.
-With --of only the grading tests run.
+With --of only the grading tests run.  Long tests run only with --long.
 """
 
 import hashlib
@@ -27,23 +28,28 @@ def pytest_addoption(parser):
     group = parser.getgroup("workbook")
     group.addoption("--of", help="whose answers to test: solutions, lessons or a folder of lesson files")
     group.addoption("--compiled", action="store_true", help="test the compiled twins only")
-    group.addoption("--exercise", action="append", default=[], metavar="1.2", help="only this exercise (may be repeated)")
-    group.addoption("--seed", default=PUBLIC, help="draw the inputs of the tests from this; a class is graded with a secret one")
+    exercise = "only this exercise (may be repeated)"
+    group.addoption("--exercise", action="append", default=[], metavar="1.2", help=exercise)
+    seed = "draw the inputs of the tests from this; a class is graded with a secret one"
+    group.addoption("--seed", default=PUBLIC, help=seed)
     group.addoption("--long", action="store_true", help="run the long tests, too")
     group.addoption("--outcomes", metavar="FILE", help="with --of: write every outcome there, as JSON")
 
 
 def pytest_configure(config):
-    if signal.getsignal(signal.SIGINT) == signal.SIG_IGN and threading.current_thread() is threading.main_thread():
-        signal.signal(signal.SIGINT, signal.default_int_handler)     # a shell's background ignores Ctrl-C, and so would all that we start
-    if hasattr(config.option, "loadscopereorder"):               # of pytest-xdist, which would take groups of one test last, and they are the longest
-        config.option.loadscopereorder = False
+    in_main_thread = threading.current_thread() is threading.main_thread()
+    if signal.getsignal(signal.SIGINT) == signal.SIG_IGN and in_main_thread:
+        # a background job of a shell ignores Ctrl-C, and so would all processes that it starts
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+    if hasattr(config.option, "loadscopereorder"):
+        config.option.loadscopereorder = False               # pytest-xdist would start the longest groups last
     if config.getoption("--of"):
         try:
             modules.subject_folder(config.getoption("--of"))
         except BadInput as e:
             raise pytest.UsageError(str(e)) from None
-        config.option.tbstyle = "short" if config.option.tbstyle == "auto" else config.option.tbstyle     # of a student's file, not of ours
+        if config.option.tbstyle == "auto":
+            config.option.tbstyle = "short"
         config.points = Points()
         config.pluginmanager.register(config.points)
     for exercise in config.getoption("--exercise"):
@@ -51,14 +57,15 @@ def pytest_configure(config):
             raise pytest.UsageError(f"exercise {exercise!r} is unknown: give its number, like --exercise=1.2")
 
 
-def tests_of(exercise=""):
-    """The test files that name an exercise: one, if it exists; without one those of every lesson."""
-    files = (LESSONS / f"test_{lesson}.py" for lesson in modules.lesson_names())
-    return [path for path in files if path.is_file() and (not exercise or f'"{exercise}"' in path.read_text(encoding="utf-8"))]
+def tests_of(exercise):
+    """List the test files that name an exercise; for an empty one, those of every lesson."""
+    files = [LESSONS / f"test_{lesson}.py" for lesson in modules.lesson_names()]
+    files = [path for path in files if path.is_file()]
+    return [path for path in files if not exercise or f'"{exercise}"' in path.read_text(encoding="utf-8")]
 
 
 def pytest_ignore_collect(collection_path, config):
-    """With --of or --exercise, do not even load what has no test of it."""
+    """With --of or --exercise, do not load files without a test of it."""
     exercises = config.getoption("--exercise") or [""] * bool(config.getoption("--of"))
     if exercises and collection_path.is_relative_to(TESTS) and collection_path.suffix == ".py":
         return not any(collection_path in tests_of(exercise) for exercise in exercises) or None
@@ -67,7 +74,8 @@ def pytest_ignore_collect(collection_path, config):
 def pytest_generate_tests(metafunc):
     if "lesson" in metafunc.fixturenames:
         option = metafunc.config.getoption
-        once = pytest.param("compiled", marks=pytest.mark.xdist_group(f"compiled {metafunc.definition.path.stem}"))        # by one process
+        group = pytest.mark.xdist_group(f"compiled {metafunc.definition.path.stem}")     # one process compiles
+        once = pytest.param("compiled", marks=group)
         subjects = [once] if option("--compiled") else ["plain"] if option("--of") else ["plain", once]
         if hasattr(metafunc.config, "given"):
             subjects = list(metafunc.config.given)
@@ -76,11 +84,11 @@ def pytest_generate_tests(metafunc):
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_call(item):
-    """Stop a subject's endless loop; compiled and given code is ours, and trusted."""
+    """Stop a subject's endless loop.  Compiled and given code is ours and trusted."""
     given = hasattr(item.config, "given")
     if not item.get_closest_marker("exercise") or not (given or item.config.getoption("--of")):
         return (yield)
-    with alarm(LIMIT, own=given):                                    # many are graded at a time, and one student waits at the clock
+    with alarm(LIMIT, own=given):                                    # own time when grading, wall time for one student
         return (yield)
 
 
@@ -95,7 +103,7 @@ def pytest_collection_modifyitems(config, items):
     if config.getoption("--of"):                                     # a student's code may warn, as in the sandbox
         for item in items:
             item.add_marker(pytest.mark.filterwarnings("ignore"))
-    items.sort(key=lambda item: item.path.stem != "test_notebooks")          # the longest first: then no process has one left when the others are done
+    items.sort(key=lambda item: item.path.stem != "test_notebooks")  # the longest first: processes end together
 
 
 def is_wanted(item, config):
@@ -114,7 +122,7 @@ def is_left_out(item, config):
 
 
 def count_left_out(config, count):
-    """Keep the number of long tests left out, for the summary; a worker of pytest-xdist sends it to the process that prints."""
+    """Keep the number of long tests left out for the summary; a worker of pytest-xdist sends it."""
     config.long_tests_left_out = count
     if hasattr(config, "workeroutput"):
         config.workeroutput["long_tests_left_out"] = count
@@ -129,7 +137,7 @@ def pytest_testnodedown(node):
 
 @pytest.fixture
 def lesson(request):
-    """The lesson that the test file is named after, from the subject under test."""
+    """Load the lesson that the test file is named after, from the subject under test."""
     if hasattr(request.config, "given"):
         subject, _ = request.config.given[request.param]
         if hasattr(subject, "box"):
@@ -146,17 +154,17 @@ def lesson(request):
 
 
 class Draw:
-    """Inputs of one test, drawn from the seed and the name of the test: the same for every subject."""
+    """Draw the inputs of one test from the seed and the name of the test, the same for every subject."""
 
     def __init__(self, seed, test):
         self.rng = np.random.default_rng(list(hashlib.sha256(f"{seed}/{test}".encode()).digest()))
 
     def __call__(self, low, high, shape=None):
-        """A float, or an array of them, between low and high."""
+        """Return a float, or an array of them, between low and high."""
         return self.rng.uniform(low, high, shape)
 
     def whole(self, low, high):
-        """A whole number from low to high, both included."""
+        """Return an integer from low to high, both included."""
         return int(self.rng.integers(low, high + 1))
 
 
@@ -167,7 +175,7 @@ def draw(request):
 
 
 class Pure:
-    """A lesson whose functions leave what they are given as it is: a call that changes an array says so, before it spoils what the test expects."""
+    """A lesson whose functions must not change their arguments: a call that changes an array fails the test."""
 
     def __init__(self, subject):
         self.subject = subject
@@ -183,15 +191,18 @@ class Pure:
         def call(*arguments):
             before = [a.copy() for a in wire.arrays_in(arguments)]
             result = value(*(getattr(a, "unwatched", a) for a in arguments))
-            if not all(np.array_equal(a, b, equal_nan=a.dtype.kind == "f") for a, b in zip(before, wire.arrays_in(arguments))):
-                raise NotYet("the arrays that were handed in", "left as they were: return new ones", f"{name} has changed one in place", "", "changed in place")
+            after = wire.arrays_in(arguments)
+            if not all(np.array_equal(a, b, equal_nan=a.dtype.kind == "f") for a, b in zip(before, after)):
+                quantity, expected = "the arrays that were handed in", "left as they were: return new ones"
+                raise NotYet(quantity, expected, f"{name} has changed one in place", "", "changed in place")
             return result
+
         call.unwatched = value
         return call
 
 
 class Compiled:
-    """A compiled lesson that takes the plain functions of a test as callbacks: numba wants those compiled as well."""
+    """A compiled lesson that compiles the functions of a test that it gets as callbacks."""
 
     def __init__(self, module):
         self.module = module
@@ -203,6 +214,7 @@ class Compiled:
 
         def call(*arguments):
             return value(*map(compiled_callback, arguments))
+
         call.twin = value
         return call
 
@@ -245,4 +257,6 @@ def pytest_terminal_summary(terminalreporter, config):
     terminalreporter.section("points")
     for exercise, (earned, possible) in table.items():
         terminalreporter.line(f"{exercise:>6}  {earned:g} of {possible:g}")
-    terminalreporter.line(f"{'all':>6}  {sum(e for e, _ in table.values()):g} of {sum(p for _, p in table.values()):g}")
+    earned = sum(e for e, _ in table.values())
+    possible = sum(p for _, p in table.values())
+    terminalreporter.line(f"{'all':>6}  {earned:g} of {possible:g}")

@@ -57,7 +57,8 @@ class Points:
         if session.config.getoption("--collect-only"):
             for item in session.items:
                 mark = item.get_closest_marker("exercise")
-                self.keep(item, Outcome(mark.args[0], name_of(item), mark.kwargs["points"], "not run", hint=mark.kwargs["hint"]))
+                worth, hint = mark.kwargs["points"], mark.kwargs["hint"]
+                self.keep(item, Outcome(mark.args[0], name_of(item), worth, "not run", hint=hint))
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_makereport(self, item, call):
@@ -139,24 +140,29 @@ def _advice(error, said, hint):
 
 
 def grade(lesson, subject, wanted=lambda exercise, test: True, seed=PUBLIC, collect=False):
-    """Outcomes of a lesson's grading tests, or of those that are wanted, for a subject (any object with the lesson's functions as attributes).
+    """Run a lesson's grading tests, or those that are wanted, and return their outcomes.
 
-    With collect no test is run: the tests that there are, all of them "not run".
+    subject: any object with the lesson's functions as attributes.  With collect no test is run, and all outcomes are
+    "not run".
     """
     return grade_each(lesson, {"given": (subject, wanted)}, seed, collect)["given"]
 
 
 def grade_each(lesson, subjects, seed=PUBLIC, collect=False):
-    """{name: outcomes} of several subjects, {name: (subject, wanted)}, in one run of pytest."""
+    """Test several subjects, {name: (subject, wanted)}, in one run of pytest: {name: outcomes}."""
     class Given:
         def pytest_configure(self, config):
             config.given = subjects
 
     points = Points()
-    with contextlib.redirect_stdout(io.StringIO()):                   # without what only takes time: other people's plugins, and collecting garbage
-        pytest.main([str(LESSONS / f"test_{lesson}.py"), f"--rootdir={TESTS.parent}", "--tb=no", "-Wignore", "-p", "no:cacheprovider",
-                     "-p", "no:unraisableexception", "--disable-plugin-autoload", f"--seed={seed}", *["--collect-only"] * collect],
-                    plugins=[Given(), points])
+    file = str(LESSONS / f"test_{lesson}.py")
+    arguments = [file, f"--rootdir={TESTS.parent}", f"--seed={seed}", "--tb=no", "-Wignore"]
+    # other plugins and the collection of garbage only take time
+    faster = ["-p", "no:cacheprovider", "-p", "no:unraisableexception", "--disable-plugin-autoload"]
+    if collect:
+        arguments.append("--collect-only")
+    with contextlib.redirect_stdout(io.StringIO()):
+        pytest.main([*arguments, *faster], plugins=[Given(), points])
     return {name: points.outcomes.get(name, []) for name in subjects}
 
 

@@ -1,13 +1,19 @@
-"""`release --out workbook.zip`: the students' zip of this repository, refused when an answer would leak.
+"""`release --out workbook.zip`: write the students' zip of this repository, unless an answer would leak.
 
-In it are files that git tracks, and of those what a student needs: lessons, notebooks, their tests, scenes, recorded traces, docs.  In place of
-the worked answers there are the lessons as handed out and what they make for the notebooks' first pictures, and a lesson builds on its siblings: a student's own lesson 1 serves lesson 2.
-A lesson of --with-solutions is there as worked, without markers, and the others import it from there.
+The zip holds the tracked files that a student needs: lessons, notebooks, their tests, scenes, recorded traces, docs.
+The lessons as handed out replace the worked answers, and the arrays of the notebooks' first pictures are computed
+beforehand.  A lesson imports its siblings: a student's own lesson 1 serves lesson 2.  A lesson of --with-solutions is
+in the zip as worked, without markers, and the other lessons import it from there.
 
-Every text of the zip is searched for every answer that is not released, in two ways: as code, statement by statement after ast.unparse (in
-Python files, notebook cells, fences, strings of JSON and of Python), and as text, line by line without spaces (in comments and prose, too).
-An answer has leaked where one text holds more than LEAKED of it, by size, and with that a piece of at least TELLING names, attributes and numbers;
-smaller ones, like `return x`, are ordinary code.  An answer without any such piece has leaked where a function of its name has its body.
+Every text of the zip is searched for every answer that is not released, in two ways.
+
+- As code: statement by statement after ast.unparse, in Python files, notebook cells, fences and quoted strings.
+- As text: line by line without spaces, in comments and prose, too.
+
+An answer has leaked if one text holds more than LEAKED of it, by size, and in that a piece of at least TELLING names,
+attributes and numbers.  Smaller pieces, like `return x`, are ordinary code.  An answer without any such piece has
+leaked if a function of its name has its body.
+
 *Left out:* an answer whose variables were renamed.
 """
 
@@ -40,14 +46,26 @@ TOP = "workbook"                                  # folder that the zip unpacks 
 WHEN = (1980, 1, 1, 0, 0, 0)                      # of every entry: the same commit gives the same bytes
 LEAKED = 2 / 3                                    # share of an answer
 TELLING = 5                                       # names, attributes and numbers in a statement: `r = x_b - x_a` has 3
-TELLING_SENTENCE = 30                             # characters without spaces in a sentence of answers.md; shorter ones are formulas of the lesson
+TELLING_SENTENCE = 30                             # characters of a sentence, without spaces; formulas are shorter
 PICTURES = {".png", ".jpg", ".gif"}
-ALWAYS = {"LICENSE", "pyproject.toml", "constraints.txt", "uv.lock", ".python-version", ".gitignore", "tests/__init__.py", "tests/grading/__init__.py"}
-AUTHORS = {"validate/generate.py", "validate/benchmark.py",     # make the lessons from the answers, and time the answers
-           "docs/grading.md"}                                   # for instructors
+ALWAYS = {
+    "LICENSE",
+    "pyproject.toml",
+    "constraints.txt",
+    "uv.lock",
+    ".python-version",
+    ".gitignore",
+    "tests/__init__.py",
+    "tests/grading/__init__.py",
+}
+AUTHORS = {
+    "validate/generate.py",                       # makes the lessons from the answers
+    "validate/benchmark.py",                      # times the answers
+    "docs/grading.md",                            # for instructors
+}
 PLUGIN, ANSWERS = "tests/grading/plugin.py", "solutions/answers.md"
 OPENINGS = "notebooks/openings.json"
-README = "docs/students.md"                       # is README.md there: the repository's own is for instructors
+README = "docs/students.md"                       # becomes README.md: the repository's own is for instructors
 NO_ANSWERS = "The answers to the questions of the notebooks are not part of this copy: ask your instructor for them.\n"
 MARKER = re.compile(r"(BEGIN|END)\W+SOLUTION", re.I)
 FENCE = re.compile(r"^ *(```|~~~).*?\n(.*?)^ *\1", re.M | re.S)
@@ -56,28 +74,38 @@ SPAN = re.compile(r"`([^`\n]+)`")
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
+Out = Annotated[Path, typer.Option(help="The zip to write.")]
+WithSolutions = Annotated[
+    str | None, typer.Option(metavar="[=LESSON,LESSON]", help="Worked answers of these lessons, or of all.")
+]
+Lessons = Annotated[
+    list[str] | None, typer.Option(help="Only this lesson (may be repeated), and the earlier ones that it builds on.")
+]
+Dirty = Annotated[bool, typer.Option("--dirty", help="Take tracked files as they lie there, committed or not.")]
+
 
 @app.command(help="Write the students' zip; it is refused when an answer would leak.")
 def release(
-    out: Annotated[Path, typer.Option(help="The zip to write.")] = Path("workbook.zip"),
-    with_solutions: Annotated[str | None, typer.Option(metavar="[=LESSON,LESSON]", help="Worked answers of these lessons, or of all.")] = None,
-    lesson: Annotated[list[str] | None, typer.Option(help="Only this lesson (may be repeated), and the earlier ones that it builds on.")] = None,
-    dirty: Annotated[bool, typer.Option("--dirty", help="Take tracked files as they lie there, committed or not.")] = False,
+    out: Out = Path("workbook.zip"), with_solutions: WithSolutions = None, lesson: Lessons = None, dirty: Dirty = False
 ):
     if out.exists() and not zipfile.is_zipfile(out):
         raise BadInput(f"--out {str(out)!r}", "there, and no zip", "name another file")
     chosen = with_earlier(known(lesson or modules.lesson_names()))
     worked = set(chosen) if with_solutions == EVERY else set(known([n for n in (with_solutions or "").split(",") if n]))
     if missing := (with_earlier(worked) - worked) | (worked - chosen):
-        raise BadInput(f"--with-solutions={','.join(sorted(worked))}", f"without {', '.join(sorted(missing))}",
-                       "release the lessons that these build on as well, and none that --lesson leaves out")
+        raise BadInput(
+            f"--with-solutions={','.join(sorted(worked))}",
+            f"without {', '.join(sorted(missing))}",
+            "release the lessons that these build on as well, and none that --lesson leaves out",
+        )
     writable(out.absolute().parent)
-    out.unlink(missing_ok=True)                   # whatever happens now, no older zip is taken for this one
+    out.unlink(missing_ok=True)                   # so that no older zip is taken for this one if the command fails
     files = contents(tracked(dirty), chosen, worked, with_solutions == EVERY)
     refuse_leaks(files, worked, with_solutions == EVERY)
     files["README.md"] = files.pop(README)
     write(out, files)
-    print(f"{out}: {len(files)} files, lessons {', '.join(sorted(chosen))}, worked answers of {', '.join(sorted(worked)) or 'none'}")
+    answered = ", ".join(sorted(worked)) or "none"
+    print(f"{out}: {len(files)} files, lessons {', '.join(sorted(chosen))}, worked answers of {answered}")
 
 
 # ---------------------------------------------------------------------------------------------- what goes in
@@ -90,14 +118,14 @@ def source(lesson):
 
 
 def known(names):
-    """The names.  Raises BadInput for one that is no lesson."""
+    """Return the names.  Raises BadInput if one is not a lesson."""
     for name in names:
         modules.bind(name)
     return names
 
 
 def with_earlier(names):
-    """Those lessons and all that they build on."""
+    """Return these lessons and all that they build on."""
     found, waiting = set(), list(names)
     while waiting:
         name = waiting.pop()
@@ -107,7 +135,7 @@ def with_earlier(names):
 
 
 def tracked(dirty):
-    """Paths of all files that git tracks.  Raises BadInput when what lies here is not what was committed."""
+    """Return the paths of all files that git tracks.  Raises BadInput if the work tree differs from the commit."""
     def git(*arguments):
         try:
             return subprocess.run(["git", *arguments], cwd=ROOT, capture_output=True, text=True, check=True).stdout
@@ -122,7 +150,7 @@ def tracked(dirty):
 
 
 def contents(paths, lessons, worked, answers):
-    """{path in the zip: bytes}."""
+    """Return {path in the zip: bytes}."""
     scenes = {name for name in modules.scene_names() if modules.bind_scene(name).lesson in lessons}
     others = set(modules.lesson_names()) - lessons
     chosen = {path for path in paths if wanted(Path(path), lessons, others, scenes)}
@@ -140,17 +168,25 @@ def contents(paths, lessons, worked, answers):
 
 
 def openings(notebooks):
-    """What the worked answers make for the first picture of each notebook, for a copy that has none of them."""
-    cells = [next(cell for cell in json.loads(text)["cells"] if cell["cell_type"] == "code") for _, text in sorted(notebooks.items())]
+    """Compute the arrays of each notebook's first picture, for a copy without worked answers."""
+    cells = [first_code_cell(json.loads(text)) for _, text in sorted(notebooks.items())]
     return made_by(tuple("".join(cell["source"]) for cell in cells)).encode()
+
+
+def first_code_cell(notebook):
+    return next(cell for cell in notebook["cells"] if cell["cell_type"] == "code")
 
 
 @cache
 def made_by(cells):
-    """The JSON of everything that these cells hand to `opening`."""
-    from validate import notebook  # brings matplotlib along
+    """Return the JSON of everything that these cells pass to `opening`."""
+    from validate import notebook  # imports matplotlib, which takes a second
     made, opening = {}, notebook.opening
-    notebook.opening = lambda number, make: made.update({number: notebook.frozen(make())})        # gives None: then nothing is shown
+
+    def keep(number, make):
+        made[number] = notebook.frozen(make())                       # returns None, so that nothing is shown
+
+    notebook.opening = keep
     try:
         for cell in cells:
             exec(cell, {"__name__": "opening"})
@@ -160,7 +196,7 @@ def made_by(cells):
 
 
 def wanted(path, lessons, others, scenes):
-    """Whether a tracked file goes into the zip as it is."""
+    """Whether a tracked file goes into the zip unchanged."""
     folder = path.parts[0]
     if path.as_posix() in AUTHORS:
         return False
@@ -172,11 +208,12 @@ def wanted(path, lessons, others, scenes):
         return path.stem.partition("_")[2] not in others
     if folder == "solutions":
         return path.suffix == ".py" and Path(path.parts[1]).stem in modules.GIVEN
-    return folder in ("validate", "docs") or path.as_posix() in ALWAYS | {PLUGIN} | {f"tests/lessons/test_{name}.py" for name in lessons}
+    tests = {f"tests/lessons/test_{name}.py" for name in lessons}
+    return folder in ("validate", "docs") or path.as_posix() in ALWAYS | {PLUGIN} | tests
 
 
 def with_imports(chosen, paths):
-    """Those files, and what they import of tests/ and validate/."""
+    """Return these files and the modules of tests/ and validate/ that they import."""
     there = {path for path in paths if path.startswith(("tests/", "validate/"))}
     found, waiting = set(), sorted(chosen)
     while waiting:
@@ -188,13 +225,13 @@ def with_imports(chosen, paths):
 
 
 def imported(path):
-    """Paths of the modules that a module may import."""
+    """Return the paths of the modules that a module may import."""
     return named_in(read(path), tuple(path.split("/")[:-1]))
 
 
 @cache
 def named_in(text, package):
-    """Paths of the modules that a text in that package may import."""
+    """Return the paths of the modules that a text in that package may import."""
     package, names = list(package), set()
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.ImportFrom):
@@ -207,7 +244,7 @@ def named_in(text, package):
 
 
 def read(path):
-    """The bytes of a file; text with the same line ends everywhere.  Raises BadInput for what cannot be looked into."""
+    """Return the bytes of a file, with one kind of line ends.  Raises BadInput if it is not text or a picture."""
     file = ROOT / path
     if file.is_symlink() or not file.is_file():
         raise BadInput(path, "a link or no file", "put the file itself there")
@@ -216,11 +253,12 @@ def read(path):
     try:
         return file.read_text(encoding="utf-8").encode()
     except UnicodeDecodeError:
-        raise BadInput(path, "neither text nor a picture", "students get nothing that cannot be searched for answers: git rm it") from None
+        remedy = "students get nothing that cannot be searched for answers: git rm it"
+        raise BadInput(path, "neither text nor a picture", remedy) from None
 
 
 def for_students(text, files, solved):
-    """pyproject.toml without the commands that are not in the zip; where answers are missing, pytest asks about lessons/."""
+    """Return pyproject.toml without commands that are not in the zip; if answers are missing, pytest tests lessons/."""
     def keep(match):
         return match[0] if match[1].replace(".", "/") + ".py" in files else ""
     text = re.sub(r'^[\w-]+ *= *"((?:tests|validate)[\w.]*):\w+".*\n', keep, text, flags=re.M)
@@ -248,7 +286,10 @@ def answers_of(lesson):
 
 
 def pieces(tree):
-    """(normalised, size) of every statement; of a compound one, its head.  A return counts as its value, a docstring not at all."""
+    """Generate (normalised, size) of every statement.
+
+    A compound statement counts as its head, a return as its value, and a docstring not at all.
+    """
     for node in ast.walk(tree):
         if isinstance(node, ast.stmt) and not isinstance(getattr(node, "value", None), ast.Constant):
             node = node.value if isinstance(node, (ast.Return, ast.Expr)) and node.value else copy.copy(node)
@@ -263,17 +304,17 @@ def size(node):
 
 
 def words(line):
-    """Names and numbers in a line of code."""
+    """Return the names and numbers in a line of code."""
     return [word for word in WORD.findall(line.partition("#")[0]) if not keyword.iskeyword(word)]
 
 
 def squeezed(line):
-    """A line of code without spaces, comment and `return`, and without what prose puts around it."""
+    """Return a line of code without spaces, comment and `return`, and without the marks of prose around it."""
     return re.sub(r"\s", "", re.sub(r"^return\b", "", line.strip("#>*-`'\" \t").partition(" #")[0]))
 
 
 class Searched(NamedTuple):
-    """One text of the zip, as answers are looked for in it."""
+    """One text of the zip, taken apart for the search."""
     statements: set[str]
     lines: set[str]
     bodies: set[tuple[str, str]]     # (function, its body)
@@ -281,6 +322,7 @@ class Searched(NamedTuple):
 
 @cache                          # lessons and solutions quote the same texts
 def searched(text):
+    """Take a text and its fences apart for the search."""
     statements, bodies = set(), set()
     for tree in filter(None, map(parsed, [text, *(match[2] for match in FENCE.finditer(text))])):
         for node in ast.walk(tree):
@@ -291,20 +333,21 @@ def searched(text):
             elif isinstance(node, ast.Assign):
                 statements.add(ast.unparse(node.value))
         statements |= dict(pieces(tree)).keys()
-    return Searched(statements, {squeezed(line) for line in [*html.unescape(text).splitlines(), *SPAN.findall(text)]}, bodies)
+    lines = {squeezed(line) for line in [*html.unescape(text).splitlines(), *SPAN.findall(text)]}
+    return Searched(statements, lines, bodies)
 
 
 def plain(body):
-    """The statements of a body without its docstring, normalised."""
+    """Return the statements of a body without its docstring, normalised."""
     documented = isinstance(body[0], ast.Expr) and isinstance(body[0].value, ast.Constant)
     return "\n".join(map(ast.unparse, body[documented:]))
 
 
 def parsed(text):
-    """The syntax tree of a text, if it is Python; a notebook's own commands (%, !) do not count."""
+    """Return the syntax tree of a text, or None if it is not Python.  A notebook's own commands (%, !) are dropped."""
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")                          # prose has escapes that no Python has
+            warnings.simplefilter("ignore")                          # of invalid escapes, which prose may have
             return ast.parse(re.sub(r"^[%!].*$", "", textwrap.dedent(text), flags=re.M))
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return None
@@ -312,16 +355,17 @@ def parsed(text):
 
 @cache
 def texts(path, text):
-    """The text itself, and every text that it quotes and that is long enough: strings of JSON and Python, lists of strings as one."""
-    found = [text]
-    if path.endswith((".json", ".ipynb")):
-        found += strings(json.loads(text))
-    for tree in filter(None, map(parsed, list(found) if path.endswith((".py", ".json", ".ipynb")) else [])):
-        found += [node.value for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)]
-    return [text, *{quoted for quoted in found[1:] if len(WORD.findall(quoted)) >= TELLING}]
+    """Return the text and every long enough text that it quotes: strings of JSON and of Python."""
+    quoted = list(strings(json.loads(text))) if path.endswith((".json", ".ipynb")) else []
+    sources = [text, *quoted] if path.endswith((".py", ".json", ".ipynb")) else []
+    for tree in filter(None, map(parsed, sources)):
+        constants = [node.value for node in ast.walk(tree) if isinstance(node, ast.Constant)]
+        quoted += [value for value in constants if isinstance(value, str)]
+    return [text, *{quote for quote in quoted if len(WORD.findall(quote)) >= TELLING}]
 
 
 def strings(value):
+    """Generate the strings of a JSON value; a list of strings counts as one string."""
     if isinstance(value, str):
         yield value
     elif isinstance(value, dict):
@@ -336,7 +380,7 @@ def strings(value):
 
 
 def share(sizes, found, telling):
-    """How much of an answer was found, by size; 0 when no telling piece is among it."""
+    """Return the share of an answer that was found, by size; 0 if no found piece is telling."""
     here = [sizes[piece] for piece in sizes if piece in found]
     return sum(here) / sum(sizes.values()) if here and max(here) >= telling else 0.0
 
@@ -345,11 +389,12 @@ def holds(where, answer):
     """Whether a searched text holds that answer."""
     if max(answer.pieces.values(), default=0) < TELLING:
         return (answer.function, answer.body) in where.bodies
-    return share(answer.pieces, where.statements, TELLING) > LEAKED or share(answer.lines, where.lines, TELLING) > LEAKED
+    as_code = share(answer.pieces, where.statements, TELLING)
+    return as_code > LEAKED or share(answer.lines, where.lines, TELLING) > LEAKED
 
 
 def signs_of(hidden):
-    """{telling piece, or (function, body) of an answer that has none: numbers of the answers that it may be a sign of}."""
+    """Return {sign: indices of the answers that have it}; a sign is a telling piece, or (function, body)."""
     signs = {}
     for number, answer in enumerate(hidden):
         telling = [piece for piece, size in (*answer.pieces.items(), *answer.lines.items()) if size >= TELLING]
@@ -359,44 +404,61 @@ def signs_of(hidden):
 
 
 def suspects(where, hidden, signs):
-    """Those answers of which a searched text holds a sign: no other can be in it."""
+    """Return the answers of which a searched text holds a sign; it cannot hold any other answer."""
     seen = signs.keys() & (where.statements | where.lines | where.bodies)
     return [hidden[number] for number in sorted(set().union(*(signs[sign] for sign in seen)))]
 
 
 def sentences(text):
-    """Of answers.md: what is long enough to be known again, without spaces."""
+    """Return the sentences of answers.md that are long enough to recognise, without spaces."""
     parts = (re.sub(r"\s", "", part) for part in re.split(r"(?<=[.:;?])\s+|\n\s*\n", text))
     return {part for part in parts if len(part) >= TELLING_SENTENCE}
 
 
 def refuse_leaks(files, worked, answers_too):
-    """Raise BadInput, in one sentence, for the first thing in the zip that no student may have."""
+    """Raise BadInput for the first text in the zip that students must not have."""
     hidden = [answer for name in modules.lesson_names() if name not in worked for answer in answers_of(name)]
     signs = signs_of(hidden)
     secret = set() if answers_too else sentences((ROOT / ANSWERS).read_text(encoding="utf-8"))
     for path, data in sorted(files.items()):
         if "__pycache__" in path or path.endswith((".pyc", ".pyo")):
             raise BadInput(path, "compiled code", "answers can be read from that: git rm it")
-        if Path(path).suffix in PICTURES or path == OPENINGS:           # frozen() lets nothing but numbers into it
+        if Path(path).suffix in PICTURES or path == OPENINGS:           # frozen() accepts only numbers
             continue
         for text in texts(path, data.decode()):
-            if MARKER.search(text):
-                raise BadInput(path, f"not for students (it holds the marker {MARKER.search(text)[0]})", "take it out")
-            where, whole = searched(text), re.sub(r"\s", "", text)
-            for answer in suspects(where, hidden, signs):
-                if holds(where, answer):
-                    raise BadInput(path, f"not for students (it holds the answer of exercise {answer.exercise}, {answer.function})",
-                                   f"take it out, or give --with-solutions={answer.lesson}")
-            for sentence in secret:
-                if sentence in whole:
-                    raise BadInput(path, f"not for students (it holds a sentence of {ANSWERS})", "take it out, or give --with-solutions")
+            leak = leak_in(text, hidden, signs, secret)
+            if leak:
+                raise BadInput(path, f"not for students (it holds {leak.what})", leak.remedy)
+
+
+class Leak(NamedTuple):
+    """A part of a text that students must not have."""
+    what: str
+    remedy: str
+
+
+def leak_in(text, hidden, signs, secret):
+    """Return the first Leak of a text, or None."""
+    marker = MARKER.search(text)
+    if marker:
+        return Leak(f"the marker {marker[0]}", "take it out")
+    where, whole = searched(text), re.sub(r"\s", "", text)
+    for answer in suspects(where, hidden, signs):
+        if holds(where, answer):
+            what = f"the answer of exercise {answer.exercise}, {answer.function}"
+            return Leak(what, f"take it out, or give --with-solutions={answer.lesson}")
+    if any(sentence in whole for sentence in secret):
+        return Leak(f"a sentence of {ANSWERS}", "take it out, or give --with-solutions")
+    return None
 
 
 # ---------------------------------------------------------------------------------------------- the zip
 
 def write(out, files):
-    """Write the zip whole or not at all; sorted, without dates: what was committed decides on every byte, and zlib on none."""
+    """Write the zip completely or not at all.
+
+    It is sorted, without dates and uncompressed, so that its bytes depend only on the commit.
+    """
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(dir=out.parent, suffix=".part", delete=False) as draft:

@@ -11,24 +11,25 @@ from pathlib import Path
 
 from validate import generate, modules
 
-from .box import Box, Call
+from .box import Call, Sandbox
 
 
 def exercises(lesson):
-    """{"1.2": "midpoint_step", …}."""
+    """Return {"1.2": "midpoint_step", …}."""
     return generate.exercises((modules.SOLUTIONS / f"{lesson}.py").read_text())
 
 
 def builds_on(lesson):
-    """The earlier lessons that a lesson imports, and that those import."""
-    found = [name for name in re.findall(r"^from \.(\w+) import", (modules.SOLUTIONS / f"{lesson}.py").read_text(), re.M)
-             if name in modules.lesson_names()]
+    """List the earlier lessons that a lesson imports, directly or through others."""
+    source = (modules.SOLUTIONS / f"{lesson}.py").read_text()
+    imported = re.findall(r"^from \.(\w+) import", source, re.M)
+    found = [name for name in imported if name in modules.lesson_names()]
     return list(dict.fromkeys([*found, *(further for name in found for further in builds_on(name))]))
 
 
 @lru_cache(maxsize=1)
 def handout():
-    """A folder with the lessons as handed out, for the sandbox."""
+    """Make a folder with the lessons as handed out, for the sandbox."""
     folder = Path(tempfile.mkdtemp(prefix="handout-"))
     folder.chmod(0o755)
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
@@ -42,31 +43,45 @@ def handout():
 
 
 def box_of(lesson, text, budget):
-    """The sandbox for one lesson's file."""
-    earlier = {name: {function: getattr(importlib.import_module(f"solutions.{name}"), function) for function in exercises(name).values()}
-               for name in builds_on(lesson)}
-    records = [kind for kind in vars(importlib.import_module(f"solutions.{lesson}")).values() if hasattr(kind, "_fields")]
-    return Box(lesson, list(exercises(lesson).values()), text, handout(), earlier, budget, records)
+    """Make the sandbox for one lesson's file."""
+    earlier = {name: worked_functions(name) for name in builds_on(lesson)}
+    values = vars(importlib.import_module(f"solutions.{lesson}")).values()
+    records = [kind for kind in values if hasattr(kind, "_fields")]
+    return Sandbox(lesson, list(exercises(lesson).values()), text, handout(), earlier, budget, records)
+
+
+def worked_functions(lesson):
+    """Return {exercise function: the worked one} of a lesson."""
+    module = importlib.import_module(f"solutions.{lesson}")
+    return {function: getattr(module, function) for function in exercises(lesson).values()}
 
 
 def lesson_in(box, lesson):
-    """The lesson with its exercises in the box.
+    """Return the lesson with its exercises in the sandbox.
 
-    What is given is ours, and calls the exercises in the box.  A given function that gets an exercise's to work with, such as a loop of
-    steps, goes there as a whole: its result is the student's in any case, and a step is not worth a round trip.
+    Given functions run in this process and call the exercises in the sandbox.  A given function that gets an exercise
+    as an argument, such as a loop over steps, runs in the sandbox as a whole.  Its result depends on the student's
+    code in any case, and a round trip per step would be slow.
     """
     module = importlib.import_module(f"solutions.{lesson}")
-    space = {**vars(module), **{function: Call(box, f"lesson:{function}") for function in exercises(lesson).values()}}
-    given = [name for name, value in vars(module).items()
-             if isinstance(value, types.FunctionType) and value.__module__ == module.__name__ and not isinstance(space[name], Call)]
-    for name in given:
-        space[name] = types.FunctionType(vars(module)[name].__code__, space, name, vars(module)[name].__defaults__)
-    return types.SimpleNamespace(**{**space, **{name: _where_it_belongs(box, name, space[name]) for name in given}}, box=box)
+    calls = {function: Call(box, f"lesson:{function}") for function in exercises(lesson).values()}
+    space = {**vars(module), **calls}
+    given = {
+        name: value
+        for name, value in vars(module).items()
+        if isinstance(value, types.FunctionType) and value.__module__ == module.__name__ and name not in calls
+    }
+    for name, function in given.items():
+        space[name] = types.FunctionType(function.__code__, space, name, function.__defaults__)
+    placed = {name: _here_or_there(box, name, space[name]) for name in given}
+    return types.SimpleNamespace(**{**space, **placed}, box=box)
 
 
-def _where_it_belongs(box, name, function):
+def _here_or_there(box, name, function):
+    """Run a given function in the sandbox if an argument is an exercise, else in this process."""
     there = Call(box, f"given:{name}")
 
     def call(*arguments):
-        return (there if any(isinstance(a, Call) and a.name.startswith("lesson:") for a in arguments) else function)(*arguments)
+        with_exercise = any(isinstance(a, Call) and a.name.startswith("lesson:") for a in arguments)
+        return (there if with_exercise else function)(*arguments)
     return call

@@ -1,7 +1,8 @@
-"""The sandbox: what a student's program sees of this machine, and how it is locked in.
+"""The sandbox: the files that a student's program can read, and how it is confined.
 
-On Linux a program runs in bubblewrap.  It sees the system's and Python's own programs and libraries and what it is given, all read-only; no network, no other
-process, and nothing that grading uses, wherever that lies: `keep_out` names it.  `calls` says what it may ask of the kernel.
+On Linux a program runs in bubblewrap.  It can read the programs and libraries of the system and of Python, and the
+files that it is given.  It has no network, sees no other process, and cannot read the files of grading, which
+`keep_out` names.  `calls` lists the system calls that are allowed.
 """
 
 import glob
@@ -19,34 +20,74 @@ from validate.modules import ROOT
 
 from . import calls
 
-ENVIRONMENT = {"PATH": "/usr/bin:/bin", "HOME": "/tmp", "LANG": "C.UTF-8", "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1",
-               "MKL_NUM_THREADS": "1", "PYTHONHASHSEED": "0"}
-SYSTEM = ("/usr/bin", "/usr/lib", "/usr/lib32", "/usr/lib64", "/usr/local/lib", "/bin", "/lib", "/lib32", "/lib64", "/etc/ld.so.cache")
-PYTHON = ("bin", "lib", "lib64", "pyvenv.cfg")         # of a prefix; the rest of it may hold anything, a clone of the workbook among it
-PACKAGES = ("solutions", "lessons", "validate", "tests", "pybullet*", "pymunk*", "physics_animation_workbook*", "__editable__*")      # hidden where Python has them
-TEMPORARY = 32 << 20         # of /tmp in the sandbox [bytes]
-private = {}                 # {folder or file that grading uses: what it is}
+ENVIRONMENT = {
+    "PATH": "/usr/bin:/bin",
+    "HOME": "/tmp",
+    "LANG": "C.UTF-8",
+    "OPENBLAS_NUM_THREADS": "1",
+    "OMP_NUM_THREADS": "1",
+    "MKL_NUM_THREADS": "1",
+    "PYTHONHASHSEED": "0",
+}
+SYSTEM = (
+    "/usr/bin",
+    "/usr/lib",
+    "/usr/lib32",
+    "/usr/lib64",
+    "/usr/local/lib",
+    "/bin",
+    "/lib",
+    "/lib32",
+    "/lib64",
+    "/etc/ld.so.cache",
+)
+PYTHON = ("bin", "lib", "lib64", "pyvenv.cfg")         # of a prefix; the rest may hold a clone of the workbook
+PACKAGES = (                 # hidden if they are installed among Python's packages
+    "solutions",
+    "lessons",
+    "validate",
+    "tests",
+    "pybullet*",
+    "pymunk*",
+    "physics_animation_workbook*",
+    "__editable__*",
+)
+TEMPORARY = 32 << 20         # size of /tmp in the sandbox [bytes]
+ISOLATED = (
+    "--unshare-pid",
+    "--unshare-net",
+    "--unshare-ipc",
+    "--unshare-uts",
+    "--unshare-cgroup-try",
+    "--die-with-parent",
+    "--new-session",
+    "--clearenv",
+)
+private = {}                 # {folder or file of grading: description}
 
 
 def keep_out(paths):
-    """Hide these as well, {path: what it is}.  Raises BadInput for what cannot be hidden, because Python needs it."""
+    """Hide these paths as well, {path: description}.  Raises BadInput for a folder that Python needs."""
     for path, what in paths.items():
         path = Path(path).resolve()
         for place in shown():
             if place.resolve().is_relative_to(path):
-                raise BadInput(f"{what} {str(path)!r}", f"where Python has its own files ({place}), which every student's program can read", "move it elsewhere")
+                why = f"where Python has its own files ({place}), which every student's program can read"
+                raise BadInput(f"{what} {str(path)!r}", why, "move it elsewhere")
         private[path] = what
 
 
 def shown():
-    """Folders and files of this machine that the sandbox shows, each at its own place."""
-    prefixes = (sys.base_prefix, sys.prefix, Path(sys.base_prefix).resolve(), Path(sys.executable).resolve().parent.parent)
-    return [path for path in dict.fromkeys(map(Path, (*SYSTEM, *(f"{prefix}/{name}" for prefix in prefixes for name in PYTHON)))) if path.exists()]
+    """List the folders and files of this machine that the sandbox shows, each at its own path."""
+    executable = Path(sys.executable).resolve()
+    prefixes = (sys.base_prefix, sys.prefix, Path(sys.base_prefix).resolve(), executable.parent.parent)
+    python = [f"{prefix}/{name}" for prefix in prefixes for name in PYTHON]
+    return [path for path in dict.fromkeys(map(Path, (*SYSTEM, *python))) if path.exists()]
 
 
 def hidden(places):
-    """Where something private lies below one of those places, as a student's program would see it."""
-    workbook = () if ROOT.name.endswith("-packages") else (ROOT,)      # installed among Python's packages: then these are hidden by name
+    """Generate the private paths below those places, as a student's program would see them."""
+    workbook = () if ROOT.name.endswith("-packages") else (ROOT,)      # an installed one is hidden by PACKAGES
     for place in places:
         source = place.resolve()
         for path in (*workbook, Path(tempfile.gettempdir()).resolve(), *private):
@@ -57,7 +98,10 @@ def hidden(places):
 
 
 def view():
-    """bwrap's arguments for what is shown and hidden: parents before children, so that the environment of a hidden workbook is there."""
+    """Return bwrap's arguments for shown and hidden paths.
+
+    Parents come before children, so that an environment inside a hidden workbook is shown.
+    """
     places, arguments, emptied = shown(), [], []
     steps = {**dict.fromkeys(places, True), **dict.fromkeys(hidden(places), False)}
     for path, visible in sorted(steps.items(), key=lambda step: len(step[0].parts)):
@@ -72,56 +116,68 @@ def view():
 
 
 def command(binds, filter):
-    """bwrap's arguments: the view of this machine, the binds {from: to}, an empty /tmp, and nothing else.  filter: descriptor of the filter of system calls."""
-    around = [shutil.which("bwrap") or "bwrap", "--unshare-pid", "--unshare-net", "--unshare-ipc", "--unshare-uts", "--unshare-cgroup-try", "--die-with-parent",
-              "--new-session", "--clearenv", "--hostname", "box", "--cap-drop", "ALL"]
+    """Return bwrap's arguments: the view of this machine, the binds {from: to}, an empty /tmp, and nothing else.
+
+    filter: descriptor of the filter of system calls.
+    """
+    around = [shutil.which("bwrap") or "bwrap", *ISOLATED, "--hostname", "box", "--cap-drop", "ALL"]
     for name, value in ENVIRONMENT.items():
         around += ["--setenv", name, value]
-    around += ["--dev", "/dev", "--perms", "1777", "--size", str(TEMPORARY), "--tmpfs", "/tmp", *view()]          # an environment may lie below /tmp
+    around += ["--dev", "/dev", "--perms", "1777", "--size", str(TEMPORARY), "--tmpfs", "/tmp"]
+    around += view()                                                   # after /tmp, which may hold an environment
     for source, target in binds.items():
         around += ["--dir", os.path.dirname(target), "--ro-bind", str(source), target]
     around += ["--remount-ro", "/dev", "--chdir", "/tmp"]
     locked = ["--unshare-user", "--disable-userns", "--seccomp", str(filter)]
     if os.geteuid() != 0:
         return [*around, "--dir", "/proc", "--remount-ro", "/", *locked]
-    # the limit of processes does not bind root: become somebody who owns nothing, then give up making users; bwrap needs /proc for that, and hides it
+    # The limit of processes does not bind root.  The program therefore runs as a user who owns nothing and cannot
+    # make users.  The inner bwrap needs /proc for that, and hides it.
     somebody = str(60000 + secrets.randbelow(5000))
-    return [*around, "--proc", "/proc", "--remount-ro", "/", "--cap-add", "CAP_SETUID", "--cap-add", "CAP_SETGID", "--cap-add", "CAP_SETPCAP", "setpriv", "--reuid", somebody,
-            "--regid", somebody, "--clear-groups", "--no-new-privs", "--inh-caps=-all", "--bounding-set=-all",
-            "bwrap", "--die-with-parent", "--dev-bind", "/", "/", "--tmpfs", "/proc", "--remount-ro", "/proc", *locked]
+    capabilities = ["--cap-add", "CAP_SETUID", "--cap-add", "CAP_SETGID", "--cap-add", "CAP_SETPCAP"]
+    as_somebody = ["setpriv", "--reuid", somebody, "--regid", somebody, "--clear-groups", "--no-new-privs"]
+    powerless = ["--inh-caps=-all", "--bounding-set=-all"]
+    inner = ["bwrap", "--die-with-parent", "--dev-bind", "/", "/", "--tmpfs", "/proc", "--remount-ro", "/proc", *locked]
+    return [*around, "--proc", "/proc", "--remount-ro", "/", *capabilities, *as_somebody, *powerless, *inner]
 
 
 def started(binds, program, **pipes):
-    """A process of that program in the sandbox; without binds as it is, outside."""
+    """Start a program in the sandbox, or outside if binds is None."""
     if binds is None:
         environment = {**ENVIRONMENT, **{k: os.environ[k] for k in ("SYSTEMROOT",) if k in os.environ}}
         return subprocess.Popen(program, env=environment, start_new_session=True, **pipes)
     reader, writer = os.pipe()
     try:
-        os.write(writer, calls.program())                              # which the pipe holds
+        os.write(writer, calls.program())                              # it fits into the buffer of the pipe
         os.close(writer)
-        return subprocess.Popen([*command(binds, reader), *program], env=ENVIRONMENT, pass_fds=(reader,), start_new_session=True, **pipes)     # --clearenv leaves /proc/1/environ
+        whole = [*command(binds, reader), *program]
+        pipes = {**pipes, "env": ENVIRONMENT}                          # because --clearenv leaves /proc/1/environ
+        return subprocess.Popen(whole, pass_fds=(reader,), start_new_session=True, **pipes)
     finally:
         os.close(reader)
 
 
-# ---------------------------------------------------------------------------------------------- whether there is one
+# ---------------------------------------------------------------------------------------------- availability
 
 @lru_cache(maxsize=1)
 def unavailable():
-    """Why code cannot be locked in here; an empty string when it can."""
+    """Return why there is no sandbox on this machine; an empty string if there is one."""
     if not shutil.which("bwrap"):
         return "bubblewrap is not installed"
+    pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE}
     try:
-        trial = started({}, [sys.executable, "-I", "-c", "import numpy"], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        trial = started({}, [sys.executable, "-I", "-c", "import numpy"], **pipes)
         _, said = trial.communicate(timeout=30)
     except (OSError, subprocess.TimeoutExpired) as e:
         return f"the sandbox does not start: {e}"
-    return "" if trial.returncode == 0 else f"bubblewrap may not make a sandbox here: {said.decode(errors='replace').strip()[-200:]}"
+    if trial.returncode == 0:
+        return ""
+    return f"bubblewrap may not make a sandbox here: {said.decode(errors='replace').strip()[-200:]}"
 
 
 def for_tests(skip, fail):
-    """Without a sandbox the tests of the grader cannot say anything: they fail where WORKBOOK_SANDBOX=required, as in CI, and else say so and are left out."""
+    """Skip the tests of the grader if there is no sandbox, or fail them if WORKBOOK_SANDBOX=required, as in CI."""
     if unavailable():
         leave = fail if os.environ.get("WORKBOOK_SANDBOX") == "required" else skip
-        leave(f"the grader is not tested here: {unavailable()}. Install it (Debian: apt-get install bubblewrap libseccomp2)")
+        remedy = "Install it (Debian: apt-get install bubblewrap libseccomp2)"
+        leave(f"the grader is not tested here: {unavailable()}. {remedy}")

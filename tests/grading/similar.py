@@ -8,6 +8,7 @@ pairs with the next line.  Pairs that many have are what the exercise asks for, 
 import re
 from collections import Counter, defaultdict
 from functools import lru_cache
+from itertools import pairwise
 
 from validate import modules
 
@@ -78,7 +79,7 @@ def pairs_of(texts):
             yield from ((group[0], b, 1.0) for b in group[MOST + 1:])
     having = defaultdict(list)                                       # {pair of lines: the first of each group with it}
     for lines, group in same.items():
-        for pair in {*zip(lines, lines[1:])}:
+        for pair in {*pairwise(lines)}:
             having[hash(pair)].append(group[0])
     common, counts = Counter(), Counter()
     for students in having.values():

@@ -1,4 +1,4 @@
-"""What runs elsewhere: Gradescope's zip, from setup.sh to results.json as far as that goes without a container; the workflow for GitHub Classroom."""
+"""Gradescope's zip, from setup.sh to results.json without a container, and the workflow for GitHub Classroom."""
 
 import json
 import os
@@ -17,10 +17,11 @@ from tests.grading import autograder, marking, sandbox
 from validate.modules import ROOT
 
 SEED = "known to nobody"
+COURSE = ("--seed", SEED, "--lesson", "integrators", "--late", "10", "--dirty")
 
 
 def command_line(*arguments):
-    """Exit code of the command line."""
+    """Run the command line; return its exit code."""
     with pytest.raises(SystemExit) as end:
         autograder.main([str(a) for a in arguments])
     return end.value.code or 0
@@ -29,13 +30,13 @@ def command_line(*arguments):
 @pytest.fixture(scope="module")
 def archive(tmp_path_factory):
     out = tmp_path_factory.mktemp("gradescope") / "autograder.zip"
-    assert command_line("gradescope", "--out", out, "--seed", SEED, "--lesson", "integrators", "--late", "10", "--dirty") == 0
+    assert command_line("gradescope", "--out", out, *COURSE) == 0
     return out
 
 
 @pytest.fixture
 def place(archive, tmp_path):
-    """/autograder as Gradescope makes it, elsewhere: the zip unpacked with its modes, an empty submission."""
+    """Make a folder like Gradescope's /autograder: the zip unpacked with its modes, and an empty submission."""
     with zipfile.ZipFile(archive) as entries:
         for entry in entries.infolist():
             path = entries.extract(entry, tmp_path / "source")
@@ -45,12 +46,16 @@ def place(archive, tmp_path):
 
 
 def script(place, name, **more):
-    return subprocess.run(["bash", place / "source" / name], env={**os.environ, "AUTOGRADER": str(place), **more}, cwd=place, capture_output=True, text=True)
+    environment = {**os.environ, "AUTOGRADER": str(place), **more}
+    command = ["bash", place / "source" / name]
+    return subprocess.run(command, env=environment, cwd=place, capture_output=True, text=True)
 
 
 def graded(place):
-    """What run_autograder wrote, and what it printed.  Gradescope calls it in a new container each time."""
-    (place / "source" / "venv").is_symlink() or (place / "source" / "venv").symlink_to(sys.prefix)
+    """Return results.json of run_autograder, and the run.  Gradescope starts a new container for each."""
+    environment = place / "source" / "venv"
+    if not environment.is_symlink():
+        environment.symlink_to(sys.prefix)
     run = script(place, "run_autograder")
     return json.loads((place / "results" / "results.json").read_text()), run
 
@@ -65,15 +70,19 @@ def hand_in(place):
 def test_the_zip_has_its_scripts_at_the_root_and_the_workbook_as_tracked(archive):
     with zipfile.ZipFile(archive) as entries:
         modes = {entry.filename: stat.S_IMODE(entry.external_attr >> 16) for entry in entries.infolist()}
-        assert json.loads(entries.read("course.json")) == {"lessons": ["integrators"], "seed": SEED, "late": 10.0}
-        same = all(entries.read(f"workbook/{path}") == (ROOT / path).read_bytes() for path in ("solutions/integrators.py", "constraints.txt"))
-        assert not any(SEED.encode() in entries.read(name) for name in modes if name not in ("course.json", "workbook/tests/grading/test_autograder.py"))
-    assert modes["setup.sh"] == modes["run_autograder"] == 0o755 and modes["course.json"] == 0o600 and same
-    assert not any("__pycache__" in name or ".venv" in name for name in modes) and stat.S_IMODE(archive.stat().st_mode) == 0o600
+        files = {name: entries.read(name) for name in modes}
+    assert json.loads(files["course.json"]) == {"lessons": ["integrators"], "seed": SEED, "late": 10.0}
+    for path in ("solutions/integrators.py", "constraints.txt"):
+        assert files[f"workbook/{path}"] == (ROOT / path).read_bytes()
+    assert modes["setup.sh"] == modes["run_autograder"] == 0o755 and modes["course.json"] == 0o600
+    assert not any("__pycache__" in name or ".venv" in name for name in files)
+    assert stat.S_IMODE(archive.stat().st_mode) == 0o600
+    with_seed = {name for name, data in files.items() if SEED.encode() in data}
+    assert with_seed <= {"course.json", "workbook/tests/grading/test_autograder.py"}
 
 
 def test_the_same_workbook_and_seed_give_the_same_zip(archive, tmp_path):
-    command_line("gradescope", "--out", tmp_path / "again.zip", "--seed", SEED, "--lesson", "integrators", "--late", "10", "--dirty")
+    command_line("gradescope", "--out", tmp_path / "again.zip", *COURSE)
     assert (tmp_path / "again.zip").read_bytes() == archive.read_bytes()
 
 
@@ -82,26 +91,39 @@ def test_the_scripts_are_bash(place, name):
     assert subprocess.run(["bash", "-n", place / "source" / name], capture_output=True).stderr == b""
 
 
-@pytest.mark.parametrize("there, taken", [("python3.11", "python3.11"), ("python3", "python3")])
-def test_the_setup_installs_sandbox_interpreter_and_the_locked_versions(place, there, taken):
-    told = place / "told"
-    commands = {"apt-get": f'echo "apt-get $*" >> {told}\ncase "$*" in *python3.11*) exit {0 if there == "python3.11" else 100};; esac\n',
-                there: f'case "$1" in -c) exec {sys.executable} "$@";; esac\necho "{there} $*" >> {told}\nmkdir -p "$3/bin"\n'
-                       f'printf \'#!/bin/bash\\necho "pip $*" >> {told}\\n\' > "$3/bin/pip"\nchmod +x "$3/bin/pip"\n'}
-    run = setup_with(place, commands)
-    lines, source = told.read_text().splitlines(), place / "source"
+APT_GET = """\
+echo "apt-get $*" >> {log}
+case "$*" in *python3.11*) exit {code};; esac
+"""
+PYTHON = """\
+case "$1" in -c) exec {python} "$@";; esac
+echo "{name} $*" >> {log}
+mkdir -p "$3/bin"
+printf '#!/bin/bash\\necho "pip $*" >> {log}\\n' > "$3/bin/pip"
+chmod +x "$3/bin/pip"
+"""
+
+
+@pytest.mark.parametrize("there", ["python3.11", "python3"])
+def test_the_setup_installs_sandbox_interpreter_and_the_locked_versions(place, there):
+    log = place / "log"
+    code = 0 if there == "python3.11" else 100
+    apt_get = APT_GET.format(log=log, code=code)
+    run = setup_with(place, {"apt-get": apt_get, there: PYTHON.format(log=log, name=there, python=sys.executable)})
     assert run.returncode == 0, run.stderr
-    assert "apt-get install -y bubblewrap libseccomp2" in lines and f"{taken} -m venv {source}/venv" in lines
+    lines, source = log.read_text().splitlines(), place / "source"
+    assert "apt-get install -y bubblewrap libseccomp2" in lines and f"{there} -m venv {source}/venv" in lines
     assert lines[-1] == f"pip install -q -c {source}/workbook/constraints.txt -e {source}/workbook"
 
 
 def test_the_setup_stops_with_a_sentence_where_python_is_too_old(place):
     run = setup_with(place, {"apt-get": "exit 0\n", "python3": "exit 1\n"})
-    assert run.returncode == 1 and "Python 3.11 or newer is needed" in run.stderr and not (place / "source" / "venv").exists()
+    assert run.returncode == 1 and "Python 3.11 or newer is needed" in run.stderr
+    assert not (place / "source" / "venv").exists()
 
 
 def setup_with(place, commands):
-    """setup.sh with these commands and a few of the system's, and no others."""
+    """Run setup.sh with these commands, a few of the system's, and no others."""
     folder = place / "bin"
     folder.mkdir()
     for name, text in commands.items():
@@ -112,15 +134,22 @@ def setup_with(place, commands):
     return script(place, "setup.sh", PATH=str(folder))
 
 
-def test_a_submission_becomes_results_with_a_row_for_every_test_and_gradescopes_own_dates(place):
+METADATA = {
+    "created_at": "2026-12-01T00:00:01.500000-08:00",
+    "users": [{"email": "ada@example.org"}],
+    "assignment": {"due_date": "2026-11-30T23:59:59.000000-08:00"},
+}
+
+
+def test_a_submission_gets_a_row_for_every_test_and_gradescopes_dates(place):
     hand_in(place)
-    (place / "submission_metadata.json").write_text(json.dumps(
-        {"created_at": "2026-12-01T00:00:01.500000-08:00", "users": [{"email": "ada@example.org"}], "assignment": {"due_date": "2026-11-30T23:59:59.000000-08:00"}}))
+    (place / "submission_metadata.json").write_text(json.dumps(METADATA))
     found, run = graded(place)
-    manifest = marking.manifest(("integrators",))
+    rows, manifest = found["tests"], marking.manifest(("integrators",))
     assert run.returncode == 0, run.stderr
-    assert sum(row["score"] for row in found["tests"]) == sum(row["max_score"] for row in found["tests"]) == sum(row[4] for row in manifest) == 20.0
-    assert len(found["tests"]) == len(manifest) and found["score"] == 18.0       # one day begun, at 10 %
+    assert sum(row["max_score"] for row in rows) == sum(row[4] for row in manifest) == 20.0
+    assert sum(row["score"] for row in rows) == 20.0
+    assert len(rows) == len(manifest) and found["score"] == 18.0       # one day begun, at 10 %
     assert SEED not in json.dumps(found) and ("NOT A GRADE" in found["output"]) == bool(sandbox.unavailable())
 
 
@@ -130,14 +159,16 @@ def test_nothing_handed_in_is_a_zero_of_the_full_maximum(place):
 
 
 @pytest.mark.parametrize("broken", ["course", "environment"])
-def test_a_failure_of_the_grader_is_told_and_no_score_is_invented(place, broken):
+def test_a_failure_of_the_grader_is_reported_without_a_score(place, broken):
     hand_in(place)
     if broken == "course":
-        (place / "source" / "course.json").write_text(json.dumps({"lessons": ["juggling"], "seed": SEED, "late": 0.0}))
+        course = {"lessons": ["juggling"], "seed": SEED, "late": 0.0}
+        (place / "source" / "course.json").write_text(json.dumps(course))
     else:
         (place / "source" / "venv").symlink_to(place / "nowhere")
     found, run = graded(place)
-    assert run.returncode != 0 and set(found) == {"output"} and "grader itself" in found["output"] and SEED not in found["output"]
+    assert run.returncode != 0 and set(found) == {"output"}
+    assert "grader itself" in found["output"] and SEED not in found["output"]
 
 
 # ---------------------------------------------------------------------------------------------- GitHub Classroom
@@ -149,45 +180,62 @@ def manifest():
 
 def job_of(manifest):
     workflow = yaml.safe_load(autograder.workflow(manifest))
-    assert workflow["name"] == "Autograding Tests" and list(workflow["jobs"]) == ["run-autograding-tests"]       # what Classroom looks for
+    assert workflow["name"] == "Autograding Tests"                     # Classroom looks for these two names
+    assert list(workflow["jobs"]) == ["run-autograding-tests"]
     assert workflow["on"] == ["push", "workflow_dispatch"]
     return workflow["jobs"]["run-autograding-tests"]
 
 
+COMMAND = re.compile(r"tests/lessons/test_(\w+)\.py .*--exercise=([\d.]+)$")
+
+
+def commands_in(steps):
+    """The inputs of the steps that grade."""
+    return [step["with"] for step in steps if "command-grader@v1" in step.get("uses", "")]
+
+
 def test_the_workflow_has_a_step_for_every_exercise_with_its_points(manifest):
-    steps = [step["with"] for step in job_of(manifest)["steps"] if "command-grader@v1" in step.get("uses", "")]
+    steps = commands_in(job_of(manifest)["steps"])
     expected = {}
     for lesson, exercise, _, _, worth, _ in manifest:
         expected[lesson, exercise] = expected.get((lesson, exercise), 0) + worth
-    found = {re.search(r"tests/lessons/test_(\w+)\.py .*--exercise=([\d.]+)$", step["command"]).groups(): step["max-score"] for step in steps}
-    assert found == expected and len(steps) == len(expected) and all(type(step["max-score"]) is int for step in steps)
+    found = {COMMAND.search(step["command"]).groups(): step["max-score"] for step in steps}
+    assert found == expected and len(steps) == len(expected)
+    assert all(type(step["max-score"]) is int for step in steps)
     assert all(1 < step["timeout"] <= 6 for step in steps) and sum(found.values()) == 40
 
 
 def test_the_reporter_gets_the_result_of_every_step(manifest):
     *others, reporter = job_of(manifest)["steps"]
     ids = [step["id"] for step in others if "id" in step]
-    assert reporter["uses"].endswith("autograding-grading-reporter@v1") and reporter["with"]["runners"].split(",") == ids and len(set(ids)) == len(ids)
+    assert reporter["uses"].endswith("autograding-grading-reporter@v1")
+    assert reporter["with"]["runners"].split(",") == ids and len(set(ids)) == len(ids)
     assert reporter["env"] == {f"{name.upper()}_RESULTS": f"${{{{ steps.{name}.outputs.result }}}}" for name in ids}
 
 
 def test_a_step_passes_a_right_answer_and_fails_an_empty_one(manifest, tmp_path):
     command = next(step["with"]["command"] for step in job_of(manifest)["steps"] if step.get("id") == "exercise-1-2")
-    (tmp_path / "integrators.py").write_text((ROOT / "solutions" / "integrators.py").read_text().replace("from .", "from solutions."))
+    worked = (ROOT / "solutions" / "integrators.py").read_text()
+    (tmp_path / "integrators.py").write_text(worked.replace("from .", "from solutions."))
     assert command.startswith(".venv/bin/pytest ") and "--of=lessons" in command
+    here = command.replace(".venv/bin/pytest", f"{sys.executable} -m pytest -p no:cacheprovider")
     code = {}
     for of in (tmp_path, "lessons"):
-        words = shlex.split(command.replace(".venv/bin/pytest", f"{sys.executable} -m pytest -p no:cacheprovider").replace("--of=lessons", f"--of={of}"))
+        words = shlex.split(here.replace("--of=lessons", f"--of={of}"))
         code[str(of)] = subprocess.run(words, cwd=ROOT, capture_output=True).returncode
     assert code == {str(tmp_path): 0, "lessons": 1}
 
 
 def test_classroom_counts_whole_points():
     def scores(*worths):
-        text = autograder.workflow([("integrators", f"1.{n}", "a_step", f"test_{n}", worth, "") for n, worth in enumerate(worths, 1)])
-        steps = yaml.safe_load(text)["jobs"]["run-autograding-tests"]["steps"]
-        return [step["with"]["max-score"] for step in steps if "command-grader@v1" in step.get("uses", "")], "times the workbook's" in text
-    assert scores(2, 1) == ([2, 1], False) and scores(1.5, 1) == ([3, 2], True) and scores(0.25, 0.5) == ([1, 2], True)
+        rows = [("integrators", f"1.{n}", "a_step", f"test_{n}", worth, "") for n, worth in enumerate(worths, 1)]
+        text = autograder.workflow(rows)
+        steps = commands_in(yaml.safe_load(text)["jobs"]["run-autograding-tests"]["steps"])
+        return [step["max-score"] for step in steps], "times the workbook's" in text
+
+    assert scores(2, 1) == ([2, 1], False)
+    assert scores(1.5, 1) == ([3, 2], True)
+    assert scores(0.25, 0.5) == ([1, 2], True)
     with pytest.raises(BadInput, match="not in quarters: GitHub Classroom counts whole points"):
         scores(0.3)
 
@@ -202,7 +250,7 @@ def test_the_workflow_is_written_where_it_was_asked_for(tmp_path):
     assert "test_springs" in out.read_text() and "test_integrators" not in out.read_text()
 
 
-@pytest.mark.parametrize("arguments, names", [
+@pytest.mark.parametrize(("arguments", "names"), [
     (["gradescope", "--seed", "s", "--lesson", "juggling", "--dirty"], "juggling"),
     (["classroom", "--lesson", "juggling"], "juggling"),
     (["gradescope", "--seed", "s", "--dirty", "--out", "{folder}"], "not writable"),
@@ -210,6 +258,9 @@ def test_the_workflow_is_written_where_it_was_asked_for(tmp_path):
 def test_bad_input_is_one_sentence_and_leaves_no_file(capsys, tmp_path, arguments, names):
     (tmp_path / "there").mkdir()
     arguments = [a.format(folder=tmp_path / "there") for a in arguments]
-    assert command_line(*arguments, *([] if "--out" in arguments else ["--out", tmp_path / "out"])) == 2
+    if "--out" not in arguments:
+        arguments += ["--out", tmp_path / "out"]
+    assert command_line(*arguments) == 2
     error = capsys.readouterr().err
-    assert names in error and len(error.strip().splitlines()) == 1 and [p.name for p in tmp_path.rglob("*")] == ["there"]
+    assert names in error and len(error.strip().splitlines()) == 1
+    assert [path.name for path in tmp_path.rglob("*")] == ["there"]

@@ -1,4 +1,4 @@
-"""A class is graded fairly: points for what is right, reasons for the rest, the same every time, and nothing lost."""
+"""A class is graded fairly: right answers get points, others get reasons, and grading again gives the same result."""
 
 import csv
 import fractions
@@ -39,14 +39,16 @@ def rows(top):
     return graded(top / "class", top / "one", *LATE)
 
 
+GRADE = (sys.executable, "-m", "tests.grading")
+COURSE = ("--lesson", "integrators", "--seed", "a secret")
 LATE = ("--due", "2027-01-01T00:00", "--late", "10")
 pytestmark = pytest.mark.xdist_group("a graded class")
 
 
 def graded(submissions, out, *more):
-    """Run `grade` as an instructor does; the rows of its CSV by student."""
-    run = subprocess.run([sys.executable, "-m", "tests.grading", str(submissions), "--out", str(out), "--lesson", "integrators",
-                          "--seed", "a secret", *more], cwd=modules.ROOT, capture_output=True, text=True)
+    """Run `grade` as an instructor does; return the rows of its CSV by student."""
+    command = [*GRADE, str(submissions), "--out", str(out), *COURSE, *more]
+    run = subprocess.run(command, cwd=modules.ROOT, capture_output=True, text=True)
     assert run.returncode == 0, run.stdout + run.stderr
     with open(os.path.join(out, "grades.csv"), newline="") as file:
         return {row["student_id"]: row for row in csv.DictReader(file)}
@@ -61,7 +63,8 @@ def test_points_are_given_for_what_is_right_and_reasons_for_the_rest(top, rows):
         return [t for t in tests if t["status"] != "passed"]
 
     wrong = failing("bob")
-    assert {t["exercise"] for t in wrong} == {"1.1"} and wrong[0]["kind"] == "visible" and {"quantity", "expected", "got"} <= wrong[0]["says"].keys()
+    assert {t["exercise"] for t in wrong} == {"1.1"}
+    assert wrong[0]["kind"] == "visible" and wrong[0]["says"].keys() >= {"quantity", "expected", "got"}
     assert all(t["status"] == "not attempted" for t in failing("cem"))
     assert all("ended before it answered" in t["says"]["got"] for t in failing("eve"))
     assert sum(t["points"] for t in failing("eve")) == 20             # nothing drops out of the maximum
@@ -74,7 +77,7 @@ def test_the_same_class_graded_twice_gives_the_same_bytes_and_only_what_changed_
     graded(top / "class", tmp_path, *LATE, "--jobs", "1")
     for name in ("grades.csv", *(f"students/{path.name}" for path in (tmp_path / "students").iterdir())):
         assert (tmp_path / name).read_bytes() == (top / "one" / name).read_bytes(), name
-    for path in (tmp_path / "results").iterdir():                     # and what was seen of it, but for the time that it took
+    for path in (tmp_path / "results").iterdir():                     # the results are equal except for the time
         one, two = (json.loads(file.read_text()) for file in (path, top / "one" / "results" / path.name))
         assert {**one, "seconds": 0} == {**two, "seconds": 0}, path.name
 
@@ -92,8 +95,7 @@ def test_an_interrupted_run_keeps_what_it_has_and_goes_on_from_there(top, tmp_pa
     for student in ("cem", "dan", "eda"):                              # three who have not begun
         (tmp_path / "class").mkdir(exist_ok=True)
         shutil.copy(top / "class" / "cem.zip", tmp_path / "class" / f"{student}.zip")
-    command = [sys.executable, "-m", "tests.grading", str(tmp_path / "class"), "--out", str(tmp_path / "out"), "--lesson", "integrators",
-               "--seed", "a secret", "--jobs", "1"]
+    command = [*GRADE, str(tmp_path / "class"), "--out", str(tmp_path / "out"), *COURSE, "--jobs", "1"]
     run = subprocess.Popen(command, cwd=modules.ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     results = tmp_path / "out" / "results"
     deadline = time.monotonic() + 60.0
@@ -119,7 +121,7 @@ print("LOOKED")
 
 @pytest.mark.long
 def test_a_class_below_the_environment_is_not_read_by_its_students(top):
-    """As in an image that has everything below /usr: answers, seed and other students' files may not come along with Python's own."""
+    """In an image that has everything below /usr, answers, seed and other students' files are hidden among Python's."""
     with tempfile.TemporaryDirectory(dir=os.path.join(sys.prefix, "lib")) as place:
         os.chmod(place, 0o755)
         spy = os.path.join(place, "class", "spy")
@@ -133,7 +135,7 @@ def test_a_class_below_the_environment_is_not_read_by_its_students(top):
     assert "LOOKED" in printed and "FOUND" not in printed
 
 
-@pytest.mark.parametrize("arguments, names", [
+@pytest.mark.parametrize(("arguments", "names"), [
     (["no/such/folder"], "no/such/folder"),
     (["{empty}"], "put one folder or zip a student into it"),
     (["{class}", "--lesson", "juggling"], "juggling"),
@@ -144,16 +146,17 @@ def test_a_class_below_the_environment_is_not_read_by_its_students(top):
 def test_bad_input_is_one_sentence_and_exit_code_2(top, tmp_path, arguments, names):
     (tmp_path / "empty").mkdir()
     (tmp_path / "list.csv").write_text("name\nAda\n")
-    filled = [a.format(empty=tmp_path / "empty", list=tmp_path / "list.csv", **{"class": top / "class"}) for a in arguments]
-    run = subprocess.run([sys.executable, "-m", "tests.grading", *(["--out", str(tmp_path / "out")] if "--out" not in filled else []), *filled], cwd=modules.ROOT,
-                         capture_output=True, text=True)
+    places = {"empty": tmp_path / "empty", "list": tmp_path / "list.csv", "class": top / "class"}
+    filled = [a.format(**places) for a in arguments]
+    out = [] if "--out" in filled else ["--out", str(tmp_path / "out")]
+    run = subprocess.run([*GRADE, *out, *filled], cwd=modules.ROOT, capture_output=True, text=True)
     assert run.returncode == 2 and names in run.stderr and len(run.stderr.strip().splitlines()) == 1
     assert not (tmp_path / "out" / "grades.csv").exists()
 
 
 @pytest.mark.long
 def test_the_sandbox_gives_the_same_points_as_the_same_tests_in_one_process():
-    """Every mutant could be tried; a wrong step and the solutions are enough to see that nothing is lost on the wire."""
+    """The solutions are enough to show that the wire loses nothing."""
     for lesson in modules.lesson_names():
         place = remote.box_of(lesson, example.worked(lesson).encode(), 60.0)
         try:
@@ -161,13 +164,16 @@ def test_the_sandbox_gives_the_same_points_as_the_same_tests_in_one_process():
             inside = points.score(points.grade(lesson, remote.lesson_in(place, lesson), seed="another"))
         finally:
             place.close()
-        assert inside == points.score(points.grade(lesson, modules.bind(lesson), seed="another")), lesson
+        outside = points.score(points.grade(lesson, modules.bind(lesson), seed="another"))
+        assert inside == outside, lesson
 
 
 def test_a_right_answer_is_right_in_longer_numbers():
     text = example.worked("integrators") + (
-        "\n\ndef as_others(function):\n    return lambda *a: tuple(np.asarray(part, np.longdouble) for part in function(*a))\n\n\n"
-        "euler_step, midpoint_step, rk4_step = map(as_others, (euler_step, midpoint_step, rk4_step))\n")
+        "\n\ndef as_others(function):\n"
+        "    return lambda *a: tuple(np.asarray(part, np.longdouble) for part in function(*a))\n\n\n"
+        "euler_step, midpoint_step, rk4_step = map(as_others, (euler_step, midpoint_step, rk4_step))\n"
+    )
     place = remote.box_of("integrators", text.encode(), 60.0)
     try:
         place.open()
@@ -177,13 +183,22 @@ def test_a_right_answer_is_right_in_longer_numbers():
     assert all(score[exercise][0] == score[exercise][1] for exercise in ("1.1", "1.2", "1.3"))
 
 
-@pytest.mark.parametrize("value, expected", [
-    (np.longdouble(0.5), 0.5), (np.float16(2.0), 2.0), (np.uint8(3), 3), (np.bool_(True), True), (fractions.Fraction(1, 4), 0.25),
-    (np.full(3, 0.5, np.longdouble), [0.5] * 3), (np.array([1, 2], np.int16), [1, 2]), (np.array([2**64 - 1], np.uint64), [2.0**64]),
-    (np.array([1.0, fractions.Fraction(1, 2), 3], object), [1.0, 0.5, 3.0]), (np.array([1j], np.complex64), [1j])])
+@pytest.mark.parametrize(("value", "expected"), [
+    (np.longdouble(0.5), 0.5),
+    (np.float16(2.0), 2.0),
+    (np.uint8(3), 3),
+    (np.bool_(True), True),
+    (fractions.Fraction(1, 4), 0.25),
+    (np.full(3, 0.5, np.longdouble), [0.5] * 3),
+    (np.array([1, 2], np.int16), [1, 2]),
+    (np.array([2**64 - 1], np.uint64), [2.0**64]),
+    (np.array([1.0, fractions.Fraction(1, 2), 3], object), [1.0, 0.5, 3.0]),
+    (np.array([1j], np.complex64), [1j]),
+])
 def test_numbers_of_any_kind_go_over_the_wire(value, expected):
     got = wire.unpack(*wire.read(io.BytesIO(wire.pack(value))))
-    assert np.array_equal(got, expected) and (got.dtype.str[1:] in wire.DTYPES if isinstance(got, np.ndarray) else type(got) is type(expected))
+    assert np.array_equal(got, expected)
+    assert got.dtype.str[1:] in wire.DTYPES if isinstance(got, np.ndarray) else type(got) is type(expected)
 
 
 def test_the_vector_form_of_a_product_serves_the_exercises_that_use_it():

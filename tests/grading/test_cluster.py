@@ -33,7 +33,8 @@ def _with_dask(request):
 
 
 def started(kind, *arguments, folder=ROOT):
-    command = [sys.executable, "-m", f"distributed.cli.dask_{kind}", "--host", "127.0.0.1", "--no-dashboard", *map(str, arguments)]
+    module = f"distributed.cli.dask_{kind}"
+    command = [sys.executable, "-m", module, "--host", "127.0.0.1", "--no-dashboard", *map(str, arguments)]
     return subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
@@ -81,12 +82,22 @@ def settings():
 
 
 def small_class():
-    """Eight students: two with everything, two with nothing, one with no file, one who forgot a bracket, one with half, one who prints."""
+    """Eight students: all right (2), nothing (2), no file, a syntax error, half of it, and one who prints."""
     worked = (ROOT / "solutions" / f"{LESSON}.py").read_text().replace("from .", "from solutions.")
     blank = (ROOT / "lessons" / f"{LESSON}.py").read_text()
     half = worked.replace("def box_inertia", "def another_name")
-    texts = {"ada": worked, "bea": blank, "cyd": None, "dov": "def box_inertia(:\n", "eve": half, "fay": "print('ö\\x07')\n" + blank, "gus": worked, "hal": blank}
-    return [Submission(name, {LESSON: text.encode()} if text else {}, (), "2026-11-30T23:59:00") for name, text in texts.items()]
+    texts = {
+        "ada": worked,
+        "bea": blank,
+        "cyd": None,
+        "dov": "def box_inertia(:\n",
+        "eve": half,
+        "fay": "print('ö\\x07')\n" + blank,
+        "gus": worked,
+        "hal": blank,
+    }
+    files = {name: {LESSON: text.encode()} if text else {} for name, text in texts.items()}
+    return [Submission(name, files[name], (), "2026-11-30T23:59:00") for name in texts]
 
 
 def without_time(result):
@@ -94,40 +105,44 @@ def without_time(result):
 
 
 @pytest.mark.long
-def test_a_worker_that_is_killed_half_way_loses_nothing_and_nothing_is_counted_twice(tmp_path, settings):
+def test_a_killed_worker_loses_no_submission_and_none_is_counted_twice(tmp_path, settings):
     everyone = small_class()
     with cluster_of(2, tmp_path) as (address, workers):
         coming = cluster.results(address, everyone, settings)
         came = [next(coming)]
         victim = psutil.Process(workers[0].pid)
-        until(victim.children)                                         # it is grading somebody
+        until(victim.children)                                         # until it is grading
         victim.kill()
         came += coming
-    assert sorted(student for student, _, _ in came) == [s.student for s in everyone] and not any(why for _, _, why in came)
+    assert sorted(student for student, _, _ in came) == [s.student for s in everyone]
+    assert not any(why for _, _, why in came)
     found = {student: without_time(result) for student, result, _ in came}
     for submission in everyone:
         if submission.student in ("ada", "fay"):
             assert found[submission.student] == without_time(marking.mark(submission, settings))       # here
-    assert found["gus"]["tests"] == found["ada"]["tests"] and found["hal"]["tests"] == found["bea"]["tests"] == found["fay"]["tests"]
-    assert {s: sum(t["earned"] for t in found[s]["tests"]) for s in ("ada", "bea", "cyd", "dov")} == {"ada": 20.0, "bea": 0, "cyd": 0, "dov": 0}
+    assert found["gus"]["tests"] == found["ada"]["tests"]
+    assert found["hal"]["tests"] == found["bea"]["tests"] == found["fay"]["tests"]
+    earned = {s: sum(t["earned"] for t in found[s]["tests"]) for s in ("ada", "bea", "cyd", "dov")}
+    assert earned == {"ada": 20.0, "bea": 0, "cyd": 0, "dov": 0}
 
 
 @pytest.mark.long
-def test_what_a_killed_worker_had_begun_ends_with_it(settings):
+def test_the_processes_of_a_killed_worker_end_with_it(settings):
     hangs = Submission("kim", {LESSON: b"while True:\n    pass\n"}, (), "")      # for IMPORT_WITHIN, 10 s
     command = "import sys; from tests.grading import cluster; cluster.asked(sys.stdin.buffer.read())"
-    with subprocess.Popen([sys.executable, "-c", command], cwd=ROOT, stdin=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
+    pipes = {"stdin": subprocess.PIPE, "stderr": subprocess.DEVNULL}
+    with subprocess.Popen([sys.executable, "-c", command], cwd=ROOT, **pipes) as process:
         process.stdin.write(cluster.parcel(hangs, settings))
         process.stdin.close()
         like_a_worker = psutil.Process(process.pid)
-        until(lambda: len(like_a_worker.children(recursive=True)) >= 2)                # the grading process, and its sandbox
+        until(lambda: len(like_a_worker.children(recursive=True)) >= 2)                # grading process and sandbox
         begun = like_a_worker.children(recursive=True)
         process.kill()
         assert not psutil.wait_procs(begun, timeout=5.0)[1]                             # it looks once a second
 
 
 @pytest.mark.long
-def test_a_failure_of_the_grader_and_a_cluster_that_dies_are_told_and_give_no_points(tmp_path, settings, monkeypatch):
+def test_a_failure_of_the_grader_or_of_the_cluster_is_reported_without_points(tmp_path, settings, monkeypatch):
     monkeypatch.setattr(cluster, "WORKERLESS", 2.0)
     no_bytes = Submission("ivy", {LESSON: None}, (), "")
     with cluster_of(1, tmp_path) as (address, workers):
@@ -146,9 +161,9 @@ def test_an_interrupted_run_leaves_nothing_waiting_on_the_cluster(tmp_path, sett
     with cluster_of(1, tmp_path) as (address, _):
         coming = cluster.results(address, small_class()[1:], settings)
         next(coming)
-        coming.close()                                                 # what becomes of it when Ctrl-C ends the loop that asks
+        coming.close()                                                 # as when Ctrl-C ends the loop over results
         with client_of(address) as client:
-            until(lambda: client.run_on_scheduler(left_over) == (0, 1))                 # no task, and no client but this one
+            until(lambda: client.run_on_scheduler(left_over) == (0, 1))                 # no task, and only this client
 
 
 @pytest.mark.long
@@ -164,7 +179,8 @@ def test_a_workbook_elsewhere_is_accepted_and_one_that_differs_is_refused(tmp_pa
                 cluster.fit(client, address, settings)
                 with open(copy / "tests" / "lessons" / f"test_{LESSON}.py", "a") as file:
                     file.write("# another version\n")
-                with pytest.raises(BadInput, match=f"worker at tcp.* is with workbook .* instead of {settings.code}: give it"):
+                why = f"is with workbook .* instead of {settings.code}: give it"
+                with pytest.raises(BadInput, match=f"worker at tcp.* {why}"):
                     cluster.fit(client, address, settings)
             with pytest.raises(BadInput, match="instead of"):
                 cluster.results(address, small_class(), settings)
@@ -198,27 +214,28 @@ class Done:
 @pytest.mark.long
 def test_a_grading_process_that_breaks_is_an_error_of_the_grader(settings):
     assert cluster.fetched(Done(RuntimeError("a worker\ndied"))) == (None, "RuntimeError: a worker died")
-    with pytest.raises(RuntimeError, match="ended unexpectedly .*TypeError"):
+    with pytest.raises(RuntimeError, match=r"ended unexpectedly .*TypeError"):
         cluster.asked(pickle.dumps((None, settings, None, {}, None)))
 
 
 @pytest.mark.long
-def test_what_is_no_cluster_is_told_in_one_sentence(tmp_path, settings, monkeypatch):
+def test_an_address_without_a_cluster_is_reported_in_one_sentence(tmp_path, settings, monkeypatch):
     monkeypatch.setattr(cluster, "CONNECT_WITHIN", 1.0)
     for address, said in (("here", "not an address"), ("tcp://127.0.0.1:1", "no Dask scheduler that answers")):
         with pytest.raises(BadInput, match=f"{address}.* is {said}.*: ") as error:
             cluster.results(address, small_class(), settings)
         assert "\n" not in str(error.value)
-    with cluster_of(0, tmp_path) as (address, _), pytest.raises(BadInput, match=f"{address} is a scheduler without workers: start"):
+    why = "is a scheduler without workers: start"
+    with cluster_of(0, tmp_path) as (address, _), pytest.raises(BadInput, match=f"{address} {why}"):
         cluster.results(address, small_class(), settings)
 
 
 def test_a_missing_package_is_named_with_its_remedy(settings, monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(BadInput, match="distributed is not installed: .*pip install"):
+    with pytest.raises(BadInput, match=r"distributed is not installed: .*pip install"):
         cluster.results("tcp://127.0.0.1:1", small_class(), settings)
 
 
 @pytest.mark.long
-def test_nothing_to_do_asks_no_cluster(settings):
+def test_an_empty_class_needs_no_cluster(settings):
     assert list(cluster.results("tcp://127.0.0.1:1", [], settings)) == []

@@ -37,8 +37,11 @@ def run(tmp_path):
         (tmp_path / "class" / student).mkdir(parents=True)
         (tmp_path / "class" / student / "integrators.py").write_text("while True:\n    pass\n")
     (tmp_path / "temporary").mkdir()
-    process = subprocess.Popen([sys.executable, "-m", "tests.grading", str(tmp_path / "class"), "--out", str(tmp_path / "out"), "--lesson", "integrators", "--jobs", "2"],
-                               cwd=ROOT, env={**os.environ, "TMPDIR": str(tmp_path / "temporary")}, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    folders = [str(tmp_path / "class"), "--out", str(tmp_path / "out")]
+    command = [sys.executable, "-m", "tests.grading", *folders, "--lesson", "integrators", "--jobs", "2"]
+    environment = {**os.environ, "TMPDIR": str(tmp_path / "temporary")}
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
+    process = subprocess.Popen(command, cwd=ROOT, env=environment, **pipes)
     try:
         until(lambda: len(called("worker.py", process)) >= 2)
         yield process
@@ -95,7 +98,8 @@ def test_what_a_killed_run_has_left_is_removed_by_the_next(tmp_path, monkeypatch
     descriptor = os.open(folders["at_work"], os.O_RDONLY)
     fcntl.flock(descriptor, fcntl.LOCK_EX)
     with children.temporary() as folder:
-        assert sorted(os.listdir(tmp_path)) == sorted([os.path.basename(folder), "other", *(f"{children.PREFIX}{name}" for name in ("at_work", "link", "young"))])
+        kept = [f"{children.PREFIX}{name}" for name in ("at_work", "link", "young")]
+        assert sorted(os.listdir(tmp_path)) == sorted([os.path.basename(folder), "other", *kept])
         os.utime(folder, (1.0, 1.0))
         children.remove_leftovers()
         assert os.path.isdir(folder)                                   # it is at work itself

@@ -1,4 +1,4 @@
-"""The sandbox shows nothing of what grading uses, wherever that lies, and the kernel answers only what a lesson needs."""
+"""The sandbox shows no file of grading, wherever it lies, and the kernel allows only the system calls of a lesson."""
 
 import ctypes
 import errno
@@ -26,8 +26,10 @@ def _sandbox():
 
 
 def inside(program, *arguments):
-    """What a program in the sandbox prints, as JSON."""
-    process = sandbox.started({}, [sys.executable, "-I", "-B", "-c", program, *map(str, arguments)], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    """Run a program in the sandbox, and return the JSON that it prints."""
+    command = [sys.executable, "-I", "-B", "-c", program, *map(str, arguments)]
+    pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    process = sandbox.started({}, command, **pipes)
     printed, said = process.communicate(timeout=60)
     assert process.returncode == 0, said.decode()
     return json.loads(printed)
@@ -37,7 +39,8 @@ def inside(program, *arguments):
 
 LOOK = """
 import json, os, sys
-print(json.dumps([os.path.join(here, name) for top in sys.argv[1:] for here, _, names in os.walk(top) for name in names]))
+walks = [walk for top in sys.argv[1:] for walk in os.walk(top)]
+print(json.dumps([os.path.join(here, name) for here, _, names in walks for name in names]))
 """
 READ = """
 import json, os, sys
@@ -52,7 +55,7 @@ print(json.dumps(sorted(map(text, sys.argv[1:]))))
 
 @pytest.fixture(params=["lib", "share"])
 def below_the_environment(request):
-    """A folder below the environment's prefix: in a part of it that the sandbox shows, and in one that it does not."""
+    """Make a folder below the environment's prefix, in a part that the sandbox shows and in one that it does not."""
     folder = Path(sys.prefix) / request.param
     folder.mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory(dir=folder) as made:
@@ -60,7 +63,7 @@ def below_the_environment(request):
         yield Path(made)
 
 
-def test_nothing_that_grading_uses_is_seen_wherever_it_lies(below_the_environment, monkeypatch):
+def test_no_file_of_grading_is_seen_wherever_it_lies(below_the_environment, monkeypatch):
     used = {name: below_the_environment / name for name in ("workbook", "class", "grades", "temporary")}
     for folder in used.values():
         (folder / "deep").mkdir(parents=True)
@@ -70,15 +73,17 @@ def test_nothing_that_grading_uses_is_seen_wherever_it_lies(below_the_environmen
     monkeypatch.setattr(sandbox, "ROOT", used["workbook"])
     monkeypatch.setattr(tempfile, "tempdir", str(used["temporary"]))
     monkeypatch.setattr(sandbox, "private", {})
-    sandbox.keep_out({used["class"]: "submissions", used["grades"]: "grades", below_the_environment / "list.csv": "class list"})
+    roster = below_the_environment / "list.csv"
+    sandbox.keep_out({used["class"]: "submissions", used["grades"]: "grades", roster: "class list"})
     seen = [Path(path) for path in inside(LOOK, below_the_environment)]
-    assert {path.name for path in seen} <= {"library.py", "list.csv"}
-    assert ("library.py" in {path.name for path in seen}) == (below_the_environment.parent.name == "lib")        # it has looked
+    names = {path.name for path in seen}
+    assert names <= {"library.py", "list.csv"}
+    assert ("library.py" in names) == (below_the_environment.parent.name == "lib")       # the search has worked
     assert inside(READ, *seen) in (["", "anyone may read it"], [])
 
 
 def test_a_workbook_among_pythons_files_still_has_its_environment(tmp_path, monkeypatch):
-    """As in /usr/lib/workbook/.venv: the one is hidden, the other is seen."""
+    """In /usr/lib/workbook/.venv, for example, the workbook is hidden and the environment is seen."""
     workbook = tmp_path / "usr" / "lib" / "workbook"
     (workbook / "solutions").mkdir(parents=True)
     (workbook / "solutions" / "integrators.py").write_text("secret")
@@ -89,7 +94,7 @@ def test_a_workbook_among_pythons_files_still_has_its_environment(tmp_path, monk
     assert inside(LOOK, tmp_path) == [str(workbook / ".venv" / "lib" / "library.py")]
 
 
-def test_what_is_named_by_a_link_is_hidden_where_it_lies(below_the_environment, tmp_path, monkeypatch):
+def test_a_folder_named_by_a_link_is_hidden_at_its_own_path(below_the_environment, tmp_path, monkeypatch):
     (below_the_environment / "grades").mkdir()
     (below_the_environment / "grades" / "seed.txt").write_text("secret")
     (tmp_path / "link").symlink_to(below_the_environment / "grades")
@@ -99,21 +104,25 @@ def test_what_is_named_by_a_link_is_hidden_where_it_lies(below_the_environment, 
 
 
 @pytest.mark.parametrize("place", [sys.prefix, os.path.join(sys.prefix, "lib"), "/usr", "/"])
-def test_what_cannot_be_hidden_is_refused(place):
-    with pytest.raises(BadInput, match="output folder .* where Python has its own files .*: move it elsewhere"):
+def test_a_folder_that_cannot_be_hidden_is_refused(place):
+    with pytest.raises(BadInput, match=r"output folder .* where Python has its own files .*: move it elsewhere"):
         sandbox.keep_out({place: "output folder"})
     assert Path(place).resolve() not in sandbox.private
 
 
 def test_only_programs_and_libraries_are_seen():
-    top = inside("import json, os; print(json.dumps({path: sorted(os.listdir(path)) for path in ('/', '/usr', '/proc', '/etc')}))")
-    assert set(top["/usr"]) <= {"bin", "lib", "lib32", "lib64", "local"} and top["/proc"] == [] and set(top["/etc"]) <= {"ld.so.cache"}
+    top = inside(
+        "import json, os\n"
+        "print(json.dumps({path: sorted(os.listdir(path)) for path in ('/', '/usr', '/proc', '/etc')}))"
+    )
+    assert set(top["/usr"]) <= {"bin", "lib", "lib32", "lib64", "local"}
+    assert top["/proc"] == [] and set(top["/etc"]) <= {"ld.so.cache"}
     own = {Path(place).parts[1] for place in (sys.prefix, sys.base_prefix)}
     assert set(top["/"]) <= {"bin", "dev", "etc", "lib", "lib32", "lib64", "proc", "tmp", "usr", *own}
 
 
 def test_a_python_that_is_called_by_another_name_shows_no_more(monkeypatch):
-    """/bin/python3 has the prefix / if only its name is looked at."""
+    """Without following links, the prefix of /bin/python3 would be /."""
     monkeypatch.setattr(sys, "executable", "/bin/python3")
     assert not {Path("/"), Path("/usr")} & set(sandbox.shown())
 
@@ -121,7 +130,10 @@ def test_a_python_that_is_called_by_another_name_shows_no_more(monkeypatch):
 # ---------------------------------------------------------------------------------------------- system calls
 
 def verdict(program, architecture, number, *arguments):
-    """What the filter says about a call: an interpreter of the few instructions that such programs have.  *Source:* linux/filter.h, linux/seccomp.h."""
+    """Interpret the filter program for a system call, and return its verdict.
+
+    *Source:* linux/filter.h, linux/seccomp.h.
+    """
     data = struct.pack("<iIQ6Q", number, architecture, 0, *(arguments + 6 * (0,))[:6])
     code = [struct.unpack_from("<HBBI", program, 8 * n) for n in range(len(program) // 8)]
     at, value = 0, 0
@@ -141,7 +153,12 @@ def verdict(program, architecture, number, *arguments):
             at += yes if true else no
 
 
-HERE, OTHER = {"x86_64": (0xC000003E, 0x40000003), "aarch64": (0xC00000B7, 0x40000028)}.get(platform.machine(), (0, 0))     # AUDIT_ARCH_…; its 32-bit sister
+ARCHITECTURES = {            # AUDIT_ARCH_… of the machine, and of its 32-bit calls
+    "x86_64": (0xC000003E, 0x40000003),
+    "aarch64": (0xC00000B7, 0x40000028),
+}
+HERE, OTHER = ARCHITECTURES.get(platform.machine(), (0, 0))
+REFUSED = ["fork", "vfork", "clone3", "socket", "memfd_create", "flock", "statfs", "prctl"]
 GONE = calls.refused(errno.ENOSYS)
 
 
@@ -150,10 +167,11 @@ def number(name):
 
 
 @pytest.mark.skipif(not HERE, reason="the number of this machine's architecture is not known to the test")
-def test_the_filter_answers_what_it_says_and_nothing_else():
+def test_the_filter_allows_kills_and_refuses_the_listed_calls():
     program = calls.program()
-    for names, answer in ((calls.ALLOWED, calls.ALLOW), (calls.NEVER, calls.KILL), (["fork", "vfork", "clone3", "socket", "memfd_create", "flock", "statfs", "prctl"], GONE)):
-        assert {name: verdict(program, HERE, number(name)) for name in names if number(name) >= 0} == {name: answer for name in names if number(name) >= 0}
+    for names, answer in ((calls.ALLOWED, calls.ALLOW), (calls.NEVER, calls.KILL), (REFUSED, GONE)):
+        known = [name for name in names if number(name) >= 0]
+        assert {name: verdict(program, HERE, number(name)) for name in known} == dict.fromkeys(known, answer)
     assert verdict(program, HERE, 100_000) == GONE
     for foreign in (OTHER, 0, 0xC0000015):
         assert verdict(program, foreign, number("read")) == calls.KILL
@@ -166,14 +184,17 @@ def test_arguments_decide_where_a_call_can_do_more():
 
     def of(name, *arguments):
         return verdict(program, HERE, number(name), *arguments)
-    assert of("fcntl", 3, 2) == calls.ALLOW and {of("fcntl", 3, k) for k in (5, 6, 7, 36, 37, 38, 1024, 1025, 1026, 1031, 1036, 2 | 1 << 32)} == {GONE}
+
+    commands = 5, 6, 7, 36, 37, 38, 1024, 1025, 1026, 1031, 1036, 2 | 1 << 32
+    assert of("fcntl", 3, 2) == calls.ALLOW and {of("fcntl", 3, k) for k in commands} == {GONE}
     assert of("ioctl", 3, 0x5401) == calls.ALLOW and of("ioctl", 3, 0x5412) == GONE
     assert of("clone", 0x3D0F00) == calls.ALLOW and {of("clone", flags) for flags in (17, 0x4111, 0x10000000)} == {GONE}
-    assert of("futex", 8, 0x81) == calls.ALLOW and {of("futex", 8, k) for k in (0, 1, 3, 9, 265)} == {calls.refused(errno.EAGAIN)}
+    again = calls.refused(errno.EAGAIN)
+    assert of("futex", 8, 0x81) == calls.ALLOW and {of("futex", 8, k) for k in (0, 1, 3, 9, 265)} == {again}
 
 
-def test_what_a_student_may_well_do_works():
-    """Threads that are waited for, files of one's own, time, another library's attempts."""
+def test_ordinary_programs_of_students_work():
+    """Try joined threads, temporary files, time, and attempts of other libraries to start a process."""
     assert inside("""
 import concurrent.futures, json, os, random, subprocess, tempfile, threading, time
 import numpy as np

@@ -1,4 +1,7 @@
-"""A body that ignores what it is given earns nothing, in any exercise: no constant, no argument handed back, no zeros of the right shape, no refusal of everything."""
+"""A body that ignores its arguments earns nothing in any exercise.
+
+Such bodies return a constant, an argument or zeros of the right shape, or raise an error for every input.
+"""
 
 import types
 
@@ -17,11 +20,13 @@ def filled(value, x):
     if isinstance(value, tuple):
         parts = [filled(part, x) for part in value]
         return type(value)(*parts) if hasattr(value, "_fields") else tuple(parts)
-    return np.full_like(value, x) if isinstance(value, np.ndarray) else type(value)(x) if isinstance(value, bool | int | float) else value
+    if isinstance(value, np.ndarray):
+        return np.full_like(value, x)
+    return type(value)(x) if isinstance(value, bool | int | float) else value
 
 
 class Shaped:
-    """Answers of the right structure and no content; where the worked function refuses, or has not been asked yet, the last one again."""
+    """Answers of the right structure without content; the last one again if the worked function raises an error."""
 
     def __init__(self, worked, x):
         self.worked, self.x, self.last = worked, x, None
@@ -74,7 +79,8 @@ def raising(error):
 def naming(worked):
     """Refuses everything, and names all numbers that it was given: one of them will be the right one."""
     def body(*arguments):
-        raise BadInput("something", [number for a in arguments if isinstance(a, np.ndarray | float | int) for number in np.ravel(a).tolist()], "")
+        numbers = [a for a in arguments if isinstance(a, np.ndarray | float | int)]
+        raise BadInput("something", [number for a in numbers for number in np.ravel(a).tolist()], "")
     return body
 
 
@@ -88,6 +94,11 @@ BODIES = {
 }
 
 
+def passed(graded):
+    """{(subject, test)} of the tests that passed."""
+    return {(key, o.test) for key, outcomes in graded.items() for o in outcomes if o.status == "passed"}
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("name", modules.lesson_names())
 def test_senseless_answers_earn_nothing(name):
@@ -97,6 +108,6 @@ def test_senseless_answers_earn_nothing(name):
             changed = types.SimpleNamespace(**{**module, function: make(module[function])})
             subjects[f"{exercise}: {body}"] = changed, lambda number, test, exercise=exercise: number == exercise
     copied = {key: subject for key, subject in subjects.items() if key.endswith("the first right answer")}
-    public = {(key, o.test) for key, outcomes in points.grade_each(name, copied).items() for o in outcomes if o.status == "passed"}
-    secret = {(key, o.test) for key, outcomes in points.grade_each(name, subjects, seed="another").items() for o in outcomes if o.status == "passed"}
+    public = passed(points.grade_each(name, copied))
+    secret = passed(points.grade_each(name, subjects, seed="another"))
     assert not {(key, test) for key, test in secret if key not in copied or (key, test) in public}

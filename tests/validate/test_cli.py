@@ -28,7 +28,7 @@ def run(capsys, *arguments):
     return end.value.code or 0, said.out, said.err
 
 
-@pytest.mark.parametrize("arguments, names", [
+@pytest.mark.parametrize(("arguments", "names"), [
     (["--scene", "moonwalk"], "moonwalk"),
     (["--lesson", "juggling"], "juggling"),
     (["--of", "no/such/folder"], "no/such/folder"),
@@ -51,7 +51,7 @@ def test_bad_input_is_told_in_one_sentence_and_nothing_is_written(capsys, tmp_pa
     assert not out.exists()
 
 
-@pytest.mark.parametrize("change, says", [
+@pytest.mark.parametrize(("change", "says"), [
     (lambda path: path.unlink(), "without inertia_tensors.py"),
     (lambda path: path.write_text(path.read_text() + "def f(:\n"), "line {last}"),
     (lambda path: path.write_text(path.read_text() + "import nompy\n"), "No module named 'nompy'"),
@@ -308,12 +308,12 @@ def test_results_are_never_half_written(tmp_path, monkeypatch):
     def full(*_):
         raise OSError(errno.ENOSPC, "No space left on device")
     monkeypatch.setattr(Path, "replace", full)
-    with pytest.raises(processes.BadInput, match="x.json.*No space left"):
+    with pytest.raises(processes.BadInput, match=r"x\.json.*No space left"):
         store.write_whole(path, {"a": 2})
     assert json.loads(path.read_text()) == {"a": 1} and list(tmp_path.iterdir()) == [path]
 
 
-@pytest.mark.parametrize("name, text", [
+@pytest.mark.parametrize(("name", "text"), [
     ("tensors.errors.json", "{"),
     ("tensors.times.json", "[]"),
     ("inertia_tensors.stability.json", ""),
@@ -331,7 +331,7 @@ def test_a_damaged_result_is_named_in_one_sentence(capsys, tmp_path, pretended, 
     assert run(capsys, *of("tensors"), "--plain", "--out", str(tmp_path))[0] != 2
 
 
-@pytest.mark.parametrize("text, says", [(None, "missing"), ("{", "no JSON"), ("[]", "not what was written")])
+@pytest.mark.parametrize(("text", "says"), [(None, "missing"), ("{", "no JSON"), ("[]", "not what was written")])
 def test_a_missing_or_damaged_trace_is_named_where_it_is_needed(capsys, tmp_path, here, monkeypatch, text, says):
     monkeypatch.setattr(traces, "RECORDED", tmp_path)
     if text is not None:
@@ -342,7 +342,7 @@ def test_a_missing_or_damaged_trace_is_named_where_it_is_needed(capsys, tmp_path
     assert "validate record --scene tensors" in error
 
 
-@pytest.mark.parametrize("scene, change", [
+@pytest.mark.parametrize(("scene", "change"), [
     ("oscillator", "k=1e300"), ("oscillator", "x0=0"), ("angular_spring", "theta0=0"), ("throw", "g=1e300")])
 def test_numbers_overflow_without_a_warning(tmp_path, scene, change):
     changes = cli.overrides([change], [scene])                      # pytest turns warnings into errors
@@ -354,7 +354,7 @@ def test_numbers_overflow_without_a_warning(tmp_path, scene, change):
         assert "</svg>" in (tmp_path / "picture.svg").read_text()
 
 
-@pytest.mark.parametrize("scene, change", [("oscillator", "c=1e300"), ("asymmetric_top", "w3=1e9")])
+@pytest.mark.parametrize(("scene", "change"), [("oscillator", "c=1e300"), ("asymmetric_top", "w3=1e9")])
 def test_a_parameter_that_a_scene_cannot_compute_with_is_named(capsys, tmp_path, here, scene, change):
     code, _, error = run(capsys, *of(scene), "--plain", "--set", change, "--out", str(tmp_path))
     assert code == 2 and f"scene {scene} with {change[:change.index('=')]} = " in error and "not computable" in error
@@ -383,18 +383,22 @@ def test_an_interrupted_recording_says_so(capsys, monkeypatch, interrupted):
 
 # ---------------------------------------------------------------------------------------------- pytest and the page
 
-@pytest.mark.parametrize("arguments, said", [
+def pytest_run(*arguments):
+    command = [sys.executable, "-m", "pytest", *arguments]
+    return subprocess.run(command, cwd=modules.ROOT, capture_output=True, text=True)
+
+
+@pytest.mark.parametrize(("arguments", "said"), [
     (["--of=lessons", "--exercise=99.9"], "ERROR: exercise '99.9' is unknown"),
     (["--of=no/such/folder"], "no/such/folder"),
 ])
 def test_the_tests_name_what_they_cannot_find(arguments, said):
-    asked = subprocess.run([sys.executable, "-m", "pytest", *arguments], cwd=modules.ROOT, capture_output=True, text=True)
+    asked = pytest_run(*arguments)
     assert asked.returncode == 4 and said in asked.stderr and len(asked.stderr.strip().splitlines()) == 1
 
 
 def test_one_exercise_loads_one_test_file():
-    asked = subprocess.run([sys.executable, "-m", "pytest", "--of=lessons", "--exercise=8.1", "--collect-only", "-q", "-v"], cwd=modules.ROOT,
-                           capture_output=True, text=True)
+    asked = pytest_run("--of=lessons", "--exercise=8.1", "--collect-only", "-q", "-v")
     assert "test_pbd.py" in asked.stdout and not set(re.findall(r"test_\w+\.py", asked.stdout)) - {"test_pbd.py"}
 
 

@@ -99,7 +99,7 @@ def press(run, number, times):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("number, times, jobs", [
+@pytest.mark.parametrize(("number", "times", "jobs"), [
     (signal.SIGINT, 1, 2), (signal.SIGINT, 2, 1), (signal.SIGINT, 500, 2), (signal.SIGTERM, 1, 1),
 ], ids=["Ctrl-C", "twice", "again and again", "SIGTERM"])
 def test_a_run_that_is_interrupted_says_so_once_leaves_no_process_and_keeps_what_is_finished(held, number, times, jobs):

@@ -41,7 +41,7 @@ def test_an_edit_is_seen_within_one_process_too(tmp_path):
 
 
 @needs_numba
-@pytest.mark.parametrize("function, call", [
+@pytest.mark.parametrize(("function", "call"), [
     ("advance", "lesson.advance(lesson.verlet_step, lesson.oscillator_acceleration, 0.0, np.ones(1), np.zeros(1), 0.1, 3, lesson.Oscillator(1.0, 0.0))"),
     ("amplification_matrix", "lesson.amplification_matrix(lesson.euler_step, 1.0, 0.0, 0.1)"),          # hands a function on
 ])
@@ -68,7 +68,7 @@ def test_plain_and_compiled_give_the_same_bits_and_the_plain_module_stays_plain(
 @needs_numba
 def test_a_twin_raises_the_same_errors_with_the_value_in_them():
     twin = modules.bind("integrators", compiled=True)
-    with pytest.raises(BadInput, match="-0.5"):
+    with pytest.raises(BadInput, match=r"-0\.5"):
         twin.advance(twin.rk4_step, twin.oscillator_acceleration, 0.0, np.ones(1), np.zeros(1), -0.5, 1, twin.Oscillator(1.0, 0.0))
 
 
@@ -81,7 +81,7 @@ def test_a_scene_uses_the_subject_it_is_bound_to(tmp_path):
     assert modules.bind_scene("oscillator").run.__globals__["advance"].__module__ == "solutions.integrators"
 
 
-@pytest.mark.parametrize("call, names", [
+@pytest.mark.parametrize(("call", "names"), [
     (lambda: modules.bind("juggling"), "juggling"),
     (lambda: modules.bind("integrators", "no/such/folder"), "no/such/folder"),
     (lambda: modules.bind_scene("moonwalk"), "moonwalk"),
