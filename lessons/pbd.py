@@ -489,9 +489,8 @@ def balloon_step(acceleration, t, x, v, dt, balloon):
     Each sweep visits the links first, then the air, then the floor.
     """
     net = balloon.net
-    new = predict(acceleration, t, x, v, dt, net)
-    Lam, air = np.zeros(net.i.size), 0.0
-    for _ in range(net.sweeps):
+    new, Lam, air = predict(acceleration, t, x, v, dt, net), np.zeros(net.i.size), 0.0
+    for _ in range(balloon.net.sweeps):
         new, Lam = compliant_sweep(new, Lam, dt, net)
         V, gradient = volume_gradient(new, balloon.faces)
         weight = 0.0

@@ -60,6 +60,7 @@ def make_contacts(a, b, p, n, inv_mass):
     Raises BadInput for a body number that is none, a normal that is no unit vector, and for two bodies that cannot move.
     """
     inv_mass = finite_array("an inverse mass [1/kg]", inv_mass)
+    check_shape("the inverse masses", inv_mass, (inv_mass.size,))
     a, b = check_indices("a body of a contact", a, inv_mass.size), check_indices("a body of a contact", b, inv_mass.size)
     p, n = finite_array("a contact point [m]", p), finite_array("a normal [-]", n)
     check_shape("the bodies a", a, (a.size,))
