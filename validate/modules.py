@@ -270,7 +270,7 @@ class ModuleSet:
         meant = {}
         for name, value in vars(module).items():
             home = value.__name__ if isinstance(value, types.ModuleType) else getattr(value, "__module__", None) or ""
-            source, _, origin = home.removeprefix(f"{self.name}.").partition(".")                  # origin: friction, or support.arms
+            source, _, origin = home.removeprefix(f"{self.name}.").partition(".")  # origin: friction, or support.arms
             if source not in ("solutions", "subject"):
                 continue
             if isinstance(value, type):

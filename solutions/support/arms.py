@@ -33,8 +33,9 @@ def arms_2d(x, inv_mass, inv_inertia, c):
 def arms_3d(x, inv_mass, inv_inertia, c):
     """The Arms of a ContactSet in space, inv_inertia (n + p, 3, 3) in the world.
 
-    k_t = tr K − k_n is the sum of both eigenvalues of K along the surface, so at least the larger one.  It must be one number for all
-    directions: only then does a projection onto the disc of friction come to rest where Coulomb's law holds.
+    k_t = tr K − k_n is the sum of both eigenvalues of K along the surface, so at least the larger one.  It must be
+    one number for all directions: only then does a projection onto the disc of friction come to rest where Coulomb's
+    law holds.
     """
     m = c.a.size
     arms = Arms(np.empty((m, 3)), np.empty((m, 3)), np.empty(m), np.empty(m))
@@ -94,13 +95,16 @@ def normal_velocities(v, omega, c, arms):
     """u_n (m,) [m/s] of all contacts in space."""
     u_n = np.empty(c.a.size)
     for k in range(c.a.size):
-        u = minus(point_velocity_of(v, omega, c.a[k], row(arms.r_a, k)), point_velocity_of(v, omega, c.b[k], row(arms.r_b, k)))
+        u = minus(point_velocity_of(v, omega, c.a[k], row(arms.r_a, k)),
+                  point_velocity_of(v, omega, c.b[k], row(arms.r_b, k)))
         u_n[k] = dot(row(c.n, k), u)
     return u_n
 
 
 def world_inertia(turn, inv_body):
-    """I⁻¹ = R I_body⁻¹ Rᵀ (n + p, 3, 3) of all bodies, turn (n, 3, 3), from inverse principal moments inv_body (n + p, 3)."""
+    """I⁻¹ = R I_body⁻¹ Rᵀ (n + p, 3, 3) of all bodies, turn (n, 3, 3),
+    from inverse principal moments inv_body (n + p, 3).
+    """
     I = np.zeros((inv_body.shape[0], 3, 3))
     for i in range(turn.shape[0]):
         for r in range(3):

@@ -1,6 +1,7 @@
 """Broad phase: pairs of boxes (along the axes) that overlap, found in a grid of cells.
 
-The boxes of lesson 6 stay where they are for one search.  Here they are wider than the bodies, so that the same pairs serve many steps.
+The boxes of lesson 6 stay where they are for one search.  Here they are wider than the bodies, so that the same pairs
+serve many steps.
 """
 
 from typing import NamedTuple
@@ -13,13 +14,18 @@ CELLS_PER_BODY = 8           # at most [-]: a body that flies far away must not 
 
 
 class Pairs(NamedTuple):
-    """Body i may touch partner[first[i]], …, partner[first[i + 1] − 1], all with greater numbers.  Plane p is body n + p."""
+    """Body i may touch partner[first[i]], …, partner[first[i + 1] − 1], all with greater numbers.
+
+    Plane p is body n + p.
+    """
     first: np.ndarray        # (n + 1,)
     partner: np.ndarray      # (pairs,)
 
 
 def cell_numbers(low, size):
-    """(cell (n,), stride (d,), cells): the cell of each box's low corner, in a grid that has an empty rim on all sides."""
+    """(cell (n,), stride (d,), cells): the cell of each box's low corner,
+    in a grid that has an empty rim on all sides.
+    """
     n, d = low.shape
     cell, stride, cells = np.zeros(n, np.int64), np.ones(d, np.int64), 1
     for c in range(d):
@@ -77,13 +83,15 @@ def box_reaches(low, high, i, plane):
 
 
 def near_pairs(low, high, planes):
-    """Pairs of boxes, corners low and high (n, d), that overlap, and of boxes and the planes (p, d + 1) that they reach."""
+    """Pairs of boxes, corners low and high (n, d), that overlap, and of boxes and the planes (p,
+    d + 1) that they reach.
+    """
     n, d = low.shape
     cell, stride, cells = cell_numbers(low, cell_size(low, high))
     start, order = sorted_by_cell(cell, cells)
     first, partner = np.zeros(n + 1, np.int64), [0 for _ in range(0)]
     for i in range(n):
-        for around in range(3 ** (d - 1)):                           # rows of three cells that lie side by side in `order`
+        for around in range(3 ** (d - 1)):  # rows of three cells that lie side by side in `order`
             middle = cell[i] + (around % 3 - 1) * stride[1]
             if d == 3:
                 middle += (around // 3 - 1) * stride[2]

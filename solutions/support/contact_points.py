@@ -1,12 +1,12 @@
 """Contact points of many bodies: discs and boxes in the plane, spheres and boxes in space, each with planes.
 
 A shape is a pair of functions:
-    bounds(x, q, half) → (low, high, turn)                            boxes along the axes around all bodies, and their rotation
+    bounds(x, q, half) → (low, high, turn)          boxes along the axes around all bodies, and their rotation
     contacts(x, turn, half, planes, pairs, reach) → ContactSet        all contacts whose gap is at most `reach` [m]
 
-x (n + p, d) centres [m] of n bodies and p planes · q orientations: an angle each (n + p,) in 2D, a unit quaternion (n + p, 4) in 3D ·
-turn: cosine and sine (n, 2), or rotation matrices (n, 3, 3) · half (n, d) half sizes [m], of what is round its radius d times ·
-planes (p, d + 1), each a row (n, d) with n · p + d = 0 · pairs of the broad phase.
+x (n + p, d) centres [m] of n bodies and p planes · q orientations: an angle each (n + p,) in 2D, a unit quaternion (n
++ p, 4) in 3D · turn: cosine and sine (n, 2), or rotation matrices (n, 3, 3) · half (n, d) half sizes [m], of what is
+round its radius d times · planes (p, d + 1), each a row (n, d) with n · p + d = 0 · pairs of the broad phase.
 """
 
 from typing import NamedTuple
@@ -16,7 +16,8 @@ import numpy as np
 from ..vectors import dot
 from .tuples import across, axis, minus, plus, put, row, scaled
 
-PREFER_FIRST = 1e-4          # of two faces that separate alike, take that of a unless b's is better by this [m], or normals take turns
+# of two faces that separate alike, take that of a unless b's is better by this [m], or normals take turns
+PREFER_FIRST = 1e-4
 PREFER_FACES = 1e-3          # an edge must be better than any face by this [m]: a face holds more points
 PARALLEL = 1e-6              # sin² of the angle below which two edges count as parallel [-]
 
@@ -33,7 +34,8 @@ class ContactSet(NamedTuple):
 
 def room_for(bodies, m, d):
     """A ContactSet with room for m contacts."""
-    return ContactSet(np.zeros(bodies + 1, np.int64), np.empty(m, np.int64), np.empty(m, np.int64), np.empty((m, d)), np.empty((m, d)), np.empty(m))
+    return ContactSet(np.zeros(bodies + 1, np.int64), np.empty(m, np.int64), np.empty(m, np.int64), np.empty((m, d)),
+                      np.empty((m, d)), np.empty(m))
 
 
 def first_of(c, m):
@@ -41,7 +43,7 @@ def first_of(c, m):
     return ContactSet(c.first, c.a[:m], c.b[:m], c.n[:m], c.p[:m], c.gap[:m])
 
 
-# ---------------------------------------------------------------------------------------------- what is round, in 2D and 3D
+# ------------------------------------------------------------------------------------------ what is round, in 2D and 3D
 
 def disc_bounds(x, q, half):
     """(low, high, turn) of discs; nobody sees how a disc is turned."""
@@ -109,7 +111,8 @@ def face_gap_2d(d, n, deep, u, half_x, half_y):
 
 
 def clipped_edge(d, n, deep, wide, u, half_x, half_y):
-    """(n, (along, gap), (along, gap)): where the nearest edge of a box at d lies over a face at deep along ±n, ±wide across.
+    """(n, (along, gap), (along, gap)): where the nearest edge of a box at d lies over a face at deep along ±n, ±wide
+    across.
 
     n comes back as the outward normal of the face.  The gap is infinite where no part of the edge lies over the face.
     """
@@ -118,7 +121,7 @@ def clipped_edge(d, n, deep, wide, u, half_x, half_y):
     out, edge = (half_x * u[0], half_x * u[1]), (-half_y * u[1], half_y * u[0])
     if abs(n[0] * u[0] + n[1] * u[1]) < abs(n[1] * u[0] - n[0] * u[1]):
         out, edge = edge, out
-    if n[0] * out[0] + n[1] * out[1] > 0.0:                          # from its centre to its edge that looks at the face
+    if n[0] * out[0] + n[1] * out[1] > 0.0:  # from its centre to its edge that looks at the face
         out = -out[0], -out[1]
     if n[0] * edge[1] - n[1] * edge[0] < 0.0:                        # from there to the end at larger `along`
         edge = -edge[0], -edge[1]
@@ -134,11 +137,13 @@ def box_pair_2d(x, turn, half, i, j, reach, c, m):
     """Write the contacts of boxes i and j from place m on; return how many contacts there are then."""
     d, u, w = (x[j, 0] - x[i, 0], x[j, 1] - x[i, 1]), (turn[i, 0], turn[i, 1]), (turn[j, 0], turn[j, 1])
     u_y, w_y = (-u[1], u[0]), (-w[1], w[0])
-    a_x, a_y = face_gap_2d(d, u, half[i, 0], w, half[j, 0], half[j, 1]), face_gap_2d(d, u_y, half[i, 1], w, half[j, 0], half[j, 1])
+    a_x, a_y = face_gap_2d(d, u, half[i, 0], w, half[j, 0], half[j, 1]), face_gap_2d(d, u_y, half[i, 1], w, half[j, 0],
+                                                                                     half[j, 1])
     of_a = max(a_x, a_y)
     if of_a > reach:
         return m
-    b_x, b_y = face_gap_2d(d, w, half[j, 0], u, half[i, 0], half[i, 1]), face_gap_2d(d, w_y, half[j, 1], u, half[i, 0], half[i, 1])
+    b_x, b_y = face_gap_2d(d, w, half[j, 0], u, half[i, 0], half[i, 1]), face_gap_2d(d, w_y, half[j, 1], u, half[i, 0],
+                                                                                     half[i, 1])
     of_b = max(b_x, b_y)
     if of_b > reach:
         return m
@@ -199,7 +204,9 @@ def box_bounds(x, q, half):
         put(turn[i], 1, (2.0 * (a * b + w * c), 1.0 - 2.0 * (a * a + c * c), 2.0 * (b * c - w * a)))
         put(turn[i], 2, (2.0 * (a * c - w * b), 2.0 * (b * c + w * a), 1.0 - 2.0 * (a * a + b * b)))
         for e in range(3):
-            reach[i, e] = half[i, 0] * abs(turn[i, e, 0]) + half[i, 1] * abs(turn[i, e, 1]) + half[i, 2] * abs(turn[i, e, 2])
+            reach[i, e] = half[i, 0] * abs(turn[i, e, 0]) + half[i, 1] * abs(turn[i, e, 1]) + half[i,
+                                                                                                   2] * abs(turn[i, e,
+                                                                                                                 2])
     return x[:n] - reach, x[:n] + reach, turn
 
 
@@ -213,13 +220,16 @@ def face_gap(C, t, h_a, h_b, k):
 
 
 def edge_gap(C, t, h_a, h_b, i, j):
-    """Gap [m] along the normal of edge i of a and edge j of b; −∞ where these are parallel: then a face says the same."""
+    """Gap [m] along the normal of edge i of a and edge j of b; −∞ where these are parallel:
+    then a face says the same.
+    """
     squared_sine = 1.0 - C[i, j] * C[i, j]
     if squared_sine < PARALLEL:
         return -np.inf
     i_1, i_2, j_1, j_2 = (i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3
     distance = abs(t[i_2] * C[i_1, j] - t[i_1] * C[i_2, j])
-    reach = h_a[i_1] * abs(C[i_2, j]) + h_a[i_2] * abs(C[i_1, j]) + h_b[j_1] * abs(C[i, j_2]) + h_b[j_2] * abs(C[i, j_1])
+    reach = h_a[i_1] * abs(C[i_2, j]) + h_a[i_2] * abs(C[i_1, j]) + h_b[j_1] * abs(C[i, j_2]) + h_b[j_2] * abs(C[i,
+                                                                                                                 j_1])
     return (distance - reach) / np.sqrt(squared_sine)
 
 
@@ -295,7 +305,10 @@ def edge_point(x, turn, half, i, j, e, f, gap, c, m):
 
 
 def box_pair(x, turn, half, i, j, reach, C, t, y, z, c, m):
-    """Write the contacts of boxes i and j from place m on; C, t, y, z are scratch.  Return how many contacts there are then."""
+    """Write the contacts of boxes i and j from place m on; C, t, y, z are scratch.
+
+    Return how many contacts there are then.
+    """
     d = minus(row(x, j), row(x, i))
     for r in range(3):
         t[r] = dot(axis(turn, i, r), d)

@@ -55,13 +55,16 @@ class Pile(NamedTuple):
 # ---------------------------------------------------------------------------------------------- small scenes
 
 def make_contacts(a, b, p, n, inv_mass):
-    """A ContactSet in the plane, all gaps 0: bodies a[k] and b[k] touch at p (m, 2) with unit normals n (m, 2), from b to a.
+    """A ContactSet in the plane, all gaps 0: bodies a[k] and b[k] touch at p (m, 2) with unit normals n (m, 2), from
+    b to a.
 
-    Raises BadInput for a body number that is none, a normal that is no unit vector, and for two bodies that cannot move.
+    Raises BadInput for a body number that is none, a normal that is no unit vector, and for two bodies that cannot
+    move.
     """
     inv_mass = finite_array("an inverse mass [1/kg]", inv_mass)
     check_shape("the inverse masses", inv_mass, (inv_mass.size,))
-    a, b = check_indices("a body of a contact", a, inv_mass.size), check_indices("a body of a contact", b, inv_mass.size)
+    a, b = check_indices("a body of a contact", a, inv_mass.size), check_indices("a body of a contact", b,
+                                                                                 inv_mass.size)
     p, n = finite_array("a contact point [m]", p), finite_array("a normal [-]", n)
     check_shape("the bodies a", a, (a.size,))
     check_shape("the bodies b", b, (a.size,))
@@ -102,7 +105,8 @@ def check_independent(A):
     U = 1.0 * A
     for k in range(A.shape[0]):
         if not U[k, k] > INDEPENDENT * A[k, k]:
-            raise BadInput("a pivot of the Delassus matrix [1/kg]", U[k, k], "leave out contacts that others make redundant")
+            raise BadInput("a pivot of the Delassus matrix [1/kg]", U[k, k],
+                           "leave out contacts that others make redundant")
         for r in range(k + 1, A.shape[0]):
             U[r] = U[r] - U[r, k] / U[k, k] * U[k]
 
@@ -146,29 +150,36 @@ def settings(mu, substeps, hertz, zeta, margin):
 
 
 def make_pile_2d(x, q, m, inertia, half, planes, gravity, mu, substeps, hertz, zeta, margin):
-    """(PileState, Pile) of discs or boxes at rest in the plane, centres x (n, 2), angles q (n,), and lines planes (p, 3).
+    """(PileState, Pile) of discs or boxes at rest in the plane, centres x (n, 2), angles q (n,), and lines planes
+    (p, 3).
 
     m [kg] and inertia [kg m²] are numbers or one each; half (n, 2) half sizes [m], of a disc its radius twice.
     Raises BadInput for sizes, masses or settings that are not above zero, and planes without a unit normal.
     """
-    x, half, planes = finite_array("a centre x [m]", x), finite_array("a half size [m]", half), finite_array("a plane", planes)
+    x, half, planes = finite_array("a centre x [m]", x), finite_array("a half size [m]", half), finite_array("a plane",
+                                                                                                             planes)
     q, gravity = finite_array("an angle q [rad]", q), finite_array("gravity [m/s²]", gravity)
     check_pile(x, half, planes, 2)
     n, p = len(x), len(planes)
     check_field("the angles q [rad]", q, (n,))
     check_field("gravity [m/s²]", gravity, (2,))
     mu, substeps, hertz, zeta, margin = settings(mu, substeps, hertz, zeta, margin)
-    state = PileState(np.concatenate((x, np.zeros((p, 2)))), np.concatenate((q, np.zeros(p))), np.zeros((n + p, 2)), np.zeros(n + p), no_contacts(n, 2), np.zeros((0, 2)))
-    return state, Pile(inverse("mass [kg]", m, n, p), inverse("moment of inertia [kg m²]", inertia, n, p), half, planes, gravity, mu, substeps, hertz, zeta, margin)
+    state = PileState(np.concatenate((x, np.zeros((p, 2)))), np.concatenate((q, np.zeros(p))), np.zeros((n + p, 2)),
+                      np.zeros(n + p), no_contacts(n, 2), np.zeros((0, 2)))
+    return state, Pile(inverse("mass [kg]", m, n, p), inverse("moment of inertia [kg m²]", inertia, n, p), half, planes,
+                       gravity, mu, substeps, hertz, zeta, margin)
 
 
 def make_pile(x, q, m, inertia, half, planes, gravity, mu, substeps, hertz, zeta, margin):
-    """(PileState, Pile) of spheres or boxes at rest in space, as in make_pile_2d: x (n, 3), unit quaternions q (n, 4), planes (p, 4).
+    """(PileState, Pile) of spheres or boxes at rest in space, as in make_pile_2d: x (n, 3), unit quaternions q (n,
+    4), planes (p, 4).
 
     inertia (n, 3): principal moments [kg m²].
     """
-    x, half, planes = finite_array("a centre x [m]", x), finite_array("a half size [m]", half), finite_array("a plane", planes)
-    q, gravity, inertia = finite_array("a quaternion q [-]", q), finite_array("gravity [m/s²]", gravity), finite_array("a moment of inertia [kg m²]", inertia)
+    x, half, planes = finite_array("a centre x [m]", x), finite_array("a half size [m]", half), finite_array("a plane",
+                                                                                                             planes)
+    q, gravity = finite_array("a quaternion q [-]", q), finite_array("gravity [m/s²]", gravity)
+    inertia = finite_array("a moment of inertia [kg m²]", inertia)
     check_pile(x, half, planes, 3)
     n, p = len(x), len(planes)
     check_field("the quaternions q [-]", q, (n, 4))
@@ -178,21 +189,25 @@ def make_pile(x, q, m, inertia, half, planes, gravity, mu, substeps, hertz, zeta
         check_normal(q[i])
     mu, substeps, hertz, zeta, margin = settings(mu, substeps, hertz, zeta, margin)
     inv_inertia = inverse("moment of inertia [kg m²]", inertia.ravel(), 3 * n, 3 * p).reshape(-1, 3)
-    state = PileState(np.concatenate((x, np.zeros((p, 3)))), np.concatenate((q, np.tile(np.array([1.0, 0.0, 0.0, 0.0]), p).reshape(p, 4))), np.zeros((n + p, 3)), np.zeros((n + p, 3)), no_contacts(n, 3), np.zeros((0, 3)))
-    return state, Pile(inverse("mass [kg]", m, n, p), inv_inertia, half, planes, gravity, mu, substeps, hertz, zeta, margin)
+    state = PileState(np.concatenate((x, np.zeros((p, 3)))),
+                      np.concatenate((q, np.tile(np.array([1.0, 0.0, 0.0, 0.0]), p).reshape(p, 4))),
+                      np.zeros((n + p, 3)), np.zeros((n + p, 3)), no_contacts(n, 3), np.zeros((0, 3)))
+    return state, Pile(inverse("mass [kg]", m, n, p), inv_inertia, half, planes, gravity, mu, substeps, hertz, zeta,
+                       margin)
 
 
 def checked_pile(state, dt, steps, pile):
     """(PileState, dt, steps), converted to float64.
 
-    Raises BadInput for a step or a number of steps that is none, hertz that a substep does not carry, what is not finite, and quaternions
-    without length.
+    Raises BadInput for a step or a number of steps that is none, hertz that a substep does not carry, what is not
+    finite, and quaternions without length.
     """
     dt, steps = positive_number("step dt [s]", dt), whole_number("number of steps", steps, 0)
     check_positive("a substep [s]", dt / pile.substeps)
     product = pile.hertz * dt / pile.substeps
     if not product <= HIGHEST * (1.0 + 1e-9):
-        raise BadInput("hertz of the contacts times a substep [-]", product, "give at most 1/3: take more substeps, or fewer hertz")
+        raise BadInput("hertz of the contacts times a substep [-]", product,
+                       "give at most 1/3: take more substeps, or fewer hertz")
     check_friction(pile.mu)
     check_finite("planes", pile.planes)
     x, q = finite_array("position x [m]", state.x), finite_array("orientation q", state.q)
@@ -207,11 +222,12 @@ def checked_pile(state, dt, steps, pile):
 
 
 def check_overlap(contacts, v, dt, half, allowed, residual):
-    """The overlap, over the smaller half size of both bodies, that is allowed from now on: TOO_DEEP, or what was there at the beginning
+    """The overlap, over the smaller half size of both bodies, that is allowed from now on: TOO_DEEP, or what was
+    there at the beginning
     if that is more (then `allowed` is ∞).
 
-    What moves fast may go as far in during a step as the bodies move in it.  Raises Diverged with the residual [m/s] of the contacts where
-    bodies sink into each other all the same, or where a velocity is no number.
+    What moves fast may go as far in during a step as the bodies move in it.  Raises Diverged with the residual [m/s]
+    of the contacts where bodies sink into each other all the same, or where a velocity is no number.
     """
     deepest, fastest, n = 0.0, np.max(np.abs(v)), half.shape[0]
     if not np.isfinite(fastest):
@@ -226,5 +242,6 @@ def check_overlap(contacts, v, dt, half, allowed, residual):
                     size = min(size, half[contacts.b[k], c])
             deepest = max(deepest, sunk / size)
     if deepest > allowed:
-        raise Diverged("bodies sink into each other; the residual of their contacts [m/s]", residual, "take more substeps, shorter steps, or more equal masses")
+        raise Diverged("bodies sink into each other; the residual of their contacts [m/s]", residual,
+                       "take more substeps, shorter steps, or more equal masses")
     return min(allowed, max(TOO_DEEP, DEEPER * deepest))

@@ -1,4 +1,6 @@
-"""Three coordinates as a tuple of numbers: compiled code keeps them in registers, where an array of three would cost an allocation."""
+"""Three coordinates as a tuple of numbers: compiled code keeps them in registers,
+where an array of three would cost an allocation.
+"""
 
 
 def row(A, k):

@@ -36,7 +36,8 @@ class Submission(NamedTuple):
     student: str             # name of the folder or zip: the student's id
     files: dict              # {lesson: bytes}; a lesson that is missing was not handed in
     problems: tuple          # sentences about what could not be read
-    timestamp: str           # when it was handed in: ISO 8601, from the date of the zip or of its newest lesson file; "" if there is none
+    # when it was handed in: ISO 8601, from the date of the zip or of its newest lesson file; "" if there is none
+    timestamp: str
 
     def digest(self):
         """Changes when anything changes that is graded."""
@@ -51,10 +52,14 @@ class Intake(NamedTuple):
 
 
 def read_all(folder, lessons, people=(), class_list=None):
-    """The Intake of a folder.  people: the ids on the class list, class_list: its file.  Raises BadInput without any."""
+    """The Intake of a folder.  people: the ids on the class list, class_list: its file.
+
+    Raises BadInput without any.
+    """
     folder = Path(folder)
     if not folder.is_dir():
-        raise BadInput(f"submissions {str(folder)!r}", "not a folder", "name the folder that holds one folder or zip a student")
+        raise BadInput(f"submissions {str(folder)!r}", "not a folder",
+                       "name the folder that holds one folder or zip a student")
     theirs, overlooked = by_student(folder, people, class_list)
     if not theirs:
         own = [path.name for path in folder.glob("*.py") if path.stem in modules.lesson_names()]
@@ -117,14 +122,17 @@ def of_lesson(stem):
 
 
 def identity(text):
-    """A student's id as it is compared and shown: one for all Unicode forms of its letters, without blanks around it."""
+    """A student's id as it is compared and shown: one for all Unicode forms of its letters,
+    without blanks around it.
+    """
     return spelt_out(unicodedata.normalize("NFC", text).strip() or text)
 
 
 def submission_of(student, paths, lessons, child):
     """A student's Submission from all that is there.  Raises Ambiguous when that is more than one."""
     bare = [path for path in paths if split(path)[1] == ".py"]
-    whole = [path for path in paths if split(path)[1] == ".zip" or (not split(path)[1] and (path.is_symlink() or path.is_dir()))]
+    whole = [path for path in paths if split(path)[1] == ".zip"
+             or (not split(path)[1] and (path.is_symlink() or path.is_dir()))]
     unread = [path for path in paths if path not in (*bare, *whole)]
     only = lessons[0] if len(lessons) == 1 else None
     lesson_of = {path: of_lesson(split(path)[0])[1] or only for path in bare}
@@ -166,7 +174,7 @@ def read(path, student, lessons, child):
             files, problems, when = child(children.timed, contents, from_zip, path, lessons, patience=children.PATIENCE)
         else:
             files, problems, when = contents(from_folder, path, lessons)
-    except Exception as e:                                             # BadZipFile, ValueError, MemoryError, zlib.error, struct.error …
+    except Exception as e:  # BadZipFile, ValueError, MemoryError, zlib.error, struct.error …
         return Submission(student, {}, (f"it cannot be read: {type(e).__name__}",), "")
     return Submission(student, files, problems, moment(when))
 
@@ -215,7 +223,8 @@ def wanted(name, lessons):
     """The lesson whose file this path may be, or None."""
     parts = name.split("/")
     lesson = parts[-1].removesuffix(".py")
-    plain = not any(part in ("", ".", "..", "__MACOSX") or part.startswith(".") for part in parts) and len(parts) <= DEEPEST + 1
+    plain = not any(part in ("", ".", "..", "__MACOSX") or part.startswith(".")
+                    for part in parts) and len(parts) <= DEEPEST + 1
     return lesson if plain and parts[-1].endswith(".py") and lesson in lessons else None
 
 
@@ -289,7 +298,7 @@ def from_zip(path, lessons):
             try:
                 with archive.open(by_name[place]) as file:
                     keep(files, lesson, place, file.read(LARGEST + 1), problems)
-            except Exception as e:                                     # encrypted, broken, packed in a way that Python does not know
+            except Exception as e:  # encrypted, broken, packed in a way that Python does not know
                 problems.append(f"{place} cannot be read: {type(e).__name__}")
         problems += resembling(by_name, lessons, {wanted(name, lessons) for name in by_name} - {None})
     return files, problems, path.stat().st_mtime
@@ -302,7 +311,8 @@ def unfit(entry):
     if stat.S_ISLNK(entry.external_attr >> 16):
         return "is a link"
     if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-        return f"is packed by {zipfile.compressor_names.get(entry.compress_type, f'method {entry.compress_type}')} and not by deflate, as an ordinary zip is"
+        packed = zipfile.compressor_names.get(entry.compress_type, f"method {entry.compress_type}")
+        return f"is packed by {packed} and not by deflate, as an ordinary zip is"
     return ""
 
 
@@ -328,9 +338,11 @@ def roster(path):
         with open(path, newline="", encoding="utf-8-sig") as file:
             head = file.readline()
             file.seek(0)
-            reader = csv.DictReader(file, delimiter=max(",;\t", key=head.count))        # where the comma is decimal, spreadsheets write semicolons
+            # where the comma is decimal, spreadsheets write semicolons
+            reader = csv.DictReader(file, delimiter=max(",;\t", key=head.count))
             if "student_id" not in (reader.fieldnames or ()):
-                raise BadInput(f"class list {str(path)!r}", f"without the column student_id ({', '.join(reader.fieldnames or ()) or 'empty'})",
+                raise BadInput(f"class list {str(path)!r}",
+                               f"without the column student_id ({', '.join(reader.fieldnames or ()) or 'empty'})",
                                f"give it the columns {', '.join(Person._fields)}; all but the first may be missing")
             rows = [Person(**{f: (row.get(f) or "").strip() for f in Person._fields}) for row in reader]
             rows = [person._replace(student_id=identity(person.student_id)) for person in rows if person.student_id]
@@ -350,4 +362,5 @@ def handed_in_at(person, path):
     try:
         return datetime.fromisoformat(person.timestamp).isoformat(timespec="seconds") if person.timestamp else ""
     except ValueError:
-        raise BadInput(f"timestamp of {person.student_id} in {str(path)!r}", repr(person.timestamp), "write it like 2026-11-30T23:59") from None
+        raise BadInput(f"timestamp of {person.student_id} in {str(path)!r}", repr(person.timestamp),
+                       "write it like 2026-11-30T23:59") from None

@@ -15,10 +15,11 @@ import struct
 import numpy as np
 
 MAGIC, HEADER = b"WBK1", struct.Struct("<4sIQ")
-MAX_TREE, MAX_ARRAYS, MAX_DEPTH = 1 << 18, 1 << 25, 24                 # [bytes], [bytes], [-]: the tests need a hundredth
+MAX_TREE, MAX_ARRAYS, MAX_DEPTH = 1 << 18, 1 << 25, 24  # [bytes], [bytes], [-]: the tests need a hundredth
 DTYPES = {"b1", "u1", "i4", "i8", "f4", "f8", "c16"}
 MOST_INT = 2**63 - 1
-MESSAGES = {"call": [(str, tuple)], "error": [(tuple, str, str)]}      # what follows the kind of a message; a value's is looked at in `answer`
+# what follows the kind of a message; a value's is looked at in `answer`
+MESSAGES = {"call": [(str, tuple)], "error": [(tuple, str, str)]}
 
 
 class WireError(Exception):
@@ -36,7 +37,7 @@ def pack(value, name_of=None):
             return value
         if isinstance(value, np.bool_):
             return bool(value)
-        if isinstance(value, numbers.Real):                            # also of NumPy, long ones and fractions: a right answer may be any
+        if isinstance(value, numbers.Real):  # also of NumPy, long ones and fractions: a right answer may be any
             return int(value) if isinstance(value, numbers.Integral) else float(value)
         if isinstance(value, np.ndarray):
             plain = usual(np.array(value, order="C", subok=False))     # a copy without tricks
@@ -111,7 +112,8 @@ def unpack(head, body, function=None, record=None):
             return function(content)
         if kind == "r" and record:
             name, fields, values = content
-            if not all(type(text) is str and text.isidentifier() for text in [name, *fields]) or len(fields) != len(values):
+            if not all(type(text) is str and text.isidentifier()
+                       for text in [name, *fields]) or len(fields) != len(values):
                 raise WireError("a record has a bad header")
             return record(name, tuple(fields), tuple(value(v, depth + 1) for v in values))
         raise WireError("something that is not plain data")
@@ -120,7 +122,7 @@ def unpack(head, body, function=None, record=None):
         return value(json.loads(head))
     except WireError:
         raise
-    except Exception as e:                                             # ValueError, TypeError, RecursionError, MemoryError …
+    except Exception as e:  # ValueError, TypeError, RecursionError, MemoryError …
         raise WireError(f"malformed data ({type(e).__name__})") from None
 
 
@@ -134,10 +136,13 @@ def arrays_in(value):
 
 
 class Peer:
-    """One side of the conversation.  A call waits for its answer and serves the other side's calls meanwhile, to any depth.
+    """One side of the conversation.
 
-    ["call", function, arguments] is answered by ["value", result, changed] or ["error", class names, message, where]; changed
-    holds (number, array) of the arguments' arrays that the call has changed in place, which happens to the caller's as well.
+    A call waits for its answer and serves the other side's calls meanwhile, to any depth.
+
+    ["call", function, arguments] is answered by ["value", result, changed] or ["error", class names, message, where];
+    changed holds (number, array) of the arguments' arrays that the call has changed in place, which happens to the
+    caller's as well.
     """
 
     def __init__(self, send, receive, resolve, name_of, record, describe, error, define=None, fatal=()):
@@ -146,7 +151,7 @@ class Peer:
         self.describe, self.error = describe, error                    # exception → (names, message, where), and back
         self.define = define                                           # takes (name, code, names, values) of a function
         self.fatal = fatal                                             # exceptions that end the conversation
-        self.may_change = lambda name: True                            # whether that function of the other side's may change arrays
+        self.may_change = lambda name: True  # whether that function of the other side's may change arrays
 
     def call(self, name, arguments):
         """What the other side's function returns; raises what `error` makes of its answer."""
@@ -165,7 +170,8 @@ class Peer:
                 if changed and not self.may_change(name):
                     raise self.error(("ValueError",), "it changes an array that it was given: return a new one", "")
                 for number, array in changed:
-                    if not 0 <= number < len(own) or own[number].shape != array.shape or own[number].dtype != array.dtype:
+                    known = 0 <= number < len(own)
+                    if not known or own[number].shape != array.shape or own[number].dtype != array.dtype:
                         raise WireError("an argument changed its shape")
                     own[number][...] = array
                 return result
@@ -193,7 +199,7 @@ class Peer:
             answer = "error", *self.describe(e)
         try:
             frame = pack(answer, self.name_of)
-        except Exception as e:                                         # WireError, RecursionError, an int of too many digits …
+        except Exception as e:  # WireError, RecursionError, an int of too many digits …
             frame = pack(("error", ["TypeError"], f"the result is not plain data: {str(e)[:200]}", ""))
         self.send(frame)
 
@@ -201,7 +207,8 @@ class Peer:
 def answer(content):
     """(result, changed) of a value message."""
     if len(content) != 2 or type(content[1]) is not tuple or not all(
-            type(pair) is tuple and len(pair) == 2 and type(pair[0]) is int and isinstance(pair[1], np.ndarray) for pair in content[1]):
+            type(pair) is tuple and len(pair) == 2 and type(pair[0]) is int and isinstance(pair[1], np.ndarray)
+            for pair in content[1]):
         raise WireError("an unexpected message")
     return content
 

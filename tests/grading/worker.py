@@ -1,8 +1,9 @@
 """Runs inside the sandbox, beside the student's code.  The parent trusts nothing that comes from here.
 
-Usage: worker.py CONFIG, a JSON object: limits; lesson; student, the folder of the student's file; given, the folder of the lessons as
-handed out; wire, the folder of wire.py; exercises, the functions that the file must answer; earlier, {lesson: its exercises} of the lessons that this one builds on.  Frames go over
-standard input and output; what the student prints goes to standard error.
+Usage: worker.py CONFIG, a JSON object: limits; lesson; student, the folder of the student's file; given, the folder
+of the lessons as handed out; wire, the folder of wire.py; exercises, the functions that the file must answer;
+earlier, {lesson: its exercises} of the lessons that this one builds on.  Frames go over standard input and output;
+what the student prints goes to standard error.
 """
 
 import collections
@@ -19,7 +20,7 @@ config = json.loads(sys.argv[1])
 LESSON = f"lessons.{config['lesson']}"
 with contextlib.suppress(ImportError):                                 # there is no resource module on Windows
     import resource
-    for limit, value in config["limits"].items():                      # hard, and set before any code of the student's runs
+    for limit, value in config["limits"].items():  # hard, and set before any code of the student's runs
         with contextlib.suppress(ValueError, OSError, AttributeError):
             resource.setrlimit(getattr(resource, f"RLIMIT_{limit}"), (value, value))
 
@@ -46,7 +47,9 @@ class Handout(importlib.machinery.SourceFileLoader):
 
 
 class Finder:
-    """Finds the student's file as lessons.NAME, and under solutions or lessons the checks and the lessons that this one builds on."""
+    """Finds the student's file as lessons.NAME, and under solutions or lessons the checks and the lessons that this
+    one builds on.
+    """
 
     @staticmethod
     def find_spec(full, path=None, target=None):
@@ -56,7 +59,8 @@ class Finder:
         file = os.path.join(config["given"], f"{name}.py")
         if full == "solutions.support":                                    # what is in it finds the usual way
             folder = os.path.join(config["given"], name)
-            return importlib.util.spec_from_file_location(full, os.path.join(folder, "__init__.py"), submodule_search_locations=[folder])
+            return importlib.util.spec_from_file_location(full, os.path.join(folder, "__init__.py"),
+                                                          submodule_search_locations=[folder])
         if package in ("lessons", "solutions") and (name in config["earlier"] or name in ("checks", "vectors")):
             return importlib.util.spec_from_file_location(full, file, loader=Handout(full, file))
         return None
@@ -70,7 +74,7 @@ sys.meta_path.insert(0, Finder)
 
 # ---------------------------------------------------------------------------------------------- functions and records
 
-own, names = {}, {}                                                    # functions of ours that the parent knows by name, and back
+own, names = {}, {}  # functions of ours that the parent knows by name, and back
 
 
 def remote(name):
@@ -157,12 +161,14 @@ def raised(names, message, where):
 
 def describe(e):
     """Names of its class and that class's bases, message, and the last place in the student's file."""
-    places = [entry.lineno for entry in traceback.extract_tb(e.__traceback__) if entry.filename.startswith(config["student"])]
+    places = [entry.lineno for entry in traceback.extract_tb(e.__traceback__)
+              if entry.filename.startswith(config["student"])]
     line = e.lineno if isinstance(e, SyntaxError) else places[-1] if places else None
-    return [kind.__name__ for kind in type(e).__mro__][:8], str(e)[:300], f"{config['lesson']}.py, line {line}" if line else ""
+    place = f"{config['lesson']}.py, line {line}" if line else ""
+    return [kind.__name__ for kind in type(e).__mro__][:8], str(e)[:300], place
 
 
-# ---------------------------------------------------------------------------------------------- what the instructor may look into
+# ------------------------------------------------------------------------------------ what the instructor may look into
 
 NOTED = {event: kind for kind, events in {
     "process": "os.fork os.forkpty os.posix_spawn os.system os.exec subprocess.Popen",
@@ -176,7 +182,8 @@ FAMILIES = {"socket.": "network", "ctypes.": "native"}
 
 
 def watcher():
-    """An audit hook that notes what a lesson has no need of, each kind once, as "\\0note KIND\\n" among what is printed.
+    """An audit hook that notes what a lesson has no need of, each kind once, as "\\0note KIND\\n" among what is
+    printed.
 
     The parent takes it out again.  All that it uses is its own: the student's code may change everything else here.
     """
@@ -200,7 +207,7 @@ def watcher():
             told.add(kind)
             try:
                 write(descriptor, b"\0note " + kind.encode() + b"\n")
-            except failed:                                             # standard error is closed: the student's program goes on all the same
+            except failed:  # standard error is closed: the student's program goes on all the same
                 pass
     return hook
 

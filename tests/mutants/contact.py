@@ -4,6 +4,7 @@ import numpy as np
 
 from solutions import contact as worked
 from solutions.checks import Diverged
+
 from . import collection, variants
 
 wrong, right, edit, MUTANTS = collection(worked)
@@ -189,7 +190,8 @@ wrong("9.7", "ω for the factor")(relaxation(factor=lambda omega: 0.5 * omega))
 
 # 9.8 ------------------------------------------------------------------------------------------------------------
 @variants
-def murty(check=worked.check_independent, least=True, sides="both", everything=False, rounds=1000, slack=worked.CONVERGED):
+def murty(check=worked.check_independent, least=True, sides="both", everything=False, rounds=1000,
+          slack=worked.CONVERGED):
     def solve_lcp(A, b):
         check(A)
         m = len(b)
@@ -204,7 +206,8 @@ def murty(check=worked.check_independent, least=True, sides="both", everything=F
                 return lam
             k = wrongs if everything else wrongs[0] if least else wrongs[-1]
             on[k] = ~on[k]
-        raise Diverged("complementarity residual [m/s]", worked.complementarity_residual(A, b, lam), "use projected Gauss–Seidel")
+        raise Diverged("complementarity residual [m/s]", worked.complementarity_residual(A, b, lam),
+                       "use projected Gauss–Seidel")
     return solve_lcp
 
 
@@ -225,14 +228,16 @@ edit("9.8", "returns velocities", "return lam", "return u")
 
 # 9.9 ------------------------------------------------------------------------------------------------------------
 @variants
-def natural(cone=lambda mu, J: mu * J if J > 0.0 else 0.0, scaled=True, tangents=True, normals=True, two_sided=True, total=max, own=True):
+def natural(cone=lambda mu, J: mu * J if J > 0.0 else 0.0, scaled=True, tangents=True, normals=True, two_sided=True,
+            total=max, own=True):
     def cone_residual(A, b, J, mu):
         u, sizes = A @ J + b, [0.0]
         for n in range(0, len(J), 2):
             k_n, k_t, limit = A[n, n], A[n + 1, n + 1], cone(mu[n // 2] if own else mu[0], J[n])
             off_n = max(0.0, J[n] - u[n] / k_n) - J[n]
             off_t = min(max(J[n + 1] - u[n + 1] / k_t, -limit if two_sided else 0.0), limit) - J[n + 1]
-            sizes += [(k_n if scaled else 1.0) * abs(off_n)] * normals + [(k_t if scaled else 1.0) * abs(off_t)] * tangents
+            sizes += [(k_n if scaled else 1.0) * abs(off_n)] * normals + [(k_t if scaled
+                                                                           else 1.0) * abs(off_t)] * tangents
         return total(sizes)
     return cone_residual
 
@@ -272,7 +277,8 @@ def coned(new_limit=True, newest=True, pulls=False, share=1.0, two_sided=True, f
 
         def tangent(n, J_n):
             limit = share * mu[n // 2] * J_n if J_n > 0.0 else 0.0
-            J[n + 1] = min(max(J[n + 1] - (A[n + 1] @ (J if newest else old) + b[n + 1]) / A[n + 1, n + 1], -limit if two_sided else 0.0), limit)
+            J[n + 1] = min(max(J[n + 1] - (A[n + 1] @ (J if newest else old) + b[n + 1]) / A[n + 1, n + 1],
+                               -limit if two_sided else 0.0), limit)
         for n in range(0, len(J), 2):
             before = J[n]
             if friction_first:
@@ -367,7 +373,8 @@ wrong("9.12", "what just touches is open")(soft(touches=True))
 
 # 9.13 -----------------------------------------------------------------------------------------------------------
 @variants
-def disc(size=lambda J: np.sqrt(J[0] ** 2 + J[1] ** 2 + J[2] ** 2), inside=lambda size, limit: size <= limit, scale=1.0):
+def disc(size=lambda J: np.sqrt(J[0] ** 2 + J[1] ** 2 + J[2] ** 2), inside=lambda size, limit: size <= limit,
+         scale=1.0):
     def friction_disc(J, limit):
         length = size(J)
         return tuple(J) if inside(length, limit) else tuple(scale * limit / length * y for y in J)
@@ -380,7 +387,8 @@ def friction_disc(J, limit):
     return tuple(np.array(J) * (1.0 if size <= limit else limit / size))
 
 
-edit("9.13", "a box", "scaled(limit / size, J)", "(min(max(J[0], -limit), limit), min(max(J[1], -limit), limit), min(max(J[2], -limit), limit))")
+edit("9.13", "a box", "scaled(limit / size, J)",
+     "(min(max(J[0], -limit), limit), min(max(J[1], -limit), limit), min(max(J[2], -limit), limit))")
 wrong("9.13", "forgets an axis")(disc(size=lambda J: np.sqrt(J[0] ** 2 + J[1] ** 2)))
 wrong("9.13", "always on the rim")(disc(inside=lambda size, limit: size == 0.0))
 wrong("9.13", "never limited")(disc(inside=lambda size, limit: True))
@@ -455,7 +463,8 @@ edit("9.15", "the edge itself is outside", "wide_low[i, c] <= low[i, c] and", "w
 
 # 9.16 -----------------------------------------------------------------------------------------------------------
 @variants
-def velocity_swept(newest=True, b_too=True, spin=1.0, soft=1.0, aims=1.0, pulls=False, cone=True, old_limit=False, other_arm=False):
+def velocity_swept(newest=True, b_too=True, spin=1.0, soft=1.0, aims=1.0, pulls=False, cone=True, old_limit=False,
+                   other_arm=False):
     def velocity_sweep_2d(v, omega, J, aim, give, contacts, arms, pile):
         v, omega, J = v.copy(), omega.copy(), J.copy()
         v_0, omega_0 = v.copy(), omega.copy()

@@ -81,7 +81,8 @@ def test_answers_that_end_in_errors_depart_and_end_nothing_else(capsys, tmp_path
     code, said, error = run(capsys, *of("tensors"), "--plain", "--of", str(lesson.parent), "--out", str(out))
     said = " ".join(said.split())
     assert code == 1 and error == "" and "✗ 11 ✓ 4" in said and "here it ended in KeyError: 1." in said, said
-    assert "KeyError: 1" in (out / "stability.html").read_text() and not (out / "stability-inertia_tensors-thin-bodies.svg").exists()
+    assert "KeyError: 1" in (out / "stability.html").read_text()
+    assert not (out / "stability-inertia_tensors-thin-bodies.svg").exists()
 
 
 @pytest.fixture
@@ -281,7 +282,8 @@ def test_a_subset_updates_its_part_of_the_report_and_leaves_no_stale_page(capsys
     again = {path.name: path.stat().st_mtime_ns for path in tmp_path.rglob("*") if path.is_file()}
     for name in ("throw.errors.json", "throw.times.json", "throw-steps.svg", "throw-times.svg"):
         assert again[name] == first[name], name
-    for name in ("tensors.errors.json", "tensors.times.json", "stability-inertia_tensors-far-from-origin.svg", "tensors.html", "index.html"):
+    for name in ("tensors.errors.json", "tensors.times.json", "stability-inertia_tensors-far-from-origin.svg",
+                 "tensors.html", "index.html"):
         assert again[name] > first[name], name
     assert {"tensors.html", "throw.html"} <= linked_from(tmp_path / "index.html")
     assert [s["scene"] for s in json.loads((tmp_path / "report.json").read_text())["scenes"]] == ["throw", "tensors"]
@@ -289,7 +291,8 @@ def test_a_subset_updates_its_part_of_the_report_and_leaves_no_stale_page(capsys
     run(capsys, *of("tensors"), "--engine", "pymunk", *out)
     assert pages(tmp_path / "subset") >= {"tensors.html", "stability-inertia_tensors-far-from-origin.svg"}
     run(capsys, *of("throw"), "--engine", "pymunk", "--set", "g=3", *out)
-    assert pages(tmp_path / "subset") & {"throw.html", "tensors.html", "stability-inertia_tensors-far-from-origin.svg"} == {"throw.html"}
+    assert pages(tmp_path / "subset") & {"throw.html", "tensors.html",
+                                         "stability-inertia_tensors-far-from-origin.svg"} == {"throw.html"}
     for folder in (tmp_path, tmp_path / "subset"):
         assert pages(folder) - {"mine.html"} == linked_from(folder / "index.html") - {"player3d.js"}
     assert "mine.html" in pages(tmp_path)
@@ -302,7 +305,7 @@ def pages(folder):
 def test_results_are_never_half_written(tmp_path, monkeypatch):
     path = tmp_path / "x.json"
     store.write_whole(path, {"a": 1})
-    with pytest.raises(ValueError):
+    with pytest.raises(ValueError, match="JSON"):
         store.write_whole(path, {"a": float("nan")})
 
     def full(*_):
@@ -368,7 +371,8 @@ def turned():
         raise ImportError("initialization failed") from None
 
 
-@pytest.mark.parametrize("interrupted", [lambda: signal.raise_signal(signal.SIGINT), turned], ids=["as it is", "as another error"])
+@pytest.mark.parametrize("interrupted", [lambda: signal.raise_signal(signal.SIGINT), turned],
+                         ids=["as it is", "as another error"])
 def test_an_interrupted_recording_says_so(capsys, monkeypatch, interrupted):
     monkeypatch.setattr(record, "record", lambda name: interrupted())
     before = {number: signal.getsignal(number) for number in processes.ENDING}

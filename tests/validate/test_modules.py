@@ -10,12 +10,14 @@ import pytest
 from solutions.checks import BadInput
 from validate import modules
 
-needs_numba = pytest.mark.skipif(not modules.can_compile(), reason="numba has no wheel for this machine: there are no compiled twins")
+needs_numba = pytest.mark.skipif(not modules.can_compile(),
+                                 reason="numba has no wheel for this machine: there are no compiled twins")
 
 
 def in_a_new_process(code, *arguments):
     """What a fresh interpreter prints."""
-    done = subprocess.run([sys.executable, "-c", code, *map(str, arguments)], cwd=modules.ROOT, capture_output=True, text=True)
+    done = subprocess.run([sys.executable, "-c", code, *map(str, arguments)], cwd=modules.ROOT, capture_output=True,
+                          text=True)
     assert done.returncode == 0, done.stderr
     return done.stdout.strip()
 
@@ -26,7 +28,7 @@ def test_an_edit_to_an_imported_sibling_is_seen_by_the_compiled_twin(tmp_path):
     ask = "import sys; from validate.modules import bind; print(bind('upper', sys.argv[1], compiled=True).doubled(3.0))"
     (tmp_path / "lower.py").write_text("def base(x):\n    return x + 1.0\n")
     assert in_a_new_process(ask, tmp_path) == "8.0"
-    os.utime(tmp_path / "lower.py", (1, 1))                        # the date of the file must not matter, only what is in it
+    os.utime(tmp_path / "lower.py", (1, 1))  # the date of the file must not matter, only what is in it
     assert in_a_new_process(ask, tmp_path) == "8.0"
     (tmp_path / "lower.py").write_text("def base(x):\n    return x + 5.0\n")
     assert in_a_new_process(ask, tmp_path) == "16.0"
@@ -42,8 +44,9 @@ def test_an_edit_is_seen_within_one_process_too(tmp_path):
 
 @needs_numba
 @pytest.mark.parametrize(("function", "call"), [
-    ("advance", "lesson.advance(lesson.verlet_step, lesson.oscillator_acceleration, 0.0, np.ones(1), np.zeros(1), 0.1, 3, lesson.Oscillator(1.0, 0.0))"),
-    ("amplification_matrix", "lesson.amplification_matrix(lesson.euler_step, 1.0, 0.0, 0.1)"),          # hands a function on
+    ("advance", "lesson.advance(lesson.verlet_step, lesson.oscillator_acceleration, 0.0, "
+                "np.ones(1), np.zeros(1), 0.1, 3, lesson.Oscillator(1.0, 0.0))"),
+    ("amplification_matrix", "lesson.amplification_matrix(lesson.euler_step, 1.0, 0.0, 0.1)"),  # hands a function on
 ])
 def test_a_second_process_compiles_nothing(function, call):
     ask = f"""
@@ -60,7 +63,8 @@ print(sum(lesson.{function}.stats.cache_misses.values()))
 @needs_numba
 def test_plain_and_compiled_give_the_same_bits_and_the_plain_module_stays_plain():
     plain, twin = modules.bind("integrators"), modules.bind("integrators", compiled=True)
-    ends = [m.advance(m.rk4_step, m.oscillator_acceleration, 0.0, np.ones(1), np.zeros(1), 0.01, 100, m.Oscillator(3.0, 0.1)) for m in (plain, twin)]
+    ends = [m.advance(m.rk4_step, m.oscillator_acceleration, 0.0, np.ones(1), np.zeros(1), 0.01, 100,
+                      m.Oscillator(3.0, 0.1)) for m in (plain, twin)]
     assert np.array_equal(*ends)
     assert not hasattr(plain.rk4_step, "py_func") and hasattr(twin.rk4_step, "py_func")
 
@@ -69,12 +73,14 @@ def test_plain_and_compiled_give_the_same_bits_and_the_plain_module_stays_plain(
 def test_a_twin_raises_the_same_errors_with_the_value_in_them():
     twin = modules.bind("integrators", compiled=True)
     with pytest.raises(BadInput, match=r"-0\.5"):
-        twin.advance(twin.rk4_step, twin.oscillator_acceleration, 0.0, np.ones(1), np.zeros(1), -0.5, 1, twin.Oscillator(1.0, 0.0))
+        twin.advance(twin.rk4_step, twin.oscillator_acceleration, 0.0, np.ones(1), np.zeros(1), -0.5, 1,
+                     twin.Oscillator(1.0, 0.0))
 
 
 def test_a_scene_uses_the_subject_it_is_bound_to(tmp_path):
     text = (modules.SOLUTIONS / "integrators.py").read_text().replace("from .", "from solutions.")
-    (tmp_path / "integrators.py").write_text(text + "\n\ndef advance(step, acceleration, t, x, v, dt, steps, p):\n    return x + 42.0, v\n")
+    own = "\n\ndef advance(step, acceleration, t, x, v, dt, steps, p):\n    return x + 42.0, v\n"
+    (tmp_path / "integrators.py").write_text(text + own)
     scene = modules.bind_scene("oscillator", tmp_path)
     p = scene.parameters
     assert scene.run(None, None, scene.start(p), p, 0.1, 1)[0] == p.x0 + 42.0
@@ -97,6 +103,7 @@ def test_a_scene_may_hand_a_function_of_its_lesson_to_a_compiled_loop():
     """The bowl's run gives bowl_gap to contact_motion: both are twins, and the motion is the plain one."""
     plain, fast = modules.bind_scene("bowl"), modules.bind_scene("bowl", compiled=True)
     p = plain.cases["rough bowl"]
-    ends = [scene.observe(scene.run(modules.module_set(compiled=c).lesson("friction").gripping_step, scene.acceleration, scene.start(p), p, 0.01, 20), p)
+    ends = [scene.observe(scene.run(modules.module_set(compiled=c).lesson("friction").gripping_step, scene.acceleration,
+                                    scene.start(p), p, 0.01, 20), p)
             for scene, c in ((plain, False), (fast, True))]
     assert np.array_equal(*ends)

@@ -16,7 +16,8 @@ def test_the_lock_names_only_the_public_index():
 
 
 def test_both_locks_hold_the_same_versions():
-    locked = {(p["name"], p["version"]) for p in tomllib.loads((ROOT / "uv.lock").read_text())["package"] if "registry" in p["source"]}
+    locked = {(p["name"], p["version"]) for p in tomllib.loads((ROOT / "uv.lock").read_text())["package"]
+              if "registry" in p["source"]}
     pinned = set(re.findall(r"^([\w.-]+)==([^ ;\n]+)", (ROOT / "constraints.txt").read_text(), flags=re.M))
     assert pinned <= locked and len({n for n, _ in pinned}) >= 100
 
@@ -25,14 +26,16 @@ def test_solutions_import_nothing_but_numpy_typing_and_their_siblings():
     for path in SOLUTIONS.rglob("*.py"):
         for line in path.read_text().splitlines():
             if re.match(r"(import|from) ", line):
-                assert re.match(r"import numpy as np$|from typing import NamedTuple$|from \.[\w.]+ import ", line), f"{path.name}: {line}"
+                assert re.match(r"import numpy as np$|from typing import NamedTuple$|from \.[\w.]+ import ",
+                                line), f"{path.name}: {line}"
 
 
 def test_every_lesson_has_its_notebook_tests_mutants_and_scenes():
     from validate import modules
     for name in modules.lesson_names():
         assert list((ROOT / "notebooks").glob(f"*_{name}.ipynb")), name
-        assert (ROOT / "tests" / "lessons" / f"test_{name}.py").is_file() and (ROOT / "tests" / "mutants" / f"{name}.py").is_file()
+        assert (ROOT / "tests" / "lessons" / f"test_{name}.py").is_file()
+        assert (ROOT / "tests" / "mutants" / f"{name}.py").is_file()
         assert any(modules.bind_scene(s).lesson == name for s in modules.scene_names())
 
 
@@ -45,11 +48,13 @@ def test_the_player_in_space_was_built_from_its_source_and_can_stand_inside_a_pa
 
 def test_no_text_names_a_lesson_that_there_is_not():
     from validate import modules
-    there = {int(re.match(r'"""Lesson (\d+)', (SOLUTIONS / f"{name}.py").read_text())[1]) for name in modules.lesson_names()}
+    texts = [(SOLUTIONS / f"{name}.py").read_text() for name in modules.lesson_names()]
+    there = {int(re.match(r'"""Lesson (\d+)', text)[1]) for text in texts}
     assert there == set(range(1, len(there) + 1))
     folders = (SOLUTIONS, ROOT / "validate", ROOT / "notebooks", ROOT / "docs", ROOT / "tests")
     files = [ROOT / "README.md", ROOT / "CONTRIBUTING.md"]
-    files += [path for folder in folders for path in folder.rglob("*") if path.suffix in (".py", ".md", ".ipynb", ".html")]
+    files += [path for folder in folders for path in folder.rglob("*")
+              if path.suffix in (".py", ".md", ".ipynb", ".html")]
     for path in files:
         for named in re.findall(r"\blessons? (\d+(?:(?:, | and | to |–)\d+)*)", path.read_text(encoding="utf-8"), re.I):
             assert {int(number) for number in re.findall(r"\d+", named)} <= there, f"{path}: lesson {named}"

@@ -1,4 +1,6 @@
-"""Every scene: its truth reproduces the published numbers, our methods and the engines keep to it, and a wrong method would be seen."""
+"""Every scene: its truth reproduces the published numbers, our methods and the engines keep to it,
+and a wrong method would be seen.
+"""
 
 import math
 
@@ -25,7 +27,9 @@ BRIEF = measure.Plan(speeds=("plain",), live=LIVE, most_steps=500)
 
 def scenes(names):
     """For each of these scenes; all tests of a scene in one process, which then computes its truth once."""
-    return pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.xdist_group(f"scene {name}")) for name in names])
+    return pytest.mark.parametrize("name",
+                                   [pytest.param(name, marks=pytest.mark.xdist_group(f"scene {name}"))
+                                    for name in names])
 
 
 @scenes(SCENES)
@@ -39,7 +43,8 @@ def test_a_truth_reproduces_what_was_published(name):
 @scenes([n for n in SCENES if modules.bind_scene(n).sanity_checks])
 def test_what_a_scene_claims_beside_its_motion_holds(name):
     for claim, found, expected, tolerance in modules.bind_scene(name).sanity_checks():
-        assert np.all(np.abs(np.asarray(found) - expected) <= tolerance), f"{claim}: {found}, expected {expected} ± {tolerance}"
+        assert np.all(np.abs(np.asarray(found)
+                             - expected) <= tolerance), f"{claim}: {found}, expected {expected} ± {tolerance}"
 
 
 @scenes(MOVING)
@@ -58,7 +63,8 @@ def test_a_body_is_shown_by_a_place_and_a_rotation_where_the_motion_has_it(name)
         observed = np.array(scene.truth(p, t), dtype=float)
         poses = np.array(scene.poses(observed, p), dtype=float)
         assert poses.shape == (len(scene.bodies(p)), 7) and np.all(np.isfinite(poses))
-        assert np.allclose(np.linalg.norm(poses[:, 3:], axis=1), 1.0, rtol=0.0, atol=1e-12)      # rounding of quaternions of R
+        # rounding of quaternions of R
+        assert np.allclose(np.linalg.norm(poses[:, 3:], axis=1), 1.0, rtol=0.0, atol=1e-12)
 
 
 @scenes(REFINED)
@@ -94,12 +100,14 @@ def test_an_engine_that_leaves_its_own_rule_departs(monkeypatch):
     wrong = departure._replace(own_law=lambda p, t: departure.own_law(p, t) * 1.001)
     monkeypatch.setitem(departures, "pybullet, automatic", wrong)
     result = measure.errors("tensors", measure.Plan(speeds=("plain",), live=()))
-    assert {is_right(e) for one in result["cases"].values() for e in one["engines"] if e["label"] == "pybullet, automatic"} == {False}
+    assert {is_right(e) for one in result["cases"].values() for e in one["engines"]
+            if e["label"] == "pybullet, automatic"} == {False}
 
 
 def test_a_wrong_method_departs(tmp_path):
     text = stub((modules.SOLUTIONS / "integrators.py").read_text(), {f"1.{k}" for k in range(1, 11)})
-    (tmp_path / "integrators.py").write_text(text.replace("return x + dt * v_mid, v + dt *", "return x + dt * v, v + dt *"))
+    (tmp_path / "integrators.py").write_text(text.replace("return x + dt * v_mid, v + dt *",
+                                                          "return x + dt * v, v + dt *"))
     result = measure.errors("oscillator", measure.Plan(of=str(tmp_path), speeds=("plain",), live=(), most_steps=2000))
     verdicts = {c["label"]: is_right(c) for c in result["cases"]["under-damped"]["ours"]}
     assert verdicts["midpoint"] is False and verdicts["Verlet"] is True
@@ -117,12 +125,14 @@ def test_without_pybullet_its_record_stands_in_and_says_so(name):
     selection = select(name, measure.Plan(speeds=("plain",), live=()))
     case, p = selection.first
     truth = np.array(selection.scene.truth(p, selection.scene.duration), dtype=float)
-    curves = [engine_curve(selection, case, engine, p, truth) for engine in selection.engines_for(p) if engine.product == PYBULLET]
+    curves = [engine_curve(selection, case, engine, p, truth) for engine in selection.engines_for(p)
+              if engine.product == PYBULLET]
     assert curves and all(c["source"].startswith("recorded, pybullet") and c["rows"] for c in curves)
 
 
 def test_same_scene_same_bits():
-    first, second = (measure.errors("oscillator", measure.Plan(speeds=("plain",), live=LIVE, most_steps=100)) for _ in range(2))
+    first, second = (measure.errors("oscillator", measure.Plan(speeds=("plain",), live=LIVE, most_steps=100))
+                     for _ in range(2))
     assert first == second
 
 
@@ -136,14 +146,16 @@ def test_time_to_an_error_is_read_between_points():
 @pytest.mark.parametrize("value", [0.0, -1.0, math.nan, math.inf])
 def test_a_step_must_be_positive_and_finite(value):
     with pytest.raises(BadInput, match="step dt"):
-        integrators.advance(integrators.euler_step, integrators.oscillator_acceleration, 0.0, np.ones(1), np.ones(1), value, 1,
+        integrators.advance(integrators.euler_step, integrators.oscillator_acceleration, 0.0, np.ones(1), np.ones(1),
+                            value, 1,
                             integrators.Oscillator(1.0, 0.0))
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf])
 def test_a_state_must_be_finite(value):
     with pytest.raises(BadInput, match=str(value)):
-        integrators.advance(integrators.euler_step, integrators.oscillator_acceleration, 0.0, np.array([value]), np.ones(1), 0.1, 1,
+        integrators.advance(integrators.euler_step, integrators.oscillator_acceleration, 0.0, np.array([value]),
+                            np.ones(1), 0.1, 1,
                             integrators.Oscillator(1.0, 0.0))
 
 
@@ -152,8 +164,10 @@ def test_a_method_with_a_law_of_its_own_must_follow_that_law(tmp_path):
     text = (modules.SOLUTIONS / "friction.py").read_text()
     pyramid = "pyramid_impulse(v_free, 1.0, normal_force(pull, p.n), p.mu_k, t_1, t_2)"
     assert pyramid in text
-    for replacement, expected in ((pyramid, True), ("friction_impulse(v_free, 1.0, normal_force(pull, p.n), p.mu_k)", False)):
+    for replacement, expected in ((pyramid, True),
+                                  ("friction_impulse(v_free, 1.0, normal_force(pull, p.n), p.mu_k)", False)):
         (tmp_path / "friction.py").write_text(text.replace("from .", "from solutions.").replace(pyramid, replacement))
-        result = measure.errors("stopping_block", measure.Plan(of=str(tmp_path), speeds=("plain",), live=(), most_steps=200))
+        result = measure.errors("stopping_block",
+                                measure.Plan(of=str(tmp_path), speeds=("plain",), live=(), most_steps=200))
         verdicts = {c["label"]: is_right(c) for c in result["cases"]["heading 22.5°"]["ours"]}
         assert verdicts["pyramid"] is expected and verdicts["sliding"] is True

@@ -14,14 +14,15 @@ from validate.stability.examine import all_cases, examine, subject_of
 examined = cache(examine)
 CASES = {f"{case.lesson}/{case.slug}": case for case in all_cases()}
 every_case = pytest.mark.parametrize("case", [
-    pytest.param(case, id=name, marks=pytest.mark.xdist_group(f"compiled test_{case.lesson}"))       # compiled there anyway
+    pytest.param(case, id=name, marks=pytest.mark.xdist_group(f"compiled test_{case.lesson}"))  # compiled there anyway
     for name, case in CASES.items()])
 
 
 @every_case
 def test_experiment_finds_the_bound_that_theory_gives(case):
     lost = [f for f in examined(case).findings if not f.holds]
-    assert not lost, "\n".join(f"{f.quantity}: theory {f.predicted}, measured {f.measured}, tolerance {f.tolerance}" for f in lost)
+    assert not lost, "\n".join(f"{f.quantity}: theory {f.predicted}, measured {f.measured}, tolerance {f.tolerance}"
+                               for f in lost)
 
 
 @every_case

@@ -33,7 +33,8 @@ def by_school(t, dt, x_0, x_1, r, R):
 
 def through_the_origin(a, b):
     """Distances from the origin of the world: the squares are rounded."""
-    i, j = np.unravel_index(np.argmin(np.sum(a**2, axis=1)[:, None] + np.sum(b**2, axis=1) - 2.0 * a @ b.T), (len(a), len(b)))
+    i, j = np.unravel_index(np.argmin(np.sum(a**2, axis=1)[:, None] + np.sum(b**2, axis=1) - 2.0 * a @ b.T),
+                            (len(a), len(b)))
     return worked.ball_contact(a[i], 0.0, b[j], 0.0)
 
 
@@ -52,7 +53,8 @@ def takes_all(*_):
 
 def faces_only(a, b):
     """Six axes of fifteen."""
-    found = [(abs((a.x - b.x) @ n) - worked.half_width(a, n) - worked.half_width(b, n), n, k) for k in range(6) for n in [worked.candidate_axis(a, b, k)]]
+    found = [(abs((a.x - b.x) @ n) - worked.half_width(a, n) - worked.half_width(b, n), n, k) for k in range(6)
+             for n in [worked.candidate_axis(a, b, k)]]
     gap, n, k = max(found, key=lambda one: one[0])
     return gap, n if n @ (a.x - b.x) >= 0.0 else -n, k
 
@@ -96,7 +98,8 @@ WRONG = [                    # case, the function that it examines, what is put 
 ]
 
 
-@pytest.mark.parametrize(("slug", "name", "wrong"), WRONG, ids=[f"{n}-{name}-{k}" for k, (n, name, _) in enumerate(WRONG)])
+@pytest.mark.parametrize(("slug", "name", "wrong"), WRONG,
+                         ids=[f"{n}-{name}-{k}" for k, (n, name, _) in enumerate(WRONG)])
 def test_a_wrong_function_does_not_find_what_theory_says(slug, name, wrong):
     case = cases_of("collisions")[slug]
     lesson = types.SimpleNamespace(**{**vars(subject_of(case)), name: wrong})

@@ -27,11 +27,16 @@ def elastic(acceleration, surface, t, x, v, dt, p):
     return worked.contact_step(acceleration, surface, t, x, v, dt, p._replace(e=1.0))
 
 
+def times_of_steps(acceleration, t, x, v, dt, steps, p):
+    """Slips begin and end with a step."""
+    return np.round(worked.slip_times(acceleration, t, x, v, dt, steps, p) / dt) * dt
+
+
 WRONG = [                    # case, the function that it examines, what is put in its place
     ("stick-threshold", "sliding_step", holds_by_kinetic),
     ("stick-threshold", "gripping_step", worked.contact_step),
     ("stick-slip-threshold", "event_step", worked.sliding_step),
-    ("stick-slip-threshold", "slip_times", lambda acceleration, t, x, v, dt, steps, p: np.round(worked.slip_times(acceleration, t, x, v, dt, steps, p) / dt) * dt),
+    ("stick-slip-threshold", "slip_times", times_of_steps),
     ("regularised-friction-creeps", "sliding_step", chatters),
     ("regularised-friction-creeps", "kinetic_friction", lambda F, v, n, mu: 0.5 * worked.kinetic_friction(F, v, n, mu)),
     ("artificial-sliding", "contact_step", worked.gripping_step),
@@ -44,7 +49,8 @@ WRONG = [                    # case, the function that it examines, what is put 
 ]
 
 
-@pytest.mark.parametrize(("slug", "name", "wrong"), WRONG, ids=[f"{n}-{name}-{k}" for k, (n, name, _) in enumerate(WRONG)])
+@pytest.mark.parametrize(("slug", "name", "wrong"), WRONG,
+                         ids=[f"{n}-{name}-{k}" for k, (n, name, _) in enumerate(WRONG)])
 def test_a_wrong_function_does_not_find_what_theory_says(slug, name, wrong):
     case = cases_of("friction")[slug]
     lesson = types.SimpleNamespace(**{**vars(subject_of(case)), name: wrong})
