@@ -1,19 +1,21 @@
-"""Lesson 9 is right when all contacts obey Signorini and Coulomb at once, a residual says how far they are from it, and piles come to rest."""
+"""Lesson 9 is right when all contacts obey Signorini and Coulomb at once, a residual says how far they are from it,
+and piles come to rest.
+"""
 
 import itertools
 
 import numpy as np
 import pytest
 
-from solutions.checks import BadInput, Diverged
+from solutions.checks import BadInput
 
 from ..grading.expect import between, close, raises
 
 exercise = pytest.mark.exercise
 G = 9.81                     # [m/s²]
-# Everything drawn is below 10 in its unit, and what is compared takes a few dozen operations, each rounded by 1.1e-16 of that:
+# Everything drawn is below 10 in its unit.  A comparison takes a few dozen operations, each rounded by 1.1e-16 of that.
 ROUND_OFF = 1e-12
-SOLVED = 1e-9                # of forces that follow from a system with a condition below 1e4, or from sweeps until 1e-13
+SOLVED = 1e-9  # of forces that follow from a system with a condition below 1e4, or from sweeps until 1e-13
 MIDDLE = np.array([0.0, 1.0])
 
 
@@ -27,11 +29,14 @@ def contacts_of(lesson, a, b, p, n, gap=None):
     """A ContactSet ordered by a, of so many bodies that every number occurs."""
     a, b = np.array(a, dtype=np.int64), np.array(b, dtype=np.int64)
     first = np.searchsorted(a, np.arange(max(a.max(initial=0), b.max(initial=0)) + 2)).astype(np.int64)
-    return lesson.ContactSet(first, a, b, np.array(n, float), np.array(p, float), np.zeros(len(a)) if gap is None else np.array(gap, float))
+    return lesson.ContactSet(first, a, b, np.array(n, float), np.array(p, float),
+                             np.zeros(len(a)) if gap is None else np.array(gap, float))
 
 
 def scene(draw, lesson, fixed=True):
-    """(x, inverse masses, inverse inertias, ContactSet): four drawn bodies, of which the last may be fixed, and five contacts."""
+    """(x, inverse masses, inverse inertias, ContactSet): four drawn bodies, of which the last may be fixed,
+    and five contacts.
+    """
     a, b = [0, 0, 1, 2, 3], [1, 3, 2, 3, 1]
     p, n = draw(-2.0, 2.0, (5, 2)), [unit(draw) for _ in a]
     inv_mass, inv_inertia = draw(0.3, 2.0, 4), draw(0.5, 5.0, 4)
@@ -107,7 +112,8 @@ def contraction(A, b, solution, sweep, before=400, over=20):
 
 # ---------------------------------------------------------------------------------------------- rows and matrix
 
-@exercise("9.1", points=1, hint="each body adds sign · (d_x, d_y, r × d) in its three columns: + at a, − at b, for n and then for t")
+@exercise("9.1", points=1,
+          hint="each body adds sign · (d_x, d_y, r × d) in its three columns: + at a, − at b, for n and then for t")
 def test_rows_turn_all_velocities_into_those_of_all_contacts(lesson, draw):
     for fixed in (False, True):
         x, _, _, c = scene(draw, lesson, fixed)
@@ -116,7 +122,8 @@ def test_rows_turn_all_velocities_into_those_of_all_contacts(lesson, draw):
         expected = np.stack((np.sum(c.n * u, axis=1), c.n[:, 0] * u[:, 1] - c.n[:, 1] * u[:, 0]), axis=1).ravel()
         got = np.asarray(lesson.contact_rows(x, c))
         close("shape of G [-]", got.shape, (10, 12), 0.0)
-        close("G v: relative velocities, (n, t) of one contact after the other [m/s]", got @ v.ravel(), expected, ROUND_OFF)
+        close("G v: relative velocities, (n, t) of one contact after the other [m/s]", got @ v.ravel(), expected,
+              ROUND_OFF)
 
 
 @exercise("9.1", points=0.5, hint="a contact sees its own two bodies only, and no motion that both make together")
@@ -127,7 +134,8 @@ def test_what_moves_as_one_body_has_no_relative_velocities(lesson, draw):
     together = np.column_stack((shift[0] - spin * x[:, 1], shift[1] + spin * x[:, 0], np.full(4, spin)))
     close("G v of a common motion of all bodies [m/s]", got @ together.ravel(), np.zeros(10), ROUND_OFF)
     close("rows that have entries for more than two bodies [-]", np.count_nonzero(got, axis=1) > 6, np.zeros(10), 0.0)
-    close("length of the part for translation [-]", np.sum(got[:, [0, 1, 3, 4, 6, 7, 9, 10]] ** 2, axis=1), np.full(10, 2.0), ROUND_OFF)
+    close("length of the part for translation [-]", np.sum(got[:, [0, 1, 3, 4, 6, 7, 9, 10]] ** 2, axis=1),
+          np.full(10, 2.0), ROUND_OFF)
 
 
 @exercise("9.2", points=0.5, hint="A = G M⁻¹ Gᵀ: scale the columns of G by w, then multiply by Gᵀ")
@@ -139,13 +147,15 @@ def test_a_unit_impulse_at_one_contact_is_felt_at_the_others(lesson, draw):
         close("Delassus matrix [1/kg]", lesson.delassus_matrix(G_rows, w), expected, ROUND_OFF)
 
 
-@exercise("9.2", points=0.5, hint="bodies couple their contacts: −1/m between neighbours of a stack, 1/m + 1/m on the diagonal")
+@exercise("9.2", points=0.5,
+          hint="bodies couple their contacts: −1/m between neighbours of a stack, 1/m + 1/m on the diagonal")
 def test_the_matrix_of_a_stack_is_tridiagonal(lesson, draw):
     n = draw.whole(3, 6)
     masses = draw(0.5, 3.0, n)
     c = contacts_of(lesson, np.arange(1, n + 1), np.arange(n), [(0.0, k) for k in range(n)], [MIDDLE] * n)
     x = np.array([(0.0, k - 0.5) for k in range(n + 1)])
-    A = np.asarray(lesson.delassus_matrix(rows(x, c), masses_of(np.append(0.0, 1.0 / masses), np.append(0.0, draw(1.0, 5.0, n)))))
+    A = np.asarray(lesson.delassus_matrix(rows(x, c),
+                                          masses_of(np.append(0.0, 1.0 / masses), np.append(0.0, draw(1.0, 5.0, n)))))
     close("shape of A [-]", A.shape, (2 * n, 2 * n), 0.0)
     close("normal rows and columns of A [1/kg]", A[::2, ::2], chain(masses)[0], ROUND_OFF, given=f"masses {masses} kg")
 
@@ -157,11 +167,14 @@ def test_each_way_to_break_the_law_counts_with_its_velocity(lesson, draw):
         a, k, v = draw(0.5, 2.0, m), draw.whole(0, m - 1), slow * draw(0.5, 2.0)
         lam = slow * draw(0.5, 2.0, m) * np.array([draw.whole(0, 1) for _ in range(m)])
         u = np.where(lam > 0.0, 0.0, slow * draw(3.0, 5.0, m))
-        for what, lam_k, u_k, expected in (("approaches", 0.0, -v, v), ("pushes and approaches", v, -3.0 * v, 3.0 * v), ("pulls", -v / a[k], 4.0 * v, v),
-                                           ("pushes a little but separates", v / a[k], 4.0 * v, v), ("pushes but separates a little", 4.0 * v / a[k], v, v)):
+        for what, lam_k, u_k, expected in (("approaches", 0.0, -v, v), ("pushes and approaches", v, -3.0 * v, 3.0 * v),
+                                           ("pulls", -v / a[k], 4.0 * v, v),
+                                           ("pushes a little but separates", v / a[k], 4.0 * v,
+                                            v), ("pushes but separates a little", 4.0 * v / a[k], v, v)):
             one, speeds = lam.copy(), u.copy()
             one[k], speeds[k] = lam_k, u_k
-            close(f"residual where one contact {what} [m/s]", lesson.complementarity_residual(np.diag(a), speeds - a * one, one), expected,
+            close(f"residual where one contact {what} [m/s]",
+                  lesson.complementarity_residual(np.diag(a), speeds - a * one, one), expected,
                   slow * ROUND_OFF, given=f"contact {k}, λ = {one} N s, u = {speeds} m/s")
 
 
@@ -174,45 +187,55 @@ def test_the_residual_vanishes_at_the_answer_and_nowhere_else(lesson, draw):
         off = lam + draw(0.1, 1.0, 4)
         u = A @ off + b
         expected = max(abs(min(A[k, k] * off[k], u[k])) for k in range(4))
-        close("residual beside the answer [m/s]", lesson.complementarity_residual(A, b, off), expected, ROUND_OFF, given=f"A = {A}, b = {b}, λ = {off}")
+        close("residual beside the answer [m/s]", lesson.complementarity_residual(A, b, off), expected, ROUND_OFF,
+              given=f"A = {A}, b = {b}, λ = {off}")
 
 
 # ---------------------------------------------------------------------------------------------- sweeps
 
-@exercise("9.4", points=0.5, hint="in order, each with the newest λ: λ_k − ω u_k/A_kk, never below 0; what is right stays as it is")
+@exercise("9.4", points=0.5,
+          hint="in order, each with the newest λ: λ_k − ω u_k/A_kk, never below 0; what is right stays as it is")
 def test_a_sweep_leaves_the_answer_and_corrects_what_is_wrong(lesson, draw):
     for omega in (1.0, draw(0.5, 0.9), draw(1.1, 1.9)):
         A, b = positive_definite(draw, 4), draw(-3.0, 3.0, 4)
         lam = enumerated(A, b)
-        close("λ after a sweep from the answer [N s]", lesson.gauss_seidel_sweep(A, b, lam, omega), lam, 1e-11, given=f"ω = {omega}")
+        close("λ after a sweep from the answer [N s]", lesson.gauss_seidel_sweep(A, b, lam, omega), lam, 1e-11,
+              given=f"ω = {omega}")
         lam = draw(0.0, 2.0, 4)
         u, expected = A @ lam + b, lam.copy()
         for k in range(4):
             change = max(-expected[k], -omega * u[k] / A[k, k])
             expected[k] += change
             u = u + change * A[:, k]
-        close("λ after a sweep [N s]", lesson.gauss_seidel_sweep(A, b, lam, omega), expected, 1e-11, given=f"A = {A}, b = {b}, λ = {lam}, ω = {omega}")
+        close("λ after a sweep [N s]", lesson.gauss_seidel_sweep(A, b, lam, omega), expected, 1e-11,
+              given=f"A = {A}, b = {b}, λ = {lam}, ω = {omega}")
 
 
-@exercise("9.4", points=0.5, hint="with ω = 2 each contact turns its own velocity round: an elastic impact, one after the other")
+@exercise("9.4", points=0.5,
+          hint="with ω = 2 each contact turns its own velocity round: an elastic impact, one after the other")
 def test_two_elastic_balls_and_a_wall_count_the_digits_of_pi(lesson, draw):
-    """Galperin 2003: the ball at rest lies between the wall and one of 100^N times its mass; they meet exactly ⌊10^N π⌋ times in all."""
+    """Galperin 2003: the ball at rest lies between the wall and one of 100^N times its mass;
+    they meet exactly ⌊10^N π⌋ times in all.
+    """
     for N, expected in ((0, 3), (1, 31), (2, 314)):
         m, speed = draw(0.5, 2.0), draw(0.5, 2.0)
         light, heavy = 1.0 / m, 1.0 / (100.0**N * m)
         A, u, impacts = np.array([[light + heavy, -light], [-light, light]]), np.array([-speed, 0.0]), 0
         for _ in range(400):
             lam = np.asarray(lesson.gauss_seidel_sweep(A, u, np.zeros(2), 2.0))
-            u, impacts = A @ lam + u, impacts + np.count_nonzero(lam > 1e-6 * m * speed)                 # with equal masses the last is round-off
+            # with equal masses the last is round-off
+            u, impacts = A @ lam + u, impacts + np.count_nonzero(lam > 1e-6 * m * speed)
         close("number of impacts [-]", impacts, expected, 0.0, given=f"masses {m} and {100.0**N * m} kg")
 
 
-@exercise("9.4", points=0.5, hint="use what the sweep has just changed, not what was there before it; that is Jacobi's method")
+@exercise("9.4", points=0.5,
+          hint="use what the sweep has just changed, not what was there before it; that is Jacobi's method")
 def test_the_error_shrinks_by_the_factor_of_theory(lesson, draw):
     n, r = draw.whole(5, 9), draw(5.0, 30.0)
-    for name, masses, rho in ((f"a stack of {n}", [1.0] * n, half_turn(n)), ("a heavy body on a light one", [1.0, r], 1.0 - 1.0 / (1.0 + r))):
+    for name, masses, rho in ((f"a stack of {n}", [1.0] * n, half_turn(n)),
+                              ("a heavy body on a light one", [1.0, r], 1.0 - 1.0 / (1.0 + r))):
         A, b, forces = chain(masses)
-        got = contraction(A, b, forces, lambda lam: lesson.gauss_seidel_sweep(A, b, lam, 1.0), 60)
+        got = contraction(A, b, forces, lambda lam, A=A, b=b: lesson.gauss_seidel_sweep(A, b, lam, 1.0), 60)
         close(f"contraction factor of {name} [-]", got, rho, 1e-3 * (1.0 - rho), given=f"masses {np.array(masses)}")
 
 
@@ -230,23 +253,29 @@ def spectral_radius(matrix):
 def test_a_stack_contracts_by_the_largest_eigenvalue(lesson, draw):
     close("contraction factor of a single body [-]", lesson.stack_contraction(1), 0.0, ROUND_OFF)
     for n in (2, draw.whole(3, 9), draw.whole(10, 40)):
-        close("contraction factor of a stack [-]", lesson.stack_contraction(n), spectral_radius(iteration_matrix(chain(np.ones(n))[0], 1.0)), 1e-10, given=f"n = {n}")
+        close("contraction factor of a stack [-]", lesson.stack_contraction(n),
+              spectral_radius(iteration_matrix(chain(np.ones(n))[0], 1.0)), 1e-10, given=f"n = {n}")
 
 
 @exercise("9.6", points=0.5, hint="r/(1 + r): the heavier the upper body, the slower")
 def test_a_heavy_body_on_a_light_one_contracts_slowly(lesson, draw):
     for r in (1.0, draw(0.01, 0.5), draw(2.0, 50.0), 1e6):
         rho = spectral_radius(iteration_matrix(chain([1.0, r])[0], 1.0))
-        close("1 − ρ of a body on another one [-]", 1.0 - lesson.mass_ratio_contraction(r), 1.0 - rho, ROUND_OFF, given=f"r = {r}")
+        close("1 − ρ of a body on another one [-]", 1.0 - lesson.mass_ratio_contraction(r), 1.0 - rho, ROUND_OFF,
+              given=f"r = {r}")
 
 
 @exercise("9.7", points=0.5, hint="ω = 2/(1 + √(1 − ρ)), where ρ is that of Gauss–Seidel, and ρ_ω = ω − 1")
 def test_the_contraction_factor_at_the_best_relaxation_is_omega_minus_one(lesson, draw):
-    """At the best ω two eigenvalues meet: their computed size is known to the root of round-off, 1e-7 for these matrices."""
+    """At the best ω two eigenvalues meet: their computed size is known to the root of round-off,
+    1e-7 for these matrices.
+    """
     for n in (2, draw.whole(3, 12)):
         omega, rho = lesson.best_relaxation(half_turn(n))
         close("best relaxation ω [-]", omega, 2.0 / (1.0 + np.sin(0.5 * np.pi / n)), ROUND_OFF, given=f"a stack of {n}")
-        close("its contraction factor [-]", rho, spectral_radius(iteration_matrix(chain(np.ones(n))[0], 2.0 / (1.0 + np.sin(0.5 * np.pi / n)))), 1e-6, given=f"a stack of {n}")
+        close("its contraction factor [-]", rho,
+              spectral_radius(iteration_matrix(chain(np.ones(n))[0], 2.0 / (1.0 + np.sin(0.5 * np.pi / n)))), 1e-6,
+              given=f"a stack of {n}")
     close("(ω, ρ_ω) where one sweep is enough [-]", lesson.best_relaxation(0.0), (1.0, 0.0), ROUND_OFF)
 
 
@@ -256,21 +285,26 @@ def test_any_other_relaxation_is_slower(lesson, draw):
     for A in (chain(m)[0] for m in masses):
         omega, best = lesson.best_relaxation(spectral_radius(iteration_matrix(A, 1.0)))
         for other in (0.03, -0.03):
-            between("contraction factor beside the best ω [-]", spectral_radius(iteration_matrix(A, omega + other)), best + 0.01, 1.0, given=f"A = {A}")
+            between("contraction factor beside the best ω [-]", spectral_radius(iteration_matrix(A, omega + other)),
+                    best + 0.01, 1.0, given=f"A = {A}")
 
 
 # ---------------------------------------------------------------------------------------------- a direct solver
 
-@exercise("9.8", points=1, hint="solve for those that push, find the first contact that is wrong, let only that one change sides, and repeat")
+@exercise("9.8", points=1,
+          hint="solve for those that push, find the first contact that is wrong, let only that one change sides, "
+               "and repeat")
 def test_the_direct_solver_finds_the_only_set_of_contacts_that_fits(lesson, draw):
     for m in (1, 2, 3, 5, 7):
         for _ in range(4):
             A, b = positive_definite(draw, m), draw(-3.0, 3.0, m)
             close("λ [N s]", lesson.solve_lcp(A, b), enumerated(A, b), SOLVED, given=f"A = {A}, b = {b}")
-    c, little = draw(0.2, 0.8), draw(1e-6, 1e-3)                             # the first contact alone leaves the second one a little too slow
+    c, little = draw(0.2, 0.8), draw(1e-6, 1e-3)  # the first contact alone leaves the second one a little too slow
     A, b = np.array([[1.0, c], [c, 1.0]]), np.array([-1.0, -c - little])
-    close("λ where a second contact hardly pushes [N s]", lesson.solve_lcp(A, b), np.linalg.solve(A, -b), ROUND_OFF, given=f"A = {A}, b = {b}")
-    close("λ where all separate [N s]", lesson.solve_lcp(positive_definite(draw, 3), draw(0.1, 3.0, 3)), np.zeros(3), 0.0)
+    close("λ where a second contact hardly pushes [N s]", lesson.solve_lcp(A, b), np.linalg.solve(A, -b), ROUND_OFF,
+          given=f"A = {A}, b = {b}")
+    close("λ where all separate [N s]", lesson.solve_lcp(positive_definite(draw, 3), draw(0.1, 3.0, 3)), np.zeros(3),
+          0.0)
 
 
 @exercise("9.8", points=0.5, hint="a contact is wrong only if it is so by more than the round-off of its sum")
@@ -278,7 +312,8 @@ def test_the_direct_solver_does_not_mind_how_heavy_the_top_is(lesson, draw):
     """Condition 4e6: of the forces, (round-off) × (condition) = 1e-9 may be wrong."""
     for masses in ([1.0, 1e6], [*draw(0.5, 2.0, draw.whole(3, 12)), 1e6], np.ones(draw.whole(10, 25))):
         A, b, forces = chain(masses)
-        close("force of each contact over its truth [-]", np.asarray(lesson.solve_lcp(A, b)) / forces, np.ones(len(b)), 1e-8, given=f"masses {np.array(masses)} kg")
+        close("force of each contact over its truth [-]", np.asarray(lesson.solve_lcp(A, b)) / forces, np.ones(len(b)),
+              1e-8, given=f"masses {np.array(masses)} kg")
 
 
 @exercise("9.8", points=0.5, hint="check_independent first: it refuses a matrix without an inverse")
@@ -286,16 +321,21 @@ def test_redundant_contacts_are_refused(lesson, draw):
     A, b, forces = chain(draw(0.5, 2.0, 3))
     close("forces of independent contacts [N]", lesson.solve_lcp(A, b), forces, SOLVED)
     twice = np.array([0, 1, 1, 2])
-    raises("two contacts that say the same", BadInput, lesson.solve_lcp, A[np.ix_(twice, twice)].copy(), b[twice].copy())
-    raises("a contact that nothing can move, and that approaches", BadInput, lesson.solve_lcp, np.zeros((1, 1)), np.array([-1.0]))
+    raises("two contacts that say the same", BadInput, lesson.solve_lcp, A[np.ix_(twice, twice)].copy(),
+           b[twice].copy())
+    raises("a contact that nothing can move, and that approaches", BadInput, lesson.solve_lcp, np.zeros((1, 1)),
+           np.array([-1.0]))
 
 
 # ---------------------------------------------------------------------------------------------- friction
 
 def lawful(draw, m, loose=False):
-    """(A, b, J, mu, kinds): impulses that obey all laws by construction: each contact separates, sticks, slides one way or the other."""
+    """(A, b, J, mu, kinds): impulses that obey all laws by construction:
+    each contact separates, sticks, slides one way or the other.
+    """
     A, mu = positive_definite(draw, 2 * m), draw(0.1, 0.9, m)
-    J, u, kinds = np.zeros(2 * m), np.zeros(2 * m), [draw.whole(0, 3) for _ in range(m)] if loose else [k % 4 for k in range(m)]
+    J, u = np.zeros(2 * m), np.zeros(2 * m)
+    kinds = [draw.whole(0, 3) if loose else k % 4 for k in range(m)]
     for k, kind in enumerate(kinds):
         n, t = 2 * k, 2 * k + 1
         if kind == 0:
@@ -313,7 +353,8 @@ def test_lawful_impulses_have_no_residual(lesson, draw):
         A, b, J, mu, _ = lawful(draw, 5)
         close("residual of impulses that obey all laws [m/s]", lesson.cone_residual(A, b, J, mu), 0.0, ROUND_OFF)
         mu[1], mu[0] = np.inf, np.inf                                    # one that sticks, one that separates
-        close("residual with infinite friction where it sticks [m/s]", lesson.cone_residual(A, b, J, mu), 0.0, ROUND_OFF)
+        close("residual with infinite friction where it sticks [m/s]", lesson.cone_residual(A, b, J, mu), 0.0,
+              ROUND_OFF)
 
 
 @exercise("9.9", points=1, hint="in m/s: k_n |J_n' − J_n| and k_t |J_t' − J_t|, the largest of all contacts")
@@ -324,16 +365,20 @@ def test_each_broken_law_is_measured_as_a_velocity(lesson, draw):
         u, s = A @ J + b, slow * draw(0.01, 0.1)
         k_n, k_t = np.diag(A)[::2], np.diag(A)[1::2]
         for what, place, dJ, du, expected in (
-                ("approaches", 0, 0.0, -u[0] - s, s), ("pulls", 0, -s / k_n[0], 0.0, s), ("sticks but separates", 2, 0.0, s, s),
-                ("sticks but slips", 3, 0.0, s, s), ("has friction outside its cone", 5, 5.0 * s / k_t[2], 0.0, 5.0 * s),
+                ("approaches", 0, 0.0, -u[0] - s, s), ("pulls", 0, -s / k_n[0], 0.0, s), ("sticks but separates", 2,
+                                                                                          0.0, s, s),
+                ("sticks but slips", 3, 0.0, s, s), ("has friction outside its cone", 5, 5.0 * s / k_t[2], 0.0,
+                                                     5.0 * s),
                 ("slips against its friction on the other side", 7, -5.0 * s / k_t[3], 0.0, 5.0 * s),
                 ("is separated but rubs", 1, s / k_t[0], 0.0, s), ("slides the wrong way", 5, 0.0, -u[5] + s, s)):
             one, speeds = J.copy(), u.copy()
             one[place] += dJ
             speeds[place] += du
-            close(f"residual where one contact {what} [m/s]", lesson.cone_residual(A, speeds - A @ one, one, mu), expected, slow * ROUND_OFF, given=f"J = {one} N s, u = {speeds} m/s, μ = {mu}")
+            close(f"residual where one contact {what} [m/s]", lesson.cone_residual(A, speeds - A @ one, one, mu),
+                  expected, slow * ROUND_OFF, given=f"J = {one} N s, u = {speeds} m/s, μ = {mu}")
         speeds = u + np.array([-u[0] - s, 0.0, 2.0 * s, 0.0, 0.0, 0.0, 0.0, 0.0])
-        close("residual where two contacts are wrong [m/s]", lesson.cone_residual(A, speeds - A @ J, J, mu), 2.0 * s, slow * ROUND_OFF)
+        close("residual where two contacts are wrong [m/s]", lesson.cone_residual(A, speeds - A @ J, J, mu), 2.0 * s,
+              slow * ROUND_OFF)
 
 
 def judged(A, b, J, mu):
@@ -342,7 +387,8 @@ def judged(A, b, J, mu):
     for k in range(len(mu)):
         n, t = 2 * k, 2 * k + 1
         limit = mu[k] * max(0.0, J[n])
-        worst = max(worst, A[n, n] * abs(max(0.0, J[n] - u[n] / A[n, n]) - J[n]), A[t, t] * abs(np.clip(J[t] - u[t] / A[t, t], -limit, limit) - J[t]))
+        worst = max(worst, A[n, n] * abs(max(0.0, J[n] - u[n] / A[n, n]) - J[n]),
+                    A[t, t] * abs(np.clip(J[t] - u[t] / A[t, t], -limit, limit) - J[t]))
     return worst
 
 
@@ -353,17 +399,21 @@ def test_a_sweep_leaves_lawful_impulses_alone(lesson, draw):
         close("J after a sweep of lawful impulses [N s]", lesson.cone_sweep(A, b, J, mu), J, 1e-11)
 
 
-@exercise("9.10", points=0.5, hint="first J_n, then the limit μ J_n from it, then J_t with the velocity that the new J_n leaves")
+@exercise("9.10", points=0.5,
+          hint="first J_n, then the limit μ J_n from it, then J_t with the velocity that the new J_n leaves")
 def test_friction_is_limited_by_the_new_normal_impulse(lesson, draw):
     A, J = positive_definite(draw, 4), np.array([draw(0.5, 1.0), 0.0, 0.0, 0.0])
-    for what, u_n, u_t, mu in (("slides", -draw(1.0, 2.0), draw(5.0, 9.0), 0.2), ("slides back", -draw(1.0, 2.0), -draw(5.0, 9.0), 0.2), ("sticks", -draw(1.0, 2.0), draw(-2.0, 2.0), np.inf),
+    for what, u_n, u_t, mu in (("slides", -draw(1.0, 2.0), draw(5.0, 9.0), 0.2),
+                               ("slides back", -draw(1.0, 2.0), -draw(5.0, 9.0), 0.2),
+                               ("sticks", -draw(1.0, 2.0), draw(-2.0, 2.0), np.inf),
                                ("separates", draw(9.0, 12.0), draw(1.0, 2.0), np.inf)):
         b = np.array([u_n, u_t, draw(0.5, 3.0), 1.0]) - A @ J
         got = np.asarray(lesson.cone_sweep(A, b, J, np.array([mu, 0.0])))
         J_n = max(0.0, J[0] - u_n / A[0, 0])
         u_t = u_t + A[1, 0] * (J_n - J[0])
         limit = mu * J_n if J_n > 0.0 else 0.0
-        close(f"(J_n, J_t) of a contact that {what} [N s]", got[:2], (J_n, np.clip(-u_t / A[1, 1], -limit, limit)), 1e-11, given=f"μ = {mu}, u = {b + A @ J} m/s, A = {A}")
+        close(f"(J_n, J_t) of a contact that {what} [N s]", got[:2], (J_n, np.clip(-u_t / A[1, 1], -limit, limit)),
+              1e-11, given=f"μ = {mu}, u = {b + A @ J} m/s, A = {A}")
 
 
 @exercise("9.10", points=0.5, hint="use the newest J everywhere, and sweep over all contacts in their order")
@@ -380,10 +430,13 @@ def test_sweeps_end_where_all_laws_hold(lesson, draw):
 # ---------------------------------------------------------------------------------------------- scenes at rest
 
 def stack_of(lesson, masses, width=1.0):
-    """(x, inverse masses, inverse inertias, ContactSet, load) of unit boxes above each other, two contact points under each; body 0 is the ground."""
+    """(x, inverse masses, inverse inertias, ContactSet, load) of unit boxes above each other,
+    two contact points under each; body 0 is the ground.
+    """
     n, places = len(masses), (-0.5 * width, 0.5 * width)
     x = np.array([(0.0, k - 0.5) for k in range(n + 1)])
-    c = contacts_of(lesson, np.repeat(np.arange(1, n + 1), 2), np.repeat(np.arange(n), 2), [(s, k) for k in range(n) for s in places], [MIDDLE] * (2 * n))
+    c = contacts_of(lesson, np.repeat(np.arange(1, n + 1), 2), np.repeat(np.arange(n), 2),
+                    [(s, k) for k in range(n) for s in places], [MIDDLE] * (2 * n))
     load = np.zeros((n + 1, 3))
     load[1:, 1] = -G * np.array(masses)
     return x, np.append(0.0, 1.0 / np.array(masses)), np.append(0.0, 6.0 / np.array(masses)), c, load
@@ -395,7 +448,8 @@ def test_the_kth_contact_of_a_stack_carries_what_lies_above(lesson, draw):
     x, inv_mass, inv_inertia, c, load = stack_of(lesson, masses)
     F, a = map(np.asarray, lesson.contact_forces(x, inv_mass, inv_inertia, c, load, np.full(c.a.size, 0.5)))
     close("shape of F [-]", F.shape, (2 * len(masses), 2), 0.0)
-    close("normal force of both points under each box together [N]", F[0::2, 0] + F[1::2, 0], G * np.cumsum(masses[::-1])[::-1], SOLVED, given=f"masses {masses} kg")
+    close("normal force of both points under each box together [N]", F[0::2, 0] + F[1::2, 0],
+          G * np.cumsum(masses[::-1])[::-1], SOLVED, given=f"masses {masses} kg")
     close("accelerations of a stack at rest [m/s², rad/s²]", a, np.zeros((len(masses) + 1, 3)), SOLVED)
 
 
@@ -404,35 +458,46 @@ def block_on_incline(lesson, slope, mu, w=1.0, h=1.0):
     x, n = np.array([(0.0, -1.0), (0.0, 0.5 * h)]), [MIDDLE, MIDDLE]
     c = contacts_of(lesson, [1, 1], [0, 0], [(-0.5 * w, 0.0), (0.5 * w, 0.0)], n)
     load = np.array([(0.0, 0.0, 0.0), (G * np.sin(slope), -G * np.cos(slope), 0.0)])
-    F, a = lesson.contact_forces(x, np.array([0.0, 1.0]), np.array([0.0, 12.0 / (w * w + h * h)]), c, load, np.full(2, mu))
+    F, a = lesson.contact_forces(x, np.array([0.0, 1.0]), np.array([0.0, 12.0 / (w * w + h * h)]), c, load,
+                                 np.full(2, mu))
     return np.asarray(a)[1], np.asarray(F)
 
 
 @exercise("9.11", points=0.5, hint="load and forces both accelerate: a = M⁻¹ (load + Gᵀ F), and the torque counts, too")
 def test_a_block_on_an_incline_stays_slides_or_topples(lesson, draw):
-    """It slides by g (sin θ − μ cos θ) where tan θ > μ.  Where tan θ > w/h and μ is larger it turns about its lower corner, by the torque of its
+    """It slides by g (sin θ − μ cos θ) where tan θ > μ.
+
+    Where tan θ > w/h and μ is larger it turns about its lower corner, by the torque of its
     weight about that corner over I + m (w² + h²)/4.
     """
     slope = draw(0.3, 0.6)
     stays, F = block_on_incline(lesson, slope, draw(1.2, 2.0) * np.tan(slope))
-    close("acceleration of a block that stays [m/s², rad/s²]", stays, np.zeros(3), SOLVED, given=f"tan θ = {np.tan(slope)}")
-    close("forces on a block that stays, normal and friction together [N]", np.sum(F, axis=0), (G * np.cos(slope), G * np.sin(slope)), SOLVED)
+    close("acceleration of a block that stays [m/s², rad/s²]", stays, np.zeros(3), SOLVED,
+          given=f"tan θ = {np.tan(slope)}")
+    close("forces on a block that stays, normal and friction together [N]", np.sum(F, axis=0),
+          (G * np.cos(slope), G * np.sin(slope)), SOLVED)
     mu, w = draw(0.2, 0.8) * np.tan(slope), draw(2.0, 3.0)
-    close("acceleration of a block that slides [m/s², rad/s²]", block_on_incline(lesson, slope, mu, w)[0], (G * (np.sin(slope) - mu * np.cos(slope)), 0.0, 0.0), SOLVED, given=f"tan θ = {np.tan(slope)}, μ = {mu}")
+    close("acceleration of a block that slides [m/s², rad/s²]", block_on_incline(lesson, slope, mu, w)[0],
+          (G * (np.sin(slope) - mu * np.cos(slope)), 0.0, 0.0), SOLVED, given=f"tan θ = {np.tan(slope)}, μ = {mu}")
     w, h = draw(0.5, 0.9) * np.tan(slope), 1.0
     spin = -0.5 * G * (h * np.sin(slope) - w * np.cos(slope)) / ((w * w + h * h) / 12.0 + (w * w + h * h) / 4.0)
-    close("angular acceleration of a block that topples [rad/s²]", block_on_incline(lesson, slope, 3.0, w)[0][2], spin, SOLVED, given=f"tan θ = {np.tan(slope)}, w/h = {w}")
+    close("angular acceleration of a block that topples [rad/s²]", block_on_incline(lesson, slope, 3.0, w)[0][2], spin,
+          SOLVED, given=f"tan θ = {np.tan(slope)}, w/h = {w}")
 
 
-@exercise("9.11", points=0.5, hint="check_scene first: it refuses negative friction and arrays that do not fit each other")
+@exercise("9.11", points=0.5,
+          hint="check_scene first: it refuses negative friction and arrays that do not fit each other")
 def test_scenes_without_physics_are_refused(lesson, draw):
     x, inv_mass, inv_inertia, c, load = stack_of(lesson, [draw(0.5, 2.0)])
     mu = np.full(2, 0.5)
-    close("normal forces of a single box [N]", np.sum(np.asarray(lesson.contact_forces(x, inv_mass, inv_inertia, c, load, mu)[0])[:, 0]), G / inv_mass[1], SOLVED)
+    close("normal forces of a single box [N]",
+          np.sum(np.asarray(lesson.contact_forces(x, inv_mass, inv_inertia, c, load, mu)[0])[:, 0]), G / inv_mass[1],
+          SOLVED)
     raises("negative friction", BadInput, lesson.contact_forces, x, inv_mass, inv_inertia, c, load, -mu)
     raises("a negative inverse mass", BadInput, lesson.contact_forces, x, -inv_mass, inv_inertia, c, load, mu)
     raises("a load that is no number", BadInput, lesson.contact_forces, x, inv_mass, inv_inertia, c, np.nan * load, mu)
-    raises("friction of one contact for two", BadInput, lesson.contact_forces, x, inv_mass, inv_inertia, c, load, mu[:1].copy())
+    raises("friction of one contact for two", BadInput, lesson.contact_forces, x, inv_mass, inv_inertia, c, load,
+           mu[:1].copy())
 
 
 # ---------------------------------------------------------------------------------------------- soft contacts
@@ -441,11 +506,13 @@ def test_scenes_without_physics_are_refused(lesson, draw):
 def test_a_soft_contact_is_an_implicit_euler_step_of_a_damped_spring(lesson, draw):
     """v' (1 + 2ζωdt + ω²dt²) = v − dt ω² gap;  J = m (v' − v), and the contact asks for v' = aim − give J/m."""
     for _ in range(4):
-        hertz, zeta, dt, gap, v, m = draw(5.0, 60.0), draw(0.1, 10.0), draw(0.001, 0.02), -draw(1e-4, 0.1), draw(-2.0, 2.0), draw(0.5, 5.0)
+        hertz, zeta, dt = draw(5.0, 60.0), draw(0.1, 10.0), draw(0.001, 0.02)
+        gap, v = -draw(1e-4, 0.1), draw(-2.0, 2.0)
         omega = 2.0 * np.pi * hertz
         new = (v - dt * omega * omega * gap) / (1.0 + 2.0 * zeta * omega * dt + (omega * dt) ** 2)
         aim, give = lesson.soft_contact(gap, hertz, zeta, dt)
-        close("velocity after one step of a contact alone [m/s]", (aim + give * v) / (1.0 + give), new, ROUND_OFF, given=f"gap {gap} m, {hertz} Hz, ζ = {zeta}, dt = {dt} s, u_n = {v} m/s")
+        close("velocity after one step of a contact alone [m/s]", (aim + give * v) / (1.0 + give), new, ROUND_OFF,
+              given=f"gap {gap} m, {hertz} Hz, ζ = {zeta}, dt = {dt} s, u_n = {v} m/s")
 
 
 @exercise("9.12", points=0.5, hint="at rest aim = give k_n J_n, with J_n = F dt: the step must cancel")
@@ -454,14 +521,16 @@ def test_a_soft_contact_sags_by_its_force_whatever_the_step(lesson, draw):
     sag = k_n * F / (2.0 * np.pi * hertz) ** 2
     for dt in (draw(0.0005, 0.002), draw(0.01, 0.03)):
         aim, give = lesson.soft_contact(-sag, hertz, zeta, dt)
-        close("aim over give k_n F dt where the sag is right [-]", aim / (give * k_n * F * dt), 1.0, ROUND_OFF, given=f"{hertz} Hz, ζ = {zeta}, dt = {dt} s")
+        close("aim over give k_n F dt where the sag is right [-]", aim / (give * k_n * F * dt), 1.0, ROUND_OFF,
+              given=f"{hertz} Hz, ζ = {zeta}, dt = {dt} s")
 
 
 @exercise("9.12", points=0.5, hint="gap > 0: aim = −gap/dt, and no give")
 def test_an_open_contact_may_close_its_gap_and_no_more(lesson, draw):
     for gap in (draw(1e-3, 1.0), 1e-9):
         dt = draw(0.001, 0.02)
-        close("(aim, give) of an open contact [m/s, -]", lesson.soft_contact(gap, draw(5.0, 60.0), draw(0.1, 10.0), dt), (-gap / dt, 0.0), ROUND_OFF * gap / dt, given=f"gap {gap} m, dt = {dt} s")
+        close("(aim, give) of an open contact [m/s, -]", lesson.soft_contact(gap, draw(5.0, 60.0), draw(0.1, 10.0), dt),
+              (-gap / dt, 0.0), ROUND_OFF * gap / dt, given=f"gap {gap} m, dt = {dt} s")
     aim, give = lesson.soft_contact(0.0, 10.0, 1.0, 0.01)
     s = 0.2 * np.pi
     close("(aim, give) of a contact that just touches [m/s, -]", (aim, give), (0.0, 1.0 / (s * (2.0 + s))), ROUND_OFF)
@@ -473,24 +542,29 @@ def test_friction_is_the_nearest_point_of_its_disc(lesson, draw):
     size = np.linalg.norm(J)
     close("J inside its disc [N s]", lesson.friction_disc(J, draw(1.01, 2.0) * size), J, 0.0)
     for limit in (draw(0.1, 0.9) * size, 0.6 * size, 0.99 * size):
-        close("J outside its disc [N s]", lesson.friction_disc(J, limit), np.array(J) * limit / size, ROUND_OFF, given=f"J = {np.array(J)} N s, limit {limit} N s")
+        close("J outside its disc [N s]", lesson.friction_disc(J, limit), np.array(J) * limit / size, ROUND_OFF,
+              given=f"J = {np.array(J)} N s, limit {limit} N s")
     close("J without normal impulse [N s]", lesson.friction_disc(J, 0.0), np.zeros(3), 0.0)
     close("no J, and no limit [N s]", lesson.friction_disc((0.0, 0.0, 0.0), 0.0), np.zeros(3), 0.0)
     close("J with infinite friction [N s]", lesson.friction_disc(J, np.inf), J, 0.0)
 
 
-# ---------------------------------------------------------------------------------------------- memory, and looking again
+# -------------------------------------------------------------------------------------------- memory, and looking again
 
 def two_sets(draw, lesson, d):
-    """(new ContactSet, old ContactSet, J_old, near): five bodies, several contacts for some pairs, at most 0.3 m apart from where they were."""
+    """(new ContactSet, old ContactSet, J_old, near): five bodies, several contacts for some pairs,
+    at most 0.3 m apart from where they were.
+    """
     pairs = [(0, 1), (0, 1), (0, 4), (1, 2), (1, 4), (1, 4), (3, 4)]
     p = np.array([[draw(-0.2, 0.2) + 3.0 * k for _ in range(d)] for k in range(len(pairs))])
     normals = np.tile(np.eye(d)[0], (len(pairs), 1))
     old = contacts_of(lesson, *zip(*pairs), p, normals)
     moved = p + np.array([draw(-0.1, 0.1, d) for _ in pairs])
-    order = [1, 0, 2, 3, 5, 4]                                           # within a pair in another order; the last pair has parted
+    order = [1, 0, 2, 3, 5, 4]  # within a pair in another order; the last pair has parted
     new_pairs = [pairs[k] for k in order] + [(2, 4)]
-    new = contacts_of(lesson, *zip(*sorted(new_pairs, key=lambda pair: pair[0])), *sort_by_a(new_pairs, np.vstack((moved[order], p[6:]))), np.tile(np.eye(d)[0], (len(new_pairs), 1)))
+    new = contacts_of(lesson, *zip(*sorted(new_pairs, key=lambda pair: pair[0])),
+                      *sort_by_a(new_pairs, np.vstack((moved[order], p[6:]))),
+                      np.tile(np.eye(d)[0], (len(new_pairs), 1)))
     return new, old, draw(-2.0, 2.0, (len(pairs), d)), 0.5
 
 
@@ -509,14 +583,17 @@ def inherited(new, old, J_old, near):
     return J
 
 
-@exercise("9.14", points=1, hint="for each contact look at the old ones with the same a and b, and take the impulse of the nearest")
+@exercise("9.14", points=1,
+          hint="for each contact look at the old ones with the same a and b, and take the impulse of the nearest")
 def test_a_contact_remembers_the_impulse_of_its_pair_and_place(lesson, draw):
     for d in (2, 3):
         new, old, J_old, near = two_sets(draw, lesson, d)
-        close("J to begin with [N s]", lesson.kept_impulses(new, old, J_old, near), inherited(new, old, J_old, near), 0.0)
+        close("J to begin with [N s]", lesson.kept_impulses(new, old, J_old, near), inherited(new, old, J_old, near),
+              0.0)
         close("J of contacts that did not move [N s]", lesson.kept_impulses(old, old, J_old, near), J_old, 0.0)
-        crowded = old._replace(p=0.01 * old.p)                           # both contacts of a pair are near: the nearest counts
-        close("J where several old contacts are near [N s]", lesson.kept_impulses(new._replace(p=0.01 * new.p), crowded, J_old, near),
+        crowded = old._replace(p=0.01 * old.p)  # both contacts of a pair are near: the nearest counts
+        close("J where several old contacts are near [N s]",
+              lesson.kept_impulses(new._replace(p=0.01 * new.p), crowded, J_old, near),
               inherited(new._replace(p=0.01 * new.p), crowded, J_old, near), 0.0)
 
 
@@ -524,15 +601,21 @@ def test_a_contact_remembers_the_impulse_of_its_pair_and_place(lesson, draw):
 def test_a_new_contact_begins_without_impulse(lesson, draw):
     new, old, J_old, near = two_sets(draw, lesson, 2)
     far = new._replace(p=new.p + np.array([0.0, 1.0]))
-    close("J of contacts that lie elsewhere [N s]", lesson.kept_impulses(far, old, J_old, near), np.zeros(new.p.shape), 0.0)
-    close("J of contacts that are not so near [N s]", lesson.kept_impulses(new, old, J_old, 0.05), inherited(new, old, J_old, 0.05), 0.0)
-    nobody = lesson.ContactSet(np.zeros(6, np.int64), np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0))
-    close("J after a step without contacts [N s]", lesson.kept_impulses(new, nobody, np.zeros((0, 2)), near), np.zeros(new.p.shape), 0.0)
+    close("J of contacts that lie elsewhere [N s]", lesson.kept_impulses(far, old, J_old, near), np.zeros(new.p.shape),
+          0.0)
+    close("J of contacts that are not so near [N s]", lesson.kept_impulses(new, old, J_old, 0.05),
+          inherited(new, old, J_old, 0.05), 0.0)
+    nobody = lesson.ContactSet(np.zeros(6, np.int64), np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros((0, 2)),
+                               np.zeros((0, 2)), np.zeros(0))
+    close("J after a step without contacts [N s]", lesson.kept_impulses(new, nobody, np.zeros((0, 2)), near),
+          np.zeros(new.p.shape), 0.0)
     swapped = old._replace(b=np.where(old.b == 4, 2, old.b))
-    close("J after the partners changed [N s]", lesson.kept_impulses(new, swapped, J_old, near), inherited(new, swapped, J_old, near), 0.0)
+    close("J after the partners changed [N s]", lesson.kept_impulses(new, swapped, J_old, near),
+          inherited(new, swapped, J_old, near), 0.0)
 
 
-@exercise("9.15", points=1, hint="one side of one body that sticks out is enough: low below wide_low, or high above wide_high")
+@exercise("9.15", points=1,
+          hint="one side of one body that sticks out is enough: low below wide_low, or high above wide_high")
 def test_one_side_of_one_box_beyond_its_margin_is_enough(lesson, draw):
     for d in (2, 3):
         n, margin = draw.whole(3, 6), draw(0.01, 0.1)
@@ -540,15 +623,20 @@ def test_one_side_of_one_box_beyond_its_margin_is_enough(lesson, draw):
         high = low + draw(0.1, 1.0, (n, d))
         wide = low - margin, high + margin
         shift = draw(-0.9, 0.9, (n, d)) * margin
-        close("whether any box has left, all inside [-]", float(lesson.has_left_margin(low + shift, high + shift, *wide)), 0.0, 0.0)
-        close("whether any box has left, all as wide as they may be [-]", float(lesson.has_left_margin(*wide, *wide)), 0.0, 0.0)
+        close("whether any box has left, all inside [-]",
+              float(lesson.has_left_margin(low + shift, high + shift, *wide)), 0.0, 0.0)
+        close("whether any box has left, all as wide as they may be [-]", float(lesson.has_left_margin(*wide, *wide)),
+              0.0, 0.0)
         for i, c, sign in itertools.product((0, draw.whole(1, n - 2), n - 1), range(d), (1.0, -1.0)):
             one = np.zeros((n, d))
             one[i, c] = sign * 1.01 * margin
-            close("whether any box has left, one too far [-]", float(lesson.has_left_margin(low + one, high + one, *wide)), 1.0, 0.0, given=f"body {i}, coordinate {c}")
+            close("whether any box has left, one too far [-]",
+                  float(lesson.has_left_margin(low + one, high + one, *wide)), 1.0, 0.0,
+                  given=f"body {i}, coordinate {c}")
         lost = low.copy()
         lost[-1, -1] = np.nan
-        close("whether any box has left, one at no number [-]", float(lesson.has_left_margin(lost, high, *wide)), 1.0, 0.0)
+        close("whether any box has left, one at no number [-]", float(lesson.has_left_margin(lost, high, *wide)), 1.0,
+              0.0)
 
 
 # ---------------------------------------------------------------------------------------------- sweeps in arrays
@@ -559,17 +647,24 @@ def swept_scene(draw, lesson, mu, fixed=True):
     G_rows, w = rows(x, c), masses_of(inv_mass, inv_inertia)
     k = np.sum(G_rows * w * G_rows, axis=1)
     arms = lesson.Arms(c.p - x[c.a], c.p - x[c.b], k[::2].copy(), k[1::2].copy())
-    pile = lesson.Pile(inv_mass, inv_inertia, np.full((3, 2), 0.1), np.array([[0.0, 1.0, 0.0]]), np.array([0.0, -G]), mu, 1, 10.0, 1.0, 0.01)
-    J = np.stack([s * n + draw(-1.0, 1.0) * min(mu, 1.0) * s * np.array([-n[1], n[0]]) for n, s in zip(c.n, draw(0.1, 1.0, 5))])
+    pile = lesson.Pile(inv_mass, inv_inertia, np.full((3, 2), 0.1), np.array([[0.0, 1.0, 0.0]]), np.array([0.0, -G]),
+                       mu, 1, 10.0, 1.0, 0.01)
+    J = np.stack([s * n + draw(-1.0, 1.0) * min(mu, 1.0) * s * np.array([-n[1], n[0]]) for n,
+                  s in zip(c.n, draw(0.1, 1.0, 5))])
     return draw(-3.0, 3.0, (4, 2)), draw(-3.0, 3.0, 4), J, c, arms, pile, x
 
 
-@exercise("9.16", points=0.5, hint="u from the velocities as they are by then; J_n and J_t from this u; the change acts on both bodies at once")
+@exercise("9.16", points=0.5,
+          hint="u from the velocities as they are by then; J_n and J_t from this u; the change acts on both bodies "
+               "at once")
 def test_a_sweep_over_velocities_does_what_the_matrix_says(lesson, draw):
     for mu, fixed in ((draw(0.1, 0.9), True), (draw(0.1, 0.9), False), (0.0, True), (np.inf, True)):
         v, omega, J, c, arms, pile, x = swept_scene(draw, lesson, mu, fixed)
         G_rows, w = rows(x, c), masses_of(pile.inv_mass, pile.inv_inertia)
-        A, both = (G_rows * w) @ G_rows.T, lambda J: np.stack((np.sum(c.n * J, axis=1), c.n[:, 0] * J[:, 1] - c.n[:, 1] * J[:, 0]), axis=1).ravel()
+        A = (G_rows * w) @ G_rows.T
+
+        def both(J, n=c.n):
+            return np.stack((np.sum(n * J, axis=1), n[:, 0] * J[:, 1] - n[:, 1] * J[:, 0]), axis=1).ravel()
         before = np.column_stack((v, omega)).ravel()
         start = both(J)
         b, new = G_rows @ before - A @ start, start.copy()
@@ -580,38 +675,52 @@ def test_a_sweep_over_velocities_does_what_the_matrix_says(lesson, draw):
             new[n + 1] = np.clip(new[n + 1] - u_t / A[n + 1, n + 1], -limit, limit)
         after = (before + w * (G_rows.T @ (new - start))).reshape(-1, 3)
         got_v, got_omega, got_J = lesson.velocity_sweep_2d(v, omega, J, np.zeros(5), np.zeros(5), c, arms, pile)
-        close("J after the sweep, along n and t of each contact [N s]", both(np.asarray(got_J)), new, 1e-11, given=f"μ = {mu}")
+        close("J after the sweep, along n and t of each contact [N s]", both(np.asarray(got_J)), new, 1e-11,
+              given=f"μ = {mu}")
         close("velocities after the sweep [m/s]", got_v, after[:, :2], 1e-11, given=f"μ = {mu}")
         close("angular velocities after the sweep [rad/s]", got_omega, after[:, 2], 1e-11, given=f"μ = {mu}")
 
 
-@exercise("9.16", points=0.5, hint="k_n (1 + give) below, aim − u_n − give k_n J_n above: then u_n = aim − give k_n J_n holds afterwards")
+@exercise("9.16", points=0.5,
+          hint="k_n (1 + give) below, aim − u_n − give k_n J_n above: then u_n = aim − give k_n J_n holds afterwards")
 def test_a_contact_alone_gets_what_it_asks_for(lesson, draw):
     for give in (0.0, draw(0.1, 2.0)):
         v, omega, J, c, arms, pile, x = swept_scene(draw, lesson, 0.0)
         only = [c.a[:1], c.b[:1], c.n[:1], c.p[:1], c.gap[:1]]
-        alone, arm = lesson.ContactSet(c.first, *(field.copy() for field in only)), lesson.Arms(*(field[:1].copy() for field in arms))
+        alone = lesson.ContactSet(c.first, *(field.copy() for field in only))
+        arm = lesson.Arms(*(field[:1].copy() for field in arms))
         aim = np.array([draw(5.0, 9.0) + 8.0])
-        v, omega, J = map(np.asarray, lesson.velocity_sweep_2d(v, omega, 0.1 * alone.n, aim, np.array([give]), alone, arm, pile))
+        v, omega, J = map(np.asarray, lesson.velocity_sweep_2d(v, omega, 0.1 * alone.n, aim, np.array([give]), alone,
+                                                               arm, pile))
         u_n = np.sum(alone.n * velocities_at(x, alone, np.column_stack((v, omega))))
-        close("u_n + give k_n J_n after the visit [m/s]", u_n + give * arm.k_n[0] * np.sum(alone.n * J), aim[0], 1e-11, given=f"aim {aim[0]} m/s, give {give}")
+        close("u_n + give k_n J_n after the visit [m/s]", u_n + give * arm.k_n[0] * np.sum(alone.n * J), aim[0], 1e-11,
+              given=f"aim {aim[0]} m/s, give {give}")
     v, omega, J, c, arms, pile, x = swept_scene(draw, lesson, 0.5)
     J = np.asarray(lesson.velocity_sweep_2d(v, omega, 0.0 * J, np.full(5, -200.0), np.zeros(5), c, arms, pile)[2])
     close("J of contacts that may approach as they do [N s]", J, np.zeros((5, 2)), 0.0)
 
 
-@exercise("9.16", points=1, hint="what a gets, b loses: J on a and −J on b, each at its own offset; what cannot be moved keeps its velocity")
+@exercise("9.16", points=1,
+          hint="what a gets, b loses: J on a and −J on b, each at its own offset; what cannot be moved keeps its "
+               "velocity")
 def test_a_sweep_keeps_momentum_and_moves_no_plane(lesson, draw):
     for mu in (0.0, draw(0.1, 0.9)):
         v, omega, J, c, arms, pile, x = swept_scene(draw, lesson, mu, fixed=False)
         aim, give = draw(-1.0, 1.0, 5), draw(0.0, 1.0, 5)
-        total = lambda v, omega: np.append((v / pile.inv_mass[:, None]).sum(axis=0), np.sum(omega / pile.inv_inertia + (x[:, 0] * v[:, 1] - x[:, 1] * v[:, 0]) / pile.inv_mass))
+
+        def total(v, omega, x=x, pile=pile):
+            orbit = (x[:, 0] * v[:, 1] - x[:, 1] * v[:, 0]) / pile.inv_mass
+            return np.append((v / pile.inv_mass[:, None]).sum(axis=0), np.sum(omega / pile.inv_inertia + orbit))
+
         got = [np.asarray(part) for part in lesson.velocity_sweep_2d(v, omega, J, aim, give, c, arms, pile)]
-        close("momentum and angular momentum about the origin [kg m/s, kg m²/s]", total(got[0], got[1]), total(v, omega), 1e-11, given=f"μ = {mu}")
+        close("momentum and angular momentum about the origin [kg m/s, kg m²/s]", total(got[0], got[1]),
+              total(v, omega), 1e-11, given=f"μ = {mu}")
         moved = np.linalg.norm(got[0] - v) + np.linalg.norm(got[1] - omega)
         between("how much the sweep changes velocities [m/s]", moved, 0.01, 100.0)
         normal, along = np.sum(c.n * got[2], axis=1), np.abs(c.n[:, 0] * got[2][:, 1] - c.n[:, 1] * got[2][:, 0])
-        close("impulses that pull, or are outside their cone [-]", (normal < -1e-13) | (along > mu * normal + 1e-12), np.zeros(5), 0.0)
+        close("impulses that pull, or are outside their cone [-]", (normal < -1e-13) | (along > mu * normal + 1e-12),
+              np.zeros(5), 0.0)
     v, omega, J, c, arms, pile, x = swept_scene(draw, lesson, 0.5)
     got_v, got_omega, _ = lesson.velocity_sweep_2d(v, omega, J, np.zeros(5), np.zeros(5), c, arms, pile)
-    close("velocity of what cannot be moved [m/s]", np.append(np.asarray(got_v)[3], np.asarray(got_omega)[3]), np.append(v[3], omega[3]), 0.0)
+    close("velocity of what cannot be moved [m/s]", np.append(np.asarray(got_v)[3], np.asarray(got_omega)[3]),
+          np.append(v[3], omega[3]), 0.0)

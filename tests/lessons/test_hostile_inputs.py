@@ -47,8 +47,10 @@ arms, normals = np.array([[0.1, 0.2, -0.3], [-0.1, 0.2, -0.3]]), np.stack((up, u
 rope, links = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]), np.array([[0, 1], [1, 2]])
 weight, calm = np.array([0.0, -9.81]), np.array([0.5, 0.0])
 oscillator = integrators.Oscillator(3.0, 0.1)
-boxes = (np.array([[0.0, 0.5], [0.2, 1.45]]), np.zeros(2), 1.0, 0.2, 0.5 * np.ones((2, 2)), np.array([[0.0, 1.0, 0.0]]), weight, 0.5, 2, 60.0, 10.0, 0.02)
-balls = (np.array([[0.0, 0.0, 0.5], [0.1, 0.0, 1.45]]), np.tile(q, (2, 1)), 1.0, 0.1 * np.ones((2, 3)), 0.5 * np.ones((2, 3)), np.array([[*up, 0.0]]), down, 0.5, 2, 60.0, 10.0, 0.02)
+boxes = (np.array([[0.0, 0.5], [0.2, 1.45]]), np.zeros(2), 1.0, 0.2, 0.5 * np.ones((2, 2)), np.array([[0.0, 1.0, 0.0]]),
+         weight, 0.5, 2, 60.0, 10.0, 0.02)
+balls = (np.array([[0.0, 0.0, 0.5], [0.1, 0.0, 1.45]]), np.tile(q, (2, 1)), 1.0, 0.1 * np.ones((2, 3)),
+         0.5 * np.ones((2, 3)), np.array([[*up, 0.0]]), down, 0.5, 2, 60.0, 10.0, 0.02)
 
 # Arguments that follow the step of each loop.
 OSCILLATION = (integrators.oscillator_acceleration, 0.0, np.ones(2), np.zeros(2), 0.1, 3, oscillator)
@@ -96,10 +98,13 @@ STARTED = {
         "one_after_the_other": [IMPACTS]},
     "pbd": {"make_net": [(rope, 0.1, [0], links, 1e-6, 1.0, weight, 4)]},
     "contact": {
-        "make_contacts": [(np.array([1, 2]), np.array([0, 1]), np.array([[0.0, 0.0], [0.0, 1.0]]), np.array([[0.0, 1.0], [0.0, 1.0]]), np.array([0.0, 1.0, 2.0]))],
+        "make_contacts": [(np.array([1, 2]), np.array([0, 1]), np.array([[0.0, 0.0], [0.0, 1.0]]),
+                           np.array([[0.0, 1.0], [0.0, 1.0]]), np.array([0.0, 1.0, 2.0]))],
         "make_pile_2d": [boxes], "make_pile": [balls],
-        "advance_pile_2d": [(contact.box_bounds_2d, contact.box_contacts_2d, contact.make_pile_2d(*boxes)[0], 0.004, 2, contact.make_pile_2d(*boxes)[1])],
-        "advance_pile": [(contact.ball_bounds, contact.round_contacts, contact.make_pile(*balls)[0], 0.004, 2, contact.make_pile(*balls)[1])]},
+        "advance_pile_2d": [(contact.box_bounds_2d, contact.box_contacts_2d, contact.make_pile_2d(*boxes)[0], 0.004, 2,
+                             contact.make_pile_2d(*boxes)[1])],
+        "advance_pile": [(contact.ball_bounds, contact.round_contacts, contact.make_pile(*balls)[0], 0.004, 2,
+                          contact.make_pile(*balls)[1])]},
 }
 # Inner functions that trust an earlier check. They may lose a NaN and divide by zero.
 TRUSTED = {

@@ -131,7 +131,7 @@ def test_every_other_lesson_is_checked_as_if_nothing_were_wrong(told):
 RENAMED = WORKED.replace("def euler_step(", "def eulerstep(")
 
 
-@pytest.mark.parametrize("text, others_pass", [("", False), (RENAMED, True)], ids=["empty", "renamed"])
+@pytest.mark.parametrize(("text", "others_pass"), [("", False), (RENAMED, True)], ids=["empty", "renamed"])
 def test_a_function_that_is_gone_is_named_and_the_others_are_tested(told, text, others_pass):
     def call():
         notebook.check("1.1")
@@ -175,7 +175,7 @@ def test_a_file_that_ends_the_process_is_named(told):
     assert "lessons/integrators.py ends the program" in said and len(said.splitlines()) == 1
 
 
-@pytest.mark.parametrize("name, text", [("springs", SYNTAX), ("integrators", SYNTAX), ("integrators", "")])
+@pytest.mark.parametrize(("name", "text"), [("springs", SYNTAX), ("integrators", SYNTAX), ("integrators", "")])
 def test_the_engines_run_alone_where_a_lesson_that_the_scene_needs_does_not_load(told, name, text):
     measured = []
     said = told(lambda: measured.append(notebook.measured("hanging_springs", 50)), **{name: text})
@@ -197,7 +197,8 @@ def test_an_executed_notebook_reaches_its_end(tmp_path):
     """Where its lesson does not load a notebook says so, and runs on."""
     handed_out(tmp_path, integrators=SYNTAX)
     with kernel(ROOT / "notebooks") as client:
-        ran(client, f"%env WORKBOOK_LESSONS={tmp_path}\nfrom validate.measure import selection\nselection.NOTEBOOK = 0.002")
+        haste = "from validate.measure import selection\nselection.NOTEBOOK = 0.002"
+        ran(client, f"%env WORKBOOK_LESSONS={tmp_path}\n{haste}")
         for path in sorted((ROOT / "notebooks").glob("0[01]*.ipynb")):
             for cell in nbformat.read(path, as_version=4).cells:
                 if cell.cell_type == "code":
@@ -260,7 +261,7 @@ def test_a_lesson_loads_though_one_that_it_builds_on_does_not(tmp_path):
     with pytest.raises(NotImplementedError, match=r"integrators.py cannot be loaded: SyntaxError.*line 1"):
         lesson.my_own(1.0)
     for _ in range(2):
-        with pytest.raises(loading.Unloadable, match="integrators.py cannot be loaded"):
+        with pytest.raises(loading.Unloadable, match=r"integrators\.py cannot be loaded"):
             modules.bind("integrators", tmp_path)
 
 
@@ -268,7 +269,7 @@ def test_lessons_that_import_each_other_do_not_wait_for_each_other(tmp_path):
     (tmp_path / "integrators.py").write_text("from .springs import b\na = 1\n")
     (tmp_path / "springs.py").write_text("from .integrators import a\nb = 1\n")
     assert modules.bind("integrators", tmp_path).a == 1
-    with pytest.raises(loading.Unloadable, match="cannot be loaded: ImportError.*line 1"):
+    with pytest.raises(loading.Unloadable, match=r"cannot be loaded: ImportError.*line 1"):
         modules.bind("springs", tmp_path)
 
 
@@ -288,8 +289,8 @@ def test_a_file_whose_loop_never_ends_is_given_up(tmp_path, monkeypatch, loop):
 
 @needs_alarm
 def test_an_alarm_inside_another_leaves_that_one_running():
-    with pytest.raises(loading.TooLong, match="0.3 s"), loading.alarm(0.3):
-        with pytest.raises(loading.TooLong, match="0.1 s"), loading.alarm(0.1):
+    with pytest.raises(loading.TooLong, match=r"0\.3 s"), loading.alarm(0.3):  # noqa: PT012     two sleeps are the claim
+        with pytest.raises(loading.TooLong, match=r"0\.1 s"), loading.alarm(0.1):
             time.sleep(5.0)
         time.sleep(5.0)
 

@@ -1,4 +1,6 @@
-"""The grader itself: wrong answers lose an exercise's points, right ones keep them, stubs score 0 and solutions 100 %."""
+"""The grader itself: wrong answers lose an exercise's points, right ones keep them,
+stubs score 0 and solutions 100 %.
+"""
 
 import functools
 import importlib
@@ -23,7 +25,8 @@ def mutants_of(name):
 def all_mutants():
     for name in LESSONS:
         for number, mutant in enumerate(mutants_of(name)):
-            label = f"{name}-{mutant.exercise}-{'right' if mutant.right else 'wrong'}-{mutant.kind}-{mutant.story}".replace(" ", "_")
+            kind = "right" if mutant.right else "wrong"
+            label = f"{name}-{mutant.exercise}-{kind}-{mutant.kind}-{mutant.story}".replace(" ", "_")
             yield pytest.param(name, number, id=label, marks=pytest.mark.xdist_group(f"mutants of {name}"))
 
 
@@ -38,24 +41,26 @@ def grades_of(name):
     return grade_each(name, {str(number): subject(mutant) for number, mutant in enumerate(mutants_of(name))})
 
 
-@pytest.mark.parametrize("name, number", list(all_mutants()))
+@pytest.mark.parametrize(("name", "number"), list(all_mutants()))
 def test_an_answer_keeps_its_points_exactly_when_it_is_right(name, number):
     mutant = mutants_of(name)[number]
     earned, possible = score(grades_of(name)[str(number)])[mutant.exercise]
     assert (earned == possible) == mutant.right, f"{earned} of {possible} points"
 
 
-@pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.xdist_group(f"mutants of {name}")) for name in LESSONS])
+@pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.xdist_group(f"mutants of {name}"))
+                                  for name in LESSONS])
 def test_what_a_student_reads_is_short_and_tells_expected_from_got(name):
     failed = [outcome for outcomes in grades_of(name).values() for outcome in outcomes if outcome.status == "not yet"]
     assert len(failed) > 30
     for o in failed:
         words = {"quantity": o.quantity, "given": o.given, "expected": o.expected, "got": o.got, "hint": o.hint}
         assert not [field for field, text in words.items() if len(text) > LONGEST], o
-        ours = f"{o.given}|{o.expected}|{'' if o.quantity == 'the call itself' else o.got}"              # there Python speaks
+        ours = f"{o.given}|{o.expected}|{'' if o.quantity == 'the call itself' else o.got}"  # there Python speaks
         assert not re.search(r"np\.|array\(|dtype|[A-Za-z_]=\S|\n|  |\[ | [\],]", ours), o
         assert o.expected != o.got and o.got, o
-        assert max(map(digits_of, re.findall(r"\d[\d.]*(?:e[-+]?\d+)?", f"{o.given} {o.expected} {o.got}")), default=0) <= MOST_DIGITS, o
+        assert max(map(digits_of, re.findall(r"\d[\d.]*(?:e[-+]?\d+)?", f"{o.given} {o.expected} {o.got}")),
+                   default=0) <= MOST_DIGITS, o
 
 
 def digits_of(number):
@@ -64,7 +69,9 @@ def digits_of(number):
 
 
 def proof(mutant, kept):
-    """How it is shown that a wrong answer has one fault: undo that, and what is left is right; an empty string where it is not."""
+    """How it is shown that a wrong answer has one fault: undo that, and what is left is right;
+    an empty string where it is not.
+    """
     if mutant.faults != 1:
         return ""
     if mutant.kind == "edit":                                            # what is left is the worked answer
@@ -84,7 +91,7 @@ def test_every_wrong_answer_has_one_fault_and_proves_it(name):
 
 
 def test_what_has_two_faults_or_none_or_no_right_answer_behind_it_proves_nothing():
-    wrong, right, edit, kept = collection(importlib.import_module("solutions.springs"))
+    wrong, _right, edit, kept = collection(importlib.import_module("solutions.springs"))
 
     @variants
     def tension(sign=1.0, damper=1.0):

@@ -14,9 +14,10 @@ HASTE = """import validate.notebook, matplotlib
 from validate.measure import selection
 matplotlib.rcParams["figure.dpi"] = 20
 selection.NOTEBOOK = 0.002
-%config InlineBackend.print_figure_kwargs = {"bbox_inches": None}"""          # nobody looks at these figures, and nobody reads these times
+# nobody looks at these figures, and nobody reads these times
+%config InlineBackend.print_figure_kwargs = {"bbox_inches": None}"""
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
-STATES = {"nothing attempted": 0.0, "half done": 0.5, "solved": 1.0}          # share of the exercises, from the first on
+STATES = {"nothing attempted": 0.0, "half done": 0.5, "solved": 1.0}  # share of the exercises, from the first on
 
 
 def answered(state):
@@ -33,7 +34,8 @@ def test_a_notebook_is_stored_without_outputs(path):
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_a_notebook_runs_to_its_end_and_its_checks_say_the_state(path, tmp_path):
-    """One kernel, as at a student's desk: run from first cell to last, write more of the lessons, forget every name, run again.
+    """One kernel, as at a student's desk: run from first cell to last, write more of the lessons, forget every name,
+    run again.
 
     A check whose exercise is as it was in the state before is not asked again.
     """
@@ -48,7 +50,8 @@ def test_a_notebook_runs_to_its_end_and_its_checks_say_the_state(path, tmp_path)
             ran(client, f"%reset -f\n%env WORKBOOK_LESSONS={tmp_path / state}")
             for source in cells:
                 asked = re.match(r'check\("([\d.]+)"\)', source)
-                expected = "passed" if asked and any(asked[1] in numbers for numbers in solved.values()) else "not attempted"
+                expected = "passed" if asked and any(asked[1] in numbers
+                                                     for numbers in solved.values()) else "not attempted"
                 if asked and known.get(asked[1]) == expected:
                     continue
                 said = ran(client, source)

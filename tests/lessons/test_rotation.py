@@ -549,7 +549,9 @@ class Growth(NamedTuple):
 
 
 def bent_step(torque, t, q, L, dt, body):
-    """A reversible second-order step for L̇ = rate L + push cos t, with a known result: half push, growth, half push."""
+    """A reversible second-order step for L̇ = rate L + push cos t, with a known result:
+    half push, growth, half push.
+    """
     L = L + 0.5 * dt * torque(t, q, L, body)
     L = L * (1.0 + 0.5 * dt * body.rate) / (1.0 - 0.5 * dt * body.rate)
     return q, L + 0.5 * dt * torque(t + dt, q, L, body)
