@@ -194,7 +194,7 @@ def sag_of_a_soft_contact(lesson):
     """A soft contact under a force F comes to rest at a depth of k_n F/(2π hertz)², whatever the step.
 
     A disc has k_n = 1/m and F = m g; a box on both corners k_n = 1/m + (w/2)²/I = 2.5/m at each, and F = m g/2.  What
-    is left of the way to it shrinks at a rate of s²/(h (1 + 2ζs + s²)), s = 2π hertz h, h the substep: 40/s and more here,
+    is left of the way to it shrinks at a rate of s²/(h (1 + 2ζs + s²)), s = 2π hertz h, h the substep: 40/s and more,
     which leaves 1e-17 after a second.  The place is rounded: 1.1e-16 of half a metre, over a depth of 40 µm, and some.
     """
     found, drawn, hertzes = [], {}, np.array([30.0, 40.0, 50.0, 65.0, 80.0])
@@ -212,7 +212,7 @@ def sag_of_a_soft_contact(lesson):
                 predicted=0.0,
                 measured=worst,
                 tolerance=2e-11,
-                observation=f"Steps of 1/{1.0 / dt:.0f} s in {substeps} parts: {name} sinks as it should, to right to {worst:.0e}.",
+                observation=f"1/{1.0 / dt:.0f} s in {substeps} substeps: {name} sinks as it should, to {worst:.0e}.",
             ))
         drawn[name] = []
         for hertz in hertzes:
@@ -231,8 +231,8 @@ def mass_ratio_of_a_million(lesson):
     """A million on one: sweeps say that they have not got there, and Murty's method solves it in two pivots.
 
     With ρ = r/(1 + r) the lower contact lacks r g ρ^(k−1) after k sweeps and the upper one ρ times that, which leaves
-    the residual g ρᵏ: 0.95 g after 50,000.  The condition of A is 4 · 10⁶, so that solving loses seven of sixteen digits:
-    1e-9.  The pile sweeps, too: it sinks, and is refused.
+    the residual g ρᵏ: 0.95 g after 50,000.  The condition of A is 4 · 10⁶, so that solving loses seven of sixteen
+    digits: 1e-9.  The pile sweeps, too: it sinks, and is refused.
     """
     found, ratio = [], 1e6
     A, b, forces = column((1.0, ratio))

@@ -131,8 +131,8 @@ def tolerance(p, dt):
 
 
 # of the forces, relative [-]
-SWAY_OF_TEN = {"pile": 2e-7, "pymunk": 1e-6, "pymunk, default": 1e-3, "pybullet": 1e-9, "pybullet, default": 1e-5}
-SWAY_OF_FIVE = {"pile": 2e-11, "pymunk": 1e-12, "pymunk, default": 2e-7, "pybullet": 1e-11, "pybullet, default": 4e-9}
+SWAY_OF_TEN = {"pile": 2e-7, "pymunk": 1e-6, "pymunk, default": 1e-3, "pybullet": 2e-7, "pybullet, default": 1e-5}
+SWAY_OF_FIVE = {"pile": 2e-11, "pymunk": 1e-12, "pymunk, default": 2e-7, "pybullet": 4e-11, "pybullet, default": 4e-9}
 
 
 # ---------------------------------------------------------------------------------------------- engines
@@ -189,8 +189,8 @@ ENGINES = (
            "100 iterations, collision_slop 1e-4; 3 s of 1/240 s"),
     Engine(PYMUNK, "default", lambda p, dt: pymunk_make(p, dt, 10, 0.1), EXACT,
            "10 iterations, collision_slop 0.1; 3 s of 1/240 s"),
-    Engine(PYBULLET, "", lambda p, dt: pybullet_make(p, dt, 500, 0), EXACT,
-           "maximal coordinates; solverResidualThreshold 0, 500 iterations; 3 s of 1/240 s"),
+    Engine(PYBULLET, "", lambda p, dt: pybullet_make(p, dt, 200, 0), EXACT,
+           "maximal coordinates; solverResidualThreshold 0, 200 iterations; 3 s of 1/240 s"),
     Engine(PYBULLET, "default", lambda p, dt: pybullet_make(p, dt, 50, 1e-7), EXACT,
            "maximal coordinates; 50 iterations; 3 s of 1/240 s"),
 )
