@@ -79,7 +79,8 @@ def run(step, acceleration, state, p, dt, steps):
     """The forces at all contacts: (n,) added up joint by joint."""
     x, inv_mass, inv_inertia, contacts, load = state
     if step.__name__ == "advance_pile_2d":
-        return (pile_forces(step, p),)
+        shape = [getattr(f, "twin", f) for f in (box_bounds_2d, box_contacts_2d)]        # what a compiled step takes
+        return (pile_forces(step, *shape, p),)
     if step.__name__ == "contact_forces":
         forces = step(x, inv_mass, inv_inertia, contacts, load, np.full(len(contacts.a), MU))[0][:, 0]
     else:                                                     # without friction: the normal rows only
@@ -88,12 +89,12 @@ def run(step, acceleration, state, p, dt, steps):
     return (forces.reshape(p.n, -1).sum(axis=1),)
 
 
-def pile_forces(advance, p):
+def pile_forces(advance, bounds, find_contacts, p):
     """What boxes carry that were put on each other and left to settle: the impulses of the last substep, over it."""
     half = np.full((p.n, 2), 0.5 * p.size)
     state, pile = make_pile_2d(start(p)[0][:p.n], np.zeros(p.n), p.m, moment(p), half, np.array([(0.0, 1.0, 0.0)]),
                                (0.0, -p.g), mu=MU, substeps=8, hertz=240.0, zeta=10.0, margin=0.02 * p.size)
-    end = advance(box_bounds_2d, box_contacts_2d, state, DT, round(SETTLING / DT), pile)
+    end = advance(bounds, find_contacts, state, DT, round(SETTLING / DT), pile)
     forces = np.zeros(p.n)
     for a, b, J in zip(end.contacts.a, end.contacts.b, end.J):
         forces[0 if b == p.n else max(a, b)] += abs(J[1]) * pile.substeps / DT
@@ -121,13 +122,23 @@ def tolerance(p, dt):
     The pile and the engines still sway a little when they are read, and no theory says how much: these are ten times
     what was measured.
     """
-    x, inv_mass, inv_inertia, contacts, _ = start(p)
-    G = contact_rows(x, contacts)[::2]
-    A, here = delassus_matrix(G, inverse_masses(inv_mass, inv_inertia)), len(contacts.a) // p.n
+    A, here = normal_matrix(p), 2 if p.shape == "boxes" else 1
     values, forces = np.linalg.eigvalsh(A), np.repeat(truth(p, T), here) / here
     swept = 1e-13 * (np.max(np.abs(A) @ forces) + p.g) / values[0] * np.sqrt(here * p.n) / np.linalg.norm(forces)
     solved = 10.0 * 1.1e-16 * values[-1] / values[0]
     return {EXACT: swept, "Murty": solved, **(SWAY_OF_TEN if p.n > 5 else SWAY_OF_FIVE)}
+
+
+def normal_matrix(p):
+    """A of the normal impulses, from heights and turns (y, θ) of the bodies; contacts are `offsets` off the middle."""
+    offsets = np.array((-0.5, 0.5) if p.shape == "boxes" else (0.0,)) * p.size
+    G = np.zeros((p.n, len(offsets), p.n, 2))
+    for k in range(p.n):
+        G[k, :, k] = np.stack((np.ones(len(offsets)), offsets), axis=1)
+        if k:
+            G[k, :, k - 1] = -G[k, :, k]
+    G = G.reshape(p.n * len(offsets), 2 * p.n)
+    return (G * np.tile((1.0 / p.m, 1.0 / moment(p)), p.n)) @ G.T
 
 
 # of the forces, relative [-]
