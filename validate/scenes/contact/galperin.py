@@ -9,7 +9,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
+from solutions.checks import check_not_negative, check_positive
 from validate.engines.bullet import IMPACT_SETTINGS, Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_space
 from validate.methods import ONE_BY_ONE, REFLECTION
@@ -42,6 +42,7 @@ def heavy(p):
 def start(p):
     """(number of impacts, velocities of the light and the heavy block)."""
     check_positive("V", p.V)
+    check_not_negative("N", float(p.N))
     return 0, np.array([0.0, -p.V])
 
 

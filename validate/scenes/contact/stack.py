@@ -62,6 +62,7 @@ def start(p):
     """(centres (n + 1, 2), inverse masses, inverse moments, contacts from below, load); the last body is the ground."""
     for name in ("m", "size", "g"):
         check_positive(name, getattr(p, name))
+    check_positive("n", float(p.n))
     k = np.arange(p.n)
     x = np.stack((np.zeros(p.n + 1), p.size * (np.append(k, -1.0) + 0.5)), axis=1)
     movable = np.append(np.ones(p.n), 0.0)
