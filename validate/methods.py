@@ -70,6 +70,13 @@ PBD = Method("pbd_step", "PBD", 1, "pbd", "#D55E00", "D")
 XPBD = Method("xpbd_step", "XPBD", 1, "pbd", "#56B4E9", "^")
 RATTLE = Method("rattle_step", "RATTLE", 2, "pbd", "#009E73", "s")
 
+# contact
+SWEEPS = Method("contact_forces", "sweeps", 2, "contact", "#009E73", "s")
+DIRECT = Method("solve_lcp", "Murty", 2, "contact", "#0072B2", "^")
+PILE = Method("advance_pile_2d", "pile", 1, "contact", "#D55E00", "o")
+REFLECTION = Method("gauss_seidel_sweep", "sweep with ω = 2", 2, "contact", "#E69F00", "v")
+ONE_BY_ONE = Method("impulse_size", "impulses one by one", 2, "impulses", "#0072B2", "o")
+
 INTEGRATORS = (EULER, MIDPOINT, RK4, AVERAGE_VELOCITY, SYMPLECTIC_EULER, VERLET, IMPLICIT_EULER, IMPLICIT_MIDPOINT)
 ONE_OF_EACH_ORDER = (SYMPLECTIC_EULER, VERLET, RK4)                  # enough for most quick runs
 LEFT_TO_FULL = tuple(method.function for method in INTEGRATORS if method not in ONE_OF_EACH_ORDER)

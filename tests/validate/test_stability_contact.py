@@ -1,0 +1,106 @@
+"""A wrong function of lesson 9 does not find the factors, depths and refusals that theory gives the right one."""
+
+import types
+
+import numpy as np
+import pytest
+
+from solutions import contact as worked
+from solutions.checks import Diverged
+from validate.stability.examine import cases_of, subject_of
+
+
+def jacobi(A, b, lam, omega):
+    """All contacts at once, from the old impulses."""
+    return np.maximum(0.0, lam - omega * (A @ lam + b) / np.diag(A))
+
+
+def backwards(A, b, lam, omega):
+    """Two sweeps, there and back."""
+    lam = worked.gauss_seidel_sweep(A, b, lam, omega)
+    return worked.gauss_seidel_sweep(A[::-1, ::-1], b[::-1], lam[::-1], omega)[::-1]
+
+
+def deaf(A, b, lam, omega):
+    """Takes no relaxation."""
+    return worked.gauss_seidel_sweep(A, b, lam, 1.0)
+
+
+def swept(A, b):
+    """Sweeps for a direct method."""
+    lam = np.zeros(b.size)
+    for _ in range(1000):
+        lam = worked.gauss_seidel_sweep(A, b, lam, 1.0)
+    return lam
+
+
+def silent(A, b, mu):
+    """What sweeps have reached, whatever it is."""
+    J = np.zeros(b.size)
+    for _ in range(100):
+        J = worked.cone_sweep(A, b, J, mu)
+    return J
+
+
+def too_soon(A, b, mu):
+    """Gives up after a hundred sweeps."""
+    raise Diverged("residual of the contacts [m/s]", worked.cone_residual(A, b, silent(A, b, mu), mu), "sweep more")
+
+
+def pile_with(**changes):
+    """The pile with other settings than it was told."""
+    def advance(bounds, find_contacts, state, dt, steps, pile):
+        return worked.advance_pile_2d(bounds, find_contacts, state, dt, steps, pile._replace(**changes))
+    return advance
+
+
+def half_the_hertz(bounds, find_contacts, state, dt, steps, pile):
+    return worked.advance_pile_2d(bounds, find_contacts, state, dt, steps, pile._replace(hertz=0.5 * pile.hertz))
+
+
+def keeps_the_push(bounds, find_contacts, state, dt, steps, pile):
+    """Turns what parted two bodies into velocity, as projections of velocities from positions do."""
+    end = worked.advance_pile_2d(bounds, find_contacts, state, dt, steps, pile)
+    return end._replace(v=(end.x - state.x) / (steps * dt))
+
+
+def unchecked(a, b, p, n, inv_mass):
+    a = np.array(a)
+    return worked.ContactSet(np.zeros(1, np.int64), a, np.array(b), np.array(n), np.array(p), np.zeros(a.size))
+
+
+def lets_it_sink(bounds, find_contacts, state, dt, steps, pile):
+    try:
+        return worked.advance_pile_2d(bounds, find_contacts, state, dt, steps, pile)
+    except Diverged:
+        return state
+
+
+WRONG = [                    # case, the function that it examines, what is put in its place
+    ("contraction-of-a-stack", "gauss_seidel_sweep", jacobi),
+    ("contraction-of-a-stack", "gauss_seidel_sweep", backwards),
+    ("contraction-of-a-mass-ratio", "gauss_seidel_sweep", jacobi),
+    ("over-relaxation", "gauss_seidel_sweep", deaf),
+    ("over-relaxation", "gauss_seidel_sweep", jacobi),
+    ("sag-of-a-soft-contact", "advance_pile_2d", half_the_hertz),
+    ("sag-of-a-soft-contact", "advance_pile_2d", pile_with(gravity=np.array([0.0, -9.8]))),
+    ("mass-ratio-of-a-million", "solve_lcp", swept),
+    ("mass-ratio-of-a-million", "solve_contacts", silent),
+    ("mass-ratio-of-a-million", "solve_contacts", too_soon),
+    ("mass-ratio-of-a-million", "advance_pile_2d", lets_it_sink),
+    ("extremes", "advance_pile_2d", keeps_the_push),
+    ("extremes", "advance_pile_2d", pile_with(mu=0.5)),
+    ("extremes", "make_contacts", unchecked),
+]
+
+
+IDS = [f"{slug}-{name}-{k}" for k, (slug, name, _) in enumerate(WRONG)]
+
+
+@pytest.mark.parametrize(("slug", "name", "wrong"), WRONG, ids=IDS)
+def test_a_wrong_function_does_not_find_what_theory_says(slug, name, wrong):
+    case = cases_of("contact")[slug]
+    lesson = types.SimpleNamespace(**{**vars(subject_of(case)), name: wrong})
+    with np.errstate(all="ignore"):
+        found, _ = case.examine(lesson)
+    assert not all(f.holds for f in found)

@@ -1,0 +1,300 @@
+"""How rough must it be?  Discs, a ladder, a box and an overhang that stand by a hair, and when they do not any more.
+
+A scene stands where the contact solver finds no acceleration.  Its critical number is found by bisection: the least
+friction, the steepest slope or the longest overhang that stands.  The engine is watched for a second instead, and what
+has moved by less than a millimetre stands.
+"""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import check_positive
+from solutions.contact import make_contacts
+from validate.engines.chipmunk import pymunk_space
+from validate.methods import SWEEPS
+from validate.scene import EXACT, PYMUNK, Engine, EngineRun, Scene
+
+T = 1.0
+STEPS = (1,)
+G = 9.81                     # [m/s²]; no critical number depends on it
+AT_REST = 1e-8               # acceleration that counts as none [m/s², rad/s²]: sweeps leave some 1e-10
+WIDTH = 1e-9                 # relative, at which bisection stops [-]
+UP, DOWN = (0.0, 1.0), np.array([0.0, -1.0])
+DT, WATCHED = 1e-3, 1.0      # of the engine [s]
+MOVED = 1e-3                 # what has moved less, stands [m]
+OVERLAP = 1e-6               # with which the engine's bodies begin [m]: it sees a contact when there is one
+HEIGHT = 0.2                 # of a block of the overhang, over its length [-]
+
+
+class Params(NamedTuple):
+    kind: Annotated[str, "what stands"] = "discs, between"
+    degrees: Annotated[float, "angle of the ladder from the floor [°]"] = 60.0
+    mu: Annotated[float, "friction that is given [-]"] = 1.0
+    slim: Annotated[float, "width of the box over its height [-]"] = 0.4
+    blocks: Annotated[int, "of the overhang"] = 3
+
+
+CASES = {
+    "discs: friction between them": Params(), "discs: friction at the ground": Params("discs, ground"),
+    "ladder at 60°": Params("ladder"), "ladder at 40°": Params("ladder", degrees=40.0),
+    "ladder at 75°": Params("ladder", degrees=75.0),
+    "box that topples": Params("box", mu=0.6), "box that slides": Params("box", mu=0.3),
+    "overhang of three blocks": Params("overhang"), "overhang of five blocks": Params("overhang", blocks=5),
+}
+
+
+def start(p):
+    for name in ("degrees", "mu", "slim", "blocks"):
+        check_positive(name, float(getattr(p, name)))
+    return (np.zeros(1),)
+
+
+# ---------------------------------------------------------------------------------------------- ours
+
+def scene_of(p, number):
+    """(x, masses, moments, [(a, b, place, normal, friction)], direction of gravity); a mass of 0 is immovable."""
+    if p.kind.startswith("discs"):                            # radius ½; the lower two do not quite touch
+        x, (between, ground) = places_of(p, number), frictions_of(p, number)
+        touch = [(1, 0, (-0.5, 0.0), UP, ground), (2, 0, (0.5, 0.0), UP, ground)]
+        touch += [(3, k, 0.5 * (x[3] + x[k]), x[3] - x[k], between) for k in (1, 2)]
+        return x, np.array([0.0, 1.0, 1.0, 1.0]), np.full(4, 0.125), touch, DOWN
+    if p.kind == "ladder":
+        end = ladder_end(p)
+        touch = [(1, 0, -end, UP, number), (1, 0, end, (-1.0, 0.0), 0.0)]
+        return places_of(p, number), np.array([0.0, 1.0]), np.full(2, 1.0 / 12.0), touch, DOWN
+    if p.kind == "box":
+        touch = [(1, 0, (side, 0.0), UP, p.mu) for side in (-0.5 * p.slim, 0.5 * p.slim)]
+        moment = (p.slim**2 + 1.0) / 12.0
+        return places_of(p, number), np.array([0.0, 1.0]), np.full(2, moment), touch, leaning(number)
+    x, touch = places_of(p, number), []
+    for k in range(p.blocks):                                 # from the left end above to the right end below
+        for side in (x[k, 0] - 0.5, x[k + 1, 0] + 0.5):
+            touch.append((k, k + 1, (side, x[k, 1] - 0.5 * HEIGHT), UP, p.mu))
+    moments = np.full(p.blocks + 1, (1.0 + HEIGHT**2) / 12.0)
+    return x, np.append(np.ones(p.blocks), 0.0), moments, touch, DOWN
+
+
+def places_of(p, number):
+    """Centres [m] of all bodies; of the overhang from the top, with the table as the last."""
+    if p.kind.startswith("discs"):
+        return np.array([(0.0, -1.0), (-0.5, 0.5), (0.5, 0.5), (0.0, 0.5 + np.sqrt(0.75))])
+    if p.kind == "ladder":
+        return np.array([(0.0, -1.0), (0.0, 0.0)])
+    if p.kind == "box":
+        return np.array([(0.0, -1.0), (0.0, 0.5)])
+    reach = number / harmonic(p.blocks) / (2.0 * np.arange(1, p.blocks + 1))             # of each over the one below
+    heights = HEIGHT * (p.blocks - np.arange(p.blocks + 1) - 0.5)
+    return np.stack((-np.cumsum(np.append(0.0, reach)), heights), axis=1)
+
+
+def frictions_of(p, number):
+    """(friction between the discs, friction at the ground)."""
+    return (number, p.mu) if p.kind.endswith("between") else (p.mu, number)
+
+
+def ladder_end(p):
+    """From the centre of the ladder to its upper end [m]."""
+    return 0.5 * np.array([np.cos(np.radians(p.degrees)), np.sin(np.radians(p.degrees))])
+
+
+def leaning(slope):
+    """Direction of gravity where a slope lies flat."""
+    return np.array([slope, -1.0]) / np.hypot(slope, 1.0)
+
+
+def harmonic(n):
+    """½ Σ 1/k of n blocks."""
+    return 0.5 * sum(1.0 / k for k in range(1, n + 1))
+
+
+def stands(forces, p, number):
+    """Whether nothing is accelerated."""
+    x, m, moments, touch, down = scene_of(p, number)
+    a, b, places, normals, mu = zip(*touch)
+    movable = m > 0.0
+    inv_mass, inv_inertia = movable / np.where(movable, m, 1.0), movable / moments
+    load = np.zeros((len(x), 3))
+    load[:, :2] = m[:, None] * G * down
+    contacts = make_contacts(a, b, np.array(places), np.array(normals), inv_mass)
+    _, acceleration = forces(x, inv_mass, inv_inertia, contacts, load, np.array(mu, float))
+    return np.max(np.abs(acceleration)) < AT_REST
+
+
+def bracket(p):
+    """(a number with which it falls, one with which it stands)."""
+    expected = truth(p, T)[0]
+    return (2.0 * expected, 0.3 * expected) if p.kind in ("box", "overhang") else (0.3 * expected, 2.0 * expected)
+
+
+def edge(holds, p, width):
+    """Where what falls begins to stand, by bisection."""
+    falls, safe = bracket(p)
+    while abs(safe - falls) > width * safe:
+        middle = 0.5 * (falls + safe)
+        falls, safe = (falls, middle) if holds(middle) else (middle, safe)
+    return np.array([0.5 * (falls + safe)])
+
+
+def run(step, acceleration, state, p, dt, steps):
+    return (edge(lambda number: stands(step, p, number), p, WIDTH),)
+
+
+def observe(state, p):
+    return state[0]
+
+
+def truth(p, t):
+    """By the balance of forces and moments, at the edge:
+
+    discs       the forces on a lower disc meet in its point on the ground.  The one from above is 15° off the normal
+                there: μ = tan 15° = 2 − √3.  The ground carries 1½ weights, an upper contact a third of that along
+                the vertical: μ = (2 − √3)/3.
+    ladder      moments about its foot: the wall pushes with m g/(2 tan θ), and the floor holds it: μ = 1/(2 tan θ)
+    box         it topples where its centre is above its lower edge, tan θ = w/h, and slides at tan θ = μ
+    overhang    the centre of what is above must be above the edge below: ½ Σ 1/k lengths
+    Source: any text of statics.
+    """
+    if p.kind.startswith("discs"):
+        return np.array([(2.0 - np.sqrt(3.0)) / (3.0 if p.kind.endswith("ground") else 1.0)])
+    if p.kind == "ladder":
+        return np.array([0.5 / np.tan(np.radians(p.degrees))])
+    return np.array([min(p.mu, p.slim)]) if p.kind == "box" else np.array([harmonic(p.blocks)])
+
+
+def tolerance(p, dt):
+    """A number that is short of the critical one by a relative δ leaves an acceleration of g δ times a lever.  With
+    levers of a tenth and more, 1e-8 m/s² mean 10 · 1e-8/g; bisection stops at 1e-9.
+
+    In the engine that acceleration has a second to move something by 1 mm: δ = 2 · 1e-3/(g · 1 s²) over the lever.
+    """
+    return {EXACT: 10.0 * AT_REST / G + WIDTH, "pymunk": 10.0 * 2.0 * MOVED / (G * WATCHED**2)}
+
+
+# ---------------------------------------------------------------------------------------------- engine
+
+def pymunk_world(p, number):
+    """(space, bodies) of a scene; friction is multiplied, and each begins OVERLAP inside what carries it."""
+    import pymunk
+    space = pymunk_space(G * (leaning(number) if p.kind == "box" else DOWN))
+    space.iterations = 100
+    bodies = []
+
+    def static(start, end, mu, thick=5.0):
+        shape = pymunk.Segment(space.static_body, start, end, thick)
+        shape.friction = mu
+        space.add(shape)
+
+    def movable(x, moment, make, mu):
+        body = pymunk.Body(1.0, moment)
+        body.position = tuple(map(float, x))
+        shape = make(body)
+        shape.friction = mu
+        space.add(body, shape)
+        bodies.append(body)
+
+    x, below = places_of(p, number), np.array([0.0, OVERLAP])
+    if p.kind.startswith("discs"):
+        between, ground = frictions_of(p, number)
+        static((-20.0, -5.0), (20.0, -5.0), ground)
+        for k, mu in ((1, 1.0), (2, 1.0), (3, between)):
+            aside = np.array([(2 * k - 3) * OVERLAP, 0.0]) if k < 3 else -2.0 * below
+            movable(x[k] - below + aside, 0.125, lambda body: pymunk.Circle(body, 0.5), mu)
+    elif p.kind == "ladder":
+        end = ladder_end(p)
+        static((-20.0, -end[1] - 5.0), (20.0, -end[1] - 5.0), number)
+        static((end[0] + 5.0, -20.0), (end[0] + 5.0, 20.0), 0.0)
+        shape = lambda body: pymunk.Segment(body, tuple(map(float, -end)), tuple(map(float, end)), OVERLAP)
+        movable(x[1], 1.0 / 12.0, shape, 1.0)
+    elif p.kind == "box":
+        static((-20.0, -5.0), (20.0, -5.0), 1.0)
+        box = lambda body: pymunk.Poly.create_box(body, (p.slim, 1.0))
+        movable(x[1] - below, (p.slim**2 + 1.0) / 12.0, box, p.mu)
+    else:
+        edge_of_table = x[-1, 0] + 0.5
+        table = pymunk.Poly(space.static_body, [(edge_of_table - 4.0, -4.0), (edge_of_table, -4.0),
+                                                (edge_of_table, 0.0), (edge_of_table - 4.0, 0.0)])
+        table.friction = 1.0
+        space.add(table)
+        for k in range(p.blocks):
+            moment = (1.0 + HEIGHT**2) / 12.0
+            block = lambda body: pymunk.Poly.create_box(body, (1.0, HEIGHT))
+            movable(x[k] - (p.blocks - k) * below, moment, block, p.mu)
+    return space, bodies
+
+
+def pymunk_stands(p, number):
+    """Whether nothing has moved by a millimetre after a second."""
+    space, bodies = pymunk_world(p, number)
+    before = np.array([body.position for body in bodies])
+    for _ in range(round(WATCHED / DT)):
+        space.step(DT)
+    return np.max(np.abs(np.array([body.position for body in bodies]) - before)) < MOVED
+
+
+def pymunk_make(p, dt):
+    return EngineRun(lambda: None, lambda: edge(lambda number: pymunk_stands(p, number), p, 1e-4), lambda: None)
+
+
+ENGINES = (
+    Engine(PYMUNK, "", pymunk_make, EXACT,
+           "100 iterations, collision_slop 1e-5; stands if nothing moves by 1 mm in 1 s of 1/1000 s"),
+)
+
+
+def quantity_names(p):
+    if p.kind in ("box", "overhang"):
+        return ["steepest slope, tan θ [-]"] if p.kind == "box" else ["overhang over the length of a block [-]"]
+    return ["least friction [-]"]
+
+
+def sanity_checks():
+    """((claim, found, expected, tolerance), …): the same by other means."""
+    numbers = {name: truth(p, T)[0] for name, p in CASES.items()}
+    return (("friction between discs [-]", numbers["discs: friction between them"], np.tan(np.radians(15.0)), 1e-15),
+            ("ladder at 60° [-]", numbers["ladder at 60°"], np.sqrt(3.0) / 6.0, 1e-15),
+            ("overhang of five [-]", numbers["overhang of five blocks"], 137.0 / 120.0, 1e-15))
+
+
+# ---------------------------------------------------------------------------------------------- picture
+
+def points(observed, p):
+    """The three discs of the first case as polygons, and the ground."""
+    arc = np.linspace(0.0, 2.0 * np.pi, 25)[:-1]
+    round_it = 0.5 * np.stack((np.cos(arc), np.sin(arc)), axis=1)
+    rings = [x + round_it for x in places_of(Params(), 1.0)[1:]]
+    return np.round(np.concatenate((*rings, [(-1.5, 0.0), (1.5, 0.0)])), 5)
+
+
+def links(p):
+    return [(24 * k + i, 24 * k + (i + 1) % 24) for k in range(3) for i in range(24)] + [(72, 73)]
+
+
+SCENE = Scene(
+    title="Critical friction",
+    lesson="contact",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=(SWEEPS,),
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-15,
+    tolerance=tolerance,
+    engines=ENGINES,
+    orders={"contact_forces": EXACT},
+    slow_cases=("overhang of five blocks",),
+    omitted_methods="Murty's method knows no friction; pybullet has no discs and no plane in which they could stay",
+    moves=False,
+    refinement="",
+    quantity_names=quantity_names,
+    published_states=((1.0, (0.267949,), 5e-7),),
+    sanity_checks=sanity_checks,
+    points=points,
+    links=links,
+    uses=("rows of all contacts", "the cone of friction in the plane", "sweeps until the residual is gone"),
+    ablations={"motion": "what stands does not move; what falls is not followed",
+               "the stiffness of the bodies": "it decides who carries what on four legs, and nothing here"},
+)

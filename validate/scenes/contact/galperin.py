@@ -1,0 +1,224 @@
+"""A wall, a block of 1 kg and a block of 100^N kg: how often do they meet?  Three, 31, 314, 3141 times: digits of π.
+
+No block ever sticks, no energy is lost, and each impact is one impulse.  The answer is a whole number, so that one
+impact that is lost or made up shows.
+"""
+
+from fractions import Fraction
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import check_not_negative, check_positive
+from validate.engines.bullet import IMPACT_SETTINGS, Impacts
+from validate.engines.chipmunk import pymunk_ball, pymunk_space
+from validate.methods import ONE_BY_ONE, REFLECTION
+from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Scene
+
+T = 1.0
+STEPS = (1,)
+LIGHT = 1.0                  # mass of the block next to the wall [kg]
+FINEST = 2                   # digits after the first that an engine can count in reasonable time
+R, ROOM = 1.0, 0.5           # radius of the engines' blocks, and the free way between neighbours [m]
+OVER = 8.0                   # the heavy one is back where it began [s]
+
+
+class Params(NamedTuple):
+    N: Annotated[int, "the heavy block has 100^N kg"] = 2
+    V: Annotated[float, "its speed towards the wall [m/s]"] = 1.0
+
+
+CASES = {f"{100**N:,} kg": Params(N) for N in (2, 0, 1, 3)}
+
+
+def supports(name, p):
+    return name not in ("pymunk", "pybullet") or p.N <= FINEST
+
+
+def heavy(p):
+    return 100.0**p.N
+
+
+def start(p):
+    """(number of impacts, velocities of the light and the heavy block)."""
+    check_positive("V", p.V)
+    check_not_negative("N", float(p.N))
+    return 0, np.array([0.0, -p.V])
+
+
+def run(step, acceleration, state, p, dt, steps):
+    """One impact after the other while anything approaches: the two blocks, then the light one and the wall."""
+    met, (v, V) = state
+    m, M = LIGHT, heavy(p)
+    while V < v or v < 0.0:
+        if V < v:
+            j = impulse(step, V - v, 1.0 / m + 1.0 / M)
+            v, V = v - j / m, V + j / M
+        else:
+            v += impulse(step, v, 1.0 / m) / m
+        met += 1
+        if met > 10.0 * 4.0 * 10.0**p.N:                                 # a wrong impulse never ends it
+            break
+    return met, np.array([v, V])
+
+
+def impulse(step, u, k):
+    """Elastic: twice what would stop the approach; a sweep with relaxation 2 gives it, too."""
+    if step.__name__ == "impulse_size":
+        return step(u, k, 1.0)
+    return step(np.array([[k]]), np.array([u]), np.zeros(1), 2.0)[0]
+
+
+def seen(met, v, V, p):
+    """Number of impacts; velocities of the light block, times √(m/M), and of the heavy one, over its first."""
+    return np.array([met, v * np.sqrt(LIGHT / heavy(p)) / p.V, V / p.V])
+
+
+def observe(state, p):
+    return seen(state[0], *state[1], p)
+
+
+def truth(p, t):
+    """⌊10^N π⌋ impacts.  Energy is a circle for √m v and √M V: wall and pair reflect it about two lines with
+    the angle θ = arctan √(m/M) between them.  Two impacts turn it by 2θ, until after ⌈π/θ⌉ − 1 nothing approaches.
+
+    Source: Galperin 2003.
+    """
+    theta = np.arctan(np.sqrt(LIGHT / heavy(p)))
+    impacts = np.floor(10.0**p.N * np.pi)
+    turned = 2.0 * np.ceil(0.5 * impacts) * theta
+    last = 1.0 if impacts % 2 == 0 else -1.0                             # whether the wall was last
+    return np.array([impacts, last * np.sin(turned), -np.cos(turned)])
+
+
+def tolerance(p, dt):
+    """One impact too many is 1/⌊10^N π⌋.  Four roundings of 1.1e-16 an impact in the velocities are, over the number of
+    impacts, 4.4e-16; θ is rounded in the truth, too.  Engines do the same operations, if they see every impact.
+    """
+    return {EXACT: 1e-15, "pymunk": 1e-15, "pybullet": 1e-15}
+
+
+# ---------------------------------------------------------------------------------------------- engines
+
+def engine_step(p):
+    """A step [s] in which the light block, 10^N V at most, goes as far as the heavy one lets it: about ROOM 10^−N."""
+    return ROOM / (p.V * 100.0**p.N) / (1.0 if p.N else 10.0)
+
+
+def count(advance, velocities, p):
+    """Run an engine, and count: the wall changes the sum of momenta, and the pair the heavy one's velocity."""
+    dt, met = engine_step(p), 0
+    v, V = velocities()
+    for _ in range(round(OVER / p.V / dt)):
+        advance()
+        v_new, V_new = velocities()
+        pair, wall = V_new - V, (v_new - v) + heavy(p) / LIGHT * (V_new - V)
+        met += (abs(pair) > 1e-9 * p.V) + (abs(wall) > 1e-6 * p.V)
+        v, V = v_new, V_new
+        if v >= 0.0 and V >= v:
+            break
+    return seen(met, v, V, p)
+
+
+PLACES = (0.0, 2.0 * R + ROOM, 4.0 * R + 2.0 * ROOM)                     # of wall, light and heavy [m]
+
+
+def pymunk_make(p, dt):
+    import pymunk
+    space = pymunk_space()
+    space.iterations = 50
+    wall = pymunk.Circle(space.static_body, R)
+    wall.elasticity = 1.0
+    space.add(wall)
+    light, large = (pymunk_ball(space, m, 1.0, R, (x, 0.0), (v, 0.0), 0.0, 1.0, 0.0)
+                    for m, x, v in ((LIGHT, PLACES[1], 0.0), (heavy(p), PLACES[2], -p.V)))
+    step, velocities = engine_step(p), lambda: (light.velocity.x, large.velocity.x)
+    return EngineRun(lambda: None, lambda: count(lambda: space.step(step), velocities, p), lambda: None)
+
+
+def pybullet_make(p, dt):
+    bullet = Impacts(engine_step(p))
+    still = (0.0,) * 3
+    bullet.ball(0.0, 1.0, R, (PLACES[0], 0.0, 0.0), still, still, 1.0, 0.0)
+    light = bullet.ball(LIGHT, 1.0, R, (PLACES[1], 0.0, 0.0), still, still, 1.0, 0.0)
+    large = bullet.ball(heavy(p), 1.0, R, (PLACES[2], 0.0, 0.0), (-p.V, 0.0, 0.0), still, 1.0, 0.0)
+    velocities = lambda: (bullet.velocity(light)[0], bullet.velocity(large)[0])
+    return EngineRun(lambda: None, lambda: count(bullet.step, velocities, p), bullet.close)
+
+
+ENGINES = (
+    Engine(PYMUNK, "", pymunk_make, EXACT, "circles on a line, 50 iterations, collision_slop 1e-5"),
+    Engine(PYBULLET, "", pybullet_make, EXACT, f"spheres on a line; {IMPACT_SETTINGS}"),
+)
+
+
+def quantity_names(p):
+    light, large = "end velocity of the light block, times √(m/M)/V [-]", "end velocity of the heavy block, over V [-]"
+    return ["impacts [-]", light, large]
+
+
+def exact_count(N):
+    """The number of impacts in fractions, which are never rounded."""
+    m, M, v, V, met = Fraction(1), Fraction(100**N), Fraction(0), Fraction(-1), 0
+    while V < v or v < 0:
+        if V < v:
+            v, V = ((m - M) * v + 2 * M * V) / (m + M), ((M - m) * V + 2 * m * v) / (m + M)
+        else:
+            v = -v
+        met += 1
+    return met
+
+
+def sanity_checks():
+    """((claim, found, expected, tolerance), …): the count in fractions, Galperin's angle, and the energy in the end."""
+    cases = list(CASES.values())
+    angles = [np.ceil(np.pi / np.arctan(10.0**-p.N)) - 1.0 for p in cases]
+    ends = np.array([truth(p, T) for p in cases])
+    return (("impacts in exact fractions [-]", [exact_count(N) for N in (0, 1, 2)], (3, 31, 314), 0.0),
+            ("⌈π/θ⌉ − 1 [-]", angles, ends[:, 0], 0.0),
+            ("energy in the end over that before [-]", ends[:, 1] ** 2 + ends[:, 2] ** 2, 1.0, 1e-14))
+
+
+# ---------------------------------------------------------------------------------------------- picture
+
+def points(observed, p):
+    """The wall, and both blocks as squares, the heavy one larger."""
+    square = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
+    wall = np.array([(0.0, 0.0), (0.0, 1.5)])
+    return np.concatenate((wall, np.array((0.6, 0.0)) + 0.3 * square, np.array((1.5, 0.0)) + square))
+
+
+def links(p):
+    return [(0, 1)] + [(first + i, first + (i + 1) % 4) for first in (2, 6) for i in range(4)]
+
+
+SCENE = Scene(
+    title="Galperin's π",
+    lesson="contact",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=(ONE_BY_ONE, REFLECTION),
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-15,
+    tolerance=tolerance,
+    engines=ENGINES,
+    orders={"impulse_size": EXACT, "gauss_seidel_sweep": EXACT},
+    supports=supports,
+    omitted_methods="engines stop at 10,000 kg: their circles pass through each other where one goes further than a "
+                    "radius in a step, so that a million kg want four million steps",
+    moves=False,
+    refinement="",
+    quantity_names=quantity_names,
+    published_states=((1.0, (314.0, 0.0017, 1.0), 1e-4),),
+    sanity_checks=sanity_checks,
+    points=points,
+    links=links,
+    uses=("one number for each velocity", "one impulse at a time"),
+    ablations={"time and place": "who meets whom next follows from the velocities alone",
+               "restitution below 1": "the number of impacts then has nothing to do with π",
+               "rotation": "impacts through the centres turn nothing"},
+)

@@ -1,0 +1,270 @@
+"""Ten boxes on each other: the joint under k of them carries k m g, and solvers differ only in how soon they know it.
+
+A box has two contacts with the one below.  Sweeps have to find out by neighbours how many boxes there are above, and
+which way they rock: the sweeps of contact_forces give up on ten boxes, and say so.  Murty's method needs a few pivots.
+The pile needs two sweeps a substep, because it begins each with the impulses of the last: a memory turns sweeps into
+steps.
+"""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import check_positive
+from solutions.contact import (
+    box_bounds_2d,
+    box_contacts_2d,
+    contact_rows,
+    delassus_matrix,
+    inverse_masses,
+    make_contacts,
+    make_pile_2d,
+)
+from validate.engines.bullet import Rigid
+from validate.engines.chipmunk import pymunk_floor, pymunk_space
+from validate.methods import DIRECT, PILE, SWEEPS
+from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Scene
+
+T = 1.0
+STEPS = (1,)
+MU = 0.5                     # nothing slides
+DT = 1.0 / 240.0             # of the pile and of the engines [s]
+SETTLING = 1.5               # how long the pile falls together [s]
+WAITING = 3.0                # and the engines [s]
+OVERLAP = 1e-6               # with which pymunk's bodies begin [m]: they see a contact when there is one
+
+
+class Params(NamedTuple):
+    shape: Annotated[str, "boxes touch in two points, discs in one"] = "boxes"
+    n: Annotated[int, "how many"] = 10
+    m: Annotated[float, "mass of each [kg]"] = 1.0
+    size: Annotated[float, "edge or diameter [m]"] = 1.0
+    g: Annotated[float, "gravity [m/s²]"] = 9.81
+
+
+CASES = {
+    "ten boxes": Params(), "five boxes": Params(n=5, m=2.0),
+    "ten discs": Params("discs"), "twenty discs": Params("discs", 20),
+}
+
+
+def supports(name, p):
+    """Ten boxes are too many for the sweeps.  What moves cannot stand on one point: the pile and engines have boxes."""
+    boxes = p.shape == "boxes"
+    return {"contact_forces": not boxes or p.n <= 5, "solve_lcp": True}.get(name, boxes)
+
+
+def moment(p):
+    return p.m * p.size**2 / (6.0 if p.shape == "boxes" else 8.0)
+
+
+def start(p):
+    """(centres (n + 1, 2), inverse masses, inverse moments, contacts from below, load); the last body is the ground."""
+    for name in ("m", "size", "g"):
+        check_positive(name, getattr(p, name))
+    check_positive("n", float(p.n))
+    k = np.arange(p.n)
+    x = np.stack((np.zeros(p.n + 1), p.size * (np.append(k, -1.0) + 0.5)), axis=1)
+    movable = np.append(np.ones(p.n), 0.0)
+    sides = np.array((-0.5, 0.5) if p.shape == "boxes" else (0.0,)) * p.size
+    a = np.repeat(k, len(sides))
+    places = np.stack((np.tile(sides, p.n), p.size * a), axis=1)
+    below, up = np.where(a > 0, a - 1, p.n), np.tile((0.0, 1.0), (len(a), 1))
+    contacts = make_contacts(a, below, places, up, movable / p.m)
+    load = np.zeros((p.n + 1, 3))
+    load[:p.n, 1] = -p.m * p.g
+    return x, movable / p.m, movable / moment(p), contacts, load
+
+
+def run(step, acceleration, state, p, dt, steps):
+    """The forces at all contacts: (n,) added up joint by joint."""
+    x, inv_mass, inv_inertia, contacts, load = state
+    if step.__name__ == "advance_pile_2d":
+        shape = [getattr(f, "twin", f) for f in (box_bounds_2d, box_contacts_2d)]        # what a compiled step takes
+        return (pile_forces(step, *shape, p),)
+    if step.__name__ == "contact_forces":
+        forces = step(x, inv_mass, inv_inertia, contacts, load, np.full(len(contacts.a), MU))[0][:, 0]
+    else:                                                     # without friction: the normal rows only
+        G, w = contact_rows(x, contacts)[::2], inverse_masses(inv_mass, inv_inertia)
+        forces = step(delassus_matrix(G, w), G @ (w * load.ravel()))
+    return (forces.reshape(p.n, -1).sum(axis=1),)
+
+
+def pile_forces(advance, bounds, find_contacts, p):
+    """What boxes carry that were put on each other and left to settle: the impulses of the last substep, over it."""
+    half = np.full((p.n, 2), 0.5 * p.size)
+    state, pile = make_pile_2d(start(p)[0][:p.n], np.zeros(p.n), p.m, moment(p), half, np.array([(0.0, 1.0, 0.0)]),
+                               (0.0, -p.g), mu=MU, substeps=8, hertz=240.0, zeta=10.0, margin=0.02 * p.size)
+    end = advance(bounds, find_contacts, state, DT, round(SETTLING / DT), pile)
+    forces = np.zeros(p.n)
+    for a, b, J in zip(end.contacts.a, end.contacts.b, end.J):
+        forces[0 if b == p.n else max(a, b)] += abs(J[1]) * pile.substeps / DT
+    return forces
+
+
+def observe(state, p):
+    """Forces [N] in the joints, from the lowest."""
+    return state[0]
+
+
+def truth(p, t):
+    """Under k bodies at rest: k m g.
+
+    Source: Newton's second law for all that is above a joint.
+    """
+    return p.m * p.g * np.arange(p.n, 0.0, -1.0)
+
+
+def tolerance(p, dt):
+    """Sweeps stop where the residual is 1e-13 of the largest (|A||F| + |b|)_k.  With λ the least eigenvalue of A, the
+    error is the residual over λ at most: in a column of discs λ = 4 sin²(π/(4n + 2))/m, and boxes can rock, too.
+    Murty solves a linear system: 1.1e-16 times the condition of A, and ten for the operations.
+
+    The pile and the engines still sway a little when they are read, and no theory says how much: these are ten times
+    what was measured.
+    """
+    A, here = normal_matrix(p), 2 if p.shape == "boxes" else 1
+    values, forces = np.linalg.eigvalsh(A), np.repeat(truth(p, T), here) / here
+    swept = 1e-13 * (np.max(np.abs(A) @ forces) + p.g) / values[0] * np.sqrt(here * p.n) / np.linalg.norm(forces)
+    solved = 10.0 * 1.1e-16 * values[-1] / values[0]
+    return {EXACT: swept, "Murty": solved, **(SWAY_OF_TEN if p.n > 5 else SWAY_OF_FIVE)}
+
+
+def normal_matrix(p):
+    """A of the normal impulses, from heights and turns (y, θ) of the bodies; contacts are `offsets` off the middle."""
+    offsets = np.array((-0.5, 0.5) if p.shape == "boxes" else (0.0,)) * p.size
+    G = np.zeros((p.n, len(offsets), p.n, 2))
+    for k in range(p.n):
+        G[k, :, k] = np.stack((np.ones(len(offsets)), offsets), axis=1)
+        if k:
+            G[k, :, k - 1] = -G[k, :, k]
+    G = G.reshape(p.n * len(offsets), 2 * p.n)
+    return (G * np.tile((1.0 / p.m, 1.0 / moment(p)), p.n)) @ G.T
+
+
+# of the forces, relative [-]
+SWAY_OF_TEN = {"pile": 2e-7, "pymunk": 1e-6, "pymunk, default": 1e-3, "pybullet": 2e-7, "pybullet, default": 1e-5}
+SWAY_OF_FIVE = {"pile": 2e-11, "pymunk": 1e-12, "pymunk, default": 2e-7, "pybullet": 4e-11, "pybullet, default": 4e-9}
+
+
+# ---------------------------------------------------------------------------------------------- engines
+
+def pymunk_make(p, dt, iterations, slop):
+    import pymunk
+    space = pymunk_space((0.0, -p.g))
+    space.iterations, space.collision_slop = iterations, slop
+    pymunk_floor(space)
+    bodies = []
+    for k in range(p.n):
+        body = pymunk.Body(p.m, moment(p))
+        body.position = (0.0, p.size * (k + 0.5) - OVERLAP * (k + 1))
+        box = pymunk.Poly.create_box(body, (p.size, p.size))
+        box.friction = np.sqrt(MU) if k else MU                          # pymunk multiplies the two
+        space.add(body, box)
+        bodies.append(body)
+
+    def read():
+        for _ in range(round(WAITING / DT)):
+            space.step(DT)
+        forces = np.zeros(p.n)
+
+        def add(arbiter):
+            low = min(bodies.index(shape.body) if shape.body in bodies else -1 for shape in arbiter.shapes)
+            forces[low + 1] += abs(arbiter.total_impulse.y) / DT
+        for body in bodies:
+            body.each_arbiter(add)
+        forces[1:] *= 0.5                                                # two bodies tell of each joint but the lowest
+        return forces
+    return EngineRun(lambda: None, read, lambda: None)
+
+
+def pybullet_make(p, dt, iterations, residual):
+    bullet = Rigid(DT, (0.0, 0.0, -p.g), iterations)
+    pb = bullet.pb
+    pb.setPhysicsEngineParameter(solverResidualThreshold=residual, contactSlop=1e-5)
+    slab = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[5.0, 5.0, 1.0])
+    ground = pb.createMultiBody(0, slab, basePosition=[0.0, 0.0, -1.0])
+    pb.changeDynamics(ground, -1, lateralFriction=1.0, restitution=0)
+    shape = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[0.5 * p.size] * 3)
+    bodies = [bullet.body(p.m, (moment(p),) * 3, (0.0, 0.0, p.size * (k + 0.5)), (0.0,) * 3, True, shape=shape,
+                          mu=np.sqrt(MU) if k else MU) for k in range(p.n)]
+
+    def read():
+        for _ in range(round(WAITING / DT)):
+            bullet.step()
+        return np.array([sum(c[9] for c in pb.getContactPoints(a, b)) for a, b in zip(bodies, [ground, *bodies])])
+    return EngineRun(lambda: None, read, bullet.close)
+
+
+ENGINES = (
+    Engine(PYMUNK, "", lambda p, dt: pymunk_make(p, dt, 100, 1e-4), EXACT,
+           "100 iterations, collision_slop 1e-4; 3 s of 1/240 s"),
+    Engine(PYMUNK, "default", lambda p, dt: pymunk_make(p, dt, 10, 0.1), EXACT,
+           "10 iterations, collision_slop 0.1; 3 s of 1/240 s"),
+    Engine(PYBULLET, "", lambda p, dt: pybullet_make(p, dt, 200, 0), EXACT,
+           "maximal coordinates; solverResidualThreshold 0, 200 iterations; 3 s of 1/240 s"),
+    Engine(PYBULLET, "default", lambda p, dt: pybullet_make(p, dt, 50, 1e-7), EXACT,
+           "maximal coordinates; 50 iterations; 3 s of 1/240 s"),
+)
+
+
+def quantity_names(p):
+    return [f"force under {k} [N]" for k in range(p.n, 0, -1)]
+
+
+def sanity_checks():
+    """((claim, found, expected, tolerance), …): the ground carries all, and each joint one body more than the next."""
+    all_of_them = [truth(p, T)[0] / (p.n * p.m * p.g) for p in CASES.values()]
+    return (("what the ground carries, over the weight [-]", all_of_them, 1.0, 1e-15),
+            ("what a joint carries more than the next, over a body's weight [-]",
+             -np.diff(truth(Params(), T)) / 9.81, 1.0, 1e-14))
+
+
+# ---------------------------------------------------------------------------------------------- picture
+
+def points(observed, p):
+    """Corners of all bodies, seen from the side; right of each joint an arrow as long as its force over one weight."""
+    k = np.arange(p.n)[:, None]
+    corners = p.size * np.array([(-0.5, 0.0), (0.5, 0.0), (0.5, 1.0), (-0.5, 1.0)])
+    boxes = (corners[None] + np.stack((0.0 * k, p.size * k), axis=2)).reshape(-1, 2)
+    joints = np.stack((np.full(p.n, p.size), p.size * k[:, 0]), axis=1)
+    arrows = joints + np.stack((0.2 * p.size * np.asarray(observed) / (p.m * p.g), np.zeros(p.n)), axis=1)
+    return np.round(np.concatenate((boxes, joints, arrows)), 5)
+
+
+def links(p):
+    edges = [(4 * k + i, 4 * k + (i + 1) % 4) for k in range(p.n) for i in range(4)]
+    return edges + [(4 * p.n + k, 5 * p.n + k) for k in range(p.n)]
+
+
+SCENE = Scene(
+    title="Stack of ten",
+    lesson="contact",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=(DIRECT, SWEEPS, PILE),
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-15,
+    tolerance=tolerance,
+    engines=ENGINES,
+    orders={"contact_forces": EXACT, "solve_lcp": EXACT, "advance_pile_2d": EXACT},
+    supports=supports,
+    slow_cases=("twenty discs",),
+    omitted_methods="the sweeps are missing for ten boxes: after 50,000 they end in Diverged, "
+                    "because boxes that rock settle slowly; what moves has no discs, which would fall over",
+    moves=False,
+    refinement="",
+    quantity_names=quantity_names,
+    published_states=((1.0, tuple(9.81 * k for k in range(10, 0, -1)), 1e-13),),
+    sanity_checks=sanity_checks,
+    points=points,
+    links=links,
+    uses=("rows of all contacts", "masses and moments", "for the pile: contact points, soft contacts and memory"),
+    ablations={"restitution": "nothing bounces at rest",
+               "the third dimension": "boxes then touch in four points instead of two, and the joints carry the same",
+               "friction": "it carries nothing here; it keeps the boxes of the pile from sliding off"},
+)
