@@ -597,6 +597,8 @@ def test_closed_meshes_pass(lesson, draw):
     lesson.check_closed(len(x), np.ascontiguousarray(np.roll(faces, draw.whole(1, 5), axis=0)[:, [1, 2, 0]]))
     lesson.check_closed(2 * len(x), np.concatenate([faces, faces + len(x)]))     # two separate bodies
     lesson.check_closed(len(x) + 1, faces)                               # a corner that no triangle uses
+    # A triangle with a corner twice has no area, and its edges 0 → 0, 0 → 1, 1 → 0 close.
+    lesson.check_closed(4, np.concatenate([TETRAHEDRON, [[0, 0, 1]]]))
     # Two bodies share an edge: it occurs twice in each direction.
     lesson.check_closed(6, np.concatenate([TETRAHEDRON, np.array([0, 1, 4, 5])[TETRAHEDRON]]))
 

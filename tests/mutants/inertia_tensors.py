@@ -358,6 +358,8 @@ wrong("4.16", "names corner 0, whichever is open")(closing(named=lambda edges: 0
 wrong("4.16", "wants each edge exactly once in each direction")(closing(twice=False))
 wrong("4.16", "wants every corner to be used")(closing(spare=False))
 wrong("4.16", "numbers the edges by triangles, not by corners")(closing(number=lambda i, j, faces: i * len(faces) + j))
+edit("4.16", "refuses a triangle with a corner twice though it closes", "if i < 0 or i >= count:",
+     "if i < 0 or i >= count or i == j:")
 
 
 # 4.17 -----------------------------------------------------------------------------------------------------------
