@@ -12,7 +12,7 @@ from validate import modules
 from .test_contact import MIDDLE, G, chain, contacts_of
 
 pytestmark = pytest.mark.xdist_group("compiled test_contact")
-IN_SPACE = pytest.mark.long            # compiling boxes in 3D takes 16 s
+PILES = pytest.mark.long               # compiling the loops of the piles takes a minute
 AT_REST = 1e-8               # acceleration that counts as none [m/s², rad/s²]: solve_contacts leaves some 1e-10
 CRITICAL = 1e-7              # of a critical coefficient [-]: where all accelerations but 1e-8 of g are gone
 UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0])
@@ -199,7 +199,8 @@ def unit_stack(d, masses, **more):
     return (pile_2d if d == 2 else pile_3d)(x, np.full((n, d), 0.5), masses, **more)
 
 
-@pytest.mark.parametrize(("d", "tolerance"), [(2, 3e-6), pytest.param(3, 3e-7, marks=IN_SPACE)])
+@PILES
+@pytest.mark.parametrize(("d", "tolerance"), [(2, 3e-6), (3, 3e-7)])
 def test_a_stack_of_ten_carries_k_m_g_and_stays(fast, d, tolerance):
     """Measured 3.3e-7 (2D) and 1.1e-8 (3D) after 3 s.
 
@@ -211,6 +212,7 @@ def test_a_stack_of_ten_carries_k_m_g_and_stays(fast, d, tolerance):
     assert np.max(np.abs(end.x[:10, :-1])) < 1e-3 and np.max(np.abs(end.v)) < 1e-3
 
 
+@PILES
 def test_a_contact_sags_by_its_law_at_any_step(fast):
     """A disc of 2 kg has k_n = 1/m, so that it sags by g/(2π hertz)²; after 10 s nothing is left of the fall."""
     for hertz, substeps in ((20.0, 1), (20.0, 8), (60.0, 2)):
@@ -220,6 +222,7 @@ def test_a_contact_sags_by_its_law_at_any_step(fast):
         assert abs(sag / (G / (2.0 * np.pi * hertz) ** 2) - 1.0) < 1e-9, (hertz, substeps)
 
 
+@PILES
 @pytest.mark.parametrize(("ratio", "substeps", "hertz", "tolerance"),
                          [(10.0, 4, 240.0, 1e-8), (100.0, 16, 480.0, 1e-8), (1000.0, 16, 480.0, 6e-6)])
 def test_a_heavy_box_on_a_light_one_is_carried(fast, ratio, substeps, hertz, tolerance):
@@ -228,6 +231,7 @@ def test_a_heavy_box_on_a_light_one_is_carried(fast, ratio, substeps, hertz, tol
     assert np.max(np.abs(carried(end, pile, 2) / (G * np.array([1.0 + ratio, ratio])) - 1.0)) < tolerance
 
 
+@PILES
 @pytest.mark.parametrize(("ratio", "substeps", "hertz"), [(1e6, 2, 120.0), (1e6, 16, 480.0), (1e4, 2, 120.0)])
 def test_a_mass_ratio_that_the_sweeps_do_not_carry_is_refused(fast, ratio, substeps, hertz):
     state, pile = unit_stack(2, np.array([1.0, ratio]), substeps=substeps, hertz=hertz)
@@ -261,7 +265,8 @@ def settled(fast, rng, d, shape, n=200, seconds=4.0):
 
 
 # spheres: below, plain; compiling them takes 8 s more
-@pytest.mark.parametrize(("d", "shape"), [(2, "disc"), (2, "box"), pytest.param(3, "box", marks=IN_SPACE)])
+@PILES
+@pytest.mark.parametrize(("d", "shape"), [(2, "disc"), (2, "box"), (3, "box")])
 def test_a_pile_of_two_hundred_comes_to_rest_and_balances_its_weight(fast, d, shape):
     if not modules.can_compile():
         pytest.skip("a pile takes minutes without numba")
@@ -276,6 +281,7 @@ def test_a_pile_of_two_hundred_comes_to_rest_and_balances_its_weight(fast, d, sh
     assert np.median(np.abs(end.v[:n])) < 1e-2 and np.min(end.contacts.gap) > -0.1 * np.min(pile.half)
 
 
+@PILES
 def test_a_sphere_that_slides_rolls_in_the_end_with_five_sevenths(fast):
     """Whatever μ is: m v r + I ω about the floor is kept.
 
@@ -289,6 +295,7 @@ def test_a_sphere_that_slides_rolls_in_the_end_with_five_sevenths(fast):
     assert np.array_equal(end.x[1], np.zeros(3))
 
 
+@PILES
 def test_bodies_that_begin_inside_each_other_part_and_are_not_thrown_out(fast):
     for shape, at in (("disc", [(0.0, 0.5), (0.0, 0.5)]), ("box", [(0.0, 0.5), (0.05, 0.6)]),
                       ("disc", [(0.0, 0.2), (0.1, 0.3)])):
@@ -303,6 +310,7 @@ def tilted(degrees):
     return (-np.sin(theta), np.cos(theta), 0.0)
 
 
+@PILES
 @pytest.mark.parametrize("degrees", [45.0, 80.0, 89.0])
 def test_a_disc_in_a_wedge_is_held_by_both_walls(fast, degrees):
     """Without friction each wall carries m g/(2 cos θ): 28.65 weights at 89°.
@@ -317,6 +325,7 @@ def test_a_disc_in_a_wedge_is_held_by_both_walls(fast, degrees):
     assert np.max(np.abs(end.v)) < 1e-3 and abs(end.x[0, 0]) < 1e-3
 
 
+@PILES
 def test_infinite_friction_holds_a_box_at_any_slope_and_none_lets_it_go(fast):
     theta = np.radians(40.0)
     at = 0.5 * np.array([-np.sin(theta), np.cos(theta)])
@@ -326,6 +335,7 @@ def test_infinite_friction_holds_a_box_at_any_slope_and_none_lets_it_go(fast):
         assert abs(np.linalg.norm(end.v[0]) - expected) < 2e-3 and abs(end.q[0] - theta) < 1e-3, mu
 
 
+@PILES
 def test_small_discs_stand_beside_a_hundred_times_larger_one(fast):
     """The large one is 10,000 times as heavy.  Under it they could not be carried; beside it nothing disturbs them."""
     x = [(0.0, 1.0)] + [(1.5 + 0.05 * k, 0.01) for k in range(5)]
@@ -334,18 +344,21 @@ def test_small_discs_stand_beside_a_hundred_times_larger_one(fast):
     assert np.max(np.abs(end.x[:6] - state.x[:6])) < 1e-4 and np.max(np.abs(end.v)) < 1e-6
 
 
+@PILES
 def test_long_steps_with_enough_substeps_hold_a_stack(fast):
     state, pile = unit_stack(2, np.ones(5), substeps=8, hertz=80.0)
     end = run(fast, state, pile, 3.0, dt=1.0 / 30.0)
     assert np.max(np.abs(carried(end, pile, 5, 1.0 / 30.0) / (G * np.arange(5, 0, -1)) - 1.0)) < 1e-3  # measured 1.6e-4
 
 
+@PILES
 def test_an_overlap_is_removed_without_leaving_a_velocity(fast):
     state, pile = pile_2d([(0.0, 0.49)], [(0.5, 0.5)], 1.0, shape="disc")
     end = run(fast, state, pile, DT, "disc")
     assert end.x[0, 1] > 0.49 + 1e-4 and abs(end.v[0, 1]) < 1e-12
 
 
+@PILES
 def test_a_falling_body_closes_its_gap_once_however_many_substeps(fast):
     """Soft contacts let it in by give/(1 + give) of what it would go in a substep: 0.11 mm with four.
 
@@ -358,6 +371,7 @@ def test_a_falling_body_closes_its_gap_once_however_many_substeps(fast):
                                                                                               end.v[0])
 
 
+@PILES
 def test_a_body_that_begins_inside_a_wall_comes_out_gently(fast):
     state, pile = pile_2d([(0.0, -2.0)], [(0.5, 0.5)], 1.0)
     states = plain.pile_trajectory(fast.advance_pile_2d, fast.box_bounds_2d, fast.box_contacts_2d, state, DT, 480, pile)
@@ -366,6 +380,7 @@ def test_a_body_that_begins_inside_a_wall_comes_out_gently(fast):
     assert np.max(speeds) <= 3.0 and np.max(heights) < 0.6
 
 
+@PILES
 def test_the_cost_of_a_step_grows_with_the_number_of_bodies(fast):
     """Pairs looked at by the grid, rather than time: within a factor of two per body from 100 to 10,000 bodies."""
     def pairs(n):
@@ -391,6 +406,7 @@ def test_piles_that_cannot_be_are_refused(change):
         pile_2d(**({"x": [(0.0, 0.5)], "half": [(0.5, 0.5)], "masses": 1.0} | change))
 
 
+@PILES
 def test_plain_and_compiled_piles_go_the_same_way(fast):
     """The same arithmetic in the same order; only the compiler's sums of products differ by rounding,
     which contacts do not amplify in 24 steps.
@@ -400,6 +416,7 @@ def test_plain_and_compiled_piles_go_the_same_way(fast):
     assert np.max(np.abs(a.x - b.x)) < 1e-9 and np.max(np.abs(a.q - b.q)) < 1e-9
 
 
+@PILES
 def test_a_trajectory_ends_where_the_run_ends(fast):
     state, pile = pile_2d([(0.0, 0.55), (0.3, 1.7)], [(0.5, 0.5)] * 2, 1.0, 0.1)
     states = plain.pile_trajectory(plain.advance_pile_2d, plain.box_bounds_2d, plain.box_contacts_2d, state, DT, 10,

@@ -193,6 +193,7 @@ def test_without_worked_answers_what_is_given_stands_in_for_a_file_that_does_not
         worked[0].euler_step(1.0)
 
 
+@pytest.mark.long
 def test_an_executed_notebook_reaches_its_end(tmp_path):
     """Where its lesson does not load a notebook says so, and runs on."""
     handed_out(tmp_path, integrators=SYNTAX)
@@ -213,7 +214,7 @@ def test_an_executed_notebook_reaches_its_end(tmp_path):
 
 # ---------------------------------------------------------------------------------------------- in a terminal
 
-@pytest.mark.parametrize("kind", ["syntax", "one beside Exception"])
+@pytest.mark.parametrize("kind", ["syntax", pytest.param("one beside Exception", marks=pytest.mark.long)])
 def test_pytest_says_it_once_and_counts_the_other_lessons(tmp_path, kind):
     broken = KINDS[kind]
     handed_out(tmp_path, integrators=broken.text, springs=example.worked("springs"))
