@@ -1201,7 +1201,11 @@ def test_nothing_swerves_without_need_and_head_on_it_turns_left(lesson, draw):
         # Sums of powers of two: the offset is exact.
         x, v, left = size * np.array([1.0, 2.0]), 2.0 * size * e, np.array([-e[1], e[0]])
         offsets = [0.0] + [s * 2.0**-k for k in (10, 20, 30) for s in (1, -1)]
-        for tau, offset in ((tau, offset) for tau in (0.25, 2.0) for offset in offsets):
+        for tau in (0.0, 4.0):                                           # 0 < τ < ahead: at both ends nothing happens
+            close("acceleration exactly beside the centre, and exactly at the end of the time ahead [m/s²]",
+                  lesson.steer(x, v, x + tau * v + 0.5 * size * left, size, 4.0), np.zeros(2), 0.0,
+                  f"x = {x}, v = {v}, radius {size}, τ = {tau} s")
+        for tau, offset in ((tau, offset) for tau in (2.0**-5, 0.25, 2.0) for offset in offsets):
             centre = x + tau * v + offset * size * left
             expected = 2.0 * (1.0 - abs(offset)) / tau**2 * (left if offset <= 0.0 else -left)
             close("acceleration when heading for the centre, or slightly beside it, over the size [1/s²]",
