@@ -42,6 +42,34 @@ def net(lesson, inv_mass, pairs, rest, d=2, stiffness=1.0, alpha=0.0, sweeps=1, 
                       pairs[:, 1].copy(), each(rest), each(stiffness), each(alpha), sweeps)
 
 
+def visited_in_order(goal, p, dt, soft):
+    """Positions after p.sweeps sweeps over the links in their order, each with its own Λ, written out."""
+    y, Lam = goal.copy(), np.zeros(len(p.i))
+    for _ in range(p.sweeps):
+        for s, (i, j) in enumerate(zip(p.i, p.j)):
+            r, w = y[i] - y[j], p.inv_mass[i] + p.inv_mass[j]
+            C, give = np.linalg.norm(r) - p.rest[s], p.alpha[s] / dt**2
+            change = (-C - give * Lam[s]) / (w + give) if soft else -p.stiffness[s] * C / w
+            Lam[s] += change
+            pull = change * r / np.linalg.norm(r)
+            y[i] += p.inv_mass[i] * pull
+            y[j] -= p.inv_mass[j] * pull
+    return y
+
+
+def sweeps_of_a_chain(step, lesson, draw, soft):
+    """Compare a step of a chain of three links, several sweeps, with visited_in_order."""
+    dt = draw(0.02, 0.1)
+    x, p = chain(lesson, draw, 3)
+    alpha, stiffness = draw(0.001, 0.01, 3), draw(0.2, 0.8, 3)
+    p = p._replace(alpha=alpha, stiffness=stiffness, sweeps=draw.whole(2, 4))
+    goal = x + dt**2 * np.where(p.inv_mass[:, None] > 0.0, p.gravity, 0.0)
+    new, _ = step(lesson.falling_acceleration, 0.0, x, 0.0 * x, dt, p)
+    expected = visited_in_order(goal, p, dt, soft)
+    close("positions of a chain after a step of several sweeps [m]", new, expected, ROUND_OFF,
+          given=f"x = {x.tolist()} m, dt = {dt} s, {p}")
+
+
 def chain(lesson, draw, links, d=2, held=True, **more):
     """(x, Net) of a zigzag of drawn masses whose links have nearly their rest lengths.
 
@@ -421,6 +449,7 @@ def test_a_weight_on_one_link_sags_by_what_its_sweeps_leave(lesson, draw):
         close("thrown weight, velocity after a step [m/s]: displacement over dt", np.asarray(v)[1, 1],
               (expected - x[1, 1]) / dt, ROUND_OFF / dt, given=given)
         carried_along(lesson.pbd_step, lesson, draw, x, dt, p, S)
+    sweeps_of_a_chain(lesson.pbd_step, lesson, draw, soft=False)
 
 
 @exercise("8.8", points=0.5,
@@ -734,6 +763,7 @@ def test_one_spring_is_implicit_euler_whatever_the_step_and_the_sweeps(lesson, d
         soft = soft * draw(0.5, 2.0, 3)
         side_by_side = net(lesson, [0.0, 1.0 / m], [(0, 1)] * 3, rest, 2, 1.0, soft * dt * dt)
         carried_along(lesson.xpbd_step, lesson, draw, x, dt, side_by_side, np.prod(soft / (1.0 / m + soft)))
+    sweeps_of_a_chain(lesson.xpbd_step, lesson, draw, soft=True)
 
 
 # ---------------------------------------------------------------------------------------------- rigid bodies

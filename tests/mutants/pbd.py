@@ -241,6 +241,9 @@ wrong("8.7", "keeps the predicted velocity")(dynamics(speed=lambda new, x, goal,
 wrong("8.7", "keeps the old velocity")(dynamics(speed=lambda new, x, goal, v, dt: v))
 wrong("8.7", "no force")(dynamics(begin="x"))
 edit("8.7", "an immovable point is at rest", "(new - x) / dt", "(new - x) / dt * (net.inv_mass > 0.0)[:, None]")
+edit("8.7", "visits the links from the last to the first", "distance_sweep(new, net)",
+     "distance_sweep(new, net._replace(i=net.i[::-1], j=net.j[::-1], rest=net.rest[::-1], "
+     "stiffness=net.stiffness[::-1]))")
 edit("8.7", "gravity for any acceleration", "predict(acceleration, t,", "predict(falling_acceleration, t,")
 edit("8.7", "the acceleration at t + dt", "predict(acceleration, t,", "predict(acceleration, t + dt,")
 
@@ -452,6 +455,8 @@ wrong("8.14", "no sweep")(soft_step(sweeps=lambda n: 0))
 wrong("8.14", "keeps the old velocity")(soft_step(speed=lambda new, x, v, dt: v))
 edit("8.14", "an immovable point is at rest", "(new - x) / dt", "(new - x) / dt * (net.inv_mass > 0.0)[:, None]")
 wrong("8.14", "half of the velocity")(soft_step(speed=lambda new, x, v, dt: 0.5 * (new - x) / dt))
+edit("8.14", "the last Λ for all links", "compliant_sweep(new, Lam, dt, net)",
+     "compliant_sweep(new, np.full(net.i.size, Lam[-1]), dt, net)")
 edit("8.14", "one Λ per point", "np.zeros(net.i.size)", "np.zeros(x.shape[0])")
 edit("8.14", "gravity for any acceleration", "predict(acceleration, t,", "predict(falling_acceleration, t,")
 edit("8.14", "the acceleration at t + dt", "predict(acceleration, t,", "predict(acceleration, t + dt,")
