@@ -167,7 +167,7 @@ def newton_correction(x, lam, goal, dt, net):
     W is the inverse mass of each coordinate of x.ravel();  (C, J) = constraints(x, net);  goal (n, d) is x_pred.
     ∇²C of a link: H = (1 − n nᵀ)/l for the ends (i, i) and (j, j), −H for (i, j) and (j, i);  l = C + rest.
     Solve the system with solve(matrix, right).  The worked answer fills the matrix entry by entry, because block
-    assignments take several times as long to compile.
+    assignments would multiply the compile time.
     *Source:* second lecture deck, “Solve for q and λ₁, λ₂, … simultaneously using Newton's method”.
     """
     # YOUR CODE HERE
