@@ -1,0 +1,370 @@
+"""A heavy box on a light one: 10, 100, 1,000 and a million times as heavy.  Who finds the force, and who gives up?
+
+A sweep leaves r/(1 + r) of the error, so that the number of sweeps grows with the mass ratio r.  Four answers are
+compared: the forces, the depth to which soft contacts sink, the number of sweeps, and whether anything stands at all.
+At a million the sweeps do not get there, and must say so.
+"""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import Diverged, check_positive
+from solutions.contact import (
+    best_relaxation,
+    box_bounds_2d,
+    box_contacts_2d,
+    contact_rows,
+    delassus_matrix,
+    inverse_masses,
+    make_contacts,
+    make_pile_2d,
+    mass_ratio_contraction,
+)
+from validate.engines.bullet import Rigid
+from validate.engines.chipmunk import pymunk_floor, pymunk_space
+from validate.methods import DIRECT, PILE, SWEEPS
+from validate.reference.contact import sweeps_needed
+from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Engine, EngineRun, Method, Scene
+
+T = 1.0
+STEPS = (1,)
+MU = 0.5                     # nothing slides
+SMALL = 1e-3                 # error of the forces until which sweeps are counted [-]
+DT = 1.0 / 240.0             # of the pile and of the engines [s]
+ZETA = 10.0                  # damping ratio of the pile's contacts [-]
+WAITING = 3.0                # of the engines [s]
+OVERLAP = 1e-6               # with which pymunk's bodies begin [m]: they see a contact when there is one
+STANDS = 0.1                 # of a box: what has moved by less, stands [-]
+COUNTED = Method("gauss_seidel_sweep", "sweeps, counted", 2, "contact", "#E69F00", "v")
+
+
+class Params(NamedTuple):
+    kind: Annotated[str, "forces, overlap, sweeps, relaxed, stands or refused"] = "forces"
+    r: Annotated[float, "mass of the upper box over that of the lower one [-]"] = 10.0
+    m: Annotated[float, "mass of the lower one [kg]"] = 1.0
+    size: Annotated[float, "edge of both [m]"] = 1.0
+    g: Annotated[float, "gravity [m/s²]"] = 9.81
+
+
+CASES = {
+    "forces, 10 : 1": Params(), "forces, 100 : 1": Params(r=100.0), "forces, 1,000 : 1": Params(r=1e3),
+    "forces, a million : 1": Params(r=1e6),
+    "overlap, 10 : 1": Params("overlap"), "overlap, 1,000 : 1": Params("overlap", 1e3),
+    "sweeps, 10 : 1": Params("sweeps"), "sweeps, 100 : 1": Params("sweeps", 100.0),
+    "sweeps, 1,000 : 1": Params("sweeps", 1e3),
+    "relaxed sweeps, 10 : 1": Params("relaxed"), "relaxed sweeps, 1,000 : 1": Params("relaxed", 1e3),
+    "relaxed sweeps, a million : 1": Params("relaxed", 1e6),
+    "does 1,000 on 1 stand?": Params("stands", 1e3), "a million on 1: refused?": Params("refused", 1e6),
+}
+SOLVERS = {                  # (substeps, hertz [1/s], settling time [s]) of the pile, up to this mass ratio
+    10.0: (4, 240.0, 1.5), 100.0: (16, 480.0, 1.0), 1e3: (16, 480.0, 3.0), np.inf: (16, 480.0, 5.0),
+}
+
+
+def supports(name, p):
+    """A million is left to Murty and to the question who refuses it; sweeps are counted where that takes seconds."""
+    if p.kind in ("sweeps", "relaxed"):
+        return name == "gauss_seidel_sweep"
+    if p.kind == "overlap":
+        return name == "advance_pile_2d"
+    if p.kind == "stands":
+        return name == "advance_pile_2d" or name.startswith("py")
+    if p.kind == "refused":
+        return name in ("contact_forces", "advance_pile_2d") or name.endswith("default")
+    if name == "solve_lcp":
+        return True
+    return p.r <= 1e3 and name != "gauss_seidel_sweep" and not name.endswith("default")
+
+
+def solver(p):
+    return next(settings for most, settings in SOLVERS.items() if p.r <= most)
+
+
+def masses(p):
+    return p.m * np.array([1.0, p.r])
+
+
+def start(p):
+    """(centres (3, 2), inverse masses, inverse moments, contacts from below, load); the last body is the ground."""
+    for name in ("r", "m", "size", "g"):
+        check_positive(name, getattr(p, name))
+    x = p.size * np.array([(0.0, 0.5), (0.0, 1.5), (0.0, -0.5)])
+    inv_mass = np.append(1.0 / masses(p), 0.0)
+    places = p.size * np.array([(0.0, 0.0), (0.0, 1.0)])
+    contacts = make_contacts([0, 1], [2, 0], places, [(0.0, 1.0)] * 2, inv_mass)
+    load = np.zeros((3, 3))
+    load[:2, 1] = -masses(p) * p.g
+    return x, inv_mass, 6.0 / p.size**2 * inv_mass, contacts, load
+
+
+def run(step, acceleration, state, p, dt, steps):
+    """What the kind asks for.  The functions that a compiled step takes must be named here."""
+    shape = [getattr(f, "twin", f) for f in (box_bounds_2d, box_contacts_2d)]
+    if p.kind in ("sweeps", "relaxed"):
+        return (np.array([count(step, state, p)]),)
+    if p.kind == "refused":
+        return (np.array([refuses(step, shape, state, p)]),)
+    if step.__name__ != "advance_pile_2d":
+        return (forces_of(step, state, p),)
+    depths, forces = settled(step, shape, p)
+    stands = np.array([1.0 * (np.max(np.abs(depths)) < STANDS * p.size)])
+    return ({"forces": forces, "overlap": depths, "stands": stands}[p.kind],)
+
+
+def normals_only(state):
+    """(A, b) of both contacts without friction."""
+    x, inv_mass, inv_inertia, contacts, load = state
+    G, w = contact_rows(x, contacts)[::2], inverse_masses(inv_mass, inv_inertia)
+    return delassus_matrix(G, w), G @ (w * load.ravel())
+
+
+def forces_of(step, state, p):
+    """Forces (2,) by a solver, one contact in the middle of each joint."""
+    if step.__name__ == "contact_forces":
+        return step(*state, np.full(2, MU))[0][:, 0]
+    return step(*normals_only(state))
+
+
+def count(step, state, p):
+    """Number of sweeps from zero until both forces are right to SMALL; a wrong sweep ends at ten times what is due."""
+    (A, b), lam, forces, omega = normals_only(state), np.zeros(2), weights(p), relaxation(p)
+    most = 10.0 * sweeps_needed(p.r, best(p.r) if p.kind == "relaxed" else 1.0, SMALL)
+    done = 0
+    while np.max(np.abs(lam / forces - 1.0)) > SMALL and done < most:
+        lam, done = step(A, b, lam, omega), done + 1
+    return float(done)
+
+
+def relaxation(p):
+    """The lesson's best relaxation, or none."""
+    return best_relaxation(mass_ratio_contraction(p.r))[0] if p.kind == "relaxed" else 1.0
+
+
+def refuses(step, shape, state, p):
+    """1 if it ends in Diverged that names a residual, else 0."""
+    try:
+        settled(step, shape, p) if step.__name__ == "advance_pile_2d" else forces_of(step, state, p)
+    except Diverged as e:
+        return 1.0 * ("residual" in str(e))
+    return 0.0
+
+
+def settled(advance, shape, p):
+    """(depths [m], forces [N]), both (2,) from below, of boxes that were put on each other as a pile."""
+    substeps, hertz, seconds = solver(p)
+    half = np.full((2, 2), 0.5 * p.size)
+    state, pile = make_pile_2d(start(p)[0][:2], np.zeros(2), masses(p), masses(p) * p.size**2 / 6.0, half,
+                               np.array([(0.0, 1.0, 0.0)]), (0.0, -p.g), MU, substeps, hertz, ZETA, 0.02 * p.size)
+    end = advance(*shape, state, DT, round(seconds / DT), pile)
+    forces = np.zeros(2)
+    for b, J in zip(end.contacts.b, end.J):
+        forces[0 if b == 2 else 1] += abs(J[1]) * substeps / DT
+    return p.size * np.array([0.5, 1.0]) - np.diff(end.x[:2, 1], prepend=0.0), forces
+
+
+def observe(state, p):
+    return state[0]
+
+
+def weights(p):
+    """What each contact carries [N], from below."""
+    return p.m * p.g * np.array([1.0 + p.r, p.r])
+
+
+def best(r):
+    """The relaxation at which both eigenvalues of a sweep are equal, z² + (2(ω − 1) − ω² ρ) z + (ω − 1)² = 0."""
+    return 2.0 / (1.0 + 1.0 / np.sqrt(1.0 + r))
+
+
+def truth(p, t):
+    """Newton's second law for all that is above a contact: (1 + r) m g and r m g.
+
+    overlap     A soft contact sinks by k_n F/(2π hertz)².  A box of mass M has k_n = 1/M + (w/2)²/I = 2.5/M at each of
+                two corners, of which each carries half: 1.25 (1 + r) g/(2π hertz)² under both boxes, because the
+                upper contact has k_n = 2.5 (1 + 1/r)/m and half of r m g.
+    sweeps      A sweep leaves ρ = r/(1 + r) of the error: ln(1/1000)/ln ρ of them.  The best relaxation has a double
+                eigenvalue ω − 1; the recursion of its two errors is counted to the end.
+    stands      what should stand, does: 1
+    refused     what sweeps cannot find, they refuse: 1
+    Source: Newton; Catto 2011 for soft contacts; Young 1971 for relaxation.
+    """
+    if p.kind == "overlap":
+        return np.full(2, sag(p))
+    if p.kind in ("sweeps", "relaxed"):
+        return np.array([sweeps_needed(p.r, best(p.r) if p.kind == "relaxed" else 1.0, SMALL)])
+    return weights(p) if p.kind == "forces" else np.ones(1)
+
+
+def sag(p):
+    return 1.25 * (1.0 + p.r) * p.g / (2.0 * np.pi * solver(p)[1]) ** 2
+
+
+def tolerance(p, dt):
+    """forces      Sweeps stop where the residual is 1e-13 of the largest (|A||F| + |b|)_k; the error is the residual
+                over the least eigenvalue of A at most.  Murty solves a linear system: 1.1e-16 times the condition of
+                A, and ten for the operations.  The pile and the engines still sway a little when they are read, and
+                no theory says how much: these are ten times what was measured.
+    overlap     The upper box slides aside by no more than it sinks, and takes a corner along: a relative change of
+                2 (w/2)²/I/k_n times twice that over w, or 2.4 depths over w; and a corner's sway, as above.
+    all others  whole numbers, which must be exact
+    """
+    if p.kind == "overlap":
+        return {EXACT: 2.4 * sag(p) / p.size + SWAY["pile"]}
+    if p.kind != "forces":
+        return dict.fromkeys((EXACT, *SWAY, "pymunk, default", "pybullet, default"), 0.4 / truth(p, T)[0])
+    light, heavy = 1.0 / masses(p)
+    A, forces = np.array([(light, -light), (-light, light + heavy)]), truth(p, T)
+    values = np.linalg.eigvalsh(A)
+    swept = 1e-13 * (np.max(np.abs(A) @ forces) + p.g) / values[0] * np.sqrt(2.0) / np.linalg.norm(forces)
+    return {EXACT: swept, "Murty": 10.0 * 1.1e-16 * values[-1] / values[0], **SWAY}
+
+
+SWAY = {"pile": 8e-7, "pymunk": 2e-12, "pybullet": 3e-7}                 # of the forces, relative [-]
+
+
+# ---------------------------------------------------------------------------------------------- engines
+
+def answer(p, forces, bottoms):
+    """What an engine says: forces, or whether both boxes are where they were put, or that it refuses nothing."""
+    if p.kind == "forces":
+        return forces
+    return np.array([1.0 * (p.kind == "stands" and np.max(np.abs(bottoms)) < STANDS * p.size)])
+
+
+def pymunk_make(p, dt, iterations, slop):
+    import pymunk
+    space = pymunk_space((0.0, -p.g))
+    space.iterations, space.collision_slop = iterations, slop
+    pymunk_floor(space)
+    bodies = []
+    for k, m in enumerate(masses(p)):
+        body = pymunk.Body(m, m * p.size**2 / 6.0)
+        body.position = (0.0, p.size * (k + 0.5) - OVERLAP * (k + 1))
+        box = pymunk.Poly.create_box(body, (p.size, p.size))
+        box.friction = np.sqrt(MU) if k else MU                          # pymunk multiplies the two
+        space.add(body, box)
+        bodies.append(body)
+
+    def read():
+        for _ in range(round(WAITING / DT)):
+            space.step(DT)
+        forces = np.zeros(2)
+
+        def add(arbiter):
+            low = min(bodies.index(shape.body) if shape.body in bodies else -1 for shape in arbiter.shapes)
+            forces[low + 1] += abs(arbiter.total_impulse.y) / DT
+        for body in bodies:
+            body.each_arbiter(add)
+        forces[1] *= 0.5                                                 # two bodies tell of the upper joint
+        return answer(p, forces, [body.position.y - p.size * (k + 0.5) for k, body in enumerate(bodies)])
+    return EngineRun(lambda: None, read, lambda: None)
+
+
+def pybullet_make(p, dt, iterations, residual):
+    bullet = Rigid(DT, (0.0, 0.0, -p.g), iterations)
+    pb = bullet.pb
+    pb.setPhysicsEngineParameter(solverResidualThreshold=residual, contactSlop=1e-5)
+    slab = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[5.0, 5.0, 1.0])
+    ground = pb.createMultiBody(0, slab, basePosition=[0.0, 0.0, -1.0])
+    pb.changeDynamics(ground, -1, lateralFriction=1.0, restitution=0)
+    shape = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[0.5 * p.size] * 3)
+    bodies = [bullet.body(m, (m * p.size**2 / 6.0,) * 3, (0.0, 0.0, p.size * (k + 0.5)), (0.0,) * 3, True, shape=shape,
+                          mu=np.sqrt(MU) if k else MU) for k, m in enumerate(masses(p))]
+
+    def read():
+        for _ in range(round(WAITING / DT)):
+            bullet.step()
+        forces = np.array([sum(c[9] for c in pb.getContactPoints(a, b)) for a, b in zip(bodies, [ground, *bodies])])
+        return answer(p, forces, [bullet.position(body)[2] - p.size * (k + 0.5) for k, body in enumerate(bodies)])
+    return EngineRun(lambda: None, read, bullet.close)
+
+
+ENGINES = (
+    Engine(PYMUNK, "", lambda p, dt: pymunk_make(p, dt, 1000, 1e-4), EXACT,
+           "1,000 iterations, collision_slop 1e-4; 3 s of 1/240 s"),
+    Engine(PYMUNK, "default", lambda p, dt: pymunk_make(p, dt, 10, 0.1), EXACT,
+           "10 iterations, collision_slop 0.1; 3 s of 1/240 s"),
+    Engine(PYBULLET, "", lambda p, dt: pybullet_make(p, dt, 1000, 0), EXACT,
+           "maximal coordinates; solverResidualThreshold 0, 1,000 iterations; 3 s of 1/240 s"),
+    Engine(PYBULLET, "default", lambda p, dt: pybullet_make(p, dt, 50, 1e-7), EXACT,
+           "maximal coordinates; 50 iterations; 3 s of 1/240 s"),
+)
+
+
+def too_few(sweeps):
+    """Why so many sweeps per step do not carry the heavy box, and that nobody says so."""
+    steps = sweeps_needed(1e3, 1.0, SMALL) / sweeps
+    return Departure(f"1,000 on 1 want 6,909 sweeps, which are {steps:.0f} of its steps, and until then the heavy box "
+                     "falls into the light one; and an engine never refuses: it has no residual",
+                     lambda p, t: np.zeros(1))
+
+
+def quantity_names(p):
+    return {"forces": ["force under the light box [N]", "force under the heavy box [N]"],
+            "overlap": ["overlap under the light box [m]", "overlap under the heavy box [m]"],
+            "sweeps": ["sweeps until the forces are right to 10⁻³ [-]"],
+            "relaxed": ["sweeps at the best relaxation until the forces are right to 10⁻³ [-]"],
+            "stands": ["1: both boxes are where they were put"],
+            "refused": ["1: it ends in an error that names the residual"]}[p.kind]
+
+
+def sanity_checks():
+    """((claim, found, expected, tolerance), …): the truths by other means."""
+    light = 1.0 - 1.0 / 11.0
+    by_hand = next(k for k in range(1, 1000) if light**k <= SMALL)
+    omegas = np.linspace(1.5, 1.6, 1001)
+    sizes = [max(np.abs(np.roots([1.0, 2.0 * (w - 1.0) - w**2 * light, (w - 1.0) ** 2]))) for w in omegas]
+    return (("sweeps at 10 : 1, by powers of ρ [-]", sweeps_needed(10.0, 1.0, SMALL), by_hand, 0.0),
+            ("best relaxation at 10 : 1, by search [-]", omegas[np.argmin(sizes)], best(10.0), 1e-4),
+            ("the weight of both over that of the light one [-]", weights(Params())[0] / 9.81, 11.0, 1e-13))
+
+
+# ---------------------------------------------------------------------------------------------- picture
+
+def points(observed, p):
+    """Both boxes from the side, and the ground; the heavy one is hatched."""
+    square = p.size * np.array([(-0.5, 0.0), (0.5, 0.0), (0.5, 1.0), (-0.5, 1.0)])
+    hatching = p.size * np.array([(s, 1.0 + h) for s in (-0.25, 0.0, 0.25) for h in (0.0, 1.0)])
+    upper, ground = square + np.array([0.0, p.size]), p.size * np.array([(-1.0, 0.0), (1.0, 0.0)])
+    return np.concatenate((square, upper, hatching, ground))
+
+
+def links(p):
+    boxes = [(4 * k + i, 4 * k + (i + 1) % 4) for k in range(2) for i in range(4)]
+    return boxes + [(8 + 2 * k, 9 + 2 * k) for k in range(4)]
+
+
+SCENE = Scene(
+    title="Mass ratio",
+    lesson="contact",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=(DIRECT, SWEEPS, PILE, COUNTED),
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-15,
+    tolerance=tolerance,
+    engines=ENGINES,
+    expected_departures={"pymunk, default": too_few(10), "pybullet, default": too_few(50)},
+    orders=dict.fromkeys(("contact_forces", "solve_lcp", "advance_pile_2d", "gauss_seidel_sweep"), EXACT),
+    supports=supports,
+    slow_cases=("forces, 1,000 : 1", "overlap, 1,000 : 1", "sweeps, 1,000 : 1", "relaxed sweeps, a million : 1",
+                "does 1,000 on 1 stand?"),
+    omitted_methods="sweeps without relaxation are not counted at a million, where they are 6.9 million; the engines' "
+                    "default settings are asked only whether the boxes stand and whether they refuse: where the light "
+                    "box is squeezed out no law says how far",
+    moves=False,
+    refinement="",
+    quantity_names=quantity_names,
+    published_states=((1.0, (107.91, 98.1), 1e-12),),
+    sanity_checks=sanity_checks,
+    points=points,
+    links=links,
+    uses=("rows of both contacts", "masses", "for the pile: contact points, soft contacts and memory"),
+    ablations={"friction": "it carries nothing here; it keeps the boxes of the pile from sliding off",
+               "rocking": "solvers see one contact in the middle of each joint; the pile and the engines have two"},
+)
