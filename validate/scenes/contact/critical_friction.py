@@ -1,4 +1,4 @@
-"""How rough must it be?  Discs, a ladder, a box and an overhang that stand by a hair, and when they do not any more.
+"""How rough must it be?  A ladder, discs, a box and an overhang that stand by a hair, and when they do not any more.
 
 A scene stands where the contact solver finds no acceleration.  Its critical number is found by bisection: the least
 friction, the steepest slope or the longest overhang that stands.  The engine is watched for a second instead, and what
@@ -11,9 +11,10 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.contact import make_contacts
+from validate.engines.bullet import UPRIGHT, Rigid
 from validate.engines.chipmunk import pymunk_space
 from validate.methods import SWEEPS
-from validate.scene import EXACT, PYMUNK, Engine, EngineRun, Scene
+from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Scene
 
 T = 1.0
 STEPS = (1,)
@@ -21,9 +22,10 @@ G = 9.81                     # [m/s²]; no critical number depends on it
 AT_REST = 1e-8               # acceleration that counts as none [m/s², rad/s²]: sweeps leave some 1e-10
 WIDTH = 1e-9                 # relative, at which bisection stops [-]
 UP, DOWN = (0.0, 1.0), np.array([0.0, -1.0])
-DT, WATCHED = 1e-3, 1.0      # of the engine [s]
+WATCHED = 1.0                # an engine's scene [s]
 MOVED = 1e-3                 # what has moved less, stands [m]
-OVERLAP = 1e-6               # with which the engine's bodies begin [m]: it sees a contact when there is one
+OVERLAP = 1e-6               # with which pymunk's bodies begin [m]: it sees a contact when there is one
+THIN = 2e-4                  # thickness of pybullet's ladder, which is a board [m]
 HEIGHT = 0.2                 # of a block of the overhang, over its length [-]
 
 
@@ -35,13 +37,22 @@ class Params(NamedTuple):
     blocks: Annotated[int, "of the overhang"] = 3
 
 
+DISCS, LADDER, BOX, OVERHANG = ("discs: friction between them", "ladder at 60°", "box that topples",
+                                "overhang of three blocks")
 CASES = {
-    "discs: friction between them": Params(), "discs: friction at the ground": Params("discs, ground"),
-    "ladder at 60°": Params("ladder"), "ladder at 40°": Params("ladder", degrees=40.0),
+    LADDER: Params("ladder"), "ladder at 40°": Params("ladder", degrees=40.0),
     "ladder at 75°": Params("ladder", degrees=75.0),
-    "box that topples": Params("box", mu=0.6), "box that slides": Params("box", mu=0.3),
-    "overhang of three blocks": Params("overhang"), "overhang of five blocks": Params("overhang", blocks=5),
+    DISCS: Params(), "discs: friction at the ground": Params("discs, ground"),
+    BOX: Params("box", mu=0.6), "box that slides": Params("box", mu=0.3),
+    OVERHANG: Params("overhang"), "overhang of five blocks": Params("overhang", blocks=5),
 }
+
+
+def supports(name, p):
+    """pybullet has no discs, and its default settings let five blocks fall at a third of the overhang."""
+    if name == "pybullet, default" and p.kind == "overhang":
+        return p.blocks <= 3
+    return not (name.startswith("pybullet") and p.kind.startswith("discs"))
 
 
 def start(p):
@@ -166,18 +177,22 @@ def tolerance(p, dt):
     """A number that is short of the critical one by a relative δ leaves an acceleration of g δ times a lever.  With
     levers of a tenth and more, 1e-8 m/s² mean 10 · 1e-8/g; bisection stops at 1e-9.
 
-    In the engine that acceleration has a second to move something by 1 mm: δ = 2 · 1e-3/(g · 1 s²) over the lever.
+    In an engine that acceleration has a second to move something by 1 mm: δ = 2 · 1e-3/(g · 1 s²) over the lever.
+    pybullet lets a stack sink and lean a little before it carries, and default settings are coarse.  No theory says
+    how much: 0.3 % and 1 % were measured, and twice that is allowed.
     """
-    return {EXACT: 10.0 * AT_REST / G + WIDTH, "pymunk": 10.0 * 2.0 * MOVED / (G * WATCHED**2)}
+    moved = 10.0 * 2.0 * MOVED / (G * WATCHED**2)
+    leans = 6e-3 if p.kind == "overhang" else moved
+    return {EXACT: 10.0 * AT_REST / G + WIDTH, "pymunk": moved, "pybullet": leans, "pymunk, default": 0.02,
+            "pybullet, default": 0.02}
 
 
-# ---------------------------------------------------------------------------------------------- engine
+# ---------------------------------------------------------------------------------------------- engines
 
 def pymunk_world(p, number):
     """(space, bodies) of a scene; friction is multiplied, and each begins OVERLAP inside what carries it."""
     import pymunk
     space = pymunk_space(G * (leaning(number) if p.kind == "box" else DOWN))
-    space.iterations = 100
     bodies = []
 
     def static(start, end, mu, thick=5.0):
@@ -223,22 +238,76 @@ def pymunk_world(p, number):
     return space, bodies
 
 
-def pymunk_stands(p, number):
+def pymunk_stands(p, number, dt, iterations, slop):
     """Whether nothing has moved by a millimetre after a second."""
     space, bodies = pymunk_world(p, number)
+    space.iterations, space.collision_slop = iterations, slop
     before = np.array([body.position for body in bodies])
-    for _ in range(round(WATCHED / DT)):
-        space.step(DT)
+    for _ in range(round(WATCHED / dt)):
+        space.step(dt)
     return np.max(np.abs(np.array([body.position for body in bodies]) - before)) < MOVED
 
 
-def pymunk_make(p, dt):
-    return EngineRun(lambda: None, lambda: edge(lambda number: pymunk_stands(p, number), p, 1e-4), lambda: None)
+def pybullet_world(p, number, dt, iterations):
+    """(Rigid, bodies) of a ladder, a box or an overhang: boards and boxes on slabs, 1 m deep into the page."""
+    g = G * (leaning(number) if p.kind == "box" else DOWN)
+    bullet, x, bodies = Rigid(dt, (g[0], 0.0, g[1]), iterations), places_of(p, number), []
+    pb = bullet.pb
+
+    def static(centre, half, mu):
+        shape = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[half[0], 5.0, half[1]])
+        body = pb.createMultiBody(0, shape, basePosition=[centre[0], 0.0, centre[1]])
+        pb.changeDynamics(body, -1, lateralFriction=mu, restitution=0)
+
+    def movable(centre, width, height, moment, mu, R=UPRIGHT):
+        shape = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[0.5 * width, 0.5, 0.5 * height])
+        place = (centre[0], 0.0, centre[1])
+        bodies.append(bullet.body(1.0, (10.0 * moment, moment, 10.0 * moment), place, (0.0,) * 3, True, shape=shape,
+                                  mu=mu, R=R))
+
+    if p.kind == "ladder":
+        end = ladder_end(p)
+        c, s = 2.0 * end                                                 # along the ladder; (−s, c) is its upper side
+        static((0.0, -end[1] - 5.0), (20.0, 5.0), number)
+        static((end[0] + 5.0, 0.0), (5.0, 20.0), 0.0)
+        lies = np.array([(c, 0.0, -s), (0.0, 1.0, 0.0), (s, 0.0, c)])
+        movable((-0.5 * THIN * s, 0.5 * THIN * c), 1.0, THIN, 1.0 / 12.0, 1.0, lies)
+    elif p.kind == "box":
+        static((0.0, -5.0), (20.0, 5.0), 1.0)
+        movable(x[1], p.slim, 1.0, (p.slim**2 + 1.0) / 12.0, p.mu)
+    else:
+        static((x[-1, 0] - 1.5, -2.0), (2.0, 2.0), 1.0)
+        for k in range(p.blocks):
+            movable(x[k], 1.0, HEIGHT, (1.0 + HEIGHT**2) / 12.0, p.mu)
+    return bullet, bodies
+
+
+def pybullet_stands(p, number, dt, iterations, residual):
+    """Whether nothing has moved by a millimetre after a second."""
+    bullet, bodies = pybullet_world(p, number, dt, iterations)
+    bullet.pb.setPhysicsEngineParameter(solverResidualThreshold=residual, contactSlop=1e-5)
+    before = np.array([bullet.position(body) for body in bodies])
+    for _ in range(round(WATCHED / dt)):
+        bullet.step()
+    moved = np.max(np.abs(np.array([bullet.position(body) for body in bodies]) - before))
+    bullet.close()
+    return moved < MOVED
+
+
+def making(holds, *settings):
+    """make(p, dt) of an engine: the bisection is one long reading."""
+    return lambda p, dt: EngineRun(lambda: None, lambda: edge(lambda x: holds(p, x, *settings), p, 1e-4), lambda: None)
 
 
 ENGINES = (
-    Engine(PYMUNK, "", pymunk_make, EXACT,
+    Engine(PYMUNK, "", making(pymunk_stands, 1e-3, 100, 1e-5), EXACT,
            "100 iterations, collision_slop 1e-5; stands if nothing moves by 1 mm in 1 s of 1/1000 s"),
+    Engine(PYMUNK, "default", making(pymunk_stands, 1.0 / 240.0, 10, 0.1), EXACT,
+           "10 iterations, collision_slop 0.1; 1 s of 1/240 s"),
+    Engine(PYBULLET, "", making(pybullet_stands, 2e-3, 100, 0), EXACT,
+           "maximal coordinates; solverResidualThreshold 0, 100 iterations; 1 s of 1/500 s"),
+    Engine(PYBULLET, "default", making(pybullet_stands, 1.0 / 240.0, 50, 1e-7), EXACT,
+           "maximal coordinates; 50 iterations; 1 s of 1/240 s"),
 )
 
 
@@ -251,23 +320,45 @@ def quantity_names(p):
 def sanity_checks():
     """((claim, found, expected, tolerance), …): the same by other means."""
     numbers = {name: truth(p, T)[0] for name, p in CASES.items()}
-    return (("friction between discs [-]", numbers["discs: friction between them"], np.tan(np.radians(15.0)), 1e-15),
-            ("ladder at 60° [-]", numbers["ladder at 60°"], np.sqrt(3.0) / 6.0, 1e-15),
+    return (("friction between discs [-]", numbers[DISCS], np.tan(np.radians(15.0)), 1e-15),
+            ("ladder at 60° [-]", numbers[LADDER], np.sqrt(3.0) / 6.0, 1e-15),
             ("overhang of five [-]", numbers["overhang of five blocks"], 137.0 / 120.0, 1e-15))
 
 
 # ---------------------------------------------------------------------------------------------- picture
 
-def points(observed, p):
-    """The three discs of the first case as polygons, and the ground."""
+def shapes():
+    """[(corners (k, 2), closed)]: the discs, the ladder, the box on its slope and the overhang, side by side."""
     arc = np.linspace(0.0, 2.0 * np.pi, 25)[:-1]
-    round_it = 0.5 * np.stack((np.cos(arc), np.sin(arc)), axis=1)
-    rings = [x + round_it for x in places_of(Params(), 1.0)[1:]]
-    return np.round(np.concatenate((*rings, [(-1.5, 0.0), (1.5, 0.0)])), 5)
+    drawn = [(x + 0.5 * np.stack((np.cos(arc), np.sin(arc)), axis=1), True) for x in places_of(CASES[DISCS], 1.0)[1:]]
+    end = ladder_end(CASES[LADDER])
+    foot = np.array([2.0 - end[0], 0.0])
+    drawn += [(np.stack((foot, foot + 2.0 * end)), False), (np.array([(2.25, 0.0), (2.25, 1.2)]), False)]
+    rotation, slim = np.array([(np.cos(0.3), np.sin(0.3)), (-np.sin(0.3), np.cos(0.3))]), CASES[BOX].slim
+    box = np.array([(-0.5 * slim, 0.0), (0.5 * slim, 0.0), (0.5 * slim, 1.0), (-0.5 * slim, 1.0)])
+    for corners, closed in ((box, True), (np.array([(-0.65, 0.0), (0.65, 0.0)]), False)):
+        drawn.append((corners @ rotation + np.array([3.6, 0.2]), closed))
+    p = CASES[OVERHANG]
+    for x in places_of(p, harmonic(p.blocks))[:-1]:
+        block = 0.5 * np.array([(-1.0, -HEIGHT), (1.0, -HEIGHT), (1.0, HEIGHT), (-1.0, HEIGHT)])
+        drawn.append((x + np.array([5.9, 0.0]) + block, True))
+    edge_of_table = places_of(p, harmonic(p.blocks))[-1, 0] + 0.5 + 5.9
+    drawn.append((np.array([(edge_of_table - 0.6, 0.0), (edge_of_table, 0.0), (edge_of_table, -0.4)]), False))
+    return [*drawn, (np.array([(-1.2, 0.0), (4.3, 0.0)]), False)]
+
+
+def points(observed, p):
+    """All four scenes side by side, whatever the case."""
+    return np.round(np.concatenate([corners for corners, _ in shapes()]), 5)
 
 
 def links(p):
-    return [(24 * k + i, 24 * k + (i + 1) % 24) for k in range(3) for i in range(24)] + [(72, 73)]
+    joined, first = [], 0
+    for corners, closed in shapes():
+        n = len(corners)
+        joined += [(first + k, first + (k + 1) % n) for k in range(n if closed else n - 1)]
+        first += n
+    return joined
 
 
 SCENE = Scene(
@@ -285,12 +376,15 @@ SCENE = Scene(
     tolerance=tolerance,
     engines=ENGINES,
     orders={"contact_forces": EXACT},
-    slow_cases=("overhang of five blocks",),
-    omitted_methods="Murty's method knows no friction; pybullet has no discs and no plane in which they could stay",
+    supports=supports,
+    slow_cases=("ladder at 40°", "ladder at 75°", "overhang of five blocks"),
+    omitted_methods="Murty's method knows no friction; pybullet has no discs and no plane in which they could stay, "
+                    "and with its default settings five blocks fall at a third of the overhang: 50 iterations do not "
+                    "find the forces between them",
     moves=False,
     refinement="",
     quantity_names=quantity_names,
-    published_states=((1.0, (0.267949,), 5e-7),),
+    published_states=((1.0, (0.288675,), 5e-7),),
     sanity_checks=sanity_checks,
     points=points,
     links=links,
