@@ -1,6 +1,10 @@
 """Reference solutions for the scenes of lesson 9: many contacts, without the lesson's sweeps, matrices and piles."""
 
+from functools import cache
+from typing import NamedTuple
+
 import numpy as np
+from scipy.optimize import brentq, linprog
 
 # ---------------------------------------------------------------------- a heavy body on a light one
 
@@ -22,3 +26,94 @@ def sweeps_needed(r, omega, small):
         lower = (1.0 - omega) * e[0] + omega * r / (1.0 + r) * e[1]
         e, done = (lower, (1.0 - omega) * e[1] + omega * lower), done + 1
     return float(done)
+
+
+# ---------------------------------------------------------------------- a semicircular arch of stones
+
+class Arch(NamedTuple):
+    """n equal stones, sectors of a ring of mean radius 1 and thickness t, from the right springing to the left one."""
+    x: np.ndarray            # (n, 2) centres of mass
+    m: np.ndarray            # (n,) masses, of density 1
+    inertia: np.ndarray      # (n,) about the centres
+    joints: np.ndarray       # (n + 1,) angles of the joints [rad]; joint k is below stone k and above stone k − 1
+    radii: tuple             # inner and outer
+
+
+def arch(n, t):
+    """Return the Arch.
+
+    A sector of half angle α between the radii r and R has the area (R² − r²) α, its centre of mass at
+    ⅔ (R³ − r³)/(R² − r²) · sin α/α, and (R² + r²)/2 of its area as moment about the centre of the ring.
+    """
+    r, R, alpha = 1.0 - 0.5 * t, 1.0 + 0.5 * t, 0.5 * np.pi / n
+    centre = 2.0 / 3.0 * (R**3 - r**3) / (R**2 - r**2) * np.sin(alpha) / alpha
+    middle, area = (2.0 * np.arange(n) + 1.0) * alpha, (R**2 - r**2) * alpha
+    x = centre * np.stack((np.cos(middle), np.sin(middle)), axis=1)
+    inertia = area * (0.5 * (R**2 + r**2) - centre**2)
+    return Arch(x, np.full(n, area), np.full(n, inertia), 2.0 * alpha * np.arange(n + 1), (r, R))
+
+
+def arch_holds(n, t, mu):
+    """Return whether forces exist that hold the arch: a linear program, after Heyman's safe theorem.
+
+    Each joint pushes at its inner and outer end with f_n ≥ 0 and |f_t| ≤ μ f_n.  Every stone is in balance: two
+    forces, one moment.  Nothing is optimised.  SciPy's HiGHS says whether there is a solution.
+    """
+    stones = arch(n, t)
+    balance, cone = np.zeros((n, 3, n + 1, 2, 2)), np.zeros((n + 1, 2, 2, n + 1, 2, 2))
+    for k, theta in enumerate(stones.joints):
+        outward = np.array([np.cos(theta), np.sin(theta)])
+        along = np.array([-outward[1], outward[0]])                      # the normal of the joint, to stone k
+        for end, radius in enumerate(stones.radii):
+            for part, d in enumerate((along, outward)):
+                for stone, sign in ((k, 1.0), (k - 1, -1.0)):
+                    if 0 <= stone < n:
+                        arm = radius * outward - stones.x[stone]
+                        balance[stone, :, k, end, part] = sign * np.array([*d, arm[0] * d[1] - arm[1] * d[0]])
+            cone[k, end, :, k, end] = [(-mu, 1.0), (-mu, -1.0)]
+    load = np.zeros((n, 3))
+    load[:, 1] = stones.m / np.sum(stones.m)
+    unknowns = 4 * (n + 1)
+    found = linprog(np.zeros(unknowns), cone.reshape(-1, unknowns), np.zeros(unknowns),
+                    balance.reshape(-1, unknowns), load.ravel(), [(0.0, None), (None, None)] * (2 * (n + 1)),
+                    options={"primal_feasibility_tolerance": 1e-10})
+    return found.status == 0
+
+
+def bisected(holds, falls, safe, width):
+    """Return where `holds` turns True between two numbers, relative `width` apart."""
+    while abs(safe - falls) > width * safe:
+        middle = 0.5 * (falls + safe)
+        falls, safe = (falls, middle) if holds(middle) else (middle, safe)
+    return 0.5 * (falls + safe)
+
+
+@cache
+def least_thickness(n, mu):
+    """Return the least t/R at which the arch stands, to 1e-8."""
+    return bisected(lambda t: arch_holds(n, t, mu), 0.02, 0.5, 1e-8)
+
+
+@cache
+def least_friction(n, t):
+    """Return the least μ at which the arch stands, to 1e-8."""
+    return bisected(lambda mu: arch_holds(n, t, mu), 0.05, 2.0, 1e-8)
+
+
+def hinged_thickness(n):
+    """Return the least t/R of an even number of stones by moments about hinges; friction is enough.
+
+    Half the arch, with the crown a joint: the thrust H enters at the outer end of the crown.  It needs to hold the part
+    above each joint β (from the crown) about its inner end, and must not overturn the half about the outer end of
+    the springing.  With W(β) weight and M(β) moment about the crown of that part:
+
+        H (R − r cos β) ≥ W r sin β − M  for all joints,      H R ≤ W R − M  at β = 90°
+
+    *Source:* Couplet 1730, Milankovitch 1907; Heyman 1969.
+    """
+    def spare(t):
+        r, R = 1.0 - 0.5 * t, 1.0 + 0.5 * t
+        beta = np.pi / n * np.arange(1, n // 2 + 1)
+        W, M = 0.5 * (R**2 - r**2) * beta, (R**3 - r**3) / 3.0 * (1.0 - np.cos(beta))
+        return (W[-1] * R - M[-1]) / R - np.max((W * r * np.sin(beta) - M) / (R - r * np.cos(beta)))
+    return brentq(spare, 0.02, 0.5, xtol=1e-14)
