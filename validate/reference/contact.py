@@ -117,3 +117,55 @@ def hinged_thickness(n):
         W, M = 0.5 * (R**2 - r**2) * beta, (R**3 - r**3) / 3.0 * (1.0 - np.cos(beta))
         return (W[-1] * R - M[-1]) / R - np.max((W * r * np.sin(beta) - M) / (R - r * np.cos(beta)))
     return brentq(spare, 0.02, 0.5, xtol=1e-14)
+
+
+# ---------------------------------------------------------------------- a judge of impulses, whoever found them
+
+def in_space(vectors):
+    """Return vectors (m, 2) with a third coordinate 0, and vectors (m, 3) as they are."""
+    vectors = np.asarray(vectors, dtype=float)
+    return np.pad(vectors, ((0, 0), (0, 3 - vectors.shape[1])))
+
+
+def turning(omega, inv_inertia):
+    """Return (ω (n, 3), I⁻¹ (n, 3, 3)) of bodies in the plane, ω (n,) and I⁻¹ (n,), or in space as they are."""
+    omega, inv_inertia = np.asarray(omega, dtype=float), np.asarray(inv_inertia, dtype=float)
+    if omega.ndim == 2:
+        return omega, inv_inertia
+    about_z = np.array([0.0, 0.0, 1.0])
+    return omega[:, None] * about_z, inv_inertia[:, None, None] * np.outer(about_z, about_z)
+
+
+def natural_residual(bodies, contacts, J, mu, dt):
+    """Return how far [m/s] impulses J (m, d) of a step dt are from the laws of Signorini and Coulomb, d = 2 or 3.
+
+    bodies = (x, v, ω, inverse masses, inverse moments) after the step.  contacts = (a, b, n, p, gap), n from b to a.
+    With the relative velocity u of a contact, and k_n and k_t its effective inverse masses, the laws hold where
+
+        J_n = max(0, J_n − (u_n + max(gap, 0)/dt)/k_n)
+        J_t = the point of the disc |J_t| ≤ μ J_n that is nearest to J_t − u_t/k_t
+
+    The residual is the largest k_n or k_t times the distance of the two sides.  k_t may be any positive number: here
+    the trace of the contact's matrix less k_n.  The lesson's residual goes by matrices instead.
+    *Source:* the natural map; Acary and Brogliato 2008.
+    """
+    (x, v, omega, inv_mass, inv_inertia), (a, b, n, p, gap) = bodies, contacts
+    x, v, n, p, J = (in_space(each) for each in (x, v, n, p, J))
+    omega, inv_inertia = turning(omega, inv_inertia)
+    u, k_n, trace = np.zeros_like(n), np.zeros(len(n)), np.zeros(len(n))
+    for body, sign in ((a, 1.0), (b, -1.0)):
+        r = p - x[body]
+        u += sign * (v[body] + np.cross(omega[body], r))
+        lever = np.cross(r, n)
+        k_n += inv_mass[body] + np.einsum("ki,kij,kj->k", lever, inv_inertia[body], lever)
+        around = np.trace(inv_inertia[body], axis1=1, axis2=2)
+        trace += (3.0 * inv_mass[body] + np.sum(r**2, axis=1) * around
+                  - np.einsum("ki,kij,kj->k", r, inv_inertia[body], r))
+    k_t, J_n, u_n = trace - k_n, np.sum(n * J, axis=1), np.sum(n * u, axis=1)
+    J_t, u_t = J - J_n[:, None] * n, u - u_n[:, None] * n
+    pushed = np.maximum(0.0, J_n - (u_n + np.maximum(gap, 0.0) / dt) / k_n)
+    stuck, limit = J_t - u_t / k_t[:, None], mu * np.maximum(J_n, 0.0)
+    size = np.linalg.norm(stuck, axis=1)
+    held = stuck * np.where(size > limit, limit / np.where(size > 0.0, size, 1.0), 1.0)[:, None]
+    apart = k_n * np.abs(pushed - J_n), k_t * np.linalg.norm(held - J_t, axis=1)
+    return max(np.max(each, initial=0.0) for each in apart)
