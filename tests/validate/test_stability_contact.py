@@ -64,6 +64,28 @@ def keeps_the_push(bounds, find_contacts, state, dt, steps, pile):
     return end._replace(v=(end.x - state.x) / (steps * dt))
 
 
+def space_with(**changes):
+    """The pile in space with other settings than it was told."""
+    def advance(bounds, find_contacts, state, dt, steps, pile):
+        return worked.advance_pile(bounds, find_contacts, state, dt, steps, pile._replace(**changes))
+    return advance
+
+
+def keeps_the_push_in_space(bounds, find_contacts, state, dt, steps, pile):
+    end = worked.advance_pile(bounds, find_contacts, state, dt, steps, pile)
+    return end._replace(v=(end.x - state.x) / (steps * dt))
+
+
+def frictionless(A, b, J, mu):
+    """Judges normal impulses only."""
+    u, k_n = A @ J + b, np.diag(A)[::2]
+    return np.max(k_n * np.abs(np.maximum(0.0, J[::2] - u[::2] / k_n) - J[::2]))
+
+
+def content(A, b, J, mu):
+    return 0.0
+
+
 def unchecked(a, b, p, n, inv_mass):
     a = np.array(a)
     return worked.ContactSet(np.zeros(1, np.int64), a, np.array(b), np.array(n), np.array(p), np.zeros(a.size))
@@ -88,6 +110,14 @@ WRONG = [                    # case, the function that it examines, what is put 
     ("mass-ratio-of-a-million", "solve_contacts", silent),
     ("mass-ratio-of-a-million", "solve_contacts", too_soon),
     ("mass-ratio-of-a-million", "advance_pile_2d", lets_it_sink),
+    ("highest-hertz", "advance_pile_2d", half_the_hertz),
+    ("highest-hertz", "advance_pile_2d", pile_with(zeta=5.0)),
+    ("highest-hertz", "advance_pile_2d", pile_with(substeps=2)),
+    ("extremes-in-space", "advance_pile", keeps_the_push_in_space),
+    ("extremes-in-space", "advance_pile", space_with(mu=0.5)),
+    ("judge", "cone_residual", content),
+    ("judge", "cone_residual", frictionless),
+    ("judge", "advance_pile", space_with(mu=0.8)),
     ("extremes", "advance_pile_2d", keeps_the_push),
     ("extremes", "advance_pile_2d", pile_with(mu=0.5)),
     ("extremes", "make_contacts", unchecked),

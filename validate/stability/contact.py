@@ -8,7 +8,12 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from solutions.checks import BadInput, Diverged
+from validate.engines.contact import DT as ENGINE_DT
+from validate.engines.contact import KINDS, MU, BulletPile, PymunkPile, fallen
+from validate.reference.contact import natural_residual
 from validate.stability.case import DOTS, EDGE, LINE, Picture, bisect, case, finding, refuses, series
+
+from .. import engines
 
 G = 9.81                     # [m/s²]
 THREE_DIGITS = 1e-3          # of what a sweep leaves undone, 1 − ρ [-]
@@ -289,6 +294,113 @@ def refusal(run):
     return ""
 
 
+# ---------------------------------------------------------------------------------------------- the highest hertz
+
+def substep_matrix(masses, c, zeta):
+    """M of one substep of a column as theory has it, for errors of (gaps, impulses, velocities) (3n,); all push.
+
+    c is hertz times a substep, s = 2πc, and the substep is 1.  From the lowest body, u_k = v_k − v_(k−1).
+        the last impulses:      v_k += (J_k − J_(k+1))/m_k
+        a soft sweep:           J_k += (−s gap_k/(2ζ + s) − u_k − k_k J_k/(s (2ζ + s)))/(k_k (1 + 1/(s (2ζ + s))))
+        motion:                 gap_k += u_k
+        a sweep at rest:        J_k −= u_k/k_k
+    with k_k = 1/m_k + 1/m_(k−1).  Each change of J_k acts on v at once.  Contacts are visited in their order by bodies:
+    that of the lowest body with its upper neighbour, with the floor, and then upwards.
+    """
+    n, w, s = len(masses), 1.0 / np.array(masses, float), 2.0 * np.pi * c
+    k_n, give = w + np.append(0.0, w[:-1]), 1.0 / (s * (2.0 * zeta + s))
+    rows = np.eye(n) - np.eye(n, k=-1)
+    order, columns = [1, 0, *range(2, n)][-n:] if n > 1 else [0], []
+    for gap, J, v in np.eye(3 * n).reshape(3 * n, 3, n):
+        gap, J, v = 1.0 * gap, 1.0 * J, v + w * (rows.T @ J)
+        for aim, soft in ((-s * gap / (2.0 * zeta + s), give), (np.zeros(n), 0.0)):
+            for k in order:
+                change = (aim[k] - rows[k] @ v - soft * k_n[k] * J[k]) / (k_n[k] * (1.0 + soft))
+                J[k], v = J[k] + change, v + w * rows[k] * change
+            gap += (soft > 0.0) * (rows @ v)
+        columns.append(np.concatenate((gap, J, v)))
+    return np.stack(columns, axis=1)
+
+
+def largest(matrix):
+    """The largest size of its eigenvalues."""
+    return np.max(np.abs(np.linalg.eigvals(matrix)))
+
+
+def measured_matrix(lesson, masses, c, zeta):
+    """The same from the lesson's pile of discs: what a step of one substep does to single errors of a column at rest.
+
+    Errors are a thousandth of the sag, and the step is so short that the sag is some 1/100 of a disc.
+    """
+    m, n = np.array(masses, float), len(masses)
+    w, forces = 1.0 / m, G * np.cumsum(m[::-1])[::-1]
+    sag = (w + np.append(0.0, w[:-1])) * forces / (2.0 * np.pi * c) ** 2             # times the square of the step
+    h = np.sqrt(0.01 / np.max(sag))
+    heights, still = np.cumsum(1.0 - h**2 * sag) - 0.5, np.zeros((n + 1, 2))
+    state, pile = pile_of(lesson, "disc", np.stack((np.zeros(n), heights), axis=1), [(0.5, 0.5)] * n, m, substeps=1,
+                          hertz=c / h, zeta=zeta, margin=0.2)
+    contacts = after(lesson, "disc", state, pile, h, h).contacts
+    upper = np.where(contacts.b == n, contacts.a, np.maximum(contacts.a, contacts.b))
+    towards, size = np.sign(contacts.n[:, 1]), 1e-3 * np.min(sag) * h**2
+
+    def step(errors):
+        gaps, J, v = errors.reshape(3, n)
+        x, v_all, J_all = 1.0 * state.x, 1.0 * still, np.zeros((n, 2))
+        x[:n, 1], v_all[:n, 1] = heights + np.cumsum(gaps), v / h
+        J_all[:, 1] = towards * (forces * h + J / h)[upper]
+        end = after(lesson, "disc", state._replace(x=x, v=v_all, contacts=contacts, J=J_all), pile, h, h)
+        J_end = np.zeros(n)
+        J_end[upper] = towards * end.J[:, 1]
+        return np.concatenate((np.diff(end.x[:n, 1], prepend=-0.5), J_end * h, end.v[:n, 1] * h))
+    base = step(np.zeros(3 * n))
+    return np.stack([(step(size * error) - base) / size for error in np.eye(3 * n)], axis=1)
+
+
+@case("highest-hertz", "How stiff may a contact be?", compiled=False)
+def highest_hertz(lesson):
+    """A column at rest is stable where a substep shrinks all small errors: all eigenvalues of its matrix are below 1.
+
+    Theory writes the substep down as a matrix; the experiment perturbs gaps, impulses and velocities of a real pile.
+    With errors of a thousandth of the sag, which is 1/100 of a disc, differences are rounded to 1e-16/1e-5: 1e-9 is
+    allowed to eigenvalues that may be double.  Where two of them cross 1, hertz are refined by bisection: its width is
+    1e-6, and 1 − ρ changes by some 0.02 per unit there, so that 1e-9 makes 1e-7 more.
+    """
+    found, most = [], 1.0 / 3.0
+    piles = (("five equal discs", np.ones(5), 10.0), ("twenty equal discs", np.ones(20), 10.0),
+             ("twenty equal discs, ζ = 1", np.ones(20), 1.0), ("100 on 1", (1.0, 100.0), 10.0))
+    for name, masses, zeta in piles:
+        theory, rho = (largest(M) for M in (substep_matrix(masses, most, zeta),
+                                            measured_matrix(lesson, masses, most, zeta)))
+        found.append(finding(
+            claim="With hertz of a third of the substeps, the most that a pile accepts, up to twenty are stable.",
+            quantity=f"part of an error that a substep leaves, {name} [-]",
+            predicted=theory,
+            measured=rho,
+            tolerance=1e-7,
+            observation=f"A third of the substeps, {name}: a substep leaves {rho:.5f} of an error.",
+        ))
+    for r in (1e3, 1e4):
+        theory, edge = (bisect(lambda c, matrix=matrix: largest(matrix(c)) > 1.0, 0.25, 0.4 if exact else most)
+                        for exact, matrix in ((True, lambda c, r=r: substep_matrix((1.0, r), c, 10.0)),
+                                              (False, lambda c, r=r: measured_matrix(lesson, (1.0, r), c, 10.0))))
+        found.append(finding(
+            claim="A heavy body on a light one lowers the hertz at which they stand.",
+            quantity=f"highest hertz times a substep, {r:g} on 1 [-]",
+            predicted=theory,
+            measured=edge,
+            tolerance=4.0 * EDGE,
+            observation=f"{r:g} on 1 stand up to {edge:.5f} hertz per substep rate; above it they tremble.",
+        ))
+    fine, few = np.linspace(0.02, 0.6, 59), np.linspace(0.02, most, 5)
+    curves = [("10 equal discs", np.ones(10)), ("20 equal discs", np.ones(20)), ("1,000 on 1", (1.0, 1e3))]
+    return found, Picture("What a substep leaves of an error", "hertz times a substep", "part that is left", [
+        *(series(f"theory, {name}", fine, [largest(substep_matrix(masses, c, 10.0)) for c in fine], LINE)
+          for name, masses in curves),
+        *(series(name, few, [largest(measured_matrix(lesson, masses, c, 10.0)) for c in few], DOTS)
+          for name, masses in curves)],
+        "Above 1 a pile trembles.  Stiffer contacts settle sooner, but only up to about a third of the substeps.")
+
+
 # ---------------------------------------------------------------------------------------------- extremes
 
 def slope(degrees):
@@ -449,3 +561,247 @@ def refusals(lesson):
         tolerance=0.0,
         observation=f"{refused} of {len(asked)} such calls end in a sentence that names the value.",
     )
+
+
+# ---------------------------------------------------------------------------------------------- in space
+
+UPRIGHT = (1.0, 0.0, 0.0, 0.0)
+
+
+def pile_in_space(lesson, shape, x, half, masses, q=UPRIGHT, planes=((0.0, 0.0, 1.0, 0.0),), **more):
+    """(PileState, Pile) of balls or boxes in space, under gravity."""
+    x, half = np.array(x, float), np.array(half, float)
+    masses = np.broadcast_to(masses, len(x)).astype(float)
+    settings = {"mu": 0.5, "substeps": 4, "hertz": 240.0, "zeta": 10.0, "margin": 0.02, **more}
+    squares = half**2
+    moments = masses[:, None] * (0.4 * squares if shape == "ball"
+                                 else (np.sum(squares, axis=1)[:, None] - squares) / 3.0)
+    return lesson.make_pile(x, np.tile(q, (len(x), 1)), masses, moments, half, np.array(planes), (0.0, 0.0, -G),
+                            **settings)
+
+
+def later(lesson, shape, state, pile, seconds, dt=DT):
+    """The PileState so many seconds later."""
+    bounds, contacts = lesson.ball_bounds, lesson.round_contacts
+    if shape == "box":
+        bounds, contacts = lesson.box_bounds, lesson.box_contacts
+    return lesson.advance_pile(bounds, contacts, state, dt, round(seconds / dt), pile)
+
+
+def ramp(degrees):
+    """A plane through the origin, rising along x."""
+    return (-np.sin(np.radians(degrees)), 0.0, np.cos(np.radians(degrees)), 0.0)
+
+
+INSIDE_IN_SPACE = (          # shape, centres [m] of bodies with half sizes of ½ m, what they are
+    ("ball", [(0.0, 0.0, 0.5), (0.0, 0.0, 0.5)], "coincident balls"),
+    ("ball", [(0.0, 0.0, 0.2), (0.1, 0.0, 0.3)], "balls deep in each other"),
+    ("box", [(0.0, 0.0, 0.5), (0.0, 0.0, 0.5)], "coincident cubes"), ("box", [(0.0, 0.0, -0.5)], "a cube in the floor"),
+)
+
+
+@case("extremes-in-space", "The same in space", compiled=False)
+def extremes_in_space(lesson):
+    """What holds in the plane holds in space: deep overlaps, friction 0 and ∞ on a slope, a wedge, sizes of 1 : 100.
+
+    The bounds are those of the plane.  What parts with 3 m/s at most would rise by 0.46 m; a tenth of that is allowed.
+    A ball in a wedge of 80° is held by 1/(2 cos θ) weights on each side; sweeps contract by cos² 2θ = 0.88 there, and
+    7e-8 was left after a second: 1e-6 is allowed.  A ball of 1 cm beside one of 1 m sags by g/(2π hertz)².
+    """
+    found = []
+    for shape, x, name in INSIDE_IN_SPACE:
+        state, pile = pile_in_space(lesson, shape, x, [(0.5,) * 3] * len(x), 1.0)
+        highest = -np.inf
+        for _ in range(10):
+            state = later(lesson, shape, state, pile, 0.1)
+            highest = np.maximum(highest, np.max(state.x[:len(x), 2]))
+        overlap = max(0.0, -np.min(state.contacts.gap, initial=0.0))
+        found.append(finding(
+            claim="What begins inside something else comes out, and is not thrown out.",
+            quantity=f"height of {name} above the place on top, at most, and overlap in the end [m]",
+            predicted=0.0,
+            measured=max(0.0, highest - len(x) + 0.5) + overlap,
+            tolerance=0.046,
+            observation=f"With {name} nothing rises above {highest:.3f} m; {1e3 * overlap:.2f} mm overlap at last.",
+        ))
+    for mu in (0.0, np.inf):
+        theta = np.radians(40.0)
+        q = (np.cos(0.5 * theta), 0.0, -np.sin(0.5 * theta), 0.0)
+        state, pile = pile_in_space(lesson, "box", [0.5 * np.array(ramp(40.0)[:3])], [(0.5,) * 3], 1.0, q,
+                                    [ramp(40.0)], mu=mu)
+        speed = np.linalg.norm(later(lesson, "box", state, pile, 0.25).v[0])
+        found.append(finding(
+            claim="Without friction a cube slides with g sin θ t; with infinite friction it stays where it is.",
+            quantity=f"speed after ¼ s on a slope of 40°, μ = {mu:g} [m/s]",
+            predicted=0.0 if mu else 0.25 * G * np.sin(theta),
+            measured=speed,
+            tolerance=1e-9,
+            observation=f"On 40° with μ = {mu:g} its speed is {speed:.4g} m/s after ¼ s.",
+        ))
+    law = 0.5 / np.cos(np.radians(80.0))
+    state, pile = pile_in_space(lesson, "ball", [(0.0, 0.0, law)], [(0.5,) * 3], 1.0, mu=0.0,
+                                planes=[ramp(80.0), ramp(-80.0)])
+    end = later(lesson, "ball", state, pile, 1.0)
+    forces = np.linalg.norm(end.J, axis=1) * pile.substeps / DT / G
+    found.append(finding(
+        claim="In a wedge of slope θ each wall carries 1/(2 cos θ) weights.",
+        quantity="force over the weight of a ball at 80° [-]",
+        predicted=law,
+        measured=forces[np.argmax(np.abs(forces - law))] if forces.size == 2 else np.nan,
+        tolerance=1e-6 * law,
+        observation=f"At 80° the walls carry {' and '.join(f'{f:.4f}' for f in forces)} weights.",
+    ))
+    x = [(0.0, 0.0, 1.0), (1.5, 0.0, 0.01), (0.0, 1.5, 0.01)]
+    state, pile = pile_in_space(lesson, "ball", x, [(1.0,) * 3] + [(0.01,) * 3] * 2, [1e6, 1.0, 1.0], margin=0.002)
+    moved = np.max(np.abs(later(lesson, "ball", state, pile, 0.5).x[:3] - state.x[:3]))
+    found.append(finding(
+        claim="Balls of 1 cm beside one of 1 m, a million times as heavy, sag like any other.",
+        quantity="largest way of a ball in ½ s, sizes 1 : 100 [m]",
+        predicted=G / (480.0 * np.pi) ** 2,
+        measured=moved,
+        tolerance=1e-11,
+        observation=f"They move by {1e6 * moved:.3f} µm.",
+    ))
+    return found, None
+
+
+# ---------------------------------------------------------------------------------------------- the judge
+
+def judged_by_lesson(lesson, judged, mu):
+    """(residual [m/s] of 9.9 for a Judged record in the plane, largest effective inverse mass times impulse [m/s])."""
+    (x, v, omega, inv_mass, inv_inertia), (a, b, n, p, gap) = judged.bodies, judged.contacts
+    contacts = fallen(KINDS["discs"], 1)[0].contacts._replace(a=a, b=b, n=n, p=p, gap=gap)
+    rows = lesson.contact_rows(x, contacts)
+    A = lesson.delassus_matrix(rows, lesson.inverse_masses(inv_mass, inv_inertia))
+    J_n, J_t = np.sum(judged.J * n, axis=1), judged.J[:, 1] * n[:, 0] - judged.J[:, 0] * n[:, 1]
+    J = np.stack((J_n, J_t), axis=1).ravel()
+    u = rows @ np.column_stack((v, omega)).ravel()
+    u[::2] += np.maximum(gap, 0.0) / ENGINE_DT                           # an open gap may close in this step
+    b = u - A @ J
+    return lesson.cone_residual(A, b, J, np.full(len(a), mu)), np.max(np.diag(A)[::2] * J_n)
+
+
+def steepest(judged):
+    """The largest |J_t|/J_n of contacts that push with more than a thousandth of the mean."""
+    n = judged.contacts[2]
+    J_n = np.sum(judged.J * n, axis=1)
+    J_t = np.linalg.norm(judged.J - J_n[:, None] * n, axis=1)
+    pushing = J_n > 1e-3 * np.mean(J_n)
+    return np.max(J_t[pushing] / J_n[pushing])
+
+
+@case("judge", "A judge for any solver, an engine's included", compiled=False)
+def judge(lesson):
+    """The residual needs impulses and velocities, and does not mind who found them.
+
+    pymunk's impulses in a pile of discs at rest keep the laws to what its iterations leave, 1e-8 g dt after 3 s with
+    200 of them.  Judged with a tenth of the friction, a contact is over the cone: then the residual is no round-off any
+    more.  An impulse that is left out leaves its
+    k_n J_n at its own contact; the largest is the residual, if neighbours have less, and they have: k_n is largest on
+    the diagonal.  pybullet's friction goes along two directions, each up to μ J_n: √2 μ J_n along the diagonal.
+    """
+    found, kind = [], KINDS["discs"]._replace(across=6)
+    state, pile = fallen(kind, 30)
+    world, times, seen = PymunkPile(kind, state, pile, 200, 1e-3), [], []
+    for _ in range(12):
+        world.run(60)
+        times.append(0.25 + (times[-1] if times else 0.0))
+        seen.append(judged_by_lesson(lesson, world.judged(), MU)[0] / (G * ENGINE_DT))
+    record = world.judged()
+    found.append(finding(
+        claim="Impulses of an engine that has converged have no residual.",
+        quantity="residual of pymunk's impulses in 30 discs at rest, over g dt [-]",
+        predicted=0.0,
+        measured=seen[-1],
+        tolerance=1e-7,
+        observation=f"pymunk's impulses have a residual of {seen[-1]:.0e} g dt after 3 s.",
+    ))
+    by_reference = natural_residual(*record, MU, ENGINE_DT) / (G * ENGINE_DT)
+    found.append(finding(
+        claim="The judge without matrices says the same.",
+        quantity="residual by velocities alone, over g dt [-]",
+        predicted=0.0,
+        measured=by_reference,
+        tolerance=1e-7,
+        observation=f"Without matrices it is {by_reference:.0e} g dt.",
+    ))
+    strict = judged_by_lesson(lesson, record, 0.1 * MU)[0] / (G * ENGINE_DT)
+    found.append(finding(
+        claim="Friction that is too large for the cone is found.",
+        quantity="1: with a tenth of μ the residual is above g dt/100",
+        predicted=1,
+        measured=strict > 0.01,
+        tolerance=0.0,
+        observation=f"Judged with μ = {0.1 * MU:g} the same impulses have a residual of {strict:.2f} g dt.",
+    ))
+    largest_push = judged_by_lesson(lesson, record, MU)[1]
+    k = np.argmax(np.sum(record.J * record.contacts[2], axis=1))
+    without = record._replace(J=np.where((np.arange(len(record.J)) == k)[:, None], 0.0, record.J))
+    bodies = list(without.bodies)
+    v, omega = without_impulse(record, k)
+    bodies[1], bodies[2] = v, omega
+    left = judged_by_lesson(lesson, without._replace(bodies=tuple(bodies)), MU)[0]
+    alone = own_push(record, k)
+    found.append(finding(
+        claim="A contact whose impulse is left out has the residual k_n J_n.",
+        quantity="residual without the largest impulse, over k_n J_n [-]",
+        predicted=1.0,
+        measured=left / alone,
+        tolerance=1e-6,
+        observation=f"Without it the residual is {left / (G * ENGINE_DT):.2f} g dt; "
+                    f"the largest k_n J_n is {largest_push / (G * ENGINE_DT):.2f} g dt.",
+    ))
+    small = KINDS["spheres"]._replace(across=2)
+    state, pile = fallen(small, 12)
+    end = later(lesson, "ball", state, pile, 1.0)
+    ours = (np.linalg.norm(end.J - np.sum(end.J * end.contacts.n, axis=1)[:, None] * end.contacts.n, axis=1),
+            np.sum(end.J * end.contacts.n, axis=1))
+    found.append(finding(
+        claim="The pile in space keeps the disc of the cone.",
+        quantity="largest |J_t| − μ J_n of 12 spheres, over the largest J_n [-]",
+        predicted=0.0,
+        measured=max(0.0, np.max(ours[0] - MU * ours[1])) / np.max(ours[1]),
+        tolerance=1e-12,
+        observation="No contact of our 12 spheres has more friction than the cone allows.",
+    ))
+    if engines.installed("pybullet"):
+        kind = KINDS["spheres"]._replace(across=3)
+        world = BulletPile(kind, *fallen(kind, 27), 50)
+        slopes = []
+        for _ in range(12):
+            world.run(60)
+            slopes.append(steepest(world.judged()))
+        world.close()
+        found.append(finding(
+            claim="pybullet's friction is a pyramid: it reaches √2 μ along the diagonal.",
+            quantity="largest |J_t|/(μ J_n) of 27 spheres in pybullet [-]",
+            predicted=np.sqrt(2.0),
+            measured=max(slopes) / MU,
+            tolerance=0.01,
+            observation=f"pybullet's friction goes up to {max(slopes) / MU:.4f} μ times the normal force.",
+        ))
+    return found, Picture("pymunk's impulses, judged", "time [s]", "log₁₀ of the residual over g dt", [
+        series("30 discs, 200 iterations", times, np.log10(np.maximum(seen, 1e-16)), DOTS)],
+        "While discs fall and roll, the impulses are not those of rest; then the residual goes where round-off is.")
+
+
+def cross(r, d):
+    """r × d in the plane."""
+    return r[0] * d[1] - r[1] * d[0]
+
+
+def own_push(record, k):
+    """k_n J_n [m/s] of a contact in the plane."""
+    (x, _, _, inv_mass, inv_inertia), (a, b, n, p, _) = record.bodies, record.contacts
+    k_n = sum(inv_mass[i] + inv_inertia[i] * cross(p[k] - x[i], n[k]) ** 2 for i in (a[k], b[k]))
+    return k_n * (record.J[k] @ n[k])
+
+
+def without_impulse(record, k):
+    """(v, ω) of all bodies, had contact k not pushed."""
+    (x, v, omega, inv_mass, inv_inertia), (a, b, _, p, _) = record.bodies, record.contacts
+    v, omega = 1.0 * v, 1.0 * omega
+    for i, sign in ((a[k], -1.0), (b[k], 1.0)):
+        v[i] += sign * inv_mass[i] * record.J[k]
+        omega[i] += sign * inv_inertia[i] * cross(p[k] - x[i], record.J[k])
+    return v, omega
