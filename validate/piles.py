@@ -1,9 +1,12 @@
 """Piles of lesson 9 against engines, as ratios measured in one run: `python -m validate.piles [KIND …] [--bodies N]
-[--rounds N]`.
+[--rounds N]`; how the cost of a step grows with the number of bodies: `--growth`; and memory: `--memory`.
 
 Kinds: discs, boxes (in the plane, against pymunk), spheres, bricks (in space, against pybullet).  Both run the same
 bodies from the same settled state, in turn, with steps of 1/240 s, μ = 0.5 and no sleeping.  Times are CPU times of
 one thread.  Overlaps of both are found by lesson 6's geometry, that is by the contacts of lesson 9.
+
+The cost of a step should grow as n to the power of 1, within a tenth, from 100 to 10,000 bodies; all sizes are timed in
+turn.  The memory is that of the whole process, compiler included, with 10,000 spheres: at most 4 GiB.
 """
 
 import argparse
@@ -19,6 +22,10 @@ from .engines.contact import DT, KINDS, BulletPile, PymunkPile, fallen
 
 BLOCK = 40                   # steps of one timing
 SETTLE = 4.0                 # for which a pile falls and comes to rest [s]
+SIZES = (100, 316, 1000, 3162, 10_000)  # bodies of the piles whose cost is compared
+LANDING = 2.0                # for which those piles fall: long enough that all bodies have contacts [s]
+GROWTH = (0.9, 1.1)          # goal: the power of n with which the cost of a step grows [-]
+ROOM = 4.0                   # goal: memory of 10,000 spheres, at most [GiB]
 REACH = 1e-3                 # gaps up to this are looked at when overlaps are measured [m]
 RIVALS = {                   # {kind: {label: (engine, iterations, goal: greatest ratio of times)}}
     "discs": {"pymunk, 10 iterations": (PymunkPile, 10, 0.5)},
@@ -85,13 +92,62 @@ def compare(lesson, name, n, rounds):
                *overlaps(lesson, kind, pile, *ours.places()), *overlaps(lesson, kind, pile, *other.places()))
 
 
+def landed(lesson, name, n):
+    """The lesson's pile of n bodies after a while, as wide as it is high."""
+    kind = KINDS[name]
+    kind = kind._replace(across=max(2, round(n ** (1.0 / kind.d))))
+    ours = Ours(lesson, kind, *fallen(kind, n))
+    ours.run(round(LANDING / DT))
+    return ours
+
+
+def growth(lesson, name, sizes, rounds):
+    """(power of n, [(n, ms per step, contacts per body)]): the slope of all medians, over logarithms."""
+    piles = [landed(lesson, name, n) for n in sizes]
+    times = np.median([[cpu_time(pile) for pile in piles] for _ in range(rounds)], axis=0)
+    power = np.polyfit(np.log(sizes), np.log(times), 1)[0]
+    return power, [(n, t, len(pile.state.contacts.a) / n) for n, t, pile in zip(sizes, times, piles)]
+
+
+def grow(lesson, names, rounds):
+    """Print how the cost of a step grows."""
+    table = Table("pile", "power of n", "goal", *(f"{n:,}: ms per step (contacts per body)" for n in SIZES))
+    for name in names:
+        power, rows = growth(lesson, name, SIZES, rounds)
+        costs = [f"{ms:.3g} ({contacts:.1f})" for _, ms, contacts in rows]
+        table.add_row(name, f"{power:.2f}", f"{GROWTH[0]:g} to {GROWTH[1]:g}", *costs)
+    Console(width=160).print(table)
+
+
+def peak_memory():
+    """The most memory [GiB] that this process has ever had."""
+    import resource  # Windows has none
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / (2**30 if sys.platform == "darwin" else 2**20)
+
+
+def remember(lesson, n=10_000):
+    """Print the memory of a pile of spheres."""
+    before = peak_memory()
+    pile = landed(lesson, "spheres", n)
+    print(f"{n:,} spheres, {len(pile.state.contacts.a):,} contacts: {peak_memory():.2f} GiB at most, "
+          f"{before:.2f} GiB before; goal: {ROOM:g} GiB")
+
+
 def main(arguments):
     parser = argparse.ArgumentParser(prog="python -m validate.piles", description=__doc__.splitlines()[0])
     parser.add_argument("kinds", nargs="*", choices=[[], *KINDS], default=[])
     parser.add_argument("--bodies", type=int, default=1000)
     parser.add_argument("--rounds", type=int, default=15)
+    parser.add_argument("--growth", action="store_true", help="how the cost grows from 100 to 10,000 bodies")
+    parser.add_argument("--memory", action="store_true", help="memory of 10,000 spheres")
     asked = parser.parse_args(arguments)
     lesson = modules.bind("contact", compiled=True)
+    if asked.growth or asked.memory:
+        if asked.memory:
+            remember(lesson)
+        if asked.growth:
+            grow(lesson, asked.kinds or KINDS, asked.rounds)
+        return 0
     table = Table("pile", "engine", "time, ours / engine", "middle half", "goal", "ours [ms]", "engine [ms]",
                   "overlap, ours [mm]", "engine [mm]")
     for name in asked.kinds or KINDS:
