@@ -600,6 +600,14 @@ INSIDE_IN_SPACE = (          # shape, centres [m] of bodies with half sizes of �
 )
 
 
+def wedge_in_space(lesson, degrees):
+    """Forces over the weight, (2,), of a ball between two walls without friction."""
+    state, pile = pile_in_space(lesson, "ball", [(0.0, 0.0, 0.5 / np.cos(np.radians(degrees)))], [(0.5,) * 3], 1.0,
+                                mu=0.0, planes=[ramp(degrees), ramp(-degrees)])
+    end = later(lesson, "ball", state, pile, 1.0)
+    return np.linalg.norm(end.J, axis=1) * pile.substeps / DT / G
+
+
 @case("extremes-in-space", "The same in space", compiled=False)
 def extremes_in_space(lesson):
     """What holds in the plane holds in space: deep overlaps, friction 0 and ∞ on a slope, a wedge, sizes of 1 : 100.
@@ -638,19 +646,18 @@ def extremes_in_space(lesson):
             tolerance=1e-9,
             observation=f"On 40° with μ = {mu:g} its speed is {speed:.4g} m/s after ¼ s.",
         ))
-    law = 0.5 / np.cos(np.radians(80.0))
-    state, pile = pile_in_space(lesson, "ball", [(0.0, 0.0, law)], [(0.5,) * 3], 1.0, mu=0.0,
-                                planes=[ramp(80.0), ramp(-80.0)])
-    end = later(lesson, "ball", state, pile, 1.0)
-    forces = np.linalg.norm(end.J, axis=1) * pile.substeps / DT / G
-    found.append(finding(
-        claim="In a wedge of slope θ each wall carries 1/(2 cos θ) weights.",
-        quantity="force over the weight of a ball at 80° [-]",
-        predicted=law,
-        measured=forces[np.argmax(np.abs(forces - law))] if forces.size == 2 else np.nan,
-        tolerance=1e-6 * law,
-        observation=f"At 80° the walls carry {' and '.join(f'{f:.4f}' for f in forces)} weights.",
-    ))
+    angles = (30.0, 60.0, 80.0)
+    carried_by = [wedge_in_space(lesson, degrees) for degrees in angles]
+    for degrees, forces in zip(angles, carried_by):
+        law = 0.5 / np.cos(np.radians(degrees))
+        found.append(finding(
+            claim="In a wedge of slope θ each wall carries 1/(2 cos θ) weights.",
+            quantity=f"force over the weight of a ball at {degrees:g}° [-]",
+            predicted=law,
+            measured=forces[np.argmax(np.abs(forces - law))] if forces.size == 2 else np.nan,
+            tolerance=1e-6 * law,
+            observation=f"At {degrees:g}° the walls carry {' and '.join(f'{f:.4f}' for f in forces)} weights.",
+        ))
     x = [(0.0, 0.0, 1.0), (1.5, 0.0, 0.01), (0.0, 1.5, 0.01)]
     state, pile = pile_in_space(lesson, "ball", x, [(1.0,) * 3] + [(0.01,) * 3] * 2, [1e6, 1.0, 1.0], margin=0.002)
     moved = np.max(np.abs(later(lesson, "ball", state, pile, 0.5).x[:3] - state.x[:3]))
@@ -662,7 +669,11 @@ def extremes_in_space(lesson):
         tolerance=1e-11,
         observation=f"They move by {1e6 * moved:.3f} µm.",
     ))
-    return found, None
+    fine = np.linspace(0.0, 85.0, 86)
+    return found, Picture("A ball between two walls", "slope of the walls [°]", "force over the weight [-]", [
+        series("theory, 1/(2 cos θ)", fine, 0.5 / np.cos(np.radians(fine)), LINE),
+        series("measured", angles, [np.mean(forces) for forces in carried_by], DOTS)],
+        "In space the same forces hold a ball as hold a disc in the plane.")
 
 
 # ---------------------------------------------------------------------------------------------- the judge

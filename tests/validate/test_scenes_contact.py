@@ -1,0 +1,32 @@
+"""Scenes of lesson 9: a wrong answer departs from the truth in the case that should notice it."""
+
+import pytest
+
+from validate import measure, modules
+from validate.results import is_right
+
+TEXT = (modules.SOLUTIONS / "contact.py").read_text(encoding="utf-8")
+CONE = "limit = mu[n // 2] * J[n] if J[n] > 0.0 else 0.0"
+WRONG = [                    # scene, case, method, a right line, a wrong one
+    ("mass_ratio", "relaxed sweeps, 10 : 1", "sweeps, counted", "omega = 2.0 / (1.0 + np.sqrt(1.0 - rho))",
+     "omega = 1.7"),
+    ("mass_ratio", "sweeps, 10 : 1", "sweeps, counted", "(A[k] @ lam + b[k]) / A[k, k])", "(A[k] @ lam + b[k]))"),
+    ("mass_ratio", "overlap, 10 : 1", "pile", "s = 2.0 * np.pi * hertz * dt", "s = 1.9 * np.pi * hertz * dt"),
+    ("mass_ratio", "a million on 1, refused", "sweeps", 'raise Diverged("residual of the', 'return J\n    print("'),
+    ("mass_ratio", "forces, a million : 1", "Murty", "right[k] = A[k], -b[k]", "right[k] = A[k], -1.00001 * b[k]"),
+    ("critical_friction", "ladder at 60°", "sweeps", CONE, CONE.replace("mu[n // 2]", "1.001 * mu[n // 2]")),
+    ("arch", "least thickness, 4 stones", "sweeps", "sign * (r_x * d_y - r_y * d_x)", "sign * 1.1 * r_x * d_y"),
+    ("dominoes", "six", "pile", "pile.mu * J_n if", "0.5 * pile.mu * J_n if"),
+    ("piles", "12 spheres", "pile in space", "return scaled(limit / size, J) if size > limit else scaled(1.0, J)",
+     "return scaled(1.0, J)"),
+]
+
+
+@pytest.mark.parametrize(("scene", "case", "method", "right", "wrong"), WRONG,
+                         ids=[f"{scene}-{k}" for k, (scene, *_) in enumerate(WRONG)])
+def test_a_wrong_answer_departs(tmp_path, scene, case, method, right, wrong):
+    assert right in TEXT
+    (tmp_path / "contact.py").write_text(TEXT.replace(right, wrong).replace("from .", "from solutions."))
+    result = measure.errors(scene, measure.Plan(of=str(tmp_path), speeds=("plain",), live=()))
+    verdicts = {c["label"]: is_right(c) for c in result["cases"][case]["ours"]}
+    assert verdicts[method] is False, verdicts
