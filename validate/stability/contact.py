@@ -739,7 +739,7 @@ def judge(lesson):
     strict = judged_by_lesson(lesson, record, 0.1 * MU)[0] / (G * ENGINE_DT)
     found.append(finding(
         claim="Friction that is too large for the cone is found.",
-        quantity="1: with a tenth of μ the residual is above g dt/100",
+        quantity="judgements with a tenth of μ that find more than g dt/100 [of 1]",
         predicted=1,
         measured=strict > 0.01,
         tolerance=0.0,

@@ -21,7 +21,7 @@ from solutions.contact import (
     round_contacts,
     world_inertia,
 )
-from validate.drawing import seen, sphere
+from validate.drawing import seen
 from validate.engines.contact import DT, KINDS, MU, BulletPile, G, PymunkPile, fallen, inverse_tensors
 from validate.methods import PILE
 from validate.reference.contact import natural_residual
@@ -139,7 +139,7 @@ def truth(p, t):
     """At rest the floor carries all: Newton's second law for the sum of the bodies.  The walls balance each other.
     Rigid bodies do not overlap, e = 0 makes no energy, and the natural map has no residual.
 
-    The residual is that of the impulses of the last step, by whomever: ours, or an engine's.  pymunk tells only the
+    The residual is that of the impulses of the last step, ours or an engine's.  pymunk tells only the
     sum of two points for boxes, so that they are not judged.  pybullet's friction is a pyramid, which reaches √2 μ
     along its diagonals; it is judged with √2 μ here, and with μ in a stability case.
     Source: Newton; Signorini and Coulomb.
@@ -229,21 +229,23 @@ def where(p):
     return x[:p.n], q[:p.n]
 
 
+SIDES = 24                   # of a circle in the picture
+
+
 def points(observed, p):
-    """The centres, seen from the side."""
+    """The outline of every sphere, seen obliquely from the front, and the floor: the first case is drawn."""
     x, _ = where(p)
-    return np.round(seen(x) if x.shape[1] == 3 else x, 4)
+    pile, turn = start(p)[1], np.linspace(0.0, 2.0 * np.pi, SIDES + 1)[:-1]
+    ring = np.stack((np.cos(turn), np.sin(turn)), axis=1)
+    circles = [middle + half[0] * ring for middle, half in zip(seen(x), pile.half)]
+    wall = pile.planes[1, -1]
+    floor = seen([(u * wall, v * wall, 0.0) for u, v in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+    return np.round(np.concatenate((*circles, floor)), 4)
 
 
-def bodies(p):
-    """Spheres: the first case is drawn."""
-    return [sphere(half[0]) for half in start(p)[1].half]
-
-
-def poses(observed, p):
-    x, q = where(p)
-    turned = q if q.ndim == 2 else np.tile([1.0, 0.0, 0.0, 0.0], (p.n, 1))
-    return np.hstack((np.pad(x, ((0, 0), (0, 3 - x.shape[1]))), turned))
+def links(p):
+    around = [(SIDES * k + i, SIDES * k + (i + 1) % SIDES) for k in range(p.n) for i in range(SIDES)]
+    return around + [(SIDES * p.n + i, SIDES * p.n + (i + 1) % 4) for i in range(4)]
 
 
 SCENE = Scene(
@@ -271,9 +273,7 @@ SCENE = Scene(
     quantity_names=quantity_names,
     sanity_checks=sanity_checks,
     points=points,
-    bodies=bodies,
-    poses=poses,
-    ground=True,
+    links=links,
     uses=("a broad phase that looks again only when something has left its widened box", "contact points", "memory",
           "soft contacts with substeps"),
     ablations={"sleeping": "it would hide whether a pile comes to rest",
