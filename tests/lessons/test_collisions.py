@@ -13,7 +13,7 @@ exercise = pytest.mark.exercise
 ROUND_OFF = 1e-12
 # Error of brute force over the size: 1e-13 at a thousand sizes from the origin, over angles of 0.01 rad, times ten.
 KNOWN = 1e-10
-EDGES_WIN_BY = 1e-9          # a pair of edges must separate by this much more [m] than any face, as the lesson says
+EDGE_PREFERENCE = 1e-9          # a pair of edges must separate by this much more [m] than any face, as the lesson says
 
 
 # Sizes of small, medium and large bodies [m]. Powers of two: what is exact at one size is exact at the others.
@@ -176,7 +176,7 @@ def test_no_point_of_the_axis_is_nearer_than_the_one_of_the_contact(lesson, draw
                   np.concatenate(([gap], x - r * n, q + R * n)) / size, KNOWN, given)
 
 
-def flight(draw, rho, beside, far, length, begin=None):
+def advance_projectiles(draw, rho, beside, far, length, begin=None):
     """(x_0, x_1): a path of `length` across the axis and some way along it.
 
     It starts at a distance `far` before the axis and passes it at a distance `beside`.
@@ -197,7 +197,7 @@ def test_the_first_root_is_the_time_of_impact_at_20_m_per_s_and_at_10_km_per_s(l
     for speed in (20.0, 100.0, 1e4):
         length, share = speed * dt, draw(-0.9, 0.9)
         far = (R + r) + draw(0.05, 0.2) * (length - 0.5 * (R + r))
-        x_0, x_1 = flight(draw, R + r, share * (R + r), far, length)
+        x_0, x_1 = advance_projectiles(draw, R + r, share * (R + r), far, length)
         way = far - (R + r) * np.sqrt(1.0 - share**2)
         t, before = draw(1.0, 5.0), x_1.copy()
         got = lesson.cylinder_impact_time(t, dt, x_0, x_1, r, R)
@@ -215,10 +215,10 @@ def test_the_first_root_is_the_time_of_impact_at_20_m_per_s_and_at_10_km_per_s(l
 def test_a_ball_that_misses_leaves_or_arrives_later_has_no_impact(lesson, draw):
     R, r, t, dt = draw(0.5, 1.5), draw(0.05, 0.3), draw(1.0, 5.0), draw(0.01, 0.2)
     rho = R + r
-    x_0, x_1 = flight(draw, rho, draw(1.05, 2.0) * rho, draw(3.0, 5.0), 10.0)
+    x_0, x_1 = advance_projectiles(draw, rho, draw(1.05, 2.0) * rho, draw(3.0, 5.0), 10.0)
     never("time of impact of a ball that misses [s]", lesson.cylinder_impact_time(t, dt, x_0, x_1, r, R),
           f"{x_0} to {x_1}, r = {r}, R = {R}")
-    x_0, x_1 = flight(draw, rho, draw(-0.8, 0.8) * rho, draw(4.0, 6.0), draw(0.5, 1.5))
+    x_0, x_1 = advance_projectiles(draw, rho, draw(-0.8, 0.8) * rho, draw(4.0, 6.0), draw(0.5, 1.5))
     never("time of impact of a ball that arrives too late [s]", lesson.cylinder_impact_time(t, dt, x_0, x_1, r, R),
           f"{x_0} to {x_1}, r = {r}, R = {R}")
     never("time of impact of a ball that moves away [s]",
@@ -242,7 +242,7 @@ def test_a_grazing_shot_from_afar_loses_no_digits(lesson, draw):
     for _ in range(5):
         R, r = draw(0.5, 1.5), draw(0.05, 0.3)
         rho = R + r
-        x_0, x_1 = flight(draw, rho, (1.0 - 1e-9) * rho, 1e3 * rho, 2e3 * rho)
+        x_0, x_1 = advance_projectiles(draw, rho, (1.0 - 1e-9) * rho, 1e3 * rho, 2e3 * rho)
         way = 2e3 * rho * lesson.cylinder_impact_time(0.0, 1.0, x_0, x_1, r, R)
         close("distance to the impact over ρ [-]", way / rho, 1e3 - np.sqrt(2e-9 - 1e-18), 5e-8,
               given=f"{x_0} to {x_1}, r = {r}, R = {R}")
@@ -442,7 +442,7 @@ def test_the_nearest_point_of_a_triangle_is_inside_on_an_edge_or_a_corner(lesson
 
 
 @exercise("6.7", points=0.25,
-          hint="|N| ≤ FLAT times the longest edge squared: BadInput; a small triangle is not flat")
+          hint="|N| ≤ DEGENERATE_AREA times the longest edge squared: BadInput; a small triangle is not flat")
 def test_a_triangle_without_area_is_refused_and_a_small_one_is_not(lesson, draw):
     a, b, p = draw(-3.0, 3.0, 3), draw(-3.0, 3.0, 3), draw(-3.0, 3.0, 3)
     for c in (a + draw(0.2, 0.8) * (b - a), b.copy(), a + 1.5 * (b - a)):
@@ -451,7 +451,7 @@ def test_a_triangle_without_area_is_refused_and_a_small_one_is_not(lesson, draw)
     small = 1e-6 * np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.3, 0.7, 0.0]])
     close("nearest point of a small triangle [m]", lesson.closest_on_triangle(np.array([3e-7, 2e-7, 0.5]), *small),
           [3e-7, 2e-7, 0.0], ROUND_OFF)
-    for high in (1e-7, 1e-9):                                            # |N| is high: 1000 times FLAT or more
+    for high in (1e-7, 1e-9):                                            # |N| is high: 1000 times DEGENERATE_AREA or more
         needle = [np.array(corner) for corner in ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.5, high, 0.0))]
         p = np.array([draw(0.4, 0.6), 0.5 * high, draw(0.5, 2.0)])
         close("nearest point of a needle [m]", lesson.closest_on_triangle(p, *needle), [p[0], p[1], 0.0], ROUND_OFF,
@@ -1013,12 +1013,12 @@ def test_boxes_turned_parallel_nested_and_far_apart_are_separated_by_the_best_of
             given = f"{a}, {b}"
             known = KNOWN * (size + np.abs(a.x - b.x).max())
             close("error of the greatest gap over its uncertainty [-]",
-                  (gap - max(gaps[:6].max(), gaps[6:].max())) / max(known, EDGES_WIN_BY), 0.0, 1.0 + KNOWN, given)
+                  (gap - max(gaps[:6].max(), gaps[6:].max())) / max(known, EDGE_PREFERENCE), 0.0, 1.0 + KNOWN, given)
             between("gap minus the best gap of the faces [m]", gap - gaps[:6].max(), -known, np.inf, given)
             n, k = numbers("n", n, (3,), given), int(k)
             between("gap of the returned axis, minus the greatest [m]", gaps[k] - gap, -known, known, given)
             between("gain over all faces, if the returned axis belongs to two edges [m]",
-                    gaps[k] - gaps[:6].max() if k >= 6 else 1.0, EDGES_WIN_BY - known, np.inf, given)
+                    gaps[k] - gaps[:6].max() if k >= 6 else 1.0, EDGE_PREFERENCE - known, np.inf, given)
             close("n · returned axis: parallel, with either sign [-]", np.abs(n @ candidates[k]), 1.0, KNOWN, given)
             close("size of n [-]", n @ n, 1.0, KNOWN, given)
             between("n · r: from b to a [m]", n @ (a.x - b.x), -known, np.inf, given)
@@ -1026,9 +1026,9 @@ def test_boxes_turned_parallel_nested_and_far_apart_are_separated_by_the_best_of
             hull = facets(differences(p, q) / size)[1].max() * size
             if hull <= 0.0:
                 close("depth of overlapping boxes, minus that of the hull of all differences, over its uncertainty [-]",
-                      (gap - hull) / max(known, EDGES_WIN_BY), 0.0, 1.0 + KNOWN, given)
+                      (gap - hull) / max(known, EDGE_PREFERENCE), 0.0, 1.0 + KNOWN, given)
             else:
-                low = hull - max(known, EDGES_WIN_BY)
+                low = hull - max(known, EDGE_PREFERENCE)
                 between("gap of separate boxes [m]", gap, low, distance(p, q) + known, given)
 
 

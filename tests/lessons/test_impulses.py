@@ -31,7 +31,7 @@ def flat(draw, lesson):
     """A drawn body in the plane."""
     v = draw(-3.0, 3.0, 2)
     omega = draw(1.0, 5.0) * (2 * draw.whole(0, 1) - 1)
-    return lesson.Flat(v, omega, draw(0.3, 2.0), draw(0.5, 5.0))
+    return lesson.BodyState2D(v, omega, draw(0.3, 2.0), draw(0.5, 5.0))
 
 
 def inertia(draw):
@@ -42,7 +42,7 @@ def inertia(draw):
 
 def solid(draw, lesson):
     """A drawn body in space."""
-    return lesson.Solid(draw(-3.0, 3.0, 3), draw(-5.0, 5.0, 3), draw(0.3, 2.0), inertia(draw))
+    return lesson.BodyState3D(draw(-3.0, 3.0, 3), draw(-5.0, 5.0, 3), draw(0.3, 2.0), inertia(draw))
 
 
 def answer(r, inv_mass, inv_inertia, J):
@@ -131,7 +131,7 @@ def test_contact_points_move_as_their_bodies_carry_them(lesson, draw):
     wall_a, wall_b = (body._replace(inv_mass=0.0, inv_inertia=0.0) for body in (a, b))
     pairs = (a, b), (a, wall_b), (wall_a, b)
     for a, b in pairs:
-        close("relative velocity [m/s]", lesson.flat_relative_velocity(a, b, r_a, r_b),
+        close("relative velocity [m/s]", lesson.relative_velocity_2d(a, b, r_a, r_b),
               (apart[0] - apart[1]) / (2.0 * h), 1e-8, given=f"a = {a}, b = {b}, r_a = {r_a}, r_b = {r_b}")
 
 
@@ -165,12 +165,12 @@ def test_a_unit_impulse_drives_two_flat_bodies_apart_by_k(lesson, draw):
         r_a, r_b = draw(-1.0, 1.0, 2), draw(-1.0, 1.0, 2)
         n = unit(draw, 2)
         if fixed:
-            b = lesson.Flat(b.v, b.omega, 0.0, 0.0)
+            b = lesson.BodyState2D(b.v, b.omega, 0.0, 0.0)
         apart = 0.0
         for body, r in ((a, r_a), (b, r_b)):
             spin = body.inv_inertia * (r[0] * n[1] - r[1] * n[0])
             apart += n @ (body.inv_mass * n + spin * np.array([-r[1], r[0]]))
-        close("k [1/kg]", lesson.flat_inverse_mass(a, b, r_a, r_b, n), apart, ROUND_OFF,
+        close("k [1/kg]", lesson.effective_inverse_mass_2d(a, b, r_a, r_b, n), apart, ROUND_OFF,
               given=f"a = {a}, b = {b}, r_a = {r_a}, r_b = {r_b}, n = {n}")
 
 
@@ -178,7 +178,7 @@ def test_a_unit_impulse_drives_two_flat_bodies_apart_by_k(lesson, draw):
 def test_an_impulse_changes_both_momenta_of_a_flat_body(lesson, draw):
     body = flat(draw, lesson)
     r, J, x = draw(-1.0, 1.0, 2), draw(-3.0, 3.0, 2), draw(-2.0, 2.0, 2)
-    after = lesson.flat_push(body, r, J)
+    after = lesson.apply_impulse_2d(body, r, J)
     given = f"{body}, r = {r} m, J = {J} N s"
     close("momentum gained [N s]", (np.asarray(after.v) - body.v) / body.inv_mass, J, ROUND_OFF, given=given)
     momenta = []
@@ -191,7 +191,7 @@ def test_an_impulse_changes_both_momenta_of_a_flat_body(lesson, draw):
           point[0] * J[1] - point[1] * J[0], 1e-11, given=given)
     close("inverse mass and inertia after the impulse", [after.inv_mass, after.inv_inertia],
           [body.inv_mass, body.inv_inertia], 0.0, given=given)
-    wall = lesson.flat_push(lesson.Flat(body.v, body.omega, 0.0, 0.0), r, J)
+    wall = lesson.apply_impulse_2d(lesson.BodyState2D(body.v, body.omega, 0.0, 0.0), r, J)
     close("velocity of an immovable body [m/s, rad/s]", [*wall.v, wall.omega], [*body.v, body.omega], 0.0, given=given)
 
 
@@ -203,11 +203,11 @@ def test_a_unit_impulse_drives_two_solid_bodies_apart_by_k(lesson, draw):
     a, b = solid(draw, lesson), solid(draw, lesson)
     r_a, r_b = draw(-1.0, 1.0, 3), draw(-1.0, 1.0, 3)
     n = unit(draw, 3)
-    wall = lesson.Solid(STILL, STILL, 0.0, np.zeros((3, 3)))
+    wall = lesson.BodyState3D(STILL, STILL, 0.0, np.zeros((3, 3)))
     pairs = (a, b), (a, wall), (wall, b)
     for a, b in pairs:
         expected = n @ (answer(r_a, a.inv_mass, a.inv_inertia, n) + answer(r_b, b.inv_mass, b.inv_inertia, n))
-        close("k [1/kg]", lesson.inverse_mass(a, b, r_a, r_b, n), expected, ROUND_OFF,
+        close("k [1/kg]", lesson.effective_inverse_mass(a, b, r_a, r_b, n), expected, ROUND_OFF,
               given=f"a = {a}, b = {b}, r_a = {r_a}, r_b = {r_b}, n = {n}")
 
 
@@ -216,10 +216,10 @@ def test_a_unit_impulse_drives_two_solid_bodies_apart_by_k(lesson, draw):
 def test_bodies_hit_along_their_centres_only_have_their_masses(lesson, draw):
     a, b, n = solid(draw, lesson), solid(draw, lesson), unit(draw, 3)
     arms = draw(0.1, 1.0) * n, -draw(0.1, 1.0) * n
-    close("k of a central impact [1/kg]", lesson.inverse_mass(a, b, *arms, n), a.inv_mass + b.inv_mass, ROUND_OFF,
+    close("k of a central impact [1/kg]", lesson.effective_inverse_mass(a, b, *arms, n), a.inv_mass + b.inv_mass, ROUND_OFF,
           given=f"a = {a}, b = {b}, n = {n}")
-    wall = lesson.Solid(STILL, STILL, 0.0, np.zeros((3, 3)))
-    close("k against a wall [1/kg]", lesson.inverse_mass(a, wall, arms[0], draw(-1.0, 1.0, 3), n),
+    wall = lesson.BodyState3D(STILL, STILL, 0.0, np.zeros((3, 3)))
+    close("k against a wall [1/kg]", lesson.effective_inverse_mass(a, wall, arms[0], draw(-1.0, 1.0, 3), n),
           a.inv_mass, ROUND_OFF, given=f"a = {a}, n = {n}")
 
 
@@ -246,11 +246,11 @@ def test_an_impulse_moves_its_own_point_by_K_J(lesson, draw):
     inv_inertia = inertia(draw)
     J = draw(-3.0, 3.0, 3)
     given = f"r = {r} m, 1/m = {inv_mass} 1/kg, I⁻¹ = {inv_inertia.tolist()}, J = {J} N s"
-    K = np.asarray(lesson.point_inverse_mass(r, inv_mass, inv_inertia))
+    K = np.asarray(lesson.contact_matrix(r, inv_mass, inv_inertia))
     transposed = K.T if K.shape == (3, 3) else np.zeros((3, 3))
     close("K [1/kg]: shape and symmetry", K, transposed, ROUND_OFF, given=given)
     close("K J [m/s]", K @ J, answer(r, inv_mass, inv_inertia, J), ROUND_OFF, given=given)
-    close("K of an immovable body [1/kg]", lesson.point_inverse_mass(r, 0.0, np.zeros((3, 3))),
+    close("K of an immovable body [1/kg]", lesson.contact_matrix(r, 0.0, np.zeros((3, 3))),
           np.zeros((3, 3)), 0.0, given=given)
 
 
@@ -525,7 +525,7 @@ def drop(draw, lesson, d, e=None):
     t = across(n, unit(draw, d)[::-1])
     t = t / np.linalg.norm(t)
     e = draw(0.3, 0.9) if e is None else e
-    return lesson.Drop(e, along * t - pull * n, draw(-2.0, 2.0, d), n, 1e4, 10.0), t, pull, along
+    return lesson.BouncingBall(e, along * t - pull * n, draw(-2.0, 2.0, d), n, 1e4, 10.0), t, pull, along
 
 
 def swaying(t, x, v, p):
@@ -541,13 +541,13 @@ def test_a_projecting_step_puts_back_a_leaving_ball_and_evaluates_the_accelerati
         p, t, _, along = drop(draw, lesson, d)
         dt, speed, slip, depth = draw(0.01, 0.05), draw(1.0, 5.0), draw(1.0, 3.0), draw(0.5, 1.0)
         x, v = p.point - depth * p.n, slip * t + speed * p.n
-        got = lesson.projecting_step(lesson.falling_acceleration, 0.0, x, v, dt, p)
+        got = lesson.position_projection_step(lesson.falling_acceleration, 0.0, x, v, dt, p)
         given = f"φ = {-depth} m, v = {v} m/s, dt = {dt} s, {p}"
         close("position of a ball that starts inside and leaves [m]", got[0], p.point + dt * (slip + dt * along) * t,
               1e-11, given=given)
         close("velocity of a ball that starts inside and leaves [m/s]", got[1], v + dt * p.gravity, 1e-11, given=given)
         time, x = draw(0.5, 1.0), p.point + depth * p.n
-        got = lesson.projecting_step(swaying, time, x, v, dt, p)
+        got = lesson.position_projection_step(swaying, time, x, v, dt, p)
         v_new = v + dt * swaying(time, x, v, p)
         given = f"a = g cos t + x/2 - v/2, t = {time} s, x = {x} m, v = {v} m/s, dt = {dt} s, {p}"
         close("velocity after a step outside [m/s]", got[1], v_new, 1e-11, given=given)
@@ -567,7 +567,7 @@ def test_a_projecting_step_reflects_and_puts_back_a_ball_that_ends_inside(lesson
         for share, hits, size in cases:
             x = p.point + share * moved * p.n
             scaled = p._replace(gravity=size * p.gravity, point=size * p.point)
-            got = lesson.projecting_step(lesson.falling_acceleration, 0.0, size * x, size * v, dt, scaled)
+            got = lesson.position_projection_step(lesson.falling_acceleration, 0.0, size * x, size * v, dt, scaled)
             given = f"φ = {size * share * moved} m, v = {size * v} m/s, dt = {dt} s, {scaled}"
             tangent = slip + dt * along
             v_n = p.e * (speed + dt * pull) if hits else -(speed + dt * pull)
@@ -641,7 +641,7 @@ def test_a_backtracking_step_follows_a_bouncing_ball_exactly(lesson, draw):
 
 @exercise("7.16", points=0.25,
           hint="do not change x and v: write x = x + …, not x += …; "
-               "after IMPACTS impacts raise Diverged")
+               "after MAX_IMPACTS impacts raise Diverged")
 def test_a_backtracking_step_keeps_its_input_and_raises_diverged_after_too_many_impacts(lesson, draw):
     p, t, pull, along = drop(draw, lesson, 2, 1.0)
     x, v = p.point + draw(0.5e-4, 1e-4) * p.n, 0.0 * t
@@ -652,7 +652,7 @@ def test_a_backtracking_step_keeps_its_input_and_raises_diverged_after_too_many_
     close("input position after the call [m]", x, before, 0.0)
     close("input velocity after the call [m/s]", v, np.zeros(2), 0.0)
     # Without energy loss, flights from a height of 0.1 mm last 2 √(2h/a) < 0.013 s: 10,000 of them end before 130 s.
-    raises("a step of 1000 s with more than IMPACTS impacts", Diverged,
+    raises("a step of 1000 s with more than MAX_IMPACTS impacts", Diverged,
            lesson.backtracking_step, lesson.falling_acceleration, 0.0, x, v, 1000.0, p)
 
 
@@ -703,7 +703,7 @@ def falling_box(draw, lesson, points):
     R = about_x @ about_y
     corners = np.array([[a, b, z] for a in (-1.0, 1.0) for b in (-1.0, 1.0) for z in (-1.0, 1.0)]) * half @ R.T
     lowest = corners[corners[:, 2] < corners[:, 2].min() + 1e-9]
-    body = lesson.Solid(np.array([0.0, 0.0, -draw(1.0, 3.0)]), np.zeros(3), 1.0 / m, R @ np.diag(1.0 / moments) @ R.T)
+    body = lesson.BodyState3D(np.array([0.0, 0.0, -draw(1.0, 3.0)]), np.zeros(3), 1.0 / m, R @ np.diag(1.0 / moments) @ R.T)
     return body, lowest, np.tile([0.0, 0.0, 1.0], (points, 1))
 
 
@@ -764,13 +764,13 @@ def test_the_residual_is_small_exactly_if_the_sweeps_can_settle(lesson, draw):
     n = unit(draw, 3)
     radius, along, e = draw(0.05, 0.5), across(n, draw(5.0, 20.0) * unit(draw, 3)), draw(0.2, 0.8)
     v = along - draw(0.05, 0.2) * n
-    ball = lesson.Solid(v, np.cross(n, along) / radius, 1.0, np.eye(3) / (0.4 * radius**2))
+    ball = lesson.BodyState3D(v, np.cross(n, along) / radius, 1.0, np.eye(3) / (0.4 * radius**2))
     got, residual = lesson.solve_impacts(ball, -radius * n[None], n[None], e, draw(0.1, 0.9))
     given = f"a ball of radius {radius} that rolls with v = {v}, n = {n}, e = {e}"
     close("velocity along n after the impact [m/s]", got.v @ n, -e * (v @ n), 1e-12, given)
     between("residual after the sweeps have settled [m/s]", residual, 0.0, 1e-12, given)
     # The walls can press as hard as they like, so friction stops both points. That state has the least energy.
-    body = lesson.Solid(v, draw(-5.0, 5.0, 3), 1.0, np.eye(3) / (0.4 * radius**2))
+    body = lesson.BodyState3D(v, draw(-5.0, 5.0, 3), 1.0, np.eye(3) / (0.4 * radius**2))
     arms, walls = radius * (np.stack((-n, n)) + 0.2 * draw(-1.0, 1.0, 3)), np.stack((n, -n))
     comes = -(n @ (v + np.cross(body.omega, arms[0])))
     body = body._replace(v=v + (comes - draw(0.5, 2.0)) * n)
@@ -793,13 +793,13 @@ def close_pair(draw, lesson, m, height):
     n = -np.abs(unit(draw, 3))
     d, x = across(n, unit(draw, 3)), draw(0.05, 0.2)
     d = d / np.linalg.norm(d)
-    body = lesson.Solid(STILL, STILL, 1.0 / m, draw(0.0045, 0.006) / (m * x * x) * np.eye(3))
+    body = lesson.BodyState3D(STILL, STILL, 1.0 / m, draw(0.0045, 0.006) / (m * x * x) * np.eye(3))
     return body, np.stack((x * d, -x * d)) - height * x * n, d, n, x
 
 
 @exercise("7.17", points=0.25,
-          hint="at most SWEEPS sweeps; the residual is the largest |component| of Kᵢ (J − Jᵢ) of all "
-               "points; compare it with SETTLED largest_speed(body, r)")
+          hint="at most MAX_SWEEPS sweeps; the residual is the largest |component| of Kᵢ (J − Jᵢ) of all "
+               "points; compare it with CONVERGED largest_speed(body, r)")
 def test_points_close_together_take_many_sweeps_whatever_the_body_weighs_and_however_it_moves(lesson, draw):
     """Two points stick: u⁺ = w n at both.
 
@@ -848,7 +848,7 @@ def tumbling(draw, lesson):
     up = draw(0.1, 0.4) * down
     moments = m * half**2 / 3.0 * np.array([0.01, 1.0, 1.0])
     v, omega = np.array([0.0, 0.0, 0.5 * (up - down)]), np.array([0.0, 0.5 * (up + down) / half, 0.0])
-    rod = lesson.Solid(v, omega, 1.0 / m, np.diag(1.0 / moments))
+    rod = lesson.BodyState3D(v, omega, 1.0 / m, np.diag(1.0 / moments))
     yield rod, half * np.array([[1.0, 0.0, -0.01], [-1.0, 0.0, -0.01]]), np.tile([0.0, 0.0, 1.0], (2, 1))
     for points, omega in ((2, draw(-5.0, 5.0, 3)), (4, np.array([draw(15.0, 40.0), 0.0, draw(-5.0, 5.0)]))):
         body, r, n = falling_box(draw, lesson, points)

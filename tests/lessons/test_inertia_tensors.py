@@ -402,7 +402,7 @@ def test_impossible_tensors_are_refused(lesson, draw):
 
 
 @exercise("4.14", points=0.25,
-          hint="round-off must not refuse a thin plate, I₃ = I₁ + I₂: allow ε = TENSOR_ROUND_OFF of it")
+          hint="round-off must not refuse a thin plate, I₃ = I₁ + I₂: allow ε = MOMENT_ROUND_OFF of it")
 def test_possible_tensors_pass(lesson, draw):
     low, middle = draw(0.5, 1.0), draw(1.0, 1.5)
     raises("an impossible tensor, with a negative moment", BadInput,

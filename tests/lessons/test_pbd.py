@@ -32,13 +32,13 @@ def direction(draw, d):
     return y / np.linalg.norm(y)
 
 
-def net(lesson, inv_mass, pairs, rest, d=2, stiffness=1.0, alpha=0.0, sweeps=1, g=G):
-    """A Net that the lesson has not checked; gravity along the negative last axis."""
+def network(lesson, inv_mass, pairs, rest, d=2, stiffness=1.0, alpha=0.0, sweeps=1, g=G):
+    """A ConstraintNetwork that the lesson has not checked; gravity along the negative last axis."""
     pairs = np.array(pairs, dtype=np.int64)
     gravity = np.zeros(d)
     gravity[-1] = -g
     each = lambda y: np.broadcast_to(np.array(y, dtype=float), len(pairs)).copy()
-    return lesson.Net(np.array(inv_mass, dtype=float), gravity, pairs[:, 0].copy(),
+    return lesson.ConstraintNetwork(np.array(inv_mass, dtype=float), gravity, pairs[:, 0].copy(),
                       pairs[:, 1].copy(), each(rest), each(stiffness), each(alpha), sweeps)
 
 
@@ -64,7 +64,7 @@ def sweeps_of_a_chain(step, lesson, draw, soft):
     alpha, stiffness = draw(0.001, 0.01, 3), draw(0.2, 0.8, 3)
     p = p._replace(alpha=alpha, stiffness=stiffness, sweeps=draw.whole(2, 4))
     goal = x + dt**2 * np.where(p.inv_mass[:, None] > 0.0, p.gravity, 0.0)
-    new, _ = step(lesson.falling_acceleration, 0.0, x, 0.0 * x, dt, p)
+    new, _ = step(lesson.network_gravity, 0.0, x, 0.0 * x, dt, p)
     expected = visited_in_order(goal, p, dt, soft)
     close("positions of a chain after a step of several sweeps [m]", new, expected, ROUND_OFF,
           given=f"x = {x.tolist()} m, dt = {dt} s, {p}")
@@ -82,7 +82,7 @@ def chain(lesson, draw, links, d=2, held=True, **more):
     if held:
         inv_mass[0] = 0.0
     pairs = [(k, k + 1) if k % 2 else (k + 1, k) for k in reversed(range(links))]
-    return x, net(lesson, inv_mass, pairs, draw(0.9, 1.1, links), d, **more)
+    return x, network(lesson, inv_mass, pairs, draw(0.9, 1.1, links), d, **more)
 
 
 def lengths(x, p):
@@ -140,8 +140,8 @@ def test_a_projection_meets_a_linear_constraint_at_once_and_shares_it_by_inverse
         gradients, w = draw(-2.0, 2.0, (k, d)), draw(0.2, 2.0, k)
         C = draw(0.5, 2.0) * (2 * draw.whole(0, 1) - 1)
         w[0] = 0.0
-        small = np.asarray(lesson.projection(1e-6 * C, 1e-6 * gradients, 1e-6 * w), dtype=float)
-        moved = np.asarray(lesson.projection(C, gradients, w), dtype=float)
+        small = np.asarray(lesson.constraint_correction(1e-6 * C, 1e-6 * gradients, 1e-6 * w), dtype=float)
+        moved = np.asarray(lesson.constraint_correction(C, gradients, w), dtype=float)
         given = f"C = {C}, ∇C = {gradients.tolist()}, w = {w}"
         close("C + Σ ∇C · Δx: remaining error of a linear constraint", C + np.sum(gradients * moved), 0.0, ROUND_OFF,
               given=given)
@@ -156,13 +156,13 @@ def test_a_projection_meets_a_linear_constraint_at_once_and_shares_it_by_inverse
 @exercise("8.2", points=0.5, hint="if Σ w|∇C|² is 0 nothing can move: raise BadInput instead of dividing by it")
 def test_a_constraint_that_cannot_be_satisfied_is_refused(lesson, draw):
     gradients, C = draw(0.5, 2.0, (2, 3)), draw(0.5, 1.0)
-    moved = np.asarray(lesson.projection(C, gradients, np.ones(2)), dtype=float)
+    moved = np.asarray(lesson.constraint_correction(C, gradients, np.ones(2)), dtype=float)
     close("C + Σ ∇C · Δx of a constraint that can be satisfied", C + np.sum(gradients * moved), 0.0, ROUND_OFF,
           given=f"C = {C}, ∇C = {gradients.tolist()}")
-    raises("a constraint between immovable points", BadInput, lesson.projection, draw(0.5, 1.0), gradients, np.zeros(2))
-    raises("a constraint without a gradient", BadInput, lesson.projection, draw(0.5, 1.0), 0.0 * gradients, np.ones(2))
+    raises("a constraint between immovable points", BadInput, lesson.constraint_correction, draw(0.5, 1.0), gradients, np.zeros(2))
+    raises("a constraint without a gradient", BadInput, lesson.constraint_correction, draw(0.5, 1.0), 0.0 * gradients, np.ones(2))
     gradients[1] = 0.0
-    raises("a constraint whose only movable point has a zero gradient", BadInput, lesson.projection, C, gradients,
+    raises("a constraint whose only movable point has a zero gradient", BadInput, lesson.constraint_correction, C, gradients,
            np.array([0.0, draw(0.5, 2.0)]))
 
 
@@ -183,7 +183,7 @@ def test_free_points_are_predicted_with_and_immovable_ones_without_acceleration(
     for d in (2, 3):
         x, v = draw(-1.0, 1.0, (4, d)), draw(-1.0, 1.0, (4, d))
         t, dt = draw(0.5, 2.0), draw(0.05, 0.5)
-        p = net(lesson, [draw(1.5, 9.0), 0.0, draw(0.1, 0.7), 10.0 ** draw(-15.0, -9.0)], [(0, 1)], 1.0, d)
+        p = network(lesson, [draw(1.5, 9.0), 0.0, draw(0.1, 0.7), 10.0 ** draw(-15.0, -9.0)], [(0, 1)], 1.0, d)
         before = x.copy()
         free = np.array([[1.0], [0.0], [1.0], [1.0]])
         given = f"1/m = {p.inv_mass} /kg, x = {x.tolist()}, v = {v.tolist()}, t = {t} s, dt = {dt} s"
@@ -228,13 +228,13 @@ def test_a_newton_iteration_solves_the_equations_linearised_at_its_guess(lesson,
 @exercise("8.4", points=0.5,
           hint="λ is in newtons: divide Λ = dt² λ by dt² at the end; W multiplies Jᵀ from the left, row by row")
 def test_links_that_hang_at_rest_carry_what_is_below_them(lesson, draw):
-    """The guess is the solution, so TRACE, which acts on the change of λ, has no effect."""
+    """The guess is the solution, so REGULARISATION, which acts on the change of λ, has no effect."""
     for links in (1, 3):
         rest, masses = draw(0.5, 1.5, links), draw(0.5, 3.0, links)
         dt = draw(0.01, 0.3)
         x = np.zeros((links + 1, 2))
         x[1:, 1] = -np.cumsum(rest)
-        p = net(lesson, [0.0, *(1.0 / masses)], [(k, k + 1) for k in range(links)], rest)
+        p = network(lesson, [0.0, *(1.0 / masses)], [(k, k + 1) for k in range(links)], rest)
         goal = x.copy()
         below = -G * np.cumsum(masses[::-1])[::-1]
         goal[1:, 1] -= dt * dt * G
@@ -246,7 +246,7 @@ def test_links_that_hang_at_rest_carry_what_is_below_them(lesson, draw):
 
 
 @exercise("8.4", points=0.5,
-          hint="each link has ε = TRACE (w_i + w_j), which acts on the change of λ: −ε on "
+          hint="each link has ε = REGULARISATION (w_i + w_j), which acts on the change of λ: −ε on "
                "the diagonal, −C − ε dt² λ on the right (for Λ)")
 def test_redundant_links_share_a_change_of_their_multipliers_by_the_trace(lesson, draw):
     """Three collinear points, each linked to both others: the multipliers s = (1, 1, −1) move nothing.
@@ -260,7 +260,7 @@ def test_redundant_links_share_a_change_of_their_multipliers_by_the_trace(lesson
     gaps = 2.0 ** np.array([draw.whole(-1, 1), draw.whole(-1, 1)])
     # In powers of two C is exactly 0.
     x = np.array([[0.0, 0.0], [gaps[0], 0.0], [gaps[0] + gaps[1], 0.0]])
-    p = net(lesson, w, [(1, 0), (2, 1), (2, 0)], [gaps[0], gaps[1], gaps[0] + gaps[1]])
+    p = network(lesson, w, [(1, 0), (2, 1), (2, 0)], [gaps[0], gaps[1], gaps[0] + gaps[1]])
     pull, lam = draw(-1.0, 1.0, 3), draw(-1.0, 1.0, 3)
     s = np.array([1.0, 1.0, -1.0])
     # The link with the least ε changes most.
@@ -303,7 +303,7 @@ def test_after_a_step_every_link_has_its_length_and_momentum_changes_only_by_gra
     p = p._replace(rest=lengths(x, p))
     v = draw(-1.0, 1.0, x.shape)
     dt = draw(0.02, 0.1)
-    new, v_new = lesson.projection_step(lesson.falling_acceleration, 0.0, x, v, dt, p)
+    new, v_new = lesson.constraint_projection_step(lesson.network_gravity, 0.0, x, v, dt, p)
     new, v_new = np.asarray(new, dtype=float), np.asarray(v_new, dtype=float)
     given = f"x = {x.tolist()} m, v = {v.tolist()} m/s, dt = {dt} s, {p}"
     m = 1.0 / p.inv_mass
@@ -313,8 +313,8 @@ def test_after_a_step_every_link_has_its_length_and_momentum_changes_only_by_gra
           given=given)
     length = draw(0.5, 2.0)
     x = np.array([[0.0, 0.0], [0.0, -length]])
-    p = net(lesson, [0.0, draw(0.5, 2.0)], [(0, 1)], length)
-    carried_along(lesson.projection_step, lesson, draw, x, dt, p, 0.0)
+    p = network(lesson, [0.0, draw(0.5, 2.0)], [(0, 1)], length)
+    carried_along(lesson.constraint_projection_step, lesson, draw, x, dt, p, 0.0)
 
 
 @exercise("8.5", points=0.25,
@@ -328,23 +328,23 @@ def test_fast_points_and_short_links_converge_from_where_the_step_begins(lesson,
     x = np.array([[0.0, 0.0], [1.0, 0.0]]) @ R.T
     v = np.array([[0.0, 0.0], [-draw(14.0, 16.0), draw(0.5, 1.5)]]) @ R.T
     goal = x[1] + dt * v[1]
-    new, _ = lesson.projection_step(lesson.falling_acceleration, 0.0, x, v, dt,
-                                    net(lesson, [0.0, draw(0.5, 2.0)], [(0, 1)], 1.0, g=0.0))
+    new, _ = lesson.constraint_projection_step(lesson.network_gravity, 0.0, x, v, dt,
+                                    network(lesson, [0.0, draw(0.5, 2.0)], [(0, 1)], 1.0, g=0.0))
     close("positions of a pendulum thrown through its pivot [m]", new, [np.zeros(2), -goal / np.linalg.norm(goal)],
           1e-10, given=f"x = {x.tolist()} m, v = {v.tolist()} m/s, dt = {dt} s, no gravity")
     # This chain takes 13 Newton iterations, in every orientation.
     x = np.array([[0.0, 0.0], [0.08, 0.63], [-0.14, 0.56], [0.57, -0.32]]) @ R.T
     v = np.array([[0.0, 0.0], [18.8, -8.4], [3.6, 15.8], [-19.0, 13.0]]) @ R.T
-    p = net(lesson, [0.0, 10.0, 100.0, 0.01], [(0, 1), (1, 2), (2, 3)], np.linalg.norm(x[1:] - x[:-1], axis=1), g=0.0)
-    new, _ = lesson.projection_step(lesson.falling_acceleration, 0.0, x, v, dt, p)
+    p = network(lesson, [0.0, 10.0, 100.0, 0.01], [(0, 1), (1, 2), (2, 3)], np.linalg.norm(x[1:] - x[:-1], axis=1), g=0.0)
+    new, _ = lesson.constraint_projection_step(lesson.network_gravity, 0.0, x, v, dt, p)
     close("lengths of the links of a fast chain after a step [m]", lengths(np.asarray(new, dtype=float), p),
           p.rest, 1e-11, given=f"x = {x.tolist()} m, v = {v.tolist()} m/s, dt = {dt} s, no gravity, {p}")
     # One link is a million times shorter than the other. At 50 m the round-off is 7e-15 m, far more than 1e-12 of the
     # short link.
     for rest in ((1e-6, 1.0), (1.0, 1e-6)):
         x = np.array([[50.0, 0.0], [50.0 + rest[0], 0.0], [50.0 + rest[0], rest[1]]]) @ R.T
-        p = net(lesson, [0.0, draw(0.5, 2.0), draw(0.5, 2.0)], [(0, 1), (1, 2)], rest, g=1e-4)
-        new, _ = lesson.projection_step(lesson.falling_acceleration, 0.0, x, 0.0 * x, 0.01, p)
+        p = network(lesson, [0.0, draw(0.5, 2.0), draw(0.5, 2.0)], [(0, 1), (1, 2)], rest, g=1e-4)
+        new, _ = lesson.constraint_projection_step(lesson.network_gravity, 0.0, x, 0.0 * x, 0.01, p)
         close("lengths of a long and a short link after a step [m]", lengths(np.asarray(new, dtype=float), p),
               rest, 1e-11, given=f"x = {x.tolist()} m, at rest, dt = 0.01 s, g = 1e-4 m/s², {p}")
 
@@ -361,9 +361,9 @@ def test_a_pendulum_goes_where_its_string_is_in_line_with_the_prediction(lesson,
             speed = size * draw(2.0, 4.0) * (2 * draw.whole(0, 1) - 1)
             x = np.stack((np.zeros(2), length * out))
             v = np.stack((np.zeros(2), speed * np.array([-out[1], out[0]])))
-            p = net(lesson, [0.0, draw(0.5, 2.0)], [(0, 1)], length, g=G * size)
+            p = network(lesson, [0.0, draw(0.5, 2.0)], [(0, 1)], length, g=G * size)
             goal = x[1] + dt * v[1] + dt * dt * p.gravity
-            new, _ = lesson.projection_step(lesson.falling_acceleration, 0.0, x, v, dt, p)
+            new, _ = lesson.constraint_projection_step(lesson.network_gravity, 0.0, x, v, dt, p)
             close("pendulum after a step, over its size [-]", np.asarray(new) / size,
                   [np.zeros(2), length / size * goal / np.linalg.norm(goal)], 1e-11,
                   given=f"x = {x.tolist()} m, v = {v.tolist()} m/s, dt = {dt} s, g = {G * size} m/s²")
@@ -371,20 +371,20 @@ def test_a_pendulum_goes_where_its_string_is_in_line_with_the_prediction(lesson,
     links = [(0, 1), (1, 2), (2, 0)]
     ends = []
     for pairs in (links, [*links, (1, 2)]):
-        p = net(lesson, [0.0, 1.0, 2.0], pairs, [np.linalg.norm(triangle[i] - triangle[j]) for i, j in pairs])
-        new, _ = lesson.projection_step(lesson.falling_acceleration, 0.0, triangle, 0.0 * triangle, dt, p)
+        p = network(lesson, [0.0, 1.0, 2.0], pairs, [np.linalg.norm(triangle[i] - triangle[j]) for i, j in pairs])
+        new, _ = lesson.constraint_projection_step(lesson.network_gravity, 0.0, triangle, 0.0 * triangle, dt, p)
         ends.append(new)
     close("a triangle with one link given twice, after a step [m]", ends[1], ends[0], 1e-10,
           given=f"x = {triangle.tolist()} m, dt = {dt} s")
     far = draw(2.2, 3.0)
     between = np.array([[0.0, 0.0], [0.5 * far, draw(0.3, 0.9)], [far, 0.0]])
-    short = net(lesson, [0.0, 1.0, 0.0], [(0, 1), (1, 2)], 1.0)
+    short = network(lesson, [0.0, 1.0, 0.0], [(0, 1), (1, 2)], 1.0)
     raises("two links that are too short for their immovable ends", Diverged,
-           lesson.projection_step, lesson.falling_acceleration, 0.0, between, 0.0 * between, dt, short)
+           lesson.constraint_projection_step, lesson.network_gravity, 0.0, between, 0.0 * between, dt, short)
     short.gravity[1] = np.nan
     # Plain Python raises Diverged; in compiled code solve itself refuses NaN.
     raises("positions that become NaN, for which every comparison is false", Exception,
-           lesson.projection_step, lesson.falling_acceleration, 0.0, between, 0.0 * between, dt, short)
+           lesson.constraint_projection_step, lesson.network_gravity, 0.0, between, 0.0 * between, dt, short)
 
 
 # ---------------------------------------------------------------------------------------------- position-based dynamics
@@ -396,7 +396,7 @@ def test_a_visit_takes_its_share_of_the_error_and_leaves_the_centre_of_mass(less
         s, w = draw(0.2, 0.9), draw(0.3, 2.0, 2)
         x = np.stack((draw(-1.0, 1.0, d), draw(2.0, 3.0, d)))
         for share, rest in ((1.0, draw(0.3, 0.8)), (s, draw(0.3, 0.8)), (s, draw(8.0, 9.0))):
-            p = net(lesson, w, [(0, 1)], rest, d, share)
+            p = network(lesson, w, [(0, 1)], rest, d, share)
             before = x.copy()
             new = np.asarray(lesson.distance_sweep(x, p), dtype=float)
             given = f"x = {x.tolist()} m, w = {w}, rest = {rest} m, stiffness {share}"
@@ -414,7 +414,7 @@ def test_a_sweep_visits_one_link_after_the_other_and_leaves_the_immovable_alone(
     share, w = draw(0.3, 1.0, 2), draw(0.5, 2.0, 2)
     gaps, rest = np.array([draw(1.1, 1.5), draw(0.5, 0.9)]), draw(0.8, 1.2, 2)
     x = begin + np.outer([0.0, gaps[0] + gaps[1], gaps[0]], n)
-    p = net(lesson, [0.0, *w], [(0, 2), (2, 1)], rest, 3, share)
+    p = network(lesson, [0.0, *w], [(0, 2), (2, 1)], rest, 3, share)
     first = gaps[0] - share[0] * (gaps[0] - rest[0])
     taken = share[1] * (gaps[0] + gaps[1] - first - rest[1]) / (w[0] + w[1])
     expected = begin + np.outer([0.0, gaps[0] + gaps[1] - w[0] * taken, first + w[1] * taken], n)
@@ -422,27 +422,27 @@ def test_a_sweep_visits_one_link_after_the_other_and_leaves_the_immovable_alone(
     close("positions after a sweep [m]", new, expected, ROUND_OFF, given=f"x = {x.tolist()} m, {p}")
     close("position of the immovable point [m]", np.asarray(new)[0], x[0], 0.0)
     small = lesson.distance_sweep(1e-7 * x, p._replace(rest=1e-7 * p.rest))
-    close("positions of a net ten million times smaller [1e-7 m]", np.asarray(small) * 1e7, expected,
+    close("positions of a network ten million times smaller [1e-7 m]", np.asarray(small) * 1e7, expected,
           ROUND_OFF * 10.0)
     x[2] = x[0]
     raises("a link whose ends coincide", BadInput, lesson.distance_sweep, x, p)
 
 
-@exercise("8.7", points=1, hint="predict, then net.sweeps sweeps, then the velocity from the displacement")
+@exercise("8.7", points=1, hint="predict, then network.sweeps sweeps, then the velocity from the displacement")
 def test_a_weight_on_one_link_sags_by_what_its_sweeps_leave(lesson, draw):
     for sweeps in (1, draw.whole(2, 5)):
         s, dt, length = draw(0.2, 0.8), draw(0.01, 0.1), draw(0.5, 2.0)
         S = (1.0 - s) ** sweeps
         sag = G * dt * dt * S / (1.0 - S)
         x = np.array([[0.0, 0.0], [0.0, -length - sag]])
-        p = net(lesson, [0.0, draw(0.2, 5.0)], [(0, 1)], length, 2, s, 0.0, sweeps)
+        p = network(lesson, [0.0, draw(0.2, 5.0)], [(0, 1)], length, 2, s, 0.0, sweeps)
         given = f"x = {x.tolist()} m, dt = {dt} s, {p}"
-        new, v = lesson.pbd_step(lesson.falling_acceleration, 0.0, x, 0.0 * x, dt, p)
+        new, v = lesson.pbd_step(lesson.network_gravity, 0.0, x, 0.0 * x, dt, p)
         close("weight that starts at its equilibrium, position after a step [m]", new, x, ROUND_OFF, given=given)
         close("weight that starts at its equilibrium, velocity after a step [m/s]", v, 0.0 * x, ROUND_OFF / dt,
               given=given)
         fast = np.array([[0.0, 0.0], [0.0, draw(1.0, 2.0)]])
-        new, v = lesson.pbd_step(lesson.falling_acceleration, 0.0, x, fast, dt, p)
+        new, v = lesson.pbd_step(lesson.network_gravity, 0.0, x, fast, dt, p)
         expected = -length - S * (sag + G * dt * dt - dt * fast[1, 1])
         close("thrown weight, position after a step [m]", np.asarray(new)[1, 1], expected, ROUND_OFF,
               given=f"v = {fast[1]} m/s, {given}")
@@ -689,7 +689,7 @@ def test_after_a_visit_a_spring_satisfies_hookes_law_with_its_total_multiplier(l
     for d in (2, 3):
         x = np.stack((draw(-1.0, 1.0, d), draw(2.0, 3.0, d)))
         w = draw(0.3, 2.0, 2)
-        p = net(lesson, w, [(0, 1)], draw(0.5, 1.0) if d == 2 else draw(8.0, 9.0), d, 0.4, draw(0.001, 0.1))
+        p = network(lesson, w, [(0, 1)], draw(0.5, 1.0) if d == 2 else draw(8.0, 9.0), d, 0.4, draw(0.001, 0.1))
         Lam = np.array([-draw(0.1, 0.5)])
         dt = draw(0.1, 0.4)
         before, kept = x.copy(), Lam.copy()
@@ -718,7 +718,7 @@ def test_springs_are_visited_one_after_the_other(lesson, draw):
     stretch, rest, alpha = draw(0.1, 0.5, 2), draw(0.8, 1.2, 2), draw(0.001, 0.1, 2)
     middle, end = rest[0] + stretch[0], rest.sum() + stretch.sum()
     x = begin + np.outer([0.0, end, middle], n)
-    p = net(lesson, [0.0, *w], [(0, 2), (2, 1)], rest, 2, 0.4, alpha)
+    p = network(lesson, [0.0, *w], [(0, 2), (2, 1)], rest, 2, 0.4, alpha)
     new, Lam = lesson.compliant_sweep(x, np.zeros(2), dt, p)
     soft = alpha / dt**2
     first = -stretch[0] / (w[1] + soft[0])
@@ -728,7 +728,7 @@ def test_springs_are_visited_one_after_the_other(lesson, draw):
           begin + np.outer([0.0, end + w[0] * second, middle + w[1] * (first - second)], n), 1e-11,
           given=f"x = {x.tolist()} m, dt = {dt} s, {p}")
     small, _ = lesson.compliant_sweep(1e-7 * x, np.zeros(2), dt, p._replace(rest=1e-7 * p.rest))
-    close("positions of a net ten million times smaller [1e-7 m]", np.asarray(small) * 1e7,
+    close("positions of a network ten million times smaller [1e-7 m]", np.asarray(small) * 1e7,
           np.asarray(new, dtype=float), 1e-11)
     x[2] = x[0]
     raises("a link whose ends coincide", BadInput, lesson.compliant_sweep, x, np.zeros(2), dt, p)
@@ -747,21 +747,21 @@ def test_one_spring_is_implicit_euler_whatever_the_step_and_the_sweeps(lesson, d
         stretch, speed = draw(-0.2, 0.2), draw(-1.0, 1.0)
         x = np.array([[0.0, 0.0], [0.0, -rest - stretch]])
         v = np.array([[0.0, 0.0], [0.0, speed]])
-        p = net(lesson, [0.0, 1.0 / m], [(0, 1)], rest, 2, 1.0, 1.0 / k, sweeps)
+        p = network(lesson, [0.0, 1.0 / m], [(0, 1)], rest, 2, 1.0, 1.0 / k, sweeps)
         given = f"m = {m} kg, k = {k} N/m, dt = {dt} s, stretch {stretch} m, v = {speed} m/s, {sweeps} sweeps"
-        new, v_new = lesson.xpbd_step(lesson.falling_acceleration, 0.0, x, v, dt, p)
+        new, v_new = lesson.xpbd_step(lesson.network_gravity, 0.0, x, v, dt, p)
         expected = (speed + dt * (k / m * stretch - G)) / (1.0 + dt * dt * k / m)
         close("velocity after a step [m/s]: as by implicit Euler", np.asarray(v_new)[1, 1], expected, 1e-10,
               given=given)
         close("position after a step [m]", np.asarray(new)[1, 1], x[1, 1] + dt * expected, 1e-11, given=given)
         hanging = np.array([[0.0, 0.0], [0.0, -rest - m * G / k]])
-        new, _ = lesson.xpbd_step(lesson.falling_acceleration, 0.0, hanging, 0.0 * v, dt, p)
+        new, _ = lesson.xpbd_step(lesson.network_gravity, 0.0, hanging, 0.0 * v, dt, p)
         close("position of a weight at its equilibrium after a step [m]: m g/k lower", new, hanging, 1e-11, given=given)
         soft = 1.0 / (k * dt * dt)
         carried_along(lesson.xpbd_step, lesson, draw, x, dt, p, soft / (1.0 / m + soft))
         # Three parallel springs: more links than points, each with its own Λ.
         soft = soft * draw(0.5, 2.0, 3)
-        side_by_side = net(lesson, [0.0, 1.0 / m], [(0, 1)] * 3, rest, 2, 1.0, soft * dt * dt)
+        side_by_side = network(lesson, [0.0, 1.0 / m], [(0, 1)] * 3, rest, 2, 1.0, soft * dt * dt)
         carried_along(lesson.xpbd_step, lesson, draw, x, dt, side_by_side, np.prod(soft / (1.0 / m + soft)))
     sweeps_of_a_chain(lesson.xpbd_step, lesson, draw, soft=True)
 
@@ -786,7 +786,7 @@ def test_the_generalised_inverse_mass_is_the_response_to_a_unit_impulse(lesson, 
                  (draw(-1.0, 1.0, 3), 10.0 * mass)):
         n = direction(draw, 3)
         omega = R @ np.diag(1.0 / I_body) @ R.T @ np.cross(r, n)
-        close("generalised inverse mass [1/kg]", lesson.generalised_inverse_mass(q, r, n, m, I_body),
+        close("generalised inverse mass [1/kg]", lesson.effective_inverse_mass_at(q, r, n, m, I_body),
               n @ (n / m + np.cross(omega, r)), ROUND_OFF,
               given=f"q = {q}, r = {r} m, n = {n}, m = {m} kg, I = {I_body}")
 
@@ -806,9 +806,9 @@ def test_a_push_beside_the_centre_moves_and_turns_a_body(lesson, draw):
     q, R, m, I_body = body(draw)
     x, r, p = draw(-1.0, 1.0, 3), draw(-1.0, 1.0, 3), draw(-1.0, 1.0, 3)
     for other in (0.1 * m, 10.0 * m):
-        close("centre of mass of a body with another mass [m]", lesson.push_body(x, q, r, p, other, I_body)[0],
+        close("centre of mass of a body with another mass [m]", lesson.apply_positional_impulse(x, q, r, p, other, I_body)[0],
               x + p / other, ROUND_OFF * 10.0, given=f"p = {p} kg m, m = {other} kg")
-    new, turned = lesson.push_body(x, q, r, p, m, I_body)
+    new, turned = lesson.apply_positional_impulse(x, q, r, p, m, I_body)
     given = f"q = {q}, r = {r} m, p = {p} kg m, m = {m} kg, I = {I_body}"
     close("centre of mass [m]", new, x + p / m, ROUND_OFF, given=given)
     turned = np.asarray(turned, dtype=float)

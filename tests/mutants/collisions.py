@@ -179,7 +179,7 @@ edit("6.6", "signs with a tolerance", "np.all(turns > 0.0) or np.all(turns < 0.0
 
 # 6.7 ------------------------------------------------------------------------------------------------------------
 @variants
-def on_triangle(edges=3, inside=True, clamp=True, checked=True, flat=worked.FLAT, absolute=False):
+def on_triangle(edges=3, inside=True, clamp=True, checked=True, flat=worked.DEGENERATE_AREA, absolute=False):
     def closest_on_triangle(p, a, b, c):
         corners = [a, b, c]
         N = np.cross(b - a, c - a)
@@ -204,15 +204,15 @@ wrong("6.7", "accepts a triangle without area")(on_triangle(checked=False))
 FIRST_TWO = "nearer(p, closest_on_segment(p, a, b), closest_on_segment(p, b, c))"
 THREE_EDGES = f"nearer(p, {FIRST_TWO}, closest_on_segment(p, c, a))"
 OUTSIDE = "closest_on_segment(p, {0}, {1}) if dot(cross({1} - {0}, q - {0}), N) < 0.0 else "
-edit("6.7", "refuses small inputs", "FLAT * longest", "1e-9")
+edit("6.7", "refuses small inputs", "DEGENERATE_AREA * longest", "1e-9")
 edit("6.7", "the nearest corner", THREE_EDGES, "nearer(p, nearer(p, a, b), c)")
 edit("6.7", "the first edge with p outside", THREE_EDGES,
      OUTSIDE.format("a", "b") + OUTSIDE.format("b", "c") + "closest_on_segment(p, c, a)")
 edit("6.7", "the last edge with p outside", THREE_EDGES,
      OUTSIDE.format("c", "a") + OUTSIDE.format("b", "c") + "closest_on_segment(p, a, b)")
 edit("6.7", "the first two edges compared from a corner", FIRST_TWO, FIRST_TWO.replace("nearer(p", "nearer(c"))
-edit("6.7", "refuses needles: forgets the root of N · N", "np.sqrt(dot(N, N)) > FLAT * longest",
-     "dot(N, N) > FLAT * longest**2")
+edit("6.7", "refuses needles: forgets the root of N · N", "np.sqrt(dot(N, N)) > DEGENERATE_AREA * longest",
+     "dot(N, N) > DEGENERATE_AREA * longest**2")
 
 
 # 6.8 ------------------------------------------------------------------------------------------------------------
@@ -302,7 +302,7 @@ def traversal(prune=True, second=True, turned=False, both=True,
             down_a, down_b = int(a.child[i]), int(b.child[j])
             if not down_a and not down_b:
                 leaves(a, i, b, j, found)
-            elif down_a and (not down_b or worked.girth(a, i) >= worked.girth(b, j)):
+            elif down_a and (not down_b or worked.half_perimeter(a, i) >= worked.half_perimeter(b, j)):
                 go(down_a, j)
                 if second:
                     go(down_a + 1, j)
@@ -404,7 +404,7 @@ edit("6.13", "room for 20 corners", "2 * len(y)", "20")
 
 # 6.14 -----------------------------------------------------------------------------------------------------------
 @variants
-def boxes(axes=range(15), room=worked.EDGES_WIN_BY, sign=1.0, width=worked.half_width, choose=lambda new,
+def boxes(axes=range(15), room=worked.EDGE_PREFERENCE, sign=1.0, width=worked.half_width, choose=lambda new,
           old: new > old, fixed=False):
     def box_separation(a, b):
         r, best = a.x - b.x, None
@@ -427,8 +427,8 @@ wrong("6.14", "from a to b")(boxes(sign=-1.0))
 wrong("6.14", "does not orient the axis")(boxes(fixed=True))
 wrong("6.14", "the last of equal ones")(boxes(choose=lambda new, old: new >= old))
 edit("6.14", "accepts zero axes", "dot(axis, axis) > 0.0", "dot(axis, axis) >= 0.0")
-edit("6.14", "edges need no advantage", "EDGES_WIN_BY if k >= 6", "0.0 if k >= 6")
-edit("6.14", "edges win by a twentieth", "EDGES_WIN_BY if k >= 6", "0.05 * abs(greatest) if k >= 6")
+edit("6.14", "edges need no advantage", "EDGE_PREFERENCE if k >= 6", "0.0 if k >= 6")
+edit("6.14", "edges win by a twentieth", "EDGE_PREFERENCE if k >= 6", "0.05 * abs(greatest) if k >= 6")
 edit("6.14", "forgets the last axis", "range(15)", "range(14)")
 edit("6.14", "the first axis that separates", "not gap <= greatest +", "greatest <= 0.0 and gap > greatest +")
 edit("6.14", "edges only where no face separates",
@@ -437,12 +437,12 @@ edit("6.14", "the axis whose gap is nearest to zero", "not gap <= greatest +", "
 wrong("6.14", "the least gap")(boxes(choose=lambda new, old: new < old))
 wrong("6.14", "the longest half edge for the width")(boxes(width=lambda box, n: float(np.max(box.half))))
 edit("6.14", "the greatest begins with a megametre below zero", "-np.inf", "-1e6")
-edit("6.14", "faces need an advantage, too", "EDGES_WIN_BY if k >= 6 else 0.0", "EDGES_WIN_BY")
+edit("6.14", "faces need an advantage, too", "EDGE_PREFERENCE if k >= 6 else 0.0", "EDGE_PREFERENCE")
 
 
 # 6.15 -----------------------------------------------------------------------------------------------------------
 @variants
-def nearest(steps=worked.GJK_STEPS, along=(-1.0, 1.0), reduce=True, swap=False):
+def nearest(steps=worked.MAX_GJK_STEPS, along=(-1.0, 1.0), reduce=True, swap=False):
     def gjk(a, b):
         worked.check_hulls(a, b)
         p, q, weights = a[:1], b[:1], np.ones(1)
@@ -452,7 +452,7 @@ def nearest(steps=worked.GJK_STEPS, along=(-1.0, 1.0), reduce=True, swap=False):
             if worked.far_enough(v, a[i] - b[j]):
                 break
             p, q = np.vstack((p, a[i])), np.vstack((q, b[j]))
-            p, q, weights = worked.nearest_part(p, q)
+            p, q, weights = worked.nearest_subsimplex(p, q)
             if not reduce:
                 p, q, weights = p[-1:], q[-1:], np.ones(1)
         x, y = weights @ p, weights @ q
@@ -470,9 +470,9 @@ wrong("6.15", "n from a to b")(nearest(swap=True))
 edit("6.15", "checks nothing", "check_hulls(a, b)", "pass")
 edit("6.15", "a corner of each for the points between them", "weights @ p, 0.0, weights @ q, 0.0",
      "p[0], 0.0, q[0], 0.0")
-edit("6.15", "gives up after eight steps", "range(GJK_STEPS)", "range(8)")
-edit("6.15", "gives up after twelve steps", "range(GJK_STEPS)", "range(12)")
-edit("6.15", "gives up after twenty steps", "range(GJK_STEPS)", "range(20)")
+edit("6.15", "gives up after eight steps", "range(MAX_GJK_STEPS)", "range(8)")
+edit("6.15", "gives up after twelve steps", "range(MAX_GJK_STEPS)", "range(12)")
+edit("6.15", "gives up after twenty steps", "range(MAX_GJK_STEPS)", "range(20)")
 edit("6.15", "overlap below a nanometre", "if far_enough(", "if v @ v < 1e-18 or far_enough(")
 
 

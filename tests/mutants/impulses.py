@@ -67,15 +67,15 @@ wrong("7.2", "damps outside, too")(penalty(inside=lambda phi: True))
 # 7.3 ------------------------------------------------------------------------------------------------------------
 @variants
 def seen(side=1.0, sign=1.0, turns=1.0, swap=False):
-    def flat_relative_velocity(a, b, r_a, r_b):
+    def relative_velocity_2d(a, b, r_a, r_b):
         r_a, r_b = (r_b, r_a) if swap else (r_a, r_b)
         spin = lambda omega, r: turns * omega * side * np.array([-r[1], r[0]])
         return sign * (a.v + spin(a.omega, r_a) - b.v - spin(b.omega, r_b))
-    return flat_relative_velocity
+    return relative_velocity_2d
 
 
 @right("7.3", "in space")
-def flat_relative_velocity(a, b, r_a, r_b):
+def relative_velocity_2d(a, b, r_a, r_b):
     point = lambda body, r: np.append(body.v, 0.0) + np.cross([0.0, 0.0, body.omega], np.append(r, 0.0))
     return (point(a, r_a) - point(b, r_b))[:2]
 
@@ -116,11 +116,11 @@ edit("7.4", "accepts two immovable bodies that separate",
 # 7.5 and 7.7 ----------------------------------------------------------------------------------------------------
 @variants
 def flat_k(power=2, second=True, over=False, arm=lambda r, n: r[0] * n[1] - r[1] * n[0], mass=1.0):
-    def flat_inverse_mass(a, b, r_a, r_b, n):
+    def effective_inverse_mass_2d(a, b, r_a, r_b, n):
         factor = lambda body: 1.0 / max(body.inv_inertia, 1e-300) if over else body.inv_inertia
         turn = lambda body, r: abs(arm(r, n)) ** power * factor(body)
         return mass * (a.inv_mass + b.inv_mass) + turn(a, r_a) + (turn(b, r_b) if second else 0.0)
-    return flat_inverse_mass
+    return effective_inverse_mass_2d
 
 
 right("7.5", "body by body")(flat_k())
@@ -133,14 +133,14 @@ wrong("7.5", "forgets the masses")(flat_k(mass=0.0))
 
 @variants
 def solid_k(second=True, sign=1.0, mass=1.0, arm=lambda r, n: cross(r, n), back=lambda turn, r: cross(turn, r)):
-    def inverse_mass(a, b, r_a, r_b, n):
+    def effective_inverse_mass(a, b, r_a, r_b, n):
         give = lambda body, r: mass * body.inv_mass + sign * n @ back(body.inv_inertia @ arm(r, n), r)
         return give(a, r_a) + (give(b, r_b) if second else b.inv_mass)
-    return inverse_mass
+    return effective_inverse_mass
 
 
 @right("7.7", "as a square: (r × n) · I⁻¹ (r × n)")
-def inverse_mass(a, b, r_a, r_b, n):
+def effective_inverse_mass(a, b, r_a, r_b, n):
     give = lambda body, r: body.inv_mass + np.cross(r, n) @ body.inv_inertia @ np.cross(r, n)
     return give(a, r_a) + give(b, r_b)
 
@@ -156,11 +156,11 @@ edit("7.7", "against a wall a does not turn", "n @ turn_a", "(n @ turn_a if b.in
 # 7.6 ------------------------------------------------------------------------------------------------------------
 @variants
 def pushed(mass=lambda m: m, inertia=lambda i: i, side=1.0, turns=True):
-    def flat_push(body, r, J):
+    def apply_impulse_2d(body, r, J):
         torque = side * (r[0] * J[1] - r[1] * J[0]) if turns else 0.0
-        return worked.Flat(body.v + mass(body.inv_mass) * J,
+        return worked.BodyState2D(body.v + mass(body.inv_mass) * J,
                            body.omega + inertia(body.inv_inertia) * torque, body.inv_mass, body.inv_inertia)
-    return flat_push
+    return apply_impulse_2d
 
 
 right("7.6", "by a torque")(pushed())
@@ -193,9 +193,9 @@ wrong("7.8", "one arm for both")(momenta(arm=lambda r_a, r_b: (r_a, r_a)))
 # 7.9 ------------------------------------------------------------------------------------------------------------
 @variants
 def K_of(sign=-1.0, mass=lambda m: m * np.eye(3), turn=lambda r: skew(r), middle=lambda inv: inv):
-    def point_inverse_mass(r, inv_mass, inv_inertia):
+    def contact_matrix(r, inv_mass, inv_inertia):
         return mass(inv_mass) + sign * turn(r) @ middle(inv_inertia) @ turn(r)
-    return point_inverse_mass
+    return contact_matrix
 
 
 right("7.9", "with skew")(K_of())
@@ -385,12 +385,12 @@ wrong("7.14", "comes back without acceleration")(zeno(falls=False))
 # 7.15 -----------------------------------------------------------------------------------------------------------
 @variants
 def project(old=False, back=-1.0, response=worked.kinematic_response, asked="new", once=True):
-    def projecting_step(acceleration, t, x, v, dt, p):
+    def position_projection_step(acceleration, t, x, v, dt, p):
         v_new = v + (dt if once else 1.0) * acceleration(t, x, v, p)
         x_new = x + dt * (v if old else v_new)
         phi = worked.gap(x if asked == "old" else x_new, p)
         return (x_new + back * phi * p.n, response(v_new, p.n, p.e)) if phi < 0.0 else (x_new, v_new)
-    return projecting_step
+    return position_projection_step
 
 
 right("7.15", "with new names")(project())
@@ -413,10 +413,10 @@ wrong("7.15", "forgets dt")(project(once=False))
 # 7.16 -----------------------------------------------------------------------------------------------------------
 @variants
 def back_to(rest=True, goes_on=True, once=False, silent=False, changes=False,
-            fly=worked.fly, lie=worked.lie, bounce=lambda e: e):
+            fly=worked.free_flight, lie=worked.slide_on_plane, bounce=lambda e: e):
     def backtracking_step(acceleration, t, x, v, dt, p):
         a, left, given = acceleration(t, x, v, p), dt, x
-        for _ in range(1 if once else worked.IMPACTS):
+        for _ in range(1 if once else worked.MAX_IMPACTS):
             tau = worked.impact_time(worked.gap(x, p), v @ p.n, a @ p.n, left)
             x, v = fly(x, v, a, tau)
             if changes:
@@ -444,7 +444,7 @@ wrong("7.16", "one impact per step")(back_to(once=True))
 wrong("7.16", "flies without the half of a t²")(back_to(fly=lambda x, v, a, t: (x + t * v, v + t * a)))
 wrong("7.16", "every impact elastic")(back_to(bounce=lambda e: 1.0))
 edit("7.16", "projects instead", "a, left = acceleration(t, x, v, p), dt",
-     "return projecting_step(acceleration, t, x, v, dt, p)")
+     "return position_projection_step(acceleration, t, x, v, dt, p)")
 edit("7.16", "lies as soon as it is slow", "bouncing_time(v @ p.n, a @ p.n, p.e) <= left", "v @ p.n < 1e-3")
 edit("7.16", "lies below a micrometre per second", "bouncing_time(v @ p.n, a @ p.n, p.e) <= left", "v @ p.n < 1e-6")
 edit("7.16", "gravity for every acceleration", "acceleration(t, x, v, p)", "p.gravity")
@@ -461,13 +461,13 @@ wrong("7.16", "a resting ball does not slide")(back_to(lie=lambda x, v, a, t, n:
 # 7.17 -----------------------------------------------------------------------------------------------------------
 @variants
 def sweeping(sweeps=3000, before=True, takes_back=True, friction=lambda mu: mu, check=worked.check_impacts,
-             push=worked.push, rebound=lambda e: e, report=lambda residual: residual,
+             push=worked.apply_impulse, rebound=lambda e: e, report=lambda residual: residual,
              jammed=worked.most_dissipative_impact):
     def solve_impacts(body, r, n, e, mu):
         check(body, r, n, e, mu)
         start, speed = body, worked.largest_speed(body, r)
         velocity = lambda body, i: point_velocity(body.v, body.omega, r[i])
-        Ks = [worked.point_inverse_mass(arm, body.inv_mass, body.inv_inertia) for arm in r]
+        Ks = [worked.contact_matrix(arm, body.inv_mass, body.inv_inertia) for arm in r]
         w = [max(0.0, -rebound(e) * (n[i] @ velocity(body, i))) for i in range(len(r))]
         Js = np.zeros((len(r), 3))
         for _ in range(sweeps):
@@ -494,12 +494,12 @@ wrong("7.17", "never rebounds")(sweeping(rebound=lambda e: 0.0))
 wrong("7.17", "does not rotate")(sweeping(push=lambda body, r, J: body._replace(v=body.v + body.inv_mass * J)))
 wrong("7.17", "accepts any restitution")(sweeping(check=lambda *_: None))
 wrong("7.17", "returns a residual of zero")(sweeping(report=lambda residual: 0.0))
-edit("7.17", "one after the other", "check_impacts(body, r, n, e, mu)", "return one_after_the_other(body, r, n, e, mu)")
+edit("7.17", "one after the other", "check_impacts(body, r, n, e, mu)", "return sequential_impacts(body, r, n, e, mu)")
 edit("7.17", "all points leave alike", "cone_impulse(u, n[i], K, w[i], mu)", "cone_impulse(u, n[i], K, w.max(), mu)")
 edit("7.17", "none rebounds", "cone_impulse(u, n[i], K, w[i], mu)", "cone_impulse(u, n[i], K, 0.0, mu)")
 edit("7.17", "one normal for all points", "cone_impulse(u, n[i]", "cone_impulse(u, n[0]")
 edit("7.17", "rebounds with the speed of the centre", "point_velocity(after.v, after.omega, r[i])", "after.v")
-edit("7.17", "settled at an absolute 1e-11 m/s", "SETTLED * speed", "1e-11")
+edit("7.17", "settled at an absolute 1e-11 m/s", "CONVERGED * speed", "1e-11")
 edit("7.17", "the body before the impact, if the sweeps do not settle",
      "most_dissipative_impact(body, r, n, e, mu)", "(body, residual)")
 edit("7.17", "friction of 1 at most", "w[i], mu)", "w[i], min(mu, 1.0))")
@@ -507,8 +507,8 @@ edit("7.17", "the result of the last sweep, if the sweeps do not settle",
      "return most_dissipative_impact(body, r, n, e, mu)", "return after, residual")
 edit("7.17", "without friction, if the sweeps do not settle", "most_dissipative_impact(body, r, n, e, mu)",
      "most_dissipative_impact(body, r, n, e, 0.0)")
-edit("7.17", "100 sweeps", "range(SWEEPS)", "range(100)")
-edit("7.17", "500 sweeps", "range(SWEEPS)", "range(500)")
+edit("7.17", "100 sweeps", "range(MAX_SWEEPS)", "range(100)")
+edit("7.17", "500 sweeps", "range(MAX_SWEEPS)", "range(500)")
 edit("7.17", "an impulse for a velocity", "np.abs(times(K, J - Js[i])).max()", "np.abs(J - Js[i]).max()")
 edit("7.17", "rounding without the rotation", "largest_speed(body, r)", "norm(body.v)")
 edit("7.17", "rounding of the points' velocities", "largest_speed(body, r)",

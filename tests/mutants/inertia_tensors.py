@@ -205,7 +205,7 @@ edit("4.11", "changes its input", f"I + {POINT}", f"np.add(I, {POINT}, out=I)")
 
 # 4.12 -----------------------------------------------------------------------------------------------------------
 @variants
-def carried(offset=lambda y, X: y - X, body=lambda M, X, I: worked.Body(M, X, I)):
+def carried(offset=lambda y, X: y - X, body=lambda M, X, I: worked.MassProperties(M, X, I)):
     """The parts' tensors, each shifted by offset(x, X)."""
     def combine(m, x, I):
         M, X = worked.centre_of_mass(m, x)
@@ -215,7 +215,7 @@ def carried(offset=lambda y, X: y - X, body=lambda M, X, I: worked.Body(M, X, I)
 
 wrong("4.12", "tensors added as they are")(carried(lambda y, X: 0.0 * y))
 wrong("4.12", "about the origin")(carried(lambda y, X: y))
-wrong("4.12", "centre without its offset")(carried(body=lambda M, X, I: worked.Body(M, 0.0 * X, I)))
+wrong("4.12", "centre without its offset")(carried(body=lambda M, X, I: worked.MassProperties(M, 0.0 * X, I)))
 
 
 @right("4.12", "about the origin first, and back to the centre")
@@ -290,7 +290,7 @@ wrong("4.14", "a tolerance in kg m², blind to small bodies")(judged(lambda a, c
 right("4.14", "with eigenvalues only")(judged())
 edit("4.14", "looks at the diagonal instead of the principal moments", "moments, _ = principal_axes(I)",
      "moments = np.sort(np.diag(I))")
-edit("4.14", "a sum in kg m², blind to small bodies", "(1.0 + TENSOR_ROUND_OFF)", "1.0 + TENSOR_ROUND_OFF")
+edit("4.14", "a sum in kg m², blind to small bodies", "(1.0 + MOMENT_ROUND_OFF)", "1.0 + MOMENT_ROUND_OFF")
 edit("4.14", "accepts NaN off the diagonal", "kg m²]\", I)", "kg m²]\", np.diag(I))")
 edit("4.14", "copies the words for the largest moment", "the largest principal moment", "the smallest principal moment")
 edit("4.14", "copies the words for the smallest moment", "the smallest principal moment",
@@ -369,9 +369,9 @@ def body_of(density, x, faces, tensor):
     check_finite("a corner of the mesh [m]", x)
     worked.check_closed(len(x), faces)
     V, first, Q = worked.mesh_integrals(x - x[0], faces)
-    if V <= worked.TENSOR_ROUND_OFF * np.max(np.abs(x - x[0])) ** 3:
+    if V <= worked.MOMENT_ROUND_OFF * np.max(np.abs(x - x[0])) ** 3:
         raise BadInput("the volume inside the mesh [m³]", V, "turn it inside out")
-    return worked.Body(density * V, x[0] + first / V, density * tensor(V, first / V, Q))
+    return worked.MassProperties(density * V, x[0] + first / V, density * tensor(V, first / V, Q))
 
 
 def from_covariance(C):
@@ -405,9 +405,9 @@ edit("4.17", "the tensor about the mean of the corners", "first / volume", "np.s
 edit("4.17", "a mesh inside-out gets the volume it should have had", "volume <= TENSOR", "abs(volume) <= TENSOR")
 edit("4.17", "does not check that the mesh is closed", "check_closed(x.shape[0], faces)", "pass")
 edit("4.17", "accepts a flat mesh if its round-off volume is positive",
-     "TENSOR_ROUND_OFF * np.max(np.abs(offsets)) ** 3", "0.0")
-edit("4.17", "refuses what is small, whatever its shape", "TENSOR_ROUND_OFF * np.max(np.abs(offsets)) ** 3",
-     "TENSOR_ROUND_OFF")
+     "MOMENT_ROUND_OFF * np.max(np.abs(offsets)) ** 3", "0.0")
+edit("4.17", "refuses what is small, whatever its shape", "MOMENT_ROUND_OFF * np.max(np.abs(offsets)) ** 3",
+     "MOMENT_ROUND_OFF")
 edit("4.17", "a length for a volume", "np.max(np.abs(offsets)) ** 3", "np.max(np.abs(offsets))")
 edit("4.17", "how far the others are above the first corner, not from it", "np.max(np.abs(offsets))", "np.max(offsets)")
 edit("4.17", "how far the others are below the first corner, not from it", "np.max(np.abs(offsets))",
@@ -415,6 +415,6 @@ edit("4.17", "how far the others are below the first corner, not from it", "np.m
 edit("4.17", "accepts indices of no corner", "x.shape[0], faces", "np.max(faces) + 1, faces")
 edit("4.17", "accepts an infinite density", 'check_positive("density [kg/m³]", density)',
      'if not density > 0.0: raise BadInput("density [kg/m³]", density, "give some")')
-edit("4.17", "a thousand times too tolerant", "TENSOR_ROUND_OFF * np.max", "1e-17 * np.max")
-edit("4.17", "a thousand times too strict", "TENSOR_ROUND_OFF * np.max", "1e-11 * np.max")
+edit("4.17", "a thousand times too tolerant", "MOMENT_ROUND_OFF * np.max", "1e-17 * np.max")
+edit("4.17", "a thousand times too strict", "MOMENT_ROUND_OFF * np.max", "1e-11 * np.max")
 edit("4.17", "looks at the corners of triangles only", "[m]\", x)", "[m]\", x[np.unique(faces % x.shape[0])])")

@@ -100,7 +100,7 @@ def test_what_is_unknown_is_named_with_a_remedy(call, names):
 
 @needs_numba
 def test_a_scene_may_hand_a_function_of_its_lesson_to_a_compiled_loop():
-    """The bowl's run gives bowl_gap to contact_motion: both are twins, and the motion is the plain one."""
+    """The bowl's run gives particle_bowl_gap to advance_particle: both are twins, and the motion is the plain one."""
     plain, fast = modules.bind_scene("bowl"), modules.bind_scene("bowl", compiled=True)
     p = plain.cases["rough bowl"]
     ends = [scene.observe(scene.run(modules.module_set(compiled=c).lesson("friction").gripping_step, scene.acceleration,

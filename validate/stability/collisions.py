@@ -478,8 +478,8 @@ def undefined_distance(lesson):
         "no box at all": (lesson.build_tree, (np.zeros((0, 2)), np.zeros((0, 2)))),
         "a place inside an obstacle": (lesson.repulsion, (a, a, 0.5, 1.0, 1.0)),
         "a flight that is not a number": (
-            lesson.flight,
-            (lesson.discrete_step, lesson.plane_gap, lesson.plane_time, 0.0, nan, nan, 0.1, 1, ()),
+            lesson.advance_projectiles,
+            (lesson.discrete_step, lesson.ball_plane_gap, lesson.ball_plane_time, 0.0, nan, nan, 0.1, 1, ()),
         ),
         "a flock without reach": (lesson.make_flock, (0.1, 0.0, 1.0, 0.0, 0.0)),
     }
@@ -540,7 +540,7 @@ def minimum_translation(lesson):
     The reference is the hull of all differences.  A box moved by −gap n just touches: the separation is then zero.
     Points of contact lie within both bodies, up to the depth.  Where a face is touched, the deepest is as deep as
     the axis gives; between two edges p_a − p_b = gap n.  Random capsules are as far apart as their segments, by
-    non-negative least squares, less the radii.  All hold to round-off, except that boxes may leave EDGES_WIN_BY to
+    non-negative least squares, less the radii.  All hold to round-off, except that boxes may leave EDGE_PREFERENCE to
     a face.
     """
     rng, found = np.random.default_rng(67), []
@@ -559,7 +559,7 @@ def minimum_translation(lesson):
             continue
         worst["outside"] = max(worst["outside"], inside(a, contacts.p_a), inside(b, contacts.p_b))
         worst["deepest"] = max(worst["deepest"], abs(contacts.gap.min() - gap))
-    room = 2.0 * worked.EDGES_WIN_BY
+    room = 2.0 * worked.EDGE_PREFERENCE
     found += [
         finding(
             claim="The least overlap of 15 axes is the shortest way out.",

@@ -26,7 +26,7 @@ def rod(lesson, degrees):
     y is up, and the rod turns about z.  With c, s the cosine and sine:  K = (1 + 3s², −3sc; −3sc, 1 + 3c²) in x and y.
     """
     theta = np.radians(degrees)
-    return lesson.point_inverse_mass(np.array([-np.cos(theta), -np.sin(theta), 0.0]), 1.0, np.diag([0.0, 3.0, 3.0]))
+    return lesson.contact_matrix(np.array([-np.cos(theta), -np.sin(theta), 0.0]), 1.0, np.diag([0.0, 3.0, 3.0]))
 
 
 def against_the_first_slip(K, mu, side):
@@ -130,8 +130,8 @@ def deep_overlap(lesson):
     """
     found, radius, dt = [], 0.5, 0.01
     depth = 0.25 * radius
-    p = lesson.Drop(0.5, np.array([0.0, -G]), np.zeros(2), np.array([0.0, 1.0]), 1e6, 0.0)
-    x, v = lesson.projecting_step(lesson.falling_acceleration, 0.0, np.array([0.0, -depth]), np.zeros(2), dt, p)
+    p = lesson.BouncingBall(0.5, np.array([0.0, -G]), np.zeros(2), np.array([0.0, 1.0]), 1e6, 0.0)
+    x, v = lesson.position_projection_step(lesson.falling_acceleration, 0.0, np.array([0.0, -depth]), np.zeros(2), dt, p)
     found += [
         finding(
             claim="A ball inside the floor is placed on it.",
@@ -163,7 +163,7 @@ def deep_overlap(lesson):
     for d in depths:
         x, v, here = np.array([[0.0, -d]]), np.zeros((1, 2)), 0
         while x[0, 1] < 0.0 and here < 1000:
-            x, v = lesson.drop_all(lesson.penalty_step, lesson.falling_acceleration, 0.0, x, v, tiny, 20, p)
+            x, v = lesson.advance_balls(lesson.penalty_step, lesson.falling_acceleration, 0.0, x, v, tiny, 20, p)
             here += 1
         speeds.append(v[0, 1])
     law = np.sqrt(omega**2 * depths**2 - 2.0 * G * depths)
@@ -177,7 +177,7 @@ def deep_overlap(lesson):
     ))
     discs = lesson.Discs(np.full(5, radius), np.array([1.0, 0.5, 1.0, 2.0, 1.0]), 0.8)
     row = np.stack((0.75 * 2.0 * radius * np.arange(5.0), np.zeros(5)), axis=1)
-    apart, still = lesson.discs_all(lesson.projecting_discs_step, row[None], np.zeros((1, 5, 2)), dt, 400, discs)
+    apart, still = lesson.advance_discs(lesson.position_projection_discs_step, row[None], np.zeros((1, 5, 2)), dt, 400, discs)
     middle = [(1.0 / discs.inv_mass) @ places / np.sum(1.0 / discs.inv_mass) for places in (row, apart[0])]
     overlap = max(0.0, (2.0 * radius - np.diff(apart[0, :, 0])).max())
     found += [
@@ -207,8 +207,8 @@ def deep_overlap(lesson):
         ),
     ]
     same = np.zeros((1, 2, 2))
-    x, v = lesson.discs_all(
-        lesson.projecting_discs_step, same, same, dt, 1, lesson.Discs(np.full(2, radius), np.ones(2), 0.8)
+    x, v = lesson.advance_discs(
+        lesson.position_projection_discs_step, same, same, dt, 1, lesson.Discs(np.full(2, radius), np.ones(2), 0.8)
     )
     found.append(finding(
         claim="Two discs on one point have no normal between them, and still come apart.",
@@ -235,11 +235,11 @@ def deep_overlap(lesson):
 
 def bouncing(lesson, e, T, steps, place=(0.0, 0.0), copies=1):
     """Return (x, v) of copies released at 1 m over a plane at `place`, each a little earlier than the one before."""
-    p = lesson.Drop(e, np.array([0.0, -G]), np.array(place), np.array([0.0, 1.0]), 1.0, 0.0)
+    p = lesson.BouncingBall(e, np.array([0.0, -G]), np.array(place), np.array([0.0, 1.0]), 1.0, 0.0)
     before = 0.01 * np.arange(copies)
     x = np.stack((np.zeros(copies), 1.0 - 0.5 * G * before**2), axis=1) + p.point
     v = np.stack((0.5 * np.ones(copies), -G * before), axis=1)
-    return lesson.drop_all(lesson.backtracking_step, lesson.falling_acceleration, 0.0, x, v, T / steps, steps, p)
+    return lesson.advance_balls(lesson.backtracking_step, lesson.falling_acceleration, 0.0, x, v, T / steps, steps, p)
 
 
 @case("zeno-and-far-away", "Zeno's bounce, and far from the origin", compiled=False)
@@ -318,10 +318,10 @@ def swings_up(lesson, h_omega, zeta, steps=500):
     """Return whether a ball at rest on its penalty spring, disturbed by 10⁻⁹ of its depth, reaches 10⁻³ of it."""
     omega = 100.0
     sag = G / omega**2
-    p = lesson.Drop(0.5, np.array([0.0, -G]), np.zeros(2), np.array([0.0, 1.0]), omega**2, 2.0 * zeta * omega)
+    p = lesson.BouncingBall(0.5, np.array([0.0, -G]), np.zeros(2), np.array([0.0, 1.0]), omega**2, 2.0 * zeta * omega)
     x, v = np.array([[0.0, -sag * (1.0 + 1e-9)]]), np.zeros((1, 2))
     try:
-        x, v = lesson.drop_all(lesson.penalty_step, lesson.falling_acceleration, 0.0, x, v, h_omega / omega, steps, p)
+        x, v = lesson.advance_balls(lesson.penalty_step, lesson.falling_acceleration, 0.0, x, v, h_omega / omega, steps, p)
     except Diverged:
         return True
     return max(abs(x[0, 1] + sag), abs(v[0, 1]) / omega) > 1e-3 * sag
@@ -352,9 +352,9 @@ def penalty_stability(lesson):
         ))
     depths = []
     for omega in (30.0, 100.0, 300.0):
-        p = lesson.Drop(0.5, np.array([0.0, -G]), np.zeros(2), np.array([0.0, 1.0]), omega**2, 2.0 * omega)
+        p = lesson.BouncingBall(0.5, np.array([0.0, -G]), np.zeros(2), np.array([0.0, 1.0]), omega**2, 2.0 * omega)
         still, dt = np.zeros((1, 2)), 0.1 / omega
-        x, _ = lesson.drop_all(lesson.penalty_step, lesson.falling_acceleration, 0.0, still, still, dt, 1000, p)
+        x, _ = lesson.advance_balls(lesson.penalty_step, lesson.falling_acceleration, 0.0, still, still, dt, 1000, p)
         depths.append(-x[0, 1])
         found.append(finding(
             claim="A body at rest on a penalty spring sinks in by m g/k.",
@@ -415,7 +415,7 @@ def energy_gain(lesson):
     broken = gained = dead = 0
     for _ in range(1500):
         r, moments = rng.uniform(-1.0, 1.0, 3), rng.uniform(0.2, 2.0, 3)
-        K, u = lesson.point_inverse_mass(r, 1.0, np.diag(1.0 / moments)), rng.normal(size=3)
+        K, u = lesson.contact_matrix(r, 1.0, np.diag(1.0 / moments)), rng.normal(size=3)
         u[1], e, mu = -abs(u[1]) - 0.01, rng.uniform(), rng.uniform(0.0, 2.0)
         more = lesson.energy_change(u, K, lesson.contact_impulse(u, UP, K, e, mu)) > ROUND_OFF
         gained += more
@@ -469,8 +469,8 @@ def energy_gain(lesson):
 def invalid_impacts(lesson):
     """Impossible impacts are refused by name and value; extreme but valid ones are solved."""
     u, n, K, zero = np.array([1.0, -2.0, 0.5]), UP, np.eye(3), np.zeros(3)
-    body, r = lesson.Solid(u, zero, 1.0, np.eye(3)), np.zeros((1, 3))
-    drop = lesson.Drop(0.5, np.array([0.0, -G]), np.zeros(2), np.array([0.0, 1.0]), 1.0, 0.0)
+    body, r = lesson.BodyState3D(u, zero, 1.0, np.eye(3)), np.zeros((1, 3))
+    drop = lesson.BouncingBall(0.5, np.array([0.0, -G]), np.zeros(2), np.array([0.0, 1.0]), 1.0, 0.0)
     fall = (lesson.falling_acceleration, 0.0, np.ones((1, 2)), np.zeros((1, 2)), 0.1, 1)
     pair, discs = np.zeros((1, 2, 2)), lesson.Discs(np.ones(2), np.ones(2), -1.0)
     asked = (
@@ -485,10 +485,10 @@ def invalid_impacts(lesson):
         ("gap_multiplier", (0.1, -1.0, 0.0, 0.1), "0.0"),
         ("solve_impacts", (body, r, n[None], 1.25, 0.3), "1.25"),
         ("solve_impacts", (body, r, n[None], 0.5, -0.3), "-0.3"),
-        ("drop_all", (lesson.projecting_step, *fall, drop._replace(e=1.5)), "1.5"),
-        ("drop_all", (lesson.backtracking_step, *fall, drop._replace(n=np.zeros(2))), "0.0"),
-        ("drop_all", (lesson.backtracking_step, fall[0], 0.0, np.full((1, 2), np.inf), *fall[3:], drop), "inf"),
-        ("discs_all", (lesson.projecting_discs_step, pair, pair, 0.1, 1, discs), "-1.0"),
+        ("advance_balls", (lesson.position_projection_step, *fall, drop._replace(e=1.5)), "1.5"),
+        ("advance_balls", (lesson.backtracking_step, *fall, drop._replace(n=np.zeros(2))), "0.0"),
+        ("advance_balls", (lesson.backtracking_step, fall[0], 0.0, np.full((1, 2), np.inf), *fall[3:], drop), "inf"),
+        ("advance_discs", (lesson.position_projection_discs_step, pair, pair, 0.1, 1, discs), "-1.0"),
     )
     refused = sum(refuses(getattr(lesson, name), arguments, value) for name, arguments, value in asked)
     found = [finding(

@@ -152,8 +152,8 @@ def turned(moments, rng):
 
 @case("thin-bodies", "Needles, plates, and impossible tensors", compiled=False)
 def thin_bodies(lesson):
-    """I₁ + I₂ − I₃ = 2 ∫ z² dm ≥ 0, and I₁ > 0; both to ε = TENSOR_ROUND_OFF, which round-off must not exceed."""
-    epsilon, rng = lesson.TENSOR_ROUND_OFF, np.random.default_rng(41)
+    """I₁ + I₂ − I₃ = 2 ∫ z² dm ≥ 0, and I₁ > 0; both to ε = MOMENT_ROUND_OFF, which round-off must not exceed."""
+    epsilon, rng = lesson.MOMENT_ROUND_OFF, np.random.default_rng(41)
     top = last_that_passes(lambda m: lesson.check_inertia(np.diag(np.array([1.0, 2.0, m]))), 2.5, 4.0)
     thin = last_that_passes(lambda m: lesson.check_inertia(np.diag(np.array([m, 1.0, 1.0]))), 0.5, 0.0)
     found = [

@@ -24,9 +24,9 @@ def released(lesson, method, I, omega, dt, steps):
 
     Raises Diverged where the step refuses.
     """
-    body = lesson.Body(1.0, np.array(I))
+    body = lesson.RigidBody(1.0, np.array(I))
     L = body.I_body * np.array(omega)
-    q, end = lesson.tumble(getattr(lesson, method), lesson.no_torque, 0.0, AT_START, L, dt, steps, body)
+    q, end = lesson.advance_rotation(getattr(lesson, method), lesson.no_torque, 0.0, AT_START, L, dt, steps, body)
     energy = lesson.kinetic_energy(q, end, body.I_body) / lesson.kinetic_energy(AT_START, L, body.I_body)
     return quaternion_matrix(*q), end, energy
 
@@ -41,11 +41,11 @@ def tried(lesson, method, I, omega, dt, steps):
 
 def energies(lesson, method, I, omega, dt, ts):
     """Return the energy over its initial value at the times ts; the step must not refuse."""
-    body, q, now, found = lesson.Body(1.0, np.array(I)), AT_START, 0.0, []
+    body, q, now, found = lesson.RigidBody(1.0, np.array(I)), AT_START, 0.0, []
     L = body.I_body * np.array(omega)
     begin = lesson.kinetic_energy(q, L, body.I_body)
     for t in ts:
-        q, L = lesson.tumble(getattr(lesson, method), lesson.no_torque, now, q, L, dt, round((t - now) / dt), body)
+        q, L = lesson.advance_rotation(getattr(lesson, method), lesson.no_torque, now, q, L, dt, round((t - now) / dt), body)
         now = t
         found.append(lesson.kinetic_energy(q, L, body.I_body) / begin)
     return np.array(found)
@@ -333,7 +333,7 @@ def tilts(lesson, spin, tilt, dt, seconds, look):
     L = ALONG * spin * np.array([0.0, -np.sin(tilt), np.cos(tilt)])
     yield tilt
     for n in range(round(seconds / (dt * look))):
-        q, L = lesson.tumble(
+        q, L = lesson.advance_rotation(
             lesson.composed_splitting_step, lesson.heavy_top_torque, n * look * dt, q, L, dt, look, top
         )
         yield 2.0 * np.arctan2(np.hypot(q[1], q[2]), np.hypot(q[0], q[3]))

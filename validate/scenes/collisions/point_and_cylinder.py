@@ -10,7 +10,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.collisions import Plane, Target, cylinder_gap, cylinder_time, flight
+from solutions.collisions import Plane, Target, advance_projectiles, ball_cylinder_gap, ball_cylinder_time
 from validate.engines.collisions import (
     ENGINE_SPEEDS,
     PLACE_APART,
@@ -70,7 +70,7 @@ def with_others(p):
 
 def run(step, acceleration, state, p, dt, steps):
     x, v, goal = state
-    x, v = flight(step, cylinder_gap, cylinder_time, 0.0, x, v, dt, steps, goal)
+    x, v = advance_projectiles(step, ball_cylinder_gap, ball_cylinder_time, 0.0, x, v, dt, steps, goal)
     return x, v, goal
 
 

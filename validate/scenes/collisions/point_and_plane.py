@@ -9,7 +9,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.collisions import Plane, Target, flight, plane_gap, plane_time
+from solutions.collisions import Plane, Target, advance_projectiles, ball_plane_gap, ball_plane_time
 from validate.engines.collisions import (
     ENGINE_SPEEDS,
     PLACE_APART,
@@ -65,7 +65,7 @@ def with_others(p):
 
 def run(step, acceleration, state, p, dt, steps):
     x, v, goal = state
-    x, v = flight(step, plane_gap, plane_time, 0.0, x, v, dt, steps, goal)
+    x, v = advance_projectiles(step, ball_plane_gap, ball_plane_time, 0.0, x, v, dt, steps, goal)
     return x, v, goal
 
 

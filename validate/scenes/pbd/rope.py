@@ -6,8 +6,8 @@ import numpy as np
 
 from solutions.checks import BadInput, check_positive
 from solutions.integrators import advance
-from solutions.pbd import falling_acceleration as acceleration
-from solutions.pbd import make_net
+from solutions.pbd import make_constraint_network
+from solutions.pbd import network_gravity as acceleration
 from validate.engines.pbd import ITERATIONS, SHARE, bullet_rope, pymunk_rope
 from validate.methods import PBD, PROJECTION, RATTLE, XPBD
 from validate.reference.pbd import rope_energy, rope_lag, rope_motion, rope_places, rope_rates
@@ -39,13 +39,13 @@ def start(p):
     if p.sweeps < 1:
         raise BadInput("sweeps in a step", p.sweeps, "give 1 or more")
     x, n = np.concatenate((np.zeros((1, 2)), straight(p))), np.arange(p.links)
-    return x, 0.0 * x, make_net(x, p.m, [0], np.stack((n, n + 1), axis=1), 0.0, 1.0, (0.0, -p.g), p.sweeps)
+    return x, 0.0 * x, make_constraint_network(x, p.m, [0], np.stack((n, n + 1), axis=1), 0.0, 1.0, (0.0, -p.g), p.sweeps)
 
 
 def run(step, acceleration, state, p, dt, steps):
-    x, v, net = state
-    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, net)
-    return x, v, net
+    x, v, network = state
+    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, network)
+    return x, v, network
 
 
 def observe(state, p):
@@ -88,7 +88,7 @@ def tolerance(p, dt):
 
 def supports(name, p):
     """The projection method for ropes whose matrix is not too large."""
-    return p.links <= 20 or name != "projection_step"
+    return p.links <= 20 or name != "constraint_projection_step"
 
 
 def pymunk_make(p, dt):
@@ -145,9 +145,9 @@ def links(p):
 
 def in_space(p):
     """The same motion with an unused third coordinate."""
-    x, v, net = start(p)
+    x, v, network = start(p)
     wide = lambda y: np.concatenate((y, np.zeros((len(y), 1))), axis=1)
-    return (wide(x), wide(v), net._replace(gravity=np.append(net.gravity, 0.0))), p
+    return (wide(x), wide(v), network._replace(gravity=np.append(network.gravity, 0.0))), p
 
 
 SCENE = Scene(

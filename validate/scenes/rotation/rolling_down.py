@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput, check_positive
-from solutions.rotation import Ball, move
+from solutions.rotation import RollingBall, advance_rigid_body
 from solutions.rotation import rolling_load as acceleration
 from validate import drawing
 from validate.drawing import pose
@@ -31,7 +31,7 @@ CASES = {"15°": Params(), "hardly rough enough": Params(mu=0.077)}
 
 def ball(p, dt):
     slope = np.radians(p.slope)
-    return Ball(
+    return RollingBall(
         p.m,
         np.full(3, 0.4 * p.m * p.radius**2),
         p.radius,
@@ -51,7 +51,7 @@ def start(p):
 
 def run(step, acceleration, state, p, dt, steps):
     x, v, q, omega = state
-    return move(step, acceleration, 0.0, x, v, q, omega, dt, steps, ball(p, dt))
+    return advance_rigid_body(step, acceleration, 0.0, x, v, q, omega, dt, steps, ball(p, dt))
 
 
 def observe(state, p):

@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.rotation import Ball, move
+from solutions.rotation import RollingBall, advance_rigid_body
 from solutions.rotation import rolling_load as acceleration
 from validate import drawing
 from validate.drawing import pose
@@ -32,7 +32,7 @@ CASES = {"sphere": Params(), "disc": Params(shape=0.5)}
 
 
 def ball(p, dt):
-    return Ball(p.m, np.full(3, p.shape * p.m * p.R**2), p.R, p.mu, np.array([0.0, 0.0, -p.g]), dt)
+    return RollingBall(p.m, np.full(3, p.shape * p.m * p.R**2), p.R, p.mu, np.array([0.0, 0.0, -p.g]), dt)
 
 
 def start(p):
@@ -43,7 +43,7 @@ def start(p):
 
 def run(step, acceleration, state, p, dt, steps):
     x, v, q, omega = state
-    return move(step, acceleration, 0.0, x, v, q, omega, dt, steps, ball(p, dt))
+    return advance_rigid_body(step, acceleration, 0.0, x, v, q, omega, dt, steps, ball(p, dt))
 
 
 def observe(state, p):
