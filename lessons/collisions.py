@@ -31,28 +31,28 @@ from solutions.checks import (
 from solutions.vectors import cross, dot
 
 __all__ = [
-    "EDGES_WIN_BY", "FLAT", "GJK_STEPS", "NEVER", "STOP", "Box", "Contact", "Contacts", "Flock",
-    "Plane", "Target", "Tree", "all_pairs", "ball_box", "ball_capsule", "ball_contact",
-    "ball_plane", "ball_triangle", "box_box", "box_corners", "box_separation", "boxes_touch",
-    "build_tree", "candidate_axis", "capsule_capsule", "check_boxes", "check_hulls", "clip",
-    "closest_on_segment", "closest_on_triangle", "column", "continuous_step", "cylinder_contact",
-    "cylinder_gap", "cylinder_hit", "cylinder_impact_time", "cylinder_time", "discrete_step",
-    "edge_axis_distance", "enclose", "far_enough", "find_intersections", "flight",
-    "flock_acceleration", "girth", "gjk", "half_width", "halve", "make_box", "make_flock",
-    "make_plane", "nearer", "nearest_part", "outward", "plane_distance", "plane_gap",
-    "plane_impact_time", "plane_time", "points_plane", "polygon_contacts", "repulsion",
-    "separating_edge", "steer", "support", "swept_box", "touching_items", "tree_pairs",
-    "triangle_cylinder_gap",
+    "DEGENERATE_AREA", "EDGE_PREFERENCE", "GJK_RELATIVE_GAP", "MAX_GJK_STEPS", "NEVER", "Box",
+    "Contact", "Contacts", "Flock", "Plane", "Target", "Tree", "advance_projectiles", "all_pairs",
+    "ball_box", "ball_capsule", "ball_contact", "ball_cylinder_gap", "ball_cylinder_time",
+    "ball_plane", "ball_plane_gap", "ball_plane_time", "ball_triangle", "box_box", "box_corners",
+    "box_separation", "boxes_touch", "build_tree", "candidate_axis", "capsule_capsule",
+    "check_boxes", "check_hulls", "clip", "closest_on_segment", "closest_on_triangle", "column",
+    "continuous_step", "cylinder_contact", "cylinder_hit", "cylinder_impact_time", "discrete_step",
+    "edge_axis_distance", "far_enough", "find_intersections", "fit_node_box", "flock_acceleration",
+    "gjk", "half_perimeter", "half_width", "make_box", "make_flock", "make_plane", "nearer",
+    "nearest_subsimplex", "outward", "partition_at_median", "plane_distance", "plane_impact_time",
+    "points_plane", "polygon_contacts", "repulsion", "separating_edge", "steer", "support",
+    "swept_box", "touching_items", "tree_pairs", "triangle_cylinder_gap",
 ]
 
 NEVER = np.inf               # time of an event that does not occur in this step [s]
-FLAT = 1e-12                 # area over longest edge squared below which a triangle's normal is round-off [-]
+DEGENERATE_AREA = 1e-12      # area over longest edge squared below which a triangle's normal is round-off [-]
 PARALLEL = 1e-12             # sin² of the angle below which two edges count as parallel [-]
-STOP = 1e-14                 # tolerance of GJK: error of the distance over the size of the bodies [-]
+GJK_RELATIVE_GAP = 1e-14     # tolerance of GJK: error of the distance over the size of the bodies [-]
 SMALLEST, LARGEST = 1e-100, 1e100       # sizes of bodies whose squares neither underflow nor overflow [m]
-GJK_STEPS = 100              # at most [-]; ordinary pairs need below 20, ellipsoids of 1 : 300 sometimes all of them
-LEAF = 8                     # boxes in a leaf of a tree [-]: testing so few is faster than descending further
-EDGES_WIN_BY = 1e-9          # how much better than faces a pair of edges must separate [m]; prevents alternation
+MAX_GJK_STEPS = 100          # at most [-]; ordinary pairs need below 20, ellipsoids of 1 : 300 sometimes all of them
+LEAF_SIZE = 8                # boxes in a leaf of a tree [-]: testing so few is faster than descending further
+EDGE_PREFERENCE = 1e-9       # how much better than faces a pair of edges must separate [m]; prevents alternation
 
 
 class Contact(NamedTuple):
@@ -153,7 +153,7 @@ def plane_impact_time(t, dt, x_0, x_1, r, plane):
     raise NotImplementedError("Exercise 6.2: plane_impact_time")
 
 
-def some_normal(r):
+def normal_or_axis(r):
     """Given.  Return r/|r|, or the last axis where r is zero: there every direction is equally good."""
     length = np.sqrt(r @ r)
     if length != 0.0:
@@ -169,7 +169,7 @@ def ball_contact(x_a, r_a, x_b, r_b):
     n = (x_a − x_b)/|x_a − x_b|,   gap = |x_a − x_b| − r_a − r_b,   p_a = x_a − r_a n,   p_b = x_b + r_b n
     """
     r = x_a - x_b
-    n = some_normal(r)
+    n = normal_or_axis(r)
     return Contact(x_a - r_a * n, x_b + r_b * n, n, np.sqrt(r @ r) - r_a - r_b, 0.0)
 
 
@@ -219,22 +219,22 @@ def cylinder_hit(t, dt, x_0, x_1, r, R):
     return Contact(c.p_a, c.p_b, c.n, c.gap, moment)
 
 
-def plane_gap(x, p):
+def ball_plane_gap(x, p):
     """Given.  Return the gap [m] between a ball at x (3,) and the plane of a Target."""
     return plane_distance(x, p.plane) - p.r
 
 
-def plane_time(t, dt, x_0, x_1, p):
+def ball_plane_time(t, dt, x_0, x_1, p):
     """Given.  Return the plane_impact_time [s] of a Target."""
     return plane_impact_time(t, dt, x_0, x_1, p.r, p.plane)
 
 
-def cylinder_gap(x, p):
+def ball_cylinder_gap(x, p):
     """Given.  Return the gap [m] between a ball at x (3,) and the cylinder of a Target."""
     return cylinder_contact(x, p.r, p.R).gap
 
 
-def cylinder_time(t, dt, x_0, x_1, p):
+def ball_cylinder_time(t, dt, x_0, x_1, p):
     """Given.  Return the cylinder_impact_time [s] of a Target."""
     return cylinder_impact_time(t, dt, x_0, x_1, p.r, p.R)
 
@@ -256,7 +256,7 @@ def continuous_step(gap, impact_time, t, x, v, dt, p):
     return x + dt * v, v
 
 
-def flight(step, gap, impact_time, t, x, v, dt, steps, p):
+def advance_projectiles(step, gap, impact_time, t, x, v, dt, steps, p):
     """Given.  Return (x, v), each (n, 3), of n balls that fly straight, with one test per step, and stop at contact.
 
     Raises BadInput for a step that is not positive, and a state that is not finite.
@@ -322,7 +322,7 @@ def closest_on_triangle(p, a, b, c):
     q where it is inside: ((b − a) × (q − a)) · N ≥ 0, and the same for b, c and for c, a;
     elsewhere the nearest of the closest_on_segment of the three edges, see nearer
 
-    Raises BadInput for a triangle without area: |N| ≤ FLAT times its longest edge squared.
+    Raises BadInput for a triangle without area: |N| ≤ DEGENERATE_AREA times its longest edge squared.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 6.7: closest_on_triangle")
@@ -468,7 +468,7 @@ def all_pairs(low, high):
     raise NotImplementedError("Exercise 6.10: all_pairs")
 
 
-def enclose(tree, node):
+def fit_node_box(tree, node):
     """Given.  Store the box around the items of a node; return the axis along which their middles spread most.
 
     For build_tree, while the items are still in the order of its input.
@@ -486,7 +486,7 @@ def enclose(tree, node):
     return axis
 
 
-def halve(tree, first, count, axis):
+def partition_at_median(tree, first, count, axis):
     """Given.  Reorder tree.order[first:first + count] in place: the half with the smaller middles along an axis first.
 
     For build_tree.
@@ -509,9 +509,12 @@ def halve(tree, first, count, axis):
 
 
 def build_tree(low, high):
-    """Given.  Return the Tree of boxes low, high (n, d): halve the items along the axis of largest spread, to LEAF.
+    """Given.  Return the Tree of boxes low, high (n, d).
 
-    Each level of the tree takes time in proportion to n, and there are about log₂(n/LEAF) levels.  See check_boxes.
+    Halve the items at the median along the axis of largest spread, until at most LEAF_SIZE are left.
+
+    Each level of the tree takes time in proportion to n, and there are about log₂(n/LEAF_SIZE) levels.
+    Raises what check_boxes raises.
     *Source:* median split; second lecture deck, “Bounding volume hierarchies”.
     """
     low = finite_array("corner of a box [m]", low)
@@ -524,10 +527,10 @@ def build_tree(low, high):
     tree.count[0] = n
     node, nodes = 0, 1
     while node < nodes:
-        axis, first, count = enclose(tree, node), tree.first[node], tree.count[node]
-        if count > LEAF:
+        axis, first, count = fit_node_box(tree, node), tree.first[node], tree.count[node]
+        if count > LEAF_SIZE:
             half = count // 2
-            halve(tree, first, count, axis)
+            partition_at_median(tree, first, count, axis)
             tree.child[node] = nodes
             tree.first[nodes], tree.count[nodes] = first, half
             tree.first[nodes + 1], tree.count[nodes + 1] = first + half, count - half
@@ -536,7 +539,7 @@ def build_tree(low, high):
     return Tree(tree.low, tree.high, tree.child, tree.first, tree.count, tree.order, low[tree.order], high[tree.order])
 
 
-def girth(tree, node):
+def half_perimeter(tree, node):
     """Given.  Return the sum of the edges of a node's box [m], as a measure of its size."""
     total = 0.0
     for c in range(tree.low.shape[1]):
@@ -557,7 +560,8 @@ def find_intersections(a, b):
 
     FindIntersections(i, j), first of (0, 0), does nothing unless the boxes of node i of a and node j of b touch
     (boxes_touch).  If they do:
-        neither is a leaf      FindIntersections of each child of the larger node (girth; i if equal) with the other one
+        neither is a leaf      FindIntersections of each child of the larger node with the other one; the larger is the
+                               one with the greater half_perimeter, i if these are equal
         one is a leaf          FindIntersections of each child of the other one with the leaf
         both are leaves        test the pairs of their items: touching_items(a, i, b, j, found)
 
@@ -643,7 +647,7 @@ def against_face(y, n, p, flipped):
     return Contacts(on_y, on_face, n, gap) if flipped else Contacts(on_face, on_y, -n, gap)
 
 
-def facing_edge(a, n):
+def incident_edge(a, n):
     """Given.  Return the edge (2, 2) of a polygon whose outward normal is most opposed to n (2,)."""
     least, edge = np.inf, 0
     for i in range(len(a)):
@@ -671,7 +675,7 @@ def polygon_contacts(a, b):
     face, other, edge = (b, a, j) if flipped else (a, b, i)
     n, p, q = outward(face, edge), face[edge], face[(edge + 1) % len(face)]
     t = np.array([-n[1], n[0]])                                      # from p to q: counter-clockwise
-    y = clip(clip(facing_edge(other, n), t, t @ q), -t, -(t @ p))
+    y = clip(clip(incident_edge(other, n), t, t @ q), -t, -(t @ p))
     return against_face(y, n, p, flipped)
 
 
@@ -718,8 +722,8 @@ def box_separation(a, b):
 
     gap along an axis:   |r · axis| − half_width(a, axis) − half_width(b, axis),     r = x_a − x_b
     Choose the axis of the greatest gap.  An axis of two edges (k ≥ 6) must exceed the best face, k < 6, and any edges
-    before it by EDGES_WIN_BY.  Of equal gaps the first counts.  candidate_axis(a, b, k) returns axis k; skip those that
-    are zeros.  n = ±axis, such that n · r ≥ 0.
+    before it by EDGE_PREFERENCE.  Of equal gaps the first counts.  candidate_axis(a, b, k) returns axis k; skip those
+    that are zeros.  n = ±axis, such that n · r ≥ 0.
 
     gap > 0: the boxes are at least that far apart along n.  gap ≤ 0: they overlap, and −gap along n is the shortest way
     out.
@@ -809,7 +813,7 @@ def cofactor(delta, G, rest, j):
     return total
 
 
-def nearest_part(p, q):
+def nearest_subsimplex(p, q):
     """Given.  Return (p, q, weights) of those points p, q (k, d) that span the part of the hull of y = p − q next to 0.
 
     The nearest point is Σ weight y, with weights > 0 and sum 1; k is at most 5.  Johnson's cofactors give it for every
@@ -849,12 +853,14 @@ def check_hulls(a, b):
 
 
 def far_enough(v, w):
-    """Given.  Return whether v (d,) is the nearest point to 0, to STOP of the size, if none is beyond w (d,) along −v.
+    """Given.  Return whether v (d,) is nearest to 0, if no point is beyond w (d,) along −v.
 
-    |v|² − v · w ≤ STOP |v| |w|:  v · w/|v| is a lower bound of the distance, and |v| an upper bound.
+    The tolerance is GJK_RELATIVE_GAP of the size.
+
+    |v|² − v · w ≤ GJK_RELATIVE_GAP |v| |w|:  v · w/|v| is a lower bound of the distance, and |v| an upper bound.
     """
     size_v, size_w = np.sqrt(v @ v), np.sqrt(w @ w)
-    return v @ v - v @ w <= STOP * size_v * size_w or size_v <= STOP * size_w
+    return v @ v - v @ w <= GJK_RELATIVE_GAP * size_v * size_w or size_v <= GJK_RELATIVE_GAP * size_w
 
 
 def gjk(a, b):
@@ -862,10 +868,10 @@ def gjk(a, b):
 
     The set of all differences y = p − q is as far from 0 as the bodies are from each other.  Start from one
     point of each,
-    p = a[:1], q = b[:1], weights = np.ones(1).  At most GJK_STEPS times:
+    p = a[:1], q = b[:1], weights = np.ones(1).  At most MAX_GJK_STEPS times:
         v = Σ weight (p − q)                                      the nearest point so far
         i = support(a, −v),  j = support(b, v),  w = a_i − b_j    the difference that is farthest towards 0
-        stop if far_enough(v, w);  otherwise append a_i to p and b_j to q, and reduce them with nearest_part(p, q)
+        stop if far_enough(v, w);  otherwise append a_i to p and b_j to q, and reduce them with nearest_subsimplex(p, q)
     Return ball_contact(Σ weight p, 0, Σ weight q, 0).  Where the bodies overlap it has a gap of 0 (or round-off), and
     its normal is meaningless.
     Raises what check_hulls raises; call it first.

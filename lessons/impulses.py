@@ -41,24 +41,26 @@ from solutions.rotation import point_velocity, solve3
 from solutions.vectors import cross, dot, norm
 
 __all__ = [
-    "IMPACTS", "SETTLED", "SWEEPS", "Discs", "Drop", "Flat", "Solid", "Spinner", "angular_momenta",
-    "backtracking_discs_step", "backtracking_spin_step", "backtracking_step", "bouncing_time",
-    "check_contact", "check_impacts", "check_inverse_mass", "cone_impulse", "contact_impulse",
-    "discs_all", "drift", "drop_all", "energy_change", "falling_acceleration", "flat_inverse_mass",
-    "flat_push", "flat_relative_velocity", "fly", "gap", "gap_multiplier", "impact_time",
-    "impulse_size", "inverse_mass", "kinematic_response", "largest_speed", "lie",
-    "most_dissipative_impact", "one_after_the_other", "overlap", "penalty_force", "penalty_step",
-    "point_inverse_mass", "projecting_discs_step", "projecting_spin_step", "projecting_step",
-    "push", "relative_velocity", "separated", "solve_impacts", "spin_all", "times",
+    "CONVERGED", "MAX_IMPACTS", "MAX_SWEEPS", "BodyState2D", "BodyState3D", "BouncingBall", "Discs",
+    "SpinningBall", "advance_balls", "advance_discs", "advance_spinning_balls", "angular_momenta",
+    "apply_impulse", "apply_impulse_2d", "backtracking_discs_step", "backtracking_spin_step",
+    "backtracking_step", "bouncing_time", "check_contact", "check_impacts", "check_inverse_mass",
+    "cone_impulse", "contact_impulse", "contact_matrix", "drift", "effective_inverse_mass",
+    "effective_inverse_mass_2d", "energy_change", "falling_acceleration", "free_flight", "gap",
+    "gap_multiplier", "impact_time", "impulse_size", "kinematic_response", "largest_speed",
+    "most_dissipative_impact", "overlap", "penalty_force", "penalty_step",
+    "position_projection_discs_step", "position_projection_spin_step", "position_projection_step",
+    "relative_velocity", "relative_velocity_2d", "separated", "sequential_impacts", "slide_on_plane",
+    "solve_impacts", "times",
 ]
 
-IMPACTS = 10_000             # per step [-]; with e = 0.8, 165 impacts bring the next below the spacing of floats
-SWEEPS = 2000                # over contact points [-]; four under a box need about 100, close ones more than 1000
-STIFFEST = 1e-40             # det K over (tr K)³ below which K has no inverse [-]: products in it underflow
-SETTLED = 1e-14              # largest change in a sweep over the largest initial |v| + |ω||r| [-]: a hundred roundings
+MAX_IMPACTS = 10_000         # per step [-]; with e = 0.8, 165 impacts bring the next below the spacing of floats
+MAX_SWEEPS = 2000            # over contact points [-]; four under a box need about 100, close ones more than 1000
+MIN_DETERMINANT = 1e-40      # det K over (tr K)³ below which K has no inverse [-]: products in it underflow
+CONVERGED = 1e-14            # largest change in a sweep over the largest initial |v| + |ω||r| [-]: a hundred roundings
 
 
-class Flat(NamedTuple):
+class BodyState2D(NamedTuple):
     """A body in the plane."""
     v: np.ndarray            # (2,) [m/s]
     omega: float             # [rad/s]
@@ -66,7 +68,7 @@ class Flat(NamedTuple):
     inv_inertia: float       # [1/(kg m²)]
 
 
-class Solid(NamedTuple):
+class BodyState3D(NamedTuple):
     """A body in space."""
     v: np.ndarray            # (3,) [m/s]
     omega: np.ndarray        # (3,) [rad/s]
@@ -74,7 +76,7 @@ class Solid(NamedTuple):
     inv_inertia: np.ndarray  # (3, 3) in the world [1/(kg m²)]
 
 
-class Drop(NamedTuple):
+class BouncingBall(NamedTuple):
     """A ball without rotation, above a plane."""
     e: float                 # restitution [-]
     gravity: np.ndarray      # (d,) [m/s²]
@@ -84,7 +86,7 @@ class Drop(NamedTuple):
     damping: float           # of the penalty damper over the mass [1/s]
 
 
-class Spinner(NamedTuple):
+class SpinningBall(NamedTuple):
     """A rotating ball above a plane."""
     e: float                 # restitution [-]
     mu: float                # friction [-]
@@ -118,7 +120,7 @@ def check_contact(u, n, K, mu):
     check_finite("relative velocity u [m/s]", u)
     check_inverse_mass(n @ times(K, n))
     determinant = K[0] @ cross(K[1], K[2])
-    if not determinant > STIFFEST * (K[0, 0] + K[1, 1] + K[2, 2]) ** 3:
+    if not determinant > MIN_DETERMINANT * (K[0, 0] + K[1, 1] + K[2, 2]) ** 3:
         raise BadInput("determinant of K [1/kg³]", determinant, "give a K that gives way in every direction")
 
 
@@ -155,20 +157,20 @@ def penalty_force(phi, v_n, stiffness, damping):
 
 # ---------------------------------------------------------------------------------------------- in the plane
 
-def flat_cross(r, f):
+def cross_2d(r, f):
     """Given.  Return r × f in the plane, a number:  r_x f_y − r_y f_x."""
     return r[0] * f[1] - r[1] * f[0]
 
 
-def flat_relative_velocity(a, b, r_a, r_b):
-    """Return u (2,) [m/s]: velocity of a's contact point relative to b's, for Flat bodies with offsets r_a, r_b (2,).
+def relative_velocity_2d(a, b, r_a, r_b):
+    """Return u (2,) [m/s]: velocity of a's contact point relative to b's, with offsets r_a, r_b (2,).
 
     u = (v_a + ω_a × r_a) − (v_b + ω_b × r_b),       ω × r = ω (−r_y, r_x)  in the plane
 
     *Source:* first lecture deck, “Relative Velocity”.
     """
     # YOUR CODE HERE
-    raise NotImplementedError("Exercise 7.3: flat_relative_velocity")
+    raise NotImplementedError("Exercise 7.3: relative_velocity_2d")
 
 
 def impulse_size(u_n, k, e):
@@ -185,40 +187,40 @@ def impulse_size(u_n, k, e):
     raise NotImplementedError("Exercise 7.4: impulse_size")
 
 
-def flat_inverse_mass(a, b, r_a, r_b, n):
-    """Return k [1/kg] of two Flat bodies that can rotate.
+def effective_inverse_mass_2d(a, b, r_a, r_b, n):
+    """Return k [1/kg] of two BodyState2D that can rotate.
 
-    k = 1/m_a + 1/m_b + (r_a × n)²/I_a + (r_b × n)²/I_b          r × n: flat_cross
+    k = 1/m_a + 1/m_b + (r_a × n)²/I_a + (r_b × n)²/I_b          r × n: cross_2d
 
     *Source:* first lecture deck, “Computing impulse”, in the plane.
     """
     # YOUR CODE HERE
-    raise NotImplementedError("Exercise 7.5: flat_inverse_mass")
+    raise NotImplementedError("Exercise 7.5: effective_inverse_mass_2d")
 
 
-def flat_push(body, r, J):
-    """Return the Flat body after an impulse J (2,) [N s] at the offset r, with the same masses.
+def apply_impulse_2d(body, r, J):
+    """Return the BodyState2D after an impulse J (2,) [N s] at the offset r, with the same masses.
 
     v⁺ = v + J/m,   ω⁺ = ω + (r × J)/I
 
     *Source:* first lecture deck, the updates after “Computing impulse”.
     """
     # YOUR CODE HERE
-    raise NotImplementedError("Exercise 7.6: flat_push")
+    raise NotImplementedError("Exercise 7.6: apply_impulse_2d")
 
 
 # ---------------------------------------------------------------------------------------------- in space
 
 def relative_velocity(a, b, r_a, r_b):
-    """Given.  Return u (3,) [m/s] of two Solid bodies:  (v_a + ω_a × r_a) − (v_b + ω_b × r_b).
+    """Given.  Return u (3,) [m/s] of two BodyState3D:  (v_a + ω_a × r_a) − (v_b + ω_b × r_b).
 
     *Source:* first lecture deck, “Relative Velocity”.
     """
     return point_velocity(a.v, a.omega, r_a) - point_velocity(b.v, b.omega, r_b)
 
 
-def inverse_mass(a, b, r_a, r_b, n):
-    """Return k [1/kg] of two Solid bodies.
+def effective_inverse_mass(a, b, r_a, r_b, n):
+    """Return k [1/kg] of two BodyState3D.
 
     k = 1/m_a + 1/m_b + n · [(I_a⁻¹ (r_a × n)) × r_a] + n · [(I_b⁻¹ (r_b × n)) × r_b]
 
@@ -226,14 +228,14 @@ def inverse_mass(a, b, r_a, r_b, n):
     *Source:* first lecture deck, “Computing impulse”.
     """
     # YOUR CODE HERE
-    raise NotImplementedError("Exercise 7.7: inverse_mass")
+    raise NotImplementedError("Exercise 7.7: effective_inverse_mass")
 
 
-def push(body, r, J):
-    """Given.  Return the Solid body after an impulse J (3,) [N s] at r:  v⁺ = v + J/m,   ω⁺ = ω + I⁻¹ (r × J)."""
+def apply_impulse(body, r, J):
+    """Given.  Return the BodyState3D after an impulse J (3,) [N s] at r:  v⁺ = v + J/m,   ω⁺ = ω + I⁻¹ (r × J)."""
     v = body.v + body.inv_mass * J
     omega = body.omega + times(body.inv_inertia, cross(r, J))
-    return Solid(v, omega, body.inv_mass, body.inv_inertia)
+    return BodyState3D(v, omega, body.inv_mass, body.inv_inertia)
 
 
 def angular_momenta(L_a, L_b, r_a, r_b, J):
@@ -250,7 +252,7 @@ def angular_momenta(L_a, L_b, r_a, r_b, J):
 
 # ---------------------------------------------------------------------------------------------- friction, and energy
 
-def point_inverse_mass(r, inv_mass, inv_inertia):
+def contact_matrix(r, inv_mass, inv_inertia):
     """Return K [1/kg], (3, 3): an impulse J at the offset r changes the velocity of that point by K J.
 
     K = 1/m − r* I⁻¹ r*          r* = skew(r) of lesson 5
@@ -260,7 +262,7 @@ def point_inverse_mass(r, inv_mass, inv_inertia):
     *Source:* Mirtich and Canny 1995; Baraff 1997.
     """
     # YOUR CODE HERE
-    raise NotImplementedError("Exercise 7.9: point_inverse_mass")
+    raise NotImplementedError("Exercise 7.9: contact_matrix")
 
 
 def cone_impulse(u, n, K, w, mu):
@@ -359,14 +361,14 @@ def gap(x, p):
 
 
 def penalty_step(acceleration, t, x, v, dt, p):
-    """Given.  Advance a Drop by symplectic Euler with a penalty spring and damper; first order, stable for ω dt < 2."""
-    push = penalty_force(gap(x, p), v @ p.n, p.stiffness, p.damping)
-    v = v + dt * (acceleration(t, x, v, p) + push * p.n)
+    """Given.  Advance a BouncingBall by symplectic Euler with a penalty force; first order, stable for ω dt < 2."""
+    force = penalty_force(gap(x, p), v @ p.n, p.stiffness, p.damping)
+    v = v + dt * (acceleration(t, x, v, p) + force * p.n)
     return x + dt * v, v
 
 
-def projecting_step(acceleration, t, x, v, dt, p):
-    """Advance a Drop by one step, and correct velocity and position at its end if it is below the plane; first order.
+def position_projection_step(acceleration, t, x, v, dt, p):
+    """Advance a BouncingBall by one step; if it ends below the plane, correct velocity and position; first order.
 
     v ← v + dt a(t, x, v),    x ← x + dt v                       as usual, velocity first
     φ = gap(x, p) < 0:        v ← kinematic_response(v, n, e),   x ← x − φ n
@@ -374,29 +376,29 @@ def projecting_step(acceleration, t, x, v, dt, p):
     *Source:* second lecture deck, time stepping, “Option 2”.
     """
     # YOUR CODE HERE
-    raise NotImplementedError("Exercise 7.15: projecting_step")
+    raise NotImplementedError("Exercise 7.15: position_projection_step")
 
 
-def fly(x, v, a, t):
+def free_flight(x, v, a, t):
     """Given.  Return (x, v) after t [s] under a constant acceleration a:  x + t v + ½ t² a,  v + t a."""
     return x + t * v + 0.5 * t * t * a, v + t * a
 
 
-def lie(x, v, a, t, n):
+def slide_on_plane(x, v, a, t, n):
     """Given.  Return (x, v) after t [s] of a ball that slides on its plane without friction, or is lifted off."""
-    return fly(x, tangential(v, n), a - np.minimum(0.0, a @ n) * n, t)
+    return free_flight(x, tangential(v, n), a - np.minimum(0.0, a @ n) * n, t)
 
 
 def backtracking_step(acceleration, t, x, v, dt, p):
-    """Advance a Drop by one step, impact by impact; exact while the acceleration is constant.
+    """Advance a BouncingBall by one step, impact by impact; exact while the acceleration is constant.
 
-    a = acceleration(t, x, v, p), for the whole step.  While some time `left` of dt remains, at most IMPACTS times:
-    τ = impact_time(φ, v · n, a · n, left),     φ = gap(x, p);     (x, v) = fly(x, v, a, τ);     left ← left − τ
+    a = acceleration(t, x, v, p), for the whole step.  While some time `left` of dt remains, at most MAX_IMPACTS times:
+    τ = impact_time(φ, v · n, a · n, left),     φ = gap(x, p);     (x, v) = free_flight(x, v, a, τ);     left ← left − τ
     if nothing is left: done.                   Otherwise the ball is on the plane:
     v ← kinematic_response(v, n, e),            x ← x − gap(x, p) n                        which removes round-off
-    if bouncing_time(v · n, a · n, e) ≤ left:   all bounces end within this step: return lie(x, v, a, left, n)
+    if bouncing_time(v · n, a · n, e) ≤ left, all bounces end within this step: return slide_on_plane(x, v, a, left, n)
 
-    Raises Diverged after IMPACTS impacts.
+    Raises Diverged after MAX_IMPACTS impacts.
     *Source:* second lecture deck, time stepping, “Option 1”.
     """
     # YOUR CODE HERE
@@ -412,8 +414,8 @@ def check_over_plane(p, d):
     check_normal(p.n)
 
 
-def drop_all(step, acceleration, t, x, v, dt, steps, p):
-    """Given.  Return (x, v), each (copies, d), of independent copies of a Drop after `steps` steps of one method.
+def advance_balls(step, acceleration, t, x, v, dt, steps, p):
+    """Given.  Return (x, v), each (copies, d), of copies of a BouncingBall after `steps` steps of one method.
 
     Raises BadInput for a step that is not positive, an e outside 0 … 1, a normal that is not a unit vector, a
     state that is not finite; Diverged when the final state is not finite.
@@ -436,50 +438,50 @@ def drop_all(step, acceleration, t, x, v, dt, steps, p):
 # ---------------------------------------------------------------------------------------------- a rotating ball
 
 def spinning_impact(v, omega, p):
-    """Given.  Return (v, ω) of a Spinner after contact_impulse of its plane at the offset −radius n."""
+    """Given.  Return (v, ω) of a SpinningBall after contact_impulse of its plane at the offset −radius n."""
     r = -p.radius * p.n
-    K = point_inverse_mass(r, p.inv_mass, p.inv_inertia)
+    K = contact_matrix(r, p.inv_mass, p.inv_inertia)
     J = contact_impulse(point_velocity(v, omega, r), p.n, K, p.e, p.mu)
     return v + p.inv_mass * J, omega + times(p.inv_inertia, cross(r, J))
 
 
-def projecting_spin_step(acceleration, t, x, v, omega, dt, p):
-    """Given.  Advance a Spinner as projecting_step does; first order."""
+def position_projection_spin_step(acceleration, t, x, v, omega, dt, p):
+    """Given.  Advance a SpinningBall as position_projection_step does; first order."""
     x, v = symplectic_euler_step(acceleration, t, x, v, dt, p)
     if gap(x, p) >= 0.0:
         return x, v, omega
     v, omega = spinning_impact(v, omega, p)
-    return put_on_plane(x, p), v, omega
+    return project_to_plane(x, p), v, omega
 
 
-def put_on_plane(x, p):
+def project_to_plane(x, p):
     """Given.  Return the point (d,) of the plane of p that is nearest to x:  x − φ n."""
     return x - gap(x, p) * p.n
 
 
-def fly_to_plane(x, v, a, left, p):
+def advance_to_plane(x, v, a, left, p):
     """Given.  Fly at constant acceleration to the plane of p, at most for `left` [s]; return (x, v, time then left)."""
     tau = impact_time(gap(x, p), v @ p.n, a @ p.n, left)
-    x, v = fly(x, v, a, tau)
+    x, v = free_flight(x, v, a, tau)
     return x, v, left - tau
 
 
 def backtracking_spin_step(acceleration, t, x, v, omega, dt, p):
-    """Given.  Advance a Spinner impact by impact; exact at constant acceleration.  Raises Diverged as for a Drop."""
+    """Given.  Advance a SpinningBall impact by impact; exact at constant acceleration.  Raises as backtracking_step."""
     a = acceleration(t, x, v, p)
-    x, v, left = fly_to_plane(x, v, a, dt, p)
-    for _ in range(IMPACTS):
+    x, v, left = advance_to_plane(x, v, a, dt, p)
+    for _ in range(MAX_IMPACTS):
         if left <= 0.0:
             return x, v, omega
         v, omega = spinning_impact(v, omega, p)
-        x, v, left = fly_to_plane(put_on_plane(x, p), v, a, left, p)
+        x, v, left = advance_to_plane(project_to_plane(x, p), v, a, left, p)
     raise Diverged("impacts without end in a step of dt [s]", dt, "take a smaller step")
 
 
-def spin_all(step, acceleration, t, x, v, omega, dt, steps, p):
-    """Given.  Return (x, v, ω), each (copies, 3), of copies of a Spinner after `steps` steps of one method.
+def advance_spinning_balls(step, acceleration, t, x, v, omega, dt, steps, p):
+    """Given.  Return (x, v, ω), each (copies, 3), of copies of a SpinningBall after `steps` steps of one method.
 
-    Raises the errors of drop_all, and BadInput for μ < 0.
+    Raises the errors of advance_balls, and BadInput for μ < 0.
     """
     t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
     check_field("position x [m]", x, (len(x), 3))
@@ -565,7 +567,7 @@ def drift(x, v, dt):
     return x
 
 
-def projecting_discs_step(x, v, dt, p):
+def position_projection_discs_step(x, v, dt, p):
     """Given.  Advance discs by one step, then treat all overlapping pairs one by one; first order."""
     x, v = drift(x, v, dt), float_copy(v)
     for i in range(x.shape[0]):
@@ -577,12 +579,12 @@ def projecting_discs_step(x, v, dt, p):
 
 
 def backtracking_discs_step(x, v, dt, p):
-    """Given.  Advance discs impact by impact, the earliest first; exact.  Raises Diverged after IMPACTS impacts.
+    """Given.  Advance discs impact by impact, the earliest first; exact.  Raises Diverged after MAX_IMPACTS impacts.
 
     Of simultaneous impacts, the first pair in the list goes first: a choice.
     """
     left, v = dt, float_copy(v)
-    for _ in range(IMPACTS):
+    for _ in range(MAX_IMPACTS):
         tau, first, second = left, 0, 0
         for i in range(x.shape[0]):
             for j in range(i):
@@ -597,8 +599,8 @@ def backtracking_discs_step(x, v, dt, p):
     raise Diverged("impacts without end in a step of dt [s]", dt, "take a smaller step")
 
 
-def discs_all(step, x, v, dt, steps, p):
-    """Given.  Return (x, v), each (copies, bodies, d), of copies of discs after `steps` steps; raises as drop_all."""
+def advance_discs(step, x, v, dt, steps, p):
+    """Given.  Return (x, v), each (copies, bodies, d), of discs after `steps` steps; raises as advance_balls."""
     _, x, v, dt, steps = checked_run(0.0, x, v, dt, steps)
     check_array("position x [m]", x, 3)
     check_restitution(finite_number("restitution e [-]", p.e))
@@ -618,7 +620,7 @@ def discs_all(step, x, v, dt, steps, p):
 # ---------------------------------------------------------------------------------------------- several impacts at once
 
 def check_impacts(body, r, n, e, mu):
-    """Given.  Raise BadInput unless a Solid, offsets r and unit normals n (points, 3), e and μ define an impact."""
+    """Given.  Raise BadInput unless body, offsets r and unit normals n (points, 3), e and μ define an impact."""
     check_restitution(finite_number("restitution e [-]", e))
     check_friction(number("friction μ [-]", mu))
     check_positive("inverse mass [1/kg]", number("inverse mass [1/kg]", body.inv_mass))
@@ -631,7 +633,7 @@ def check_impacts(body, r, n, e, mu):
         check_normal(n[i])
 
 
-def one_after_the_other(body, r, n, e, mu):
+def sequential_impacts(body, r, n, e, mu):
     """Given.  Return (Solid, residual [m/s]) after an impact at several points, each treated once, in order.
 
     Each impulse starts from the body as the previous one left it, so the result depends on the order: the two
@@ -643,9 +645,9 @@ def one_after_the_other(body, r, n, e, mu):
     after = body
     for i in range(len(r)):
         u = point_velocity(after.v, after.omega, r[i])
-        K = point_inverse_mass(r[i], body.inv_mass, body.inv_inertia)
+        K = contact_matrix(r[i], body.inv_mass, body.inv_inertia)
         Js[i] = contact_impulse(u, n[i], K, e, mu)
-        after = push(after, r[i], Js[i])
+        after = apply_impulse(after, r[i], Js[i])
     return after, impact_residual(after, r, n, Js, w, mu)
 
 
@@ -676,14 +678,14 @@ def impact_residual(after, r, n, Js, w, mu):
     """
     worst = 0.0
     for i in range(len(r)):
-        K = point_inverse_mass(r[i], after.inv_mass, after.inv_inertia)
+        K = contact_matrix(r[i], after.inv_mass, after.inv_inertia)
         u = point_velocity(after.v, after.omega, r[i]) - times(K, Js[i])
         J = cone_impulse(u, n[i], K, w[i], mu)
         worst = np.maximum(worst, np.abs(times(K, J - Js[i])).max())
     return worst
 
 
-def into_cone(J, n, mu):
+def project_onto_cone(J, n, mu):
     """Given.  Return the impulse (3,) in Coulomb's cone |J_t| ≤ μ J_n that is nearest to J (3,)."""
     J_n, J_t = J @ n, tangential(J, n)
     beta = np.arctan(mu)
@@ -702,7 +704,7 @@ def most_dissipative_impact(body, r, n, e, mu):
     With much friction its law can be without an answer, or its sweeps may not find one.  Of all impulses inside the
     cones, take those that leave the least kinetic energy: a convex problem, which always has an answer.  Each point in
     turn follows the gradient of the energy, its own velocity uᵢ, and returns to its cone:
-    Jᵢ ← into_cone(Jᵢ − uᵢ/tr Kᵢ).  Scale all impulses by s.
+    Jᵢ ← project_onto_cone(Jᵢ − uᵢ/tr Kᵢ).  Scale all impulses by s.
     s = 1 leaves the least energy, and s = 1 + e is Poisson's restitution;
     s is smaller where a point would otherwise move into the other body.  This never gains energy: the energy is
     a parabola in s, and s = 1 + e loses 1 − e² of what s = 1 loses.
@@ -714,16 +716,16 @@ def most_dissipative_impact(body, r, n, e, mu):
     w = rebound_speeds(body, r, n, e)
     Js = np.zeros((len(r), 3))
     after, speed = body, largest_speed(body, r)
-    for _ in range(SWEEPS):
+    for _ in range(MAX_SWEEPS):
         change = 0.0
         for i in range(len(r)):
-            K = point_inverse_mass(r[i], body.inv_mass, body.inv_inertia)
+            K = contact_matrix(r[i], body.inv_mass, body.inv_inertia)
             u = point_velocity(after.v, after.omega, r[i])
-            J = into_cone(Js[i] - u / (K[0, 0] + K[1, 1] + K[2, 2]), n[i], mu) - Js[i]
+            J = project_onto_cone(Js[i] - u / (K[0, 0] + K[1, 1] + K[2, 2]), n[i], mu) - Js[i]
             change = np.maximum(change, np.abs(times(K, J)).max())
-            after = push(after, r[i], J)
+            after = apply_impulse(after, r[i], J)
             Js[i] += J
-        if change <= SETTLED * speed:
+        if change <= CONVERGED * speed:
             break
     gain, curvature, share = 0.0, 0.0, 1.0 + e
     for i in range(len(r)):
@@ -738,7 +740,7 @@ def most_dissipative_impact(body, r, n, e, mu):
     after = body
     for i in range(len(r)):
         Js[i] *= share
-        after = push(after, r[i], Js[i])
+        after = apply_impulse(after, r[i], Js[i])
     return after, impact_residual(after, r, n, Js, w, mu)
 
 
@@ -747,11 +749,11 @@ def solve_impacts(body, r, n, e, mu):
 
     r (points, 3) are the offsets and n (points, 3) the normals.  wᵢ = rebound_speeds(body, r, n, e), from the
     velocities before the impact, and  Jᵢ = 0.  Then sweep over all points:
-        velocity without the point's own impulse:   u = v + ω × rᵢ − Kᵢ Jᵢ,    Kᵢ = point_inverse_mass(rᵢ, 1/m, I⁻¹)
+        velocity without the point's own impulse:   u = v + ω × rᵢ − Kᵢ Jᵢ,    Kᵢ = contact_matrix(rᵢ, 1/m, I⁻¹)
         new impulse of the point:                   J = cone_impulse(u, nᵢ, Kᵢ, wᵢ, μ)
         push the body by J − Jᵢ at rᵢ;    Jᵢ ← J
     The residual of a sweep is the largest component of all changes of velocity Kᵢ (J − Jᵢ) of a point by its
-    own impulse.  The sweeps end when the residual is at most SETTLED times largest_speed(body, r).  If SWEEPS
+    own impulse.  The sweeps end when the residual is at most CONVERGED times largest_speed(body, r).  If MAX_SWEEPS
     sweeps are not enough, return most_dissipative_impact(body, r, n, e, μ), given above, of the body before the
     impact: with much friction the law can be without an answer, and then the residual shows that.
 

@@ -24,16 +24,16 @@ from solutions.checks import BadInput, check_finite, check_positive
 from solutions.vectors import cross, dot, inverse
 
 __all__ = [
-    "TENSOR_ROUND_OFF", "Body", "angular_momentum", "box_inertia", "capsule_inertia",
+    "MOMENT_ROUND_OFF", "MassProperties", "angular_momentum", "box_inertia", "capsule_inertia",
     "centre_of_mass", "check_closed", "check_inertia", "combine", "cylinder_inertia",
     "linear_momentum", "mesh_body", "mesh_integrals", "parallel_axes", "point_mass_inertia",
     "principal_axes", "sphere_inertia", "world_inertia", "world_inverse_inertia",
 ]
 
-TENSOR_ROUND_OFF = 1e-14      # accuracy of a moment relative to the largest [-]: a few dozen roundings of 1.1e-16
+MOMENT_ROUND_OFF = 1e-14     # accuracy of a moment relative to the largest [-]: a few dozen roundings of 1.1e-16
 
 
-class Body(NamedTuple):
+class MassProperties(NamedTuple):
     """The properties of a body that determine its rigid motion."""
     m: float                  # mass [kg]
     x: np.ndarray             # (3,) centre of mass [m]
@@ -186,7 +186,7 @@ def parallel_axes(I, m, d):
 
 
 def combine(m, x, I):
-    """Return the Body of n rigidly connected bodies: m (n,), their centres x (n, 3), tensors I (n, 3, 3) about these.
+    """Return the MassProperties of n rigidly connected bodies: m (n,), centres x (n, 3), I (n, 3, 3) about these.
 
     M, X = centre_of_mass,   I = Σ of all Iᵢ, each moved to X by parallel_axes
 
@@ -213,7 +213,7 @@ def principal_axes(I):
 def check_inertia(I):
     """Raise BadInput unless I (3, 3) can be the tensor of a body with thickness.
 
-    I₁ ≤ I₂ ≤ I₃ are its principal moments and ε = TENSOR_ROUND_OFF.  The name of the thing in BadInput is one of
+    I₁ ≤ I₂ ≤ I₃ are its principal moments and ε = MOMENT_ROUND_OFF.  The name of the thing in BadInput is one of
     "an entry of the inertia tensor [kg m²]"           infinite or NaN                  (from check_finite)
     "the asymmetry of an inertia tensor [kg m²]"       max|I − Iᵀ| > ε max|I|
     "the smallest principal moment [kg m²]"            I₁ ≤ ε I₃: no resistance; a line of points has I₁ = 0
@@ -262,7 +262,7 @@ def check_closed(count, faces):
 
 
 def mesh_body(density, x, faces):
-    """Return the Body of uniform density [kg/m³] inside a closed mesh: corners x (n, 3) [m], faces (k, 3).
+    """Return the MassProperties of uniform density [kg/m³] inside a closed mesh: corners x (n, 3) [m], faces (k, 3).
 
     Let (V, S, Q) be the mesh_integrals of x − o, about a point o of the body itself, the first corner:
         m = ρ V,   centre = o + c,  c = S/V,   C = Q − V c cᵀ,   I = ρ (tr C 1 − C)
@@ -273,7 +273,7 @@ def mesh_body(density, x, faces):
     Raises BadInput unless the density is positive (check_positive), the corners are finite and the mesh is closed
     (check_closed).  Raises it with "the volume inside the mesh [m³]" unless V > ε e³, e = max|x − o| over all
     coordinates,
-    ε = TENSOR_ROUND_OFF: then its triangles are clockwise, or it is flat and its volume only round-off.
+    ε = MOMENT_ROUND_OFF: then its triangles are clockwise, or it is flat and its volume only round-off.
     *Source:* as for mesh_integrals.
     """
     # YOUR CODE HERE

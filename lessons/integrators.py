@@ -18,7 +18,7 @@ import numpy as np
 from solutions.checks import Diverged, check_end, check_positive, checked_run, float_copy
 
 __all__ = [
-    "NEWTON_LIMIT", "ROUND_OFF", "Oscillator", "advance", "amplification_matrix",
+    "NEWTON_LIMIT", "POSITION_ROUND_OFF", "Oscillator", "advance", "amplification_matrix",
     "average_velocity_step", "euler_step", "implicit_euler_step", "implicit_midpoint_step",
     "midpoint_step", "newton_matrix", "observed_order", "oscillator_acceleration", "rk4_step",
     "solve", "spectral_radius", "symplectic_euler_step", "trajectory", "verlet_step",
@@ -26,7 +26,7 @@ __all__ = [
 
 NEWTON_TOLERANCE = 1e-12     # last correction over the size of the velocity [-]: well above round-off, 2e-16
 NEWTON_LIMIT = 30            # corrections [-]; from a good guess Newton doubles its digits and needs fewer than 8
-ROUND_OFF = 1e-15            # a few spacings of floats [-]: the relative accuracy of any position
+POSITION_ROUND_OFF = 1e-15   # a few spacings of floats [-]: the relative accuracy of any position
 DIFFERENCE_STEP = 6e-6       # ∛(2.2e-16) [-]: balances truncation against round-off in a central difference
 
 
@@ -155,8 +155,8 @@ def implicit_euler_step(acceleration, t, x, v, dt, p):
     repeat, at most NEWTON_LIMIT times,
         r = w − vₙ − dt a(tₙ + dt, xₙ + dt w, w)
         w ← w − δ,    newton_matrix(acceleration, tₙ + dt, xₙ, w, dt, p) · δ = r
-    until max|δ| ≤ NEWTON_TOLERANCE · max(1, max|w|) + ROUND_OFF · max|xₙ| / dt.  The last term is the round-off of a
-    position far from the origin, expressed as a velocity.
+    until max|δ| ≤ NEWTON_TOLERANCE · max(1, max|w|) + POSITION_ROUND_OFF · max|xₙ| / dt.  The last term is the
+    round-off of a position far from the origin, expressed as a velocity.
     newton_matrix and solve are given above.  r and δ are flat, (n,): use .ravel() and .reshape(v.shape).
 
     Raises Diverged("Newton's method did not converge at dt [s]", dt, "take a smaller step") after NEWTON_LIMIT

@@ -36,26 +36,27 @@ from solutions.friction import cone_radius
 from solutions.vectors import cross, dot, norm
 
 __all__ = [
-    "FLAT", "NEWTON_LIMIT", "SUZUKI", "Ball", "Body", "State", "Top", "about_axis",
-    "angular_acceleration", "angular_momentum", "angular_velocity", "axis_angle_step",
-    "axis_angle_update", "body_component", "check_moments", "check_rotation", "compose",
-    "composed_midpoint_step", "composed_splitting_step", "exponential", "gyroscopic_step",
-    "heavy_top_torque", "implicit_gyroscopic_step", "kinetic_energy", "make_body", "matrix_step",
-    "matrix_update", "middle_axis", "midpoint_step", "midpoint_turn", "move", "no_torque",
-    "point_velocity", "product", "quaternion_of", "quaternion_step", "quaternion_update",
-    "rigid_body_step", "rolling_load", "rotate", "rotation_matrix", "runge_kutta_step", "skew",
-    "solve3", "splitting_step", "splitting_turn", "state_derivative", "total_load", "tumble",
-    "tumbling", "tumbling_rate", "unit", "unrotate",
+    "FLAT_BODY_TOLERANCE", "NEWTON_LIMIT", "SUZUKI", "RigidBody", "RigidBodyState", "RollingBall",
+    "Top", "about_axis", "advance_rigid_body", "advance_rotation", "angular_acceleration",
+    "angular_velocity", "axis_angle_step", "axis_angle_update", "body_angular_momentum",
+    "body_component", "check_moments", "check_rotation", "compose", "composed_midpoint_step",
+    "composed_splitting_step", "exponential", "gyroscopic_step", "heavy_top_torque",
+    "implicit_gyroscopic_step", "intermediate_axis", "kinetic_energy", "make_rigid_body",
+    "matrix_step", "matrix_update", "midpoint_free_rotation", "midpoint_step", "no_torque",
+    "point_velocity", "quaternion_from_matrix", "quaternion_product", "quaternion_step",
+    "quaternion_update", "rigid_body_step", "rolling_load", "rotate", "rotation_matrix",
+    "rotation_trajectory", "runge_kutta_step", "skew", "solve3", "splitting_free_rotation",
+    "splitting_step", "state_derivative", "total_load", "tumbling_rate", "unit", "unrotate",
 ]
 
 NEWTON_TOLERANCE = 1e-12     # last correction over the unknown [-]; Newton squares it, so only round-off remains
 NEWTON_LIMIT = 30            # corrections [-]; from a good guess Newton doubles its digits and needs fewer than 6
 UNIT_TOLERANCE = 1e-9        # allowed error of a given quaternion's length [-]: 1000 times the round-off of 10⁷ steps
-FLAT = 1e-12                 # a flat body has I₁ + I₂ = I₃; round-off may violate that by this share [-]
+FLAT_BODY_TOLERANCE = 1e-12  # a flat body has I₁ + I₂ = I₃; round-off may violate that by this share [-]
 SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))      # share of the step in each of four substeps [-]: 4γ³ + (1 − 4γ)³ = 0
 
 
-class State(NamedTuple):
+class RigidBodyState(NamedTuple):
     """The state S(t) of the lecture, or its derivative."""
     x: np.ndarray            # (3,) position of the centre of mass [m]
     R: np.ndarray            # (3, 3) orientation: its columns are the axes of the body
@@ -63,7 +64,7 @@ class State(NamedTuple):
     L: np.ndarray            # (3,) angular momentum about the centre of mass [kg m²/s]
 
 
-class Body(NamedTuple):
+class RigidBody(NamedTuple):
     """The constant properties of a rigid body."""
     m: float                 # mass [kg]
     I_body: np.ndarray       # (3,) principal moments of inertia [kg m²]
@@ -75,7 +76,7 @@ class Top(NamedTuple):
     mgl: float               # weight times the distance from the pivot to the centre of mass [N m]
 
 
-class Ball(NamedTuple):
+class RollingBall(NamedTuple):
     """A ball, or any round body with three equal moments, on a horizontal floor."""
     m: float                 # mass [kg]
     I_body: np.ndarray       # (3,) moments of inertia [kg m²]
@@ -91,16 +92,16 @@ def check_moments(I_body):
     for k in range(3):
         check_positive("a principal moment of inertia [kg m²]", I_body[k])
         others = I_body[(k + 1) % 3] + I_body[(k + 2) % 3]
-        if I_body[k] > others * (1.0 + FLAT):
+        if I_body[k] > others * (1.0 + FLAT_BODY_TOLERANCE):
             raise BadInput("a principal moment of inertia [kg m²]", I_body[k],
                            "no distribution of mass has it; keep it below the sum of the other two")
 
 
-def make_body(m, I_body):
-    """Given.  Make a Body from a number and three; raises BadInput for a mass or moments that no body has."""
+def make_rigid_body(m, I_body):
+    """Given.  Make a RigidBody from a number and three; raises BadInput for a mass or moments that no body has."""
     moments = finite_array("principal moments [kg m²]", I_body)
     check_moments(moments)
-    return Body(positive_number("mass m [kg]", m), moments)
+    return RigidBody(positive_number("mass m [kg]", m), moments)
 
 
 # ---------------------------------------------------------------------------------------------- rotational movement
@@ -150,7 +151,7 @@ def angular_velocity(R, L, I_body):
 
 
 def state_derivative(S, F, tau, body):
-    """Return Ṡ as a State:  ẋ = P/M,  Ṙ = ω* R,  Ṗ = F,  L̇ = τ,  for a State S and a Body.
+    """Return Ṡ as a RigidBodyState:  ẋ = P/M,  Ṙ = ω* R,  Ṗ = F,  L̇ = τ,  for a RigidBodyState S and a RigidBody.
 
     ω = angular_velocity(R, L, I_body)
 
@@ -186,7 +187,7 @@ def axis_angle_update(R, omega, dt):
     raise NotImplementedError("Exercise 5.7: axis_angle_update")
 
 
-def product(a, b):
+def quaternion_product(a, b):
     """Return the product a b (4,) of two quaternions (w, x, y, z): the rotation by b, followed by that by a.
 
     (a₀, 𝐚)(b₀, 𝐛) = (a₀b₀ − 𝐚·𝐛,  a₀𝐛 + b₀𝐚 + 𝐚×𝐛)
@@ -194,7 +195,7 @@ def product(a, b):
     *Source:* Hamilton 1844; first lecture deck, “Use quaternions”.
     """
     # YOUR CODE HERE
-    raise NotImplementedError("Exercise 5.8: product")
+    raise NotImplementedError("Exercise 5.8: quaternion_product")
 
 
 def rotation_matrix(q):
@@ -283,7 +284,7 @@ def solve3(a, b, c, r):
     return np.array([dot(r, bc), dot(a, cross(r, c)), dot(a, cross(b, r))]) / dot(a, bc)
 
 
-def angular_momentum(q, omega, I_body):
+def body_angular_momentum(q, omega, I_body):
     """Given.  Return L = I ω [kg m²/s] (3,)."""
     return rotate(q, I_body * unrotate(q, omega))
 
@@ -315,7 +316,7 @@ def rigid_body_step(load, t, x, v, q, omega, dt, body):
 
 
 def rolling_load(t, x, v, q, omega, ball):
-    """Given.  Return F [N] and τ [N m], each (3,), of a Ball on a floor across z: weight, support and friction.
+    """Given.  Return F [N] and τ [N m], each (3,), of a RollingBall on a floor across z: weight, support and friction.
 
     Gravity may have any direction.  Friction stops the slip u of the lowest point by the end of the step, within μN:
         f = −min(μN, |u′|/(K dt)) u′/|u′|      u′ = u + dt g_t: the slip without friction,   K = 1/m + radius²/I
@@ -377,14 +378,14 @@ def matrix_step(torque, t, q, L, dt, body):
     L = L + dt * torque(t, q, L, body)
     R = rotation_matrix(q)
     R = matrix_update(R, angular_velocity(R, L, body.I_body), dt)
-    return quaternion_of(R), L
+    return quaternion_from_matrix(R), L
 
 def axis_angle_step(torque, t, q, L, dt, body):
     """Given.  The same with axis_angle_update."""
     L = L + dt * torque(t, q, L, body)
     R = rotation_matrix(q)
     R = axis_angle_update(R, angular_velocity(R, L, body.I_body), dt)
-    return quaternion_of(R), L
+    return quaternion_from_matrix(R), L
 
 def quaternion_step(torque, t, q, L, dt, body):
     """Given.  The same with quaternion_update."""
@@ -397,7 +398,7 @@ def gyroscopic_step(torque, t, q, L, dt, body):
     omega = angular_velocity(rotation_matrix(q), L, body.I_body)
     omega = omega + dt * angular_acceleration(q, omega, torque(t, q, L, body), body.I_body)
     q = quaternion_update(q, omega, dt)
-    return q, angular_momentum(q, omega, body.I_body)
+    return q, body_angular_momentum(q, omega, body.I_body)
 
 
 def implicit_gyroscopic_step(torque, t, q, L, dt, body):
@@ -412,10 +413,10 @@ def implicit_gyroscopic_step(torque, t, q, L, dt, body):
     column = [I[k] * one[k] + dt * cross(I[k] * omega - L_body, one[k]) for k in range(3)]
     omega = rotate(q, omega + solve3(column[0], column[1], column[2], right))
     q = quaternion_update(q, omega, dt)
-    return q, angular_momentum(q, omega, I)
+    return q, body_angular_momentum(q, omega, I)
 
 
-def quaternion_of(R):
+def quaternion_from_matrix(R):
     """Given.  Return the unit quaternion (4,) of a rotation matrix.
 
     Its largest component is computed first, to avoid cancellation.
@@ -454,10 +455,10 @@ def runge_kutta_step(torque, t, q, L, dt, body):
 def _slope(torque, t, q, L, body):
     """Given.  Return q̇ and L̇."""
     omega = angular_velocity(rotation_matrix(q), L, body.I_body)
-    return 0.5 * product(np.array([0.0, omega[0], omega[1], omega[2]]), q), torque(t, q, L, body)
+    return 0.5 * quaternion_product(np.array([0.0, omega[0], omega[1], omega[2]]), q), torque(t, q, L, body)
 
 
-def midpoint_turn(q, L, I_body, dt):
+def midpoint_free_rotation(q, L, I_body, dt):
     """Return the orientation (4,) of a free body after dt by the implicit midpoint rule; second order, exact energy.
 
     Let ℓ be the body coordinates of L at the start (unrotate).  Find those at the middle of the step, m:
@@ -475,10 +476,10 @@ def midpoint_turn(q, L, I_body, dt):
     *Source:* Hairer, Lubich, Wanner 2006, “Geometric numerical integration”, IV.2; Cayley 1846 for the update.
     """
     # YOUR CODE HERE
-    raise NotImplementedError("Exercise 5.16: midpoint_turn")
+    raise NotImplementedError("Exercise 5.16: midpoint_free_rotation")
 
 
-def middle_axis(I_body):
+def intermediate_axis(I_body):
     """Given.  Return the number of the axis with the middle moment; the first possible one where moments are equal."""
     for k in range(2):
         if (I_body[(k + 1) % 3] - I_body[k]) * (I_body[k] - I_body[(k + 2) % 3]) >= 0.0:
@@ -486,10 +487,10 @@ def middle_axis(I_body):
     return 2
 
 
-def splitting_turn(q, L, I_body, dt):
+def splitting_free_rotation(q, L, I_body, dt):
     """Return the orientation (4,) of a free body after dt by four exact rotations; second order, bounded energy error.
 
-    Let b be the middle_axis, a and c the two that follow it (b + 1 and b + 2, modulo 3).  The energy is a sum of three,
+    Let b be the intermediate_axis, a and c the two that follow it (b + 1, b + 2, modulo 3).  The energy is a sum,
         L²/2I_b  +  ½(1/I_a − 1/I_b) L_a²  +  ½(1/I_c − 1/I_b) L_c²
     and the motion by each term alone is known.  The first rotates the body about L, by dt/I_b L: multiply by
     exponential(dt/I_b L) from the left; it commutes with the others.  The second rotates it about its own axis a by the
@@ -500,20 +501,20 @@ def splitting_turn(q, L, I_body, dt):
     *Source:* Touma and Wisdom 1994; Fassò 2003, “Comparison of splitting algorithms for the rigid body”.
     """
     # YOUR CODE HERE
-    raise NotImplementedError("Exercise 5.17: splitting_turn")
+    raise NotImplementedError("Exercise 5.17: splitting_free_rotation")
 
 
 def midpoint_step(torque, t, q, L, dt, body):
-    """Given.  Half of the angular impulse of the torque, midpoint_turn, the other half; second order, reversible."""
+    """Given.  Half of the angular impulse, midpoint_free_rotation, the other half; second order, reversible."""
     L = L + 0.5 * dt * torque(t, q, L, body)
-    q = midpoint_turn(q, L, body.I_body, dt)
+    q = midpoint_free_rotation(q, L, body.I_body, dt)
     return q, L + 0.5 * dt * torque(t + dt, q, L, body)
 
 
 def splitting_step(torque, t, q, L, dt, body):
-    """Given.  Half of the angular impulse of the torque, splitting_turn, the other half; second order, reversible."""
+    """Given.  Half of the angular impulse, splitting_free_rotation, the other half; second order, reversible."""
     L = L + 0.5 * dt * torque(t, q, L, body)
-    q = splitting_turn(q, L, body.I_body, dt)
+    q = splitting_free_rotation(q, L, body.I_body, dt)
     return q, L + 0.5 * dt * torque(t + dt, q, L, body)
 
 
@@ -550,7 +551,7 @@ def check_rotation(q):
 
 
 def checked_rotation(t, q, L, dt, steps, I_body):
-    """Given.  Return (t, q, L, dt, steps) in float64, as tumble needs them.
+    """Given.  Return (t, q, L, dt, steps) in float64, as advance_rotation needs them.
 
     Raises BadInput for a step that is not positive, a quaternion that is not a rotation, moments that no body has, an L
     that is not finite.
@@ -564,7 +565,7 @@ def checked_rotation(t, q, L, dt, steps, I_body):
     return t, q, L, dt, whole_number("number of steps", steps, 0)
 
 
-def tumble(step, torque, t, q, L, dt, steps, body):
+def advance_rotation(step, torque, t, q, L, dt, steps, body):
     """Given.  Return the state (q, L) after `steps` steps of one method.
 
     Raises what checked_rotation raises, and Diverged when the final state is not finite.
@@ -576,20 +577,20 @@ def tumble(step, torque, t, q, L, dt, steps, body):
     return q, L
 
 
-def tumbling(step, torque, t, q, L, dt, steps, body):
+def rotation_trajectory(step, torque, t, q, L, dt, steps, body):
     """Given.  Return times (steps + 1,), orientations (steps + 1, 4) and L (steps + 1, 3), with the start."""
     t, q, L, dt, steps = checked_rotation(t, q, L, dt, steps, body.I_body)
     ts = t + dt * np.arange(steps + 1)
     qs, Ls = np.zeros((steps + 1, 4)), np.zeros((steps + 1, 3))
     qs[0], Ls[0] = q, L
     for n in range(steps):
-        q, L = tumble(step, torque, t + n * dt, q, L, dt, 1, body)
+        q, L = advance_rotation(step, torque, t + n * dt, q, L, dt, 1, body)
         qs[n + 1], Ls[n + 1] = q, L
     return ts, qs, Ls
 
 
-def move(step, load, t, x, v, q, omega, dt, steps, body):
-    """Given.  Return (x, v, q, ω) after `steps` steps of a rigid body; raises what tumble raises."""
+def advance_rigid_body(step, load, t, x, v, q, omega, dt, steps, body):
+    """Given.  Return (x, v, q, ω) after `steps` steps of a rigid body; raises what advance_rotation raises."""
     positive_number("mass m [kg]", body.m)
     t, q, omega, dt, steps = checked_rotation(t, q, omega, dt, steps, body.I_body)
     t, x, v, dt, steps = checked_run(t, x, v, dt, steps)

@@ -562,9 +562,12 @@ def partition_at_median(tree, first, count, axis):
 
 
 def build_tree(low, high):
-    """Given.  Return the Tree of boxes low, high (n, d): halve the items along the axis of largest spread, to LEAF_SIZE.
+    """Given.  Return the Tree of boxes low, high (n, d).
 
-    Each level of the tree takes time in proportion to n, and there are about log₂(n/LEAF_SIZE) levels.  See check_boxes.
+    Halve the items at the median along the axis of largest spread, until at most LEAF_SIZE are left.
+
+    Each level of the tree takes time in proportion to n, and there are about log₂(n/LEAF_SIZE) levels.
+    Raises what check_boxes raises.
     *Source:* median split; second lecture deck, “Bounding volume hierarchies”.
     """
     low = finite_array("corner of a box [m]", low)
@@ -610,7 +613,8 @@ def find_intersections(a, b):
 
     FindIntersections(i, j), first of (0, 0), does nothing unless the boxes of node i of a and node j of b touch
     (boxes_touch).  If they do:
-        neither is a leaf      FindIntersections of each child of the larger node (girth; i if equal) with the other one
+        neither is a leaf      FindIntersections of each child of the larger node with the other one; the larger is the
+                               one with the greater half_perimeter, i if these are equal
         one is a leaf          FindIntersections of each child of the other one with the leaf
         both are leaves        test the pairs of their items: touching_items(a, i, b, j, found)
 
@@ -806,8 +810,8 @@ def box_separation(a, b):
 
     gap along an axis:   |r · axis| − half_width(a, axis) − half_width(b, axis),     r = x_a − x_b
     Choose the axis of the greatest gap.  An axis of two edges (k ≥ 6) must exceed the best face, k < 6, and any edges
-    before it by EDGE_PREFERENCE.  Of equal gaps the first counts.  candidate_axis(a, b, k) returns axis k; skip those that
-    are zeros.  n = ±axis, such that n · r ≥ 0.
+    before it by EDGE_PREFERENCE.  Of equal gaps the first counts.  candidate_axis(a, b, k) returns axis k; skip those
+    that are zeros.  n = ±axis, such that n · r ≥ 0.
 
     gap > 0: the boxes are at least that far apart along n.  gap ≤ 0: they overlap, and −gap along n is the shortest way
     out.
@@ -946,7 +950,9 @@ def check_hulls(a, b):
 
 
 def far_enough(v, w):
-    """Given.  Return whether v (d,) is the nearest point to 0, to GJK_RELATIVE_GAP of the size, if none is beyond w (d,) along −v.
+    """Given.  Return whether v (d,) is nearest to 0, if no point is beyond w (d,) along −v.
+
+    The tolerance is GJK_RELATIVE_GAP of the size.
 
     |v|² − v · w ≤ GJK_RELATIVE_GAP |v| |w|:  v · w/|v| is a lower bound of the distance, and |v| an upper bound.
     """

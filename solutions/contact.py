@@ -400,7 +400,7 @@ def velocity_sweep(v, omega, J, aim, give, contacts, arms, inv_mass, inv_inertia
 
 
 def contact_targets(gap, dt, pile):
-    """Given.  (aim, give), each (m,), of soft_contact for all contacts; none aims at parting faster than SEPARATION_SPEED."""
+    """Given.  (aim, give), each (m,), of soft_contact for all contacts; none aims at more than SEPARATION_SPEED."""
     aim, give = np.empty(gap.size), np.empty(gap.size)
     for k in range(gap.size):
         aim[k], give[k] = soft_contact(gap[k], pile.hertz, pile.zeta, dt)

@@ -285,7 +285,7 @@ def kinetic_friction_step(acceleration, t, x, v, dt, d, p):
 def stopping_time(acceleration, t, x, v, dt, d, p):
     """Return the time [s] until a block that slides along d stops: the τ in (0, dt] at which its speed along d is 0.
 
-    If  kinetic_friction_step(acceleration, t, x, v, dt, d, p)  ends with  v · d > 0,  the block does not stop in this step: return dt.
+    If  kinetic_friction_step(acceleration, t, x, v, dt, d, p)  ends with  v · d > 0,  the block goes on: return dt.
     Otherwise halve the interval (0, dt] HALVINGS times.  Keep the half in which the sign changes: a slide to its
     beginning still moves (v · d > 0), a slide to its end does not.  Return the end of the last interval.
     *Source:* bisection; second lecture deck, “go back to time of impact”, for the idea.
@@ -437,7 +437,7 @@ def contact_step(acceleration, surface, t, x, v, dt, p):
 
     v ← v + dt a(t, x, v),    x ← x + dt v                      as usual, velocity first
     (φ, n) = surface(x, p);   if φ < 0:
-        v ← v + particle_contact_impulse(v, n, m, e, μ)/m                the impulse is 0 where v already points outwards
+        v ← v + particle_contact_impulse(v, n, m, e, μ)/m            the impulse is 0 where v already points outwards
         x ← x − φ n
 
     A particle that should rest on a slope moves dt² g sin θ down it in every step, and the correction acts only across

@@ -166,7 +166,7 @@ def cross_2d(r, f):
 
 
 def relative_velocity_2d(a, b, r_a, r_b):
-    """Return u (2,) [m/s]: velocity of a's contact point relative to b's, for BodyState2D bodies with offsets r_a, r_b (2,).
+    """Return u (2,) [m/s]: velocity of a's contact point relative to b's, with offsets r_a, r_b (2,).
 
     u = (v_a + ω_a × r_a) − (v_b + ω_b × r_b),       ω × r = ω (−r_y, r_x)  in the plane
 
@@ -197,7 +197,7 @@ def impulse_size(u_n, k, e):
 
 
 def effective_inverse_mass_2d(a, b, r_a, r_b, n):
-    """Return k [1/kg] of two BodyState2D bodies that can rotate.
+    """Return k [1/kg] of two BodyState2D that can rotate.
 
     k = 1/m_a + 1/m_b + (r_a × n)²/I_a + (r_b × n)²/I_b          r × n: cross_2d
 
@@ -210,7 +210,7 @@ def effective_inverse_mass_2d(a, b, r_a, r_b, n):
 
 
 def apply_impulse_2d(body, r, J):
-    """Return the BodyState2D body after an impulse J (2,) [N s] at the offset r, with the same masses.
+    """Return the BodyState2D after an impulse J (2,) [N s] at the offset r, with the same masses.
 
     v⁺ = v + J/m,   ω⁺ = ω + (r × J)/I
 
@@ -226,7 +226,7 @@ def apply_impulse_2d(body, r, J):
 # ---------------------------------------------------------------------------------------------- in space
 
 def relative_velocity(a, b, r_a, r_b):
-    """Given.  Return u (3,) [m/s] of two BodyState3D bodies:  (v_a + ω_a × r_a) − (v_b + ω_b × r_b).
+    """Given.  Return u (3,) [m/s] of two BodyState3D:  (v_a + ω_a × r_a) − (v_b + ω_b × r_b).
 
     *Source:* first lecture deck, “Relative Velocity”.
     """
@@ -234,7 +234,7 @@ def relative_velocity(a, b, r_a, r_b):
 
 
 def effective_inverse_mass(a, b, r_a, r_b, n):
-    """Return k [1/kg] of two BodyState3D bodies.
+    """Return k [1/kg] of two BodyState3D.
 
     k = 1/m_a + 1/m_b + n · [(I_a⁻¹ (r_a × n)) × r_a] + n · [(I_b⁻¹ (r_b × n)) × r_b]
 
@@ -249,7 +249,7 @@ def effective_inverse_mass(a, b, r_a, r_b, n):
 
 
 def apply_impulse(body, r, J):
-    """Given.  Return the BodyState3D body after an impulse J (3,) [N s] at r:  v⁺ = v + J/m,   ω⁺ = ω + I⁻¹ (r × J)."""
+    """Given.  Return the BodyState3D after an impulse J (3,) [N s] at r:  v⁺ = v + J/m,   ω⁺ = ω + I⁻¹ (r × J)."""
     v = body.v + body.inv_mass * J
     omega = body.omega + times(body.inv_inertia, cross(r, J))
     return BodyState3D(v, omega, body.inv_mass, body.inv_inertia)
@@ -412,14 +412,14 @@ def gap(x, p):
 
 
 def penalty_step(acceleration, t, x, v, dt, p):
-    """Given.  Advance a BouncingBall by symplectic Euler with a penalty spring and damper; first order, stable for ω dt < 2."""
+    """Given.  Advance a BouncingBall by symplectic Euler with a penalty force; first order, stable for ω dt < 2."""
     force = penalty_force(gap(x, p), v @ p.n, p.stiffness, p.damping)
     v = v + dt * (acceleration(t, x, v, p) + force * p.n)
     return x + dt * v, v
 
 
 def position_projection_step(acceleration, t, x, v, dt, p):
-    """Advance a BouncingBall by one step, and correct velocity and position at its end if it is below the plane; first order.
+    """Advance a BouncingBall by one step; if it ends below the plane, correct velocity and position; first order.
 
     v ← v + dt a(t, x, v),    x ← x + dt v                       as usual, velocity first
     φ = gap(x, p) < 0:        v ← kinematic_response(v, n, e),   x ← x − φ n
@@ -454,7 +454,7 @@ def backtracking_step(acceleration, t, x, v, dt, p):
     τ = impact_time(φ, v · n, a · n, left),     φ = gap(x, p);     (x, v) = free_flight(x, v, a, τ);     left ← left − τ
     if nothing is left: done.                   Otherwise the ball is on the plane:
     v ← kinematic_response(v, n, e),            x ← x − gap(x, p) n                        which removes round-off
-    if bouncing_time(v · n, a · n, e) ≤ left:   all bounces end within this step: return slide_on_plane(x, v, a, left, n)
+    if bouncing_time(v · n, a · n, e) ≤ left, all bounces end within this step: return slide_on_plane(x, v, a, left, n)
 
     Raises Diverged after MAX_IMPACTS impacts.
     *Source:* second lecture deck, time stepping, “Option 1”.
@@ -485,7 +485,7 @@ def check_over_plane(p, d):
 
 
 def advance_balls(step, acceleration, t, x, v, dt, steps, p):
-    """Given.  Return (x, v), each (copies, d), of independent copies of a BouncingBall after `steps` steps of one method.
+    """Given.  Return (x, v), each (copies, d), of copies of a BouncingBall after `steps` steps of one method.
 
     Raises BadInput for a step that is not positive, an e outside 0 … 1, a normal that is not a unit vector, a
     state that is not finite; Diverged when the final state is not finite.
@@ -537,7 +537,7 @@ def advance_to_plane(x, v, a, left, p):
 
 
 def backtracking_spin_step(acceleration, t, x, v, omega, dt, p):
-    """Given.  Advance a SpinningBall impact by impact; exact at constant acceleration.  Raises Diverged as for a BouncingBall."""
+    """Given.  Advance a SpinningBall impact by impact; exact at constant acceleration.  Raises as backtracking_step."""
     a = acceleration(t, x, v, p)
     x, v, left = advance_to_plane(x, v, a, dt, p)
     for _ in range(MAX_IMPACTS):
@@ -670,7 +670,7 @@ def backtracking_discs_step(x, v, dt, p):
 
 
 def advance_discs(step, x, v, dt, steps, p):
-    """Given.  Return (x, v), each (copies, bodies, d), of copies of discs after `steps` steps; raises as advance_balls."""
+    """Given.  Return (x, v), each (copies, bodies, d), of discs after `steps` steps; raises as advance_balls."""
     _, x, v, dt, steps = checked_run(0.0, x, v, dt, steps)
     check_array("position x [m]", x, 3)
     check_restitution(finite_number("restitution e [-]", p.e))
@@ -690,7 +690,7 @@ def advance_discs(step, x, v, dt, steps, p):
 # ---------------------------------------------------------------------------------------------- several impacts at once
 
 def check_impacts(body, r, n, e, mu):
-    """Given.  Raise BadInput unless a BodyState3D, offsets r and unit normals n (points, 3), e and μ define an impact."""
+    """Given.  Raise BadInput unless body, offsets r and unit normals n (points, 3), e and μ define an impact."""
     check_restitution(finite_number("restitution e [-]", e))
     check_friction(number("friction μ [-]", mu))
     check_positive("inverse mass [1/kg]", number("inverse mass [1/kg]", body.inv_mass))

@@ -210,7 +210,7 @@ def parallel_axes(I, m, d):
 
 
 def combine(m, x, I):
-    """Return the MassProperties of n rigidly connected bodies: m (n,), their centres x (n, 3), tensors I (n, 3, 3) about these.
+    """Return the MassProperties of n rigidly connected bodies: m (n,), centres x (n, 3), I (n, 3, 3) about these.
 
     M, X = centre_of_mass,   I = Σ of all Iᵢ, each moved to X by parallel_axes
 

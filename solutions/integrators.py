@@ -177,8 +177,8 @@ def implicit_euler_step(acceleration, t, x, v, dt, p):
     repeat, at most NEWTON_LIMIT times,
         r = w − vₙ − dt a(tₙ + dt, xₙ + dt w, w)
         w ← w − δ,    newton_matrix(acceleration, tₙ + dt, xₙ, w, dt, p) · δ = r
-    until max|δ| ≤ NEWTON_TOLERANCE · max(1, max|w|) + POSITION_ROUND_OFF · max|xₙ| / dt.  The last term is the round-off of a
-    position far from the origin, expressed as a velocity.
+    until max|δ| ≤ NEWTON_TOLERANCE · max(1, max|w|) + POSITION_ROUND_OFF · max|xₙ| / dt.  The last term is the
+    round-off of a position far from the origin, expressed as a velocity.
     newton_matrix and solve are given above.  r and δ are flat, (n,): use .ravel() and .reshape(v.shape).
 
     Raises Diverged("Newton's method did not converge at dt [s]", dt, "take a smaller step") after NEWTON_LIMIT

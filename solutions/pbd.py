@@ -36,7 +36,7 @@ __all__ = [
 NEWTON_TOLERANCE = 1e-12     # last correction over the longest link [-]; Newton squares it, so only round-off remains
 NEWTON_LIMIT = 40            # corrections [-]: 4 to 7 for moves of 1/10 link per step, 30 and more for a whole link
 REGULARISATION = 1e-13       # compliance over w dt² of a link [-]: far below the pull of all links, far above round-off
-FIRST_REGULARISATION = 1e-10  # the same while the gaps still close: redundant links then disagree by more than round-off
+FIRST_REGULARISATION = 1e-10 # the same while gaps still close: redundant links then disagree by more than round-off
 
 
 class ConstraintNetwork(NamedTuple):
@@ -253,7 +253,8 @@ def rattle_step(acceleration, t, x, v, dt, network):
     new = x + dt * v + 0.5 * dt * dt * acceleration(t, x, v, network)
     for _ in range(NEWTON_LIMIT):
         C, J_new = constraints(new, network)
-        Lam = solve(link_delassus_matrix(J_new, J, network, FIRST_REGULARISATION), -C)                 # the next round removes the error of the trace
+        # The next round removes the error of the regularisation.
+        Lam = solve(link_delassus_matrix(J_new, J, network, FIRST_REGULARISATION), -C)
         change = apply_multipliers(J, Lam, network)
         new = new + change
         if max(np.max(np.abs(change)), np.max(np.abs(C))) <= NEWTON_TOLERANCE * np.max(network.rest):

@@ -552,7 +552,7 @@ def intermediate_axis(I_body):
 def splitting_free_rotation(q, L, I_body, dt):
     """Return the orientation (4,) of a free body after dt by four exact rotations; second order, bounded energy error.
 
-    Let b be the intermediate_axis, a and c the two that follow it (b + 1 and b + 2, modulo 3).  The energy is a sum of three,
+    Let b be the intermediate_axis, a and c the two that follow it (b + 1, b + 2, modulo 3).  The energy is a sum,
         L²/2I_b  +  ½(1/I_a − 1/I_b) L_a²  +  ½(1/I_c − 1/I_b) L_c²
     and the motion by each term alone is known.  The first rotates the body about L, by dt/I_b L: multiply by
     exponential(dt/I_b L) from the left; it commutes with the others.  The second rotates it about its own axis a by the
@@ -574,14 +574,14 @@ def splitting_free_rotation(q, L, I_body, dt):
 
 
 def midpoint_step(torque, t, q, L, dt, body):
-    """Given.  Half of the angular impulse of the torque, midpoint_free_rotation, the other half; second order, reversible."""
+    """Given.  Half of the angular impulse, midpoint_free_rotation, the other half; second order, reversible."""
     L = L + 0.5 * dt * torque(t, q, L, body)
     q = midpoint_free_rotation(q, L, body.I_body, dt)
     return q, L + 0.5 * dt * torque(t + dt, q, L, body)
 
 
 def splitting_step(torque, t, q, L, dt, body):
-    """Given.  Half of the angular impulse of the torque, splitting_free_rotation, the other half; second order, reversible."""
+    """Given.  Half of the angular impulse, splitting_free_rotation, the other half; second order, reversible."""
     L = L + 0.5 * dt * torque(t, q, L, body)
     q = splitting_free_rotation(q, L, body.I_body, dt)
     return q, L + 0.5 * dt * torque(t + dt, q, L, body)
@@ -624,7 +624,7 @@ def check_rotation(q):
 
 
 def checked_rotation(t, q, L, dt, steps, I_body):
-    """Given.  Return (t, q, L, dt, steps) in float64, as tumble needs them.
+    """Given.  Return (t, q, L, dt, steps) in float64, as advance_rotation needs them.
 
     Raises BadInput for a step that is not positive, a quaternion that is not a rotation, moments that no body has, an L
     that is not finite.
@@ -663,7 +663,7 @@ def rotation_trajectory(step, torque, t, q, L, dt, steps, body):
 
 
 def advance_rigid_body(step, load, t, x, v, q, omega, dt, steps, body):
-    """Given.  Return (x, v, q, ω) after `steps` steps of a rigid body; raises what tumble raises."""
+    """Given.  Return (x, v, q, ω) after `steps` steps of a rigid body; raises what advance_rotation raises."""
     positive_number("mass m [kg]", body.m)
     t, q, omega, dt, steps = checked_rotation(t, q, omega, dt, steps, body.I_body)
     t, x, v, dt, steps = checked_run(t, x, v, dt, steps)

@@ -78,10 +78,10 @@ def compiled_run(n_springs, steps):
     """Return a function that takes so many compiled symplectic Euler steps of a net, already compiled."""
     world = modules.module_set(compiled=True)
     step = world.lesson("integrators").symplectic_euler_step
-    mesh_acceleration = world.lesson("springs").mesh_acceleration
+    acceleration = world.lesson("springs").spring_network_acceleration
     advance, (x, v, mesh) = world.lesson("integrators").advance, net(n_springs)
-    advance(step, mesh_acceleration, 0.0, x, v, 1e-4, 1, mesh)
-    return lambda: advance(step, mesh_acceleration, 0.0, x, v, 1e-4, steps, mesh)
+    advance(step, acceleration, 0.0, x, v, 1e-4, 1, mesh)
+    return lambda: advance(step, acceleration, 0.0, x, v, 1e-4, steps, mesh)
 
 
 def thousand_springs():

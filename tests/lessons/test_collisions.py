@@ -176,7 +176,7 @@ def test_no_point_of_the_axis_is_nearer_than_the_one_of_the_contact(lesson, draw
                   np.concatenate(([gap], x - r * n, q + R * n)) / size, KNOWN, given)
 
 
-def advance_projectiles(draw, rho, beside, far, length, begin=None):
+def crossing(draw, rho, beside, far, length, begin=None):
     """(x_0, x_1): a path of `length` across the axis and some way along it.
 
     It starts at a distance `far` before the axis and passes it at a distance `beside`.
@@ -197,7 +197,7 @@ def test_the_first_root_is_the_time_of_impact_at_20_m_per_s_and_at_10_km_per_s(l
     for speed in (20.0, 100.0, 1e4):
         length, share = speed * dt, draw(-0.9, 0.9)
         far = (R + r) + draw(0.05, 0.2) * (length - 0.5 * (R + r))
-        x_0, x_1 = advance_projectiles(draw, R + r, share * (R + r), far, length)
+        x_0, x_1 = crossing(draw, R + r, share * (R + r), far, length)
         way = far - (R + r) * np.sqrt(1.0 - share**2)
         t, before = draw(1.0, 5.0), x_1.copy()
         got = lesson.cylinder_impact_time(t, dt, x_0, x_1, r, R)
@@ -215,10 +215,10 @@ def test_the_first_root_is_the_time_of_impact_at_20_m_per_s_and_at_10_km_per_s(l
 def test_a_ball_that_misses_leaves_or_arrives_later_has_no_impact(lesson, draw):
     R, r, t, dt = draw(0.5, 1.5), draw(0.05, 0.3), draw(1.0, 5.0), draw(0.01, 0.2)
     rho = R + r
-    x_0, x_1 = advance_projectiles(draw, rho, draw(1.05, 2.0) * rho, draw(3.0, 5.0), 10.0)
+    x_0, x_1 = crossing(draw, rho, draw(1.05, 2.0) * rho, draw(3.0, 5.0), 10.0)
     never("time of impact of a ball that misses [s]", lesson.cylinder_impact_time(t, dt, x_0, x_1, r, R),
           f"{x_0} to {x_1}, r = {r}, R = {R}")
-    x_0, x_1 = advance_projectiles(draw, rho, draw(-0.8, 0.8) * rho, draw(4.0, 6.0), draw(0.5, 1.5))
+    x_0, x_1 = crossing(draw, rho, draw(-0.8, 0.8) * rho, draw(4.0, 6.0), draw(0.5, 1.5))
     never("time of impact of a ball that arrives too late [s]", lesson.cylinder_impact_time(t, dt, x_0, x_1, r, R),
           f"{x_0} to {x_1}, r = {r}, R = {R}")
     never("time of impact of a ball that moves away [s]",
@@ -242,7 +242,7 @@ def test_a_grazing_shot_from_afar_loses_no_digits(lesson, draw):
     for _ in range(5):
         R, r = draw(0.5, 1.5), draw(0.05, 0.3)
         rho = R + r
-        x_0, x_1 = advance_projectiles(draw, rho, (1.0 - 1e-9) * rho, 1e3 * rho, 2e3 * rho)
+        x_0, x_1 = crossing(draw, rho, (1.0 - 1e-9) * rho, 1e3 * rho, 2e3 * rho)
         way = 2e3 * rho * lesson.cylinder_impact_time(0.0, 1.0, x_0, x_1, r, R)
         close("distance to the impact over ρ [-]", way / rho, 1e3 - np.sqrt(2e-9 - 1e-18), 5e-8,
               given=f"{x_0} to {x_1}, r = {r}, R = {R}")
@@ -451,7 +451,7 @@ def test_a_triangle_without_area_is_refused_and_a_small_one_is_not(lesson, draw)
     small = 1e-6 * np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.3, 0.7, 0.0]])
     close("nearest point of a small triangle [m]", lesson.closest_on_triangle(np.array([3e-7, 2e-7, 0.5]), *small),
           [3e-7, 2e-7, 0.0], ROUND_OFF)
-    for high in (1e-7, 1e-9):                                            # |N| is high: 1000 times DEGENERATE_AREA or more
+    for high in (1e-7, 1e-9):                                            # |N| is high: 1000 DEGENERATE_AREA or more
         needle = [np.array(corner) for corner in ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.5, high, 0.0))]
         p = np.array([draw(0.4, 0.6), 0.5 * high, draw(0.5, 2.0)])
         close("nearest point of a needle [m]", lesson.closest_on_triangle(p, *needle), [p[0], p[1], 0.0], ROUND_OFF,

@@ -76,14 +76,14 @@ STARTED = {
     "inertia_tensors": {},
     "rotation": {
         "make_rigid_body": [(1.0, I_body)],
-        "tumble": [(rotation.midpoint_step, *TURNS)],
-        "tumbling": [(rotation.splitting_step, *TURNS)],
-        "move": [(rotation.rigid_body_step, *ROLLING)]},
+        "advance_rotation": [(rotation.midpoint_step, *TURNS)],
+        "rotation_trajectory": [(rotation.splitting_step, *TURNS)],
+        "advance_rigid_body": [(rotation.rigid_body_step, *ROLLING)]},
     "collisions": {
         "make_plane": [(np.array([0.0, 0.6, 0.8, 1.0]),)],
         "make_box": [(up, np.eye(3), 0.5 * np.ones(3))],
         "make_flock": [(0.1, 1.0, 2.0, 0.3, 0.4)],
-        "flight": [(collisions.continuous_step, *FLIGHT)],
+        "advance_projectiles": [(collisions.continuous_step, *FLIGHT)],
         "build_tree": [(low, low + 1.0)],
         "tree_pairs": [(low, low + 1.0)],
         "all_pairs": [(low, low + 1.0)],
@@ -91,9 +91,11 @@ STARTED = {
         "polygon_contacts": [(square, square + 0.8)]},
     "impulses": {
         "advance_balls": [(impulses.penalty_step, *DROP), (impulses.position_projection_step, *DROP),
-                     (impulses.backtracking_step, *DROP)],
-        "advance_spinning_balls": [(impulses.position_projection_spin_step, *SPIN), (impulses.backtracking_spin_step, *SPIN)],
-        "advance_discs": [(impulses.position_projection_discs_step, *DISCS), (impulses.backtracking_discs_step, *DISCS)],
+                          (impulses.backtracking_step, *DROP)],
+        "advance_spinning_balls": [(impulses.position_projection_spin_step, *SPIN),
+                                   (impulses.backtracking_spin_step, *SPIN)],
+        "advance_discs": [(impulses.position_projection_discs_step, *DISCS),
+                          (impulses.backtracking_discs_step, *DISCS)],
         "solve_impacts": [IMPACTS],
         "sequential_impacts": [IMPACTS]},
     "pbd": {"make_constraint_network": [(rope, 0.1, [0], links, 1e-6, 1.0, weight, 4)]},
@@ -108,13 +110,16 @@ STARTED = {
 }
 # Inner functions that trust an earlier check. They may lose a NaN and divide by zero.
 TRUSTED = {
-    "made by make_spring_network": ("spring_network_acceleration", "mass_spring_damper_step", "apply_step_matrix", "implicit_spring_network_step"),
+    "made by make_spring_network": ("spring_network_acceleration", "mass_spring_damper_step", "apply_step_matrix",
+                                    "implicit_spring_network_step"),
     "made by make_block": ("stopping_time", "breakaway_time"),
     "checked by advance_particle": ("position_friction_step", "contact_step"),
-    "made by make_constraint_network": ("falling_acceleration", "predict", "constraint_projection_step", "pbd_step", "keep_outside"),
-    "moments checked by tumble and move": ("angular_velocity", "state_derivative", "angular_acceleration",
-                                           "effective_inverse_mass_at", "intermediate_axis"),
-    "checked by check_boxes": ("boxes_touch", "enclose", "halve", "find_intersections"),
+    "made by make_constraint_network": ("network_gravity", "predict", "constraint_projection_step", "pbd_step",
+                                        "keep_outside"),
+    "moments checked by advance_rotation and advance_rigid_body": (
+        "angular_velocity", "state_derivative", "angular_acceleration", "effective_inverse_mass_at",
+        "intermediate_axis"),
+    "checked by check_boxes": ("boxes_touch", "fit_node_box", "partition_at_median", "find_intersections"),
     "checked by check_hulls": ("support", "nearest_subsimplex", "far_enough", "nearer"),
     "corners and sides checked by make_box and outward": ("clip",),
     "checked by advance_balls": ("position_projection_step",),
@@ -125,15 +130,17 @@ TRUSTED = {
 FREE = {name for names in TRUSTED.values() for name in names}
 PATIENCE = 5.0               # time limit of one call [s]; ordinary calls take milliseconds
 # These functions do not check the records of an acceleration or a surface that they are given.
-LAWS = {"advance", "trajectory", "advance_pile_2d", "advance_pile", "pile_trajectory", "advance_particle", "tumble",
-        "tumbling", "move", "slip_times", "flight"}
+LAWS = {"advance", "trajectory", "advance_pile_2d", "advance_pile", "pile_trajectory", "advance_particle",
+        "advance_rotation", "rotation_trajectory", "advance_rigid_body", "slip_times", "advance_projectiles"}
 
 
 # Arguments for which another shape is another valid problem.
 ANOTHER_PROBLEM = {
-    ("make_spring_network", 0): "one more point", ("make_spring_network", 2): "other fixed points", ("make_spring_network", 3): "other springs",
+    ("make_spring_network", 0): "one more point", ("make_spring_network", 2): "other fixed points",
+    ("make_spring_network", 3): "other springs",
     ("make_spring_network", 4): "one stiffness each", ("make_spring_network", 5): "one damper each",
-    ("make_constraint_network", 0): "one more point", ("make_constraint_network", 2): "other fixed points", ("make_constraint_network", 3): "other links",
+    ("make_constraint_network", 0): "one more point", ("make_constraint_network", 2): "other fixed points",
+    ("make_constraint_network", 3): "other links",
     ("make_constraint_network", 4): "one compliance each",
     ("gjk", 0): "one more point", ("gjk", 1): "one more point",
 }

@@ -216,7 +216,8 @@ def test_a_unit_impulse_drives_two_solid_bodies_apart_by_k(lesson, draw):
 def test_bodies_hit_along_their_centres_only_have_their_masses(lesson, draw):
     a, b, n = solid(draw, lesson), solid(draw, lesson), unit(draw, 3)
     arms = draw(0.1, 1.0) * n, -draw(0.1, 1.0) * n
-    close("k of a central impact [1/kg]", lesson.effective_inverse_mass(a, b, *arms, n), a.inv_mass + b.inv_mass, ROUND_OFF,
+    close("k of a central impact [1/kg]", lesson.effective_inverse_mass(a, b, *arms, n),
+          a.inv_mass + b.inv_mass, ROUND_OFF,
           given=f"a = {a}, b = {b}, n = {n}")
     wall = lesson.BodyState3D(STILL, STILL, 0.0, np.zeros((3, 3)))
     close("k against a wall [1/kg]", lesson.effective_inverse_mass(a, wall, arms[0], draw(-1.0, 1.0, 3), n),
@@ -703,7 +704,8 @@ def falling_box(draw, lesson, points):
     R = about_x @ about_y
     corners = np.array([[a, b, z] for a in (-1.0, 1.0) for b in (-1.0, 1.0) for z in (-1.0, 1.0)]) * half @ R.T
     lowest = corners[corners[:, 2] < corners[:, 2].min() + 1e-9]
-    body = lesson.BodyState3D(np.array([0.0, 0.0, -draw(1.0, 3.0)]), np.zeros(3), 1.0 / m, R @ np.diag(1.0 / moments) @ R.T)
+    body = lesson.BodyState3D(np.array([0.0, 0.0, -draw(1.0, 3.0)]), np.zeros(3), 1.0 / m,
+                              R @ np.diag(1.0 / moments) @ R.T)
     return body, lowest, np.tile([0.0, 0.0, 1.0], (points, 1))
 
 

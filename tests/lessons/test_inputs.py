@@ -50,7 +50,8 @@ def test_axes_of_whole_numbers_rotate_like_axes_of_floats():
 
 def test_no_loop_starts_with_a_parameter_that_creates_energy():
     ball = friction.ParticleOnPlane(1.0, 0.3, 0.8, DOWN, np.zeros(3), UP)
-    run = friction.contact_step, friction.falling_acceleration, friction.particle_plane_gap, 0.0, UP, np.zeros(3), 0.001, 100
+    run = (friction.contact_step, friction.falling_acceleration, friction.particle_plane_gap, 0.0, UP, np.zeros(3),
+           0.001, 100)
     for changed in ({"n": 2.0 * UP}, {"e": 1.2}, {"mu": -0.3}, {"m": -1.0}, {"mu": np.nan}):
         with pytest.raises(BadInput):
             friction.advance_particle(*run, ball._replace(**changed))
@@ -79,8 +80,10 @@ def test_a_floor_never_pulls():
 # ---------------------------------------------------------------------------------------------- missing points
 
 @pytest.mark.parametrize("make", [
-    lambda fixed, pairs, gravity: springs.make_spring_network(ROPE, 1.0, fixed, pairs, 50.0, 0.0, gravity, np.zeros(2), 0.0),
-    lambda fixed, pairs, gravity: pbd.make_constraint_network(ROPE, 1.0, fixed, pairs, 0.0, 1.0, gravity, 3)], ids=["mesh", "net"])
+    lambda fixed, pairs, gravity:
+        springs.make_spring_network(ROPE, 1.0, fixed, pairs, 50.0, 0.0, gravity, np.zeros(2), 0.0),
+    lambda fixed, pairs, gravity:
+        pbd.make_constraint_network(ROPE, 1.0, fixed, pairs, 0.0, 1.0, gravity, 3)], ids=["springs", "constraints"])
 @pytest.mark.parametrize(("fixed", "pairs", "gravity", "value"), [
     ([0], PAIRS, np.array([0.0, 0.0, -9.81]), "(3,)"),
     ([-1], PAIRS, WEIGHT, "-1"),

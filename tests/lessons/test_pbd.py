@@ -159,10 +159,13 @@ def test_a_constraint_that_cannot_be_satisfied_is_refused(lesson, draw):
     moved = np.asarray(lesson.constraint_correction(C, gradients, np.ones(2)), dtype=float)
     close("C + Σ ∇C · Δx of a constraint that can be satisfied", C + np.sum(gradients * moved), 0.0, ROUND_OFF,
           given=f"C = {C}, ∇C = {gradients.tolist()}")
-    raises("a constraint between immovable points", BadInput, lesson.constraint_correction, draw(0.5, 1.0), gradients, np.zeros(2))
-    raises("a constraint without a gradient", BadInput, lesson.constraint_correction, draw(0.5, 1.0), 0.0 * gradients, np.ones(2))
+    raises("a constraint between immovable points", BadInput, lesson.constraint_correction, draw(0.5, 1.0), gradients,
+           np.zeros(2))
+    raises("a constraint without a gradient", BadInput, lesson.constraint_correction, draw(0.5, 1.0), 0.0 * gradients,
+           np.ones(2))
     gradients[1] = 0.0
-    raises("a constraint whose only movable point has a zero gradient", BadInput, lesson.constraint_correction, C, gradients,
+    raises("a constraint whose only movable point has a zero gradient", BadInput, lesson.constraint_correction, C,
+           gradients,
            np.array([0.0, draw(0.5, 2.0)]))
 
 
@@ -335,7 +338,8 @@ def test_fast_points_and_short_links_converge_from_where_the_step_begins(lesson,
     # This chain takes 13 Newton iterations, in every orientation.
     x = np.array([[0.0, 0.0], [0.08, 0.63], [-0.14, 0.56], [0.57, -0.32]]) @ R.T
     v = np.array([[0.0, 0.0], [18.8, -8.4], [3.6, 15.8], [-19.0, 13.0]]) @ R.T
-    p = network(lesson, [0.0, 10.0, 100.0, 0.01], [(0, 1), (1, 2), (2, 3)], np.linalg.norm(x[1:] - x[:-1], axis=1), g=0.0)
+    p = network(lesson, [0.0, 10.0, 100.0, 0.01], [(0, 1), (1, 2), (2, 3)], np.linalg.norm(x[1:] - x[:-1], axis=1),
+                g=0.0)
     new, _ = lesson.constraint_projection_step(lesson.network_gravity, 0.0, x, v, dt, p)
     close("lengths of the links of a fast chain after a step [m]", lengths(np.asarray(new, dtype=float), p),
           p.rest, 1e-11, given=f"x = {x.tolist()} m, v = {v.tolist()} m/s, dt = {dt} s, no gravity, {p}")
@@ -806,7 +810,8 @@ def test_a_push_beside_the_centre_moves_and_turns_a_body(lesson, draw):
     q, R, m, I_body = body(draw)
     x, r, p = draw(-1.0, 1.0, 3), draw(-1.0, 1.0, 3), draw(-1.0, 1.0, 3)
     for other in (0.1 * m, 10.0 * m):
-        close("centre of mass of a body with another mass [m]", lesson.apply_positional_impulse(x, q, r, p, other, I_body)[0],
+        close("centre of mass of a body with another mass [m]",
+              lesson.apply_positional_impulse(x, q, r, p, other, I_body)[0],
               x + p / other, ROUND_OFF * 10.0, given=f"p = {p} kg m, m = {other} kg")
     new, turned = lesson.apply_positional_impulse(x, q, r, p, m, I_body)
     given = f"q = {q}, r = {r} m, p = {p} kg m, m = {m} kg, I = {I_body}"

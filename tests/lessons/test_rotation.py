@@ -317,7 +317,8 @@ def test_the_loop_converges_to_the_free_motion_of_a_body(lesson, draw):
     body = lesson.RigidBody(2.0, I_body)
     errors = []
     for n in (100, 200):
-        x, _, q_end, _ = lesson.advance_rigid_body(lesson.rigid_body_step, unloaded, 0.0, np.zeros(3), v, q, omega, T / n, n, body)
+        x, _, q_end, _ = lesson.advance_rigid_body(lesson.rigid_body_step, unloaded, 0.0, np.zeros(3), v, q, omega,
+                                                   T / n, n, body)
         # Local error ½dt² of |ω̈| and |ω̇| |ω|, which are below 2.6² + 2.6³ = 24: 12 dt after 1 s, growing by e^2.6 = 13.
         close("orientation after a second, as a matrix", turn(q_end), truth, 160.0 / n)
         close("x after a second: moved by v [m]", x, T * v, EXACT)
@@ -620,7 +621,8 @@ def test_every_step_converges_with_its_order_to_a_tilted_heavy_top(lesson, draw,
     top, order = lesson.Top(I_body, mgl), STEPS[name]
     errors = []
     for n in (40, 80):
-        q_end, L_end = lesson.advance_rotation(getattr(lesson, f"{name}_step"), lesson.heavy_top_torque, 0.0, q, L, T / n, n, top)
+        q_end, L_end = lesson.advance_rotation(getattr(lesson, f"{name}_step"), lesson.heavy_top_torque, 0.0, q, L,
+                                               T / n, n, top)
         errors.append(np.abs(np.concatenate((turn(q_end).ravel(), L_end)) - end).max())
     # The next term of the expansion is dt |ω| < 7 % of the first, or more if the first is small.
     between("order of convergence", np.log2(errors[0] / errors[1]), order - 0.4, order + 0.4)
@@ -663,7 +665,7 @@ def test_the_middle_axis_is_found_wherever_it_is(lesson, moments, axis):
 
 
 def refused(lesson, **changed):
-    """The message with which tumble refuses a valid run after one of its inputs is changed."""
+    """The message with which advance_rotation refuses a valid run after one of its inputs is changed."""
     valid = {"q": np.array([1.0, 0.0, 0.0, 0.0]), "L": np.ones(3), "dt": 0.1, "I_body": np.array([1.0, 2.0, 2.5])}
     run = {**valid, **changed}
     with pytest.raises(BadInput) as caught:

@@ -224,7 +224,8 @@ edit("3.8", "multiplies ∞ by 0", "cone_radius(p.mu_s, normal_force(a, p.n))", 
 def first_stop(halvings=60, whole=True, begin=0.0, length=lambda middle, dt: middle, towards=1.0, end=lambda a, b: b):
     def stopping_time(acceleration, t, x, v, dt, d, p):
         def moves(tau):
-            return worked.kinetic_friction_step(acceleration, t + begin * tau, x, v, length(tau, dt), d, p)[1] @ d * towards > 0.0
+            _, v_end = worked.kinetic_friction_step(acceleration, t + begin * tau, x, v, length(tau, dt), d, p)
+            return v_end @ d * towards > 0.0
         if whole and moves(dt):
             return dt
         a, b = 0.0, dt
@@ -244,7 +245,8 @@ BRAKE = "cone_radius(p.mu_k, normal_force(acceleration(t, x, v, p), p.n))"
 edit("3.9", "v over μ g, without the drive", "moving, stopped = 0.0, dt", f"return min(dt, v @ d / {BRAKE})")
 edit("3.9", "the deceleration at t", "moving, stopped = 0.0, dt",
      f"return min(dt, v @ d / abs({BRAKE} - acceleration(t, x, v, p) @ d))")
-edit("3.9", "the speed whatever its direction: never stops", "kinetic_friction_step(acceleration, t, x, v, dt, d, p)[1] @ d > 0.0",
+edit("3.9", "the speed whatever its direction: never stops",
+     "kinetic_friction_step(acceleration, t, x, v, dt, d, p)[1] @ d > 0.0",
      "np.any(kinetic_friction_step(acceleration, t, x, v, dt, d, p)[1])")
 
 
@@ -370,7 +372,8 @@ def particle_step(grip=0.0, old=False, back=-1.0, asked="new", mass=True, only_i
         leads_in = v_free @ n < 0.0
         x_new = x_free if only_inwards and not leads_in else x_free + back * half * phi * n
         if grip and (leads_in or both_ways):
-            x_new = x_new + grip * worked.friction_position_correction(moving(moved, x, v, dt), n, max(0.0, depth(phi)), p.mu)
+            correction = worked.friction_position_correction(moving(moved, x, v, dt), n, max(0.0, depth(phi)), p.mu)
+            x_new = x_new + grip * correction
         J = worked.particle_contact_impulse(v_free, n, p.m, p.e, p.mu)
         return x_new, v_free + J / (p.m if mass else 1.0) * (2.0 if doubled else 1.0)
     return step

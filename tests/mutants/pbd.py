@@ -93,7 +93,8 @@ wrong("8.3", "immovable points fall")(predicting(falls=True))
 wrong("8.3", "does not advance t")(predicting(clock=0.0))
 wrong("8.3", "the force of rest")(predicting(speed=0.0))
 wrong("8.3", "changes its input")(predicting(changes=True))
-edit("8.3", "heavy points fall more slowly", "free = network.inv_mass > 0.0", "free = np.minimum(1.0, network.inv_mass)")
+edit("8.3", "heavy points fall more slowly",
+     "free = network.inv_mass > 0.0", "free = np.minimum(1.0, network.inv_mass)")
 wrong("8.3", "no force")(predicting(half=0.0))
 edit("8.3", "treats heavy points as immovable", "network.inv_mass > 0.0", "network.inv_mass > 1e-6")
 edit("8.3", "changes the array that the acceleration returned", "a = acceleration(t, x, v, network)",
@@ -133,16 +134,17 @@ wrong("8.4", "multipliers of the other sign")(newton(sign=-1.0))
 wrong("8.4", "away from the prediction")(newton(from_goal=-1.0))
 wrong("8.4", "adds the old λ")(newton(difference=True))
 wrong("8.4", "second derivatives along the link only")(newton(across=False))
-edit("8.4", "no trace of compliance", "REGULARISATION * (network.inv_mass[network.i[s]] + network.inv_mass[network.j[s]])", "0.0")
+SHARE = "REGULARISATION * (network.inv_mass[network.i[s]] + network.inv_mass[network.j[s]])"
+edit("8.4", "no trace of compliance", SHARE, "0.0")
 edit("8.4", "the trace acts on λ, not on its change", " - trace * dt * dt * lam[s]", "")
-edit("8.4", "the trace without the masses", "REGULARISATION * (network.inv_mass[network.i[s]] + network.inv_mass[network.j[s]])", "REGULARISATION * 2.0")
+edit("8.4", "the trace without the masses", SHARE, "REGULARISATION * 2.0")
 edit("8.4", "link s joins points s and s + 1", "for s in range(C.size):",
      "network = network._replace(i=np.arange(C.size), j=np.arange(C.size) + 1)\n    for s in range(C.size):")
 
 
 # 8.5 ------------------------------------------------------------------------------------------------------------
 @variants
-def projecting_step(enough=lambda done, change, longest: change <= 1e-12 * longest, speed=lambda new, x, goal, v,
+def projecting(enough=lambda done, change, longest: change <= 1e-12 * longest, speed=lambda new, x, goal, v,
                     dt: (new - x) / dt, start="x", gives_up=True, force=True):
     def constraint_projection_step(acceleration, t, x, v, dt, network):
         goal = worked.predict(acceleration, t, x, v, dt, network)
@@ -158,17 +160,17 @@ def projecting_step(enough=lambda done, change, longest: change <= 1e-12 * longe
     return constraint_projection_step
 
 
-wrong("8.5", "one iteration")(projecting_step(enough=lambda done, change, longest: True))
-wrong("8.5", "two iterations")(projecting_step(enough=lambda done, change, longest: done == 1))
-wrong("8.5", "a trillionth of a metre, however large the network")(projecting_step(enough=lambda done, change,
+wrong("8.5", "one iteration")(projecting(enough=lambda done, change, longest: True))
+wrong("8.5", "two iterations")(projecting(enough=lambda done, change, longest: done == 1))
+wrong("8.5", "a trillionth of a metre, however large the network")(projecting(enough=lambda done, change,
                                                                                longest: change <= 1e-12))
 edit("8.5", "tests only positive corrections", "np.max(np.abs(change))", "np.max(change)")
-wrong("8.5", "does not raise Diverged")(projecting_step(gives_up=False))
-wrong("8.5", "keeps the predicted velocity")(projecting_step(speed=lambda new, x, goal, v, dt: (goal - x) / dt))
-wrong("8.5", "keeps the old velocity")(projecting_step(speed=lambda new, x, goal, v, dt: v))
-wrong("8.5", "forgets the prediction")(projecting_step(force=False))
-wrong("8.5", "the velocity without dt")(projecting_step(speed=lambda new, x, goal, v, dt: new - x))
-wrong("8.5", "begins at the prediction")(projecting_step(start="goal"))
+wrong("8.5", "does not raise Diverged")(projecting(gives_up=False))
+wrong("8.5", "keeps the predicted velocity")(projecting(speed=lambda new, x, goal, v, dt: (goal - x) / dt))
+wrong("8.5", "keeps the old velocity")(projecting(speed=lambda new, x, goal, v, dt: v))
+wrong("8.5", "forgets the prediction")(projecting(force=False))
+wrong("8.5", "the velocity without dt")(projecting(speed=lambda new, x, goal, v, dt: new - x))
+wrong("8.5", "begins at the prediction")(projecting(start="goal"))
 edit("8.5", "puts immovable points back", "new = new + change",
      "change[network.inv_mass == 0.0] = 0.0\n        new = new + change")
 edit("8.5", "gravity for any acceleration", "predict(acceleration, t,", "predict(network_gravity, t,")
@@ -197,7 +199,8 @@ def sweeping(stiff=True, by_mass=True, sign=1.0, jacobi=False, backwards=False, 
                 if checked:
                     raise NO_LENGTH
                 continue
-            move = sign * (network.stiffness[s] if stiff else 1.0) * (size(r) - network.rest[s]) / (w_i + w_j) * r / size(r)
+            share = sign * (network.stiffness[s] if stiff else 1.0) / (w_i + w_j)
+            move = share * (size(r) - network.rest[s]) * r / size(r)
             new[i] -= w_i * move
             new[j] += w_j * move
         return new

@@ -170,7 +170,8 @@ def third_way(half=0.5, sign=1.0, left=True, close=worked.unit):
     """q + ½dt (0, ω) q, normalised, with parts that may be wrong."""
     def quaternion_update(q, omega, dt):
         spin = np.concatenate(([0.0], omega))
-        return close(q + sign * half * dt * (worked.quaternion_product(spin, q) if left else worked.quaternion_product(q, spin)))
+        first, second = (spin, q) if left else (q, spin)
+        return close(q + sign * half * dt * worked.quaternion_product(first, second))
     return quaternion_update
 
 
@@ -185,7 +186,8 @@ wrong("5.10", "turns the other way")(third_way(sign=-1.0))
 wrong("5.10", "does not normalise")(third_way(close=lambda q: q))
 wrong("5.10", "divides by the squared length")(third_way(close=lambda q: q / (q @ q)))
 wrong("5.10", "divides zero by zero")(third_way(close=lambda q: q / np.linalg.norm(q)))
-edit("5.10", "changes its input", "q + 0.5 * dt * quaternion_product(spin, q)", "np.add(q, 0.5 * dt * quaternion_product(spin, q), out=q)")
+edit("5.10", "changes its input",
+     "q + 0.5 * dt * quaternion_product(spin, q)", "np.add(q, 0.5 * dt * quaternion_product(spin, q), out=q)")
 edit("5.10", "never back", "0.5 * dt", "0.5 * abs(dt)")
 
 

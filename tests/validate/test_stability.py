@@ -80,7 +80,7 @@ def about_the_world(density, x, faces):
     lesson = subject_of(CASES["inertia_tensors/far-from-origin"])
     V, first, second = lesson.mesh_integrals(x, faces)
     C = second - np.outer(first, first) / V
-    return lesson.Body(density * V, first / V, density * (np.trace(C) * np.eye(3) - C))
+    return lesson.MassProperties(density * V, first / V, density * (np.trace(C) * np.eye(3) - C))
 
 
 def without_tolerance(I):

@@ -30,7 +30,8 @@ def slope(degrees, mu_s, mu_k):
 def particle(degrees, mu):
     """Return the same for a particle on an implicit plane."""
     theta = np.radians(degrees)
-    return ParticleOnPlane(1.0, mu, 0.0, np.array([G * np.sin(theta), -G * np.cos(theta)]), np.zeros(2), np.array([0.0, 1.0]))
+    gravity = np.array([G * np.sin(theta), -G * np.cos(theta)])
+    return ParticleOnPlane(1.0, mu, 0.0, gravity, np.zeros(2), np.array([0.0, 1.0]))
 
 
 def moved(lesson, step, degrees, mu_s, mu_k, dt=0.02, steps=50):
@@ -394,7 +395,8 @@ def curved_wall_order(lesson):
         x, v = np.array([radius, 0.0, 0.0]), np.array([0.0, 0.6 * speed, 0.8 * speed])
         return np.linalg.norm(
             lesson.advance_particle(
-                lesson.contact_step, lesson.falling_acceleration, lesson.particle_bowl_gap, 0.0, x, v, dt, round(t / dt), p
+                lesson.contact_step, lesson.falling_acceleration, lesson.particle_bowl_gap, 0.0, x, v, dt,
+                round(t / dt), p
             )[1]
         )
 

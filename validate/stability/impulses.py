@@ -131,7 +131,8 @@ def deep_overlap(lesson):
     found, radius, dt = [], 0.5, 0.01
     depth = 0.25 * radius
     p = lesson.BouncingBall(0.5, np.array([0.0, -G]), np.zeros(2), np.array([0.0, 1.0]), 1e6, 0.0)
-    x, v = lesson.position_projection_step(lesson.falling_acceleration, 0.0, np.array([0.0, -depth]), np.zeros(2), dt, p)
+    x, v = lesson.position_projection_step(lesson.falling_acceleration, 0.0, np.array([0.0, -depth]), np.zeros(2),
+                                           dt, p)
     found += [
         finding(
             claim="A ball inside the floor is placed on it.",
@@ -177,7 +178,8 @@ def deep_overlap(lesson):
     ))
     discs = lesson.Discs(np.full(5, radius), np.array([1.0, 0.5, 1.0, 2.0, 1.0]), 0.8)
     row = np.stack((0.75 * 2.0 * radius * np.arange(5.0), np.zeros(5)), axis=1)
-    apart, still = lesson.advance_discs(lesson.position_projection_discs_step, row[None], np.zeros((1, 5, 2)), dt, 400, discs)
+    apart, still = lesson.advance_discs(lesson.position_projection_discs_step, row[None], np.zeros((1, 5, 2)), dt, 400,
+                                        discs)
     middle = [(1.0 / discs.inv_mass) @ places / np.sum(1.0 / discs.inv_mass) for places in (row, apart[0])]
     overlap = max(0.0, (2.0 * radius - np.diff(apart[0, :, 0])).max())
     found += [
@@ -321,7 +323,8 @@ def swings_up(lesson, h_omega, zeta, steps=500):
     p = lesson.BouncingBall(0.5, np.array([0.0, -G]), np.zeros(2), np.array([0.0, 1.0]), omega**2, 2.0 * zeta * omega)
     x, v = np.array([[0.0, -sag * (1.0 + 1e-9)]]), np.zeros((1, 2))
     try:
-        x, v = lesson.advance_balls(lesson.penalty_step, lesson.falling_acceleration, 0.0, x, v, h_omega / omega, steps, p)
+        x, v = lesson.advance_balls(lesson.penalty_step, lesson.falling_acceleration, 0.0, x, v, h_omega / omega, steps,
+                                    p)
     except Diverged:
         return True
     return max(abs(x[0, 1] + sag), abs(v[0, 1]) / omega) > 1e-3 * sag

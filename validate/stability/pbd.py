@@ -499,7 +499,8 @@ def extremes(lesson):
     ))
     exponents = np.linspace(-9.0, 0.0, 10)
     sags = [
-        stretch(settle(lesson, "xpbd_step", network([1.0], 1.0, 10.0**y, 1), straight(1), 1.0, 400))[0] for y in exponents
+        stretch(settle(lesson, "xpbd_step", network([1.0], 1.0, 10.0**y, 1), straight(1), 1.0, 400))[0]
+        for y in exponents
     ]
     return found, Picture(
         "Any compliance",
@@ -631,7 +632,8 @@ def primitives(lesson):
         [
             series("theory", fine, [period(a) for a in fine], LINE),
             series(
-                "pivoted_body_step, 5 ms, measured", dots, [quarter_period(lesson, rod, half, a, 0.005) for a in dots], DOTS
+                "pivoted_body_step, 5 ms, measured", dots,
+                [quarter_period(lesson, rod, half, a, 0.005) for a in dots], DOTS
             ),
         ],
         "To constrain a rigid body, projection needs the generalised inverse mass and nothing else that a point lacks.",

@@ -45,7 +45,8 @@ def energies(lesson, method, I, omega, dt, ts):
     L = body.I_body * np.array(omega)
     begin = lesson.kinetic_energy(q, L, body.I_body)
     for t in ts:
-        q, L = lesson.advance_rotation(getattr(lesson, method), lesson.no_torque, now, q, L, dt, round((t - now) / dt), body)
+        q, L = lesson.advance_rotation(getattr(lesson, method), lesson.no_torque, now, q, L, dt,
+                                       round((t - now) / dt), body)
         now = t
         found.append(lesson.kinetic_energy(q, L, body.I_body) / begin)
     return np.array(found)

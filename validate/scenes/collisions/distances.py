@@ -86,7 +86,7 @@ SIGNS = np.array([[i, j, k] for k in (-1.0, 1.0) for j in (-1.0, 1.0) for i in (
 # everything is rotated and moved, so that no axis is special
 WORLD = turn(0.4, -0.7, 1.1)
 AT = np.array([0.3, -0.2, 0.5])
-DEGENERATE_AREA = np.array([[np.cos(0.4), -np.sin(0.4)], [np.sin(0.4), np.cos(0.4)]])
+FLAT = np.array([[np.cos(0.4), -np.sin(0.4)], [np.sin(0.4), np.cos(0.4)]])
 # {name: (kind, points or (centre, angles, half edges)) of both bodies}, before WORLD
 SHAPES = {
     "ball, ball": (("ball", [(0.0, 0.0, 0.0)]), ("ball", [(0.9, 0.5, -0.4)])),
@@ -145,7 +145,7 @@ def flat(p):
 def moved(x, p):
     """Return points (k, d) in the coordinates of the scene."""
     x = np.array(x, dtype=float)
-    return x @ DEGENERATE_AREA.T + AT[:2] if flat(p) and p.pair != "flying disc (2D)" else x if flat(p) else x @ WORLD.T + AT
+    return x @ FLAT.T + AT[:2] if flat(p) and p.pair != "flying disc (2D)" else x if flat(p) else x @ WORLD.T + AT
 
 
 def corners(body, p):
@@ -309,7 +309,7 @@ def truth(p, t):
         s = first_root(lambda s: np.hypot(*way(s)) - p.r - p.R, 0.0, nearest)
         return np.array([s, *way(s) / (p.r + p.R)])
     if p.pair == "rectangles (2D)":  # overlap 0.1 m, from x = 1.2 to 2 m, b above a
-        return np.array([-0.1, *(DEGENERATE_AREA @ [0.0, -1.0]), *moved([(1.6, 0.9)], p)[0], 2.0])
+        return np.array([-0.1, *(FLAT @ [0.0, -1.0]), *moved([(1.6, 0.9)], p)[0], 2.0])
     if p.pair == "box on a box":                                             # overlap 0.05 m, x 0.1 … 0.9, y −0.8 … 0.2
         return np.array([-0.05, *(WORLD @ [0.0, 0.0, -1.0]), *moved([(0.5, -0.3, 0.45)], p)[0], 4.0])
     # the lowest of its corners, before WORLD rotates them
@@ -336,7 +336,8 @@ def truth(p, t):
 def tolerance(p, dt):
     """Ours: a few hundred operations on numbers below 3, and normals known to round-off over a distance of 0.1: 1e-12.
 
-    GJK stops when it knows the distance to GJK_RELATIVE_GAP = 1e-14 of the size.  That may leave points known only to its root,
+    GJK stops when it knows the distance to GJK_RELATIVE_GAP = 1e-14 of the size.  The points may be known only to the
+    root of that,
     but these bodies have corners, so the last step is exact.  pybullet's GJK stops when the squared distance is
     known to 1e-12 of itself and the points to 1e-6 of the distance: 1e-5 for all.  Around a hull of points it has a
     margin, which limits the accuracy of the gap and of the point on it.  pymunk's results are closed forms.

@@ -39,7 +39,8 @@ def start(p):
     if p.sweeps < 1:
         raise BadInput("sweeps in a step", p.sweeps, "give 1 or more")
     x, n = np.concatenate((np.zeros((1, 2)), straight(p))), np.arange(p.links)
-    return x, 0.0 * x, make_constraint_network(x, p.m, [0], np.stack((n, n + 1), axis=1), 0.0, 1.0, (0.0, -p.g), p.sweeps)
+    pairs = np.stack((n, n + 1), axis=1)
+    return x, 0.0 * x, make_constraint_network(x, p.m, [0], pairs, 0.0, 1.0, (0.0, -p.g), p.sweeps)
 
 
 def run(step, acceleration, state, p, dt, steps):

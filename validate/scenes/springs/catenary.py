@@ -18,7 +18,8 @@ from validate.scene import PYBULLET, PYMUNK, Engine, EngineRun, Scene
 
 T = 1.2                      # [s]: one period of the slowest mode, nearly two of the sagging mode
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
-# implicit methods build a dense matrix at every correction, and the network's own takes seconds to compile: see spring_net
+# Implicit methods build a dense matrix at every correction, and the network's own takes seconds to compile:
+# see spring_net.
 UNCERTAINTY = 1e-11
 
 
