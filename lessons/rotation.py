@@ -38,15 +38,16 @@ from solutions.vectors import cross, dot, norm
 __all__ = [
     "FLAT_BODY_TOLERANCE", "NEWTON_LIMIT", "SUZUKI", "RigidBody", "RigidBodyState", "RollingBall",
     "Top", "about_axis", "advance_rigid_body", "advance_rotation", "angular_acceleration",
-    "angular_velocity", "axis_angle_step", "axis_angle_update", "body_angular_momentum",
-    "body_component", "check_moments", "check_rotation", "compose", "composed_midpoint_step",
-    "composed_splitting_step", "exponential", "gyroscopic_step", "heavy_top_torque",
-    "implicit_gyroscopic_step", "intermediate_axis", "kinetic_energy", "make_rigid_body",
-    "matrix_step", "matrix_update", "midpoint_free_rotation", "midpoint_step", "no_torque",
-    "point_velocity", "quaternion_from_matrix", "quaternion_product", "quaternion_step",
-    "quaternion_update", "rigid_body_step", "rolling_load", "rotate", "rotation_matrix",
+    "angular_velocity", "average_rolling_step", "axis_angle_step", "axis_angle_update",
+    "body_angular_momentum", "body_component", "check_moments", "check_rotation", "compose",
+    "composed_midpoint_step", "composed_splitting_step", "exponential", "gyroscopic_step",
+    "heavy_top_torque", "implicit_gyroscopic_step", "intermediate_axis", "kinetic_energy",
+    "make_rigid_body", "matrix_step", "matrix_update", "midpoint_free_rotation", "midpoint_step",
+    "no_torque", "point_velocity", "quaternion_from_matrix", "quaternion_product", "quaternion_step",
+    "quaternion_update", "rigid_body_step", "rolling_step", "rotate", "rotation_matrix",
     "rotation_trajectory", "runge_kutta_step", "skew", "solve3", "splitting_free_rotation",
-    "splitting_step", "state_derivative", "total_load", "tumbling_rate", "unit", "unrotate",
+    "splitting_step", "state_derivative", "supported_weight", "total_load", "tumbling_rate", "unit",
+    "unrotate",
 ]
 
 NEWTON_TOLERANCE = 1e-12     # last correction over the unknown [-]; Newton squares it, so only round-off remains
@@ -83,7 +84,6 @@ class RollingBall(NamedTuple):
     radius: float            # [m]
     mu: float                # friction [-]
     gravity: np.ndarray      # (3,) [m/s²]; for a sloping floor, tilt gravity instead
-    dt: float                # step [s]: friction acts for this time before it is computed again
 
 
 def check_moments(I_body):
@@ -315,23 +315,43 @@ def rigid_body_step(load, t, x, v, q, omega, dt, body):
     raise NotImplementedError("Exercise 5.12: rigid_body_step")
 
 
-def rolling_load(t, x, v, q, omega, ball):
-    """Given.  Return F [N] and τ [N m], each (3,), of a RollingBall on a floor across z: weight, support and friction.
+def supported_weight(t, x, v, q, omega, ball):
+    """Given.  Return F [N] and τ [N m], each (3,), of a RollingBall on a floor across z: weight and support.
 
-    Gravity may have any direction.  Friction stops the slip u of the lowest point by the end of the step, within μN:
-        f = −min(μN, |u′|/(K dt)) u′/|u′|      u′ = u + dt g_t: the slip without friction,   K = 1/m + radius²/I
+    Gravity may have any direction.  A floor pushes and never pulls.
+    """
+    F = ball.m * ball.gravity
+    return np.array([F[0], F[1], F[2] + max(0.0, -F[2])]), np.zeros(3)
+
+
+def rolling_step(load, t, x, v, q, omega, dt, ball):
+    """Given.  Advance a RollingBall by one step of the lecture's loop, with friction as an impulse J; first order.
+
+    Friction stops the slip u of the lowest point by the end of the step, within the cone |J| ≤ μN dt:
+        J = −min(μN dt, |u|/K) u/|u|      u = v + ω × r + dt g_t: the slip without friction,   K = 1/m + radius²/I
+    Then rigid_body_step with v + J/m and ω + r × J/I.
     *Source:* second lecture deck, Coulomb's law; lesson 7 does the same for bodies of any shape.
     """
     r = np.array([0.0, 0.0, -ball.radius])
-    slip = point_velocity(v, omega, r) + ball.dt * ball.gravity
+    slip = point_velocity(v, omega, r) + dt * ball.gravity
     slip[2] = 0.0
     size = norm(slip)
-    support = max(0.0, -ball.m * ball.gravity[2])
     K = 1.0 / ball.m + ball.radius * ball.radius / ball.I_body[0]
-    f = np.zeros(3)
+    J = np.zeros(3)
     if size != 0.0:
-        f = -np.minimum(cone_radius(ball.mu, support), size / (K * ball.dt)) / size * slip
-    return ball.m * ball.gravity + np.array([f[0], f[1], support]), cross(r, f)
+        limit = cone_radius(ball.mu, max(0.0, -ball.m * ball.gravity[2])) * dt
+        J = -np.minimum(limit, size / K) / size * slip
+    return rigid_body_step(load, t, x, v + J / ball.m, q, omega + cross(r, J) / ball.I_body[0], dt, ball)
+
+
+def average_rolling_step(load, t, x, v, q, omega, dt, ball):
+    """Given.  The same with positions by the means of the old and the new velocities; second order.
+
+    It is exact while the ball slides or rolls along a line: then its velocities are linear in t.
+    """
+    _, v_new, _, omega_new = rolling_step(load, t, x, v, q, omega, dt, ball)
+    turn = exponential(0.5 * dt * (omega + omega_new))
+    return x + 0.5 * dt * (v + v_new), v_new, quaternion_product(turn, q), omega_new
 
 
 def kinetic_energy(q, L, I_body):

@@ -42,7 +42,8 @@ MIDPOINT_TURN = Method("midpoint_step", "midpoint turn", 2, "rotation", "#6A51A3
 SPLITTING = Method("splitting_step", "splitting", 2, "rotation", "#56B4E9", "^")
 COMPOSED_SPLITTING = Method("composed_splitting_step", "splitting, composed", 4, "rotation", "#0072B2", "P")
 COMPOSED_MIDPOINT = Method("composed_midpoint_step", "midpoint, composed", 4, "rotation", "#B07CC6", "d")
-LOOP = Method("rigid_body_step", "the lecture's loop", 1, "rotation", "#0072B2", "P")
+ROLLING = Method("rolling_step", "the lecture's loop", 1, "rotation", "#0072B2", "P")
+AVERAGE_ROLLING = Method("average_rolling_step", "mean velocities", 2, "rotation", "#009E73", "s")
 
 # collisions
 DISCRETE = Method("discrete_step", "discrete", 1, "collisions", "#D55E00", "D")

@@ -57,11 +57,11 @@ def test_no_loop_starts_with_a_parameter_that_creates_energy():
             friction.advance_particle(*run, ball._replace(**changed))
 
 
-ROLLING = rotation.RollingBall(1.0, 0.4 * np.ones(3), 1.0, 0.3, DOWN, 0.01)
+ROLLING = rotation.RollingBall(1.0, 0.4 * np.ones(3), 1.0, 0.3, DOWN)
 
 
 def roll(ball, steps=100):
-    return rotation.advance_rigid_body(rotation.rigid_body_step, rotation.rolling_load, 0.0, np.zeros(3),
+    return rotation.advance_rigid_body(rotation.rolling_step, rotation.supported_weight, 0.0, np.zeros(3),
                          np.array([1.0, 0.0, 0.0]), np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3), 0.01, steps, ball)
 
 

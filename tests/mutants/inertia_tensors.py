@@ -402,7 +402,7 @@ edit("4.17", "about the origin of the world: digits cancel far away", "offsets =
 edit("4.17", "density taken for mass", "density * volume", "density")
 edit("4.17", "the mean of the corners for the centre", "x[0] + centre", "np.sum(x, axis=0) / x.shape[0]")
 edit("4.17", "the tensor about the mean of the corners", "first / volume", "np.sum(offsets, axis=0) / x.shape[0]")
-edit("4.17", "a mesh inside-out gets the volume it should have had", "volume <= TENSOR", "abs(volume) <= TENSOR")
+edit("4.17", "a mesh inside-out gets the volume it should have had", "volume <= MOMENT", "abs(volume) <= MOMENT")
 edit("4.17", "does not check that the mesh is closed", "check_closed(x.shape[0], faces)", "pass")
 edit("4.17", "accepts a flat mesh if its round-off volume is positive",
      "MOMENT_ROUND_OFF * np.max(np.abs(offsets)) ** 3", "0.0")

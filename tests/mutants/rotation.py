@@ -373,8 +373,8 @@ wrong("5.17", "the whole energy of a and c: L²/2I_b counted twice")(splitting(s
 wrong("5.17", "differences of moments, not of their inverses")(
     splitting(slow=lambda I, k, b: 1.0 / (I[k] - I[b]) if I[k] != I[b] else 0.0))
 wrong("5.17", "always takes the first axis for the middle one")(splitting(middle=lambda I: 0))
-edit("5.17", "does not normalise at the end", "unit(product(exponential(dt / I_body[b] * L), turned))",
-     "product(exponential(dt / I_body[b] * L), turned)")
+edit("5.17", "does not normalise at the end", "unit(quaternion_product(exponential(dt / I_body[b] * L), turned))",
+     "quaternion_product(exponential(dt / I_body[b] * L), turned)")
 edit("5.17", "turns about its axes the whole way twice", "dt * (1.0 / I_body[a] - 1.0 / I_body[b]), dt * (1.0",
      "2.0 * dt * (1.0 / I_body[a] - 1.0 / I_body[b]), 2.0 * dt * (1.0")
 

@@ -12,7 +12,7 @@ import numpy as np
 from solutions.checks import check_positive
 from solutions.contact import make_contacts
 from validate.engines.chipmunk import pymunk_space
-from validate.methods import MAX_SWEEPS
+from validate.methods import SWEEPS
 from validate.scene import EXACT, PYMUNK, Engine, EngineRun, Scene
 
 T = 1.0
@@ -276,7 +276,7 @@ SCENE = Scene(
     cases=CASES,
     duration=T,
     steps=STEPS,
-    methods=(MAX_SWEEPS,),
+    methods=(SWEEPS,),
     start=start,
     run=run,
     observe=observe,

@@ -22,7 +22,7 @@ from solutions.contact import (
 )
 from validate.engines.bullet import Rigid
 from validate.engines.chipmunk import pymunk_floor, pymunk_space
-from validate.methods import DIRECT, MAX_SWEEPS, PILE
+from validate.methods import DIRECT, SWEEPS, PILE
 from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Scene
 
 T = 1.0
@@ -243,7 +243,7 @@ SCENE = Scene(
     cases=CASES,
     duration=T,
     steps=STEPS,
-    methods=(DIRECT, MAX_SWEEPS, PILE),
+    methods=(DIRECT, SWEEPS, PILE),
     start=start,
     run=run,
     observe=observe,
