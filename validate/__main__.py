@@ -1,7 +1,8 @@
 """The command line: `validate` measures scenes and writes the report, `validate list` names them,
-`validate record` keeps traces.
+`validate record` keeps traces, `validate summary` prints the main results.
 """
 
+import json
 import os
 import tempfile
 from enum import StrEnum
@@ -32,6 +33,7 @@ console = Console()
 EngineName = StrEnum("EngineName", [(name, name) for name in PRODUCTS])
 
 
+RESULTS = "<!-- results -->"    # begins and ends the table of results in the README
 ONE_SCENE = typer.Option(help="Only this scene (may be repeated).")
 ONE_LESSON = typer.Option(help="Only the scenes of this lesson (may be repeated).")
 ANSWERS = typer.Option(help="Whose answers: solutions, lessons or a folder of lesson files.")
@@ -105,6 +107,30 @@ def record(scene: Annotated[list[str] | None, ONE_SCENE] = None):
             console.print(f"recorded {name} in {path.relative_to(modules.ROOT)}")
     for error in broken.values():
         raise error
+
+
+@app.command("summary")
+def summary(
+    report: Annotated[Path, typer.Argument(help="Folder of a report.")] = Path("report"),
+    into: Annotated[Path | None, typer.Option(help=f"Put it between the marks {RESULTS} of this file.")] = None,
+):
+    """Print the main results of a report as a table in Markdown, one line per lesson."""
+    from .report.summary import by_lesson
+    try:
+        text = by_lesson(json.loads((report / "report.json").read_text(encoding="utf-8")))
+    except (OSError, ValueError, KeyError):
+        raise BadInput(f"folder {str(report)!r}", "not a report", "name the folder that `validate` wrote") from None
+    if into is None:
+        print(text, end="")
+        return
+    try:
+        head, mark, rest = into.read_text(encoding="utf-8").partition(RESULTS)
+        _, closing, tail = rest.partition(RESULTS)
+    except (OSError, UnicodeDecodeError):
+        raise BadInput(f"file {str(into)!r}", "not readable as text", "name a text file") from None
+    if not (mark and closing):
+        raise BadInput(f"file {str(into)!r}", f"without two marks {RESULTS}", "put them where the table belongs")
+    into.write_text(f"{head}{mark}\n{text}{closing}{tail}", encoding="utf-8")
 
 
 # ---------------------------------------------------------------------------------------------- what was asked for

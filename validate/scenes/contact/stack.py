@@ -22,7 +22,7 @@ from solutions.contact import (
 )
 from validate.engines.bullet import Rigid
 from validate.engines.chipmunk import pymunk_floor, pymunk_space
-from validate.methods import DIRECT, SWEEPS, PILE
+from validate.methods import DIRECT, PILE, SWEEPS
 from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Scene
 
 T = 1.0
