@@ -1,13 +1,14 @@
 """One text, two speeds: the twin is the same code, its cache is found again, and it cannot go stale."""
 
 import os
+import shutil
 import subprocess
 import sys
 
 import numpy as np
 import pytest
 
-from solutions.checks import BadInput
+from solutions.checks import BadInput, Diverged
 from validate import modules
 
 needs_numba = pytest.mark.skipif(not modules.can_compile(),
@@ -108,3 +109,17 @@ def test_a_scene_may_hand_a_function_of_its_lesson_to_a_compiled_loop():
         step = modules.module_set(compiled=compiled).lesson("friction").position_friction_step
         ends.append(scene.observe(scene.run(step, scene.acceleration, scene.start(p), p, 0.01, 20), p))
     assert np.array_equal(*ends)
+
+
+@pytest.mark.parametrize("compiled", [False, pytest.param(True, marks=needs_numba)])
+def test_a_plain_copy_of_the_solutions_raises_the_errors_that_scenes_expect(tmp_path, compiled):
+    """The copy brings a file checks.py of its own.  Its classes must not replace ours, or no `except` knows them."""
+    copy = tmp_path / "copy"
+    shutil.copytree(modules.SOLUTIONS, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    lesson = modules.bind("rotation", copy, compiled)
+    assert lesson.skew is not modules.bind("rotation").skew
+    with pytest.raises(BadInput):
+        lesson.check_rotation(np.array([2.0, 0.0, 0.0, 0.0]))
+    with pytest.raises(Diverged):
+        modules.bind("integrators", copy).advance(lambda a, t, x, v, dt, p: (x * np.nan, v), None, 0.0, np.ones(1),
+                                                  np.ones(1), 0.1, 1, None)
