@@ -1,5 +1,5 @@
 """The command line: `validate` measures scenes and writes the report, `validate list` names them,
-`validate record` keeps traces, `validate summary` prints the main results.
+`validate record` keeps traces, `validate summary` prints the main results, `validate compare` what changed.
 """
 
 import json
@@ -109,6 +109,36 @@ def record(scene: Annotated[list[str] | None, ONE_SCENE] = None):
         raise error
 
 
+def stored_report(folder):
+    """The content of a report's report.json.  Raises BadInput for a folder that is none."""
+    try:
+        report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
+        return {part: report[part] for part in ("run", "scenes", "stability")}
+    except (OSError, ValueError, KeyError, TypeError):
+        raise BadInput(f"folder {str(folder)!r}", "not a report", "name the folder that `validate` wrote") from None
+
+
+@app.command("compare")
+def compare(
+    old: Annotated[Path, typer.Argument(help="Folder of the earlier report.")],
+    new: Annotated[Path, typer.Argument(help="Folder of the later report.")],
+):
+    """Print what changed between two reports; exit with 1 when something became worse."""
+    from .compare import KINDS, changes
+    try:
+        found = changes(stored_report(old), stored_report(new))
+    except (KeyError, TypeError, ValueError):
+        raise BadInput("one of the reports", "of another version of the workbook", "make it again") from None
+    for kind in KINDS:
+        of_kind = [change for change in found if change.kind == kind]
+        console.print(f"[bold]{kind}[/bold]: {len(of_kind)} changed, {sum(c.worse for c in of_kind)} worse",
+                      highlight=False)
+        for change in sorted(of_kind, key=lambda change: not change.worse):
+            console.print(f"  {'✗' if change.worse else '·'} {change.place}  {change.words}", highlight=False,
+                          markup=False, soft_wrap=True)
+    raise typer.Exit(1 if any(change.worse for change in found) else 0)
+
+
 @app.command("summary")
 def summary(
     report: Annotated[Path, typer.Argument(help="Folder of a report.")] = Path("report"),
@@ -116,10 +146,7 @@ def summary(
 ):
     """Print the main results of a report as a table in Markdown, one line per lesson."""
     from .report.summary import by_lesson
-    try:
-        text = by_lesson(json.loads((report / "report.json").read_text(encoding="utf-8")))
-    except (OSError, ValueError, KeyError):
-        raise BadInput(f"folder {str(report)!r}", "not a report", "name the folder that `validate` wrote") from None
+    text = by_lesson(stored_report(report))
     if into is None:
         print(text, end="")
         return
