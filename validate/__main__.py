@@ -1,5 +1,6 @@
 """The command line: `validate` measures scenes and writes the report, `validate list` names them,
-`validate record` keeps traces, `validate summary` prints the main results, `validate compare` what changed.
+`validate record` keeps traces, `validate summary` prints the main results, `validate compare` what
+changed, `validate audit` whether a report follows from its raw rows.
 """
 
 import json
@@ -137,6 +138,24 @@ def compare(
             console.print(f"  {'✗' if change.worse else '·'} {change.place}  {change.words}", highlight=False,
                           markup=False, soft_wrap=True)
     raise typer.Exit(1 if any(change.worse for change in found) else 0)
+
+
+@app.command("audit")
+def audit(report: Annotated[Path, typer.Argument(help="Folder of a report.")] = Path("report")):
+    """Recompute every figure and verdict of a report from its raw rows, and render its pages again.
+
+    Exit with 1 when something differs.
+    """
+    from .audit import audit as check
+    try:
+        problems, counts = check(report, stored_report(report))
+    except (KeyError, TypeError, AttributeError, IndexError):
+        raise BadInput(f"report {str(report)!r}", "of another version of the workbook", "make it again") from None
+    for problem in problems:
+        console.print(f"✗ {problem}", highlight=False, markup=False, soft_wrap=True)
+    checked = ", ".join(f"{count} {what}" for what, count in counts.items())
+    console.print(f"{len(problems)} differences in {checked}.", highlight=False, soft_wrap=True)
+    raise typer.Exit(1 if problems else 0)
 
 
 @app.command("summary")

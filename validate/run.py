@@ -1,14 +1,18 @@
 """A run: measure what is not measured yet, write the report, and say how it went."""
 
+import os
 import platform
+import re
 from datetime import date
+from importlib.metadata import version
+from pathlib import Path
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from . import engines, measure, modules
 from .scene import PRODUCTS
 from .stability.examine import stability_cases
-from .store import lessons_of, store_for
+from .store import code_digest, lessons_of, store_for
 
 
 def run(names, plan, pool, out, console):
@@ -76,4 +80,16 @@ def about(plan):
         "of": str(plan.of), "mode": "quick" if plan.quick else "full", "engines": live, "compiler": compiler,
         "speeds": list(plan.speeds), "repeats": plan.repeats(), "date": date.today().isoformat(),
         "machine": f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",
+        "processor": processor(), "cores": os.cpu_count(), "code": code_digest(plan.of),
+        "versions": {name: version(name) for name in ("numpy", "scipy", "matplotlib")},
+        "overrides": [list(pair) for pair in plan.overrides],
     }
+
+
+def processor():
+    """The name of the processor, as far as the system tells."""
+    try:
+        names = re.findall(r"^model name\s*: (.*)$", Path("/proc/cpuinfo").read_text(encoding="utf-8"), re.M)
+    except OSError:
+        names = []
+    return names[0] if names else platform.processor()
