@@ -225,7 +225,7 @@ edit("5.11", "ignores small torques", "unrotate(q, tau)", "unrotate(q, tau) * (n
 # 5.12 -----------------------------------------------------------------------------------------------------------
 @variants
 def loop(late=0.0, old_v=False, old_omega=False, gyro=True, mass=True, turned=worked.quaternion_update, first=False):
-    """Deck B's loop with an order that may be wrong."""
+    """The loop of the second lecture deck with an order that may be wrong."""
     def rigid_body_step(load, t, x, v, q, omega, dt, body):
         F, tau = load(t + late * dt, x + (dt * v if first else 0.0), v, q, omega, body)
         if not gyro:

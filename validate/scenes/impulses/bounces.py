@@ -105,7 +105,7 @@ def seen(p, t, each):
 def truth(p, t):
     """Parabolas from impact to impact, eᵏ √(2gh) the speed after the k-th; at rest from  √(2h/g) (1 + e)/(1 − e)  on.
 
-    Source: deck A, coefficient of restitution; the geometric series.
+    Source: first lecture deck, coefficient of restitution; the geometric series.
     """
     before = delays(0.15)
     return seen(p, t, lambda k: flight(p, t + before[k]))

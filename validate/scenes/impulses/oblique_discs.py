@@ -69,7 +69,7 @@ def after(p):
 def truth(p, t):
     """Straight lines;  j = (1 + e) v cos θ/(1/m₁ + 1/m₂)  along the line of centres, sin θ = offset.
 
-    Source: deck A, "Computing impulse", without rotation.
+    Source: first lecture deck, "Computing impulse", without rotation.
     """
     v1, v2 = after(p)
     rest, rows = 2.0 * p.R * normal(p), []

@@ -61,7 +61,7 @@ def observe(state, p):
 def truth(p, t):
     """v = rω = at,  s = ½at²,  a = g sin β/(1 + I/mr²) = (5/7) g sin β.
 
-    Source: m v̇ = m g sin β − f,  I ω̇ = r f,  v = rω; deck B, "sticking: any force in the cone".
+    Source: m v̇ = m g sin β − f,  I ω̇ = r f,  v = rω; second lecture deck, "sticking: any force in the cone".
     """
     a = acceleration_down(p)
     return np.array([0.5 * a * t * t, a * t, a * t])

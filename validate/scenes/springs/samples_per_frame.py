@@ -101,7 +101,7 @@ def in_space(p):
 
 
 SCENE = Scene(
-    title="1, 4, 16 samples a frame",
+    title="1, 4, 16 samples per frame",
     lesson="springs",
     cases=CASES,
     duration=T,
