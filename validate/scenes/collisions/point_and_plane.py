@@ -1,7 +1,7 @@
 """Balls fall on a plane at 1 to 10⁴ m/s, and stop where they are found to touch it.
 
-The test of the first lecture deck, E(p) < 0 after each step finds them up to v dt below.  Its formula t + dt d₁/(d₁ + d₂) puts them back
-exactly, because the path is straight.  No ball passes a plane: it has no far side.
+The test of the first lecture deck, E(p) < 0 after each step, finds them up to v dt below the plane.  Its formula
+t + dt d₁/(d₁ + d₂) puts them back exactly, because the path is straight.  No ball passes a plane: it has no far side.
 """
 
 from typing import Annotated, NamedTuple
