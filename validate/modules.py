@@ -191,9 +191,9 @@ PLAIN = PlainModules()
 
 
 def _siblings(file):
-    """Names of the files beside a subject's file that it imports."""
+    """Names of the lessons beside a subject's file that it imports."""
     named = re.findall(r"^from \.(\w+) import", file.read_text(encoding="utf-8", errors="replace"), re.M)
-    return {name for name in named if (file.parent / f"{name}.py").is_file()}
+    return {name for name in named if name not in GIVEN and (file.parent / f"{name}.py").is_file()}
 
 
 class ModuleSet:

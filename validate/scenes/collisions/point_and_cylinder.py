@@ -1,6 +1,7 @@
 """Balls fly at an infinite cylinder, across its axis, at 1 to 10⁴ m/s: the discrete and the continuous test.
 
-This is the worked question of the second lecture deck.  The discrete test runs after each step.  It finds a ball up to v dt inside, or misses
+This is the worked question of the second lecture deck.  The discrete test runs after each step.  It finds a ball up to
+v dt inside, or misses
 it, because a step longer than the path through the cylinder can pass it.  The continuous test solves for the first root
 and works with any step.
 """

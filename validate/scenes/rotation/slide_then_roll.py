@@ -59,7 +59,8 @@ def rolls_from(p):
 def truth(p, t):
     """v = v₀ − μgt and Rω = μgt mR²/I until they meet at t* = v₀/(μg(1 + mR²/I)); from then on both are v₀/(1 + I/mR²).
 
-    Source: Newton and Euler with f = μmg; first lecture deck, friction; 5/7 of the speed is left to a sphere, 2/3 to a disc.
+    5/7 of the speed is left to a sphere, 2/3 to a disc.
+    Source: Newton and Euler with f = μmg; first lecture deck, friction.
     """
     sliding, brake = min(t, rolls_from(p)), p.mu * p.g
     v = p.v0 - brake * sliding
