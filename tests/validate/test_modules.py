@@ -120,7 +120,7 @@ def test_a_plain_copy_of_the_solutions_raises_the_errors_that_scenes_expect(tmp_
     assert lesson.skew is not modules.bind("rotation").skew
     with pytest.raises(BadInput):
         lesson.check_rotation(np.array([2.0, 0.0, 0.0, 0.0]))
+    lost = lambda a, t, x, v, dt, p: (x * np.nan, v)
     with pytest.raises(Diverged):
-        lost = lambda a, t, x, v, dt, p: (x * np.nan, v)
         modules.bind("integrators", copy, False).advance(lost, None, 0.0, np.ones(1), np.ones(1), 0.1, 1, None)
     assert type(modules.PLAIN.lesson("checks").finite_array) is type(lambda: None)        # ours stay as they are
