@@ -248,6 +248,7 @@ def kept_impulses(contacts, old, J_old, near):
     """J (m, d) [N s] to begin a step with, the warm start: each contact takes over the impulse of an old one.
 
     That is the nearest contact of `old` between the same two bodies, if it is closer than `near` [m]; else J is 0.
+    Normals may have turned: J keeps its direction.  Two new contacts may take over the same old impulse.
     contacts and old are ContactSets; J_old belongs to old.  old.first says where the contacts of each body a are.
     *Source:* Catto 2006.
     """

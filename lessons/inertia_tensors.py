@@ -61,6 +61,7 @@ def linear_momentum(m, v):
 
     P = Σ mᵢ vᵢ = M Ẋ,   dP/dt = F         constant without external forces
 
+    The masses may be zero or negative, and so may their sum, here and below.
     *Source:* first lecture deck, “Linear Momentum”.
     """
     # YOUR CODE HERE
@@ -97,7 +98,7 @@ def box_inertia(m, size):
 
     Ixx = ∫∫∫ ρ (y² + z²) dx dy dz = m (b² + c²)/12,   a, b, c = size
 
-    m < 0 is allowed, here and below: a hole is a body of negative mass.
+    m < 0 is allowed, here and below: a hole is a body of negative mass.  An edge of zero is allowed: a plate, a rod.
     *Source:* first lecture deck, “Inertia Tensor”, the volume integral.
     """
     # YOUR CODE HERE
@@ -191,7 +192,8 @@ def combine(m, x, I):
     M, X = centre_of_mass,   I = Σ of all Iᵢ, each moved to X by parallel_axes
 
     A body of negative mass is a hole.  All tensors are in the same axes: use world_inertia first for a rotated part.
-    Raises BadInput like centre_of_mass.
+    About the origin of the world, a body far away would lose its digits.
+    Raises BadInput like centre_of_mass; the order of the bodies does not matter.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 4.12: combine")
@@ -203,7 +205,7 @@ def principal_axes(I):
     I = R diag(moments) Rᵀ        L is parallel to ω about these axes, and about no others
 
     np.linalg.eigh(I) returns moments and columns, but these can be left-handed, det R = −1: then reverse the
-    last column.
+    last column.  Moments may be negative: those of a hole are.
     *Source:* Euler 1765; Landau and Lifshitz, Mechanics, § 32.
     """
     # YOUR CODE HERE
