@@ -20,17 +20,19 @@ from .checks import BadInput, Diverged, check_shape, finite_array, float_copy, o
 from .integrators import solve
 from .rotation import angular_acceleration, quaternion_product, quaternion_update, rotate, unrotate
 from .springs import inverse_masses, measured_links
+from .support.ropes import composed_rope_step, rope_step
 from .vectors import cross, dot
 
 __all__ = [
     "NEWTON_LIMIT", "REGULARISATION", "Balloon", "Cloth", "ConstraintNetwork", "Obstacle",
     "PivotedBody", "apply_multipliers", "apply_positional_impulse", "ball_gap", "balloon_step",
-    "cloth_step", "compliant_multiplier", "compliant_sweep", "constraint_correction",
-    "constraint_projection_step", "constraint_rates", "constraints", "distance_constraint",
-    "distance_sweep", "effective_inverse_mass_at", "floor_gap", "fold_constraint", "fold_sweep",
-    "keep_outside", "link_delassus_matrix", "make_constraint_network", "network_gravity",
-    "newton_correction", "pbd_sag", "pbd_step", "pivoted_body_step", "predict", "rattle_step",
-    "shared_edges", "turning_rate", "volume_gradient", "xpbd_step",
+    "cloth_step", "compliant_multiplier", "compliant_sweep", "composed_rope_step",
+    "constraint_correction", "constraint_projection_step", "constraint_rates", "constraints",
+    "distance_constraint", "distance_sweep", "effective_inverse_mass_at", "floor_gap",
+    "fold_constraint", "fold_sweep", "keep_outside", "link_delassus_matrix",
+    "make_constraint_network", "network_gravity", "newton_correction", "pbd_sag", "pbd_step",
+    "pivoted_body_step", "predict", "rattle_step", "rope_step", "shared_edges", "turning_rate",
+    "volume_gradient", "xpbd_step",
 ]
 
 NEWTON_TOLERANCE = 1e-12     # last correction over the longest link [-]; Newton squares it, so only round-off remains

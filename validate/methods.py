@@ -71,6 +71,8 @@ PROJECTION = Method("constraint_projection_step", "projection", 1, "pbd", "#E69F
 PBD = Method("pbd_step", "PBD", 1, "pbd", "#D55E00", "D")
 XPBD = Method("xpbd_step", "XPBD", 1, "pbd", "#56B4E9", "^")
 RATTLE = Method("rattle_step", "RATTLE", 2, "pbd", "#009E73", "s")
+ROPE = Method("rope_step", "rope", 2, "pbd", "#56B4E9", "^")
+COMPOSED_ROPE = Method("composed_rope_step", "rope, composed", 4, "pbd", "#6A51A3", ">")
 
 # contact
 SWEEPS = Method("contact_forces", "sweeps", 2, "contact", "#009E73", "s")

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from solutions import integrators, rotation
+from solutions import integrators, pbd, rotation
+from solutions.checks import BadInput
 from validate.reference.integrators import Planet, kepler_position, perihelion
 
 
@@ -72,3 +73,46 @@ def test_a_ball_with_mean_velocities_is_exact_but_for_the_step_in_which_it_begin
         assert abs(v[0] - rolls) < 1e-12 and abs(R * omega[1] - rolls) < 1e-12
         errors.append(abs(x[0] - truth))
         assert errors[-1] <= 0.125 * mu * g * (T / n) ** 2 + 1e-12
+
+
+def hanging(n, masses):
+    """(x, v, network) of n links of different lengths, held at the first point, with a random motion."""
+    rng = np.random.default_rng(5)
+    turns = rng.uniform(-1.0, 1.0, n)
+    links = rng.uniform(0.5, 1.5, n)[:, None] * np.stack((np.sin(turns), -np.cos(turns)), axis=1)
+    x = np.concatenate((np.zeros((1, 2)), np.cumsum(links, axis=0)))
+    pairs = [(k, k + 1) for k in range(n)]
+    network = pbd.make_constraint_network(x, masses, [0], pairs, 0.0, 1.0, (0.0, -9.81), 1)
+    spins = rng.uniform(-1.0, 1.0, n)
+    across = spins[:, None] * np.stack((-links[:, 1], links[:, 0]), axis=1)
+    return x, np.concatenate((np.zeros((1, 2)), np.cumsum(across, axis=0))), network
+
+
+def energy(x, v, network):
+    m = 1.0 / network.inv_mass[1:]
+    return np.sum(m * (0.5 * np.sum(v[1:] ** 2, axis=1) + 9.81 * x[1:, 1]))
+
+
+@pytest.mark.parametrize(("step", "order"), [(pbd.rope_step, 2), (pbd.composed_rope_step, 4)])
+def test_a_rope_converges_to_rattle_with_its_order_and_keeps_links_and_energy(step, order):
+    x, v, rope = hanging(5, np.array([1.0, 0.5, 2.0, 0.7, 1.3, 4.0]))
+    T = 0.5
+    truth, _ = integrators.advance(pbd.composed_rope_step, pbd.network_gravity, 0.0, x, v, T / 4000, 4000, rope)
+    by_rattle, _ = integrators.advance(pbd.rattle_step, pbd.network_gravity, 0.0, x, v, T / 2000, 2000, rope)
+    assert np.max(np.abs(truth - by_rattle)) < 1e-5                     # of second order, with a full matrix
+    ends = [integrators.advance(step, pbd.network_gravity, 0.0, x, v, T / n, n, rope) for n in (100, 200, 400)]
+    errors = [np.max(np.abs(end - truth)) for end, _ in ends]
+    assert abs(np.log2(errors[1] / errors[2]) - order) < 0.3, errors
+    x_end, v_end = ends[-1]
+    links = np.diff(x_end, axis=0)
+    assert np.max(np.abs(np.linalg.norm(links, axis=1) - rope.rest)) < 1e-5
+    assert np.max(np.abs(np.sum(links * np.diff(v_end, axis=0), axis=1))) < 1e-10       # velocities obey the links
+    assert abs(energy(x_end, v_end, rope) - energy(x, v, rope)) < 2e-3 * abs(energy(x, v, rope))
+
+
+def test_what_is_not_a_rope_is_refused():
+    x = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]])
+    for pairs in ([(0, 2), (1, 2)], [(1, 2), (0, 1)], [(1, 0), (1, 2)]):
+        network = pbd.make_constraint_network(x, 1.0, [0], pairs, 0.0, 1.0, (0.0, -9.81), 1)
+        with pytest.raises(BadInput, match="neighbours"):
+            pbd.rope_step(pbd.network_gravity, 0.0, x, 0.0 * x, 0.01, network)

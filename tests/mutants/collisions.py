@@ -237,7 +237,8 @@ edit("6.7", "compares with the two edges at a", LONGEST, "np.sqrt(dot(b - a, b -
 edit("6.7", "half of |N|", "np.sqrt(dot(N, N)) > DEGENERATE_AREA", "area > DEGENERATE_AREA")
 edit("6.7", "ten times too strict", "DEGENERATE_AREA * longest", "1e-11 * longest")
 edit("6.7", "ten times too tolerant", "DEGENERATE_AREA * longest", "1e-13 * longest")
-edit("6.7", "the square of DEGENERATE_AREA only", "np.sqrt(dot(N, N)) > DEGENERATE_AREA * longest", "dot(N, N) > DEGENERATE_AREA**2 * longest")
+edit("6.7", "the square of DEGENERATE_AREA only",
+     "np.sqrt(dot(N, N)) > DEGENERATE_AREA * longest", "dot(N, N) > DEGENERATE_AREA**2 * longest")
 edit("6.7", "the nearest corner", THREE_EDGES, "nearer(p, nearer(p, a, b), c)")
 edit("6.7", "the first edge with p outside", THREE_EDGES,
      OUTSIDE.format("a", "b") + OUTSIDE.format("b", "c") + "closest_on_segment(p, c, a)")
@@ -483,7 +484,8 @@ edit("6.14", "edges win by a twentieth", "EDGE_PREFERENCE if k >= 6", "0.05 * ab
 edit("6.14", "edges win by a micrometre", "EDGE_PREFERENCE if k >= 6", "1e-6 if k >= 6")
 edit("6.14", "edges win by a picometre", "EDGE_PREFERENCE if k >= 6", "1e-12 if k >= 6")
 edit("6.14", "edges win by a part of the gap", "EDGE_PREFERENCE if k >= 6", "1e-9 * abs(greatest) if k >= 6")
-edit("6.14", "edges need no advantage over edges", "EDGE_PREFERENCE if k >= 6", "EDGE_PREFERENCE if k >= 6 and number < 6")
+edit("6.14", "edges need no advantage over edges",
+     "EDGE_PREFERENCE if k >= 6", "EDGE_PREFERENCE if k >= 6 and number < 6")
 edit("6.14", "forgets the last axis", "range(15)", "range(14)")
 edit("6.14", "the first axis that separates", "not gap <= greatest +", "greatest <= 0.0 and gap > greatest +")
 edit("6.14", "edges only where no face separates",

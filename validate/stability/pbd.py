@@ -317,7 +317,7 @@ def projection_dissipation(lesson):
 
     A step goes along the last chord and is projected back radially:  tan β = sin α/(2 − cos α)  for the next angle,
     after tan α = ω dt for the first.  β ≈ α − α³, so 1/α² grows by 2 per step and  ω_N ≈ ω/√(1 + 2N(ω dt)²).  The
-    loss is twice that of a curved wall (stability case 36).  PBD and the projection method lose the same.
+    loss is twice that of a curved wall (friction/curved-wall-order).  PBD and the projection method lose the same.
     """
     found, steps, drawn = [], 200, []
     for turn in (0.2, 0.05):

@@ -1,7 +1,7 @@
 """Rotation at its limits: energy drift, fast spins, needles, and the spin below which a sleeping top falls.
 
-Every bound here is a closed form; the experiment is a run of the lesson's own steps.  Cases 11, 14, 15 and 17 of the
-workbook's list.  (pybullet silently limits a turn to π/4 per step, 785 rad/s at a millisecond, so case 14 omits it.)
+Every bound here is a closed form; the experiment is a run of the lesson's own steps.
+pybullet silently limits a turn to π/4 per step, 785 rad/s at a millisecond, so fast-spin omits it.
 *Source:* Euler 1758; Landau and Lifshitz, Mechanics, §§ 33 to 37; Klein and Sommerfeld 1897 for the sleeping top.
 """
 

@@ -167,8 +167,8 @@ SCENE = Scene(
     truth_uncertainty=UNCERTAINTY,
     tolerance=tolerance,
     engines=ENGINES,
-    omitted_methods=("PBD has no stiffness of its own to compare (stability case 9), and Newton's matrix would be "
-                     "dense, with 2,682 unknowns"),
+    omitted_methods=("PBD has no stiffness of its own to compare (stability case stiffness-depends-on-dt), "
+                     "and Newton's matrix would be dense, with 2,682 unknowns"),
     sanity_checks=sanity_checks,
     points=points,
     links=links,

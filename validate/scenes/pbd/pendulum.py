@@ -9,7 +9,7 @@ from solutions.integrators import advance
 from solutions.pbd import make_constraint_network
 from solutions.pbd import network_gravity as acceleration
 from validate.engines.pbd import ITERATIONS, SHARE, bullet_rope, pymunk_rope
-from validate.methods import PBD, PROJECTION, RATTLE, XPBD
+from validate.methods import COMPOSED_ROPE, PBD, PROJECTION, RATTLE, ROPE, XPBD
 from validate.reference.pbd import pendulum_angle, pendulum_period
 from validate.scene import PYBULLET, PYMUNK, Departure, Engine, Scene, by_order
 
@@ -130,7 +130,7 @@ SCENE = Scene(
     cases=CASES,
     duration=T,
     steps=STEPS,
-    methods=(PROJECTION, PBD, XPBD, RATTLE),
+    methods=(PROJECTION, PBD, XPBD, RATTLE, ROPE, COMPOSED_ROPE),
     acceleration=acceleration,
     start=start,
     run=run,
