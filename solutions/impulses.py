@@ -6,7 +6,8 @@ J, j [N s] impulse on a; b receives −J · e [-] restitution · μ [-] friction
 u⁺ = u + K J, and k = n · K n · φ [m] gap, n = ∇φ · λ [N s] multiplier of the gap.
 
 Velocities after an impact have a ⁺.  An impact is so short that positions do not change and other forces do not count.
-An immovable body has inv_mass = 0 and inv_inertia = 0.  In the plane r × n is the number r_x n_y − r_y n_x, and omega
+An immovable body has inv_mass = 0 and inv_inertia = 0; one on an axle through its centre of mass has only inv_mass = 0,
+and one that cannot rotate only inv_inertia = 0.  In the plane r × n is the number r_x n_y − r_y n_x, and omega
 is a number, counter-clockwise.
 *Left out:* finding contacts (lesson 6).  Lasting contacts, as in a stack (lesson 9).
 """
@@ -367,6 +368,7 @@ def impact_time(phi, v_n, a_n, dt):
     v_n < 0:                  τ = 2φ/(s − v_n)           equals (−v_n − s)/a_n, without division by a small a_n
     v_n ≥ 0 and a_n < 0:      τ = −(v_n + s)/a_n         it comes back
     v_n ≥ 0 and a_n ≥ 0, or no real s:   it never closes: dt
+    A gap that only touches zero, s = 0, closes there.
 
     *Source:* first lecture deck, “time of impact”; second lecture deck, “go back to time of impact”; quadratic formula.
     """
@@ -424,6 +426,7 @@ def position_projection_step(acceleration, t, x, v, dt, p):
     v ← v + dt a(t, x, v),    x ← x + dt v                       as usual, velocity first
     φ = gap(x, p) < 0:        v ← kinematic_response(v, n, e),   x ← x − φ n
 
+    The ball is left alone where φ is 0 or more.  What counts is v after the acceleration, not the velocity before it.
     *Source:* second lecture deck, time stepping, “Option 2”.
     """
     ### BEGIN SOLUTION 7.15
@@ -456,6 +459,7 @@ def backtracking_step(acceleration, t, x, v, dt, p):
     v ← kinematic_response(v, n, e),            x ← x − gap(x, p) n                        which removes round-off
     if bouncing_time(v · n, a · n, e) ≤ left, all bounces end within this step: return slide_on_plane(x, v, a, left, n)
 
+    A ball that starts inside and leaves, v · n > 0, flies from where it is, because impact_time counts its φ as 0.
     Raises Diverged after MAX_IMPACTS impacts.
     *Source:* second lecture deck, time stepping, “Option 1”.
     """

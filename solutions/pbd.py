@@ -117,7 +117,7 @@ def constraint_correction(C, gradients, inv_mass):
     C is the value of the constraint and gradients (k, d) are its ∇ₖC.  Each point moves along its gradient, in
     proportion to its inverse mass: heavy points move little, and Σ mₖ Δxₖ = Λ Σ ∇ₖC.
     Raises BadInput("Σ w |∇C|² of a constraint", 0.0, "let one of its points have a mass and a gradient") where
-    no point can move.
+    no point can move, even where C = 0.
     *Source:* second lecture deck, “Applying a constraint force”; Müller et al. 2006, section 3.3.
     """
     ### BEGIN SOLUTION 8.2
@@ -307,7 +307,8 @@ def distance_sweep(x, network):
 
     Δx_i = −s w_i/(w_i + w_j) C n,      Δx_j = +s w_j/(w_i + w_j) C n          s: the stiffness of the link
 
-    These are the corrections of projection() for two points, times s.  Returns a new array.
+    These are the corrections of projection() for two points, times s, whatever network.sweeps and network.alpha are.
+    Returns a new array.
     The worked answer sums over the coordinates in a loop, because a small array costs more than the arithmetic in
     it.  Calling projection is equally correct.
     Raises BadInput("the length of a link [m]", 0.0, "keep its ends apart") when the ends of a link coincide.
@@ -378,7 +379,8 @@ def fold_constraint(x, fold):
     ∇_a = −β_c ∇_c − β_d ∇_d,   β_c = (b − c)·e/|e|²,  β_d = (b − d)·e/|e|²          leverage of each wing at a
     ∇_b = −∇_a − ∇_c − ∇_d                                                            no net force from outside
 
-    Raises BadInput("the area of a triangle at a fold [m²]", 0.0, "keep its corners apart") for a triangle without area.
+    Raises BadInput("the area of a triangle at a fold [m²]", 0.0, "keep its corners apart") for a triangle without area,
+    also where its corners are apart but on one line.
     *Source:* Müller et al. 2006, section 4.1, for the constraint; Bridson et al. 2003 for an angle that is smooth at
     a flat fold.
     """
@@ -426,7 +428,8 @@ def keep_outside(surface, x, inv_mass, obstacle):
     The constraint of each point is φ ≥ 0.
     (φ, n) = surface(x_k, obstacle);   where φ < 0 and the point can move (w_k > 0):   x_k ← x_k − φ n
 
-    An inequality acts in one direction only: a point outside is left alone.  Returns a new array.
+    An inequality acts in one direction only: a point outside is left alone.  Where n = 0, at the centre of a ball, a
+    point stays.  Returns a new array.
     *Source:* Müller et al. 2006, section 3.4; second lecture deck, “Project particle out”.
     """
     ### BEGIN SOLUTION 8.11
@@ -494,7 +497,8 @@ def compliant_sweep(x, Lam, dt, network):
     ΔΛ = compliant_multiplier(C, Λₛ, w_i + w_j, αₛ/dt²)
     Λₛ ← Λₛ + ΔΛ,   x_i ← x_i + w_i ΔΛ n,   x_j ← x_j − w_j ΔΛ n
 
-    C and n are those of distance_constraint, for the ends as the earlier visits have left them.  Returns new arrays.
+    C and n are those of distance_constraint, for the ends as the earlier visits have left them.  A link that is too
+    short pushes, also with α = 0.  Returns new arrays.
     The worked answer sums over the coordinates in a loop, for speed, as in distance_sweep.
     Raises what distance_constraint and compliant_multiplier raise.
     *Source:* Macklin et al. 2016, algorithm 1.

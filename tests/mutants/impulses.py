@@ -62,6 +62,8 @@ wrong("7.2", "the spring pulls in")(penalty(spring=1.0))
 edit("7.2", "ignores a depth of a millimetre", "phi >= 0.0", "phi >= -1e-3")
 edit("7.2", "damps at φ = 0", "phi >= 0.0", "phi > 0.0")
 wrong("7.2", "damps outside, too")(penalty(inside=lambda phi: True))
+edit("7.2", "ignores a nanometre", "phi >= 0.0", "phi >= -1e-9")
+edit("7.2", "no force without a spring", "phi >= 0.0", "phi >= 0.0 or stiffness == 0.0")
 
 
 # 7.3 ------------------------------------------------------------------------------------------------------------
@@ -111,6 +113,12 @@ edit("7.4", "accepts any restitution for separating bodies", "check_restitution(
      "if u_n >= 0.0:\n        return 0.0\n    check_restitution(e)")
 edit("7.4", "accepts two immovable bodies that separate",
      "check_inverse_mass(k)", "if u_n < 0.0:\n        check_inverse_mass(k)")
+edit("7.4", "ignores ten nanometres per second", "u_n >= 0.0", "u_n >= -1e-8")
+edit("7.4", "slow bodies do not rebound", "(1.0 + e) * u_n", "(1.0 + e * (u_n < -1e-7)) * u_n")
+edit("7.4", "refuses heavy bodies", "check_inverse_mass(k)", "check_inverse_mass(k if k > 1e-3 else 0.0)")
+edit("7.4", "accepts a negative inverse mass", "check_inverse_mass(k)", "check_inverse_mass(abs(k))")
+edit("7.4", "accepts any inverse mass that is not zero or below", "check_inverse_mass(k)",
+     "if k <= 0.0:\n        check_inverse_mass(k)")
 
 
 # 7.5 and 7.7 ----------------------------------------------------------------------------------------------------
@@ -129,6 +137,10 @@ wrong("7.5", "b does not turn")(flat_k(second=False))
 wrong("7.5", "inertia for its inverse")(flat_k(over=True))
 wrong("7.5", "r · n for r × n")(flat_k(arm=lambda r, n: r @ n))
 wrong("7.5", "forgets the masses")(flat_k(mass=0.0))
+edit("7.5", "the mass of a must be finite", "a.inv_mass +", "(a.inv_mass or 1.0) +")
+edit("7.5", "a on an axle does not turn", "lever_a**2 * a.inv_inertia", "lever_a**2 * (a.inv_mass and a.inv_inertia)")
+edit("7.5", "b on an axle does not turn", "lever_b**2 * b.inv_inertia", "lever_b**2 * (b.inv_mass and b.inv_inertia)")
+edit("7.5", "what cannot rotate cannot move", "a.inv_mass +", "(a.inv_inertia and a.inv_mass) +")
 
 
 @variants
@@ -151,6 +163,8 @@ wrong("7.7", "forgets the masses")(solid_k(mass=0.0))
 wrong("7.7", "without the last × r")(solid_k(back=lambda turn, r: turn))
 edit("7.7", "the inertia tensor of a for its inverse", "times(a.inv_inertia,", "times(np.linalg.pinv(a.inv_inertia),")
 edit("7.7", "against a wall a does not turn", "n @ turn_a", "(n @ turn_a if b.inv_mass else 0.0)")
+edit("7.7", "a on an axle does not turn", "n @ turn_a", "(n @ turn_a if a.inv_mass else 0.0)")
+edit("7.7", "what cannot rotate cannot move", "a.inv_mass +", "a.inv_mass * a.inv_inertia.any() +")
 
 
 # 7.6 ------------------------------------------------------------------------------------------------------------
@@ -168,6 +182,9 @@ wrong("7.6", "mass for its inverse")(pushed(mass=lambda m: 1.0 / m if m else 0.0
 wrong("7.6", "inertia for its inverse")(pushed(inertia=lambda i: 1.0 / i if i else 0.0))
 wrong("7.6", "turns the other way")(pushed(side=-1.0))
 wrong("7.6", "does not rotate")(pushed(turns=False))
+edit("7.6", "does not turn on an axle", "body.inv_inertia * cross_2d",
+     "(body.inv_mass and body.inv_inertia) * cross_2d")
+edit("7.6", "what cannot rotate cannot move", "body.inv_mass * J", "(body.inv_inertia and body.inv_mass) * J")
 
 
 # 7.8 ------------------------------------------------------------------------------------------------------------
@@ -205,6 +222,12 @@ wrong("7.9", "forgets the mass")(K_of(mass=lambda m: np.zeros((3, 3))))
 edit("7.9", "both levers on one side of the tensor", "cross(times(inv_inertia, cross(r, unit)), r)",
      "times(inv_inertia, cross(cross(r, unit), r))")
 wrong("7.9", "a number for the tensor")(K_of(middle=lambda inv: np.trace(inv) / 3.0 * np.eye(3)))
+edit("7.9", "does not turn on an axle", "K = np.zeros((3, 3))",
+     "K = np.zeros((3, 3))\n    if inv_mass == 0.0:\n        return K")
+edit("7.9", "what cannot rotate cannot move", "K = np.zeros((3, 3))",
+     "K = np.zeros((3, 3))\n    if not inv_inertia.any():\n        return K")
+edit("7.9", "nothing at the centre of mass", "K = np.zeros((3, 3))",
+     "K = np.zeros((3, 3))\n    if not r.any():\n        return K")
 
 
 # 7.10 -----------------------------------------------------------------------------------------------------------
@@ -247,6 +270,20 @@ edit("7.10", "sticks as if K were a number", "solve3(K[0], K[1], K[2], w * n - u
 edit("7.10", "pushes bodies that separate exactly at w", "u @ n >= w", "u @ n > w")
 edit("7.10", "tolerates a nanometre per second below w", "u @ n >= w", "u @ n >= w - 1e-9")
 edit("7.10", "a small impulse has no direction", "np.sin(beta) / size", "(np.sin(beta) / size if size > 1e-9 else 0.0)")
+edit("7.10", "a friction above 10 is infinite", "np.arctan(mu)", "np.arctan(mu if mu < 10.0 else np.inf)")
+edit("7.10", "a friction of 10 at most", "np.arctan(mu)", "np.arctan(mu if mu > 1e5 else min(mu, 10.0))")
+edit("7.10", "sticks with a friction above 10", "size <= mu * (J @ n)",
+     "size <= mu * (J @ n) or (mu > 10.0 and J @ n > 0.0)")
+edit("7.10", "slides on the rim of the cone, too", "size <= mu * (J @ n)", "size < mu * (J @ n)")
+edit("7.10", "heavy bodies stick", "size <= mu * (J @ n)", "size <= mu * (J @ n) or K[0, 0] < 1e-9")
+edit("7.10", "accepts a friction that is not a number", "check_contact(u, n, K, mu)",
+     "check_contact(u, n, K, 0.0 if mu != mu else mu)")
+edit("7.10", "accepts an infinite velocity", "check_contact(u, n, K, mu)",
+     "check_contact(np.where(np.isinf(u), 1.0, u), n, K, mu)")
+edit("7.10", "accepts a K without an inverse", "check_contact(u, n, K, mu)",
+     "check_contact(u, n, K + (n @ K @ n > 0.0) * np.eye(3), mu)")
+edit("7.10", "no friction without slip", "J_t = tangential(J, n)",
+     "J_t = tangential(J, n)\n    if not tangential(u, n).any():\n        return (w - u @ n) / (n @ times(K, n)) * n")
 
 
 # 7.11 -----------------------------------------------------------------------------------------------------------
@@ -307,6 +344,12 @@ edit("7.12", "closes by less than a nanometre", "-(phi / dt + u_n) / k)",
      "-(phi / dt + u_n) / k if phi + dt * u_n <= -1e-9 else 0.0)")
 edit("7.12", "waits until the gap is closed", "np.maximum(0.0, -(phi / dt + u_n) / k)",
      "max(0.0, -u_n / k) if phi <= 0.0 else 0.0")
+edit("7.12", "accepts a negative inverse mass", "check_inverse_mass(k)", "check_inverse_mass(abs(k))")
+edit("7.12", "accepts any inverse mass that is not zero or below", "check_inverse_mass(k)",
+     "if k <= 0.0:\n        check_inverse_mass(k)")
+edit("7.12", "accepts an infinite step", 'check_positive("step dt [s]", dt)',
+     'check_positive("step dt [s]", 1.0 if dt == np.inf else dt)')
+edit("7.12", "pulls a closed gap together", "return np.maximum(", "return -u_n / k if phi == 0.0 else np.maximum(")
 
 
 # 7.13 -----------------------------------------------------------------------------------------------------------
@@ -347,6 +390,8 @@ edit("7.13", "ignores an immediate impact", "return np.minimum(tau, dt)", "retur
 edit("7.13", "a resting ball without acceleration meets at once", "squared = v_n * v_n",
      "if phi == 0.0 and v_n <= 0.0 and a_n <= 0.0:\n        return 0.0\n    squared = v_n * v_n")
 edit("7.13", "treats a micrometre as contact", "np.maximum(0.0, phi)", "phi if phi > 1e-6 else 0.0")
+edit("7.13", "a grazing touch is no impact", "squared < 0.0 or", "squared < 0.0 or (squared == 0.0 and phi > 0.0) or")
+edit("7.13", "the form of the way down for the way back, too", "if v_n < 0.0 else", "if v_n < 0.0 or phi > 0.0 else")
 
 
 # 7.14 -----------------------------------------------------------------------------------------------------------
@@ -380,6 +425,10 @@ wrong("7.14", "1 + e")(zeno(sum=lambda e: 1.0 + e))
 wrong("7.14", "a time below zero")(zeno(down=False))
 wrong("7.14", "e = 1 ends at once")(zeno(endless=False))
 wrong("7.14", "comes back without acceleration")(zeno(falls=False))
+edit("7.14", "treats e within 1e-12 of 1 as 1", "e == 1.0", "e > 1.0 - 1e-12")
+edit("7.14", "a restitution below a hundredth is none", "(1.0 - e)", "(1.0 - (e if e > 0.01 else 0.0))")
+edit("7.14", "bounces slower than a nanometre per second take no time", "v_n <= 0.0", "v_n <= 1e-9")
+edit("7.14", "weak gravity is none", "a_n >= 0.0", "a_n >= -1e-12")
 
 
 # 7.15 -----------------------------------------------------------------------------------------------------------
@@ -408,6 +457,33 @@ edit("7.15", "the acceleration at the end of the step", "acceleration(t, x, v, p
 edit("7.15", "the acceleration where it would be", "acceleration(t, x, v, p)", "acceleration(t, x + dt * v, v, p)")
 edit("7.15", "the acceleration at rest", "acceleration(t, x, v, p)", "acceleration(t, x, 0.0 * v, p)")
 wrong("7.15", "forgets dt")(project(once=False))
+edit("7.15", "reverses a ball on the plane", "phi < 0.0", "phi <= 0.0")
+edit("7.15", "a ball slower than 2 g dt stays on the plane", "kinematic_response(v, p.n, p.e)",
+     "kinematic_response(v, p.n, p.e if v @ p.n < 2.0 * dt * (p.gravity @ p.n) else 0.0)")
+
+
+@variants
+def by_the_old_velocity(counts=lambda v, v_new: v_new):
+    def position_projection_step(acceleration, t, x, v, dt, p):
+        v_new = v + dt * acceleration(t, x, v, p)
+        x_new = x + dt * v_new
+        phi = worked.gap(x_new, p)
+        if phi >= 0.0:
+            return x_new, v_new
+        bounces = counts(v, v_new) @ p.n < 0.0
+        return x_new - phi * p.n, v_new - (1.0 + p.e) * (v_new @ p.n) * p.n if bounces else v_new
+    return position_projection_step
+
+
+wrong("7.15", "does not reflect what left at the start")(by_the_old_velocity(counts=lambda v, v_new: v))
+
+
+@right("7.15", "position and velocity from the acceleration")
+def position_projection_step(acceleration, t, x, v, dt, p):
+    a = acceleration(t, x, v, p)
+    place, speed = x + dt * v + dt**2 * a, v + dt * a
+    depth = (p.point - place) @ p.n
+    return (place + depth * p.n, worked.kinematic_response(speed, p.n, p.e)) if depth > 0.0 else (place, speed)
 
 
 # 7.16 -----------------------------------------------------------------------------------------------------------
@@ -456,6 +532,36 @@ edit("7.16", "a ball that starts inside does not bounce", "a, left = acceleratio
      "a, left = acceleration(t, x, v, p), dt\n    if gap(x, p) < 0.0 and v @ p.n < 0.0:\n"
      "        x, v = x - gap(x, p) * p.n, tangential(v, p.n)")
 wrong("7.16", "a resting ball does not slide")(back_to(lie=lambda x, v, a, t, n: (x, 0.0 * v)))
+edit("7.16", "once it lies, nothing lifts it off", "return slide_on_plane(x, v, a, left, p.n)",
+     "return free_flight(x, tangential(v, p.n), tangential(a, p.n), left)")
+edit("7.16", "puts back what starts inside and leaves", "a, left = acceleration(t, x, v, p), dt",
+     "a, left = acceleration(t, x, v, p), dt\n    x = x - min(0.0, gap(x, p)) * p.n")
+edit("7.16", "a new acceleration where it lies", "slide_on_plane(x, v, a, left, p.n)",
+     "slide_on_plane(x, v, acceleration(t + dt - left, x, v, p), left, p.n)")
+edit("7.16", "drops the last nanosecond", "left <= 0.0", "left <= 1e-9")
+edit("7.16", "a thousand impacts at most", "range(MAX_IMPACTS)", "range(1000)")
+edit("7.16", "bounces under all of the acceleration", "bouncing_time(v @ p.n, a @ p.n, p.e)",
+     "bouncing_time(v @ p.n, -np.sqrt(a @ a), p.e)")
+edit("7.16", "every acceleration pulls in", "impact_time(gap(x, p), v @ p.n, a @ p.n, left)",
+     "impact_time(gap(x, p), v @ p.n, -abs(a @ p.n), left)")
+edit("7.16", "does not lie after a bounce of no time", "bouncing_time(v @ p.n, a @ p.n, p.e) <= left",
+     "0.0 < bouncing_time(v @ p.n, a @ p.n, p.e) <= left")
+
+
+@right("7.16", "until no time is left, and what lies first")
+def backtracking_step(acceleration, t, x, v, dt, p):
+    a, left, impacts = acceleration(t, x, v, p), dt, 0
+    while True:
+        tau = worked.impact_time(worked.gap(x, p), v @ p.n, a @ p.n, left)
+        (x, v), left = worked.free_flight(x, v, a, tau), left - tau
+        if not left > 0.0:
+            return x, v
+        x, v = x - worked.gap(x, p) * p.n, worked.kinematic_response(v, p.n, p.e)
+        if left >= worked.bouncing_time(v @ p.n, a @ p.n, p.e):
+            return worked.slide_on_plane(x, v, a, left, p.n)
+        impacts += 1
+        if impacts == worked.MAX_IMPACTS:
+            raise Diverged("impacts in a step of dt [s]", dt, "take a smaller one")
 
 
 # 7.17 -----------------------------------------------------------------------------------------------------------
@@ -517,3 +623,13 @@ edit("7.17", "no change if it is against the axes", "np.abs(times(K, J - Js[i]))
 edit("7.17", "the residual of the last point", "residual = max(residual, ", "residual = max(0.0, ")
 edit("7.17", "the residual of the first point", "residual = max(residual, ", "residual = max(residual, (i == 0) * ")
 edit("7.17", "checks the restitution only", "check_impacts(body, r, n, e, mu)", "check_restitution(e)")
+edit("7.17", "four fifths of the friction", "w[i], mu)", "w[i], 0.8 * mu)")
+edit("7.17", "more than two points share one friction", "w[i], mu)", "w[i], mu if len(r) < 3 else mu / len(r))")
+edit("7.17", "friction of 2 at most", "w[i], mu)", "w[i], min(mu, 2.0))")
+edit("7.17", "sticks as a ball would", "contact_matrix(r[i], body.inv_mass, body.inv_inertia)",
+     "contact_matrix(r[i], body.inv_mass, np.trace(body.inv_inertia) / 3.0 * np.eye(3))")
+edit("7.17", "asks for the normal changes only", "np.abs(times(K, J - Js[i])).max()", "abs(n[i] @ times(K, J - Js[i]))")
+edit("7.17", "infinite friction, if the sweeps do not settle", "most_dissipative_impact(body, r, n, e, mu)",
+     "most_dissipative_impact(body, r, n, e, np.inf)")
+edit("7.17", "the residual of the sweeps that do not settle", "most_dissipative_impact(body, r, n, e, mu)",
+     "(most_dissipative_impact(body, r, n, e, mu)[0], residual)")

@@ -43,6 +43,8 @@ edit("8.1", "refuses short segments", "length == 0.0", "length < 1e-9")
 edit("8.1", "treats a picometre as zero", "length == 0.0", "length < 1e-12")
 edit("8.1", "never too long", "length - rest", "min(0.0, length - rest)")
 edit("8.1", "towards where it should go", "r / length", "r / length * np.sign(rest - length)")
+edit("8.1", "refuses what is in line with the second axis", "length == 0.0", "r[0] == 0.0")
+edit("8.1", "no direction at the rest length", "r / length", "r / length * abs(np.sign(length - rest))")
 
 
 # 8.2 ------------------------------------------------------------------------------------------------------------
@@ -70,6 +72,13 @@ edit("8.2", "every point on its own", "-C / weight * inv_mass[:, None]",
 edit("8.2", "refuses small masses", "weight == 0.0", "weight < 1e-6")
 edit("8.2", "refuses only where all masses are infinite or all gradients 0", "weight == 0.0",
      "np.all(inv_mass == 0.0) or np.all(gradients == 0.0)")
+edit("8.2", "refuses very small masses and gradients", "weight == 0.0", "weight < 1e-20")
+edit("8.2", "takes the gradient of a single point for a unit vector", "return -C / weight",
+     "return -C * gradients if inv_mass.size == 1 else -C / weight")
+edit("8.2", "returns the gradients where the constraint holds", "return -C / weight",
+     "return gradients if C == 0.0 else -C / weight")
+edit("8.2", "accepts immovable points where the constraint holds", "if weight == 0.0:",
+     "if C == 0.0:\n        return 0.0 * gradients\n    if weight == 0.0:")
 
 
 # 8.3 ------------------------------------------------------------------------------------------------------------
@@ -99,6 +108,10 @@ wrong("8.3", "no force")(predicting(half=0.0))
 edit("8.3", "treats heavy points as immovable", "network.inv_mass > 0.0", "network.inv_mass > 1e-6")
 edit("8.3", "changes the array that the acceleration returned", "a = acceleration(t, x, v, network)",
      "a = acceleration(t, x, v, network)\n    a[network.inv_mass == 0.0] = 0.0")
+@right("8.3", "asks no immovable point for its acceleration")
+def predict(acceleration, t, x, v, dt, network):
+    a = acceleration(t, x, v, network)
+    return x + dt * (v + dt * np.where(network.inv_mass[:, None] > 0.0, a, 0.0))
 
 
 # 8.4 ------------------------------------------------------------------------------------------------------------
@@ -140,6 +153,8 @@ edit("8.4", "the trace acts on λ, not on its change", " - trace * dt * dt * lam
 edit("8.4", "the trace without the masses", SHARE, "REGULARISATION * 2.0")
 edit("8.4", "link s joins points s and s + 1", "for s in range(C.size):",
      "network = network._replace(i=np.arange(C.size), j=np.arange(C.size) + 1)\n    for s in range(C.size):")
+edit("8.4", "the trace with the mass of one end", "(network.inv_mass[network.i[s]] + network.inv_mass[network.j[s]])",
+     "network.inv_mass[network.i[s]]")
 
 
 # 8.5 ------------------------------------------------------------------------------------------------------------
@@ -181,6 +196,8 @@ edit("8.5", "the last link for the longest", "np.max(network.rest)", "network.re
 edit("8.5", "at most eight iterations", "range(NEWTON_LIMIT)", "range(8)")
 edit("8.5", "accepts NaN as converged", "np.max(np.abs(change)) <= NEWTON_TOLERANCE * longest",
      "not np.max(np.abs(change)) > NEWTON_TOLERANCE * longest")
+edit("8.5", "at most fifteen iterations", "range(NEWTON_LIMIT)", "range(15)")
+edit("8.5", "at most thirty iterations", "range(NEWTON_LIMIT)", "range(30)")
 
 
 # 8.6 ------------------------------------------------------------------------------------------------------------
@@ -222,6 +239,27 @@ edit("8.6", "refuses short segments", "squared == 0.0", "squared < 1e-12")
 edit("8.6", "link s joins points s and s + 1", "i, j = network.i[s], network.j[s]", "i, j = s, s + 1")
 edit("8.6", "the rest length of the first link", "network.rest[s]", "network.rest[0]")
 edit("8.6", "the stiffness of the first link", "network.stiffness[s]", "network.stiffness[0]")
+edit("8.6", "the stiffness of one sweep so that all remove s", "network.stiffness[s] *",
+     "(1.0 - (1.0 - network.stiffness[s]) ** (1.0 / network.sweeps)) *")
+edit("8.6", "the stiffness of all sweeps in each", "network.stiffness[s] *",
+     "(1.0 - (1.0 - network.stiffness[s]) ** network.sweeps) *")
+edit("8.6", "all sweeps at once", "range(network.i.size)", "[*range(network.i.size)] * network.sweeps")
+edit("8.6", "as soft as in XPBD", "(network.inv_mass[i] + network.inv_mass[j])",
+     "(network.inv_mass[i] + network.inv_mass[j] + network.alpha[s])")
+edit("8.6", "visits the links in the order of their first points", "range(network.i.size)", "np.argsort(network.i)")
+edit("8.6", "refuses a nanometre", "squared == 0.0", "squared < 1e-18")
+edit("8.6", "a millionth of its length is no error", "share = network.stiffness[s]",
+     "share = (abs(length - network.rest[s]) > 1e-6 * length) * network.stiffness[s]")
+
+
+@right("8.6", "by projection")
+def distance_sweep(x, network):
+    x = x.copy()
+    for s in range(network.i.size):
+        ends = [network.i[s], network.j[s]]
+        C, n = worked.distance_constraint(x[ends[0]], x[ends[1]], network.rest[s])
+        x[ends] += network.stiffness[s] * worked.constraint_correction(C, np.stack((n, -n)), network.inv_mass[ends])
+    return x
 
 
 # 8.7 ------------------------------------------------------------------------------------------------------------
@@ -249,6 +287,11 @@ edit("8.7", "visits the links from the last to the first", "distance_sweep(new, 
      "stiffness=network.stiffness[::-1]))")
 edit("8.7", "gravity for any acceleration", "predict(acceleration, t,", "predict(network_gravity, t,")
 edit("8.7", "the acceleration at t + dt", "predict(acceleration, t,", "predict(acceleration, t + dt,")
+wrong("8.7", "five sweeps at most")(dynamics(sweeps=lambda n: min(n, 5)))
+edit("8.7", "in the plane only", "new = distance_sweep(new, network)",
+     "new = distance_sweep(new, network)\n        new[:, 2:] = x[:, 2:]")
+edit("8.7", "stops when less than a micrometre changes", "new = distance_sweep(new, network)",
+     "old, new = new, distance_sweep(new, network)\n        if np.abs(new - old).max() < 1e-6:\n            break")
 
 
 # 8.8 ------------------------------------------------------------------------------------------------------------
@@ -268,6 +311,9 @@ wrong("8.8", "before the sweeps")(sagging(above=lambda S: 1.0))
 wrong("8.8", "falls by ½ g dt²")(sagging(step=lambda dt: 0.5 * dt * dt))
 edit("8.8", "no more than five sweeps", "** sweeps", "** min(sweeps, 5)")
 wrong("8.8", "n times as stiff")(sagging(left=lambda s, n: max(0.0, 1.0 - n * s)))
+edit("8.8", "no more than fifty sweeps", "** sweeps", "** min(sweeps, 50)")
+wrong("8.8", "n times as stiff, where it is soft")(
+    sagging(left=lambda s, n: (1.0 - s) ** n if s > 0.01 else 1.0 - n * s))
 
 
 # 8.9 ------------------------------------------------------------------------------------------------------------
@@ -318,6 +364,33 @@ edit("8.9", "removes one full turn only", "np.ceil((turn - np.pi) / (2.0 * np.pi
      "np.sign(np.ceil((turn - np.pi) / (2.0 * np.pi)))")
 edit("8.9", "tests the area of one triangle only", "squared_c == 0.0 or squared_d == 0.0", "squared_d == 0.0")
 edit("8.9", "refuses small inputs", "squared_c == 0.0 or squared_d == 0.0", "squared_c < 1e-9 or squared_d < 1e-9")
+edit("8.9", "removes two full turns only", "np.ceil((turn - np.pi) / (2.0 * np.pi))",
+     "max(-2.0, min(2.0, np.ceil((turn - np.pi) / (2.0 * np.pi))))")
+edit("8.9", "removes three full turns only", "np.ceil((turn - np.pi) / (2.0 * np.pi))",
+     "max(-3.0, min(3.0, np.ceil((turn - np.pi) / (2.0 * np.pi))))")
+edit("8.9", "refuses thin triangles", "squared_c == 0.0 or squared_d == 0.0",
+     "squared_c < 1e-4 * squared**2 or squared_d < 1e-4 * squared**2")
+edit("8.9", "refuses coincident corners only", "squared_c == 0.0 or squared_d == 0.0",
+     "not all([(x[i] - x[j]).any() for i, j in ((0, 1), (0, 2), (1, 2), (0, 3), (1, 3))])")
+edit("8.9", "accepts an edge without length", "squared_c == 0.0 or squared_d == 0.0",
+     "squared > 0.0 and (squared_c == 0.0 or squared_d == 0.0)")
+
+
+@right("8.9", "normals from the edge, the angle from its sine and cosine")
+def fold_constraint(x, fold):
+    e, c, d = x[1:] - x[0]
+    N_c, N_d, length = np.cross(e, c), np.cross(d, e), size(e)
+    if not (N_c.any() and N_d.any()):
+        raise BadInput("the area of a triangle at a fold [m²]", 0.0, "keep its corners apart")
+    u_c, u_d = N_c / size(N_c), N_d / size(N_d)
+    C = np.arctan2(np.cross(u_c, u_d) @ (e / length), u_c @ u_d) - fold
+    while C > np.pi:
+        C -= 2.0 * np.pi
+    while C <= -np.pi:
+        C += 2.0 * np.pi
+    g_c, g_d = -length / size(N_c) * u_c, -length / size(N_d) * u_d
+    at_b = c @ e / (e @ e), d @ e / (e @ e)
+    return C, np.stack((-(1.0 - at_b[0]) * g_c - (1.0 - at_b[1]) * g_d, -at_b[0] * g_c - at_b[1] * g_d, g_c, g_d))
 
 
 # 8.10 -----------------------------------------------------------------------------------------------------------
@@ -368,6 +441,11 @@ edit("8.11", "five centimetres are not inside", "phi < 0.0", "phi < -0.05")
 edit("8.11", "heavy points move less", "x[k] -= phi * n", "x[k] -= min(1.0, inv_mass[k]) * phi * n")
 edit("8.11", "all like the first", "surface(x[k], obstacle)", "surface(x[0], obstacle)")
 edit("8.11", "the floor for any surface", "surface(x[k], obstacle)", "floor_gap(x[k], obstacle)")
+edit("8.11", "in space only", "x = float_copy(x)", "x = float_copy(x) + np.zeros((x.shape[0], 3))")
+edit("8.11", "upwards from the centre of a ball", "x[k] -= phi * n",
+     "x[k] -= phi * (n if n.any() else np.eye(n.size)[-1])")
+edit("8.11", "divides by the length of n", "x[k] -= phi * n", "x[k] -= phi * (n / np.sqrt(np.sum(n * n)))")
+edit("8.11", "treats heavy points as immovable", "inv_mass[k] > 0.0", "inv_mass[k] > 1e-6")
 
 
 # 8.12 -----------------------------------------------------------------------------------------------------------
@@ -392,6 +470,11 @@ wrong("8.12", "accepts a negative compliance")(giving(checked=False))
 edit("8.12", "the error without its sign", "-C - alpha_scaled", "-abs(C) - alpha_scaled")
 wrong("8.12", "accepts NaN")(giving(nan=False))
 wrong("8.12", "accepts a constraint without movable mass")(giving(weighed=False))
+edit("8.12", "refuses heavy points", "weight == 0.0", "weight < 1e-9")
+edit("8.12", "a very small compliance is none", "-C - alpha_scaled * Lam",
+     "-C - (alpha_scaled > 1e-6) * alpha_scaled * Lam")
+edit("8.12", "accepts a slightly negative compliance", "not alpha_scaled >= 0.0", "not alpha_scaled >= -1e-9")
+edit("8.12", "no change where C = 0", "(-C - alpha_scaled", "(C != 0.0) * (-C - alpha_scaled")
 
 
 # 8.13 -----------------------------------------------------------------------------------------------------------
@@ -436,6 +519,26 @@ wrong("8.13", "half of the weight")(soft_sweep(weight=0.5))
 edit("8.13", "a thread: never too short", "length - network.rest[s]", "max(0.0, length - network.rest[s])")
 edit("8.13", "link s joins points s and s + 1", "i, j = network.i[s], network.j[s]", "i, j = s, s + 1")
 edit("8.13", "the rest length of the first link", "network.rest[s]", "network.rest[0]")
+edit("8.13", "what is inextensible never pushes", "length - network.rest[s]",
+     "length - network.rest[s] if network.alpha[s] else max(0.0, length - network.rest[s])")
+edit("8.13", "what is inextensible never pulls", "length - network.rest[s]",
+     "length - network.rest[s] if network.alpha[s] else min(0.0, length - network.rest[s])")
+edit("8.13", "no visit where α = 0", "i, j = network.i[s], network.j[s]",
+     "i, j = network.i[s], network.j[s]\n        if network.alpha[s] == 0.0:\n            continue")
+edit("8.13", "keeps no Λ where α = 0", "Lam[s] += change", "Lam[s] += change * (network.alpha[s] > 0.0)")
+edit("8.13", "checks nothing",
+     "compliant_multiplier(length - network.rest[s], Lam[s], weight, network.alpha[s] * per_square)",
+     "(network.rest[s] - length - network.alpha[s] * per_square * Lam[s]) / (weight + network.alpha[s] * per_square)")
+edit("8.13", "skips immovable points", "weight = network.inv_mass[i] + network.inv_mass[j]",
+     "weight = network.inv_mass[i] + network.inv_mass[j]\n        if weight == 0.0:\n            continue")
+edit("8.13", "visits the links in the order of their first points", "range(network.i.size)", "np.argsort(network.i)")
+edit("8.13", "no visit where a link has its rest length", "weight = network.inv_mass[i] + network.inv_mass[j]",
+     "weight = network.inv_mass[i] + network.inv_mass[j]\n"
+     "        if abs(length / network.rest[s] - 1.0) < 1e-9:\n            continue")
+edit("8.13", "refuses a nanometre", "squared == 0.0", "squared < 1e-18")
+edit("8.13", "all sweeps at once", "range(network.i.size)", "[*range(network.i.size)] * network.sweeps")
+edit("8.13", "a part of α in each sweep",
+     "network.alpha[s] * per_square", "network.alpha[s] * per_square / network.sweeps")
 
 
 # 8.14 -----------------------------------------------------------------------------------------------------------
@@ -463,6 +566,10 @@ edit("8.14", "the last Λ for all links", "compliant_sweep(new, Lam, dt, network
 edit("8.14", "one Λ per point", "np.zeros(network.i.size)", "np.zeros(x.shape[0])")
 edit("8.14", "gravity for any acceleration", "predict(acceleration, t,", "predict(network_gravity, t,")
 edit("8.14", "the acceleration at t + dt", "predict(acceleration, t,", "predict(acceleration, t + dt,")
+wrong("8.14", "five sweeps at most")(soft_step(sweeps=lambda n: min(n, 5)))
+edit("8.14", "PBD where nothing is soft", "Lam = np.zeros(network.i.size)",
+     "Lam = np.zeros(network.i.size)\n"
+     "    if not network.alpha.any():\n        return pbd_step(acceleration, t, x, v, dt, network)")
 
 
 # 8.15 -----------------------------------------------------------------------------------------------------------
@@ -506,6 +613,10 @@ wrong("8.16", "a quaternion of another length")(apply_multipliers(unit=False))
 edit("8.16", "right only for masses above 1 kg", "p / m", "p / max(m, 1.0)")
 edit("8.16", "right only for masses below 1 kg", "p / m", "p / min(m, 1.0)")
 wrong("8.16", "turns only")(apply_multipliers(moves=0.0))
+edit("8.16", "fails without rotation", "quaternion_update(q, turn, 1.0)",
+     "quaternion_update(q, turn / np.sqrt(turn @ turn), np.sqrt(turn @ turn))")
+edit("8.16", "a microradian is no turn", "quaternion_update(q, turn, 1.0)",
+     "quaternion_update(q, turn * (turn @ turn > 1e-12), 1.0)")
 
 
 # 8.17 -----------------------------------------------------------------------------------------------------------
@@ -527,6 +638,16 @@ wrong("8.17", "backwards")(rate(sign=-1.0))
 wrong("8.17", "the product of both")(rate(back=False))
 edit("8.17", "fails without rotation", "return 2.0 / (turn[0] * dt) * turn[1:]",
      "size = np.sqrt(np.sum(turn[1:] ** 2))\n    return 2.0 * size / (turn[0] * dt) * (turn[1:] / size)")
+edit("8.17", "a microradian is no turn", "* turn[1:]", "* turn[1:] * (turn[1:] @ turn[1:] > 1e-12)")
+edit("8.17", "no more than 120°", "2.0 / (turn[0] * dt)", "2.0 / (np.sign(turn[0]) * max(abs(turn[0]), 0.5) * dt)")
+
+
+@right("8.17", "by the angle")
+def turning_rate(q_old, q_new, dt):
+    turn = worked.quaternion_product(q_new, q_old * np.array([1.0, -1.0, -1.0, -1.0]))
+    turn = turn if turn[0] >= 0.0 else -turn
+    s = size(turn[1:])
+    return 2.0 * np.tan(np.arctan2(s, turn[0])) / dt * turn[1:] / s if s > 0.0 else np.zeros(3)
 
 
 # 8.18 -----------------------------------------------------------------------------------------------------------
