@@ -3,7 +3,7 @@
 Symbols: a, b two bodies · v [m/s], omega [rad/s] · r [m] offset of the contact point from a centre of mass ·
 n unit normal, from b to a · u [m/s] velocity of a's contact point relative to b's, u_n = n · u its normal part ·
 J, j [N s] impulse on a; b receives −J · e [-] restitution · μ [-] friction · K [1/kg] the response of u to an impulse:
-u⁺ = u + K J, and k = n · K n · φ [m] gap, n = ∇φ · λ [N s] multiplier of the gap.
+u⁺ = u + K J, and k_n = n · K n · φ [m] gap, n = ∇φ · λ [N s] multiplier of the gap.
 
 Velocities after an impact have a ⁺.  An impact is so short that positions do not change and other forces do not count.
 An immovable body has inv_mass = 0 and inv_inertia = 0; one on an axle through its centre of mass has only inv_mass = 0,
@@ -108,10 +108,10 @@ class Discs(NamedTuple):
 
 # ---------------------------------------------------------------------------------------------- checks
 
-def check_inverse_mass(k):
-    """Given.  Raise BadInput unless k [1/kg] is above zero and finite: two immovable bodies have k = 0."""
-    if not (k > 0.0 and np.isfinite(k)):
-        raise BadInput("inverse mass of two bodies at their contact [1/kg]", k, "let one of them have a finite mass")
+def check_inverse_mass(k_n):
+    """Given.  Raise BadInput unless k_n [1/kg] is above zero and finite: two immovable bodies have k_n = 0."""
+    if not (k_n > 0.0 and np.isfinite(k_n)):
+        raise BadInput("inverse mass of two bodies at their contact [1/kg]", k_n, "let one of them have a finite mass")
 
 
 def check_contact(u, n, K, mu):
@@ -132,12 +132,12 @@ def times(A, b):
 
 # ----------------------------------------------------------------------------------------- kinematic, and with a spring
 
-def kinematic_response(v, n, k):
+def kinematic_response(v, n, e):
     """Return the velocity (d,) of a point after it hits a fixed surface; unchanged where it leaves, v · n ≥ 0.
 
-    v⁺ = v − (1 + k)(v · n) n
+    v⁺ = v − (1 + e)(v · n) n
 
-    The normal velocity is reversed and scaled by k; k = 0.8 looks like a ball.  The tangential velocity is unchanged.
+    The normal velocity is reversed and scaled by e; e = 0.8 looks like a ball.  The tangential velocity is unchanged.
     *Source:* first lecture deck, “Kinematic response”.
     """
     # YOUR CODE HERE
@@ -149,7 +149,7 @@ def penalty_force(phi, v_n, stiffness, damping):
 
     f = max(0, −stiffness φ − damping v_n)  while φ < 0;     0 outside
 
-    φ [m] gap, v_n [m/s] its rate, stiffness [N/m], damping [N s/m].  For a force over mass pass k/m and c/m.
+    φ [m] gap, v_n [m/s] its rate, stiffness [N/m], damping [N s/m].  For a force over mass give both over m.
     *Source:* first lecture deck, “Penalty method”.
     """
     # YOUR CODE HERE
@@ -174,12 +174,12 @@ def relative_velocity_2d(a, b, r_a, r_b):
     raise NotImplementedError("Exercise 7.3: relative_velocity_2d")
 
 
-def impulse_size(u_n, k, e):
+def impulse_size(u_n, k_n, e):
     """Return the impulse j ≥ 0 [N s] between two bodies that meet with u_n [m/s] and separate with −e u_n.
 
-    j = −(1 + e) u_n/k,      and 0 where they are already separating, u_n ≥ 0
+    j = −(1 + e) u_n/k_n,      and 0 where they are already separating, u_n ≥ 0
 
-    k [1/kg]: the change of u_n by j = 1 N s, over that j; without rotation k = 1/m_a + 1/m_b.
+    k_n [1/kg]: the change of u_n by j = 1 N s, over that j; without rotation k_n = 1/m_a + 1/m_b.
     Raises what check_restitution and check_inverse_mass raise; call them first.
     *Source:* first lecture deck, “Computing impulse”, 1st: objects cannot rotate; second lecture deck, “Coefficient of
     restitution”.
@@ -189,9 +189,9 @@ def impulse_size(u_n, k, e):
 
 
 def effective_inverse_mass_2d(a, b, r_a, r_b, n):
-    """Return k [1/kg] of two BodyState2D that can rotate.
+    """Return k_n [1/kg] of two BodyState2D that can rotate.
 
-    k = 1/m_a + 1/m_b + (r_a × n)²/I_a + (r_b × n)²/I_b          r × n: cross_2d
+    k_n = 1/m_a + 1/m_b + (r_a × n)²/I_a + (r_b × n)²/I_b          r × n: cross_2d
 
     *Source:* first lecture deck, “Computing impulse”, in the plane.
     """
@@ -221,9 +221,9 @@ def relative_velocity(a, b, r_a, r_b):
 
 
 def effective_inverse_mass(a, b, r_a, r_b, n):
-    """Return k [1/kg] of two BodyState3D.
+    """Return k_n [1/kg] of two BodyState3D.
 
-    k = 1/m_a + 1/m_b + n · [(I_a⁻¹ (r_a × n)) × r_a] + n · [(I_b⁻¹ (r_b × n)) × r_b]
+    k_n = 1/m_a + 1/m_b + n · [(I_a⁻¹ (r_a × n)) × r_a] + n · [(I_b⁻¹ (r_b × n)) × r_b]
 
     times(A, b) multiplies a matrix and a vector.
     *Source:* first lecture deck, “Computing impulse”.
@@ -266,13 +266,15 @@ def contact_matrix(r, inv_mass, inv_inertia):
     raise NotImplementedError("Exercise 7.9: contact_matrix")
 
 
-def cone_impulse(u, n, K, w, mu):
-    """Return J (3,) [N s] in the cone |J_t| ≤ μ J_n after which two contact points separate at w ≥ 0 [m/s], n · u⁺ = w.
+def cone_impulse(u, n, K, u_sep, mu):
+    """Return J (3,) [N s] in the cone |J_t| ≤ μ J_n after which two contact points separate at u_sep ≥ 0 [m/s].
 
-    n · u ≥ w:    J = 0: they already separate fast enough
-    otherwise, also where they separate too slowly, 0 < n · u < w:
-    stick:        J = K⁻¹ (w n − u), after which u⁺ = w n has no tangential part; if |J_t| ≤ μ J_n, this is J.
-    slide:        J = j d,   j = (w − n · u)/(n · K d)
+    n · u⁺ = u_sep, unless they separate faster before:
+
+    n · u ≥ u_sep:    J = 0: they already separate fast enough
+    otherwise, also where they separate too slowly, 0 < n · u < u_sep:
+    stick:        J = K⁻¹ (u_sep n − u), after which u⁺ = u_sep n has no tangential part; if |J_t| ≤ μ J_n, this is J.
+    slide:        J = j d,   j = (u_sep − n · u)/(n · K d)
                   d = n cos β + sin β J_t/|J_t|   is on the rim of the cone, tan β = μ, on the side of the stick's J,
                                                   with J_t = tangential(J, n) of that J
 
@@ -287,7 +289,7 @@ def cone_impulse(u, n, K, w, mu):
 
 
 def contact_impulse(u, n, K, e, mu):
-    """Given.  Return J (3,) [N s] of an impact with friction: cone_impulse with w = −e n · u;  0 if they separate."""
+    """Given.  Return J (3,) [N s] of an impact with friction: cone_impulse with u_sep = −e n · u; 0 if they part."""
     check_restitution(e)
     return np.zeros(3) if u @ n >= 0.0 else cone_impulse(u, n, K, -e * (u @ n), mu)
 
@@ -297,7 +299,7 @@ def energy_change(u, K, J):
 
     ΔE = J · u + ½ J · K J  =  J · (u + u⁺)/2
 
-    Without friction it is −½ (1 − e²) u_n²/k.  With a sticking J it is ½ (e² u_n² n · K⁻¹n − u · K⁻¹u), which can be
+    Without friction it is −½ (1 − e²) u_n²/k_n.  With a sticking J it is ½ (e² u_n² n · K⁻¹n − u · K⁻¹u), which can be
     positive: Newton's restitution concerns normal velocities only, but friction can convert tangential to
     normal motion.
     *Source:* ½ m v² and ½ ω · Iω before and after; Kane and Levinson 1985 for the gain.
@@ -308,12 +310,12 @@ def energy_change(u, K, J):
 
 # ---------------------------------------------------------------------------------------------- when
 
-def gap_multiplier(phi, u_n, k, dt):
+def gap_multiplier(phi, u_n, k_n, dt):
     """Return λ ≥ 0 [N s] of a contact in a step of dt after which the gap is not below zero; the impulse is J = λ ∇φ.
 
-    φ⁺ = φ + dt (u_n + k λ),       0 ≤ φ⁺  ⊥  λ ≥ 0:    either the gap stays open and λ = 0, or λ closes it exactly
+    φ⁺ = φ + dt (u_n + k_n λ),       0 ≤ φ⁺  ⊥  λ ≥ 0:    either the gap stays open and λ = 0, or λ closes it exactly
 
-    φ ≥ 0 [m] the present gap, u_n [m/s] its rate before λ, k [1/kg].
+    φ ≥ 0 [m] the present gap, u_n [m/s] its rate before λ, k_n [1/kg].
     Raises what check_inverse_mass raises, and check_positive("step dt [s]", dt).
     *Source:* second lecture deck, the gap function and its complementarity; Moreau 1988.
     """
@@ -644,7 +646,7 @@ def sequential_impacts(body, r, n, e, mu):
     ends of an edge leave at different speeds.
     """
     check_impacts(body, r, n, e, mu)
-    w = rebound_speeds(body, r, n, e)
+    u_sep = rebound_speeds(body, r, n, e)
     Js = np.zeros(r.shape)
     after = body
     for i in range(len(r)):
@@ -652,15 +654,15 @@ def sequential_impacts(body, r, n, e, mu):
         K = contact_matrix(r[i], body.inv_mass, body.inv_inertia)
         Js[i] = contact_impulse(u, n[i], K, e, mu)
         after = apply_impulse(after, r[i], Js[i])
-    return after, impact_residual(after, r, n, Js, w, mu)
+    return after, impact_residual(after, r, n, Js, u_sep, mu)
 
 
 def rebound_speeds(body, r, n, e):
-    """Given.  Return wᵢ = max(0, −e nᵢ · uᵢ) [m/s] (points,): Newton's restitution, from velocities before impact."""
-    w = np.zeros(len(r))
+    """Given.  Return u_sepᵢ = max(0, −e nᵢ · uᵢ) [m/s] (points,): Newton's restitution, from velocities before impact."""
+    u_sep = np.zeros(len(r))
     for i in range(len(r)):
-        w[i] = np.maximum(0.0, -e * (n[i] @ point_velocity(body.v, body.omega, r[i])))
-    return w
+        u_sep[i] = np.maximum(0.0, -e * (n[i] @ point_velocity(body.v, body.omega, r[i])))
+    return u_sep
 
 
 def largest_speed(body, r):
@@ -674,7 +676,7 @@ def largest_speed(body, r):
     return norm(body.v) + norm(body.omega) * reach
 
 
-def impact_residual(after, r, n, Js, w, mu):
+def impact_residual(after, r, n, Js, u_sep, mu):
     """Given.  Return the residual [m/s] of impulses Js (points, 3) in the law of cone_impulse; 0 where the law holds.
 
     It is the largest component of a velocity by which the law, applied to one point alone, would still change
@@ -684,7 +686,7 @@ def impact_residual(after, r, n, Js, w, mu):
     for i in range(len(r)):
         K = contact_matrix(r[i], after.inv_mass, after.inv_inertia)
         u = point_velocity(after.v, after.omega, r[i]) - times(K, Js[i])
-        J = cone_impulse(u, n[i], K, w[i], mu)
+        J = cone_impulse(u, n[i], K, u_sep[i], mu)
         worst = np.maximum(worst, np.abs(times(K, J - Js[i])).max())
     return worst
 
@@ -717,7 +719,7 @@ def most_dissipative_impact(body, r, n, e, mu):
     before = np.zeros((len(r), 3))
     for i in range(len(r)):
         before[i] = point_velocity(body.v, body.omega, r[i])
-    w = rebound_speeds(body, r, n, e)
+    u_sep = rebound_speeds(body, r, n, e)
     Js = np.zeros((len(r), 3))
     after, speed = body, largest_speed(body, r)
     for _ in range(MAX_SWEEPS):
@@ -745,16 +747,16 @@ def most_dissipative_impact(body, r, n, e, mu):
     for i in range(len(r)):
         Js[i] *= share
         after = apply_impulse(after, r[i], Js[i])
-    return after, impact_residual(after, r, n, Js, w, mu)
+    return after, impact_residual(after, r, n, Js, u_sep, mu)
 
 
 def solve_impacts(body, r, n, e, mu):
     """Return (Solid, residual [m/s]) after simultaneous impacts at several points with immovable bodies.
 
-    r (points, 3) are the offsets and n (points, 3) the normals.  wᵢ = rebound_speeds(body, r, n, e), from the
+    r (points, 3) are the offsets and n (points, 3) the normals.  u_sepᵢ = rebound_speeds(body, r, n, e), from the
     velocities before the impact, and  Jᵢ = 0.  Then sweep over all points:
         velocity without the point's own impulse:   u = v + ω × rᵢ − Kᵢ Jᵢ,    Kᵢ = contact_matrix(rᵢ, 1/m, I⁻¹)
-        new impulse of the point:                   J = cone_impulse(u, nᵢ, Kᵢ, wᵢ, μ)
+        new impulse of the point:                   J = cone_impulse(u, nᵢ, Kᵢ, u_sepᵢ, μ)
         push the body by J − Jᵢ at rᵢ;    Jᵢ ← J
     The residual of a sweep is the largest component of all changes of velocity Kᵢ (J − Jᵢ) of a point by its
     own impulse.  The sweeps end when the residual is at most CONVERGED times largest_speed(body, r).  If MAX_SWEEPS

@@ -68,18 +68,18 @@ def contact(draw):
 
 # ---------------------------------------------------------------------------------------------- response and penalty
 
-@exercise("7.1", points=0.5, hint="only the normal component changes: reverse it and multiply it by k")
+@exercise("7.1", points=0.5, hint="only the normal component changes: reverse it and multiply it by e")
 def test_a_response_turns_the_normal_velocity_and_keeps_the_rest(lesson, draw):
-    for d, k, slow in ((2, draw(0.1, 0.9), 1.0), (3, draw(0.1, 0.9), 1.0), (3, 0.0, 1.0), (2, 1.0, 1.0),
+    for d, e, slow in ((2, draw(0.1, 0.9), 1.0), (3, draw(0.1, 0.9), 1.0), (3, 0.0, 1.0), (2, 1.0, 1.0),
                        (3, draw(0.1, 0.9), 1e-6)):
         n = unit(draw, d)
         v = across(n, draw(-5.0, 5.0, d)) - slow * draw(0.5, 5.0) * n
-        got = np.asarray(lesson.kinematic_response(v, n, k))
-        close("velocity after the response [m/s]", got, across(n, v) - k * (v @ n) * n, ROUND_OFF,
-              given=f"v = {v} m/s, n = {n}, k = {k}")
-        got = np.asarray(lesson.kinematic_response(TINY * v, n, k))
-        close("velocity after the response, slow particle [m/s]", got, TINY * (across(n, v) - k * (v @ n) * n),
-              TINY * ROUND_OFF, given=f"v = {TINY * v} m/s, n = {n}, k = {k}")
+        got = np.asarray(lesson.kinematic_response(v, n, e))
+        close("velocity after the response [m/s]", got, across(n, v) - e * (v @ n) * n, ROUND_OFF,
+              given=f"v = {v} m/s, n = {n}, e = {e}")
+        got = np.asarray(lesson.kinematic_response(TINY * v, n, e))
+        close("velocity after the response, slow particle [m/s]", got, TINY * (across(n, v) - e * (v @ n) * n),
+              TINY * ROUND_OFF, given=f"v = {TINY * v} m/s, n = {n}, e = {e}")
 
 
 @exercise("7.1", points=0.5, hint="where v · n ≥ 0 the particle is already leaving: return v unchanged")
@@ -87,9 +87,9 @@ def test_a_response_does_not_change_a_leaving_velocity(lesson, draw):
     for d in (2, 3):
         n = unit(draw, d)
         v = across(n, draw(-5.0, 5.0, d)) + draw(0.1, 3.0) * n
-        k = draw(0.1, 0.9)
-        got = lesson.kinematic_response(v - 2.0 * (v @ n) * n, n, k)
-        close("velocity after the response, approaching particle [m/s]", got, across(n, v) + k * (v @ n) * n, ROUND_OFF)
+        e = draw(0.1, 0.9)
+        got = lesson.kinematic_response(v - 2.0 * (v @ n) * n, n, e)
+        close("velocity after the response, approaching particle [m/s]", got, across(n, v) + e * (v @ n) * n, ROUND_OFF)
         close("velocity of a leaving particle [m/s]", lesson.kinematic_response(v, n, draw(0.1, 0.9)), v, 0.0,
               given=f"v = {v} m/s, n = {n}")
 
@@ -149,7 +149,7 @@ def test_contact_points_move_as_their_bodies_carry_them(lesson, draw):
               (apart[0] - apart[1]) / (2.0 * h), 1e-8, given=f"a = {a}, b = {b}, r_a = {r_a}, r_b = {r_b}")
 
 
-@exercise("7.4", points=0.5, hint="j = −(1 + e) u_n/k, with k = 1/m_a + 1/m_b; and never a pull")
+@exercise("7.4", points=0.5, hint="j = −(1 + e) u_n/k_n, with k_n = 1/m_a + 1/m_b; and never a pull")
 def test_two_bodies_part_with_e_times_their_speed_and_keep_their_momentum(lesson, draw):
     for e, slow, heavy in ((draw(0.1, 0.9), 1.0, 1.0), (0.0, 1.0, 1.0), (1.0, 1.0, 1.0), (draw(0.1, 0.9), 1e-6, 1.0),
                            (draw(0.1, 0.9), TINY, 1.0), (draw(0.1, 0.9), 1.0, 1e20)):
@@ -166,7 +166,7 @@ def test_two_bodies_part_with_e_times_their_speed_and_keep_their_momentum(lesson
 def test_impossible_restitutions_and_two_immovable_bodies_are_refused(lesson, draw):
     e, k = draw(0.1, 0.9), draw(0.5, 2.0)
     close("impulse with a possible restitution [N s]", lesson.impulse_size(-1.0, k, e), (1.0 + e) / k, ROUND_OFF,
-          given=f"u_n = -1 m/s, k = {k} /kg, e = {e}")
+          given=f"u_n = -1 m/s, k_n = {k} /kg, e = {e}")
     for u_n in (-1.0, 1.0):                                              # approaching, separating
         for impossible in (-draw(0.1, 1.0), draw(1.1, 2.0), np.nan):
             raises(f"a restitution outside 0 to 1, with u_n = {u_n} m/s", BadInput,
@@ -187,7 +187,7 @@ def test_a_unit_impulse_drives_two_flat_bodies_apart_by_k(lesson, draw):
         for body, r in ((a, r_a), (b, r_b)):
             spin = body.inv_inertia * (r[0] * n[1] - r[1] * n[0])
             apart += n @ (body.inv_mass * n + spin * np.array([-r[1], r[0]]))
-        close("k [1/kg]", lesson.effective_inverse_mass_2d(a, b, r_a, r_b, n), apart, ROUND_OFF,
+        close("k_n [1/kg]", lesson.effective_inverse_mass_2d(a, b, r_a, r_b, n), apart, ROUND_OFF,
               given=f"a = {a}, b = {b}, r_a = {r_a}, r_b = {r_b}, n = {n}")
 
 
@@ -228,7 +228,7 @@ def test_a_unit_impulse_drives_two_solid_bodies_apart_by_k(lesson, draw):
     pairs = [(a, b) for a in restrained(solid(draw, lesson)) for b in restrained(solid(draw, lesson))]
     for a, b in pairs:
         expected = n @ (answer(r_a, a.inv_mass, a.inv_inertia, n) + answer(r_b, b.inv_mass, b.inv_inertia, n))
-        close("k [1/kg]", lesson.effective_inverse_mass(a, b, r_a, r_b, n), expected, ROUND_OFF,
+        close("k_n [1/kg]", lesson.effective_inverse_mass(a, b, r_a, r_b, n), expected, ROUND_OFF,
               given=f"a = {a}, b = {b}, r_a = {r_a}, r_b = {r_b}, n = {n}")
 
 
@@ -237,11 +237,11 @@ def test_a_unit_impulse_drives_two_solid_bodies_apart_by_k(lesson, draw):
 def test_bodies_hit_along_their_centres_only_have_their_masses(lesson, draw):
     a, b, n = solid(draw, lesson), solid(draw, lesson), unit(draw, 3)
     arms = draw(0.1, 1.0) * n, -draw(0.1, 1.0) * n
-    close("k of a central impact [1/kg]", lesson.effective_inverse_mass(a, b, *arms, n),
+    close("k_n of a central impact [1/kg]", lesson.effective_inverse_mass(a, b, *arms, n),
           a.inv_mass + b.inv_mass, ROUND_OFF,
           given=f"a = {a}, b = {b}, n = {n}")
     wall = lesson.BodyState3D(STILL, STILL, 0.0, np.zeros((3, 3)))
-    close("k against a wall [1/kg]", lesson.effective_inverse_mass(a, wall, arms[0], draw(-1.0, 1.0, 3), n),
+    close("k_n against a wall [1/kg]", lesson.effective_inverse_mass(a, wall, arms[0], draw(-1.0, 1.0, 3), n),
           a.inv_mass, ROUND_OFF, given=f"a = {a}, n = {n}")
 
 
@@ -287,50 +287,53 @@ def meeting(draw, n, slip, u_n):
 def hit_centrally(lesson, draw):
     """Check an ordinary contact first, because an answer that returns zeros or always raises passes the special cases.
 
-    With u = w n − K J, the impulse J = j n is the one that sticks.
+    With u = u_sep n − K J, the impulse J = j n is the one that sticks.
     """
     n, K = contact(draw)
-    J, w = draw(0.5, 2.0) * n, draw(0.1, 0.5)
-    got = lesson.cone_impulse(w * n - K @ J, n, K, w, draw(0.1, 1.0))
-    close("impulse of an ordinary contact [N s]", got, J, 1e-11, given=f"n = {n}, K = {K.tolist()}, w = {w} m/s")
+    J, u_sep = draw(0.5, 2.0) * n, draw(0.1, 0.5)
+    got = lesson.cone_impulse(u_sep * n - K @ J, n, K, u_sep, draw(0.1, 1.0))
+    close("impulse of an ordinary contact [N s]", got, J, 1e-11,
+          given=f"n = {n}, K = {K.tolist()}, u_sep = {u_sep} m/s")
 
 
-@exercise("7.10", points=0.25, hint="where n · u ≥ w there is nothing to do: J = 0")
+@exercise("7.10", points=0.25, hint="where n · u ≥ u_sep there is nothing to do: J = 0")
 def test_contacts_that_part_fast_enough_get_no_impulse(lesson, draw):
     hit_centrally(lesson, draw)
     n, K = contact(draw)
-    for u_n, w in ((draw(0.5, 2.0), 0.0), (draw(1.1, 2.0), draw(0.1, 1.0))):
-        got = lesson.cone_impulse(meeting(draw, n, draw(0.5, 3.0), u_n), n, K, w, draw(0.1, 1.0))
-        close("impulse on separating bodies [N s]", got, STILL, 0.0, given=f"n · u = {u_n} m/s, w = {w} m/s")
+    for u_n, u_sep in ((draw(0.5, 2.0), 0.0), (draw(1.1, 2.0), draw(0.1, 1.0))):
+        got = lesson.cone_impulse(meeting(draw, n, draw(0.5, 3.0), u_n), n, K, u_sep, draw(0.1, 1.0))
+        close("impulse on separating bodies [N s]", got, STILL, 0.0, given=f"n · u = {u_n} m/s, u_sep = {u_sep} m/s")
     _, K = contact(draw)
-    n = np.eye(3)[draw.whole(0, 2)]                                      # along an axis, n · u is exactly w
+    n = np.eye(3)[draw.whole(0, 2)]                                      # along an axis, n · u is exactly u_sep
     slip = across(n, draw(0.5, 3.0, 3))
     # in the direction in which a sticking impulse would push, not pull
     slip = slip if n @ np.linalg.solve(K, slip) < 0.0 else -slip
-    for w in (0.0, draw(0.1, 1.0)):
-        got = lesson.cone_impulse(slip + w * n, n, K, w, np.inf)
-        close("impulse on bodies that separate at w and slide [N s]", got, STILL, 0.0,
-              given=f"u = {slip + w * n} m/s, n = {n}, w = {w} m/s, μ = inf")
+    for u_sep in (0.0, draw(0.1, 1.0)):
+        got = lesson.cone_impulse(slip + u_sep * n, n, K, u_sep, np.inf)
+        close("impulse on bodies that separate at u_sep and slide [N s]", got, STILL, 0.0,
+              given=f"u = {slip + u_sep * n} m/s, n = {n}, u_sep = {u_sep} m/s, μ = inf")
 
 
-@exercise("7.10", points=0.25, hint="with enough friction the contact sticks: u + K J = w n, so J = K⁻¹ (w n − u)")
+@exercise("7.10", points=0.25,
+          hint="with enough friction the contact sticks: u + K J = u_sep n, so J = K⁻¹ (u_sep n − u)")
 def test_enough_friction_leaves_nothing_along_the_surface(lesson, draw):
-    for w, mu in ((draw(0.1, 2.0), np.inf), (0.0, 1e6)):
+    for u_sep, mu in ((draw(0.1, 2.0), np.inf), (0.0, 1e6)):
         n, K = contact(draw)
         u = meeting(draw, n, 0.05, -draw(2.0, 4.0))
-        stick = np.linalg.solve(K, w * n - u)
+        stick = np.linalg.solve(K, u_sep * n - u)
         # Only an unusual K makes sticking pull. Then no cone contains the impulse.
         if stick @ n <= 0.0:
             continue
         # The condition number of K is below 100 here, so K⁻¹ times a vector below 30 has an error below 1e-12.
-        close("relative velocity after sticking [m/s]", u + K @ lesson.cone_impulse(u, n, K, w, mu), w * n, 1e-11,
-              given=f"u = {u} m/s, n = {n}, K = {K.tolist()}, w = {w} m/s")
+        close("relative velocity after sticking [m/s]", u + K @ lesson.cone_impulse(u, n, K, u_sep, mu), u_sep * n,
+              1e-11,
+              given=f"u = {u} m/s, n = {n}, K = {K.tolist()}, u_sep = {u_sep} m/s")
 
 
 @exercise("7.10", points=0.5,
-          hint="slide: |J_t| = μ J_n, J_t in the direction of the sticking J_t, the size such that n · u⁺ = w")
+          hint="slide: |J_t| = μ J_n, J_t in the direction of the sticking J_t, the size such that n · u⁺ = u_sep")
 def test_too_little_friction_slides_on_the_rim_of_the_cone(lesson, draw):
-    for share, w, size, heavy in ((draw(0.1, 0.9), 0.0, 1.0, 1.0),
+    for share, u_sep, size, heavy in ((draw(0.1, 0.9), 0.0, 1.0, 1.0),
                                   (draw(0.1, 0.9), draw(0.1, 2.0), 1.0, 1.0),
                                   (0.0, draw(0.1, 1.0), 1.0, 1.0),
                                   (draw(0.1, 0.9), TINY * draw(0.1, 2.0), TINY, 1.0),
@@ -338,13 +341,13 @@ def test_too_little_friction_slides_on_the_rim_of_the_cone(lesson, draw):
         n, K = contact(draw)
         K = K / heavy
         u = size * meeting(draw, n, draw(1.0, 3.0), -draw(0.5, 2.0))
-        stick = np.linalg.solve(K, w * n - u)
+        stick = np.linalg.solve(K, u_sep * n - u)
         size_t = np.linalg.norm(across(n, stick))
         along = across(n, stick) / size_t
         mu = share * (size_t / (stick @ n) if stick @ n > 0.0 else 1.0)
-        J = np.asarray(lesson.cone_impulse(u, n, K, w, mu))
-        given = f"u = {u} m/s, n = {n}, K = {K.tolist()}, w = {w} m/s, μ = {mu}"
-        close("normal velocity after the impact [m/s]", n @ (u + K @ J), w, 1e-11 * size, given=given)
+        J = np.asarray(lesson.cone_impulse(u, n, K, u_sep, mu))
+        given = f"u = {u} m/s, n = {n}, K = {K.tolist()}, u_sep = {u_sep} m/s, μ = {mu}"
+        close("normal velocity after the impact [m/s]", n @ (u + K @ J), u_sep, 1e-11 * size, given=given)
         close("tangential impulse [N s]: μ J_n in the sticking direction", across(n, J), mu * (J @ n) * along,
               1e-10 * size * heavy, given=given)
 
@@ -358,33 +361,34 @@ def steep(draw, low, high):
 
 
 @exercise("7.10", points=0.25,
-          hint="compare |J_t|, not |J|, with μ J_n; where 0 < n · u < w the bodies separate too slowly: push")
+          hint="compare |J_t|, not |J|, with μ J_n; where 0 < n · u < u_sep the bodies separate too slowly: push")
 def test_a_wide_enough_cone_sticks_also_where_bodies_separate_too_slowly(lesson, draw):
-    """With u = w n − K J, the sticking impulse is J."""
+    """With u = u_sep n − K J, the sticking impulse is J."""
     for slow in (False, True):
         n, K = contact(draw)
         rho, t = draw(0.05, 0.2), across(n, unit(draw, 3))
         J = draw(0.5, 2.0) * (n + rho * t / np.linalg.norm(t))
-        w = n @ K @ J + draw(0.1, 0.5) if slow else draw(0.1, 0.5)
-        u = w * n - K @ J
-        got = lesson.cone_impulse(u, n, K, w, 1.3 * rho)
+        u_sep = n @ K @ J + draw(0.1, 0.5) if slow else draw(0.1, 0.5)
+        u = u_sep * n - K @ J
+        got = lesson.cone_impulse(u, n, K, u_sep, 1.3 * rho)
         close("impulse that sticks [N s]", got, J, 1e-11,
-              given=f"u = {u} m/s, n = {n}, K = {K.tolist()}, w = {w} m/s, μ = {1.3 * rho}")
+              given=f"u = {u} m/s, n = {n}, K = {K.tolist()}, u_sep = {u_sep} m/s, μ = {1.3 * rho}")
     # Without slip K still turns a normal impulse into slip, which friction holds as far as it can.
     _, K = contact(draw)
-    n, w = np.eye(3)[draw.whole(0, 2)], draw(0.1, 0.5)
-    stick = np.linalg.solve(K, (w + 1.0) * n)
+    n, u_sep = np.eye(3)[draw.whole(0, 2)], draw(0.1, 0.5)
+    stick = np.linalg.solve(K, (u_sep + 1.0) * n)
     ratio, less = np.linalg.norm(across(n, stick)) / (stick @ n), draw(0.3, 0.8)
-    given = f"u = {-n} m/s, n = {n}, K = {K.tolist()}, w = {w} m/s"
-    close("impulse that sticks, without slip before [N s]", lesson.cone_impulse(-n, n, K, w, 1.3 * ratio), stick, 1e-11,
-          given=f"{given}, μ = {1.3 * ratio}")
+    given = f"u = {-n} m/s, n = {n}, K = {K.tolist()}, u_sep = {u_sep} m/s"
+    close("impulse that sticks, without slip before [N s]", lesson.cone_impulse(-n, n, K, u_sep, 1.3 * ratio), stick,
+          1e-11, given=f"{given}, μ = {1.3 * ratio}")
     rim = n + less * across(n, stick) / (stick @ n)
-    close("impulse that slides, without slip before [N s]", lesson.cone_impulse(-n, n, K, w, less * ratio),
-          (w + 1.0) / (n @ K @ rim) * rim, 1e-11, given=f"{given}, μ = {less * ratio}")
+    close("impulse that slides, without slip before [N s]", lesson.cone_impulse(-n, n, K, u_sep, less * ratio),
+          (u_sep + 1.0) / (n @ K @ rim) * rim, 1e-11, given=f"{given}, μ = {less * ratio}")
     # Exactly along n there is nothing to hold, and a friction of 0 is enough.
-    n, k, w = np.eye(3)[draw.whole(0, 2)], draw(0.5, 2.0), draw(0.1, 0.5)
-    close("impulse of a central impact without friction [N s]", lesson.cone_impulse(-n, n, k * np.eye(3), w, 0.0),
-          (w + 1.0) / k * n, ROUND_OFF, given=f"u = {-n} m/s, n = {n}, K = {k} on its diagonal, w = {w} m/s, μ = 0")
+    n, k, u_sep = np.eye(3)[draw.whole(0, 2)], draw(0.5, 2.0), draw(0.1, 0.5)
+    close("impulse of a central impact without friction [N s]", lesson.cone_impulse(-n, n, k * np.eye(3), u_sep, 0.0),
+          (u_sep + 1.0) / k * n, ROUND_OFF,
+          given=f"u = {-n} m/s, n = {n}, K = {k} on its diagonal, u_sep = {u_sep} m/s, μ = 0")
 
 
 @exercise("7.10", points=0.25, hint="a large μ is not an infinite one: compare |J_t| with μ J_n, and slide with that μ")
@@ -392,15 +396,15 @@ def test_much_friction_sticks_or_slides_as_little_friction_does(lesson, draw):
     """K has a condition number below 100, and impulses below 1e3."""
     for low, high in ((3.0, 10.0), (20.0, 50.0), (100.0, 200.0)):
         n, K, J, ratio = steep(draw, low, high)
-        w = draw(0.1, 0.5)
-        u = w * n - K @ J
-        given = f"u = {u} m/s, n = {n}, K = {K.tolist()}, w = {w} m/s"
-        close("impulse that sticks [N s]", lesson.cone_impulse(u, n, K, w, 1.1 * ratio), J, 1e-9,
+        u_sep = draw(0.1, 0.5)
+        u = u_sep * n - K @ J
+        given = f"u = {u} m/s, n = {n}, K = {K.tolist()}, u_sep = {u_sep} m/s"
+        close("impulse that sticks [N s]", lesson.cone_impulse(u, n, K, u_sep, 1.1 * ratio), J, 1e-9,
               given=f"{given}, μ = {1.1 * ratio}")
         mu = draw(0.7, 0.9) * ratio
         along = n + mu / ratio * (J / (J @ n) - n)
-        close("impulse that slides [N s]", lesson.cone_impulse(u, n, K, w, mu), (w - u @ n) / (n @ K @ along) * along,
-              1e-8, given=f"{given}, μ = {mu}")
+        close("impulse that slides [N s]", lesson.cone_impulse(u, n, K, u_sep, mu),
+              (u_sep - u @ n) / (n @ K @ along) * along, 1e-8, given=f"{given}, μ = {mu}")
 
 
 @exercise("7.10", points=0.5,
@@ -408,12 +412,12 @@ def test_much_friction_sticks_or_slides_as_little_friction_does(lesson, draw):
 def test_a_contact_slides_where_sticking_would_have_to_pull(lesson, draw):
     n, K = contact(draw)
     side = across(n, K @ n) / np.linalg.norm(across(n, K @ n))
-    J, w = side - 0.5 * (n @ K @ side) / (n @ K @ n) * n, draw(0.1, 0.5)
-    u = w * n - K @ J
+    J, u_sep = side - 0.5 * (n @ K @ side) / (n @ K @ n) * n, draw(0.1, 0.5)
+    u = u_sep * n - K @ J
     for mu in (draw(0.3, 1.0), 5.0, np.inf):
-        got = np.asarray(lesson.cone_impulse(u, n, K, w, mu))
-        given = f"u = {u} m/s, n = {n}, K = {K.tolist()}, w = {w} m/s, μ = {mu}"
-        close("normal velocity after the impact [m/s]", n @ (u + K @ got), w, 1e-10, given=given)
+        got = np.asarray(lesson.cone_impulse(u, n, K, u_sep, mu))
+        given = f"u = {u} m/s, n = {n}, K = {K.tolist()}, u_sep = {u_sep} m/s, μ = {mu}"
+        close("normal velocity after the impact [m/s]", n @ (u + K @ got), u_sep, 1e-10, given=given)
         between("normal impulse [N s]: never a pull", got @ n, -ROUND_OFF, 1e3, given=given)
         beta = np.arctan(mu)
         close("impulse perpendicular to the rim of the cone [N s]: none",
@@ -464,7 +468,7 @@ def test_the_energy_of_an_impact_is_what_both_bodies_gain(lesson, draw):
 
 # ---------------------------------------------------------------------------------------------- when
 
-@exercise("7.12", points=1, hint="either φ + dt u_n stays positive and λ = 0, or λ makes φ + dt (u_n + k λ) zero")
+@exercise("7.12", points=1, hint="either φ + dt u_n stays positive and λ = 0, or λ makes φ + dt (u_n + k_n λ) zero")
 def test_gap_and_multiplier_are_never_below_zero_and_one_of_them_is_zero(lesson, draw):
     # closes: distance travelled in this step as a fraction of the gap
     cases = ((draw(1.1, 5.0), 1.0), (draw(1.1, 5.0), TINY), (draw(0.1, 0.9), 1.0), (0.0, 1.0), (-draw(0.5, 2.0), 1.0))
@@ -472,7 +476,7 @@ def test_gap_and_multiplier_are_never_below_zero_and_one_of_them_is_zero(lesson,
         phi, k, dt = size * draw(0.01, 0.5), draw(0.3, 3.0), draw(0.01, 0.1)
         u_n = -closes * phi / dt
         lam = float(lesson.gap_multiplier(phi, u_n, k, dt))
-        given = f"φ = {phi} m, u_n = {u_n} m/s, k = {k} 1/kg, dt = {dt} s"
+        given = f"φ = {phi} m, u_n = {u_n} m/s, k_n = {k} 1/kg, dt = {dt} s"
         after = phi + dt * (u_n + k * lam)
         between("multiplier [N s]", lam, 0.0, 1e4, given=given)
         between("gap at the end of the step [m]", after, -ROUND_OFF * size, 1e4, given=given)
@@ -889,7 +893,7 @@ def falling_box(draw, lesson, points):
 
 
 @exercise("7.17", points=0.25,
-          hint="w comes from the velocities before the impact; at each point take back its old impulse "
+          hint="u_sep comes from the velocities before the impact; at each point take back its old impulse "
                "before computing the new one; sweep until nothing changes")
 def test_a_box_that_lands_on_a_corner_an_edge_or_a_face_leaves_as_all_its_points_demand(lesson, draw):
     """Sweeps stop at changes of 1e-14 of 3 m/s. The remaining error is some hundred times that. ω is v over 0.1 m."""
@@ -1031,7 +1035,7 @@ def close_pair(draw, lesson, m, height):
           hint="at most MAX_SWEEPS sweeps; the residual is the largest |component| of Kᵢ (J − Jᵢ) of all "
                "points; compare it with CONVERGED largest_speed(body, r)")
 def test_points_close_together_take_many_sweeps_whatever_the_body_weighs_and_however_it_moves(lesson, draw):
-    """Two points stick: u⁺ = w n at both.
+    """Two points stick: u⁺ = u_sep n at both.
 
     The light body also has a first and a last point that leave by themselves and change nothing. The second body rolls,
     so that u is small. The third resists a turn about n only, so that its normal velocities settle at once and its
@@ -1062,7 +1066,7 @@ def test_points_close_together_take_many_sweeps_whatever_the_body_weighs_and_how
 
 
 def least_change(body, r, n, e):
-    """(v⁺, ω⁺) without friction: every point leaves with at least wᵢ, and the change has the least kinetic energy.
+    """(v⁺, ω⁺) without friction: every point leaves with at least u_sepᵢ, and the change has the least kinetic energy.
 
     The change is M^½ y, where |y| is the least of all y with A y ≥ h. Non-negative least squares finds it: Lawson and
     Hanson 1974, chapter 23.
@@ -1103,7 +1107,7 @@ def tumbling(draw, lesson):
 
 
 @exercise("7.17", points=0.25,
-          hint="each point has its own normal and its own wᵢ ≥ 0; a point that leaves must leave at least with wᵢ")
+          hint="each point has its own normal and its own u_sepᵢ ≥ 0; what leaves must leave at least with u_sepᵢ")
 def test_without_friction_a_tumbling_body_changes_no_more_than_all_its_points_demand(lesson, draw):
     """Sweeps stop at changes of 1e-14 of 10 m/s. The error may be a hundred times that. ω is v over 0.1 m."""
     for body, r, n in tumbling(draw, lesson):

@@ -14,27 +14,27 @@ tangential = worked.tangential
 
 # 7.1 ------------------------------------------------------------------------------------------------------------
 @variants
-def response(bounce=lambda k: 1.0 + k, leaves=True, all_of_v=False, sign=-1.0):
-    def kinematic_response(v, n, k):
+def response(bounce=lambda e: 1.0 + e, leaves=True, all_of_v=False, sign=-1.0):
+    def kinematic_response(v, n, e):
         v_n = v @ n
         if leaves and v_n >= 0.0:
             return v
-        return -k * v if all_of_v else v + sign * bounce(k) * v_n * n
+        return -e * v if all_of_v else v + sign * bounce(e) * v_n * n
     return kinematic_response
 
 
 @right("7.1", "by parts")
-def kinematic_response(v, n, k):
+def kinematic_response(v, n, e):
     along, normal = v - np.dot(v, n) * n, np.dot(v, n) * n
-    return along - k * normal if np.dot(v, n) < 0.0 else np.array(v)
+    return along - e * normal if np.dot(v, n) < 0.0 else np.array(v)
 
 
-wrong("7.1", "k for 1 + k")(response(bounce=lambda k: k))
-wrong("7.1", "1 − k")(response(bounce=lambda k: 1.0 - k))
+wrong("7.1", "e for 1 + e")(response(bounce=lambda e: e))
+wrong("7.1", "1 − e")(response(bounce=lambda e: 1.0 - e))
 wrong("7.1", "pulls at a leaving body")(response(leaves=False))
 wrong("7.1", "reverses all of v")(response(all_of_v=True))
 wrong("7.1", "pulls in")(response(sign=1.0))
-edit("7.1", "changes its input", "v - (1.0 + k) * v_n * n", "np.subtract(v, (1.0 + k) * v_n * n, out=v)")
+edit("7.1", "changes its input", "v - (1.0 + e) * v_n * n", "np.subtract(v, (1.0 + e) * v_n * n, out=v)")
 edit("7.1", "ignores slow approach", "v_n >= 0.0", "v_n >= -1e-3")
 edit("7.1", "ignores ten nanometres per second", "v_n >= 0.0", "v_n >= -1e-8")
 
@@ -92,33 +92,33 @@ edit("7.3", "a wall is at rest", "- b.v", "- (b.v if b.inv_mass else 0.0)")
 
 # 7.4 ------------------------------------------------------------------------------------------------------------
 @variants
-def size(bounce=lambda e: 1.0 + e, over=lambda k: 1.0 / k, leaves=True,
+def size(bounce=lambda e: 1.0 + e, over=lambda k_n: 1.0 / k_n, leaves=True,
          checks=(worked.check_restitution, worked.check_inverse_mass)):
-    def impulse_size(u_n, k, e):
+    def impulse_size(u_n, k_n, e):
         for check in checks:
-            check(e if check is worked.check_restitution else k)
-        return 0.0 if leaves and u_n >= 0.0 else -bounce(e) * u_n * over(k)
+            check(e if check is worked.check_restitution else k_n)
+        return 0.0 if leaves and u_n >= 0.0 else -bounce(e) * u_n * over(k_n)
     return impulse_size
 
 
 right("7.4", "the checks in a loop")(size())
 wrong("7.4", "no restitution")(size(bounce=lambda e: 1.0))
 wrong("7.4", "1 − e")(size(bounce=lambda e: 1.0 - e))
-wrong("7.4", "times k")(size(over=lambda k: k))
+wrong("7.4", "times k_n")(size(over=lambda k_n: k_n))
 wrong("7.4", "pulls at separating bodies")(size(leaves=False))
 wrong("7.4", "accepts any restitution")(size(checks=(worked.check_inverse_mass,)))
-edit("7.4", "accepts two immovable bodies", "check_inverse_mass(k)", "pass")
+edit("7.4", "accepts two immovable bodies", "check_inverse_mass(k_n)", "pass")
 edit("7.4", "ignores slow approach", "u_n >= 0.0", "u_n >= -1e-3")
 edit("7.4", "accepts any restitution for separating bodies", "check_restitution(e)",
      "if u_n >= 0.0:\n        return 0.0\n    check_restitution(e)")
 edit("7.4", "accepts two immovable bodies that separate",
-     "check_inverse_mass(k)", "if u_n < 0.0:\n        check_inverse_mass(k)")
+     "check_inverse_mass(k_n)", "if u_n < 0.0:\n        check_inverse_mass(k_n)")
 edit("7.4", "ignores ten nanometres per second", "u_n >= 0.0", "u_n >= -1e-8")
 edit("7.4", "slow bodies do not rebound", "(1.0 + e) * u_n", "(1.0 + e * (u_n < -1e-7)) * u_n")
-edit("7.4", "refuses heavy bodies", "check_inverse_mass(k)", "check_inverse_mass(k if k > 1e-3 else 0.0)")
-edit("7.4", "accepts a negative inverse mass", "check_inverse_mass(k)", "check_inverse_mass(abs(k))")
-edit("7.4", "accepts any inverse mass that is not zero or below", "check_inverse_mass(k)",
-     "if k <= 0.0:\n        check_inverse_mass(k)")
+edit("7.4", "refuses heavy bodies", "check_inverse_mass(k_n)", "check_inverse_mass(k_n if k_n > 1e-3 else 0.0)")
+edit("7.4", "accepts a negative inverse mass", "check_inverse_mass(k_n)", "check_inverse_mass(abs(k_n))")
+edit("7.4", "accepts any inverse mass that is not zero or below", "check_inverse_mass(k_n)",
+     "if k_n <= 0.0:\n        check_inverse_mass(k_n)")
 
 
 # 7.5 and 7.7 ----------------------------------------------------------------------------------------------------
@@ -232,14 +232,14 @@ edit("7.9", "nothing at the centre of mass", "K = np.zeros((3, 3))",
 
 # 7.10 -----------------------------------------------------------------------------------------------------------
 @variants
-def cone(check=True, parts=True, enough=lambda w: w, goal=lambda w: w, rim=lambda mu: mu,
+def cone(check=True, parts=True, enough=lambda u_sep: u_sep, goal=lambda u_sep: u_sep, rim=lambda mu: mu,
          side="stick", clamp="rim", sticks=lambda J_t, J_n, mu: J_t <= mu * J_n):
-    def cone_impulse(u, n, K, w, mu):
+    def cone_impulse(u, n, K, u_sep, mu):
         if check:
             worked.check_contact(u, n, K, mu)
-        if parts and u @ n >= enough(w):
+        if parts and u @ n >= enough(u_sep):
             return np.zeros(3)
-        J = np.linalg.solve(K, goal(w) * n - u)
+        J = np.linalg.solve(K, goal(u_sep) * n - u)
         J_t = tangential(J, n)
         length = np.linalg.norm(J_t)
         if sticks(length, J @ n, mu):
@@ -249,14 +249,14 @@ def cone(check=True, parts=True, enough=lambda w: w, goal=lambda w: w, rim=lambd
         slip = tangential(u, n)
         t = J_t / length if side == "stick" else -slip / max(np.linalg.norm(slip), 1e-300)
         d = n + rim(mu) * t if mu < 1e9 else t
-        return (goal(w) - u @ n) / (n @ K @ d) * d
+        return (goal(u_sep) - u @ n) / (n @ K @ d) * d
     return cone_impulse
 
 
 right("7.10", "by NumPy's solver")(cone())
 wrong("7.10", "checks nothing")(cone(check=False))
 wrong("7.10", "pulls at separating bodies")(cone(parts=False))
-wrong("7.10", "never rebounds")(cone(goal=lambda w: 0.0))
+wrong("7.10", "never rebounds")(cone(goal=lambda u_sep: 0.0))
 wrong("7.10", "never sticks")(cone(sticks=lambda J_t, J_n, mu: False))
 wrong("7.10", "always sticks")(cone(sticks=lambda J_t, J_n, mu: True))
 wrong("7.10", "against the slip before the impact")(cone(side="slip"))
@@ -264,11 +264,12 @@ wrong("7.10", "keeps the stick's normal impulse")(cone(clamp="cut"))
 wrong("7.10", "pulls where sticking would have to")(cone(sticks=lambda J_t, J_n, mu: J_t <= mu * abs(J_n)))
 wrong("7.10", "compares all of the impulse with the cone")(
     cone(sticks=lambda J_t, J_n, mu: np.hypot(J_t, J_n) <= mu * J_n))
-wrong("7.10", "ignores bodies that separate too slowly")(cone(enough=lambda w: 0.0))
+wrong("7.10", "ignores bodies that separate too slowly")(cone(enough=lambda u_sep: 0.0))
 wrong("7.10", "half the friction")(cone(rim=lambda mu: 0.5 * mu))
-edit("7.10", "sticks as if K were a number", "solve3(K[0], K[1], K[2], w * n - u)", "(w * n - u) / (n @ times(K, n))")
-edit("7.10", "pushes bodies that separate exactly at w", "u @ n >= w", "u @ n > w")
-edit("7.10", "tolerates a nanometre per second below w", "u @ n >= w", "u @ n >= w - 1e-9")
+edit("7.10", "sticks as if K were a number", "solve3(K[0], K[1], K[2], u_sep * n - u)",
+     "(u_sep * n - u) / (n @ times(K, n))")
+edit("7.10", "pushes bodies that separate exactly at u_sep", "u @ n >= u_sep", "u @ n > u_sep")
+edit("7.10", "tolerates a nanometre per second below u_sep", "u @ n >= u_sep", "u @ n >= u_sep - 1e-9")
 edit("7.10", "a small impulse has no direction", "np.sin(beta) / size", "(np.sin(beta) / size if size > 1e-9 else 0.0)")
 edit("7.10", "a friction above 10 is infinite", "np.arctan(mu)", "np.arctan(mu if mu < 10.0 else np.inf)")
 edit("7.10", "a friction of 10 at most", "np.arctan(mu)", "np.arctan(mu if mu > 1e5 else min(mu, 10.0))")
@@ -283,7 +284,8 @@ edit("7.10", "accepts an infinite velocity", "check_contact(u, n, K, mu)",
 edit("7.10", "accepts a K without an inverse", "check_contact(u, n, K, mu)",
      "check_contact(u, n, K + (n @ K @ n > 0.0) * np.eye(3), mu)")
 edit("7.10", "no friction without slip", "J_t = tangential(J, n)",
-     "J_t = tangential(J, n)\n    if not tangential(u, n).any():\n        return (w - u @ n) / (n @ times(K, n)) * n")
+     "J_t = tangential(J, n)\n"
+     "    if not tangential(u, n).any():\n        return (u_sep - u @ n) / (n @ times(K, n)) * n")
 
 
 # 7.11 -----------------------------------------------------------------------------------------------------------
@@ -310,27 +312,27 @@ edit("7.11", "what comes in is always lost", "J @ u +", "-abs(J @ u) +")
 
 # 7.12 -----------------------------------------------------------------------------------------------------------
 @variants
-def multiplier(gap=1.0, clamp=True, over=lambda k: 1.0 / k, check=True):
-    def gap_multiplier(phi, u_n, k, dt):
+def multiplier(gap=1.0, clamp=True, over=lambda k_n: 1.0 / k_n, check=True):
+    def gap_multiplier(phi, u_n, k_n, dt):
         if check:
-            worked.check_inverse_mass(k)
+            worked.check_inverse_mass(k_n)
         check_positive("step dt [s]", dt)
-        lam = -(gap * phi / dt + u_n) * over(k) if k else np.inf
+        lam = -(gap * phi / dt + u_n) * over(k_n) if k_n else np.inf
         return max(0.0, lam) if clamp else lam
     return gap_multiplier
 
 
 @right("7.12", "tests first whether the gap stays open")
-def gap_multiplier(phi, u_n, k, dt):
-    worked.check_inverse_mass(k)
+def gap_multiplier(phi, u_n, k_n, dt):
+    worked.check_inverse_mass(k_n)
     check_positive("step dt [s]", dt)
     free = phi + dt * u_n
-    return 0.0 if free >= 0.0 else -free / (dt * k)
+    return 0.0 if free >= 0.0 else -free / (dt * k_n)
 
 
 wrong("7.12", "does not ask how wide the gap is")(multiplier(gap=0.0))
 wrong("7.12", "pulls open gaps together")(multiplier(clamp=False))
-wrong("7.12", "times k")(multiplier(over=lambda k: k))
+wrong("7.12", "times k_n")(multiplier(over=lambda k_n: k_n))
 wrong("7.12", "accepts two immovable bodies")(multiplier(check=False))
 edit("7.12", "accepts a step of zero", 'check_positive("step dt [s]", dt)', "dt = dt or 1.0")
 edit("7.12", "accepts a negative step", 'check_positive("step dt [s]", dt)', 'check_positive("step dt [s]", abs(dt))')
@@ -338,18 +340,18 @@ edit("7.12", "accepts a step that is not a number", 'check_positive("step dt [s]
      'check_positive("step dt [s]", 1.0 if dt != dt else dt)')
 edit("7.12", "accepts any step if the gap opens", 'check_positive("step dt [s]", dt)',
      'if u_n >= 0.0:\n        return 0.0\n    check_positive("step dt [s]", dt)')
-edit("7.12", "accepts two immovable bodies that do not meet", "check_inverse_mass(k)",
-     "if phi + dt * u_n > 0.0:\n        return 0.0\n    check_inverse_mass(k)")
-edit("7.12", "closes by less than a nanometre", "-(phi / dt + u_n) / k)",
-     "-(phi / dt + u_n) / k if phi + dt * u_n <= -1e-9 else 0.0)")
-edit("7.12", "waits until the gap is closed", "np.maximum(0.0, -(phi / dt + u_n) / k)",
-     "max(0.0, -u_n / k) if phi <= 0.0 else 0.0")
-edit("7.12", "accepts a negative inverse mass", "check_inverse_mass(k)", "check_inverse_mass(abs(k))")
-edit("7.12", "accepts any inverse mass that is not zero or below", "check_inverse_mass(k)",
-     "if k <= 0.0:\n        check_inverse_mass(k)")
+edit("7.12", "accepts two immovable bodies that do not meet", "check_inverse_mass(k_n)",
+     "if phi + dt * u_n > 0.0:\n        return 0.0\n    check_inverse_mass(k_n)")
+edit("7.12", "closes by less than a nanometre", "-(phi / dt + u_n) / k_n)",
+     "-(phi / dt + u_n) / k_n if phi + dt * u_n <= -1e-9 else 0.0)")
+edit("7.12", "waits until the gap is closed", "np.maximum(0.0, -(phi / dt + u_n) / k_n)",
+     "max(0.0, -u_n / k_n) if phi <= 0.0 else 0.0")
+edit("7.12", "accepts a negative inverse mass", "check_inverse_mass(k_n)", "check_inverse_mass(abs(k_n))")
+edit("7.12", "accepts any inverse mass that is not zero or below", "check_inverse_mass(k_n)",
+     "if k_n <= 0.0:\n        check_inverse_mass(k_n)")
 edit("7.12", "accepts an infinite step", 'check_positive("step dt [s]", dt)',
      'check_positive("step dt [s]", 1.0 if dt == np.inf else dt)')
-edit("7.12", "pulls a closed gap together", "return np.maximum(", "return -u_n / k if phi == 0.0 else np.maximum(")
+edit("7.12", "pulls a closed gap together", "return np.maximum(", "return -u_n / k_n if phi == 0.0 else np.maximum(")
 
 
 # 7.13 -----------------------------------------------------------------------------------------------------------
@@ -574,13 +576,13 @@ def sweeping(sweeps=3000, before=True, takes_back=True, friction=lambda mu: mu, 
         start, speed = body, worked.largest_speed(body, r)
         velocity = lambda body, i: point_velocity(body.v, body.omega, r[i])
         Ks = [worked.contact_matrix(arm, body.inv_mass, body.inv_inertia) for arm in r]
-        w = [max(0.0, -rebound(e) * (n[i] @ velocity(body, i))) for i in range(len(r))]
+        u_sep = [max(0.0, -rebound(e) * (n[i] @ velocity(body, i))) for i in range(len(r))]
         Js = np.zeros((len(r), 3))
         for _ in range(sweeps):
             worst = 0.0
             for i, K in enumerate(Ks):
                 u = velocity(body, i)
-                goal = w[i] if before else max(0.0, -e * (n[i] @ u))
+                goal = u_sep[i] if before else max(0.0, -e * (n[i] @ u))
                 J = worked.cone_impulse(u - (K @ Js[i] if takes_back else 0.0), n[i], K, goal, friction(mu))
                 change = J - Js[i] if takes_back else J
                 body, Js[i], worst = push(body, r[i], change), Js[i] + change, max(worst, np.abs(K @ change).max())
@@ -601,14 +603,15 @@ wrong("7.17", "does not rotate")(sweeping(push=lambda body, r, J: body._replace(
 wrong("7.17", "accepts any restitution")(sweeping(check=lambda *_: None))
 wrong("7.17", "returns a residual of zero")(sweeping(report=lambda residual: 0.0))
 edit("7.17", "one after the other", "check_impacts(body, r, n, e, mu)", "return sequential_impacts(body, r, n, e, mu)")
-edit("7.17", "all points leave alike", "cone_impulse(u, n[i], K, w[i], mu)", "cone_impulse(u, n[i], K, w.max(), mu)")
-edit("7.17", "none rebounds", "cone_impulse(u, n[i], K, w[i], mu)", "cone_impulse(u, n[i], K, 0.0, mu)")
+edit("7.17", "all points leave alike", "cone_impulse(u, n[i], K, u_sep[i], mu)",
+     "cone_impulse(u, n[i], K, u_sep.max(), mu)")
+edit("7.17", "none rebounds", "cone_impulse(u, n[i], K, u_sep[i], mu)", "cone_impulse(u, n[i], K, 0.0, mu)")
 edit("7.17", "one normal for all points", "cone_impulse(u, n[i]", "cone_impulse(u, n[0]")
 edit("7.17", "rebounds with the speed of the centre", "point_velocity(after.v, after.omega, r[i])", "after.v")
 edit("7.17", "settled at an absolute 1e-11 m/s", "CONVERGED * speed", "1e-11")
 edit("7.17", "the body before the impact, if the sweeps do not settle",
      "most_dissipative_impact(body, r, n, e, mu)", "(body, residual)")
-edit("7.17", "friction of 1 at most", "w[i], mu)", "w[i], min(mu, 1.0))")
+edit("7.17", "friction of 1 at most", "u_sep[i], mu)", "u_sep[i], min(mu, 1.0))")
 edit("7.17", "the result of the last sweep, if the sweeps do not settle",
      "return most_dissipative_impact(body, r, n, e, mu)", "return after, residual")
 edit("7.17", "without friction, if the sweeps do not settle", "most_dissipative_impact(body, r, n, e, mu)",
@@ -623,9 +626,9 @@ edit("7.17", "no change if it is against the axes", "np.abs(times(K, J - Js[i]))
 edit("7.17", "the residual of the last point", "residual = max(residual, ", "residual = max(0.0, ")
 edit("7.17", "the residual of the first point", "residual = max(residual, ", "residual = max(residual, (i == 0) * ")
 edit("7.17", "checks the restitution only", "check_impacts(body, r, n, e, mu)", "check_restitution(e)")
-edit("7.17", "four fifths of the friction", "w[i], mu)", "w[i], 0.8 * mu)")
-edit("7.17", "more than two points share one friction", "w[i], mu)", "w[i], mu if len(r) < 3 else mu / len(r))")
-edit("7.17", "friction of 2 at most", "w[i], mu)", "w[i], min(mu, 2.0))")
+edit("7.17", "four fifths of the friction", "u_sep[i], mu)", "u_sep[i], 0.8 * mu)")
+edit("7.17", "more than two points share one friction", "u_sep[i], mu)", "u_sep[i], mu if len(r) < 3 else mu / len(r))")
+edit("7.17", "friction of 2 at most", "u_sep[i], mu)", "u_sep[i], min(mu, 2.0))")
 edit("7.17", "sticks as a ball would", "contact_matrix(r[i], body.inv_mass, body.inv_inertia)",
      "contact_matrix(r[i], body.inv_mass, np.trace(body.inv_inertia) / 3.0 * np.eye(3))")
 edit("7.17", "asks for the normal changes only", "np.abs(times(K, J - Js[i])).max()", "abs(n[i] @ times(K, J - Js[i]))")
