@@ -728,7 +728,7 @@ def sequential_impacts(body, r, n, e, mu):
 
 
 def rebound_speeds(body, r, n, e):
-    """Given.  Return u_sepᵢ = max(0, −e nᵢ · uᵢ) [m/s] (points,): Newton's restitution, from velocities before impact."""
+    """Given.  Return u_sepᵢ = max(0, −e nᵢ · uᵢ) [m/s] (points,): Newton's restitution, before the impact."""
     u_sep = np.zeros(len(r))
     for i in range(len(r)):
         u_sep[i] = np.maximum(0.0, -e * (n[i] @ point_velocity(body.v, body.omega, r[i])))
