@@ -17,29 +17,25 @@ from typing import NamedTuple
 import numpy as np
 
 from .checks import (
-    BadInput,
     Diverged,
-    check_array,
-    check_end,
-    check_field,
-    check_finite,
-    check_friction,
-    check_normal,
-    check_not_negative,
     check_positive,
     check_restitution,
-    check_shape,
-    checked_run,
-    finite_array,
-    finite_number,
     float_copy,
-    number,
-    positive_number,
 )
 from .friction import tangential
 from .integrators import symplectic_euler_step
 from .rotation import point_velocity, solve3
-from .vectors import cross, dot, norm
+from .support.bouncing_loops import advance_balls, advance_spinning_balls
+from .support.discs import advance_discs, drift, meeting_time, normal_between, overlap, separated
+from .support.impacts import (
+    check_contact,
+    check_impacts,
+    check_inverse_mass,
+    largest_speed,
+    project_onto_cone,
+    times,
+)
+from .vectors import cross
 
 __all__ = [
     "CONVERGED", "MAX_IMPACTS", "MAX_SWEEPS", "BodyState2D", "BodyState3D", "BouncingBall", "Discs",
@@ -57,7 +53,6 @@ __all__ = [
 
 MAX_IMPACTS = 10_000         # per step [-]; with e = 0.8, 165 impacts bring the next below the spacing of floats
 MAX_SWEEPS = 2000            # over contact points [-]; four under a box need about 100, close ones more than 1000
-MIN_DETERMINANT = 1e-40      # det K over (tr K)³ below which K has no inverse [-]: products in it underflow
 CONVERGED = 1e-14            # largest change in a sweep over the largest initial |v| + |ω||r| [-]: a hundred roundings
 
 
@@ -107,28 +102,6 @@ class Discs(NamedTuple):
 
 
 # ---------------------------------------------------------------------------------------------- checks
-
-def check_inverse_mass(k_n):
-    """Given.  Raise BadInput unless k_n [1/kg] is above zero and finite: two immovable bodies have k_n = 0."""
-    if not (k_n > 0.0 and np.isfinite(k_n)):
-        raise BadInput("inverse mass of two bodies at their contact [1/kg]", k_n, "let one of them have a finite mass")
-
-
-def check_contact(u, n, K, mu):
-    """Given.  Raise BadInput unless n is a unit vector, μ ≥ 0, u finite, and K positive along n and not singular."""
-    check_normal(n)
-    check_friction(mu)
-    check_finite("relative velocity u [m/s]", u)
-    check_inverse_mass(n @ times(K, n))
-    determinant = K[0] @ cross(K[1], K[2])
-    if not determinant > MIN_DETERMINANT * (K[0, 0] + K[1, 1] + K[2, 2]) ** 3:
-        raise BadInput("determinant of K [1/kg³]", determinant, "give a K that gives way in every direction")
-
-
-def times(A, b):
-    """Given.  Return A b of a matrix (3, 3) and a vector (3,); it compiles much faster than A @ b."""
-    return np.array([dot(A[0], b), dot(A[1], b), dot(A[2], b)])
-
 
 # ----------------------------------------------------------------------------------------- kinematic, and with a spring
 
@@ -481,36 +454,6 @@ def backtracking_step(acceleration, t, x, v, dt, p):
     ### END SOLUTION
 
 
-def check_over_plane(p, d):
-    """Given.  Raise BadInput for an e outside 0 … 1, and unless gravity, point and unit normal have d coordinates."""
-    check_restitution(finite_number("restitution e [-]", p.e))
-    check_field("gravity [m/s²]", p.gravity, (d,))
-    check_field("point of the plane [m]", p.point, (d,))
-    check_field("normal of the plane [-]", p.n, (d,))
-    check_normal(p.n)
-
-
-def advance_balls(step, acceleration, t, x, v, dt, steps, p):
-    """Given.  Return (x, v), each (copies, d), of copies of a BouncingBall after `steps` steps of one method.
-
-    Raises BadInput for a step that is not positive, an e outside 0 … 1, a normal that is not a unit vector, a
-    state that is not finite; Diverged when the final state is not finite.
-    """
-    t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
-    check_array("position x [m]", x, 2)
-    check_over_plane(p, x.shape[1])
-    check_not_negative("stiffness over mass [1/s²]", number("stiffness over mass [1/s²]", p.stiffness))
-    check_not_negative("damping over mass [1/s]", number("damping over mass [1/s]", p.damping))
-    x, v = x.copy(), v.copy()
-    for k in range(x.shape[0]):
-        x_k, v_k = x[k], v[k]
-        for n in range(steps):
-            x_k, v_k = step(acceleration, t + n * dt, x_k, v_k, dt, p)
-        x[k], v[k] = x_k, v_k
-    check_end(x, v, dt)
-    return x, v
-
-
 # ---------------------------------------------------------------------------------------------- a rotating ball
 
 def spinning_impact(v, omega, p):
@@ -554,93 +497,13 @@ def backtracking_spin_step(acceleration, t, x, v, omega, dt, p):
     raise Diverged("impacts without end in a step of dt [s]", dt, "take a smaller step")
 
 
-def advance_spinning_balls(step, acceleration, t, x, v, omega, dt, steps, p):
-    """Given.  Return (x, v, ω), each (copies, 3), of copies of a SpinningBall after `steps` steps of one method.
-
-    Raises the errors of advance_balls, and BadInput for μ < 0.
-    """
-    t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
-    check_field("position x [m]", x, (len(x), 3))
-    omega = finite_array("angular velocity ω [rad/s]", omega)
-    check_shape("the angular velocity ω", omega, x.shape)
-    check_over_plane(p, 3)
-    check_friction(number("friction μ [-]", p.mu))
-    check_positive("inverse mass [1/kg]", number("inverse mass [1/kg]", p.inv_mass))
-    check_field("inverse inertia [1/(kg m²)]", p.inv_inertia, (3, 3))
-    positive_number("radius [m]", p.radius)
-    x, v, omega = x.copy(), v.copy(), omega.copy()
-    for k in range(x.shape[0]):
-        x_k, v_k, omega_k = x[k], v[k], omega[k]
-        for n in range(steps):
-            x_k, v_k, omega_k = step(acceleration, t + n * dt, x_k, v_k, omega_k, dt, p)
-        x[k], v[k], omega[k] = x_k, v_k, omega_k
-    check_end(x, v, dt)
-    return x, v, omega
-
-
 # ---------------------------------------------------------------------------------------------- discs that collide
-
-def meeting_time(x, v, i, j, reach, dt):
-    """Given.  Return the time [s] until two round bodies i and j meet, at most dt; reach [m] is the sum of their radii.
-
-    |Δx + τ Δv| = reach, with decreasing distance.  Bodies that overlap and approach meet now.
-    The loop over coordinates is for speed: this runs for every pair.
-    """
-    closing, apart, speed = 0.0, -reach * reach, 0.0
-    for k in range(x.shape[1]):
-        dx, dv = x[i, k] - x[j, k], v[i, k] - v[j, k]
-        closing -= dx * dv
-        apart += dx * dx
-        speed += dv * dv
-    apart = np.maximum(0.0, apart)
-    squared = closing * closing - speed * apart
-    if closing > 0.0 and squared >= 0.0:
-        return min(dt, apart / (closing + np.sqrt(squared)))
-    return dt
-
-
-def overlap(x, i, j, reach):
-    """Given.  Return whether two round bodies are closer than the sum of their radii, reach [m]."""
-    squared = 0.0
-    for k in range(x.shape[1]):
-        squared += (x[i, k] - x[j, k]) ** 2
-    return squared < reach * reach
-
-
-def normal_between(x, i, j):
-    """Given.  Return (distance [m], unit normal (d,) from disc j to i); the first axis where the centres coincide."""
-    n = x[i] - x[j]
-    distance = np.sqrt(n @ n)
-    if distance == 0.0:
-        n[0] = 1.0
-        return 0.0, n
-    return distance, n / distance
-
 
 def disc_impact(x, v, i, j, p):
     """Given.  Return (v_i, v_j), each (d,), after discs i and j meet without friction: the impulse of impulse_size."""
     _, n = normal_between(x, i, j)
     size = impulse_size((v[i] - v[j]) @ n, p.inv_mass[i] + p.inv_mass[j], p.e)
     return v[i] + p.inv_mass[i] * size * n, v[j] - p.inv_mass[j] * size * n
-
-
-def separated(x, i, j, p):
-    """Given.  Return (x_i, x_j), each (d,): two discs moved apart along their normal until they no longer overlap.
-
-    The lighter one moves farther.  Only positions change: discs that start inside each other are separated without
-    gaining speed.
-    """
-    distance, n = normal_between(x, i, j)
-    share = np.maximum(0.0, p.radius[i] + p.radius[j] - distance) / (p.inv_mass[i] + p.inv_mass[j])
-    return x[i] + share * p.inv_mass[i] * n, x[j] - share * p.inv_mass[j] * n
-
-
-def drift(x, v, dt):
-    """Given.  Return x + dt v, body by body: compiled loops over short rows cost less than two-dimensional arrays."""
-    x = float_copy(x)
-    for k in range(x.shape[0]):
-        x[k] += dt * v[k]
-    return x
 
 
 def position_projection_discs_step(x, v, dt, p):
@@ -675,39 +538,7 @@ def backtracking_discs_step(x, v, dt, p):
     raise Diverged("impacts without end in a step of dt [s]", dt, "take a smaller step")
 
 
-def advance_discs(step, x, v, dt, steps, p):
-    """Given.  Return (x, v), each (copies, bodies, d), of discs after `steps` steps; raises as advance_balls."""
-    _, x, v, dt, steps = checked_run(0.0, x, v, dt, steps)
-    check_array("position x [m]", x, 3)
-    check_restitution(finite_number("restitution e [-]", p.e))
-    for thing, values in (("radius of a disc [m]", p.radius), ("inverse mass of a disc [1/kg]", p.inv_mass)):
-        check_field(thing, values, x.shape[1:2])
-        check_not_negative(thing, values.min())
-    x, v = x.copy(), v.copy()
-    for k in range(x.shape[0]):
-        x_k, v_k = x[k], v[k]
-        for _ in range(steps):
-            x_k, v_k = step(x_k, v_k, dt, p)
-        x[k], v[k] = x_k, v_k
-    check_end(x, v, dt)
-    return x, v
-
-
 # ---------------------------------------------------------------------------------------------- several impacts at once
-
-def check_impacts(body, r, n, e, mu):
-    """Given.  Raise BadInput unless body, offsets r and unit normals n (points, 3), e and μ define an impact."""
-    check_restitution(finite_number("restitution e [-]", e))
-    check_friction(number("friction μ [-]", mu))
-    check_positive("inverse mass [1/kg]", number("inverse mass [1/kg]", body.inv_mass))
-    check_field("velocity v [m/s]", body.v, (3,))
-    check_field("angular velocity ω [rad/s]", body.omega, (3,))
-    check_field("inverse inertia [1/(kg m²)]", body.inv_inertia, (3, 3))
-    check_field("offsets r of the points [m]", r, (len(r), 3))
-    check_field("normals n of the points [-]", n, r.shape)
-    for i in range(len(n)):
-        check_normal(n[i])
-
 
 def sequential_impacts(body, r, n, e, mu):
     """Given.  Return (Solid, residual [m/s]) after an impact at several points, each treated once, in order.
@@ -735,17 +566,6 @@ def rebound_speeds(body, r, n, e):
     return u_sep
 
 
-def largest_speed(body, r):
-    """Given.  Return the largest |v| + |ω||rᵢ| [m/s].
-
-    The velocity of a point is a sum of these two, so its round-off is relative to them, however small the sum is.
-    """
-    reach = 0.0
-    for i in range(len(r)):
-        reach = max(reach, norm(r[i]))
-    return norm(body.v) + norm(body.omega) * reach
-
-
 def impact_residual(after, r, n, Js, u_sep, mu):
     """Given.  Return the residual [m/s] of impulses Js (points, 3) in the law of cone_impulse; 0 where the law holds.
 
@@ -759,19 +579,6 @@ def impact_residual(after, r, n, Js, u_sep, mu):
         J = cone_impulse(u, n[i], K, u_sep[i], mu)
         worst = np.maximum(worst, np.abs(times(K, J - Js[i])).max())
     return worst
-
-
-def project_onto_cone(J, n, mu):
-    """Given.  Return the impulse (3,) in Coulomb's cone |J_t| ≤ μ J_n that is nearest to J (3,)."""
-    J_n, J_t = J @ n, tangential(J, n)
-    beta = np.arctan(mu)
-    size = np.sqrt(J_t @ J_t)
-    if J_n >= 0.0 and size * np.cos(beta) <= J_n * np.sin(beta):
-        return J
-    if size == 0.0:
-        return np.maximum(0.0, J_n) * n
-    along_rim = np.maximum(0.0, J_n * np.cos(beta) + size * np.sin(beta))
-    return along_rim * (np.cos(beta) * n + np.sin(beta) / size * J_t)
 
 
 def most_dissipative_impact(body, r, n, e, mu):

@@ -19,20 +19,30 @@ from typing import NamedTuple
 import numpy as np
 
 from .checks import (
-    BadInput,
     Diverged,
-    check_end,
-    check_finite,
-    check_positive,
-    check_shape,
-    checked_run,
     finite_array,
-    finite_number,
     float_copy,
     positive_number,
-    whole_number,
 )
 from .friction import cone_radius
+from .support.quaternions import (
+    about_axis,
+    body_component,
+    check_rotation,
+    exponential,
+    quaternion_from_matrix,
+    rotate,
+    solve3,
+    unit,
+    unrotate,
+)
+from .support.rotation_loops import (
+    FLAT_BODY_TOLERANCE,
+    advance_rigid_body,
+    advance_rotation,
+    check_moments,
+    rotation_trajectory,
+)
 from .vectors import cross, dot, norm
 
 __all__ = [
@@ -52,8 +62,6 @@ __all__ = [
 
 NEWTON_TOLERANCE = 1e-12     # last correction over the unknown [-]; Newton squares it, so only round-off remains
 NEWTON_LIMIT = 30            # corrections [-]; from a good guess Newton doubles its digits and needs fewer than 6
-UNIT_TOLERANCE = 1e-9        # allowed error of a given quaternion's length [-]: 1000 times the round-off of 10⁷ steps
-FLAT_BODY_TOLERANCE = 1e-12  # a flat body has I₁ + I₂ = I₃; round-off may violate that by this share [-]
 SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))      # share of the step in each of four substeps [-]: 4γ³ + (1 − 4γ)³ = 0
 
 
@@ -84,17 +92,6 @@ class RollingBall(NamedTuple):
     radius: float            # [m]
     mu: float                # friction [-]
     gravity: np.ndarray      # (3,) [m/s²]; for a sloping floor, tilt gravity instead
-
-
-def check_moments(I_body):
-    """Given.  Raise BadInput unless these are moments of a body: positive, none above the sum of the others."""
-    check_shape("the principal moments", I_body, (3,))
-    for k in range(3):
-        check_positive("a principal moment of inertia [kg m²]", I_body[k])
-        others = I_body[(k + 1) % 3] + I_body[(k + 2) % 3]
-        if I_body[k] > others * (1.0 + FLAT_BODY_TOLERANCE):
-            raise BadInput("a principal moment of inertia [kg m²]", I_body[k],
-                           "no distribution of mass has it; keep it below the sum of the other two")
 
 
 def make_rigid_body(m, I_body):
@@ -245,19 +242,6 @@ def rotation_matrix(q):
     ### END SOLUTION
 
 
-def unit(q):
-    """Given.  Return q / |q|: the nearest unit quaternion.
-
-    Raises BadInput for q = 0, and Diverged for a q that is not finite, as a step may produce.
-    """
-    length = np.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
-    if length == 0.0:
-        raise BadInput("length of the quaternion q [-]", length, "an orientation has length 1")
-    if not np.isfinite(length):
-        raise Diverged("length of the quaternion q [-]", length, "take a smaller step")
-    return np.array([q[0] / length, q[1] / length, q[2] / length, q[3] / length])
-
-
 def quaternion_update(q, omega, dt):
     """Return the orientation (4,) after dt at ω, third way:  q + dt q̇  with  q̇ = ½ (0, ω) q,  then unit; first order.
 
@@ -271,53 +255,6 @@ def quaternion_update(q, omega, dt):
 
 
 # --------------------------------------------------------------------------------------------- rotations by quaternions
-
-def exponential(phi):
-    """Given.  Return the quaternion (4,) of a rotation by |φ| [rad] about φ/|φ|: (cos ½|φ|, sin ½|φ| φ/|φ|)."""
-    angle = norm(phi)
-    s = 0.5 if angle == 0.0 else np.sin(0.5 * angle) / angle
-    return np.array([np.cos(0.5 * angle), s * phi[0], s * phi[1], s * phi[2]])
-
-
-def rotate(q, r):
-    """Given.  Return the world coordinates of a vector with body coordinates r:  r + 2w 𝐪×r + 2𝐪×(𝐪×r),  q = (w, 𝐪)."""
-    a, b, c = q[2] * r[2] - q[3] * r[1], q[3] * r[0] - q[1] * r[2], q[1] * r[1] - q[2] * r[0]      # 𝐪×r
-    return np.array([r[0] + 2.0 * (q[0] * a + q[2] * c - q[3] * b),
-                     r[1] + 2.0 * (q[0] * b + q[3] * a - q[1] * c),
-                     r[2] + 2.0 * (q[0] * c + q[1] * b - q[2] * a)])
-
-
-def unrotate(q, r):
-    """Given.  Return the body coordinates of a vector with world coordinates r: the inverse of rotate."""
-    return rotate(np.array([-q[0], q[1], q[2], q[3]]), r)
-
-
-def body_component(q, r, k):
-    """Given.  Return the k-th body coordinate of a vector with world coordinates r, without computing the other two."""
-    x, y, z, w = q[1], q[2], q[3], q[0]
-    if k == 0:
-        return (w * w + x * x - y * y - z * z) * r[0] + 2.0 * ((x * y + w * z) * r[1] + (x * z - w * y) * r[2])
-    if k == 1:
-        return (w * w - x * x + y * y - z * z) * r[1] + 2.0 * ((x * y - w * z) * r[0] + (y * z + w * x) * r[2])
-    return (w * w - x * x - y * y + z * z) * r[2] + 2.0 * ((x * z + w * y) * r[0] + (y * z - w * x) * r[1])
-
-
-def about_axis(q, k, angle):
-    """Given.  Return the orientation after a rotation about the body's k-th axis:  q (cos ½angle, sin ½angle 𝐞ₖ)."""
-    c, s = np.cos(0.5 * angle), np.sin(0.5 * angle)
-    x, y, z, w = q[1], q[2], q[3], q[0]
-    if k == 0:
-        return np.array([w * c - x * s, x * c + w * s, y * c + z * s, z * c - y * s])
-    if k == 1:
-        return np.array([w * c - y * s, x * c - z * s, y * c + w * s, z * c + x * s])
-    return np.array([w * c - z * s, x * c + y * s, y * c - x * s, z * c + w * s])
-
-
-def solve3(a, b, c, r):
-    """Given.  Return the u (3,) with  u₀ a + u₁ b + u₂ c = r  for columns a, b, c (3,), by Cramer's rule."""
-    bc = cross(b, c)
-    return np.array([dot(r, bc), dot(a, cross(r, c)), dot(a, cross(b, r))]) / dot(a, bc)
-
 
 def body_angular_momentum(q, omega, I_body):
     """Given.  Return L = I ω [kg m²/s] (3,)."""
@@ -484,30 +421,6 @@ def implicit_gyroscopic_step(torque, t, q, L, dt, body):
     return q, body_angular_momentum(q, omega, I)
 
 
-def quaternion_from_matrix(R):
-    """Given.  Return the unit quaternion (4,) of a rotation matrix.
-
-    Its largest component is computed first, to avoid cancellation.
-
-    *Source:* Shepperd 1978.
-    """
-    trace = R[0, 0] + R[1, 1] + R[2, 2]
-    k = 0
-    for i in range(1, 3):
-        if R[i, i] > R[k, k]:
-            k = i
-    if trace > R[k, k]:
-        return unit(np.array([1.0 + trace, R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]]))
-    i = (k + 1) % 3
-    j = 3 - k - i
-    q = np.zeros(4)
-    q[0] = R[j, i] - R[i, j]
-    q[1 + k] = 1.0 + R[k, k] - R[i, i] - R[j, j]
-    q[1 + i] = R[i, k] + R[k, i]
-    q[1 + j] = R[j, k] + R[k, j]
-    return unit(q)
-
-
 # ---------------------------------------------------------------------------------------------- steps that conserve
 
 def runge_kutta_step(torque, t, q, L, dt, body):
@@ -634,65 +547,3 @@ def composed_midpoint_step(torque, t, q, L, dt, body):
 
 
 # ---------------------------------------------------------------------------------------------- many steps
-
-def check_rotation(q):
-    """Given.  Raise BadInput unless q is a quaternion of length 1."""
-    check_shape("the quaternion q", q, (4,))
-    length = np.sqrt(np.sum(q * q))
-    if not abs(length - 1.0) <= UNIT_TOLERANCE:
-        raise BadInput("length of the quaternion q [-]", length, "divide q by it: an orientation has length 1")
-
-
-def checked_rotation(t, q, L, dt, steps, I_body):
-    """Given.  Return (t, q, L, dt, steps) in float64, as advance_rotation needs them.
-
-    Raises BadInput for a step that is not positive, a quaternion that is not a rotation, moments that no body has, an L
-    that is not finite.
-    """
-    q = finite_array("quaternion q [-]", q)
-    L = finite_array("angular momentum L [kg m²/s]", L)
-    check_rotation(q)
-    check_shape("the angular momentum L", L, (3,))
-    check_moments(I_body)
-    t, dt = finite_number("time t [s]", t), positive_number("step dt [s]", dt)
-    return t, q, L, dt, whole_number("number of steps", steps, 0)
-
-
-def advance_rotation(step, torque, t, q, L, dt, steps, body):
-    """Given.  Return the state (q, L) after `steps` steps of one method.
-
-    Raises what checked_rotation raises, and Diverged when the final state is not finite.
-    """
-    t, q, L, dt, steps = checked_rotation(t, q, L, dt, steps, body.I_body)
-    for n in range(steps):
-        q, L = step(torque, t + n * dt, q, L, dt, body)
-    check_end(q, L, dt)
-    return q, L
-
-
-def rotation_trajectory(step, torque, t, q, L, dt, steps, body):
-    """Given.  Return times (steps + 1,), orientations (steps + 1, 4) and L (steps + 1, 3), with the start."""
-    t, q, L, dt, steps = checked_rotation(t, q, L, dt, steps, body.I_body)
-    ts = t + dt * np.arange(steps + 1)
-    qs, Ls = np.zeros((steps + 1, 4)), np.zeros((steps + 1, 3))
-    qs[0], Ls[0] = q, L
-    for n in range(steps):
-        q, L = advance_rotation(step, torque, t + n * dt, q, L, dt, 1, body)
-        qs[n + 1], Ls[n + 1] = q, L
-    return ts, qs, Ls
-
-
-def advance_rigid_body(step, load, t, x, v, q, omega, dt, steps, body):
-    """Given.  Return (x, v, q, ω) after `steps` steps of a rigid body; raises what advance_rotation raises."""
-    positive_number("mass m [kg]", body.m)
-    t, q, omega, dt, steps = checked_rotation(t, q, omega, dt, steps, body.I_body)
-    t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
-    check_shape("the position x", x, (3,))
-    F, tau = load(t, x, v, q, omega, body)
-    check_finite("force at the start [N]", F)
-    check_finite("torque at the start [N m]", tau)
-    for n in range(steps):
-        x, v, q, omega = step(load, t + n * dt, x, v, q, omega, dt, body)
-    check_end(x, v, dt)
-    check_end(q, omega, dt)
-    return x, v, q, omega

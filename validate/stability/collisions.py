@@ -1,6 +1,6 @@
 """Limits of collision detection: lesson 6 at high speed, far away, at a grazing angle, deep inside, and flat.
 
-Cases 16 and 61 to 67.  The experiments throw thousands of balls, or place bodies where floats are coarse.  None of them
+The experiments throw thousands of balls, or place bodies where floats are coarse.  None of them
 compares a formula with itself.
 """
 

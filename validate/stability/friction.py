@@ -1,6 +1,6 @@
 """Stick and slip: the edges and errors of the steps of lesson 3, compared with theory.
 
-Cases 31 to 37.  Edges are found by bisection of runs from rest, never from a formula.  A body that moves less than WAY
+Edges are found by bisection of runs from rest, never from a formula.  A body that moves less than WAY
 counts as at rest.  *Source:* Coulomb 1785 for the edges; each case derives the rest.
 """
 

@@ -1,6 +1,6 @@
 """Impulses at their limits: the functions of lesson 7 compared with theory.
 
-Cases 18 to 20 and 71 to 73.  Edges are found by bisection of runs or of impacts, never from a formula.
+Edges are found by bisection of runs or of impacts, never from a formula.
 *Source:* Painlevé 1895 for the rod; each case derives the rest.
 """
 

@@ -1,7 +1,7 @@
 """Inertia tensors at the limits of floats and of bodies: lesson 4 far from the origin, for thin and for invalid bodies.
 
-40  a mesh far from the origin: its corners are rounded to the spacing of floats there, and no other error may appear;
-41  needles, plates, and impossible tensors: the edge between them.
+A mesh far from the origin: its corners are rounded to the spacing of floats there, and no other error may appear.
+Needles, plates, and impossible tensors: the edge between them.
 """
 
 import numpy as np

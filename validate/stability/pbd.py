@@ -1,6 +1,6 @@
 """Softness of constraints that should not stretch, and the cost of sweeps and steps: lesson 8 compared with theory.
 
-Cases 9, 12 and 81 to 86.  Most bodies hang straight down or move in a circle.  A sweep is then a linear map, and its
+Most bodies hang straight down or move in a circle.  A sweep is then a linear map, and its
 result is known in closed form.  *Source:* Müller et al. 2006, Macklin et al. 2016 and 2019; each case derives the rest.
 """
 
