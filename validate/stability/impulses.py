@@ -9,7 +9,7 @@ from scipy.optimize import minimize_scalar
 
 from solutions.checks import Diverged
 from validate.reference.impulses import COPIES
-from validate.stability.case import DOTS, EDGE, LINE, Picture, bisect, case, finding, refuses, series
+from validate.stability.case import DOTS, EDGE, LINE, Picture, agreement, bisect, case, finding, refuses, series
 
 G = 9.81                     # [m/s²]
 ROUND_OFF = 1e-12            # of numbers below 30 after a few hundred operations, each rounded by 1.1e-16 of its result
@@ -536,3 +536,76 @@ def invalid_impacts(lesson):
         ],
         "Coulomb's cone and Newton's restitution contain no length and no time.",
     )
+
+
+def planar_rows(x_a, x_b, p, n):
+    """Return the row (6,) of n · (velocity of a's point − velocity of b's): derivatives of positions by hand."""
+    r_a, r_b = p - x_a, p - x_b
+    return np.array([n[0], n[1], -n[0] * r_a[1] + n[1] * r_a[0], -n[0], -n[1], n[0] * r_b[1] - n[1] * r_b[0]])
+
+
+@case("two-bodies", "An impact of two free bodies, in the plane and in space", compiled=False)
+def two_bodies(lesson):
+    """K = G M⁻¹ Gᵀ with the rows G of the contact's velocity; momentum and angular momentum about the origin are kept.
+
+    In space a body's block of M is its inertia tensor in the world, and its part of G is n and r × n.
+    """
+    rng = np.random.default_rng(77)
+    worst = dict.fromkeys(("u", "k_n", "rebound", "momentum", "spin", "space", "momenta"), 0.0)
+    for _ in range(100):
+        x_a, x_b, p, v_a, v_b = rng.normal(size=(5, 2))
+        (w_a, w_b), masses, e = rng.normal(size=2), rng.uniform(0.5, 2.0, 4), rng.uniform(0.1, 0.9)
+        n = np.array([np.cos(turn := rng.uniform(0.0, 6.28)), np.sin(turn)])
+        a = lesson.BodyState2D(v_a, w_a, 1.0 / masses[0], 1.0 / masses[1])
+        b = lesson.BodyState2D(v_b, w_b, 1.0 / masses[2], 1.0 / masses[3])
+        row, across = planar_rows(x_a, x_b, p, n), planar_rows(x_a, x_b, p, np.array([-n[1], n[0]]))
+        state = np.concatenate((v_a, [w_a], v_b, [w_b]))
+        u = lesson.relative_velocity_2d(a, b, p - x_a, p - x_b)
+        truth = row @ state * n + across @ state * np.array([-n[1], n[0]])
+        worst["u"] = max(worst["u"], np.max(np.abs(u - truth)))
+        k_n = lesson.effective_inverse_mass_2d(a, b, p - x_a, p - x_b, n)
+        inverse = 1.0 / masses[[0, 0, 1, 2, 2, 3]]
+        worst["k_n"] = max(worst["k_n"], abs(k_n - row @ (inverse * row)) / k_n)
+        if (u_n := u @ n) > 0.0:
+            n, u_n, row = -n, -u_n, -row
+        J = lesson.impulse_size(u_n, k_n, e) * n
+        a_new, b_new = lesson.apply_impulse_2d(a, p - x_a, J), lesson.apply_impulse_2d(b, p - x_b, -J)
+        after = np.concatenate((a_new.v, [a_new.omega], b_new.v, [b_new.omega]))
+        worst["rebound"] = max(worst["rebound"], abs(row @ after + e * u_n) / abs(u_n))
+        change = after - state
+        P = masses[0] * change[:2] + masses[2] * change[3:5]
+        spin = masses[1] * change[2] + masses[3] * change[5]
+        spin += masses[0] * (x_a[0] * change[1] - x_a[1] * change[0])
+        spin += masses[2] * (x_b[0] * change[4] - x_b[1] * change[3])
+        worst["momentum"] = max(worst["momentum"], np.max(np.abs(P)))
+        worst["spin"] = max(worst["spin"], abs(spin))
+
+        r_a, r_b, n3, L_a, L_b, J3 = rng.normal(size=(6, 3))
+        n3 /= np.linalg.norm(n3)
+        factors = rng.normal(size=(2, 3, 3))
+        I_a, I_b = (f @ f.T + np.eye(3) for f in factors)
+        bodies = [lesson.BodyState3D(np.zeros(3), np.zeros(3), 1.0 / m, np.linalg.inv(I))
+                  for m, I in ((masses[0], I_a), (masses[2], I_b))]
+        M = np.zeros((12, 12))
+        for k, block in enumerate((masses[0] * np.eye(3), I_a, masses[2] * np.eye(3), I_b)):
+            M[3 * k:3 * k + 3, 3 * k:3 * k + 3] = block
+        G = np.concatenate((n3, np.cross(r_a, n3), -n3, -np.cross(r_b, n3)))
+        truth = G @ np.linalg.solve(M, G)
+        got = lesson.effective_inverse_mass(*bodies, r_a, r_b, n3)
+        worst["space"] = max(worst["space"], abs(got - truth) / truth)
+        # both bodies touch at one point, so that J and −J have no torque together about the origin
+        p3 = rng.normal(size=3)
+        new_a, new_b = lesson.angular_momenta(L_a, L_b, r_a, r_b, J3)
+        orbital = np.cross(p3 - r_a, J3) - np.cross(p3 - r_b, J3)
+        own = np.concatenate((new_a - L_a - np.cross(r_a, J3), new_a + new_b - L_a - L_b + orbital))
+        worst["momenta"] = max(worst["momenta"], np.max(np.abs(own)))
+    names = (
+        ("u", "Two points approach with the velocities of centres and rotations.", "relative velocity [m/s]"),
+        ("k_n", "In the plane k_n is G M⁻¹ Gᵀ.", "k_n, relative [-]"),
+        ("rebound", "They separate with −e u_n.", "velocity after the impact, relative [-]"),
+        ("momentum", "An impact keeps the momentum.", "momentum [kg m/s]"),
+        ("spin", "An impact keeps the angular momentum about the origin.", "angular momentum [kg m²/s]"),
+        ("space", "In space k_n is G M⁻¹ Gᵀ, too.", "k_n in space, relative [-]"),
+        ("momenta", "L changes by r × J, and the angular momentum of both stays.", "momenta in space [kg m²/s]"))
+    return [agreement(claim, f"largest error of the {quantity}", worst[name], 1e-12)
+            for name, claim, quantity in names], None
