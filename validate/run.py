@@ -9,7 +9,7 @@ from pathlib import Path
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-from . import engines, measure, modules
+from . import coverage, engines, measure, modules
 from .scene import PRODUCTS
 from .stability.examine import stability_cases
 from .store import code_digest, lessons_of, store_for
@@ -29,7 +29,10 @@ def run(names, plan, pool, out, console):
         console.print(f"\nOther scenes in {out} were measured with other code or options: their report stays as it is.",
                       highlight=False, soft_wrap=True)
     console.print(f"\nThe report lies in [bold]{front}[/bold]", highlight=False, soft_wrap=True)
-    return 1 if departures else 0
+    lost = coverage.missing() if set(names) == set(modules.scene_names()) else []
+    if lost:
+        console.print(f"Nothing in the report runs {', '.join(lost)}.", highlight=False, soft_wrap=True)
+    return 1 if departures or lost else 0
 
 
 def interleave_by_lesson(names):
@@ -82,7 +85,7 @@ def about(plan):
         "machine": f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",
         "processor": processor(), "cores": os.cpu_count(), "code": code_digest(plan.of),
         "versions": {name: version(name) for name in ("numpy", "scipy", "matplotlib")},
-        "overrides": [list(pair) for pair in plan.overrides],
+        "overrides": [list(pair) for pair in plan.overrides], "coverage": coverage.table(),
     }
 
 

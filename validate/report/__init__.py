@@ -30,7 +30,8 @@ def copied(results):
 
 def files(results, stability):
     """The names of all files of a report."""
-    return {"index.html", "report.json", *(["stability.html"] if stability else []), *copied(results),
+    always = "index.html", "report.json", "coverage.html"
+    return {*always, *(["stability.html"] if stability else []), *copied(results),
             *(f"{r['scene']}.html" for r in results), *(name for _, name, _, _ in pictures(results, stability))}
 
 
@@ -46,6 +47,11 @@ def texts(results, stability, about):
     found = {f"{r['scene']}.html": pages.get_template("scene.html").render(
         r=r, findings=words.findings(r), others=results,
         cases=[c for c in stability if c["lesson"] == r["lesson"]]) for r in results}
+    if about.get("coverage"):
+        scenes = {r["scene"]: r["title"] for r in results}
+        cases = {f"{c['lesson']}/{c['slug']}": c["title"] for c in stability}
+        found["coverage.html"] = pages.get_template("coverage.html").render(
+            coverage=about["coverage"], scenes=scenes, cases=cases)
     if stability:
         found["stability.html"] = pages.get_template("stability.html").render(cases=stability)
     rows = [words.row(r) for r in results]
