@@ -3,10 +3,11 @@
 Symbols: a, b two bodies · v [m/s], omega [rad/s] · r [m] offset of the contact point from a centre of mass ·
 n unit normal, from b to a · u [m/s] velocity of a's contact point relative to b's, u_n = n · u its normal part ·
 J, j [N s] impulse on a; b receives −J · e [-] restitution · μ [-] friction · K [1/kg] the response of u to an impulse:
-u⁺ = u + K J, and k = n · K n · φ [m] gap, n = ∇φ · λ [N s] multiplier of the gap.
+u⁺ = u + K J, and k_n = n · K n · φ [m] gap, n = ∇φ · λ [N s] multiplier of the gap.
 
 Velocities after an impact have a ⁺.  An impact is so short that positions do not change and other forces do not count.
-An immovable body has inv_mass = 0 and inv_inertia = 0.  In the plane r × n is the number r_x n_y − r_y n_x, and omega
+An immovable body has inv_mass = 0 and inv_inertia = 0; one on an axle through its centre of mass has only inv_mass = 0,
+and one that cannot rotate only inv_inertia = 0.  In the plane r × n is the number r_x n_y − r_y n_x, and omega
 is a number, counter-clockwise.
 *Left out:* finding contacts (lesson 6).  Lasting contacts, as in a stack (lesson 9).
 """
@@ -16,49 +17,46 @@ from typing import NamedTuple
 import numpy as np
 
 from solutions.checks import (
-    BadInput,
     Diverged,
-    check_array,
-    check_end,
-    check_field,
-    check_finite,
-    check_friction,
-    check_normal,
-    check_not_negative,
     check_positive,
     check_restitution,
-    check_shape,
-    checked_run,
-    finite_array,
-    finite_number,
     float_copy,
-    number,
-    positive_number,
 )
 from solutions.friction import tangential
 from solutions.integrators import symplectic_euler_step
 from solutions.rotation import point_velocity, solve3
-from solutions.vectors import cross, dot, norm
+from solutions.support.bouncing_loops import advance_balls, advance_spinning_balls
+from solutions.support.discs import advance_discs, drift, meeting_time, normal_between, overlap, separated
+from solutions.support.impacts import (
+    check_contact,
+    check_impacts,
+    check_inverse_mass,
+    largest_speed,
+    project_onto_cone,
+    times,
+)
+from solutions.vectors import cross
 
 __all__ = [
-    "IMPACTS", "SETTLED", "SWEEPS", "Discs", "Drop", "Flat", "Solid", "Spinner", "angular_momenta",
-    "backtracking_discs_step", "backtracking_spin_step", "backtracking_step", "bouncing_time",
-    "check_contact", "check_impacts", "check_inverse_mass", "cone_impulse", "contact_impulse",
-    "discs_all", "drift", "drop_all", "energy_change", "falling_acceleration", "flat_inverse_mass",
-    "flat_push", "flat_relative_velocity", "fly", "gap", "gap_multiplier", "impact_time",
-    "impulse_size", "inverse_mass", "kinematic_response", "largest_speed", "lie",
-    "most_dissipative_impact", "one_after_the_other", "overlap", "penalty_force", "penalty_step",
-    "point_inverse_mass", "projecting_discs_step", "projecting_spin_step", "projecting_step",
-    "push", "relative_velocity", "separated", "solve_impacts", "spin_all", "times",
+    "CONVERGED", "MAX_IMPACTS", "MAX_SWEEPS", "BodyState2D", "BodyState3D", "BouncingBall", "Discs",
+    "SpinningBall", "advance_balls", "advance_discs", "advance_spinning_balls", "angular_momenta",
+    "apply_impulse", "apply_impulse_2d", "backtracking_discs_step", "backtracking_spin_step",
+    "backtracking_step", "bouncing_time", "check_contact", "check_impacts", "check_inverse_mass",
+    "cone_impulse", "contact_impulse", "contact_matrix", "drift", "effective_inverse_mass",
+    "effective_inverse_mass_2d", "energy_change", "falling_acceleration", "free_flight", "gap",
+    "gap_multiplier", "impact_time", "impulse_size", "kinematic_response", "largest_speed",
+    "most_dissipative_impact", "overlap", "penalty_force", "penalty_step",
+    "position_projection_discs_step", "position_projection_spin_step", "position_projection_step",
+    "relative_velocity", "relative_velocity_2d", "separated", "sequential_impacts", "slide_on_plane",
+    "solve_impacts", "times",
 ]
 
-IMPACTS = 10_000             # per step [-]; with e = 0.8, 165 impacts bring the next below the spacing of floats
-SWEEPS = 2000                # over contact points [-]; four under a box need about 100, close ones more than 1000
-STIFFEST = 1e-40             # det K over (tr K)³ below which K has no inverse [-]: products in it underflow
-SETTLED = 1e-14              # largest change in a sweep over the largest initial |v| + |ω||r| [-]: a hundred roundings
+MAX_IMPACTS = 10_000         # per step [-]; with e = 0.8, 165 impacts bring the next below the spacing of floats
+MAX_SWEEPS = 2000            # over contact points [-]; four under a box need about 100, close ones more than 1000
+CONVERGED = 1e-14            # largest change in a sweep over the largest initial |v| + |ω||r| [-]: a hundred roundings
 
 
-class Flat(NamedTuple):
+class BodyState2D(NamedTuple):
     """A body in the plane."""
     v: np.ndarray            # (2,) [m/s]
     omega: float             # [rad/s]
@@ -66,7 +64,7 @@ class Flat(NamedTuple):
     inv_inertia: float       # [1/(kg m²)]
 
 
-class Solid(NamedTuple):
+class BodyState3D(NamedTuple):
     """A body in space."""
     v: np.ndarray            # (3,) [m/s]
     omega: np.ndarray        # (3,) [rad/s]
@@ -74,7 +72,7 @@ class Solid(NamedTuple):
     inv_inertia: np.ndarray  # (3, 3) in the world [1/(kg m²)]
 
 
-class Drop(NamedTuple):
+class BouncingBall(NamedTuple):
     """A ball without rotation, above a plane."""
     e: float                 # restitution [-]
     gravity: np.ndarray      # (d,) [m/s²]
@@ -84,7 +82,7 @@ class Drop(NamedTuple):
     damping: float           # of the penalty damper over the mass [1/s]
 
 
-class Spinner(NamedTuple):
+class SpinningBall(NamedTuple):
     """A rotating ball above a plane."""
     e: float                 # restitution [-]
     mu: float                # friction [-]
@@ -105,36 +103,14 @@ class Discs(NamedTuple):
 
 # ---------------------------------------------------------------------------------------------- checks
 
-def check_inverse_mass(k):
-    """Given.  Raise BadInput unless k [1/kg] is above zero and finite: two immovable bodies have k = 0."""
-    if not (k > 0.0 and np.isfinite(k)):
-        raise BadInput("inverse mass of two bodies at their contact [1/kg]", k, "let one of them have a finite mass")
-
-
-def check_contact(u, n, K, mu):
-    """Given.  Raise BadInput unless n is a unit vector, μ ≥ 0, u finite, and K positive along n and not singular."""
-    check_normal(n)
-    check_friction(mu)
-    check_finite("relative velocity u [m/s]", u)
-    check_inverse_mass(n @ times(K, n))
-    determinant = K[0] @ cross(K[1], K[2])
-    if not determinant > STIFFEST * (K[0, 0] + K[1, 1] + K[2, 2]) ** 3:
-        raise BadInput("determinant of K [1/kg³]", determinant, "give a K that gives way in every direction")
-
-
-def times(A, b):
-    """Given.  Return A b of a matrix (3, 3) and a vector (3,); it compiles much faster than A @ b."""
-    return np.array([dot(A[0], b), dot(A[1], b), dot(A[2], b)])
-
-
 # ----------------------------------------------------------------------------------------- kinematic, and with a spring
 
-def kinematic_response(v, n, k):
+def kinematic_response(v, n, e):
     """Return the velocity (d,) of a point after it hits a fixed surface; unchanged where it leaves, v · n ≥ 0.
 
-    v⁺ = v − (1 + k)(v · n) n
+    v⁺ = v − (1 + e)(v · n) n
 
-    The normal velocity is reversed and scaled by k; k = 0.8 looks like a ball.  The tangential velocity is unchanged.
+    The normal velocity is reversed and scaled by e; e = 0.8 looks like a ball.  The tangential velocity is unchanged.
     *Source:* first lecture deck, “Kinematic response”.
     """
     # YOUR CODE HERE
@@ -146,7 +122,7 @@ def penalty_force(phi, v_n, stiffness, damping):
 
     f = max(0, −stiffness φ − damping v_n)  while φ < 0;     0 outside
 
-    φ [m] gap, v_n [m/s] its rate, stiffness [N/m], damping [N s/m].  For a force over mass pass k/m and c/m.
+    φ [m] gap, v_n [m/s] its rate, stiffness [N/m], damping [N s/m].  For a force over mass give both over m.
     *Source:* first lecture deck, “Penalty method”.
     """
     # YOUR CODE HERE
@@ -155,28 +131,28 @@ def penalty_force(phi, v_n, stiffness, damping):
 
 # ---------------------------------------------------------------------------------------------- in the plane
 
-def flat_cross(r, f):
+def cross_2d(r, f):
     """Given.  Return r × f in the plane, a number:  r_x f_y − r_y f_x."""
     return r[0] * f[1] - r[1] * f[0]
 
 
-def flat_relative_velocity(a, b, r_a, r_b):
-    """Return u (2,) [m/s]: velocity of a's contact point relative to b's, for Flat bodies with offsets r_a, r_b (2,).
+def relative_velocity_2d(a, b, r_a, r_b):
+    """Return u (2,) [m/s]: velocity of a's contact point relative to b's, with offsets r_a, r_b (2,).
 
     u = (v_a + ω_a × r_a) − (v_b + ω_b × r_b),       ω × r = ω (−r_y, r_x)  in the plane
 
     *Source:* first lecture deck, “Relative Velocity”.
     """
     # YOUR CODE HERE
-    raise NotImplementedError("Exercise 7.3: flat_relative_velocity")
+    raise NotImplementedError("Exercise 7.3: relative_velocity_2d")
 
 
-def impulse_size(u_n, k, e):
+def impulse_size(u_n, k_n, e):
     """Return the impulse j ≥ 0 [N s] between two bodies that meet with u_n [m/s] and separate with −e u_n.
 
-    j = −(1 + e) u_n/k,      and 0 where they are already separating, u_n ≥ 0
+    j = −(1 + e) u_n/k_n,      and 0 where they are already separating, u_n ≥ 0
 
-    k [1/kg]: the change of u_n by j = 1 N s, over that j; without rotation k = 1/m_a + 1/m_b.
+    k_n [1/kg]: the change of u_n by j = 1 N s, over that j; without rotation k_n = 1/m_a + 1/m_b.
     Raises what check_restitution and check_inverse_mass raise; call them first.
     *Source:* first lecture deck, “Computing impulse”, 1st: objects cannot rotate; second lecture deck, “Coefficient of
     restitution”.
@@ -185,55 +161,55 @@ def impulse_size(u_n, k, e):
     raise NotImplementedError("Exercise 7.4: impulse_size")
 
 
-def flat_inverse_mass(a, b, r_a, r_b, n):
-    """Return k [1/kg] of two Flat bodies that can rotate.
+def effective_inverse_mass_2d(a, b, r_a, r_b, n):
+    """Return k_n [1/kg] of two BodyState2D that can rotate.
 
-    k = 1/m_a + 1/m_b + (r_a × n)²/I_a + (r_b × n)²/I_b          r × n: flat_cross
+    k_n = 1/m_a + 1/m_b + (r_a × n)²/I_a + (r_b × n)²/I_b          r × n: cross_2d
 
     *Source:* first lecture deck, “Computing impulse”, in the plane.
     """
     # YOUR CODE HERE
-    raise NotImplementedError("Exercise 7.5: flat_inverse_mass")
+    raise NotImplementedError("Exercise 7.5: effective_inverse_mass_2d")
 
 
-def flat_push(body, r, J):
-    """Return the Flat body after an impulse J (2,) [N s] at the offset r, with the same masses.
+def apply_impulse_2d(body, r, J):
+    """Return the BodyState2D after an impulse J (2,) [N s] at the offset r, with the same masses.
 
     v⁺ = v + J/m,   ω⁺ = ω + (r × J)/I
 
     *Source:* first lecture deck, the updates after “Computing impulse”.
     """
     # YOUR CODE HERE
-    raise NotImplementedError("Exercise 7.6: flat_push")
+    raise NotImplementedError("Exercise 7.6: apply_impulse_2d")
 
 
 # ---------------------------------------------------------------------------------------------- in space
 
 def relative_velocity(a, b, r_a, r_b):
-    """Given.  Return u (3,) [m/s] of two Solid bodies:  (v_a + ω_a × r_a) − (v_b + ω_b × r_b).
+    """Given.  Return u (3,) [m/s] of two BodyState3D:  (v_a + ω_a × r_a) − (v_b + ω_b × r_b).
 
     *Source:* first lecture deck, “Relative Velocity”.
     """
     return point_velocity(a.v, a.omega, r_a) - point_velocity(b.v, b.omega, r_b)
 
 
-def inverse_mass(a, b, r_a, r_b, n):
-    """Return k [1/kg] of two Solid bodies.
+def effective_inverse_mass(a, b, r_a, r_b, n):
+    """Return k_n [1/kg] of two BodyState3D.
 
-    k = 1/m_a + 1/m_b + n · [(I_a⁻¹ (r_a × n)) × r_a] + n · [(I_b⁻¹ (r_b × n)) × r_b]
+    k_n = 1/m_a + 1/m_b + n · [(I_a⁻¹ (r_a × n)) × r_a] + n · [(I_b⁻¹ (r_b × n)) × r_b]
 
     times(A, b) multiplies a matrix and a vector.
     *Source:* first lecture deck, “Computing impulse”.
     """
     # YOUR CODE HERE
-    raise NotImplementedError("Exercise 7.7: inverse_mass")
+    raise NotImplementedError("Exercise 7.7: effective_inverse_mass")
 
 
-def push(body, r, J):
-    """Given.  Return the Solid body after an impulse J (3,) [N s] at r:  v⁺ = v + J/m,   ω⁺ = ω + I⁻¹ (r × J)."""
+def apply_impulse(body, r, J):
+    """Given.  Return the BodyState3D after an impulse J (3,) [N s] at r:  v⁺ = v + J/m,   ω⁺ = ω + I⁻¹ (r × J)."""
     v = body.v + body.inv_mass * J
     omega = body.omega + times(body.inv_inertia, cross(r, J))
-    return Solid(v, omega, body.inv_mass, body.inv_inertia)
+    return BodyState3D(v, omega, body.inv_mass, body.inv_inertia)
 
 
 def angular_momenta(L_a, L_b, r_a, r_b, J):
@@ -250,7 +226,7 @@ def angular_momenta(L_a, L_b, r_a, r_b, J):
 
 # ---------------------------------------------------------------------------------------------- friction, and energy
 
-def point_inverse_mass(r, inv_mass, inv_inertia):
+def contact_matrix(r, inv_mass, inv_inertia):
     """Return K [1/kg], (3, 3): an impulse J at the offset r changes the velocity of that point by K J.
 
     K = 1/m − r* I⁻¹ r*          r* = skew(r) of lesson 5
@@ -260,16 +236,18 @@ def point_inverse_mass(r, inv_mass, inv_inertia):
     *Source:* Mirtich and Canny 1995; Baraff 1997.
     """
     # YOUR CODE HERE
-    raise NotImplementedError("Exercise 7.9: point_inverse_mass")
+    raise NotImplementedError("Exercise 7.9: contact_matrix")
 
 
-def cone_impulse(u, n, K, w, mu):
-    """Return J (3,) [N s] in the cone |J_t| ≤ μ J_n after which two contact points separate at w ≥ 0 [m/s], n · u⁺ = w.
+def cone_impulse(u, n, K, u_sep, mu):
+    """Return J (3,) [N s] in the cone |J_t| ≤ μ J_n after which two contact points separate at u_sep ≥ 0 [m/s].
 
-    n · u ≥ w:    J = 0: they already separate fast enough
-    otherwise, also where they separate too slowly, 0 < n · u < w:
-    stick:        J = K⁻¹ (w n − u), after which u⁺ = w n has no tangential part; if |J_t| ≤ μ J_n, this is J.
-    slide:        J = j d,   j = (w − n · u)/(n · K d)
+    n · u⁺ = u_sep, unless they separate faster before:
+
+    n · u ≥ u_sep:    J = 0: they already separate fast enough
+    otherwise, also where they separate too slowly, 0 < n · u < u_sep:
+    stick:        J = K⁻¹ (u_sep n − u), after which u⁺ = u_sep n has no tangential part; if |J_t| ≤ μ J_n, this is J.
+    slide:        J = j d,   j = (u_sep − n · u)/(n · K d)
                   d = n cos β + sin β J_t/|J_t|   is on the rim of the cone, tan β = μ, on the side of the stick's J,
                                                   with J_t = tangential(J, n) of that J
 
@@ -284,7 +262,7 @@ def cone_impulse(u, n, K, w, mu):
 
 
 def contact_impulse(u, n, K, e, mu):
-    """Given.  Return J (3,) [N s] of an impact with friction: cone_impulse with w = −e n · u;  0 if they separate."""
+    """Given.  Return J (3,) [N s] of an impact with friction: cone_impulse with u_sep = −e n · u; 0 if they part."""
     check_restitution(e)
     return np.zeros(3) if u @ n >= 0.0 else cone_impulse(u, n, K, -e * (u @ n), mu)
 
@@ -294,7 +272,7 @@ def energy_change(u, K, J):
 
     ΔE = J · u + ½ J · K J  =  J · (u + u⁺)/2
 
-    Without friction it is −½ (1 − e²) u_n²/k.  With a sticking J it is ½ (e² u_n² n · K⁻¹n − u · K⁻¹u), which can be
+    Without friction it is −½ (1 − e²) u_n²/k_n.  With a sticking J it is ½ (e² u_n² n · K⁻¹n − u · K⁻¹u), which can be
     positive: Newton's restitution concerns normal velocities only, but friction can convert tangential to
     normal motion.
     *Source:* ½ m v² and ½ ω · Iω before and after; Kane and Levinson 1985 for the gain.
@@ -305,12 +283,12 @@ def energy_change(u, K, J):
 
 # ---------------------------------------------------------------------------------------------- when
 
-def gap_multiplier(phi, u_n, k, dt):
+def gap_multiplier(phi, u_n, k_n, dt):
     """Return λ ≥ 0 [N s] of a contact in a step of dt after which the gap is not below zero; the impulse is J = λ ∇φ.
 
-    φ⁺ = φ + dt (u_n + k λ),       0 ≤ φ⁺  ⊥  λ ≥ 0:    either the gap stays open and λ = 0, or λ closes it exactly
+    φ⁺ = φ + dt (u_n + k_n λ),       0 ≤ φ⁺  ⊥  λ ≥ 0:    either the gap stays open and λ = 0, or λ closes it exactly
 
-    φ ≥ 0 [m] the present gap, u_n [m/s] its rate before λ, k [1/kg].
+    φ ≥ 0 [m] the present gap, u_n [m/s] its rate before λ, k_n [1/kg].
     Raises what check_inverse_mass raises, and check_positive("step dt [s]", dt).
     *Source:* second lecture deck, the gap function and its complementarity; Moreau 1988.
     """
@@ -326,6 +304,7 @@ def impact_time(phi, v_n, a_n, dt):
     v_n < 0:                  τ = 2φ/(s − v_n)           equals (−v_n − s)/a_n, without division by a small a_n
     v_n ≥ 0 and a_n < 0:      τ = −(v_n + s)/a_n         it comes back
     v_n ≥ 0 and a_n ≥ 0, or no real s:   it never closes: dt
+    A gap that only touches zero, s = 0, closes there.
 
     *Source:* first lecture deck, “time of impact”; second lecture deck, “go back to time of impact”; quadratic formula.
     """
@@ -359,185 +338,96 @@ def gap(x, p):
 
 
 def penalty_step(acceleration, t, x, v, dt, p):
-    """Given.  Advance a Drop by symplectic Euler with a penalty spring and damper; first order, stable for ω dt < 2."""
-    push = penalty_force(gap(x, p), v @ p.n, p.stiffness, p.damping)
-    v = v + dt * (acceleration(t, x, v, p) + push * p.n)
+    """Given.  Advance a BouncingBall by symplectic Euler with a penalty force; first order, stable for ω dt < 2."""
+    force = penalty_force(gap(x, p), v @ p.n, p.stiffness, p.damping)
+    v = v + dt * (acceleration(t, x, v, p) + force * p.n)
     return x + dt * v, v
 
 
-def projecting_step(acceleration, t, x, v, dt, p):
-    """Advance a Drop by one step, and correct velocity and position at its end if it is below the plane; first order.
+def position_projection_step(acceleration, t, x, v, dt, p):
+    """Advance a BouncingBall by one step; if it ends below the plane, correct velocity and position; first order.
 
     v ← v + dt a(t, x, v),    x ← x + dt v                       as usual, velocity first
     φ = gap(x, p) < 0:        v ← kinematic_response(v, n, e),   x ← x − φ n
 
+    The ball is left alone where φ is 0 or more.  What counts is v after the acceleration, not the velocity before it.
     *Source:* second lecture deck, time stepping, “Option 2”.
     """
     # YOUR CODE HERE
-    raise NotImplementedError("Exercise 7.15: projecting_step")
+    raise NotImplementedError("Exercise 7.15: position_projection_step")
 
 
-def fly(x, v, a, t):
+def free_flight(x, v, a, t):
     """Given.  Return (x, v) after t [s] under a constant acceleration a:  x + t v + ½ t² a,  v + t a."""
     return x + t * v + 0.5 * t * t * a, v + t * a
 
 
-def lie(x, v, a, t, n):
+def slide_on_plane(x, v, a, t, n):
     """Given.  Return (x, v) after t [s] of a ball that slides on its plane without friction, or is lifted off."""
-    return fly(x, tangential(v, n), a - np.minimum(0.0, a @ n) * n, t)
+    return free_flight(x, tangential(v, n), a - np.minimum(0.0, a @ n) * n, t)
 
 
 def backtracking_step(acceleration, t, x, v, dt, p):
-    """Advance a Drop by one step, impact by impact; exact while the acceleration is constant.
+    """Advance a BouncingBall by one step, impact by impact; exact while the acceleration is constant.
 
-    a = acceleration(t, x, v, p), for the whole step.  While some time `left` of dt remains, at most IMPACTS times:
-    τ = impact_time(φ, v · n, a · n, left),     φ = gap(x, p);     (x, v) = fly(x, v, a, τ);     left ← left − τ
+    a = acceleration(t, x, v, p), for the whole step.  While some time `left` of dt remains, at most MAX_IMPACTS times:
+    τ = impact_time(φ, v · n, a · n, left),     φ = gap(x, p);     (x, v) = free_flight(x, v, a, τ);     left ← left − τ
     if nothing is left: done.                   Otherwise the ball is on the plane:
     v ← kinematic_response(v, n, e),            x ← x − gap(x, p) n                        which removes round-off
-    if bouncing_time(v · n, a · n, e) ≤ left:   all bounces end within this step: return lie(x, v, a, left, n)
+    if bouncing_time(v · n, a · n, e) ≤ left, all bounces end within this step: return slide_on_plane(x, v, a, left, n)
 
-    Raises Diverged after IMPACTS impacts.
+    A ball that starts inside and leaves, v · n > 0, flies from where it is, because impact_time counts its φ as 0.
+    Raises Diverged after MAX_IMPACTS impacts.
     *Source:* second lecture deck, time stepping, “Option 1”.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 7.16: backtracking_step")
 
 
-def check_over_plane(p, d):
-    """Given.  Raise BadInput for an e outside 0 … 1, and unless gravity, point and unit normal have d coordinates."""
-    check_restitution(finite_number("restitution e [-]", p.e))
-    check_field("gravity [m/s²]", p.gravity, (d,))
-    check_field("point of the plane [m]", p.point, (d,))
-    check_field("normal of the plane [-]", p.n, (d,))
-    check_normal(p.n)
-
-
-def drop_all(step, acceleration, t, x, v, dt, steps, p):
-    """Given.  Return (x, v), each (copies, d), of independent copies of a Drop after `steps` steps of one method.
-
-    Raises BadInput for a step that is not positive, an e outside 0 … 1, a normal that is not a unit vector, a
-    state that is not finite; Diverged when the final state is not finite.
-    """
-    t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
-    check_array("position x [m]", x, 2)
-    check_over_plane(p, x.shape[1])
-    check_not_negative("stiffness over mass [1/s²]", number("stiffness over mass [1/s²]", p.stiffness))
-    check_not_negative("damping over mass [1/s]", number("damping over mass [1/s]", p.damping))
-    x, v = x.copy(), v.copy()
-    for k in range(x.shape[0]):
-        x_k, v_k = x[k], v[k]
-        for n in range(steps):
-            x_k, v_k = step(acceleration, t + n * dt, x_k, v_k, dt, p)
-        x[k], v[k] = x_k, v_k
-    check_end(x, v, dt)
-    return x, v
-
-
 # ---------------------------------------------------------------------------------------------- a rotating ball
 
 def spinning_impact(v, omega, p):
-    """Given.  Return (v, ω) of a Spinner after contact_impulse of its plane at the offset −radius n."""
+    """Given.  Return (v, ω) of a SpinningBall after contact_impulse of its plane at the offset −radius n."""
     r = -p.radius * p.n
-    K = point_inverse_mass(r, p.inv_mass, p.inv_inertia)
+    K = contact_matrix(r, p.inv_mass, p.inv_inertia)
     J = contact_impulse(point_velocity(v, omega, r), p.n, K, p.e, p.mu)
     return v + p.inv_mass * J, omega + times(p.inv_inertia, cross(r, J))
 
 
-def projecting_spin_step(acceleration, t, x, v, omega, dt, p):
-    """Given.  Advance a Spinner as projecting_step does; first order."""
+def position_projection_spin_step(acceleration, t, x, v, omega, dt, p):
+    """Given.  Advance a SpinningBall as position_projection_step does; first order."""
     x, v = symplectic_euler_step(acceleration, t, x, v, dt, p)
     if gap(x, p) >= 0.0:
         return x, v, omega
     v, omega = spinning_impact(v, omega, p)
-    return put_on_plane(x, p), v, omega
+    return project_to_plane(x, p), v, omega
 
 
-def put_on_plane(x, p):
+def project_to_plane(x, p):
     """Given.  Return the point (d,) of the plane of p that is nearest to x:  x − φ n."""
     return x - gap(x, p) * p.n
 
 
-def fly_to_plane(x, v, a, left, p):
+def advance_to_plane(x, v, a, left, p):
     """Given.  Fly at constant acceleration to the plane of p, at most for `left` [s]; return (x, v, time then left)."""
     tau = impact_time(gap(x, p), v @ p.n, a @ p.n, left)
-    x, v = fly(x, v, a, tau)
+    x, v = free_flight(x, v, a, tau)
     return x, v, left - tau
 
 
 def backtracking_spin_step(acceleration, t, x, v, omega, dt, p):
-    """Given.  Advance a Spinner impact by impact; exact at constant acceleration.  Raises Diverged as for a Drop."""
+    """Given.  Advance a SpinningBall impact by impact; exact at constant acceleration.  Raises as backtracking_step."""
     a = acceleration(t, x, v, p)
-    x, v, left = fly_to_plane(x, v, a, dt, p)
-    for _ in range(IMPACTS):
+    x, v, left = advance_to_plane(x, v, a, dt, p)
+    for _ in range(MAX_IMPACTS):
         if left <= 0.0:
             return x, v, omega
         v, omega = spinning_impact(v, omega, p)
-        x, v, left = fly_to_plane(put_on_plane(x, p), v, a, left, p)
+        x, v, left = advance_to_plane(project_to_plane(x, p), v, a, left, p)
     raise Diverged("impacts without end in a step of dt [s]", dt, "take a smaller step")
 
 
-def spin_all(step, acceleration, t, x, v, omega, dt, steps, p):
-    """Given.  Return (x, v, ω), each (copies, 3), of copies of a Spinner after `steps` steps of one method.
-
-    Raises the errors of drop_all, and BadInput for μ < 0.
-    """
-    t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
-    check_field("position x [m]", x, (len(x), 3))
-    omega = finite_array("angular velocity ω [rad/s]", omega)
-    check_shape("the angular velocity ω", omega, x.shape)
-    check_over_plane(p, 3)
-    check_friction(number("friction μ [-]", p.mu))
-    check_positive("inverse mass [1/kg]", number("inverse mass [1/kg]", p.inv_mass))
-    check_field("inverse inertia [1/(kg m²)]", p.inv_inertia, (3, 3))
-    positive_number("radius [m]", p.radius)
-    x, v, omega = x.copy(), v.copy(), omega.copy()
-    for k in range(x.shape[0]):
-        x_k, v_k, omega_k = x[k], v[k], omega[k]
-        for n in range(steps):
-            x_k, v_k, omega_k = step(acceleration, t + n * dt, x_k, v_k, omega_k, dt, p)
-        x[k], v[k], omega[k] = x_k, v_k, omega_k
-    check_end(x, v, dt)
-    return x, v, omega
-
-
 # ---------------------------------------------------------------------------------------------- discs that collide
-
-def meeting_time(x, v, i, j, reach, dt):
-    """Given.  Return the time [s] until two round bodies i and j meet, at most dt; reach [m] is the sum of their radii.
-
-    |Δx + τ Δv| = reach, with decreasing distance.  Bodies that overlap and approach meet now.
-    The loop over coordinates is for speed: this runs for every pair.
-    """
-    closing, apart, speed = 0.0, -reach * reach, 0.0
-    for k in range(x.shape[1]):
-        dx, dv = x[i, k] - x[j, k], v[i, k] - v[j, k]
-        closing -= dx * dv
-        apart += dx * dx
-        speed += dv * dv
-    apart = np.maximum(0.0, apart)
-    squared = closing * closing - speed * apart
-    if closing > 0.0 and squared >= 0.0:
-        return min(dt, apart / (closing + np.sqrt(squared)))
-    return dt
-
-
-def overlap(x, i, j, reach):
-    """Given.  Return whether two round bodies are closer than the sum of their radii, reach [m]."""
-    squared = 0.0
-    for k in range(x.shape[1]):
-        squared += (x[i, k] - x[j, k]) ** 2
-    return squared < reach * reach
-
-
-def normal_between(x, i, j):
-    """Given.  Return (distance [m], unit normal (d,) from disc j to i); the first axis where the centres coincide."""
-    n = x[i] - x[j]
-    distance = np.sqrt(n @ n)
-    if distance == 0.0:
-        n[0] = 1.0
-        return 0.0, n
-    return distance, n / distance
-
 
 def disc_impact(x, v, i, j, p):
     """Given.  Return (v_i, v_j), each (d,), after discs i and j meet without friction: the impulse of impulse_size."""
@@ -546,26 +436,7 @@ def disc_impact(x, v, i, j, p):
     return v[i] + p.inv_mass[i] * size * n, v[j] - p.inv_mass[j] * size * n
 
 
-def separated(x, i, j, p):
-    """Given.  Return (x_i, x_j), each (d,): two discs moved apart along their normal until they no longer overlap.
-
-    The lighter one moves farther.  Only positions change: discs that start inside each other are separated without
-    gaining speed.
-    """
-    distance, n = normal_between(x, i, j)
-    share = np.maximum(0.0, p.radius[i] + p.radius[j] - distance) / (p.inv_mass[i] + p.inv_mass[j])
-    return x[i] + share * p.inv_mass[i] * n, x[j] - share * p.inv_mass[j] * n
-
-
-def drift(x, v, dt):
-    """Given.  Return x + dt v, body by body: compiled loops over short rows cost less than two-dimensional arrays."""
-    x = float_copy(x)
-    for k in range(x.shape[0]):
-        x[k] += dt * v[k]
-    return x
-
-
-def projecting_discs_step(x, v, dt, p):
+def position_projection_discs_step(x, v, dt, p):
     """Given.  Advance discs by one step, then treat all overlapping pairs one by one; first order."""
     x, v = drift(x, v, dt), float_copy(v)
     for i in range(x.shape[0]):
@@ -577,12 +448,12 @@ def projecting_discs_step(x, v, dt, p):
 
 
 def backtracking_discs_step(x, v, dt, p):
-    """Given.  Advance discs impact by impact, the earliest first; exact.  Raises Diverged after IMPACTS impacts.
+    """Given.  Advance discs impact by impact, the earliest first; exact.  Raises Diverged after MAX_IMPACTS impacts.
 
     Of simultaneous impacts, the first pair in the list goes first: a choice.
     """
     left, v = dt, float_copy(v)
-    for _ in range(IMPACTS):
+    for _ in range(MAX_IMPACTS):
         tau, first, second = left, 0, 0
         for i in range(x.shape[0]):
             for j in range(i):
@@ -597,78 +468,35 @@ def backtracking_discs_step(x, v, dt, p):
     raise Diverged("impacts without end in a step of dt [s]", dt, "take a smaller step")
 
 
-def discs_all(step, x, v, dt, steps, p):
-    """Given.  Return (x, v), each (copies, bodies, d), of copies of discs after `steps` steps; raises as drop_all."""
-    _, x, v, dt, steps = checked_run(0.0, x, v, dt, steps)
-    check_array("position x [m]", x, 3)
-    check_restitution(finite_number("restitution e [-]", p.e))
-    for thing, values in (("radius of a disc [m]", p.radius), ("inverse mass of a disc [1/kg]", p.inv_mass)):
-        check_field(thing, values, x.shape[1:2])
-        check_not_negative(thing, values.min())
-    x, v = x.copy(), v.copy()
-    for k in range(x.shape[0]):
-        x_k, v_k = x[k], v[k]
-        for _ in range(steps):
-            x_k, v_k = step(x_k, v_k, dt, p)
-        x[k], v[k] = x_k, v_k
-    check_end(x, v, dt)
-    return x, v
-
-
 # ---------------------------------------------------------------------------------------------- several impacts at once
 
-def check_impacts(body, r, n, e, mu):
-    """Given.  Raise BadInput unless a Solid, offsets r and unit normals n (points, 3), e and μ define an impact."""
-    check_restitution(finite_number("restitution e [-]", e))
-    check_friction(number("friction μ [-]", mu))
-    check_positive("inverse mass [1/kg]", number("inverse mass [1/kg]", body.inv_mass))
-    check_field("velocity v [m/s]", body.v, (3,))
-    check_field("angular velocity ω [rad/s]", body.omega, (3,))
-    check_field("inverse inertia [1/(kg m²)]", body.inv_inertia, (3, 3))
-    check_field("offsets r of the points [m]", r, (len(r), 3))
-    check_field("normals n of the points [-]", n, r.shape)
-    for i in range(len(n)):
-        check_normal(n[i])
-
-
-def one_after_the_other(body, r, n, e, mu):
+def sequential_impacts(body, r, n, e, mu):
     """Given.  Return (Solid, residual [m/s]) after an impact at several points, each treated once, in order.
 
     Each impulse starts from the body as the previous one left it, so the result depends on the order: the two
     ends of an edge leave at different speeds.
     """
     check_impacts(body, r, n, e, mu)
-    w = rebound_speeds(body, r, n, e)
+    u_sep = rebound_speeds(body, r, n, e)
     Js = np.zeros(r.shape)
     after = body
     for i in range(len(r)):
         u = point_velocity(after.v, after.omega, r[i])
-        K = point_inverse_mass(r[i], body.inv_mass, body.inv_inertia)
+        K = contact_matrix(r[i], body.inv_mass, body.inv_inertia)
         Js[i] = contact_impulse(u, n[i], K, e, mu)
-        after = push(after, r[i], Js[i])
-    return after, impact_residual(after, r, n, Js, w, mu)
+        after = apply_impulse(after, r[i], Js[i])
+    return after, impact_residual(after, r, n, Js, u_sep, mu)
 
 
 def rebound_speeds(body, r, n, e):
-    """Given.  Return wᵢ = max(0, −e nᵢ · uᵢ) [m/s] (points,): Newton's restitution, from velocities before impact."""
-    w = np.zeros(len(r))
+    """Given.  Return u_sepᵢ = max(0, −e nᵢ · uᵢ) [m/s] (points,): Newton's restitution, before the impact."""
+    u_sep = np.zeros(len(r))
     for i in range(len(r)):
-        w[i] = np.maximum(0.0, -e * (n[i] @ point_velocity(body.v, body.omega, r[i])))
-    return w
+        u_sep[i] = np.maximum(0.0, -e * (n[i] @ point_velocity(body.v, body.omega, r[i])))
+    return u_sep
 
 
-def largest_speed(body, r):
-    """Given.  Return the largest |v| + |ω||rᵢ| [m/s].
-
-    The velocity of a point is a sum of these two, so its round-off is relative to them, however small the sum is.
-    """
-    reach = 0.0
-    for i in range(len(r)):
-        reach = max(reach, norm(r[i]))
-    return norm(body.v) + norm(body.omega) * reach
-
-
-def impact_residual(after, r, n, Js, w, mu):
+def impact_residual(after, r, n, Js, u_sep, mu):
     """Given.  Return the residual [m/s] of impulses Js (points, 3) in the law of cone_impulse; 0 where the law holds.
 
     It is the largest component of a velocity by which the law, applied to one point alone, would still change
@@ -676,24 +504,11 @@ def impact_residual(after, r, n, Js, w, mu):
     """
     worst = 0.0
     for i in range(len(r)):
-        K = point_inverse_mass(r[i], after.inv_mass, after.inv_inertia)
+        K = contact_matrix(r[i], after.inv_mass, after.inv_inertia)
         u = point_velocity(after.v, after.omega, r[i]) - times(K, Js[i])
-        J = cone_impulse(u, n[i], K, w[i], mu)
+        J = cone_impulse(u, n[i], K, u_sep[i], mu)
         worst = np.maximum(worst, np.abs(times(K, J - Js[i])).max())
     return worst
-
-
-def into_cone(J, n, mu):
-    """Given.  Return the impulse (3,) in Coulomb's cone |J_t| ≤ μ J_n that is nearest to J (3,)."""
-    J_n, J_t = J @ n, tangential(J, n)
-    beta = np.arctan(mu)
-    size = np.sqrt(J_t @ J_t)
-    if J_n >= 0.0 and size * np.cos(beta) <= J_n * np.sin(beta):
-        return J
-    if size == 0.0:
-        return np.maximum(0.0, J_n) * n
-    along_rim = np.maximum(0.0, J_n * np.cos(beta) + size * np.sin(beta))
-    return along_rim * (np.cos(beta) * n + np.sin(beta) / size * J_t)
 
 
 def most_dissipative_impact(body, r, n, e, mu):
@@ -702,7 +517,7 @@ def most_dissipative_impact(body, r, n, e, mu):
     With much friction its law can be without an answer, or its sweeps may not find one.  Of all impulses inside the
     cones, take those that leave the least kinetic energy: a convex problem, which always has an answer.  Each point in
     turn follows the gradient of the energy, its own velocity uᵢ, and returns to its cone:
-    Jᵢ ← into_cone(Jᵢ − uᵢ/tr Kᵢ).  Scale all impulses by s.
+    Jᵢ ← project_onto_cone(Jᵢ − uᵢ/tr Kᵢ).  Scale all impulses by s.
     s = 1 leaves the least energy, and s = 1 + e is Poisson's restitution;
     s is smaller where a point would otherwise move into the other body.  This never gains energy: the energy is
     a parabola in s, and s = 1 + e loses 1 − e² of what s = 1 loses.
@@ -711,19 +526,19 @@ def most_dissipative_impact(body, r, n, e, mu):
     before = np.zeros((len(r), 3))
     for i in range(len(r)):
         before[i] = point_velocity(body.v, body.omega, r[i])
-    w = rebound_speeds(body, r, n, e)
+    u_sep = rebound_speeds(body, r, n, e)
     Js = np.zeros((len(r), 3))
     after, speed = body, largest_speed(body, r)
-    for _ in range(SWEEPS):
+    for _ in range(MAX_SWEEPS):
         change = 0.0
         for i in range(len(r)):
-            K = point_inverse_mass(r[i], body.inv_mass, body.inv_inertia)
+            K = contact_matrix(r[i], body.inv_mass, body.inv_inertia)
             u = point_velocity(after.v, after.omega, r[i])
-            J = into_cone(Js[i] - u / (K[0, 0] + K[1, 1] + K[2, 2]), n[i], mu) - Js[i]
+            J = project_onto_cone(Js[i] - u / (K[0, 0] + K[1, 1] + K[2, 2]), n[i], mu) - Js[i]
             change = np.maximum(change, np.abs(times(K, J)).max())
-            after = push(after, r[i], J)
+            after = apply_impulse(after, r[i], J)
             Js[i] += J
-        if change <= SETTLED * speed:
+        if change <= CONVERGED * speed:
             break
     gain, curvature, share = 0.0, 0.0, 1.0 + e
     for i in range(len(r)):
@@ -738,20 +553,20 @@ def most_dissipative_impact(body, r, n, e, mu):
     after = body
     for i in range(len(r)):
         Js[i] *= share
-        after = push(after, r[i], Js[i])
-    return after, impact_residual(after, r, n, Js, w, mu)
+        after = apply_impulse(after, r[i], Js[i])
+    return after, impact_residual(after, r, n, Js, u_sep, mu)
 
 
 def solve_impacts(body, r, n, e, mu):
     """Return (Solid, residual [m/s]) after simultaneous impacts at several points with immovable bodies.
 
-    r (points, 3) are the offsets and n (points, 3) the normals.  wᵢ = rebound_speeds(body, r, n, e), from the
+    r (points, 3) are the offsets and n (points, 3) the normals.  u_sepᵢ = rebound_speeds(body, r, n, e), from the
     velocities before the impact, and  Jᵢ = 0.  Then sweep over all points:
-        velocity without the point's own impulse:   u = v + ω × rᵢ − Kᵢ Jᵢ,    Kᵢ = point_inverse_mass(rᵢ, 1/m, I⁻¹)
-        new impulse of the point:                   J = cone_impulse(u, nᵢ, Kᵢ, wᵢ, μ)
+        velocity without the point's own impulse:   u = v + ω × rᵢ − Kᵢ Jᵢ,    Kᵢ = contact_matrix(rᵢ, 1/m, I⁻¹)
+        new impulse of the point:                   J = cone_impulse(u, nᵢ, Kᵢ, u_sepᵢ, μ)
         push the body by J − Jᵢ at rᵢ;    Jᵢ ← J
     The residual of a sweep is the largest component of all changes of velocity Kᵢ (J − Jᵢ) of a point by its
-    own impulse.  The sweeps end when the residual is at most SETTLED times largest_speed(body, r).  If SWEEPS
+    own impulse.  The sweeps end when the residual is at most CONVERGED times largest_speed(body, r).  If MAX_SWEEPS
     sweeps are not enough, return most_dissipative_impact(body, r, n, e, μ), given above, of the body before the
     impact: with much friction the law can be without an answer, and then the residual shows that.
 

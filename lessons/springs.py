@@ -26,25 +26,25 @@ from solutions.checks import (
 from solutions.integrators import average_velocity_step
 
 __all__ = [
-    "BEND", "CG_TOLERANCE", "GRAVITY", "SHEAR", "STRUCTURAL", "G", "Mesh", "StepMatrix",
+    "BEND", "CG_TOLERANCE", "GRAVITY", "SHEAR", "STRUCTURAL", "G", "SpringNetwork", "StepMatrix",
     "air_force", "angular_spring_forces", "apply_step_matrix", "conjugate_gradients", "grid_pairs",
-    "implicit_mesh_step", "inverse_masses", "make_mesh", "mass_spring_damper_step",
-    "measured_links", "mesh_acceleration", "randomised", "soft_constraint_force",
-    "soft_contact_force", "spring_forces", "spring_stiffness", "spring_tension",
-    "universal_gravity",
+    "implicit_spring_network_step", "inverse_masses", "make_spring_network",
+    "mass_spring_damper_step", "measured_links", "randomised", "soft_constraint_force",
+    "soft_contact_force", "spring_forces", "spring_network_acceleration", "spring_stiffness",
+    "spring_tension", "universal_gravity",
 ]
 
 GRAVITY = 9.81                # g [m/s²], near the ground; the first lecture deck rounds it to 9.8
 G = 6.67430e-11               # gravitational constant [m³/(kg s²)], CODATA 2018
 
 STRUCTURAL = ((0, 1), (1, 0))     # (rows, columns) from a node of a grid to its partner: along the threads
-SHEAR = ((1, 1), (1, -1))         # across each mesh, both diagonals
+SHEAR = ((1, 1), (1, -1))    # across each network, both diagonals
 BEND = ((0, 2), (2, 0))           # over the next node
 
 CG_TOLERANCE = 1e-10          # residual over right-hand side [-]: far below the error of a first-order step
 
 
-class Mesh(NamedTuple):
+class SpringNetwork(NamedTuple):
     """The constant properties of a mass-spring-damper system."""
     inv_mass: np.ndarray      # (n,) 1/m [1/kg]; 0 is a fixed point
     gravity: np.ndarray       # (d,) [m/s²]
@@ -138,13 +138,13 @@ def angular_spring_forces(x_a, x_b, x_c, rest, k):
 
 # ---------------------------------------------------------------------------------------------- the system
 
-def spring_forces(x, v, mesh):
+def spring_forces(x, v, network):
     """Return the forces (n, d) [N] of all springs on all points.
 
     For each spring:  r = x_j − x_i,   l = |r|,   l̇ = r · (v_j − v_i) / l,   T = spring_tension(l, l̇, …)
                       F_i += T r/l,    F_j −= T r/l
 
-    Include the forces on fixed points; mesh_acceleration holds those points.
+    Include the forces on fixed points; spring_network_acceleration holds those points.
     The worked answer sums over the d coordinates in a loop, because a small array costs more than the arithmetic in
     it.  Array expressions are equally correct, with one trap: if i holds a point twice, F[i] += f adds only once.
     Raises BadInput("the length of a spring [m]", 0.0, "keep its ends apart") when the ends coincide, because the
@@ -155,8 +155,8 @@ def spring_forces(x, v, mesh):
     raise NotImplementedError("Exercise 2.7: spring_forces")
 
 
-def mesh_acceleration(t, x, v, mesh):
-    """Return the acceleration (n, d) [m/s²] of every point of a mesh; a fixed point has none.
+def spring_network_acceleration(t, x, v, network):
+    """Return the acceleration (n, d) [m/s²] of every point of a network; a fixed point has none.
 
     a = g + F/m,   F = springs + air          a = 0 where inv_mass = 0
 
@@ -164,10 +164,10 @@ def mesh_acceleration(t, x, v, mesh):
     *Source:* first lecture deck, “Mass-Spring-Damper System”.
     """
     # YOUR CODE HERE
-    raise NotImplementedError("Exercise 2.8: mesh_acceleration")
+    raise NotImplementedError("Exercise 2.8: spring_network_acceleration")
 
 
-def mass_spring_damper_step(t, x, v, dt, mesh):
+def mass_spring_damper_step(t, x, v, dt, network):
     """Advance the whole system by one step, as in the lecture; return (x, v) at t + dt.
 
     wind on every point · spring and damper forces on both ends · a = g + F/m · v_new = v + dt a · x += dt (v + v_new)/2
@@ -178,7 +178,7 @@ def mass_spring_damper_step(t, x, v, dt, mesh):
     raise NotImplementedError("Exercise 2.9: mass_spring_damper_step")
 
 
-# ---------------------------------------------------------------------------------------------- building a mesh
+# ---------------------------------------------------------------------------------------------- building a network
 
 def grid_pairs(rows, cols, offsets):
     """Return the pairs (s, 2) of nodes that springs join in a grid; node (r, c) has the number r · cols + c.
@@ -192,15 +192,15 @@ def grid_pairs(rows, cols, offsets):
     raise NotImplementedError("Exercise 2.10: grid_pairs")
 
 
-def make_mesh(x, m, fixed, pairs, k, k_d, gravity, wind, k_v):
-    """Given.  Make a Mesh whose springs have their lengths at x as natural lengths.
+def make_spring_network(x, m, fixed, pairs, k, k_d, gravity, wind, k_v):
+    """Given.  Make a SpringNetwork whose springs have their lengths at x as natural lengths.
 
     x (n, d); m [kg], k and k_d are numbers or one each; fixed lists point numbers; pairs (s, 2); gravity and wind (d,).
     Raises BadInput for a mass that is not positive, a state that is not finite, a point number out of range, a spring
     of zero length, a negative stiffness, damper or viscosity, gravity or wind of another dimension than x.
     """
-    x = finite_array("a position of the mesh [m]", x)
-    inv_mass = inverse_masses("a mass of the mesh [kg]", m, fixed, x)
+    x = finite_array("a position of the network [m]", x)
+    inv_mass = inverse_masses("a mass of the network [kg]", m, fixed, x)
     i, j, rest = measured_links("spring", x, pairs)
     for s in np.flatnonzero(rest == 0.0):
         raise BadInput(f"the length of spring {s} from point {i[s]} to {j[s]} [m]", 0.0, "move its ends apart")
@@ -211,7 +211,7 @@ def make_mesh(x, m, fixed, pairs, k, k_d, gravity, wind, k_v):
     stiffness = one_each("stiffness k [N/m]", k, len(i))
     damper = one_each("damper k_d [N s/m]", k_d, len(i))
     viscosity = one_each("viscosity k_v [N s/m]", k_v, 1)[0]
-    return Mesh(inv_mass, gravity, wind, viscosity, i, j, rest, stiffness, damper)
+    return SpringNetwork(inv_mass, gravity, wind, viscosity, i, j, rest, stiffness, damper)
 
 
 def inverse_masses(thing, m, fixed, x):
@@ -245,17 +245,17 @@ def randomised(value, spread, u):
     return value * (1.0 + spread * (2.0 * u - 1.0))
 
 
-# ---------------------------------------------------------------------------------------------- stiff meshes
+# ---------------------------------------------------------------------------------------------- stiff networks
 
 class StepMatrix(NamedTuple):
-    """The sparse matrix A = M + dt k_v − dt ∂F/∂v − dt² ∂F/∂x of a mesh: a diagonal, and one block per spring."""
+    """The sparse matrix A = M + dt k_v − dt ∂F/∂v − dt² ∂F/∂x of a network: a diagonal, and one block per spring."""
     diagonal: np.ndarray      # (n,) m + dt k_v [kg]; 0 for a fixed point
     i: np.ndarray             # (s,)
     j: np.ndarray             # (s,)
     block: np.ndarray         # (s, d, d) dt² K + dt D of each spring [kg]
 
 
-def spring_stiffness(x, mesh):
+def spring_stiffness(x, network):
     """Return the blocks K [N/m] and D [N s/m], each (s, d, d): minus the derivatives of the force on i by x_i and v_i.
 
     K = −∂F_i/∂x_i = k n nᵀ + k max(0, 1 − rest/l) (1 − n nᵀ)          n = r/l,  r = x_j − x_i
@@ -310,16 +310,16 @@ def conjugate_gradients(apply, A, right):
     raise NotImplementedError("Exercise 2.12: conjugate_gradients")
 
 
-def implicit_mesh_step(acceleration, t, x, v, dt, mesh):
-    """Advance a mesh by one step of linearly implicit Euler: stable for any stiffness, first order.
+def implicit_spring_network_step(acceleration, t, x, v, dt, network):
+    """Advance a network by one step of linearly implicit Euler: stable for any stiffness, first order.
 
-    (M + dt k_v − dt ∂F/∂v − dt² ∂F/∂x) Δv = dt (M a + dt ∂F/∂x v)        a = acceleration(t, x, v, mesh)
+    (M + dt k_v − dt ∂F/∂v − dt² ∂F/∂x) Δv = dt (M a + dt ∂F/∂x v)        a = acceleration(t, x, v, network)
     vₙ₊₁ = vₙ + Δv,   xₙ₊₁ = xₙ + dt vₙ₊₁
 
-    K, D = spring_stiffness(x, mesh).  The matrix is a StepMatrix with the diagonal m + dt k_v (0 for a fixed point)
+    K, D = spring_stiffness(x, network).  The matrix is a StepMatrix with the diagonal m + dt k_v (0 for a fixed point)
     and the blocks dt² K + dt D.  ∂F/∂x v = −apply_blocks(v, i, j, K).  The right-hand side of a fixed point is 0.
     Solve with conjugate_gradients and apply_step_matrix.
     *Source:* Baraff and Witkin 1998, “Large steps in cloth simulation”.
     """
     # YOUR CODE HERE
-    raise NotImplementedError("Exercise 2.13: implicit_mesh_step")
+    raise NotImplementedError("Exercise 2.13: implicit_spring_network_step")

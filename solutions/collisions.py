@@ -28,31 +28,50 @@ from .checks import (
     finite_number,
     positive_number,
 )
+from .support.geometry import (
+    PARALLEL,
+    box_corners,
+    box_edge,
+    box_face,
+    candidate_axis,
+    column,
+    half_width,
+    incident_edge,
+    outward,
+)
+from .support.simplices import GJK_RELATIVE_GAP, check_hulls, far_enough, nearest_subsimplex, support
+from .support.trees import (
+    Tree,
+    as_pairs,
+    boxes_touch,
+    build_tree,
+    check_boxes,
+    fit_node_box,
+    half_perimeter,
+    partition_at_median,
+    touching_items,
+)
 from .vectors import cross, dot
 
 __all__ = [
-    "EDGES_WIN_BY", "FLAT", "GJK_STEPS", "NEVER", "STOP", "Box", "Contact", "Contacts", "Flock",
-    "Plane", "Target", "Tree", "all_pairs", "ball_box", "ball_capsule", "ball_contact",
-    "ball_plane", "ball_triangle", "box_box", "box_corners", "box_separation", "boxes_touch",
-    "build_tree", "candidate_axis", "capsule_capsule", "check_boxes", "check_hulls", "clip",
-    "closest_on_segment", "closest_on_triangle", "column", "continuous_step", "cylinder_contact",
-    "cylinder_gap", "cylinder_hit", "cylinder_impact_time", "cylinder_time", "discrete_step",
-    "edge_axis_distance", "enclose", "far_enough", "find_intersections", "flight",
-    "flock_acceleration", "girth", "gjk", "half_width", "halve", "make_box", "make_flock",
-    "make_plane", "nearer", "nearest_part", "outward", "plane_distance", "plane_gap",
-    "plane_impact_time", "plane_time", "points_plane", "polygon_contacts", "repulsion",
-    "separating_edge", "steer", "support", "swept_box", "touching_items", "tree_pairs",
-    "triangle_cylinder_gap",
+    "DEGENERATE_AREA", "EDGE_PREFERENCE", "GJK_RELATIVE_GAP", "MAX_GJK_STEPS", "NEVER", "Box",
+    "Contact", "Contacts", "Flock", "Plane", "Target", "Tree", "advance_projectiles", "all_pairs",
+    "ball_box", "ball_capsule", "ball_contact", "ball_cylinder_gap", "ball_cylinder_time",
+    "ball_plane", "ball_plane_gap", "ball_plane_time", "ball_triangle", "box_box", "box_corners",
+    "box_separation", "boxes_touch", "build_tree", "candidate_axis", "capsule_capsule",
+    "check_boxes", "check_hulls", "clip", "closest_on_segment", "closest_on_triangle", "column",
+    "continuous_step", "cylinder_contact", "cylinder_hit", "cylinder_impact_time", "discrete_step",
+    "edge_axis_distance", "far_enough", "find_intersections", "fit_node_box", "flock_acceleration",
+    "gjk", "half_perimeter", "half_width", "make_box", "make_flock", "make_plane", "nearer",
+    "nearest_subsimplex", "outward", "partition_at_median", "plane_distance", "plane_impact_time",
+    "points_plane", "polygon_contacts", "repulsion", "separating_edge", "steer", "support",
+    "swept_box", "touching_items", "tree_pairs", "triangle_cylinder_gap",
 ]
 
 NEVER = np.inf               # time of an event that does not occur in this step [s]
-FLAT = 1e-12                 # area over longest edge squared below which a triangle's normal is round-off [-]
-PARALLEL = 1e-12             # sin² of the angle below which two edges count as parallel [-]
-STOP = 1e-14                 # tolerance of GJK: error of the distance over the size of the bodies [-]
-SMALLEST, LARGEST = 1e-100, 1e100       # sizes of bodies whose squares neither underflow nor overflow [m]
-GJK_STEPS = 100              # at most [-]; ordinary pairs need below 20, ellipsoids of 1 : 300 sometimes all of them
-LEAF = 8                     # boxes in a leaf of a tree [-]: testing so few is faster than descending further
-EDGES_WIN_BY = 1e-9          # how much better than faces a pair of edges must separate [m]; prevents alternation
+DEGENERATE_AREA = 1e-12      # area over longest edge squared below which a triangle's normal is round-off [-]
+MAX_GJK_STEPS = 100          # at most [-]; ordinary pairs need below 20, ellipsoids of 1 : 300 sometimes all of them
+EDGE_PREFERENCE = 1e-9       # how much better than faces a pair of edges must separate [m]; prevents alternation
 
 
 class Contact(NamedTuple):
@@ -90,18 +109,6 @@ class Target(NamedTuple):
     r: float                 # radius of the ball [m]
     R: float                 # radius of the cylinder [m]
     plane: Plane
-
-
-class Tree(NamedTuple):
-    """A hierarchy of boxes around n items; node 0 is the root, which contains all items."""
-    low: np.ndarray          # (m, d) corners of the box around each node [m]
-    high: np.ndarray         # (m, d)
-    child: np.ndarray        # (m,) number of the first child, the second follows it; 0 marks a leaf
-    first: np.ndarray        # (m,) the items of a node are order[first], …
-    count: np.ndarray        # (m,) … this many
-    order: np.ndarray        # (n,) numbers of the items
-    item_low: np.ndarray     # (n, d) boxes of the items [m], sorted like `order`: those of one leaf are adjacent
-    item_high: np.ndarray    # (n, d)
 
 
 class Flock(NamedTuple):
@@ -160,7 +167,7 @@ def plane_impact_time(t, dt, x_0, x_1, r, plane):
     ### END SOLUTION
 
 
-def some_normal(r):
+def normal_or_axis(r):
     """Given.  Return r/|r|, or the last axis where r is zero: there every direction is equally good."""
     length = np.sqrt(r @ r)
     if length != 0.0:
@@ -176,7 +183,7 @@ def ball_contact(x_a, r_a, x_b, r_b):
     n = (x_a − x_b)/|x_a − x_b|,   gap = |x_a − x_b| − r_a − r_b,   p_a = x_a − r_a n,   p_b = x_b + r_b n
     """
     r = x_a - x_b
-    n = some_normal(r)
+    n = normal_or_axis(r)
     return Contact(x_a - r_a * n, x_b + r_b * n, n, np.sqrt(r @ r) - r_a - r_b, 0.0)
 
 
@@ -237,22 +244,22 @@ def cylinder_hit(t, dt, x_0, x_1, r, R):
     return Contact(c.p_a, c.p_b, c.n, c.gap, moment)
 
 
-def plane_gap(x, p):
+def ball_plane_gap(x, p):
     """Given.  Return the gap [m] between a ball at x (3,) and the plane of a Target."""
     return plane_distance(x, p.plane) - p.r
 
 
-def plane_time(t, dt, x_0, x_1, p):
+def ball_plane_time(t, dt, x_0, x_1, p):
     """Given.  Return the plane_impact_time [s] of a Target."""
     return plane_impact_time(t, dt, x_0, x_1, p.r, p.plane)
 
 
-def cylinder_gap(x, p):
+def ball_cylinder_gap(x, p):
     """Given.  Return the gap [m] between a ball at x (3,) and the cylinder of a Target."""
     return cylinder_contact(x, p.r, p.R).gap
 
 
-def cylinder_time(t, dt, x_0, x_1, p):
+def ball_cylinder_time(t, dt, x_0, x_1, p):
     """Given.  Return the cylinder_impact_time [s] of a Target."""
     return cylinder_impact_time(t, dt, x_0, x_1, p.r, p.R)
 
@@ -274,7 +281,7 @@ def continuous_step(gap, impact_time, t, x, v, dt, p):
     return x + dt * v, v
 
 
-def flight(step, gap, impact_time, t, x, v, dt, steps, p):
+def advance_projectiles(step, gap, impact_time, t, x, v, dt, steps, p):
     """Given.  Return (x, v), each (n, 3), of n balls that fly straight, with one test per step, and stop at contact.
 
     Raises BadInput for a step that is not positive, and a state that is not finite.
@@ -350,13 +357,13 @@ def closest_on_triangle(p, a, b, c):
     q where it is inside: ((b − a) × (q − a)) · N ≥ 0, and the same for b, c and for c, a;
     elsewhere the nearest of the closest_on_segment of the three edges, see nearer
 
-    Raises BadInput for a triangle without area: |N| ≤ FLAT times its longest edge squared.
+    Raises BadInput for a triangle without area: |N| ≤ DEGENERATE_AREA times its longest edge squared.
     """
     ### BEGIN SOLUTION 6.7
     N = cross(b - a, c - a)
     area = 0.5 * np.sqrt(dot(N, N))
     longest = max(dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c))
-    if not np.sqrt(dot(N, N)) > FLAT * longest:
+    if not np.sqrt(dot(N, N)) > DEGENERATE_AREA * longest:
         raise BadInput("the area of a triangle [m²]", area, "give three corners that are not on one line")
     q = p - dot(p - a, N) / dot(N, N) * N
     if dot(cross(b - a, q - a), N) >= 0.0 and dot(cross(c - b, q - b), N) >= 0.0 and dot(cross(a - c, q - c), N) >= 0.0:
@@ -408,20 +415,6 @@ def ball_capsule(x, r, a, b, r_b):
     return ball_contact(x, r, closest_on_segment(x, a, b), r_b)
 
 
-def column(R, i):
-    """Given.  Return axis i (3,) of a box, as a new array."""
-    return np.array([R[0, i], R[1, i], R[2, i]])
-
-
-def box_corners(box):
-    """Given.  Return the eight corners (8, 3) of a Box [m]."""
-    corners = np.zeros((8, 3))
-    for k in range(8):
-        side = np.array([1.0 if k & 1 else -1.0, 1.0 if k & 2 else -1.0, 1.0 if k & 4 else -1.0])
-        corners[k] = box.x + box.R @ (side * box.half)
-    return corners
-
-
 def ball_box(x, r, box):
     """Return the Contact of a ball (a) of radius r at x (3,) and a Box (b), even where the ball's centre is inside.
 
@@ -462,17 +455,6 @@ def points_plane(x, plane):
 
 # ---------------------------------------------------------------------------------------------- broad phase
 
-def check_boxes(low, high):
-    """Given.  Raise BadInput unless there is a box, and all are finite with low ≤ high; names the first such edge."""
-    check_array("the lower corners of the boxes [m]", low, 2)
-    check_array("the upper corners of the boxes [m]", high, 2)
-    check_shape("the upper corners of the boxes", high, low.shape)
-    for i in range(len(low)):
-        for c in range(low.shape[1]):
-            if low[i, c] > high[i, c]:
-                raise BadInput("the edge of a box [m]", high[i, c] - low[i, c], "give low ≤ high in every coordinate")
-
-
 def swept_box(low, high, move):
     """Return (low, high), each (d,): the box around the path of a box low, high (d,) that moves by move (d,) [m].
 
@@ -484,22 +466,6 @@ def swept_box(low, high, move):
     ### BEGIN SOLUTION 6.9
     return np.minimum(low, low + move), np.maximum(high, high + move)
     ### END SOLUTION
-
-
-def boxes_touch(low_a, high_a, i, low_b, high_b, j):
-    """Given.  Return whether box i of one set and box j of another overlap or touch: they must in every coordinate."""
-    for c in range(low_a.shape[1]):
-        if low_a[i, c] > high_b[j, c] or low_b[j, c] > high_a[i, c]:
-            return False
-    return True
-
-
-def as_pairs(found):
-    """Given.  Return a list of pairs of numbers as an array (m, 2)."""
-    pairs = np.zeros((len(found), 2), np.int64)
-    for k in range(len(found)):
-        pairs[k, 0], pairs[k, 1] = found[k]
-    return pairs
 
 
 def all_pairs(low, high):
@@ -521,96 +487,13 @@ def all_pairs(low, high):
     ### END SOLUTION
 
 
-def enclose(tree, node):
-    """Given.  Store the box around the items of a node; return the axis along which their middles spread most.
-
-    For build_tree, while the items are still in the order of its input.
-    """
-    widest, axis = -1.0, 0
-    for c in range(tree.item_low.shape[1]):
-        low, high, first, last = np.inf, -np.inf, np.inf, -np.inf
-        for k in range(tree.first[node], tree.first[node] + tree.count[node]):
-            a, b = tree.item_low[tree.order[k], c], tree.item_high[tree.order[k], c]
-            low, high = min(low, a), max(high, b)
-            first, last = min(first, a + b), max(last, a + b)
-        tree.low[node, c], tree.high[node, c] = low, high
-        if last - first > widest:
-            widest, axis = last - first, c
-    return axis
-
-
-def halve(tree, first, count, axis):
-    """Given.  Reorder tree.order[first:first + count] in place: the half with the smaller middles along an axis first.
-
-    For build_tree.
-    *Source:* Hoare 1961, “Algorithm 65: find”: it takes time in proportion to count.
-    """
-    order = tree.order
-    low, high, k = first, first + count - 1, first + count // 2
-    while low < high:
-        pivot = tree.item_low[order[(low + high) // 2], axis] + tree.item_high[order[(low + high) // 2], axis]
-        i, j = low, high
-        while i <= j:
-            while tree.item_low[order[i], axis] + tree.item_high[order[i], axis] < pivot:
-                i += 1
-            while tree.item_low[order[j], axis] + tree.item_high[order[j], axis] > pivot:
-                j -= 1
-            if i <= j:
-                order[i], order[j] = order[j], order[i]
-                i, j = i + 1, j - 1
-        low, high = (i if j < k else low), (j if k < i else high)
-
-
-def build_tree(low, high):
-    """Given.  Return the Tree of boxes low, high (n, d): halve the items along the axis of largest spread, to LEAF.
-
-    Each level of the tree takes time in proportion to n, and there are about log₂(n/LEAF) levels.  See check_boxes.
-    *Source:* median split; second lecture deck, “Bounding volume hierarchies”.
-    """
-    low = finite_array("corner of a box [m]", low)
-    high = finite_array("corner of a box [m]", high)
-    check_boxes(low, high)
-    n, d = low.shape
-    numbers = np.zeros((3, 2 * n), np.int64)
-    corners = np.zeros((2, 2 * n, d))
-    tree = Tree(corners[0], corners[1], numbers[0], numbers[1], numbers[2], np.arange(n), low, high)
-    tree.count[0] = n
-    node, nodes = 0, 1
-    while node < nodes:
-        axis, first, count = enclose(tree, node), tree.first[node], tree.count[node]
-        if count > LEAF:
-            half = count // 2
-            halve(tree, first, count, axis)
-            tree.child[node] = nodes
-            tree.first[nodes], tree.count[nodes] = first, half
-            tree.first[nodes + 1], tree.count[nodes + 1] = first + half, count - half
-            nodes += 2
-        node += 1
-    return Tree(tree.low, tree.high, tree.child, tree.first, tree.count, tree.order, low[tree.order], high[tree.order])
-
-
-def girth(tree, node):
-    """Given.  Return the sum of the edges of a node's box [m], as a measure of its size."""
-    total = 0.0
-    for c in range(tree.low.shape[1]):
-        total += tree.high[node, c] - tree.low[node, c]
-    return total
-
-
-def touching_items(a, i, b, j, found):
-    """Given.  Append to `found` all pairs of an item of leaf i of a and one of leaf j of b whose boxes touch."""
-    for k in range(a.first[i], a.first[i] + a.count[i]):
-        for m in range(b.first[j], b.first[j] + b.count[j]):
-            if boxes_touch(a.item_low, a.item_high, k, b.item_low, b.item_high, m):
-                found.append((a.order[k], b.order[m]))
-
-
 def find_intersections(a, b):
     """Return (m, 2): the pairs (item of a, item of b) whose boxes touch, each once, by a joint descent of two Trees.
 
     FindIntersections(i, j), first of (0, 0), does nothing unless the boxes of node i of a and node j of b touch
     (boxes_touch).  If they do:
-        neither is a leaf      FindIntersections of each child of the larger node (girth; i if equal) with the other one
+        neither is a leaf      FindIntersections of each child of the larger node with the other one; the larger is the
+                               one with the greater half_perimeter, i if these are equal
         one is a leaf          FindIntersections of each child of the other one with the leaf
         both are leaves        test the pairs of their items: touching_items(a, i, b, j, found)
 
@@ -628,7 +511,7 @@ def find_intersections(a, b):
             down_a, down_b = a.child[i], b.child[j]
             if down_a == 0 and down_b == 0:
                 touching_items(a, i, b, j, found)
-            elif down_b == 0 or (down_a > 0 and girth(a, i) >= girth(b, j)):
+            elif down_b == 0 or (down_a > 0 and half_perimeter(a, i) >= half_perimeter(b, j)):
                 waiting.append((down_a, j))
                 waiting.append((down_a + 1, j))
             else:
@@ -654,18 +537,6 @@ def tree_pairs(low, high):
 
 
 # ---------------------------------------------------------------------------------------- narrow phase: separating axes
-
-def outward(a, i):
-    """Given.  Return the outward unit normal (2,) of edge i of a polygon a (k, 2), counter-clockwise.
-
-    Raises BadInput for an edge of zero length.
-    """
-    e = a[(i + 1) % len(a)] - a[i]
-    length = np.sqrt(e @ e)
-    if not 0.0 < length < np.inf:
-        raise BadInput("the length of an edge [m]", length, "give finite corners, each of them once")
-    return np.array([e[1], -e[0]]) / length
-
 
 def separating_edge(a, b):
     """Return (gap [m], i): the edge i of the convex polygon a (k, 2) that separates it best from b (m, 2), and its gap.
@@ -731,16 +602,6 @@ def against_face(y, n, p, flipped):
     return Contacts(on_y, on_face, n, gap) if flipped else Contacts(on_face, on_y, -n, gap)
 
 
-def facing_edge(a, n):
-    """Given.  Return the edge (2, 2) of a polygon whose outward normal is most opposed to n (2,)."""
-    least, edge = np.inf, 0
-    for i in range(len(a)):
-        against = outward(a, i) @ n
-        if against < least:
-            least, edge = against, i
-    return np.stack((a[edge], a[(edge + 1) % len(a)]))
-
-
 def polygon_contacts(a, b):
     """Given.  Return the Contacts of two convex polygons, counter-clockwise; none where they are apart.
 
@@ -759,7 +620,7 @@ def polygon_contacts(a, b):
     face, other, edge = (b, a, j) if flipped else (a, b, i)
     n, p, q = outward(face, edge), face[edge], face[(edge + 1) % len(face)]
     t = np.array([-n[1], n[0]])                                      # from p to q: counter-clockwise
-    y = clip(clip(facing_edge(other, n), t, t @ q), -t, -(t @ p))
+    y = clip(clip(incident_edge(other, n), t, t @ q), -t, -(t @ p))
     return against_face(y, n, p, flipped)
 
 
@@ -780,34 +641,13 @@ def make_box(x, R, half):
     return Box(x, R, half)
 
 
-def half_width(box, n):
-    """Given.  Return how far [m] a Box extends from its centre along the unit vector n:  Σ half_i |axis_i · n|."""
-    total = 0.0
-    for i in range(3):
-        total += box.half[i] * abs(box.R[0, i] * n[0] + box.R[1, i] * n[1] + box.R[2, i] * n[2])
-    return total
-
-
-def candidate_axis(a, b, k):
-    """Given.  Return axis k of the 15 that can separate two Boxes: 3 of a, 3 of b, 9 perpendicular to an edge of each.
-
-    Those 9 are zeros where the edges are parallel.
-    """
-    if k < 3:
-        return column(a.R, k)
-    if k < 6:
-        return column(b.R, k - 3)
-    n = cross(column(a.R, (k - 6) // 3), column(b.R, (k - 6) % 3))
-    return n / np.sqrt(dot(n, n)) if dot(n, n) > PARALLEL else 0.0 * n
-
-
 def box_separation(a, b):
     """Return (gap [m], n, k): the best separating axis of two Boxes, as a unit normal from b to a, and its number.
 
     gap along an axis:   |r · axis| − half_width(a, axis) − half_width(b, axis),     r = x_a − x_b
     Choose the axis of the greatest gap.  An axis of two edges (k ≥ 6) must exceed the best face, k < 6, and any edges
-    before it by EDGES_WIN_BY.  Of equal gaps the first counts.  candidate_axis(a, b, k) returns axis k; skip those that
-    are zeros.  n = ±axis, such that n · r ≥ 0.
+    before it by EDGE_PREFERENCE.  Of equal gaps the first counts.  candidate_axis(a, b, k) returns axis k; skip those
+    that are zeros.  n = ±axis, such that n · r ≥ 0.
 
     gap > 0: the boxes are at least that far apart along n.  gap ≤ 0: they overlap, and −gap along n is the shortest way
     out.
@@ -820,34 +660,10 @@ def box_separation(a, b):
         axis = candidate_axis(a, b, k)
         if dot(axis, axis) > 0.0:
             gap = abs(dot(r, axis)) - half_width(a, axis) - half_width(b, axis)
-            if not gap <= greatest + (EDGES_WIN_BY if k >= 6 else 0.0):      # true for NaN, which must not get lost
+            if not gap <= greatest + (EDGE_PREFERENCE if k >= 6 else 0.0):      # true for NaN, which must not get lost
                 greatest, best, number = gap, axis, k
     return greatest, (best if dot(best, r) >= 0.0 else -best), number
     ### END SOLUTION
-
-
-def box_face(box, n):
-    """Given.  Return (corners (4, 3), i, outward normal (3,)) of the face of a Box most along n; i is its axis."""
-    i, most = 0, -1.0
-    for k in range(3):
-        along = abs(column(box.R, k) @ n)
-        if along > most:
-            i, most = k, along
-    out = column(box.R, i) if column(box.R, i) @ n >= 0.0 else -column(box.R, i)
-    j, k = (i + 1) % 3, (i + 2) % 3
-    u, w = box.half[j] * column(box.R, j), box.half[k] * column(box.R, k)
-    middle = box.x + box.half[i] * out
-    return np.stack((middle + u + w, middle - u + w, middle - u - w, middle + u - w)), i, out
-
-
-def box_edge(box, i, n):
-    """Given.  Return (end, end) of the edge along axis i of a Box that lies farthest along n."""
-    x, along = box.x, box.half[i] * column(box.R, i)
-    for k in range(3):
-        if k != i:
-            axis = column(box.R, k)
-            x = x + (box.half[k] if axis @ n >= 0.0 else -box.half[k]) * axis
-    return x - along, x + along
 
 
 def box_box(a, b):
@@ -880,89 +696,15 @@ def box_box(a, b):
 
 # ---------------------------------------------------------------------------------- narrow phase: any two convex bodies
 
-def support(x, n):
-    """Given.  Return the number of the point of x (k, d) that lies farthest along n (d,)."""
-    farthest, best = -np.inf, 0
-    for i in range(len(x)):
-        if x[i] @ n > farthest:
-            farthest, best = x[i] @ n, i
-    return best
-
-
-def cofactor(delta, G, rest, j):
-    """Given.  Return Δ_j of the points `rest` (bits of an integer) and point j.
-
-    Δ_j = Σ Δ_i(rest) (y_i · y_k − y_i · y_j), with k the first of rest.
-    """
-    if rest == 0:
-        return 1.0
-    k = 0
-    while not rest >> k & 1:
-        k += 1
-    total = 0.0
-    for i in range(len(G)):
-        if rest >> i & 1:
-            total += delta[rest, i] * (G[i, k] - G[i, j])
-    return total
-
-
-def nearest_part(p, q):
-    """Given.  Return (p, q, weights) of those points p, q (k, d) that span the part of the hull of y = p − q next to 0.
-
-    The nearest point is Σ weight y, with weights > 0 and sum 1; k is at most 5.  Johnson's cofactors give it for every
-    subset of the points.  Where they are all positive, it lies inside that subset; the nearest of these points counts.
-    *Source:* Gilbert, Johnson and Keerthi 1988.
-    """
-    y = p - q
-    y = y / np.abs(y).max()                              # weights are ratios; products of 8 lengths must not overflow
-    k, G, least = len(y), y @ y.T, np.inf
-    delta, weights = np.zeros((2**k, k)), np.zeros(k)
-    for subset in range(1, 2**k):
-        inside = True
-        for j in range(k):
-            if subset >> j & 1:
-                delta[subset, j] = cofactor(delta, G, subset ^ (1 << j), j)
-                inside = inside and delta[subset, j] > 0.0
-        if inside:
-            trial = delta[subset] / np.sum(delta[subset])
-            v = trial @ y
-            if v @ v < least:
-                least, weights = v @ v, trial
-    keep = weights > 0.0
-    return p[keep], q[keep], weights[keep]
-
-
-def check_hulls(a, b):
-    """Given.  Raise BadInput unless a (k, d) and b (m, d) are finite points of two bodies, at least one of each.
-
-    Their size must have a square that neither underflows nor overflows.
-    """
-    check_array("the points of body a [m]", a, 2)
-    check_array("the points of body b [m]", b, 2)
-    check_shape("a point of body b", b[0], a[0].shape)
-    size = max(np.abs(a).max(), np.abs(b).max())
-    if size > LARGEST or 0.0 < size < SMALLEST:
-        raise BadInput("the size of two bodies [m]", size, "scale both to about one metre, and the distance back")
-
-
-def far_enough(v, w):
-    """Given.  Return whether v (d,) is the nearest point to 0, to STOP of the size, if none is beyond w (d,) along −v.
-
-    |v|² − v · w ≤ STOP |v| |w|:  v · w/|v| is a lower bound of the distance, and |v| an upper bound.
-    """
-    size_v, size_w = np.sqrt(v @ v), np.sqrt(w @ w)
-    return v @ v - v @ w <= STOP * size_v * size_w or size_v <= STOP * size_w
-
-
 def gjk(a, b):
     """Return the Contact of two convex bodies, the hulls of the points a (k, d) and b (m, d), at their nearest points.
 
     The set of all differences y = p − q is as far from 0 as the bodies are from each other.  Start from one
     point of each,
-    p = a[:1], q = b[:1], weights = np.ones(1).  At most GJK_STEPS times:
+    p = a[:1], q = b[:1], weights = np.ones(1).  At most MAX_GJK_STEPS times:
         v = Σ weight (p − q)                                      the nearest point so far
         i = support(a, −v),  j = support(b, v),  w = a_i − b_j    the difference that is farthest towards 0
-        stop if far_enough(v, w);  otherwise append a_i to p and b_j to q, and reduce them with nearest_part(p, q)
+        stop if far_enough(v, w);  otherwise append a_i to p and b_j to q, and reduce them with nearest_subsimplex(p, q)
     Return ball_contact(Σ weight p, 0, Σ weight q, 0).  Where the bodies overlap it has a gap of 0 (or round-off), and
     its normal is meaningless.
     Raises what check_hulls raises; call it first.
@@ -971,12 +713,12 @@ def gjk(a, b):
     ### BEGIN SOLUTION 6.15
     check_hulls(a, b)
     p, q, weights = a[:1], b[:1], np.ones(1)
-    for _ in range(GJK_STEPS):
+    for _ in range(MAX_GJK_STEPS):
         v = weights @ (p - q)
         i, j = support(a, -v), support(b, v)
         if far_enough(v, a[i] - b[j]):
             break
-        p, q, weights = nearest_part(np.concatenate((p, a[i:i + 1])), np.concatenate((q, b[j:j + 1])))
+        p, q, weights = nearest_subsimplex(np.concatenate((p, a[i:i + 1])), np.concatenate((q, b[j:j + 1])))
     return ball_contact(weights @ p, 0.0, weights @ q, 0.0)
     ### END SOLUTION
 

@@ -57,9 +57,9 @@ from .support.tuples import minus, plus, put, row, scaled
 from .vectors import dot
 
 CONVERGED = 1e-13            # residual over the terms that it is a sum of [-]: a thousand roundings
-SWEEPS = 50_000              # of solve_contacts [-]; a stack of 20 needs 3,800
-PUSH = 3.0                   # at which bodies part that begin inside each other [m/s]: they are not to be thrown out
-PIVOTS = 1000                # of solve_lcp, per contact [-]; it has needed two per contact
+MAX_SWEEPS = 50_000          # of solve_contacts [-]; a stack of 20 needs 3,800
+SEPARATION_SPEED = 3.0       # at which bodies part that begin inside each other [m/s]: they are not to be thrown out
+MAX_PIVOTS = 1000            # of solve_lcp, per contact [-]; it has needed two per contact
 
 
 # ---------------------------------------------------------------------- exactly: all contacts in matrices
@@ -168,7 +168,7 @@ def best_relaxation(rho):
 def solve_lcp(A, b):
     """λ (m,) with 0 ≤ λ ⊥ A λ + b ≥ 0, exact but for round-off: Murty's least-index method.
 
-    Guess which contacts push: at first none.  Then repeat, at most PIVOTS m times:
+    Guess which contacts push: at first none.  Then repeat, at most MAX_PIVOTS m times:
         Find λ with (A λ + b)_k = 0 for those that push and λ_k = 0 for the others.  solve of lesson 1 does it, if the
         rows of the others are those of the identity.
         A contact is wrong if it pushes and λ_k < −ε_k/A_kk, or if it does not and (A λ + b)_k < −ε_k, where
@@ -183,7 +183,7 @@ def solve_lcp(A, b):
     check_independent(A)
     m = b.size
     pushes, lam = np.zeros(m, np.bool_), np.zeros(m)
-    for _ in range(PIVOTS * m):
+    for _ in range(MAX_PIVOTS * m):
         matrix, right = np.eye(m), np.zeros(m)
         for k in range(m):
             if pushes[k]:
@@ -244,10 +244,10 @@ def cone_sweep(A, b, J, mu):
 def solve_contacts(A, b, mu):
     """Given.  J (2m,) by cone_sweep from 0 until cone_residual is at most CONVERGED times the largest (|A||J| + |b|)_k.
 
-    Raises Diverged with the residual after SWEEPS sweeps: a mass ratio of a million is too much for it.
+    Raises Diverged with the residual after MAX_SWEEPS sweeps: a mass ratio of a million is too much for it.
     """
     J, residual = np.zeros(b.size), np.inf
-    for _ in range(SWEEPS // 10):
+    for _ in range(MAX_SWEEPS // 10):
         for _ in range(10):
             J = cone_sweep(A, b, J, mu)
         residual = cone_residual(A, b, J, mu)
@@ -311,6 +311,7 @@ def kept_impulses(contacts, old, J_old, near):
     """J (m, d) [N s] to begin a step with, the warm start: each contact takes over the impulse of an old one.
 
     That is the nearest contact of `old` between the same two bodies, if it is closer than `near` [m]; else J is 0.
+    Normals may have turned: J keeps its direction.  Two new contacts may take over the same old impulse.
     contacts and old are ContactSets; J_old belongs to old.  old.first says where the contacts of each body a are.
     *Source:* Catto 2006.
     """
@@ -400,11 +401,11 @@ def velocity_sweep(v, omega, J, aim, give, contacts, arms, inv_mass, inv_inertia
 
 
 def contact_targets(gap, dt, pile):
-    """Given.  (aim, give), each (m,), of soft_contact for all contacts; none aims at parting faster than PUSH."""
+    """Given.  (aim, give), each (m,), of soft_contact for all contacts; none aims at more than SEPARATION_SPEED."""
     aim, give = np.empty(gap.size), np.empty(gap.size)
     for k in range(gap.size):
         aim[k], give[k] = soft_contact(gap[k], pile.hertz, pile.zeta, dt)
-        aim[k] = min(aim[k], PUSH)
+        aim[k] = min(aim[k], SEPARATION_SPEED)
     return aim, give
 
 

@@ -32,16 +32,17 @@ from .checks import (
 )
 
 __all__ = [
-    "Block", "InBowl", "OnPlane", "bowl_gap", "breakaway_time", "cone_radius", "contact_impulse",
-    "contact_motion", "contact_step", "driven_acceleration", "event_step", "falling_acceleration",
-    "friction_impulse", "grip_correction", "gripping_step", "incline_acceleration",
-    "kinetic_friction", "make_block", "normal_force", "plane_gap", "pyramid_impulse",
-    "pyramid_step", "slide", "sliding_step", "slip_direction", "slip_times", "static_friction",
-    "stopping_time", "tangential", "until_event",
+    "Block", "ParticleInBowl", "ParticleOnPlane", "advance_particle", "advance_to_event",
+    "breakaway_time", "cone_radius", "contact_step", "driven_acceleration", "event_step",
+    "falling_acceleration", "friction_impulse", "friction_position_correction",
+    "incline_acceleration", "kinetic_friction", "kinetic_friction_step", "make_block",
+    "normal_force", "particle_bowl_gap", "particle_contact_impulse", "particle_plane_gap",
+    "position_friction_step", "pyramid_impulse", "pyramid_step", "sliding_step", "slip_direction",
+    "slip_times", "static_friction", "stopping_time", "tangential",
 ]
 
 HALVINGS = 60                # of an interval of time: 2⁻⁶⁰ of a step is below the spacing of floats
-EVENTS = 8                   # stops and starts per step [-]; a force that reverses more often needs a shorter step
+MAX_EVENTS = 8               # stops and starts per step [-]; a force that reverses more often needs a shorter step
 
 
 class Block(NamedTuple):
@@ -50,11 +51,11 @@ class Block(NamedTuple):
     mu_s: float              # static friction [-]
     mu_k: float              # kinetic friction [-], not above mu_s
     gravity: np.ndarray      # (d,) [m/s²]
-    push: np.ndarray         # (d,) amplitude of a periodic force over mass [m/s²]
+    drive: np.ndarray         # (d,) amplitude of a periodic force over mass [m/s²]
     omega: float             # its angular frequency [rad/s]
 
 
-class OnPlane(NamedTuple):
+class ParticleOnPlane(NamedTuple):
     """A particle above a plane."""
     m: float                 # mass [kg]
     mu: float                # friction [-]
@@ -64,7 +65,7 @@ class OnPlane(NamedTuple):
     n: np.ndarray            # (d,) its unit normal
 
 
-class InBowl(NamedTuple):
+class ParticleInBowl(NamedTuple):
     """A particle in a round hollow: a bowl or a trough."""
     m: float                 # mass [kg]
     mu: float                # friction [-]
@@ -190,7 +191,7 @@ def pyramid_impulse(v_t, m, j_n, mu, t_1, t_2):
 
 # ---------------------------------------------------------------------------------------------- a block in time
 
-def make_block(n, mu_s, mu_k, gravity, push, omega):
+def make_block(n, mu_s, mu_k, gravity, drive, omega):
     """Given.  Make a Block from lists, tuples or arrays; n may have any length but zero.
 
     Raises BadInput for a negative μ, for μ_k above μ_s (which would allow neither rest nor sliding), for values that
@@ -203,17 +204,17 @@ def make_block(n, mu_s, mu_k, gravity, push, omega):
         raise BadInput("kinetic friction μ_k [-]", mu_k, f"give at most the static μ_s = {mu_s}")
     n = finite_array("normal n [-]", n)
     gravity = finite_array("gravity [m/s²]", gravity)
-    push = finite_array("push over mass [m/s²]", push)
+    drive = finite_array("drive over mass [m/s²]", drive)
     check_array("normal n", n, 1)
     length = positive_number("length of the normal n [-]", np.linalg.norm(n))
-    for thing, y in (("gravity", gravity), ("push over mass", push)):
+    for thing, y in (("gravity", gravity), ("drive over mass", drive)):
         check_shape(thing, y, n.shape[:1])
-    return Block(n / length, mu_s, mu_k, gravity, push, finite_number("angular frequency ω [rad/s]", omega))
+    return Block(n / length, mu_s, mu_k, gravity, drive, finite_number("angular frequency ω [rad/s]", omega))
 
 
 def driven_acceleration(t, x, v, p):
-    """Given.  Return the acceleration of a Block p without friction and support:  a = g + push cos ωt  [m/s²]."""
-    return p.gravity + np.cos(p.omega * t) * p.push
+    """Given.  Return the acceleration of a Block p without friction and support:  a = g + drive cos ωt  [m/s²]."""
+    return p.gravity + np.cos(p.omega * t) * p.drive
 
 
 def sliding_step(acceleration, t, x, v, dt, p):
@@ -270,7 +271,7 @@ def slip_direction(acceleration, t, x, v, p):
     ### END SOLUTION
 
 
-def slide(acceleration, t, x, v, dt, d, p):
+def kinetic_friction_step(acceleration, t, x, v, dt, d, p):
     """Given.  Return (x, v) after a midpoint step of a block under kinetic friction along −d, even if v reverses.
 
     Second order on a straight path, and exact while the forces are constant.
@@ -284,18 +285,18 @@ def slide(acceleration, t, x, v, dt, d, p):
 def stopping_time(acceleration, t, x, v, dt, d, p):
     """Return the time [s] until a block that slides along d stops: the τ in (0, dt] at which its speed along d is 0.
 
-    If  slide(acceleration, t, x, v, dt, d, p)  ends with  v · d > 0,  the block does not stop in this step: return dt.
+    If  kinetic_friction_step(acceleration, t, x, v, dt, d, p)  ends with  v · d > 0,  the block goes on: return dt.
     Otherwise halve the interval (0, dt] HALVINGS times.  Keep the half in which the sign changes: a slide to its
     beginning still moves (v · d > 0), a slide to its end does not.  Return the end of the last interval.
     *Source:* bisection; second lecture deck, “go back to time of impact”, for the idea.
     """
     ### BEGIN SOLUTION 3.9
-    if slide(acceleration, t, x, v, dt, d, p)[1] @ d > 0.0:
+    if kinetic_friction_step(acceleration, t, x, v, dt, d, p)[1] @ d > 0.0:
         return dt
     moving, stopped = 0.0, dt
     for _ in range(HALVINGS):
         middle = 0.5 * (moving + stopped)
-        if slide(acceleration, t, x, v, middle, d, p)[1] @ d > 0.0:
+        if kinetic_friction_step(acceleration, t, x, v, middle, d, p)[1] @ d > 0.0:
             moving = middle
         else:
             stopped = middle
@@ -325,7 +326,7 @@ def breakaway_time(acceleration, t, x, v, dt, p):
     ### END SOLUTION
 
 
-def until_event(acceleration, t, x, v, dt, p):
+def advance_to_event(acceleration, t, x, v, dt, p):
     """Return (τ, x, v): advance until the block stops or breaks away, at most for dt [s]; second order.
 
     Let d = slip_direction(acceleration, t, x, v, p).  Then
@@ -340,7 +341,7 @@ def until_event(acceleration, t, x, v, dt, p):
     if not np.any(d):
         return breakaway_time(acceleration, t, x, v, dt, p), x, v
     tau = stopping_time(acceleration, t, x, v, dt, d, p)
-    x, v = slide(acceleration, t, x, v, tau, d, p)
+    x, v = kinetic_friction_step(acceleration, t, x, v, tau, d, p)
     return tau, x, v if tau == dt else 0.0 * v
     ### END SOLUTION
 
@@ -348,11 +349,11 @@ def until_event(acceleration, t, x, v, dt, p):
 def event_step(acceleration, t, x, v, dt, p):
     """Given.  Advance a block by one step, through all its stops and starts; second order, exact under constant forces.
 
-    Raises Diverged when EVENTS stops and starts do not reach the end of the step.
+    Raises Diverged when MAX_EVENTS stops and starts do not reach the end of the step.
     """
     left = dt
-    for _ in range(EVENTS):
-        tau, x, v = until_event(acceleration, t, x, v, left, p)
+    for _ in range(MAX_EVENTS):
+        tau, x, v = advance_to_event(acceleration, t, x, v, left, p)
         t += tau
         left -= tau
         if left <= 0.0:
@@ -366,16 +367,16 @@ def slip_times(acceleration, t, x, v, dt, steps, p):
     check_normal(p.n)
     check_shape("the position x", x, p.n.shape)
     finite_array("acceleration at the start [m/s²]", acceleration(t, x, v, p))
-    times = np.zeros((EVENTS * steps, 2))
+    times = np.zeros((MAX_EVENTS * steps, 2))
     k, slipping = 0, False
     for step in range(steps):
         here, left = t + step * dt, dt
-        for _ in range(EVENTS):
+        for _ in range(MAX_EVENTS):
             slides = bool(np.any(slip_direction(acceleration, here, x, v, p)))
             if slides and not slipping:
                 times[k, 0] = here
                 k += 1
-            tau, x, v = until_event(acceleration, here, x, v, left, p)
+            tau, x, v = advance_to_event(acceleration, here, x, v, left, p)
             here += tau
             left -= tau
             slipping = slides and bool(np.any(v))
@@ -393,12 +394,12 @@ def falling_acceleration(t, x, v, p):
     return p.gravity
 
 
-def plane_gap(x, p):
+def particle_plane_gap(x, p):
     """Given.  Return (φ, n) of a plane:  φ = (x − point) · n,  positive on the free side, and its unit normal."""
     return (x - p.point) @ p.n, p.n
 
 
-def bowl_gap(x, p):
+def particle_bowl_gap(x, p):
     """Return (φ, n) of a round hollow: distance [m] of x (d,) from its wall, positive inside, and unit normal.
 
     r = x − centre, without its part along the axis:  r ← r − (r · axis) axis          (axis = 0: a bowl)
@@ -413,7 +414,7 @@ def bowl_gap(x, p):
     ### END SOLUTION
 
 
-def contact_impulse(v, n, m, e, mu):
+def particle_contact_impulse(v, n, m, e, mu):
     """Return the impulse J (d,) [N s] of a fixed surface on a particle of mass m that touches it with v (d,) [m/s].
 
     v_n = v · n;  where v_n ≥ 0 the particle is already leaving: J = 0.          Otherwise
@@ -436,7 +437,7 @@ def contact_step(acceleration, surface, t, x, v, dt, p):
 
     v ← v + dt a(t, x, v),    x ← x + dt v                      as usual, velocity first
     (φ, n) = surface(x, p);   if φ < 0:
-        v ← v + contact_impulse(v, n, m, e, μ)/m                the impulse is 0 where v already points outwards
+        v ← v + particle_contact_impulse(v, n, m, e, μ)/m            the impulse is 0 where v already points outwards
         x ← x − φ n
 
     A particle that should rest on a slope moves dt² g sin θ down it in every step, and the correction acts only across
@@ -448,13 +449,13 @@ def contact_step(acceleration, surface, t, x, v, dt, p):
     x = x + dt * v
     phi, n = surface(x, p)
     if phi < 0.0:
-        v = v + contact_impulse(v, n, p.m, p.e, p.mu) / p.m
+        v = v + particle_contact_impulse(v, n, p.m, p.e, p.mu) / p.m
         x = x - phi * n
     return x, v
     ### END SOLUTION
 
 
-def grip_correction(moved, n, depth, mu):
+def friction_position_correction(moved, n, depth, mu):
     """Return the correction (d,) [m] along the surface after a step that moved a particle by `moved` (d,).
 
     Δx_t = −min(μ depth, |s|) s/|s|,     s = tangential(moved, n);          0 where s = 0
@@ -470,11 +471,11 @@ def grip_correction(moved, n, depth, mu):
     ### END SOLUTION
 
 
-def gripping_step(acceleration, surface, t, x, v, dt, p):
+def position_friction_step(acceleration, surface, t, x, v, dt, p):
     """Advance a particle as contact_step does, with a tangential correction of its position; first order, no creep.
 
     As contact_step.  Where φ < 0 and the velocity was inwards (v · n < 0, before the impulse), also add to x
-        grip_correction(displacement in this step before x was moved back, n, −φ, μ)
+        friction_position_correction(displacement in this step before x was moved back, n, −φ, μ)
 
     *Source:* second lecture deck, the last line of that strategy.
     """
@@ -486,13 +487,13 @@ def gripping_step(acceleration, surface, t, x, v, dt, p):
     if phi < 0.0:
         x = x - phi * n
         if v @ n < 0.0:
-            x = x + grip_correction(moved, n, -phi, p.mu)
-        v = v + contact_impulse(v, n, p.m, p.e, p.mu) / p.m
+            x = x + friction_position_correction(moved, n, -phi, p.mu)
+        v = v + particle_contact_impulse(v, n, p.m, p.e, p.mu) / p.m
     return x, v
     ### END SOLUTION
 
 
-def contact_motion(step, acceleration, surface, t, x, v, dt, steps, p):
+def advance_particle(step, acceleration, surface, t, x, v, dt, steps, p):
     """Given.  Return the state (x, v) of a particle after `steps` steps of one method.
 
     Raises BadInput for a mass or a step that is not positive, a negative μ, an e outside 0 … 1, a state that is not

@@ -24,16 +24,16 @@ from .checks import BadInput, check_finite, check_positive
 from .vectors import cross, dot, inverse
 
 __all__ = [
-    "TENSOR_ROUND_OFF", "Body", "angular_momentum", "box_inertia", "capsule_inertia",
+    "MOMENT_ROUND_OFF", "MassProperties", "angular_momentum", "box_inertia", "capsule_inertia",
     "centre_of_mass", "check_closed", "check_inertia", "combine", "cylinder_inertia",
     "linear_momentum", "mesh_body", "mesh_integrals", "parallel_axes", "point_mass_inertia",
     "principal_axes", "sphere_inertia", "world_inertia", "world_inverse_inertia",
 ]
 
-TENSOR_ROUND_OFF = 1e-14      # accuracy of a moment relative to the largest [-]: a few dozen roundings of 1.1e-16
+MOMENT_ROUND_OFF = 1e-14     # accuracy of a moment relative to the largest [-]: a few dozen roundings of 1.1e-16
 
 
-class Body(NamedTuple):
+class MassProperties(NamedTuple):
     """The properties of a body that determine its rigid motion."""
     m: float                  # mass [kg]
     x: np.ndarray             # (3,) centre of mass [m]
@@ -64,6 +64,7 @@ def linear_momentum(m, v):
 
     P = Σ mᵢ vᵢ = M Ẋ,   dP/dt = F         constant without external forces
 
+    The masses may be zero or negative, and so may their sum, here and below.
     *Source:* first lecture deck, “Linear Momentum”.
     """
     ### BEGIN SOLUTION 4.2
@@ -108,7 +109,7 @@ def box_inertia(m, size):
 
     Ixx = ∫∫∫ ρ (y² + z²) dx dy dz = m (b² + c²)/12,   a, b, c = size
 
-    m < 0 is allowed, here and below: a hole is a body of negative mass.
+    m < 0 is allowed, here and below: a hole is a body of negative mass.  An edge of zero is allowed: a plate, a rod.
     *Source:* first lecture deck, “Inertia Tensor”, the volume integral.
     """
     ### BEGIN SOLUTION 4.5
@@ -210,19 +211,20 @@ def parallel_axes(I, m, d):
 
 
 def combine(m, x, I):
-    """Return the Body of n rigidly connected bodies: m (n,), their centres x (n, 3), tensors I (n, 3, 3) about these.
+    """Return the MassProperties of n rigidly connected bodies: m (n,), centres x (n, 3), I (n, 3, 3) about these.
 
     M, X = centre_of_mass,   I = Σ of all Iᵢ, each moved to X by parallel_axes
 
     A body of negative mass is a hole.  All tensors are in the same axes: use world_inertia first for a rotated part.
-    Raises BadInput like centre_of_mass.
+    About the origin of the world, a body far away would lose its digits.
+    Raises BadInput like centre_of_mass; the order of the bodies does not matter.
     """
     ### BEGIN SOLUTION 4.12
     M, X = centre_of_mass(m, x)
     total = np.zeros((3, 3))
     for n in range(m.size):
         total += parallel_axes(I[n], m[n], x[n] - X)
-    return Body(M, X, total)
+    return MassProperties(M, X, total)
     ### END SOLUTION
 
 
@@ -232,7 +234,7 @@ def principal_axes(I):
     I = R diag(moments) Rᵀ        L is parallel to ω about these axes, and about no others
 
     np.linalg.eigh(I) returns moments and columns, but these can be left-handed, det R = −1: then reverse the
-    last column.
+    last column.  Moments may be negative: those of a hole are.
     *Source:* Euler 1765; Landau and Lifshitz, Mechanics, § 32.
     """
     ### BEGIN SOLUTION 4.13
@@ -246,7 +248,7 @@ def principal_axes(I):
 def check_inertia(I):
     """Raise BadInput unless I (3, 3) can be the tensor of a body with thickness.
 
-    I₁ ≤ I₂ ≤ I₃ are its principal moments and ε = TENSOR_ROUND_OFF.  The name of the thing in BadInput is one of
+    I₁ ≤ I₂ ≤ I₃ are its principal moments and ε = MOMENT_ROUND_OFF.  The name of the thing in BadInput is one of
     "an entry of the inertia tensor [kg m²]"           infinite or NaN                  (from check_finite)
     "the asymmetry of an inertia tensor [kg m²]"       max|I − Iᵀ| > ε max|I|
     "the smallest principal moment [kg m²]"            I₁ ≤ ε I₃: no resistance; a line of points has I₁ = 0
@@ -258,14 +260,14 @@ def check_inertia(I):
     ### BEGIN SOLUTION 4.14
     check_finite("an entry of the inertia tensor [kg m²]", I)
     asymmetry = np.max(np.abs(I - I.T))
-    if asymmetry > TENSOR_ROUND_OFF * np.max(np.abs(I)):
+    if asymmetry > MOMENT_ROUND_OFF * np.max(np.abs(I)):
         raise BadInput("the asymmetry of an inertia tensor [kg m²]", asymmetry,
                        "give equal entries on both sides of the diagonal")
     moments, _ = principal_axes(I)
-    if moments[0] <= TENSOR_ROUND_OFF * moments[2]:
+    if moments[0] <= MOMENT_ROUND_OFF * moments[2]:
         raise BadInput("the smallest principal moment [kg m²]", moments[0],
                        "give a body of positive mass, and some thickness")
-    if moments[2] > (moments[0] + moments[1]) * (1.0 + TENSOR_ROUND_OFF):
+    if moments[2] > (moments[0] + moments[1]) * (1.0 + MOMENT_ROUND_OFF):
         raise BadInput("the largest principal moment [kg m²]", moments[2],
                        "no body has more than the sum of its other two")
     ### END SOLUTION
@@ -337,7 +339,7 @@ def check_closed(count, faces):
 
 
 def mesh_body(density, x, faces):
-    """Return the Body of uniform density [kg/m³] inside a closed mesh: corners x (n, 3) [m], faces (k, 3).
+    """Return the MassProperties of uniform density [kg/m³] inside a closed mesh: corners x (n, 3) [m], faces (k, 3).
 
     Let (V, S, Q) be the mesh_integrals of x − o, about a point o of the body itself, the first corner:
         m = ρ V,   centre = o + c,  c = S/V,   C = Q − V c cᵀ,   I = ρ (tr C 1 − C)
@@ -348,7 +350,7 @@ def mesh_body(density, x, faces):
     Raises BadInput unless the density is positive (check_positive), the corners are finite and the mesh is closed
     (check_closed).  Raises it with "the volume inside the mesh [m³]" unless V > ε e³, e = max|x − o| over all
     coordinates,
-    ε = TENSOR_ROUND_OFF: then its triangles are clockwise, or it is flat and its volume only round-off.
+    ε = MOMENT_ROUND_OFF: then its triangles are clockwise, or it is flat and its volume only round-off.
     *Source:* as for mesh_integrals.
     """
     ### BEGIN SOLUTION 4.17
@@ -357,11 +359,11 @@ def mesh_body(density, x, faces):
     check_closed(x.shape[0], faces)
     offsets = x - x[0]
     volume, first, second = mesh_integrals(offsets, faces)
-    if volume <= TENSOR_ROUND_OFF * np.max(np.abs(offsets)) ** 3:
+    if volume <= MOMENT_ROUND_OFF * np.max(np.abs(offsets)) ** 3:
         raise BadInput("the volume inside the mesh [m³]", volume,
                        "give one that is not flat, its triangles counter-clockwise as seen from outside")
     centre = first / volume
     covariance = second - volume * np.outer(centre, centre)
     tensor = density * (np.trace(covariance) * np.eye(3) - covariance)
-    return Body(density * volume, x[0] + centre, tensor)
+    return MassProperties(density * volume, x[0] + centre, tensor)
     ### END SOLUTION

@@ -18,15 +18,22 @@ import numpy as np
 from .checks import Diverged, check_end, check_positive, checked_run, float_copy
 
 __all__ = [
-    "NEWTON_LIMIT", "ROUND_OFF", "Oscillator", "advance", "amplification_matrix",
-    "average_velocity_step", "euler_step", "implicit_euler_step", "implicit_midpoint_step",
-    "midpoint_step", "newton_matrix", "observed_order", "oscillator_acceleration", "rk4_step",
-    "solve", "spectral_radius", "symplectic_euler_step", "trajectory", "verlet_step",
+    "NEWTON_LIMIT", "POSITION_ROUND_OFF", "Oscillator", "advance", "amplification_matrix",
+    "average_velocity_step", "blanes_moan_step", "euler_step", "implicit_euler_step",
+    "implicit_midpoint_step", "midpoint_step", "newton_matrix", "observed_order",
+    "oscillator_acceleration", "rk4_step", "solve", "spectral_radius", "symplectic_euler_step",
+    "trajectory", "verlet_step",
 ]
 
 NEWTON_TOLERANCE = 1e-12     # last correction over the size of the velocity [-]: well above round-off, 2e-16
 NEWTON_LIMIT = 30            # corrections [-]; from a good guess Newton doubles its digits and needs fewer than 8
-ROUND_OFF = 1e-15            # a few spacings of floats [-]: the relative accuracy of any position
+POSITION_ROUND_OFF = 1e-15   # a few spacings of floats [-]: the relative accuracy of any position
+KICKS = (0.0829844064174052, 0.396309801498368, -0.0390563049223486)      # the fourth is 1 − 2 Σ, then backwards
+DRIFTS = (0.245298957184271, 0.604872665711080)                           # the third is ½ − Σ, then backwards
+SPLITTING = (
+    (KICKS[0], DRIFTS[0]), (KICKS[1], DRIFTS[1]), (KICKS[2], 0.5 - DRIFTS[0] - DRIFTS[1]),
+    (1.0 - 2.0 * (KICKS[0] + KICKS[1] + KICKS[2]), 0.5 - DRIFTS[0] - DRIFTS[1]),
+    (KICKS[2], DRIFTS[1]), (KICKS[1], DRIFTS[0]), (KICKS[0], 0.0))
 DIFFERENCE_STEP = 6e-6       # ∛(2.2e-16) [-]: balances truncation against round-off in a central difference
 
 
@@ -143,6 +150,24 @@ def verlet_step(acceleration, t, x, v, dt, p):
     ### END SOLUTION
 
 
+def blanes_moan_step(acceleration, t, x, v, dt, p):
+    """Given.  Advance one step of six kicks and drifts; fourth order, for accelerations that do not depend on v.
+
+    kick:  v ← v + kick dt a(t, x)         drift:  x ← x + drift dt v,   t ← t + drift dt        by turns, see SPLITTING
+    With SPLITTING = ((0, ½), (1, ½)) this is leapfrog: Verlet is the simplest of a family.  It keeps the energy as
+    Verlet does, with an error that is smaller by orders of magnitude for six times the work.
+    *Source:* Blanes and Moan 2002, the Runge–Kutta–Nyström method SRKN₆ᵇ of order 4.
+    """
+    x, v = x.copy(), v.copy()
+    for kick, drift in SPLITTING:
+        a = acceleration(t, x, v, p)
+        for k in range(x.size):
+            v.flat[k] += kick * dt * a.flat[k]
+            x.flat[k] += drift * dt * v.flat[k]
+        t += drift * dt
+    return x, v
+
+
 # ---------------------------------------------------------------------------------------------- implicit methods
 
 def newton_matrix(acceleration, t, x, v, dt, p):
@@ -177,8 +202,8 @@ def implicit_euler_step(acceleration, t, x, v, dt, p):
     repeat, at most NEWTON_LIMIT times,
         r = w − vₙ − dt a(tₙ + dt, xₙ + dt w, w)
         w ← w − δ,    newton_matrix(acceleration, tₙ + dt, xₙ, w, dt, p) · δ = r
-    until max|δ| ≤ NEWTON_TOLERANCE · max(1, max|w|) + ROUND_OFF · max|xₙ| / dt.  The last term is the round-off of a
-    position far from the origin, expressed as a velocity.
+    until max|δ| ≤ NEWTON_TOLERANCE · max(1, max|w|) + POSITION_ROUND_OFF · max|xₙ| / dt.  The last term is the
+    round-off of a position far from the origin, expressed as a velocity.
     newton_matrix and solve are given above.  r and δ are flat, (n,): use .ravel() and .reshape(v.shape).
 
     Raises Diverged("Newton's method did not converge at dt [s]", dt, "take a smaller step") after NEWTON_LIMIT
@@ -187,7 +212,7 @@ def implicit_euler_step(acceleration, t, x, v, dt, p):
     """
     ### BEGIN SOLUTION 1.7
     w = v.copy()
-    unknowable = ROUND_OFF * np.max(np.abs(x)) / dt
+    unknowable = POSITION_ROUND_OFF * np.max(np.abs(x)) / dt
     for _ in range(NEWTON_LIMIT):
         residual = w - v - dt * acceleration(t + dt, x + dt * w, w, p)
         matrix = newton_matrix(acceleration, t + dt, x, w, dt, p)

@@ -7,8 +7,8 @@ C constraint [m] or [rad] or [m³] · ∇C its gradient · λ [N] multiplier: mi
 α [m/N] compliance, one over stiffness · q (4,) = (w, x, y, z) orientation · ω (3,) [rad/s] ·
 n unit normal or direction, from b (or j) to a (or i).
 
-A method for points is a function  step(acceleration, t, x, v, dt, net) → (x, v)  at t + dt, as in lesson 1.
-The step passes net on unchanged.
+A method for points is a function  step(acceleration, t, x, v, dt, network) → (x, v)  at t + dt, as in lesson 1.
+The step passes network on unchanged.
 *Left out:* friction (lesson 3 adds it to such a step); collision of a cloth with itself (lesson 6 finds it).
 """
 
@@ -18,27 +18,31 @@ import numpy as np
 
 from .checks import BadInput, Diverged, check_shape, finite_array, float_copy, one_each, whole_number
 from .integrators import solve
-from .rotation import angular_acceleration, product, quaternion_update, rotate, unrotate
+from .rotation import angular_acceleration, quaternion_product, quaternion_update, rotate, unrotate
 from .springs import inverse_masses, measured_links
+from .support.networks import apply_multipliers, constraint_rates, link_delassus_matrix, shared_edges
+from .support.ropes import composed_rope_step, rope_step
 from .vectors import cross, dot
 
 __all__ = [
-    "NEWTON_LIMIT", "TRACE", "Balloon", "Cloth", "Hung", "Net", "Obstacle", "ball_gap",
-    "balloon_step", "cloth_step", "compliant_multiplier", "compliant_sweep", "constraints",
-    "distance_constraint", "distance_sweep", "falling_acceleration", "floor_gap", "fold_constraint",
-    "fold_sweep", "generalised_inverse_mass", "hung_step", "keep_outside", "make_net", "met",
-    "newton_correction", "pbd_sag", "pbd_step", "predict", "projection", "projection_step",
-    "push_body", "pushed", "rates", "rattle_step", "shared_edges", "turning_rate",
+    "NEWTON_LIMIT", "REGULARISATION", "Balloon", "Cloth", "ConstraintNetwork", "Obstacle",
+    "PivotedBody", "apply_multipliers", "apply_positional_impulse", "ball_gap", "balloon_step",
+    "cloth_step", "compliant_multiplier", "compliant_sweep", "composed_rope_step",
+    "constraint_correction", "constraint_projection_step", "constraint_rates", "constraints",
+    "distance_constraint", "distance_sweep", "effective_inverse_mass_at", "floor_gap",
+    "fold_constraint", "fold_sweep", "keep_outside", "link_delassus_matrix",
+    "make_constraint_network", "network_gravity", "newton_correction", "pbd_sag", "pbd_step",
+    "pivoted_body_step", "predict", "rattle_step", "rope_step", "shared_edges", "turning_rate",
     "volume_gradient", "xpbd_step",
 ]
 
 NEWTON_TOLERANCE = 1e-12     # last correction over the longest link [-]; Newton squares it, so only round-off remains
 NEWTON_LIMIT = 40            # corrections [-]: 4 to 7 for moves of 1/10 link per step, 30 and more for a whole link
-TRACE = 1e-13                # compliance over w dt² of a link [-]: far below the pull of all links, far above round-off
-FIRST_TRACE = 1e-10          # the same while the gaps still close: redundant links then disagree by more than round-off
+REGULARISATION = 1e-13       # compliance over w dt² of a link [-]: far below the pull of all links, far above round-off
+FIRST_REGULARISATION = 1e-10 # the same while gaps still close: redundant links then disagree by more than round-off
 
 
-class Net(NamedTuple):
+class ConstraintNetwork(NamedTuple):
     """Points and the links between them: a pendulum, a rope, a cloth."""
     inv_mass: np.ndarray     # (n,) [1/kg]; 0: immovable, neither forces nor links change its velocity
     gravity: np.ndarray      # (d,) [m/s²]
@@ -59,8 +63,8 @@ class Obstacle(NamedTuple):
 
 
 class Cloth(NamedTuple):
-    """A net whose faces resist folding."""
-    net: Net
+    """A network whose faces resist folding."""
+    network: ConstraintNetwork
     hinges: np.ndarray       # (h, 4) points a, b, c, d of each fold: edge a–b, other corners c and d of its faces
     fold: np.ndarray         # (h,) rest angle of each fold [rad]; 0 is flat
     stiffness: float         # share of the error of a fold that is removed per visit [-]
@@ -68,15 +72,15 @@ class Cloth(NamedTuple):
 
 
 class Balloon(NamedTuple):
-    """A closed net filled with air."""
-    net: Net
+    """A closed network filled with air."""
+    network: ConstraintNetwork
     faces: np.ndarray        # (f, 3) corners, counter-clockwise seen from outside
     volume: float            # rest volume [m³]
     alpha: float             # compliance of the air [m³/(N/m²)]; 0 keeps the volume
     obstacle: Obstacle
 
 
-class Hung(NamedTuple):
+class PivotedBody(NamedTuple):
     """A rigid body that hangs from a fixed point."""
     m: float                 # mass [kg]
     I_body: np.ndarray       # (3,) principal moments [kg m²]
@@ -106,7 +110,7 @@ def distance_constraint(x_i, x_j, rest):
     ### END SOLUTION
 
 
-def projection(C, gradients, inv_mass):
+def constraint_correction(C, gradients, inv_mass):
     """Return the corrections (k, d) [m] of the k points of one constraint that satisfy it to first order.
 
     Δxₖ = wₖ Λ ∇ₖC,      Λ = −C / Σ wₖ |∇ₖC|²          Λ = Δλ dt²: dt cancels, so it is not an argument
@@ -114,7 +118,7 @@ def projection(C, gradients, inv_mass):
     C is the value of the constraint and gradients (k, d) are its ∇ₖC.  Each point moves along its gradient, in
     proportion to its inverse mass: heavy points move little, and Σ mₖ Δxₖ = Λ Σ ∇ₖC.
     Raises BadInput("Σ w |∇C|² of a constraint", 0.0, "let one of its points have a mass and a gradient") where
-    no point can move.
+    no point can move, even where C = 0.
     *Source:* second lecture deck, “Applying a constraint force”; Müller et al. 2006, section 3.3.
     """
     ### BEGIN SOLUTION 8.2
@@ -130,56 +134,56 @@ def projection(C, gradients, inv_mass):
 
 # ---------------------------------------------------------------------------------------------- the projection method
 
-def falling_acceleration(t, x, v, net):
+def network_gravity(t, x, v, network):
     """Given.  Return a (n, d) [m/s²]: gravity for every movable point, 0 for the others."""
     a = np.zeros(x.shape)
     for k in range(x.shape[0]):
-        if net.inv_mass[k] > 0.0:
+        if network.inv_mass[k] > 0.0:
             for c in range(x.shape[1]):
-                a[k, c] = net.gravity[c]
+                a[k, c] = network.gravity[c]
     return a
 
 
-def predict(acceleration, t, x, v, dt, net):
+def predict(acceleration, t, x, v, dt, network):
     """Return the positions (n, d) at t + dt without constraints:  x_pred = x + dt v + dt² a(t, x, v).
 
     An immovable point (inv_mass = 0) feels no force: its a counts as 0, and it keeps its velocity v.
     *Source:* second lecture deck, q_pred = qₙ + vₙ Δt + M⁻¹ f Δt².
     """
     ### BEGIN SOLUTION 8.3
-    free = net.inv_mass > 0.0
-    a = acceleration(t, x, v, net)
+    free = network.inv_mass > 0.0
+    a = acceleration(t, x, v, network)
     return x + dt * v + dt * dt * free[:, None] * a
     ### END SOLUTION
 
 
-def constraints(x, net):
+def constraints(x, network):
     """Given.  Return (C (s,), J (s, n d)) of all links: C as in distance_constraint, row s of J = ∂Cₛ/∂x.ravel()."""
     d = x.shape[1]
-    C, J = np.zeros(net.i.size), np.zeros((net.i.size, x.size))
-    for s in range(net.i.size):
-        i, j = net.i[s], net.j[s]
-        C[s], n = distance_constraint(x[i], x[j], net.rest[s])
+    C, J = np.zeros(network.i.size), np.zeros((network.i.size, x.size))
+    for s in range(network.i.size):
+        i, j = network.i[s], network.j[s]
+        C[s], n = distance_constraint(x[i], x[j], network.rest[s])
         for c in range(d):
             J[s, i * d + c] = n[c]
             J[s, j * d + c] = -n[c]
     return C, J
 
 
-def newton_correction(x, lam, goal, dt, net):
+def newton_correction(x, lam, goal, dt, network):
     """Return (Δx (n, d) [m], λ (s,) [N]): one Newton iteration for positions and multipliers together.
 
     It solves  x − x_pred − dt² W Σ λₛ ∇Cₛ(x) = 0  and  Cₛ(x) = 0.  Both equations, linearised about the guess
     (x, λ), with the new multipliers λ_new as unknowns:
         (1 − dt² W Σ λₛ ∇²Cₛ) Δx − dt² W Jᵀ λ_new = x_pred − x
-        J Δx − ε dt² (λ_new − λ)                  = −C              ε = TRACE (w_i + w_j) of each link
+        J Δx − ε dt² (λ_new − λ)                  = −C              ε = REGULARISATION (w_i + w_j) of each link
     ε is a very small compliance.  It acts on the change λ_new − λ, not on λ: when Newton's method has converged, the
     change is 0 and ε has no effect.  Redundant links (a square with both diagonals) have many equivalent
     multipliers.  ε selects among them; without it the matrix has no inverse there.
     Use Λ = dt² λ_new as the unknown, because its size is comparable to that of x.  The second equation becomes
         J Δx − ε Λ = −C − ε dt² λ          with −ε on the diagonal
 
-    W is the inverse mass of each coordinate of x.ravel();  (C, J) = constraints(x, net);  goal (n, d) is x_pred.
+    W is the inverse mass of each coordinate of x.ravel();  (C, J) = constraints(x, network);  goal (n, d) is x_pred.
     ∇²C of a link: H = (1 − n nᵀ)/l for the ends (i, i) and (j, j), −H for (i, j) and (j, i);  l = C + rest.
     Solve the system with solve(matrix, right).  The worked answer fills the matrix entry by entry, because block
     assignments would multiply the compile time.
@@ -187,26 +191,26 @@ def newton_correction(x, lam, goal, dt, net):
     """
     ### BEGIN SOLUTION 8.4
     d, size = x.shape[1], x.size
-    C, J = constraints(x, net)
+    C, J = constraints(x, network)
     A = np.zeros((size + C.size, size + C.size))
     right = np.zeros(size + C.size)
     for k in range(size):
         A[k, k] = 1.0
         right[k] = goal[k // d, k % d] - x[k // d, k % d]
     for s in range(C.size):
-        trace = TRACE * (net.inv_mass[net.i[s]] + net.inv_mass[net.j[s]])
+        trace = REGULARISATION * (network.inv_mass[network.i[s]] + network.inv_mass[network.j[s]])
         A[size + s, size + s] = -trace
         right[size + s] = -C[s] - trace * dt * dt * lam[s]
-        bend = dt * dt * lam[s] / (C[s] + net.rest[s])
-        for e in (net.i[s], net.j[s]):
+        bend = dt * dt * lam[s] / (C[s] + network.rest[s])
+        for e in (network.i[s], network.j[s]):
             for a in range(e * d, e * d + d):
                 A[size + s, a] = J[s, a]
-                A[a, size + s] = -net.inv_mass[e] * J[s, a]
-                for f in (net.i[s], net.j[s]):
+                A[a, size + s] = -network.inv_mass[e] * J[s, a]
+                for f in (network.i[s], network.j[s]):
                     sign = 1.0 if e == f else -1.0                       # J Jᵀ has it already: J is n at i and −n at j
                     for b in range(f * d, f * d + d):
                         unit = sign if a % d == b % d else 0.0
-                        A[a, b] -= net.inv_mass[e] * bend * (unit - J[s, a] * J[s, b])
+                        A[a, b] -= network.inv_mass[e] * bend * (unit - J[s, a] * J[s, b])
     found = solve(A, right)
     change = np.zeros(x.shape)
     for k in range(size):
@@ -215,24 +219,24 @@ def newton_correction(x, lam, goal, dt, net):
     ### END SOLUTION
 
 
-def projection_step(acceleration, t, x, v, dt, net):
-    """Advance a net by one step of the lecture's projection method: all λ together, every link exact; first order.
+def constraint_projection_step(acceleration, t, x, v, dt, network):
+    """Advance a network by one step of the lecture's projection method: all λ together, every link exact; first order.
 
     x_pred = predict(…).  Start from the guess (x, λ = 0).  Add Δx of newton_correction and take its λ, until |Δx|
     of every coordinate is at most NEWTON_TOLERANCE times the longest link.  Then  vₙ₊₁ = (xₙ₊₁ − xₙ)/dt.
 
     Raises Diverged("the projection did not converge at dt [s]", dt, "take a smaller step, or slacken what is taut")
-    after NEWTON_LIMIT iterations.  That includes nets which no finite λ can hold, such as a rope that is taut
+    after NEWTON_LIMIT iterations.  That includes networks which no finite λ can hold, such as a rope that is taut
     between two fixed ends and pulled sideways.
     *Source:* second lecture deck, “Projection method”; an implicit Euler method, which loses more energy with
     longer steps.
     """
     ### BEGIN SOLUTION 8.5
-    goal = predict(acceleration, t, x, v, dt, net)
-    new, lam = x.copy(), np.zeros(net.i.size)
-    longest = np.max(net.rest)
+    goal = predict(acceleration, t, x, v, dt, network)
+    new, lam = x.copy(), np.zeros(network.i.size)
+    longest = np.max(network.rest)
     for _ in range(NEWTON_LIMIT):
-        change, lam = newton_correction(new, lam, goal, dt, net)
+        change, lam = newton_correction(new, lam, goal, dt, network)
         new = new + change
         if np.max(np.abs(change)) <= NEWTON_TOLERANCE * longest:
             return new, (new - x) / dt
@@ -240,7 +244,7 @@ def projection_step(acceleration, t, x, v, dt, net):
     ### END SOLUTION
 
 
-def rattle_step(acceleration, t, x, v, dt, net):
+def rattle_step(acceleration, t, x, v, dt, network):
     """Given.  The same, with the gradients at the start of the step and a velocity that obeys the links: second order.
 
     x' = x + dt v + ½dt² a + W J(x)ᵀΛ  with C(x') = 0,      v' = (x' − x)/dt + ½dt a' + W J(x')ᵀμ  with J(x') v' = 0
@@ -248,98 +252,67 @@ def rattle_step(acceleration, t, x, v, dt, net):
     It loses no energy.  It is not in the lecture; it serves as the standard for the projection method.
     *Source:* Ryckaert et al. 1977 (SHAKE), Andersen 1983 (RATTLE).
     """
-    _, J = constraints(x, net)
-    new = x + dt * v + 0.5 * dt * dt * acceleration(t, x, v, net)
+    _, J = constraints(x, network)
+    new = x + dt * v + 0.5 * dt * dt * acceleration(t, x, v, network)
     for _ in range(NEWTON_LIMIT):
-        C, J_new = constraints(new, net)
-        Lam = solve(met(J_new, J, net, FIRST_TRACE), -C)                 # the next round removes the error of the trace
-        change = pushed(J, Lam, net)
+        C, J_new = constraints(new, network)
+        # The next round removes the error of the regularisation.
+        Lam = solve(link_delassus_matrix(J_new, J, network, FIRST_REGULARISATION), -C)
+        change = apply_multipliers(J, Lam, network)
         new = new + change
-        if max(np.max(np.abs(change)), np.max(np.abs(C))) <= NEWTON_TOLERANCE * np.max(net.rest):
-            v = (new - x) / dt + 0.5 * dt * acceleration(t + dt, new, v, net)
-            _, J = constraints(new, net)
-            mu = solve(met(J, J, net, TRACE), rates(J, v))
-            return new, v - pushed(J, mu, net)
+        if max(np.max(np.abs(change)), np.max(np.abs(C))) <= NEWTON_TOLERANCE * np.max(network.rest):
+            v = (new - x) / dt + 0.5 * dt * acceleration(t + dt, new, v, network)
+            _, J = constraints(new, network)
+            mu = solve(link_delassus_matrix(J, J, network, REGULARISATION), constraint_rates(J, v))
+            return new, v - apply_multipliers(J, mu, network)
     raise Diverged("the projection did not converge at dt [s]", dt, "take a smaller step, or slacken what is taut")
-
-
-def met(J, K, net, trace):
-    """Given.  Return J W Kᵀ (s, s): the change of each constraint (gradients J) by a push along each gradient of K.
-
-    The trace, times w_i + w_j, is added on the diagonal, so that the matrix of redundant links has an inverse, too.
-    The loops visit only the two ends of each link; a product of the whole matrices takes longer.
-    """
-    d = J.shape[1] // net.inv_mass.size
-    A = np.zeros((J.shape[0], K.shape[0]))
-    for s in range(J.shape[0]):
-        for k in (net.i[s], net.j[s]):                                   # row s is 0 for all other points
-            for r in range(K.shape[0]):
-                for c in range(k * d, k * d + d):
-                    A[s, r] += net.inv_mass[k] * J[s, c] * K[r, c]
-        A[s, s] += trace * (net.inv_mass[net.i[s]] + net.inv_mass[net.j[s]])
-    return A
-
-
-def pushed(J, Lam, net):
-    """Given.  Return W JᵀΛ (n, d) [m]: how far the multipliers Λ (s,) move the points."""
-    d = J.shape[1] // net.inv_mass.size
-    moved = np.zeros((net.inv_mass.size, d))
-    for s in range(Lam.size):
-        for k in (net.i[s], net.j[s]):
-            for c in range(d):
-                moved[k, c] += net.inv_mass[k] * J[s, k * d + c] * Lam[s]
-    return moved
-
-
-def rates(J, v):
-    """Given.  Return J v (s,) [m/s]: the rate of change of each constraint."""
-    return J @ v.ravel()
 
 
 # ---------------------------------------------------------------------------------------------- position-based dynamics
 
-def distance_sweep(x, net):
+def distance_sweep(x, network):
     """Return the positions (n, d) after one visit to every link, in order; each visit uses the ends as left so far.
 
     Δx_i = −s w_i/(w_i + w_j) C n,      Δx_j = +s w_j/(w_i + w_j) C n          s: the stiffness of the link
 
-    These are the corrections of projection() for two points, times s.  Returns a new array.
+    These are the corrections of projection() for two points, times s, whatever network.sweeps and network.alpha are.
+    Returns a new array.
     The worked answer sums over the coordinates in a loop, because a small array costs more than the arithmetic in
     it.  Calling projection is equally correct.
     Raises BadInput("the length of a link [m]", 0.0, "keep its ends apart") when the ends of a link coincide.
-    A link between two immovable points does not occur: make_net refuses it.
+    A link between two immovable points does not occur: make_constraint_network refuses it.
     *Source:* second lecture deck, “Loop over all constraints = 1 iteration”; Müller et al. 2006, eqs. 10, 11.
     """
     ### BEGIN SOLUTION 8.6
     x, d = float_copy(x), x.shape[1]
-    for s in range(net.i.size):
-        i, j = net.i[s], net.j[s]
+    for s in range(network.i.size):
+        i, j = network.i[s], network.j[s]
         squared = 0.0
         for c in range(d):
             squared += (x[i, c] - x[j, c]) ** 2
         if squared == 0.0:
             raise BadInput("the length of a link [m]", 0.0, "keep its ends apart")
         length = np.sqrt(squared)
-        share = net.stiffness[s] * (1.0 - net.rest[s] / length) / (net.inv_mass[i] + net.inv_mass[j])
+        share = network.stiffness[s] * (1.0 - network.rest[s] / length) / (network.inv_mass[i] + network.inv_mass[j])
         for c in range(d):
             push = share * (x[i, c] - x[j, c])
-            x[i, c] -= net.inv_mass[i] * push
-            x[j, c] += net.inv_mass[j] * push
+            x[i, c] -= network.inv_mass[i] * push
+            x[j, c] += network.inv_mass[j] * push
     return x
     ### END SOLUTION
 
 
-def pbd_step(acceleration, t, x, v, dt, net):
-    """Advance a net by one step of position-based dynamics; first order once its sweeps have converged.
+def pbd_step(acceleration, t, x, v, dt, network):
+    """Advance a network by one step of position-based dynamics; first order once its sweeps have converged.
 
-    x_pred = predict(…);   distance_sweep net.sweeps times;   vₙ₊₁ = (xₙ₊₁ − xₙ)/dt
+    x_pred = predict(…);   distance_sweep network.sweeps times;   vₙ₊₁ = (xₙ₊₁ − xₙ)/dt
 
     *Source:* second lecture deck, “Position-based dynamics”; Müller et al. 2006, algorithm 1.
     """
     ### BEGIN SOLUTION 8.7
-    new = predict(acceleration, t, x, v, dt, net)
-    for _ in range(net.sweeps):
-        new = distance_sweep(new, net)
+    new = predict(acceleration, t, x, v, dt, network)
+    for _ in range(network.sweeps):
+        new = distance_sweep(new, network)
     return new, (new - x) / dt
     ### END SOLUTION
 
@@ -374,7 +347,8 @@ def fold_constraint(x, fold):
     ∇_a = −β_c ∇_c − β_d ∇_d,   β_c = (b − c)·e/|e|²,  β_d = (b − d)·e/|e|²          leverage of each wing at a
     ∇_b = −∇_a − ∇_c − ∇_d                                                            no net force from outside
 
-    Raises BadInput("the area of a triangle at a fold [m²]", 0.0, "keep its corners apart") for a triangle without area.
+    Raises BadInput("the area of a triangle at a fold [m²]", 0.0, "keep its corners apart") for a triangle without area,
+    also where its corners are apart but on one line.
     *Source:* Müller et al. 2006, section 4.1, for the constraint; Bridson et al. 2003 for an angle that is smooth at
     a flat fold.
     """
@@ -422,7 +396,8 @@ def keep_outside(surface, x, inv_mass, obstacle):
     The constraint of each point is φ ≥ 0.
     (φ, n) = surface(x_k, obstacle);   where φ < 0 and the point can move (w_k > 0):   x_k ← x_k − φ n
 
-    An inequality acts in one direction only: a point outside is left alone.  Returns a new array.
+    An inequality acts in one direction only: a point outside is left alone.  Where n = 0, at the centre of a ball, a
+    point stays.  Returns a new array.
     *Source:* Müller et al. 2006, section 3.4; second lecture deck, “Project particle out”.
     """
     ### BEGIN SOLUTION 8.11
@@ -443,9 +418,9 @@ def fold_sweep(x, cloth):
         points = cloth.hinges[h]
         for k in range(4):
             corners[k] = x[points[k]]
-            w[k] = cloth.net.inv_mass[points[k]]
+            w[k] = cloth.network.inv_mass[points[k]]
         C, gradients = fold_constraint(corners, cloth.fold[h])
-        corrections = projection(cloth.stiffness * C, gradients, w)
+        corrections = constraint_correction(cloth.stiffness * C, gradients, w)
         for k in range(4):
             x[points[k]] += corrections[k]
     return x
@@ -453,12 +428,12 @@ def fold_sweep(x, cloth):
 
 def cloth_step(acceleration, t, x, v, dt, cloth):
     """Given.  Advance a cloth by one step: pbd_step with folds that resist bending, a ball and a floor."""
-    new = predict(acceleration, t, x, v, dt, cloth.net)
-    for _ in range(cloth.net.sweeps):
-        new = distance_sweep(new, cloth.net)
+    new = predict(acceleration, t, x, v, dt, cloth.network)
+    for _ in range(cloth.network.sweeps):
+        new = distance_sweep(new, cloth.network)
         new = fold_sweep(new, cloth)
-        new = keep_outside(ball_gap, new, cloth.net.inv_mass, cloth.obstacle)
-        new = keep_outside(floor_gap, new, cloth.net.inv_mass, cloth.obstacle)
+        new = keep_outside(ball_gap, new, cloth.network.inv_mass, cloth.obstacle)
+        new = keep_outside(floor_gap, new, cloth.network.inv_mass, cloth.obstacle)
     return new, (new - x) / dt
 
 
@@ -484,13 +459,14 @@ def compliant_multiplier(C, Lam, weight, alpha_scaled):
     ### END SOLUTION
 
 
-def compliant_sweep(x, Lam, dt, net):
+def compliant_sweep(x, Lam, dt, network):
     """Return (x (n, d), Λ (s,)) after one visit to every link, in order, with the compliance α of each.
 
     ΔΛ = compliant_multiplier(C, Λₛ, w_i + w_j, αₛ/dt²)
     Λₛ ← Λₛ + ΔΛ,   x_i ← x_i + w_i ΔΛ n,   x_j ← x_j − w_j ΔΛ n
 
-    C and n are those of distance_constraint, for the ends as the earlier visits have left them.  Returns new arrays.
+    C and n are those of distance_constraint, for the ends as the earlier visits have left them.  A link that is too
+    short pushes, also with α = 0.  Returns new arrays.
     The worked answer sums over the coordinates in a loop, for speed, as in distance_sweep.
     Raises what distance_constraint and compliant_multiplier raise.
     *Source:* Macklin et al. 2016, algorithm 1.
@@ -499,44 +475,44 @@ def compliant_sweep(x, Lam, dt, net):
     x, Lam = float_copy(x), float_copy(Lam)
     d = x.shape[1]
     per_square = 1.0 / (dt * dt)
-    for s in range(net.i.size):
-        i, j = net.i[s], net.j[s]
+    for s in range(network.i.size):
+        i, j = network.i[s], network.j[s]
         squared = 0.0
         for c in range(d):
             squared += (x[i, c] - x[j, c]) ** 2
         if squared == 0.0:
             raise BadInput("the length of a link [m]", 0.0, "keep its ends apart")
         length = np.sqrt(squared)
-        weight = net.inv_mass[i] + net.inv_mass[j]
-        change = compliant_multiplier(length - net.rest[s], Lam[s], weight, net.alpha[s] * per_square)
+        weight = network.inv_mass[i] + network.inv_mass[j]
+        change = compliant_multiplier(length - network.rest[s], Lam[s], weight, network.alpha[s] * per_square)
         Lam[s] += change
         for c in range(d):
             push = change / length * (x[i, c] - x[j, c])
-            x[i, c] += net.inv_mass[i] * push
-            x[j, c] -= net.inv_mass[j] * push
+            x[i, c] += network.inv_mass[i] * push
+            x[j, c] -= network.inv_mass[j] * push
     return x, Lam
     ### END SOLUTION
 
 
-def xpbd_step(acceleration, t, x, v, dt, net):
-    """Advance a net by one step of XPBD: pbd_step with compliant_sweep, from Λ = 0 in every step; first order.
+def xpbd_step(acceleration, t, x, v, dt, network):
+    """Advance a network by one step of XPBD: pbd_step with compliant_sweep, from Λ = 0 in every step; first order.
 
     Many short steps with one sweep each are better than one long step with as many sweeps, because the
     inertia m/dt² of the points then outweighs the forces of the links.
     *Source:* Macklin et al. 2016; Macklin et al. 2019, “Small steps in physics simulation”.
     """
     ### BEGIN SOLUTION 8.14
-    new = predict(acceleration, t, x, v, dt, net)
-    Lam = np.zeros(net.i.size)
-    for _ in range(net.sweeps):
-        new, Lam = compliant_sweep(new, Lam, dt, net)
+    new = predict(acceleration, t, x, v, dt, network)
+    Lam = np.zeros(network.i.size)
+    for _ in range(network.sweeps):
+        new, Lam = compliant_sweep(new, Lam, dt, network)
     return new, (new - x) / dt
     ### END SOLUTION
 
 
 # ---------------------------------------------------------------------------------------------- rigid bodies
 
-def generalised_inverse_mass(q, r, n, m, I_body):
+def effective_inverse_mass_at(q, r, n, m, I_body):
     """Return w [1/kg] of a point of a rigid body: how easily it moves along n (3,), at the offset r (3,) [m].
 
     w = 1/m + (r × n)ᵀ I⁻¹ (r × n)          I⁻¹ = R I_body⁻¹ Rᵀ: unrotate(q, ·) converts a vector to body coordinates
@@ -551,7 +527,7 @@ def generalised_inverse_mass(q, r, n, m, I_body):
     ### END SOLUTION
 
 
-def push_body(x, q, r, p, m, I_body):
+def apply_positional_impulse(x, q, r, p, m, I_body):
     """Return (x (3,), q (4,)) of a rigid body after p (3,) [kg m] acts at the offset r (3,) from its centre of mass.
 
     x ← x + p/m,      q ← quaternion_update(q, I⁻¹ (r × p), 1)          p = λ dt² ∇C: an impulse times a time
@@ -577,13 +553,13 @@ def turning_rate(q_old, q_new, dt):
     """
     ### BEGIN SOLUTION 8.17
     q_back = np.array([q_old[0], -q_old[1], -q_old[2], -q_old[3]])
-    turn = product(q_new, q_back)
+    turn = quaternion_product(q_new, q_back)
     return 2.0 / (turn[0] * dt) * turn[1:]
     ### END SOLUTION
 
 
-def hung_step(t, x, v, q, omega, dt, body):
-    """Given.  Advance a Hung body by one step: (x, v, q, ω); first order.
+def pivoted_body_step(t, x, v, q, omega, dt, body):
+    """Given.  Advance a PivotedBody body by one step: (x, v, q, ω); first order.
 
     Its pivot is one constraint, C = |x + r − pivot|.
     """
@@ -595,8 +571,8 @@ def hung_step(t, x, v, q, omega, dt, body):
         gap = new + r - body.pivot
         C = np.sqrt(np.sum(gap * gap))
         if C > 0.0:
-            w = generalised_inverse_mass(turned, r, gap / C, body.m, body.I_body)
-            new, turned = push_body(new, turned, r, -gap / w, body.m, body.I_body)
+            w = effective_inverse_mass_at(turned, r, gap / C, body.m, body.I_body)
+            new, turned = apply_positional_impulse(new, turned, r, -gap / w, body.m, body.I_body)
     return new, (new - x) / dt, turned, turning_rate(q, turned, dt)
 
 
@@ -624,30 +600,30 @@ def volume_gradient(x, faces):
 
 
 def balloon_step(acceleration, t, x, v, dt, balloon):
-    """Given.  Advance a closed net above a floor by one step: xpbd_step with the volume as one more constraint.
+    """Given.  Advance a closed network above a floor by one step: xpbd_step with the volume as one more constraint.
 
     Each sweep visits the links first, then the air, then the floor.
     """
-    net = balloon.net
-    new, Lam, air = predict(acceleration, t, x, v, dt, net), np.zeros(net.i.size), 0.0
-    for _ in range(balloon.net.sweeps):
-        new, Lam = compliant_sweep(new, Lam, dt, net)
+    network = balloon.network
+    new, Lam, air = predict(acceleration, t, x, v, dt, network), np.zeros(network.i.size), 0.0
+    for _ in range(balloon.network.sweeps):
+        new, Lam = compliant_sweep(new, Lam, dt, network)
         V, gradient = volume_gradient(new, balloon.faces)
         weight = 0.0
         for k in range(x.shape[0]):
-            weight += net.inv_mass[k] * dot(gradient[k], gradient[k])
+            weight += network.inv_mass[k] * dot(gradient[k], gradient[k])
         change = compliant_multiplier(V - balloon.volume, air, weight, balloon.alpha / (dt * dt))
         air += change
         for k in range(x.shape[0]):
-            new[k] += change * net.inv_mass[k] * gradient[k]
-        new = keep_outside(floor_gap, new, net.inv_mass, balloon.obstacle)
+            new[k] += change * network.inv_mass[k] * gradient[k]
+        new = keep_outside(floor_gap, new, network.inv_mass, balloon.obstacle)
     return new, (new - x) / dt
 
 
 # ---------------------------------------------------------------------------------------------- building
 
-def make_net(x, m, fixed, pairs, alpha, stiffness, gravity, sweeps):
-    """Given.  Make a Net whose links have their lengths at x as rest lengths.
+def make_constraint_network(x, m, fixed, pairs, alpha, stiffness, gravity, sweeps):
+    """Given.  Make a ConstraintNetwork whose links have their lengths at x as rest lengths.
 
     x (n, d); m [kg], alpha [m/N] and stiffness [-] are numbers or one each; fixed lists point numbers; pairs (s, 2);
     gravity (d,).
@@ -655,9 +631,9 @@ def make_net(x, m, fixed, pairs, alpha, stiffness, gravity, sweeps):
     immovable points, a negative compliance, a stiffness outside 0 … 1 or equal to 0, fewer than one sweep, a point
     number out of range, gravity of another dimension than x.
     """
-    x = finite_array("a position of the net [m]", x)
+    x = finite_array("a position of the network [m]", x)
     gravity = finite_array("gravity [m/s²]", gravity)
-    inv_mass = inverse_masses("a mass of the net [kg]", m, fixed, x)
+    inv_mass = inverse_masses("a mass of the network [kg]", m, fixed, x)
     check_shape("gravity", gravity, x.shape[1:])
     i, j, rest = measured_links("link", x, pairs)
     alphas = one_each("compliance α [m/N]", alpha, len(i))
@@ -670,19 +646,5 @@ def make_net(x, m, fixed, pairs, alpha, stiffness, gravity, sweeps):
             raise BadInput(f"the inverse mass at {link} [1/kg]", 0.0, "leave out links between immovable points")
         if not 0.0 < shares[s] <= 1.0:
             raise BadInput(f"the stiffness of link {s} [-]", shares[s], "give a number above 0, up to 1")
-    return Net(inv_mass, gravity, i, j, rest, shares, alphas, whole_number("sweeps in a step", sweeps, 1))
+    return ConstraintNetwork(inv_mass, gravity, i, j, rest, shares, alphas, whole_number("sweeps in a step", sweeps, 1))
 
-
-def shared_edges(faces):
-    """Given.  Return (edges (e, 2), hinges (h, 4)) of triangles (f, 3): every edge once, and the folds.
-
-    A hinge is (a, b, c, d) of an edge that two triangles share: its ends a and b, the other corners c and d.
-    """
-    found = {}
-    for face in np.asarray(faces):
-        for k in range(3):
-            a, b, c = face[k], face[(k + 1) % 3], face[(k + 2) % 3]
-            found.setdefault((min(a, b), max(a, b)), []).append((a, b, c))
-    hinges = [(*two[0], two[1][2]) for two in found.values() if len(two) == 2]
-    edges = np.array(sorted(found), dtype=np.int64)
-    return edges, np.array(hinges, dtype=np.int64).reshape(-1, 4)

@@ -19,43 +19,53 @@ from typing import NamedTuple
 import numpy as np
 
 from .checks import (
-    BadInput,
     Diverged,
-    check_end,
-    check_finite,
-    check_positive,
-    check_shape,
-    checked_run,
     finite_array,
-    finite_number,
     float_copy,
     positive_number,
-    whole_number,
 )
 from .friction import cone_radius
+from .support.quaternions import (
+    about_axis,
+    body_component,
+    check_rotation,
+    exponential,
+    quaternion_from_matrix,
+    rotate,
+    solve3,
+    unit,
+    unrotate,
+)
+from .support.rotation_loops import (
+    FLAT_BODY_TOLERANCE,
+    advance_rigid_body,
+    advance_rotation,
+    check_moments,
+    rotation_trajectory,
+)
 from .vectors import cross, dot, norm
 
 __all__ = [
-    "FLAT", "NEWTON_LIMIT", "SUZUKI", "Ball", "Body", "State", "Top", "about_axis",
-    "angular_acceleration", "angular_momentum", "angular_velocity", "axis_angle_step",
-    "axis_angle_update", "body_component", "check_moments", "check_rotation", "compose",
+    "FLAT_BODY_TOLERANCE", "NEWTON_LIMIT", "SUZUKI", "RigidBody", "RigidBodyState", "RollingBall",
+    "Top", "about_axis", "advance_rigid_body", "advance_rotation", "angular_acceleration",
+    "angular_velocity", "average_rolling_step", "axis_angle_step", "axis_angle_update",
+    "body_angular_momentum", "body_component", "check_moments", "check_rotation", "compose",
     "composed_midpoint_step", "composed_splitting_step", "exponential", "gyroscopic_step",
-    "heavy_top_torque", "implicit_gyroscopic_step", "kinetic_energy", "make_body", "matrix_step",
-    "matrix_update", "middle_axis", "midpoint_step", "midpoint_turn", "move", "no_torque",
-    "point_velocity", "product", "quaternion_of", "quaternion_step", "quaternion_update",
-    "rigid_body_step", "rolling_load", "rotate", "rotation_matrix", "runge_kutta_step", "skew",
-    "solve3", "splitting_step", "splitting_turn", "state_derivative", "total_load", "tumble",
-    "tumbling", "tumbling_rate", "unit", "unrotate",
+    "heavy_top_torque", "implicit_gyroscopic_step", "intermediate_axis", "kinetic_energy",
+    "make_rigid_body", "matrix_step", "matrix_update", "midpoint_free_rotation", "midpoint_step",
+    "no_torque", "point_velocity", "quaternion_from_matrix", "quaternion_product", "quaternion_step",
+    "quaternion_update", "rigid_body_step", "rolling_step", "rotate", "rotation_matrix",
+    "rotation_trajectory", "runge_kutta_step", "skew", "solve3", "splitting_free_rotation",
+    "splitting_step", "state_derivative", "supported_weight", "total_load", "tumbling_rate", "unit",
+    "unrotate",
 ]
 
 NEWTON_TOLERANCE = 1e-12     # last correction over the unknown [-]; Newton squares it, so only round-off remains
 NEWTON_LIMIT = 30            # corrections [-]; from a good guess Newton doubles its digits and needs fewer than 6
-UNIT_TOLERANCE = 1e-9        # allowed error of a given quaternion's length [-]: 1000 times the round-off of 10⁷ steps
-FLAT = 1e-12                 # a flat body has I₁ + I₂ = I₃; round-off may violate that by this share [-]
 SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))      # share of the step in each of four substeps [-]: 4γ³ + (1 − 4γ)³ = 0
 
 
-class State(NamedTuple):
+class RigidBodyState(NamedTuple):
     """The state S(t) of the lecture, or its derivative."""
     x: np.ndarray            # (3,) position of the centre of mass [m]
     R: np.ndarray            # (3, 3) orientation: its columns are the axes of the body
@@ -63,7 +73,7 @@ class State(NamedTuple):
     L: np.ndarray            # (3,) angular momentum about the centre of mass [kg m²/s]
 
 
-class Body(NamedTuple):
+class RigidBody(NamedTuple):
     """The constant properties of a rigid body."""
     m: float                 # mass [kg]
     I_body: np.ndarray       # (3,) principal moments of inertia [kg m²]
@@ -75,32 +85,20 @@ class Top(NamedTuple):
     mgl: float               # weight times the distance from the pivot to the centre of mass [N m]
 
 
-class Ball(NamedTuple):
+class RollingBall(NamedTuple):
     """A ball, or any round body with three equal moments, on a horizontal floor."""
     m: float                 # mass [kg]
     I_body: np.ndarray       # (3,) moments of inertia [kg m²]
     radius: float            # [m]
     mu: float                # friction [-]
     gravity: np.ndarray      # (3,) [m/s²]; for a sloping floor, tilt gravity instead
-    dt: float                # step [s]: friction acts for this time before it is computed again
 
 
-def check_moments(I_body):
-    """Given.  Raise BadInput unless these are moments of a body: positive, none above the sum of the others."""
-    check_shape("the principal moments", I_body, (3,))
-    for k in range(3):
-        check_positive("a principal moment of inertia [kg m²]", I_body[k])
-        others = I_body[(k + 1) % 3] + I_body[(k + 2) % 3]
-        if I_body[k] > others * (1.0 + FLAT):
-            raise BadInput("a principal moment of inertia [kg m²]", I_body[k],
-                           "no distribution of mass has it; keep it below the sum of the other two")
-
-
-def make_body(m, I_body):
-    """Given.  Make a Body from a number and three; raises BadInput for a mass or moments that no body has."""
+def make_rigid_body(m, I_body):
+    """Given.  Make a RigidBody from a number and three; raises BadInput for a mass or moments that no body has."""
     moments = finite_array("principal moments [kg m²]", I_body)
     check_moments(moments)
-    return Body(positive_number("mass m [kg]", m), moments)
+    return RigidBody(positive_number("mass m [kg]", m), moments)
 
 
 # ---------------------------------------------------------------------------------------------- rotational movement
@@ -158,7 +156,7 @@ def angular_velocity(R, L, I_body):
 
 
 def state_derivative(S, F, tau, body):
-    """Return Ṡ as a State:  ẋ = P/M,  Ṙ = ω* R,  Ṗ = F,  L̇ = τ,  for a State S and a Body.
+    """Return Ṡ as a RigidBodyState:  ẋ = P/M,  Ṙ = ω* R,  Ṗ = F,  L̇ = τ,  for a RigidBodyState S and a RigidBody.
 
     ω = angular_velocity(R, L, I_body)
 
@@ -166,7 +164,7 @@ def state_derivative(S, F, tau, body):
     """
     ### BEGIN SOLUTION 5.5
     omega = angular_velocity(S.R, S.L, body.I_body)
-    return State(S.P / body.m, skew(omega) @ S.R, F, tau)
+    return RigidBodyState(S.P / body.m, skew(omega) @ S.R, F, tau)
     ### END SOLUTION
 
 
@@ -211,7 +209,7 @@ def axis_angle_update(R, omega, dt):
     ### END SOLUTION
 
 
-def product(a, b):
+def quaternion_product(a, b):
     """Return the product a b (4,) of two quaternions (w, x, y, z): the rotation by b, followed by that by a.
 
     (a₀, 𝐚)(b₀, 𝐛) = (a₀b₀ − 𝐚·𝐛,  a₀𝐛 + b₀𝐚 + 𝐚×𝐛)
@@ -244,19 +242,6 @@ def rotation_matrix(q):
     ### END SOLUTION
 
 
-def unit(q):
-    """Given.  Return q / |q|: the nearest unit quaternion.
-
-    Raises BadInput for q = 0, and Diverged for a q that is not finite, as a step may produce.
-    """
-    length = np.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
-    if length == 0.0:
-        raise BadInput("length of the quaternion q [-]", length, "an orientation has length 1")
-    if not np.isfinite(length):
-        raise Diverged("length of the quaternion q [-]", length, "take a smaller step")
-    return np.array([q[0] / length, q[1] / length, q[2] / length, q[3] / length])
-
-
 def quaternion_update(q, omega, dt):
     """Return the orientation (4,) after dt at ω, third way:  q + dt q̇  with  q̇ = ½ (0, ω) q,  then unit; first order.
 
@@ -265,60 +250,13 @@ def quaternion_update(q, omega, dt):
     """
     ### BEGIN SOLUTION 5.10
     spin = np.array([0.0, omega[0], omega[1], omega[2]])
-    return unit(q + 0.5 * dt * product(spin, q))
+    return unit(q + 0.5 * dt * quaternion_product(spin, q))
     ### END SOLUTION
 
 
 # --------------------------------------------------------------------------------------------- rotations by quaternions
 
-def exponential(phi):
-    """Given.  Return the quaternion (4,) of a rotation by |φ| [rad] about φ/|φ|: (cos ½|φ|, sin ½|φ| φ/|φ|)."""
-    angle = norm(phi)
-    s = 0.5 if angle == 0.0 else np.sin(0.5 * angle) / angle
-    return np.array([np.cos(0.5 * angle), s * phi[0], s * phi[1], s * phi[2]])
-
-
-def rotate(q, r):
-    """Given.  Return the world coordinates of a vector with body coordinates r:  r + 2w 𝐪×r + 2𝐪×(𝐪×r),  q = (w, 𝐪)."""
-    a, b, c = q[2] * r[2] - q[3] * r[1], q[3] * r[0] - q[1] * r[2], q[1] * r[1] - q[2] * r[0]      # 𝐪×r
-    return np.array([r[0] + 2.0 * (q[0] * a + q[2] * c - q[3] * b),
-                     r[1] + 2.0 * (q[0] * b + q[3] * a - q[1] * c),
-                     r[2] + 2.0 * (q[0] * c + q[1] * b - q[2] * a)])
-
-
-def unrotate(q, r):
-    """Given.  Return the body coordinates of a vector with world coordinates r: the inverse of rotate."""
-    return rotate(np.array([-q[0], q[1], q[2], q[3]]), r)
-
-
-def body_component(q, r, k):
-    """Given.  Return the k-th body coordinate of a vector with world coordinates r, without computing the other two."""
-    x, y, z, w = q[1], q[2], q[3], q[0]
-    if k == 0:
-        return (w * w + x * x - y * y - z * z) * r[0] + 2.0 * ((x * y + w * z) * r[1] + (x * z - w * y) * r[2])
-    if k == 1:
-        return (w * w - x * x + y * y - z * z) * r[1] + 2.0 * ((x * y - w * z) * r[0] + (y * z + w * x) * r[2])
-    return (w * w - x * x - y * y + z * z) * r[2] + 2.0 * ((x * z + w * y) * r[0] + (y * z - w * x) * r[1])
-
-
-def about_axis(q, k, angle):
-    """Given.  Return the orientation after a rotation about the body's k-th axis:  q (cos ½angle, sin ½angle 𝐞ₖ)."""
-    c, s = np.cos(0.5 * angle), np.sin(0.5 * angle)
-    x, y, z, w = q[1], q[2], q[3], q[0]
-    if k == 0:
-        return np.array([w * c - x * s, x * c + w * s, y * c + z * s, z * c - y * s])
-    if k == 1:
-        return np.array([w * c - y * s, x * c - z * s, y * c + w * s, z * c + x * s])
-    return np.array([w * c - z * s, x * c + y * s, y * c - x * s, z * c + w * s])
-
-
-def solve3(a, b, c, r):
-    """Given.  Return the u (3,) with  u₀ a + u₁ b + u₂ c = r  for columns a, b, c (3,), by Cramer's rule."""
-    bc = cross(b, c)
-    return np.array([dot(r, bc), dot(a, cross(r, c)), dot(a, cross(b, r))]) / dot(a, bc)
-
-
-def angular_momentum(q, omega, I_body):
+def body_angular_momentum(q, omega, I_body):
     """Given.  Return L = I ω [kg m²/s] (3,)."""
     return rotate(q, I_body * unrotate(q, omega))
 
@@ -355,23 +293,43 @@ def rigid_body_step(load, t, x, v, q, omega, dt, body):
     ### END SOLUTION
 
 
-def rolling_load(t, x, v, q, omega, ball):
-    """Given.  Return F [N] and τ [N m], each (3,), of a Ball on a floor across z: weight, support and friction.
+def supported_weight(t, x, v, q, omega, ball):
+    """Given.  Return F [N] and τ [N m], each (3,), of a RollingBall on a floor across z: weight and support.
 
-    Gravity may have any direction.  Friction stops the slip u of the lowest point by the end of the step, within μN:
-        f = −min(μN, |u′|/(K dt)) u′/|u′|      u′ = u + dt g_t: the slip without friction,   K = 1/m + radius²/I
+    Gravity may have any direction.  A floor pushes and never pulls.
+    """
+    F = ball.m * ball.gravity
+    return np.array([F[0], F[1], F[2] + max(0.0, -F[2])]), np.zeros(3)
+
+
+def rolling_step(load, t, x, v, q, omega, dt, ball):
+    """Given.  Advance a RollingBall by one step of the lecture's loop, with friction as an impulse J; first order.
+
+    Friction stops the slip u of the lowest point by the end of the step, within the cone |J| ≤ μN dt:
+        J = −min(μN dt, |u|/K) u/|u|      u = v + ω × r + dt g_t: the slip without friction,   K = 1/m + radius²/I
+    Then rigid_body_step with v + J/m and ω + r × J/I.
     *Source:* second lecture deck, Coulomb's law; lesson 7 does the same for bodies of any shape.
     """
     r = np.array([0.0, 0.0, -ball.radius])
-    slip = point_velocity(v, omega, r) + ball.dt * ball.gravity
+    slip = point_velocity(v, omega, r) + dt * ball.gravity
     slip[2] = 0.0
     size = norm(slip)
-    support = max(0.0, -ball.m * ball.gravity[2])
     K = 1.0 / ball.m + ball.radius * ball.radius / ball.I_body[0]
-    f = np.zeros(3)
+    J = np.zeros(3)
     if size != 0.0:
-        f = -np.minimum(cone_radius(ball.mu, support), size / (K * ball.dt)) / size * slip
-    return ball.m * ball.gravity + np.array([f[0], f[1], support]), cross(r, f)
+        limit = cone_radius(ball.mu, max(0.0, -ball.m * ball.gravity[2])) * dt
+        J = -np.minimum(limit, size / K) / size * slip
+    return rigid_body_step(load, t, x, v + J / ball.m, q, omega + cross(r, J) / ball.I_body[0], dt, ball)
+
+
+def average_rolling_step(load, t, x, v, q, omega, dt, ball):
+    """Given.  The same with positions by the means of the old and the new velocities; second order.
+
+    It is exact while the ball slides or rolls along a line: then its velocities are linear in t.
+    """
+    _, v_new, _, omega_new = rolling_step(load, t, x, v, q, omega, dt, ball)
+    turn = exponential(0.5 * dt * (omega + omega_new))
+    return x + 0.5 * dt * (v + v_new), v_new, quaternion_product(turn, q), omega_new
 
 
 def kinetic_energy(q, L, I_body):
@@ -425,14 +383,14 @@ def matrix_step(torque, t, q, L, dt, body):
     L = L + dt * torque(t, q, L, body)
     R = rotation_matrix(q)
     R = matrix_update(R, angular_velocity(R, L, body.I_body), dt)
-    return quaternion_of(R), L
+    return quaternion_from_matrix(R), L
 
 def axis_angle_step(torque, t, q, L, dt, body):
     """Given.  The same with axis_angle_update."""
     L = L + dt * torque(t, q, L, body)
     R = rotation_matrix(q)
     R = axis_angle_update(R, angular_velocity(R, L, body.I_body), dt)
-    return quaternion_of(R), L
+    return quaternion_from_matrix(R), L
 
 def quaternion_step(torque, t, q, L, dt, body):
     """Given.  The same with quaternion_update."""
@@ -445,7 +403,7 @@ def gyroscopic_step(torque, t, q, L, dt, body):
     omega = angular_velocity(rotation_matrix(q), L, body.I_body)
     omega = omega + dt * angular_acceleration(q, omega, torque(t, q, L, body), body.I_body)
     q = quaternion_update(q, omega, dt)
-    return q, angular_momentum(q, omega, body.I_body)
+    return q, body_angular_momentum(q, omega, body.I_body)
 
 
 def implicit_gyroscopic_step(torque, t, q, L, dt, body):
@@ -460,31 +418,7 @@ def implicit_gyroscopic_step(torque, t, q, L, dt, body):
     column = [I[k] * one[k] + dt * cross(I[k] * omega - L_body, one[k]) for k in range(3)]
     omega = rotate(q, omega + solve3(column[0], column[1], column[2], right))
     q = quaternion_update(q, omega, dt)
-    return q, angular_momentum(q, omega, I)
-
-
-def quaternion_of(R):
-    """Given.  Return the unit quaternion (4,) of a rotation matrix.
-
-    Its largest component is computed first, to avoid cancellation.
-
-    *Source:* Shepperd 1978.
-    """
-    trace = R[0, 0] + R[1, 1] + R[2, 2]
-    k = 0
-    for i in range(1, 3):
-        if R[i, i] > R[k, k]:
-            k = i
-    if trace > R[k, k]:
-        return unit(np.array([1.0 + trace, R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]]))
-    i = (k + 1) % 3
-    j = 3 - k - i
-    q = np.zeros(4)
-    q[0] = R[j, i] - R[i, j]
-    q[1 + k] = 1.0 + R[k, k] - R[i, i] - R[j, j]
-    q[1 + i] = R[i, k] + R[k, i]
-    q[1 + j] = R[j, k] + R[k, j]
-    return unit(q)
+    return q, body_angular_momentum(q, omega, I)
 
 
 # ---------------------------------------------------------------------------------------------- steps that conserve
@@ -502,10 +436,10 @@ def runge_kutta_step(torque, t, q, L, dt, body):
 def _slope(torque, t, q, L, body):
     """Given.  Return q̇ and L̇."""
     omega = angular_velocity(rotation_matrix(q), L, body.I_body)
-    return 0.5 * product(np.array([0.0, omega[0], omega[1], omega[2]]), q), torque(t, q, L, body)
+    return 0.5 * quaternion_product(np.array([0.0, omega[0], omega[1], omega[2]]), q), torque(t, q, L, body)
 
 
-def midpoint_turn(q, L, I_body, dt):
+def midpoint_free_rotation(q, L, I_body, dt):
     """Return the orientation (4,) of a free body after dt by the implicit midpoint rule; second order, exact energy.
 
     Let ℓ be the body coordinates of L at the start (unrotate).  Find those at the middle of the step, m:
@@ -535,12 +469,12 @@ def midpoint_turn(q, L, I_body, dt):
         m = m - delta
         if np.max(np.abs(delta)) <= NEWTON_TOLERANCE * np.max(np.abs(m)):
             w = m / I_body
-            return unit(product(q, np.array([1.0, 0.5 * dt * w[0], 0.5 * dt * w[1], 0.5 * dt * w[2]])))
+            return unit(quaternion_product(q, np.array([1.0, 0.5 * dt * w[0], 0.5 * dt * w[1], 0.5 * dt * w[2]])))
     raise Diverged("Newton's method did not converge at dt [s]", dt, "take a smaller step")
     ### END SOLUTION
 
 
-def middle_axis(I_body):
+def intermediate_axis(I_body):
     """Given.  Return the number of the axis with the middle moment; the first possible one where moments are equal."""
     for k in range(2):
         if (I_body[(k + 1) % 3] - I_body[k]) * (I_body[k] - I_body[(k + 2) % 3]) >= 0.0:
@@ -548,10 +482,10 @@ def middle_axis(I_body):
     return 2
 
 
-def splitting_turn(q, L, I_body, dt):
+def splitting_free_rotation(q, L, I_body, dt):
     """Return the orientation (4,) of a free body after dt by four exact rotations; second order, bounded energy error.
 
-    Let b be the middle_axis, a and c the two that follow it (b + 1 and b + 2, modulo 3).  The energy is a sum of three,
+    Let b be the intermediate_axis, a and c the two that follow it (b + 1, b + 2, modulo 3).  The energy is a sum,
         L²/2I_b  +  ½(1/I_a − 1/I_b) L_a²  +  ½(1/I_c − 1/I_b) L_c²
     and the motion by each term alone is known.  The first rotates the body about L, by dt/I_b L: multiply by
     exponential(dt/I_b L) from the left; it commutes with the others.  The second rotates it about its own axis a by the
@@ -562,27 +496,27 @@ def splitting_turn(q, L, I_body, dt):
     *Source:* Touma and Wisdom 1994; Fassò 2003, “Comparison of splitting algorithms for the rigid body”.
     """
     ### BEGIN SOLUTION 5.17
-    b = middle_axis(I_body)
+    b = intermediate_axis(I_body)
     a, c = (b + 1) % 3, (b + 2) % 3
     slow_a, slow_c = dt * (1.0 / I_body[a] - 1.0 / I_body[b]), dt * (1.0 / I_body[c] - 1.0 / I_body[b])
     turned = about_axis(q, a, 0.5 * slow_a * body_component(q, L, a))
     turned = about_axis(turned, c, slow_c * body_component(turned, L, c))
     turned = about_axis(turned, a, 0.5 * slow_a * body_component(turned, L, a))
-    return unit(product(exponential(dt / I_body[b] * L), turned))
+    return unit(quaternion_product(exponential(dt / I_body[b] * L), turned))
     ### END SOLUTION
 
 
 def midpoint_step(torque, t, q, L, dt, body):
-    """Given.  Half of the angular impulse of the torque, midpoint_turn, the other half; second order, reversible."""
+    """Given.  Half of the angular impulse, midpoint_free_rotation, the other half; second order, reversible."""
     L = L + 0.5 * dt * torque(t, q, L, body)
-    q = midpoint_turn(q, L, body.I_body, dt)
+    q = midpoint_free_rotation(q, L, body.I_body, dt)
     return q, L + 0.5 * dt * torque(t + dt, q, L, body)
 
 
 def splitting_step(torque, t, q, L, dt, body):
-    """Given.  Half of the angular impulse of the torque, splitting_turn, the other half; second order, reversible."""
+    """Given.  Half of the angular impulse, splitting_free_rotation, the other half; second order, reversible."""
     L = L + 0.5 * dt * torque(t, q, L, body)
-    q = splitting_turn(q, L, body.I_body, dt)
+    q = splitting_free_rotation(q, L, body.I_body, dt)
     return q, L + 0.5 * dt * torque(t + dt, q, L, body)
 
 
@@ -613,65 +547,3 @@ def composed_midpoint_step(torque, t, q, L, dt, body):
 
 
 # ---------------------------------------------------------------------------------------------- many steps
-
-def check_rotation(q):
-    """Given.  Raise BadInput unless q is a quaternion of length 1."""
-    check_shape("the quaternion q", q, (4,))
-    length = np.sqrt(np.sum(q * q))
-    if not abs(length - 1.0) <= UNIT_TOLERANCE:
-        raise BadInput("length of the quaternion q [-]", length, "divide q by it: an orientation has length 1")
-
-
-def checked_rotation(t, q, L, dt, steps, I_body):
-    """Given.  Return (t, q, L, dt, steps) in float64, as tumble needs them.
-
-    Raises BadInput for a step that is not positive, a quaternion that is not a rotation, moments that no body has, an L
-    that is not finite.
-    """
-    q = finite_array("quaternion q [-]", q)
-    L = finite_array("angular momentum L [kg m²/s]", L)
-    check_rotation(q)
-    check_shape("the angular momentum L", L, (3,))
-    check_moments(I_body)
-    t, dt = finite_number("time t [s]", t), positive_number("step dt [s]", dt)
-    return t, q, L, dt, whole_number("number of steps", steps, 0)
-
-
-def tumble(step, torque, t, q, L, dt, steps, body):
-    """Given.  Return the state (q, L) after `steps` steps of one method.
-
-    Raises what checked_rotation raises, and Diverged when the final state is not finite.
-    """
-    t, q, L, dt, steps = checked_rotation(t, q, L, dt, steps, body.I_body)
-    for n in range(steps):
-        q, L = step(torque, t + n * dt, q, L, dt, body)
-    check_end(q, L, dt)
-    return q, L
-
-
-def tumbling(step, torque, t, q, L, dt, steps, body):
-    """Given.  Return times (steps + 1,), orientations (steps + 1, 4) and L (steps + 1, 3), with the start."""
-    t, q, L, dt, steps = checked_rotation(t, q, L, dt, steps, body.I_body)
-    ts = t + dt * np.arange(steps + 1)
-    qs, Ls = np.zeros((steps + 1, 4)), np.zeros((steps + 1, 3))
-    qs[0], Ls[0] = q, L
-    for n in range(steps):
-        q, L = tumble(step, torque, t + n * dt, q, L, dt, 1, body)
-        qs[n + 1], Ls[n + 1] = q, L
-    return ts, qs, Ls
-
-
-def move(step, load, t, x, v, q, omega, dt, steps, body):
-    """Given.  Return (x, v, q, ω) after `steps` steps of a rigid body; raises what tumble raises."""
-    positive_number("mass m [kg]", body.m)
-    t, q, omega, dt, steps = checked_rotation(t, q, omega, dt, steps, body.I_body)
-    t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
-    check_shape("the position x", x, (3,))
-    F, tau = load(t, x, v, q, omega, body)
-    check_finite("force at the start [N]", F)
-    check_finite("torque at the start [N m]", tau)
-    for n in range(steps):
-        x, v, q, omega = step(load, t + n * dt, x, v, q, omega, dt, body)
-    check_end(x, v, dt)
-    check_end(q, omega, dt)
-    return x, v, q, omega

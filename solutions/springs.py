@@ -26,25 +26,25 @@ from .checks import (
 from .integrators import average_velocity_step
 
 __all__ = [
-    "BEND", "CG_TOLERANCE", "GRAVITY", "SHEAR", "STRUCTURAL", "G", "Mesh", "StepMatrix",
+    "BEND", "CG_TOLERANCE", "GRAVITY", "SHEAR", "STRUCTURAL", "G", "SpringNetwork", "StepMatrix",
     "air_force", "angular_spring_forces", "apply_step_matrix", "conjugate_gradients", "grid_pairs",
-    "implicit_mesh_step", "inverse_masses", "make_mesh", "mass_spring_damper_step",
-    "measured_links", "mesh_acceleration", "randomised", "soft_constraint_force",
-    "soft_contact_force", "spring_forces", "spring_stiffness", "spring_tension",
-    "universal_gravity",
+    "implicit_spring_network_step", "inverse_masses", "make_spring_network",
+    "mass_spring_damper_step", "measured_links", "randomised", "soft_constraint_force",
+    "soft_contact_force", "spring_forces", "spring_network_acceleration", "spring_stiffness",
+    "spring_tension", "universal_gravity",
 ]
 
 GRAVITY = 9.81                # g [m/s²], near the ground; the first lecture deck rounds it to 9.8
 G = 6.67430e-11               # gravitational constant [m³/(kg s²)], CODATA 2018
 
 STRUCTURAL = ((0, 1), (1, 0))     # (rows, columns) from a node of a grid to its partner: along the threads
-SHEAR = ((1, 1), (1, -1))         # across each mesh, both diagonals
+SHEAR = ((1, 1), (1, -1))    # across each network, both diagonals
 BEND = ((0, 2), (2, 0))           # over the next node
 
 CG_TOLERANCE = 1e-10          # residual over right-hand side [-]: far below the error of a first-order step
 
 
-class Mesh(NamedTuple):
+class SpringNetwork(NamedTuple):
     """The constant properties of a mass-spring-damper system."""
     inv_mass: np.ndarray      # (n,) 1/m [1/kg]; 0 is a fixed point
     gravity: np.ndarray       # (d,) [m/s²]
@@ -160,13 +160,13 @@ def angular_spring_forces(x_a, x_b, x_c, rest, k):
 
 # ---------------------------------------------------------------------------------------------- the system
 
-def spring_forces(x, v, mesh):
+def spring_forces(x, v, network):
     """Return the forces (n, d) [N] of all springs on all points.
 
     For each spring:  r = x_j − x_i,   l = |r|,   l̇ = r · (v_j − v_i) / l,   T = spring_tension(l, l̇, …)
                       F_i += T r/l,    F_j −= T r/l
 
-    Include the forces on fixed points; mesh_acceleration holds those points.
+    Include the forces on fixed points; spring_network_acceleration holds those points.
     The worked answer sums over the d coordinates in a loop, because a small array costs more than the arithmetic in
     it.  Array expressions are equally correct, with one trap: if i holds a point twice, F[i] += f adds only once.
     Raises BadInput("the length of a spring [m]", 0.0, "keep its ends apart") when the ends coincide, because the
@@ -175,8 +175,8 @@ def spring_forces(x, v, mesh):
     """
     ### BEGIN SOLUTION 2.7
     force = np.zeros(x.shape)
-    for s in range(mesh.i.size):
-        i, j = mesh.i[s], mesh.j[s]
+    for s in range(network.i.size):
+        i, j = network.i[s], network.j[s]
         x_i, x_j, v_i, v_j = x[i], x[j], v[i], v[j]
         force_i, force_j = force[i], force[j]                            # views: a change is a change of force
 
@@ -189,7 +189,7 @@ def spring_forces(x, v, mesh):
             raise BadInput("the length of a spring [m]", 0.0, "keep its ends apart")
         length = np.sqrt(squared)
 
-        pull = spring_tension(length, product / length, mesh.rest[s], mesh.k[s], mesh.k_d[s]) / length
+        pull = spring_tension(length, product / length, network.rest[s], network.k[s], network.k_d[s]) / length
         for c in range(x_i.size):
             force_i[c] += pull * (x_j[c] - x_i[c])
             force_j[c] -= pull * (x_j[c] - x_i[c])
@@ -197,8 +197,8 @@ def spring_forces(x, v, mesh):
     ### END SOLUTION
 
 
-def mesh_acceleration(t, x, v, mesh):
-    """Return the acceleration (n, d) [m/s²] of every point of a mesh; a fixed point has none.
+def spring_network_acceleration(t, x, v, network):
+    """Return the acceleration (n, d) [m/s²] of every point of a network; a fixed point has none.
 
     a = g + F/m,   F = springs + air          a = 0 where inv_mass = 0
 
@@ -206,18 +206,18 @@ def mesh_acceleration(t, x, v, mesh):
     *Source:* first lecture deck, “Mass-Spring-Damper System”.
     """
     ### BEGIN SOLUTION 2.8
-    force = spring_forces(x, v, mesh)
+    force = spring_forces(x, v, network)
     a = np.zeros(x.shape)
     for n in range(x.shape[0]):
-        if mesh.inv_mass[n] > 0.0:
+        if network.inv_mass[n] > 0.0:
             for c in range(x.shape[1]):
-                air = air_force(v[n, c], mesh.wind[c], mesh.k_v)
-                a[n, c] = mesh.gravity[c] + (force[n, c] + air) * mesh.inv_mass[n]
+                air = air_force(v[n, c], network.wind[c], network.k_v)
+                a[n, c] = network.gravity[c] + (force[n, c] + air) * network.inv_mass[n]
     return a
     ### END SOLUTION
 
 
-def mass_spring_damper_step(t, x, v, dt, mesh):
+def mass_spring_damper_step(t, x, v, dt, network):
     """Advance the whole system by one step, as in the lecture; return (x, v) at t + dt.
 
     wind on every point · spring and damper forces on both ends · a = g + F/m · v_new = v + dt a · x += dt (v + v_new)/2
@@ -225,11 +225,11 @@ def mass_spring_damper_step(t, x, v, dt, mesh):
     *Source:* first lecture deck, “Mass-Spring-Damper System”.
     """
     ### BEGIN SOLUTION 2.9
-    return average_velocity_step(mesh_acceleration, t, x, v, dt, mesh)
+    return average_velocity_step(spring_network_acceleration, t, x, v, dt, network)
     ### END SOLUTION
 
 
-# ---------------------------------------------------------------------------------------------- building a mesh
+# ---------------------------------------------------------------------------------------------- building a network
 
 def grid_pairs(rows, cols, offsets):
     """Return the pairs (s, 2) of nodes that springs join in a grid; node (r, c) has the number r · cols + c.
@@ -247,15 +247,15 @@ def grid_pairs(rows, cols, offsets):
     ### END SOLUTION
 
 
-def make_mesh(x, m, fixed, pairs, k, k_d, gravity, wind, k_v):
-    """Given.  Make a Mesh whose springs have their lengths at x as natural lengths.
+def make_spring_network(x, m, fixed, pairs, k, k_d, gravity, wind, k_v):
+    """Given.  Make a SpringNetwork whose springs have their lengths at x as natural lengths.
 
     x (n, d); m [kg], k and k_d are numbers or one each; fixed lists point numbers; pairs (s, 2); gravity and wind (d,).
     Raises BadInput for a mass that is not positive, a state that is not finite, a point number out of range, a spring
     of zero length, a negative stiffness, damper or viscosity, gravity or wind of another dimension than x.
     """
-    x = finite_array("a position of the mesh [m]", x)
-    inv_mass = inverse_masses("a mass of the mesh [kg]", m, fixed, x)
+    x = finite_array("a position of the network [m]", x)
+    inv_mass = inverse_masses("a mass of the network [kg]", m, fixed, x)
     i, j, rest = measured_links("spring", x, pairs)
     for s in np.flatnonzero(rest == 0.0):
         raise BadInput(f"the length of spring {s} from point {i[s]} to {j[s]} [m]", 0.0, "move its ends apart")
@@ -266,7 +266,7 @@ def make_mesh(x, m, fixed, pairs, k, k_d, gravity, wind, k_v):
     stiffness = one_each("stiffness k [N/m]", k, len(i))
     damper = one_each("damper k_d [N s/m]", k_d, len(i))
     viscosity = one_each("viscosity k_v [N s/m]", k_v, 1)[0]
-    return Mesh(inv_mass, gravity, wind, viscosity, i, j, rest, stiffness, damper)
+    return SpringNetwork(inv_mass, gravity, wind, viscosity, i, j, rest, stiffness, damper)
 
 
 def inverse_masses(thing, m, fixed, x):
@@ -300,17 +300,17 @@ def randomised(value, spread, u):
     return value * (1.0 + spread * (2.0 * u - 1.0))
 
 
-# ---------------------------------------------------------------------------------------------- stiff meshes
+# ---------------------------------------------------------------------------------------------- stiff networks
 
 class StepMatrix(NamedTuple):
-    """The sparse matrix A = M + dt k_v − dt ∂F/∂v − dt² ∂F/∂x of a mesh: a diagonal, and one block per spring."""
+    """The sparse matrix A = M + dt k_v − dt ∂F/∂v − dt² ∂F/∂x of a network: a diagonal, and one block per spring."""
     diagonal: np.ndarray      # (n,) m + dt k_v [kg]; 0 for a fixed point
     i: np.ndarray             # (s,)
     j: np.ndarray             # (s,)
     block: np.ndarray         # (s, d, d) dt² K + dt D of each spring [kg]
 
 
-def spring_stiffness(x, mesh):
+def spring_stiffness(x, network):
     """Return the blocks K [N/m] and D [N s/m], each (s, d, d): minus the derivatives of the force on i by x_i and v_i.
 
     K = −∂F_i/∂x_i = k n nᵀ + k max(0, 1 − rest/l) (1 − n nᵀ)          n = r/l,  r = x_j − x_i
@@ -323,18 +323,18 @@ def spring_stiffness(x, mesh):
     """
     ### BEGIN SOLUTION 2.11
     d = x.shape[1]
-    K, D = np.zeros((mesh.i.size, d, d)), np.zeros((mesh.i.size, d, d))
-    for s in range(mesh.i.size):
-        r = x[mesh.j[s]] - x[mesh.i[s]]
+    K, D = np.zeros((network.i.size, d, d)), np.zeros((network.i.size, d, d))
+    for s in range(network.i.size):
+        r = x[network.j[s]] - x[network.i[s]]
         squared = np.sum(r * r)
         length = np.sqrt(squared)
-        across = mesh.k[s] * np.maximum(0.0, 1.0 - mesh.rest[s] / length)
+        across = network.k[s] * np.maximum(0.0, 1.0 - network.rest[s] / length)
         for a in range(d):
             K[s, a, a] = across
             for b in range(d):
                 nn = r[a] * r[b] / squared
-                K[s, a, b] += (mesh.k[s] - across) * nn
-                D[s, a, b] = mesh.k_d[s] * nn
+                K[s, a, b] += (network.k[s] - across) * nn
+                D[s, a, b] = network.k_d[s] * nn
     return K, D
     ### END SOLUTION
 
@@ -395,28 +395,28 @@ def conjugate_gradients(apply, A, right):
     ### END SOLUTION
 
 
-def implicit_mesh_step(acceleration, t, x, v, dt, mesh):
-    """Advance a mesh by one step of linearly implicit Euler: stable for any stiffness, first order.
+def implicit_spring_network_step(acceleration, t, x, v, dt, network):
+    """Advance a network by one step of linearly implicit Euler: stable for any stiffness, first order.
 
-    (M + dt k_v − dt ∂F/∂v − dt² ∂F/∂x) Δv = dt (M a + dt ∂F/∂x v)        a = acceleration(t, x, v, mesh)
+    (M + dt k_v − dt ∂F/∂v − dt² ∂F/∂x) Δv = dt (M a + dt ∂F/∂x v)        a = acceleration(t, x, v, network)
     vₙ₊₁ = vₙ + Δv,   xₙ₊₁ = xₙ + dt vₙ₊₁
 
-    K, D = spring_stiffness(x, mesh).  The matrix is a StepMatrix with the diagonal m + dt k_v (0 for a fixed point)
+    K, D = spring_stiffness(x, network).  The matrix is a StepMatrix with the diagonal m + dt k_v (0 for a fixed point)
     and the blocks dt² K + dt D.  ∂F/∂x v = −apply_blocks(v, i, j, K).  The right-hand side of a fixed point is 0.
     Solve with conjugate_gradients and apply_step_matrix.
     *Source:* Baraff and Witkin 1998, “Large steps in cloth simulation”.
     """
     ### BEGIN SOLUTION 2.13
-    a = acceleration(t, x, v, mesh)
-    K, D = spring_stiffness(x, mesh)
-    pull = apply_blocks(v, mesh.i, mesh.j, K)
+    a = acceleration(t, x, v, network)
+    K, D = spring_stiffness(x, network)
+    pull = apply_blocks(v, network.i, network.j, K)
     diagonal = np.zeros(x.shape[0])
     right = np.zeros(x.shape)
     for n in range(x.shape[0]):
-        if mesh.inv_mass[n] > 0.0:
-            diagonal[n] = 1.0 / mesh.inv_mass[n] + dt * mesh.k_v
-            right[n] = dt * (a[n] / mesh.inv_mass[n] - dt * pull[n])
-    A = StepMatrix(diagonal, mesh.i, mesh.j, dt * dt * K + dt * D)
+        if network.inv_mass[n] > 0.0:
+            diagonal[n] = 1.0 / network.inv_mass[n] + dt * network.k_v
+            right[n] = dt * (a[n] / network.inv_mass[n] - dt * pull[n])
+    A = StepMatrix(diagonal, network.i, network.j, dt * dt * K + dt * D)
     v = v + conjugate_gradients(apply_step_matrix, A, right)
     return x + dt * v, v
     ### END SOLUTION

@@ -1,7 +1,9 @@
 """The command line: `validate` measures scenes and writes the report, `validate list` names them,
-`validate record` keeps traces.
+`validate record` keeps traces, `validate summary` prints the main results, `validate compare` what
+changed, `validate audit` whether a report follows from its raw rows.
 """
 
+import json
 import os
 import tempfile
 from enum import StrEnum
@@ -32,6 +34,7 @@ console = Console()
 EngineName = StrEnum("EngineName", [(name, name) for name in PRODUCTS])
 
 
+RESULTS = "<!-- results -->"    # begins and ends the table of results in the README
 ONE_SCENE = typer.Option(help="Only this scene (may be repeated).")
 ONE_LESSON = typer.Option(help="Only the scenes of this lesson (may be repeated).")
 ANSWERS = typer.Option(help="Whose answers: solutions, lessons or a folder of lesson files.")
@@ -105,6 +108,75 @@ def record(scene: Annotated[list[str] | None, ONE_SCENE] = None):
             console.print(f"recorded {name} in {path.relative_to(modules.ROOT)}")
     for error in broken.values():
         raise error
+
+
+def stored_report(folder):
+    """The content of a report's report.json.  Raises BadInput for a folder that is none."""
+    try:
+        report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
+        return {part: report[part] for part in ("run", "scenes", "stability")}
+    except (OSError, ValueError, KeyError, TypeError):
+        raise BadInput(f"folder {str(folder)!r}", "not a report", "name the folder that `validate` wrote") from None
+
+
+@app.command("compare")
+def compare(
+    old: Annotated[Path, typer.Argument(help="Folder of the earlier report.")],
+    new: Annotated[Path, typer.Argument(help="Folder of the later report.")],
+):
+    """Print what changed between two reports; exit with 1 when something became worse."""
+    from .compare import KINDS, changes
+    try:
+        found = changes(stored_report(old), stored_report(new))
+    except (KeyError, TypeError, ValueError):
+        raise BadInput("one of the reports", "of another version of the workbook", "make it again") from None
+    for kind in KINDS:
+        of_kind = [change for change in found if change.kind == kind]
+        console.print(f"[bold]{kind}[/bold]: {len(of_kind)} changed, {sum(c.worse for c in of_kind)} worse",
+                      highlight=False)
+        for change in sorted(of_kind, key=lambda change: not change.worse):
+            console.print(f"  {'✗' if change.worse else '·'} {change.place}  {change.words}", highlight=False,
+                          markup=False, soft_wrap=True)
+    raise typer.Exit(1 if any(change.worse for change in found) else 0)
+
+
+@app.command("audit")
+def audit(report: Annotated[Path, typer.Argument(help="Folder of a report.")] = Path("report")):
+    """Recompute every figure and verdict of a report from its raw rows, and render its pages again.
+
+    Exit with 1 when something differs.
+    """
+    from .audit import audit as check
+    try:
+        problems, counts = check(report, stored_report(report))
+    except (KeyError, TypeError, AttributeError, IndexError):
+        raise BadInput(f"report {str(report)!r}", "of another version of the workbook", "make it again") from None
+    for problem in problems:
+        console.print(f"✗ {problem}", highlight=False, markup=False, soft_wrap=True)
+    checked = ", ".join(f"{count} {what}" for what, count in counts.items())
+    console.print(f"{len(problems)} differences in {checked}.", highlight=False, soft_wrap=True)
+    raise typer.Exit(1 if problems else 0)
+
+
+@app.command("summary")
+def summary(
+    report: Annotated[Path, typer.Argument(help="Folder of a report.")] = Path("report"),
+    into: Annotated[Path | None, typer.Option(help=f"Put it between the marks {RESULTS} of this file.")] = None,
+):
+    """Print the main results of a report as a table in Markdown, one line per lesson."""
+    from .report.summary import by_lesson
+    text = by_lesson(stored_report(report))
+    if into is None:
+        print(text, end="")
+        return
+    try:
+        head, mark, rest = into.read_text(encoding="utf-8").partition(RESULTS)
+        _, closing, tail = rest.partition(RESULTS)
+    except (OSError, UnicodeDecodeError):
+        raise BadInput(f"file {str(into)!r}", "not readable as text", "name a text file") from None
+    if not (mark and closing):
+        raise BadInput(f"file {str(into)!r}", f"without two marks {RESULTS}", "put them where the table belongs")
+    into.write_text(f"{head}{mark}\n{text}{closing}{tail}", encoding="utf-8")
 
 
 # ---------------------------------------------------------------------------------------------- what was asked for

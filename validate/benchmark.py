@@ -27,7 +27,7 @@ def net(n_springs, seed=1):
     node = np.arange(side * side).reshape(side, side)
     ends = ((node[:-1], node[1:]), (node[:, :-1], node[:, 1:]))
     pairs = np.concatenate([np.stack([a.ravel(), b.ravel()], 1) for a, b in ends])
-    mesh = springs.make_mesh(x, 0.01, [0, side - 1], pairs, 50.0, 0.05, (0.0, -9.81), (0.01, 0.0), 0.01)
+    mesh = springs.make_spring_network(x, 0.01, [0, side - 1], pairs, 50.0, 0.05, (0.0, -9.81), (0.01, 0.0), 0.01)
     return x, np.zeros_like(x), mesh
 
 
@@ -78,10 +78,10 @@ def compiled_run(n_springs, steps):
     """Return a function that takes so many compiled symplectic Euler steps of a net, already compiled."""
     world = modules.module_set(compiled=True)
     step = world.lesson("integrators").symplectic_euler_step
-    mesh_acceleration = world.lesson("springs").mesh_acceleration
+    acceleration = world.lesson("springs").spring_network_acceleration
     advance, (x, v, mesh) = world.lesson("integrators").advance, net(n_springs)
-    advance(step, mesh_acceleration, 0.0, x, v, 1e-4, 1, mesh)
-    return lambda: advance(step, mesh_acceleration, 0.0, x, v, 1e-4, steps, mesh)
+    advance(step, acceleration, 0.0, x, v, 1e-4, 1, mesh)
+    return lambda: advance(step, acceleration, 0.0, x, v, 1e-4, steps, mesh)
 
 
 def thousand_springs():
@@ -152,7 +152,7 @@ def cloth_frame():
     side, sweeps, frame = 100, 20, 1.0 / 60.0
     flat = weave(side, 0.01, 1e-4, 1e3, 9.81)
     threads = flat.pairs[:2 * side * (side - 1)]
-    net = pbd.make_net(flat.x, flat.m, flat.held, threads, 1e-4, 1.0, (0.0, 0.0, -flat.g), sweeps)
+    net = pbd.make_constraint_network(flat.x, flat.m, flat.held, threads, 1e-4, 1.0, (0.0, 0.0, -flat.g), sweeps)
     lesson = modules.module_set(compiled=True).lesson("pbd")
     advance = modules.module_set(compiled=True).lesson("integrators").advance
 

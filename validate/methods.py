@@ -15,16 +15,17 @@ SYMPLECTIC_EULER = Method("symplectic_euler_step", "symplectic Euler", 1, "integ
 VERLET = Method("verlet_step", "Verlet", 2, "integrators", "#0072B2", "P")
 IMPLICIT_EULER = Method("implicit_euler_step", "implicit Euler", 1, "integrators", "#8C6D31", "<")
 IMPLICIT_MIDPOINT = Method("implicit_midpoint_step", "implicit midpoint", 2, "integrators", "#6A51A3", ">")
+BLANES_MOAN = Method("blanes_moan_step", "Blanes–Moan", 4, "integrators", "#17A2A2", "h")
 
 # springs
-IMPLICIT_MESH = Method("implicit_mesh_step", "implicit mesh", 1, "springs", "#7F7F7F", "h")
+IMPLICIT_MESH = Method("implicit_spring_network_step", "implicit mesh", 1, "springs", "#7F7F7F", "h")
 
 # friction
 SLIDING = Method("sliding_step", "sliding", 1, "friction", "#0072B2", "o")
 PYRAMID = Method("pyramid_step", "pyramid", 1, "friction", "#D55E00", "D")
 EVENT = Method("event_step", "event", 2, "friction", "#009E73", "s")
 CONTACT = Method("contact_step", "contact", 1, "friction", "#E69F00", "v")
-GRIPPING = Method("gripping_step", "gripping", 1, "friction", "#56B4E9", "^")
+GRIPPING = Method("position_friction_step", "gripping", 1, "friction", "#56B4E9", "^")
 
 # inertia_tensors
 TRIANGLES = Method("mesh_body", "triangles", 2, "inertia_tensors", "#0072B2", "^")
@@ -42,7 +43,8 @@ MIDPOINT_TURN = Method("midpoint_step", "midpoint turn", 2, "rotation", "#6A51A3
 SPLITTING = Method("splitting_step", "splitting", 2, "rotation", "#56B4E9", "^")
 COMPOSED_SPLITTING = Method("composed_splitting_step", "splitting, composed", 4, "rotation", "#0072B2", "P")
 COMPOSED_MIDPOINT = Method("composed_midpoint_step", "midpoint, composed", 4, "rotation", "#B07CC6", "d")
-LOOP = Method("rigid_body_step", "the lecture's loop", 1, "rotation", "#0072B2", "P")
+ROLLING = Method("rolling_step", "the lecture's loop", 1, "rotation", "#0072B2", "P")
+AVERAGE_ROLLING = Method("average_rolling_step", "mean velocities", 2, "rotation", "#009E73", "s")
 
 # collisions
 DISCRETE = Method("discrete_step", "discrete", 1, "collisions", "#D55E00", "D")
@@ -55,20 +57,22 @@ TREES = Method("tree_pairs", "trees", 2, "collisions", "#0072B2", "P")
 
 # impulses
 PENALTY = Method("penalty_step", "penalty", 1, "impulses", "#D55E00", "D")
-PROJECTING = Method("projecting_step", "projecting", 1, "impulses", "#0072B2", "o")
+PROJECTING = Method("position_projection_step", "projecting", 1, "impulses", "#0072B2", "o")
 BACKTRACKING = Method("backtracking_step", "backtracking", 2, "impulses", "#009E73", "s")
-PROJECTING_SPIN = Method("projecting_spin_step", "projecting", 1, "impulses", "#0072B2", "o")
+PROJECTING_SPIN = Method("position_projection_spin_step", "projecting", 1, "impulses", "#0072B2", "o")
 BACKTRACKING_SPIN = Method("backtracking_spin_step", "backtracking", 2, "impulses", "#009E73", "s")
-PROJECTING_DISCS = Method("projecting_discs_step", "projecting", 1, "impulses", "#0072B2", "o")
+PROJECTING_DISCS = Method("position_projection_discs_step", "projecting", 1, "impulses", "#0072B2", "o")
 BACKTRACKING_DISCS = Method("backtracking_discs_step", "backtracking", 2, "impulses", "#009E73", "s")
 TOGETHER = Method("solve_impacts", "together", 2, "impulses", "#009E73", "s")
-IN_TURN = Method("one_after_the_other", "one after the other", 2, "impulses", "#D55E00", "D")
+IN_TURN = Method("sequential_impacts", "one after the other", 2, "impulses", "#D55E00", "D")
 
 # pbd
-PROJECTION = Method("projection_step", "projection", 1, "pbd", "#E69F00", "o")
+PROJECTION = Method("constraint_projection_step", "projection", 1, "pbd", "#E69F00", "o")
 PBD = Method("pbd_step", "PBD", 1, "pbd", "#D55E00", "D")
 XPBD = Method("xpbd_step", "XPBD", 1, "pbd", "#56B4E9", "^")
 RATTLE = Method("rattle_step", "RATTLE", 2, "pbd", "#009E73", "s")
+ROPE = Method("rope_step", "rope", 2, "pbd", "#56B4E9", "^")
+COMPOSED_ROPE = Method("composed_rope_step", "rope, composed", 4, "pbd", "#6A51A3", ">")
 
 # contact
 SWEEPS = Method("contact_forces", "sweeps", 2, "contact", "#009E73", "s")

@@ -48,6 +48,13 @@ def lesson_names(folder=SOLUTIONS):
     return [path.stem for path in sorted(files, key=place)]
 
 
+def given_modules():
+    """Names of the modules beside the lessons, below `solutions`: checks, support, support.arms …"""
+    paths = sorted(path.relative_to(SOLUTIONS).with_suffix("") for path in SOLUTIONS.rglob("*.py"))
+    dotted = (".".join(path.parts) for path in paths if path.parts[0] in GIVEN)
+    return [name.removesuffix(".__init__") for name in dotted if name != "__init__"]
+
+
 def withheld(lesson, folder=SOLUTIONS):
     """Functions of a lesson that still wait for their body:
     in solutions/ none, but all in a copy of the workbook without worked answers.
@@ -184,9 +191,9 @@ PLAIN = PlainModules()
 
 
 def _siblings(file):
-    """Names of the files beside a subject's file that it imports."""
+    """Names of the lessons beside a subject's file that it imports."""
     named = re.findall(r"^from \.(\w+) import", file.read_text(encoding="utf-8", errors="replace"), re.M)
-    return {name for name in named if (file.parent / f"{name}.py").is_file()}
+    return {name for name in named if name not in GIVEN and (file.parent / f"{name}.py").is_file()}
 
 
 class ModuleSet:
@@ -200,6 +207,8 @@ class ModuleSet:
         for package, path in {"": [], ".solutions": [SOLUTIONS], ".subject": [folder], ".scenes": [SCENES]}.items():
             module = sys.modules[self.name + package] = types.ModuleType(self.name + package)
             module.__path__ = [str(p) for p in path]
+        for given in given_modules():                    # ours, even where the subject's folder has copies of them
+            sys.modules[f"{self.name}.subject.{given}"] = importlib.import_module(f"solutions.{given}")
 
     def lesson(self, name):
         """A lesson of the subject.  Raises the same Unloadable every time when its file cannot be loaded."""

@@ -1,14 +1,18 @@
 """A run: measure what is not measured yet, write the report, and say how it went."""
 
+import os
 import platform
+import re
 from datetime import date
+from importlib.metadata import version
+from pathlib import Path
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-from . import engines, measure, modules
+from . import coverage, engines, measure, modules
 from .scene import PRODUCTS
 from .stability.examine import stability_cases
-from .store import lessons_of, store_for
+from .store import code_digest, lessons_of, store_for
 
 
 def run(names, plan, pool, out, console):
@@ -25,7 +29,10 @@ def run(names, plan, pool, out, console):
         console.print(f"\nOther scenes in {out} were measured with other code or options: their report stays as it is.",
                       highlight=False, soft_wrap=True)
     console.print(f"\nThe report lies in [bold]{front}[/bold]", highlight=False, soft_wrap=True)
-    return 1 if departures else 0
+    lost = coverage.missing() if set(names) == set(modules.scene_names()) else []
+    if lost:
+        console.print(f"Nothing in the report runs {', '.join(lost)}.", highlight=False, soft_wrap=True)
+    return 1 if departures or lost else 0
 
 
 def interleave_by_lesson(names):
@@ -76,4 +83,16 @@ def about(plan):
         "of": str(plan.of), "mode": "quick" if plan.quick else "full", "engines": live, "compiler": compiler,
         "speeds": list(plan.speeds), "repeats": plan.repeats(), "date": date.today().isoformat(),
         "machine": f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",
+        "processor": processor(), "cores": os.cpu_count(), "code": code_digest(plan.of),
+        "versions": {name: version(name) for name in ("numpy", "scipy", "matplotlib")},
+        "overrides": [list(pair) for pair in plan.overrides], "coverage": coverage.table(),
     }
+
+
+def processor():
+    """The name of the processor, as far as the system tells."""
+    try:
+        names = re.findall(r"^model name\s*: (.*)$", Path("/proc/cpuinfo").read_text(encoding="utf-8"), re.M)
+    except OSError:
+        names = []
+    return names[0] if names else platform.processor()

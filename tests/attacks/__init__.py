@@ -84,6 +84,14 @@ def looks(name, text):
     LOOKS.append((name, text))
 
 
-from . import endless, kernel, leaving, looking, lying, telling, wiring  # noqa: E402, F401      each adds its own
+from . import (  # noqa: E402, F401      each adds its own
+    exfiltration,
+    introspection,
+    process_exit,
+    protocol_abuse,
+    resource_exhaustion,
+    result_tampering,
+    system_calls,
+)
 
 attack("looks around: " + " · ".join(name for name, _ in LOOKS), "the answers, the seed, a way out", "\n".join(text for _, text in LOOKS), shows=("FOUND",))

@@ -219,7 +219,7 @@ USES_OF_WORKED_FUNCTIONS = {
     ),
     "a worked function for a lesson that has none": (
         "import solutions.springs, lessons.springs\n"
-        "    return solutions.springs.implicit_mesh_step(acceleration, t, x, v, dt, mesh)"
+        "    return solutions.springs.implicit_spring_network_step(acceleration, t, x, v, dt, mesh)"
     ),
     "the source of a worked function": (
         "import inspect, solutions.integrators as s\n"
@@ -231,7 +231,7 @@ USES_OF_WORKED_FUNCTIONS = {
 @pytest.mark.long
 @pytest.mark.parametrize(("name", "body"), USES_OF_WORKED_FUNCTIONS.items())
 def test_the_worked_functions_of_earlier_lessons_are_no_hole(name, body, trial, settings):
-    step = f"def implicit_mesh_step(acceleration, t, x, v, dt, mesh):\n    {body}\n    return x, v\n"
+    step = f"def implicit_spring_network_step(acceleration, t, x, v, dt, mesh):\n    {body}\n    return x, v\n"
     result = graded(honest_air(step), settings, "springs")
     assert earned(result) == {"2.2": 2, "2.13": 0}, name
     assert not re.search(r"FOUND (?!\[\])", harmless(result))

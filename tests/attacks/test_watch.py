@@ -30,10 +30,10 @@ SEEN = {
     ],
     "network": ["import socket; socket.socket()", "import socket; socket.getaddrinfo('example.org', 80)"],
     "write": [
-        "open('/tmp/notes', 'w')",
-        "import os; os.open('/tmp/notes', os.O_CREAT | os.O_RDWR)",
-        "import os; os.mkdir('/tmp/notes')",
-        "import os; os.remove('/tmp/notes')",
+        "open('notes', 'w')",
+        "import os; os.open('notes', os.O_CREAT | os.O_RDWR)",
+        "import os; os.mkdir('notes')",
+        "import os; os.remove('notes')",
     ],
     "read": [
         "open('/etc/passwd')",

@@ -22,5 +22,5 @@ def test_implicit(lesson, draw):
         asked.append(t)
         return -x
     x = draw(-1.0, 1.0, (2, 2))
-    got = lesson.implicit_mesh_step(counted, 0.0, x, np.zeros((2, 2)), 0.1, None)
+    got = lesson.implicit_spring_network_step(counted, 0.0, x, np.zeros((2, 2)), 0.1, None)
     close("x", got[0], x / 1.01, 1e-9)

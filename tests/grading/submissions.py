@@ -59,12 +59,12 @@ def read_all(folder, lessons, people=(), class_list=None):
     folder = Path(folder)
     if not folder.is_dir():
         raise BadInput(f"submissions {str(folder)!r}", "not a folder",
-                       "name the folder that holds one folder or zip a student")
+                       "name the folder that holds one folder or zip per student")
     theirs, overlooked = by_student(folder, people, class_list)
     if not theirs:
         own = [path.name for path in folder.glob("*.py") if path.stem in modules.lesson_names()]
         raise BadInput(f"submissions {str(folder)!r}", f"one student's own ({own[0]} lies in it)" if own else "empty",
-                       "name the folder above it" if own else "put one folder or zip a student into it")
+                       "name the folder above it" if own else "put one folder or zip per student into it")
     found, unclear = [], {}
     with children.reader() as child:
         for student, paths in sorted(theirs.items()):

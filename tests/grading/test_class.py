@@ -137,7 +137,7 @@ def test_a_class_below_the_environment_is_not_read_by_its_students(top):
 
 @pytest.mark.parametrize(("arguments", "names"), [
     (["no/such/folder"], "no/such/folder"),
-    (["{empty}"], "put one folder or zip a student into it"),
+    (["{empty}"], "put one folder or zip per student into it"),
     (["{class}", "--lesson", "juggling"], "juggling"),
     (["{class}", "--due", "tomorrow"], "2026-11-30T23:59"),
     (["{class}", "--roster", "{list}"], "student_id"),

@@ -382,7 +382,7 @@ def test_the_students_answers_replace_the_worked_ones(unpacked, tmp_path):
         from validate.notebook import answers, attempt
         integrators, springs = answers("integrators"), answers("springs")
         x, pairs = np.array([[0.0, 0.0], [1.0, 0.0]]), springs.grid_pairs(1, 2, springs.STRUCTURAL)
-        mesh = springs.make_mesh(x, 1.0, (0,), pairs, 1.0, 0.0, [0.0, -1.0], [0.0, 0.0], 0.0)
+        mesh = springs.make_spring_network(x, 1.0, (0,), pairs, 1.0, 0.0, [0.0, -1.0], [0.0, 0.0], 0.0)
         print(springs.mass_spring_damper_step(0.0, x, 0.0 * x, 2.0, mesh)[1][1])
         print(attempt(lambda: answers("juggling").catch))
     """

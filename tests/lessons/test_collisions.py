@@ -1,5 +1,7 @@
 """Lesson 6: distances are the least, times of impact the first, and a hierarchy finds the same pairs as brute force."""
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -13,11 +15,11 @@ exercise = pytest.mark.exercise
 ROUND_OFF = 1e-12
 # Error of brute force over the size: 1e-13 at a thousand sizes from the origin, over angles of 0.01 rad, times ten.
 KNOWN = 1e-10
-EDGES_WIN_BY = 1e-9          # a pair of edges must separate by this much more [m] than any face, as the lesson says
+EDGE_PREFERENCE = 1e-9          # a pair of edges must separate by this much more [m] than any face, as the lesson says
 
 
 # Sizes of small, medium and large bodies [m]. Powers of two: what is exact at one size is exact at the others.
-SIZES = (2.0**-30, 1.0, 2.0**30)
+SIZES = (2.0**-100, 1.0, 2.0**100)
 
 
 def places(draw, d=3):
@@ -110,7 +112,7 @@ def test_a_ball_of_any_size_meets_a_plane_only_if_it_comes_through_from_above(le
     for size, place in places(draw):
         for sides in ((1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)):
             rows = axes(draw, 3)
-            r = size * draw(0.01, 2.0)
+            r = size * draw(0.01, 2.0) * draw.whole(0, 1)                # 0: a point
             t, dt = draw(1.0, 5.0), draw(0.01, 0.5)
             gaps = size * draw(0.2, 3.0, 2) * sides
             plane = lesson.Plane(rows[0], float(-rows[0] @ place))
@@ -130,12 +132,16 @@ def test_a_ball_of_any_size_meets_a_plane_only_if_it_comes_through_from_above(le
           lesson.plane_impact_time(3.0, 0.5, on, above, r, floor), 3.0, 0.0)
     close("time of impact at the end of the step [s]", lesson.plane_impact_time(3.0, 0.5, above, on, r, floor), 3.5,
           0.0)
-    for size in SIZES:                                                   # half a nanometre above at the smallest size
+    for size in SIZES:
         floor, on = lesson.Plane(floor.n, -size * level), size * np.array([0.0, 1.0, level + r])
         above = on + 0.5 * size * floor.n
         close("time of impact at the end of the step [s]",
               lesson.plane_impact_time(3.0, 0.5, above, on, size * r, floor), 3.5, 0.0,
               f"{above} to {on}, r = {size * r}, {floor}")
+        above = on + 2.0**-30 * size * floor.n
+        close("time of impact at the very beginning of the step [s]",
+              lesson.plane_impact_time(3.0, 0.5, above, on - size * floor.n, size * r, floor), 3.0 + 2.0**-31, 1e-15,
+              f"{above} to {on - size * floor.n}, r = {size * r}, {floor}")
 
 
 # ---------------------------------------------------------------------------------------------- cylinder along x
@@ -176,7 +182,7 @@ def test_no_point_of_the_axis_is_nearer_than_the_one_of_the_contact(lesson, draw
                   np.concatenate(([gap], x - r * n, q + R * n)) / size, KNOWN, given)
 
 
-def flight(draw, rho, beside, far, length, begin=None):
+def crossing(draw, rho, beside, far, length, begin=None):
     """(x_0, x_1): a path of `length` across the axis and some way along it.
 
     It starts at a distance `far` before the axis and passes it at a distance `beside`.
@@ -197,7 +203,7 @@ def test_the_first_root_is_the_time_of_impact_at_20_m_per_s_and_at_10_km_per_s(l
     for speed in (20.0, 100.0, 1e4):
         length, share = speed * dt, draw(-0.9, 0.9)
         far = (R + r) + draw(0.05, 0.2) * (length - 0.5 * (R + r))
-        x_0, x_1 = flight(draw, R + r, share * (R + r), far, length)
+        x_0, x_1 = crossing(draw, R + r, share * (R + r), far, length)
         way = far - (R + r) * np.sqrt(1.0 - share**2)
         t, before = draw(1.0, 5.0), x_1.copy()
         got = lesson.cylinder_impact_time(t, dt, x_0, x_1, r, R)
@@ -215,10 +221,10 @@ def test_the_first_root_is_the_time_of_impact_at_20_m_per_s_and_at_10_km_per_s(l
 def test_a_ball_that_misses_leaves_or_arrives_later_has_no_impact(lesson, draw):
     R, r, t, dt = draw(0.5, 1.5), draw(0.05, 0.3), draw(1.0, 5.0), draw(0.01, 0.2)
     rho = R + r
-    x_0, x_1 = flight(draw, rho, draw(1.05, 2.0) * rho, draw(3.0, 5.0), 10.0)
+    x_0, x_1 = crossing(draw, rho, draw(1.05, 2.0) * rho, draw(3.0, 5.0), 10.0)
     never("time of impact of a ball that misses [s]", lesson.cylinder_impact_time(t, dt, x_0, x_1, r, R),
           f"{x_0} to {x_1}, r = {r}, R = {R}")
-    x_0, x_1 = flight(draw, rho, draw(-0.8, 0.8) * rho, draw(4.0, 6.0), draw(0.5, 1.5))
+    x_0, x_1 = crossing(draw, rho, draw(-0.8, 0.8) * rho, draw(4.0, 6.0), draw(0.5, 1.5))
     never("time of impact of a ball that arrives too late [s]", lesson.cylinder_impact_time(t, dt, x_0, x_1, r, R),
           f"{x_0} to {x_1}, r = {r}, R = {R}")
     never("time of impact of a ball that moves away [s]",
@@ -242,7 +248,7 @@ def test_a_grazing_shot_from_afar_loses_no_digits(lesson, draw):
     for _ in range(5):
         R, r = draw(0.5, 1.5), draw(0.05, 0.3)
         rho = R + r
-        x_0, x_1 = flight(draw, rho, (1.0 - 1e-9) * rho, 1e3 * rho, 2e3 * rho)
+        x_0, x_1 = crossing(draw, rho, (1.0 - 1e-9) * rho, 1e3 * rho, 2e3 * rho)
         way = 2e3 * rho * lesson.cylinder_impact_time(0.0, 1.0, x_0, x_1, r, R)
         close("distance to the impact over ρ [-]", way / rho, 1e3 - np.sqrt(2e-9 - 1e-18), 5e-8,
               given=f"{x_0} to {x_1}, r = {r}, R = {R}")
@@ -288,6 +294,13 @@ def test_any_path_touches_the_cylinder_first_where_it_enters(lesson, draw):
         close("time of impact at the end of a step by half the size [s]",
               lesson.cylinder_impact_time(2.0, 0.5, begin, end, size, size * (rho - 1.0)), 2.5, 0.0,
               f"{begin} to {end}, r = {size}, R = {size * (rho - 1.0)}")
+        never("time of impact of a ball that does not quite arrive [s]",
+              lesson.cylinder_impact_time(2.0, 0.5, begin, end - size * np.array([0.0, 2.0**-34, 0.0]), size,
+                                          size * (rho - 1.0)), f"{begin} to {end}, but for the last 6e-11 of the size")
+        nearly = size * np.array([1.0, -rho - 2.0**-30, 0.0])
+        close("time of impact at the very beginning of the step [s]",
+              lesson.cylinder_impact_time(2.0, 0.5, nearly, nearly + size * np.array([0.0, 0.5, 0.0]), size,
+                                          size * (rho - 1.0)), 2.0 + 2.0**-30, 1e-14, f"from {nearly} by half the size")
         # D is exactly 0 here.
         begin, end = size * np.array([1.0, -m, rho]), size * np.array([2.0, m, rho])
         close("time of impact of a ball that only grazes [s]",
@@ -304,7 +317,9 @@ def test_the_nearest_point_of_a_segment_is_its_foot_or_an_end(lesson, draw):
         aside = draw(0.1, 3.0) * rows[1]
         s = draw(0.1, 0.9)
         on = a + s * (b - a)
-        for p, expected in ((on + aside, on), (a - s * (b - a) + aside, a), (b + s * (b - a) - aside, b), (a, a)):
+        nearly = a + 1e-9 * (b - a), b - 1e-9 * (b - a)                  # inside, but almost at an end
+        for p, expected in (*((q + aside, q) for q in nearly), (on + aside, on), (a - s * (b - a) + aside, a),
+                            (b + s * (b - a) - aside, b), (a, a)):
             close("nearest point of the segment [m]", lesson.closest_on_segment(p, a, b), expected, ROUND_OFF,
                   given=f"p = {p}, a = {a}, b = {b}")
 
@@ -324,6 +339,13 @@ def test_a_segment_without_length_is_refused(lesson, draw):
         tiny = a + 1e-7
         close("nearest point of a very short segment [m]", lesson.closest_on_segment(tiny + 1.0, a, tiny),
               tiny, ROUND_OFF)
+        for size in SIZES:                                               # a million lengths from the origin, exactly
+            e = np.eye(d)[draw.whole(0, d - 1)]
+            a, length = size * np.floor(draw(1.0, 9.0, d)), 2.0**-40 * size
+            b, p = a + length * e, a + 0.25 * length * e + size * (1.0 - e)
+            got = numbers("nearest point of a short segment far away [m]", lesson.closest_on_segment(p, a, b), (d,))
+            close("nearest point of a short segment far away, from a over its length [-]", (got - a) / length, 0.25 * e,
+                  1e-3, f"p = {p}, a = {a}, b = a + {length * e}")
 
 
 def is_nearest(quantity, q, p, corners, size, given=""):
@@ -442,7 +464,7 @@ def test_the_nearest_point_of_a_triangle_is_inside_on_an_edge_or_a_corner(lesson
 
 
 @exercise("6.7", points=0.25,
-          hint="|N| ≤ FLAT times the longest edge squared: BadInput; a small triangle is not flat")
+          hint="|N| ≤ DEGENERATE_AREA times the longest edge squared: BadInput; a small triangle is not flat")
 def test_a_triangle_without_area_is_refused_and_a_small_one_is_not(lesson, draw):
     a, b, p = draw(-3.0, 3.0, 3), draw(-3.0, 3.0, 3), draw(-3.0, 3.0, 3)
     for c in (a + draw(0.2, 0.8) * (b - a), b.copy(), a + 1.5 * (b - a)):
@@ -451,14 +473,35 @@ def test_a_triangle_without_area_is_refused_and_a_small_one_is_not(lesson, draw)
     small = 1e-6 * np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.3, 0.7, 0.0]])
     close("nearest point of a small triangle [m]", lesson.closest_on_triangle(np.array([3e-7, 2e-7, 0.5]), *small),
           [3e-7, 2e-7, 0.0], ROUND_OFF)
-    for high in (1e-7, 1e-9):                                            # |N| is high: 1000 times FLAT or more
+    for high in (1e-7, 1e-9):                                            # |N| is high: 1000 DEGENERATE_AREA or more
         needle = [np.array(corner) for corner in ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.5, high, 0.0))]
         p = np.array([draw(0.4, 0.6), 0.5 * high, draw(0.5, 2.0)])
         close("nearest point of a needle [m]", lesson.closest_on_triangle(p, *needle), [p[0], p[1], 0.0], ROUND_OFF,
               f"p = {p}, corners {needle}")
 
 
-@exercise("6.7", points=0.5,
+@exercise("6.7", points=0.25,
+          hint="|N| ≤ DEGENERATE_AREA times the square of the longest of all three edges; |N| is twice the area")
+def test_a_triangle_is_flat_by_its_area_over_its_longest_edge_squared(lesson, draw):
+    """|N| is exact: one edge is along an axis. In units of its length, the longest edge is 1 or 2 long."""
+    flat = 1e-12
+    raises("three corners on one line", BadInput, lesson.closest_on_triangle, np.array([0.0, 0.0, 1.0]), np.zeros(3),
+           np.array([1.0, 0.0, 0.0]), np.array([-1.0, 0.0, 0.0]))
+    for size, (third, longest), turn in itertools.product(SIZES, ((0.5, 1.0), (-1.0, 2.0), (2.0, 2.0)), range(6)):
+        for share in (1e-3, 0.7, 1.2, 1e3):
+            high = share * flat * longest**2
+            corners = size * np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [third, high, 0.0]])
+            corners = [corners[k] for k in list(itertools.permutations(range(3)))[turn]]
+            p = size * np.array([draw(0.1, 0.4), 0.0, draw(0.5, 2.0)])
+            if share < 1.0:
+                raises("a triangle flatter than DEGENERATE_AREA", BadInput, lesson.closest_on_triangle, p, *corners)
+            else:
+                q = np.asarray(lesson.closest_on_triangle(p, *corners))
+                close("nearest point of a needle, over its size [-]", q / size, [p[0] / size, 0.0, 0.0], 1e-8,
+                      f"p = {p}, corners {corners}")
+
+
+@exercise("6.7", points=0.25,
           hint="compare all three edges: near an obtuse corner p is outside two of them, and either may be nearer")
 def test_no_point_of_a_triangle_is_nearer_be_it_acute_obtuse_or_a_needle(lesson, draw):
     for size, place in places(draw):
@@ -510,8 +553,7 @@ def test_a_ball_whose_centre_is_inside_leaves_by_the_nearest_face(lesson, draw):
                 given = f"x = {x}, on or beside a face of {cube}"
                 same_contact(lesson.ball_box(x, r, cube), x - r * n,
                              x + (0.5 - place) * n, n, place - 0.5 - r, 1e-11, given)
-    # just outside an edge: 4e-13 m at the smallest size
-    for size in SIZES:
+    for size in SIZES:                                                   # just outside an edge
         cube, out = lesson.Box(np.zeros(3), np.eye(3), size * np.ones(3)), size * 2.0**-11
         x = np.array([size + out, 0.25 * size, -size - out])
         n, gap = np.array([1.0, 0.0, -1.0]) / np.sqrt(2.0), np.sqrt(2.0) * out
@@ -621,8 +663,16 @@ def test_brute_force_finds_every_pair_once(lesson, draw):
     far = 10.0 * np.arange(6.0).reshape(3, 2)
     same_pairs("pairs of boxes that are all apart", lesson.all_pairs(far, far + 1.0), np.zeros((0, 2)))
     raises("boxes that are inside out", BadInput, lesson.all_pairs, far + 1.0, far)
-    raises("a box with a corner that is not a number", BadInput,
-           lesson.all_pairs, far, np.where(np.arange(6).reshape(3, 2) == 5, np.nan, far + 1.0))
+    for k in range(6):
+        one = np.arange(6).reshape(3, 2) == k
+        for size in SIZES:
+            raises("a box that is inside out in one coordinate", BadInput, lesson.all_pairs,
+                   np.where(one, size, 0.0), np.zeros((3, 2)))
+        for wrong in (np.nan, np.inf, -np.inf):
+            raises("a box with an upper corner that is no finite number", BadInput, lesson.all_pairs, far,
+                   np.where(one, wrong, far + 1.0))
+            raises("a box with a lower corner that is no finite number", BadInput, lesson.all_pairs,
+                   np.where(one, wrong, far), far + 1.0)
 
 
 def crowds(draw, d):
@@ -634,7 +684,7 @@ def crowds(draw, d):
             ("two boxes that touch", low[:2], low[:2] + 8.0),
             ("two separate boxes", np.stack((low[0], low[0] + 9.0)), np.stack((low[0] + 1.0, low[0] + 10.0))),
             ("boxes one inside the other", middle - half, middle + half),
-            ("tiny boxes", 2.0**-40 * low, 2.0**-40 * high),
+            ("tiny boxes", 2.0**-100 * low, 2.0**-100 * high),
             ("flat boxes", low, flat),
             ("boxes far away", low + 2.0**30, high + 2.0**30),
             ("identical boxes", 0.0 * low - 1.0, 0.0 * high + 1.0),
@@ -736,7 +786,7 @@ def polygon(draw, k):
 @exercise("6.12", points=0.25, hint="for each edge the least n · (b_j − a_i); of all edges the greatest of those")
 def test_the_edge_that_separates_best_is_the_one_a_corner_points_at(lesson, draw):
     """Beside the middle of an edge, within a tenth of the size, every other edge gives a smaller gap."""
-    for k in (3, 5, 6):
+    for k in (3, 5, 6, 12, 25):
         a, radius = polygon(draw, k)
         for share in (draw(0.02, 0.08), -draw(0.02, 0.08)):
             i = draw.whole(0, k - 1)
@@ -999,7 +1049,51 @@ def pairs_of_boxes(draw, lesson, size, place):
         yield a._replace(x=place + 30.0 * gaps_of_axes(a, b)[1][k]), b
 
 
-@exercise("6.14", points=0.5,
+def between_edges(draw, lesson, lead):
+    """Boxes 30 m apart, and the better two of their axes i < j: both belong to edges, and j leads by `lead` [m].
+
+    Along an axis the gap is 30 m |direction · axis| − widths.  The direction is found between axis i and axis j.
+    """
+    for _ in range(4):
+        a, b = (lesson.Box(np.zeros(3), rotation(draw), draw(0.3, 1.0, 3)) for _ in range(2))
+        widths, candidates = gaps_of_axes(a, b)                          # gaps of boxes in one place: minus both widths
+        for i, j in itertools.combinations(range(6, 15), 2):
+            other = candidates[j] * np.sign(candidates[i] @ candidates[j])
+            low, high = 0.0, 1.0
+            for _ in range(60):
+                share = 0.5 * (low + high)
+                direction = (1.0 - share) * candidates[i] + share * other
+                direction /= np.linalg.norm(direction)
+                gaps = 30.0 * np.abs(candidates @ direction) + widths
+                low, high = (share, high) if gaps[j] - gaps[i] < lead else (low, share)
+            if max(np.delete(gaps, (i, j))) < gaps[i] - 1e-6 and abs(gaps[j] - gaps[i] - lead) < 1e-12:
+                yield a._replace(x=30.0 * direction), b, i, j
+
+
+@exercise("6.14", points=0.25,
+          hint="two edges must win by EDGE_PREFERENCE [m], over the best face and over edges that won before")
+def test_two_edges_win_only_by_a_nanometre(lesson, draw):
+    """Boxes of a few nanometres: each advantage is about as large as EDGE_PREFERENCE."""
+    for size in 10.0 ** draw(-9.5, -7.0, 60):
+        a = lesson.Box(size * draw(0.5, 3.0) * axes(draw, 3)[0], rotation(draw), size * draw(0.3, 1.0, 3))
+        b = lesson.Box(np.zeros(3), rotation(draw) @ turned(0, draw(0.0, 3.0)), size * draw(0.3, 1.0, 3))
+        gaps, greatest, number, unclear = gaps_of_axes(a, b)[0], -np.inf, 0, False
+        for k, gap in enumerate(gaps):
+            ahead = gap - greatest - (EDGE_PREFERENCE if k >= 6 else 0.0)
+            unclear = unclear or abs(ahead) < 1e-6 * size                # round-off could decide
+            if ahead > 0.0:
+                greatest, number = gap, k
+        if not unclear:
+            got = lesson.box_separation(a, b)
+            close("number of the separating axis", got[2], number, 0.0, given=f"{a}, {b}, gaps {gaps}")
+            close("gap over the size [-]", got[0] / size, greatest / size, KNOWN, given=f"{a}, {b}")
+    for share in (0.5, 2.0):
+        for a, b, i, j in between_edges(draw, lesson, share * EDGE_PREFERENCE):
+            close("number of the separating axis, where a later pair of edges leads by about EDGE_PREFERENCE",
+                  lesson.box_separation(a, b)[2], i if share < 1.0 else j, 0.0, given=f"{a}, {b}")
+
+
+@exercise("6.14", points=0.25,
           hint="a zero axis gives a gap of 0, which is greater than that of overlapping boxes: skip it")
 def test_boxes_turned_parallel_nested_and_far_apart_are_separated_by_the_best_of_their_axes(lesson, draw):
     """Overlapping boxes are as deep as the nearest facet of the hull of all differences is from 0.
@@ -1013,12 +1107,12 @@ def test_boxes_turned_parallel_nested_and_far_apart_are_separated_by_the_best_of
             given = f"{a}, {b}"
             known = KNOWN * (size + np.abs(a.x - b.x).max())
             close("error of the greatest gap over its uncertainty [-]",
-                  (gap - max(gaps[:6].max(), gaps[6:].max())) / max(known, EDGES_WIN_BY), 0.0, 1.0 + KNOWN, given)
+                  (gap - max(gaps[:6].max(), gaps[6:].max())) / max(known, EDGE_PREFERENCE), 0.0, 1.0 + KNOWN, given)
             between("gap minus the best gap of the faces [m]", gap - gaps[:6].max(), -known, np.inf, given)
             n, k = numbers("n", n, (3,), given), int(k)
             between("gap of the returned axis, minus the greatest [m]", gaps[k] - gap, -known, known, given)
             between("gain over all faces, if the returned axis belongs to two edges [m]",
-                    gaps[k] - gaps[:6].max() if k >= 6 else 1.0, EDGES_WIN_BY - known, np.inf, given)
+                    gaps[k] - gaps[:6].max() if k >= 6 else 1.0, EDGE_PREFERENCE - known, np.inf, given)
             close("n · returned axis: parallel, with either sign [-]", np.abs(n @ candidates[k]), 1.0, KNOWN, given)
             close("size of n [-]", n @ n, 1.0, KNOWN, given)
             between("n · r: from b to a [m]", n @ (a.x - b.x), -known, np.inf, given)
@@ -1026,9 +1120,9 @@ def test_boxes_turned_parallel_nested_and_far_apart_are_separated_by_the_best_of
             hull = facets(differences(p, q) / size)[1].max() * size
             if hull <= 0.0:
                 close("depth of overlapping boxes, minus that of the hull of all differences, over its uncertainty [-]",
-                      (gap - hull) / max(known, EDGES_WIN_BY), 0.0, 1.0 + KNOWN, given)
+                      (gap - hull) / max(known, EDGE_PREFERENCE), 0.0, 1.0 + KNOWN, given)
             else:
-                low = hull - max(known, EDGES_WIN_BY)
+                low = hull - max(known, EDGE_PREFERENCE)
                 between("gap of separate boxes [m]", gap, low, distance(p, q) + known, given)
 
 
@@ -1097,6 +1191,13 @@ def test_bodies_that_overlap_have_no_distance_and_flat_ones_do_not_confuse(lesso
     raises("a body with a corner that is not a number", BadInput,
            lesson.gjk, a, np.where(np.arange(12).reshape(4, 3) == 11, np.nan, b))
     raises("bodies whose squared coordinates overflow", BadInput, lesson.gjk, 1e200 * a, 1e200 * b)
+    for k, wrong in itertools.product((0, 5, 11), (np.nan, np.inf, -np.inf, 1e200)):
+        one = np.arange(12).reshape(4, 3) == k
+        raises("a body a with a corner that is no finite number, or too large", BadInput, lesson.gjk,
+               np.where(one, wrong, a), b)
+        raises("a body b with a corner that is no finite number, or too large", BadInput, lesson.gjk, a,
+               np.where(one, wrong, b))
+    raises("bodies whose squared coordinates underflow", BadInput, lesson.gjk, 1e-200 * a, 1e-200 * b)
 
 
 def bodies(draw, d):
@@ -1205,9 +1306,18 @@ def test_nothing_swerves_without_need_and_head_on_it_turns_left(lesson, draw):
             close("acceleration exactly beside the centre, and exactly at the end of the time ahead [m/s²]",
                   lesson.steer(x, v, x + tau * v + 0.5 * size * left, size, 4.0), np.zeros(2), 0.0,
                   f"x = {x}, v = {v}, radius {size}, τ = {tau} s")
-        for tau, offset in ((tau, offset) for tau in (2.0**-5, 0.25, 2.0) for offset in offsets):
+        for tau, part in itertools.product((2.0**-20, 0.25, 2.0, 64.0), (1.0, 0.5)):
+            close("acceleration before the time ahead begins [m/s²]",
+                  lesson.steer(x, v, x + tau * v, size, part * tau), np.zeros(2), 0.0,
+                  f"x = {x}, v = {v}, radius {size}, heads for the centre, τ = {tau} s, ahead {part * tau} s")
+        for tau, least in itertools.product((2.0**-20, 0.25, 2.0, 64.0), (0.0, 1e3, np.inf)):
+            ahead = max(2.0 * tau, least)
+            close("acceleration when heading for the centre, times τ² over the size [-]",
+                  np.asarray(lesson.steer(x, v, x + tau * v, size, ahead)) / size * tau**2, 2.0 * left, 1e-12,
+                  f"x = {x}, v = {v}, radius {size}, τ = {tau} s, ahead {ahead} s")
+        for tau, offset in ((tau, offset) for tau in (2.0**-20, 2.0**-5, 0.25, 2.0) for offset in offsets):
             centre = x + tau * v + offset * size * left
-            expected = 2.0 * (1.0 - abs(offset)) / tau**2 * (left if offset <= 0.0 else -left)
-            close("acceleration when heading for the centre, or slightly beside it, over the size [1/s²]",
-                  lesson.steer(x, v, centre, size, 4.0) / size, expected, 1e-10,
+            expected = 2.0 * (1.0 - abs(offset)) * (left if offset <= 0.0 else -left)
+            close("acceleration when heading for the centre, or slightly beside it, times τ² over the size [-]",
+                  np.asarray(lesson.steer(x, v, centre, size, 4.0)) / size * tau**2, expected, 1e-12,
                   f"x = {x}, v = {v}, radius {size}, passes {offset * size} to the right of the centre after {tau} s")

@@ -230,11 +230,11 @@ def test_a_pyramid_leaves_the_least_energy_that_its_square_allows(lesson, draw):
 
 # ---------------------------------------------------------------------------------------------- a block in time
 
-def block(lesson, n, mu_s, mu_k, gravity, push=None, omega=0.0):
+def block(lesson, n, mu_s, mu_k, gravity, drive=None, omega=0.0):
     """A Block that the lesson has not checked."""
-    push = np.zeros(len(n)) if push is None else push
+    drive = np.zeros(len(n)) if drive is None else drive
     return lesson.Block(np.array(n, dtype=float), mu_s, mu_k,
-                        np.array(gravity, dtype=float), np.array(push, dtype=float), omega)
+                        np.array(gravity, dtype=float), np.array(drive, dtype=float), omega)
 
 
 def slope(draw, lesson, mu_s_over, mu_k_over, d=3):
@@ -297,14 +297,14 @@ def test_a_block_on_a_slope_holds_slides_and_keeps_sliding(lesson, draw):
 def test_friction_shortens_the_velocity_that_the_pull_alone_would_give(lesson, draw):
     axes = frame(draw, 3)
     mu, omega, t, dt = draw(0.2, 0.6), draw(1.0, 3.0), draw(0.5, 1.5), draw(0.01, 0.05)
-    push = along_surface(draw, axes, draw(1.0, 5.0)) - draw(0.5, 2.0) * axes[0]
-    p = block(lesson, axes[0], mu, mu, -G * axes[0], push, omega)
+    drive = along_surface(draw, axes, draw(1.0, 5.0)) - draw(0.5, 2.0) * axes[0]
+    p = block(lesson, axes[0], mu, mu, -G * axes[0], drive, omega)
     x = along_surface(draw, axes, 1.0)
     v = along_surface(draw, axes, draw(1.0, 3.0))
     before = x.copy(), v.copy()
     x_new, v_new = lesson.sliding_step(lesson.driven_acceleration, t, x, v, dt, p)
     given = f"{p}, t = {t} s, dt = {dt} s, v = {v} m/s"
-    now = push * np.cos(omega * t)
+    now = drive * np.cos(omega * t)
     free = v + dt * (now - (now @ axes[0]) * axes[0])
     close("velocity × frictionless velocity [m²/s²]: parallel", np.cross(v_new, free), np.zeros(3), ROUND_OFF,
           given=given)
@@ -400,10 +400,10 @@ def test_a_sliding_block_stops_after_v_over_mu_g(lesson, draw):
 
 @exercise("3.9", points=1, hint="a slide of length τ takes the forces at its own midpoint: pass t, and τ as its dt")
 def test_a_pushed_block_stops_where_a_slide_of_that_length_ends_at_rest(lesson, draw):
-    """Brent's method finds the root of v(τ) = v + τ (push cos ω(t + ½τ) − μ g), the velocity of a midpoint slide."""
+    """Brent's method finds the root of v(τ) = v + τ (drive cos ω(t + ½τ) − μ g), the velocity of a midpoint slide."""
     omega, t = draw(1.0, 2.0), draw(0.1, 0.3)
     p, to = on_the_line(draw, lesson, draw(0.3, 0.6), draw(0.5, 0.9), omega)
-    speed, amplitude = draw(0.1, 0.4), p.push @ to
+    speed, amplitude = draw(0.1, 0.4), p.drive @ to
 
     def along(tau):
         return speed + tau * (amplitude * np.cos(omega * (t + 0.5 * tau)) - p.mu_k * G)
@@ -411,9 +411,9 @@ def test_a_pushed_block_stops_where_a_slide_of_that_length_ends_at_rest(lesson, 
     stop = brentq(along, 0.0, 4.0, xtol=1e-14)
     got = lesson.stopping_time(lesson.driven_acceleration, t, np.zeros(2), speed * to, 1.5 * stop, to, p)
     # At the root v falls with more than 0.1 μ g > 0.3 m/s² and has an error of 1e-14.
-    close("time to the stop under a push [s]", got, stop, 1e-11, given=f"{p}, v = {speed} m/s, t = {t} s")
-    from_rest = p._replace(push=draw(1.2, 2.0) * p.mu_s * G * to)
-    amplitude, speed = from_rest.push @ to, 0.0
+    close("time to the stop under a drive [s]", got, stop, 1e-11, given=f"{p}, v = {speed} m/s, t = {t} s")
+    from_rest = p._replace(drive=draw(1.2, 2.0) * p.mu_s * G * to)
+    amplitude, speed = from_rest.drive @ to, 0.0
     stop = brentq(along, 1e-3, 2.0 * (np.pi / omega - t), xtol=1e-14)
     got = lesson.stopping_time(lesson.driven_acceleration, t, np.zeros(2), np.zeros(2), 1.5 * stop, to, from_rest)
     close("time to the stop of a slide that starts at rest [s]", got, stop, 1e-11, given=f"{from_rest}, t = {t} s")
@@ -435,7 +435,7 @@ def test_a_block_breaks_away_when_the_force_reaches_its_limit(lesson, draw):
               dt if expected is None else expected, tolerance, given=f"{p}, t = {t} s, dt = {dt} s")
     # a_n = g − lift cos ωt: the block slips where A |cos| = μ_s (g + lift |cos|), with A = amplitude μ_s g.
     lift = draw(0.2, 0.8) * (amplitude - 1.0) * G
-    both = p._replace(push=p.push + lift * p.n, mu_k=0.5 * p.mu_s)
+    both = p._replace(drive=p.drive + lift * p.n, mu_k=0.5 * p.mu_s)
     t = 0.5 * np.pi / omega
     slips = np.arccos(-1.0 / (amplitude - lift / G)) / omega
     got = lesson.breakaway_time(lesson.driven_acceleration, t, rest, rest, 0.5 * (slips + np.pi / omega) - t, both)
@@ -452,13 +452,13 @@ def test_a_slide_goes_to_its_stop_and_no_further(lesson, draw):
     for long in (draw(1.5, 3.0), 1.1, 1.01, 1.001, 1.0001):
         speed = draw(0.5, 3.0)
         stop = speed / brake
-        tau, x, v = lesson.until_event(lesson.driven_acceleration, 0.0, begin, speed * up, long * stop, p)
+        tau, x, v = lesson.advance_to_event(lesson.driven_acceleration, 0.0, begin, speed * up, long * stop, p)
         close("time to the stop, uphill [s]", tau, stop, ROUND_OFF, given=f"{p}, v = {speed} m/s")
         close("displacement until the stop [m]", x - begin, 0.5 * speed * stop * up, ROUND_OFF,
               given=f"{p}, v = {speed} m/s")
         close("velocity after the stop [m/s]: exactly zero", v, np.zeros(3), 0.0)
     part = draw(0.2, 0.8)
-    tau, x, v = lesson.until_event(lesson.driven_acceleration, 0.0, begin, speed * up, part * stop, p)
+    tau, x, v = lesson.advance_to_event(lesson.driven_acceleration, 0.0, begin, speed * up, part * stop, p)
     close("time of a step that ends before the stop [s]", tau, part * stop, 0.0)
     close("velocity after that step [m/s]", v, (1.0 - part) * speed * up, ROUND_OFF,
           given=f"{p}, v = {speed} m/s, dt = {part * stop} s")
@@ -466,7 +466,7 @@ def test_a_slide_goes_to_its_stop_and_no_further(lesson, draw):
           given=f"{p}, v = {speed} m/s, dt = {part * stop} s")
     steep, down, tangent, press = slope(draw, lesson, 0.9, 0.5)
     dt, a = draw(0.1, 0.5), 0.5 * tangent * press                        # the block slips at once and accelerates
-    tau, x, v = lesson.until_event(lesson.driven_acceleration, 0.0, begin, np.zeros(3), dt, steep)
+    tau, x, v = lesson.advance_to_event(lesson.driven_acceleration, 0.0, begin, np.zeros(3), dt, steep)
     close("time of a step that starts at rest on a steep slope [s]", tau, dt, 0.0, given=f"{steep}")
     close("velocity after that step [m/s]", v, a * dt * down, ROUND_OFF, given=f"{steep}, dt = {dt} s")
     close("displacement in that step [m]", x - begin, 0.5 * a * dt * dt * down, ROUND_OFF,
@@ -482,11 +482,11 @@ def test_a_block_at_rest_waits_for_its_breakaway(lesson, draw):
     begin = draw(-1.0, 1.0, 2)
     t = np.arccos(1.0 / amplitude) / omega * draw(1.05, 1.2)
     t = min(t, 0.5 * np.pi / omega)
-    tau, x, v = lesson.until_event(lesson.driven_acceleration, t, begin, np.zeros(2), slips - t + 0.01, p)
+    tau, x, v = lesson.advance_to_event(lesson.driven_acceleration, t, begin, np.zeros(2), slips - t + 0.01, p)
     close("time to the breakaway [s]", tau, slips - t, ROUND_OFF, given=f"{p}, t = {t} s")
     close("position and velocity meanwhile", np.array((x, v)), np.array((begin, np.zeros(2))), 0.0,
           given=f"{p}, t = {t} s")
-    tau, x, v = lesson.until_event(lesson.driven_acceleration, t, begin, np.zeros(2), 0.5 * (slips - t), p)
+    tau, x, v = lesson.advance_to_event(lesson.driven_acceleration, t, begin, np.zeros(2), 0.5 * (slips - t), p)
     close("time of a step that ends before the breakaway [s]", tau, 0.5 * (slips - t), 0.0, given=f"{p}, t = {t} s")
 
 
@@ -495,7 +495,7 @@ def test_a_block_at_rest_waits_for_its_breakaway(lesson, draw):
 def bowl(lesson, draw, axis, d=3, m=1.0, mu=0.0, e=0.0):
     gravity = np.zeros(d)
     gravity[-1] = -G
-    return lesson.InBowl(m, mu, e, gravity, draw(-2.0, 2.0, d), axis, draw(0.5, 3.0))
+    return lesson.ParticleInBowl(m, mu, e, gravity, draw(-2.0, 2.0, d), axis, draw(0.5, 3.0))
 
 
 @exercise("3.12", points=0.5, hint="radius − |r|: positive inside; n points inward, −r/|r|, and is the gradient of φ")
@@ -506,7 +506,7 @@ def test_the_gap_of_a_bowl_and_a_trough_is_the_distance_to_the_wall(lesson, draw
             out = along_surface(draw, frame(draw, 3), 1.0)[:d] if not axis.any() else np.cross(axis, [0.0, 0.0, 1.0])
             out = out / np.linalg.norm(out)
             x = p.centre + share * p.radius * out + 1.7 * axis
-            phi, n = lesson.bowl_gap(x, p)
+            phi, n = lesson.particle_bowl_gap(x, p)
             given = f"{p}, x = {x} m"
             close("gap φ [m]: positive inside, negative beyond the wall", phi, (1.0 - share) * p.radius, ROUND_OFF,
                   given=given)
@@ -516,10 +516,10 @@ def test_the_gap_of_a_bowl_and_a_trough_is_the_distance_to_the_wall(lesson, draw
 @exercise("3.12", points=0.5, hint="at the centre r = 0: return n = 0 there instead of dividing by zero")
 def test_the_normal_is_zero_at_the_centre_of_a_bowl(lesson, draw):
     p = bowl(lesson, draw, np.zeros(3))
-    phi, n = lesson.bowl_gap(p.centre, p)
+    phi, n = lesson.particle_bowl_gap(p.centre, p)
     out = frame(draw, 3)[0]
     close("normal 1 nm from the centre [-]: the position has an error of 1e-16 m",
-          lesson.bowl_gap(p.centre + 1e-9 * out, p)[1], -out, 1e-5, given=f"{p}")
+          lesson.particle_bowl_gap(p.centre + 1e-9 * out, p)[1], -out, 1e-5, given=f"{p}")
     close("gap at the centre [m]", phi, p.radius, ROUND_OFF, given=f"{p}")
     close("normal at the centre [-]", n, np.zeros(3), 0.0, given=f"{p}")
 
@@ -532,7 +532,7 @@ def test_a_particle_leaves_with_e_times_its_normal_speed_and_friction_takes_mu_t
         mu, speed = draw(0.1, 0.5), (draw(1.2, 3.0) if slips else draw(0.2, 0.9))
         slip = along_surface(draw, axes, speed * mu * (1.0 + e) * v_n)
         v = slip - v_n * axes[0]
-        J = lesson.contact_impulse(v, axes[0], m, e, mu)
+        J = lesson.particle_contact_impulse(v, axes[0], m, e, mu)
         given = f"v = {v} m/s, n = {axes[0]}, m = {m} kg, e = {e}, μ = {mu}"
         after = v + np.asarray(J) / m
         close("normal velocity after [m/s]", after @ axes[0], e * v_n, ROUND_OFF, given=given)
@@ -546,25 +546,25 @@ def test_a_surface_never_pulls_and_without_friction_it_only_reflects(lesson, dra
         axes = frame(draw, d)
         m, mu, e = draw(0.5, 5.0), draw(0.1, 1.0), draw(0.0, 1.0)
         leaving = along_surface(draw, axes, draw(0.5, 3.0)) + draw(0.1, 2.0) * axes[0]
-        close("impulse on a leaving particle [N s]", lesson.contact_impulse(leaving, axes[0], m, e, mu),
+        close("impulse on a leaving particle [N s]", lesson.particle_contact_impulse(leaving, axes[0], m, e, mu),
               np.zeros(d), 0.0, given=f"v = {leaving} m/s, n = {axes[0]}")
         v = along_surface(draw, axes, draw(0.5, 3.0)) - draw(0.5, 3.0) * axes[0]
-        after = v + np.asarray(lesson.contact_impulse(v, axes[0], m, 1.0, 0.0)) / m
+        after = v + np.asarray(lesson.particle_contact_impulse(v, axes[0], m, 1.0, 0.0)) / m
         close("velocity after an elastic impact without friction [m/s]", after,
               v - 2.0 * (v @ axes[0]) * axes[0], ROUND_OFF, given=f"v = {v} m/s, n = {axes[0]}")
         for speed in (draw(0.5, 3.0), 1e-6):
             head_on = -speed * axes[0]
-            after = head_on + np.asarray(lesson.contact_impulse(head_on, axes[0], m, e, mu)) / m
+            after = head_on + np.asarray(lesson.particle_contact_impulse(head_on, axes[0], m, e, mu)) / m
             close("velocity after a head-on impact [m/s]", after, -e * head_on, ROUND_OFF,
                   given=f"v = {head_on} m/s, e = {e}")
 
 
 def above(lesson, draw, mu, e, theta=0.0, d=3):
-    """(OnPlane, unit vector down): a particle of drawn mass above a plane inclined by θ against gravity."""
+    """(ParticleOnPlane, unit vector down): a particle of drawn mass above a plane inclined by θ against gravity."""
     axes = frame(draw, d)
     down = along_surface(draw, axes, 1.0)
     gravity = G * (np.sin(theta) * down - np.cos(theta) * axes[0])
-    return lesson.OnPlane(draw(0.5, 5.0), mu, e, gravity, draw(-2.0, 2.0, d), axes[0]), down
+    return lesson.ParticleOnPlane(draw(0.5, 5.0), mu, e, gravity, draw(-2.0, 2.0, d), axes[0]), down
 
 
 def swinging_acceleration(t, x, v, p):
@@ -573,7 +573,7 @@ def swinging_acceleration(t, x, v, p):
 
 def fly(lesson, step, p, x, v, dt, steps):
     for n in range(steps):
-        x, v = step(lesson.falling_acceleration, lesson.plane_gap, n * dt, x, v, dt, p)
+        x, v = step(lesson.falling_acceleration, lesson.particle_plane_gap, n * dt, x, v, dt, p)
     return x, v
 
 
@@ -602,7 +602,7 @@ def check_fall(lesson, step, draw, grips):
     close("input x and v after the call: return new arrays", np.array((begin, v)), np.array(kept), 0.0)
 
     t = draw(0.3, 1.0)
-    x, v_new = step(swinging_acceleration, lesson.plane_gap, t, begin, v, dt, p)
+    x, v_new = step(swinging_acceleration, lesson.particle_plane_gap, t, begin, v, dt, p)
     close("velocity where gravity varies, a(t) = g cos t [m/s]", v_new, v + dt * np.cos(t) * p.gravity, ROUND_OFF,
           given=f"{p}, v = {v} m/s, t = {t} s")
     x, v_new = fly(lesson, step, p, p.point + 5e-4 * p.n, 3.0 * down - 1e-3 * dt * p.gravity, dt * 1e-3, 1)
@@ -642,7 +642,7 @@ def check_just_touching(lesson, step, draw):
     """A particle that ends exactly on the plane, φ = 0, has not penetrated. Whole numbers avoid round-off here."""
     e = draw(0.2, 0.9)
     begin = np.array([float(draw.whole(-3, 3)), 1.0])
-    p = lesson.OnPlane(1.0, 0.5, e, np.zeros(2), np.zeros(2), np.array([0.0, 1.0]))
+    p = lesson.ParticleOnPlane(1.0, 0.5, e, np.zeros(2), np.zeros(2), np.array([0.0, 1.0]))
     v = np.array([1.0, -2.0])
     x, v_new = fly(lesson, step, p, begin, v, 0.5, 1)
     close("position of a particle that just touches [m]", x, begin + 0.5 * v, 0.0,
@@ -671,11 +671,11 @@ def test_the_grip_undoes_a_displacement_inside_its_cone(lesson, draw):
                          (draw(0.1, 0.9), draw(1.0, 5.0)), (draw(1.1, 5.0), 1e-9)):
         axes, mu = frame(draw, 3), draw(0.2, 1.5)
         s = along_surface(draw, axes, share * mu * depth)
-        got = lesson.grip_correction(s - draw(0.5, 2.0) * depth * axes[0], axes[0], depth, mu)
+        got = lesson.friction_position_correction(s - draw(0.5, 2.0) * depth * axes[0], axes[0], depth, mu)
         expected = -s if share <= 1.0 else -s / share
         close("tangential correction [m]", got, expected, ROUND_OFF,
               given=f"s = {s} m, n = {axes[0]}, depth {depth} m, μ = {mu}")
-    straight = lesson.grip_correction(np.array([0.0, -1e-3]), np.array([0.0, 1.0]), 1e-3, 0.5)
+    straight = lesson.friction_position_correction(np.array([0.0, -1e-3]), np.array([0.0, 1.0]), 1e-3, 0.5)
     close("tangential correction of a displacement along −n [m]: none", straight, np.zeros(2), 0.0)
 
 
@@ -684,11 +684,11 @@ def test_the_grip_undoes_a_displacement_inside_its_cone(lesson, draw):
 def test_a_gripping_particle_stays_put_or_slides_as_a_block_does(lesson, draw):
     theta, dt, steps = draw(0.2, 0.8), draw(0.005, 0.02), 10
     p, down = above(lesson, draw, draw(1.01, 2.0) * np.tan(theta), 0.0, theta)
-    x, v = fly(lesson, lesson.gripping_step, p, p.point, np.zeros(3), dt, steps)
+    x, v = fly(lesson, lesson.position_friction_step, p, p.point, np.zeros(3), dt, steps)
     close("position of a particle at rest on a slope [m]", x, p.point, ROUND_OFF, given=f"{p}, dt = {dt} s")
     close("velocity of a particle at rest on a slope [m/s]", v, np.zeros(3), ROUND_OFF, given=f"{p}, dt = {dt} s")
     p, down = above(lesson, draw, draw(0.1, 0.9) * np.tan(theta), 0.0, theta)
-    x, v = fly(lesson, lesson.gripping_step, p, p.point, np.zeros(3), dt, steps)
+    x, v = fly(lesson, lesson.position_friction_step, p, p.point, np.zeros(3), dt, steps)
     a, t = G * (np.sin(theta) - p.mu * np.cos(theta)), steps * dt
     close("velocity of a sliding particle [m/s]", v, a * t * down, ROUND_OFF, given=f"{p}, dt = {dt} s")
     close("displacement of a sliding particle [m]: symplectic Euler's a t(t + dt)/2", x - p.point,
@@ -698,13 +698,13 @@ def test_a_gripping_particle_stays_put_or_slides_as_a_block_does(lesson, draw):
 @exercise("3.16", points=0.5,
           hint="free flight, impact and leaving are as in contact_step; do not correct the slip of a leaving particle")
 def test_a_gripping_particle_flies_and_bounces_like_the_other(lesson, draw):
-    check_fall(lesson, lesson.gripping_step, draw, 1.0)
-    check_way_out(lesson, lesson.gripping_step, draw)
-    check_just_touching(lesson, lesson.gripping_step, draw)
-    level = lesson.OnPlane(1.0, draw(0.2, 0.9), 0.0, np.zeros(2), np.zeros(2), np.array([0.0, 1.0]))
+    check_fall(lesson, lesson.position_friction_step, draw, 1.0)
+    check_way_out(lesson, lesson.position_friction_step, draw)
+    check_just_touching(lesson, lesson.position_friction_step, draw)
+    level = lesson.ParticleOnPlane(1.0, draw(0.2, 0.9), 0.0, np.zeros(2), np.zeros(2), np.array([0.0, 1.0]))
     deep = np.array([0.0, -draw(0.1, 0.5)])
     v = np.array([draw(0.5, 2.0), 0.0])                                  # v · n is exactly 0
-    x, v_new = fly(lesson, lesson.gripping_step, level, deep, v, 0.1, 1)
+    x, v_new = fly(lesson, lesson.position_friction_step, level, deep, v, 0.1, 1)
     given = f"x = {deep} m, v = {v} m/s, {level}"
     close("position of a particle inside that moves along the surface [m]: no tangential correction", x, 0.1 * v,
           ROUND_OFF, given=given)

@@ -35,14 +35,14 @@ square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 low = np.array([[0.0, 0.0, 0.0], [0.5, 0.5, 0.5], [4.0, 4.0, 4.0]])
 corners = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
 faces = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
-on_plane = friction.OnPlane(1.0, 0.3, 0.5, down, still, up)
-ball = rotation.Ball(1.0, 0.1 * np.ones(3), 0.5, 0.3, down, 0.01)
+on_plane = friction.ParticleOnPlane(1.0, 0.3, 0.5, down, still, up)
+ball = rotation.RollingBall(1.0, 0.1 * np.ones(3), 0.5, 0.3, down)
 block = friction.make_block(up, 0.4, 0.3, down, np.array([8.0, 0.0, 0.0]), 2.0)
-drop = impulses.Drop(0.8, down, still, up, 1e4, 10.0)
-spinner = impulses.Spinner(0.8, 0.3, 1.0, 2.5 * np.eye(3), 0.4, down, still, up)
+drop = impulses.BouncingBall(0.8, down, still, up, 1e4, 10.0)
+spinner = impulses.SpinningBall(0.8, 0.3, 1.0, 2.5 * np.eye(3), 0.4, down, still, up)
 discs = impulses.Discs(np.array([0.3, 0.4]), np.array([1.0, 0.5]), 0.9)
 pair = np.array([[[0.0, 0.0], [1.0, 0.1]]])
-solid = impulses.Solid(np.array([1.0, 0.5, -2.0]), np.array([0.1, 0.2, 0.3]), 1.0, np.diag([6.0, 7.0, 8.0]))
+solid = impulses.BodyState3D(np.array([1.0, 0.5, -2.0]), np.array([0.1, 0.2, 0.3]), 1.0, np.diag([6.0, 7.0, 8.0]))
 arms, normals = np.array([[0.1, 0.2, -0.3], [-0.1, 0.2, -0.3]]), np.stack((up, up))
 rope, links = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]), np.array([[0, 1], [1, 2]])
 weight, calm = np.array([0.0, -9.81]), np.array([0.5, 0.0])
@@ -54,10 +54,10 @@ balls = (np.array([[0.0, 0.0, 0.5], [0.1, 0.0, 1.45]]), np.tile(q, (2, 1)), 1.0,
 
 # Arguments that follow the step of each loop.
 OSCILLATION = (integrators.oscillator_acceleration, 0.0, np.ones(2), np.zeros(2), 0.1, 3, oscillator)
-CONTACT = (friction.falling_acceleration, friction.plane_gap, 0.0, 0.1 * up, -up, 0.05, 5, on_plane)
-TURNS = (rotation.no_torque, 0.0, q, L, 0.1, 3, rotation.Body(1.0, I_body))
-ROLLING = (rotation.rolling_load, 0.0, still, np.array([1.0, 0.2, 0.0]), q, still, 0.01, 5, ball)
-FLIGHT = (collisions.plane_gap, collisions.plane_time, 0.0, up[None], -3.0 * up[None], 0.1, 5,
+CONTACT = (friction.falling_acceleration, friction.particle_plane_gap, 0.0, 0.1 * up, -up, 0.05, 5, on_plane)
+TURNS = (rotation.no_torque, 0.0, q, L, 0.1, 3, rotation.RigidBody(1.0, I_body))
+ROLLING = (rotation.supported_weight, 0.0, still, np.array([1.0, 0.2, 0.0]), q, still, 0.01, 5, ball)
+FLIGHT = (collisions.ball_plane_gap, collisions.ball_plane_time, 0.0, up[None], -3.0 * up[None], 0.1, 5,
           collisions.Target(0.1, 1.0, plane))
 DROP = (impulses.falling_acceleration, 0.0, up[None], -up[None], 0.1, 5, drop)
 SPIN = (impulses.falling_acceleration, 0.0, up[None], -up[None], np.ones((1, 3)), 0.1, 5, spinner)
@@ -68,35 +68,37 @@ STARTED = {
     "integrators": {
         "advance": [(integrators.rk4_step, *OSCILLATION)],
         "trajectory": [(integrators.verlet_step, *OSCILLATION)]},
-    "springs": {"make_mesh": [(rope, 0.1, [0], links, 50.0, 0.1, weight, calm, 0.2)]},
+    "springs": {"make_spring_network": [(rope, 0.1, [0], links, 50.0, 0.1, weight, calm, 0.2)]},
     "friction": {
         "make_block": [(up, 0.4, 0.3, down, still, 2.0)],
         "slip_times": [(friction.driven_acceleration, 0.0, still, still, 0.1, 3, block)],
-        "contact_motion": [(friction.contact_step, *CONTACT), (friction.gripping_step, *CONTACT)]},
+        "advance_particle": [(friction.contact_step, *CONTACT), (friction.position_friction_step, *CONTACT)]},
     "inertia_tensors": {},
     "rotation": {
-        "make_body": [(1.0, I_body)],
-        "tumble": [(rotation.midpoint_step, *TURNS)],
-        "tumbling": [(rotation.splitting_step, *TURNS)],
-        "move": [(rotation.rigid_body_step, *ROLLING)]},
+        "make_rigid_body": [(1.0, I_body)],
+        "advance_rotation": [(rotation.midpoint_step, *TURNS)],
+        "rotation_trajectory": [(rotation.splitting_step, *TURNS)],
+        "advance_rigid_body": [(rotation.rigid_body_step, *ROLLING)]},
     "collisions": {
         "make_plane": [(np.array([0.0, 0.6, 0.8, 1.0]),)],
         "make_box": [(up, np.eye(3), 0.5 * np.ones(3))],
         "make_flock": [(0.1, 1.0, 2.0, 0.3, 0.4)],
-        "flight": [(collisions.continuous_step, *FLIGHT)],
+        "advance_projectiles": [(collisions.continuous_step, *FLIGHT)],
         "build_tree": [(low, low + 1.0)],
         "tree_pairs": [(low, low + 1.0)],
         "all_pairs": [(low, low + 1.0)],
         "gjk": [(corners, corners + 3.0)],
         "polygon_contacts": [(square, square + 0.8)]},
     "impulses": {
-        "drop_all": [(impulses.penalty_step, *DROP), (impulses.projecting_step, *DROP),
-                     (impulses.backtracking_step, *DROP)],
-        "spin_all": [(impulses.projecting_spin_step, *SPIN), (impulses.backtracking_spin_step, *SPIN)],
-        "discs_all": [(impulses.projecting_discs_step, *DISCS), (impulses.backtracking_discs_step, *DISCS)],
+        "advance_balls": [(impulses.penalty_step, *DROP), (impulses.position_projection_step, *DROP),
+                          (impulses.backtracking_step, *DROP)],
+        "advance_spinning_balls": [(impulses.position_projection_spin_step, *SPIN),
+                                   (impulses.backtracking_spin_step, *SPIN)],
+        "advance_discs": [(impulses.position_projection_discs_step, *DISCS),
+                          (impulses.backtracking_discs_step, *DISCS)],
         "solve_impacts": [IMPACTS],
-        "one_after_the_other": [IMPACTS]},
-    "pbd": {"make_net": [(rope, 0.1, [0], links, 1e-6, 1.0, weight, 4)]},
+        "sequential_impacts": [IMPACTS]},
+    "pbd": {"make_constraint_network": [(rope, 0.1, [0], links, 1e-6, 1.0, weight, 4)]},
     "contact": {
         "make_contacts": [(np.array([1, 2]), np.array([0, 1]), np.array([[0.0, 0.0], [0.0, 1.0]]),
                            np.array([[0.0, 1.0], [0.0, 1.0]]), np.array([0.0, 1.0, 2.0]))],
@@ -108,33 +110,38 @@ STARTED = {
 }
 # Inner functions that trust an earlier check. They may lose a NaN and divide by zero.
 TRUSTED = {
-    "made by make_mesh": ("mesh_acceleration", "mass_spring_damper_step", "apply_step_matrix", "implicit_mesh_step"),
+    "made by make_spring_network": ("spring_network_acceleration", "mass_spring_damper_step", "apply_step_matrix",
+                                    "implicit_spring_network_step"),
     "made by make_block": ("stopping_time", "breakaway_time"),
-    "checked by contact_motion": ("gripping_step", "contact_step"),
-    "made by make_net": ("falling_acceleration", "predict", "projection_step", "pbd_step", "keep_outside"),
-    "moments checked by tumble and move": ("angular_velocity", "state_derivative", "angular_acceleration",
-                                           "generalised_inverse_mass", "middle_axis"),
-    "checked by check_boxes": ("boxes_touch", "enclose", "halve", "find_intersections"),
-    "checked by check_hulls": ("support", "nearest_part", "far_enough", "nearer"),
+    "checked by advance_particle": ("position_friction_step", "contact_step"),
+    "made by make_constraint_network": ("network_gravity", "predict", "constraint_projection_step", "pbd_step",
+                                        "keep_outside"),
+    "moments checked by advance_rotation and advance_rigid_body": (
+        "angular_velocity", "state_derivative", "angular_acceleration", "effective_inverse_mass_at",
+        "intermediate_axis"),
+    "checked by check_boxes": ("boxes_touch", "fit_node_box", "partition_at_median", "find_intersections"),
+    "checked by check_hulls": ("support", "nearest_subsimplex", "far_enough", "nearer"),
     "corners and sides checked by make_box and outward": ("clip",),
-    "checked by drop_all": ("projecting_step",),
+    "checked by advance_balls": ("position_projection_step",),
     "an axis or a neighbour in a grid, written in the code": ("body_component", "about_axis", "grid_pairs"),
     "a horizon that the caller of steer sets once": ("steer",),
-    "sweeps and stiffness checked by make_net": ("pbd_sag",),
+    "sweeps and stiffness checked by make_constraint_network": ("pbd_sag",),
 }
 FREE = {name for names in TRUSTED.values() for name in names}
 PATIENCE = 5.0               # time limit of one call [s]; ordinary calls take milliseconds
 # These functions do not check the records of an acceleration or a surface that they are given.
-LAWS = {"advance", "trajectory", "advance_pile_2d", "advance_pile", "pile_trajectory", "contact_motion", "tumble",
-        "tumbling", "move", "slip_times", "flight"}
+LAWS = {"advance", "trajectory", "advance_pile_2d", "advance_pile", "pile_trajectory", "advance_particle",
+        "advance_rotation", "rotation_trajectory", "advance_rigid_body", "slip_times", "advance_projectiles"}
 
 
 # Arguments for which another shape is another valid problem.
 ANOTHER_PROBLEM = {
-    ("make_mesh", 0): "one more point", ("make_mesh", 2): "other fixed points", ("make_mesh", 3): "other springs",
-    ("make_mesh", 4): "one stiffness each", ("make_mesh", 5): "one damper each",
-    ("make_net", 0): "one more point", ("make_net", 2): "other fixed points", ("make_net", 3): "other links",
-    ("make_net", 4): "one compliance each",
+    ("make_spring_network", 0): "one more point", ("make_spring_network", 2): "other fixed points",
+    ("make_spring_network", 3): "other springs",
+    ("make_spring_network", 4): "one stiffness each", ("make_spring_network", 5): "one damper each",
+    ("make_constraint_network", 0): "one more point", ("make_constraint_network", 2): "other fixed points",
+    ("make_constraint_network", 3): "other links",
+    ("make_constraint_network", 4): "one compliance each",
     ("gjk", 0): "one more point", ("gjk", 1): "one more point",
 }
 

@@ -1,5 +1,6 @@
 """Lesson 4: L = I ω, tensors rotate, shift and add as bodies do, and meshes have the right volume integrals."""
 
+import itertools
 from collections import Counter
 
 import numpy as np
@@ -14,7 +15,7 @@ from .brute import solid
 exercise = pytest.mark.exercise
 # Masses below 5 kg, lengths below 3 m, speeds below 20 m/s, a dozen terms: numbers below 1e3 with round-off 1.1e-16.
 ROUNDED = 1e-11
-SIZES = (1e-8, 1.0, 1e3)     # of bodies [m]
+SIZES = (1e-30, 1.0, 1e30)   # of bodies [m]
 
 
 def cloud(draw, n):
@@ -49,11 +50,19 @@ def test_a_body_balances_on_its_centre_of_mass(lesson, draw):
     _, X = lesson.centre_of_mass(m[:1], x[:1])
     close("centre of a single point [m]: that point", X, x[0], ROUNDED, f"x = {x[0]}")
     hole = np.array([m[0] + m[1], -m[1], 0.0])                           # the sum of its masses is m[0] > 0
-    for unit in (1e-12, 1.0, 1e12):
-        given = f"m = {unit * hole}, x = {x[:3].tolist()}"
-        M, X = lesson.centre_of_mass(unit * hole, x[:3])
+    for unit, size in ((1e-30, 1e30), (1.0, 1.0), (1e30, 1e-30)):
+        given = f"m = {unit * hole}, x = {(size * x[:3]).tolist()}"
+        M, X = lesson.centre_of_mass(unit * hole, size * x[:3])
         close("total mass of a point, a hole and a point of no mass, over its size [-]", M / unit, m[0], ROUNDED, given)
-        close("centre of mass of a point, a hole and a point of no mass [m]", X, hole @ x[:3] / m[0], ROUNDED, given)
+        close("centre of mass of a point, a hole and a point of no mass, over its size [-]", np.asarray(X) / size,
+              hole @ x[:3] / m[0], ROUNDED, given)
+    # A body of 1 kg that is almost all hole: M is exact, and X is known to 1e-16 kg · 1.5 m over M = 1e-6 kg.
+    left = 2.0**-20
+    M, X = lesson.centre_of_mass(np.array([1.0, left - 1.0]), x[:2])
+    given = f"m = 1 kg and 2^-20 kg − 1 kg, x = {x[:2].tolist()}"
+    close("total mass of a body that is almost all hole [kg]", M, left, 0.0, given)
+    close("centre of mass of a body that is almost all hole [m]", np.asarray(X) * left, x[0] - (1.0 - left) * x[1],
+          1e-14, given)
 
 
 @exercise("4.1", points=0.5, hint='after summing the masses: check_positive("total mass [kg]", M)')
@@ -77,6 +86,11 @@ def test_linear_momentum_is_the_mass_times_the_velocity_of_the_centre(lesson, dr
     recoil = np.stack([v[0], -m[0] / m[1] * v[0]])
     close("P after an explosion at rest [kg m/s]", lesson.linear_momentum(m[:2], recoil),
           np.zeros(3), ROUNDED, f"m = {m[:2]}")
+    for heavy, size in ((heavy, size) for heavy in (1.0, 0.5, 2.0) for size in (1e-30, 1.0, 1e30)):
+        masses, speeds = np.array([m[0], 0.0, -heavy * m[0]]), size * v[:3]
+        close("P of a point, a point of no mass and a hole, over the size of the velocities [kg]",
+              np.asarray(lesson.linear_momentum(masses, speeds)) / size, m[0] * (v[0] - heavy * v[2]), ROUNDED,
+              f"m = {masses}, v = {speeds.tolist()}")
 
 
 @exercise("4.3", points=0.5, hint="the lever arm (x − about) comes first in the cross product, then m v")
@@ -88,6 +102,12 @@ def test_angular_momentum_of_a_turning_body_is_its_tensor_times_omega(lesson, dr
     found = lesson.angular_momentum(m, x, v, X)
     close("L about the centre of points that rotate with ω [kg m²/s]: I ω", found, tensor(m, x - X) @ omega, ROUNDED,
           given)
+    for heavy, size in ((heavy, size) for heavy in (1.0, 0.5, 2.0) for size in (1e-30, 1.0, 1e30)):
+        masses = np.array([m[0], 0.0, -heavy * m[0]])
+        L = lesson.angular_momentum(masses, size * x[:3], v[:3], size * X)
+        expected = m[0] * (np.cross(x[0] - X, v[0]) - heavy * np.cross(x[2] - X, v[2]))
+        close("L of a point, a point of no mass and a hole, over their size [kg m/s]", np.asarray(L) / size, expected,
+              ROUNDED, f"m = {masses}, x = {(size * x[:3]).tolist()}, v = {v[:3].tolist()}, about = {size * X}")
     straight = lesson.angular_momentum(m[:1], x[:1], X - x[:1], X)
     close("L of a point that moves straight towards `about` [kg m²/s]", straight, np.zeros(3), ROUNDED, given)
 
@@ -123,6 +143,11 @@ def test_tensor_of_points_gives_their_angular_momentum_and_energy(lesson, draw):
     hole = lesson.point_mass_inertia(np.append(m, -m[0]), np.append(r, r[:1], axis=0))
     close("I with a hole of equal mass at the first point [kg m²]: as without both", hole, tensor(m[1:], r[1:]),
           ROUNDED, f"m = {m}, r = {r.tolist()}")
+    for masses in (-m, m - m.mean()):                                    # their sum is negative, or about zero
+        for size in (1e-30, 1.0, 1e30):
+            I = np.asarray(lesson.point_mass_inertia(masses, size * r)) / size**2
+            close("I of points and holes of which the holes are not lighter, over the size squared [kg]", I,
+                  tensor(masses, r), ROUNDED, f"m = {masses}, r = {(size * r).tolist()}")
 
 
 @exercise("4.4", points=0.5, hint="a point on the x axis contributes to Iyy and Izz, not to Ixx")
@@ -149,6 +174,13 @@ def test_tensor_of_a_box_is_its_volume_integral(lesson, draw):
     m, size = draw(0.5, 5.0), draw(0.2, 2.0, 3)
     close("tensor of a box [kg m²]", lesson.box_inertia(m, size),
           by_eight_points(m, size), ROUNDED, f"m = {m:.4g}, size = {size}")
+    for small, mass in ((1e-30, 1e30), (1e30, 1e-30)):
+        I = np.asarray(lesson.box_inertia(mass * m, small * size)) / mass / small**2
+        close("tensor of a very small or large box over its mass and size squared [-]", I, by_eight_points(m, size),
+              ROUNDED, f"m = {mass * m:.4g}, size = {small * size}")
+    for name, edges in (("plate", size * [1.0, 1.0, 0.0]), ("rod", size * [0.0, 1.0, 0.0])):
+        close(f"tensor of a {name} [kg m²]", lesson.box_inertia(m, edges), by_eight_points(m, edges), ROUNDED,
+              f"m = {m:.4g}, size = {edges}")
 
 
 @exercise("4.5", points=0.25,
@@ -191,8 +223,10 @@ def capsule_pieces(r, h):
 def test_tensor_of_a_ball_is_its_volume_integral(lesson, draw):
     m, r = draw(0.5, 5.0), draw(0.2, 2.0)
     for mass, what in ((m, "ball"), (-m, "ball-shaped hole")):
-        close(f"tensor of a {what} [kg m²]", lesson.sphere_inertia(mass, r), by_slices(mass, ball_pieces(r)), ROUNDED,
-              f"m = {mass:.4g}, R = {r:.4g}")
+        for size in (1e-30, 1.0, 1e30):
+            close(f"tensor of a {what} over its size squared [kg]",
+                  np.asarray(lesson.sphere_inertia(mass, size * r)) / size**2, by_slices(mass, ball_pieces(r)),
+                  ROUNDED, f"m = {mass:.4g}, R = {size * r:.4g}")
 
 
 @exercise("4.7", points=1, hint="the axis is z: only Izz has ½ m R²; the other two are m (3R² + h²)/12")
@@ -200,8 +234,11 @@ def test_tensor_of_a_cylinder_is_its_volume_integral(lesson, draw):
     m, r, h = draw(0.5, 5.0), draw(0.2, 1.0), draw(1.2, 2.0)
     expected = by_slices(m, [(-0.5 * h, 0.5 * h, lambda z: r * r + 0.0 * z)])
     for sign, what in ((1.0, "cylinder"), (-1.0, "cylinder-shaped hole")):
-        given = f"m = {sign * m:.4g}, R = {r:.4g}, length = {h:.4g}"
-        close(f"tensor of a {what} [kg m²]", lesson.cylinder_inertia(sign * m, r, h), sign * expected, ROUNDED, given)
+        for size in (1e-30, 1.0, 1e30):
+            given = f"m = {sign * m:.4g}, R = {size * r:.4g}, length = {size * h:.4g}"
+            close(f"tensor of a {what} over its size squared [kg]",
+                  np.asarray(lesson.cylinder_inertia(sign * m, size * r, size * h)) / size**2, sign * expected,
+                  ROUNDED, given)
     disc = m * r * r * np.diag([0.25, 0.25, 0.5])
     rod = m * h * h / 12.0 * np.diag([1.0, 1.0, 0.0])
     close("tensor of a disc, a cylinder of length 0 [kg m²]", lesson.cylinder_inertia(m, r, 0.0), disc, ROUNDED,
@@ -216,7 +253,7 @@ def test_tensor_of_a_capsule_is_its_volume_integral(lesson, draw):
     m, r, h = draw(0.5, 5.0), draw(0.2, 1.0), draw(0.5, 2.0)
     expected = by_slices(m, capsule_pieces(r, h))
     for sign, what in ((1.0, "capsule"), (-1.0, "capsule-shaped hole")):
-        for size in (1e-12, 1.0, 1e6):
+        for size in (1e-30, 1.0, 1e30):
             found = np.asarray(lesson.capsule_inertia(sign * m, size * r, size * h)) / size**2
             close(f"tensor of a {what} over its size squared [kg]", found, sign * expected, ROUNDED,
                   f"m = {sign * m:.4g}, R = {size * r:.4g}, length = {size * h:.4g}")
@@ -235,6 +272,11 @@ def test_a_capsule_without_length_is_a_ball_and_a_long_one_a_rod(lesson, draw):
     h = 1e5 * r
     rod = np.asarray(lesson.capsule_inertia(m, r, h))[0, 0] / (m * h * h / 12.0)
     close("Ixx of a long thin capsule over m h²/12 [-]", rod, 1.0, 6e-5, f"m = {m:.4g}, R = {r:.4g}, length = {h:.4g}")
+    for share in (1e-6, 1e-3, 0.03, 30.0, 1e3, 1e6):
+        expected = np.diag(by_slices(m, capsule_pieces(r, share * r)))
+        found = np.diag(np.asarray(lesson.capsule_inertia(m, r, share * r)))
+        close("Ixx, Iyy, Izz of a short or long capsule over their truth [-]", found / expected, np.ones(3), ROUNDED,
+              f"m = {m:.4g}, R = {r:.4g}, length = {share * r:.4g}")
 
 
 # ---------------------------------------------------------------------------------------------- from body to world
@@ -248,6 +290,8 @@ def test_the_tensor_turns_with_the_body(lesson, draw):
     close("tensor of points that are rotated by R [kg m²]", lesson.world_inertia(I_body, R),
           tensor(m, r @ R.T), ROUNDED, given)
     close("input I_body after the call: return a new array", I_body, kept, 0.0, given)
+    close("tensor of a hole that is rotated by R [kg m²]", lesson.world_inertia(-I_body, R), -tensor(m, r @ R.T),
+          ROUNDED, given)
 
 
 @exercise("4.10", points=1, hint="invert I_body with `inverse`, then rotate it like any tensor: R first, Rᵀ last")
@@ -280,25 +324,51 @@ def test_away_from_its_centre_a_body_resists_like_a_point_more(lesson, draw):
     close("tensor moved back to the centre with −m [kg m²]", lesson.parallel_axes(np.array(moved), -M, d), I, ROUNDED,
           given)
     close("input tensor after the call: return a new array", I, kept, 0.0, given)
+    for size in (1e-30, 1.0, 1e30):
+        hole = np.asarray(lesson.parallel_axes(-size**2 * I, -M, size * d)) / size**2
+        close("tensor of a hole about a point at d from its centre, over its size squared [kg]", hole,
+              -tensor(m, r - d), ROUNDED, f"size {size} m, its {given}")
 
 
 @exercise("4.12", points=1,
           hint="shift each tensor from its own centre xᵢ to the common one: the offset is xᵢ − X, the mass mᵢ")
 def test_combined_parts_equal_the_body_of_all_their_points(lesson, draw):
     clouds = [cloud(draw, n) for n in (draw.whole(3, 4), draw.whole(2, 5), draw.whole(4, 6))]
-    clouds[1] = (-0.2 * clouds[1][0], clouds[1][1])                      # a hole, lighter than the other parts
+    # The second one is a hole: heavier than the first part, lighter than all others together.
+    for k, share in ((1, -1.5), (2, 2.0)):
+        clouds[k] = (share * clouds[0][0].sum() / clouds[k][0].sum() * clouds[k][0], clouds[k][1])
     m = np.array([k.sum() for k, _ in clouds])
     x = np.stack([k @ r / k.sum() for k, r in clouds])
     I = np.stack([tensor(k, r - c) for (k, r), c in zip(clouds, x)])
     every_m = np.concatenate([k for k, _ in clouds])
     every_x = np.concatenate([r for _, r in clouds])
     X = every_m @ every_x / every_m.sum()
-    given = f"m = {m}, x = {x.tolist()}, I = {I.tolist()}"
-    found_m, found_x, found_I = lesson.combine(m, x, I)
-    close("mass of three parts, one of them a hole [kg]", found_m, every_m.sum(), ROUNDED, given)
-    close("centre of mass of three parts, one of them a hole [m]", found_x, X, ROUNDED, given)
-    close("tensor of three parts about their centre [kg m²]", found_I, tensor(every_m, every_x - X), 10.0 * ROUNDED,
-          given)
+    for order in ([0, 1, 2], [1, 0, 2], [2, 0, 1]):                      # the hole may come first
+        parts = np.ascontiguousarray(m[order]), np.ascontiguousarray(x[order]), np.ascontiguousarray(I[order])
+        given = f"m = {parts[0]}, x = {parts[1].tolist()}, I = {parts[2].tolist()}"
+        kept = [part.copy() for part in parts]
+        found_m, found_x, found_I = lesson.combine(*parts)
+        close("mass of three parts, one of them a hole [kg]", found_m, every_m.sum(), ROUNDED, given)
+        close("centre of mass of three parts, one of them a hole [m]", found_x, X, ROUNDED, given)
+        close("tensor of three parts about their centre [kg m²]", found_I, tensor(every_m, every_x - X),
+              10.0 * ROUNDED, given)
+        for name, part, before in zip(("masses", "centres", "tensors"), parts, kept):
+            close(f"input {name} after the call: unchanged", part, before, 0.0, given)
+    n = len(every_m)
+    _, found_x, found_I = lesson.combine(every_m, every_x, np.zeros((n, 3, 3)))
+    given = f"m = {every_m}, x = {every_x.tolist()}, no tensors"
+    close("centre of mass of bodies without a size [m]", found_x, X, ROUNDED, given)
+    close("tensor of bodies without a size about their centre [kg m²]", found_I, tensor(every_m, every_x - X),
+          10.0 * ROUNDED, given)
+    # Coordinates of a few powers of two, so that x + far has no round-off.  X has one of 1e-10 m, which Σ m (x − X) = 0
+    # removes from the tensor.  About the origin of the world, 10 kg would give 10¹³ kg m², with a round-off of 1e-3.
+    near, far = np.round(x * 2.0**20) / 2.0**20, np.round(draw(0.5, 1.0, 3) * np.array([1e6, -1e6, 1e6]))
+    X = m @ near / m.sum()
+    _, found_x, found_I = lesson.combine(m, near + far, I)
+    given = f"m = {m}, x = {near.tolist()} and {far}, I = {I.tolist()}"
+    close("centre of mass of three parts, 10⁶ m away [m]", np.asarray(found_x) - far, X, 1e-8, given)
+    close("tensor of three parts about their centre, 10⁶ m away [kg m²]", found_I,
+          np.sum(I, axis=0) + tensor(m, near - X), 1e-7, given)
 
 
 @exercise("4.12", points=0.5, hint="centre_of_mass raises BadInput: call it")
@@ -308,6 +378,10 @@ def test_parts_without_mass_are_refused(lesson, draw):
     m = draw(0.5, 3.0, 2)
     close("mass of two parts [kg]", lesson.combine(m, x, I)[0], sum(m), ROUNDED, f"m = {m}")
     raises("a body and a hole of equal mass: together 0 kg", BadInput, lesson.combine, np.array([1.0, -1.0]), x, I)
+    for wrong, what in ((-m, "two holes"), (np.array([m[0], -2.0 * m[0]]), "a hole heavier than the body"),
+                        (np.array([m[0], np.nan]), "a mass that is not a number"),
+                        (np.array([np.inf, m[1]]), "an infinite mass")):
+        raises(what, BadInput, lesson.combine, wrong, x, I)
 
 
 @exercise("4.13", points=0.75, hint="the columns of R are the axes, in the order of the moments: I R = R diag(moments)")
@@ -343,7 +417,8 @@ def test_principal_moments_are_the_roots_of_the_characteristic_polynomial_at_any
     """det(I − λ) = −λ³ + tr I λ² − ½(tr² I − tr I²) λ + det I. Roots 0.2 apart are known to about 1e-14."""
     low, middle, high = 0.5 + draw(0.0, 0.3), 1.0 + draw(0.0, 0.3), 1.5 + draw(0.0, 0.3)
     for size in (1e-30, 1e-6, 1.0, 1e6, 1e30):
-        for moments in ([low, middle, high], [low, middle, middle], [low, low, high], [low, low, low]):
+        for moments in ([low, middle, high], [low, middle, middle], [low, low, high], [low, low, low],
+                        [-high, -middle, -low], [-middle, -low, high]):               # holes have negative ones
             I = turned(moments, rotation(draw))
             trace, roots = np.trace(I), np.array(moments)
             if len(set(moments)) == 3:
@@ -392,9 +467,11 @@ def test_impossible_tensors_are_refused(lesson, draw):
             raises(f"two different entries I{i}{j} and I{j}{i}", BadInput, lesson.check_inertia, I,
                    naming=[part * size], thing=ASYMMETRY)
         for wrong in (np.nan, np.inf, -np.inf):
-            I = np.diag([low, middle, middle])
-            I[i, j] = I[j, i] = wrong
-            raises(f"{wrong} off the diagonal", BadInput, lesson.check_inertia, I, thing=ENTRY)
+            for places in ([(i, j), (j, i)], [(i, j)], [(j, i)]):
+                I = np.diag([low, middle, middle])
+                for place in places:
+                    I[place] = wrong
+                raises(f"{wrong} off the diagonal", BadInput, lesson.check_inertia, I, thing=ENTRY)
     raises("a negative moment", BadInput, lesson.check_inertia, np.diag([middle, -low, middle]),
            naming=[-low], thing=SMALLEST)
     raises("a moment above the sum of the others", BadInput, lesson.check_inertia, np.diag([low, 3.0 * middle, middle]),
@@ -402,7 +479,7 @@ def test_impossible_tensors_are_refused(lesson, draw):
 
 
 @exercise("4.14", points=0.25,
-          hint="round-off must not refuse a thin plate, I₃ = I₁ + I₂: allow ε = TENSOR_ROUND_OFF of it")
+          hint="round-off must not refuse a thin plate, I₃ = I₁ + I₂: allow ε = MOMENT_ROUND_OFF of it")
 def test_possible_tensors_pass(lesson, draw):
     low, middle = draw(0.5, 1.0), draw(1.0, 1.5)
     raises("an impossible tensor, with a negative moment", BadInput,
@@ -420,7 +497,34 @@ def test_possible_tensors_pass(lesson, draw):
         lesson.check_inertia(tensor(m, r) + 0.01 * np.eye(3))
 
 
-@exercise("4.14", points=0.5,
+@exercise("4.14", points=0.25,
+          hint="ε = MOMENT_ROUND_OFF, times max|I|, the largest moment, or the sum of the other two: no other number")
+def test_each_limit_is_epsilon_of_the_size_of_the_tensor(lesson, draw):
+    """All tensors are diagonal, so that their moments are known to a few roundings, a hundredth of ε = 1e-14."""
+    low, middle = draw(0.5, 1.0), draw(1.0, 1.5)
+    for size in (1e-100, 1e-14, 1.0, 1e14, 1e100):
+        for shuffle in ([0, 1, 2], [2, 0, 1], [1, 2, 0]):
+            def tensor_of(*moments, size=size, shuffle=shuffle):
+                return size * np.diag(np.array(moments)[shuffle])
+            for share in (1.3, 10.0, 1e4, 1e6):                          # of ε; the trace is about 2 middle
+                lesson.check_inertia(tensor_of(share * 1e-14 * middle, middle, middle))
+            raises("a moment of half a round-off", BadInput, lesson.check_inertia,
+                   tensor_of(0.5e-14 * middle, middle, middle), thing=SMALLEST)
+            lesson.check_inertia(tensor_of(low, middle, (low + middle) * (1.0 + 0.7e-14)))
+            for share in (1.5e-14, 1e-13, 1e-11):
+                raises("a moment a little above the sum of the others", BadInput, lesson.check_inertia,
+                       tensor_of(low, middle, (low + middle) * (1.0 + share)), thing=LARGEST)
+            for part, (i, j) in itertools.product((0.7e-14, 1.2e-14, 1e-11), ((1, 0), (2, 0), (2, 1))):
+                I = tensor_of(low, middle, middle)
+                I[i, j] = part * size * middle
+                if part < 1e-14:
+                    lesson.check_inertia(I)
+                else:
+                    raises("two entries that differ by more than round-off", BadInput, lesson.check_inertia, I,
+                           thing=ASYMMETRY)
+
+
+@exercise("4.14", points=0.25,
           hint="each limit is a fraction of the tensor's own size: as strict for a bacterium as for a ship")
 def test_a_tensor_is_possible_exactly_when_its_mass_is_nowhere_below_zero(lesson, draw):
     """∫ x², ∫ y² and ∫ z² dm along the principal axes, (I₂ + I₃ − I₁)/2 and cyclically, are zero or positive."""

@@ -16,26 +16,26 @@ ROUND_OFF = 1e-12            # lengths of about a metre, after a few hundred ste
 # ---------------------------------------------------------------------------------------------- whole numbers
 
 def test_a_mesh_of_whole_numbers_moves_as_one_of_floats():
-    mesh = springs.make_mesh([[0, 0], [1, 0], [2, 0]], 1, [0], [(0, 1), (1, 2)], 50, 1, [0, -10], [0, 0], 0)
+    mesh = springs.make_spring_network([[0, 0], [1, 0], [2, 0]], 1, [0], [(0, 1), (1, 2)], 50, 1, [0, -10], [0, 0], 0)
     x, v = np.array([[0, 0], [1, 0], [2, 0]]), np.zeros((3, 2), dtype=int)
-    for step in (integrators.euler_step, integrators.implicit_euler_step, springs.implicit_mesh_step):
-        whole = integrators.advance(step, springs.mesh_acceleration, 0, x, v, 0.01, 20, mesh)
-        floats = integrators.advance(step, springs.mesh_acceleration, 0.0, 1.0 * x, 1.0 * v, 0.01, 20, mesh)
+    for step in (integrators.euler_step, integrators.implicit_euler_step, springs.implicit_spring_network_step):
+        whole = integrators.advance(step, springs.spring_network_acceleration, 0, x, v, 0.01, 20, mesh)
+        floats = integrators.advance(step, springs.spring_network_acceleration, 0.0, 1.0 * x, 1.0 * v, 0.01, 20, mesh)
         assert np.array_equal(whole, floats) and whole[1].any()
 
 
 def test_a_rope_of_whole_numbers_falls():
-    net = pbd.make_net([[0, 0], [1, 0], [2, 0]], 1, [0], [(0, 1), (1, 2)], 0, 1, [0, -10], 3)
+    net = pbd.make_constraint_network([[0, 0], [1, 0], [2, 0]], 1, [0], [(0, 1), (1, 2)], 0, 1, [0, -10], 3)
     x, v = np.array([[0, 0], [1, 0], [2, 0]]), np.zeros((3, 2), dtype=int)
-    for step in (pbd.pbd_step, pbd.xpbd_step, pbd.projection_step, pbd.rattle_step):
-        whole = step(pbd.falling_acceleration, 0.0, x, v, 0.1, net)
-        floats = step(pbd.falling_acceleration, 0.0, 1.0 * x, 1.0 * v, 0.1, net)
+    for step in (pbd.pbd_step, pbd.xpbd_step, pbd.constraint_projection_step, pbd.rattle_step):
+        whole = step(pbd.network_gravity, 0.0, x, v, 0.1, net)
+        floats = step(pbd.network_gravity, 0.0, 1.0 * x, 1.0 * v, 0.1, net)
         assert np.array_equal(whole, floats) and whole[0][2, 1] < 0.0
 
 
 def test_a_ball_dropped_from_a_whole_number_height_falls_under_gravity():
-    drop = impulses.Drop(0.8, DOWN, np.zeros(3), UP, 1e4, 0.0)
-    x, _ = impulses.drop_all(impulses.backtracking_step, impulses.falling_acceleration, 0,
+    drop = impulses.BouncingBall(0.8, DOWN, np.zeros(3), UP, 1e4, 0.0)
+    x, _ = impulses.advance_balls(impulses.backtracking_step, impulses.falling_acceleration, 0,
                              np.array([[0, 0, 1]]), np.zeros((1, 3), dtype=int), 0.1, 1, drop)
     assert abs(x[0, 2] - (1.0 - 0.5 * 9.81 * 0.01)) < ROUND_OFF
 
@@ -49,18 +49,19 @@ def test_axes_of_whole_numbers_rotate_like_axes_of_floats():
 # ---------------------------------------------------------------------------------------------- no gain of energy
 
 def test_no_loop_starts_with_a_parameter_that_creates_energy():
-    ball = friction.OnPlane(1.0, 0.3, 0.8, DOWN, np.zeros(3), UP)
-    run = friction.contact_step, friction.falling_acceleration, friction.plane_gap, 0.0, UP, np.zeros(3), 0.001, 100
+    ball = friction.ParticleOnPlane(1.0, 0.3, 0.8, DOWN, np.zeros(3), UP)
+    run = (friction.contact_step, friction.falling_acceleration, friction.particle_plane_gap, 0.0, UP, np.zeros(3),
+           0.001, 100)
     for changed in ({"n": 2.0 * UP}, {"e": 1.2}, {"mu": -0.3}, {"m": -1.0}, {"mu": np.nan}):
         with pytest.raises(BadInput):
-            friction.contact_motion(*run, ball._replace(**changed))
+            friction.advance_particle(*run, ball._replace(**changed))
 
 
-ROLLING = rotation.Ball(1.0, 0.4 * np.ones(3), 1.0, 0.3, DOWN, 0.01)
+ROLLING = rotation.RollingBall(1.0, 0.4 * np.ones(3), 1.0, 0.3, DOWN)
 
 
 def roll(ball, steps=100):
-    return rotation.move(rotation.rigid_body_step, rotation.rolling_load, 0.0, np.zeros(3),
+    return rotation.advance_rigid_body(rotation.rolling_step, rotation.supported_weight, 0.0, np.zeros(3),
                          np.array([1.0, 0.0, 0.0]), np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3), 0.01, steps, ball)
 
 
@@ -79,8 +80,10 @@ def test_a_floor_never_pulls():
 # ---------------------------------------------------------------------------------------------- missing points
 
 @pytest.mark.parametrize("make", [
-    lambda fixed, pairs, gravity: springs.make_mesh(ROPE, 1.0, fixed, pairs, 50.0, 0.0, gravity, np.zeros(2), 0.0),
-    lambda fixed, pairs, gravity: pbd.make_net(ROPE, 1.0, fixed, pairs, 0.0, 1.0, gravity, 3)], ids=["mesh", "net"])
+    lambda fixed, pairs, gravity:
+        springs.make_spring_network(ROPE, 1.0, fixed, pairs, 50.0, 0.0, gravity, np.zeros(2), 0.0),
+    lambda fixed, pairs, gravity:
+        pbd.make_constraint_network(ROPE, 1.0, fixed, pairs, 0.0, 1.0, gravity, 3)], ids=["springs", "constraints"])
 @pytest.mark.parametrize(("fixed", "pairs", "gravity", "value"), [
     ([0], PAIRS, np.array([0.0, 0.0, -9.81]), "(3,)"),
     ([-1], PAIRS, WEIGHT, "-1"),
@@ -101,7 +104,7 @@ def test_a_point_or_a_dimension_that_does_not_exist_is_named(make, fixed, pairs,
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 
 
-@pytest.mark.parametrize("step", [pbd.projection_step, pbd.rattle_step])
+@pytest.mark.parametrize("step", [pbd.constraint_projection_step, pbd.rattle_step])
 @pytest.mark.parametrize(("x", "links", "more"), [
     (ROPE[:2], [(0, 1)], [(0, 1)]),                                      # one link given twice
     (SQUARE, [(0, 1), (1, 2), (2, 3), (3, 0), (0, 2)], [(1, 3)])], ids=["twice", "both diagonals"])
@@ -112,17 +115,17 @@ def test_a_redundant_link_changes_nothing(step, x, links, more):
     """
     ends = []
     for pairs in (links, links + more):
-        net = pbd.make_net(x, 1.0, [0], pairs, 0.0, 1.0, WEIGHT, 1)
-        ends.append(integrators.advance(step, pbd.falling_acceleration, 0.0, x, np.zeros_like(x), 0.01, 100, net))
+        net = pbd.make_constraint_network(x, 1.0, [0], pairs, 0.0, 1.0, WEIGHT, 1)
+        ends.append(integrators.advance(step, pbd.network_gravity, 0.0, x, np.zeros_like(x), 0.01, 100, net))
     assert np.allclose(*ends, rtol=0.0, atol=1e-9) and np.abs(ends[0][0] - x).max() > 0.1
 
 
-@pytest.mark.parametrize("step", [pbd.projection_step, pbd.rattle_step])
+@pytest.mark.parametrize("step", [pbd.constraint_projection_step, pbd.rattle_step])
 def test_a_taut_rope_between_two_fixed_ends_cannot_carry_a_load_across(step):
     """No finite tension carries a load across a straight rope between two fixed ends."""
-    net = pbd.make_net(ROPE, 1.0, [0, 2], PAIRS, 0.0, 1.0, WEIGHT, 1)
+    net = pbd.make_constraint_network(ROPE, 1.0, [0, 2], PAIRS, 0.0, 1.0, WEIGHT, 1)
     with pytest.raises(Diverged, match="did not converge"):
-        step(pbd.falling_acceleration, 0.0, ROPE, np.zeros((3, 2)), 0.01, net)
+        step(pbd.network_gravity, 0.0, ROPE, np.zeros((3, 2)), 0.01, net)
 
 
 # ---------------------------------------------------------------------------------------------- sizes
@@ -167,17 +170,17 @@ def test_a_ball_that_rolls_and_a_box_that_tips_settle_at_once():
     for _ in range(100):
         radius = rng.uniform(0.01, 1.0)
         v = np.append(rng.normal(size=2) * 10.0, -(10.0 ** rng.uniform(-6.0, 0.0)))
-        ball = impulses.Solid(v, np.cross(UP, v) / radius, 1.0, np.eye(3) / (0.4 * radius**2))
+        ball = impulses.BodyState3D(v, np.cross(UP, v) / radius, 1.0, np.eye(3) / (0.4 * radius**2))
         after, residual = impulses.solve_impacts(ball, -radius * UP[None], UP[None], 0.0, rng.uniform(0.0, 1.0))
-        assert residual <= impulses.SETTLED * 2.0 * np.linalg.norm(v) and abs(after.v[2]) <= ROUND_OFF
+        assert residual <= impulses.CONVERGED * 2.0 * np.linalg.norm(v) and abs(after.v[2]) <= ROUND_OFF
     for _ in range(40):
         half, R, spin = rng.uniform(0.1, 0.5, 3), rotation_of(rng), rng.uniform(1.0, 20.0)
         edge = np.array([[-1.0, 1.0, -1.0], [-1.0, -1.0, -1.0]]) * half @ R.T    # the edge about which it tips
         omega = spin * R[:, 1]
-        push = impulses.Solid(-np.cross(omega, edge[0]) - 1e-3 * R[:, 2], omega,
+        push = impulses.BodyState3D(-np.cross(omega, edge[0]) - 1e-3 * R[:, 2], omega,
                               1.0, R @ np.diag(3.0 / (half @ half - half**2)) @ R.T)
         _, residual = impulses.solve_impacts(push, edge, np.stack((R[:, 2], R[:, 2])), 0.0, 0.5)
-        assert residual <= impulses.SETTLED * 2.0 * (np.linalg.norm(push.v) + spin)
+        assert residual <= impulses.CONVERGED * 2.0 * (np.linalg.norm(push.v) + spin)
 
 
 def test_an_impact_without_solution_ends_in_a_physical_fallback_with_a_residual():
@@ -188,12 +191,12 @@ def test_an_impact_without_solution_ends_in_a_physical_fallback_with_a_residual(
         half, R = rng.uniform(0.05, 0.5, 3), rotation_of(rng)
         corners = every_corner[rng.choice(8, rng.integers(2, 5), replace=False)] * half
         r, n = corners @ R.T, rotation_of(rng)[0]
-        body = impulses.Solid(3.0 * rng.normal(size=3) - 3.0 * n, 5.0 * rng.normal(size=3),
+        body = impulses.BodyState3D(3.0 * rng.normal(size=3) - 3.0 * n, 5.0 * rng.normal(size=3),
                               1.0, R @ np.diag(3.0 / (half @ half - half**2)) @ R.T)
         e, mu = rng.choice([0.0, 0.5, 1.0]), rng.choice([1.5, 3.0, np.inf])
         after, residual = impulses.solve_impacts(body, r, np.tile(n, (len(r), 1)), e, mu)
         speed = impulses.largest_speed(body, r)
-        if residual <= impulses.SETTLED * speed:
+        if residual <= impulses.CONVERGED * speed:
             continue
         fell_back += 1
         J = (after.v - body.v) / body.inv_mass

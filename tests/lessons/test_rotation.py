@@ -129,9 +129,9 @@ def test_the_state_changes_as_newton_and_euler_say(lesson, draw):
     h = 1e-4
     R = turn(q)
     P, F, tau = draw(-2.0, 2.0, 3), draw(-2.0, 2.0, 3), draw(-2.0, 2.0, 3)
-    S = lesson.State(draw(-1.0, 1.0, 3), R, P, inertia(q, I_body) @ omega)
-    light, heavy = (lesson.state_derivative(S, F, tau, lesson.Body(share * m, I_body))[0] for share in (0.1, 10.0))
-    x_rate, R_rate, P_rate, L_rate = lesson.state_derivative(S, F, tau, lesson.Body(m, I_body))
+    S = lesson.RigidBodyState(draw(-1.0, 1.0, 3), R, P, inertia(q, I_body) @ omega)
+    light, heavy = (lesson.state_derivative(S, F, tau, lesson.RigidBody(share * m, I_body))[0] for share in (0.1, 10.0))
+    x_rate, R_rate, P_rate, L_rate = lesson.state_derivative(S, F, tau, lesson.RigidBody(m, I_body))
     before, after = (about(s * h * omega) @ R for s in (-1.0, 1.0))
     close("ẋ of a body a tenth, once and ten times as heavy [m/s]", [light, x_rate, heavy],
           [10.0 * P / m, P / m, 0.1 * P / m], EXACT * 10.0)
@@ -203,7 +203,7 @@ def test_quaternions_multiply_like_paulis_matrices(lesson, draw):
     pairs[1, 1] = pairs[1, 0]
     for a, b in pairs:
         expected = pauli(a) @ pauli(b)
-        got = np.asarray(lesson.product(a, b))
+        got = np.asarray(lesson.quaternion_product(a, b))
         close("the product of two quaternions", got,
               [expected[0, 0].real, -expected[0, 1].imag, expected[1, 0].real, -expected[0, 0].imag], EXACT,
               given=f"a = {a}, b = {b}")
@@ -283,7 +283,7 @@ def test_one_step_of_the_loop_is_velocities_first(lesson, draw):
         q = orientation(draw)
         omega = spin_of(draw)
         I_body = moments(draw)
-        body = lesson.Body(m, I_body)
+        body = lesson.RigidBody(m, I_body)
         kept = [a.copy() for a in (x, v, q, omega)]
         x_new, v_new, q_new, omega_new = lesson.rigid_body_step(swirling_load, t, x, v, q, omega, dt, body)
         F, tau = swirling_load(t, x, v, q, omega, body)
@@ -314,10 +314,11 @@ def test_the_loop_converges_to_the_free_motion_of_a_body(lesson, draw):
     v = draw(-1.0, 1.0, 3)
     T = 1.0
     truth = freely(q, omega, I_body, T)
-    body = lesson.Body(2.0, I_body)
+    body = lesson.RigidBody(2.0, I_body)
     errors = []
     for n in (100, 200):
-        x, _, q_end, _ = lesson.move(lesson.rigid_body_step, unloaded, 0.0, np.zeros(3), v, q, omega, T / n, n, body)
+        x, _, q_end, _ = lesson.advance_rigid_body(lesson.rigid_body_step, unloaded, 0.0, np.zeros(3), v, q, omega,
+                                                   T / n, n, body)
         # Local error ½dt² of |ω̈| and |ω̇| |ω|, which are below 2.6² + 2.6³ = 24: 12 dt after 1 s, growing by e^2.6 = 13.
         close("orientation after a second, as a matrix", turn(q_end), truth, 160.0 / n)
         close("x after a second: moved by v [m]", x, T * v, EXACT)
@@ -381,7 +382,7 @@ def test_the_midpoint_turn_solves_its_own_equation(lesson, draw):
     omega = spin_of(draw)
     dt = draw(0.1, 0.4)
     kept, L = q.copy(), inertia(q, I_body) @ omega
-    q_new = lesson.midpoint_turn(q, L, I_body, dt)
+    q_new = lesson.midpoint_free_rotation(q, L, I_body, dt)
     close("length of the new quaternion", np.linalg.norm(q_new), 1.0, EXACT)
     before, after = turn(q).T @ L, turn(q_new).T @ L
     m = 0.5 * (before + after)
@@ -394,11 +395,11 @@ def test_the_midpoint_turn_solves_its_own_equation(lesson, draw):
     close("orientation after dt, as a matrix", turn(q_new), expected, 1e-11)
     # Scaling L and I_body does not change the motion: a correction is small only relative to m.
     for size in (1e6, 1e-6):
-        scaled = lesson.midpoint_turn(q, size * L, size * I_body, dt)
+        scaled = lesson.midpoint_free_rotation(q, size * L, size * I_body, dt)
         close("orientation of a body a million times as heavy, or as light", turn(scaled), expected, 1e-11,
               given=f"I_body = {size * I_body}, dt = {dt}")
     close("input q after the call: unchanged", q, kept, 0.0)
-    long = lesson.midpoint_turn((1.0 + 5e-10) * q, L, I_body, dt)        # check_rotation accepts this length
+    long = lesson.midpoint_free_rotation((1.0 + 5e-10) * q, L, I_body, dt)        # check_rotation accepts this length
     close("length of the new quaternion if the old one is too long by 5e-10", np.linalg.norm(long), 1.0, EXACT)
 
 
@@ -419,7 +420,7 @@ def test_newtons_method_converges_where_fixed_point_iteration_diverges(lesson, d
         omega_body[k] = spin
         dt = 2.0 * rho / spin / np.sqrt((I_body[k] - I_body[i]) * (I_body[k] - I_body[j]) / (I_body[i] * I_body[j]))
         before = I_body * omega_body
-        after = turn(lesson.midpoint_turn(q, turn(q) @ before, I_body, float(dt))).T @ turn(q) @ before
+        after = turn(lesson.midpoint_free_rotation(q, turn(q) @ before, I_body, float(dt))).T @ turn(q) @ before
         m = 0.5 * (before + after)
         # The last correction is 1e-12 |m| < 1e-11, times dt |w| < 30.
         close("ℓ_new − ℓ − dt m × w after a long step [kg m²/s]", after - before - dt * np.cross(m, m / I_body),
@@ -437,7 +438,7 @@ def turn_once(lesson, draw):
     omega = spin_of(draw)
     dt = draw(0.1, 0.4)
     L = inertia(q, I_body) @ omega
-    before, after = turn(q).T @ L, turn(lesson.midpoint_turn(q, L, I_body, dt)).T @ L
+    before, after = turn(q).T @ L, turn(lesson.midpoint_free_rotation(q, L, I_body, dt)).T @ L
     m = 0.5 * (before + after)
     close("ℓ_new − ℓ − dt m × w of an ordinary turn [kg m²/s]", after - before - dt * np.cross(m, m / I_body),
           np.zeros(3), 1e-11, given=f"ω = {omega}, dt = {dt}")
@@ -454,7 +455,7 @@ def test_the_midpoint_turn_keeps_the_energy_however_often(lesson, draw):
     energy = lambda q: 0.5 * np.sum((turn(q).T @ L) ** 2 / I_body)
     begin = energy(q)
     for _ in range(200):
-        q = np.asarray(lesson.midpoint_turn(q, L, I_body, dt), dtype=float)
+        q = np.asarray(lesson.midpoint_free_rotation(q, L, I_body, dt), dtype=float)
     close("energy after 200 turns over energy before", energy(q) / begin, 1.0, 1e-12)
 
 
@@ -462,7 +463,7 @@ def test_the_midpoint_turn_keeps_the_energy_however_often(lesson, draw):
 def test_the_midpoint_turn_leaves_a_resting_body(lesson, draw):
     turn_once(lesson, draw)
     q, I_body = orientation(draw), moments(draw)
-    close("q of a body at rest", lesson.midpoint_turn(q, np.zeros(3), I_body, 0.1), q, EXACT)
+    close("q of a body at rest", lesson.midpoint_free_rotation(q, np.zeros(3), I_body, 0.1), q, EXACT)
 
 
 @exercise("5.16", points=0.25,
@@ -470,7 +471,7 @@ def test_the_midpoint_turn_leaves_a_resting_body(lesson, draw):
 def test_the_midpoint_turn_solves_its_equation_or_raises_diverged(lesson, draw):
     turn_once(lesson, draw)
     raises("an L that is not a number", Diverged,
-           lesson.midpoint_turn, orientation(draw), np.full(3, np.nan), moments(draw), 0.1)
+           lesson.midpoint_free_rotation, orientation(draw), np.full(3, np.nan), moments(draw), 0.1)
     # At ten radians per step and more, Newton's method often fails to converge.
     for _ in range(60):
         q = orientation(draw)
@@ -480,7 +481,7 @@ def test_the_midpoint_turn_solves_its_equation_or_raises_diverged(lesson, draw):
         L = inertia(q, I_body) @ omega
         try:
             with np.errstate(all="ignore"):                              # an overflow is one form of divergence
-                q_new = lesson.midpoint_turn(q, L, I_body, dt)
+                q_new = lesson.midpoint_free_rotation(q, L, I_body, dt)
         except NotImplementedError:
             raise
         except Exception as e:
@@ -509,7 +510,7 @@ def test_the_splitting_turn_is_exact_when_two_moments_are_equal(lesson, draw):
         L = inertia(q, I_body) @ omega
         spin = (1.0 - along / across) * (turn(q).T @ omega @ e)
         expected = about(dt / across * L) @ turn(q) @ about(dt * spin * e)
-        got = lesson.splitting_turn(q, L, I_body, dt)
+        got = lesson.splitting_free_rotation(q, L, I_body, dt)
         close(f"length of the new quaternion, where moment {k} differs", np.linalg.norm(got), 1.0, EXACT)
         close(f"orientation after dt, where moment {k} differs", turn(got), expected, EXACT,
               given=f"I_body = {I_body}, ω = {omega}, dt = {dt}")
@@ -525,18 +526,18 @@ def test_the_splitting_turn_is_reversible_and_of_second_order(lesson, draw):
     T = 1.0
     kept = q.copy()
     L = inertia(q, I_body) @ omega
-    there = np.asarray(lesson.splitting_turn(q, L, I_body, 0.3), dtype=float)
-    back = lesson.splitting_turn(there, L, I_body, -0.3)
+    there = np.asarray(lesson.splitting_free_rotation(q, L, I_body, 0.3), dtype=float)
+    back = lesson.splitting_free_rotation(there, L, I_body, -0.3)
     close("orientation after dt and −dt: back", turn(back), turn(q), EXACT)
     close("input q after the call: unchanged", q, kept, 0.0)
-    long = lesson.splitting_turn((1.0 + 5e-10) * q, L, I_body, 0.3)      # check_rotation accepts this length
+    long = lesson.splitting_free_rotation((1.0 + 5e-10) * q, L, I_body, 0.3)      # check_rotation accepts this length
     close("length of the new quaternion if the old one is too long by 5e-10", np.linalg.norm(long), 1.0, EXACT)
     truth = freely(q, omega, I_body, T)
     errors = []
     for n in (10, 20, 40):
         now = q
         for _ in range(n):
-            now = np.asarray(lesson.splitting_turn(now, L, I_body, T / n), dtype=float)
+            now = np.asarray(lesson.splitting_free_rotation(now, L, I_body, T / n), dtype=float)
         errors.append(np.abs(turn(now) - truth).max())
     # The error has only even powers of dt: the next term is (|ω| dt)² < 2 % of the first.
     between("error at 20 steps over error at 10", errors[1] / errors[0], 0.22, 0.28)
@@ -620,7 +621,8 @@ def test_every_step_converges_with_its_order_to_a_tilted_heavy_top(lesson, draw,
     top, order = lesson.Top(I_body, mgl), STEPS[name]
     errors = []
     for n in (40, 80):
-        q_end, L_end = lesson.tumble(getattr(lesson, f"{name}_step"), lesson.heavy_top_torque, 0.0, q, L, T / n, n, top)
+        q_end, L_end = lesson.advance_rotation(getattr(lesson, f"{name}_step"), lesson.heavy_top_torque, 0.0, q, L,
+                                               T / n, n, top)
         errors.append(np.abs(np.concatenate((turn(q_end).ravel(), L_end)) - end).max())
     # The next term of the expansion is dt |ω| < 7 % of the first, or more if the first is small.
     between("order of convergence", np.log2(errors[0] / errors[1]), order - 0.4, order + 0.4)
@@ -631,7 +633,7 @@ def test_without_torque_angular_momentum_is_kept_to_the_last_digit(lesson, draw,
     q, I_body, omega = orientation(draw), moments(draw), spin_of(draw)
     L = inertia(q, I_body) @ omega
     # without gravity
-    _, after = lesson.tumble(getattr(lesson, f"{name}_step"), lesson.heavy_top_torque,
+    _, after = lesson.advance_rotation(getattr(lesson, f"{name}_step"), lesson.heavy_top_torque,
                              0.0, q, L, 0.05, 100, lesson.Top(I_body, 0.0))
     close("L after 100 steps [kg m²/s]", after, L, 0.0)
 
@@ -650,7 +652,7 @@ def test_given_conversions_agree_with_those_of_this_file(lesson, draw):
     for axis in (*np.eye(3), r / np.linalg.norm(r)):
         for angle in (0.1, 3.0):
             R = about(angle * axis)
-            close("quaternion_of", turn(lesson.quaternion_of(R)), R, EXACT)
+            close("quaternion_from_matrix", turn(lesson.quaternion_from_matrix(R)), R, EXACT)
     a, b, c = draw(-1.0, 1.0, (3, 3)) + 2.0 * np.eye(3)
     close("solve3", np.stack([a, b, c], axis=1) @ lesson.solve3(a, b, c, r), r, 1e-11)
 
@@ -659,15 +661,15 @@ def test_given_conversions_agree_with_those_of_this_file(lesson, draw):
     ((1.0, 2.0, 3.0), 1), ((2.0, 1.0, 3.0), 0), ((3.0, 1.0, 2.0), 2),
     ((1.0, 1.0, 2.0), (0, 1)), ((2.0, 1.0, 2.0), (0, 2)), ((1.0, 2.0, 2.0), (1, 2))])
 def test_the_middle_axis_is_found_wherever_it_is(lesson, moments, axis):
-    assert lesson.middle_axis(np.array(moments)) in np.atleast_1d(axis)
+    assert lesson.intermediate_axis(np.array(moments)) in np.atleast_1d(axis)
 
 
 def refused(lesson, **changed):
-    """The message with which tumble refuses a valid run after one of its inputs is changed."""
+    """The message with which advance_rotation refuses a valid run after one of its inputs is changed."""
     valid = {"q": np.array([1.0, 0.0, 0.0, 0.0]), "L": np.ones(3), "dt": 0.1, "I_body": np.array([1.0, 2.0, 2.5])}
     run = {**valid, **changed}
     with pytest.raises(BadInput) as caught:
-        lesson.tumble(lesson.splitting_step, lesson.heavy_top_torque, 0.0, run["q"],
+        lesson.advance_rotation(lesson.splitting_step, lesson.heavy_top_torque, 0.0, run["q"],
                       run["L"], run["dt"], 1, lesson.Top(run["I_body"], 1.0))
     return str(caught.value)
 
@@ -691,8 +693,8 @@ def test_flat_and_thin_bodies_are_bodies(lesson):
 
 
 def test_make_body_checks_mass_and_moments():
-    from solutions.rotation import make_body
-    assert make_body(2, (1, 2, 2.5)).m == 2.0
+    from solutions.rotation import make_rigid_body
+    assert make_rigid_body(2, (1, 2, 2.5)).m == 2.0
     for m, I_body in ((0.0, (1.0, 1.0, 1.0)), (1.0, (1.0, 1.0, 2.1)), (1.0, (1.0, 1.0, np.nan))):
         with pytest.raises(BadInput):
-            make_body(m, I_body)
+            make_rigid_body(m, I_body)

@@ -1,4 +1,4 @@
-"""Lesson 2: forces are derivatives of an energy, internal forces sum to zero, and meshes fall, hang and settle."""
+"""Lesson 2: forces are derivatives of an energy, internal forces sum to zero, and networks fall, hang and settle."""
 
 import numpy as np
 import pytest
@@ -181,13 +181,13 @@ def test_an_angular_spring_refuses_an_arm_without_length(lesson, draw):
 # ---------------------------------------------------------------------------------------------- the system
 
 def mesh_of(lesson, inv_mass, springs, gravity, wind=None, k_v=0.0):
-    """A Mesh from rows (i, j, rest, k, k_d), independent of the student's other exercises."""
+    """A SpringNetwork from rows (i, j, rest, k, k_d), independent of the student's other exercises."""
     table = np.array(springs, dtype=float).reshape(-1, 5).T
     i, j = table[:2].astype(np.int64, order="C")
     rest, k, k_d = np.ascontiguousarray(table[2:])
     gravity = np.array(gravity, dtype=float)
     wind = np.zeros_like(gravity) if wind is None else np.array(wind, dtype=float)
-    return lesson.Mesh(np.array(inv_mass, dtype=float), gravity, wind, k_v, i, j, rest, k, k_d)
+    return lesson.SpringNetwork(np.array(inv_mass, dtype=float), gravity, wind, k_v, i, j, rest, k, k_d)
 
 
 # No two x coordinates are closer than 0.7 m.
@@ -196,27 +196,27 @@ EDGES = [(0, 1), (2, 0), (0, 3), (1, 2), (3, 1), (2, 3)]
 
 
 def tetrahedron(lesson, draw, d, low=0.7, high=1.3):
-    """Positions, velocities and mesh of four points, the second fixed, all joined, projected to d dimensions.
+    """Positions, velocities and network of four points, the second fixed, all joined, projected to d dimensions.
 
     The springs are 0.5 to 2.6 m long, with 10 to 60 N/m, 0.5 to 4 N s/m, and rest lengths of low to high times that.
     """
     x, v = TETRAHEDRON[:, :d] + draw(-0.1, 0.1, (4, d)), draw(-1.0, 1.0, (4, d))
     springs = np.column_stack([EDGES, np.zeros(6), draw(10.0, 60.0, 6), draw(0.5, 4.0, 6)])
-    mesh = mesh_of(lesson, draw(0.5, 3.0, 4) * [1.0, 0.0, 1.0, 1.0], springs, np.zeros(d))
-    return x, v, mesh._replace(rest=draw(low, high, 6) * lengths(x, mesh))
+    network = mesh_of(lesson, draw(0.5, 3.0, 4) * [1.0, 0.0, 1.0, 1.0], springs, np.zeros(d))
+    return x, v, network._replace(rest=draw(low, high, 6) * lengths(x, network))
 
 
-def lengths(x, mesh):
-    return np.sqrt(np.sum((x[mesh.j] - x[mesh.i]) ** 2, axis=1))
+def lengths(x, network):
+    return np.sqrt(np.sum((x[network.j] - x[network.i]) ** 2, axis=1))
 
 
 @exercise("2.7", points=1,
           hint="add T r/l at point i and −T r/l at j to the forces of the other springs; each spring has its own k")
 def test_spring_forces_are_the_gradient_of_the_elastic_energy(lesson, draw):
     for d in (1, 2, 3):
-        x, v, mesh = tetrahedron(lesson, draw, d)
-        energy = lambda x, mesh=mesh: 0.5 * np.sum(mesh.k * (lengths(x, mesh) - mesh.rest) ** 2)
-        force = lesson.spring_forces(x, 0.0 * v, mesh)
+        x, v, network = tetrahedron(lesson, draw, d)
+        energy = lambda x, network=network: 0.5 * np.sum(network.k * (lengths(x, network) - network.rest) ** 2)
+        force = lesson.spring_forces(x, 0.0 * v, network)
         # round-off of k l < 160 N, three times
         close(f"forces of springs at rest in {d}D: minus the gradient of Σ ½k(l − rest)² [N]", force,
               -slope(energy, x), 1e-12)
@@ -225,28 +225,28 @@ def test_spring_forces_are_the_gradient_of_the_elastic_energy(lesson, draw):
 @exercise("2.7", points=1, hint="l̇ = r · (v_j − v_i)/l; k_d belongs to the same spring as the ends")
 def test_dampers_are_the_gradient_of_the_dissipation_and_let_a_mesh_rotate_freely(lesson, draw):
     for d in (1, 2, 3):
-        x, v, mesh = tetrahedron(lesson, draw, d)
-        at_rest = lesson.spring_forces(x, 0.0 * v, mesh)
+        x, v, network = tetrahedron(lesson, draw, d)
+        at_rest = lesson.spring_forces(x, 0.0 * v, network)
         # ∂l/∂x = ∂l̇/∂v: [point, coordinate, spring]
-        grow = slope(lambda x, mesh=mesh: lengths(x, mesh), x)
-        brake = lesson.spring_forces(x, v, mesh) - at_rest
+        grow = slope(lambda x, network=network: lengths(x, network), x)
+        brake = lesson.spring_forces(x, v, network) - at_rest
         # round-off of forces below 200 N
-        expected = -grow @ (mesh.k_d * np.tensordot(v, grow))
+        expected = -grow @ (network.k_d * np.tensordot(v, grow))
         close(f"forces of dampers in {d}D: minus ∂/∂v of Σ ½k_d l̇² [N]", brake, expected, 1e-12)
         turn = np.triu(draw(-2.0, 2.0, (d, d)), 1)
-        rigid = lesson.spring_forces(x, x @ (turn - turn.T) + draw(-2.0, 2.0, d), mesh)
-        close(f"forces on a mesh that moves and rotates as a rigid body in {d}D [N]", rigid, at_rest, 1e-12)
+        rigid = lesson.spring_forces(x, x @ (turn - turn.T) + draw(-2.0, 2.0, d), network)
+        close(f"forces on a network that moves and rotates as a rigid body in {d}D [N]", rigid, at_rest, 1e-12)
 
 
 @exercise("2.7", points=0.5, hint="subtract at j what you add at i, whether or not one of the points is fixed")
 def test_springs_exert_no_net_force_and_no_net_torque(lesson, draw):
     for d in (1, 2, 3):
-        x, v, mesh = tetrahedron(lesson, draw, d)
-        at_rest, l = lesson.spring_forces(x, 0.0 * v, mesh), lengths(x, mesh)
+        x, v, network = tetrahedron(lesson, draw, d)
+        at_rest, l = lesson.spring_forces(x, 0.0 * v, network), lengths(x, network)
         # If all positions double, the tensions T do the work −Σ T l. Round-off as below, of ten such terms.
         close(f"Σ F · x of springs at rest in {d}D [N m]", np.sum(at_rest * x),
-              -np.sum(mesh.k * (l - mesh.rest) * l), 1e-11)
-        force = lesson.spring_forces(x, v, mesh)
+              -np.sum(network.k * (l - network.rest) * l), 1e-11)
+        force = lesson.spring_forces(x, v, network)
         # round-off of forces below 200 N, with lever arms of about 2 m
         close(f"sum of all forces in {d}D [N]", force.sum(axis=0), np.zeros(d), 1e-12)
         close(f"torque of all forces in {d}D [N m]", x.T @ force - force.T @ x, np.zeros((d, d)), 1e-12)
@@ -254,15 +254,15 @@ def test_springs_exert_no_net_force_and_no_net_torque(lesson, draw):
 
 @exercise("2.7", points=0.5, hint="if the squared length is 0.0, raise BadInput before dividing by it")
 def test_a_spring_without_length_is_refused(lesson, draw):
-    x, v, mesh = tetrahedron(lesson, draw, 2)
-    expected = -slope(lambda x: 0.5 * np.sum(mesh.k * (lengths(x, mesh) - mesh.rest) ** 2), x)
-    close("forces if all springs have a length [N]", lesson.spring_forces(x, 0.0 * v, mesh), expected, 1e-12)
-    large, small = (np.asarray(lesson.spring_forces(size * x, size * v, mesh._replace(rest=size * mesh.rest)))
+    x, v, network = tetrahedron(lesson, draw, 2)
+    expected = -slope(lambda x: 0.5 * np.sum(network.k * (lengths(x, network) - network.rest) ** 2), x)
+    close("forces if all springs have a length [N]", lesson.spring_forces(x, 0.0 * v, network), expected, 1e-12)
+    large, small = (np.asarray(lesson.spring_forces(size * x, size * v, network._replace(rest=size * network.rest)))
                     for size in (1.0, 1e-9))
     # round-off of forces below 200 N
-    close("forces in nanonewtons, if the mesh is a billion times smaller: the same", 1e9 * small, large, 1e-11)
+    close("forces in nanonewtons, if the network is a billion times smaller: the same", 1e9 * small, large, 1e-11)
     x[3] = x[1]
-    raises("a spring whose ends coincide", BadInput, lesson.spring_forces, x, v, mesh)
+    raises("a spring whose ends coincide", BadInput, lesson.spring_forces, x, v, network)
 
 
 @exercise("2.8", points=1,
@@ -273,16 +273,16 @@ def test_points_without_springs_fall_alike_drift_with_the_wind_and_stay_where_fi
     mass = draw(0.5, 4.0, (3, 1)) * [[0.1], [1.0], [20.0]]
     inv_mass, none = np.zeros(4), np.zeros((4, 2))
     inv_mass[free] = 1.0 / mass[:, 0]
-    a = lesson.mesh_acceleration(0.0, x, v, mesh_of(lesson, inv_mass, [], g))
+    a = lesson.spring_network_acceleration(0.0, x, v, mesh_of(lesson, inv_mass, [], g))
     close("accelerations without air [m/s²]: g, and 0 where fixed", a, [g, g, [0.0, 0.0], g], 1e-13)
 
     wind, k_v = draw(-3.0, 3.0, 2), draw(0.3, 0.6)
     windy = mesh_of(lesson, inv_mass, [], g, wind, k_v)
-    a = lesson.mesh_acceleration(0.0, x, none, windy)
+    a = lesson.spring_network_acceleration(0.0, x, none, windy)
     # round-off of F_wind/m < 60 m/s², and of k_v v/m < 70 m/s²
     close("accelerations in the wind, from rest [m/s²]", a[free], g + wind / mass, 1e-13)
     v[free] = (mass * g + wind) / k_v
-    a = lesson.mesh_acceleration(0.0, x, v, windy)
+    a = lesson.spring_network_acceleration(0.0, x, v, windy)
     close("accelerations at v = (mg + F_wind)/k_v, and where fixed [m/s²]", a, none, 1e-13)
 
 
@@ -296,7 +296,7 @@ def test_a_mesh_obeys_newton_and_a_weight_hangs_still(lesson, draw):
     pair = mesh_of(lesson, [1.0 / m_a, 1.0 / m_b], [(0, 1, rest, k, k_d)], [0.0, 0.0])
     x = draw(-1.0, 1.0, 2) + np.stack([0.0 * n, (rest + stretch) * n])
     v = draw(-1.0, 1.0, 2) + np.stack([0.0 * n, fast * n])
-    a = lesson.mesh_acceleration(0.0, x, v, pair)
+    a = lesson.spring_network_acceleration(0.0, x, v, pair)
     pull = (k * stretch + k_d * fast) * n
     # round-off of k l/m < 180 m/s²
     close("accelerations of two points that move apart on a stretched spring [m/s²]", a, [pull / m_a, -pull / m_b],
@@ -306,12 +306,12 @@ def test_a_mesh_obeys_newton_and_a_weight_hangs_still(lesson, draw):
     pull = m_b * g + wind
     hanging = mesh_of(lesson, [0.0, 1.0 / m_b], [(1, 0, rest, k, k_d)], g, wind, draw(0.2, 0.4))
     x = np.stack([0.0 * pull, (rest / np.sqrt(pull @ pull) + 1.0 / k) * pull])
-    a = lesson.mesh_acceleration(0.0, x, np.zeros((2, 2)), hanging)
+    a = lesson.spring_network_acceleration(0.0, x, np.zeros((2, 2)), hanging)
     close("accelerations of a weight at its equilibrium [m/s²]", a, np.zeros((2, 2)), 1e-12)
 
 
 @exercise("2.9", points=1,
-          hint="one of the steps of lesson 1 does this: pass it mesh_acceleration, and the mesh as p")
+          hint="one of the steps of lesson 1 does this: pass it spring_network_acceleration, and the network as p")
 def test_the_lectures_loop_is_exact_in_free_fall_and_settles_where_the_weight_hangs(lesson, draw):
     steps = draw.whole(8, 12)
     dt = draw(0.08, 0.12)
@@ -356,7 +356,7 @@ def test_the_lectures_loop_is_exact_in_free_fall_and_settles_where_the_weight_ha
     close("position of the fixed point [m]", x[0], [0.0, 0.0], 0.0)
 
 
-# ---------------------------------------------------------------------------------------------- building a mesh
+# ---------------------------------------------------------------------------------------------- building a network
 
 @exercise("2.10", points=1,
           hint="loop over offsets, then rows, then columns; index r · cols + c; test r + dr and c + dc separately")
@@ -375,7 +375,7 @@ def test_a_small_grid_has_its_threads_in_order_and_a_single_node_none(lesson, dr
     counts = np.bincount(threads[:, 0])
     close("pairs per first node: pairs are integers", np.bincount(pairs[:, 0]), counts, 0.0, given)
     diagonals = joined((node[:-1, :-1], node[1:, 1:]), (node[:-1, 1:], node[1:, :-1]))
-    close("pairs across the meshes", lesson.grid_pairs(rows, cols, lesson.SHEAR), diagonals, 0.0, given)
+    close("pairs across the networks", lesson.grid_pairs(rows, cols, lesson.SHEAR), diagonals, 0.0, given)
     backwards = joined((node[:, 1:], node[:, :-1]), (node[1:], node[:-1]))
     close("pairs of the threads in reverse, offsets (0, −1) and (−1, 0)",
           lesson.grid_pairs(rows, cols, ((0, -1), (-1, 0))), backwards, 0.0, given)
@@ -396,34 +396,34 @@ def test_a_large_grid_has_every_thread_diagonal_and_bend_once(lesson, draw):
     close("number of nodes outside the grid", np.sum((pairs < 0) | (pairs >= rows * cols)), 0.0, 0.0)
 
 
-# ---------------------------------------------------------------------------------------------- stiff meshes
+# ---------------------------------------------------------------------------------------------- stiff networks
 
 @exercise("2.11", points=1,
           hint="n nᵀ is the outer product of r/l with itself; 1 − n nᵀ is the part perpendicular to the spring")
 def test_stiffness_of_stretched_springs_is_the_slope_of_their_forces(lesson, draw):
     for d, low, high in ((1, 0.5, 0.7), (2, 0.5, 0.7), (3, 0.5, 0.7), (3, 0.9, 0.99)):
-        x, _, mesh = tetrahedron(lesson, draw, d, low, high)
-        K, D = lesson.spring_stiffness(x, mesh)
-        for s, (i, j) in enumerate(zip(mesh.i, mesh.j)):
+        x, _, network = tetrahedron(lesson, draw, d, low, high)
+        K, D = lesson.spring_stiffness(x, network)
+        for s, (i, j) in enumerate(zip(network.i, network.j)):
             r = x[j] - x[i]
-            pull = lambda r, k=mesh.k[s], rest=mesh.rest[s]: k * (1.0 - rest / np.sqrt(np.sum(r * r))) * r
+            pull = lambda r, k=network.k[s], rest=network.rest[s]: k * (1.0 - rest / np.sqrt(np.sum(r * r))) * r
             # round-off of numbers below 60, and below 11
             close(f"K of spring {s} in {d}D: derivative of k(l − rest) r/l [N/m]", K[s], slope(pull, r), 1e-12)
-            close(f"D of spring {s} in {d}D: k_d along the spring [N s/m]", D[s] @ r, mesh.k_d[s] * r, 1e-13)
-            close(f"trace of D of spring {s} in {d}D: nothing else [N s/m]", np.trace(D[s]), mesh.k_d[s], 1e-13)
+            close(f"D of spring {s} in {d}D: k_d along the spring [N s/m]", D[s] @ r, network.k_d[s] * r, 1e-13)
+            close(f"trace of D of spring {s} in {d}D: nothing else [N s/m]", np.trace(D[s]), network.k_d[s], 1e-13)
 
 
 @exercise("2.11", points=1, hint="max(0.0, 1 − rest/l) is zero for a compressed spring: only k n nᵀ remains")
 def test_stiffness_of_a_compressed_spring_acts_along_it_only(lesson, draw):
     for d, low, high in ((2, 1.3, 1.6), (3, 1.3, 1.6), (3, 1.01, 1.1)):
-        x, _, mesh = tetrahedron(lesson, draw, d, low, high)
-        K, _ = lesson.spring_stiffness(x, mesh)
-        for s, (i, j) in enumerate(zip(mesh.i, mesh.j)):
+        x, _, network = tetrahedron(lesson, draw, d, low, high)
+        K, _ = lesson.spring_stiffness(x, network)
+        for s, (i, j) in enumerate(zip(network.i, network.j)):
             r = x[j] - x[i]
-            close(f"K along spring {s} in {d}D [N/m]", K[s] @ r, mesh.k[s] * r, 1e-12 * mesh.k[s])
+            close(f"K along spring {s} in {d}D [N/m]", K[s] @ r, network.k[s] * r, 1e-12 * network.k[s])
             close(f"trace of K of spring {s} in {d}D: nothing perpendicular [N/m]", np.trace(K[s]),
-                  mesh.k[s], 1e-12 * mesh.k[s])
-            close(f"K of spring {s} in {d}D: symmetric [N/m]", K[s] - K[s].T, np.zeros((d, d)), 1e-12 * mesh.k[s])
+                  network.k[s], 1e-12 * network.k[s])
+            close(f"K of spring {s} in {d}D: symmetric [N/m]", K[s] - K[s].T, np.zeros((d, d)), 1e-12 * network.k[s])
 
 
 def times(y, A):
@@ -464,20 +464,20 @@ def test_conjugate_gradients_solve_positive_systems_and_raise_diverged_for_other
            lesson.conjugate_gradients, times, turning, draw(0.5, 1.5, (2, 1)))
 
 
-def swaying(t, x, v, mesh):
-    """Acceleration of a mesh with gravity g cos t, independent of the lesson."""
+def swaying(t, x, v, network):
+    """Acceleration of a network with gravity g cos t, independent of the lesson."""
     force = np.zeros_like(x)
-    for s in range(mesh.i.size):
-        r = x[mesh.j[s]] - x[mesh.i[s]]
+    for s in range(network.i.size):
+        r = x[network.j[s]] - x[network.i[s]]
         length = np.sqrt(np.sum(r * r))
-        rate = np.sum(r * (v[mesh.j[s]] - v[mesh.i[s]])) / length
-        pull = (mesh.k[s] * (length - mesh.rest[s]) + mesh.k_d[s] * rate) / length
-        force[mesh.i[s]] += pull * r
-        force[mesh.j[s]] -= pull * r
+        rate = np.sum(r * (v[network.j[s]] - v[network.i[s]])) / length
+        pull = (network.k[s] * (length - network.rest[s]) + network.k_d[s] * rate) / length
+        force[network.i[s]] += pull * r
+        force[network.j[s]] -= pull * r
     for n in range(x.shape[0]):
-        force[n] = (force[n] + mesh.wind - mesh.k_v * v[n]) * mesh.inv_mass[n]
-        if mesh.inv_mass[n] > 0.0:
-            force[n] += mesh.gravity * np.cos(t)
+        force[n] = (force[n] + network.wind - network.k_v * v[n]) * network.inv_mass[n]
+        if network.inv_mass[n] > 0.0:
+            force[n] += network.gravity * np.cos(t)
     return force
 
 
@@ -492,7 +492,7 @@ def test_the_implicit_step_is_linearly_implicit_euler(lesson, draw):
         weight = mesh_of(lesson, [0.0, 1.0 / m], [(0, 1, rest, k, k_d)], [g], [wind], k_v)
         before = np.array([[0.0], [x0]]), np.array([[0.0], [v0]])
         kept = np.array(before)
-        x, v = lesson.implicit_mesh_step(swaying, t, *before, dt, weight)
+        x, v = lesson.implicit_spring_network_step(swaying, t, *before, dt, weight)
         # the equilibrium position of the weight
         steady = rest + (wind + m * g * np.cos(t)) / k
         # y⁺ = (1 − dt B)⁻¹ y about the equilibrium. Conjugate gradients of one unknown leave only round-off.
@@ -502,17 +502,17 @@ def test_the_implicit_step_is_linearly_implicit_euler(lesson, draw):
         close("x and v of the fixed end [m, m/s]", [x[0, 0], v[0, 0]], [0.0, 0.0], 0.0)
         close("input x and v after the call: return new arrays", np.array(before), kept, 0.0)
 
-    x, v, mesh = tetrahedron(lesson, draw, 2, 0.5, 0.7)
-    mesh = mesh._replace(k_d=0.0 * mesh.k_d, k_v=k_v, gravity=np.array([wind, g]))
+    x, v, network = tetrahedron(lesson, draw, 2, 0.5, 0.7)
+    network = network._replace(k_d=0.0 * network.k_d, k_v=k_v, gravity=np.array([wind, g]))
     v[1] = 0.0
-    x_new, v_new = lesson.implicit_mesh_step(swaying, t, x, v, dt, mesh)
-    by_x = slope(lambda x: swaying(t, x, v + 0.0j, mesh), x).reshape(8, 8).T
-    by_v = slope(lambda v: swaying(t, x + 0.0j, v, mesh), v).reshape(8, 8).T
-    right = dt * (swaying(t, x, v, mesh).ravel() + dt * by_x @ v.ravel())
+    x_new, v_new = lesson.implicit_spring_network_step(swaying, t, x, v, dt, network)
+    by_x = slope(lambda x: swaying(t, x, v + 0.0j, network), x).reshape(8, 8).T
+    by_v = slope(lambda v: swaying(t, x + 0.0j, v, network), v).reshape(8, 8).T
+    right = dt * (swaying(t, x, v, network).ravel() + dt * by_x @ v.ravel())
     jump = np.linalg.solve(np.eye(8) - dt * by_v - dt * dt * by_x, right).reshape(4, 2)
     # Conjugate gradients leave 1e-10 of dt F, with a total F < 500 N, over the lightest mass, 1/3 kg.
-    close("v of a stretched mesh, compared with a dense solver [m/s]", v_new, v + jump, 2e-8)
-    close("x of a stretched mesh [m]", x_new, x + dt * v_new, 1e-14)
+    close("v of a stretched network, compared with a dense solver [m/s]", v_new, v + jump, 2e-8)
+    close("x of a stretched network [m]", x_new, x + dt * v_new, 1e-14)
 
 
 @exercise("2.13", points=0.5,
@@ -531,7 +531,7 @@ def test_the_implicit_step_brings_a_stiff_spring_to_rest_without_gaining_energy(
 
     last, highest = energy(), 0.0
     for _ in range(20):
-        x, v = lesson.implicit_mesh_step(swaying, 0.0, x, v, dt, stiff)
+        x, v = lesson.implicit_spring_network_step(swaying, 0.0, x, v, dt, stiff)
         now = energy()
         highest, last = max(highest, now - last), now
     close("largest gain of energy in a step [J]", highest, 0.0, 1e-10)   # round-off of 24 J
@@ -542,10 +542,10 @@ def test_the_implicit_step_brings_a_stiff_spring_to_rest_without_gaining_energy(
 
 @exercise("2.13", points=0.5, hint="M a on the right: each point's mass times its acceleration, all at t, x and v")
 def test_the_implicit_step_keeps_momentum_and_is_of_first_order(lesson, draw):
-    x, v, mesh = tetrahedron(lesson, draw, 2)
+    x, v, network = tetrahedron(lesson, draw, 2)
     mass, t, dt = draw(0.5, 2.0, 4), draw(0.3, 0.6), draw(0.03, 0.06)
-    free = mesh._replace(inv_mass=1.0 / mass, gravity=draw(-10.0, 10.0, 2), wind=draw(-2.0, 2.0, 2))
-    _, v_new = lesson.implicit_mesh_step(swaying, t, x, v, dt, free)
+    free = network._replace(inv_mass=1.0 / mass, gravity=draw(-10.0, 10.0, 2), wind=draw(-2.0, 2.0, 2))
+    _, v_new = lesson.implicit_spring_network_step(swaying, t, x, v, dt, free)
     # Conjugate gradients leave 1e-10 of dt F, with F < 500 N, and twice that in a sum over four points.
     impulse = dt * (mass.sum() * free.gravity * np.cos(t) + 4.0 * free.wind)
     close("change of momentum [N s]: (Σ m g + 4 F_wind) dt", mass @ (v_new - v), impulse, 1e-8)
@@ -555,7 +555,7 @@ def test_the_implicit_step_keeps_momentum_and_is_of_first_order(lesson, draw):
     for n in (40, 80, 160):
         y, w = x, v
         for step in range(n):
-            y, w = lesson.implicit_mesh_step(swaying, t + 0.1 / n * step, y, w, 0.1 / n, free)
+            y, w = lesson.implicit_spring_network_step(swaying, t + 0.1 / n * step, y, w, 0.1 / n, free)
         errors.append(max(np.abs(y - end[0]).max(), np.abs(w - end[1]).max()))
     # A light point has √(Σk/m) < 19/s and Σk_d/m < 24/s, and two of them twice that. The next term of the expansion is
     # below 50 dt of this one. From dt = 1/400 to 1/1600 s it moves the mean order by less than
@@ -563,14 +563,14 @@ def test_the_implicit_step_keeps_momentum_and_is_of_first_order(lesson, draw):
     between("order of convergence over two halvings", np.log2(errors[0] / errors[2]) / 2.0, 0.9, 1.1)
 
 
-def reference(t, x, v, mesh):
-    """x and v of the swaying mesh after 0.1 s, by DOP853 at its tightest tolerance."""
+def reference(t, x, v, network):
+    """x and v of the swaying network after 0.1 s, by DOP853 at its tightest tolerance."""
     from scipy.integrate import solve_ivp
     start = np.stack([x, v])
 
     def slopes(t, y):
         x, v = y.reshape(start.shape)
-        return np.stack([v, swaying(t, x, v, mesh)]).ravel()
+        return np.stack([v, swaying(t, x, v, network)]).ravel()
 
     end = solve_ivp(slopes, (t, t + 0.1), start.ravel(), method="DOP853", rtol=3e-14, atol=1e-14).y[:, -1]
     return end.reshape(start.shape)

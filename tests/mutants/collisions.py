@@ -28,6 +28,7 @@ wrong("6.1", "d with the wrong sign")(distance(lambda p, plane: p @ plane.n - pl
 wrong("6.1", "without its sign")(distance(lambda p, plane: abs(p @ plane.n + plane.d)))
 wrong("6.1", "forgets d")(distance(lambda p, plane: p @ plane.n))
 wrong("6.1", "only the sign")(distance(lambda p, plane: np.sign(p @ plane.n + plane.d)))
+edit("6.1", "zero within a femtometre", "plane.d", "plane.d if abs(p @ plane.n + plane.d) > 1e-15 else 0.0")
 edit("6.1", "zero within a micrometre", "plane.d", "plane.d if abs(p @ plane.n + plane.d) > 1e-6 else 0.0")
 
 
@@ -58,6 +59,10 @@ wrong("6.2", "never, if it already overlaps")(impact(inside=lambda t: NEVER))
 wrong("6.2", "extrapolates beyond the step")(impact(late=False))
 wrong("6.2", "forgets t")(impact(start=0.0))
 edit("6.2", "touches within a nanometre", "before <= 0.0", "before <= 1e-9")
+edit("6.2", "touches within a femtometre", "before <= 0.0", "before <= 1e-15")
+edit("6.2", "at once, if it is almost there", "before <= 0.0", "before <= 1e-6 * after")
+edit("6.2", "arrives within a picometre", "after < 0.0", "after < -1e-12")
+edit("6.2", "a point below does not touch", "before <= 0.0:", "before < 0.0 == r: return NEVER\n    if before <= 0.0:")
 
 
 # 6.3 ------------------------------------------------------------------------------------------------------------
@@ -120,6 +125,10 @@ edit("6.4", "ignores steps below a micrometre", "B >= 0.0", "A < 1e-12 or B >= 0
 edit("6.4", "ignores steps below a nanometre", "B >= 0.0", "A < 1e-18 or B >= 0.0")
 edit("6.4", "touches where C is small", "C <= 0.0", "C <= 1e-12")
 edit("6.4", "touches where C is tiny", "C <= 0.0", "C <= 1e-15")
+edit("6.4", "touches where C is minute", "C <= 0.0", "C <= 1e-22")
+edit("6.4", "never, if it is almost there", "s > 1.0", "not 1e-6 < s <= 1.0")
+edit("6.4", "rests where B is minute", "B >= 0.0", "B >= -1e-18")
+edit("6.4", "arrives a thousand-millionth of a step late", "s > 1.0", "s > 1.0 + 1e-9")
 
 
 # 6.5 ------------------------------------------------------------------------------------------------------------
@@ -148,6 +157,14 @@ edit("6.5", "the nearer end", "np.minimum(1.0, np.maximum(0.0, (p - a) @ along /
 edit("6.5", "refuses short segments", "length_squared == 0.0", "length_squared < 1e-12")
 edit("6.5", "refuses segments along a coordinate axis", "length_squared == 0.0", "np.any(a == b)")
 edit("6.5", "refuses less than a nanometre", "length_squared == 0.0", "length_squared < 1e-18")
+edit("6.5", "refuses less than an atomic nucleus", "length_squared == 0.0", "length_squared < 1e-30")
+edit("6.5", "refuses more than a million megametres", "length_squared == 0.0",
+     "length_squared == 0.0 or length_squared > 1e24")
+edit("6.5", "never divides by zero", "/ length_squared", "/ (length_squared + 1e-30)")
+edit("6.5", "refuses two ends that are nearly equal", "length_squared == 0.0", "np.allclose(a, b, atol=0.0, rtol=1e-9)")
+edit("6.5", "takes what is close to an end for the end",
+     "np.minimum(1.0, np.maximum(0.0, (p - a) @ along / length_squared))",
+     "(lambda s: 0.0 if s < 1e-6 else 1.0 if s > 1.0 - 1e-6 else s)((p - a) @ along / length_squared)")
 
 
 # 6.6 ------------------------------------------------------------------------------------------------------------
@@ -173,13 +190,15 @@ edit("6.6", "treats an edge-on triangle as pierced", "np.all(turns > 0.0) or np.
      "np.all(turns >= 0.0) or np.all(turns <= 0.0)")
 edit("6.6", "three equal signs, zeros as well", "np.all(turns > 0.0) or np.all(turns < 0.0)",
      "np.all(np.sign(turns) == np.sign(turns[0]))")
+edit("6.6", "signs with a minute tolerance", "np.all(turns > 0.0) or np.all(turns < 0.0)",
+     "np.all(turns > 1e-30) or np.all(turns < -1e-30)")
 edit("6.6", "signs with a tolerance", "np.all(turns > 0.0) or np.all(turns < 0.0)",
      "np.all(turns > 1e-12) or np.all(turns < -1e-12)")
 
 
 # 6.7 ------------------------------------------------------------------------------------------------------------
 @variants
-def on_triangle(edges=3, inside=True, clamp=True, checked=True, flat=worked.FLAT, absolute=False):
+def on_triangle(edges=3, inside=True, clamp=True, checked=True, flat=worked.DEGENERATE_AREA, absolute=False):
     def closest_on_triangle(p, a, b, c):
         corners = [a, b, c]
         N = np.cross(b - a, c - a)
@@ -204,15 +223,30 @@ wrong("6.7", "accepts a triangle without area")(on_triangle(checked=False))
 FIRST_TWO = "nearer(p, closest_on_segment(p, a, b), closest_on_segment(p, b, c))"
 THREE_EDGES = f"nearer(p, {FIRST_TWO}, closest_on_segment(p, c, a))"
 OUTSIDE = "closest_on_segment(p, {0}, {1}) if dot(cross({1} - {0}, q - {0}), N) < 0.0 else "
-edit("6.7", "refuses small inputs", "FLAT * longest", "1e-9")
+edit("6.7", "refuses small inputs", "DEGENERATE_AREA * longest", "1e-9")
+edit("6.7", "an area of 1e-12 m² is none", "DEGENERATE_AREA * longest", "DEGENERATE_AREA")
+edit("6.7", "compares with a length", "DEGENERATE_AREA * longest", "DEGENERATE_AREA * np.sqrt(longest)")
+LONGEST = "max(dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c))"
+edit("6.7", "compares with the first edge only", LONGEST, "dot(b - a, b - a)")
+edit("6.7", "compares with the second edge only", LONGEST, "dot(c - b, c - b)")
+edit("6.7", "compares with the third edge only", LONGEST, "dot(a - c, a - c)")
+edit("6.7", "forgets the edge from b to c", LONGEST, "max(dot(b - a, b - a), dot(a - c, a - c))")
+edit("6.7", "compares with the shortest edge", LONGEST, LONGEST.replace("max", "min"))
+edit("6.7", "compares with all three edges together", LONGEST, LONGEST.replace("max(", "sum((") + ")")
+edit("6.7", "compares with the two edges at a", LONGEST, "np.sqrt(dot(b - a, b - a) * dot(a - c, a - c))")
+edit("6.7", "half of |N|", "np.sqrt(dot(N, N)) > DEGENERATE_AREA", "area > DEGENERATE_AREA")
+edit("6.7", "ten times too strict", "DEGENERATE_AREA * longest", "1e-11 * longest")
+edit("6.7", "ten times too tolerant", "DEGENERATE_AREA * longest", "1e-13 * longest")
+edit("6.7", "the square of DEGENERATE_AREA only",
+     "np.sqrt(dot(N, N)) > DEGENERATE_AREA * longest", "dot(N, N) > DEGENERATE_AREA**2 * longest")
 edit("6.7", "the nearest corner", THREE_EDGES, "nearer(p, nearer(p, a, b), c)")
 edit("6.7", "the first edge with p outside", THREE_EDGES,
      OUTSIDE.format("a", "b") + OUTSIDE.format("b", "c") + "closest_on_segment(p, c, a)")
 edit("6.7", "the last edge with p outside", THREE_EDGES,
      OUTSIDE.format("c", "a") + OUTSIDE.format("b", "c") + "closest_on_segment(p, a, b)")
 edit("6.7", "the first two edges compared from a corner", FIRST_TWO, FIRST_TWO.replace("nearer(p", "nearer(c"))
-edit("6.7", "refuses needles: forgets the root of N · N", "np.sqrt(dot(N, N)) > FLAT * longest",
-     "dot(N, N) > FLAT * longest**2")
+edit("6.7", "refuses needles: forgets the root of N · N", "np.sqrt(dot(N, N)) > DEGENERATE_AREA * longest",
+     "dot(N, N) > DEGENERATE_AREA * longest**2")
 
 
 # 6.8 ------------------------------------------------------------------------------------------------------------
@@ -243,6 +277,8 @@ edit("6.8", "the face of the largest coordinate", "np.argmin(depth)", "np.argmax
 edit("6.8", "the face of the least share of its half edge", "np.argmin(depth)", "np.argmin(depth / box.half)")
 edit("6.8", "sign(0) = -1", "y[i] >= 0.0", "y[i] > 0.0")
 edit("6.8", "treats a picometre outside as inside", "depth[i] < 0.0", "depth[i] < -1e-12")
+edit("6.8", "treats a minute distance outside as inside", "depth[i] < 0.0", "depth[i] < -1e-20")
+edit("6.8", "sign(0) = 1 within a picometre", "y[i] >= 0.0", "y[i] >= -1e-12")
 
 
 # 6.9 ------------------------------------------------------------------------------------------------------------
@@ -258,6 +294,7 @@ wrong("6.9", "only the end position")(sweep(lambda low, high, move: (low + move,
 wrong("6.9", "only forwards")(sweep(lambda low, high, move: (low, high + move)))
 wrong("6.9", "larger on every side")(sweep(lambda low, high, move: (low - np.abs(move), high + np.abs(move))))
 edit("6.9", "all coordinates by the largest move", "np.maximum(high, high + move)", "high + max(0.0, np.max(move))")
+edit("6.9", "a picometre is no move", "return", "move = np.where(np.abs(move) < 1e-12, 0.0, move); return")
 wrong("6.9", "does not sweep")(sweep(lambda low, high, move: (low, high)))
 
 
@@ -284,7 +321,14 @@ wrong("6.10", "each pair twice")(brute(first=lambda i: 0))
 wrong("6.10", "the larger number first")(brute(turned=True))
 edit("6.10", "neighbours in the list only", "range(i + 1, len(low))", "range(i + 1, min(i + 2, len(low)))")
 edit("6.10", "accepts invalid boxes", "check_boxes(low, high)", "pass")
+edit("6.10", "accepts boxes that are slightly inside out", "check_boxes(low, high)", "check_boxes(low, high + 1e-9)")
+edit("6.10", "accepts lower corners at NaN", "check_boxes(low, high)",
+     "check_boxes(np.where(np.isnan(low), high, low), high)")
+edit("6.10", "accepts infinite corners", "check_boxes(low, high)",
+     "check_boxes(np.maximum(low, -1e300), np.minimum(high, 1e300))")
 edit("6.10", "does not test the last two", "range(len(low))", "range(len(low) - 2)")
+edit("6.10", "touch up to a femtometre apart", "boxes_touch(low, high, i, low, high, j)",
+     "boxes_touch(low - 5e-16, high + 5e-16, i, low - 5e-16, high + 5e-16, j)")
 edit("6.10", "touch up to a nanometre apart", "boxes_touch(low, high, i, low, high, j)",
      "boxes_touch(low - 5e-10, high + 5e-10, i, low - 5e-10, high + 5e-10, j)")
 
@@ -302,7 +346,7 @@ def traversal(prune=True, second=True, turned=False, both=True,
             down_a, down_b = int(a.child[i]), int(b.child[j])
             if not down_a and not down_b:
                 leaves(a, i, b, j, found)
-            elif down_a and (not down_b or worked.girth(a, i) >= worked.girth(b, j)):
+            elif down_a and (not down_b or worked.half_perimeter(a, i) >= worked.half_perimeter(b, j)):
                 go(down_a, j)
                 if second:
                     go(down_a + 1, j)
@@ -359,8 +403,13 @@ wrong("6.12", "the edges of b")(edges(of=lambda a, b: (b, a)))
 edit("6.12", "the edge whose gap is nearest to zero", "not gap <= greatest", "abs(gap) < abs(greatest)")
 edit("6.12", "the first edge that separates", "not gap <= greatest", "greatest <= 0.0 and gap > greatest")
 edit("6.12", "the last edge that separates", "not gap <= greatest", "gap > min(greatest, 0.0)")
+edit("6.12", "seven edges at most", "range(len(a))", "range(min(len(a), 7))")
 edit("6.12", "forgets the first corner of b", "range(len(b))", "range(1, len(b))")
 edit("6.12", "every edge begins at the first corner", "b[j] - a[i]", "b[j] - a[0]")
+edit("6.12", "a later edge must be better by a picometre", "not gap <= greatest", "not gap <= greatest + 1e-12")
+edit("6.12", "touch within a picometre", "return greatest, edge",
+     "return (0.0 if abs(greatest) < 1e-12 else greatest), edge")
+edit("6.12", "the least begins with a million gigametres", "outward(a, i), np.inf", "outward(a, i), 1e15")
 edit("6.12", "the least begins with a gigametre", "outward(a, i), np.inf", "outward(a, i), 1e9")
 edit("6.12", "the greatest begins with a megametre below zero", "-np.inf", "-1e6")
 
@@ -392,6 +441,9 @@ wrong("6.13", "drops corners on the plane")(cut(kept_at=lambda s: s < 0.0))
 wrong("6.13", "counts corners on the plane twice")(cut(crosses=lambda a, b: a * b <= 0.0 and a != b))
 wrong("6.13", "forgets d")(cut(offset=0.0))
 edit("6.13", "keeps corners a nanometre outside", "s_i <= 0.0", "s_i <= 1e-9")
+edit("6.13", "keeps corners a femtometre outside", "s_i <= 0.0", "s_i <= 1e-15")
+edit("6.13", "keeps corners a minute distance outside", "s_i <= 0.0", "s_i <= 1e-20")
+edit("6.13", "no crossing where the product is minute", "s_i * s_j < 0.0", "s_i * s_j < -1e-30")
 edit("6.13", "adds a crossing only where it goes out", "s_i * s_j < 0.0", "s_i < 0.0 < s_j")
 edit("6.13", "segments in a plane only", "k > 2", "y.shape != (2, 2)")
 edit("6.13", "fails for an empty polygon", "kept[:m].copy()",
@@ -404,7 +456,7 @@ edit("6.13", "room for 20 corners", "2 * len(y)", "20")
 
 # 6.14 -----------------------------------------------------------------------------------------------------------
 @variants
-def boxes(axes=range(15), room=worked.EDGES_WIN_BY, sign=1.0, width=worked.half_width, choose=lambda new,
+def boxes(axes=range(15), room=worked.EDGE_PREFERENCE, sign=1.0, width=worked.half_width, choose=lambda new,
           old: new > old, fixed=False):
     def box_separation(a, b):
         r, best = a.x - b.x, None
@@ -427,8 +479,13 @@ wrong("6.14", "from a to b")(boxes(sign=-1.0))
 wrong("6.14", "does not orient the axis")(boxes(fixed=True))
 wrong("6.14", "the last of equal ones")(boxes(choose=lambda new, old: new >= old))
 edit("6.14", "accepts zero axes", "dot(axis, axis) > 0.0", "dot(axis, axis) >= 0.0")
-edit("6.14", "edges need no advantage", "EDGES_WIN_BY if k >= 6", "0.0 if k >= 6")
-edit("6.14", "edges win by a twentieth", "EDGES_WIN_BY if k >= 6", "0.05 * abs(greatest) if k >= 6")
+edit("6.14", "edges need no advantage", "EDGE_PREFERENCE if k >= 6", "0.0 if k >= 6")
+edit("6.14", "edges win by a twentieth", "EDGE_PREFERENCE if k >= 6", "0.05 * abs(greatest) if k >= 6")
+edit("6.14", "edges win by a micrometre", "EDGE_PREFERENCE if k >= 6", "1e-6 if k >= 6")
+edit("6.14", "edges win by a picometre", "EDGE_PREFERENCE if k >= 6", "1e-12 if k >= 6")
+edit("6.14", "edges win by a part of the gap", "EDGE_PREFERENCE if k >= 6", "1e-9 * abs(greatest) if k >= 6")
+edit("6.14", "edges need no advantage over edges",
+     "EDGE_PREFERENCE if k >= 6", "EDGE_PREFERENCE if k >= 6 and number < 6")
 edit("6.14", "forgets the last axis", "range(15)", "range(14)")
 edit("6.14", "the first axis that separates", "not gap <= greatest +", "greatest <= 0.0 and gap > greatest +")
 edit("6.14", "edges only where no face separates",
@@ -437,12 +494,12 @@ edit("6.14", "the axis whose gap is nearest to zero", "not gap <= greatest +", "
 wrong("6.14", "the least gap")(boxes(choose=lambda new, old: new < old))
 wrong("6.14", "the longest half edge for the width")(boxes(width=lambda box, n: float(np.max(box.half))))
 edit("6.14", "the greatest begins with a megametre below zero", "-np.inf", "-1e6")
-edit("6.14", "faces need an advantage, too", "EDGES_WIN_BY if k >= 6 else 0.0", "EDGES_WIN_BY")
+edit("6.14", "faces need an advantage, too", "EDGE_PREFERENCE if k >= 6 else 0.0", "EDGE_PREFERENCE")
 
 
 # 6.15 -----------------------------------------------------------------------------------------------------------
 @variants
-def nearest(steps=worked.GJK_STEPS, along=(-1.0, 1.0), reduce=True, swap=False):
+def nearest(steps=worked.MAX_GJK_STEPS, along=(-1.0, 1.0), reduce=True, swap=False):
     def gjk(a, b):
         worked.check_hulls(a, b)
         p, q, weights = a[:1], b[:1], np.ones(1)
@@ -452,7 +509,7 @@ def nearest(steps=worked.GJK_STEPS, along=(-1.0, 1.0), reduce=True, swap=False):
             if worked.far_enough(v, a[i] - b[j]):
                 break
             p, q = np.vstack((p, a[i])), np.vstack((q, b[j]))
-            p, q, weights = worked.nearest_part(p, q)
+            p, q, weights = worked.nearest_subsimplex(p, q)
             if not reduce:
                 p, q, weights = p[-1:], q[-1:], np.ones(1)
         x, y = weights @ p, weights @ q
@@ -468,11 +525,16 @@ wrong("6.15", "both along the same direction")(nearest(along=(-1.0, -1.0)))
 wrong("6.15", "keeps a single pair")(nearest(reduce=False))
 wrong("6.15", "n from a to b")(nearest(swap=True))
 edit("6.15", "checks nothing", "check_hulls(a, b)", "pass")
+edit("6.15", "checks a only", "check_hulls(a, b)", "check_hulls(a, a)")
+edit("6.15", "checks b only", "check_hulls(a, b)", "check_hulls(b, b)")
 edit("6.15", "a corner of each for the points between them", "weights @ p, 0.0, weights @ q, 0.0",
      "p[0], 0.0, q[0], 0.0")
-edit("6.15", "gives up after eight steps", "range(GJK_STEPS)", "range(8)")
-edit("6.15", "gives up after twelve steps", "range(GJK_STEPS)", "range(12)")
-edit("6.15", "gives up after twenty steps", "range(GJK_STEPS)", "range(20)")
+edit("6.15", "gives up after eight steps", "range(MAX_GJK_STEPS)", "range(8)")
+edit("6.15", "gives up after twelve steps", "range(MAX_GJK_STEPS)", "range(12)")
+edit("6.15", "gives up after twenty steps", "range(MAX_GJK_STEPS)", "range(20)")
+edit("6.15", "overlap below a femtometre", "if far_enough(", "if v @ v < 1e-30 or far_enough(")
+edit("6.15", "stops where little can be gained", "if far_enough(v, a[i] - b[j])",
+     "if v @ v - v @ (a[i] - b[j]) < 1e-26")
 edit("6.15", "overlap below a nanometre", "if far_enough(", "if v @ v < 1e-18 or far_enough(")
 
 
@@ -501,6 +563,7 @@ wrong("6.16", "accepts a position inside")(field(checked=False))
 wrong("6.16", "the offset itself for its direction")(field(unit=False))
 edit("6.16", "accepts a position on the surface", "not g > 0.0", "g < 0.0")
 edit("6.16", "refuses gaps below a micrometre", "not g > 0.0", "g < 1e-6")
+edit("6.16", "refuses minute gaps", "not g > 0.0", "not g > 1e-20")
 edit("6.16", "no more than a million m/s²", "k * (1.0 / g - 1.0 / reach) / (g * g * distance)",
      "min(k * (1.0 / g - 1.0 / reach) / (g * g), 1e6) / distance")
 edit("6.16", "no gap below a millimetre", "g = distance - radius",
@@ -541,6 +604,12 @@ edit("6.17", "steers at the end of the time ahead", "tau >= ahead", "tau > ahead
 edit("6.17", "does nothing near the middle of the disc", "offset >= radius",
      "offset >= radius or r @ r < 0.05 * radius**2")
 wrong("6.17", "avoids by the whole radius")(swerve(need=lambda radius, offset: radius))
+edit("6.17", "too late for the last hundredth of a second", "tau <= 0.0", "tau <= 1e-2")
+edit("6.17", "too late for the last hundred microseconds", "tau <= 0.0", "tau <= 1e-4")
+edit("6.17", "at rest below a nanometre per second", "speed == 0.0", "speed < 1e-9")
+edit("6.17", "head-on within a minute distance", "offset > 0.0", "offset > 1e-19")
+edit("6.17", "four seconds ahead, whatever is asked", "tau >= ahead", "tau >= 4.0")
+edit("6.17", "at most ten seconds ahead", "tau >= ahead", "tau >= min(ahead, 10.0)")
 edit("6.17", "brakes", "tau**2 * aside", "tau**2 * aside - 0.1 * v")
 edit("6.17", "at rest where v[0] is zero", "speed == 0.0", "v[0] == 0.0")
 edit("6.17", "at rest below a millimetre per second", "speed == 0.0", "speed < 1e-3")

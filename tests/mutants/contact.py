@@ -49,6 +49,11 @@ wrong("9.1", "does not turn")(rows(arm=0.0))
 wrong("9.1", "tangent before normal")(rows(swap=True))
 wrong("9.1", "all normals before all tangents")(rows(blocks=True))
 wrong("9.1", "arms from the origin")(rows(centre=False))
+edit("9.1", "takes body 0 for the ground", "contacts.b[k], -1.0)", "contacts.b[k], -1.0 if contacts.b[k] else 0.0)")
+edit("9.1", "arms to the surface of a, not to the middle of the gap", "contacts.p[k, 0] - x",
+     "contacts.p[k, 0] + 0.5 * contacts.gap[k] * n_x - x")
+edit("9.1", "no torque below a micrometre", "sign * (r_x * d_y - r_y * d_x)",
+     "sign * (r_x * d_y - r_y * d_x) * (abs(r_x * d_y - r_y * d_x) > 1e-6)")
 
 
 # 9.2 ------------------------------------------------------------------------------------------------------------
@@ -70,6 +75,7 @@ wrong("9.2", "no masses")(delassus(masses=np.ones_like))
 wrong("9.2", "no turning")(delassus(masses=lambda w: w * np.resize([1.0, 1.0, 0.0], len(w))))
 wrong("9.2", "for bodies, not for contacts")(delassus(turned=False))
 wrong("9.2", "each contact by itself")(delassus(diagonal=True))
+wrong("9.2", "moves even what is fixed, a little")(delassus(masses=lambda w: np.maximum(w, 1e-13)))
 
 
 # 9.3 ------------------------------------------------------------------------------------------------------------
@@ -96,6 +102,12 @@ wrong("9.3", "the mean square")(lcp_residual(total=lambda y: np.sqrt(np.mean(y *
 wrong("9.3", "the product")(lcp_residual(pair=np.multiply))
 wrong("9.3", "the larger one")(lcp_residual(pair=np.maximum))
 wrong("9.3", "no b")(lcp_residual(bias=0.0))
+wrong("9.3", "a contact that pulls does not approach")(
+    lcp_residual(pair=lambda x, u: np.where(x < 0.0, x, np.minimum(x, u))))
+wrong("9.3", "a contact that approaches does not pull")(
+    lcp_residual(pair=lambda x, u: np.where(u < 0.0, u, np.minimum(x, u))))
+wrong("9.3", "pulling and approaching add up")(
+    lcp_residual(pair=lambda x, u: np.where((x < 0.0) & (u < 0.0), x + u, np.minimum(x, u))))
 
 
 # 9.4 ------------------------------------------------------------------------------------------------------------
@@ -132,6 +144,8 @@ wrong("9.4", "does not divide")(swept(diagonal=False))
 wrong("9.4", "two sweeps")(swept(twice=True))
 edit("9.4", "changes its input", "lam = lam.copy()", "pass")
 edit("9.4", "no b", "+ b[k]", "")
+edit("9.4", "at rest below a nanometre per second", "lam[k] = np.maximum",
+     "if abs(A[k] @ lam + b[k]) > 1e-9: lam[k] = np.maximum")
 
 
 # 9.5 to 9.7 -----------------------------------------------------------------------------------------------------
@@ -149,6 +163,7 @@ wrong("9.5", "Jacobi's")(stack(power=1))
 wrong("9.5", "twice the angle")(stack(half=1.0))
 wrong("9.5", "of a stack between two walls")(stack(shift=1))
 wrong("9.5", "the sine")(stack(of=np.sin))
+edit("9.5", "no stack above forty", "np.pi / n", "np.pi / min(n, 40)")
 
 
 @variants
@@ -185,13 +200,14 @@ wrong("9.7", "no root")(relaxation(root=lambda y: y))
 wrong("9.7", "takes ρ for that of Jacobi")(relaxation(of=lambda rho: 1.0 - rho * rho))
 wrong("9.7", "half as much")(relaxation(two=1.0))
 wrong("9.7", "the factor squared")(relaxation(factor=lambda omega: (omega - 1.0) ** 2))
+edit("9.7", "ρ of a low stack at most", "1.0 - rho", "1.0 - min(rho, 0.999)")
 wrong("9.7", "ω for the factor")(relaxation(factor=lambda omega: 0.5 * omega))
 
 
 # 9.8 ------------------------------------------------------------------------------------------------------------
 @variants
 def murty(check=worked.check_independent, least=True, sides="both", everything=False, rounds=1000,
-          slack=worked.CONVERGED):
+          slack=worked.CONVERGED, size=lambda terms: terms, diagonal=np.diag):
     def solve_lcp(A, b):
         check(A)
         m = len(b)
@@ -199,8 +215,8 @@ def murty(check=worked.check_independent, least=True, sides="both", everything=F
         for _ in range(rounds * m):
             lam = np.zeros(m)
             lam[on] = np.linalg.solve(A[np.ix_(on, on)], -b[on])
-            u, epsilon = A @ lam + b, slack * (np.abs(A) @ np.abs(lam) + np.abs(b))
-            bad = np.where(on, (lam < -epsilon / np.diag(A)) & (sides != "on"), (u < -epsilon) & (sides != "off"))
+            u, epsilon = A @ lam + b, slack * size(np.abs(A) @ np.abs(lam) + np.abs(b))
+            bad = np.where(on, (lam < -epsilon / diagonal(A)) & (sides != "on"), (u < -epsilon) & (sides != "off"))
             wrongs = np.flatnonzero(bad)
             if len(wrongs) == 0:
                 return lam
@@ -220,6 +236,12 @@ wrong("9.8", "takes redundant contacts")(murty(check=lambda A: None))
 wrong("9.8", "none ever leaves")(murty(sides="on"))
 wrong("9.8", "none ever comes")(murty(sides="off"))
 wrong("9.8", "generous with what is wrong")(murty(slack=1e-2))
+wrong("9.8", "a thousand times too generous")(murty(slack=1e-10))
+wrong("9.8", "takes round-off for wrong")(murty(slack=0.0))
+wrong("9.8", "all wrong contacts change sides at once")(murty(everything=True))
+wrong("9.8", "the round-off of the largest row for all")(murty(size=np.max))
+wrong("9.8", "a round-off of 1e-13 m/s")(murty(size=np.ones_like))
+wrong("9.8", "a velocity for an impulse")(murty(diagonal=lambda A: np.ones(len(A))))
 edit("9.8", "solves for the impulses of all", "if pushes[k]:", "if True:")
 edit("9.8", "the bias with the wrong sign", "A[k], -b[k]", "A[k], b[k]")
 edit("9.8", "does not check", "check_independent(A)", "pass")
@@ -229,11 +251,12 @@ edit("9.8", "returns velocities", "return lam", "return u")
 # 9.9 ------------------------------------------------------------------------------------------------------------
 @variants
 def natural(cone=lambda mu, J: mu * J if J > 0.0 else 0.0, scaled=True, tangents=True, normals=True, two_sided=True,
-            total=max, own=True):
+            total=max, own=True, given=True):
     def cone_residual(A, b, J, mu):
         u, sizes = A @ J + b, [0.0]
         for n in range(0, len(J), 2):
-            k_n, k_t, limit = A[n, n], A[n + 1, n + 1], cone(mu[n // 2] if own else mu[0], J[n])
+            k_n, k_t, new = A[n, n], A[n + 1, n + 1], max(0.0, J[n] - u[n] / A[n, n])
+            limit = cone(mu[n // 2] if own else mu[0], J[n] if given else new)
             off_n = max(0.0, J[n] - u[n] / k_n) - J[n]
             off_t = min(max(J[n + 1] - u[n + 1] / k_t, -limit if two_sided else 0.0), limit) - J[n + 1]
             sizes += [(k_n if scaled else 1.0) * abs(off_n)] * normals + [(k_t if scaled
@@ -261,31 +284,40 @@ wrong("9.9", "tangents only")(natural(normals=False))
 wrong("9.9", "friction to one side only")(natural(two_sided=False))
 wrong("9.9", "the sum")(natural(total=sum))
 wrong("9.9", "the friction of the first contact for all")(natural(own=False))
+wrong("9.9", "the limit of J_n', not of J_n")(natural(given=False))
+wrong("9.9", "friction where it pulls")(natural(cone=lambda mu, J: mu * abs(J) if J else 0.0))
+wrong("9.9", "no friction above one")(natural(cone=lambda mu, J: min(mu, 1.0) * J if J > 0.0 else 0.0))
+wrong("9.9", "ten for infinite friction")(natural(cone=lambda mu, J: min(mu, 10.0) * J if J > 0.0 else 0.0))
+edit("9.9", "a little friction without a normal impulse", "else 0.0", "else 1e-9")
 edit("9.9", "no infinite friction", "mu[n // 2] * J[n] if J[n] > 0.0 else 0.0", "mu[n // 2] * np.maximum(0.0, J[n])")
 edit("9.9", "no b", "A @ J + b", "A @ J")
 
 
 # 9.10 -----------------------------------------------------------------------------------------------------------
 @variants
-def coned(new_limit=True, newest=True, pulls=False, share=1.0, two_sided=True, friction_first=False):
+def coned(new_limit=True, newest=True, pulls=False, share=1.0, two_sided=True, friction_first=False,
+          most=np.inf, by_kind=False, order=lambda contacts: contacts, quiet=0.0):
     def cone_sweep(A, b, J, mu):
         old, J = J.copy(), J.copy()
 
         def normal(n):
-            free = J[n] - (A[n] @ (J if newest else old) + b[n]) / A[n, n]
+            u = A[n] @ (J if newest else old) + b[n]
+            free = J[n] - u / A[n, n] if abs(u) >= quiet else J[n]
             J[n] = free if pulls else max(0.0, free)
 
         def tangent(n, J_n):
-            limit = share * mu[n // 2] * J_n if J_n > 0.0 else 0.0
+            limit = share * min(mu[n // 2], most) * J_n if J_n > 0.0 else 0.0
             J[n + 1] = min(max(J[n + 1] - (A[n + 1] @ (J if newest else old) + b[n + 1]) / A[n + 1, n + 1],
                                -limit if two_sided else 0.0), limit)
-        for n in range(0, len(J), 2):
+        for n in order(range(0, len(J), 2)):
             before = J[n]
             if friction_first:
                 tangent(n, J[n])
             normal(n)
-            if not friction_first:
+            if not (friction_first or by_kind):
                 tangent(n, J[n] if new_limit else before)
+        for n in range(0, len(J) if by_kind else 0, 2):
+            tangent(n, J[n])
         return J
     return cone_sweep
 
@@ -307,19 +339,25 @@ wrong("9.10", "pulls")(coned(pulls=True))
 wrong("9.10", "half the friction")(coned(share=0.5))
 wrong("9.10", "friction to one side only")(coned(two_sided=False))
 wrong("9.10", "friction before the normal")(coned(friction_first=True))
+wrong("9.10", "all normals before all friction")(coned(by_kind=True))
+wrong("9.10", "from the last contact to the first")(coned(order=reversed))
+wrong("9.10", "no friction above one")(coned(most=1.0))
+wrong("9.10", "a hundred for infinite friction")(coned(most=100.0))
+wrong("9.10", "at rest below a nanometre per second")(coned(quiet=1e-9))
 edit("9.10", "changes its input", "J = J.copy()", "pass")
 edit("9.10", "no infinite friction", "mu[n // 2] * J[n] if J[n] > 0.0 else 0.0", "mu[n // 2] * J[n]")
 
 
 # 9.11 -----------------------------------------------------------------------------------------------------------
 @variants
-def forces(check=worked.check_scene, bias=1.0, loaded=1.0, push=1.0, weigh=True):
+def forces(check=worked.check_scene, bias=1.0, loaded=1.0, push=1.0, weigh=True, pulled=lambda load: load,
+           friction=lambda mu: mu, told=lambda F: F, felt=lambda a: a):
     def contact_forces(x, inv_mass, inv_inertia, contacts, load, mu):
         check(x, inv_mass, inv_inertia, contacts, load, mu)
         G, w = worked.contact_rows(x, contacts), worked.inverse_masses(inv_mass, inv_inertia)
-        y = load.ravel()
-        F = worked.solve_contacts(worked.delassus_matrix(G, w), bias * (G @ (w * y if weigh else y)), mu)
-        return F.reshape(-1, 2), (w * (loaded * y + push * (G.T @ F))).reshape(-1, 3)
+        y = pulled(load).ravel()
+        F = worked.solve_contacts(worked.delassus_matrix(G, w), bias * (G @ (w * y if weigh else y)), friction(mu))
+        return told(F.reshape(-1, 2)), felt(w * (loaded * y + push * (G.T @ F))).reshape(-1, 3)
     return contact_forces
 
 
@@ -338,6 +376,20 @@ wrong("9.11", "half the load")(forces(bias=0.5))
 wrong("9.11", "accelerations without the load")(forces(loaded=0.0))
 wrong("9.11", "accelerations without the contacts")(forces(push=0.0))
 wrong("9.11", "loads are accelerations")(forces(weigh=False))
+wrong("9.11", "no torques")(forces(pulled=lambda load: load * [1.0, 1.0, 0.0]))
+wrong("9.11", "torques the other way")(forces(pulled=lambda load: load * [1.0, 1.0, -1.0]))
+wrong("9.11", "loads only press")(forces(pulled=lambda load: np.minimum(load, [np.inf, 0.0, np.inf])))
+wrong("9.11", "the friction of the first contact for all")(forces(friction=lambda mu: np.full(len(mu), mu[0])))
+wrong("9.11", "the mean friction for all")(forces(friction=lambda mu: np.full(len(mu), np.mean(mu))))
+wrong("9.11", "no friction above three")(forces(friction=lambda mu: np.minimum(mu, 3.0)))
+wrong("9.11", "the size of friction")(forces(told=np.abs))
+wrong("9.11", "the friction on b")(forces(told=lambda F: F * [1.0, -1.0]))
+wrong("9.11", "at rest below a micrometre per second squared")(
+    forces(felt=lambda a: np.where(np.abs(a) < 1e-6, 0.0, a)))
+edit("9.11", "the inertia of the last body for all", "inverse_masses(inv_mass, inv_inertia)",
+     "inverse_masses(inv_mass, np.where(inv_inertia > 0.0, inv_inertia[-1], 0.0))")
+edit("9.11", "the mass of the last body for all", "inverse_masses(inv_mass, inv_inertia)",
+     "inverse_masses(np.where(inv_mass > 0.0, inv_mass[-1], 0.0), inv_inertia)")
 edit("9.11", "frictionless", "@ (w * load.ravel()), mu)", "@ (w * load.ravel()), 0.0 * mu)")
 
 
@@ -369,6 +421,13 @@ wrong("9.12", "twice as soft")(soft(give=2.0))
 wrong("9.12", "keeps a gap open")(soft(opens=lambda gap, dt: (0.0, 0.0)))
 wrong("9.12", "closes a gap by its spring")(soft(opens=lambda gap, dt: (-gap / dt, 0.5)))
 wrong("9.12", "what just touches is open")(soft(touches=True))
+SOFT = "-s * gap / (dt * (2.0 * zeta + s))"
+edit("9.12", "parts at 10 m/s at most", SOFT, f"min(10.0, {SOFT})")
+edit("9.12", "approaches at 100 m/s at most", "-gap / dt, 0.0", "max(-100.0, -gap / dt), 0.0")
+edit("9.12", "no spring is stiffer than five over a step", "s = 2.0", "s = min(5.0, 2.0 * np.pi * hertz * dt); _ = 2.0")
+edit("9.12", "always a little damping", "2.0 * zeta + s)),", "2.0 * max(zeta, 0.05) + s)),")
+edit("9.12", "an ångström is no gap", "gap > 0.0", "gap > 1e-10")
+edit("9.12", "tolerates a slop of 10 µm", SOFT, SOFT.replace("gap", "min(0.0, gap + 1e-5)"))
 
 
 # 9.13 -----------------------------------------------------------------------------------------------------------
@@ -393,20 +452,28 @@ wrong("9.13", "forgets an axis")(disc(size=lambda J: np.sqrt(J[0] ** 2 + J[1] **
 wrong("9.13", "always on the rim")(disc(inside=lambda size, limit: size == 0.0))
 wrong("9.13", "never limited")(disc(inside=lambda size, limit: True))
 wrong("9.13", "nothing beyond the rim")(disc(scale=0.0))
+edit("9.13", "beyond the rim by a nanonewton second", "size > limit", "size > limit + 1e-9")
+edit("9.13", "nothing below a nanonewton second", "scaled(limit / size, J)", "scaled((limit > 1e-9) * limit / size, J)")
+edit("9.13", "the size of the first component", "scaled(limit / size, J)",
+     "scaled(limit / size, (abs(J[0]), J[1], J[2]))")
 wrong("9.13", "squares")(disc(inside=lambda size, limit: size * size <= limit))
 
 
 # 9.14 -----------------------------------------------------------------------------------------------------------
 @variants
-def kept(partner=True, near_enough=lambda d, near: d < near, take=np.argmin, share=1.0, flat=False):
+def kept(partner=True, near_enough=lambda d, near: d < near, take=np.argmin, share=1.0, flat=False,
+         size=lambda r, n: np.linalg.norm(r, axis=1), alike=-2.0, given=lambda J, n, m: J, once=False):
     def kept_impulses(contacts, old, J_old, near):
-        J = np.zeros(contacts.p.shape)
+        J, taken = np.zeros(contacts.p.shape), []
         for k in range(len(contacts.a)):
             same = np.arange(old.first[contacts.a[k]], old.first[contacts.a[k] + 1])
             same = same[old.b[same] == contacts.b[k]] if partner else same
-            distance = np.linalg.norm((old.p[same] - contacts.p[k])[:, :1 if flat else None], axis=1)
+            same = same[(old.n[same] @ contacts.n[k] > alike) & ~np.isin(same, taken)]
+            distance = size((old.p[same] - contacts.p[k])[:, :1 if flat else None], contacts.n[k])
             if len(same) and near_enough(distance[take(distance)], near):
-                J[k] = share * J_old[same[take(distance)]]
+                s = same[take(distance)]
+                J[k] = given(share * J_old[s], contacts.n[k], old.n[s])
+                taken += [s] * once
         return J
     return kept_impulses
 
@@ -431,17 +498,30 @@ wrong("9.14", "half of it")(kept(share=0.5))
 wrong("9.14", "looks along x only")(kept(flat=True))
 wrong("9.14", "the square for the distance")(kept(near_enough=lambda d, near: d * d < near))
 edit("9.14", "starts from nothing", "J[k, c] = J_old[s, c]", "pass")
+wrong("9.14", "along the surface only")(
+    kept(size=lambda r, n: np.linalg.norm(r - np.outer(r @ n, n), axis=1)))
+wrong("9.14", "the largest coordinate for the distance")(
+    kept(size=lambda r, n: np.max(np.abs(r), axis=1, initial=0.0)))
+wrong("9.14", "looks along x and y only")(kept(size=lambda r, n: np.linalg.norm(r[:, :2], axis=1)))
+wrong("9.14", "exactly near is near")(kept(near_enough=lambda d, near: d <= near))
+wrong("9.14", "wants nearly the same normal")(kept(alike=0.9))
+wrong("9.14", "wants a normal on the same side")(kept(alike=0.0))
+wrong("9.14", "turns the impulse with the normal")(kept(given=lambda J, n, m: J + (J @ m) * (n - m)))
+wrong("9.14", "each old impulse once")(kept(once=True))
 
 
 # 9.15 -----------------------------------------------------------------------------------------------------------
 @variants
-def leaves(low_side=True, high_side=True, bodies=slice(None), axes=slice(None), all_of=False, nan=True):
+def leaves(low_side=True, high_side=True, bodies=slice(None), axes=slice(None), all_of=False, nan=True, nan_high=True,
+           slack=0.0, endless=False):
     def has_left_margin(low, high, wide_low, wide_high):
         inside = np.ones(low.shape, bool)
         if low_side:
-            inside &= (wide_low <= low) if nan else ~(wide_low > low)
+            inside &= (wide_low <= low + slack) if nan else ~(wide_low > low)
         if high_side:
-            inside &= (high <= wide_high) if nan else ~(high > wide_high)
+            inside &= (high <= wide_high + slack) if nan and nan_high else ~(high > wide_high)
+        if endless:
+            inside |= np.isinf(wide_low)
         inside = inside[bodies, axes]
         return bool(not inside.any() if all_of else not inside.all())
     return has_left_margin
@@ -458,13 +538,17 @@ wrong("9.15", "not the last body")(leaves(bodies=slice(None, -1)))
 wrong("9.15", "not the last axis")(leaves(axes=slice(None, -1)))
 wrong("9.15", "all must have left")(leaves(all_of=True))
 wrong("9.15", "loses what is no number")(leaves(nan=False))
+wrong("9.15", "loses what is no number on the right")(leaves(nan_high=False))
+wrong("9.15", "tolerates ten nanometres")(leaves(slack=1e-8))
+wrong("9.15", "nothing leaves a box without a size")(leaves(endless=True))
 edit("9.15", "the edge itself is outside", "wide_low[i, c] <= low[i, c] and", "wide_low[i, c] < low[i, c] and")
 
 
 # 9.16 -----------------------------------------------------------------------------------------------------------
 @variants
 def velocity_swept(newest=True, b_too=True, spin=1.0, soft=1.0, aims=1.0, pulls=False, cone=True, old_limit=False,
-                   other_arm=False):
+                   other_arm=False, aim_of=lambda k, a: k, give_of=lambda k, a: k, slips=0.0, gives=0.0,
+                   hard_only=False, again=False, most=np.inf):
     def velocity_sweep_2d(v, omega, J, aim, give, contacts, arms, pile):
         v, omega, J = v.copy(), omega.copy(), J.copy()
         v_0, omega_0 = v.copy(), omega.copy()
@@ -475,11 +559,17 @@ def velocity_swept(newest=True, b_too=True, spin=1.0, soft=1.0, aims=1.0, pulls=
             w, o = (v, omega) if newest else (v_0, omega_0)
             u = w[a] + o[a] * turn(r_a) - w[b] - o[b] * turn(r_b)
             J_n = J[k] @ n
-            new_n = J_n + (aims * aim[k] - u @ n - soft * give[k] * k_n * J_n) / (k_n * (1.0 + give[k]))
+            aim_k, give_k, k_t = aim[aim_of(k, a)], give[give_of(k, a)], arms.k_t[k]
+            new_n = J_n + (aims * aim_k - u @ n - soft * give_k * k_n * J_n) / (k_n * (1.0 + give_k))
             new_n = new_n if pulls else max(0.0, new_n)
             bound = J_n if old_limit else new_n
-            limit = pile.mu * bound if bound > 0.0 else 0.0
-            new_t = J[k] @ t - (u @ t) / arms.k_t[k]
+            limit = min(pile.mu, most) * bound if bound > 0.0 and not (hard_only and give_k > 0.0) else 0.0
+            if again:                                                # the velocity that the new J_n leaves
+                u = u + (new_n - J_n) * (n * (pile.inv_mass[a] + pile.inv_mass[b])
+                                         + pile.inv_inertia[a] * (r_a[0] * n[1] - r_a[1] * n[0]) * turn(r_a)
+                                         + pile.inv_inertia[b] * (r_b[0] * n[1] - r_b[1] * n[0]) * turn(r_b))
+            J_t = J[k] @ t
+            new_t = J_t + (slips * aim_k - u @ t - gives * give_k * k_t * J_t) / (k_t * (1.0 + gives * give_k))
             new = new_n * n + (min(max(new_t, -limit), limit) if cone else new_t) * t
             change, J[k] = new - J[k], new
             for body, r, sign in ((a, r_a, 1.0), (b, r_b, -1.0))[:2 if b_too else 1]:
@@ -500,6 +590,16 @@ wrong("9.16", "pulls")(velocity_swept(pulls=True))
 wrong("9.16", "no cone")(velocity_swept(cone=False))
 wrong("9.16", "the limit of before")(velocity_swept(old_limit=True))
 wrong("9.16", "both arms are those of a")(velocity_swept(other_arm=True))
+wrong("9.16", "the aim of body a")(velocity_swept(aim_of=lambda k, a: a))
+wrong("9.16", "the give of body a")(velocity_swept(give_of=lambda k, a: a))
+wrong("9.16", "the aim of the first contact for all")(velocity_swept(aim_of=lambda k, a: 0))
+wrong("9.16", "the give of the first contact for all")(velocity_swept(give_of=lambda k, a: 0))
+wrong("9.16", "friction aims, too")(velocity_swept(slips=1.0))
+wrong("9.16", "friction gives, too")(velocity_swept(gives=1.0))
+wrong("9.16", "no friction where it is soft")(velocity_swept(hard_only=True))
+wrong("9.16", "J_t from the velocity after J_n")(velocity_swept(again=True))
+wrong("9.16", "a thousand for infinite friction")(velocity_swept(most=1000.0))
 edit("9.16", "changes its input", "v.copy(), omega.copy(), J.copy()", "v, omega, J")
 edit("9.16", "the mass of a for b", "v[b, 0] -= inv_mass[b] * d_x", "v[b, 0] -= inv_mass[a] * d_x")
+edit("9.16", "no impulse below a nanonewton second", "0.0 if J_n <= 0.0", "0.0 if J_n <= 1e-9")
 edit("9.16", "divides by the hard mass", "k_n * (1.0 + give[k])", "k_n")

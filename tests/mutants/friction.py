@@ -224,7 +224,8 @@ edit("3.8", "multiplies ∞ by 0", "cone_radius(p.mu_s, normal_force(a, p.n))", 
 def first_stop(halvings=60, whole=True, begin=0.0, length=lambda middle, dt: middle, towards=1.0, end=lambda a, b: b):
     def stopping_time(acceleration, t, x, v, dt, d, p):
         def moves(tau):
-            return worked.slide(acceleration, t + begin * tau, x, v, length(tau, dt), d, p)[1] @ d * towards > 0.0
+            _, v_end = worked.kinetic_friction_step(acceleration, t + begin * tau, x, v, length(tau, dt), d, p)
+            return v_end @ d * towards > 0.0
         if whole and moves(dt):
             return dt
         a, b = 0.0, dt
@@ -241,11 +242,12 @@ wrong("3.9", "forces at a later time")(first_stop(begin=1.0))
 wrong("3.9", "returns the first half, however late it stops")(first_stop(end=lambda a, b: 0.5 * a))
 wrong("3.9", "speed with the wrong sign")(first_stop(towards=-1.0))
 BRAKE = "cone_radius(p.mu_k, normal_force(acceleration(t, x, v, p), p.n))"
-edit("3.9", "v over μ g, without the push", "moving, stopped = 0.0, dt", f"return min(dt, v @ d / {BRAKE})")
+edit("3.9", "v over μ g, without the drive", "moving, stopped = 0.0, dt", f"return min(dt, v @ d / {BRAKE})")
 edit("3.9", "the deceleration at t", "moving, stopped = 0.0, dt",
      f"return min(dt, v @ d / abs({BRAKE} - acceleration(t, x, v, p) @ d))")
-edit("3.9", "the speed whatever its direction: never stops", "slide(acceleration, t, x, v, dt, d, p)[1] @ d > 0.0",
-     "np.any(slide(acceleration, t, x, v, dt, d, p)[1])")
+edit("3.9", "the speed whatever its direction: never stops",
+     "kinetic_friction_step(acceleration, t, x, v, dt, d, p)[1] @ d > 0.0",
+     "np.any(kinetic_friction_step(acceleration, t, x, v, dt, d, p)[1])")
 
 
 # 3.10 -----------------------------------------------------------------------------------------------------------
@@ -271,25 +273,25 @@ wrong("3.10", "counts from zero")(first_slip(since=lambda t, tau: tau))
 wrong("3.10", "tests at t")(first_slip(since=lambda t, tau: t))
 wrong("3.10", "the two tests exchanged")(first_slip(slips=lambda d: size(d) == 0.0))
 edit("3.10", "the kinetic limit", "if not np.any", "p = p._replace(mu_s=p.mu_k)\n    if not np.any")
-LOAD_OF_NOW = "p._replace(gravity=p.gravity + np.cos(p.omega * t) * (p.push - along), push=along)"
+LOAD_OF_NOW = "p._replace(gravity=p.gravity + np.cos(p.omega * t) * (p.drive - along), drive=along)"
 edit("3.10", "the load at t", "if not np.any",
-     f"along = tangential(p.push, p.n); p = {LOAD_OF_NOW}\n    if not np.any")
+     f"along = tangential(p.drive, p.n); p = {LOAD_OF_NOW}\n    if not np.any")
 edit("3.10", "returns the time, not the duration", "return slips", "return t + slips")
 
 
 # 3.11 -----------------------------------------------------------------------------------------------------------
 @variants
 def event(exactly=True, whole=False, waits=True, rest=False, moves=True):
-    def until_event(acceleration, t, x, v, dt, p):
+    def advance_to_event(acceleration, t, x, v, dt, p):
         d = worked.slip_direction(acceleration, t, x, v, p)
         if size(d) == 0.0:
             return (worked.breakaway_time(acceleration, t, x, v, dt, p) if waits else dt), x, v
         tau = worked.stopping_time(acceleration, t, x, v, dt, d, p)
-        x_new, v_new = worked.slide(acceleration, t, x, v, dt if whole else tau, d, p)
+        x_new, v_new = worked.kinetic_friction_step(acceleration, t, x, v, dt if whole else tau, d, p)
         if (exactly and tau < dt) or rest:
             v_new = np.zeros_like(v)
         return tau, (x_new if moves else x), v_new
-    return until_event
+    return advance_to_event
 
 
 right("3.11", "with new names")(event())
@@ -306,14 +308,14 @@ edit("3.11", "does not stop near the end of the step", "tau == dt", "tau >= 0.99
 # 3.12 -----------------------------------------------------------------------------------------------------------
 @variants
 def hollow(sign=-1.0, inside=1.0, centred=True, axial=True, scaled=True, safe=True):
-    def bowl_gap(x, p):
+    def particle_bowl_gap(x, p):
         r = x - p.centre if centred else x
         r = r - (r @ p.axis) * p.axis if axial else r
         distance = size(r)
         with np.errstate(invalid="ignore"):
             n = unit(r) if safe else r / distance
         return inside * (p.radius - distance), sign * (n if scaled else r)
-    return bowl_gap
+    return particle_bowl_gap
 
 
 right("3.12", "by a unit vector")(hollow())
@@ -331,13 +333,13 @@ edit("3.12", "treats a micrometre around the centre as the centre", "distance > 
 @variants
 def impact(leaves=True, bounce=lambda e: 1.0 + e, mass=True, slip=tangential,
            sign=1.0, friction=worked.friction_impulse, mass_n=True):
-    def contact_impulse(v, n, m, e, mu):
+    def particle_contact_impulse(v, n, m, e, mu):
         v_n = v @ n
         if leaves and v_n >= 0.0:
             return np.zeros_like(v)
         j_n = -sign * bounce(e) * (m if mass_n else 1.0) * v_n
         return j_n * n + friction(slip(v, n), m if mass else 1.0, abs(j_n), mu)
-    return contact_impulse
+    return particle_contact_impulse
 
 
 right("3.13", "by the same law")(impact())
@@ -370,8 +372,9 @@ def particle_step(grip=0.0, old=False, back=-1.0, asked="new", mass=True, only_i
         leads_in = v_free @ n < 0.0
         x_new = x_free if only_inwards and not leads_in else x_free + back * half * phi * n
         if grip and (leads_in or both_ways):
-            x_new = x_new + grip * worked.grip_correction(moving(moved, x, v, dt), n, max(0.0, depth(phi)), p.mu)
-        J = worked.contact_impulse(v_free, n, p.m, p.e, p.mu)
+            correction = worked.friction_position_correction(moving(moved, x, v, dt), n, max(0.0, depth(phi)), p.mu)
+            x_new = x_new + grip * correction
+        J = worked.particle_contact_impulse(v_free, n, p.m, p.e, p.mu)
         return x_new, v_free + J / (p.m if mass else 1.0) * (2.0 if doubled else 1.0)
     return step
 
@@ -405,10 +408,10 @@ edit("3.16", "grips what moves along the surface", "v @ n < 0.0", "v @ n <= 0.0"
 # 3.15 -----------------------------------------------------------------------------------------------------------
 @variants
 def grip(sign=-1.0, part=tangential, limit=lambda mu, depth: mu * depth, choose=min):
-    def grip_correction(moved, n, depth, mu):
+    def friction_position_correction(moved, n, depth, mu):
         s = part(moved, n)
         return sign * choose(limit(mu, depth), size(s)) * unit(s)
-    return grip_correction
+    return friction_position_correction
 
 
 right("3.15", "by a unit vector")(grip())

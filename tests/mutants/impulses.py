@@ -14,27 +14,27 @@ tangential = worked.tangential
 
 # 7.1 ------------------------------------------------------------------------------------------------------------
 @variants
-def response(bounce=lambda k: 1.0 + k, leaves=True, all_of_v=False, sign=-1.0):
-    def kinematic_response(v, n, k):
+def response(bounce=lambda e: 1.0 + e, leaves=True, all_of_v=False, sign=-1.0):
+    def kinematic_response(v, n, e):
         v_n = v @ n
         if leaves and v_n >= 0.0:
             return v
-        return -k * v if all_of_v else v + sign * bounce(k) * v_n * n
+        return -e * v if all_of_v else v + sign * bounce(e) * v_n * n
     return kinematic_response
 
 
 @right("7.1", "by parts")
-def kinematic_response(v, n, k):
+def kinematic_response(v, n, e):
     along, normal = v - np.dot(v, n) * n, np.dot(v, n) * n
-    return along - k * normal if np.dot(v, n) < 0.0 else np.array(v)
+    return along - e * normal if np.dot(v, n) < 0.0 else np.array(v)
 
 
-wrong("7.1", "k for 1 + k")(response(bounce=lambda k: k))
-wrong("7.1", "1 − k")(response(bounce=lambda k: 1.0 - k))
+wrong("7.1", "e for 1 + e")(response(bounce=lambda e: e))
+wrong("7.1", "1 − e")(response(bounce=lambda e: 1.0 - e))
 wrong("7.1", "pulls at a leaving body")(response(leaves=False))
 wrong("7.1", "reverses all of v")(response(all_of_v=True))
 wrong("7.1", "pulls in")(response(sign=1.0))
-edit("7.1", "changes its input", "v - (1.0 + k) * v_n * n", "np.subtract(v, (1.0 + k) * v_n * n, out=v)")
+edit("7.1", "changes its input", "v - (1.0 + e) * v_n * n", "np.subtract(v, (1.0 + e) * v_n * n, out=v)")
 edit("7.1", "ignores slow approach", "v_n >= 0.0", "v_n >= -1e-3")
 edit("7.1", "ignores ten nanometres per second", "v_n >= 0.0", "v_n >= -1e-8")
 
@@ -62,20 +62,22 @@ wrong("7.2", "the spring pulls in")(penalty(spring=1.0))
 edit("7.2", "ignores a depth of a millimetre", "phi >= 0.0", "phi >= -1e-3")
 edit("7.2", "damps at φ = 0", "phi >= 0.0", "phi > 0.0")
 wrong("7.2", "damps outside, too")(penalty(inside=lambda phi: True))
+edit("7.2", "ignores a nanometre", "phi >= 0.0", "phi >= -1e-9")
+edit("7.2", "no force without a spring", "phi >= 0.0", "phi >= 0.0 or stiffness == 0.0")
 
 
 # 7.3 ------------------------------------------------------------------------------------------------------------
 @variants
 def seen(side=1.0, sign=1.0, turns=1.0, swap=False):
-    def flat_relative_velocity(a, b, r_a, r_b):
+    def relative_velocity_2d(a, b, r_a, r_b):
         r_a, r_b = (r_b, r_a) if swap else (r_a, r_b)
         spin = lambda omega, r: turns * omega * side * np.array([-r[1], r[0]])
         return sign * (a.v + spin(a.omega, r_a) - b.v - spin(b.omega, r_b))
-    return flat_relative_velocity
+    return relative_velocity_2d
 
 
 @right("7.3", "in space")
-def flat_relative_velocity(a, b, r_a, r_b):
+def relative_velocity_2d(a, b, r_a, r_b):
     point = lambda body, r: np.append(body.v, 0.0) + np.cross([0.0, 0.0, body.omega], np.append(r, 0.0))
     return (point(a, r_a) - point(b, r_b))[:2]
 
@@ -90,37 +92,43 @@ edit("7.3", "a wall is at rest", "- b.v", "- (b.v if b.inv_mass else 0.0)")
 
 # 7.4 ------------------------------------------------------------------------------------------------------------
 @variants
-def size(bounce=lambda e: 1.0 + e, over=lambda k: 1.0 / k, leaves=True,
+def size(bounce=lambda e: 1.0 + e, over=lambda k_n: 1.0 / k_n, leaves=True,
          checks=(worked.check_restitution, worked.check_inverse_mass)):
-    def impulse_size(u_n, k, e):
+    def impulse_size(u_n, k_n, e):
         for check in checks:
-            check(e if check is worked.check_restitution else k)
-        return 0.0 if leaves and u_n >= 0.0 else -bounce(e) * u_n * over(k)
+            check(e if check is worked.check_restitution else k_n)
+        return 0.0 if leaves and u_n >= 0.0 else -bounce(e) * u_n * over(k_n)
     return impulse_size
 
 
 right("7.4", "the checks in a loop")(size())
 wrong("7.4", "no restitution")(size(bounce=lambda e: 1.0))
 wrong("7.4", "1 − e")(size(bounce=lambda e: 1.0 - e))
-wrong("7.4", "times k")(size(over=lambda k: k))
+wrong("7.4", "times k_n")(size(over=lambda k_n: k_n))
 wrong("7.4", "pulls at separating bodies")(size(leaves=False))
 wrong("7.4", "accepts any restitution")(size(checks=(worked.check_inverse_mass,)))
-edit("7.4", "accepts two immovable bodies", "check_inverse_mass(k)", "pass")
+edit("7.4", "accepts two immovable bodies", "check_inverse_mass(k_n)", "pass")
 edit("7.4", "ignores slow approach", "u_n >= 0.0", "u_n >= -1e-3")
 edit("7.4", "accepts any restitution for separating bodies", "check_restitution(e)",
      "if u_n >= 0.0:\n        return 0.0\n    check_restitution(e)")
 edit("7.4", "accepts two immovable bodies that separate",
-     "check_inverse_mass(k)", "if u_n < 0.0:\n        check_inverse_mass(k)")
+     "check_inverse_mass(k_n)", "if u_n < 0.0:\n        check_inverse_mass(k_n)")
+edit("7.4", "ignores ten nanometres per second", "u_n >= 0.0", "u_n >= -1e-8")
+edit("7.4", "slow bodies do not rebound", "(1.0 + e) * u_n", "(1.0 + e * (u_n < -1e-7)) * u_n")
+edit("7.4", "refuses heavy bodies", "check_inverse_mass(k_n)", "check_inverse_mass(k_n if k_n > 1e-3 else 0.0)")
+edit("7.4", "accepts a negative inverse mass", "check_inverse_mass(k_n)", "check_inverse_mass(abs(k_n))")
+edit("7.4", "accepts any inverse mass that is not zero or below", "check_inverse_mass(k_n)",
+     "if k_n <= 0.0:\n        check_inverse_mass(k_n)")
 
 
 # 7.5 and 7.7 ----------------------------------------------------------------------------------------------------
 @variants
 def flat_k(power=2, second=True, over=False, arm=lambda r, n: r[0] * n[1] - r[1] * n[0], mass=1.0):
-    def flat_inverse_mass(a, b, r_a, r_b, n):
+    def effective_inverse_mass_2d(a, b, r_a, r_b, n):
         factor = lambda body: 1.0 / max(body.inv_inertia, 1e-300) if over else body.inv_inertia
         turn = lambda body, r: abs(arm(r, n)) ** power * factor(body)
         return mass * (a.inv_mass + b.inv_mass) + turn(a, r_a) + (turn(b, r_b) if second else 0.0)
-    return flat_inverse_mass
+    return effective_inverse_mass_2d
 
 
 right("7.5", "body by body")(flat_k())
@@ -129,18 +137,22 @@ wrong("7.5", "b does not turn")(flat_k(second=False))
 wrong("7.5", "inertia for its inverse")(flat_k(over=True))
 wrong("7.5", "r · n for r × n")(flat_k(arm=lambda r, n: r @ n))
 wrong("7.5", "forgets the masses")(flat_k(mass=0.0))
+edit("7.5", "the mass of a must be finite", "a.inv_mass +", "(a.inv_mass or 1.0) +")
+edit("7.5", "a on an axle does not turn", "lever_a**2 * a.inv_inertia", "lever_a**2 * (a.inv_mass and a.inv_inertia)")
+edit("7.5", "b on an axle does not turn", "lever_b**2 * b.inv_inertia", "lever_b**2 * (b.inv_mass and b.inv_inertia)")
+edit("7.5", "what cannot rotate cannot move", "a.inv_mass +", "(a.inv_inertia and a.inv_mass) +")
 
 
 @variants
 def solid_k(second=True, sign=1.0, mass=1.0, arm=lambda r, n: cross(r, n), back=lambda turn, r: cross(turn, r)):
-    def inverse_mass(a, b, r_a, r_b, n):
+    def effective_inverse_mass(a, b, r_a, r_b, n):
         give = lambda body, r: mass * body.inv_mass + sign * n @ back(body.inv_inertia @ arm(r, n), r)
         return give(a, r_a) + (give(b, r_b) if second else b.inv_mass)
-    return inverse_mass
+    return effective_inverse_mass
 
 
 @right("7.7", "as a square: (r × n) · I⁻¹ (r × n)")
-def inverse_mass(a, b, r_a, r_b, n):
+def effective_inverse_mass(a, b, r_a, r_b, n):
     give = lambda body, r: body.inv_mass + np.cross(r, n) @ body.inv_inertia @ np.cross(r, n)
     return give(a, r_a) + give(b, r_b)
 
@@ -151,16 +163,18 @@ wrong("7.7", "forgets the masses")(solid_k(mass=0.0))
 wrong("7.7", "without the last × r")(solid_k(back=lambda turn, r: turn))
 edit("7.7", "the inertia tensor of a for its inverse", "times(a.inv_inertia,", "times(np.linalg.pinv(a.inv_inertia),")
 edit("7.7", "against a wall a does not turn", "n @ turn_a", "(n @ turn_a if b.inv_mass else 0.0)")
+edit("7.7", "a on an axle does not turn", "n @ turn_a", "(n @ turn_a if a.inv_mass else 0.0)")
+edit("7.7", "what cannot rotate cannot move", "a.inv_mass +", "a.inv_mass * a.inv_inertia.any() +")
 
 
 # 7.6 ------------------------------------------------------------------------------------------------------------
 @variants
 def pushed(mass=lambda m: m, inertia=lambda i: i, side=1.0, turns=True):
-    def flat_push(body, r, J):
+    def apply_impulse_2d(body, r, J):
         torque = side * (r[0] * J[1] - r[1] * J[0]) if turns else 0.0
-        return worked.Flat(body.v + mass(body.inv_mass) * J,
+        return worked.BodyState2D(body.v + mass(body.inv_mass) * J,
                            body.omega + inertia(body.inv_inertia) * torque, body.inv_mass, body.inv_inertia)
-    return flat_push
+    return apply_impulse_2d
 
 
 right("7.6", "by a torque")(pushed())
@@ -168,6 +182,9 @@ wrong("7.6", "mass for its inverse")(pushed(mass=lambda m: 1.0 / m if m else 0.0
 wrong("7.6", "inertia for its inverse")(pushed(inertia=lambda i: 1.0 / i if i else 0.0))
 wrong("7.6", "turns the other way")(pushed(side=-1.0))
 wrong("7.6", "does not rotate")(pushed(turns=False))
+edit("7.6", "does not turn on an axle", "body.inv_inertia * cross_2d",
+     "(body.inv_mass and body.inv_inertia) * cross_2d")
+edit("7.6", "what cannot rotate cannot move", "body.inv_mass * J", "(body.inv_inertia and body.inv_mass) * J")
 
 
 # 7.8 ------------------------------------------------------------------------------------------------------------
@@ -193,9 +210,9 @@ wrong("7.8", "one arm for both")(momenta(arm=lambda r_a, r_b: (r_a, r_a)))
 # 7.9 ------------------------------------------------------------------------------------------------------------
 @variants
 def K_of(sign=-1.0, mass=lambda m: m * np.eye(3), turn=lambda r: skew(r), middle=lambda inv: inv):
-    def point_inverse_mass(r, inv_mass, inv_inertia):
+    def contact_matrix(r, inv_mass, inv_inertia):
         return mass(inv_mass) + sign * turn(r) @ middle(inv_inertia) @ turn(r)
-    return point_inverse_mass
+    return contact_matrix
 
 
 right("7.9", "with skew")(K_of())
@@ -205,18 +222,24 @@ wrong("7.9", "forgets the mass")(K_of(mass=lambda m: np.zeros((3, 3))))
 edit("7.9", "both levers on one side of the tensor", "cross(times(inv_inertia, cross(r, unit)), r)",
      "times(inv_inertia, cross(cross(r, unit), r))")
 wrong("7.9", "a number for the tensor")(K_of(middle=lambda inv: np.trace(inv) / 3.0 * np.eye(3)))
+edit("7.9", "does not turn on an axle", "K = np.zeros((3, 3))",
+     "K = np.zeros((3, 3))\n    if inv_mass == 0.0:\n        return K")
+edit("7.9", "what cannot rotate cannot move", "K = np.zeros((3, 3))",
+     "K = np.zeros((3, 3))\n    if not inv_inertia.any():\n        return K")
+edit("7.9", "nothing at the centre of mass", "K = np.zeros((3, 3))",
+     "K = np.zeros((3, 3))\n    if not r.any():\n        return K")
 
 
 # 7.10 -----------------------------------------------------------------------------------------------------------
 @variants
-def cone(check=True, parts=True, enough=lambda w: w, goal=lambda w: w, rim=lambda mu: mu,
+def cone(check=True, parts=True, enough=lambda u_sep: u_sep, goal=lambda u_sep: u_sep, rim=lambda mu: mu,
          side="stick", clamp="rim", sticks=lambda J_t, J_n, mu: J_t <= mu * J_n):
-    def cone_impulse(u, n, K, w, mu):
+    def cone_impulse(u, n, K, u_sep, mu):
         if check:
             worked.check_contact(u, n, K, mu)
-        if parts and u @ n >= enough(w):
+        if parts and u @ n >= enough(u_sep):
             return np.zeros(3)
-        J = np.linalg.solve(K, goal(w) * n - u)
+        J = np.linalg.solve(K, goal(u_sep) * n - u)
         J_t = tangential(J, n)
         length = np.linalg.norm(J_t)
         if sticks(length, J @ n, mu):
@@ -226,14 +249,14 @@ def cone(check=True, parts=True, enough=lambda w: w, goal=lambda w: w, rim=lambd
         slip = tangential(u, n)
         t = J_t / length if side == "stick" else -slip / max(np.linalg.norm(slip), 1e-300)
         d = n + rim(mu) * t if mu < 1e9 else t
-        return (goal(w) - u @ n) / (n @ K @ d) * d
+        return (goal(u_sep) - u @ n) / (n @ K @ d) * d
     return cone_impulse
 
 
 right("7.10", "by NumPy's solver")(cone())
 wrong("7.10", "checks nothing")(cone(check=False))
 wrong("7.10", "pulls at separating bodies")(cone(parts=False))
-wrong("7.10", "never rebounds")(cone(goal=lambda w: 0.0))
+wrong("7.10", "never rebounds")(cone(goal=lambda u_sep: 0.0))
 wrong("7.10", "never sticks")(cone(sticks=lambda J_t, J_n, mu: False))
 wrong("7.10", "always sticks")(cone(sticks=lambda J_t, J_n, mu: True))
 wrong("7.10", "against the slip before the impact")(cone(side="slip"))
@@ -241,12 +264,28 @@ wrong("7.10", "keeps the stick's normal impulse")(cone(clamp="cut"))
 wrong("7.10", "pulls where sticking would have to")(cone(sticks=lambda J_t, J_n, mu: J_t <= mu * abs(J_n)))
 wrong("7.10", "compares all of the impulse with the cone")(
     cone(sticks=lambda J_t, J_n, mu: np.hypot(J_t, J_n) <= mu * J_n))
-wrong("7.10", "ignores bodies that separate too slowly")(cone(enough=lambda w: 0.0))
+wrong("7.10", "ignores bodies that separate too slowly")(cone(enough=lambda u_sep: 0.0))
 wrong("7.10", "half the friction")(cone(rim=lambda mu: 0.5 * mu))
-edit("7.10", "sticks as if K were a number", "solve3(K[0], K[1], K[2], w * n - u)", "(w * n - u) / (n @ times(K, n))")
-edit("7.10", "pushes bodies that separate exactly at w", "u @ n >= w", "u @ n > w")
-edit("7.10", "tolerates a nanometre per second below w", "u @ n >= w", "u @ n >= w - 1e-9")
+edit("7.10", "sticks as if K were a number", "solve3(K[0], K[1], K[2], u_sep * n - u)",
+     "(u_sep * n - u) / (n @ times(K, n))")
+edit("7.10", "pushes bodies that separate exactly at u_sep", "u @ n >= u_sep", "u @ n > u_sep")
+edit("7.10", "tolerates a nanometre per second below u_sep", "u @ n >= u_sep", "u @ n >= u_sep - 1e-9")
 edit("7.10", "a small impulse has no direction", "np.sin(beta) / size", "(np.sin(beta) / size if size > 1e-9 else 0.0)")
+edit("7.10", "a friction above 10 is infinite", "np.arctan(mu)", "np.arctan(mu if mu < 10.0 else np.inf)")
+edit("7.10", "a friction of 10 at most", "np.arctan(mu)", "np.arctan(mu if mu > 1e5 else min(mu, 10.0))")
+edit("7.10", "sticks with a friction above 10", "size <= mu * (J @ n)",
+     "size <= mu * (J @ n) or (mu > 10.0 and J @ n > 0.0)")
+edit("7.10", "slides on the rim of the cone, too", "size <= mu * (J @ n)", "size < mu * (J @ n)")
+edit("7.10", "heavy bodies stick", "size <= mu * (J @ n)", "size <= mu * (J @ n) or K[0, 0] < 1e-9")
+edit("7.10", "accepts a friction that is not a number", "check_contact(u, n, K, mu)",
+     "check_contact(u, n, K, 0.0 if mu != mu else mu)")
+edit("7.10", "accepts an infinite velocity", "check_contact(u, n, K, mu)",
+     "check_contact(np.where(np.isinf(u), 1.0, u), n, K, mu)")
+edit("7.10", "accepts a K without an inverse", "check_contact(u, n, K, mu)",
+     "check_contact(u, n, K + (n @ K @ n > 0.0) * np.eye(3), mu)")
+edit("7.10", "no friction without slip", "J_t = tangential(J, n)",
+     "J_t = tangential(J, n)\n"
+     "    if not tangential(u, n).any():\n        return (u_sep - u @ n) / (n @ times(K, n)) * n")
 
 
 # 7.11 -----------------------------------------------------------------------------------------------------------
@@ -273,27 +312,27 @@ edit("7.11", "what comes in is always lost", "J @ u +", "-abs(J @ u) +")
 
 # 7.12 -----------------------------------------------------------------------------------------------------------
 @variants
-def multiplier(gap=1.0, clamp=True, over=lambda k: 1.0 / k, check=True):
-    def gap_multiplier(phi, u_n, k, dt):
+def multiplier(gap=1.0, clamp=True, over=lambda k_n: 1.0 / k_n, check=True):
+    def gap_multiplier(phi, u_n, k_n, dt):
         if check:
-            worked.check_inverse_mass(k)
+            worked.check_inverse_mass(k_n)
         check_positive("step dt [s]", dt)
-        lam = -(gap * phi / dt + u_n) * over(k) if k else np.inf
+        lam = -(gap * phi / dt + u_n) * over(k_n) if k_n else np.inf
         return max(0.0, lam) if clamp else lam
     return gap_multiplier
 
 
 @right("7.12", "tests first whether the gap stays open")
-def gap_multiplier(phi, u_n, k, dt):
-    worked.check_inverse_mass(k)
+def gap_multiplier(phi, u_n, k_n, dt):
+    worked.check_inverse_mass(k_n)
     check_positive("step dt [s]", dt)
     free = phi + dt * u_n
-    return 0.0 if free >= 0.0 else -free / (dt * k)
+    return 0.0 if free >= 0.0 else -free / (dt * k_n)
 
 
 wrong("7.12", "does not ask how wide the gap is")(multiplier(gap=0.0))
 wrong("7.12", "pulls open gaps together")(multiplier(clamp=False))
-wrong("7.12", "times k")(multiplier(over=lambda k: k))
+wrong("7.12", "times k_n")(multiplier(over=lambda k_n: k_n))
 wrong("7.12", "accepts two immovable bodies")(multiplier(check=False))
 edit("7.12", "accepts a step of zero", 'check_positive("step dt [s]", dt)', "dt = dt or 1.0")
 edit("7.12", "accepts a negative step", 'check_positive("step dt [s]", dt)', 'check_positive("step dt [s]", abs(dt))')
@@ -301,12 +340,18 @@ edit("7.12", "accepts a step that is not a number", 'check_positive("step dt [s]
      'check_positive("step dt [s]", 1.0 if dt != dt else dt)')
 edit("7.12", "accepts any step if the gap opens", 'check_positive("step dt [s]", dt)',
      'if u_n >= 0.0:\n        return 0.0\n    check_positive("step dt [s]", dt)')
-edit("7.12", "accepts two immovable bodies that do not meet", "check_inverse_mass(k)",
-     "if phi + dt * u_n > 0.0:\n        return 0.0\n    check_inverse_mass(k)")
-edit("7.12", "closes by less than a nanometre", "-(phi / dt + u_n) / k)",
-     "-(phi / dt + u_n) / k if phi + dt * u_n <= -1e-9 else 0.0)")
-edit("7.12", "waits until the gap is closed", "np.maximum(0.0, -(phi / dt + u_n) / k)",
-     "max(0.0, -u_n / k) if phi <= 0.0 else 0.0")
+edit("7.12", "accepts two immovable bodies that do not meet", "check_inverse_mass(k_n)",
+     "if phi + dt * u_n > 0.0:\n        return 0.0\n    check_inverse_mass(k_n)")
+edit("7.12", "closes by less than a nanometre", "-(phi / dt + u_n) / k_n)",
+     "-(phi / dt + u_n) / k_n if phi + dt * u_n <= -1e-9 else 0.0)")
+edit("7.12", "waits until the gap is closed", "np.maximum(0.0, -(phi / dt + u_n) / k_n)",
+     "max(0.0, -u_n / k_n) if phi <= 0.0 else 0.0")
+edit("7.12", "accepts a negative inverse mass", "check_inverse_mass(k_n)", "check_inverse_mass(abs(k_n))")
+edit("7.12", "accepts any inverse mass that is not zero or below", "check_inverse_mass(k_n)",
+     "if k_n <= 0.0:\n        check_inverse_mass(k_n)")
+edit("7.12", "accepts an infinite step", 'check_positive("step dt [s]", dt)',
+     'check_positive("step dt [s]", 1.0 if dt == np.inf else dt)')
+edit("7.12", "pulls a closed gap together", "return np.maximum(", "return -u_n / k_n if phi == 0.0 else np.maximum(")
 
 
 # 7.13 -----------------------------------------------------------------------------------------------------------
@@ -347,6 +392,8 @@ edit("7.13", "ignores an immediate impact", "return np.minimum(tau, dt)", "retur
 edit("7.13", "a resting ball without acceleration meets at once", "squared = v_n * v_n",
      "if phi == 0.0 and v_n <= 0.0 and a_n <= 0.0:\n        return 0.0\n    squared = v_n * v_n")
 edit("7.13", "treats a micrometre as contact", "np.maximum(0.0, phi)", "phi if phi > 1e-6 else 0.0")
+edit("7.13", "a grazing touch is no impact", "squared < 0.0 or", "squared < 0.0 or (squared == 0.0 and phi > 0.0) or")
+edit("7.13", "the form of the way down for the way back, too", "if v_n < 0.0 else", "if v_n < 0.0 or phi > 0.0 else")
 
 
 # 7.14 -----------------------------------------------------------------------------------------------------------
@@ -380,17 +427,21 @@ wrong("7.14", "1 + e")(zeno(sum=lambda e: 1.0 + e))
 wrong("7.14", "a time below zero")(zeno(down=False))
 wrong("7.14", "e = 1 ends at once")(zeno(endless=False))
 wrong("7.14", "comes back without acceleration")(zeno(falls=False))
+edit("7.14", "treats e within 1e-12 of 1 as 1", "e == 1.0", "e > 1.0 - 1e-12")
+edit("7.14", "a restitution below a hundredth is none", "(1.0 - e)", "(1.0 - (e if e > 0.01 else 0.0))")
+edit("7.14", "bounces slower than a nanometre per second take no time", "v_n <= 0.0", "v_n <= 1e-9")
+edit("7.14", "weak gravity is none", "a_n >= 0.0", "a_n >= -1e-12")
 
 
 # 7.15 -----------------------------------------------------------------------------------------------------------
 @variants
 def project(old=False, back=-1.0, response=worked.kinematic_response, asked="new", once=True):
-    def projecting_step(acceleration, t, x, v, dt, p):
+    def position_projection_step(acceleration, t, x, v, dt, p):
         v_new = v + (dt if once else 1.0) * acceleration(t, x, v, p)
         x_new = x + dt * (v if old else v_new)
         phi = worked.gap(x if asked == "old" else x_new, p)
         return (x_new + back * phi * p.n, response(v_new, p.n, p.e)) if phi < 0.0 else (x_new, v_new)
-    return projecting_step
+    return position_projection_step
 
 
 right("7.15", "with new names")(project())
@@ -408,15 +459,42 @@ edit("7.15", "the acceleration at the end of the step", "acceleration(t, x, v, p
 edit("7.15", "the acceleration where it would be", "acceleration(t, x, v, p)", "acceleration(t, x + dt * v, v, p)")
 edit("7.15", "the acceleration at rest", "acceleration(t, x, v, p)", "acceleration(t, x, 0.0 * v, p)")
 wrong("7.15", "forgets dt")(project(once=False))
+edit("7.15", "reverses a ball on the plane", "phi < 0.0", "phi <= 0.0")
+edit("7.15", "a ball slower than 2 g dt stays on the plane", "kinematic_response(v, p.n, p.e)",
+     "kinematic_response(v, p.n, p.e if v @ p.n < 2.0 * dt * (p.gravity @ p.n) else 0.0)")
+
+
+@variants
+def by_the_old_velocity(counts=lambda v, v_new: v_new):
+    def position_projection_step(acceleration, t, x, v, dt, p):
+        v_new = v + dt * acceleration(t, x, v, p)
+        x_new = x + dt * v_new
+        phi = worked.gap(x_new, p)
+        if phi >= 0.0:
+            return x_new, v_new
+        bounces = counts(v, v_new) @ p.n < 0.0
+        return x_new - phi * p.n, v_new - (1.0 + p.e) * (v_new @ p.n) * p.n if bounces else v_new
+    return position_projection_step
+
+
+wrong("7.15", "does not reflect what left at the start")(by_the_old_velocity(counts=lambda v, v_new: v))
+
+
+@right("7.15", "position and velocity from the acceleration")
+def position_projection_step(acceleration, t, x, v, dt, p):
+    a = acceleration(t, x, v, p)
+    place, speed = x + dt * v + dt**2 * a, v + dt * a
+    depth = (p.point - place) @ p.n
+    return (place + depth * p.n, worked.kinematic_response(speed, p.n, p.e)) if depth > 0.0 else (place, speed)
 
 
 # 7.16 -----------------------------------------------------------------------------------------------------------
 @variants
 def back_to(rest=True, goes_on=True, once=False, silent=False, changes=False,
-            fly=worked.fly, lie=worked.lie, bounce=lambda e: e):
+            fly=worked.free_flight, lie=worked.slide_on_plane, bounce=lambda e: e):
     def backtracking_step(acceleration, t, x, v, dt, p):
         a, left, given = acceleration(t, x, v, p), dt, x
-        for _ in range(1 if once else worked.IMPACTS):
+        for _ in range(1 if once else worked.MAX_IMPACTS):
             tau = worked.impact_time(worked.gap(x, p), v @ p.n, a @ p.n, left)
             x, v = fly(x, v, a, tau)
             if changes:
@@ -444,7 +522,7 @@ wrong("7.16", "one impact per step")(back_to(once=True))
 wrong("7.16", "flies without the half of a t²")(back_to(fly=lambda x, v, a, t: (x + t * v, v + t * a)))
 wrong("7.16", "every impact elastic")(back_to(bounce=lambda e: 1.0))
 edit("7.16", "projects instead", "a, left = acceleration(t, x, v, p), dt",
-     "return projecting_step(acceleration, t, x, v, dt, p)")
+     "return position_projection_step(acceleration, t, x, v, dt, p)")
 edit("7.16", "lies as soon as it is slow", "bouncing_time(v @ p.n, a @ p.n, p.e) <= left", "v @ p.n < 1e-3")
 edit("7.16", "lies below a micrometre per second", "bouncing_time(v @ p.n, a @ p.n, p.e) <= left", "v @ p.n < 1e-6")
 edit("7.16", "gravity for every acceleration", "acceleration(t, x, v, p)", "p.gravity")
@@ -456,25 +534,55 @@ edit("7.16", "a ball that starts inside does not bounce", "a, left = acceleratio
      "a, left = acceleration(t, x, v, p), dt\n    if gap(x, p) < 0.0 and v @ p.n < 0.0:\n"
      "        x, v = x - gap(x, p) * p.n, tangential(v, p.n)")
 wrong("7.16", "a resting ball does not slide")(back_to(lie=lambda x, v, a, t, n: (x, 0.0 * v)))
+edit("7.16", "once it lies, nothing lifts it off", "return slide_on_plane(x, v, a, left, p.n)",
+     "return free_flight(x, tangential(v, p.n), tangential(a, p.n), left)")
+edit("7.16", "puts back what starts inside and leaves", "a, left = acceleration(t, x, v, p), dt",
+     "a, left = acceleration(t, x, v, p), dt\n    x = x - min(0.0, gap(x, p)) * p.n")
+edit("7.16", "a new acceleration where it lies", "slide_on_plane(x, v, a, left, p.n)",
+     "slide_on_plane(x, v, acceleration(t + dt - left, x, v, p), left, p.n)")
+edit("7.16", "drops the last nanosecond", "left <= 0.0", "left <= 1e-9")
+edit("7.16", "a thousand impacts at most", "range(MAX_IMPACTS)", "range(1000)")
+edit("7.16", "bounces under all of the acceleration", "bouncing_time(v @ p.n, a @ p.n, p.e)",
+     "bouncing_time(v @ p.n, -np.sqrt(a @ a), p.e)")
+edit("7.16", "every acceleration pulls in", "impact_time(gap(x, p), v @ p.n, a @ p.n, left)",
+     "impact_time(gap(x, p), v @ p.n, -abs(a @ p.n), left)")
+edit("7.16", "does not lie after a bounce of no time", "bouncing_time(v @ p.n, a @ p.n, p.e) <= left",
+     "0.0 < bouncing_time(v @ p.n, a @ p.n, p.e) <= left")
+
+
+@right("7.16", "until no time is left, and what lies first")
+def backtracking_step(acceleration, t, x, v, dt, p):
+    a, left, impacts = acceleration(t, x, v, p), dt, 0
+    while True:
+        tau = worked.impact_time(worked.gap(x, p), v @ p.n, a @ p.n, left)
+        (x, v), left = worked.free_flight(x, v, a, tau), left - tau
+        if not left > 0.0:
+            return x, v
+        x, v = x - worked.gap(x, p) * p.n, worked.kinematic_response(v, p.n, p.e)
+        if left >= worked.bouncing_time(v @ p.n, a @ p.n, p.e):
+            return worked.slide_on_plane(x, v, a, left, p.n)
+        impacts += 1
+        if impacts == worked.MAX_IMPACTS:
+            raise Diverged("impacts in a step of dt [s]", dt, "take a smaller one")
 
 
 # 7.17 -----------------------------------------------------------------------------------------------------------
 @variants
 def sweeping(sweeps=3000, before=True, takes_back=True, friction=lambda mu: mu, check=worked.check_impacts,
-             push=worked.push, rebound=lambda e: e, report=lambda residual: residual,
+             push=worked.apply_impulse, rebound=lambda e: e, report=lambda residual: residual,
              jammed=worked.most_dissipative_impact):
     def solve_impacts(body, r, n, e, mu):
         check(body, r, n, e, mu)
         start, speed = body, worked.largest_speed(body, r)
         velocity = lambda body, i: point_velocity(body.v, body.omega, r[i])
-        Ks = [worked.point_inverse_mass(arm, body.inv_mass, body.inv_inertia) for arm in r]
-        w = [max(0.0, -rebound(e) * (n[i] @ velocity(body, i))) for i in range(len(r))]
+        Ks = [worked.contact_matrix(arm, body.inv_mass, body.inv_inertia) for arm in r]
+        u_sep = [max(0.0, -rebound(e) * (n[i] @ velocity(body, i))) for i in range(len(r))]
         Js = np.zeros((len(r), 3))
         for _ in range(sweeps):
             worst = 0.0
             for i, K in enumerate(Ks):
                 u = velocity(body, i)
-                goal = w[i] if before else max(0.0, -e * (n[i] @ u))
+                goal = u_sep[i] if before else max(0.0, -e * (n[i] @ u))
                 J = worked.cone_impulse(u - (K @ Js[i] if takes_back else 0.0), n[i], K, goal, friction(mu))
                 change = J - Js[i] if takes_back else J
                 body, Js[i], worst = push(body, r[i], change), Js[i] + change, max(worst, np.abs(K @ change).max())
@@ -494,21 +602,22 @@ wrong("7.17", "never rebounds")(sweeping(rebound=lambda e: 0.0))
 wrong("7.17", "does not rotate")(sweeping(push=lambda body, r, J: body._replace(v=body.v + body.inv_mass * J)))
 wrong("7.17", "accepts any restitution")(sweeping(check=lambda *_: None))
 wrong("7.17", "returns a residual of zero")(sweeping(report=lambda residual: 0.0))
-edit("7.17", "one after the other", "check_impacts(body, r, n, e, mu)", "return one_after_the_other(body, r, n, e, mu)")
-edit("7.17", "all points leave alike", "cone_impulse(u, n[i], K, w[i], mu)", "cone_impulse(u, n[i], K, w.max(), mu)")
-edit("7.17", "none rebounds", "cone_impulse(u, n[i], K, w[i], mu)", "cone_impulse(u, n[i], K, 0.0, mu)")
+edit("7.17", "one after the other", "check_impacts(body, r, n, e, mu)", "return sequential_impacts(body, r, n, e, mu)")
+edit("7.17", "all points leave alike", "cone_impulse(u, n[i], K, u_sep[i], mu)",
+     "cone_impulse(u, n[i], K, u_sep.max(), mu)")
+edit("7.17", "none rebounds", "cone_impulse(u, n[i], K, u_sep[i], mu)", "cone_impulse(u, n[i], K, 0.0, mu)")
 edit("7.17", "one normal for all points", "cone_impulse(u, n[i]", "cone_impulse(u, n[0]")
 edit("7.17", "rebounds with the speed of the centre", "point_velocity(after.v, after.omega, r[i])", "after.v")
-edit("7.17", "settled at an absolute 1e-11 m/s", "SETTLED * speed", "1e-11")
+edit("7.17", "settled at an absolute 1e-11 m/s", "CONVERGED * speed", "1e-11")
 edit("7.17", "the body before the impact, if the sweeps do not settle",
      "most_dissipative_impact(body, r, n, e, mu)", "(body, residual)")
-edit("7.17", "friction of 1 at most", "w[i], mu)", "w[i], min(mu, 1.0))")
+edit("7.17", "friction of 1 at most", "u_sep[i], mu)", "u_sep[i], min(mu, 1.0))")
 edit("7.17", "the result of the last sweep, if the sweeps do not settle",
      "return most_dissipative_impact(body, r, n, e, mu)", "return after, residual")
 edit("7.17", "without friction, if the sweeps do not settle", "most_dissipative_impact(body, r, n, e, mu)",
      "most_dissipative_impact(body, r, n, e, 0.0)")
-edit("7.17", "100 sweeps", "range(SWEEPS)", "range(100)")
-edit("7.17", "500 sweeps", "range(SWEEPS)", "range(500)")
+edit("7.17", "100 sweeps", "range(MAX_SWEEPS)", "range(100)")
+edit("7.17", "500 sweeps", "range(MAX_SWEEPS)", "range(500)")
 edit("7.17", "an impulse for a velocity", "np.abs(times(K, J - Js[i])).max()", "np.abs(J - Js[i]).max()")
 edit("7.17", "rounding without the rotation", "largest_speed(body, r)", "norm(body.v)")
 edit("7.17", "rounding of the points' velocities", "largest_speed(body, r)",
@@ -517,3 +626,13 @@ edit("7.17", "no change if it is against the axes", "np.abs(times(K, J - Js[i]))
 edit("7.17", "the residual of the last point", "residual = max(residual, ", "residual = max(0.0, ")
 edit("7.17", "the residual of the first point", "residual = max(residual, ", "residual = max(residual, (i == 0) * ")
 edit("7.17", "checks the restitution only", "check_impacts(body, r, n, e, mu)", "check_restitution(e)")
+edit("7.17", "four fifths of the friction", "u_sep[i], mu)", "u_sep[i], 0.8 * mu)")
+edit("7.17", "more than two points share one friction", "u_sep[i], mu)", "u_sep[i], mu if len(r) < 3 else mu / len(r))")
+edit("7.17", "friction of 2 at most", "u_sep[i], mu)", "u_sep[i], min(mu, 2.0))")
+edit("7.17", "sticks as a ball would", "contact_matrix(r[i], body.inv_mass, body.inv_inertia)",
+     "contact_matrix(r[i], body.inv_mass, np.trace(body.inv_inertia) / 3.0 * np.eye(3))")
+edit("7.17", "asks for the normal changes only", "np.abs(times(K, J - Js[i])).max()", "abs(n[i] @ times(K, J - Js[i]))")
+edit("7.17", "infinite friction, if the sweeps do not settle", "most_dissipative_impact(body, r, n, e, mu)",
+     "most_dissipative_impact(body, r, n, e, np.inf)")
+edit("7.17", "the residual of the sweeps that do not settle", "most_dissipative_impact(body, r, n, e, mu)",
+     "(most_dissipative_impact(body, r, n, e, mu)[0], residual)")

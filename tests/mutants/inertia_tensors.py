@@ -30,6 +30,11 @@ edit("4.1", "refuses a hole among the points", POSITIVE, 'for k in m: check_posi
 edit("4.1", "accepts NaN", POSITIVE, 'if M <= 0.0: raise BadInput("total mass [kg]", M, "give some")')
 edit("4.1", "accepts infinity", POSITIVE, 'if not M > 0.0: raise BadInput("total mass [kg]", M, "give some")')
 edit("4.1", "refuses less than a microgram", POSITIVE, 'check_positive("total mass [kg]", M if M > 1e-9 else 0.0)')
+edit("4.1", "refuses less than a molecule", POSITIVE, 'check_positive("total mass [kg]", M if M > 1e-20 else 0.0)')
+edit("4.1", "refuses what is almost all hole", POSITIVE,
+     'check_positive("total mass [kg]", M if M > 1e-3 * np.sum(np.abs(m)) else 0.0)')
+edit("4.1", "zero within a nanometre", "m @ x / M", "np.where(np.abs(m @ x / M) < 1e-9, 0.0, m @ x / M)")
+edit("4.1", "holes count as mass", "np.sum(m)", "np.sum(np.abs(m))")
 
 
 # 4.2 ------------------------------------------------------------------------------------------------------------
@@ -45,6 +50,10 @@ edit("4.2", "forgets the masses", "m @ v", "np.sum(v, axis=0)")
 edit("4.2", "total mass times the mean velocity", "m @ v", "np.sum(m) * np.sum(v, axis=0) / m.size")
 edit("4.2", "speeds instead of velocities", "m @ v", "m @ np.abs(v)")
 edit("4.2", "velocity of the centre", "m @ v", "m @ v / np.sum(m)")
+edit("4.2", "by centre_of_mass, which refuses a sum of zero", "m @ v", "np.sum(m) * centre_of_mass(m, v)[1]")
+edit("4.2", "a hole taken for a body", "m @ v", "np.abs(m) @ v")
+edit("4.2", "refuses holes", "return m @ v", '[check_positive("mass [kg]", k) for k in m]; return m @ v')
+edit("4.2", "zero within a nanometre per second", "m @ v", "np.where(np.abs(m @ v) < 1e-9, 0.0, m @ v)")
 
 
 # 4.3 ------------------------------------------------------------------------------------------------------------
@@ -57,6 +66,11 @@ edit("4.3", "cross product the other way round", "cross(x[n] - about, v[n])", "c
 edit("4.3", "always about the origin", "x[n] - about", "x[n]")
 edit("4.3", "forgets the masses", "m[n] * cross", "cross")
 edit("4.3", "always about the centre", "x[n] - about", "x[n] - m @ x / np.sum(m)")
+edit("4.3", "refuses a total mass of zero or less", "L = np.zeros(3)",
+     'check_positive("total mass [kg]", np.sum(m)); L = np.zeros(3)')
+edit("4.3", "a hole taken for a body", "m[n] * cross", "abs(m[n]) * cross")
+edit("4.3", "ignores holes", "m[n] * cross", "max(0.0, m[n]) * cross")
+edit("4.3", "velocities relative to the centre", "v[n])", "v[n] - m @ v / np.sum(m))")
 
 
 # 4.4 ------------------------------------------------------------------------------------------------------------
@@ -75,6 +89,9 @@ edit("4.4", "second moments for the tensor", TENSOR, "[[xx, xy, xz], [xy, yy, yz
 edit("4.4", "diagonal only", TENSOR, "[[yy + zz, 0.0, 0.0], [0.0, xx + zz, 0.0], [0.0, 0.0, xx + yy]]")
 edit("4.4", "distance from the point instead of from the axis", TENSOR, "np.eye(3) * (xx + yy + zz)")
 edit("4.4", "a hole taken for a body", "xx, yy, zz =", "m = np.abs(m); xx, yy, zz =")
+edit("4.4", "refuses a total mass of zero or less", "xx, yy, zz =",
+     'check_positive("total mass [kg]", np.sum(m)); xx, yy, zz =')
+edit("4.4", "zero within a nanometre", "xx, yy, zz =", "r = np.where(np.abs(r) < 1e-9, 0.0, r); xx, yy, zz =")
 
 
 # 4.5 ------------------------------------------------------------------------------------------------------------
@@ -88,6 +105,9 @@ edit("4.5", "edges taken for half edges", "m / 12.0", "m / 3.0")
 edit("4.5", "each axis with its own edge", "[bb + cc, aa + cc, aa + bb]", "[2.0 * aa, 2.0 * bb, 2.0 * cc]")
 edit("4.5", "edges in the wrong order", "[bb + cc, aa + cc, aa + bb]", "[aa + cc, bb + cc, aa + bb]")
 edit("4.5", "refuses holes", "m / 12.0", '(check_positive("mass m [kg]", m) or m) / 12.0')
+edit("4.5", "refuses a plate", "m / 12.0", '(check_positive("edge [m]", np.min(size)) or m) / 12.0')
+edit("4.5", "refuses what is smaller than a tenth of a millimetre", "m / 12.0",
+     '(check_positive("edge [m]", np.max(size) - 1e-4) or m) / 12.0')
 edit("4.5", "three numbers", "np.diag(np.array([bb + cc, aa + cc, aa + bb]))", "np.array([bb + cc, aa + cc, aa + bb])")
 
 
@@ -102,6 +122,8 @@ edit("4.6", "the diameter", "radius * radius", "4.0 * radius * radius")
 edit("4.6", "filled everywhere", "np.eye(3)", "np.ones((3, 3))")
 edit("4.6", "the sum of all three moments", "0.4 * m", "1.2 * m")
 edit("4.6", "a hole taken for a body", "0.4 * m", "0.4 * abs(m)")
+edit("4.6", "refuses what is smaller than a nanometre", "0.4 * m",
+     '0.4 * (check_positive("radius [m]", radius - 1e-9) or m)')
 edit("4.6", "refuses holes", "0.4 * m", '0.4 * (check_positive("mass m [kg]", m) or m)')
 
 
@@ -118,6 +140,7 @@ edit("4.7", "a hoop about its axis", "0.5 * m * radius * radius", "m * radius * 
 edit("4.7", "refuses holes", "across = m", 'check_positive("mass m [kg]", m); across = m')
 edit("4.7", "refuses a disc", "across = m", 'check_positive("length [m]", length); across = m')
 edit("4.7", "refuses a rod", "across = m", 'check_positive("radius [m]", radius); across = m')
+edit("4.7", "a disc when shorter than a nanometre", "length * length", "length * length * (length > 1e-9)")
 edit("4.7", "a density, which a disc has not", "across = m", "m = m / length * length; across = m")
 edit("4.7", "a density, which a rod has not", "across = m", "m = m / radius**2 * radius**2; across = m")
 
@@ -158,6 +181,11 @@ edit("4.8", "refuses holes", "m_c = m", 'check_positive("mass m [kg]", m); m_c =
 edit("4.8", "refuses a rod", "m_c = m", 'check_positive("radius [m]", radius); m_c = m')
 edit("4.8", "shares by volumes, which a rod has not", "length / (length + 4.0 / 3.0 * radius)",
      "(np.pi * rr * length) / (np.pi * rr * length + 4.0 / 3.0 * np.pi * rr * radius)")
+edit("4.8", "at least a picometre long", "(length + 4.0 / 3.0 * radius)", "max(length + 4.0 / 3.0 * radius, 1e-12)")
+edit("4.8", "never divides by zero", "(length + 4.0 / 3.0 * radius)", "(length + 4.0 / 3.0 * radius + 1e-24)")
+edit("4.8", "a rod when it is thin", "length / (length + 4.0 / 3.0 * radius)",
+     "(1.0 if radius < 1e-2 * length else length / (length + 4.0 / 3.0 * radius))")
+edit("4.8", "a ball when it is short", "m_c = m * length", "m_c = 0.0 if length < 1e-3 * radius else m * length")
 edit("4.8", "a ball when shorter than a micrometre", "m_c = m * length", "m_c = 0.0 if length < 1e-6 else m * length")
 
 
@@ -170,6 +198,7 @@ def world_inertia(I_body, R):
 edit("4.9", "turned the other way", "R @ I_body @ R.T", "R.T @ I_body @ R")
 edit("4.9", "turned on one side only", "R @ I_body @ R.T", "R @ I_body")
 edit("4.9", "not turned", "R @ I_body @ R.T", "I_body.copy()")
+edit("4.9", "refuses holes", "return R", 'check_positive("a moment [kg m²]", np.trace(I_body)); return R')
 edit("4.9", "changes its input", "R @ I_body @ R.T", "np.matmul(R @ I_body, R.T, out=I_body)")
 
 
@@ -200,12 +229,14 @@ edit("4.11", "the same on the whole diagonal", POINT, "m * d @ d * np.eye(3)")
 edit("4.11", "minus sign lost off the diagonal", POINT, "m * (d @ d * np.eye(3) + np.outer(d, d))")
 edit("4.11", "diagonal only", POINT, "m * np.diag(d @ d - d * d)")
 edit("4.11", "smaller away from the centre", "I + point", "I - point")
+edit("4.11", "refuses holes", "return I", 'check_positive("a moment [kg m²]", np.trace(I)); return I')
+edit("4.11", "zero within a micrometre", "return I", "d = np.where(np.abs(d) < 1e-6, 0.0, d); return I")
 edit("4.11", "changes its input", f"I + {POINT}", f"np.add(I, {POINT}, out=I)")
 
 
 # 4.12 -----------------------------------------------------------------------------------------------------------
 @variants
-def carried(offset=lambda y, X: y - X, body=lambda M, X, I: worked.Body(M, X, I)):
+def carried(offset=lambda y, X: y - X, body=lambda M, X, I: worked.MassProperties(M, X, I)):
     """The parts' tensors, each shifted by offset(x, X)."""
     def combine(m, x, I):
         M, X = worked.centre_of_mass(m, x)
@@ -215,17 +246,46 @@ def carried(offset=lambda y, X: y - X, body=lambda M, X, I: worked.Body(M, X, I)
 
 wrong("4.12", "tensors added as they are")(carried(lambda y, X: 0.0 * y))
 wrong("4.12", "about the origin")(carried(lambda y, X: y))
-wrong("4.12", "centre without its offset")(carried(body=lambda M, X, I: worked.Body(M, 0.0 * X, I)))
+wrong("4.12", "centre without its offset")(carried(body=lambda M, X, I: worked.MassProperties(M, 0.0 * X, I)))
 
 
-@right("4.12", "about the origin first, and back to the centre")
-def combine(m, x, I):
-    M, X = worked.centre_of_mass(m, x)
-    return M, X, worked.parallel_axes(np.sum(I, axis=0) + worked.point_mass_inertia(m, x), -M, X)
+@variants
+def gathered(reference=lambda x: x[0]):
+    """The parts' tensors about a reference point first, and back to the centre."""
+    def combine(m, x, I):
+        M, X = worked.centre_of_mass(m, x)
+        o = reference(x)
+        return M, X, worked.parallel_axes(np.sum(I, axis=0) + worked.point_mass_inertia(m, x - o), -M, X - o)
+    return combine
+
+
+wrong("4.12", "about the origin of the world first: digits cancel far away")(gathered(lambda x: 0.0 * x[0]))
+
+
+@variants
+def one_by_one(centre=lambda m, x: (np.sum(m), m @ x / np.sum(m))):
+    """Two bodies become one, which is joined with the third, and so on."""
+    def combine(m, x, I):
+        worked.centre_of_mass(m, x)
+        M, X, whole = m[0], x[0], I[0]
+        for k, y, J in zip(m[1:], x[1:], I[1:]):
+            both, middle = centre(np.array([M, k]), np.stack((X, y)))
+            whole = worked.parallel_axes(whole, M, X - middle) + worked.parallel_axes(J, k, y - middle)
+            M, X = both, middle
+        return M, X, whole
+    return combine
+
+
+wrong("4.12", "one after the other, and refuses to begin with a hole")(one_by_one(worked.centre_of_mass))
 
 
 edit("4.12", "shifted with the total mass", "m[n]", "M")
+edit("4.12", "three bodies at most", "range(m.size)", "range(min(3, m.size))")
 edit("4.12", "divides by zero", "centre_of_mass(m, x)", "np.sum(m), m @ x / np.sum(m)")
+edit("4.12", "refuses a mass of zero only", "centre_of_mass(m, x)",
+     "centre_of_mass(m, x) if np.sum(m) == 0.0 else (np.sum(m), m @ x / np.sum(m))")
+edit("4.12", "changes its input", "parallel_axes(I[n], m[n], x[n] - X)",
+     "np.add(I[n], parallel_axes(0.0 * I[n], m[n], x[n] - X), out=I[n])")
 
 
 # 4.13 -----------------------------------------------------------------------------------------------------------
@@ -246,6 +306,9 @@ def principal_axes(I):
 
 edit("4.13", "left-handed half of the time", "dot(R[:, 0], cross(R[:, 1], R[:, 2])) < 0.0", "False")
 edit("4.13", "reverses a row", "R[:, 2] = -R[:, 2]", "R[2] = -R[2]")
+edit("4.13", "negative moments taken for positive ones, as singular values are", "return moments, R",
+     "return np.abs(moments), R")
+edit("4.13", "no moment below zero", "return moments, R", "return np.maximum(moments, 0.0), R")
 edit("4.13", "moments in no order", "np.linalg.eigh(I)", "np.linalg.eig(I)")
 edit("4.13", "axes in rows", "return moments, R", "return moments, R.T")
 edit("4.13", "descending", "return moments, R", "return moments[::-1], -R[:, ::-1]")
@@ -278,6 +341,11 @@ wrong("4.14", "does not test the sum")(judged(highest=lambda a, b, c: False))
 wrong("4.14", "accepts moments near zero")(judged(lambda a, c: a <= 0.0))
 wrong("4.14", "a tolerance of 1e-14 kg m²")(judged(lambda a, c: a <= 1e-14))
 wrong("4.14", "a thousand million times too tolerant")(judged(highest=lambda a, b, c: c > (a + b) * (1.0 + 1e-9)))
+wrong("4.14", "refuses needles with one moment a hundred million times the other")(judged(lambda a, c: a <= 1e-8 * c))
+wrong("4.14", "refuses needles with one moment a million million times the other")(judged(lambda a, c: a <= 1e-12 * c))
+wrong("4.14", "a smallest moment of 1e-26 kg m²")(judged(lambda a, c: a <= 1e-26))
+wrong("4.14", "ten thousand times too tolerant of asymmetry")(judged(equal=1e-10))
+wrong("4.14", "a hundred times too tolerant of asymmetry")(judged(equal=1e-12))
 wrong("4.14", "asks Ixy and Iyx only")(judged(asymmetry=lambda I: abs(I[0, 1] - I[1, 0])))
 wrong("4.14", "wants symmetry to the last digit")(judged(equal=0.0))
 wrong("4.14", "tests symmetry with NumPy's isclose")(judged(equal=1e-5))
@@ -290,8 +358,16 @@ wrong("4.14", "a tolerance in kg m², blind to small bodies")(judged(lambda a, c
 right("4.14", "with eigenvalues only")(judged())
 edit("4.14", "looks at the diagonal instead of the principal moments", "moments, _ = principal_axes(I)",
      "moments = np.sort(np.diag(I))")
-edit("4.14", "a sum in kg m², blind to small bodies", "(1.0 + TENSOR_ROUND_OFF)", "1.0 + TENSOR_ROUND_OFF")
+edit("4.14", "a sum in kg m², blind to small bodies", "(1.0 + MOMENT_ROUND_OFF)", "1.0 + MOMENT_ROUND_OFF")
 edit("4.14", "accepts NaN off the diagonal", "kg m²]\", I)", "kg m²]\", np.diag(I))")
+edit("4.14", "looks for NaN above the diagonal only", "kg m²]\", I)", "kg m²]\", np.triu(I))")
+edit("4.14", "looks for NaN below the diagonal only", "kg m²]\", I)", "kg m²]\", np.tril(I))")
+edit("4.14", "compares the asymmetry with the root of all squares", "MOMENT_ROUND_OFF * np.max(np.abs(I))",
+     "MOMENT_ROUND_OFF * np.sqrt(np.sum(I * I))")
+edit("4.14", "compares the asymmetry with the trace", "MOMENT_ROUND_OFF * np.max(np.abs(I))",
+     "MOMENT_ROUND_OFF * np.trace(I)")
+edit("4.14", "compares the smallest moment with the trace", "MOMENT_ROUND_OFF * moments[2]",
+     "MOMENT_ROUND_OFF * np.trace(I)")
 edit("4.14", "copies the words for the largest moment", "the largest principal moment", "the smallest principal moment")
 edit("4.14", "copies the words for the smallest moment", "the smallest principal moment",
      "the largest principal moment")
@@ -325,6 +401,7 @@ edit("4.15", "a mass at each corner instead of the integral", SECOND,
 edit("4.15", "triangles read clockwise", SIX_VOLUMES, f"-({SIX_VOLUMES})")
 edit("4.15", "all mass at the middle of each tetrahedron", SECOND, "w / 96.0 * s * (a[j] + b[j] + c[j])")
 edit("4.15", "middle of the triangle, not of the tetrahedron", "w / 24.0", "w / 18.0")
+edit("4.15", "ignores tetrahedra below a cubic nanometre", "volume +=", "w = w if abs(w) > 1e-27 else 0.0; volume +=")
 
 
 # 4.16 -----------------------------------------------------------------------------------------------------------
@@ -369,9 +446,9 @@ def body_of(density, x, faces, tensor):
     check_finite("a corner of the mesh [m]", x)
     worked.check_closed(len(x), faces)
     V, first, Q = worked.mesh_integrals(x - x[0], faces)
-    if V <= worked.TENSOR_ROUND_OFF * np.max(np.abs(x - x[0])) ** 3:
+    if V <= worked.MOMENT_ROUND_OFF * np.max(np.abs(x - x[0])) ** 3:
         raise BadInput("the volume inside the mesh [m³]", V, "turn it inside out")
-    return worked.Body(density * V, x[0] + first / V, density * tensor(V, first / V, Q))
+    return worked.MassProperties(density * V, x[0] + first / V, density * tensor(V, first / V, Q))
 
 
 def from_covariance(C):
@@ -402,12 +479,12 @@ edit("4.17", "about the origin of the world: digits cancel far away", "offsets =
 edit("4.17", "density taken for mass", "density * volume", "density")
 edit("4.17", "the mean of the corners for the centre", "x[0] + centre", "np.sum(x, axis=0) / x.shape[0]")
 edit("4.17", "the tensor about the mean of the corners", "first / volume", "np.sum(offsets, axis=0) / x.shape[0]")
-edit("4.17", "a mesh inside-out gets the volume it should have had", "volume <= TENSOR", "abs(volume) <= TENSOR")
+edit("4.17", "a mesh inside-out gets the volume it should have had", "volume <= MOMENT", "abs(volume) <= MOMENT")
 edit("4.17", "does not check that the mesh is closed", "check_closed(x.shape[0], faces)", "pass")
 edit("4.17", "accepts a flat mesh if its round-off volume is positive",
-     "TENSOR_ROUND_OFF * np.max(np.abs(offsets)) ** 3", "0.0")
-edit("4.17", "refuses what is small, whatever its shape", "TENSOR_ROUND_OFF * np.max(np.abs(offsets)) ** 3",
-     "TENSOR_ROUND_OFF")
+     "MOMENT_ROUND_OFF * np.max(np.abs(offsets)) ** 3", "0.0")
+edit("4.17", "refuses what is small, whatever its shape", "MOMENT_ROUND_OFF * np.max(np.abs(offsets)) ** 3",
+     "MOMENT_ROUND_OFF")
 edit("4.17", "a length for a volume", "np.max(np.abs(offsets)) ** 3", "np.max(np.abs(offsets))")
 edit("4.17", "how far the others are above the first corner, not from it", "np.max(np.abs(offsets))", "np.max(offsets)")
 edit("4.17", "how far the others are below the first corner, not from it", "np.max(np.abs(offsets))",
@@ -415,6 +492,6 @@ edit("4.17", "how far the others are below the first corner, not from it", "np.m
 edit("4.17", "accepts indices of no corner", "x.shape[0], faces", "np.max(faces) + 1, faces")
 edit("4.17", "accepts an infinite density", 'check_positive("density [kg/m³]", density)',
      'if not density > 0.0: raise BadInput("density [kg/m³]", density, "give some")')
-edit("4.17", "a thousand times too tolerant", "TENSOR_ROUND_OFF * np.max", "1e-17 * np.max")
-edit("4.17", "a thousand times too strict", "TENSOR_ROUND_OFF * np.max", "1e-11 * np.max")
+edit("4.17", "a thousand times too tolerant", "MOMENT_ROUND_OFF * np.max", "1e-17 * np.max")
+edit("4.17", "a thousand times too strict", "MOMENT_ROUND_OFF * np.max", "1e-11 * np.max")
 edit("4.17", "looks at the corners of triangles only", "[m]\", x)", "[m]\", x[np.unique(faces % x.shape[0])])")

@@ -43,19 +43,21 @@ edit("8.1", "refuses short segments", "length == 0.0", "length < 1e-9")
 edit("8.1", "treats a picometre as zero", "length == 0.0", "length < 1e-12")
 edit("8.1", "never too long", "length - rest", "min(0.0, length - rest)")
 edit("8.1", "towards where it should go", "r / length", "r / length * np.sign(rest - length)")
+edit("8.1", "refuses what is in line with the second axis", "length == 0.0", "r[0] == 0.0")
+edit("8.1", "no direction at the rest length", "r / length", "r / length * abs(np.sign(length - rest))")
 
 
 # 8.2 ------------------------------------------------------------------------------------------------------------
 @variants
 def projecting(sign=-1.0, mass=True, total=lambda w, g: np.sum(w * np.sum(g * g, axis=1)), checked=True):
-    def projection(C, gradients, inv_mass):
+    def constraint_correction(C, gradients, inv_mass):
         s = total(inv_mass, gradients)
         if s == 0.0:
             if checked:
                 raise NO_WEIGHT
             return 0.0 * gradients
         return sign * C / s * (inv_mass[:, None] if mass else 1.0) * gradients
-    return projection
+    return constraint_correction
 
 
 right("8.2", "all points at once")(projecting())
@@ -70,14 +72,21 @@ edit("8.2", "every point on its own", "-C / weight * inv_mass[:, None]",
 edit("8.2", "refuses small masses", "weight == 0.0", "weight < 1e-6")
 edit("8.2", "refuses only where all masses are infinite or all gradients 0", "weight == 0.0",
      "np.all(inv_mass == 0.0) or np.all(gradients == 0.0)")
+edit("8.2", "refuses very small masses and gradients", "weight == 0.0", "weight < 1e-20")
+edit("8.2", "takes the gradient of a single point for a unit vector", "return -C / weight",
+     "return -C * gradients if inv_mass.size == 1 else -C / weight")
+edit("8.2", "returns the gradients where the constraint holds", "return -C / weight",
+     "return gradients if C == 0.0 else -C / weight")
+edit("8.2", "accepts immovable points where the constraint holds", "if weight == 0.0:",
+     "if C == 0.0:\n        return 0.0 * gradients\n    if weight == 0.0:")
 
 
 # 8.3 ------------------------------------------------------------------------------------------------------------
 @variants
 def predicting(half=1.0, stops=False, falls=False, clock=1.0, speed=1.0, changes=False):
-    def predict(acceleration, t, x, v, dt, net):
-        free = (net.inv_mass > 0.0)[:, None]
-        a = np.asarray(acceleration(clock * t, x, speed * v, net)) * (1.0 if falls else free)
+    def predict(acceleration, t, x, v, dt, network):
+        free = (network.inv_mass > 0.0)[:, None]
+        a = np.asarray(acceleration(clock * t, x, speed * v, network)) * (1.0 if falls else free)
         move = dt * v * (free if stops else 1.0) + half * dt * dt * a
         if changes:
             x += move
@@ -93,30 +102,35 @@ wrong("8.3", "immovable points fall")(predicting(falls=True))
 wrong("8.3", "does not advance t")(predicting(clock=0.0))
 wrong("8.3", "the force of rest")(predicting(speed=0.0))
 wrong("8.3", "changes its input")(predicting(changes=True))
-edit("8.3", "heavy points fall more slowly", "free = net.inv_mass > 0.0", "free = np.minimum(1.0, net.inv_mass)")
+edit("8.3", "heavy points fall more slowly",
+     "free = network.inv_mass > 0.0", "free = np.minimum(1.0, network.inv_mass)")
 wrong("8.3", "no force")(predicting(half=0.0))
-edit("8.3", "treats heavy points as immovable", "net.inv_mass > 0.0", "net.inv_mass > 1e-6")
-edit("8.3", "changes the array that the acceleration returned", "a = acceleration(t, x, v, net)",
-     "a = acceleration(t, x, v, net)\n    a[net.inv_mass == 0.0] = 0.0")
+edit("8.3", "treats heavy points as immovable", "network.inv_mass > 0.0", "network.inv_mass > 1e-6")
+edit("8.3", "changes the array that the acceleration returned", "a = acceleration(t, x, v, network)",
+     "a = acceleration(t, x, v, network)\n    a[network.inv_mass == 0.0] = 0.0")
+@right("8.3", "asks no immovable point for its acceleration")
+def predict(acceleration, t, x, v, dt, network):
+    a = acceleration(t, x, v, network)
+    return x + dt * (v + dt * np.where(network.inv_mass[:, None] > 0.0, a, 0.0))
 
 
 # 8.4 ------------------------------------------------------------------------------------------------------------
 @variants
 def newton(curved=1.0, per_row=True, scale=lambda dt: dt * dt, sign=1.0, from_goal=1.0, difference=False, across=True):
-    def newton_correction(x, lam, goal, dt, net):
-        d, n, s = x.shape[1], x.size, net.i.size
-        C, J = worked.constraints(x, net)
-        W = np.repeat(net.inv_mass, d)
+    def newton_correction(x, lam, goal, dt, network):
+        d, n, s = x.shape[1], x.size, network.i.size
+        C, J = worked.constraints(x, network)
+        W = np.repeat(network.inv_mass, d)
         bend = np.zeros((n, n))
         for k in range(s):
-            i, j = slice(net.i[k] * d, net.i[k] * d + d), slice(net.j[k] * d, net.j[k] * d + d)
-            H = lam[k] * ((np.eye(d) if across else 0.0) - np.outer(J[k, i], J[k, i])) / (C[k] + net.rest[k])
+            i, j = slice(network.i[k] * d, network.i[k] * d + d), slice(network.j[k] * d, network.j[k] * d + d)
+            H = lam[k] * ((np.eye(d) if across else 0.0) - np.outer(J[k, i], J[k, i])) / (C[k] + network.rest[k])
             bend[i, i] += H
             bend[j, j] += H
             bend[i, j] -= H
             bend[j, i] -= H
         push = W[:, None] * J.T if per_row else J.T * W.max()
-        trace = worked.TRACE * (net.inv_mass[net.i] + net.inv_mass[net.j])
+        trace = worked.REGULARISATION * (network.inv_mass[network.i] + network.inv_mass[network.j])
         A = np.block([[np.eye(n) - curved * dt * dt * W[:, None] * bend, -sign * push], [J, np.diag(-trace)]])
         found = np.linalg.solve(A, np.concatenate((from_goal * (goal - x).ravel(), -C - trace * dt * dt * lam)))
         return found[:n].reshape(x.shape), found[n:] / scale(dt) + (lam if difference else 0.0)
@@ -133,71 +147,77 @@ wrong("8.4", "multipliers of the other sign")(newton(sign=-1.0))
 wrong("8.4", "away from the prediction")(newton(from_goal=-1.0))
 wrong("8.4", "adds the old λ")(newton(difference=True))
 wrong("8.4", "second derivatives along the link only")(newton(across=False))
-edit("8.4", "no trace of compliance", "TRACE * (net.inv_mass[net.i[s]] + net.inv_mass[net.j[s]])", "0.0")
+SHARE = "REGULARISATION * (network.inv_mass[network.i[s]] + network.inv_mass[network.j[s]])"
+edit("8.4", "no trace of compliance", SHARE, "0.0")
 edit("8.4", "the trace acts on λ, not on its change", " - trace * dt * dt * lam[s]", "")
-edit("8.4", "the trace without the masses", "TRACE * (net.inv_mass[net.i[s]] + net.inv_mass[net.j[s]])", "TRACE * 2.0")
+edit("8.4", "the trace without the masses", SHARE, "REGULARISATION * 2.0")
 edit("8.4", "link s joins points s and s + 1", "for s in range(C.size):",
-     "net = net._replace(i=np.arange(C.size), j=np.arange(C.size) + 1)\n    for s in range(C.size):")
+     "network = network._replace(i=np.arange(C.size), j=np.arange(C.size) + 1)\n    for s in range(C.size):")
+edit("8.4", "the trace with the mass of one end", "(network.inv_mass[network.i[s]] + network.inv_mass[network.j[s]])",
+     "network.inv_mass[network.i[s]]")
 
 
 # 8.5 ------------------------------------------------------------------------------------------------------------
 @variants
-def projecting_step(enough=lambda done, change, longest: change <= 1e-12 * longest, speed=lambda new, x, goal, v,
+def projecting(enough=lambda done, change, longest: change <= 1e-12 * longest, speed=lambda new, x, goal, v,
                     dt: (new - x) / dt, start="x", gives_up=True, force=True):
-    def projection_step(acceleration, t, x, v, dt, net):
-        goal = worked.predict(acceleration, t, x, v, dt, net)
-        new, lam = (x if start == "x" else goal).copy(), np.zeros(net.i.size)
+    def constraint_projection_step(acceleration, t, x, v, dt, network):
+        goal = worked.predict(acceleration, t, x, v, dt, network)
+        new, lam = (x if start == "x" else goal).copy(), np.zeros(network.i.size)
         for done in range(worked.NEWTON_LIMIT):
-            change, found = worked.newton_correction(new, lam, goal if force else x, dt, net)
+            change, found = worked.newton_correction(new, lam, goal if force else x, dt, network)
             new, lam = new + change, found
-            if enough(done, np.abs(change).max(), net.rest.max()):
+            if enough(done, np.abs(change).max(), network.rest.max()):
                 return new, speed(new, x, goal, v, dt)
         if gives_up:
             raise Diverged("the projection did not converge at dt [s]", dt, "take a smaller step")
         return new, speed(new, x, goal, v, dt)
-    return projection_step
+    return constraint_projection_step
 
 
-wrong("8.5", "one iteration")(projecting_step(enough=lambda done, change, longest: True))
-wrong("8.5", "two iterations")(projecting_step(enough=lambda done, change, longest: done == 1))
-wrong("8.5", "a trillionth of a metre, however large the net")(projecting_step(enough=lambda done, change,
+wrong("8.5", "one iteration")(projecting(enough=lambda done, change, longest: True))
+wrong("8.5", "two iterations")(projecting(enough=lambda done, change, longest: done == 1))
+wrong("8.5", "a trillionth of a metre, however large the network")(projecting(enough=lambda done, change,
                                                                                longest: change <= 1e-12))
 edit("8.5", "tests only positive corrections", "np.max(np.abs(change))", "np.max(change)")
-wrong("8.5", "does not raise Diverged")(projecting_step(gives_up=False))
-wrong("8.5", "keeps the predicted velocity")(projecting_step(speed=lambda new, x, goal, v, dt: (goal - x) / dt))
-wrong("8.5", "keeps the old velocity")(projecting_step(speed=lambda new, x, goal, v, dt: v))
-wrong("8.5", "forgets the prediction")(projecting_step(force=False))
-wrong("8.5", "the velocity without dt")(projecting_step(speed=lambda new, x, goal, v, dt: new - x))
-wrong("8.5", "begins at the prediction")(projecting_step(start="goal"))
+wrong("8.5", "does not raise Diverged")(projecting(gives_up=False))
+wrong("8.5", "keeps the predicted velocity")(projecting(speed=lambda new, x, goal, v, dt: (goal - x) / dt))
+wrong("8.5", "keeps the old velocity")(projecting(speed=lambda new, x, goal, v, dt: v))
+wrong("8.5", "forgets the prediction")(projecting(force=False))
+wrong("8.5", "the velocity without dt")(projecting(speed=lambda new, x, goal, v, dt: new - x))
+wrong("8.5", "begins at the prediction")(projecting(start="goal"))
 edit("8.5", "puts immovable points back", "new = new + change",
-     "change[net.inv_mass == 0.0] = 0.0\n        new = new + change")
-edit("8.5", "gravity for any acceleration", "predict(acceleration, t,", "predict(falling_acceleration, t,")
+     "change[network.inv_mass == 0.0] = 0.0\n        new = new + change")
+edit("8.5", "gravity for any acceleration", "predict(acceleration, t,", "predict(network_gravity, t,")
 edit("8.5", "the acceleration at t + dt", "predict(acceleration, t,", "predict(acceleration, t + dt,")
 edit("8.5", "λ = 0 in every iteration", "change, lam = newton", "change, _ = newton")
-edit("8.5", "the first link for the longest", "np.max(net.rest)", "net.rest[0]")
-edit("8.5", "the last link for the longest", "np.max(net.rest)", "net.rest[-1]")
+edit("8.5", "the first link for the longest", "np.max(network.rest)", "network.rest[0]")
+edit("8.5", "the last link for the longest", "np.max(network.rest)", "network.rest[-1]")
 edit("8.5", "at most eight iterations", "range(NEWTON_LIMIT)", "range(8)")
 edit("8.5", "accepts NaN as converged", "np.max(np.abs(change)) <= NEWTON_TOLERANCE * longest",
      "not np.max(np.abs(change)) > NEWTON_TOLERANCE * longest")
+edit("8.5", "at most fifteen iterations", "range(NEWTON_LIMIT)", "range(15)")
+edit("8.5", "at most thirty iterations", "range(NEWTON_LIMIT)", "range(30)")
 
 
 # 8.6 ------------------------------------------------------------------------------------------------------------
 @variants
 def sweeping(stiff=True, by_mass=True, sign=1.0, jacobi=False, backwards=False, changes=False, checked=True, held=True):
-    def distance_sweep(x, net):
+    def distance_sweep(x, network):
         seen = x.copy()
         new = x if changes else x.copy()
-        order = range(net.i.size)
+        order = range(network.i.size)
         for s in reversed(order) if backwards else order:
-            i, j = net.i[s], net.j[s]
+            i, j = network.i[s], network.j[s]
             r = (seen if jacobi else new)[i] - (seen if jacobi else new)[j]
-            weight = lambda k: net.inv_mass[k] if by_mass else float(net.inv_mass[k] > 0.0)
+            weight = lambda k: network.inv_mass[k] if by_mass else float(network.inv_mass[k] > 0.0)
             w_i, w_j = (weight(i), weight(j)) if held else (1.0, 1.0)
             if not r.any():
                 if checked:
                     raise NO_LENGTH
                 continue
-            move = sign * (net.stiffness[s] if stiff else 1.0) * (size(r) - net.rest[s]) / (w_i + w_j) * r / size(r)
+            share = sign * (network.stiffness[s] if stiff else 1.0) / (w_i + w_j)
+            move = share * (size(r) - network.rest[s]) * r / size(r)
             new[i] -= w_i * move
             new[j] += w_j * move
         return new
@@ -213,22 +233,43 @@ wrong("8.6", "from the last to the first")(sweeping(backwards=True))
 wrong("8.6", "changes its input")(sweeping(changes=True))
 wrong("8.6", "accepts coincident ends")(sweeping(checked=False))
 wrong("8.6", "moves the immovable")(sweeping(held=False))
-edit("8.6", "a thread: never too short", "share = net.stiffness[s]",
-     "share = net.stiffness[s] * (squared > net.rest[s] ** 2)")
+edit("8.6", "a thread: never too short", "share = network.stiffness[s]",
+     "share = network.stiffness[s] * (squared > network.rest[s] ** 2)")
 edit("8.6", "refuses short segments", "squared == 0.0", "squared < 1e-12")
-edit("8.6", "link s joins points s and s + 1", "i, j = net.i[s], net.j[s]", "i, j = s, s + 1")
-edit("8.6", "the rest length of the first link", "net.rest[s]", "net.rest[0]")
-edit("8.6", "the stiffness of the first link", "net.stiffness[s]", "net.stiffness[0]")
+edit("8.6", "link s joins points s and s + 1", "i, j = network.i[s], network.j[s]", "i, j = s, s + 1")
+edit("8.6", "the rest length of the first link", "network.rest[s]", "network.rest[0]")
+edit("8.6", "the stiffness of the first link", "network.stiffness[s]", "network.stiffness[0]")
+edit("8.6", "the stiffness of one sweep so that all remove s", "network.stiffness[s] *",
+     "(1.0 - (1.0 - network.stiffness[s]) ** (1.0 / network.sweeps)) *")
+edit("8.6", "the stiffness of all sweeps in each", "network.stiffness[s] *",
+     "(1.0 - (1.0 - network.stiffness[s]) ** network.sweeps) *")
+edit("8.6", "all sweeps at once", "range(network.i.size)", "[*range(network.i.size)] * network.sweeps")
+edit("8.6", "as soft as in XPBD", "(network.inv_mass[i] + network.inv_mass[j])",
+     "(network.inv_mass[i] + network.inv_mass[j] + network.alpha[s])")
+edit("8.6", "visits the links in the order of their first points", "range(network.i.size)", "np.argsort(network.i)")
+edit("8.6", "refuses a nanometre", "squared == 0.0", "squared < 1e-18")
+edit("8.6", "a millionth of its length is no error", "share = network.stiffness[s]",
+     "share = (abs(length - network.rest[s]) > 1e-6 * length) * network.stiffness[s]")
+
+
+@right("8.6", "by projection")
+def distance_sweep(x, network):
+    x = x.copy()
+    for s in range(network.i.size):
+        ends = [network.i[s], network.j[s]]
+        C, n = worked.distance_constraint(x[ends[0]], x[ends[1]], network.rest[s])
+        x[ends] += network.stiffness[s] * worked.constraint_correction(C, np.stack((n, -n)), network.inv_mass[ends])
+    return x
 
 
 # 8.7 ------------------------------------------------------------------------------------------------------------
 @variants
 def dynamics(sweeps=lambda n: n, speed=lambda new, x, goal, v, dt: (new - x) / dt, begin="goal"):
-    def pbd_step(acceleration, t, x, v, dt, net):
-        goal = worked.predict(acceleration, t, x, v, dt, net)
+    def pbd_step(acceleration, t, x, v, dt, network):
+        goal = worked.predict(acceleration, t, x, v, dt, network)
         new = (goal if begin == "goal" else x + dt * v).copy()
-        for _ in range(sweeps(net.sweeps)):
-            new = worked.distance_sweep(new, net)
+        for _ in range(sweeps(network.sweeps)):
+            new = worked.distance_sweep(new, network)
         return new, speed(new, x, goal, v, dt)
     return pbd_step
 
@@ -240,12 +281,17 @@ wrong("8.7", "no sweep")(dynamics(sweeps=lambda n: 0))
 wrong("8.7", "keeps the predicted velocity")(dynamics(speed=lambda new, x, goal, v, dt: (goal - x) / dt))
 wrong("8.7", "keeps the old velocity")(dynamics(speed=lambda new, x, goal, v, dt: v))
 wrong("8.7", "no force")(dynamics(begin="x"))
-edit("8.7", "an immovable point is at rest", "(new - x) / dt", "(new - x) / dt * (net.inv_mass > 0.0)[:, None]")
-edit("8.7", "visits the links from the last to the first", "distance_sweep(new, net)",
-     "distance_sweep(new, net._replace(i=net.i[::-1], j=net.j[::-1], rest=net.rest[::-1], "
-     "stiffness=net.stiffness[::-1]))")
-edit("8.7", "gravity for any acceleration", "predict(acceleration, t,", "predict(falling_acceleration, t,")
+edit("8.7", "an immovable point is at rest", "(new - x) / dt", "(new - x) / dt * (network.inv_mass > 0.0)[:, None]")
+edit("8.7", "visits the links from the last to the first", "distance_sweep(new, network)",
+     "distance_sweep(new, network._replace(i=network.i[::-1], j=network.j[::-1], rest=network.rest[::-1], "
+     "stiffness=network.stiffness[::-1]))")
+edit("8.7", "gravity for any acceleration", "predict(acceleration, t,", "predict(network_gravity, t,")
 edit("8.7", "the acceleration at t + dt", "predict(acceleration, t,", "predict(acceleration, t + dt,")
+wrong("8.7", "five sweeps at most")(dynamics(sweeps=lambda n: min(n, 5)))
+edit("8.7", "in the plane only", "new = distance_sweep(new, network)",
+     "new = distance_sweep(new, network)\n        new[:, 2:] = x[:, 2:]")
+edit("8.7", "stops when less than a micrometre changes", "new = distance_sweep(new, network)",
+     "old, new = new, distance_sweep(new, network)\n        if np.abs(new - old).max() < 1e-6:\n            break")
 
 
 # 8.8 ------------------------------------------------------------------------------------------------------------
@@ -265,6 +311,9 @@ wrong("8.8", "before the sweeps")(sagging(above=lambda S: 1.0))
 wrong("8.8", "falls by ½ g dt²")(sagging(step=lambda dt: 0.5 * dt * dt))
 edit("8.8", "no more than five sweeps", "** sweeps", "** min(sweeps, 5)")
 wrong("8.8", "n times as stiff")(sagging(left=lambda s, n: max(0.0, 1.0 - n * s)))
+edit("8.8", "no more than fifty sweeps", "** sweeps", "** min(sweeps, 50)")
+wrong("8.8", "n times as stiff, where it is soft")(
+    sagging(left=lambda s, n: (1.0 - s) ** n if s > 0.01 else 1.0 - n * s))
 
 
 # 8.9 ------------------------------------------------------------------------------------------------------------
@@ -315,6 +364,33 @@ edit("8.9", "removes one full turn only", "np.ceil((turn - np.pi) / (2.0 * np.pi
      "np.sign(np.ceil((turn - np.pi) / (2.0 * np.pi)))")
 edit("8.9", "tests the area of one triangle only", "squared_c == 0.0 or squared_d == 0.0", "squared_d == 0.0")
 edit("8.9", "refuses small inputs", "squared_c == 0.0 or squared_d == 0.0", "squared_c < 1e-9 or squared_d < 1e-9")
+edit("8.9", "removes two full turns only", "np.ceil((turn - np.pi) / (2.0 * np.pi))",
+     "max(-2.0, min(2.0, np.ceil((turn - np.pi) / (2.0 * np.pi))))")
+edit("8.9", "removes three full turns only", "np.ceil((turn - np.pi) / (2.0 * np.pi))",
+     "max(-3.0, min(3.0, np.ceil((turn - np.pi) / (2.0 * np.pi))))")
+edit("8.9", "refuses thin triangles", "squared_c == 0.0 or squared_d == 0.0",
+     "squared_c < 1e-4 * squared**2 or squared_d < 1e-4 * squared**2")
+edit("8.9", "refuses coincident corners only", "squared_c == 0.0 or squared_d == 0.0",
+     "not all([(x[i] - x[j]).any() for i, j in ((0, 1), (0, 2), (1, 2), (0, 3), (1, 3))])")
+edit("8.9", "accepts an edge without length", "squared_c == 0.0 or squared_d == 0.0",
+     "squared > 0.0 and (squared_c == 0.0 or squared_d == 0.0)")
+
+
+@right("8.9", "normals from the edge, the angle from its sine and cosine")
+def fold_constraint(x, fold):
+    e, c, d = x[1:] - x[0]
+    N_c, N_d, length = np.cross(e, c), np.cross(d, e), size(e)
+    if not (N_c.any() and N_d.any()):
+        raise BadInput("the area of a triangle at a fold [m²]", 0.0, "keep its corners apart")
+    u_c, u_d = N_c / size(N_c), N_d / size(N_d)
+    C = np.arctan2(np.cross(u_c, u_d) @ (e / length), u_c @ u_d) - fold
+    while C > np.pi:
+        C -= 2.0 * np.pi
+    while C <= -np.pi:
+        C += 2.0 * np.pi
+    g_c, g_d = -length / size(N_c) * u_c, -length / size(N_d) * u_d
+    at_b = c @ e / (e @ e), d @ e / (e @ e)
+    return C, np.stack((-(1.0 - at_b[0]) * g_c - (1.0 - at_b[1]) * g_d, -at_b[0] * g_c - at_b[1] * g_d, g_c, g_d))
 
 
 # 8.10 -----------------------------------------------------------------------------------------------------------
@@ -365,6 +441,11 @@ edit("8.11", "five centimetres are not inside", "phi < 0.0", "phi < -0.05")
 edit("8.11", "heavy points move less", "x[k] -= phi * n", "x[k] -= min(1.0, inv_mass[k]) * phi * n")
 edit("8.11", "all like the first", "surface(x[k], obstacle)", "surface(x[0], obstacle)")
 edit("8.11", "the floor for any surface", "surface(x[k], obstacle)", "floor_gap(x[k], obstacle)")
+edit("8.11", "in space only", "x = float_copy(x)", "x = float_copy(x) + np.zeros((x.shape[0], 3))")
+edit("8.11", "upwards from the centre of a ball", "x[k] -= phi * n",
+     "x[k] -= phi * (n if n.any() else np.eye(n.size)[-1])")
+edit("8.11", "divides by the length of n", "x[k] -= phi * n", "x[k] -= phi * (n / np.sqrt(np.sum(n * n)))")
+edit("8.11", "treats heavy points as immovable", "inv_mass[k] > 0.0", "inv_mass[k] > 1e-6")
 
 
 # 8.12 -----------------------------------------------------------------------------------------------------------
@@ -389,26 +470,31 @@ wrong("8.12", "accepts a negative compliance")(giving(checked=False))
 edit("8.12", "the error without its sign", "-C - alpha_scaled", "-abs(C) - alpha_scaled")
 wrong("8.12", "accepts NaN")(giving(nan=False))
 wrong("8.12", "accepts a constraint without movable mass")(giving(weighed=False))
+edit("8.12", "refuses heavy points", "weight == 0.0", "weight < 1e-9")
+edit("8.12", "a very small compliance is none", "-C - alpha_scaled * Lam",
+     "-C - (alpha_scaled > 1e-6) * alpha_scaled * Lam")
+edit("8.12", "accepts a slightly negative compliance", "not alpha_scaled >= 0.0", "not alpha_scaled >= -1e-9")
+edit("8.12", "no change where C = 0", "(-C - alpha_scaled", "(C != 0.0) * (-C - alpha_scaled")
 
 
 # 8.13 -----------------------------------------------------------------------------------------------------------
 @variants
 def soft_sweep(adds=True, kept=True, jacobi=False, mass=True, sign=1.0, changes=False,
                checked=True, one_alpha=False, weight=1.0, stiffness=False, power=2):
-    def compliant_sweep(x, Lam, dt, net):
+    def compliant_sweep(x, Lam, dt, network):
         seen, new, total = x.copy(), (x if changes else x.copy()), (Lam if changes else Lam.copy())
-        for s in range(net.i.size):
-            i, j = net.i[s], net.j[s]
+        for s in range(network.i.size):
+            i, j = network.i[s], network.j[s]
             r = (seen if jacobi else new)[i] - (seen if jacobi else new)[j]
             if not r.any():
                 if checked:
                     raise NO_LENGTH
                 continue
-            w_i, w_j = net.inv_mass[i], net.inv_mass[j]
-            alpha = net.alpha[0] if one_alpha else net.alpha[s]
-            change = worked.compliant_multiplier(size(r) - net.rest[s], total[s] if kept else 0.0,
+            w_i, w_j = network.inv_mass[i], network.inv_mass[j]
+            alpha = network.alpha[0] if one_alpha else network.alpha[s]
+            change = worked.compliant_multiplier(size(r) - network.rest[s], total[s] if kept else 0.0,
                                                  weight * (w_i + w_j), alpha / dt**power)
-            change *= net.stiffness[s] if stiffness else 1.0
+            change *= network.stiffness[s] if stiffness else 1.0
             total[s] = total[s] + change if adds else change
             new[i] = new[i] + sign * (w_i if mass else 1.0) * change * r / size(r)
             new[j] = new[j] - sign * (w_j if mass else 1.0) * change * r / size(r)
@@ -430,19 +516,39 @@ wrong("8.13", "α without dt²")(soft_sweep(power=0))
 wrong("8.13", "α dt²")(soft_sweep(power=-2))
 wrong("8.13", "α/dt")(soft_sweep(power=1))
 wrong("8.13", "half of the weight")(soft_sweep(weight=0.5))
-edit("8.13", "a thread: never too short", "length - net.rest[s]", "max(0.0, length - net.rest[s])")
-edit("8.13", "link s joins points s and s + 1", "i, j = net.i[s], net.j[s]", "i, j = s, s + 1")
-edit("8.13", "the rest length of the first link", "net.rest[s]", "net.rest[0]")
+edit("8.13", "a thread: never too short", "length - network.rest[s]", "max(0.0, length - network.rest[s])")
+edit("8.13", "link s joins points s and s + 1", "i, j = network.i[s], network.j[s]", "i, j = s, s + 1")
+edit("8.13", "the rest length of the first link", "network.rest[s]", "network.rest[0]")
+edit("8.13", "what is inextensible never pushes", "length - network.rest[s]",
+     "length - network.rest[s] if network.alpha[s] else max(0.0, length - network.rest[s])")
+edit("8.13", "what is inextensible never pulls", "length - network.rest[s]",
+     "length - network.rest[s] if network.alpha[s] else min(0.0, length - network.rest[s])")
+edit("8.13", "no visit where α = 0", "i, j = network.i[s], network.j[s]",
+     "i, j = network.i[s], network.j[s]\n        if network.alpha[s] == 0.0:\n            continue")
+edit("8.13", "keeps no Λ where α = 0", "Lam[s] += change", "Lam[s] += change * (network.alpha[s] > 0.0)")
+edit("8.13", "checks nothing",
+     "compliant_multiplier(length - network.rest[s], Lam[s], weight, network.alpha[s] * per_square)",
+     "(network.rest[s] - length - network.alpha[s] * per_square * Lam[s]) / (weight + network.alpha[s] * per_square)")
+edit("8.13", "skips immovable points", "weight = network.inv_mass[i] + network.inv_mass[j]",
+     "weight = network.inv_mass[i] + network.inv_mass[j]\n        if weight == 0.0:\n            continue")
+edit("8.13", "visits the links in the order of their first points", "range(network.i.size)", "np.argsort(network.i)")
+edit("8.13", "no visit where a link has its rest length", "weight = network.inv_mass[i] + network.inv_mass[j]",
+     "weight = network.inv_mass[i] + network.inv_mass[j]\n"
+     "        if abs(length / network.rest[s] - 1.0) < 1e-9:\n            continue")
+edit("8.13", "refuses a nanometre", "squared == 0.0", "squared < 1e-18")
+edit("8.13", "all sweeps at once", "range(network.i.size)", "[*range(network.i.size)] * network.sweeps")
+edit("8.13", "a part of α in each sweep",
+     "network.alpha[s] * per_square", "network.alpha[s] * per_square / network.sweeps")
 
 
 # 8.14 -----------------------------------------------------------------------------------------------------------
 @variants
 def soft_step(anew=False, sweeps=lambda n: n, hard=False, speed=lambda new, x, v, dt: (new - x) / dt, begin=0.0):
-    def xpbd_step(acceleration, t, x, v, dt, net):
-        new, Lam = worked.predict(acceleration, t, x, v, dt, net), np.full(net.i.size, begin)
-        for _ in range(sweeps(net.sweeps)):
-            new, Lam = worked.compliant_sweep(new, 0.0 * Lam if anew else Lam, dt, net)
-            new = worked.distance_sweep(new, net) if hard else new
+    def xpbd_step(acceleration, t, x, v, dt, network):
+        new, Lam = worked.predict(acceleration, t, x, v, dt, network), np.full(network.i.size, begin)
+        for _ in range(sweeps(network.sweeps)):
+            new, Lam = worked.compliant_sweep(new, 0.0 * Lam if anew else Lam, dt, network)
+            new = worked.distance_sweep(new, network) if hard else new
         return new, speed(new, x, v, dt)
     return xpbd_step
 
@@ -453,24 +559,28 @@ wrong("8.14", "Λ = 1 to begin with")(soft_step(begin=1.0))
 wrong("8.14", "PBD after all")(soft_step(hard=True))
 wrong("8.14", "no sweep")(soft_step(sweeps=lambda n: 0))
 wrong("8.14", "keeps the old velocity")(soft_step(speed=lambda new, x, v, dt: v))
-edit("8.14", "an immovable point is at rest", "(new - x) / dt", "(new - x) / dt * (net.inv_mass > 0.0)[:, None]")
+edit("8.14", "an immovable point is at rest", "(new - x) / dt", "(new - x) / dt * (network.inv_mass > 0.0)[:, None]")
 wrong("8.14", "half of the velocity")(soft_step(speed=lambda new, x, v, dt: 0.5 * (new - x) / dt))
-edit("8.14", "the last Λ for all links", "compliant_sweep(new, Lam, dt, net)",
-     "compliant_sweep(new, np.full(net.i.size, Lam[-1]), dt, net)")
-edit("8.14", "one Λ per point", "np.zeros(net.i.size)", "np.zeros(x.shape[0])")
-edit("8.14", "gravity for any acceleration", "predict(acceleration, t,", "predict(falling_acceleration, t,")
+edit("8.14", "the last Λ for all links", "compliant_sweep(new, Lam, dt, network)",
+     "compliant_sweep(new, np.full(network.i.size, Lam[-1]), dt, network)")
+edit("8.14", "one Λ per point", "np.zeros(network.i.size)", "np.zeros(x.shape[0])")
+edit("8.14", "gravity for any acceleration", "predict(acceleration, t,", "predict(network_gravity, t,")
 edit("8.14", "the acceleration at t + dt", "predict(acceleration, t,", "predict(acceleration, t + dt,")
+wrong("8.14", "five sweeps at most")(soft_step(sweeps=lambda n: min(n, 5)))
+edit("8.14", "PBD where nothing is soft", "Lam = np.zeros(network.i.size)",
+     "Lam = np.zeros(network.i.size)\n"
+     "    if not network.alpha.any():\n        return pbd_step(acceleration, t, x, v, dt, network)")
 
 
 # 8.15 -----------------------------------------------------------------------------------------------------------
 @variants
 def readiness(turned=True, arm=np.cross, centre=1.0, moments=lambda I: 1.0 / I, back=False):
-    def generalised_inverse_mass(q, r, n, m, I_body):
+    def effective_inverse_mass_at(q, r, n, m, I_body):
         turn = arm(r, n)
         if turned:
             turn = worked.rotate(q, turn) if back else worked.unrotate(q, turn)
         return centre / m + np.sum(turn * turn * moments(I_body))
-    return generalised_inverse_mass
+    return effective_inverse_mass_at
 
 
 right("8.15", "with NumPy's product")(readiness())
@@ -485,24 +595,28 @@ wrong("8.15", "multiplies by the moments")(readiness(moments=lambda I: I))
 
 # 8.16 -----------------------------------------------------------------------------------------------------------
 @variants
-def pushed(mass=True, sign=1.0, turned=True, half=1.0, unit=True, moves=1.0):
-    def push_body(x, q, r, p, m, I_body):
+def apply_multipliers(mass=True, sign=1.0, turned=True, half=1.0, unit=True, moves=1.0):
+    def apply_positional_impulse(x, q, r, p, m, I_body):
         arm = sign * np.cross(r, p)
         turn = worked.rotate(q, worked.unrotate(q, arm) / I_body) if turned else arm / I_body
-        new = q + 0.5 * half * worked.product(np.append(0.0, turn), q)
+        new = q + 0.5 * half * worked.quaternion_product(np.append(0.0, turn), q)
         return x + moves * p / (m if mass else 1.0), new / size(new) if unit else new
-    return push_body
+    return apply_positional_impulse
 
 
-right("8.16", "by the product itself")(pushed())
-wrong("8.16", "forgets the mass")(pushed(mass=False))
-wrong("8.16", "turns the other way")(pushed(sign=-1.0))
-wrong("8.16", "moments about the world's axes")(pushed(turned=False))
-wrong("8.16", "turns twice as far")(pushed(half=2.0))
-wrong("8.16", "a quaternion of another length")(pushed(unit=False))
+right("8.16", "by the product itself")(apply_multipliers())
+wrong("8.16", "forgets the mass")(apply_multipliers(mass=False))
+wrong("8.16", "turns the other way")(apply_multipliers(sign=-1.0))
+wrong("8.16", "moments about the world's axes")(apply_multipliers(turned=False))
+wrong("8.16", "turns twice as far")(apply_multipliers(half=2.0))
+wrong("8.16", "a quaternion of another length")(apply_multipliers(unit=False))
 edit("8.16", "right only for masses above 1 kg", "p / m", "p / max(m, 1.0)")
 edit("8.16", "right only for masses below 1 kg", "p / m", "p / min(m, 1.0)")
-wrong("8.16", "turns only")(pushed(moves=0.0))
+wrong("8.16", "turns only")(apply_multipliers(moves=0.0))
+edit("8.16", "fails without rotation", "quaternion_update(q, turn, 1.0)",
+     "quaternion_update(q, turn / np.sqrt(turn @ turn), np.sqrt(turn @ turn))")
+edit("8.16", "a microradian is no turn", "quaternion_update(q, turn, 1.0)",
+     "quaternion_update(q, turn * (turn @ turn > 1e-12), 1.0)")
 
 
 # 8.17 -----------------------------------------------------------------------------------------------------------
@@ -510,7 +624,7 @@ wrong("8.16", "turns only")(pushed(moves=0.0))
 def rate(order=False, scale=2.0, by_w=True, per_step=True, sign=1.0, back=True):
     def turning_rate(q_old, q_new, dt):
         turned_back = q_old * np.array([1.0, -1.0, -1.0, -1.0]) if back else q_old
-        turn = worked.product(turned_back, q_new) if order else worked.product(q_new, turned_back)
+        turn = worked.quaternion_product(turned_back, q_new) if order else worked.quaternion_product(q_new, turned_back)
         return sign * scale * turn[1:] / (turn[0] if by_w else 1.0) / (dt if per_step else 1.0)
     return turning_rate
 
@@ -524,6 +638,16 @@ wrong("8.17", "backwards")(rate(sign=-1.0))
 wrong("8.17", "the product of both")(rate(back=False))
 edit("8.17", "fails without rotation", "return 2.0 / (turn[0] * dt) * turn[1:]",
      "size = np.sqrt(np.sum(turn[1:] ** 2))\n    return 2.0 * size / (turn[0] * dt) * (turn[1:] / size)")
+edit("8.17", "a microradian is no turn", "* turn[1:]", "* turn[1:] * (turn[1:] @ turn[1:] > 1e-12)")
+edit("8.17", "no more than 120°", "2.0 / (turn[0] * dt)", "2.0 / (np.sign(turn[0]) * max(abs(turn[0]), 0.5) * dt)")
+
+
+@right("8.17", "by the angle")
+def turning_rate(q_old, q_new, dt):
+    turn = worked.quaternion_product(q_new, q_old * np.array([1.0, -1.0, -1.0, -1.0]))
+    turn = turn if turn[0] >= 0.0 else -turn
+    s = size(turn[1:])
+    return 2.0 * np.tan(np.arctan2(s, turn[0])) / dt * turn[1:] / s if s > 0.0 else np.zeros(3)
 
 
 # 8.18 -----------------------------------------------------------------------------------------------------------

@@ -66,7 +66,7 @@ def derivative(mass=lambda m: m, turn=lambda omega, R: worked.skew(omega) @ R,
     """Ṡ with parts that may be wrong."""
     def state_derivative(S, F, tau, body):
         w = omega(S.R, S.L, body.I_body)
-        return worked.State(S.P / mass(body.m), turn(w, S.R), F, torque(tau, w, S.L))
+        return worked.RigidBodyState(S.P / mass(body.m), turn(w, S.R), F, torque(tau, w, S.L))
     return state_derivative
 
 
@@ -134,11 +134,11 @@ edit("5.7", "no more than a turn", "np.cos(rate * dt), np.sin(rate * dt)",
 @variants
 def hamilton(dot=-1.0, twist=1.0, mixed=(1.0, 1.0), scalar=0, close=lambda c: c):
     """Scalar and vector parts, with signs and positions that may be wrong."""
-    def product(a, b):
+    def quaternion_product(a, b):
         a, b = np.roll(a, -scalar), np.roll(b, -scalar)
         vector = mixed[0] * a[0] * b[1:] + mixed[1] * b[0] * a[1:] + twist * np.cross(a[1:], b[1:])
         return close(np.roll(np.concatenate(([a[0] * b[0] + dot * a[1:] @ b[1:]], vector)), scalar))
-    return product
+    return quaternion_product
 
 
 right("5.8", "scalar and vector parts")(hamilton())
@@ -170,13 +170,14 @@ def third_way(half=0.5, sign=1.0, left=True, close=worked.unit):
     """q + ½dt (0, ω) q, normalised, with parts that may be wrong."""
     def quaternion_update(q, omega, dt):
         spin = np.concatenate(([0.0], omega))
-        return close(q + sign * half * dt * (worked.product(spin, q) if left else worked.product(q, spin)))
+        first, second = (spin, q) if left else (q, spin)
+        return close(q + sign * half * dt * worked.quaternion_product(first, second))
     return quaternion_update
 
 
 @right("5.10", "as one product: (1, ½dt ω) q")
 def quaternion_update(q, omega, dt):
-    return worked.unit(worked.product(np.concatenate(([1.0], 0.5 * dt * omega)), q))
+    return worked.unit(worked.quaternion_product(np.concatenate(([1.0], 0.5 * dt * omega)), q))
 
 
 wrong("5.10", "forgets the half")(third_way(half=1.0))
@@ -185,7 +186,8 @@ wrong("5.10", "turns the other way")(third_way(sign=-1.0))
 wrong("5.10", "does not normalise")(third_way(close=lambda q: q))
 wrong("5.10", "divides by the squared length")(third_way(close=lambda q: q / (q @ q)))
 wrong("5.10", "divides zero by zero")(third_way(close=lambda q: q / np.linalg.norm(q)))
-edit("5.10", "changes its input", "q + 0.5 * dt * product(spin, q)", "np.add(q, 0.5 * dt * product(spin, q), out=q)")
+edit("5.10", "changes its input",
+     "q + 0.5 * dt * quaternion_product(spin, q)", "np.add(q, 0.5 * dt * quaternion_product(spin, q), out=q)")
 edit("5.10", "never back", "0.5 * dt", "0.5 * abs(dt)")
 
 
@@ -223,11 +225,11 @@ edit("5.11", "ignores small torques", "unrotate(q, tau)", "unrotate(q, tau) * (n
 # 5.12 -----------------------------------------------------------------------------------------------------------
 @variants
 def loop(late=0.0, old_v=False, old_omega=False, gyro=True, mass=True, turned=worked.quaternion_update, first=False):
-    """Deck B's loop with an order that may be wrong."""
+    """The loop of the second lecture deck with an order that may be wrong."""
     def rigid_body_step(load, t, x, v, q, omega, dt, body):
         F, tau = load(t + late * dt, x + (dt * v if first else 0.0), v, q, omega, body)
         if not gyro:
-            tau = tau + np.cross(omega, worked.angular_momentum(q, omega, body.I_body))
+            tau = tau + np.cross(omega, worked.body_angular_momentum(q, omega, body.I_body))
         v_new = v + dt * F / (body.m if mass else 1.0)
         omega_new = omega + dt * worked.angular_acceleration(q, omega, tau, body.I_body)
         return x + dt * (v if old_v else v_new), v_new, turned(q, omega if old_omega else omega_new, dt), omega_new
@@ -301,9 +303,9 @@ edit("5.15", "lifts what hangs", "top.mgl * np", "np.sign(e[2]) * top.mgl * np")
 @variants
 def midpoint(gyro=1.0, newton=True, enough=lambda n, change, m: change <= 1e-12 * np.max(np.abs(m)), at=lambda m,
              start: m,
-             close=lambda q, w, dt: worked.unit(worked.product(q, np.concatenate(([1.0], 0.5 * dt * w))))):
+             close=lambda q, w, dt: worked.unit(worked.quaternion_product(q, np.concatenate(([1.0], 0.5 * dt * w))))):
     """Newton's method by NumPy's solver, with parts that may be wrong."""
-    def midpoint_turn(q, L, I_body, dt):
+    def midpoint_free_rotation(q, L, I_body, dt):
         start, half = worked.unrotate(q, L), 0.5 * dt * gyro
         m = start.copy()
         for n in range(worked.NEWTON_LIMIT):
@@ -314,7 +316,7 @@ def midpoint(gyro=1.0, newton=True, enough=lambda n, change, m: change <= 1e-12 
             if enough(n, np.max(np.abs(delta)), m):
                 return close(q, at(m, start) / I_body, dt)
         raise Diverged("the equation did not settle at dt [s]", dt, "take a smaller step")
-    return midpoint_turn
+    return midpoint_free_rotation
 
 
 right("5.16", "by NumPy's solver")(midpoint())
@@ -326,27 +328,27 @@ wrong("5.16", "the gyroscopic term with the other sign")(midpoint(gyro=-1.0))
 wrong("5.16", "ω at the beginning of the step")(midpoint(at=lambda m, start: start))
 wrong("5.16", "ω at the end of the step")(midpoint(at=lambda m, start: 2.0 * m - start))
 wrong("5.16", "turns on the side of the world")(
-    midpoint(close=lambda q, w, dt: worked.unit(worked.product(np.concatenate(([1.0], 0.5 * dt * w)), q))))
+    midpoint(close=lambda q, w, dt: worked.unit(worked.quaternion_product(np.concatenate(([1.0], 0.5 * dt * w)), q))))
 wrong("5.16", "forgets the half in the turn")(
-    midpoint(close=lambda q, w, dt: worked.unit(worked.product(q, np.concatenate(([1.0], dt * w))))))
+    midpoint(close=lambda q, w, dt: worked.unit(worked.quaternion_product(q, np.concatenate(([1.0], dt * w))))))
 wrong("5.16", "turns by |ω| dt: the angle of another rule")(
-    midpoint(close=lambda q, w, dt: worked.unit(worked.product(q, worked.exponential(dt * w)))))
+    midpoint(close=lambda q, w, dt: worked.unit(worked.quaternion_product(q, worked.exponential(dt * w)))))
 wrong("5.16", "does not normalise")(
-    midpoint(close=lambda q, w, dt: worked.product(q, np.concatenate(([1.0], 0.5 * dt * w)))))
+    midpoint(close=lambda q, w, dt: worked.quaternion_product(q, np.concatenate(([1.0], 0.5 * dt * w)))))
 wrong("5.16", "normalises the turn, not its result")(
-    midpoint(close=lambda q, w, dt: worked.product(q, worked.unit(np.concatenate(([1.0], 0.5 * dt * w))))))
+    midpoint(close=lambda q, w, dt: worked.quaternion_product(q, worked.unit(np.concatenate(([1.0], 0.5 * dt * w))))))
 wrong("5.16", "fails for a body at rest")(midpoint(enough=lambda n, change, m: change < 1e-12 * np.max(np.abs(m))))
 edit("5.16", "never raises: rotates by the last iterate",
      'raise Diverged("Newton\'s method did not converge at dt [s]", dt, "take a smaller step")',
-     "return unit(product(q, np.array([1.0, 0.5 * dt * w[0], 0.5 * dt * w[1], 0.5 * dt * w[2]])))")
+     "return unit(quaternion_product(q, np.array([1.0, 0.5 * dt * w[0], 0.5 * dt * w[1], 0.5 * dt * w[2]])))")
 
 
 # 5.17 -----------------------------------------------------------------------------------------------------------
 @variants
-def splitting(order="aca", middle=worked.middle_axis, fresh=True, whole=1.0, left=True, sign=1.0,
+def splitting(order="aca", middle=worked.intermediate_axis, fresh=True, whole=1.0, left=True, sign=1.0,
               close=worked.unit, slow=lambda I, k, b: 1.0 / I[k] - 1.0 / I[b]):
     """A sequence of exact turns about body axes, half a turn if an axis occurs twice, with parts that may be wrong."""
-    def splitting_turn(q, L, I_body, dt):
+    def splitting_free_rotation(q, L, I_body, dt):
         b = middle(I_body)
         axis = {"a": (b + 1) % 3, "c": (b + 2) % 3}
         turned, ell = q, worked.unrotate(q, L)
@@ -355,10 +357,10 @@ def splitting(order="aca", middle=worked.middle_axis, fresh=True, whole=1.0, lef
             if fresh:
                 ell = worked.unrotate(turned, L)
             angle = sign * dt / order.count(name) * slow(I_body, k, b) * ell[k]
-            turned = worked.product(turned, worked.exponential(angle * np.eye(3)[k]))
+            turned = worked.quaternion_product(turned, worked.exponential(angle * np.eye(3)[k]))
         about = worked.exponential(whole * dt / I_body[b] * L)
-        return close(worked.product(about, turned) if left else worked.product(turned, about))
-    return splitting_turn
+        return close(worked.quaternion_product(about, turned) if left else worked.quaternion_product(turned, about))
+    return splitting_free_rotation
 
 
 right("5.17", "half of c, all of a, half of c")(splitting("cac"))
@@ -371,8 +373,8 @@ wrong("5.17", "the whole energy of a and c: L²/2I_b counted twice")(splitting(s
 wrong("5.17", "differences of moments, not of their inverses")(
     splitting(slow=lambda I, k, b: 1.0 / (I[k] - I[b]) if I[k] != I[b] else 0.0))
 wrong("5.17", "always takes the first axis for the middle one")(splitting(middle=lambda I: 0))
-edit("5.17", "does not normalise at the end", "unit(product(exponential(dt / I_body[b] * L), turned))",
-     "product(exponential(dt / I_body[b] * L), turned)")
+edit("5.17", "does not normalise at the end", "unit(quaternion_product(exponential(dt / I_body[b] * L), turned))",
+     "quaternion_product(exponential(dt / I_body[b] * L), turned)")
 edit("5.17", "turns about its axes the whole way twice", "dt * (1.0 / I_body[a] - 1.0 / I_body[b]), dt * (1.0",
      "2.0 * dt * (1.0 / I_body[a] - 1.0 / I_body[b]), 2.0 * dt * (1.0")
 

@@ -122,19 +122,19 @@ edit("2.6", "refuses small inputs", "squared_a == 0.0 or squared_c == 0.0", "squ
 @variants
 def by_matrices(tension=worked.spring_tension, add=np.add.at, other=1.0, unit=True, rate=None, checked=True):
     """All springs at once, with a tension, a sum or a far end that may be wrong."""
-    def spring_forces(x, v, mesh):
-        r, u = x[mesh.j] - x[mesh.i], v[mesh.j] - v[mesh.i]
+    def spring_forces(x, v, network):
+        r, u = x[network.j] - x[network.i], v[network.j] - v[network.i]
         length = np.sqrt(np.sum(r * r, axis=1))
         if np.any(length == 0.0):
             if checked:
                 raise BadInput("the length of a spring [m]", 0.0, "keep its ends apart: it has no direction")
             length = np.where(length == 0.0, 1.0, length)
         lengthening = np.sum(r * u, axis=1) / length if rate is None else rate(r, u, length)
-        T = tension(length, lengthening, mesh.rest, mesh.k, mesh.k_d)
+        T = tension(length, lengthening, network.rest, network.k, network.k_d)
         pull = T[:, None] * r / (length[:, None] if unit else 1.0)
         force = np.zeros_like(x)
-        add(force, mesh.i, pull)
-        add(force, mesh.j, -other * pull)
+        add(force, network.i, pull)
+        add(force, network.j, -other * pull)
         return force
     return spring_forces
 
@@ -154,10 +154,10 @@ wrong("2.7", "speed for rate")(by_matrices(rate=lambda r, u, length: np.sqrt(np.
 wrong("2.7", "rate the other way round")(by_matrices(rate=lambda r, u, length: -np.sum(r * u, axis=1) / length))
 wrong("2.7", "accepts a spring of zero length")(by_matrices(checked=False))
 edit("2.7", "damps every motion, not only along the spring", "force_i[c] +=",
-     "force_i[c] += mesh.k_d[s] * (v_j[c] - v_i[c]) +")
-edit("2.7", "every spring like the first", "mesh.rest[s], mesh.k[s], mesh.k_d[s]",
-     "mesh.rest[0], mesh.k[0], mesh.k_d[0]")
-edit("2.7", "nothing on fixed points", "return force", "return force * (mesh.inv_mass > 0.0)[:, None]")
+     "force_i[c] += network.k_d[s] * (v_j[c] - v_i[c]) +")
+edit("2.7", "every spring like the first", "network.rest[s], network.k[s], network.k_d[s]",
+     "network.rest[0], network.k[0], network.k_d[0]")
+edit("2.7", "nothing on fixed points", "return force", "return force * (network.inv_mass > 0.0)[:, None]")
 edit("2.7", "the plane only", "squared, product = 0.0, 0.0", "squared, product, x_i = 0.0, 0.0, x_i[:2]")
 edit("2.7", "refuses small inputs", "squared == 0.0", "squared < 1e-9")
 
@@ -170,12 +170,12 @@ def over_mass(force, inv_mass):
 @variants
 def newton(gravity=lambda g, inv_mass: g, air=over_mass, springs=over_mass, fixed=True):
     """a = g + F/m for all points at once, with terms that may be wrong."""
-    def mesh_acceleration(t, x, v, mesh):
-        inv_mass = mesh.inv_mass[:, None]
-        a = gravity(mesh.gravity, inv_mass) + air(mesh.wind - mesh.k_v * v, inv_mass)
-        a = a + springs(worked.spring_forces(x, v, mesh), inv_mass)
+    def spring_network_acceleration(t, x, v, network):
+        inv_mass = network.inv_mass[:, None]
+        a = gravity(network.gravity, inv_mass) + air(network.wind - network.k_v * v, inv_mass)
+        a = a + springs(worked.spring_forces(x, v, network), inv_mass)
         return np.where(inv_mass > 0.0, a, 0.0) if fixed else a
-    return mesh_acceleration
+    return spring_network_acceleration
 
 
 right("2.8", "all points at once")(newton())
@@ -187,15 +187,15 @@ wrong("2.8", "springs pull on all masses alike")(newton(springs=lambda f, inv_ma
 wrong("2.8", "forgets the air")(newton(air=lambda a, inv_mass: 0.0))
 wrong("2.8", "multiplies by the mass")(newton(springs=lambda f, inv_mass: f / np.where(inv_mass > 0.0, inv_mass, 1.0)))
 wrong("2.8", "springs the wrong way")(newton(springs=lambda f, inv_mass: -f * inv_mass))
-edit("2.8", "treats heavy points as fixed", "mesh.inv_mass[n] > 0.0", "mesh.inv_mass[n] > 0.1")
+edit("2.8", "treats heavy points as fixed", "network.inv_mass[n] > 0.0", "network.inv_mass[n] > 0.1")
 
 
 # 2.9 ------------------------------------------------------------------------------------------------------------
 @variants
 def loop(step=integrators.average_velocity_step):
     """The system advanced by some step of lesson 1."""
-    def mass_spring_damper_step(t, x, v, dt, mesh):
-        return step(worked.mesh_acceleration, t, x, v, dt, mesh)
+    def mass_spring_damper_step(t, x, v, dt, network):
+        return step(worked.spring_network_acceleration, t, x, v, dt, network)
     return mass_spring_damper_step
 
 
@@ -206,14 +206,14 @@ wrong("2.9", "midpoint: exact in free fall, but another loop")(loop(integrators.
 
 
 @right("2.9", "the lines of the lecture")
-def mass_spring_damper_step(t, x, v, dt, mesh):
-    v_new = v + dt * worked.mesh_acceleration(t, x, v, mesh)
+def mass_spring_damper_step(t, x, v, dt, network):
+    v_new = v + dt * worked.spring_network_acceleration(t, x, v, network)
     return x + dt * (v + v_new) / 2.0, v_new
 
 
-edit("2.9", "changes its input", "average_velocity_step(mesh_acceleration, t, x, v, dt, mesh)",
-     "average_velocity_step(mesh_acceleration, t, x, v, dt, mesh)[0], "
-     "np.add(v, dt * mesh_acceleration(t, x, v, mesh), out=v)")
+edit("2.9", "changes its input", "average_velocity_step(spring_network_acceleration, t, x, v, dt, network)",
+     "average_velocity_step(spring_network_acceleration, t, x, v, dt, network)[0], "
+     "np.add(v, dt * spring_network_acceleration(t, x, v, network), out=v)")
 
 
 # 2.10 -----------------------------------------------------------------------------------------------------------
@@ -255,9 +255,9 @@ wrong("2.10", "nodes outside, offsets inside")(numbering(turned=True))
 @variants
 def blocks(sideways=lambda stretch: max(0.0, stretch), along=1.0, damper=lambda k_d, nn: k_d * nn, sign=1.0):
     """K and D by outer products, with parts that may be wrong."""
-    def spring_stiffness(x, mesh):
+    def spring_stiffness(x, network):
         K, D = [], []
-        for i, j, rest, k, k_d in zip(mesh.i, mesh.j, mesh.rest, mesh.k, mesh.k_d):
+        for i, j, rest, k, k_d in zip(network.i, network.j, network.rest, network.k, network.k_d):
             length = np.linalg.norm(x[j] - x[i])
             nn = np.outer(x[j] - x[i], x[j] - x[i]) / length**2
             K.append(sign * k * (along * nn + sideways(1.0 - rest / length) * (np.eye(x.shape[1]) - nn)))
@@ -274,8 +274,8 @@ wrong("2.11", "nothing along")(blocks(along=0.0))
 wrong("2.11", "a damper in all directions")(blocks(damper=lambda k_d, nn: k_d * np.eye(len(nn))))
 wrong("2.11", "forgets k_d")(blocks(damper=lambda k_d, nn: nn))
 wrong("2.11", "derivative of F without the minus")(blocks(sign=-1.0))
-edit("2.11", "a spring that is stretched little is slack", "1.0 - mesh.rest[s] / length",
-     "0.85 - mesh.rest[s] / length")
+edit("2.11", "a spring that is stretched little is slack", "1.0 - network.rest[s] / length",
+     "0.85 - network.rest[s] / length")
 
 
 # 2.12 -----------------------------------------------------------------------------------------------------------
@@ -321,25 +321,25 @@ edit("2.12", "the tolerance not squared", "CG_TOLERANCE * CG_TOLERANCE * squared
 @variants
 def large_step(ahead=1.0, damping=1.0, viscosity=1.0, stiffness=1.0, old=False, late=0.0, held=True, massive=True):
     """Linearly implicit Euler as one dense system, with terms that may be wrong."""
-    def implicit_mesh_step(acceleration, t, x, v, dt, mesh):
+    def implicit_spring_network_step(acceleration, t, x, v, dt, network):
         n, d = x.shape
-        K, D = (dense(blocks_of, mesh, n, d) for blocks_of in worked.spring_stiffness(x, mesh))
-        free = np.repeat(mesh.inv_mass > 0.0, d) if held else np.ones(n * d, bool)
-        mass = np.repeat(1.0 / np.where(mesh.inv_mass > 0.0, mesh.inv_mass, 1.0), d)
-        a = acceleration(t + late * dt, x, v, mesh).ravel()
-        A = np.diag(mass + viscosity * dt * mesh.k_v) + stiffness * dt * dt * K + damping * dt * D
+        K, D = (dense(blocks_of, network, n, d) for blocks_of in worked.spring_stiffness(x, network))
+        free = np.repeat(network.inv_mass > 0.0, d) if held else np.ones(n * d, bool)
+        mass = np.repeat(1.0 / np.where(network.inv_mass > 0.0, network.inv_mass, 1.0), d)
+        a = acceleration(t + late * dt, x, v, network).ravel()
+        A = np.diag(mass + viscosity * dt * network.k_v) + stiffness * dt * dt * K + damping * dt * D
         b = dt * ((mass if massive else 1.0) * a - ahead * dt * K @ v.ravel())
         jump = np.zeros(n * d)
         jump[free] = np.linalg.solve(A[np.ix_(free, free)], b[free])
         v_new = v + jump.reshape(n, d)
         return x + dt * (v if old else v_new), v_new
-    return implicit_mesh_step
+    return implicit_spring_network_step
 
 
-def dense(blocks_of, mesh, n, d):
+def dense(blocks_of, network, n, d):
     """The (nd, nd) matrix with one block per spring: + at (i, i) and (j, j), − at (i, j) and (j, i)."""
     whole = np.zeros((n, d, n, d))
-    for i, j, block in zip(mesh.i, mesh.j, blocks_of):
+    for i, j, block in zip(network.i, network.j, blocks_of):
         whole[i, :, i] += block
         whole[j, :, j] += block
         whole[i, :, j] -= block
@@ -357,7 +357,7 @@ wrong("2.13", "moves with the old velocity")(large_step(old=True))
 wrong("2.13", "acceleration at the end of the step")(large_step(late=1.0))
 wrong("2.13", "fixed points move")(large_step(held=False))
 wrong("2.13", "forgets the mass on the right")(large_step(massive=False))
-edit("2.13", "fully implicit Euler, by Newton's method", "a = acceleration(t, x, v, mesh)",
-     "from solutions.integrators import implicit_euler_step as step; return step(acceleration, t, x, v, dt, mesh)")
+edit("2.13", "fully implicit Euler, by Newton's method", "a = acceleration(t, x, v, network)",
+     "from solutions.integrators import implicit_euler_step as step; return step(acceleration, t, x, v, dt, network)")
 edit("2.13", "symplectic Euler", "conjugate_gradients(apply_step_matrix, A, right)", "dt * a")
-edit("2.13", "treats heavy points as fixed", "mesh.inv_mass[n] > 0.0", "mesh.inv_mass[n] > 0.1")
+edit("2.13", "treats heavy points as fixed", "network.inv_mass[n] > 0.0", "network.inv_mass[n] > 0.1")

@@ -286,7 +286,9 @@ def test_a_subset_updates_its_part_of_the_report_and_leaves_no_stale_page(capsys
                  "tensors.html", "index.html"):
         assert again[name] > first[name], name
     assert {"tensors.html", "throw.html"} <= linked_from(tmp_path / "index.html")
-    assert [s["scene"] for s in json.loads((tmp_path / "report.json").read_text())["scenes"]] == ["throw", "tensors"]
+    report = json.loads((tmp_path / "report.json").read_text())
+    assert [s["scene"] for s in report["scenes"]] == ["throw", "tensors"]
+    summary_counts_what_the_report_holds(capsys, tmp_path, report)
 
     run(capsys, *of("tensors"), "--engine", "pymunk", *out)
     assert pages(tmp_path / "subset") >= {"tensors.html", "stability-inertia_tensors-far-from-origin.svg"}
@@ -296,6 +298,26 @@ def test_a_subset_updates_its_part_of_the_report_and_leaves_no_stale_page(capsys
     for folder in (tmp_path, tmp_path / "subset"):
         assert pages(folder) - {"mine.html"} == linked_from(folder / "index.html") - {"player3d.js"}
     assert "mine.html" in pages(tmp_path)
+
+
+def summary_counts_what_the_report_holds(capsys, folder, report):
+    page = folder / "readme.txt"
+    page.write_text("before\n<!-- results -->\nold\n<!-- results -->\nafter\n")
+    assert run(capsys, "summary", str(folder), "--into", str(page))[0] == 0
+    said, text = run(capsys, "summary", str(folder))[1], page.read_text()
+    page.unlink()
+    assert text == f"before\n<!-- results -->\n{said}<!-- results -->\nafter\n" and report["run"]["date"] in said
+    rows = {row.split("|")[1].strip(" `"): row.split("|")[2:] for row in said.splitlines() if row.startswith("| `")}
+    assert list(rows) == [scene["lesson"] for scene in report["scenes"]]
+    for scene in report["scenes"]:
+        cells = [cell.strip() for cell in rows[scene["lesson"]]]
+        ours = [curve["verdict"] for case in scene["cases"].values() for curve in case["ours"]]
+        assert cells[0] == "1" and f"✓ {ours.count('agrees')}" in cells[1]
+    held = [f["holds"] for case in report["stability"] for f in case["findings"]]
+    assert f"{sum(held)} of {len(held)}" in said
+    for wrong in ([str(folder / "nothing")], [str(folder), "--into", str(folder / "index.html")]):
+        code, _, error = run(capsys, "summary", *wrong)
+        assert code == 2 and len(error.splitlines()) == 1
 
 
 def pages(folder):

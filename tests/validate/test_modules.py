@@ -1,13 +1,14 @@
 """One text, two speeds: the twin is the same code, its cache is found again, and it cannot go stale."""
 
 import os
+import shutil
 import subprocess
 import sys
 
 import numpy as np
 import pytest
 
-from solutions.checks import BadInput
+from solutions.checks import BadInput, Diverged
 from validate import modules
 
 needs_numba = pytest.mark.skipif(not modules.can_compile(),
@@ -100,10 +101,26 @@ def test_what_is_unknown_is_named_with_a_remedy(call, names):
 
 @needs_numba
 def test_a_scene_may_hand_a_function_of_its_lesson_to_a_compiled_loop():
-    """The bowl's run gives bowl_gap to contact_motion: both are twins, and the motion is the plain one."""
+    """The bowl's run gives particle_bowl_gap to advance_particle: both are twins, and the motion is the plain one."""
     plain, fast = modules.bind_scene("bowl"), modules.bind_scene("bowl", compiled=True)
     p = plain.cases["rough bowl"]
-    ends = [scene.observe(scene.run(modules.module_set(compiled=c).lesson("friction").gripping_step, scene.acceleration,
-                                    scene.start(p), p, 0.01, 20), p)
-            for scene, c in ((plain, False), (fast, True))]
+    ends = []
+    for scene, compiled in ((plain, False), (fast, True)):
+        step = modules.module_set(compiled=compiled).lesson("friction").position_friction_step
+        ends.append(scene.observe(scene.run(step, scene.acceleration, scene.start(p), p, 0.01, 20), p))
     assert np.array_equal(*ends)
+
+
+@pytest.mark.parametrize("compiled", [False, pytest.param(True, marks=needs_numba)])
+def test_a_plain_copy_of_the_solutions_raises_the_errors_that_scenes_expect(tmp_path, compiled):
+    """The copy brings a file checks.py of its own.  Its classes must not replace ours, or no `except` knows them."""
+    copy = tmp_path / "copy"
+    shutil.copytree(modules.SOLUTIONS, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    lesson = modules.bind("rotation", copy, compiled)
+    assert lesson.skew is not modules.bind("rotation").skew
+    with pytest.raises(BadInput):
+        lesson.check_rotation(np.array([2.0, 0.0, 0.0, 0.0]))
+    lost = lambda a, t, x, v, dt, p: (x * np.nan, v)
+    with pytest.raises(Diverged):
+        modules.bind("integrators", copy, False).advance(lost, None, 0.0, np.ones(1), np.ones(1), 0.1, 1, None)
+    assert type(modules.PLAIN.lesson("checks").finite_array) is type(lambda: None)        # ours stay as they are

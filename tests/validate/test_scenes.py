@@ -91,7 +91,7 @@ def test_a_wrong_tensor_departs_and_a_table_without_motion_has_all_its_numbers(t
     assert verdicts.pop("capsule") is False and all(verdicts.values())
     for case in result["cases"].values():
         for curve in case["ours"] + [e for e in case["engines"] if e["source"] != "missing"]:
-            assert len(curve["observed"][-1]["observed"]) == len(case["truth"]) == len(case["quantities"])
+            assert len(curve["rows"][-1]["observed"]) == len(case["truth"]) == len(case["quantities"])
 
 
 def test_an_engine_that_leaves_its_own_rule_departs(monkeypatch):

@@ -80,7 +80,7 @@ def about_the_world(density, x, faces):
     lesson = subject_of(CASES["inertia_tensors/far-from-origin"])
     V, first, second = lesson.mesh_integrals(x, faces)
     C = second - np.outer(first, first) / V
-    return lesson.Body(density * V, first / V, density * (np.trace(C) * np.eye(3) - C))
+    return lesson.MassProperties(density * V, first / V, density * (np.trace(C) * np.eye(3) - C))
 
 
 def without_tolerance(I):
@@ -95,6 +95,35 @@ def test_a_wrong_tensor_does_not_find_the_bound(slug, method, function):
     case = CASES[f"inertia_tensors/{slug}"]
     subject = types.SimpleNamespace(**{**vars(subject_of(case)), method: function})
     assert not all(f.holds for f in case.examine(subject)[0])
+
+
+FORMULAS = {
+    "springs/forces": ("universal_gravity", "soft_constraint_force", "soft_contact_force"),
+    "springs/lecture-step": ("mass_spring_damper_step",),
+    "inertia_tensors/momenta": ("linear_momentum", "angular_momentum"),
+    "rotation/loads-and-derivatives": ("total_load", "state_derivative", "tumbling_rate"),
+    "collisions/cloth-swept-steered": ("triangle_cylinder_gap", "swept_box", "steer"),
+    "impulses/two-bodies": ("relative_velocity_2d", "effective_inverse_mass_2d", "apply_impulse_2d", "impulse_size",
+                            "effective_inverse_mass", "angular_momenta"),
+    "contact/closed-forms": ("stack_contraction", "mass_ratio_contraction", "best_relaxation", "friction_disc"),
+}
+
+
+def scaled(value, factor):
+    """The same result, a little larger or smaller, whatever it consists of."""
+    if isinstance(value, tuple):
+        parts = [scaled(part, factor) for part in value]
+        return type(value)(*parts) if hasattr(value, "_fields") else tuple(parts)
+    return factor * np.asarray(value) if np.ndim(value) else factor * value
+
+
+@pytest.mark.parametrize("factor", [0.999, 1.001])
+@pytest.mark.parametrize(("name", "function"), [(name, f) for name, every in FORMULAS.items() for f in every])
+def test_a_formula_that_is_a_thousandth_off_is_seen(name, function, factor):
+    lesson = subject_of(CASES[name])
+    right = getattr(lesson, function)
+    wrong = lambda *arguments: scaled(right(*arguments), factor)
+    assert not all(f.holds for f in CASES[name].examine(types.SimpleNamespace(**{**vars(lesson), function: wrong}))[0])
 
 
 def test_a_measurement_that_failed_is_a_finding_that_does_not_hold():

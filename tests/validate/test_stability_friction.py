@@ -34,13 +34,13 @@ def times_of_steps(acceleration, t, x, v, dt, steps, p):
 
 WRONG = [                    # case, the function that it examines, what is put in its place
     ("stick-threshold", "sliding_step", holds_by_kinetic),
-    ("stick-threshold", "gripping_step", worked.contact_step),
+    ("stick-threshold", "position_friction_step", worked.contact_step),
     ("stick-slip-threshold", "event_step", worked.sliding_step),
     ("stick-slip-threshold", "slip_times", times_of_steps),
     ("regularised-friction-creeps", "sliding_step", chatters),
     ("regularised-friction-creeps", "kinetic_friction", lambda F, v, n, mu: 0.5 * worked.kinetic_friction(F, v, n, mu)),
-    ("artificial-sliding", "contact_step", worked.gripping_step),
-    ("artificial-sliding", "gripping_step", worked.contact_step),
+    ("artificial-sliding", "contact_step", worked.position_friction_step),
+    ("artificial-sliding", "position_friction_step", worked.contact_step),
     ("cone-vs-pyramid", "pyramid_step", worked.sliding_step),
     ("cone-vs-pyramid", "sliding_step", worked.pyramid_step),
     ("curved-wall-order", "contact_step", elastic),

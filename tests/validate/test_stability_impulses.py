@@ -18,17 +18,17 @@ def against_the_slip(u, n, K, e, mu):
 
 def keeps_the_push(x, v, dt, p):
     """Turns what a correction moved into velocity, as projections of velocities from positions do."""
-    x_new, v_new = worked.projecting_discs_step(x, v, dt, p)
+    x_new, v_new = worked.position_projection_discs_step(x, v, dt, p)
     return x_new, v_new + (x_new - x) / dt
 
 
 def springs_out(acceleration, t, x, v, dt, p):
-    x_new, v_new = worked.projecting_step(acceleration, t, x, v, dt, p)
+    x_new, v_new = worked.position_projection_step(acceleration, t, x, v, dt, p)
     return x_new, v_new - min(0.0, worked.gap(x, p)) / dt * p.n
 
 
 def never_rests(acceleration, t, x, v, dt, p):
-    return worked.projecting_step(acceleration, t, x, v, dt, p)
+    return worked.position_projection_step(acceleration, t, x, v, dt, p)
 
 
 def half_a_spring(acceleration, t, x, v, dt, p):
@@ -42,20 +42,20 @@ def single(acceleration, t, x, v, dt, p):
 
 
 def turns_twice_as_easily(r, inv_mass, inv_inertia):
-    return 2.0 * worked.point_inverse_mass(r, inv_mass, inv_inertia) - inv_mass * np.eye(3)
+    return 2.0 * worked.contact_matrix(r, inv_mass, inv_inertia) - inv_mass * np.eye(3)
 
 
 WRONG = [                    # case, the function that it examines, what is put in its place
     ("painleve-rod", "contact_impulse", against_the_slip),
-    ("painleve-rod", "point_inverse_mass", turns_twice_as_easily),
-    ("deep-overlap", "projecting_step", springs_out),
-    ("deep-overlap", "projecting_discs_step", keeps_the_push),
-    ("deep-overlap", "penalty_step", worked.projecting_step),
+    ("painleve-rod", "contact_matrix", turns_twice_as_easily),
+    ("deep-overlap", "position_projection_step", springs_out),
+    ("deep-overlap", "position_projection_discs_step", keeps_the_push),
+    ("deep-overlap", "penalty_step", worked.position_projection_step),
     ("zeno-and-far-away", "backtracking_step", never_rests),
     ("zeno-and-far-away", "backtracking_step", single),
     ("penalty-stability", "penalty_step", half_a_spring),
     ("energy-gain", "energy_change", lambda u, K, J: J @ u + J @ (K @ J)),
-    ("energy-gain", "point_inverse_mass", lambda r, inv_mass, inv_inertia: inv_mass * np.eye(3)),
+    ("energy-gain", "contact_matrix", lambda r, inv_mass, inv_inertia: inv_mass * np.eye(3)),
     ("invalid-impacts", "impulse_size", lambda u_n, k, e: -(1.0 + e) * u_n / k if k else np.inf),
     ("invalid-impacts", "cone_impulse", lambda u, n, K, w, mu: np.zeros(3)),
 ]

@@ -9,46 +9,46 @@ from solutions import pbd as worked
 from validate.stability.examine import cases_of, subject_of
 
 
-def hooke(acceleration, t, x, v, dt, net):
+def hooke(acceleration, t, x, v, dt, network):
     """A compliance that is a stiffness in PBD's sense."""
-    return worked.pbd_step(acceleration, t, x, v, dt, net._replace(stiffness=1.0 / (1.0 + net.alpha / dt)))
+    return worked.pbd_step(acceleration, t, x, v, dt, network._replace(stiffness=1.0 / (1.0 + network.alpha / dt)))
 
 
-def forgetful(acceleration, t, x, v, dt, net):
+def forgetful(acceleration, t, x, v, dt, network):
     """Λ = 0 at every sweep."""
-    new = worked.predict(acceleration, t, x, v, dt, net)
-    for _ in range(net.sweeps):
-        new, _ = worked.compliant_sweep(new, np.zeros(net.i.size), dt, net)
+    new = worked.predict(acceleration, t, x, v, dt, network)
+    for _ in range(network.sweeps):
+        new, _ = worked.compliant_sweep(new, np.zeros(network.i.size), dt, network)
     return new, (new - x) / dt
 
 
-def jacobi(x, net):
+def jacobi(x, network):
     """All links at once."""
     new = x.copy()
-    for s in range(net.i.size):
-        alone = net._replace(i=net.i[s:s + 1], j=net.j[s:s + 1], rest=net.rest[s:s + 1],
-                             stiffness=net.stiffness[s:s + 1])
+    for s in range(network.i.size):
+        alone = network._replace(i=network.i[s:s + 1], j=network.j[s:s + 1], rest=network.rest[s:s + 1],
+                             stiffness=network.stiffness[s:s + 1])
         new += worked.distance_sweep(x, alone) - x
     return new
 
 
-def by_jacobi(acceleration, t, x, v, dt, net):
-    new = worked.predict(acceleration, t, x, v, dt, net)
-    for _ in range(net.sweeps):
-        new = jacobi(new, net)
+def by_jacobi(acceleration, t, x, v, dt, network):
+    new = worked.predict(acceleration, t, x, v, dt, network)
+    for _ in range(network.sweeps):
+        new = jacobi(new, network)
     return new, (new - x) / dt
 
 
-def once(acceleration, t, x, v, dt, net):
-    return worked.pbd_step(acceleration, t, x, v, dt, net._replace(sweeps=1))
+def once(acceleration, t, x, v, dt, network):
+    return worked.pbd_step(acceleration, t, x, v, dt, network._replace(sweeps=1))
 
 
 def without_air(acceleration, t, x, v, dt, balloon):
-    return worked.xpbd_step(acceleration, t, x, v, dt, balloon.net)
+    return worked.xpbd_step(acceleration, t, x, v, dt, balloon.network)
 
 
 def links_only(acceleration, t, x, v, dt, cloth):
-    return worked.pbd_step(acceleration, t, x, v, dt, cloth.net)
+    return worked.pbd_step(acceleration, t, x, v, dt, cloth.network)
 
 
 WRONG = [                    # case, the function that it examines, what is put in its place
@@ -62,12 +62,13 @@ WRONG = [                    # case, the function that it examines, what is put 
     ("unconverged-iterations", "pbd_step", by_jacobi),
     ("mass-ratio", "distance_sweep", jacobi),
     ("projection-dissipation", "pbd_step", worked.rattle_step),
-    ("projection-dissipation", "rattle_step", worked.projection_step),
+    ("projection-dissipation", "rattle_step", worked.constraint_projection_step),
     ("substeps-vs-iterations", "xpbd_step", once),
     ("extremes", "distance_constraint", lambda x_i, x_j, rest: (0.0, x_i)),
     ("extremes", "compliant_multiplier", lambda C, Lam, weight, alpha_scaled: 0.0),
     ("extremes", "fold_constraint", lambda x, fold: (0.0, x)),
-    ("primitives", "hung_step", lambda t, x, v, q, omega, dt, rod: (x + dt * v, v + dt * rod.gravity, q, omega)),
+    ("primitives", "pivoted_body_step",
+     lambda t, x, v, q, omega, dt, rod: (x + dt * v, v + dt * rod.gravity, q, omega)),
     ("primitives", "balloon_step", without_air),
     ("primitives", "cloth_step", links_only),
     ("primitives", "fold_sweep", lambda x, cloth: x),

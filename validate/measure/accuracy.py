@@ -40,7 +40,7 @@ def errors(name, plan):
         "moves": scene.moves, "refinement": scene.refinement, "T": scene.duration,
         "uncertainty": scene.truth_uncertainty, "truth_story": report_text(scene.truth), "uses": list(scene.uses),
         "parameters": parameter_table(scene.parameters), "notes": selection.notes, "cases": cases,
-        "parity": parity(selection, first),
+        **parity(selection, first),
         "picture": film.picture(selection, first, labels_that_agree({"cases": cases})),
         "law": report_text(scene.acceleration) if scene.acceleration else "", "limits": report_text(scene.tolerance),
     })
@@ -113,8 +113,7 @@ def method_curve(selection, method, p, truth):
     runs = [(n, run_to_end(scene, step, p, n)) for n in selection.steps]
     order = scene.orders.get(method.function, method.order)
     found = judged(scene, method.label, p, truth, runs, order)
-    look = {"role": Role.OURS, "colour": method.colour, "marker": method.marker, "line": "-"}
-    return {**found, **look, "observed": [] if scene.moves else observations(runs)}
+    return {**found, "role": Role.OURS, "colour": method.colour, "marker": method.marker, "line": "-"}
 
 
 def engine_curve(selection, case, engine, p, truth):
@@ -132,12 +131,12 @@ def engine_curve(selection, case, engine, p, truth):
             message = f"{engine.product} is not installed here and this case was never recorded"
             nothing = {"label": engine.label, "rows": [], "order": None, "expected": engine.order,
                        "verdict": Verdict.UNDECIDED}
-            return {**about, **nothing, "source": "missing", "message": message, "departure_reason": "", "observed": []}
+            return {**about, **nothing, "source": "missing", "message": message, "departure_reason": ""}
         source = record["source"]
         runs = [(r["steps"], Outcome(np.array(r["observed"]) if r["observed"] else None, r["failure"]))
                 for r in record["runs"]]
     found = judged(scene, engine.label, p, truth, runs, engine.order)
-    return {**about, **found, "source": source, "observed": observations(runs)}
+    return {**about, **found, "source": source}
 
 
 def engine_steps(selection, engine, p):
@@ -147,11 +146,6 @@ def engine_steps(selection, engine, p):
     enough = allowed(scene, p, engine.label, engine.order, last_but_one) < ASYMPTOTIC
     finest = last_but_one if selection.plan.quick and enough else scene.steps[-1]
     return [n for n in selection.steps if n <= min(engine.most_steps or n, finest)]
-
-
-def observations(runs):
-    """What each run observed, as data."""
-    return [{"steps": n, "observed": o.observed, "failure": o.failure} for n, o in runs]
 
 
 def allowed(scene, p, label, order, steps):
@@ -186,8 +180,8 @@ def curve(scene, label, truth, runs, order, limit):
     rows = []
     for steps, outcome in runs:
         error = None if outcome.failure else relative(outcome.observed, truth)
-        rows.append({"steps": steps, "dt": scene.duration / steps, "error": error, "limit": limit(steps),
-                     "failure": outcome.failure})
+        rows.append({"steps": steps, "dt": scene.duration / steps, "observed": outcome.observed, "error": error,
+                     "limit": limit(steps), "failure": outcome.failure})
     order_shown = shown_order(rows, 10.0 * scene.truth_uncertainty)
     verdict, message = verdict_on(rows, runs[-1][1], order, order_shown)
     return {"label": label, "rows": rows, "order": order_shown, "expected": order,
@@ -227,14 +221,18 @@ def shown_order(rows, floor):
 # ------------------------------------------------------------------------------------------ both speeds, and who agrees
 
 def parity(selection, p):
-    """Largest relative difference between the plain and the compiled run of a method; None where no method has both."""
-    differences = []
+    """What plain and compiled runs of the same methods observed, and their largest relative difference.
+
+    parity is None where no method has both.
+    """
+    rows = []
     for method in selection.methods_for(p):
         if len(selection.speeds(method)) == 2:
             bound = (selection.bound(method, speed) for speed in selection.plan.speeds)
             a, b = (run_to_end(scene, step, p, scene.steps[0]).observed for scene, step in bound)
-            differences += [relative(a, b)] if a is not None and b is not None else []
-    return max(differences, default=None)
+            if a is not None and b is not None:
+                rows.append({"label": method.label, "plain": a, "compiled": b})
+    return {"parity": max((relative(row["plain"], row["compiled"]) for row in rows), default=None), "parity_rows": rows}
 
 
 def labels_that_agree(result):

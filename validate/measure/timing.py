@@ -5,6 +5,7 @@ shorter than a tenth of a millisecond is repeated inside the clock.  Errors come
 """
 
 import gc
+import os
 import time
 import warnings
 from typing import NamedTuple
@@ -23,6 +24,7 @@ from .selection import REPEATS, select, with_overrides
 WARM_UPS, PROBE = 2, 64
 EXACTLY = 1e-11              # a smaller relative error is round-off: there is no race for it [-]
 LOST = 10.0                  # a run with a larger relative error is not worth timing [-]
+SAME = 1e-9                  # relative difference of two motions that count as the same [-]
 SHORTEST = 1e-4              # a timed loop is repeated until it lasts this long [s]
 TARGETS = (1e-2, 1e-3, 1e-4, 1e-6, 1e-8)
 
@@ -39,7 +41,7 @@ class Timed(NamedTuple):
 @with_overrides
 def times(name, plan, result):
     """Run times of the first case, joined with the errors already found:
-    [{label, speed, steps, error, seconds, low, high}].
+    [{label, speed, steps, error, seconds, low, high, repeats}].
     """
     selection = select(name, plan)
     scene, (case, p) = selection.scene, selection.first
@@ -56,6 +58,7 @@ def times(name, plan, result):
         "rows": rows,
         "untimed": list(dict.fromkeys(f"{i.label} ({i.speed})" for i in items if (i.label, i.speed) not in done)),
         "baseline": baseline(plan) if scene.moves else {},
+        "load": os.getloadavg() if hasattr(os, "getloadavg") else None,
         "time_to_error": times_to_error(rows),
         "advantage": advantage(rows, result["cases"][case]["engines"]),
         "ablations": ablations(selection, p, labels_that_agree(result)),
@@ -122,7 +125,7 @@ def time_engine(engine, p):
 # ---------------------------------------------------------------------------------------------- the clock
 
 def interleaved(items, time_limits, repeats=REPEATS):
-    """[(item, {seconds, low, high})]: medians of interleaved repeats.
+    """[(item, {seconds, low, high, repeats})]: medians of interleaved repeats, and all of them.
 
     Runs longer than `time_limits[speed]` are left out.
     """
@@ -139,7 +142,7 @@ def interleaved(items, time_limits, repeats=REPEATS):
         finally:
             if enabled:
                 gc.enable()
-    return [(item, {"seconds": float(np.median(s)), "low": min(s), "high": max(s)})
+    return [(item, {"seconds": float(np.median(s)), "low": min(s), "high": max(s), "repeats": s})
             for (item, _), s in zip(chosen, samples)]
 
 
@@ -221,7 +224,7 @@ def ablations(selection, p, agreeing):
     rows = []
     for what, extra in scene.ablations.items():
         if isinstance(extra, str):
-            rows.append({"what": what, "cost": None, "same": None, "note": extra})
+            rows.append({"what": what, "cost": None, "same": None, "note": extra, "observed": None, "repeats": None})
         else:
             rows.append(with_and_without(bound, step, speed, steps, p, what, *extra(p)))
     return rows
@@ -235,7 +238,8 @@ def with_and_without(scene, step, speed, steps, p, what, state, p_full):
     (_, lean), (_, full) = interleaved(items, {speed: np.inf})
     a = scene.observe(scene.run(step, scene.acceleration, scene.start(p), p, dt, steps), p)
     b = scene.observe(scene.run(step, scene.acceleration, state, p_full, dt, steps), p)
-    return {"what": what, "cost": full["seconds"] / lean["seconds"], "same": relative(a, b) < 1e-9, "note": ""}
+    return {"what": what, "cost": full["seconds"] / lean["seconds"], "same": relative(a, b) < SAME, "note": "",
+            "observed": (a, b), "repeats": (full["repeats"], lean["repeats"])}
 
 
 # ---------------------------------------------------------------------------------------------- reading the diagram

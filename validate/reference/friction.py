@@ -23,7 +23,7 @@ class DrivenBlock(NamedTuple):
 def block_in_space(x, v, block):
     """Return the same block with an unused third coordinate."""
     third = lambda y: np.append(y, 0.0)
-    return third(x), third(v), block._replace(n=third(block.n), gravity=third(block.gravity), push=third(block.push))
+    return third(x), third(v), block._replace(n=third(block.n), gravity=third(block.gravity), drive=third(block.drive))
 
 
 @cache

@@ -127,7 +127,7 @@ def rope_energy(y, l, m, g):
 
 @cache
 def rope_rates(n, l, m, g, T):
-    """Return (∫ρ dt, ∫ρ³ dt, greatest tension [N]) of a rope's own motion, ρ(t) its fastest rate [1/s] at the time.
+    """Return (∫ρ dt, ∫ρ³ dt, ∫ρ⁵ dt, greatest tension [N]) of a rope's own motion; ρ(t) is its fastest rate [1/s].
 
     A link turns with ω_k, and under the tension T its ends oscillate about it with at most 2√(T/ml):
     ρ = max |ω_k| + 2√(max T/ml).
@@ -137,7 +137,7 @@ def rope_rates(n, l, m, g, T):
     states = motion.sol(ts).T
     pull = np.array([np.abs(tensions(*np.split(y, 2), l, m, g)).max() for y in states])
     rho = np.abs(states[:, n:]).max(axis=1) + 2.0 * np.sqrt(pull / (m * l))
-    return (*(float(np.trapezoid(rho**k, ts)) for k in (1, 3)), float(pull.max()))
+    return (*(float(np.trapezoid(rho**k, ts)) for k in (1, 3, 5)), float(pull.max()))
 
 
 # ---------------------------------------------------------------------------------------------- a cloth

@@ -85,7 +85,7 @@ def square_net(p):
 
 
 def state_of(net, make_mesh):
-    """Return (x, v, mesh) for the steps of lesson 2, with its plain make_mesh, because numba takes no lists."""
+    """Return (x, v, mesh) for the steps of lesson 2, with its plain constructor, because numba takes no lists."""
     mesh = make_mesh(net.x, net.m, net.fixed, net.pairs, net.k, net.k_d, net.gravity, net.wind, net.k_v)
     return net.x.copy(), net.v.copy(), mesh._replace(rest=net.rest)
 

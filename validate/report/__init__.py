@@ -30,8 +30,36 @@ def copied(results):
 
 def files(results, stability):
     """The names of all files of a report."""
-    return {"index.html", "report.json", *(["stability.html"] if stability else []), *copied(results),
+    always = "index.html", "report.json", "coverage.html"
+    return {*always, *(["stability.html"] if stability else []), *copied(results),
             *(f"{r['scene']}.html" for r in results), *(name for _, name, _, _ in pictures(results, stability))}
+
+
+def texts(results, stability, about):
+    """Return {file: text} of everything in a report but its pictures."""
+    pages = Environment(loader=PackageLoader("validate", "report"), autoescape=select_autoescape(),
+                        trim_blocks=True, lstrip_blocks=True)
+    pages.filters.update(seconds=words.seconds, number=words.number, percent=words.percent, factor=words.factor,
+                         order=words.order)
+    pages.tests["reaches"] = lambda row: any(t is not None for t in row.values())
+    pages.globals.update(run=about, verdict=words.verdict, judge=words.judge, arrow_colours=ARROWS)
+
+    found = {f"{r['scene']}.html": pages.get_template("scene.html").render(
+        r=r, findings=words.findings(r), others=results,
+        cases=[c for c in stability if c["lesson"] == r["lesson"]]) for r in results}
+    if about.get("coverage"):
+        scenes = {r["scene"]: r["title"] for r in results}
+        cases = {f"{c['lesson']}/{c['slug']}": c["title"] for c in stability}
+        found["coverage.html"] = pages.get_template("coverage.html").render(
+            coverage=about["coverage"], scenes=scenes, cases=cases)
+    if stability:
+        found["stability.html"] = pages.get_template("stability.html").render(cases=stability)
+    rows = [words.row(r) for r in results]
+    found["index.html"] = pages.get_template("front.html").render(rows=rows, cases=stability, results=results)
+    data = {"run": about, "scenes": results, "stability": stability}
+    found["report.json"] = json.dumps(data, ensure_ascii=False, indent=1)
+    found |= {name: (HERE / name).read_text(encoding="utf-8") for name in copied(results)}
+    return found
 
 
 def write(out, results, stability, about, pool, bars, measured):
@@ -40,30 +68,13 @@ def write(out, results, stability, about, pool, bars, measured):
     about says what the report was made with: a plain record that stands at the foot of every page.
     measured(scene or lesson) is when its results were written [ns]: pictures newer than that are not drawn again.
     """
-    pages = Environment(loader=PackageLoader("validate", "report"), autoescape=select_autoescape(),
-                        trim_blocks=True, lstrip_blocks=True)
-    pages.filters.update(seconds=words.seconds, number=words.number, percent=words.percent, factor=words.factor,
-                         order=words.order)
-    pages.tests["reaches"] = lambda row: any(t is not None for t in row.values())
-    pages.globals.update(run=about, verdict=words.verdict, judge=words.judge, arrow_colours=ARROWS)
-
     calls = {name: (plots.draw, plot, out / name, data) for plot, name, data, of in pictures(results, stability)
              if not (out / name).is_file() or (out / name).stat().st_mtime_ns <= measured(of)}
     bar = bars.add_task("report", total=len(calls) + 1)
     for _ in pool.each(calls):
         bars.advance(bar)
 
-    texts = {f"{r['scene']}.html": pages.get_template("scene.html").render(
-        r=r, findings=words.findings(r), others=results,
-        cases=[c for c in stability if c["lesson"] == r["lesson"]]) for r in results}
-    if stability:
-        texts["stability.html"] = pages.get_template("stability.html").render(cases=stability)
-    rows = [words.row(r) for r in results]
-    texts["index.html"] = pages.get_template("front.html").render(rows=rows, cases=stability, results=results)
-    data = {"run": about, "scenes": results, "stability": stability}
-    texts["report.json"] = json.dumps(data, ensure_ascii=False, indent=1)
-    texts |= {name: (HERE / name).read_text(encoding="utf-8") for name in copied(results)}
-    for name, text in texts.items():
+    for name, text in texts(results, stability, about).items():
         with whole(out / name) as draft:
             draft.write_bytes(text.encode())
     bars.advance(bar)

@@ -3,18 +3,21 @@
 Colours: Okabe and Ito 2008, told apart by colour-blind readers; every curve has a marker too.
 """
 
+import json
 import re
 import warnings
+from hashlib import sha256
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from .. import methods
-from ..results import Verdict
+from ..results import Verdict, jsonable
 from ..store import whole
 
-ROUND_OFF = 1e-12               # relative error of a run of many steps that is exact [-]
+EXACT_RUN = 1e-12               # relative error of a run of many steps that is exact [-]
+DRAWN_FROM = "drawn from data "
 NOTE = {"xycoords": ("axes fraction", "data"), "fontsize": 8, "color": "#555555"}
 TOP = 10.0                      # errors above this, and failures, are drawn here, as crosses [-]
 
@@ -37,7 +40,7 @@ def error_label(result):
 
 def floor(result):
     """Error [-] below which nothing can be told: round-off, or what the truth is not known to."""
-    return max(ROUND_OFF, 10.0 * result["uncertainty"])
+    return max(EXACT_RUN, 10.0 * result["uncertainty"])
 
 
 def _ground(axes, bottom):
@@ -134,13 +137,20 @@ def show(plot, result):
     plot(None, result)
 
 
+def digest(data):
+    """Fingerprint of the data that a picture shows: `validate audit` looks for it in the picture."""
+    return sha256(json.dumps(jsonable(data), sort_keys=True).encode()).hexdigest()[:16]
+
+
 def draw(plot, path, data):
-    """Draw one of the plots into a file, without a screen."""
+    """Draw one of the plots into a file, without a screen; its last line names the data."""
     plt.switch_backend("svg")
     style()
     with whole(path) as draft, warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")                              # of a diagram in which every run was lost
         plot(draft, data)
+        with draft.open("a", encoding="utf-8") as file:
+            file.write(f"<!-- {DRAWN_FROM}{digest(data)} -->\n")
 
 
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")

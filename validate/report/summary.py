@@ -1,6 +1,7 @@
-"""The table that a run ends with: at most 80 columns, one line per scene."""
+"""A run in a few lines: one line per scene for the terminal, one line per lesson for the README."""
 
 from collections import Counter
+from statistics import median
 
 from rich.table import Table
 
@@ -57,5 +58,46 @@ def best_order(result):
 
 def faster(result):
     """The smaller of our advantages over the two engines."""
-    ratios = [a["ratio"] for a in words.row(result)["advantages"].values() if a["ratio"]]
+    ratios = advantages(result)
     return words.factor(min(ratios)) if ratios else "–"
+
+
+def by_lesson(report):
+    """Return the Markdown table of a stored report (the content of report.json): one line per lesson, dated.
+
+    The last column is the median of what `faster` says, and its range over the lesson's scenes.
+    """
+    run = report["run"]
+    lines = [f"Measured on {run['date']}: {run['mode']} run, {', '.join(run['engines'])}, {run['machine']}.",
+             "✓ agrees with the truth · ≈ departs by as much as predicted · ✗ departs otherwise.", "",
+             "| lesson | scenes | our methods | engines | stability | faster than the engines at equal error |",
+             "|---|---|---|---|---|---|"]
+    for lesson in dict.fromkeys(result["lesson"] for result in report["scenes"]):
+        results = [result for result in report["scenes"] if result["lesson"] == lesson]
+        findings = [f["holds"] for case in report["stability"] if case["lesson"] == lesson for f in case["findings"]]
+        ratios = [min(found) for result in results if (found := advantages(result))]
+        hold = f"{sum(findings)} of {len(findings)}" if findings else "–"
+        cells = (f"`{lesson}`", len(results), plain_signs(results, "ours"), plain_signs(results, "engines"), hold,
+                 spread(ratios))
+        lines.append(f"| {' | '.join(map(str, cells))} |")
+    return "\n".join(lines) + "\n"
+
+
+def advantages(result):
+    """Our advantages over each engine, as ratios of run times at equal error."""
+    return [a["ratio"] for a in words.row(result)["advantages"].values() if a["ratio"]]
+
+
+def plain_signs(results, kind):
+    """How many curves of these results have each verdict, without colours: ✓ 8 ≈ 1."""
+    verdicts = [Verdict(c["verdict"]) for result in results for case in result["cases"].values() for c in case[kind]]
+    count = Counter(SIGNS[v][0] for v in verdicts)
+    return " ".join(f"{sign} {count[sign]}" for sign, _ in dict.fromkeys(SIGNS.values()) if count[sign]) or "–"
+
+
+def spread(ratios):
+    """Median and range of ratios, such as 62× (2.1× to 440×)."""
+    if not ratios:
+        return "–"
+    middle, low, high = (words.factor(r) for r in (median(ratios), min(ratios), max(ratios)))
+    return middle if len(ratios) == 1 else f"{middle} ({low} to {high})"

@@ -110,3 +110,9 @@ def refuse(methods, run):
         except Diverged:
             refused += 1
     return refused
+
+
+def agreement(claim, quantity, error, tolerance):
+    """Make the Finding that a function errs by no more than `tolerance`: error is the largest of many random cases."""
+    return finding(claim=claim, quantity=quantity, predicted=0.0, measured=error, tolerance=tolerance,
+                   observation=f"The largest error is {error:.1e}.")

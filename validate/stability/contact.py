@@ -11,7 +11,7 @@ from solutions.checks import BadInput, Diverged
 from validate.engines.contact import DT as ENGINE_DT
 from validate.engines.contact import KINDS, MU, BulletPile, PymunkPile, fallen
 from validate.reference.contact import natural_residual
-from validate.stability.case import DOTS, EDGE, LINE, Picture, bisect, case, finding, refuses, series
+from validate.stability.case import DOTS, EDGE, LINE, Picture, agreement, bisect, case, finding, refuses, series
 
 from .. import engines
 
@@ -816,3 +816,50 @@ def without_impulse(record, k):
         v[i] += sign * inv_mass[i] * record.J[k]
         omega[i] += sign * inv_inertia[i] * cross(p[k] - x[i], record.J[k])
     return v, omega
+
+
+# ---------------------------------------------------------------------------------------------- closed forms
+
+def relaxed_radius(A, omega):
+    """Return the spectral radius of a sweep with over-relaxation: (D + ω L)⁻¹ ((1 − ω) D − ω U)."""
+    D, L, U = np.diag(np.diag(A)), np.tril(A, -1), np.triu(A, 1)
+    return np.max(np.abs(np.linalg.eigvals(np.linalg.solve(D + omega * L, (1.0 - omega) * D - omega * U))))
+
+
+@case("closed-forms", "Contraction factors, the best relaxation, the disc of friction", compiled=False)
+def closed_forms(lesson):
+    """Spectral radii from the matrices of the sweep, the best ω by a search over ω, the disc by its variational law.
+
+    At the best ω two eigenvalues meet, so the radius there is known to the root of round-off only, 1e-8.
+    P is the point of the disc nearest to J if no q of the disc has (J − P) · (q − P) > 0.
+    """
+    stacks = {n: column(np.ones(n))[0] for n in (2, 3, 5, 10, 20)}
+    radius = max(abs(lesson.stack_contraction(n) - relaxed_radius(A, 1.0)) for n, A in stacks.items())
+    ratios = (0.1, 1.0, 10.0, 1000.0)
+    heavy = max(abs(lesson.mass_ratio_contraction(r) - relaxed_radius(column((1.0, r))[0], 1.0)) for r in ratios)
+    best, left = 0.0, 0.0
+    for n, A in stacks.items():
+        omega, rho = lesson.best_relaxation(np.cos(0.5 * np.pi / n) ** 2)
+        trial = np.linspace(1.0, 1.999, 800)
+        at_least = min(relaxed_radius(A, w) for w in trial)
+        best = max(best, relaxed_radius(A, omega) - at_least)
+        left = max(left, abs(relaxed_radius(A, omega) - rho))
+    rng, off = np.random.default_rng(99), 0.0
+    for _ in range(100):
+        J, limit = rng.normal(size=3), rng.uniform(0.1, 2.0)
+        P = np.array(lesson.friction_disc(tuple(J), limit))
+        q = rng.normal(size=(50, 3))
+        q *= (limit * rng.uniform(0.0, 1.0, 50) / np.linalg.norm(q, axis=1))[:, None]
+        q = np.concatenate((q, [limit * J / np.linalg.norm(J)]))
+        off = max(off, np.linalg.norm(P) - limit, np.max((q - P) @ (J - P)),
+                  np.linalg.norm(P - J) if np.linalg.norm(J) <= limit else 0.0)
+    return [
+        agreement("The contraction of a stack is the spectral radius of a sweep.",
+                  "contraction of a stack: largest error [-]", radius, 1e-12),
+        agreement("The contraction of a mass ratio is the spectral radius of a sweep.",
+                  "contraction of a mass ratio: largest error [-]", heavy, 1e-12),
+        agreement("No relaxation does better than 2/(1 + √(1 − ρ)).", "radius beyond the best of a search [-]", best,
+                  1e-7),
+        agreement("With it a sweep leaves ω − 1.", "radius at the best relaxation: largest error [-]", left, 1e-7),
+        agreement("Friction is the point of the disc nearest to the impulse that would stick.",
+                  "largest violation of the law of the nearest point [N² s²]", max(off, 0.0), 1e-12)], None

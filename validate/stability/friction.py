@@ -1,13 +1,13 @@
 """Stick and slip: the edges and errors of the steps of lesson 3, compared with theory.
 
-Cases 31 to 37.  Edges are found by bisection of runs from rest, never from a formula.  A body that moves less than WAY
+Edges are found by bisection of runs from rest, never from a formula.  A body that moves less than WAY
 counts as at rest.  *Source:* Coulomb 1785 for the edges; each case derives the rest.
 """
 
 import numpy as np
 
 from solutions import integrators
-from solutions.friction import InBowl, OnPlane, make_block
+from solutions.friction import ParticleInBowl, ParticleOnPlane, make_block
 from validate.engines.friction import bullet_block, pymunk_block
 from validate.reference.friction import DrivenBlock, T, slip_limits, slip_position, slips
 from validate.stability.case import DOTS, EDGE, LINE, Picture, bisect, case, finding, refuses, series
@@ -30,17 +30,18 @@ def slope(degrees, mu_s, mu_k):
 def particle(degrees, mu):
     """Return the same for a particle on an implicit plane."""
     theta = np.radians(degrees)
-    return OnPlane(1.0, mu, 0.0, np.array([G * np.sin(theta), -G * np.cos(theta)]), np.zeros(2), np.array([0.0, 1.0]))
+    gravity = np.array([G * np.sin(theta), -G * np.cos(theta)])
+    return ParticleOnPlane(1.0, mu, 0.0, gravity, np.zeros(2), np.array([0.0, 1.0]))
 
 
 def moved(lesson, step, degrees, mu_s, mu_k, dt=0.02, steps=50):
     """Return the distance [m] that a body slides down from rest in one second with a step of this lesson."""
     still = np.zeros(2)
-    if step in ("contact_step", "gripping_step"):
-        x, _ = lesson.contact_motion(
+    if step in ("contact_step", "position_friction_step"):
+        x, _ = lesson.advance_particle(
             getattr(lesson, step),
             lesson.falling_acceleration,
-            lesson.plane_gap,
+            lesson.particle_plane_gap,
             0.0,
             still,
             still,
@@ -75,7 +76,7 @@ MAKERS = {
 LABEL = {
     "sliding_step": "sliding",
     "event_step": "event",
-    "gripping_step": "gripping",
+    "position_friction_step": "gripping",
     "contact_step": "contact",
     "pyramid_step": "pyramid",
 }
@@ -89,7 +90,7 @@ def stick_threshold(lesson):
     which is below 1e-8 here.  An engine knows a position only to ENGINE_WAY.
     """
     found, drawn, angles = [], [], (5.0, 10.0, 20.0, 30.0, 45.0, 60.0)
-    for step in ("sliding_step", "event_step", "gripping_step"):
+    for step in ("sliding_step", "event_step", "position_friction_step"):
         edges = []
         for degrees in angles:
             slid = lambda mu, step=step, degrees=degrees: moved(lesson, step, degrees, mu, 0.5 * mu)
@@ -283,7 +284,7 @@ def artificial_sliding(lesson):
             observation=(f"With steps of {MILLIMETRES * dt:g} ms a particle that should stay creeps at "
                          f"{MILLIMETRES * got:.3f} mm/s."),
         ))
-        got = creep("gripping_step", dt)
+        got = creep("position_friction_step", dt)
         found.append(finding(
             claim="Corrected along the tangent as well, it stays.",
             quantity=f"creep at 30°, gripping steps of {MILLIMETRES * dt:g} ms [m/s]",
@@ -300,7 +301,7 @@ def artificial_sliding(lesson):
         [
             series("g sin θ dt, theory", fine, pull * fine, LINE),
             series("contact, measured", dts, [creep("contact_step", dt) for dt in dts], DOTS),
-            series("gripping, measured", dts, [creep("gripping_step", dt) for dt in dts], DOTS),
+            series("gripping, measured", dts, [creep("position_friction_step", dt) for dt in dts], DOTS),
         ],
         "This creep vanishes as dt goes to zero, but it is there at every step that you can afford.",
     )
@@ -387,14 +388,15 @@ def curved_wall_order(lesson):
     v_N = v₀/√(1 + N (v₀ dt/R)²).  Over a given time the loss is of first order in dt.
     """
     found, radius, speed = [], 0.5, 2.0
-    p = InBowl(1.0, 0.0, 0.0, np.zeros(3), np.zeros(3), np.zeros(3), radius)
+    p = ParticleInBowl(1.0, 0.0, 0.0, np.zeros(3), np.zeros(3), np.zeros(3), radius)
     law = lambda dt, t: speed / np.sqrt(1.0 + t / dt * (speed * dt / radius) ** 2)
 
     def left(dt, t):
         x, v = np.array([radius, 0.0, 0.0]), np.array([0.0, 0.6 * speed, 0.8 * speed])
         return np.linalg.norm(
-            lesson.contact_motion(
-                lesson.contact_step, lesson.falling_acceleration, lesson.bowl_gap, 0.0, x, v, dt, round(t / dt), p
+            lesson.advance_particle(
+                lesson.contact_step, lesson.falling_acceleration, lesson.particle_bowl_gap, 0.0, x, v, dt,
+                round(t / dt), p
             )[1]
         )
 
@@ -444,13 +446,13 @@ def extreme_coefficients(lesson):
         "incline_acceleration": (0.1, minus, minus, G),
         "friction_impulse": (v, 1.0, 1.0, minus),
         "pyramid_impulse": (v, 1.0, 1.0, minus, t_1, t_1),
-        "contact_impulse": (v, n, 1.0, 0.0, minus),
+        "particle_contact_impulse": (v, n, 1.0, 0.0, minus),
         "sliding_step": (lesson.driven_acceleration, 0.0, still, still, 0.1, bad_block),
         "event_step": (lesson.driven_acceleration, 0.0, still, still, 0.1, bad_block),
-        "contact_motion": (
+        "advance_particle": (
             lesson.contact_step,
             lesson.falling_acceleration,
-            lesson.plane_gap,
+            lesson.particle_plane_gap,
             0.0,
             still,
             still,
@@ -468,7 +470,7 @@ def extreme_coefficients(lesson):
         tolerance=0.0,
         observation=f"{refused} of {len(asked)} functions refuse μ = −0.3 with a message that contains it.",
     ))
-    for step in ("sliding_step", "event_step", "gripping_step"):
+    for step in ("sliding_step", "event_step", "position_friction_step"):
         got = moved(lesson, step, 89.9, np.inf, np.inf)
         found.append(finding(
             claim="Infinite friction holds on any slope short of the vertical.",
@@ -478,7 +480,7 @@ def extreme_coefficients(lesson):
             tolerance=WAY,
             observation=f"With μ = ∞ the {LABEL[step]} step moves {got:g} m at 89.9°.",
         ))
-    for step in ("sliding_step", "gripping_step"):
+    for step in ("sliding_step", "position_friction_step"):
         got, dt, steps = moved(lesson, step, 30.0, 0.0, 0.0), 0.02, 50
         bound = 0.5 * G * np.sin(np.radians(30.0)) * steps * dt * (steps + 1) * dt
         found.append(finding(
@@ -502,7 +504,7 @@ def extreme_coefficients(lesson):
     ))
     exponents = np.linspace(-3.0, 6.0, 10)
     after = [
-        np.linalg.norm(lesson.contact_impulse(10.0**y * np.array([1.0, -1.0]), n, 1.0, 0.5, 0.4)) / 10.0**y
+        np.linalg.norm(lesson.particle_contact_impulse(10.0**y * np.array([1.0, -1.0]), n, 1.0, 0.5, 0.4)) / 10.0**y
         for y in exponents
     ]
     return found, Picture(

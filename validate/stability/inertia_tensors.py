@@ -1,14 +1,14 @@
 """Inertia tensors at the limits of floats and of bodies: lesson 4 far from the origin, for thin and for invalid bodies.
 
-40  a mesh far from the origin: its corners are rounded to the spacing of floats there, and no other error may appear;
-41  needles, plates, and impossible tensors: the edge between them.
+A mesh far from the origin: its corners are rounded to the spacing of floats there, and no other error may appear.
+Needles, plates, and impossible tensors: the edge between them.
 """
 
 import numpy as np
 
 from solutions.checks import BadInput
 from solutions.integrators import observed_order
-from validate.stability.case import DOTS, LINE, Picture, case, finding, series
+from validate.stability.case import DOTS, LINE, Picture, agreement, case, finding, series
 
 SPACING = 2.0**-52           # of floats around 1 [-]; a coordinate has half of it as relative rounding error
 PLACES = 64  # directions in which the body is moved: the mean square of so many errors is known to 18 %
@@ -152,8 +152,8 @@ def turned(moments, rng):
 
 @case("thin-bodies", "Needles, plates, and impossible tensors", compiled=False)
 def thin_bodies(lesson):
-    """I₁ + I₂ − I₃ = 2 ∫ z² dm ≥ 0, and I₁ > 0; both to ε = TENSOR_ROUND_OFF, which round-off must not exceed."""
-    epsilon, rng = lesson.TENSOR_ROUND_OFF, np.random.default_rng(41)
+    """I₁ + I₂ − I₃ = 2 ∫ z² dm ≥ 0, and I₁ > 0; both to ε = MOMENT_ROUND_OFF, which round-off must not exceed."""
+    epsilon, rng = lesson.MOMENT_ROUND_OFF, np.random.default_rng(41)
     top = last_that_passes(lambda m: lesson.check_inertia(np.diag(np.array([1.0, 2.0, m]))), 2.5, 4.0)
     thin = last_that_passes(lambda m: lesson.check_inertia(np.diag(np.array([m, 1.0, 1.0]))), 0.5, 0.0)
     found = [
@@ -211,3 +211,31 @@ def thin_bodies(lesson):
         "The inverse of a rotated tensor loses a digit per factor of ten between the largest and the smallest "
         "moment. In its principal axes it would lose none.",
     )
+
+
+@case("momenta", "Momenta of a body that moves and rotates", compiled=False)
+def momenta(lesson):
+    """P = M V,  L about the centre = I ω,  L about any other point = I ω + (X − about) × M V.
+
+    The tensor is summed in coordinates: I_jk = Σ m (r² δ_jk − r_j r_k).
+    """
+    rng, worst = np.random.default_rng(43), {"P": 0.0, "centre": 0.0, "about": 0.0}
+    for _ in range(50):
+        m, x = rng.uniform(0.5, 2.0, 7), rng.normal(size=(7, 3))
+        V, omega, about = rng.normal(size=(3, 3))
+        X = np.average(x, axis=0, weights=m)
+        r = x - X
+        v = V + np.cross(omega, r)
+        I = sum(m_i * (r_i @ r_i * np.eye(3) - np.outer(r_i, r_i)) for m_i, r_i in zip(m, r, strict=True))
+        P, L = m.sum() * V, I @ omega
+        moved = L + np.cross(X - about, P)
+        for name, got, truth in (("P", lesson.linear_momentum(m, v), P),
+                                 ("centre", lesson.angular_momentum(m, x, v, X), L),
+                                 ("about", lesson.angular_momentum(m, x, v, about), moved)):
+            worst[name] = max(worst[name], np.linalg.norm(got - truth) / np.linalg.norm(truth))
+    names = (
+        ("P", "The momentum of a body is its mass times the velocity of its centre.", "linear momentum"),
+        ("centre", "About its centre the angular momentum of a body is I ω.", "angular momentum about the centre"),
+        ("about", "About another point the momentum of the centre is added.", "angular momentum about a point"))
+    return [agreement(claim, f"{quantity}: largest relative error [-]", worst[name], 1e-12)
+            for name, claim, quantity in names], None

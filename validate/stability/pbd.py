@@ -1,6 +1,6 @@
 """Softness of constraints that should not stretch, and the cost of sweeps and steps: lesson 8 compared with theory.
 
-Cases 9, 12 and 81 to 86.  Most bodies hang straight down or move in a circle.  A sweep is then a linear map, and its
+Most bodies hang straight down or move in a circle.  A sweep is then a linear map, and its
 result is known in closed form.  *Source:* Müller et al. 2006, Macklin et al. 2016 and 2019; each case derives the rest.
 """
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from solutions import integrators
 from solutions.checks import Diverged
-from solutions.pbd import Net
+from solutions.pbd import ConstraintNetwork
 from validate.reference.pbd import pendulum_period
 from validate.stability.case import DOTS, LINE, Picture, case, finding, refuses, series
 
@@ -18,10 +18,10 @@ ROUND_OFF = 1e-12            # of positions around 1 m after a thousand visits t
 SETTLED = 1e-10              # distance to rest at which a run ends [m]
 
 
-def net(masses, stiffness=1.0, alpha=0.0, sweeps=1, g=G, l=1.0):
-    """A Net of one hanging chain: masses [kg] from top to bottom under a fixed point, links of l [m]."""
+def network(masses, stiffness=1.0, alpha=0.0, sweeps=1, g=G, l=1.0):
+    """A ConstraintNetwork of one hanging chain: masses [kg] from top to bottom under a fixed point, links of l [m]."""
     n = len(masses)
-    return Net(
+    return ConstraintNetwork(
         np.array([0.0, *(1.0 / m for m in masses)]),
         np.array([0.0, -g]),
         np.arange(n),
@@ -41,7 +41,7 @@ def straight(n, l=1.0):
 def settle(lesson, step, p, x, dt, steps):
     """Return the positions of a chain after so many steps from rest, or NaN if the run diverges."""
     try:
-        return integrators.advance(getattr(lesson, step), lesson.falling_acceleration, 0.0, x, 0.0 * x, dt, steps, p)[0]
+        return integrators.advance(getattr(lesson, step), lesson.network_gravity, 0.0, x, 0.0 * x, dt, steps, p)[0]
     except Diverged:
         return np.full_like(x, np.nan)
 
@@ -64,7 +64,7 @@ def stiffness_depends_on_dt(lesson):
         S = (1.0 - s) ** n
         bound = G * dt * dt * S / (1.0 - S)
         name = f"stiffness {s}, {n} {'sweep' if n == 1 else 'sweeps'}, dt = 1/{round(1 / dt)} s"
-        got = stretch(settle(lesson, "pbd_step", net([1.0], s, 0.0, n), straight(1), dt, steps))[0]
+        got = stretch(settle(lesson, "pbd_step", network([1.0], s, 0.0, n), straight(1), dt, steps))[0]
         found.append(finding(
             claim=("PBD's stiffness depends on the step and on the sweeps: a weight sags by g dt² S/(1 − S), S = (1 "
                    "− s)ⁿ."),
@@ -83,7 +83,7 @@ def stiffness_depends_on_dt(lesson):
             tolerance=MILLIMETRES * ROUND_OFF,
             observation=f"pbd_sag returns {MILLIMETRES * said:.4f} mm.",
         ))
-    heavy = stretch(settle(lesson, "pbd_step", net([1000.0], 0.5), straight(1), 1.0 / 60.0, steps))[0]
+    heavy = stretch(settle(lesson, "pbd_step", network([1000.0], 0.5), straight(1), 1.0 / 60.0, steps))[0]
     found.append(finding(
         claim="The sag does not depend on the mass, so the link is not a spring.",
         quantity="sag of a thousand times the mass [mm]",
@@ -97,7 +97,7 @@ def stiffness_depends_on_dt(lesson):
     drawn = []
     for n, name in ((1, "1 sweep"), (3, "3 sweeps")):
         bounds = G * fine**2 * 0.5**n / (1.0 - 0.5**n)
-        chains = [settle(lesson, "pbd_step", net([1.0], 0.5, 0.0, n), straight(1), dt, steps) for dt in dots]
+        chains = [settle(lesson, "pbd_step", network([1.0], 0.5, 0.0, n), straight(1), dt, steps) for dt in dots]
         sags = [stretch(x)[0] for x in chains]
         drawn += [
             series(f"{name}, theory", np.log10(fine), np.log10(MILLIMETRES * bounds), LINE),
@@ -123,7 +123,7 @@ def compliance(lesson):
     for dt in (1.0 / 30.0, 1.0 / 60.0, 1.0 / 240.0):
         for n in (1, 7):
             k = m / dt**2
-            got = stretch(settle(lesson, "xpbd_step", net([m], 1.0, 1.0 / k, n), straight(1), dt, 80))[0]
+            got = stretch(settle(lesson, "xpbd_step", network([m], 1.0, 1.0 / k, n), straight(1), dt, 80))[0]
             found.append(finding(
                 claim=("A compliance is a property of the spring: the weight sags by m g/k for any step and any "
                        "number of sweeps."),
@@ -141,7 +141,7 @@ def compliance(lesson):
         x, v = straight(1), np.array([[0.0, 0.0], [0.0, -1.0]])
         state, theory, run = np.array([-sag, 1.0]), [0.0], [0.0]
         for _ in range(steps):
-            x, v = lesson.xpbd_step(lesson.falling_acceleration, 0.0, x, v, dt, net([m], 1.0, 1.0 / k, 3))
+            x, v = lesson.xpbd_step(lesson.network_gravity, 0.0, x, v, dt, network([m], 1.0, 1.0 / k, 3))
             state = M @ state
             theory.append(state[0] + sag)
             run.append(stretch(x)[0])
@@ -205,7 +205,7 @@ def unconverged_iterations(lesson):
     x = straight(N)
     for sweeps in (1, 5, 20):
         bound = left_over([1.0] * N, sweeps, dt)
-        got = stretch(settle(lesson, "pbd_step", net([1.0] * N, 1.0, 0.0, sweeps), x, dt, patience(N, sweeps)))
+        got = stretch(settle(lesson, "pbd_step", network([1.0] * N, 1.0, 0.0, sweeps), x, dt, patience(N, sweeps)))
         found.append(finding(
             claim="With too few sweeps a chain is soft, by the amount that the theory of Gauss–Seidel iteration gives.",
             quantity=f"{N} links, {sweeps} {'sweep' if sweeps == 1 else 'sweeps'} of 1/60 s: end too low by [mm]",
@@ -227,7 +227,7 @@ def unconverged_iterations(lesson):
             ))
     fine, dots = np.arange(1, 61), (1, 2, 5, 10, 20)
     bounds = [left_over([1.0] * N, n, dt).sum() for n in fine]
-    low = lambda n: stretch(settle(lesson, "pbd_step", net([1.0] * N, 1.0, 0.0, n), x, dt, patience(N, n))).sum()
+    low = lambda n: stretch(settle(lesson, "pbd_step", network([1.0] * N, 1.0, 0.0, n), x, dt, patience(N, n))).sum()
     return found, Picture(
         "Sweeps and softness",
         "log₁₀ of the sweeps",
@@ -254,7 +254,7 @@ def mass_ratio(lesson):
     for r in ratios:
         # The lower link starts too long: the first sweep makes the upper one wrong.
 
-        p = net([1.0, r])
+        p = network([1.0, r])
         x = straight(2)
         errors = []
         x[2, 1] -= 0.01
@@ -303,9 +303,9 @@ def circling(lesson, step, turn, steps):
 
     The weight moves in a circle; its first tangential speed is that angle times the radius per step.
     """
-    p, x, v, angles = net([1.0], g=0.0), straight(1), np.array([[0.0, 0.0], [1.0, 0.0]]), []
+    p, x, v, angles = network([1.0], g=0.0), straight(1), np.array([[0.0, 0.0], [1.0, 0.0]]), []
     for _ in range(steps):
-        new, v = getattr(lesson, step)(lesson.falling_acceleration, 0.0, x, v, turn, p)
+        new, v = getattr(lesson, step)(lesson.network_gravity, 0.0, x, v, turn, p)
         angles.append(np.arctan2(new[1, 0] * -x[1, 1] + new[1, 1] * x[1, 0], new[1] @ x[1]))
         x = new
     return np.array(angles)
@@ -317,14 +317,14 @@ def projection_dissipation(lesson):
 
     A step goes along the last chord and is projected back radially:  tan β = sin α/(2 − cos α)  for the next angle,
     after tan α = ω dt for the first.  β ≈ α − α³, so 1/α² grows by 2 per step and  ω_N ≈ ω/√(1 + 2N(ω dt)²).  The
-    loss is twice that of a curved wall (stability case 36).  PBD and the projection method lose the same.
+    loss is twice that of a curved wall (friction/curved-wall-order).  PBD and the projection method lose the same.
     """
     found, steps, drawn = [], 200, []
     for turn in (0.2, 0.05):
         theory = [np.arctan(turn)]
         for _ in range(steps - 1):
             theory.append(np.arctan(np.sin(theory[-1]) / (2.0 - np.cos(theory[-1]))))
-        for step, label in (("pbd_step", "PBD"), ("projection_step", "projection")):
+        for step, label in (("pbd_step", "PBD"), ("constraint_projection_step", "constraint_correction")):
             got = circling(lesson, step, turn, steps)
             found.append(finding(
                 claim=("Projection slows a circling weight: tan β = sin α/(2 − cos α), so 1/ω² grows by nearly 2 dt² "
@@ -374,8 +374,8 @@ def substeps_vs_iterations(lesson):
     found, N, frame = [], 8, 1.0 / 60.0
     x, once = straight(N), 0.5 * N * (N - 1) * G * frame**2
     ways = {
-        "sweeps": lambda n: settle(lesson, "xpbd_step", net([1.0] * N, sweeps=n), x, frame, patience(N, n)),
-        "substeps": lambda n: settle(lesson, "xpbd_step", net([1.0] * N), x, frame / n, patience(N, 1)),
+        "sweeps": lambda n: settle(lesson, "xpbd_step", network([1.0] * N, sweeps=n), x, frame, patience(N, n)),
+        "substeps": lambda n: settle(lesson, "xpbd_step", network([1.0] * N), x, frame / n, patience(N, 1)),
     }
     theory = {"sweeps": lambda n: left_over([1.0] * N, n, frame).sum(), "substeps": lambda n: once / n**2}
     for way in ways:
@@ -428,7 +428,7 @@ def extremes(lesson):
         "gravity": (0.0, -G),
         "sweeps": 1,
     }
-    make = lambda **more: lesson.make_net(*(valid | more).values())
+    make = lambda **more: lesson.make_constraint_network(*(valid | more).values())
     asked = (
         lambda: make(alpha=-1e-3),
         lambda: make(alpha=np.nan),
@@ -442,10 +442,10 @@ def extremes(lesson):
         lambda: make(sweeps=0),
         lambda: make(gravity=(0.0, np.inf)),
         lambda: lesson.distance_constraint(x[0], x[0], 1.0),
-        lambda: lesson.projection(1.0, np.ones((2, 3)), np.zeros(2)),
-        lambda: lesson.projection(1.0, np.zeros((2, 3)), np.ones(2)),
-        lambda: lesson.distance_sweep(same, net([1.0, 1.0])),
-        lambda: lesson.compliant_sweep(same, np.zeros(2), 0.1, net([1.0, 1.0])),
+        lambda: lesson.constraint_correction(1.0, np.ones((2, 3)), np.zeros(2)),
+        lambda: lesson.constraint_correction(1.0, np.zeros((2, 3)), np.ones(2)),
+        lambda: lesson.distance_sweep(same, network([1.0, 1.0])),
+        lambda: lesson.compliant_sweep(same, np.zeros(2), 0.1, network([1.0, 1.0])),
         lambda: lesson.fold_constraint(three, 0.0),
         lambda: lesson.fold_constraint(flat, 0.0),
         lambda: lesson.compliant_multiplier(0.1, 0.0, 1.0, -1e-3),
@@ -462,7 +462,7 @@ def extremes(lesson):
         observation=f"{refused} of {len(asked)} impossible inputs are refused.",
     )]
     dt, steps = 0.01, 50
-    fallen = stretch(settle(lesson, "xpbd_step", net([1.0], 1.0, 1e12), straight(1), dt, steps))[0]
+    fallen = stretch(settle(lesson, "xpbd_step", network([1.0], 1.0, 1e12), straight(1), dt, steps))[0]
     bound = 0.5 * G * steps * dt * (steps + 1) * dt
     found.append(finding(
         claim="A spring of vanishing stiffness lets the weight fall freely.",
@@ -473,7 +473,7 @@ def extremes(lesson):
         observation=f"On a compliance of 10¹² m/N a weight falls {fallen:.6f} m in half a second.",
     ))
     stiff, hard = (
-        settle(lesson, step, net([1.0, 1.0], 1.0, 0.0, 5), x, dt, steps) for step in ("xpbd_step", "pbd_step")
+        settle(lesson, step, network([1.0, 1.0], 1.0, 0.0, 5), x, dt, steps) for step in ("xpbd_step", "pbd_step")
     )
     found.append(finding(
         claim="Without compliance XPBD is PBD.",
@@ -484,9 +484,9 @@ def extremes(lesson):
         observation="Without compliance XPBD and PBD give the same positions.",
     ))
     ratio, dt, lengths = 1e6, 1.0 / 60.0, []
-    y, v, p = x, 0.0 * x, net([1.0, ratio], 1.0, 0.0, 10)
+    y, v, p = x, 0.0 * x, network([1.0, ratio], 1.0, 0.0, 10)
     for _ in range(300):
-        y, v = lesson.pbd_step(lesson.falling_acceleration, 0.0, y, v, dt, p)
+        y, v = lesson.pbd_step(lesson.network_gravity, 0.0, y, v, dt, p)
         lengths.append(max(stretch(y).sum(), 0.0))
     bounded = max(lengths) <= 0.5 * G * (301 * dt) ** 2 and np.all(np.isfinite(y))
     found.append(finding(
@@ -499,7 +499,8 @@ def extremes(lesson):
     ))
     exponents = np.linspace(-9.0, 0.0, 10)
     sags = [
-        stretch(settle(lesson, "xpbd_step", net([1.0], 1.0, 10.0**y, 1), straight(1), 1.0, 400))[0] for y in exponents
+        stretch(settle(lesson, "xpbd_step", network([1.0], 1.0, 10.0**y, 1), straight(1), 1.0, 400))[0]
+        for y in exponents
     ]
     return found, Picture(
         "Any compliance",
@@ -518,12 +519,12 @@ def primitives(lesson):
     """Larger parts: a fold keeps its angle, a ball its volume, a rod its period, and no point stays inside an obstacle.
 
     A weightless fold of stiffness 1 reaches its angle by Newton's method in a few visits.  A ball without gravity
-    and with no compliance of its air settles at its volume.  Neither exerts a net external force.  The rod's
+    and with no compliance of its air settles at its volume.  Neither exerts a network external force.  The rod's
     quarter period, extrapolated from steps of dt and dt/2, is off by a few (ω dt)² of its value.
     """
     found, quiet = [], np.zeros(3)
     x = np.array([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.4, 0.1], [-0.9, 0.6, 0.5]])
-    loose = Net(
+    loose = ConstraintNetwork(
         np.array([1.0, 2.0, 1.0, 0.5]),
         quiet,
         np.zeros(0, dtype=np.int64),
@@ -560,12 +561,12 @@ def primitives(lesson):
     corners = np.concatenate([[axis, -axis] for axis in np.eye(3)])
     faces = np.array([[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]])
     # The links are almost infinitely compliant, so only the air is tested.
-    net_ = lesson.make_net(corners, 1.0, [], lesson.shared_edges(faces)[0], 1e9, 1.0, quiet, 5)
+    net_ = lesson.make_constraint_network(corners, 1.0, [], lesson.shared_edges(faces)[0], 1e9, 1.0, quiet, 5)
     y, v = corners * [1.2, 0.9, 1.0], 0.0 * corners
     # Newton's method: five visits square the error five times.
     ball = lesson.Balloon(net_, faces, 2.0, 0.0, nowhere)
     for _ in range(10):
-        y, v = lesson.balloon_step(lesson.falling_acceleration, 0.0, y, v, 0.05, ball)
+        y, v = lesson.balloon_step(lesson.network_gravity, 0.0, y, v, 0.05, ball)
     volume, drift = lesson.volume_gradient(y, faces)[0], np.abs(v.sum(axis=0)).max()
     found.append(finding(
         claim="A ball reaches its rest volume.",
@@ -586,7 +587,7 @@ def primitives(lesson):
 
     half, theta = 0.3, 0.5
     moment = (2.0 * half) ** 2 / 12.0
-    rod = lesson.Hung(
+    rod = lesson.PivotedBody(
         1.0, np.array([moment, moment, 1e-4]), np.array([0.0, 0.0, -G]), quiet, np.array([0.0, 0.0, half]), 3
     )
     bound = 0.25 * pendulum_period(theta, (moment + half**2) / half, G)
@@ -607,11 +608,11 @@ def primitives(lesson):
     triangles = np.array([t for a in firsts for t in ((a, a + 1, a + n), (a + 1, a + n + 1, a + n))])
     edges, hinges = lesson.shared_edges(triangles)
     thrown = lesson.Obstacle(np.array([0.45, 0.4, 0.0]), 0.3, np.array([0.0, 0.0, -0.25]), np.array([0.0, 0.0, 1.0]))
-    weave = lesson.make_net(sheet, 0.1, [], edges, 0.0, 1.0, (0.0, 0.0, -G), 3)
+    weave = lesson.make_constraint_network(sheet, 0.1, [], edges, 0.0, 1.0, (0.0, 0.0, -G), 3)
     cloth = lesson.Cloth(weave, hinges, np.zeros(len(hinges)), 0.1, thrown)
     v, depth = 0.0 * sheet, 0.0
     for _ in range(40):
-        sheet, v = lesson.cloth_step(lesson.falling_acceleration, 0.0, sheet, v, 0.02, cloth)
+        sheet, v = lesson.cloth_step(lesson.network_gravity, 0.0, sheet, v, 0.02, cloth)
         depth = max(depth, 0.3 - np.linalg.norm(sheet - thrown.centre, axis=1).min(), -0.25 - sheet[:, 2].min())
     found.append(finding(
         claim="At the end of a step no point of a cloth is inside an obstacle.",
@@ -631,7 +632,8 @@ def primitives(lesson):
         [
             series("theory", fine, [period(a) for a in fine], LINE),
             series(
-                "hung_step, 5 ms, measured", dots, [quarter_period(lesson, rod, half, a, 0.005) for a in dots], DOTS
+                "pivoted_body_step, 5 ms, measured", dots,
+                [quarter_period(lesson, rod, half, a, 0.005) for a in dots], DOTS
             ),
         ],
         "To constrain a rigid body, projection needs the generalised inverse mass and nothing else that a point lacks.",
@@ -647,6 +649,6 @@ def quarter_period(lesson, rod, half, theta, dt):
     x, v, omega, t = half * np.array([np.sin(theta), 0.0, -np.cos(theta)]), np.zeros(3), np.zeros(3), 0.0
     while x[0] > 0.0 and t < 2.0:
         before = x[0]
-        x, v, q, omega = lesson.hung_step(t, x, v, q, omega, dt, rod)
+        x, v, q, omega = lesson.pivoted_body_step(t, x, v, q, omega, dt, rod)
         t += dt
     return t - dt * x[0] / (x[0] - before)

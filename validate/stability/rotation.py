@@ -1,7 +1,7 @@
 """Rotation at its limits: energy drift, fast spins, needles, and the spin below which a sleeping top falls.
 
-Every bound here is a closed form; the experiment is a run of the lesson's own steps.  Cases 11, 14, 15 and 17 of the
-workbook's list.  (pybullet silently limits a turn to π/4 per step, 785 rad/s at a millisecond, so case 14 omits it.)
+Every bound here is a closed form; the experiment is a run of the lesson's own steps.
+pybullet silently limits a turn to π/4 per step, 785 rad/s at a millisecond, so fast-spin omits it.
 *Source:* Euler 1758; Landau and Lifshitz, Mechanics, §§ 33 to 37; Klein and Sommerfeld 1897 for the sleeping top.
 """
 
@@ -11,7 +11,7 @@ from solutions.checks import Diverged
 from validate.methods import TURNS
 from validate.reference.orientation import quaternion_matrix, relative_turn
 from validate.reference.rotation import symmetric_top
-from validate.stability.case import DOTS, EDGE, LINE, Picture, bisect, case, finding, series
+from validate.stability.case import DOTS, EDGE, LINE, Picture, agreement, bisect, case, finding, series
 
 EPS = 1.2e-16                # relative size of a rounding
 LABEL = {method.function: method.label for method in TURNS}
@@ -24,9 +24,9 @@ def released(lesson, method, I, omega, dt, steps):
 
     Raises Diverged where the step refuses.
     """
-    body = lesson.Body(1.0, np.array(I))
+    body = lesson.RigidBody(1.0, np.array(I))
     L = body.I_body * np.array(omega)
-    q, end = lesson.tumble(getattr(lesson, method), lesson.no_torque, 0.0, AT_START, L, dt, steps, body)
+    q, end = lesson.advance_rotation(getattr(lesson, method), lesson.no_torque, 0.0, AT_START, L, dt, steps, body)
     energy = lesson.kinetic_energy(q, end, body.I_body) / lesson.kinetic_energy(AT_START, L, body.I_body)
     return quaternion_matrix(*q), end, energy
 
@@ -41,11 +41,12 @@ def tried(lesson, method, I, omega, dt, steps):
 
 def energies(lesson, method, I, omega, dt, ts):
     """Return the energy over its initial value at the times ts; the step must not refuse."""
-    body, q, now, found = lesson.Body(1.0, np.array(I)), AT_START, 0.0, []
+    body, q, now, found = lesson.RigidBody(1.0, np.array(I)), AT_START, 0.0, []
     L = body.I_body * np.array(omega)
     begin = lesson.kinetic_energy(q, L, body.I_body)
     for t in ts:
-        q, L = lesson.tumble(getattr(lesson, method), lesson.no_torque, now, q, L, dt, round((t - now) / dt), body)
+        q, L = lesson.advance_rotation(getattr(lesson, method), lesson.no_torque, now, q, L, dt,
+                                       round((t - now) / dt), body)
         now = t
         found.append(lesson.kinetic_energy(q, L, body.I_body) / begin)
     return np.array(found)
@@ -333,7 +334,7 @@ def tilts(lesson, spin, tilt, dt, seconds, look):
     L = ALONG * spin * np.array([0.0, -np.sin(tilt), np.cos(tilt)])
     yield tilt
     for n in range(round(seconds / (dt * look))):
-        q, L = lesson.tumble(
+        q, L = lesson.advance_rotation(
             lesson.composed_splitting_step, lesson.heavy_top_torque, n * look * dt, q, L, dt, look, top
         )
         yield 2.0 * np.arctan2(np.hypot(q[1], q[2]), np.hypot(q[0], q[3]))
@@ -422,3 +423,45 @@ def sleeping_top(lesson):
 def fallen(lesson, spin):
     """Return the largest tilt [rad] in 40 s from nearly upright: enough for one fall unless within 2 % of the edge."""
     return max(tilts(lesson, spin, 1e-5, 0.01, 40.0, 1))
+
+
+@case("loads-and-derivatives", "Loads, derivatives, and the tennis racket", compiled=False)
+def loads_and_derivatives(lesson):
+    """Forces do the same work as their sum and torque on every rigid motion: Σ f · (V + ω × r) = F · V + τ · ω.
+
+    Ṡ is compared with P/M, F, τ and ω × each axis, ω from a linear solve.  The growth rate of a disturbance is the
+    largest real part of the eigenvalues of Euler's equations, linearised by differences that are exact for them,
+    because they are quadratic.
+    """
+    rng, worst = np.random.default_rng(55), {"load": 0.0, "derivative": 0.0, "rate": 0.0}
+    for _ in range(50):
+        x, points, forces = rng.normal(size=3), rng.normal(size=(5, 3)), rng.normal(size=(5, 3))
+        F, tau = lesson.total_load(x, points, forces)
+        for V, omega in rng.normal(size=(6, 2, 3)):
+            work = np.sum(forces * (V + np.cross(omega, points - x)))
+            worst["load"] = max(worst["load"], abs(F @ V + tau @ omega - work) / np.sum(np.abs(forces)))
+
+        R, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+        R *= np.sign(np.linalg.det(R))
+        m, I_body = rng.uniform(0.5, 2.0), np.sort(rng.uniform(1.0, 1.9, 3))[rng.permutation(3)]
+        P, L, F, tau = rng.normal(size=(4, 3))
+        S = lesson.RigidBodyState(x, R, P, L)
+        rate = lesson.state_derivative(S, F, tau, lesson.RigidBody(m, I_body))
+        omega = np.linalg.solve(R @ np.diag(I_body) @ R.T, L)
+        truth = np.concatenate((P / m, np.stack([np.cross(omega, axis) for axis in R.T], axis=1).ravel(), F, tau))
+        got = np.concatenate([np.ravel(part) for part in rate])
+        worst["derivative"] = max(worst["derivative"], np.linalg.norm(got - truth) / np.linalg.norm(truth))
+
+        k, spin = int(rng.integers(3)), rng.choice([-1.0, 1.0]) * rng.uniform(0.5, 5.0)
+        euler = lambda w, I=I_body: np.cross(I * w, w) / I
+        about = spin * np.eye(3)[k]
+        matrix = np.stack([0.5 * (euler(about + e) - euler(about - e)) for e in np.eye(3)], axis=1)
+        growth = max(0.0, np.linalg.eigvals(matrix).real.max())
+        worst["rate"] = max(worst["rate"], abs(lesson.tumbling_rate(I_body, k, spin) - growth) / abs(spin))
+    return [
+        agreement("A load is what does the same work on every rigid motion.", "power: largest relative error [-]",
+                  worst["load"], 1e-12),
+        agreement("The state changes by P/M, ω × R, F and τ.", "derivative of the state: largest relative error [-]",
+                  worst["derivative"], 1e-12),
+        agreement("A rotation about the middle axis is unstable, with the rate of the linearised Euler equations.",
+                  "rate of growth over the spin: largest error [-]", worst["rate"], 1e-10)], None

@@ -336,7 +336,8 @@ def truth(p, t):
 def tolerance(p, dt):
     """Ours: a few hundred operations on numbers below 3, and normals known to round-off over a distance of 0.1: 1e-12.
 
-    GJK stops when it knows the distance to STOP = 1e-14 of the size.  That may leave points known only to its root,
+    GJK stops when it knows the distance to GJK_RELATIVE_GAP = 1e-14 of the size.  The points may be known only to the
+    root of that,
     but these bodies have corners, so the last step is exact.  pybullet's GJK stops when the squared distance is
     known to 1e-12 of itself and the points to 1e-6 of the distance: 1e-5 for all.  Around a hull of points it has a
     margin, which limits the accuracy of the gap and of the point on it.  pymunk's results are closed forms.

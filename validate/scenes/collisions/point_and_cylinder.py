@@ -1,6 +1,7 @@
 """Balls fly at an infinite cylinder, across its axis, at 1 to 10⁴ m/s: the discrete and the continuous test.
 
-This is deck B's worked question.  The discrete test runs after each step.  It finds a ball up to v dt inside, or misses
+This is the worked question of the second lecture deck.  The discrete test runs after each step.  It finds a ball up to
+v dt inside, or misses
 it, because a step longer than the path through the cylinder can pass it.  The continuous test solves for the first root
 and works with any step.
 """
@@ -10,7 +11,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.collisions import Plane, Target, cylinder_gap, cylinder_time, flight
+from solutions.collisions import Plane, Target, advance_projectiles, ball_cylinder_gap, ball_cylinder_time
 from validate.engines.collisions import (
     ENGINE_SPEEDS,
     PLACE_APART,
@@ -70,7 +71,7 @@ def with_others(p):
 
 def run(step, acceleration, state, p, dt, steps):
     x, v, goal = state
-    x, v = flight(step, cylinder_gap, cylinder_time, 0.0, x, v, dt, steps, goal)
+    x, v = advance_projectiles(step, ball_cylinder_gap, ball_cylinder_time, 0.0, x, v, dt, steps, goal)
     return x, v, goal
 
 

@@ -1,7 +1,7 @@
 """Balls fall on a plane at 1 to 10⁴ m/s, and stop where they are found to touch it.
 
-Deck A's test E(p) < 0 after each step finds them up to v dt below.  Its formula t + dt d₁/(d₁ + d₂) puts them back
-exactly, because the path is straight.  No ball passes a plane: it has no far side.
+The test of the first lecture deck, E(p) < 0 after each step, finds them up to v dt below the plane.  Its formula
+t + dt d₁/(d₁ + d₂) puts them back exactly, because the path is straight.  No ball passes a plane: it has no far side.
 """
 
 from typing import Annotated, NamedTuple
@@ -9,7 +9,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.collisions import Plane, Target, flight, plane_gap, plane_time
+from solutions.collisions import Plane, Target, advance_projectiles, ball_plane_gap, ball_plane_time
 from validate.engines.collisions import (
     ENGINE_SPEEDS,
     PLACE_APART,
@@ -65,7 +65,7 @@ def with_others(p):
 
 def run(step, acceleration, state, p, dt, steps):
     x, v, goal = state
-    x, v = flight(step, plane_gap, plane_time, 0.0, x, v, dt, steps, goal)
+    x, v = advance_projectiles(step, ball_plane_gap, ball_plane_time, 0.0, x, v, dt, steps, goal)
     return x, v, goal
 
 

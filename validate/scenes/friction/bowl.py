@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from solutions.checks import check_positive
-from solutions.friction import InBowl, bowl_gap, check_friction, contact_motion
+from solutions.friction import ParticleInBowl, advance_particle, check_friction, particle_bowl_gap
 from solutions.friction import falling_acceleration as acceleration
 from validate.engines.friction import SWEEPS, bullet_in_hollow
 from validate.methods import CONTACT, GRIPPING
@@ -47,12 +47,12 @@ def start(p):
         check_positive(name, getattr(p, name))
     check_friction(p.mu)
     axis = np.array([0.0, p.trough, 0.0])
-    return *place(p), InBowl(1.0, p.mu, 0.0, np.array([0.0, 0.0, -p.g]), np.zeros(3), axis, p.radius)
+    return *place(p), ParticleInBowl(1.0, p.mu, 0.0, np.array([0.0, 0.0, -p.g]), np.zeros(3), axis, p.radius)
 
 
 def run(step, acceleration, state, p, dt, steps):
     x, v, bowl = state
-    x, v = contact_motion(step, acceleration, bowl_gap, 0.0, x, v, dt, steps, bowl)
+    x, v = advance_particle(step, acceleration, particle_bowl_gap, 0.0, x, v, dt, steps, bowl)
     return x, v, bowl
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from solutions.checks import check_positive
-from solutions.impulses import Drop, check_restitution, drop_all
+from solutions.impulses import BouncingBall, advance_balls, check_restitution
 from solutions.impulses import falling_acceleration as acceleration
 from validate.engines.bullet import IMPACT_SETTINGS, Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_floor, pymunk_space, pymunk_world
@@ -62,12 +62,12 @@ def start(p):
     x, v = np.zeros((COPIES, d)), np.zeros((COPIES, d))
     x[:, -1], v[:, -1] = fallen(p)
     v[:, 0] = p.slip
-    return x, v, Drop(p.e, -p.g * up, np.zeros(d), up, p.omega**2, 2.0 * p.damping() * p.omega)
+    return x, v, BouncingBall(p.e, -p.g * up, np.zeros(d), up, p.omega**2, 2.0 * p.damping() * p.omega)
 
 
 def run(step, acceleration, state, p, dt, steps):
     x, v, drop = state
-    x, v = drop_all(step, acceleration, 0.0, x, v, dt, steps, drop)
+    x, v = advance_balls(step, acceleration, 0.0, x, v, dt, steps, drop)
     return x, v, drop
 
 
@@ -105,7 +105,7 @@ def seen(p, t, each):
 def truth(p, t):
     """Parabolas from impact to impact, eᵏ √(2gh) the speed after the k-th; at rest from  √(2h/g) (1 + e)/(1 − e)  on.
 
-    Source: deck A, coefficient of restitution; the geometric series.
+    Source: first lecture deck, coefficient of restitution; the geometric series.
     """
     before = delays(0.15)
     return seen(p, t, lambda k: flight(p, t + before[k]))

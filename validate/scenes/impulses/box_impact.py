@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.impulses import Solid, check_restitution
+from solutions.impulses import BodyState3D, check_restitution
 from validate.engines.bullet import Impacts
 from validate.engines.chipmunk import pymunk_space
 from validate.methods import IN_TURN, TOGETHER
@@ -47,7 +47,7 @@ CASES = {
 
 def supports(name, p):
     """Each engine in its own dimensions; points in sequence only where there is more than one."""
-    known = {"pymunk": p.flat == 1.0, "pybullet": p.flat == 0.0, "one_after_the_other": p.lands != "corner"}
+    known = {"pymunk": p.flat == 1.0, "pybullet": p.flat == 0.0, "sequential_impacts": p.lands != "corner"}
     return known.get(name, True)
 
 
@@ -79,7 +79,7 @@ def start(p):
         check_positive(name, getattr(p, name))
     check_restitution(p.e)
     y, n, r, inv_inertia = landing(p)
-    body = Solid(y[:3], y[3:], 1.0 / p.m, np.ascontiguousarray(inv_inertia))
+    body = BodyState3D(y[:3], y[3:], 1.0 / p.m, np.ascontiguousarray(inv_inertia))
     return body, r, np.tile(n, (len(r), 1)), ROUGH * p.rough
 
 
@@ -234,7 +234,7 @@ SCENE = Scene(
             "each point sees the body as the previous one left it, so that the order of the points counts", in_turn
         )
     },
-    orders={"solve_impacts": EXACT, "one_after_the_other": EXACT},
+    orders={"solve_impacts": EXACT, "sequential_impacts": EXACT},
     supports=supports,
     moves=False,
     refinement="",

@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.impulses import Discs, discs_all
+from solutions.impulses import Discs, advance_discs
 from validate.engines.bullet import IMPACT_SETTINGS, Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_space, pymunk_world
 from validate.methods import BACKTRACKING_DISCS, PROJECTING_DISCS
@@ -40,7 +40,7 @@ def start(p):
 
 def run(step, acceleration, state, p, dt, steps):
     x, v, discs = state
-    x, v = discs_all(step, x, v, dt, steps, discs)
+    x, v = advance_discs(step, x, v, dt, steps, discs)
     return x, v, discs
 
 

@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.impulses import Discs, check_restitution, discs_all
+from solutions.impulses import Discs, advance_discs, check_restitution
 from validate.engines.bullet import IMPACT_SETTINGS, Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_space, pymunk_world
 from validate.methods import BACKTRACKING_DISCS, PROJECTING_DISCS
@@ -44,7 +44,7 @@ def start(p):
 
 def run(step, acceleration, state, p, dt, steps):
     x, v, discs = state
-    x, v = discs_all(step, x, v, dt, steps, discs)
+    x, v = advance_discs(step, x, v, dt, steps, discs)
     return x, v, discs
 
 
@@ -69,7 +69,7 @@ def after(p):
 def truth(p, t):
     """Straight lines;  j = (1 + e) v cos θ/(1/m₁ + 1/m₂)  along the line of centres, sin θ = offset.
 
-    Source: deck A, "Computing impulse", without rotation.
+    Source: first lecture deck, "Computing impulse", without rotation.
     """
     v1, v2 = after(p)
     rest, rows = 2.0 * p.R * normal(p), []

@@ -6,7 +6,7 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.friction import check_friction
-from solutions.impulses import Spinner, check_restitution, spin_all
+from solutions.impulses import SpinningBall, advance_spinning_balls, check_restitution
 from solutions.impulses import falling_acceleration as acceleration
 from validate.engines.bullet import IMPACT_ITERATIONS, IMPACT_SETTINGS, Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_floor, pymunk_space, pymunk_world
@@ -56,12 +56,12 @@ def start(p):
     v[:, 0], v[:, 2], omega[:, 1] = p.v, -p.fall, -p.rim / p.R
     up = np.array([0.0, 0.0, 1.0])
     inv_inertia = np.eye(3) / (p.shape * p.m * p.R**2)
-    return x, v, omega, Spinner(p.e, p.mu, 1.0 / p.m, inv_inertia, p.R, np.zeros(3), np.zeros(3), up)
+    return x, v, omega, SpinningBall(p.e, p.mu, 1.0 / p.m, inv_inertia, p.R, np.zeros(3), np.zeros(3), up)
 
 
 def run(step, acceleration, state, p, dt, steps):
     x, v, omega, ball = state
-    x, v, omega = spin_all(step, acceleration, 0.0, x, v, omega, dt, steps, ball)
+    x, v, omega = advance_spinning_balls(step, acceleration, 0.0, x, v, omega, dt, steps, ball)
     return x, v, omega, ball
 
 

@@ -5,12 +5,12 @@ import numpy as np
 from solutions.checks import BadInput, check_positive
 from solutions.integrators import advance
 from validate.engines.integrators import KEPLER_ENGINES
-from validate.methods import INTEGRATORS, LEFT_TO_FULL
+from validate.methods import BLANES_MOAN, INTEGRATORS, LEFT_TO_FULL
 from validate.reference.integrators import Planet, kepler_limits, kepler_position, perihelion
 from validate.scene import LATE_LEAPFROG, Scene
 
 T = 20.0                     # [s]: three revolutions
-STEPS = (2000, 5000, 10000, 20000, 50000, 100000, 200000)
+STEPS = (500, 1000, 2000, 5000, 10000, 14000, 20000, 50000, 100000, 200000)
 
 CASES = {"e = 0.9": Planet(e=0.9)}
 
@@ -62,7 +62,7 @@ SCENE = Scene(
     cases=CASES,
     duration=T,
     steps=STEPS,
-    methods=INTEGRATORS,
+    methods=(*INTEGRATORS, BLANES_MOAN),
     acceleration=acceleration,
     start=start,
     run=run,

@@ -7,8 +7,8 @@ import numpy as np
 
 from solutions.checks import BadInput, check_positive
 from solutions.integrators import advance
-from solutions.pbd import falling_acceleration as acceleration
-from solutions.pbd import make_net
+from solutions.pbd import make_constraint_network
+from solutions.pbd import network_gravity as acceleration
 from validate.drawing import seen
 from validate.methods import XPBD
 from validate.reference.pbd import weave, weave_motion, weave_rest
@@ -58,14 +58,14 @@ def start(p):
     if p.sweeps < 1:
         raise BadInput("sweeps in a step", p.sweeps, "give 1 or more")
     flat = cloth(p)
-    net = make_net(flat.x, p.m, flat.held, flat.pairs, p.alpha, 1.0, (0.0, 0.0, -p.g), p.sweeps)
-    return (rest(p) if p.hanging else flat.x), np.zeros_like(flat.x), net
+    network = make_constraint_network(flat.x, p.m, flat.held, flat.pairs, p.alpha, 1.0, (0.0, 0.0, -p.g), p.sweeps)
+    return (rest(p) if p.hanging else flat.x), np.zeros_like(flat.x), network
 
 
 def run(step, acceleration, state, p, dt, steps):
-    x, v, net = state
-    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, net)
-    return x, v, net
+    x, v, network = state
+    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, network)
+    return x, v, network
 
 
 def observe(state, p):
@@ -167,8 +167,8 @@ SCENE = Scene(
     truth_uncertainty=UNCERTAINTY,
     tolerance=tolerance,
     engines=ENGINES,
-    omitted_methods=("PBD has no stiffness of its own to compare (stability case 9), and Newton's matrix would be "
-                     "dense, with 2,682 unknowns"),
+    omitted_methods=("PBD has no stiffness of its own to compare (stability case stiffness-depends-on-dt), "
+                     "and Newton's matrix would be dense, with 2,682 unknowns"),
     sanity_checks=sanity_checks,
     points=points,
     links=links,

@@ -6,10 +6,10 @@ import numpy as np
 
 from solutions.checks import BadInput, check_positive
 from solutions.integrators import advance
-from solutions.pbd import falling_acceleration as acceleration
-from solutions.pbd import make_net
+from solutions.pbd import make_constraint_network
+from solutions.pbd import network_gravity as acceleration
 from validate.engines.pbd import ITERATIONS, SHARE, bullet_rope, pymunk_rope
-from validate.methods import PBD, PROJECTION, RATTLE, XPBD
+from validate.methods import COMPOSED_ROPE, PBD, PROJECTION, RATTLE, ROPE, XPBD
 from validate.reference.pbd import pendulum_angle, pendulum_period
 from validate.scene import PYBULLET, PYMUNK, Departure, Engine, Scene, by_order
 
@@ -37,13 +37,13 @@ def start(p):
     if not 0.0 < p.degrees < 180.0:
         raise BadInput("the initial angle [°]", p.degrees, "give a number between 0 and 180")
     x = np.stack((np.zeros(2), place(np.radians(p.degrees), p)))
-    return x, np.zeros((2, 2)), make_net(x, p.m, [0], [(0, 1)], 0.0, 1.0, (0.0, -p.g), 1)
+    return x, np.zeros((2, 2)), make_constraint_network(x, p.m, [0], [(0, 1)], 0.0, 1.0, (0.0, -p.g), 1)
 
 
 def run(step, acceleration, state, p, dt, steps):
-    x, v, net = state
-    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, net)
-    return x, v, net
+    x, v, network = state
+    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, network)
+    return x, v, network
 
 
 def observe(state, p):
@@ -119,9 +119,9 @@ def links(p):
 
 def in_space(p):
     """The same motion with an unused third coordinate."""
-    x, v, net = start(p)
+    x, v, network = start(p)
     wide = lambda y: np.concatenate((y, np.zeros((2, 1))), axis=1)
-    return (wide(x), wide(v), net._replace(gravity=np.append(net.gravity, 0.0))), p
+    return (wide(x), wide(v), network._replace(gravity=np.append(network.gravity, 0.0))), p
 
 
 SCENE = Scene(
@@ -130,7 +130,7 @@ SCENE = Scene(
     cases=CASES,
     duration=T,
     steps=STEPS,
-    methods=(PROJECTION, PBD, XPBD, RATTLE),
+    methods=(PROJECTION, PBD, XPBD, RATTLE, ROPE, COMPOSED_ROPE),
     acceleration=acceleration,
     start=start,
     run=run,
@@ -159,6 +159,6 @@ SCENE = Scene(
     uses=("two coordinates", "one link", "one step function"),
     ablations={
         "the third dimension": in_space,
-        "rotation of the bob": "hung_step of this lesson has it: a rigid body on a pivot",
+        "rotation of the bob": "pivoted_body_step of this lesson has it: a rigid body on a pivot",
     },
 )

@@ -6,10 +6,10 @@ import numpy as np
 
 from solutions.checks import BadInput, check_positive
 from solutions.integrators import advance
-from solutions.pbd import falling_acceleration as acceleration
-from solutions.pbd import make_net
+from solutions.pbd import make_constraint_network
+from solutions.pbd import network_gravity as acceleration
 from validate.engines.pbd import ITERATIONS, SHARE, bullet_rope, pymunk_rope
-from validate.methods import PBD, PROJECTION, RATTLE, XPBD
+from validate.methods import COMPOSED_ROPE, PBD, PROJECTION, RATTLE, ROPE, XPBD
 from validate.reference.pbd import rope_energy, rope_lag, rope_motion, rope_places, rope_rates
 from validate.scene import PYBULLET, PYMUNK, Departure, Engine, Scene, by_order
 
@@ -39,13 +39,14 @@ def start(p):
     if p.sweeps < 1:
         raise BadInput("sweeps in a step", p.sweeps, "give 1 or more")
     x, n = np.concatenate((np.zeros((1, 2)), straight(p))), np.arange(p.links)
-    return x, 0.0 * x, make_net(x, p.m, [0], np.stack((n, n + 1), axis=1), 0.0, 1.0, (0.0, -p.g), p.sweeps)
+    pairs = np.stack((n, n + 1), axis=1)
+    return x, 0.0 * x, make_constraint_network(x, p.m, [0], pairs, 0.0, 1.0, (0.0, -p.g), p.sweeps)
 
 
 def run(step, acceleration, state, p, dt, steps):
-    x, v, net = state
-    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, net)
-    return x, v, net
+    x, v, network = state
+    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, network)
+    return x, v, network
 
 
 def observe(state, p):
@@ -71,24 +72,28 @@ def tolerance(p, dt):
     """First order by rope_lag: the modified equation, integrated by DOP853.
 
     Beyond that a step has an error of (ρ dt)³, dt² ∫ρ³ dt in all, where ρ(t) is the rope's fastest rate at that
-    time (rope_rates). PBD and XPBD stop their sweeps before all links have their length.  Even a single sweep
+    time (rope_rates).  For the fourth order it is dt⁴ ∫ρ⁵ dt.
+
+    PBD and XPBD stop their sweeps before all links have their length.  Even a single sweep
     leaves a link too long by at most the distance that its tension moves a point in one step, T dt²/m (stability
-    case 81 has it exactly).  That is up to N times as much in position; its share of l changes the forces, ∫ρ dt
-    times.
+    case stiffness-depends-on-dt has it exactly).  That is up to N times as much in position; its share of l changes
+    the forces, ∫ρ dt times.
     """
-    one, three, pull = rope_rates(p.links, p.l, p.m, p.g, T)
+    one, three, five, pull = rope_rates(p.links, p.l, p.m, p.g, T)
     size, of = np.linalg.norm(truth(p, T)), (p.links, p.l, p.m, p.g, T)
     second = three * dt**2 + by_order(0.0, T, dt)[2]
     first = rope_lag(*of, late=1.0, ahead=0.5) / size * dt + second
     soft = p.links**1.5 * pull / p.m * dt**2 * (1.0 + one) / size
     witness = rope_lag(*of, ahead=-0.5) / size * dt + second
     bodies = rope_lag(*of, inertia=SHARE * p.m * p.l**2, ahead=0.5) / np.linalg.norm(of_bodies(p, T)) * dt + second
-    return {1: first, 2: second, "PBD": first + soft, "XPBD": first + soft, "pymunk": witness, "pybullet": bodies}
+    fourth = five * dt**4 + by_order(0.0, T, dt)[4]
+    ours = {1: first, 2: second, 4: fourth, "PBD": first + soft, "XPBD": first + soft}
+    return {**ours, "pymunk": witness, "pybullet": bodies}
 
 
 def supports(name, p):
     """The projection method for ropes whose matrix is not too large."""
-    return p.links <= 20 or name != "projection_step"
+    return p.links <= 20 or name != "constraint_projection_step"
 
 
 def pymunk_make(p, dt):
@@ -145,9 +150,9 @@ def links(p):
 
 def in_space(p):
     """The same motion with an unused third coordinate."""
-    x, v, net = start(p)
+    x, v, network = start(p)
     wide = lambda y: np.concatenate((y, np.zeros((len(y), 1))), axis=1)
-    return (wide(x), wide(v), net._replace(gravity=np.append(net.gravity, 0.0))), p
+    return (wide(x), wide(v), network._replace(gravity=np.append(network.gravity, 0.0))), p
 
 
 SCENE = Scene(
@@ -156,7 +161,7 @@ SCENE = Scene(
     cases=CASES,
     duration=T,
     steps=STEPS,
-    methods=(PROJECTION, PBD, XPBD, RATTLE),
+    methods=(PROJECTION, PBD, XPBD, RATTLE, ROPE, COMPOSED_ROPE),
     acceleration=acceleration,
     start=start,
     run=run,

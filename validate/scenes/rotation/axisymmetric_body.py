@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput
-from solutions.rotation import Body, check_moments, tumble
+from solutions.rotation import RigidBody, advance_rotation, check_moments
 from solutions.rotation import no_torque as acceleration
 from validate import drawing
 from validate.drawing import axes_seen, omega_and_L, pose
@@ -42,12 +42,12 @@ def start(p):
     check_moments(p.moments())
     if not np.any(p.omega()):
         raise BadInput("the angular velocity ω [rad/s]", 0.0, "let the body turn")
-    return np.array([1.0, 0.0, 0.0, 0.0]), p.moments() * p.omega(), Body(1.0, p.moments())
+    return np.array([1.0, 0.0, 0.0, 0.0]), p.moments() * p.omega(), RigidBody(1.0, p.moments())
 
 
 def run(step, acceleration, state, p, dt, steps):
     q, L, body = state
-    q, L = tumble(step, acceleration, 0.0, q, L, dt, steps, body)
+    q, L = advance_rotation(step, acceleration, 0.0, q, L, dt, steps, body)
     return q, L, body
 
 

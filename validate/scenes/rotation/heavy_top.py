@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput, check_positive
-from solutions.rotation import Top, check_moments, exponential, tumble
+from solutions.rotation import Top, advance_rotation, check_moments, exponential
 from solutions.rotation import heavy_top_torque as acceleration
 from validate import drawing
 from validate.engines.bullet import Rigid
@@ -47,7 +47,7 @@ def start(p):
 
 def run(step, acceleration, state, p, dt, steps):
     q, L, top = state
-    q, L = tumble(step, acceleration, 0.0, q, L, dt, steps, top)
+    q, L = advance_rotation(step, acceleration, 0.0, q, L, dt, steps, top)
     return q, L, top
 
 

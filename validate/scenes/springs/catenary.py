@@ -8,8 +8,8 @@ from scipy.optimize import brentq
 
 from solutions.checks import check_positive
 from solutions.integrators import advance
-from solutions.springs import make_mesh
-from solutions.springs import mesh_acceleration as acceleration
+from solutions.springs import make_spring_network
+from solutions.springs import spring_network_acceleration as acceleration
 from validate.engines.bullet import Bullet
 from validate.engines.springs import pymunk_net
 from validate.methods import IMPLICIT_MESH, INTEGRATORS, LEFT_TO_FULL
@@ -18,7 +18,8 @@ from validate.scene import PYBULLET, PYMUNK, Engine, EngineRun, Scene
 
 T = 1.2                      # [s]: one period of the slowest mode, nearly two of the sagging mode
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
-# implicit methods build a dense matrix at every correction, and the mesh's own takes seconds to compile: see spring_net
+# Implicit methods build a dense matrix at every correction, and the network's own takes seconds to compile:
+# see spring_net.
 UNCERTAINTY = 1e-11
 
 
@@ -81,13 +82,13 @@ def net(p):
 def start(p):
     for name in ("links", "m", "k", "rest", "span"):
         check_positive(name, getattr(p, name))
-    return state_of(net(p), make_mesh)
+    return state_of(net(p), make_spring_network)
 
 
 def run(step, acceleration, state, p, dt, steps):
-    x, v, mesh = state
-    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, mesh)
-    return x, v, mesh
+    x, v, network = state
+    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, network)
+    return x, v, network
 
 
 def observe(state, p):
@@ -166,7 +167,7 @@ def sanity_checks():
 
 def in_space(p):
     """The same motion with an unused third coordinate."""
-    return state_of(net(p).padded(), make_mesh), p
+    return state_of(net(p).padded(), make_spring_network), p
 
 
 SCENE = Scene(
@@ -184,7 +185,7 @@ SCENE = Scene(
     truth_uncertainty=UNCERTAINTY,
     tolerance=tolerance,
     engines=ENGINES,
-    slow_methods=(*LEFT_TO_FULL, "implicit_mesh_step"),
+    slow_methods=(*LEFT_TO_FULL, "implicit_spring_network_step"),
     sanity_checks=sanity_checks,
     points=points,
     links=links,

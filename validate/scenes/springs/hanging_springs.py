@@ -6,8 +6,8 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.integrators import advance
-from solutions.springs import make_mesh
-from solutions.springs import mesh_acceleration as acceleration
+from solutions.springs import make_spring_network
+from solutions.springs import spring_network_acceleration as acceleration
 from validate.engines.springs import pymunk_net
 from validate.methods import IMPLICIT_MESH, INTEGRATORS
 from validate.reference.springs import Net, by_mode, state_of
@@ -45,13 +45,13 @@ def net(p):
 def start(p):
     for name in ("springs", "m", "k", "rest"):
         check_positive(name, getattr(p, name))
-    return state_of(net(p), make_mesh)
+    return state_of(net(p), make_spring_network)
 
 
 def run(step, acceleration, state, p, dt, steps):
-    x, v, mesh = state
-    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, mesh)
-    return x, v, mesh
+    x, v, network = state
+    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, network)
+    return x, v, network
 
 
 def observe(state, p):
@@ -130,7 +130,7 @@ def sanity_checks():
 
 def in_space(p):
     """The same motion with two unused coordinates."""
-    return state_of(net(p).padded(), make_mesh), p
+    return state_of(net(p).padded(), make_spring_network), p
 
 
 SCENE = Scene(
@@ -148,7 +148,7 @@ SCENE = Scene(
     truth_uncertainty=UNCERTAINTY,
     tolerance=tolerance,
     engines=ENGINES,
-    slow_methods=("implicit_euler_step", "implicit_midpoint_step", "implicit_mesh_step"),
+    slow_methods=("implicit_euler_step", "implicit_midpoint_step", "implicit_spring_network_step"),
     sanity_checks=sanity_checks,
     points=points,
     links=links,

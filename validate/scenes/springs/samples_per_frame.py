@@ -9,8 +9,8 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.integrators import advance, amplification_matrix, average_velocity_step
-from solutions.springs import make_mesh
-from solutions.springs import mesh_acceleration as acceleration
+from solutions.springs import make_spring_network
+from solutions.springs import spring_network_acceleration as acceleration
 from validate.engines.springs import pymunk_net
 from validate.methods import IMPLICIT_MESH, INTEGRATORS
 from validate.reference.springs import SquareNet, modes, motion, net_limits, square_net, state_of
@@ -31,13 +31,13 @@ CASES = {"net": SquareNet(spacing=0.5, shear=1, k=20.0, k_d=0.12, wind=0.1)}
 def start(p):
     for name in ("n", "spacing", "m", "k"):
         check_positive(name, getattr(p, name))
-    return state_of(square_net(p), make_mesh)
+    return state_of(square_net(p), make_spring_network)
 
 
 def run(step, acceleration, state, p, dt, steps):
-    x, v, mesh = state
-    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, mesh)
-    return x, v, mesh
+    x, v, network = state
+    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, network)
+    return x, v, network
 
 
 def observe(state, p):
@@ -97,11 +97,11 @@ def sanity_checks():
 
 def in_space(p):
     """The same motion with an unused third coordinate."""
-    return state_of(square_net(p).padded(), make_mesh), p
+    return state_of(square_net(p).padded(), make_spring_network), p
 
 
 SCENE = Scene(
-    title="1, 4, 16 samples a frame",
+    title="1, 4, 16 samples per frame",
     lesson="springs",
     cases=CASES,
     duration=T,
@@ -115,7 +115,7 @@ SCENE = Scene(
     truth_uncertainty=UNCERTAINTY,
     tolerance=tolerance,
     engines=ENGINES,
-    slow_methods=("implicit_euler_step", "implicit_midpoint_step", "implicit_mesh_step"),
+    slow_methods=("implicit_euler_step", "implicit_midpoint_step", "implicit_spring_network_step"),
     sanity_checks=sanity_checks,
     points=points,
     links=links,

@@ -9,8 +9,8 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.integrators import advance
-from solutions.springs import BEND, SHEAR, STRUCTURAL, grid_pairs, make_mesh
-from solutions.springs import mesh_acceleration as acceleration
+from solutions.springs import BEND, SHEAR, STRUCTURAL, grid_pairs, make_spring_network
+from solutions.springs import spring_network_acceleration as acceleration
 from validate.engines.springs import pymunk_net
 from validate.methods import IMPLICIT_MESH, INTEGRATORS, LEFT_TO_FULL
 from validate.reference.springs import SquareNet, modes, motion, net_limits, rest_positions, square_net, state_of
@@ -27,13 +27,13 @@ CASES = {"structural": SquareNet(), "with shear": SquareNet(shear=1), "with shea
 def start(p):
     for name in ("n", "spacing", "m", "k"):
         check_positive(name, getattr(p, name))
-    return state_of(square_net(p), make_mesh)
+    return state_of(square_net(p), make_spring_network)
 
 
 def run(step, acceleration, state, p, dt, steps):
-    x, v, mesh = state
-    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, mesh)
-    return x, v, mesh
+    x, v, network = state
+    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, network)
+    return x, v, network
 
 
 def observe(state, p):
@@ -83,8 +83,8 @@ def sanity_checks():
         claims.append((f"{name}: springs on which grid and lattice differ", len(ours ^ lattice), 0, 0))
 
         rest = rest_positions(square_net(p))
-        _, v, mesh = start(p)
-        pull = np.abs(acceleration(0.0, rest, v, mesh)).max()
+        _, v, network = start(p)
+        pull = np.abs(acceleration(0.0, rest, v, network)).max()
         claims.append((f"{name}: acceleration at the rest state of Newton's method [m/s²]", pull, 0.0, 1e-10))
 
         slowest = modes(square_net(p))[0][0]
@@ -97,7 +97,7 @@ def sanity_checks():
 
 def in_space(p):
     """The same motion with an unused third coordinate."""
-    return state_of(square_net(p).padded(), make_mesh), p
+    return state_of(square_net(p).padded(), make_spring_network), p
 
 
 SCENE = Scene(

@@ -1,0 +1,51 @@
+"""Given.  What a matrix of all links needs, and the edges of a mesh."""
+
+import numpy as np
+
+
+def shared_edges(faces):
+    """Given.  Return (edges (e, 2), hinges (h, 4)) of triangles (f, 3): every edge once, and the folds.
+
+    A hinge is (a, b, c, d) of an edge that two triangles share: its ends a and b, the other corners c and d.
+    """
+    found = {}
+    for face in np.asarray(faces):
+        for k in range(3):
+            a, b, c = face[k], face[(k + 1) % 3], face[(k + 2) % 3]
+            found.setdefault((min(a, b), max(a, b)), []).append((a, b, c))
+    hinges = [(*two[0], two[1][2]) for two in found.values() if len(two) == 2]
+    edges = np.array(sorted(found), dtype=np.int64)
+    return edges, np.array(hinges, dtype=np.int64).reshape(-1, 4)
+
+
+def link_delassus_matrix(J, K, network, trace):
+    """Given.  Return J W Kᵀ (s, s): the change of each constraint (gradients J) by a push along each gradient of K.
+
+    The trace, times w_i + w_j, is added on the diagonal, so that the matrix of redundant links has an inverse, too.
+    The loops visit only the two ends of each link; a product of the whole matrices takes longer.
+    """
+    d = J.shape[1] // network.inv_mass.size
+    A = np.zeros((J.shape[0], K.shape[0]))
+    for s in range(J.shape[0]):
+        for k in (network.i[s], network.j[s]):                                   # row s is 0 for all other points
+            for r in range(K.shape[0]):
+                for c in range(k * d, k * d + d):
+                    A[s, r] += network.inv_mass[k] * J[s, c] * K[r, c]
+        A[s, s] += trace * (network.inv_mass[network.i[s]] + network.inv_mass[network.j[s]])
+    return A
+
+
+def apply_multipliers(J, Lam, network):
+    """Given.  Return W JᵀΛ (n, d) [m]: how far the multipliers Λ (s,) move the points."""
+    d = J.shape[1] // network.inv_mass.size
+    moved = np.zeros((network.inv_mass.size, d))
+    for s in range(Lam.size):
+        for k in (network.i[s], network.j[s]):
+            for c in range(d):
+                moved[k, c] += network.inv_mass[k] * J[s, k * d + c] * Lam[s]
+    return moved
+
+
+def constraint_rates(J, v):
+    """Given.  Return J v (s,) [m/s]: the rate of change of each constraint."""
+    return J @ v.ravel()

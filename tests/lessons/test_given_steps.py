@@ -1,0 +1,118 @@
+"""Steps that are given in the lessons: their orders, and what they conserve."""
+
+import numpy as np
+import pytest
+
+from solutions import integrators, pbd, rotation
+from solutions.checks import BadInput
+from validate.reference.integrators import Planet, kepler_position, perihelion
+
+
+def attraction(t, x, v, p):
+    return -p.mu / (x @ x) ** 1.5 * x
+
+
+def orbit_error(step, steps, p, T=2.0):
+    x, v = perihelion(p)
+    x, _ = integrators.advance(step, attraction, 0.0, x, v, T / steps, steps, p)
+    return np.linalg.norm(x - kepler_position(p, T))
+
+
+def test_blanes_and_moan_is_of_fourth_order_and_beats_runge_kutta_at_equal_work():
+    p = Planet(mu=1.0, a=1.0, e=0.3)
+    errors = [orbit_error(integrators.blanes_moan_step, n, p) for n in (40, 80, 160)]
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert np.all(orders > 3.8) and abs(orders[-1] - 4.0) < 0.15, errors
+    # seven accelerations in place of four, the first of which could be that of the step before
+    assert orbit_error(integrators.blanes_moan_step, 40, p) < 0.01 * orbit_error(integrators.rk4_step, 70, p)
+
+
+def test_blanes_and_moan_takes_a_force_at_its_time():
+    """x = sin 2t under the force −4 sin 2t: the error falls with the fourth power of the step."""
+    law = lambda t, x, v, p: np.array([-4.0 * np.sin(2.0 * t)])
+    errors = []
+    for n in (20, 40, 80):
+        x, _ = integrators.advance(integrators.blanes_moan_step, law, 0.5, np.array([np.sin(1.0)]),
+                                   np.array([2.0 * np.cos(1.0)]), 3.0 / n, n, None)
+        errors.append(abs(x[0] - np.sin(7.0)))
+    assert np.all(np.log2(np.array(errors[:-1]) / errors[1:]) > 3.7), errors
+
+
+def test_blanes_and_moan_runs_backwards_to_where_it_began_and_leaves_its_input_alone():
+    p = Planet(mu=1.0, a=1.0, e=0.5)
+    x, v = perihelion(p)
+    begin = x.copy(), v.copy()
+    x_1, v_1 = integrators.blanes_moan_step(attraction, 0.0, x, v, 0.05, p)
+    back, v_back = integrators.blanes_moan_step(attraction, 0.05, x_1, v_1, -0.05, p)
+    assert np.allclose(back, x, atol=1e-14) and np.allclose(v_back, v, atol=1e-14)
+    assert np.array_equal(x, begin[0]) and np.array_equal(v, begin[1])
+
+
+def test_leapfrog_is_the_simplest_of_the_family(monkeypatch):
+    monkeypatch.setattr(integrators, "SPLITTING", ((0.5, 1.0), (0.5, 0.0)))
+    p = Planet(mu=1.0, a=1.0, e=0.5)
+    x, v = perihelion(p)
+    ours = integrators.blanes_moan_step(attraction, 0.0, x, v, 0.05, p)
+    verlet = integrators.verlet_step(attraction, 0.0, x, v, 0.05, p)
+    assert np.allclose(ours, verlet, atol=1e-15)
+
+
+@pytest.mark.parametrize("backspin", [0.0, -60.0])
+def test_a_ball_with_mean_velocities_is_exact_but_for_the_step_in_which_it_begins_to_roll(backspin):
+    """It rolls with (5 v₀ + 2 R ω₀)/7: the momentum about a point of the floor is kept."""
+    R, mu, g, v_0, T = 0.1, 0.2, 9.81, 2.0, 2.5
+    ball = rotation.RollingBall(2.0, np.full(3, 0.4 * 2.0 * R * R), R, mu, np.array([0.0, 0.0, -g]))
+    rolls = (5.0 * v_0 + 2.0 * R * backspin) / 7.0
+    t = (v_0 - rolls) / (mu * g)
+    truth = v_0 * t - 0.5 * mu * g * t * t + rolls * (T - t)
+    errors = []
+    for n in (97, 194, 388):
+        state = np.zeros(3), np.array([v_0, 0.0, 0.0]), np.array([1.0, 0.0, 0.0, 0.0]), np.array([0.0, backspin, 0.0])
+        x, v, _, omega = rotation.advance_rigid_body(rotation.average_rolling_step, rotation.supported_weight, 0.0,
+                                                     *state, T / n, n, ball)
+        assert abs(v[0] - rolls) < 1e-12 and abs(R * omega[1] - rolls) < 1e-12
+        errors.append(abs(x[0] - truth))
+        assert errors[-1] <= 0.125 * mu * g * (T / n) ** 2 + 1e-12
+
+
+def hanging(n, masses):
+    """(x, v, network) of n links of different lengths, held at the first point, with a random motion."""
+    rng = np.random.default_rng(5)
+    turns = rng.uniform(-1.0, 1.0, n)
+    links = rng.uniform(0.5, 1.5, n)[:, None] * np.stack((np.sin(turns), -np.cos(turns)), axis=1)
+    x = np.concatenate((np.zeros((1, 2)), np.cumsum(links, axis=0)))
+    pairs = [(k, k + 1) for k in range(n)]
+    network = pbd.make_constraint_network(x, masses, [0], pairs, 0.0, 1.0, (0.0, -9.81), 1)
+    spins = rng.uniform(-1.0, 1.0, n)
+    across = spins[:, None] * np.stack((-links[:, 1], links[:, 0]), axis=1)
+    return x, np.concatenate((np.zeros((1, 2)), np.cumsum(across, axis=0))), network
+
+
+def energy(x, v, network):
+    m = 1.0 / network.inv_mass[1:]
+    return np.sum(m * (0.5 * np.sum(v[1:] ** 2, axis=1) + 9.81 * x[1:, 1]))
+
+
+@pytest.mark.parametrize(("step", "order"), [(pbd.rope_step, 2), (pbd.composed_rope_step, 4)])
+def test_a_rope_converges_to_rattle_with_its_order_and_keeps_links_and_energy(step, order):
+    x, v, rope = hanging(5, np.array([1.0, 0.5, 2.0, 0.7, 1.3, 4.0]))
+    T = 0.5
+    truth, _ = integrators.advance(pbd.composed_rope_step, pbd.network_gravity, 0.0, x, v, T / 4000, 4000, rope)
+    by_rattle, _ = integrators.advance(pbd.rattle_step, pbd.network_gravity, 0.0, x, v, T / 2000, 2000, rope)
+    assert np.max(np.abs(truth - by_rattle)) < 1e-5                     # of second order, with a full matrix
+    ends = [integrators.advance(step, pbd.network_gravity, 0.0, x, v, T / n, n, rope) for n in (100, 200, 400)]
+    errors = [np.max(np.abs(end - truth)) for end, _ in ends]
+    assert abs(np.log2(errors[1] / errors[2]) - order) < 0.3, errors
+    x_end, v_end = ends[-1]
+    links = np.diff(x_end, axis=0)
+    assert np.max(np.abs(np.linalg.norm(links, axis=1) - rope.rest)) < 1e-5
+    assert np.max(np.abs(np.sum(links * np.diff(v_end, axis=0), axis=1))) < 1e-10       # velocities obey the links
+    assert abs(energy(x_end, v_end, rope) - energy(x, v, rope)) < 2e-3 * abs(energy(x, v, rope))
+
+
+def test_what_is_not_a_rope_is_refused():
+    x = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]])
+    for pairs in ([(0, 2), (1, 2)], [(1, 2), (0, 1)], [(1, 0), (1, 2)]):
+        network = pbd.make_constraint_network(x, 1.0, [0], pairs, 0.0, 1.0, (0.0, -9.81), 1)
+        with pytest.raises(BadInput, match="neighbours"):
+            pbd.rope_step(pbd.network_gravity, 0.0, x, 0.0 * x, 0.01, network)

@@ -1,0 +1,35 @@
+"""The report runs every exercise somewhere, and the table of coverage says where."""
+
+from solutions import integrators
+from validate import coverage
+
+
+def test_every_exercise_is_run_by_a_scene_or_a_stability_case():
+    assert coverage.missing() == []
+
+
+def test_the_table_names_places_that_call_the_function():
+    table = coverage.table()
+    assert "oscillator" in table["1.3"]["places"]                                   # as a method
+    assert "stability/springs/forces" in table["2.1"]["places"]                      # as an attribute of the lesson
+    assert "spring_net" in table["2.7"]["places"]                                    # through mesh acceleration
+    assert "stability/pbd/compliance" in table["8.12"]["places"]                     # through compliant_sweep
+    assert "kepler" not in table["2.7"]["places"] and "oscillator" not in table["5.7"]["places"]
+
+
+def test_an_exercise_that_nothing_names_is_missing(monkeypatch):
+    """What runs 2.1 is taken away: it is the only place."""
+    coverage.table.cache_clear()
+    real = coverage.roots_of_case
+    monkeypatch.setattr(coverage, "roots_of_case", lambda case: set() if case.slug == "forces" else real(case))
+    try:
+        assert "2.1 universal_gravity" in coverage.missing()
+    finally:
+        coverage.table.cache_clear()
+
+
+def test_functions_are_found_where_they_are_defined():
+    assert coverage.defined(("pbd", "rope_step")) == ("support.ropes", "rope_step")
+    assert ("integrators", "euler_step") in coverage.reached([("springs", "mass_spring_damper_step"),
+                                                              ("integrators", "euler_step")])
+    assert coverage.defined(("integrators", "no_such_thing")) is None and hasattr(integrators, "euler_step")

@@ -1,0 +1,133 @@
+"""Which exercise is run by which scene or stability case, read from their source.
+
+A scene runs its methods and whatever it names of a lesson; a case runs what it names of the lesson that it is given.
+Both run all functions that these call in turn.  The table says where a wrong answer can show, and that no exercise is
+without such a place; whether the place notices is what the seeded faults of the tests show.
+"""
+
+import ast
+import inspect
+from functools import cache
+from pathlib import Path
+
+from . import modules
+from .generate import exercises
+from .stability.examine import all_cases
+
+STABILITY = "stability/"
+
+
+@cache
+def trees():
+    """{module below solutions: its syntax tree}, such as "pbd" and "support.ropes"."""
+    files = {path.relative_to(modules.SOLUTIONS).with_suffix(""): path for path in modules.SOLUTIONS.rglob("*.py")}
+    return {".".join(name.parts): ast.parse(path.read_text(encoding="utf-8")) for name, path in files.items()}
+
+
+def imported(tree, home=""):
+    """{name: (module below solutions, its name there, or None for a module)} of what a file imports from solutions."""
+    found = {}
+    for node in ast.walk(tree):
+        if not isinstance(node, ast.ImportFrom):
+            continue
+        module = node.module or ""
+        if node.level:
+            module = ".".join([*home.split(".")[:-node.level], *([module] if module else [])])
+        elif module == "solutions" or module.startswith("solutions."):
+            module = module.removeprefix("solutions").removeprefix(".")
+        else:
+            continue
+        for alias in node.names:
+            found[alias.asname or alias.name] = (module, alias.name) if module else (alias.name, None)
+    return found
+
+
+@cache
+def calls():
+    """{(module, function): what it names of solutions} for every function of solutions."""
+    found = {}
+    for module, tree in trees().items():
+        there = imported(tree, module)
+        there |= {node.name: (module, node.name) for node in tree.body if isinstance(node, ast.FunctionDef)}
+        for node in tree.body:
+            if isinstance(node, ast.FunctionDef):
+                names = {n.id for n in ast.walk(node) if isinstance(n, ast.Name)}
+                found[module, node.name] = {there[name] for name in names if name in there}
+    return found
+
+
+def defined(place):
+    """(module, function) where it is defined: a lesson may import it from elsewhere; None where it is no function."""
+    while place not in calls():
+        module, name = place
+        place = imported(trees()[module], module).get(name) if module in trees() else None
+        if place is None:
+            return None
+    return place
+
+
+def reached(roots):
+    """All functions that these call, directly or not, themselves included."""
+    found, waiting = set(), [place for root in roots if (place := defined(root))]
+    while waiting:
+        place = waiting.pop()
+        if place not in found:
+            found.add(place)
+            waiting += [there for called in calls()[place] if (there := defined(called))]
+    return found
+
+
+def named(nodes, there, lesson):
+    """What pieces of source name: imported names, attributes of a lesson, and names of its functions in quotes."""
+    for node in nodes:
+        for one in ast.walk(node):
+            if isinstance(one, ast.Name) and one.id in there and there[one.id][1]:
+                yield there[one.id]
+            elif isinstance(one, ast.Attribute) and isinstance(one.value, ast.Name):
+                owner = one.value.id
+                if owner == "lesson":
+                    yield lesson, one.attr
+                elif owner in there and there[owner][1] is None:
+                    yield there[owner][0], one.attr
+            elif isinstance(one, ast.Constant) and isinstance(one.value, str) and (lesson, one.value) in calls():
+                yield lesson, one.value
+
+
+def roots_of_scene(name):
+    """What a scene names of the lessons, its methods included."""
+    scene = modules.bind_scene(name)
+    tree = ast.parse(modules.scene_files()[name].read_text(encoding="utf-8"))
+    return {*named([tree], imported(tree), scene.lesson), *((m.lesson, m.function) for m in scene.methods)}
+
+
+def roots_of_case(case):
+    """What a stability case names of its lesson, in its own function and in those of its file that it calls."""
+    tree = ast.parse(Path(inspect.getsourcefile(case.examine)).read_text(encoding="utf-8"))
+    own = {node.name: node for node in tree.body if isinstance(node, ast.FunctionDef)}
+    pieces, waiting = {}, [case.examine.__name__]
+    while waiting:
+        name = waiting.pop()
+        if name not in pieces:
+            pieces[name] = own[name]
+            waiting += [n.id for n in ast.walk(own[name]) if isinstance(n, ast.Name) and n.id in own]
+    return set(named(pieces.values(), imported(tree), case.lesson))
+
+
+@cache
+def table():
+    """{exercise: {"lesson", "function", "places"}} in the order of the course; places: scenes and stability cases."""
+    where = {}
+    for name in modules.in_course_order(modules.scene_names()):
+        for place in reached(roots_of_scene(name)):
+            where.setdefault(place, []).append(name)
+    for case in all_cases():
+        for place in reached(roots_of_case(case)):
+            where.setdefault(place, []).append(f"{STABILITY}{case.lesson}/{case.slug}")
+    return {number: {"lesson": lesson, "function": function, "places": where.get((lesson, function), [])}
+            for lesson in modules.lesson_names()
+            for number, function in exercises((modules.SOLUTIONS / f"{lesson}.py").read_text(encoding="utf-8")).items()}
+
+
+def missing():
+    """The exercises that nothing in the report runs."""
+    return [f"{number} {row['function']}" for number, row in table().items() if not row["places"]]

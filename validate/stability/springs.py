@@ -1,0 +1,90 @@
+"""Forces of lesson 2 that no scene runs, where each of their terms matters.
+
+A force is compared with the derivative of its energy, taken by a step along the imaginary axis, which has no
+truncation error worth naming.  *Source:* Squire and Trapp 1998 for that derivative.
+"""
+
+import numpy as np
+
+from validate.stability.case import agreement, case
+
+EARTH, RADIUS, GM = 5.9722e24, 6.371e6, 3.986004418e14    # mass [kg], mean radius [m], G times the mass [m³/s²]
+G_SI = 6.67430e-11                                        # CODATA 2018 [m³/(kg s²)]
+IMAGINARY = 1e-20                                         # step of the derivative [m]
+CASES = 50                                                # random configurations of each force
+ROUNDED = 1e-12                                           # of a few dozen roundings of 1.1e-16, relative
+
+
+def gradient(energy, x):
+    """Return ∇U at x (d,): the imaginary part of U(x + ih eₖ) over h."""
+    steps = IMAGINARY * 1j * np.eye(len(x))
+    return np.array([energy(x + step).imag for step in steps]) / IMAGINARY
+
+
+def length(r):
+    """Return |r|, also of complex vectors: √Σ r², without conjugates."""
+    return np.sqrt(np.sum(r * r))
+
+
+@case("forces", "Forces are derivatives of energies", compiled=False)
+def forces(lesson):
+    """U = −G m_a m_b/r for gravity; U = ½k C² for a soft constraint, whose damper takes k_d Ċ² of power."""
+    rng, found = np.random.default_rng(21), []
+    errors = {name: [] for name in ("gravity", "soft", "power", "contact", "free")}
+    for _ in range(CASES):
+        x_a, x_b, (m_a, m_b, G) = rng.normal(size=3), 3.0 + rng.normal(size=3), rng.uniform(0.5, 2.0, 3)
+        truth = -gradient(lambda x, b=x_b, k=G * m_a * m_b: -k / length(b - x), x_a)
+        errors["gravity"].append(length(lesson.universal_gravity(x_a, x_b, m_a, m_b, G) - truth) / length(truth))
+
+        centre, x, v = rng.normal(size=3), rng.normal(size=3), rng.normal(size=3)
+        R, k, k_d = rng.uniform(0.5, 2.0, 3)
+        surface = lambda x, c=centre, R=R: length(x - c) - R
+        C, slope = surface(x), gradient(surface, x)
+        rate = slope @ v
+        pull = -gradient(lambda x, k=k, C=surface: 0.5 * k * C(x) ** 2, x)
+        errors["soft"].append(length(lesson.soft_constraint_force(C, 0.0, slope, k, k_d) - pull) / (k * abs(C)))
+        power = lesson.soft_constraint_force(C, rate, slope, k, k_d) @ v
+        errors["power"].append(abs(power - pull @ v + k_d * rate**2) / (k * abs(C * rate) + k_d * rate**2))
+
+        deep, slow = -abs(C), 0.5 * k * abs(C) / k_d             # the damper alone would pull from 2 `slow` on
+        pushed = lesson.soft_contact_force(deep, slow, slope, k, k_d)
+        errors["contact"].append(length(pushed - 0.5 * k * abs(C) * slope) / (k * abs(C)))
+        errors["free"].append(max(length(lesson.soft_contact_force(abs(C), -10.0 * slow, slope, k, k_d)),
+                                  length(lesson.soft_contact_force(deep, 3.0 * slow, slope, k, k_d))))
+    for name, claim in (
+            ("gravity", "Newton's attraction is the derivative of −G m_a m_b/r."),
+            ("soft", "A soft constraint without damper is the derivative of ½k C²."),
+            ("power", "Its damper takes the power k_d Ċ²."),
+            ("contact", "A soft contact pushes with −(k C + k_d Ċ) as long as that is a push."),
+            ("free", "A soft contact neither pulls nor acts at a distance.")):
+        found.append(agreement(claim, f"{name}: largest error [-]", max(errors[name]), ROUNDED))
+    weight = lesson.universal_gravity(np.zeros(3), np.array([0.0, 0.0, -RADIUS]), 1.0, EARTH, G_SI)
+    # G is known to 2.2e-5, and so is the mass of the Earth; their product is known to 2e-9.
+    found.append(agreement("Near the ground a kilogram weighs GM/R².", "weight of a kilogram: relative error [-]",
+                           length(weight - np.array([0.0, 0.0, -GM / RADIUS**2])) / (GM / RADIUS**2), 5e-5))
+    return found, None
+
+
+@case("lecture-step", "The lecture's step of a mass-spring-damper system", compiled=False)
+def lecture_step(lesson):
+    """Two masses on a line and a fixed end, computed by hand: v += dt a,  x += dt (v_old + v_new)/2.
+
+    a₁ = g + (wind − k_v v₁ − T₁ + T₂)/m₁,  a₂ = g + (wind − k_v v₂ − T₂)/m₂,  T = k (l − rest) + k_d l̇.
+    """
+    rng, worst = np.random.default_rng(22), 0.0
+    for _ in range(CASES):
+        y = np.cumsum(rng.uniform(0.5, 1.5, 3))                  # the first one is fixed
+        v, m, (k, k_d, k_v, g, wind, dt) = rng.normal(size=3) * [0.0, 1.0, 1.0], rng.uniform(0.5, 2.0, 3), \
+            rng.uniform(0.1, 1.0, 6)
+        rest = np.diff(np.cumsum(rng.uniform(0.5, 1.5, 3)))
+        stretched = np.stack((np.zeros(3), np.append(0.0, np.cumsum(rest))), axis=1)
+        network = lesson.make_spring_network(stretched, m, [0], [(0, 1), (1, 2)], k, k_d, (0.0, g), (0.0, wind), k_v)
+        x, xv = np.stack((np.zeros(3), y), axis=1), np.stack((np.zeros(3), v), axis=1)
+        T = k * (np.diff(y) - rest) + k_d * np.diff(v)
+        a = np.array([0.0, g + (wind - k_v * v[1] - T[0] + T[1]) / m[1], g + (wind - k_v * v[2] - T[1]) / m[2]])
+        v_new = v + dt * a
+        got_x, got_v = lesson.mass_spring_damper_step(0.3, x, xv, dt, network)
+        truth = np.concatenate((y + 0.5 * dt * (v + v_new), v_new))
+        worst = max(worst, np.max(np.abs(np.concatenate((got_x[:, 1], got_v[:, 1])) - truth)) / np.max(np.abs(truth)))
+    claim = "The lecture's step adds gravity, wind, drag, springs and dampers, and moves with the mean velocity."
+    return [agreement(claim, "state after a step: largest relative error [-]", worst, ROUNDED)], None
