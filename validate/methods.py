@@ -78,6 +78,8 @@ COMPOSED_ROPE = Method("composed_rope_step", "rope, composed", 4, "pbd", "#6A51A
 SWEEPS = Method("contact_forces", "sweeps", 2, "contact", "#009E73", "s")
 DIRECT = Method("solve_lcp", "Murty", 2, "contact", "#0072B2", "^")
 PILE = Method("advance_pile_2d", "pile", 1, "contact", "#D55E00", "o")
+PILE_IN_SPACE = Method("advance_pile", "pile in space", 1, "contact", "#CC79A7", "s")
+COUNTED_SWEEPS = Method("gauss_seidel_sweep", "sweeps, counted", 2, "contact", "#E69F00", "v")
 REFLECTION = Method("gauss_seidel_sweep", "sweep with ω = 2", 2, "contact", "#E69F00", "v")
 ONE_BY_ONE = Method("impulse_size", "impulses one by one", 2, "impulses", "#0072B2", "o")
 

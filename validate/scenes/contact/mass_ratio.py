@@ -23,9 +23,9 @@ from solutions.contact import (
 )
 from validate.engines.bullet import Rigid
 from validate.engines.chipmunk import pymunk_floor, pymunk_space
-from validate.methods import DIRECT, PILE, SWEEPS
+from validate.methods import COUNTED_SWEEPS, DIRECT, PILE, SWEEPS
 from validate.reference.contact import sweeps_needed
-from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Engine, EngineRun, Method, Scene
+from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Engine, EngineRun, Scene
 
 T = 1.0
 STEPS = (1,)
@@ -36,7 +36,6 @@ ZETA = 10.0                  # damping ratio of the pile's contacts [-]
 WAITING = 3.0                # of the engines [s]
 OVERLAP = 1e-6               # with which pymunk's bodies begin [m]: they see a contact when there is one
 STANDS = 0.1                 # of a box: what has moved by less, stands [-]
-COUNTED = Method("gauss_seidel_sweep", "sweeps, counted", 2, "contact", "#E69F00", "v")
 
 
 class Params(NamedTuple):
@@ -341,7 +340,7 @@ SCENE = Scene(
     cases=CASES,
     duration=T,
     steps=STEPS,
-    methods=(DIRECT, SWEEPS, PILE, COUNTED),
+    methods=(DIRECT, SWEEPS, PILE, COUNTED_SWEEPS),
     start=start,
     run=run,
     observe=observe,

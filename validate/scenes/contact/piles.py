@@ -23,16 +23,15 @@ from solutions.contact import (
 )
 from validate.drawing import seen
 from validate.engines.contact import DT, KINDS, MU, BulletPile, G, PymunkPile, fallen, inverse_tensors
-from validate.methods import PILE
+from validate.methods import PILE, PILE_IN_SPACE
 from validate.reference.contact import natural_residual
-from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Method, Scene
+from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Scene
 
 T = 1.0
 STEPS = (1,)
 BLOCK = 10                   # steps from one look at the energy to the next
 QUIET = 1e-2                 # of the weight: what may be out of balance in a pile that has come to rest [-]
 CHAINS = 4.0                 # times the mean force in a column: the largest one in a pile [-]
-IN_SPACE = Method("advance_pile", "pile in space", 1, "contact", "#CC79A7", "s")
 PYRAMID = np.sqrt(2.0)       # by which pybullet's friction exceeds μ along the diagonals of its pyramid [-]
 SETTLED = {}                 # {p: (x, q)} where our last run of a case ended, for the picture
 
@@ -254,7 +253,7 @@ SCENE = Scene(
     cases=CASES,
     duration=T,
     steps=STEPS,
-    methods=(IN_SPACE, PILE),
+    methods=(PILE_IN_SPACE, PILE),
     start=start,
     run=run,
     observe=observe,

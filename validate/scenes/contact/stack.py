@@ -25,8 +25,8 @@ from solutions.contact import (
 )
 from validate.engines.bullet import Rigid
 from validate.engines.chipmunk import pymunk_floor, pymunk_space
-from validate.methods import DIRECT, PILE, SWEEPS
-from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Method, Scene
+from validate.methods import DIRECT, PILE, PILE_IN_SPACE, SWEEPS
+from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Scene
 
 T = 1.0
 STEPS = (1,)
@@ -50,7 +50,6 @@ CASES = {
     "ten discs": Params("discs"), "twenty discs": Params("discs", 20),
     "ten cubes in space": Params("cubes"), "five cubes in space": Params("cubes", 5, 2.0),
 }
-IN_SPACE = Method("advance_pile", "pile in space", 1, "contact", "#CC79A7", "s")
 
 
 def supports(name, p):
@@ -272,7 +271,7 @@ SCENE = Scene(
     cases=CASES,
     duration=T,
     steps=STEPS,
-    methods=(DIRECT, SWEEPS, PILE, IN_SPACE),
+    methods=(DIRECT, SWEEPS, PILE, PILE_IN_SPACE),
     start=start,
     run=run,
     observe=observe,
