@@ -471,7 +471,7 @@ def backtracking_discs_step(x, v, dt, p):
 # ---------------------------------------------------------------------------------------------- several impacts at once
 
 def sequential_impacts(body, r, n, e, mu):
-    """Given.  Return (Solid, residual [m/s]) after an impact at several points, each treated once, in order.
+    """Given.  Return (BodyState3D, residual [m/s]) after an impact at several points, each treated once, in order.
 
     Each impulse starts from the body as the previous one left it, so the result depends on the order: the two
     ends of an edge leave at different speeds.
@@ -512,7 +512,7 @@ def impact_residual(after, r, n, Js, u_sep, mu):
 
 
 def most_dissipative_impact(body, r, n, e, mu):
-    """Given.  Return (Solid, residual [m/s]) after simultaneous impacts for which solve_impacts finds no answer.
+    """Given.  Return (BodyState3D, residual [m/s]) after simultaneous impacts for which solve_impacts finds no answer.
 
     With much friction its law can be without an answer, or its sweeps may not find one.  Of all impulses inside the
     cones, take those that leave the least kinetic energy: a convex problem, which always has an answer.  Each point in
@@ -558,7 +558,7 @@ def most_dissipative_impact(body, r, n, e, mu):
 
 
 def solve_impacts(body, r, n, e, mu):
-    """Return (Solid, residual [m/s]) after simultaneous impacts at several points with immovable bodies.
+    """Return (BodyState3D, residual [m/s]) after simultaneous impacts at several points with immovable bodies.
 
     r (points, 3) are the offsets and n (points, 3) the normals.  u_sepᵢ = rebound_speeds(body, r, n, e), from the
     velocities before the impact, and  Jᵢ = 0.  Then sweep over all points:

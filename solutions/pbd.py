@@ -275,10 +275,10 @@ def distance_sweep(x, network):
 
     Δx_i = −s w_i/(w_i + w_j) C n,      Δx_j = +s w_j/(w_i + w_j) C n          s: the stiffness of the link
 
-    These are the corrections of projection() for two points, times s, whatever network.sweeps and network.alpha are.
+    These are the corrections of constraint_correction for two points, times s, for any network.sweeps and alpha.
     Returns a new array.
     The worked answer sums over the coordinates in a loop, because a small array costs more than the arithmetic in
-    it.  Calling projection is equally correct.
+    it.  Calling constraint_correction is equally correct.
     Raises BadInput("the length of a link [m]", 0.0, "keep its ends apart") when the ends of a link coincide.
     A link between two immovable points does not occur: make_constraint_network refuses it.
     *Source:* second lecture deck, “Loop over all constraints = 1 iteration”; Müller et al. 2006, eqs. 10, 11.
@@ -547,7 +547,7 @@ def turning_rate(q_old, q_new, dt):
 
     Δq = q_new q̄_old = (Δ₀, 𝚫),      ω = 2 𝚫/(Δ₀ dt)          q̄ = (w, −x, −y, −z);   the same for q and −q
 
-    product(a, b) multiplies quaternions (lesson 5).
+    quaternion_product(a, b) multiplies quaternions (lesson 5).
     *Left out:* half a turn in one step, Δ₀ = 0.
     *Source:* Müller et al. 2020, algorithm 2; the division by Δ₀ makes it the exact inverse of quaternion_update.
     """

@@ -663,6 +663,7 @@ def test_brute_force_finds_every_pair_once(lesson, draw):
     far = 10.0 * np.arange(6.0).reshape(3, 2)
     same_pairs("pairs of boxes that are all apart", lesson.all_pairs(far, far + 1.0), np.zeros((0, 2)))
     raises("boxes that are inside out", BadInput, lesson.all_pairs, far + 1.0, far)
+    raises("three lower and two upper corners", BadInput, lesson.all_pairs, far, far[:2] + 1.0)
     for k in range(6):
         one = np.arange(6).reshape(3, 2) == k
         for size in SIZES:

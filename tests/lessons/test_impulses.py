@@ -620,7 +620,7 @@ def assert_endless(time, given):
 # ---------------------------------------------------------------------------------------------- a ball above a plane
 
 def drop(draw, lesson, d, e=None):
-    """(Drop above a drawn plane, a tangent, gravity along −n, gravity along the tangent)."""
+    """(BouncingBall above a drawn plane, a tangent, gravity along −n, gravity along the tangent)."""
     n, pull, along = unit(draw, d), draw(5.0, 10.0), draw(0.5, 2.0)
     t = across(n, unit(draw, d)[::-1])
     t = t / np.linalg.norm(t)
@@ -735,7 +735,7 @@ def test_a_backtracking_step_keeps_its_first_acceleration_and_puts_back_a_ball_i
 
 @exercise("7.16", points=0.25,
           hint="impact_time takes a ball inside for one that touches: if it leaves, it flies from where it is; "
-               "where a_n > 0, lie(…) lifts a ball off")
+               "where a_n > 0, slide_on_plane(…) lifts a ball off")
 def test_a_ball_that_leaves_from_inside_flies_and_one_that_is_pulled_off_takes_off(lesson, draw):
     for e in (0.0, draw(0.3, 0.8)):
         p, t, pull, along = drop(draw, lesson, 3, e)
@@ -838,7 +838,7 @@ def test_a_backtracking_step_keeps_its_input_and_raises_diverged_after_too_many_
 
 
 @exercise("7.16", points=0.25,
-          hint="if bouncing_time is at most the remaining time, the ball lies on the plane from then on: lie(…)")
+          hint="if bouncing_time is at most the remaining time, the ball stays on the plane: slide_on_plane(…)")
 def test_a_ball_lies_on_the_plane_after_its_last_bounce(lesson, draw):
     for e, upright in ((0.0, False), (draw(0.3, 0.8), False), (0.0, True)):
         p, t, pull, along = drop(draw, lesson, 3, e)
@@ -877,7 +877,7 @@ def together(body, r, n, e, rough):
 
 
 def falling_box(draw, lesson, points):
-    """(Solid, r, n): a falling box that does not rotate and lands on 1, 2 or 4 corners."""
+    """(BodyState3D, r, n): a falling box that does not rotate and lands on 1, 2 or 4 corners."""
     half, m = draw(0.1, 0.3, 3), draw(0.5, 2.0)
     moments = m / 3.0 * (half @ half - half**2)
     tilt = {1: (draw(0.3, 0.9), draw(0.3, 0.9)), 2: (draw(0.3, 0.9), 0.0), 4: (0.0, 0.0)}[points]
@@ -928,7 +928,7 @@ def test_a_box_that_lands_on_a_corner_an_edge_or_a_face_leaves_as_all_its_points
 
 
 def skate(draw, lesson, points):
-    """(Solid, r, n, e, μ, v⁺, ω⁺): a body that slides fast along the line of its contact points.
+    """(BodyState3D, r, n, e, μ, v⁺, ω⁺): a body that slides fast along the line of its contact points.
 
     By symmetry all impulses are in the plane of that line and n. Each point slides along s, so its impulse is
     Jₙ (n − μ s). Any number of points on the line have the resultant of two at its ends, and these leave with −e u_n:
@@ -1019,7 +1019,7 @@ def test_the_residual_is_small_exactly_if_the_sweeps_can_settle(lesson, draw):
 
 
 def close_pair(draw, lesson, m, height):
-    """(Solid at rest, r (2, 3), d, n, x): points at ±x d, a distance height · x along −n, on a body that hardly turns.
+    """(BodyState3D at rest, r (2, 3), d, n, x): points at ±x d, height · x along −n, on a body that hardly turns.
 
     Each sweep reduces the error by a factor (1 − a)²/(1 + a)², where a = m x²/I: 1,100 to 1,600 sweeps to 1e-14.
     """
@@ -1083,7 +1083,7 @@ def least_change(body, r, n, e):
 
 
 def tumbling(draw, lesson):
-    """(Solid, r, n): a rod with one leaving end, falling boxes that rotate, bodies between one to three surfaces."""
+    """(BodyState3D, r, n): a rod with one leaving end, boxes that fall and rotate, bodies between surfaces."""
     m, half, down = draw(0.5, 2.0), draw(0.3, 1.0), draw(1.0, 3.0)
     # An impulse at one end drives the other end down by at least a third of its own change.
     up = draw(0.1, 0.4) * down

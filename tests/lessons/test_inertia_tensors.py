@@ -347,13 +347,17 @@ def test_combined_parts_equal_the_body_of_all_their_points(lesson, draw):
         parts = np.ascontiguousarray(m[order]), np.ascontiguousarray(x[order]), np.ascontiguousarray(I[order])
         given = f"m = {parts[0]}, x = {parts[1].tolist()}, I = {parts[2].tolist()}"
         kept = [part.copy() for part in parts]
-        found_m, found_x, found_I = lesson.combine(*parts)
+        found = lesson.combine(*parts)
+        found_m, found_x, found_I = found.m, found.x, found.I
         close("mass of three parts, one of them a hole [kg]", found_m, every_m.sum(), ROUNDED, given)
         close("centre of mass of three parts, one of them a hole [m]", found_x, X, ROUNDED, given)
         close("tensor of three parts about their centre [kg m²]", found_I, tensor(every_m, every_x - X),
               10.0 * ROUNDED, given)
         for name, part, before in zip(("masses", "centres", "tensors"), parts, kept):
             close(f"input {name} after the call: unchanged", part, before, 0.0, given)
+    one = lesson.combine(np.append(m[:1], 0.0), x[:2], I[:2])             # a body without mass has its tensor
+    close("tensor of a body and one without mass [kg m²]", one.I, I[0] + I[1], ROUNDED,
+          f"m = {m[:1]} and 0, x = {x[:2].tolist()}, I = {I[:2].tolist()}")
     n = len(every_m)
     _, found_x, found_I = lesson.combine(every_m, every_x, np.zeros((n, 3, 3)))
     given = f"m = {every_m}, x = {every_x.tolist()}, no tensors"
@@ -511,6 +515,10 @@ def test_each_limit_is_epsilon_of_the_size_of_the_tensor(lesson, draw):
             raises("a moment of half a round-off", BadInput, lesson.check_inertia,
                    tensor_of(0.5e-14 * middle, middle, middle), thing=SMALLEST)
             lesson.check_inertia(tensor_of(low, middle, (low + middle) * (1.0 + 0.7e-14)))
+            raises("a moment of half a round-off of the largest", BadInput, lesson.check_inertia,
+                   tensor_of(0.5e-14 * 10.0 * middle, middle, 10.0 * middle), thing=SMALLEST)
+            raises("a symmetric tensor whose entries are all negative", BadInput, lesson.check_inertia,
+                   -size * (np.eye(3) + 0.3 * low), thing=SMALLEST)
             for share in (1.5e-14, 1e-13, 1e-11):
                 raises("a moment a little above the sum of the others", BadInput, lesson.check_inertia,
                        tensor_of(low, middle, (low + middle) * (1.0 + share)), thing=LARGEST)
@@ -742,7 +750,8 @@ def test_a_mesh_has_the_mass_centre_and_tensor_of_its_body(lesson, draw):
     kept = x.copy()
     m = density * np.prod(size)
     given = f"density = {density:.4g}, size = {size}, centre = {centre}"
-    found_m, found_x, found_I = lesson.mesh_body(density, x, faces)
+    found = lesson.mesh_body(density, x, faces)
+    found_m, found_x, found_I = found.m, found.x, found.I
     close("mass of a box [kg]", found_m, m, ROUNDED, given)
     close("centre of mass of a box [m]", found_x, centre, ROUNDED, given)
     close("tensor of a box about its centre [kg m²]", found_I, by_eight_points(m, size), ROUNDED, given)

@@ -72,7 +72,7 @@ def sweeps_of_a_chain(step, lesson, draw, soft):
 
 
 def chain(lesson, draw, links, d=2, held=True, **more):
-    """(x, Net) of a zigzag of drawn masses whose links have nearly their rest lengths.
+    """(x, ConstraintNetwork) of a zigzag of drawn masses whose links have nearly their rest lengths.
 
     The links run from the last to the first, and every other link has its ends swapped, so that the index of a link is
     not that of a point.
@@ -91,6 +91,11 @@ def lengths(x, p):
 
 
 # ---------------------------------------------------------------------------------------------- one constraint
+
+def a_new_array(quantity, got, given):
+    """What a function returns must not be the array that it was given, or a caller's change would change both."""
+    close(f"{quantity}: shared with the input (0: no)", float(np.shares_memory(np.asarray(got), given)), 0.0, 0.0)
+
 
 @exercise("8.1", points=0.25,
           hint="C is positive where the points are too far apart; n points from j to i and has length 1")
@@ -177,6 +182,9 @@ def test_a_constraint_that_cannot_be_satisfied_is_refused(lesson, draw):
         raises("a constraint between immovable points", BadInput, refused, C, gradients, np.zeros(2))
     raises("a constraint without a gradient", BadInput, refused, draw(0.5, 1.0), 0.0 * gradients, np.ones(2))
     gradients[1] = 0.0
+    moved = np.asarray(lesson.constraint_correction(C, gradients, np.ones(2)), dtype=float)
+    close("C + Σ ∇C · Δx where one of two points has no gradient", C + np.sum(gradients * moved), 0.0, ROUND_OFF,
+          given=f"C = {C}, ∇C = {gradients.tolist()}")
     raises("a constraint whose only movable point has a zero gradient", BadInput, refused, C, gradients,
            np.array([0.0, draw(0.5, 2.0)]))
 
@@ -453,6 +461,10 @@ def test_a_sweep_visits_one_link_after_the_other_and_leaves_the_immovable_alone(
         small = lesson.distance_sweep(size * x, p._replace(rest=size * p.rest))
         close("positions of a tiny network, over its size [-]", np.asarray(small) / size, expected, ROUND_OFF * 10.0,
               given=f"size {size} m")
+    still = p._replace(rest=lengths(x, p))
+    new = lesson.distance_sweep(x, still)
+    close("positions where every link has its rest length [m]", new, x, ROUND_OFF, given=f"x = {x.tolist()} m")
+    a_new_array("positions where every link has its rest length", new, x)
     x[2] = x[0]
     raises("a link whose ends coincide", BadInput, lesson.distance_sweep, x, p)
 
@@ -679,6 +691,8 @@ def test_points_inside_are_moved_to_the_surface_and_all_others_stay(lesson, draw
     close("positions of points outside, and of immovable points [m]", new[1:3], x[1:3], 0.0, given=given)
     close("position of a point on the surface [m]", new[3], x[3], ROUND_OFF, given=given)
     close("input x after the call: return a new array", x, before, 0.0)
+    above = x + 2.0 * n
+    a_new_array("positions where all points are outside", lesson.keep_outside(lesson.floor_gap, above, w, floor), above)
     ball = floor._replace(centre=draw(-1.0, 1.0, 3), radius=draw(0.5, 1.0))
     out = np.stack((n, -n, tangent / np.linalg.norm(tangent)))
     distances = 2.0 * ball.radius * np.array([draw(0.2, 0.9), draw(0.2, 0.9), draw(1.1, 2.0)])
@@ -791,6 +805,9 @@ def test_springs_are_visited_one_after_the_other(lesson, draw):
         small, _ = lesson.compliant_sweep(size * x, np.zeros(2), dt, p._replace(rest=size * p.rest))
         close("positions of a tiny network, over its size [-]", np.asarray(small) / size, np.asarray(new, dtype=float),
               1e-11, given=f"size {size} m")
+    none = p._replace(i=p.i[:0], j=p.j[:0], rest=p.rest[:0], alpha=p.alpha[:0], stiffness=p.stiffness[:0])
+    for name, got, given in zip(("x", "Λ"), lesson.compliant_sweep(x, np.zeros(0), dt, none), (x, np.zeros(0))):
+        a_new_array(f"{name} of a network without links", got, given)
     for invalid in (-draw(0.001, 0.1), np.nan):
         raises("an invalid compliance", BadInput, lesson.compliant_sweep, x, np.zeros(2), dt,
                p._replace(alpha=np.array([alpha[0], invalid])))

@@ -331,6 +331,8 @@ edit("6.10", "touch up to a femtometre apart", "boxes_touch(low, high, i, low, h
      "boxes_touch(low - 5e-16, high + 5e-16, i, low - 5e-16, high + 5e-16, j)")
 edit("6.10", "touch up to a nanometre apart", "boxes_touch(low, high, i, low, high, j)",
      "boxes_touch(low - 5e-10, high + 5e-10, i, low - 5e-10, high + 5e-10, j)")
+edit("6.10", "checks its boxes after the search", "check_boxes(low, high)",
+     "check_boxes(low[:len(high)], high)")
 
 
 # 6.11 -----------------------------------------------------------------------------------------------------------

@@ -255,7 +255,8 @@ def gathered(reference=lambda x: x[0]):
     def combine(m, x, I):
         M, X = worked.centre_of_mass(m, x)
         o = reference(x)
-        return M, X, worked.parallel_axes(np.sum(I, axis=0) + worked.point_mass_inertia(m, x - o), -M, X - o)
+        whole = np.sum(I, axis=0) + worked.point_mass_inertia(m, x - o)
+        return worked.MassProperties(M, X, worked.parallel_axes(whole, -M, X - o))
     return combine
 
 
@@ -272,7 +273,7 @@ def one_by_one(centre=lambda m, x: (np.sum(m), m @ x / np.sum(m))):
             both, middle = centre(np.array([M, k]), np.stack((X, y)))
             whole = worked.parallel_axes(whole, M, X - middle) + worked.parallel_axes(J, k, y - middle)
             M, X = both, middle
-        return M, X, whole
+        return worked.MassProperties(M, X, whole)
     return combine
 
 
@@ -286,6 +287,9 @@ edit("4.12", "refuses a mass of zero only", "centre_of_mass(m, x)",
      "centre_of_mass(m, x) if np.sum(m) == 0.0 else (np.sum(m), m @ x / np.sum(m))")
 edit("4.12", "changes its input", "parallel_axes(I[n], m[n], x[n] - X)",
      "np.add(I[n], parallel_axes(0.0 * I[n], m[n], x[n] - X), out=I[n])")
+edit("4.12", "a body without mass loses its tensor", "total += parallel_axes(",
+     "total += 0.0 if m[n] == 0.0 else parallel_axes(")
+edit("4.12", "a plain tuple", "MassProperties(M, X, total)", "(M, X, total)")
 
 
 # 4.13 -----------------------------------------------------------------------------------------------------------
@@ -373,6 +377,9 @@ edit("4.14", "copies the words for the smallest moment", "the smallest principal
      "the largest principal moment")
 edit("4.14", "copies the words for the asymmetry", "the asymmetry of an inertia", "an entry of the inertia")
 edit("4.14", "copies the words for an entry", "an entry of the inertia", "the asymmetry of an inertia")
+edit("4.14", "the smallest moment against the middle one", "moments[0] <= MOMENT_ROUND_OFF * moments[2]",
+     "moments[0] <= MOMENT_ROUND_OFF * moments[1]")
+edit("4.14", "asymmetry against the largest entry with its sign", "np.max(np.abs(I)):", "np.max(I):")
 
 
 # 4.15 -----------------------------------------------------------------------------------------------------------
@@ -467,7 +474,7 @@ def mesh_body(density, x, faces):
         centres.append(s / 4.0)
         tensors.append(density * from_covariance(second))
     body = worked.combine(np.array(m), np.stack(centres), np.stack(tensors))
-    return whole.m, x[0] + body.x, body.I
+    return worked.MassProperties(whole.m, x[0] + body.x, body.I)
 
 
 edit("4.17", "tensor about the first corner", "second - volume * np.outer(centre, centre)", "second")
@@ -495,3 +502,5 @@ edit("4.17", "accepts an infinite density", 'check_positive("density [kg/m³]", 
 edit("4.17", "a thousand times too tolerant", "MOMENT_ROUND_OFF * np.max", "1e-17 * np.max")
 edit("4.17", "a thousand times too strict", "MOMENT_ROUND_OFF * np.max", "1e-11 * np.max")
 edit("4.17", "looks at the corners of triangles only", "[m]\", x)", "[m]\", x[np.unique(faces % x.shape[0])])")
+edit("4.17", "a plain tuple", "MassProperties(density * volume, x[0] + centre, tensor)",
+     "(density * volume, x[0] + centre, tensor)")

@@ -79,6 +79,8 @@ edit("8.2", "returns the gradients where the constraint holds", "return -C / wei
      "return gradients if C == 0.0 else -C / weight")
 edit("8.2", "accepts immovable points where the constraint holds", "if weight == 0.0:",
      "if C == 0.0:\n        return 0.0 * gradients\n    if weight == 0.0:")
+edit("8.2", "refuses a constraint one of whose points has no gradient", "if weight == 0.0:",
+     "if weight == 0.0 or not np.all(np.any(gradients != 0.0, axis=1)):")
 
 
 # 8.3 ------------------------------------------------------------------------------------------------------------
@@ -260,6 +262,9 @@ def distance_sweep(x, network):
         C, n = worked.distance_constraint(x[ends[0]], x[ends[1]], network.rest[s])
         x[ends] += network.stiffness[s] * worked.constraint_correction(C, np.stack((n, -n)), network.inv_mass[ends])
     return x
+edit("8.6", "returns its input where nothing is to be done", "x, d = float_copy(x), x.shape[1]",
+     "d = x.shape[1]\n    if np.allclose(np.sqrt(np.sum((x[network.i] - x[network.j]) ** 2, axis=1)), network.rest):\n"
+     "        return x\n    x = float_copy(x)")
 
 
 # 8.7 ------------------------------------------------------------------------------------------------------------
@@ -446,6 +451,8 @@ edit("8.11", "upwards from the centre of a ball", "x[k] -= phi * n",
      "x[k] -= phi * (n if n.any() else np.eye(n.size)[-1])")
 edit("8.11", "divides by the length of n", "x[k] -= phi * n", "x[k] -= phi * (n / np.sqrt(np.sum(n * n)))")
 edit("8.11", "treats heavy points as immovable", "inv_mass[k] > 0.0", "inv_mass[k] > 1e-6")
+edit("8.11", "returns its input where nothing is inside", "x = float_copy(x)",
+     "if min(surface(p, obstacle)[0] for p in x) >= 0.0:\n        return x\n    x = float_copy(x)")
 
 
 # 8.12 -----------------------------------------------------------------------------------------------------------
@@ -539,6 +546,8 @@ edit("8.13", "refuses a nanometre", "squared == 0.0", "squared < 1e-18")
 edit("8.13", "all sweeps at once", "range(network.i.size)", "[*range(network.i.size)] * network.sweeps")
 edit("8.13", "a part of α in each sweep",
      "network.alpha[s] * per_square", "network.alpha[s] * per_square / network.sweeps")
+edit("8.13", "returns its input where there are no links", "x, Lam = float_copy(x), float_copy(Lam)",
+     "if network.i.size == 0:\n        return x, Lam\n    x, Lam = float_copy(x), float_copy(Lam)")
 
 
 # 8.14 -----------------------------------------------------------------------------------------------------------

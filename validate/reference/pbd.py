@@ -142,7 +142,7 @@ def rope_rates(n, l, m, g, T):
 
 # ---------------------------------------------------------------------------------------------- a cloth
 
-class Weave(NamedTuple):
+class ClothReference(NamedTuple):
     """Equal masses in a square grid, joined by springs along threads and both diagonals."""
     x: np.ndarray            # (n, 3) [m] flat, at natural length
     pairs: np.ndarray        # (s, 2)
@@ -174,7 +174,7 @@ def weave(n, spacing, m, k, g):
     )
     pairs = np.concatenate([np.stack((a.ravel(), b.ravel()), axis=1) for a, b in ends])
     x = spacing * np.stack((c, -r, 0 * c), axis=1).astype(float)
-    return Weave(x, pairs, np.linalg.norm(x[pairs[:, 1]] - x[pairs[:, 0]], axis=1), (0, n - 1), m, k, g)
+    return ClothReference(x, pairs, np.linalg.norm(x[pairs[:, 1]] - x[pairs[:, 0]], axis=1), (0, n - 1), m, k, g)
 
 
 def weave_motion(cloth, T, late=0.0, ahead=0.0, rtol=1e-8):

@@ -19,7 +19,7 @@ RTOL, ATOL = 1e-13, 1e-15    # of DOP853, near the smallest it accepts: a step e
 TINY = 1e-30                 # a complex step [m]: its square vanishes beside 1, so the derivative is exact to round-off
 
 
-class Net(NamedTuple):
+class ReferenceNetwork(NamedTuple):
     """Equal masses, equal springs.  Springs rest at the lengths in `rest`."""
     x: np.ndarray            # (n, d) initial positions [m]
     v: np.ndarray            # (n, d) initial velocities [m/s]
@@ -63,13 +63,13 @@ class SquareNet(NamedTuple):
 
 
 def square_net(p):
-    """Return the Net: node (r, c) is number r n + c; springs have the squared length 1, 2 (shear) or 4 (bend)."""
+    """Return the ReferenceNetwork: node (r, c) is number r n + c; squared lengths are 1, 2 (shear) or 4 (bend)."""
     r, c = np.divmod(np.arange(p.n * p.n), p.n)
     squared = (r[:, None] - r) ** 2 + (c[:, None] - c) ** 2
     pairs = np.argwhere(np.triu((squared == 1) | (squared == 2) & bool(p.shear) | (squared == 4) & bool(p.bend)))
     rest = p.spacing * np.sqrt(squared[pairs[:, 0], pairs[:, 1]])
     x = p.spacing * np.stack((c, -r), axis=1)
-    return Net(
+    return ReferenceNetwork(
         x,
         0.0 * x,
         tuple(range(p.n)),

@@ -13,7 +13,7 @@ from solutions.springs import spring_network_acceleration as acceleration
 from validate.engines.bullet import Bullet
 from validate.engines.springs import pymunk_net
 from validate.methods import IMPLICIT_MESH, INTEGRATORS, LEFT_TO_FULL
-from validate.reference.springs import Net, forces, motion, net_limits, rest_positions, state_of
+from validate.reference.springs import ReferenceNetwork, forces, motion, net_limits, rest_positions, state_of
 from validate.scene import PYBULLET, PYMUNK, Engine, EngineRun, Scene
 
 T = 1.2                      # [s]: one period of the slowest mode, nearly two of the sagging mode
@@ -64,7 +64,7 @@ def hung(p, compliance):
 
 def net(p):
     x, n = rigid_chain(p), np.arange(p.links + 1)
-    return Net(
+    return ReferenceNetwork(
         x,
         0.0 * x,
         (0, p.links),

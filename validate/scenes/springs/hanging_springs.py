@@ -10,7 +10,7 @@ from solutions.springs import make_spring_network
 from solutions.springs import spring_network_acceleration as acceleration
 from validate.engines.springs import pymunk_net
 from validate.methods import IMPLICIT_MESH, INTEGRATORS
-from validate.reference.springs import Net, by_mode, state_of
+from validate.reference.springs import ReferenceNetwork, by_mode, state_of
 from validate.scene import PYMUNK, Engine, Scene
 
 T = 1.5                      # [s]: two and a half periods of the slowest mode
@@ -39,7 +39,7 @@ def net(p):
     x = p.rest * n[:, None].astype(float)
     pairs = np.stack((n[:-1], n[1:]), axis=1)
     rest = np.full(p.springs, p.rest)
-    return Net(x, 0.0 * x, (0,), pairs, rest, p.m, p.k, p.k_d, p.k_v, np.array([p.g]), np.zeros(1))
+    return ReferenceNetwork(x, 0.0 * x, (0,), pairs, rest, p.m, p.k, p.k_d, p.k_v, np.array([p.g]), np.zeros(1))
 
 
 def start(p):
