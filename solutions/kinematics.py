@@ -13,7 +13,7 @@ A task is a function  task(θ, target, arm) → (e, J).  A method is a function 
 
 import numpy as np
 
-from .checks import BadInput, check_shape
+from .checks import BadInput, check_array, check_shape, finite_array
 from .integrators import solve
 from .rotation import exponential, product, rotate
 from .support.chains import Arm2D, Arm3D, check_found, checked_reach, make_arm_2d, make_arm_3d, wrapped
@@ -69,10 +69,9 @@ def jacobian_2d(x):
 def velocity_ellipse(J):
     """(σ₁, σ₂, angle): the half axes [m], σ₁ ≥ σ₂, of the ellipse {J θ̇ : |θ̇| = 1}, and the angle of the longer one.
 
-    With  J Jᵀ = [[a, b], [b, c]]:
-        σ₁² = ½(a + c) + √(¼(a − c)² + b²),      σ₂ = D/σ₁,      angle = ½ atan2(2b, a − c)
-        D² = Σ_i<k (J_0i J_1k − J_1i J_0k)²          the determinant of J Jᵀ, as a sum in which nothing cancels
-    J (2, n) is not zero.  Where the arm is stretched, σ₂ = 0: no joint moves the end along the arm.
+    σ₁² = ½(a + c) + √(¼(a − c)² + b²),      σ₂ = D/σ₁,      angle = ½ atan2(2b, a − c),      J Jᵀ = [[a, b], [b, c]]
+    D² = Σ_i<k (J_0i J_1k − J_1i J_0k)²          the determinant of J Jᵀ, as a sum in which nothing cancels
+    J (2, n) is not zero.  Where the arm is straight, σ₂ = 0: no joint moves the end along it.
     *Source:* Yoshikawa 1985; for D² Cauchy and Binet.
     """
     ### BEGIN SOLUTION 11.3
@@ -195,9 +194,7 @@ def reach_2d(theta, target, arm):
 
 
 def pose_2d(theta, target, arm):
-    """Given.  Task: the end of an Arm2D at (x, y) with the direction φ, target = (x, y, φ).  An error of 1 rad counts
-    as much as one of 1 m.
-    """
+    """Given.  Task: the end of an Arm2D at (x, y) with the direction φ, target = (x, y, φ); 1 rad counts as 1 m."""
     check_shape("the target", target, (3,))
     x, n, J = joint_positions(theta, arm.lengths), theta.size, np.ones((3, theta.size))
     J[:2] = jacobian_2d(x)
@@ -444,8 +441,10 @@ def solve_reach(step, task, theta, target, tolerance, most, arm):
 
 def solve_targets(step, task, theta, targets, tolerance, most, arm):
     """Given.  (θ (m, n), |e| (m,), iterations (m,)) for each of the targets (m, …), all from the same θ (n,)."""
-    thetas, errors = np.empty((targets.shape[0], theta.size)), np.empty(targets.shape[0])
-    counts = np.zeros(targets.shape[0], np.int64)
-    for i in range(targets.shape[0]):
+    theta, targets = finite_array("the angles θ [rad]", theta), finite_array("the targets", targets)
+    check_array("the targets", targets, 2)
+    m = targets.shape[0]
+    thetas, errors, counts = np.empty((m, theta.size)), np.empty(m), np.zeros(m, np.int64)
+    for i in range(m):
         thetas[i], errors[i], counts[i] = solve_reach(step, task, theta, targets[i], tolerance, most, arm)
     return thetas, errors, counts
