@@ -18,7 +18,7 @@ from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Engine, Engine
 
 T = 1.0
 STEPS = (1,)
-ITERATIONS = 2000            # of each method
+ITERATIONS = 3000            # of each method
 BENT = 0.5                   # all angles at the start [rad]
 METHODS = (DAMPED, CCD, FABRIK, TRANSPOSE)
 
@@ -94,7 +94,7 @@ def truth(p, t):
 def tolerance(p, dt):
     """½|e|² has the second derivatives  H = JᵀJ + S,  S_ik = −e · ∂²x/∂θ_i∂θ_k,  and |S| ≤ 3 |e| reach.  The gain is
     below 1/|H|.  A damped step multiplies small errors by  1 − (JᵀJ + λ²)⁻¹ H,  whose size is
-    below 1 for λ² > ½|S|, and λ² = ½ · 3 |e| reach.  So both come to rest, and 2,000
+    below 1 for λ² > ½|S|, and λ² = ½ · 3 |e| reach.  So both come to rest, and 3,000
     iterations leave round-off of them: some dozen roundings of the angles move the end aside.
 
     CCD and FABRIK have no such theory here, and by default pybullet follows its own law: ten times what was measured.
@@ -112,7 +112,7 @@ def pybullet_make(p, dt, **more):
 
 ENGINES = (
     Engine(PYBULLET, "", lambda p, dt: pybullet_make(p, dt, damping=settings(p)[1] ** 2, iterations=ITERATIONS), EXACT,
-           "jointDamping as our λ², 2,000 iterations"),
+           "jointDamping as our λ², 3,000 iterations"),
     Engine(PYBULLET, "default", pybullet_make, EXACT, "calculateInverseKinematics as it is"),
 )
 
@@ -176,7 +176,7 @@ SCENE = Scene(
         default_law)},
     omitted_methods="the pseudo-inverse is missing: at the edge of the ring the arm is straight, its steps grow "
                     "without bound, and it never comes to rest; the transpose is left out where it needs more than "
-                    "2,000 iterations",
+                    "3,000 iterations",
     moves=False,
     refinement="",
     quantity_names=quantity_names,
