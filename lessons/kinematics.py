@@ -14,24 +14,25 @@ A task is a function  task(θ, target, arm) → (e, J).  A method is a function 
 import numpy as np
 
 from solutions.checks import BadInput, check_array, check_shape, finite_array
-from solutions.integrators import solve
 from solutions.rotation import exponential, product, rotate
 from solutions.support.chains import Arm2D, Arm3D, check_found, checked_reach, make_arm_2d, make_arm_3d, wrapped
-from solutions.vectors import cross
+from solutions.support.small_systems import row_products, solve_symmetric, sum_of_rows
+from solutions.support.tuples import across, minus, plus, put, row, scaled
 
 __all__ = [
     "EDGE", "SINGULAR", "Arm2D", "Arm3D", "advance_reach", "angles_of", "ccd_step", "contraction_factors",
     "damped_step", "end_pose", "fabrik_step", "fabrik_sweep", "jacobian_2d", "jacobian_3d", "joint_frames",
     "joint_positions", "limited_step", "make_arm_2d", "make_arm_3d", "null_space_step", "point_at", "pose_2d",
     "pose_3d", "pseudo_inverse", "pseudo_inverse_step", "reach_2d", "reach_3d", "reach_trajectory", "rotation_error",
-    "solve_2r", "solve_3r", "solve_reach", "solve_targets", "transpose_step", "velocity_ellipse", "wrapped",
+    "row_products", "solve_2r", "solve_3r", "solve_reach", "solve_symmetric", "solve_targets", "sum_of_rows",
+    "transpose_step", "velocity_ellipse", "wrapped",
 ]
 
 SINGULAR = 1e-10             # singular values below this part of the largest count as zero [-]: far above round-off
 EDGE = 1e-12                 # part of the reach by which a target may be outside by round-off [-]
 
 
-# ---------------------------------------------------------------------------------------------- forward, in the plane
+# ---------------------------------------------------------------------------------------------- in the plane
 
 def joint_positions(theta, lengths):
     """x (n + 1, 2): positions of all joints of a planar chain from the base at (0, 0), and of its end as the last.
@@ -67,8 +68,6 @@ def velocity_ellipse(J):
     raise NotImplementedError("Exercise 11.3: velocity_ellipse")
 
 
-# ---------------------------------------------------------------------------------------------- in closed form
-
 def solve_2r(target, lengths, elbow):
     """θ (2,), both from −π to π, with which the first two links end at the target (2,); elbow = ±1 is the sign of θ₂.
 
@@ -95,7 +94,7 @@ def solve_3r(target, lengths, elbow):
     raise NotImplementedError("Exercise 11.5: solve_3r")
 
 
-# ---------------------------------------------------------------------------------------------- forward, in space
+# ---------------------------------------------------------------------------------------------- in space
 
 def joint_frames(theta, axes, offsets):
     """(x (n + 1, 3), a (n, 3), q (4,)): positions of joints and end, axes of the joints in the world, and the
@@ -105,7 +104,8 @@ def joint_frames(theta, axes, offsets):
         a_k = q applied to axes_k          the axis, which its own joint does not move
         q ← q ∘ exp(θ_k axes_k)            the joint turns all that follows
         x_k+1 = x_k + (the new q applied to offsets_k)
-    rotate(q, r), product and exponential are those of lesson 5.
+    rotate(q, r), product and exponential are those of lesson 5.  Compiled, tuples are much quicker than rows of arrays:
+    row(x, k), put(x, k, r), plus, minus, across (×) and scaled are in support/tuples.py, and rotate takes them.
     *Source:* Lynch and Park 2017, chapter 4: a product of exponentials, here of quaternions.
     """
     # YOUR CODE HERE
@@ -205,7 +205,8 @@ def pseudo_inverse_step(task, theta, target, arm):
 def damped_step(task, theta, target, arm):
     """θ + Jᵀ (J Jᵀ + λ² 1)⁻¹ e:  the Δθ with the smallest |J Δθ − e|² + λ² |Δθ|², λ = arm.damping.
 
-    No step is longer than |e|/(2λ).  Use solve of lesson 1.  λ > 0 where J Jᵀ has no inverse.
+    No step is longer than |e|/(2λ).  λ > 0 where J Jᵀ has no inverse.  Given are row_products(J), which is J Jᵀ,
+    solve_symmetric(A, e), which is A⁻¹ e, and sum_of_rows(J, y), which is Jᵀ y: compiled, they are quicker than NumPy.
     *Source:* Wampler 1986; Nakamura and Hanafusa 1986.  Levenberg 1944 for least squares.
     """
     # YOUR CODE HERE
@@ -287,7 +288,6 @@ def limited_step(task, theta, target, arm):
     A joint is blocked if it is at a limit, or beyond it, and (Jᵀ e)_k points further out.
     J' is J with zeros in the columns of blocked joints.
     θ ← θ + J'ᵀ (J' J'ᵀ + λ² 1)⁻¹ e, and then each angle that is outside its limits goes to the nearest one.
-
     Where it comes to rest, no joint alone could make |e| smaller without leaving its limits.
     *Source:* Bertsekas 1982, projected Newton methods.
     """
@@ -299,7 +299,6 @@ def null_space_step(task, theta, target, arm):
     """θ + J⁺ e + (1 − J⁺ J) z:  go to the target, and use the freedom that is left to go to arm.rest (n,).
 
     z = κ (rest − θ),      κ = arm.pull.  1 − J⁺ J projects onto what does not move the end.
-
     *Source:* Liégeois 1977.
     """
     # YOUR CODE HERE

@@ -14,24 +14,25 @@ A task is a function  task(θ, target, arm) → (e, J).  A method is a function 
 import numpy as np
 
 from .checks import BadInput, check_array, check_shape, finite_array
-from .integrators import solve
 from .rotation import exponential, product, rotate
 from .support.chains import Arm2D, Arm3D, check_found, checked_reach, make_arm_2d, make_arm_3d, wrapped
-from .vectors import cross
+from .support.small_systems import row_products, solve_symmetric, sum_of_rows
+from .support.tuples import across, minus, plus, put, row, scaled
 
 __all__ = [
     "EDGE", "SINGULAR", "Arm2D", "Arm3D", "advance_reach", "angles_of", "ccd_step", "contraction_factors",
     "damped_step", "end_pose", "fabrik_step", "fabrik_sweep", "jacobian_2d", "jacobian_3d", "joint_frames",
     "joint_positions", "limited_step", "make_arm_2d", "make_arm_3d", "null_space_step", "point_at", "pose_2d",
     "pose_3d", "pseudo_inverse", "pseudo_inverse_step", "reach_2d", "reach_3d", "reach_trajectory", "rotation_error",
-    "solve_2r", "solve_3r", "solve_reach", "solve_targets", "transpose_step", "velocity_ellipse", "wrapped",
+    "row_products", "solve_2r", "solve_3r", "solve_reach", "solve_symmetric", "solve_targets", "sum_of_rows",
+    "transpose_step", "velocity_ellipse", "wrapped",
 ]
 
 SINGULAR = 1e-10             # singular values below this part of the largest count as zero [-]: far above round-off
 EDGE = 1e-12                 # part of the reach by which a target may be outside by round-off [-]
 
 
-# ---------------------------------------------------------------------------------------------- forward, in the plane
+# ---------------------------------------------------------------------------------------------- in the plane
 
 def joint_positions(theta, lengths):
     """x (n + 1, 2): positions of all joints of a planar chain from the base at (0, 0), and of its end as the last.
@@ -84,8 +85,6 @@ def velocity_ellipse(J):
     ### END SOLUTION
 
 
-# ---------------------------------------------------------------------------------------------- in closed form
-
 def solve_2r(target, lengths, elbow):
     """θ (2,), both from −π to π, with which the first two links end at the target (2,); elbow = ±1 is the sign of θ₂.
 
@@ -124,7 +123,7 @@ def solve_3r(target, lengths, elbow):
     ### END SOLUTION
 
 
-# ---------------------------------------------------------------------------------------------- forward, in space
+# ---------------------------------------------------------------------------------------------- in space
 
 def joint_frames(theta, axes, offsets):
     """(x (n + 1, 3), a (n, 3), q (4,)): positions of joints and end, axes of the joints in the world, and the
@@ -134,16 +133,18 @@ def joint_frames(theta, axes, offsets):
         a_k = q applied to axes_k          the axis, which its own joint does not move
         q ← q ∘ exp(θ_k axes_k)            the joint turns all that follows
         x_k+1 = x_k + (the new q applied to offsets_k)
-    rotate(q, r), product and exponential are those of lesson 5.
+    rotate(q, r), product and exponential are those of lesson 5.  Compiled, tuples are much quicker than rows of arrays:
+    row(x, k), put(x, k, r), plus, minus, across (×) and scaled are in support/tuples.py, and rotate takes them.
     *Source:* Lynch and Park 2017, chapter 4: a product of exponentials, here of quaternions.
     """
     ### BEGIN SOLUTION 11.6
     n = theta.size
     x, a, q = np.zeros((n + 1, 3)), np.empty((n, 3)), np.array((1.0, 0.0, 0.0, 0.0))
     for k in range(n):
-        a[k] = rotate(q, axes[k])
-        q = product(q, exponential(theta[k] * axes[k]))
-        x[k + 1] = x[k] + rotate(q, offsets[k])
+        axis = row(axes, k)
+        put(a, k, rotate(q, axis))
+        q = product(q, exponential(scaled(theta[k], axis)))
+        put(x, k + 1, plus(row(x, k), 1.0, rotate(q, row(offsets, k))))
     return x, a, q
     ### END SOLUTION
 
@@ -159,7 +160,7 @@ def jacobian_3d(x, a):
     n = a.shape[0]
     J = np.empty((6, n))
     for k in range(n):
-        v = cross(a[k], x[n] - x[k])
+        v = across(row(a, k), minus(row(x, n), row(x, k)))
         for c in range(3):
             J[c, k], J[c + 3, k] = v[c], a[k, c]
     return J
@@ -264,15 +265,16 @@ def pseudo_inverse_step(task, theta, target, arm):
 def damped_step(task, theta, target, arm):
     """θ + Jᵀ (J Jᵀ + λ² 1)⁻¹ e:  the Δθ with the smallest |J Δθ − e|² + λ² |Δθ|², λ = arm.damping.
 
-    No step is longer than |e|/(2λ).  Use solve of lesson 1.  λ > 0 where J Jᵀ has no inverse.
+    No step is longer than |e|/(2λ).  λ > 0 where J Jᵀ has no inverse.  Given are row_products(J), which is J Jᵀ,
+    solve_symmetric(A, e), which is A⁻¹ e, and sum_of_rows(J, y), which is Jᵀ y: compiled, they are quicker than NumPy.
     *Source:* Wampler 1986; Nakamura and Hanafusa 1986.  Levenberg 1944 for least squares.
     """
     ### BEGIN SOLUTION 11.11
     e, J = task(theta, target, arm)
-    A = J @ np.ascontiguousarray(J.T)
+    A = row_products(J)
     for r in range(e.size):
         A[r, r] += arm.damping * arm.damping
-    return theta + solve(A, e) @ J
+    return theta + sum_of_rows(J, solve_symmetric(A, e))
     ### END SOLUTION
 
 
@@ -369,7 +371,6 @@ def limited_step(task, theta, target, arm):
     A joint is blocked if it is at a limit, or beyond it, and (Jᵀ e)_k points further out.
     J' is J with zeros in the columns of blocked joints.
     θ ← θ + J'ᵀ (J' J'ᵀ + λ² 1)⁻¹ e, and then each angle that is outside its limits goes to the nearest one.
-
     Where it comes to rest, no joint alone could make |e| smaller without leaving its limits.
     *Source:* Bertsekas 1982, projected Newton methods.
     """
@@ -379,10 +380,10 @@ def limited_step(task, theta, target, arm):
     for k in range(theta.size):
         if (theta[k] >= arm.high[k] and wish[k] > 0.0) or (theta[k] <= arm.low[k] and wish[k] < 0.0):
             J[:, k] = 0.0
-    A = J @ np.ascontiguousarray(J.T)
+    A = row_products(J)
     for r in range(e.size):
         A[r, r] += arm.damping * arm.damping
-    return np.minimum(np.maximum(theta + solve(A, e) @ J, arm.low), arm.high)
+    return np.minimum(np.maximum(theta + sum_of_rows(J, solve_symmetric(A, e)), arm.low), arm.high)
     ### END SOLUTION
 
 
@@ -390,7 +391,6 @@ def null_space_step(task, theta, target, arm):
     """θ + J⁺ e + (1 − J⁺ J) z:  go to the target, and use the freedom that is left to go to arm.rest (n,).
 
     z = κ (rest − θ),      κ = arm.pull.  1 − J⁺ J projects onto what does not move the end.
-
     *Source:* Liégeois 1977.
     """
     ### BEGIN SOLUTION 11.16

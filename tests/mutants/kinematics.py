@@ -157,7 +157,7 @@ wrong("11.6", "axes as they were given")(frames(axis_in_world=False))
 wrong("11.6", "a joint does not move its own link")(frames(before=True))
 wrong("11.6", "axes of the world instead of the link's")(frames(order=-1))
 wrong("11.6", "turns the other way")(frames(sign=-1.0))
-edit("11.6", "offsets of the world", "x[k] + rotate(q, offsets[k])", "x[k] + offsets[k]")
+edit("11.6", "offsets of the world", "rotate(q, row(offsets, k))", "row(offsets, k)")
 
 
 # 11.7 -----------------------------------------------------------------------------------------------------------
