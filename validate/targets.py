@@ -32,8 +32,8 @@ ARMS = {                     # {name: (axes, offsets, start, damping λ of ours 
                 np.array([0.2, -0.4, 0.9, 0.3, 0.5, 0.2]), 0.03),
 }
 ENGINES = {                  # {label: (whether it gets our damping, goal: least ratio of times, engine over ours)}
-    "pybullet, damping ½ m²": (False, 10.0),
-    "pybullet, damping as ours": (True, 1.0),
+    "pybullet, damping ½ m²": (False, "10"),
+    "pybullet, damping as ours": (True, "–"),
 }
 
 
@@ -124,9 +124,10 @@ def main(arguments):
     spread = lambda left: f"median {np.median(left):.0e}, worst {np.max(left):.0e}"
     try:
         for name in asked.arms or ARMS:
-            for label, ratio, low, high, goal, *times, found, left in compare(lesson, name, asked.targets, asked.rounds):
+            for row in compare(lesson, name, asked.targets, asked.rounds):
+                label, ratio, low, high, goal, *times, found, left = row
                 table.add_row(f"{asked.targets} targets, {name}", label, f"{ratio:.1f}", f"{low:.1f}–{high:.1f}",
-                              f"{goal:g}", *(f"{one:.2f}" for one in times), spread(found), spread(left))
+                              goal, *(f"{one:.2f}" for one in times), spread(found), spread(left))
     except ImportError:
         print("pybullet is not installed here, and nothing can be compared", file=sys.stderr)
         return 1

@@ -121,7 +121,7 @@ def test_links_add_up_from_the_base(lesson, draw):
 def test_a_joint_turns_all_that_comes_after_it(lesson, draw):
     n, angle = draw.whole(3, 6), draw(0.5, 2.0)
     theta, lengths = draw(-3.0, 3.0, n), lengths_of(draw, n)
-    before = np.asarray(lesson.joint_positions(theta, lengths))
+    before = joints(theta, lengths)
     for k in range(n):
         turned = theta.copy()
         turned[k] += angle
