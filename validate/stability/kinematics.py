@@ -219,7 +219,7 @@ def two_to_two_hundred_links(lesson):
     An angle is rounded by 1.1e-16 and moves the end by the reach: n roundings, n · 1e-15 of the reach.  The factor is
     a central difference over 1e-6 rad: a rounding of the end over that, and a few, is 1e-9.
     """
-    found, sizes, drawn = [], (2, 5, 20, 50, 200), {}
+    found, sizes, drawn = [], (2, 5, 20, 200), {}
     for name in ("ccd_step", "fabrik_step", "damped_step"):
         drawn[name] = []
         for n in sizes:

@@ -93,9 +93,9 @@ def truth(p, t):
 
 def tolerance(p, dt):
     """½|e|² has the second derivatives  H = JᵀJ + S,  S_ik = −e · ∂²x/∂θ_i∂θ_k,  and |S| ≤ 3 |e| reach.  The gain is
-    below 1/|H|.  A damped step multiplies small errors by  1 − (JᵀJ + λ²)⁻¹ H,  whose size is
-    below 1 for λ² > ½|S|, and λ² = ½ · 3 |e| reach.  So both come to rest, and 3,000
-    iterations leave round-off of them: some dozen roundings of the angles move the end aside.
+    below 1/|H|.  A damped step multiplies small errors by  1 − (JᵀJ + λ²)⁻¹ H,  whose size is below 1 for λ² > ½|S|,
+    and here λ² = ½ · 3 |e| reach.  So both come to rest, and 3,000 iterations leave round-off of them: some dozen
+    roundings of the angles move the end aside.
 
     CCD and FABRIK have no such theory here, and by default pybullet follows its own law: ten times what was measured.
     """
