@@ -56,7 +56,7 @@ def limits(thing, values, n):
     for value in array.ravel():
         if np.isnan(value):
             raise BadInput(thing, value, "give angles, or ±∞ for no limit")
-    return np.full(n, array) if array.ndim == 0 else array.copy()
+    return np.zeros(n) + array
 
 
 def settings(n, gain, damping, low, high, rest, pull):
@@ -73,7 +73,7 @@ def settings(n, gain, damping, low, high, rest, pull):
     for k in range(n):
         if not (low[k] <= high[k] and low[k] < np.inf and high[k] > -np.inf):
             raise BadInput("the lower limit of a joint [rad]", low[k], "keep it below the upper one")
-    return low, high, np.full(n, rest) if rest.ndim == 0 else rest.copy(), gain, damping, pull
+    return low, high, np.zeros(n) + rest, gain, damping, pull
 
 
 def make_arm_2d(lengths, gain, damping, low, high, rest, pull):
@@ -95,8 +95,8 @@ def make_arm_3d(axes, offsets, gain, damping, low, high, rest, pull):
     check_array("the axes of the joints [-]", axes, 2)
     check_shape("the axes of the joints", axes, (len(axes), 3))
     check_shape("the offsets", offsets, axes.shape)
-    for axis in axes:
-        check_normal(axis)
+    for k in range(len(axes)):
+        check_normal(axes[k].copy())
     low, high, rest, gain, damping, pull = settings(len(axes), gain, damping, low, high, rest, pull)
     return Arm3D(axes.copy(), offsets.copy(), low, high, rest, gain, damping, pull)
 

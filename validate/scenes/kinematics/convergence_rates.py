@@ -75,12 +75,15 @@ def settings(p):
 # ---------------------------------------------------------------------------------------------- ours
 
 def run(step, acceleration, state, p, dt, steps):
-    gain, damping = settings(p)
     if step.__name__ == "contraction_factors":
-        return tuple(step(directions(p)[1], gain, damping))
-    lengths = np.array([p.l_1, p.l_2, p.l_3])
-    arm, target = make_arm_2d(lengths, gain, damping, -np.inf, np.inf, 0.0, 0.0), end_of(ANGLES, lengths)
-    return tuple(advance_reach(step, reach_2d, theta, target, 1, arm) for theta in state)
+        return tuple(step(directions(p)[1], *settings(p)))
+    target = end_of(ANGLES, lengths_of(p))
+    return tuple(advance_reach(step, reach_2d, theta, target, 1, arm_of(p)) for theta in state)
+
+
+def arm_of(p):
+    gain, damping = settings(p)
+    return make_arm_2d(lengths_of(p), gain, damping, -np.inf, np.inf, 0.0, 0.0)
 
 
 def observe(state, p):

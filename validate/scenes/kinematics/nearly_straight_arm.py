@@ -56,8 +56,11 @@ def start(p):
 # ---------------------------------------------------------------------------------------------- ours
 
 def run(step, acceleration, state, p, dt, steps):
-    arm = make_arm_2d(LENGTHS, 0.6 / REACH**2, 0.2 * REACH, -np.inf, np.inf, 0.0, 0.0)
-    return solve_reach(step, reach_2d, state[0], np.array([p.x, p.y]), ENOUGH * REACH, MOST, arm)[:1]
+    return solve_reach(step, reach_2d, state[0], target_of(p), ENOUGH * REACH, MOST, arm_of(p))[:1]
+
+
+def arm_of(p):
+    return make_arm_2d(LENGTHS, 0.6 / REACH**2, 0.2 * REACH, -np.inf, np.inf, 0.0, 0.0)
 
 
 def observe(state, p):

@@ -63,11 +63,15 @@ def start(p):
 # ---------------------------------------------------------------------------------------------- ours
 
 def run(step, acceleration, state, p, dt, steps):
-    lengths, target, size = np.array([p.l_1, p.l_2]), np.array([p.x, p.y]), p.l_1 + p.l_2
     if step.__name__ == "solve_2r":
-        return step(target, lengths, 1.0), step(target, lengths, -1.0)
-    arm = make_arm_2d(lengths, 0.7 / size**2, 0.1 * size, -np.inf, np.inf, 0.0, 0.0)
-    return tuple(solve_reach(step, reach_2d, theta, target, ENOUGH * size, MOST, arm)[0] for theta in state)
+        return step(target_of(p), lengths_of(p), 1.0), step(target_of(p), lengths_of(p), -1.0)
+    enough = ENOUGH * (p.l_1 + p.l_2)
+    return tuple(solve_reach(step, reach_2d, theta, target_of(p), enough, MOST, arm_of(p))[0] for theta in state)
+
+
+def arm_of(p):
+    size = p.l_1 + p.l_2
+    return make_arm_2d(lengths_of(p), 0.7 / size**2, 0.1 * size, -np.inf, np.inf, 0.0, 0.0)
 
 
 def observe(state, p):

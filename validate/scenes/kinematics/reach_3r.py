@@ -61,12 +61,14 @@ def start(p):
 # ---------------------------------------------------------------------------------------------- ours
 
 def run(step, acceleration, state, p, dt, steps):
-    lengths, target = np.array([p.l_1, p.l_2, p.l_3]), np.array([p.x, p.y, np.radians(p.degrees)])
     if step.__name__ == "solve_3r":
-        return step(target, lengths, 1.0), step(target, lengths, -1.0)
+        return step(target_of(p), lengths_of(p), 1.0), step(target_of(p), lengths_of(p), -1.0)
+    return tuple(solve_reach(step, pose_2d, theta, target_of(p), ENOUGH, MOST, arm_of(p))[0] for theta in state)
+
+
+def arm_of(p):
     size = p.l_1 + p.l_2 + p.l_3
-    arm = make_arm_2d(lengths, 1.0 / (2.0 * size**2 + 3.0), 0.1 * size, -np.inf, np.inf, 0.0, 0.0)
-    return tuple(solve_reach(step, pose_2d, theta, target, ENOUGH, MOST, arm)[0] for theta in state)
+    return make_arm_2d(lengths_of(p), 1.0 / (2.0 * size**2 + 3.0), 0.1 * size, -np.inf, np.inf, 0.0, 0.0)
 
 
 def observe(state, p):

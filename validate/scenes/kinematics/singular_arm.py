@@ -44,8 +44,11 @@ def start(p):
 # ---------------------------------------------------------------------------------------------- ours
 
 def run(step, acceleration, state, p, dt, steps):
-    arm = make_arm_2d(LENGTHS, 0.6 / REACH**2, 0.2 * REACH, -np.inf, np.inf, 0.0, 0.0)
-    return (advance_reach(step, reach_2d, state[0], np.array([p.x, 0.0]), ITERATIONS, arm),)
+    return (advance_reach(step, reach_2d, state[0], np.array([p.x, 0.0]), ITERATIONS, arm_of(p)),)
+
+
+def arm_of(p):
+    return make_arm_2d(LENGTHS, 0.6 / REACH**2, 0.2 * REACH, -np.inf, np.inf, 0.0, 0.0)
 
 
 def observe(state, p):

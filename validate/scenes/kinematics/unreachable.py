@@ -64,10 +64,12 @@ def start(p):
 # ---------------------------------------------------------------------------------------------- ours
 
 def run(step, acceleration, state, p, dt, steps):
-    lengths, target = np.array([p.l_1, p.l_2, p.l_3]), np.array([p.x, p.y])
+    return (advance_reach(step, reach_2d, state[0], target_of(p), ITERATIONS, arm_of(p)),)
+
+
+def arm_of(p):
     gain, damping = settings(p)
-    arm = make_arm_2d(lengths, gain, damping, -np.inf, np.inf, 0.0, 0.0)
-    return (advance_reach(step, reach_2d, state[0], target, ITERATIONS, arm),)
+    return make_arm_2d(lengths_of(p), gain, damping, -np.inf, np.inf, 0.0, 0.0)
 
 
 def settings(p):
