@@ -288,7 +288,7 @@ def limited_step(task, theta, target, arm):
     A joint is blocked if it is at a limit, or beyond it, and (Jᵀ e)_k points further out.
     J' is J with zeros in the columns of blocked joints.
     θ ← θ + J'ᵀ (J' J'ᵀ + λ² 1)⁻¹ e, and then each angle that is outside its limits goes to the nearest one.
-    Where it comes to rest, no joint alone could make |e| smaller without leaving its limits.
+    Where it comes to rest, no joint alone could make |e| smaller, to first order, without leaving its limits.
     *Source:* Bertsekas 1982, projected Newton methods.
     """
     # YOUR CODE HERE
