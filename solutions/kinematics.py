@@ -14,8 +14,9 @@ A task is a function  task(θ, target, arm) → (e, J).  A method is a function 
 import numpy as np
 
 from .checks import BadInput, check_array, check_shape, finite_array
-from .rotation import exponential, product, rotate
+from .rotation import quaternion_product
 from .support.chains import Arm2D, Arm3D, check_found, checked_reach, make_arm_2d, make_arm_3d, wrapped
+from .support.quaternions import exponential, rotate
 from .support.small_systems import row_products, solve_symmetric, sum_of_rows
 from .support.tuples import across, minus, plus, put, row, scaled
 
@@ -93,8 +94,7 @@ def solve_2r(target, lengths, elbow):
 
     That is cos θ₂ = (r² − l₁² − l₂²)/(2 l₁ l₂), by half the angle.  A root of a number below 0 counts as 0.
     Raises BadInput("distance of the target [m]", r, remedy) where r is above l₁ + l₂ or below |l₁ − l₂| by more than
-    EDGE (l₁ + l₂), which is round-off.
-    *Source:* Lynch and Park 2017, chapter 6; the law of cosines.
+    EDGE (l₁ + l₂), which is round-off.  *Source:* Lynch and Park 2017, chapter 6; the law of cosines.
     """
     ### BEGIN SOLUTION 11.4
     most, least = lengths[0] + lengths[1], np.abs(lengths[0] - lengths[1])
@@ -133,8 +133,8 @@ def joint_frames(theta, axes, offsets):
         a_k = q applied to axes_k          the axis, which its own joint does not move
         q ← q ∘ exp(θ_k axes_k)            the joint turns all that follows
         x_k+1 = x_k + (the new q applied to offsets_k)
-    rotate(q, r), product and exponential are those of lesson 5.  Compiled, tuples are much quicker than rows of arrays:
-    row(x, k), put(x, k, r), plus, minus, across (×) and scaled are in support/tuples.py, and rotate takes them.
+    rotate(q, r), quaternion_product and exponential are those of lesson 5.  Compiled, tuples are quicker than rows:
+    row(x, k), put(x, k, r), plus, minus, across (×) and scaled of support/tuples.py; rotate takes them.
     *Source:* Lynch and Park 2017, chapter 4: a product of exponentials, here of quaternions.
     """
     ### BEGIN SOLUTION 11.6
@@ -143,7 +143,7 @@ def joint_frames(theta, axes, offsets):
     for k in range(n):
         axis = row(axes, k)
         put(a, k, rotate(q, axis))
-        q = product(q, exponential(scaled(theta[k], axis)))
+        q = quaternion_product(q, exponential(scaled(theta[k], axis)))
         put(x, k + 1, plus(row(x, k), 1.0, rotate(q, row(offsets, k))))
     return x, a, q
     ### END SOLUTION
@@ -176,7 +176,7 @@ def rotation_error(q, q_target):
     *Source:* Lynch and Park 2017, chapter 3: the logarithm of a rotation.
     """
     ### BEGIN SOLUTION 11.8
-    d = product(q_target, np.array((q[0], -q[1], -q[2], -q[3])))
+    d = quaternion_product(q_target, np.array((q[0], -q[1], -q[2], -q[3])))
     if d[0] < 0.0:
         d = -d
     size = np.sqrt(d[1] * d[1] + d[2] * d[2] + d[3] * d[3])

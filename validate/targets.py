@@ -21,6 +21,7 @@ from solutions.support.chains import make_arm_2d, make_arm_3d
 
 from . import modules
 from .engines.kinematics import BulletChain
+from .reference.kinematics import spatial_end
 
 THRESHOLD = 1e-4             # residual that pybullet asks for by default [m]
 MOST = 200                   # iterations of either
@@ -37,32 +38,16 @@ ENGINES = {                  # {label: (whether it gets our damping, goal: least
 }
 
 
-def turned(axis, angle):
-    """R (3, 3): Rodrigues's formula."""
-    a, b, c = axis
-    K = np.array([[0.0, -c, b], [c, 0.0, -a], [-b, a, 0.0]])
-    return np.eye(3) + np.sin(angle) * K + (1.0 - np.cos(angle)) * K @ K
-
-
-def end_of(theta, axes, offsets):
-    """End of a chain (3,), by matrices."""
-    x, R = np.zeros(3), np.eye(3)
-    for angle, axis, offset in zip(theta, axes, offsets):
-        R = R @ turned(axis, angle)
-        x = x + R @ offset
-    return x
-
-
 def residuals(thetas, targets, axes, offsets):
     """Distances [m] from the ends to their targets."""
-    return np.array([np.linalg.norm(end_of(theta, axes, offsets) - target) for theta, target in zip(thetas, targets)])
+    return np.array([np.linalg.norm(spatial_end(theta, axes, offsets)[0] - target) for theta, target in zip(thetas, targets)])
 
 
 def drawn(name, n):
     """n targets (n, 3) that this arm reaches, near enough to its start to need no luck."""
     axes, offsets, start, _ = ARMS[name]
     rng = np.random.default_rng(1)
-    return np.array([end_of(start + rng.uniform(-1.0, 1.0, len(start)), axes, offsets) for _ in range(n)])
+    return np.array([spatial_end(start + rng.uniform(-1.0, 1.0, len(start)), axes, offsets)[0] for _ in range(n)])
 
 
 def ours(lesson, name, targets, tolerance):

@@ -137,7 +137,7 @@ def frames(axis_in_world=True, before=False, order=1, sign=1.0):
         for angle, axis, offset in zip(theta, axes, offsets):
             old = q
             turn = worked.exponential(sign * angle * axis)
-            q = worked.product(q, turn) if order > 0 else worked.product(turn, q)
+            q = worked.quaternion_product(q, turn) if order > 0 else worked.quaternion_product(turn, q)
             a.append(worked.rotate(old, axis) if axis_in_world else axis)
             x.append(x[-1] + worked.rotate(old if before else q, offset))
         return np.array(x), np.array(a), q
@@ -148,7 +148,7 @@ def frames(axis_in_world=True, before=False, order=1, sign=1.0):
 def joint_frames(theta, axes, offsets):
     x, a, q = np.zeros((len(theta) + 1, 3)), np.zeros((len(theta), 3)), np.array([1.0, 0.0, 0.0, 0.0])
     for k in range(len(theta)):
-        q = worked.product(q, worked.exponential(theta[k] * axes[k]))
+        q = worked.quaternion_product(q, worked.exponential(theta[k] * axes[k]))
         a[k], x[k + 1] = worked.rotate(q, axes[k]), x[k] + worked.rotate(q, offsets[k])
     return x, a, q
 
@@ -182,7 +182,7 @@ wrong("11.7", "no angular velocity")(spatial(spins=False))
 def rotation(body=False, shorter=True, half=2.0, back=False, small=True, arccos=False):
     def rotation_error(q, q_target):
         conjugate = np.array([q[0], -q[1], -q[2], -q[3]])
-        d = worked.product(conjugate, q_target) if body else worked.product(q_target, conjugate)
+        d = worked.quaternion_product(conjugate, q_target) if body else worked.quaternion_product(q_target, conjugate)
         if shorter and d[0] < 0.0:
             d = -d
         size = np.linalg.norm(d[1:])

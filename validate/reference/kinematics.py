@@ -71,3 +71,19 @@ def bullet_ik(theta, target, lengths, direction=None, damping=DAMPING, iteration
         if size <= threshold:
             break
     return theta
+
+
+def turned(axis, angle):
+    """R (3, 3): Rodrigues's formula."""
+    a, b, c = axis
+    K = np.array([[0.0, -c, b], [c, 0.0, -a], [-b, a, 0.0]])
+    return np.eye(3) + np.sin(angle) * K + (1.0 - np.cos(angle)) * K @ K
+
+
+def spatial_end(theta, axes, offsets):
+    """(end (3,), R (3, 3) of the last link) of a chain in space, by matrices."""
+    x, R = np.zeros(3), np.eye(3)
+    for angle, axis, offset in zip(theta, axes, offsets):
+        R = R @ turned(axis, angle)
+        x = x + R @ offset
+    return x, R

@@ -6,9 +6,10 @@ Bounds come from singular values and second derivatives of chains of complex num
 
 import numpy as np
 from scipy.optimize import least_squares, minimize_scalar
+from scipy.spatial.transform import Rotation
 
 from solutions.checks import Diverged
-from validate.reference.kinematics import annulus, curvature_of, end_of, jacobian_of, joints_of
+from validate.reference.kinematics import annulus, curvature_of, end_of, jacobian_of, joints_of, spatial_end
 from validate.stability.case import DOTS, LINE, Picture, bisect, case, finding, refuses, series
 
 SMALL = 1e-8                 # disturbance that a linear theory knows [rad]: leaves 1e-8 of what is measured
@@ -359,6 +360,89 @@ def limits_that_forbid(lesson):
         series("theory, r − d", fine, outer(fine) - np.hypot(0.3, 0.5), LINE),
         series("damped, with limits", bends, measured, DOTS)],
         "Limits make the hole in the middle of the reach larger.")
+
+
+# ---------------------------------------------------------------------------------------------- in space
+
+X, Y, Z = np.eye(3)
+AXES, OFFSETS = np.stack((Z, Y, Y, X, Y, X)), np.stack((0.4 * Z, 0.6 * X, 0.3 * X, 0.2 * X, 0.1 * X, 0.2 * X + 0.1 * Z))
+SIX = np.array([0.5, -0.6, 0.9, 0.3, 0.5, 0.2])
+
+
+def pose_error(theta, x, R):
+    """(x − end, rotation vector from the last link to R) (6,), by matrices and SciPy."""
+    end, here = spatial_end(theta, AXES, OFFSETS)
+    return np.append(x - end, Rotation.from_matrix(R @ here.T).as_rotvec())
+
+
+@case("six-joints-in-space", "Six joints in space", compiled=False)
+def six_joints_in_space(lesson):
+    """A damped step in space leaves λ²/(σ² + λ²) of a small error of the pose, along each of six directions.
+
+    J comes from central differences of matrices: 1e-10 of it is wrong, and of the small σ that is 1e-9.  Factors are
+    central differences over 1e-5 rad, with 1e-10 from their third order and from round-off.
+    """
+    found, (x, R), h = [], spatial_end(SIX, AXES, OFFSETS), 1e-5
+    slopes = [-(pose_error(SIX + d, x, R) - pose_error(SIX - d, x, R)) / (2.0 * h) for d in h * np.eye(6)]
+    u, sigma, v = np.linalg.svd(np.stack(slopes, axis=1))
+    damping, factors = 0.2, []
+    arm = lesson.make_arm_3d(AXES, OFFSETS, 0.0, damping, -np.inf, np.inf, 0.0, 0.0)
+    target = np.append(x, np.roll(Rotation.from_matrix(R).as_quat(), 1))
+    for i in range(6):
+        ends = [lesson.advance_reach(lesson.damped_step, lesson.pose_3d, SIX + s * h * v[i], target, 1, arm)
+                for s in (1.0, -1.0)]
+        left = [pose_error(theta, x, R) for theta in ends]
+        factors.append(-u[:, i] @ (left[0] - left[1]) / (2.0 * h * sigma[i]))
+        law = damping**2 / (sigma[i] ** 2 + damping**2)
+        found.append(finding(
+            claim="A damped step leaves λ²/(σ² + λ²) of an error of place and orientation.",
+            quantity=f"factor per iteration along the axis with σ = {sigma[i]:.4f} [-]",
+            predicted=law,
+            measured=factors[-1],
+            tolerance=1e-7,
+            observation=f"σ = {sigma[i]:.4f}: {factors[-1]:.6f} of the error is left.",
+        ))
+    found += [ellipse(lesson, bend) for bend in (1.0, 1e-3, 1e-7)] + [posture(lesson)]
+    fine = np.linspace(sigma[-1], sigma[0], 60)
+    return found, Picture("What one iteration leaves", "σ [m, or 1 for a rotation]", "factor [-]", [
+        series("theory, λ²/(σ² + λ²)", fine, damping**2 / (fine**2 + damping**2), LINE),
+        series("measured", sigma, factors, DOTS)],
+        "In space as in the plane: what the arm can hardly move comes last.")
+
+
+def ellipse(lesson, bend):
+    """The Finding on the half axes of two links that are bent so little.
+
+    σ₁ σ₂ = l₁ l₂ sin θ₂.  J is rounded by 1e-16, which is 1e-16 over the bend of that.
+    """
+    lengths = np.array([1.0, 0.7])
+    longer, shorter, _ = lesson.velocity_ellipse(lesson.jacobian_2d(joints_of((0.4, bend), lengths)))
+    product = longer * shorter / (0.7 * np.sin(bend))
+    return finding(
+        claim="The half axes of two links multiply to l₁ l₂ sin θ₂, however straight they are.",
+        quantity=f"σ₁ σ₂ over l₁ l₂ sin θ₂, bent by {bend:g} rad [-]",
+        predicted=1.0,
+        measured=product,
+        tolerance=1e-15 / bend + 1e-14,
+        observation=f"Bent by {bend:g} rad σ₂ is {shorter:.4g} m.",
+    )
+
+
+def posture(lesson):
+    """The Finding on what a pull to rest does to the end: nothing to first order, so a quarter for half of the pull."""
+    lengths, theta = np.array([1.0, 0.8, 0.6, 0.4]), np.array([0.3, 0.6, 0.5, 0.4])
+    target, moved = end_of(theta, lengths), []
+    for pull in (2e-3, 1e-3):
+        arm = lesson.make_arm_2d(lengths, 0.0, 0.0, -np.inf, np.inf, (0.9, -0.2, 0.4, 0.8), pull)
+        moved.append(np.linalg.norm(end_of(after(lesson, "null_space_step", arm, theta, target, 1), lengths) - target))
+    return finding(
+        claim="A pull to rest moves the end by the square of the pull: the null space is one of first order.",
+        quantity="way of the end over that with half of the pull [-]",
+        predicted=4.0,
+        measured=moved[0] / moved[1],
+        tolerance=0.01,
+        observation=f"The end moves by {moved[0]:.1e} m, and with half of the pull by {moved[1]:.1e} m.",
+    )
 
 
 # ---------------------------------------------------------------------------------------------- extremes
