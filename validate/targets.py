@@ -40,7 +40,8 @@ ENGINES = {                  # {label: (whether it gets our damping, goal: least
 
 def residuals(thetas, targets, axes, offsets):
     """Distances [m] from the ends to their targets."""
-    return np.array([np.linalg.norm(spatial_end(theta, axes, offsets)[0] - target) for theta, target in zip(thetas, targets)])
+    ends = np.array([spatial_end(theta, axes, offsets)[0] for theta in thetas])
+    return np.linalg.norm(ends - targets, axis=1)
 
 
 def drawn(name, n):
