@@ -83,6 +83,16 @@ COUNTED_SWEEPS = Method("gauss_seidel_sweep", "sweeps, counted", 2, "contact", "
 REFLECTION = Method("gauss_seidel_sweep", "sweep with ω = 2", 2, "contact", "#E69F00", "v")
 ONE_BY_ONE = Method("impulse_size", "impulses one by one", 2, "impulses", "#0072B2", "o")
 
+# kinematics
+CLOSED_2R = Method("solve_2r", "closed form", 2, "kinematics", "#009E73", "s")
+CLOSED_3R = Method("solve_3r", "closed form", 2, "kinematics", "#009E73", "s")
+FACTORS = Method("contraction_factors", "closed form", 2, "kinematics", "#009E73", "s")
+TRANSPOSE = Method("transpose_step", "transpose", 1, "kinematics", "#E69F00", "o")
+PSEUDO_INVERSE = Method("pseudo_inverse_step", "pseudo-inverse", 2, "kinematics", "#D55E00", "D")
+DAMPED = Method("damped_step", "damped", 1, "kinematics", "#0072B2", "P")
+CCD = Method("ccd_step", "CCD", 1, "kinematics", "#CC79A7", "v")
+FABRIK = Method("fabrik_step", "FABRIK", 1, "kinematics", "#56B4E9", "^")
+
 INTEGRATORS = (EULER, MIDPOINT, RK4, AVERAGE_VELOCITY, SYMPLECTIC_EULER, VERLET, IMPLICIT_EULER, IMPLICIT_MIDPOINT)
 ONE_OF_EACH_ORDER = (SYMPLECTIC_EULER, VERLET, RK4)                  # enough for most quick runs
 LEFT_TO_FULL = tuple(method.function for method in INTEGRATORS if method not in ONE_OF_EACH_ORDER)

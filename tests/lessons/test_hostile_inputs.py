@@ -21,7 +21,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from solutions import collisions, contact, friction, impulses, integrators, rotation
+from solutions import collisions, contact, friction, impulses, integrators, kinematics, rotation
 from solutions.checks import BadInput, Diverged
 from validate import modules
 
@@ -51,6 +51,8 @@ boxes = (np.array([[0.0, 0.5], [0.2, 1.45]]), np.zeros(2), 1.0, 0.2, 0.5 * np.on
          weight, 0.5, 2, 60.0, 10.0, 0.02)
 balls = (np.array([[0.0, 0.0, 0.5], [0.1, 0.0, 1.45]]), np.tile(q, (2, 1)), 1.0, 0.1 * np.ones((2, 3)),
          0.5 * np.ones((2, 3)), np.array([[*up, 0.0]]), down, 0.5, 2, 60.0, 10.0, 0.02)
+limits = (0.1, 0.3, np.array([-2.0, -2.0]), np.array([2.0, 2.5]), np.array([0.1, 0.2]), 0.5)
+arm, bent, goal = (np.array([1.0, 0.8]), *limits), np.array([0.3, 0.7]), np.array([0.9, 0.8])
 
 # Arguments that follow the step of each loop.
 OSCILLATION = (integrators.oscillator_acceleration, 0.0, np.ones(2), np.zeros(2), 0.1, 3, oscillator)
@@ -107,6 +109,14 @@ STARTED = {
                              contact.make_pile_2d(*boxes)[1])],
         "advance_pile": [(contact.ball_bounds, contact.round_contacts, contact.make_pile(*balls)[0], 0.004, 2,
                           contact.make_pile(*balls)[1])]},
+    "kinematics": {
+        "make_arm_2d": [arm], "make_arm_3d": [(np.stack((up, up)), np.ones((2, 3)), *limits)],
+        "advance_reach": [(kinematics.damped_step, kinematics.reach_2d, bent, goal, 3, kinematics.make_arm_2d(*arm))],
+        "reach_trajectory": [(kinematics.ccd_step, kinematics.reach_2d, bent, goal, 3, kinematics.make_arm_2d(*arm))],
+        "solve_reach": [(kinematics.limited_step, kinematics.reach_2d, bent, goal, 1e-6, 30,
+                         kinematics.make_arm_2d(*arm))],
+        "solve_targets": [(kinematics.damped_step, kinematics.reach_2d, bent, np.stack((goal, -goal)), 1e-6, 30,
+                           kinematics.make_arm_2d(*arm))]},
 }
 # Inner functions that trust an earlier check. They may lose a NaN and divide by zero.
 TRUSTED = {
@@ -131,7 +141,8 @@ FREE = {name for names in TRUSTED.values() for name in names}
 PATIENCE = 5.0               # time limit of one call [s]; ordinary calls take milliseconds
 # These functions do not check the records of an acceleration or a surface that they are given.
 LAWS = {"advance", "trajectory", "advance_pile_2d", "advance_pile", "pile_trajectory", "advance_particle",
-        "advance_rotation", "rotation_trajectory", "advance_rigid_body", "slip_times", "advance_projectiles"}
+        "advance_rotation", "rotation_trajectory", "advance_rigid_body", "slip_times", "advance_projectiles",
+        "advance_reach", "reach_trajectory", "solve_reach", "solve_targets"}
 
 
 # Arguments for which another shape is another valid problem.
@@ -142,7 +153,7 @@ ANOTHER_PROBLEM = {
     ("make_constraint_network", 0): "one more point", ("make_constraint_network", 2): "other fixed points",
     ("make_constraint_network", 3): "other links",
     ("make_constraint_network", 4): "one compliance each",
-    ("gjk", 0): "one more point", ("gjk", 1): "one more point",
+    ("gjk", 0): "one more point", ("gjk", 1): "one more point", ("solve_targets", 3): "one more target",
 }
 
 

@@ -1,0 +1,580 @@
+"""Lesson 11 is right when arms end where their angles say, Jacobians are derivatives, closed forms find both elbows,
+and every method contracts, stays within its limits and uses its freedom as theory says.
+"""
+
+import numpy as np
+import pytest
+
+from solutions.checks import BadInput
+
+from ..grading.expect import between, close, raises
+
+exercise = pytest.mark.exercise
+# Everything drawn is below 10 in its unit.  A comparison takes a few dozen operations, each rounded by 1.1e-16 of that.
+ROUND_OFF = 1e-12
+DIFFERENCE = 1e-5            # of angles in central differences [rad]: leaves its square, and round-off over it
+SLOPE = 1e-8                 # of such a difference: 1e-10 times third derivatives below 20, and 1e-14/1e-5
+SOLVED = 1e-10               # of linear systems with a condition below 1e5
+
+
+# ---------------------------------------------------------------------------------------------- arms and their truth
+
+def lengths_of(draw, n):
+    return draw(0.5, 2.0, n)
+
+
+def arm_of(lesson, lengths, gain=0.1, damping=0.5, low=-np.inf, high=np.inf, rest=0.0, pull=0.5):
+    """An Arm2D with the settings that a test needs."""
+    n = len(lengths)
+    low, high, rest = (np.broadcast_to(values, n).astype(float) for values in (low, high, rest))
+    return lesson.Arm2D(np.array(lengths, float), low, high, rest, float(gain), float(damping), float(pull))
+
+
+def joints(theta, lengths):
+    """Positions (n + 1, 2) of the joints and the end, by complex numbers."""
+    links = np.asarray(lengths) * np.exp(1j * np.cumsum(theta))
+    z = np.append(0.0, np.cumsum(links))
+    return np.stack((z.real, z.imag), axis=1)
+
+
+def slopes(theta, lengths):
+    """J (2, n), by complex numbers: joint k turns all links from the k-th on by a factor i."""
+    links = np.asarray(lengths) * np.exp(1j * np.cumsum(theta))
+    z = 1j * np.cumsum(links[::-1])[::-1]
+    return np.stack((z.real, z.imag))
+
+
+def reach(theta, target, arm):
+    """Task of the tests: e and J of a planar arm, link after link."""
+    J, x, y, phi = np.zeros((2, theta.size)), 0.0, 0.0, 0.0
+    for k in range(theta.size):
+        phi += theta[k]
+        along, up = arm.lengths[k] * np.cos(phi), arm.lengths[k] * np.sin(phi)
+        x, y = x + along, y + up
+        for i in range(k + 1):
+            J[0, i] -= up
+            J[1, i] += along
+    return np.array((target[0] - x, target[1] - y)), J
+
+
+def bent(draw, n):
+    """Angles (n,) of an arm that is far from straight."""
+    return np.append(draw(-3.0, 3.0), draw(0.4, 1.2, n - 1))
+
+
+def turn(axis, angle):
+    """R (3, 3): Rodrigues's formula."""
+    a, b, c = axis
+    cross = np.array([[0.0, -c, b], [c, 0.0, -a], [-b, a, 0.0]])
+    return np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross
+
+
+def unit(draw, size=3):
+    """A unit vector with no entry near 0."""
+    r = draw(0.3, 1.0, size) * np.array([2.0 * draw.whole(0, 1) - 1.0 for _ in range(size)])
+    return r / np.linalg.norm(r)
+
+
+def quaternion(axis, angle):
+    return np.append(np.cos(0.5 * angle), np.sin(0.5 * angle) * np.asarray(axis))
+
+
+def applied(q, r):
+    """A vector rotated by a quaternion, by its matrix."""
+    size = np.linalg.norm(q[1:])
+    return turn(q[1:] / size, 2.0 * np.arctan2(size, q[0])) @ r if size > 0.0 else np.array(r)
+
+
+def chain(draw, n):
+    """(θ, axes, offsets) of an arm in space."""
+    return draw(-2.0, 2.0, n), np.stack([unit(draw) for _ in range(n)]), draw(-1.0, 1.0, (n, 3))
+
+
+def frames(theta, axes, offsets):
+    """(x, a, R) by matrices: positions, axes in the world, orientation of the last link."""
+    x, a, R = [np.zeros(3)], [], np.eye(3)
+    for angle, axis, offset in zip(theta, axes, offsets):
+        a.append(R @ axis)
+        R = R @ turn(axis, angle)
+        x.append(x[-1] + R @ offset)
+    return np.array(x), np.array(a), R
+
+
+def with_singular_values(draw, sigma, columns):
+    """(J, u): a matrix with these singular values, and its directions u as columns."""
+    m = len(sigma)
+    u, v = np.linalg.qr(draw(-1.0, 1.0, (m, m)))[0], np.linalg.qr(draw(-1.0, 1.0, (columns, columns)))[0]
+    return (u * np.asarray(sigma)) @ v[:m], u
+
+
+# ---------------------------------------------------------------------------------------------- forward, in the plane
+
+@exercise("11.1", points=0.5, hint="add link after link; φ_k is the sum of the angles up to the k-th, its own included")
+def test_links_add_up_from_the_base(lesson, draw):
+    for n in (1, 2, draw.whole(3, 8)):
+        theta, lengths = draw(-3.0, 3.0, n), lengths_of(draw, n)
+        close("positions of the joints and the end [m]", lesson.joint_positions(theta, lengths), joints(theta, lengths),
+              ROUND_OFF, given=f"θ = {theta}, lengths {lengths} m")
+
+
+@exercise("11.1", points=0.5, hint="an angle is relative to the link before it: joint k moves what comes after it only")
+def test_a_joint_turns_all_that_comes_after_it(lesson, draw):
+    n, angle = draw.whole(3, 6), draw(0.5, 2.0)
+    theta, lengths = draw(-3.0, 3.0, n), lengths_of(draw, n)
+    before = joints(theta, lengths)
+    for k in range(n):
+        turned = theta.copy()
+        turned[k] += angle
+        c, s = np.cos(angle), np.sin(angle)
+        expected = before.copy()
+        expected[k:] = before[k] + (before[k:] - before[k]) @ np.array([[c, s], [-s, c]])
+        close("positions after one joint has turned [m]", lesson.joint_positions(turned, lengths), expected, ROUND_OFF,
+              given=f"joint {k}, by {angle} rad")
+
+
+@exercise("11.2", points=1, hint="joint k moves the end at right angles to r = x_n − x_k: (−r_y, r_x)")
+def test_the_jacobian_turns_rates_of_joints_into_the_velocity_of_the_end(lesson, draw):
+    for n in (1, 2, draw.whole(3, 7)):
+        theta, lengths, rates = draw(-3.0, 3.0, n), lengths_of(draw, n), draw(-1.0, 1.0, n)
+        J = np.asarray(lesson.jacobian_2d(joints(theta, lengths)))
+        close("J [m/rad]", J, slopes(theta, lengths), ROUND_OFF, given=f"θ = {theta}, lengths {lengths} m")
+        ahead, behind = (joints(theta + s * DIFFERENCE * rates, lengths)[-1] for s in (1.0, -1.0))
+        close("velocity of the end [m/s]", J @ rates, 0.5 * (ahead - behind) / DIFFERENCE, n**3 * SLOPE,
+              given=f"rates {rates} rad/s")
+
+
+@exercise("11.2", points=0.5, hint="only places count: x[n] is the end, x[k] the joint, wherever they are")
+def test_the_jacobian_needs_no_angles(lesson, draw):
+    x = draw(-2.0, 2.0, (draw.whole(3, 6), 2))
+    r = x[-1] - x[:-1]
+    close("J of joints in any place [m/rad]", lesson.jacobian_2d(x), np.stack((-r[:, 1], r[:, 0])), ROUND_OFF,
+          given=f"joints and end at {x} m")
+
+
+@exercise("11.3", points=0.5, hint="σ₁ from both terms of the root, σ₂ = D/σ₁, and half of atan2(2b, a − c)")
+def test_the_ellipse_has_the_singular_values_as_half_axes(lesson, draw):
+    for n in (2, draw.whole(3, 6)):
+        sigma = draw(1.5, 3.0), draw(0.3, 1.2)
+        J, u = with_singular_values(draw, sigma, n)
+        longer, shorter, angle = lesson.velocity_ellipse(J)
+        close("half axes of the ellipse [m]", (longer, shorter), sigma, ROUND_OFF, given=f"J = {J}")
+        close("sine of the angle from the longer axis [-]", u[0, 0] * np.sin(angle) - u[1, 0] * np.cos(angle), 0.0,
+              ROUND_OFF, given=f"J = {J}")
+
+
+@exercise("11.3", points=0.5,
+          hint="σ₂ from D, the sum of squares of 2 × 2 determinants: a difference would lose its digits")
+def test_the_short_axis_keeps_its_digits_where_the_arm_is_nearly_straight(lesson, draw):
+    """Both columns are rounded, which changes what is nine digits shorter by 1e-16/1e-9."""
+    small, a, b, angle = draw(1e-9, 1e-8), draw(1.5, 2.0), draw(0.5, 1.0), draw(0.3, 1.2)
+    along, across = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+    J, size = np.outer(along, (a, b)) + np.outer(across, (small, small)), np.hypot(a, b)
+    longer, shorter, found = lesson.velocity_ellipse(J)
+    close("half axes over what they should be [-]", (longer / size, shorter * size / (small * (a - b))), (1.0, 1.0),
+          1e-5, given=f"J = {J}")
+    close("angle of the longer axis [rad]", np.tan(found), np.tan(angle), 1e-6, given=f"J = {J}")
+    J = np.array([[0.0, 0.0, 0.0], [a, b, 0.5 * b]])
+    close("short half axis of an arm that is straight [m]", lesson.velocity_ellipse(J)[1], 0.0, 1e-15, given=f"J = {J}")
+
+
+# ---------------------------------------------------------------------------------------------- in closed form
+
+@exercise("11.4", points=1,
+          hint="θ₂ from the distance, with the sign of elbow; θ₁ is the bearing minus what the bend adds")
+def test_both_elbows_reach_the_target(lesson, draw):
+    for elbow in (1.0, -1.0):
+        for _ in range(6):
+            lengths, theta = lengths_of(draw, 2), np.array([draw(-3.1, 3.1), elbow * draw(0.1, 3.0)])
+            target = joints(theta, lengths)[-1]
+            given = f"target {target} m, lengths {lengths} m, elbow {elbow:g}"
+            close("θ [rad]", lesson.solve_2r(target, lengths, elbow), theta, SOLVED, given=given)
+            other = np.asarray(lesson.solve_2r(target, lengths, -elbow))
+            close("end of the arm with the other elbow [m]", joints(other, lengths)[-1], target, SOLVED, given=given)
+            close("other elbow [rad]", other[1], -theta[1], SOLVED, given=given)
+    lengths, theta = lengths_of(draw, 2), np.array([draw(2.9, 3.1), draw(2.0, 2.9)])
+    theta_1 = lesson.solve_2r(joints(theta, lengths)[-1], lengths, -1.0)[0]
+    between("θ₁ with the other elbow, wrapped [rad]", theta_1, -np.pi, np.pi)
+
+
+@exercise("11.4", points=0.5,
+          hint="at both edges of the reach there is one answer; beyond them BadInput, with the distance")
+def test_the_edges_of_the_reach_are_reached_and_nothing_beyond(lesson, draw):
+    for _ in range(4):
+        lengths, bearing = np.array([draw(1.2, 2.0), draw(0.5, 1.1)]), draw(-3.0, 3.0)
+        way = np.array([np.cos(bearing), np.sin(bearing)])
+        most, least = lengths.sum(), lengths[0] - lengths[1]
+        for edge in (most, least):
+            theta = np.asarray(lesson.solve_2r(edge * way, lengths, 1.0))
+            close("end of the arm at the edge of its reach [m]", joints(theta, lengths)[-1], edge * way, SOLVED,
+                  given=f"distance {edge} m, lengths {lengths} m")
+        for off in (most * draw(1.01, 3.0), least * draw(0.1, 0.99)):
+            raises("a target out of reach", BadInput, lesson.solve_2r, off * way, lengths, 1.0, naming=(off,),
+                   thing="distance of the target")
+
+
+@exercise("11.5", points=0.5,
+          hint="the last link points along φ: put joint 3 at (x, y) − l₃ (cos φ, sin φ), then solve_2r")
+def test_three_links_end_in_a_place_with_a_direction(lesson, draw):
+    for elbow in (1.0, -1.0):
+        for _ in range(4):
+            lengths = lengths_of(draw, 3)
+            theta = np.array([draw(-3.1, 3.1), elbow * draw(0.1, 3.0), draw(-3.1, 3.1)])
+            phi = theta.sum()
+            target = np.append(joints(theta, lengths)[-1], phi)
+            given = f"target {target}, lengths {lengths} m, elbow {elbow:g}"
+            close("θ [rad]", lesson.solve_3r(target, lengths, elbow), theta, SOLVED, given=given)
+
+
+@exercise("11.5", points=0.5, hint="both elbows of the first two joints; the third turns the hand back to φ")
+def test_links_of_three_two_and_one_reach_four_two_in_two_ways(lesson, draw):
+    """Lynch and Park 2017, chapter 6: (0°, 90°, −90°), and by mirroring at the line to the wrist the other one."""
+    scale, aside, half = draw(0.3, 3.0), draw(-1.0, 1.0), np.arctan2(2.0, 3.0)
+    c, s = np.cos(aside), np.sin(aside)
+    target = np.array([scale * (4.0 * c - 2.0 * s), scale * (4.0 * s + 2.0 * c), aside])
+    for elbow, expected in ((1.0, (aside, 0.5 * np.pi, -0.5 * np.pi)),
+                            (-1.0, (aside + 2.0 * half, -0.5 * np.pi, 0.5 * np.pi - 2.0 * half))):
+        close("θ [rad]", lesson.solve_3r(target, scale * np.array([3.0, 2.0, 1.0]), elbow), expected, SOLVED,
+              given=f"scale {scale}, rotated by {aside} rad, elbow {elbow:g}")
+    theta = np.array([draw(2.0, 3.0), draw(2.0, 3.0), draw(2.0, 2.5)])        # φ goes round more than once
+    target = np.append(joints(theta, (3.0, 2.0, 1.0))[-1], theta.sum() - 2.0 * np.pi)
+    theta_3 = lesson.solve_3r(target, np.array([3.0, 2.0, 1.0]), 1.0)[2]
+    close("θ₃ of a hand that points far round, wrapped [rad]", theta_3, theta[2], SOLVED, given=f"target {target}")
+    raises("a wrist out of reach", BadInput, lesson.solve_3r, np.array([4.6 + scale, 0.0, np.pi]),
+           np.array([3.0, 2.0, 1.0]) * min(scale, 1.0), 1.0)
+
+
+# ---------------------------------------------------------------------------------------------- forward, in space
+
+@exercise("11.6", points=1, hint="the axis by q before its joint turns, the offset by q after it; q ∘ exp(θ axis)")
+def test_each_joint_turns_about_an_axis_of_the_link_before_it(lesson, draw):
+    for n in (1, draw.whole(2, 7)):
+        theta, axes, offsets = chain(draw, n)
+        x, a, q = lesson.joint_frames(theta, axes, offsets)
+        x_true, a_true, R = frames(theta, axes, offsets)
+        given = f"θ = {theta}"
+        close("positions of the joints and the end [m]", x, x_true, ROUND_OFF, given=given)
+        close("axes of the joints in the world [-]", a, a_true, ROUND_OFF, given=given)
+        close("length of the quaternion [-]", np.linalg.norm(q), 1.0, ROUND_OFF, given=given)
+        close("axes of the last link [-]", [applied(np.asarray(q), e) for e in np.eye(3)], R.T, 1e-7, given=given)
+
+
+@exercise("11.6", points=0.5,
+          hint="with all axes along z it is the planar chain, and q turns about z by the sum of angles")
+def test_a_chain_with_parallel_axes_is_planar(lesson, draw):
+    n = draw.whole(2, 6)
+    theta, lengths, z = draw(-1.0, 1.0, n), lengths_of(draw, n), np.array([0.0, 0.0, 1.0])
+    x, a, q = lesson.joint_frames(theta, np.tile(z, (n, 1)), lengths[:, None] * np.array([1.0, 0.0, 0.0]))
+    flat = np.column_stack((joints(theta, lengths), np.zeros(n + 1)))
+    close("positions of the joints and the end [m]", x, flat, ROUND_OFF, given=f"θ = {theta}, lengths {lengths} m")
+    close("axes of the joints in the world [-]", a, np.tile(z, (n, 1)), ROUND_OFF)
+    close("orientation of the last link [-]", q, quaternion(z, theta.sum()), ROUND_OFF, given=f"θ = {theta}")
+
+
+@exercise("11.7", points=1, hint="rows 0 to 2: a_k × (x_n − x_k), rows 3 to 5: a_k")
+def test_the_jacobian_in_space_is_a_derivative(lesson, draw):
+    n = draw.whole(3, 7)
+    theta, axes, offsets = chain(draw, n)
+    x, a, R = frames(theta, axes, offsets)
+    J = np.asarray(lesson.jacobian_3d(x, a))
+    close("shape of J [-]", J.shape, (6, n), 0.0)
+    for k in range(n):
+        step = DIFFERENCE * np.eye(n)[k]
+        (ahead, _, R_ahead), (behind, _, R_behind) = (frames(theta + s * step, axes, offsets) for s in (1.0, -1.0))
+        spin = 0.5 * (R_ahead - R_behind) / DIFFERENCE @ R.T
+        close("velocity of the end [m/s]", J[:3, k], 0.5 * (ahead[-1] - behind[-1]) / DIFFERENCE, SLOPE,
+              given=f"joint {k} turns with 1 rad/s")
+        close("angular velocity of the last link [rad/s]", J[3:, k], (spin[2, 1], spin[0, 2], spin[1, 0]), SLOPE,
+              given=f"joint {k} turns with 1 rad/s")
+
+
+@exercise("11.7", points=0.5, hint="a × r is perpendicular to both, right-handed; r leads from the joint to the end")
+def test_an_axis_through_the_end_moves_it_nowhere(lesson, draw):
+    x, a = draw(-2.0, 2.0, (4, 3)), np.stack([unit(draw) for _ in range(3)])
+    x[3] = x[1] + draw(0.5, 2.0) * a[1]
+    J = np.asarray(lesson.jacobian_3d(x, a))
+    close("velocity of an end that is on the axis [m/s]", J[:3, 1], np.zeros(3), ROUND_OFF, given=f"axis {a[1]}")
+    for k in (0, 2):
+        r = x[3] - x[k]
+        expected = (a[k, 1] * r[2] - a[k, 2] * r[1], a[k, 2] * r[0] - a[k, 0] * r[2], a[k, 0] * r[1] - a[k, 1] * r[0])
+        close("velocity of the end [m/s]", J[:3, k], expected, ROUND_OFF, given=f"axis {a[k]}, end at {r} m from it")
+
+
+@exercise("11.8", points=1, hint="d = q_target ∘ q̄ and not the other way round: the rotation is in the world")
+def test_the_rotation_vector_turns_one_orientation_into_the_other(lesson, draw):
+    for sign in (1.0, -1.0):
+        for _ in range(4):
+            axis, angle, old, about = unit(draw), draw(0.1, 3.1), draw(0.5, 3.0), unit(draw)
+            q = quaternion(about, old)
+            R = turn(axis, angle) @ turn(about, old)
+            new = np.sqrt(max(0.0, 1.0 + np.trace(R)))                        # 2w, of the product of both
+            d, b = quaternion(axis, angle), q
+            rest = d[0] * b[1:] + b[0] * d[1:] + np.cross(d[1:], b[1:])
+            q_target = sign * np.append(d[0] * b[0] - d[1:] @ b[1:], rest)
+            assert abs(abs(2.0 * q_target[0]) - new) < 1e-6                   # the test's own two ways agree
+            close("rotation vector [rad]", lesson.rotation_error(q, q_target), angle * axis, SOLVED,
+                  given=f"q = {q}, q_target = {q_target}")
+
+
+@exercise("11.8", points=0.5, hint="the shorter way round; atan2 keeps the digits of a small angle, and 0 stays 0")
+def test_small_and_large_angles_keep_their_digits(lesson, draw):
+    axis, q = unit(draw), quaternion(unit(draw), draw(0.5, 3.0))
+    still = np.array([1.0, 0.0, 0.0, 0.0])
+    close("rotation vector from an orientation to itself [rad]", lesson.rotation_error(q, q), np.zeros(3), 1e-15)
+    close("rotation vector of no rotation at all [rad]", lesson.rotation_error(still, still), np.zeros(3), 0.0)
+    angle = draw(1e-10, 1e-9)
+    close("rotation vector over its small angle [-]",
+          np.asarray(lesson.rotation_error(still, quaternion(axis, angle))) / angle, axis, ROUND_OFF,
+          given=f"angle {angle} rad")
+    angle = draw(3.3, 6.0)
+    close("rotation vector by the shorter way [rad]", lesson.rotation_error(still, quaternion(axis, angle)),
+          (angle - 2.0 * np.pi) * axis, SOLVED, given=f"angle {angle} rad about {axis}")
+
+
+# ---------------------------------------------------------------------------------------------- methods with a Jacobian
+
+@exercise("11.9", points=0.5, hint="θ + α Jᵀ e; e @ J is Jᵀ e")
+def test_a_transpose_step_goes_down_the_gradient(lesson, draw):
+    n = draw.whole(2, 6)
+    lengths, theta, target, gain = lengths_of(draw, n), bent(draw, n), draw(-2.0, 2.0, 2), draw(0.05, 0.5)
+    half_square = lambda angles: 0.5 * np.sum((target - joints(angles, lengths)[-1]) ** 2)
+    slope = [0.5 * (half_square(theta + d) - half_square(theta - d)) / DIFFERENCE for d in DIFFERENCE * np.eye(n)]
+    got = lesson.transpose_step(reach, theta, target, arm_of(lesson, lengths, gain=gain))
+    close("change of θ over the gain [-]", (np.asarray(got) - theta) / gain, -np.array(slope), 1e-6,
+          given=f"θ = {theta}, target {target} m, α = {gain}")
+
+
+@exercise("11.9", points=0.5, hint="the error along u_i is multiplied by 1 − α σ²: nothing else may scale the step")
+def test_the_gain_decides_how_fast_the_error_shrinks(lesson, draw):
+    lengths, theta = lengths_of(draw, 3), bent(draw, 3)
+    u, sigma, v = np.linalg.svd(slopes(theta, lengths), full_matrices=False)
+    target = joints(theta, lengths)[-1]
+    for part in (draw(0.2, 0.8), draw(1.2, 1.8), draw(2.2, 2.8)):
+        arm = arm_of(lesson, lengths, gain=part / sigma[0] ** 2)
+        both = [lesson.transpose_step(reach, theta + s * DIFFERENCE * v[0], target, arm) for s in (1.0, -1.0)]
+        ends = [u[:, 0] @ joints(np.asarray(one), lengths)[-1] for one in both]
+        close("error after a step over the error before it [-]", 0.5 * (ends[0] - ends[1]) / (DIFFERENCE * sigma[0]),
+              1.0 - part, 1e-7, given=f"α = {part} over the square of σ")
+
+
+@exercise("11.10", points=0.5, hint="v_i u_iᵀ/σ_i, added up; the result has as many rows as J has columns")
+def test_the_pseudo_inverse_solves_with_the_shortest_answer(lesson, draw):
+    for m, n in ((2, 5), (3, 3), (4, 2)):
+        J, _ = with_singular_values(draw, draw(0.5, 3.0, min(m, n)), max(m, n))
+        J = np.ascontiguousarray(J if m <= n else J.T)
+        expected = np.stack([np.linalg.lstsq(J, e, rcond=None)[0] for e in np.eye(m)], axis=1)
+        close("J⁺", lesson.pseudo_inverse(J), expected, SOLVED, given=f"J = {J}")
+
+
+@exercise("11.10", points=0.5, hint="leave out every σ_i up to SINGULAR σ₁: 1/σ of round-off would fill the answer")
+def test_directions_that_no_joint_can_move_are_left_alone(lesson, draw):
+    for small in (0.0, draw(1e-14, 1e-12)):
+        sigma = np.array([draw(1.0, 3.0), draw(0.5, 0.9), small])
+        J, u = with_singular_values(draw, sigma, 5)
+        got = np.asarray(lesson.pseudo_inverse(J))
+        close("J⁺ applied to the lost direction", got @ u[:, 2], np.zeros(5), SOLVED, given=f"σ = {sigma}")
+        close("J J⁺ applied to the others [-]", J @ got @ u[:, :2], u[:, :2], SOLVED, given=f"σ = {sigma}")
+    sigma = np.array([1.0, draw(1e-8, 1e-7)])
+    J, u = with_singular_values(draw, sigma, 3)
+    close("J J⁺ of a small σ that is not lost [-]", J @ np.asarray(lesson.pseudo_inverse(J)), np.eye(2), 1e-6,
+          given=f"σ = {sigma}")
+    close("J⁺ of a J of zeros", lesson.pseudo_inverse(np.zeros((2, 3))), np.zeros((3, 2)), 0.0)
+
+
+def damped(J, e, damping):
+    """The Δθ with the smallest |J Δθ − e|² + λ²|Δθ|², by least squares."""
+    n = J.shape[1]
+    return np.linalg.lstsq(np.vstack((J, damping * np.eye(n))), np.append(e, np.zeros(n)), rcond=None)[0]
+
+
+@exercise("11.11", points=0.5, hint="λ² on the diagonal of J Jᵀ, not λ; then solve(A, e) @ J")
+def test_a_damped_step_weighs_the_error_against_the_way(lesson, draw):
+    for n in (2, draw.whole(3, 6)):
+        lengths, theta, target, damping = lengths_of(draw, n), bent(draw, n), draw(-2.0, 2.0, 2), draw(0.2, 1.5)
+        got = lesson.damped_step(reach, theta, target, arm_of(lesson, lengths, damping=damping))
+        expected = theta + damped(slopes(theta, lengths), target - joints(theta, lengths)[-1], damping)
+        close("θ after a step [rad]", got, expected, SOLVED, given=f"θ = {theta}, target {target} m, λ = {damping} m")
+
+
+@exercise("11.11", points=0.5, hint="Jᵀ (J Jᵀ + λ² 1)⁻¹ e has no part above |e|/(2λ), whatever J is")
+def test_a_damped_step_is_bounded_where_the_arm_is_straight(lesson, draw):
+    for damping in (draw(0.05, 0.2), draw(0.5, 1.0)):
+        lengths, theta, target = lengths_of(draw, 3), np.array([draw(-3.0, 3.0), 0.0, 0.0]), draw(-9.0, 9.0, 2)
+        got = np.asarray(lesson.damped_step(reach, theta, target, arm_of(lesson, lengths, damping=damping))) - theta
+        e, J = target - joints(theta, lengths)[-1], slopes(theta, lengths)
+        sigma = np.linalg.norm(J)                                             # a straight arm has only one above 0
+        across = np.array([-np.sin(theta[0]), np.cos(theta[0])])
+        close("size of the step of a straight arm [rad]", np.linalg.norm(got),
+              abs(across @ e) * sigma / (sigma**2 + damping**2), SOLVED, given=f"θ₁ = {theta[0]}, λ = {damping} m")
+
+
+@exercise("11.12", points=0.5, hint="1 − α σ² and λ²/(σ² + λ²), one of each for every σ")
+def test_factors_are_what_an_iteration_leaves_of_an_error(lesson, draw):
+    sigma, gain, damping = np.sort(draw(0.2, 3.0, 3))[::-1].copy(), draw(0.05, 0.5), draw(0.1, 1.0)
+    J, u = with_singular_values(draw, sigma, 4)
+    stay = [np.eye(3) - J @ P for P in (gain * J.T, np.stack([damped(J, e, damping) for e in np.eye(3)], axis=1))]
+    expected = [[one @ u[:, i] @ u[:, i] for i in range(3)] for one in stay]
+    for name, got, factors in zip(("transpose", "damped"), lesson.contraction_factors(sigma, gain, damping), expected):
+        close(f"factors of the {name} [-]", got, factors, SOLVED, given=f"σ = {sigma}, α = {gain}, λ = {damping}")
+
+
+@exercise("11.12", points=0.5, hint="no σ, no progress: both factors are 1; the transpose's may be below 0")
+def test_factors_at_the_ends_of_their_range(lesson, draw):
+    size = draw(0.3, 3.0)
+    sigma = np.array([0.0, size, 2.0 * size])
+    factors = lesson.contraction_factors(sigma, 1.0 / size**2, size)
+    for got, expected in zip(factors, ((1.0, 0.0, -3.0), (1.0, 0.5, 0.2))):
+        close("factors [-]", got, expected, ROUND_OFF, given=f"σ = {sigma}, α = 1/σ², λ = σ, for the middle one")
+
+
+# ---------------------------------------------------------------------------------------------- methods without
+
+def coordinate_descent(theta, target, lengths, low, high):
+    """One sweep, with all positions computed again for every joint."""
+    theta, goal = np.array(theta), complex(*target)
+    for k in reversed(range(len(theta))):
+        z = joints(theta, lengths) @ np.array([1.0, 1j])
+        change = np.angle((goal - z[k]) * np.conj(z[-1] - z[k]))
+        theta[k] = min(max(theta[k] + change, low[k]), high[k])
+    return theta
+
+
+@exercise("11.13", points=1, hint="last joint first; after each joint the end is somewhere else: turn it about x_k")
+def test_each_joint_points_the_end_at_the_target(lesson, draw):
+    for n in (1, 2, draw.whole(3, 7)):
+        lengths, theta, target = lengths_of(draw, n), draw(-1.5, 1.5, n), draw(-2.0, 2.0, 2)
+        arm = arm_of(lesson, lengths)
+        expected = coordinate_descent(theta, target, lengths, arm.low, arm.high)
+        close("θ after a sweep [rad]", lesson.ccd_step(reach, theta, target, arm), expected, 1e-9,
+              given=f"θ = {theta}, target {target} m, lengths {lengths} m")
+
+
+@exercise("11.13", points=0.5,
+          hint="stop each joint at its limit, and turn the end by what the joint has really turned")
+def test_limits_stop_a_joint_and_the_others_go_on(lesson, draw):
+    for _ in range(5):
+        n = draw.whole(3, 6)
+        lengths, theta, target = lengths_of(draw, n), draw(-0.3, 0.3, n), draw(-2.0, 2.0, 2)
+        arm = arm_of(lesson, lengths, low=draw(-0.9, -0.3, n), high=draw(0.3, 0.9, n))
+        got = np.asarray(lesson.ccd_step(reach, theta, target, arm))
+        expected = coordinate_descent(theta, target, lengths, arm.low, arm.high)
+        close("θ after a sweep between limits [rad]", got, expected, 1e-9,
+              given=f"θ = {theta}, target {target} m, limits {arm.low} to {arm.high}")
+
+
+def there_and_back(x, target, lengths):
+    """A sweep by unit vectors."""
+    x, base = [np.array(p) for p in x], np.array(x[0])
+    x[-1] = np.array(target)
+    for k in reversed(range(len(lengths))):
+        r = x[k] - x[k + 1]
+        x[k] = x[k + 1] + lengths[k] * r / np.linalg.norm(r)
+    x[0] = base
+    for k in range(len(lengths)):
+        r = x[k + 1] - x[k]
+        x[k + 1] = x[k] + lengths[k] * r / np.linalg.norm(r)
+    return np.array(x)
+
+
+@exercise("11.14", points=1,
+          hint="back from the target with the new next joint, forth from the base with the new last one")
+def test_a_sweep_projects_there_and_back(lesson, draw):
+    for d in (2, 3):
+        n = draw.whole(2, 6)
+        x, target = np.cumsum(draw(0.3, 1.0, (n + 1, d)), axis=0), draw(-3.0, 3.0, d)
+        lengths = lengths_of(draw, n)                                         # not what they are before the sweep
+        expected = there_and_back(x, target, lengths)
+        close("positions after a sweep [m]", lesson.fabrik_sweep(x, target, lengths), expected, ROUND_OFF,
+              given=f"joints at {x} m, target {target} m, lengths {lengths} m")
+
+
+@exercise("11.14", points=0.5, hint="every link has its length after the sweep, and the base is where it was")
+def test_sweeps_reach_a_target_and_keep_all_lengths(lesson, draw):
+    n = draw.whole(3, 5)
+    lengths, theta = draw(0.8, 1.2, n), np.append(draw(-1.0, 1.0), draw(0.5, 0.8, n - 1))
+    x, base = joints(theta, lengths), draw(-1.0, 1.0, 2)
+    goal, x = np.arctan2(x[-1, 1], x[-1, 0]) + draw(-0.8, 0.8), x + base
+    target = base + 0.7 * lengths.sum() * np.array([np.cos(goal), np.sin(goal)])
+    for _ in range(100):
+        x = np.asarray(lesson.fabrik_sweep(x, target, lengths))
+        close("lengths of the links [m]", np.linalg.norm(np.diff(x, axis=0), axis=1), lengths, ROUND_OFF)
+        close("base [m]", x[0], base, 0.0)
+    close("end of the arm after 100 sweeps [m]", x[-1], target, 1e-6, given=f"target {target} m, lengths {lengths} m")
+
+
+# ---------------------------------------------------------------------------------------------- limits and redundancy
+
+@exercise("11.15", points=0.5, hint="a joint inside its limits, or at one but pushed inwards, moves as in damped_step")
+def test_limits_that_stop_nothing_change_nothing(lesson, draw):
+    n = draw.whole(3, 6)
+    lengths, theta, target, damping = lengths_of(draw, n), bent(draw, n), draw(-2.0, 2.0, 2), draw(0.3, 1.0)
+    J, e = slopes(theta, lengths), target - joints(theta, lengths)[-1]
+    wish, free = e @ J, damped(J, e, damping)
+    far = np.full(n, 50.0)
+    for low, high in ((-far, far), (np.where((wish > 0.0) & (free > 0.0), theta, -far),
+                                    np.where((wish < 0.0) & (free < 0.0), theta, far))):
+        got = lesson.limited_step(reach, theta, target, arm_of(lesson, lengths, damping=damping, low=low, high=high))
+        close("θ after a step [rad]", got, theta + free, SOLVED, given=f"θ = {theta}, limits {low} to {high}")
+
+
+@exercise("11.15", points=0.5,
+          hint="zeros in the columns of blocked joints, so that the others do the whole work; clip at last")
+def test_blocked_joints_leave_their_work_to_the_others(lesson, draw):
+    for _ in range(4):
+        n = draw.whole(4, 6)
+        lengths, theta, target, damping = lengths_of(draw, n), bent(draw, n), draw(-2.0, 2.0, 2), draw(0.3, 1.0)
+        J, e = slopes(theta, lengths), target - joints(theta, lengths)[-1]
+        wish, low, high = e @ J, np.full(n, -50.0), np.full(n, 50.0)
+        blocked = np.arange(n) % 2 == draw.whole(0, 1)
+        beyond = draw(0.0, 0.2)                                               # a joint may begin outside its limits
+        high[blocked & (wish > 0.0)] = theta[blocked & (wish > 0.0)] - beyond
+        low[blocked & (wish < 0.0)] = theta[blocked & (wish < 0.0)] + beyond
+        free = theta + damped(np.where(blocked, 0.0, J), e, damping)
+        k = int(np.argmax(np.abs(free - theta)))                              # one that is stopped on its way
+        if free[k] > theta[k]:
+            high[k] = 0.5 * (free[k] + theta[k])
+        else:
+            low[k] = 0.5 * (free[k] + theta[k])
+        got = lesson.limited_step(reach, theta, target, arm_of(lesson, lengths, damping=damping, low=low, high=high))
+        close("θ after a step [rad]", got, np.clip(free, low, high), SOLVED,
+              given=f"θ = {theta}, limits {low} to {high}, target {target} m")
+
+
+@exercise("11.15", points=0.5,
+          hint="only joints that Jᵀ e pushes outwards are blocked: one that it pulls back must come free")
+def test_it_comes_to_rest_where_no_joint_alone_can_come_nearer(lesson, draw):
+    for _ in range(3):
+        lengths, target = lengths_of(draw, 3), draw(-1.5, 1.5, 2)
+        arm = arm_of(lesson, lengths, damping=1.5, low=draw(-0.6, -0.1, 3), high=draw(0.1, 0.6, 3))
+        theta = np.array([arm.low[0], arm.high[1], arm.low[2]])
+        for _ in range(600):
+            theta = np.asarray(lesson.limited_step(reach, theta, target, arm))
+        wish = (target - joints(theta, lengths)[-1]) @ slopes(theta, lengths)
+        close("way to where each joint alone would go, between its limits [rad]",
+              np.clip(theta + 0.1 * wish, arm.low, arm.high), theta, 1e-4,
+              given=f"target {target} m, limits {arm.low} to {arm.high}")
+
+
+@exercise("11.16", points=0.5, hint="z + J⁺ (e − J z) is the same: what z moves the end by is taken back")
+def test_the_pull_to_rest_does_not_move_the_end(lesson, draw):
+    n, pull = draw.whole(3, 6), draw(0.2, 1.0)
+    lengths, theta, rest = lengths_of(draw, n), bent(draw, n), draw(-1.0, 1.0, n)
+    J, here = slopes(theta, lengths), joints(theta, lengths)[-1]
+    arm, z = arm_of(lesson, lengths, rest=rest, pull=pull), pull * (rest - theta)
+    for e in (np.zeros(2), draw(-0.5, 0.5, 2)):
+        change = np.asarray(lesson.null_space_step(reach, theta, here + e, arm)) - theta
+        close("J Δθ, the way of the end to first order [m]", J @ change, e, 1e-9, given=f"e = {e} m")
+        shortest = np.linalg.lstsq(J, e - J @ z, rcond=None)[0]               # from z to the nearest Δθ with J Δθ = e
+        close("change of θ [rad]", change, z + shortest, 1e-9, given=f"θ = {theta}, rest {rest}, κ = {pull}")
+
+
+@exercise("11.16", points=0.5, hint="of all angles that reach the target it comes to rest near arm.rest")
+def test_it_ends_on_the_target_as_near_to_rest_as_it_can(lesson, draw):
+    lengths, theta = draw(0.8, 1.2, 4), np.append(draw(-1.0, 1.0), draw(0.4, 0.8, 3))
+    target, rest = joints(theta, lengths)[-1], theta + draw(-0.15, 0.15, 4)
+    arm = arm_of(lesson, lengths, rest=rest, pull=0.5)
+    for _ in range(200):
+        theta = np.asarray(lesson.null_space_step(reach, theta, target, arm))
+    J = slopes(theta, lengths)
+    close("end of the arm [m]", joints(theta, lengths)[-1], target, 1e-9, given=f"target {target} m, rest {rest}")
+    along = (rest - theta) - np.linalg.lstsq(J, J @ (rest - theta), rcond=None)[0]
+    close("part of the way to rest that the end would allow [rad]", along, np.zeros(4), 1e-6, given=f"rest {rest}")

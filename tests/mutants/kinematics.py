@@ -1,0 +1,387 @@
+"""Lesson 11: arms that count angles from the wrong line, turn about the wrong joint, damp too little or go too far."""
+
+import numpy as np
+
+from solutions import kinematics as worked
+
+from . import collection, variants
+
+wrong, right, edit, MUTANTS = collection(worked)
+
+
+# 11.1 -----------------------------------------------------------------------------------------------------------
+@variants
+def positions(absolute=False, swap=False, late=False, last=True):
+    def joint_positions(theta, lengths):
+        phi = np.array(theta) if absolute else np.cumsum(theta)
+        if late:
+            phi = phi - theta
+        links = np.stack((np.sin(phi), np.cos(phi)) if swap else (np.cos(phi), np.sin(phi)), axis=1)
+        x = np.concatenate((np.zeros((1, 2)), np.cumsum(np.asarray(lengths)[:, None] * links, axis=0)))
+        return x if last else x[:-1]
+    return joint_positions
+
+
+@right("11.1", "by complex numbers")
+def joint_positions(theta, lengths):
+    z = np.append(0.0, np.cumsum(lengths * np.exp(1j * np.cumsum(theta))))
+    return np.stack((z.real, z.imag), axis=1)
+
+
+wrong("11.1", "angles against the x axis")(positions(absolute=True))
+wrong("11.1", "sine and cosine in each other's place")(positions(swap=True))
+wrong("11.1", "each angle one link late")(positions(late=True))
+wrong("11.1", "no end")(positions(last=False))
+edit("11.1", "links do not add up", "x[k, 0] + lengths[k] * np.cos(phi)", "lengths[k] * np.cos(phi)")
+
+
+# 11.2 -----------------------------------------------------------------------------------------------------------
+@variants
+def jacobian(sign=1.0, first=False, turn=True, unit=False):
+    def jacobian_2d(x):
+        r = (x[-1] - x[:-1]) if not first else np.diff(x, axis=0)
+        if unit:
+            r = r / np.linalg.norm(r, axis=1)[:, None]
+        return sign * (np.stack((-r[:, 1], r[:, 0])) if turn else np.stack((r[:, 0], r[:, 1])))
+    return jacobian_2d
+
+
+@right("11.2", "by a matrix")
+def jacobian_2d(x):
+    return np.array([[0.0, -1.0], [1.0, 0.0]]) @ (x[-1] - x[:-1]).T
+
+
+wrong("11.2", "turns clockwise")(jacobian(sign=-1.0))
+wrong("11.2", "only its own link")(jacobian(first=True))
+wrong("11.2", "along r")(jacobian(turn=False))
+wrong("11.2", "directions without levers")(jacobian(unit=True))
+edit("11.2", "from the base", "x[n, 0] - x[k, 0]", "x[n, 0] - x[0, 0]")
+
+
+# 11.3 -----------------------------------------------------------------------------------------------------------
+@variants
+def ellipse(of_svd=True, squares=False, swapped=False, degrees=False):
+    def velocity_ellipse(J):
+        u, sigma, _ = np.linalg.svd(J, full_matrices=False)
+        longer, shorter = sigma
+        if not of_svd:
+            values = np.linalg.eigvalsh(J @ J.T)
+            shorter = np.sqrt(max(values[0], 0.0))
+        if squares:
+            longer, shorter = longer**2, shorter**2
+        direction = u[:, 1 if swapped else 0]
+        angle = np.arctan2(direction[1], direction[0])
+        return longer, shorter, np.degrees(angle) if degrees else angle
+    return velocity_ellipse
+
+
+right("11.3", "by the singular values of NumPy")(ellipse())
+wrong("11.3", "the short axis as a difference of squares")(ellipse(of_svd=False))
+wrong("11.3", "squares of the axes")(ellipse(squares=True))
+wrong("11.3", "the angle of the short axis")(ellipse(swapped=True))
+wrong("11.3", "degrees")(ellipse(degrees=True))
+edit("11.3", "twice the angle", "0.5 * np.arctan2", "np.arctan2")
+edit("11.3", "the short axis is D", "np.sqrt(squared) / longer", "np.sqrt(squared)")
+
+
+# 11.4 and 11.5 --------------------------------------------------------------------------------------------------
+@variants
+def two_links(one_elbow=False, back=1.0, wraps=True, checks=True, inside=True, swap=False, supplement=False):
+    def solve_2r(target, lengths, elbow):
+        l_1, l_2 = (lengths[1], lengths[0]) if swap else (lengths[0], lengths[1])
+        r = np.hypot(*target)
+        too_near = inside and r < abs(l_1 - l_2) * (1.0 - 1e-12)
+        if checks and (r > (l_1 + l_2) * (1.0 + 1e-12) or too_near):
+            raise worked.BadInput("distance of the target [m]", r, "stay within the reach")
+        cosine = np.clip((r * r - l_1 * l_1 - l_2 * l_2) / (2.0 * l_1 * l_2), -1.0, 1.0)
+        theta_2 = (1.0 if one_elbow else elbow) * np.arccos(-cosine if supplement else cosine)
+        theta_1 = np.angle(complex(*target)) - back * np.angle(l_1 + l_2 * np.exp(1j * theta_2))
+        return np.array((np.angle(np.exp(1j * theta_1)) if wraps else theta_1, theta_2))
+    return solve_2r
+
+
+right("11.4", "by the arccosine")(two_links())
+wrong("11.4", "one elbow for both")(two_links(one_elbow=True))
+wrong("11.4", "the bend on the wrong side")(two_links(back=-1.0))
+wrong("11.4", "θ₁ beyond π")(two_links(wraps=False))
+wrong("11.4", "reaches everything")(two_links(checks=False))
+wrong("11.4", "no hole in the middle")(two_links(inside=False))
+wrong("11.4", "the second link first")(two_links(swap=True))
+wrong("11.4", "the inner angle of the triangle")(two_links(supplement=True))
+edit("11.4", "half the bend", "elbow * 2.0 * np.arctan2", "elbow * np.arctan2")
+
+
+@variants
+def three_links(wrist=1.0, relative=True, wraps=True, elbow_kept=True):
+    def solve_3r(target, lengths, elbow):
+        z = complex(target[0], target[1]) - wrist * lengths[2] * np.exp(1j * target[2])
+        theta = worked.solve_2r(np.array((z.real, z.imag)), lengths, elbow if elbow_kept else 1.0)
+        last = target[2] - (theta[0] + theta[1] if relative else 0.0)
+        return np.append(theta, np.angle(np.exp(1j * last)) if wraps else last)
+    return solve_3r
+
+
+right("11.5", "by complex numbers")(three_links())
+wrong("11.5", "two links to the end itself")(three_links(wrist=0.0))
+wrong("11.5", "the wrist beyond the end")(three_links(wrist=-1.0))
+wrong("11.5", "the third angle against the x axis")(three_links(relative=False))
+wrong("11.5", "θ₃ beyond π")(three_links(wraps=False))
+wrong("11.5", "one elbow for both")(three_links(elbow_kept=False))
+
+
+# 11.6 -----------------------------------------------------------------------------------------------------------
+@variants
+def frames(axis_in_world=True, before=False, order=1, sign=1.0):
+    def joint_frames(theta, axes, offsets):
+        x, a, q = [np.zeros(3)], [], np.array([1.0, 0.0, 0.0, 0.0])
+        for angle, axis, offset in zip(theta, axes, offsets):
+            old = q
+            turn = worked.exponential(sign * angle * axis)
+            q = worked.quaternion_product(q, turn) if order > 0 else worked.quaternion_product(turn, q)
+            a.append(worked.rotate(old, axis) if axis_in_world else axis)
+            x.append(x[-1] + worked.rotate(old if before else q, offset))
+        return np.array(x), np.array(a), q
+    return joint_frames
+
+
+@right("11.6", "the new q gives the axis, too")
+def joint_frames(theta, axes, offsets):
+    x, a, q = np.zeros((len(theta) + 1, 3)), np.zeros((len(theta), 3)), np.array([1.0, 0.0, 0.0, 0.0])
+    for k in range(len(theta)):
+        q = worked.quaternion_product(q, worked.exponential(theta[k] * axes[k]))
+        a[k], x[k + 1] = worked.rotate(q, axes[k]), x[k] + worked.rotate(q, offsets[k])
+    return x, a, q
+
+
+wrong("11.6", "axes as they were given")(frames(axis_in_world=False))
+wrong("11.6", "a joint does not move its own link")(frames(before=True))
+wrong("11.6", "axes of the world instead of the link's")(frames(order=-1))
+wrong("11.6", "turns the other way")(frames(sign=-1.0))
+edit("11.6", "offsets of the world", "rotate(q, row(offsets, k))", "row(offsets, k)")
+
+
+# 11.7 -----------------------------------------------------------------------------------------------------------
+@variants
+def spatial(sign=1.0, end=True, swapped=False, spins=True):
+    def jacobian_3d(x, a):
+        v = sign * np.cross(a, (x[-1] - x[:-1]) if end else -x[:-1])
+        omega = a if spins else 0.0 * a
+        return np.concatenate((omega, v) if swapped else (v, omega), axis=1).T
+    return jacobian_3d
+
+
+right("11.7", "all joints at once")(spatial())
+wrong("11.7", "left-handed")(spatial(sign=-1.0))
+wrong("11.7", "the velocity of a point at the origin")(spatial(end=False))
+wrong("11.7", "angular velocity first")(spatial(swapped=True))
+wrong("11.7", "no angular velocity")(spatial(spins=False))
+
+
+# 11.8 -----------------------------------------------------------------------------------------------------------
+@variants
+def rotation(body=False, shorter=True, half=2.0, back=False, small=True, arccos=False):
+    def rotation_error(q, q_target):
+        conjugate = np.array([q[0], -q[1], -q[2], -q[3]])
+        d = worked.quaternion_product(conjugate, q_target) if body else worked.quaternion_product(q_target, conjugate)
+        if shorter and d[0] < 0.0:
+            d = -d
+        size = np.linalg.norm(d[1:])
+        if size == 0.0 and small:
+            return 0.0 * d[1:]
+        with np.errstate(all="ignore"):
+            angle = half * (np.arccos(np.clip(d[0], -1.0, 1.0)) if arccos else np.arctan2(size, d[0]))
+            return (-1.0 if back else 1.0) * angle * d[1:] / size
+    return rotation_error
+
+
+right("11.8", "with a unit vector")(rotation())
+wrong("11.8", "in the frame of the body")(rotation(body=True))
+wrong("11.8", "the longer way")(rotation(shorter=False))
+wrong("11.8", "half the angle")(rotation(half=1.0))
+wrong("11.8", "back instead of forth")(rotation(back=True))
+wrong("11.8", "0/0 where nothing is to be done")(rotation(small=False))
+wrong("11.8", "the arccosine of almost 1")(rotation(arccos=True))
+
+
+# 11.9 -----------------------------------------------------------------------------------------------------------
+@variants
+def transposed(sign=1.0, gain=lambda arm, J: arm.gain, signs=False):
+    def transpose_step(task, theta, target, arm):
+        e, J = task(theta, target, arm)
+        change = J.T @ e
+        return theta + sign * gain(arm, J) * (np.sign(change) if signs else change)
+    return transpose_step
+
+
+right("11.9", "with Jᵀ written out")(transposed())
+wrong("11.9", "uphill")(transposed(sign=-1.0))
+wrong("11.9", "no gain")(transposed(gain=lambda arm, J: 1.0))
+wrong("11.9", "a gain relative to σ²")(transposed(gain=lambda arm, J: arm.gain / np.linalg.norm(J, 2) ** 2))
+wrong("11.9", "only the signs")(transposed(signs=True))
+edit("11.9", "forgets where it was", "return theta + arm.gain", "return arm.gain")
+
+
+# 11.10 ----------------------------------------------------------------------------------------------------------
+@variants
+def inverse(cut=1e-10, power=1, full=True):
+    def pseudo_inverse(J):
+        if not full:
+            return J.T.copy()
+        u, sigma, v = np.linalg.svd(J, full_matrices=False)
+        kept = sigma > cut * sigma[0]
+        return (v[kept].T / sigma[kept] ** power) @ u[:, kept].T
+    return pseudo_inverse
+
+
+@right("11.10", "by NumPy")
+def pseudo_inverse(J):
+    return np.linalg.pinv(J, 1e-10)
+
+
+wrong("11.10", "inverts round-off")(inverse(cut=0.0))
+wrong("11.10", "gives up what is only small")(inverse(cut=1e-4))
+wrong("11.10", "σ squared")(inverse(power=2))
+wrong("11.10", "the transpose")(inverse(full=False))
+edit("11.10", "multiplies by σ", "/ sigma[i]", "* sigma[i]")
+edit("11.10", "only the last direction", "J_plus[k, r] += v", "J_plus[k, r] = v")
+
+
+# 11.11 and 11.12 ------------------------------------------------------------------------------------------------
+@variants
+def damping_of(squared=True, damped=True, sign=1.0, after=False):
+    def damped_step(task, theta, target, arm):
+        e, J = task(theta, target, arm)
+        weight = (arm.damping**2 if squared else arm.damping) if damped else 1e-12
+        change = np.linalg.solve(J.T @ J + weight * np.eye(len(theta)), J.T @ e)
+        return theta + sign * (change / (1.0 + arm.damping) if after else change)
+    return damped_step
+
+
+right("11.11", "as a system for all joints")(damping_of())
+wrong("11.11", "λ in place of λ²")(damping_of(squared=False))
+wrong("11.11", "no damping")(damping_of(damped=False))
+wrong("11.11", "away from the target")(damping_of(sign=-1.0))
+wrong("11.11", "a shorter step on top of it")(damping_of(after=True))
+edit("11.11", "λ² off the diagonal, too", "A[r, r] +=", "A[r] +=")
+
+
+@variants
+def factors(gain_power=2, damping_power=2, done=False, size=lambda y: y, worst=False):
+    def contraction_factors(sigma, gain, damping):
+        transpose = 1.0 - gain * sigma**gain_power
+        damped = damping**damping_power / (sigma**2 + damping**damping_power)
+        if worst:
+            return np.max(np.abs(transpose)) * np.ones_like(sigma), damped
+        return size(transpose), 1.0 - damped if done else damped
+    return contraction_factors
+
+
+right("11.12", "term by term")(factors())
+wrong("11.12", "σ for σ²")(factors(gain_power=1))
+wrong("11.12", "λ for λ²")(factors(damping_power=1))
+wrong("11.12", "what is done, not what is left")(factors(done=True))
+wrong("11.12", "sizes")(factors(size=np.abs))
+wrong("11.12", "the slowest for all")(factors(worst=True))
+
+
+# 11.13 ----------------------------------------------------------------------------------------------------------
+@variants
+def descent(last_first=True, moves_end=True, sign=1.0, keeps=True, wish=False, share=1.0):
+    def ccd_step(task, theta, target, arm):
+        theta, goal = np.array(theta), complex(*target)
+        z = worked.joint_positions(theta, arm.lengths) @ np.array([1.0, 1j])
+        for k in reversed(range(len(theta))) if last_first else range(len(theta)):
+            change = sign * share * np.angle((goal - z[k]) * np.conj(z[-1] - z[k]))
+            new = min(max(theta[k] + change, arm.low[k]), arm.high[k]) if keeps else theta[k] + change
+            turned = change if wish else new - theta[k]
+            theta[k] = new
+            if moves_end:
+                z[k:] = z[k] + np.exp(1j * turned) * (z[k:] - z[k])
+        return theta
+    return ccd_step
+
+
+right("11.13", "by complex numbers, with all joints")(descent())
+wrong("11.13", "from the first joint to the last")(descent(last_first=False))
+wrong("11.13", "the end stays where it was")(descent(moves_end=False))
+wrong("11.13", "turns away")(descent(sign=-1.0))
+wrong("11.13", "no limits")(descent(keeps=False))
+wrong("11.13", "the end turns as if there were no limits")(descent(wish=True))
+wrong("11.13", "half of each turn")(descent(share=0.5))
+edit("11.13", "changes its input", "theta.copy()", "theta")
+
+
+# 11.14 ----------------------------------------------------------------------------------------------------------
+@variants
+def projections(back=True, forth=True, old=False, base=True, lengths_in=1):
+    def fabrik_sweep(x, target, lengths):
+        before, y, lengths = np.array(x), np.array(x), np.asarray(lengths)[::lengths_in]
+        step = lambda p, q, length: p + length * (q - p) / np.linalg.norm(q - p)
+        if back:
+            y[-1] = target
+            for k in reversed(range(len(lengths))):
+                y[k] = step(before[k + 1] if old and k + 1 < len(lengths) else y[k + 1], y[k], lengths[k])
+        if forth:
+            y[0] = before[0] if base else y[0]
+            for k in range(len(lengths)):
+                y[k + 1] = step(y[k], y[k + 1], lengths[k])
+        return y
+    return fabrik_sweep
+
+
+right("11.14", "with unit vectors")(projections())
+wrong("11.14", "only back")(projections(forth=False))
+wrong("11.14", "only forth")(projections(back=False))
+wrong("11.14", "from the old places")(projections(old=True))
+wrong("11.14", "the base comes along")(projections(base=False))
+wrong("11.14", "lengths in the wrong order")(projections(lengths_in=-1))
+edit("11.14", "changes its input", "x[0].copy(), x.copy()", "x[0].copy(), x")
+
+
+# 11.15 ----------------------------------------------------------------------------------------------------------
+@variants
+def between_limits(blocks=True, by_gradient=True, clips=True, low_too=True, frozen=False):
+    def limited_step(task, theta, target, arm):
+        e, J = task(theta, target, arm)
+        push = J.T @ e if by_gradient else np.ones(len(theta))
+        out = (theta >= arm.high) & (push > 0.0)
+        if low_too:
+            out |= (theta <= arm.low) & ((push < 0.0) | (not by_gradient))
+        if frozen:
+            out = (theta >= arm.high) | (theta <= arm.low)
+        if blocks:
+            J = np.where(out, 0.0, J)
+        change = np.linalg.solve(J.T @ J + arm.damping**2 * np.eye(len(theta)), J.T @ e)
+        return np.clip(theta + change, arm.low, arm.high) if clips else theta + change
+    return limited_step
+
+
+right("11.15", "as a system for all joints")(between_limits())
+wrong("11.15", "clips only")(between_limits(blocks=False))
+wrong("11.15", "blocks only")(between_limits(clips=False))
+wrong("11.15", "no lower limits")(between_limits(low_too=False))
+wrong("11.15", "a joint at a limit never comes free")(between_limits(frozen=True))
+edit("11.15", "blocks what is pushed inwards", "wish[k] > 0.0", "wish[k] < 0.0")
+edit("11.15", "no damping", "arm.damping * arm.damping", "1e-9")
+
+
+# 11.16 ----------------------------------------------------------------------------------------------------------
+@variants
+def freedom(projects=True, reaches=True, sign=1.0, pulls=True, towards_zero=False):
+    def null_space_step(task, theta, target, arm):
+        e, J = task(theta, target, arm)
+        rest = np.zeros(len(theta)) if towards_zero else arm.rest
+        z = sign * (arm.pull if pulls else 1.0) * (rest - theta)
+        J_plus = np.linalg.pinv(J, 1e-10)
+        stay = np.eye(len(theta)) - J_plus @ J if projects else np.eye(len(theta))
+        return theta + (J_plus @ e if reaches else 0.0) + stay @ z
+    return null_space_step
+
+
+right("11.16", "with the projection as a matrix")(freedom())
+wrong("11.16", "the pull moves the end")(freedom(projects=False))
+wrong("11.16", "the pull alone")(freedom(reaches=False))
+wrong("11.16", "away from rest")(freedom(sign=-1.0))
+wrong("11.16", "all the way to rest")(freedom(pulls=False))
+wrong("11.16", "to zero in place of rest")(freedom(towards_zero=True))
+edit("11.16", "no pull", "return theta + z +", "return theta +")

@@ -1,0 +1,186 @@
+"""How fast does the error shrink?  Near the target each direction has a factor of its own, given by its singular value.
+
+An arm of three links near its target, moved a little along one direction of its Jacobian: one iteration, and the ratio
+of the errors is 1 − ασ² for the transpose, λ²/(σ² + λ²) for the damped step, and 0 for the pseudo-inverse.  With
+λ² = ½ m² it is what pybullet does, step by step.
+"""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import check_positive
+from solutions.kinematics import advance_reach, make_arm_2d, reach_2d
+from validate.engines.kinematics import BulletArm
+from validate.methods import DAMPED, FACTORS, PSEUDO_INVERSE, TRANSPOSE
+from validate.reference.kinematics import end_of, jacobian_of, joints_of
+from validate.scene import EXACT, PYBULLET, ROUND_OFF, Engine, EngineRun, Scene
+
+T = 1.0
+STEPS = (1,)
+MOVED = 1e-5                 # along a direction, to either side [rad]
+ANGLES = np.array([0.4, 0.9, 0.7])
+METHODS = (FACTORS, TRANSPOSE, DAMPED, PSEUDO_INVERSE)
+
+
+class Params(NamedTuple):
+    kind: Annotated[str, "which method"] = "damped"
+    setting: Annotated[float, "λ² [m²] of the damped step, or α σ₁² [-] of the transpose"] = 0.5
+    l_1: Annotated[float, "length of the first link [m]"] = 1.0
+    l_2: Annotated[float, "length of the second link [m]"] = 0.7
+    l_3: Annotated[float, "length of the third link [m]"] = 0.4
+
+
+CASES = {
+    "damped, λ² = ½ m²": Params(), "damped, λ² = 0.01 m²": Params(setting=0.01),
+    "transpose, α = 1/σ₁²": Params("transpose", 1.0), "transpose, α = 1.9/σ₁²": Params("transpose", 1.9),
+    "pseudo-inverse": Params("pseudo-inverse", 0.0),
+    "damped, λ² = ½ m², 10 cm each": Params("damped", 0.5, 0.1, 0.1, 0.1),
+}
+
+
+def supports(name, p):
+    """Each case belongs to one method, and to the closed form of its factors; pybullet's damping is ½ m²."""
+    if name == "pybullet":
+        return p.kind == "damped" and p.setting == 0.5
+    return name in {"damped": ("damped_step", "contraction_factors"),
+                    "transpose": ("transpose_step", "contraction_factors"),
+                    "pseudo-inverse": ("pseudo_inverse_step",)}[p.kind]
+
+
+def lengths_of(p):
+    return np.array([p.l_1, p.l_2, p.l_3])
+
+
+def directions(p):
+    """(u (2, 2), σ (2,), v (2, 3)) of the arm at its target."""
+    return np.linalg.svd(jacobian_of(ANGLES, lengths_of(p)), full_matrices=False)
+
+
+def start(p):
+    """Angles beside those of the target: for each direction ahead and behind."""
+    for name in ("l_1", "l_2", "l_3"):
+        check_positive(name, getattr(p, name))
+    v = directions(p)[2]
+    return tuple(ANGLES + sign * MOVED * v[i] for i in (0, 1) for sign in (1.0, -1.0))
+
+
+def settings(p):
+    """(gain [1/m²], damping [m])."""
+    if p.kind == "transpose":
+        return p.setting / directions(p)[1][0] ** 2, 0.0
+    return 0.0, np.sqrt(p.setting)
+
+
+# ---------------------------------------------------------------------------------------------- ours
+
+def run(step, acceleration, state, p, dt, steps):
+    if step.__name__ == "contraction_factors":
+        return tuple(step(directions(p)[1], *settings(p)))
+    target = end_of(ANGLES, lengths_of(p))
+    return tuple(advance_reach(step, reach_2d, theta, target, 1, arm_of(p)) for theta in state)
+
+
+def arm_of(p):
+    gain, damping = settings(p)
+    return make_arm_2d(lengths_of(p), gain, damping, -np.inf, np.inf, 0.0, 0.0)
+
+
+def observe(state, p):
+    """What is left of an error along each direction; from the lesson's factors those of the method."""
+    if len(state) == 2:
+        return np.asarray(state[0 if p.kind == "transpose" else 1])
+    u, sigma, _ = directions(p)
+    ends = [end_of(theta, lengths_of(p)) for theta in state]
+    return np.array([u[:, i] @ (ends[2 * i] - ends[2 * i + 1]) / (2.0 * MOVED * sigma[i]) for i in (0, 1)])
+
+
+def truth(p, t):
+    """e ← (1 − J P) e with the P of the method:  1 − ασ²,  λ²/(σ² + λ²),  or 0.
+
+    Source: the singular value decomposition of J.
+    """
+    sigma = directions(p)[1]
+    if p.kind == "transpose":
+        return 1.0 - p.setting * (sigma / sigma[0]) ** 2
+    return p.setting / (sigma**2 + p.setting)
+
+
+def tolerance(p, dt):
+    """A central difference leaves δ²/6 times third derivatives, over σ₂: of the end up to 3√3 reach along a direction
+    of size 1, and of the step up to (1 + reach/σ₂)² times that; and a rounding of the end over 2 δ σ₂.
+    """
+    sigma, reach = directions(p)[1][1], p.l_1 + p.l_2 + p.l_3
+    lost = 0.87 * reach / sigma * (MOVED * (1.0 + reach / sigma)) ** 2 + 2.0 * ROUND_OFF * reach / (MOVED * sigma)
+    size = np.linalg.norm(truth(p, T)) or 1.0
+    return {EXACT: lost / size, "closed form": 20.0 * ROUND_OFF / size}
+
+
+# ---------------------------------------------------------------------------------------------- engine
+
+def pybullet_make(p, dt):
+    engine, target = BulletArm(lengths_of(p)), end_of(ANGLES, lengths_of(p))
+    read = lambda: observe([engine.solve(theta, target, iterations=1) for theta in start(p)], p)
+    return EngineRun(lambda: None, read, engine.close)
+
+
+ENGINES = (Engine(PYBULLET, "", pybullet_make, EXACT, "calculateInverseKinematics, maxNumIterations 1"),)
+
+
+def quantity_names(p):
+    return [f"factor along the {which} axis, σ = {sigma:.4f} m [-]"
+            for which, sigma in zip(("long", "short"), directions(p)[1])]
+
+
+def sanity_checks():
+    """((claim, found, expected, tolerance), …): σ as half axes of the ellipse of velocities, by looking around it."""
+    around = np.linspace(0.0, np.pi, 20001)
+    found, expected = [], []
+    for p in CASES.values():
+        J = jacobian_of(ANGLES, lengths_of(p))
+        widths = np.linalg.norm(np.stack((np.cos(around), np.sin(around)), axis=1) @ J, axis=1)
+        found, expected = [*found, widths.max(), widths.min()], [*expected, *directions(p)[1]]
+    return (("largest and smallest width of the ellipse, half [m]", found, np.array(expected), 1e-7),)
+
+
+# ---------------------------------------------------------------------------------------------- picture
+
+def points(observed, p):
+    """The arm, and the ellipse of velocities at its end, a quarter of its size."""
+    arm = joints_of(ANGLES, lengths_of(p))
+    u, sigma, _ = directions(p)
+    arc = np.linspace(0.0, 2.0 * np.pi, 41)[:-1]
+    ring = arm[-1] + 0.25 * np.stack((np.cos(arc), np.sin(arc)), axis=1) * sigma @ u.T
+    return np.round(np.concatenate((arm, ring)), 5)
+
+
+def links(p):
+    return [(0, 1), (1, 2), (2, 3)] + [(4 + k, 4 + (k + 1) % 40) for k in range(40)]
+
+
+SCENE = Scene(
+    title="Rates of convergence",
+    lesson="kinematics",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=METHODS,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-15,
+    tolerance=tolerance,
+    engines=ENGINES,
+    orders=dict.fromkeys((method.function for method in METHODS), EXACT),
+    supports=supports,
+    omitted_methods="CCD and FABRIK have no factor that follows from J alone; pymunk has no inverse kinematics",
+    moves=False,
+    refinement="",
+    quantity_names=quantity_names,
+    sanity_checks=sanity_checks,
+    points=points,
+    links=links,
+    uses=("the Jacobian of the end", "one iteration of each method"),
+    ablations={"more iterations": "each multiplies by the same factors, as long as the error is small"},
+)

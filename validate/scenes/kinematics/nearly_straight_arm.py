@@ -1,0 +1,156 @@
+"""The same straight arm, disturbed: bent by a millionth of a radian, it finds its way out.
+
+A straight arm is a saddle.  A small bend grows in each iteration by a factor above 1 until the arm is free; the
+stability case about straight arms predicts the factors.  CCD does not even need a bend if the target lies behind its
+last joint: it turns that joint by π, whose sine is 1.2e-16 in floats, and what is left of the symmetry breaks.
+pybullet gives up after 20 iterations by default, when its bend is still small; more iterations and less damping help.
+"""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import check_positive
+from solutions.kinematics import make_arm_2d, reach_2d, solve_reach
+from validate.engines.kinematics import BulletArm
+from validate.methods import CCD, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
+from validate.reference.kinematics import bullet_ik, end_of, joints_of
+from validate.scene import EXACT, PYBULLET, Departure, Engine, EngineRun, Scene
+
+T = 1.0
+STEPS = (1,)
+MOST = 4000                  # iterations
+ENOUGH = 1e-8                # |e| over the reach at which a search ends [-]
+LENGTHS = np.array([1.0, 0.7, 0.4])
+REACH = 2.1                  # [m]
+METHODS = (TRANSPOSE, PSEUDO_INVERSE, DAMPED, CCD, FABRIK)
+
+
+class Params(NamedTuple):
+    x: Annotated[float, "target [m]"] = 1.05
+    y: Annotated[float, "target [m]"] = 0.0
+    bent: Annotated[float, "all angles at the start [rad]"] = 1e-6
+
+
+CASES = {
+    "target behind the last joint": Params(), "target beyond the last joint": Params(1.9),
+    "straight, target beside the arm": Params(1.05, 0.6, 0.0),
+    "straight, target behind the last joint": Params(1.05, 0.0, 0.0),
+}
+
+
+def supports(name, p):
+    """From exactly straight with the target on the axis only CCD gets away."""
+    return name == "ccd_step" or p.bent > 0.0 or p.y > 0.0
+
+
+def target_of(p):
+    return np.array([p.x, p.y])
+
+
+def start(p):
+    check_positive("x", p.x)
+    return (np.full(3, p.bent),)
+
+
+# ---------------------------------------------------------------------------------------------- ours
+
+def run(step, acceleration, state, p, dt, steps):
+    return solve_reach(step, reach_2d, state[0], target_of(p), ENOUGH * REACH, MOST, arm_of(p))[:1]
+
+
+def arm_of(p):
+    return make_arm_2d(LENGTHS, 0.6 / REACH**2, 0.2 * REACH, -np.inf, np.inf, 0.0, 0.0)
+
+
+def observe(state, p):
+    """What is left of the way, over the reach."""
+    return np.array([np.linalg.norm(target_of(p) - end_of(state[0], LENGTHS)) / REACH])
+
+
+def truth(p, t):
+    """Nothing: all these targets are within the ring that the arm reaches.
+
+    Source: the triangle's inequality; the longest link is shorter than the other two together.
+    """
+    return np.zeros(1)
+
+
+def tolerance(p, dt):
+    """A search ends at 1e-8 of the reach.  pybullet, cured, ends after the iteration that began with 1e-8 m.
+
+    By default it follows its own law.  The steps of twenty iterations are rounded a few hundred times, and a bend of a
+    millionth carries on 1e-10 of itself.
+    """
+    return {EXACT: ENOUGH, "pybullet, default": 1e-11}
+
+
+# ---------------------------------------------------------------------------------------------- engine
+
+def pybullet_make(p, dt, **settings):
+    engine = BulletArm(LENGTHS)
+    read = lambda: observe([engine.solve(start(p)[0], target_of(p), **settings)], p)
+    return EngineRun(lambda: None, read, engine.close)
+
+
+def cured(p, dt):
+    return pybullet_make(p, dt, damping=(0.2 * REACH) ** 2, iterations=MOST, threshold=1e-8)
+
+
+ENGINES = (
+    Engine(PYBULLET, "", cured, EXACT, "jointDamping as our λ², at most 4,000 iterations, residualThreshold 1e-8"),
+    Engine(PYBULLET, "default", pybullet_make, EXACT, "calculateInverseKinematics as it is"),
+)
+
+
+def default_law(p, t):
+    return observe([bullet_ik(start(p)[0], target_of(p), LENGTHS)], p)
+
+
+def quantity_names(p):
+    return ["way that is left, over the reach [-]"]
+
+
+# ---------------------------------------------------------------------------------------------- picture
+
+def points(observed, p):
+    """The straight arm, an arm that reaches the target by a bend of its first two joints, and the target."""
+    straight = joints_of(np.full(3, p.bent), LENGTHS)
+    r, rest = np.hypot(p.x, p.y), LENGTHS[1] + LENGTHS[2]
+    bend = np.pi - np.arccos((LENGTHS[0] ** 2 + rest**2 - r * r) / (2.0 * LENGTHS[0] * rest))
+    first = np.arctan2(p.y, p.x) - np.arctan2(rest * np.sin(bend), LENGTHS[0] + rest * np.cos(bend))
+    cross = target_of(p) + 0.04 * np.array([(-1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (1.0, -1.0)])
+    return np.round(np.concatenate((straight, joints_of(np.array([first, bend, 0.0]), LENGTHS), cross)), 5)
+
+
+def links(p):
+    return [(0, 1), (1, 2), (2, 3), (4, 5), (5, 6), (6, 7), (8, 9), (10, 11)]
+
+
+SCENE = Scene(
+    title="A nearly straight arm",
+    lesson="kinematics",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=METHODS,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=0.0,
+    tolerance=tolerance,
+    engines=ENGINES,
+    orders=dict.fromkeys((method.function for method in METHODS), EXACT),
+    supports=supports,
+    expected_departures={"pybullet, default": Departure(
+        "20 iterations with its damping of ½ m² are few for a bend that small", default_law)},
+    omitted_methods="pymunk has no inverse kinematics",
+    moves=False,
+    refinement="",
+    quantity_names=quantity_names,
+    points=points,
+    links=links,
+    uses=("positions of the joints", "the Jacobian of the end, for the methods that have one"),
+    ablations={"the bend": "without it no method but CCD moves: see the straight arm"},
+)

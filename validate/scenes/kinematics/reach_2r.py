@@ -1,0 +1,194 @@
+"""Two links and a target: there are two answers, elbow up and elbow down, and a search finds the one where it starts.
+
+The closed form gives both at once.  Every iterative method, started with its elbow bent to one side, comes to the
+answer on that side.  pybullet's default damping of ½ m² suits arms of a metre; an arm of 20 cm stays 16 % of its
+reach away from the target, and jointDamping cures it.
+"""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import check_positive
+from solutions.kinematics import make_arm_2d, reach_2d, solve_reach
+from validate.engines.kinematics import BulletArm
+from validate.methods import CCD, CLOSED_2R, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
+from validate.reference.kinematics import bullet_ik, jacobian_of, joints_of
+from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Engine, EngineRun, Scene
+
+T = 1.0
+STEPS = (1,)
+ENOUGH = 1e-10               # |e| over the reach at which a search ends [-]
+MOST = 20_000                # iterations; the transpose needs some thousand near the edge of the reach
+BEND = 1.2                   # of the elbow at the start, to either side [rad]
+CURED = 1e-4                 # jointDamping over the square of the reach [-]
+METHODS = (CLOSED_2R, TRANSPOSE, PSEUDO_INVERSE, DAMPED, CCD, FABRIK)
+
+
+class Params(NamedTuple):
+    l_1: Annotated[float, "length of the first link [m]"] = 1.0
+    l_2: Annotated[float, "length of the second link [m]"] = 1.0
+    x: Annotated[float, "target [m]"] = 0.366
+    y: Annotated[float, "target [m]"] = 1.366
+
+
+CASES = {
+    "one metre each": Params(), "behind the base": Params(1.0, 0.6, -0.8, -0.5),
+    "near the edge of the reach": Params(1.0, 0.6, 1.4, 0.6), "near the hole": Params(1.0, 0.6, 0.1, -0.45),
+    "10 cm each": Params(0.1, 0.1, 0.08, 0.1),
+}
+
+
+def supports(name, p):
+    """Near the hole σ₂ is small on the whole way, and the pseudo-inverse jumps about."""
+    return name != "pseudo_inverse_step" or p != CASES["near the hole"]
+
+
+def lengths_of(p):
+    return np.array([p.l_1, p.l_2])
+
+
+def target_of(p):
+    return np.array([p.x, p.y])
+
+
+def start(p):
+    """(angles with the elbow to one side, angles with it to the other)."""
+    for name in ("l_1", "l_2"):
+        check_positive(name, getattr(p, name))
+    bearing = np.arctan2(p.y, p.x)
+    return tuple(np.array([bearing - 0.5 * side * BEND, side * BEND]) for side in (1.0, -1.0))
+
+
+# ---------------------------------------------------------------------------------------------- ours
+
+def run(step, acceleration, state, p, dt, steps):
+    if step.__name__ == "solve_2r":
+        return step(target_of(p), lengths_of(p), 1.0), step(target_of(p), lengths_of(p), -1.0)
+    enough = ENOUGH * (p.l_1 + p.l_2)
+    return tuple(solve_reach(step, reach_2d, theta, target_of(p), enough, MOST, arm_of(p))[0] for theta in state)
+
+
+def arm_of(p):
+    size = p.l_1 + p.l_2
+    return make_arm_2d(lengths_of(p), 0.7 / size**2, 0.1 * size, -np.inf, np.inf, 0.0, 0.0)
+
+
+def observe(state, p):
+    """Both answers, each angle from −π to π [rad]."""
+    return np.angle(np.exp(1j * np.concatenate(state)))
+
+
+def truth(p, t):
+    """The triangle of base, elbow and target:  cos β = (r² + l₁² − l₂²)/(2 r l₁) at the base and
+    cos γ = (l₁² + l₂² − r²)/(2 l₁ l₂) at the elbow.  θ₁ = bearing ∓ β,  θ₂ = ±(π − γ).
+
+    Source: the law of cosines; Lynch and Park 2017, chapter 6.
+    """
+    r, bearing = np.hypot(p.x, p.y), np.arctan2(p.y, p.x)
+    beta = np.arccos((r * r + p.l_1**2 - p.l_2**2) / (2.0 * r * p.l_1))
+    gamma = np.arccos((p.l_1**2 + p.l_2**2 - r * r) / (2.0 * p.l_1 * p.l_2))
+    return np.angle(np.exp(1j * np.array([bearing - beta, np.pi - gamma, bearing + beta, gamma - np.pi])))
+
+
+def tolerance(p, dt):
+    """Angles are off by |e|/σ₂ at most, σ₂ the smaller singular value of J at the answer; both answers have the same.
+    A search ends at |e| ≤ 1e-10 of the reach.  The gain 0.7/reach² is below 2/σ₁², because σ₁² < 2 reach².
+
+    The closed form: a few roundings of lengths, over σ₂, here as in the truth.
+
+    pybullet, cured: its position error is 1e-9 of the reach before its last iteration.  By default it follows its own
+    law: its matrix is well conditioned, and twenty iterations round a few hundred times.
+    """
+    angles = truth(p, T)
+    smallest = np.linalg.svd(jacobian_of(angles[:2], lengths_of(p)), compute_uv=False)[-1]
+    over = (p.l_1 + p.l_2) * np.sqrt(2.0) / smallest / np.linalg.norm(angles)
+    return {EXACT: 1.1 * ENOUGH * over, "closed form": 20.0 * ROUND_OFF * over, "pybullet": 1.1e-9 * over,
+            "pybullet, default": 1e-13}
+
+
+# ---------------------------------------------------------------------------------------------- engine
+
+def pybullet_make(p, dt, **settings):
+    engine, target = BulletArm(lengths_of(p)), target_of(p)
+    read = lambda: observe([engine.solve(theta, target, **settings) for theta in start(p)], p)
+    return EngineRun(lambda: None, read, engine.close)
+
+
+def cured(p, dt):
+    size = p.l_1 + p.l_2
+    return pybullet_make(p, dt, damping=CURED * size**2, iterations=100, threshold=1e-9 * size)
+
+
+ENGINES = (
+    Engine(PYBULLET, "", cured, EXACT,
+           "jointDamping 1e-4 reach², at most 100 iterations, residualThreshold 1e-9 reach"),
+    Engine(PYBULLET, "default", pybullet_make, EXACT, "calculateInverseKinematics as it is"),
+)
+
+
+def default_law(p, t):
+    return observe([bullet_ik(theta, target_of(p), lengths_of(p)) for theta in start(p)], p)
+
+
+def quantity_names(p):
+    return ["θ₁, elbow to the right [rad]", "θ₂ [rad]", "θ₁, elbow to the left [rad]", "θ₂ [rad]"]
+
+
+def sanity_checks():
+    """((claim, found, expected, tolerance), …): both answers end at the target; the small arm's shortfall."""
+    ends = [joints_of(angles, lengths_of(p))[-1] - target_of(p)
+            for p in CASES.values() for angles in truth(p, T).reshape(2, 2)]
+    small = CASES["10 cm each"]
+    short = [np.linalg.norm(joints_of(angles, lengths_of(small))[-1] - target_of(small)) / 0.2
+             for angles in default_law(small, T).reshape(2, 2)]
+    return (("way from the end to the target [m]", ends, 0.0, 1e-14),
+            ("what a 20 cm arm is short of in pybullet, over its reach [-]", short, 0.1645, 5e-5))
+
+
+# ---------------------------------------------------------------------------------------------- picture
+
+def points(observed, p):
+    """Both arms, and the target as a small cross."""
+    arms = [joints_of(angles, lengths_of(p)) for angles in np.asarray(observed).reshape(2, 2)]
+    size = 0.03 * (p.l_1 + p.l_2)
+    cross = target_of(p) + size * np.array([(-1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (1.0, -1.0)])
+    return np.round(np.concatenate((*arms, cross)), 5)
+
+
+def links(p):
+    return [(0, 1), (1, 2), (3, 4), (4, 5), (6, 7), (8, 9)]
+
+
+SCENE = Scene(
+    title="Two elbows",
+    lesson="kinematics",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=METHODS,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-15,
+    tolerance=tolerance,
+    engines=ENGINES,
+    orders=dict.fromkeys((method.function for method in METHODS), EXACT),
+    expected_departures={"pybullet, default": Departure(
+        "its damping of ½ m² does not know how large the arm is, and it stops after 20 iterations or at 0.1 mm",
+        default_law)},
+    supports=supports,
+    omitted_methods="pymunk has no inverse kinematics; near the hole the pseudo-inverse is missing: σ₂ is small on its "
+                    "way there, so that it jumps about and does not arrive",
+    moves=False,
+    refinement="",
+    quantity_names=quantity_names,
+    published_states=((1.0, tuple(np.radians((30.0, 90.0, 120.0, -90.0))), 5e-4),),
+    sanity_checks=sanity_checks,
+    points=points,
+    links=links,
+    uses=("positions of the joints", "the Jacobian of the end, for the methods that have one"),
+    ablations={"masses": "inverse kinematics asks where, not how fast",
+               "limits of the joints": "they would choose one of the two answers, or none"},
+)

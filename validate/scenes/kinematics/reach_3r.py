@@ -1,0 +1,198 @@
+"""Three links, a place and a direction: as many conditions as joints, so that again there are two answers.
+
+The closed form puts the last joint where the direction wants it and solves the other two.  The damped step does the
+same by a Jacobian with a third row.  pybullet accepts a direction, too, but it looks at the place only when it decides
+whether it is done.
+"""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import check_positive
+from solutions.kinematics import make_arm_2d, pose_2d, solve_reach
+from validate.engines.kinematics import BulletArm
+from validate.methods import CLOSED_3R, DAMPED, PSEUDO_INVERSE, TRANSPOSE
+from validate.reference.kinematics import bullet_ik, end_of, jacobian_of, joints_of
+from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Engine, EngineRun, Scene
+
+T = 1.0
+STEPS = (1,)
+ENOUGH = 1e-10               # |e| at which a search ends [m and rad]
+MOST = 20_000                # iterations; the transpose needs some thousand
+BEND = 1.2                   # of the elbow at the start, to either side [rad]
+METHODS = (CLOSED_3R, TRANSPOSE, PSEUDO_INVERSE, DAMPED)
+
+
+class Params(NamedTuple):
+    l_1: Annotated[float, "length of the first link [m]"] = 3.0
+    l_2: Annotated[float, "length of the second link [m]"] = 2.0
+    l_3: Annotated[float, "length of the third link [m]"] = 1.0
+    x: Annotated[float, "target [m]"] = 4.0
+    y: Annotated[float, "target [m]"] = 2.0
+    degrees: Annotated[float, "direction of the third link [°]"] = 0.0
+
+
+CASES = {
+    "lengths 3, 2 and 1 m, target (4, 2), 0°": Params(),
+    "the hand points back": Params(x=2.0, y=2.5, degrees=160.0),
+    "lengths 0.3, 0.2 and 0.1 m": Params(0.3, 0.2, 0.1, 0.4, 0.2, 0.0),
+}
+
+
+def lengths_of(p):
+    return np.array([p.l_1, p.l_2, p.l_3])
+
+
+def target_of(p):
+    return np.array([p.x, p.y, np.radians(p.degrees)])
+
+
+def start(p):
+    """Angles with the elbow to one side and to the other; the hand along its direction."""
+    for name in ("l_1", "l_2", "l_3"):
+        check_positive(name, getattr(p, name))
+    wrist = target_of(p)[:2] - end_of([np.radians(p.degrees)], [p.l_3])
+    bearing = np.arctan2(wrist[1], wrist[0])
+    return tuple(np.array([bearing - 0.5 * side * BEND, side * BEND,
+                           np.radians(p.degrees) - bearing - 0.5 * side * BEND]) for side in (1.0, -1.0))
+
+
+# ---------------------------------------------------------------------------------------------- ours
+
+def run(step, acceleration, state, p, dt, steps):
+    if step.__name__ == "solve_3r":
+        return step(target_of(p), lengths_of(p), 1.0), step(target_of(p), lengths_of(p), -1.0)
+    return tuple(solve_reach(step, pose_2d, theta, target_of(p), ENOUGH, MOST, arm_of(p))[0] for theta in state)
+
+
+def arm_of(p):
+    size = p.l_1 + p.l_2 + p.l_3
+    return make_arm_2d(lengths_of(p), 1.0 / (2.0 * size**2 + 3.0), 0.1 * size, -np.inf, np.inf, 0.0, 0.0)
+
+
+def observe(state, p):
+    """Both answers, each angle from −π to π [rad]."""
+    return np.angle(np.exp(1j * np.concatenate(state)))
+
+
+def truth(p, t):
+    """The last joint is at  w = (x, y) − l₃ (cos φ, sin φ).  The elbow is where the circles of l₁ about the base and of
+    l₂ about w meet:  w (l₁² − l₂² + |w|²)/(2|w|²) ± (−w_y, w_x) h/|w|.  Angles are those between the links.
+
+    Source: two circles; the numbers are those of an exercise in Lynch and Park 2017, chapter 6.
+    """
+    w = complex(p.x, p.y) - p.l_3 * np.exp(1j * np.radians(p.degrees))
+    along = (p.l_1**2 - p.l_2**2 + abs(w) ** 2) / (2.0 * abs(w))
+    aside = np.sqrt(p.l_1**2 - along**2)
+    found = []
+    for side in (-1.0, 1.0):                                  # an elbow to the right of the line bends θ₂ to the left
+        elbow = w / abs(w) * complex(along, side * aside)
+        upper, lower = np.angle(elbow), np.angle(w - elbow)
+        found += [upper, lower - upper, np.radians(p.degrees) - lower]
+    return np.angle(np.exp(1j * np.array(found)))
+
+
+def smallest_singular_value(p):
+    """Of the Jacobian with its third row, at both answers the smaller one."""
+    return min(np.linalg.svd(np.vstack((jacobian_of(angles, lengths_of(p)), np.ones(3))), compute_uv=False)[-1]
+               for angles in truth(p, T).reshape(2, 3))
+
+
+def tolerance(p, dt):
+    """Angles are off by |e|/σ₃ at most, σ₃ the smallest singular value of J at the answer.  A search ends at 1e-10.
+    The gain is below 2/σ₁², because σ₁² < 3 reach² + 3 and α = 1/(2 reach² + 3).
+
+    The closed form: a few roundings of lengths and angles, over σ₃, here as in the truth.
+
+    pybullet, cured, knows no missing rotation below 2 arccos(1 − 1.1e-16) = 3e-8 rad.  By default it follows its own
+    law.  That angle, up to π, also goes through a float of 32 bits, with a spacing of 2.4e-7, of which an iteration
+    passes on 1/(1 + ½) at most; each later iteration undoes a part of it.
+    """
+    over = np.sqrt(2.0) / smallest_singular_value(p) / np.linalg.norm(truth(p, T))
+    size = 1.0 + p.l_1 + p.l_2 + p.l_3
+    return {EXACT: 1.1 * ENOUGH * over, "closed form": 20.0 * ROUND_OFF * size * over, "pybullet": 3e-8 * over,
+            "pybullet, default": 2.4e-7 / 1.5}
+
+
+# ---------------------------------------------------------------------------------------------- engine
+
+def pybullet_make(p, dt, **settings):
+    engine, (x, y, direction) = BulletArm(lengths_of(p)), target_of(p)
+    read = lambda: observe([engine.solve(theta, (x, y), direction, **settings) for theta in start(p)], p)
+    return EngineRun(lambda: None, read, engine.close)
+
+
+def cured(p, dt):
+    return pybullet_make(p, dt, damping=1e-4 * sum(lengths_of(p)) ** 2, iterations=200, threshold=1e-12)
+
+
+ENGINES = (
+    Engine(PYBULLET, "", cured, EXACT, "jointDamping 1e-4 reach², at most 200 iterations, residualThreshold 1e-12"),
+    Engine(PYBULLET, "default", pybullet_make, EXACT, "calculateInverseKinematics with targetOrientation, as it is"),
+)
+
+
+def default_law(p, t):
+    x, y, direction = target_of(p)
+    return observe([bullet_ik(theta, np.array([x, y]), lengths_of(p), direction) for theta in start(p)], p)
+
+
+def quantity_names(p):
+    return [f"θ_{k}, elbow to the {side} [rad]" for side in ("right", "left") for k in (1, 2, 3)]
+
+
+def sanity_checks():
+    """((claim, found, expected, tolerance), …): both answers end at the target with its direction."""
+    both = [(angles, p) for p in CASES.values() for angles in truth(p, T).reshape(2, 3)]
+    off = [joints_of(angles, lengths_of(p))[-1] - target_of(p)[:2] for angles, p in both]
+    turned = [np.angle(np.exp(1j * (np.sum(angles) - np.radians(p.degrees)))) for angles, p in both]
+    return (("way from the end to the target [m]", off, 0.0, 1e-14),
+            ("direction that is missing [rad]", turned, 0.0, 1e-14))
+
+
+# ---------------------------------------------------------------------------------------------- picture
+
+def points(observed, p):
+    """Both arms, and the target as a small cross."""
+    arms = [joints_of(angles, lengths_of(p)) for angles in np.asarray(observed).reshape(2, 3)]
+    size = 0.03 * sum(lengths_of(p))
+    cross = target_of(p)[:2] + size * np.array([(-1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (1.0, -1.0)])
+    return np.round(np.concatenate((*arms, cross)), 5)
+
+
+def links(p):
+    return [(0, 1), (1, 2), (2, 3), (4, 5), (5, 6), (6, 7), (8, 9), (10, 11)]
+
+
+SCENE = Scene(
+    title="Three links and a direction",
+    lesson="kinematics",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=METHODS,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-15,
+    tolerance=tolerance,
+    engines=ENGINES,
+    orders=dict.fromkeys((method.function for method in METHODS), EXACT),
+    expected_departures={"pybullet, default": Departure(
+        "it stops by its place alone, at 0.1 mm or after 20 iterations, and its damping of ½ does not know the size of "
+        "the arm", default_law)},
+    omitted_methods="CCD and FABRIK have no direction; pymunk has no inverse kinematics",
+    moves=False,
+    refinement="",
+    quantity_names=quantity_names,
+    published_states=((1.0, (0.0, 0.5 * np.pi, -0.5 * np.pi, 2.0 * np.arctan2(2.0, 3.0), -0.5 * np.pi,
+                             0.5 * np.pi - 2.0 * np.arctan2(2.0, 3.0)), 1e-14),),
+    sanity_checks=sanity_checks,
+    points=points,
+    links=links,
+    uses=("positions of the joints", "the Jacobian of the end, and of the direction: a row of ones"),
+    ablations={"a fourth joint": "it would leave one freedom, and a whole curve of answers",
+               "masses": "inverse kinematics asks where, not how fast"},
+)

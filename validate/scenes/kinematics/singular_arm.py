@@ -1,0 +1,161 @@
+"""A straight arm and a target on its axis: who finds out how to bend?  Nobody.
+
+The end cannot move along a straight arm: Jᵀe = 0, although e is not.  Every method that asks the Jacobian stays where
+it is, for ever.  Every joint points at the target already, so that CCD has nothing to do, and projections along the
+line stay on the line.  A millionth of a radian at the start saves them all: see the nearly straight arm.
+"""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import check_positive
+from solutions.kinematics import advance_reach, make_arm_2d, reach_2d
+from validate.engines.kinematics import BulletArm
+from validate.methods import CCD, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
+from validate.reference.kinematics import end_of, joints_of
+from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Engine, EngineRun, Scene
+
+T = 1.0
+STEPS = (1,)
+ITERATIONS = 200
+LENGTHS = np.array([1.0, 0.7, 0.4])
+REACH = 2.1                  # [m]
+METHODS = (TRANSPOSE, PSEUDO_INVERSE, DAMPED, CCD, FABRIK)
+
+
+class Params(NamedTuple):
+    x: Annotated[float, "target, on the axis of the arm [m]"] = 1.9
+
+
+CASES = {"target beyond the last joint": Params(), "target behind the last joint": Params(1.05)}
+
+
+def supports(name, p):
+    """Behind its last joint CCD folds and gets away: that is in the scene of the nearly straight arm."""
+    return name != "ccd_step" or p.x > REACH - LENGTHS[-1]
+
+
+def start(p):
+    check_positive("x", p.x)
+    return (np.zeros(3),)
+
+
+# ---------------------------------------------------------------------------------------------- ours
+
+def run(step, acceleration, state, p, dt, steps):
+    return (advance_reach(step, reach_2d, state[0], np.array([p.x, 0.0]), ITERATIONS, arm_of(p)),)
+
+
+def arm_of(p):
+    return make_arm_2d(LENGTHS, 0.6 / REACH**2, 0.2 * REACH, -np.inf, np.inf, 0.0, 0.0)
+
+
+def observe(state, p):
+    """What is left of the way, over the reach; and how far the end has left the axis, over the reach."""
+    end = end_of(state[0], LENGTHS)
+    return np.array([np.hypot(p.x - end[0], end[1]), abs(end[1])]) / REACH
+
+
+def truth(p, t):
+    """Nothing and nothing: both targets are within the ring that the arm reaches.
+
+    Source: the triangle's inequality; the longest link is shorter than the other two together.
+    """
+    return np.zeros(2)
+
+
+def stays(p, t):
+    """All of the way."""
+    return np.array([(REACH - p.x) / REACH, 0.0])
+
+
+def on_the_line(p, t):
+    """FABRIK on a line, with signs for directions: joints go to where their link puts them, ahead or behind."""
+    s = np.append(0.0, np.cumsum(LENGTHS))
+    for _ in range(ITERATIONS):
+        s[3] = p.x
+        for k in (2, 1, 0):
+            s[k] = s[k + 1] + np.copysign(LENGTHS[k], s[k] - s[k + 1])
+        s[0] = 0.0
+        for k in (0, 1, 2):
+            s[k + 1] = s[k] + np.copysign(LENGTHS[k], s[k + 1] - s[k])
+    return np.array([abs(p.x - s[3]) / REACH, 0.0])
+
+
+def tolerance(p, dt):
+    """On a line there are no sines and cosines but 0 and 1, and π is rounded once: what is left is the round-off of
+    three lengths.
+    """
+    return {EXACT: 20.0 * ROUND_OFF}
+
+
+# ---------------------------------------------------------------------------------------------- engine
+
+def pybullet_make(p, dt):
+    engine = BulletArm(LENGTHS)
+    return EngineRun(lambda: None, lambda: observe([engine.solve(np.zeros(3), (p.x, 0.0))], p), engine.close)
+
+
+ENGINES = (Engine(PYBULLET, "", pybullet_make, EXACT, "calculateInverseKinematics as it is"),)
+JACOBIAN = Departure("Jᵀe = 0 on a straight arm with its target on its axis: no joint can make |e| smaller", stays)
+
+
+def quantity_names(p):
+    return ["way that is left, over the reach [-]", "way off the axis, over the reach [-]"]
+
+
+def sanity_checks():
+    """((claim, found, expected, tolerance), …): the gradient of ½|e|² on the straight arm, by complex numbers."""
+    levers = 1j * np.cumsum(LENGTHS[::-1])[::-1]
+    slopes = [np.real(np.conj(p.x - REACH) * levers) for p in CASES.values()]
+    return (("Jᵀe of the straight arm [m²]", slopes, 0.0, 0.0),
+            ("end of the straight arm [m]", end_of(np.zeros(3), LENGTHS)[0], REACH, 1e-15))
+
+
+# ---------------------------------------------------------------------------------------------- picture
+
+def points(observed, p):
+    """The straight arm, an arm that reaches the target by a bend of its first two joints, and the target."""
+    straight = joints_of(np.zeros(3), LENGTHS)
+    rest = LENGTHS[1] + LENGTHS[2]
+    bend = np.pi - np.arccos((LENGTHS[0] ** 2 + rest**2 - p.x**2) / (2.0 * LENGTHS[0] * rest))
+    first = -np.arctan2(rest * np.sin(bend), LENGTHS[0] + rest * np.cos(bend))
+    cross = (p.x, 0.0) + 0.04 * np.array([(-1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (1.0, -1.0)])
+    return np.round(np.concatenate((straight, joints_of(np.array([first, bend, 0.0]), LENGTHS), cross)), 5)
+
+
+def links(p):
+    return [(0, 1), (1, 2), (2, 3), (4, 5), (5, 6), (6, 7), (8, 9), (10, 11)]
+
+
+SCENE = Scene(
+    title="A straight arm",
+    lesson="kinematics",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=METHODS,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=0.0,
+    tolerance=tolerance,
+    engines=ENGINES,
+    orders=dict.fromkeys((method.function for method in METHODS), EXACT),
+    supports=supports,
+    expected_departures={
+        "transpose": JACOBIAN, "pseudo-inverse": JACOBIAN, "damped": JACOBIAN, "pybullet": JACOBIAN,
+        "CCD": Departure("every joint points at the target already", stays),
+        "FABRIK": Departure("projections along a line stay on the line", on_the_line)},
+    omitted_methods="pymunk has no inverse kinematics",
+    moves=False,
+    refinement="",
+    quantity_names=quantity_names,
+    sanity_checks=sanity_checks,
+    points=points,
+    links=links,
+    uses=("positions of the joints", "the Jacobian of the end, for the methods that have one"),
+    ablations={"a disturbance": "the nearly straight arm shows what a millionth of a radian does"},
+)

@@ -1,0 +1,191 @@
+"""The target is out of reach: how near do they come?  To the nearest point of a ring, and no search can do better.
+
+An arm reaches a ring around its base: as far out as all links together, and as far in as its longest link is longer
+than the others.  At both edges it is straight, which is where its Jacobian is singular.  Small damping then makes a
+search tremble, and the pseudo-inverse never comes to rest.
+"""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import check_positive
+from solutions.kinematics import advance_reach, make_arm_2d, reach_2d
+from validate.engines.kinematics import BulletArm
+from validate.methods import CCD, DAMPED, FABRIK, TRANSPOSE
+from validate.reference.kinematics import annulus, bullet_ik, end_of, joints_of, nearest_reachable
+from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Engine, EngineRun, Scene
+
+T = 1.0
+STEPS = (1,)
+ITERATIONS = 3000            # of each method
+BENT = 0.5                   # all angles at the start [rad]
+METHODS = (DAMPED, CCD, FABRIK, TRANSPOSE)
+
+
+class Params(NamedTuple):
+    l_1: Annotated[float, "length of the first link [m]"] = 1.0
+    l_2: Annotated[float, "length of the second link [m]"] = 0.7
+    l_3: Annotated[float, "length of the third link [m]"] = 0.4
+    x: Annotated[float, "target [m]"] = -3.0
+    y: Annotated[float, "target [m]"] = 1.5
+
+
+CASES = {
+    "far outside": Params(), "just outside": Params(x=1.4, y=1.8),
+    "in the hole": Params(3.0, 1.0, 1.0, 0.3, 0.25), "10 cm each": Params(0.1, 0.1, 0.1, 0.4, 0.3),
+}
+
+
+def lengths_of(p):
+    return np.array([p.l_1, p.l_2, p.l_3])
+
+
+def target_of(p):
+    return np.array([p.x, p.y])
+
+
+def missing(p):
+    """Distance [m] from the target to the ring."""
+    return np.linalg.norm(nearest_reachable(target_of(p), lengths_of(p)) - target_of(p))
+
+
+def supports(name, p):
+    """The transpose goes down valleys too slowly for the hole and for what is just outside."""
+    return name != "transpose_step" or p in (CASES["far outside"], CASES["10 cm each"])
+
+
+def start(p):
+    for name in ("l_1", "l_2", "l_3"):
+        check_positive(name, getattr(p, name))
+    return (np.full(3, BENT),)
+
+
+# ---------------------------------------------------------------------------------------------- ours
+
+def run(step, acceleration, state, p, dt, steps):
+    return (advance_reach(step, reach_2d, state[0], target_of(p), ITERATIONS, arm_of(p)),)
+
+
+def arm_of(p):
+    gain, damping = settings(p)
+    return make_arm_2d(lengths_of(p), gain, damping, -np.inf, np.inf, 0.0, 0.0)
+
+
+def settings(p):
+    """(gain [1/m²], damping [m]) with which both come to rest: see `tolerance`."""
+    size, left = sum(lengths_of(p)), missing(p)
+    return 1.0 / (3.0 * size * (size + left)), np.sqrt(1.5 * size * left)
+
+
+def observe(state, p):
+    """Distance from the end to the target, and the end [m]."""
+    end = end_of(state[0], lengths_of(p))
+    return np.append(np.linalg.norm(target_of(p) - end), end)
+
+
+def truth(p, t):
+    """The ring is  l_long − the others ≤ r ≤ Σ l.  Its point nearest to the target lies on the ray through it.
+
+    Source: the triangle's inequality.
+    """
+    end = nearest_reachable(target_of(p), lengths_of(p))
+    return np.append(np.linalg.norm(target_of(p) - end), end)
+
+
+def tolerance(p, dt):
+    """½|e|² has the second derivatives  H = JᵀJ + S,  S_ik = −e · ∂²x/∂θ_i∂θ_k,  and |S| ≤ 3 |e| reach.  The gain is
+    below 1/|H|.  A damped step multiplies small errors by  1 − (JᵀJ + λ²)⁻¹ H,  whose size is below 1 for λ² > ½|S|,
+    and here λ² = ½ · 3 |e| reach.  So both come to rest, and 3,000 iterations leave round-off of them: some dozen
+    roundings of the angles move the end aside.
+
+    CCD and FABRIK have no such theory here, and by default pybullet follows its own law: ten times what was measured.
+    """
+    return {EXACT: 50.0 * ROUND_OFF, "CCD": 2e-14, "FABRIK": 2e-14, "pybullet, default": 2e-14}
+
+
+# ---------------------------------------------------------------------------------------------- engine
+
+def pybullet_make(p, dt, **more):
+    engine = BulletArm(lengths_of(p))
+    read = lambda: observe([engine.solve(start(p)[0], target_of(p), **more)], p)
+    return EngineRun(lambda: None, read, engine.close)
+
+
+ENGINES = (
+    Engine(PYBULLET, "", lambda p, dt: pybullet_make(p, dt, damping=settings(p)[1] ** 2, iterations=ITERATIONS), EXACT,
+           "jointDamping as our λ², 3,000 iterations"),
+    Engine(PYBULLET, "default", pybullet_make, EXACT, "calculateInverseKinematics as it is"),
+)
+
+
+def default_law(p, t):
+    return observe([bullet_ik(start(p)[0], target_of(p), lengths_of(p))], p)
+
+
+def quantity_names(p):
+    return ["distance that is left [m]", "end, x [m]", "end, y [m]"]
+
+
+def sanity_checks():
+    """((claim, found, expected, tolerance), …): no angles on a fine grid come nearer to the target than the ring."""
+    near = []
+    for p in CASES.values():
+        grid = np.linspace(0.0, 2.0 * np.pi, 121)
+        inner, outer = annulus(lengths_of(p))
+        bend, wrist = np.meshgrid(grid, grid)
+        r = np.abs(p.l_1 + np.exp(1j * bend) * (p.l_2 + p.l_3 * np.exp(1j * wrist)))
+        near += [abs(r.min() - inner) / outer, abs(r.max() - outer) / outer]
+    return (("edges of the ring on a grid of angles, over the reach [-]", near, 0.0, 2e-3),)
+
+
+# ---------------------------------------------------------------------------------------------- picture
+
+def points(observed, p):
+    """The arm, straight to the nearest point, the way that is missing, and both edges of the ring."""
+    end, lengths = np.asarray(observed)[1:], lengths_of(p)
+    inner, outer = annulus(lengths)
+    bearing = np.arctan2(end[1], end[0])
+    folded = np.array([bearing, np.pi if np.hypot(*end) < 0.5 * (inner + outer) else 0.0, 0.0])
+    arc = np.linspace(0.0, 2.0 * np.pi, 41)[:-1]
+    ring = [radius * np.stack((np.cos(arc), np.sin(arc)), axis=1) for radius in (outer, inner)]
+    return np.round(np.concatenate((joints_of(folded, lengths), [target_of(p)], *ring)), 5)
+
+
+def links(p):
+    circles = [(first + k, first + (k + 1) % 40) for first in (5, 45) for k in range(40)]
+    return [(k, k + 1) for k in range(4)] + circles
+
+
+SCENE = Scene(
+    title="Out of reach",
+    lesson="kinematics",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=METHODS,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-15,
+    tolerance=tolerance,
+    engines=ENGINES,
+    orders=dict.fromkeys((method.function for method in METHODS), EXACT),
+    supports=supports,
+    expected_departures={"pybullet, default": Departure(
+        "its damping of ½ m² does not know the size of the arm and the distance, and it stops after 20 iterations",
+        default_law)},
+    omitted_methods="the pseudo-inverse is missing: at the edge of the ring the arm is straight, its steps grow "
+                    "without bound, and it never comes to rest; the transpose is left out where it needs more than "
+                    "3,000 iterations",
+    moves=False,
+    refinement="",
+    quantity_names=quantity_names,
+    published_states=((1.0, (np.sqrt(11.25) - 2.1, -2.1 * 2.0 / np.sqrt(5.0), 2.1 / np.sqrt(5.0)), 1e-14),),
+    sanity_checks=sanity_checks,
+    points=points,
+    links=links,
+    uses=("positions of the joints", "the Jacobian of the end", "damping that fits the distance"),
+    ablations={"limits of the joints": "they make the reach smaller, and its edge is then no circle"},
+)
