@@ -312,7 +312,7 @@ def check_closed(count, faces):
     """Raise BadInput unless the triangles close a surface and agree on its outside; count is the number of corners.
 
     "a triangle's corner"                      a number that is not one of 0 … count − 1
-    "a corner on an open edge: number"         the first corner of an edge without a partner
+    "a corner on an open edge: number"         the corner i of any edge i → j without a partner
 
     A triangle (i, j, k) has the edges i → j, j → k, k → i.  In a closed mesh whose triangles are all
     counter-clockwise as seen from outside, every edge i → j has a partner j → i in a neighbour: both occur

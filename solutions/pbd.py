@@ -222,8 +222,8 @@ def newton_correction(x, lam, goal, dt, network):
 def constraint_projection_step(acceleration, t, x, v, dt, network):
     """Advance a network by one step of the lecture's projection method: all λ together, every link exact; first order.
 
-    x_pred = predict(…).  Start from the guess (x, λ = 0).  Add Δx of newton_correction and take its λ, until |Δx|
-    of every coordinate is at most NEWTON_TOLERANCE times the longest link.  Then  vₙ₊₁ = (xₙ₊₁ − xₙ)/dt.
+    x_pred = predict(…).  Start from x itself (not x_pred) and λ = 0.  Add Δx of newton_correction and take its λ,
+    until |Δx| of every coordinate is at most NEWTON_TOLERANCE times the longest link.  Then  vₙ₊₁ = (xₙ₊₁ − xₙ)/dt.
 
     Raises Diverged("the projection did not converge at dt [s]", dt, "take a smaller step, or slacken what is taut")
     after NEWTON_LIMIT iterations.  That includes networks which no finite λ can hold, such as a rope that is taut
