@@ -14,6 +14,7 @@ turntable.  A scene calls only what it needs: no detection where nothing can tou
 
 import numpy as np
 
+from .checks import check_end, checked_run
 from .contact import kept_impulses, velocity_sweep, velocity_sweep_2d
 from .impulses import cross_2d
 from .integrators import rk4_step
@@ -56,7 +57,6 @@ from .support.contact_points import (
 from .support.scenes import PileState, check_overlap
 from .vectors import cross, dot, norm
 
-PASSES = 2                   # of carried_step [-]: the second makes it second order
 HALVINGS = 50                # of a step, until the time of an impact is known to round-off [-]
 
 
@@ -253,25 +253,21 @@ def stop_slip(v, omega, floor, dt, ball):
 
 
 def carried_step(load, t, x, v, q, omega, dt, ball):
-    """Return (x, v, q, ω) of a CarriedBall after dt; second order while it rolls.
+    """Return (x, v, q, ω) of a CarriedBall after dt; second order while it rolls, exact while it slips along a line.
 
-    Friction brings the lowest point to the velocity that the floor has where the ball will touch it at t + dt.  That
-    place follows from the new velocity, and the velocity from the place.  So begin with  x_new = x + dt v  and then,
-    PASSES times:
-        floor = support_velocity(x_new, ball)
-        v', ω' = stop_slip(v, omega, floor, dt, ball)
+    Friction brings the lowest point to the velocity of the floor where the ball would be at t + dt if v stayed:
+        v', ω' = stop_slip(v, omega, support_velocity(x + dt v, ball), dt, ball)
         _, v_new, _, ω_new = rigid_body_step(load, t, x, v', q, ω', dt, ball)
-        x_new = x + dt (v + v_new)/2
-    In the end  q ← quaternion_product(exponential(½ dt (ω + ω_new)), q).
-    *Source:* Heun's method; the ball on a turntable moves on circles, Lamb 1914.
+        x ← x + dt (v + v_new)/2,      q ← quaternion_product(exponential(½ dt (ω + ω_new)), q)
+
+    From step to step the floor below changes by dt (3/2 v − 1/2 v_before), which is Adams and Bashforth's method.
+    *Source:* the ball on a turntable moves on circles, Lamb 1914.
     """
     ### BEGIN SOLUTION 10.9
-    x_new, v_new, omega_new = x + dt * v, v, omega
-    for _ in range(PASSES):
-        pushed = stop_slip(v, omega, support_velocity(x_new, ball), dt, ball)
-        _, v_new, _, omega_new = rigid_body_step(load, t, x, pushed[0], q, pushed[1], dt, ball)
-        x_new = x + 0.5 * dt * (v + v_new)
-    return x_new, v_new, quaternion_product(exponential(0.5 * dt * (omega + omega_new)), q), omega_new
+    pushed, turned = stop_slip(v, omega, support_velocity(x + dt * v, ball), dt, ball)
+    _, v_new, _, omega_new = rigid_body_step(load, t, x, pushed, q, turned, dt, ball)
+    q = quaternion_product(exponential(0.5 * dt * (omega + omega_new)), q)
+    return x + 0.5 * dt * (v + v_new), v_new, q, omega_new
     ### END SOLUTION
 
 
@@ -457,6 +453,8 @@ def advance_contact(step, load, bounds, narrow, t, state, dt, steps, p):
 
 def advance_rocking(step, t, x, v, dt, steps, block):
     """Given.  Return (θ, θ̇), each (1,), of a RockingBlock after so many rocking_steps with a step of lesson 1."""
+    t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
     for n in range(steps):
         x, v = rocking_step(step, t + n * dt, x, v, dt, block)
+    check_end(x, v, dt)
     return x, v
