@@ -8,6 +8,7 @@ from ..checks import (
     BadInput,
     Diverged,
     check_field,
+    check_finite,
     check_friction,
     check_normal,
     check_positive,
@@ -137,13 +138,15 @@ def checked_bodies(t, x, q, v, omega, dt, steps, p):
     """Return (t, x, q, v, omega, dt, steps), converted to float64.
 
     Raises BadInput for a step or a number of steps that is none, arrays that do not fit the bodies, what is not finite,
-    and quaternions without length.  make_bodies has checked p.
+    and quaternions without length.  make_bodies has checked the rest of p.
     """
     x, q = finite_array("position x [m]", x), finite_array("orientation q", q)
     v, omega = finite_array("velocity v [m/s]", v), finite_array("angular velocity ω [rad/s]", omega)
     rows, d = p.inv_mass.size, p.half.shape[1]
     check_shape("position x [m]", x, (rows, d))
     check_shape("velocity v [m/s]", v, (rows, d))
+    check_finite("planes", p.planes)
+    check_friction(p.mu)
     if q.ndim == 2:
         check_shape("orientation q", q, (rows, 4))
         check_shape("angular velocity ω [rad/s]", omega, (rows, 3))

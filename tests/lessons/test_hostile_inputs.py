@@ -142,8 +142,9 @@ TRUSTED = {
 FREE = {name for names in TRUSTED.values() for name in names}
 PATIENCE = 5.0               # time limit of one call [s]; ordinary calls take milliseconds
 # These functions do not check the records of an acceleration or a surface that they are given.
-LAWS = {"advance", "trajectory", "advance_pile_2d", "advance_pile", "pile_trajectory", "advance_free", "advance_contact", "advance_rocking", "advance_particle",
-        "advance_rotation", "rotation_trajectory", "advance_rigid_body", "slip_times", "advance_projectiles"}
+LAWS = {"advance", "trajectory", "advance_pile_2d", "advance_pile", "pile_trajectory", "advance_particle",
+        "advance_rotation", "rotation_trajectory", "advance_rigid_body", "slip_times", "advance_projectiles",
+        "advance_free", "advance_contact", "advance_rocking"}
 
 
 # Arguments for which another shape is another valid problem.
