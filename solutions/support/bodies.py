@@ -20,7 +20,7 @@ from ..checks import (
     whole_number,
 )
 from .broad_phase import Pairs
-from .scenes import PileState, check_pile, no_contacts
+from .scenes import PileState, no_contacts
 
 
 class Bodies(NamedTuple):
@@ -70,6 +70,17 @@ def inverse_or_zero(thing, values, count, planes):
     return inverse
 
 
+def check_bodies(x, half, planes, d):
+    """Raise BadInput unless these arrays describe bodies and planes in d dimensions; there may be no plane."""
+    check_field("the centres x [m]", x, (len(x), d))
+    check_field("the half sizes [m]", half, (len(x), d))
+    check_shape("the planes", planes, (len(planes), d + 1))
+    for size in half.ravel():
+        check_positive("half size of a body [m]", size)
+    for p in range(len(planes)):
+        check_normal(planes[p, :d])
+
+
 def settings_of(mu, sweeps, margin):
     """Return the last three fields of Bodies, checked."""
     mu = number("friction μ [-]", mu)
@@ -87,7 +98,7 @@ def make_bodies_2d(x, q, m, inertia, half, planes, gravity, mu, sweeps, margin):
     x, half, planes = finite_array("a centre x [m]", x), finite_array("a half size [m]", half), finite_array("a plane",
                                                                                                              planes)
     q, gravity = finite_array("an angle q [rad]", q), finite_array("gravity [m/s²]", gravity)
-    check_pile(x, half, planes, 2)
+    check_bodies(x, half, planes, 2)
     n, p = len(x), len(planes)
     check_field("the angles q [rad]", q, (n,))
     check_field("gravity [m/s²]", gravity, (2,))
@@ -108,7 +119,7 @@ def make_bodies(x, q, m, inertia, half, planes, gravity, mu, sweeps, margin):
                                                                                                              planes)
     q, gravity = finite_array("a quaternion q [-]", q), finite_array("gravity [m/s²]", gravity)
     inertia = np.asarray(inertia, np.float64)
-    check_pile(x, half, planes, 3)
+    check_bodies(x, half, planes, 3)
     n, p = len(x), len(planes)
     check_field("the quaternions q [-]", q, (n, 4))
     check_field("gravity [m/s²]", gravity, (3,))
