@@ -173,7 +173,7 @@ SCENE = Scene(
     tolerance=tolerance,
     engines=ENGINES,
     uncompiled_in_quick=("contact_step_2d",),
-    omitted_methods="pybullet: a box on another box that stands on its edge sinks in by some dt, and no setting that we "
+    omitted_methods="pybullet: a box on another box that stands on its edge sinks in by some dt; no setting that we "
                     "tried cures that",
     sanity_checks=sanity_checks,
     points=points,
