@@ -273,7 +273,9 @@ def rocking_step(step, t, x, v, dt, block):
     A block on its right corner is the mirror image of one on its left corner.
     *Left out:* a second change in one step: what rocks so quickly is nearly at rest.
     """
-    side = 1.0 if x[0] > 0.0 or (x[0] == 0.0 and v[0] >= 0.0) else -1.0
+    if x[0] == 0.0 and v[0] == 0.0:                          # it stands
+        return x, v
+    side = 1.0 if x[0] > 0.0 or (x[0] == 0.0 and v[0] > 0.0) else -1.0
     x, v = side * x, side * v
     x_new, v_new = step(rocking_acceleration, t, x, v, dt, block)
     if not x_new[0] < 0.0:

@@ -21,7 +21,7 @@ T = 5.0                      # [s]
 STEPS = (50, 100, 200, 500, 1000, 2000, 5000)
 UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0])
 MU = 1.0                     # enough friction to roll: it takes c/(1 + c) Ω |v|/g at most [-]
-SWEEPS, MARGIN = 5, 0.02     # one contact is solved by the first sweep; margin [m]
+SWEEPS, MARGIN = 20, 0.05    # each sweep halves the slip of a ball [-]; margin [m]
 
 
 class Params(NamedTuple):
