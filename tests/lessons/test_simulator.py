@@ -604,11 +604,12 @@ def test_one_step_over_the_end_of_slipping_is_exact(lesson, draw):
 @exercise("10.11", points=0.5, hint="the second part begins with the end of the first, and lasts dt − first")
 def test_a_long_step_is_as_good_as_many(lesson, draw):
     """Also the orientation: along a line all rotations are about one axis."""
-    ball, v, omega, _, slip, share = bowled(lesson, draw)
+    ball, v, omega, e, slip, share = bowled(lesson, draw)
     ends = slip / (ball.mu * G * (1.0 + 1.0 / share))
     T, n = draw(1.5, 3.0) * ends, draw.whole(3, 9)
     start = np.zeros(3), v, np.eye(4)[0], omega
     whole = lesson.exact_rolling_step(supported, 0.0, *start, T, ball)
+    close("velocity when it rolls [m/s]", whole[1], v - slip * share / (1.0 + share) * e, MANY, given=f"dt = {T} s")
     parts = start
     for k in range(n):
         parts = lesson.exact_rolling_step(supported, k * T / n, *parts, T / n, ball)
@@ -676,6 +677,8 @@ def test_energy_of_a_throw_stays(lesson, draw):
     before = lesson.mechanical_energy(x, q, v, omega, p)
     after = lesson.mechanical_energy(x + T * v + fall, q, v + down, omega, p)
     close("change of the energy of a throw [J]", after - before, 0.0, MANY)
+    lifted = lesson.mechanical_energy(x + np.array([0.0, 0.0, T]), q, v, omega, p)
+    close("energy that lifting adds [J]", lifted - before, G * T / p.inv_mass[0], MANY, given=f"lifted by {T} m")
     rest = lesson.mechanical_energy(np.zeros((2, 3)), q, np.zeros((2, 3)), np.zeros((2, 3)), p)
     close("energy of what rests at the origin [J]", rest, 0.0, ROUND_OFF)
 
@@ -698,6 +701,7 @@ def test_angular_momentum_belongs_to_a_point(lesson, draw):
     way = draw(-2.0, 2.0, 3)
     P, L = map(np.asarray, lesson.momenta(x, q, v, omega, p))
     P_there, L_there = map(np.asarray, lesson.momenta(x + way, q, v, omega, p))
+    close("momentum [kg m/s]", P, v[0] / p.inv_mass[0] + v[1] / p.inv_mass[1], MANY)
     close("momentum after all bodies are moved [kg m/s]", P_there, P, MANY)
     close("angular momentum after all bodies are moved [kg m²/s]", L_there, L + np.cross(way, P), MANY)
 

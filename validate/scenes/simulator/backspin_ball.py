@@ -114,15 +114,31 @@ ENGINES = (
 )
 
 
-def points(observed, p):
-    """Draw the scene from the side: the centre with its speed, beside it that of the rim."""
+ROUND = np.linspace(0.0, 2.0 * np.pi, 25)[:-1]       # corners of the circle that stands for the ball in the picture
+
+
+def turned(observed, p):
+    """Angle of the ball [rad]: (rim² − rim₀²)/(2μg mR²/I) R while it slides, then the way of the ball over R."""
     x, v, rim = observed
-    beside, floor = x + 0.03, [[-0.5, 0.0], [1.5, 0.0]]
-    return np.array([[x, p.R], [x, p.R + 0.05 * v], [beside, p.R], [beside, p.R + 0.05 * rim], *floor])
+    brake = p.mu * p.g
+    way = 0.5 * (rim**2 - p.rim0**2) * p.shape / brake
+    if abs(v - rim) < 1e-6:
+        way += x - (p.v0**2 - v**2) / (2.0 * brake)
+    return way / p.R
+
+
+def points(observed, p):
+    """Draw the ball from the side, with a spoke, and the speeds of its centre and of its rim as arrows beside it."""
+    x, v, rim = observed
+    centre, angle = np.array([x, p.R]), turned(observed, p)
+    ring = centre + p.R * np.stack((np.cos(ROUND), np.sin(ROUND)), axis=1)
+    spoke = centre + p.R * np.array([(np.sin(angle), np.cos(angle)), (0.0, 0.0)])
+    speeds = centre + np.array([(0.0, 0.15), (0.1 * v, 0.15), (0.0, 0.2), (0.1 * rim, 0.2)])
+    return np.vstack((ring, spoke, speeds, ((-0.7, 0.0), (1.5, 0.0))))
 
 
 def links(p):
-    return [(0, 1), (2, 3), (4, 5)]
+    return [(k, (k + 1) % 24) for k in range(24)] + [(24, 25), (26, 27), (28, 29), (30, 31)]
 
 
 def bodies(p):
@@ -130,13 +146,9 @@ def bodies(p):
 
 
 def poses(observed, p):
-    """Return the rotation of the rim: (rim² − rim₀²)/(2μg mR²/I) while the ball slides, then the way of the ball."""
-    x, v, rim = observed
-    brake = p.mu * p.g
-    way = 0.5 * (rim**2 - p.rim0**2) * p.shape / brake
-    if abs(v - rim) < 1e-6:
-        way += x - (p.v0**2 - v**2) / (2.0 * brake)
-    return [pose(np.array([x, 0.0, p.R]), about(np.array([0.0, 1.0, 0.0]), way / p.R))]
+    """Return the ball, rotated about y."""
+    place = np.array([observed[0], 0.0, p.R])
+    return [pose(place, about(np.array([0.0, 1.0, 0.0]), turned(observed, p)))]
 
 
 def arrows(observed, p):

@@ -117,15 +117,15 @@ ENGINES = (
 
 
 def points(observed, p):
-    """Draw the table from above: its rim, the ball, and the velocity."""
+    """Draw the rim of the table from above, the ball, and its velocity."""
     angles = np.linspace(0.0, 2.0 * np.pi, 37)[:-1]
-    rim = np.stack((np.cos(angles), np.sin(angles)), axis=1) * 1.2
+    ring = np.stack((np.cos(angles), np.sin(angles)), axis=1)
     here = observed[:2]
-    return np.vstack((rim, here, here + 0.5 * observed[2:]))
+    return np.vstack((1.2 * ring, here + p.R * ring, here, here + 0.5 * observed[2:]))
 
 
 def links(p):
-    return [(k, (k + 1) % 36) for k in range(36)] + [(36, 37)]
+    return [(first + k, first + (k + 1) % 36) for first in (0, 36) for k in range(36)] + [(72, 73)]
 
 
 def bodies(p):
