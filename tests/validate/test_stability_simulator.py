@@ -67,3 +67,22 @@ def test_a_wrong_function_does_not_find_what_theory_says(slug, name, wrong):
     with np.errstate(all="ignore"):
         found, _ = case.examine(lesson)
     assert not all(f.holds for f in found)
+
+
+def scaled(value, factor):
+    """The same result, a little larger or smaller, whatever it consists of."""
+    return tuple(scaled(part, factor) for part in value) if isinstance(value, tuple) else factor * np.asarray(value)
+
+
+FORMULAS = ("free_step_2d", "free_step", "mechanical_energy", "momenta", "gain_without_source", "compare")
+
+
+@pytest.mark.parametrize("factor", [0.999, 1.001])
+@pytest.mark.parametrize("function", FORMULAS)
+def test_a_formula_that_is_a_thousandth_off_is_seen(function, factor):
+    case = cases_of("simulator")["flight-and-its-invariants"]
+    lesson = subject_of(case)
+    right = getattr(lesson, function)
+    wrong = lambda *arguments: scaled(right(*arguments), factor)
+    found, _ = case.examine(types.SimpleNamespace(**{**vars(lesson), function: wrong}))
+    assert not all(f.holds for f in found)

@@ -6,7 +6,7 @@ What a case predicts is derived in its docstring; what it measures comes from th
 import numpy as np
 
 from validate.reference.simulator import rocking
-from validate.stability.case import DOTS, LINE, Picture, bisect, case, finding, refuses, series
+from validate.stability.case import DOTS, LINE, Picture, agreement, bisect, case, finding, refuses, series
 
 G = 9.81                     # [m/s²]
 ROUND_OFF = 1e-12            # of numbers around 1 after a few hundred operations
@@ -176,6 +176,76 @@ def rocking_to_the_end(lesson):
         series("theory, 1 − 1.5 sin²α", widths, 1.0 - 1.5 * sine**2, LINE), series("corner_impact", widths[::4], ratios,
                                                                                   DOTS)],
         "A slender block loses next to nothing at each impact and rocks for long; a cube stops at once.")
+
+
+@case("flight-and-its-invariants", "What stays in a flight, and what a fault does to it", compiled=False)
+def flight_and_its_invariants(lesson):
+    """Bodies that fly: parabolas that are late by half a step, momenta that stay, and energy that only a source raises.
+
+    Symplectic Euler falls ½ g T (T + dt).  A free body that turns about a principal axis by 2 atan(½ ω dt) per step
+    keeps ω.  L of a tumbling body drifts by O(dt): half the step leaves half of it, up to a few per cent.
+    A ball of 2 kg that jumps from nothing by 0.3 m gains 2 g · 0.3 J, whatever it loses before.
+    """
+    found, T = [], 1.2
+    state, p = lesson.make_bodies_2d([(0.0, 1.0), (1.0, 2.0)], [0.1, 0.2], [1.0, 3.0], 0.2, np.full((2, 2), 0.1),
+                                     np.zeros((0, 3)), (0.0, -G), 0.0, 1, 0.01)
+    v, omega = np.array([(1.0, 2.0), (-2.0, 0.5)]), np.array([3.0, -2.0])
+    dts, falls = (0.1, 0.05, 0.025), []
+    for dt in dts:
+        end = lesson.advance_free(lesson.free_step_2d, lesson.weight, 0.0, state.x, state.q, v, omega, dt,
+                                  round(T / dt), p)
+        fall = np.array([0.0, 0.5 * G * T * (T + dt)])
+        falls.append(np.max(np.abs(end[0] - state.x - T * v)))
+        found.append(agreement("Thrown bodies fall ½ g T (T + dt) and turn by ω T.",
+                               f"error of places and angles, dt = {dt:g} s [m, rad]",
+                               max(np.max(np.abs(end[0] - state.x - T * v + fall)),
+                                   np.max(np.abs(end[1] - state.q - T * omega))), ROUND_OFF))
+    half, upright = np.ones((1, 3)), [(1.0, 0.0, 0.0, 0.0)]
+    state, p = lesson.make_bodies([(0.5, -0.2, 0.3)], upright, 2.0, [(1.0, 2.0, 3.0)], half, np.zeros((0, 4)),
+                                  (0.0, 0.0, -G), 0.0, 1, 0.01)
+    v, spin = np.array([(1.0, 2.0, -0.5)]), np.array([(0.0, 0.0, 1.5)])
+    energy = 0.5 * 2.0 * 5.25 + 0.5 * 3.0 * 2.25 + 2.0 * G * 0.3
+    P, L = lesson.momenta(state.x, state.q, v, spin, p)
+    by_hand = 2.0 * np.cross(state.x[0], v[0]) + np.array([0.0, 0.0, 4.5])
+    found.append(agreement("Energy and momenta of one body are those found by hand.", "error [J, kg m/s, kg m²/s]",
+                           max(abs(lesson.mechanical_energy(state.x, state.q, v, spin, p) - energy),
+                               np.max(np.abs(P - 2.0 * v[0])), np.max(np.abs(L - by_hand))), ROUND_OFF))
+    drifts, still = [], p._replace(gravity=np.zeros(3))
+    for dt in (0.01, 0.005):
+        tumbles = np.array([(0.1, 1.0, 0.2)])
+        end = lesson.advance_free(lesson.free_step, lesson.weight, 0.0, state.x, state.q, v, tumbles, dt,
+                                  round(2.0 / dt), still)
+        drifts.append(np.linalg.norm(lesson.momenta(*end, still)[1]
+                                     - lesson.momenta(state.x, state.q, v, tumbles, still)[1]))
+    found.append(finding(
+        claim="The explicit gyroscopic term lets L drift in proportion to the step.",
+        quantity="drift of L with half the step over that with the whole one [-]",
+        predicted=0.5, measured=drifts[1] / drifts[0], tolerance=0.03,
+        observation=f"In 2 s L drifts by {drifts[0]:.1e} kg m²/s with 0.01 s and by {drifts[1]:.1e} with half of that.",
+    ))
+    end = lesson.advance_free(lesson.free_step, lesson.weight, 0.0, state.x, state.q, v, spin, 0.1, 12, p)
+    turned, fall = 12 * np.arctan(0.5 * 1.5 * 0.1), 0.5 * G * T * (T + 0.1)
+    found.append(agreement("A body that spins about a principal axis turns by 2 atan(½ ω dt) per step.",
+                           "error of its quaternion and place [-, m]",
+                           max(np.max(np.abs(end[1][0] - (np.cos(turned), 0.0, 0.0, np.sin(turned)))),
+                               np.max(np.abs(end[0] - state.x - T * v + (0.0, 0.0, fall)))), ROUND_OFF))
+    heights = np.array([1.0, 0.8, 0.5, 0.8, 0.6, 0.7])
+    found.append(agreement("A jump from nothing is found, and work explains it.", "error of the gains [J]",
+                           max(abs(lesson.gain_without_source(2.0 * G * heights, np.zeros(6)) - 0.6 * G),
+                               abs(lesson.gain_without_source(2.0 * G * heights, 2.0 * G * heights))), ROUND_OFF))
+    now = [0.0]
+
+    def takes(seconds, result):
+        now[0] += seconds
+        return result
+    full, short = lambda: takes(3.0, heights), lambda: takes(0.5, heights + 0.01)
+    difference, ratio = lesson.compare(full, short, 3, lambda: now[0])
+    found.append(agreement("Two runs are compared by difference and by time.", "error of 0.01 m and of 6 [m, -]",
+                           max(abs(difference - 0.01), abs(ratio - 6.0)), ROUND_OFF))
+    return found, Picture("How far a body falls in 1.2 s", "dt [s]", "fall [m]", [
+        series("theory, ½ g T (T + dt)", dts, 0.5 * G * T * (T + np.array(dts)), LINE), series("measured", dts, falls,
+                                                                                              DOTS)],
+        "Velocities first makes a fall too deep by ½ g T dt: exactly, whatever the step is.")
 
 
 def refusals(lesson):
