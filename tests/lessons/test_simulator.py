@@ -382,7 +382,10 @@ def forces_in(state, n, unit):
 # ---------------------------------------------------------------------------------------------- the loop in space
 
 def weighted_bounds(x, q, half):
-    """Boxes around balls whose mass is not spread evenly: here their rotation counts."""
+    """Boxes around balls whose mass may not be spread evenly: their rotation counts.
+
+    All tests in space use it: the loop is compiled anew for each function that it is given.
+    """
     n = half.shape[0]
     turned = np.zeros((n, 3, 3))
     for i in range(n):
@@ -415,7 +418,7 @@ def test_a_ball_rolls_down_any_slope_or_slides(lesson, draw):
         a = 5.0 / 7.0 * g_t if sticks else g_t * (1.0 - mu * G * n[2] / np.linalg.norm(g_t))
         end = state
         for k in range(steps):
-            end = lesson.contact_step(lesson.weight, lesson.ball_bounds, lesson.round_contacts, k * dt, end, dt, p)
+            end = lesson.contact_step(lesson.weight, weighted_bounds, lesson.round_contacts, k * dt, end, dt, p)
         T = steps * dt
         close("velocity of a ball on a slope [m/s]", np.asarray(end.v)[0], T * a, SWEPT, given=f"μ = {mu}, n = {n}")
         close("place of a ball on a slope [m]", np.asarray(end.x)[0], state.x[0] + 0.5 * a * T * T * (1.0 + dt / T),
@@ -431,7 +434,7 @@ def test_balls_fall_on_each_other_and_stand(lesson, draw):
     x = np.stack((np.zeros(n), np.zeros(n), (1.0 + space) * np.arange(n) + 0.5), axis=1)
     state, p = made(lesson, x, m, np.full((n, 3), 0.1 * m), np.full((n, 3), 0.5), [(0.0, 0.0, 1.0, 0.0)], 0.5, 2, 0.05)
     for k in range(120):
-        state = lesson.contact_step(lesson.weight, lesson.ball_bounds, lesson.round_contacts, k * dt, state, dt, p)
+        state = lesson.contact_step(lesson.weight, weighted_bounds, lesson.round_contacts, k * dt, state, dt, p)
     close("forces in the joints over m g [-]", forces_in(state, n, m * G * dt), np.arange(n, 0.0, -1.0), 1e-3)
     # two sweeps leave a share of each approach: the column may sink by some g dt², and no joint stays open
     close("height of the top [m]", np.asarray(state.x)[n - 1, 2], n - 0.5, 20.0 * G * dt * dt)
