@@ -83,6 +83,13 @@ COUNTED_SWEEPS = Method("gauss_seidel_sweep", "sweeps, counted", 2, "contact", "
 REFLECTION = Method("gauss_seidel_sweep", "sweep with ω = 2", 2, "contact", "#E69F00", "v")
 ONE_BY_ONE = Method("impulse_size", "impulses one by one", 2, "impulses", "#0072B2", "o")
 
+# simulator
+LOOP_2D = Method("contact_step_2d", "the whole loop", 1, "simulator", "#D55E00", "D")
+LOOP = Method("contact_step", "the whole loop", 1, "simulator", "#D55E00", "D")
+CARRIED = Method("carried_step", "the floor ahead", 2, "simulator", "#009E73", "s")
+EXACT_ROLLING = Method("exact_rolling_step", "cut at the event", 2, "simulator", "#CC79A7", "v")
+ROCKING = Method("rocking_step", "cut at the impact", 4, "simulator", "#009E73", "s")
+
 # kinematics
 CLOSED_2R = Method("solve_2r", "closed form", 2, "kinematics", "#009E73", "s")
 CLOSED_3R = Method("solve_3r", "closed form", 2, "kinematics", "#009E73", "s")

@@ -12,6 +12,7 @@ from ..collisions import advance_projectiles
 from ..friction import advance_particle
 from ..impulses import advance_balls, advance_discs, advance_spinning_balls
 from ..rotation import advance_rigid_body
+from ..simulator import advance_contact, advance_free, advance_rocking
 
 
 def histories(advance, t, state, dt, steps, record):
@@ -54,3 +55,21 @@ def spinning_ball_trajectories(step, acceleration, t, x, v, omega, dt, steps, p)
 def disc_trajectories(step, x, v, dt, steps, p):
     """Return (ts from 0 on, xs (steps + 1, copies, bodies, d), vs) of advance_discs."""
     return histories(lambda _, *now: advance_discs(step, *now), 0.0, (x, v), dt, steps, p)
+
+
+def free_trajectories(step, load, t, x, q, v, omega, dt, steps, p):
+    """Return (ts, xs (steps + 1, n, d), qs, vs, ωs) of advance_free: many bodies without contact."""
+    return histories(lambda *now: advance_free(step, load, *now), t, (x, q, v, omega), dt, steps, p)
+
+
+def rocking_trajectory(step, t, x, v, dt, steps, block):
+    """Return (ts, θs (steps + 1, 1), rates) of advance_rocking: a block that changes its corner."""
+    return histories(lambda *now: advance_rocking(step, *now), t, (x, v), dt, steps, block)
+
+
+def contact_trajectory(step, load, bounds, narrow, t, state, dt, steps, p):
+    """Return (ts, [state, …]) of advance_contact: all PileStates, the first included."""
+    steps, states = whole_number("number of steps", steps, 0), [state]
+    for n in range(steps):
+        states.append(advance_contact(step, load, bounds, narrow, t + n * dt, states[-1], dt, 1, p))
+    return t + dt * np.arange(steps + 1), states

@@ -21,7 +21,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from solutions import collisions, contact, friction, impulses, integrators, kinematics, rotation
+from solutions import collisions, contact, friction, impulses, integrators, kinematics, rotation, simulator
 from solutions.checks import BadInput, Diverged
 from validate import modules
 
@@ -53,6 +53,10 @@ balls = (np.array([[0.0, 0.0, 0.5], [0.1, 0.0, 1.45]]), np.tile(q, (2, 1)), 1.0,
          0.5 * np.ones((2, 3)), np.array([[*up, 0.0]]), down, 0.5, 2, 60.0, 10.0, 0.02)
 limits = (0.1, 0.3, np.array([-2.0, -2.0]), np.array([2.0, 2.5]), np.array([0.1, 0.2]), 0.5)
 arm, bent, goal = (np.array([1.0, 0.8]), *limits), np.array([0.3, 0.7]), np.array([0.9, 0.8])
+
+flat = simulator.make_bodies_2d(*boxes[:-4], 4, 0.02)
+heap = simulator.make_bodies(*balls[:-4], 4, 0.02)
+rocker = simulator.RockingBlock(1.0, 0.1, 0.5, 0.09, 9.81)
 
 # Arguments that follow the step of each loop.
 OSCILLATION = (integrators.oscillator_acceleration, 0.0, np.ones(2), np.zeros(2), 0.1, 3, oscillator)
@@ -109,6 +113,14 @@ STARTED = {
                              contact.make_pile_2d(*boxes)[1])],
         "advance_pile": [(contact.ball_bounds, contact.round_contacts, contact.make_pile(*balls)[0], 0.004, 2,
                           contact.make_pile(*balls)[1])]},
+    "simulator": {
+        "advance_free": [(simulator.free_step_2d, simulator.weight, 0.0, *flat[0][:4], 0.004, 2, flat[1]),
+                         (simulator.free_step, simulator.weight, 0.0, *heap[0][:4], 0.004, 2, heap[1])],
+        "advance_contact": [(simulator.contact_step_2d, simulator.weight, simulator.box_bounds_2d,
+                             simulator.box_contacts_2d, 0.0, flat[0], 0.004, 2, flat[1]),
+                            (simulator.contact_step, simulator.weight, simulator.ball_bounds, simulator.round_contacts,
+                             0.0, heap[0], 0.004, 2, heap[1])],
+        "advance_rocking": [(integrators.rk4_step, 0.0, np.array([0.1]), np.zeros(1), 0.01, 30, rocker)]},
     "kinematics": {
         "make_arm_2d": [arm], "make_arm_3d": [(np.stack((up, up)), np.ones((2, 3)), *limits)],
         "advance_reach": [(kinematics.damped_step, kinematics.reach_2d, bent, goal, 3, kinematics.make_arm_2d(*arm))],
@@ -142,6 +154,7 @@ PATIENCE = 5.0               # time limit of one call [s]; ordinary calls take m
 # These functions do not check the records of an acceleration or a surface that they are given.
 LAWS = {"advance", "trajectory", "advance_pile_2d", "advance_pile", "pile_trajectory", "advance_particle",
         "advance_rotation", "rotation_trajectory", "advance_rigid_body", "slip_times", "advance_projectiles",
+        "advance_free", "advance_contact", "advance_rocking",
         "advance_reach", "reach_trajectory", "solve_reach", "solve_targets"}
 
 

@@ -1,0 +1,462 @@
+"""Lesson 10.  Simulator: the whole loop, composed of what lessons 1 to 9 have.
+
+    forces → velocities → detection → contact → positions
+
+Symbols: n bodies in arrays · x (n, d) [m] · q (n,) angles [rad] in the plane, (n, 4) unit quaternions in space ·
+v (n, d) [m/s] · omega (n,) or (n, 3) [rad/s], world · J (m, d) [N s] impulses of m contacts · F (n, d) [N], tau (n,) or
+(n, 3) [N m] loads · p: a Bodies (support/bodies.py) or any record with the fields that a function reads.
+
+A load is a function  load(t, x, q, v, omega, p) → (F, tau).  Planes are further rows of all arrays.  A row with
+inv_mass = 0 keeps the velocity that you give it: at rest it is ground, and in motion a conveyor belt, a lift or a
+turntable.  A scene calls only what it needs: no detection where nothing can touch, no quaternions in the plane.
+*Left out:* restitution of many contacts, joints, sleeping.
+"""
+
+import numpy as np
+
+from .checks import check_end, checked_run
+from .contact import kept_impulses, velocity_sweep, velocity_sweep_2d
+from .impulses import cross_2d
+from .integrators import rk4_step
+from .rotation import (
+    RollingBall,
+    angular_acceleration,
+    average_rolling_step,
+    body_angular_momentum,
+    exponential,
+    point_velocity,
+    quaternion_product,
+    quaternion_update,
+    rigid_body_step,
+    unrotate,
+)
+from .support.arms import apply_impulses, apply_impulses_2d, arms_2d, arms_3d, turn_quaternions, world_inertia
+from .support.bodies import (
+    Bodies,
+    CarriedBall,
+    RockingBlock,
+    check_speed,
+    checked_bodies,
+    make_bodies,
+    make_bodies_2d,
+    mechanical_energy_2d,
+    movable_pairs,
+    rocking_acceleration,
+)
+from .support.broad_phase import near_pairs
+from .support.contact_points import (
+    ContactSet,
+    ball_bounds,
+    box_bounds,
+    box_bounds_2d,
+    box_contacts,
+    box_contacts_2d,
+    disc_bounds,
+    round_contacts,
+)
+from .support.scenes import PileState, check_overlap
+from .vectors import cross, dot, norm
+
+HALVINGS = 50                # of a step, until the time of an impact is known to round-off [-]
+
+
+# ---------------------------------------------------------------------------------------------- without contact
+
+def weight(t, x, q, v, omega, p):
+    """Given.  Return the load of gravity, in the plane or in space: F = m g, no torque; 0 for what no force moves."""
+    F = np.zeros(x.shape)
+    for i in range(x.shape[0]):
+        if p.inv_mass[i] > 0.0:
+            F[i] = p.gravity / p.inv_mass[i]
+    return F, np.zeros(omega.shape)
+
+
+def new_velocities_2d(load, t, x, q, v, omega, dt, p):
+    """Return (v, omega) of all bodies in the plane after their loads have acted for dt.
+
+    F, τ = load(t, x, q, v, omega, p),      v ← v + dt F/m,      ω ← ω + dt τ/I
+
+    1/m and 1/I are p.inv_mass (n,) and p.inv_inertia (n,); where they are 0 the velocity stays.  Returns new arrays.
+    *Source:* second lecture deck, “Simulation loop”: forces, velocities.
+    """
+    ### BEGIN SOLUTION 10.1
+    F, tau = load(t, x, q, v, omega, p)
+    return v + dt * p.inv_mass[:, None] * F, omega + dt * p.inv_inertia * tau
+    ### END SOLUTION
+
+
+def new_velocities(load, t, x, q, v, omega, dt, p):
+    """Return (v, omega) of all bodies in space after their loads have acted for dt.
+
+    v ← v + dt F/m,      ω ← ω + dt ω̇,      with ω̇ = angular_acceleration(q, ω, τ, I_body) of lesson 5, body by body
+
+    I_body = 1/p.inv_inertia[i] (3,).  A body whose inv_inertia is 0 keeps its ω.  Returns new arrays.
+    *Source:* second lecture deck, “Simulation loop”, with the gyroscopic term.
+    """
+    ### BEGIN SOLUTION 10.2
+    F, tau = load(t, x, q, v, omega, p)
+    v, omega = v + dt * p.inv_mass[:, None] * F, omega.copy()
+    for i in range(omega.shape[0]):
+        if p.inv_inertia[i, 0] > 0.0:
+            omega[i] = omega[i] + dt * angular_acceleration(q[i], omega[i], tau[i], 1.0 / p.inv_inertia[i])
+    return v, omega
+    ### END SOLUTION
+
+
+def free_step_2d(load, t, x, q, v, omega, dt, p):
+    """Return (x, q, v, omega) of all bodies in the plane after dt without contact: symplectic Euler for all of them.
+
+    First new_velocities_2d, then positions with the new velocities:   x ← x + dt v,   q ← q + dt ω
+
+    *Source:* second lecture deck, “Simulation loop”.
+    """
+    ### BEGIN SOLUTION 10.3
+    v, omega = new_velocities_2d(load, t, x, q, v, omega, dt, p)
+    return x + dt * v, q + dt * omega, v, omega
+    ### END SOLUTION
+
+
+def free_step(load, t, x, q, v, omega, dt, p):
+    """Return (x, q, v, omega) of all bodies in space after dt without contact.
+
+    First new_velocities, then positions:   x ← x + dt v,   q ← quaternion_update of lesson 5 with the new ω
+
+    *Source:* second lecture deck, “Simulation loop”.
+    """
+    ### BEGIN SOLUTION 10.4
+    v, omega = new_velocities(load, t, x, q, v, omega, dt, p)
+    q = q.copy()
+    for i in range(q.shape[0]):
+        q[i] = quaternion_update(q[i], omega[i], dt)
+    return x + dt * v, q, v, omega
+    ### END SOLUTION
+
+
+# ---------------------------------------------------------------------------------------------- with contact
+
+def find_contacts(narrow, x, low, high, turn, p):
+    """Return the ContactSet of all bodies whose gap is at most p.margin.
+
+    Broad phase:    near_pairs(low − margin, high + margin, p.planes), and of these movable_pairs(pairs, p.inv_mass)
+    narrow phase:   narrow(x, turn, p.half, p.planes, pairs, p.margin)
+
+    low and high (n, d) are the corners of boxes around all bodies, and turn their rotation: what a bounds function
+    returns.  narrow is round_contacts, box_contacts_2d or box_contacts.  A contact that is found before it closes can
+    stop the body just in time.
+    *Source:* second lecture deck, “Simulation loop”: collision detection; lesson 6.
+    """
+    ### BEGIN SOLUTION 10.5
+    pairs = movable_pairs(near_pairs(low - p.margin, high + p.margin, p.planes), p.inv_mass)
+    return narrow(x, turn, p.half, p.planes, pairs, p.margin)
+    ### END SOLUTION
+
+
+def closing_speeds(gap, dt):
+    """Given.  Return the u_n (m,) [m/s] below which no contact may come: −gap/dt closes the gap; 0 if it is closed.
+
+    *Left out:* parting bodies that overlap.  A push would gain energy, and kept_impulses would take it for a load;
+    the soft contacts of lesson 9 do it better.
+    """
+    return np.minimum(-gap / dt, 0.0)
+
+
+def contact_step_2d(load, bounds, narrow, t, state, dt, p):
+    """Return the PileState of all bodies in the plane after dt: the lecture's loop with contact.
+
+    velocities:   new_velocities_2d
+    detection:    low, high, turn = bounds(x, q, p.half),   then find_contacts
+    contact:      arms_2d, and kept_impulses of the last contacts (near = p.margin), which are applied at once by
+                  apply_impulses_2d(v, omega, J, contacts, arms, p.inv_mass, p.inv_inertia), in place
+                  then p.sweeps times velocity_sweep_2d with aim = closing_speeds(gap, dt), give = 0 and pile = p
+    positions:    x ← x + dt v,   q ← q + dt ω
+
+    state has the fields x, q, v, omega, contacts, J, of which the last two belong to the last step.
+    *Source:* second lecture deck, “Simulation loop”; sequential impulses, Catto 2006.
+    """
+    ### BEGIN SOLUTION 10.6
+    x, q, v, omega, old, J = state
+    v, omega = new_velocities_2d(load, t, x, q, v, omega, dt, p)
+    low, high, turn = bounds(x, q, p.half)
+    contacts = find_contacts(narrow, x, low, high, turn, p)
+    arms, aim = arms_2d(x, p.inv_mass, p.inv_inertia, contacts), closing_speeds(contacts.gap, dt)
+    J = kept_impulses(contacts, old, J, p.margin)
+    apply_impulses_2d(v, omega, J, contacts, arms, p.inv_mass, p.inv_inertia)
+    for _ in range(p.sweeps):
+        v, omega, J = velocity_sweep_2d(v, omega, J, aim, 0.0 * aim, contacts, arms, p)
+    return PileState(x + dt * v, q + dt * omega, v, omega, contacts, J)
+    ### END SOLUTION
+
+
+def contact_step(load, bounds, narrow, t, state, dt, p):
+    """Return the PileState of all bodies in space after dt: the same loop with
+
+    new_velocities,  world_inertia(turn, p.inv_inertia) in place of p.inv_inertia wherever an impulse acts,  arms_3d,
+    apply_impulses,  velocity_sweep(v, omega, J, aim, give, contacts, arms, p.inv_mass, inv_inertia, p.mu)  and
+    turn_quaternions(q, omega, dt).
+    """
+    ### BEGIN SOLUTION 10.7
+    x, q, v, omega, old, J = state
+    v, omega = new_velocities(load, t, x, q, v, omega, dt, p)
+    low, high, turn = bounds(x, q, p.half)
+    contacts = find_contacts(narrow, x, low, high, turn, p)
+    inv_inertia = world_inertia(turn, p.inv_inertia)
+    arms, aim = arms_3d(x, p.inv_mass, inv_inertia, contacts), closing_speeds(contacts.gap, dt)
+    J = kept_impulses(contacts, old, J, p.margin)
+    apply_impulses(v, omega, J, contacts, arms, p.inv_mass, inv_inertia)
+    for _ in range(p.sweeps):
+        v, omega, J = velocity_sweep(v, omega, J, aim, 0.0 * aim, contacts, arms, p.inv_mass, inv_inertia, p.mu)
+    return PileState(x + dt * v, turn_quaternions(q, omega, dt), v, omega, contacts, J)
+    ### END SOLUTION
+
+
+def sweep_residual_2d(state, dt, p):
+    """Given.  Return how far [m/s] the last step in the plane is from the laws: what one more sweep changes."""
+    x, _, v, omega, contacts, J = state
+    arms, aim = arms_2d(x - dt * v, p.inv_mass, p.inv_inertia, contacts), closing_speeds(contacts.gap, dt)
+    _, _, better = velocity_sweep_2d(v, omega, J, aim, 0.0 * aim, contacts, arms, p)
+    return np.max(np.append(0.0, np.abs(better - J) * np.stack((arms.k_n, arms.k_n), axis=1)))
+
+
+def largest_overlap(contacts):
+    """Given.  Return how far the deepest contact has sunk in [m]; 0 if none has."""
+    return np.max(np.append(0.0, -contacts.gap))
+
+
+# ---------------------------------------------------------------------------------------------- a floor that moves
+
+def support_velocity(place, ball):
+    """Return the velocity [m/s] (3,) of the floor of a CarriedBall at a place (3,) [m].
+
+    v_s = floor_v + floor_omega × (place − centre)
+
+    *Source:* lesson 5, the velocity of a point of a body; the floor is a body whose motion is given.
+    """
+    ### BEGIN SOLUTION 10.8
+    return point_velocity(ball.floor_v, ball.floor_omega, place - ball.centre)
+    ### END SOLUTION
+
+
+def stop_slip(v, omega, floor, dt, ball):
+    """Given.  Return (v, omega) after friction has acted for dt against a floor with the velocity `floor` (3,).
+
+    As rolling_step of lesson 5:  J = −min(μN dt, |u|/K) u/|u|,  u = v + ω × r + dt g_t − floor,  K = 1/m + radius²/I.
+    """
+    r = np.array([0.0, 0.0, -ball.radius])
+    slip = point_velocity(v, omega, r) + dt * ball.gravity - floor
+    slip[2] = 0.0
+    size, K = norm(slip), 1.0 / ball.m + ball.radius * ball.radius / ball.I_body[0]
+    if size == 0.0:
+        return v, omega
+    limit = -ball.mu * ball.m * ball.gravity[2] * dt
+    J = -np.minimum(limit, size / K) / size * slip
+    return v + J / ball.m, omega + cross(r, J) / ball.I_body[0]
+
+
+def carried_step(load, t, x, v, q, omega, dt, ball):
+    """Return (x, v, q, ω) of a CarriedBall after dt; second order while it rolls, exact while it slips along a line.
+
+    Friction brings the lowest point to the velocity of the floor where the ball would be at t + dt if v stayed:
+        v', ω' = stop_slip(v, omega, support_velocity(x + dt v, ball), dt, ball)
+        _, v_new, _, ω_new = rigid_body_step(load, t, x, v', q, ω', dt, ball)
+        x ← x + dt (v + v_new)/2,      q ← quaternion_product(exponential(½ dt (ω + ω_new)), q)
+
+    From step to step the floor below changes by dt (3/2 v − 1/2 v_before), which is Adams and Bashforth's method.
+    *Source:* the ball on a turntable moves on circles, Lamb 1914.
+    """
+    ### BEGIN SOLUTION 10.9
+    pushed, turned = stop_slip(v, omega, support_velocity(x + dt * v, ball), dt, ball)
+    _, v_new, _, omega_new = rigid_body_step(load, t, x, pushed, q, turned, dt, ball)
+    q = quaternion_product(exponential(0.5 * dt * (omega + omega_new)), q)
+    return x + 0.5 * dt * (v + v_new), v_new, q, omega_new
+    ### END SOLUTION
+
+
+# ---------------------------------------------------------------------------------------------- exact events
+
+def slip_time(v, omega, ball):
+    """Return the time [s] until a RollingBall on a floor at rest ceases to slip; inf if it never does.
+
+    Friction and gravity change the slip u = v + ω × r, r = (0, 0, −radius), at the constant rate
+        u̇ = −μ |g_z| (1 + m radius²/I) u/|u| + g_t,      g_t = (g_x, g_y, 0)
+    so that |u| decreases by  b = μ |g_z| (1 + m radius²/I) − u · g_t/|u|  per second:  t = |u|/b, and inf if b ≤ 0.
+    Return 0 where u = 0.  Gravity along the floor must be zero or parallel to u, or u would change its direction.
+    *Source:* Newton and Euler, with Coulomb's law.
+    """
+    ### BEGIN SOLUTION 10.10
+    slip = point_velocity(v, omega, np.array([0.0, 0.0, -ball.radius]))
+    slip[2] = 0.0
+    size = norm(slip)
+    if size == 0.0:
+        return 0.0
+    along = dot(slip, ball.gravity) / size
+    rate = -ball.mu * ball.gravity[2] * (1.0 + ball.m * ball.radius * ball.radius / ball.I_body[0]) - along
+    return size / rate if rate > 0.0 else np.inf
+    ### END SOLUTION
+
+
+def exact_rolling_step(load, t, x, v, q, omega, dt, ball):
+    """Return (x, v, q, ω) of a RollingBall after dt: average_rolling_step until it ceases to slip, and for the rest.
+
+    The first part lasts min(dt, slip_time(v, omega, ball)), and the second begins when and where the first has ended.
+    Each part has constant accelerations, so that both are exact, and so is the whole.
+    *Source:* event-driven integration; stick and slip of lesson 3.
+    """
+    ### BEGIN SOLUTION 10.11
+    first = np.minimum(dt, slip_time(v, omega, ball))
+    x, v, q, omega = average_rolling_step(load, t, x, v, q, omega, first, ball)
+    return average_rolling_step(load, t + first, x, v, q, omega, dt - first, ball)
+    ### END SOLUTION
+
+
+def corner_impact(v, omega, r, inv_mass, inv_inertia):
+    """Return (v (2,), ω) of a body in the plane after its point at r (2,) has hit an edge and stops there.
+
+    The impulse acts at that point, so the angular momentum about it stays:   L = I ω − m (r × v)
+    Afterwards the body turns about it:   ω⁺ = L/(I + m |r|²),      v⁺ = −ω⁺ × r = ω⁺ (r_y, −r_x)
+
+    r × v = cross_2d(r, v).  For a slender block this is Housner's ratio 1 − 1.5 sin²α.
+    *Source:* Housner 1963, “The behavior of inverted pendulum structures during earthquakes”.
+    """
+    ### BEGIN SOLUTION 10.12
+    L = omega / inv_inertia - cross_2d(r, v) / inv_mass
+    omega = L / (1.0 / inv_inertia + (r[0] * r[0] + r[1] * r[1]) / inv_mass)
+    return omega * np.array([r[1], -r[0]]), omega
+    ### END SOLUTION
+
+
+def rocking_step(step, t, x, v, dt, block):
+    """Given.  Return (θ, θ̇), each (1,), after dt of rocking: a step of lesson 1, cut where it changes its corner.
+
+    A block on its right corner is the mirror image of one on its left corner.
+    *Left out:* a second change in one step: what rocks so quickly is nearly at rest.
+    """
+    if x[0] == 0.0 and v[0] == 0.0:                          # it stands
+        return x, v
+    side = 1.0 if x[0] > 0.0 or (x[0] == 0.0 and v[0] > 0.0) else -1.0
+    x, v = side * x, side * v
+    x_new, v_new = step(rocking_acceleration, t, x, v, dt, block)
+    if not x_new[0] < 0.0:
+        return side * x_new, side * v_new
+    early, late = 0.0, dt
+    for _ in range(HALVINGS):
+        middle = 0.5 * (early + late)
+        if step(rocking_acceleration, t, x, v, middle, block)[0][0] > 0.0:
+            early = middle
+        else:
+            late = middle
+    _, v = step(rocking_acceleration, t, x, v, late, block)
+    lands = np.array([block.half_width, -block.half_height])
+    falls = v[0] * np.array([-block.half_height, block.half_width])
+    _, rate = corner_impact(falls, v[0], lands, 1.0 / block.m, 1.0 / block.inertia)
+    x_new, v_new = step(rocking_acceleration, t + late, 0.0 * x, np.array([-rate]), dt - late, block)
+    return -side * x_new, -side * v_new
+
+
+# ---------------------------------------------------------------------------------------------- is it right?
+
+def mechanical_energy(x, q, v, omega, p):
+    """Return the energy [J] of all bodies in space that can move:  Σ ½ m v² + ½ ω · I ω − m g · x.
+
+    ½ ω · I ω = ½ Σ Iₖ ωₖ², with the components of ω in body coordinates (unrotate) and Iₖ = 1/p.inv_inertia[i, k].
+    Rows with inv_mass = 0 do not count.
+    """
+    ### BEGIN SOLUTION 10.13
+    energy = 0.0
+    for i in range(x.shape[0]):
+        if p.inv_mass[i] > 0.0:
+            w = unrotate(q[i], omega[i])
+            energy += (0.5 * dot(v[i], v[i]) - dot(p.gravity, x[i])) / p.inv_mass[i]
+            energy += 0.5 * np.sum(w * w / p.inv_inertia[i])
+    return energy
+    ### END SOLUTION
+
+
+def momenta(x, q, v, omega, p):
+    """Return momentum P [kg m/s] (3,) and angular momentum L [kg m²/s] (3,) about the origin, of all that can move.
+
+    P = Σ m v,      L = Σ x × m v + I ω          I ω = body_angular_momentum(q, ω, I_body) of lesson 5
+
+    Without loads and supports both are constant, whatever the bodies do to each other.
+    """
+    ### BEGIN SOLUTION 10.14
+    P, L = np.zeros(3), np.zeros(3)
+    for i in range(x.shape[0]):
+        if p.inv_mass[i] > 0.0:
+            P += v[i] / p.inv_mass[i]
+            L += cross(x[i], v[i]) / p.inv_mass[i] + body_angular_momentum(q[i], omega[i], 1.0 / p.inv_inertia[i])
+    return P, L
+    ### END SOLUTION
+
+
+def gain_without_source(energies, work):
+    """Return the largest gain of energy [J] that no work explains, between any two times of a run.
+
+    largest over j ≤ k of  (E_k − W_k) − (E_j − W_j)          energies E (k,), work W (k,) done until then, both [J]
+
+    It is 0 or more.  Friction and impacts only take energy; a growth above the error of the steps is a fault.
+    """
+    ### BEGIN SOLUTION 10.15
+    lowest, gain = np.inf, 0.0
+    for k in range(energies.size):
+        rest = energies[k] - work[k]
+        lowest = np.minimum(lowest, rest)
+        gain = np.maximum(gain, rest - lowest)
+    return gain
+    ### END SOLUTION
+
+
+def compare(full, minimal, runs, clock):
+    """Return (largest difference, ratio of times): what a loop gains by what it leaves out.
+
+    full() and minimal() each return the same kind of array, such as a history of positions.  Run one after the other,
+    `runs` times, and take the time of each run by clock() [s], before and after.  The difference is the largest of
+    all |full − minimal|; the ratio is the median of the ratios full over minimal of neighbouring runs.
+    """
+    ### BEGIN SOLUTION 10.16
+    ratios, difference = np.zeros(runs), 0.0
+    for k in range(runs):
+        began = clock()
+        slow = full()
+        between = clock()
+        quick = minimal()
+        ratios[k] = (between - began) / (clock() - between)
+        difference = np.maximum(difference, np.max(np.abs(slow - quick)))
+    return difference, np.median(ratios)
+    ### END SOLUTION
+
+
+# ---------------------------------------------------------------------------------------------- many steps
+
+def advance_free(step, load, t, x, q, v, omega, dt, steps, p):
+    """Given.  Return (x, q, v, omega) after so many steps of free_step_2d or free_step.
+
+    Raises BadInput for arrays that do not fit, Diverged when the end is not finite.
+    """
+    t, x, q, v, omega, dt, steps = checked_bodies(t, x, q, v, omega, dt, steps, p)
+    for n in range(steps):
+        x, q, v, omega = step(load, t + n * dt, x, q, v, omega, dt, p)
+    check_speed(v, omega, dt)
+    return x, q, v, omega
+
+
+def advance_contact(step, load, bounds, narrow, t, state, dt, steps, p):
+    """Given.  Return the PileState after so many steps of contact_step_2d or contact_step.
+
+    Raises BadInput for arrays that do not fit, Diverged where bodies sink into each other or are not finite.
+    """
+    t, x, q, v, omega, dt, steps = checked_bodies(t, state.x, state.q, state.v, state.omega, dt, steps, p)
+    state, allowed = PileState(x, q, v, omega, state.contacts, state.J), np.inf
+    for n in range(steps):
+        state = step(load, bounds, narrow, t + n * dt, state, dt, p)
+        allowed = check_overlap(state.contacts, state.v, dt, p.half, allowed, 0.0)
+    check_speed(state.v, state.omega, dt)
+    return state
+
+
+def advance_rocking(step, t, x, v, dt, steps, block):
+    """Given.  Return (θ, θ̇), each (1,), of a RockingBlock after so many rocking_steps with a step of lesson 1."""
+    t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
+    for n in range(steps):
+        x, v = rocking_step(step, t + n * dt, x, v, dt, block)
+    check_end(x, v, dt)
+    return x, v

@@ -1,0 +1,199 @@
+"""Records of the lesson on simulators: what does not change while bodies move, and a ball on a floor that moves."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..checks import (
+    BadInput,
+    Diverged,
+    check_field,
+    check_finite,
+    check_friction,
+    check_normal,
+    check_positive,
+    check_shape,
+    finite_array,
+    finite_number,
+    number,
+    positive_number,
+    whole_number,
+)
+from .broad_phase import Pairs
+from .scenes import PileState, no_contacts
+
+
+class Bodies(NamedTuple):
+    """What does not change: n bodies and, as further rows, p planes.  Inverse masses of 0: no impulse moves it."""
+    inv_mass: np.ndarray     # (n + p,) [1/kg]
+    inv_inertia: np.ndarray  # (n + p,), or (n + p, 3) about the principal axes [1/(kg m²)]
+    half: np.ndarray         # (n, d) half sizes [m]; of what is round its radius d times
+    planes: np.ndarray       # (p, d + 1): n · p + d = 0, bodies on the side of n
+    gravity: np.ndarray      # (d,) [m/s²]
+    mu: float                # friction [-]
+    sweeps: int              # over all contacts, per step
+    margin: float            # gap up to which a contact is found, and way from step to step in which it is known [m]
+
+
+class CarriedBall(NamedTuple):
+    """A ball, or any round body with three equal moments, on a horizontal floor that moves in its own plane."""
+    m: float                 # mass [kg]
+    I_body: np.ndarray       # (3,) moments of inertia [kg m²]
+    radius: float            # [m]
+    mu: float                # friction [-]
+    gravity: np.ndarray      # (3,) [m/s²]
+    centre: np.ndarray       # (3,) a point of the floor [m]
+    floor_v: np.ndarray      # (3,) its velocity [m/s]
+    floor_omega: np.ndarray  # (3,) angular velocity of the floor [rad/s]
+
+
+class RockingBlock(NamedTuple):
+    """A block that rocks from one lower corner to the other and does not slide."""
+    m: float                 # mass [kg]
+    half_width: float        # [m]
+    half_height: float       # [m]
+    inertia: float           # moment of inertia about its centre [kg m²]
+    g: float                 # gravity [m/s²]
+
+
+def inverse_or_zero(thing, values, count, planes):
+    """Return 1/values, one each, and 0 for each plane; 0 where a value is infinite.  Raises BadInput for the others."""
+    values = np.asarray(values, np.float64)
+    if values.size != 1:
+        check_shape(thing, values, (count,))
+    inverse = np.zeros(count + planes)
+    for i in range(count):
+        value = values.ravel()[i if values.size != 1 else 0]
+        if not value > 0.0:
+            raise BadInput(thing, value, "give a number above zero; infinity for what no impulse moves")
+        inverse[i] = 1.0 / value
+    return inverse
+
+
+def check_bodies(x, half, planes, d):
+    """Raise BadInput unless these arrays describe bodies and planes in d dimensions; there may be no plane."""
+    check_field("the centres x [m]", x, (len(x), d))
+    check_field("the half sizes [m]", half, (len(x), d))
+    check_shape("the planes", planes, (len(planes), d + 1))
+    for size in half.ravel():
+        check_positive("half size of a body [m]", size)
+    for p in range(len(planes)):
+        check_normal(planes[p, :d])
+
+
+def settings_of(mu, sweeps, margin):
+    """Return the last three fields of Bodies, checked."""
+    mu = number("friction μ [-]", mu)
+    check_friction(mu)
+    return mu, whole_number("number of sweeps", sweeps, 1), positive_number("margin [m]", margin)
+
+
+def make_bodies_2d(x, q, m, inertia, half, planes, gravity, mu, sweeps, margin):
+    """Return (PileState, Bodies) of discs or boxes at rest in the plane: x (n, 2), angles q (n,), planes (p, 3).
+
+    m [kg] and inertia [kg m²] are numbers or one each, infinite for what no impulse moves or turns; half (n, 2) half
+    sizes [m], of a disc its radius twice.
+    Raises BadInput for sizes, masses or settings that are not above zero, and planes without a unit normal.
+    """
+    x, half, planes = finite_array("a centre x [m]", x), finite_array("a half size [m]", half), finite_array("a plane",
+                                                                                                             planes)
+    q, gravity = finite_array("an angle q [rad]", q), finite_array("gravity [m/s²]", gravity)
+    check_bodies(x, half, planes, 2)
+    n, p = len(x), len(planes)
+    check_field("the angles q [rad]", q, (n,))
+    check_field("gravity [m/s²]", gravity, (2,))
+    mu, sweeps, margin = settings_of(mu, sweeps, margin)
+    state = PileState(np.concatenate((x, np.zeros((p, 2)))), np.concatenate((q, np.zeros(p))), np.zeros((n + p, 2)),
+                      np.zeros(n + p), no_contacts(n, 2), np.zeros((0, 2)))
+    return state, Bodies(inverse_or_zero("mass [kg]", m, n, p),
+                         inverse_or_zero("moment of inertia [kg m²]", inertia, n, p), half, planes, gravity, mu, sweeps,
+                         margin)
+
+
+def make_bodies(x, q, m, inertia, half, planes, gravity, mu, sweeps, margin):
+    """Return (PileState, Bodies) of spheres or boxes at rest in space: x (n, 3), q (n, 4), planes (p, 4).
+
+    q are unit quaternions, inertia (n, 3): principal moments [kg m²]; the rest is as in make_bodies_2d.
+    """
+    x, half, planes = finite_array("a centre x [m]", x), finite_array("a half size [m]", half), finite_array("a plane",
+                                                                                                             planes)
+    q, gravity = finite_array("a quaternion q [-]", q), finite_array("gravity [m/s²]", gravity)
+    inertia = np.asarray(inertia, np.float64)
+    check_bodies(x, half, planes, 3)
+    n, p = len(x), len(planes)
+    check_field("the quaternions q [-]", q, (n, 4))
+    check_field("gravity [m/s²]", gravity, (3,))
+    check_shape("the moments of inertia [kg m²]", inertia, (n, 3))
+    for i in range(n):
+        check_normal(q[i])
+    mu, sweeps, margin = settings_of(mu, sweeps, margin)
+    state = PileState(np.concatenate((x, np.zeros((p, 3)))),
+                      np.concatenate((q, np.tile(np.array([1.0, 0.0, 0.0, 0.0]), p).reshape(p, 4))),
+                      np.zeros((n + p, 3)), np.zeros((n + p, 3)), no_contacts(n, 3), np.zeros((0, 3)))
+    turned = inverse_or_zero("moment of inertia [kg m²]", inertia.ravel(), 3 * n, 3 * p).reshape(-1, 3)
+    return state, Bodies(inverse_or_zero("mass [kg]", m, n, p), turned, half, planes, gravity, mu, sweeps, margin)
+
+
+def movable_pairs(pairs, inv_mass):
+    """Return the Pairs of which at least one body can move: no impulse stops two that cannot."""
+    first, partner = np.zeros(pairs.first.size, np.int64), [0 for _ in range(0)]
+    for i in range(pairs.first.size - 1):
+        for k in range(pairs.first[i], pairs.first[i + 1]):
+            if inv_mass[i] + inv_mass[pairs.partner[k]] > 0.0:
+                partner.append(pairs.partner[k])
+        first[i + 1] = len(partner)
+    return Pairs(first, np.array(partner, dtype=np.int64))
+
+
+def checked_bodies(t, x, q, v, omega, dt, steps, p):
+    """Return (t, x, q, v, omega, dt, steps), converted to float64.
+
+    Raises BadInput for a step or a number of steps that is none, arrays that do not fit the bodies, what is not finite,
+    and quaternions without length.  make_bodies has checked the rest of p.
+    """
+    x, q = finite_array("position x [m]", x), finite_array("orientation q", q)
+    v, omega = finite_array("velocity v [m/s]", v), finite_array("angular velocity ω [rad/s]", omega)
+    rows, d = p.inv_mass.size, p.half.shape[1]
+    check_shape("position x [m]", x, (rows, d))
+    check_shape("velocity v [m/s]", v, (rows, d))
+    check_finite("planes", p.planes)
+    check_friction(p.mu)
+    if q.ndim == 2:
+        check_shape("orientation q", q, (rows, 4))
+        check_shape("angular velocity ω [rad/s]", omega, (rows, 3))
+        for i in range(rows):
+            check_positive("length of a quaternion [-]", np.sum(q[i] ** 2))
+    else:
+        check_shape("orientation q", q, (rows,))
+        check_shape("angular velocity ω [rad/s]", omega, (rows,))
+    return (finite_number("time t [s]", t), x, q, v, omega, positive_number("step dt [s]", dt),
+            whole_number("number of steps", steps, 0))
+
+
+def check_speed(v, omega, dt):
+    """Raise Diverged unless all velocities are numbers."""
+    fastest = np.max(np.abs(v)) + np.max(np.abs(omega))
+    if not np.isfinite(fastest):
+        raise Diverged("the largest velocity of a body at the step [s]", dt, "take a smaller step, or more sweeps")
+
+
+def mechanical_energy_2d(x, v, omega, p):
+    """Return the energy [J] of all bodies in the plane that can move; what cannot turn has no energy of rotation."""
+    energy = 0.0
+    for i in range(x.shape[0]):
+        if p.inv_mass[i] > 0.0:
+            energy += (0.5 * (v[i] @ v[i]) - p.gravity @ x[i]) / p.inv_mass[i]
+        if p.inv_inertia[i] > 0.0:
+            energy += 0.5 * omega[i] ** 2 / p.inv_inertia[i]
+    return energy
+
+
+def rocking_acceleration(t, x, v, block):
+    """Return θ̈ (1,) [rad/s²] of a RockingBlock that leans to the left by θ = x[0], on its left lower corner.
+
+    (I + m R²) θ̈ = −m g R sin(α − θ),      tan α = half_width/half_height,   R² = half_width² + half_height²
+    """
+    R = np.sqrt(block.half_width**2 + block.half_height**2)
+    alpha = np.arctan2(block.half_width, block.half_height)
+    rate = block.m * block.g * R / (block.inertia + block.m * R * R)
+    return np.array([-rate * np.sin(alpha - x[0])])

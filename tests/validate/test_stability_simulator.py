@@ -1,0 +1,88 @@
+"""A wrong function of lesson 10 does not find the speeds, growths and impacts that theory gives the right one."""
+
+import types
+
+import numpy as np
+import pytest
+
+from solutions import simulator as worked
+from validate.stability.examine import cases_of, subject_of
+
+
+def waits(load, bounds, narrow, t, state, dt, p):
+    """Finds a contact when it overlaps, and not before."""
+    return worked.contact_step_2d(load, bounds, narrow, t, state, dt, p._replace(margin=1e-9))
+
+
+def pushes(load, bounds, narrow, t, state, dt, p):
+    """Puts what overlaps back on the surface."""
+    end = worked.contact_step_2d(load, bounds, narrow, t, state, dt, p)
+    x = end.x.copy()
+    x[0, 1] = max(x[0, 1], p.half[0, 1])
+    return end._replace(x=x)
+
+
+def floor_ahead(load, bounds, narrow, t, state, dt, p):
+    """Takes the floor where the ball will be."""
+    v = state.v.copy()
+    v[1] = np.cross(state.omega[1], dt * state.v[0])
+    end = worked.contact_step(load, bounds, narrow, t, state._replace(v=v), dt, p)
+    return end._replace(v=np.stack((end.v[0], np.zeros(3))))
+
+
+def floor_behind(load, t, x, v, q, omega, dt, ball):
+    """Takes the floor where the ball was."""
+    return worked.carried_step(load, t, x, v, q, omega, dt, ball._replace(centre=ball.centre + dt * v))
+
+
+def elastic(step, t, x, v, dt, block):
+    """Loses nothing at a corner."""
+    heavier = block._replace(inertia=1e3 * block.inertia, m=1e3 * block.m, half_width=1e-3 * block.half_width)
+    new = step(worked.rocking_acceleration, t, x, v, dt, block)
+    return new if x[0] * new[0][0] > 0.0 or x[0] == 0.0 else worked.rocking_step(step, t, x, v, dt, heavier)
+
+
+def unchecked(x, q, m, inertia, half, planes, gravity, mu, sweeps, margin):
+    """Makes bodies of anything."""
+    state, p = worked.make_bodies_2d([(0.0, 0.5)], [0.0], 1.0, 0.1, [(0.5, 0.5)], [(0.0, 1.0, 0.0)], (0.0, -9.81), 0.3,
+                                     1, 0.02)
+    return state, p._replace(mu=mu, sweeps=sweeps, margin=margin)
+
+
+WRONG = [                    # case, the function that it examines, what is put in its place
+    ("margin-and-speed", "contact_step_2d", waits),
+    ("margin-and-speed", "contact_step_2d", pushes),
+    ("growth-on-a-turntable", "contact_step", floor_ahead),
+    ("growth-on-a-turntable", "carried_step", floor_behind),
+    ("rocking-to-the-end", "rocking_step", elastic),
+    ("rocking-to-the-end", "make_bodies_2d", unchecked),
+]
+
+
+@pytest.mark.parametrize(("slug", "name", "wrong"), WRONG,
+                         ids=[f"{slug}-{name}-{k}" for k, (slug, name, _) in enumerate(WRONG)])
+def test_a_wrong_function_does_not_find_what_theory_says(slug, name, wrong):
+    case = cases_of("simulator")[slug]
+    lesson = types.SimpleNamespace(**{**vars(subject_of(case)), name: wrong})
+    with np.errstate(all="ignore"):
+        found, _ = case.examine(lesson)
+    assert not all(f.holds for f in found)
+
+
+def scaled(value, factor):
+    """The same result, a little larger or smaller, whatever it consists of."""
+    return tuple(scaled(part, factor) for part in value) if isinstance(value, tuple) else factor * np.asarray(value)
+
+
+FORMULAS = ("free_step_2d", "free_step", "mechanical_energy", "momenta", "gain_without_source", "compare")
+
+
+@pytest.mark.parametrize("factor", [0.999, 1.001])
+@pytest.mark.parametrize("function", FORMULAS)
+def test_a_formula_that_is_a_thousandth_off_is_seen(function, factor):
+    case = cases_of("simulator")["flight-and-its-invariants"]
+    lesson = subject_of(case)
+    right = getattr(lesson, function)
+    wrong = lambda *arguments: scaled(right(*arguments), factor)
+    found, _ = case.examine(types.SimpleNamespace(**{**vars(lesson), function: wrong}))
+    assert not all(f.holds for f in found)

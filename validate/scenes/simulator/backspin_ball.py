@@ -1,0 +1,201 @@
+"""A billiard ball with backspin slides forwards, stops and rolls back.
+
+Both parts of the motion are known exactly.  A loop is wrong only in the step in which the ball ceases to slip, and by
+where it takes its velocities.  The third of our methods cuts its step at that event.
+"""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import check_positive
+from solutions.rotation import RollingBall, advance_rigid_body
+from solutions.rotation import supported_weight as acceleration
+from validate import drawing
+from validate.drawing import pose
+from validate.engines.chipmunk import pymunk_world
+from validate.engines.simulator import OVERLAP, pybullet_spinning_ball, pymunk_body, pymunk_floor_space
+from validate.methods import AVERAGE_ROLLING, EXACT_ROLLING, ROLLING
+from validate.reference.orientation import about
+from validate.scene import EXACT, PYBULLET, PYMUNK, ROUND_OFF, Engine, Scene
+
+T = 3.0                      # [s]
+STEPS = (30, 60, 150, 300, 600, 1500, 3000)
+
+
+class Params(NamedTuple):
+    shape: Annotated[float, "I/mR² [-]: 2/5 for a sphere, 1/2 for a disc"] = 0.4
+    v0: Annotated[float, "initial speed [m/s]"] = 2.0
+    rim0: Annotated[float, "initial speed of the rim, forwards if it rolls forwards [m/s]"] = -6.0
+    mu: Annotated[float, "friction [-]"] = 0.2
+    R: Annotated[float, "radius [m]"] = 0.1
+    m: Annotated[float, "mass [kg]"] = 1.0
+    g: Annotated[float, "gravity [m/s²]"] = 9.81
+
+
+CASES = {"comes back": Params(), "stops dead": Params(rim0=-5.0), "goes on": Params(rim0=-3.0),
+         "disc": Params(shape=0.5)}
+
+
+def ball(p):
+    return RollingBall(p.m, np.full(3, p.shape * p.m * p.R**2), p.R, p.mu, np.array([0.0, 0.0, -p.g]))
+
+
+def start(p):
+    for name in ("shape", "R", "m", "mu", "g"):
+        check_positive(name, getattr(p, name))
+    check_positive("slip v0 − rim0", p.v0 - p.rim0)
+    spin = np.array([0.0, p.rim0 / p.R, 0.0])
+    return np.array([0.0, 0.0, p.R]), np.array([p.v0, 0.0, 0.0]), np.array([1.0, 0.0, 0.0, 0.0]), spin
+
+
+def run(step, acceleration, state, p, dt, steps):
+    x, v, q, omega = state
+    return advance_rigid_body(step, acceleration, 0.0, x, v, q, omega, dt, steps, ball(p))
+
+
+def observe(state, p):
+    """Return distance x [m], speed v and rim speed Rω [m/s]."""
+    return np.array([state[0][0], state[1][0], p.R * state[3][1]])
+
+
+def rolls_from(p):
+    """Return the time at which slipping ends [s]: v₀ − μg t = rim₀ + μg t mR²/I."""
+    return (p.v0 - p.rim0) / (p.mu * p.g * (1.0 + 1.0 / p.shape))
+
+
+def truth(p, t):
+    """v = v₀ − μgt and Rω = rim₀ + μgt mR²/I until they meet; from then on both stay as they are.
+
+    In the end v = (v₀ + (I/mR²) rim₀)/(1 + I/mR²): backwards for a sphere whose rim is faster than 5/2 v₀.
+    Source: Newton and Euler with f = μmg; deck A, friction.
+    """
+    sliding, brake = min(t, rolls_from(p)), p.mu * p.g
+    v = p.v0 - brake * sliding
+    return np.array([p.v0 * sliding - 0.5 * brake * sliding**2 + v * (t - sliding), v,
+                     p.rim0 + brake * sliding / p.shape])
+
+
+def tolerance(p, dt):
+    """While it slides, a step that moves with the new velocity loses ½ μg dt per second; with the old it gains as much.
+
+    In the step in which it begins to roll the velocity is off by at most μg dt, for dt.  After that both velocities are
+    exact, though an engine's friction may act for one step more or less: another μg dt².
+    With mean velocities only that one step is inexact: by ½ μg s (dt − s), where s is the time in it at which rolling
+    begins.  That is ⅛ μg dt² at most, but no fixed share of dt²: the order that a sweep shows depends on s.
+    Cut there, no step is inexact.
+    """
+    brake, size = p.mu * p.g, np.linalg.norm(truth(p, T))
+    rounded = (1e-12 + T / dt * ROUND_OFF) * max(1.0, (abs(p.v0) + abs(p.rim0)) / size)
+    limit = (0.5 * brake * dt * rolls_from(p) + 2.0 * brake * dt * dt) / size + rounded
+    mean = 1.001 * 0.125 * brake * dt * dt / size + rounded
+    return {1: limit, "2 on average": mean, EXACT: rounded, "pymunk": limit + OVERLAP / size, "pybullet": limit}
+
+
+def pymunk_make(p, dt):
+    """Make a circle with that moment that overlaps the floor by a micrometre, because pymunk needs an overlap."""
+    import pymunk
+    space = pymunk_floor_space(p.g, p.mu)
+    body = pymunk_body(space, p.m, p.shape * p.m * p.R**2, (0.0, p.R - OVERLAP), 0.0,
+                       lambda body: pymunk.Circle(body, p.R))
+    body.velocity, body.angular_velocity = (p.v0, 0.0), -p.rim0 / p.R
+    return pymunk_world(space, dt, lambda: np.array([body.position.x, body.velocity.x, -p.R * body.angular_velocity]))
+
+
+def pybullet_make(p, dt):
+    _, v, _, omega = start(p)
+    return pybullet_spinning_ball(ball(p), v, omega, dt)
+
+
+ENGINES = (
+    Engine(PYMUNK, "", pymunk_make, 1, "100 iterations; the circle starts 1e-6 m inside the floor"),
+    Engine(PYBULLET, "", pybullet_make, 1, "maximal coordinates on a GEOM_PLANE; 100 iterations, no residual "
+           "threshold, no slop, no damping"),
+)
+
+
+ROUND = np.linspace(0.0, 2.0 * np.pi, 25)[:-1]       # corners of the circle that stands for the ball in the picture
+
+
+def turned(observed, p):
+    """Angle of the ball [rad]: (rim² − rim₀²)/(2μg mR²/I) R while it slides, then the way of the ball over R."""
+    x, v, rim = observed
+    brake = p.mu * p.g
+    way = 0.5 * (rim**2 - p.rim0**2) * p.shape / brake
+    if abs(v - rim) < 1e-6:
+        way += x - (p.v0**2 - v**2) / (2.0 * brake)
+    return way / p.R
+
+
+def points(observed, p):
+    """Draw the ball from the side, with a spoke, and the speeds of its centre and of its rim as arrows beside it."""
+    x, v, rim = observed
+    centre, angle = np.array([x, p.R]), turned(observed, p)
+    ring = centre + p.R * np.stack((np.cos(ROUND), np.sin(ROUND)), axis=1)
+    spoke = centre + p.R * np.array([(np.sin(angle), np.cos(angle)), (0.0, 0.0)])
+    speeds = centre + np.array([(0.0, 0.15), (0.1 * v, 0.15), (0.0, 0.2), (0.1 * rim, 0.2)])
+    return np.vstack((ring, spoke, speeds, ((-0.7, 0.0), (1.5, 0.0))))
+
+
+def links(p):
+    return [(k, (k + 1) % 24) for k in range(24)] + [(24, 25), (26, 27), (28, 29), (30, 31)]
+
+
+def bodies(p):
+    return [drawing.sphere(p.R)]
+
+
+def poses(observed, p):
+    """Return the ball, rotated about y."""
+    place = np.array([observed[0], 0.0, p.R])
+    return [pose(place, about(np.array([0.0, 1.0, 0.0]), turned(observed, p)))]
+
+
+def arrows(observed, p):
+    """Return v of the centre, and the speed of the rim."""
+    x, v, rim = observed
+    centre = np.array([x, 0.0, p.R])
+    return {"v": (centre, centre + np.array([0.1 * v, 0.0, 0.0])),
+            "Rω": (centre, centre + np.array([0.1 * rim, 0.0, 0.0]))}
+
+
+def sanity_checks():
+    """Return ((claim, found, expected, tolerance), …): where it goes, and its momentum about the floor."""
+    ends = [truth(p, T) for p in CASES.values()]
+    kept = [p.v0 + p.shape * p.rim0 - end[1] - p.shape * end[2] for p, end in zip(CASES.values(), ends)]
+    return (("speeds in the end of the three spheres [m/s]", [end[1] for end in ends[:3]], (-2.0 / 7.0, 0.0, 4.0 / 7.0),
+             1e-14),
+            ("speed in the end over that of the rim [m/s]", [end[1] - end[2] for end in ends], 0.0, 1e-14),
+            ("change of the angular momentum about the floor over m R [m/s]", kept, 0.0, 1e-14),
+            ("it rolls from [s]", rolls_from(Params()), 1.164992, 5e-7))
+
+
+SCENE = Scene(
+    title="A ball with backspin",
+    lesson="simulator",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=(ROLLING, AVERAGE_ROLLING, EXACT_ROLLING),
+    acceleration=acceleration,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-15,
+    tolerance=tolerance,
+    engines=ENGINES,
+    uncompiled_in_quick=("exact_rolling_step",),
+    slow_cases=("goes on", "disc"),
+    orders={"exact_rolling_step": EXACT, "average_rolling_step": "2 on average"},
+    sanity_checks=sanity_checks,
+    points=points,
+    links=links,
+    bodies=bodies,
+    poses=poses,
+    arrows=arrows,
+    ground=True,
+    uses=("one ball", "one force at one point", "the time at which it ceases to slip"),
+    ablations={"detection of the contact": "the ball starts on the floor and stays there; lesson 6 finds contacts",
+               "a force of the support that is solved for": "N = mg, because there is no vertical motion"},
+)

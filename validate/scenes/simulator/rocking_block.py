@@ -1,0 +1,205 @@
+"""A block rocks from one lower corner to the other.  Each impact takes 5.8 % of its rate.
+
+The block is let go at half of the angle at which it would tip.  Angular momentum about the new corner stays, since the
+impulse acts there, and the old corner is free at once.  Our rocking step cuts its step at the impact; the whole loop
+and the engines find the corner when it touches.
+"""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import BadInput, check_positive
+from solutions.integrators import rk4_step
+from solutions.simulator import (
+    RockingBlock,
+    advance_contact,
+    advance_rocking,
+    box_bounds_2d,
+    box_contacts_2d,
+    make_bodies_2d,
+)
+from solutions.simulator import weight as acceleration
+from validate.engines.bullet import Rigid
+from validate.engines.chipmunk import pymunk_world
+from validate.engines.simulator import (
+    ITERATIONS,
+    OVERLAP,
+    pybullet_box,
+    pybullet_slab,
+    pymunk_body,
+    pymunk_floor_space,
+)
+from validate.methods import LOOP_2D, ROCKING
+from validate.reference.orientation import about
+from validate.reference.simulator import rocking
+from validate.scene import PYBULLET, PYMUNK, ROUND_OFF, Engine, EngineRun, Scene
+
+T = 0.6                      # [s]; the first impact is at about 0.35 s
+STEPS = (24, 48, 120, 240, 480, 1200, 2400)
+SWEEPS = 40                  # [-]
+MARGIN = 0.02                # [m]
+MU = 5.0                     # nothing slides [-]
+BY_PHASE = "1 on average"    # an order: the error is dt times a number that depends on where in a step the impact is
+
+
+class Params(NamedTuple):
+    b: Annotated[float, "half width [m]"] = 0.1
+    h: Annotated[float, "half height [m]"] = 0.5
+    share: Annotated[float, "first lean over the angle at which it tips [-]"] = 0.5
+    g: Annotated[float, "gravity [m/s²]"] = 9.81
+
+
+CASES = {"half of the angle": Params(), "a quarter of it": Params(share=0.25), "stout": Params(b=0.2, h=0.5)}
+
+
+def alpha(p):
+    return np.arctan2(p.b, p.h)
+
+
+def inertia(p):
+    return (p.b * p.b + p.h * p.h) / 3.0
+
+
+def place(p):
+    """Centre (2,) [m] of the block when it leans on its left corner, which is at −b."""
+    c, s = np.cos(p.share * alpha(p)), np.sin(p.share * alpha(p))
+    return np.array([-p.b + c * p.b - s * p.h, s * p.b + c * p.h])
+
+
+def start(p):
+    """(angle (1,), rate (1,)): positive to the left."""
+    for name in ("b", "h", "share", "g"):
+        check_positive(name, getattr(p, name))
+    if p.share >= 1.0:
+        raise BadInput("first lean over the angle at which it tips [-]", p.share, "give less than 1")
+    return np.array([p.share * alpha(p)]), np.zeros(1)
+
+
+def run(step, acceleration, state, p, dt, steps):
+    x, v = state
+    if step.__name__ == "rocking_step":
+        return advance_rocking(rk4_step, 0.0, x, v, dt, steps, RockingBlock(1.0, p.b, p.h, inertia(p), p.g))
+    now, block = make_bodies_2d(place(p)[None], x, 1.0, inertia(p), np.array([(p.b, p.h)]),
+                                np.array([(0.0, 1.0, 0.0)]), np.array([0.0, -p.g]), MU, SWEEPS, MARGIN)
+    end = advance_contact(step, acceleration, box_bounds_2d, box_contacts_2d, 0.0, now, dt, steps, block)
+    return end.q[:1], end.omega[:1]
+
+
+def observe(state, p):
+    """Return angle [rad] and rate [rad/s]."""
+    return np.array([state[0][0], state[1][0]])
+
+
+def truth(p, t):
+    """A pendulum about each corner in turn, by DOP853; an impact keeps (4h² − 2b²)/(4h² + 4b²) of the rate.
+
+    That is Housner's 1 − 3/2 sin²α.  Source: Housner 1963.
+    """
+    return np.array(rocking(p.b, p.h, p.g, p.share * alpha(p), t)[:2])
+
+
+def tolerance(p, dt):
+    """Let P² = 3 g/4R.  Errors grow as cosh(P t), in the fall and after the impact.
+
+    The whole loop and the engines find the corner up to dt late.  In that time the angular acceleration has the wrong
+    sign: 2 P² sin α dt.  Before, velocities are new ones in positions:
+    dt/2 P² sin α; the pivot moves up by ½ ω² dt² per step and is set down again, another ½ ω² dt of the rate.  Then
+    cosh(P T) of all that, at the most.
+    A cut step has the error of Runge–Kutta 4, (P dt)⁴ P T/120 of the rate, and round-off.
+    """
+    P2 = 0.75 * p.g / np.hypot(p.b, p.h)
+    P, sine = np.sqrt(P2), np.sin(alpha(p))
+    fastest = P * alpha(p)
+    late = (2.5 * P2 * sine + 0.5 * fastest**2) * dt * np.cosh(P * T) / np.linalg.norm(truth(p, T))
+    cut = (P * dt) ** 4 * P * T / 120.0 * fastest * np.cosh(P * T) / np.linalg.norm(truth(p, T))
+    return {BY_PHASE: late, 4: cut + 1e-11 + T / dt * ROUND_OFF, "pymunk": late + 1e-4, "pybullet": late + 1e-3}
+
+
+def pymunk_make(p, dt):
+    import pymunk
+    space = pymunk_floor_space(p.g, MU)
+    body = pymunk_body(space, 1.0, inertia(p), place(p) - np.array([0.0, OVERLAP]), p.share * alpha(p),
+                       lambda body: pymunk.Poly.create_box(body, (2.0 * p.b, 2.0 * p.h)))
+    return pymunk_world(space, dt, lambda: np.array([body.angle, body.angular_velocity]))
+
+
+def pybullet_make(p, dt):
+    """Make a box as wide as it is deep; x is to the right and z up, so a lean to the left is about −y."""
+    bullet, x = Rigid(dt, (0.0, 0.0, -p.g), iterations=ITERATIONS), place(p)
+    pybullet_slab(bullet)
+    half = np.array([p.b, p.b, p.h])
+    moments = np.array([p.b**2 + p.h**2, p.b**2 + p.h**2, 2.0 * p.b**2]) / 3.0
+    y = np.array([0.0, 1.0, 0.0])
+    body = pybullet_box(bullet, 1.0, moments, half, (x[0], 0.0, x[1] - OVERLAP), about(y, -p.share * alpha(p)), MU)
+
+    def read():
+        R = bullet.R(body)
+        return np.array([-np.arctan2(R[0, 2], R[2, 2]), -bullet.omega(body)[1]])
+    return EngineRun(bullet.step, read, bullet.close)
+
+
+ENGINES = (
+    Engine(PYMUNK, "", pymunk_make, BY_PHASE, "100 iterations, collision_slop 1e-5; the block starts 1e-6 m inside the "
+           "floor"),
+    Engine(PYBULLET, "", pybullet_make, BY_PHASE, "a box in space on a fixed box; maximal coordinates, 100 iterations, "
+           "no residual threshold, no slop"),
+)
+
+
+def corners(observed, p):
+    """Corners (4, 2) of the block, which stands on its lower left or right corner."""
+    angle = observed[0]
+    c, s, side = np.cos(angle), np.sin(angle), -1.0 if angle >= 0.0 else 1.0
+    ring = np.array([(-p.b, -p.h), (p.b, -p.h), (p.b, p.h), (-p.b, p.h)]) @ np.array([(c, s), (-s, c)])
+    foot = np.array([side * p.b, -p.h]) @ np.array([(c, s), (-s, c)])
+    return ring - foot + np.array([side * p.b, 0.0])
+
+
+def points(observed, p):
+    return np.vstack((corners(observed, p), ((-0.6, 0.0), (0.6, 0.0))))
+
+
+def links(p):
+    return [(k, (k + 1) % 4) for k in range(4)] + [(4, 5)]
+
+
+def sanity_checks():
+    """Return ((claim, found, expected, tolerance), …): the first impact, Housner's ratio and the energy it leaves."""
+    p = Params()
+    (first, before, after), *_ = rocking(p.b, p.h, p.g, 0.5 * alpha(p), T)[2]
+    R = np.hypot(p.b, p.h)
+    fall = p.g * R * (np.cos(0.5 * alpha(p)) - np.cos(alpha(p)))
+    return (("time of the first impact [s]", first, 0.347093587, 5e-10),
+            ("size of the rate before it [rad/s]", abs(before), 0.648049012, 5e-10),
+            ("rate after over before [-]", after / before, 1.0 - 1.5 * np.sin(alpha(p)) ** 2, 1e-12),
+            ("energy of the rotation about the corner over that of the fall [-]", 2.0 / 3.0 * R * R * before**2 / fall,
+             1.0, 1e-9))
+
+
+SCENE = Scene(
+    title="A rocking block",
+    lesson="simulator",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=(LOOP_2D, ROCKING),
+    acceleration=acceleration,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-11,
+    tolerance=tolerance,
+    engines=ENGINES,
+    orders={"contact_step_2d": BY_PHASE},
+    uncompiled_in_quick=("rocking_step",),
+    slow_methods=("contact_step_2d",),
+    slow_cases=("a quarter of it",),
+    sanity_checks=sanity_checks,
+    points=points,
+    links=links,
+    uses=("one angle", "the time at which it is zero", "angular momentum about the corner"),
+    ablations={"sliding": "with enough friction the corner stays where it is",
+               "coming to rest": "that needs infinitely many impacts, in a finite time"},
+)

@@ -1,0 +1,188 @@
+"""A ball rolls on a turntable.  It does not fly off: it moves on a circle, at 2/7 of the table's angular velocity.
+
+A step that takes the velocity of the table where the ball was spirals outwards, in our loop as in an engine.
+"""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import check_positive
+from solutions.rotation import advance_rigid_body
+from solutions.rotation import supported_weight as acceleration
+from solutions.simulator import CarriedBall, advance_contact, ball_bounds, make_bodies, round_contacts, weight
+from validate import drawing
+from validate.drawing import pose
+from validate.engines.simulator import pybullet_turntable
+from validate.methods import CARRIED, LOOP
+from validate.scene import PYBULLET, ROUND_OFF, Engine, Scene
+
+T = 5.0                      # [s]
+STEPS = (50, 100, 200, 500, 1000, 2000, 5000)
+UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0])
+MU = 1.0                     # enough friction to roll: it takes c/(1 + c) Ω |v|/g at most [-]
+SWEEPS, MARGIN = 20, 0.05    # each sweep halves the slip of a ball [-]; margin [m]
+
+
+class Params(NamedTuple):
+    spin: Annotated[float, "angular velocity of the table [rad/s]"] = 2.0
+    x0: Annotated[float, "first place along x [m]"] = 0.6
+    v0: Annotated[float, "first velocity along y, seen from beside the table [m/s]"] = 0.3
+    shape: Annotated[float, "I/mR² [-]: 2/5 for a solid ball, 2/3 for a hollow one"] = 0.4
+    R: Annotated[float, "radius [m]"] = 0.1
+    m: Annotated[float, "mass [kg]"] = 1.0
+    g: Annotated[float, "gravity [m/s²]"] = 9.81
+
+
+CASES = {"solid ball": Params(), "hollow ball": Params(shape=2.0 / 3.0), "fast table": Params(spin=6.0, v0=-0.5)}
+
+
+def table(p):
+    return np.array([0.0, 0.0, p.spin])
+
+
+def ball(p):
+    still = np.zeros(3)
+    return CarriedBall(p.m, np.full(3, p.shape * p.m * p.R**2), p.R, MU, np.array([0.0, 0.0, -p.g]), still, still,
+                       table(p))
+
+
+def start(p):
+    """(x, v, q, ω) of a ball that rolls, v + ω × r = Ω × x, and (PileState, Bodies) for the whole loop."""
+    for name in ("spin", "shape", "R", "m", "g"):
+        check_positive(name, getattr(p, name))
+    x, v, r = np.array([p.x0, 0.0, p.R]), np.array([0.0, p.v0, 0.0]), np.array([0.0, 0.0, -p.R])
+    omega = np.cross(r, np.cross(table(p), x) - v) / p.R**2
+    state, rows = make_bodies(x[None], UPRIGHT[None], p.m, np.full((1, 3), p.shape * p.m * p.R**2),
+                              np.full((1, 3), p.R), np.array([(0.0, 0.0, 1.0, 0.0)]), np.array([0.0, 0.0, -p.g]), MU,
+                              SWEEPS, MARGIN)
+    state = state._replace(v=np.stack((v, np.zeros(3))), omega=np.stack((omega, table(p))))
+    return x, v, UPRIGHT, omega, state, rows
+
+
+def run(step, acceleration, state, p, dt, steps):
+    x, v, q, omega, rows, bodies_here = state
+    if step.__name__ == "carried_step":
+        return *advance_rigid_body(step, acceleration, 0.0, x, v, q, omega, dt, steps, ball(p)), rows, bodies_here
+    end = advance_contact(step, weight, ball_bounds, round_contacts, 0.0, rows, dt, steps, bodies_here)
+    return end.x[0], end.v[0], end.q[0], end.omega[0], end, bodies_here
+
+
+def observe(state, p):
+    """Return x, y [m] and both velocities [m/s]."""
+    return np.concatenate((state[0][:2], state[1][:2]))
+
+
+def rate(p):
+    """Return the angular velocity on the circle [rad/s]."""
+    return p.shape / (1.0 + p.shape) * p.spin
+
+
+def truth(p, t):
+    """v̇ = c/(1 + c) Ω × v: a circle about x₀ + n × v₀/rate, with c = I/mR².
+
+    Friction F gives m v̇ = F and I ω̇ = r × F.  The lowest point keeps to the table, v + ω × r = Ω × x, so that
+    v̇ (1 + 1/c) = Ω × v.  Source: Lamb 1914, Higher Mechanics; Weltner 1979.
+    """
+    w = rate(p)
+    middle = np.array([p.x0 - p.v0 / w, 0.0])
+    c, s = np.cos(w * t), np.sin(w * t)
+    return np.concatenate((middle + p.v0 / w * np.array([c, s]), p.v0 * np.array([-s, c])))
+
+
+def tolerance(p, dt):
+    """Adams and Bashforth's method leaves 5/12 (w dt)³ of v per step and the mean velocity 1/12: ½ T w² dt² |v| of the
+    place, w times that of the velocity; a fifth more for the next order, with w dt up to 0.2.
+
+    A floor that is where the ball was makes it Euler's method: |v| grows by ½ w² dt per second.  That is ½ T w dt |v|
+    of the place and w times that of the velocity.  It also begins one step late: dt |v|, and w dt |v|.  Positions with
+    the new velocities are another dt |v| at most.
+    """
+    w, size = rate(p), np.linalg.norm(truth(p, T))
+    v = abs(p.v0) / size
+    second = 0.6 * T * (w * dt) ** 2 * v * np.hypot(1.0, w)
+    first = ((0.5 * T * w + 2.0) * dt * v + (0.5 * T * w + 1.0) * w * dt * v) * 1.2
+    rounded = 1e-12 + T / dt * ROUND_OFF
+    return {1: first + rounded, 2: second + rounded, "pybullet": first + 1e-9}
+
+
+def pybullet_make(p, dt):
+    x, v, _, omega, *_ = start(p)
+    return pybullet_turntable(ball(p), x, v, omega, dt)
+
+
+ENGINES = (
+    Engine(PYBULLET, "", pybullet_make, 1, "a box of 10⁹ ball masses that rotates freely, because bodies without mass "
+           "carry nothing along; maximal coordinates, 100 iterations, no residual threshold, no slop, no damping"),
+)
+
+
+def points(observed, p):
+    """Draw the rim of the table from above, the ball, and its velocity."""
+    angles = np.linspace(0.0, 2.0 * np.pi, 37)[:-1]
+    ring = np.stack((np.cos(angles), np.sin(angles)), axis=1)
+    here = observed[:2]
+    return np.vstack((1.2 * ring, here + p.R * ring, here, here + 0.5 * observed[2:]))
+
+
+def links(p):
+    return [(first + k, first + (k + 1) % 36) for first in (0, 36) for k in range(36)] + [(72, 73)]
+
+
+def bodies(p):
+    return [drawing.sphere(p.R), drawing.cylinder(1.2, 0.02)]
+
+
+def poses(observed, p):
+    """Return the ball, which is drawn without its rotation, and the table."""
+    return [pose(np.array([*observed[:2], p.R]), np.eye(3)), pose(np.array([0.0, 0.0, -0.01]), np.eye(3))]
+
+
+def sanity_checks():
+    """Return ((claim, found, expected, tolerance), …): the circle by an independent integrator, and 2/7."""
+    from scipy.integrate import solve_ivp
+    p, r = Params(), np.array([0.0, 0.0, -Params().R])
+    x, v, _, omega, *_ = start(p)
+
+    def slope(t, y):
+        """ẋ, v̇ and ω̇ by the friction that keeps the lowest point on the table."""
+        v = y[2:5]
+        F = np.cross(table(p), v) / (1.0 / p.m + p.R**2 / (p.shape * p.m * p.R**2))
+        return np.concatenate((v[:2], F / p.m, np.cross(r, F) / (p.shape * p.m * p.R**2)))
+    begin = np.concatenate((x[:2], v, omega))
+    end = solve_ivp(slope, (0.0, T), begin, rtol=1e-12, atol=1e-13, method="DOP853").y[:, -1]
+    slip = end[2:5] + np.cross(end[5:], r) - np.cross(table(p), np.append(end[:2], p.R))
+    return (("place and velocity by DOP853 [m, m/s]", end[:4], truth(p, T), 1e-10),
+            ("slip of the lowest point then [m/s]", slip, 0.0, 1e-10),
+            ("angular velocity on the circle over that of the table [-]", rate(p) / p.spin, 2.0 / 7.0, 1e-15))
+
+
+SCENE = Scene(
+    title="A ball on a turntable",
+    lesson="simulator",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=(LOOP, CARRIED),
+    acceleration=acceleration,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-15,
+    tolerance=tolerance,
+    engines=ENGINES,
+    uncompiled_in_quick=("carried_step",),
+    slow_methods=("contact_step",),
+    slow_cases=("hollow ball",),
+    omitted_methods="pymunk has no floor that one sees from above",
+    sanity_checks=sanity_checks,
+    points=points,
+    links=links,
+    bodies=bodies,
+    poses=poses,
+    trail=0,
+    uses=("one ball", "the velocity of the floor where the ball is", "friction that holds"),
+    ablations={"the force of the support": "N = mg, because there is no vertical motion",
+               "slipping": "with μ = 1 the ball rolls from the beginning to the end"},
+)

@@ -1,0 +1,276 @@
+"""How fast may a body be, how does a turntable spiral, how many impacts has a rocking block, and what gains energy?
+
+What a case predicts is derived in its docstring; what it measures comes from the loops of the lesson.
+"""
+
+import numpy as np
+
+from validate.reference.simulator import rocking
+from validate.stability.case import DOTS, LINE, Picture, agreement, bisect, case, finding, refuses, series
+
+G = 9.81                     # [m/s²]
+ROUND_OFF = 1e-12            # of numbers around 1 after a few hundred operations
+UP = (0.0, 1.0, 0.0)
+
+
+def disc_above(lesson, height, speed, margin, sweeps=5):
+    """(PileState, Bodies) of a disc of 10 cm that approaches a floor; no gravity."""
+    state, p = lesson.make_bodies_2d([(0.0, 0.1 + height)], [0.0], 1.0, 0.005, [(0.1, 0.1)], [UP], (0.0, 0.0), 0.0,
+                                     sweeps, margin)
+    return state._replace(v=np.array([(0.0, -speed), (0.0, 0.0)])), p
+
+
+def deepest(lesson, speed, margin, dt):
+    """Greatest depth [m] of that disc, over sixteen places at which a step may find it."""
+    worst = 0.0
+    for k in range(16):
+        state, p = disc_above(lesson, margin + (k + 0.5) / 16.0 * speed * dt, speed, margin)
+        for n in range(4):
+            state = lesson.contact_step_2d(lesson.weight, lesson.disc_bounds, lesson.round_contacts, n * dt, state, dt,
+                                           p)
+        worst = max(worst, 0.1 - state.x[0, 1])
+    return worst
+
+
+@case("margin-and-speed", "How fast a body may come", compiled=False)
+def margin_and_speed(lesson):
+    """A contact is found when its gap is at most the margin, and a body moves by v dt in a step.
+
+    So it is found before it touches if v dt is at most the margin.  Faster, it may be v dt − margin deep when it is
+    found, and it stops there: of sixteen places in the step the worst lacks 1/32 of v dt.
+    """
+    found, dt = [], 0.01
+    margins, edges = (0.01, 0.02, 0.05), []
+    for margin in margins:
+        sinks = lambda v, margin=margin: deepest(lesson, v, margin, dt) > 1e-9
+        edge = bisect(sinks, 0.5 * margin / dt, 4.0 * margin / dt)
+        edges.append(edge)
+        found.append(finding(
+            claim="A body touches in time if its way in a step is at most the margin.",
+            quantity=f"speed at which a disc first sinks in, margin {margin:g} m, dt 0.01 s [m/s]",
+            predicted=margin / dt * 32.0 / 31.0,
+            measured=edge,
+            tolerance=1e-4 * margin / dt,
+            observation=f"With a margin of {margin:g} m the disc sinks in from {edge:.2f} m/s on.",
+        ))
+    for speed in (5.0, 8.0):
+        deep = deepest(lesson, speed, 0.02, dt)
+        found.append(finding(
+            claim="A faster one is found v dt − margin inside at the worst, and stays there.",
+            quantity=f"greatest depth at {speed:g} m/s, margin 0.02 m [m]",
+            predicted=speed * dt - 0.02 - speed * dt / 32.0,
+            measured=deep,
+            tolerance=ROUND_OFF,
+            observation=f"At {speed:g} m/s the disc is up to {1e3 * deep:.1f} mm deep.",
+        ))
+    return found, Picture("Which speeds are safe", "margin [m]", "speed at which a disc sinks in [m/s]", [
+        series("theory, margin/dt", margins, np.array(margins) / dt, LINE), series("measured", margins, edges, DOTS)],
+        "A contact that is found a step ahead stops a body on the surface; what comes faster is stopped inside.")
+
+
+@case("growth-on-a-turntable", "Why the ball spirals", compiled=False)
+def growth_on_a_turntable(lesson):
+    """A rolling ball has v̇ = w n × v with w = 2/7 Ω.
+
+    The whole loop takes the floor where the ball was: v ← v + w dt n × v of the step before, whose size grows by the
+    root that is near 1 of  z² = z + i w dt:  |z|² = 1 + (w dt)² + O((w dt)⁴), so that the logarithm of |v| grows by
+    ½ w² dt per second.  One step ahead it is  z = 1 + i w dt (3/2 − 1/(2z)), with |z| = 1 + ¼ (w dt)⁴.
+    The next order is a relative (w dt)² in the first, which is 2 % here at most.  A sweep halves the slip of a ball, so
+    that 40 leave nothing of it.
+    """
+    found, spin, R, moment = [], 2.0, 0.1, 0.004
+    w, r, table = 2.0 / 7.0 * spin, np.array([0.0, 0.0, -R]), np.array([0.0, 0.0, spin])
+    x, v = np.array([0.6, 0.0, R]), np.array([0.0, 0.3, 0.0])
+    omega, upright, down = np.cross(r, np.cross(table, x) - v) / R**2, np.array([1.0, 0.0, 0.0, 0.0]), (0.0, 0.0, -G)
+    still = lambda t, x, v, q, omega, ball: (np.zeros(3), np.zeros(3))
+
+    def loop(dt, steps):
+        state, p = lesson.make_bodies([x], [upright], 1.0, [(moment,) * 3], [(R,) * 3], [(0.0, 0.0, 1.0, 0.0)], down,
+                                      10.0, 40, 0.02)
+        state = state._replace(v=np.array([v, np.zeros(3)]), omega=np.array([omega, table]))
+        for n in range(steps):
+            state = lesson.contact_step(lesson.weight, lesson.ball_bounds, lesson.round_contacts, n * dt, state, dt, p)
+        return np.linalg.norm(state.v[0])
+
+    def ahead(dt, steps):
+        ball = lesson.CarriedBall(1.0, np.full(3, moment), R, 10.0, np.array(down), np.zeros(3), np.zeros(3), table)
+        now = x, v, upright, omega
+        for n in range(steps):
+            now = lesson.carried_step(still, n * dt, *now, dt, ball)
+        return np.linalg.norm(now[1])
+
+    dts, grown = (0.02, 0.05, 0.1, 0.2), []
+    for dt in dts:
+        first, last = (loop(dt, steps) for steps in (round(2.0 / dt), round(12.0 / dt)))
+        grown.append(np.log(last / first) / 10.0)
+        found.append(finding(
+            claim="A floor that is taken where the ball was lets its speed grow by ½ (2Ω/7)² dt per second.",
+            quantity=f"growth of ln |v| per second, dt = {dt:g} s, Ω = 2 rad/s [1/s]",
+            predicted=0.5 * w * w * dt,
+            measured=grown[-1],
+            tolerance=0.5 * w * w * dt * 2.0 * (w * dt) ** 2 + 1e-9,
+            observation=f"With dt = {dt:g} s the speed grows by {100.0 * np.expm1(10.0 * grown[-1]):.2f} % in 10 s.",
+        ))
+    dt = 0.2
+    first, last = (ahead(dt, steps) for steps in (round(2.0 / dt), round(12.0 / dt)))
+    found.append(finding(
+        claim="One that is taken where the ball will be leaves a growth of the fourth order.",
+        quantity="growth of ln |v| per second, dt = 0.2 s, floor ahead [1/s]",
+        predicted=0.25 * (w * dt) ** 4 / dt,
+        measured=np.log(last / first) / 10.0,
+        tolerance=0.1 * (w * dt) ** 4 / dt,
+        observation=f"With dt = 0.2 s and the floor ahead it grows by {100.0 * (last / first - 1.0):.4f} % in 10 s.",
+    ))
+    fine = np.linspace(0.01, 0.2, 40)
+    return found, Picture("A ball on a turntable", "dt [s]", "growth of ln |v| per second [1/s]", [
+        series("theory, ½ (2Ω/7)² dt", fine, 0.5 * w * w * fine, LINE), series("the whole loop", dts, grown, DOTS)],
+        "Taking the velocity of the floor from the wrong end of a step feeds energy into the ball.")
+
+
+@case("rocking-to-the-end", "How long a block rocks", compiled=False)
+def rocking_to_the_end(lesson):
+    """The n-th impact comes when theory says, for slender and stout blocks; a block that does not lean stays.
+
+    Housner's ratio e = 1 − 1.5 sin²α per impact; the times are those of a pendulum about each corner, by DOP853.
+    Runge–Kutta 4 with dt = 0.01 s leaves (P dt)⁴ P t/120 ≈ 1e-7 of the rate, and the time of a slow impact multiplies
+    that by some ten.  A stout block has infinitely many impacts in a finite time, so these runs end before.
+    """
+    found, ends = [], []
+    for b, h, T in ((0.02, 0.5, 1.0), (0.1, 0.5, 1.5), (0.2, 0.5, 1.0)):
+        lean = 0.5 * np.arctan(b / h)
+        block = lesson.RockingBlock(1.0, b, h, (b * b + h * h) / 3.0, G)
+        impacts = rocking(b, h, G, lean, T)[2]
+        x, v, times = np.array([lean]), np.zeros(1), []
+        for n in range(round(T / 0.01)):
+            before = x[0]
+            x, v = lesson.rocking_step(lesson.rk4_step, n * 0.01, x, v, 0.01, block)
+            if before * x[0] < 0.0:
+                times.append((n + 1) * 0.01)
+        expected = [0.01 * np.ceil(t / 0.01 - 1e-9) for t, _, _ in impacts]
+        ends.append(len(impacts))
+        found.append(finding(
+            claim="A block changes its corner in the steps in which theory has its impacts.",
+            quantity=f"largest difference of the ends of these steps, {b:g} m × {h:g} m, {len(impacts)} impacts [s]",
+            predicted=0.0,
+            measured=max(abs(a - b) for a, b in zip(times, expected)) if len(times) == len(expected) else np.inf,
+            tolerance=1e-9,
+            observation=f"A block of half sizes {b:g} m and {h:g} m changes its corner {len(times)} times in {T:g} s.",
+        ))
+    block = lesson.RockingBlock(1.0, 0.1, 0.5, 0.26 / 3.0, G)
+    x, v = lesson.advance_rocking(lesson.rk4_step, 0.0, np.zeros(1), np.zeros(1), 0.01, 100, block)
+    found.append(finding(
+        claim="A block that stands stays.",
+        quantity="lean and rate after 1 s [rad, rad/s]",
+        predicted=0.0,
+        measured=np.max(np.abs(np.append(x, v))),
+        tolerance=ROUND_OFF,
+        observation=f"It leans by {abs(x[0]):.0e} rad.",
+    ))
+    found.append(refusals(lesson))
+    widths = np.linspace(0.01, 0.4, 40)
+    sine = np.sin(np.arctan(widths / 0.5))
+    ratios = [lesson.corner_impact(np.array([0.5, -b]), -1.0, np.array([b, -0.5]), 1.0, 3.0 / (b * b + 0.25))[1] / -1.0
+              for b in widths[::4]]
+    return found, Picture("What an impact leaves", "half width of a block of half height 0.5 m [m]",
+                          "rate after over before [-]", [
+        series("theory, 1 − 1.5 sin²α", widths, 1.0 - 1.5 * sine**2, LINE), series("corner_impact", widths[::4], ratios,
+                                                                                  DOTS)],
+        "A slender block loses next to nothing at each impact and rocks for long; a cube stops at once.")
+
+
+@case("flight-and-its-invariants", "What stays in a flight, and what a fault does to it", compiled=False)
+def flight_and_its_invariants(lesson):
+    """Bodies that fly: parabolas that are late by half a step, momenta that stay, and energy that only a source raises.
+
+    Symplectic Euler falls ½ g T (T + dt).  A free body that turns about a principal axis by 2 atan(½ ω dt) per step
+    keeps ω.  L of a tumbling body drifts by O(dt): half the step leaves half of it, up to a few per cent.
+    A ball of 2 kg that jumps from nothing by 0.3 m gains 2 g · 0.3 J, whatever it loses before.
+    """
+    found, T = [], 1.2
+    state, p = lesson.make_bodies_2d([(0.0, 1.0), (1.0, 2.0)], [0.1, 0.2], [1.0, 3.0], 0.2, np.full((2, 2), 0.1),
+                                     np.zeros((0, 3)), (0.0, -G), 0.0, 1, 0.01)
+    v, omega = np.array([(1.0, 2.0), (-2.0, 0.5)]), np.array([3.0, -2.0])
+    dts, falls = (0.1, 0.05, 0.025), []
+    for dt in dts:
+        end = lesson.advance_free(lesson.free_step_2d, lesson.weight, 0.0, state.x, state.q, v, omega, dt,
+                                  round(T / dt), p)
+        fall = np.array([0.0, 0.5 * G * T * (T + dt)])
+        falls.append(np.max(np.abs(end[0] - state.x - T * v)))
+        found.append(agreement("Thrown bodies fall ½ g T (T + dt) and turn by ω T.",
+                               f"error of places and angles, dt = {dt:g} s [m, rad]",
+                               max(np.max(np.abs(end[0] - state.x - T * v + fall)),
+                                   np.max(np.abs(end[1] - state.q - T * omega))), ROUND_OFF))
+    half, upright = np.ones((1, 3)), [(1.0, 0.0, 0.0, 0.0)]
+    state, p = lesson.make_bodies([(0.5, -0.2, 0.3)], upright, 2.0, [(1.0, 2.0, 3.0)], half, np.zeros((0, 4)),
+                                  (0.0, 0.0, -G), 0.0, 1, 0.01)
+    v, spin = np.array([(1.0, 2.0, -0.5)]), np.array([(0.0, 0.0, 1.5)])
+    energy = 0.5 * 2.0 * 5.25 + 0.5 * 3.0 * 2.25 + 2.0 * G * 0.3
+    P, L = lesson.momenta(state.x, state.q, v, spin, p)
+    by_hand = 2.0 * np.cross(state.x[0], v[0]) + np.array([0.0, 0.0, 4.5])
+    found.append(agreement("Energy and momenta of one body are those found by hand.", "error [J, kg m/s, kg m²/s]",
+                           max(abs(lesson.mechanical_energy(state.x, state.q, v, spin, p) - energy),
+                               np.max(np.abs(P - 2.0 * v[0])), np.max(np.abs(L - by_hand))), ROUND_OFF))
+    drifts, still = [], p._replace(gravity=np.zeros(3))
+    for dt in (0.01, 0.005):
+        tumbles = np.array([(0.1, 1.0, 0.2)])
+        end = lesson.advance_free(lesson.free_step, lesson.weight, 0.0, state.x, state.q, v, tumbles, dt,
+                                  round(2.0 / dt), still)
+        drifts.append(np.linalg.norm(lesson.momenta(*end, still)[1]
+                                     - lesson.momenta(state.x, state.q, v, tumbles, still)[1]))
+    found.append(finding(
+        claim="The explicit gyroscopic term lets L drift in proportion to the step.",
+        quantity="drift of L with half the step over that with the whole one [-]",
+        predicted=0.5, measured=drifts[1] / drifts[0], tolerance=0.03,
+        observation=f"In 2 s L drifts by {drifts[0]:.1e} kg m²/s with 0.01 s and by {drifts[1]:.1e} with half of that.",
+    ))
+    end = lesson.advance_free(lesson.free_step, lesson.weight, 0.0, state.x, state.q, v, spin, 0.1, 12, p)
+    turned, fall = 12 * np.arctan(0.5 * 1.5 * 0.1), 0.5 * G * T * (T + 0.1)
+    found.append(agreement("A body that spins about a principal axis turns by 2 atan(½ ω dt) per step.",
+                           "error of its quaternion and place [-, m]",
+                           max(np.max(np.abs(end[1][0] - (np.cos(turned), 0.0, 0.0, np.sin(turned)))),
+                               np.max(np.abs(end[0] - state.x - T * v + (0.0, 0.0, fall)))), ROUND_OFF))
+    heights = np.array([1.0, 0.8, 0.5, 0.8, 0.6, 0.7])
+    found.append(agreement("A jump from nothing is found, and work explains it.", "error of the gains [J]",
+                           max(abs(lesson.gain_without_source(2.0 * G * heights, np.zeros(6)) - 0.6 * G),
+                               abs(lesson.gain_without_source(2.0 * G * heights, 2.0 * G * heights))), ROUND_OFF))
+    now = [0.0]
+
+    def takes(seconds, result):
+        now[0] += seconds
+        return result
+    full, short = lambda: takes(3.0, heights), lambda: takes(0.5, heights + 0.01)
+    difference, ratio = lesson.compare(full, short, 3, lambda: now[0])
+    found.append(agreement("Two runs are compared by difference and by time.", "error of 0.01 m and of 6 [m, -]",
+                           max(abs(difference - 0.01), abs(ratio - 6.0)), ROUND_OFF))
+    return found, Picture("How far a body falls in 1.2 s", "dt [s]", "fall [m]", [
+        series("theory, ½ g T (T + dt)", dts, 0.5 * G * T * (T + np.array(dts)), LINE), series("measured", dts, falls,
+                                                                                              DOTS)],
+        "Velocities first makes a fall too deep by ½ g T dt: exactly, whatever the step is.")
+
+
+def refusals(lesson):
+    """The Finding on what is no scene."""
+    def made(**more):
+        given = {"x": [(0.0, 0.5)], "q": [0.0], "m": 1.0, "inertia": 0.1, "half": [(0.5, 0.5)], "planes": [UP],
+                 "gravity": (0.0, -G), "mu": 0.3, "sweeps": 10, "margin": 0.02, **more}
+        return lesson.make_bodies_2d(*given.values())
+
+    def moved(dt, **more):
+        state, p = made()
+        return lesson.advance_contact(lesson.contact_step_2d, lesson.weight, lesson.disc_bounds, lesson.round_contacts,
+                                      0.0, state._replace(**more), dt, 3, p)
+    asked = ((lambda: made(m=-1.0), "-1.0"), (lambda: made(m=0.0), "0.0"), (lambda: made(inertia=np.nan), "nan"),
+             (lambda: made(half=[(0.5, 0.0)]), "0.0"), (lambda: made(planes=[(0.0, 2.0, 0.0)]), "2.0"),
+             (lambda: made(mu=-0.3), "-0.3"), (lambda: made(sweeps=0), "0"), (lambda: made(margin=0.0), "0.0"),
+             (lambda: made(x=[(np.inf, 0.5)]), "inf"), (lambda: moved(0.0), "0.0"), (lambda: moved(-0.01), "-0.01"),
+             (lambda: moved(0.01, v=np.full((2, 2), np.nan)), "nan"), (lambda: moved(0.01, v=np.zeros((3, 2))), "3"))
+    refused = sum(refuses(function, (), value) for function, value in asked)
+    return finding(
+        claim="Masses, sizes, margins and steps of none, normals that are none, and what is no number are refused, "
+              "with their value.",
+        quantity=f"calls that name the value in their error [of {len(asked)}]",
+        predicted=len(asked),
+        measured=refused,
+        tolerance=0.0,
+        observation=f"{refused} of {len(asked)} such calls end in a sentence that names the value.",
+    )
