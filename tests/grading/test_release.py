@@ -163,6 +163,7 @@ def test_a_released_lesson_is_as_worked_without_markers_and_others_import_it(rel
     assert files["solutions/answers.md"] == release.NO_ANSWERS
 
 
+@pytest.mark.long
 def test_with_solutions_alone_releases_them_all(released):
     files = files_in(released("--with-solutions")[2])
     assert not any("NotImplementedError(\"Exercise" in files[f"solutions/{name}.py"] for name in lesson_names())

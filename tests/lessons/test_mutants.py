@@ -16,33 +16,54 @@ from ..grading.points import grade, grade_each, score
 from ..mutants import collection, variants
 
 LESSONS = modules.lesson_names()
+EACH = 4                     # of so many wrong answers of an exercise the default run grades one; --long grades all [-]
 
 
 def mutants_of(name):
     return importlib.import_module(f"tests.mutants.{name}").MUTANTS
 
 
+def sample(name):
+    """Numbers of the answers that the default run grades: all right ones, and one of every EACH wrong ones."""
+    numbers, seen = [], {}
+    for number, mutant in enumerate(mutants_of(name)):
+        place = seen[mutant.exercise] = seen.get(mutant.exercise, -1) + (not mutant.right)
+        if mutant.right or place % EACH == 0:
+            numbers.append(number)
+    return numbers
+
+
 def all_mutants():
     for name in LESSONS:
+        short = set(sample(name))
         for number, mutant in enumerate(mutants_of(name)):
             kind = "right" if mutant.right else "wrong"
             label = f"{name}-{mutant.exercise}-{kind}-{mutant.kind}-{mutant.story}".replace(" ", "_")
-            yield pytest.param(name, number, id=label, marks=pytest.mark.xdist_group(f"mutants of {name}"))
+            marks = [pytest.mark.xdist_group(f"mutants of {name}"), *([] if number in short else [pytest.mark.long])]
+            yield pytest.param(name, number, id=label, marks=marks)
+
+
+@pytest.fixture
+def grades_of(request):
+    """The function that grades the answers of a lesson: all of them with --long, else a sample."""
+    every = request.config.getoption("--long")
+    return lambda name: graded(name, every)
 
 
 @functools.cache
-def grades_of(name):
+def graded(name, every):
     """Outcomes of each mutant of a lesson, all from one run of its tests."""
     module = vars(modules.bind(name))
 
     def subject(mutant):
         changed = types.SimpleNamespace(**{**module, mutant.name: mutant.function})
         return changed, lambda exercise, test: exercise == mutant.exercise
-    return grade_each(name, {str(number): subject(mutant) for number, mutant in enumerate(mutants_of(name))})
+    chosen = range(len(mutants_of(name))) if every else sample(name)
+    return grade_each(name, {str(number): subject(mutants_of(name)[number]) for number in chosen})
 
 
 @pytest.mark.parametrize(("name", "number"), list(all_mutants()))
-def test_an_answer_keeps_its_points_exactly_when_it_is_right(name, number):
+def test_an_answer_keeps_its_points_exactly_when_it_is_right(name, number, grades_of):
     mutant = mutants_of(name)[number]
     earned, possible = score(grades_of(name)[str(number)])[mutant.exercise]
     assert (earned == possible) == mutant.right, f"{earned} of {possible} points"
@@ -50,7 +71,7 @@ def test_an_answer_keeps_its_points_exactly_when_it_is_right(name, number):
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.xdist_group(f"mutants of {name}"))
                                   for name in LESSONS])
-def test_what_a_student_reads_is_short_and_tells_expected_from_got(name):
+def test_what_a_student_reads_is_short_and_tells_expected_from_got(name, grades_of):
     failed = [outcome for outcomes in grades_of(name).values() for outcome in outcomes if outcome.status == "not yet"]
     assert len(failed) > 30
     for o in failed:

@@ -267,6 +267,7 @@ def linked_from(page):
     return found
 
 
+@pytest.mark.long
 def test_a_subset_updates_its_part_of_the_report_and_leaves_no_stale_page(capsys, tmp_path, here, monkeypatch):
     cases = validation.stability_cases
 

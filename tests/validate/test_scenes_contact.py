@@ -22,6 +22,7 @@ WRONG = [                    # scene, case, method, a right line, a wrong one
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("scene", "case", "method", "right", "wrong"), WRONG,
                          ids=[f"{scene}-{k}" for k, (scene, *_) in enumerate(WRONG)])
 def test_a_wrong_answer_departs(tmp_path, scene, case, method, right, wrong):
