@@ -43,9 +43,12 @@ def interleave_by_lesson(names):
 
 
 def measure_errors(store, names, plan, pool, bars):
-    """Errors of every scene and then the stability cases, several at a time: compiling is most of it."""
+    """Errors of every scene and then the stability cases, several at a time: compiling is most of it.
+
+    The last lessons have the longest cases, so they come first: the processes then end together.
+    """
     tasks = {**{("errors", n): (measure.errors, n, plan) for n in interleave_by_lesson(names)},
-             **{("stability", lesson): (stability_cases, lesson, plan) for lesson in lessons_of(names)}}
+             **{("stability", lesson): (stability_cases, lesson, plan) for lesson in reversed(lessons_of(names))}}
     todo = {key: call for key, call in tasks.items() if not store.has(*key)}
     bar = bars.add_task("errors and stability", total=len(tasks), completed=len(tasks) - len(todo))
     for key, value in pool.each(todo):
