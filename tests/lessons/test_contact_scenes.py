@@ -11,7 +11,7 @@ from validate import modules
 
 from .test_contact import MIDDLE, G, chain, contacts_of
 
-pytestmark = pytest.mark.xdist_group("compiled test_contact")
+pytestmark = [pytest.mark.xdist_group("compiled test_contact"), pytest.mark.long]
 PILES = pytest.mark.long               # compiling the loops of the piles takes a minute
 AT_REST = 1e-8               # acceleration that counts as none [m/s², rad/s²]: solve_contacts leaves some 1e-10
 CRITICAL = 1e-7              # of a critical coefficient [-]: where all accelerations but 1e-8 of g are gone

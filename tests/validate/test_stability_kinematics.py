@@ -95,6 +95,7 @@ WRONG = [                    # case, the function that it examines, what is put 
 IDS = [f"{slug}-{name}-{k}" for k, (slug, name, _) in enumerate(WRONG)]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("slug", "name", "wrong"), WRONG, ids=IDS)
 def test_a_wrong_function_does_not_find_what_theory_says(slug, name, wrong):
     case = cases_of("kinematics")[slug]
