@@ -196,6 +196,8 @@ def verdict_on(rows, finest, order, order_shown):
         return Verdict.NOT_ATTEMPTED, finest.failure
     if finest.failure:
         return Verdict.DEPARTS, f"fails at the finest step: {finest.failure}"
+    if not any(np.isfinite(r["limit"]) for r in rows):
+        return Verdict.UNDECIDED, "no theory says how far it may be off, so its error is shown and not judged"
     if not ratios:
         return Verdict.UNDECIDED, "the sweep is too coarse to judge: theory allows 50 % at its finest step"
     if max(ratios) > 1.0:
