@@ -23,13 +23,18 @@ MOVING = [n for n in SCENES if modules.bind_scene(n).moves]
 REFINED = [n for n in SCENES if modules.bind_scene(n).refined]
 LIVE = tuple(name for name in PRODUCTS if engines.installed(name))
 BRIEF = measure.Plan(speeds=("plain",), live=LIVE, most_steps=500)
+# `validate` judges every scene, and its exit code says the result; these stand for all in the default tests
+SAMPLE = {"oscillator", "incline", "spinning_bounce", "asymmetric_top", "pendulum", "backspin_ball"}
 
 
-def scenes(names):
-    """For each of these scenes; all tests of a scene in one process, which then computes its truth once."""
-    return pytest.mark.parametrize("name",
-                                   [pytest.param(name, marks=pytest.mark.xdist_group(f"scene {name}"))
-                                    for name in names])
+def scenes(names, sample=frozenset(SCENES)):
+    """For each of these scenes; all tests of a scene in one process, which then computes its truth once.
+
+    Scenes outside the sample are long tests.
+    """
+    def marks(name):
+        return [pytest.mark.xdist_group(f"scene {name}"), *([] if name in sample else [pytest.mark.long])]
+    return pytest.mark.parametrize("name", [pytest.param(name, marks=marks(name)) for name in names])
 
 
 @scenes(SCENES)
@@ -73,7 +78,7 @@ def test_steps_span_two_decades(name):
     assert list(steps) == sorted(steps) and steps[-1] >= 100 * steps[0]
 
 
-@scenes(SCENES)
+@scenes(SCENES, SAMPLE)
 def test_nothing_departs_from_truth_without_having_been_predicted(name):
     result = measure.errors(name, BRIEF)
     for case in result["cases"].values():

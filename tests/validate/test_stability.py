@@ -13,9 +13,17 @@ from validate.stability.examine import all_cases, examine, subject_of
 
 examined = cache(examine)
 CASES = {f"{case.lesson}/{case.slug}": case for case in all_cases()}
+FIRST = {case.lesson: name for name, case in reversed(CASES.items())}   # `validate` examines all; by default one each
+
+
+def marks_of(name, case):
+    """All of a lesson in one process, where the lesson's own tests compile it; long unless it is the lesson's first."""
+    return [pytest.mark.xdist_group(f"compiled test_{case.lesson}"),
+            *([] if name in FIRST.values() else [pytest.mark.long])]
+
+
 every_case = pytest.mark.parametrize("case", [
-    pytest.param(case, id=name, marks=pytest.mark.xdist_group(f"compiled test_{case.lesson}"))  # compiled there anyway
-    for name, case in CASES.items()])
+    pytest.param(case, id=name, marks=marks_of(name, case)) for name, case in CASES.items()])
 
 
 @every_case
