@@ -35,33 +35,28 @@ def run(names, plan, pool, out, console):
     return 1 if departures or lost else 0
 
 
-def interleave_by_lesson(names):
-    """The scenes, one of each lesson in turn: neighbours run at the same time, and then compile little twice."""
-    lessons = [modules.bind_scene(name).lesson for name in names]
-    turns = {name: lessons[:k].count(lessons[k]) for k, name in enumerate(names)}
-    return sorted(names, key=turns.get)
-
-
 def measure_errors(store, names, plan, pool, bars):
-    """Errors of every scene and then the stability cases, several at a time: compiling is most of it.
+    """Errors of every scene and the stability cases, several at a time: compiling is most of it.
 
-    The last lessons have the longest cases, so they come first: the processes then end together.
+    A process stays with a lesson as long as it can.  Two processes at the same lesson would compile the same twice.
     """
-    tasks = {**{("errors", n): (measure.errors, n, plan) for n in interleave_by_lesson(names)},
-             **{("stability", lesson): (stability_cases, lesson, plan) for lesson in reversed(lessons_of(names))}}
-    todo = {key: call for key, call in tasks.items() if not store.has(*key)}
-    bar = bars.add_task("errors and stability", total=len(tasks), completed=len(tasks) - len(todo))
-    for key, value in pool.each(todo):
+    lessons = {("errors", name): modules.bind_scene(name).lesson for name in names}
+    lessons |= {("stability", lesson): lesson for lesson in lessons_of(names)}
+    todo = {(kind, name): ((measure.errors if kind == "errors" else stability_cases), name, plan)
+            for kind, name in lessons if not store.has(kind, name)}
+    bar = bars.add_task("errors and stability", total=len(lessons), completed=len(lessons) - len(todo))
+    for key, value in pool.each(todo, lessons):
         store.put(*key, value)
         bars.advance(bar)
 
 
 def measure_times(store, names, plan, pool, bars):
-    """Run times, one scene after the other and nothing beside them."""
+    """Run times, one scene after the other and nothing beside them, each in a process that knows its lesson."""
     todo = [n for n in names if not store.has("times", n)]
     bar = bars.add_task("run times", total=len(names), completed=len(names) - len(todo))
     for name in todo:
-        for key, value in pool.each({("times", name): (measure.times, name, plan, store.get("errors", name))}):
+        call = measure.times, name, plan, store.get("errors", name)
+        for key, value in pool.each({("times", name): call}, {("times", name): modules.bind_scene(name).lesson}):
             store.put(*key, value)
             bars.advance(bar)
 
