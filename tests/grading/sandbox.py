@@ -93,8 +93,13 @@ def hidden(places):
         for path in (*workbook, Path(tempfile.gettempdir()).resolve(), *private):
             if path.is_relative_to(source) and path != source and path.exists():
                 yield place / path.relative_to(source)
-        for pattern in PACKAGES:
-            yield from map(Path, glob.glob(f"{place}/python*/*-packages/{pattern}"))
+        yield from hidden_packages(place)
+
+
+@lru_cache
+def hidden_packages(place):
+    """List the PACKAGES that are installed below a place.  Looking takes longer than starting bubblewrap."""
+    return [Path(found) for pattern in PACKAGES for found in glob.glob(f"{place}/python*/*-packages/{pattern}")]
 
 
 def view():
