@@ -11,6 +11,8 @@ its principal axes, which lesson 4 computes.
 Every method is a function  step(torque, t, q, L, dt, body) → (q, L)  at t + dt.  torque(t, q, L, body) returns
 (3,) [N m].  body is any record with a field I_body and is passed on unchanged.  The state is L itself, so that
 without a torque it is kept to the last digit.
+Given in support/rotation.py: make_rigid_body; steps by the other updates of orientation, by ω as the state, and by
+Runge–Kutta; compositions of fourth order; loops over steps.
 *Left out:* contacts, except of a ball on a floor; lesson 6 finds contacts and lesson 7 resolves them.
 """
 
@@ -18,46 +20,27 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .checks import (
-    Diverged,
-    finite_array,
-    float_copy,
-    positive_number,
-)
+from .checks import Diverged, float_copy
 from .friction import cone_radius
 from .support.quaternions import (
     about_axis,
     body_component,
-    check_rotation,
     exponential,
-    quaternion_from_matrix,
     rotate,
     solve3,
     unit,
     unrotate,
 )
-from .support.rotation_loops import (
-    FLAT_BODY_TOLERANCE,
-    advance_rigid_body,
-    advance_rotation,
-    check_moments,
-    rotation_trajectory,
-)
 from .vectors import cross, dot, norm
 
 __all__ = [
-    "FLAT_BODY_TOLERANCE", "NEWTON_LIMIT", "SUZUKI", "RigidBody", "RigidBodyState", "RollingBall",
-    "Top", "about_axis", "advance_rigid_body", "advance_rotation", "angular_acceleration",
-    "angular_velocity", "average_rolling_step", "axis_angle_step", "axis_angle_update",
-    "body_angular_momentum", "body_component", "check_moments", "check_rotation", "compose",
-    "composed_midpoint_step", "composed_splitting_step", "exponential", "gyroscopic_step",
-    "heavy_top_torque", "implicit_gyroscopic_step", "intermediate_axis", "kinetic_energy",
-    "make_rigid_body", "matrix_step", "matrix_update", "midpoint_free_rotation", "midpoint_step",
-    "no_torque", "point_velocity", "quaternion_from_matrix", "quaternion_product", "quaternion_step",
-    "quaternion_update", "rigid_body_step", "rolling_step", "rotate", "rotation_matrix",
-    "rotation_trajectory", "runge_kutta_step", "skew", "solve3", "splitting_free_rotation",
-    "splitting_step", "state_derivative", "supported_weight", "total_load", "tumbling_rate", "unit",
-    "unrotate",
+    "NEWTON_LIMIT", "SUZUKI", "RigidBody", "RigidBodyState", "RollingBall", "Top", "about_axis",
+    "angular_acceleration", "angular_velocity", "average_rolling_step", "axis_angle_update",
+    "body_angular_momentum", "body_component", "compose", "exponential", "heavy_top_torque",
+    "intermediate_axis", "kinetic_energy", "matrix_update", "midpoint_free_rotation", "midpoint_step",
+    "no_torque", "point_velocity", "quaternion_product", "quaternion_update", "rigid_body_step", "rolling_step",
+    "rotate", "rotation_matrix", "skew", "solve3", "splitting_free_rotation", "splitting_step",
+    "state_derivative", "supported_weight", "total_load", "tumbling_rate", "unit", "unrotate",
 ]
 
 NEWTON_TOLERANCE = 1e-12     # last correction over the unknown [-]; Newton squares it, so only round-off remains
@@ -92,13 +75,6 @@ class RollingBall(NamedTuple):
     radius: float            # [m]
     mu: float                # friction [-]
     gravity: np.ndarray      # (3,) [m/s²]; for a sloping floor, tilt gravity instead
-
-
-def make_rigid_body(m, I_body):
-    """Given.  Make a RigidBody from a number and three; raises BadInput for a mass or moments that no body has."""
-    moments = finite_array("principal moments [kg m²]", I_body)
-    check_moments(moments)
-    return RigidBody(positive_number("mass m [kg]", m), moments)
 
 
 # ---------------------------------------------------------------------------------------------- rotational movement
@@ -254,8 +230,6 @@ def quaternion_update(q, omega, dt):
     ### END SOLUTION
 
 
-# --------------------------------------------------------------------------------------------- rotations by quaternions
-
 def body_angular_momentum(q, omega, I_body):
     """Given.  Return L = I ω [kg m²/s] (3,)."""
     return rotate(q, I_body * unrotate(q, omega))
@@ -376,68 +350,7 @@ def heavy_top_torque(t, q, L, top):
     ### END SOLUTION
 
 
-# ---------------------------------------------------------------------------------------------- steps of first order
-
-def matrix_step(torque, t, q, L, dt, body):
-    """Given.  L ← L + dt τ, then matrix_update with ω = I⁻¹ L; first order."""
-    L = L + dt * torque(t, q, L, body)
-    R = rotation_matrix(q)
-    R = matrix_update(R, angular_velocity(R, L, body.I_body), dt)
-    return quaternion_from_matrix(R), L
-
-def axis_angle_step(torque, t, q, L, dt, body):
-    """Given.  The same with axis_angle_update."""
-    L = L + dt * torque(t, q, L, body)
-    R = rotation_matrix(q)
-    R = axis_angle_update(R, angular_velocity(R, L, body.I_body), dt)
-    return quaternion_from_matrix(R), L
-
-def quaternion_step(torque, t, q, L, dt, body):
-    """Given.  The same with quaternion_update."""
-    L = L + dt * torque(t, q, L, body)
-    return quaternion_update(q, angular_velocity(rotation_matrix(q), L, body.I_body), dt), L
-
-
-def gyroscopic_step(torque, t, q, L, dt, body):
-    """Given.  The loop of the second lecture deck: state ω, gyroscopic term explicit.  |L| is not conserved."""
-    omega = angular_velocity(rotation_matrix(q), L, body.I_body)
-    omega = omega + dt * angular_acceleration(q, omega, torque(t, q, L, body), body.I_body)
-    q = quaternion_update(q, omega, dt)
-    return q, body_angular_momentum(q, omega, body.I_body)
-
-
-def implicit_gyroscopic_step(torque, t, q, L, dt, body):
-    """Given.  The same with an implicit gyroscopic term, by one iteration of Newton's method, as in some engines.
-
-    (I + dt (ω* I − (Iω)*)) Δω = dt (τ − ω × Iω)  in body coordinates.
-    *Source:* Catto 2015, “Numerical methods”.
-    """
-    I, L_body = body.I_body, unrotate(q, L)
-    omega, one = L_body / I, np.eye(3)
-    right = dt * (unrotate(q, torque(t, q, L, body)) - cross(omega, L_body))
-    column = [I[k] * one[k] + dt * cross(I[k] * omega - L_body, one[k]) for k in range(3)]
-    omega = rotate(q, omega + solve3(column[0], column[1], column[2], right))
-    q = quaternion_update(q, omega, dt)
-    return q, body_angular_momentum(q, omega, I)
-
-
 # ---------------------------------------------------------------------------------------------- steps that conserve
-
-def runge_kutta_step(torque, t, q, L, dt, body):
-    """Given.  Runge–Kutta 4 of lesson 1 for q̇ = ½ (0, ω) q, L̇ = τ, then q normalised; fourth order, energy drifts."""
-    rate_1, tau_1 = _slope(torque, t, q, L, body)
-    rate_2, tau_2 = _slope(torque, t + 0.5 * dt, q + 0.5 * dt * rate_1, L + 0.5 * dt * tau_1, body)
-    rate_3, tau_3 = _slope(torque, t + 0.5 * dt, q + 0.5 * dt * rate_2, L + 0.5 * dt * tau_2, body)
-    rate_4, tau_4 = _slope(torque, t + dt, q + dt * rate_3, L + dt * tau_3, body)
-    q = q + dt / 6.0 * (rate_1 + 2.0 * rate_2 + 2.0 * rate_3 + rate_4)
-    return unit(q), L + dt / 6.0 * (tau_1 + 2.0 * tau_2 + 2.0 * tau_3 + tau_4)
-
-
-def _slope(torque, t, q, L, body):
-    """Given.  Return q̇ and L̇."""
-    omega = angular_velocity(rotation_matrix(q), L, body.I_body)
-    return 0.5 * quaternion_product(np.array([0.0, omega[0], omega[1], omega[2]]), q), torque(t, q, L, body)
-
 
 def midpoint_free_rotation(q, L, I_body, dt):
     """Return the orientation (4,) of a free body after dt by the implicit midpoint rule; second order, exact energy.
@@ -534,16 +447,3 @@ def compose(step, torque, t, q, L, dt, body):
         t = t + share * dt
     return q, L
     ### END SOLUTION
-
-
-def composed_splitting_step(torque, t, q, L, dt, body):
-    """Given.  compose of splitting_step: fourth order, L exact without torque, bounded energy error."""
-    return compose(splitting_step, torque, t, q, L, dt, body)
-
-
-def composed_midpoint_step(torque, t, q, L, dt, body):
-    """Given.  compose of midpoint_step: fourth order; without torque, L exact and energy to round-off."""
-    return compose(midpoint_step, torque, t, q, L, dt, body)
-
-
-# ---------------------------------------------------------------------------------------------- many steps

@@ -4,6 +4,10 @@ A *module set* is one consistent set of modules: the lessons of a subject (`solu
 scenes that use them.  The plain set of `solutions` is simply the imported packages.  Every other set is a fresh copy
 of those files under a package name of its own.  In it, each function that came from `solutions` is replaced by the
 subject's function or by its compiled twin.  Nothing is decorated, and the imported packages stay as they are.
+
+A lesson may have a *companion*, the file of the same name in `solutions/support/`: given functions that call exercises
+and that nobody needs to read.  It imports from its lesson, and never the other way round.  A module set has its own
+copy of it, which calls the subject's exercises.  Whoever asks for the lesson gets the functions of both in one module.
 """
 
 import hashlib
@@ -16,7 +20,7 @@ import traceback
 import types
 import warnings
 from dataclasses import replace
-from functools import lru_cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 from solutions.checks import BadInput
@@ -28,6 +32,7 @@ from .scene import Scene, field_names
 ROOT = Path(__file__).resolve().parent.parent
 SOLUTIONS, SCENES = ROOT / "solutions", ROOT / "validate" / "scenes"
 GIVEN = {"__init__", "checks", "support", "vectors"}           # support is a folder: geometry and records
+SUPPORT = SOLUTIONS / "support"
 LAW = "acceleration"  # the function of a scene that is compiled, with all that it calls; loops are in the lessons
 
 
@@ -48,11 +53,25 @@ def lesson_names(folder=SOLUTIONS):
     return [path.stem for path in sorted(files, key=place)]
 
 
+@lru_cache(maxsize=1)
+def companions():
+    """{name of the companion: its lesson}, such as {"support.friction": "friction"}."""
+    names = [path.stem for path in SUPPORT.glob("*.py") if path.stem not in GIVEN]
+    return {f"support.{name}": name for name in names if (SOLUTIONS / f"{name}.py").is_file()}
+
+
+def both(lesson, companion):
+    """A module with everything of a lesson and of its companion; where both have a name, it is the lesson's."""
+    module = types.ModuleType(lesson.__name__)
+    vars(module).update({**vars(companion), **vars(lesson)})
+    return module
+
+
 def given_modules():
-    """Names of the modules beside the lessons, below `solutions`: checks, support, support.arms …"""
+    """Names of the modules beside the lessons, below `solutions`, that call no exercise: checks, support.arms …"""
     paths = sorted(path.relative_to(SOLUTIONS).with_suffix("") for path in SOLUTIONS.rglob("*.py"))
-    dotted = (".".join(path.parts) for path in paths if path.parts[0] in GIVEN)
-    return [name.removesuffix(".__init__") for name in dotted if name != "__init__"]
+    dotted = (".".join(path.parts) for path in paths if path.parts[0] in GIVEN and path.stem != "__init__")
+    return [name for name in dotted if name not in companions()]
 
 
 def withheld(lesson, folder=SOLUTIONS):
@@ -177,8 +196,10 @@ def report_text(thing):
 class PlainModules:
     """The packages as imported."""
 
+    @cache  # noqa: B019    there is one PlainModules
     def lesson(self, name):
-        return importlib.import_module(f"solutions.{name}")
+        module, companion = importlib.import_module(f"solutions.{name}"), f"support.{name}"
+        return both(module, self.lesson(companion)) if companion in companions() else module
 
     def scene_module(self, name):
         return importlib.import_module(f"validate.scenes.{scene_files()[name].parent.name}.{name}")
@@ -204,19 +225,25 @@ class ModuleSet:
     def __init__(self, folder, digest, speed="plain"):
         self.name, self.folder, self.done = f"_{speed}_{digest}", folder, {}
         self.stuck, self.loading = {}, set()  # {lesson: its Unloadable}, lessons being loaded
-        for package, path in {"": [], ".solutions": [SOLUTIONS], ".subject": [folder], ".scenes": [SCENES]}.items():
+        self.whole = {}                       # {lesson: it and its companion}
+        paths = {"": [], ".solutions": [SOLUTIONS], ".subject": [folder], ".subject.support": [SUPPORT],
+                 ".scenes": [SCENES]}
+        for package, path in paths.items():
             module = sys.modules[self.name + package] = types.ModuleType(self.name + package)
             module.__path__ = [str(p) for p in path]
         for given in given_modules():                    # ours, even where the subject's folder has copies of them
             sys.modules[f"{self.name}.subject.{given}"] = importlib.import_module(f"solutions.{given}")
 
     def lesson(self, name):
-        """A lesson of the subject.  Raises the same Unloadable every time when its file cannot be loaded."""
+        """A lesson of the subject, with its companion.
+
+        Raises the same Unloadable every time when its file cannot be loaded.
+        """
         if name not in self.stuck and ("subject", name) not in self.done:
             self._load_safely(name)
         if name in self.stuck:
             raise self.stuck[name].with_traceback(None)
-        return self.done["subject", name]
+        return self._with_companion("subject", name)
 
     def _load_safely(self, name):
         """Load a file that may hold anything.
@@ -256,6 +283,15 @@ class ModuleSet:
         """A lesson of the solutions, as lessons and scenes of this set see it."""
         return PLAIN.lesson(name)
 
+    def _with_companion(self, package, name):
+        """A lesson and its companion as one module; the lesson first, because the companion imports from it."""
+        lesson = self._load(package, name)
+        if f"support.{name}" not in companions():
+            return lesson
+        if name not in self.whole:
+            self.whole[name] = both(lesson, self._load(package, f"support.{name}"))
+        return self.whole[name]
+
     def _load(self, package, name):
         if (package, name) not in self.done:
             folder = f".{scene_files()[name].parent.name}" if package == "scenes" else ""
@@ -285,8 +321,9 @@ class ModuleSet:
             if isinstance(value, type):
                 meant[name] = getattr(PLAIN.lesson(origin), value.__name__) if source == "solutions" else value
             elif home != module.__name__ and isinstance(value, (types.ModuleType, types.FunctionType)):
-                of_subject = source == "subject" or (package == "scenes" and (self.folder / f"{origin}.py").is_file())
-                there = self.lesson(origin) if of_subject else self.solution(origin)
+                lesson = companions().get(origin, origin)
+                of_subject = source == "subject" or (package == "scenes" and (self.folder / f"{lesson}.py").is_file())
+                there = self.lesson(lesson) if of_subject else self.solution(origin)
                 meant[name] = there if isinstance(value, types.ModuleType) else part(there, value.__name__)
         return meant
 
@@ -302,7 +339,7 @@ class CompiledModules(ModuleSet):
         use_cache(digest)
 
     def lesson(self, name):
-        return self.solution(name) if self.folder == SOLUTIONS else super().lesson(name)
+        return self._with_companion("solutions", name) if self.folder == SOLUTIONS else super().lesson(name)
 
     def solution(self, name):
         return self._load("solutions", name)

@@ -207,7 +207,7 @@ def wanted(path, lessons, others, scenes):
     if folder == "notebooks":
         return path.stem.partition("_")[2] not in others
     if folder == "solutions":
-        return path.suffix == ".py" and Path(path.parts[1]).stem in modules.GIVEN
+        return path.suffix == ".py" and Path(path.parts[1]).stem in modules.GIVEN and path.stem not in others
     tests = {f"tests/lessons/test_{name}.py" for name in lessons}
     return folder in ("validate", "docs") or path.as_posix() in ALWAYS | {PLUGIN} | tests
 

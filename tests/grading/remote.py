@@ -45,7 +45,7 @@ def handout():
 def box_of(lesson, text, budget):
     """Make the sandbox for one lesson's file."""
     earlier = {name: worked_functions(name) for name in builds_on(lesson)}
-    values = vars(importlib.import_module(f"solutions.{lesson}")).values()
+    values = vars(modules.bind(lesson)).values()
     records = [kind for kind in values if hasattr(kind, "_fields")]
     return Sandbox(lesson, list(exercises(lesson).values()), text, handout(), earlier, budget, records)
 
@@ -63,13 +63,14 @@ def lesson_in(box, lesson):
     as an argument, such as a loop over steps, runs in the sandbox as a whole.  Its result depends on the student's
     code in any case, and a round trip per step would be slow.
     """
-    module = importlib.import_module(f"solutions.{lesson}")
+    module = modules.bind(lesson)
+    ours = module.__name__, f"solutions.support.{lesson}"
     calls = {function: Call(box, f"lesson:{function}") for function in exercises(lesson).values()}
     space = {**vars(module), **calls}
     given = {
         name: value
         for name, value in vars(module).items()
-        if isinstance(value, types.FunctionType) and value.__module__ == module.__name__ and name not in calls
+        if isinstance(value, types.FunctionType) and value.__module__ in ours and name not in calls
     }
     for name, function in given.items():
         space[name] = types.FunctionType(function.__code__, space, name, function.__defaults__)

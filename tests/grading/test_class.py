@@ -168,6 +168,27 @@ def test_the_sandbox_gives_the_same_points_as_the_same_tests_in_one_process():
         assert inside == outside, lesson
 
 
+def test_what_is_given_beside_a_lesson_calls_the_students_exercises():
+    """Of lesson 3's companion event_step runs here, and advance_particle, which gets an exercise, in the sandbox."""
+    text = example.worked("friction") + (
+        "\n\ndef advance_to_event(acceleration, t, x, v, dt, p):\n    return dt, x + 42.0, v\n"
+        "\n\ndef contact_step(acceleration, surface, t, x, v, dt, p):\n    return x + 42.0, v\n"
+    )
+    place = remote.box_of("friction", text.encode(), 60.0)
+    try:
+        place.open()
+        lesson = remote.lesson_in(place, "friction")
+        block = lesson.make_block([0.0, 1.0], 0.5, 0.4, [0.0, -9.81], [0.0, 0.0], 0.0)
+        zero = np.zeros(2)
+        assert lesson.event_step(lesson.driven_acceleration, 0.0, zero, zero, 0.1, block)[0][0] == 42.0
+        particle = lesson.ParticleOnPlane(1.0, 0.5, 0.5, block.gravity, zero, block.n)
+        x, _ = lesson.advance_particle(lesson.contact_step, lesson.falling_acceleration, lesson.particle_plane_gap,
+                                       0.0, zero, zero, 0.1, 2, particle)
+        assert x[0] == 84.0
+    finally:
+        place.close()
+
+
 def test_a_right_answer_is_right_in_longer_numbers():
     text = example.worked("integrators") + (
         "\n\ndef as_others(function):\n"

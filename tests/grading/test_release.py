@@ -385,10 +385,16 @@ def test_the_students_answers_replace_the_worked_ones(unpacked, tmp_path):
         x, pairs = np.array([[0.0, 0.0], [1.0, 0.0]]), springs.grid_pairs(1, 2, springs.STRUCTURAL)
         mesh = springs.make_spring_network(x, 1.0, (0,), pairs, 1.0, 0.0, [0.0, -1.0], [0.0, 0.0], 0.0)
         print(springs.mass_spring_damper_step(0.0, x, 0.0 * x, 2.0, mesh)[1][1])
+        friction = answers("friction")
+        block = friction.make_block([0.0, 1.0], 0.5, 0.4, [0.0, -9.81], [0.0, 0.0], 0.0)
+        print(friction.event_step(friction.driven_acceleration, 0.0, np.zeros(2), np.zeros(2), 0.1, block)[0])
         print(attempt(lambda: answers("juggling").catch))
     """
+    with open(tmp_path / "friction.py", "a") as file:               # event_step is given in the companion and calls it
+        file.write("\n\ndef advance_to_event(acceleration, t, x, v, dt, p):\n    return dt, x + 42.0, v\n")
     run = program_in(unpacked, program, lessons=tmp_path)
-    assert "[ 0. -2.]" in run.stdout and run.stdout.strip().endswith("None"), run.stderr
+    assert "[ 0. -2.]" in run.stdout and "[42. 42.]" in run.stdout, run.stderr
+    assert run.stdout.strip().endswith("None"), run.stderr
 
 
 @pytest.mark.long

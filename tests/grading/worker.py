@@ -95,12 +95,16 @@ def students(name):
 
 @lru_cache(maxsize=1)
 def given():
-    """The lesson as handed out, its exercises those of the student's file."""
-    file = os.path.join(config["given"], f"{config['lesson']}.py")
-    spec = importlib.util.spec_from_file_location("handout", file)
+    """The lesson as handed out and its companion, the exercises those of the student's file."""
+    name = config["lesson"]
+    spec = importlib.util.spec_from_file_location("handout", os.path.join(config["given"], f"{name}.py"))
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    vars(module).update({name: students(name) for name in config["exercises"]})
+    vars(module).update({exercise: students(exercise) for exercise in config["exercises"]})
+    if os.path.isfile(os.path.join(config["given"], "support", f"{name}.py")):
+        sys.modules[f"solutions.{name}"] = module                          # what the companion imports from
+        companion = importlib.import_module(f"solutions.support.{name}")
+        vars(module).update({**vars(companion), **vars(module)})
     return module
 
 

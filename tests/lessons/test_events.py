@@ -4,9 +4,12 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from solutions import collisions, friction, impulses, integrators, rotation
 from solutions.checks import BadInput
 from solutions.support import events, trajectories
+from validate.modules import bind
+
+collisions, friction, impulses, integrators, rotation = map(
+    bind, ("collisions", "friction", "impulses", "integrators", "rotation"))
 
 G = 9.81
 DOWN = np.array([0.0, 0.0, -G])

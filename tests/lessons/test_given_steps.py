@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 
-from solutions import integrators, pbd, rotation
 from solutions.checks import BadInput
+from validate.modules import bind
 from validate.reference.integrators import Planet, kepler_position, perihelion
+
+integrators, pbd, rotation = map(bind, ("integrators", "pbd", "rotation"))
 
 
 def attraction(t, x, v, p):

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from solutions import collisions, friction, impulses, integrators, pbd, rotation, springs
 from solutions.checks import BadInput, Diverged
 from validate import modules
 
+collisions, friction, impulses, integrators, pbd, rotation, springs = map(
+    modules.bind, ("collisions", "friction", "impulses", "integrators", "pbd", "rotation", "springs"))
 UP, DOWN = np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.0, -9.81])
 ROPE, PAIRS = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]), np.array([[0, 1], [1, 2]])
 WEIGHT = np.array([0.0, -9.81])

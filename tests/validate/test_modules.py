@@ -88,6 +88,32 @@ def test_a_scene_uses_the_subject_it_is_bound_to(tmp_path):
     assert modules.bind_scene("oscillator").run.__globals__["advance"].__module__ == "solutions.integrators"
 
 
+OWN_EVENT = "\n\ndef advance_to_event(acceleration, t, x, v, dt, p):\n    return dt, x + 42.0, v\n"
+
+
+@pytest.mark.parametrize("compiled", [False, pytest.param(True, marks=needs_numba)])
+def test_a_companion_calls_the_exercises_of_its_subject(tmp_path, compiled):
+    """Lesson 3's event_step is given in support/friction.py; advance_to_event, which it calls, is an exercise."""
+    text = (modules.SOLUTIONS / "friction.py").read_text().replace("from .", "from solutions.")
+    (tmp_path / "friction.py").write_text(text + OWN_EVENT)
+    mine, ours = modules.bind("friction", tmp_path, compiled), modules.bind("friction", compiled=compiled)
+    assert "def event_step" not in text and hasattr(mine.event_step, "py_func") == compiled
+    zero = np.zeros(2)
+    arguments = ours.driven_acceleration, 0.0, zero, zero, 0.1, ours.Block(np.eye(2)[1], 0.5, 0.4, zero, zero, 0.0)
+    assert ours.event_step(*arguments)[0][0] == 0.0 and mine.event_step(*arguments)[0][0] == 42.0
+    scene = modules.bind_scene("stick_slip", tmp_path, compiled)
+    begins = scene.run.__globals__["slip_times"]
+    assert getattr(begins, "twin", begins) is mine.slip_times
+    assert modules.PLAIN.scene("stick_slip").run.__globals__["slip_times"].__module__ == "solutions.support.friction"
+
+
+def test_a_lesson_never_imports_its_companion():
+    for name in modules.companions():
+        users = [lesson for lesson in modules.lesson_names()
+                 if f"from .{name} import" in (modules.SOLUTIONS / f"{lesson}.py").read_text()]
+        assert not users, f"{users} import {name}, which would call the exercises of another subject"
+
+
 @pytest.mark.parametrize(("call", "names"), [
     (lambda: modules.bind("juggling"), "juggling"),
     (lambda: modules.bind("integrators", "no/such/folder"), "no/such/folder"),

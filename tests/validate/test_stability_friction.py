@@ -5,8 +5,10 @@ import types
 import numpy as np
 import pytest
 
-from solutions import friction as worked
+from validate.modules import bind
 from validate.stability.examine import cases_of, subject_of
+
+worked = bind("friction")
 
 
 def holds_by_kinetic(acceleration, t, x, v, dt, p):

@@ -7,7 +7,8 @@ counts as at rest.  *Source:* Coulomb 1785 for the edges; each case derives the 
 import numpy as np
 
 from solutions import integrators
-from solutions.friction import ParticleInBowl, ParticleOnPlane, make_block
+from solutions.friction import ParticleInBowl, ParticleOnPlane
+from solutions.support.friction import make_block
 from validate.engines.friction import bullet_block, pymunk_block
 from validate.reference.friction import DrivenBlock, T, slip_limits, slip_position, slips
 from validate.stability.case import DOTS, EDGE, LINE, Picture, bisect, case, finding, refuses, series

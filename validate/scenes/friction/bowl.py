@@ -8,8 +8,9 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from solutions.checks import check_positive
-from solutions.friction import ParticleInBowl, advance_particle, check_friction, particle_bowl_gap
+from solutions.friction import ParticleInBowl, check_friction, particle_bowl_gap
 from solutions.friction import falling_acceleration as acceleration
+from solutions.support.friction import advance_particle
 from validate.engines.friction import SWEEPS, bullet_in_hollow
 from validate.methods import CONTACT, GRIPPING
 from validate.scene import PYBULLET, Engine, Scene, by_order

@@ -6,8 +6,8 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.friction import driven_acceleration as acceleration
-from solutions.friction import make_block
 from solutions.integrators import advance
+from solutions.support.friction import make_block
 from validate.engines.friction import SWEEPS, bullet_block, pymunk_block
 from validate.methods import EVENT, SLIDING
 from validate.reference.friction import block_in_space

@@ -5,8 +5,8 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.friction import driven_acceleration as acceleration
-from solutions.friction import make_block, slip_times
 from solutions.integrators import advance
+from solutions.support.friction import make_block, slip_times
 from validate.engines.friction import MASS, SWEEPS, bullet_block, pymunk_block
 from validate.methods import EVENT, SLIDING
 from validate.reference.friction import DrivenBlock, T, block_in_space, slip_limits, slip_position, slips

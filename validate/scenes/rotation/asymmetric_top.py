@@ -4,8 +4,9 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.rotation import RigidBody, advance_rotation, check_moments
+from solutions.rotation import RigidBody
 from solutions.rotation import no_torque as acceleration
+from solutions.support.rotation import advance_rotation, check_moments
 from validate import drawing
 from validate.drawing import axes_seen, omega_and_L, pose
 from validate.engines.rotation import FREE_ENGINES

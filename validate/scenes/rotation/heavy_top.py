@@ -5,8 +5,9 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput, check_positive
-from solutions.rotation import Top, advance_rotation, check_moments, exponential
+from solutions.rotation import Top, exponential
 from solutions.rotation import heavy_top_torque as acceleration
+from solutions.support.rotation import advance_rotation, check_moments
 from validate import drawing
 from validate.engines.bullet import Rigid
 from validate.methods import TURNS

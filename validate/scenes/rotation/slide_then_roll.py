@@ -5,8 +5,9 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.rotation import RollingBall, advance_rigid_body
+from solutions.rotation import RollingBall
 from solutions.rotation import supported_weight as acceleration
+from solutions.support.rotation import advance_rigid_body
 from validate import drawing
 from validate.drawing import pose
 from validate.engines.chipmunk import pymunk_space, pymunk_world

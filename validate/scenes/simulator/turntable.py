@@ -8,9 +8,9 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.rotation import advance_rigid_body
 from solutions.rotation import supported_weight as acceleration
 from solutions.simulator import CarriedBall, advance_contact, ball_bounds, make_bodies, round_contacts, weight
+from solutions.support.rotation import advance_rigid_body
 from validate import drawing
 from validate.drawing import pose
 from validate.engines.simulator import pybullet_turntable
