@@ -143,7 +143,7 @@ function play(place) {
     if (!place.isConnected) { renderer.dispose(); renderer.forceContextLoss(); return; }
     const k = still ? last : Math.floor(time / 1000 / showing * last) % (last + 1);
     set(k);
-    clock.textContent = `t = ${(picture.seconds * k / last).toFixed(2)} s · drag to turn, scroll to come nearer`;
+    clock.textContent = (last > 0 ? `t = ${(picture.seconds * k / last).toFixed(2)} s · ` : "") + "drag to turn, scroll to come nearer";
     controls.update();
     renderer.render(scene, camera);
     requestAnimationFrame(draw);
