@@ -11,7 +11,7 @@ from statistics import median
 import numpy as np
 
 from . import modules, report
-from .measure.accuracy import ASYMPTOTIC
+from .measure.accuracy import ASYMPTOTIC, bound
 from .measure.timing import EXACTLY, SAME, TARGETS
 from .report import plots
 from .results import Verdict, jsonable
@@ -74,8 +74,12 @@ def of_curve(curve, case, result):
             yield f"the error at {row['steps']} steps is not that of what was observed"
         if differs(row["dt"], result["T"] / row["steps"]):
             yield f"the step of {row['steps']} steps is not T over the steps"
-    judged = rows if own is None else [{**row, "error": None if row["failure"] else distance(row["observed"], own)}
-                                       for row in rows]
+    law = truth if own is None else own
+    judged = [{**row, "error": None if row["failure"] else distance(row["observed"], law),
+               "off": outside(row, law)} for row in rows]
+    for row in rows:
+        if row["predicted"] is not None and differs(row["limit"], distance(row["predicted"], law) + row["band"]):
+            yield f"the limit at {row['steps']} steps is not the predicted error and its band"
     if own is not None and differs(curve["departure"], distance(own, truth)):
         yield "the departure is not the distance of its own law from the truth"
     order = slope(judged, 10.0 * result["uncertainty"])
@@ -90,6 +94,15 @@ def distance(observed, truth):
     """|observed − truth| over |truth|, or over 1 where the truth is zero."""
     size = sum(x * x for x in truth) ** 0.5
     return sum((x - y) ** 2 for x, y in zip(observed, truth, strict=True)) ** 0.5 / (size or 1.0)
+
+
+def outside(row, law):
+    """Whether a run ended outside of the band about what theory predicts for it."""
+    if row["predicted"] is None or row["failure"]:
+        return False
+    size = sum(x * x for x in law) ** 0.5
+    away = sum((x - y) ** 2 for x, y in zip(row["observed"], row["predicted"], strict=True)) ** 0.5
+    return away > row["band"] * (size or 1.0)
 
 
 def slope(rows, floor):
@@ -110,11 +123,14 @@ def verdict_of(rows, expected, order, has_own_law):
     failure = rows[-1]["failure"] or ""
     if failure.startswith(Verdict.NOT_ATTEMPTED.value):
         return Verdict.NOT_ATTEMPTED
-    if failure or any(ratio > 1.0 for ratio in ratios):
+    if failure:
         return Verdict.DEPARTS
     if not ratios:
         return Verdict.UNDECIDED
-    if expected in (1, 2, 4) and order is not None and order < expected - 0.3 and len(small) >= 2:
+    if any(ratio > 1.0 for ratio in ratios) or any(row["off"] for row in rows):
+        return Verdict.DEPARTS
+    unpredicted = [row for row in small if row["predicted"] is None]
+    if expected in (1, 2, 4) and order is not None and order < expected - 0.3 and len(unpredicted) >= 2:
         return Verdict.DEPARTS
     return Verdict.FOLLOWS_OWN_LAW if has_own_law else Verdict.AGREES
 
@@ -208,13 +224,21 @@ def of_limits(data, counts):
         scene = modules.bind_scene(result["scene"], run["of"])
         for name, case in result["cases"].items():
             for curve in case["ours"] + case["engines"]:
+                law = np.array(curve.get("own_law") or case["truth"])
                 for row in curve["rows"]:
                     counts["limits"] += 1
-                    limits = jsonable(scene.tolerance(scene.cases[name], row["dt"]))
-                    if differs(row["limit"], limits.get(curve["label"], limits.get(str(curve["expected"])))):
+                    theory = jsonable(bound(scene, scene.cases[name], curve["label"], curve["expected"], row["steps"],
+                                            law))
+                    if any(differs(row[key], theory[key]) for key in ("limit", "band")) or apart(row, theory):
                         place = f"{result['scene']}: {curve['label']}, {name}"
                         yield f"{place}: the limit at {row['steps']} steps is not theory's"
                         break
+
+
+def apart(row, theory):
+    """Whether what theory predicts is not what was stored."""
+    a, b = row["predicted"], theory["predicted"]
+    return (a is None) != (b is None) or (a is not None and distance(a, b) > NEAR)
 
 
 def code_of(subject):

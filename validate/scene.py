@@ -8,6 +8,8 @@ from collections.abc import Callable
 from dataclasses import MISSING, dataclass, field, fields
 from typing import NamedTuple, get_args, get_origin, get_type_hints
 
+import numpy as np
+
 from solutions.checks import BadInput
 
 EXACT = "exact"              # an order: no error but round-off
@@ -55,6 +57,12 @@ class Departure(NamedTuple):
     own_law: Callable        # (p, t) → the same quantities as truth(p, t)
 
 
+class Prediction(NamedTuple):
+    """The error that theory predicts for one run, with its sign: it must err neither more, nor less, nor elsewhere."""
+    error: np.ndarray        # observed − truth, or − own law where the method or the engine has one
+    band: float              # the largest distance of the run's error from it, relative to the truth or own law [-]
+
+
 @dataclass(frozen=True, kw_only=True)
 class Scene:
     """One physical situation: its truth, our methods, the engines, and the tolerance derived for each.
@@ -80,6 +88,7 @@ class Scene:
     acceleration: Callable | None = None     # (t, x, v, p) → a [m/s²]: the law; compiled where the lessons are
     expected_departures: dict = field(default_factory=dict)      # {label: Departure}
     orders: dict = field(default_factory=dict)  # {method's function: order here}, where it is not the usual one
+    predicted_error: Callable | None = None  # (label, p, dt) → Prediction; None where `tolerance` is all that is known
     supports: Callable | None = None  # (method's function or engine's label, p) → bool; without it all support all
     omitted_methods: str = ""                # why methods or engines that a reader expects are missing
     slow_methods: tuple = ()                 # functions of methods that only --full runs

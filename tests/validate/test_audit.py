@@ -49,6 +49,11 @@ def last(data):
     return converging(data)["rows"][-1]
 
 
+def converging_truth(data):
+    return next(case["truth"] for scene in data["scenes"] for case in scene["cases"].values()
+                if converging(data) in case["ours"] + case["engines"])
+
+
 def own(data):
     return next(curve for curve in curves(data) if "own_law" in curve)
 
@@ -76,6 +81,9 @@ FAULTS = {
     "a verdict on too large an error": lambda d: last(d).update(limit=1e-30),
     "a step": lambda d: last(d).update(dt=2.0 * last(d)["dt"]),
     "a departure": lambda d: own(d).update(departure=1.01 * own(d)["departure"]),
+    "a prediction": lambda d: last(d).update(predicted=[2.0 * x for x in last(d)["predicted"]]),
+    "a band": lambda d: last(d).update(band=2.0 * last(d)["band"]),
+    "a verdict on less error than predicted": lambda d: last(d).update(observed=converging_truth(d), error=0.0),
     "a limit": lambda d: last(d).update(limit=1.01 * last(d)["limit"]),
     "a median": lambda d: timed(d).update(seconds=1.01 * timed(d)["seconds"]),
     "a repeat": lambda d: timed(d)["repeats"].append(1.0),

@@ -118,6 +118,23 @@ def test_a_wrong_method_departs(tmp_path):
     assert verdicts["midpoint"] is False and verdicts["Verlet"] is True
 
 
+VELOCITY_FIRST = "    v = v + dt * acceleration(t, x, v, p)\n    return x + dt * v, v\n"
+
+
+@pytest.mark.parametrize(("body", "message"), [
+    ("x + dt * v, v + dt * acceleration(t, x, v, p)", "as much as theory predicts at 100 steps, but in"),
+    ("x + dt * v + 0.5 * dt * dt * acceleration(t, x, v, p), v + dt * acceleration(t, x, v, p)", "errs only"),
+    ("x + dt * v + 1.01 * dt * dt * acceleration(t, x, v, p), v + dt * acceleration(t, x, v, p)", "errs 1.02 times")])
+def test_a_method_must_err_as_theory_predicts_neither_less_nor_elsewhere(tmp_path, body, message):
+    text = (modules.SOLUTIONS / "integrators.py").read_text()
+    assert text.count(VELOCITY_FIRST) == 1
+    (tmp_path / "integrators.py").write_text(text.replace("from .", "from solutions.")
+                                             .replace(VELOCITY_FIRST, f"    return {body}\n"))
+    result = measure.errors("throw", measure.Plan(of=str(tmp_path), speeds=("plain",), live=(), most_steps=100))
+    curve = next(c for c in result["cases"]["thrown"]["ours"] if c["label"] == "symplectic Euler")
+    assert curve["verdict"] == Verdict.DEPARTS and message in curve["message"]
+
+
 def test_stubs_are_not_attempted_and_depart_from_nothing():
     result = measure.errors("oscillator", measure.Plan(of="lessons", speeds=("plain",), live=(), most_steps=200))
     for curve in result["cases"]["under-damped"]["ours"]:

@@ -1,6 +1,6 @@
 """pybullet, the 3D engine, with the settings that every scene needs."""
 
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 
@@ -197,6 +197,7 @@ def hidden_damping(acceleration, start):
     start(p) → (x, v), each (d,); the law is solved by DOP853.
     *Source:* measured, and in Bullet's btMultiBody.
     """
+    @cache
     def own_law(p, t):
         from scipy.integrate import solve_ivp
         begin = np.concatenate(start(p))

@@ -42,7 +42,8 @@ def errors(name, plan):
         "parameters": parameter_table(scene.parameters), "notes": selection.notes, "cases": cases,
         **parity(selection, first),
         "picture": film.picture(selection, first, labels_that_agree({"cases": cases})),
-        "law": report_text(scene.acceleration) if scene.acceleration else "", "limits": report_text(scene.tolerance),
+        "law": report_text(scene.acceleration) if scene.acceleration else "",
+        "limits": "\n\n".join(report_text(f) for f in (scene.tolerance, scene.predicted_error) if f),
     })
 
 
@@ -101,8 +102,13 @@ def finite(observed):
 
 def relative(observed, truth):
     """|observed − truth| / |truth|, Euclidean norms over everything observed; absolute where the truth is zero."""
+    return relative_to(truth, observed, truth)
+
+
+def relative_to(truth, a, b):
+    """|a − b| / |truth|; absolute where the truth is zero."""
     size = np.linalg.norm(truth)
-    return float(np.linalg.norm(observed - truth) / (size if size > 0.0 else 1.0))
+    return float(np.linalg.norm(a - b) / (size if size > 0.0 else 1.0))
 
 
 # ---------------------------------------------------------------------------------------------- curves
@@ -154,42 +160,48 @@ def allowed(scene, p, label, order, steps):
     return limits[label] if label in limits else limits[order]
 
 
+def bound(scene, p, label, order, steps, law):
+    """What theory says about a run of so many steps: {"limit", "predicted", "band"} of its row.
+
+    limit      the largest relative error; with a prediction its size and its band
+    predicted  what theory says will be observed: `law`, the truth or the own law, and the error; None without one
+    band       the largest distance of what is observed from that, relative to the law
+    """
+    prediction = scene.predicted_error and scene.predicted_error(label, p, scene.duration / steps)
+    if not prediction:
+        return {"limit": allowed(scene, p, label, order, steps), "predicted": None, "band": None}
+    predicted = law + np.array(prediction.error, dtype=float)
+    limit = relative(predicted, law) + prediction.band
+    return {"limit": limit, "predicted": predicted, "band": prediction.band}
+
+
 def judged(scene, label, p, truth, runs, order):
-    """The curve of a method or an engine.  Where the scene gives it its own law, it must follow that law."""
-    def limit(steps):
-        return allowed(scene, p, label, order, steps)
+    """The curve of a method or an engine: its errors over the sweep, the order that they show, and the verdict.
 
-    found = curve(scene, label, truth, runs, order, limit)
+    Where the scene gives it its own law, it must follow that law.
+    """
     departure = scene.expected_departures.get(label)
+    law = truth if departure is None else np.array(departure.own_law(p, scene.duration), dtype=float)
+    rows = [{"steps": steps, "dt": scene.duration / steps, "observed": outcome.observed,
+             "error": None if outcome.failure else relative(outcome.observed, truth), "failure": outcome.failure,
+             **bound(scene, p, label, order, steps, law)} for steps, outcome in runs]
+    off = rows if departure is None else [{**r, "error": r["error"] and relative(r["observed"], law)} for r in rows]
+    order_shown = shown_order(off, 10.0 * scene.truth_uncertainty)
+    verdict, message = verdict_on(off, law, runs[-1][1], order, order_shown)
+    found = {"label": label, "rows": rows, "order": order_shown, "expected": order, "verdict": verdict,
+             "message": message, "departure_reason": ""}
     if departure is None:
-        return {**found, "departure_reason": ""}
-    own = np.array(departure.own_law(p, scene.duration), dtype=float)
-    by_own_law = curve(scene, label, own, runs, order, limit)
-    if by_own_law["verdict"] is Verdict.AGREES:
-        by_own_law["verdict"] = Verdict.FOLLOWS_OWN_LAW
-    return {**by_own_law, "rows": found["rows"], "departure_reason": departure.reason,
-            "departure": relative(own, truth), "own_law": own}
+        return found
+    return {**found, "verdict": Verdict.FOLLOWS_OWN_LAW if verdict is Verdict.AGREES else verdict,
+            "departure_reason": departure.reason, "departure": relative(law, truth), "own_law": law}
 
 
-def curve(scene, label, truth, runs, order, limit):
-    """Errors over the sweep, the order that they show, and the verdict.
+def verdict_on(rows, law, finest, order, order_shown):
+    """(Verdict, message) on the rows of a curve; `finest` is the Outcome at the finest step.
 
     A limit holds only where it is small: an expansion in powers of dt says nothing about a step for which it promises
-    50 %. An order is compared with theory where two steps have small limits.
+    50 %.  An order is compared with theory where two steps have small limits; predicted errors contain it already.
     """
-    rows = []
-    for steps, outcome in runs:
-        error = None if outcome.failure else relative(outcome.observed, truth)
-        rows.append({"steps": steps, "dt": scene.duration / steps, "observed": outcome.observed, "error": error,
-                     "limit": limit(steps), "failure": outcome.failure})
-    order_shown = shown_order(rows, 10.0 * scene.truth_uncertainty)
-    verdict, message = verdict_on(rows, runs[-1][1], order, order_shown)
-    return {"label": label, "rows": rows, "order": order_shown, "expected": order,
-            "verdict": verdict, "message": message}
-
-
-def verdict_on(rows, finest, order, order_shown):
-    """(Verdict, message) on the rows of a curve; `finest` is the Outcome at the finest step."""
     small = [r for r in rows if r["limit"] < ASYMPTOTIC]
     ratios = [r["error"] / r["limit"] for r in small if r["error"] is not None]
     if not finest.attempted:
@@ -200,12 +212,29 @@ def verdict_on(rows, finest, order, order_shown):
         return Verdict.UNDECIDED, "no theory says how far it may be off, so its error is shown and not judged"
     if not ratios:
         return Verdict.UNDECIDED, "the sweep is too coarse to judge: theory allows 50 % at its finest step"
+    if surprise := next(filter(None, (surprise_in(r, law) for r in reversed(rows))), None):
+        return Verdict.DEPARTS, surprise
     if max(ratios) > 1.0:
         return Verdict.DEPARTS, f"departs from truth by {max(ratios):.3g} times what theory allows"
     too_low = order in (1, 2, 4) and order_shown is not None and order_shown < order - 0.3
-    if too_low and len(small) >= 2:
+    if too_low and sum(r["predicted"] is None for r in small) >= 2:
         return Verdict.DEPARTS, f"converges with order {order_shown:.2f}, theory says {order}"
     return Verdict.AGREES, ""
+
+
+def surprise_in(row, law):
+    """A sentence without its subject where a run errs by something else than theory predicts for it; None otherwise."""
+    if row["predicted"] is None or row["error"] is None:
+        return None
+    if relative_to(law, row["observed"], row["predicted"]) <= row["band"]:
+        return None
+    share = row["error"] / relative(row["predicted"], law)
+    at = f"at {row['steps']} steps"
+    if share > 1.0 + row["band"] / relative(row["predicted"], law):
+        return f"errs {share:.3g} times as much as theory predicts {at}"
+    if share < 1.0 - row["band"] / relative(row["predicted"], law):
+        return f"errs only {share:.2g} of what theory predicts {at}: it is another method than its name says"
+    return f"errs as much as theory predicts {at}, but in another direction"
 
 
 def shown_order(rows, floor):

@@ -5,6 +5,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from ..scene import LATE_LEAPFROG, ROUND_OFF
+from .schemes import predict_by_tables, table_model
 
 
 class Planet(NamedTuple):
@@ -83,12 +84,25 @@ def drift(p, T, dt, k):
     Source: Calvo and Sanz-Serna 1993; Hairer, Lubich, Wanner 2006, X.3 and XI.
     """
     n, rate = np.sqrt(p.mu / p.a**3), np.sqrt(p.mu / (p.a * (1.0 - p.e)) ** 3)
+    growth = (rate * dt) ** k + n * T / (4.0 * np.pi) * (rate * dt) ** (1 if k == 1 else k + 1)
+    return passage_weight(p, T) * growth + round_off(p, T, dt)
+
+
+def passage_weight(p, T):
+    """Return the relative error of position at T over the relative error of v at each passage, as in drift."""
+    n = np.sqrt(p.mu / p.a**3)
     x, v = orbit(*perihelion(p), p.mu, T)
-    metres = np.linalg.norm(v) / n / np.linalg.norm(x)
-    # the effect of a relative error of v at each passage
-    weight = metres * 1.5 * n * T * 2.0 * (1.0 + p.e) / (1.0 - p.e)
-    round_off = weight * (1e-12 + T / dt * ROUND_OFF)
-    return weight * ((rate * dt) ** k + n * T / (4.0 * np.pi) * (rate * dt) ** (1 if k == 1 else k + 1)) + round_off
+    return np.linalg.norm(v) / n / np.linalg.norm(x) * 1.5 * n * T * 2.0 * (1.0 + p.e) / (1.0 - p.e)
+
+
+def round_off(p, T, dt):
+    """Return the relative error of position at T that round-off leaves, which grows like a method's own."""
+    return passage_weight(p, T) * (1e-12 + T / dt * ROUND_OFF)
+
+
+def random_round_off(p, T, dt):
+    """Return the same where roundings have either sign: a random walk, ten times its standard deviation."""
+    return passage_weight(p, T) * 10.0 * np.sqrt(T / dt) * ROUND_OFF + 1e-11
 
 
 def late_start(p, T, dt, side):
@@ -112,3 +126,31 @@ def kepler_limits(p, T, dt):
     old, new = late_start(p, T, dt, -1.0) + smooth[2], late_start(p, T, dt, 1.0) + smooth[2]
     return {**smooth, LATE_LEAPFROG: new, "pymunk": old, "pymunk, leapfrog start": smooth[2],
             "pybullet": new, "pybullet, leapfrog start": smooth[2]}
+
+
+def kepler_errors(T):
+    """Return the field `predicted_error` of a planet: methods and engines as tables, positions as complex numbers.
+
+    The engines take the attraction from the position before a step (pybullet) or after it (pymunk).
+    """
+    def law(p):
+        return lambda t, x, v: -p.mu * x / abs(x) ** 3
+
+    def begin(p):
+        return tuple(complex(*pair) for pair in perihelion(p))
+
+    def seen(x, p):
+        return [x.real, x.imag]
+
+    def engine(scheme, ahead=0.0):
+        return table_model(scheme, law, begin, seen, 2 if ahead else 1, ahead)
+
+    models = {
+        "pymunk": engine("old velocity, new force"), "pymunk, leapfrog start": engine("old velocity, new force", 0.5),
+        "pybullet": engine("new velocity, old force"),
+        "pybullet, leapfrog start": engine("new velocity, old force", -0.5)}
+    # a method that is its own inverse has an error in even powers of dt only
+    even = {**dict.fromkeys(("Verlet", "implicit midpoint", "pymunk, leapfrog start", "pybullet, leapfrog start"),
+                            (2, 4, 6)), "Blanes–Moan": (4, 6, 8)}
+    return predict_by_tables(T, law, begin, seen, kepler_position, lambda p, dt: random_round_off(p, T, dt), models,
+                             finest={1: 20000, 2: 10000, 4: 4000, "Runge–Kutta 4": 10000}, powers=even)

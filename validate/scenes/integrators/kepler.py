@@ -7,7 +7,7 @@ from solutions.checks import BadInput, check_positive
 from solutions.integrators import advance
 from validate.engines.integrators import KEPLER_ENGINES
 from validate.methods import BLANES_MOAN, INTEGRATORS, LEFT_TO_FULL
-from validate.reference.integrators import Planet, kepler_limits, kepler_position, perihelion
+from validate.reference.integrators import Planet, kepler_errors, kepler_limits, kepler_position, perihelion
 from validate.scene import LATE_LEAPFROG, Scene
 
 T = 100.0                    # [s]: sixteen revolutions
@@ -75,6 +75,7 @@ SCENE = Scene(
     # of the reference solution: round-off in the energy, v²/2 − μ/r, grows with time as in drift(): 3e-13
     truth_uncertainty=1e-12,
     tolerance=tolerance,
+    predicted_error=kepler_errors(T),
     engines=KEPLER_ENGINES,
     orders={"symplectic_euler_step": LATE_LEAPFROG},  # see late_start
     slow_methods=LEFT_TO_FULL,

@@ -6,7 +6,7 @@ from solutions.checks import BadInput, check_positive
 from solutions.integrators import advance
 from validate.engines.integrators import KEPLER_ENGINES
 from validate.methods import BLANES_MOAN, INTEGRATORS, LEFT_TO_FULL
-from validate.reference.integrators import Planet, kepler_limits, kepler_position, perihelion
+from validate.reference.integrators import Planet, kepler_errors, kepler_limits, kepler_position, perihelion
 from validate.scene import LATE_LEAPFROG, Scene
 
 T = 20.0                     # [s]: three revolutions
@@ -71,6 +71,7 @@ SCENE = Scene(
     # of the reference solution, as in kepler: 1e-13
     truth_uncertainty=1e-12,
     tolerance=tolerance,
+    predicted_error=kepler_errors(T),
     engines=KEPLER_ENGINES,
     orders={"symplectic_euler_step": LATE_LEAPFROG},          # see late_start
     slow_methods=LEFT_TO_FULL,

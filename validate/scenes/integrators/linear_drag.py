@@ -9,7 +9,8 @@ from solutions.integrators import advance
 from validate.engines.bullet import Bullet, hidden_damping
 from validate.engines.chipmunk import pymunk_space, pymunk_world
 from validate.methods import INTEGRATORS, LEFT_TO_FULL
-from validate.scene import PYBULLET, PYMUNK, Engine, EngineRun, Scene, by_order
+from validate.reference.schemes import predict_by_tables, table_model
+from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Scene, by_order
 
 T = 1.97599434               # [s]: at which it is back at the initial height
 STEPS = (10, 20, 50, 100, 200, 500, 1000, 2000)
@@ -71,6 +72,46 @@ def tolerance(p, dt):
     hidden = scale * by_order(p.k + 0.04 * (1.0 + 2.0 * fastest), T, dt)[1]
     return {**limits, "pybullet, default": hidden,
             **dict.fromkeys(("pymunk", "pymunk, own damping", "pybullet", "pybullet, own damping"), limits[1])}
+
+
+def law(p):
+    """Return a(t, x, v) of a complex number x, apart from the scene's."""
+    return lambda t, x, v: complex(0.0, -p.g) - p.k * v
+
+
+def damped_law(p):
+    """Return the same with the hidden damping."""
+    return lambda t, x, v: complex(0.0, -p.g) - p.k * v - 0.04 * v * (1.0 + abs(v))
+
+
+def thrown(p):
+    return 0j, complex(p.vx, p.vy)
+
+
+def seen(x, p):
+    return [x.real, x.imag]
+
+
+def own_damping(place):
+    """Return an engine's step with its own damping: the velocity times e^(−k dt), then gravity."""
+    def model(p):
+        kept = lambda v, h: v * np.exp(-p.k * h) + h * complex(0.0, -p.g)
+        return lambda law, t, x, v, h: (x + h * place(v, kept(v, h)), kept(v, h))
+    return model
+
+
+MODELS = {
+    "pymunk": table_model("old velocity, old force", law, thrown, seen),
+    "pymunk, own damping": table_model(own_damping(lambda old, new: old), law, thrown, seen),
+    "pybullet": table_model("new velocity, old force", law, thrown, seen),
+    "pybullet, default": table_model("new velocity, old force", damped_law, thrown, seen),
+    "pybullet, own damping": table_model(own_damping(lambda old, new: new), law, thrown, seen),
+}
+DEPARTURES = {"pybullet, default": hidden_damping(acceleration, start)}
+
+
+def floor(p, dt):
+    return tolerance(p, dt)[EXACT]
 
 
 def pymunk_make(p, dt, own=False):
@@ -147,7 +188,8 @@ SCENE = Scene(
     truth_uncertainty=1e-14,
     tolerance=tolerance,
     engines=ENGINES,
-    expected_departures={"pybullet, default": hidden_damping(acceleration, start)},
+    expected_departures=DEPARTURES,
+    predicted_error=predict_by_tables(T, law, thrown, seen, truth, floor, MODELS, DEPARTURES),
     slow_methods=LEFT_TO_FULL,
     # Plain Python finishes before numba has compiled it.
     uncompiled_in_quick=("symplectic_euler_step", "verlet_step"),

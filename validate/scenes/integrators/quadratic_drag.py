@@ -9,7 +9,8 @@ from solutions.integrators import advance
 from validate.engines.bullet import Bullet, hidden_damping
 from validate.engines.chipmunk import pymunk_space
 from validate.methods import INTEGRATORS, LEFT_TO_FULL
-from validate.scene import PYBULLET, PYMUNK, Engine, EngineRun, Scene, by_order
+from validate.reference.schemes import predict_by_tables, table_model
+from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Scene, by_order
 
 T = 3.0                      # [s]: three times the time to reach the terminal speed without air
 STEPS = (15, 30, 60, 150, 300, 600, 1500, 3000)
@@ -83,6 +84,36 @@ def tolerance(p, dt):
     }
 
 
+def law(p):
+    """Return a(t, x, v) of a number x, apart from the scene's."""
+    return lambda t, x, v: p.g - p.c / p.m * v * abs(v)
+
+
+def damped_law(p):
+    """Return the same with the hidden damping."""
+    return lambda t, x, v: p.g - p.c / p.m * v * abs(v) - 0.04 * v * (1.0 + abs(v))
+
+
+def at_rest(p):
+    return 0.0, 0.0
+
+
+def seen(x, p):
+    return [x]
+
+
+MODELS = {
+    "pymunk": table_model("old velocity, old force", law, at_rest, seen),
+    "pybullet": table_model("new velocity, old force", law, at_rest, seen),
+    "pybullet, default": table_model("new velocity, old force", damped_law, at_rest, seen),
+}
+DEPARTURES = {"pybullet, default": hidden_damping(acceleration, start)}
+
+
+def floor(p, dt):
+    return tolerance(p, dt)[EXACT]
+
+
 def pymunk_make(p, dt):
     """Apply drag as a force before each step.
 
@@ -146,7 +177,8 @@ SCENE = Scene(
     truth_uncertainty=1e-14,
     tolerance=tolerance,
     engines=ENGINES,
-    expected_departures={"pybullet, default": hidden_damping(acceleration, start)},
+    expected_departures=DEPARTURES,
+    predicted_error=predict_by_tables(T, law, at_rest, seen, truth, floor, MODELS, DEPARTURES),
     slow_methods=LEFT_TO_FULL,
     # Plain Python finishes before numba has compiled it.
     uncompiled_in_quick=("symplectic_euler_step", "verlet_step"),

@@ -1,0 +1,212 @@
+"""Every method of lesson 1 once more, as a table of numbers, and the error that such a table predicts.
+
+A partitioned Runge–Kutta method has stages i and the weights of its result:
+
+    Xᵢ = x + h Σⱼ αᵢⱼ Vⱼ      Vᵢ = v + h Σⱼ βᵢⱼ Aⱼ      Aᵢ = a(t + cᵢ h, Xᵢ, Vᵢ)
+    x ← x + h Σᵢ aᵢ Vᵢ        v ← v + h Σᵢ bᵢ Aᵢ
+
+One loop runs all of them, with forces of validate/reference: nothing here is shared with `solutions`.
+*Source:* Hairer, Lubich, Wanner 2006, II.1 (Runge–Kutta) and II.2 (partitioned).
+"""
+
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+
+from ..scene import ROUND_OFF, Prediction
+
+MOST_ITERATIONS = 200        # of an implicit stage: h times the fastest rate must be well below 1
+CLOSE = 0.01                 # how near a run comes to the same table's error at the same step [-]
+SAFETY = 2.0                 # over what an expansion misses in its own check [-]
+PREDICTABLE = 0.5            # larger errors, relative to the truth, are not predicted [-]
+FINEST = {1: 800, 2: 400, 4: 200}    # steps that the table is run with, by its order: errors clear of round-off
+
+
+class Tableau(NamedTuple):
+    """A method.  Rows are tuples of (stage, weight)."""
+    c: tuple
+    alpha: tuple             # of the stages' positions
+    beta: tuple              # of the stages' velocities
+    a: tuple                 # of the new position
+    b: tuple                 # of the new velocity
+
+
+def both(c, rows, weights):
+    """The same weights for position and velocity: an ordinary Runge–Kutta method."""
+    return Tableau(c, rows, rows, weights, weights)
+
+
+def kicks_and_drifts(kicks, drifts):
+    """Velocity and position by turns.  Stage 2i is before kick i, stage 2i + 1 after it."""
+    c, alpha, beta, moved, pushed, t = [], [], [], (), (), 0.0
+    for i, (kick, drift) in enumerate(zip(kicks, (*drifts, 0.0), strict=True)):
+        c += [t, t]
+        alpha += [moved, moved]
+        beta += [pushed, (*pushed, (2 * i, kick))]
+        pushed, moved, t = beta[-1], (*moved, (2 * i + 1, drift)), t + drift
+    return Tableau(tuple(c), tuple(alpha), tuple(beta), moved, pushed)
+
+
+B = (0.0829844064174052, 0.396309801498368, -0.0390563049223486)     # Blanes and Moan 2002, table 3, order 4
+A = (0.245298957184271, 0.604872665711080)
+END = ((0, 1.0),)
+
+TABLEAUX = {                 # {label of validate/methods.py: Tableau}
+    "Euler": both((0.0,), ((),), END),
+    "midpoint": both((0.0, 0.5), ((), ((0, 0.5),)), ((1, 1.0),)),
+    "Runge–Kutta 4": both((0.0, 0.5, 0.5, 1.0), ((), ((0, 0.5),), ((1, 0.5),), ((2, 1.0),)),
+                          ((0, 1 / 6), (1, 1 / 3), (2, 1 / 3), (3, 1 / 6))),
+    "average velocity": Tableau((0.0, 1.0), ((), ()), ((), END), ((0, 0.5), (1, 0.5)), END),
+    "symplectic Euler": Tableau((0.0, 1.0), ((), ()), ((), END), ((1, 1.0),), END),
+    "Verlet": Tableau((0.0, 1.0), ((), ((0, 0.5), (1, 0.5))), ((), END), ((0, 0.5), (1, 0.5)), ((0, 0.5), (1, 0.5))),
+    "implicit Euler": both((1.0,), (END,), END),
+    "implicit midpoint": both((0.5,), (((0, 0.5),),), END),
+    "Blanes–Moan": kicks_and_drifts((*B, 1.0 - 2.0 * sum(B), *B[::-1]), (*A, 0.5 - sum(A), 0.5 - sum(A), *A[::-1])),
+    # what engines do: the force from the state before the step, or from the new position and the old velocity
+    "old velocity, old force": both((0.0,), ((),), END),
+    "new velocity, old force": Tableau((0.0, 1.0), ((), ()), ((), END), ((1, 1.0),), END),
+    "old velocity, new force": Tableau((0.0, 1.0), ((), END), ((), ()), END, ((1, 1.0),)),
+}
+
+
+ORDERS = {label: 2 if label in ("midpoint", "Verlet", "implicit midpoint") else 4 if label in
+          ("Runge–Kutta 4", "Blanes–Moan") else 1 for label in TABLEAUX}
+
+
+def weighted(weights, values):
+    total = 0.0
+    for stage, weight in weights:
+        total += weight * values[stage]
+    return total
+
+
+@cache
+def stages(tableau):
+    """[(c, row of α, row of β, weight of the stage itself or None, whether its acceleration is used)]"""
+    used = {stage for row in (*tableau.beta, tableau.b) for stage, _ in row}
+    return [(c, alpha, beta, dict(beta).get(i), i in used)
+            for i, (c, alpha, beta) in enumerate(zip(tableau.c, tableau.alpha, tableau.beta, strict=True))]
+
+
+def step(tableau, law, t, x, v, h):
+    """One step; x and v are floats, complex numbers or arrays."""
+    V, forces = [], []
+    for c, alpha, beta, itself, used in stages(tableau):
+        if itself is None:
+            V.append(v + h * weighted(beta, forces))
+            forces.append(law(t + c * h, x + h * weighted(alpha, V), V[-1]) if used else None)
+        else:
+            for stage, one in zip((V, forces), implicit_stage(law, t + c * h, x, v, itself * h), strict=True):
+                stage.append(one)
+    return x + h * weighted(tableau.a, V), v + h * weighted(tableau.b, forces)
+
+
+def implicit_stage(law, t, x, v, h):
+    """The V with V = v + h a(t, x + h V, V), and that acceleration, by iteration; NaN where it does not converge."""
+    V = v
+    for _ in range(MOST_ITERATIONS):
+        force = law(t, x + h * V, V)
+        last, V = V, v + h * force
+        if np.all(abs(V - last) <= 4.0 * ROUND_OFF * (abs(V) if np.isscalar(V) else np.max(abs(V)))):
+            return V, force
+    return V * np.nan, force
+
+
+def advance(scheme, law, x, v, h, steps):
+    """(x, v) after so many steps.  A scheme is a label of TABLEAUX, or a function like `step` without a tableau."""
+    move = scheme if callable(scheme) else lambda *now: step(TABLEAUX[scheme], *now)
+    with np.errstate(all="ignore"):
+        for n in range(steps):
+            x, v = move(law, n * h, x, v, h)
+    return x, v
+
+
+class ErrorLaw:
+    """The error of a method over its step, from the same method's table at a few coarse steps.
+
+    It is exact to round-off where the table is run with as many steps, up to `finest`.  Beyond, an expansion of three
+    terms, such as  e(h) = C hᵏ + D hᵏ⁺¹ + E hᵏ⁺²,  goes through the three finest of the table's runs.  How far the
+    expansion through the three runs before misses the finest one says how far it can be trusted.
+    *Source:* Hairer, Nørsett, Wanner 1993, II.8: the error of a one-step method has an expansion in powers of h.
+    """
+
+    def __init__(self, run, law, powers, T, finest):
+        self.run, self.law, self.T, self.known = run, law, T, {}
+        self.powers = np.array(powers if isinstance(powers, tuple) else (powers, powers + 1, powers + 2))
+        self.finest = finest // 8 * 8
+
+    def error(self, steps):
+        """What the table's run of so many steps is off by."""
+        if steps not in self.known:
+            try:
+                self.known[steps] = np.array(self.run(steps), dtype=float) - self.law
+            except ArithmeticError:
+                self.known[steps] = np.full_like(self.law, np.nan)
+        return self.known[steps]
+
+    def expanded(self, steps, most):
+        """The error at `steps` by the expansion through the runs of most/4, most/2 and `most` steps."""
+        through = (most // 4, most // 2, most)
+        h = np.array([most / n for n in through])[:, None]
+        terms = np.linalg.solve(h**self.powers, np.array([self.error(n) for n in through]))
+        return (most / steps) ** self.powers @ terms
+
+    def prediction(self, dt, floor):
+        """The Prediction for a step; None where the error is too large."""
+        steps, size, missed = round(self.T / dt), np.linalg.norm(self.law) or 1.0, 0.0
+        error = self.error(steps) if steps <= self.finest else self.expanded(steps, self.finest)
+        if not np.linalg.norm(error) < PREDICTABLE * size:
+            return None
+        if steps > self.finest:
+            missed = np.linalg.norm(self.expanded(self.finest, self.finest // 2) - self.error(self.finest))
+            missed *= SAFETY * (self.finest / steps) ** self.powers[0]
+        return Prediction(error, (CLOSE * np.linalg.norm(error) + missed) / size + floor)
+
+
+class Model(NamedTuple):
+    """What an engine does in a scene."""
+    order: int
+    run: object              # (p, h, steps) → what is observed at the end
+
+
+def table_model(scheme, law, begin, seen, order=1, ahead=0.0):
+    """The Model of an engine that does what a scheme does: a label of TABLEAUX, or p → a function like `step`.
+
+    Its first velocity is that of begin(p) and  ahead h a  at the start.
+    """
+    def run(p, h, steps):
+        force, (x, v) = law(p), begin(p)
+        rule = scheme(p) if callable(scheme) else scheme
+        return seen(advance(rule, force, x, v + ahead * h * force(0.0, x, v), h, steps)[0], p)
+    return Model(order, run)
+
+
+def predict_by_tables(T, law, begin, seen, truth, floor, engines=None, departures=None, finest=None, powers=None):
+    """The field `predicted_error` of a scene, (label, p, dt) → Prediction, from the tables above.
+
+    law(p) → a(t, x, v);    begin(p) → (x, v);    seen(x, p) → what the scene observes of x;    floor(p, dt) → round-off
+    engines: {label: Model};    departures: those of the scene;    finest: {order or label: steps of the finest run of a
+    table}
+    powers: {label: the first three powers of dt in the error, where they are not k, k + 1, k + 2 of order k}
+    """
+    engines, departures, finest = engines or {}, departures or {}, {**FINEST, **(finest or {})}
+
+    def table(label):
+        return lambda p, h, steps: seen(advance(label, law(p), *begin(p), h, steps)[0], p)
+
+    @cache
+    def error_law(label, p):
+        own = departures[label].own_law if label in departures else truth
+        order, run = engines.get(label) or (ORDERS[label], table(label))
+        return ErrorLaw(lambda steps: run(p, T / steps, steps), np.array(own(p, T), dtype=float),
+                        (powers or {}).get(label, order), T, finest.get(label, finest[order]))
+
+    def predicted_error(label, p, dt):
+        """The error, with its sign, of the method's own table of numbers (Runge–Kutta, partitioned), run apart from
+        the lesson with other forces: at the same step where that is coarse, else by its expansion in powers of dt.
+        A run must come as near to it as the expansion can be trusted.
+        """
+        return error_law(label, p).prediction(dt, floor(p, dt)) if label in engines or label in TABLEAUX else None
+
+    return predicted_error
