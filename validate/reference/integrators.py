@@ -112,3 +112,72 @@ def kepler_limits(p, T, dt):
     old, new = late_start(p, T, dt, -1.0) + smooth[2], late_start(p, T, dt, 1.0) + smooth[2]
     return {**smooth, LATE_LEAPFROG: new, "pymunk": old, "pymunk, leapfrog start": smooth[2],
             "pybullet": new, "pybullet, leapfrog start": smooth[2]}
+
+
+# ---------------------------------------------------------------------------------------------- one step
+
+class Nystrom(NamedTuple):
+    """A method for ẍ = a(t, x, ẋ) as a table of numbers, for stages i:
+
+    aᵢ = a(t + cᵢ h,  x + cᵢ h v + h² Σ Āᵢⱼ aⱼ,  v + h Σ Aᵢⱼ aⱼ),      x ← x + h v + h² Σ b̄ⱼ aⱼ,      v ← v + h Σ bⱼ aⱼ
+    Source: Hairer, Nørsett and Wanner 1993, II.14.
+    """
+    c: np.ndarray            # times of the stages [-]
+    A_bar: np.ndarray        # their places [-]
+    A: np.ndarray            # their velocities [-]
+    b_bar: np.ndarray        # weights for the place [-]
+    b: np.ndarray            # weights for the velocity [-]
+
+
+def runge_kutta(A, b):
+    """Return the Nystrom of a Runge–Kutta method for (x, v) together: Ā = A², b̄ = b A, and c the sums of rows of A."""
+    A, b = np.array(A, float), np.array(b, float)
+    return Nystrom(A.sum(axis=1), A @ A, A, b @ A, b)
+
+
+def kicks_and_drifts(kicks, drifts):
+    """Return the Nystrom of a splitting, kick and drift by turns; for accelerations that do not depend on v.
+
+    A kick at cᵢ moves what comes later by its distance in time: Āᵢⱼ = bⱼ (cᵢ − cⱼ) for j < i, and b̄ⱼ = bⱼ (1 − cⱼ).
+    """
+    b, c = np.array(kicks), np.concatenate(([0.0], np.cumsum(drifts)))
+    return Nystrom(c, np.tril(b * (c[:, None] - c), -1), 0.0 * np.outer(c, c), b * (1.0 - c), b)
+
+
+def blanes_moan():
+    """Return SRKN₆ᵇ of order 4.  Source: Blanes and Moan 2002, table 4: b₁ to b₄, backwards; a₁ to a₃, backwards."""
+    b, a = [0.0829844064174052, 0.396309801498368, -0.0390563049223486], [0.245298957184271, 0.604872665711080]
+    a.append(0.5 - sum(a))
+    return kicks_and_drifts([*b, 1.0 - 2.0 * sum(b), *b[::-1]], [*a, *a[::-1]])
+
+
+def stages(*rows):
+    """Return a Nystrom with one or two stages from nested lists."""
+    return Nystrom(*(np.array(row, float) for row in rows))
+
+
+TABLES = {
+    "euler_step": runge_kutta([[0]], [1]),
+    "midpoint_step": runge_kutta([[0, 0], [1 / 2, 0]], [0, 1]),
+    "rk4_step": runge_kutta([[0, 0, 0, 0], [1 / 2, 0, 0, 0], [0, 1 / 2, 0, 0], [0, 0, 1, 0]],
+                            [1 / 6, 1 / 3, 1 / 3, 1 / 6]),
+    "average_velocity_step": stages([0], [[0]], [[0]], [1 / 2], [1]),
+    "symplectic_euler_step": stages([0], [[0]], [[0]], [1], [1]),
+    "verlet_step": stages([0, 1], [[0, 0], [1 / 2, 0]], [[0, 0], [1, 0]], [1 / 2, 0], [1 / 2, 1 / 2]),
+    "implicit_euler_step": runge_kutta([[1]], [1]),
+    "implicit_midpoint_step": runge_kutta([[1 / 2]], [1]),
+    "blanes_moan_step": blanes_moan(),
+}
+ROUNDS = 100                 # at most, of a fixed point [-]: a rate of two thirds would end at round-off
+
+
+def table_step(table, acceleration, t, x, v, h):
+    """Return (x, v) after one step of a Nystrom; implicit stages by fixed-point iteration, for short steps."""
+    a = np.zeros((len(table.c), *x.shape))
+    for _ in range(ROUNDS):
+        place, speed = np.tensordot(table.A_bar, a, 1), np.tensordot(table.A, a, 1)
+        before, a = a, np.array([acceleration(t + c * h, x + c * h * v + h * h * place[i], v + h * speed[i])
+                                 for i, c in enumerate(table.c)])
+        if np.array_equal(a, before):
+            break
+    return x + h * v + h * h * np.tensordot(table.b_bar, a, 1), v + h * np.tensordot(table.b, a, 1)
