@@ -11,7 +11,8 @@ import re
 from functools import cache
 from pathlib import Path
 
-from . import modules
+from . import methods, modules
+from .scene import Method
 from .stability.examine import all_cases
 
 STABILITY = "stability/"
@@ -101,16 +102,28 @@ def roots_of_scene(name):
 
 
 def roots_of_case(case):
-    """What a stability case names of its lesson, in its own function and in those of its file that it calls."""
+    """What a stability case names of its lesson, in its own function and in what it uses of its file."""
     tree = ast.parse(Path(inspect.getsourcefile(case.examine)).read_text(encoding="utf-8"))
     own = {node.name: node for node in tree.body if isinstance(node, ast.FunctionDef)}
+    own |= {target.id: node for node in tree.body if isinstance(node, ast.Assign)
+            for target in node.targets if isinstance(target, ast.Name)}
     pieces, waiting = {}, [case.examine.__name__]
     while waiting:
         name = waiting.pop()
         if name not in pieces:
             pieces[name] = own[name]
             waiting += [n.id for n in ast.walk(own[name]) if isinstance(n, ast.Name) and n.id in own]
-    return set(named(pieces.values(), imported(tree), case.lesson))
+    return {*named(pieces.values(), imported(tree), case.lesson), *methods_in(pieces.values())}
+
+
+def methods_in(nodes):
+    """The functions of the methods that pieces of source name, such as INTEGRATORS."""
+    for node in nodes:
+        for one in ast.walk(node):
+            found = getattr(methods, one.id, ()) if isinstance(one, ast.Name) else ()
+            for method in [found] if isinstance(found, Method) else found if isinstance(found, tuple) else ():
+                if isinstance(method, Method):
+                    yield method.lesson, method.function
 
 
 def exercises(lesson):
@@ -120,8 +133,8 @@ def exercises(lesson):
 
 
 @cache
-def table():
-    """{exercise: {"lesson", "function", "places"}} in the order of the course; places: scenes and stability cases."""
+def places():
+    """{(module, function): the scenes and stability cases that run it}, in the order of the course."""
     where = {}
     for name in modules.in_course_order(modules.scene_names()):
         for place in reached(roots_of_scene(name)):
@@ -129,6 +142,13 @@ def table():
     for case in all_cases():
         for place in reached(roots_of_case(case)):
             where.setdefault(place, []).append(f"{STABILITY}{case.lesson}/{case.slug}")
+    return where
+
+
+@cache
+def table():
+    """{exercise: {"lesson", "function", "places"}} in the order of the course; places: scenes and stability cases."""
+    where = places()
     return {number: {"lesson": lesson, "function": function, "places": where.get((lesson, function), [])}
             for lesson in modules.lesson_names() for number, function in exercises(lesson)}
 

@@ -17,15 +17,20 @@ def test_the_table_names_places_that_call_the_function():
     assert "kepler" not in table["2.7"]["places"] and "oscillator" not in table["5.7"]["places"]
 
 
+def clear():
+    coverage.places.cache_clear()
+    coverage.table.cache_clear()
+
+
 def test_an_exercise_that_nothing_names_is_missing(monkeypatch):
     """What runs 2.1 is taken away: it is the only place."""
-    coverage.table.cache_clear()
+    clear()
     real = coverage.roots_of_case
     monkeypatch.setattr(coverage, "roots_of_case", lambda case: set() if case.slug == "forces" else real(case))
     try:
         assert "2.1 universal_gravity" in coverage.missing()
     finally:
-        coverage.table.cache_clear()
+        clear()
 
 
 def test_functions_are_found_where_they_are_defined():

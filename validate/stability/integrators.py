@@ -16,8 +16,9 @@ from typing import NamedTuple
 import numpy as np
 
 from solutions.checks import Diverged
-from validate.methods import INTEGRATORS
-from validate.stability.case import DOTS, EDGE, LINE, Picture, bisect, case, finding, refuse, series
+from validate.methods import BLANES_MOAN, INTEGRATORS
+from validate.reference import schemes
+from validate.stability.case import DOTS, EDGE, LINE, Picture, agreement, bisect, case, finding, refuse, series
 
 OMEGA = 3.0                  # angular frequency of the runs [rad/s]: not 1, so that h mistaken for hω would show
 STEPS = 499  # of one run: a prime, so that no run ends at its start, where eigenvalues meet and round-off grows
@@ -745,3 +746,74 @@ def leaves(lesson, dt):
     except Diverged:
         return True
     return abs(y[1] - PUBLISHED[1]) > 0.5 * PUBLISHED[1]
+
+
+# ---------------------------------------------------------------------------------------------- one step
+
+TRIED = 20                   # random states and forces [-]
+ROUNDED = 1e-13              # of a few hundred roundings of 1.1e-16, relative to the state
+
+
+class Swing(NamedTuple):
+    """Two masses whose force depends on everything: on time, place and velocity, each across both of them."""
+    k: np.ndarray            # (2, 2) [1/s²]
+    c: np.ndarray            # (2, 2) [1/s]; 0: the force does not depend on the velocity
+    drive: np.ndarray        # (2,) [m/s²]
+    omega: float             # of the drive [rad/s]
+
+
+def swinging(t, x, v, p):
+    """a = −K sin x − C tanh v + drive cos ωt."""
+    return -p.k @ np.sin(x) - p.c @ np.tanh(v) + p.drive * np.cos(p.omega * t)
+
+
+@case("one-step", "One step of each method", compiled=False)
+def one_step(lesson):
+    """A method is its table of coefficients: one step under a force of t, x and v is the same to round-off."""
+    label = {**LABEL, BLANES_MOAN.function: BLANES_MOAN.label}
+    rng, worst = np.random.default_rng(11), dict.fromkeys(label, 0.0)
+    for _ in range(TRIED):
+        (k, c), (x, v, drive) = rng.uniform(-1.0, 1.0, (2, 2, 2)), rng.uniform(-1.0, 1.0, (3, 2))
+        t, h, omega = rng.uniform((0.0, 0.1, 2.0), (1.0, 0.3, 4.0))
+        for name in label:
+            p = Swing(k, 0.0 * c if name == "blanes_moan_step" else c, drive, omega)
+            truth = schemes.step(schemes.TABLEAUX[label[name]], lambda t, x, v, p=p: swinging(t, x, v, p), t, x, v, h)
+            got = getattr(lesson, name)(swinging, t, x, v, h, p)
+            worst[name] = max(worst[name], np.max(np.abs(np.array(got) - truth)))
+    return [agreement(f"One step of {label[name]} is that of its published coefficients.",
+                      f"{label[name]}: largest error of a step [m, m/s]", error,
+                      100.0 * NEWTON if "implicit" in name else ROUNDED) for name, error in worst.items()], None
+
+
+@case("what-measures-methods", "What measures a method", compiled=False)
+def what_measures_methods(lesson):
+    """The matrix of a step, its spectral radius and the order of convergence, on examples whose answers are known."""
+    rng, errors = np.random.default_rng(12), {"matrix": [], "newton": [], "radius": [], "order": []}
+    for _ in range(TRIED):
+        omega, zeta, h, order, scale = rng.uniform((0.5, 0.1, 0.1, 1.0, 0.1), (3.0, 2.0, 1.0, 4.0, 10.0))
+        euler = np.array([[1.0, h], [-h * omega**2, 1.0 - 2.0 * zeta * omega * h]])
+        errors["matrix"].append(np.max(np.abs(lesson.amplification_matrix(lesson.euler_step, omega, zeta, h) - euler)))
+
+        (k, c), (x, v, drive) = rng.uniform(-1.0, 1.0, (2, 2, 2)), rng.uniform(-1.0, 1.0, (3, 2))
+        slope = -h * k * np.cos(x + h * v) - c / np.cosh(v) ** 2
+        matrix = lesson.newton_matrix(swinging, 0.3, x, v, h, Swing(k, c, drive, 1.0))
+        errors["newton"].append(np.max(np.abs(matrix - (np.eye(2) - h * slope))))
+
+        any_matrix = rng.uniform(-1.0, 1.0, (2, 2))
+        radius = np.max(np.abs(np.linalg.eigvals(any_matrix)))
+        errors["radius"].append(abs(lesson.spectral_radius(any_matrix) - radius))
+
+        dts = np.array([0.1, 0.05, 0.02, 0.01])
+        scattered = scale * dts**order * rng.uniform(0.9, 1.1, 4)
+        slope = np.polyfit(np.log(dts), np.log(scattered), 1)[0]
+        errors["order"].append(abs(lesson.observed_order(dts, scattered) - slope))
+    # a central difference of h = 6e-6 errs by h²/6 times a third derivative, and by round-off over h: 2e-10 in all;
+    # near a double eigenvalue round-off counts by its root
+    return [agreement("The matrix of a step of Euler is 1 + h J.", "entries of the matrix: largest error [-]",
+                      max(errors["matrix"]), ROUNDED),
+            agreement("Newton's matrix is 1 − dt ∂a/∂v, along x + dt v.", "Newton's matrix: largest error [-]",
+                      max(errors["newton"]), 1e-9),
+            agreement("The spectral radius is the largest absolute eigenvalue.", "spectral radius: largest error [-]",
+                      max(errors["radius"]), 1e-9),
+            agreement("The observed order is the slope of the least squares on logarithmic scales.",
+                      "order: largest error [-]", max(errors["order"]), 1e-12)], None

@@ -11,6 +11,7 @@ from validate.stability.case import agreement, case
 EARTH, RADIUS, GM = 5.9722e24, 6.371e6, 3.986004418e14    # mass [kg], mean radius [m], G times the mass [m³/s²]
 G_SI = 6.67430e-11                                        # CODATA 2018 [m³/(kg s²)]
 IMAGINARY = 1e-20                                         # step of the derivative [m]
+NEARLY = 1e-6                                             # a gap that is still open [m]
 CASES = 50                                                # random configurations of each force
 ROUNDED = 1e-12                                           # of a few dozen roundings of 1.1e-16, relative
 
@@ -50,6 +51,7 @@ def forces(lesson):
         pushed = lesson.soft_contact_force(deep, slow, slope, k, k_d)
         errors["contact"].append(length(pushed - 0.5 * k * abs(C) * slope) / (k * abs(C)))
         errors["free"].append(max(length(lesson.soft_contact_force(abs(C), -10.0 * slow, slope, k, k_d)),
+                                  length(lesson.soft_contact_force(NEARLY, -10.0 * slow, slope, k, k_d)),
                                   length(lesson.soft_contact_force(deep, 3.0 * slow, slope, k, k_d))))
     for name, claim in (
             ("gravity", "Newton's attraction is the derivative of −G m_a m_b/r."),
@@ -88,3 +90,77 @@ def lecture_step(lesson):
         worst = max(worst, np.max(np.abs(np.concatenate((got_x[:, 1], got_v[:, 1])) - truth)) / np.max(np.abs(truth)))
     claim = "The lecture's step adds gravity, wind, drag, springs and dampers, and moves with the mean velocity."
     return [agreement(claim, "state after a step: largest relative error [-]", worst, ROUNDED)], None
+
+
+def angle_between(r_a, r_c):
+    """Return the angle from r_a to r_c, also of complex vectors: arctan has a derivative there, arctan2 has none."""
+    across, along = r_a[0] * r_c[1] - r_a[1] * r_c[0], r_a @ r_c
+    return np.arctan(across / along) + (0.0 if along.real > 0.0 else np.copysign(np.pi, across.real))
+
+
+@case("angular-spring-forces", "An angular spring with unequal arms", compiled=False)
+def angular_spring(lesson):
+    """U = ½k(θ − rest)² for arms of any length, any angle and any rest angle; θ − rest within half a turn."""
+    rng, worst, force, moment = np.random.default_rng(23), 0.0, 0.0, 0.0
+    for _ in range(CASES):
+        x, rest, k = rng.normal(size=6), rng.uniform(-np.pi, np.pi), rng.uniform(0.5, 2.0)
+
+        def energy(x, rest=rest, k=k):
+            turn = angle_between(x[:2] - x[2:4], x[4:] - x[2:4]) - rest
+            return 0.5 * k * (turn - 2.0 * np.pi * np.round(turn.real / (2.0 * np.pi))) ** 2
+
+        truth = -gradient(energy, x).reshape(3, 2)
+        F = np.array(lesson.angular_spring_forces(x[:2], x[2:4], x[4:], rest, k))
+        worst = max(worst, np.max(np.abs(F - truth)) / np.max(np.abs(truth)))
+        force = max(force, np.max(np.abs(F.sum(axis=0))) / np.max(np.abs(F)))
+        places = x.reshape(3, 2)
+        moment = max(moment, abs(np.sum(places[:, 0] * F[:, 1] - places[:, 1] * F[:, 0])) / np.max(np.abs(F)))
+    return [agreement("The forces on both ends and on the hinge are the derivative of ½k(θ − rest)².",
+                      "forces: largest relative error [-]", worst, 1e-10),
+            agreement("They add up to nothing.", "sum of the forces over the largest [-]", force, ROUNDED),
+            agreement("They have no moment.", "sum of the moments over the largest force [m]", moment, ROUNDED)], None
+
+
+@case("large-step", "The linearly implicit step of a mesh", compiled=False)
+def large_step(lesson):
+    """(M + h k_v − h ∂F/∂v − h² ∂F/∂x) Δv = h (M a + h ∂F/∂x v), solved densely, with derivatives of energies.
+
+    ∂F/∂x of a compressed spring has a sideways push, which the method leaves out: it keeps the positive part of K.
+    """
+    rng, stiffness, steps = np.random.default_rng(24), 0.0, 0.0
+    pairs = np.array([(0, 1), (1, 2), (2, 3), (3, 0), (0, 2), (1, 4), (3, 4)])
+    i, j = pairs.T
+    for _ in range(CASES // 5):
+        x, v, m = rng.normal(size=(5, 3)), rng.normal(size=(5, 3)), rng.uniform(0.5, 2.0, 5)
+        k, k_d, rest = rng.uniform(50.0, 200.0, 7), rng.uniform(0.5, 2.0, 7), rng.uniform(0.5, 2.0, 7)
+        gravity, wind, k_v, h = rng.normal(size=3), rng.normal(size=3), rng.uniform(0.1, 1.0), rng.uniform(0.05, 0.2)
+        v[0] = 0.0
+        network = lesson.make_spring_network(x, m, [0], pairs, k, k_d, gravity, wind, k_v)._replace(rest=rest)
+        K, D, F = np.zeros((15, 15)), np.zeros((15, 15)), np.zeros((5, 3))
+        blocks, _ = lesson.spring_stiffness(x, network)
+        for s in range(7):
+            r, u = x[j[s]] - x[i[s]], v[j[s]] - v[i[s]]
+            push = lambda r, s=s, k=k, rest=rest: k[s] * (length(r) - rest[s]) * r / length(r)
+            hessian = np.array([push(r + IMAGINARY * 1j * e).imag for e in np.eye(3)]) / IMAGINARY
+            values, axes = np.linalg.eigh(hessian)
+            positive = axes * np.maximum(values, 0.0) @ axes.T
+            stiffness = max(stiffness, np.max(np.abs(blocks[s] - positive)) / k[s])
+            n = r / length(r)
+            ends = np.kron(np.eye(5)[i[s]] - np.eye(5)[j[s]], np.eye(3))
+            K += ends.T @ positive @ ends
+            D += ends.T @ (k_d[s] * np.outer(n, n)) @ ends
+            F[i[s]] += push(r) + k_d[s] * (u @ n) * n
+            F[j[s]] -= push(r) + k_d[s] * (u @ n) * n
+        M, free = np.repeat(m, 3), np.repeat(np.arange(5) > 0, 3)
+        right = h * (M * np.tile(gravity, 5) + (F + wind - k_v * v).ravel() - h * K @ v.ravel())
+        A = np.diag(M + h * k_v) + h * D + h * h * K
+        v_new = v.ravel().copy()
+        v_new[free] += np.linalg.solve(A[np.ix_(free, free)], right[free])
+        got_x, got_v = lesson.implicit_spring_network_step(lesson.spring_network_acceleration, 0.0, x, v, h, network)
+        truth = np.concatenate((x.ravel() + h * v_new, v_new))
+        steps = max(steps, np.max(np.abs(np.concatenate((got_x.ravel(), got_v.ravel())) - truth)))
+    # conjugate gradients end at 1e-10 of the right-hand side; A has a condition below 1e3
+    return [agreement("The stiffness of a spring is the positive part of the second derivative of its energy.",
+                      "blocks of K over k: largest error [-]", stiffness, 1e-10),
+            agreement("A large step solves the linearised equations of all points together.",
+                      "state after a step: largest error [m, m/s]", steps, 1e-6)], None

@@ -1,0 +1,51 @@
+"""Lesson 6: wrong sides, nearest features, times and cases at the end."""
+
+from . import collection
+
+fault, FAULTS = collection("collisions")
+
+fault("plane_distance", "p @ plane.n + plane.d", "p @ plane.n - plane.d",
+      "the plane is on the other side of the origin")
+fault("plane_impact_time", "plane_distance(x_0, plane) - r", "plane_distance(x_0, plane)",
+      "before the step the ball is a point")
+fault("plane_impact_time", "before / (before + after)", "0.99 * before / (before + after)",
+      "it hits 1 % too early in the step")
+fault("cylinder_contact", "np.array([x[0], 0.0, 0.0])", "np.array([0.0, 0.0, 0.0])",
+      "the cylinder is a ball at the origin")
+fault("cylinder_impact_time", "s = C / (np.sqrt(D) - B)", "s = (np.sqrt(D) - B) / A",
+      "the ball stops where it leaves the cylinder")
+fault("cylinder_impact_time", "rho = R + r", "rho = R", "the ball is a point")
+fault("closest_on_segment", "np.minimum(1.0, np.maximum(0.0, (p - a) @ along / length_squared))",
+      "np.maximum(0.0, (p - a) @ along / length_squared)", "the segment has no second end")
+fault("triangle_cylinder_gap", "edge_axis_distance(c, a)", "edge_axis_distance(a, b)",
+      "one edge of the cloth is never looked at")
+fault("triangle_cylinder_gap", "np.all(turns > 0.0) or np.all(turns < 0.0)", "np.all(turns > 0.0)",
+      "a clockwise triangle around the axis does not touch it")
+fault("closest_on_triangle", "closest_on_segment(p, c, a))", "closest_on_segment(p, a, b))",
+      "the third edge is never nearest")
+fault("closest_on_triangle", "dot(cross(a - c, q - c), N) >= 0.0", "True",
+      "beyond the third edge a point counts as inside")
+fault("ball_box", "i = np.argmin(depth)", "i = np.argmax(box.half)", "a ball inside leaves along the longest axis")
+fault("ball_box", "1.0 if y[i] >= 0.0 else -1.0", "1.0", "it leaves through the positive side always")
+fault("swept_box", "np.minimum(low, low + move)", "np.minimum(low, low - move)", "the box grows to the wrong side")
+fault("all_pairs", "range(i + 1, len(low))", "range(i + 1, len(low) - 1)", "the last box is never tested")
+fault("find_intersections", "waiting.append((i, down_b + 1))", "waiting.append((i, down_b))",
+      "a branch of the tree is never visited")
+fault("separating_edge", "gap = np.minimum(gap, n @ (b[j] - a[i]))", "gap = n @ (b[j] - a[i])",
+      "only the last corner counts")
+fault("separating_edge", "gap = np.minimum(gap, n @ (b[j] - a[i]))", "gap = np.minimum(gap, n @ (b[j] - a[0]))",
+      "every edge is measured from the first corner")
+fault("clip", "s_i / (s_i - s_j)", "s_i / (s_i + s_j)", "the crossing is outside the edge")
+fault("clip", "if s_i <= 0.0:", "if s_i < 0.0:", "corners exactly on the line are cut off")
+fault("box_separation", "- half_width(b, axis)", "- half_width(a, axis)", "the second box has the size of the first")
+fault("box_separation", "range(15)", "range(6)", "pairs of edges are never tried")
+fault("gjk", "support(b, v)", "support(b, -v)", "the support of the second body is on its far side")
+fault("repulsion", "(1.0 / g - 1.0 / reach)", "(1.0 / g)", "the field ends with a jump at its reach")
+fault("repulsion", "g = distance - radius", "g = distance", "the obstacle is a point")
+fault("steer", "2.0 * (radius - offset)", "(radius - offset)", "it moves aside by half of what it needs")
+fault("steer", "tau <= 0.0 or", "", "it steers around what it has passed")
+fault("flock_acceleration", "p.gather * (middle - x[i])", "p.gather * (x[i] - middle)",
+      "the flock flees from its own middle")
+fault("ball_contact", "np.sqrt(r @ r) - r_a - r_b", "np.sqrt(r @ r) - r_a", "the gap leaves out the second radius")
+fault("capsule_capsule", "ball_contact(p, r_a, q, r_b)", "ball_contact(p, r_b, q, r_a)",
+      "the radii of two capsules are exchanged")

@@ -1,0 +1,52 @@
+"""Lesson 7: wrong arms, signs, bodies, cones and times."""
+
+from . import collection
+
+fault, FAULTS = collection("impulses")
+
+fault("kinematic_response", "(1.0 + e) * v_n", "(1.0 + 0.99 * e) * v_n", "restitution is 1 % too small")
+fault("kinematic_response", "v if v_n >= 0.0 else", "v if v_n > 0.5 else", "a ball that leaves slowly is sent back")
+fault("penalty_force", "np.maximum(0.0, -stiffness * phi - damping * v_n)", "-stiffness * phi - damping * v_n",
+      "the spring pulls a ball that leaves")
+fault("penalty_force", "damping * v_n", "damping * np.minimum(0.0, v_n)", "the damper works on the way in only")
+fault("relative_velocity_2d", "return a.v + turn_a - b.v - turn_b", "return a.v + turn_a - b.v + turn_b",
+      "the second body turns the other way")
+fault("impulse_size", "-(1.0 + e) * u_n / k_n", "-(1.0 + e * e) * u_n / k_n",
+      "restitution of energies for that of velocities")
+fault("effective_inverse_mass_2d", "lever_b**2 * b.inv_inertia", "lever_b**2 * a.inv_inertia",
+      "the second body has the moment of the first")
+fault("apply_impulse_2d", "cross_2d(r, J)", "cross_2d(J, r)", "an impulse turns a body the wrong way")
+fault("effective_inverse_mass", "cross(times(b.inv_inertia, cross(r_b, n)), r_b)",
+      "cross(times(b.inv_inertia, cross(r_b, n)), r_a)", "the second lever has the first arm")
+fault("angular_momenta", "L_b - cross(r_b, J)", "L_b + cross(r_b, J)", "both bodies are turned the same way")
+fault("contact_matrix", "cross(times(inv_inertia, cross(r, unit)), r)", "cross(times(inv_inertia, cross(unit, r)), r)",
+      "turning makes a point heavier")
+fault("cone_impulse", "if size <= mu * (J @ n):", "if size <= 1.1 * mu * (J @ n):",
+      "it sticks up to 10 % beyond the cone")
+fault("cone_impulse", "u_sep - u @ n) / (n @ times(K, d))", "u_sep - u @ n) / (n @ times(K, n) * np.cos(beta))",
+      "friction does not change the normal velocity")
+fault("cone_impulse", "np.sin(beta) / size * J_t", "-np.sin(beta) / size * J_t",
+      "friction on the rim pushes along the slip")
+fault("energy_change", "0.5 * (J @ times(K, J))", "(J @ times(K, J))", "the second half of the work counts twice")
+fault("gap_multiplier", "phi / dt + u_n", "u_n", "a gap that is still open is closed at once")
+fault("impact_time", "np.sqrt(squared)", "np.sqrt(v_n * v_n)", "acceleration does nothing before the impact")
+fault("impact_time", "-(v_n + s) / a_n", "-2.0 * (v_n + s) / a_n", "what flies up comes back twice as late")
+fault("bouncing_time", "a_n * (1.0 - e)", "a_n * (1.0 - e * e)", "the flights shrink by e² each")
+fault("bouncing_time", "if v_n <= 0.0:", "if v_n <= 0.1:", "small bounces are left out")
+fault("penalty_step", "return x + dt * v, v", "return x + dt * (v - 0.5 * dt * acceleration(t, x, v, p)), v",
+      "it falls with the mean velocity: a step that errs less")
+fault("position_projection_step", "x = x - phi * p.n", "x = x - 2.0 * phi * p.n",
+      "the ball is mirrored, not moved back")
+fault("backtracking_step", "slide_on_plane(x, v, a, left, p.n)", "slide_on_plane(x, v, a, 0.0, p.n)",
+      "a ball that has bounced to rest stops sliding for the rest of the step")
+fault("slide_on_plane", "a - np.minimum(0.0, a @ n) * n", "tangential(a, n)", "the plane also pulls")
+fault("free_flight", "0.5 * t * t * a", "0.49 * t * t * a", "the fall is 2 % too short")
+fault("disc_impact", "p.inv_mass[j] * size * n", "p.inv_mass[i] * size * n",
+      "the second disc has the mass of the first")
+fault("spinning_impact", "times(p.inv_inertia, cross(r, J))", "times(p.inv_inertia, cross(J, r))",
+      "friction turns the ball the wrong way")
+fault("solve_impacts", "Js[i] = J\n        if", "Js[i] = np.maximum(J, 0.0)\n        if",
+      "impulses along negative axes are forgotten between sweeps")
+fault("rebound_speeds", "-e * (n[i] @", "-e * 0.9 * (n[i] @", "points leave 10 % too slowly")
+fault("most_dissipative_impact", "share = 0.0, 0.0, 1.0 + e", "share = 0.0, 0.0, 1.0",
+      "restitution is left out: Moreau's impact")

@@ -1,0 +1,157 @@
+"""Plant a fault in a copy of the lessons, and find the verdict or the finding of the report that it turns.
+
+Only the scenes and stability cases that execute the function run, those first that are most likely to notice.  Of a
+scene only the methods run that call the function, on a sweep that grows finer; no engine runs, and nothing is timed.
+A verdict has turned if it is DEPARTS where the same sweep of the worked answers is not, a finding if it does not hold.
+"""
+
+import shutil
+import tempfile
+import time
+from contextlib import contextmanager
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from validate import coverage, modules
+from validate.loading import TooLong, alarm
+from validate.measure.accuracy import method_curve
+from validate.measure.selection import Plan, select
+from validate.results import Verdict
+from validate.stability.examine import all_cases, broken_off, examine
+
+from . import planted
+
+SWEEPS = (300, 1000, 5000)   # most steps of a run, before all of them: a coarse sweep often shows the fault
+SECONDS = {}                 # of the places that have run in this process: quick ones are asked first
+PATIENCE = 40.0              # for one scene or stability case, on the processor: a fault can make it slow [s]
+
+
+class Notice(NamedTuple):
+    """What became of a fault."""
+    turned: str              # the verdict or the finding that turned; empty: none did
+    place: str               # the scene or stability case
+    seconds: float           # until then
+    tried: list              # the places that ran
+
+
+@contextmanager
+def copy_with(texts):
+    """A temporary copy of solutions/ in which some lessons have another text: {lesson: text}."""
+    with tempfile.TemporaryDirectory(prefix="fault-") as folder:
+        copy = Path(folder) / "lessons"
+        shutil.copytree(modules.SOLUTIONS, copy, ignore=shutil.ignore_patterns("__pycache__"))
+        for lesson, text in texts.items():
+            (copy / f"{lesson}.py").write_text(text, encoding="utf-8")
+        yield copy
+
+
+def notice(fault, first="", finest=np.inf):
+    """The Notice of a fault; `first` is the place that is asked first, and no scene runs with more than `finest` steps.
+    """
+    began, tried = time.monotonic(), []
+    with copy_with({fault.lesson: planted(fault)}) as copy:
+        places = coverage.places()[fault.lesson, fault.function]
+        for most in (*(most for most in SWEEPS if most < finest), finest):
+            for place in sorted(places, key=lambda place: rank(place, fault, first)):
+                if most > min(SWEEPS[0], finest) and place.startswith(coverage.STABILITY):
+                    continue                                         # it has no sweep, and has already run
+                tried.append(place)
+                turned = turned_at(place, copy, (fault.lesson, fault.function), most)
+                if turned:
+                    return Notice(turned, place, time.monotonic() - began, sorted(set(tried)))
+    return Notice("", "", time.monotonic() - began, sorted(set(tried)))
+
+
+def rank(place, fault, first):
+    """Places of the lesson itself before those of later lessons; those that name the function first, and quick ones."""
+    roots = roots_of(place)
+    near = coverage.defined((fault.lesson, fault.function)) in {coverage.defined(root) for root in roots}
+    own = any(lesson == fault.lesson for lesson, _ in roots)
+    slow = SECONDS.get(place, 0.0) // 1.0
+    return place != first, not own, not near, slow, not place.startswith(coverage.STABILITY), place
+
+
+@cache
+def roots_of(place):
+    """What a scene or a stability case names of the lessons."""
+    case = stability_case(place)
+    return coverage.roots_of_case(case) if case else coverage.roots_of_scene(place)
+
+
+def stability_case(place):
+    """The stability case of that place; None for a scene."""
+    return next((c for c in all_cases() if place == f"{coverage.STABILITY}{c.lesson}/{c.slug}"), None)
+
+
+def turned_at(place, of, function=None, most=np.inf, compiled=False):
+    """What of that place turns with the lessons of a folder, in a few words; empty where nothing does."""
+    case, began = stability_case(place), time.monotonic()
+    try:
+        with alarm(PATIENCE, own=True):
+            return turned_finding(case, of, compiled) if case else turned_verdict(place, of, function, most, compiled)
+    except TooLong:
+        return ""                                                    # no verdict: not noticed
+    finally:
+        SECONDS[place] = time.monotonic() - began
+
+
+def turned_finding(case, of, compiled=False):
+    """The first finding of a stability case that does not hold."""
+    try:
+        findings = examine(case, of, compiled).findings
+    except TooLong:
+        raise
+    except Exception as e:                                           # as in stability_cases
+        findings = broken_off(case, e).findings
+    return next((f"{f.quantity}: {f.measured:.6g}, predicted {f.predicted:.6g}" for f in findings if not f.holds), "")
+
+
+def turned_verdict(name, of, function=None, most=np.inf, compiled=False):
+    """The first verdict of a scene that is DEPARTS, and is not with the worked answers."""
+    plan = Plan(of=str(of), speeds=("compiled",) if compiled else ("plain",), live=())
+    selection = shortened(select(name, plan), most)
+    for case, p in selection.cases.items():
+        truth = np.array(selection.scene.truth(p, selection.scene.duration), dtype=float)
+        for method in selection.methods_for(p):
+            if function and not runs(name, method, function):
+                continue
+            curve = method_curve(selection, method, p, truth)
+            if curve["verdict"] is Verdict.DEPARTS and worked(name, case, method.function, most) is not Verdict.DEPARTS:
+                return f"{case}, {method.label}: {curve['message']}"
+    return ""
+
+
+def shortened(selection, most):
+    """The same with no more than so many steps, but with the three coarsest of the scene's own sweep."""
+    few = selection.scene.steps[:3]
+    return selection._replace(steps=tuple(n for n in selection.steps if n <= max(most, *few)))
+
+
+@cache
+def worked(name, case, method, most):
+    """The verdict on a method of the worked answers, on the same sweep."""
+    selection = shortened(select(name, Plan(speeds=("plain",), live=())), most)
+    p = selection.cases[case]
+    truth = np.array(selection.scene.truth(p, selection.scene.duration), dtype=float)
+    method = next(m for m in selection.methods_for(p) if m.function == method)
+    return method_curve(selection, method, p, truth)["verdict"]
+
+
+@cache
+def runs(name, method, function):
+    """Whether a method of a scene executes a function, or everything in the scene does."""
+    return function_in(coverage.reached({(method.lesson, method.function)}), function) or function_in(
+        coverage.reached(coverage.roots_of_scene(name) - {(m.lesson, m.function) for m in bound(name).methods}),
+        function)
+
+
+def function_in(places, function):
+    return coverage.defined(function) in places
+
+
+@cache
+def bound(name):
+    return modules.bind_scene(name)

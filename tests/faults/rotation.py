@@ -1,0 +1,56 @@
+"""Lesson 5: wrong frames, sides, halves and handedness."""
+
+from . import collection
+
+fault, FAULTS = collection("rotation")
+
+fault("skew", "[a[2], 0.0, -a[0]]", "[a[2], 0.0, a[0]]", "one entry of ω* has the other sign")
+fault("point_velocity", "v + cross(omega, r)", "v - cross(omega, r)", "a point of a body turns against the body")
+fault("total_load", "cross(points[i] - x, forces[i])", "cross(points[i], forces[i])",
+      "torque is about the origin, not about the centre of mass")
+fault("total_load", "F += forces[i]", "F = forces[i].copy()", "only the last force pushes")
+fault("angular_velocity", "R @ ((R.T @ L) / I_body)", "R.T @ ((R @ L) / I_body)", "body and world are exchanged")
+fault("state_derivative", "skew(omega) @ S.R", "S.R @ skew(omega)", "ω is taken in body coordinates")
+fault("state_derivative", "S.P / body.m", "S.P", "momentum for velocity: right for a kilogram")
+fault("matrix_update", "second -= dot(first, second) * first", "second -= 0.5 * dot(first, second) * first",
+      "the axes are not at right angles any more")
+fault("axis_angle_update", "(1.0 - c) * dot(n, r) * n", "(1.0 - c) * (1.0 - c) * dot(n, r) * n",
+      "the part along the axis is 1 − cos θ too short")
+fault("quaternion_product", "a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2]",
+      "a[0] * b[1] + a[1] * b[0] - a[2] * b[3] + a[3] * b[2]", "one component multiplies in the other order")
+fault("rotation_matrix", "2.0 * (y * z + w * x)", "2.0 * (y * z - w * x)", "one entry is that of the transpose")
+fault("quaternion_update", "0.5 * dt * quaternion_product(spin, q)", "0.5 * dt * quaternion_product(q, spin)",
+      "ω is taken in body coordinates")
+fault("quaternion_update", "unit(q + 0.5 * dt * quaternion_product(spin, q))",
+      "unit(q + 0.5 * dt * quaternion_product(spin, q) - 0.125 * dt * dt * (spin @ spin) * q)",
+      "the next term of the series is in it: a step that errs less")
+fault("angular_acceleration", "cross(omega_body, I_body * omega_body)", "cross(I_body * omega_body, omega_body)",
+      "the gyroscopic term has the other sign")
+fault("angular_acceleration", "unrotate(q, tau)", "tau", "the torque is taken in body coordinates")
+fault("rigid_body_step", "x + dt * v, v, quaternion_update(q, omega, dt)",
+      "x + dt * v, v, quaternion_update(q, omega - dt * angular_acceleration(q, omega, tau, body.I_body), dt)",
+      "it turns with nearly the old ω: explicit Euler for the orientation")
+fault("rolling_step", "ball.radius * ball.radius / ball.I_body[0]", "ball.radius / ball.I_body[0]",
+      "the lever of friction counts once: right for a radius of 1 m")
+fault("supported_weight", "F[2] + max(0.0, -F[2])", "F[2] - F[2]",
+      "the floor also pulls: it holds a ball that gravity lifts")
+fault("kinetic_energy", "unrotate(q, L)", "L", "the energy takes world components for body components")
+fault("tumbling_rate", "(I_body[i] * I_body[j])", "(I_body[k] * I_body[k])",
+      "the rate has the wrong moments below the line")
+fault("heavy_top_torque", "-e[1], e[0]", "e[1], -e[0]", "the top precesses the other way")
+fault("heavy_top_torque", "top.mgl *", "1.01 * top.mgl *", "the top is 1 % too heavy")
+fault("gyroscopic_step", "omega = omega + dt * angular_acceleration",
+      "omega = omega + 1.05 * dt * angular_acceleration", "all torques are 5 % too strong")
+fault("implicit_gyroscopic_step", "cross(I[k] * omega - L_body, one[k])", "cross(I[k] * omega, one[k])",
+      "half of the Jacobian of the gyroscopic term is missing")
+fault("runge_kutta_step", "rate_4, tau_4 = _slope(torque, t + dt, q + dt * rate_3",
+      "rate_4, tau_4 = _slope(torque, t + dt, q + dt * rate_2",
+      "the last slope starts from the second in place of the third")
+fault("midpoint_free_rotation", "w = m / I_body\n            return", "w = start / I_body\n            return",
+      "the body turns with ω of the beginning")
+fault("splitting_free_rotation", "turned = about_axis(turned, a, 0.5 * slow_a * body_component(turned, L, a))",
+      "turned = about_axis(turned, a, 0.5 * slow_a * body_component(q, L, a))",
+      "the last rotation takes L of the beginning")
+fault("midpoint_step", "L + 0.5 * dt * torque(t + dt, q, L, body)", "L + 0.5 * dt * torque(t, q, L, body) * 0.98",
+      "the second half of the angular impulse is 2 % too small")
+fault("compose", "1.0 - 4.0 * SUZUKI", "1.0 - 3.96 * SUZUKI", "the shares of the step do not add up to 1")

@@ -1,0 +1,39 @@
+"""Lesson 2: wrong arms, ends, signs and terms that vanish at rest."""
+
+from . import collection
+
+fault, FAULTS = collection("springs")
+
+fault("universal_gravity", "distance**3", "distance**2", "the force falls with 1/r")
+fault("universal_gravity", "return G", "return -G", "masses repel each other")
+fault("air_force", "wind - k_v * v", "wind - 1.01 * k_v * v", "the air is 1 % too viscous")
+fault("air_force", "wind - k_v * v", "-k_v * v", "the wind does nothing")
+fault("spring_tension", "k_d * rate", "k_d * np.abs(rate)", "the damper pulls while the spring is shortened, too")
+fault("spring_tension", "k * (length - rest)", "1.01 * k * (length - rest)", "springs are 1 % too stiff")
+fault("soft_constraint_force", "k_d * C_rate", "0.9 * k_d * C_rate", "the damper is 10 % too weak")
+fault("soft_contact_force", "if C >= 0.0:", "if C >= 0.01:", "the surface pushes from a distance of a centimetre on")
+fault("soft_contact_force", "np.maximum(0.0, -(k * C + k_d * C_rate))", "-(k * C + k_d * C_rate)",
+      "the surface pulls a body that leaves it fast")
+fault("angular_spring_forces", "-k * turn / squared_c", "-k * turn / np.sqrt(squared_a * squared_c)",
+      "the force on c has the mean arm for its own")
+fault("angular_spring_forces", "-(F_a + F_c), F_c", "-2.0 * F_a, F_c", "the hinge gets twice the force of one arm")
+fault("angular_spring_forces", "turn -= 2.0 * np.pi * np.ceil((turn - np.pi) / (2.0 * np.pi))", "turn -= 0.0",
+      "an angle past half a turn is not brought back: the spring pushes the long way round")
+fault("spring_forces", "product += r * (v_j[c] - v_i[c])", "product += r * v_j[c]",
+      "the damper sees the velocity of one end only")
+fault("spring_network_acceleration", "(force[n, c] + air) * network.inv_mass[n]",
+      "force[n, c] * network.inv_mass[n] + air", "air acts per kilogram")
+fault("mass_spring_damper_step", "average_velocity_step(spring_network_acceleration, t, x",
+      "average_velocity_step(spring_network_acceleration, t, x + 0.5 * dt * v",
+      "the forces are those of the middle of the step, and so is the place")
+fault("grid_pairs", "0 <= c + dc < cols", "c + dc < cols",
+      "a shear spring of the first column wraps round to the row before")
+fault("spring_stiffness", "np.maximum(0.0, 1.0 - network.rest[s] / length)", "np.maximum(0.0, 1.0)",
+      "a spring at rest resists sideways motion")
+fault("spring_stiffness", "D[s, a, b] = network.k_d[s] * nn", "D[s, a, b] = 0.5 * network.k_d[s] * nn",
+      "half of the damping is explicit")
+fault("implicit_spring_network_step", "+ dt * network.k_v", "", "viscosity is not in the matrix")
+fault("implicit_spring_network_step", "dt * dt * K + dt * D", "0.5 * dt * dt * K + dt * D",
+      "the matrix has half of the stiffness: another method, which loses less energy")
+fault("conjugate_gradients", "enough = CG_TOLERANCE * CG_TOLERANCE * squared", "enough = 1e-4 * squared",
+      "the step is solved to 1 % only")
