@@ -97,7 +97,7 @@ def page(name):
     first, _, rest = ast.get_docstring(tree_of(name)).partition("\n")
     said = re.sub(r"^Lesson \d+\. *", "", first).rstrip(".")
     numbers = {exercise.function: exercise for exercise in lesson.exercises}
-    parts = [f".. py:module:: lessons.{name}", heading(f"{lesson.number} · {name}", "="), prose(f"{said}."),
+    parts = [f".. py:module:: lessons.{name}", heading(f"{lesson.number} · {name}: functions", "="), prose(f"{said}."),
              f"Notebook: :doc:`/notebooks/{course.notebook_of(name).stem}`. {len(numbers)} exercises, {lesson.points:g} "
              f"points. A number marks an exercise; all other functions are given.",
              as_rst("\n" + rest.strip("\n"))]
