@@ -62,6 +62,9 @@ AUTHORS = {
     "validate/generate.py",                       # makes the lessons from the answers
     "validate/benchmark.py",                      # times the answers
     "docs/grading.md",                            # for instructors
+    "docs/plan.md",
+    "docs/scenes.png",                            # of the repository's README
+    "docs/scenes.webp",
 }
 PLUGIN, ANSWERS = "tests/grading/plugin.py", "solutions/answers.md"
 OPENINGS = "notebooks/openings.json"
@@ -198,7 +201,7 @@ def made_by(cells):
 def wanted(path, lessons, others, scenes):
     """Whether a tracked file goes into the zip unchanged."""
     folder = path.parts[0]
-    if path.as_posix() in AUTHORS:
+    if path.as_posix() in AUTHORS or path.parts[:2] == ("validate", "book"):
         return False
     if path.parts[:2] in (("validate", "scenes"), ("validate", "recorded")) and path.stem != "__init__":
         return path.stem in scenes

@@ -3,32 +3,13 @@
 nbclient waits with asyncio. On a busy machine that may miss a reply, and then waits until its timeout.
 """
 
-import contextlib
 import json
-import tempfile
 
-import zmq
-from jupyter_client import KernelManager
+from validate.book.execute import kernel
+
+__all__ = ["kernel", "ran"]
 
 LONGEST = 120                # of one cell [s]
-
-
-@contextlib.contextmanager
-def kernel(folder):
-    """A client of a new kernel with that working folder."""
-    # Two kernels that start at the same time may choose the same port, but not the same file.
-    with tempfile.TemporaryDirectory() as place:
-        manager = KernelManager(kernel_name="python3",
-                                **{"transport": "ipc", "ip": f"{place}/kernel"} if zmq.has("ipc") else {})
-        manager.start_kernel(cwd=folder)
-        client = manager.blocking_client()
-        try:
-            client.start_channels()
-            client.wait_for_ready(timeout=60)
-            yield client
-        finally:
-            client.stop_channels()
-            manager.shutdown_kernel(now=True)
 
 
 def ran(client, source):

@@ -1,0 +1,156 @@
+"""The pages of the book before Sphinx sets them: one folder of notebooks, Markdown and reStructuredText."""
+
+import hashlib
+import json
+import re
+import shutil
+import subprocess
+from base64 import b64decode
+from pathlib import Path
+
+from ..modules import ROOT
+from ..store import SUBSET
+from . import api, course, execute, plan, sheets
+
+HERE = Path(__file__).resolve().parent
+WIDGET = "application/vnd.jupyter.widget-view+json"
+INLINE = re.compile(r"<script>(.*?)</script>", re.S)            # a player: the same in every film
+LONG = 8                     # lines of code; longer cells are folded
+LINK = re.compile(r"\[([^\]]*)\]\((?!https?://|#)([^)\s]+)\)")  # to a file of the repository
+NOTEBOOK = re.compile(r"`(?:notebooks/)?(\d\d_\w+)\.ipynb`")
+EXERCISE = re.compile(r"`(\w+)` \((\d+\.\d+)\)")
+LEFT_OUT = "# {0}\n\nThis copy of the book was built without this notebook.\n"
+PAGES = re.compile(r"(?:docs/|\.\./)?((?:grading|students|plan)(?=\.md)|(?:lessons|notebooks)/\w+(?=\.))")
+
+
+def write_all(folder, numbers, report, say):
+    """Write the sources of all pages into an empty folder."""
+    for part in ("notebooks", "lessons", "sheets", "extra"):
+        (folder / part).mkdir(parents=True)
+    shutil.copytree(HERE / "static", folder / "_static")
+    shutil.copy(ROOT / "docs" / "scenes.webp", folder / "_static")
+    shutil.copy(ROOT / "docs" / "scenes.png", folder / "_static")
+    alts = {}
+    paths = sorted(execute.NOTEBOOKS.glob("[0-9]*.ipynb"))
+    for path in paths:
+        if numbers and path.stem[:2] not in numbers:
+            write(folder / "notebooks" / f"{path.stem}.md", LEFT_OUT.format(path.stem))
+            continue
+        text = json.dumps(prepared(execute.kept(path, say), path.stem, folder, alts), ensure_ascii=False)
+        (folder / "notebooks" / path.name).write_text(text, encoding="utf-8")
+    (folder / "alts.json").write_text(json.dumps(alts, ensure_ascii=False), encoding="utf-8")
+    for name in course.lessons():
+        write(folder / "lessons" / f"{name}.rst", api.page(name))
+    write(folder / "glossary.md", glossary())
+    for name in ("grading", "students"):
+        write(folder / f"{name}.md", linked((ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8")))
+    write(folder / "plan.md", plan.filled(linked((ROOT / "docs" / "plan.md").read_text(encoding="utf-8"))))
+    for name in course.lessons():
+        write(folder / "sheets" / f"{name}.md", sheets.page(name, bool(report)))
+    if report:
+        shutil.copytree(report, folder / "extra" / "report", ignore=shutil.ignore_patterns("results", SUBSET))
+    write(folder / "index.md", front(paths, bool(report)))
+    write(folder / "validation.md", (HERE / ("validation.md" if report else "no_report.md")).read_text(encoding="utf-8"))
+
+
+def write(path, text):
+    path.write_text(text, encoding="utf-8")
+
+
+# ---------------------------------------------------------------------------------------------- notebooks
+
+def prepared(book, stem, folder, alts):
+    """An executed notebook as the book shows it.
+
+    Sliders, which need a kernel, go, and the figure that they drew stays.  Long code is folded.  A player's script,
+    which every film repeats, becomes a file that the page loads once.  `alts` collects {file of a figure: description}.
+    """
+    players = set()
+    for cell in book.cells:
+        if cell.cell_type == "markdown":
+            cell.source = with_links(cell.source)
+            continue
+        if cell.metadata.get("jupyter", {}).get("source_hidden") or len(cell.source.splitlines()) > LONG:
+            cell.metadata.setdefault("tags", []).append("hide-input")
+        cell.outputs = [output for output in cell.outputs if WIDGET not in output.get("data", {})]
+        for output in cell.outputs:
+            data = output.get("data", {})
+            if "text/html" in data:
+                data["text/html"] = INLINE.sub(lambda match: script(match[1], folder, players), data["text/html"])
+            if "image/png" in data:
+                described = output.metadata.get("image/png", {}).get("alt", "")
+                alts[hashlib.sha256(b64decode(data["image/png"])).hexdigest()] = described
+    lesson = stem.partition("_")[2]
+    if lesson in course.lessons():
+        book.cells.insert(1, about(lesson, stem))
+    return book
+
+
+def about(lesson, stem):
+    """What the book adds to a lesson's first screen."""
+    facts = course.lessons()[lesson]
+    text = (f"```{{admonition}} This page is the notebook as the worked answers run it\n:class: note\nTo work on it "
+            f"yourself, open `notebooks/{stem}.ipynb` in JupyterLab. Films play here; sliders need JupyterLab. "
+            f"The lesson has {len(facts.exercises)} exercises: [what each function has to do](../lessons/{lesson}).\n```")
+    return {"cell_type": "markdown", "id": "about-this-page", "metadata": {}, "source": text}
+
+
+def script(text, folder, players):
+    """Put a player into a file of its own; the tag that loads it, for the first film of a page.
+
+    The player starts all films of its page when the page has been read.
+    """
+    name = f"player-{hashlib.sha256(text.encode()).hexdigest()[:12]}.js"
+    write(folder / "_static" / name, text)
+    if name in players:
+        return ""
+    players.add(name)
+    return f'<script src="../_static/{name}"></script>'
+
+
+def with_links(text):
+    """A notebook's text with links to other notebooks, and from each exercise to its function."""
+    text = NOTEBOOK.sub(lambda match: f"[`{match[1]}.ipynb`]({match[1]})", text)
+
+    def to_function(match):
+        known = match[2] in api.targets() and api.target(match[2]).endswith(f".{match[1]}")
+        return f"{{py:func}}`~{api.target(match[2])}` ({match[2]})" if known else match[0]
+    return EXERCISE.sub(to_function, text)
+
+
+# ---------------------------------------------------------------------------------------------- other pages
+
+def linked(text):
+    """A page of docs/: links to other pages of the book stay, links to other files become plain text."""
+    def to(match):
+        page = PAGES.match(match[2])
+        return f"[{match[1]}]({page[1]})" if page else match[1]
+    return LINK.sub(to, text)
+
+
+def glossary():
+    """The table of words in CONTRIBUTING.md as a page to which others can link."""
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8").partition("## Glossary")[2].partition("\n## ")[0]
+    rows = re.findall(r"^\| (.+?) \| (.+?) \|$", text, re.M)
+    entries = ["\n".join([*re.split(r", (?![^(]*\))", term), f"    {meaning}"])
+               for term, meaning in rows if term != "word" and not term.startswith("-")]
+    return "# Glossary\n\nThe symbols are in [Start here](notebooks/00_start_here).\n\n" \
+        "```{glossary}\n:sorted:\n\n" + "\n\n".join(entries) + "\n```\n"
+
+
+def front(paths, report):
+    """The first page."""
+    contents = "\n".join(f"notebooks/{path.stem}" for path in paths)
+    functions = "\n".join(f"{lesson.number} · {name} <lessons/{name}>" for name, lesson in course.lessons().items())
+    text = (HERE / "front.md").read_text(encoding="utf-8")
+    about = "\n".join(f"{lesson.number} · {name} <sheets/{name}>" for name, lesson in course.lessons().items())
+    for name, value in {"NOTEBOOKS": contents, "LESSONS": functions, "SHEETS": about, "COMMIT": commit(),
+                        "REPORT": "report/index.html" if report else "validation.html"}.items():
+        text = text.replace(f"@{name}@", value)
+    return text
+
+
+def commit():
+    """The commit that the book shows, or where it comes from if git does not know."""
+    said = subprocess.run(["git", "describe", "--always", "--dirty"], cwd=ROOT, capture_output=True, text=True)
+    return said.stdout.strip() or "an unpacked folder"

@@ -1,0 +1,156 @@
+"""Courses of 4, 8 and 14 weeks, and the tables of the page *Plan a course*."""
+
+from typing import NamedTuple
+
+from . import course
+
+ALL = ()
+
+
+class Week(NamedTuple):
+    """One week of a course."""
+    lesson: str              # or "" for a week of another kind
+    first: int = 1           # exercises of the lesson that are set: from this one
+    last: int = 0            # to this one; 0 means to the end
+    leave_out: tuple = ()    # but without these
+    note: str = ""
+
+    def exercises(self):
+        """The exercises that are set."""
+        if not self.lesson:
+            return ()
+        of_lesson = course.lessons()[self.lesson].exercises
+        chosen = of_lesson[self.first - 1:self.last or len(of_lesson)]
+        return tuple(one for one in chosen if course.in_order(one.number)[1] not in self.leave_out)
+
+    def hours(self):
+        """Hours of a student: the notebook's share of these exercises, and the exercises themselves."""
+        if not self.lesson:
+            return 0.0
+        lesson, chosen = course.lessons()[self.lesson], self.exercises()
+        share = len(chosen) / len(lesson.exercises)
+        return lesson.reading * share + sum(one.minutes for one in chosen) / 60.0
+
+
+class Course(NamedTuple):
+    """Weeks, and the lessons that students get as worked answers because the course leaves them out."""
+    title: str
+    aim: str
+    weeks: tuple[Week, ...]
+    worked: tuple = ()
+
+    def lessons(self):
+        """The lessons of the course, each once."""
+        return tuple(dict.fromkeys(week.lesson for week in self.weeks if week.lesson))
+
+
+COURSES = (
+    Course(
+        "Four weeks: particles", "A unit of another course, such as numerical methods or computer graphics.",
+        (Week("integrators"), Week("springs", last=10, note="without the implicit step of a stiff mesh"),
+         Week("pbd", last=7, note="the projection method and PBD"),
+         Week("pbd", first=8, last=15, note="cloth, obstacles, compliance, a soft ball")),
+        worked=("friction", "rotation")),
+    Course(
+        "Eight weeks: rigid bodies", "From Euler's method to a body that collides, with friction.",
+        (Week("integrators"), Week("springs", last=10), Week("friction", last=11, note="without curved surfaces"),
+         Week("inertia_tensors", leave_out=(15, 16, 17), note="without triangle meshes"),
+         Week("rotation"), Week("collisions", last=10), Week("impulses"),
+         Week("contact", last=11, note="exactly, on small scenes")),),
+    Course(
+        "Fourteen weeks: everything", "A course of one term that ends with a simulator and a scene of one's own.",
+        (Week("integrators"), Week("springs"), Week("friction"), Week("inertia_tensors"), Week("rotation"),
+         Week("collisions", last=8), Week("collisions", first=9), Week("impulses"),
+         Week("pbd", last=11), Week("pbd", first=12), Week("contact"), Week("simulator"),
+         Week("", note="a scene of one's own with the simulator: three kinds of parts, contact and friction, judged by "
+                       "the invariants of lesson 10"),
+         Week("kinematics"))),
+)
+
+
+# ---------------------------------------------------------------------------------------------- tables
+
+def table(head, rows):
+    """A table in Markdown."""
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join("| " + " | ".join(map(str, line)) + " |" for line in lines)
+
+
+def hours(number):
+    """Hours to the half."""
+    return f"{max(0.5, round(2.0 * number) / 2.0):g}"
+
+
+def lesson_link(name):
+    lesson = course.lessons()[name]
+    return f"[{lesson.number} · {name}](notebooks/{course.notebook_of(name).stem})"
+
+
+def numbers_of(names):
+    """Names of lessons as their numbers, in order."""
+    return ", ".join(str(number) for number in sorted(course.lessons()[name].number for name in names)) or "–"
+
+
+def lesson_table():
+    """Every lesson with its size, its hours and what it needs."""
+    rows = [(lesson_link(name), len(lesson.exercises), f"{lesson.points:g}", hours(lesson.reading), hours(lesson.writing),
+             numbers_of(course.imports(name)), numbers_of(lesson.needs), len(lesson.scenes), lesson.cases)
+            for name, lesson in course.lessons().items()]
+    return table(("lesson", "exercises", "points", "hours to read and run", "hours to write", "calls lessons",
+                  "needs in all", "scenes", "stability cases"), rows)
+
+
+def span(chosen):
+    """Numbers of exercises, neighbours joined: "5.1–5.7, 5.9"."""
+    runs = []
+    for one in chosen:
+        number = course.in_order(one.number)[1]
+        if runs and number == runs[-1][-1] + 1:
+            runs[-1].append(number)
+        else:
+            runs.append([number])
+    lesson = chosen[0].number.partition(".")[0]
+    return ", ".join(f"{lesson}.{run[0]}" + (f"–{lesson}.{run[-1]}" if run[1:] else "") for run in runs)
+
+
+def course_table(plan):
+    """The weeks of a course."""
+    rows = []
+    for number, week in enumerate(plan.weeks, 1):
+        chosen = week.exercises()
+        if chosen:
+            points = sum(one.points for one in chosen)
+            rows.append((number, lesson_link(week.lesson), span(chosen), f"{points:g}", hours(week.hours()), week.note))
+        else:
+            rows.append((number, "", "", "", "", week.note))
+    return table(("week", "lesson", "exercises", "points", "hours", "remark"), rows)
+
+
+def course_section(plan):
+    """A course as the page shows it."""
+    total = sum(week.hours() for week in plan.weeks)
+    kind = f" --with-solutions={','.join(plan.worked)}" if plan.worked else ""
+    chosen = "".join(f" --lesson {name}" for name in plan.lessons())
+    zip_ = f".venv/bin/release --out workbook.zip{chosen}{kind}"
+    why = (f" Students get lessons {numbers_of(plan.worked)} as worked answers, because lessons of this course call them."
+           if plan.worked else "")
+    return (f"### {plan.title}\n\n{plan.aim} About {round(total)} hours of a student's work.{why}\n\n"
+            f"{course_table(plan)}\n\nThe students' zip of this course:\n\n```sh\n{zip_}\n```")
+
+
+def free_exercises():
+    """Per lesson, the exercises that no other exercise calls: a course may leave them out."""
+    rows = []
+    for name, lesson in course.lessons().items():
+        free = [one for one in lesson.exercises if not course.used_by().get(one.number)]
+        rows.append((lesson_link(name), span(free), f"{sum(one.points for one in free):g}"))
+    return table(("lesson", "exercises that no other exercise calls", "points"), rows)
+
+
+def filled(text):
+    """The page with its tables in place of the marks."""
+    tables = {"lessons": lesson_table, "free": free_exercises,
+              "courses": lambda: "\n\n".join(map(course_section, COURSES))}
+    for mark, make in tables.items():
+        text = text.replace(f"<!-- {mark} -->", make())
+    return text

@@ -1,0 +1,98 @@
+"""One sheet per lesson for those who teach it: hours, needs, exercises, what to show, and the commands."""
+
+import re
+
+from .. import modules
+from ..stability.examine import all_cases
+from . import course, plan
+
+BEFORE = {                   # mathematics and physics that a lesson takes for granted
+    "integrators": "derivatives, Taylor series, 2 × 2 matrices and their eigenvalues",
+    "springs": "vectors, Newton's second law; for 2.11 to 2.13 linear systems of equations",
+    "friction": "vectors and their parts along a normal; forces on a slope",
+    "inertia_tensors": "integrals over volumes, symmetric matrices, eigenvectors",
+    "rotation": "cross products, rotation matrices, angular momentum; complex numbers help with quaternions",
+    "collisions": "planes and lines in vector form, quadratic equations, convex sets",
+    "impulses": "momentum, kinetic energy, cross products, the inertia tensor of lesson 4",
+    "pbd": "gradients, linear systems of equations, Newton's method",
+    "contact": "matrices and their eigenvalues, inequalities; a single contact, as in lesson 7",
+    "simulator": "lessons 1, 5, 7 and 9",
+    "kinematics": "partial derivatives, least squares, singular values",
+}
+
+
+def page(name, report):
+    """The sheet of one lesson, in Markdown."""
+    lesson = course.lessons()[name]
+    later = [other for other, one in course.lessons().items() if name in one.needs]
+    needs = plan.numbers_of(lesson.needs)
+    facts = plan.table(("fact", "value"), [
+        ("hours to read and run the notebook", plan.hours(lesson.reading)),
+        ("hours to write all exercises", plan.hours(lesson.writing)),
+        ("exercises, points", f"{len(lesson.exercises)}, {lesson.points:g}"),
+        ("mathematics and physics", BEFORE[name]),
+        ("lessons whose functions it calls", needs),
+        ("lessons that need it", plan.numbers_of(later)),
+    ])
+    return "\n\n".join([
+        f"# {lesson.number} · {name}: lesson sheet", f"{lesson.title}. The [notebook](../notebooks/"
+        f"{course.notebook_of(name).stem}) and the [functions](../lessons/{name}). How the hours are estimated: "
+        "[Plan a course](../plan).", "## The lesson", facts,
+        "## Exercises", "*Minutes* are an estimate. *Calls* and *called by* name exercises: a student who leaves out an "
+        "exercise cannot pass those that call it in their own copy.", exercise_table(lesson),
+        "## Where students go wrong", "A check that fails gives these hints. Each one answers a mistake that a test "
+        "of the workbook catches.", hints(lesson),
+        "## What to show", "Every scene below has a film, its truth, and both engines where they can do it.",
+        scenes(lesson, report), "Stability cases: limits that theory gives, found by experiment.", cases(name, report),
+        "## Questions to discuss", questions(name),
+        "## Commands", commands(lesson)]) + "\n"
+
+
+def exercise_table(lesson):
+    rows = []
+    for one in lesson.exercises:
+        users = course.used_by().get(one.number, ())
+        rows.append((one.number, f"{{py:func}}`~lessons.{one.lesson}.{one.function}`", f"{one.points:g}",
+                     f"{one.minutes:.0f}", ", ".join(one.uses) or "–", ", ".join(users) or "–"))
+    return plan.table(("exercise", "function", "points", "minutes", "calls", "called by"), rows)
+
+
+def hints(lesson):
+    return "\n".join(f"- **{one.number}** {plain(hint)}" for one in lesson.exercises for hint in one.hints)
+
+
+def plain(text):
+    """Text without markup, for Markdown."""
+    return re.sub(r"([\\*_`|\[\]<>$#])", r"\\\1", text)
+
+
+def scenes(lesson, report):
+    rows = []
+    for name in lesson.scenes:
+        scene = modules.bind_scene(name)
+        title = f'<a href="../report/{name}.html">{scene.title}</a>' if report else scene.title
+        rows.append((title, plain(" ".join(scene.story.split("\n\n")[0].split())), f"`validate --scene {name}`"))
+    return plan.table(("scene", "what it is", "command"), rows)
+
+
+def cases(name, report):
+    found = [case for case in all_cases() if case.lesson == name]
+    return "\n".join(f"- {plain(case.title)}" for case in found)
+
+
+def questions(name):
+    """The questions at the end of a notebook."""
+    from . import execute
+    book = execute.nbformat.read(course.notebook_of(name), as_version=4)
+    text = next((cell.source for cell in book.cells if cell.source.startswith("## Three questions")), "")
+    return "\n".join(line for line in text.splitlines()[1:] if not line.startswith("Answers:")).strip() \
+        + "\n\nAnswers are in `solutions/answers.md`, which students do not get."
+
+
+def commands(lesson):
+    worked = f" --with-solutions={','.join(n for n in course.lessons() if n in lesson.needs)}" if lesson.needs else ""
+    before = "Earlier lessons are in it as worked answers." if lesson.needs else "It needs no other lesson."
+    return (f"The students' zip of this lesson alone. {before}\n\n```sh\n.venv/bin/release --out {lesson.name}.zip "
+            f"--lesson {lesson.name}{worked}\n```\n\nGrade what comes back. The folder `class` has one folder or zip per "
+            f"student.\n\n```sh\n.venv/bin/grade class --out grades-{lesson.name} --lesson {lesson.name} "
+            "--roster list.csv --due 2026-11-30T23:59\n```\n\n[Grading a class](../grading) explains both.")
