@@ -9,28 +9,15 @@ M⁻¹ (3n,) inverse masses of all coordinates · A (2m, 2m) [1/kg] Delassus mat
 impulses · k_n, k_t [1/kg] effective inverse masses, the diagonal of A · μ [-] friction · ω [-] relaxation ·
 ρ [-] contraction factor: error after a sweep over the error before it.
 First exactly, in the plane, with matrices: small scenes.  Then quickly, with arrays: piles.
+Given in support/contact.py: advance_pile_2d and advance_pile, which call what stands here in each step.
 *Left out:* restitution of many contacts (no law decides it, only conventions); sleeping; rolling resistance.
 """
 
 import numpy as np
 
-from solutions.checks import Diverged, check_end
+from solutions.checks import Diverged
 from solutions.integrators import solve
-from solutions.support.arms import (
-    Arms,
-    apply_impulse,
-    apply_impulses,
-    apply_impulses_2d,
-    arms_2d,
-    arms_3d,
-    normal_velocities,
-    normal_velocities_2d,
-    point_velocity_of,
-    turn_freely,
-    turn_quaternions,
-    world_inertia,
-)
-from solutions.support.broad_phase import Pairs, near_pairs
+from solutions.support.arms import Arms, apply_impulse, point_velocity_of
 from solutions.support.contact_points import (
     ContactSet,
     ball_bounds,
@@ -45,9 +32,7 @@ from solutions.support.scenes import (
     Pile,
     PileState,
     check_independent,
-    check_overlap,
     check_scene,
-    checked_pile,
     inverse_masses,
     make_contacts,
     make_pile,
@@ -58,7 +43,6 @@ from solutions.vectors import dot
 
 CONVERGED = 1e-13            # residual over the terms that it is a sum of [-]: a thousand roundings
 MAX_SWEEPS = 50_000          # of solve_contacts [-]; a stack of 20 needs 3,800
-SEPARATION_SPEED = 3.0       # at which bodies part that begin inside each other [m/s]: they are not to be thrown out
 MAX_PIVOTS = 1000            # of solve_lcp, per contact [-]; it has needed two per contact
 
 
@@ -296,84 +280,3 @@ def velocity_sweep(v, omega, J, aim, give, contacts, arms, inv_mass, inv_inertia
         apply_impulse(v, omega, a, r_a, minus(row(J, k), old), inv_mass, inv_inertia)
         apply_impulse(v, omega, b, r_b, minus(old, row(J, k)), inv_mass, inv_inertia)
     return v, omega, J
-
-
-def contact_targets(gap, dt, pile):
-    """Given.  (aim, give), each (m,), of soft_contact for all contacts; none aims at more than SEPARATION_SPEED."""
-    aim, give = np.empty(gap.size), np.empty(gap.size)
-    for k in range(gap.size):
-        aim[k], give[k] = soft_contact(gap[k], pile.hertz, pile.zeta, dt)
-        aim[k] = min(aim[k], SEPARATION_SPEED)
-    return aim, give
-
-
-def advance_pile_2d(bounds, find_contacts, state, dt, steps, pile):
-    """Given.  PileState after so many steps in the plane, with disc_bounds and round_contacts, or those of boxes.
-
-    Contacts are found once per step.  A substep: gravity and the last impulses; a sweep of soft contacts; motion; a
-    sweep at rest, which takes back the velocity that only served to push bodies apart.
-    Raises BadInput for hertz that a substep cannot carry, Diverged with the residual where bodies sink into each other.
-    """
-    state, dt, steps = checked_pile(state, dt, steps, pile)
-    h, wide_low, wide_high, residual, allowed = dt / pile.substeps, pile.half + np.inf, pile.half, 0.0, np.inf
-    (x, q, v, omega, contacts, J), falls = state, (pile.inv_mass > 0.0)[:, None]
-    pairs = Pairs(contacts.first, contacts.b)
-    for _ in range(steps):
-        low, high, turn = bounds(x, q, pile.half)
-        if has_left_margin(low, high, wide_low, wide_high):
-            wide_low, wide_high = low - pile.margin, high + pile.margin
-            pairs = near_pairs(wide_low, wide_high, pile.planes)
-        old, contacts = contacts, find_contacts(x, turn, pile.half, pile.planes, pairs, 0.5 * pile.margin)
-        allowed = check_overlap(contacts, v, dt, pile.half, allowed, residual)
-        arms = arms_2d(x, pile.inv_mass, pile.inv_inertia, contacts)
-        J, gap = kept_impulses(contacts, old, J, pile.margin), contacts.gap
-        for _ in range(pile.substeps):
-            aim, give = contact_targets(gap, h, pile)
-            v, omega = v + h * falls * pile.gravity, omega.copy()
-            apply_impulses_2d(v, omega, J, contacts, arms, pile.inv_mass, pile.inv_inertia)
-            v, omega, J = velocity_sweep_2d(v, omega, J, aim, give, contacts, arms, pile)
-            x, q, before = x + h * v, q + h * omega, v
-            gap = gap + h * normal_velocities_2d(v, omega, contacts, arms)
-            aim, give = np.minimum(aim, 0.0), 0.0 * give
-            v, omega, J = velocity_sweep_2d(v, omega, J, aim, give, contacts, arms, pile)
-        residual = np.max(np.abs(v - before))
-    check_end(x, v, dt)
-    return PileState(x, q, v, omega, contacts, J)
-
-
-def advance_pile(bounds, find_contacts, state, dt, steps, pile):
-    """Given.  The same in space, with ball_bounds and round_contacts, or box_bounds and box_contacts."""
-    state, dt, steps = checked_pile(state, dt, steps, pile)
-    h, wide_low, wide_high, residual, allowed = dt / pile.substeps, pile.half + np.inf, pile.half, 0.0, np.inf
-    (x, q, v, omega, contacts, J), falls = state, (pile.inv_mass > 0.0)[:, None]
-    pairs = Pairs(contacts.first, contacts.b)
-    for _ in range(steps):
-        low, high, turn = bounds(x, q, pile.half)
-        if has_left_margin(low, high, wide_low, wide_high):
-            wide_low, wide_high = low - pile.margin, high + pile.margin
-            pairs = near_pairs(wide_low, wide_high, pile.planes)
-        old, contacts = contacts, find_contacts(x, turn, pile.half, pile.planes, pairs, 0.5 * pile.margin)
-        allowed = check_overlap(contacts, v, dt, pile.half, allowed, residual)
-        inv_inertia = world_inertia(turn, pile.inv_inertia)
-        arms = arms_3d(x, pile.inv_mass, inv_inertia, contacts)
-        J, gap = kept_impulses(contacts, old, J, pile.margin), contacts.gap
-        for _ in range(pile.substeps):
-            aim, give = contact_targets(gap, h, pile)
-            v, omega = v + h * falls * pile.gravity, turn_freely(turn, omega, pile.inv_inertia, h)
-            apply_impulses(v, omega, J, contacts, arms, pile.inv_mass, inv_inertia)
-            v, omega, J = velocity_sweep(v, omega, J, aim, give, contacts, arms, pile.inv_mass, inv_inertia, pile.mu)
-            x, q, before = x + h * v, turn_quaternions(q, omega, h), v
-            gap = gap + h * normal_velocities(v, omega, contacts, arms)
-            aim, give = np.minimum(aim, 0.0), 0.0 * give
-            v, omega, J = velocity_sweep(v, omega, J, aim, give, contacts, arms, pile.inv_mass, inv_inertia, pile.mu)
-        residual = np.max(np.abs(v - before))
-    check_end(x, v, dt)
-    return PileState(x, q, v, omega, contacts, J)
-
-
-def pile_trajectory(advance, bounds, find_contacts, state, dt, steps, pile):
-    """Given.  All PileStates, the first included, of so many steps by advance_pile_2d or advance_pile."""
-    states = [state]
-    for _ in range(steps):
-        states.append(advance(bounds, find_contacts, states[-1], dt, 1, pile))
-    return states

@@ -9,6 +9,7 @@ v (n, d) [m/s] · omega (n,) or (n, 3) [rad/s], world · J (m, d) [N s] impulses
 A load is a function  load(t, x, q, v, omega, p) → (F, tau).  Planes are further rows of all arrays.  A row with
 inv_mass = 0 keeps the velocity that you give it: at rest it is ground, and in motion a conveyor belt, a lift or a
 turntable.  A scene calls only what it needs: no detection where nothing can touch, no quaternions in the plane.
+Given in support/simulator.py: sweep_residual_2d and largest_overlap, to judge a run by.
 *Left out:* restitution of many contacts, joints, sleeping.
 """
 
@@ -169,19 +170,6 @@ def contact_step(load, bounds, narrow, t, state, dt, p):
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 10.7: contact_step")
-
-
-def sweep_residual_2d(state, dt, p):
-    """Given.  Return how far [m/s] the last step in the plane is from the laws: what one more sweep changes."""
-    x, _, v, omega, contacts, J = state
-    arms, aim = arms_2d(x - dt * v, p.inv_mass, p.inv_inertia, contacts), closing_speeds(contacts.gap, dt)
-    _, _, better = velocity_sweep_2d(v, omega, J, aim, 0.0 * aim, contacts, arms, p)
-    return np.max(np.append(0.0, np.abs(better - J) * np.stack((arms.k_n, arms.k_n), axis=1)))
-
-
-def largest_overlap(contacts):
-    """Given.  Return how far the deepest contact has sunk in [m]; 0 if none has."""
-    return np.max(np.append(0.0, -contacts.gap))
 
 
 # ---------------------------------------------------------------------------------------------- a floor that moves

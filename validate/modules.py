@@ -336,7 +336,7 @@ class CompiledModules(ModuleSet):
 
     def __init__(self, folder, digest):
         super().__init__(folder, digest, "compiled")
-        use_cache(digest)
+        self.cache = use_cache(digest)
 
     def lesson(self, name):
         return self._with_companion("solutions", name) if self.folder == SOLUTIONS else super().lesson(name)
@@ -349,13 +349,13 @@ class CompiledModules(ModuleSet):
             vars(module).update(self._redirected(package, module))
             own = {name for name, f in vars(module).items()
                    if isinstance(f, types.FunctionType) and f.__module__ == module.__name__}
-            vars(module).update(compiled_twins(module, own, vars(module)))
+            vars(module).update(compiled_twins(module, own, vars(module), self.cache))
             return
         space = {**vars(module), **self._redirected(package, module)}           # what compiled functions see
         plain = vars(module_set(self.folder).scene_module(module.__name__.rpartition(".")[2]))
         lessons = {name: CachedDispatch(twin) for name, twin in self._redirected(package, module).items()
                    if hasattr(twin, "py_func")}
-        space |= compiled_twins(module, _called_from(space, LAW, module.__name__), space)
+        space |= compiled_twins(module, _called_from(space, LAW, module.__name__), space, self.cache)
         run = types.FunctionType(plain["run"].__code__, {**plain, **lessons}, "run")
         record = replace(plain["SCENE"], run=run, acceleration=space.get(LAW))
         vars(module).update({**plain, "__name__": module.__name__, "SCENE": record})

@@ -19,9 +19,14 @@ CACHE = Path(__file__).resolve().parent.parent / ".cache" / "compiled"
 CACHED_SETS = 6              # digests kept on disk: some edits back; older ones are deleted
 
 
-def compiled_twins(module, names, space):
-    """{name: compiled function}, whose globals are `space`, for those functions of a module."""
-    from numba import njit
+def compiled_twins(module, names, space, cache):
+    """{name: compiled function}, whose globals are `space`, for those functions of a module.
+
+    cache: the folder of their set, as `use_cache` gave it.  The same file may belong to two sets of one process, and
+    its functions call others there.
+    """
+    from numba import config, njit
+    config.CACHE_DIR = cache
     twins = {}
     for name in names:
         plain = space[name]
@@ -107,7 +112,7 @@ def _ignore_full_disk():
 
 
 def use_cache(digest):
-    """Point numba at the folder of this digest, and delete the folders of digests long gone."""
+    """Return the cache folder of this digest, as text, and delete the folders of digests long gone."""
     import numba
     from numba.core.config import _OptLevel
     _make_dispatcher_constants_cacheable()
@@ -122,7 +127,7 @@ def use_cache(digest):
         import tempfile
         folder = Path(tempfile.mkdtemp(prefix="workbook-"))
     os.utime(folder)
-    numba.config.CACHE_DIR = str(folder)
     digests = sorted(folder.parent.iterdir(), key=lambda path: path.stat().st_mtime, reverse=True)
     for old in digests[CACHED_SETS:]:
         shutil.rmtree(old, ignore_errors=True)
+    return str(folder)

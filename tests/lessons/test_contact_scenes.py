@@ -5,12 +5,12 @@ by the worked answers, compiled where that is possible.
 import numpy as np
 import pytest
 
-from solutions import contact as plain
 from solutions.checks import BadInput, Diverged
 from validate import modules
 
 from .test_contact import MIDDLE, G, chain, contacts_of
 
+plain = modules.bind("contact")
 pytestmark = [pytest.mark.xdist_group("compiled test_contact"), pytest.mark.long]
 PILES = pytest.mark.long               # compiling the loops of the piles takes a minute
 AT_REST = 1e-8               # acceleration that counts as none [m/s², rad/s²]: solve_contacts leaves some 1e-10

@@ -9,8 +9,10 @@ import itertools
 import numpy as np
 import pytest
 
-from solutions import simulator
 from solutions.springs import spring_tension
+from validate.modules import bind
+
+simulator = bind("simulator")
 
 G = 9.81                     # [m/s²]
 FLOOR = (0.0, 1.0, 0.0)

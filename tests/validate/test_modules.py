@@ -1,6 +1,7 @@
 """One text, two speeds: the twin is the same code, its cache is found again, and it cannot go stale."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -96,7 +97,8 @@ def test_a_companion_calls_the_exercises_of_its_subject(tmp_path, compiled):
     """Lesson 3's event_step is given in support/friction.py; advance_to_event, which it calls, is an exercise."""
     text = (modules.SOLUTIONS / "friction.py").read_text().replace("from .", "from solutions.")
     (tmp_path / "friction.py").write_text(text + OWN_EVENT)
-    mine, ours = modules.bind("friction", tmp_path, compiled), modules.bind("friction", compiled=compiled)
+    worked = modules.module_set(compiled=compiled)                   # made before the other, loaded after it
+    mine, ours = modules.bind("friction", tmp_path, compiled), worked.lesson("friction")
     assert "def event_step" not in text and hasattr(mine.event_step, "py_func") == compiled
     zero = np.zeros(2)
     arguments = ours.driven_acceleration, 0.0, zero, zero, 0.1, ours.Block(np.eye(2)[1], 0.5, 0.4, zero, zero, 0.0)
@@ -107,11 +109,13 @@ def test_a_companion_calls_the_exercises_of_its_subject(tmp_path, compiled):
     assert modules.PLAIN.scene("stick_slip").run.__globals__["slip_times"].__module__ == "solutions.support.friction"
 
 
-def test_a_lesson_never_imports_its_companion():
-    for name in modules.companions():
-        users = [lesson for lesson in modules.lesson_names()
-                 if f"from .{name} import" in (modules.SOLUTIONS / f"{lesson}.py").read_text()]
-        assert not users, f"{users} import {name}, which would call the exercises of another subject"
+def test_a_companion_imports_exercises_from_its_lesson_only_and_no_lesson_imports_it():
+    """Otherwise it would call the exercises of another subject, or of a lesson that the subject has not begun."""
+    lessons = {name: (modules.SOLUTIONS / f"{name}.py").read_text() for name in modules.lesson_names()}
+    for name, lesson in modules.companions().items():
+        assert not [user for user, text in lessons.items() if f"from .{name} import" in text]
+        text = (modules.SUPPORT / f"{lesson}.py").read_text()
+        assert set(re.findall(r"^from \.\.(\w+) import", text, re.M)) - modules.GIVEN == {lesson}
 
 
 @pytest.mark.parametrize(("call", "names"), [

@@ -5,9 +5,11 @@ import types
 import numpy as np
 import pytest
 
-from solutions import contact as worked
 from solutions.checks import Diverged
+from validate.modules import bind
 from validate.stability.examine import cases_of, subject_of
+
+worked = bind("contact")
 
 
 def jacobi(A, b, lam, omega):
