@@ -104,10 +104,14 @@ def box_bounds_2d(x, q, half):
     return x[:n] - reach, x[:n] + reach, turn
 
 
-def face_gap_2d(d, n, deep, u, half_x, half_y):
-    """Gap [m] along ±n between faces at ±deep from the origin and a box at d with the axes u and (−u_y, u_x)."""
-    reach = half_x * abs(n[0] * u[0] + n[1] * u[1]) + half_y * abs(n[1] * u[0] - n[0] * u[1])
-    return abs(n[0] * d[0] + n[1] * d[1]) - deep - reach
+def face_gaps_2d(d, u, half_x, half_y, cosine, sine, reach_x, reach_y):
+    """Gaps [m] along the two axes u and (−u_y, u_x) of a box between it and another one at d.
+
+    half_x, half_y are its half sizes, reach_x and reach_y those of the other; cosine and sine of the angle between
+    them, without sign.
+    """
+    return (abs(u[0] * d[0] + u[1] * d[1]) - half_x - reach_x * cosine - reach_y * sine,
+            abs(u[0] * d[1] - u[1] * d[0]) - half_y - reach_x * sine - reach_y * cosine)
 
 
 def clipped_edge(d, n, deep, wide, u, half_x, half_y):
@@ -136,17 +140,16 @@ def clipped_edge(d, n, deep, wide, u, half_x, half_y):
 def box_pair_2d(x, turn, half, i, j, reach, c, m):
     """Write the contacts of boxes i and j from place m on; return how many contacts there are then."""
     d, u, w = (x[j, 0] - x[i, 0], x[j, 1] - x[i, 1]), (turn[i, 0], turn[i, 1]), (turn[j, 0], turn[j, 1])
-    u_y, w_y = (-u[1], u[0]), (-w[1], w[0])
-    a_x, a_y = face_gap_2d(d, u, half[i, 0], w, half[j, 0], half[j, 1]), face_gap_2d(d, u_y, half[i, 1], w, half[j, 0],
-                                                                                     half[j, 1])
+    cosine, sine = abs(u[0] * w[0] + u[1] * w[1]), abs(u[0] * w[1] - u[1] * w[0])
+    a_x, a_y = face_gaps_2d(d, u, half[i, 0], half[i, 1], cosine, sine, half[j, 0], half[j, 1])
     of_a = max(a_x, a_y)
     if of_a > reach:
         return m
-    b_x, b_y = face_gap_2d(d, w, half[j, 0], u, half[i, 0], half[i, 1]), face_gap_2d(d, w_y, half[j, 1], u, half[i, 0],
-                                                                                     half[i, 1])
+    b_x, b_y = face_gaps_2d(d, w, half[j, 0], half[j, 1], cosine, sine, half[i, 0], half[i, 1])
     of_b = max(b_x, b_y)
     if of_b > reach:
         return m
+    u_y, w_y = (-u[1], u[0]), (-w[1], w[0])
     if of_a + PREFER_FIRST >= of_b:
         owner, sign, along_x = i, -1.0, a_x >= a_y
         axis_n, deep, wide = (u, half[i, 0], half[i, 1]) if along_x else (u_y, half[i, 1], half[i, 0])
