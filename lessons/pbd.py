@@ -22,7 +22,7 @@ from solutions.rotation import angular_acceleration, quaternion_product, quatern
 from solutions.springs import inverse_masses, measured_links
 from solutions.support.networks import apply_multipliers, constraint_rates, link_delassus_matrix, shared_edges
 from solutions.support.ropes import composed_rope_step, rope_step
-from solutions.vectors import cross, dot
+from solutions.vectors import cross, distance_between, dot, move_apart
 
 __all__ = [
     "NEWTON_LIMIT", "REGULARISATION", "Balloon", "Cloth", "ConstraintNetwork", "Obstacle",
@@ -227,8 +227,7 @@ def distance_sweep(x, network):
 
     These are the corrections of constraint_correction for two points, times s, for any network.sweeps and alpha.
     Returns a new array.
-    The worked answer sums over the coordinates in a loop, because a small array costs more than the arithmetic in
-    it.  Calling constraint_correction is equally correct.
+    distance_between and move_apart (vectors.py) are made for links, and fast; constraint_correction is equally correct.
     Raises BadInput("the length of a link [m]", 0.0, "keep its ends apart") when the ends of a link coincide.
     A link between two immovable points does not occur: make_constraint_network refuses it.
     *Source:* second lecture deck, “Loop over all constraints = 1 iteration”; Müller et al. 2006, eqs. 10, 11.
@@ -367,7 +366,6 @@ def compliant_sweep(x, Lam, dt, network):
 
     C and n are those of distance_constraint, for the ends as the earlier visits have left them.  A link that is too
     short pushes, also with α = 0.  Returns new arrays.
-    The worked answer sums over the coordinates in a loop, for speed, as in distance_sweep.
     Raises what distance_constraint and compliant_multiplier raise.
     *Source:* Macklin et al. 2016, algorithm 1.
     """

@@ -24,6 +24,7 @@ from solutions.checks import (
     one_each,
 )
 from solutions.integrators import average_velocity_step
+from solutions.vectors import distance_between, move_apart, product_between
 
 __all__ = [
     "BEND", "CG_TOLERANCE", "GRAVITY", "SHEAR", "STRUCTURAL", "G", "SpringNetwork", "StepMatrix",
@@ -145,8 +146,8 @@ def spring_forces(x, v, network):
                       F_i += T r/l,    F_j −= T r/l
 
     Include the forces on fixed points; spring_network_acceleration holds those points.
-    The worked answer sums over the d coordinates in a loop, because a small array costs more than the arithmetic in
-    it.  Array expressions are equally correct, with one trap: if i holds a point twice, F[i] += f adds only once.
+    distance_between, product_between and move_apart (vectors.py) are made for links, and fast.  Array expressions are
+    equally correct, with one trap: if i holds a point twice, F[i] += f adds only once.
     Raises BadInput("the length of a spring [m]", 0.0, "keep its ends apart") when the ends coincide, because the
     spring then has no direction.
     *Source:* first lecture deck, “spring.point1.force += force; spring.point2.force -= force”.

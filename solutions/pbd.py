@@ -22,7 +22,7 @@ from .rotation import angular_acceleration, quaternion_product, quaternion_updat
 from .springs import inverse_masses, measured_links
 from .support.networks import apply_multipliers, constraint_rates, link_delassus_matrix, shared_edges
 from .support.ropes import composed_rope_step, rope_step
-from .vectors import cross, dot
+from .vectors import cross, distance_between, dot, move_apart
 
 __all__ = [
     "NEWTON_LIMIT", "REGULARISATION", "Balloon", "Cloth", "ConstraintNetwork", "Obstacle",
@@ -277,27 +277,20 @@ def distance_sweep(x, network):
 
     These are the corrections of constraint_correction for two points, times s, for any network.sweeps and alpha.
     Returns a new array.
-    The worked answer sums over the coordinates in a loop, because a small array costs more than the arithmetic in
-    it.  Calling constraint_correction is equally correct.
+    distance_between and move_apart (vectors.py) are made for links, and fast; constraint_correction is equally correct.
     Raises BadInput("the length of a link [m]", 0.0, "keep its ends apart") when the ends of a link coincide.
     A link between two immovable points does not occur: make_constraint_network refuses it.
     *Source:* second lecture deck, “Loop over all constraints = 1 iteration”; Müller et al. 2006, eqs. 10, 11.
     """
     ### BEGIN SOLUTION 8.6
-    x, d = float_copy(x), x.shape[1]
+    x, w = float_copy(x), network.inv_mass
     for s in range(network.i.size):
         i, j = network.i[s], network.j[s]
-        squared = 0.0
-        for c in range(d):
-            squared += (x[i, c] - x[j, c]) ** 2
-        if squared == 0.0:
+        length = distance_between(x, i, j)
+        if length == 0.0:
             raise BadInput("the length of a link [m]", 0.0, "keep its ends apart")
-        length = np.sqrt(squared)
-        share = network.stiffness[s] * (1.0 - network.rest[s] / length) / (network.inv_mass[i] + network.inv_mass[j])
-        for c in range(d):
-            push = share * (x[i, c] - x[j, c])
-            x[i, c] -= network.inv_mass[i] * push
-            x[j, c] += network.inv_mass[j] * push
+        share = network.stiffness[s] * (network.rest[s] / length - 1.0) / (w[i] + w[j])
+        move_apart(x, i, j, w[i] * share, w[j] * share, x)
     return x
     ### END SOLUTION
 
@@ -467,29 +460,19 @@ def compliant_sweep(x, Lam, dt, network):
 
     C and n are those of distance_constraint, for the ends as the earlier visits have left them.  A link that is too
     short pushes, also with α = 0.  Returns new arrays.
-    The worked answer sums over the coordinates in a loop, for speed, as in distance_sweep.
     Raises what distance_constraint and compliant_multiplier raise.
     *Source:* Macklin et al. 2016, algorithm 1.
     """
     ### BEGIN SOLUTION 8.13
-    x, Lam = float_copy(x), float_copy(Lam)
-    d = x.shape[1]
-    per_square = 1.0 / (dt * dt)
+    x, Lam, w = float_copy(x), float_copy(Lam), network.inv_mass
     for s in range(network.i.size):
         i, j = network.i[s], network.j[s]
-        squared = 0.0
-        for c in range(d):
-            squared += (x[i, c] - x[j, c]) ** 2
-        if squared == 0.0:
+        length = distance_between(x, i, j)
+        if length == 0.0:
             raise BadInput("the length of a link [m]", 0.0, "keep its ends apart")
-        length = np.sqrt(squared)
-        weight = network.inv_mass[i] + network.inv_mass[j]
-        change = compliant_multiplier(length - network.rest[s], Lam[s], weight, network.alpha[s] * per_square)
+        change = compliant_multiplier(length - network.rest[s], Lam[s], w[i] + w[j], network.alpha[s] / (dt * dt))
         Lam[s] += change
-        for c in range(d):
-            push = change / length * (x[i, c] - x[j, c])
-            x[i, c] += network.inv_mass[i] * push
-            x[j, c] -= network.inv_mass[j] * push
+        move_apart(x, i, j, w[i] * change / length, w[j] * change / length, x)
     return x, Lam
     ### END SOLUTION
 

@@ -24,6 +24,7 @@ from .checks import (
     one_each,
 )
 from .integrators import average_velocity_step
+from .vectors import distance_between, move_apart, product_between
 
 __all__ = [
     "BEND", "CG_TOLERANCE", "GRAVITY", "SHEAR", "STRUCTURAL", "G", "SpringNetwork", "StepMatrix",
@@ -167,8 +168,8 @@ def spring_forces(x, v, network):
                       F_i += T r/l,    F_j −= T r/l
 
     Include the forces on fixed points; spring_network_acceleration holds those points.
-    The worked answer sums over the d coordinates in a loop, because a small array costs more than the arithmetic in
-    it.  Array expressions are equally correct, with one trap: if i holds a point twice, F[i] += f adds only once.
+    distance_between, product_between and move_apart (vectors.py) are made for links, and fast.  Array expressions are
+    equally correct, with one trap: if i holds a point twice, F[i] += f adds only once.
     Raises BadInput("the length of a spring [m]", 0.0, "keep its ends apart") when the ends coincide, because the
     spring then has no direction.
     *Source:* first lecture deck, “spring.point1.force += force; spring.point2.force -= force”.
@@ -177,22 +178,12 @@ def spring_forces(x, v, network):
     force = np.zeros(x.shape)
     for s in range(network.i.size):
         i, j = network.i[s], network.j[s]
-        x_i, x_j, v_i, v_j = x[i], x[j], v[i], v[j]
-        force_i, force_j = force[i], force[j]                            # views: a change is a change of force
-
-        squared, product = 0.0, 0.0
-        for c in range(x_i.size):
-            r = x_j[c] - x_i[c]
-            squared += r * r
-            product += r * (v_j[c] - v_i[c])
-        if squared == 0.0:
+        length = distance_between(x, i, j)
+        if length == 0.0:
             raise BadInput("the length of a spring [m]", 0.0, "keep its ends apart")
-        length = np.sqrt(squared)
-
-        pull = spring_tension(length, product / length, network.rest[s], network.k[s], network.k_d[s]) / length
-        for c in range(x_i.size):
-            force_i[c] += pull * (x_j[c] - x_i[c])
-            force_j[c] -= pull * (x_j[c] - x_i[c])
+        rate = product_between(x, v, i, j) / length
+        T = spring_tension(length, rate, network.rest[s], network.k[s], network.k_d[s])
+        move_apart(force, i, j, -T / length, -T / length, x)
     return force
     ### END SOLUTION
 

@@ -36,7 +36,10 @@ def link_delassus_matrix(J, K, network, trace):
 
 
 def apply_multipliers(J, Lam, network):
-    """Given.  Return W JᵀΛ (n, d) [m]: how far the multipliers Λ (s,) move the points."""
+    """Given.  Return W JᵀΛ (n, d) [m]: how far the multipliers Λ (s,) move the points.
+
+    The loops visit only the two ends of each link, as above.
+    """
     d = J.shape[1] // network.inv_mass.size
     moved = np.zeros((network.inv_mass.size, d))
     for s in range(Lam.size):
