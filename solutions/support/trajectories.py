@@ -9,9 +9,10 @@ import numpy as np
 
 from ..checks import whole_number
 from ..collisions import advance_projectiles
-from ..impulses import advance_balls, advance_discs, advance_spinning_balls
 from ..simulator import advance_contact, advance_free, advance_rocking
+from .discs import advance_discs
 from .friction import advance_particle
+from .impulses import advance_balls, advance_spinning_balls
 from .rotation import advance_rigid_body
 
 
