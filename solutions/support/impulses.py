@@ -227,3 +227,21 @@ def advance_spinning_balls(step, acceleration, t, x, v, omega, dt, steps, p):
         x[k], v[k], omega[k] = x_k, v_k, omega_k
     check_end(x, v, dt)
     return x, v, omega
+
+
+def advance_discs(step, x, v, dt, steps, p):
+    """Given.  Return (x, v), each (copies, bodies, d), of discs after `steps` steps; raises as advance_balls."""
+    _, x, v, dt, steps = checked_run(0.0, x, v, dt, steps)
+    check_array("position x [m]", x, 3)
+    check_restitution(finite_number("restitution e [-]", p.e))
+    for thing, values in (("radius of a disc [m]", p.radius), ("inverse mass of a disc [1/kg]", p.inv_mass)):
+        check_field(thing, values, x.shape[1:2])
+        check_not_negative(thing, values.min())
+    x, v = x.copy(), v.copy()
+    for k in range(x.shape[0]):
+        x_k, v_k = x[k], v[k]
+        for _ in range(steps):
+            x_k, v_k = step(x_k, v_k, dt, p)
+        x[k], v[k] = x_k, v_k
+    check_end(x, v, dt)
+    return x, v
