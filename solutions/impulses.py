@@ -9,6 +9,8 @@ Velocities after an impact have a ⁺.  An impact is so short that positions do 
 An immovable body has inv_mass = 0 and inv_inertia = 0; one on an axle through its centre of mass has only inv_mass = 0,
 and one that cannot rotate only inv_inertia = 0.  In the plane r × n is the number r_x n_y − r_y n_x, and omega
 is a number, counter-clockwise.
+Given in support/impulses.py: contact_impulse, penalty_step, a spinning ball, discs, and the loops advance_balls,
+advance_spinning_balls and advance_discs.
 *Left out:* finding contacts (lesson 6).  Lasting contacts, as in a stack (lesson 9).
 """
 
@@ -16,44 +18,34 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .checks import (
-    Diverged,
-    check_positive,
-    check_restitution,
-    float_copy,
-)
+from .checks import Diverged, check_positive, check_restitution
 from .friction import tangential
 from .integrators import symplectic_euler_step
 from .rotation import point_velocity, solve3
-from .support.bouncing_loops import advance_balls, advance_spinning_balls
-from .support.discs import advance_discs, drift, meeting_time, normal_between, overlap, separated
 from .support.impacts import (
+    CONVERGED,
+    MAX_SWEEPS,
     check_contact,
     check_impacts,
     check_inverse_mass,
     largest_speed,
-    project_onto_cone,
+    most_dissipative_impact,
+    rebound_speeds,
     times,
 )
 from .vectors import cross
 
 __all__ = [
-    "CONVERGED", "MAX_IMPACTS", "MAX_SWEEPS", "BodyState2D", "BodyState3D", "BouncingBall", "Discs",
-    "SpinningBall", "advance_balls", "advance_discs", "advance_spinning_balls", "angular_momenta",
-    "apply_impulse", "apply_impulse_2d", "backtracking_discs_step", "backtracking_spin_step",
-    "backtracking_step", "bouncing_time", "check_contact", "check_impacts", "check_inverse_mass",
-    "cone_impulse", "contact_impulse", "contact_matrix", "drift", "effective_inverse_mass",
-    "effective_inverse_mass_2d", "energy_change", "falling_acceleration", "free_flight", "gap",
-    "gap_multiplier", "impact_time", "impulse_size", "kinematic_response", "largest_speed",
-    "most_dissipative_impact", "overlap", "penalty_force", "penalty_step",
-    "position_projection_discs_step", "position_projection_spin_step", "position_projection_step",
-    "relative_velocity", "relative_velocity_2d", "separated", "sequential_impacts", "slide_on_plane",
-    "solve_impacts", "times",
+    "CONVERGED", "MAX_IMPACTS", "MAX_SWEEPS", "BodyState2D", "BodyState3D", "BouncingBall", "angular_momenta",
+    "apply_impulse", "apply_impulse_2d", "backtracking_step", "bouncing_time", "check_contact", "check_impacts",
+    "check_inverse_mass", "cone_impulse", "contact_matrix", "effective_inverse_mass", "effective_inverse_mass_2d",
+    "energy_change", "falling_acceleration", "free_flight", "gap", "gap_multiplier", "impact_time",
+    "impulse_size", "kinematic_response", "largest_speed", "most_dissipative_impact", "penalty_force",
+    "position_projection_step", "relative_velocity", "relative_velocity_2d", "slide_on_plane", "solve_impacts",
+    "symplectic_euler_step", "times",
 ]
 
 MAX_IMPACTS = 10_000         # per step [-]; with e = 0.8, 165 impacts bring the next below the spacing of floats
-MAX_SWEEPS = 2000            # over contact points [-]; four under a box need about 100, close ones more than 1000
-CONVERGED = 1e-14            # largest change in a sweep over the largest initial |v| + |ω||r| [-]: a hundred roundings
 
 
 class BodyState2D(NamedTuple):
@@ -81,27 +73,6 @@ class BouncingBall(NamedTuple):
     stiffness: float         # of the penalty spring over the mass, ω² [1/s²]
     damping: float           # of the penalty damper over the mass [1/s]
 
-
-class SpinningBall(NamedTuple):
-    """A rotating ball above a plane."""
-    e: float                 # restitution [-]
-    mu: float                # friction [-]
-    inv_mass: float          # [1/kg]
-    inv_inertia: np.ndarray  # (3, 3), the same about any axis [1/(kg m²)]
-    radius: float            # [m]
-    gravity: np.ndarray      # (3,) [m/s²]
-    point: np.ndarray        # (3,) position of its centre when it touches the plane [m]
-    n: np.ndarray            # (3,) unit normal of the plane
-
-
-class Discs(NamedTuple):
-    """Discs or balls without friction and without forces between impacts."""
-    radius: np.ndarray       # (bodies,) [m]
-    inv_mass: np.ndarray     # (bodies,) [1/kg]
-    e: float                 # restitution [-]
-
-
-# ---------------------------------------------------------------------------------------------- checks
 
 # ----------------------------------------------------------------------------------------- kinematic, and with a spring
 
@@ -296,12 +267,6 @@ def cone_impulse(u, n, K, u_sep, mu):
     ### END SOLUTION
 
 
-def contact_impulse(u, n, K, e, mu):
-    """Given.  Return J (3,) [N s] of an impact with friction: cone_impulse with u_sep = −e n · u; 0 if they part."""
-    check_restitution(e)
-    return np.zeros(3) if u @ n >= 0.0 else cone_impulse(u, n, K, -e * (u @ n), mu)
-
-
 def energy_change(u, K, J):
     """Return the kinetic energy [J] that both bodies together gain by an impulse J at a contact; negative: lost.
 
@@ -388,13 +353,6 @@ def gap(x, p):
     return (x - p.point) @ p.n
 
 
-def penalty_step(acceleration, t, x, v, dt, p):
-    """Given.  Advance a BouncingBall by symplectic Euler with a penalty force; first order, stable for ω dt < 2."""
-    force = penalty_force(gap(x, p), v @ p.n, p.stiffness, p.damping)
-    v = v + dt * (acceleration(t, x, v, p) + force * p.n)
-    return x + dt * v, v
-
-
 def position_projection_step(acceleration, t, x, v, dt, p):
     """Advance a BouncingBall by one step; if it ends below the plane, correct velocity and position; first order.
 
@@ -454,191 +412,21 @@ def backtracking_step(acceleration, t, x, v, dt, p):
     ### END SOLUTION
 
 
-# ---------------------------------------------------------------------------------------------- a rotating ball
-
-def spinning_impact(v, omega, p):
-    """Given.  Return (v, ω) of a SpinningBall after contact_impulse of its plane at the offset −radius n."""
-    r = -p.radius * p.n
-    K = contact_matrix(r, p.inv_mass, p.inv_inertia)
-    J = contact_impulse(point_velocity(v, omega, r), p.n, K, p.e, p.mu)
-    return v + p.inv_mass * J, omega + times(p.inv_inertia, cross(r, J))
-
-
-def position_projection_spin_step(acceleration, t, x, v, omega, dt, p):
-    """Given.  Advance a SpinningBall as position_projection_step does; first order."""
-    x, v = symplectic_euler_step(acceleration, t, x, v, dt, p)
-    if gap(x, p) >= 0.0:
-        return x, v, omega
-    v, omega = spinning_impact(v, omega, p)
-    return project_to_plane(x, p), v, omega
-
-
-def project_to_plane(x, p):
-    """Given.  Return the point (d,) of the plane of p that is nearest to x:  x − φ n."""
-    return x - gap(x, p) * p.n
-
-
-def advance_to_plane(x, v, a, left, p):
-    """Given.  Fly at constant acceleration to the plane of p, at most for `left` [s]; return (x, v, time then left)."""
-    tau = impact_time(gap(x, p), v @ p.n, a @ p.n, left)
-    x, v = free_flight(x, v, a, tau)
-    return x, v, left - tau
-
-
-def backtracking_spin_step(acceleration, t, x, v, omega, dt, p):
-    """Given.  Advance a SpinningBall impact by impact; exact at constant acceleration.  Raises as backtracking_step."""
-    a = acceleration(t, x, v, p)
-    x, v, left = advance_to_plane(x, v, a, dt, p)
-    for _ in range(MAX_IMPACTS):
-        if left <= 0.0:
-            return x, v, omega
-        v, omega = spinning_impact(v, omega, p)
-        x, v, left = advance_to_plane(project_to_plane(x, p), v, a, left, p)
-    raise Diverged("impacts without end in a step of dt [s]", dt, "take a smaller step")
-
-
-# ---------------------------------------------------------------------------------------------- discs that collide
-
-def disc_impact(x, v, i, j, p):
-    """Given.  Return (v_i, v_j), each (d,), after discs i and j meet without friction: the impulse of impulse_size."""
-    _, n = normal_between(x, i, j)
-    size = impulse_size((v[i] - v[j]) @ n, p.inv_mass[i] + p.inv_mass[j], p.e)
-    return v[i] + p.inv_mass[i] * size * n, v[j] - p.inv_mass[j] * size * n
-
-
-def position_projection_discs_step(x, v, dt, p):
-    """Given.  Advance discs by one step, then treat all overlapping pairs one by one; first order."""
-    x, v = drift(x, v, dt), float_copy(v)
-    for i in range(x.shape[0]):
-        for j in range(i):
-            if overlap(x, i, j, p.radius[i] + p.radius[j]):
-                v[i], v[j] = disc_impact(x, v, i, j, p)
-                x[i], x[j] = separated(x, i, j, p)
-    return x, v
-
-
-def backtracking_discs_step(x, v, dt, p):
-    """Given.  Advance discs impact by impact, the earliest first; exact.  Raises Diverged after MAX_IMPACTS impacts.
-
-    Of simultaneous impacts, the first pair in the list goes first: a choice.
-    """
-    left, v = dt, float_copy(v)
-    for _ in range(MAX_IMPACTS):
-        tau, first, second = left, 0, 0
-        for i in range(x.shape[0]):
-            for j in range(i):
-                meets = meeting_time(x, v, i, j, p.radius[i] + p.radius[j], left)
-                if meets < tau:
-                    tau, first, second = meets, i, j
-        x = drift(x, v, tau)
-        left -= tau
-        if left <= 0.0:
-            return x, v
-        v[first], v[second] = disc_impact(x, v, first, second, p)
-    raise Diverged("impacts without end in a step of dt [s]", dt, "take a smaller step")
-
-
 # ---------------------------------------------------------------------------------------------- several impacts at once
-
-def sequential_impacts(body, r, n, e, mu):
-    """Given.  Return (BodyState3D, residual [m/s]) after an impact at several points, each treated once, in order.
-
-    Each impulse starts from the body as the previous one left it, so the result depends on the order: the two
-    ends of an edge leave at different speeds.
-    """
-    check_impacts(body, r, n, e, mu)
-    u_sep = rebound_speeds(body, r, n, e)
-    Js = np.zeros(r.shape)
-    after = body
-    for i in range(len(r)):
-        u = point_velocity(after.v, after.omega, r[i])
-        K = contact_matrix(r[i], body.inv_mass, body.inv_inertia)
-        Js[i] = contact_impulse(u, n[i], K, e, mu)
-        after = apply_impulse(after, r[i], Js[i])
-    return after, impact_residual(after, r, n, Js, u_sep, mu)
-
-
-def rebound_speeds(body, r, n, e):
-    """Given.  Return u_sepᵢ = max(0, −e nᵢ · uᵢ) [m/s] (points,): Newton's restitution, before the impact."""
-    u_sep = np.zeros(len(r))
-    for i in range(len(r)):
-        u_sep[i] = np.maximum(0.0, -e * (n[i] @ point_velocity(body.v, body.omega, r[i])))
-    return u_sep
-
-
-def impact_residual(after, r, n, Js, u_sep, mu):
-    """Given.  Return the residual [m/s] of impulses Js (points, 3) in the law of cone_impulse; 0 where the law holds.
-
-    It is the largest component of a velocity by which the law, applied to one point alone, would still change
-    that point.
-    """
-    worst = 0.0
-    for i in range(len(r)):
-        K = contact_matrix(r[i], after.inv_mass, after.inv_inertia)
-        u = point_velocity(after.v, after.omega, r[i]) - times(K, Js[i])
-        J = cone_impulse(u, n[i], K, u_sep[i], mu)
-        worst = np.maximum(worst, np.abs(times(K, J - Js[i])).max())
-    return worst
-
-
-def most_dissipative_impact(body, r, n, e, mu):
-    """Given.  Return (BodyState3D, residual [m/s]) after simultaneous impacts for which solve_impacts finds no answer.
-
-    With much friction its law can be without an answer, or its sweeps may not find one.  Of all impulses inside the
-    cones, take those that leave the least kinetic energy: a convex problem, which always has an answer.  Each point in
-    turn follows the gradient of the energy, its own velocity uᵢ, and returns to its cone:
-    Jᵢ ← project_onto_cone(Jᵢ − uᵢ/tr Kᵢ).  Scale all impulses by s.
-    s = 1 leaves the least energy, and s = 1 + e is Poisson's restitution;
-    s is smaller where a point would otherwise move into the other body.  This never gains energy: the energy is
-    a parabola in s, and s = 1 + e loses 1 − e² of what s = 1 loses.
-    *Source:* Moreau 1973, maximum dissipation; Anitescu 2006, the convex problem; Poisson 1817, the two phases.
-    """
-    before = np.zeros((len(r), 3))
-    for i in range(len(r)):
-        before[i] = point_velocity(body.v, body.omega, r[i])
-    u_sep = rebound_speeds(body, r, n, e)
-    Js = np.zeros((len(r), 3))
-    after, speed = body, largest_speed(body, r)
-    for _ in range(MAX_SWEEPS):
-        change = 0.0
-        for i in range(len(r)):
-            K = contact_matrix(r[i], body.inv_mass, body.inv_inertia)
-            u = point_velocity(after.v, after.omega, r[i])
-            J = project_onto_cone(Js[i] - u / (K[0, 0] + K[1, 1] + K[2, 2]), n[i], mu) - Js[i]
-            change = np.maximum(change, np.abs(times(K, J)).max())
-            after = apply_impulse(after, r[i], J)
-            Js[i] += J
-        if change <= CONVERGED * speed:
-            break
-    gain, curvature, share = 0.0, 0.0, 1.0 + e
-    for i in range(len(r)):
-        u = point_velocity(after.v, after.omega, r[i])
-        gain += Js[i] @ before[i]
-        curvature += Js[i] @ (u - before[i])
-        leaves = n[i] @ before[i]
-        would_leave = np.maximum(0.0, n[i] @ u)
-        if leaves > would_leave:                         # the impact slows this point: it may stop along n, not reverse
-            share = np.minimum(share, leaves / (leaves - would_leave))
-    share *= -gain / curvature if gain < 0.0 else 0.0
-    after = body
-    for i in range(len(r)):
-        Js[i] *= share
-        after = apply_impulse(after, r[i], Js[i])
-    return after, impact_residual(after, r, n, Js, u_sep, mu)
-
 
 def solve_impacts(body, r, n, e, mu):
     """Return (BodyState3D, residual [m/s]) after simultaneous impacts at several points with immovable bodies.
 
-    r (points, 3) are the offsets and n (points, 3) the normals.  u_sepᵢ = rebound_speeds(body, r, n, e), from the
-    velocities before the impact, and  Jᵢ = 0.  Then sweep over all points:
+    r (points, 3) are the offsets and n (points, 3) the normals.  u_sep = rebound_speeds(body, r, n, e) is Newton's
+    max(0, −e nᵢ · uᵢ) of the velocities before the impact, and  Jᵢ = 0.  Then sweep over all points:
         velocity without the point's own impulse:   u = v + ω × rᵢ − Kᵢ Jᵢ,    Kᵢ = contact_matrix(rᵢ, 1/m, I⁻¹)
         new impulse of the point:                   J = cone_impulse(u, nᵢ, Kᵢ, u_sepᵢ, μ)
         push the body by J − Jᵢ at rᵢ;    Jᵢ ← J
     The residual of a sweep is the largest component of all changes of velocity Kᵢ (J − Jᵢ) of a point by its
     own impulse.  The sweeps end when the residual is at most CONVERGED times largest_speed(body, r).  If MAX_SWEEPS
-    sweeps are not enough, return most_dissipative_impact(body, r, n, e, μ), given above, of the body before the
-    impact: with much friction the law can be without an answer, and then the residual shows that.
+    sweeps are not enough, return most_dissipative_impact(contact_matrix, cone_impulse, apply_impulse, body, r, n, e, μ)
+    of the body before the impact, given in support/impacts.py: with much friction the law can be without an answer, and
+    then the residual shows that.
 
     The order of the points does not matter at convergence: a box that lands flat leaves the floor flat.
     Raises what check_impacts raises; call it first.
@@ -661,5 +449,5 @@ def solve_impacts(body, r, n, e, mu):
             Js[i] = J
         if residual <= CONVERGED * speed:
             return after, residual
-    return most_dissipative_impact(body, r, n, e, mu)
+    return most_dissipative_impact(contact_matrix, cone_impulse, apply_impulse, body, r, n, e, mu)
     ### END SOLUTION

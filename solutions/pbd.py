@@ -9,6 +9,8 @@ n unit normal or direction, from b (or j) to a (or i).
 
 A method for points is a function  step(acceleration, t, x, v, dt, network) → (x, v)  at t + dt, as in lesson 1.
 The step passes network on unchanged.
+Given in support/pbd.py: make_constraint_network, network_gravity, the standard rattle_step, and what becomes of the
+parts of this lesson: a cloth, a balloon, a rigid body on a pivot.
 *Left out:* friction (lesson 3 adds it to such a step); collision of a cloth with itself (lesson 6 finds it).
 """
 
@@ -16,30 +18,25 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .checks import BadInput, Diverged, check_shape, finite_array, float_copy, one_each, whole_number
+from .checks import BadInput, Diverged, float_copy
 from .integrators import solve
 from .rotation import angular_acceleration, quaternion_product, quaternion_update, rotate, unrotate
-from .springs import inverse_masses, measured_links
-from .support.networks import apply_multipliers, constraint_rates, link_delassus_matrix, shared_edges
+from .support.networks import shared_edges
 from .support.ropes import composed_rope_step, rope_step
-from .vectors import cross, dot
+from .vectors import cross, distance_between, dot, move_apart
 
 __all__ = [
-    "NEWTON_LIMIT", "REGULARISATION", "Balloon", "Cloth", "ConstraintNetwork", "Obstacle",
-    "PivotedBody", "apply_multipliers", "apply_positional_impulse", "ball_gap", "balloon_step",
-    "cloth_step", "compliant_multiplier", "compliant_sweep", "composed_rope_step",
-    "constraint_correction", "constraint_projection_step", "constraint_rates", "constraints",
-    "distance_constraint", "distance_sweep", "effective_inverse_mass_at", "floor_gap",
-    "fold_constraint", "fold_sweep", "keep_outside", "link_delassus_matrix",
-    "make_constraint_network", "network_gravity", "newton_correction", "pbd_sag", "pbd_step",
-    "pivoted_body_step", "predict", "rattle_step", "rope_step", "shared_edges", "turning_rate",
+    "NEWTON_LIMIT", "REGULARISATION", "ConstraintNetwork", "Obstacle", "angular_acceleration",
+    "apply_positional_impulse", "ball_gap", "compliant_multiplier", "compliant_sweep", "composed_rope_step",
+    "constraint_correction", "constraint_projection_step", "constraints", "distance_constraint",
+    "distance_sweep", "effective_inverse_mass_at", "floor_gap", "fold_constraint", "keep_outside",
+    "newton_correction", "pbd_sag", "pbd_step", "predict", "rope_step", "shared_edges", "turning_rate",
     "volume_gradient", "xpbd_step",
 ]
 
 NEWTON_TOLERANCE = 1e-12     # last correction over the longest link [-]; Newton squares it, so only round-off remains
 NEWTON_LIMIT = 40            # corrections [-]: 4 to 7 for moves of 1/10 link per step, 30 and more for a whole link
 REGULARISATION = 1e-13       # compliance over w dt² of a link [-]: far below the pull of all links, far above round-off
-FIRST_REGULARISATION = 1e-10 # the same while gaps still close: redundant links then disagree by more than round-off
 
 
 class ConstraintNetwork(NamedTuple):
@@ -62,34 +59,6 @@ class Obstacle(NamedTuple):
     n: np.ndarray            # (d,) its unit normal
 
 
-class Cloth(NamedTuple):
-    """A network whose faces resist folding."""
-    network: ConstraintNetwork
-    hinges: np.ndarray       # (h, 4) points a, b, c, d of each fold: edge a–b, other corners c and d of its faces
-    fold: np.ndarray         # (h,) rest angle of each fold [rad]; 0 is flat
-    stiffness: float         # share of the error of a fold that is removed per visit [-]
-    obstacle: Obstacle
-
-
-class Balloon(NamedTuple):
-    """A closed network filled with air."""
-    network: ConstraintNetwork
-    faces: np.ndarray        # (f, 3) corners, counter-clockwise seen from outside
-    volume: float            # rest volume [m³]
-    alpha: float             # compliance of the air [m³/(N/m²)]; 0 keeps the volume
-    obstacle: Obstacle
-
-
-class PivotedBody(NamedTuple):
-    """A rigid body that hangs from a fixed point."""
-    m: float                 # mass [kg]
-    I_body: np.ndarray       # (3,) principal moments [kg m²]
-    gravity: np.ndarray      # (3,) [m/s²]
-    pivot: np.ndarray        # (3,) [m]
-    arm_body: np.ndarray     # (3,) from the centre of mass to the pivot, in the body's coordinates [m]
-    sweeps: int              # projections per step
-
-
 # ---------------------------------------------------------------------------------------------- one constraint
 
 def distance_constraint(x_i, x_j, rest):
@@ -97,8 +66,7 @@ def distance_constraint(x_i, x_j, rest):
 
     C = |x_i − x_j| − rest,      n = ∇ᵢC = (x_i − x_j)/|x_i − x_j|,      ∇ⱼC = −n
 
-    Raises BadInput("the length of a link [m]", 0.0, "keep its ends apart") when the ends coincide, because the
-    link then has no direction.
+    Raises BadInput("the length of a link [m]", 0.0, "keep its ends apart") when the ends coincide: no direction.
     *Source:* second lecture deck, “Inextensible spring between particles i and j”.
     """
     ### BEGIN SOLUTION 8.1
@@ -134,16 +102,6 @@ def constraint_correction(C, gradients, inv_mass):
 
 # ---------------------------------------------------------------------------------------------- the projection method
 
-def network_gravity(t, x, v, network):
-    """Given.  Return a (n, d) [m/s²]: gravity for every movable point, 0 for the others."""
-    a = np.zeros(x.shape)
-    for k in range(x.shape[0]):
-        if network.inv_mass[k] > 0.0:
-            for c in range(x.shape[1]):
-                a[k, c] = network.gravity[c]
-    return a
-
-
 def predict(acceleration, t, x, v, dt, network):
     """Return the positions (n, d) at t + dt without constraints:  x_pred = x + dt v + dt² a(t, x, v).
 
@@ -177,9 +135,9 @@ def newton_correction(x, lam, goal, dt, network):
     (x, λ), with the new multipliers λ_new as unknowns:
         (1 − dt² W Σ λₛ ∇²Cₛ) Δx − dt² W Jᵀ λ_new = x_pred − x
         J Δx − ε dt² (λ_new − λ)                  = −C              ε = REGULARISATION (w_i + w_j) of each link
-    ε is a very small compliance.  It acts on the change λ_new − λ, not on λ: when Newton's method has converged, the
-    change is 0 and ε has no effect.  Redundant links (a square with both diagonals) have many equivalent
-    multipliers.  ε selects among them; without it the matrix has no inverse there.
+    ε is a very small compliance.  It acts on the change λ_new − λ only, so that it has no effect at convergence.
+    Redundant links (a square with both diagonals) have many equivalent multipliers.  ε selects among them; without it
+    the matrix has no inverse.
     Use Λ = dt² λ_new as the unknown, because its size is comparable to that of x.  The second equation becomes
         J Δx − ε Λ = −C − ε dt² λ          with −ε on the diagonal
 
@@ -244,30 +202,6 @@ def constraint_projection_step(acceleration, t, x, v, dt, network):
     ### END SOLUTION
 
 
-def rattle_step(acceleration, t, x, v, dt, network):
-    """Given.  The same, with the gradients at the start of the step and a velocity that obeys the links: second order.
-
-    x' = x + dt v + ½dt² a + W J(x)ᵀΛ  with C(x') = 0,      v' = (x' − x)/dt + ½dt a' + W J(x')ᵀμ  with J(x') v' = 0
-
-    It loses no energy.  It is not in the lecture; it serves as the standard for the projection method.
-    *Source:* Ryckaert et al. 1977 (SHAKE), Andersen 1983 (RATTLE).
-    """
-    _, J = constraints(x, network)
-    new = x + dt * v + 0.5 * dt * dt * acceleration(t, x, v, network)
-    for _ in range(NEWTON_LIMIT):
-        C, J_new = constraints(new, network)
-        # The next round removes the error of the regularisation.
-        Lam = solve(link_delassus_matrix(J_new, J, network, FIRST_REGULARISATION), -C)
-        change = apply_multipliers(J, Lam, network)
-        new = new + change
-        if max(np.max(np.abs(change)), np.max(np.abs(C))) <= NEWTON_TOLERANCE * np.max(network.rest):
-            v = (new - x) / dt + 0.5 * dt * acceleration(t + dt, new, v, network)
-            _, J = constraints(new, network)
-            mu = solve(link_delassus_matrix(J, J, network, REGULARISATION), constraint_rates(J, v))
-            return new, v - apply_multipliers(J, mu, network)
-    raise Diverged("the projection did not converge at dt [s]", dt, "take a smaller step, or slacken what is taut")
-
-
 # ---------------------------------------------------------------------------------------------- position-based dynamics
 
 def distance_sweep(x, network):
@@ -276,28 +210,20 @@ def distance_sweep(x, network):
     Δx_i = −s w_i/(w_i + w_j) C n,      Δx_j = +s w_j/(w_i + w_j) C n          s: the stiffness of the link
 
     These are the corrections of constraint_correction for two points, times s, for any network.sweeps and alpha.
-    Returns a new array.
-    The worked answer sums over the coordinates in a loop, because a small array costs more than the arithmetic in
-    it.  Calling constraint_correction is equally correct.
+    distance_between and move_apart (vectors.py) compute them fast.  Returns a new array.
     Raises BadInput("the length of a link [m]", 0.0, "keep its ends apart") when the ends of a link coincide.
     A link between two immovable points does not occur: make_constraint_network refuses it.
     *Source:* second lecture deck, “Loop over all constraints = 1 iteration”; Müller et al. 2006, eqs. 10, 11.
     """
     ### BEGIN SOLUTION 8.6
-    x, d = float_copy(x), x.shape[1]
+    x, w = float_copy(x), network.inv_mass
     for s in range(network.i.size):
         i, j = network.i[s], network.j[s]
-        squared = 0.0
-        for c in range(d):
-            squared += (x[i, c] - x[j, c]) ** 2
-        if squared == 0.0:
+        length = distance_between(x, i, j)
+        if length == 0.0:
             raise BadInput("the length of a link [m]", 0.0, "keep its ends apart")
-        length = np.sqrt(squared)
-        share = network.stiffness[s] * (1.0 - network.rest[s] / length) / (network.inv_mass[i] + network.inv_mass[j])
-        for c in range(d):
-            push = share * (x[i, c] - x[j, c])
-            x[i, c] -= network.inv_mass[i] * push
-            x[j, c] += network.inv_mass[j] * push
+        share = network.stiffness[s] * (network.rest[s] / length - 1.0) / (w[i] + w[j])
+        move_apart(x, i, j, w[i] * share, w[j] * share, x)
     return x
     ### END SOLUTION
 
@@ -323,10 +249,8 @@ def pbd_sag(g, dt, stiffness, sweeps):
     At rest each step lowers the weight by g dt², and the sweeps leave the share S = (1 − s)ⁿ of any error:
         (sag + g dt²) S = sag,      sag = g dt² S/(1 − S)
 
-    s: stiffness, above 0 and up to 1; n: sweeps.  The sag is not a property of the link: half the step gives a
-    quarter of it.
-    *Source:* Müller et al. 2006, section 3.3, for S; second lecture deck, “If not enough iterations, constraints
-    appear soft!”.
+    s: stiffness, above 0 and up to 1; n: sweeps.  The sag is no property of the link: half the step, a quarter of it.
+    *Source:* Müller et al. 2006, section 3.3; second lecture deck, “If not enough iterations, constraints appear soft!”
     """
     ### BEGIN SOLUTION 8.8
     S = (1.0 - stiffness) ** sweeps
@@ -349,8 +273,7 @@ def fold_constraint(x, fold):
 
     Raises BadInput("the area of a triangle at a fold [m²]", 0.0, "keep its corners apart") for a triangle without area,
     also where its corners are apart but on one line.
-    *Source:* Müller et al. 2006, section 4.1, for the constraint; Bridson et al. 2003 for an angle that is smooth at
-    a flat fold.
+    *Source:* Müller et al. 2006, section 4.1; Bridson et al. 2003 for an angle that is smooth at a flat fold.
     """
     ### BEGIN SOLUTION 8.9
     a, b, c, d = x[0], x[1], x[2], x[3]
@@ -396,8 +319,7 @@ def keep_outside(surface, x, inv_mass, obstacle):
     The constraint of each point is φ ≥ 0.
     (φ, n) = surface(x_k, obstacle);   where φ < 0 and the point can move (w_k > 0):   x_k ← x_k − φ n
 
-    An inequality acts in one direction only: a point outside is left alone.  Where n = 0, at the centre of a ball, a
-    point stays.  Returns a new array.
+    A point outside is left alone, and one at the centre of a ball, where n = 0, stays.  Returns a new array.
     *Source:* Müller et al. 2006, section 3.4; second lecture deck, “Project particle out”.
     """
     ### BEGIN SOLUTION 8.11
@@ -408,33 +330,6 @@ def keep_outside(surface, x, inv_mass, obstacle):
             x[k] -= phi * n
     return x
     ### END SOLUTION
-
-
-def fold_sweep(x, cloth):
-    """Given.  Return the positions after one visit to every fold of a cloth."""
-    x = float_copy(x)
-    for h in range(cloth.fold.size):
-        corners, w = np.zeros((4, 3)), np.zeros(4)
-        points = cloth.hinges[h]
-        for k in range(4):
-            corners[k] = x[points[k]]
-            w[k] = cloth.network.inv_mass[points[k]]
-        C, gradients = fold_constraint(corners, cloth.fold[h])
-        corrections = constraint_correction(cloth.stiffness * C, gradients, w)
-        for k in range(4):
-            x[points[k]] += corrections[k]
-    return x
-
-
-def cloth_step(acceleration, t, x, v, dt, cloth):
-    """Given.  Advance a cloth by one step: pbd_step with folds that resist bending, a ball and a floor."""
-    new = predict(acceleration, t, x, v, dt, cloth.network)
-    for _ in range(cloth.network.sweeps):
-        new = distance_sweep(new, cloth.network)
-        new = fold_sweep(new, cloth)
-        new = keep_outside(ball_gap, new, cloth.network.inv_mass, cloth.obstacle)
-        new = keep_outside(floor_gap, new, cloth.network.inv_mass, cloth.obstacle)
-    return new, (new - x) / dt
 
 
 # ---------------------------------------------------------------------------------------------- XPBD: compliant links
@@ -467,29 +362,19 @@ def compliant_sweep(x, Lam, dt, network):
 
     C and n are those of distance_constraint, for the ends as the earlier visits have left them.  A link that is too
     short pushes, also with α = 0.  Returns new arrays.
-    The worked answer sums over the coordinates in a loop, for speed, as in distance_sweep.
     Raises what distance_constraint and compliant_multiplier raise.
     *Source:* Macklin et al. 2016, algorithm 1.
     """
     ### BEGIN SOLUTION 8.13
-    x, Lam = float_copy(x), float_copy(Lam)
-    d = x.shape[1]
-    per_square = 1.0 / (dt * dt)
+    x, Lam, w = float_copy(x), float_copy(Lam), network.inv_mass
     for s in range(network.i.size):
         i, j = network.i[s], network.j[s]
-        squared = 0.0
-        for c in range(d):
-            squared += (x[i, c] - x[j, c]) ** 2
-        if squared == 0.0:
+        length = distance_between(x, i, j)
+        if length == 0.0:
             raise BadInput("the length of a link [m]", 0.0, "keep its ends apart")
-        length = np.sqrt(squared)
-        weight = network.inv_mass[i] + network.inv_mass[j]
-        change = compliant_multiplier(length - network.rest[s], Lam[s], weight, network.alpha[s] * per_square)
+        change = compliant_multiplier(length - network.rest[s], Lam[s], w[i] + w[j], network.alpha[s] / (dt * dt))
         Lam[s] += change
-        for c in range(d):
-            push = change / length * (x[i, c] - x[j, c])
-            x[i, c] += network.inv_mass[i] * push
-            x[j, c] -= network.inv_mass[j] * push
+        move_apart(x, i, j, w[i] * change / length, w[j] * change / length, x)
     return x, Lam
     ### END SOLUTION
 
@@ -497,8 +382,7 @@ def compliant_sweep(x, Lam, dt, network):
 def xpbd_step(acceleration, t, x, v, dt, network):
     """Advance a network by one step of XPBD: pbd_step with compliant_sweep, from Λ = 0 in every step; first order.
 
-    Many short steps with one sweep each are better than one long step with as many sweeps, because the
-    inertia m/dt² of the points then outweighs the forces of the links.
+    Many short steps with one sweep each are better than a long one with as many: m/dt² then outweighs the links.
     *Source:* Macklin et al. 2016; Macklin et al. 2019, “Small steps in physics simulation”.
     """
     ### BEGIN SOLUTION 8.14
@@ -517,8 +401,8 @@ def effective_inverse_mass_at(q, r, n, m, I_body):
 
     w = 1/m + (r × n)ᵀ I⁻¹ (r × n)          I⁻¹ = R I_body⁻¹ Rᵀ: unrotate(q, ·) converts a vector to body coordinates
 
-    r starts at the centre of mass.  r and n are in world coordinates.  For a point mass w = 1/m; with its offset
-    from the line along n through the centre of mass, w increases.
+    r starts at the centre of mass, and w increases with its offset from the line along n through it.  r and n are in
+    world coordinates.
     *Source:* Müller et al. 2020, “Detailed rigid body simulation with extended position based dynamics”, eqs. 2, 3.
     """
     ### BEGIN SOLUTION 8.15
@@ -532,8 +416,7 @@ def apply_positional_impulse(x, q, r, p, m, I_body):
 
     x ← x + p/m,      q ← quaternion_update(q, I⁻¹ (r × p), 1)          p = λ dt² ∇C: an impulse times a time
 
-    All vectors are in world coordinates.  rotate and unrotate (lesson 5) convert from and to body coordinates, in
-    which I is the diagonal I_body.
+    All vectors are in world coordinates; rotate and unrotate (lesson 5) convert from and to body coordinates.
     *Source:* Müller et al. 2020, eqs. 6 to 9.
     """
     ### BEGIN SOLUTION 8.16
@@ -556,24 +439,6 @@ def turning_rate(q_old, q_new, dt):
     turn = quaternion_product(q_new, q_back)
     return 2.0 / (turn[0] * dt) * turn[1:]
     ### END SOLUTION
-
-
-def pivoted_body_step(t, x, v, q, omega, dt, body):
-    """Given.  Advance a PivotedBody body by one step: (x, v, q, ω); first order.
-
-    Its pivot is one constraint, C = |x + r − pivot|.
-    """
-    new = x + dt * v + dt * dt * body.gravity
-    omega_pred = omega + dt * angular_acceleration(q, omega, np.zeros(3), body.I_body)
-    turned = quaternion_update(q, omega_pred, dt)
-    for _ in range(body.sweeps):
-        r = rotate(turned, body.arm_body)
-        gap = new + r - body.pivot
-        C = np.sqrt(np.sum(gap * gap))
-        if C > 0.0:
-            w = effective_inverse_mass_at(turned, r, gap / C, body.m, body.I_body)
-            new, turned = apply_positional_impulse(new, turned, r, -gap / w, body.m, body.I_body)
-    return new, (new - x) / dt, turned, turning_rate(q, turned, dt)
 
 
 # ---------------------------------------------------------------------------------------------- a soft ball
@@ -599,52 +464,4 @@ def volume_gradient(x, faces):
     ### END SOLUTION
 
 
-def balloon_step(acceleration, t, x, v, dt, balloon):
-    """Given.  Advance a closed network above a floor by one step: xpbd_step with the volume as one more constraint.
-
-    Each sweep visits the links first, then the air, then the floor.
-    """
-    network = balloon.network
-    new, Lam, air = predict(acceleration, t, x, v, dt, network), np.zeros(network.i.size), 0.0
-    for _ in range(balloon.network.sweeps):
-        new, Lam = compliant_sweep(new, Lam, dt, network)
-        V, gradient = volume_gradient(new, balloon.faces)
-        weight = 0.0
-        for k in range(x.shape[0]):
-            weight += network.inv_mass[k] * dot(gradient[k], gradient[k])
-        change = compliant_multiplier(V - balloon.volume, air, weight, balloon.alpha / (dt * dt))
-        air += change
-        for k in range(x.shape[0]):
-            new[k] += change * network.inv_mass[k] * gradient[k]
-        new = keep_outside(floor_gap, new, network.inv_mass, balloon.obstacle)
-    return new, (new - x) / dt
-
-
 # ---------------------------------------------------------------------------------------------- building
-
-def make_constraint_network(x, m, fixed, pairs, alpha, stiffness, gravity, sweeps):
-    """Given.  Make a ConstraintNetwork whose links have their lengths at x as rest lengths.
-
-    x (n, d); m [kg], alpha [m/N] and stiffness [-] are numbers or one each; fixed lists point numbers; pairs (s, 2);
-    gravity (d,).
-    Raises BadInput for a mass that is not positive, a state that is not finite, a link of zero length or between two
-    immovable points, a negative compliance, a stiffness outside 0 … 1 or equal to 0, fewer than one sweep, a point
-    number out of range, gravity of another dimension than x.
-    """
-    x = finite_array("a position of the network [m]", x)
-    gravity = finite_array("gravity [m/s²]", gravity)
-    inv_mass = inverse_masses("a mass of the network [kg]", m, fixed, x)
-    check_shape("gravity", gravity, x.shape[1:])
-    i, j, rest = measured_links("link", x, pairs)
-    alphas = one_each("compliance α [m/N]", alpha, len(i))
-    shares = one_each("stiffness of a link [-]", stiffness, len(i))
-    for s in range(len(i)):
-        link = f"link {s} from point {i[s]} to {j[s]}"
-        if rest[s] == 0.0:
-            raise BadInput(f"the length of {link} [m]", 0.0, "move its ends apart")
-        if inv_mass[i[s]] + inv_mass[j[s]] == 0.0:
-            raise BadInput(f"the inverse mass at {link} [1/kg]", 0.0, "leave out links between immovable points")
-        if not 0.0 < shares[s] <= 1.0:
-            raise BadInput(f"the stiffness of link {s} [-]", shares[s], "give a number above 0, up to 1")
-    return ConstraintNetwork(inv_mass, gravity, i, j, rest, shares, alphas, whole_number("sweeps in a step", sweeps, 1))
-

@@ -15,8 +15,6 @@ import numpy as np
 from .checks import (
     BadInput,
     Diverged,
-    WrongShape,
-    check_indices,
     check_positive,
     check_shape,
     finite_array,
@@ -24,6 +22,8 @@ from .checks import (
     one_each,
 )
 from .integrators import average_velocity_step
+from .support.networks import inverse_masses, measured_links
+from .vectors import distance_between, move_apart, product_between
 
 __all__ = [
     "BEND", "CG_TOLERANCE", "GRAVITY", "SHEAR", "STRUCTURAL", "G", "SpringNetwork", "StepMatrix",
@@ -167,8 +167,8 @@ def spring_forces(x, v, network):
                       F_i += T r/l,    F_j −= T r/l
 
     Include the forces on fixed points; spring_network_acceleration holds those points.
-    The worked answer sums over the d coordinates in a loop, because a small array costs more than the arithmetic in
-    it.  Array expressions are equally correct, with one trap: if i holds a point twice, F[i] += f adds only once.
+    distance_between, product_between and move_apart (vectors.py) are made for links, and fast.  Array expressions are
+    equally correct, with one trap: if i holds a point twice, F[i] += f adds only once.
     Raises BadInput("the length of a spring [m]", 0.0, "keep its ends apart") when the ends coincide, because the
     spring then has no direction.
     *Source:* first lecture deck, “spring.point1.force += force; spring.point2.force -= force”.
@@ -177,22 +177,12 @@ def spring_forces(x, v, network):
     force = np.zeros(x.shape)
     for s in range(network.i.size):
         i, j = network.i[s], network.j[s]
-        x_i, x_j, v_i, v_j = x[i], x[j], v[i], v[j]
-        force_i, force_j = force[i], force[j]                            # views: a change is a change of force
-
-        squared, product = 0.0, 0.0
-        for c in range(x_i.size):
-            r = x_j[c] - x_i[c]
-            squared += r * r
-            product += r * (v_j[c] - v_i[c])
-        if squared == 0.0:
+        length = distance_between(x, i, j)
+        if length == 0.0:
             raise BadInput("the length of a spring [m]", 0.0, "keep its ends apart")
-        length = np.sqrt(squared)
-
-        pull = spring_tension(length, product / length, network.rest[s], network.k[s], network.k_d[s]) / length
-        for c in range(x_i.size):
-            force_i[c] += pull * (x_j[c] - x_i[c])
-            force_j[c] -= pull * (x_j[c] - x_i[c])
+        rate = product_between(x, v, i, j) / length
+        T = spring_tension(length, rate, network.rest[s], network.k[s], network.k_d[s])
+        move_apart(force, i, j, -T / length, -T / length, x)
     return force
     ### END SOLUTION
 
@@ -267,32 +257,6 @@ def make_spring_network(x, m, fixed, pairs, k, k_d, gravity, wind, k_v):
     damper = one_each("damper k_d [N s/m]", k_d, len(i))
     viscosity = one_each("viscosity k_v [N s/m]", k_v, 1)[0]
     return SpringNetwork(inv_mass, gravity, wind, viscosity, i, j, rest, stiffness, damper)
-
-
-def inverse_masses(thing, m, fixed, x):
-    """Given.  Return 1/m (n,) of points x (n, d), 0 if in `fixed`; m is a number or one each.  Raises BadInput."""
-    if x.ndim != 2 or x.size == 0:
-        raise WrongShape("the points x", x.shape, "(n, d), a row for each point")
-    masses = one_each(thing, m, len(x))
-    for mass in masses:
-        check_positive(thing, mass)
-    inv_mass = 1.0 / masses
-    inv_mass[check_indices("the number of a fixed point", fixed, len(x))] = 0.0
-    return inv_mass
-
-
-def measured_links(kind, x, pairs):
-    """Given.  Return (i, j, length), each (s,), of the links between points x (n, d) with numbers pairs (s, 2).
-
-    Raises BadInput for a number out of range and WrongShape for pairs of another shape.
-    """
-    pairs = check_indices(f"a point number of a {kind}", pairs, len(x))
-    if pairs.size == 0:
-        pairs = pairs.reshape(0, 2)
-    if pairs.ndim != 2 or pairs.shape[1] != 2:
-        raise WrongShape("the pairs", pairs.shape, "(s, 2), two point numbers in each row")
-    i, j = np.ascontiguousarray(pairs[:, 0]), np.ascontiguousarray(pairs[:, 1])
-    return i, j, np.sqrt(np.sum((x[j] - x[i]) ** 2, axis=1))
 
 
 def randomised(value, spread, u):

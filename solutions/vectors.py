@@ -1,4 +1,4 @@
-"""Vectors of three coordinates and matrices of three rows, written out.
+"""Vectors of three coordinates, matrices of three rows, and the rows of points that a link joins, written out.
 
 Given.  Compiled, these functions are as fast as loops; NumPy's own take longer to compile and to run.
 """
@@ -7,7 +7,7 @@ import numpy as np
 
 from .checks import BadInput
 
-__all__ = ["cross", "dot", "inverse", "norm"]
+__all__ = ["cross", "distance_between", "dot", "inverse", "move_apart", "norm", "product_between"]
 
 
 def dot(a, b):
@@ -36,3 +36,24 @@ def inverse(A):
     if determinant == 0.0:
         raise BadInput("the determinant of a matrix", determinant, "it has no inverse: give one whose axes all resist")
     return np.stack((cross(b, c), cross(c, a), cross(a, b))) / determinant
+
+
+def product_between(x, y, i, j):
+    """Return (x_i − x_j) · (y_i − y_j) of the rows i and j of two arrays (n, d)."""
+    product = 0.0
+    for c in range(x.shape[1]):
+        product += (x[i, c] - x[j, c]) * (y[i, c] - y[j, c])
+    return product
+
+
+def distance_between(x, i, j):
+    """Return |x_i − x_j| of the points i and j of x (n, d)."""
+    return np.sqrt(product_between(x, x, i, j))
+
+
+def move_apart(y, i, j, k_i, k_j, x):
+    """Add k_i r to y_i and take k_j r from y_j, in place, for r = x_i − x_j; y (n, d) may be x itself."""
+    for c in range(x.shape[1]):
+        r = x[i, c] - x[j, c]
+        y[i, c] += k_i * r
+        y[j, c] -= k_j * r

@@ -11,8 +11,9 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from solutions import pbd, springs
+from solutions import springs
 from solutions.integrators import observed_order
+from solutions.support import pbd
 
 from . import modules
 
@@ -158,7 +159,7 @@ def cloth_frame():
 
     def frames(step, substeps, net):
         v, dt = 0.0 * flat.x, frame / substeps
-        run = lambda: advance(step, lesson.falling_acceleration, 0.0, flat.x, v, dt, substeps, net)
+        run = lambda: advance(step, lesson.network_gravity, 0.0, flat.x, v, dt, substeps, net)
         run()
         return run, 1
 

@@ -1,17 +1,8 @@
-"""Given.  Discs or balls that collide without friction: when they meet, and many steps of them."""
+"""Given.  Discs or balls that collide without friction: when they meet, and how they are moved apart."""
 
 import numpy as np
 
-from ..checks import (
-    check_array,
-    check_end,
-    check_field,
-    check_not_negative,
-    check_restitution,
-    checked_run,
-    finite_number,
-    float_copy,
-)
+from ..checks import float_copy
 
 
 def meeting_time(x, v, i, j, reach, dt):
@@ -68,21 +59,3 @@ def drift(x, v, dt):
     for k in range(x.shape[0]):
         x[k] += dt * v[k]
     return x
-
-
-def advance_discs(step, x, v, dt, steps, p):
-    """Given.  Return (x, v), each (copies, bodies, d), of discs after `steps` steps; raises as advance_balls."""
-    _, x, v, dt, steps = checked_run(0.0, x, v, dt, steps)
-    check_array("position x [m]", x, 3)
-    check_restitution(finite_number("restitution e [-]", p.e))
-    for thing, values in (("radius of a disc [m]", p.radius), ("inverse mass of a disc [1/kg]", p.inv_mass)):
-        check_field(thing, values, x.shape[1:2])
-        check_not_negative(thing, values.min())
-    x, v = x.copy(), v.copy()
-    for k in range(x.shape[0]):
-        x_k, v_k = x[k], v[k]
-        for _ in range(steps):
-            x_k, v_k = step(x_k, v_k, dt, p)
-        x[k], v[k] = x_k, v_k
-    check_end(x, v, dt)
-    return x, v

@@ -87,3 +87,18 @@ def incident_edge(a, n):
         if against < least:
             least, edge = against, i
     return np.stack((a[edge], a[(edge + 1) % len(a)]))
+
+
+def normal_or_axis(r):
+    """Given.  Return r/|r|, or the last axis where r is zero: there every direction is equally good."""
+    length = np.sqrt(r @ r)
+    if length != 0.0:
+        return r / length
+    n = 0.0 * r
+    n[-1] = 1.0
+    return n
+
+
+def nearer(p, q, other):
+    """Given.  Return q or other (d,), whichever is nearer to p (d,)."""
+    return q if (q - p) @ (q - p) <= (other - p) @ (other - p) else other

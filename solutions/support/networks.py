@@ -1,6 +1,34 @@
-"""Given.  What a matrix of all links needs, and the edges of a mesh."""
+"""Given.  Points and links as arrays, what a matrix of all links needs, and the edges of a mesh."""
 
 import numpy as np
+
+from ..checks import WrongShape, check_indices, check_positive, one_each
+
+
+def inverse_masses(thing, m, fixed, x):
+    """Given.  Return 1/m (n,) of points x (n, d), 0 if in `fixed`; m is a number or one each.  Raises BadInput."""
+    if x.ndim != 2 or x.size == 0:
+        raise WrongShape("the points x", x.shape, "(n, d), a row for each point")
+    masses = one_each(thing, m, len(x))
+    for mass in masses:
+        check_positive(thing, mass)
+    inv_mass = 1.0 / masses
+    inv_mass[check_indices("the number of a fixed point", fixed, len(x))] = 0.0
+    return inv_mass
+
+
+def measured_links(kind, x, pairs):
+    """Given.  Return (i, j, length), each (s,), of the links between points x (n, d) with numbers pairs (s, 2).
+
+    Raises BadInput for a number out of range and WrongShape for pairs of another shape.
+    """
+    pairs = check_indices(f"a point number of a {kind}", pairs, len(x))
+    if pairs.size == 0:
+        pairs = pairs.reshape(0, 2)
+    if pairs.ndim != 2 or pairs.shape[1] != 2:
+        raise WrongShape("the pairs", pairs.shape, "(s, 2), two point numbers in each row")
+    i, j = np.ascontiguousarray(pairs[:, 0]), np.ascontiguousarray(pairs[:, 1])
+    return i, j, np.sqrt(np.sum((x[j] - x[i]) ** 2, axis=1))
 
 
 def shared_edges(faces):
@@ -36,7 +64,10 @@ def link_delassus_matrix(J, K, network, trace):
 
 
 def apply_multipliers(J, Lam, network):
-    """Given.  Return W JᵀΛ (n, d) [m]: how far the multipliers Λ (s,) move the points."""
+    """Given.  Return W JᵀΛ (n, d) [m]: how far the multipliers Λ (s,) move the points.
+
+    The loops visit only the two ends of each link, as above.
+    """
     d = J.shape[1] // network.inv_mass.size
     moved = np.zeros((network.inv_mass.size, d))
     for s in range(Lam.size):

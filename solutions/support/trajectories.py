@@ -8,10 +8,10 @@ along them.
 import numpy as np
 
 from ..checks import whole_number
-from ..collisions import advance_projectiles
-from ..impulses import advance_balls, advance_discs, advance_spinning_balls
 from ..simulator import advance_contact, advance_free, advance_rocking
+from .collisions import advance_projectiles
 from .friction import advance_particle
+from .impulses import advance_balls, advance_discs, advance_spinning_balls
 from .rotation import advance_rigid_body
 
 

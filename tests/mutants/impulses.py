@@ -567,10 +567,17 @@ def backtracking_step(acceleration, t, x, v, dt, p):
 
 
 # 7.17 -----------------------------------------------------------------------------------------------------------
+JAMMED = "most_dissipative_impact(contact_matrix, cone_impulse, apply_impulse, body, r, n, e, mu)"
+
+
+def no_answer(*impact):
+    return worked.most_dissipative_impact(worked.contact_matrix, worked.cone_impulse, worked.apply_impulse, *impact)
+
+
 @variants
 def sweeping(sweeps=3000, before=True, takes_back=True, friction=lambda mu: mu, check=worked.check_impacts,
              push=worked.apply_impulse, rebound=lambda e: e, report=lambda residual: residual,
-             jammed=worked.most_dissipative_impact):
+             jammed=no_answer):
     def solve_impacts(body, r, n, e, mu):
         check(body, r, n, e, mu)
         start, speed = body, worked.largest_speed(body, r)
@@ -602,7 +609,8 @@ wrong("7.17", "never rebounds")(sweeping(rebound=lambda e: 0.0))
 wrong("7.17", "does not rotate")(sweeping(push=lambda body, r, J: body._replace(v=body.v + body.inv_mass * J)))
 wrong("7.17", "accepts any restitution")(sweeping(check=lambda *_: None))
 wrong("7.17", "returns a residual of zero")(sweeping(report=lambda residual: 0.0))
-edit("7.17", "one after the other", "check_impacts(body, r, n, e, mu)", "return sequential_impacts(body, r, n, e, mu)")
+edit("7.17", "one after the other", "check_impacts(body, r, n, e, mu)",
+     "from solutions.support.impulses import sequential_impacts as one; return one(body, r, n, e, mu)")
 edit("7.17", "all points leave alike", "cone_impulse(u, n[i], K, u_sep[i], mu)",
      "cone_impulse(u, n[i], K, u_sep.max(), mu)")
 edit("7.17", "none rebounds", "cone_impulse(u, n[i], K, u_sep[i], mu)", "cone_impulse(u, n[i], K, 0.0, mu)")
@@ -610,18 +618,18 @@ edit("7.17", "one normal for all points", "cone_impulse(u, n[i]", "cone_impulse(
 edit("7.17", "rebounds with the speed of the centre", "point_velocity(after.v, after.omega, r[i])", "after.v")
 edit("7.17", "settled at an absolute 1e-11 m/s", "CONVERGED * speed", "1e-11")
 edit("7.17", "the body before the impact, if the sweeps do not settle",
-     "most_dissipative_impact(body, r, n, e, mu)", "(body, residual)")
+     JAMMED, "(body, residual)")
 edit("7.17", "friction of 1 at most", "u_sep[i], mu)", "u_sep[i], min(mu, 1.0))")
 edit("7.17", "the result of the last sweep, if the sweeps do not settle",
-     "return most_dissipative_impact(body, r, n, e, mu)", "return after, residual")
-edit("7.17", "without friction, if the sweeps do not settle", "most_dissipative_impact(body, r, n, e, mu)",
-     "most_dissipative_impact(body, r, n, e, 0.0)")
+     f"return {JAMMED}", "return after, residual")
+edit("7.17", "without friction, if the sweeps do not settle", "apply_impulse, body, r, n, e, mu)",
+     "apply_impulse, body, r, n, e, 0.0)")
 edit("7.17", "100 sweeps", "range(MAX_SWEEPS)", "range(100)")
 edit("7.17", "500 sweeps", "range(MAX_SWEEPS)", "range(500)")
 edit("7.17", "an impulse for a velocity", "np.abs(times(K, J - Js[i])).max()", "np.abs(J - Js[i]).max()")
-edit("7.17", "rounding without the rotation", "largest_speed(body, r)", "norm(body.v)")
+edit("7.17", "rounding without the rotation", "largest_speed(body, r)", "np.linalg.norm(body.v)")
 edit("7.17", "rounding of the points' velocities", "largest_speed(body, r)",
-     "max([norm(point_velocity(body.v, body.omega, arm)) for arm in r])")
+     "max([np.linalg.norm(point_velocity(body.v, body.omega, arm)) for arm in r])")
 edit("7.17", "no change if it is against the axes", "np.abs(times(K, J - Js[i])).max()", "times(K, J - Js[i]).max()")
 edit("7.17", "the residual of the last point", "residual = max(residual, ", "residual = max(0.0, ")
 edit("7.17", "the residual of the first point", "residual = max(residual, ", "residual = max(residual, (i == 0) * ")
@@ -632,7 +640,6 @@ edit("7.17", "friction of 2 at most", "u_sep[i], mu)", "u_sep[i], min(mu, 2.0))"
 edit("7.17", "sticks as a ball would", "contact_matrix(r[i], body.inv_mass, body.inv_inertia)",
      "contact_matrix(r[i], body.inv_mass, np.trace(body.inv_inertia) / 3.0 * np.eye(3))")
 edit("7.17", "asks for the normal changes only", "np.abs(times(K, J - Js[i])).max()", "abs(n[i] @ times(K, J - Js[i]))")
-edit("7.17", "infinite friction, if the sweeps do not settle", "most_dissipative_impact(body, r, n, e, mu)",
-     "most_dissipative_impact(body, r, n, e, np.inf)")
-edit("7.17", "the residual of the sweeps that do not settle", "most_dissipative_impact(body, r, n, e, mu)",
-     "(most_dissipative_impact(body, r, n, e, mu)[0], residual)")
+edit("7.17", "infinite friction, if the sweeps do not settle", "apply_impulse, body, r, n, e, mu)",
+     "apply_impulse, body, r, n, e, np.inf)")
+edit("7.17", "the residual of the sweeps that do not settle", JAMMED, f"({JAMMED}[0], residual)")

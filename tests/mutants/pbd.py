@@ -236,8 +236,8 @@ wrong("8.6", "changes its input")(sweeping(changes=True))
 wrong("8.6", "accepts coincident ends")(sweeping(checked=False))
 wrong("8.6", "moves the immovable")(sweeping(held=False))
 edit("8.6", "a thread: never too short", "share = network.stiffness[s]",
-     "share = network.stiffness[s] * (squared > network.rest[s] ** 2)")
-edit("8.6", "refuses short segments", "squared == 0.0", "squared < 1e-12")
+     "share = network.stiffness[s] * (length > network.rest[s])")
+edit("8.6", "refuses short segments", "length == 0.0", "length < 1e-6")
 edit("8.6", "link s joins points s and s + 1", "i, j = network.i[s], network.j[s]", "i, j = s, s + 1")
 edit("8.6", "the rest length of the first link", "network.rest[s]", "network.rest[0]")
 edit("8.6", "the stiffness of the first link", "network.stiffness[s]", "network.stiffness[0]")
@@ -246,10 +246,9 @@ edit("8.6", "the stiffness of one sweep so that all remove s", "network.stiffnes
 edit("8.6", "the stiffness of all sweeps in each", "network.stiffness[s] *",
      "(1.0 - (1.0 - network.stiffness[s]) ** network.sweeps) *")
 edit("8.6", "all sweeps at once", "range(network.i.size)", "[*range(network.i.size)] * network.sweeps")
-edit("8.6", "as soft as in XPBD", "(network.inv_mass[i] + network.inv_mass[j])",
-     "(network.inv_mass[i] + network.inv_mass[j] + network.alpha[s])")
+edit("8.6", "as soft as in XPBD", "(w[i] + w[j])", "(w[i] + w[j] + network.alpha[s])")
 edit("8.6", "visits the links in the order of their first points", "range(network.i.size)", "np.argsort(network.i)")
-edit("8.6", "refuses a nanometre", "squared == 0.0", "squared < 1e-18")
+edit("8.6", "refuses a nanometre", "length == 0.0", "length < 1e-9")
 edit("8.6", "a millionth of its length is no error", "share = network.stiffness[s]",
      "share = (abs(length - network.rest[s]) > 1e-6 * length) * network.stiffness[s]")
 
@@ -262,9 +261,9 @@ def distance_sweep(x, network):
         C, n = worked.distance_constraint(x[ends[0]], x[ends[1]], network.rest[s])
         x[ends] += network.stiffness[s] * worked.constraint_correction(C, np.stack((n, -n)), network.inv_mass[ends])
     return x
-edit("8.6", "returns its input where nothing is to be done", "x, d = float_copy(x), x.shape[1]",
-     "d = x.shape[1]\n    if np.allclose(np.sqrt(np.sum((x[network.i] - x[network.j]) ** 2, axis=1)), network.rest):\n"
-     "        return x\n    x = float_copy(x)")
+edit("8.6", "returns its input where nothing is to be done", "x, w = float_copy(x), network.inv_mass",
+     "w, r = network.inv_mass, x[network.i] - x[network.j]\n"
+     "    if np.allclose(np.sqrt(np.sum(r ** 2, axis=1)), network.rest):\n        return x\n    x = float_copy(x)")
 
 
 # 8.7 ------------------------------------------------------------------------------------------------------------
@@ -534,20 +533,20 @@ edit("8.13", "no visit where α = 0", "i, j = network.i[s], network.j[s]",
      "i, j = network.i[s], network.j[s]\n        if network.alpha[s] == 0.0:\n            continue")
 edit("8.13", "keeps no Λ where α = 0", "Lam[s] += change", "Lam[s] += change * (network.alpha[s] > 0.0)")
 edit("8.13", "checks nothing",
-     "compliant_multiplier(length - network.rest[s], Lam[s], weight, network.alpha[s] * per_square)",
-     "(network.rest[s] - length - network.alpha[s] * per_square * Lam[s]) / (weight + network.alpha[s] * per_square)")
-edit("8.13", "skips immovable points", "weight = network.inv_mass[i] + network.inv_mass[j]",
-     "weight = network.inv_mass[i] + network.inv_mass[j]\n        if weight == 0.0:\n            continue")
+     "compliant_multiplier(length - network.rest[s], Lam[s], w[i] + w[j], network.alpha[s] / (dt * dt))",
+     "(network.rest[s] - length - network.alpha[s] / dt**2 * Lam[s]) / (w[i] + w[j] + network.alpha[s] / dt**2)")
+edit("8.13", "skips immovable points", "length = distance_between(x, i, j)",
+     "length = distance_between(x, i, j)\n        if w[i] + w[j] == 0.0:\n            continue")
 edit("8.13", "visits the links in the order of their first points", "range(network.i.size)", "np.argsort(network.i)")
-edit("8.13", "no visit where a link has its rest length", "weight = network.inv_mass[i] + network.inv_mass[j]",
-     "weight = network.inv_mass[i] + network.inv_mass[j]\n"
+edit("8.13", "no visit where a link has its rest length", "length = distance_between(x, i, j)",
+     "length = distance_between(x, i, j)\n"
      "        if abs(length / network.rest[s] - 1.0) < 1e-9:\n            continue")
-edit("8.13", "refuses a nanometre", "squared == 0.0", "squared < 1e-18")
+edit("8.13", "refuses a nanometre", "length == 0.0", "length < 1e-9")
 edit("8.13", "all sweeps at once", "range(network.i.size)", "[*range(network.i.size)] * network.sweeps")
 edit("8.13", "a part of α in each sweep",
-     "network.alpha[s] * per_square", "network.alpha[s] * per_square / network.sweeps")
-edit("8.13", "returns its input where there are no links", "x, Lam = float_copy(x), float_copy(Lam)",
-     "if network.i.size == 0:\n        return x, Lam\n    x, Lam = float_copy(x), float_copy(Lam)")
+     "network.alpha[s] / (dt * dt)", "network.alpha[s] / (dt * dt) / network.sweeps")
+edit("8.13", "returns its input where there are no links", "x, Lam, w =",
+     "if network.i.size == 0:\n        return x, Lam\n    x, Lam, w =")
 
 
 # 8.14 -----------------------------------------------------------------------------------------------------------

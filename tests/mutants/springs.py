@@ -153,13 +153,14 @@ wrong("2.7", "rate without division by l")(by_matrices(rate=lambda r, u, length:
 wrong("2.7", "speed for rate")(by_matrices(rate=lambda r, u, length: np.sqrt(np.sum(u * u, axis=1))))
 wrong("2.7", "rate the other way round")(by_matrices(rate=lambda r, u, length: -np.sum(r * u, axis=1) / length))
 wrong("2.7", "accepts a spring of zero length")(by_matrices(checked=False))
-edit("2.7", "damps every motion, not only along the spring", "force_i[c] +=",
-     "force_i[c] += network.k_d[s] * (v_j[c] - v_i[c]) +")
+edit("2.7", "damps every motion, not only along the spring", "move_apart(force, i, j, -T / length, -T / length, x)",
+     "move_apart(force, i, j, -T / length, -T / length, x)\n"
+     "        move_apart(force, i, j, -network.k_d[s], -network.k_d[s], v)")
 edit("2.7", "every spring like the first", "network.rest[s], network.k[s], network.k_d[s]",
      "network.rest[0], network.k[0], network.k_d[0]")
 edit("2.7", "nothing on fixed points", "return force", "return force * (network.inv_mass > 0.0)[:, None]")
-edit("2.7", "the plane only", "squared, product = 0.0, 0.0", "squared, product, x_i = 0.0, 0.0, x_i[:2]")
-edit("2.7", "refuses small inputs", "squared == 0.0", "squared < 1e-9")
+edit("2.7", "the plane only", "force = np.zeros(x.shape)", "x, v, force = x[:, :2], v[:, :2], np.zeros(x.shape)")
+edit("2.7", "refuses small inputs", "length == 0.0", "length < 3e-5")
 
 
 # 2.8 ------------------------------------------------------------------------------------------------------------

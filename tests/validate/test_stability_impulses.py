@@ -5,8 +5,10 @@ import types
 import numpy as np
 import pytest
 
-from solutions import impulses as worked
+from validate.modules import bind
 from validate.stability.examine import cases_of, subject_of
+
+worked = bind("impulses")
 
 
 def against_the_slip(u, n, K, e, mu):

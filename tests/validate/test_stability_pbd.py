@@ -5,8 +5,10 @@ import types
 import numpy as np
 import pytest
 
-from solutions import pbd as worked
+from validate.modules import bind
 from validate.stability.examine import cases_of, subject_of
+
+worked = bind("pbd")
 
 
 def hooke(acceleration, t, x, v, dt, network):

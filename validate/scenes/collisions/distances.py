@@ -9,20 +9,14 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.collisions import (
-    Box,
-    Plane,
-    ball_box,
+from solutions.collisions import Box, Plane, ball_box, ball_contact, box_corners, box_separation, gjk
+from solutions.support.collisions import (
     ball_capsule,
-    ball_contact,
     ball_plane,
     ball_triangle,
     box_box,
-    box_corners,
-    box_separation,
     capsule_capsule,
     cylinder_hit,
-    gjk,
     points_plane,
     polygon_contacts,
 )

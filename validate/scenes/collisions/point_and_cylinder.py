@@ -11,7 +11,8 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.collisions import Plane, Target, advance_projectiles, ball_cylinder_gap, ball_cylinder_time
+from solutions.collisions import Plane
+from solutions.support.collisions import Target, advance_projectiles, ball_cylinder_gap, ball_cylinder_time
 from validate.engines.collisions import (
     ENGINE_SPEEDS,
     PLACE_APART,

@@ -9,7 +9,8 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import check_positive
-from solutions.collisions import Plane, Target, advance_projectiles, ball_plane_gap, ball_plane_time
+from solutions.collisions import Plane
+from solutions.support.collisions import Target, advance_projectiles, ball_plane_gap, ball_plane_time
 from validate.engines.collisions import (
     ENGINE_SPEEDS,
     PLACE_APART,

@@ -17,10 +17,10 @@ from solutions.contact import (
     box_contacts,
     box_contacts_2d,
     disc_bounds,
-    near_pairs,
     round_contacts,
-    world_inertia,
 )
+from solutions.support.arms import world_inertia
+from solutions.support.broad_phase import near_pairs
 from validate.drawing import seen
 from validate.engines.contact import DT, KINDS, MU, BulletPile, G, PymunkPile, fallen, inverse_tensors
 from validate.methods import PILE, PILE_IN_SPACE

@@ -7,8 +7,8 @@ import numpy as np
 
 from solutions.checks import BadInput, check_positive
 from solutions.integrators import advance
-from solutions.pbd import make_constraint_network
-from solutions.pbd import network_gravity as acceleration
+from solutions.support.pbd import make_constraint_network
+from solutions.support.pbd import network_gravity as acceleration
 from validate.drawing import seen
 from validate.methods import XPBD
 from validate.reference.pbd import weave, weave_motion, weave_rest

@@ -6,8 +6,8 @@ import numpy as np
 
 from solutions.checks import BadInput, check_positive
 from solutions.integrators import advance
-from solutions.pbd import make_constraint_network
-from solutions.pbd import network_gravity as acceleration
+from solutions.support.pbd import make_constraint_network
+from solutions.support.pbd import network_gravity as acceleration
 from validate.engines.pbd import ITERATIONS, SHARE, bullet_rope, pymunk_rope
 from validate.methods import COMPOSED_ROPE, PBD, PROJECTION, RATTLE, ROPE, XPBD
 from validate.reference.pbd import pendulum_angle, pendulum_period
