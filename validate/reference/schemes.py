@@ -19,7 +19,11 @@ from ..scene import ROUND_OFF, Prediction
 MOST_ITERATIONS = 200        # of an implicit stage: h times the fastest rate must be well below 1
 CLOSE = 0.01                 # how near a run comes to the same table's error at the same step [-]
 SAFETY = 2.0                 # over what an expansion misses in its own check [-]
-PREDICTABLE = 0.5            # larger errors, relative to the truth, are not predicted [-]
+UNSURE = 0.3                 # an expansion that misses its own check by more needs finer runs [-]
+MOST_DOUBLINGS = 3
+NUDGE = 1e-13                # of a start, relative to what is observed [-]
+LARGE = 1e-3                 # errors above this may belong to a run that multiplies roundings [-]
+PREDICTABLE = 0.1            # larger errors, relative to the truth, are not predicted [-]
 FINEST = {1: 800, 2: 400, 4: 200}    # steps that the table is run with, by its order: errors clear of round-off
 
 
@@ -103,14 +107,17 @@ def step(tableau, law, t, x, v, h):
 
 
 def implicit_stage(law, t, x, v, h):
-    """The V with V = v + h a(t, x + h V, V), and that acceleration, by iteration; NaN where it does not converge."""
+    """The V with V = v + h a(t, x + h V, V), and that acceleration, by iteration.
+
+    Raises ArithmeticError where it does not converge.
+    """
     V = v
     for _ in range(MOST_ITERATIONS):
         force = law(t, x + h * V, V)
         last, V = V, v + h * force
         if np.all(abs(V - last) <= 4.0 * ROUND_OFF * (abs(V) if np.isscalar(V) else np.max(abs(V)))):
             return V, force
-    return V * np.nan, force
+    raise ArithmeticError("the stage did not converge")
 
 
 def advance(scheme, law, x, v, h, steps):
@@ -132,18 +139,46 @@ class ErrorLaw:
     """
 
     def __init__(self, run, law, powers, T, finest):
+        """run(steps, nudge) → what is observed at T; nudge [m] moves the start."""
         self.run, self.law, self.T, self.known = run, law, T, {}
         self.powers = np.array(powers if isinstance(powers, tuple) else (powers, powers + 1, powers + 2))
-        self.finest = finest // 8 * 8
+        self.size = np.linalg.norm(law) or 1.0
+        self.finest = max(finest // 8, 1) * 8
 
-    def error(self, steps):
+    def error(self, steps, nudge=0.0):
         """What the table's run of so many steps is off by."""
-        if steps not in self.known:
+        if (steps, nudge) not in self.known:
             try:
-                self.known[steps] = np.array(self.run(steps), dtype=float) - self.law
-            except ArithmeticError:
-                self.known[steps] = np.full_like(self.law, np.nan)
-        return self.known[steps]
+                with np.errstate(all="ignore"):
+                    error = np.array(self.run(steps, nudge), dtype=float) - self.law
+            except (ArithmeticError, ValueError, np.linalg.LinAlgError):       # it left the range of numbers
+                error = np.full_like(self.law, np.nan)
+            self.known[steps, nudge] = error
+        return self.known[steps, nudge]
+
+    def round_off(self, steps):
+        """What roundings may grow to, relative: ten standard deviations of a random walk, as a nudged start grows.
+
+        Only a run with a large error can be one that multiplies them.
+        """
+        error = self.error(steps)
+        if np.linalg.norm(error) < LARGE * self.size:
+            return 0.0
+        growth = np.linalg.norm(self.error(steps, NUDGE * self.size) - error) / (NUDGE * self.size)
+        return 10.0 * np.sqrt(steps) * ROUND_OFF * growth
+
+    def missed(self, finest):
+        """By how much the expansion through the runs before the finest one misses that."""
+        return np.linalg.norm(self.expanded(finest, finest // 2) - self.error(finest))
+
+    def settle(self, floor):
+        """Take more steps until the expansion can be trusted."""
+        for left in reversed(range(MOST_DOUBLINGS + 1)):
+            size = np.linalg.norm(self.error(self.finest))
+            if size < PREDICTABLE * self.size and self.missed(self.finest) <= max(UNSURE * size, floor * self.size):
+                return True
+            self.finest *= 2 if left else 1
+        return False
 
     def expanded(self, steps, most):
         """The error at `steps` by the expansion through the runs of most/4, most/2 and `most` steps."""
@@ -153,21 +188,24 @@ class ErrorLaw:
         return (most / steps) ** self.powers @ terms
 
     def prediction(self, dt, floor):
-        """The Prediction for a step; None where the error is too large."""
-        steps, size, missed = round(self.T / dt), np.linalg.norm(self.law) or 1.0, 0.0
-        error = self.error(steps) if steps <= self.finest else self.expanded(steps, self.finest)
-        if not np.linalg.norm(error) < PREDICTABLE * size:
+        """The Prediction for a step; None where the error is too large, or the expansion cannot be trusted."""
+        steps = round(self.T / dt)
+        settled = steps <= self.finest or self.settle(floor)
+        if steps <= self.finest:                                             # settle() may have raised it
+            error, more = self.error(steps), self.round_off(steps)
+        elif settled:
+            error = self.expanded(steps, self.finest)
+            more = SAFETY * self.missed(self.finest) / self.size * (self.finest / steps) ** self.powers[0]
+        else:
             return None
-        if steps > self.finest:
-            missed = np.linalg.norm(self.expanded(self.finest, self.finest // 2) - self.error(self.finest))
-            missed *= SAFETY * (self.finest / steps) ** self.powers[0]
-        return Prediction(error, (CLOSE * np.linalg.norm(error) + missed) / size + floor)
+        size = np.linalg.norm(error) / self.size
+        return Prediction(error, CLOSE * size + more + floor) if size + more < PREDICTABLE else None
 
 
 class Model(NamedTuple):
     """What an engine does in a scene."""
     order: int
-    run: object              # (p, h, steps) → what is observed at the end
+    run: object              # (p, h, steps, nudge) → what is observed at the end; nudge [m] moves the start
 
 
 def table_model(scheme, law, begin, seen, order=1, ahead=0.0):
@@ -175,11 +213,16 @@ def table_model(scheme, law, begin, seen, order=1, ahead=0.0):
 
     Its first velocity is that of begin(p) and  ahead h a  at the start.
     """
-    def run(p, h, steps):
+    def run(p, h, steps, nudge):
         force, (x, v) = law(p), begin(p)
         rule = scheme(p) if callable(scheme) else scheme
-        return seen(advance(rule, force, x, v + ahead * h * force(0.0, x, v), h, steps)[0], p)
+        return seen(advance(rule, force, nudged(x, nudge), v + ahead * h * force(0.0, x, v), h, steps)[0], p)
     return Model(order, run)
+
+
+def nudged(x, nudge):
+    """x, moved by `nudge` in a direction that no symmetry knows."""
+    return x + nudge * (np.cos(np.arange(x.size) ** 2.0).reshape(x.shape) if isinstance(x, np.ndarray) else 1.0)
 
 
 def predict_by_tables(T, law, begin, seen, truth, floor, engines=None, departures=None, finest=None, powers=None):
@@ -192,14 +235,11 @@ def predict_by_tables(T, law, begin, seen, truth, floor, engines=None, departure
     """
     engines, departures, finest = engines or {}, departures or {}, {**FINEST, **(finest or {})}
 
-    def table(label):
-        return lambda p, h, steps: seen(advance(label, law(p), *begin(p), h, steps)[0], p)
-
     @cache
     def error_law(label, p):
         own = departures[label].own_law if label in departures else truth
-        order, run = engines.get(label) or (ORDERS[label], table(label))
-        return ErrorLaw(lambda steps: run(p, T / steps, steps), np.array(own(p, T), dtype=float),
+        order, run = engines.get(label) or table_model(label, law, begin, seen, ORDERS[label])
+        return ErrorLaw(lambda steps, nudge: run(p, T / steps, steps, nudge), np.array(own(p, T), dtype=float),
                         (powers or {}).get(label, order), T, finest.get(label, finest[order]))
 
     def predicted_error(label, p, dt):

@@ -11,8 +11,10 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 from scipy.integrate import solve_ivp
+from scipy.linalg import solve_triangular
 from scipy.optimize import minimize, root
 
+from validate.reference.schemes import Model, nudged, predict_by_tables
 from validate.scene import EXACT, ROUND_OFF
 
 RTOL, ATOL = 1e-13, 1e-15    # of DOP853, near the smallest it accepts: a step errs by less than it rounds
@@ -199,3 +201,89 @@ def net_limits(make, p, size, T, dt, uncertainty):
     """
     omega, c, amplitude, fastest = _noted(make, p)
     return by_mode(np.minimum(np.sqrt(2.0) * omega, fastest), c, amplitude, size, T, dt, uncertainty)
+
+
+# ---------------------------------------------------------------------- what a step does get wrong
+
+def net_law(make):
+    """Return p → a(t, x, v) of the net of make(p)."""
+    def law(p):
+        net = make(p)
+        B, free = net.spring_matrix(), net.free()[:, None]
+        return lambda t, x, v: free * forces(x, v, net, B) / net.m
+    return law
+
+
+def implicit_net(net, h, steps):
+    """Return x after `steps` of linearly implicit Euler, by a dense matrix.
+
+    (m − h ∂F/∂v − h² ∂F/∂x) Δv = h (F + h ∂F/∂x v).  As in lesson 2, ∂F/∂x leaves out the push of compressed springs
+    across and the damper's share.
+    """
+    B, d, x, v, free = net.spring_matrix(), net.x.shape[1], net.x, net.v, np.repeat(net.free(), net.x.shape[1])
+    mass = (net.m + h * net.k_v) * np.eye(free.sum())
+
+    def assembled(blocks):
+        whole = np.empty((len(x), d, len(x), d))
+        for a in range(d):
+            for b in range(d):
+                whole[:, a, :, b] = B.T @ (blocks[:, a, b, None] * B)
+        return whole.reshape(x.size, x.size)
+
+    for _ in range(steps):
+        r = B @ x
+        length = np.linalg.norm(r, axis=1)
+        along = r[:, :, None] * r[:, None, :] / length[:, None, None] ** 2
+        across = net.k * np.maximum(0.0, 1.0 - net.rest / length)[:, None, None]
+        K, D = assembled(across * np.eye(d) + (net.k - across) * along), assembled(net.k_d * along)
+        push = h * (forces(x, v, net, B).ravel() - h * K @ v.ravel())
+        change = np.zeros(x.size)
+        change[free] = np.linalg.solve((h * h * K + h * D)[np.ix_(free, free)] + mass, push[free])
+        v = v + change.reshape(x.shape)
+        x = x + h * v
+    return x
+
+
+def pymunk_net_model(net, h, steps, iterations=10):
+    """Return x (n, d) after `steps` of what Chipmunk does with a net, in its order.
+
+    Points move with their old velocities; the springs pull at the new places; then e^(−k_v h/m) reduces all velocities,
+    and gravity acts.  Then every damper in turn brings the rate of its spring nearer to its aim, by the share
+    1 − e^(−k_d h/m'),  1/m' = Σ 1/m of the free ends;  the aim is zero and then the rate that the last visit left.  One
+    round of visits is one triangular system.
+    *Source:* Chipmunk 7, cpSpaceStep.c and cpDampedSpring.c.
+    """
+    held = np.array([net.free()[i] or net.free()[j] for i, j in net.pairs])
+    B, free, x, v = net.spring_matrix()[held], net.free()[:, None], net.x, net.v
+    per_mass = (B**2 @ net.free()) / net.m
+    lost, kept = -np.expm1(-net.k_d * h * per_mass), np.exp(-net.k_v * h / net.m)
+    for _ in range(steps):
+        x = x + h * v
+        r = B @ x
+        length = np.linalg.norm(r, axis=1, keepdims=True)
+        n = r / length
+        v = kept * (v - free * (B.T @ (h * net.k / net.m * (length - net.rest[held, None]) * n)))
+        v = v + free * h * (net.gravity + net.wind / net.m)
+        if net.k_d == 0.0:
+            continue
+        J = (n[:, None, :] * (B * net.free())[:, :, None]).reshape(len(n), -1)
+        coupling = J @ J.T / net.m / per_mass                    # what a change at one spring changes at the others
+        visits = np.tril(coupling, -1) + np.diag(1.0 / lost)
+        rates, aims, total = J @ v.ravel(), np.zeros(len(n)), np.zeros(len(n))
+        for _ in range(iterations):
+            changes = solve_triangular(visits, aims - rates, lower=True, check_finite=False)
+            aims = aims - changes / lost + changes
+            rates = rates + coupling @ changes
+            total += changes
+        v = v + (J.T @ (total / per_mass)).reshape(x.shape) / net.m
+    return x
+
+
+def net_errors(make, T, truth, uncertainty, seen=lambda x, p: x.ravel(), engines=None, **more):
+    """Return the field `predicted_error` of a net: methods by their tables, implicit mesh and pymunk by the above."""
+    def model(run):
+        return Model(1, lambda p, h, steps, nudge: seen(run(make(p)._replace(x=nudged(make(p).x, nudge)), h, steps), p))
+
+    models = {"implicit mesh": model(implicit_net), "pymunk": model(pymunk_net_model), **(engines or {})}
+    return predict_by_tables(T, net_law(make), lambda p: (make(p).x, make(p).v), seen, truth,
+                             lambda p, dt: 1e-12 + T / dt * ROUND_OFF + 10.0 * uncertainty, models, **more)

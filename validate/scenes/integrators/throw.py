@@ -93,9 +93,9 @@ def predicted_error(label, p, dt):
 @cache
 def damped_fall(p):
     """Return the ErrorLaw of pybullet's default body: damping from the velocity before each step, then the new one."""
-    def run(steps):
+    def run(steps, nudge):
         law = lambda t, x, v: np.array([0.0, 0.0, -p.g]) - 0.04 * v * (1.0 + np.sqrt(v @ v))
-        return advance_table("new velocity, old force", law, *start(p), T / steps, steps)[0]
+        return advance_table("new velocity, old force", law, start(p)[0] + nudge, start(p)[1], T / steps, steps)[0]
     return ErrorLaw(run, DEPARTURES["pybullet, default"].own_law(p, T), 1, T, 1000)
 
 

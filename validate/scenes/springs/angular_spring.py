@@ -12,7 +12,8 @@ from solutions.integrators import advance
 from solutions.springs import angular_spring_forces
 from validate.engines.chipmunk import pymunk_space, pymunk_world
 from validate.methods import INTEGRATORS, LEFT_TO_FULL
-from validate.scene import PYMUNK, Engine, Scene, by_order
+from validate.reference.schemes import Model, predict_by_tables
+from validate.scene import EXACT, PYMUNK, Engine, Scene, by_order
 
 T = 2.5  # [s]: about two periods; no case is then at a turning point, where errors of phase do not show
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
@@ -103,6 +104,45 @@ def tolerance(p, dt):
     return {**limits, "pymunk": limits[1]}
 
 
+def law(p):
+    """Return θ̈(t, θ, θ̇), apart from the lesson's."""
+    return lambda t, theta, rate: -(p.kappa * theta + 0.5 * p.m * p.g * p.length * np.sin(theta)) / inertia(p)
+
+
+def released(p):
+    return p.theta0, 0.0
+
+
+def seen(theta, p):
+    return [theta]
+
+
+def pymunk_rod(p, h, steps, nudge):
+    """What Chipmunk does: move the centre, rotate, pull back by the spring, fall, and bring the hinge back in one step.
+
+    The impulse j at the hinge gives its point the velocity −(its place)/h:  (1/m + r⊥ r⊥ᵀ/I) j = −place/h − velocity,
+    in complex numbers with r the hinge seen from the centre, r⊥ = i r.
+    """
+    theta = p.theta0 + nudge
+    centre, v, omega, I = -0.5j * p.length * np.exp(1j * theta), 0j, 0.0, p.m * p.length**2 / 12.0
+    for _ in range(steps):
+        centre, theta = centre + h * v, theta + h * omega
+        omega -= h * p.kappa * theta / I
+        v -= 1j * h * p.g
+        r = 0.5j * p.length * np.exp(1j * theta)
+        across = 1j * r                                          # how the hinge moves when the rod turns
+        missing = -(centre + r) / h - (v + omega * across)
+        K = np.eye(2) / p.m + np.outer((across.real, across.imag), (across.real, across.imag)) / I
+        j = complex(*np.linalg.solve(K, (missing.real, missing.imag)))
+        v += j / p.m
+        omega += (across.conjugate() * j).real / I
+    return [theta]
+
+
+def floor(p, dt):
+    return tolerance(p, dt)[EXACT] + 10.0 * UNCERTAINTY
+
+
 def pymunk_make(p, dt):
     """The rod about its centre, a PivotJoint at its end, a DampedRotarySpring to the ground; angle 0 is hanging."""
     import pymunk
@@ -154,6 +194,7 @@ SCENE = Scene(
     truth=truth,
     truth_uncertainty=UNCERTAINTY,
     tolerance=tolerance,
+    predicted_error=predict_by_tables(T, law, released, seen, truth, floor, {"pymunk": Model(1, pymunk_rod)}),
     engines=ENGINES,
     slow_methods=LEFT_TO_FULL,
     sanity_checks=sanity_checks,

@@ -13,7 +13,17 @@ from solutions.springs import spring_network_acceleration as acceleration
 from validate.engines.bullet import Bullet
 from validate.engines.springs import pymunk_net
 from validate.methods import IMPLICIT_MESH, INTEGRATORS, LEFT_TO_FULL
-from validate.reference.springs import ReferenceNetwork, forces, motion, net_limits, rest_positions, state_of
+from validate.reference.schemes import table_model
+from validate.reference.springs import (
+    ReferenceNetwork,
+    forces,
+    motion,
+    net_errors,
+    net_law,
+    net_limits,
+    rest_positions,
+    state_of,
+)
 from validate.scene import PYBULLET, PYMUNK, Engine, EngineRun, Scene
 
 T = 1.2                      # [s]: one period of the slowest mode, nearly two of the sagging mode
@@ -132,6 +142,9 @@ def pybullet_make(p, dt):
     return EngineRun(step, lambda: x[:, :2].ravel(), bullet.close)
 
 
+# all forces from the state before a step, then the new velocity moves the points
+MODELS = {"pybullet": table_model("new velocity, old force", net_law(net), lambda p: (net(p).x, net(p).v),
+                                  lambda x, p: x.ravel())}
 ENGINES = (
     Engine(PYMUNK, "", lambda p, dt: pymunk_net(net(p), dt, np.ravel), 1, "DampedSpring between point masses"),
     Engine(PYBULLET, "", pybullet_make, 1, "useMaximalCoordinates=1, no damping; spring forces applied each step"),
@@ -184,6 +197,7 @@ SCENE = Scene(
     truth=truth,
     truth_uncertainty=UNCERTAINTY,
     tolerance=tolerance,
+    predicted_error=net_errors(net, T, truth, UNCERTAINTY, engines=MODELS),
     engines=ENGINES,
     slow_methods=(*LEFT_TO_FULL, "implicit_spring_network_step"),
     sanity_checks=sanity_checks,

@@ -10,8 +10,9 @@ from solutions.springs import make_spring_network
 from solutions.springs import spring_network_acceleration as acceleration
 from validate.engines.springs import pymunk_net
 from validate.methods import IMPLICIT_MESH, INTEGRATORS
-from validate.reference.springs import ReferenceNetwork, by_mode, state_of
-from validate.scene import PYMUNK, Engine, Scene
+from validate.reference.schemes import Model, nudged, predict_by_tables
+from validate.reference.springs import ReferenceNetwork, by_mode, pymunk_net_model, state_of
+from validate.scene import EXACT, PYMUNK, Engine, Scene
 
 T = 1.5                      # [s]: two and a half periods of the slowest mode
 STEPS = (200, 500, 1000, 2000, 5000, 10000, 20000)
@@ -98,6 +99,31 @@ def tolerance(p, dt):
     return {**limits, "pymunk": limits[1]}
 
 
+def law(p):
+    """Return a(t, q, q̇) of all modes at once, about rest."""
+    omega, c, _ = modes(p)
+    return lambda t, q, rate: -omega * omega * q - c * rate
+
+
+def released(p):
+    """Return (q, q̇) at the start: no spring is stretched."""
+    q = -modes(p)[2].T @ static_extension(p)
+    return q, 0.0 * q
+
+
+def from_modes(q, p):
+    return static_extension(p) + modes(p)[2] @ q
+
+
+def pymunk_chain(p, h, steps, nudge):
+    chain = net(p)
+    return observe((pymunk_net_model(chain._replace(x=nudged(chain.x, nudge)), h, steps),), p)
+
+
+def floor(p, dt):
+    return tolerance(p, dt)[EXACT] + 10.0 * UNCERTAINTY
+
+
 ENGINES = (
     Engine(
         PYMUNK,
@@ -147,6 +173,7 @@ SCENE = Scene(
     truth=truth,
     truth_uncertainty=UNCERTAINTY,
     tolerance=tolerance,
+    predicted_error=predict_by_tables(T, law, released, from_modes, truth, floor, {"pymunk": Model(1, pymunk_chain)}),
     engines=ENGINES,
     slow_methods=("implicit_euler_step", "implicit_midpoint_step", "implicit_spring_network_step"),
     sanity_checks=sanity_checks,

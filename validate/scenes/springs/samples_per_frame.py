@@ -13,7 +13,7 @@ from solutions.springs import make_spring_network
 from solutions.springs import spring_network_acceleration as acceleration
 from validate.engines.springs import pymunk_net
 from validate.methods import IMPLICIT_MESH, INTEGRATORS
-from validate.reference.springs import SquareNet, modes, motion, net_limits, square_net, state_of
+from validate.reference.springs import SquareNet, modes, motion, net_errors, net_limits, square_net, state_of
 from validate.scene import PYMUNK, Engine, Scene
 
 FRAMES_PER_SECOND = 24
@@ -114,6 +114,7 @@ SCENE = Scene(
     truth=truth,
     truth_uncertainty=UNCERTAINTY,
     tolerance=tolerance,
+    predicted_error=net_errors(square_net, T, truth, UNCERTAINTY),
     engines=ENGINES,
     slow_methods=("implicit_euler_step", "implicit_midpoint_step", "implicit_spring_network_step"),
     sanity_checks=sanity_checks,

@@ -13,7 +13,16 @@ from solutions.springs import BEND, SHEAR, STRUCTURAL, grid_pairs, make_spring_n
 from solutions.springs import spring_network_acceleration as acceleration
 from validate.engines.springs import pymunk_net
 from validate.methods import IMPLICIT_MESH, INTEGRATORS, LEFT_TO_FULL
-from validate.reference.springs import SquareNet, modes, motion, net_limits, rest_positions, square_net, state_of
+from validate.reference.springs import (
+    SquareNet,
+    modes,
+    motion,
+    net_errors,
+    net_limits,
+    rest_positions,
+    square_net,
+    state_of,
+)
 from validate.scene import PYMUNK, Engine, Scene
 
 T = 0.6                      # [s]: two bounces, and half an oscillation of the threads alone
@@ -114,6 +123,7 @@ SCENE = Scene(
     truth=truth,
     truth_uncertainty=UNCERTAINTY,
     tolerance=tolerance,
+    predicted_error=net_errors(square_net, T, truth, UNCERTAINTY),
     engines=ENGINES,
     slow_methods=LEFT_TO_FULL,          # of these the implicit ones build a dense matrix at every correction
     sanity_checks=sanity_checks,
