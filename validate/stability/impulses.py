@@ -8,6 +8,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from solutions.checks import Diverged
+from validate.reference.contact import enumerated
 from validate.reference.impulses import COPIES
 from validate.stability.case import DOTS, EDGE, LINE, Picture, agreement, bisect, case, finding, refuses, series
 
@@ -705,17 +706,6 @@ def laws_of_an_impact(lesson):
             for name, claim, quantity in names], None
 
 
-def frictionless(A, b):
-    """Return λ ≥ 0 with A λ + b ≥ 0 and λ ⊥ A λ + b, by trying which points push."""
-    for pushing in range(2 ** len(b)):
-        on = np.array([bool(pushing >> k & 1) for k in range(len(b))])
-        lam = np.zeros(len(b))
-        lam[on] = np.linalg.solve(A[np.ix_(on, on)], -b[on])
-        if np.all(lam >= 0.0) and np.all(A @ lam + b >= -ROUND_OFF):
-            return lam
-    return np.full(len(b), np.nan)
-
-
 @case("several-points", "Several points hit at once", compiled=False)
 def several_points(lesson):
     """Without friction the impulses solve a linear complementarity problem; 0 ≤ λ ⊥ A λ + n · u − u_sep ≥ 0.
@@ -737,7 +727,7 @@ def several_points(lesson):
         M[:3, :3], M[3:, 3:] = m * np.eye(3), I
         y = np.concatenate((v, omega))
         u_n = G @ y
-        lam = frictionless(G @ np.linalg.solve(M, G.T), u_n - np.maximum(0.0, -e * u_n))
+        lam = enumerated(G @ np.linalg.solve(M, G.T), u_n - np.maximum(0.0, -e * u_n))
         truth = y + np.linalg.solve(M, G.T @ lam)
         after, _ = lesson.solve_impacts(body, r, n, e, 0.0)
         law = max(law, np.max(np.abs(np.concatenate((after.v, after.omega)) - truth)))
