@@ -128,7 +128,8 @@ def turned_verdict(name, of, function=None, most=np.inf, compiled=False):
             if function and not runs(name, method, function):
                 continue
             curve = method_curve(selection, method, p, truth)
-            if curve["verdict"] is Verdict.DEPARTS and worked(name, case, method.function, most, compiled) is not Verdict.DEPARTS:
+            honest = (name, case, method.function, most, compiled)
+            if curve["verdict"] is Verdict.DEPARTS and worked(*honest) is not Verdict.DEPARTS:
                 return f"{case}, {method.label}: {curve['message']}"
     return ""
 
