@@ -662,7 +662,7 @@ IMAGINARY = 1e-20            # step of a derivative along the imaginary axis [m]
 
 
 def derivative(function, x):
-    """Return the derivatives of function(x) by all entries of x, first axes those of the result: no truncation error."""
+    """Return the derivatives of function(x) by all entries of x, in the last axes: without truncation error."""
     steps = IMAGINARY * 1j * np.eye(x.size).reshape(x.size, *x.shape)
     return np.moveaxis([np.imag(function(x + step)) / IMAGINARY for step in steps], 0, -1)
 

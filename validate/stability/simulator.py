@@ -440,4 +440,28 @@ def rolling_by_contact(lesson):
     found.append(agreement("A sphere does the same in space.",
                            "sphere: largest error of its state and impulse [m, -, m/s, rad/s, N s]",
                            np.max(np.abs(np.array(got) - truth)), ROUND_OFF))
+    # with μ = 0.05 they slip: J_t = −μ J_n, a = g (sin θ − μ cos θ)
+    slips = p._replace(mu=0.05)
+    end = lesson.advance_contact(lesson.contact_step, lesson.weight, lesson.ball_bounds, lesson.round_contacts, 0.0,
+                                 state, dt, steps, slips)
+    flat, flat_p = lesson.make_bodies_2d([(0.0, r)], [0.7], m, I, [(r, r)], [UP], (down, -G * np.cos(theta)), 0.05, 3,
+                                         0.01)
+    end_2d = lesson.advance_contact(lesson.contact_step_2d, lesson.weight, lesson.disc_bounds, lesson.round_contacts,
+                                    0.0, flat, dt, steps, flat_p)
+    truth = steps * dt * (down - 0.05 * G * np.cos(theta)), steps * r * 0.05 * push / I, 0.05 * push
+    errors = np.array((end.v[0, 0], end.omega[0, 1], -end.J[0, 0])) - truth, np.array(
+        (end_2d.v[0, 0], -end_2d.omega[0], -end_2d.J[0, 0])) - truth
+    found.append(agreement("With less friction both slip with g (sin θ − μ cos θ).",
+                           "slipping disc and sphere: largest error [m/s, rad/s, N s]", np.max(np.abs(errors)),
+                           ROUND_OFF))
+    # three discs on each other, one sweep per step from below: only what is kept from step to step adds up to the top
+    heights = r * (1.0 + 2.0 * np.arange(3))
+    state, p = lesson.make_bodies_2d([(0.0, y) for y in heights], np.zeros(3), m, I, np.full((3, 2), r), [UP],
+                                     (0.0, -G), 0.0, 1, 0.01)
+    end = lesson.advance_contact(lesson.contact_step_2d, lesson.weight, lesson.disc_bounds, lesson.round_contacts, 0.0,
+                                 state, 1e-4, 400, p)
+    carried = np.sort(np.abs(end.J[:, 1])) / (m * G * 1e-4)
+    found.append(agreement("Impulses that are kept carry a stack with one sweep per step: 1, 2 and 3 weights.",
+                           "impulses under three discs over m g dt: largest error [-]",
+                           np.max(np.abs(carried - (1.0, 2.0, 3.0))), 1e-6))
     return found, None
