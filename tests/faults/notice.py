@@ -111,9 +111,7 @@ def turned_finding(case, of, compiled=False):
     """The first finding of a stability case that does not hold."""
     try:
         findings = examine(case, of, compiled).findings
-    except TooLong:
-        raise
-    except Exception as e:                                           # as in stability_cases
+    except (Exception, SystemExit) as e:                             # as in stability_cases
         findings = broken_off(case, e).findings
     return next((f"{f.quantity}: {f.measured:.6g}, predicted {f.predicted:.6g}" for f in findings if not f.holds), "")
 
