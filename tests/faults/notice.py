@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from validate import coverage, modules
+from validate import coverage, modules, numba_twins
 from validate.loading import TooLong, alarm
 from validate.measure.accuracy import method_curve
 from validate.measure.selection import Plan, select
@@ -26,6 +26,7 @@ from . import planted
 
 SWEEPS = (300, 1000, 5000)   # most steps of a run, before all of them: a coarse sweep often shows the fault
 SECONDS = {}                 # of the places that have run in this process: quick ones are asked first
+COMPILED = 120.0             # for the same, compiled, where plain Python is too slow [s]
 PATIENCE = 40.0              # for one scene or stability case, on the processor: a fault can make it slow [s]
 
 
@@ -39,13 +40,20 @@ class Notice(NamedTuple):
 
 @contextmanager
 def copy_with(texts):
-    """A temporary copy of solutions/ in which some lessons have another text: {lesson: text}."""
+    """A temporary copy of solutions/ in which some lessons have another text: {lesson: text}.
+
+    What is compiled meanwhile goes with it, so that it does not crowd out compiled code that will be used again.
+    """
+    kept = numba_twins.CACHE
     with tempfile.TemporaryDirectory(prefix="fault-") as folder:
-        copy = Path(folder) / "lessons"
+        copy, numba_twins.CACHE = Path(folder) / "lessons", Path(folder) / "compiled"
         shutil.copytree(modules.SOLUTIONS, copy, ignore=shutil.ignore_patterns("__pycache__"))
         for lesson, text in texts.items():
             (copy / f"{lesson}.py").write_text(text, encoding="utf-8")
-        yield copy
+        try:
+            yield copy
+        finally:
+            numba_twins.CACHE = kept
 
 
 def notice(fault, first="", finest=np.inf):
@@ -90,10 +98,11 @@ def turned_at(place, of, function=None, most=np.inf, compiled=False):
     """What of that place turns with the lessons of a folder, in a few words; empty where nothing does."""
     case, began = stability_case(place), time.monotonic()
     try:
-        with alarm(PATIENCE, own=True):
+        with alarm(COMPILED if compiled else PATIENCE, own=True):
             return turned_finding(case, of, compiled) if case else turned_verdict(place, of, function, most, compiled)
     except TooLong:
-        return ""                                                    # no verdict: not noticed
+        compiles = not compiled and modules.can_compile() and (case is None or case.compiled)
+        return turned_at(place, of, function, most, True) if compiles else ""            # "": no verdict, not noticed
     finally:
         SECONDS[place] = time.monotonic() - began
 
@@ -102,9 +111,7 @@ def turned_finding(case, of, compiled=False):
     """The first finding of a stability case that does not hold."""
     try:
         findings = examine(case, of, compiled).findings
-    except TooLong:
-        raise
-    except Exception as e:                                           # as in stability_cases
+    except (Exception, SystemExit) as e:                             # as in stability_cases
         findings = broken_off(case, e).findings
     return next((f"{f.quantity}: {f.measured:.6g}, predicted {f.predicted:.6g}" for f in findings if not f.holds), "")
 
@@ -119,7 +126,8 @@ def turned_verdict(name, of, function=None, most=np.inf, compiled=False):
             if function and not runs(name, method, function):
                 continue
             curve = method_curve(selection, method, p, truth)
-            if curve["verdict"] is Verdict.DEPARTS and worked(name, case, method.function, most) is not Verdict.DEPARTS:
+            honest = (name, case, method.function, most, compiled)
+            if curve["verdict"] is Verdict.DEPARTS and worked(*honest) is not Verdict.DEPARTS:
                 return f"{case}, {method.label}: {curve['message']}"
     return ""
 
@@ -131,9 +139,9 @@ def shortened(selection, most):
 
 
 @cache
-def worked(name, case, method, most):
+def worked(name, case, method, most, compiled):
     """The verdict on a method of the worked answers, on the same sweep."""
-    selection = shortened(select(name, Plan(speeds=("plain",), live=())), most)
+    selection = shortened(select(name, Plan(speeds=("compiled",) if compiled else ("plain",), live=())), most)
     p = selection.cases[case]
     truth = np.array(selection.scene.truth(p, selection.scene.duration), dtype=float)
     method = next(m for m in selection.methods_for(p) if m.function == method)

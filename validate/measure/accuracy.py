@@ -63,8 +63,12 @@ def case_errors(selection, case, p, with_engines):
 
 # ---------------------------------------------------------------------------------------------- runs
 
-def run_to_end(scene, step, p, steps):
-    """The Outcome of one of our methods at T."""
+def run_to_end(scene, step, p, steps, asked=False):
+    """The Outcome of one of our methods at T.
+
+    BadInput is raised only where somebody has `asked` for the parameters: those of the scene itself are good, and who
+    refuses them is wrong.
+    """
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
@@ -76,9 +80,11 @@ def run_to_end(scene, step, p, steps):
         return Outcome(None, f"Newton's matrix is singular: {e}")
     except NotImplementedError as e:
         return Outcome(None, f"{Verdict.NOT_ATTEMPTED.value}: {e}", attempted=False)
-    except BadInput:
-        raise
-    except Exception as e:  # a subject's code may do anything: say it, and go on
+    except BadInput as e:
+        if asked:
+            raise
+        return Outcome(None, f"refused: {e}")
+    except (Exception, SystemExit) as e:  # a subject's code may do anything: say it, and go on
         return Outcome(None, f"{type(e).__name__}: {str(e).strip().splitlines()[0] if str(e).strip() else ''}")
     return finite(observed)
 
@@ -116,7 +122,7 @@ def relative_to(truth, a, b):
 def method_curve(selection, method, p, truth):
     """The errors of one of our methods over the sweep."""
     scene, step = selection.fastest(method)
-    runs = [(n, run_to_end(scene, step, p, n)) for n in selection.steps]
+    runs = [(n, run_to_end(scene, step, p, n, bool(selection.plan.overrides))) for n in selection.steps]
     order = scene.orders.get(method.function, method.order)
     found = judged(scene, method.label, p, truth, runs, order)
     return {**found, "role": Role.OURS, "colour": method.colour, "marker": method.marker, "line": "-"}

@@ -79,7 +79,7 @@ def worth_timing(selection, case):
 def our_items(selection, p, found):
     """What to time of our own methods, at each speed."""
     for method in selection.methods_for(p):
-        for speed in selection.speeds(method):
+        for speed in selection.speeds(method) if found[method.label] else ():      # a lost start cannot be prepared
             prepare = time_ours(*selection.bound(method, speed), p)
             for n in found[method.label]:
                 yield Timed(method.label, speed, n, selection.scene.duration / n, prepare)

@@ -169,3 +169,14 @@ def natural_residual(bodies, contacts, J, mu, dt):
     held = stuck * np.where(size > limit, limit / np.where(size > 0.0, size, 1.0), 1.0)[:, None]
     apart = k_n * np.abs(pushed - J_n), k_t * np.linalg.norm(held - J_t, axis=1)
     return max(np.max(each, initial=0.0) for each in apart)
+
+
+def enumerated(A, b):
+    """Return λ ≥ 0 with A λ + b ≥ 0 and λ ⊥ A λ + b, by trying all sets of contacts that push; NaN if there is none."""
+    for number in range(2 ** len(b)):
+        on = np.array([bool(number >> k & 1) for k in range(len(b))])
+        lam = np.zeros(len(b))
+        lam[on] = np.linalg.solve(A[np.ix_(on, on)], -b[on])
+        if np.all(lam >= 0.0) and np.all(A @ lam + b >= -1e-12 * np.max(np.abs(b))):
+            return lam
+    return np.full(len(b), np.nan)

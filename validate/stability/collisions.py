@@ -706,3 +706,92 @@ def cloth_swept_steered(lesson):
                   "distance when it passes, over the radius: largest error [-]", worst["steer"], 1e-11),
         agreement("It steers only for what is ahead, in time and in its way.", "acceleration for all else [m/s²]",
                   worst["straight"], 0.0)], None
+
+
+def nearest_of_hull(p, corners):
+    """Return the point of a triangle (3, 3) that is nearest to p: the best of its face, its edges and its corners."""
+    best = corners[np.argmin(np.sum((corners - p) ** 2, axis=1))]
+    for which in ((0, 1), (1, 2), (2, 0), (0, 1, 2)):
+        origin, *others = corners[list(which)]
+        directions = np.stack(others) - origin
+        weights = np.linalg.lstsq(directions.T, p - origin, rcond=None)[0]
+        q = origin + weights @ directions
+        if np.all(weights >= 0.0) and weights.sum() <= 1.0 and np.sum((q - p) ** 2) < np.sum((best - p) ** 2):
+            best = q
+    return best
+
+
+def area(y):
+    """Return the area of a polygon (k, 2), counter-clockwise."""
+    following = np.roll(y, -1, axis=0)
+    return 0.5 * np.sum(y[:, 0] * following[:, 1] - y[:, 1] * following[:, 0])
+
+
+@case("nearest-features", "Every side, edge and corner can be the nearest", compiled=False)
+def nearest_features(lesson):
+    """Random points around triangles and boxes; polygons cut in two; a flock whose forces are derivatives of energies.
+
+    The two parts of a cut polygon have its area together, and a line through two corners cuts off what is on one side.
+    """
+    rng = np.random.default_rng(68)
+    worst, seen = dict.fromkeys(("triangle", "box", "inside", "cut", "corners", "flock", "align"), 0.0), set()
+    for _ in range(300):
+        corners, p = rng.normal(size=(3, 3)), 1.5 * rng.normal(size=3)
+        truth = nearest_of_hull(p, corners)
+        seen.add(tuple(np.abs(np.linalg.solve(corners.T, truth)) > 1e-9))               # which corners have a weight
+        worst["triangle"] = max(worst["triangle"], np.max(np.abs(lesson.closest_on_triangle(p, *corners) - truth)))
+    for _ in range(100):
+        R, half, centre, r = np.linalg.qr(rng.normal(size=(3, 3)))[0], rng.uniform(0.5, 2.0, 3), rng.normal(size=3), 0.1
+        box = lesson.make_box(centre, R, half)
+        y = rng.uniform(-1.0, 1.0, 3) * half
+        depths = np.concatenate((half - y, half + y))
+        k = int(np.argmin(depths))
+        out = R[:, k % 3] * (1.0 if k < 3 else -1.0)
+        c = lesson.ball_box(centre + R @ y, r, box)
+        worst["inside"] = max(worst["inside"], np.max(np.abs(c.n - out)), abs(c.gap + depths[k] + r))
+        y = rng.uniform(1.1, 2.0, 3) * half * rng.choice((-1.0, 0.4, 1.0), 3)
+        gap = np.linalg.norm(y - np.clip(y, -half, half)) - r
+        if gap > -r:
+            worst["box"] = max(worst["box"], abs(lesson.ball_box(centre + R @ y, r, box).gap - gap))
+
+        turns = np.sort(rng.uniform(0.0, 2.0 * np.pi, 6))
+        polygon = np.stack((np.cos(turns), np.sin(turns)), axis=1)
+        n, d = np.array([np.cos(turns[0]), np.sin(turns[0])]), rng.uniform(-0.5, 0.5)
+        parts = lesson.clip(polygon, n, d), lesson.clip(polygon, -n, -d)
+        lost = abs(sum(area(part) for part in parts if len(part)) - area(polygon))
+        beyond = np.max(parts[0] @ n - d, initial=0.0)
+        worst["cut"] = max(worst["cut"], lost, beyond)
+    square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    for n in (np.array([1.0, -1.0]), np.array([-1.0, 1.0])):                            # through (0, 0) and (1, 1)
+        worst["corners"] = max(worst["corners"], abs(len(lesson.clip(square, n, 0.0)) - 3))
+    for _ in range(20):
+        x, v = 0.5 * rng.normal(size=(5, 2)) + 3.0 * np.arange(5)[:, None] * [0.4, 0.2], rng.normal(size=(5, 2))
+        near = np.linalg.norm(x[:, None] - x, axis=2) + 10.0 * np.eye(5)
+        radius, reach, (k, align, gather) = 0.2 * near.min(), 1.5 * near.min(), rng.uniform(0.5, 2.0, 3)
+        flock = lesson.make_flock(radius, reach, k, align, gather)
+
+        def energy(x, radius=radius, reach=reach, k=k, gather=gather):
+            U = 0.5 * gather * np.sum((x - x.mean(axis=0)) ** 2)
+            for i in range(5):
+                for j in range(i):
+                    g = np.sqrt(np.sum((x[i] - x[j]) ** 2)) - 2.0 * radius
+                    U = U + (0.5 * k * (1.0 / g - 1.0 / reach) ** 2 if g.real < reach else 0.0)
+            return U
+
+        steps = 1e-20j * np.eye(10).reshape(10, 5, 2)
+        force = -np.array([energy(x + step).imag for step in steps]).reshape(5, 2) / 1e-20
+        still, moving = (lesson.flock_acceleration(0.0, x, speed, flock) for speed in (0.0 * v, v))
+        worst["flock"] = max(worst["flock"], np.max(np.abs(still - force)) / np.max(np.abs(force)))
+        in_reach = near < 2.0 * radius + reach
+        adapts = align * np.array([np.sum((v - v[i])[in_reach[i]], axis=0) for i in range(5)])
+        worst["align"] = max(worst["align"], np.max(np.abs(moving - still - adapts)))
+    names = (
+        ("triangle", f"A point's nearest on a triangle, in {len(seen)} of its 7 regions.", "nearest point [m]"),
+        ("box", "Outside a box the gap is that to its nearest side, edge or corner.", "gap outside a box [m]"),
+        ("inside", "Inside a box a ball leaves through the nearest side.", "way out of a box [m, -]"),
+        ("cut", "A line cuts a polygon in two parts, which have its area together.", "area of both parts [m²]"),
+        ("corners", "A corner on the line belongs to both parts.", "number of corners [-]"),
+        ("flock", "A flock at rest is driven by the derivative of its energy.", "acceleration, relative [-]"),
+        ("align", "Its members adapt to the velocities of those in reach.", "alignment [m/s²]"))
+    return [agreement(claim, f"largest error of the {quantity}", worst[name], 1e-9)
+            for name, claim, quantity in names], None

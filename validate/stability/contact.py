@@ -10,7 +10,7 @@ from scipy.optimize import minimize_scalar
 from solutions.checks import BadInput, Diverged
 from validate.engines.contact import DT as ENGINE_DT
 from validate.engines.contact import KINDS, MU, BulletPile, PymunkPile, fallen
-from validate.reference.contact import natural_residual
+from validate.reference.contact import enumerated, natural_residual
 from validate.stability.case import DOTS, EDGE, LINE, Picture, agreement, bisect, case, finding, refuses, series
 
 from .. import engines
@@ -863,3 +863,95 @@ def closed_forms(lesson):
         agreement("With it a sweep leaves ω − 1.", "radius at the best relaxation: largest error [-]", left, 1e-7),
         agreement("Friction is the point of the disc nearest to the impulse that would stick.",
                   "largest violation of the law of the nearest point [N² s²]", max(off, 0.0), 1e-12)], None
+
+
+# ---------------------------------------------------------------------------------------------- each law by itself
+
+def pushes(J, u, k, mu):
+    """Return (J_n, J_t) that contacts alone would have: of J (2m,), u (2m,) and the diagonal k (2m,) of A."""
+    n, t = slice(0, None, 2), slice(1, None, 2)
+    limit = mu * np.maximum(0.0, J[n])
+    return np.maximum(0.0, J[n] - u[n] / k[n]), np.clip(J[t] - u[t] / k[t], -limit, limit)
+
+
+@case("laws-of-contact", "Each law of contact by itself", compiled=False)
+def laws_of_contact(lesson):
+    """Rows by the velocities of points; sweeps by triangular matrices; complementarity by trying all sets of contacts.
+
+    A sweep takes new impulses for the contacts before, old ones for itself and those behind: tril(A) and triu(A).
+    """
+    rng = np.random.default_rng(98)
+    worst = dict.fromkeys(("rows", "matrix", "sweep", "lcp", "judge", "cone", "judge of cones", "spring", "kept"), 0.0)
+
+    def note(name, got, truth):
+        worst[name] = max(worst[name], np.max(np.abs(np.asarray(got) - truth)))
+
+    for _ in range(50):
+        x, v, n, p = rng.normal(size=(4, 4, 2))
+        n /= np.linalg.norm(n, axis=1)[:, None]
+        w, a, b = rng.uniform(0.5, 2.0, 12), np.array([0, 0, 1, 2]), np.array([1, 3, 2, 3])
+        contacts = lesson.ContactSet(np.array([0, 2, 3, 4, 4]), a, b, n, p, np.zeros(4))
+        omega = rng.normal(size=4)
+        arms = p - x[a], p - x[b]
+        at = [v[body] + omega[body, None] * np.stack((-r[:, 1], r[:, 0]), axis=1) for body, r in zip((a, b), arms)]
+        u, t = at[0] - at[1], np.stack((-n[:, 1], n[:, 0]), axis=1)
+        along = np.stack((np.sum(n * u, axis=1), np.sum(t * u, axis=1)), axis=1).ravel()
+        G = lesson.contact_rows(x, contacts)
+        note("rows", G @ np.column_stack((v, omega)).ravel(), along)
+        note("matrix", lesson.delassus_matrix(G, w), sum(w_i * np.outer(g, g) for w_i, g in zip(w, G.T, strict=True)))
+
+        factor = rng.normal(size=(8, 8))
+        A, b, mu = factor @ factor.T + 0.5 * np.eye(8), rng.normal(size=8), rng.uniform(0.1, 1.0, 4)
+        k, old, relaxation = np.diag(A), rng.uniform(0.0, 1.0, 8), rng.uniform(0.5, 1.5)
+        new = lesson.gauss_seidel_sweep(A, b, old, relaxation)
+        mixed = np.tril(A, -1) @ new + np.triu(A) @ old + b
+        note("sweep", new, np.maximum(0.0, old - relaxation * mixed / k))
+        note("lcp", lesson.solve_lcp(A, b), enumerated(A, b))
+        u = A @ old + b
+        note("judge", lesson.complementarity_residual(A, b, old), max(abs(min(k[i] * old[i], u[i])) for i in range(8)))
+
+        J = rng.normal(size=8)
+        J_n, J_t = pushes(J, A @ J + b, k, mu)
+        apart = np.abs(J_n - J[::2]) * k[::2], np.abs(J_t - J[1::2]) * k[1::2]
+        note("judge of cones", lesson.cone_residual(A, b, J, mu), np.max(apart))
+        new = lesson.cone_sweep(A, b, J, mu)
+        u = np.tril(A, -1) @ new + np.triu(A) @ J + b
+        limited = np.where(np.arange(8) % 2, J, new)                        # J_t is limited by the new J_n
+        J_n, _ = pushes(J, u, k, mu)
+        _, J_t = pushes(limited, u, k, mu)
+        note("cone", new, np.stack((J_n, J_t), axis=1).ravel())
+
+        # old contacts of the same bodies and of others, near and far
+        near, d = 0.5, 3
+        old_b, old_p, J_old = rng.integers(1, 4, 6), rng.uniform(0.0, 1.0, (6, d)), rng.normal(size=(6, d))
+        here_b, here_p = rng.integers(1, 4, 5), rng.uniform(0.0, 1.0, (5, d))
+        sets = [lesson.ContactSet(np.array([0, len(b_s), len(b_s)]), np.zeros(len(b_s), int), b_s, 0.0 * p_s, p_s,
+                                  np.zeros(len(b_s))) for b_s, p_s in ((here_b, here_p), (old_b, old_p))]
+        truth = np.zeros((5, d))
+        for k in range(5):
+            away = np.where(old_b == here_b[k], np.linalg.norm(old_p - here_p[k], axis=1), np.inf)
+            truth[k] = J_old[np.argmin(away)] if away.min() < near else 0.0
+        note("kept", lesson.kept_impulses(*sets, J_old, near), truth)
+
+        # a spring (2π hertz)² and a damper over 1/k_n, one implicit Euler step: u = u₀ + k_n J, x = gap + dt u
+        hertz, zeta, dt, gap, u_0 = rng.uniform((5.0, 0.5, 0.001, 0.001, -1.0), (50.0, 5.0, 0.01, 0.01, 1.0))
+        aim, give = lesson.soft_contact(-gap, hertz, zeta, dt)
+        impulse = (aim - u_0) / (1.0 + give)                                # k_n J of u = aim − give k_n J
+        s = 2.0 * np.pi * hertz
+        force = -s * s * (-gap + dt * (u_0 + impulse)) - 2.0 * zeta * s * (u_0 + impulse)
+        note("spring", impulse, dt * force)
+        note("spring", lesson.soft_contact(gap, hertz, zeta, dt), (-gap / dt, 0.0))
+    names = (
+        ("rows", "Rows times velocities are the relative velocities of the points.", "relative velocity [m/s]"),
+        ("matrix", "The Delassus matrix adds up over all coordinates.", "matrix [1/kg]"),
+        ("sweep", "A sweep uses new impulses before, old ones behind, and none pulls.", "impulses of a sweep [N s]"),
+        ("lcp", "The direct solver finds the set of contacts that push.", "impulses of the direct solver [N s]"),
+        ("judge", "The residual sees what pulls, approaches, or pushes while it parts.", "residual [m/s]"),
+        ("cone", "A sweep with friction limits J_t by the new J_n, with the μ of each contact.",
+         "impulses with friction [N s]"),
+        ("judge of cones", "The residual with friction sees too much and too little.", "residual with friction [m/s]"),
+        ("kept", "A contact takes over the impulse of the nearest old one between the same two bodies.",
+         "impulses that are kept [N s]"),
+        ("spring", "A soft contact is an implicit Euler step of a damped spring.", "impulse of a soft contact [m/s]"))
+    return [agreement(claim, f"largest error of the {quantity}", worst[name], 1e-9)
+            for name, claim, quantity in names], None

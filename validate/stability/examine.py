@@ -41,7 +41,7 @@ def stability_cases(lesson, plan):
             found.append(examine(case, plan.of, "compiled" in plan.speeds))
         except NotImplementedError:
             pass
-        except Exception as e:                                       # a subject's code may do anything
+        except (Exception, SystemExit) as e:                         # a subject's code may do anything
             found.append(broken_off(case, e))
     return [stored(one) for one in found]
 

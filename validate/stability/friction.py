@@ -11,7 +11,7 @@ from solutions.friction import ParticleInBowl, ParticleOnPlane
 from solutions.support.friction import make_block
 from validate.engines.friction import bullet_block, pymunk_block
 from validate.reference.friction import DrivenBlock, T, slip_limits, slip_position, slips
-from validate.stability.case import DOTS, EDGE, LINE, Picture, bisect, case, finding, refuses, series
+from validate.stability.case import DOTS, EDGE, LINE, Picture, agreement, bisect, case, finding, refuses, series
 
 from .. import engines
 
@@ -518,3 +518,163 @@ def extreme_coefficients(lesson):
         ],
         "From a millimetre to a thousand kilometres per second: Coulomb's law has no characteristic speed.",
     )
+
+
+# ---------------------------------------------------------------------------------------------- each law by itself
+
+TRIED = 50                   # random bodies and forces [-]
+
+
+def nearest_in_disc(y, radius):
+    """Return the point of the disc |y| ≤ radius that is nearest to y."""
+    size = np.linalg.norm(y)
+    return y if size <= radius else radius / size * y
+
+
+def frame(rng):
+    """Return three random unit vectors at right angles."""
+    return np.linalg.qr(rng.normal(size=(3, 3)))[0].T
+
+
+@case("laws-of-friction", "Each law of friction by itself", compiled=False)
+def laws_of_friction(lesson):
+    """The cone, the pyramid, a slope, a block and a particle, with masses, restitution, and μ_s above μ_k."""
+    rng = np.random.default_rng(31)
+    names = ("normal", "static", "kinetic", "cone", "pyramid", "slope", "block", "hollow", "particle", "shift")
+    worst = dict.fromkeys(names, 0.0)
+
+    def note(name, got, truth):
+        worst[name] = max(worst[name], np.max(np.abs(np.asarray(got) - truth)))
+
+    for _ in range(TRIED):
+        n, t_1, t_2 = frame(rng)
+        m, load, j_n, (mu_k, more) = *rng.uniform(0.5, 2.0, 3), rng.uniform(0.1, 0.6, 2)
+        mu_s, slip = mu_k + more, rng.normal() * t_1 + rng.normal() * t_2
+
+        # forces of a support, pressed on with `load` and lifted by it
+        for away in (-1.0, 1.0):
+            F_N = max(0.0, -away * load)
+            for share in (0.95, 1.05):                          # of what static friction can hold
+                F = away * load * n + share * mu_s * load * t_1
+                note("normal", lesson.normal_force(F, n), F_N)
+                note("static", lesson.static_friction(F, n, mu_s), -min(share * mu_s * load, mu_s * F_N) * t_1)
+            v = slip + rng.normal() * n
+            note("kinetic", lesson.kinetic_friction(F, v, n, mu_k), -mu_k * F_N * slip / np.linalg.norm(slip))
+
+        # impulses: what is nearest to −m v_t in the disc of radius μ j_n, or in the square
+        for mu in np.array((0.5, 0.95, 1.05)) * m * np.linalg.norm(slip) / j_n:
+            note("cone", lesson.friction_impulse(slip, m, j_n, mu), nearest_in_disc(-m * slip, mu * j_n))
+            sides = np.clip((-m * slip @ t_1, -m * slip @ t_2), -mu * j_n, mu * j_n)
+            note("pyramid", lesson.pyramid_impulse(slip, m, j_n, mu, t_1, t_2), sides[0] * t_1 + sides[1] * t_2)
+
+        # a slope: it holds to μ_s, and from there on μ_k counts
+        for steep, slides in ((0.99, 0.0), (1.01, 1.0)):
+            theta, g = np.arctan(steep * mu_s), rng.uniform(1.0, 20.0)
+            pull = slides * g * np.cos(theta) * (np.tan(theta) - mu_k)
+            note("slope", lesson.incline_acceleration(theta, mu_s, mu_k, g), pull)
+
+        # a block on a plane that gravity presses on or lifts off; at rest it holds between the two μ
+        dt = rng.uniform(0.01, 0.1)
+        for away, share in ((-1.0, 0.99), (-1.0, 1.01), (1.0, 0.5)):
+            a_n = max(0.0, -away * load)
+            p = lesson.make_block(n, mu_s, mu_k, away * load * n + share * mu_s * load * t_1, np.zeros(3), 1.0)
+            for start in (0.0 * slip, slip):
+                free = start + dt * share * mu_s * load * t_1
+                holds = not np.any(start) and share * mu_s * load <= mu_s * a_n
+                end = 0.0 * slip if holds else free + nearest_in_disc(-free, mu_k * dt * a_n)
+                x, v = lesson.sliding_step(lesson.driven_acceleration, 0.0, t_2, start, dt, p)
+                note("block", (x, v), np.array((t_2 + dt * end, end)))
+
+        # a hollow: its distance and the derivative of that, for a bowl and for a trough along a slanting axis
+        centre, x, radius = rng.normal(size=3), rng.normal(size=3), rng.uniform(3.0, 5.0)
+        for axis in (np.zeros(3), t_1):
+            p = ParticleInBowl(m, mu_k, 0.5, np.zeros(3), centre, axis, radius)
+
+            def distance(x, centre=centre, axis=axis, radius=radius):
+                r = x - centre - ((x - centre) @ axis) * axis
+                return radius - np.sqrt(np.sum(r * r))
+
+            slope_of = np.array([distance(x + 1e-20j * e).imag for e in np.eye(3)]) / 1e-20
+            phi, normal = lesson.particle_bowl_gap(x, p)
+            note("hollow", (phi, *normal), (distance(x), *slope_of))
+
+        # a particle that hits with m, e and μ: friction has the whole normal impulse, rebound included
+        e, fall = rng.uniform(0.1, 0.9), 10.0 ** rng.uniform(-4.0, 0.0)
+        for mu in np.array((0.5, 0.95, 1.05)) * np.linalg.norm(slip) / ((1.0 + e) * fall):
+            J = lesson.particle_contact_impulse(slip - fall * n, n, m, e, mu)
+            after = slip + nearest_in_disc(-slip, mu * (1.0 + e) * fall) + e * fall * n
+            note("particle", slip - fall * n + J / m, after)
+            p = ParticleOnPlane(m, mu, e, np.zeros(3), np.zeros(3), n)
+            _, v = lesson.contact_step(lesson.falling_acceleration, lesson.particle_plane_gap, 0.0, 0.0 * n,
+                                       slip - fall * n, dt, p)
+            note("particle", v, after)
+            depth, moved = dt * fall, dt * (slip - fall * n)
+            shift = nearest_in_disc(-dt * slip, mu * depth)
+            note("shift", lesson.friction_position_correction(moved, n, depth, mu), shift)
+            x, _ = lesson.position_friction_step(lesson.falling_acceleration, lesson.particle_plane_gap, 0.0, 0.0 * n,
+                                                 slip - fall * n, dt, p)
+            note("shift", x, dt * slip + shift)
+    # μ is up to 10⁴ where a particle hits slowly, which costs four digits
+    claims = {
+        "normal": ("A support pushes against a load, and does not hold what is pulled away.", "normal force [N]"),
+        "static": ("Static friction holds to μ_s F_N, and equals that beyond.", "static friction [N]"),
+        "kinetic": ("Kinetic friction is μ_k F_N against the slip, whatever its speed.", "kinetic friction [N]"),
+        "cone": ("The impulse of the cone is the nearest to what stops the slip.", "impulse of the cone [N s]"),
+        "pyramid": ("The impulse of the pyramid is the nearest along each side.", "impulse of the pyramid [N s]"),
+        "slope": ("A slope holds below tan θ = μ_s; above, it pulls with g (sin θ − μ_k cos θ).",
+                  "acceleration [m/s²]"),
+        "block": ("A block holds by μ_s, slides by μ_k, and is free where it is lifted.",
+                  "state of the block [m, m/s]"),
+        "hollow": ("The normal of a bowl and of a trough is the derivative of the distance.",
+                   "distance and normal [m, -]"),
+        "particle": ("A particle rebounds by e, and slips by what μ (1 + e) leaves.", "velocity of the particle [m/s]"),
+        "shift": ("The position slips back by μ times its depth at most.", "position [m]"),
+    }
+    return [agreement(claim, f"largest error of the {quantity}", worst[name], 1e-10)
+            for name, (claim, quantity) in claims.items()], None
+
+
+@case("times-of-stops-and-starts", "When a block stops and when it starts", compiled=False)
+def stops_and_starts(lesson):
+    """Constant forces: it stops after v/(μ_k a_n − a_t).  A periodic force breaks away where it passes μ_s a_n.
+
+    A force that grows with time bends the speed: the step under kinetic friction is then the midpoint rule.
+    """
+    rng = np.random.default_rng(32)
+    worst = dict.fromkeys(("stops", "starts", "midpoint"), 0.0)
+    for _ in range(TRIED):
+        n, t_1, _ = frame(rng)
+        load, speed, mu_k, more = rng.uniform(5.0, 15.0), rng.uniform(0.5, 2.0), *rng.uniform(0.1, 0.6, 2)
+        mu_s, pull = mu_k + more, rng.uniform(-0.5, 0.9) * mu_k * load
+        p = lesson.make_block(n, mu_s, mu_k, -load * n + pull * t_1, np.zeros(3), 1.0)
+        after = speed / (mu_k * load - pull)
+        for dt in (0.7 * after, 2.0 * after):
+            tau, x, v = lesson.advance_to_event(lesson.driven_acceleration, 0.0, 0.0 * n, speed * t_1, dt, p)
+            lasts = min(dt, after)
+            end = speed - lasts * (mu_k * load - pull) if dt < after else 0.0
+            truth = lasts, *((speed * lasts - 0.5 * (mu_k * load - pull) * lasts**2) * t_1), *(end * t_1)
+            worst["stops"] = max(worst["stops"], np.max(np.abs(np.array((tau, *x, *v)) - truth)))
+            if dt > after and np.any(v):                        # a stop is a stop: round-off would count as motion
+                worst["stops"] = np.inf
+
+        drive, omega, begin = 2.0 * mu_s * load, rng.uniform(1.0, 3.0), np.arccos(0.5)
+        for sign in (-1.0, 1.0):                                # −drive sin ωt, from 0 on, passes μ_s a_n at ωt = π/6
+            p = lesson.make_block(n, mu_s, mu_k, -load * n, sign * drive * t_1, omega)
+            at = 0.5 * np.pi / omega
+            tau, x, _ = lesson.advance_to_event(lesson.driven_acceleration, at, n, 0.0 * n, 1.0 / omega, p)
+            worst["starts"] = max(worst["starts"], abs(tau - (0.5 * np.pi - begin) / omega), np.max(np.abs(x - n)))
+            d = lesson.slip_direction(lesson.driven_acceleration, at + 1.01 * tau, n, 0.0 * n, p)
+            worst["starts"] = max(worst["starts"], np.max(np.abs(d + sign * t_1)))
+
+        dt, t = rng.uniform(0.05, 0.2), rng.uniform(0.0, 1.0)
+        x, v = lesson.kinetic_friction_step(lesson.driven_acceleration, t, 0.0 * n, speed * t_1, dt, t_1, p)
+        force = lambda t, p=p, load=load, mu_k=mu_k, t_1=t_1: p.drive @ t_1 * np.cos(p.omega * t) - mu_k * load
+        mean = speed + 0.5 * dt * force(t)
+        truth = np.array((dt * mean * t_1, (speed + dt * force(t + 0.5 * dt)) * t_1))
+        worst["midpoint"] = max(worst["midpoint"], np.max(np.abs(np.array((x, v)) - truth)))
+    return [agreement("Under constant forces a block stops after v/(μ_k a_n − a_t), completely.",
+                      "time, place and velocity of a stop: largest error [s, m, m/s]", worst["stops"], 1e-9),
+            agreement("A block breaks away where the force passes μ_s a_n, to the side of the force.",
+                      "time of a start: largest error [s]", worst["starts"], 1e-9),
+            agreement("Between events its motion is that of the midpoint rule.",
+                      "state after a step: largest error [m, m/s]", worst["midpoint"], 1e-9)], None

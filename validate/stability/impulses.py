@@ -8,6 +8,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from solutions.checks import Diverged
+from validate.reference.contact import enumerated
 from validate.reference.impulses import COPIES
 from validate.stability.case import DOTS, EDGE, LINE, Picture, agreement, bisect, case, finding, refuses, series
 
@@ -609,3 +610,136 @@ def two_bodies(lesson):
         ("momenta", "L changes by r × J, and the angular momentum of both stays.", "momenta in space [kg m²/s]"))
     return [agreement(claim, f"largest error of the {quantity}", worst[name], 1e-12)
             for name, claim, quantity in names], None
+
+
+# ---------------------------------------------------------------------------------------------- each law by itself
+
+TRIED = 50                   # random impacts [-]
+CORNERS = np.array([[1.0, 0.0, -1.0], [-0.5, 0.8, -1.0], [-0.5, -0.8, -1.0]])  # under a body, from its centre [m]
+
+
+def unit_vector(rng, d):
+    """Return a random unit vector (d,)."""
+    y = rng.normal(size=d)
+    return y / np.linalg.norm(y)
+
+
+def mobility(r, m, I):
+    """Return K = 1/m − r* I⁻¹ r*, with the matrix of r × from numpy's products."""
+    star = np.cross(np.eye(3), r)
+    return np.eye(3) / m + star @ np.linalg.solve(I, star.T)
+
+
+@case("laws-of-an-impact", "Each law of an impact by itself", compiled=False)
+def laws_of_an_impact(lesson):
+    """What a surface does to a point, a spring to a ball, Coulomb's cone to a slip, and when a gap closes."""
+    rng = np.random.default_rng(78)
+    worst = dict.fromkeys(("mirror", "spring", "matrix", "normal", "cone", "side", "work", "gap", "time", "slide",
+                           "fall"), 0.0)
+    for _ in range(TRIED):
+        # a point on a surface: the normal velocity is −e times the old one, or as it was, however slow
+        n, v, e = UP[:2], rng.normal(size=2) * [1.0, 10.0 ** rng.uniform(-3.0, 0.0)], rng.uniform()
+        truth = np.array([v[0], v[1] if v[1] > 0.0 else -e * v[1]])
+        worst["mirror"] = max(worst["mirror"], np.max(np.abs(lesson.kinematic_response(v, n, e) - truth)))
+        k, d, deep = rng.uniform(0.5, 2.0, 3)
+        part = -k * deep / d                                    # the damper alone would pull as strongly as the spring
+        pushes = [lesson.penalty_force(phi, v_n, k, d) for phi, v_n in (
+            (-deep, 0.0), (-deep, part), (-deep, -0.5 * part), (-deep, -2.0 * part), (deep, part), (0.0, part))]
+        truth = np.array([1.0, 2.0, 0.5, 0.0, 0.0, 0.0]) * k * deep
+        worst["spring"] = max(worst["spring"], np.max(np.abs(pushes - truth)) / (k * deep))
+
+        # a rough impact: at the limit of sticking, a little inside the cone and a little outside
+        n, r, m, factor = unit_vector(rng, 3), rng.normal(size=3), rng.uniform(0.5, 2.0), rng.normal(size=(3, 3))
+        I = factor @ factor.T + 0.5 * np.eye(3)
+        K, u = mobility(r, m, I), rng.normal(size=3)
+        worst["matrix"] = max(worst["matrix"], np.max(np.abs(lesson.contact_matrix(r, 1.0 / m, np.linalg.inv(I)) - K)))
+        u, u_sep = u - (u @ n + rng.uniform(0.5, 1.5)) * n, rng.uniform(0.0, 0.5)
+        stick = np.linalg.solve(K, u_sep * n - u)
+        along = stick - (stick @ n) * n
+        needs = np.linalg.norm(along) / (stick @ n)             # friction that sticking needs
+        for mu in (0.95 * needs, 1.05 * needs) if stick @ n > 0.0 else ():
+            J = lesson.cone_impulse(u, n, K, u_sep, mu)
+            J_t, after = J - (J @ n) * n, u + K @ J
+            worst["normal"] = max(worst["normal"], abs(after @ n - u_sep))
+            lost = abs(np.linalg.norm(J_t) - mu * (J @ n)) if mu < needs else np.linalg.norm(after - u_sep * n)
+            worst["cone"] = max(worst["cone"], lost)
+            side = J_t / np.linalg.norm(J_t) - along / np.linalg.norm(along)
+            worst["side"] = max(worst["side"], np.linalg.norm(side))
+        J = rng.normal(size=3)
+        v_b, w_b = u - np.cross(omega := rng.normal(size=3), r), omega
+        v_a, w_a = v_b + J / m, w_b + np.linalg.solve(I, np.cross(r, J))
+        gain = 0.5 * (m * (v_a @ v_a - v_b @ v_b) + w_a @ I @ w_a - w_b @ I @ w_b)
+        worst["work"] = max(worst["work"], abs(lesson.energy_change(u, K, J) - gain) / (1.0 + abs(gain)))
+
+        # a gap in a step: it stays open by itself, or closes exactly; and when it closes under an acceleration
+        phi, k_n, dt = rng.uniform(0.1, 1.0, 3)
+        for u_n in (-0.5 * phi / dt, -2.0 * phi / dt):
+            left = phi + dt * (u_n + k_n * lesson.gap_multiplier(phi, u_n, k_n, dt))
+            worst["gap"] = max(worst["gap"], abs(left - max(0.0, phi + dt * u_n)))
+        v_n, a_n, long = rng.normal(), rng.normal(), 10.0
+        roots = np.roots((0.5 * a_n, v_n, phi))
+        ahead = [root.real for root in roots if root.imag == 0.0 and 0.0 < root.real < long]
+        worst["time"] = max(worst["time"], abs(lesson.impact_time(phi, v_n, a_n, long) - min(ahead, default=long)))
+
+        # a ball on its plane: gravity into it slides the ball, gravity away from it lifts it off
+        n, x, v, a = unit_vector(rng, 3), *rng.normal(size=(3, 3))
+        pushed = a - min(0.0, a @ n) * n
+        truth = np.array([x + dt * (v - (v @ n) * n) + 0.5 * dt * dt * pushed, v - (v @ n) * n + dt * pushed])
+        worst["slide"] = max(worst["slide"], np.max(np.abs(lesson.slide_on_plane(x, v, a, dt, n) - truth)))
+        truth = np.array([x + dt * v + 0.5 * dt * dt * a, v + dt * a])
+        worst["fall"] = max(worst["fall"], np.max(np.abs(lesson.free_flight(x, v, a, dt) - truth)))
+    names = (
+        ("mirror", "A surface reverses what comes, times e, and leaves alone what goes, however slowly.",
+         "velocity [m/s]"),
+        ("spring", "A penalty spring with its damper pushes while it is compressed, and never pulls.",
+         "force, relative [-]"),
+        ("matrix", "K = 1/m − r* I⁻¹ r*.", "K [1/kg]"),
+        ("normal", "A rough impact ends with the normal velocity that restitution asks for.", "normal velocity [m/s]"),
+        ("cone", "5 % inside the cone it sticks, 5 % outside it is on the rim.", "law of Coulomb [N s, m/s]"),
+        ("side", "Friction is on the side of the sticking impulse.", "direction of friction [-]"),
+        ("work", "The gain of energy is that of ½m v² and ½ω·Iω.", "gain, relative [-]"),
+        ("gap", "A gap closes exactly in its step, or stays open without an impulse.", "gap after the step [m]"),
+        ("time", "A gap closes at the first root of its parabola.", "time [s]"),
+        ("slide", "A plane pushes and never pulls: what lifts a ball lifts it off.", "state after sliding [m, m/s]"),
+        ("fall", "A flight is a parabola.", "state after a flight [m, m/s]"))
+    return [agreement(claim, f"largest error of the {quantity}", worst[name], 1e-9)
+            for name, claim, quantity in names], None
+
+
+@case("several-points", "Several points hit at once", compiled=False)
+def several_points(lesson):
+    """Without friction the impulses solve a linear complementarity problem; 0 ≤ λ ⊥ A λ + n · u − u_sep ≥ 0.
+
+    The impact that dissipates most scales the impulses of e = 0 by 1 + e where all points come in: ½ m v² is then a
+    parabola in that factor, and 1 − e² of the largest loss is lost.
+    """
+    rng, law, share = np.random.default_rng(79), 0.0, 0.0
+    for _ in range(TRIED // 10):
+        r = CORNERS + rng.uniform(-0.2, 0.2, (3, 3))
+        n = np.array([unit_vector(rng, 3) for _ in r]) * 0.3 + [0.0, 0.0, 1.0]
+        n /= np.linalg.norm(n, axis=1)[:, None]
+        m, factor, e = rng.uniform(0.5, 2.0), rng.normal(size=(3, 3)), rng.uniform(0.1, 0.9)
+        I = factor @ factor.T + 0.5 * np.eye(3)
+        v, omega = np.array([*rng.normal(size=2), -3.0]), 0.3 * rng.normal(size=3)
+        body = lesson.BodyState3D(v, omega, 1.0 / m, np.linalg.inv(I))
+        G = np.concatenate((n, np.cross(r, n)), axis=1)
+        M = np.zeros((6, 6))
+        M[:3, :3], M[3:, 3:] = m * np.eye(3), I
+        y = np.concatenate((v, omega))
+        u_n = G @ y
+        lam = enumerated(G @ np.linalg.solve(M, G.T), u_n - np.maximum(0.0, -e * u_n))
+        truth = y + np.linalg.solve(M, G.T @ lam)
+        after, _ = lesson.solve_impacts(body, r, n, e, 0.0)
+        law = max(law, np.max(np.abs(np.concatenate((after.v, after.omega)) - truth)))
+
+        if np.all(u_n < 0.0):
+            mu, before = rng.uniform(0.2, 2.0), 0.5 * (m * v @ v + omega @ I @ omega)
+            lost = []
+            for restitution in (0.0, e):
+                end, _ = lesson.most_dissipative_impact(body, r, n, restitution, mu)
+                lost.append(before - 0.5 * (m * end.v @ end.v + end.omega @ I @ end.omega))
+            share = max(share, abs(lost[1] / lost[0] - (1.0 - e * e)))
+    return [agreement("Without friction the impulses solve the complementarity problem of all points together.",
+                      "velocities after the impact: largest error [m/s, rad/s]", law, 1e-9),
+            agreement("The impact that dissipates most loses 1 − e² of what it loses with e = 0.",
+                      "share of the loss: largest error [-]", share, 1e-9)], None

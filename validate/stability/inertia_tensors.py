@@ -8,7 +8,7 @@ import numpy as np
 
 from solutions.checks import BadInput
 from solutions.integrators import observed_order
-from validate.stability.case import DOTS, LINE, Picture, agreement, case, finding, series
+from validate.stability.case import DOTS, LINE, Picture, agreement, case, finding, refuses, series
 
 SPACING = 2.0**-52           # of floats around 1 [-]; a coordinate has half of it as relative rounding error
 PLACES = 64  # directions in which the body is moved: the mean square of so many errors is known to 18 %
@@ -239,3 +239,61 @@ def momenta(lesson):
         ("about", "About another point the momentum of the centre is added.", "angular momentum about a point"))
     return [agreement(claim, f"{quantity}: largest relative error [-]", worst[name], 1e-12)
             for name, claim, quantity in names], None
+
+
+@case("bodies-with-holes", "Bodies with holes, in any axes", compiled=False)
+def bodies_with_holes(lesson):
+    """Sums over points whose masses may be negative, and tensors whose products do not vanish.
+
+    The sums are numpy's, over the definitions: X = Σ m x/Σ m,  P = Σ m v,  L = Σ (x − about) × m v,
+    I_jk = Σ m (r² δ_jk − r_j r_k).
+    """
+    rng = np.random.default_rng(44)
+    worst = dict.fromkeys(("sums", "tensor", "combined", "inverse", "axes", "hand"), 0.0)
+    for _ in range(50):
+        m, x, v, about = rng.uniform(0.5, 2.0, 7), *rng.normal(size=(2, 7, 3)), rng.normal(size=3)
+        m[3] = -0.4                                              # a hole
+        X = np.average(x, axis=0, weights=m)
+        tensors = np.array([np.eye(3) * (r @ r) - np.outer(r, r) for r in x])
+        I = np.tensordot(m, tensors, 1)
+        L = np.sum(m[:, None] * np.cross(x - about, v), axis=0)
+        got = *lesson.centre_of_mass(m, x), lesson.linear_momentum(m, v), lesson.angular_momentum(m, x, v, about)
+        for one, truth in zip(got, (m.sum(), X, m @ v, L), strict=True):
+            worst["sums"] = max(worst["sums"], np.max(np.abs(one - truth)) / np.max(np.abs(truth)))
+        worst["tensor"] = max(worst["tensor"], np.max(np.abs(lesson.point_mass_inertia(m, x) - I)) / np.max(np.abs(I)))
+
+        factors = rng.normal(size=(7, 3, 3))
+        own = 0.2 * m[:, None, None] * (factors @ factors.transpose(0, 2, 1) + np.eye(3))
+        whole = lesson.combine(m, x, own)
+        truth = np.sum(own, axis=0) + I - m.sum() * (X @ X * np.eye(3) - np.outer(X, X))
+        worst["combined"] = max(worst["combined"], np.max(np.abs(whole.I - truth)) / np.max(np.abs(truth)),
+                                np.max(np.abs(whole.x - X)))
+
+        R = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        R[:, 2] *= np.linalg.det(R)
+        moments = np.sort(rng.uniform(1.0, 1.9, 3))
+        body = lesson.world_inertia(np.diag(moments), R)
+        inverse = lesson.world_inverse_inertia(np.diag(moments), R)
+        # along the k-th column of R the tensor is the k-th moment
+        worst["inverse"] = max(worst["inverse"], np.max(np.abs(body @ R - R * moments)),
+                               np.max(np.abs(inverse @ R - R / moments)))
+        found, axes = lesson.principal_axes(R @ np.diag(moments) @ R.T)
+        worst["axes"] = max(worst["axes"], np.max(np.abs(found - moments)),
+                            np.max(np.abs(np.abs(np.sum(axes * R, axis=0)) - 1.0)))
+        worst["hand"] = max(worst["hand"], abs(np.linalg.det(axes) - 1.0))
+    # a closed mesh without one of its triangles, or with one of them the other way round, is open
+    torn = [np.delete(FACES, k, axis=0) for k in range(4)]
+    torn += [np.where(np.arange(4)[:, None] == k, FACES[:, ::-1], FACES) for k in range(4)]
+    refused = sum(refuses(lesson.mesh_body, (1.0, CORNER, faces), "") for faces in torn)
+    names = (
+        ("sums", "A hole counts with its negative mass: centre, momentum, angular momentum.", "sums over points"),
+        ("tensor", "A tensor of points has the products −Σ m x y, all three of them.", "tensor of points"),
+        ("combined", "A body of parts has its tensor about its own centre of mass.", "tensor of parts"),
+        ("inverse", "A tensor and its inverse turn with the body.", "tensor along the axes of the body"),
+        ("axes", "Principal axes are those that the body was turned to.", "moments and axes"),
+        ("hand", "Principal axes are right-handed.", "determinant of the axes"))
+    return [agreement(claim, f"{quantity}: largest error [-]", worst[name], 1e-12)
+            for name, claim, quantity in names] + [finding(
+        claim="A mesh that lacks a triangle, or has one the wrong way round, is refused.",
+        quantity=f"open meshes that are refused [of {len(torn)}]", predicted=len(torn), measured=refused, tolerance=0.0,
+        observation=f"{refused} of {len(torn)} open meshes are refused.")], None

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from solutions.checks import Diverged
 from validate.reference.kinematics import annulus, curvature_of, end_of, jacobian_of, joints_of, spatial_end
-from validate.stability.case import DOTS, LINE, Picture, bisect, case, finding, refuses, series
+from validate.stability.case import DOTS, LINE, Picture, agreement, bisect, case, finding, refuses, series
 
 SMALL = 1e-8                 # disturbance that a linear theory knows [rad]: leaves 1e-8 of what is measured
 FOUR_DIGITS = 1e-4           # of an edge that bisection finds, and of a factor, relative [-]
@@ -528,3 +528,65 @@ def refusals(lesson):
         tolerance=0.0,
         observation=f"{refused + lost} of {len(asked) + 1} such calls end in a sentence that names the value.",
     )
+
+
+# ---------------------------------------------------------------------------------------------- each function by itself
+
+TRIED = 50                   # random arms [-]
+
+
+@case("geometry-of-arms", "Ellipse, rotation, limits and null space", compiled=False)
+def geometry_of_arms(lesson):
+    """The ellipse by singular values, the error of a rotation by SciPy, and a step with limits or with a rest posture.
+
+    A damped step between limits is that of the joints that are free to go; one at its limit is free to go inwards.
+    """
+    rng = np.random.default_rng(111)
+    worst = dict.fromkeys(("ellipse", "rotation", "limits", "rest", "base", "links"), 0.0)
+    for _ in range(TRIED):
+        J = rng.normal(size=(2, 4))
+        u, sigma, _ = np.linalg.svd(J)
+        longer, shorter, angle = lesson.velocity_ellipse(J)
+        along = abs(u[:, 0] @ (np.cos(angle), np.sin(angle)))                # 1 where it is the longer axis, either way
+        worst["ellipse"] = max(worst["ellipse"], abs(longer - sigma[0]), abs(shorter - sigma[1]), abs(along - 1.0))
+
+        here, turn = Rotation.random(rng=rng), rng.normal(size=3)
+        turn *= rng.uniform(0.1, 3.1) / np.linalg.norm(turn)                 # short of half a turn, the long way often
+        quaternions = [sign * np.roll(r.as_quat(), 1)
+                       for r, sign in ((here, 1.0), (Rotation.from_rotvec(turn) * here, rng.choice((-1.0, 1.0))))]
+        worst["rotation"] = max(worst["rotation"], np.max(np.abs(lesson.rotation_error(*quaternions) - turn)))
+
+        lengths, theta, damping = rng.uniform(0.5, 1.0, 4), rng.uniform(-1.0, 1.0, 4), rng.uniform(0.1, 0.5)
+        low, high = theta - rng.choice((0.0, 0.05, 3.0), 4), theta + rng.choice((0.0, 0.05, 3.0), 4)
+        target = end_of(theta, lengths) + 0.5 * rng.normal(size=2)
+        e, J = target - end_of(theta, lengths), jacobian_of(theta, lengths)
+        wish = J.T @ e
+        blocked = ((theta >= high) & (wish > 0.0)) | ((theta <= low) & (wish < 0.0))
+        J[:, blocked] = 0.0
+        truth = np.clip(theta + np.linalg.solve(J.T @ J + damping**2 * np.eye(4), J.T @ e), low, high)
+        arm = lesson.make_arm_2d(lengths, 0.0, damping, low, high, 0.0, 0.0)
+        worst["limits"] = max(worst["limits"],
+                              np.max(np.abs(lesson.limited_step(lesson.reach_2d, theta, target, arm) - truth)))
+
+        # with the end on its target, the step goes to the rest posture as far as the end stays, to first order
+        rest, pull, J = rng.uniform(-1.0, 1.0, 4), 0.1, jacobian_of(theta, lengths)
+        arm = lesson.make_arm_2d(lengths, 0.0, 0.0, -np.inf, np.inf, rest, pull)
+        got = lesson.null_space_step(lesson.reach_2d, theta, end_of(theta, lengths), arm) - theta
+        free = np.linalg.svd(J)[2][2:]                                       # two directions that do not move the end
+        truth = free.T @ (free @ (pull * (rest - theta)))
+        worst["rest"] = max(worst["rest"], np.max(np.abs(got - truth)))
+
+        x = np.concatenate((np.zeros((1, 3)), np.cumsum(rng.normal(size=(4, 3)), axis=0))) + rng.normal(size=3)
+        swept = lesson.fabrik_sweep(x, rng.normal(size=3), lengths)
+        worst["base"] = max(worst["base"], np.max(np.abs(swept[0] - x[0])))
+        worst["links"] = max(worst["links"], np.max(np.abs(np.linalg.norm(np.diff(swept, axis=0), axis=1) - lengths)))
+    names = (
+        ("ellipse", "The ellipse of velocities has the singular values as half axes, and u₁ as direction.",
+         "half axes and direction [m, -]"),
+        ("rotation", "The error of an orientation is the shortest rotation vector, of q and of −q.", "rotation [rad]"),
+        ("limits", "Between limits the joints that may go take a damped step.", "angles with limits [rad]"),
+        ("rest", "A rest posture attracts the arm, within what leaves the end where it is.", "angles [rad]"),
+        ("base", "A sweep of FABRIK leaves the base where it was.", "place of the base [m]"),
+        ("links", "A sweep of FABRIK leaves each link its own length.", "lengths of links [m]"))
+    return [agreement(claim, f"largest error of the {quantity}",
+                      worst[name], 1e-9) for name, claim, quantity in names], None

@@ -5,12 +5,13 @@ result is known in closed form.  *Source:* Müller et al. 2006, Macklin et al. 2
 """
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from solutions import integrators
 from solutions.checks import Diverged
 from solutions.pbd import ConstraintNetwork
 from validate.reference.pbd import pendulum_period
-from validate.stability.case import DOTS, LINE, Picture, case, finding, refuses, series
+from validate.stability.case import DOTS, LINE, Picture, agreement, case, finding, refuses, series
 
 G = 9.81                     # [m/s²]
 MILLIMETRES = 1e3            # millimetres per metre
@@ -652,3 +653,153 @@ def quarter_period(lesson, rod, half, theta, dt):
         x, v, q, omega = lesson.pivoted_body_step(t, x, v, q, omega, dt, rod)
         t += dt
     return t - dt * x[0] / (x[0] - before)
+
+
+# ---------------------------------------------------------------------------------------------- each part by itself
+
+TRIED = 40                   # random configurations [-]
+IMAGINARY = 1e-20            # step of a derivative along the imaginary axis [m]
+
+
+def derivative(function, x):
+    """Return the derivatives of function(x) by all entries of x, in the last axes: without truncation error."""
+    steps = IMAGINARY * 1j * np.eye(x.size).reshape(x.size, *x.shape)
+    return np.moveaxis([np.imag(function(x + step)) / IMAGINARY for step in steps], 0, -1)
+
+
+def size_of(r):
+    """Return |r|, also of complex vectors."""
+    return np.sqrt(np.sum(r * r))
+
+
+def fold_angle(x):
+    """Return the angle between the normals of two triangles a b c and b a d, also of complex corners."""
+    a, b, c, d = x
+    e, N_c, N_d = b - a, np.cross(a - c, b - c), np.cross(b - d, a - d)
+    across, along = np.sum(np.cross(N_c, N_d) * e) / size_of(e), np.sum(N_c * N_d)
+    return np.arctan(across / along) + (0.0 if along.real > 0.0 else np.copysign(np.pi, across.real))
+
+
+def volume_of(x, faces):
+    """Return the sum of the determinants of the faces over 6."""
+    a, b, c = (x[faces[:, k]] for k in range(3))
+    return np.sum(a * np.cross(b, c)) / 6.0
+
+
+def euler_rate(R, omega, I_body):
+    """Return ω̇ of a free body, by matrices in the world."""
+    I = R @ np.diag(I_body) @ R.T
+    return np.linalg.solve(I, -np.cross(omega, I @ omega))
+
+
+def wxyz(rotation):
+    """Return the quaternion (w, x, y, z) of one of SciPy's rotations."""
+    return np.roll(rotation.as_quat(), 1)
+
+
+@case("constraints-and-their-gradients", "Constraints, their gradients, and what a correction does", compiled=False)
+def constraints_and_gradients(lesson):
+    """A gradient is the derivative of its constraint, taken along the imaginary axis; rotations are SciPy's.
+
+    A correction satisfies its linearised constraint with the least Σ m |Δx|².  Newton's method is compared with a
+    dense solution of both equations, linearised along the imaginary axis; its regularisation is 1e-13 of the weights.
+    """
+    rng = np.random.default_rng(81)
+    names = ("link", "correction", "newton", "fold", "ball", "volume", "lever", "impulse", "rate", "free", "air")
+    worst = dict.fromkeys(names, 0.0)
+
+    def note(name, got, truth):
+        got = np.concatenate([np.ravel(part) for part in got]) if isinstance(got, tuple) else np.asarray(got)
+        truth = np.concatenate([np.ravel(part) for part in truth]) if isinstance(truth, tuple) else truth
+        worst[name] = max(worst[name], np.max(np.abs(got - truth)))
+
+    for _ in range(TRIED):
+        x, w, rest = rng.normal(size=(4, 3)), rng.uniform(0.5, 2.0, 4), rng.uniform(0.5, 2.0)
+        link = lambda end, other=x[1], rest=rest: size_of(end - other) - rest
+        note("link", lesson.distance_constraint(x[0], x[1], rest), (link(x[0]), derivative(link, x[0])))
+        C, g = rng.normal(), rng.normal(size=(4, 3))
+        least = -C * (w[:, None] * g) / np.sum(w[:, None] * g * g)
+        note("correction", lesson.constraint_correction(C, g, w), least)
+
+        fold = rng.uniform(-3.0, 3.0)
+        C = fold_angle(x) - fold
+        bent = C - 2.0 * np.pi * np.round(C / (2.0 * np.pi))
+        slope = derivative(fold_angle, x).reshape(4, 3)
+        got_C, got_slope = lesson.fold_constraint(x, fold)
+        note("fold", (got_C, got_slope / np.max(np.abs(slope))), (bent, slope / np.max(np.abs(slope))))
+        obstacle = lesson.Obstacle(x[1], rest, x[2], np.array([0.0, 0.0, 1.0]))
+        note("ball", lesson.ball_gap(x[0], obstacle), (link(x[0]), derivative(link, x[0])))
+        faces = np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]])
+        far = x + np.array([3.0, -2.0, 4.0])                     # the origin is outside: some faces count negative
+        V = lambda x, faces=faces: volume_of(x, faces)
+        note("volume", lesson.volume_gradient(far, faces), (V(x), derivative(V, far)))
+
+        # three links of four points in a row, the first one fixed, from a guess that breaks them
+        chain = lesson.make_constraint_network(x, 1.0 / w, [0], [(0, 1), (1, 2), (2, 3)], 0.0, 1.0, (0.0, 0.0, -G), 1)
+        (guess, goal), lam, dt = x + 0.1 * rng.normal(size=(2, 4, 3)), rng.normal(size=3), 0.1
+        guess[0] = goal[0] = x[0]
+
+        def laws(y, chain=chain, goal=goal, dt=dt):
+            here, lam = y[:12].reshape(4, 3), y[12:]
+            r, pull = here[:-1] - here[1:], np.zeros((4, 3), dtype=y.dtype)
+            lengths = np.sqrt(np.sum(r * r, axis=1))
+            pull[:-1] += lam[:, None] * r / lengths[:, None]
+            pull[1:] -= lam[:, None] * r / lengths[:, None]
+            moved = here - goal - dt * dt * chain.inv_mass[:, None] * pull
+            return np.concatenate((moved.ravel(), lengths - chain.rest))
+
+        y = np.concatenate((guess.ravel(), lam))
+        truth = y - np.linalg.solve(derivative(laws, y), laws(y))
+        change, forces = lesson.newton_correction(guess, lam, goal, dt, chain)
+        scale = np.max(np.abs(truth))
+        note("newton", np.concatenate(((guess + change).ravel(), forces)) / scale, truth / scale)
+
+        # rigid bodies with three different moments, turned anyhow
+        m, I_body, turn = rng.uniform(0.5, 2.0), rng.uniform(1.0, 1.9, 3), Rotation.random(rng=rng)
+        R, q, (r, n, p, omega) = turn.as_matrix(), wxyz(turn), rng.normal(size=(4, 3))
+        inverse = R @ np.diag(1.0 / I_body) @ R.T
+        lever = np.cross(r, n)
+        weight = 1.0 / m + lever @ inverse @ lever
+        note("lever", lesson.effective_inverse_mass_at(q, r, n, m, I_body), weight)
+        phi = inverse @ np.cross(r, p)
+        tan_turn = lambda phi: Rotation.from_rotvec(2.0 * np.arctan(0.5 * size_of(phi)) / size_of(phi) * phi)
+        new_x, new_q = lesson.apply_positional_impulse(x[0], q, r, p, m, I_body)
+        after = wxyz(tan_turn(phi) * turn)
+        note("impulse", (new_x, np.sign(new_q @ after) * new_q), (x[0] + p / m, after))
+        dt = rng.uniform(0.2, 0.8)
+        after = wxyz(tan_turn(dt * omega) * turn)
+        note("rate", (lesson.turning_rate(q, after, dt), lesson.turning_rate(q, -after, dt)), (omega, omega))
+        body = lesson.PivotedBody(m, I_body, np.zeros(3), x[0], np.zeros(3), 2)        # held at its centre: it is free
+        *_, new_omega = lesson.pivoted_body_step(0.0, x[0], np.zeros(3), q, omega, 0.01, body)
+        note("free", new_omega, omega + 0.01 * euler_rate(R, omega, I_body))
+
+        # air that is hardly compressed: p = (V₀ − V)/α for one implicit step, m v = dt p ∇V, all linear
+        alpha, less, dt = rng.uniform(0.5, 2.0), 1e-6, rng.uniform(0.1, 0.5)
+        corners = rng.uniform(0.8, 1.2) * np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
+        outside = faces if volume_of(corners, faces) > 0.0 else faces[:, ::-1]
+        net = lesson.make_constraint_network(corners, 1.0 / w, [], [(0, 1)], 1e12, 1.0, np.zeros(3), 3)
+        nowhere = lesson.Obstacle(np.zeros(3), 0.0, np.array([0.0, 0.0, -9.0]), np.array([0.0, 0.0, 1.0]))
+        g = derivative(lambda x, f=outside: volume_of(x, f), corners).reshape(4, 3)
+        _, v = lesson.balloon_step(lesson.network_gravity, 0.0, corners, 0.0 * corners, dt,
+                                   lesson.Balloon(net, outside, volume_of(corners, outside) + less, alpha, nowhere))
+        pressure = less / (alpha + dt * dt * np.sum(w[:, None] * g * g))
+        note("air", v / less, dt * pressure * w[:, None] * g / less)
+    claims = (
+        ("link", "The gradient of a link is the derivative of its length.", "link [m, -]", 1e-12),
+        ("correction", "A correction meets its constraint with the least Σ m |Δx|².", "correction [m]", 1e-12),
+        ("newton", "Newton's correction solves both linearised equations, with the curvature of the links.",
+         "places and forces, relative [-]", 1e-6),
+        ("fold", "The gradient of a fold is the derivative of its angle, which stays within half a turn.",
+         "angle and gradient, relative [rad, -]", 1e-9),
+        ("ball", "The normal of a ball is the derivative of the distance.", "gap and normal [m, -]", 1e-12),
+        ("volume", "The gradient of a volume is its derivative, wherever the origin is.", "volume [m³, m²]", 1e-11),
+        ("lever", "A point of a body moves by 1/m + (r × n) · I⁻¹ (r × n), in world coordinates.", "weight [1/kg]",
+         1e-11),
+        ("impulse", "A positional impulse moves by p/m, and turns about I⁻¹ (r × p).", "place and turn [m, -]",
+         1e-11),
+        ("rate", "The rate of turning is the inverse of the update, for long turns, too.", "ω [rad/s]", 1e-9),
+        ("free", "A body held at its centre obeys Euler's equation.", "ω [rad/s]", 1e-9),
+        ("air", "Air is a spring for the volume, whatever the step is.", "velocity over the missing volume [1/(m² s)]",
+         1e-4))
+    return [agreement(claim, f"{name}: largest error of the {quantity}", worst[name], tolerance)
+            for name, claim, quantity, tolerance in claims], None

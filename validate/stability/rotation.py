@@ -9,7 +9,7 @@ import numpy as np
 
 from solutions.checks import Diverged
 from validate.methods import TURNS
-from validate.reference.orientation import quaternion_matrix, relative_turn
+from validate.reference.orientation import about, cross_matrix, quaternion_matrix, relative_turn
 from validate.reference.rotation import symmetric_top
 from validate.stability.case import DOTS, EDGE, LINE, Picture, agreement, bisect, case, finding, series
 
@@ -465,3 +465,212 @@ def loads_and_derivatives(lesson):
                   worst["derivative"], 1e-12),
         agreement("A rotation about the middle axis is unstable, with the rate of the linearised Euler equations.",
                   "rate of growth over the spin: largest error [-]", worst["rate"], 1e-10)], None
+
+
+# ---------------------------------------------------------------------------------------------- one step
+
+TRIED = 25                   # random bodies [-]
+
+
+def turned_by(phi):
+    """Return R (3, 3) of a turn by |φ| about φ."""
+    angle = np.sqrt(phi @ phi)
+    return about(phi / angle, angle)
+
+
+def cayley(phi):
+    """Return R (3, 3) of a turn by 2 atan ½|φ| about φ: what q + ½ (0, φ) q is when it has the length 1."""
+    angle = np.sqrt(phi @ phi)
+    return about(phi / angle, 2.0 * np.arctan(0.5 * angle))
+
+
+def gram_schmidt(M):
+    """Return the orthonormal columns of M, the first of them parallel to its first."""
+    Q, upper = np.linalg.qr(M)
+    return Q * np.sign(np.diag(upper))
+
+
+def of_any_length(q):
+    """Return 1 + 2 w 𝐪* + 2 𝐪*²: a rotation if q has the length 1, and what a stage of Runge–Kutta takes for one."""
+    K = cross_matrix(q[1:])
+    return np.eye(3) + 2.0 * q[0] * K + 2.0 * K @ K
+
+
+def tau_of(t, R, a, b):
+    """Return a torque (3,) [N m] that depends on time and orientation, a at rest in the world and b in the body."""
+    return np.cos(3.0 * t) * a + np.sin(2.0 * t) * (R @ b)
+
+
+def explicit_step(update, t, R, L, dt, I, a, b):
+    L = L + dt * tau_of(t, R, a, b)
+    return update(R, R @ ((R.T @ L) / I)), L
+
+
+def gyroscopic(t, R, L, dt, I, a, b):
+    """ω by Euler's equation in the body, with the gyroscopic term at the beginning."""
+    w, tau = R.T @ L / I, R.T @ tau_of(t, R, a, b)
+    omega = R @ (w + dt * (tau - np.cross(w, I * w)) / I)
+    R = cayley(dt * omega) @ R
+    return R, R @ (I * (R.T @ omega))
+
+
+def implicit_gyroscopic(t, R, L, dt, I, a, b):
+    """One iteration of Newton's method for I (w' − w) + dt (w' × I w' − τ) = 0 from w; the derivative has no error."""
+    w, tau = R.T @ L / I, R.T @ tau_of(t, R, a, b)
+    law = lambda new: I * (new - w) + dt * (np.cross(new, I * new) - tau)
+    slope = np.stack([np.imag(law(w + 1e-20j * e)) / 1e-20 for e in np.eye(3)], axis=1)
+    omega = R @ (w - np.linalg.solve(slope, law(w)))
+    R = cayley(dt * omega) @ R
+    return R, R @ (I * (R.T @ omega))
+
+
+def runge_kutta(t, q, L, dt, I, a, b):
+    """Runge–Kutta 4 for q̇ = ½ (0, ω) q and L̇ = τ, from its table."""
+    def rate(t, q, L):
+        R = of_any_length(q)
+        omega = R @ ((R.T @ L) / I)
+        return 0.5 * np.append(-omega @ q[1:], q[0] * omega + np.cross(omega, q[1:])), tau_of(t, R, a, b)
+    stages = []
+    for c in (0.0, 0.5, 0.5, 1.0):
+        before = stages[-1] if stages else (0.0, 0.0)
+        stages.append(rate(t + c * dt, q + c * dt * before[0], L + c * dt * before[1]))
+    q, L = (y + dt * sum(weight * stage[k] for weight, stage in zip((1 / 6, 1 / 3, 1 / 3, 1 / 6), stages, strict=True))
+            for k, y in enumerate((q, L)))
+    return quaternion_matrix(*(q / np.linalg.norm(q))), L
+
+
+def free_midpoint(R, L, I, dt):
+    """The implicit midpoint rule for ℓ = RᵀL, by a fixed point; then the turn by ω of the middle."""
+    start = R.T @ L
+    middle = start
+    for _ in range(100):
+        middle = start + 0.5 * dt * np.cross(middle, middle / I)
+    return R @ cayley(dt * middle / I)
+
+
+def free_splitting(R, L, I, dt):
+    """Half a turn about axis a, one about c, half about a, and a turn about L; b is the middle axis."""
+    b = int(np.argsort(I)[1])
+    a, c = (b + 1) % 3, (b + 2) % 3
+    for axis, share in ((a, 0.5), (c, 1.0), (a, 0.5)):
+        R = R @ about(np.eye(3)[axis], share * dt * (1.0 / I[axis] - 1.0 / I[b]) * (R.T @ L)[axis])
+    return turned_by(dt / I[b] * L) @ R
+
+
+def kicked(free, t, R, L, dt, I, a, b):
+    """Half of the angular impulse before, half after a free rotation, at the times of both ends."""
+    L = L + 0.5 * dt * tau_of(t, R, a, b)
+    R = free(R, L, I, dt)
+    return R, L + 0.5 * dt * tau_of(t + dt, R, a, b)
+
+
+def composed(free, t, R, L, dt, I, a, b):
+    """Suzuki's five substeps: their shares add up to 1, and the sum of their cubes vanishes."""
+    gamma = 1.0 / (4.0 - np.cbrt(4.0))
+    for share in (gamma, gamma, 1.0 - 4.0 * gamma, gamma, gamma):
+        R, L = kicked(free, t, R, L, share * dt, I, a, b)
+        t += share * dt
+    return R, L
+
+
+def by_matrices(t, q, L, dt, I, a, b):
+    """Return {step of the lesson: (R, L) after it}."""
+    R = quaternion_matrix(*q)
+    given = t, R, L, dt, I, a, b
+    return {
+        "matrix_step": explicit_step(lambda R, w: gram_schmidt(R + dt * cross_matrix(w) @ R), *given),
+        "axis_angle_step": explicit_step(lambda R, w: turned_by(dt * w) @ R, *given),
+        "quaternion_step": explicit_step(lambda R, w: cayley(dt * w) @ R, *given),
+        "gyroscopic_step": gyroscopic(*given),
+        "implicit_gyroscopic_step": implicit_gyroscopic(*given),
+        "runge_kutta_step": runge_kutta(t, q, L, dt, I, a, b),
+        "midpoint_step": kicked(free_midpoint, *given),
+        "splitting_step": kicked(free_splitting, *given),
+        "composed_midpoint_step": composed(free_midpoint, *given),
+        "composed_splitting_step": composed(free_splitting, *given),
+    }
+
+
+@case("one-step", "One step of each rotation", compiled=False)
+def one_step(lesson):
+    """A step is its definition by matrices: three unlike moments, any orientation, a torque of time and orientation."""
+    rng, errors, parts = np.random.default_rng(56), {}, dict.fromkeys(("product", "energy", "top", "velocity"), 0.0)
+    for _ in range(TRIED):
+        I = rng.uniform(1.0, 1.9, 3)[rng.permutation(3)]
+        q, (L, a, b, r, v) = rng.normal(size=4), rng.normal(size=(5, 3))
+        q /= np.linalg.norm(q)
+        t, dt, R, body = rng.uniform(), rng.uniform(0.05, 0.3), quaternion_matrix(*q), lesson.RigidBody(1.0, I)
+        torque = lambda t, q, L, body, a=a, b=b: tau_of(t, of_any_length(q), a, b)
+        for name, (turned, momentum) in by_matrices(t, q, L, dt, I, a, b).items():
+            new_q, new_L = getattr(lesson, name)(torque, t, q, L, dt, body)
+            error = max(np.max(np.abs(quaternion_matrix(*new_q) - turned)), np.max(np.abs(new_L - momentum)))
+            errors[name] = max(errors.get(name, 0.0), error)
+
+        p = rng.normal(size=4)
+        p /= np.linalg.norm(p)
+        product = quaternion_matrix(*lesson.quaternion_product(p, q))
+        parts["product"] = max(parts["product"], np.max(np.abs(product - quaternion_matrix(*p) @ R)),
+                               np.max(np.abs(lesson.rotation_matrix(q) - R)))
+        energy = 0.5 * L @ np.linalg.solve(R @ np.diag(I) @ R.T, L)
+        parts["energy"] = max(parts["energy"], abs(lesson.kinetic_energy(q, L, I) - energy))
+        tau = np.cross(R[:, 2], [0.0, 0.0, -2.5])
+        parts["top"] = max(parts["top"], np.max(np.abs(lesson.heavy_top_torque(t, q, L, lesson.Top(I, 2.5)) - tau)))
+        parts["velocity"] = max(parts["velocity"], np.max(np.abs(lesson.point_velocity(v, L, r) - v - np.cross(L, r))),
+                                np.max(np.abs(lesson.skew(L) - cross_matrix(L))))
+    claims = (("product", "A product of quaternions is the product of their matrices.", "matrix [-]"),
+              ("energy", "The energy of rotation is ½ L · I⁻¹ L in the world.", "energy [J]"),
+              ("top", "Gravity turns a top about its pivot with l𝐞 × (−Mg ẑ).", "torque [N m]"),
+              ("velocity", "A point of a body moves with v + ω × r.", "velocity [m/s]"))
+    return [agreement(f"One step of {LABEL[name]} is its definition by matrices.",
+                      f"{LABEL[name]}: largest error of a step [-, kg m²/s]", error, 1e-11)
+            for name, error in errors.items()] + [
+        agreement(claim, f"largest error of the {quantity}", parts[name], 1e-12)
+        for name, claim, quantity in claims], None
+
+
+@case("one-step-of-the-loop", "One step of the lecture's loop, and of a rolling ball", compiled=False)
+def one_step_of_the_loop(lesson):
+    """A body under a force and a torque of time; a ball of any size whose friction stops its slip within the cone."""
+    rng, worst = np.random.default_rng(57), dict.fromkeys(("loop", "support", "impulse", "cone", "slip"), 0.0)
+    for _ in range(TRIED):
+        m, I, dt, t = rng.uniform(0.5, 2.0), rng.uniform(1.0, 1.9, 3), rng.uniform(0.01, 0.1), rng.uniform()
+        q, (x, v, omega, f, a) = rng.normal(size=4), rng.normal(size=(5, 3))
+        q /= np.linalg.norm(q)
+        R = quaternion_matrix(*q)
+        load = lambda t, x, v, q, omega, body, f=f, a=a: (np.cos(t) * f, np.sin(t) * a)
+        tensor = R @ np.diag(I) @ R.T
+        new_v = v + dt / m * np.cos(t) * f
+        new_omega = omega + dt * np.linalg.solve(tensor, np.sin(t) * a - np.cross(omega, tensor @ omega))
+        got = lesson.rigid_body_step(load, t, x, v, q, omega, dt, lesson.RigidBody(m, I))
+        for one, truth in ((got[0], x + dt * new_v), (got[1], new_v), (got[3], new_omega),
+                           (quaternion_matrix(*got[2]), cayley(dt * new_omega) @ R)):
+            worst["loop"] = max(worst["loop"], np.max(np.abs(one - truth)))
+
+        (radius, mu, inertia), g = rng.uniform((0.1, 0.2, 0.01), (0.5, 0.5, 0.1)), rng.normal(size=3)
+        along = np.array([1.0, 1.0, 0.0])                        # the floor's share of a vector
+        for up in (-9.81, 2.0):                                  # gravity presses the ball on the floor, or lifts it
+            ball = lesson.RollingBall(m, np.full(3, inertia), radius, mu, np.array([g[0], g[1], up]))
+            F, tau = lesson.supported_weight(t, x, v, q, omega, ball)
+            rests = m * np.array([g[0], g[1], max(0.0, up)])
+            worst["support"] = max(worst["support"], np.max(np.abs(F - rests)), np.max(np.abs(tau)))
+        ball, r = ball._replace(gravity=np.array([g[0], g[1], -9.81])), np.array([0.0, 0.0, -radius])
+        for speed in (1e-3, 3.0):                                # friction stops the first slip, and not the second
+            before, limit = speed * v * along, mu * m * 9.81 * dt
+            start = before - (np.cross(omega, r) + dt * g) * along
+            _, end, _, spin = lesson.rolling_step(lesson.supported_weight, t, x, start, q, omega, dt, ball)
+            J = m * (end - start - dt * g * along)
+            worst["impulse"] = max(worst["impulse"], np.max(np.abs(inertia * (spin - omega) - np.cross(r, J))))
+            after = (end + np.cross(spin, r)) * along
+            stops = np.linalg.norm(before) / (1.0 / m + radius**2 / inertia) <= limit
+            if stops:
+                worst["slip"] = max(worst["slip"], np.max(np.abs(after)))
+            else:
+                worst["cone"] = max(worst["cone"], np.max(np.abs(J + limit * before / np.linalg.norm(before))))
+    claims = (("loop", "The loop takes new velocities for positions, and Euler's equation for ω.",
+               "state [m, m/s, -, rad/s]"),
+              ("support", "A floor takes what presses on it, and does not hold what is lifted.", "force [N]"),
+              ("impulse", "Friction turns the ball by r × J.", "angular momentum [kg m²/s]"),
+              ("cone", "A fast slip has the friction μ N against it.", "impulse [N s]"),
+              ("slip", "A slow slip is stopped in the step.", "slip that is left [m/s]"))
+    return [agreement(claim, f"{name}: largest error of the {quantity}", worst[name], 1e-10)
+            for name, claim, quantity in claims], None

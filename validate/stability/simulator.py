@@ -274,3 +274,194 @@ def refusals(lesson):
         tolerance=0.0,
         observation=f"{refused} of {len(asked)} such calls end in a sentence that names the value.",
     )
+
+
+# ---------------------------------------------------------------------------------------------- each part by itself
+
+TRIED = 30                   # random bodies and loads [-]
+
+
+def matrix_of(q):
+    """Return the rotation (3, 3) of a unit quaternion: (w² − 𝐪²) 1 + 2 𝐪 𝐪ᵀ + 2 w 𝐪*."""
+    w, r = q[0], q[1:]
+    return (w * w - r @ r) * np.eye(3) + 2.0 * np.outer(r, r) + 2.0 * w * np.cross(np.eye(3), r)
+
+
+@case("loop-by-parts", "Each part of the loop by itself", compiled=False)
+def loop_by_parts(lesson):
+    """Two unlike bodies and an immovable one, turned and tumbling, under loads with torques that depend on time.
+
+    Euler's equation in world coordinates, ω̇ = I⁻¹ (τ − ω × I ω), with I = R diag Rᵀ as matrices.
+    """
+    rng = np.random.default_rng(101)
+    names = ("plane", "space", "turn", "invariants", "gain", "found", "corner", "slip", "floor", "times")
+    worst = dict.fromkeys(names, 0.0)
+
+    def note(name, got, truth):
+        worst[name] = max(worst[name], np.max(np.abs(np.asarray(got) - truth)))
+
+    for _ in range(TRIED):
+        m, dt, t, g = rng.uniform(0.5, 2.0, 2), rng.uniform(0.01, 0.1), rng.uniform(0.0, 1.0), rng.normal(size=3)
+        push, twist = rng.normal(size=(2, 3, 3))
+
+        # in the plane: the third body is immovable, whatever pushes it
+        inertia = rng.uniform(0.1, 0.5, 2)
+        state, p = lesson.make_bodies_2d(rng.normal(size=(2, 2)), rng.normal(size=2), m, inertia, np.full((2, 2), 0.1),
+                                         [UP], g[:2], 0.3, 1, 0.01)
+        v, omega = rng.normal(size=(3, 2)) * [[1.0], [1.0], [0.0]], rng.normal(size=3) * [1.0, 1.0, 0.0]
+        load = lambda t, x, q, v, omega, p, push=push, twist=twist: (np.cos(t) * push[:, :2], np.sin(t) * twist[:, 0])
+        w = np.array([*(1.0 / m), 0.0])
+        v_new = v + dt * w[:, None] * np.cos(t) * push[:, :2]
+        omega_new = omega + dt * np.array([*(1.0 / inertia), 0.0]) * np.sin(t) * twist[:, 0]
+        x, q, got_v, got_omega = lesson.free_step_2d(load, t, state.x, state.q, v, omega, dt, p)
+        note("plane", np.column_stack((got_v, got_omega)), np.column_stack((v_new, omega_new)))
+        note("plane", np.column_stack((x, q)), np.column_stack((state.x + dt * v_new, state.q + dt * omega_new)))
+        steps = 5
+        v_end = v + dt * w[:, None] * push[:, :2] * sum(np.cos(t + k * dt) for k in range(steps))
+        end = lesson.advance_free(lesson.free_step_2d, load, t, state.x, state.q, v, omega, dt, steps, p)
+        note("times", end[2], v_end)
+
+        # in space
+        turns, moments = rng.normal(size=(2, 4)), rng.uniform(1.0, 1.9, (2, 3))
+        turns /= np.linalg.norm(turns, axis=1)[:, None]
+        state, p = lesson.make_bodies(rng.normal(size=(2, 3)), turns, m, moments, np.full((2, 3), 0.1), [(0.0, *UP)],
+                                      g, 0.3, 1, 0.01)
+        v, omega = rng.normal(size=(2, 3, 3)) * [[1.0], [1.0], [0.0]]
+        load = lambda t, x, q, v, omega, p, push=push, twist=twist: (np.cos(t) * push, np.sin(t) * twist)
+        tensors = [R @ np.diag(I) @ R.T for R, I in zip(map(matrix_of, turns), moments, strict=True)]
+        rates = [np.linalg.solve(I, np.sin(t) * twist[i] - np.cross(omega[i], I @ omega[i]))
+                 for i, I in enumerate(tensors)]
+        omega_new = omega + dt * np.array([*rates, np.zeros(3)])
+        x, q, got_v, got_omega = lesson.free_step(load, t, state.x, state.q, v, omega, dt, p)
+        note("space", (got_v, got_omega), np.array((v + dt * w[:, None] * np.cos(t) * push, omega_new)))
+        note("space", x, state.x + dt * got_v)
+        for i in range(2):                                       # by 2 atan(½ |ω| dt) about ω
+            rate = np.linalg.norm(omega_new[i])
+            axis, angle = omega_new[i] / rate, 2.0 * np.arctan(0.5 * rate * dt)
+            R = matrix_of(np.array([np.cos(0.5 * angle), *(np.sin(0.5 * angle) * axis)]))
+            note("turn", matrix_of(q[i]), R @ matrix_of(turns[i]))
+        energy = sum(0.5 * m[i] * v[i] @ v[i] + 0.5 * omega[i] @ tensors[i] @ omega[i] - m[i] * g @ state.x[i]
+                     for i in range(2))
+        P = sum(m[i] * v[i] for i in range(2))
+        L = sum(m[i] * np.cross(state.x[i], v[i]) + tensors[i] @ omega[i] for i in range(2))
+        note("invariants", lesson.mechanical_energy(state.x, state.q, v, omega, p), energy)
+        note("invariants", lesson.momenta(state.x, state.q, v, omega, p), np.array((P, L)))
+
+        energies, work = rng.normal(size=(2, 6))
+        rest = energies - work
+        gain = max(rest[k] - rest[j] for k in range(6) for j in range(k + 1))
+        note("gain", lesson.gain_without_source(energies, work), gain)
+        runs = iter((rest, rest + 1.5)).__next__                 # the second is ahead, and takes a third of the time
+        note("gain", lesson.compare(runs, runs, 1, iter((0.0, 3.0, 4.0)).__next__), (1.5, 3.0))
+
+        # a disc at the margin of another, and of the floor: found before it touches, and not from farther away
+        for share, count in ((0.9, 2), (1.1, 0)):
+            gap = share * 0.05
+            state, p = lesson.make_bodies_2d([(0.0, 0.1 + gap), (0.2 + gap, 0.3 + gap)], np.zeros(2), 1.0, 1.0,
+                                             np.full((2, 2), 0.1), [UP], (0.0, 0.0), 0.0, 1, 0.05)
+            beside = state.x.copy()
+            beside[1, 1] = beside[0, 1]
+            low, high, turn = lesson.disc_bounds(beside, state.q, p.half)
+            found = lesson.find_contacts(lesson.round_contacts, beside, low, high, turn, p)
+            on_floor = 1 if count else 0                         # the other disc is as near to the floor
+            note("found", found.a.size, count + on_floor)
+        note("found", lesson.closing_speeds(np.array([0.02, -0.01]), dt), (-0.02 / dt, 0.0))
+
+        # a corner that stops keeps the angular momentum about it
+        v, omega, r, inv_mass, inv_inertia = rng.normal(size=2), rng.normal(), rng.normal(size=2), 1.0 / m[0], 3.0
+        v_new, omega_new = lesson.corner_impact(v, omega, r, inv_mass, inv_inertia)
+        about = lambda v, omega, r=r, k=inv_inertia, w=inv_mass: omega / k - (r[0] * v[1] - r[1] * v[0]) / w
+        note("corner", v_new + omega_new * np.array([-r[1], r[0]]), 0.0)
+        note("corner", about(v_new, omega_new), about(v, omega))
+
+        # a ball that slips: its slip decreases by what friction and gravity do to centre and rotation
+        radius, mu, I, slope = rng.uniform((0.1, 0.2, 0.01, -0.5), (0.5, 0.5, 0.1, 0.5))
+        angle, r = rng.uniform(0.0, 6.28), np.array([0.0, 0.0, -radius])
+        along = np.array([np.cos(angle), np.sin(angle), 0.0])
+        ball = lesson.RollingBall(m[0], np.full(3, I), radius, mu, slope * along - [0.0, 0.0, G])
+        omega = rng.normal(size=3)
+        v = rng.uniform(0.5, 2.0) * along - np.cross(omega, r) * [1.0, 1.0, 0.0]
+        size = np.linalg.norm((v + np.cross(omega, r))[:2])
+        friction = -mu * m[0] * G * along
+        slows = -(friction / m[0] + slope * along + np.cross(np.cross(r, friction) / I, r)) @ along
+        note("slip", lesson.slip_time(v, omega, ball), size / slows if slows > 0.0 else np.inf)
+        centre, v_s, omega_s, place = rng.normal(size=(4, 3))
+        carried = lesson.CarriedBall(1.0, np.ones(3), 0.1, 0.5, np.array([0.0, 0.0, -G]), centre, v_s, omega_s)
+        note("floor", lesson.support_velocity(place, carried), v_s + np.cross(omega_s, place - centre))
+    claims = (
+        ("plane", "In the plane v changes by F/m and ω by τ/I, and positions by the new ones.",
+         "state [m, m/s, rad/s]"),
+        ("space", "In space ω changes by Euler's equation, for each body by its own tensor.",
+         "state [m, m/s, rad/s]"),
+        ("turn", "A body turns by 2 atan(½ |ω| dt) about its own new ω.", "orientation [-]"),
+        ("times", "Each step takes the load of its own time.", "velocity after five steps [m/s]"),
+        ("invariants", "Energy and momenta are those of matrices, for bodies that can move.",
+         "invariants [J, kg m²/s]"),
+        ("gain", "A gain counts from any time on, without the work that was done; a difference counts either way.",
+         "gain and difference [J]"),
+        ("found", "Contacts are found up to the margin, and may close in one step.", "contacts and speeds [-, m/s]"),
+        ("corner", "A corner that stops keeps the angular momentum about it.", "velocity and momentum [m/s, kg m²/s]"),
+        ("slip", "A slip ends when friction and gravity have used it up.", "time [s]"),
+        ("floor", "A floor that travels and turns has the velocity of each of its points.",
+         "velocity of a floor [m/s]"))
+    return [agreement(claim, f"{name}: largest error of the {quantity}", worst[name], 1e-9)
+            for name, claim, quantity in claims], None
+
+
+@case("rolling-by-contact", "What one contact does, step by step", compiled=False)
+def rolling_by_contact(lesson):
+    """A disc and a sphere roll down a slope: a = g sin θ/(1 + I/(m r²)), J_n = m g cos θ dt, J_t = −I a dt/r² per step.
+
+    A round body decouples normal and tangent: in the plane one sweep is exact.  In space a sweep leaves half of the
+    slip, because it counts both tangents.  The steps are those of symplectic Euler: after k of them v = k a dt and
+    x = ½ k (k + 1) a dt².
+    """
+    found, dt, steps, theta, m, r, I = [], 0.01, 12, 0.3, 2.0, 0.4, 0.1
+    down = G * np.sin(theta)
+    a, k = down / (1.0 + I / (m * r * r)), np.arange(steps + 1)
+    way, push = 0.5 * steps * (steps + 1) * a * dt * dt, m * G * np.cos(theta) * dt
+    state, p = lesson.make_bodies_2d([(0.0, r)], [0.7], m, I, [(r, r)], [UP], (down, -G * np.cos(theta)), 0.9, 3,
+                                     0.01)
+    end = lesson.advance_contact(lesson.contact_step_2d, lesson.weight, lesson.disc_bounds, lesson.round_contacts, 0.0,
+                                 state, dt, steps, p)
+    truth = (way, r, 0.7 - way / r, steps * a * dt, 0.0, -steps * a * dt / r, -I * a * dt / r**2, push)
+    got = (*end.x[0], end.q[0], *end.v[0], end.omega[0], *end.J[0])
+    found.append(agreement("A disc rolls down a slope with g sin θ/(1 + I/(m r²)), by the impulses of theory.",
+                           "disc: largest error of its state and impulse [m, rad, m/s, rad/s, N s]",
+                           np.max(np.abs(np.array(got) - truth)), ROUND_OFF))
+    state, p = lesson.make_bodies([(0.0, 0.0, r)], [(1.0, 0.0, 0.0, 0.0)], m, [(I, I, I)], [(r, r, r)],
+                                  [(0.0, 0.0, 1.0, 0.0)], (down, 0.0, -G * np.cos(theta)), 0.9, 60, 0.01)
+    end = lesson.advance_contact(lesson.contact_step, lesson.weight, lesson.ball_bounds, lesson.round_contacts, 0.0,
+                                 state, dt, steps, p)
+    turned = np.sum(np.arctan(0.5 * k * a * dt / r * dt))                   # half of the angle, about y
+    truth = (way, 0.0, r, np.cos(turned), 0.0, np.sin(turned), 0.0, steps * a * dt, 0.0, 0.0,
+             0.0, steps * a * dt / r, 0.0, -I * a * dt / r**2, 0.0, push)
+    got = (*end.x[0], *end.q[0], *end.v[0], *end.omega[0], *end.J[0])
+    found.append(agreement("A sphere does the same in space.",
+                           "sphere: largest error of its state and impulse [m, -, m/s, rad/s, N s]",
+                           np.max(np.abs(np.array(got) - truth)), ROUND_OFF))
+    # with μ = 0.05 they slip: J_t = −μ J_n, a = g (sin θ − μ cos θ)
+    slips = p._replace(mu=0.05)
+    end = lesson.advance_contact(lesson.contact_step, lesson.weight, lesson.ball_bounds, lesson.round_contacts, 0.0,
+                                 state, dt, steps, slips)
+    flat, flat_p = lesson.make_bodies_2d([(0.0, r)], [0.7], m, I, [(r, r)], [UP], (down, -G * np.cos(theta)), 0.05, 3,
+                                         0.01)
+    end_2d = lesson.advance_contact(lesson.contact_step_2d, lesson.weight, lesson.disc_bounds, lesson.round_contacts,
+                                    0.0, flat, dt, steps, flat_p)
+    truth = steps * dt * (down - 0.05 * G * np.cos(theta)), steps * r * 0.05 * push / I, 0.05 * push
+    errors = np.array((end.v[0, 0], end.omega[0, 1], -end.J[0, 0])) - truth, np.array(
+        (end_2d.v[0, 0], -end_2d.omega[0], -end_2d.J[0, 0])) - truth
+    found.append(agreement("With less friction both slip with g (sin θ − μ cos θ).",
+                           "slipping disc and sphere: largest error [m/s, rad/s, N s]", np.max(np.abs(errors)),
+                           ROUND_OFF))
+    # three discs on each other, one sweep per step from below: only what is kept from step to step adds up to the top
+    heights = r * (1.0 + 2.0 * np.arange(3))
+    state, p = lesson.make_bodies_2d([(0.0, y) for y in heights], np.zeros(3), m, I, np.full((3, 2), r), [UP],
+                                     (0.0, -G), 0.0, 1, 0.01)
+    end = lesson.advance_contact(lesson.contact_step_2d, lesson.weight, lesson.disc_bounds, lesson.round_contacts, 0.0,
+                                 state, 1e-4, 400, p)
+    carried = np.sort(np.abs(end.J[:, 1])) / (m * G * 1e-4)
+    found.append(agreement("Impulses that are kept carry a stack with one sweep per step: 1, 2 and 3 weights.",
+                           "impulses under three discs over m g dt: largest error [-]",
+                           np.max(np.abs(carried - (1.0, 2.0, 3.0))), 1e-6))
+    return found, None

@@ -164,3 +164,21 @@ def large_step(lesson):
                       "blocks of K over k: largest error [-]", stiffness, 1e-10),
             agreement("A large step solves the linearised equations of all points together.",
                       "state after a step: largest error [m, m/s]", steps, 1e-6)], None
+
+
+@case("grids", "Springs of a grid", compiled=False)
+def grids(lesson):
+    """Two nodes are joined if their rows and columns differ by an offset: counted over all pairs of nodes."""
+    wrong = 0
+    for rows, cols in ((1, 1), (1, 4), (3, 2), (4, 5)):
+        place = [divmod(k, cols) for k in range(rows * cols)]
+        for offsets in (lesson.STRUCTURAL, lesson.SHEAR, lesson.BEND, lesson.STRUCTURAL + lesson.SHEAR + lesson.BEND):
+            truth = sorted((i, j) for i, (r, c) in enumerate(place) for j, (s, d) in enumerate(place)
+                           if (s - r, d - c) in offsets)
+            wrong += sorted(map(tuple, lesson.grid_pairs(rows, cols, offsets).tolist())) != truth
+    lengths = [np.hypot(*offset) for offset in lesson.STRUCTURAL + lesson.SHEAR + lesson.BEND]
+    found = abs(sum(lengths) - (2.0 + 2.0 * np.sqrt(2.0) + 4.0))           # 1, 1, √2, √2, 2, 2
+    return [agreement("A grid joins the nodes whose rows and columns differ by an offset, and no others.",
+                      "grids with other pairs [of 16]", wrong, 0.0),
+            agreement("Threads are 1, diagonals √2 and every second node 2 apart.",
+                      "sum of the offsets: error [-]", found, ROUNDED)], None
