@@ -163,6 +163,7 @@ SCENE = Scene(
     },
     points=points,
     links=links,
+    link_look="spring and damper",
     uses=("one coordinate", "one step function"),
     ablations={
         "the second and third dimension": in_space,
