@@ -147,9 +147,9 @@ def maps(path, picture):
     figure.supxlabel(picture["x_label"], fontsize=10)
     figure.supylabel(picture["y_label"], fontsize=10)
     figure.set_size_inches(WIDTH, 4.4)
-    figure.subplots_adjust(left=0.12, right=0.86, bottom=0.12, top=0.93, wspace=0.12, hspace=0.22)
-    bar = figure.colorbar(drawn, cax=figure.add_axes((0.885, 0.12, 0.025, 0.81)))
-    bar.ax.set_title("per step", fontsize=8.5)
+    figure.subplots_adjust(left=0.12, right=0.83, bottom=0.12, top=0.93, wspace=0.12, hspace=0.22)
+    bar = figure.colorbar(drawn, cax=figure.add_axes((0.855, 0.12, 0.025, 0.81)))
+    bar.set_label("amplification by one step [-]", fontsize=9)
     _save(figure, path)
 
 

@@ -89,9 +89,10 @@ def coverage(table):
 
 
 def of_picture(picture):
-    """The curves of a stability case, and its maps."""
-    rows = [(label, x, y, None) for label, xs, ys, _ in picture["series"] for x, y in zip(xs, ys)]
-    for one in picture.get("maps", ()):
-        rows += [(one["label"], x, y, value) for y, line in zip(one["ys"], one["values"])
-                 for x, value in zip(one["xs"], line)]
-    return text(("curve", picture["x_label"], picture["y_label"], "value"), rows)
+    """The curves of a stability case; of maps a table each, with a line for each y and a column for each x."""
+    if not picture.get("maps"):
+        rows = [(label, x, y) for label, xs, ys, _ in picture["series"] for x, y in zip(xs, ys)]
+        return text(("curve", picture["x_label"], picture["y_label"]), rows)
+    header = (picture["title"], picture["y_label"], *(f"{picture['x_label']} = {x}" for x in picture["maps"][0]["xs"]))
+    return text(header, [(one["label"], y, *line) for one in picture["maps"]
+                         for y, line in zip(one["ys"], one["values"])])
