@@ -51,6 +51,8 @@ def number(x, digits=3):
 
 def known(x, tolerance):
     """A number with as many decimals as its tolerance leaves: 2.82843 where the tolerance is 0.00003."""
+    if x is not None and not tolerance and x == round(x) and abs(x) < 1e9:
+        return f"{x:,.0f}"                                           # a count
     if x is None or not tolerance or x == 0:
         return number(x, 7)
     decimals = max(0, -floor(log10(tolerance)))
