@@ -3,6 +3,7 @@
 import os
 import platform
 import re
+import subprocess
 from datetime import date
 from importlib.metadata import version
 from pathlib import Path
@@ -68,13 +69,17 @@ def report_on(store, names, plan, pool, bars):
     results, stability = store.results(shown), store.stability(shown)
     pages = report.files(results, stability)
     store.note(pages=sorted({*store.state["pages"], *pages}))        # first, in case writing them is interrupted
-    front = report.write(store.out, results, stability, about(plan), pool, bars, store.measured)
+    front = report.write(store.out, results, stability, about(plan, store.out), pool, bars, store.measured)
     store.finish(names, pages)
     return front
 
 
-def about(plan):
-    """What a report was made with: a plain record for the foot of its pages."""
+def about(plan, out=None):
+    """What a report was made with: a plain record for the foot of its pages.
+
+    Links to the sources are there only for a report in a folder of the repository.
+    """
+    inside = out is not None and out.resolve().is_relative_to(modules.ROOT)
     live = [f"{n} {engines.installed(n)} live" if n in plan.live else f"{n} recorded" for n in PRODUCTS]
     compiler = f"numba {modules.numba_version()}" if modules.can_compile() else "numba not installed: plain speed only"
     return {
@@ -84,7 +89,26 @@ def about(plan):
         "processor": processor(), "cores": os.cpu_count(), "code": code_digest(plan.of),
         "versions": {name: version(name) for name in ("numpy", "scipy", "matplotlib")},
         "overrides": [list(pair) for pair in plan.overrides], "coverage": coverage.table(),
+        "version": version("physics-animation-workbook"), "commit": commit(),
+        "root": Path(os.path.relpath(modules.ROOT, out.resolve())).as_posix() if inside else "",
+        "notebooks": notebooks(),
     }
+
+
+def commit():
+    """The commit of the workbook, marked where files were changed since; nothing without git."""
+    try:
+        done = subprocess.run(["git", "describe", "--always", "--dirty=, changed since", "--exclude=*"],
+                              cwd=modules.ROOT, capture_output=True, text=True, timeout=10)
+    except (OSError, subprocess.SubprocessError):
+        return ""
+    return done.stdout.strip() if done.returncode == 0 else ""
+
+
+def notebooks():
+    """{lesson: its notebook}."""
+    files = sorted((modules.ROOT / "notebooks").glob("[0-9][0-9]_*.ipynb"))
+    return {file.stem.partition("_")[2]: f"notebooks/{file.name}" for file in files}
 
 
 def processor():

@@ -100,6 +100,7 @@ class Scene:
     published_states: tuple = ()             # ((time, observed, tolerance), …) of the first case, from elsewhere
     sanity_checks: Callable | None = None    # () → ((claim, found, expected, tolerance), …) about the truth itself
     links: Callable | None = None            # (p) → pairs of points that the picture joins
+    link_look: str = "rod"                   # how they are drawn: rod, spring, or spring and damper
     film_seconds: float | None = None        # how much of the motion the film shows [s]; T without it
     bodies: Callable | None = None           # (p) → shapes of validate/drawing.py: the film is then shown in 3D
     poses: Callable | None = None            # (observed, p) → (bodies, 7) position and quaternion (w, x, y, z) of each

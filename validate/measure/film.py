@@ -17,8 +17,8 @@ def picture(selection, p, agreeing):
     if not scene.moves:
         there = np.array(scene.truth(p, scene.duration), dtype=float)
         shown = {"truth": (Role.TRUTH, [there])}
-        return {"seconds": 0.0, "dt": 0.0, "links": links(scene, p), "films": films(scene, shown, p),
-                "space": in_space(scene, shown, p, 1.0)}
+        return {"seconds": 0.0, "dt": 0.0, "links": links(scene, p), "look": scene.link_look,
+                "films": films(scene, shown, p), "space": in_space(scene, shown, p, 1.0)}
     per_frame = max(1, scene.steps[-3] // FRAMES)
     seconds = scene.film_seconds or scene.duration
     dt = seconds / (per_frame * FRAMES)
@@ -32,7 +32,7 @@ def picture(selection, p, agreeing):
     runs = films(scene, shown, p)
     if not selection.plan.overrides and not any(role is Role.ENGINE for role, _ in shown.values()):
         runs += traces.film_of(selection.name, COLOURS[Role.ENGINE][0])
-    return {"seconds": seconds, "dt": dt, "links": links(scene, p), "films": runs,
+    return {"seconds": seconds, "dt": dt, "links": links(scene, p), "look": scene.link_look, "films": runs,
             "space": in_space(scene, shown, p, seconds)}
 
 

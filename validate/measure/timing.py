@@ -8,6 +8,7 @@ import gc
 import os
 import time
 import warnings
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -26,6 +27,7 @@ EXACTLY = 1e-11              # a smaller relative error is round-off: there is n
 LOST = 10.0                  # a run with a larger relative error is not worth timing [-]
 SAME = 1e-9                  # relative difference of two motions that count as the same [-]
 SHORTEST = 1e-4              # a timed loop is repeated until it lasts this long [s]
+SHORTEST_LOOK = 0.1          # the system counts hundredths of a second: a shorter look at them is no measurement [s]
 TARGETS = (1e-2, 1e-3, 1e-4, 1e-6, 1e-8)
 
 
@@ -49,7 +51,9 @@ def times(name, plan, result):
     items = []
     if scene.refined:                                                # else there is no diagram to time anything for
         items = [*our_items(selection, p, found), *engine_items(selection, p, found)]
+    before = cpu_seconds()
     timed = [(i.label, i.speed, i.steps, t) for i, t in interleaved(items, plan.time_limits(), plan.repeats())]
+    others = used_by_others(before, cpu_seconds())
     timed += recorded_times(selection, case, p)
     rows = [{**t, "label": label, "speed": speed, "steps": n, "error": found[label][n]["error"]}
             for label, speed, n, t in timed if n in found[label]]
@@ -59,6 +63,7 @@ def times(name, plan, result):
         "untimed": list(dict.fromkeys(f"{i.label} ({i.speed})" for i in items if (i.label, i.speed) not in done)),
         "baseline": baseline(plan) if scene.moves else {},
         "load": os.getloadavg() if hasattr(os, "getloadavg") else None,
+        "others": others if items else None,
         "time_to_error": times_to_error(rows),
         "advantage": advantage(rows, result["cases"][case]["engines"]),
         "ablations": ablations(selection, p, labels_that_agree(result)),
@@ -120,6 +125,26 @@ def time_engine(engine, p):
                 step()
         return loop, world.close
     return prepare
+
+
+# ---------------------------------------------------------------------------------------------- a busy machine
+
+def cpu_seconds():
+    """(clock, seconds of all cores at work, seconds of this process) [s]; None where the system does not tell."""
+    try:
+        counts = list(map(int, Path("/proc/stat").read_text(encoding="utf-8").splitlines()[0].split()[1:]))
+    except (OSError, ValueError):
+        return None
+    ticks = sum(counts[:8]) - sum(counts[3:5])           # but for the two kinds of idling
+    return time.perf_counter(), ticks / os.sysconf("SC_CLK_TCK"), time.process_time()
+
+
+def used_by_others(before, after):
+    """How many cores other programs used in between; None where nobody knows, or in too short a time to tell."""
+    if before is None or after is None or after[0] - before[0] < SHORTEST_LOOK:
+        return None
+    clock, all_cores, own = (b - a for a, b in zip(before, after))
+    return max(0.0, (all_cores - own) / clock)
 
 
 # ---------------------------------------------------------------------------------------------- the clock

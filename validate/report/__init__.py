@@ -1,63 +1,106 @@
 """Write the report: one folder of static pages that need no network, and the same content as JSON."""
 
 import json
+from functools import cache
+from math import log
 from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, select_autoescape
+from markupsafe import Markup
 
+from ..results import Verdict
 from ..store import whole
-from . import plots, words
+from . import films, plots, tables, words
+from .answers import answers
 
 HERE = Path(__file__).parent
 ARROWS = ("#e69f00", "#cc79a7", "#009e73")      # as in player3d/source.js
 PLAYER_3D = HERE / "player3d.js"
+LESSONS = {"pbd": "PBD"}     # names that are no words
 
 
 def pictures(results, stability):
     """(plot, file, data, the scene or lesson that it is of) of every still picture."""
-    refined = [r for r in results if r["refinement"]]
+    refined = [({key: value for key, value in r.items() if key != "picture"}, r["scene"])
+               for r in results if r["refinement"]]
     drawn = [case for case in stability if case["picture"]]
-    return [*((plots.convergence, f"{r['scene']}-steps.svg", r, r["scene"]) for r in refined),
-            *((plots.work_precision, f"{r['scene']}-times.svg", r, r["scene"]) for r in refined),
+    return [*((plots.convergence, f"{scene}-steps.svg", r, scene) for r, scene in refined),
+            *((plots.work_precision, f"{scene}-times.svg", r, scene) for r, scene in refined),
             *((plots.stability, f"stability-{case['lesson']}-{case['slug']}.svg", case, case["lesson"])
               for case in drawn)]
 
 
 def copied(results):
     """Files that come with the pages as they are."""
-    return ("style.css", "player.js", *(["player3d.js"] if any(r["picture"]["space"] for r in results) else []))
+    return ("style.css", "dark.css", "report.css", "report.js", "player.js",
+            *(["player3d.js"] if any(r["picture"]["space"] for r in results) else []))
 
 
 def files(results, stability):
     """The names of all files of a report."""
     always = "index.html", "report.json", "coverage.html"
-    return {*always, *(["stability.html"] if stability else []), *copied(results),
-            *(f"{r['scene']}.html" for r in results), *(name for _, name, _, _ in pictures(results, stability))}
+    return {*always, *(["stability.html"] if stability else []), *copied(results), *tables.names(results, stability),
+            *(name for r in results for name in (f"{r['scene']}.html", f"{r['scene']}-film.js")),
+            *(name for _, name, _, _ in pictures(results, stability))}
+
+
+LEAST, MOST = 0.1, 3000.0    # range of ratios that the front page has room for [-]
+
+
+def place(ratio):
+    """Where a ratio stands on the front page's scale, which is logarithmic [%]."""
+    share = log(min(max(ratio, LEAST), MOST) / LEAST) / log(MOST / LEAST)
+    return round(100.0 * share, 2)
+
+
+def thumbnail(picture):
+    """A still picture of a film, as an SVG in the page."""
+    return Markup(environment().get_template("thumbnail.html").render(runs=films.still(picture)))
+
+
+@cache
+def environment():
+    """The templates, with what they call."""
+    pages = Environment(loader=PackageLoader("validate", "report"), autoescape=select_autoescape(),
+                        trim_blocks=True, lstrip_blocks=True)
+    pages.filters.update(seconds=words.seconds, number=words.number, percent=words.percent, factor=words.factor,
+                         order=words.order, ratio=words.ratio, rounded=words.rounded, flowing=words.flowing,
+                         css_colour=plots.css_colour, place=place, subscripts=words.subscripts,
+                         lesson=lambda name: LESSONS.get(name, name.replace("_", " ")))
+    pages.tests["reaches"] = lambda row: any(t is not None for t in row.values())
+    pages.globals.update(judge=words.judge, verdicts=words.verdicts, known=words.known, percents=words.percents,
+                         legend=[(v.value, words.KINDS[v], words.LEGEND[v]) for v in Verdict], thumb=thumbnail,
+                         arrow_colours=ARROWS, csv=tables.address, ablation_rows=tables.ablations,
+                         coverage_rows=tables.coverage, summary_line=words.summary_line)
+    return pages
 
 
 def texts(results, stability, about):
     """Return {file: text} of everything in a report but its pictures."""
-    pages = Environment(loader=PackageLoader("validate", "report"), autoescape=select_autoescape(),
-                        trim_blocks=True, lstrip_blocks=True)
-    pages.filters.update(seconds=words.seconds, number=words.number, percent=words.percent, factor=words.factor,
-                         order=words.order)
-    pages.tests["reaches"] = lambda row: any(t is not None for t in row.values())
-    pages.globals.update(run=about, verdict=words.verdict, judge=words.judge, arrow_colours=ARROWS)
+    pages, shown = environment(), {"run": about, "results": results, "stability": stability}
 
-    found = {f"{r['scene']}.html": pages.get_template("scene.html").render(
-        r=r, findings=words.findings(r), others=results,
+    def page(template, **more):
+        return pages.get_template(template).render(**shown, **more)
+
+    lessons = list(dict.fromkeys(r["lesson"] for r in results))
+    coverage = about.get("coverage") or {}
+    found = {f"{r['scene']}.html": page(
+        "scene.html", r=r, headline=words.headline(r), findings=words.leading(r),
+        races=[words.race(a, r) for a in r["times"]["advantage"]],
+        warning=words.busy_warning([r], about.get("cores")), notebook=about.get("notebooks", {}).get(r["lesson"]),
+        exercises=[(number, one["function"]) for number, one in coverage.items() if r["scene"] in one["places"]],
         cases=[c for c in stability if c["lesson"] == r["lesson"]]) for r in results}
-    if about.get("coverage"):
-        scenes = {r["scene"]: r["title"] for r in results}
-        cases = {f"{c['lesson']}/{c['slug']}": c["title"] for c in stability}
-        found["coverage.html"] = pages.get_template("coverage.html").render(
-            coverage=about["coverage"], scenes=scenes, cases=cases)
+    if coverage:
+        found["coverage.html"] = page(
+            "coverage.html", coverage=coverage, scenes={r["scene"]: r["title"] for r in results},
+            cases={f"{c['lesson']}/{c['slug']}": c["title"] for c in stability})
     if stability:
-        found["stability.html"] = pages.get_template("stability.html").render(cases=stability)
-    rows = [words.row(r) for r in results]
-    found["index.html"] = pages.get_template("front.html").render(rows=rows, cases=stability, results=results)
-    data = {"run": about, "scenes": results, "stability": stability}
-    found["report.json"] = json.dumps(data, ensure_ascii=False, indent=1)
+        found["stability.html"] = page("stability.html", cases=stability)
+    found["index.html"] = page("front.html", rows=[words.row(r) for r in results], lessons=lessons,
+                               found=answers(results, stability, about.get("cores")))
+    found["report.json"] = json.dumps({"run": about, "scenes": results, "stability": stability}, ensure_ascii=False)
+    found |= {f"{r['scene']}-film.js": films.script(r) for r in results}
+    found |= tables.texts(results, stability)
     found |= {name: (HERE / name).read_text(encoding="utf-8") for name in copied(results)}
     return found
 

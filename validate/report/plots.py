@@ -7,19 +7,25 @@ import json
 import re
 import warnings
 from hashlib import sha256
+from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.colors import TwoSlopeNorm
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from .. import methods
 from ..results import Verdict, jsonable
 from ..store import whole
+from . import words
 
 EXACT_RUN = 1e-12               # relative error of a run of many steps that is exact [-]
 DRAWN_FROM = "drawn from data "
 NOTE = {"xycoords": ("axes fraction", "data"), "fontsize": 8, "color": "#555555"}
 TOP = 10.0                      # errors above this, and failures, are drawn here, as crosses [-]
+WIDTH, HEIGHT = 5.2, 3.4        # of the axes with their labels [in]: as wide as a phone shows without shrinking letters
+MARKERS = "o^sDvP<>hdX*p8H"     # of the things in a stability picture that are no method
+DASHES = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (5, 2, 1, 2)), (0, (8, 3)), (0, (3, 2, 1, 2, 1, 2)))
 
 
 def style():
@@ -62,8 +68,13 @@ def convergence(path, result):
         # a line has a gap where a run was lost
         seen = [(r["dt"], np.nan if r["dt"] in lost else max(r["error"], bottom)) for r in c["rows"]]
         order = f": {c['order']:.2f}" if c["order"] is not None else ""
+        own = [(row["dt"], max(error, bottom)) for row, error in words.own_errors(c) if error < TOP]
         if len(lost) < len(seen):
-            axes.loglog(*zip(*seen), color=colour, marker=marker, ls=line, ms=5, lw=1.3, label=c["label"] + order)
+            axes.loglog(*zip(*seen), color=colour, marker=marker, ls=line, ms=5, lw=1.3,
+                        label=c["label"] + (order if not own else ""))
+        if own:                                                      # the order is that of this second line
+            axes.loglog(*zip(*own), color=colour, marker=marker, ls=(0, (4, 2)), ms=5, lw=1.0, mfc="none",
+                        label=f"{c['label']}, from its own law{order}")
         axes.plot(lost, [TOP] * len(lost), color=colour, marker="X", ls="", ms=7, clip_on=False)
     axes.set(xlabel=result["refinement"], ylabel=error_label(result), xscale="log", yscale="log")
     axes.axhline(TOP, color="#999999", lw=0.6)
@@ -98,18 +109,53 @@ def work_precision(path, result):
 
 
 def stability(path, case):
-    """A stability case's own picture."""
+    """A stability case's own picture: curves, or maps with theory's curve over them."""
     picture = case["picture"]
     if not picture:
         return
+    if picture.get("maps"):
+        maps(path, picture)
+        return
     figure, axes = plt.subplots()
-    colours = series_colours([label for label, *_ in picture["series"]])
-    for (label, xs, ys, mark), colour in zip(picture["series"], colours):
+    labels = [label for label, *_ in picture["series"]]
+    measured = {thing_of(label) for label, _, _, mark in picture["series"] if mark == "dots"}
+    for (label, xs, ys, mark), colour, marker, dashes in zip(picture["series"], series_colours(labels),
+                                                             series_markers(labels), series_dashes(labels)):
         few = len(xs) <= 60
-        style, order = {"line": ("-", 3), "dots": ("o", 2)}[mark]
-        axes.plot(xs, ys, style, color=colour, label=label, ms=5 if few else 2, lw=1.4, zorder=order)
-    axes.set(xlabel=picture["x_label"], ylabel=picture["y_label"], title=picture["title"])
+        look = ({"ls": "", "marker": marker, "ms": 5 if few else 2, "zorder": 2} if mark == "dots" else
+                {"ls": "-" if thing_of(label) in measured else dashes, "zorder": 3})
+        axes.plot(xs, ys, color=colour, label=label, lw=1.4, **look)
+    axes.set(xlabel=picture["x_label"], ylabel=picture["y_label"])
+    if path is None:
+        axes.set_title(picture["title"])
     _finish(figure, axes, path, None)
+
+
+def maps(path, picture):
+    """One small map for each method: how much a step amplifies, with theory's edge of stability over it."""
+    figure, every = plt.subplots(2, (len(picture["maps"]) + 1) // 2, sharex=True, sharey=True, squeeze=False)
+    for axes, one in zip(every.flat, picture["maps"]):
+        values, (low, high) = np.array(one["values"], dtype=float), picture["range"]
+        drawn = axes.pcolormesh(one["xs"], one["ys"], np.clip(values, low, high), cmap="RdBu_r", rasterized=True,
+                                norm=TwoSlopeNorm(1.0, low, high), shading="nearest")
+        axes.plot(*one["curve"], color="#111111", lw=1.6)
+        axes.set(title=one["label"], xlim=(one["xs"][0], one["xs"][-1]), ylim=(one["ys"][0], one["ys"][-1]))
+        axes.title.set_fontsize(9.5)
+        axes.grid(False)
+    for axes in every.flat[len(picture["maps"]):]:
+        axes.set_visible(False)
+    figure.supxlabel(picture["x_label"], fontsize=10)
+    figure.supylabel(picture["y_label"], fontsize=10)
+    figure.set_size_inches(WIDTH, 4.4)
+    figure.subplots_adjust(left=0.12, right=0.83, bottom=0.12, top=0.93, wspace=0.12, hspace=0.22)
+    bar = figure.colorbar(drawn, cax=figure.add_axes((0.855, 0.12, 0.025, 0.81)))
+    bar.set_label("amplification by one step [-]", fontsize=9)
+    _save(figure, path)
+
+
+def thing_of(label):
+    """What a curve is of, without whether it is theory's or measured."""
+    return THEORY_OR_MEASURED.sub("", label)
 
 
 THEORY_OR_MEASURED = re.compile(r"^theory, |, (theory|measured)$|: .*$")
@@ -119,8 +165,8 @@ def series_colours(labels):
     """A colour each: a method has its own, theory and measurement of one thing share theirs,
     and no two things have one.
     """
-    things, colours = [THEORY_OR_MEASURED.sub("", label) for label in labels], {}
-    known = {method.label: method.colour for method in vars(methods).values() if isinstance(method, methods.Method)}
+    things, colours = [thing_of(label) for label in labels], {}
+    known = {method.label: method.colour for method in all_methods()}
     for thing in things:
         own = max((name for name in known if thing.startswith(name)), key=len, default=None)
         if own and known[own] not in colours.values():
@@ -130,6 +176,32 @@ def series_colours(labels):
         if thing not in colours:
             colours[thing] = next(free, "#000000")
     return [colours[thing] for thing in things]
+
+
+def series_markers(labels):
+    """A marker each: a method has its own, and no two things of a picture have one as far as there are enough."""
+    things = list(dict.fromkeys(map(thing_of, labels)))
+    known = {method.label: method.marker for method in all_methods()}
+    markers = {}
+    for thing in things:
+        own = max((name for name in known if thing.startswith(name)), key=len, default=None)
+        if own and known[own] not in markers.values():
+            markers[thing] = known[own]
+    free = iter([marker for marker in MARKERS if marker not in markers.values()])
+    for thing in things:
+        if thing not in markers:
+            markers[thing] = next(free, "o")
+    return [markers[thing_of(label)] for label in labels]
+
+
+def series_dashes(labels):
+    """A dash pattern each: lines that have no markers are told apart without their colours."""
+    things = list(dict.fromkeys(map(thing_of, labels)))
+    return [DASHES[things.index(thing_of(label)) % len(DASHES)] for label in labels]
+
+
+def all_methods():
+    return [method for method in vars(methods).values() if isinstance(method, methods.Method)]
 
 
 def show(plot, result):
@@ -149,8 +221,26 @@ def draw(plot, path, data):
     with whole(path) as draft, warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")                              # of a diagram in which every run was lost
         plot(draft, data)
-        with draft.open("a", encoding="utf-8") as file:
-            file.write(f"<!-- {DRAWN_FROM}{digest(data)} -->\n")
+        text = for_both_schemes(draft.read_text(encoding="utf-8"))
+        draft.write_bytes(f"{text}<!-- {DRAWN_FROM}{digest(data)} -->\n".encode())
+
+
+# ---------------------------------------------------------------------------------------------- light and dark
+
+DARK = Path(__file__).with_name("dark.css")
+COLOUR = re.compile(r"(fill|stroke): (#[0-9a-f]{6})")
+
+
+def css_colour(colour):
+    """A colour that a dark page may replace by a lighter one."""
+    return f"var(--c{colour.lower().replace('#', '-')}, {colour.lower()})"
+
+
+def for_both_schemes(svg):
+    """An SVG whose letters, lines and dark colours follow the reader's light or dark scheme."""
+    svg = COLOUR.sub(lambda found: f"{found[1]}: {css_colour(found[2])}", svg)
+    style = f"<style>{DARK.read_text(encoding='utf-8')} text {{ fill: var(--c-000000, #000) }}</style>"
+    return re.sub(r"(<svg[^>]*>)", lambda found: found[1] + style, svg, count=1)
 
 
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -181,17 +271,42 @@ def _finish(figure, axes, path, title):
         axes.plot([], [], label=" ")
         axes.text(0.5, 0.5, "nothing to draw: no method has been attempted", transform=axes.transAxes, ha="center",
                   color="#555555")
-    axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=8.5, title=title, title_fontsize=8.5,
-                alignment="left")
-    _margins(figure, axes, title)
+    if path is None:
+        axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=8.5, title=title, title_fontsize=8.5,
+                    alignment="left")
+        _margins(figure, axes, title)
+        plt.show()
+        return
+    _legend_below(figure, axes, title)
+    _save(figure, path)
+
+
+def _save(figure, path):
+    """Write a picture without a background: it is the page's."""
     if path is None:
         plt.show()
         return
-    figure.savefig(path, format="svg", metadata={"Date": None})
+    figure.savefig(path, format="svg", metadata={"Date": None}, transparent=True)
     plt.close(figure)
 
 
 LETTER = 0.072                  # mean width of a letter of the legend [in]: 0.61 of 8.5 points
+LINE = 0.172                    # height of a line of the legend [in]
+
+
+def _legend_below(figure, axes, title):
+    """The legend below the axes, in as many columns as fit, so that the picture is as narrow as a phone."""
+    labels = axes.get_legend_handles_labels()[1]
+    longest = max(map(len, labels))
+    columns = min(3, max(1, int((WIDTH - 0.1) / (0.62 + 0.95 * LETTER * longest))), len(labels))
+    lines = -(-len(labels) // columns) + bool(title)
+    below, height = 0.55 + LINE * lines, HEIGHT + LINE * lines
+    figure.set_size_inches(WIDTH, height)
+    left = 0.8
+    figure.subplots_adjust(left / WIDTH, below / height, 1.0 - 0.15 / WIDTH, 1.0 - 0.22 / height)
+    figure.legend(*axes.get_legend_handles_labels(), loc="lower left", bbox_to_anchor=(0.01, 0.0), fontsize=9,
+                  title=title, title_fontsize=9, alignment="left", ncols=columns, columnspacing=1.2, borderpad=0.2,
+                  handlelength=2.2, labelspacing=0.35)
 
 
 def _margins(figure, axes, title):

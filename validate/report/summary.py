@@ -11,7 +11,7 @@ from . import words
 
 SIGNS = {Verdict.DEPARTS: ("✗", "bold red"), Verdict.AGREES: ("✓", "green"), Verdict.FOLLOWS_OWN_LAW: ("≈", "green"),
          Verdict.UNDECIDED: ("○", "yellow"), Verdict.NOT_ATTEMPTED: ("○", "yellow")}
-LEGEND = ("✓ agrees   ≈ departs as predicted   ✗ departs   ○ undecided or not attempted\n"
+LEGEND = ("✓ agrees   ≈ as predicted, by a law of its own   ✗ departs   ○ undecided or not attempted\n"
           "order: the highest of ours.   faster: the engine's time to its smallest error,\n"
           "over our time to the same error; the smaller of the two engines' ratios.")
 
@@ -50,7 +50,7 @@ def signs(curves):
 
 def best_order(result):
     """The highest order that one of our methods shows."""
-    best = words.row(result)["best"]
+    best = words.best_order(next(iter(result["cases"].values()))["ours"])
     if best is None:
         return "–"
     return EXACT if best["expected"] == EXACT else f"{best['order']:.2f}"
@@ -69,7 +69,7 @@ def by_lesson(report):
     """
     run = report["run"]
     lines = [f"Measured on {run['date']}: {run['mode']} run, {', '.join(run['engines'])}, {run['machine']}.",
-             "✓ agrees with the truth · ≈ departs by as much as predicted · ✗ departs otherwise.", "",
+             "✓ agrees with the truth · ≈ as predicted, by a law of its own · ✗ departs · ○ undecided.", "",
              "| lesson | scenes | our methods | engines | stability | faster than the engines at equal error |",
              "|---|---|---|---|---|---|"]
     for lesson in dict.fromkeys(result["lesson"] for result in report["scenes"]):
@@ -85,7 +85,7 @@ def by_lesson(report):
 
 def advantages(result):
     """Our advantages over each engine, as ratios of run times at equal error."""
-    return [a["ratio"] for a in words.row(result)["advantages"].values() if a["ratio"]]
+    return [a["ratio"] for a in words.races(result).values() if a["ratio"]]
 
 
 def plain_signs(results, kind):

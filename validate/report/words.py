@@ -1,17 +1,45 @@
 """What the numbers say, in words."""
 
+import re
 from collections import Counter
+from itertools import groupby
+from math import floor, log10
 
+import numpy as np
+from markupsafe import Markup, escape
+
+from ..measure.accuracy import relative
 from ..results import Verdict, is_right
 from ..scene import EXACT, PRODUCTS
 
 KINDS = {Verdict.AGREES: "agrees", Verdict.FOLLOWS_OWN_LAW: "predicted", Verdict.DEPARTS: "departs",
          Verdict.UNDECIDED: "open", Verdict.NOT_ATTEMPTED: "open"}             # classes of the style sheet
-TEXTS = {Verdict.FOLLOWS_OWN_LAW: "departs as predicted"}                      # the others are called by their own word
+SIGNS = {"agrees": "✓", "predicted": "≈", "departs": "✗", "open": "○"}         # as the style sheet draws them
+LEGEND = {                   # every verdict has one name and one sign
+    Verdict.AGREES: "The error stays within the limit that theory gives. We derived that limit before we measured.",
+    Verdict.FOLLOWS_OWN_LAW: "It departs from the truth and follows a law of its own instead. The scene states that "
+                             "law beforehand, and the run agrees with it.",
+    Verdict.DEPARTS: "It departs from the truth, and nothing predicted that. Something is wrong here.",
+    Verdict.UNDECIDED: "No theory says how far it may be off, or every step was too coarse, or the engine is missing "
+                       "here. The error is shown and not judged.",
+    Verdict.NOT_ATTEMPTED: "The exercise behind this method has no answer yet.",
+}
+TIE = 2.0                    # a ratio of times below this, and above its inverse, is a tie [-]
+BUSY = 0.25                  # cores that other programs use, from which times are doubtful [-]
+BUSY_LOAD = 1.5              # the same where only the load of the machine is known: the run itself counts as 1 [-]
+
+
+# ---------------------------------------------------------------------------------------------- numbers
+
+def rounded(x, digits=2):
+    """A number with so many digits that count, written out: 270, 3.8, 0.042."""
+    x = float(f"{x:.{digits}g}")
+    decimals = max(0, digits - 1 - floor(log10(abs(x)))) if x else 0
+    return f"{x:,.{decimals}f}"
 
 
 def number(x, digits=3):
-    """1.23e-4 as 1.23·10⁻⁴; None as a dash."""
+    """1.23e-4 as 1.23 · 10⁻⁴; None as a dash."""
     if x is None:
         return "–"
     if x == 0 or 1e-2 <= abs(x) < 1e4:
@@ -21,14 +49,24 @@ def number(x, digits=3):
     return f"{mantissa} · 10{raised}" if float(mantissa) != 1.0 else f"10{raised}"
 
 
+def known(x, tolerance):
+    """A number with as many decimals as its tolerance leaves: 2.82843 where the tolerance is 0.00003."""
+    if x is not None and not tolerance and x == round(x) and abs(x) < 1e9:
+        return f"{x:,.0f}"                                           # a count
+    if x is None or not tolerance or x == 0:
+        return number(x, 7)
+    decimals = max(0, -floor(log10(tolerance)))
+    return f"{x:.{decimals}f}" if abs(x) < 1e5 and decimals <= 15 and abs(x) > tolerance else number(x, 2)
+
+
 def seconds(t):
-    """A duration with its unit."""
+    """A duration with its unit, to two digits: a machine repeats no time more exactly."""
     if t is None:
         return "–"
     for unit, size in (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)):
         if t >= size:
-            return f"{t / size:.3g} {unit}"
-    return f"{t / 1e-9:.3g} ns"
+            return f"{rounded(t / size)} {unit}"
+    return f"{rounded(t / 1e-9)} ns"
 
 
 def percent(x):
@@ -39,13 +77,21 @@ def percent(x):
     return f"{100 * x:.2g} %" if x >= 1e-6 or x == 0.0 else f"{number(100 * x, 2)} %"
 
 
+def percents(low, high):
+    """A range of relative errors."""
+    return percent(high) if percent(low) == percent(high) else f"{percent(low).removesuffix(' %')} to {percent(high)}"
+
+
 def factor(x):
-    """A ratio; under a factor of two it is a tie."""
-    if x is None:
-        return "–"
-    if 0.5 < x < 2.0:
-        return f"a tie ({x:.2g}×)"
-    return f"{x:,.0f}×" if x >= 10 else f"{x:.2g}×"
+    """A ratio of times."""
+    return "–" if x is None else f"{rounded(x)}×"
+
+
+def ratio(race):
+    """A ratio of times with its range: one digit where the range is wide, two where it is narrow."""
+    low, high = race["range"]
+    digits = 2 if high < 1.5 * low else 1
+    return f"{rounded(race['ratio'], digits)}× ({rounded(low)} to {rounded(high)})"
 
 
 def order(curve):
@@ -55,24 +101,110 @@ def order(curve):
     return f"{'–' if curve['order'] is None else format(curve['order'], '.2f')} ({curve['expected']})"
 
 
+# ---------------------------------------------------------------------------------------------- verdicts
+
 def judge(curve):
     """(text, kind) of a curve's verdict; the kind is a class of the style sheet."""
     verdict = Verdict(curve["verdict"])
-    return TEXTS.get(verdict, verdict.value), KINDS[verdict]
+    return verdict.value, KINDS[verdict]
+
+
+def verdicts(curves):
+    """[(text, kind, count)] of several curves at once."""
+    count = Counter(Verdict(c["verdict"]) for c in curves)
+    return [(one.value, KINDS[one], count[one]) for one in
+            (Verdict.DEPARTS, Verdict.NOT_ATTEMPTED, Verdict.AGREES, Verdict.FOLLOWS_OWN_LAW, Verdict.UNDECIDED)
+            if count[one]]
 
 
 def verdict(curves):
-    """The same for several curves at once: the worst of them, with a count."""
-    count = Counter(Verdict(c["verdict"]) for c in curves)
-    if not curves:
-        return "not done here", "none"
-    for one in (Verdict.DEPARTS, Verdict.NOT_ATTEMPTED):
-        if count[one]:
-            return f"{count[one]} of {len(curves)} {one.value}", KINDS[one]
-    shown = Verdict.AGREES, Verdict.FOLLOWS_OWN_LAW, Verdict.UNDECIDED
-    parts = [f"{one.value} ({count[one]})" for one in shown if count[one]]
-    return ", ".join(parts), "open" if count[Verdict.UNDECIDED] == len(curves) else "agrees"
+    """(text, kind) of the verdict that matters most among several."""
+    return verdicts(curves)[0][:2] if curves else ("not done here", "none")
 
+
+def named(curve):
+    """A curve's name inside a sentence: pybullet (default)."""
+    product, _, variant = curve["label"].partition(", ") if "product" in curve else (curve["label"], "", "")
+    return f"{product} ({variant})" if variant else product
+
+
+def own_errors(curve):
+    """[(row, error)] of a curve against the law that it follows instead of the truth; none for most curves."""
+    own = curve.get("own_law")
+    return [(row, relative_to(row["observed"], own)) for row in curve["rows"] if own and row["observed"]]
+
+
+def relative_to(observed, law):
+    """|observed − law| / |law| of two lists."""
+    return relative(np.array(observed), np.array(law))
+
+
+def finest(curve):
+    """The run of the most steps, or None."""
+    return curve["rows"][-1] if curve["rows"] else None
+
+
+# ---------------------------------------------------------------------------------------------- races
+
+def races(result):
+    """{product: the race to its smallest error} of a scene.  To be as wrong as another law is no race."""
+    first = next(iter(result["cases"].values()))
+    own_laws = {c["label"] for c in first["engines"] if c["departure_reason"]}
+    best = {}
+    for a in sorted(result["times"]["advantage"], key=lambda a: -a["error"]):
+        if a["engine"] not in own_laws:
+            best[a["product"]] = race(a, result)
+    return best
+
+
+def race(advantage, result):
+    """A race with the range of its ratio and its outcome: faster, a tie, slower, or why it is open."""
+    a, rows = advantage, result["times"]["rows"]
+    if not a["ratio"]:
+        return {**a, "range": None, "outcome": "open", "why": why_open(a, result)}
+    theirs = next(r for r in rows if r["label"] == a["engine"] and r["error"] == a["error"] and r["speed"] == "engine")
+    ours = [r for r in rows if (r["label"], r["speed"]) == (a["method"], a["speed"])]
+    # our time to that error was interpolated between runs: its spread is that of the run beside it
+    beside = min(ours, key=lambda r: abs(r["seconds"] - a["ours"]))
+    low = theirs["low"] / (a["ours"] * beside["high"] / beside["seconds"])
+    high = theirs["high"] / (a["ours"] * beside["low"] / beside["seconds"])
+    tie = 1.0 / TIE < a["ratio"] < TIE or low < 1.0 < high
+    outcome = "a tie" if tie else "faster" if a["ratio"] > 1.0 else "slower"
+    return {**a, "range": (low, high), "outcome": outcome, "why": ""}
+
+
+def why_open(advantage, result):
+    """Why none of our timed runs reaches an engine's error."""
+    ours = next(iter(result["cases"].values()))["ours"]
+    reach = [c["label"] for c in ours if any(r["error"] is not None and r["error"] <= advantage["error"]
+                                             for r in c["rows"])]
+    if reach:
+        return f"{reach[0]} reaches this error, in a run that takes too long to be timed here"
+    return "none of our runs is that accurate"
+
+
+def busy(results):
+    """(cores that other programs used, at most, while times were taken; True where that is only a load)."""
+    others = [r["times"]["others"] for r in results if r["times"].get("others") is not None]
+    if others:
+        return max(others), False
+    loads = [r["times"]["load"][0] for r in results if r["times"].get("load")]
+    return max(loads, default=0.0), True
+
+
+def busy_warning(results, cores):
+    """One sentence where times are doubtful, else nothing."""
+    used, is_load = busy(results)
+    if is_load and used >= BUSY_LOAD:
+        return (f"The machine was busy while times were taken: its load was up to {used:.1f}, and this run needs 1. "
+                "Ratios of times may be off by a factor of two.")
+    if not is_load and used >= BUSY:
+        return (f"The machine was busy while times were taken: other programs used up to {used:.1f} of its {cores} "
+                "cores. Ratios of times may be off by a factor of two.")
+    return ""
+
+
+# ---------------------------------------------------------------------------------------------- the front page
 
 def row(result):
     """One scene on the front page."""
@@ -82,11 +214,13 @@ def row(result):
     engines = {name: [c for one in cases for c in one["engines"] if c["product"] == name] for name in PRODUCTS}
     return {
         "result": result,
-        "ours": verdict(ours),
-        "engines": {name: (verdict(curves), curves[0]["source"] if curves else "") for name, curves in engines.items()},
+        "ours": verdicts(ours),
+        "engines": {name: verdicts(curves) for name, curves in engines.items()},
+        "recorded": [name for name, curves in engines.items() if curves and not curves[0]["source"].startswith("live")],
         "best": best_order(first["ours"]),
-        "advantages": best_advantages(first["engines"], result["times"]["advantage"]),
-        "ablations": result["times"]["ablations"],
+        "races": races(result),
+        "kinds": sorted({kind for _, kind, _ in verdicts([*ours, *(c for one in engines.values() for c in one)])}),
+        "products": [name for name, curves in engines.items() if curves],
     }
 
 
@@ -97,27 +231,140 @@ def best_order(curves):
     return max(known, key=lambda c: (c["expected"] == EXACT, c["order"] or 0.0), default=None)
 
 
-def best_advantages(curves, advantages):
-    """{product: the race to its smallest error}.  To be as wrong as another law is no race."""
-    own_laws = {c["label"] for c in curves if c["departure_reason"]}
-    best = {}
-    for a in sorted(advantages, key=lambda a: -a["error"]):
-        if a["engine"] not in own_laws:
-            best[a["product"]] = a
-    return best
+# ---------------------------------------------------------------------------------------------- texts of scenes
+
+def summary_line(story):
+    """The first sentence or two of a scene's text, as far as its first line."""
+    return story.splitlines()[0] if story else ""
+
+
+TERM = re.compile(r"(?P<term>\S(?:.{0,20}[^\s.,;:=])?)  +(?P<text>[^\s=].*)")
+SUBSCRIPT = re.compile(r"\b([A-Za-zα-ω]{1,5})_([a-zα-ω]{1,5})\b")
+
+
+def flowing(text):
+    """[(kind, content)] of a docstring, without the line breaks of its source.
+
+    text: a paragraph;    formula: indented lines, as they are;    terms: [(term, text)] of a list of definitions.
+    """
+    found = []
+    for block in re.split(r"\n\s*\n", text.strip("\n")):
+        lines = block.split("\n")
+        begin = next((k for k, line in enumerate(lines) if defines(line)), len(lines))
+        ends = (k for k in range(begin, len(lines)) if not defines(lines[k]) and not indented(lines[k]))
+        end = next(ends, len(lines))
+        if sum(map(defines, lines[begin:end])) < 2:
+            begin = end = len(lines)
+        found += paragraphs(lines[:begin])
+        if begin < end:
+            found.append(("terms", definitions(lines[begin:end])))
+        found += paragraphs(lines[end:])
+    return found
+
+
+def paragraphs(lines):
+    """Text and formulas: indented lines are a formula at the start or after a colon, else they go on with the text."""
+    found = []
+    for deep, piece in runs_of(lines):
+        if deep and (not found or found[-1][1].endswith(":")):
+            found.append(("formula", "\n".join(line.strip() for line in piece)))
+        elif deep:
+            found[-1] = (found[-1][0], plain_words(" ".join([found[-1][1], *piece])))
+        else:
+            found.append(("text", plain_words(" ".join(piece))))
+    return found
+
+
+def defines(line):
+    return bool(TERM.fullmatch(line)) and not indented(line)
+
+
+def runs_of(lines):
+    """[(indented, lines)] of neighbours that are all indented or all not."""
+    return [(formula, list(piece)) for formula, piece in groupby(lines, key=indented)]
+
+
+def definitions(lines):
+    """[(term, text)]: an indented line goes on with the text before."""
+    found = []
+    for line in lines:
+        if defines(line):
+            term = TERM.fullmatch(line)
+            found.append((term["term"], [term["text"]]))
+        else:
+            found[-1][1].append(line.strip())
+    return [(term, plain_words(" ".join(words))) for term, words in found]
+
+
+def indented(line):
+    return line.startswith("  ")
+
+
+def plain_words(text):
+    """A sentence of a docstring for a reader: no imperative to a programmer, no doubled spaces."""
+    text = re.sub(r"\s+", " ", text).strip().replace("`", "")
+    return re.sub(r"^(Return|Give|Compute) (the )?(?=\S)", "", text)
+
+
+def subscripts(text):
+    """v_n with a lowered n."""
+    return Markup(SUBSCRIPT.sub(r"\1<sub>\2</sub>", str(escape(text))))
+
+
+# ---------------------------------------------------------------------------------------------- findings
+
+def headline(result):
+    """One sentence: what became of this scene."""
+    cases = result["cases"].values()
+    ours = [c for one in cases for c in one["ours"]]
+    engines = [c for one in cases for c in one["engines"]]
+    count = Counter(Verdict(c["verdict"]) for c in ours)
+    wrong = [c for c in ours + engines if is_right(c) is False]
+    if wrong:
+        return f"{len(wrong)} of {len(ours) + len(engines)} comparisons depart, and nothing predicted it."
+    if count[Verdict.NOT_ATTEMPTED]:
+        return f"{count[Verdict.NOT_ATTEMPTED]} of {len(ours)} comparisons of our methods are not attempted yet."
+    said = "All comparisons of our methods with the truth come out as theory says" if ours else ""
+    predicted = {named(c): None for c in engines if Verdict(c["verdict"]) is Verdict.FOLLOWS_OWN_LAW}
+    if predicted:
+        rest = f"{', '.join(predicted)} {'departs' if len(predicted) == 1 else 'depart'} as predicted"
+        return f"{said}; {rest}." if said else f"{rest}."
+    return f"{said}." if said else ""
 
 
 def findings(result):
     """Sentences, the most important first, and what was left out at the end."""
     notes = (f"{sentence}." for sentence in result["notes"])
-    return [*_ours(result), *_engines_of(result), *_times(result), *_ablations(result), *_parity(result), *notes]
+    return [*leading(result), *notes]
+
+
+def leading(result):
+    """The findings without what was left out: departures first, then orders, times and what an omission saves."""
+    return [*_departures(result), *_ours(result), *_engines_of(result), *_times(result), *_ablations(result),
+            *_parity(result)]
+
+
+def _departures(result):
+    """Whatever departs, ours and the engines', unpredicted departures first."""
+    every = [(n, c) for n, one in result["cases"].items() for c in one["ours"] + one["engines"]]
+    for n, c in every:
+        if is_right(c) is False:
+            yield f"{named(c)} {c['message']}, in the case “{n}”. The scene does not predict it."
+    groups = {}
+    for n, c in every:
+        if Verdict(c["verdict"]) is Verdict.FOLLOWS_OWN_LAW:
+            groups.setdefault((named(c), c["departure_reason"]), []).append((n, c))
+    for (label, reason), found in groups.items():
+        size = percents(*(of(c["departure"] for _, c in found) for of in (min, max)))
+        several = f" in {len(found)} cases" if len(found) > 1 else ""
+        orders = [c["order"] for _, c in found if c["order"]]
+        shown = f"converges to that law, with order {orders[0]:.2f}" if orders else "agrees with that law"
+        yield (f"{label} departs from the truth by {size}{several}, because {reason}. "
+               f"The scene predicts this; the run {shown}.")
 
 
 def _ours(result):
     every = [(n, c) for n, one in result["cases"].items() for c in one["ours"]]
-    wrong = [(n, c) for n, c in every if is_right(c) is False]
-    for n, c in wrong:
-        yield f"{c['label']} ({n}) {c['message']}."
     waiting = {}
     for _, c in every:
         if is_right(c) is None:
@@ -126,68 +373,55 @@ def _ours(result):
         yield f"{', '.join(labels)}: {why}."
     shown = [c for c in next(iter(result["cases"].values()))["ours"] if c["order"] is not None and is_right(c)]
     if shown:
-        orders = ", ".join(f"{c['label']} {c['order']:.2f} ({c['expected']})" for c in shown)
-        yield f"Measured orders of convergence, with the expected order in brackets: {orders}."
-    for c in next(iter(result["cases"].values()))["ours"]:
-        if Verdict(c["verdict"]) is Verdict.FOLLOWS_OWN_LAW:
-            yield (f"{c['label']} converges to another law because {c['departure_reason']}. "
-                   f"That law is {percent(c['departure'])} away from the truth.")
+        orders = "; ".join(f"{c['label']}: {c['order']:.2f} ({c['expected']})" for c in shown)
+        yield f"Measured orders of convergence, with the expected order in brackets. {orders}."
     exact = [c["label"] for c in next(iter(result["cases"].values()))["ours"] if c["expected"] == EXACT and is_right(c)]
     if exact and result["refinement"]:
         yield f"Exact up to round-off at every step, as derived: {', '.join(exact)}."
 
 
 def _engines_of(result):
-    """What the engines do: for a motion in its first case, else in every case in which they depart."""
+    """What the engines do in the first case; of what does not move, only what could not be judged."""
     if result["moves"]:
         yield from _engines(next(iter(result["cases"].values())))
-        return
-    for name, case in result["cases"].items():
-        for c in case["engines"]:
-            if Verdict(c["verdict"]) is Verdict.FOLLOWS_OWN_LAW:
-                yield (f"{name[0].upper()}{name[1:]}: {c['label']} is {percent(c['rows'][-1]['error'])} off because "
-                       f"{c['departure_reason']}. That rule alone gives {percent(c['departure'])}.")
-            elif is_right(c) is False:
-                yield f"{name[0].upper()}{name[1:]}: {c['label']} {c['message']}; the scene does not predict it."
+    undecided = {}
+    for n, one in result["cases"].items():
+        for c in one["engines"]:
+            if Verdict(c["verdict"]) is Verdict.UNDECIDED:
+                undecided.setdefault(c["message"], {}).setdefault(named(c), []).append(n)
+    for why, labels in undecided.items():
+        yield f"Undecided: {', '.join(labels)}. {why[:1].upper()}{why[1:]}."
 
 
 def _engines(case):
     for c in case["engines"]:
         clear = [r for r in c["rows"] if r["error"] is not None]
-        if not clear:
-            yield f"{c['label']}: {c['message']}."
-        elif is_right(c) is False:
-            yield f"{c['label']} {c['message']}; the scene does not predict it."
-        elif c["departure_reason"]:
-            order_shown = f" with order {c['order']:.2f}" if c["order"] else ""
-            yield (f"{c['label']} stays {percent(clear[-1]['error'])} away from the truth because "
-                   f"{c['departure_reason']}. "
-                   f"That law alone predicts {percent(c['departure'])}, and the engine converges to it{order_shown}.")
-        else:
+        if Verdict(c["verdict"]) is Verdict.AGREES and clear:
             known = c["order"] is not None and c["expected"]
             shown = f", with order {c['order']:.2f} where {c['expected']} is expected" if known else ""
-            yield f"{c['label']} agrees with the truth to {percent(clear[-1]['error'])} at its finest step{shown}."
+            yield f"{named(c)} agrees with the truth to {percent(clear[-1]['error'])} at its finest step{shown}."
 
 
 def _times(result):
     for a in result["times"]["advantage"]:
-        if a["ratio"]:
-            sooner = f", {factor(a['ratio'])}" if 0.5 < a["ratio"] < 2 else f": {factor(a['ratio'])} the speed"
-            yield (f"{a['engine']} reaches an error of {percent(a['error'])} in {seconds(a['seconds'])}. "
-                   f"Our {a['method']} ({a['speed']}) reaches it in {seconds(a['ours'])}{sooner}.")
+        one = race(a, result)
+        engine = named({"label": a["engine"], "product": a["product"]})
+        reached = f"{engine} reaches an error of {percent(a['error'])} in {seconds(a['seconds'])}."
+        if one["outcome"] == "open":
+            yield f"{reached} We have no time to set beside it: {one['why']}."
         else:
-            yield (f"{a['engine']} reaches an error of {percent(a['error'])} in {seconds(a['seconds'])}. "
-                   "None of our timed runs reaches it.")
+            ours = f"Our “{a['method']}”, {a['speed']}, reaches it in {seconds(a['ours'])}"
+            yield f"{reached} {ours}: {one['outcome']}, {ratio(one)}."
 
 
 def _ablations(result):
     for row in result["times"]["ablations"]:
         if row["cost"] is not None:
             same = "the motion is the same" if row["same"] else "but the motion changes: look into it"
-            yield f"Putting in {row['what']} makes a step {row['cost']:.2f} times as long; {same}."
+            yield f"Putting in {row['what']} makes a step {rounded(row['cost'])} times as long; {same}."
 
 
 def _parity(result):
     if result["parity"] is not None:
         yield ("Plain and compiled runs agree to the last bit." if result["parity"] == 0.0 else
-               f"Plain and compiled runs differ by at most {number(result['parity'])}, relative.")
+               f"Plain and compiled runs differ by at most {number(result['parity'], 2)}, relative.")

@@ -30,12 +30,14 @@ class Finding(NamedTuple):
 
 
 class Picture(NamedTuple):
-    """Curves to draw: series = [(label, xs, ys, style)], style LINE or DOTS."""
+    """Curves to draw: series = [(label, xs, ys, style)], style LINE or DOTS; or maps in their place."""
     title: str
     x_label: str
     y_label: str
     series: list
     sentence: str
+    maps: tuple = ()         # of dicts: label, xs, ys, values (a row for each y), curve: (xs, ys) of theory over it
+    range: tuple = ()        # the lowest and the highest value that the maps tell apart
 
 
 class Case(NamedTuple):

@@ -30,6 +30,7 @@ NOISE = 1e-9
 # range of hω in which edges are searched
 SHORTEST = 0.05
 LONGEST = 4.0
+CELLS = 120                  # of a map of amplification, in each direction
 
 EXPLICIT, IMPLICIT = INTEGRATORS[:6], INTEGRATORS[6:]
 LABEL = {method.function: method.label for method in INTEGRATORS}
@@ -182,6 +183,49 @@ def stability_limits(lesson):
         measured,
         "Below its curve a method is stable, above it the motion grows. Implicit Euler and implicit midpoint have no "
         "curve, because they are stable everywhere.",
+    )
+
+
+def amplification(lesson, method, h_omega, zeta):
+    """Return the factor [-] by which one step multiplies the motion at most, for arrays of hω and ζ at once.
+
+    Each entry is an oscillator of its own.  One step from (x, v) = (1, 0) and one from (0, 1) give the matrix of the
+    step, and its largest eigenvalue is the factor.
+    """
+    def acceleration(t, x, v, p):
+        return -h_omega**2 * x - 2.0 * zeta * h_omega * v
+
+    one, none, step = np.ones_like(h_omega), np.zeros_like(h_omega), getattr(lesson, method)
+    columns = [np.stack(step(acceleration, 0.0, x, v, 1.0, None), axis=-1) for x, v in ((one, none), (none, one))]
+    return np.abs(np.linalg.eigvals(np.stack(columns, axis=-1))).max(axis=-1)
+
+
+@case("amplification", "How much a step amplifies", compiled=False)
+def amplification_map(lesson):
+    """The factor of one step over hω and ζ is at most 1 up to the edge that theory gives, and above 1 beyond it."""
+    hs, zetas = (np.round(high * (np.arange(CELLS) + 0.5) / CELLS, 6) for high in (3.2, 2.0))
+    h_omega, zeta = np.meshgrid(hs, zetas)
+    fine, found, maps = np.linspace(0.0, 2.0, 201), [], []
+    for method in (m.function for m in EXPLICIT):
+        factors = amplification(lesson, method, h_omega, zeta)
+        edges = np.array([EDGES[method](one) for one in zetas])
+        right = int(np.sum((factors <= 1.0 + NOISE) == (h_omega < edges[:, None])))
+        found.append(finding(
+            claim=(f"A step of the {LABEL[method]} method amplifies no motion up to its edge of stability, and some "
+                   "motion beyond it."),
+            quantity=f"{LABEL[method]}: points of the map on the side that theory says [of {factors.size}]",
+            predicted=factors.size,
+            measured=right,
+            tolerance=0.0,
+            observation=f"{right:,} of {factors.size:,} points of the map of {LABEL[method]} are on the right side.",
+        ))
+        maps.append({"label": LABEL[method], "xs": hs, "ys": zetas, "values": np.round(factors, 3),
+                     "curve": (np.array([EDGES[method](one) for one in fine]), fine)})
+    return found, Picture(
+        "How much a step amplifies", "hω [-]", "damping ratio ζ [-]", [],
+        "Blue: a step shrinks the motion. Red: it grows, and the run will diverge. The black line is theory's edge of "
+        "stability; it runs along the border of the colours.",
+        tuple(maps), (0.0, 2.0),
     )
 
 

@@ -1,18 +1,20 @@
-// A small player in space: every <div data-space="id"> plays the motion in <script id="id" type="application/json">.
+// A small player in space: <div data-space="id"> plays the motion in <script id="id" type="application/json">, or that of
+// self.films[id].  Its bar of controls is that of ../player.js, which is part of this file.
 //
 // {seconds, ground: bool, trail: number of a body or null, arrows: ["ω", "L", …],
 //  bodies: [{kind: "box", size: [half, half, half]} | {kind: "sphere", r} | {kind: "cylinder" | "capsule", r, length} (along z)
 //           | {kind: "cone", r, length} (tip in the origin) | {kind: "mesh", vertices: [[x, y, z], …], triangles: [[i, j, k], …]}],
 //  runs: [{label, look: "truth" | "ours" | "engine", colour, frames: base64 of float32 (frame, body: x y z w qx qy qz; arrow: from, to)}]}
+import "../player.js";
 import {
-  AmbientLight, ArrowHelper, BoxGeometry, BufferGeometry, CapsuleGeometry, Color, ConeGeometry, CylinderGeometry, DirectionalLight, EdgesGeometry,
-  Float32BufferAttribute, GridHelper, Group, Line, LineBasicMaterial, LineSegments, Mesh, MeshStandardMaterial, PerspectiveCamera, Scene,
-  SphereGeometry, Vector3, WebGLRenderer, AxesHelper,
+  AmbientLight, ArrowHelper, BoxGeometry, BufferGeometry, CanvasTexture, CapsuleGeometry, Color, ConeGeometry, CylinderGeometry, DirectionalLight,
+  EdgesGeometry, Float32BufferAttribute, GridHelper, Group, Line, LineBasicMaterial, LineSegments, Mesh, MeshStandardMaterial, PerspectiveCamera,
+  Quaternion, Scene, SphereGeometry, Sprite, SpriteMaterial, Vector3, WebGLRenderer, AxesHelper,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
 const ARROWS = ["#e69f00", "#cc79a7", "#009e73"];                      // Okabe and Ito: told apart by everyone
-const SECONDS = { shortest: 4, longest: 14 };                          // of one showing
+const { controls: film_bar, floats, metres, nice, page } = globalThis.filmPlayer;
 
 function shape(body) {
   if (body.kind === "box") return new BoxGeometry(...body.size.map(half => 2 * half));
@@ -43,14 +45,21 @@ function figure(body, run) {
   return group;
 }
 
-function floats(text) {
-  const bytes = Uint8Array.from(atob(text), c => c.charCodeAt(0));
-  return new Float32Array(bytes.buffer);
+// A letter that always faces the reader.
+function letter(text, size) {
+  const canvas = document.createElement("canvas"), pen = canvas.getContext("2d");
+  canvas.width = canvas.height = 64;
+  pen.font = "bold 44px system-ui, sans-serif"; pen.textAlign = "center"; pen.textBaseline = "middle"; pen.fillStyle = page("--ink", "#1d2429");
+  pen.fillText(text, 32, 34);
+  const sprite = new Sprite(new SpriteMaterial({ map: new CanvasTexture(canvas), depthTest: false, transparent: true }));
+  sprite.scale.setScalar(size);
+  return sprite;
 }
 
 function play(place) {
-  const picture = JSON.parse(document.getElementById(place.dataset.space).textContent);
-  const width = place.clientWidth || 640, height = place.clientHeight || 360;
+  const text = document.getElementById(place.dataset.space);
+  const picture = text?.type === "application/json" ? JSON.parse(text.textContent) : self.films?.[place.dataset.space]?.space;
+  if (!picture) return;
   let renderer;
   try {
     renderer = new WebGLRenderer({ antialias: true });
@@ -59,14 +68,13 @@ function play(place) {
     return;
   }
   renderer.setPixelRatio(Math.min(2, devicePixelRatio || 1));
-  renderer.setSize(width, height);
-  place.replaceChildren(renderer.domElement);
-  const clock = document.createElement("div");
-  clock.style.cssText = "font:12px system-ui,sans-serif;color:#555;margin-top:-1.5rem;padding-left:.5rem;height:1.5rem;position:relative";
-  place.append(clock);
+  const view = renderer.domElement, note = document.createElement("div");
+  note.style.cssText = "position:absolute;left:.6rem;right:.6rem;bottom:.3rem;display:flex;justify-content:space-between;gap:1rem;pointer-events:none;font:12px system-ui,sans-serif;color:var(--soft,#5b666e)";
+  place.style.position = "relative";
+  place.replaceChildren(view, note);
 
-  const scene = new Scene(), camera = new PerspectiveCamera(35, width / height, 0.001, 1e6);
-  scene.background = new Color("#f6f7f8");
+  const scene = new Scene(), camera = new PerspectiveCamera(35, 1, 0.001, 1e6);
+  scene.background = new Color(page("--wash", "#f6f7f8"));
   scene.add(new AmbientLight("#ffffff", 1.6));
   const lamp = new DirectionalLight("#ffffff", 2.2);
   lamp.position.set(2, -3, 5);
@@ -77,6 +85,11 @@ function play(place) {
   const runs = picture.runs.map(run => {
     const numbers = floats(run.frames), figures = picture.bodies.map(body => figure(body, run));
     figures.forEach(f => scene.add(f));
+    const radii = figures.map(f => {
+      const { geometry } = f.children[0];
+      geometry.computeBoundingSphere();
+      return geometry.boundingSphere.radius + geometry.boundingSphere.center.length();
+    });
     const pointers = run.look === "engine" ? [] : picture.arrows.map((_, i) => {
       const arrow = new ArrowHelper(new Vector3(0, 0, 1), new Vector3(), 1, ARROWS[i]);
       scene.add(arrow);
@@ -84,9 +97,7 @@ function play(place) {
     });
     for (let at = 0; at < numbers.length; at += row) {
       for (let b = 0; b < bodies; b++) {
-        figures[b].children[0].geometry.computeBoundingSphere();
-        const r = figures[b].children[0].geometry.boundingSphere.radius + figures[b].children[0].geometry.boundingSphere.center.length();
-        const c = new Vector3(...numbers.subarray(at + 7 * b, at + 7 * b + 3));
+        const r = radii[b], c = new Vector3(...numbers.subarray(at + 7 * b, at + 7 * b + 3));
         low.min(c.clone().subScalar(r)); high.max(c.clone().addScalar(r));
       }
       for (let i = 0; i < arrows; i++) {
@@ -102,57 +113,108 @@ function play(place) {
         Array.from({ length: numbers.length / row }, (_, k) => [...numbers.subarray(k * row + 7 * picture.trail, k * row + 7 * picture.trail + 3)]).flat(), 3));
       scene.add(trail);
     }
-    return { numbers, figures, pointers, trail, frames: numbers.length / row };
+    return { label: run.label, colour: run.colour, look: run.look, shown: true, numbers, figures, pointers, trail, frames: numbers.length / row };
   });
 
   const centre = low.clone().add(high).multiplyScalar(0.5), size = Math.max(high.clone().sub(low).length(), 1e-6);
-  const axes = new AxesHelper(0.3 * size);
-  axes.position.copy(picture.ground ? new Vector3(low.x, low.y, 0) : low);
+  const corner = picture.ground ? new Vector3(low.x, low.y, 0) : low, reach = nice(0.3 * size), axes = new AxesHelper(reach);
+  axes.position.copy(corner);
   scene.add(axes);
+  [["x", new Vector3(1, 0, 0)], ["y", new Vector3(0, 1, 0)], ["z", new Vector3(0, 0, 1)]].forEach(([name, along]) => {
+    const sign = letter(name, 0.07 * size);
+    sign.position.copy(corner).addScaledVector(along, reach + 0.035 * size);
+    scene.add(sign);
+  });
   if (picture.ground) {
     const grid = new GridHelper(2 * size, 20, "#9aa3a8", "#d5dadd").rotateX(Math.PI / 2);
     grid.position.set(centre.x, centre.y, 0);
     scene.add(grid);
   }
   camera.up.set(0, 0, 1);
-  camera.near = size / 1000; camera.far = size * 100; camera.updateProjectionMatrix();
-  camera.position.copy(centre).add(new Vector3(0.75, -1.2, 0.6).multiplyScalar(0.95 * size));
-  const controls = new OrbitControls(camera, renderer.domElement);
+  camera.near = size / 1000; camera.far = size * 100;
+  const home = centre.clone().add(new Vector3(0.75, -1.2, 0.6).multiplyScalar(0.95 * size)), controls = new OrbitControls(camera, view);
+  camera.position.copy(home);
   controls.target.copy(centre);
-  controls.enableDamping = true;
   controls.update();
+  controls.enableZoom = false;                                         // the wheel scrolls the page until somebody chooses the picture
+  view.style.touchAction = "pan-y";                                    // and so does a finger that moves up or down
+  view.tabIndex = 0;
+  view.setAttribute("role", "img");
+  view.setAttribute("aria-label", place.getAttribute("aria-label") || "A picture in 3D");
+  place.removeAttribute("role"); place.removeAttribute("aria-label");
+  view.addEventListener("focus", () => { controls.enableZoom = true; });
+  view.addEventListener("blur", () => { controls.enableZoom = false; });
+  view.addEventListener("pointerdown", () => view.focus({ preventScroll: true }));
+  const turn = (right, up, nearer = 1) => {
+    const arm = camera.position.clone().sub(controls.target).applyAxisAngle(new Vector3(0, 0, 1), right).multiplyScalar(nearer);
+    const side = new Vector3().crossVectors(camera.up, arm).normalize(), tilted = arm.clone().applyAxisAngle(side, -up);
+    const angle = tilted.angleTo(camera.up);
+    camera.position.copy(controls.target).add(angle > 0.05 && angle < Math.PI - 0.05 ? tilted : arm);
+    render();
+  };
+  const keys = { ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, 0.1], ArrowDown: [0, -0.1], "+": [0, 0, 0.9], "-": [0, 0, 1 / 0.9] };
+  view.addEventListener("keydown", event => {
+    if (!keys[event.key]) return;
+    turn(...keys[event.key]);
+    event.preventDefault();
+  });
 
-  const from = new Vector3(), to = new Vector3();
-  const set = k => runs.forEach(({ numbers, figures, pointers, trail, frames }) => {
-    const at = Math.min(k, frames - 1) * row;
-    figures.forEach((f, b) => {
-      f.position.fromArray(numbers, at + 7 * b);
-      f.quaternion.set(numbers[at + 7 * b + 4], numbers[at + 7 * b + 5], numbers[at + 7 * b + 6], numbers[at + 7 * b + 3]);
-    });
+  const from = new Vector3(), to = new Vector3(), truth = runs[0].look === "truth" ? runs[0] : null, turned = new Quaternion(), right = new Quaternion(), none = new Quaternion();
+  const pose = (figure, { numbers, frames, look }, k, b, magnified) => {
+    const at = Math.min(k, frames - 1) * row + 7 * b;
+    figure.position.fromArray(numbers, at);
+    figure.quaternion.set(numbers[at + 4], numbers[at + 5], numbers[at + 6], numbers[at + 3]);
+    if (magnified === 1 || !truth || look === "truth") return;
+    const there = Math.min(k, truth.frames - 1) * row + 7 * b;
+    from.fromArray(truth.numbers, there);
+    figure.position.sub(from).multiplyScalar(magnified).add(from);
+    right.set(truth.numbers[there + 4], truth.numbers[there + 5], truth.numbers[there + 6], truth.numbers[there + 3]);
+    turned.copy(figure.quaternion).multiply(right.clone().invert());   // the rotation from the truth to this run, its angle magnified
+    if (turned.w < 0) turned.set(-turned.x, -turned.y, -turned.z, -turned.w);
+    const half = Math.atan2(Math.hypot(turned.x, turned.y, turned.z), turned.w);
+    if (half < 1e-9) return;
+    from.set(turned.x, turned.y, turned.z).normalize();
+    figure.quaternion.copy(none.setFromAxisAngle(from, Math.min(2 * half * magnified, Math.PI)).multiply(right));
+  };
+  const set = (k, magnified) => runs.forEach(run => {
+    const { numbers, figures, pointers, trail, frames, shown } = run, at = Math.min(k, frames - 1) * row;
+    figures.forEach((f, b) => { f.visible = shown; pose(f, run, k, b, magnified); });
     pointers.forEach((arrow, i) => {
       from.fromArray(numbers, at + 7 * bodies + 6 * i); to.fromArray(numbers, at + 7 * bodies + 6 * i + 3).sub(from);
       const length = to.length();
-      arrow.visible = length > 1e-9;
+      arrow.visible = shown && length > 1e-9;
       if (arrow.visible) { arrow.position.copy(from); arrow.setDirection(to.normalize()); arrow.setLength(length, Math.min(0.25 * length, 0.06 * size), Math.min(0.12 * length, 0.03 * size)); }
     });
-    if (trail) trail.geometry.setDrawRange(0, k + 1);
+    if (trail) { trail.visible = shown; trail.geometry.setDrawRange(0, k + 1); }
   });
-  const last = runs[0].frames - 1, showing = Math.min(SECONDS.longest, Math.max(SECONDS.shortest, picture.seconds));
-  const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
-  const draw = time => {
-    if (!place.isConnected) { renderer.dispose(); renderer.forceContextLoss(); return; }
-    const k = still ? last : Math.floor(time / 1000 / showing * last) % (last + 1);
-    set(k);
-    clock.textContent = (last > 0 ? `t = ${(picture.seconds * k / last).toFixed(2)} s · ` : "") + "drag to turn, scroll to come nearer";
-    controls.update();
-    renderer.render(scene, camera);
-    requestAnimationFrame(draw);
+  const last = runs[0].frames - 1;
+  const words = text => { const span = document.createElement("span"); span.textContent = text; return span; };
+  note.append(words("drag or arrow keys: turn · click, then wheel or + −: nearer"), words(`axes: ${metres(reach)}`));
+  const render = () => { if (place.isConnected) renderer.render(scene, camera); };
+  const bar = film_bar(place, {
+    last, seconds: picture.seconds, runs,
+    draw: (k, magnified) => {
+      scene.background.set(page("--wash", "#f6f7f8"));
+      set(k, magnified);
+      render();
+    },
+    reset: () => { camera.position.copy(home); controls.target.copy(centre); controls.update(); render(); },
+  });
+  controls.addEventListener("change", render);
+  const fit = () => {
+    const width = place.clientWidth || 640, height = place.clientHeight || 360;
+    renderer.setSize(width, height);
+    camera.aspect = width / height;
+    camera.fov = width < height ? 45 : 35;
+    camera.updateProjectionMatrix();
+    bar.show();
   };
-  requestAnimationFrame(draw);
+  new ResizeObserver(fit).observe(place);
+  fit();
 }
 
 const start = () => document.querySelectorAll("[data-space]:not([data-playing])").forEach(place => {
   place.dataset.playing = "";
   play(place);
 });
-document.readyState === "loading" ? addEventListener("DOMContentLoaded", start) : start();
+document.readyState === "complete" ? start() : addEventListener("DOMContentLoaded", start);

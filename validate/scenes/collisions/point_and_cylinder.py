@@ -105,11 +105,11 @@ def supports(name, p):
 def tolerance(p, dt):
     """Limits relative to the root of the sum of all squares.
 
-    continuous: a position is rounded by ½ spacing of the farthest one, speed · 0.7 s, at each of T/dt steps; at WIDEST
-    beside the axis the root is 1/√(1 − WIDEST²) times as uncertain as the position.
-    rays: RAY_ENDS, which is measured and not derived; swept: see swept_limit.
+    continuous: a position is rounded by ½ spacing of the farthest one, speed · 0.7 s, at each of T/dt steps; with
+    its largest offset b (R + r) from the axis the root is 1/√(1 − b²) times as uncertain as the position.
+    rays: where a ray ends is measured and not derived.
     discrete: detected at most one step late.  That is meaningless for steps that can pass the cylinder, whose shortest
-    path is 2 √(1 − WIDEST²)(R + r).
+    path is 2 √(1 − b²)(R + r).
     """
     size, steep = np.linalg.norm(truth(p, T)), np.sqrt(1.0 - WIDEST**2)
     per_ball = lambda metres: np.sqrt(COPIES) * metres / size

@@ -96,8 +96,8 @@ def supports(name, p):
 def tolerance(p, dt):
     """Limits relative to the root of the sum of all squares.
 
-    continuous: a position is rounded by ½ spacing of the farthest one at each of T/dt steps, and 1/cos TILT times
-    as much on a tilted path. discrete: detected at most one step late.  pybullet's rays are exact here, because a
+    continuous: a position is rounded by ½ spacing of the farthest one at each of T/dt steps, and 1/cos 0.3 rad
+    times as much on a tilted path. discrete: detected at most one step late.  pybullet's rays are exact here, because a
     plane is not rounded.
     """
     size = np.linalg.norm(truth(p, T))

@@ -78,8 +78,8 @@ def tolerance(p, dt):
 
     Sliding from v₀ for the time T it changes by a T.  Stopping on the way it changes by v₀, and the last, shorter
     step adds up to ⅛ a dt².  pybullet moves with the new velocity like our methods of order 1, pymunk with the old
-    one: the same bound. A slab of 2 m on two or four contacts settles in SWEEPS sweeps; both begin with the overlap
-    that their engine tolerates.
+    one: the same bound. A slab of 2 m on two or four contacts settles within its iterations; both begin with
+    the overlap that their engine tolerates.
     """
     limits = by_order(0.0, T, dt)
     along, across = tilted(p)

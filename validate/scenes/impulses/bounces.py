@@ -119,7 +119,7 @@ def soft(p, t):
 
 
 def tolerance(p, dt):
-    """An impact is detected at most LATE steps late; a ball that leaves from below takes 1/e of that: L = LATE dt/e.
+    """An impact is detected at most N steps late; a ball that leaves from below takes 1/e of that: L = N dt/e.
 
     It leaves with e v, hence the 1/e.  After every impact the speed is off by  s ← e (s + g L),  because the impact
     was detected so much later, and the time by  τ ← τ + L + 2s/g,  because the next flight is 2s/g longer.  At T, a

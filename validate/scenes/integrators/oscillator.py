@@ -201,6 +201,7 @@ SCENE = Scene(
     predicted_error=predict_by_tables(T, law, released, seen, truth, floor, MODELS, DEPARTURES),
     points=points,
     links=links,
+    link_look="spring and damper",
     uses=("one coordinate", "one step function"),
     ablations={
         "the second and third dimension": in_space,

@@ -69,10 +69,10 @@ def of_bodies(p, t):
 
 
 def tolerance(p, dt):
-    """First order by rope_lag: the modified equation, integrated by DOP853.
+    """First order by the modified equation, integrated by DOP853.
 
     Beyond that a step has an error of (ρ dt)³, dt² ∫ρ³ dt in all, where ρ(t) is the rope's fastest rate at that
-    time (rope_rates).  For the fourth order it is dt⁴ ∫ρ⁵ dt.
+    time.  For the fourth order it is dt⁴ ∫ρ⁵ dt.
 
     PBD and XPBD stop their sweeps before all links have their length.  Even a single sweep
     leaves a link too long by at most the distance that its tension moves a point in one step, T dt²/m (stability

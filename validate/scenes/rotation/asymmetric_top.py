@@ -67,7 +67,7 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """free_limits: errors grow as neighbouring motions separate; first-order constants are closed forms."""
+    """Errors grow as neighbouring motions separate; first-order constants are closed forms."""
     return free_limits(p, T, dt)
 
 

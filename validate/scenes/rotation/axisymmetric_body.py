@@ -68,7 +68,7 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """free_limits: the error constants of first-order steps in closed form; two are pybullet's two kinds of body."""
+    """The error constants of first-order steps in closed form; two are pybullet's two kinds of body."""
     return free_limits(p, T, dt, [kind for kind in FIRST_ORDER if kind != "L kept, by columns"])
 
 

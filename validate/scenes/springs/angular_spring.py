@@ -41,7 +41,7 @@ def inertia(p):
 
 
 def acceleration(t, x, v, p):
-    """θ̈ = (r × F_c − ½ m g length sin θ)/I,  r = length (sin θ, −cos θ),  F_c by angular_spring_forces on the end.
+    """θ̈ = (r × F_c − ½ m g length sin θ)/I,  r = length (sin θ, −cos θ),  F_c: the spring's force on the end.
 
     The other arm hangs straight down and is fixed; F_c ⊥ r has the moment −κ θ about the hinge, whatever the arm's
     length.
@@ -200,7 +200,7 @@ SCENE = Scene(
     sanity_checks=sanity_checks,
     points=points,
     links=links,
-    uses=("one angle", "angular_spring_forces for its moment", "one step function"),
+    uses=("one angle", "the moment of its spring", "one step function"),
     ablations={"the hinge as a constraint": "lesson 8 builds it", "rotation in space": "lesson 5 builds it",
               "detection of contacts": "lesson 6 builds it"},
 )

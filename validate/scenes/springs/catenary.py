@@ -120,7 +120,7 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """Each mode on its own, with a margin for large motion (net_limits); both engines are symplectic Euler, order 1."""
+    """Each mode on its own, with a margin for large motion; both engines are symplectic Euler, order 1."""
     limits = net_limits(net, p, np.linalg.norm(truth(p, T)), T, dt, UNCERTAINTY)
     return {**limits, "pymunk": limits[1], "pybullet": limits[1]}
 
@@ -203,6 +203,7 @@ SCENE = Scene(
     sanity_checks=sanity_checks,
     points=points,
     links=links,
+    link_look="spring",
     uses=("two coordinates", "springs with dampers", "one step function"),
     ablations={
         "the third dimension": in_space,

@@ -92,7 +92,7 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """Each mode on its own (by_mode), as the system is linear.  pymunk is symplectic Euler: order 1."""
+    """Each mode on its own, as the system is linear.  pymunk is symplectic Euler: order 1."""
     omega, c, shapes = modes(p)
     amplitude = np.abs(shapes.T @ static_extension(p))
     limits = by_mode(omega, c, amplitude, np.linalg.norm(truth(p, T)), T, dt, UNCERTAINTY)
@@ -179,6 +179,7 @@ SCENE = Scene(
     sanity_checks=sanity_checks,
     points=points,
     links=links,
+    link_look="spring",
     uses=("one coordinate", "springs with dampers", "one step function"),
     ablations={"the second and third dimension": in_space, "rotation": "lesson 5 builds it",
               "contact between masses": "lesson 6 builds it"},

@@ -60,7 +60,7 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """Each mode on its own, with a margin for large motion (net_limits); pymunk is symplectic Euler, order 1."""
+    """Each mode on its own, with a margin for large motion; pymunk is symplectic Euler, order 1."""
     limits = net_limits(square_net, p, np.linalg.norm(truth(p, T)), T, dt, UNCERTAINTY)
     return {**limits, "pymunk": limits[1]}
 
@@ -129,6 +129,7 @@ SCENE = Scene(
     sanity_checks=sanity_checks,
     points=points,
     links=links,
+    link_look="spring",
     uses=("two coordinates", "springs with dampers", "one step function"),
     ablations={"the third dimension": in_space, "rotation": "lesson 5 builds it",
               "contact of the net with itself": "lesson 6 builds it"},

@@ -1,0 +1,79 @@
+"""The four questions of the front page, answered from the results."""
+
+from collections import Counter
+from statistics import quantiles
+
+from ..results import Verdict
+from ..scene import EXACT
+from . import words
+
+
+def answers(results, stability, cores=None):
+    """{question's name: what the front page says}: right, faster, departures, stable."""
+    return {"right": right(results), "faster": faster(results, cores), "departures": departures(results),
+            "stable": stable(stability)}
+
+
+def curves_of(results, role):
+    """[(result, name of the case, curve)] of all scenes; role is ours or engines."""
+    return [(r, name, c) for r in results for name, case in r["cases"].items() for c in case[role]]
+
+
+def right(results):
+    """Counts of the verdicts on our methods, and how many orders are as high as theory says."""
+    every = curves_of(results, "ours")
+    count = Counter(Verdict(c["verdict"]) for _, _, c in every)
+    ordered = [c for _, _, c in every if c["order"] is not None and c["expected"] in (1, 2, 4)]
+    wrong = {r["scene"]: r["title"] for r, _, c in every if Verdict(c["verdict"]) is Verdict.DEPARTS}
+    return {
+        "scenes": len(results), "runs": len(every), "agree": count[Verdict.AGREES],
+        "predicted": count[Verdict.FOLLOWS_OWN_LAW], "depart": count[Verdict.DEPARTS],
+        "waiting": count[Verdict.NOT_ATTEMPTED], "undecided": count[Verdict.UNDECIDED], "wrong": wrong,
+        "orders": len(ordered), "orders_reached": sum(c["order"] > c["expected"] - 0.3 for c in ordered),
+        "exact": sum(c["expected"] == EXACT and Verdict(c["verdict"]) is Verdict.AGREES for _, _, c in every),
+    }
+
+
+def faster(results, cores=None):
+    """All races of the report, each with its scene; those that we do not win are listed by name."""
+    every = [{**race, "scene": r["scene"], "title": r["title"], "lesson": r["lesson"]}
+             for r in results for race in words.races(r).values()]
+    decided = [race for race in every if race["ratio"]]
+    by = {outcome: [race for race in every if race["outcome"] == outcome]
+          for outcome in ("faster", "a tie", "slower", "open")}
+    low, middle, high = quantiles([race["ratio"] for race in decided], n=4) if len(decided) > 1 else (None,) * 3
+    return {"races": every, "decided": decided, "by": by, "low": low, "middle": middle, "high": high,
+            "warning": words.busy_warning(results, cores)}
+
+
+def departures(results):
+    """One line for each engine and reason: {engine, kind, reason, low, high, places}, unpredicted ones first."""
+    groups, undecided = {}, {}
+    for r, name, c in curves_of(results, "engines"):
+        verdict = Verdict(c["verdict"])
+        if verdict in (Verdict.FOLLOWS_OWN_LAW, Verdict.DEPARTS):
+            reason = c["departure_reason"] if verdict is Verdict.FOLLOWS_OWN_LAW else f"not known: it {c['message']}"
+            last = words.finest(c)
+            size = c["departure"] if verdict is Verdict.FOLLOWS_OWN_LAW else (last["error"] if last else None)
+            groups.setdefault((words.KINDS[verdict], c["label"], reason), []).append((r, name, size))
+        elif verdict is Verdict.UNDECIDED:
+            undecided.setdefault(r["scene"], r["title"])
+    lines = []
+    for (kind, label, reason), found in groups.items():
+        sizes = [size for _, _, size in found if size is not None]
+        lines.append({"engine": label, "kind": kind, "reason": reason, "low": min(sizes, default=None),
+                      "high": max(sizes, default=None), "places": {r["scene"]: r["title"] for r, _, _ in found},
+                      "cases": len(found)})
+    lines.sort(key=lambda line: (line["kind"] != "departs", -len(line["places"]), -(line["high"] or 0.0)))
+    compared = curves_of(results, "engines")
+    return {"lines": lines, "undecided": undecided, "runs": len(compared),
+            "agree": sum(Verdict(c["verdict"]) is Verdict.AGREES for _, _, c in compared),
+            "scenes": len({scene for line in lines for scene in line["places"]})}
+
+
+def stable(stability):
+    """How many findings hold, and the cases in which one fails."""
+    held = [f["holds"] for case in stability for f in case["findings"]]
+    failing = {f"{case['lesson']}-{case['slug']}": case["title"] for case in stability
+               if not all(f["holds"] for f in case["findings"])}
+    return {"findings": len(held), "hold": sum(held), "cases": len(stability), "failing": failing}

@@ -1,0 +1,98 @@
+"""The numbers of the plots and tables as CSV: files for those of a plot, addresses that hold their data for others."""
+
+import csv
+import io
+from urllib.parse import quote
+
+from . import words
+
+RUNS = ("case", "method or engine", "role", "steps", "dt [s]", "relative error [-]", "limit [-]",
+        "error from its own law [-]", "order", "expected order", "verdict", "failure")
+TIMES = ("method or engine", "speed", "steps", "relative error [-]", "median time [s]", "shortest [s]", "longest [s]")
+SCENES = ("scene", "lesson", "side", "verdict", "comparisons")
+RACES = ("scene", "lesson", "engine", "relative error [-]", "engine's time [s]", "our method", "our time [s]",
+         "ratio [-]", "lowest ratio [-]", "highest ratio [-]", "outcome")
+DEPARTURES = ("engine", "verdict", "smallest departure [-]", "largest departure [-]", "reason", "scenes")
+FINDINGS = ("lesson", "case", "claim", "quantity", "predicted", "measured", "tolerance", "holds", "observation")
+
+
+def text(header, rows):
+    """A CSV; None is an empty cell."""
+    file = io.StringIO()
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(header)
+    writer.writerows(["" if cell is None else cell for cell in row] for row in rows)
+    return file.getvalue()
+
+
+def address(header, rows):
+    """The same as an address that a link can lead to: small tables need no file."""
+    return "data:text/csv;charset=utf-8," + quote(text(header, rows))
+
+
+def names(results, stability):
+    """The files that `texts` gives."""
+    drawn = [case for case in stability if case["picture"]]
+    return {"scenes.csv", "races.csv", "departures.csv", *(f"{r['scene']}-runs.csv" for r in results),
+            *(f"{r['scene']}-times.csv" for r in results if r["refinement"]), *(["stability.csv"] if stability else []),
+            *(f"stability-{case['lesson']}-{case['slug']}.csv" for case in drawn)}
+
+
+def texts(results, stability):
+    """{file: CSV} of all plots and of the long tables."""
+    from .answers import departures, faster
+    rows = [(r, words.row(r)) for r in results]
+    found = {
+        "scenes.csv": text(SCENES, [(r["scene"], r["lesson"], side, verdict, count) for r, row in rows
+                                    for side, found in (("ours", row["ours"]), *row["engines"].items())
+                                    for verdict, _, count in found]),
+        "races.csv": text(RACES, [(a["scene"], a["lesson"], a["engine"], a["error"], a["seconds"], a["method"],
+                                   a["ours"], a["ratio"], *(a["range"] or (None, None)), a["outcome"])
+                                  for a in faster(results)["races"]]),
+        "departures.csv": text(DEPARTURES, [(d["engine"], d["kind"], d["low"], d["high"], d["reason"],
+                                             " ".join(d["places"])) for d in departures(results)["lines"]]),
+    }
+    for r in results:
+        found[f"{r['scene']}-runs.csv"] = text(RUNS, runs(r))
+        if r["refinement"]:
+            found[f"{r['scene']}-times.csv"] = text(TIMES, [
+                (t["label"], t["speed"], t["steps"], t["error"], t["seconds"], t["low"], t["high"])
+                for t in r["times"]["rows"]])
+    if stability:
+        found["stability.csv"] = text(FINDINGS, [
+            (c["lesson"], c["slug"], f["claim"], f["quantity"], f["predicted"], f["measured"], f["tolerance"],
+             "yes" if f["holds"] else "no", f["observation"]) for c in stability for f in c["findings"]])
+    for case in stability:
+        if case["picture"]:
+            found[f"stability-{case['lesson']}-{case['slug']}.csv"] = of_picture(case["picture"])
+    return found
+
+
+def runs(result):
+    """Every run of every case of a scene."""
+    for name, case in result["cases"].items():
+        for c in case["ours"] + case["engines"]:
+            own = {row["steps"]: error for row, error in words.own_errors(c)}
+            for row in c["rows"]:
+                yield (name, c["label"], c["role"], row["steps"], row["dt"], row["error"], row["limit"],
+                       own.get(row["steps"]), c["order"], c["expected"], c["verdict"], row["failure"])
+
+
+def ablations(result):
+    """What a scene leaves out, and what it costs to put it in."""
+    return [(row["what"], row["cost"], row["same"], row["note"]) for row in result["times"]["ablations"]]
+
+
+def coverage(table):
+    """Which places run each exercise."""
+    return [(number, row["function"], row["lesson"], " ".join(row["places"])) for number, row in table.items()]
+
+
+def of_picture(picture):
+    """The curves of a stability case; of maps a table each, with a line for each y and a column for each x."""
+    if not picture.get("maps"):
+        rows = [(label, x, y) for label, xs, ys, _ in picture["series"] for x, y in zip(xs, ys)]
+        return text(("curve", picture["x_label"], picture["y_label"]), rows)
+    header = (picture["title"], picture["y_label"], *(f"{picture['x_label']} = {x}" for x in picture["maps"][0]["xs"]))
+    return text(header, [(one["label"], y, *line) for one in picture["maps"]
+                         for y, line in zip(one["ys"], one["values"])])
