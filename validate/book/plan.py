@@ -93,8 +93,9 @@ def numbers_of(names):
 
 def lesson_table():
     """Every lesson with its size, its hours and what it needs."""
-    rows = [(lesson_link(name), len(lesson.exercises), f"{lesson.points:g}", hours(lesson.reading), hours(lesson.writing),
-             numbers_of(course.imports(name)), numbers_of(lesson.needs), len(lesson.scenes), lesson.cases)
+    rows = [(lesson_link(name), len(lesson.exercises), f"{lesson.points:g}", hours(lesson.reading),
+             hours(lesson.writing), numbers_of(course.imports(name)), numbers_of(lesson.needs), len(lesson.scenes),
+             lesson.cases)
             for name, lesson in course.lessons().items()]
     return table(("lesson", "exercises", "points", "hours to read and run", "hours to write", "calls lessons",
                   "needs in all", "scenes", "stability cases"), rows)
@@ -132,8 +133,8 @@ def course_section(plan):
     kind = f" --with-solutions={','.join(plan.worked)}" if plan.worked else ""
     chosen = "".join(f" --lesson {name}" for name in plan.lessons())
     zip_ = f".venv/bin/release --out workbook.zip{chosen}{kind}"
-    why = (f" Students get lessons {numbers_of(plan.worked)} as worked answers, because lessons of this course call them."
-           if plan.worked else "")
+    why = (f" Students get lessons {numbers_of(plan.worked)} as worked answers, because lessons of this course call "
+           "them." if plan.worked else "")
     return (f"### {plan.title}\n\n{plan.aim} About {round(total)} hours of a student's work.{why}\n\n"
             f"{course_table(plan)}\n\nThe students' zip of this course:\n\n```sh\n{zip_}\n```")
 
