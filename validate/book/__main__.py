@@ -7,10 +7,8 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from html.parser import HTMLParser
 from pathlib import Path
 from typing import Annotated
-from urllib.parse import unquote, urlsplit
 
 import typer
 from rich.console import Console
@@ -19,6 +17,7 @@ from solutions.checks import BadInput
 
 from .. import modules
 from ..processes import one_sentence
+from .site import outside_requests, size, wrong_links
 
 HERE = Path(__file__).resolve().parent
 MARK = ".buildinfo"          # Sphinx writes it: a folder that holds it is a book
@@ -42,7 +41,7 @@ def book(
     numbers = checked(out, notebook or [])
     with tempfile.TemporaryDirectory() as folder:
         source, site = Path(folder, "source"), Path(folder, "site")
-        from . import pages                   # imports what may be missing
+        from . import pages  # imports what may be missing
         source.mkdir()
         pages.write_all(source, numbers, report if (report / "index.html").is_file() else None, console.print)
         warnings = sphinx(source, site)
@@ -86,69 +85,6 @@ def sphinx(source, site):
         raise RuntimeError(f"sphinx failed:\n{run.stdout}{run.stderr}")
     lines = said.read_text(encoding="utf-8").splitlines() if said.is_file() else []
     return [re.sub(r"\x1b\[[\d;]*m", "", line).replace(f"{source}/", "") for line in lines if line.strip()]
-
-
-# ---------------------------------------------------------------------------------------------- what must hold of a site
-
-class Addresses(HTMLParser):
-    """Collects what a page loads, what it links to, and its ids."""
-
-    LOADS = {"img": "src", "script": "src", "iframe": "src", "source": "srcset", "video": "src", "audio": "src",
-             "object": "data", "embed": "src", "track": "src", "input": "src"}
-
-    def __init__(self, text):
-        super().__init__()
-        self.loads, self.links, self.ids = [], [], set()
-        self.feed(text)
-
-    def handle_starttag(self, tag, attributes):
-        has = dict(attributes)
-        self.ids |= {has["id"]} if has.get("id") else set()
-        self.ids |= {has["name"]} if tag == "a" and has.get("name") else set()
-        if has.get(self.LOADS.get(tag, "")):
-            self.loads.append(has[self.LOADS[tag]].split()[0])
-        if tag == "link" and has.get("rel") not in ("canonical", "author"):
-            self.loads.append(has.get("href") or "")
-        if tag == "a" and has.get("href"):
-            self.links.append(has["href"])
-
-
-def outside_requests(site):
-    """Sentences about files of a site that make a browser ask another host."""
-    found = []
-    for path in sorted(site.rglob("*")):
-        if path.suffix in (".html", ".svg"):
-            loads = Addresses(path.read_text(encoding="utf-8")).loads if path.suffix == ".html" else []
-            loads += re.findall(r"url\(['\"]?([^)'\"]+)", path.read_text(encoding="utf-8"))
-        elif path.suffix == ".css":
-            loads = re.findall(r"(?:url\(|@import) *['\"]?([^)'\";]+)", path.read_text(encoding="utf-8"))
-        else:
-            continue
-        found += [f"{path.relative_to(site)} loads {address}" for address in loads
-                  if urlsplit(address).netloc or urlsplit(address).scheme in ("http", "https", "ftp")]
-    return found
-
-
-def wrong_links(site):
-    """Sentences about links and files of a site that lead nowhere."""
-    pages = {path.resolve(): Addresses(path.read_text(encoding="utf-8")) for path in site.rglob("*.html")}
-    found = []
-    for path, page in sorted(pages.items()):
-        for address in dict.fromkeys(page.links + page.loads):
-            parts = urlsplit(address)
-            if parts.scheme or parts.netloc:
-                continue
-            target = (path.parent / unquote(parts.path)).resolve() if parts.path else path
-            if not target.exists():
-                found.append(f"{path.relative_to(site.resolve())} leads to {address}, which is not there")
-            elif parts.fragment and target in pages and unquote(parts.fragment) not in pages[target].ids:
-                found.append(f"{path.relative_to(site.resolve())} leads to {address}, a place that is not there")
-    return found
-
-
-def size(folder):
-    """Size of a folder [MB]."""
-    return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file()) / 1e6
 
 
 def main(arguments=None):

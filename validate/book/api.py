@@ -54,10 +54,14 @@ def prose(text):
 
     text = QUOTE.sub(lambda match: keep(f"``{match[1]}``"), text)
     text = EMPHASIS.sub(lambda match: keep(f"*{match[1]}*"), text)
-    text = NAME.sub(lambda match: keep(f":py:func:`~{functions()[match[1]]}`\\ ") if match[1] in functions() else match[0],
-                    text)
+    text = NAME.sub(lambda match: keep(link(match[1])) if match[1] in functions() else match[0], text)
     text = re.sub(r"([\\*`|_\[\]<>])", r"\\\1", text)
     return re.sub(r"\0(\d+)\0", lambda match: kept[int(match[1])], text)
+
+
+def link(name):
+    """A link to the entry of a function."""
+    return f":py:func:`~{functions()[name]}`\\ "
 
 
 def blocks(docstring):
@@ -98,10 +102,11 @@ def page(name):
     said = re.sub(r"^Lesson \d+\. *", "", first).rstrip(".")
     numbers = {exercise.function: exercise for exercise in lesson.exercises}
     parts = [f".. py:module:: lessons.{name}", heading(f"{lesson.number} · {name}: functions", "="), prose(f"{said}."),
-             f"Notebook: :doc:`/notebooks/{course.notebook_of(name).stem}`. {len(numbers)} exercises, {lesson.points:g} "
-             f"points. A number marks an exercise; all other functions are given.",
+             f"Notebook: :doc:`/notebooks/{course.notebook_of(name).stem}`. {len(numbers)} exercises, "
+             f"{lesson.points:g} points. A number marks an exercise; all other functions are given.",
              as_rst("\n" + rest.strip("\n"))]
-    sections = [(text_of(name).count("\n", 0, match.start()) + 1, match[1]) for match in SECTION.finditer(text_of(name))]
+    text = text_of(name)
+    sections = [(text.count("\n", 0, match.start()) + 1, match[1]) for match in SECTION.finditer(text)]
     for node in tree_of(name).body:
         while sections and sections[0][0] < node.lineno:
             parts.append(heading(sections.pop(0)[1].strip().capitalize(), "-"))

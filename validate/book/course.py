@@ -112,8 +112,9 @@ def grading_tests():
     """{number of an exercise: its grading tests}, as pytest collects them."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, "outcomes.json")
-        said = subprocess.run([sys.executable, "-m", "pytest", "tests/lessons", "--collect-only", "--of=solutions",
-                               f"--outcomes={file}", "-p", "no:cacheprovider"], cwd=ROOT, capture_output=True, text=True)
+        command = [sys.executable, "-m", "pytest", "tests/lessons", "--collect-only", "--of=solutions",
+                   f"--outcomes={file}", "-p", "no:cacheprovider"]
+        said = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
         if not file.is_file():
             raise RuntimeError(f"the grading tests cannot be collected:\n{said.stdout}{said.stderr}")
         outcomes = json.loads(file.read_text(encoding="utf-8"))

@@ -50,7 +50,8 @@ def write_all(folder, numbers, report, say):
     if report:
         shutil.copytree(report, folder / "extra" / "report", ignore=shutil.ignore_patterns("results", SUBSET))
     write(folder / "index.md", front(paths, bool(report)))
-    write(folder / "validation.md", (HERE / ("validation.md" if report else "no_report.md")).read_text(encoding="utf-8"))
+    about_report = HERE / ("validation.md" if report else "no_report.md")
+    write(folder / "validation.md", about_report.read_text(encoding="utf-8"))
 
 
 def write(path, text):
@@ -91,7 +92,7 @@ def about(lesson, stem):
     facts = course.lessons()[lesson]
     text = (f"```{{admonition}} This page is the notebook as the worked answers run it\n:class: note\nTo work on it "
             f"yourself, open `notebooks/{stem}.ipynb` in JupyterLab. Films play here; sliders need JupyterLab. "
-            f"The lesson has {len(facts.exercises)} exercises: [what each function has to do](../lessons/{lesson}).\n```")
+            f"The lesson has {len(facts.exercises)} exercises: [what each function does](../lessons/{lesson}).\n```")
     return {"cell_type": "markdown", "id": "about-this-page", "metadata": {}, "source": text}
 
 

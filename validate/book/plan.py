@@ -43,6 +43,20 @@ class Course(NamedTuple):
         """The lessons of the course, each once."""
         return tuple(dict.fromkeys(week.lesson for week in self.weeks if week.lesson))
 
+    def zips(self):
+        """{week in which a lesson begins: lessons that the students' zip of that week holds as worked answers}.
+
+        Those are the lessons before it, and what it needs of the lessons that the course leaves out.
+        """
+        found, before = {}, []
+        for number, week in enumerate(self.weeks, 1):
+            if week.lesson and week.lesson not in before:
+                needed = course.lessons()[week.lesson].needs - set(before)
+                before += [name for name in self.worked if name in needed]
+                found[number] = tuple(sorted(before, key=list(course.lessons()).index))
+                before.append(week.lesson)
+        return found
+
 
 COURSES = (
     Course(
@@ -93,8 +107,9 @@ def numbers_of(names):
 
 def lesson_table():
     """Every lesson with its size, its hours and what it needs."""
-    rows = [(lesson_link(name), len(lesson.exercises), f"{lesson.points:g}", hours(lesson.reading), hours(lesson.writing),
-             numbers_of(course.imports(name)), numbers_of(lesson.needs), len(lesson.scenes), lesson.cases)
+    rows = [(lesson_link(name), len(lesson.exercises), f"{lesson.points:g}", hours(lesson.reading),
+             hours(lesson.writing), numbers_of(course.imports(name)), numbers_of(lesson.needs), len(lesson.scenes),
+             lesson.cases)
             for name, lesson in course.lessons().items()]
     return table(("lesson", "exercises", "points", "hours to read and run", "hours to write", "calls lessons",
                   "needs in all", "scenes", "stability cases"), rows)
@@ -126,16 +141,19 @@ def course_table(plan):
     return table(("week", "lesson", "exercises", "points", "hours", "remark"), rows)
 
 
+def release(name, worked):
+    """The command that makes a students' zip with these lessons as worked answers."""
+    return f".venv/bin/release --out {name}.zip" + (f" --with-solutions={','.join(worked)}" if worked else "")
+
+
 def course_section(plan):
     """A course as the page shows it."""
     total = sum(week.hours() for week in plan.weeks)
-    kind = f" --with-solutions={','.join(plan.worked)}" if plan.worked else ""
-    chosen = "".join(f" --lesson {name}" for name in plan.lessons())
-    zip_ = f".venv/bin/release --out workbook.zip{chosen}{kind}"
-    why = (f" Students get lessons {numbers_of(plan.worked)} as worked answers, because lessons of this course call them."
-           if plan.worked else "")
+    zips = "\n".join(release(f"week-{number}", worked) for number, worked in plan.zips().items())
+    why = (f" Students get lessons {numbers_of(plan.worked)} as worked answers, because lessons of this course call "
+           "them." if plan.worked else "")
     return (f"### {plan.title}\n\n{plan.aim} About {round(total)} hours of a student's work.{why}\n\n"
-            f"{course_table(plan)}\n\nThe students' zip of this course:\n\n```sh\n{zip_}\n```")
+            f"{course_table(plan)}\n\nThe students' zips:\n\n```sh\n{zips}\n```")
 
 
 def free_exercises():

@@ -38,8 +38,8 @@ def page(name, report):
         f"# {lesson.number} · {name}: lesson sheet", f"{lesson.title}. The [notebook](../notebooks/"
         f"{course.notebook_of(name).stem}) and the [functions](../lessons/{name}). How the hours are estimated: "
         "[Plan a course](../plan).", "## The lesson", facts,
-        "## Exercises", "*Minutes* are an estimate. *Calls* and *called by* name exercises: a student who leaves out an "
-        "exercise cannot pass those that call it in their own copy.", exercise_table(lesson),
+        "## Exercises", "*Minutes* are an estimate. *Calls* and *called by* name exercises. In their own copy, "
+        "students cannot pass an exercise that calls one which they have left out.", exercise_table(lesson),
         "## Where students go wrong", "A check that fails gives these hints. Each one answers a mistake that a test "
         "of the workbook catches.", hints(lesson),
         "## What to show", "Every scene below has a film, its truth, and both engines where they can do it.",
@@ -90,9 +90,10 @@ def questions(name):
 
 
 def commands(lesson):
-    worked = f" --with-solutions={','.join(n for n in course.lessons() if n in lesson.needs)}" if lesson.needs else ""
-    before = "Earlier lessons are in it as worked answers." if lesson.needs else "It needs no other lesson."
-    return (f"The students' zip of this lesson alone. {before}\n\n```sh\n.venv/bin/release --out {lesson.name}.zip "
-            f"--lesson {lesson.name}{worked}\n```\n\nGrade what comes back. The folder `class` has one folder or zip per "
-            f"student.\n\n```sh\n.venv/bin/grade class --out grades-{lesson.name} --lesson {lesson.name} "
-            "--roster list.csv --due 2026-11-30T23:59\n```\n\n[Grading a class](../grading) explains both.")
+    before = tuple(name for name, one in course.lessons().items() if one.number < lesson.number)
+    said = ("The students' zip when this lesson begins. It holds the earlier lessons as worked answers, so that nobody "
+            "is held up by a gap in them." if before else "The students' zip when this lesson begins.")
+    return (f"{said}\n\n```sh\n{plan.release(lesson.name, before)}\n```\n\nGrade what comes back. The folder `class` "
+            f"has one folder or zip per student.\n\n```sh\n.venv/bin/grade class --out grades-{lesson.name} "
+            f"--lesson {lesson.name} --roster list.csv --due 2026-11-30T23:59\n```\n\n"
+            "[Grading a class](../grading) explains both.")

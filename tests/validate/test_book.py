@@ -1,0 +1,258 @@
+"""The book shows what the lessons are about and no answer, asks no other host, and its plans can be taught."""
+
+import html
+import os
+import re
+import shutil
+import subprocess
+import sys
+from functools import cache
+from html.parser import HTMLParser
+from pathlib import Path
+
+import nbformat
+import pytest
+
+from tests.grading import release
+from validate import modules
+from validate.book import __main__ as book
+from validate.book import api, course, execute, figures, pages, plan, sheets
+from validate.modules import ROOT
+
+pytestmark = pytest.mark.xdist_group("book")
+FILM = "<div>film</div><script>" + "let player = 1;" * 400 + "</script>"
+
+
+class Texts(HTMLParser):
+    """The whole text of a page, and of each block of code in it."""
+
+    def __init__(self, page):
+        super().__init__()
+        self.whole, self.blocks, self.deep = [], [], 0
+        self.feed(page)
+
+    def handle_starttag(self, tag, attributes):
+        if tag == "pre":
+            self.deep += 1
+            self.blocks.append("")
+
+    def handle_endtag(self, tag):
+        self.deep -= tag == "pre" and self.deep > 0
+
+    def handle_data(self, data):
+        self.whole.append(data)
+        if self.deep:
+            self.blocks[-1] += data
+
+
+@cache
+def secrets():
+    """The answers of all lessons, their signs, and the sentences of the answers to the questions."""
+    hidden = [answer for name in modules.lesson_names() for answer in release.answers_of(name)]
+    return hidden, release.signs_of(hidden), release.sentences((ROOT / release.ANSWERS).read_text(encoding="utf-8"))
+
+
+def leaks(texts):
+    """What the students' zip would refuse in these texts: the first leak of each."""
+    return [leak.what for text in texts if (leak := release.leak_in(text, *secrets()))]
+
+
+def texts_of(site):
+    """Every text of a site: pages, their blocks of code, scripts and data."""
+    for path in sorted(site.rglob("*")):
+        if path.suffix == ".html":
+            page = Texts(path.read_text(encoding="utf-8"))
+            yield from ["".join(page.whole), *page.blocks]
+        elif path.suffix in (".js", ".json", ".txt", ".csv", ".py", ".md", ".rst", ".ipynb"):
+            yield path.read_text(encoding="utf-8")
+
+
+def answer_of(number):
+    """The source of an answer."""
+    match = next(m for m in release.generate.ANSWER.finditer(release.source(api.target(number).split(".")[1]))
+                 if m["exercise"] == number)
+    return match[0]
+
+
+# ---------------------------------------------------------------------------------------------- pages without Sphinx
+
+def test_the_page_of_each_lesson_has_every_exercise_and_no_answer():
+    for name, lesson in course.lessons().items():
+        page = api.page(name)
+        assert all(f"**Exercise {one.number}** · {one.points:g} point" in page for one in lesson.exercises)
+        assert leaks([page]) == [] and "SOLUTION" not in page
+
+
+def test_docstrings_keep_their_formulas_and_their_words():
+    said = "Return a* b.\n\n    a   b\n    c   d\n\nUse `x_`, *not* x_ or |y|; cone_impulse has it.\n*Source:* a deck."
+    rst = api.as_rst(said)
+    assert ".. code-block:: text\n\n   a   b\n   c   d" in rst
+    assert r"Return a\* b." in rst and "``x_``" in rst and "*not*" in rst and r"x\_ or \|y\|" in rst
+    assert ":py:func:`~lessons.impulses.cone_impulse`" in rst and "\n\n*Source:* a deck." in rst
+
+
+def test_every_lesson_adds_up_to_twenty_points_and_has_a_sheet():
+    for name, lesson in course.lessons().items():
+        assert lesson.points == 20.0
+        sheet = sheets.page(name, report=False)
+        assert all(f"| {one.number} |" in sheet for one in lesson.exercises) and "1. " in sheet
+        assert f"--lesson {name} " in sheet and leaks([sheet]) == []
+
+
+@pytest.mark.parametrize("taught", plan.COURSES, ids=lambda taught: taught.title)
+def test_a_course_teaches_what_it_needs_before_it_is_needed(taught):
+    there = {one.number for name in taught.worked for one in course.lessons()[name].exercises}
+    lessons = set(taught.worked)
+    for week in taught.weeks:
+        if week.lesson:
+            assert course.lessons()[week.lesson].needs <= lessons | {week.lesson}, week
+            for one in week.exercises():
+                assert {n for n in one.uses if course.in_order(n) < course.in_order(one.number)} <= there, one
+                there.add(one.number)
+            lessons.add(week.lesson)
+    assert len(taught.weeks) in (4, 8, 14) and all(week.hours() <= 8.0 for week in taught.weeks)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("taught", plan.COURSES, ids=lambda taught: taught.title)
+def test_the_zips_of_a_course_can_be_released(taught):
+    every, paths = modules.lesson_names(), release.tracked(dirty=True)
+    for worked in map(set, taught.zips().values()):
+        assert release.with_earlier(worked) == worked
+        release.refuse_leaks(release.contents(paths, set(every), worked, answers=False), worked, answers_too=False)
+
+
+def test_the_glossary_has_every_word_of_the_table():
+    page = pages.glossary()
+    words = re.findall(r"^(\S.*)$", page.partition("```{glossary}")[2], re.M)
+    assert len(words) >= 45 and {"mutant", "narrow phase", "sweep (of dt)"} <= set(words)
+
+
+def test_a_notebook_loses_its_sliders_and_loads_its_player_once(tmp_path):
+    cell = nbformat.v4.new_code_cell("x\n" * (pages.LONG + 1))
+    view = nbformat.v4.new_output("display_data", {pages.WIDGET: {}, "text/plain": "interactive"})
+    cell.outputs = [view, *(nbformat.v4.new_output("display_data", {"text/html": FILM}) for _ in range(2))]
+    said = "# One\nWrite `euler_step` (1.1), not `euler_step` (1.2); see `02_springs.ipynb`."
+    text = nbformat.v4.new_markdown_cell(said)
+    (tmp_path / "_static").mkdir()
+    made = pages.prepared(nbformat.v4.new_notebook(cells=[text, cell]), "01_integrators", tmp_path, {})
+    shown = [output["data"]["text/html"] for output in made.cells[2].outputs]
+    assert len(shown) == 2 and shown[0].count("<script") == 1 and shown[1] == "<div>film</div>"
+    assert [path.read_text() for path in (tmp_path / "_static").iterdir()] == ["let player = 1;" * 400]
+    assert made.cells[2].metadata.tags == ["hide-input"]
+    assert "{py:func}`~lessons.integrators.euler_step` (1.1), not `euler_step` (1.2)" in made.cells[0].source
+    assert "[`02_springs.ipynb`](02_springs)" in made.cells[0].source
+
+
+def test_a_notebook_that_prints_a_lesson_runs_with_the_stubs():
+    prints = [path.stem[:2] for path in sorted(execute.NOTEBOOKS.glob("[0-9]*.ipynb"))
+              if execute.prints_source(nbformat.read(path, as_version=4))]
+    assert "00" in prints
+
+
+def test_cleared_outputs_are_gone_when_the_next_one_comes():
+    def message(kind, **content):
+        return {"header": {"msg_type": kind}, "content": content}
+    found = execute.Outputs()
+    for one in (message("stream", name="stdout", text="old"), message("clear_output", wait=True)):
+        found.take(one)
+    assert len(found.cells) == 1
+    found.take(message("stream", name="stdout", text="new"))
+    assert [output.text for output in found.cells] == ["new"]
+
+
+def test_a_figure_is_described_by_its_labels():
+    from matplotlib.figure import Figure
+    figure = Figure()
+    axes = figure.subplots()
+    axes.plot([1, 2], label="Euler")
+    axes.set(title="a spring", xlabel="t [s]", ylabel="x [m]")
+    assert figures.describe(figure) == "Plot: a spring; x [m] against t [s]; curves: Euler."
+    assert figures.describe(Figure()) == "Drawing without axes."
+
+
+# ---------------------------------------------------------------------------------------------- the checks can fail
+
+@pytest.mark.parametrize("page", [
+    '<img src="https://a.example/b.png">', '<script src="//a.example/b.js"></script>',
+    '<link rel="stylesheet" href="https://a.example/b.css">', "<style>@font-face {src: url(https://a.example/f)}</style>",
+    '<iframe src="http://a.example"></iframe>', '<video><source src="https://a.example/v.mp4"></video>',
+    '<img src="a.png" srcset="a.png 1x, https://a.example/b.png 2x">', '<style>@import "https://a.example/b";</style>',
+    '<video poster="https://a.example/p.png"></video>', '<link rel="preconnect" href="https://a.example">'])
+def test_a_request_to_another_host_is_found(page, tmp_path):
+    (tmp_path / "index.html").write_text(f"<html>{page}</html>")
+    assert len(book.outside_requests(tmp_path)) == 1
+    (tmp_path / "index.html").write_text('<a href="https://a.example">a link asks only when it is followed</a>')
+    assert book.outside_requests(tmp_path) == []
+
+
+def test_a_style_sheet_or_a_script_that_asks_another_host_is_found(tmp_path):
+    (tmp_path / "a.css").write_text("@import 'https://a.example/b.css';")
+    (tmp_path / "b.js").write_text('fetch("https://cdn.example/c.json")')
+    (tmp_path / "c.js").write_text("// see https://a.example\nimport('./d.js')")
+    assert [said.split()[0] for said in book.outside_requests(tmp_path)] == ["a.css", "b.js"]
+
+
+def test_a_link_that_leads_nowhere_is_found(tmp_path):
+    (tmp_path / "a.html").write_text('<p id="x"></p><a href="b.html#there"></a><a href="#x"></a><img src="c.png">')
+    (tmp_path / "b.html").write_text('<p id="elsewhere"></p>')
+    wrong = [said.split(" leads to ")[1].split(",")[0] for said in book.wrong_links(tmp_path)]
+    assert wrong == ["b.html#there", "c.png"]
+
+
+def test_an_answer_on_a_page_is_found(tmp_path):
+    coloured = "".join(f"<span>{html.escape(word)}</span>" for word in re.split(r"(\W)", answer_of("5.16")))
+    (tmp_path / "a.html").write_text(f"<p>See</p><pre>{coloured}</pre>")
+    assert leaks(texts_of(tmp_path))
+
+
+@pytest.mark.parametrize("arguments", [["--out", "{folder}"], ["--notebook", "99"]])
+def test_a_folder_that_is_no_book_and_an_unknown_notebook_are_refused(arguments, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(book.importlib.util, "find_spec", lambda name: True)
+    (tmp_path / "thesis.tex").write_text("precious")
+    with pytest.raises(SystemExit) as end:
+        book.main([argument.format(folder=tmp_path) for argument in arguments])
+    assert end.value.code == 2 and (tmp_path / "thesis.tex").exists()
+    assert re.match(r"book: .*(no book|not there)", capsys.readouterr().err)
+
+
+# ---------------------------------------------------------------------------------------------- whole books
+
+def built(folder, *arguments, without_node=False):
+    """Build a book; what the command said, and the site."""
+    pytest.importorskip("furo", reason="the extra `book` is not installed")
+    path = os.environ["PATH"]
+    if without_node:
+        path = folder.parent / "programs"
+        path.mkdir()
+        (path / "git").symlink_to(shutil.which("git"))
+    run = subprocess.run([sys.executable, "-m", "validate.book", "--out", folder, *arguments], cwd=ROOT,
+                         env={**os.environ, "PATH": str(path)}, capture_output=True, text=True)
+    assert run.returncode == 0, run.stdout + run.stderr
+    return run.stdout, folder
+
+
+@pytest.mark.long
+def test_a_book_of_one_notebook_is_built_without_node(tmp_path):
+    said, site = built(tmp_path / "book", "--notebook", "00", "--report", str(tmp_path / "none"), without_node=True)
+    assert "in the reader's browser" in said and (site / "_static" / "katex.min.js").is_file()
+    start = Texts((site / "notebooks" / "00_start_here.html").read_text(encoding="utf-8"))
+    assert any('raise NotImplementedError("Exercise 1.1: euler_step")' in block for block in start.blocks)
+    assert leaks(texts_of(site)) == []
+    index = (site / "searchindex.js").read_text(encoding="utf-8")
+    assert "restitut" in index and "cone_impulse" in index
+
+
+@pytest.mark.long
+def test_the_whole_book_has_no_answer_and_asks_no_other_host(tmp_path):
+    site = Path(os.environ["WORKBOOK_BOOK"]) if "WORKBOOK_BOOK" in os.environ else built(tmp_path / "book")[1]
+    assert book.outside_requests(site) == [] and book.wrong_links(site) == [] and book.size(site) < book.MOST
+    assert leaks(texts_of(site)) == []
+    for path in execute.NOTEBOOKS.glob("[0-9]*.ipynb"):
+        page = (site / "notebooks" / f"{path.stem}.html").read_text(encoding="utf-8")
+        assert "katex-error" not in page and "Traceback" not in page and "jupyter.widget" not in page
+        if path.stem[:2] != "00":
+            assert "not attempted" not in Texts(page).whole and "✗ Exercise" not in page
+            figures_of = re.findall(r'<img alt="([^"]*)" [^>]*src="\.\./_images/', page)
+            assert figures_of and all(alt.startswith(("Plot: ", "Drawing")) for alt in figures_of)
+    assert all(name in (site / "glossary.html").read_text(encoding="utf-8") for name in ("mutant", "warm start"))
