@@ -9,7 +9,7 @@ v (n, d) [m/s] · omega (n,) or (n, 3) [rad/s], world · J (m, d) [N s] impulses
 A load is a function  load(t, x, q, v, omega, p) → (F, tau).  Planes are further rows of all arrays.  A row with
 inv_mass = 0 keeps the velocity that you give it: at rest it is ground, and in motion a conveyor belt, a lift or a
 turntable.  A scene calls only what it needs: no detection where nothing can touch, no quaternions in the plane.
-*Left out:* restitution of many contacts, joints, sleeping.
+*Left out:* restitution of many contacts, sleeping.  Joints are given (support/joints.py), and one loop with them.
 """
 
 import numpy as np
@@ -37,11 +37,15 @@ from .support.bodies import (
     RockingBlock,
     check_speed,
     checked_bodies,
+    closing_speeds,
     make_bodies,
     make_bodies_2d,
     mechanical_energy_2d,
     movable_pairs,
     rocking_acceleration,
+    stop_slip,
+    sweep_residual_2d,
+    time_of_landing,
 )
 from .support.broad_phase import near_pairs
 from .support.contact_points import (
@@ -52,13 +56,20 @@ from .support.contact_points import (
     box_contacts,
     box_contacts_2d,
     disc_bounds,
+    largest_overlap,
     round_contacts,
+)
+from .support.joints import (
+    close_joints_2d,
+    composed_joint_step_2d,
+    joint_step,
+    joint_step_2d,
+    make_joints,
+    parting_speeds,
+    without_joined,
 )
 from .support.scenes import PileState, check_overlap
 from .vectors import cross, dot, norm
-
-HALVINGS = 50                # of a step, until the time of an impact is known to round-off [-]
-
 
 # ---------------------------------------------------------------------------------------------- without contact
 
@@ -151,15 +162,6 @@ def find_contacts(narrow, x, low, high, turn, p):
     ### END SOLUTION
 
 
-def closing_speeds(gap, dt):
-    """Given.  Return the u_n (m,) [m/s] below which no contact may come: −gap/dt closes the gap; 0 if it is closed.
-
-    *Left out:* parting bodies that overlap.  A push would gain energy, and kept_impulses would take it for a load;
-    the soft contacts of lesson 9 do it better.
-    """
-    return np.minimum(-gap / dt, 0.0)
-
-
 def contact_step_2d(load, bounds, narrow, t, state, dt, p):
     """Return the PileState of all bodies in the plane after dt: the lecture's loop with contact.
 
@@ -209,17 +211,26 @@ def contact_step(load, bounds, narrow, t, state, dt, p):
     ### END SOLUTION
 
 
-def sweep_residual_2d(state, dt, p):
-    """Given.  Return how far [m/s] the last step in the plane is from the laws: what one more sweep changes."""
-    x, _, v, omega, contacts, J = state
-    arms, aim = arms_2d(x - dt * v, p.inv_mass, p.inv_inertia, contacts), closing_speeds(contacts.gap, dt)
-    _, _, better = velocity_sweep_2d(v, omega, J, aim, 0.0 * aim, contacts, arms, p)
-    return np.max(np.append(0.0, np.abs(better - J) * np.stack((arms.k_n, arms.k_n), axis=1)))
+def joint_contact_step_2d(load, bounds, narrow, t, state, dt, p):
+    """Given.  Return the PileState of JointedBodies in the plane after dt: contact_step_2d, and after each sweep
+    close_joints_2d, which leaves no joint open at the end of the step.
 
-
-def largest_overlap(contacts):
-    """Given.  Return how far the deepest contact has sunk in [m]; 0 if none has."""
-    return np.max(np.append(0.0, -contacts.gap))
+    Bodies that share a joint do not touch.  A contact that comes with u_n leaves with −p.e u_n, and then no impulse of
+    the last step is kept.
+    """
+    x, q, v, omega, old, J = state
+    v, omega = new_velocities_2d(load, t, x, q, v, omega, dt, p)
+    low, high, turn = bounds(x, q, p.half)
+    contacts = without_joined(find_contacts(narrow, x, low, high, turn, p), p.joints)
+    arms = arms_2d(x, p.inv_mass, p.inv_inertia, contacts)
+    v, omega = close_joints_2d(x, q, v, omega, dt, p)
+    aim = parting_speeds(v, omega, contacts, arms, dt, p.e)
+    J = kept_impulses(contacts, old, J, p.margin if p.e == 0.0 else 0.0)
+    apply_impulses_2d(v, omega, J, contacts, arms, p.inv_mass, p.inv_inertia)
+    for _ in range(p.sweeps if contacts.a.size > 0 else 0):
+        v, omega, J = velocity_sweep_2d(v, omega, J, aim, 0.0 * aim, contacts, arms, p)
+        v, omega = close_joints_2d(x, q, v, omega, dt, p)
+    return PileState(x + dt * v, q + dt * omega, v, omega, contacts, J)
 
 
 # ---------------------------------------------------------------------------------------------- a floor that moves
@@ -234,22 +245,6 @@ def support_velocity(place, ball):
     ### BEGIN SOLUTION 10.8
     return point_velocity(ball.floor_v, ball.floor_omega, place - ball.centre)
     ### END SOLUTION
-
-
-def stop_slip(v, omega, floor, dt, ball):
-    """Given.  Return (v, omega) after friction has acted for dt against a floor with the velocity `floor` (3,).
-
-    As rolling_step of lesson 5:  J = −min(μN dt, |u|/K) u/|u|,  u = v + ω × r + dt g_t − floor,  K = 1/m + radius²/I.
-    """
-    r = np.array([0.0, 0.0, -ball.radius])
-    slip = point_velocity(v, omega, r) + dt * ball.gravity - floor
-    slip[2] = 0.0
-    size, K = norm(slip), 1.0 / ball.m + ball.radius * ball.radius / ball.I_body[0]
-    if size == 0.0:
-        return v, omega
-    limit = -ball.mu * ball.m * ball.gravity[2] * dt
-    J = -np.minimum(limit, size / K) / size * slip
-    return v + J / ball.m, omega + cross(r, J) / ball.I_body[0]
 
 
 def carried_step(load, t, x, v, q, omega, dt, ball):
@@ -337,13 +332,7 @@ def rocking_step(step, t, x, v, dt, block):
     x_new, v_new = step(rocking_acceleration, t, x, v, dt, block)
     if not x_new[0] < 0.0:
         return side * x_new, side * v_new
-    early, late = 0.0, dt
-    for _ in range(HALVINGS):
-        middle = 0.5 * (early + late)
-        if step(rocking_acceleration, t, x, v, middle, block)[0][0] > 0.0:
-            early = middle
-        else:
-            late = middle
+    late = time_of_landing(step, t, x, v, dt, block)
     _, v = step(rocking_acceleration, t, x, v, late, block)
     lands = np.array([block.half_width, -block.half_height])
     falls = v[0] * np.array([-block.half_height, block.half_width])
