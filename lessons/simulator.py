@@ -187,10 +187,10 @@ def joint_contact_step_2d(load, bounds, narrow, t, state, dt, p):
     arms = arms_2d(x, p.inv_mass, p.inv_inertia, contacts)
     v, omega = close_joints_2d(x, q, v, omega, dt, p)
     aim = parting_speeds(v, omega, contacts, arms, dt, p.e)
-    J = kept_impulses(contacts, old, J, p.margin if p.e == 0.0 else 0.0)
+    J, give = kept_impulses(contacts, old, J, p.margin if p.e == 0.0 else 0.0), np.zeros(aim.size)
     apply_impulses_2d(v, omega, J, contacts, arms, p.inv_mass, p.inv_inertia)
     for _ in range(p.sweeps if contacts.a.size > 0 else 0):
-        v, omega, J = velocity_sweep_2d(v, omega, J, aim, 0.0 * aim, contacts, arms, p)
+        v, omega, J = velocity_sweep_2d(v, omega, J, aim, give, contacts, arms, p)
         v, omega = close_joints_2d(x, q, v, omega, dt, p)
     return PileState(x + dt * v, q + dt * omega, v, omega, contacts, J)
 

@@ -256,7 +256,8 @@ def parting_speeds(v, omega, contacts, arms, dt, e):
     """u_n (m,) [m/s] below which no contact in the plane may leave, after it has come with that of v and omega.
 
     e = 0: −gap/dt, which closes the gap, or 0.  Else a contact must have closed before it bounces, with −e u_n; until
-    then nothing stops it.
+    then nothing stops it.  Where it parts already, that is below 0, and it must be: 0 would gain energy.
+    *Source:* Moreau 1988.
     """
     gap, u_n = contacts.gap, normal_velocities_2d(v, omega, contacts, arms)
     aim = np.empty(gap.size)
@@ -264,7 +265,7 @@ def parting_speeds(v, omega, contacts, arms, dt, e):
         if gap[k] > 0.0:
             aim[k] = -gap[k] / dt if e == 0.0 else -np.inf
         else:
-            aim[k] = np.maximum(0.0, -e * u_n[k])
+            aim[k] = -e * u_n[k]
     return aim
 
 
