@@ -49,7 +49,7 @@ def pybullet_spinning_ball(ball, v, omega, dt):
 def pybullet_turntable(ball, x, v, omega, dt):
     """Make an EngineRun of a ball on a very heavy box that rotates; read: x, y and both velocities.
 
-    Bullet ignores the velocity of a body without mass.  Gravity is a force on the ball only.
+    In maximal coordinates Bullet ignores the velocity of a body without mass.  Gravity is a force on the ball only.
     """
     bullet, half = Rigid(dt, iterations=ITERATIONS), np.array([3.0, 3.0, 0.5])
     shape = bullet.pb.createCollisionShape(bullet.pb.GEOM_BOX, halfExtents=half.tolist())
@@ -76,6 +76,31 @@ def pybullet_slab(bullet):
     shape = bullet.pb.createCollisionShape(bullet.pb.GEOM_BOX, halfExtents=[5.0, 5.0, 1.0])
     slab = bullet.pb.createMultiBody(0, shape, basePosition=[0.0, 0.0, -1.0], useMaximalCoordinates=1)
     bullet.pb.changeDynamics(slab, -1, lateralFriction=1.0, rollingFriction=0, spinningFriction=0, restitution=0)
+
+
+def pybullet_wedge(x, m, half, thick, angle, g, maximal, dt):
+    """Make an EngineRun of a wedge that cannot turn and a block on it, both boxes; nothing rubs.
+
+    x (2, 2) centres, m (2,), half: half size of the block, which is a cube, thick (2,): half sizes of the wedge.
+    read: x of the wedge, x and y of the block, and their velocities.  The block leaves a contact point behind by its
+    way in a step, and loses it where that is more than the breaking threshold.
+    """
+    bullet = Rigid(dt, (0.0, 0.0, -g), iterations=ITERATIONS)
+    pb, R = bullet.pb, about(np.array([0.0, 1.0, 0.0]), angle)
+    pb.setPhysicsEngineParameter(contactBreakingThreshold=1.0)
+    slab = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[5.0, 5.0, 1.0])
+    floor, pair = pb.createMultiBody(0, slab, basePosition=[0.0, 0.0, -1.0], useMaximalCoordinates=int(maximal)), []
+    moments = np.full(3, HEAVY), np.full(3, 2.0 / 3.0 * m[1] * half**2)
+    for place, mass, moment, sizes in zip(x, m, moments, ((*thick[:1], 2.0 * half, *thick[1:]), (half, half, half))):
+        shape = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=list(map(float, sizes)))
+        pair.append(bullet.body(mass, moment, (place[0], 0.0, place[1]), np.zeros(3), maximal, R=R, shape=shape))
+    pb.changeDynamics(floor, -1, lateralFriction=0, rollingFriction=0, spinningFriction=0, restitution=0)
+    wedge, block = pair
+
+    def read():
+        return np.array([bullet.position(wedge)[0], *bullet.position(block)[::2], bullet.velocity(wedge)[0],
+                         *bullet.velocity(block)[::2]])
+    return EngineRun(bullet.step, read, bullet.close)
 
 
 # ---------------------------------------------------------------------------------------------- bodies on joints
