@@ -9,8 +9,8 @@ v (n, d) [m/s] · omega (n,) or (n, 3) [rad/s], world · J (m, d) [N s] impulses
 A load is a function  load(t, x, q, v, omega, p) → (F, tau).  Planes are further rows of all arrays.  A row with
 inv_mass = 0 keeps the velocity that you give it: at rest it is ground, and in motion a conveyor belt, a lift or a
 turntable.  A scene calls only what it needs: no detection where nothing can touch, no quaternions in the plane.
-Given in support/simulator.py: sweep_residual_2d and largest_overlap, to judge a run by.
-*Left out:* restitution of many contacts, joints, sleeping.
+Given in support/simulator.py: a loop with joints.  Given in support/bodies.py: how to judge a run.
+*Left out:* restitution of many contacts, sleeping.
 """
 
 import numpy as np
@@ -38,11 +38,15 @@ from .support.bodies import (
     RockingBlock,
     check_speed,
     checked_bodies,
+    closing_speeds,
     make_bodies,
     make_bodies_2d,
     mechanical_energy_2d,
     movable_pairs,
     rocking_acceleration,
+    stop_slip,
+    sweep_residual_2d,
+    time_of_landing,
 )
 from .support.broad_phase import near_pairs
 from .support.contact_points import (
@@ -53,13 +57,20 @@ from .support.contact_points import (
     box_contacts,
     box_contacts_2d,
     disc_bounds,
+    largest_overlap,
     round_contacts,
+)
+from .support.joints import (
+    close_joints_2d,
+    composed_joint_step_2d,
+    joint_step,
+    joint_step_2d,
+    make_joints,
+    parting_speeds,
+    without_joined,
 )
 from .support.scenes import PileState, check_overlap
 from .vectors import cross, dot, norm
-
-HALVINGS = 50                # of a step, until the time of an impact is known to round-off [-]
-
 
 # ---------------------------------------------------------------------------------------------- without contact
 
@@ -152,15 +163,6 @@ def find_contacts(narrow, x, low, high, turn, p):
     ### END SOLUTION
 
 
-def closing_speeds(gap, dt):
-    """Given.  Return the u_n (m,) [m/s] below which no contact may come: −gap/dt closes the gap; 0 if it is closed.
-
-    *Left out:* parting bodies that overlap.  A push would gain energy, and kept_impulses would take it for a load;
-    the soft contacts of lesson 9 do it better.
-    """
-    return np.minimum(-gap / dt, 0.0)
-
-
 def contact_step_2d(load, bounds, narrow, t, state, dt, p):
     """Return the PileState of all bodies in the plane after dt: the lecture's loop with contact.
 
@@ -222,22 +224,6 @@ def support_velocity(place, ball):
     ### BEGIN SOLUTION 10.8
     return point_velocity(ball.floor_v, ball.floor_omega, place - ball.centre)
     ### END SOLUTION
-
-
-def stop_slip(v, omega, floor, dt, ball):
-    """Given.  Return (v, omega) after friction has acted for dt against a floor with the velocity `floor` (3,).
-
-    As rolling_step of lesson 5:  J = −min(μN dt, |u|/K) u/|u|,  u = v + ω × r + dt g_t − floor,  K = 1/m + radius²/I.
-    """
-    r = np.array([0.0, 0.0, -ball.radius])
-    slip = point_velocity(v, omega, r) + dt * ball.gravity - floor
-    slip[2] = 0.0
-    size, K = norm(slip), 1.0 / ball.m + ball.radius * ball.radius / ball.I_body[0]
-    if size == 0.0:
-        return v, omega
-    limit = -ball.mu * ball.m * ball.gravity[2] * dt
-    J = -np.minimum(limit, size / K) / size * slip
-    return v + J / ball.m, omega + cross(r, J) / ball.I_body[0]
 
 
 def carried_step(load, t, x, v, q, omega, dt, ball):
@@ -325,13 +311,7 @@ def rocking_step(step, t, x, v, dt, block):
     x_new, v_new = step(rocking_acceleration, t, x, v, dt, block)
     if not x_new[0] < 0.0:
         return side * x_new, side * v_new
-    early, late = 0.0, dt
-    for _ in range(HALVINGS):
-        middle = 0.5 * (early + late)
-        if step(rocking_acceleration, t, x, v, middle, block)[0][0] > 0.0:
-            early = middle
-        else:
-            late = middle
+    late = time_of_landing(step, t, x, v, dt, block)
     _, v = step(rocking_acceleration, t, x, v, late, block)
     lands = np.array([block.half_width, -block.half_height])
     falls = v[0] * np.array([-block.half_height, block.half_width])

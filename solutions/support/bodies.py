@@ -19,8 +19,14 @@ from ..checks import (
     positive_number,
     whole_number,
 )
+from ..contact import velocity_sweep_2d
+from ..rotation import point_velocity
+from ..vectors import cross, norm
+from .arms import arms_2d
 from .broad_phase import Pairs
 from .scenes import PileState, no_contacts
+
+HALVINGS = 50                # of a step, until the time of an impact is known to round-off [-]
 
 
 class Bodies(NamedTuple):
@@ -177,6 +183,23 @@ def check_speed(v, omega, dt):
         raise Diverged("the largest velocity of a body at the step [s]", dt, "take a smaller step, or more sweeps")
 
 
+def closing_speeds(gap, dt):
+    """Given.  Return the u_n (m,) [m/s] below which no contact may come: −gap/dt closes the gap; 0 if it is closed.
+
+    *Left out:* parting bodies that overlap.  A push would gain energy, and kept_impulses would take it for a load;
+    the soft contacts of lesson 9 do it better.
+    """
+    return np.minimum(-gap / dt, 0.0)
+
+
+def sweep_residual_2d(state, dt, p):
+    """Given.  Return how far [m/s] the last step in the plane is from the laws: what one more sweep changes."""
+    x, _, v, omega, contacts, J = state
+    arms, aim = arms_2d(x - dt * v, p.inv_mass, p.inv_inertia, contacts), closing_speeds(contacts.gap, dt)
+    _, _, better = velocity_sweep_2d(v, omega, J, aim, 0.0 * aim, contacts, arms, p)
+    return np.max(np.append(0.0, np.abs(better - J) * np.stack((arms.k_n, arms.k_n), axis=1)))
+
+
 def mechanical_energy_2d(x, v, omega, p):
     """Return the energy [J] of all bodies in the plane that can move; what cannot turn has no energy of rotation."""
     energy = 0.0
@@ -197,3 +220,31 @@ def rocking_acceleration(t, x, v, block):
     alpha = np.arctan2(block.half_width, block.half_height)
     rate = block.m * block.g * R / (block.inertia + block.m * R * R)
     return np.array([-rate * np.sin(alpha - x[0])])
+
+
+def stop_slip(v, omega, floor, dt, ball):
+    """Given.  Return (v, omega) after friction has acted for dt against a floor with the velocity `floor` (3,).
+
+    As rolling_step of lesson 5:  J = −min(μN dt, |u|/K) u/|u|,  u = v + ω × r + dt g_t − floor,  K = 1/m + radius²/I.
+    """
+    r = np.array([0.0, 0.0, -ball.radius])
+    slip = point_velocity(v, omega, r) + dt * ball.gravity - floor
+    slip[2] = 0.0
+    size, K = norm(slip), 1.0 / ball.m + ball.radius * ball.radius / ball.I_body[0]
+    if size == 0.0:
+        return v, omega
+    limit = -ball.mu * ball.m * ball.gravity[2] * dt
+    J = -np.minimum(limit, size / K) / size * slip
+    return v + J / ball.m, omega + cross(r, J) / ball.I_body[0]
+
+
+def time_of_landing(step, t, x, v, dt, block):
+    """Return the time [s] within dt at which a RockingBlock with the lean x > 0 comes upright, by bisection."""
+    early, late = 0.0, dt
+    for _ in range(HALVINGS):
+        middle = 0.5 * (early + late)
+        if step(rocking_acceleration, t, x, v, middle, block)[0][0] > 0.0:
+            early = middle
+        else:
+            late = middle
+    return late

@@ -363,3 +363,8 @@ def box_contacts(x, turn, half, planes, pairs, reach):
                 c.a[s], c.b[s] = i, j
         c.first[i + 1] = m
     return first_of(c, m)
+
+
+def largest_overlap(contacts):
+    """Given.  Return how far the deepest contact has sunk in [m]; 0 if none has."""
+    return np.max(np.append(0.0, -contacts.gap))

@@ -1,19 +1,31 @@
-"""Given with lesson 10.  Is a run right?  What is left of the laws of contact, and of the bodies' room."""
+"""Given with lesson 10.  One loop with contacts and joints."""
 
 import numpy as np
 
-from ..simulator import closing_speeds, velocity_sweep_2d
-from .arms import arms_2d
+from ..contact import kept_impulses, velocity_sweep_2d
+from ..simulator import find_contacts, new_velocities_2d
+from .arms import apply_impulses_2d, arms_2d
+from .joints import close_joints_2d, parting_speeds, without_joined
+from .scenes import PileState
 
 
-def sweep_residual_2d(state, dt, p):
-    """Given.  Return how far [m/s] the last step in the plane is from the laws: what one more sweep changes."""
-    x, _, v, omega, contacts, J = state
-    arms, aim = arms_2d(x - dt * v, p.inv_mass, p.inv_inertia, contacts), closing_speeds(contacts.gap, dt)
-    _, _, better = velocity_sweep_2d(v, omega, J, aim, 0.0 * aim, contacts, arms, p)
-    return np.max(np.append(0.0, np.abs(better - J) * np.stack((arms.k_n, arms.k_n), axis=1)))
+def joint_contact_step_2d(load, bounds, narrow, t, state, dt, p):
+    """Given.  Return the PileState of JointedBodies in the plane after dt: contact_step_2d, and after each sweep
+    close_joints_2d, which leaves no joint open at the end of the step.
 
-
-def largest_overlap(contacts):
-    """Given.  Return how far the deepest contact has sunk in [m]; 0 if none has."""
-    return np.max(np.append(0.0, -contacts.gap))
+    Bodies that share a joint do not touch.  A contact that comes with u_n leaves with −p.e u_n, and then no impulse of
+    the last step is kept.
+    """
+    x, q, v, omega, old, J = state
+    v, omega = new_velocities_2d(load, t, x, q, v, omega, dt, p)
+    low, high, turn = bounds(x, q, p.half)
+    contacts = without_joined(find_contacts(narrow, x, low, high, turn, p), p.joints)
+    arms = arms_2d(x, p.inv_mass, p.inv_inertia, contacts)
+    v, omega = close_joints_2d(x, q, v, omega, dt, p)
+    aim = parting_speeds(v, omega, contacts, arms, dt, p.e)
+    J, give = kept_impulses(contacts, old, J, p.margin if p.e == 0.0 else 0.0), np.zeros(aim.size)
+    apply_impulses_2d(v, omega, J, contacts, arms, p.inv_mass, p.inv_inertia)
+    for _ in range(p.sweeps if contacts.a.size > 0 else 0):
+        v, omega, J = velocity_sweep_2d(v, omega, J, aim, give, contacts, arms, p)
+        v, omega = close_joints_2d(x, q, v, omega, dt, p)
+    return PileState(x + dt * v, q + dt * omega, v, omega, contacts, J)

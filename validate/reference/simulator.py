@@ -1,5 +1,7 @@
 """Truths for the lesson on simulators, independent of it."""
 
+from functools import cache
+
 import numpy as np
 from scipy.integrate import solve_ivp
 
@@ -30,3 +32,149 @@ def rocking(half_width, half_height, g, lean, t):
             impacts.append((now, side * y[1], side * kept * y[1]))
             y, side = np.array([0.0, -kept * y[1]]), -side
     return side * y[0], side * y[1], impacts
+
+
+# ---------------------------------------------------------------------------------------------- rods in a chain
+
+def rods_slope(n, l, m, inertia, g):
+    """Return (θ, ω)˙ of n rods in a chain that hangs in the origin, θ from straight down.
+
+    The centre of rod k is at Σ_{j<k} l e_j + ½ l e_k, so that its kinetic energy has the factors l l, ½ l l and ¼ l l:
+        Σ_j C_kj (cos(θ_k − θ_j) θ̈_j + sin(θ_k − θ_j) ω_j²) + I θ̈_k + w_k sin θ_k = 0
+        C_kj = m l² (n − 1 − max(k, j) + ½),   C_kk = m l² (n − 1 − k + ¼),   w_k = m g l (n − 1 − k + ½)
+    *Source:* Lagrange's equations.
+    """
+    k = np.arange(n)
+    C = m * l * l * (n - 0.5 - np.maximum.outer(k, k))
+    C[k, k] -= 0.25 * m * l * l
+    w = m * g * l * (n - 0.5 - k)
+
+    def slope(_, y):
+        theta, omega = np.split(y, 2)
+        apart = theta[:, None] - theta
+        right = -(C * np.sin(apart)) @ omega**2 - w * np.sin(theta)
+        return np.concatenate((omega, np.linalg.solve(C * np.cos(apart) + inertia * np.eye(n), right)))
+    return slope
+
+
+@cache
+def rods_motion(n, l, m, inertia, g, T, ahead=0.0, rtol=RTOL):
+    """Solve for (θ, ω) of such a chain, let go horizontally with the velocity of `ahead` seconds later, by DOP853."""
+    slope = rods_slope(n, l, m, inertia, g)
+    start = np.concatenate((np.full(n, 0.5 * np.pi), np.zeros(n)))
+    start[n:] = ahead * slope(0.0, start)[n:]
+    return solve_ivp(slope, (0.0, T), start, method="DOP853", rtol=rtol, atol=0.1 * rtol, dense_output=True)
+
+
+def rods_ends(theta, l):
+    """Return the lower ends (n, 2) [m]."""
+    return l * np.cumsum(np.stack((np.sin(theta), -np.cos(theta)), axis=1), axis=0)
+
+
+@cache
+def rods_lag(n, l, m, inertia, g, T):
+    """Return |∂x/∂dt| [m/s] of all ends at T where the first velocity is that of ½ dt later (or earlier).
+
+    Both engines move bodies by xₙ₊₁ − 2xₙ + xₙ₋₁ = dt² (g + forces of the joints at xₙ), which is of second order.
+    What is of first order is the start: pybullet has x₁ − x₀ = dt² a, pymunk x₁ = x₀, and ½ dt² a would be right.
+    """
+    h = 1e-4
+    ends = [rods_ends(rods_motion(n, l, m, inertia, g, T, 0.5 * dt, 1e-9).y[:n, -1], l) for dt in (h, -h)]
+    return float(np.linalg.norm(ends[0] - ends[1]) / (2.0 * h))
+
+
+def rods_step(theta, p, h, C, inertia, w):
+    """Return (θ, p) after h by the discrete Lagrangian  ½ m |Δx|²/h + ½ I |Δθ|²/h − ½ h (V + V').
+
+    That is what RATTLE does, in angles, so that nothing has to be projected:  p = −∂L/∂θ gives the new θ by Newton's
+    method, and p' = ∂L/∂θ'.
+    *Source:* Marsden and West 2001, 3.5.
+    """
+    here = np.sum(C * np.sin(theta[:, None] - theta), axis=1) + 0.5 * h * h * w * np.sin(theta)
+    now = theta + h * np.linalg.solve(C * np.cos(theta[:, None] - theta) + inertia * np.eye(theta.size), p)
+    for _ in range(50):
+        apart = now - theta[:, None]
+        lacks = h * p - here - np.sum(C * np.sin(apart), axis=1) - inertia * (now - theta)
+        change = np.linalg.solve(C * np.cos(apart) + inertia * np.eye(theta.size), lacks)
+        now = now + change
+        if np.max(np.abs(change)) < 1e-13:
+            break
+    there = np.sum(C * (np.sin(now[:, None] - theta) - np.sin(now[:, None] - now)), axis=1)
+    return now, (there + inertia * (now - theta)) / h - 0.5 * h * w * np.sin(now)
+
+
+@cache
+def rods_error(n, l, m, inertia, g, T, steps, shares=(1.0,)):
+    """Return |error| [m] of all ends at T after so many steps, each of substeps with these shares of it."""
+    k = np.arange(n)
+    C = m * l * l * (n - 0.5 - np.maximum.outer(k, k))
+    C[k, k] -= 0.25 * m * l * l
+    theta, p, w = np.full(n, 0.5 * np.pi), np.zeros(n), m * g * l * (n - 0.5 - k)
+    for _ in range(steps):
+        for share in shares:
+            theta, p = rods_step(theta, p, share * T / steps, C, inertia, w)
+    return float(np.linalg.norm(rods_ends(theta, l) - rods_ends(rods_motion(n, l, m, inertia, g, T).y[:n, -1], l)))
+
+
+@cache
+def rods_gaps(n, l, m, inertia, g, T):
+    """Return (how far [m/s²] all ends can be off over dt² where joints are closed one step late, greatest ω [rad/s]).
+
+    A rod that turns with ω leaves its tangent by ½ ω² l dt² in a step: that gap, at the most in the whole motion, of
+    all joints above an end.
+    """
+    omega = rods_motion(n, l, m, inertia, g, T).sol(np.linspace(0.0, T, 1001))[n:]
+    return float(np.linalg.norm(np.cumsum(0.5 * l * np.max(omega**2, axis=1)))), float(np.max(np.abs(omega)))
+
+
+def rods_energy(y, l, m, inertia, g):
+    """Return the energy [J] of (θ, ω)."""
+    theta, omega = np.split(y, 2)
+    ends = rods_ends(theta, l)
+    speeds = l * np.cumsum(omega[:, None] * np.stack((np.cos(theta), np.sin(theta)), axis=1), axis=0)
+    before, fast = np.vstack((np.zeros(2), ends[:-1])), np.vstack((np.zeros(2), speeds[:-1]))
+    v, x = 0.5 * (speeds + fast), 0.5 * (ends + before)
+    return 0.5 * m * np.sum(v * v) + 0.5 * inertia * np.sum(omega**2) + m * g * np.sum(x[:, 1])
+
+
+# ---------------------------------------------------------------------------------------------- balls on rods
+
+def cradle_gaps(theta, pitch, L, R):
+    """Return gaps (n − 1,) [m] of balls on rods of length L, pivots one pitch apart, and their derivatives (n − 1, 2)
+    by the angles of both.
+    """
+    x = np.stack((pitch * np.arange(theta.size) + L * np.sin(theta), -L * np.cos(theta)), axis=1)
+    way, turns = np.diff(x, axis=0), L * np.stack((np.cos(theta), np.sin(theta)), axis=1)
+    length = np.linalg.norm(way, axis=1)
+    n = way / length[:, None]
+    return length - 2.0 * R, np.stack((-np.sum(n * turns[:-1], axis=1), np.sum(n * turns[1:], axis=1)), axis=1)
+
+
+@cache
+def cradle_motion(lifted, angle, n, pitch, L, R, g, inertia, T):
+    """Return (θ (n,), ω (n,), impacts) at T of n pendulums, the first `lifted` of which begin at −angle.
+
+    inertia: moment of each about its pivot over its mass [m²].  Swings by DOP853 until a gap closes; there the impulse
+    along its normal reverses the gap's velocity, and each angle takes it by its own lever: e = 1.
+    impacts: [(time, number of the gap, rates before, rates after)].
+    """
+    y, now, impacts = np.concatenate((np.where(np.arange(n) < lifted, -angle, 0.0), np.zeros(n))), 0.0, []
+
+    def slope(_, y):
+        return np.concatenate((y[n:], -g * L / inertia * np.sin(y[:n])))
+
+    def closes(k):
+        def gap(_, y):
+            return cradle_gaps(y[:n], pitch, L, R)[0][k]
+        gap.terminal, gap.direction = True, -1.0
+        return gap
+    events = [closes(k) for k in range(n - 1)]
+    while now < T:
+        run = solve_ivp(slope, (now, T), y, method="DOP853", rtol=RTOL, atol=ATOL, events=events)
+        now, y = run.t[-1], run.y[:, -1].copy()
+        if run.status == 1:
+            k = next(k for k, times in enumerate(run.t_events) if times.size)
+            lever, before = cradle_gaps(y[:n], pitch, L, R)[1][k], y[n:].copy()
+            y[n + k:n + k + 2] -= 2.0 * lever * (lever @ y[n + k:n + k + 2]) / (lever @ lever)
+            impacts.append((now, k, before, y[n:].copy()))
+    return y[:n], y[n:], impacts

@@ -1,0 +1,206 @@
+"""A chain of rigid rods on hinges is let go from horizontal.  Its end whips round within a second.
+
+Our joints take all hinges at once, by one band matrix.  The engines sweep over them, one after the other.
+"""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import BadInput, check_positive
+from solutions.rotation import SUZUKI
+from solutions.simulator import advance_free, make_bodies, make_bodies_2d, make_joints
+from solutions.simulator import weight as acceleration
+from validate import drawing
+from validate.drawing import pose
+from validate.engines.simulator import pybullet_chain, pymunk_chain
+from validate.methods import COMPOSED_JOINTS, JOINTS, JOINTS_IN_SPACE
+from validate.reference.orientation import about
+from validate.reference.simulator import rods_ends, rods_energy, rods_error, rods_gaps, rods_lag, rods_motion
+from validate.scene import PYBULLET, PYMUNK, ROUND_OFF, Engine, Scene
+
+T = 1.0                      # [s]
+STEPS = (10, 20, 50, 100, 200, 500, 1000)
+SWEEPS = 10                  # of both engines for each rod: an impulse travels one rod per sweep
+HEADING = np.array([0.6, 0.8, 0.0])      # of the chain in space: along no axis
+THICK = 0.01                 # moment of a rod about itself over the other two [-]
+FIVE = (SUZUKI, SUZUKI, 1.0 - 4.0 * SUZUKI, SUZUKI, SUZUKI)
+
+
+class Params(NamedTuple):
+    rods: Annotated[int, "N [-]"] = 10
+    l: Annotated[float, "length of each [m]"] = 0.1
+    m: Annotated[float, "mass of each [kg]"] = 0.1
+    g: Annotated[float, "gravity [m/s²]"] = 9.81
+
+
+CASES = {"10 rods": Params(), "50 rods": Params(rods=50)}
+
+
+def inertia(p):
+    return p.m * p.l**2 / 12.0
+
+
+def straight(p):
+    """Return the ends (N + 1, 2) [m] at the start."""
+    return p.l * np.stack((np.arange(p.rods + 1.0), np.zeros(p.rods + 1)), axis=1)
+
+
+def start(p):
+    """(x, q, v, ω, JointedBodies) in the plane, and the same in space.  Body 0 is the wall."""
+    for name in ("l", "m", "g"):
+        check_positive(name, getattr(p, name))
+    if p.rods < 1:
+        raise BadInput("rods", p.rods, "give 1 or more")
+    ends, n = straight(p), np.arange(1, p.rods + 1)
+    along = np.append(0.0, 0.5 * (ends[1:, 0] + ends[:-1, 0]))
+    mass, I = np.append(np.inf, np.full(p.rods, p.m)), np.append(np.inf, np.full(p.rods, inertia(p)))
+    flat, rows = make_bodies_2d(np.stack((along, 0.0 * along), axis=1), 0.0 * along, mass, I,
+                                np.full((p.rods + 1, 2), 0.5 * p.l), np.zeros((0, 3)), (0.0, -p.g), 0.0, 1, 0.01)
+    hinged = make_joints(flat, rows, n, n - 1, ends[:-1], 0.0)
+    half_angle = 0.5 * np.arctan2(HEADING[1], HEADING[0])
+    turned = np.tile(np.array([np.cos(half_angle), 0.0, 0.0, np.sin(half_angle)]), (p.rods + 1, 1))
+    deep, rows = make_bodies(along[:, None] * HEADING, turned, mass, I[:, None] * np.array([THICK, 1.0, 1.0]),
+                             np.full((p.rods + 1, 3), 0.5 * p.l), np.zeros((0, 4)), (0.0, 0.0, -p.g), 0.0, 1, 0.01)
+    return *flat[:4], hinged, *deep[:4], make_joints(deep, rows, n, n - 1, ends[:-1, :1] * HEADING, 0.0)
+
+
+def run(step, acceleration, state, p, dt, steps):
+    if step.__name__ == "joint_step":
+        now = advance_free(step, acceleration, 0.0, *state[5:9], dt, steps, state[9])
+        # for the picture: places and angles in the plane of the motion
+        x, along = now[0], np.array([about_x(q) for q in now[1]])
+        flat = np.stack((x @ HEADING, x[:, 2]), axis=1), np.arctan2(along[:, 2], along @ HEADING)
+        return *flat, *state[2:5], *now, state[9]
+    return *advance_free(step, acceleration, 0.0, *state[:4], dt, steps, state[4]), *state[4:]
+
+
+def about_x(q):
+    """Return the x axis (3,) of a body with the quaternion q: along the rod."""
+    w, x, y, z = q
+    return np.array([1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)])
+
+
+def lower_ends(x, angle, p):
+    """Return the lower ends (2N,) [m] of rods with these centres (N, 2) and angles (N,)."""
+    return (x + 0.5 * p.l * np.stack((np.cos(angle), np.sin(angle)), axis=1)).ravel()
+
+
+def observe(state, p):
+    return lower_ends(state[0][1:], state[1][1:], p)
+
+
+def of(p):
+    """Return what the functions of the reference take."""
+    return p.rods, p.l, p.m, inertia(p), p.g, T
+
+
+def truth(p, t):
+    """The lower end of each rod, from the angles of all rods: Lagrange's equations by DOP853 at 1e-12.
+
+    Angles have no joints that could open, so nothing is projected.
+    """
+    return rods_ends(rods_motion(*of(p)).sol(t)[:p.rods], p.l).ravel()
+
+
+def tolerance(p, dt):
+    """Ours: the error of the same discrete Lagrangian written in angles (rods_error), an independent code.  It is taken
+    from one run, of 20 steps per rod (8 for the fourth order), at least 200 (100), and scaled with dt² (dt⁴); half as
+    much again for what the next order adds in shorter steps.
+
+    The engines also begin half a step late or early: that is of first order, by rods_lag.  And they close a joint in
+    the step after the one that opened it: that is of second order, by rods_gaps.  Where a rod turns by more than a
+    radian in a step, an expansion in powers of dt says nothing.
+    """
+    size, n = np.linalg.norm(truth(p, T)), p.rods
+    coarse, composed = max(200, 10 * n), max(100, 4 * n)
+    second = 1.5 * rods_error(*of(p), coarse) * (dt * coarse / T) ** 2 / size
+    fourth = 1.5 * rods_error(*of(p), composed, FIVE) * (dt * composed / T) ** 4 / size
+    rounded = 1e-11 + T / dt * 100.0 * ROUND_OFF
+    gaps, fastest = rods_gaps(*of(p))
+    witness = (rods_lag(*of(p)) * dt + gaps * dt**2) / size + second + 1e-9 if fastest * dt < 1.0 else np.inf
+    return {1: witness, 2: second + rounded, 4: fourth + rounded}
+
+
+def pymunk_make(p, dt, iterations, bias):
+    return pymunk_chain(straight(p), p.m, inertia(p), p.g, iterations * p.rods, bias, dt,
+                        lambda x, angle: lower_ends(x, angle, p))
+
+
+def pybullet_make(p, dt, erp):
+    return pybullet_chain(straight(p), p.m, inertia(p) * np.array([THICK, 1.0, 1.0]), p.g, SWEEPS * max(p.rods, 10),
+                          erp, dt, lambda x, angle: lower_ends(x, angle, p))
+
+
+ENGINES = (
+    Engine(PYMUNK, "", lambda p, dt: pymunk_make(p, dt, SWEEPS, 0.0), 1,
+           f"PivotJoints, error_bias 0, {SWEEPS} iterations for each rod"),
+    Engine(PYBULLET, "", lambda p, dt: pybullet_make(p, dt, 1.0), 1,
+           f"JOINT_POINT2POINT, maximal coordinates, erp 1, {SWEEPS} iterations for each rod; it moves in one plane"),
+)
+
+
+def sanity_checks():
+    """Return ((claim, found, expected, tolerance), …): conditions that the reference solution must meet."""
+    claims = []
+    for name, p in CASES.items():
+        motion = rods_motion(*of(p))
+        energies = [rods_energy(motion.sol(t), *of(p)[1:5]) for t in np.linspace(0.0, T, 21)]
+        gained = np.ptp(energies) / (p.m * p.g * p.l * p.rods**2)
+        claims.append((f"{name}: energy gained over the weight times the length", gained, 0.0, 1e-9))
+    alone = Params(rods=1, l=0.8)
+    swings = rods_motion(*of(alone)).sol(T)[0]
+    from scipy.special import ellipj
+    w, k = np.sqrt(1.5 * alone.g / alone.l), np.sqrt(0.5)
+    _, cn, dn, _ = ellipj(w * T, k * k)
+    claims.append(("one rod: angle of a pendulum from horizontal, by an elliptic function [rad]", swings,
+                   2.0 * np.arcsin(k * cn / dn), 1e-9))
+    return tuple(claims)
+
+
+def points(observed, p):
+    return np.round(np.concatenate((np.zeros((1, 2)), np.reshape(observed, (-1, 2)))), 4)
+
+
+def links(p):
+    return [(n, n + 1) for n in range(p.rods)]
+
+
+def bodies(p):
+    return [drawing.capsule(0.12 * p.l, 0.76 * p.l) for _ in range(p.rods)]
+
+
+def poses(observed, p):
+    """Return the rods in the plane of x and z; a capsule is along its own z."""
+    ends = np.concatenate((np.zeros((1, 2)), np.reshape(observed, (-1, 2))))
+    return [pose(np.array([x, 0.0, z]), about(np.array([0.0, 1.0, 0.0]), np.arctan2(*along)))
+            for (x, z), along in zip(0.5 * (ends[1:] + ends[:-1]), ends[1:] - ends[:-1])]
+
+
+SCENE = Scene(
+    title="A chain of rods",
+    lesson="simulator",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=(JOINTS, COMPOSED_JOINTS, JOINTS_IN_SPACE),
+    acceleration=acceleration,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-9,
+    tolerance=tolerance,
+    engines=ENGINES,
+    slow_cases=("50 rods",),
+    slow_methods=("composed_joint_step_2d", "joint_step"),
+    uncompiled_in_quick=("joint_step_2d",),
+    sanity_checks=sanity_checks,
+    points=points,
+    links=links,
+    bodies=bodies,
+    poses=poses,
+    uses=("bodies that turn", "one matrix with a narrow band for all joints", "no detection"),
+    ablations={"contact of the rods": "they would meet in the whip; the loop with joints of this lesson finds it",
+               "friction in the hinges": "it is a load; lesson 3 has its laws"},
+)

@@ -1,0 +1,236 @@
+"""Newton's cradle: five balls on rods, small gaps between them.  One ball swings down, and one leaves: (0, 0, 0, 0, 1).
+
+A hinge and a contact act in the same instant.  The loop takes them in turn until both hold.
+"""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import BadInput, check_not_negative, check_positive
+from solutions.simulator import advance_contact, disc_bounds, make_bodies_2d, make_joints, round_contacts
+from solutions.simulator import weight as acceleration
+from validate import drawing
+from validate.drawing import pose
+from validate.engines.simulator import ITERATIONS, pybullet_cradle, pymunk_cradle
+from validate.methods import JOINTED_LOOP
+from validate.reference.orientation import about
+from validate.reference.simulator import cradle_motion
+from validate.scene import PYBULLET, PYMUNK, ROUND_OFF, Engine, Scene
+
+T = 0.7                      # [s]: all impacts are over after 0.6
+STEPS = (5, 10, 20, 50, 100, 200, 500)
+BALLS = 5
+SWEEPS = 4                   # of the loop, one contact and hinges: each leaves I/mL² = 1e-3 of an error [-]
+TOGETHER = 60                # of four contacts at once: each leaves cos²(π/5) = 0.65 [-]
+TOUCHING = 1e-9              # margin of the loop: it sees a contact when there is one [m]
+BY_PHASE = "1 on average"    # an order: the error is dt times a number that depends on where in steps the impacts are
+LOW = np.array([(0.0, 1.0, 100.0)])      # a plane far below: the world to which the rods are hinged
+
+
+class Params(NamedTuple):
+    lifted: Annotated[int, "balls that are let go"] = 1
+    angle: Annotated[float, "of these from straight down [rad]"] = 0.3
+    gap: Annotated[float, "between neighbours at rest [m]; 0: they touch"] = 0.02
+    L: Annotated[float, "length of the rods, which have no mass [m]"] = 1.0
+    R: Annotated[float, "radius [m]"] = 0.05
+    g: Annotated[float, "gravity [m/s²]"] = 9.81
+
+
+CASES = {"one ball": Params(), "two balls": Params(lifted=2), "touching": Params(gap=0.0)}
+
+
+def moment(p):
+    """Return the moment of inertia of a solid ball about its centre over its mass [m²]."""
+    return 0.4 * p.R**2
+
+
+def pitch(p):
+    return 2.0 * p.R + p.gap
+
+
+def pivots(p):
+    return np.stack((pitch(p) * np.arange(BALLS), np.zeros(BALLS)), axis=1)
+
+
+def angles(p):
+    return np.where(np.arange(BALLS) < p.lifted, -p.angle, 0.0)
+
+
+def centres(theta, p):
+    return pivots(p) + p.L * np.stack((np.sin(theta), -np.cos(theta)), axis=1)
+
+
+def start(p):
+    """(PileState, JointedBodies) of the balls; each turns with its rod."""
+    for name in ("angle", "L", "R", "g"):
+        check_positive(name, getattr(p, name))
+    check_not_negative("gap", p.gap)
+    if not 1 <= p.lifted <= BALLS or p.angle >= 0.5 * np.pi:
+        raise BadInput("balls and angle", (p.lifted, p.angle), f"lift 1 to {BALLS} balls by less than a right angle")
+    x = centres(angles(p), p)
+    state, rows = make_bodies_2d(x, angles(p), 1.0, moment(p), np.full((BALLS, 2), p.R), LOW, (0.0, -p.g), 0.0,
+                                 SWEEPS if p.gap > 0.0 else TOGETHER, TOUCHING)
+    return state, make_joints(state, rows, np.arange(BALLS), np.full(BALLS, BALLS), pivots(p), 1.0)
+
+
+def run(step, acceleration, state, p, dt, steps):
+    now, rows = state
+    return advance_contact(step, acceleration, disc_bounds, round_contacts, 0.0, now, dt, steps, rows), rows
+
+
+def seen(theta, omega, p):
+    """With gaps: angle [rad] and rate [rad/s] of each.  Touching: sums of both, and twice the energy over m L²."""
+    if p.gap > 0.0:
+        return np.concatenate((theta, omega))
+    energy = (1.0 + moment(p) / p.L**2) * np.sum(omega**2) + 2.0 * p.g / p.L * np.sum(1.0 - np.cos(theta))
+    return np.array([np.sum(theta), np.sum(omega), energy])
+
+
+def observe(state, p):
+    return seen(state[0].q[:BALLS], state[0].omega[:BALLS], p)
+
+
+def truth(p, t):
+    """With gaps: pendulums by DOP853 until a gap closes; there the impulse along the normal, with e = 1.
+
+    Each impact passes the rate on, but for the squares of the angles, since equal levers mean equal masses: the last
+    ball leaves alone.  Source: Newton; Herrmann and Schmälzle 1981.
+    Touching balls collide at once, and for five rates there are two laws only: momentum and energy.  Gravity turns the
+    sum of small angles as if all were one pendulum, whoever moves, so that the sums are those of one pendulum that
+    swings through.  (Who leaves is a choice: Moreau's law in our loop gives (−0.26, 0, 0, 0.51, 0.51) rad/s with 400
+    steps, and something else where rounding closes one of the contacts a step later.)
+    """
+    if p.gap > 0.0:
+        return np.concatenate(cradle_motion(*of(p), t)[:2])
+    theta, omega, _ = cradle_motion(p.lifted, p.angle, p.lifted, 3.0 * p.L, *of(p)[4:], t)
+    return seen(theta, omega, p)
+
+
+def of(p):
+    """Return what the reference takes."""
+    return p.lifted, p.angle, BALLS, pitch(p), p.L, p.R, p.g, p.L**2 + moment(p)
+
+
+def tolerance(p, dt):
+    """Velocities are new ones in positions: half a step of the swing, ½ dt.  Each of four impacts (four for each ball
+    that swings) is found up to one step late, and so is everything after it.  Late by s, an angle is off by ω s and a
+    rate by w² sin(angle) s, with w² = g/L; a ball that has stopped went up to ω dt too far.  A step in which a ball
+    crosses half of a gap merges two impacts; then there is no bound.
+
+    Touching balls keep the sums; a late impact of a ball inside the next one does not change them.  Half of a step of
+    the swing is left, and in five angles of up to 0.3 the cubes, which gravity sees: 5 · angle³/6 · w² T at most.
+    """
+    w2, size = p.g / p.L, np.linalg.norm(truth(p, T))
+    fastest = 2.0 * np.sqrt(w2) * np.sin(0.5 * p.angle)
+    rounded = 1e-11 + T / dt * ROUND_OFF
+    if p.gap == 0.0:
+        late = dt * np.array([fastest, w2 * np.sin(p.angle), 2.0 * w2 * fastest * p.angle])
+        cubes = p.angle**3 / 6.0 * w2 * T * np.array([T, 1.0, 0.0])
+        return {BY_PHASE: (np.linalg.norm(late) + np.linalg.norm(cubes)) / size + rounded}
+    if 2.0 * fastest * p.L * dt > p.gap:
+        return {BY_PHASE: np.inf}
+    late = (4.0 * p.lifted + 0.5) * dt
+    moves = np.hypot(fastest, w2 * np.sin(p.angle)) * late * np.sqrt(p.lifted)
+    rests = np.sqrt(BALLS - p.lifted) * fastest * dt * np.hypot(1.0, np.sqrt(w2)) * p.lifted
+    return {BY_PHASE: (moves + rests) / size + rounded}
+
+
+def engine_read(p):
+    """Return read(x, v, ω) of the engines: the angle is that of the centre about its pivot."""
+    def read(x, v, omega):
+        r = np.asarray(x) - pivots(p)
+        return seen(np.arctan2(r[:, 0], -r[:, 1]), (r[:, 0] * v[:, 1] - r[:, 1] * v[:, 0]) / np.sum(r * r, axis=1), p)
+    return read
+
+
+def pymunk_make(p, dt):
+    return pymunk_cradle(pivots(p), centres(angles(p), p), 1.0, moment(p), p.R, p.g, dt, engine_read(p))
+
+
+def pybullet_make(p, dt):
+    return pybullet_cradle(pivots(p), centres(angles(p), p), 1.0, moment(p), p.R, p.g, dt, engine_read(p))
+
+
+ENGINES = (
+    Engine(PYMUNK, "", pymunk_make, BY_PHASE,
+           f"PivotJoints, error_bias 0; collision_slop 1e-5, {ITERATIONS} iterations"),
+    Engine(PYBULLET, "", pybullet_make, BY_PHASE,
+           f"JOINT_POINT2POINT, erp 1; settings for impacts, {ITERATIONS} iterations"),
+)
+
+
+def sanity_checks():
+    """Return ((claim, found, expected, tolerance), …): who leaves, and what each impact keeps."""
+    claims = []
+    for lifted, leave in ((1, (0.0, 0.0, 0.0, 0.0, 1.0)), (2, (0.0, 0.0, 0.0, 1.0, 1.0))):
+        p = Params(lifted=lifted)
+        theta, omega, impacts = cradle_motion(*of(p), T)
+        least = 2.0 * p.gap**2 / p.L**2
+        claims.append((f"{lifted} lifted: momentum kept by each impact, over that of the first [-]",
+                       max(abs(after.sum() / before.sum() - 1.0) for _, _, before, after in impacts), 0.0, 2.0 * least))
+        fastest = 2.0 * np.sqrt(p.g / of(p)[-1] * p.L) * np.sin(0.5 * p.angle)
+        # the others have been struck and swing back by g/L · gap/L per second since
+        back = p.g / p.L * lifted * p.gap / p.L * 4.0 * p.gap / p.L / fastest
+        claims.append((f"{lifted} lifted: rates after the last impact over that of the first ball [-]",
+                       impacts[-1][3] / fastest, leave, 2.0 * back / fastest + 4.0 * least))
+        energy = np.sum(omega**2) * of(p)[-1] + 2.0 * p.g * p.L * np.sum(np.cos(angles(p)) - np.cos(theta))
+        claims.append((f"{lifted} lifted: energy that was gained, over the first [-]",
+                       energy / (2.0 * p.g * p.L * lifted * (1.0 - np.cos(p.angle))), 0.0, 1e-10))
+    return tuple(claims)
+
+
+def points(observed, p):
+    """The pivots and the balls; touching balls at the start, because only sums are observed."""
+    theta = np.asarray(observed)[:BALLS] if p.gap > 0.0 else angles(p)
+    x = centres(theta, p)
+    ring = np.linspace(0.0, 2.0 * np.pi, 13)[:-1]
+    circle = p.R * np.stack((np.cos(ring), np.sin(ring)), axis=1)
+    return np.round(np.vstack((pivots(p), x, (x[:, None] + circle).reshape(-1, 2))), 4)
+
+
+def links(p):
+    rods = [(k, BALLS + k) for k in range(BALLS)]
+    return rods + [(2 * BALLS + 12 * k + i, 2 * BALLS + 12 * k + (i + 1) % 12) for k in range(BALLS) for i in range(12)]
+
+
+def bodies(p):
+    """Balls, then rods."""
+    return [drawing.sphere(p.R)] * BALLS + [drawing.cylinder(0.1 * p.R, p.L)] * BALLS
+
+
+def poses(observed, p):
+    theta = np.asarray(observed)[:BALLS] if p.gap > 0.0 else angles(p)
+    found, y = [], np.array([0.0, 1.0, 0.0])
+    for middle in (centres(theta, p), 0.5 * (pivots(p) + centres(theta, p))):
+        found += [pose(np.array([x, 0.0, z]), about(y, -angle)) for (x, z), angle in zip(middle, theta)]
+    return found
+
+
+SCENE = Scene(
+    title="A cradle of balls on rods",
+    lesson="simulator",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=(JOINTED_LOOP,),
+    acceleration=acceleration,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-9,
+    tolerance=tolerance,
+    engines=ENGINES,
+    orders={"joint_contact_step_2d": BY_PHASE},
+    slow_cases=("two balls", "touching"),
+    uncompiled_in_quick=("joint_contact_step_2d",),
+    sanity_checks=sanity_checks,
+    points=points,
+    links=links,
+    bodies=bodies,
+    poses=poses,
+    uses=("hinges", "one contact at a time, with restitution", "the plane"),
+    ablations={"friction": "neighbours slide on each other while they touch, for no time",
+               "several impacts at once": "touching balls: no law decides who leaves, only how fast all together are"},
+)
