@@ -7,6 +7,7 @@ from typing import Annotated
 import numpy as np
 import typer
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from solutions.checks import BadInput
@@ -92,10 +93,10 @@ def show(fault, found):
     """Print one fault and what it turned."""
     if found["turned"]:
         console.print(f"[green]✓[/green] {fault.lesson}.{fault.function}: {fault.wrong}\n"
-                      f"  {found['place']} in {found['seconds']:.1f} s: {found['turned']}", markup=True)
+                      f"  {found['place']} in {found['seconds']:.1f} s: {escape(found['turned'])}")
     else:
         why = fault.missed or f"tried {', '.join(found['tried']) or 'nothing: no place executes it'}"
-        console.print(f"[red]MISSED[/red] {fault.lesson}.{fault.function}: {fault.wrong}\n  {why}", markup=True)
+        console.print(f"[red]MISSED[/red] {fault.lesson}.{fault.function}: {fault.wrong}\n  {escape(why)}")
 
 
 def verdict(done):
@@ -125,7 +126,7 @@ def honest_runs(count, pool):
     for number, run in pool.each({number: (honest_run, number) for number in range(count)}):
         alarms += len(run.alarms)
         console.print(f"{'[red]✗[/red]' if run.alarms else '[green]✓[/green]'} {number}: {run.about}; "
-                      f"{run.places} scenes and cases in {run.seconds:.0f} s", markup=True)
+                      f"{run.places} scenes and cases in {run.seconds:.0f} s")
         for place, words in run.alarms.items():
             console.print(f"  {place}: {words}", markup=False)
     console.print(f"{count} honest runs turn {alarms} verdicts.")

@@ -454,7 +454,7 @@ def rolling_by_contact(lesson):
     found.append(agreement("With less friction both slip with g (sin θ − μ cos θ).",
                            "slipping disc and sphere: largest error [m/s, rad/s, N s]", np.max(np.abs(errors)),
                            ROUND_OFF))
-    # three discs on each other, one sweep per step from below: only what is kept from step to step adds up to the top
+    # three discs on each other, one sweep per step: without what is kept they would carry their weights only by sinking
     heights = r * (1.0 + 2.0 * np.arange(3))
     state, p = lesson.make_bodies_2d([(0.0, y) for y in heights], np.zeros(3), m, I, np.full((3, 2), r), [UP],
                                      (0.0, -G), 0.0, 1, 0.01)
@@ -464,4 +464,6 @@ def rolling_by_contact(lesson):
     found.append(agreement("Impulses that are kept carry a stack with one sweep per step: 1, 2 and 3 weights.",
                            "impulses under three discs over m g dt: largest error [-]",
                            np.max(np.abs(carried - (1.0, 2.0, 3.0))), 1e-6))
+    found.append(agreement("They carry it at rest.", "speed of three discs over g dt [-]",
+                           np.max(np.abs(end.v)) / (G * 1e-4), 1e-6))
     return found, None
