@@ -17,7 +17,7 @@ from IPython.display import HTML, Markdown, display
 
 from solutions.checks import BadInput
 
-from .. import engines, measure, modules
+from .. import engines, measure, modules, needs
 from ..loading import lacks, waiting
 from ..measure import film
 from ..report import ARROWS, PLAYER_3D, plots, words
@@ -181,7 +181,30 @@ def check(exercise):
         outcomes = json.loads(file.read_text()) if file.is_file() else []
     if not outcomes:
         raise RuntimeError(f"the check of exercise {exercise} did not run:\n{said}")
-    display(_Answer(exercise, outcomes))
+    display(_Answer(exercise, outcomes, _below(exercise, outcomes, own)))
+
+
+def _below(exercise, outcomes, own):
+    """The sentence about an exercise that this one calls, where that does not pass."""
+    below = needs.needed(exercise, own)
+    if not below or not any(o["status"] == "not yet" for o in outcomes):
+        return ""
+    states = needs.states((o["exercise"], o["status"]) for o in _outcomes_of(below, own))
+    first = needs.first_open(exercise, states, own)
+    return needs.sentence(exercise, first, states[first]) if first else ""
+
+
+def _outcomes_of(exercises, own):
+    """The outcomes of some exercises, as saved just now; none where the code ends the program."""
+    files = dict.fromkeys(str(TESTS / f"test_{needs.table()[number]['lesson']}.py") for number in exercises)
+    with tempfile.TemporaryDirectory() as scratch:
+        file = Path(scratch) / "outcomes.json"
+        try:
+            pytest_process.run(*files, f"--of={own}", *(f"--exercise={number}" for number in exercises),
+                               f"--outcomes={file}", f"--rootdir={modules.ROOT}", "--tb=line")
+        except pytest_process.Ended:
+            return []
+        return json.loads(file.read_text()) if file.is_file() else []
 
 
 def _lesson_of(exercise):
@@ -195,8 +218,8 @@ def _lesson_of(exercise):
 class _Answer:
     """The answer of a check, for people: the worst outcome first; all of it as text and as HTML."""
 
-    def __init__(self, exercise, outcomes):
-        self.exercise, self.outcomes = exercise, outcomes
+    def __init__(self, exercise, outcomes, below=""):
+        self.exercise, self.outcomes, self.below = exercise, outcomes, below
         self.open = [o for o in outcomes if o["status"] != "passed"]
         states = {o["status"] for o in outcomes}
         self.state = "not yet" if "not yet" in states else "not attempted" if "not attempted" in states else "passed"
@@ -209,10 +232,14 @@ class _Answer:
             waits = self.open[0]["got"]
             yield ("still open" if f"Exercise {self.exercise}:" in waits else "it waits for"), waits
         elif self.open:
+            if self.below:
+                yield "first", self.below
             first = next(o for o in self.open if o["status"] == "not yet")
             for name in ("quantity", "given", "expected", "got", "tolerance", "hint", "printed"):
                 if first[name]:
                     yield name, first[name]
+            if first["idea"]:
+                yield "diagnosis", first["idea"]
 
     def __repr__(self):
         (title, points), *rest = self.lines()

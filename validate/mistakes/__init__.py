@@ -1,0 +1,189 @@
+"""Name the mistake in an answer: compare what it returns in the grading tests with what known wrong answers return.
+
+The grading tests draw the same public inputs for everyone, so the same mistake gives the same numbers.  While a test
+runs, a Trace keeps one number for each of the first results of the exercise's function, and for some later ones:
+a sum of all numbers in the result, each with a weight of its own.  `<lesson>.json` has these sums for every wrong
+answer of the lesson, with a sentence about its idea.  `python -m tests.mutants.traces` writes it.  No answer can be
+read from it, because it holds no code and fewer numbers than a result.
+
+With secret inputs nothing is traced.
+
+*Left out:* answers with two mistakes.  They give the numbers of neither.
+"""
+
+import functools
+import json
+from pathlib import Path
+
+import numpy as np
+
+FIRST = 8                    # of the calls in a test these are kept, and after them number 16, 32, 64, …
+SAME, ROUND_OFF = 1e-6, 1e-9   # two sums are the same within this part of their terms, or within this
+DIGITS = 8                   # of a stored sum
+GOLDEN = 0.6180339887498949  # cubes times it, modulo 1, are spread evenly, and no two differences are the same
+MOST = 2                     # so many ideas are named where several give the same numbers
+NOTHING = object()           # the last result where there is none
+ONE, TWO = "a one-dimensional array", "a two-dimensional array"
+FOLDER = Path(__file__).parent
+
+
+@functools.cache
+def table(lesson):
+    """{exercise: its function, the trace of a right answer, and those of wrong ones}; empty if there is none."""
+    file = FOLDER / f"{lesson}.json"
+    return json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
+
+
+# ---------------------------------------------------------------------------------------------- what is kept
+
+class Traces:
+    """What the functions of the exercises return in a run: found = {(subject, exercise): {test: its Trace}}.
+
+    functions: {exercise: (name, whether the order of its results does not matter)}, as in the tables if None.
+    """
+
+    def __init__(self, functions=None):
+        self.functions, self.found = functions, {}
+
+    def begin(self, subject, lesson, exercise, test):
+        """The Trace of one test."""
+        known = table(lesson).get(exercise, {"function": "", "orderless": False})
+        ours = (known["function"], known["orderless"]) if self.functions is None else self.functions[exercise]
+        trace = Trace(*ours)
+        self.found.setdefault((subject, exercise), {})[test] = trace
+        return trace
+
+    def of(self, subject, exercise):
+        """{test: results} of an exercise."""
+        return {test: trace.kept() for test, trace in self.found.get((subject, exercise), {}).items()}
+
+
+class Trace:
+    """The calls of one function in one test: [number of entries, their weighted sum, size of its terms], or a word.
+
+    A test ends where it fails, so the number of calls is kept, too.
+    """
+
+    def __init__(self, function, orderless=False):
+        self.function, self.orderless, self.calls, self.results = function, orderless, 0, []
+        self.returned = NOTHING
+
+    def kept(self):
+        return [*self.results, f"{self.calls} calls"]
+
+    def watching(self, function):
+        """The function, which adds its results to this trace."""
+        @functools.wraps(function)
+        def watched(*arguments, **named):
+            self.calls += 1
+            kept = self.calls <= FIRST or self.calls & (self.calls - 1) == 0
+            try:
+                result = function(*arguments, **named)
+            except Exception as e:
+                if kept:
+                    self.results.append(type(e).__name__)
+                raise
+            if kept:
+                self.results.append(summary(result, self.orderless))
+            self.returned = result                                   # the last one, for `kind`
+            return result
+        return watched
+
+
+def summary(result, orderless=False):
+    """What is kept of a result: [entries, weighted sum, sum of sizes], or a word where there are no numbers."""
+    try:
+        rows = list(result) if orderless and not np.isscalar(result) else [result]
+        entries = [np.nan_to_num(np.array(list(leaves(row)), dtype=float), nan=0.7, posinf=1e9, neginf=-1e9)
+                   for row in rows]
+    except Exception:
+        return type(result).__name__
+    if not sum(map(len, entries)):
+        return "None" if result is None else "empty"
+    weighted = [row * (1.0 + GOLDEN * np.arange(1.0, len(row) + 1.0)**3 % 1.0) for row in entries]
+    sums = np.array([row.sum() for row in weighted])
+    if orderless:                                                    # a sum in which equal rows may change places
+        weighted, sums = [sums, sums * np.abs(sums)], sums + sums * np.abs(sums)
+    size = float(sum(np.abs(row).sum() for row in weighted))
+    return [sum(map(len, entries)), float(sums.sum()), size]
+
+
+def kind(value):
+    """What kind of thing a result is, in words."""
+    if value is None or value is NOTHING:
+        return "None" if value is None else ""
+    if isinstance(value, (bool, np.bool_)):
+        return "True or False"
+    if isinstance(value, np.ndarray) and value.ndim:
+        return {1: ONE, 2: TWO}.get(value.ndim, f"an array of {value.ndim} dimensions")
+    if isinstance(value, (int, float, np.number, np.ndarray)):
+        return "a number"
+    if isinstance(value, tuple) and not hasattr(value, "_fields"):
+        return f"{len(value)} values ({', '.join(map(kind, value))})"
+    name = type(value).__name__
+    return f"{'an' if name[0] in 'aeiou' else 'a'} {name}"
+
+
+def leaves(value):
+    """All numbers of a result, in their order."""
+    if isinstance(value, np.ndarray):
+        yield from value.astype(float).ravel()
+    elif isinstance(value, (tuple, list)):
+        for part in value:
+            yield from leaves(part)
+    elif isinstance(value, (set, frozenset)):
+        yield from leaves(sorted(value))
+    elif isinstance(value, dict):
+        for key in sorted(value):
+            yield from leaves((key, value[key]))
+    elif value is not None:
+        yield float(value)
+
+
+def same(kept, stored):
+    """Whether a result is the stored one, up to round-off."""
+    if isinstance(kept, str) or isinstance(stored, str):
+        return kept == stored
+    return kept[0] == stored[0] and abs(kept[1] - stored[1]) <= SAME * kept[2] + ROUND_OFF
+
+
+def all_same(kept, stored):
+    return len(kept) == len(stored) and all(map(same, kept, stored))
+
+
+# ---------------------------------------------------------------------------------------------- what is stored
+
+def stored(results):
+    """The results of a trace in few digits, as they are written down."""
+    return [one if isinstance(one, str) else [one[0], float(f"{one[1]:.{DIGITS}g}")] for one in results]
+
+
+# ---------------------------------------------------------------------------------------------- looking up
+
+def matching(lesson, exercise, traces):
+    """Ideas of the wrong answers that return the same in all tests of the exercise.
+
+    traces: {test: results} of the answer.  An answer that returns in all tests what a right one returns has none.
+    """
+    known = table(lesson).get(exercise)
+    if not known or traces.keys() != known["right"].keys():
+        return []
+    wrong = {test for test, right in known["right"].items() if not all_same(traces[test], right)}
+    found = [mistake["idea"] for mistake in known["wrong"]
+             if wrong and wrong == mistake["tests"].keys()
+             and all(all_same(traces[test], results) for test, results in mistake["tests"].items())]
+    return list(dict.fromkeys(found))
+
+
+def misshapen(lesson, exercise, trace):
+    """(expected, got) where the last result is not the kind of thing that the exercise's function returns; or None."""
+    expected = table(lesson).get(exercise, {}).get("returns", "")
+    got = kind(trace.returned) if trace else ""
+    return (expected, got) if expected and got and expected != got else None
+
+
+def sentence(found):
+    """What a student reads about these ideas."""
+    if not found:
+        return ""
+    return f"a known mistake gives the same results: {' or '.join(f'“{idea}”' for idea in found[:MOST])}"
