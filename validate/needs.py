@@ -66,6 +66,12 @@ def first_open(exercise, states, folder=None):
     return next((number for number in needed(exercise, folder) if states.get(number, "passed") != "passed"), None)
 
 
+def next_of(lesson, states):
+    """The first exercise of a lesson that does not pass, while all that it calls do; None if there is none."""
+    return next((number for number in of_lesson(lesson)
+                 if states.get(number) != "passed" and first_open(number, states) is None), None)
+
+
 def sentence(exercise, below, state):
     """What a student reads where an exercise calls another one that does not pass."""
     own, other = table()[exercise], table()[below]

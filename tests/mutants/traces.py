@@ -20,17 +20,14 @@ def mutants_of(lesson):
     return importlib.import_module(f"tests.mutants.{lesson}").MUTANTS
 
 
-def traces_of(lesson, answers, orderless=()):
-    """{key: {test: results}} of some answers, {key: (exercise, function)}, in the tests of their exercises.
-
-    orderless: exercises in which the order of results does not matter.
-    """
+def traces_of(lesson, answers):
+    """{key: {test: Trace}} of some answers, {key: (exercise, function)}, in the tests of their exercises."""
     names, module = names_in(lesson), vars(modules.bind(lesson))
 
     def subject(number, function):
         changed = types.SimpleNamespace(**{**module, names[number]: function})
         return changed, lambda exercise, test: exercise == number
-    traces = mistakes.Traces({number: (name, number in orderless) for number, name in names.items()})
+    traces = mistakes.Traces(names)
     points.grade_each(lesson, {str(key): subject(*answer) for key, answer in answers.items()}, traces=traces)
     return {key: traces.of(str(key), number) for key, (number, _) in answers.items()}
 
@@ -40,55 +37,38 @@ def names_in(lesson):
     return exercises((modules.SOLUTIONS / f"{lesson}.py").read_text(encoding="utf-8"))
 
 
-def worked_answers(lesson):
-    module = modules.bind(lesson)
-    return {number: (number, getattr(module, name)) for number, name in names_in(lesson).items()}
-
-
-def orderless_in(lesson):
-    """Exercises with a right answer that returns the same results as the worked one in another order."""
-    kept = {k: (m.exercise, m.function) for k, m in enumerate(mutants_of(lesson)) if m.right}
-    names = names_in(lesson)
-    as_is, sorted_out = (traces_of(lesson, {**worked_answers(lesson), **kept}, orderless) for orderless in ((), names))
-
-    def agrees(traces, k, number):
-        return all(mistakes.all_same(traces[k][test], mistakes.stored(right))
-                   for test, right in traces[number].items())
-    return {number for k, (number, _) in kept.items()
-            if agrees(sorted_out, k, number) and not agrees(as_is, k, number)}
-
-
-def kinds_in(lesson):
-    """{exercise: the kind of thing that its worked answer returns}; an empty text where it returns several kinds."""
-    kinds = {number: set() for number in names_in(lesson)}
-
-    def noting(number, function):
-        def noted(*arguments):
-            result = function(*arguments)
-            kinds[number].add(mistakes.kind(result))
-            return result
-        return number, noted
-    traces_of(lesson, {number: noting(*answer) for number, answer in worked_answers(lesson).items()})
-    return {number: some.pop() if len(some) == 1 else "" for number, some in kinds.items()}
-
-
 def table_of(lesson):
     """The table of a lesson, as `mistakes.table` reads it."""
-    orderless, kept = orderless_in(lesson), mutants_of(lesson)
-    wrong = {k: (m.exercise, m.function) for k, m in enumerate(kept) if not m.right}
-    traces = traces_of(lesson, {**worked_answers(lesson), **wrong}, orderless)
-    table, kinds = {}, kinds_in(lesson)
-    for number, name in names_in(lesson).items():
-        right = {test: mistakes.stored(results) for test, results in traces[number].items()}
-        table[number] = {"function": name, "orderless": number in orderless, "returns": kinds[number],
-                         "right": right, "wrong": []}
-    for k, (number, _) in wrong.items():
-        right = table[number]["right"]
-        tests = {test: mistakes.stored(results) for test, results in traces[k].items()
-                 if not mistakes.all_same(results, right[test])}
-        if tests:                                                    # the others return what a right answer returns
-            table[number]["wrong"].append({"idea": kept[k].story, "tests": tests})
+    kept, names, module = mutants_of(lesson), names_in(lesson), modules.bind(lesson)
+    answers = {k: (mutant.exercise, mutant.function) for k, mutant in enumerate(kept)}
+    worked = {number: (number, getattr(module, name)) for number, name in names.items()}
+    traces, table = traces_of(lesson, {**worked, **answers}), {}
+    for number, name in names.items():
+        right = [traces[k] for k, mutant in enumerate(kept) if mutant.right and mutant.exercise == number]
+        orderless = in_any_order(traces[number], right)
+        kinds = set().union(*(trace.kinds for trace in traces[number].values()))
+        table[number] = {"function": name, "orderless": orderless, "returns": kinds.pop() if len(kinds) == 1 else "",
+                         "right": {test: stored(trace, orderless) for test, trace in traces[number].items()},
+                         "wrong": []}
+    for k, mutant in enumerate(kept):
+        known = table[mutant.exercise]
+        tests = {test: stored(trace, known["orderless"]) for test, trace in traces[k].items()
+                 if not mistakes.all_same(trace.kept(known["orderless"]), known["right"][test])}
+        if tests and not mutant.right:                               # the others return what a right answer returns
+            known["wrong"].append({"idea": mutant.story, "tests": tests})
     return table
+
+
+def stored(trace, orderless):
+    return mistakes.stored(trace.kept(orderless))
+
+
+def in_any_order(worked, right):
+    """Whether some right answer returns the same results as the worked one in another order."""
+    def agrees(traces, orderless):
+        return all(mistakes.all_same(trace.kept(orderless), stored(worked[test], orderless))
+                   for test, trace in traces.items())
+    return any(agrees(traces, True) and not agrees(traces, False) for traces in right)
 
 
 def write(lesson):

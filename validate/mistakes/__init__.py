@@ -39,7 +39,7 @@ def table(lesson):
 class Traces:
     """What the functions of the exercises return in a run: found = {(subject, exercise): {test: its Trace}}.
 
-    functions: {exercise: (name, whether the order of its results does not matter)}, as in the tables if None.
+    functions: {exercise: name}, as in the tables if None.
     """
 
     def __init__(self, functions=None):
@@ -47,29 +47,29 @@ class Traces:
 
     def begin(self, subject, lesson, exercise, test):
         """The Trace of one test."""
-        known = table(lesson).get(exercise, {"function": "", "orderless": False})
-        ours = (known["function"], known["orderless"]) if self.functions is None else self.functions[exercise]
-        trace = Trace(*ours)
+        known = table(lesson).get(exercise, {"function": ""})["function"]
+        trace = Trace(known if self.functions is None else self.functions[exercise])
         self.found.setdefault((subject, exercise), {})[test] = trace
         return trace
 
     def of(self, subject, exercise):
-        """{test: results} of an exercise."""
-        return {test: trace.kept() for test, trace in self.found.get((subject, exercise), {}).items()}
+        """{test: Trace} of an exercise."""
+        return self.found.get((subject, exercise), {})
 
 
 class Trace:
-    """The calls of one function in one test: [number of entries, their weighted sum, size of its terms], or a word.
+    """The calls of one function in one test, each as `summary` has it.
 
     A test ends where it fails, so the number of calls is kept, too.
     """
 
-    def __init__(self, function, orderless=False):
-        self.function, self.orderless, self.calls, self.results = function, orderless, 0, []
-        self.returned = NOTHING
+    def __init__(self, function):
+        self.function, self.calls, self.returned = function, 0, NOTHING
+        self.results, self.sorted_out, self.kinds = [], [], set()
 
-    def kept(self):
-        return [*self.results, f"{self.calls} calls"]
+    def kept(self, orderless):
+        """The results and the number of calls; orderless: whether the order within a result does not matter."""
+        return [*(self.sorted_out if orderless else self.results), f"{self.calls} calls"]
 
     def watching(self, function):
         """The function, which adds its results to this trace."""
@@ -82,10 +82,13 @@ class Trace:
             except Exception as e:
                 if kept:
                     self.results.append(type(e).__name__)
+                    self.sorted_out.append(type(e).__name__)
                 raise
             if kept:
-                self.results.append(summary(result, self.orderless))
-            self.returned = result                                   # the last one, for `kind`
+                self.results.append(summary(result))
+                self.sorted_out.append(summary(result, orderless=True))
+                self.kinds.add(kind(result))
+            self.returned = result                                   # the last one, for `misshapen`
             return result
         return watched
 
@@ -163,15 +166,16 @@ def stored(results):
 def matching(lesson, exercise, traces):
     """Ideas of the wrong answers that return the same in all tests of the exercise.
 
-    traces: {test: results} of the answer.  An answer that returns in all tests what a right one returns has none.
+    traces: {test: Trace} of the answer.  An answer that returns in all tests what a right one returns has none.
     """
     known = table(lesson).get(exercise)
     if not known or traces.keys() != known["right"].keys():
         return []
-    wrong = {test for test, right in known["right"].items() if not all_same(traces[test], right)}
+    kept = {test: trace.kept(known["orderless"]) for test, trace in traces.items()}
+    wrong = {test for test, right in known["right"].items() if not all_same(kept[test], right)}
     found = [mistake["idea"] for mistake in known["wrong"]
              if wrong and wrong == mistake["tests"].keys()
-             and all(all_same(traces[test], results) for test, results in mistake["tests"].items())]
+             and all(all_same(kept[test], results) for test, results in mistake["tests"].items())]
     return list(dict.fromkeys(found))
 
 

@@ -215,6 +215,78 @@ def _lesson_of(exercise):
     raise BadInput(f"exercise {exercise!r}", "unknown", 'give its number in quotes, like check("1.2")')
 
 
+# ---------------------------------------------------------------------------------------------- how far
+
+def progress(lesson):
+    """Your points in a lesson so far, and the next exercise of which everything that it calls passes."""
+    try:
+        own = modules.subject_folder(folder())
+        if not needs.of_lesson(lesson):
+            raise BadInput(f"lesson {lesson!r}", "unknown", f"choose from: {', '.join(modules.lesson_names())}")
+    except BadInput as e:
+        _say(str(e))
+        return
+    outcomes = _outcomes_of(needs.of_lesson(lesson), own)
+    if not outcomes:
+        _say(f"The exercises of {lesson} ended without an answer: lessons/{lesson}.py ends the program, "
+             "or asks for more memory than there is.")
+        return
+    display(_Progress(lesson, outcomes))
+
+
+class _Progress:
+    """The points of a lesson, for people, as text and as HTML."""
+
+    def __init__(self, lesson, outcomes):
+        self.lesson, self.states = lesson, needs.states((o["exercise"], o["status"]) for o in outcomes)
+        self.earned = sum(o["points"] for o in outcomes if o["status"] == "passed")
+        self.possible = sum(o["points"] for o in outcomes)
+
+    def signs(self):
+        """(exercise, its state) in the order of the lesson."""
+        return [(number, self.states.get(number, "not attempted")) for number in needs.of_lesson(self.lesson)]
+
+    def next(self):
+        number = needs.next_of(self.lesson, self.states)
+        return f"next: {number} {needs.table()[number]['function']}" if number else "all exercises pass"
+
+    def title(self):
+        return f"{self.lesson}: {self.earned:g} of {self.possible:g} points"
+
+    def __repr__(self):
+        return f"{self.title()}\n{' '.join(f'{SIGN[state]} {number}' for number, state in self.signs())}\n{self.next()}"
+
+    def _repr_html_(self):
+        marks = " &nbsp; ".join(f'<span style="color:{COLOUR[state]};white-space:nowrap" title="{escape(state)}">'
+                                f'{SIGN[state]} {number}</span>' for number, state in self.signs())
+        return f"<div><b>{escape(self.title())}</b><br>{marks}<br>{escape(self.next())}</div>"
+
+
+def exercise_map():
+    """A table of all exercises: the function that each asks for, and the exercises that this calls."""
+    display(_Map())
+
+
+class _Map:
+    """All exercises and what each calls, for people, as text and as HTML."""
+
+    def rows(self):
+        for number, one in needs.table().items():
+            yield number, one["lesson"], one["function"], ", ".join(one["needs"])
+
+    def __repr__(self):
+        return "\n".join(f"{number:6} {lesson:16} {function:32} {calls}" for number, lesson, function, calls in
+                         self.rows())
+
+    def _repr_html_(self):
+        head = "".join(f'<th scope="col" style="text-align:left">{name}</th>'
+                       for name in ("exercise", "lesson", "function", "calls"))
+        body = "".join(f"<tr>{''.join(f'<td style=text-align:left>{escape(cell)}</td>' for cell in row)}</tr>"
+                       for row in self.rows())
+        return (f"<details><summary>All {len(needs.table())} exercises, and what each calls</summary>"
+                f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></details>")
+
+
 class _Answer:
     """The answer of a check, for people: the worst outcome first; all of it as text and as HTML."""
 
