@@ -25,7 +25,7 @@ def distance(f=lambda p, plane: sum(a * b for a, b in zip(plane.n, p)) + plane.d
 
 right("6.1", "as a sum")(distance())
 wrong("6.1", "d with the wrong sign")(distance(lambda p, plane: p @ plane.n - plane.d))
-wrong("6.1", "without its sign")(distance(lambda p, plane: abs(p @ plane.n + plane.d)))
+wrong("6.1", "returns the distance without its sign")(distance(lambda p, plane: abs(p @ plane.n + plane.d)))
 wrong("6.1", "forgets d")(distance(lambda p, plane: p @ plane.n))
 wrong("6.1", "only the sign")(distance(lambda p, plane: np.sign(p @ plane.n + plane.d)))
 edit("6.1", "zero within a femtometre", "plane.d", "plane.d if abs(p @ plane.n + plane.d) > 1e-15 else 0.0")
@@ -48,7 +48,7 @@ def impact(skin=1.0, after_skin=1.0, share=lambda d_1, d_2: d_1 / (d_1 + d_2), i
 
 
 right("6.2", "with new names")(impact())
-edit("6.2", "a point for a ball", "plane_distance(x_0, plane) - r, r - plane_distance(x_1, plane)",
+edit("6.2", "treats the ball as a point", "plane_distance(x_0, plane) - r, r - plane_distance(x_1, plane)",
      "plane_distance(x_0, plane), -plane_distance(x_1, plane)")
 edit("6.2", "no impact if it touches and leaves", "before <= 0.0", "before < 0.0")
 edit("6.2", "no impact at the end of the step", "after < 0.0", "after <= 0.0")
@@ -75,7 +75,7 @@ def beside(foot=lambda x: np.array([x[0], 0.0, 0.0]), swap=False, radius=lambda 
 
 
 wrong("6.3", "the distance from the origin")(beside(lambda x: np.zeros(3)))
-wrong("6.3", "along y")(beside(lambda x: np.array([0.0, x[1], 0.0])))
+wrong("6.3", "takes the cylinder's axis along y")(beside(lambda x: np.array([0.0, x[1], 0.0])))
 wrong("6.3", "n from a to b")(beside(swap=True))
 wrong("6.3", "forgets the cylinder's radius")(beside(radius=lambda R: 0.0))
 wrong("6.3", "forgets the ball's radius")(beside(own=lambda r: 0.0))
@@ -113,7 +113,7 @@ wrong("6.4", "forgets the ball")(root(rho=lambda R, r: R))
 wrong("6.4", "forgets the cylinder")(root(rho=lambda R, r: r))
 wrong("6.4", "a sphere for a cylinder")(root(three=True))
 wrong("6.4", "later steps, too")(root(window=False))
-wrong("6.4", "also behind")(root(leaving=False))
+wrong("6.4", "accepts impacts before the start of the step")(root(leaving=False))
 wrong("6.4", "never, if it already overlaps")(root(inside=lambda t: NEVER))
 wrong("6.4", "forgets t")(root(t_0=0.0))
 edit("6.4", "the discrete test at the end of the step", "C / (np.sqrt(D) - B)",
@@ -145,10 +145,11 @@ def foot(low=0.0, high=1.0, checked=True, begin="a", unit=False):
 
 
 right("6.5", "with a clamp")(foot())
-wrong("6.5", "a ray for a segment")(foot(high=np.inf))
+wrong("6.5", "treats the segment as a ray")(foot(high=np.inf))
 wrong("6.5", "divides by the length once")(foot(unit=True))
 wrong("6.5", "starts at p")(foot(begin="p"))
-edit("6.5", "a line for a segment", "np.minimum(1.0, np.maximum(0.0, (p - a) @ along / length_squared))",
+edit("6.5", "treats the segment as an infinite line",
+     "np.minimum(1.0, np.maximum(0.0, (p - a) @ along / length_squared))",
      "(p - a) @ along / length_squared")
 edit("6.5", "accepts a segment of zero length",
      'raise BadInput("the length of an edge [m]", 0.0, "give two different ends")', "return a")
@@ -266,7 +267,7 @@ def in_box(turn=lambda R, y: R.T @ y, inside=True, pick=np.argmin,
 
 right("6.8", "with clip")(in_box())
 wrong("6.8", "rotates the wrong way")(in_box(turn=lambda R, y: R @ y))
-wrong("6.8", "does not rotate")(in_box(turn=lambda R, y: y))
+wrong("6.8", "does not transform the ball into the box's axes")(in_box(turn=lambda R, y: y))
 wrong("6.8", "no case for the inside")(in_box(inside=False))
 wrong("6.8", "the farthest face")(in_box(pick=np.argmax))
 wrong("6.8", "a gap above zero inside")(in_box(depth_sign=1.0))
@@ -316,8 +317,8 @@ def brute(strict=False, first=lambda i: i + 1, turned=False, some=lambda low: lo
 
 right("6.10", "with NumPy's comparison")(brute())
 wrong("6.10", "a common face does not count")(brute(strict=True))
-wrong("6.10", "each with itself")(brute(first=lambda i: i))
-wrong("6.10", "each pair twice")(brute(first=lambda i: 0))
+wrong("6.10", "pairs each box with itself")(brute(first=lambda i: i))
+wrong("6.10", "returns each pair twice")(brute(first=lambda i: 0))
 wrong("6.10", "the larger number first")(brute(turned=True))
 edit("6.10", "neighbours in the list only", "range(i + 1, len(low))", "range(i + 1, min(i + 2, len(low)))")
 edit("6.10", "accepts invalid boxes", "check_boxes(low, high)", "pass")
@@ -477,7 +478,7 @@ def boxes(axes=range(15), room=worked.EDGE_PREFERENCE, sign=1.0, width=worked.ha
 right("6.14", "with a tuple")(boxes())
 wrong("6.14", "the axes of a only")(boxes(axes=range(3)))
 wrong("6.14", "faces only")(boxes(axes=range(6)))
-wrong("6.14", "from a to b")(boxes(sign=-1.0))
+wrong("6.14", "returns a normal that points from a to b")(boxes(sign=-1.0))
 wrong("6.14", "does not orient the axis")(boxes(fixed=True))
 wrong("6.14", "the last of equal ones")(boxes(choose=lambda new, old: new >= old))
 edit("6.14", "accepts zero axes", "dot(axis, axis) > 0.0", "dot(axis, axis) >= 0.0")
@@ -520,7 +521,7 @@ def nearest(steps=worked.MAX_GJK_STEPS, along=(-1.0, 1.0), reduce=True, swap=Fal
 
 
 right("6.15", "with vstack")(nearest())
-wrong("6.15", "a single step")(nearest(steps=1))
+wrong("6.15", "stops after a single iteration")(nearest(steps=1))
 wrong("6.15", "gives up after five steps")(nearest(steps=5))
 wrong("6.15", "the supports exchanged")(nearest(along=(1.0, -1.0)))
 wrong("6.15", "both along the same direction")(nearest(along=(-1.0, -1.0)))
@@ -556,8 +557,9 @@ def field(strength=lambda g, reach: (1.0 / g - 1.0 / reach) / g**2,
 
 
 right("6.16", "with new names")(field())
-wrong("6.16", "attracts")(field(sign=-1.0))
-wrong("6.16", "the potential for the force")(field(strength=lambda g, reach: 0.5 * (1.0 / g - 1.0 / reach) ** 2))
+wrong("6.16", "reverses the force, which then attracts")(field(sign=-1.0))
+wrong("6.16", "returns the potential, not the force")(
+    field(strength=lambda g, reach: 0.5 * (1.0 / g - 1.0 / reach) ** 2))
 wrong("6.16", "one power too few")(field(strength=lambda g, reach: (1.0 / g - 1.0 / reach) / g))
 wrong("6.16", "from the centre on")(field(skin=False))
 wrong("6.16", "goes on beyond its reach")(field(ends=False))
@@ -592,7 +594,7 @@ def swerve(side=-1.0, half=2.0, power=2, window=True, behind=True, wide=True,
 
 
 right("6.17", "with new names")(swerve())
-wrong("6.17", "towards it")(swerve(side=1.0))
+wrong("6.17", "steers towards the obstacle")(swerve(side=1.0))
 wrong("6.17", "half as much")(swerve(half=1.0))
 wrong("6.17", "divides by τ once")(swerve(power=1))
 wrong("6.17", "avoids an obstacle behind")(swerve(behind=False))
@@ -612,7 +614,7 @@ edit("6.17", "at rest below a nanometre per second", "speed == 0.0", "speed < 1e
 edit("6.17", "head-on within a minute distance", "offset > 0.0", "offset > 1e-19")
 edit("6.17", "four seconds ahead, whatever is asked", "tau >= ahead", "tau >= 4.0")
 edit("6.17", "at most ten seconds ahead", "tau >= ahead", "tau >= min(ahead, 10.0)")
-edit("6.17", "brakes", "tau**2 * aside", "tau**2 * aside - 0.1 * v")
+edit("6.17", "brakes as well as steering sideways", "tau**2 * aside", "tau**2 * aside - 0.1 * v")
 edit("6.17", "at rest where v[0] is zero", "speed == 0.0", "v[0] == 0.0")
 edit("6.17", "at rest below a millimetre per second", "speed == 0.0", "speed < 1e-3")
 edit("6.17", "left along x only", "np.array([-e[1], e[0]])", "np.array([0.0, e[0]])")

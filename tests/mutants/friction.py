@@ -29,9 +29,9 @@ def normal_force(F, n):
 
 edit("3.1", "with the sign of F · n", "-(F @ n)", "F @ n")
 edit("3.1", "pulls at a lifted body", "np.maximum(0.0, -(F @ n))", "-(F @ n)")
-edit("3.1", "all of F presses", "np.maximum(0.0, -(F @ n))", "np.sqrt(F @ F) * (F @ n < 0.0)")
+edit("3.1", "takes the size of F for the normal force", "np.maximum(0.0, -(F @ n))", "np.sqrt(F @ F) * (F @ n < 0.0)")
 edit("3.1", "the last coordinate only", "-(F @ n)", "-F[-1]")
-edit("3.1", "a vector", "np.maximum(0.0, -(F @ n))", "max(0.0, -(F @ n)) * n")
+edit("3.1", "returns the vector, not its size", "np.maximum(0.0, -(F @ n))", "max(0.0, -(F @ n)) * n")
 edit("3.1", "ignores a small load", "np.maximum(0.0, -(F @ n))", "max(0.0, -(F @ n)) * (F @ n < -1e-3)")
 
 
@@ -49,15 +49,16 @@ def holding(sign=-1.0, rim=True, clamp=True, load=lambda F, n: max(0.0, -(F @ n)
 
 
 right("3.2", "by a clamp")(holding())
-wrong("3.2", "pushes on")(holding(sign=1.0))
+wrong("3.2", "pushes along the applied force, not against it")(holding(sign=1.0))
 wrong("3.2", "no friction beyond the cone")(holding(rim=False))
 wrong("3.2", "holds everything")(holding(clamp=False))
 wrong("3.2", "cancels the whole of F")(holding(part=lambda F, n: F))
 wrong("3.2", "the normal force is the size of F")(holding(load=lambda F, n: size(F)))
 wrong("3.2", "takes a lifting force for a load")(holding(load=lambda F, n: abs(F @ n)))
 wrong("3.2", "accepts a negative μ")(holding(checked=False))
-edit("3.2", "multiplies ∞ by 0", "cone_radius(mu_s, normal_force(F, n))", "cone_radius(mu_s, 1.0) * normal_force(F, n)")
-edit("3.2", "always on the rim", "size <= limit", "size == 0.0")
+edit("3.2", "multiplies an infinite μ by a normal force of zero",
+     "cone_radius(mu_s, normal_force(F, n))", "cone_radius(mu_s, 1.0) * normal_force(F, n)")
+edit("3.2", "always returns the largest friction, μ N", "size <= limit", "size == 0.0")
 
 
 # 3.3 ------------------------------------------------------------------------------------------------------------
@@ -71,8 +72,9 @@ def braking(sign=-1.0, direction=lambda F, v, n: unit(tangential(v, n)),
 
 right("3.3", "by a unit vector")(braking())
 wrong("3.3", "speeds up")(braking(sign=1.0))
-wrong("3.3", "against the pull")(braking(direction=lambda F, v, n: unit(tangential(F, n))))
-wrong("3.3", "against all of v")(braking(direction=lambda F, v, n: unit(v)))
+wrong("3.3", "acts against the applied force, not against the velocity")(
+    braking(direction=lambda F, v, n: unit(tangential(F, n))))
+wrong("3.3", "acts against the whole velocity, its normal part included")(braking(direction=lambda F, v, n: unit(v)))
 wrong("3.3", "grows with the speed")(braking(scale=lambda v: size(v)))
 wrong("3.3", "the load is the size of F")(braking(load=lambda F, n: size(F)))
 wrong("3.3", "brakes a lifted body, too")(braking(load=lambda F, n: abs(F @ n)))
@@ -117,7 +119,7 @@ def dissipating(sign=-1.0, stop=lambda m, speed: m * speed, choose=min, limit=co
 
 right("3.5", "by its magnitude")(dissipating())
 wrong("3.5", "leaves a round-off velocity")(dissipating(exactly=False))
-wrong("3.5", "along the motion")(dissipating(sign=1.0))
+wrong("3.5", "pushes along the motion, not against it")(dissipating(sign=1.0))
 wrong("3.5", "forgets the mass")(dissipating(stop=lambda m, speed: speed))
 wrong("3.5", "the larger of both impulses")(dissipating(choose=max))
 wrong("3.5", "always slides")(dissipating(choose=lambda limit, stop: limit))
@@ -138,12 +140,13 @@ def square(sign=-1.0, mass=True, clamp=lambda y, limit: np.clip(y, -limit, limit
 
 
 right("3.6", "both tangents at once")(square())
-wrong("3.6", "along the motion")(square(sign=1.0))
+wrong("3.6", "pushes along the motion, not against it")(square(sign=1.0))
 wrong("3.6", "forgets the mass")(square(mass=False))
 wrong("3.6", "no clamp from below")(square(clamp=np.minimum))
 wrong("3.6", "one tangent only")(square(second=False))
 wrong("3.6", "inside the cone: half the area")(square(width=np.sqrt(0.5)))
-edit("3.6", "a cone", "limit = cone_radius(mu, j_n)", "return friction_impulse(v_t, m, j_n, mu)")
+edit("3.6", "limits the friction by a cone, not by a pyramid",
+     "limit = cone_radius(mu, j_n)", "return friction_impulse(v_t, m, j_n, mu)")
 edit("3.6", "accepts a negative μ, and multiplies ∞ by 0", "cone_radius(mu, j_n)", "mu * j_n")
 edit("3.6", "no clamp of the second tangent from above", "np.maximum(-limit, np.minimum(limit, m * (v_t @ t_2)))",
      "max(-limit, m * (v_t @ t_2))")
@@ -216,7 +219,8 @@ wrong("3.8", "at rest below a micrometre per second")(heading(least=1e-6))
 wrong("3.8", "always breaks away")(heading(ask=lambda pull, hold: True))
 wrong("3.8", "never breaks away")(heading(ask=lambda pull, hold: False))
 wrong("3.8", "does not advance t")(heading(clock=0.0))
-edit("3.8", "multiplies ∞ by 0", "cone_radius(p.mu_s, normal_force(a, p.n))", "p.mu_s * normal_force(a, p.n)")
+edit("3.8", "multiplies an infinite μ by a normal force of zero",
+     "cone_radius(p.mu_s, normal_force(a, p.n))", "p.mu_s * normal_force(a, p.n)")
 
 
 # 3.9 ------------------------------------------------------------------------------------------------------------
@@ -269,7 +273,7 @@ right("3.10", "with its own test")(first_slip())
 
 
 wrong("3.10", "ten halvings")(first_slip(halvings=10))
-wrong("3.10", "counts from zero")(first_slip(since=lambda t, tau: tau))
+wrong("3.10", "evaluates the forces as if the step began at time 0")(first_slip(since=lambda t, tau: tau))
 wrong("3.10", "tests at t")(first_slip(since=lambda t, tau: t))
 wrong("3.10", "the two tests exchanged")(first_slip(slips=lambda d: size(d) == 0.0))
 edit("3.10", "the kinetic limit", "if not np.any", "p = p._replace(mu_s=p.mu_k)\n    if not np.any")
@@ -319,10 +323,10 @@ def hollow(sign=-1.0, inside=1.0, centred=True, axial=True, scaled=True, safe=Tr
 
 
 right("3.12", "by a unit vector")(hollow())
-wrong("3.12", "outwards")(hollow(sign=1.0))
+wrong("3.12", "returns a normal that points out of the bowl")(hollow(sign=1.0))
 wrong("3.12", "negative inside")(hollow(inside=-1.0))
 wrong("3.12", "around the origin")(hollow(centred=False))
-wrong("3.12", "every trough a bowl")(hollow(axial=False))
+wrong("3.12", "treats a trough like a bowl")(hollow(axial=False))
 wrong("3.12", "no unit vector")(hollow(scaled=False))
 wrong("3.12", "divides by a distance of zero")(hollow(safe=False))
 edit("3.12", "a ball instead of a bowl", "p.radius - distance, -r / distance", "distance - p.radius, r / distance")
@@ -344,10 +348,10 @@ def impact(leaves=True, bounce=lambda e: 1.0 + e, mass=True, slip=tangential,
 
 right("3.13", "by the same law")(impact())
 wrong("3.13", "pulls at a leaving body")(impact(leaves=False))
-wrong("3.13", "e for 1 + e")(impact(bounce=lambda e: e))
-wrong("3.13", "1 − e")(impact(bounce=lambda e: 1.0 - e))
+wrong("3.13", "uses e in place of 1 + e")(impact(bounce=lambda e: e))
+wrong("3.13", "uses 1 − e in place of 1 + e")(impact(bounce=lambda e: 1.0 - e))
 wrong("3.13", "no restitution")(impact(bounce=lambda e: 1.0))
-wrong("3.13", "pulls in")(impact(sign=-1.0))
+wrong("3.13", "reverses the impulse, which pulls the particle in")(impact(sign=-1.0))
 wrong("3.13", "forgets the mass in friction")(impact(mass=False))
 wrong("3.13", "forgets the mass in the normal impulse")(impact(mass_n=False))
 wrong("3.13", "friction against all of v")(impact(slip=lambda v, n: v))
@@ -393,9 +397,9 @@ for number, particle in (("3.14", contact), ("3.16", gripping)):
     wrong(number, "forgets dt")(particle(once=False))
     wrong(number, "the clock stands still")(particle(clock=0.0))
     wrong(number, "in contact a millimetre too early")(particle(reached=1e-3))
-wrong("3.14", "grips too")(contact(grip=1.0))
-wrong("3.16", "does not grip")(gripping(grip=0.0))
-wrong("3.16", "grips forwards")(gripping(grip=-1.0))
+wrong("3.14", "also corrects the position for friction, which belongs to 3.16")(contact(grip=1.0))
+wrong("3.16", "omits the friction correction of the position")(gripping(grip=0.0))
+wrong("3.16", "reverses the friction correction of the position")(gripping(grip=-1.0))
 wrong("3.16", "grips on the way out")(gripping(both_ways=True))
 wrong("3.16", "a depth below zero")(gripping(depth=lambda phi: phi))
 wrong("3.16", "grips the displacement of the old velocity")(gripping(moving=lambda moved, x, v, dt: dt * v))
@@ -415,7 +419,7 @@ def grip(sign=-1.0, part=tangential, limit=lambda mu, depth: mu * depth, choose=
 
 
 right("3.15", "by a unit vector")(grip())
-wrong("3.15", "forwards")(grip(sign=1.0))
+wrong("3.15", "reverses the correction")(grip(sign=1.0))
 
 
 wrong("3.15", "all of the displacement")(grip(part=lambda moved, n: moved))

@@ -29,11 +29,11 @@ def kinematic_response(v, n, e):
     return along - e * normal if np.dot(v, n) < 0.0 else np.array(v)
 
 
-wrong("7.1", "e for 1 + e")(response(bounce=lambda e: e))
-wrong("7.1", "1 − e")(response(bounce=lambda e: 1.0 - e))
+wrong("7.1", "uses e in place of 1 + e")(response(bounce=lambda e: e))
+wrong("7.1", "uses 1 − e in place of 1 + e")(response(bounce=lambda e: 1.0 - e))
 wrong("7.1", "pulls at a leaving body")(response(leaves=False))
 wrong("7.1", "reverses all of v")(response(all_of_v=True))
-wrong("7.1", "pulls in")(response(sign=1.0))
+wrong("7.1", "reverses the impulse, which pulls the body in")(response(sign=1.0))
 edit("7.1", "changes its input", "v - (1.0 + e) * v_n * n", "np.subtract(v, (1.0 + e) * v_n * n, out=v)")
 edit("7.1", "ignores slow approach", "v_n >= 0.0", "v_n >= -1e-3")
 edit("7.1", "ignores ten nanometres per second", "v_n >= 0.0", "v_n >= -1e-8")
@@ -82,8 +82,8 @@ def relative_velocity_2d(a, b, r_a, r_b):
     return (point(a, r_a) - point(b, r_b))[:2]
 
 
-wrong("7.3", "turns clockwise")(seen(side=-1.0))
-wrong("7.3", "b as seen from a")(seen(sign=-1.0))
+wrong("7.3", "takes a positive ω as clockwise")(seen(side=-1.0))
+wrong("7.3", "returns the velocity of b relative to a")(seen(sign=-1.0))
 wrong("7.3", "does not rotate")(seen(turns=0.0))
 wrong("7.3", "each at the other's offset")(seen(swap=True))
 edit("7.3", "the turn of b added", "- turn_b", "+ turn_b")
@@ -103,8 +103,8 @@ def size(bounce=lambda e: 1.0 + e, over=lambda k_n: 1.0 / k_n, leaves=True,
 
 right("7.4", "the checks in a loop")(size())
 wrong("7.4", "no restitution")(size(bounce=lambda e: 1.0))
-wrong("7.4", "1 − e")(size(bounce=lambda e: 1.0 - e))
-wrong("7.4", "times k_n")(size(over=lambda k_n: k_n))
+wrong("7.4", "uses 1 − e in place of 1 + e")(size(bounce=lambda e: 1.0 - e))
+wrong("7.4", "multiplies by the effective inverse mass in place of dividing by it")(size(over=lambda k_n: k_n))
 wrong("7.4", "pulls at separating bodies")(size(leaves=False))
 wrong("7.4", "accepts any restitution")(size(checks=(worked.check_inverse_mass,)))
 edit("7.4", "accepts two immovable bodies", "check_inverse_mass(k_n)", "pass")
@@ -132,10 +132,10 @@ def flat_k(power=2, second=True, over=False, arm=lambda r, n: r[0] * n[1] - r[1]
 
 
 right("7.5", "body by body")(flat_k())
-wrong("7.5", "the lever not squared")(flat_k(power=1))
+wrong("7.5", "does not square the lever arm r × n")(flat_k(power=1))
 wrong("7.5", "b does not turn")(flat_k(second=False))
-wrong("7.5", "inertia for its inverse")(flat_k(over=True))
-wrong("7.5", "r · n for r × n")(flat_k(arm=lambda r, n: r @ n))
+wrong("7.5", "uses the inertia in place of its inverse")(flat_k(over=True))
+wrong("7.5", "uses r · n in place of r × n")(flat_k(arm=lambda r, n: r @ n))
 wrong("7.5", "forgets the masses")(flat_k(mass=0.0))
 edit("7.5", "the mass of a must be finite", "a.inv_mass +", "(a.inv_mass or 1.0) +")
 edit("7.5", "a on an axle does not turn", "lever_a**2 * a.inv_inertia", "lever_a**2 * (a.inv_mass and a.inv_inertia)")
@@ -178,8 +178,8 @@ def pushed(mass=lambda m: m, inertia=lambda i: i, side=1.0, turns=True):
 
 
 right("7.6", "by a torque")(pushed())
-wrong("7.6", "mass for its inverse")(pushed(mass=lambda m: 1.0 / m if m else 0.0))
-wrong("7.6", "inertia for its inverse")(pushed(inertia=lambda i: 1.0 / i if i else 0.0))
+wrong("7.6", "multiplies by the mass in place of its inverse")(pushed(mass=lambda m: 1.0 / m if m else 0.0))
+wrong("7.6", "multiplies by the inertia in place of its inverse")(pushed(inertia=lambda i: 1.0 / i if i else 0.0))
 wrong("7.6", "turns the other way")(pushed(side=-1.0))
 wrong("7.6", "does not rotate")(pushed(turns=False))
 edit("7.6", "does not turn on an axle", "body.inv_inertia * cross_2d",
@@ -202,9 +202,10 @@ def angular_momenta(L_a, L_b, r_a, r_b, J):
 
 
 wrong("7.8", "b gains as a does")(momenta(sign_b=1.0))
-edit("7.8", "J × r", "L_a + cross(r_a, J), L_b - cross(r_b, J)", "L_a - cross(r_a, J), L_b + cross(r_b, J)")
+edit("7.8", "takes J × r in place of r × J",
+     "L_a + cross(r_a, J), L_b - cross(r_b, J)", "L_a - cross(r_a, J), L_b + cross(r_b, J)")
 wrong("7.8", "b does not turn")(momenta(sign_b=0.0))
-wrong("7.8", "one arm for both")(momenta(arm=lambda r_a, r_b: (r_a, r_a)))
+wrong("7.8", "uses the same arm for both bodies")(momenta(arm=lambda r_a, r_b: (r_a, r_a)))
 
 
 # 7.9 ------------------------------------------------------------------------------------------------------------
@@ -216,8 +217,8 @@ def K_of(sign=-1.0, mass=lambda m: m * np.eye(3), turn=lambda r: skew(r), middle
 
 
 right("7.9", "with skew")(K_of())
-wrong("7.9", "plus for minus")(K_of(sign=1.0))
-wrong("7.9", "1/m everywhere")(K_of(mass=lambda m: m * np.ones((3, 3))))
+wrong("7.9", "adds the rotational part where it is subtracted")(K_of(sign=1.0))
+wrong("7.9", "adds 1/m to every entry, not only on the diagonal")(K_of(mass=lambda m: m * np.ones((3, 3))))
 wrong("7.9", "forgets the mass")(K_of(mass=lambda m: np.zeros((3, 3))))
 edit("7.9", "both levers on one side of the tensor", "cross(times(inv_inertia, cross(r, unit)), r)",
      "times(inv_inertia, cross(cross(r, unit), r))")
@@ -301,8 +302,8 @@ def energy_change(u, K, J):
     return J @ (u + (u + K @ J)) / 2.0
 
 
-wrong("7.11", "without the half")(work(half=1.0))
-wrong("7.11", "lost, not gained")(work(sign=-1.0))
+wrong("7.11", "omits the factor ½")(work(half=1.0))
+wrong("7.11", "returns the energy lost, not the energy gained")(work(sign=-1.0))
 wrong("7.11", "with the velocity before only")(work(half=0.0))
 wrong("7.11", "without the velocity before")(work(first=0.0))
 edit("7.11", "every impact loses", "J @ u + 0.5 * (J @ times(K, J))", "-abs(J @ u + 0.5 * (J @ times(K, J)))")
@@ -387,7 +388,7 @@ wrong("7.13", "beyond the end of the step")(moment(limit=False))
 wrong("7.13", "half the acceleration")(moment(pull=1.0))
 wrong("7.13", "divides by a tiny acceleration")(moment(stable=False))
 edit("7.13", "without acceleration", "phi = np.maximum(0.0, phi)", "phi, a_n = max(0.0, phi), 0.0")
-edit("7.13", "treats depth as height", "phi = np.maximum(0.0, phi)", "phi = abs(phi)")
+edit("7.13", "takes the depth below the surface for a height", "phi = np.maximum(0.0, phi)", "phi = abs(phi)")
 edit("7.13", "ignores an immediate impact", "return np.minimum(tau, dt)", "return tau if 0.0 < tau < dt else dt")
 edit("7.13", "a resting ball without acceleration meets at once", "squared = v_n * v_n",
      "if phi == 0.0 and v_n <= 0.0 and a_n <= 0.0:\n        return 0.0\n    squared = v_n * v_n")
@@ -423,7 +424,7 @@ edit("7.14", "a ball that does not leave bounces forever", "if v_n <= 0.0:",
 edit("7.14", "treats e within 1e-5 of 1 as 1", "e == 1.0", "np.isclose(e, 1.0)")
 edit("7.14", "20,000 flights", "-2.0 * v_n / (a_n * (1.0 - e))", "sum(-2.0 * v_n * e**k / a_n for k in range(20_000))")
 wrong("7.14", "one flight")(zeno(sum=lambda e: 1.0))
-wrong("7.14", "1 + e")(zeno(sum=lambda e: 1.0 + e))
+wrong("7.14", "uses 1 + e in place of 1 − e")(zeno(sum=lambda e: 1.0 + e))
 wrong("7.14", "a time below zero")(zeno(down=False))
 wrong("7.14", "e = 1 ends at once")(zeno(endless=False))
 wrong("7.14", "comes back without acceleration")(zeno(falls=False))
@@ -601,7 +602,7 @@ def sweeping(sweeps=3000, before=True, takes_back=True, friction=lambda mu: mu, 
 
 
 right("7.17", "until no impulse changes")(sweeping())
-wrong("7.17", "one sweep")(sweeping(sweeps=1))
+wrong("7.17", "sweeps once only")(sweeping(sweeps=1))
 wrong("7.17", "five sweeps")(sweeping(sweeps=5))
 wrong("7.17", "restitution of what the sweep has left")(sweeping(before=False))
 wrong("7.17", "without friction")(sweeping(friction=lambda mu: 0.0))

@@ -108,7 +108,8 @@ edit("4.5", "refuses holes", "m / 12.0", '(check_positive("mass m [kg]", m) or m
 edit("4.5", "refuses a plate", "m / 12.0", '(check_positive("edge [m]", np.min(size)) or m) / 12.0')
 edit("4.5", "refuses what is smaller than a tenth of a millimetre", "m / 12.0",
      '(check_positive("edge [m]", np.max(size) - 1e-4) or m) / 12.0')
-edit("4.5", "three numbers", "np.diag(np.array([bb + cc, aa + cc, aa + bb]))", "np.array([bb + cc, aa + cc, aa + bb])")
+edit("4.5", "returns the three moments, not the tensor",
+     "np.diag(np.array([bb + cc, aa + cc, aa + bb]))", "np.array([bb + cc, aa + cc, aa + bb])")
 
 
 # 4.6 ------------------------------------------------------------------------------------------------------------
@@ -118,7 +119,7 @@ def sphere_inertia(m, radius):
 
 
 edit("4.6", "a shell, two thirds", "0.4 * m", "2.0 / 3.0 * m")
-edit("4.6", "the diameter", "radius * radius", "4.0 * radius * radius")
+edit("4.6", "uses the diameter in place of the radius", "radius * radius", "4.0 * radius * radius")
 edit("4.6", "filled everywhere", "np.eye(3)", "np.ones((3, 3))")
 edit("4.6", "the sum of all three moments", "0.4 * m", "1.2 * m")
 edit("4.6", "a hole taken for a body", "0.4 * m", "0.4 * abs(m)")
@@ -197,7 +198,7 @@ def world_inertia(I_body, R):
 
 edit("4.9", "turned the other way", "R @ I_body @ R.T", "R.T @ I_body @ R")
 edit("4.9", "turned on one side only", "R @ I_body @ R.T", "R @ I_body")
-edit("4.9", "not turned", "R @ I_body @ R.T", "I_body.copy()")
+edit("4.9", "returns the tensor in the body's axes", "R @ I_body @ R.T", "I_body.copy()")
 edit("4.9", "refuses holes", "return R", 'check_positive("a moment [kg m²]", np.trace(I_body)); return R')
 edit("4.9", "changes its input", "R @ I_body @ R.T", "np.matmul(R @ I_body, R.T, out=I_body)")
 
@@ -208,7 +209,7 @@ def world_inverse_inertia(I_body, R):
     return np.linalg.inv(R @ I_body @ R.T)
 
 
-edit("4.10", "not inverted", "inverse(I_body)", "I_body")
+edit("4.10", "returns the tensor, not its inverse", "inverse(I_body)", "I_body")
 edit("4.10", "turned the other way", "inverse(I_body), R)", "inverse(I_body), R.T)")
 edit("4.10", "one over each entry of the diagonal", "inverse(I_body)", "np.diag(1.0 / np.diag(I_body))")
 edit("4.10", "stays in the body's axes", "world_inertia(inverse(I_body), R)", "inverse(I_body)")
@@ -314,8 +315,8 @@ edit("4.13", "negative moments taken for positive ones, as singular values are",
      "return np.abs(moments), R")
 edit("4.13", "no moment below zero", "return moments, R", "return np.maximum(moments, 0.0), R")
 edit("4.13", "moments in no order", "np.linalg.eigh(I)", "np.linalg.eig(I)")
-edit("4.13", "axes in rows", "return moments, R", "return moments, R.T")
-edit("4.13", "descending", "return moments, R", "return moments[::-1], -R[:, ::-1]")
+edit("4.13", "returns the axes as rows, not as columns", "return moments, R", "return moments, R.T")
+edit("4.13", "sorts the moments in descending order", "return moments, R", "return moments[::-1], -R[:, ::-1]")
 edit("4.13", "diagonal entries for moments", "return moments, R", "return np.sort(np.diag(I)), R")
 edit("4.13", "reverses all three columns at the end", "return moments, R", "return moments, -R")
 
@@ -492,7 +493,7 @@ edit("4.17", "accepts a flat mesh if its round-off volume is positive",
      "MOMENT_ROUND_OFF * np.max(np.abs(offsets)) ** 3", "0.0")
 edit("4.17", "refuses what is small, whatever its shape", "MOMENT_ROUND_OFF * np.max(np.abs(offsets)) ** 3",
      "MOMENT_ROUND_OFF")
-edit("4.17", "a length for a volume", "np.max(np.abs(offsets)) ** 3", "np.max(np.abs(offsets))")
+edit("4.17", "compares the volume with a length", "np.max(np.abs(offsets)) ** 3", "np.max(np.abs(offsets))")
 edit("4.17", "how far the others are above the first corner, not from it", "np.max(np.abs(offsets))", "np.max(offsets)")
 edit("4.17", "how far the others are below the first corner, not from it", "np.max(np.abs(offsets))",
      "np.max(-offsets)")

@@ -31,7 +31,7 @@ def joint_positions(theta, lengths):
 wrong("11.1", "angles against the x axis")(positions(absolute=True))
 wrong("11.1", "sine and cosine in each other's place")(positions(swap=True))
 wrong("11.1", "each angle one link late")(positions(late=True))
-wrong("11.1", "no end")(positions(last=False))
+wrong("11.1", "omits the end of the last link")(positions(last=False))
 edit("11.1", "links do not add up", "x[k, 0] + lengths[k] * np.cos(phi)", "lengths[k] * np.cos(phi)")
 
 
@@ -53,7 +53,7 @@ def jacobian_2d(x):
 
 wrong("11.2", "turns clockwise")(jacobian(sign=-1.0))
 wrong("11.2", "only its own link")(jacobian(first=True))
-wrong("11.2", "along r")(jacobian(turn=False))
+wrong("11.2", "uses the arm r itself, not its perpendicular")(jacobian(turn=False))
 wrong("11.2", "directions without levers")(jacobian(unit=True))
 edit("11.2", "from the base", "x[n, 0] - x[k, 0]", "x[n, 0] - x[0, 0]")
 
@@ -79,7 +79,7 @@ right("11.3", "by the singular values of NumPy")(ellipse())
 wrong("11.3", "the short axis as a difference of squares")(ellipse(of_svd=False))
 wrong("11.3", "squares of the axes")(ellipse(squares=True))
 wrong("11.3", "the angle of the short axis")(ellipse(swapped=True))
-wrong("11.3", "degrees")(ellipse(degrees=True))
+wrong("11.3", "returns the angle in degrees")(ellipse(degrees=True))
 edit("11.3", "twice the angle", "0.5 * np.arctan2", "np.arctan2")
 edit("11.3", "the short axis is D", "np.sqrt(squared) / longer", "np.sqrt(squared)")
 
@@ -195,9 +195,9 @@ def rotation(body=False, shorter=True, half=2.0, back=False, small=True, arccos=
 
 
 right("11.8", "with a unit vector")(rotation())
-wrong("11.8", "in the frame of the body")(rotation(body=True))
+wrong("11.8", "returns the error in body coordinates")(rotation(body=True))
 wrong("11.8", "the longer way")(rotation(shorter=False))
-wrong("11.8", "half the angle")(rotation(half=1.0))
+wrong("11.8", "returns half of the angle")(rotation(half=1.0))
 wrong("11.8", "back instead of forth")(rotation(back=True))
 wrong("11.8", "0/0 where nothing is to be done")(rotation(small=False))
 wrong("11.8", "the arccosine of almost 1")(rotation(arccos=True))
@@ -214,7 +214,7 @@ def transposed(sign=1.0, gain=lambda arm, J: arm.gain, signs=False):
 
 
 right("11.9", "with Jᵀ written out")(transposed())
-wrong("11.9", "uphill")(transposed(sign=-1.0))
+wrong("11.9", "reverses the step, which then increases the error")(transposed(sign=-1.0))
 wrong("11.9", "no gain")(transposed(gain=lambda arm, J: 1.0))
 wrong("11.9", "a gain relative to σ²")(transposed(gain=lambda arm, J: arm.gain / np.linalg.norm(J, 2) ** 2))
 wrong("11.9", "only the signs")(transposed(signs=True))
@@ -240,8 +240,8 @@ def pseudo_inverse(J):
 
 wrong("11.10", "inverts round-off")(inverse(cut=0.0))
 wrong("11.10", "gives up what is only small")(inverse(cut=1e-4))
-wrong("11.10", "σ squared")(inverse(power=2))
-wrong("11.10", "the transpose")(inverse(full=False))
+wrong("11.10", "divides by σ² in place of σ")(inverse(power=2))
+wrong("11.10", "returns the transpose, not the pseudo-inverse")(inverse(full=False))
 edit("11.10", "multiplies by σ", "/ sigma[i]", "* sigma[i]")
 edit("11.10", "only the last direction", "J_plus[k, r] += v", "J_plus[k, r] = v")
 
@@ -259,8 +259,8 @@ def damping_of(squared=True, damped=True, sign=1.0, after=False):
 
 right("11.11", "as a system for all joints")(damping_of())
 wrong("11.11", "λ in place of λ²")(damping_of(squared=False))
-wrong("11.11", "no damping")(damping_of(damped=False))
-wrong("11.11", "away from the target")(damping_of(sign=-1.0))
+wrong("11.11", "omits the damping")(damping_of(damped=False))
+wrong("11.11", "reverses the step")(damping_of(sign=-1.0))
 wrong("11.11", "a shorter step on top of it")(damping_of(after=True))
 edit("11.11", "λ² off the diagonal, too", "A[r, r] +=", "A[r] +=")
 
@@ -277,10 +277,10 @@ def factors(gain_power=2, damping_power=2, done=False, size=lambda y: y, worst=F
 
 
 right("11.12", "term by term")(factors())
-wrong("11.12", "σ for σ²")(factors(gain_power=1))
-wrong("11.12", "λ for λ²")(factors(damping_power=1))
+wrong("11.12", "uses σ in place of σ²")(factors(gain_power=1))
+wrong("11.12", "uses λ in place of λ²")(factors(damping_power=1))
 wrong("11.12", "what is done, not what is left")(factors(done=True))
-wrong("11.12", "sizes")(factors(size=np.abs))
+wrong("11.12", "returns sizes in place of signed factors")(factors(size=np.abs))
 wrong("11.12", "the slowest for all")(factors(worst=True))
 
 
@@ -330,8 +330,8 @@ def projections(back=True, forth=True, old=False, base=True, lengths_in=1):
 
 
 right("11.14", "with unit vectors")(projections())
-wrong("11.14", "only back")(projections(forth=False))
-wrong("11.14", "only forth")(projections(back=False))
+wrong("11.14", "makes the backward pass only")(projections(forth=False))
+wrong("11.14", "makes the forward pass only")(projections(back=False))
 wrong("11.14", "from the old places")(projections(old=True))
 wrong("11.14", "the base comes along")(projections(base=False))
 wrong("11.14", "lengths in the wrong order")(projections(lengths_in=-1))

@@ -20,8 +20,8 @@ def universal_gravity(x_a, x_b, m_a, m_b, G):
 
 
 edit("2.1", "accepts coincident bodies", 'check_positive("distance of two bodies [m]", distance)', "pass")
-edit("2.1", "repels", "return G", "return -G")
-edit("2.1", "divides by r² and forgets that r has a length", "distance**3", "distance**2")
+edit("2.1", "reverses the force, so that the bodies repel each other", "return G", "return -G")
+edit("2.1", "divides the vector r by |r|², not by |r|³", "distance**3", "distance**2")
 edit("2.1", "acceleration instead of force", "G * m_a * m_b", "G * m_b")
 
 
@@ -32,8 +32,8 @@ def air_force(v, wind, k_v):
 
 
 edit("2.2", "viscosity speeds up", "wind - k_v * v", "wind + k_v * v")
-edit("2.2", "takes the wind for a velocity", "wind - k_v * v", "k_v * (wind - v)")
-edit("2.2", "quadratic", "k_v * v", "k_v * np.abs(v) * v")
+edit("2.2", "treats the wind as a velocity, not as a force", "wind - k_v * v", "k_v * (wind - v)")
+edit("2.2", "makes the force grow with the square of the speed", "k_v * v", "k_v * np.abs(v) * v")
 edit("2.2", "divides by the viscosity", "wind - k_v * v", "-k_v * (v - wind / k_v)")
 
 
@@ -44,7 +44,7 @@ def spring_tension(length, rate, rest, k, k_d):
 
 
 edit("2.3", "pushes when stretched", "length - rest", "rest - length")
-edit("2.3", "damper drives", "+ k_d * rate", "- k_d * rate")
+edit("2.3", "reverses the damper's sign, so that it drives the motion", "+ k_d * rate", "- k_d * rate")
 edit("2.3", "strain instead of extension", "(length - rest)", "(length - rest) / rest")
 edit("2.3", "a rope: never pushes", "k * (length - rest) + k_d * rate", "max(0.0, k * (length - rest) + k_d * rate)")
 edit("2.3", "damps against the extension", "k_d * rate", "k_d * abs(rate) * np.sign(length - rest)")
@@ -58,7 +58,7 @@ def soft_constraint_force(C, C_rate, gradient, k, k_d):
 
 
 edit("2.4", "pushes away", "-(k", "(k")
-edit("2.4", "brings the gradient to length 1", "* gradient", "* gradient / np.sqrt(gradient @ gradient)")
+edit("2.4", "normalises the gradient", "* gradient", "* gradient / np.sqrt(gradient @ gradient)")
 edit("2.4", "no damper", "k_d * C_rate", "0.0")
 edit("2.4", "pulls from one side only", "k * C +", "k * min(C, 0.0) +")
 edit("2.4", "pushes from the other side only", "k * C +", "k * max(C, 0.0) +")
@@ -105,14 +105,14 @@ def angular_spring(angle=short_way, power=2, hinge=1.0, order=(0, 1, 2), checked
 
 
 right("2.6", "with complex numbers")(angular_spring())
-wrong("2.6", "no wrap-around")(angular_spring(angle=lambda theta, rest: theta - rest))
+wrong("2.6", "does not bring the angle back into (−π, π]")(angular_spring(angle=lambda theta, rest: theta - rest))
 wrong("2.6", "the sine of the angle")(angular_spring(angle=lambda theta, rest: np.sin(theta - rest)))
 wrong("2.6", "takes the angle without its sign")(angular_spring(angle=lambda theta, rest: abs(theta) - rest))
 wrong("2.6", "force that does not fall with the arm")(angular_spring(power=1))
 wrong("2.6", "no force on the hinge")(angular_spring(hinge=0.0))
-wrong("2.6", "hinge pushed the wrong way")(angular_spring(hinge=-1.0))
-wrong("2.6", "opens instead of closing")(angular_spring(angle=lambda theta, rest: -short_way(theta, rest)))
-wrong("2.6", "a, c, b")(angular_spring(order=(0, 2, 1)))
+wrong("2.6", "reverses the force on the hinge")(angular_spring(hinge=-1.0))
+wrong("2.6", "reverses all three forces")(angular_spring(angle=lambda theta, rest: -short_way(theta, rest)))
+wrong("2.6", "returns the forces in the order a, c, b")(angular_spring(order=(0, 2, 1)))
 wrong("2.6", "accepts an arm of zero length")(angular_spring(checked=False))
 edit("2.6", "tests the length of one arm only", "squared_a == 0.0 or squared_c == 0.0", "squared_a == 0.0")
 edit("2.6", "refuses small inputs", "squared_a == 0.0 or squared_c == 0.0", "squared_a < 1e-6 or squared_c < 1e-6")
@@ -146,12 +146,13 @@ def overwrite(force, at, pull):
 right("2.7", "all springs at once")(by_matrices())
 wrong("2.7", "keeps one spring per point")(by_matrices(add=overwrite))
 wrong("2.7", "pushes instead of pulling")(by_matrices(tension=lambda *a: -worked.spring_tension(*a)))
-wrong("2.7", "the far end feels nothing")(by_matrices(other=0.0))
+wrong("2.7", "applies no force to the second end")(by_matrices(other=0.0))
 wrong("2.7", "both ends the same way")(by_matrices(other=-1.0))
-wrong("2.7", "r instead of r/l")(by_matrices(unit=False))
+wrong("2.7", "multiplies by the vector r, not by the unit vector r/l")(by_matrices(unit=False))
 wrong("2.7", "rate without division by l")(by_matrices(rate=lambda r, u, length: np.sum(r * u, axis=1)))
-wrong("2.7", "speed for rate")(by_matrices(rate=lambda r, u, length: np.sqrt(np.sum(u * u, axis=1))))
-wrong("2.7", "rate the other way round")(by_matrices(rate=lambda r, u, length: -np.sum(r * u, axis=1) / length))
+wrong("2.7", "uses the relative speed, not the rate of the length")(
+    by_matrices(rate=lambda r, u, length: np.sqrt(np.sum(u * u, axis=1))))
+wrong("2.7", "reverses the sign of the rate")(by_matrices(rate=lambda r, u, length: -np.sum(r * u, axis=1) / length))
 wrong("2.7", "accepts a spring of zero length")(by_matrices(checked=False))
 edit("2.7", "damps every motion, not only along the spring", "move_apart(force, i, j, -T / length, -T / length, x)",
      "move_apart(force, i, j, -T / length, -T / length, x)\n"
@@ -200,8 +201,8 @@ def loop(step=integrators.average_velocity_step):
     return mass_spring_damper_step
 
 
-wrong("2.9", "Euler")(loop(integrators.euler_step))
-wrong("2.9", "new velocity twice")(loop(integrators.symplectic_euler_step))
+wrong("2.9", "takes an explicit Euler step")(loop(integrators.euler_step))
+wrong("2.9", "moves with the new velocity, not with the mean of old and new")(loop(integrators.symplectic_euler_step))
 wrong("2.9", "Verlet: exact in free fall, but another loop")(loop(integrators.verlet_step))
 wrong("2.9", "midpoint: exact in free fall, but another loop")(loop(integrators.midpoint_step))
 
@@ -242,7 +243,7 @@ wrong("2.10", "counts along columns")(numbering(number=lambda r, c, rows, cols: 
 wrong("2.10", "multiplies by the rows")(numbering(number=lambda r, c, rows, cols: r * rows + c))
 edit("2.10", "a torus: wraps around the edge", "if 0 <= r + dr < rows and 0 <= c + dc < cols",
      "for r, c, dr, dc in [(r, c, (r + dr) % rows - r, (c + dc) % cols - c)]")
-edit("2.10", "a row below zero exists", "0 <= r + dr < rows", "r + dr < rows")
+edit("2.10", "treats an index below zero as a valid row", "0 <= r + dr < rows", "r + dr < rows")
 wrong("2.10", "tests the index, not the column")(
     numbering(exists=lambda r, c, rows, cols: 0 <= r * cols + c < rows * cols))
 wrong("2.10", "forgets the left edge")(numbering(exists=lambda r, c, rows, cols: r < rows and c < cols))
@@ -311,11 +312,12 @@ wrong("2.12", "never raises: returns the last iterate")(descent(silent=True))
 wrong("2.12", "starts from ones, with the residual of zeros")(descent(start=1.0))
 wrong("2.12", "changes the right-hand side")(descent(copied=False))
 wrong("2.12", "divides zero by zero")(descent(zero=False))
-edit("2.12", "the ratio upside down", "squared / before", "before / squared")
+edit("2.12", "inverts the ratio β", "squared / before", "before / squared")
 edit("2.12", "residuals in place of conjugate directions: r + p", "squared / before * p", "p")
 edit("2.12", "a tolerance in the unit of the right-hand side", "CG_TOLERANCE * CG_TOLERANCE * squared",
      "CG_TOLERANCE * CG_TOLERANCE")
-edit("2.12", "the tolerance not squared", "CG_TOLERANCE * CG_TOLERANCE * squared", "CG_TOLERANCE * squared")
+edit("2.12", "compares the squared residual with the tolerance itself",
+     "CG_TOLERANCE * CG_TOLERANCE * squared", "CG_TOLERANCE * squared")
 
 
 # 2.13 -----------------------------------------------------------------------------------------------------------
@@ -351,9 +353,9 @@ def dense(blocks_of, network, n, d):
 right("2.13", "as one dense system")(large_step())
 wrong("2.13", "forgets dt ∂F/∂x v on the right")(large_step(ahead=0.0))
 wrong("2.13", "∂F/∂x v with the wrong sign")(large_step(ahead=-1.0))
-wrong("2.13", "dampers explicit")(large_step(damping=0.0))
-wrong("2.13", "viscosity explicit")(large_step(viscosity=0.0))
-wrong("2.13", "springs explicit")(large_step(stiffness=0.0))
+wrong("2.13", "treats the dampers explicitly")(large_step(damping=0.0))
+wrong("2.13", "treats the viscosity explicitly")(large_step(viscosity=0.0))
+wrong("2.13", "treats the springs explicitly")(large_step(stiffness=0.0))
 wrong("2.13", "moves with the old velocity")(large_step(old=True))
 wrong("2.13", "acceleration at the end of the step")(large_step(late=1.0))
 wrong("2.13", "fixed points move")(large_step(held=False))
