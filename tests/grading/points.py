@@ -129,8 +129,8 @@ def outcome(mark, name, excinfo, trace=None):
     if not any(Path(entry.filename).name.startswith("test_") for entry in _frames(error)):
         return unreadable(Outcome(exercise, name, points, "not run"), error, "")
     kind, place, said = type(error).__name__, _place(error), tidy(words_of(error), MOST_DIGITS)
-    shapes = isinstance(error, SHAPES) and not place and _misshapen(exercise, trace)
-    if shapes:                                                       # the test could not use what was returned
+    shapes = isinstance(error, SHAPES) and _misshapen(exercise, trace)
+    if shapes:                                                       # whoever called could not use what was returned
         return Outcome(exercise, name, points, "not yet", f"what {trace.function} returns", *shapes, "",
                        "return as many values as the docstring says, in its order", kind)
     expected = "an answer: no error was expected here" if place else "an answer"

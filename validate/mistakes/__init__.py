@@ -76,7 +76,7 @@ class Trace:
         @functools.wraps(function)
         def watched(*arguments, **named):
             self.calls += 1
-            kept = self.calls <= FIRST or self.calls & (self.calls - 1) == 0
+            kept, self.returned = self.calls <= FIRST or self.calls & (self.calls - 1) == 0, NOTHING
             try:
                 result = function(*arguments, **named)
             except Exception as e:
@@ -88,7 +88,7 @@ class Trace:
                 self.results.append(summary(result))
                 self.sorted_out.append(summary(result, orderless=True))
                 self.kinds.add(kind(result))
-            self.returned = result                                   # the last one, for `misshapen`
+            self.returned = result                                   # of the last call, unless it raised: `misshapen`
             return result
         return watched
 
