@@ -50,7 +50,7 @@ def test_nine_of_ten_wrong_answers_are_recognised_and_no_right_one(name, each):
     kept = mutants_of(name)
     wrong = [k for k, mutant in enumerate(kept) if not mutant.right][::each]
     right = [k for k, mutant in enumerate(kept) if mutant.right]
-    found = named(name, wrong, rounded_otherwise)
+    found = named(name, wrong)
     recognised = [k for k in wrong if kept[k].story in found[k]]
     print(f"{name}: {len(recognised)} of {len(wrong)} wrong answers are recognised")
     missed = [f"{kept[k].exercise} {kept[k].story}" for k in wrong if k not in recognised]

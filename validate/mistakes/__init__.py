@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-FIRST = 8                    # of the calls in a test these are kept, and after them number 16, 32, 64, …
+FIRST = 64                   # of the calls in a test these are kept, and after them number 128, 256, …
 SAME, ROUND_OFF = 1e-6, 1e-9   # two sums are the same within this part of their terms, or within this
 DIGITS = 8                   # of a stored sum
 GOLDEN = 0.6180339887498949  # cubes times it, modulo 1, are spread evenly, and no two differences are the same
@@ -154,6 +154,11 @@ def all_same(kept, stored):
     return len(kept) == len(stored) and all(map(same, kept, stored))
 
 
+def differ(kept, right):
+    """Whether some result differs from the right one of the same call; the number of calls does not count."""
+    return not all(map(same, kept[:-1], right[:-1]))
+
+
 # ---------------------------------------------------------------------------------------------- what is stored
 
 def stored(results):
@@ -173,6 +178,8 @@ def matching(lesson, exercise, traces):
         return []
     kept = {test: trace.kept(known["orderless"]) for test, trace in traces.items()}
     wrong = {test for test, right in known["right"].items() if not all_same(kept[test], right)}
+    if not any(differ(kept[test], known["right"][test]) for test in wrong):
+        return []                                # a test that ends early tells nothing about the results
     found = [mistake["idea"] for mistake in known["wrong"]
              if wrong and wrong == mistake["tests"].keys()
              and all(all_same(kept[test], results) for test, results in mistake["tests"].items())]
