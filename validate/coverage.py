@@ -58,9 +58,14 @@ def calls():
 
 
 def defined(place):
-    """(module, function) where it is defined: a lesson may import it from elsewhere; None where it is no function."""
+    """(module, function) where it is defined; None where it is no function.
+
+    A lesson may import it from elsewhere, or have it in its companion.
+    """
     while place not in calls():
         module, name = place
+        if (f"support.{module}", name) in calls():
+            return f"support.{module}", name
         place = imported(trees()[module], module).get(name) if module in trees() else None
         if place is None:
             return None
@@ -90,7 +95,7 @@ def named(nodes, there, lesson):
                     yield lesson, one.attr
                 elif owner in there and there[owner][1] is None:
                     yield there[owner][0], one.attr
-            elif isinstance(one, ast.Constant) and isinstance(one.value, str) and (lesson, one.value) in calls():
+            elif isinstance(one, ast.Constant) and isinstance(one.value, str) and defined((lesson, one.value)):
                 yield lesson, one.value
 
 
