@@ -714,6 +714,7 @@ def several_points(lesson):
     parabola in that factor, and 1 − e² of the largest loss is lost.
     """
     rng, law, share = np.random.default_rng(79), 0.0, 0.0
+    answers = lesson.contact_matrix, lesson.cone_impulse, lesson.apply_impulse
     for _ in range(TRIED // 10):
         r = CORNERS + rng.uniform(-0.2, 0.2, (3, 3))
         n = np.array([unit_vector(rng, 3) for _ in r]) * 0.3 + [0.0, 0.0, 1.0]
@@ -736,7 +737,7 @@ def several_points(lesson):
             mu, before = rng.uniform(0.2, 2.0), 0.5 * (m * v @ v + omega @ I @ omega)
             lost = []
             for restitution in (0.0, e):
-                end, _ = lesson.most_dissipative_impact(body, r, n, restitution, mu)
+                end, _ = lesson.most_dissipative_impact(*answers, body, r, n, restitution, mu)
                 lost.append(before - 0.5 * (m * end.v @ end.v + end.omega @ I @ end.omega))
             share = max(share, abs(lost[1] / lost[0] - (1.0 - e * e)))
     return [agreement("Without friction the impulses solve the complementarity problem of all points together.",
