@@ -8,6 +8,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from solutions.checks import BadInput, Diverged
+from solutions.impulses import cross_2d
 from validate.engines.contact import DT as ENGINE_DT
 from validate.engines.contact import KINDS, MU, BulletPile, PymunkPile, fallen
 from validate.reference.contact import enumerated, natural_residual
@@ -796,15 +797,10 @@ def judge(lesson):
         "While discs fall and roll, the impulses are not those of rest; then the residual goes where round-off is.")
 
 
-def cross(r, d):
-    """r × d in the plane."""
-    return r[0] * d[1] - r[1] * d[0]
-
-
 def own_push(record, k):
     """k_n J_n [m/s] of a contact in the plane."""
     (x, _, _, inv_mass, inv_inertia), (a, b, n, p, _) = record.bodies, record.contacts
-    k_n = sum(inv_mass[i] + inv_inertia[i] * cross(p[k] - x[i], n[k]) ** 2 for i in (a[k], b[k]))
+    k_n = sum(inv_mass[i] + inv_inertia[i] * cross_2d(p[k] - x[i], n[k]) ** 2 for i in (a[k], b[k]))
     return k_n * (record.J[k] @ n[k])
 
 
@@ -814,7 +810,7 @@ def without_impulse(record, k):
     v, omega = 1.0 * v, 1.0 * omega
     for i, sign in ((a[k], -1.0), (b[k], 1.0)):
         v[i] += sign * inv_mass[i] * record.J[k]
-        omega[i] += sign * inv_inertia[i] * cross(p[k] - x[i], record.J[k])
+        omega[i] += sign * inv_inertia[i] * cross_2d(p[k] - x[i], record.J[k])
     return v, omega
 
 
