@@ -679,6 +679,11 @@ def cloth_swept_steered(lesson):
         edges = corners[:2], corners[1:], corners[[2, 0]]
         truth = 0.0 if surrounds(corners) else min(least_on_edge(*edge) for edge in edges)
         worst["gap"] = max(worst["gap"], abs(lesson.triangle_cylinder_gap(a, b, c, r, R) - (truth - R - r)))
+        beside = a + np.array([1.0, 0.0, 0.0])                   # an edge along the axis is a point in this view
+        y, along = a[1:], (b - a)[1:]
+        truth = np.linalg.norm(y + np.clip(-(y @ along) / (along @ along), 0.0, 1.0) * along)
+        got = lesson.triangle_cylinder_gap(*rng.permutation((a, beside, b)), r, R)
+        worst["gap"] = max(worst["gap"], abs(got - (truth - R - r)))
 
         low, move = rng.normal(size=3), rng.normal(size=3)
         high = low + rng.uniform(0.1, 1.0, 3)
@@ -734,7 +739,8 @@ def nearest_features(lesson):
     The two parts of a cut polygon have its area together, and a line through two corners cuts off what is on one side.
     """
     rng = np.random.default_rng(68)
-    worst, seen = dict.fromkeys(("triangle", "box", "inside", "cut", "corners", "flock", "align"), 0.0), set()
+    worst, seen = dict.fromkeys(("triangle", "box", "inside", "cut", "corners", "flight", "flock", "align"),
+                                0.0), set()
     for _ in range(300):
         corners, p = rng.normal(size=(3, 3)), 1.5 * rng.normal(size=3)
         truth = nearest_of_hull(p, corners)
@@ -761,6 +767,11 @@ def nearest_features(lesson):
         lost = abs(sum(area(part) for part in parts if len(part)) - area(polygon))
         beyond = np.max(parts[0] @ n - d, initial=0.0)
         worst["cut"] = max(worst["cut"], lost, beyond)
+        x, v, dt = rng.normal((0.0, 0.0, 9.0)), rng.normal(size=3), rng.uniform(0.1, 1.0)
+        target = lesson.Target(0.1, 0.1, lesson.make_plane((0.0, 0.0, 1.0, 0.0)))
+        for step in (lesson.discrete_step, lesson.continuous_step):
+            got = step(lesson.ball_plane_gap, lesson.ball_plane_time, 0.0, x, v, dt, target)
+            worst["flight"] = max(worst["flight"], np.max(np.abs(np.array(got) - (x + dt * v, v))))
     square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     for n in (np.array([1.0, -1.0]), np.array([-1.0, 1.0])):                            # through (0, 0) and (1, 1)
         worst["corners"] = max(worst["corners"], abs(len(lesson.clip(square, n, 0.0)) - 3))
@@ -791,6 +802,7 @@ def nearest_features(lesson):
         ("inside", "Inside a box a ball leaves through the nearest side.", "way out of a box [m, -]"),
         ("cut", "A line cuts a polygon in two parts, which have its area together.", "area of both parts [m²]"),
         ("corners", "A corner on the line belongs to both parts.", "number of corners [-]"),
+        ("flight", "A ball that meets nothing flies on.", "state after a step [m, m/s]"),
         ("flock", "A flock at rest is driven by the derivative of its energy.", "acceleration, relative [-]"),
         ("align", "Its members adapt to the velocities of those in reach.", "alignment [m/s²]"))
     return [agreement(claim, f"largest error of the {quantity}", worst[name], 1e-9)

@@ -604,16 +604,16 @@ def laws_of_friction(lesson):
             J = lesson.particle_contact_impulse(slip - fall * n, n, m, e, mu)
             after = slip + nearest_in_disc(-slip, mu * (1.0 + e) * fall) + e * fall * n
             note("particle", slip - fall * n + J / m, after)
-            p = ParticleOnPlane(m, mu, e, np.zeros(3), np.zeros(3), n)
-            _, v = lesson.contact_step(lesson.falling_acceleration, lesson.particle_plane_gap, 0.0, 0.0 * n,
+            p = ParticleOnPlane(m, mu, e, np.zeros(3), centre, n)
+            _, v = lesson.contact_step(lesson.falling_acceleration, lesson.particle_plane_gap, 0.0, centre,
                                        slip - fall * n, dt, p)
             note("particle", v, after)
             depth, moved = dt * fall, dt * (slip - fall * n)
             shift = nearest_in_disc(-dt * slip, mu * depth)
             note("shift", lesson.friction_position_correction(moved, n, depth, mu), shift)
-            x, _ = lesson.position_friction_step(lesson.falling_acceleration, lesson.particle_plane_gap, 0.0, 0.0 * n,
+            x, _ = lesson.position_friction_step(lesson.falling_acceleration, lesson.particle_plane_gap, 0.0, centre,
                                                  slip - fall * n, dt, p)
-            note("shift", x, dt * slip + shift)
+            note("shift", x, centre + dt * slip + shift)
     # μ is up to 10⁴ where a particle hits slowly, which costs four digits
     claims = {
         "normal": ("A support pushes against a load, and does not hold what is pulled away.", "normal force [N]"),
