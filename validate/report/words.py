@@ -239,7 +239,7 @@ def summary_line(story):
 
 
 TERM = re.compile(r"(?P<term>\S(?:.{0,20}[^\s.,;:=])?)  +(?P<text>[^\s=].*)")
-SUBSCRIPT = re.compile(r"\b([A-Za-zα-ω]{1,5})_([a-zα-ω]{1,5})\b")
+SUBSCRIPT = re.compile(r"\b([A-Za-zα-ω]{1,4})_([A-Za-zα-ω]{1,4})\b")
 
 
 def flowing(text):
@@ -325,7 +325,7 @@ def headline(result):
     if count[Verdict.NOT_ATTEMPTED]:
         return f"{count[Verdict.NOT_ATTEMPTED]} of {len(ours)} comparisons of our methods are not attempted yet."
     said = "All comparisons of our methods with the truth come out as theory says" if ours else ""
-    predicted = {named(c): None for c in engines if Verdict(c["verdict"]) is Verdict.FOLLOWS_OWN_LAW}
+    predicted = {named(c): None for c in ours + engines if Verdict(c["verdict"]) is Verdict.FOLLOWS_OWN_LAW}
     if predicted:
         rest = f"{', '.join(predicted)} {'departs' if len(predicted) == 1 else 'depart'} as predicted"
         return f"{said}; {rest}." if said else f"{rest}."
@@ -353,7 +353,8 @@ def _departures(result):
     groups = {}
     for n, c in every:
         if Verdict(c["verdict"]) is Verdict.FOLLOWS_OWN_LAW:
-            groups.setdefault((named(c), c["departure_reason"]), []).append((n, c))
+            label = named(c) if "product" in c else named(c)[:1].upper() + named(c)[1:]
+            groups.setdefault((label, c["departure_reason"]), []).append((n, c))
     for (label, reason), found in groups.items():
         size = percents(*(of(c["departure"] for _, c in found) for of in (min, max)))
         several = f" in {len(found)} cases" if len(found) > 1 else ""
@@ -403,7 +404,12 @@ def _engines(case):
 
 
 def _times(result):
+    """The races; to be as wrong as another law is none."""
+    first = next(iter(result["cases"].values()))
+    own_laws = {c["label"] for c in first["engines"] if c["departure_reason"]}
     for a in result["times"]["advantage"]:
+        if a["engine"] in own_laws:
+            continue
         one = race(a, result)
         engine = named({"label": a["engine"], "product": a["product"]})
         reached = f"{engine} reaches an error of {percent(a['error'])} in {seconds(a['seconds'])}."
