@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput
+from validate.stability import integrators
 from validate.stability.case import EDGE, bisect, finding
 from validate.stability.examine import all_cases, examine, subject_of
 
@@ -56,6 +57,8 @@ def test_slugs_can_stand_in_an_address_and_are_unique_within_a_lesson():
 
 
 WRONG = [                         # case, the method that it examines, what is put in its place
+    ("integrators/amplification", "verlet_step", "symplectic_euler_step"),
+    ("integrators/amplification", "midpoint_step", "average_velocity_step"),
     ("integrators/explicit-euler", "euler_step", "symplectic_euler_step"),
     ("integrators/symplectic-euler", "symplectic_euler_step", "euler_step"),
     ("integrators/midpoint", "midpoint_step", "euler_step"),
@@ -133,6 +136,14 @@ def test_a_formula_that_is_a_thousandth_off_is_seen(name, function, factor):
     right = getattr(lesson, function)
     wrong = lambda *arguments: scaled(right(*arguments), factor)
     assert not all(f.holds for f in CASES[name].examine(types.SimpleNamespace(**{**vars(lesson), function: wrong}))[0])
+
+
+def test_an_edge_that_is_a_hundredth_off_is_seen_on_the_map_of_amplification(monkeypatch):
+    case, edge = CASES["integrators/amplification"], integrators.EDGES["euler_step"]
+    monkeypatch.setitem(integrators.EDGES, "euler_step", lambda zeta: 1.01 * edge(zeta))
+    found, picture = case.examine(subject_of(case))
+    assert [f.holds for f in found] == [False] + 5 * [True]
+    assert all(np.shape(one["values"]) == (len(one["ys"]), len(one["xs"])) >= (100, 100) for one in picture.maps)
 
 
 def test_a_measurement_that_failed_is_a_finding_that_does_not_hold():

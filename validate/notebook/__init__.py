@@ -244,7 +244,8 @@ def _display(picture, height=260):
     """Show a film in the plane."""
     name = f"p{uuid.uuid4().hex}"
     runs = picture["films"]
-    key = " &nbsp; ".join(f'<span style="color:{run["colour"]}">●</span> {escape(run["label"])}' for run in runs)
+    alone = runs if len(runs) == 1 else []                           # the player's bar names several
+    key = " &nbsp; ".join(f'<span style="color:{run["colour"]}">●</span> {escape(run["label"])}' for run in alone)
     script = (Path(plots.__file__).parent / "player.js").read_text()
     style = f"width:100%;max-width:46rem;height:{height}px;background:#f6f7f8"
     display(HTML(f'<canvas data-picture="{name}" style="{style}"></canvas><div>{key}</div>'
@@ -261,7 +262,8 @@ def show3d(bodies, runs, seconds, arrows=None, trail=None, ground=False, height=
 def _display3d(picture, height=380):
     """Show a film in 3D."""
     name = f"s{uuid.uuid4().hex}"
-    key = [f'<span style="color:{run["colour"]}">■</span> {escape(run["label"])}' for run in picture["runs"]]
+    alone = picture["runs"] if len(picture["runs"]) == 1 else []     # the player's bar names several
+    key = [f'<span style="color:{run["colour"]}">■</span> {escape(run["label"])}' for run in alone]
     key += [f'<span style="color:{colour}">→</span> {escape(arrow)}'
             for arrow, colour in zip(picture["arrows"], ARROWS)]
     display(HTML(f'<div data-space="{name}" style="width:100%;max-width:46rem;height:{height}px"></div>'

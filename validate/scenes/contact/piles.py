@@ -263,9 +263,10 @@ SCENE = Scene(
     orders={"advance_pile": EXACT, "advance_pile_2d": EXACT},
     supports=supports,
     slow_cases=tuple(CASES)[1:],
-    omitted_methods="contact_forces and Murty's method find no places; matrices of 2,000 contacts would have "
+    omitted_methods="sweeps and Murty's method alone find no places; matrices of 2,000 contacts would have "
                     "16 million numbers; pybullet's residual stays between 0.3 and 4 g dt in 200 and 1,000 bodies, "
-                    "because 50 iterations do not find the forces; `python -m validate.piles` compares it with 1,000",
+                    "because 50 iterations do not find the forces; another command, python -m validate.piles, "
+                    "compares piles of 1,000",
     moves=False,
     refinement="",
     quantity_names=quantity_names,

@@ -69,7 +69,7 @@ def tolerance(p, dt):
     """Nothing changes faster than the rate √(g/L) and the rotation, whose square is at most 2g(1 − cos θ₀)/L.
 
     With one link PBD, XPBD without compliance and the projection method are identical, of order 1; RATTLE is of
-    order 2. pymunk is symplectic Euler along the circle and corrects at once (error_bias 0) the ½ω²dt² L that a
+    order 2. pymunk is symplectic Euler along the circle and corrects at once the ½ω²dt² L that a
     step leaves. pybullet does the same, with erp 1: both are of order 1.
     """
     limits = by_order(np.sqrt(p.g / p.L) + np.sqrt(2.0 * p.g / p.L * (1.0 - np.cos(np.radians(p.degrees)))), T, dt)
