@@ -534,18 +534,9 @@ def overlapping(rng, n):
     return pairs
 
 
-@case("minimum-translation", "The way out of an overlap", compiled=False)
-def minimum_translation(lesson):
-    """Random boxes and polygons that overlap: the way out is the shortest one, and contacts lie on both bodies.
-
-    The reference is the hull of all differences.  A box moved by −gap n just touches: the separation is then zero.
-    Points of contact lie within both bodies, up to the depth.  Where a face is touched, the deepest is as deep as
-    the axis gives; between two edges p_a − p_b = gap n.  Random capsules are as far apart as their segments, by
-    non-negative least squares, less the radii.  All hold to round-off, except that boxes may leave EDGE_PREFERENCE to
-    a face.
-    """
-    rng, found = np.random.default_rng(67), []
-    pairs, worst = overlapping(rng, 100), {"depth": 0.0, "left": 0.0, "outside": -1.0, "deepest": 0.0}
+def ways_out(lesson, pairs):
+    """Return (depths found [m], true ones, the worst errors) of pairs of boxes that overlap."""
+    worst = {"depth": 0.0, "left": 0.0, "outside": -1.0, "deepest": 0.0}
     depths, true = [], []
     for a, b in pairs:
         gap, n, _ = lesson.box_separation(a, b)
@@ -560,8 +551,13 @@ def minimum_translation(lesson):
             continue
         worst["outside"] = max(worst["outside"], inside(a, contacts.p_a), inside(b, contacts.p_b))
         worst["deepest"] = max(worst["deepest"], abs(contacts.gap.min() - gap))
+    return np.array(depths), np.array(true), worst
+
+
+def boxes_leave_by_the_shortest_way(worst):
+    """Judge the worst errors of 100 pairs of boxes."""
     room = 2.0 * worked.EDGE_PREFERENCE
-    found += [
+    return [
         finding(
             claim="The least overlap of 15 axes is the shortest way out.",
             quantity="greatest error of the depth of 100 pairs of boxes [m]",
@@ -599,19 +595,27 @@ def minimum_translation(lesson):
                          f"{worst['deepest']:.0e} m."),
         ),
     ]
+
+
+def capsules_are_as_far_apart_as_their_segments(lesson, rng):
+    """Compare 100 pairs of capsules with the nearest points of their segments."""
     errors = []
     for _ in range(100):
         x = rng.uniform(-1.0, 1.0, (4, 3))
         p, q = hull_nearest(x[:2], x[2:])
         errors.append(abs(lesson.capsule_capsule(x[0], x[1], 0.1, x[2], x[3], 0.2).gap - (np.linalg.norm(p - q) - 0.3)))
-    found.append(finding(
+    return [finding(
         claim="Two capsules are as far apart as their segments, less the radii.",
         quantity="greatest error of the gap of 100 pairs of capsules [m]",
         predicted=0.0,
         measured=max(errors),
         tolerance=ROUND_OFF,
         observation=f"The gap of 100 pairs of capsules is right to {max(errors):.0e} m.",
-    ))
+    )]
+
+
+def polygons_are_as_deep_as_their_differences(lesson, rng):
+    """Compare 100 pairs of polygons with the hull of their differences."""
     flat = []
     for _ in range(100):
         a, b = (
@@ -621,7 +625,7 @@ def minimum_translation(lesson):
         contacts, way = lesson.polygon_contacts(a, b), depth_of(a, b)[0]
         if way < 0.0 and len(contacts.gap):
             flat.append(abs(contacts.gap.min() - way))
-    found.append(finding(
+    return [finding(
         claim="The deepest contact of overlapping polygons is as deep as the hull of their differences gives.",
         quantity="greatest error of the deepest contact of 100 pairs of polygons [m]",
         predicted=0.0,
@@ -629,15 +633,32 @@ def minimum_translation(lesson):
         tolerance=ROUND_OFF,
         observation=(f"The deepest contact of {len(flat)} pairs of polygons is right to "
                      f"{max(flat, default=np.inf):.0e} m."),
-    ))
+    )]
+
+
+@case("minimum-translation", "The way out of an overlap", compiled=False)
+def minimum_translation(lesson):
+    """Random boxes and polygons that overlap: the way out is the shortest one, and contacts lie on both bodies.
+
+    The reference is the hull of all differences.  A box moved by −gap n just touches: the separation is then zero.
+    Points of contact lie within both bodies, up to the depth.  Where a face is touched, the deepest is as deep as
+    the axis gives; between two edges p_a − p_b = gap n.  Random capsules are as far apart as their segments, by
+    non-negative least squares, less the radii.  All hold to round-off, except that boxes may leave EDGE_PREFERENCE to
+    a face.
+    """
+    rng = np.random.default_rng(67)
+    depths, true, worst = ways_out(lesson, overlapping(rng, 100))
+    found = boxes_leave_by_the_shortest_way(worst)
+    found += capsules_are_as_far_apart_as_their_segments(lesson, rng)
+    found += polygons_are_as_deep_as_their_differences(lesson, rng)
     order = np.argsort(true)
     return found, Picture(
         "The way out of 100 pairs of boxes",
         "shortest way out, by the hull of differences [m]",
         "depth found [m]",
         [
-            series("equal", np.array(true)[order], np.array(true)[order], LINE),
-            series("separating axes, measured", np.array(true)[order], np.array(depths)[order], DOTS),
+            series("equal", true[order], true[order], LINE),
+            series("separating axes, measured", true[order], depths[order], DOTS),
         ],
         "Fifteen axes are enough: no other direction is a shorter way out of two boxes.",
     )
