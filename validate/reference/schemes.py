@@ -251,3 +251,12 @@ def predict_by_tables(T, law, begin, seen, truth, floor, engines=None, departure
         return error_law(label, p).prediction(dt, floor(p, dt)) if label in engines or label in TABLEAUX else None
 
     return predicted_error
+
+
+def summed(velocity, T, dt, new):
+    """The way [m] that a run covers with the right velocity(t) (n,) → (n, …) at every step, but for all of the step.
+
+    It is the sum of the new velocities, or of the old ones: the rectangle rule.
+    """
+    n = np.arange(round(T / dt))
+    return dt * np.sum(velocity(dt * (n + 1.0 if new else n)), axis=0)
