@@ -111,8 +111,8 @@ def by_wider_boxes(p, t):
 
 
 def tolerance(p, dt):
-    """Counts are exact.  A single pair more or less is 1/pairs, above 1e-6 in all cases."""
-    return {EXACT: 1e-9, **{engine.label: 1e-9 for engine in ENGINES}}
+    """Counts are exact: whole numbers, of which a quotient rounds by 1e-16."""
+    return dict.fromkeys((EXACT, *(engine.label for engine in ENGINES)), 1e-15)
 
 
 def supports(name, p):

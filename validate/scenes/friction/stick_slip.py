@@ -9,7 +9,7 @@ from solutions.integrators import advance
 from solutions.support.friction import make_block, slip_times
 from validate.engines.friction import MASS, SWEEPS, bullet_block, pymunk_block
 from validate.methods import EVENT, SLIDING
-from validate.reference.friction import DrivenBlock, T, block_in_space, slip_limits, slip_position, slips
+from validate.reference.friction import DrivenBlock, T, block_in_space, slip_errors, slip_limits, slip_position, slips
 from validate.scene import PYBULLET, PYMUNK, Engine, Scene
 
 STEPS = (80, 160, 400, 800, 1600, 4000, 8000)
@@ -115,6 +115,7 @@ SCENE = Scene(
     truth=slip_position,
     truth_uncertainty=1e-13,
     tolerance=slip_limits,
+    predicted_error=slip_errors,
     engines=ENGINES,
     sanity_checks=sanity_checks,
     points=points,

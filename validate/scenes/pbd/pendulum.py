@@ -10,8 +10,8 @@ from solutions.support.pbd import make_constraint_network
 from solutions.support.pbd import network_gravity as acceleration
 from validate.engines.pbd import ITERATIONS, SHARE, bullet_rope, pymunk_rope
 from validate.methods import COMPOSED_ROPE, PBD, PROJECTION, RATTLE, ROPE, XPBD
-from validate.reference.pbd import pendulum_angle, pendulum_period
-from validate.scene import PYBULLET, PYMUNK, Departure, Engine, Scene, by_order
+from validate.reference.pbd import ROPE_STEPS, Rope, pendulum_angle, pendulum_period, rope_errors
+from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Engine, Scene, by_order
 
 T = 1.5                      # [s]: once through the lowest point, and most of the way up
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
@@ -76,6 +76,14 @@ def tolerance(p, dt):
     return {**limits, "pymunk": limits[1], "pybullet": limits[1]}
 
 
+def rope(p):
+    return Rope(np.stack((np.zeros(2), place(np.radians(p.degrees), p))), p.L, p.g)
+
+
+def floor(p, dt):
+    return tolerance(p, dt)[EXACT]
+
+
 def pymunk_make(p, dt):
     return pymunk_rope([place(np.radians(p.degrees), p)], p.L, p.m, p.g, dt, lambda x: x[0])
 
@@ -138,6 +146,7 @@ SCENE = Scene(
     truth=truth,
     truth_uncertainty=1e-14,
     tolerance=tolerance,
+    predicted_error=rope_errors(T, rope, lambda x: x[1], truth, floor, ROPE_STEPS),
     engines=ENGINES,
     expected_departures={
         "pybullet": Departure(
