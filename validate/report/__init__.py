@@ -30,7 +30,7 @@ def copied(results):
 
 def files(results, stability):
     """The names of all files of a report."""
-    always = "index.html", "report.json", "coverage.html"
+    always = "index.html", "report.json", "coverage.html", "left_out.html"
     return {*always, *(["stability.html"] if stability else []), *copied(results),
             *(f"{r['scene']}.html" for r in results), *(name for _, name, _, _ in pictures(results, stability))}
 
@@ -52,6 +52,7 @@ def texts(results, stability, about):
         cases = {f"{c['lesson']}/{c['slug']}": c["title"] for c in stability}
         found["coverage.html"] = pages.get_template("coverage.html").render(
             coverage=about["coverage"], scenes=scenes, cases=cases)
+    found["left_out.html"] = pages.get_template("left_out.html").render(rows=words.left_out(results))
     if stability:
         found["stability.html"] = pages.get_template("stability.html").render(cases=stability)
     rows = [words.row(r) for r in results]

@@ -112,8 +112,8 @@ def pybullet_make(p, dt):
 
 
 ENGINES = (
-    # Tried at 100, 500 and 2,000 steps: 4.9, 0.7 and 0.24 % with this box; 4.9, 0.97 and 0.24 % with it or the ball in
-    # reduced coordinates, and also with a box without mass in reduced coordinates whose velocity is set before each step;
+    # Tried at 100, 500 and 2,000 steps: 4.9, 0.7 and 0.24 % with this box; 4.9, 0.97 and 0.24 % with it in reduced
+    # coordinates, and also with a box without mass in reduced coordinates whose velocity is set before each step;
     # 206 % with a box without mass in maximal coordinates, which carries nothing along.
     Engine(PYBULLET, "", pybullet_make, 1, "a box of 10⁹ ball masses that rotates freely, because in maximal "
            "coordinates bodies without mass carry nothing along; 100 iterations, no residual threshold, no slop, no "

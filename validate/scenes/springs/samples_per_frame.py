@@ -120,6 +120,6 @@ SCENE = Scene(
     points=points,
     links=links,
     uses=("two coordinates", "springs with dampers", "one step function"),
-    ablations={"the third dimension": in_space, "rotation": "lesson 5 builds it",
-              "contact of the net with itself": "lesson 6 builds it"},
+    ablations={"the third dimension": in_space, "rotation": "the whole loop of lesson 10 has it, and is measured",
+              "contact of the net with itself": "the whole loop of lesson 10 has it, and is measured"},
 )
