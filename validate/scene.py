@@ -85,6 +85,7 @@ class Scene:
     engines: tuple = ()      # of Engine
     uses: tuple = ()         # what the scene needs, in words
     ablations: dict = field(default_factory=dict)        # {what it omits: p → (state, p) with it put in, or why not}
+    full_loop: str = ""      # why the whole loop of lesson 10 cannot stand for a method here; else it is measured
     acceleration: Callable | None = None     # (t, x, v, p) → a [m/s²]: the law; compiled where the lessons are
     expected_departures: dict = field(default_factory=dict)      # {label: Departure}
     orders: dict = field(default_factory=dict)  # {method's function: order here}, where it is not the usual one

@@ -41,7 +41,7 @@ def errors(name, plan):
         "uncertainty": scene.truth_uncertainty, "truth_story": report_text(scene.truth), "uses": list(scene.uses),
         "parameters": parameter_table(scene.parameters), "notes": selection.notes, "cases": cases,
         **parity(selection, first),
-        "picture": film.picture(selection, first, labels_that_agree({"cases": cases})),
+        "picture": film.picture(selection, first, labels_to_film({"cases": cases})),
         "law": report_text(scene.acceleration) if scene.acceleration else "",
         "limits": "\n\n".join(report_text(f) for f in (scene.tolerance, scene.predicted_error) if f),
     })
@@ -276,3 +276,11 @@ def labels_that_agree(result):
     """Labels of our methods that agree with the truth in the first case."""
     first = next(iter(result["cases"].values()))
     return {c["label"] for c in first["ours"] if Verdict(c["verdict"]) is Verdict.AGREES}
+
+
+def labels_to_film(result):
+    """The same; where no theory judges any of them, those that came to the end."""
+    first = next(iter(result["cases"].values()))
+    ended = {c["label"] for c in first["ours"] if c["verdict"] == Verdict.UNDECIDED and c["rows"]
+             and c["rows"][-1]["failure"] is None}
+    return labels_that_agree(result) or ended

@@ -38,7 +38,7 @@ def copied(results):
 
 def files(results, stability):
     """The names of all files of a report."""
-    always = "index.html", "report.json", "coverage.html"
+    always = "index.html", "report.json", "coverage.html", "left_out.html"
     return {*always, *(["stability.html"] if stability else []), *copied(results), *tables.names(results, stability),
             *(name for r in results for name in (f"{r['scene']}.html", f"{r['scene']}-film.js")),
             *(name for _, name, _, _ in pictures(results, stability))}
@@ -94,6 +94,7 @@ def texts(results, stability, about):
         found["coverage.html"] = page(
             "coverage.html", coverage=coverage, scenes={r["scene"]: r["title"] for r in results},
             cases={f"{c['lesson']}/{c['slug']}": c["title"] for c in stability})
+    found["left_out.html"] = page("left_out.html", rows=words.left_out(results))
     if stability:
         found["stability.html"] = page("stability.html", cases=stability)
     found["index.html"] = page("front.html", rows=[words.row(r) for r in results], lessons=lessons,

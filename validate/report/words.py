@@ -230,6 +230,13 @@ def row(result):
     }
 
 
+def left_out(results):
+    """Scenes of the lessons before the simulator, and what the whole loop costs there: [{scene, title, lesson, …}]."""
+    return [{"scene": r["scene"], "title": r["title"], "lesson": r["lesson"], "uses": r["uses"],
+             **(r["times"].get("left_out") or {"ratio": None, "note": "not measured"})}
+            for r in results if r["lesson"] not in ("simulator", "kinematics")]
+
+
 def best_order(curves):
     """The curve of ours that agrees and shows the highest order."""
     agreeing = [c for c in curves if Verdict(c["verdict"]) is Verdict.AGREES]

@@ -538,6 +538,7 @@ SCENE = Scene(
     points=points,
     links=links,
     uses=("the shapes of two bodies", "where they are"),
+    full_loop="nothing moves here, so there is no loop",
     ablations={
         "motion": "continuous detection: the two scenes of points",
         "finding the pairs": "the scene of pairs",

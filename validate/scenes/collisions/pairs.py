@@ -179,6 +179,7 @@ SCENE = Scene(
     points=points,
     links=links,
     uses=("boxes along the axes", "a tree, rebuilt"),
+    full_loop="the broad phase alone: nothing moves, so there is no loop",
     ablations={
         "motion": "a tree can be refitted instead of rebuilt if little has moved",
         "the shapes inside the boxes": "the narrow phase of this lesson tests the pairs",

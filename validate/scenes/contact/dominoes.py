@@ -236,6 +236,8 @@ SCENE = Scene(
     points=points,
     links=links,
     uses=("contact points of boxes", "soft contacts and memory", "one substep per step"),
+    full_loop="its method is a whole loop itself, with soft contacts in place of rigid ones: the motions "
+              "are not the same",
     ablations={"restitution": "dominoes of wood bounce a little; no law says how several impacts at once do",
                "substeps": "two or four per step cost as many times more and do not come nearer to the limit"},
 )

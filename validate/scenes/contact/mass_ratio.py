@@ -329,6 +329,7 @@ SCENE = Scene(
     points=points,
     links=links,
     uses=("rows of both contacts", "masses", "for the pile: contact points, soft contacts and memory"),
+    full_loop="forces of bodies at rest: nothing moves, so there is no loop",
     ablations={"friction": "it carries nothing here; it keeps the boxes of the pile from sliding off",
                "rocking": "solvers see one contact in the middle of each joint; the pile and the engines have two"},
 )

@@ -275,6 +275,7 @@ SCENE = Scene(
     links=links,
     uses=("a broad phase that looks again only when something has left its widened box", "contact points", "memory",
           "soft contacts with substeps"),
+    full_loop="its method is a whole loop itself, of which only the end is seen",
     ablations={"sleeping": "it would hide whether a pile comes to rest",
                "restitution": "e = 0 everywhere: what several impacts at once do with it is a choice, and no law"},
 )

@@ -258,6 +258,7 @@ SCENE = Scene(
     points=points,
     links=links,
     uses=("rows of all contacts", "masses and moments", "for the pile: contact points, soft contacts and memory"),
+    full_loop="forces of bodies at rest: nothing moves, so there is no loop",
     ablations={"restitution": "nothing bounces at rest",
                "the third dimension": "cubes touch in four points instead of two, and the joints carry the same: a "
                                       "case of --full",

@@ -220,6 +220,7 @@ SCENE = Scene(
     points=points,
     links=links,
     uses=("three coordinates", "an implicit surface", "one impulse for each contact"),
+    full_loop="the loop has no contact with a curved surface that is given by an equation",
     ablations={
         "rotation: it slides and does not roll": "lesson 5 builds it",
         "detection between bodies": "lesson 6 builds it",

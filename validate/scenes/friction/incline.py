@@ -185,7 +185,7 @@ SCENE = Scene(
     uses=("two coordinates", "a normal", "one step of a block that stays on its plane"),
     ablations={
         "the third dimension": in_space,
-        "rotation: it does not tip": "lesson 5 builds it",
-        "detection: it does not leave the slope": "lesson 6 builds it",
+        "rotation: it does not tip": "the whole loop of lesson 10 has it, and is measured",
+        "detection: it does not leave the slope": "the whole loop of lesson 10 has it, and is measured",
     },
 )

@@ -184,7 +184,7 @@ SCENE = Scene(
     links=links,
     uses=("three coordinates", "a normal", "one step of a block that stays on its plane"),
     ablations={
-        "rotation: it does not turn or tip": "lesson 5 builds it",
-        "detection: it does not leave the floor": "lesson 6 builds it",
+        "rotation: it does not turn or tip": "the whole loop of lesson 10 has it, and is measured",
+        "detection: it does not leave the floor": "the whole loop of lesson 10 has it, and is measured",
     },
 )

@@ -62,6 +62,6 @@ SCENE = Scene(
         "the third dimension": planet_in_space,
         "the motion of the sun": "the lighter the planet, the smaller the effect",
         "steps that adapt to the distance": "beyond this workbook",
-        "rotation": "lesson 5 builds it",
+        "rotation": "the whole loop of lesson 10 has it, and is measured",
     },
 )

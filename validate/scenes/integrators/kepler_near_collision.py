@@ -52,5 +52,5 @@ SCENE = Scene(
     film_seconds=12.6,          # two revolutions [s]
     uses=("one point in the plane", "one step function"),
     ablations={"the third dimension": planet_in_space, "steps that adapt to the distance": "beyond this workbook",
-              "rotation": "lesson 5 builds it"},
+              "rotation": "the whole loop of lesson 10 has it, and is measured"},
 )

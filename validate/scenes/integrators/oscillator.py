@@ -205,7 +205,7 @@ SCENE = Scene(
     uses=("one coordinate", "one step function"),
     ablations={
         "the second and third dimension": in_space,
-        "rotation": "lesson 5 builds it",
-        "detection of contacts": "lesson 6 builds it",
+        "rotation": "the whole loop of lesson 10 has it, and is measured",
+        "detection of contacts": "the whole loop of lesson 10 has it, and is measured",
     },
 )

@@ -199,6 +199,7 @@ SCENE = Scene(
     points=points,
     links=links,
     uses=("two coordinates", "links, in sequence", "one step function"),
+    full_loop="a string fixes a distance; a joint of the loop fixes a point, and its chain of rods is another motion",
     ablations={
         "the third dimension": in_space,
         "contact of the rope with itself": "lesson 6 finds it",

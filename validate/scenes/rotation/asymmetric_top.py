@@ -137,6 +137,6 @@ SCENE = Scene(
     uses=("one orientation", "one angular momentum", "one step function"),
     ablations={
         "position": "x += dt P/M runs beside it without any effect",
-        "contacts": "lessons 6 and 7 build them",
+        "contacts": "the whole loop of lesson 10 has them, and is measured",
     },
 )

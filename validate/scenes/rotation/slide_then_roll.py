@@ -199,6 +199,6 @@ SCENE = Scene(
     arrows=arrows,
     ground=True,
     uses=("one ball", "one force at one point", "the lecture's loop"),
-    ablations={"detection of the contact": "the ball starts on the floor and stays there; lesson 6 finds contacts",
+    ablations={"detection of the contact": "the whole loop of lesson 10 has it, and is measured",
               "a force of the support that is solved for": "N = mg, because there is no vertical motion"},
 )

@@ -207,7 +207,7 @@ SCENE = Scene(
     uses=("two coordinates", "springs with dampers", "one step function"),
     ablations={
         "the third dimension": in_space,
-        "rotation": "lesson 5 builds it",
-        "contact between links": "lesson 6 builds it",
+        "rotation": "the whole loop of lesson 10 has it, and is measured",
+        "contact between links": "the whole loop of lesson 10 has it, and is measured",
     },
 )

@@ -181,6 +181,7 @@ SCENE = Scene(
     links=links,
     link_look="spring",
     uses=("one coordinate", "springs with dampers", "one step function"),
-    ablations={"the second and third dimension": in_space, "rotation": "lesson 5 builds it",
-              "contact between masses": "lesson 6 builds it"},
+    ablations={"the second and third dimension": in_space,
+              "rotation": "the whole loop of lesson 10 has it, and is measured",
+              "contact between masses": "the whole loop of lesson 10 has it, and is measured"},
 )

@@ -90,6 +90,6 @@ SCENE = Scene(
     links=net_links,
     link_look="spring",
     uses=("two coordinates", "springs with dampers", "one step function"),
-    ablations={"the third dimension": net_in_space, "rotation": "lesson 5 builds it",
-              "contact of the net with itself": "lesson 6 builds it"},
+    ablations={"the third dimension": net_in_space, "rotation": "the whole loop of lesson 10 has it, and is measured",
+              "contact of the net with itself": "the whole loop of lesson 10 has it, and is measured"},
 )
