@@ -32,21 +32,24 @@ def released(lesson, method, I, omega, dt, steps):
 
 
 def tried(lesson, method, I, omega, dt, steps):
-    """Return the same, or None where the step refuses."""
+    """Return the same, or None where the step refuses, or where its numbers are beyond a linear solver."""
     try:
         return released(lesson, method, I, omega, dt, steps)
-    except Diverged:
+    except (Diverged, np.linalg.LinAlgError):
         return None
 
 
 def energies(lesson, method, I, omega, dt, ts):
-    """Return the energy over its initial value at the times ts; the step must not refuse."""
+    """Return the energy over its initial value at the times ts; NaN where its numbers are beyond a linear solver."""
     body, q, now, found = lesson.RigidBody(1.0, np.array(I)), AT_START, 0.0, []
     L = body.I_body * np.array(omega)
     begin = lesson.kinetic_energy(q, L, body.I_body)
     for t in ts:
-        q, L = lesson.advance_rotation(getattr(lesson, method), lesson.no_torque, now, q, L, dt,
-                                       round((t - now) / dt), body)
+        try:
+            q, L = lesson.advance_rotation(getattr(lesson, method), lesson.no_torque, now, q, L, dt,
+                                           round((t - now) / dt), body)
+        except np.linalg.LinAlgError:
+            return np.array([*found, *[np.nan] * (len(ts) - len(found))])
         now = t
         found.append(lesson.kinetic_energy(q, L, body.I_body) / begin)
     return np.array(found)
@@ -495,6 +498,9 @@ def loads_and_derivatives(lesson):
 # ---------------------------------------------------------------------------------------------- one step
 
 TRIED = 25                   # random bodies [-]
+# Runge–Kutta's stages have quaternions that are not quite of length 1, and what R means there is a choice: two choices
+# differ by O(dt⁵).  At 2 rad/s a step of 15 ms makes that 1e-8 at most; a wrong stage shows by dt³, 1e-5.
+SHORT = 0.05
 
 
 def turned_by(phi):
@@ -626,8 +632,11 @@ def one_step(lesson):
         q /= np.linalg.norm(q)
         t, dt, R, body = rng.uniform(), rng.uniform(0.05, 0.3), quaternion_matrix(*q), lesson.RigidBody(1.0, I)
         torque = lambda t, q, L, body, a=a, b=b: tau_of(t, of_any_length(q), a, b)
-        for name, (turned, momentum) in by_matrices(t, q, L, dt, I, a, b).items():
-            new_q, new_L = getattr(lesson, name)(torque, t, q, L, dt, body)
+        steps = {h: by_matrices(t, q, L, h, I, a, b) for h in (dt, SHORT * dt)}
+        for name in LABEL:
+            h = SHORT * dt if name == "runge_kutta_step" else dt
+            turned, momentum = steps[h][name]
+            new_q, new_L = getattr(lesson, name)(torque, t, q, L, h, body)
             error = max(np.max(np.abs(quaternion_matrix(*new_q) - turned)), np.max(np.abs(new_L - momentum)))
             errors[name] = max(errors.get(name, 0.0), error)
 
@@ -647,7 +656,8 @@ def one_step(lesson):
               ("top", "Gravity turns a top about its pivot with l𝐞 × (−Mg ẑ).", "torque [N m]"),
               ("velocity", "A point of a body moves with v + ω × r.", "velocity [m/s]"))
     return [agreement(f"One step of {LABEL[name]} is its definition by matrices.",
-                      f"{LABEL[name]}: largest error of a step [-, kg m²/s]", error, 1e-11)
+                      f"{LABEL[name]}: largest error of a step [-, kg m²/s]", error,
+                      1e-7 if name == "runge_kutta_step" else 1e-11)
             for name, error in errors.items()] + [
         agreement(claim, f"largest error of the {quantity}", parts[name], 1e-12)
         for name, claim, quantity in claims], None
