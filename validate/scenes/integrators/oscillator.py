@@ -145,6 +145,7 @@ def in_space(p):
 
 SCENE = Scene(
     title="Oscillator",
+    link_look="spring and damper",
     lesson="integrators",
     cases=CASES,
     duration=T,
@@ -163,7 +164,6 @@ SCENE = Scene(
     },
     points=points,
     links=links,
-    link_look="spring and damper",
     uses=("one coordinate", "one step function"),
     ablations={
         "the second and third dimension": in_space,

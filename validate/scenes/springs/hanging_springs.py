@@ -135,6 +135,7 @@ def in_space(p):
 
 SCENE = Scene(
     title="Hanging springs",
+    link_look="spring",
     lesson="springs",
     cases=CASES,
     duration=T,
@@ -152,7 +153,6 @@ SCENE = Scene(
     sanity_checks=sanity_checks,
     points=points,
     links=links,
-    link_look="spring",
     uses=("one coordinate", "springs with dampers", "one step function"),
     ablations={"the second and third dimension": in_space, "rotation": "lesson 5 builds it",
               "contact between masses": "lesson 6 builds it"},

@@ -102,6 +102,7 @@ def in_space(p):
 
 SCENE = Scene(
     title="1, 4, 16 samples per frame",
+    link_look="spring",
     lesson="springs",
     cases=CASES,
     duration=T,
@@ -119,7 +120,6 @@ SCENE = Scene(
     sanity_checks=sanity_checks,
     points=points,
     links=links,
-    link_look="spring",
     uses=("two coordinates", "springs with dampers", "one step function"),
     ablations={"the third dimension": in_space, "rotation": "lesson 5 builds it",
               "contact of the net with itself": "lesson 6 builds it"},
