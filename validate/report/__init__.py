@@ -86,6 +86,7 @@ def texts(results, stability, about):
     coverage = about.get("coverage") or {}
     found = {f"{r['scene']}.html": page(
         "scene.html", r=r, headline=words.headline(r), findings=words.leading(r),
+        seen_in_times=words.seen_in_times(r), seen_in_steps=words.seen_in_steps(r),
         races=[words.race(a, r) for a in r["times"]["advantage"]],
         warning=words.busy_warning([r], about.get("cores")), notebook=about.get("notebooks", {}).get(r["lesson"]),
         exercises=[(number, one["function"]) for number, one in coverage.items() if r["scene"] in one["places"]],

@@ -244,6 +244,26 @@ def best_order(curves):
     return max(known, key=lambda c: (c["expected"] == EXACT, c["order"] or 0.0), default=None)
 
 
+def seen_in_times(result):
+    """One sentence: what the plot of errors against run times shows."""
+    decided = [one for one in races(result).values() if one["ratio"]]
+    if not decided:
+        return ""
+    one = decided[-1]
+    return (f"At an error of {percent(one['error'])}, which {one['engine'].replace(', ', ' with ')} reaches in "
+            f"{seconds(one['seconds'])}, our “{one['method']}” needs {seconds(one['ours'])}.")
+
+
+def seen_in_steps(result):
+    """One sentence: what the plot of errors against steps shows."""
+    best = best_order(next(iter(result["cases"].values()))["ours"])
+    if best is None:
+        return ""
+    if best["expected"] == EXACT:
+        return f"“{best['label']}” is exact up to round-off at every step."
+    return f"“{best['label']}” falls fastest, with order {best['order']:.2f}."
+
+
 # ---------------------------------------------------------------------------------------------- texts of scenes
 
 def summary_line(story):

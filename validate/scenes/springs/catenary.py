@@ -185,6 +185,7 @@ def in_space(p):
 
 SCENE = Scene(
     title="Discrete catenary",
+    link_look="spring",
     lesson="springs",
     cases=CASES,
     duration=T,
@@ -203,7 +204,6 @@ SCENE = Scene(
     sanity_checks=sanity_checks,
     points=points,
     links=links,
-    link_look="spring",
     uses=("two coordinates", "springs with dampers", "one step function"),
     ablations={
         "the third dimension": in_space,

@@ -70,6 +70,7 @@ def sanity_checks():
 
 SCENE = Scene(
     title="1, 4, 16 samples per frame",
+    link_look="spring",
     lesson="springs",
     cases=CASES,
     duration=T,
@@ -88,7 +89,6 @@ SCENE = Scene(
     sanity_checks=sanity_checks,
     points=net_points,
     links=net_links,
-    link_look="spring",
     uses=("two coordinates", "springs with dampers", "one step function"),
     ablations={"the third dimension": net_in_space, "rotation": "the whole loop of lesson 10 has it, and is measured",
               "contact of the net with itself": "the whole loop of lesson 10 has it, and is measured"},
