@@ -5,6 +5,7 @@ import os
 import shutil
 from pathlib import Path
 
+import sphinxcontrib.katex
 from docutils import nodes
 
 SOURCE = Path(os.environ["WORKBOOK_BOOK_SOURCE"])
@@ -29,6 +30,7 @@ add_module_names = False
 toc_object_entries_show_parents = "hide"
 
 katex_prerender = shutil.which("node") is not None             # else the same KaTeX runs in the reader's browser
+sphinxcontrib.katex.STARTUP_TIMEOUT = sphinxcontrib.katex.RENDER_TIMEOUT = 120.0   # [s]: busy machines
 katex_css_path = "katex/katex.min.css"
 
 html_theme = "furo"
