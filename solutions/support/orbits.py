@@ -4,7 +4,10 @@ import numpy as np
 
 
 def attraction(t, x, v, p):
-    """Given.  Return a = −μ x/|x|³ [m/s²] (d,); μ [m³/s²] is a field of p.  The loop compiles faster than a sum."""
+    """Given.  a = −μ x/|x|³
+
+    Return the acceleration (d,) [m/s²]; μ [m³/s²] is a field of p.  The loop compiles faster than np.sum.
+    """
     squared = 0.0
     for coordinate in x:
         squared += coordinate * coordinate
