@@ -1,4 +1,4 @@
-"""Scenes without a formula, by the worked answers: dominoes, and a machine of many kinds of parts.
+"""Scenes without a formula, by the worked answers: dominoes, a machine of many kinds of parts, and a card house.
 
 They are judged by what must hold for any motion: energy never grows without a source, bodies do not sink into each
 other, and shorter steps change less and less.
@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from validate.modules import bind
-from validate.scenes.simulator import machine
+from validate.scenes.simulator import card_house, machine
 
 simulator = bind("simulator")
 
@@ -68,3 +68,14 @@ def test_a_machine_runs_for_ten_seconds_and_gains_nothing_without_a_source():
     assert np.max(np.abs(state.now.v)) < 5.0
     first = machine.FIRST
     assert np.count_nonzero(np.abs(state.now.q[first:first + machine.DOMINOES]) > 0.5) >= 3
+
+
+@pytest.mark.long
+def test_a_house_of_cards_stands_from_the_friction_on_that_statics_asks_for():
+    steps = 240
+    for rough, stands in ((0.98, False), (1.02, True)):
+        p = card_house.Params(rough=rough)
+        state = card_house.run(simulator.contact_step_2d, simulator.weight, card_house.start(p), p, 1.0 / steps, steps)
+        moved = np.linalg.norm(card_house.observe(state, p) - card_house.truth(p, 0.0))
+        limit = card_house.tolerance(p._replace(rough=1.02), 1.0 / steps)[card_house.UNKNOWN]
+        assert (moved < limit * np.linalg.norm(card_house.truth(p, 0.0))) == stands, (rough, moved, limit)

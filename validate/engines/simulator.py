@@ -189,12 +189,12 @@ def pybullet_cradle(pivots, x, m, inertia, R, g, dt, read):
 
 # ---------------------------------------------------------------------------------------------- a machine
 
-class PymunkMachine:
-    """Boxes, some of them without mass, on a floor that moves; a spring, and air."""
+class PymunkBoxes:
+    """Boxes, some of them without mass, on a floor that may move; a spring to one of them, or None, and air."""
 
     def __init__(self, parts, dt, iterations, slop):
         import pymunk
-        (x, angles, halves, m, v, omega), (hammer, anchor, rest, k, damper), drag, mu, g, belt = parts
+        (x, angles, halves, m, v, omega), spring, drag, mu, g, belt = parts
         self.dt, self.space, self.boxes = dt, pymunk_space((0.0, -g)), []
         self.space.iterations, self.space.collision_slop = iterations, slop
         floor = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
@@ -206,13 +206,15 @@ class PymunkMachine:
                     pymunk.Body(body_type=pymunk.Body.KINEMATIC))
             body.position, body.angle = tuple(map(float, place)), float(angle)
             body.velocity, body.angular_velocity = tuple(map(float, speed)), float(spin)
-            if moves:
+            if moves and drag > 0.0:
                 body.velocity_func = lambda body, gravity, damping, dt: pymunk.Body.update_velocity(
                     body, gravity - drag / body.mass * body.velocity, 1.0, dt)
             self.space.add(body, pymunk.Poly.create_box(body, tuple(map(float, 2.0 * half))))
             self.boxes.append(body)
-        self.space.add(pymunk.DampedSpring(self.space.static_body, self.boxes[hammer], tuple(map(float, anchor)),
-                                           (0.0, 0.0), rest, k, damper))
+        if spring is not None:
+            number, anchor, rest, k, damper = spring
+            self.space.add(pymunk.DampedSpring(self.space.static_body, self.boxes[number], tuple(map(float, anchor)),
+                                               (0.0, 0.0), rest, k, damper))
         for shape in self.space.shapes:
             shape.friction = np.sqrt(mu)                                 # pymunk multiplies the two
 

@@ -21,13 +21,13 @@ from solutions.simulator import (
     weight,
 )
 from solutions.springs import spring_tension
-from validate.engines.simulator import PymunkMachine
+from validate.engines.simulator import PymunkBoxes
 from validate.methods import LOOP_2D
 from validate.scene import PYMUNK, Engine, Scene
 
 T = 10.0                     # [s]
 UNKNOWN = "unknown"          # an order
-STEPS = (24, 120, 300, 600, 1200, 2400)
+STEPS = (24, 120, 300, 600, 1200, 2400, 4800)
 FINE = 6_000                # steps of the reference run in T
 SWEEPS, MARGIN = 20, 0.02    # of the loop [-], [m]
 SPRING, REST, DAMPER = 20.0, 0.5, 0.5           # of the hammer [N/m], [m], [N s/m]
@@ -151,7 +151,7 @@ def observe(state, p):
 @cache
 def reference(p):
     """(FINE/30 + 1, 8n): corners, by pymunk."""
-    return np.array(PymunkMachine(parts(p), T / FINE, 100, 1e-5).film(FINE, 30, corners))
+    return np.array(PymunkBoxes(parts(p), T / FINE, 100, 1e-5).film(FINE, 30, corners))
 
 
 def truth(p, t):
@@ -193,7 +193,7 @@ def parts(p):
 
 
 def pymunk_make(p, dt):
-    return PymunkMachine(parts(p), dt, 100, 1e-5).run(corners)
+    return PymunkBoxes(parts(p), dt, 100, 1e-5).run(corners)
 
 
 ENGINES = (
