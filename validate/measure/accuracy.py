@@ -232,15 +232,15 @@ def surprise_in(row, law):
     """A sentence without its subject where a run errs by something else than theory predicts for it; None otherwise."""
     if row["predicted"] is None or row["error"] is None:
         return None
-    if relative_to(law, row["observed"], row["predicted"]) <= row["band"]:
+    off, size = relative_to(law, row["observed"], row["predicted"]), relative(row["predicted"], law)
+    if off <= row["band"]:
         return None
-    share = row["error"] / relative(row["predicted"], law)
-    at = f"at {row['steps']} steps"
-    if share > 1.0 + row["band"] / relative(row["predicted"], law):
+    share, at = row["error"] / size if size > 0.0 else np.inf, f"at {row['steps']} steps"
+    if share > 1.01:
         return f"errs {share:.3g} times as much as theory predicts {at}"
-    if share < 1.0 - row["band"] / relative(row["predicted"], law):
+    if share < 0.99:
         return f"errs only {share:.2g} of what theory predicts {at}: it is another method than its name says"
-    return f"errs as much as theory predicts {at}, but in another direction"
+    return f"errs as much as theory predicts {at}, but in another way: the two errors differ by {off / size:.2g} of it"
 
 
 def shown_order(rows, floor):

@@ -17,7 +17,7 @@ import numpy as np
 from ..scene import ROUND_OFF, Prediction
 
 MOST_ITERATIONS = 200        # of an implicit stage: h times the fastest rate must be well below 1
-CLOSE = 1e-3                 # how near a run comes to the same table's error at the same step [-]
+CLOSE = 1e-5                 # how near a run comes to the same table's error at the same step [-]
 EXPANDED = 0.01              # and to its expansion, beside what that misses [-]
 SAFETY = 2.0                 # over what an expansion misses in its own check [-]
 UNSURE = 0.1                 # an expansion that misses its own check by more needs finer runs [-]
