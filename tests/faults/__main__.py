@@ -128,7 +128,7 @@ def honest_runs(numbers, pool):
     for number, run in pool.each({number: (honest_run, number) for number in numbers}):
         alarms += len(run.alarms)
         console.print(f"{'[red]✗[/red]' if run.alarms else '[green]✓[/green]'} {number}: {run.about}; "
-                      f"{run.places} scenes and cases in {run.seconds:.0f} s")
+                      f"{run.ended} of {run.places} scenes and cases ended, in {run.seconds:.0f} s")
         for place, words in run.alarms.items():
             console.print(f"  {place}: {words}", markup=False)
     console.print(f"{len(numbers)} honest runs turn {alarms} verdicts.")

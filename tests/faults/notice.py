@@ -96,7 +96,7 @@ def stability_case(place):
 def turned_at(place, of, function=None, most=np.inf, speeds=tuple(LIMITS)):
     """What of that place turns with the lessons of a folder, in a few words; empty where nothing does.
 
-    The first speed that ends within its time limit decides.
+    The first speed that ends within its time limit decides; None where none does.
     """
     case, began = stability_case(place), time.monotonic()
     for speed in speeds:
@@ -112,7 +112,7 @@ def turned_at(place, of, function=None, most=np.inf, speeds=tuple(LIMITS)):
             continue
         finally:
             SECONDS[place] = time.monotonic() - began
-    return ""                                                        # no verdict: not noticed
+    return None
 
 
 def turned_finding(case, of, compiled=False):

@@ -499,8 +499,8 @@ def loads_and_derivatives(lesson):
 
 TRIED = 25                   # random bodies [-]
 # Runge–Kutta's stages have quaternions that are not quite of length 1, and what R means there is a choice: two choices
-# differ by O(dt⁵).  At 2 rad/s a step of 15 ms makes that 1e-8 at most; a wrong stage shows by dt³, 1e-5.
-SHORT = 0.05
+# differ by O(dt⁵).  At 2 rad/s and 15 ms that is a tenth of (ω dt)⁵, CHOICE; a wrong stage shows by dt⁴, 1e-8.
+SHORT, CHOICE = 0.05, 3e-9
 
 
 def turned_by(phi):
@@ -657,7 +657,7 @@ def one_step(lesson):
               ("velocity", "A point of a body moves with v + ω × r.", "velocity [m/s]"))
     return [agreement(f"One step of {LABEL[name]} is its definition by matrices.",
                       f"{LABEL[name]}: largest error of a step [-, kg m²/s]", error,
-                      1e-7 if name == "runge_kutta_step" else 1e-11)
+                      CHOICE if name == "runge_kutta_step" else 1e-11)
             for name, error in errors.items()] + [
         agreement(claim, f"largest error of the {quantity}", parts[name], 1e-12)
         for name, claim, quantity in claims], None
