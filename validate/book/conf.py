@@ -8,6 +8,8 @@ from pathlib import Path
 import sphinxcontrib.katex
 from docutils import nodes
 
+from validate.book.formulas import rendered
+
 SOURCE = Path(os.environ["WORKBOOK_BOOK_SOURCE"])
 ALTS = json.loads((SOURCE / "alts.json").read_text(encoding="utf-8"))
 
@@ -30,7 +32,7 @@ add_module_names = False
 toc_object_entries_show_parents = "hide"
 
 katex_prerender = shutil.which("node") is not None             # else the same KaTeX runs in the reader's browser
-sphinxcontrib.katex.STARTUP_TIMEOUT = sphinxcontrib.katex.RENDER_TIMEOUT = 120.0   # [s]: busy machines
+sphinxcontrib.katex.render_latex = rendered
 katex_css_path = "katex/katex.min.css"
 
 html_theme = "furo"
