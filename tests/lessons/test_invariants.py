@@ -102,7 +102,8 @@ def test_boxes_that_turn_overlap_by_less_than_the_bound(sweeps):
 def test_what_overlaps_at_the_beginning_is_in_the_bound():
     state, p = simulator.make_bodies_2d([(0.0, 0.15)], [0.0], 1.0, 0.01, [(0.2, 0.2)], [FLOOR], (0.0, -G), 0.4, 10,
                                         0.02)
-    assert simulator.overlap_bound_2d(ran(state, p, 0.01, 5, BOXES), 0.01, p) == pytest.approx(0.05, abs=1e-4)     # and what sweeps leave
+    bound = simulator.overlap_bound_2d(ran(state, p, 0.01, 5, BOXES), 0.01, p)
+    assert bound == pytest.approx(0.05, abs=1e-4)                        # and what ten sweeps leave over
 
 
 def test_bodies_that_sink_are_named_with_time_and_sweeps():
