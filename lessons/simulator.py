@@ -7,9 +7,10 @@ v (n, d) [m/s] · omega (n,) or (n, 3) [rad/s], world · J (m, d) [N s] impulses
 (n, 3) [N m] loads · p: a Bodies (support/bodies.py) or any record with the fields that a function reads.
 
 A load is a function  load(t, x, q, v, omega, p) → (F, tau).  Planes are further rows of all arrays.  A row with
-inv_mass = 0 keeps the velocity that you give it: at rest it is ground, and in motion a conveyor belt, a lift or a
-turntable.  A scene calls only what it needs: no detection where nothing can touch, no quaternions in the plane.
-Given in support/simulator.py: a loop with joints.  Given in support/bodies.py: how to judge a run.
+inv_mass = 0 keeps the velocity that you give it: at rest it is ground, and in motion a conveyor belt or a turntable.
+A plane moves along itself only; what rises, such as a lift, is a body.  Loads of lesson 5 have v before q: (t, x, v, q,
+omega, p), as its rolling balls have here.  A scene calls only what it needs: no detection where nothing can touch.
+Given in support/simulator.py: a loop with joints.  Given in support/invariants.py: how to judge a run.
 *Left out:* restitution of many contacts, sleeping.
 """
 
@@ -36,16 +37,14 @@ from solutions.support.bodies import (
     Bodies,
     CarriedBall,
     RockingBlock,
+    check_sinking,
     check_speed,
     checked_bodies,
-    closing_speeds,
     make_bodies,
     make_bodies_2d,
-    mechanical_energy_2d,
     movable_pairs,
     rocking_acceleration,
     stop_slip,
-    sweep_residual_2d,
     time_of_landing,
 )
 from solutions.support.broad_phase import near_pairs
@@ -60,6 +59,14 @@ from solutions.support.contact_points import (
     largest_overlap,
     round_contacts,
 )
+from solutions.support.invariants import (
+    closing_speeds,
+    mechanical_energy_2d,
+    momenta_2d,
+    overlap_bound_2d,
+    sweep_residual_2d,
+    work_of_driven_rows,
+)
 from solutions.support.joints import (
     close_joints_2d,
     composed_joint_step_2d,
@@ -69,7 +76,7 @@ from solutions.support.joints import (
     parting_speeds,
     without_joined,
 )
-from solutions.support.scenes import PileState, check_overlap
+from solutions.support.scenes import PileState
 from solutions.vectors import cross, dot, norm
 
 # ---------------------------------------------------------------------------------------------- without contact
@@ -325,13 +332,14 @@ def advance_free(step, load, t, x, q, v, omega, dt, steps, p):
 def advance_contact(step, load, bounds, narrow, t, state, dt, steps, p):
     """Given.  Return the PileState after so many steps of contact_step_2d or contact_step.
 
-    Raises BadInput for arrays that do not fit, Diverged where bodies sink into each other or are not finite.
+    Raises BadInput for arrays that do not fit, Diverged where bodies sink into each other (it names both, the time and
+    the depth) or are not finite.  Bodies that overlap at the beginning stay so: nothing here parts them.
     """
     t, x, q, v, omega, dt, steps = checked_bodies(t, state.x, state.q, state.v, state.omega, dt, steps, p)
     state, allowed = PileState(x, q, v, omega, state.contacts, state.J), np.inf
     for n in range(steps):
         state = step(load, bounds, narrow, t + n * dt, state, dt, p)
-        allowed = check_overlap(state.contacts, state.v, dt, p.half, allowed, 0.0)
+        allowed = check_sinking(state, t + n * dt, dt, p, allowed)
     check_speed(state.v, state.omega, dt)
     return state
 
