@@ -46,7 +46,7 @@ def page(name, report):
         "## Where students go wrong", "A check that fails gives these hints. Each one answers a mistake that a test "
         f"of the workbook catches. The wrong answers that must fail are in `tests/mutants/{name}.py`.", hints(lesson),
         "## What to show", "Every scene below has a film, its truth, and both engines where they can do it.",
-        scenes(lesson, report), "Stability cases: limits that theory gives, found by experiment.", cases(name, report),
+        scenes(lesson, report), "Stability cases: limits that theory gives, found by experiment.", cases(name),
         "## Questions to discuss", questions(name),
         "## Commands", commands(lesson)]) + "\n"
 
@@ -81,7 +81,7 @@ def scenes(lesson, report):
     return plan.table(("scene", "what it is", "command"), rows)
 
 
-def cases(name, report):
+def cases(name):
     found = [case for case in all_cases() if case.lesson == name]
     return "\n".join(f"- {plain(case.title)}" for case in found)
 
