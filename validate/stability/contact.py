@@ -709,9 +709,9 @@ def judge(lesson):
     200 of them.  Judged with a tenth of the friction, a contact is over the cone: then the residual is no round-off any
     more.
 
-    An impulse that is left out leaves its k_n J_n at its own contact.  The residual is the largest of all, so it
-    is at least that; a neighbour can have a little more, depending on the pile.  pybullet's friction goes along two directions,
-    each up to μ J_n: √2 μ J_n along the diagonal.
+    An impulse that is left out leaves its k_n J_n at its own contact.  The residual is the largest of all, so it is at
+    least that; a neighbour can have a little more, depending on the pile.  pybullet's friction goes along two
+    directions, each up to μ J_n: √2 μ J_n along the diagonal.
     """
     found, kind = [], KINDS["discs"]._replace(across=6)
     state, pile = fallen(kind, 30)
