@@ -69,9 +69,7 @@ from .support.invariants import (
 )
 from .support.joints import (
     close_joints_2d,
-    composed_joint_step_2d,
     joint_step,
-    joint_step_2d,
     make_joints,
     parting_speeds,
     without_joined,
