@@ -265,7 +265,7 @@ def free_turns(T, truth, uncertainty):
     """Return the field `predicted_error` of a free body that starts at R = 1, with p.moments() and p.omega()."""
     def begin(p):
         return (1.0 + 0j, 0j), tuple(map(float, p.moments() * p.omega()))
-    # a run errs by 1e-16 a step, and a free body's neighbours separate: what the truth knows less than that
-    floor = lambda p, dt: 1e-12 + 10.0 * np.sqrt(T / dt) * ROUND_OFF + 10.0 * uncertainty
+    # roundings of one sign, as those of a turn about a fixed axis are, and what the truth leaves open
+    floor = lambda p, dt: 1e-12 + T / dt * ROUND_OFF + 10.0 * uncertainty
     return predict_turns(T, lambda p: p.moments(), begin, lambda p: no_torque, np.ravel, truth, floor,
                          ("pybullet", "pybullet, reduced coordinates"), {**DOUBLINGS, 1: 0})
