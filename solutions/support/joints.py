@@ -26,7 +26,7 @@ from ..checks import (
     check_shape,
     finite_array,
 )
-from ..rotation import body_angular_momentum, exponential, quaternion_product, splitting_free_rotation
+from ..rotation import SUZUKI, body_angular_momentum, exponential, quaternion_product, splitting_free_rotation
 from .arms import apply_impulses, apply_impulses_2d, normal_velocities_2d, point_velocity_of, world_inertia
 from .contact_points import ContactSet
 from .quaternions import rotate, unrotate
@@ -35,6 +35,8 @@ from .tuples import across, minus, row, times
 
 CLOSED = 1e-14               # gap of a joint that counts as closed, per metre of coordinates [-]: 45 roundings
 MOST = 30                    # rounds of Newton's method per step [-]; with useful steps it needs 3 to 6
+
+COMPOSED = (SUZUKI, SUZUKI, 1.0 - 4.0 * SUZUKI, SUZUKI, SUZUKI)  # steps of a method of order 4, over dt [-]
 
 
 class Joints(NamedTuple):

@@ -2,11 +2,9 @@
 
 import numpy as np
 
-from ..contact import kept_impulses, velocity_sweep_2d
-from ..rotation import SUZUKI
-from ..simulator import find_contacts, new_velocities_2d
+from ..simulator import find_contacts, kept_impulses, new_velocities_2d, velocity_sweep_2d
 from .arms import apply_impulses_2d, arms_2d
-from .joints import close_joints_2d, hold_joints_2d, parting_speeds, without_joined
+from .joints import COMPOSED, close_joints_2d, hold_joints_2d, parting_speeds, without_joined
 from .scenes import PileState
 
 
@@ -25,7 +23,7 @@ def joint_step_2d(load, t, x, q, v, omega, dt, p):
 
 def composed_joint_step_2d(load, t, x, q, v, omega, dt, p):
     """Given.  The same by five joint_step_2d, the third one backwards, as `compose` of lesson 5 does; fourth order."""
-    for share in (SUZUKI, SUZUKI, 1.0 - 4.0 * SUZUKI, SUZUKI, SUZUKI):
+    for share in COMPOSED:
         x, q, v, omega = joint_step_2d(load, t, x, q, v, omega, share * dt, p)
         t = t + share * dt
     return x, q, v, omega

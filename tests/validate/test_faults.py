@@ -110,11 +110,12 @@ def test_an_error_inside_a_stability_case_is_a_finding_and_the_others_run(of, fu
     assert any("The case runs without an error" in finding["claim"] for finding in lost)
 
 
-@pytest.mark.parametrize("new", ["raise BadInput('a mass', m, 'x')", "raise SystemExit(3)", "return 1 // 0"])
+@pytest.mark.parametrize("new", ["raise BadInput('a spring', 1.0, 'x')", "raise SystemExit(3)", "return 1 // 0"])
 def test_an_error_in_a_scene_is_a_departure_and_nothing_is_timed(new):
-    fault = Fault("springs", "make_spring_network", "x = finite_array(\"a position of the network [m]\", x)", new, "")
-    with notice.copy_with({"springs": planted(fault)}) as copy:
+    text = (modules.SOLUTIONS / "springs.py").read_text(encoding="utf-8").replace("from .", "from solutions.")
+    text += f"\n\ndef angular_spring_forces(x_a, x_b, x_c, rest, k):\n    {new}\n"
+    with notice.copy_with({"springs": text}) as copy:
         plan = Plan(of=str(copy), speeds=("plain",), live=())
-        result = errors("samples_per_frame", plan)
+        result = errors("angular_spring", plan)
         assert {c["verdict"] for case in result["cases"].values() for c in case["ours"]} == {"departs"}
-        assert times("samples_per_frame", plan, result)["rows"] == []
+        assert times("angular_spring", plan, result)["rows"] == []

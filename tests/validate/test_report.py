@@ -16,6 +16,8 @@ from validate.results import Verdict
 from validate.run import about
 from validate.stability.examine import all_cases, examine, stored
 
+pytestmark = pytest.mark.xdist_group("report of a small report")     # made once
+
 ADDRESSES = ("href", "src")
 
 

@@ -333,7 +333,7 @@ CLOSED_FORMS = ("ball, ball", "ball, plane", "ball, capsule", "capsule, capsule"
 def tolerance(p, dt):
     """Ours: a few hundred operations on numbers below 3, and normals known to round-off over a distance of 0.1: 1e-12.
 
-    GJK stops when it knows the distance to GJK_RELATIVE_GAP = 1e-14 of the size.  The points may be known only to the
+    GJK stops when it knows the distance to 1e-14 of the size.  The points may be known only to the
     root of that, but these bodies have corners, so the last step is exact.  pybullet has closed forms for some pairs
     (Bullet's btDefaultCollisionConfiguration and btConvexConvexAlgorithm): round-off.  For the others its GJK stops
     when the squared distance is known to 1e-12 of itself and the points to 1e-6 of the distance: 1e-5 for these.
