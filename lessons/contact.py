@@ -139,7 +139,8 @@ def solve_lcp(A, b):
         A contact is wrong if it pushes and λ_k < −ε_k/A_kk, or if it does not and (A λ + b)_k < −ε_k, where
         ε_k = CONVERGED (Σ_l |A_kl λ_l| + |b_k|) is round-off.
         If none is wrong, return λ.  Else only the wrong one of least index changes sides.
-    For a positive definite A no guess comes twice, so it ends.
+    For a positive definite A no guess comes twice, so it ends.  There is one answer only, so that another fixed order,
+    such as the greatest index first, is right as well.
     Raises what check_independent(A) raises; call it first.  After the last round raises
     Diverged("complementarity residual [m/s]", complementarity_residual(A, b, λ), "use projected Gauss–Seidel").
     *Source:* Murty 1974.
@@ -152,7 +153,8 @@ def cone_residual(A, b, J, mu):
     """How far [m/s] impulses J (2m,) are from the laws of Signorini and Coulomb at all contacts, with friction mu (m,).
 
     With u = A J + b, each contact by itself would change its impulse to
-        J_n' = max(0, J_n − u_n/k_n),       J_t' = J_t − u_t/k_t, in size at most μ times the given J_n, not J_n'; 0 where J_n ≤ 0
+        J_n' = max(0, J_n − u_n/k_n),       J_t' = J_t − u_t/k_t, but at most limit in size
+    limit is μ times the given J_n, not J_n'; 0 where J_n ≤ 0.
     The residual is the largest k_n |J_n' − J_n| or k_t |J_t' − J_t|.  J and u hold (n, t) of one contact after the
     other; k_n and k_t are on the diagonal of A.  It is 0 exactly where the laws hold, for any solver's J; μ = ∞, too.
     *Source:* the natural map: J = P(J − u/k), P the projection onto what the laws allow; Acary and Brogliato 2008.

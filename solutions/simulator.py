@@ -260,7 +260,8 @@ def slip_time(v, omega, ball):
     Friction and gravity change the slip u = v + ω × r, r = (0, 0, −radius), at the constant rate
         u̇ = −μ |g_z| (1 + m radius²/I) u/|u| + g_t,      g_t = (g_x, g_y, 0)
     so that |u| decreases by  b = μ |g_z| (1 + m radius²/I) − u · g_t/|u|  per second:  t = |u|/b, and inf if b ≤ 0.
-    Of u only the part along the floor counts: u_z = 0.  Return 0 where u = 0.  Gravity along the floor must be zero or parallel to u, or u would change its direction.
+    Of u only the part along the floor counts: u_z = 0.  Return 0 where u = 0.
+    Gravity along the floor must be zero or parallel to u, or u would change its direction.
     *Source:* Newton and Euler, with Coulomb's law.
     """
     ### BEGIN SOLUTION 10.10

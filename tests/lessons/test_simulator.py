@@ -374,7 +374,7 @@ def test_a_conveyor_belt_gives_a_disc_a_third_of_its_speed(lesson, draw):
           (0.0, belt), MANY)
 
 
-@exercise("10.6", points=0.5, hint="kept_impulses, applied before the first sweep: then sweeps add up from step to step")
+@exercise("10.6", points=0.5, hint="kept_impulses, applied before the first sweep: so sweeps add up over the steps")
 def test_memory_turns_sweeps_into_steps(lesson, draw):
     """Four discs above each other, two sweeps per step: from nothing each step leaves 0.73 of the error of forces."""
     n, m, dt = 4, draw(0.5, 2.0), 0.005
@@ -426,7 +426,7 @@ def test_loads_see_the_velocities_of_the_beginning(lesson, draw):
 
     One sweep solves a single contact, so that the impulse is that of the weight.
     """
-    state, p, r, m = disc_on(lesson, draw, np.array([0.0, 1.0, 0.0]), 0.5)
+    state, p, _, m = disc_on(lesson, draw, np.array([0.0, 1.0, 0.0]), 0.5)
     state = run_2d(lesson, state, p, 0.01, 1, T_1)
     state = state._replace(J=np.asarray(state.J) * draw(2.0, 4.0), v=0.0 * np.asarray(state.v))
     got = np.asarray(run_2d(lesson, state, p, 0.01, 1, T_1).J)[0]
@@ -655,7 +655,7 @@ def test_the_slip_ends_when_theory_says(lesson, draw):
               given=f"slip {slip} m/s, μ = {ball.mu}, gravity along it {tilt} m/s²")
 
 
-@exercise("10.10", points=0.5, hint="what rolls has no slip: 0; where gravity is stronger than friction: inf; u_z does not count")
+@exercise("10.10", points=0.5, hint="no slip: 0; gravity stronger than friction: inf; u_z does not count")
 def test_what_rolls_does_not_slip_and_what_is_too_steep_never_rolls(lesson, draw):
     ball, v, _, e, _, share = bowled(lesson, draw)
     rolls = np.cross([0.0, 0.0, 1.0], v) / ball.radius
@@ -709,7 +709,7 @@ def test_the_second_part_asks_the_load_at_its_own_time(lesson, draw):
 
     rolling_step lets the floor hold gravity only, so that a push is not shared with the rotation in its own step.
     """
-    ball, v, omega, e, slip, share = bowled(lesson, draw)
+    ball, v, omega, _, slip, share = bowled(lesson, draw)
     ends = slip / (ball.mu * G * (1.0 + 1.0 / share))
     T, start = draw(1.5, 3.0) * ends, np.array([0.0, 0.0, ball.radius])
     without = lesson.exact_rolling_step(supported, T_0, start, v, np.eye(4)[0], omega, T, ball)
