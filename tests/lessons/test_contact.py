@@ -911,7 +911,33 @@ def swept_scene(draw, lesson, mu, fixed=True):
     return draw(-3.0, 3.0, (4, 2)), draw(-3.0, 3.0, 4), J, c, arms, pile, x
 
 
-@exercise("9.16", points=0.5,
+@exercise("9.16", points=0.25,
+          hint="u of a's point, J_n from aim, u_n and give, J_t within μ J_n; then v + J/m and ω + (r × J)/I")
+def test_one_contact_of_one_body_with_the_ground_by_hand(lesson, draw):
+    """J is 0 before.  n = (0, 1), so t = (−1, 0).  All that is needed to compute it again is given."""
+    for mu, give in ((9.0, 0.0), (0.5, 0.0), (0.5, 1.0)):
+        r, v, omega, aim = (1.0, -2.0), (draw.whole(1, 3), -draw.whole(1, 3)), draw.whole(1, 3), draw.whole(0, 2)
+        inv_mass, inv_inertia = 1.0, 0.5
+        k_n, k_t = inv_mass + inv_inertia * r[0] ** 2, inv_mass + inv_inertia * r[1] ** 2
+        u_n, u_t = v[1] + omega * r[0], -(v[0] - omega * r[1])
+        J_n = max(0.0, (aim - u_n) / (k_n * (1.0 + give)))
+        J_t = min(max(-u_t / k_t, -mu * J_n), mu * J_n)
+        c = contacts_of(lesson, [0], [1], [r], [MIDDLE])
+        arms = lesson.Arms(np.array([r]), np.zeros((1, 2)), np.array([k_n]), np.array([k_t]))
+        pile = lesson.Pile(np.array([inv_mass, 0.0]), np.array([inv_inertia, 0.0]), np.full((1, 2), 0.1),
+                           np.array([[0.0, 1.0, 0.0]]), np.array([0.0, -G]), mu, 1, 10.0, 1.0, 0.01)
+        got = lesson.velocity_sweep_2d(np.array([v, (0.0, 0.0)], float), np.array([omega, 0.0], float),
+                                       np.zeros((1, 2)), np.array([aim], float), np.array([give]), c, arms, pile)
+        given = (f"a on ground b; n = (0, 1), r_a = {r} m, v = {v} m/s, ω = {omega} rad/s, J = 0, 1/m = {inv_mass}, "
+                 f"1/I = {inv_inertia}, k_n = {k_n}, k_t = {k_t}, aim {aim} m/s, give {give}, μ = {mu}")
+        close("J of one contact, in x and y [N s]", np.asarray(got[2])[0], (-J_t, J_n), ROUND_OFF, given)
+        close("v of body a after one contact [m/s]", np.asarray(got[0])[0],
+              (v[0] - inv_mass * J_t, v[1] + inv_mass * J_n), ROUND_OFF, given)
+        close("ω of body a after one contact [rad/s]", np.asarray(got[1])[0],
+              omega + inv_inertia * (r[0] * J_n + r[1] * J_t), ROUND_OFF, given)
+
+
+@exercise("9.16", points=0.25,
           hint="u from the velocities as they are by then; J_n and J_t from this u; the change acts on both bodies "
                "at once")
 def test_a_sweep_over_velocities_does_what_the_matrix_says(lesson, draw):
