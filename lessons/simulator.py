@@ -105,7 +105,7 @@ def new_velocities(load, t, x, q, v, omega, dt, p):
 
     v ← v + dt F/m,      ω ← ω + dt ω̇,      with ω̇ = angular_acceleration(q, ω, τ, I_body) of lesson 5, body by body
 
-    I_body = 1/p.inv_inertia[i] (3,).  A body whose inv_inertia is 0 keeps its ω.  Returns new arrays.
+    I_body = 1/p.inv_inertia[i] (3,).  A body whose inv_inertia is 0 keeps its ω, also if it has a mass.  New arrays.
     *Source:* second lecture deck, “Simulation loop”, with the gyroscopic term.
     """
     # YOUR CODE HERE
@@ -215,7 +215,8 @@ def slip_time(v, omega, ball):
     Friction and gravity change the slip u = v + ω × r, r = (0, 0, −radius), at the constant rate
         u̇ = −μ |g_z| (1 + m radius²/I) u/|u| + g_t,      g_t = (g_x, g_y, 0)
     so that |u| decreases by  b = μ |g_z| (1 + m radius²/I) − u · g_t/|u|  per second:  t = |u|/b, and inf if b ≤ 0.
-    Return 0 where u = 0.  Gravity along the floor must be zero or parallel to u, or u would change its direction.
+    Of u only the part along the floor counts: u_z = 0.  Return 0 where u = 0.
+    Gravity along the floor must be zero or parallel to u, or u would change its direction.
     *Source:* Newton and Euler, with Coulomb's law.
     """
     # YOUR CODE HERE
@@ -274,7 +275,7 @@ def mechanical_energy(x, q, v, omega, p):
     """Return the energy [J] of all bodies in space that can move:  Σ ½ m v² + ½ ω · I ω − m g · x.
 
     ½ ω · I ω = ½ Σ Iₖ ωₖ², with the components of ω in body coordinates (unrotate) and Iₖ = 1/p.inv_inertia[i, k].
-    Rows with inv_mass = 0 do not count.
+    Rows with inv_mass = 0 do not count; a body whose inv_inertia is 0 has no energy of rotation.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 10.13: mechanical_energy")
@@ -285,6 +286,7 @@ def momenta(x, q, v, omega, p):
 
     P = Σ m v,      L = Σ x × m v + I ω          I ω = body_angular_momentum(q, ω, I_body) of lesson 5
 
+    Rows with inv_mass = 0 do not count; a body whose inv_inertia is 0 has no I ω.
     Without loads and supports both are constant, whatever the bodies do to each other.
     """
     # YOUR CODE HERE

@@ -107,7 +107,7 @@ def new_velocities(load, t, x, q, v, omega, dt, p):
 
     v ← v + dt F/m,      ω ← ω + dt ω̇,      with ω̇ = angular_acceleration(q, ω, τ, I_body) of lesson 5, body by body
 
-    I_body = 1/p.inv_inertia[i] (3,).  A body whose inv_inertia is 0 keeps its ω.  Returns new arrays.
+    I_body = 1/p.inv_inertia[i] (3,).  A body whose inv_inertia is 0 keeps its ω, also if it has a mass.  New arrays.
     *Source:* second lecture deck, “Simulation loop”, with the gyroscopic term.
     """
     ### BEGIN SOLUTION 10.2
@@ -258,7 +258,8 @@ def slip_time(v, omega, ball):
     Friction and gravity change the slip u = v + ω × r, r = (0, 0, −radius), at the constant rate
         u̇ = −μ |g_z| (1 + m radius²/I) u/|u| + g_t,      g_t = (g_x, g_y, 0)
     so that |u| decreases by  b = μ |g_z| (1 + m radius²/I) − u · g_t/|u|  per second:  t = |u|/b, and inf if b ≤ 0.
-    Return 0 where u = 0.  Gravity along the floor must be zero or parallel to u, or u would change its direction.
+    Of u only the part along the floor counts: u_z = 0.  Return 0 where u = 0.
+    Gravity along the floor must be zero or parallel to u, or u would change its direction.
     *Source:* Newton and Euler, with Coulomb's law.
     """
     ### BEGIN SOLUTION 10.10
@@ -331,7 +332,7 @@ def mechanical_energy(x, q, v, omega, p):
     """Return the energy [J] of all bodies in space that can move:  Σ ½ m v² + ½ ω · I ω − m g · x.
 
     ½ ω · I ω = ½ Σ Iₖ ωₖ², with the components of ω in body coordinates (unrotate) and Iₖ = 1/p.inv_inertia[i, k].
-    Rows with inv_mass = 0 do not count.
+    Rows with inv_mass = 0 do not count; a body whose inv_inertia is 0 has no energy of rotation.
     """
     ### BEGIN SOLUTION 10.13
     energy = 0.0
@@ -339,7 +340,8 @@ def mechanical_energy(x, q, v, omega, p):
         if p.inv_mass[i] > 0.0:
             w = unrotate(q[i], omega[i])
             energy += (0.5 * dot(v[i], v[i]) - dot(p.gravity, x[i])) / p.inv_mass[i]
-            energy += 0.5 * np.sum(w * w / p.inv_inertia[i])
+            if p.inv_inertia[i, 0] > 0.0:
+                energy += 0.5 * np.sum(w * w / p.inv_inertia[i])
     return energy
     ### END SOLUTION
 
@@ -349,6 +351,7 @@ def momenta(x, q, v, omega, p):
 
     P = Σ m v,      L = Σ x × m v + I ω          I ω = body_angular_momentum(q, ω, I_body) of lesson 5
 
+    Rows with inv_mass = 0 do not count; a body whose inv_inertia is 0 has no I ω.
     Without loads and supports both are constant, whatever the bodies do to each other.
     """
     ### BEGIN SOLUTION 10.14
@@ -356,7 +359,9 @@ def momenta(x, q, v, omega, p):
     for i in range(x.shape[0]):
         if p.inv_mass[i] > 0.0:
             P += v[i] / p.inv_mass[i]
-            L += cross(x[i], v[i]) / p.inv_mass[i] + body_angular_momentum(q[i], omega[i], 1.0 / p.inv_inertia[i])
+            L += cross(x[i], v[i]) / p.inv_mass[i]
+            if p.inv_inertia[i, 0] > 0.0:
+                L += body_angular_momentum(q[i], omega[i], 1.0 / p.inv_inertia[i])
     return P, L
     ### END SOLUTION
 

@@ -117,7 +117,7 @@ def check_pile(x, half, planes, d):
     """Raise BadInput unless these arrays describe bodies and planes in d dimensions."""
     check_field("the centres x [m]", x, (len(x), d))
     check_field("the half sizes [m]", half, (len(x), d))
-    check_field("the planes", planes, (len(planes), d + 1))
+    check_field("the planes", planes, (len(planes) if planes.ndim == 2 else 1, d + 1))
     for size in half.ravel():
         check_positive("half size of a body [m]", size)
     for p in range(len(planes)):
