@@ -66,10 +66,16 @@ def defined(place):
         module, name = place
         if (f"support.{module}", name) in calls():
             return f"support.{module}", name
-        place = imported(trees()[module], module).get(name) if module in trees() else None
+        place = imports_of(module).get(name)
         if place is None:
             return None
     return place
+
+
+@cache
+def imports_of(module):
+    """What a module below solutions imports, as `imported` says it; nothing where there is no such module."""
+    return imported(trees()[module], module) if module in trees() else {}
 
 
 def reached(roots):

@@ -13,7 +13,7 @@ from validate.report import plots
 from validate.run import about
 from validate.stability.examine import all_cases, examine, stored
 
-pytestmark = pytest.mark.xdist_group("audit of a small report")     # made once
+pytestmark = pytest.mark.xdist_group("coverage")          # a report has the table of coverage: made once
 
 
 @pytest.fixture(scope="module")

@@ -11,6 +11,7 @@ from validate.measure.selection import Plan
 from validate.measure.timing import times
 from validate.stability.examine import cases_of, stability_cases
 
+pytestmark = pytest.mark.xdist_group("coverage")
 LESSONS = modules.lesson_names()
 EVERY = [fault for lesson in LESSONS for fault in faults_of(lesson)]
 

@@ -16,7 +16,7 @@ from validate.results import Verdict
 from validate.run import about
 from validate.stability.examine import all_cases, examine, stored
 
-pytestmark = pytest.mark.xdist_group("report of a small report")     # made once
+pytestmark = pytest.mark.xdist_group("coverage")          # a report has the table of coverage: made once
 
 ADDRESSES = ("href", "src")
 

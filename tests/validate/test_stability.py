@@ -14,13 +14,13 @@ from validate.stability.examine import all_cases, examine, subject_of
 
 examined = cache(examine)
 CASES = {f"{case.lesson}/{case.slug}": case for case in all_cases()}
-FIRST = {case.lesson: name for name, case in reversed(CASES.items())}   # `validate` examines all; by default one each
+LAST = {case.lesson: name for name, case in CASES.items()}           # `validate` examines all; by default one each
 
 
 def marks_of(name, case):
-    """All of a lesson in one process, where the lesson's own tests compile it; long unless it is the lesson's first."""
+    """All of a lesson in one process, where the lesson's own tests compile it; long unless it is the lesson's last."""
     return [pytest.mark.xdist_group(f"compiled test_{case.lesson}"),
-            *([] if name in FIRST.values() else [pytest.mark.long])]
+            *([] if name in LAST.values() else [pytest.mark.long])]
 
 
 every_case = pytest.mark.parametrize("case", [

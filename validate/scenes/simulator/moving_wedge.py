@@ -116,14 +116,14 @@ def tolerance(p, dt):
 def predicted_error(label, p, dt):
     """+½ a dt T in the positions with the new velocities, −½ a dt T with pymunk's old ones, and nothing in velocities.
 
-    The band is what the solvers leave: the rest of `tolerance`.  Where that has no limit, nothing is predicted.
+    The band is what the solvers leave: the rest of `tolerance`.  For pybullet that is all that is asked.
     """
-    late = 0.5 * accelerations(p) * dt * T * (-1.0 if label == "pymunk" else 1.0)
-    limits = tolerance(p, dt)
-    limit = limits.get(label, limits[1])
-    if np.isinf(limit):
+    sign = {LOOP_2D.label: 1.0, "pymunk": -1.0}.get(label)
+    if sign is None:
         return None
-    return Prediction(np.append(late, np.zeros(3)), limit - np.linalg.norm(late) / np.linalg.norm(truth(p, T)))
+    late, limits = 0.5 * accelerations(p) * dt * T * sign, tolerance(p, dt)
+    return Prediction(np.append(late, np.zeros(3)),
+                      limits.get(label, limits[1]) - np.linalg.norm(late) / np.linalg.norm(truth(p, T)))
 
 
 def pymunk_make(p, dt):
