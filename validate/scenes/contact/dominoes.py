@@ -216,6 +216,7 @@ def links(p):
 
 SCENE = Scene(
     title="Dominoes",
+    film_of_truth="pymunk, 50,000 steps per second",
     lesson="contact",
     cases=CASES,
     duration=T,

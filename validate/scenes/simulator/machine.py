@@ -236,6 +236,7 @@ def links(p):
 
 SCENE = Scene(
     title="A machine of many parts",
+    film_of_truth="pymunk, 600 steps per second",
     lesson="simulator",
     cases=CASES,
     duration=T,
