@@ -2,14 +2,15 @@
 
     0 ≤ λ  ⊥  A λ + b ≥ 0,      A = G M⁻¹ Gᵀ,      |J_t| ≤ μ J_n
 
-Symbols: a ContactSet (support/contact_points.py) holds of each contact k its bodies a[k] and b[k], unit normal n[k],
-pointing from b to a, the place p[k] and the gap[k] · r = p − x offset from a centre · u [m/s] velocity of a's contact
-point relative to b's, u_n = n · u · J [N s] impulse on a; b receives −J · λ normal impulses · G (2m, 3n) contact rows ·
-M⁻¹ (3n,) inverse masses of all coordinates · A (2m, 2m) [1/kg] Delassus matrix · b [m/s] relative velocities without
+Symbols: a ContactSet (solutions/support/contact_points.py) holds of each contact k its bodies a[k] and b[k], unit
+normal n[k], pointing from b to a, the place p[k] and the gap[k] · r = p − x offset from a centre · u [m/s] velocity of
+a's contact point relative to b's, u_n = n · u · J [N s] impulse on a; b receives −J · λ normal impulses · G (2m, 3n)
+contact rows · M⁻¹ (3n,) inverse masses of all coordinates · A (2m, 2m) [1/kg] Delassus matrix · b [m/s] u without
 impulses · k_n, k_t [1/kg] effective inverse masses, the diagonal of A · μ [-] friction · ω [-] relaxation ·
 ρ [-] contraction factor: error after a sweep over the error before it.
-First exactly, in the plane, with matrices: small scenes.  Then quickly, with arrays: piles.
-Given in support/contact.py: advance_pile_2d and advance_pile, which call what stands here in each step.
+First exactly, in the plane, with matrices: small scenes.  Then quickly, with arrays: piles.  What stands there runs
+compiled if it holds loops over numbers and arrays only: no dict, no lambda, no text.
+Given in solutions/support/contact.py: advance_pile_2d and advance_pile, which call what stands here in each step.
 *Left out:* restitution of many contacts (no law decides it, only conventions); sleeping; rolling resistance.
 """
 
@@ -64,7 +65,7 @@ def contact_rows(x, contacts):
 def delassus_matrix(G, w):
     """A [1/kg] (rows, rows): entry (r, s) is the relative velocity along row r due to a unit impulse along row s.
 
-    A = G M⁻¹ Gᵀ          w = M⁻¹, the diagonal (columns of G,)
+    A = G M⁻¹ Gᵀ          w = M⁻¹, the diagonal (3n,)
 
     A is symmetric.  Impulses J lead to u = A J + b, with b = G v.  Contacts that share no movable body have entry 0.
     *Source:* Delassus 1917; Moreau 1988.
@@ -138,7 +139,8 @@ def solve_lcp(A, b):
         A contact is wrong if it pushes and λ_k < −ε_k/A_kk, or if it does not and (A λ + b)_k < −ε_k, where
         ε_k = CONVERGED (Σ_l |A_kl λ_l| + |b_k|) is round-off.
         If none is wrong, return λ.  Else only the wrong one of least index changes sides.
-    For a positive definite A no guess comes twice, so it ends.
+    For a positive definite A no guess comes twice, so it ends.  There is one answer only, so that another fixed order,
+    such as the greatest index first, is right as well.
     Raises what check_independent(A) raises; call it first.  After the last round raises
     Diverged("complementarity residual [m/s]", complementarity_residual(A, b, λ), "use projected Gauss–Seidel").
     *Source:* Murty 1974.
@@ -151,7 +153,8 @@ def cone_residual(A, b, J, mu):
     """How far [m/s] impulses J (2m,) are from the laws of Signorini and Coulomb at all contacts, with friction mu (m,).
 
     With u = A J + b, each contact by itself would change its impulse to
-        J_n' = max(0, J_n − u_n/k_n),       J_t' = J_t − u_t/k_t, but at most μ J_n in size (0 where J_n ≤ 0)
+        J_n' = max(0, J_n − u_n/k_n),       J_t' = J_t − u_t/k_t, but at most limit in size
+    limit is μ times the given J_n, not J_n'; 0 where J_n ≤ 0.
     The residual is the largest k_n |J_n' − J_n| or k_t |J_t' − J_t|.  J and u hold (n, t) of one contact after the
     other; k_n and k_t are on the diagonal of A.  It is 0 exactly where the laws hold, for any solver's J; μ = ∞, too.
     *Source:* the natural map: J = P(J − u/k), P the projection onto what the laws allow; Acary and Brogliato 2008.
@@ -220,7 +223,9 @@ def soft_contact(gap, hertz, zeta, dt):
 
 
 def friction_disc(J, limit):
-    """The point of the disc |J| ≤ limit that is nearest to J: J, or limit J/|J|.  Both are tuples of three numbers.
+    """The point of the disc |J| ≤ limit that is nearest to J: J itself, or limit J/|J|.
+
+    J and the answer are tuples of three numbers; limit is a number.
 
     Two separate limits along two tangents would allow √2 times the friction along the diagonal.
     """
@@ -231,8 +236,8 @@ def friction_disc(J, limit):
 def kept_impulses(contacts, old, J_old, near):
     """J (m, d) [N s] to begin a step with, the warm start: each contact takes over the impulse of an old one.
 
-    That is the nearest contact of `old` between the same two bodies, if it is closer than `near` [m]; else J is 0.
-    Normals may have turned: J keeps its direction.  Two new contacts may take over the same old impulse.
+    That is the nearest contact of `old` with the same a and the same b, if it is closer than `near` [m]; else J is 0.
+    Normals may have turned: copy the vector.  Two new contacts may take over the same old impulse.
     contacts and old are ContactSets; J_old belongs to old.  old.first says where the contacts of each body a are.
     *Source:* Catto 2006.
     """
@@ -241,7 +246,7 @@ def kept_impulses(contacts, old, J_old, near):
 
 
 def has_left_margin(low, high, wide_low, wide_high):
-    """Whether the box of any body, corners low and high (n, d), is not inside its widened box, wide_low and wide_high.
+    """True if the box of any body, corners low and high (n, d), sticks out of its widened box, wide_low and wide_high.
 
     As long as none has left, only pairs that the last search found (with the widened boxes) can touch.  NaN has left.
     """

@@ -7,9 +7,10 @@ v (n, d) [m/s] · omega (n,) or (n, 3) [rad/s], world · J (m, d) [N s] impulses
 (n, 3) [N m] loads · p: a Bodies (support/bodies.py) or any record with the fields that a function reads.
 
 A load is a function  load(t, x, q, v, omega, p) → (F, tau).  Planes are further rows of all arrays.  A row with
-inv_mass = 0 keeps the velocity that you give it: at rest it is ground, and in motion a conveyor belt, a lift or a
-turntable.  A scene calls only what it needs: no detection where nothing can touch, no quaternions in the plane.
-Given in support/simulator.py: a loop with joints.  Given in support/bodies.py: how to judge a run.
+inv_mass = 0 keeps the velocity that you give it: at rest it is ground, and in motion a conveyor belt or a turntable.
+A plane moves along itself only; what rises, such as a lift, is a body.  Loads of lesson 5 have v before q: (t, x, v, q,
+omega, p), as its rolling balls have here.  A scene calls only what it needs: no detection where nothing can touch.
+Given in support/simulator.py: a loop with joints.  Given in support/invariants.py: how to judge a run.
 *Left out:* restitution of many contacts, sleeping.
 """
 
@@ -36,16 +37,14 @@ from .support.bodies import (
     Bodies,
     CarriedBall,
     RockingBlock,
+    check_sinking,
     check_speed,
     checked_bodies,
-    closing_speeds,
     make_bodies,
     make_bodies_2d,
-    mechanical_energy_2d,
     movable_pairs,
     rocking_acceleration,
     stop_slip,
-    sweep_residual_2d,
     time_of_landing,
 )
 from .support.broad_phase import near_pairs
@@ -60,16 +59,22 @@ from .support.contact_points import (
     largest_overlap,
     round_contacts,
 )
+from .support.invariants import (
+    closing_speeds,
+    mechanical_energy_2d,
+    momenta_2d,
+    overlap_bound_2d,
+    sweep_residual_2d,
+    work_of_driven_rows,
+)
 from .support.joints import (
     close_joints_2d,
-    composed_joint_step_2d,
     joint_step,
-    joint_step_2d,
     make_joints,
     parting_speeds,
     without_joined,
 )
-from .support.scenes import PileState, check_overlap
+from .support.scenes import PileState
 from .vectors import cross, dot, norm
 
 # ---------------------------------------------------------------------------------------------- without contact
@@ -102,7 +107,7 @@ def new_velocities(load, t, x, q, v, omega, dt, p):
 
     v ← v + dt F/m,      ω ← ω + dt ω̇,      with ω̇ = angular_acceleration(q, ω, τ, I_body) of lesson 5, body by body
 
-    I_body = 1/p.inv_inertia[i] (3,).  A body whose inv_inertia is 0 keeps its ω.  Returns new arrays.
+    I_body = 1/p.inv_inertia[i] (3,).  A body whose inv_inertia is 0 keeps its ω, also if it has a mass.  New arrays.
     *Source:* second lecture deck, “Simulation loop”, with the gyroscopic term.
     """
     ### BEGIN SOLUTION 10.2
@@ -253,7 +258,8 @@ def slip_time(v, omega, ball):
     Friction and gravity change the slip u = v + ω × r, r = (0, 0, −radius), at the constant rate
         u̇ = −μ |g_z| (1 + m radius²/I) u/|u| + g_t,      g_t = (g_x, g_y, 0)
     so that |u| decreases by  b = μ |g_z| (1 + m radius²/I) − u · g_t/|u|  per second:  t = |u|/b, and inf if b ≤ 0.
-    Return 0 where u = 0.  Gravity along the floor must be zero or parallel to u, or u would change its direction.
+    Of u only the part along the floor counts: u_z = 0.  Return 0 where u = 0.
+    Gravity along the floor must be zero or parallel to u, or u would change its direction.
     *Source:* Newton and Euler, with Coulomb's law.
     """
     ### BEGIN SOLUTION 10.10
@@ -326,7 +332,7 @@ def mechanical_energy(x, q, v, omega, p):
     """Return the energy [J] of all bodies in space that can move:  Σ ½ m v² + ½ ω · I ω − m g · x.
 
     ½ ω · I ω = ½ Σ Iₖ ωₖ², with the components of ω in body coordinates (unrotate) and Iₖ = 1/p.inv_inertia[i, k].
-    Rows with inv_mass = 0 do not count.
+    Rows with inv_mass = 0 do not count; a body whose inv_inertia is 0 has no energy of rotation.
     """
     ### BEGIN SOLUTION 10.13
     energy = 0.0
@@ -334,7 +340,8 @@ def mechanical_energy(x, q, v, omega, p):
         if p.inv_mass[i] > 0.0:
             w = unrotate(q[i], omega[i])
             energy += (0.5 * dot(v[i], v[i]) - dot(p.gravity, x[i])) / p.inv_mass[i]
-            energy += 0.5 * np.sum(w * w / p.inv_inertia[i])
+            if p.inv_inertia[i, 0] > 0.0:
+                energy += 0.5 * np.sum(w * w / p.inv_inertia[i])
     return energy
     ### END SOLUTION
 
@@ -344,6 +351,7 @@ def momenta(x, q, v, omega, p):
 
     P = Σ m v,      L = Σ x × m v + I ω          I ω = body_angular_momentum(q, ω, I_body) of lesson 5
 
+    Rows with inv_mass = 0 do not count; a body whose inv_inertia is 0 has no I ω.
     Without loads and supports both are constant, whatever the bodies do to each other.
     """
     ### BEGIN SOLUTION 10.14
@@ -351,7 +359,9 @@ def momenta(x, q, v, omega, p):
     for i in range(x.shape[0]):
         if p.inv_mass[i] > 0.0:
             P += v[i] / p.inv_mass[i]
-            L += cross(x[i], v[i]) / p.inv_mass[i] + body_angular_momentum(q[i], omega[i], 1.0 / p.inv_inertia[i])
+            L += cross(x[i], v[i]) / p.inv_mass[i]
+            if p.inv_inertia[i, 0] > 0.0:
+                L += body_angular_momentum(q[i], omega[i], 1.0 / p.inv_inertia[i])
     return P, L
     ### END SOLUTION
 
@@ -410,13 +420,14 @@ def advance_free(step, load, t, x, q, v, omega, dt, steps, p):
 def advance_contact(step, load, bounds, narrow, t, state, dt, steps, p):
     """Given.  Return the PileState after so many steps of contact_step_2d or contact_step.
 
-    Raises BadInput for arrays that do not fit, Diverged where bodies sink into each other or are not finite.
+    Raises BadInput for arrays that do not fit, Diverged where bodies sink into each other (it names both, the time and
+    the depth) or are not finite.  Bodies that overlap at the beginning stay so: nothing here parts them.
     """
     t, x, q, v, omega, dt, steps = checked_bodies(t, state.x, state.q, state.v, state.omega, dt, steps, p)
     state, allowed = PileState(x, q, v, omega, state.contacts, state.J), np.inf
     for n in range(steps):
         state = step(load, bounds, narrow, t + n * dt, state, dt, p)
-        allowed = check_overlap(state.contacts, state.v, dt, p.half, allowed, 0.0)
+        allowed = check_sinking(state, t + n * dt, dt, p, allowed)
     check_speed(state.v, state.omega, dt)
     return state
 

@@ -170,6 +170,13 @@ def of_times(result, counts):
             yield f"what it costs to put in {row['what']!r} does not follow from its repeats"
 
 
+    left_out = times.get("left_out") or {"ratio": None}
+    if left_out["ratio"] is not None:
+        full, lean = (median(repeats) for repeats in left_out["repeats"])
+        if differs(left_out["ratio"], full / lean) or left_out["same"] != (distance(*left_out["observed"]) < SAME):
+            yield "what the whole loop costs does not follow from its repeats"
+
+
 def least_time(points, target):
     """The least time for an error: that of the cheapest run that is good enough, or between it and the next coarser."""
     good = min(((seconds, error) for error, seconds in points if error <= target), default=None)

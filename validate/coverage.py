@@ -58,13 +58,24 @@ def calls():
 
 
 def defined(place):
-    """(module, function) where it is defined: a lesson may import it from elsewhere; None where it is no function."""
+    """(module, function) where it is defined; None where it is no function.
+
+    A lesson may import it from elsewhere, or have it in its companion.
+    """
     while place not in calls():
         module, name = place
-        place = imported(trees()[module], module).get(name) if module in trees() else None
+        if (f"support.{module}", name) in calls():
+            return f"support.{module}", name
+        place = imports_of(module).get(name)
         if place is None:
             return None
     return place
+
+
+@cache
+def imports_of(module):
+    """What a module below solutions imports, as `imported` says it; nothing where there is no such module."""
+    return imported(trees()[module], module) if module in trees() else {}
 
 
 def reached(roots):
@@ -90,7 +101,7 @@ def named(nodes, there, lesson):
                     yield lesson, one.attr
                 elif owner in there and there[owner][1] is None:
                     yield there[owner][0], one.attr
-            elif isinstance(one, ast.Constant) and isinstance(one.value, str) and (lesson, one.value) in calls():
+            elif isinstance(one, ast.Constant) and isinstance(one.value, str) and defined((lesson, one.value)):
                 yield lesson, one.value
 
 

@@ -85,6 +85,7 @@ class Scene:
     engines: tuple = ()      # of Engine
     uses: tuple = ()         # what the scene needs, in words
     ablations: dict = field(default_factory=dict)        # {what it omits: p → (state, p) with it put in, or why not}
+    full_loop: str = ""      # why the whole loop of lesson 10 cannot stand for a method here; else it is measured
     acceleration: Callable | None = None     # (t, x, v, p) → a [m/s²]: the law; compiled where the lessons are
     expected_departures: dict = field(default_factory=dict)      # {label: Departure}
     orders: dict = field(default_factory=dict)  # {method's function: order here}, where it is not the usual one
@@ -102,6 +103,7 @@ class Scene:
     links: Callable | None = None            # (p) → pairs of points that the picture joins
     link_look: str = "rod"                   # how they are drawn: rod, spring, or spring and damper
     film_seconds: float | None = None        # how much of the motion the film shows [s]; T without it
+    film_of_truth: str = "truth"  # its label in the film, where nobody knows the truth
     bodies: Callable | None = None           # (p) → shapes of validate/drawing.py: the film is then shown in 3D
     poses: Callable | None = None            # (observed, p) → (bodies, 7) position and quaternion (w, x, y, z) of each
     arrows: Callable | None = None           # (observed, p) → {name: (from, to)} [m], such as ω and L

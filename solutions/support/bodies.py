@@ -19,12 +19,10 @@ from ..checks import (
     positive_number,
     whole_number,
 )
-from ..contact import velocity_sweep_2d
 from ..rotation import point_velocity
 from ..vectors import cross, norm
-from .arms import arms_2d
 from .broad_phase import Pairs
-from .scenes import PileState, no_contacts
+from .scenes import PileState, deepest_contact, no_contacts, still_allowed
 
 HALVINGS = 50                # of a step, until the time of an impact is known to round-off [-]
 
@@ -62,6 +60,15 @@ class RockingBlock(NamedTuple):
     g: float                 # gravity [m/s²]
 
 
+class Sunk(Diverged):
+    """Two bodies sink into each other: says which, when, how deep, and with how many sweeps per step."""
+
+    def __init__(self, a, b, bodies, t, overlap, sweeps):
+        other = f"plane {b - bodies}" if b >= bodies else f"body {b}"
+        super().__init__(f"overlap [m] of body {a} and {other} at t = {t:.4g} s, with {sweeps} sweeps per step",
+                         f"{overlap:.3g}", "take more sweeps, shorter steps, or more equal masses")
+
+
 def inverse_or_zero(thing, values, count, planes):
     """Return 1/values, one each, and 0 for each plane; 0 where a value is infinite.  Raises BadInput for the others."""
     values = np.asarray(values, np.float64)
@@ -80,7 +87,7 @@ def check_bodies(x, half, planes, d):
     """Raise BadInput unless these arrays describe bodies and planes in d dimensions; there may be no plane."""
     check_field("the centres x [m]", x, (len(x), d))
     check_field("the half sizes [m]", half, (len(x), d))
-    check_shape("the planes", planes, (len(planes), d + 1))
+    check_shape("the planes", planes, (len(planes) if planes.ndim == 2 else 1, d + 1))
     for size in half.ravel():
         check_positive("half size of a body [m]", size)
     for p in range(len(planes)):
@@ -176,39 +183,22 @@ def checked_bodies(t, x, q, v, omega, dt, steps, p):
             whole_number("number of steps", steps, 0))
 
 
+def check_sinking(state, t, dt, p, allowed):
+    """Return what overlap is allowed from now on, as check_overlap of lesson 9 does.
+
+    Raises Sunk where bodies sink into each other all the same, and Diverged where a velocity is no number.
+    """
+    k, share = deepest_contact(state.contacts, state.v, dt, p.half)
+    if share > allowed:
+        raise Sunk(state.contacts.a[k], state.contacts.b[k], p.half.shape[0], t, -state.contacts.gap[k], p.sweeps)
+    return still_allowed(allowed, share)
+
+
 def check_speed(v, omega, dt):
     """Raise Diverged unless all velocities are numbers."""
     fastest = np.max(np.abs(v)) + np.max(np.abs(omega))
     if not np.isfinite(fastest):
         raise Diverged("the largest velocity of a body at the step [s]", dt, "take a smaller step, or more sweeps")
-
-
-def closing_speeds(gap, dt):
-    """Given.  Return the u_n (m,) [m/s] below which no contact may come: −gap/dt closes the gap; 0 if it is closed.
-
-    *Left out:* parting bodies that overlap.  A push would gain energy, and kept_impulses would take it for a load;
-    the soft contacts of lesson 9 do it better.
-    """
-    return np.minimum(-gap / dt, 0.0)
-
-
-def sweep_residual_2d(state, dt, p):
-    """Given.  Return how far [m/s] the last step in the plane is from the laws: what one more sweep changes."""
-    x, _, v, omega, contacts, J = state
-    arms, aim = arms_2d(x - dt * v, p.inv_mass, p.inv_inertia, contacts), closing_speeds(contacts.gap, dt)
-    _, _, better = velocity_sweep_2d(v, omega, J, aim, 0.0 * aim, contacts, arms, p)
-    return np.max(np.append(0.0, np.abs(better - J) * np.stack((arms.k_n, arms.k_n), axis=1)))
-
-
-def mechanical_energy_2d(x, v, omega, p):
-    """Return the energy [J] of all bodies in the plane that can move; what cannot turn has no energy of rotation."""
-    energy = 0.0
-    for i in range(x.shape[0]):
-        if p.inv_mass[i] > 0.0:
-            energy += (0.5 * (v[i] @ v[i]) - p.gravity @ x[i]) / p.inv_mass[i]
-        if p.inv_inertia[i] > 0.0:
-            energy += 0.5 * omega[i] ** 2 / p.inv_inertia[i]
-    return energy
 
 
 def rocking_acceleration(t, x, v, block):

@@ -36,6 +36,8 @@ from .tuples import across, minus, row, times
 CLOSED = 1e-14               # gap of a joint that counts as closed, per metre of coordinates [-]: 45 roundings
 MOST = 30                    # rounds of Newton's method per step [-]; with useful steps it needs 3 to 6
 
+COMPOSED = (SUZUKI, SUZUKI, 1.0 - 4.0 * SUZUKI, SUZUKI, SUZUKI)  # steps of a method of order 4, over dt [-]
+
 
 class Joints(NamedTuple):
     """m pairs of points that stay together."""
@@ -210,30 +212,6 @@ def hold_joints_2d(q, v, omega, p):
     J = solve_band(joint_matrix_2d(arms, arms, p), -u.ravel(), joints.band)
     apply_impulses_2d(v, omega, J.reshape(-1, 2), joints, arms, p.inv_mass, p.inv_inertia)
     return v, omega
-
-
-def kick_2d(load, t, x, q, v, omega, dt, p):
-    """(v, omega) after the loads have acted for dt."""
-    F, tau = load(t, x, q, v, omega, p)
-    return v + dt * p.inv_mass[:, None] * F, omega + dt * p.inv_inertia * tau
-
-
-def joint_step_2d(load, t, x, q, v, omega, dt, p):
-    """(x, q, v, omega) of JointedBodies in the plane after dt without contact: RATTLE, second order, reversible."""
-    v, omega = kick_2d(load, t, x, q, v, omega, 0.5 * dt, p)
-    v, omega = close_joints_2d(x, q, v, omega, dt, p)
-    x, q = x + dt * v, q + dt * omega
-    v, omega = kick_2d(load, t + dt, x, q, v, omega, 0.5 * dt, p)
-    v, omega = hold_joints_2d(q, v, omega, p)
-    return x, q, v, omega
-
-
-def composed_joint_step_2d(load, t, x, q, v, omega, dt, p):
-    """The same by five joint_step_2d, the third one backwards, as `compose` of lesson 5 does; fourth order."""
-    for share in (SUZUKI, SUZUKI, 1.0 - 4.0 * SUZUKI, SUZUKI, SUZUKI):
-        x, q, v, omega = joint_step_2d(load, t, x, q, v, omega, share * dt, p)
-        t = t + share * dt
-    return x, q, v, omega
 
 
 def without_joined(contacts, joints):

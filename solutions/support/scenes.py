@@ -117,7 +117,7 @@ def check_pile(x, half, planes, d):
     """Raise BadInput unless these arrays describe bodies and planes in d dimensions."""
     check_field("the centres x [m]", x, (len(x), d))
     check_field("the half sizes [m]", half, (len(x), d))
-    check_field("the planes", planes, (len(planes), d + 1))
+    check_field("the planes", planes, (len(planes) if planes.ndim == 2 else 1, d + 1))
     for size in half.ravel():
         check_positive("half size of a body [m]", size)
     for p in range(len(planes)):
@@ -221,17 +221,15 @@ def checked_pile(state, dt, steps, pile):
     return PileState(x, q, v, omega, state.contacts, finite_array("impulse J [N s]", state.J)), dt, steps
 
 
-def check_overlap(contacts, v, dt, half, allowed, residual):
-    """The overlap, over the smaller half size of both bodies, that is allowed from now on: TOO_DEEP, or what was
-    there at the beginning
-    if that is more (then `allowed` is ∞).
+def deepest_contact(contacts, v, dt, half):
+    """(k, share): the contact that has sunk in most, over the smaller half size of both bodies; (-1, 0) if none has.
 
-    What moves fast may go as far in during a step as the bodies move in it.  Raises Diverged with the residual [m/s]
-    of the contacts where bodies sink into each other all the same, or where a velocity is no number.
+    What moves fast may go as far in during a step as the bodies move in it: that part does not count.  Raises Diverged
+    where a velocity is no number.
     """
-    deepest, fastest, n = 0.0, np.max(np.abs(v)), half.shape[0]
+    deepest, share, fastest, n = -1, 0.0, np.max(np.abs(v)), half.shape[0]
     if not np.isfinite(fastest):
-        raise Diverged("the largest velocity of a body [m/s]", fastest, "take more substeps, or shorter steps")
+        raise Diverged("the largest velocity of a body [m/s]", fastest, "take shorter steps, substeps or more sweeps")
     for k in range(contacts.a.size):
         sunk = -contacts.gap[k] - 2.0 * dt * fastest
         if sunk > 0.0:
@@ -240,8 +238,25 @@ def check_overlap(contacts, v, dt, half, allowed, residual):
                 size = min(size, half[contacts.a[k], c])
                 if contacts.b[k] < n:
                     size = min(size, half[contacts.b[k], c])
-            deepest = max(deepest, sunk / size)
-    if deepest > allowed:
+            if sunk / size > share:
+                deepest, share = k, sunk / size
+    return deepest, share
+
+
+def still_allowed(allowed, share):
+    """The share of a half size that may overlap from now on: TOO_DEEP, or what was there at the beginning if that is
+    more (then `allowed` is ∞).
+    """
+    return min(allowed, max(TOO_DEEP, DEEPER * share))
+
+
+def check_overlap(contacts, v, dt, half, allowed, residual):
+    """The overlap, over the smaller half size of both bodies, that is allowed from now on.
+
+    Raises Diverged with the residual [m/s] of the contacts where bodies sink into each other all the same.
+    """
+    _, share = deepest_contact(contacts, v, dt, half)
+    if share > allowed:
         raise Diverged("bodies sink into each other; the residual of their contacts [m/s]", residual,
                        "take more substeps, shorter steps, or more equal masses")
-    return min(allowed, max(TOO_DEEP, DEEPER * deepest))
+    return still_allowed(allowed, share)

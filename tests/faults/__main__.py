@@ -30,7 +30,7 @@ console = Console(highlight=False, soft_wrap=True)
 def main(lessons: Annotated[list[str] | None, typer.Argument(help="Lessons; all without one.")] = None,
          jobs: Annotated[int, typer.Option(min=1, help="Processes.")] = 2,
          sample: Annotated[int | None, typer.Option(min=1, help="Only so many faults, drawn at random.")] = None,
-         seed: Annotated[int, typer.Option(help="Of that draw.")] = 0,
+         seed: Annotated[int, typer.Option(help="Of that draw; the first honest run.")] = 0,
          steps: Annotated[int | None, typer.Option(min=1, help="Most steps of a scene's sweep: a first look.")] = None,
          honest: Annotated[int | None, typer.Option(min=1, help="In place of faults, so many honest runs.")] = None):
     """Plant each fault and print what of the validation report it turns; exit code 1 if fewer than 95 % are noticed.
@@ -38,7 +38,9 @@ def main(lessons: Annotated[list[str] | None, typer.Argument(help="Lessons; all 
     A run that was interrupted goes on where it was.  With --honest no verdict may turn.
     """
     with workers(jobs) as pool:
-        raise typer.Exit(honest_runs(honest, pool) if honest else seeded(chosen(lessons, sample, seed), steps, pool))
+        if honest:
+            raise typer.Exit(honest_runs(range(seed, seed + honest), pool))
+        raise typer.Exit(seeded(chosen(lessons, sample, seed), steps, pool))
 
 
 def chosen(lessons, sample, seed):
@@ -120,16 +122,16 @@ def counts(done):
     return len(done), len(done) - len(missed), len(missed), sum(bool(fault.missed) for fault in missed)
 
 
-def honest_runs(count, pool):
+def honest_runs(numbers, pool):
     """Print what honest runs turn; the exit code: 1 if anything turns."""
     alarms = 0
-    for number, run in pool.each({number: (honest_run, number) for number in range(count)}):
+    for number, run in pool.each({number: (honest_run, number) for number in numbers}):
         alarms += len(run.alarms)
         console.print(f"{'[red]✗[/red]' if run.alarms else '[green]✓[/green]'} {number}: {run.about}; "
-                      f"{run.places} scenes and cases in {run.seconds:.0f} s")
+                      f"{run.ended} of {run.places} scenes and cases ended, in {run.seconds:.0f} s")
         for place, words in run.alarms.items():
             console.print(f"  {place}: {words}", markup=False)
-    console.print(f"{count} honest runs turn {alarms} verdicts.")
+    console.print(f"{len(numbers)} honest runs turn {alarms} verdicts.")
     return 1 if alarms else 0
 
 

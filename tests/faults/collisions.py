@@ -44,8 +44,4 @@ fault("repulsion", "(1.0 / g - 1.0 / reach)", "(1.0 / g)", "the field ends with 
 fault("repulsion", "g = distance - radius", "g = distance", "the obstacle is a point")
 fault("steer", "2.0 * (radius - offset)", "(radius - offset)", "it moves aside by half of what it needs")
 fault("steer", "tau <= 0.0 or", "", "it steers around what it has passed")
-fault("flock_acceleration", "p.gather * (middle - x[i])", "p.gather * (x[i] - middle)",
-      "the flock flees from its own middle")
 fault("ball_contact", "np.sqrt(r @ r) - r_a - r_b", "np.sqrt(r @ r) - r_a", "the gap leaves out the second radius")
-fault("capsule_capsule", "ball_contact(p, r_a, q, r_b)", "ball_contact(p, r_b, q, r_a)",
-      "the radii of two capsules are exchanged")

@@ -44,7 +44,3 @@ fault("velocity_sweep_2d", "- v[b, 1] - omega[b] * b_x", "- v[b, 1] + omega[b] *
 fault("velocity_sweep_2d", "- give[k] * k_n * J_n)", ")", "the contact does not give under its load")
 fault("velocity_sweep", "minus(old, row(J, k)), inv_mass, inv_inertia)",
       "minus(row(J, k), old), inv_mass, inv_inertia)", "action without reaction")
-fault("advance_pile_2d", "v + h * falls * pile.gravity", "v + h * pile.gravity", "immovable bodies fall, too")
-fault("advance_pile_2d", "q + h * omega, v", "q + 0.9 * h * omega, v", "bodies turn 10 % too little")
-fault("contact_targets", "min(aim[k], SEPARATION_SPEED)", "min(aim[k], 0.1 * SEPARATION_SPEED)",
-      "overlap is undone ten times more slowly")

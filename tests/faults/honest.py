@@ -15,14 +15,15 @@ from .notice import copy_with, turned_at
 
 STEPS = 1000                 # most steps of a run [-]
 ELSEWHERE = 3                # places of later lessons that use this one [-]
-COMPILED = 4                 # every so manieth run is of the worked answers, compiled; all others are plain
+COMPILED = 4                 # one of so many runs is of the worked answers, compiled; all others are plain
 
 
 class HonestRun(NamedTuple):
     """What an honest run was, and what turned in it: {place: words}."""
     about: str
     alarms: dict
-    places: int
+    ended: int               # scenes and cases that ended in time
+    places: int              # all of them
     seconds: float
 
 
@@ -36,9 +37,12 @@ def honest_run(number):
     chosen = places_of(lesson, draw)
     with copy_with({lesson: text}) as copy, other_seeds(1000 * (number + 1)):
         of = "solutions" if compiled else copy
-        alarms = {place: turned for place in chosen if (turned := turned_at(place, of, None, STEPS, compiled))}
+        speeds = ("compiled",) if compiled else ("plain",)           # what is written differently does not compile
+        found = {place: turned_at(place, of, None, STEPS, speeds) for place in chosen}
     about = f"{lesson}, " + ("compiled" if compiled else f"{count} answers written differently")
-    return HonestRun(about, alarms, len(chosen), time.monotonic() - began)
+    ended = {place: turned for place, turned in found.items() if turned is not None}
+    alarms = {place: turned for place, turned in ended.items() if turned}
+    return HonestRun(about, alarms, len(ended), len(found), time.monotonic() - began)
 
 
 def varied(lesson, draw):

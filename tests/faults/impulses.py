@@ -33,20 +33,11 @@ fault("impact_time", "np.sqrt(squared)", "np.sqrt(v_n * v_n)", "acceleration doe
 fault("impact_time", "-(v_n + s) / a_n", "-2.0 * (v_n + s) / a_n", "what flies up comes back twice as late")
 fault("bouncing_time", "a_n * (1.0 - e)", "a_n * (1.0 - e * e)", "the flights shrink by e² each")
 fault("bouncing_time", "if v_n <= 0.0:", "if v_n <= 0.1:", "small bounces are left out")
-fault("penalty_step", "return x + dt * v, v", "return x + dt * (v - 0.5 * dt * acceleration(t, x, v, p)), v",
-      "it falls with the mean velocity: a step that errs less")
 fault("position_projection_step", "x = x - phi * p.n", "x = x - 2.0 * phi * p.n",
       "the ball is mirrored, not moved back")
 fault("backtracking_step", "slide_on_plane(x, v, a, left, p.n)", "slide_on_plane(x, v, a, 0.0, p.n)",
       "a ball that has bounced to rest stops sliding for the rest of the step")
 fault("slide_on_plane", "a - np.minimum(0.0, a @ n) * n", "tangential(a, n)", "the plane also pulls")
 fault("free_flight", "0.5 * t * t * a", "0.49 * t * t * a", "the fall is 2 % too short")
-fault("disc_impact", "p.inv_mass[j] * size * n", "p.inv_mass[i] * size * n",
-      "the second disc has the mass of the first")
-fault("spinning_impact", "times(p.inv_inertia, cross(r, J))", "times(p.inv_inertia, cross(J, r))",
-      "friction turns the ball the wrong way")
 fault("solve_impacts", "Js[i] = J\n        if", "Js[i] = np.maximum(J, 0.0)\n        if",
       "impulses along negative axes are forgotten between sweeps")
-fault("rebound_speeds", "-e * (n[i] @", "-e * 0.9 * (n[i] @", "points leave 10 % too slowly")
-fault("most_dissipative_impact", "share = 0.0, 0.0, 1.0 + e", "share = 0.0, 0.0, 1.0",
-      "restitution is left out: Moreau's impact")

@@ -26,8 +26,7 @@ from . import planted
 
 SWEEPS = (300, 1000, 5000)   # most steps of a run, before all of them: a coarse sweep often shows the fault
 SECONDS = {}                 # of the places that have run in this process: quick ones are asked first
-COMPILED = 120.0             # for the same, compiled, where plain Python is too slow [s]
-PATIENCE = 40.0              # for one scene or stability case, on the processor: a fault can make it slow [s]
+LIMITS = {"plain": 40.0, "compiled": 120.0}  # of one place, on the processor; what plain Python leaves is compiled [s]
 
 
 class Notice(NamedTuple):
@@ -94,17 +93,26 @@ def stability_case(place):
     return next((c for c in all_cases() if place == f"{coverage.STABILITY}{c.lesson}/{c.slug}"), None)
 
 
-def turned_at(place, of, function=None, most=np.inf, compiled=False):
-    """What of that place turns with the lessons of a folder, in a few words; empty where nothing does."""
+def turned_at(place, of, function=None, most=np.inf, speeds=tuple(LIMITS)):
+    """What of that place turns with the lessons of a folder, in a few words; empty where nothing does.
+
+    The first speed that ends within its time limit decides; None where none does.
+    """
     case, began = stability_case(place), time.monotonic()
-    try:
-        with alarm(COMPILED if compiled else PATIENCE, own=True):
-            return turned_finding(case, of, compiled) if case else turned_verdict(place, of, function, most, compiled)
-    except TooLong:
-        compiles = not compiled and modules.can_compile() and (case is None or case.compiled)
-        return turned_at(place, of, function, most, True) if compiles else ""            # "": no verdict, not noticed
-    finally:
-        SECONDS[place] = time.monotonic() - began
+    for speed in speeds:
+        compiled = speed == "compiled"
+        if compiled and not (modules.can_compile() and (case is None or case.compiled)):
+            continue
+        try:
+            with alarm(LIMITS[speed], own=True):
+                if case:
+                    return turned_finding(case, of, compiled)
+                return turned_verdict(place, of, function, most, compiled)
+        except TooLong:
+            continue
+        finally:
+            SECONDS[place] = time.monotonic() - began
+    return None
 
 
 def turned_finding(case, of, compiled=False):

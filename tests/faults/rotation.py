@@ -39,13 +39,6 @@ fault("tumbling_rate", "(I_body[i] * I_body[j])", "(I_body[k] * I_body[k])",
       "the rate has the wrong moments below the line")
 fault("heavy_top_torque", "-e[1], e[0]", "e[1], -e[0]", "the top precesses the other way")
 fault("heavy_top_torque", "top.mgl *", "1.01 * top.mgl *", "the top is 1 % too heavy")
-fault("gyroscopic_step", "omega = omega + dt * angular_acceleration",
-      "omega = omega + 1.05 * dt * angular_acceleration", "all torques are 5 % too strong")
-fault("implicit_gyroscopic_step", "cross(I[k] * omega - L_body, one[k])", "cross(I[k] * omega, one[k])",
-      "half of the Jacobian of the gyroscopic term is missing")
-fault("runge_kutta_step", "rate_4, tau_4 = _slope(torque, t + dt, q + dt * rate_3",
-      "rate_4, tau_4 = _slope(torque, t + dt, q + dt * rate_2",
-      "the last slope starts from the second in place of the third")
 fault("midpoint_free_rotation", "w = m / I_body\n            return", "w = start / I_body\n            return",
       "the body turns with ω of the beginning")
 fault("splitting_free_rotation", "turned = about_axis(turned, a, 0.5 * slow_a * body_component(turned, L, a))",

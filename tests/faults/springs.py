@@ -19,7 +19,7 @@ fault("angular_spring_forces", "-k * turn / squared_c", "-k * turn / np.sqrt(squ
 fault("angular_spring_forces", "-(F_a + F_c), F_c", "-2.0 * F_a, F_c", "the hinge gets twice the force of one arm")
 fault("angular_spring_forces", "turn -= 2.0 * np.pi * np.ceil((turn - np.pi) / (2.0 * np.pi))", "turn -= 0.0",
       "an angle past half a turn is not brought back: the spring pushes the long way round")
-fault("spring_forces", "product += r * (v_j[c] - v_i[c])", "product += r * v_j[c]",
+fault("spring_forces", "product_between(x, v, i, j)", "np.sum((x[i] - x[j]) * v[i])",
       "the damper sees the velocity of one end only")
 fault("spring_network_acceleration", "(force[n, c] + air) * network.inv_mass[n]",
       "force[n, c] * network.inv_mass[n] + air", "air acts per kilogram")

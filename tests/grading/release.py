@@ -167,7 +167,19 @@ def contents(paths, lessons, worked, answers):
     if not worked >= lessons:
         files[OPENINGS] = openings({path: text for path, text in files.items() if path.startswith("notebooks/")})
     files["pyproject.toml"] = for_students(files["pyproject.toml"].decode(), files, worked >= lessons).encode()
-    return files
+    return with_whole_support(files)
+
+
+def with_whole_support(files):
+    """Leave out the modules of solutions/support/ that import a module which is not in the zip."""
+    def whole(text):
+        names = re.findall(r"^from (\.\.?)(\w+) import", text.decode(), re.M)
+        needed = {f"solutions/{'support/' if dots == '.' else ''}{name}.py" for dots, name in names}
+        return needed <= files.keys()
+
+    kept = {path: text for path, text in files.items()
+            if not path.startswith("solutions/support/") or whole(text)}
+    return kept if len(kept) == len(files) else with_whole_support(kept)
 
 
 def openings(notebooks):

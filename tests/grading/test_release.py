@@ -172,8 +172,13 @@ def test_with_solutions_alone_releases_them_all(released):
 
 
 @pytest.mark.long
-def test_a_single_lesson_comes_with_its_scenes_and_what_it_builds_on(released):
-    files = files_in(released("--lesson", "integrators")[2])
+def test_a_single_lesson_comes_with_its_scenes_and_what_it_builds_on(released, tmp_path):
+    zipped = released("--lesson", "integrators")[2]
+    shutil.unpack_archive(zipped, tmp_path)
+    run = program_in(tmp_path / "workbook", "from validate.modules import bind; print(bind('integrators', 'lessons'))",
+                     lessons=tmp_path / "workbook" / "lessons")
+    assert "integrators" in run.stdout, run.stderr                  # nothing that is given needs a lesson left out
+    files = files_in(zipped)
     scene, notebook = "validate/scenes/integrators/oscillator.py", "notebooks/00_start_here.ipynb"
     assert files.keys() >= {"lessons/integrators.py", scene, notebook}
     assert not [name for name in files if "spring" in name]

@@ -17,7 +17,7 @@ G = 9.81                     # [m/s²]
 ROUND_OFF = 1e-12
 SOLVED = 1e-9  # of forces that follow from a system with a condition below 1e4, or from sweeps until 1e-13
 MIDDLE = np.array([0.0, 1.0])
-SIZES = (1e-20, 1.0, 1e20)   # of what the laws are proportional to
+SIZES = (1.0, 1e-20, 1e20)   # an ordinary case first: of what the laws are proportional to
 
 
 def unit(draw):
@@ -261,7 +261,7 @@ def spectral_radius(matrix):
     return np.max(np.abs(np.linalg.eigvals(matrix)))
 
 
-@exercise("9.5", points=0.5, hint="cos²(π/2n), with n bodies: half of it for one body is none")
+@exercise("9.5", points=0.5, hint="cos²(π/(2n)); for n = 1 it is 0")
 def test_a_stack_contracts_by_the_largest_eigenvalue(lesson, draw):
     close("contraction factor of a single body [-]", lesson.stack_contraction(1), 0.0, ROUND_OFF)
     for n in (2, draw.whole(3, 9), draw.whole(10, 40)):
@@ -283,7 +283,8 @@ def test_a_heavy_body_on_a_light_one_contracts_slowly(lesson, draw):
               given=f"r = {r}")
 
 
-@exercise("9.7", points=0.5, hint="ω = 2/(1 + √(1 − ρ)), where ρ is that of Gauss–Seidel, and ρ_ω = ω − 1")
+@exercise("9.7", points=0.5,
+          hint="return a pair: ω = 2/(1 + √(1 − ρ)), where ρ is that of Gauss–Seidel, and ρ_ω = ω − 1")
 def test_the_contraction_factor_at_the_best_relaxation_is_omega_minus_one(lesson, draw):
     """At the best ω two eigenvalues meet: their computed size is known to the root of round-off,
     1e-7 for these matrices.
@@ -367,7 +368,8 @@ def test_contacts_of_any_size_are_solved_side_by_side(lesson, draw):
               given=f"A = {A}, λ = {lam}")
 
 
-@exercise("9.8", points=0.25, hint="a contact is wrong only if it is so by more than the round-off of its sum")
+@exercise("9.8", points=0.25,
+          hint="a guess is solved exactly by elimination: sweeps do not get there; wrong is what exceeds ε_k")
 def test_the_direct_solver_does_not_mind_how_heavy_the_top_is(lesson, draw):
     """Condition 4e6: of the forces, (round-off) × (condition) = 1e-9 may be wrong."""
     for masses in ([1.0, 1e6], [*draw(0.5, 2.0, draw.whole(3, 12)), 1e6], np.ones(draw.whole(10, 25))):
@@ -499,7 +501,8 @@ def test_friction_is_limited_by_the_new_normal_impulse(lesson, draw):
               1e-11, given=f"μ = {mu}, u = {b + A @ J} m/s, A = {A}")
 
 
-@exercise("9.10", points=0.25, hint="contact by contact, J_n and then J_t, each with its own μ and the newest J of all")
+@exercise("9.10", points=0.25,
+          hint="contact by contact, J_n and then J_t with the newest J of all; contact k has μ[k], not μ[0]")
 def test_a_cone_sweep_visits_the_contacts_in_their_order(lesson, draw):
     for size in SIZES:
         A, mu = positive_definite(draw, 8), np.array([draw(0.1, 0.9), np.inf, draw(2.0, 9.0), 0.0])
@@ -545,7 +548,8 @@ def stack_of(lesson, masses, width=1.0):
     return x, np.append(0.0, 1.0 / np.array(masses)), np.append(0.0, 6.0 / np.array(masses)), c, load
 
 
-@exercise("9.11", points=0.25, hint="b = G M⁻¹ load, then solve_contacts; a = M⁻¹ (load + Gᵀ F)")
+@exercise("9.11", points=0.25,
+          hint="return (F, a): rows (F_n, F_t) of F from solve_contacts with b = G M⁻¹ load; a = M⁻¹ (load + Gᵀ F)")
 def test_the_kth_contact_of_a_stack_carries_what_lies_above(lesson, draw):
     masses = draw(0.5, 2.0, draw.whole(3, 5))
     x, inv_mass, inv_inertia, c, load = stack_of(lesson, masses)
@@ -678,7 +682,8 @@ def test_scenes_without_physics_are_refused(lesson, draw):
 
 # ---------------------------------------------------------------------------------------------- soft contacts
 
-@exercise("9.12", points=0.5, hint="implicit Euler of a spring and a damper: the new velocity counts for both")
+@exercise("9.12", points=0.5,
+          hint="s = 2π hertz dt: hertz are turns per second, not rad/s; the new velocity counts for spring and damper")
 def test_a_soft_contact_is_an_implicit_euler_step_of_a_damped_spring(lesson, draw):
     """v' (1 + 2ζωdt + ω²dt²) = v − dt ω² gap;  J = m (v' − v), and the contact asks for v' = aim − give J/m."""
     for _ in range(4):
@@ -750,6 +755,9 @@ def test_friction_is_the_nearest_point_of_its_disc(lesson, draw):
         close("J outside its disc [N s]", lesson.friction_disc(J, limit), np.array(J) * limit / size, ROUND_OFF,
               given=f"J = {np.array(J)} N s, limit {limit} N s")
     close("J without normal impulse [N s]", lesson.friction_disc(J, 0.0), np.zeros(3), 0.0)
+    for limit in (0.5 * size, 2.0 * size):
+        kind = float(isinstance(lesson.friction_disc(J, limit), tuple))
+        close("whether the answer is a tuple, as J is [-]", kind, 1.0, 0.0)
     close("no J, and no limit [N s]", lesson.friction_disc((0.0, 0.0, 0.0), 0.0), np.zeros(3), 0.0)
     close("J with infinite friction [N s]", lesson.friction_disc(J, np.inf), J, 0.0)
 
@@ -802,7 +810,8 @@ def test_a_contact_remembers_the_impulse_of_its_pair_and_place(lesson, draw):
               inherited(new._replace(p=0.01 * new.p), crowded, J_old, near), 0.0)
 
 
-@exercise("9.14", points=0.25, hint="the distance is |p − p_old| in all directions; normals do not count")
+@exercise("9.14", points=0.25,
+          hint="the nearest by |p − p_old| in all directions, among old contacts with the same a and the same b")
 def test_the_nearest_old_contact_is_found_among_many_with_other_normals(lesson, draw):
     for d in (2, 3):
         pairs = sorted((k % 3, 3 + k % 2) for k in range(48))
@@ -845,6 +854,9 @@ def test_a_new_contact_begins_without_impulse(lesson, draw):
                                np.zeros((0, 2)), np.zeros(0))
     close("J after a step without contacts [N s]", lesson.kept_impulses(new, nobody, np.zeros((0, 2)), near),
           np.zeros(new.p.shape), 0.0)
+    one, other = (contacts_of(lesson, [a], [b], [(0.0, 0.0)], [MIDDLE]) for a, b in ((0, 1), (1, 0)))
+    close("J of a contact whose bodies are those of an old one, a and b exchanged [N s]",
+          lesson.kept_impulses(one, other, draw(0.5, 2.0, (1, 2)), near), np.zeros((1, 2)), 0.0)
     swapped = old._replace(b=np.where(old.b == 4, 2, old.b))
     close("J after the partners changed [N s]", lesson.kept_impulses(new, swapped, J_old, near),
           inherited(new, swapped, J_old, near), 0.0)
@@ -899,7 +911,33 @@ def swept_scene(draw, lesson, mu, fixed=True):
     return draw(-3.0, 3.0, (4, 2)), draw(-3.0, 3.0, 4), J, c, arms, pile, x
 
 
-@exercise("9.16", points=0.5,
+@exercise("9.16", points=0.25,
+          hint="u of a's point, J_n from aim, u_n and give, J_t within μ J_n; then v + J/m and ω + (r × J)/I")
+def test_one_contact_of_one_body_with_the_ground_by_hand(lesson, draw):
+    """J is 0 before.  n = (0, 1), so t = (−1, 0).  All that is needed to compute it again is given."""
+    for mu, give in ((9.0, 0.0), (0.5, 0.0), (0.5, 1.0)):
+        r, v, omega, aim = (1.0, -2.0), (draw.whole(1, 3), -draw.whole(1, 3)), draw.whole(1, 3), draw.whole(0, 2)
+        inv_mass, inv_inertia = 1.0, 0.5
+        k_n, k_t = inv_mass + inv_inertia * r[0] ** 2, inv_mass + inv_inertia * r[1] ** 2
+        u_n, u_t = v[1] + omega * r[0], -(v[0] - omega * r[1])
+        J_n = max(0.0, (aim - u_n) / (k_n * (1.0 + give)))
+        J_t = min(max(-u_t / k_t, -mu * J_n), mu * J_n)
+        c = contacts_of(lesson, [0], [1], [r], [MIDDLE])
+        arms = lesson.Arms(np.array([r]), np.zeros((1, 2)), np.array([k_n]), np.array([k_t]))
+        pile = lesson.Pile(np.array([inv_mass, 0.0]), np.array([inv_inertia, 0.0]), np.full((1, 2), 0.1),
+                           np.array([[0.0, 1.0, 0.0]]), np.array([0.0, -G]), mu, 1, 10.0, 1.0, 0.01)
+        got = lesson.velocity_sweep_2d(np.array([v, (0.0, 0.0)], float), np.array([omega, 0.0], float),
+                                       np.zeros((1, 2)), np.array([aim], float), np.array([give]), c, arms, pile)
+        given = (f"a on ground b; n = (0, 1), r_a = {r} m, v = {v} m/s, ω = {omega} rad/s, J = 0, 1/m = {inv_mass}, "
+                 f"1/I = {inv_inertia}, k_n = {k_n}, k_t = {k_t}, aim {aim} m/s, give {give}, μ = {mu}")
+        close("J of one contact, in x and y [N s]", np.asarray(got[2])[0], (-J_t, J_n), ROUND_OFF, given)
+        close("v of body a after one contact [m/s]", np.asarray(got[0])[0],
+              (v[0] - inv_mass * J_t, v[1] + inv_mass * J_n), ROUND_OFF, given)
+        close("ω of body a after one contact [rad/s]", np.asarray(got[1])[0],
+              omega + inv_inertia * (r[0] * J_n + r[1] * J_t), ROUND_OFF, given)
+
+
+@exercise("9.16", points=0.25,
           hint="u from the velocities as they are by then; J_n and J_t from this u; the change acts on both bodies "
                "at once")
 def test_a_sweep_over_velocities_does_what_the_matrix_says(lesson, draw):

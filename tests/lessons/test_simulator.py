@@ -85,6 +85,21 @@ def swirl(t, x, q, v, omega, p):
     return np.cos(t) - 0.5 * v + 0.3 * x, np.sin(t) + 0.2 * q[:, 1:] - 0.4 * omega + 0.1 * v
 
 
+T_0, T_1, T_2 = 1.0, 5.0, 6.0          # [s] from when there is weight and no kick; drag; a push
+
+
+def late_weight(t, x, q, v, omega, p):
+    """Weight from half a second before T_0 on, and drag from T_1 on: an outdated time or velocity is noticed.
+
+    All tests of contacts use it: the loop is compiled anew for each function that it is given.
+    """
+    F = np.zeros(x.shape)
+    for i in range(x.shape[0]):
+        if t > 0.5 * T_0 and p.inv_mass[i] > 0.0:
+            F[i] = p.gravity / p.inv_mass[i] - (5.0 * v[i] if t >= T_1 else 0.0 * v[i])
+    return F, np.zeros(omega.shape)
+
+
 def nothing(t, x, q, v, omega, p):
     return 0.0 * x, 0.0 * omega
 
@@ -145,6 +160,11 @@ def test_every_body_in_space_obeys_euler(lesson, draw):
               omega[i] + dt * euler(q[i], omega[i], tau[i], 1.0 / p.inv_inertia[i]), ROUND_OFF,
               given=f"body {i}: q = {q[i]}, ω = {omega[i]}, τ = {tau[i]}")
     close("ω of a body that no torque turns [rad/s]", got_omega[2], omega[2], 0.0)
+    some = p._replace(inv_mass=p.inv_mass[[2, 0, 1]].copy(), inv_inertia=p.inv_inertia[[0, 1, 2]].copy())
+    _, got_omega = lesson.new_velocities(swirl, t, x, q, v, omega, dt, some)
+    close("ω of a body that torques turn and no force moves [rad/s]", np.asarray(got_omega)[0],
+          omega[0] + dt * euler(q[0], omega[0], tau[0], 1.0 / p.inv_inertia[0]), ROUND_OFF)
+    close("ω of a body that has a mass, and inv_inertia 0 [rad/s]", np.asarray(got_omega)[2], omega[2], 0.0)
 
 
 @exercise("10.2", points=0.5, hint="the gyroscopic term does no work: ω · I ω̇ = ω · τ")
@@ -297,10 +317,10 @@ def disc_on(lesson, draw, plane, mu, v=(0.0, 0.0), floor=(0.0, 0.0), height=0.0,
     return state._replace(v=np.array([v, floor], float)), p, r, m
 
 
-def run_2d(lesson, state, p, dt, steps):
+def run_2d(lesson, state, p, dt, steps, t=T_0):
     """So many steps of discs, one by one: the loop over steps takes long to compile."""
     for k in range(steps):
-        state = lesson.contact_step_2d(lesson.weight, lesson.disc_bounds, lesson.round_contacts, k * dt, state, dt, p)
+        state = lesson.contact_step_2d(late_weight, lesson.disc_bounds, lesson.round_contacts, t + k * dt, state, dt, p)
     return state
 
 
@@ -354,7 +374,7 @@ def test_a_conveyor_belt_gives_a_disc_a_third_of_its_speed(lesson, draw):
           (0.0, belt), MANY)
 
 
-@exercise("10.6", points=1, hint="kept_impulses, applied before the first sweep: then sweeps add up from step to step")
+@exercise("10.6", points=0.5, hint="kept_impulses, applied before the first sweep: so sweeps add up over the steps")
 def test_memory_turns_sweeps_into_steps(lesson, draw):
     """Four discs above each other, two sweeps per step: from nothing each step leaves 0.73 of the error of forces."""
     n, m, dt = 4, draw(0.5, 2.0), 0.005
@@ -368,6 +388,49 @@ def test_memory_turns_sweeps_into_steps(lesson, draw):
     close("forces in the joints over m g, after 120 steps of two sweeps [-]", forces_in(end, n, m * G * dt), truth,
           1e-3)
     close("how far the top has sunk [m]", np.asarray(end.x)[n - 1, 1] - x[n - 1, 1], 0.0, 20.0 * G * dt * dt)
+
+
+def remembered(old, J, way):
+    """(state that remembers J at contacts moved aside by `way`, the same at their places, the same without J)."""
+    aside = old.contacts._replace(p=old.contacts.p + way * np.eye(old.x.shape[1])[0])
+    return old._replace(contacts=aside, J=J), old._replace(J=J), old._replace(J=0.0 * J)
+
+
+def column(lesson, d):
+    """(PileState, Bodies) of three balls or discs above each other, one sweep per step, after one step."""
+    x = np.zeros((3, d))
+    x[:, -1] = np.arange(3) + 0.5
+    shape = (3,) if d == 2 else (3, 3)
+    plane = np.append(np.eye(d)[-1], 0.0)
+    return made(lesson, x, 1.0, np.full(shape, 0.1), np.full((3, d), 0.5), [plane], 0.5, 1, 0.01)
+
+
+@exercise("10.6", points=0.25, hint="kept_impulses(contacts, state.contacts, state.J, p.margin): near is p.margin")
+def test_an_impulse_in_the_plane_is_remembered_as_far_as_the_margin(lesson, draw):
+    start, p = column(lesson, 2)
+    remembers(lambda state: run_2d(lesson, state, p, 0.01, 1), start, p, draw)
+
+
+def remembers(step, start, p, draw):
+    """Whoever comes from within the margin is known, and from beyond it is new: one sweep shows the difference."""
+    first = step(start)
+    for part, known in ((draw(0.3, 0.9), 1), (draw(1.1, 3.0), 2)):
+        moved, *same = remembered(first, draw(0.5, 2.0) * np.asarray(first.J), part * p.margin)
+        close("J after a step, of contacts that have moved since the last step [N s]", step(moved).J,
+              np.asarray(step(same[known - 1]).J), ROUND_OFF, given=f"moved by {part} of the margin")
+
+
+@exercise("10.6", points=0.25, hint="loads first, with the velocities of the beginning; only then the old impulses")
+def test_loads_see_the_velocities_of_the_beginning(lesson, draw):
+    """A single disc at rest with drag: v = 0 at the beginning, so that no drag acts, whatever impulse is remembered.
+
+    One sweep solves a single contact, so that the impulse is that of the weight.
+    """
+    state, p, _, m = disc_on(lesson, draw, np.array([0.0, 1.0, 0.0]), 0.5)
+    state = run_2d(lesson, state, p, 0.01, 1, T_1)
+    state = state._replace(J=np.asarray(state.J) * draw(2.0, 4.0), v=0.0 * np.asarray(state.v))
+    got = np.asarray(run_2d(lesson, state, p, 0.01, 1, T_1).J)[0]
+    close("impulse on a disc at rest [N s]", got, (0.0, m * G * 0.01), ROUND_OFF)
 
 
 def forces_in(state, n, unit):
@@ -418,7 +481,7 @@ def test_a_ball_rolls_down_any_slope_or_slides(lesson, draw):
         a = 5.0 / 7.0 * g_t if sticks else g_t * (1.0 - mu * G * n[2] / np.linalg.norm(g_t))
         end = state
         for k in range(steps):
-            end = lesson.contact_step(lesson.weight, weighted_bounds, lesson.round_contacts, k * dt, end, dt, p)
+            end = lesson.contact_step(late_weight, weighted_bounds, lesson.round_contacts, T_0 + k * dt, end, dt, p)
         T = steps * dt
         close("velocity of a ball on a slope [m/s]", np.asarray(end.v)[0], T * a, SWEPT, given=f"μ = {mu}, n = {n}")
         close("place of a ball on a slope [m]", np.asarray(end.x)[0], state.x[0] + 0.5 * a * T * T * (1.0 + dt / T),
@@ -427,14 +490,23 @@ def test_a_ball_rolls_down_any_slope_or_slides(lesson, draw):
         close("angular velocity of a ball on a slope [rad/s]", np.asarray(end.omega)[0], rate, 10.0 * SWEPT)
 
 
-@exercise("10.7", points=0.5, hint="closing_speeds and kept_impulses are as in the plane")
+@exercise("10.7", points=0.25, hint="kept_impulses(contacts, state.contacts, state.J, p.margin): near is p.margin")
+def test_an_impulse_in_space_is_remembered_as_far_as_the_margin(lesson, draw):
+    start, p = column(lesson, 3)
+
+    def step(state):
+        return lesson.contact_step(late_weight, weighted_bounds, lesson.round_contacts, T_0, state, 0.01, p)
+    remembers(step, start, p, draw)
+
+
+@exercise("10.7", points=0.25, hint="closing_speeds and kept_impulses are as in the plane")
 def test_balls_fall_on_each_other_and_stand(lesson, draw):
     """Three balls above each other, each a little above the next one, two sweeps per step."""
     n, m, dt, space = 3, draw(0.5, 2.0), 0.005, draw(0.01, 0.02)
     x = np.stack((np.zeros(n), np.zeros(n), (1.0 + space) * np.arange(n) + 0.5), axis=1)
     state, p = made(lesson, x, m, np.full((n, 3), 0.1 * m), np.full((n, 3), 0.5), [(0.0, 0.0, 1.0, 0.0)], 0.5, 2, 0.05)
     for k in range(120):
-        state = lesson.contact_step(lesson.weight, weighted_bounds, lesson.round_contacts, k * dt, state, dt, p)
+        state = lesson.contact_step(late_weight, weighted_bounds, lesson.round_contacts, T_0 + k * dt, state, dt, p)
     close("forces in the joints over m g [-]", forces_in(state, n, m * G * dt), np.arange(n, 0.0, -1.0), 1e-3)
     # two sweeps leave a share of each approach: the column may sink by some g dt², and no joint stays open
     close("height of the top [m]", np.asarray(state.x)[n - 1, 2], n - 0.5, 20.0 * G * dt * dt)
@@ -448,7 +520,7 @@ def test_an_impulse_turns_a_ball_with_its_mass_inside_as_its_tensor_says(lesson,
     state = state._replace(q=q, v=np.vstack((draw(-1.0, 1.0, 3) - 2.0 * n, np.zeros(3))),
                            omega=np.vstack((draw(-2.0, 2.0, 3), np.zeros(3))))
     dt, I = 0.01, 1.0 / p.inv_inertia[0]
-    end = lesson.contact_step(lesson.weight, weighted_bounds, lesson.round_contacts, 0.0, state, dt, p)
+    end = lesson.contact_step(late_weight, weighted_bounds, lesson.round_contacts, T_0, state, dt, p)
     v, omega = np.asarray(end.v)[0], np.asarray(end.omega)[0]
     arm = -r * n
     close("velocity of the point that touches [m/s]", v + np.cross(omega, arm), np.zeros(3), 100.0 * SWEPT)
@@ -499,8 +571,14 @@ def test_the_centre_of_the_floor_has_the_velocity_of_the_floor(lesson, draw):
 
 
 def supported(t, x, v, q, omega, ball):
-    """Weight and the force of the floor: nothing is left of both."""
-    return np.zeros(3), np.zeros(3)
+    """Weight and the force of the floor: nothing is left of both.
+
+    A kick before T_0 and a push after T_2 show with which time a load was asked.
+    """
+    F = np.zeros(3)
+    if t < T_0 or t > T_2:
+        F[0] = 0.3 * ball.mu * ball.m * G
+    return F, np.zeros(3)
 
 
 def rolling_on(lesson, x, v, ball):
@@ -525,7 +603,7 @@ def test_a_ball_on_a_turntable_moves_on_circles(lesson, draw):
     for n in (50, 100):
         state = x, v, np.eye(4)[0], rolling_on(lesson, x, v, ball)
         for k in range(n):
-            state = lesson.carried_step(supported, k * T / n, *state, T / n, ball)
+            state = lesson.carried_step(supported, T_0 + k * T / n, *state, T / n, ball)
         errors.append(np.linalg.norm(np.asarray(state[0]) - truth))
     between("error of the place after 3 s [m]", errors[1], 0.0, 0.75 * T * rate**2 * (T / 100) ** 2 * np.linalg.norm(v),
             given=f"Ω = {spin} rad/s")
@@ -542,7 +620,7 @@ def test_a_belt_pulls_a_ball_along_with_exact_parabolas(lesson, draw):
     x, q = np.array([0.3, -0.2, ball.radius]), np.eye(4)[0]
     state = x, np.zeros(3), q, np.zeros(3)
     for k in range(n):
-        state = lesson.carried_step(supported, k * T / n, *state, T / n, ball)
+        state = lesson.carried_step(supported, T_0 + k * T / n, *state, T / n, ball)
     along = np.append(belt / size, 0.0)
     close("place while it slips [m]", state[0], x + 0.5 * mu * G * T * T * along, ROUND_OFF, given=f"belt {belt} m/s")
     close("velocity while it slips [m/s]", state[1], mu * G * T * along, ROUND_OFF)
@@ -551,7 +629,7 @@ def test_a_belt_pulls_a_ball_along_with_exact_parabolas(lesson, draw):
     close("orientation while it slips, as a matrix", matrix(np.asarray(state[2])),
           about(spun / np.linalg.norm(spun), angle), MANY)
     for k in range(4 * n):
-        state = lesson.carried_step(supported, k * T / n, *state, T / n, ball)
+        state = lesson.carried_step(supported, T_0 + k * T / n, *state, T / n, ball)
     close("velocity when it rolls [m/s]", state[1], share / (1.0 + share) * size * along, ROUND_OFF)
 
 
@@ -577,11 +655,15 @@ def test_the_slip_ends_when_theory_says(lesson, draw):
               given=f"slip {slip} m/s, μ = {ball.mu}, gravity along it {tilt} m/s²")
 
 
-@exercise("10.10", points=0.5, hint="a ball that rolls has no slip: 0; where gravity is stronger than friction: inf")
+@exercise("10.10", points=0.5, hint="no slip: 0; gravity stronger than friction: inf; u_z does not count")
 def test_what_rolls_does_not_slip_and_what_is_too_steep_never_rolls(lesson, draw):
     ball, v, _, e, _, share = bowled(lesson, draw)
     rolls = np.cross([0.0, 0.0, 1.0], v) / ball.radius
     between("time of a ball that rolls already [s]", lesson.slip_time(v, rolls, ball), 0.0, ROUND_OFF)
+    ball_2, v_2, omega_2, _, slip, share_2 = bowled(lesson, draw)
+    close("time until a ball rolls that also moves up or down [s]",
+          lesson.slip_time(v_2 + np.array([0.0, 0.0, draw(0.5, 2.0)]), omega_2, ball_2),
+          slip / (ball_2.mu * G * (1.0 + 1.0 / share_2)), ROUND_OFF)
     between("time of a ball at rest [s]", lesson.slip_time(np.zeros(3), np.zeros(3), ball), 0.0, 0.0)
     steep = ball._replace(gravity=np.array([0.0, 0.0, -G]) + draw(1.1, 1.5) * ball.mu * G * (1.0 + 1.0 / share) * e)
     endless = np.isinf(lesson.slip_time(v, 0.5 * rolls, steep))
@@ -596,7 +678,7 @@ def test_one_step_over_the_end_of_slipping_is_exact(lesson, draw):
     for T in (draw(0.2, 0.8) * ends, draw(1.5, 3.0) * ends):
         s = min(T, ends)
         end_v = v - ball.mu * G * s * e
-        got = lesson.exact_rolling_step(supported, 0.0, x, v, np.eye(4)[0], omega, T, ball)
+        got = lesson.exact_rolling_step(supported, T_0, x, v, np.eye(4)[0], omega, T, ball)
         close("place after one step [m]", got[0], x + s * v - 0.5 * ball.mu * G * s * s * e + (T - s) * end_v, MANY,
               given=f"slips for {ends} s, dt = {T} s")
         close("velocity after one step [m/s]", got[1], end_v, MANY)
@@ -604,21 +686,36 @@ def test_one_step_over_the_end_of_slipping_is_exact(lesson, draw):
         close("speed of the rim after one step [m/s]", rim @ e, (v - e * slip) @ e + ball.mu * G / share * s, MANY)
 
 
-@exercise("10.11", points=0.5, hint="the second part begins with the end of the first, and lasts dt − first")
+@exercise("10.11", points=0.25, hint="the second part begins with the end of the first, and lasts dt − first")
 def test_a_long_step_is_as_good_as_many(lesson, draw):
     """Also the orientation: along a line all rotations are about one axis."""
     ball, v, omega, e, slip, share = bowled(lesson, draw)
     ends = slip / (ball.mu * G * (1.0 + 1.0 / share))
     T, n = draw(1.5, 3.0) * ends, draw.whole(3, 9)
     start = np.zeros(3), v, np.eye(4)[0], omega
-    whole = lesson.exact_rolling_step(supported, 0.0, *start, T, ball)
+    whole = lesson.exact_rolling_step(supported, T_0, *start, T, ball)
     close("velocity when it rolls [m/s]", whole[1], v - slip * share / (1.0 + share) * e, MANY, given=f"dt = {T} s")
     parts = start
     for k in range(n):
-        parts = lesson.exact_rolling_step(supported, k * T / n, *parts, T / n, ball)
+        parts = lesson.exact_rolling_step(supported, T_0 + k * T / n, *parts, T / n, ball)
     for name, one, many in zip(("place [m]", "velocity [m/s]", "orientation [-]", "angular velocity [rad/s]"), whole,
                                parts):
         close(f"{name} after one long step", one, many, MANY, given=f"{n} parts")
+
+
+@exercise("10.11", points=0.25, hint="load(t, …) for the first part, load(t + first, …) for the second one")
+def test_the_second_part_asks_the_load_at_its_own_time(lesson, draw):
+    """A push sets in right after the beginning, at T_2: only the second part knows it, so v differs by push · rest/m.
+
+    rolling_step lets the floor hold gravity only, so that a push is not shared with the rotation in its own step.
+    """
+    ball, v, omega, _, slip, share = bowled(lesson, draw)
+    ends = slip / (ball.mu * G * (1.0 + 1.0 / share))
+    T, start = draw(1.5, 3.0) * ends, np.array([0.0, 0.0, ball.radius])
+    without = lesson.exact_rolling_step(supported, T_0, start, v, np.eye(4)[0], omega, T, ball)
+    pushed = lesson.exact_rolling_step(supported, T_2, start, v, np.eye(4)[0], omega, T, ball)
+    close("what the push adds to the velocity [m/s]", np.asarray(pushed[1]) - np.asarray(without[1]),
+          (0.3 * ball.mu * G * (T - ends), 0.0, 0.0), MANY, given=f"slips for {ends} s, dt = {T} s")
 
 
 @exercise("10.12", points=0.5, hint="angular momentum about the corner stays: I ω − m (r × v) over I + m |r|²")
@@ -666,6 +763,12 @@ def test_energy_is_that_of_motion_rotation_and_height(lesson, draw):
         tensor, m = matrix(q[i]) @ np.diag(1.0 / p.inv_inertia[i]) @ matrix(q[i]).T, 1.0 / p.inv_mass[i]
         expected += 0.5 * m * v[i] @ v[i] + 0.5 * omega[i] @ tensor @ omega[i] - m * p.gravity @ x[i]
     close("energy [J]", lesson.mechanical_energy(x, q, v, omega, p), expected, MANY)
+    stiff = p.inv_inertia.copy()
+    stiff[1] = 0.0
+    tensor = matrix(q[1]) @ np.diag(1.0 / p.inv_inertia[1]) @ matrix(q[1]).T
+    close("energy where one body has a mass, and inv_inertia 0 [J]",
+          lesson.mechanical_energy(x, q, v, omega, p._replace(inv_inertia=stiff)),
+          expected - 0.5 * omega[1] @ tensor @ omega[1], MANY)
 
 
 @exercise("10.13", points=0.5, hint="what cannot move does not count; of others add up all three parts")
@@ -696,6 +799,11 @@ def test_momenta_are_those_of_orbit_and_spin(lesson, draw):
     got = lesson.momenta(x, q, v, omega, p)
     close("momentum [kg m/s]", got[0], P, MANY)
     close("angular momentum about the origin [kg m²/s]", got[1], L, MANY)
+    stiff = p.inv_inertia.copy()
+    stiff[1] = 0.0
+    tensor = matrix(q[1]) @ np.diag(1.0 / p.inv_inertia[1]) @ matrix(q[1]).T
+    close("angular momentum where one body has a mass, and inv_inertia 0 [kg m²/s]",
+          lesson.momenta(x, q, v, omega, p._replace(inv_inertia=stiff))[1], L - tensor @ omega[1], MANY)
 
 
 @exercise("10.14", points=0.5, hint="seen from another point, L changes by the cross product of the way with P")
@@ -762,7 +870,10 @@ def test_the_ratio_is_the_median_of_neighbours(lesson, draw):
 
 def compared(lesson, full_times, minimal_times, full_end, minimal_end, runs):
     full, minimal, clock = runs_of(full_times, minimal_times, full_end, minimal_end)
-    return lesson.compare(full, minimal, runs, clock)
+    order = []
+    answer = lesson.compare(lambda: order.append(1.0) or full(), lambda: order.append(0.0) or minimal(), runs, clock)
+    close("runs in their order: 1 full, 0 minimal [-]", order, np.tile([1.0, 0.0], runs), 0.0)
+    return answer
 
 
 @pytest.mark.counts_calls

@@ -456,18 +456,22 @@ edit("9.13", "beyond the rim by a nanonewton second", "size > limit", "size > li
 edit("9.13", "nothing below a nanonewton second", "scaled(limit / size, J)", "scaled((limit > 1e-9) * limit / size, J)")
 edit("9.13", "the size of the first component", "scaled(limit / size, J)",
      "scaled(limit / size, (abs(J[0]), J[1], J[2]))")
+edit("9.13", "an array", "scaled(limit / size, J)", "np.array(scaled(limit / size, J))")
 wrong("9.13", "squares")(disc(inside=lambda size, limit: size * size <= limit))
 
 
 # 9.14 -----------------------------------------------------------------------------------------------------------
 @variants
 def kept(partner=True, near_enough=lambda d, near: d < near, take=np.argmin, share=1.0, flat=False,
-         size=lambda r, n: np.linalg.norm(r, axis=1), alike=-2.0, given=lambda J, n, m: J, once=False):
+         size=lambda r, n: np.linalg.norm(r, axis=1), alike=-2.0, given=lambda J, n, m: J, once=False,
+         either=False):
     def kept_impulses(contacts, old, J_old, near):
         J, taken = np.zeros(contacts.p.shape), []
         for k in range(len(contacts.a)):
             same = np.arange(old.first[contacts.a[k]], old.first[contacts.a[k] + 1])
             same = same[old.b[same] == contacts.b[k]] if partner else same
+            turned = np.flatnonzero((old.a == contacts.b[k]) & (old.b == contacts.a[k]))
+            same = np.append(same, turned) if either else same
             same = same[(old.n[same] @ contacts.n[k] > alike) & ~np.isin(same, taken)]
             distance = size((old.p[same] - contacts.p[k])[:, :1 if flat else None], contacts.n[k])
             if len(same) and near_enough(distance[take(distance)], near):
@@ -494,6 +498,7 @@ wrong("9.14", "any partner")(kept(partner=False))
 wrong("9.14", "however far away")(kept(near_enough=lambda d, near: True))
 wrong("9.14", "the first of the pair")(kept(take=lambda distance: 0))
 wrong("9.14", "the farthest")(kept(take=np.argmax))
+wrong("9.14", "also with a and b exchanged")(kept(either=True))
 wrong("9.14", "half of it")(kept(share=0.5))
 wrong("9.14", "looks along x only")(kept(flat=True))
 wrong("9.14", "the square for the distance")(kept(near_enough=lambda d, near: d * d < near))

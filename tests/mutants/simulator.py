@@ -51,6 +51,9 @@ edit("10.2", "the orientation of the first for all", "q[i]", "q[0]")
 edit("10.2", "the velocity stays", "v + dt * p.inv_mass[:, None] * F", "v")
 
 
+edit("10.2", "turns what has a mass", "p.inv_inertia[i, 0] > 0.0", "p.inv_mass[i] > 0.0")
+
+
 # 10.3 -----------------------------------------------------------------------------------------------------------
 @right("10.3", "changes of positions apart")
 def free_step_2d(load, t, x, q, v, omega, dt, p):
@@ -128,6 +131,11 @@ for number, old_law in (("10.6", "velocity_sweep_2d(v, omega, J, aim, 0.0 * aim,
     edit(number, "positions without contact", "return PileState(x + dt * v",
          "return PileState(x + dt * (v if J.size == 0 else state.v)")
     edit(number, "J is lost", "v, omega, contacts, J)", "v, omega, contacts, 0.0 * J)")
+    edit(number, "loads at time 0", "(load, t, x", "(load, 0.0, x")
+    edit(number, "remembers from everywhere", "kept_impulses(contacts, old, J, p.margin)",
+         "kept_impulses(contacts, old, J, np.inf)")
+    edit(number, "remembers within a millimetre", "kept_impulses(contacts, old, J, p.margin)",
+         "kept_impulses(contacts, old, J, 1e-3)")
     edit(number, "velocities of before", "PileState(x + dt * v", "PileState(x + dt * state.v")
 edit("10.6", "remembered but not applied", "apply_impulses_2d(v, omega, J, contacts, arms, p.inv_mass, p.inv_inertia)",
      "pass")
@@ -190,6 +198,7 @@ def carried_step(load, t, x, v, q, omega, dt, ball):
 
 
 edit("10.9", "the floor where the ball was", "support_velocity(x + dt * v, ball)", "support_velocity(x, ball)")
+edit("10.9", "loads at time 0", "rigid_body_step(load, t, x", "rigid_body_step(load, 0.0, x")
 edit("10.9", "the floor half a step ahead", "support_velocity(x + dt * v, ball)",
      "support_velocity(x + 0.5 * dt * v, ball)")
 edit("10.9", "the floor stands still", "support_velocity(x + dt * v, ball)", "0.0 * x")
@@ -218,6 +227,7 @@ edit("10.10", "does not look at the spin", "point_velocity(v, omega,", "point_ve
 edit("10.10", "the highest point", "-ball.radius]", "ball.radius]")
 edit("10.10", "gravity helps", "- along", "+ along")
 edit("10.10", "a floor that is level", "- along", "")
+edit("10.10", "rises and slips", "slip[2] = 0.0", "pass")
 edit("10.10", "always ends", "size / rate if rate > 0.0 else np.inf", "size / rate")
 edit("10.10", "no friction coefficient", "-ball.mu * ball.gravity[2]", "-ball.gravity[2]")
 
@@ -234,6 +244,9 @@ def exact_rolling_step(load, t, x, v, q, omega, dt, ball):
 edit("10.11", "one part", "np.minimum(dt, slip_time(v, omega, ball))", "dt")
 edit("10.11", "the rest is as long as the step", "omega, dt - first, ball)", "omega, dt, ball)")
 edit("10.11", "longer than the step", "np.minimum(dt, slip_time(v, omega, ball))", "slip_time(v, omega, ball)")
+edit("10.11", "the first part at time 0", "average_rolling_step(load, t, x", "average_rolling_step(load, 0.0, x")
+edit("10.11", "the second part at time 0", "load, t + first", "load, first")
+edit("10.11", "the second part at the time of the first", "load, t + first", "load, t")
 edit("10.11", "half of the slip", "np.minimum(dt, slip_time(v, omega, ball))",
      "np.minimum(dt, 0.5 * slip_time(v, omega, ball))")
 edit("10.11", "the second part from the start", "x, v, q, omega = average", "_, v, q, omega = average")
@@ -262,7 +275,8 @@ edit("10.12", "turns away from the corner", "np.array([r[1], -r[0]])", "np.array
 def mechanical_energy(x, q, v, omega, p):
     moves = np.flatnonzero(p.inv_mass > 0.0)
     m = 1.0 / p.inv_mass[moves]
-    spin = sum(0.5 * np.sum((rotation_matrix(q[i]).T @ omega[i]) ** 2 / p.inv_inertia[i]) for i in moves)
+    spin = sum(0.5 * np.sum((rotation_matrix(q[i]).T @ omega[i]) ** 2 / p.inv_inertia[i])
+               for i in moves if p.inv_inertia[i, 0] > 0.0)
     return np.sum(0.5 * m * np.sum(v[moves] ** 2, axis=1)) - m @ (x[moves] @ p.gravity) + spin
 
 
@@ -271,6 +285,7 @@ edit("10.13", "twice the motion", "0.5 * dot(v[i], v[i])", "dot(v[i], v[i])")
 edit("10.13", "spin in the world", "unrotate(q[i], omega[i])", "omega[i]")
 edit("10.13", "no rotation", "0.5 * np.sum(w * w / p.inv_inertia[i])", "0.0")
 edit("10.13", "inverse inertia for inertia", "w * w / p.inv_inertia[i]", "w * w * p.inv_inertia[i]")
+edit("10.13", "everything turns", "p.inv_inertia[i, 0] > 0.0", "True")
 edit("10.13", "the first body only", "range(x.shape[0])", "range(1)")
 
 
@@ -280,12 +295,15 @@ def momenta(x, q, v, omega, p):
     P, L = np.zeros(3), np.zeros(3)
     for i in np.flatnonzero(p.inv_mass > 0.0):
         R, one = rotation_matrix(q[i]), v[i] / p.inv_mass[i]
-        P, L = P + one, L + np.cross(x[i], one) + R @ np.diag(1.0 / p.inv_inertia[i]) @ R.T @ omega[i]
+        P, L = P + one, L + np.cross(x[i], one)
+        if p.inv_inertia[i].any():
+            L = L + R @ np.diag(1.0 / p.inv_inertia[i]) @ R.T @ omega[i]
     return P, L
 
 
-edit("10.14", "no orbit", "cross(x[i], v[i]) / p.inv_mass[i] + ", "")
-edit("10.14", "no spin", " + body_angular_momentum(q[i], omega[i], 1.0 / p.inv_inertia[i])", "")
+edit("10.14", "no orbit", "cross(x[i], v[i]) / p.inv_mass[i]", "0.0")
+edit("10.14", "no spin", "body_angular_momentum(q[i], omega[i], 1.0 / p.inv_inertia[i])", "0.0")
+edit("10.14", "everything turns", "p.inv_inertia[i, 0] > 0.0", "True")
 edit("10.14", "velocities for momenta", "P += v[i] / p.inv_mass[i]", "P += v[i]")
 edit("10.14", "cross product the other way", "cross(x[i], v[i])", "cross(v[i], x[i])")
 edit("10.14", "spin by the inverse tensor", "1.0 / p.inv_inertia[i]", "p.inv_inertia[i]")
@@ -321,6 +339,7 @@ def compare(full, minimal, runs, clock):
 
 edit("10.16", "minimal over full", "(between - began) / (clock() - between)", "(clock() - between) / (between - began)")
 edit("10.16", "the mean", "np.median(ratios)", "np.mean(ratios)")
+edit("10.16", "another order", "slow = full()", "minimal(); slow = full()")
 edit("10.16", "the best", "np.median(ratios)", "np.max(ratios)")
 edit("10.16", "one side only", "np.max(np.abs(slow - quick))", "np.max(slow - quick)")
 edit("10.16", "the mean difference", "np.max(np.abs(slow - quick))", "np.mean(np.abs(slow - quick))")

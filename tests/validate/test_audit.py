@@ -13,6 +13,8 @@ from validate.report import plots
 from validate.run import about
 from validate.stability.examine import all_cases, examine, stored
 
+pytestmark = pytest.mark.xdist_group("coverage")          # a report has the table of coverage: made once
+
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):

@@ -13,6 +13,7 @@ from pathlib import Path
 import nbformat
 import pytest
 
+from solutions.checks import BadInput
 from tests.grading import release
 from validate import modules
 from validate.book import __main__ as book
@@ -159,6 +160,13 @@ def test_cleared_outputs_are_gone_when_the_next_one_comes():
     assert len(found.cells) == 1
     found.take(message("stream", name="stdout", text="new"))
     assert [output.text for output in found.cells] == ["new"]
+
+
+@pytest.mark.parametrize(("cell", "said"), [
+    ("import os, signal\nos.kill(os.getpid(), signal.SIGTERM)", "ends its kernel"), ("1 / 0", "ZeroDivisionError")])
+def test_a_cell_that_fails_or_ends_its_kernel_is_named(cell, said, tmp_path):
+    with execute.kernel(tmp_path) as client, pytest.raises(BadInput, match=f"notebook 05 .*{said}"):
+        execute.outputs_of(client, cell, "05")
 
 
 def test_a_figure_is_described_by_its_labels():

@@ -153,7 +153,7 @@ def test_list_names_every_scene(capsys):
 class Here:
     """Workers that are this process: what is replaced here is replaced for them."""
 
-    def each(self, calls):
+    def each(self, calls, kinds=None):
         for key, (function, *arguments) in calls.items():
             yield key, function(*arguments)
 

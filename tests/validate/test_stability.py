@@ -8,18 +8,19 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput
+from validate.stability import integrators
 from validate.stability.case import EDGE, bisect, finding
 from validate.stability.examine import all_cases, examine, subject_of
 
 examined = cache(examine)
 CASES = {f"{case.lesson}/{case.slug}": case for case in all_cases()}
-FIRST = {case.lesson: name for name, case in reversed(CASES.items())}   # `validate` examines all; by default one each
+LAST = {case.lesson: name for name, case in CASES.items()}           # `validate` examines all; by default one each
 
 
 def marks_of(name, case):
-    """All of a lesson in one process, where the lesson's own tests compile it; long unless it is the lesson's first."""
+    """All of a lesson in one process, where the lesson's own tests compile it; long unless it is the lesson's last."""
     return [pytest.mark.xdist_group(f"compiled test_{case.lesson}"),
-            *([] if name in FIRST.values() else [pytest.mark.long])]
+            *([] if name in LAST.values() else [pytest.mark.long])]
 
 
 every_case = pytest.mark.parametrize("case", [
@@ -56,6 +57,8 @@ def test_slugs_can_stand_in_an_address_and_are_unique_within_a_lesson():
 
 
 WRONG = [                         # case, the method that it examines, what is put in its place
+    ("integrators/amplification", "verlet_step", "symplectic_euler_step"),
+    ("integrators/amplification", "midpoint_step", "average_velocity_step"),
     ("integrators/explicit-euler", "euler_step", "symplectic_euler_step"),
     ("integrators/symplectic-euler", "symplectic_euler_step", "euler_step"),
     ("integrators/midpoint", "midpoint_step", "euler_step"),
@@ -114,6 +117,29 @@ FORMULAS = {
     "collisions/cloth-swept-steered": ("triangle_cylinder_gap", "swept_box", "steer"),
     "impulses/two-bodies": ("relative_velocity_2d", "effective_inverse_mass_2d", "apply_impulse_2d", "impulse_size",
                             "effective_inverse_mass", "angular_momenta"),
+    "integrators/one-step": ("euler_step", "rk4_step", "verlet_step", "implicit_midpoint_step", "blanes_moan_step"),
+    "integrators/what-measures-methods": ("amplification_matrix", "newton_matrix", "spectral_radius", "observed_order"),
+    "springs/angular-spring-forces": ("angular_spring_forces",),
+    "springs/large-step": ("spring_stiffness", "implicit_spring_network_step"),
+    "friction/laws-of-friction": ("normal_force", "static_friction", "kinetic_friction", "incline_acceleration",
+                                  "friction_impulse", "pyramid_impulse", "sliding_step", "particle_bowl_gap",
+                                  "particle_contact_impulse", "contact_step", "friction_position_correction",
+                                  "position_friction_step"),
+    "friction/times-of-stops-and-starts": ("advance_to_event", "slip_direction", "kinetic_friction_step"),
+    "inertia_tensors/bodies-with-holes": ("centre_of_mass", "linear_momentum", "angular_momentum", "principal_axes",
+                                          "point_mass_inertia", "combine", "world_inertia", "world_inverse_inertia"),
+    "rotation/one-step-of-the-loop": ("rigid_body_step", "supported_weight", "rolling_step"),
+    "collisions/nearest-features": ("closest_on_triangle", "ball_box", "clip", "flock_acceleration"),
+    "impulses/laws-of-an-impact": ("kinematic_response", "penalty_force", "contact_matrix", "cone_impulse",
+                                   "energy_change", "gap_multiplier", "impact_time", "slide_on_plane"),
+    "pbd/constraints-and-their-gradients": ("distance_constraint", "constraint_correction", "newton_correction",
+                                            "fold_constraint", "ball_gap", "volume_gradient", "turning_rate",
+                                            "effective_inverse_mass_at", "apply_positional_impulse"),
+    "contact/laws-of-contact": ("contact_rows", "delassus_matrix", "gauss_seidel_sweep", "solve_lcp", "cone_sweep",
+                                "cone_residual", "complementarity_residual", "soft_contact", "kept_impulses"),
+    "simulator/loop-by-parts": ("free_step_2d", "free_step", "mechanical_energy", "momenta", "gain_without_source",
+                                "closing_speeds", "corner_impact", "slip_time", "support_velocity"),
+    "kinematics/geometry-of-arms": ("velocity_ellipse", "rotation_error", "limited_step", "null_space_step"),
     "contact/closed-forms": ("stack_contraction", "mass_ratio_contraction", "best_relaxation", "friction_disc"),
 }
 
@@ -133,6 +159,14 @@ def test_a_formula_that_is_a_thousandth_off_is_seen(name, function, factor):
     right = getattr(lesson, function)
     wrong = lambda *arguments: scaled(right(*arguments), factor)
     assert not all(f.holds for f in CASES[name].examine(types.SimpleNamespace(**{**vars(lesson), function: wrong}))[0])
+
+
+def test_an_edge_that_is_a_hundredth_off_is_seen_on_the_map_of_amplification(monkeypatch):
+    case, edge = CASES["integrators/amplification"], integrators.EDGES["euler_step"]
+    monkeypatch.setitem(integrators.EDGES, "euler_step", lambda zeta: 1.01 * edge(zeta))
+    found, picture = case.examine(subject_of(case))
+    assert [f.holds for f in found] == [False] + 5 * [True]
+    assert all(np.shape(one["values"]) == (len(one["ys"]), len(one["xs"])) >= (100, 100) for one in picture.maps)
 
 
 def test_a_measurement_that_failed_is_a_finding_that_does_not_hold():

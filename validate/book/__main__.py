@@ -77,12 +77,13 @@ def checked(out, numbers):
 
 def sphinx(source, site):
     """Let Sphinx make the site; its warnings.  Raises RuntimeError if it makes none."""
-    said = source / "warnings.txt"
-    run = subprocess.run([sys.executable, "-m", "sphinx", "-b", "html", "-q", "-E", "-c", str(HERE), "-w", str(said),
-                          "-d", str(source.parent / "doctrees"), str(source), str(site)],
-                         env={**os.environ, "WORKBOOK_BOOK_SOURCE": str(source)}, capture_output=True, text=True)
+    said, log = source / "warnings.txt", source / "log.txt"
+    with log.open("w") as output:              # a pipe would stay open if KaTeX's server outlived Sphinx
+        run = subprocess.run([sys.executable, "-m", "sphinx", "-b", "html", "-q", "-E", "-c", HERE, "-w", said,
+                              "-d", source.parent / "doctrees", source, site],
+                             env={**os.environ, "WORKBOOK_BOOK_SOURCE": str(source)}, stdout=output, stderr=output)
     if run.returncode:
-        raise RuntimeError(f"sphinx failed:\n{run.stdout}{run.stderr}")
+        raise RuntimeError(f"sphinx failed:\n{log.read_text(encoding='utf-8', errors='replace')}")
     lines = said.read_text(encoding="utf-8").splitlines() if said.is_file() else []
     return [re.sub(r"\x1b\[[\d;]*m", "", line).replace(f"{source}/", "") for line in lines if line.strip()]
 

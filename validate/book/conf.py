@@ -5,7 +5,10 @@ import os
 import shutil
 from pathlib import Path
 
+import sphinxcontrib.katex
 from docutils import nodes
+
+from validate.book.formulas import rendered
 
 SOURCE = Path(os.environ["WORKBOOK_BOOK_SOURCE"])
 ALTS = json.loads((SOURCE / "alts.json").read_text(encoding="utf-8"))
@@ -29,6 +32,7 @@ add_module_names = False
 toc_object_entries_show_parents = "hide"
 
 katex_prerender = shutil.which("node") is not None             # else the same KaTeX runs in the reader's browser
+sphinxcontrib.katex.render_latex = rendered
 katex_css_path = "katex/katex.min.css"
 
 html_theme = "furo"

@@ -6,7 +6,9 @@ A kept notebook is used again until its text, an answer or a tool changes.
 import contextlib
 import hashlib
 import os
+import queue
 import tempfile
+import time
 from pathlib import Path
 
 import nbformat
@@ -36,6 +38,7 @@ def kernel(folder, **environment):
                                 **{"transport": "ipc", "ip": f"{place}/kernel"} if zmq.has("ipc") else {})
         manager.start_kernel(cwd=folder, env={**os.environ, **environment})
         client = manager.blocking_client()
+        client.is_kernel_alive = manager.is_alive
         try:
             client.start_channels()
             client.wait_for_ready(timeout=60)
@@ -85,11 +88,24 @@ def executed(path, stubs=False):
 
 def outputs_of(client, source, name):
     """Run one cell; return its outputs."""
-    found = Outputs()
-    reply = client.execute_interactive(source, timeout=LONGEST, allow_stdin=False, output_hook=found.take)["content"]
-    if reply["status"] != "ok":
-        raise BadInput(f"notebook {name}", f"a cell that ends with {reply.get('ename')}: {reply.get('evalue')}",
-                       "mend it, and build again")
+    found, request, until = Outputs(), client.execute(source, allow_stdin=False), time.monotonic() + LONGEST
+    remedy = "mend it, and build again"
+    while True:
+        try:
+            message = client.get_iopub_msg(timeout=1)
+        except queue.Empty:
+            if not client.is_kernel_alive():
+                raise BadInput(f"notebook {name}", "a cell that ends its kernel", remedy) from None
+            if time.monotonic() > until:
+                raise BadInput(f"notebook {name}", f"a cell that takes longer than {LONGEST} s", remedy) from None
+            continue
+        if message["parent_header"].get("msg_id") == request:
+            if message["msg_type"] == "status" and message["content"]["execution_state"] == "idle":
+                break
+            found.take(message)
+    error = next((output for output in found.cells if output.output_type == "error"), None)
+    if error:
+        raise BadInput(f"notebook {name}", f"a cell that ends with {error.ename}: {error.evalue}", remedy)
     return found.cells
 
 

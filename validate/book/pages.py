@@ -49,7 +49,7 @@ def write_all(folder, numbers, report, say):
         write(folder / "sheets" / f"{name}.md", sheets.page(name, bool(report)))
     if report:
         shutil.copytree(report, folder / "extra" / "report", ignore=shutil.ignore_patterns("results", SUBSET))
-    write(folder / "index.md", front(paths, bool(report)))
+    write(folder / "index.md", front(paths))
     about_report = HERE / ("validation.md" if report else "no_report.md")
     write(folder / "validation.md", about_report.read_text(encoding="utf-8"))
 
@@ -139,14 +139,13 @@ def glossary():
         "```{glossary}\n:sorted:\n\n" + "\n\n".join(entries) + "\n```\n"
 
 
-def front(paths, report):
+def front(paths):
     """The first page."""
     contents = "\n".join(f"notebooks/{path.stem}" for path in paths)
     functions = "\n".join(f"{lesson.number} · {name} <lessons/{name}>" for name, lesson in course.lessons().items())
     text = (HERE / "front.md").read_text(encoding="utf-8")
     about = "\n".join(f"{lesson.number} · {name} <sheets/{name}>" for name, lesson in course.lessons().items())
-    for name, value in {"NOTEBOOKS": contents, "LESSONS": functions, "SHEETS": about, "COMMIT": commit(),
-                        "REPORT": "report/index.html" if report else "validation.html"}.items():
+    for name, value in {"NOTEBOOKS": contents, "LESSONS": functions, "SHEETS": about, "COMMIT": commit()}.items():
         text = text.replace(f"@{name}@", value)
     return text
 

@@ -1,5 +1,6 @@
 """One sheet per lesson for those who teach it: hours, needs, exercises, what to show, and the commands."""
 
+import html
 import re
 
 from .. import modules
@@ -33,6 +34,8 @@ def page(name, report):
         ("mathematics and physics", BEFORE[name]),
         ("lessons whose functions it calls", needs),
         ("lessons that need it", plan.numbers_of(later)),
+        ("students hand in", f"`lessons/{name}.py`"),
+        ("worked answers", f"`solutions/{name}.py`"),
     ])
     return "\n\n".join([
         f"# {lesson.number} · {name}: lesson sheet", f"{lesson.title}. The [notebook](../notebooks/"
@@ -41,9 +44,9 @@ def page(name, report):
         "## Exercises", "*Minutes* are an estimate. *Calls* and *called by* name exercises. In their own copy, "
         "students cannot pass an exercise that calls one which they have left out.", exercise_table(lesson),
         "## Where students go wrong", "A check that fails gives these hints. Each one answers a mistake that a test "
-        "of the workbook catches.", hints(lesson),
+        f"of the workbook catches. The wrong answers that must fail are in `tests/mutants/{name}.py`.", hints(lesson),
         "## What to show", "Every scene below has a film, its truth, and both engines where they can do it.",
-        scenes(lesson, report), "Stability cases: limits that theory gives, found by experiment.", cases(name, report),
+        scenes(lesson, report), "Stability cases: limits that theory gives, found by experiment.", cases(name),
         "## Questions to discuss", questions(name),
         "## Commands", commands(lesson)]) + "\n"
 
@@ -58,7 +61,10 @@ def exercise_table(lesson):
 
 
 def hints(lesson):
-    return "\n".join(f"- **{one.number}** {plain(hint)}" for one in lesson.exercises for hint in one.hints)
+    """The hints of all grading tests, folded, because some of them are half an answer."""
+    rows = "\n".join(f"<li><b>{one.number}</b> {html.escape(hint)}</li>"
+                     for one in lesson.exercises for hint in one.hints)
+    return f"```{{raw}} html\n<details><summary>Show the hints</summary>\n<ul>\n{rows}\n</ul></details>\n```"
 
 
 def plain(text):
@@ -75,7 +81,7 @@ def scenes(lesson, report):
     return plan.table(("scene", "what it is", "command"), rows)
 
 
-def cases(name, report):
+def cases(name):
     found = [case for case in all_cases() if case.lesson == name]
     return "\n".join(f"- {plain(case.title)}" for case in found)
 

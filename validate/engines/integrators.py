@@ -1,11 +1,33 @@
-"""A planet in both engines."""
+"""A planet: where it starts, how it is drawn, and the same in both engines."""
 
 import numpy as np
+
+from solutions.checks import BadInput, check_positive
 
 from ..reference.integrators import attraction, perihelion
 from ..scene import LATE_LEAPFROG, PYBULLET, PYMUNK, Engine, EngineRun
 from .bullet import Bullet
 from .chipmunk import pymunk_space, pymunk_world
+
+
+def planet(p):
+    """Return (x, v) of the planet at its perihelion.  Raises BadInput for what is no ellipse."""
+    for name in ("mu", "a"):
+        check_positive(name, getattr(p, name))
+    if not 0.0 <= p.e < 1.0:
+        raise BadInput("the eccentricity e", p.e, "give a number from 0 up to, but not including, 1")
+    return perihelion(p)
+
+
+def planet_in_space(p):
+    """The same motion with an unused z coordinate."""
+    x, v = planet(p)
+    return (np.append(x, 0.0), np.append(v, 0.0)), p
+
+
+def sun_and_planet(observed, p):
+    """Draw the sun and the planet."""
+    return np.array([[0.0, 0.0], [observed[0], observed[1]]])
 
 
 def pymunk_planet(p, dt, ahead=0.0):

@@ -185,3 +185,51 @@ def pybullet_cradle(pivots, x, m, inertia, R, g, dt, read):
         pb.setPhysicsEngineParameter(erp=0.2)
         bullet.close()
     return EngineRun(bullet.step, where, close)
+
+
+# ---------------------------------------------------------------------------------------------- a machine
+
+class PymunkBoxes:
+    """Boxes, some of them without mass, on a floor that may move; a spring to one of them, or None, and air."""
+
+    def __init__(self, parts, dt, iterations, slop):
+        import pymunk
+        (x, angles, halves, m, v, omega), spring, drag, mu, g, belt = parts
+        self.dt, self.space, self.boxes = dt, pymunk_space((0.0, -g)), []
+        self.space.iterations, self.space.collision_slop = iterations, slop
+        floor = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+        floor.velocity = float(belt), 0.0
+        self.space.add(floor, pymunk.Segment(floor, (-1000.0, -5.0), (1000.0, -5.0), 5.0))
+        for place, angle, half, mass, speed, spin in zip(x, angles, halves, m, v, omega):
+            moves = np.isfinite(mass)
+            body = (pymunk.Body(float(mass), float(mass * np.sum(half**2) / 3.0)) if moves else
+                    pymunk.Body(body_type=pymunk.Body.KINEMATIC))
+            body.position, body.angle = tuple(map(float, place)), float(angle)
+            body.velocity, body.angular_velocity = tuple(map(float, speed)), float(spin)
+            if moves and drag > 0.0:
+                body.velocity_func = lambda body, gravity, damping, dt: pymunk.Body.update_velocity(
+                    body, gravity - drag / body.mass * body.velocity, 1.0, dt)
+            self.space.add(body, pymunk.Poly.create_box(body, tuple(map(float, 2.0 * half))))
+            self.boxes.append(body)
+        if spring is not None:
+            number, anchor, rest, k, damper = spring
+            self.space.add(pymunk.DampedSpring(self.space.static_body, self.boxes[number], tuple(map(float, anchor)),
+                                               (0.0, 0.0), rest, k, damper))
+        for shape in self.space.shapes:
+            shape.friction = np.sqrt(mu)                                 # pymunk multiplies the two
+
+    def read(self, corners):
+        return corners(np.array([body.position for body in self.boxes]), np.array([body.angle for body in self.boxes]))
+
+    def run(self, corners):
+        """The EngineRun."""
+        return EngineRun(lambda: self.space.step(self.dt), lambda: self.read(corners), lambda: None)
+
+    def film(self, steps, every, corners):
+        """What it reads at the start and after every so many steps."""
+        found = [self.read(corners)]
+        for n in range(1, steps + 1):
+            self.space.step(self.dt)
+            if n % every == 0:
+                found.append(self.read(corners))
+        return found

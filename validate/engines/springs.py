@@ -1,8 +1,38 @@
-"""A net of masses and springs in pymunk."""
+"""A net of masses and springs: how it starts and is drawn, and the same in pymunk."""
 
 import numpy as np
 
+from solutions.checks import check_positive
+from solutions.springs import make_spring_network
 from validate.engines.chipmunk import pymunk_space, pymunk_world
+from validate.reference.springs import square_net, state_of
+
+
+def start_net(p):
+    """Return (x, v, network) of a SquareNet.  Raises BadInput for a parameter that is not positive."""
+    for name in ("n", "spacing", "m", "k"):
+        check_positive(name, getattr(p, name))
+    return state_of(square_net(p), make_spring_network)
+
+
+def net_in_space(p):
+    """The same motion with an unused third coordinate."""
+    return state_of(square_net(p).padded(), make_spring_network), p
+
+
+def observe_net(state, p):
+    """Return the places of all nodes, seen from the front."""
+    return state[0][:, :2].ravel()
+
+
+def net_points(observed, p):
+    """Draw every node."""
+    return observed.reshape(-1, 2)
+
+
+def net_links(p):
+    """Draw every spring."""
+    return square_net(p).pairs.tolist()
 
 
 def pymunk_net(net, dt, observe):

@@ -41,7 +41,7 @@ def errors(name, plan):
         "uncertainty": scene.truth_uncertainty, "truth_story": report_text(scene.truth), "uses": list(scene.uses),
         "parameters": parameter_table(scene.parameters), "notes": selection.notes, "cases": cases,
         **parity(selection, first),
-        "picture": film.picture(selection, first, labels_that_agree({"cases": cases})),
+        "picture": film.picture(selection, first, labels_to_film({"cases": cases})),
         "law": report_text(scene.acceleration) if scene.acceleration else "",
         "limits": "\n\n".join(report_text(f) for f in (scene.tolerance, scene.predicted_error) if f),
     })
@@ -232,15 +232,15 @@ def surprise_in(row, law):
     """A sentence without its subject where a run errs by something else than theory predicts for it; None otherwise."""
     if row["predicted"] is None or row["error"] is None:
         return None
-    if relative_to(law, row["observed"], row["predicted"]) <= row["band"]:
+    off, size = relative_to(law, row["observed"], row["predicted"]), relative(row["predicted"], law)
+    if off <= row["band"]:
         return None
-    share = row["error"] / relative(row["predicted"], law)
-    at = f"at {row['steps']} steps"
-    if share > 1.0 + row["band"] / relative(row["predicted"], law):
+    share, at = row["error"] / size if size > 0.0 else np.inf, f"at {row['steps']} steps"
+    if share > 1.01:
         return f"errs {share:.3g} times as much as theory predicts {at}"
-    if share < 1.0 - row["band"] / relative(row["predicted"], law):
+    if share < 0.99:
         return f"errs only {share:.2g} of what theory predicts {at}: it is another method than its name says"
-    return f"errs as much as theory predicts {at}, but in another direction"
+    return f"errs as much as theory predicts {at}, but in another way: the two errors differ by {off / size:.2g} of it"
 
 
 def shown_order(rows, floor):
@@ -276,3 +276,11 @@ def labels_that_agree(result):
     """Labels of our methods that agree with the truth in the first case."""
     first = next(iter(result["cases"].values()))
     return {c["label"] for c in first["ours"] if Verdict(c["verdict"]) is Verdict.AGREES}
+
+
+def labels_to_film(result):
+    """The same; where no theory judges any of them, those that came to the end."""
+    first = next(iter(result["cases"].values()))
+    ended = {c["label"] for c in first["ours"] if c["verdict"] == Verdict.UNDECIDED and c["rows"]
+             and c["rows"][-1]["failure"] is None}
+    return labels_that_agree(result) or ended

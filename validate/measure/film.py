@@ -16,13 +16,14 @@ def picture(selection, p, agreeing):
     scene = selection.scene
     if not scene.moves:
         there = np.array(scene.truth(p, scene.duration), dtype=float)
-        shown = {"truth": (Role.TRUTH, [there])}
+        shown = {scene.film_of_truth: (Role.TRUTH, [there])}
         return {"seconds": 0.0, "dt": 0.0, "links": links(scene, p), "look": scene.link_look,
                 "films": films(scene, shown, p), "space": in_space(scene, shown, p, 1.0)}
     per_frame = max(1, scene.steps[-3] // FRAMES)
     seconds = scene.film_seconds or scene.duration
     dt = seconds / (per_frame * FRAMES)
-    shown = {"truth": (Role.TRUTH, [np.array(scene.truth(p, seconds * k / FRAMES)) for k in range(FRAMES + 1)])}
+    frames = [np.array(scene.truth(p, seconds * k / FRAMES)) for k in range(FRAMES + 1)]
+    shown = {scene.film_of_truth: (Role.TRUTH, frames)}
     for method in sorted((m for m in scene.methods if m.label in agreeing), key=lambda m: -m.order)[:1]:
         shown[method.label] = (Role.OURS, our_frames(*selection.fastest(method), p, dt, per_frame))
     for engine in scene.engines:

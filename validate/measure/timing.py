@@ -65,7 +65,7 @@ def times(name, plan, result):
         "load": os.getloadavg() if hasattr(os, "getloadavg") else None,
         "others": others if items else None,
         "time_to_error": times_to_error(rows),
-        "advantage": advantage(rows, result["cases"][case]["engines"]),
+        "advantage": advantage(rows, result["cases"][case]),
         "ablations": ablations(selection, p, labels_that_agree(result)),
     })
 
@@ -294,11 +294,13 @@ def time_to_error(points, target):
     return float(np.exp(np.log(seconds) + fraction * (np.log(s) - np.log(seconds))))
 
 
-def advantage(rows, curves):
+def advantage(rows, case):
     """For each engine that errs: its smallest error, its time for that, our shortest time to get there,
-    and the ratio.
+    and the ratio.  There is no race where none of our methods was run.
     """
-    product = {c["label"]: c["product"] for c in curves}
+    if not case["ours"]:
+        return []
+    product = {c["label"]: c["product"] for c in case["engines"]}
     result, ours = [], {}
     for r in rows:
         if r["speed"] in ("plain", "compiled"):

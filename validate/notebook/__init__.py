@@ -3,6 +3,7 @@
 The learner's folder is `lessons/`, or the one that the environment variable WORKBOOK_LESSONS names.
 """
 
+import ast
 import json
 import os
 import re
@@ -23,7 +24,7 @@ from ..measure import film
 from ..report import ARROWS, PLAYER_3D, plots, words
 from ..results import Role
 from ..scene import PRODUCTS
-from . import pytest_process
+from . import pytest_process, saving
 
 TESTS = modules.ROOT / "tests" / "lessons"
 OPENINGS, ARRAY = modules.ROOT / "notebooks" / "openings.json", "array"                # made by `release`
@@ -130,6 +131,47 @@ def attempt(function, *arguments):
     except Exception as e:
         display(HTML(f'<p style="color:{COLOUR["not yet"]}">✗ {escape(type(e).__name__)}: {escape(str(e))}.</p>'))
     return None
+
+
+def fastest(lesson, trial):
+    """(your lesson, whether it is compiled): compiled if trial(your compiled lesson) runs.
+
+    If numba cannot compile one of your functions, a sentence says which, and all of the lesson runs plain.
+    """
+    if not modules.can_compile():
+        return modules.bind(lesson, folder()), False
+    from numba.core.errors import NumbaError
+    fast = modules.bind(lesson, folder(), compiled=True)
+    try:
+        trial(fast)
+    except NumbaError as e:
+        _say(_why_not_compiled(folder() / f"{lesson}.py", str(e)))
+        return modules.bind(lesson, folder()), False
+    return fast, True
+
+
+UNKNOWN_TO_NUMBA = {         # {kind of expression: what people call it}
+    ast.Lambda: "a lambda", ast.Dict: "a dict", ast.DictComp: "a dict", ast.Set: "a set", ast.SetComp: "a set",
+    ast.GeneratorExp: "a generator", ast.FunctionDef: "a function in a function", ast.JoinedStr: "text",
+    ast.Try: "try", ast.With: "with"}
+
+
+def _why_not_compiled(file, said):
+    """The sentence about a function that numba refuses: its name, and the line and what stands there, where known."""
+    place = rf'{re.escape(file.parent.name)}[\\/]{re.escape(file.name)}", line (\d+)'
+    lines = [int(n) for n in re.findall(place, said)]
+    text = file.read_text(encoding="utf-8", errors="replace")
+    holds = [f for f in ast.parse(text).body for n in lines[-1:]
+             if isinstance(f, ast.FunctionDef) and f.lineno <= n <= f.end_lineno]
+    if not holds:
+        return f"{file.name} cannot be compiled; it runs plain, which takes long."
+    unknown = [part for part in ast.walk(holds[0]) if type(part) in UNKNOWN_TO_NUMBA and part is not holds[0]]
+    unknown.sort(key=lambda part: (list(UNKNOWN_TO_NUMBA).index(type(part)), part.lineno))
+    at_line = [part for part in unknown if part.lineno == lines[-1]]
+    at = next(iter(at_line or unknown), None)
+    where = f"line {at.lineno}: {UNKNOWN_TO_NUMBA[type(at)]}" if at else f"line {lines[-1]}"
+    return (f"{holds[0].name} cannot be compiled ({where}); it runs plain, which takes long. "
+            "Numba takes loops over numbers and arrays.")
 
 
 def opening(notebook, make):
@@ -332,23 +374,30 @@ class _Answer:
 
 def play(frames, seconds, links=(), height=260):
     """A film: frames = {label: list of (n, 2) arrays [m]}; "truth" is drawn in grey, the others in colour."""
+    _display(_plane(frames, seconds, links), height)
+
+
+def save_film(frames, seconds, file, links=()):
+    """Write a film as a page (file ends with .html; any browser plays it) or as a picture that moves (.gif).
+
+    frames, seconds and links are those of `play`.  Raises BadInput for any other ending.
+    """
+    saving.save(_plane(frames, seconds, links), Path(file))
+    display(HTML(f"<p>Written: {escape(str(file))}</p>"))
+
+
+def _plane(frames, seconds, links):
+    """A film in the plane as data."""
     roles = [Role.TRUTH if label == "truth" else Role.OURS for label in frames]
     films = [{"label": label, "role": role.value, "colour": colour,
               "frames": [np.round(np.asarray(f, dtype=float), 5).tolist() for f in frames[label]]}
              for label, role, colour in zip(frames, roles, film.colours(roles))]
-    _display({"seconds": seconds, "links": [list(map(int, pair)) for pair in links], "films": films}, height)
+    return {"seconds": seconds, "links": [list(map(int, pair)) for pair in links], "films": films}
 
 
 def _display(picture, height=260):
     """Show a film in the plane."""
-    name = f"p{uuid.uuid4().hex}"
-    runs = picture["films"]
-    key = " &nbsp; ".join(f'<span style="color:{run["colour"]}">●</span> {escape(run["label"])}' for run in runs)
-    script = (Path(plots.__file__).parent / "player.js").read_text()
-    style = f"width:100%;max-width:46rem;height:{height}px;background:#f6f7f8"
-    display(HTML(f'<canvas data-picture="{name}" style="{style}"></canvas><div>{key}</div>'
-                 f'<script type="application/json" id="{name}">{json.dumps(picture)}</script>'
-                 f'<script>{script}</script>'))
+    display(HTML(saving.film_html(picture, height)))
 
 
 def show3d(bodies, runs, seconds, arrows=None, trail=None, ground=False, height=380):
@@ -360,7 +409,8 @@ def show3d(bodies, runs, seconds, arrows=None, trail=None, ground=False, height=
 def _display3d(picture, height=380):
     """Show a film in 3D."""
     name = f"s{uuid.uuid4().hex}"
-    key = [f'<span style="color:{run["colour"]}">■</span> {escape(run["label"])}' for run in picture["runs"]]
+    alone = picture["runs"] if len(picture["runs"]) == 1 else []     # the player's bar names several
+    key = [f'<span style="color:{run["colour"]}">■</span> {escape(run["label"])}' for run in alone]
     key += [f'<span style="color:{colour}">→</span> {escape(arrow)}'
             for arrow, colour in zip(picture["arrows"], ARROWS)]
     display(HTML(f'<div data-space="{name}" style="width:100%;max-width:46rem;height:{height}px"></div>'

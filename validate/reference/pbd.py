@@ -15,6 +15,8 @@ from scipy.sparse import block_diag, csr_matrix, identity, kron
 from scipy.sparse.linalg import spsolve
 from scipy.special import ellipj, ellipk
 
+from .schemes import ErrorLaw
+
 RTOL = 1e-12                 # of DOP853; the absolute tolerance is a tenth of it
 
 
@@ -235,3 +237,120 @@ def weave_rest(cloth, begin):
             if damping > 1e9:
                 return x
     return x
+
+
+# ---------------------------------------------------------------------- what a step does get wrong
+
+class Rope(NamedTuple):
+    """Points joined by rigid links, the first one fixed."""
+    x: np.ndarray            # (N + 1, 2) at rest [m]
+    l: float                 # each link [m]
+    g: float                 # [m/s²]; equal masses, which do not matter then
+
+
+GAMMA = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))                # Suzuki 1990
+
+
+def links_of(x):
+    return np.diff(x, axis=0)
+
+
+def along_links(x, z, right):
+    """The change of all points along the links of x for which (link s of z) · (change of link s) is right[s].
+
+    Σ_r (z_s · x_r) (BBᵀ)_sr λ_r = right_s,  with the rows of the fixed point left out of B; a dense solve.
+    """
+    d, n = links_of(x), len(x) - 1
+    weights = 2.0 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1)
+    weights[0, 0] = 1.0
+    pull = np.linalg.solve(links_of(z) @ d.T * weights, right)[:, None] * d
+    change = np.zeros_like(x)
+    change[1:] += pull
+    change[1:-1] -= pull[1:]
+    return change
+
+
+def excess(x, l):
+    """How much the square of each link's length lacks, halved [m²]."""
+    return 0.5 * (l * l - np.sum(links_of(x) ** 2, axis=1))
+
+
+def held(v, x):
+    """v without its part along the links of x."""
+    return v + along_links(x, x, -np.sum(links_of(x) * links_of(v), axis=1))
+
+
+def rattle(x, v, h, l, a, corrections):
+    """One step of RATTLE; rope_step takes one correction, RATTLE as many as change anything."""
+    half = v + 0.5 * h * a
+    for _ in range(corrections):
+        change = along_links(x, x + h * half, excess(x + h * half, l) / h)
+        half = half + change
+        if np.max(np.abs(change)) <= 1e-13 * np.max(np.abs(half)):
+            break
+    new = x + h * half
+    return new, held(half + 0.5 * h * a, new)
+
+
+def composed_rope(x, v, h, l, a):
+    for share in (GAMMA, GAMMA, 1.0 - 4.0 * GAMMA, GAMMA, GAMMA):
+        x, v = rattle(x, v, share * h, l, a, 1)
+    return x, v
+
+
+def onto_circle(x, v, h, l, a):
+    """What projection, PBD and XPBD do with a single link: the predicted point goes radially to its circle."""
+    goal = x + h * (v + h * a)
+    new = np.stack((x[0], x[0] + l * (goal[1] - x[0]) / np.linalg.norm(goal[1] - x[0])))
+    return new, (new - x) / h
+
+
+def chipmunk_rope(x, v, h, l, a):
+    """Points move, gravity acts, and converged PinJoints give each link the rate  (l − length)/h."""
+    x, v = x + h * v, v + h * a
+    d = links_of(x)
+    length = np.linalg.norm(d, axis=1)
+    rate = (l - length) / h
+    return x, v + along_links(x, x, length * rate - np.sum(d * links_of(v), axis=1))
+
+
+ROPE_STEPS = {
+    "RATTLE": (2, lambda *now: rattle(*now, 50)), "rope": (2, lambda *now: rattle(*now, 1)),
+    "rope, composed": (4, composed_rope), "pymunk": (1, chipmunk_rope), "projection": (1, onto_circle),
+    "PBD": (1, onto_circle), "XPBD": (1, onto_circle)}
+
+
+def rope_errors(T, rope, seen, truth, floor, labels, unfinished=()):
+    """Return the field `predicted_error` of a scene with one rope.
+
+    rope(p) → Rope;    seen(x (N + 1, 2)) → what is observed;    floor(p, dt) → round-off;    labels: of ROPE_STEPS;
+    unfinished: those whose sweeps stop before all links are right, known within a factor of two only
+    """
+    @cache
+    def error_law(label, p):
+        one, (order, step) = rope(p), ROPE_STEPS[label]
+        a = np.zeros_like(one.x)
+        a[1:, 1] = -one.g
+
+        def run(steps, nudge):
+            d = links_of(one.x)                          # each is turned a little, so that it keeps its length
+            angles = nudge / one.l * np.cos(np.arange(1.0, len(one.x)) ** 2)
+            turned = d + angles[:, None] * np.stack((-d[:, 1], d[:, 0]), axis=1)
+            x = np.concatenate((one.x[:1], one.x[0] + np.cumsum(turned, axis=0)))
+            v = np.zeros_like(x)
+            for _ in range(steps):
+                x, v = step(x, v, T / steps, one.l, a)
+            return seen(x)
+        return ErrorLaw(run, np.array(truth(p, T), dtype=float), order, T, {1: 800, 2: 800, 4: 400}[order])
+
+    def predicted_error(label, p, dt):
+        """The error, with its sign, of the same step with a dense matrix: at the same step where that is coarse, else
+        by its expansion in powers of dt.  pymunk moves the points first and then corrects each link within one step;
+        in a rope its sweeps do not finish, and the band is half of the error.
+        """
+        found = error_law(label, p).prediction(dt, floor(p, dt)) if label in labels else None
+        if found is None or label not in unfinished:
+            return found
+        return found._replace(band=found.band + 0.5 * np.linalg.norm(found.error) / error_law(label, p).size)
+
+    return predicted_error

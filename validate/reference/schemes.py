@@ -17,9 +17,10 @@ import numpy as np
 from ..scene import ROUND_OFF, Prediction
 
 MOST_ITERATIONS = 200        # of an implicit stage: h times the fastest rate must be well below 1
-CLOSE = 0.01                 # how near a run comes to the same table's error at the same step [-]
+CLOSE = 1e-5                 # how near a run comes to the same table's error at the same step [-]
+EXPANDED = 0.01              # and to its expansion, beside what that misses [-]
 SAFETY = 2.0                 # over what an expansion misses in its own check [-]
-UNSURE = 0.3                 # an expansion that misses its own check by more needs finer runs [-]
+UNSURE = 0.1                 # an expansion that misses its own check by more needs finer runs [-]
 MOST_DOUBLINGS = 3
 NUDGE = 1e-13                # of a start, relative to what is observed [-]
 LARGE = 1e-3                 # errors above this may belong to a run that multiplies roundings [-]
@@ -138,9 +139,9 @@ class ErrorLaw:
     *Source:* Hairer, Nørsett, Wanner 1993, II.8: the error of a one-step method has an expansion in powers of h.
     """
 
-    def __init__(self, run, law, powers, T, finest):
-        """run(steps, nudge) → what is observed at T; nudge [m] moves the start."""
-        self.run, self.law, self.T, self.known = run, law, T, {}
+    def __init__(self, run, law, powers, T, finest, doublings=MOST_DOUBLINGS):
+        """run(steps, nudge) → what is observed at T; nudge [m] moves the start; doublings: how often `finest` may."""
+        self.run, self.law, self.T, self.known, self.doublings = run, law, T, {}, doublings
         self.powers = np.array(powers if isinstance(powers, tuple) else (powers, powers + 1, powers + 2))
         self.size = np.linalg.norm(law) or 1.0
         self.finest = max(finest // 8, 1) * 8
@@ -173,7 +174,7 @@ class ErrorLaw:
 
     def settle(self, floor):
         """Take more steps until the expansion can be trusted."""
-        for left in reversed(range(MOST_DOUBLINGS + 1)):
+        for left in reversed(range(self.doublings + 1)):
             size = np.linalg.norm(self.error(self.finest))
             if size < PREDICTABLE * self.size and self.missed(self.finest) <= max(UNSURE * size, floor * self.size):
                 return True
@@ -192,14 +193,14 @@ class ErrorLaw:
         steps = round(self.T / dt)
         settled = steps <= self.finest or self.settle(floor)
         if steps <= self.finest:                                             # settle() may have raised it
-            error, more = self.error(steps), self.round_off(steps)
+            error, share, more = self.error(steps), CLOSE, self.round_off(steps)
         elif settled:
-            error = self.expanded(steps, self.finest)
+            error, share = self.expanded(steps, self.finest), EXPANDED
             more = SAFETY * self.missed(self.finest) / self.size * (self.finest / steps) ** self.powers[0]
         else:
             return None
         size = np.linalg.norm(error) / self.size
-        return Prediction(error, CLOSE * size + more + floor) if size + more < PREDICTABLE else None
+        return Prediction(error, share * size + more + floor) if size + more < PREDICTABLE else None
 
 
 class Model(NamedTuple):
@@ -250,3 +251,12 @@ def predict_by_tables(T, law, begin, seen, truth, floor, engines=None, departure
         return error_law(label, p).prediction(dt, floor(p, dt)) if label in engines or label in TABLEAUX else None
 
     return predicted_error
+
+
+def summed(velocity, T, dt, new):
+    """The way [m] that a run covers with the right velocity(t) (n,) → (n, …) at every step, but for all of the step.
+
+    It is the sum of the new velocities, or of the old ones: the rectangle rule.
+    """
+    n = np.arange(round(T / dt))
+    return dt * np.sum(velocity(dt * (n + 1.0 if new else n)), axis=0)

@@ -178,3 +178,38 @@ def cradle_motion(lifted, angle, n, pitch, L, R, g, inertia, T):
             y[n + k:n + k + 2] -= 2.0 * lever * (lever @ y[n + k:n + k + 2]) / (lever @ lever)
             impacts.append((now, k, before, y[n:].copy()))
     return y[:n], y[n:], impacts
+
+
+# ---------------------------------------------------------------------------------------------- boxes at rest
+
+def least_friction(a, b, n, p, x, weights):
+    """Return the least friction μ with which bodies at x (k, 2) with these weights (k,) [N] can rest; inf if none does.
+
+    Contact c pushes body a[c] at p[c] with F_n n + F_t t, 0 ≤ F_n and |F_t| ≤ μ F_n, and b[c] with the contrary;
+    numbers beyond k are ground.  Bisection on μ; for each, a linear program says whether such forces can balance all
+    loads and torques.
+    """
+    from scipy.optimize import linprog
+    k, m = len(x), len(a)
+    balance, cone = np.zeros((3 * k, 2 * m)), np.zeros((2 * m, 2 * m))
+    for c in range(m):
+        for column, d in ((2 * c, n[c]), (2 * c + 1, np.array([-n[c, 1], n[c, 0]]))):
+            for body, sign in ((a[c], 1.0), (b[c], -1.0)):
+                if body < k:
+                    r = p[c] - x[body]
+                    balance[3 * body:3 * body + 3, column] += sign * np.array([*d, r[0] * d[1] - r[1] * d[0]])
+    load = np.stack((0.0 * weights, weights, 0.0 * weights), axis=1).ravel()
+
+    def rests(mu):
+        for c in range(m):
+            cone[2 * c, 2 * c:2 * c + 2], cone[2 * c + 1, 2 * c:2 * c + 2] = (-mu, 1.0), (-mu, -1.0)
+        found = linprog(np.zeros(2 * m), A_ub=cone, b_ub=np.zeros(2 * m), A_eq=balance, b_eq=load,
+                        bounds=[(0.0, None), (None, None)] * m, method="highs")
+        return found.status == 0
+    low, high = 0.0, 10.0
+    if not rests(high):
+        return np.inf
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if rests(middle) else (middle, high)
+    return high

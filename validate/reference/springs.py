@@ -119,6 +119,12 @@ def motion(net, T, rtol=RTOL):
     return lambda t: np.split(run.y[:, -1] if t == T else run.sol(t), 2)[0].reshape(shape)
 
 
+@cache
+def net_motion(p, T):
+    """motion() of a SquareNet."""
+    return motion(square_net(p), T)
+
+
 def rest_positions(net):
     """Return (n, d), the rest state of the net: the minimum of its energy by BFGS, then by Newton's method.
 

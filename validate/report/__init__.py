@@ -38,7 +38,7 @@ def copied(results):
 
 def files(results, stability):
     """The names of all files of a report."""
-    always = "index.html", "report.json", "coverage.html"
+    always = "index.html", "report.json", "coverage.html", "left_out.html"
     return {*always, *(["stability.html"] if stability else []), *copied(results), *tables.names(results, stability),
             *(name for r in results for name in (f"{r['scene']}.html", f"{r['scene']}-film.js")),
             *(name for _, name, _, _ in pictures(results, stability))}
@@ -86,6 +86,7 @@ def texts(results, stability, about):
     coverage = about.get("coverage") or {}
     found = {f"{r['scene']}.html": page(
         "scene.html", r=r, headline=words.headline(r), findings=words.leading(r),
+        seen_in_times=words.seen_in_times(r), seen_in_steps=words.seen_in_steps(r),
         races=[words.race(a, r) for a in r["times"]["advantage"]],
         warning=words.busy_warning([r], about.get("cores")), notebook=about.get("notebooks", {}).get(r["lesson"]),
         exercises=[(number, one["function"]) for number, one in coverage.items() if r["scene"] in one["places"]],
@@ -94,6 +95,7 @@ def texts(results, stability, about):
         found["coverage.html"] = page(
             "coverage.html", coverage=coverage, scenes={r["scene"]: r["title"] for r in results},
             cases={f"{c['lesson']}/{c['slug']}": c["title"] for c in stability})
+    found["left_out.html"] = page("left_out.html", rows=words.left_out(results))
     if stability:
         found["stability.html"] = page("stability.html", cases=stability)
     found["index.html"] = page("front.html", rows=[words.row(r) for r in results], lessons=lessons,

@@ -67,6 +67,8 @@ def departures(results):
     lines.sort(key=lambda line: (line["kind"] != "departs", -len(line["places"]), -(line["high"] or 0.0)))
     compared = curves_of(results, "engines")
     return {"lines": lines, "undecided": undecided, "runs": len(compared),
+            "depart": sum(line["cases"] for line in lines),
+            "open": sum(Verdict(c["verdict"]) is Verdict.UNDECIDED for _, _, c in compared),
             "agree": sum(Verdict(c["verdict"]) is Verdict.AGREES for _, _, c in compared),
             "scenes": len({scene for line in lines for scene in line["places"]})}
 

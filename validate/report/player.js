@@ -2,7 +2,7 @@
 // The player in 3D uses the same bar of controls.
 (() => {
 "use strict";
-if (globalThis.filmPlayer) return;
+if (globalThis.filmPlayer) { globalThis.filmPlayer.start(); return; }            // a notebook has this script once per film
 const reduced = matchMedia("(prefers-reduced-motion: reduce)"), dark = matchMedia("(prefers-color-scheme: dark)");
 const SECONDS = { shortest: 4, longest: 14 };                     // of one showing
 const MAGNIFIED = [1, 10, 100, 1000, 10000];
@@ -12,7 +12,7 @@ style.textContent = `
 .film-bar { display: flex; flex-wrap: wrap; gap: .3rem .8rem; align-items: center; font: 13px/1.5 system-ui, sans-serif; margin: .35rem 0; max-width: 46rem; }
 .film-bar input[type=range] { flex: 1 1 8rem; min-width: 6rem; } .film-bar output { font-variant-numeric: tabular-nums; min-width: 6.2rem; }
 .film-bar button { min-width: 2.2rem; cursor: pointer; } .film-bar label { display: inline-flex; gap: .3rem; align-items: center; }
-.film-bar i { display: inline-block; width: .8rem; height: .8rem; border-radius: 50%; }`;
+.film-bar small { flex-basis: 100%; opacity: .8; } .film-bar i { display: inline-block; width: .8rem; height: .8rem; border-radius: 50%; }`;
 document.head.append(style);
 
 // A colour of the page's scheme: dark.css has lighter ones for a dark page.
@@ -27,7 +27,7 @@ const add = (parent, tag, more = {}) => {
 };
 
 // The bar below a film. runs: [{label, colour, shown}]; draw(frame, magnified) draws. The bar stops while nobody can see the film.
-function controls(place, { last, seconds, runs, draw, reset }) {
+function controls(place, { last, seconds, runs, draw, reset, hint }) {
   const bar = document.createElement("div"), showing = Math.min(SECONDS.longest, Math.max(SECONDS.shortest, seconds));
   bar.className = "film-bar";
   bar.setAttribute("role", "group");
@@ -93,6 +93,7 @@ function controls(place, { last, seconds, runs, draw, reset }) {
     for (const value of MAGNIFIED) add(choice, "option", { value, textContent: value === 1 ? "as it is" : `× ${value.toLocaleString("en")}` });
     choice.onchange = () => { state.magnified = +choice.value; show(); };
   }
+  if (hint) add(bar, "small", { textContent: hint });
   place.after(bar);
   dark.addEventListener("change", show);
   show();
@@ -268,12 +269,11 @@ function small(canvas, given) {
   return () => { on = false; };
 }
 
-globalThis.filmPlayer = { controls, small, shade, page, floats, nice, metres, reduced };
 const start = () => document.querySelectorAll("canvas[data-picture]:not([data-playing]), canvas.big[data-film]:not([data-playing])").forEach(canvas => {
   canvas.dataset.playing = "";
   play(canvas);
 });
-globalThis.filmPlayer.start = start;
+globalThis.filmPlayer = { controls, small, shade, page, floats, nice, metres, start };
 // Until DOMContentLoaded the files of the films may not have come yet; a notebook is complete.
 document.readyState === "complete" ? start() : addEventListener("DOMContentLoaded", start);
 })();

@@ -5,6 +5,7 @@ import io
 from urllib.parse import quote
 
 from . import words
+from .answers import departures, faster
 
 RUNS = ("case", "method or engine", "role", "steps", "dt [s]", "relative error [-]", "limit [-]",
         "error from its own law [-]", "order", "expected order", "verdict", "failure")
@@ -33,25 +34,28 @@ def address(header, rows):
 def names(results, stability):
     """The files that `texts` gives."""
     drawn = [case for case in stability if case["picture"]]
-    return {"scenes.csv", "races.csv", "departures.csv", *(f"{r['scene']}-runs.csv" for r in results),
+    front = {"scenes.csv": True, "races.csv": faster(results)["races"], "departures.csv": departures(results)["lines"]}
+    return {*(name for name, rows in front.items() if rows), *(f"{r['scene']}-runs.csv" for r in results),
             *(f"{r['scene']}-times.csv" for r in results if r["refinement"]), *(["stability.csv"] if stability else []),
             *(f"stability-{case['lesson']}-{case['slug']}.csv" for case in drawn)}
 
 
 def texts(results, stability):
-    """{file: CSV} of all plots and of the long tables."""
-    from .answers import departures, faster
+    """{file: CSV} of all plots and of the long tables; none for a table that is empty."""
     rows = [(r, words.row(r)) for r in results]
+    races, lines = faster(results)["races"], departures(results)["lines"]
     found = {
         "scenes.csv": text(SCENES, [(r["scene"], r["lesson"], side, verdict, count) for r, row in rows
                                     for side, found in (("ours", row["ours"]), *row["engines"].items())
                                     for verdict, _, count in found]),
-        "races.csv": text(RACES, [(a["scene"], a["lesson"], a["engine"], a["error"], a["seconds"], a["method"],
-                                   a["ours"], a["ratio"], *(a["range"] or (None, None)), a["outcome"])
-                                  for a in faster(results)["races"]]),
-        "departures.csv": text(DEPARTURES, [(d["engine"], d["kind"], d["low"], d["high"], d["reason"],
-                                             " ".join(d["places"])) for d in departures(results)["lines"]]),
     }
+    if races:
+        found["races.csv"] = text(RACES, [
+            (a["scene"], a["lesson"], a["engine"], a["error"], a["seconds"], a["method"], a["ours"], a["ratio"],
+             *(a["range"] or (None, None)), a["outcome"]) for a in races])
+    if lines:
+        found["departures.csv"] = text(DEPARTURES, [
+            (d["engine"], d["kind"], d["low"], d["high"], d["reason"], " ".join(d["places"])) for d in lines])
     for r in results:
         found[f"{r['scene']}-runs.csv"] = text(RUNS, runs(r))
         if r["refinement"]:

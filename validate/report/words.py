@@ -64,7 +64,7 @@ def seconds(t):
     if t is None:
         return "–"
     for unit, size in (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)):
-        if t >= size:
+        if float(f"{t:.2g}") >= size:
             return f"{rounded(t / size)} {unit}"
     return f"{rounded(t / 1e-9)} ns"
 
@@ -88,7 +88,10 @@ def factor(x):
 
 
 def ratio(race):
-    """A ratio of times with its range: one digit where the range is wide, two where it is narrow."""
+    """A ratio of times with its range: one digit where the range is wide, two where it is narrow; or why there is none.
+    """
+    if not race["ratio"]:
+        return race["why"]
     low, high = race["range"]
     digits = 2 if high < 1.5 * low else 1
     return f"{rounded(race['ratio'], digits)}× ({rounded(low)} to {rounded(high)})"
@@ -158,10 +161,16 @@ def races(result):
 
 
 def race(advantage, result):
-    """A race with the range of its ratio and its outcome: faster, a tie, slower, or why it is open."""
+    """A race with the range of its ratio and its outcome: faster, a tie, slower, or open; and why it has no ratio.
+
+    To have no run that is as accurate as the engine's is a loss; to have no time of one leaves the race open.
+    """
     a, rows = advantage, result["times"]["rows"]
     if not a["ratio"]:
-        return {**a, "range": None, "outcome": "open", "why": why_open(a, result)}
+        reach = accurate_enough(a, result)
+        why = f"{reach[0]} reaches it, in a run that is too long to be timed here" if reach else ""
+        return {**a, "range": None, "outcome": "open" if reach else "slower",
+                "why": why or "none of our runs is that accurate"}
     theirs = next(r for r in rows if r["label"] == a["engine"] and r["error"] == a["error"] and r["speed"] == "engine")
     ours = [r for r in rows if (r["label"], r["speed"]) == (a["method"], a["speed"])]
     # our time to that error was interpolated between runs: its spread is that of the run beside it
@@ -173,14 +182,11 @@ def race(advantage, result):
     return {**a, "range": (low, high), "outcome": outcome, "why": ""}
 
 
-def why_open(advantage, result):
-    """Why none of our timed runs reaches an engine's error."""
+def accurate_enough(advantage, result):
+    """Our methods with a run, timed or not, whose error is not larger than the engine's."""
     ours = next(iter(result["cases"].values()))["ours"]
-    reach = [c["label"] for c in ours if any(r["error"] is not None and r["error"] <= advantage["error"]
-                                             for r in c["rows"])]
-    if reach:
-        return f"{reach[0]} reaches this error, in a run that takes too long to be timed here"
-    return "none of our runs is that accurate"
+    return [c["label"] for c in ours if any(r["error"] is not None and r["error"] <= advantage["error"]
+                                            for r in c["rows"])]
 
 
 def busy(results):
@@ -224,11 +230,38 @@ def row(result):
     }
 
 
+def left_out(results):
+    """Scenes of the lessons before the simulator, and what the whole loop costs there: [{scene, title, lesson, …}]."""
+    return [{"scene": r["scene"], "title": r["title"], "lesson": r["lesson"], "uses": r["uses"],
+             **(r["times"].get("left_out") or {"ratio": None, "note": "not measured"})}
+            for r in results if r["lesson"] not in ("simulator", "kinematics")]
+
+
 def best_order(curves):
     """The curve of ours that agrees and shows the highest order."""
     agreeing = [c for c in curves if Verdict(c["verdict"]) is Verdict.AGREES]
     known = [c for c in agreeing if c["order"] is not None or c["expected"] == EXACT]
     return max(known, key=lambda c: (c["expected"] == EXACT, c["order"] or 0.0), default=None)
+
+
+def seen_in_times(result):
+    """One sentence: what the plot of errors against run times shows."""
+    decided = [one for one in races(result).values() if one["ratio"]]
+    if not decided:
+        return ""
+    one = decided[-1]
+    return (f"At an error of {percent(one['error'])}, which {one['engine'].replace(', ', ' with ')} reaches in "
+            f"{seconds(one['seconds'])}, our “{one['method']}” needs {seconds(one['ours'])}.")
+
+
+def seen_in_steps(result):
+    """One sentence: what the plot of errors against steps shows."""
+    best = best_order(next(iter(result["cases"].values()))["ours"])
+    if best is None:
+        return ""
+    if best["expected"] == EXACT:
+        return f"“{best['label']}” is exact up to round-off at every step."
+    return f"“{best['label']}” falls fastest, with order {best['order']:.2f}."
 
 
 # ---------------------------------------------------------------------------------------------- texts of scenes
@@ -239,7 +272,8 @@ def summary_line(story):
 
 
 TERM = re.compile(r"(?P<term>\S(?:.{0,20}[^\s.,;:=])?)  +(?P<text>[^\s=].*)")
-SUBSCRIPT = re.compile(r"\b([A-Za-zα-ω]{1,5})_([a-zα-ω]{1,5})\b")
+SHAPE = re.compile(r" ?\((?:[nNm](?:, [\dd])?,?|\d,|3, 3)\)")                  # of an array, such as (n, 3)
+SUBSCRIPT = re.compile(r"\b([A-Za-zα-ω]{1,4})_([A-Za-zα-ω]{1,4})\b")
 
 
 def flowing(text):
@@ -301,8 +335,8 @@ def indented(line):
 
 
 def plain_words(text):
-    """A sentence of a docstring for a reader: no imperative to a programmer, no doubled spaces."""
-    text = re.sub(r"\s+", " ", text).strip().replace("`", "")
+    """A sentence of a docstring for a reader: no imperative to a programmer, no shapes of arrays."""
+    text = SHAPE.sub("", re.sub(r"\s+", " ", text).strip().replace("`", ""))
     return re.sub(r"^(Return|Give|Compute) (the )?(?=\S)", "", text)
 
 
@@ -325,7 +359,7 @@ def headline(result):
     if count[Verdict.NOT_ATTEMPTED]:
         return f"{count[Verdict.NOT_ATTEMPTED]} of {len(ours)} comparisons of our methods are not attempted yet."
     said = "All comparisons of our methods with the truth come out as theory says" if ours else ""
-    predicted = {named(c): None for c in engines if Verdict(c["verdict"]) is Verdict.FOLLOWS_OWN_LAW}
+    predicted = {named(c): None for c in ours + engines if Verdict(c["verdict"]) is Verdict.FOLLOWS_OWN_LAW}
     if predicted:
         rest = f"{', '.join(predicted)} {'departs' if len(predicted) == 1 else 'depart'} as predicted"
         return f"{said}; {rest}." if said else f"{rest}."
@@ -353,7 +387,8 @@ def _departures(result):
     groups = {}
     for n, c in every:
         if Verdict(c["verdict"]) is Verdict.FOLLOWS_OWN_LAW:
-            groups.setdefault((named(c), c["departure_reason"]), []).append((n, c))
+            label = named(c) if "product" in c else named(c)[:1].upper() + named(c)[1:]
+            groups.setdefault((label, c["departure_reason"]), []).append((n, c))
     for (label, reason), found in groups.items():
         size = percents(*(of(c["departure"] for _, c in found) for of in (min, max)))
         several = f" in {len(found)} cases" if len(found) > 1 else ""
@@ -403,11 +438,16 @@ def _engines(case):
 
 
 def _times(result):
+    """The races; to be as wrong as another law is none."""
+    first = next(iter(result["cases"].values()))
+    own_laws = {c["label"] for c in first["engines"] if c["departure_reason"]}
     for a in result["times"]["advantage"]:
+        if a["engine"] in own_laws:
+            continue
         one = race(a, result)
         engine = named({"label": a["engine"], "product": a["product"]})
         reached = f"{engine} reaches an error of {percent(a['error'])} in {seconds(a['seconds'])}."
-        if one["outcome"] == "open":
+        if not one["ratio"]:
             yield f"{reached} We have no time to set beside it: {one['why']}."
         else:
             ours = f"Our “{a['method']}”, {a['speed']}, reaches it in {seconds(a['ours'])}"
@@ -418,7 +458,10 @@ def _ablations(result):
     for row in result["times"]["ablations"]:
         if row["cost"] is not None:
             same = "the motion is the same" if row["same"] else "but the motion changes: look into it"
-            yield f"Putting in {row['what']} makes a step {rounded(row['cost'])} times as long; {same}."
+            if rounded(row["cost"]) == "1.0":
+                yield f"Putting in {row['what']} does not change the time of a step; {same}."
+            else:
+                yield f"Putting in {row['what']} makes a step {rounded(row['cost'])} times as long; {same}."
 
 
 def _parity(result):

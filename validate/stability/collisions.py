@@ -534,18 +534,9 @@ def overlapping(rng, n):
     return pairs
 
 
-@case("minimum-translation", "The way out of an overlap", compiled=False)
-def minimum_translation(lesson):
-    """Random boxes and polygons that overlap: the way out is the shortest one, and contacts lie on both bodies.
-
-    The reference is the hull of all differences.  A box moved by −gap n just touches: the separation is then zero.
-    Points of contact lie within both bodies, up to the depth.  Where a face is touched, the deepest is as deep as
-    the axis gives; between two edges p_a − p_b = gap n.  Random capsules are as far apart as their segments, by
-    non-negative least squares, less the radii.  All hold to round-off, except that boxes may leave EDGE_PREFERENCE to
-    a face.
-    """
-    rng, found = np.random.default_rng(67), []
-    pairs, worst = overlapping(rng, 100), {"depth": 0.0, "left": 0.0, "outside": -1.0, "deepest": 0.0}
+def ways_out(lesson, pairs):
+    """Return (depths found [m], true ones, the worst errors) of pairs of boxes that overlap."""
+    worst = {"depth": 0.0, "left": 0.0, "outside": -1.0, "deepest": 0.0}
     depths, true = [], []
     for a, b in pairs:
         gap, n, _ = lesson.box_separation(a, b)
@@ -560,8 +551,13 @@ def minimum_translation(lesson):
             continue
         worst["outside"] = max(worst["outside"], inside(a, contacts.p_a), inside(b, contacts.p_b))
         worst["deepest"] = max(worst["deepest"], abs(contacts.gap.min() - gap))
+    return np.array(depths), np.array(true), worst
+
+
+def boxes_leave_by_the_shortest_way(worst):
+    """Judge the worst errors of 100 pairs of boxes."""
     room = 2.0 * worked.EDGE_PREFERENCE
-    found += [
+    return [
         finding(
             claim="The least overlap of 15 axes is the shortest way out.",
             quantity="greatest error of the depth of 100 pairs of boxes [m]",
@@ -599,19 +595,27 @@ def minimum_translation(lesson):
                          f"{worst['deepest']:.0e} m."),
         ),
     ]
+
+
+def capsules_are_as_far_apart_as_their_segments(lesson, rng):
+    """Compare 100 pairs of capsules with the nearest points of their segments."""
     errors = []
     for _ in range(100):
         x = rng.uniform(-1.0, 1.0, (4, 3))
         p, q = hull_nearest(x[:2], x[2:])
         errors.append(abs(lesson.capsule_capsule(x[0], x[1], 0.1, x[2], x[3], 0.2).gap - (np.linalg.norm(p - q) - 0.3)))
-    found.append(finding(
+    return [finding(
         claim="Two capsules are as far apart as their segments, less the radii.",
         quantity="greatest error of the gap of 100 pairs of capsules [m]",
         predicted=0.0,
         measured=max(errors),
         tolerance=ROUND_OFF,
         observation=f"The gap of 100 pairs of capsules is right to {max(errors):.0e} m.",
-    ))
+    )]
+
+
+def polygons_are_as_deep_as_their_differences(lesson, rng):
+    """Compare 100 pairs of polygons with the hull of their differences."""
     flat = []
     for _ in range(100):
         a, b = (
@@ -621,7 +625,7 @@ def minimum_translation(lesson):
         contacts, way = lesson.polygon_contacts(a, b), depth_of(a, b)[0]
         if way < 0.0 and len(contacts.gap):
             flat.append(abs(contacts.gap.min() - way))
-    found.append(finding(
+    return [finding(
         claim="The deepest contact of overlapping polygons is as deep as the hull of their differences gives.",
         quantity="greatest error of the deepest contact of 100 pairs of polygons [m]",
         predicted=0.0,
@@ -629,15 +633,32 @@ def minimum_translation(lesson):
         tolerance=ROUND_OFF,
         observation=(f"The deepest contact of {len(flat)} pairs of polygons is right to "
                      f"{max(flat, default=np.inf):.0e} m."),
-    ))
+    )]
+
+
+@case("minimum-translation", "The way out of an overlap", compiled=False)
+def minimum_translation(lesson):
+    """Random boxes and polygons that overlap: the way out is the shortest one, and contacts lie on both bodies.
+
+    The reference is the hull of all differences.  A box moved by −gap n just touches: the separation is then zero.
+    Points of contact lie within both bodies, up to the depth.  Where a face is touched, the deepest is as deep as
+    the axis gives; between two edges p_a − p_b = gap n.  Random capsules are as far apart as their segments, by
+    non-negative least squares, less the radii.  All hold to round-off, except that boxes may leave EDGE_PREFERENCE to
+    a face.
+    """
+    rng = np.random.default_rng(67)
+    depths, true, worst = ways_out(lesson, overlapping(rng, 100))
+    found = boxes_leave_by_the_shortest_way(worst)
+    found += capsules_are_as_far_apart_as_their_segments(lesson, rng)
+    found += polygons_are_as_deep_as_their_differences(lesson, rng)
     order = np.argsort(true)
     return found, Picture(
         "The way out of 100 pairs of boxes",
         "shortest way out, by the hull of differences [m]",
         "depth found [m]",
         [
-            series("equal", np.array(true)[order], np.array(true)[order], LINE),
-            series("separating axes, measured", np.array(true)[order], np.array(depths)[order], DOTS),
+            series("equal", true[order], true[order], LINE),
+            series("separating axes, measured", true[order], depths[order], DOTS),
         ],
         "Fifteen axes are enough: no other direction is a shorter way out of two boxes.",
     )
@@ -679,6 +700,11 @@ def cloth_swept_steered(lesson):
         edges = corners[:2], corners[1:], corners[[2, 0]]
         truth = 0.0 if surrounds(corners) else min(least_on_edge(*edge) for edge in edges)
         worst["gap"] = max(worst["gap"], abs(lesson.triangle_cylinder_gap(a, b, c, r, R) - (truth - R - r)))
+        beside = a + np.array([1.0, 0.0, 0.0])                   # an edge along the axis is a point in this view
+        y, along = a[1:], (b - a)[1:]
+        truth = np.linalg.norm(y + np.clip(-(y @ along) / (along @ along), 0.0, 1.0) * along)
+        got = lesson.triangle_cylinder_gap(*rng.permutation((a, beside, b)), r, R)
+        worst["gap"] = max(worst["gap"], abs(got - (truth - R - r)))
 
         low, move = rng.normal(size=3), rng.normal(size=3)
         high = low + rng.uniform(0.1, 1.0, 3)
@@ -734,7 +760,8 @@ def nearest_features(lesson):
     The two parts of a cut polygon have its area together, and a line through two corners cuts off what is on one side.
     """
     rng = np.random.default_rng(68)
-    worst, seen = dict.fromkeys(("triangle", "box", "inside", "cut", "corners", "flock", "align"), 0.0), set()
+    worst, seen = dict.fromkeys(("triangle", "box", "inside", "cut", "corners", "flight", "flock", "align"),
+                                0.0), set()
     for _ in range(300):
         corners, p = rng.normal(size=(3, 3)), 1.5 * rng.normal(size=3)
         truth = nearest_of_hull(p, corners)
@@ -761,6 +788,11 @@ def nearest_features(lesson):
         lost = abs(sum(area(part) for part in parts if len(part)) - area(polygon))
         beyond = np.max(parts[0] @ n - d, initial=0.0)
         worst["cut"] = max(worst["cut"], lost, beyond)
+        x, v, dt = rng.normal((0.0, 0.0, 9.0)), rng.normal(size=3), rng.uniform(0.1, 1.0)
+        target = lesson.Target(0.1, 0.1, lesson.make_plane((0.0, 0.0, 1.0, 0.0)))
+        for step in (lesson.discrete_step, lesson.continuous_step):
+            got = step(lesson.ball_plane_gap, lesson.ball_plane_time, 0.0, x, v, dt, target)
+            worst["flight"] = max(worst["flight"], np.max(np.abs(np.array(got) - (x + dt * v, v))))
     square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     for n in (np.array([1.0, -1.0]), np.array([-1.0, 1.0])):                            # through (0, 0) and (1, 1)
         worst["corners"] = max(worst["corners"], abs(len(lesson.clip(square, n, 0.0)) - 3))
@@ -791,6 +823,7 @@ def nearest_features(lesson):
         ("inside", "Inside a box a ball leaves through the nearest side.", "way out of a box [m, -]"),
         ("cut", "A line cuts a polygon in two parts, which have its area together.", "area of both parts [m²]"),
         ("corners", "A corner on the line belongs to both parts.", "number of corners [-]"),
+        ("flight", "A ball that meets nothing flies on.", "state after a step [m, m/s]"),
         ("flock", "A flock at rest is driven by the derivative of its energy.", "acceleration, relative [-]"),
         ("align", "Its members adapt to the velocities of those in reach.", "alignment [m/s²]"))
     return [agreement(claim, f"largest error of the {quantity}", worst[name], 1e-9)

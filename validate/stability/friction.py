@@ -133,17 +133,14 @@ def stick_threshold(lesson):
     )
 
 
-@case("stick-slip-threshold", "Stick and slip under a periodic force", compiled=False)
-def stick_slip_threshold(lesson):
-    """A block under F cos t breaks away if F > μ m g; with F = 8 N, m = 1 kg and μ = 0.8 it slips twice in 4 s.
+def driven_block(p):
+    """Return the Block of the scene stick_slip."""
+    return make_block((0.0, 1.0), p.mu, p.mu, (0.0, -p.g), (p.force / p.m, 0.0), p.omega)
 
-    Just above the edge, at F = μg + ε, it slips by 1.5 ε²/F, which shows if ε > √(WAY F/1.5).  The other numbers
-    are those of the scene stick_slip, in closed form.  At the end of a slip of s = 0.59 s an event step of dt is
-    wrong by dt² Aω² s/24 in speed, while the speed falls by at least 0.3 m/s²; per slip x is wrong by dt² (Aω
-    s/6 + Aω² s²/24). A sliding step is wrong by the limit of order 1 of that scene.
-    """
-    p, hold, found, still = DrivenBlock(), 0.8 * G, [], np.zeros(2)
-    driven = make_block((0.0, 1.0), p.mu, p.mu, (0.0, -p.g), (p.force / p.m, 0.0), p.omega)
+
+def least_force_that_moves(lesson):
+    """Find the least amplitude of a periodic force that moves a block."""
+    hold, found, still = 0.8 * G, [], np.zeros(2)
     for step in ("sliding_step", "event_step"):
         def moves(force, step=step):
             block, take = make_block((0.0, 1.0), 0.8, 0.8, (0.0, -G), (force, 0.0), 1.0), getattr(lesson, step)
@@ -159,10 +156,16 @@ def stick_slip_threshold(lesson):
             tolerance=EDGE * hold + np.sqrt(1e-12 * hold / 1.5),
             observation=f"With the {LABEL[step]} step the block moves from {edge:.5f} N on; μ m g is {hold:.5f} N.",
         ))
+    return found
+
+
+def slips_in_time(lesson, p):
+    """Find the times of both slips, and the end of the run, at two steps."""
+    found = []
     times = np.array([slip[:2] for slip in slips(p)])
     for dt in (0.05, 0.0125):
         steps = round(T / dt)
-        x, v, block = np.zeros(2), np.zeros(2), driven
+        x, v, block = np.zeros(2), np.zeros(2), driven_block(p)
         ours = lesson.slip_times(lesson.driven_acceleration, 0.0, x, v, dt, steps, block)
         late = dt * dt * 8.0 * 0.59 / 24.0 / 0.3
         for k, name in enumerate(("first", "second")):
@@ -195,10 +198,24 @@ def stick_slip_threshold(lesson):
             observation=(f"Steps of {MILLIMETRES * dt:g} ms end at {MILLIMETRES * end:.5f} mm; the reference solution "
                          f"is {MILLIMETRES * goal:.5f} mm."),
         ))
+    return found
+
+
+@case("stick-slip-threshold", "Stick and slip under a periodic force", compiled=False)
+def stick_slip_threshold(lesson):
+    """A block under F cos t breaks away if F > μ m g; with F = 8 N, m = 1 kg and μ = 0.8 it slips twice in 4 s.
+
+    Just above the edge, at F = μg + ε, it slips by 1.5 ε²/F, which shows if ε > √(WAY F/1.5).  The other numbers
+    are those of the scene stick_slip, in closed form.  At the end of a slip of s = 0.59 s an event step of dt is
+    wrong by dt² Aω² s/24 in speed, while the speed falls by at least 0.3 m/s²; per slip x is wrong by dt² (Aω
+    s/6 + Aω² s²/24). A sliding step is wrong by the limit of order 1 of that scene.
+    """
+    p = DrivenBlock()
+    found = least_force_that_moves(lesson) + slips_in_time(lesson, p)
     fine, dt = np.linspace(0.0, T, 401), 0.05
     drawn = [series("truth", fine, [MILLIMETRES * slip_position(p, t)[0] for t in fine], LINE)]
     for step in ("sliding_step", "event_step"):
-        x, v, block = np.zeros(2), np.zeros(2), driven
+        x, v, block = np.zeros(2), np.zeros(2), driven_block(p)
         ts, xs, _ = integrators.trajectory(getattr(lesson, step), lesson.driven_acceleration, 0.0, x, v, dt, 80, block)
         drawn.append(series(f"{LABEL[step]}, dt = {dt} s", ts, MILLIMETRES * xs[:, 0], DOTS))
     return found, Picture(
@@ -431,13 +448,9 @@ def curved_wall_order(lesson):
     )
 
 
-@case("extreme-coefficients", "Extreme friction", compiled=False)
-def extreme_coefficients(lesson):
-    """Extremes: no friction, infinite friction, no load, a fast launch, and a negative μ that must be refused by name.
-
-    A block with μ = ∞ holds at 89.9° and stops from 10⁶ m/s within one step.  With μ = 0 it slides down with g sin θ.
-    """
-    found, still = [], np.zeros(2)
+def negative_friction_is_refused(lesson):
+    """Call every function that takes a μ with −0.3."""
+    still = np.zeros(2)
     F, n, v, minus = np.array([1.0, -2.0]), np.array([0.0, 1.0]), np.array([1.0, -1.0]), -0.3
     bad_block, bad_particle = slope(10.0, 0.3, 0.3)._replace(mu_s=minus, mu_k=minus), particle(10.0, minus)
     t_1 = np.array([1.0, 0.0])
@@ -463,14 +476,19 @@ def extreme_coefficients(lesson):
         ),
     }
     refused = sum(refuses(getattr(lesson, name), arguments, "-0.3") for name, arguments in asked.items())
-    found.append(finding(
+    return [finding(
         claim="A negative coefficient of friction is refused, and the message gives its value.",
         quantity="functions that name μ = −0.3 in their error [of 9]",
         predicted=len(asked),
         measured=refused,
         tolerance=0.0,
         observation=f"{refused} of {len(asked)} functions refuse μ = −0.3 with a message that contains it.",
-    ))
+    )]
+
+
+def slopes_without_and_with_infinite_friction(lesson):
+    """Release a block on slopes with μ = ∞ and with μ = 0."""
+    found = []
     for step in ("sliding_step", "event_step", "position_friction_step"):
         got = moved(lesson, step, 89.9, np.inf, np.inf)
         found.append(finding(
@@ -493,17 +511,33 @@ def extreme_coefficients(lesson):
             observation=(f"With μ = 0 the {LABEL[step]} step goes {got:.6f} m, as symplectic Euler does: g sin θ t (t "
                          "+ dt)/2."),
         ))
+    return found
+
+
+def infinite_friction_stops_at_once(lesson):
+    """Take one step of a block at 10⁶ m/s."""
+    still = np.zeros(2)
     fast = np.array([1e6, 0.0])
     _, v = lesson.sliding_step(lesson.driven_acceleration, 0.0, still, fast, 1e-3, slope(0.0, np.inf, np.inf))
-    found.append(finding(
+    return [finding(
         claim="Infinite friction stops a block within one step, and the result is finite.",
         quantity="speed one step after 10⁶ m/s, μ = ∞ [m/s]",
         predicted=0.0,
         measured=np.abs(v).max(),
         tolerance=0.0,
         observation=f"One step after 10⁶ m/s on μ = ∞ the speed is {np.abs(v).max():g} m/s.",
-    ))
-    exponents = np.linspace(-3.0, 6.0, 10)
+    )]
+
+
+@case("extreme-coefficients", "Extreme friction", compiled=False)
+def extreme_coefficients(lesson):
+    """Extremes: no friction, infinite friction, no load, a fast launch, and a negative μ that must be refused by name.
+
+    A block with μ = ∞ holds at 89.9° and stops from 10⁶ m/s within one step.  With μ = 0 it slides down with g sin θ.
+    """
+    found = negative_friction_is_refused(lesson) + slopes_without_and_with_infinite_friction(lesson)
+    found += infinite_friction_stops_at_once(lesson)
+    exponents, n = np.linspace(-3.0, 6.0, 10), np.array([0.0, 1.0])
     after = [
         np.linalg.norm(lesson.particle_contact_impulse(10.0**y * np.array([1.0, -1.0]), n, 1.0, 0.5, 0.4)) / 10.0**y
         for y in exponents
@@ -604,16 +638,16 @@ def laws_of_friction(lesson):
             J = lesson.particle_contact_impulse(slip - fall * n, n, m, e, mu)
             after = slip + nearest_in_disc(-slip, mu * (1.0 + e) * fall) + e * fall * n
             note("particle", slip - fall * n + J / m, after)
-            p = ParticleOnPlane(m, mu, e, np.zeros(3), np.zeros(3), n)
-            _, v = lesson.contact_step(lesson.falling_acceleration, lesson.particle_plane_gap, 0.0, 0.0 * n,
+            p = ParticleOnPlane(m, mu, e, np.zeros(3), centre, n)
+            _, v = lesson.contact_step(lesson.falling_acceleration, lesson.particle_plane_gap, 0.0, centre,
                                        slip - fall * n, dt, p)
             note("particle", v, after)
             depth, moved = dt * fall, dt * (slip - fall * n)
             shift = nearest_in_disc(-dt * slip, mu * depth)
             note("shift", lesson.friction_position_correction(moved, n, depth, mu), shift)
-            x, _ = lesson.position_friction_step(lesson.falling_acceleration, lesson.particle_plane_gap, 0.0, 0.0 * n,
+            x, _ = lesson.position_friction_step(lesson.falling_acceleration, lesson.particle_plane_gap, 0.0, centre,
                                                  slip - fall * n, dt, p)
-            note("shift", x, dt * slip + shift)
+            note("shift", x, centre + dt * slip + shift)
     # μ is up to 10⁴ where a particle hits slowly, which costs four digits
     claims = {
         "normal": ("A support pushes against a load, and does not hold what is pulled away.", "normal force [N]"),

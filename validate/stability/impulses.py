@@ -35,26 +35,22 @@ def against_the_first_slip(K, mu, side):
     return UP @ (K @ (UP + mu * side * ACROSS))
 
 
-@case("painleve-rod", "Painlevé's rod", compiled=False)
-def painleve_rod(lesson):
-    """A rod slides on its tip over a rough floor: friction against the slip drives the tip into the floor.
-
-    With d = n + μ t,  n · K d = 1 + 3c² − 3μ sc.  It is zero first at tan θ = 2, for μ = 4/3.  From there on a rule
-    that fixes friction against the first slip divides by zero, or pulls.  cone_impulse puts friction in the
-    direction of a sticking impulse.  All J that end the normal motion that way lie on a line from the frictionless
-    impulse to the sticking one.  Energy is convex along it, and neither of its ends gains any with e = 0.
-    """
-    found = []
+def edge_of_the_common_rule(lesson):
+    """Find the least friction for which friction against the first slip has no solution."""
     near = [rod(lesson, a) for a in (STEEPEST - 1.0, STEEPEST, STEEPEST + 1.0)]
     edge = bisect(lambda mu: min(against_the_first_slip(K, mu, 1.0) for K in near) <= 0.0, 0.1, 10.0)
-    found.append(finding(
+    return [finding(
         claim="Friction against the first slip has no solution for a leaning rod from μ = 4/3 on.",
         quantity="least friction without a solution, rod of slope 2 [-]",
         predicted=4.0 / 3.0,
         measured=edge,
         tolerance=2.0 * EDGE,
         observation=f"At tan θ = 2 the impulse of that rule has a zero denominator at μ = {edge:.5f}.",
-    ))
+    )]
+
+
+def impacts_of_all_rods(lesson):
+    """Let rods of every slope, friction and slip hit the floor, and judge the worst of these impacts."""
     finite = tried = 0
     gained = wrong = size = 0.0
     for mu in (1.34, 2.0, 10.0, np.inf):
@@ -67,7 +63,7 @@ def painleve_rod(lesson):
                 gained, wrong = max(gained, lesson.energy_change(u, K, J)), max(wrong, abs(UP @ (u + K @ J)))
                 ends = max(np.linalg.norm(np.linalg.solve(K, u)), 1.0 / K[1, 1])
                 size = max(size, np.linalg.norm(J) / ends)
-    found += [
+    return [
         finding(
             claim="Every impact of every rod ends with a finite impulse.",
             quantity=f"finite impulses [of {tried}]",
@@ -101,6 +97,18 @@ def painleve_rod(lesson):
             observation=f"The largest impulse is {size:.3f} of that bound.",
         ),
     ]
+
+
+@case("painleve-rod", "Painlevé's rod", compiled=False)
+def painleve_rod(lesson):
+    """A rod slides on its tip over a rough floor: friction against the slip drives the tip into the floor.
+
+    With d = n + μ t,  n · K d = 1 + 3c² − 3μ sc.  It is zero first at tan θ = 2, for μ = 4/3.  From there on a rule
+    that fixes friction against the first slip divides by zero, or pulls.  cone_impulse puts friction in the
+    direction of a sticking impulse.  All J that end the normal motion that way lie on a line from the frictionless
+    impulse to the sticking one.  Energy is convex along it, and neither of its ends gains any with e = 0.
+    """
+    found = edge_of_the_common_rule(lesson) + impacts_of_all_rods(lesson)
     fine = np.linspace(2.0, 88.0, 173)
     naive = np.array([1.0 / against_the_first_slip(rod(lesson, a), 2.0, 1.0) for a in fine])
     flat, steep = (fine < STEEPEST) & (0.0 < naive) & (naive < 4.0), (fine > STEEPEST) & (0.0 < naive) & (naive < 4.0)
@@ -121,20 +129,21 @@ def painleve_rod(lesson):
 
 # ---------------------------------------------------------------------------------------------- deep overlap
 
-@case("deep-overlap", "Deep overlap", compiled=False)
-def deep_overlap(lesson):
-    """Overlapping bodies are moved apart without gaining speed: the correction does the work m g d and no more.
+RADIUS, SHORT = 0.5, 0.01    # of the bodies that overlap [m]; a step [s]
+OMEGA, TINY = 1000.0, 1e-6   # of the penalty spring [1/s]; the step that resolves it [s]
 
-    A ball at rest at a depth d inside its floor is on the floor after one projecting step, with v = e g dt from the
-    fall of that step.  The penalty method stores ½ k d² in its spring instead, and ejects the ball with √(ω² d² − 2
-    g d).
-    """
-    found, radius, dt = [], 0.5, 0.01
-    depth = 0.25 * radius
-    p = lesson.BouncingBall(0.5, np.array([0.0, -G]), np.zeros(2), np.array([0.0, 1.0]), 1e6, 0.0)
+
+def ball_over_floor(lesson):
+    """Return a ball with e = 0.5 whose penalty spring has ω = 1000/s."""
+    return lesson.BouncingBall(0.5, np.array([0.0, -G]), np.zeros(2), np.array([0.0, 1.0]), 1e6, 0.0)
+
+
+def ball_is_placed_on_its_floor(lesson):
+    """Take one projecting step of a ball at rest inside its floor."""
+    depth = 0.25 * RADIUS
     x, v = lesson.position_projection_step(lesson.falling_acceleration, 0.0, np.array([0.0, -depth]), np.zeros(2),
-                                           dt, p)
-    found += [
+                                           SHORT, ball_over_floor(lesson))
+    return [
         finding(
             claim="A ball inside the floor is placed on it.",
             quantity="height after one step [m]",
@@ -146,7 +155,7 @@ def deep_overlap(lesson):
         finding(
             claim="The correction does the work m g times the depth, and no more.",
             quantity="energy gained [J/kg]",
-            predicted=G * depth + 0.5 * (0.5 * G * dt) ** 2,
+            predicted=G * depth + 0.5 * (0.5 * G * SHORT) ** 2,
             measured=G * (x[1] + depth) + 0.5 * v @ v,
             tolerance=ROUND_OFF,
             observation=(f"The correction has given it {G * (x[1] + depth) + 0.5 * v @ v:.5f} J/kg; g times the depth "
@@ -155,35 +164,35 @@ def deep_overlap(lesson):
         finding(
             claim="It gains no speed from the correction: its speed e g dt comes from the fall of that step.",
             quantity="speed after one step [m/s]",
-            predicted=0.5 * G * dt,
+            predicted=0.5 * G * SHORT,
             measured=np.hypot(*v),
             tolerance=ROUND_OFF,
             observation=f"It leaves with {np.hypot(*v):.4f} m/s, which is e g dt.",
         ),
     ]
-    speeds, depths, omega, tiny = [], np.linspace(0.05, 0.5, 6) * radius, 1000.0, 1e-6
+
+
+def speeds_of_ejection(lesson, depths):
+    """Return the speeds [m/s] with which the penalty method ejects a ball at rest from these depths [m]."""
+    p, speeds = ball_over_floor(lesson), []
     for d in depths:
         x, v, here = np.array([[0.0, -d]]), np.zeros((1, 2)), 0
         while x[0, 1] < 0.0 and here < 1000:
-            x, v = lesson.advance_balls(lesson.penalty_step, lesson.falling_acceleration, 0.0, x, v, tiny, 20, p)
+            x, v = lesson.advance_balls(lesson.penalty_step, lesson.falling_acceleration, 0.0, x, v, TINY, 20, p)
             here += 1
         speeds.append(v[0, 1])
-    law = np.sqrt(omega**2 * depths**2 - 2.0 * G * depths)
-    found.append(finding(
-        claim="The penalty method ejects the same ball, because its spring starts compressed.",
-        quantity=f"speed after ejection from a depth of {depths[2]:g} m at ω = 1000/s [m/s]",
-        predicted=law[2],
-        measured=speeds[2],
-        tolerance=law[2] * omega * tiny + G * 20.0 * tiny,
-        observation=f"From {depths[2]:g} m the penalty method ejects a ball at rest with {speeds[2]:.1f} m/s.",
-    ))
-    discs = lesson.Discs(np.full(5, radius), np.array([1.0, 0.5, 1.0, 2.0, 1.0]), 0.8)
-    row = np.stack((0.75 * 2.0 * radius * np.arange(5.0), np.zeros(5)), axis=1)
-    apart, still = lesson.advance_discs(lesson.position_projection_discs_step, row[None], np.zeros((1, 5, 2)), dt, 400,
-                                        discs)
+    return np.array(speeds)
+
+
+def overlapping_discs_come_apart(lesson):
+    """Let five discs in a row, each a quarter inside the next, be moved apart."""
+    discs = lesson.Discs(np.full(5, RADIUS), np.array([1.0, 0.5, 1.0, 2.0, 1.0]), 0.8)
+    row = np.stack((0.75 * 2.0 * RADIUS * np.arange(5.0), np.zeros(5)), axis=1)
+    apart, still = lesson.advance_discs(lesson.position_projection_discs_step, row[None], np.zeros((1, 5, 2)), SHORT,
+                                        400, discs)
     middle = [(1.0 / discs.inv_mass) @ places / np.sum(1.0 / discs.inv_mass) for places in (row, apart[0])]
-    overlap = max(0.0, (2.0 * radius - np.diff(apart[0, :, 0])).max())
-    found += [
+    overlap = max(0.0, (2.0 * RADIUS - np.diff(apart[0, :, 0])).max())
+    return [
         finding(
             claim="Five discs in a row, each a quarter inside the next, come apart.",
             quantity="largest overlap after 400 steps [m]",
@@ -209,18 +218,44 @@ def deep_overlap(lesson):
             observation=f"Their centre of mass has moved by {np.linalg.norm(middle[1] - middle[0]):.0e} m.",
         ),
     ]
+
+
+def discs_on_one_point_come_apart(lesson):
+    """Take one step of two discs without a normal between them."""
     same = np.zeros((1, 2, 2))
-    x, v = lesson.advance_discs(
-        lesson.position_projection_discs_step, same, same, dt, 1, lesson.Discs(np.full(2, radius), np.ones(2), 0.8)
+    x, _ = lesson.advance_discs(
+        lesson.position_projection_discs_step, same, same, SHORT, 1, lesson.Discs(np.full(2, RADIUS), np.ones(2), 0.8)
     )
-    found.append(finding(
+    return [finding(
         claim="Two discs on one point have no normal between them, and still come apart.",
         quantity="distance after one step [m]",
-        predicted=2.0 * radius,
+        predicted=2.0 * RADIUS,
         measured=np.linalg.norm(x[0, 0] - x[0, 1]),
         tolerance=ROUND_OFF,
         observation=f"Two discs on one point are {np.linalg.norm(x[0, 0] - x[0, 1]):g} m apart after one step.",
+    )]
+
+
+@case("deep-overlap", "Deep overlap", compiled=False)
+def deep_overlap(lesson):
+    """Overlapping bodies are moved apart without gaining speed: the correction does the work m g d and no more.
+
+    A ball at rest at a depth d inside its floor is on the floor after one projecting step, with v = e g dt from the
+    fall of that step.  The penalty method stores ½ k d² in its spring instead, and ejects the ball with √(ω² d² − 2
+    g d).
+    """
+    depths = np.linspace(0.05, 0.5, 6) * RADIUS
+    speeds, law = speeds_of_ejection(lesson, depths), np.sqrt(OMEGA**2 * depths**2 - 2.0 * G * depths)
+    found = ball_is_placed_on_its_floor(lesson)
+    found.append(finding(
+        claim="The penalty method ejects the same ball, because its spring starts compressed.",
+        quantity=f"speed after ejection from a depth of {depths[2]:g} m at ω = 1000/s [m/s]",
+        predicted=law[2],
+        measured=speeds[2],
+        tolerance=law[2] * OMEGA * TINY + G * 20.0 * TINY,
+        observation=f"From {depths[2]:g} m the penalty method ejects a ball at rest with {speeds[2]:.1f} m/s.",
     ))
+    found += overlapping_discs_come_apart(lesson) + discs_on_one_point_come_apart(lesson)
     return found, Picture(
         "A ball released inside its floor",
         "depth [m]",
@@ -228,7 +263,7 @@ def deep_overlap(lesson):
         [
             series("penalty, theory", depths, law, LINE),
             series("penalty, measured", depths, speeds, DOTS),
-            series("projecting: e g dt", depths, np.full(len(depths), 0.5 * G * dt), LINE),
+            series("projecting: e g dt", depths, np.full(len(depths), 0.5 * G * SHORT), LINE),
         ],
         "A spring that starts compressed ejects the ball; a projection stores no energy.",
     )
@@ -714,6 +749,7 @@ def several_points(lesson):
     parabola in that factor, and 1 − e² of the largest loss is lost.
     """
     rng, law, share = np.random.default_rng(79), 0.0, 0.0
+    answers = lesson.contact_matrix, lesson.cone_impulse, lesson.apply_impulse
     for _ in range(TRIED // 10):
         r = CORNERS + rng.uniform(-0.2, 0.2, (3, 3))
         n = np.array([unit_vector(rng, 3) for _ in r]) * 0.3 + [0.0, 0.0, 1.0]
@@ -736,7 +772,7 @@ def several_points(lesson):
             mu, before = rng.uniform(0.2, 2.0), 0.5 * (m * v @ v + omega @ I @ omega)
             lost = []
             for restitution in (0.0, e):
-                end, _ = lesson.most_dissipative_impact(body, r, n, restitution, mu)
+                end, _ = lesson.most_dissipative_impact(*answers, body, r, n, restitution, mu)
                 lost.append(before - 0.5 * (m * end.v @ end.v + end.omega @ I @ end.omega))
             share = max(share, abs(lost[1] / lost[0] - (1.0 - e * e)))
     return [agreement("Without friction the impulses solve the complementarity problem of all points together.",

@@ -542,7 +542,7 @@ def geometry_of_arms(lesson):
     A damped step between limits is that of the joints that are free to go; one at its limit is free to go inwards.
     """
     rng = np.random.default_rng(111)
-    worst = dict.fromkeys(("ellipse", "rotation", "limits", "rest", "base", "links"), 0.0)
+    worst = dict.fromkeys(("ellipse", "rotation", "limits", "rest", "search", "base", "links"), 0.0)
     for _ in range(TRIED):
         J = rng.normal(size=(2, 4))
         u, sigma, _ = np.linalg.svd(J)
@@ -576,6 +576,15 @@ def geometry_of_arms(lesson):
         truth = free.T @ (free @ (pull * (rest - theta)))
         worst["rest"] = max(worst["rest"], np.max(np.abs(got - truth)))
 
+        # a search counts its iterations, as this loop does
+        target, arm, count = end_of(theta + 0.3, lengths), lesson.make_arm_2d(lengths, 0.0, 0.1, -9.0, 9.0, 0.0, 0.0), 0
+        angles = theta
+        while np.linalg.norm(target - end_of(angles, lengths)) > 1e-6 and count < 50:
+            angles, count = lesson.damped_step(lesson.reach_2d, angles, target, arm), count + 1
+        found, error, iterations = lesson.solve_reach(lesson.damped_step, lesson.reach_2d, theta, target, 1e-6, 50, arm)
+        worst["search"] = max(worst["search"], abs(iterations - count), np.max(np.abs(found - angles)),
+                              abs(error - np.linalg.norm(target - end_of(angles, lengths))))
+
         x = np.concatenate((np.zeros((1, 3)), np.cumsum(rng.normal(size=(4, 3)), axis=0))) + rng.normal(size=3)
         swept = lesson.fabrik_sweep(x, rng.normal(size=3), lengths)
         worst["base"] = max(worst["base"], np.max(np.abs(swept[0] - x[0])))
@@ -586,6 +595,7 @@ def geometry_of_arms(lesson):
         ("rotation", "The error of an orientation is the shortest rotation vector, of q and of −q.", "rotation [rad]"),
         ("limits", "Between limits the joints that may go take a damped step.", "angles with limits [rad]"),
         ("rest", "A rest posture attracts the arm, within what leaves the end where it is.", "angles [rad]"),
+        ("search", "A search ends when it is near enough, and counts what it took.", "search [-, rad, m]"),
         ("base", "A sweep of FABRIK leaves the base where it was.", "place of the base [m]"),
         ("links", "A sweep of FABRIK leaves each link its own length.", "lengths of links [m]"))
     return [agreement(claim, f"largest error of the {quantity}",

@@ -407,14 +407,8 @@ def substeps_vs_iterations(lesson):
     )
 
 
-@case("extremes", "Extremes of constraints", compiled=False)
-def extremes(lesson):
-    """Extremes: impossible input is refused, and extreme but valid input gives the right limit.
-
-    With a compliance of 10¹² m/N the spring has no effect: the weight falls by ½g t(t + dt) in t.  At a mass ratio
-    of 10⁶ ten sweeps hardly hold the chain.  A projection can only shorten a link that is too long, so the chain
-    falls no faster than freely.
-    """
+def impossible_input(lesson):
+    """Ask for what no network can be."""
     x = straight(2)
     three = np.zeros((4, 3))
     flat = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.0]])
@@ -454,7 +448,7 @@ def extremes(lesson):
         lambda: lesson.compliant_multiplier(0.1, 0.0, 1.0, np.nan),
     )
     refused = sum(refuses(call) for call in asked)
-    found = [finding(
+    return [finding(
         claim="Impossible input is refused by name.",
         quantity=f"calls that end in BadInput [of {len(asked)}]",
         predicted=len(asked),
@@ -462,42 +456,68 @@ def extremes(lesson):
         tolerance=0.0,
         observation=f"{refused} of {len(asked)} impossible inputs are refused.",
     )]
+
+
+def falls_on_a_very_soft_spring(lesson):
+    """Hang a weight on a compliance of 10¹² m/N for half a second."""
     dt, steps = 0.01, 50
     fallen = stretch(settle(lesson, "xpbd_step", network([1.0], 1.0, 1e12), straight(1), dt, steps))[0]
     bound = 0.5 * G * steps * dt * (steps + 1) * dt
-    found.append(finding(
+    return [finding(
         claim="A spring of vanishing stiffness lets the weight fall freely.",
         quantity="fall of a weight on a compliance of 10¹² m/N in ½ s [m]",
         predicted=bound,
         measured=fallen,
         tolerance=1e-11,
         observation=f"On a compliance of 10¹² m/N a weight falls {fallen:.6f} m in half a second.",
-    ))
+    )]
+
+
+def without_compliance(lesson):
+    """Move a chain by XPBD and by PBD."""
+    x, dt, steps = straight(2), 0.01, 50
     stiff, hard = (
         settle(lesson, step, network([1.0, 1.0], 1.0, 0.0, 5), x, dt, steps) for step in ("xpbd_step", "pbd_step")
     )
-    found.append(finding(
+    return [finding(
         claim="Without compliance XPBD is PBD.",
         quantity="largest difference after 50 steps [m]",
         predicted=0.0,
         measured=np.abs(stiff - hard).max(),
         tolerance=ROUND_OFF,
         observation="Without compliance XPBD and PBD give the same positions.",
-    ))
+    )]
+
+
+def mass_ratio_of_a_million(lesson):
+    """Hang a heavy weight on a light one, with ten sweeps."""
+    x = straight(2)
     ratio, dt, lengths = 1e6, 1.0 / 60.0, []
     y, v, p = x, 0.0 * x, network([1.0, ratio], 1.0, 0.0, 10)
     for _ in range(300):
         y, v = lesson.pbd_step(lesson.network_gravity, 0.0, y, v, dt, p)
         lengths.append(max(stretch(y).sum(), 0.0))
     bounded = max(lengths) <= 0.5 * G * (301 * dt) ** 2 and np.all(np.isfinite(y))
-    found.append(finding(
+    return [finding(
         claim="At a mass ratio of a million the chain is soft but stays stable: it never falls faster than freely.",
         quantity="runs at a mass ratio of 10⁶ that stay below free fall [of 1]",
         predicted=1,
         measured=int(bounded),
         tolerance=0.0,
         observation=f"At a mass ratio of a million 10 sweeps leave a chain {max(lengths):.2f} m too long.",
-    ))
+    )]
+
+
+@case("extremes", "Extremes of constraints", compiled=False)
+def extremes(lesson):
+    """Extremes: impossible input is refused, and extreme but valid input gives the right limit.
+
+    With a compliance of 10¹² m/N the spring has no effect: the weight falls by ½g t(t + dt) in t.  At a mass ratio
+    of 10⁶ ten sweeps hardly hold the chain.  A projection can only shorten a link that is too long, so the chain
+    falls no faster than freely.
+    """
+    found = impossible_input(lesson) + falls_on_a_very_soft_spring(lesson) + without_compliance(lesson)
+    found += mass_ratio_of_a_million(lesson)
     exponents = np.linspace(-9.0, 0.0, 10)
     sags = [
         stretch(settle(lesson, "xpbd_step", network([1.0], 1.0, 10.0**y, 1), straight(1), 1.0, 400))[0]
@@ -515,19 +535,17 @@ def extremes(lesson):
     )
 
 
-@case("primitives", "A fold, a ball, a rod and a cloth", compiled=False)
-def primitives(lesson):
-    """Larger parts: a fold keeps its angle, a ball its volume, a rod its period, and no point stays inside an obstacle.
+def nowhere(lesson):
+    """Return an obstacle that nothing reaches."""
+    return lesson.Obstacle(np.array([0.0, 0.0, -9.0]), 0.0, np.array([0.0, 0.0, -9.0]), np.array([0.0, 0.0, 1.0]))
 
-    A weightless fold of stiffness 1 reaches its angle by Newton's method in a few visits.  A ball without gravity
-    and with no compliance of its air settles at its volume.  Neither exerts a network external force.  The rod's
-    quarter period, extrapolated from steps of dt and dt/2, is off by a few (ω dt)² of its value.
-    """
-    found, quiet = [], np.zeros(3)
+
+def fold_reaches_its_angle(lesson):
+    """Visit one fold of two triangles twelve times."""
     x = np.array([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.4, 0.1], [-0.9, 0.6, 0.5]])
     loose = ConstraintNetwork(
         np.array([1.0, 2.0, 1.0, 0.5]),
-        quiet,
+        np.zeros(3),
         np.zeros(0, dtype=np.int64),
         np.zeros(0, dtype=np.int64),
         np.zeros(0),
@@ -535,74 +553,96 @@ def primitives(lesson):
         np.zeros(0),
         1,
     )
-    nowhere = lesson.Obstacle(np.array([0.0, 0.0, -9.0]), 0.0, np.array([0.0, 0.0, -9.0]), np.array([0.0, 0.0, 1.0]))
-    sheet = lesson.Cloth(loose, np.array([[0, 1, 2, 3]]), np.array([0.2]), 1.0, nowhere)
+    sheet = lesson.Cloth(loose, np.array([[0, 1, 2, 3]]), np.array([0.2]), 1.0, nowhere(lesson))
     centre = x.T @ (1.0 / loose.inv_mass)
     for _ in range(12):
         x = lesson.fold_sweep(x, sheet)
     left = abs(lesson.fold_constraint(x, 0.2)[0])
-    found.append(finding(
-        claim="A fold reaches its rest angle.",
-        quantity="error of the angle after 12 visits [rad]",
-        predicted=0.0,
-        measured=left,
-        tolerance=ROUND_OFF,
-        observation=f"After 12 visits the fold is {left:.0e} rad off.",
-    ))
     shift = np.abs(x.T @ (1.0 / loose.inv_mass) - centre).max()
-    found.append(finding(
-        claim="Folding exerts no net force.",
-        quantity="displacement of the centre of mass, times the mass [kg m]",
-        predicted=0.0,
-        measured=shift,
-        tolerance=ROUND_OFF,
-        observation=f"Times the mass, its centre of mass has moved by {shift:.0e} kg m.",
-    ))
+    return [
+        finding(
+            claim="A fold reaches its rest angle.",
+            quantity="error of the angle after 12 visits [rad]",
+            predicted=0.0,
+            measured=left,
+            tolerance=ROUND_OFF,
+            observation=f"After 12 visits the fold is {left:.0e} rad off.",
+        ),
+        finding(
+            claim="Folding exerts no net force.",
+            quantity="displacement of the centre of mass, times the mass [kg m]",
+            predicted=0.0,
+            measured=shift,
+            tolerance=ROUND_OFF,
+            observation=f"Times the mass, its centre of mass has moved by {shift:.0e} kg m.",
+        ),
+    ]
 
+
+def ball_reaches_its_volume(lesson):
+    """Fill an octahedron with air; its links are almost infinitely compliant, so that only the air is tested."""
     corners = np.concatenate([[axis, -axis] for axis in np.eye(3)])
     faces = np.array([[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]])
-    # The links are almost infinitely compliant, so only the air is tested.
-    net_ = lesson.make_constraint_network(corners, 1.0, [], lesson.shared_edges(faces)[0], 1e9, 1.0, quiet, 5)
+    net_ = lesson.make_constraint_network(corners, 1.0, [], lesson.shared_edges(faces)[0], 1e9, 1.0, np.zeros(3), 5)
     y, v = corners * [1.2, 0.9, 1.0], 0.0 * corners
     # Newton's method: five visits square the error five times.
-    ball = lesson.Balloon(net_, faces, 2.0, 0.0, nowhere)
+    ball = lesson.Balloon(net_, faces, 2.0, 0.0, nowhere(lesson))
     for _ in range(10):
         y, v = lesson.balloon_step(lesson.network_gravity, 0.0, y, v, 0.05, ball)
     volume, drift = lesson.volume_gradient(y, faces)[0], np.abs(v.sum(axis=0)).max()
-    found.append(finding(
-        claim="A ball reaches its rest volume.",
-        quantity="volume [m³]",
-        predicted=2.0,
-        measured=volume,
-        tolerance=1e-9,
-        observation=f"The ball holds {volume:.9f} m³.",
-    ))
-    found.append(finding(
-        claim="Its air exerts no net force.",
-        quantity="momentum of the ball [kg m/s]",
-        predicted=0.0,
-        measured=drift,
-        tolerance=1e-11,
-        observation=f"Its momentum is {drift:.0e} kg m/s.",
-    ))
+    return [
+        finding(
+            claim="A ball reaches its rest volume.",
+            quantity="volume [m³]",
+            predicted=2.0,
+            measured=volume,
+            tolerance=1e-9,
+            observation=f"The ball holds {volume:.9f} m³.",
+        ),
+        finding(
+            claim="Its air exerts no net force.",
+            quantity="momentum of the ball [kg m/s]",
+            predicted=0.0,
+            measured=drift,
+            tolerance=1e-11,
+            observation=f"Its momentum is {drift:.0e} kg m/s.",
+        ),
+    ]
 
-    half, theta = 0.3, 0.5
-    moment = (2.0 * half) ** 2 / 12.0
-    rod = lesson.PivotedBody(
-        1.0, np.array([moment, moment, 1e-4]), np.array([0.0, 0.0, -G]), quiet, np.array([0.0, 0.0, half]), 3
-    )
-    bound = 0.25 * pendulum_period(theta, (moment + half**2) / half, G)
-    quarters = [quarter_period(lesson, rod, half, theta, dt) for dt in (0.002, 0.001)]
+
+HALF = 0.3                   # of the rod on a pivot [m]
+MOMENT = (2.0 * HALF) ** 2 / 12.0
+
+
+def make_rod(lesson):
+    """Return a rod of 1 kg that hangs from one of its ends."""
+    I_body, arm = np.array([MOMENT, MOMENT, 1e-4]), np.array([0.0, 0.0, HALF])
+    return lesson.PivotedBody(1.0, I_body, np.array([0.0, 0.0, -G]), np.zeros(3), arm, 3)
+
+
+def quarter_of(theta):
+    """Return the quarter period [s] of a compound pendulum with the moment and the length of the rod."""
+    return 0.25 * pendulum_period(theta, (MOMENT + HALF**2) / HALF, G)
+
+
+def rod_swings(lesson):
+    """Extrapolate the time that the rod takes to its lowest point."""
+    theta, rod = 0.5, make_rod(lesson)
+    bound = quarter_of(theta)
+    quarters = [quarter_period(lesson, rod, HALF, theta, dt) for dt in (0.002, 0.001)]
     got, dt, omega = 2.0 * quarters[1] - quarters[0], 0.002, 0.5 * np.pi / bound
-    found.append(finding(
+    return [finding(
         claim="A rigid rod that hangs from a point swings as a compound pendulum.",
         quantity="quarter period of a rod of 0.6 m, extrapolated [s]",
         predicted=bound,
         measured=got,
         tolerance=5.0 * (omega * dt) ** 2 * bound,
         observation=f"A rod of 0.6 m is at its lowest after {got:.5f} s.",
-    ))
+    )]
 
+
+def cloth_stays_outside(lesson):
+    """Let a cloth of 16 points fall on a ball and a floor."""
     n = 4
     sheet = np.array([[0.3 * (k % n), 0.3 * (k // n), 0.4] for k in range(n * n)])
     firsts = [r * n + c for r in range(n - 1) for c in range(n - 1)]
@@ -615,7 +655,7 @@ def primitives(lesson):
     for _ in range(40):
         sheet, v = lesson.cloth_step(lesson.network_gravity, 0.0, sheet, v, 0.02, cloth)
         depth = max(depth, 0.3 - np.linalg.norm(sheet - thrown.centre, axis=1).min(), -0.25 - sheet[:, 2].min())
-    found.append(finding(
+    return [finding(
         claim="At the end of a step no point of a cloth is inside an obstacle.",
         quantity="greatest depth of a point in 40 steps [m]",
         predicted=0.0,
@@ -623,18 +663,30 @@ def primitives(lesson):
         tolerance=ROUND_OFF,
         observation=("The points of a cloth that falls on a ball and a floor are never deeper than "
                      f"{max(depth, 0.0):.0e} m."),
-    ))
+    )]
+
+
+@case("primitives", "A fold, a ball, a rod and a cloth", compiled=False)
+def primitives(lesson):
+    """Larger parts: a fold keeps its angle, a ball its volume, a rod its period, and no point stays inside an obstacle.
+
+    A weightless fold of stiffness 1 reaches its angle by Newton's method in a few visits.  A ball without gravity
+    and with no compliance of its air settles at its volume.  Neither exerts a network external force.  The rod's
+    quarter period, extrapolated from steps of dt and dt/2, is off by a few (ω dt)² of its value.
+    """
+    found = fold_reaches_its_angle(lesson) + ball_reaches_its_volume(lesson) + rod_swings(lesson)
+    found += cloth_stays_outside(lesson)
     fine, dots = np.linspace(0.1, 2.5, 40), np.array([0.25, 0.5, 1.0, 1.5, 2.0])
-    period = lambda a: 0.25 * pendulum_period(a, (moment + half**2) / half, G)
+    rod = make_rod(lesson)
     return found, Picture(
         "A rod on a pivot",
         "released at [rad]",
         "time to its lowest point [s]",
         [
-            series("theory", fine, [period(a) for a in fine], LINE),
+            series("theory", fine, [quarter_of(a) for a in fine], LINE),
             series(
                 "pivoted_body_step, 5 ms, measured", dots,
-                [quarter_period(lesson, rod, half, a, 0.005) for a in dots], DOTS
+                [quarter_period(lesson, rod, HALF, a, 0.005) for a in dots], DOTS
             ),
         ],
         "To constrain a rigid body, projection needs the generalised inverse mass and nothing else that a point lacks.",
@@ -705,7 +757,9 @@ def constraints_and_gradients(lesson):
     dense solution of both equations, linearised along the imaginary axis; its regularisation is 1e-13 of the weights.
     """
     rng = np.random.default_rng(81)
-    names = ("link", "correction", "newton", "fold", "ball", "volume", "lever", "impulse", "rate", "free", "air")
+    nowhere = lesson.Obstacle(np.full(3, 50.0), 0.0, np.array([0.0, 0.0, -50.0]), np.array([0.0, 0.0, 1.0]))
+    names = ("link", "correction", "newton", "fold", "ball", "volume", "lever", "impulse", "rate", "free", "bent",
+             "falls", "air")
     worst = dict.fromkeys(names, 0.0)
 
     def note(name, got, truth):
@@ -773,12 +827,22 @@ def constraints_and_gradients(lesson):
         *_, new_omega = lesson.pivoted_body_step(0.0, x[0], np.zeros(3), q, omega, 0.01, body)
         note("free", new_omega, omega + 0.01 * euler_rate(R, omega, I_body))
 
+        # a fold of half the stiffness goes half of a small way; a cloth in the air falls as one
+        share, slight = rng.uniform(0.2, 0.8), np.array([[0, 1, 2, 3]])
+        sheet = lesson.Cloth(chain._replace(inv_mass=w), slight, np.array([fold_angle(x) - 1e-6]), share, nowhere)
+        left = (fold_angle(lesson.fold_sweep(x, sheet)) - sheet.fold[0]) / 1e-6
+        note("bent", left, 1.0 - share)
+        weave = lesson.make_constraint_network(x, 1.0 / w, [], [(0, 1), (1, 2), (2, 3)], 0.0, 1.0, (0.0, 0.0, -G), 2)
+        sheet = lesson.Cloth(weave, slight, np.array([fold_angle(x)]), share, nowhere)
+        fallen, v = lesson.cloth_step(lesson.network_gravity, 0.0, x, 0.0 * x + p, 0.01, sheet)
+        speed = p - np.array([0.0, 0.0, 0.01 * G])
+        note("falls", (fallen, v), (x + 0.01 * speed, 0.0 * x + speed))
+
         # air that is hardly compressed: p = (V₀ − V)/α for one implicit step, m v = dt p ∇V, all linear
         alpha, less, dt = rng.uniform(0.5, 2.0), 1e-6, rng.uniform(0.1, 0.5)
         corners = rng.uniform(0.8, 1.2) * np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
         outside = faces if volume_of(corners, faces) > 0.0 else faces[:, ::-1]
         net = lesson.make_constraint_network(corners, 1.0 / w, [], [(0, 1)], 1e12, 1.0, np.zeros(3), 3)
-        nowhere = lesson.Obstacle(np.zeros(3), 0.0, np.array([0.0, 0.0, -9.0]), np.array([0.0, 0.0, 1.0]))
         g = derivative(lambda x, f=outside: volume_of(x, f), corners).reshape(4, 3)
         _, v = lesson.balloon_step(lesson.network_gravity, 0.0, corners, 0.0 * corners, dt,
                                    lesson.Balloon(net, outside, volume_of(corners, outside) + less, alpha, nowhere))
@@ -799,6 +863,9 @@ def constraints_and_gradients(lesson):
          1e-11),
         ("rate", "The rate of turning is the inverse of the update, for long turns, too.", "ω [rad/s]", 1e-9),
         ("free", "A body held at its centre obeys Euler's equation.", "ω [rad/s]", 1e-9),
+        ("bent", "A visit to a fold leaves 1 − s of a small error.", "share of the error that is left [-]", 1e-3),
+        ("falls", "A cloth in the air falls as one, and its velocity is its way over the step.", "state [m, m/s]",
+         1e-9),
         ("air", "Air is a spring for the volume, whatever the step is.", "velocity over the missing volume [1/(m² s)]",
          1e-4))
     return [agreement(claim, f"{name}: largest error of the {quantity}", worst[name], tolerance)

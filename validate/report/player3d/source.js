@@ -69,7 +69,7 @@ function play(place) {
   }
   renderer.setPixelRatio(Math.min(2, devicePixelRatio || 1));
   const view = renderer.domElement, note = document.createElement("div");
-  note.style.cssText = "position:absolute;left:.6rem;right:.6rem;bottom:.3rem;display:flex;justify-content:space-between;gap:1rem;pointer-events:none;font:12px system-ui,sans-serif;color:var(--soft,#5b666e)";
+  note.style.cssText = "position:absolute;right:.6rem;bottom:.3rem;pointer-events:none;font:12px system-ui,sans-serif;color:var(--soft,#5b666e)";
   place.style.position = "relative";
   place.replaceChildren(view, note);
 
@@ -188,11 +188,10 @@ function play(place) {
     if (trail) { trail.visible = shown; trail.geometry.setDrawRange(0, k + 1); }
   });
   const last = runs[0].frames - 1;
-  const words = text => { const span = document.createElement("span"); span.textContent = text; return span; };
-  note.append(words("drag or arrow keys: turn · click, then wheel or + −: nearer"), words(`axes: ${metres(reach)}`));
+  note.textContent = `axes: ${metres(reach)}`;
   const render = () => { if (place.isConnected) renderer.render(scene, camera); };
   const bar = film_bar(place, {
-    last, seconds: picture.seconds, runs,
+    last, seconds: picture.seconds, runs, hint: "Drag or use the arrow keys to turn it. Click it, then the wheel or + and − bring it nearer.",
     draw: (k, magnified) => {
       scene.background.set(page("--wash", "#f6f7f8"));
       set(k, magnified);
@@ -202,6 +201,7 @@ function play(place) {
   });
   controls.addEventListener("change", render);
   const fit = () => {
+    if (!place.isConnected) { renderer.dispose(); renderer.forceContextLoss(); return; }      // a notebook's cell ran again
     const width = place.clientWidth || 640, height = place.clientHeight || 360;
     renderer.setSize(width, height);
     camera.aspect = width / height;

@@ -181,6 +181,7 @@ SCENE = Scene(
     points=points,
     links=links,
     uses=("a straight way", "a quadratic equation for each step, or a distance"),
+    full_loop="the scene ends where the loop begins: a ball stays where it is found to hit",
     ablations={
         "balls that never come near, tested at every step": with_others,
         "gravity: the path would bend, and the equation be of fourth degree": ("short straight pieces of the path "

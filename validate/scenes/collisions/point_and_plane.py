@@ -172,6 +172,7 @@ SCENE = Scene(
     points=points,
     links=links,
     uses=("a straight way", "two signed distances for each step"),
+    full_loop="the scene ends where the loop begins: a ball stays where it is found to hit",
     ablations={
         "balls that never come near, tested at every step": with_others,
         "gravity: the path would bend": "then the formula is the first step of Newton's method",

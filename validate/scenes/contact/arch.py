@@ -243,6 +243,7 @@ SCENE = Scene(
     points=points,
     links=links,
     uses=("rows of all contacts", "the cone of friction in the plane", "sweeps until the residual is gone"),
+    full_loop="nothing moves here, so there is no loop",
     ablations={"motion": "what stands does not move; what falls is not followed",
                "curved stones": "only the ends of the joints touch, and the centre of mass is that of a sector"},
 )

@@ -388,6 +388,7 @@ SCENE = Scene(
     points=points,
     links=links,
     uses=("rows of all contacts", "the cone of friction in the plane", "sweeps until the residual is gone"),
+    full_loop="forces of bodies at rest: nothing moves, so there is no loop",
     ablations={"motion": "what stands does not move; what falls is not followed",
                "the stiffness of the bodies": "it decides who carries what on four legs, and nothing here"},
 )

@@ -216,6 +216,7 @@ def links(p):
 
 SCENE = Scene(
     title="Dominoes",
+    film_of_truth="pymunk, 50,000 steps per second",
     lesson="contact",
     cases=CASES,
     duration=T,
@@ -231,11 +232,13 @@ SCENE = Scene(
     orders={"advance_pile_2d": ABOUT_1},
     slow_cases=("fifteen", "six, smoother"),
     uncompiled_in_quick=("advance_pile_2d",),
-    omitted_methods="matrices have no places, and so no motion: contact_forces and Murty's method are missing",
+    omitted_methods="matrices have no places, and so no motion: sweeps and Murty's method without it are missing",
     sanity_checks=sanity_checks,
     points=points,
     links=links,
     uses=("contact points of boxes", "soft contacts and memory", "one substep per step"),
+    full_loop="its method is a whole loop itself, with soft contacts in place of rigid ones: the motions "
+              "are not the same",
     ablations={"restitution": "dominoes of wood bounce a little; no law says how several impacts at once do",
                "substeps": "two or four per step cost as many times more and do not come nearer to the limit"},
 )

@@ -263,9 +263,10 @@ SCENE = Scene(
     orders={"advance_pile": EXACT, "advance_pile_2d": EXACT},
     supports=supports,
     slow_cases=tuple(CASES)[1:],
-    omitted_methods="contact_forces and Murty's method find no places; matrices of 2,000 contacts would have "
+    omitted_methods="sweeps and Murty's method alone find no places; matrices of 2,000 contacts would have "
                     "16 million numbers; pybullet's residual stays between 0.3 and 4 g dt in 200 and 1,000 bodies, "
-                    "because 50 iterations do not find the forces; `python -m validate.piles` compares it with 1,000",
+                    "because 50 iterations do not find the forces; another command, python -m validate.piles, "
+                    "compares piles of 1,000",
     moves=False,
     refinement="",
     quantity_names=quantity_names,
@@ -274,6 +275,7 @@ SCENE = Scene(
     links=links,
     uses=("a broad phase that looks again only when something has left its widened box", "contact points", "memory",
           "soft contacts with substeps"),
+    full_loop="its method is a whole loop itself, of which only the end is seen",
     ablations={"sleeping": "it would hide whether a pile comes to rest",
                "restitution": "e = 0 everywhere: what several impacts at once do with it is a choice, and no law"},
 )

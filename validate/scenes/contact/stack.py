@@ -23,8 +23,7 @@ from solutions.contact import (
     make_pile,
     make_pile_2d,
 )
-from validate.engines.bullet import Rigid
-from validate.engines.chipmunk import pymunk_floor, pymunk_space
+from validate.engines.contact import Tower, bullet_tower, pymunk_tower
 from validate.methods import DIRECT, PILE, PILE_IN_SPACE, SWEEPS
 from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Scene
 
@@ -177,51 +176,18 @@ SWAY_OF_FIVE = {"pile": 2e-11, "pymunk": 1e-12, "pymunk, default": 2e-7, "pybull
 
 # ---------------------------------------------------------------------------------------------- engines
 
+def tower(p):
+    return Tower([p.m] * p.n, [moment(p)] * p.n, p.size, p.g, MU, OVERLAP, WAITING)
+
+
 def pymunk_make(p, dt, iterations, slop):
-    import pymunk
-    space = pymunk_space((0.0, -p.g))
-    space.iterations, space.collision_slop = iterations, slop
-    pymunk_floor(space)
-    bodies = []
-    for k in range(p.n):
-        body = pymunk.Body(p.m, moment(p))
-        body.position = (0.0, p.size * (k + 0.5) - OVERLAP * (k + 1))
-        box = pymunk.Poly.create_box(body, (p.size, p.size))
-        box.friction = np.sqrt(MU) if k else MU                          # pymunk multiplies the two
-        space.add(body, box)
-        bodies.append(body)
-
-    def read():
-        for _ in range(round(WAITING / DT)):
-            space.step(DT)
-        forces = np.zeros(p.n)
-
-        def add(arbiter):
-            low = min(bodies.index(shape.body) if shape.body in bodies else -1 for shape in arbiter.shapes)
-            forces[low + 1] += abs(arbiter.total_impulse.y) / DT
-        for body in bodies:
-            body.each_arbiter(add)
-        forces[1:] *= 0.5                                                # two bodies tell of each joint but the lowest
-        return forces
-    return EngineRun(lambda: None, read, lambda: None)
+    wait = pymunk_tower(tower(p), iterations, slop)
+    return EngineRun(lambda: None, lambda: wait()[0], lambda: None)
 
 
 def pybullet_make(p, dt, iterations, residual):
-    bullet = Rigid(DT, (0.0, 0.0, -p.g), iterations)
-    pb = bullet.pb
-    pb.setPhysicsEngineParameter(solverResidualThreshold=residual, contactSlop=1e-5)
-    slab = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[5.0, 5.0, 1.0])
-    ground = pb.createMultiBody(0, slab, basePosition=[0.0, 0.0, -1.0])
-    pb.changeDynamics(ground, -1, lateralFriction=1.0, restitution=0)
-    shape = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[0.5 * p.size] * 3)
-    bodies = [bullet.body(p.m, (moment(p),) * 3, (0.0, 0.0, p.size * (k + 0.5)), (0.0,) * 3, True, shape=shape,
-                          mu=np.sqrt(MU) if k else MU) for k in range(p.n)]
-
-    def read():
-        for _ in range(round(WAITING / DT)):
-            bullet.step()
-        return np.array([sum(c[9] for c in pb.getContactPoints(a, b)) for a, b in zip(bodies, [ground, *bodies])])
-    return EngineRun(lambda: None, read, bullet.close)
+    wait, close = bullet_tower(tower(p), iterations, residual)
+    return EngineRun(lambda: None, lambda: wait()[0], close)
 
 
 ENGINES = (
@@ -292,6 +258,7 @@ SCENE = Scene(
     points=points,
     links=links,
     uses=("rows of all contacts", "masses and moments", "for the pile: contact points, soft contacts and memory"),
+    full_loop="forces of bodies at rest: nothing moves, so there is no loop",
     ablations={"restitution": "nothing bounces at rest",
                "the third dimension": "cubes touch in four points instead of two, and the joints carry the same: a "
                                       "case of --full",

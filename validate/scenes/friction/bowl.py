@@ -13,6 +13,7 @@ from solutions.friction import falling_acceleration as acceleration
 from solutions.support.friction import advance_particle
 from validate.engines.friction import SWEEPS, bullet_in_hollow
 from validate.methods import CONTACT, GRIPPING
+from validate.reference.schemes import ErrorLaw
 from validate.scene import PYBULLET, Engine, Scene, by_order
 
 T = 2.0                      # [s]: one oscillation; with friction it has come to rest
@@ -131,6 +132,53 @@ def tolerance(p, dt):
     return {**limits, "pybullet": limits[1]}
 
 
+def in_steps(p, steps, gripping, nudge):
+    """Return x at T: fall, move with the new velocity, go back to the wall; stop what goes into it, and friction.
+
+    Friction takes at most μ times what the wall stops of the velocity along it.  With `gripping` it takes at most μ
+    times the depth of the way along it, too, while the particle moves outwards.
+    """
+    dt, (x, v) = T / steps, place(p)
+    x, fall = x * (1.0 + nudge), np.array([0.0, 0.0, -p.g * T / steps])
+    across = np.array([1.0, 0.0 if p.trough else 1.0, 1.0])
+
+    def shortened(a, most):
+        size = np.sqrt(a @ a)
+        return a * (1.0 - min(1.0, most / size)) if size > 0.0 else a
+
+    for _ in range(steps):
+        v = v + fall
+        moved = dt * v
+        x = x + moved
+        r = across * x
+        far = np.sqrt(r @ r)
+        if far <= p.radius:
+            continue
+        n, depth = -r / far, far - p.radius
+        into = min(0.0, v @ n)
+        if gripping and into < 0.0:
+            along = moved - (moved @ n) * n
+            x = x + shortened(along, p.mu * depth) - along
+        x = x + depth * n
+        if into < 0.0:
+            v = shortened(v - into * n, -p.mu * into)
+    return x
+
+
+@cache
+def error_law(label, p):
+    run = lambda steps, nudge: in_steps(p, steps, label == "gripping", nudge)
+    return ErrorLaw(run, np.array(truth(p, T)), 1, T, 800)
+
+
+def predicted_error(label, p, dt):
+    """The error, with its sign, of the same rule in plain numbers: the fall, the way back to the wall, the friction.
+
+    At the same step where that is coarse, else by its expansion in powers of dt.
+    """
+    return error_law(label, p).prediction(dt, 1e-10) if label in ("contact", "gripping") else None
+
+
 def pybullet_make(p, dt):
     x, v = place(p)
 
@@ -213,6 +261,7 @@ SCENE = Scene(
     truth=truth,
     truth_uncertainty=1e-9,
     tolerance=tolerance,
+    predicted_error=predicted_error,
     engines=ENGINES,
     omitted_methods=("the sliding and the event step hold a block on one plane; a bowl has a different one at every "
                      "point"),
@@ -220,6 +269,7 @@ SCENE = Scene(
     points=points,
     links=links,
     uses=("three coordinates", "an implicit surface", "one impulse for each contact"),
+    full_loop="the loop has no contact with a curved surface that is given by an equation",
     ablations={
         "rotation: it slides and does not roll": "lesson 5 builds it",
         "detection between bodies": "lesson 6 builds it",

@@ -9,7 +9,7 @@ from solutions.integrators import advance
 from solutions.support.friction import make_block, slip_times
 from validate.engines.friction import MASS, SWEEPS, bullet_block, pymunk_block
 from validate.methods import EVENT, SLIDING
-from validate.reference.friction import DrivenBlock, T, block_in_space, slip_limits, slip_position, slips
+from validate.reference.friction import DrivenBlock, T, block_in_space, slip_errors, slip_limits, slip_position, slips
 from validate.scene import PYBULLET, PYMUNK, Engine, Scene
 
 STEPS = (80, 160, 400, 800, 1600, 4000, 8000)
@@ -115,6 +115,7 @@ SCENE = Scene(
     truth=slip_position,
     truth_uncertainty=1e-13,
     tolerance=slip_limits,
+    predicted_error=slip_errors,
     engines=ENGINES,
     sanity_checks=sanity_checks,
     points=points,
@@ -122,7 +123,7 @@ SCENE = Scene(
     uses=("two coordinates", "a normal", "one step of a block that stays on its plane"),
     ablations={
         "the third dimension": in_space,
-        "rotation: it does not tip": "lesson 5 builds it",
-        "detection: it does not leave the floor": "lesson 6 builds it",
+        "rotation: it does not tip": "the whole loop of lesson 10 has it, and is measured",
+        "detection: it does not leave the floor": "the whole loop of lesson 10 has it, and is measured",
     },
 )

@@ -244,6 +244,7 @@ SCENE = Scene(
     links=links,
     film_seconds=4.5,  # [s]: until it is at rest
     uses=("two coordinates", "one plane", "one number e for each impact"),
+    full_loop="the loop has no restitution: its contacts do not bounce",
     ablations={
         "the third dimension": in_space,
         "rotation: the ball has no torque": "the scene spinning_bounce puts it in",

@@ -243,6 +243,7 @@ SCENE = Scene(
     points=points,
     links=links,
     uses=("one body", "the offsets of the points in contact", "sweeps over them until nothing changes"),
+    full_loop="one impact without time: there is no loop",
     ablations={
         "sliding points": ("at a sliding point the engines have laws of their own, which differ by up to 20 % of the "
                            "speed"),

@@ -175,6 +175,7 @@ SCENE = Scene(
     points=points,
     links=links,
     uses=("two coordinates", "two radii", "one number e for the impact"),
+    full_loop="the loop has no restitution: its contacts do not bounce",
     ablations={
         "the third dimension": in_space,
         "rotation: without friction no torque acts on a disc": "the scene spinning_bounce puts it in",

@@ -171,6 +171,7 @@ SCENE = Scene(
     points=points,
     links=links,
     uses=("corners and triangles", "or points with masses"),
+    full_loop="nothing moves here, so there is no loop",
     ablations={
         "motion": "lesson 5 turns bodies",
         "a density that varies inside": "points can have it, triangles cannot",

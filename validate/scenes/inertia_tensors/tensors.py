@@ -554,6 +554,7 @@ SCENE = Scene(
     points=points,
     links=links,
     uses=("masses and positions of the parts", "or corners and triangles"),
+    full_loop="nothing moves here, so there is no loop",
     ablations={
         "motion": "lesson 5 rotates these bodies",
         "density that varies": "a body of parts can have it",

@@ -198,7 +198,7 @@ SCENE = Scene(
     uses=("one point in the plane", "one step function"),
     ablations={
         "the third dimension": in_space,
-        "rotation": "lesson 5 builds it",
-        "detection of the ground": "lesson 6 builds it",
+        "rotation": "the whole loop of lesson 10 has it, and is measured",
+        "detection of the ground": "the whole loop of lesson 10 has it, and is measured",
     },
 )

@@ -184,6 +184,7 @@ def in_space(p):
 
 SCENE = Scene(
     title="Oscillator",
+    link_look="spring and damper",
     lesson="integrators",
     cases=CASES,
     duration=T,
@@ -201,11 +202,10 @@ SCENE = Scene(
     predicted_error=predict_by_tables(T, law, released, seen, truth, floor, MODELS, DEPARTURES),
     points=points,
     links=links,
-    link_look="spring and damper",
     uses=("one coordinate", "one step function"),
     ablations={
         "the second and third dimension": in_space,
-        "rotation": "lesson 5 builds it",
-        "detection of contacts": "lesson 6 builds it",
+        "rotation": "the whole loop of lesson 10 has it, and is measured",
+        "detection of contacts": "the whole loop of lesson 10 has it, and is measured",
     },
 )

@@ -186,6 +186,7 @@ SCENE = Scene(
     published_states=((3.0, (22.80837567,), 5e-9),),
     points=points,
     uses=("one coordinate", "one step function"),
-    ablations={"the second and third dimension": in_space, "rotation": "lesson 5 builds it",
-              "detection of the ground": "lesson 6 builds it"},
+    ablations={"the second and third dimension": in_space,
+              "rotation": "the whole loop of lesson 10 has it, and is measured",
+              "detection of the ground": "the whole loop of lesson 10 has it, and is measured"},
 )

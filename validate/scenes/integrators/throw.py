@@ -165,7 +165,7 @@ SCENE = Scene(
     uses=("one point in space", "one step function"),
     ablations={
         "air": "the scenes with linear and quadratic drag have it",
-        "rotation": "lesson 5 builds it",
-        "detection of the ground": "lesson 6 builds it",
+        "rotation": "the whole loop of lesson 10 has it, and is measured",
+        "detection of the ground": "the whole loop of lesson 10 has it, and is measured",
     },
 )

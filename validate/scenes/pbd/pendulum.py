@@ -10,8 +10,8 @@ from solutions.support.pbd import make_constraint_network
 from solutions.support.pbd import network_gravity as acceleration
 from validate.engines.pbd import ITERATIONS, SHARE, bullet_rope, pymunk_rope
 from validate.methods import COMPOSED_ROPE, PBD, PROJECTION, RATTLE, ROPE, XPBD
-from validate.reference.pbd import pendulum_angle, pendulum_period
-from validate.scene import PYBULLET, PYMUNK, Departure, Engine, Scene, by_order
+from validate.reference.pbd import ROPE_STEPS, Rope, pendulum_angle, pendulum_period, rope_errors
+from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Engine, Scene, by_order
 
 T = 1.5                      # [s]: once through the lowest point, and most of the way up
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000)
@@ -69,11 +69,19 @@ def tolerance(p, dt):
     """Nothing changes faster than the rate √(g/L) and the rotation, whose square is at most 2g(1 − cos θ₀)/L.
 
     With one link PBD, XPBD without compliance and the projection method are identical, of order 1; RATTLE is of
-    order 2. pymunk is symplectic Euler along the circle and corrects at once (error_bias 0) the ½ω²dt² L that a
+    order 2. pymunk is symplectic Euler along the circle and corrects at once the ½ω²dt² L that a
     step leaves. pybullet does the same, with erp 1: both are of order 1.
     """
     limits = by_order(np.sqrt(p.g / p.L) + np.sqrt(2.0 * p.g / p.L * (1.0 - np.cos(np.radians(p.degrees)))), T, dt)
     return {**limits, "pymunk": limits[1], "pybullet": limits[1]}
+
+
+def rope(p):
+    return Rope(np.stack((np.zeros(2), place(np.radians(p.degrees), p))), p.L, p.g)
+
+
+def floor(p, dt):
+    return tolerance(p, dt)[EXACT]
 
 
 def pymunk_make(p, dt):
@@ -138,6 +146,7 @@ SCENE = Scene(
     truth=truth,
     truth_uncertainty=1e-14,
     tolerance=tolerance,
+    predicted_error=rope_errors(T, rope, lambda x: x[1], truth, floor, ROPE_STEPS),
     engines=ENGINES,
     expected_departures={
         "pybullet": Departure(
@@ -157,6 +166,7 @@ SCENE = Scene(
     points=points,
     links=links,
     uses=("two coordinates", "one link", "one step function"),
+    full_loop="a string fixes a distance and does not turn; a joint of the loop fixes a point of a body that turns",
     ablations={
         "the third dimension": in_space,
         "rotation of the bob": "pivoted_body_step of this lesson has it: a rigid body on a pivot",

@@ -13,6 +13,7 @@ from validate.engines.rotation import FREE_ENGINES
 from validate.methods import TURNS
 from validate.reference.orientation import quaternion_matrix
 from validate.reference.rotation import FreeTop, free_limits, freely
+from validate.reference.turns import free_turns
 from validate.scene import Scene
 
 T = 10.0                     # [s]: it flips at 6.06 s, and is about to start the next flip
@@ -124,6 +125,7 @@ SCENE = Scene(
     # 1 − k² = 5e-5 is known to 2e-16/5e-5, and the time of the flip varies as its logarithm
     truth_uncertainty=1e-11,
     tolerance=tolerance,
+    predicted_error=free_turns(T, truth, 1e-11),
     engines=ENGINES,
     slow_methods=("composed_midpoint_step",),
     sanity_checks=sanity_checks,
@@ -135,6 +137,6 @@ SCENE = Scene(
     uses=("one orientation", "one angular momentum", "one step function"),
     ablations={
         "position": "x += dt P/M runs beside it without any effect",
-        "contacts": "lessons 6 and 7 build them",
+        "contacts": "the whole loop of lesson 10 has them, and is measured",
     },
 )

@@ -16,6 +16,7 @@ from validate.engines.rotation import FREE_ENGINES
 from validate.methods import MATRIX, TURNS
 from validate.reference.orientation import quaternion_matrix
 from validate.reference.rotation import FIRST_ORDER, free_limits, freely, symmetric_top
+from validate.reference.turns import free_turns
 from validate.scene import EXACT, Scene
 
 T = 10.0                     # [s]: eight and a half revolutions about L
@@ -150,6 +151,7 @@ SCENE = Scene(
     truth=truth,
     truth_uncertainty=1e-14,  # 54 radians about L, each rounded to 2e-16
     tolerance=tolerance,
+    predicted_error=free_turns(T, truth, 1e-14),
     engines=ENGINES,
     orders={
         "splitting_step": EXACT,
@@ -173,6 +175,6 @@ SCENE = Scene(
     uses=("one orientation", "one angular momentum", "one step function"),
     ablations={
         "position": "x += dt P/M runs beside it without any effect",
-        "contacts": "lessons 6 and 7 build them",
+        "contacts": "the whole loop of lesson 10 has them, and is measured",
     },
 )

@@ -13,7 +13,8 @@ from validate.engines.bullet import Rigid
 from validate.methods import TURNS
 from validate.reference.orientation import about
 from validate.reference.rotation import HeavyTop, freely
-from validate.scene import PYBULLET, ROUND_OFF, Engine, EngineRun, Scene, by_order
+from validate.reference.turns import predict_turns, rotation
+from validate.scene import EXACT, PYBULLET, ROUND_OFF, Engine, EngineRun, Scene, by_order
 
 T = 2.0                      # [s]: nearly three nutations
 STEPS = (500, 1000, 2000, 5000, 10000, 20000, 50000)
@@ -79,6 +80,25 @@ def tolerance(p, dt):
     turning = (p.I3 / (p.I1 - mass(p) * LENGTH**2) - 1.0) * p.spin
     witness = limits[1] + 0.5 * turning**2 * dt * T
     return {**limits, "pybullet": witness, "pybullet, reduced coordinates": witness}
+
+
+def released(p):
+    """Return the tilt about x as a pair of complex numbers, and L along the axis."""
+    spin = p.I3 * p.spin
+    return rotation((p.tilt, 0.0, 0.0)), (0.0, -float(np.sin(p.tilt)) * spin, float(np.cos(p.tilt)) * spin)
+
+
+def weight(p):
+    """Return the torque Mgl 𝐞₃ × (−ẑ) from the rows of R."""
+    return lambda R: (-p.mgl * R[1][2], p.mgl * R[0][2], 0.0)
+
+
+def seen(R):
+    return [R[0][2], R[1][2]]
+
+
+def floor(p, dt):
+    return tolerance(p, dt)[EXACT] + 1e-11
 
 
 def mass(p):
@@ -168,6 +188,7 @@ SCENE = Scene(
     truth=truth,
     truth_uncertainty=1e-12,
     tolerance=tolerance,
+    predicted_error=predict_turns(T, Params.moments, released, weight, seen, truth, floor),
     engines=ENGINES,
     slow_methods=(
         "matrix_step",

@@ -201,6 +201,7 @@ SCENE = Scene(
     points=points,
     links=links,
     uses=("one angle", "the moment of its spring", "one step function"),
-    ablations={"the hinge as a constraint": "lesson 8 builds it", "rotation in space": "lesson 5 builds it",
-              "detection of contacts": "lesson 6 builds it"},
+    ablations={"the hinge as a constraint": "lesson 8 builds it",
+              "rotation in space": "the whole loop of lesson 10 has it, and is measured",
+              "detection of contacts": "the whole loop of lesson 10 has it, and is measured"},
 )

@@ -185,6 +185,7 @@ def in_space(p):
 
 SCENE = Scene(
     title="Discrete catenary",
+    link_look="spring",
     lesson="springs",
     cases=CASES,
     duration=T,
@@ -203,11 +204,10 @@ SCENE = Scene(
     sanity_checks=sanity_checks,
     points=points,
     links=links,
-    link_look="spring",
     uses=("two coordinates", "springs with dampers", "one step function"),
     ablations={
         "the third dimension": in_space,
-        "rotation": "lesson 5 builds it",
-        "contact between links": "lesson 6 builds it",
+        "rotation": "the whole loop of lesson 10 has it, and is measured",
+        "contact between links": "the whole loop of lesson 10 has it, and is measured",
     },
 )

@@ -161,6 +161,7 @@ def in_space(p):
 
 SCENE = Scene(
     title="Hanging springs",
+    link_look="spring",
     lesson="springs",
     cases=CASES,
     duration=T,
@@ -179,8 +180,8 @@ SCENE = Scene(
     sanity_checks=sanity_checks,
     points=points,
     links=links,
-    link_look="spring",
     uses=("one coordinate", "springs with dampers", "one step function"),
-    ablations={"the second and third dimension": in_space, "rotation": "lesson 5 builds it",
-              "contact between masses": "lesson 6 builds it"},
+    ablations={"the second and third dimension": in_space,
+              "rotation": "the whole loop of lesson 10 has it, and is measured",
+              "contact between masses": "the whole loop of lesson 10 has it, and is measured"},
 )

@@ -3,17 +3,13 @@
 With one step per frame it tears; with four its worst node is off by 3 cm, with sixteen by 8 mm.
 """
 
-from functools import cache
-
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.integrators import advance, amplification_matrix, average_velocity_step
-from solutions.springs import make_spring_network
 from solutions.springs import spring_network_acceleration as acceleration
-from validate.engines.springs import pymunk_net
+from validate.engines.springs import net_in_space, net_links, net_points, observe_net, pymunk_net, start_net
 from validate.methods import IMPLICIT_MESH, INTEGRATORS
-from validate.reference.springs import SquareNet, modes, motion, net_errors, net_limits, square_net, state_of
+from validate.reference.springs import SquareNet, modes, net_errors, net_limits, net_motion, square_net
 from validate.scene import PYMUNK, Engine, Scene
 
 FRAMES_PER_SECOND = 24
@@ -28,30 +24,15 @@ UNCERTAINTY = 1e-12
 CASES = {"net": SquareNet(spacing=0.5, shear=1, k=20.0, k_d=0.12, wind=0.1)}
 
 
-def start(p):
-    for name in ("n", "spacing", "m", "k"):
-        check_positive(name, getattr(p, name))
-    return state_of(square_net(p), make_spring_network)
-
-
 def run(step, acceleration, state, p, dt, steps):
     x, v, network = state
     x, v = advance(step, acceleration, 0.0, x, v, dt, steps, network)
     return x, v, network
 
 
-def observe(state, p):
-    return state[0][:, :2].ravel()
-
-
-@cache
-def reference(p):
-    return motion(square_net(p), T)
-
-
 def truth(p, t):
     """Every node, by DOP853 with separately coded forces, at a relative tolerance of 1e-13."""
-    return reference(p)(t).ravel()
+    return net_motion(p, T)(t).ravel()
 
 
 def tolerance(p, dt):
@@ -63,14 +44,6 @@ def tolerance(p, dt):
 ENGINES = (
     Engine(PYMUNK, "", lambda p, dt: pymunk_net(square_net(p), dt, np.ravel), 1, "DampedSpring between point masses"),
 )
-
-
-def points(observed, p):
-    return observed.reshape(-1, 2)
-
-
-def links(p):
-    return square_net(p).pairs.tolist()
 
 
 def sanity_checks():
@@ -89,28 +62,24 @@ def sanity_checks():
     p = CASES["net"]
     for samples, said, digit in ((4, 0.03, 0.005), (16, 0.008, 0.0005)):  # of the docstring, rounded to one digit
         steps = round(FRAMES_PER_SECOND * samples * T)
-        off = observe(run(average_velocity_step, acceleration, start(p), p, T / steps, steps), p) - truth(p, T)
-        worst = np.linalg.norm(points(off, p), axis=1).max()
+        off = observe_net(run(average_velocity_step, acceleration, start_net(p), p, T / steps, steps), p) - truth(p, T)
+        worst = np.linalg.norm(net_points(off, p), axis=1).max()
         claims.append((f"error of its worst node, {samples} of the lecture's steps per frame [m]", worst, said, digit))
     return tuple(claims)
 
 
-def in_space(p):
-    """The same motion with an unused third coordinate."""
-    return state_of(square_net(p).padded(), make_spring_network), p
-
-
 SCENE = Scene(
     title="1, 4, 16 samples per frame",
+    link_look="spring",
     lesson="springs",
     cases=CASES,
     duration=T,
     steps=STEPS,
     methods=(*INTEGRATORS, IMPLICIT_MESH),
     acceleration=acceleration,
-    start=start,
+    start=start_net,
     run=run,
-    observe=observe,
+    observe=observe_net,
     truth=truth,
     truth_uncertainty=UNCERTAINTY,
     tolerance=tolerance,
@@ -118,10 +87,9 @@ SCENE = Scene(
     engines=ENGINES,
     slow_methods=("implicit_euler_step", "implicit_midpoint_step", "implicit_spring_network_step"),
     sanity_checks=sanity_checks,
-    points=points,
-    links=links,
-    link_look="spring",
+    points=net_points,
+    links=net_links,
     uses=("two coordinates", "springs with dampers", "one step function"),
-    ablations={"the third dimension": in_space, "rotation": "lesson 5 builds it",
-              "contact of the net with itself": "lesson 6 builds it"},
+    ablations={"the third dimension": net_in_space, "rotation": "the whole loop of lesson 10 has it, and is measured",
+              "contact of the net with itself": "the whole loop of lesson 10 has it, and is measured"},
 )

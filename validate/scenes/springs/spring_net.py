@@ -3,15 +3,12 @@
 The second case adds springs along the diagonals, the third also springs over every second node.
 """
 
-from functools import cache
-
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.integrators import advance
-from solutions.springs import BEND, SHEAR, STRUCTURAL, grid_pairs, make_spring_network
+from solutions.springs import BEND, SHEAR, STRUCTURAL, grid_pairs
 from solutions.springs import spring_network_acceleration as acceleration
-from validate.engines.springs import pymunk_net
+from validate.engines.springs import net_in_space, net_links, net_points, observe_net, pymunk_net, start_net
 from validate.methods import IMPLICIT_MESH, INTEGRATORS, LEFT_TO_FULL
 from validate.reference.springs import (
     SquareNet,
@@ -19,9 +16,9 @@ from validate.reference.springs import (
     motion,
     net_errors,
     net_limits,
+    net_motion,
     rest_positions,
     square_net,
-    state_of,
 )
 from validate.scene import PYMUNK, Engine, Scene
 
@@ -33,30 +30,15 @@ UNCERTAINTY = 1e-12
 CASES = {"structural": SquareNet(), "with shear": SquareNet(shear=1), "with shear and bend": SquareNet(shear=1, bend=1)}
 
 
-def start(p):
-    for name in ("n", "spacing", "m", "k"):
-        check_positive(name, getattr(p, name))
-    return state_of(square_net(p), make_spring_network)
-
-
 def run(step, acceleration, state, p, dt, steps):
     x, v, network = state
     x, v = advance(step, acceleration, 0.0, x, v, dt, steps, network)
     return x, v, network
 
 
-def observe(state, p):
-    return state[0][:, :2].ravel()
-
-
-@cache
-def reference(p):
-    return motion(square_net(p), T)
-
-
 def truth(p, t):
     """Every node, by DOP853 with separately coded forces, at a relative tolerance of 1e-13."""
-    return reference(p)(t).ravel()
+    return net_motion(p, T)(t).ravel()
 
 
 def tolerance(p, dt):
@@ -68,14 +50,6 @@ def tolerance(p, dt):
 ENGINES = (
     Engine(PYMUNK, "", lambda p, dt: pymunk_net(square_net(p), dt, np.ravel), 1, "DampedSpring between point masses"),
 )
-
-
-def points(observed, p):
-    return observed.reshape(-1, 2)
-
-
-def links(p):
-    return square_net(p).pairs.tolist()
 
 
 def sanity_checks():
@@ -92,7 +66,7 @@ def sanity_checks():
         claims.append((f"{name}: springs on which grid and lattice differ", len(ours ^ lattice), 0, 0))
 
         rest = rest_positions(square_net(p))
-        _, v, network = start(p)
+        _, v, network = start_net(p)
         pull = np.abs(acceleration(0.0, rest, v, network)).max()
         claims.append((f"{name}: acceleration at the rest state of Newton's method [m/s²]", pull, 0.0, 1e-10))
 
@@ -104,22 +78,18 @@ def sanity_checks():
     return tuple(claims)
 
 
-def in_space(p):
-    """The same motion with an unused third coordinate."""
-    return state_of(square_net(p).padded(), make_spring_network), p
-
-
 SCENE = Scene(
     title="Spring net",
+    link_look="spring",
     lesson="springs",
     cases=CASES,
     duration=T,
     steps=STEPS,
     methods=(*INTEGRATORS, IMPLICIT_MESH),
     acceleration=acceleration,
-    start=start,
+    start=start_net,
     run=run,
-    observe=observe,
+    observe=observe_net,
     truth=truth,
     truth_uncertainty=UNCERTAINTY,
     tolerance=tolerance,
@@ -127,10 +97,9 @@ SCENE = Scene(
     engines=ENGINES,
     slow_methods=LEFT_TO_FULL,          # of these the implicit ones build a dense matrix at every correction
     sanity_checks=sanity_checks,
-    points=points,
-    links=links,
-    link_look="spring",
+    points=net_points,
+    links=net_links,
     uses=("two coordinates", "springs with dampers", "one step function"),
-    ablations={"the third dimension": in_space, "rotation": "lesson 5 builds it",
-              "contact of the net with itself": "lesson 6 builds it"},
+    ablations={"the third dimension": net_in_space, "rotation": "the whole loop of lesson 10 has it, and is measured",
+              "contact of the net with itself": "the whole loop of lesson 10 has it, and is measured"},
 )

@@ -1,0 +1,53 @@
+"""What scenes leave out: the whole loop gives the same motion, and each scene is measured or says why not."""
+
+import pytest
+
+from validate import audit, measure, modules
+from validate.measure import full_loop
+
+PLAN = measure.Plan(speeds=("plain",), live=(), quick=False)
+EARLIER = [name for name in modules.scene_names()
+           if modules.bind_scene(name).lesson not in ("simulator", "kinematics")]
+LOOPS = ("rolling_down", "incline", "stopping_block", "heavy_top", "throw", "catenary")
+
+
+@pytest.mark.parametrize("name", EARLIER)
+def test_a_scene_is_measured_against_the_whole_loop_or_says_why_not(name):
+    scene = modules.bind_scene(name)
+    covered = any(method.function in full_loop.FULL for method in scene.methods)
+    assert covered != bool(scene.full_loop), "give the field full_loop a sentence, or leave it out"
+
+
+def agreeing(name):
+    """A result in which all methods agree, because finding out takes long."""
+    return {"cases": {"first": {"ours": [{"label": m.label, "verdict": "agrees"}
+                                         for m in modules.bind_scene(name).methods]}}}
+
+
+@pytest.mark.parametrize("name", LOOPS)
+def test_the_whole_loop_moves_as_the_scene_does_and_takes_longer(name, monkeypatch):
+    monkeypatch.setattr(full_loop, "interleaved", lambda items, limits, repeats: [
+        (item, {"seconds": seconds, "repeats": [seconds]}) for item, seconds in zip(items, (1.0, 3.0))])
+    found = full_loop.left_out(name, PLAN, agreeing(name))
+    assert found["same"] and found["ratio"] == 3.0 and found["note"] == ""
+
+
+def test_a_loop_that_moves_otherwise_is_noticed_and_the_audit_checks_the_ratio(monkeypatch):
+    monkeypatch.setattr(full_loop, "interleaved", lambda items, limits, repeats: [
+        (item, {"seconds": seconds, "repeats": [seconds]}) for item, seconds in zip(items, (1.0, 3.0))])
+
+    def heavier():
+        step = full_loop.block()
+        return lambda acceleration, t, x, v, dt, p: step(lambda *now: 1.001 * acceleration(*now), t, x, v, dt, p)
+    monkeypatch.setitem(full_loop.FULL, "sliding_step", heavier)
+    found = full_loop.left_out("incline", PLAN, agreeing("incline"))
+    assert not found["same"]
+    result = {"cases": {}, "times": {"rows": [], "time_to_error": {}, "advantage": [], "ablations": [],
+                                     "left_out": {**found, "observed": [list(o) for o in found["observed"]]}}}
+    assert list(audit.of_times(result, {"times": 0})) == []
+    result["times"]["left_out"]["ratio"] = 2.0
+    assert len(list(audit.of_times(result, {"times": 0}))) == 1
+
+
+def test_a_quick_run_leaves_it_to_a_full_one():
+    assert full_loop.left_out("throw", PLAN._replace(quick=True), agreeing("throw"))["note"] == "left to --full"

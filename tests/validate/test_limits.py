@@ -1,0 +1,55 @@
+"""`python -m validate.limits` says how sharp the limits of a report are."""
+
+import json
+
+import numpy as np
+import pytest
+
+from solutions.checks import BadInput
+from validate import limits
+from validate.reference.schemes import TABLEAUX, ErrorLaw, advance
+
+
+def report(*rows):
+    stored = [{"steps": n, "limit": limit, "failure": None, "observed": [1.0 + error], "predicted": predicted}
+              for n, (limit, error, predicted) in enumerate(rows, 1)]
+    scene = {"scene": "throw", "lesson": "integrators",
+             "cases": {"thrown": {"truth": [1.0], "ours": [{"label": "Euler", "rows": stored}], "engines": []}}}
+    return {"run": {}, "scenes": [scene], "stability": []}
+
+
+def test_rows_without_a_judgement_above_round_off_do_not_count():
+    rows = list(limits.rows_of(report((0.1, 0.01, None), (1e-12, 1e-15, None), (0.6, 0.1, None), (0.2, 0.1, [1.1]))))
+    assert [round(row.ratio, 6) for row in rows] == [10.0, 2.0] and [row.two_sided for row in rows] == [False, True]
+
+
+def test_the_tables_name_the_loosest_curve(tmp_path, capsys):
+    (tmp_path / "report.json").write_text(json.dumps(report((0.1, 0.01, None), (0.1, 0.0, None))))
+    limits.main([str(tmp_path)])
+    shown = capsys.readouterr().out
+    assert "integrators" in shown and "Euler" in shown and "inf" in shown
+
+
+def test_a_report_of_round_off_only_is_refused(tmp_path):
+    (tmp_path / "report.json").write_text(json.dumps(report((1e-12, 0.0, None))))
+    with pytest.raises(BadInput, match="round-off"):
+        limits.main([str(tmp_path)])
+
+
+@pytest.mark.parametrize(("label", "factor"), [
+    ("Euler", lambda z: 1.0 + z), ("midpoint", lambda z: 1.0 + z + z * z / 2.0),
+    ("implicit Euler", lambda z: 1.0 / (1.0 - z)),
+    ("Runge–Kutta 4", lambda z: 1.0 + z + z**2 / 2.0 + z**3 / 6.0 + z**4 / 24.0),
+    ("implicit midpoint", lambda z: (1.0 + 0.5 * z) / (1.0 - 0.5 * z))])
+def test_a_table_multiplies_a_decay_by_its_stability_function(label, factor):
+    """Of v̇ = −2v one step keeps R(−2h).  *Source:* Hairer and Wanner 1996, IV.3."""
+    assert label in TABLEAUX
+    v = advance(label, lambda t, x, v: -2.0 * v, 0.0, 1.0, 0.1, 7)[1]
+    assert v == pytest.approx(factor(-0.2) ** 7, rel=1e-14)
+
+
+def test_an_expansion_says_how_far_it_can_be_trusted():
+    law = ErrorLaw(lambda steps, nudge: [1.0 + 3.0 / steps + 5.0 / steps**2 + 7.0 / steps**3 + 1e3 / steps**4],
+                   np.array([1.0]), 1, 1.0, 400)
+    found, true = law.prediction(1e-4, 0.0), 3e-4 + 5e-8 + 7e-12 + 1e-13
+    assert abs(found.error[0] - true) <= found.band < 0.02 * true

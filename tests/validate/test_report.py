@@ -1,0 +1,234 @@
+"""The pages of a report: every link leads somewhere, everything has a name, and numbers claim no more than is known."""
+
+import json
+import re
+from html.parser import HTMLParser
+from itertools import pairwise
+
+import pytest
+
+from validate import measure, modules, report
+from validate.measure import timing
+from validate.measure.selection import Plan
+from validate.report import films, plots, words
+from validate.report.answers import answers
+from validate.results import Verdict
+from validate.run import about
+from validate.stability.examine import all_cases, examine, stored
+
+pytestmark = pytest.mark.xdist_group("coverage")          # a report has the table of coverage: made once
+
+ADDRESSES = ("href", "src")
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """(folder, data) of a small report: a motion with an engine that follows its own law, numbers, a case, a map."""
+    folder = tmp_path_factory.mktemp("report")
+    plan = Plan(speeds=("plain",))
+    results = []
+    for name in ("throw", "tensors"):
+        errors = measure.errors(name, plan)
+        results.append({**errors, "times": measure.times(name, plan, errors)})
+    cases = [stored(examine(case, compiled=False)) for case in all_cases()
+             if case.slug in ("thin-bodies", "amplification")]
+    data = json.loads(json.dumps({"run": about(plan), "scenes": results, "stability": cases}))
+    for name, text in report.texts(data["scenes"], data["stability"], data["run"]).items():
+        (folder / name).write_bytes(text.encode())
+    for plot, name, shown, _ in report.pictures(data["scenes"], data["stability"]):
+        plots.draw(plot, folder / name, shown)
+    return folder, data
+
+
+class Page(HTMLParser):
+    """The tags of a page, as (name, attributes), and the words between them."""
+
+    def __init__(self, path):
+        super().__init__()
+        self.tags, self.text = [], ""
+        self.feed(path.read_text(encoding="utf-8"))
+        self.ids = {one["id"] for _, one in self.tags if "id" in one}
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_data(self, data):
+        if self.tags and self.tags[-1][0] not in ("script", "style"):
+            self.text += data
+
+    def all(self, *names):
+        return [attributes for tag, attributes in self.tags if tag in names]
+
+
+@pytest.fixture(scope="module")
+def pages(made):
+    return {path.name: Page(path) for path in made[0].glob("*.html")}
+
+
+def test_a_report_consists_of_the_files_that_it_names(made):
+    folder, data = made
+    assert {path.name for path in folder.iterdir()} == report.files(data["scenes"], data["stability"])
+
+
+def test_every_link_leads_to_a_file_or_a_heading_of_the_report_and_none_leaves_it(made, pages):
+    folder, _ = made
+    for name, page in pages.items():
+        for address in [one[key] for _, one in page.tags for key in ADDRESSES if key in one]:
+            if address.startswith("data:"):
+                continue
+            file, _, anchor = address.partition("#")
+            assert not file or (folder / file).is_file(), f"{name}: {address}"
+            assert not anchor or anchor in pages[file or name].ids, f"{name}: {address}"
+    for name in ("report.css", "style.css", "dark.css", "report.js", "player.js"):
+        assert "://" not in (folder / name).read_text(encoding="utf-8"), name
+
+
+def test_every_page_has_one_main_part_headings_with_names_in_order_and_tables_with_headers(pages):
+    for name, page in pages.items():
+        levels = [int(tag[1]) for tag, _ in page.tags if re.fullmatch("h[1-6]", tag)]
+        assert len(page.all("main")) == 1 and levels[0] == 1 and levels.count(1) == 1, name
+        assert all(deeper - level <= 1 for level, deeper in pairwise(levels)), (name, levels)
+        assert all("id" in one for one in page.all("h1", "h2", "h3")), name
+        assert len(page.ids) == sum("id" in one for _, one in page.tags), f"{name}: an id stands twice"
+        assert all(one.get("scope") for one in page.all("th")), name
+        assert all("tabindex" in one for one in page.all("div") if one.get("class") == "scroll"), name
+
+
+def test_every_picture_is_described_and_has_its_data_beside_it(made, pages):
+    for name, page in pages.items():
+        for picture in page.all("img"):
+            assert len(picture["alt"].split()) > 8, (name, picture)
+        links = {one.get("href") for one in page.all("a")}
+        for picture in page.all("img"):
+            base = picture["src"].removesuffix(".svg")
+            assert links & {f"{base}.csv", f"{base.removesuffix('-steps')}-runs.csv"}, (name, base)
+        assert all(one.get("aria-label") for one in page.all("canvas")), name
+
+
+def test_a_table_of_numbers_says_what_the_report_holds(made):
+    folder, data = made
+    runs = sum(len(c["rows"]) for s in data["scenes"][:1] for case in s["cases"].values()
+               for c in case["ours"] + case["engines"])
+    assert len((folder / "throw-runs.csv").read_text(encoding="utf-8").splitlines()) == runs + 1
+    rows = (folder / "stability-integrators-amplification.csv").read_text(encoding="utf-8").splitlines()
+    assert len(rows) == 6 * 120 + 1 and {len(row.split(",")) for row in rows} == {122}
+
+
+def test_the_front_page_answers_four_questions_and_says_what_each_verdict_means(made, pages):
+    folder, data = made
+    front = pages["index.html"]
+    assert {"right", "faster", "where", "stable", "legend"} <= front.ids
+    assert all(verdict.value in front.text for verdict in Verdict)
+    found = answers(data["scenes"], data["stability"])
+    ours = [c for s in data["scenes"] for case in s["cases"].values() for c in case["ours"]]
+    assert found["right"]["runs"] == len(ours) and f"0 of {len(ours)} comparisons depart" in front.text
+    assert found["stable"]["hold"] == found["stable"]["findings"] > 0
+    assert {line["engine"] for line in found["departures"]["lines"]} >= {"pybullet, default", "pymunk, Segment"}
+    assert (folder / "index.html").stat().st_size < 100_000
+
+
+def test_a_departure_that_nobody_predicted_is_on_the_front_page(made):
+    _, data = made
+    worse = json.loads(json.dumps(data["scenes"]))
+    worse[0]["cases"]["thrown"]["ours"][0].update(verdict="departs", message="is off")
+    worse[0]["cases"]["thrown"]["engines"][0].update(verdict="departs", message="is off")
+    found = answers(worse, [])
+    assert found["right"]["depart"] == 1 and found["right"]["wrong"] == {"throw": "Throw"}
+    assert found["departures"]["lines"][0]["kind"] == "departs"
+    front = report.texts(worse, [], data["run"])["index.html"]
+    assert "some of it nobody predicted" in front and "comparisons depart" in front
+
+
+def test_the_error_from_an_engines_own_law_is_drawn_beside_that_from_the_truth(made):
+    folder, data = made
+    curve = next(c for c in data["scenes"][0]["cases"]["thrown"]["engines"] if "own_law" in c)
+    finest = words.own_errors(curve)[-1][1]
+    assert finest < 0.1 * curve["rows"][-1]["error"]
+    assert f"{curve['label']}, from its own law" in (folder / "throw-steps.svg").read_text(encoding="utf-8")
+
+
+def test_the_film_of_a_scene_is_exact_enough_to_be_magnified(made):
+    _, data = made
+    picture = data["scenes"][0]["picture"]
+    text = films.script(data["scenes"][0])
+    film = json.loads(text.partition(" = ")[2].rstrip(";\n"))
+    frames = picture["films"][0]["frames"]
+    assert film["films"][0]["points"] == len(frames[0])
+    assert len(film["films"][0]["frames"]) == 4 * -(-4 * 2 * len(frames) * len(frames[0]) // 3)
+
+
+def test_a_plot_follows_the_scheme_of_the_page_and_has_no_background(made):
+    text = (made[0] / "throw-times.svg").read_text(encoding="utf-8")
+    assert "prefers-color-scheme: dark" in text and "var(--c-000000, #000000)" in text
+    assert "style=\"fill: var(--c-ffffff" not in text
+
+
+@pytest.mark.parametrize(("x", "said"), [(266.4, "270×"), (3.84, "3.8×"), (0.0423, "0.042×"), (None, "–")])
+def test_a_ratio_has_two_digits(x, said):
+    assert words.factor(x) == said
+
+
+@pytest.mark.parametrize(("x", "tolerance", "said"), [
+    (2.8284271, 3e-5, "2.82843"), (14400.0, 0.0, "14,400"), (1.0000005, 1e-13, "1.0000005000000"), (0.0, 1e-6, "0")])
+def test_a_finding_has_as_many_digits_as_its_tolerance(x, tolerance, said):
+    assert words.known(x, tolerance) == said
+
+
+def race(theirs, ours, reached=True):
+    """A race whose times are (shortest, median, longest) [s]."""
+    rows = [{"label": label, "speed": speed, "steps": 10, "error": 0.01, "low": t[0], "seconds": t[1], "high": t[2]}
+            for label, speed, t in (("pymunk", "engine", theirs), ("Verlet", "plain", ours))]
+    curve = {"label": "Verlet", "rows": [{"error": 0.01 if reached else 0.1}]}
+    result = {"times": {"rows": rows}, "cases": {"one": {"ours": [curve]}}}
+    known = {"ours": ours[1], "ratio": theirs[1] / ours[1]} if ours else {"ours": None, "ratio": None}
+    return words.race({"engine": "pymunk", "product": "pymunk", "error": 0.01, "seconds": theirs[1],
+                       "method": "Verlet", "speed": "plain", **known}, result)
+
+
+def test_a_race_is_won_only_beyond_a_factor_of_two_and_beyond_the_spread_of_its_times():
+    assert race((3.9, 4.0, 4.1), (0.9, 1.0, 1.1))["outcome"] == "faster"
+    assert race((1.7, 1.8, 1.9), (0.9, 1.0, 1.1))["outcome"] == "a tie"
+    assert race((0.8, 4.0, 4.1), (0.9, 1.0, 1.1))["outcome"] == "a tie"
+    assert race((0.2, 0.2, 0.2), (0.9, 1.0, 1.1))["outcome"] == "slower"
+    assert words.ratio(race((2.0, 4.0, 8.0), (1.0, 1.0, 1.0))) == "4× (2.0 to 8.0)"
+
+
+def test_a_race_without_a_ratio_says_why_and_is_lost_where_no_run_of_ours_is_that_accurate():
+    open_race = {"engine": "pymunk", "error": 0.01, "seconds": 1.0, "ratio": None}
+    for error, said, outcome in ((0.001, "too long to be timed", "open"), (0.1, "none of our runs", "slower")):
+        result = {"cases": {"one": {"ours": [{"label": "Verlet", "rows": [{"error": error}]}]}}, "times": {"rows": []}}
+        found = words.race(open_race, result)
+        assert said in words.ratio(found) and found["outcome"] == outcome
+
+
+def test_a_busy_machine_is_named_and_an_idle_one_is_not():
+    def run(others, load):
+        return [{"times": {"others": others, "load": [load, 0.0, 0.0]}}]
+    assert "used up to 1.2 of its 2 cores" in words.busy_warning(run(1.2, 1.0), 2)
+    assert words.busy_warning(run(0.05, 3.0), 2) == ""               # the load is that of the minute before
+    assert "load was up to 3.0" in words.busy_warning(run(None, 3.0), 2)
+    assert words.busy_warning(run(None, 1.1), 2) == ""
+
+
+def test_what_others_use_of_the_machine_is_what_remains_of_all_work():
+    assert timing.used_by_others((0.0, 10.0, 5.0), (2.0, 13.0, 6.0)) == 1.0
+    assert timing.used_by_others((0.0, 10.0, 5.0), (2.0, 10.9, 6.0)) == 0.0
+    assert timing.used_by_others(None, None) is None
+    assert timing.used_by_others((0.0, 0.0, 0.0), (0.01, 1.0, 0.0)) is None
+
+
+def test_texts_of_the_source_flow():
+    text = "Return the law of\na ball.  It falls:\n\n    v' = g\n\ndisc   rolls\n       on\nbox    slides\nFrom a book."
+    assert words.flowing(text) == [
+        ("text", "law of a ball. It falls:"), ("formula", "v' = g"),
+        ("terms", [("disc", "rolls on"), ("box", "slides")]), ("text", "From a book.")]
+    assert words.flowing("Return a (n, 3) of (0, 0, 1).") == [("text", "a of (0, 0, 1).")]
+    assert str(words.subscripts("v_n < 1")) == "v<sub>n</sub> &lt; 1"
+
+
+def test_no_page_names_what_only_a_programmer_knows():
+    internal = re.compile(r"\b(?:[A-Z]{2,}_[A-Z_]+|[a-z]{4,}_[a-z_]{4,})\b")
+    for name in modules.scene_names():
+        scene = modules.bind_scene(name)
+        for thing in (scene.truth, scene.tolerance, scene.acceleration):
+            assert not internal.findall(modules.report_text(thing) if thing else ""), name

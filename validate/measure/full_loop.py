@@ -1,0 +1,168 @@
+"""What scenes gain by what they leave out: the whole loop of lesson 10 against the scene's own method.
+
+The whole loop turns bodies that nobody sees turn, looks for contacts where nothing can touch, and sweeps over what it
+finds.  Put in place of a step that it contains, it must give the same motion to round-off.  Both run as plain Python.
+"""
+
+import numpy as np
+
+from solutions import simulator
+from solutions.rotation import body_angular_momentum
+
+from ..results import jsonable
+from . import timing
+from .accuracy import labels_that_agree, relative
+from .selection import select, with_overrides
+from .timing import SAME, Timed, interleaved, time_ours
+
+NEAR = 1e-9                  # gap up to which the loop finds contacts [m]
+SMALL = 0.01                 # radius of a point over the least distance of two of them, or over 1 m [-]
+SWEEPS = 10                  # an engine's usual number; in the plane one contact needs one
+IN_SPACE = 60                # of a contact that rubs in space: each leaves half of a slip [-]
+LEAST = 50                   # steps of a run
+UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0])
+
+
+def loop(dim):
+    """(step, bounds, narrow, make) of round bodies in the plane or in space."""
+    if dim == 2:
+        return (simulator.contact_step_2d, simulator.disc_bounds, simulator.round_contacts, simulator.make_bodies_2d)
+    return simulator.contact_step, simulator.ball_bounds, simulator.round_contacts, simulator.make_bodies
+
+
+class Whole:
+    """The whole loop for n round bodies: it has the record of the bodies and the contacts of the last step."""
+
+    def __init__(self, x, m, inertia, radius, planes, gravity, mu, sweeps=SWEEPS, margin=NEAR):
+        n, dim = x.shape
+        self.step, self.bounds, self.narrow, make = loop(dim)
+        q = np.zeros(n) if dim == 2 else np.tile(UPRIGHT, (n, 1))
+        self.state, self.bodies = make(x, q, m, inertia, np.full((n, dim), radius), planes, gravity, mu, sweeps, margin)
+
+    def advance(self, load, t, dt, **now):
+        """The state after dt, from one in which the fields `now` of the bodies (n, …) are these."""
+        for name, values in now.items():
+            rows = getattr(self.state, name).copy()
+            rows[:len(values)] = values
+            self.state = self.state._replace(**{name: rows})
+        self.state = self.step(load, self.bounds, self.narrow, t, self.state, dt, self.bodies)
+        return self.state
+
+
+def points():
+    """symplectic_euler_step of lesson 1: points that touch nothing, in the plane or in space."""
+    whole = []
+
+    def symplectic_euler_step(acceleration, t, x, v, dt, p):
+        place = np.atleast_2d(x)
+        n, d = place.shape
+        dim = max(d, 2)
+        wide = lambda values: np.hstack((np.reshape(values, (n, d)), np.zeros((n, dim - d))))
+        if not whole:
+            inertia = np.ones(n) if dim == 2 else np.ones((n, 3))
+            apart = np.linalg.norm(place[:, None] - place, axis=2) + np.diag(np.full(n, 1.0))
+            whole.append(Whole(wide(x), 1.0, inertia, SMALL * apart.min(), np.zeros((0, dim + 1)), np.zeros(dim), 0.0))
+
+        def load(t, places, q, velocities, omega, _):
+            shape = np.shape(x)
+            return wide(acceleration(t, places[:, :d].reshape(shape), velocities[:, :d].reshape(shape), p)), 0.0 * omega
+        now = whole[0].advance(load, t, dt, x=wide(x), v=wide(v))
+        return now.x[:, :d].reshape(np.shape(x)), now.v[:, :d].reshape(np.shape(x))
+    return symplectic_euler_step
+
+
+def block():
+    """sliding_step of lesson 3: a ball that cannot turn, on a plane."""
+    whole = []
+
+    def sliding_step(acceleration, t, x, v, dt, p):
+        d, size = x.size, 0.1
+        if not whole:
+            inertia = np.full(1, np.inf) if d == 2 else np.full((1, 3), np.inf)
+            whole.append(Whole((x + size * p.n)[None], 1.0, inertia, size, np.append(p.n, 0.0)[None], np.zeros(d),
+                               p.mu_k, SWEEPS if d == 2 else IN_SPACE, size))
+
+        def load(t, places, q, velocities, omega, _):
+            F = np.zeros(places.shape)
+            F[0] = acceleration(t, places[0] - size * p.n, velocities[0], p)
+            return F, 0.0 * omega
+        now = whole[0].advance(load, t, dt, x=(x + size * p.n)[None], v=v[None])
+        return now.x[0] - size * p.n, now.v[0]
+    return sliding_step
+
+
+def turning_body():
+    """gyroscopic_step of lesson 5: one body in space that touches nothing."""
+    whole = []
+
+    def gyroscopic_step(torque, t, q, L, dt, body):
+        if not whole:
+            whole.append(Whole(np.zeros((1, 3)), 1.0, body.I_body[None], SMALL, np.zeros((0, 4)), np.zeros(3), 0.0))
+
+        def load(t, x, turned, v, omega, _):
+            return 0.0 * x, torque(t, turned[0], body_angular_momentum(turned[0], omega[0], body.I_body), body)[None]
+        now = whole[0].advance(load, t, dt, q=q[None], omega=angular_velocity_of(q, L, body.I_body)[None])
+        return now.q[0], body_angular_momentum(now.q[0], now.omega[0], body.I_body)
+    return gyroscopic_step
+
+
+def angular_velocity_of(q, L, I_body):
+    """ω (3,) in the world from L (3,)."""
+    return body_angular_momentum(q, L, 1.0 / I_body)
+
+
+def rolling_ball():
+    """rolling_step of lesson 5: a ball on the plane z = 0, found at every step."""
+    whole = []
+
+    def rolling_step(load, t, x, v, q, omega, dt, ball):
+        if not whole:
+            whole.append(Whole(x[None], ball.m, ball.I_body[None], ball.radius, np.array([(0.0, 0.0, 1.0, 0.0)]),
+                               ball.gravity, ball.mu, IN_SPACE, 0.1 * ball.radius))
+        now = whole[0].advance(simulator.weight, t, dt, x=x[None], v=v[None], q=q[None], omega=omega[None])
+        return now.x[0], now.v[0], now.q[0], now.omega[0]
+    return rolling_step
+
+
+FULL = {"symplectic_euler_step": points, "sliding_step": block, "gyroscopic_step": turning_body,
+        "rolling_step": rolling_ball}            # what the whole loop is when it stands for these steps
+
+
+def time_whole(scene, make, p):
+    """prepare(steps, dt) for the whole loop, which begins without contacts every time."""
+    return lambda steps, dt: time_ours(scene, make(), p)(steps, dt)
+
+
+def left_out(name, plan, result):
+    """What a scene gains: {method, steps, ratio, same, observed, repeats, note}; a note where there is no number.
+
+    result: the errors of the scene.  A method that does not agree with the truth there is not compared.
+    """
+    selection = select(name, plan)
+    scene, (_, p) = selection.scene, selection.first
+    nothing = {"method": "", "steps": None, "ratio": None, "same": None, "observed": None, "repeats": None}
+    here = [m for m in scene.methods if m.function in FULL]
+    method = next((m for m in here if m.label in labels_that_agree(result)), None)
+    if scene.full_loop or not here:
+        return {**nothing, "note": scene.full_loop}
+    if plan.quick:
+        return {**nothing, "note": "left to --full"}
+    if method is None:
+        return {**nothing, "note": f"{here[0].label} does not agree with the truth here"}
+    steps = next(n for n in scene.steps if n >= LEAST)
+    _, step = selection.bound(method, "plain")
+    dt = scene.duration / steps
+    timed = [Timed("without", "plain", steps, dt, time_ours(scene, step, p)),
+             Timed("with", "plain", steps, dt, time_whole(scene, FULL[method.function], p))]
+    (_, lean), (_, full) = interleaved(timed, {"plain": np.inf}, plan.repeats())
+    one, other = (scene.observe(scene.run(s, scene.acceleration, scene.start(p), p, dt, steps), p)
+                  for s in (FULL[method.function](), step))
+    return {"method": method.label, "steps": steps, "ratio": full["seconds"] / lean["seconds"],
+            "same": relative(one, other) < SAME, "observed": (one, other),
+            "repeats": (full["repeats"], lean["repeats"]), "note": ""}
+
+
+@with_overrides
+def times(name, plan, result):
+    """Everything about a scene that a clock says: its run times, and what it gains by what it leaves out."""
+    return {**timing.times(name, plan, result), "left_out": jsonable(left_out(name, plan, result))}

@@ -1,0 +1,271 @@
+"""Every step of lesson 5 once more, and what pybullet does with a turning body, for the errors that they make.
+
+An orientation is a pair of complex numbers (Cayley and Klein): (α, β) with |α|² + |β|² = 1 is the quaternion
+w = Re α, z = −Im α, y = −Re β, x = −Im β.  A step is step(torque, R, L, I, h) → (R, L); L and the torque [N m] are
+tuples in world coordinates.  Plain numbers, because arrays of three cost ten times as much.
+"""
+
+from functools import cache
+from math import cos, sin, sqrt
+
+import numpy as np
+
+from ..scene import ROUND_OFF
+from .orientation import quaternion
+from .schemes import ErrorLaw
+
+GAMMA = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))                # Suzuki 1990
+ORDERS = {"Runge–Kutta 4": 4, "midpoint turn": 2, "splitting": 2, "splitting, composed": 4, "midpoint, composed": 4}
+EVEN = {"midpoint turn": (2, 4, 6), "splitting": (2, 4, 6), "splitting, composed": (4, 6, 8),
+        "midpoint, composed": (4, 6, 8)}                # each is its own inverse: even powers of the step only
+FINEST = {1: 1000, 2: 800, 4: 400}
+DOUBLINGS = {1: 4, 2: 3, 4: 3}
+NEWTON = 12                  # iterations at most; from a near guess each doubles the digits
+AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+def plus(a, b, factor=1.0):
+    return a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]
+
+
+def cross(a, b):
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def over(a, I):
+    return a[0] / I[0], a[1] / I[1], a[2] / I[2]
+
+
+def times(a, I):
+    return a[0] * I[0], a[1] * I[1], a[2] * I[2]
+
+
+def length(a):
+    return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
+
+
+def product(p, q):
+    """The rotation q, then p."""
+    return p[0] * q[0] - p[1] * q[1].conjugate(), p[0] * q[1] + p[1] * q[0].conjugate()
+
+
+def unit(q):
+    size = sqrt(abs(q[0]) ** 2 + abs(q[1]) ** 2)
+    return q[0] / size, q[1] / size
+
+
+def turn(omega, scale, real):
+    """The pair with the real part `real` and the vector part  scale ω."""
+    return complex(real, -scale * omega[2]), complex(-scale * omega[1], -scale * omega[0])
+
+
+def rotation(phi):
+    """The pair of a rotation by the vector φ."""
+    angle = length(phi)
+    return turn(phi, sin(0.5 * angle) / angle if angle else 0.5, cos(0.5 * angle))
+
+
+def tangent(omega, h):
+    """About ω by the angle 2 arctan(½|ω|h)."""
+    return unit(turn(omega, 0.5 * h, 1.0))
+
+
+def matrix(q, s=2.0):
+    """(3, 3) as three rows, of a pair of length 1; of any pair with s = 2 over its square."""
+    w, z, y, x = q[0].real, -q[0].imag, -q[1].real, -q[1].imag
+    w = s * w
+    return ((1.0 - s * (y * y + z * z), s * x * y - w * z, s * x * z + w * y),
+            (s * x * y + w * z, 1.0 - s * (x * x + z * z), s * y * z - w * x),
+            (s * x * z - w * y, s * y * z + w * x, 1.0 - s * (x * x + y * y)))
+
+
+def dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def to_world(M, r):
+    return dot(M[0], r), dot(M[1], r), dot(M[2], r)
+
+
+def to_body(M, r):
+    return to_world(tuple(zip(*M)), r)
+
+
+# ---------------------------------------------------------------------------------------------- first order
+
+def kept_L(update):
+    """L first, then R by `update` at ω = I⁻¹L."""
+    def step(torque, q, L, I, h):
+        M = matrix(q)
+        L = plus(L, torque(M), h)
+        return update(q, to_world(M, over(to_body(M, L), I)), h), L
+    return step
+
+
+def by_columns(q, omega, h):
+    """(1 + h ω*) R, its columns made orthonormal from the first to the last."""
+    a, b, c = zip(*(plus(row, move, h) for row, move in zip(matrix(q), zip(*(cross(omega, column)
+                                                                             for column in zip(*matrix(q)))))))
+    a = tuple(x / length(a) for x in a)
+    b = plus(b, a, -dot(a, b))
+    b = tuple(x / length(b) for x in b)
+    c = cross(a, b)
+    w, x, y, z = quaternion(np.array((a, b, c)).T)
+    return complex(w, -z), complex(-y, -x)
+
+
+def exactly(q, omega, h):
+    return product(rotation(tuple(h * x for x in omega)), q)
+
+
+def nearly(q, omega, h):
+    return product(tangent(omega, h), q)
+
+
+def kept_omega(implicit, update):
+    """ω first, by Euler's equations in body coordinates; R by the new ω; L belongs to both."""
+    def step(torque, q, L, I, h):
+        M = matrix(q)
+        l = to_body(M, L)
+        w = over(l, I)
+        push = plus(to_body(M, torque(M)), cross(l, w))
+        if implicit:                                    # one correction of Newton's method
+            columns = [plus(times(AXES[k], I), cross(plus(times(w, (I[k],) * 3), l, -1.0), AXES[k]), h)
+                       for k in range(3)]
+            change = solve(columns, tuple(h * x for x in push))
+        else:
+            change = tuple(h * x for x in over(push, I))
+        omega = to_world(M, plus(w, change))
+        q = update(q, omega, h)
+        M = matrix(q)
+        return q, to_world(M, times(to_body(M, omega), I))
+    return step
+
+
+def solve(columns, right):
+    """Cramer's rule."""
+    a, b, c = columns
+    whole = dot(a, cross(b, c))
+    return dot(right, cross(b, c)) / whole, dot(a, cross(right, c)) / whole, dot(a, cross(b, right)) / whole
+
+
+# ---------------------------------------------------------------------------------------------- higher order
+
+def classical(torque, q, L, I, h):
+    """Runge–Kutta 4 on the pair and L; between the stages the pair's length is not quite 1."""
+    def slope(q, L):
+        M = matrix(q)
+        omega = to_world(M, over(to_body(M, L), I))
+        return product(turn(omega, 0.5, 0.0), q), torque(M)
+
+    def ahead(rate, tau, share):
+        return (q[0] + share * h * rate[0], q[1] + share * h * rate[1]), plus(L, tau, share * h)
+
+    k1 = slope(q, L)
+    k2 = slope(*ahead(*k1, 0.5))
+    k3 = slope(*ahead(*k2, 0.5))
+    k4 = slope(*ahead(*k3, 1.0))
+    mean = [(k1[0][n] + 2.0 * k2[0][n] + 2.0 * k3[0][n] + k4[0][n]) / 6.0 for n in range(2)]
+    tau = tuple((a + 2.0 * b + 2.0 * c + d) / 6.0 for a, b, c, d in zip(k1[1], k2[1], k3[1], k4[1]))
+    return unit((q[0] + h * mean[0], q[1] + h * mean[1])), plus(L, tau, h)
+
+
+def free_midpoint(q, L, I, h):
+    """m = ℓ + ½h m × I⁻¹m by iteration of its linear part, then Cayley's rotation about m in the body."""
+    l = to_body(matrix(q), L)
+    m = l
+    for _ in range(NEWTON):
+        w = over(m, I)
+        r = plus(plus(m, l, -1.0), cross(m, w), -0.5 * h)
+        columns = [plus(AXES[k], cross(plus(w, m, -1.0 / I[k]), AXES[k]), 0.5 * h) for k in range(3)]
+        change = solve(columns, r)
+        m = plus(m, change, -1.0)
+        if length(change) <= ROUND_OFF * length(m):
+            break
+    return unit(product(q, turn(over(m, I), 0.5 * h, 1.0)))
+
+
+def free_splitting(q, L, I, h):
+    """Half about axis a of the body, all about c, half about a, and all of the common turn about L."""
+    middle = sorted(range(3), key=lambda k: I[k])[1] if len(set(I)) == 3 else next(
+        k for k in range(3) if (I[(k + 1) % 3] - I[k]) * (I[k] - I[(k + 2) % 3]) >= 0.0)
+    a, c = (middle + 1) % 3, (middle + 2) % 3
+
+    def about(q, axis, share):
+        part = dot(tuple(zip(*matrix(q)))[axis], L)
+        angle = share * h * (1.0 / I[axis] - 1.0 / I[middle]) * part
+        return product(q, rotation(tuple(angle * (n == axis) for n in range(3))))
+    q = about(about(about(q, a, 0.5), c, 1.0), a, 0.5)
+    return unit(product(rotation(tuple(h / I[middle] * x for x in L)), q))
+
+
+def kicked(free):
+    """Half of the angular impulse, the free motion, the other half."""
+    def step(torque, q, L, I, h):
+        L = plus(L, torque(matrix(q)), 0.5 * h)
+        q = free(q, L, I, h)
+        return q, plus(L, torque(matrix(q)), 0.5 * h)
+    return step
+
+
+def composed(step):
+    def five(torque, q, L, I, h):
+        for share in (GAMMA, GAMMA, 1.0 - 4.0 * GAMMA, GAMMA, GAMMA):
+            q, L = step(torque, q, L, I, share * h)
+        return q, L
+    return five
+
+
+STEPS = {
+    "ω*R, renormalised": kept_L(by_columns), "axis–angle": kept_L(exactly), "quaternion": kept_L(nearly),
+    "gyroscopic term": kept_omega(False, nearly), "gyroscopic, implicit": kept_omega(True, nearly),
+    "Runge–Kutta 4": classical, "midpoint turn": kicked(free_midpoint), "splitting": kicked(free_splitting),
+    "splitting, composed": composed(kicked(free_splitting)), "midpoint, composed": composed(kicked(free_midpoint)),
+    # Bullet: the explicit or the implicit gyroscopic term, then the exact rotation by the new ω
+    "pybullet, reduced coordinates": kept_omega(False, exactly), "pybullet": kept_omega(True, exactly)}
+
+
+def no_torque(M):
+    return 0.0, 0.0, 0.0
+
+
+def predict_turns(T, moments, begin, torque, seen, truth, floor, engines=(), doublings=DOUBLINGS):
+    """Return the field `predicted_error` of a scene with one turning body.
+
+    moments(p) → I;    begin(p) → (pair, L) at the start;    torque(p) → rows of R → torque;    seen(rows of R) → array;
+    floor(p, dt) → round-off;    engines: labels of STEPS that are engines here;    doublings: {order: as in ErrorLaw}.
+    """
+    @cache
+    def error_law(label, p):
+        I, step = tuple(map(float, moments(p))), STEPS[label]
+
+        def run(steps, nudge):
+            (q, L), moment = begin(p), torque(p)
+            L = tuple(one + nudge * share for one, share in zip(L, (0.5, -0.3, 0.8)))
+            for _ in range(steps):
+                q, L = step(moment, q, L, I, T / steps)
+            return seen(matrix(q))
+        order = ORDERS.get(label, 1)
+        return ErrorLaw(run, np.array(truth(p, T), dtype=float), EVEN.get(label, order), T,
+                        FINEST[order], doublings[order])
+
+    def predicted_error(label, p, dt):
+        """The error, with its sign, of the same step written once more in complex numbers: at the same step where that
+        is coarse, else by its expansion in powers of dt.  pybullet turns its bodies by the gyroscopic term, explicit
+        in reduced coordinates and implicit in maximal ones.
+        """
+        if label not in STEPS or (label.startswith("pybullet") and label not in engines):
+            return None
+        return error_law(label, p).prediction(dt, floor(p, dt))
+
+    return predicted_error
+
+
+def free_turns(T, truth, uncertainty):
+    """Return the field `predicted_error` of a free body that starts at R = 1, with p.moments() and p.omega()."""
+    def begin(p):
+        return (1.0 + 0j, 0j), tuple(map(float, p.moments() * p.omega()))
+    # roundings of one sign, as those of a turn about a fixed axis are, and what the truth leaves open
+    floor = lambda p, dt: 1e-12 + T / dt * ROUND_OFF + 10.0 * uncertainty
+    return predict_turns(T, lambda p: p.moments(), begin, lambda p: no_torque, np.ravel, truth, floor,
+                         ("pybullet", "pybullet, reduced coordinates"), {**DOUBLINGS, 1: 0})

@@ -1,0 +1,215 @@
+"""A house of seven cards stands if they are rough enough.
+
+Two tents, a roof across them, and a tent on the roof.  The cards of a tent push each other horizontally, through a
+contact that leans as they do: μ ≥ tan of the lean.
+"""
+
+from functools import cache
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import BadInput, check_friction, check_positive
+from solutions.simulator import advance_contact, box_bounds_2d, box_contacts_2d, make_bodies_2d
+from solutions.simulator import weight as acceleration
+from validate.engines.simulator import PymunkBoxes
+from validate.methods import LOOP_2D
+from validate.reference.simulator import least_friction
+from validate.scene import PYMUNK, Engine, Scene
+
+T = 1.0                      # [s]
+STEPS = (8, 20, 60, 120, 240, 480, 960)
+FINE, KEPT = 6_000, 30       # steps of the reference run in T, and each of how many it keeps
+SWEEPS, MARGIN = 60, 0.01    # of the loop [-], [m]
+HALF_LENGTH, HALF_THICK = 0.2, 0.01             # of a card [m]
+ROOF, HALF_ROOF = 4, 0.36    # number of the roof, and half of its length [m]
+APART = 0.5                  # of the tents [m]
+UNKNOWN = "unknown"          # an order
+
+
+class Params(NamedTuple):
+    rough: Annotated[float, "friction over the least with which it stands [-]"] = 0.5
+    degrees: Annotated[float, "lean of the cards [°]"] = 20.0
+    g: Annotated[float, "gravity [m/s²]"] = 9.81
+
+
+CASES = {"too smooth": Params(), "rough enough": Params(rough=1.1), "barely": Params(rough=1.02)}
+
+
+def lean(p):
+    return np.radians(p.degrees)
+
+
+def turned(angle):
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([(c, -s), (s, c)])
+
+
+def tent(x, y, p):
+    """Centres of two cards that lean against each other, the right one on (x, y); their height, and x between."""
+    foot, top = np.array([-HALF_THICK, -HALF_LENGTH]), np.array([-HALF_THICK, HALF_LENGTH])
+    R = turned(lean(p))
+    right = np.array([x, y]) - R @ foot                  # turned to the left, it stands on its left lower corner
+    across = (R @ top + right)[0]                        # of the mirror: the corners at the top meet
+    left = np.array([2.0 * across - right[0], right[1]])
+    return left, right, (right + R @ np.array([HALF_THICK, HALF_LENGTH]))[1], across
+
+
+def house(p):
+    """(centres (7, 2), angles (7,)) of the cards."""
+    a_left, a_right, height, a = tent(0.0, 0.0, p)
+    b_left, b_right, _, b = tent(APART, 0.0, p)
+    c_left, c_right, _, c = tent(0.0, height + 2.0 * HALF_THICK, p)
+    roof = np.array([0.5 * (a + b), height + HALF_THICK])
+    shift = np.array([roof[0] - c, 0.0])
+    leans = lean(p) * np.array([-1.0, 1.0])
+    return (np.stack((a_left, a_right, b_left, b_right, roof, c_left + shift, c_right + shift)),
+            np.concatenate((leans, leans, [0.5 * np.pi], leans)))
+
+
+def halves():
+    half = np.tile((HALF_THICK, HALF_LENGTH), (7, 1))
+    half[ROOF, 1] = HALF_ROOF
+    return half
+
+
+def masses():
+    return halves()[:, 1] / HALF_LENGTH
+
+
+def least(p):
+    """Least friction with which it stands [-]."""
+    return np.tan(lean(p))
+
+
+def start(p):
+    for name in ("rough", "degrees", "g"):
+        check_positive(name, getattr(p, name))
+    if not 5.0 <= p.degrees <= 30.0:
+        raise BadInput("degrees", p.degrees, "let the cards lean by 5° to 30°: the roof must reach from tent to tent")
+    check_friction(p.rough * least(p))
+    x, q = house(p)
+    return make_bodies_2d(x, q, masses(), masses() * np.sum(halves()**2, axis=1) / 3.0, halves(), [(0.0, 1.0, 0.0)],
+                          (0.0, -p.g), p.rough * least(p), SWEEPS, MARGIN)
+
+
+def run(step, acceleration, state, p, dt, steps):
+    now, rows = state
+    return advance_contact(step, acceleration, box_bounds_2d, box_contacts_2d, 0.0, now, dt, steps, rows), rows
+
+
+def corners(x, angle):
+    """Corners (28 · 2,) [m] of all cards."""
+    signs = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+    return np.concatenate([(place + (half * signs) @ turned(a).T).ravel()
+                           for place, a, half in zip(x, angle, halves())])
+
+
+def observe(state, p):
+    return corners(state[0].x[:7], state[0].q[:7])
+
+
+def parts(p):
+    return (*house(p), halves(), masses(), np.zeros((7, 2)), np.zeros(7)), None, 0.0, p.rough * least(p), p.g, 0.0
+
+
+@cache
+def reference(p):
+    return np.array(PymunkBoxes(parts(p), T / FINE, 100, 1e-5).film(FINE, KEPT, corners))
+
+
+def truth(p, t):
+    """Rough enough, it stands: nothing moves.  By symmetry the cards of a tent push each other horizontally.  Their
+    contact has the normal of a face, which leans by θ: μ ≥ tan θ.  The feet need less.
+
+    Too smooth, it falls, and nobody knows how: the picture shows pymunk with 6,000 steps per second.
+    """
+    if p.rough > 1.0 or t == 0.0:
+        return corners(*house(p))
+    film = reference(p)
+    return film[min(max(round(t / T * (len(film) - 1)), 0), len(film) - 1)]
+
+
+def tolerance(p, dt):
+    """What stands: in the first steps the loop does not know the forces.  60 sweeps leave ρ⁶⁰ of g dt, with
+    ρ = cos²(π/14) for seven bodies in a row at the worst, and memory takes as much of the rest in each further step:
+    g dt² ρ⁶⁰/(1 − ρ⁶⁰) altogether.  A corner of a card that leans by θ moves 1/sin θ as far.
+
+    What falls: no theory says how far two runs differ.  Nor does it for pymunk, in which contacts must overlap first.
+    """
+    left = np.cos(np.pi / 14.0) ** (2 * SWEEPS)
+    sinks = p.g * dt**2 * left / (1.0 - left) / np.sin(lean(p))
+    size = np.linalg.norm(corners(*house(p)))
+    stands = sinks * np.sqrt(28.0) / size + 1e-9
+    return {UNKNOWN: stands if p.rough > 1.0 else np.inf, "pymunk": np.inf}
+
+
+def pymunk_make(p, dt):
+    return PymunkBoxes(parts(p), dt, 100, 1e-5).run(corners)
+
+
+ENGINES = (Engine(PYMUNK, "", pymunk_make, UNKNOWN, "boxes; 100 iterations, collision_slop 1e-5"),)
+
+
+def at_rest(p):
+    """(a, b, n, p): what touches.  The tents, feet on what carries them and corners under what they carry."""
+    x, q = house(p)
+    at = corners(x, q).reshape(7, 4, 2)
+    face, up = turned(lean(p)) @ np.array([-1.0, 0.0]), np.array([0.0, 1.0])
+    found = []
+    for left, right, below in ((0, 1, 7), (2, 3, 7), (5, 6, ROOF)):
+        found += [(left, right, face, at[left, 2]), (left, below, up, at[left, 1]), (right, below, up, at[right, 0])]
+    found += [(card, ROOF, -up, at[card, np.argmax(at[card, :, 1])]) for card in range(4)]
+    return [np.array(values) for values in zip(*found)]
+
+
+def sanity_checks():
+    """Return ((claim, found, expected, tolerance), …): the least friction by a linear program, and pymunk's house."""
+    claims = []
+    for degrees in (10.0, 20.0, 30.0):
+        p = Params(degrees=degrees)
+        found = least_friction(*at_rest(p), house(p)[0], masses() * p.g)
+        claims.append((f"least friction by a linear program, {degrees:g}° [-]", found, least(p), 1e-6))
+    for rough, moves in ((0.98, 1.0), (1.02, 0.0)):
+        p = Params(rough=rough)
+        end = PymunkBoxes(parts(p), T / 1000, 100, 1e-5).film(1000, 1000, corners)[-1]
+        claims.append((f"whether a corner moves by a millimetre in pymunk, with {rough:g} of that [-]",
+                       float(np.max(np.abs(end - corners(*house(p)))) > 1e-3), moves, 0.0))
+    return tuple(claims)
+
+
+def points(observed, p):
+    """The corners of all cards, and the floor."""
+    return np.round(np.vstack((np.reshape(observed, (-1, 2)), ((-0.8, 0.0), (1.2, 0.0)))), 4)
+
+
+def links(p):
+    return [(4 * k + i, 4 * k + (i + 1) % 4) for k in range(7) for i in range(4)] + [(28, 29)]
+
+
+SCENE = Scene(
+    title="A house of cards",
+    lesson="simulator",
+    cases=CASES,
+    duration=T,
+    steps=STEPS,
+    methods=(LOOP_2D,),
+    acceleration=acceleration,
+    start=start,
+    run=run,
+    observe=observe,
+    truth=truth,
+    truth_uncertainty=1e-15,
+    tolerance=tolerance,
+    engines=ENGINES,
+    orders={"contact_step_2d": UNKNOWN},
+    slow_methods=("contact_step_2d",),
+    slow_cases=("rough enough", "barely"),
+    omitted_methods="pybullet: the house was not set up in it",
+    sanity_checks=sanity_checks,
+    points=points,
+    links=links,
+    uses=("boxes in the plane", "friction that holds", "sweeps with memory"),
+    ablations={"bending of the cards": "rigid cards stand or slide",
+               "pushing out what overlaps": "the soft contacts of lesson 9 do it"},
+)
