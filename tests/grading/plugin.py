@@ -200,14 +200,16 @@ class Pure:
         value = getattr(self.subject, name)
         if not callable(value) or isinstance(value, type):
             return value
-        if self.trace and name == self.trace.function:
-            value = self.trace.watching(value)
+        watched = self.trace and name == self.trace.function
+        value = self.trace.watching(value) if watched else value
 
         def call(*arguments):
             before = [a.copy() for a in wire.arrays_in(arguments)]
             result = value(*(getattr(a, "unwatched", a) for a in arguments))
             after = wire.arrays_in(arguments)
             if not all(np.array_equal(a, b, equal_nan=a.dtype.kind == "f") for a, b in zip(before, after)):
+                if watched:
+                    self.trace.changed_input()
                 quantity, expected = "the arrays that were handed in", "left as they were: return new ones"
                 raise NotYet(quantity, expected, f"{name} has changed one in place", "", "changed in place")
             return result

@@ -15,7 +15,7 @@ from ..mutants.traces import mutants_of, names_in, traces_of
 from . import example, points, release
 
 LESSONS = modules.lesson_names()
-EACH = 20                    # the default run looks at one of so many wrong answers of a lesson; --long at all [-]
+EACH = 5                     # the default run looks at one of so many wrong answers of a lesson; --long at all [-]
 RECOGNISED = 0.9             # share of the wrong answers of a lesson, at least
 NOISE = 1e-15                # relative size of what another order of the same operations may change
 

@@ -20,14 +20,17 @@ def mutants_of(lesson):
     return importlib.import_module(f"tests.mutants.{lesson}").MUTANTS
 
 
-def traces_of(lesson, answers):
-    """{key: {test: Trace}} of some answers, {key: (exercise, function)}, in the tests of their exercises."""
+def traces_of(lesson, answers, every=False):
+    """{key: {test: Trace}} of some answers, {key: (exercise, function)}, in the tests of their exercises.
+
+    every: keep all calls, as for writing a table.
+    """
     names, module = names_in(lesson), vars(modules.bind(lesson))
 
     def subject(number, function):
         changed = types.SimpleNamespace(**{**module, names[number]: function})
         return changed, lambda exercise, test: exercise == number
-    traces = mistakes.Traces(names)
+    traces = mistakes.Traces(names, every)
     points.grade_each(lesson, {str(key): subject(*answer) for key, answer in answers.items()}, traces=traces)
     return {key: traces.of(str(key), number) for key, (number, _) in answers.items()}
 
@@ -42,7 +45,7 @@ def table_of(lesson):
     kept, names, module = mutants_of(lesson), names_in(lesson), modules.bind(lesson)
     answers = {k: (mutant.exercise, mutant.function) for k, mutant in enumerate(kept)}
     worked = {number: (number, getattr(module, name)) for number, name in names.items()}
-    traces, table = traces_of(lesson, {**worked, **answers}), {}
+    traces, table = traces_of(lesson, {**worked, **answers}, every=True), {}
     for number, name in names.items():
         right = [traces[k] for k, mutant in enumerate(kept) if mutant.right and mutant.exercise == number]
         orderless = in_any_order(traces[number], right)
@@ -51,12 +54,21 @@ def table_of(lesson):
                          "right": {test: stored(trace, orderless) for test, trace in traces[number].items()},
                          "wrong": []}
     for k, mutant in enumerate(kept):
-        known = table[mutant.exercise]
-        tests = {test: stored(trace, known["orderless"]) for test, trace in traces[k].items()
-                 if not mistakes.all_same(trace.kept(known["orderless"]), known["right"][test])}
-        if tests and not mutant.right:                               # the others return what a right answer returns
-            known["wrong"].append({"idea": mutant.story, "tests": tests})
+        if not mutant.right:
+            table[mutant.exercise]["wrong"] += entry(mutant, traces[k], traces[mutant.exercise], table[mutant.exercise])
     return table
+
+
+def entry(mutant, traces, worked, known):
+    """[What is stored of a wrong answer]; nothing where it returns what the worked one returns, as far as it gets."""
+    kept = {test: trace.kept(known["orderless"]) for test, trace in traces.items()}
+    tests = [test for test in kept if not mistakes.all_same(kept[test], known["right"][test])]
+    early = [test for test in tests if mistakes.differ(kept[test], known["right"][test])]
+    later = {test: mistakes.first_difference(traces[test], worked[test], known["orderless"])
+             for test in tests if test not in early}
+    later = {test: found for test, found in later.items() if found}
+    stored = {test: mistakes.stored(kept[test]) for test in tests}
+    return [{"idea": mutant.story, "tests": stored, "later": later}] if early or later else []
 
 
 def stored(trace, orderless):

@@ -18,11 +18,14 @@ from pathlib import Path
 import numpy as np
 
 FIRST = 64                   # of the calls in a test these are kept, and after them number 128, 256, …
+EVERY = 4096                 # so many are kept while a table is written
 SAME, ROUND_OFF = 1e-6, 1e-9   # two sums are the same within this part of their terms, or within this
+VISIBLE = 1e-3               # a result that is off by this part of its own terms is wrong, however small it is
 DIGITS = 8                   # of a stored sum
 GOLDEN = 0.6180339887498949  # cubes times it, modulo 1, are spread evenly, and no two differences are the same
 MOST = 2                     # so many ideas are named where several give the same numbers
 NOTHING = object()           # the last result where there is none
+CHANGED = "has changed its input"
 ONE, TWO = "a one-dimensional array", "a two-dimensional array"
 FOLDER = Path(__file__).parent
 
@@ -39,16 +42,20 @@ def table(lesson):
 class Traces:
     """What the functions of the exercises return in a run: found = {(subject, exercise): {test: its Trace}}.
 
-    functions: {exercise: name}, as in the tables if None.
+    functions: {exercise: name}, as in the tables if None.  every: keep all calls, for writing a table.
     """
 
-    def __init__(self, functions=None):
-        self.functions, self.found = functions, {}
+    def __init__(self, functions=None, every=False):
+        self.functions, self.every, self.found = functions, every, {}
 
     def begin(self, subject, lesson, exercise, test):
         """The Trace of one test."""
-        known = table(lesson).get(exercise, {"function": ""})["function"]
-        trace = Trace(known if self.functions is None else self.functions[exercise])
+        if self.every:
+            trace = Trace(self.functions[exercise], range(1, EVERY + 1))
+        else:
+            known = table(lesson).get(exercise, {"function": "", "wrong": []})
+            later = {mistake["later"][test][0] for mistake in known["wrong"] if test in mistake["later"]}
+            trace = Trace(known["function"] if self.functions is None else self.functions[exercise], later)
         self.found.setdefault((subject, exercise), {})[test] = trace
         return trace
 
@@ -63,34 +70,48 @@ class Trace:
     A test ends where it fails, so the number of calls is kept, too.
     """
 
-    def __init__(self, function):
-        self.function, self.calls, self.returned = function, 0, NOTHING
-        self.results, self.sorted_out, self.kinds = [], [], set()
+    def __init__(self, function, wanted=()):
+        self.function, self.wanted, self.calls, self.returned = function, wanted, 0, NOTHING
+        self.results, self.sorted_out, self.kinds = {}, {}, set()    # {number of the call: its summary}
+
+    def of_calls(self, orderless):
+        """{number of the call: its summary}; orderless: whether the order within a result does not matter."""
+        return self.sorted_out if orderless else self.results
 
     def kept(self, orderless):
-        """The results and the number of calls; orderless: whether the order within a result does not matter."""
-        return [*(self.sorted_out if orderless else self.results), f"{self.calls} calls"]
+        """The results of the first calls and of some later ones, and the number of calls."""
+        return [*(one for call, one in self.of_calls(orderless).items() if is_kept(call)), f"{self.calls} calls"]
+
+    def keep(self, result, orderless):
+        self.results[self.calls], self.sorted_out[self.calls] = result, orderless
+
+    def changed_input(self):
+        """The last call has changed an array that was handed in."""
+        self.keep(CHANGED, CHANGED)
 
     def watching(self, function):
         """The function, which adds its results to this trace."""
         @functools.wraps(function)
         def watched(*arguments, **named):
             self.calls += 1
-            kept, self.returned = self.calls <= FIRST or self.calls & (self.calls - 1) == 0, NOTHING
+            kept, self.returned = is_kept(self.calls) or self.calls in self.wanted, NOTHING
             try:
                 result = function(*arguments, **named)
             except Exception as e:
                 if kept:
-                    self.results.append(type(e).__name__)
-                    self.sorted_out.append(type(e).__name__)
+                    self.keep(type(e).__name__, type(e).__name__)
                 raise
             if kept:
-                self.results.append(summary(result))
-                self.sorted_out.append(summary(result, orderless=True))
+                self.keep(summary(result), summary(result, orderless=True))
                 self.kinds.add(kind(result))
             self.returned = result                                   # of the last call, unless it raised: `misshapen`
             return result
         return watched
+
+
+def is_kept(call):
+    """Whether the result of the call of this number is kept in every trace."""
+    return call <= FIRST or call & (call - 1) == 0
 
 
 def summary(result, orderless=False):
@@ -150,6 +171,13 @@ def same(kept, stored):
     return kept[0] == stored[0] and abs(kept[1] - stored[1]) <= SAME * kept[2] + ROUND_OFF
 
 
+def same_size(kept, stored, tolerance):
+    """Whether a result is the stored one up to this part of its own terms, however small they are."""
+    if isinstance(kept, str) or isinstance(stored, str):
+        return kept == stored
+    return kept[0] == stored[0] and abs(kept[1] - stored[1]) <= tolerance * kept[2]
+
+
 def all_same(kept, stored):
     return len(kept) == len(stored) and all(map(same, kept, stored))
 
@@ -166,6 +194,19 @@ def stored(results):
     return [one if isinstance(one, str) else [one[0], float(f"{one[1]:.{DIGITS}g}")] for one in results]
 
 
+def first_difference(trace, right, orderless):
+    """[number of the call, its result, the right one] where a trace first leaves the right one; None if nowhere.
+
+    Where all results are the same up to round-off, a small result that is wrong for its size: the last such one,
+    because a test ends with the call that fails.
+    """
+    found, expected = trace.of_calls(orderless), right.of_calls(orderless)
+    both = [call for call in found if call in expected]
+    calls = [call for call in both if not same(found[call], expected[call])]
+    calls += [call for call in reversed(both) if not same_size(found[call], expected[call], VISIBLE)]
+    return [calls[0], *stored([found[calls[0]], expected[calls[0]]])] if calls else None
+
+
 # ---------------------------------------------------------------------------------------------- looking up
 
 def matching(lesson, exercise, traces):
@@ -178,11 +219,13 @@ def matching(lesson, exercise, traces):
         return []
     kept = {test: trace.kept(known["orderless"]) for test, trace in traces.items()}
     wrong = {test for test, right in known["right"].items() if not all_same(kept[test], right)}
-    if not any(differ(kept[test], known["right"][test]) for test in wrong):
-        return []                                # a test that ends early tells nothing about the results
+    seen = any(differ(kept[test], known["right"][test]) for test in wrong)
     found = [mistake["idea"] for mistake in known["wrong"]
-             if wrong and wrong == mistake["tests"].keys()
-             and all(all_same(kept[test], results) for test, results in mistake["tests"].items())]
+             if (seen or mistake["later"])       # a test that ends early tells nothing about the results
+             and wrong == mistake["tests"].keys()
+             and all(all_same(kept[test], results) for test, results in mistake["tests"].items())
+             and all(same_size(traces[test].of_calls(known["orderless"]).get(call, ""), result, SAME)
+                     for test, (call, result, _) in mistake["later"].items())]
     return list(dict.fromkeys(found))
 
 
