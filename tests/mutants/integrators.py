@@ -58,7 +58,7 @@ wrong("1.3", "gives the four slopes equal weights")(runge_kutta(weights=(1 / 4, 
 wrong("1.3", "exchanges the weights of the middle and of the ends")(runge_kutta(weights=(1 / 3, 1 / 6, 1 / 6, 1 / 3)))
 wrong("1.3", "takes the fourth slope at the middle of the step, not at its end")(runge_kutta(nodes=(0, 0.5, 0.5, 0.5)))
 right("1.3", "from its table")(runge_kutta())
-edit("1.3", "position by Euler, velocity by Runge–Kutta", "x + dt / 6.0 * (v + 2.0 * v2 + 2.0 * v3 + v4)", "x + dt * v")
+edit("1.3", "moves the position by an Euler step", "x + dt / 6.0 * (v + 2.0 * v2 + 2.0 * v3 + v4)", "x + dt * v")
 edit("1.3", "does not advance t to the midpoint", "acceleration(t + 0.5 * dt, x + 0.5 * dt * v2",
      "acceleration(t, x + 0.5 * dt * v2")
 edit("1.3", "does not advance t to the end", "acceleration(t + dt", "acceleration(t")
@@ -73,7 +73,7 @@ def average_velocity_step(acceleration, t, x, v, dt, p):
 
 edit("1.4", "adds the velocities without halving", "0.5 * dt", "dt")
 edit("1.4", "moves with the new velocity, not with the mean of old and new", "(v + v_new)", "(v_new + v_new)")
-edit("1.4", "halves the velocity update too", "v + dt * acc", "v + 0.5 * dt * acc")
+edit("1.4", "halves the change of the velocity, too", "v + dt * acc", "v + 0.5 * dt * acc")
 
 
 # 1.5 ------------------------------------------------------------------------------------------------------------
@@ -83,7 +83,7 @@ def symplectic_euler_step(acceleration, t, x, v, dt, p):
     return x + dt * v + dt * dt * a, v + dt * a
 
 
-edit("1.5", "plain Euler", "v = v + dt * acceleration(t, x, v, p)",
+edit("1.5", "takes an explicit Euler step", "v = v + dt * acceleration(t, x, v, p)",
      "v, x = v + dt * acceleration(t, x, v, p), x - dt * dt * acceleration(t, x, v, p)")
 edit("1.5", "moves the position first, with the old velocity, and takes the acceleration there",
      "acceleration(t, x, v, p)", "acceleration(t, x + dt * v, v, p)")
@@ -99,9 +99,9 @@ def verlet_step(acceleration, t, x, v, dt, p):
 
 
 edit("1.6", "advances the velocity with the old acceleration only", "(a + a_new)", "(a + a)")
-edit("1.6", "new acceleration with the old velocity", "v + dt * a, p)", "v, p)")
+edit("1.6", "takes the new acceleration at the old velocity", "v + dt * a, p)", "v, p)")
 edit("1.6", "forgets the half in the position", "0.5 * dt * dt * a", "dt * dt * a")
-edit("1.6", "new acceleration at the old time", "acceleration(t + dt", "acceleration(t")
+edit("1.6", "takes the new acceleration at the old time", "acceleration(t + dt", "acceleration(t")
 
 
 # 1.7 ------------------------------------------------------------------------------------------------------------
@@ -124,13 +124,13 @@ def implicit_euler(time=1.0, place=1.0, enough=lambda k, delta, w: delta <= 1e-1
 
 
 right("1.7", "with a stopping test")(implicit_euler())
-wrong("1.7", "acceleration at the old time")(implicit_euler(time=0.0))
+wrong("1.7", "takes the acceleration at the old time")(implicit_euler(time=0.0))
 wrong("1.7", "takes the acceleration at the old position")(implicit_euler(place=0.0))
 wrong("1.7", "never raises: returns the last iterate")(implicit_euler(silent=True))
 wrong("1.7", "takes one Newton iteration only")(implicit_euler(enough=lambda k, delta, w: True))
 wrong("1.7", "stops iterating while the correction is still large")(
     implicit_euler(enough=lambda k, delta, w: delta <= 0.1))
-edit("1.7", "one Euler step instead of an equation", "w = v.copy()",
+edit("1.7", "takes a symplectic Euler step and solves no equation", "w = v.copy()",
      "w = v + dt * acceleration(t, x, v, p); return x + dt * w, w")
 edit("1.7", "tests only positive corrections", "np.max(np.abs(delta))", "np.max(delta)")
 
@@ -157,9 +157,9 @@ def implicit_midpoint_step(acceleration, t, x, v, dt, p):
     return x + dt * v_mid, v + dt * acceleration(t + 0.5 * dt, x_mid, v_mid, p)
 
 
-edit("1.8", "a whole implicit Euler step", "0.5 * dt, p)", "dt, p); return x_mid, v_mid")
+edit("1.8", "takes a whole step of implicit Euler", "0.5 * dt, p)", "dt, p); return x_mid, v_mid")
 edit("1.8", "returns the state at the middle of the step", "2.0 * x_mid - x, 2.0 * v_mid - v", "x_mid, v_mid")
-edit("1.8", "two half steps of implicit Euler", "2.0 * x_mid - x, 2.0 * v_mid - v",
+edit("1.8", "takes two half steps of implicit Euler", "2.0 * x_mid - x, 2.0 * v_mid - v",
      "implicit_euler_step(acceleration, t + 0.5 * dt, x_mid, v_mid, 0.5 * dt, p)")
 
 
