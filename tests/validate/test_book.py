@@ -48,9 +48,9 @@ class Texts(HTMLParser):
 
 @cache
 def secrets():
-    """The answers of all lessons, their signs, and the sentences of the answers to the questions."""
+    """The answers of all lessons, and their signs."""
     hidden = [answer for name in modules.lesson_names() for answer in release.answers_of(name)]
-    return hidden, release.signs_of(hidden), release.sentences((ROOT / release.ANSWERS).read_text(encoding="utf-8"))
+    return hidden, release.signs_of(hidden)
 
 
 def leaks(texts):
@@ -120,7 +120,7 @@ def test_the_zips_of_a_course_can_be_released(taught):
     every, paths = modules.lesson_names(), release.tracked(dirty=True)
     for worked in map(set, taught.zips().values()):
         assert release.with_earlier(worked) == worked
-        release.refuse_leaks(release.contents(paths, set(every), worked, answers=False), worked, answers_too=False)
+        release.refuse_leaks(release.contents(paths, set(every), worked), worked)
 
 
 def test_the_glossary_has_every_word_of_the_table():
