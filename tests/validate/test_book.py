@@ -100,6 +100,15 @@ def test_every_lesson_adds_up_to_twenty_points_and_has_a_sheet():
         assert f"--lesson {name} " in sheet and leaks([sheet]) == []
 
 
+def test_each_notebook_says_how_many_hours_the_plan_expects():
+    for name, lesson in course.lessons().items():
+        text = course.notebook_of(name).read_text(encoding="utf-8")
+        told = re.search(r"about ([\d.]+) hours: ([\d.]+) to read and run, ([\d.]+) to write", text)
+        whole, reading, writing = map(float, told.groups())
+        assert whole == reading + writing, name
+        assert abs(reading - lesson.reading) <= 0.5 and abs(writing - lesson.writing) <= 0.5, name
+
+
 @pytest.mark.parametrize("taught", plan.COURSES, ids=lambda taught: taught.title)
 def test_a_course_teaches_what_it_needs_before_it_is_needed(taught):
     there = {one.number for name in taught.worked for one in course.lessons()[name].exercises}
