@@ -142,16 +142,17 @@ def test_a_notebook_loses_its_sliders_and_loads_its_player_once(tmp_path):
     cell = nbformat.v4.new_code_cell("x\n" * (pages.LONG + 1))
     view = nbformat.v4.new_output("display_data", {pages.WIDGET: {}, "text/plain": "interactive"})
     cell.outputs = [view, *(nbformat.v4.new_output("display_data", {"text/html": FILM}) for _ in range(2))]
-    said = "# One\nWrite `euler_step` (1.1), not `euler_step` (1.2); see `02_springs.ipynb`."
+    said = "# One\nWrite `euler_step` (1.1 ★), not `euler_step` (1.2); see `02_springs.ipynb`."
     text = nbformat.v4.new_markdown_cell(said)
     (tmp_path / "_static").mkdir()
-    made = pages.prepared(nbformat.v4.new_notebook(cells=[text, cell]), "01_integrators", tmp_path, {})
+    made = pages.prepared(nbformat.v4.new_notebook(cells=[text, cell]), "01_integrators", tmp_path, {}, report=True)
     shown = [output["data"]["text/html"] for output in made.cells[2].outputs]
     assert len(shown) == 2 and shown[0].count("<script") == 1 and shown[1] == "<div>film</div>"
     assert [path.read_text() for path in (tmp_path / "_static").iterdir()] == ["let player = 1;" * 400]
     assert made.cells[2].metadata.tags == ["hide-input"]
-    assert "{py:func}`~lessons.integrators.euler_step` (1.1), not `euler_step` (1.2)" in made.cells[0].source
+    assert "{py:func}`~lessons.integrators.euler_step` (1.1 ★), not `euler_step` (1.2)" in made.cells[0].source
     assert "[`02_springs.ipynb`](02_springs)" in made.cells[0].source
+    assert '<a href="../report/oscillator.html">' in made.cells[1]["source"]
 
 
 def test_a_notebook_that_prints_a_lesson_runs_with_the_stubs():
