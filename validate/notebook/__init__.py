@@ -14,6 +14,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+from IPython import get_ipython
 from IPython.display import HTML, Markdown, display
 
 from solutions.checks import BadInput
@@ -118,19 +119,57 @@ def answers(lesson):
     return StandIn(lesson, withheld)
 
 
+waiting_for, drawn = {}, []  # in one cell: {what is not attempted yet: None}, and whether each attempt gave something
+
+
 def attempt(function, *arguments):
-    """What your function returns; None, and a sentence, when it is not written yet or fails."""
+    """What your function returns; None when it is not written yet or fails.
+
+    A failure is reported at once.  What is not attempted yet is said once per cell or figure.
+    """
     try:
         with np.errstate(all="ignore"):
-            return function(*arguments)
+            result = function(*arguments)
+        drawn.append(True)
+        return result
     except NotImplementedError as e:
-        colour = COLOUR["not attempted"]
-        display(HTML(f'<p style="color:{colour}">○ {escape(str(e))}: not attempted yet, so it is not drawn.</p>'))
+        waiting_for[str(e).removeprefix("Exercise ").replace(":", "")] = None
     except ArithmeticError as e:
         display(HTML(f'<p style="color:{COLOUR["not yet"]}">✗ {escape(str(e))}.</p>'))
     except Exception as e:
         display(HTML(f'<p style="color:{COLOUR["not yet"]}">✗ {escape(type(e).__name__)}: {escape(str(e))}.</p>'))
+    drawn.append(False)
     return None
+
+
+def show_figure():
+    """Show the figure of this cell without its empty axes, and say what it still waits for.
+
+    If every attempt since the last figure failed, there is nothing of yours to see, and the figure is not drawn.
+    """
+    empty = drawn and not any(drawn)
+    _say_waiting()
+    for number in plt.get_fignums():
+        figure = plt.figure(number)
+        for ax in figure.axes:
+            if not ax.has_data() and not ax.patches and not ax.texts and not ax.images:
+                ax.remove()
+        if empty or not figure.axes:
+            plt.close(figure)
+    plt.show()
+
+
+def _say_waiting(*_):
+    """Say in one sentence what was not attempted yet, and forget it."""
+    if waiting_for:
+        display(HTML(f'<p style="color:{COLOUR["not attempted"]}">○ Not attempted yet: '
+                     f'{escape(", ".join(waiting_for))}.</p>'))
+    waiting_for.clear()
+    drawn.clear()
+
+
+if get_ipython():
+    get_ipython().events.register("post_run_cell", _say_waiting)
 
 
 def fastest(lesson, trial):
@@ -371,6 +410,11 @@ class _Answer:
 
 
 # ---------------------------------------------------------------------------------------------- pictures
+
+def look(method, **changes):
+    """How every figure draws a method of validate/methods.py: its arguments for `plot`, with changes."""
+    return {"color": method.colour, "marker": method.marker, "label": method.label, **changes}
+
 
 def play(frames, seconds, links=(), height=260):
     """A film: frames = {label: list of (n, 2) arrays [m]}; "truth" is drawn in grey, the others in colour."""

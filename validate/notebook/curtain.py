@@ -1,0 +1,39 @@
+"""The curtain of the notebooks.  Each lesson adds something to it, made of the functions of that lesson.
+
+Positions are (n, 2) arrays [m], x to the right and y up.  The upper left corner of the curtain is the origin.
+"""
+
+import numpy as np
+
+ROWS, COLS, CELL = 9, 13, 0.1                    # points down and across, and the distance between neighbours [m]
+RINGS = tuple(range(0, COLS, 4))                 # points of the top row by which it hangs
+DT, STEPS, FRAMES = 0.004, 8, 100                # step [s], steps per picture, pictures of a film
+SECONDS = DT * STEPS * FRAMES                    # of a film [s]
+
+
+def points():
+    """Positions of all points at the start."""
+    return np.array([[CELL * column, -CELL * row] for row in range(ROWS) for column in range(COLS)])
+
+
+def threads(springs):
+    """Pairs of points that a thread joins; springs is lesson 2."""
+    return springs.grid_pairs(ROWS, COLS, springs.STRUCTURAL + springs.SHEAR)
+
+
+def network(springs, fixed=RINGS, wind=(0.03, 0.0)):
+    """The curtain as a network of springs; springs is lesson 2."""
+    return springs.make_spring_network(points(), m=0.01, fixed=fixed, pairs=threads(springs), k=60.0, k_d=0.02,
+                                       gravity=(0.0, -9.81), wind=wind, k_v=0.004)
+
+
+def film(step, law, p, x=None, dt=DT):
+    """Pictures of a motion from rest: step is a method of lesson 1, law an acceleration with parameters p."""
+    x = points() if x is None else x
+    v, t, frames = np.zeros_like(x), 0.0, []
+    for _ in range(FRAMES):
+        frames.append(x)
+        for _ in range(round(DT * STEPS / dt)):
+            x, v = step(law, t, x, v, dt, p)
+            t += dt
+    return frames
