@@ -277,9 +277,11 @@ def kinetic_energy(q, L, I_body):
 def tumbling_rate(I_body, k, spin):
     """Return the rate [1/s] at which a disturbance of a rotation about the k-th principal axis grows as e^(rate·t).
 
-    rate = |spin| √((I_k − I_i)(I_j − I_k) / (I_i I_j))          i, j: the other two axes;  spin [rad/s]
+    *Find* it: in Euler's equations without torque put ω = spin 𝐞ₖ and a small part across 𝐞ₖ, and keep what is linear
+    in that part.
 
-    The radicand is positive only for the axis of the middle moment: the tennis-racket theorem.  Elsewhere return 0.
+    I_body (3,) are the principal moments, k is 0, 1 or 2.  The spin [rad/s] may have either sign; the rate is never
+    negative.  It is positive only for the axis of the middle moment: the tennis-racket theorem.  Elsewhere return 0.
     *Source:* second lecture deck, “Tennis racket theorem”; Euler's equations, linearised about ω = spin 𝐞ₖ.
     """
     # YOUR CODE HERE
@@ -294,8 +296,9 @@ def no_torque(t, q, L, body):
 def heavy_top_torque(t, q, L, top):
     """Return τ [N m] (3,) of gravity, −z, about the pivot of a Top with its centre of mass on its axis 𝐞 = R (0, 0, 1).
 
-    τ = l𝐞 × (−Mg ẑ) = Mgl (−e_y, e_x, 0)
+    *Find* it: the weight Mg acts at l𝐞 from the pivot, and top.mgl is the product of the three numbers.
 
+    rotate(q, r) converts a vector r from body to world coordinates; τ is in world coordinates.
     *Source:* Landau and Lifshitz, Mechanics, § 35.
     """
     # YOUR CODE HERE

@@ -5,6 +5,8 @@ Positions are (n, 2) arrays [m], x to the right and y up.  The upper left corner
 
 import numpy as np
 
+from .. import drawing
+
 ROWS, COLS, CELL = 9, 13, 0.1                    # points down and across, and the distance between neighbours [m]
 RINGS = tuple(range(0, COLS, 4))                 # points of the top row by which it hangs
 DT, STEPS, FRAMES = 0.004, 8, 100                # step [s], steps per picture, pictures of a film
@@ -37,3 +39,58 @@ def film(step, law, p, x=None, dt=DT):
             x, v = step(law, t, x, v, dt, p)
             t += dt
     return frames
+
+
+# ---------------------------------------------------------------------------------------------- in space
+
+POLE, POLE_LENGTH, END = 0.02, 1.4, 0.04         # radius and length of the pole, radius of the balls at its ends [m]
+RING_RADIUS, RING_WIRE = 0.06, 0.011             # of a ring, to the middle of its wire; of the wire [m]
+HANG = POLE + RING_WIRE - RING_RADIUS            # height of the centre of a ring over the axis of the pole [m]
+TOP = HANG - RING_RADIUS - RING_WIRE             # height of the upper hem of the curtain [m]
+LEVEL = np.array([1.0, 0.0, 0.0, 0.0])           # the quaternion of a body that is not turned
+ALONG_X = np.array([np.sqrt(0.5), 0.0, np.sqrt(0.5), 0.0])           # of a body whose z lies along the pole
+
+
+def ring_mesh(radius, wire, around=24, across=8):
+    """Corners (n, 3) [m] and faces (k, 3) of a ring about z: a closed mesh, as lesson 4 takes it."""
+    i, j = (part.ravel() for part in np.meshgrid(np.arange(around), np.arange(across), indexing="ij"))
+    a, b = 2.0 * np.pi * i / around, 2.0 * np.pi * j / across
+    out = radius + wire * np.cos(b)
+    corner = lambda i, j: i % around * across + j % across
+    faces = np.concatenate((np.stack((corner(i, j), corner(i + 1, j), corner(i + 1, j + 1)), axis=1),
+                            np.stack((corner(i, j), corner(i + 1, j + 1), corner(i, j + 1)), axis=1)))
+    return np.stack((out * np.cos(a), out * np.sin(a), wire * np.sin(b)), axis=1), faces
+
+
+RING_MESH = ring_mesh(RING_RADIUS, RING_WIRE)
+RING = drawing.mesh(*RING_MESH)
+
+
+def sheet(slipped=False):
+    """The hanging curtain as a shape about its middle: x lies along the pole, and z points up.
+
+    If its first ring has slipped off, its corner hangs down.
+    """
+    x, y = points().T
+    x, depth, height = x - 0.5 * CELL * (COLS - 1), 0.02 + 0.04 * y / y.min(), y - 0.5 * y.min()
+    corner = np.maximum(0.0, 1.0 - (x - x.min()) / (CELL * RINGS[1])) if slipped else 0.0 * x
+    height -= 0.22 * corner**2 * (1.0 - 0.5 * y / y.min())
+    place = np.stack((x + 0.1 * corner**2, depth * np.sin(3.0 * np.pi * x / x.max()), height), axis=1)
+    cells = [COLS * row + column for row in range(ROWS - 1) for column in range(COLS - 1)]
+    front = np.array([face for a in cells for face in ((a, a + COLS, a + 1), (a + 1, a + COLS, a + COLS + 1))])
+    behind = front[:, ::-1] + len(place)                             # a face is seen from one side only
+    return drawing.mesh(np.concatenate((place, place + np.array([0.0, 1e-3, 0.0]))), np.concatenate((front, behind)))
+
+
+def shapes(rings=RINGS, slipped=False):
+    """Pole, two balls, curtain and rings in space, for show3d."""
+    pole, end = drawing.cylinder(POLE, POLE_LENGTH), drawing.sphere(END)
+    return [pole, end, end, sheet(slipped), *[RING] * len(rings)]
+
+
+def still(rings=RINGS):
+    """Their poses (7,): the axis of the pole is the x axis."""
+    ends = [np.concatenate(([side * 0.5 * POLE_LENGTH, 0.0, 0.0], LEVEL)) for side in (-1.0, 1.0)]
+    hung = [np.concatenate(([CELL * (ring - 0.5 * (COLS - 1)), 0.0, HANG], ALONG_X)) for ring in rings]
+    cloth = np.array([0.0, 0.0, TOP - 0.5 * CELL * (ROWS - 1), *LEVEL])
+    return [np.concatenate((np.zeros(3), ALONG_X)), *ends, cloth, *hung]
