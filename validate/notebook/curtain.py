@@ -41,6 +41,20 @@ def film(step, law, p, x=None, dt=DT):
     return frames
 
 
+def folded(spread):
+    """Positions (n, 3) of all points, z towards the viewer, when the rings are `spread` times as far apart as in
+    `points`, at most 1: the cloth stands in folds, one between two rings, and no thread changes its length.
+    """
+    depth = CELL * np.sqrt(1.0 - spread**2)
+    x = points()
+    return np.stack((spread * x[:, 0], x[:, 1], depth * np.tile(np.sin(0.5 * np.pi * np.arange(COLS)), ROWS)), axis=1)
+
+
+def drawn(x):
+    """Points to draw (n, 2) of positions (n, 3): z comes obliquely towards the viewer, to the lower left."""
+    return x[:, :2] + x[:, 2:] * [-0.4, -0.3]
+
+
 # ---------------------------------------------------------------------------------------------- in space
 
 POLE, POLE_LENGTH, END = 0.02, 1.4, 0.04         # radius and length of the pole, radius of the balls at its ends [m]
