@@ -19,7 +19,7 @@ from solutions.checks import BadInput
 
 from . import engines, modules
 from .processes import Ended, alone_in, ending_once, one_sentence, workers
-from .scene import PRODUCTS
+from .scene import OPTIONAL, PRODUCTS
 from .store import SUBSET, lessons_of
 
 HELP = (
@@ -226,7 +226,8 @@ def plan_of(of, names, plain, quick, wanted, changes):
     folder = modules.subject_folder(of)
     for name in wanted:
         if not engines.installed(name):
-            raise BadInput(f"engine {name!r}", "not installed", "leave --engine out: its recorded traces stand in")
+            instead = engines.REMEDY if name in OPTIONAL else "leave --engine out: its recorded traces stand in"
+            raise BadInput(f"engine {name!r}", "not installed", instead)
     live = tuple(name for name in (wanted or PRODUCTS) if engines.installed(name))
     speeds = {None: ("plain", "compiled"), True: ("plain",), False: ("compiled",)}[plain]
     if plain is False and not modules.can_compile():

@@ -11,7 +11,7 @@ from pathlib import Path
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from . import coverage, engines, measure, modules
-from .scene import PRODUCTS
+from .scene import OPTIONAL, PRODUCTS
 from .stability.examine import stability_cases
 from .store import code_digest, lessons_of, store_for
 
@@ -80,7 +80,8 @@ def about(plan, out=None):
     Links to the sources are there only for a report in a folder of the repository.
     """
     inside = out is not None and out.resolve().is_relative_to(modules.ROOT)
-    live = [f"{n} {engines.installed(n)} live" if n in plan.live else f"{n} recorded" for n in PRODUCTS]
+    absent = {n: "left out" if n in OPTIONAL else "recorded" for n in PRODUCTS}
+    live = [f"{n} {engines.installed(n)} live" if n in plan.live else f"{n} {absent[n]}" for n in PRODUCTS]
     compiler = f"numba {modules.numba_version()}" if modules.can_compile() else "numba not installed: plain speed only"
     return {
         "of": str(plan.of), "mode": "quick" if plan.quick else "full", "engines": live, "compiler": compiler,

@@ -1,8 +1,9 @@
-"""The two engines, set up to match textbook mechanics, and whether they are installed.
+"""The engines, set up to match textbook mechanics, and whether they are installed.
 
-`bullet.py` and `chipmunk.py` wrap one engine each.  The other files hold set-ups that several scenes of a lesson use.
+`bullet.py`, `chipmunk.py` and `mujoco.py` wrap one engine each.  The other files hold set-ups that several scenes of a
+lesson use.
 
-Both engines are first order: pybullet does v += a dt, then x += v dt; pymunk does x += v dt, then v += a dt.  With a
+pybullet and pymunk are first order: pybullet does v += a dt, then x += v dt; pymunk does x += v dt, then v += a dt.  With a
 first velocity that belongs to half a step before (pybullet, −½ a dt) or after (pymunk, +½ a dt) they become leapfrog,
 which is second order where forces are smooth.
 """
@@ -16,6 +17,8 @@ from importlib.metadata import PackageNotFoundError, version
 from solutions.checks import BadInput
 
 from ..scene import PRODUCTS
+
+REMEDY = "pip install -e '.[witness]' adds it"
 
 
 def installed(engine):
