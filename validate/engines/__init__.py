@@ -18,6 +18,7 @@ from solutions.checks import BadInput
 
 from ..scene import PRODUCTS
 
+DISTRIBUTIONS = {"mujoco": "mujoco-core"}                # where a package is named otherwise
 REMEDY = "pip install -e '.[witness]' adds it"
 
 
@@ -26,7 +27,7 @@ def installed(engine):
     if engine not in PRODUCTS:
         raise BadInput(f"engine {engine!r}", "unknown", f"choose from: {', '.join(PRODUCTS)}")
     try:
-        return version(engine)
+        return version(DISTRIBUTIONS.get(engine, engine))
     except PackageNotFoundError:
         return None
 
