@@ -3,9 +3,9 @@
 `bullet.py`, `chipmunk.py` and `mujoco.py` wrap one engine each.  The other files hold set-ups that several scenes of a
 lesson use.
 
-pybullet and pymunk are first order: pybullet does v += a dt, then x += v dt; pymunk does x += v dt, then v += a dt.  With a
-first velocity that belongs to half a step before (pybullet, −½ a dt) or after (pymunk, +½ a dt) they become leapfrog,
-which is second order where forces are smooth.
+pybullet and pymunk are first order: pybullet does v += a dt, then x += v dt; pymunk does x += v dt, then v += a dt.
+With a first velocity that belongs to half a step before (pybullet, −½ a dt) or after (pymunk, +½ a dt) they become
+leapfrog, which is second order where forces are smooth.
 """
 
 import ctypes

@@ -2,7 +2,7 @@
 
 Bodies on joints and free bodies have no constraint here that a step could violate.  Runge–Kutta 4 turns a body by
 the method of Munthe-Kaas, and what is left of its error is of order 4; MuJoCo's own default is the semi-implicit Euler
-step.  A contact is a spring with a damper, whose numbers are `solref` and `solimp`: see `Soft`.
+step.  A contact is a spring with a damper, whose numbers are `solref` and `solimp`.
 """
 
 from functools import cache
@@ -13,6 +13,9 @@ import numpy as np
 from ..reference.orientation import quaternion
 from ..scene import MUJOCO, Engine, EngineRun
 from . import quiet_import
+
+IMPEDANCE, TIME_CONSTANT = 0.95, 0.02    # of contacts: `solimp`, here the same at every depth, and `solref` [s]
+SOFT = f"elliptic cone, impedance {IMPEDANCE}, time constant {TIME_CONSTANT} s"
 
 
 @cache
@@ -101,3 +104,54 @@ def chain(ends, m, inertia, centre, g, dt, read, integrator="RK4"):
     model, data = world(dt, body, (0.0, 0.0, -g), integrator)
     data.qpos[:] = np.diff(angles, prepend=0.0)
     return running(model, data, lambda: read(np.cumsum(data.qpos)))
+
+
+# ---------------------------------------------------------------------------------------------- contacts
+
+def contacts(mu):
+    """The default of all shapes: friction, and a contact that is damped critically."""
+    return (f'<default><geom friction="{text(mu)} 0 0" solref="{TIME_CONSTANT} 1" '
+            f'solimp="{IMPEDANCE} {IMPEDANCE} 1 0.5 2"/></default>')
+
+
+def block(gravity, mu, v, dt, read):
+    """Make the EngineRun of a ball of one kilogram that cannot turn, on the plane z = 0; gravity (2,) along x and z.
+
+    read(position (3,)) of its lowest point.
+    """
+    slides = "".join(f'<joint type="slide" axis="{text(axis)}"/>' for axis in np.eye(3))
+    model, data = world(dt, f'<geom type="plane" size="0 0 1"/><body>{slides}<geom size="0.1" pos="0 0 0.1" mass="1"/>'
+                        "</body>", (gravity[0], 0.0, gravity[1]), "Euler", contacts(mu))
+    data.qpos[2], data.qvel[0] = -1e-9, v                # inside, so that the first step has a contact
+    return running(model, data, lambda: read(data.qpos))
+
+
+def tower(cubes, dt):
+    """Build a Tower of cubes; return a function that waits and returns (force under each cube [N], its sinking [m])."""
+    half, bodies = np.full(3, 0.5 * cubes.size), ""
+    for m, y in zip(cubes.masses, cubes.heights()):
+        bodies += (f'<body pos="0 0 {text(y)}"><freejoint/><geom type="box" size="{text(half)}" mass="{text(m)}"/>'
+                   "</body>")
+    model, data = world(dt, f'<geom type="plane" size="0 0 1"/>{bodies}', (0.0, 0.0, -cubes.g), "Euler",
+                        contacts(cubes.mu))
+
+    def wait():
+        mujoco, found, forces = module(), np.zeros(6), np.zeros(len(cubes.masses))
+        for _ in range(round(cubes.waiting / dt)):
+            mujoco.mj_step(model, data)
+        mujoco.mj_forward(model, data)                   # the contacts of the last places
+        for n, contact in enumerate(data.contact):
+            mujoco.mj_contactForce(model, data, n, found)
+            forces[max(model.geom_bodyid[contact.geom]) - 1] += found[0]          # body 0 is the floor
+        return forces, data.qpos.reshape(-1, 7)[:, 2] - cubes.heights()
+    return wait
+
+
+def sag(load, m, below):
+    """The depth [m] of each of the four contacts under a cube: a load of a quarter, F (1 − d) τ² (1/m + 1/m')/4.
+
+    m: mass of the cube [kg];    below: of the cube under it, or ∞.  At rest a contact has  0 = −k r − R F,  with
+    k = 1/(d τ²) and the regularisation R = (1 − d)/d (1/m + 1/m').
+    *Source:* the documentation of MuJoCo, chapter Computation.
+    """
+    return 0.25 * load * (1.0 - IMPEDANCE) * TIME_CONSTANT**2 * (1.0 / m + 1.0 / below)

@@ -99,8 +99,8 @@ def texts(results, stability, about):
     if stability:
         found["stability.html"] = page("stability.html", cases=stability)
     products = words.products(results)
-    found["index.html"] = page("front.html", rows=[words.row(r, products) for r in results], products=products, lessons=lessons,
-                               found=answers(results, stability, about.get("cores")))
+    found["index.html"] = page("front.html", rows=[words.row(r, products) for r in results], lessons=lessons,
+                               products=products, found=answers(results, stability, about.get("cores")))
     found["report.json"] = json.dumps({"run": about, "scenes": results, "stability": stability}, ensure_ascii=False)
     found |= {f"{r['scene']}-film.js": films.script(r) for r in results}
     found |= tables.texts(results, stability)
