@@ -6,6 +6,7 @@ changed, `validate audit` whether a report follows from its raw rows.
 import json
 import os
 import tempfile
+from contextlib import contextmanager
 from enum import StrEnum
 from math import isfinite
 from pathlib import Path
@@ -19,7 +20,7 @@ from solutions.checks import BadInput
 
 from . import engines, modules, needs
 from .processes import Ended, alone_in, ending_once, one_sentence, workers
-from .scene import PRODUCTS
+from .scene import OPTIONAL, PRODUCTS
 from .store import SUBSET, lessons_of
 
 HELP = (
@@ -43,6 +44,7 @@ DEPTH = typer.Option("--quick/--full", help="Time only short runs, or all of the
 LIVE = typer.Option(help="Run only this engine live (may be repeated).")
 CHANGE = typer.Option("--set", metavar="NAME=VALUE", help="Change a parameter of one scene's first case.")
 PROCESSES = typer.Option(min=1, help="Processes for everything that is not timed.")
+EXECUTOR = typer.Option(metavar="tcp://HOST:PORT", help="Measure on this Dask cluster instead of in processes here.")
 
 
 @app.callback()
@@ -56,6 +58,7 @@ def validate(
     engine: Annotated[list[EngineName] | None, LIVE] = None,
     set_: Annotated[list[str] | None, CHANGE] = None,
     jobs: Annotated[int, PROCESSES] = max(1, min(4, os.cpu_count() or 1)),
+    executor: Annotated[str | None, EXECUTOR] = None,
     out: Annotated[Path, typer.Option(help="Folder of the report.")] = Path("report"),
 ):
     if context.invoked_subcommand:
@@ -66,11 +69,11 @@ def validate(
     require_answers(of, names)
     plan = plan_of(of, names, plain, quick, [e.value for e in engine or []], overrides(set_ or [], names))
     try:
-        with workers(jobs) as pool:
+        with workers(jobs) as pool, on_cluster(executor, of) as measuring:
             for _ in pool.each({name: (measure.load, name, of) for name in names}):
                 pass
             with alone_in(writable(out)):
-                code = run(names, plan, pool, out, console)
+                code = run(names, plan, pool, out, console, measuring)
     except Ended as e:
         console.print(f"Interrupted. What was finished is kept in {out}: the same command goes on from there.",
                       soft_wrap=True)
@@ -78,6 +81,17 @@ def validate(
     for error in broken.values():                            # after the other scenes have run
         raise error
     raise typer.Exit(code)
+
+
+@contextmanager
+def on_cluster(executor, of):
+    """A Cluster for the length of the block; None without an address."""
+    if executor is None:
+        yield None
+        return
+    from .cluster import cluster
+    with cluster(executor, of) as measuring:
+        yield measuring
 
 
 @app.command("list")
@@ -238,7 +252,8 @@ def plan_of(of, names, plain, quick, wanted, changes):
     folder = modules.subject_folder(of)
     for name in wanted:
         if not engines.installed(name):
-            raise BadInput(f"engine {name!r}", "not installed", "leave --engine out: its recorded traces stand in")
+            instead = engines.REMEDY if name in OPTIONAL else "leave --engine out: its recorded traces stand in"
+            raise BadInput(f"engine {name!r}", "not installed", instead)
     live = tuple(name for name in (wanted or PRODUCTS) if engines.installed(name))
     speeds = {None: ("plain", "compiled"), True: ("plain",), False: ("compiled",)}[plain]
     if plain is False and not modules.can_compile():

@@ -4,6 +4,7 @@ from statistics import median
 from typing import NamedTuple
 
 from .results import Verdict
+from .scene import OPTIONAL
 
 GOOD = {Verdict.AGREES, Verdict.FOLLOWS_OWN_LAW}
 ORDER = 0.05                 # a smaller change of an order is noise of the fit [-]
@@ -42,7 +43,10 @@ def verdicts(old, new):
         if was is None:
             yield Change("verdicts", place, f"is new: {now['verdict']}", Verdict(now["verdict"]) is Verdict.DEPARTS)
         elif now is None:
-            yield Change("verdicts", place, f"is gone; it was: {was['verdict']}", True)
+            optional = was.get("product") in OPTIONAL and not any(was["product"] == c.get("product")
+                                                                  for c in after.values())
+            gone = "was left out" if optional else "is gone"
+            yield Change("verdicts", place, f"{gone}; it was: {was['verdict']}", not optional)
         elif was["verdict"] != now["verdict"]:
             worse = not is_good(now) and (is_good(was) or Verdict(now["verdict"]) is Verdict.DEPARTS)
             yield Change("verdicts", place, f"{was['verdict']} → {now['verdict']}{because(now)}", worse)

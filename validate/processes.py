@@ -108,27 +108,38 @@ def blocked_at_birth():
 
 # ---------------------------------------------------------------------------------------------- workers
 
-class Workers:
+class Affinity:
+    """Gives a process calls of the kinds that it has had, as far as possible: it compiles less."""
+
+    def __init__(self):
+        self.seen = {}                                               # {process: the kinds of calls that it has had}
+
+    def costs(self, process, kind):
+        """Whether a process would compile much for this kind of call, and whether another one has done so already."""
+        return kind not in self.seen.get(process, ()), any(kind in seen for seen in self.seen.values())
+
+
+class Workers(Affinity):
     """Processes that wait for calls, each at the other end of a pipe."""
 
     def __init__(self, pipes):
+        super().__init__()
         self.pipes = pipes
-        self.seen = {pipe: set() for pipe in pipes}                  # the kinds of calls that a process has had
 
-    def each(self, calls, kinds=None):
+    def each(self, calls, kinds=None, alone=False):
         """Yield (key, result) of {key: (function, *arguments)} as the calls end.  Raises what a call raised.
 
-        kinds: {key: kind}.  A process gets calls of the kinds that it has had, as far as possible: it compiles less.
+        kinds: {key: kind}, see Affinity;    alone: one call at a time, because it is timed
         """
         waiting, idle, busy, kinds = list(calls.items()), list(self.pipes), {}, kinds or {}
         try:
             while waiting or busy:
-                while waiting and idle:
+                while waiting and idle and not (alone and busy):
                     pairs = product(idle, waiting)
                     pipe, (key, call) = min(pairs, key=lambda pair: self.costs(pair[0], kinds.get(pair[1][0])))
                     idle.remove(pipe)
                     waiting.remove((key, call))
-                    self.seen[pipe].add(kinds.get(key))
+                    self.seen.setdefault(pipe, set()).add(kinds.get(key))
                     pipe.send(call)
                     busy[pipe] = key
                 for pipe in connection.wait(list(busy)):
@@ -139,10 +150,6 @@ class Workers:
                     yield busy.pop(pipe), result
         except (EOFError, ConnectionError):
             raise BadInput("a measuring process", "gone", "the machine may be short of memory: try --jobs 1") from None
-
-    def costs(self, pipe, kind):
-        """Whether a process would compile much for this kind of call, and whether another one has done so already."""
-        return kind not in self.seen[pipe], any(kind in seen for seen in self.seen.values())
 
 
 @contextmanager

@@ -11,20 +11,23 @@ from pathlib import Path
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from . import coverage, engines, measure, modules
-from .scene import PRODUCTS
+from .scene import OPTIONAL, PRODUCTS
 from .stability.examine import stability_cases
 from .store import code_digest, lessons_of, store_for
 
 
-def run(names, plan, pool, out, console):
-    """Measure, report, and return the exit code: 0, or 1 when something departs that nobody predicted."""
+def run(names, plan, pool, out, console, measuring=None):
+    """Measure, report, and return the exit code: 0, or 1 when something departs that nobody predicted.
+
+    pool: processes of this machine, which draw the report;    measuring: what measures, where that is not the pool
+    """
     from .report import summary  # brings matplotlib along
     store = store_for(out, plan, names)
     columns = TextColumn("{task.description:22}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn()
     with Progress(*columns, console=console) as bars:
-        measure_errors(store, names, plan, pool, bars)
-        measure_times(store, names, plan, pool, bars)
-        front = report_on(store, names, plan, pool, bars)
+        measure_errors(store, names, plan, measuring or pool, bars)
+        measure_times(store, names, plan, measuring or pool, bars)
+        front = report_on(store, names, plan, pool, bars, measuring)
     departures = summary.show(console, store.results(names), store.stability(names))
     if store.out != out:
         console.print(f"\nOther scenes in {out} were measured with other code or options: their report stays as it is.",
@@ -52,41 +55,44 @@ def measure_errors(store, names, plan, pool, bars):
 
 
 def measure_times(store, names, plan, pool, bars):
-    """Run times, one scene after the other and nothing beside them, each in a process that knows its lesson."""
+    """Run times, one scene after the other on a machine and nothing beside them, in a process that knows its lesson."""
     todo = [n for n in names if not store.has("times", n)]
     bar = bars.add_task("run times", total=len(names), completed=len(names) - len(todo))
-    for name in todo:
-        call = measure.times, name, plan, store.get("errors", name)
-        for key, value in pool.each({("times", name): call}, {("times", name): modules.bind_scene(name).lesson}):
-            store.put(*key, value)
-            bars.advance(bar)
+    calls = {("times", name): (measure.times, name, plan, {"cases": store.get("errors", name)["cases"]})
+             for name in todo}
+    for key, value in pool.each(calls, {key: modules.bind_scene(key[1]).lesson for key in calls}, alone=True):
+        store.put(*key, value)
+        bars.advance(bar)
 
 
-def report_on(store, names, plan, pool, bars):
+def report_on(store, names, plan, pool, bars, measuring=None):
     """Write the report of all scenes that were measured with this code and this plan; the path of its front page."""
     from . import report  # brings matplotlib along
     shown = modules.in_course_order(store.scenes())
     results, stability = store.results(shown), store.stability(shown)
     pages = report.files(results, stability)
     store.note(pages=sorted({*store.state["pages"], *pages}))        # first, in case writing them is interrupted
-    front = report.write(store.out, results, stability, about(plan, store.out), pool, bars, store.measured)
+    front = report.write(store.out, results, stability, about(plan, store.out, measuring), pool, bars,
+                         store.measured)
     store.finish(names, pages)
     return front
 
 
-def about(plan, out=None):
+def about(plan, out=None, measuring=None):
     """What a report was made with: a plain record for the foot of its pages.
 
     Links to the sources are there only for a report in a folder of the repository.
     """
     inside = out is not None and out.resolve().is_relative_to(modules.ROOT)
-    live = [f"{n} {engines.installed(n)} live" if n in plan.live else f"{n} recorded" for n in PRODUCTS]
+    absent = {n: "left out" if n in OPTIONAL else "recorded" for n in PRODUCTS}
+    live = [f"{n} {engines.installed(n)} live" if n in plan.live else f"{n} {absent[n]}" for n in PRODUCTS]
     compiler = f"numba {modules.numba_version()}" if modules.can_compile() else "numba not installed: plain speed only"
     return {
         "of": str(plan.of), "mode": "quick" if plan.quick else "full", "engines": live, "compiler": compiler,
         "speeds": list(plan.speeds), "repeats": plan.repeats(), "date": date.today().isoformat(),
         "machine": f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",
-        "processor": processor(), "cores": os.cpu_count(), "code": code_digest(plan.of),
+        "processor": processor(), "cores": os.cpu_count(), "executor": str(measuring or ""),
+        "code": code_digest(plan.of),
         "versions": {name: version(name) for name in ("numpy", "scipy", "matplotlib")},
         "overrides": [list(pair) for pair in plan.overrides], "coverage": coverage.table(),
         "version": version("physics-animation-workbook"), "commit": commit(),

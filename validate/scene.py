@@ -15,8 +15,9 @@ from solutions.checks import BadInput
 EXACT = "exact"              # an order: no error but round-off
 LATE_LEAPFROG = "1 to 2"     # an order: leapfrog whose first velocity belongs to half a step before or after
 ROUND_OFF = 2.3e-16          # spacing of floats around 1, rounded up [-]
-PYMUNK, PYBULLET = "pymunk", "pybullet"
-PRODUCTS = (PYMUNK, PYBULLET)
+PYMUNK, PYBULLET, MUJOCO = "pymunk", "pybullet", "mujoco"
+PRODUCTS = (PYMUNK, PYBULLET, MUJOCO)
+OPTIONAL = (MUJOCO,)         # left out where it is not installed; for pybullet its record stands in there
 
 
 class Method(NamedTuple):
@@ -31,7 +32,7 @@ class Method(NamedTuple):
 
 class Engine(NamedTuple):
     """One way to set up an engine."""
-    product: str             # PYMUNK or PYBULLET
+    product: str             # one of PRODUCTS
     variant: str             # "" for the settings that match textbook physics, else their name
     make: Callable           # (p, dt) → EngineRun
     order: int | str         # expected order of convergence

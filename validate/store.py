@@ -46,11 +46,20 @@ def read_whole(path, kind, remedy):
 
 def code_digest(of):
     """Fingerprint of everything that a result depends on: code, recorded traces and installed versions."""
+    return modules.fingerprint(sources(of), f"{sys.version} {installed_versions()}")
+
+
+def sources(of):
+    """The files on which a result depends."""
     package, subject = modules.ROOT / "validate", modules.subject_folder(of)
-    files = {*package.rglob("*.py"), *package.glob("recorded/*.json"),
-             *subject.rglob("*.py"), *modules.SOLUTIONS.rglob("*.py")}
-    installed = version("numpy"), version("scipy"), modules.numba_version(), *map(engines.installed, PRODUCTS)
-    return modules.fingerprint(files, f"{sys.version} {installed}")
+    return {*package.rglob("*.py"), *package.glob("recorded/*.json"),
+            *subject.rglob("*.py"), *modules.SOLUTIONS.rglob("*.py")}
+
+
+def installed_versions():
+    """{package: its version or None} of those on which a result depends."""
+    return {"numpy": version("numpy"), "scipy": version("scipy"), "numba": modules.numba_version(),
+            **{name: engines.installed(name) for name in PRODUCTS}}
 
 
 def store_for(out, plan, names):

@@ -1,10 +1,11 @@
-"""The two engines, set up to match textbook mechanics, and whether they are installed.
+"""The engines, set up to match textbook mechanics, and whether they are installed.
 
-`bullet.py` and `chipmunk.py` wrap one engine each.  The other files hold set-ups that several scenes of a lesson use.
+`bullet.py`, `chipmunk.py` and `mujoco.py` wrap one engine each.  The other files hold set-ups that several scenes of a
+lesson use.
 
-Both engines are first order: pybullet does v += a dt, then x += v dt; pymunk does x += v dt, then v += a dt.  With a
-first velocity that belongs to half a step before (pybullet, −½ a dt) or after (pymunk, +½ a dt) they become leapfrog,
-which is second order where forces are smooth.
+pybullet and pymunk are first order: pybullet does v += a dt, then x += v dt; pymunk does x += v dt, then v += a dt.
+With a first velocity that belongs to half a step before (pybullet, −½ a dt) or after (pymunk, +½ a dt) they become
+leapfrog, which is second order where forces are smooth.
 """
 
 import ctypes
@@ -17,13 +18,16 @@ from solutions.checks import BadInput
 
 from ..scene import PRODUCTS
 
+DISTRIBUTIONS = {"mujoco": "mujoco-core"}                # where a package is named otherwise
+REMEDY = "pip install -e '.[witness]' adds it"
+
 
 def installed(engine):
     """Return the engine's version, or None.  Raises BadInput for an unknown name."""
     if engine not in PRODUCTS:
         raise BadInput(f"engine {engine!r}", "unknown", f"choose from: {', '.join(PRODUCTS)}")
     try:
-        return version(engine)
+        return version(DISTRIBUTIONS.get(engine, engine))
     except PackageNotFoundError:
         return None
 

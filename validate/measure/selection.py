@@ -12,8 +12,8 @@ import numpy as np
 
 from solutions.checks import BadInput
 
-from .. import modules
-from ..scene import Engine, Method, Scene
+from .. import engines, modules
+from ..scene import OPTIONAL, Engine, Method, Scene
 
 REPEATS = 7                  # of a timed run
 NOTEBOOK = 0.02              # how long a timed run in a notebook may take [s]
@@ -60,8 +60,8 @@ class Selection(NamedTuple):
         return tuple(m for m in self.methods if supports(self.scene, m, p))
 
     def engines_for(self, p):
-        """The engines that support this case."""
-        return tuple(e for e in self.scene.engines if supports(self.scene, e, p))
+        """The engines that support this case; an optional one only where it runs."""
+        return tuple(e for e in self.scene.engines if supports(self.scene, e, p) and not left_out(e, self.plan))
 
     def is_live(self, engine):
         """Whether this engine is run here rather than read from its record."""
@@ -97,6 +97,11 @@ def select(name, plan):
     methods = methods_of(scene, plan)
     notes = notes_of(scene, plan, methods)
     return Selection(name, plan, scene, cases_of(scene, plan), methods, sweep(scene, plan), notes, {})
+
+
+def left_out(engine, plan):
+    """Whether this engine is optional and not run here: it has no record that could stand in."""
+    return engine.product in OPTIONAL and engine.product not in plan.live
 
 
 def supports(scene, runner, p):
@@ -140,6 +145,9 @@ def cases_of(scene, plan):
 def notes_of(scene, plan, methods):
     """Sentences: what the scene omits, and what this run leaves to --full.  A notebook has no --full."""
     omitted = (scene.omitted_methods[0].upper() + scene.omitted_methods[1:],) if scene.omitted_methods else ()
+    for product in dict.fromkeys(e.product for e in scene.engines if left_out(e, plan)):
+        why = "this run asked for others" if engines.installed(product) else f"not installed; {engines.REMEDY}"
+        omitted += (f"The witness {product} is left out: {why}",)
     if plan.most_steps or not plan.quick:
         return omitted
     slow = [m.label for m in scene.methods if m not in methods]

@@ -4,6 +4,7 @@ from functools import cache
 from typing import Annotated, NamedTuple
 
 import numpy as np
+from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from ..scene import EXACT, Prediction, by_order
@@ -123,3 +124,80 @@ def slip_errors(label, p, dt):
         return None
     error = np.array([pushed_in_steps(p, round(T / dt), label != "pymunk")]) - slip_position(p, T)
     return Prediction(error, by_order(0.0, T, dt)[EXACT] + (0.0 if label == "sliding" else 1e-9))
+
+
+# ---------------------------------------------------------------------------------------------- MuJoCo's contact
+
+HOPS = 4                     # runs that begin a little apart, to see how far hops let them go
+APART = 1e-9                 # of two such starts [m]
+CLOSE = 1e-6                 # how near a run comes, relative, where nothing hops: its solver leaves 1e-9 in a step
+
+
+class SoftBlock(NamedTuple):
+    """A block of mass 1 on MuJoCo's contact: forces (N, F) that are the least in the cone |F| ≤ μN, in the sense of
+
+        ½ fᵀ(1 + ρ) f + fᵀ c,    c = (−g_n + b v_n + k r, g_t + b v_t),    ρ = (1 − d)/d,  b = 2/(d τ),  k = 1/(d τ²)
+
+    r: gap [m], negative inside;    d: impedance, τ: time constant [s], twice the step at least.
+    *Source:* the documentation of MuJoCo, chapter Computation; Todorov 2014.
+    """
+    g_t: float               # gravity along the plane [m/s²]
+    g_n: float               # and into it
+    mu: float
+    d: float
+    tau: float
+
+    def numbers(self):
+        """Return (ρ, b [1/s], k [1/s²])."""
+        return (1.0 - self.d) / self.d, 2.0 / (self.d * self.tau), 1.0 / (self.d * self.tau**2)
+
+    def force(self, r, v_n, v_t):
+        """(N, F) [N] in contact: inside of the cone, on its surface, or none."""
+        rho, b, k = self.numbers()
+        normal, along = -self.g_n + b * v_n + k * r, self.g_t + b * v_t
+        N, F = -normal / (1.0 + rho), -along / (1.0 + rho)
+        if N >= 0.0 and abs(F) <= self.mu * N:
+            return N, F
+        N = max(0.0, (self.mu * abs(along) - normal) / ((1.0 + rho) * (1.0 + self.mu**2)))
+        return N, -self.mu * N if along > 0.0 else self.mu * N
+
+    def creep(self):
+        """The speed [m/s] at which it slides where friction holds it: b v = ρ g_t, because no force is without one."""
+        rho, b, _ = self.numbers()
+        return rho * self.g_t / b
+
+    def steps(self, v, dt, count, r=0.0):
+        """The way [m] after so many semi-implicit Euler steps.  Above the plane there is no contact."""
+        way, v_n, law = 0.0, 0.0, self._replace(tau=max(self.tau, 2.0 * dt))
+        for _ in range(count):
+            N, F = law.force(r, v_n, v) if r < 0.0 else (0.0, 0.0)
+            v_n, v = v_n + dt * (N - self.g_n), v + dt * (self.g_t + F)
+            way, r = way + dt * v, r + dt * v_n
+        return way
+
+    def hopping(self, v, dt, count):
+        """(mean, half range) of the way of runs that begin a little apart.
+
+        A block that slides fast is lifted out of its contact, falls back, and is lifted again.  Every impulse is on
+        the surface of the cone, so that  v_t + μ v_n  is exact, and a hop moves the end by μ times its height.
+        """
+        ways = [self.steps(v, dt, count, -APART * (n + 1.0)) for n in range(HOPS)]
+        return 0.5 * (max(ways) + min(ways)), 0.5 * (max(ways) - min(ways))
+
+    def arrest(self, v, t):
+        """The way [m] at t, of a block that is thrown up and held, for dt → 0.
+
+        Coulomb's law as long as it hops on its contact; then the contact's own equations, which end in the creep.
+        """
+        rho, b, _ = self.numbers()
+        left = self.g_n * ((1.0 + rho) * (1.0 + self.mu**2) - 1.0) / self.mu           # here N is the weight
+        end, brake = -(left + self.g_t) / b, self.g_t + self.mu * self.g_n
+        begin = max(0.0, (end - v) / brake)
+        if t <= begin:
+            return v * t + 0.5 * brake * t * t
+
+        def slope(_, y):
+            N, F = self.force(*y[1:])
+            return y[3], y[2], N - self.g_n, self.g_t + F
+        start = (v * begin + 0.5 * brake * begin * begin, 0.0, 0.0, v + brake * begin)
+        return float(solve_ivp(slope, (begin, t), start, method="DOP853", rtol=1e-10, atol=1e-13).y[0, -1])

@@ -209,7 +209,7 @@ def growth_of_errors(I, omega, T):
 
 
 def free_limits(p, T, dt, kinds=FIRST_ORDER):
-    """Return {order k: largest relative error of R at T} on the free body of p; pybullet's two kinds of body by name.
+    """Return {order k: largest relative error of R at T} on the free body of p; what engines do, by name.
 
     First order: the worst of these kinds, χ = C dt, as χ e^χ where the expansion is no longer exact, plus the limit
     of second order.  Higher orders: a step errs by (rate dt)ᵏ |ω̇| dt where ω changes, which grows by Φ, and by
@@ -227,5 +227,6 @@ def free_limits(p, T, dt, kinds=FIRST_ORDER):
         1: of_kind(max(first[kind] for kind in kinds)),
         EXACT: plain[EXACT],
         "pybullet, reduced coordinates": of_kind(first["gyroscopic"]),
+        "mujoco, default": of_kind(first["gyroscopic"]),
         "pybullet": of_kind(first["gyroscopic, implicit"]),
     }

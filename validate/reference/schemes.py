@@ -9,6 +9,7 @@ One loop runs all of them, with forces of validate/reference: nothing here is sh
 *Source:* Hairer, Lubich, Wanner 2006, II.1 (Runge–Kutta) and II.2 (partitioned).
 """
 
+import inspect
 from functools import cache
 from typing import NamedTuple
 
@@ -250,6 +251,29 @@ def predict_by_tables(T, law, begin, seen, truth, floor, engines=None, departure
         """
         return error_law(label, p).prediction(dt, floor(p, dt)) if label in engines or label in TABLEAUX else None
 
+    return predicted_error
+
+
+def predict_angles(T, law, begin, seen, truth, floor, labels, finest=None):
+    """The field `predicted_error` of MuJoCo's hinges: a table of numbers, applied to the angles.
+
+    law(p) → θ̈(t, θ, ω);    labels: {label of the engine: label of TABLEAUX};    the others as above.
+    """
+    tables = {label: table_model(scheme, law, begin, seen, ORDERS[scheme]) for label, scheme in labels.items()}
+    by_tables = predict_by_tables(T, law, begin, seen, truth, floor, tables, finest=finest)
+
+    def predicted_error(label, p, dt):
+        """MuJoCo has no joints that could open: its method, applied to the angles, predicts its error."""
+        return by_tables(label, p, dt) if label in labels else None
+
+    return predicted_error
+
+
+def first_of(*predictions):
+    """One field `predicted_error` from several, of which each knows some labels."""
+    def predicted_error(label, p, dt):
+        return next((found for each in predictions if (found := each(label, p, dt))), None)
+    predicted_error.__doc__ = "\n\n".join(inspect.getdoc(each) for each in predictions)
     return predicted_error
 
 

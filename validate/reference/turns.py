@@ -1,4 +1,4 @@
-"""Every step of lesson 5 once more, and what pybullet does with a turning body, for the errors that they make.
+"""Every step of lesson 5 once more, and what engines do with a turning body, for the errors that they make.
 
 An orientation is a pair of complex numbers (Cayley and Klein): (α, β) with |α|² + |β|² = 1 is the quaternion
 w = Re α, z = −Im α, y = −Re β, x = −Im β.  A step is step(torque, R, L, I, h) → (R, L); L and the torque [N m] are
@@ -6,7 +6,7 @@ tuples in world coordinates.  Plain numbers, because arrays of three cost ten ti
 """
 
 from functools import cache
-from math import cos, sin, sqrt
+from math import cos, sin, sqrt, tan
 
 import numpy as np
 
@@ -15,7 +15,8 @@ from .orientation import quaternion
 from .schemes import ErrorLaw
 
 GAMMA = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))                # Suzuki 1990
-ORDERS = {"Runge–Kutta 4": 4, "midpoint turn": 2, "splitting": 2, "splitting, composed": 4, "midpoint, composed": 4}
+ORDERS = {"Runge–Kutta 4": 4, "midpoint turn": 2, "splitting": 2, "splitting, composed": 4, "midpoint, composed": 4,
+          "mujoco": 4}
 EVEN = {"midpoint turn": (2, 4, 6), "splitting": (2, 4, 6), "splitting, composed": (4, 6, 8),
         "midpoint, composed": (4, 6, 8)}                # each is its own inverse: even powers of the step only
 FINEST = {1: 1000, 2: 800, 4: 400}
@@ -170,6 +171,28 @@ def classical(torque, q, L, I, h):
     return unit((q[0] + h * mean[0], q[1] + h * mean[1])), plus(L, tau, h)
 
 
+def munthe_kaas(torque, q, L, I, h):
+    """Runge–Kutta 4 on ω and on the turn u since the beginning of the step, R exp(u*), all in body coordinates.
+
+    u̇ = ω + ½ u × ω + c u × (u × ω),  c = (1 − ½|u| cot ½|u|)/|u|²: without these terms it would be of order 2.
+    *Source:* Munthe-Kaas 1998; Hairer, Lubich, Wanner 2006, IV.8.
+    """
+    def slope(u, w):
+        M, across, angle = matrix(product(q, rotation(u))), cross(u, w), length(u)
+        c = (1.0 - 0.5 * angle / tan(0.5 * angle)) / angle**2 if angle else 0.0
+        return (plus(plus(w, across, 0.5), cross(u, across), c),
+                over(plus(to_body(M, torque(M)), cross(times(w, I), w)), I))
+
+    w, still = over(to_body(matrix(q), L), I), (0.0, 0.0, 0.0)
+    slopes = [slope(still, w)]
+    for share in (0.5, 0.5, 1.0):
+        turned, changed = slopes[-1]
+        slopes.append(slope(plus(still, turned, share * h), plus(w, changed, share * h)))
+    turned, changed = (tuple((a + 2.0 * b + 2.0 * c + d) / 6.0 for a, b, c, d in zip(*each)) for each in zip(*slopes))
+    q = unit(product(q, rotation(plus(still, turned, h))))
+    return q, to_world(matrix(q), times(plus(w, changed, h), I))
+
+
 def free_midpoint(q, L, I, h):
     """m = ℓ + ½h m × I⁻¹m by iteration of its linear part, then Cayley's rotation about m in the body."""
     l = to_body(matrix(q), L)
@@ -222,7 +245,10 @@ STEPS = {
     "Runge–Kutta 4": classical, "midpoint turn": kicked(free_midpoint), "splitting": kicked(free_splitting),
     "splitting, composed": composed(kicked(free_splitting)), "midpoint, composed": composed(kicked(free_midpoint)),
     # Bullet: the explicit or the implicit gyroscopic term, then the exact rotation by the new ω
-    "pybullet, reduced coordinates": kept_omega(False, exactly), "pybullet": kept_omega(True, exactly)}
+    "pybullet, reduced coordinates": kept_omega(False, exactly), "pybullet": kept_omega(True, exactly),
+    # MuJoCo: Runge–Kutta 4, and the same as the former by its default
+    "mujoco": munthe_kaas, "mujoco, default": kept_omega(False, exactly)}
+ENGINES = tuple(label for label in STEPS if label.startswith(("pybullet", "mujoco")))
 
 
 def no_torque(M):
@@ -252,9 +278,10 @@ def predict_turns(T, moments, begin, torque, seen, truth, floor, engines=(), dou
     def predicted_error(label, p, dt):
         """The error, with its sign, of the same step written once more in complex numbers: at the same step where that
         is coarse, else by its expansion in powers of dt.  pybullet turns its bodies by the gyroscopic term, explicit
-        in reduced coordinates and implicit in maximal ones.
+        in reduced coordinates and implicit in maximal ones; MuJoCo by Runge–Kutta 4 in the form of Munthe-Kaas, and by
+        default like pybullet in reduced coordinates.
         """
-        if label not in STEPS or (label.startswith("pybullet") and label not in engines):
+        if label not in STEPS or (label in ENGINES and label not in engines):
             return None
         return error_law(label, p).prediction(dt, floor(p, dt))
 
@@ -268,4 +295,4 @@ def free_turns(T, truth, uncertainty):
     # roundings of one sign, as those of a turn about a fixed axis are, and what the truth leaves open
     floor = lambda p, dt: 1e-12 + T / dt * ROUND_OFF + 10.0 * uncertainty
     return predict_turns(T, lambda p: p.moments(), begin, lambda p: no_torque, np.ravel, truth, floor,
-                         ("pybullet", "pybullet, reduced coordinates"), {**DOUBLINGS, 1: 0})
+                         ENGINES, {**DOUBLINGS, 1: 0})

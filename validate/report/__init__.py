@@ -98,8 +98,9 @@ def texts(results, stability, about):
     found["left_out.html"] = page("left_out.html", rows=words.left_out(results))
     if stability:
         found["stability.html"] = page("stability.html", cases=stability)
-    found["index.html"] = page("front.html", rows=[words.row(r) for r in results], lessons=lessons,
-                               found=answers(results, stability, about.get("cores")))
+    products = words.products(results)
+    found["index.html"] = page("front.html", rows=[words.row(r, products) for r in results], lessons=lessons,
+                               products=products, found=answers(results, stability, about.get("cores")))
     found["report.json"] = json.dumps({"run": about, "scenes": results, "stability": stability}, ensure_ascii=False)
     found |= {f"{r['scene']}-film.js": films.script(r) for r in results}
     found |= tables.texts(results, stability)

@@ -6,27 +6,28 @@ from statistics import median
 from rich.table import Table
 
 from ..results import Verdict
-from ..scene import EXACT, PRODUCTS
+from ..scene import EXACT
 from . import words
 
 SIGNS = {Verdict.DEPARTS: ("✗", "bold red"), Verdict.AGREES: ("✓", "green"), Verdict.FOLLOWS_OWN_LAW: ("≈", "green"),
          Verdict.UNDECIDED: ("○", "yellow"), Verdict.NOT_ATTEMPTED: ("○", "yellow")}
 LEGEND = ("✓ agrees   ≈ as predicted, by a law of its own   ✗ departs   ○ undecided or not attempted\n"
           "order: the highest of ours.   faster: the engine's time to its smallest error,\n"
-          "over our time to the same error; the smaller of the two engines' ratios.")
+          "over our time to the same error; the smallest of the engines' ratios.")
 
 
 def show(console, results, stability):
     """Print the table and what fails; return the number of departures that nobody predicted."""
     table = Table(header_style="bold", box=None, pad_edge=False)
-    for column in ("scene", "ours", *PRODUCTS, "order", "faster"):
+    products = words.products(results)
+    for column in ("scene", "ours", *products, "order", "faster"):
         table.add_column(column, no_wrap=True, justify="right" if column in ("order", "faster") else "left")
     departures = 0
     for result in results:
         cases = result["cases"].values()
         ours, engines = ([c for one in cases for c in one[kind]] for kind in ("ours", "engines"))
         departures += sum(Verdict(c["verdict"]) is Verdict.DEPARTS for c in ours + engines)
-        of_each = (signs([c for c in engines if c["product"] == name]) for name in PRODUCTS)
+        of_each = (signs([c for c in engines if c["product"] == name]) for name in products)
         table.add_row(result["scene"], signs(ours), *of_each, best_order(result), faster(result))
     console.print(table)
     console.print(LEGEND, style="dim", highlight=False)
@@ -57,7 +58,7 @@ def best_order(result):
 
 
 def faster(result):
-    """The smaller of our advantages over the two engines."""
+    """The smallest of our advantages over the engines."""
     ratios = advantages(result)
     return words.factor(min(ratios)) if ratios else "–"
 

@@ -42,7 +42,8 @@ def names(results, stability):
 
 def texts(results, stability):
     """{file: CSV} of all plots and of the long tables; none for a table that is empty."""
-    rows = [(r, words.row(r)) for r in results]
+    products = words.products(results)
+    rows = [(r, words.row(r, products)) for r in results]
     races, lines = faster(results)["races"], departures(results)["lines"]
     found = {
         "scenes.csv": text(SCENES, [(r["scene"], r["lesson"], side, verdict, count) for r, row in rows

@@ -10,7 +10,7 @@ from markupsafe import Markup, escape
 
 from ..measure.accuracy import relative
 from ..results import Verdict, is_right
-from ..scene import EXACT, PRODUCTS
+from ..scene import EXACT, OPTIONAL, PRODUCTS
 
 KINDS = {Verdict.AGREES: "agrees", Verdict.FOLLOWS_OWN_LAW: "predicted", Verdict.DEPARTS: "departs",
          Verdict.UNDECIDED: "open", Verdict.NOT_ATTEMPTED: "open"}             # classes of the style sheet
@@ -212,12 +212,18 @@ def busy_warning(results, cores):
 
 # ---------------------------------------------------------------------------------------------- the front page
 
-def row(result):
-    """One scene on the front page."""
+def products(results):
+    """The engines that a report has columns for: one that is optional only where it ran."""
+    ran = {c["product"] for r in results for one in r["cases"].values() for c in one["engines"]}
+    return [name for name in PRODUCTS if name not in OPTIONAL or name in ran]
+
+
+def row(result, products):
+    """One scene on the front page, with these engines."""
     first = next(iter(result["cases"].values()))
     cases = result["cases"].values()
     ours = [c for one in cases for c in one["ours"]]
-    engines = {name: [c for one in cases for c in one["engines"] if c["product"] == name] for name in PRODUCTS}
+    engines = {name: [c for one in cases for c in one["engines"] if c["product"] == name] for name in products}
     return {
         "result": result,
         "ours": verdicts(ours),

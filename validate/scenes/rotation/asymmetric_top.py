@@ -9,6 +9,7 @@ from solutions.rotation import no_torque as acceleration
 from solutions.support.rotation import advance_rotation, check_moments
 from validate import drawing
 from validate.drawing import axes_seen, omega_and_L, pose
+from validate.engines.mujoco import FREE_WITNESS
 from validate.engines.rotation import FREE_ENGINES
 from validate.methods import TURNS
 from validate.reference.orientation import quaternion_matrix
@@ -72,7 +73,7 @@ def tolerance(p, dt):
     return free_limits(p, T, dt)
 
 
-ENGINES = FREE_ENGINES
+ENGINES = FREE_ENGINES + FREE_WITNESS
 
 
 def points(observed, p):

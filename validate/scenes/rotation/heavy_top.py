@@ -10,11 +10,12 @@ from solutions.rotation import heavy_top_torque as acceleration
 from solutions.support.rotation import advance_rotation, check_moments
 from validate import drawing
 from validate.engines.bullet import Rigid
+from validate.engines.mujoco import top as mujoco_top
 from validate.methods import TURNS
 from validate.reference.orientation import about
 from validate.reference.rotation import HeavyTop, freely
 from validate.reference.turns import predict_turns, rotation
-from validate.scene import EXACT, PYBULLET, ROUND_OFF, Engine, EngineRun, Scene, by_order
+from validate.scene import EXACT, MUJOCO, PYBULLET, ROUND_OFF, Engine, EngineRun, Scene, by_order
 
 T = 2.0                      # [s]: nearly three nutations
 STEPS = (500, 1000, 2000, 5000, 10000, 20000, 50000)
@@ -118,12 +119,19 @@ def pybullet_make(maximal):
     return make
 
 
+def mujoco_make(p, dt):
+    across = p.I1 - mass(p) * LENGTH**2
+    R = about(np.array([1.0, 0.0, 0.0]), p.tilt)
+    return mujoco_top(mass(p), (across, across, p.I3), LENGTH, R, p.spin, G, dt)
+
+
 SETTINGS = "pivot: JOINT_POINT2POINT, 200 iterations, erp 1; no damping"
 ENGINES = (
     Engine(
         PYBULLET, "reduced coordinates", pybullet_make(False), 1, f"createMultiBody, no clamp of velocity; {SETTINGS}"
     ),
     Engine(PYBULLET, "", pybullet_make(True), 1, f"useMaximalCoordinates=1; {SETTINGS}"),
+    Engine(MUJOCO, "", mujoco_make, 4, "ball joint; Runge–Kutta 4", 5000),
 )
 
 
@@ -188,7 +196,7 @@ SCENE = Scene(
     truth=truth,
     truth_uncertainty=1e-12,
     tolerance=tolerance,
-    predicted_error=predict_turns(T, Params.moments, released, weight, seen, truth, floor),
+    predicted_error=predict_turns(T, Params.moments, released, weight, seen, truth, floor, ("mujoco",)),
     engines=ENGINES,
     slow_methods=(
         "matrix_step",

@@ -1,6 +1,6 @@
 """A chain of rigid rods on hinges is let go from horizontal.  Its end whips round within a second.
 
-Our joints take all hinges at once, by one band matrix.  The engines sweep over them, one after the other.
+Our joints take all hinges at once, by one band matrix.  pymunk and pybullet sweep over them, one after the other.
 """
 
 from typing import Annotated, NamedTuple
@@ -13,11 +13,21 @@ from solutions.simulator import advance_free, make_bodies, make_bodies_2d, make_
 from solutions.simulator import weight as acceleration
 from validate import drawing
 from validate.drawing import pose
+from validate.engines.mujoco import chain as mujoco_chain
 from validate.engines.simulator import pybullet_chain, pymunk_chain
 from validate.methods import COMPOSED_JOINTS, JOINTS, JOINTS_IN_SPACE
 from validate.reference.orientation import about
-from validate.reference.simulator import rods_ends, rods_energy, rods_error, rods_gaps, rods_lag, rods_motion
-from validate.scene import PYBULLET, PYMUNK, ROUND_OFF, Engine, Scene
+from validate.reference.schemes import predict_angles
+from validate.reference.simulator import (
+    rods_ends,
+    rods_energy,
+    rods_error,
+    rods_gaps,
+    rods_lag,
+    rods_motion,
+    rods_slope,
+)
+from validate.scene import MUJOCO, PYBULLET, PYMUNK, ROUND_OFF, Engine, Scene, by_order
 
 T = 1.0                      # [s]
 STEPS = (10, 20, 50, 100, 200, 500, 1000)
@@ -111,6 +121,8 @@ def tolerance(p, dt):
     The engines also begin half a step late or early: that is of first order.  And they close a joint in
     the step after the one that opened it: that is of second order.  Where a rod turns by more than a
     radian in a step, an expansion in powers of dt says nothing.
+
+    MuJoCo's angles change at the greatest rate of a rod.
     """
     size, n = np.linalg.norm(truth(p, T)), p.rods
     coarse, composed = max(200, 10 * n), max(100, 4 * n)
@@ -119,12 +131,23 @@ def tolerance(p, dt):
     rounded = 1e-11 + T / dt * 100.0 * ROUND_OFF
     gaps, fastest = rods_gaps(*of(p))
     witness = (rods_lag(*of(p)) * dt + gaps * dt**2) / size + second + 1e-9 if fastest * dt < 1.0 else np.inf
-    return {1: witness, 2: second + rounded, 4: fourth + rounded}
+    return {1: witness, 2: second + rounded, 4: fourth + rounded, "mujoco": by_order(fastest, T, dt)[4] + 1e-9}
 
 
 def pymunk_make(p, dt, iterations, bias):
     return pymunk_chain(straight(p), p.m, inertia(p), p.g, iterations * p.rods, bias, dt,
                         lambda x, angle: lower_ends(x, angle, p))
+
+
+def mujoco_make(p, dt):
+    return mujoco_chain(straight(p), p.m, inertia(p), 0.5, p.g, dt, lambda angles: rods_ends(
+        angles + 0.5 * np.pi, p.l).ravel())
+
+
+def hanging(p):
+    """Return θ̈(t, θ, ω) of all rods, θ from straight down."""
+    slope = rods_slope(p.rods, p.l, p.m, inertia(p), p.g)
+    return lambda t, theta, omega: slope(t, np.concatenate((theta, omega)))[p.rods:]
 
 
 def pybullet_make(p, dt, erp):
@@ -137,6 +160,7 @@ ENGINES = (
            f"PivotJoints, error_bias 0, {SWEEPS} iterations for each rod"),
     Engine(PYBULLET, "", lambda p, dt: pybullet_make(p, dt, 1.0), 1,
            f"JOINT_POINT2POINT, maximal coordinates, erp 1, {SWEEPS} iterations for each rod; it moves in one plane"),
+    Engine(MUJOCO, "", mujoco_make, 4, "hinges; Runge–Kutta 4"),
 )
 
 
@@ -191,6 +215,9 @@ SCENE = Scene(
     truth=truth,
     truth_uncertainty=1e-9,
     tolerance=tolerance,
+    predicted_error=predict_angles(
+        T, hanging, lambda p: (np.full(p.rods, 0.5 * np.pi), np.zeros(p.rods)),
+        lambda theta, p: rods_ends(theta, p.l).ravel(), truth, lambda p, dt: 1e-9, {"mujoco": "Runge–Kutta 4"}),
     engines=ENGINES,
     slow_cases=("50 rods",),
     slow_methods=("composed_joint_step_2d", "joint_step"),

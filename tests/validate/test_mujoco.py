@@ -1,0 +1,99 @@
+"""MuJoCo, the witness that may be missing: its laws hold, and where it is not installed the scenes say so."""
+
+import numpy as np
+import pytest
+
+from validate import engines, measure, modules
+from validate.compare import changes
+from validate.engines.mujoco import IMPEDANCE
+from validate.measure.accuracy import engine_curve, run_engine_to_end
+from validate.measure.selection import select
+from validate.reference import turns
+from validate.reference.friction import CLOSE
+from validate.results import Verdict
+from validate.scene import MUJOCO, OPTIONAL, PRODUCTS
+from validate.scenes.friction import incline
+
+WITH_MUJOCO = [n for n in modules.scene_names() if any(e.product == MUJOCO for e in modules.bind_scene(n).engines)]
+needs_mujoco = pytest.mark.skipif(not engines.installed(MUJOCO), reason=f"MuJoCo is not installed: {engines.REMEDY}")
+
+
+def curve_of(name, case=None, variant=""):
+    """The curve of MuJoCo in one case of a scene, up to a thousand steps, without our methods."""
+    plan = measure.Plan(speeds=(), live=(MUJOCO,), quick=False, most_steps=1000)
+    selection = select(name, plan)
+    case = case or selection.first[0]
+    p = selection.scene.cases[case]
+    engine = next(e for e in selection.engines_for(p) if e.product == MUJOCO and e.variant == variant)
+    return engine_curve(selection, case, engine, p, np.array(selection.scene.truth(p, selection.scene.duration)))
+
+
+def test_it_is_a_witness_where_it_says_something():
+    assert {"asymmetric_top", "axisymmetric_body", "heavy_top", "pendulum", "rod_chain", "incline", "stack"} <= set(
+        WITH_MUJOCO)
+
+
+@pytest.mark.parametrize("name", WITH_MUJOCO)
+def test_where_it_is_left_out_a_scene_says_so_and_keeps_all_other_verdicts(name):
+    selection = select(name, measure.Plan(speeds=("plain",), live=()))
+    assert sum("The witness mujoco is left out" in note for note in selection.notes) == 1
+    for p in selection.cases.values():
+        left = {e.label for e in modules.bind_scene(name).engines if e.product not in OPTIONAL}
+        assert {e.label for e in selection.engines_for(p)} <= left
+    with_it = select(name, measure.Plan(speeds=("plain",), live=PRODUCTS))
+    assert not any("mujoco is left out" in note for note in with_it.notes)
+
+
+def test_a_report_without_it_is_no_regression_of_one_with_it():
+    def report(*products):
+        curves = [{"role": "engine", "label": n, "product": n, "verdict": "agrees", "rows": [], "order": None}
+                  for n in products]
+        return {"scenes": [{"scene": "s", "cases": {"c": {"ours": [], "engines": curves}}}], "stability": []}
+    both, one = report("pymunk", MUJOCO), report("pymunk")
+    assert [(c.worse, "left out" in c.words) for c in changes(both, one)] == [(False, True)]
+    assert [c.worse for c in changes(both, report(MUJOCO))] == [True]
+
+
+@needs_mujoco
+@pytest.mark.parametrize(("name", "order"), [("asymmetric_top", 4), ("heavy_top", 4), ("pendulum", 4)])
+def test_its_runge_kutta_method_is_of_order_four_and_errs_as_predicted(name, order):
+    found = curve_of(name)
+    assert found["verdict"] is Verdict.AGREES and found["order"] == pytest.approx(order, abs=0.2)
+    assert sum(row["predicted"] is not None for row in found["rows"]) >= 4
+
+
+@needs_mujoco
+def test_without_the_terms_of_munthe_kaas_the_prediction_of_a_free_body_fails(monkeypatch):
+    scene = modules.bind_scene("asymmetric_top")
+    p = scene.parameters
+    engine = next(e for e in scene.engines if e.label == MUJOCO)
+    seen = run_engine_to_end(scene, engine, p, 500).observed - scene.truth(p, scene.duration)
+    off = []
+    for step in (turns.munthe_kaas, turns.classical):
+        monkeypatch.setitem(turns.STEPS, MUJOCO, step)
+        predict = turns.free_turns(scene.duration, scene.truth, scene.truth_uncertainty)
+        prediction = predict(MUJOCO, p, scene.duration / 500)
+        off.append(np.linalg.norm(seen - prediction.error) / np.sqrt(3.0) / prediction.band)
+    assert off[0] < 0.1 and off[1] > 5.0
+
+
+@needs_mujoco
+@pytest.mark.parametrize("case", ["slides, μ = 0.5", "thrown up, sticks, μ = 0.6"])
+def test_its_block_hops_slides_and_creeps_as_its_contact_law_says(case):
+    found = curve_of("incline", case)
+    assert found["verdict"] is Verdict.FOLLOWS_OWN_LAW
+    assert all(row["predicted"] is not None for row in found["rows"])
+
+
+@needs_mujoco
+def test_another_impedance_would_be_seen_on_the_incline_and_in_the_sag():
+    scene = modules.bind_scene("incline")
+    p, steps = scene.cases["thrown up, sticks, μ = 0.6"], 1000
+    engine = next(e for e in scene.engines if e.product == MUJOCO)
+    way = run_engine_to_end(scene, engine, p, steps).observed[0]
+    for factor, near in ((1.0, True), (1.001, False)):
+        law = incline.soft(p)._replace(d=IMPEDANCE * factor)
+        middle, half = law.hopping(p.v0, scene.duration / steps, steps)
+        assert bool(abs(way - middle) <= 4.0 * half + CLOSE * abs(way)) is near
+    found = curve_of("mass_ratio", "overlap, 10 : 1")
+    assert found["verdict"] is Verdict.FOLLOWS_OWN_LAW and found["departure"] > 1.0

@@ -1,0 +1,157 @@
+"""MuJoCo, a witness where pybullet has no wheel: joints by angles and soft contacts, in double precision.
+
+Bodies on joints and free bodies have no constraint here that a step could violate.  Runge–Kutta 4 turns a body by
+the method of Munthe-Kaas, and what is left of its error is of order 4; MuJoCo's own default is the semi-implicit Euler
+step.  A contact is a spring with a damper, whose numbers are `solref` and `solimp`.
+"""
+
+from functools import cache
+from itertools import pairwise
+
+import numpy as np
+
+from ..reference.orientation import quaternion
+from ..scene import MUJOCO, Engine, EngineRun
+from . import quiet_import
+
+IMPEDANCE, TIME_CONSTANT = 0.95, 0.02    # of contacts: `solimp`, here the same at every depth, and `solref` [s]
+SOFT = f"elliptic cone, impedance {IMPEDANCE}, time constant {TIME_CONSTANT} s"
+
+
+@cache
+def module():
+    """MuJoCo itself.  What it would write into a file MUJOCO_LOG.TXT of the working folder is dropped."""
+    mujoco = quiet_import("mujoco")
+    mujoco.set_mju_user_warning(lambda text: None)
+    return mujoco
+
+
+def text(values):
+    """Numbers as MuJoCo's XML has them, with all their digits."""
+    return " ".join(repr(float(value)) for value in np.ravel(values))
+
+
+def world(dt, bodies, gravity=(0.0, 0.0, 0.0), integrator="RK4", more=""):
+    """Return (model, data) of bodies in XML; `more` are further parts of the model."""
+    mujoco = module()
+    model = mujoco.MjModel.from_xml_string(
+        f'<mujoco><option timestep="{text(dt)}" gravity="{text(gravity)}" integrator="{integrator}" cone="elliptic" '
+        'tolerance="0" iterations="100"><flag autoreset="disable"/></option>'
+        f"{more}<worldbody>{bodies}</worldbody></mujoco>")
+    return model, mujoco.MjData(model)
+
+
+def running(model, data, read):
+    """Make the EngineRun of a world."""
+    step = module().mj_step
+    return EngineRun(lambda: step(model, data), read, lambda: None)
+
+
+def inertial(m, moments, place=(0.0, 0.0, 0.0)):
+    """The mass [kg] of a body, its moments about its centre [kg m²], and where that is in the body [m]."""
+    return f'<inertial mass="{text(m)}" pos="{text(place)}" diaginertia="{text(moments)}"/>'
+
+
+# ---------------------------------------------------------------------------------------------- bodies that turn
+
+def rotation_of(q):
+    """R (3, 3) of the quaternion at the beginning of q."""
+    R = np.empty(9)
+    module().mju_quat2Mat(R, q)
+    return R.reshape(3, 3)
+
+
+def free_body(integrator):
+    """Return make(p, dt) of a free body with p.moments() and p.omega() that starts at R = 1; read: R, flat."""
+    def make(p, dt):
+        model, data = world(dt, f"<body><freejoint/>{inertial(1.0, p.moments())}</body>", integrator=integrator)
+        data.qvel[3:] = p.omega()                        # in the body
+        return running(model, data, lambda: rotation_of(data.qpos[3:7]).ravel())
+    return make
+
+
+FREE_WITNESS = (
+    Engine(MUJOCO, "default", free_body("Euler"), 1, "freejoint; the semi-implicit Euler step", 5000),
+    Engine(MUJOCO, "", free_body("RK4"), 4, "freejoint; Runge–Kutta 4", 5000),
+)
+
+
+def top(m, moments, length, R, spin, g, dt):
+    """Make the EngineRun of a top on a ball joint; moments about its centre, `length` [m] up its axis from the joint.
+
+    read: the horizontal coordinates of the axis.
+    """
+    body = f'<body><joint type="ball"/>{inertial(m, moments, (0.0, 0.0, length))}</body>'
+    model, data = world(dt, body, (0.0, 0.0, -g))
+    data.qpos[:], data.qvel[:] = quaternion(R), (0.0, 0.0, spin)
+    return running(model, data, lambda: rotation_of(data.qpos)[:2, 2])
+
+
+# ---------------------------------------------------------------------------------------------- bodies on hinges
+
+def chain(ends, m, inertia, centre, g, dt, read, integrator="RK4"):
+    """Make the EngineRun of rods between neighbouring ends (n + 1, 2), the first end in its place.
+
+    m [kg] and inertia [kg m²] about the centre of mass, which is the share `centre` of the way along.
+    read(angles (n,) of the rods from x).
+    """
+    body, angles = "", np.unwrap([np.arctan2(*(end - begin)[::-1]) for begin, end in pairwise(ends)])
+    lengths = [np.linalg.norm(end - begin) for begin, end in pairwise(ends)]
+    for k in reversed(range(len(lengths))):
+        place = (lengths[k - 1] if k else 0.0, 0.0, 0.0)
+        body = (f'<body pos="{text(place)}"><joint type="hinge" axis="0 -1 0"/>'
+                f'{inertial(m, np.full(3, inertia), (centre * lengths[k], 0.0, 0.0))}{body}</body>')
+    model, data = world(dt, body, (0.0, 0.0, -g), integrator)
+    data.qpos[:] = np.diff(angles, prepend=0.0)
+    return running(model, data, lambda: read(np.cumsum(data.qpos)))
+
+
+# ---------------------------------------------------------------------------------------------- contacts
+
+def contacts(mu):
+    """The default of all shapes: friction, and a contact that is damped critically."""
+    return (f'<default><geom friction="{text(mu)} 0 0" solref="{TIME_CONSTANT} 1" '
+            f'solimp="{IMPEDANCE} {IMPEDANCE} 1 0.5 2"/></default>')
+
+
+def block(gravity, mu, v, dt, read):
+    """Make the EngineRun of a ball of one kilogram that cannot turn, on the plane z = 0; gravity (2,) along x and z.
+
+    read(position (3,)) of its lowest point.
+    """
+    slides = "".join(f'<joint type="slide" axis="{text(axis)}"/>' for axis in np.eye(3))
+    model, data = world(dt, f'<geom type="plane" size="0 0 1"/><body>{slides}<geom size="0.1" pos="0 0 0.1" mass="1"/>'
+                        "</body>", (gravity[0], 0.0, gravity[1]), "Euler", contacts(mu))
+    data.qpos[2], data.qvel[0] = -1e-9, v                # inside, so that the first step has a contact
+    return running(model, data, lambda: read(data.qpos))
+
+
+def tower(cubes, dt):
+    """Build a Tower of cubes; return a function that waits and returns (force under each cube [N], its sinking [m])."""
+    half, bodies = np.full(3, 0.5 * cubes.size), ""
+    for m, y in zip(cubes.masses, cubes.heights()):
+        bodies += (f'<body pos="0 0 {text(y)}"><freejoint/><geom type="box" size="{text(half)}" mass="{text(m)}"/>'
+                   "</body>")
+    model, data = world(dt, f'<geom type="plane" size="0 0 1"/>{bodies}', (0.0, 0.0, -cubes.g), "Euler",
+                        contacts(cubes.mu))
+
+    def wait():
+        mujoco, found, forces = module(), np.zeros(6), np.zeros(len(cubes.masses))
+        for _ in range(round(cubes.waiting / dt)):
+            mujoco.mj_step(model, data)
+        mujoco.mj_forward(model, data)                   # the contacts of the last places
+        for n, contact in enumerate(data.contact):
+            mujoco.mj_contactForce(model, data, n, found)
+            forces[max(model.geom_bodyid[contact.geom]) - 1] += found[0]          # body 0 is the floor
+        return forces, data.qpos.reshape(-1, 7)[:, 2] - cubes.heights()
+    return wait
+
+
+def sag(load, m, below):
+    """The depth [m] of each of the four contacts under a cube: a load of a quarter, F (1 − d) τ² (1/m + 1/m')/4.
+
+    m: mass of the cube [kg];    below: of the cube under it, or ∞.  At rest a contact has  0 = −k r − R F,  with
+    k = 1/(d τ²) and the regularisation R = (1 − d)/d (1/m + 1/m').
+    *Source:* the documentation of MuJoCo, chapter Computation.
+    """
+    return 0.25 * load * (1.0 - IMPEDANCE) * TIME_CONSTANT**2 * (1.0 / m + 1.0 / below)
