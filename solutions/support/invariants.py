@@ -26,10 +26,10 @@ def sweep_residual_2d(state, dt, p):
     return np.max(np.append(0.0, np.abs(better - J) * np.stack((arms.k_n, arms.k_n), axis=1)))
 
 
-def mechanical_energy_2d(x, v, omega, p):
+def mechanical_energy_2d(x, q, v, omega, p):
     """Given.  Return the energy [J] of all bodies in the plane that can move: Σ ½ m v² + ½ I ω² − m g · x.
 
-    What cannot turn has no energy of rotation.
+    What cannot turn has no energy of rotation.  Angles q do not matter; the arguments are those of mechanical_energy.
     """
     energy = 0.0
     for i in range(x.shape[0]):
@@ -40,10 +40,10 @@ def mechanical_energy_2d(x, v, omega, p):
     return energy
 
 
-def momenta_2d(x, v, omega, p):
+def momenta_2d(x, q, v, omega, p):
     """Given.  Return momentum P [kg m/s] (2,) and angular momentum L [kg m²/s] about the origin, of all that can move.
 
-    P = Σ m v,      L = Σ m (x_x v_y − x_y v_x) + I ω
+    P = Σ m v,      L = Σ m (x_x v_y − x_y v_x) + I ω          Angles q do not matter.
     """
     P, L = np.zeros(2), 0.0
     for i in range(x.shape[0]):

@@ -63,7 +63,7 @@ ROLLING = rotation.RollingBall(1.0, 0.4 * np.ones(3), 1.0, 0.3, DOWN)
 
 def roll(ball, steps=100):
     return rotation.advance_rigid_body(rotation.rolling_step, rotation.supported_weight, 0.0, np.zeros(3),
-                         np.array([1.0, 0.0, 0.0]), np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3), 0.01, steps, ball)
+                         np.array([1.0, 0.0, 0.0, 0.0]), np.array([1.0, 0.0, 0.0]), np.zeros(3), 0.01, steps, ball)
 
 
 def test_a_rolling_ball_with_a_negative_friction_is_refused():
@@ -74,7 +74,7 @@ def test_a_rolling_ball_with_a_negative_friction_is_refused():
 
 def test_a_floor_never_pulls():
     """With gravity away from the floor the ball leaves with g and keeps its tangential speed."""
-    _, v, _, omega = roll(ROLLING._replace(gravity=-DOWN))
+    _, _, v, omega = roll(ROLLING._replace(gravity=-DOWN))
     assert abs(v[2] - 9.81) < 1e-9 and v[0] == 1.0 and not omega.any()
 
 

@@ -190,11 +190,11 @@ edit("10.8", "does not turn", "ball.floor_omega, place", "0.0 * ball.floor_omega
 
 # 10.9 -----------------------------------------------------------------------------------------------------------
 @right("10.9", "by the change of the velocity")
-def carried_step(load, t, x, v, q, omega, dt, ball):
+def carried_step(load, t, x, q, v, omega, dt, ball):
     pushed, turned = worked.stop_slip(v, omega, worked.support_velocity(x + dt * v, ball), dt, ball)
-    _, v_new, _, omega_new = worked.rigid_body_step(load, t, x, pushed, q, turned, dt, ball)
+    _, _, v_new, omega_new = worked.rigid_body_step(load, t, x, q, pushed, turned, dt, ball)
     spin = worked.exponential(dt * (omega + 0.5 * (omega_new - omega)))
-    return x + dt * (v + 0.5 * (v_new - v)), v_new, worked.quaternion_product(spin, q), omega_new
+    return x + dt * (v + 0.5 * (v_new - v)), worked.quaternion_product(spin, q), v_new, omega_new
 
 
 edit("10.9", "the floor where the ball was", "support_velocity(x + dt * v, ball)", "support_velocity(x, ball)")
@@ -205,7 +205,7 @@ edit("10.9", "the floor stands still", "support_velocity(x + dt * v, ball)", "0.
 edit("10.9", "positions with the new velocities", "0.5 * dt * (v + v_new)", "dt * v_new")
 edit("10.9", "turns with the new spin", "0.5 * dt * (omega + omega_new)", "dt * omega_new")
 edit("10.9", "does not turn", "quaternion_product(exponential(0.5 * dt * (omega + omega_new)), q)", "q")
-edit("10.9", "the old spin", "v_new, q, omega_new", "v_new, q, omega")
+edit("10.9", "the old spin", "q, v_new, omega_new", "q, v_new, omega")
 
 
 # 10.10 ----------------------------------------------------------------------------------------------------------
@@ -234,8 +234,8 @@ edit("10.10", "no friction coefficient", "-ball.mu * ball.gravity[2]", "-ball.gr
 
 # 10.11 ----------------------------------------------------------------------------------------------------------
 @right("10.11", "as a loop over both parts")
-def exact_rolling_step(load, t, x, v, q, omega, dt, ball):
-    state, first = (x, v, q, omega), min(dt, worked.slip_time(v, omega, ball))
+def exact_rolling_step(load, t, x, q, v, omega, dt, ball):
+    state, first = (x, q, v, omega), min(dt, worked.slip_time(v, omega, ball))
     for begins, part in ((t, first), (t + first, dt - first)):
         state = worked.average_rolling_step(load, begins, *state, part, ball)
     return state
@@ -249,7 +249,7 @@ edit("10.11", "the second part at time 0", "load, t + first", "load, first")
 edit("10.11", "the second part at the time of the first", "load, t + first", "load, t")
 edit("10.11", "half of the slip", "np.minimum(dt, slip_time(v, omega, ball))",
      "np.minimum(dt, 0.5 * slip_time(v, omega, ball))")
-edit("10.11", "the second part from the start", "x, v, q, omega = average", "_, v, q, omega = average")
+edit("10.11", "the second part from the start", "x, q, v, omega = average", "_, q, v, omega = average")
 
 
 # 10.12 ----------------------------------------------------------------------------------------------------------
