@@ -60,6 +60,7 @@ from solutions.support.contact_points import (
     round_contacts,
 )
 from solutions.support.invariants import (
+    checked_histories,
     closing_speeds,
     mechanical_energy_2d,
     momenta_2d,
@@ -299,6 +300,8 @@ def gain_without_source(energies, work):
     largest over j ≤ k of  (E_k − W_k) − (E_j − W_j)          energies E (k,), work W (k,) done until then, both [J]
 
     It is 0 or more.  Friction and impacts only take energy; a growth above the error of the steps is a fault.
+    E and W may be lists.  Call checked_histories(energies, work) first: it returns both as arrays.
+    Raises what that raises.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 10.15: gain_without_source")

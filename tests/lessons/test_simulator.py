@@ -7,7 +7,9 @@ import itertools
 import numpy as np
 import pytest
 
-from ..grading.expect import between, close
+from solutions.checks import BadInput
+
+from ..grading.expect import between, close, raises
 
 exercise = pytest.mark.exercise
 G = 9.81                     # [m/s²]
@@ -827,7 +829,19 @@ def test_the_largest_gain_is_found_among_all_pairs_of_times(lesson, draw):
               given=f"E − W = {energies - work} J")
 
 
-@exercise("10.15", points=0.5, hint="losses are no gains: 0; what work explains is none, either")
+@exercise("10.15", points=0.25, hint="energies, work = checked_histories(energies, work) comes first")
+def test_histories_need_not_be_arrays_and_must_be_alike(lesson, draw):
+    energies, work = draw(-2.0, 2.0, 6), draw(-2.0, 2.0, 6)
+    expected = max((energies - work)[k] - (energies - work)[j] for k in range(6) for j in range(k + 1))
+    close("largest gain of numbers that are in no array [J]",
+          lesson.gain_without_source(tuple(energies.tolist()), tuple(work.tolist())), expected, ROUND_OFF)
+    close("largest gain of whole numbers [J]", lesson.gain_without_source((3, 1, 2), (0, 0, 0)), 1.0, 0.0)
+    raises("work of fewer times", BadInput, lesson.gain_without_source, energies, work[:5])
+    raises("an energy that is no number", BadInput, lesson.gain_without_source, np.append(energies[:5], np.nan), work)
+    raises("an energy that is infinite", BadInput, lesson.gain_without_source, np.append(energies[:5], np.inf), work)
+
+
+@exercise("10.15", points=0.25, hint="losses are no gains: 0; what work explains is none, either")
 def test_what_only_loses_gains_nothing(lesson, draw):
     energies = 5.0 - np.cumsum(draw(0.1, 1.0, 8))
     close("largest gain of what only loses [J]", lesson.gain_without_source(energies, np.zeros(8)), 0.0, 0.0)

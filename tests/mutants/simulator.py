@@ -312,10 +312,14 @@ edit("10.14", "spin by the inverse tensor", "1.0 / p.inv_inertia[i]", "p.inv_ine
 # 10.15 ----------------------------------------------------------------------------------------------------------
 @right("10.15", "by all pairs of times")
 def gain_without_source(energies, work):
+    energies, work = worked.checked_histories(energies, work)
     rest = energies - work
     return max(rest[k] - rest[:k + 1].min() for k in range(len(rest)))
 
 
+edit("10.15", "takes what it is given", "checked_histories(energies, work)", "energies, work")
+edit("10.15", "takes what it is given for arrays", "checked_histories(energies, work)",
+     "np.asarray(energies), np.asarray(work)")
 edit("10.15", "work is a loss", "energies[k] - work[k]", "energies[k] + work[k]")
 edit("10.15", "work is forgotten", "energies[k] - work[k]", "energies[k]")
 edit("10.15", "since the beginning", "np.minimum(lowest, rest)", "energies[0] - work[0]")
