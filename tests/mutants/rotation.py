@@ -232,13 +232,13 @@ edit("5.11", "ignores small torques", "unrotate(q, tau)", "unrotate(q, tau) * (n
 @variants
 def loop(late=0.0, old_v=False, old_omega=False, gyro=True, mass=True, turned=worked.quaternion_update, first=False):
     """The loop of the second lecture deck with an order that may be wrong."""
-    def rigid_body_step(load, t, x, v, q, omega, dt, body):
-        F, tau = load(t + late * dt, x + (dt * v if first else 0.0), v, q, omega, body)
+    def rigid_body_step(load, t, x, q, v, omega, dt, body):
+        F, tau = load(t + late * dt, x + (dt * v if first else 0.0), q, v, omega, body)
         if not gyro:
             tau = tau + np.cross(omega, worked.body_angular_momentum(q, omega, body.I_body))
         v_new = v + dt * F / (body.m if mass else 1.0)
         omega_new = omega + dt * worked.angular_acceleration(q, omega, tau, body.I_body)
-        return x + dt * (v if old_v else v_new), v_new, turned(q, omega if old_omega else omega_new, dt), omega_new
+        return x + dt * (v if old_v else v_new), turned(q, omega if old_omega else omega_new, dt), v_new, omega_new
     return rigid_body_step
 
 

@@ -195,11 +195,11 @@ edit("10.8", "omits the rotation", "ball.floor_omega, place", "0.0 * ball.floor_
 
 # 10.9 -----------------------------------------------------------------------------------------------------------
 @right("10.9", "by the change of the velocity")
-def carried_step(load, t, x, v, q, omega, dt, ball):
+def carried_step(load, t, x, q, v, omega, dt, ball):
     pushed, turned = worked.stop_slip(v, omega, worked.support_velocity(x + dt * v, ball), dt, ball)
-    _, v_new, _, omega_new = worked.rigid_body_step(load, t, x, pushed, q, turned, dt, ball)
+    _, _, v_new, omega_new = worked.rigid_body_step(load, t, x, q, pushed, turned, dt, ball)
     spin = worked.exponential(dt * (omega + 0.5 * (omega_new - omega)))
-    return x + dt * (v + 0.5 * (v_new - v)), v_new, worked.quaternion_product(spin, q), omega_new
+    return x + dt * (v + 0.5 * (v_new - v)), worked.quaternion_product(spin, q), v_new, omega_new
 
 
 edit("10.9", "takes the velocity of the floor at the old position",
@@ -211,7 +211,7 @@ edit("10.9", "takes the floor to be at rest", "support_velocity(x + dt * v, ball
 edit("10.9", "moves the position with the new velocity", "0.5 * dt * (v + v_new)", "dt * v_new")
 edit("10.9", "rotates with the new spin", "0.5 * dt * (omega + omega_new)", "dt * omega_new")
 edit("10.9", "does not rotate", "quaternion_product(exponential(0.5 * dt * (omega + omega_new)), q)", "q")
-edit("10.9", "returns the old spin", "v_new, q, omega_new", "v_new, q, omega")
+edit("10.9", "returns the old spin", "q, v_new, omega_new", "q, v_new, omega")
 
 
 # 10.10 ----------------------------------------------------------------------------------------------------------
@@ -241,8 +241,8 @@ edit("10.10", "omits the friction coefficient", "-ball.mu * ball.gravity[2]", "-
 
 # 10.11 ----------------------------------------------------------------------------------------------------------
 @right("10.11", "as a loop over both parts")
-def exact_rolling_step(load, t, x, v, q, omega, dt, ball):
-    state, first = (x, v, q, omega), min(dt, worked.slip_time(v, omega, ball))
+def exact_rolling_step(load, t, x, q, v, omega, dt, ball):
+    state, first = (x, q, v, omega), min(dt, worked.slip_time(v, omega, ball))
     for begins, part in ((t, first), (t + first, dt - first)):
         state = worked.average_rolling_step(load, begins, *state, part, ball)
     return state
@@ -258,7 +258,7 @@ edit("10.11", "starts the second part at the length of the first, not at t plus 
 edit("10.11", "starts the second part at time t", "load, t + first", "load, t")
 edit("10.11", "ends the first part after half of the slip time", "np.minimum(dt, slip_time(v, omega, ball))",
      "np.minimum(dt, 0.5 * slip_time(v, omega, ball))")
-edit("10.11", "starts the second part at the old position", "x, v, q, omega = average", "_, v, q, omega = average")
+edit("10.11", "starts the second part at the old position", "x, q, v, omega = average", "_, q, v, omega = average")
 
 
 # 10.12 ----------------------------------------------------------------------------------------------------------
@@ -325,10 +325,14 @@ edit("10.14", "uses the inverse inertia in place of the inertia", "1.0 / p.inv_i
 # 10.15 ----------------------------------------------------------------------------------------------------------
 @right("10.15", "by all pairs of times")
 def gain_without_source(energies, work):
+    energies, work = worked.checked_histories(energies, work)
     rest = energies - work
     return max(rest[k] - rest[:k + 1].min() for k in range(len(rest)))
 
 
+edit("10.15", "does not check its input", "checked_histories(energies, work)", "energies, work")
+edit("10.15", "converts its input to arrays without checking it", "checked_histories(energies, work)",
+     "np.asarray(energies), np.asarray(work)")
 edit("10.15", "adds the work in place of subtracting it", "energies[k] - work[k]", "energies[k] + work[k]")
 edit("10.15", "omits the work", "energies[k] - work[k]", "energies[k]")
 edit("10.15", "measures the gain since the beginning, not since the lowest point",
