@@ -291,8 +291,8 @@ def predict_turns(T, moments, begin, torque, seen, truth, floor, engines=(), dou
 def free_turns(T, truth, uncertainty):
     """Return the field `predicted_error` of a free body that starts at R = 1, with p.moments() and p.omega().
 
-    The floor is round-off, u = 1.1e-16.  A step rounds the orientation by about u in each direction.  A rounding about L
-    or about the axis of symmetry stays what it is.  One that tilts the axis by δ at t also changes the rate of the spin,
+    The floor is round-off, u = 1.1e-16.  A step rounds the orientation by about u in each direction.  A rounding about
+    L or about the axis of symmetry stays what it is.  One that tilts the axis by δ at t also changes the rate of spin,
     which is (1/I₃ − 1/I₁) L₃: at the end the spin is off by  δ S (1 − t/T),  S = |1/I₃ − 1/I₁| |L| T.  For the
     axisymmetric body S = 54.
 
