@@ -218,7 +218,8 @@ def tolerance(p, dt):
     if p.kind == "overlap":
         return {EXACT: 2.4 * sag(p) / p.size + sway(p), "mujoco": 10.0 * ROUND_OFF * p.size / sag(p)}
     if p.kind != "forces":
-        return dict.fromkeys((EXACT, "pile", "pymunk", "pybullet", "pymunk, default", "pybullet, default", "mujoco"), 1e-15)
+        engines = "pymunk", "pybullet", "pymunk, default", "pybullet, default", "mujoco"
+        return dict.fromkeys((EXACT, "pile", *engines), 1e-15)
     light, heavy = 1.0 / masses(p)
     A, forces = np.array([(light, -light), (-light, light + heavy)]), truth(p, T)
     values = np.linalg.eigvalsh(A)
