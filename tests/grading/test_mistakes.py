@@ -96,12 +96,12 @@ def test_an_unknown_mistake_is_not_named(tmp_path):
     assert "not yet" in {o.status for o in outcomes} and not any(o.idea for o in outcomes)
 
 
-@pytest.mark.parametrize(("lesson", "number"), [("springs", "2.4"), ("friction", "3.1"), ("impulses", "7.14")])
-def test_an_answer_that_always_returns_zero_is_not_named(lesson, number):
+@pytest.mark.parametrize(("name", "number"), [("springs", "2.4"), ("friction", "3.1"), ("impulses", "7.14")])
+def test_an_answer_that_always_returns_zero_is_not_named(name, number):
     """It gives the same as many a mistake in the first call of a test."""
-    worked = getattr(modules.bind(lesson), names_in(lesson)[number])
-    traces = traces_of(lesson, {"zero": (number, lambda *arguments: 0.0 * worked(*arguments))})
-    assert mistakes.matching(lesson, number, traces["zero"]) == []
+    worked = getattr(modules.bind(name), names_in(name)[number])
+    traces = traces_of(name, {"zero": (number, lambda *arguments: 0.0 * worked(*arguments))})
+    assert mistakes.matching(name, number, traces["zero"]) == []
 
 
 def test_with_secret_inputs_no_mistake_is_named(tmp_path):
