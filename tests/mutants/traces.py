@@ -68,7 +68,8 @@ def entry(mutant, traces, worked, known):
              for test in tests if test not in early}
     later = {test: found for test, found in later.items() if found}
     stored = {test: mistakes.stored(kept[test]) for test in tests}
-    return [{"idea": mutant.story, "tests": stored, "later": later}] if early or later else []
+    known_by = (early or later) and mistakes.is_telling(traces.values())
+    return [{"idea": mutant.story, "tests": stored, "later": later}] if known_by else []
 
 
 def stored(trace, orderless):

@@ -73,6 +73,7 @@ class Trace:
     def __init__(self, function, wanted=()):
         self.function, self.wanted, self.calls, self.returned = function, wanted, 0, NOTHING
         self.results, self.sorted_out, self.kinds = {}, {}, set()    # {number of the call: its summary}
+        self.numbers, self.plain = False, set()                      # what there is of them: `is_telling`
 
     def of_calls(self, orderless):
         """{number of the call: its summary}; orderless: whether the order within a result does not matter."""
@@ -100,10 +101,15 @@ class Trace:
             except Exception as e:
                 if kept:
                     self.keep(type(e).__name__, type(e).__name__)
+                    self.plain.add(type(e).__name__)
                 raise
             if kept:
                 self.keep(summary(result), summary(result, orderless=True))
                 self.kinds.add(kind(result))
+                if is_plain(result):
+                    self.plain.add(str(self.results[self.calls]))
+                else:
+                    self.numbers = True
             self.returned = result                                   # of the last call, unless it raised: `misshapen`
             return result
         return watched
@@ -130,6 +136,21 @@ def summary(result, orderless=False):
         weighted, sums = [sums, sums * np.abs(sums)], sums + sums * np.abs(sums)
     size = float(sum(np.abs(row).sum() for row in weighted))
     return [sum(map(len, entries)), float(sums.sum()), size]
+
+
+def is_plain(result):
+    """Whether a result has no number but 0, 1 and −1: too little to know a mistake by."""
+    try:
+        numbers = np.array(list(leaves(result)), dtype=float)
+    except Exception:
+        return True
+    return bool(np.all(~np.isfinite(numbers) | np.isin(numbers, (-1.0, 0.0, 1.0))))
+
+
+def is_telling(traces):
+    """Whether these traces are more than one and the same plain result: anybody's first try returns zeros."""
+    traces = [*traces]
+    return any(trace.numbers for trace in traces) or len(set().union(*(trace.plain for trace in traces))) > 1
 
 
 def kind(value):
@@ -215,7 +236,7 @@ def matching(lesson, exercise, traces):
     traces: {test: Trace} of the answer.  An answer that returns in all tests what a right one returns has none.
     """
     known = table(lesson).get(exercise)
-    if not known or traces.keys() != known["right"].keys():
+    if not known or traces.keys() != known["right"].keys() or not is_telling(traces.values()):
         return []
     kept = {test: trace.kept(known["orderless"]) for test, trace in traces.items()}
     wrong = {test for test, right in known["right"].items() if not all_same(kept[test], right)}
