@@ -61,6 +61,9 @@ POLE, POLE_LENGTH, END = 0.02, 1.4, 0.04         # radius and length of the pole
 RING_RADIUS, RING_WIRE = 0.06, 0.011             # of a ring, to the middle of its wire; of the wire [m]
 HANG = POLE + RING_WIRE - RING_RADIUS            # height of the centre of a ring over the axis of the pole [m]
 TOP = HANG - RING_RADIUS - RING_WIRE             # height of the upper hem of the curtain [m]
+BALL = 0.06                                      # radius of the ball that is thrown at the pole [m]
+THROW_FROM, THROW = np.array([0.0, -1.575, -0.55]), np.array([0.0, 6.3, 3.3])          # where from [m], and how [m/s]
+THROW_DT, GRAVITY = 1.0 / 30.0, np.array([0.0, 0.0, -9.81])          # step [s], and [m/s²]
 LEVEL = np.array([1.0, 0.0, 0.0, 0.0])           # the quaternion of a body that is not turned
 ALONG_X = np.array([np.sqrt(0.5), 0.0, np.sqrt(0.5), 0.0])           # of a body whose z lies along the pole
 
