@@ -55,6 +55,39 @@ def drawn(x):
     return x[:, :2] + x[:, 2:] * [-0.4, -0.3]
 
 
+def drawn_aside(step, law, network, spreads):
+    """Pictures (n, 3) of a curtain in space; in picture k its rings are spreads[k] times as far apart as in `points`.
+
+    step is one of lesson 8, for a network whose immovable points are the rings: they keep the velocity that they get.
+    """
+    x, rings, frames = folded(spreads[0]), list(RINGS), []
+    v = np.zeros_like(x)
+    for before, after in zip(spreads, [*spreads[1:], spreads[-1]]):
+        frames.append(x)
+        for k in range(STEPS):
+            spread = before + (after - before) * (k + 1) / STEPS
+            v = v.copy()
+            v[rings] = (folded(spread)[rings] - x[rings]) / DT
+            x, v = step(law, DT * k, x, v, DT, network)
+    return frames
+
+
+def overlaid(films, links, place):
+    """(films, links) for `play`: several films in one picture, each with its own points, links and colour.
+
+    films is {label: pictures (n, 2)}, links has one list of pairs per film.  In the film of another label the points
+    are hidden at `place`, where they move by 10 µm, because points that never move are drawn as nails.
+    """
+    counts = [len(pictures[0]) for pictures in films.values()]
+    starts = np.cumsum([0, *counts])
+    joined = {}
+    for label in films:
+        joined[label] = [np.concatenate([pictures[k] if name == label else
+                                         np.tile(np.asarray(place) + 1e-5 * (k % 2), (len(pictures[0]), 1))
+                                         for name, pictures in films.items()]) for k in range(len(films[label]))]
+    return joined, [(start + i, start + j) for start, pairs in zip(starts, links) for i, j in pairs]
+
+
 # ---------------------------------------------------------------------------------------------- in space
 
 POLE, POLE_LENGTH, END = 0.02, 1.4, 0.04         # radius and length of the pole, radius of the balls at its ends [m]
