@@ -34,8 +34,7 @@ def test_a_notebook_is_stored_without_outputs(path):
         assert cell.cell_type != "code" or (not cell.outputs and cell.execution_count is None)
 
 
-@pytest.mark.parametrize("path", [path for path in NOTEBOOKS if path.stem[:2] in ("01", "02", "03", "04", "05", "06", "08", "09", "10", "11")],
-                         ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", [path for path in NOTEBOOKS if path.stem[:2] != "00"], ids=lambda path: path.stem)
 def test_a_lesson_is_told_in_the_same_way_everywhere(path):
     cells = nbformat.read(path, as_version=4).cells
     text = "\n\n".join(cell.source for cell in cells if cell.cell_type == "markdown")
