@@ -25,7 +25,7 @@ from validate.modules import ROOT
 
 pytestmark = pytest.mark.xdist_group("sweep on a cluster")
 UP_WITHIN = 60.0             # [s]: a scheduler needs 1, a worker 2, on a machine that does nothing else
-SCENES = ("throw", "oscillator", "stopping_block", "incline")
+SCENES = ("stopping_block", "stick_slip", "incline")      # of one lesson, whose stability cases are short
 
 
 def started(kind, *arguments, folder=ROOT):
@@ -56,8 +56,8 @@ def cluster_of(count, tmp_path):
             process.wait()
 
 
-def until(true):
-    limit = time.monotonic() + UP_WITHIN
+def until(true, within=UP_WITHIN):
+    limit = time.monotonic() + within
     while not true():
         assert time.monotonic() < limit
         time.sleep(0.05)
@@ -85,14 +85,14 @@ def test_a_killed_worker_changes_nothing_in_the_report_but_times(tmp_path):
         kept, killed = tmp_path / "there" / "results", []
 
         def kill():                                                    # when something is measured, but not all of it
-            until(lambda: len(list(kept.glob("errors-*"))) >= 2 or len(list(kept.glob("*.json"))) >= 3)
-            killed.append(len(list(kept.glob("*.json"))))
+            until(lambda: len(list(kept.glob("*.errors.json"))) >= 2, within=30.0 * UP_WITHIN)
+            killed.append(len(list(kept.glob("*.times.json"))))
             workers[0].kill()
         thread = threading.Thread(target=kill)
         thread.start()
         code = validate(tmp_path / "there", "--executor", address)
         thread.join()
-    assert code == 0 and killed and killed[0] < 2 * len(SCENES)
+    assert code == 0 and killed == [0]
     (before, here), (after, there) = raw(tmp_path / "here"), raw(tmp_path / "there")
     assert here == there
     assert before["stability"] == after["stability"]
