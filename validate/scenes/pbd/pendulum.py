@@ -122,8 +122,8 @@ ENGINES = (
         1,
         f"JOINT_POINT2POINT, useMaximalCoordinates=1, erp 1, {10 * ITERATIONS} iterations; a bob with I = {SHARE} mL²",
     ),
-    Engine(MUJOCO, "default", mujoco_make("Euler"), 1, "hinge; the semi-implicit Euler step", 5000),
     Engine(MUJOCO, "", mujoco_make("RK4"), 4, "hinge; Runge–Kutta 4", 5000),
+    Engine(MUJOCO, "default", mujoco_make("Euler"), 1, "hinge; the semi-implicit Euler step", 5000),
 )
 
 
