@@ -110,5 +110,5 @@ LEFT_TO_FULL = tuple(method.function for method in INTEGRATORS if method not in 
 TURNS = (MATRIX, AXIS_ANGLE, QUATERNION, GYROSCOPIC, IMPLICIT_GYROSCOPIC, RUNGE_KUTTA, MIDPOINT_TURN, SPLITTING,
          COMPOSED_SPLITTING, COMPOSED_MIDPOINT)
 
-ENGINE_LOOKS = {"pymunk": ("#000000", "x"), "pybullet": ("#5A5A5A", "+"), "mujoco": ("#7A3B00", "1")}  # colour, marker
+ENGINE_LOOKS = {"pymunk": ("#000000", "x"), "pybullet": ("#5A5A5A", "+"), "mujoco": ("#8C0D26", "1")}  # colour, marker
 VARIANT_LINES = {"": "-", "default": ":"}                                         # the other variants are dashed

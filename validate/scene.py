@@ -55,7 +55,7 @@ class EngineRun(NamedTuple):
 class Departure(NamedTuple):
     """Why a method or an engine departs from the truth, and the law that it follows instead."""
     reason: str              # the end of a sentence that begins with "because"
-    own_law: Callable        # (p, t) → the same quantities as truth(p, t)
+    own_law: Callable        # (p, t) → the same quantities as truth(p, t); the truth itself where it does not depart
 
 
 class Prediction(NamedTuple):

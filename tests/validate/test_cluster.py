@@ -6,6 +6,7 @@ The scheduler and two workers are real processes on the loopback.
 import contextlib
 import json
 import multiprocessing
+import os
 import pickle
 import shutil
 import subprocess
@@ -25,7 +26,7 @@ from validate.modules import ROOT
 
 pytestmark = pytest.mark.xdist_group("sweep on a cluster")
 UP_WITHIN = 60.0             # [s]: a scheduler needs 1, a worker 2, on a machine that does nothing else
-SCENES = ("throw", "oscillator", "stopping_block", "incline")
+SCENES = ("stopping_block", "stick_slip", "incline")      # of one lesson, whose stability cases are short
 
 
 def started(kind, *arguments, folder=ROOT):
@@ -56,8 +57,8 @@ def cluster_of(count, tmp_path):
             process.wait()
 
 
-def until(true):
-    limit = time.monotonic() + UP_WITHIN
+def until(true, within=UP_WITHIN):
+    limit = time.monotonic() + within
     while not true():
         assert time.monotonic() < limit
         time.sleep(0.05)
@@ -85,14 +86,14 @@ def test_a_killed_worker_changes_nothing_in_the_report_but_times(tmp_path):
         kept, killed = tmp_path / "there" / "results", []
 
         def kill():                                                    # when something is measured, but not all of it
-            until(lambda: len(list(kept.glob("errors-*"))) >= 2 or len(list(kept.glob("*.json"))) >= 3)
-            killed.append(len(list(kept.glob("*.json"))))
+            until(lambda: len(list(kept.glob("*.errors.json"))) >= 2, within=30.0 * UP_WITHIN)
+            killed.append(len(list(kept.glob("*.times.json"))))
             workers[0].kill()
         thread = threading.Thread(target=kill)
         thread.start()
         code = validate(tmp_path / "there", "--executor", address)
         thread.join()
-    assert code == 0 and killed and killed[0] < 2 * len(SCENES)
+    assert code == 0 and killed == [0]
     (before, here), (after, there) = raw(tmp_path / "here"), raw(tmp_path / "there")
     assert here == there
     assert before["stability"] == after["stability"]
@@ -104,19 +105,19 @@ def test_a_killed_worker_changes_nothing_in_the_report_but_times(tmp_path):
 @pytest.mark.long
 def test_what_is_timed_has_a_machine_for_itself_and_other_calls_have_all_workers(tmp_path):
     with cluster_of(2, tmp_path) as (address, _), cluster.cluster(address, "solutions") as pool:
-        def spans(alone):
-            calls = dict.fromkeys(range(4), (a_while, 0.2))
-            return sorted(found for _, found in pool.each(calls, alone=alone))
-        timed = spans(True)
-        assert all(end <= begin for (_, end), (begin, _) in pairwise(timed))
-        shared = spans(False)
-        assert any(end > begin for (_, end), (begin, _) in pairwise(shared))
+        def measuring(alone):
+            return {found for _, found in pool.each(dict.fromkeys(range(6), (process,)), alone=alone)}
+        assert len(measuring(True)) == 1 and len(measuring(False)) == 2
+
+
+def process():
+    return os.getpid()
 
 
 def a_while(seconds):
-    begin = time.time()
+    begin = time.monotonic()
     time.sleep(seconds)
-    return begin, time.time()
+    return begin, time.monotonic()
 
 
 @pytest.mark.long

@@ -232,3 +232,19 @@ def test_no_page_names_what_only_a_programmer_knows():
         scene = modules.bind_scene(name)
         for thing in (scene.truth, scene.tolerance, scene.acceleration):
             assert not internal.findall(modules.report_text(thing) if thing else ""), name
+
+
+def test_of_settings_that_err_alike_the_fastest_one_runs():
+    def entry(engine, error, seconds):
+        return {"engine": engine, "product": "pymunk", "error": error, "seconds": seconds, "ours": 1e-3,
+                "method": "ours", "speed": "compiled", "ratio": seconds / 1e-3}
+    settings = [entry("pymunk", 1e-4, 9.0), entry("pymunk, fewer iterations", 1.04e-4, 3.0),
+                entry("pymunk, fewest", 1e-3, 1.0)]
+    rows = [{"label": a["engine"], "speed": "engine", "error": a["error"], "low": a["seconds"], "high": a["seconds"]}
+            for a in settings]
+    rows.append({"label": "ours", "speed": "compiled", "error": 1e-4, "seconds": 1e-3, "low": 1e-3, "high": 1e-3})
+    engines = [{"label": a["engine"], "departure_reason": ""} for a in settings]
+    result = {"cases": {"only": {"engines": engines}}, "times": {"advantage": settings, "rows": rows}}
+    assert words.races(result)["pymunk"]["engine"] == "pymunk, fewer iterations"
+    settings[1]["error"] = rows[1]["error"] = 1.06e-4                  # errs more: its time is no time to that error
+    assert words.races(result)["pymunk"]["engine"] == "pymunk"

@@ -71,8 +71,8 @@ def free_body(integrator):
 
 
 FREE_WITNESS = (
-    Engine(MUJOCO, "default", free_body("Euler"), 1, "freejoint; the semi-implicit Euler step", 5000),
     Engine(MUJOCO, "", free_body("RK4"), 4, "freejoint; Runge–Kutta 4", 5000),
+    Engine(MUJOCO, "default", free_body("Euler"), 1, "freejoint; the semi-implicit Euler step", 5000),
 )
 
 

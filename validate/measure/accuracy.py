@@ -184,10 +184,11 @@ def bound(scene, p, label, order, steps, law):
 def judged(scene, label, p, truth, runs, order):
     """The curve of a method or an engine: its errors over the sweep, the order that they show, and the verdict.
 
-    Where the scene gives it its own law, it must follow that law.
+    Where the scene gives it its own law, it must follow that law.  Where that is the truth, it departs from nothing.
     """
     departure = scene.expected_departures.get(label)
     law = truth if departure is None else np.array(departure.own_law(p, scene.duration), dtype=float)
+    departure = None if np.array_equal(law, truth) else departure
     rows = [{"steps": steps, "dt": scene.duration / steps, "observed": outcome.observed,
              "error": None if outcome.failure else relative(outcome.observed, truth), "failure": outcome.failure,
              **bound(scene, p, label, order, steps, law)} for steps, outcome in runs]

@@ -316,8 +316,8 @@ def chipmunk_rope(x, v, h, l, a):
 
 ROPE_STEPS = {
     "RATTLE": (2, lambda *now: rattle(*now, 50)), "rope": (2, lambda *now: rattle(*now, 1)),
-    "rope, composed": (4, composed_rope), "pymunk": (1, chipmunk_rope), "projection": (1, onto_circle),
-    "PBD": (1, onto_circle), "XPBD": (1, onto_circle)}
+    "rope, composed": (4, composed_rope), "pymunk": (1, chipmunk_rope), "pymunk, fewer iterations": (1, chipmunk_rope),
+    "projection": (1, onto_circle), "PBD": (1, onto_circle), "XPBD": (1, onto_circle)}
 
 
 def rope_errors(T, rope, seen, truth, floor, labels, unfinished=()):

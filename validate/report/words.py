@@ -25,6 +25,7 @@ LEGEND = {                   # every verdict has one name and one sign
     Verdict.NOT_ATTEMPTED: "The exercise behind this method has no answer yet.",
 }
 TIE = 2.0                    # a ratio of times below this, and above its inverse, is a tie [-]
+NEARLY = 1.05                # times an engine's smallest error: a setting that comes as near may run for it [-]
 BUSY = 0.25                  # cores that other programs use, from which times are doubtful [-]
 BUSY_LOAD = 1.5              # the same where only the load of the machine is known: the run itself counts as 1 [-]
 
@@ -150,13 +151,19 @@ def finest(curve):
 # ---------------------------------------------------------------------------------------------- races
 
 def races(result):
-    """{product: the race to its smallest error} of a scene.  To be as wrong as another law is no race."""
+    """{product: the race to its smallest error} of a scene.  To be as wrong as another law is no race.
+
+    Of an engine's settings that reach that error, or nearly, the fastest one runs.
+    """
     first = next(iter(result["cases"].values()))
     own_laws = {c["label"] for c in first["engines"] if c["departure_reason"]}
+    entered = [a for a in result["times"]["advantage"] if a["engine"] not in own_laws]
+    entered.sort(key=lambda a: -a["error"])
     best = {}
-    for a in sorted(result["times"]["advantage"], key=lambda a: -a["error"]):
-        if a["engine"] not in own_laws:
-            best[a["product"]] = race(a, result)
+    for product in dict.fromkeys(a["product"] for a in entered):
+        settings = [a for a in entered if a["product"] == product]
+        near = [a for a in settings if a["error"] <= NEARLY * settings[-1]["error"]]
+        best[product] = race(min(near, key=lambda a: a["seconds"]), result)
     return best
 
 

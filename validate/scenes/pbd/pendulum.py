@@ -88,7 +88,7 @@ def floor(p, dt):
 
 
 def pymunk_make(p, dt):
-    return pymunk_rope([place(np.radians(p.degrees), p)], p.L, p.m, p.g, dt, lambda x: x[0])
+    return pymunk_rope([place(np.radians(p.degrees), p)], p.L, p.m, p.g, dt, lambda x: x[0], 1)
 
 
 def pybullet_make(p, dt):
@@ -113,7 +113,7 @@ by_angles = predict_angles(T, swinging, lambda p: (np.radians(p.degrees), 0.0), 
 
 ENGINES = (
     Engine(
-        PYMUNK, "", pymunk_make, 1, f"PinJoint to a mass that cannot turn; error_bias 0, {10 * ITERATIONS} iterations"
+        PYMUNK, "", pymunk_make, 1, "PinJoint to a mass that cannot turn; error_bias 0, 1 iteration: it has one link"
     ),
     Engine(
         PYBULLET,
@@ -122,8 +122,8 @@ ENGINES = (
         1,
         f"JOINT_POINT2POINT, useMaximalCoordinates=1, erp 1, {10 * ITERATIONS} iterations; a bob with I = {SHARE} mL²",
     ),
-    Engine(MUJOCO, "default", mujoco_make("Euler"), 1, "hinge; the semi-implicit Euler step", 5000),
     Engine(MUJOCO, "", mujoco_make("RK4"), 4, "hinge; Runge–Kutta 4", 5000),
+    Engine(MUJOCO, "default", mujoco_make("Euler"), 1, "hinge; the semi-implicit Euler step", 5000),
 )
 
 

@@ -74,7 +74,7 @@ def tolerance(p, dt):
     return free_limits(p, T, dt, [kind for kind in FIRST_ORDER if kind != "L kept, by columns"])
 
 
-ENGINES = FREE_ENGINES + FREE_WITNESS[-1:]               # its default would need 10⁵ steps here
+ENGINES = FREE_ENGINES + FREE_WITNESS[:1]               # its default would need 10⁵ steps here
 
 
 def points(observed, p):

@@ -118,7 +118,7 @@ def tolerance(p, dt):
     from one run, of 20 steps per rod (8 for the fourth order), at least 200 (100), and scaled with dt² (dt⁴); half as
     much again for what the next order adds in shorter steps.
 
-    The engines also begin half a step late or early: that is of first order.  And they close a joint in
+    pymunk and pybullet also begin half a step late or early: that is of first order.  And they close a joint in
     the step after the one that opened it: that is of second order.  Where a rod turns by more than a
     radian in a step, an expansion in powers of dt says nothing.
 
