@@ -86,7 +86,6 @@ def weighted(weights, values):
     return total
 
 
-@cache
 def stages(tableau):
     """[(c, row of α, row of β, weight of the stage itself or None, whether its acceleration is used)]"""
     used = {stage for row in (*tableau.beta, tableau.b) for stage, _ in row}
@@ -94,17 +93,21 @@ def stages(tableau):
             for i, (c, alpha, beta) in enumerate(zip(tableau.c, tableau.alpha, tableau.beta, strict=True))]
 
 
-def step(tableau, law, t, x, v, h):
-    """One step; x and v are floats, complex numbers or arrays."""
-    V, forces = [], []
-    for c, alpha, beta, itself, used in stages(tableau):
-        if itself is None:
-            V.append(v + h * weighted(beta, forces))
-            forces.append(law(t + c * h, x + h * weighted(alpha, V), V[-1]) if used else None)
-        else:
-            for stage, one in zip((V, forces), implicit_stage(law, t + c * h, x, v, itself * h), strict=True):
-                stage.append(one)
-    return x + h * weighted(tableau.a, V), v + h * weighted(tableau.b, forces)
+def step_of(tableau):
+    """The function (law, t, x, v, h) → (x, v) of one step; x and v are floats, complex numbers or arrays."""
+    rows, a, b = stages(tableau), tableau.a, tableau.b
+
+    def step(law, t, x, v, h):
+        V, forces = [], []
+        for c, alpha, beta, itself, used in rows:
+            if itself is None:
+                V.append(v + h * weighted(beta, forces) if beta else v)
+                forces.append(law(t + c * h, x + h * weighted(alpha, V) if alpha else x, V[-1]) if used else None)
+            else:
+                for stage, one in zip((V, forces), implicit_stage(law, t + c * h, x, v, itself * h), strict=True):
+                    stage.append(one)
+        return x + h * weighted(a, V), v + h * weighted(b, forces)
+    return step
 
 
 def implicit_stage(law, t, x, v, h):
@@ -122,8 +125,8 @@ def implicit_stage(law, t, x, v, h):
 
 
 def advance(scheme, law, x, v, h, steps):
-    """(x, v) after so many steps.  A scheme is a label of TABLEAUX, or a function like `step` without a tableau."""
-    move = scheme if callable(scheme) else lambda *now: step(TABLEAUX[scheme], *now)
+    """(x, v) after so many steps.  A scheme is a label of TABLEAUX, or a function like those of `step_of`."""
+    move = scheme if callable(scheme) else step_of(TABLEAUX[scheme])
     with np.errstate(all="ignore"):
         for n in range(steps):
             x, v = move(law, n * h, x, v, h)
@@ -210,10 +213,12 @@ class Model(NamedTuple):
 
 
 def table_model(scheme, law, begin, seen, order=1, ahead=0.0):
-    """The Model of an engine that does what a scheme does: a label of TABLEAUX, or p → a function like `step`.
+    """The Model of an engine that does what a scheme does: a label of TABLEAUX, or p → a function like those of
+    `step_of`.
 
     Its first velocity is that of begin(p) and  ahead h a  at the start.
     """
+    @cache                                              # a method and an engine may have the same model
     def run(p, h, steps, nudge):
         force, (x, v) = law(p), begin(p)
         rule = scheme(p) if callable(scheme) else scheme
