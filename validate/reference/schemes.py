@@ -133,6 +133,15 @@ def advance(scheme, law, x, v, h, steps):
     return x, v
 
 
+def advance_modes(scheme, law, x, v, h, steps):
+    """The same for a law −ω² x − c v of each coordinate on its own: the power of the (2, 2) matrix of one step."""
+    one, none = np.ones_like(x), np.zeros_like(x)
+    with np.errstate(all="ignore"):
+        columns = [np.stack(advance(scheme, law, *begin, h, 1), axis=-1) for begin in ((one, none), (none, one))]
+        after = np.linalg.matrix_power(np.stack(columns, axis=-1), steps) @ np.stack((x, v), axis=-1)[..., None]
+    return after[..., 0, 0], after[..., 1, 0]
+
+
 class ErrorLaw:
     """The error of a method over its step, from the same method's table at a few coarse steps.
 
@@ -212,17 +221,17 @@ class Model(NamedTuple):
     run: object              # (p, h, steps, nudge) → what is observed at the end; nudge [m] moves the start
 
 
-def table_model(scheme, law, begin, seen, order=1, ahead=0.0):
+def table_model(scheme, law, begin, seen, order=1, ahead=0.0, march=advance):
     """The Model of an engine that does what a scheme does: a label of TABLEAUX, or p → a function like those of
     `step_of`.
 
-    Its first velocity is that of begin(p) and  ahead h a  at the start.
+    Its first velocity is that of begin(p) and  ahead h a  at the start.  march: `advance`, or its like for such a law.
     """
     @cache                                              # a method and an engine may have the same model
     def run(p, h, steps, nudge):
         force, (x, v) = law(p), begin(p)
         rule = scheme(p) if callable(scheme) else scheme
-        return seen(advance(rule, force, nudged(x, nudge), v + ahead * h * force(0.0, x, v), h, steps)[0], p)
+        return seen(march(rule, force, nudged(x, nudge), v + ahead * h * force(0.0, x, v), h, steps)[0], p)
     return Model(order, run)
 
 
@@ -231,20 +240,22 @@ def nudged(x, nudge):
     return x + nudge * (np.cos(np.arange(x.size) ** 2.0).reshape(x.shape) if isinstance(x, np.ndarray) else 1.0)
 
 
-def predict_by_tables(T, law, begin, seen, truth, floor, engines=None, departures=None, finest=None, powers=None):
+def predict_by_tables(T, law, begin, seen, truth, floor, engines=None, departures=None, finest=None, powers=None,
+                      march=advance):
     """The field `predicted_error` of a scene, (label, p, dt) → Prediction, from the tables above.
 
     law(p) → a(t, x, v);    begin(p) → (x, v);    seen(x, p) → what the scene observes of x;    floor(p, dt) → round-off
     engines: {label: Model};    departures: those of the scene;    finest: {order or label: steps of the finest run of a
     table}
-    powers: {label: the first three powers of dt in the error, where they are not k, k + 1, k + 2 of order k}
+    powers: {label: the first three powers of dt in the error, where they are not k, k + 1, k + 2 of order k};    march:
+    `advance`, or `advance_modes` for modes that do not touch
     """
     engines, departures, finest = engines or {}, departures or {}, {**FINEST, **(finest or {})}
 
     @cache
     def error_law(label, p):
         own = departures[label].own_law if label in departures else truth
-        order, run = engines.get(label) or table_model(label, law, begin, seen, ORDERS[label])
+        order, run = engines.get(label) or table_model(label, law, begin, seen, ORDERS[label], march=march)
         return ErrorLaw(lambda steps, nudge: run(p, T / steps, steps, nudge), np.array(own(p, T), dtype=float),
                         (powers or {}).get(label, order), T, finest.get(label, finest[order]))
 
