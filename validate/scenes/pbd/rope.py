@@ -195,6 +195,8 @@ SCENE = Scene(
                      "sparse one"),
     # The reference solution alone takes seconds.
     slow_cases=("50 links",),
+    uncompiled_in_quick=("rattle_step",),
+    shorter_in_quick={"rattle_step": 600},
     sanity_checks=sanity_checks,
     points=points,
     links=links,
