@@ -174,8 +174,8 @@ def test_no_answer_can_be_read_from_a_table(name):
     path = mistakes.FOLDER / f"{name}.json"
     text = path.read_text(encoding="utf-8")
     hidden = list(release.answers_of(name))
-    assert release.leak_in(text, hidden, release.signs_of(hidden), set()) is None
-    assert not any(release.leak_in(quoted, hidden, release.signs_of(hidden), set())
+    assert release.leak_in(text, hidden, release.signs_of(hidden)) is None
+    assert not any(release.leak_in(quoted, hidden, release.signs_of(hidden))
                    for quoted in release.texts(f"{name}.json", text))
 
 

@@ -207,7 +207,7 @@ def tolerance(p, dt):
     """forces      Sweeps stop where the residual is 1e-13 of the largest (|A||F| + |b|)_k; the error is the residual
                 over the least eigenvalue of A at most.  Murty solves a linear system: 1.1e-16 times the condition of
                 A, and ten for the operations.  The pile still rocks a little when it is read: three times what
-                `sway_of_tower` says, because the phase of the rocking depends on the places of the corners, and
+                the recursion of its sweeps says, because the phase of the rocking depends on the places of the corners, and
                 the force of a rounded gap.  How engines come to rest no theory says: they agree if a force
                 tells to a hundredth of the light box what it carries.
     overlap     The upper box slides aside by no more than it sinks, and takes a corner along: a relative change of

@@ -150,7 +150,7 @@ def tolerance(p, dt):
     Murty solves a linear system: 1.1e-16 times the condition of A, and ten for the operations.
 
     The pile still rocks a little when it is read.  A reference that knows only the recursion of its sweeps says how
-    much (`sway_of_tower`).  The phase of the rocking depends on the exact places of the corners, which it takes for
+    much.  The phase of the rocking depends on the exact places of the corners, which it takes for
     fixed: three times its sway, and the force of a rounded gap.
     How engines come to rest no theory says.  They agree if each force tells to a hundredth of a box how many it
     carries.  So does the pile in space.  MuJoCo's contacts are at rest after 150 of their time constants, but for
