@@ -255,14 +255,16 @@ def carried_step(load, t, x, v, q, omega, dt, ball):
 def slip_time(v, omega, ball):
     """Return the time [s] until a RollingBall on a floor at rest ceases to slip; inf if it never does.
 
-    Friction and gravity change the slip u = v + ω × r, r = (0, 0, −radius), at the constant rate
-        u̇ = −μ |g_z| (1 + m radius²/I) u/|u| + g_t,      g_t = (g_x, g_y, 0)
-    so that |u| decreases by  b = μ |g_z| (1 + m radius²/I) − u · g_t/|u|  per second:  t = |u|/b, and inf if b ≤ 0.
-    Of u only the part along the floor counts: u_z = 0.  Return 0 where u = 0.
+    *Find* the rate at which friction and gravity change the slip, the velocity of the lowest point:
+        u = v + ω × r,      r = (0, 0, −radius)
+    The rate is constant.  Friction is as large as Coulomb allows, μ m |g_z|.  I = I_body[0] is the same about all
+    axes.
+    Of u only the part along the floor counts: u_z = 0.  Return 0 where u = 0, and inf where |u| does not decrease.
     Gravity along the floor must be zero or parallel to u, or u would change its direction.
     *Source:* Newton and Euler, with Coulomb's law.
     """
     ### BEGIN SOLUTION 10.10
+    # u̇ = −μ |g_z| (1 + m radius²/I) u/|u| + g_t,  so |u| decreases by  μ |g_z| (1 + m radius²/I) − u · g_t/|u|
     slip = point_velocity(v, omega, np.array([0.0, 0.0, -ball.radius]))
     slip[2] = 0.0
     size = norm(slip)
@@ -291,13 +293,13 @@ def exact_rolling_step(load, t, x, v, q, omega, dt, ball):
 def corner_impact(v, omega, r, inv_mass, inv_inertia):
     """Return (v (2,), ω) of a body in the plane after its point at r (2,) has hit an edge and stops there.
 
-    The impulse acts at that point, so the angular momentum about it stays:   L = I ω − m (r × v)
-    Afterwards the body turns about it:   ω⁺ = L/(I + m |r|²),      v⁺ = −ω⁺ × r = ω⁺ (r_y, −r_x)
-
-    r × v = cross_2d(r, v).  For a slender block this is Housner's ratio 1 − 1.5 sin²α.
+    *Find* what the impulse, which acts at that point, leaves unchanged.  Afterwards the body turns about that point.
+    v is the velocity of the centre, and r × v = cross_2d(r, v).  For a slender block the result is Housner's ratio
+    ω⁺/ω = 1 − 1.5 sin²α.
     *Source:* Housner 1963, “The behavior of inverted pendulum structures during earthquakes”.
     """
     ### BEGIN SOLUTION 10.12
+    # The angular momentum about the corner stays, L = I ω − m (r × v); then it turns about the corner, v⁺ = −ω⁺ × r.
     L = omega / inv_inertia - cross_2d(r, v) / inv_mass
     omega = L / (1.0 / inv_inertia + (r[0] * r[0] + r[1] * r[1]) / inv_mass)
     return omega * np.array([r[1], -r[0]]), omega

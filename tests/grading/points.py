@@ -65,7 +65,7 @@ class Points:
         exercise below it that does not pass.
         """
         for subject, outcomes in self.outcomes.items():
-            states = needs.states((o.exercise, o.status) for o in outcomes)
+            states = needs.states((o.exercise, o.status) for o in outcomes if o.status != "not run")
             said = {number: reasons(number, states, traces.of(subject, number), folder)
                     for number, state in states.items() if state == "not yet"}
             self.outcomes[subject] = [o._replace(idea=said[o.exercise][0], below=said[o.exercise][1])
