@@ -90,7 +90,8 @@ def overlaid(films, links, place):
 
 # ---------------------------------------------------------------------------------------------- in space
 
-POLE, POLE_LENGTH, END = 0.02, 1.4, 0.04         # radius and length of the pole, radius of the balls at its ends [m]
+POLE, POLE_LENGTH = 0.02, 1.5                    # radius and length of the pole of lesson 4 [m]
+KNOBS = (0.045, -0.795), (0.055, 0.805)          # radii of the balls at its ends, and their places along it [m]
 RING_RADIUS, RING_WIRE = 0.06, 0.011             # of a ring, to the middle of its wire; of the wire [m]
 HANG = POLE + RING_WIRE - RING_RADIUS            # height of the centre of a ring over the axis of the pole [m]
 TOP = HANG - RING_RADIUS - RING_WIRE             # height of the upper hem of the curtain [m]
@@ -134,13 +135,13 @@ def sheet(slipped=False):
 
 def shapes(rings=RINGS, slipped=False):
     """Pole, two balls, curtain and rings in space, for show3d."""
-    pole, end = drawing.cylinder(POLE, POLE_LENGTH), drawing.sphere(END)
-    return [pole, end, end, sheet(slipped), *[RING] * len(rings)]
+    knobs = [drawing.sphere(radius) for radius, _ in KNOBS]
+    return [drawing.cylinder(POLE, POLE_LENGTH), *knobs, sheet(slipped), *[RING] * len(rings)]
 
 
 def still(rings=RINGS):
     """Their poses (7,): the axis of the pole is the x axis."""
-    ends = [np.concatenate(([side * 0.5 * POLE_LENGTH, 0.0, 0.0], LEVEL)) for side in (-1.0, 1.0)]
+    ends = [np.concatenate(([place, 0.0, 0.0], LEVEL)) for _, place in KNOBS]
     hung = [np.concatenate(([CELL * (ring - 0.5 * (COLS - 1)), 0.0, HANG], ALONG_X)) for ring in rings]
     cloth = np.array([0.0, 0.0, TOP - 0.5 * CELL * (ROWS - 1), *LEVEL])
     return [np.concatenate((np.zeros(3), ALONG_X)), *ends, cloth, *hung]
