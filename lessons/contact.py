@@ -109,9 +109,11 @@ def stack_contraction(n):
 
 
 def mass_ratio_contraction(r):
-    """ρ of Gauss–Seidel for a body of mass r m on one of mass m on the ground:  r/(1 + r).
+    """ρ of Gauss–Seidel for a body of mass r m on one of mass m, which is on the ground.  No friction.
 
-    A = [[1, −1], [−1, 1 + 1/r]]/m, and for two contacts ρ = A₀₁ A₁₀/(A₀₀ A₁₁).
+    A = [[1, −1], [−1, 1 + 1/r]]/m: contact 0 is between the ground and the lower body, contact 1 between the bodies.
+    *Find* ρ, the factor by which one sweep (gauss_seidel_sweep with ω = 1) shrinks the error of both λ.  Both contacts
+    push.
     *Source:* both equations by hand.
     """
     # YOUR CODE HERE
@@ -211,11 +213,13 @@ def contact_forces(x, inv_mass, inv_inertia, contacts, load, mu):
 def soft_contact(gap, hertz, zeta, dt):
     """(aim [m/s], give [-]) of a contact that is a damped spring: it asks for u_n = aim − give k_n J_n.
 
-    gap > 0:     aim = −gap/dt, which just closes the gap in this step;      give = 0
-    gap ≤ 0:     aim = −s gap/(dt (2ζ + s)),      give = 1/(s (2ζ + s)),      s = 2π hertz dt
+    gap > 0:     aim is the velocity that just closes the gap in this step, and give = 0.
+    gap ≤ 0:     *Find* aim and give of an implicit Euler step of a damped spring.  It pushes with the impulse
+        J_n = −dt (k (gap + dt u_n) + c u_n),      k = (2π hertz)²/k_n,      c = 2ζ (2π hertz)/k_n
+    where u_n is the velocity after the step.  k_n cancels: aim and give depend on gap, hertz, zeta and dt only.
 
-    That is an implicit Euler step of a spring (2π hertz)²/k_n with the damping ratio ζ.  Under a force F the gap comes
-    to rest at −k_n F/(2π hertz)², whatever dt is.  gap [m], hertz [1/s], zeta [-], dt [s].
+    Under a force F the gap comes to rest at −k_n F/(2π hertz)², whatever dt is.  gap [m], hertz [1/s], zeta [-],
+    dt [s]; hertz and dt are above 0.
     *Source:* Catto 2011, "Soft constraints"; lesson 8's compliance, for a contact.
     """
     # YOUR CODE HERE

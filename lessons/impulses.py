@@ -200,10 +200,12 @@ def angular_momenta(L_a, L_b, r_a, r_b, J):
 def contact_matrix(r, inv_mass, inv_inertia):
     """Return K [1/kg], (3, 3): an impulse J at the offset r changes the velocity of that point by K J.
 
-    K = 1/m − r* I⁻¹ r*          r* = skew(r) of lesson 5
+    *Find* it from what an impulse does to a body:  v⁺ = v + J/m,   ω⁺ = ω + I⁻¹ (r × J),   and from the velocity
+    v + ω × r of the point.
 
-    Column k is the change of velocity by an impulse of 1 N s along axis k.  K is symmetric, and zero for an immovable
-    body.  Between two bodies u changes by (K_a + K_b) J.
+    inv_mass is 1/m [1/kg], and inv_inertia (3, 3) is I⁻¹ in the world [1/(kg m²)]; each may be zero.  Column k is the
+    change of velocity by an impulse of 1 N s along axis k.  K is symmetric, and zero for an immovable body.  Between
+    two bodies u changes by (K_a + K_b) J.
     *Source:* Mirtich and Canny 1995; Baraff 1997.
     """
     # YOUR CODE HERE
@@ -235,7 +237,7 @@ def cone_impulse(u, n, K, u_sep, mu):
 def energy_change(u, K, J):
     """Return the kinetic energy [J] that both bodies together gain by an impulse J at a contact; negative: lost.
 
-    ΔE = J · u + ½ J · K J  =  J · (u + u⁺)/2
+    *Find* it: u (3,) [m/s] is the relative velocity before the impulse, and K (3, 3) [1/kg] its response, u⁺ = u + K J.
 
     Without friction it is −½ (1 − e²) u_n²/k_n.  With a sticking J it is ½ (e² u_n² n · K⁻¹n − u · K⁻¹u), which can be
     positive: Newton's restitution concerns normal velocities only, but friction can convert tangential to
@@ -280,11 +282,12 @@ def impact_time(phi, v_n, a_n, dt):
 def bouncing_time(v_n, a_n, e):
     """Return the time [s] for which a ball keeps bouncing that leaves its plane with v_n [m/s], at constant a_n [m/s²].
 
-    T = 2v_n/|a_n| · (1 + e + e² + …) = 2v_n/(|a_n| (1 − e));      0 where v_n ≤ 0;      ∞ where a_n ≥ 0 or e = 1
+    *Find* it: a_n < 0 brings the ball back with the speed with which it left, and each impact leaves the share e of it.
+    Sum up the times of all flights; these are infinitely many impacts in a finite time (Zeno).
 
-    Where both conditions hold it is 0: a ball that does not leave does not bounce.
-    These are infinitely many impacts in a finite time (Zeno).
-    *Source:* flights of 2v/|a|, each e times as long as the one before; the geometric series.
+    It is 0 where v_n ≤ 0, and ∞ (np.inf) where a_n ≥ 0 or e = 1.  Where both conditions hold it is 0: a ball that does
+    not leave does not bounce.
+    *Source:* Newton's restitution; free flight at constant acceleration.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 7.14: bouncing_time")

@@ -118,9 +118,9 @@ def sphere_inertia(m, radius):
 def cylinder_inertia(m, radius, length):
     """Return I_body [kg m²] (3, 3) of a uniform cylinder about its centre; its axis is z.
 
-    Izz = ½ m radius²,   Ixx = Iyy = m (3 radius² + length²)/12
+    *Find* Izz and Ixx = Iyy by the volume integrals at the top of this file.  `length` is along the axis.
 
-    The limit length → 0 is a disc, radius → 0 a rod.
+    length = 0 is a disc, radius = 0 a rod: do not divide by either.
     *Source:* any text of mechanics; e.g. Landau and Lifshitz, Mechanics, § 32.
     """
     # YOUR CODE HERE
@@ -133,10 +133,8 @@ def capsule_inertia(m, radius, length):
     `length` is that of the cylinder.  The mass is divided in proportion to volume, m_c for the cylinder and m_s
     for the two half balls together:
         m_c = m length/(length + 4/3 radius),   m_s = m − m_c
-    The centre of a half ball is ⅜ radius above its flat face.  With h = length and both parts moved to the
-    capsule's centre
-        Ixx = Iyy = m_c (3 radius² + h²)/12 + m_s (⅖ radius² + ¼ h² + ⅜ h radius)
-        Izz = ½ m_c radius² + ⅖ m_s radius²
+    *Find* Izz and Ixx = Iyy: move both parts to the capsule's centre.  The centre of mass of a half ball is not in its
+    flat face.
 
     length = 0 is a ball, radius = 0 a rod; with both zero there is no body.
     *Source:* the parallel-axis theorem, below; Eberly, “Game physics”, 2003.

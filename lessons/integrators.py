@@ -199,7 +199,7 @@ def implicit_midpoint_step(acceleration, t, x, v, dt, p):
     xₙ₊₁ = xₙ + dt v½
     vₙ₊₁ = vₙ + dt a(tₙ + ½dt, x½, v½)
 
-    (x½, v½) is the result of half a step of implicit Euler.  The other half continues along the same slope.
+    *Find* how to solve these equations with a function of this lesson.
 
     Raises Diverged like implicit_euler_step.
     *Source:* Hairer, Lubich, Wanner 2006, “Geometric numerical integration”, II.1 and IV.2.
@@ -272,9 +272,9 @@ def spectral_radius(matrix):
 
 
 def observed_order(dts, errors):
-    """Return the observed order of convergence of a series of runs: the slope of log(error) over log(dt).
+    """Return the observed order of convergence k of a series of runs, whose errors are about C dtᵏ.
 
-    error ≈ C dtᵏ   ⇒   k = Σ (ξ − ξ̄)(η − η̄) / Σ (ξ − ξ̄)²,   ξ = log dt, η = log error;  least squares
+    *Find* the formula: log(error) over log(dt) is a straight line, and k is its slope by least squares.
 
     dts and errors are (n,) arrays of positive numbers.
     Raises BadInput for one that is not: check_positive("step dt [s]", dt) and check_positive("error [-]", error).

@@ -183,8 +183,8 @@ def pbd_step(acceleration, t, x, v, dt, network):
 def pbd_sag(g, dt, stiffness, sweeps):
     """Return the sag [m] of a weight that hangs at rest from a single link under PBD; an inextensible link has none.
 
-    At rest each step lowers the weight by g dt², and the sweeps leave the share S = (1 − s)ⁿ of any error:
-        (sag + g dt²) S = sag,      sag = g dt² S/(1 − S)
+    predict first lowers the weight by g dt².  Then each of the n sweeps removes the share s of the error that it finds.
+    *Find* the sag at which a step ends where it began.
 
     s: stiffness, above 0 and up to 1; n: sweeps.  The sag is no property of the link: half the step, a quarter of it.
     *Source:* Müller et al. 2006, section 3.3; second lecture deck, “If not enough iterations, constraints appear soft!”
@@ -248,9 +248,9 @@ def keep_outside(surface, x, inv_mass, obstacle):
 def compliant_multiplier(C, Lam, weight, alpha_scaled):
     """Return ΔΛ [N s²] for one visit to a compliant constraint: a spring of stiffness 1/α for any step and any sweeps.
 
-    ΔΛ = (−C − α̃ Λ)/(weight + α̃),      α̃ = α/dt²          weight = Σ w |∇C|²
-
-    Λ = λ dt² is the sum of the ΔΛ of earlier visits in this step.  At convergence C = −α̃ Λ = −α λ: Hooke's law.
+    Λ = λ dt² is the sum of the ΔΛ of earlier visits in this step.  A visit with ΔΛ changes C by weight ΔΛ, to first
+    order; weight = Σ w |∇C|².  *Find* the ΔΛ after which C and Λ, both with their new values, obey Hooke's law:
+        C = −α λ = −α̃ Λ,      α̃ = α/dt²
     alpha_scaled is α̃.  It is the same for all visits of a step, so the caller divides once.
     Raises BadInput("scaled compliance α/dt² [1/kg]", α̃, "give zero or more") for a negative α̃ or NaN, and
     BadInput("Σ w |∇C|² of a constraint", 0.0, "let one of its points have a mass and a gradient") for a weight of 0.
@@ -330,8 +330,9 @@ def turning_rate(q_old, q_new, dt):
 def volume_gradient(x, faces):
     """Return (V [m³], ∇V (n, 3) [m²]) of a closed surface with corners x (n, 3) and triangles faces (f, 3).
 
-    V = Σ a · (b × c)/6 over the faces (a, b, c), counter-clockwise seen from outside.  Each face adds
-    b × c/6 to ∇_a V,      c × a/6 to ∇_b V,      a × b/6 to ∇_c V
+    Row k of ∇V is ∂V/∂x_k; it is 0 for a corner of no face.  Faces are counter-clockwise seen from outside.  Where they
+    are clockwise, the surface is inside-out, and V and ∇V have the opposite sign.
+    *Find* V as a sum over the faces, and its gradient.  The origin may be anywhere, inside or outside.
 
     *Source:* Müller et al. 2006, section 4.2, balloons; the divergence theorem.
     """

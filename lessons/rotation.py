@@ -212,10 +212,10 @@ def angular_acceleration(q, omega, tau, I_body):
     raise NotImplementedError("Exercise 5.11: angular_acceleration")
 
 
-def rigid_body_step(load, t, x, v, q, omega, dt, body):
-    """Advance a rigid body by one step, as in the lecture; return (x, v, q, ω) at t + dt; first order.
+def rigid_body_step(load, t, x, q, v, omega, dt, body):
+    """Advance a rigid body by one step, as in the lecture; return (x, q, v, ω) at t + dt; first order.
 
-    forces and torques:   F, τ = load(t, x, v, q, ω, body)
+    forces and torques:   F, τ = load(t, x, q, v, ω, body)
     velocities:           v ← v + dt F/m,     ω ← ω + dt ω̇
     positions:            x ← x + dt v,       q ← quaternion_update, both with the new velocities
 
@@ -226,7 +226,7 @@ def rigid_body_step(load, t, x, v, q, omega, dt, body):
     raise NotImplementedError("Exercise 5.12: rigid_body_step")
 
 
-def supported_weight(t, x, v, q, omega, ball):
+def supported_weight(t, x, q, v, omega, ball):
     """Given.  Return F [N] and τ [N m], each (3,), of a RollingBall on a floor across z: weight and support.
 
     Gravity may have any direction.  A floor pushes and never pulls.
@@ -235,7 +235,7 @@ def supported_weight(t, x, v, q, omega, ball):
     return np.array([F[0], F[1], F[2] + max(0.0, -F[2])]), np.zeros(3)
 
 
-def rolling_step(load, t, x, v, q, omega, dt, ball):
+def rolling_step(load, t, x, q, v, omega, dt, ball):
     """Given.  Advance a RollingBall by one step of the lecture's loop, with friction as an impulse J; first order.
 
     Friction stops the slip u of the lowest point by the end of the step, within the cone |J| ≤ μN dt:
@@ -252,17 +252,17 @@ def rolling_step(load, t, x, v, q, omega, dt, ball):
     if size != 0.0:
         limit = cone_radius(ball.mu, max(0.0, -ball.m * ball.gravity[2])) * dt
         J = -np.minimum(limit, size / K) / size * slip
-    return rigid_body_step(load, t, x, v + J / ball.m, q, omega + cross(r, J) / ball.I_body[0], dt, ball)
+    return rigid_body_step(load, t, x, q, v + J / ball.m, omega + cross(r, J) / ball.I_body[0], dt, ball)
 
 
-def average_rolling_step(load, t, x, v, q, omega, dt, ball):
+def average_rolling_step(load, t, x, q, v, omega, dt, ball):
     """Given.  The same with positions by the means of the old and the new velocities; second order.
 
     It is exact while the ball slides or rolls along a line: then its velocities are linear in t.
     """
-    _, v_new, _, omega_new = rolling_step(load, t, x, v, q, omega, dt, ball)
+    _, _, v_new, omega_new = rolling_step(load, t, x, q, v, omega, dt, ball)
     turn = exponential(0.5 * dt * (omega + omega_new))
-    return x + 0.5 * dt * (v + v_new), v_new, quaternion_product(turn, q), omega_new
+    return x + 0.5 * dt * (v + v_new), quaternion_product(turn, q), v_new, omega_new
 
 
 def kinetic_energy(q, L, I_body):
@@ -277,9 +277,11 @@ def kinetic_energy(q, L, I_body):
 def tumbling_rate(I_body, k, spin):
     """Return the rate [1/s] at which a disturbance of a rotation about the k-th principal axis grows as e^(rate·t).
 
-    rate = |spin| √((I_k − I_i)(I_j − I_k) / (I_i I_j))          i, j: the other two axes;  spin [rad/s]
+    *Find* it: in Euler's equations without torque put ω = spin 𝐞ₖ and a small part across 𝐞ₖ, and keep what is linear
+    in that part.
 
-    The radicand is positive only for the axis of the middle moment: the tennis-racket theorem.  Elsewhere return 0.
+    I_body (3,) are the principal moments, k is 0, 1 or 2.  The spin [rad/s] may have either sign; the rate is never
+    negative.  It is positive only for the axis of the middle moment: the tennis-racket theorem.  Elsewhere return 0.
     *Source:* second lecture deck, “Tennis racket theorem”; Euler's equations, linearised about ω = spin 𝐞ₖ.
     """
     # YOUR CODE HERE
@@ -294,8 +296,9 @@ def no_torque(t, q, L, body):
 def heavy_top_torque(t, q, L, top):
     """Return τ [N m] (3,) of gravity, −z, about the pivot of a Top with its centre of mass on its axis 𝐞 = R (0, 0, 1).
 
-    τ = l𝐞 × (−Mg ẑ) = Mgl (−e_y, e_x, 0)
+    *Find* it: the weight Mg acts at l𝐞 from the pivot, and top.mgl is the product of the three numbers.
 
+    rotate(q, r) converts a vector r from body to world coordinates; τ is in world coordinates.
     *Source:* Landau and Lifshitz, Mechanics, § 35.
     """
     # YOUR CODE HERE

@@ -123,11 +123,8 @@ def angular_spring_forces(x_a, x_b, x_c, rest, k):
     """Return the forces [N] (2,) on a, b and c of a plane angular spring at b, with the rest angle `rest` [rad].
 
     θ is the angle from r_a = x_a − x_b to r_c = x_c − x_b, counter-clockwise.  Take θ − rest into (−π, π].
-    F_c = −k (θ − rest) r_c⊥ / |r_c|²         r⊥ = (−r_y, r_x) is r turned 90° counter-clockwise
-    F_a = +k (θ − rest) r_a⊥ / |r_a|²
-    F_b = −F_a − F_c                          no net force from outside
-
-    k [N m/rad].  The forces derive from the energy ½k(θ − rest)².
+    The energy is ½k(θ − rest)², k [N m/rad].  *Find* the forces: minus its derivatives by x_a, x_b and x_c.
+    Returns (F_a, F_b, F_c).
     Raises BadInput("the arm of an angular spring [m]", 0.0, "keep its ends away from its hinge") for an arm of
     zero length.
     *Source:* first lecture deck, “Angular springs”.
@@ -232,12 +229,14 @@ class StepMatrix(NamedTuple):
 def spring_stiffness(x, network):
     """Return the blocks K [N/m] and D [N s/m], each (s, d, d): minus the derivatives of the force on i by x_i and v_i.
 
-    K = −∂F_i/∂x_i = k n nᵀ + k max(0, 1 − rest/l) (1 − n nᵀ)          n = r/l,  r = x_j − x_i
-    D = −∂F_i/∂v_i = k_d n nᵀ
+    K = −∂F_i/∂x_i of the force of the spring, k (l − rest) along n = r/l,  r = x_j − x_i
+    D = −∂F_i/∂v_i of the force of the damper
 
+    *Find* both.  K is the sum of a part along the spring, with n nᵀ, and a part across it, with 1 − n nᵀ.
     The blocks of j are the same, and those of one end by the motion of the other have the opposite sign.
-    *Left out,* so that the matrix stays positive: the sideways push of a compressed spring (hence the max), and the
-    share of the damper in ∂F/∂x.  The worked answer fills the blocks entry by entry, which compiles fastest.
+    *Left out,* so that the matrix stays positive: the part across of a compressed spring, where its factor would be
+    negative (put 0), and the share of the damper in ∂F/∂x.
+    The worked answer fills the blocks entry by entry, which compiles fastest.
     *Source:* Baraff and Witkin 1998; Choi and Ko 2002 for the max.
     """
     # YOUR CODE HERE

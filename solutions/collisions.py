@@ -148,11 +148,13 @@ def cylinder_impact_time(t, dt, x_0, x_1, r, R):
 def closest_on_segment(p, a, b):
     """Return the point (d,) of the segment from a to b (d,) that is nearest to p (d,).
 
-    a + s (b − a),     s = (p − a) · (b − a)/|b − a|²,  limited to 0 ≤ s ≤ 1
+    *Find* it: the points of the segment are a + s (b − a) with 0 ≤ s ≤ 1.  Where the nearest point of the line through
+    a and b is beyond an end, that end is nearest.
 
     Raises BadInput for a segment of zero length.
     """
     ### BEGIN SOLUTION 6.5
+    # s = (p − a) · (b − a)/|b − a|²,  limited to 0 ≤ s ≤ 1
     along = b - a
     length_squared = along @ along
     if length_squared == 0.0:
@@ -415,13 +417,14 @@ def gjk(a, b):
 def repulsion(x, centre, radius, reach, k):
     """Return the acceleration (d,) [m/s²] at x (d,) in the repulsive field of an obstacle; unbounded near its surface.
 
-    a = k (1/g − 1/reach)/g² n        for a gap g = |x − centre| − radius below reach,     0 beyond
-    It is −∇U of  U = ½ k (1/g − 1/reach)²:  a body of finite energy never touches the obstacle.
+    U = ½ k (1/g − 1/reach)²          for a gap g = |x − centre| − radius below reach,     0 beyond
+    *Find* a = −∇U.  A body of finite energy never touches the obstacle.
 
-    n: unit vector from the centre to x.  k in m⁴/s².  Raises BadInput for a gap of zero or below.
+    k in m⁴/s².  Raises BadInput for a gap of zero or below.
     *Source:* first lecture deck, “Collision avoidance: force fields”; Khatib 1986.
     """
     ### BEGIN SOLUTION 6.16
+    # a = k (1/g − 1/reach)/g² n,  n the unit vector from the centre to x
     r = x - centre
     distance = np.sqrt(r @ r)
     g = distance - radius
@@ -436,14 +439,15 @@ def steer(x, v, centre, radius, ahead):
 
     e = v/|v|,   r = centre − x,   τ = r · e/|v|                  time until it passes the centre
     y = r − (r · e) e                                             offset from the centre when it passes: −y
-    a = −2 (radius − |y|)/τ² · y/|y|      if 0 < τ < ahead [s] and |y| < radius;  else 0
+    a points along −y/|y|                 if 0 < τ < ahead [s] and |y| < radius;  else a = 0
 
-    Applied for τ, it moves the body aside by ½ a τ² = radius − |y|.  If the body heads for the exact centre (y = 0), it
-    turns left: −y/|y| = (−e₁, e₀).
+    *Find* its size: constant for the time τ, it moves the body aside until the offset from the centre is the radius.
+    If the body heads for the exact centre (y = 0), it turns left: −y/|y| = (−e₁, e₀).
     radius [m] is the sum of the disc's radius, the body's own and the clearance.  At rest (v = 0): 0.
     *Source:* first lecture deck, “Collision avoidance: steer to avoid”; Reynolds 1999.
     """
     ### BEGIN SOLUTION 6.17
+    # ½ |a| τ² = radius − |y|:   a = −2 (radius − |y|)/τ² · y/|y|
     speed = np.sqrt(v @ v)
     r = centre - x
     if speed == 0.0:

@@ -121,13 +121,15 @@ def kinetic_friction(F, v, n, mu_k):
 def incline_acceleration(theta, mu_s, mu_k, g):
     """Return the acceleration [m/s²] down a slope of angle θ [rad], 0 ≤ θ < π/2, of a block released on it at rest.
 
-    0                        while sin θ ≤ μ_s cos θ:  the slope is not steeper than the friction cone, tan θ ≤ μ_s
-    g (sin θ − μ_k cos θ)    beyond
+    *Find* it: static friction holds the block up to its limit, with the limit included; beyond, the block slides under
+    kinetic friction.
 
-    Take μ_s cos θ and μ_k cos θ from cone_radius: cos θ is the normal force over the weight.
+    Take both limits from cone_radius, with the normal force over the weight [-] as the load: it raises BadInput for a
+    negative μ and handles μ = ∞.
     *Source:* first lecture deck, “Friction (2)”.
     """
     ### BEGIN SOLUTION 3.4
+    # It holds while the slope is not steeper than the friction cone, tan θ ≤ μ_s.
     if np.sin(theta) <= cone_radius(mu_s, np.cos(theta)):
         return 0.0
     return g * (np.sin(theta) - cone_radius(mu_k, np.cos(theta)))
@@ -158,14 +160,16 @@ def friction_impulse(v_t, m, j_n, mu):
 def pyramid_impulse(v_t, m, j_n, mu, t_1, t_2):
     """Return the same for a pyramid in place of the cone, with sides that face the unit vectors t_1 and t_2 (d,).
 
-    J_t = −clamp(m v_t · t_1) t_1 − clamp(m v_t · t_2) t_2          clamp(y): y limited to ±μ j_n
+    *Find* J_t (d,) [N s]: of all those along the surface with |J_t · t_1| ≤ μ j_n and |J_t · t_2| ≤ μ j_n, the one that
+    leaves the least kinetic energy.
 
-    t_1 and t_2 lie along the surface, perpendicular to each other.  Of all J_t with |J_t · t_1| ≤ μ j_n and
-    |J_t · t_2| ≤ μ j_n, this one leaves the least kinetic energy.  Solvers use the pyramid because the two directions
-    are independent.  Its friction is up to √2 times too strong, and not exactly against the motion.
+    t_1 and t_2 lie along the surface, perpendicular to each other.  Take μ j_n from cone_radius.  Solvers use the
+    pyramid because the two directions are independent.  Its friction is up to √2 times too strong, and not exactly
+    against the motion.
     *Source:* the box friction of most game engines; Stewart and Trinkle 1996 for pyramids with many sides.
     """
     ### BEGIN SOLUTION 3.6
+    # J_t = −clamp(m v_t · t_1) t_1 − clamp(m v_t · t_2) t_2          clamp(y): y limited to ±μ j_n
     limit = cone_radius(mu, j_n)
     first = np.maximum(-limit, np.minimum(limit, m * (v_t @ t_1)))
     second = np.maximum(-limit, np.minimum(limit, m * (v_t @ t_2)))

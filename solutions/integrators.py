@@ -231,12 +231,13 @@ def implicit_midpoint_step(acceleration, t, x, v, dt, p):
     xₙ₊₁ = xₙ + dt v½
     vₙ₊₁ = vₙ + dt a(tₙ + ½dt, x½, v½)
 
-    (x½, v½) is the result of half a step of implicit Euler.  The other half continues along the same slope.
+    *Find* how to solve these equations with a function of this lesson.
 
     Raises Diverged like implicit_euler_step.
     *Source:* Hairer, Lubich, Wanner 2006, “Geometric numerical integration”, II.1 and IV.2.
     """
     ### BEGIN SOLUTION 1.8
+    # The midpoint is the end of half a step of implicit Euler.  The other half continues along the same slope.
     x_mid, v_mid = implicit_euler_step(acceleration, t, x, v, 0.5 * dt, p)
     return 2.0 * x_mid - x, 2.0 * v_mid - v
     ### END SOLUTION
@@ -311,15 +312,16 @@ def spectral_radius(matrix):
 
 
 def observed_order(dts, errors):
-    """Return the observed order of convergence of a series of runs: the slope of log(error) over log(dt).
+    """Return the observed order of convergence k of a series of runs, whose errors are about C dtᵏ.
 
-    error ≈ C dtᵏ   ⇒   k = Σ (ξ − ξ̄)(η − η̄) / Σ (ξ − ξ̄)²,   ξ = log dt, η = log error;  least squares
+    *Find* the formula: log(error) over log(dt) is a straight line, and k is its slope by least squares.
 
     dts and errors are (n,) arrays of positive numbers.
     Raises BadInput for one that is not: check_positive("step dt [s]", dt) and check_positive("error [-]", error).
     A run with an error of exactly 0 gives no information about the order.
     """
     ### BEGIN SOLUTION 1.10
+    # k = Σ (ξ − ξ̄)(η − η̄) / Σ (ξ − ξ̄)²,   ξ = log dt, η = log error
     for n in range(dts.size):
         check_positive("step dt [s]", dts[n])
         check_positive("error [-]", errors[n])

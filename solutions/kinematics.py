@@ -281,12 +281,16 @@ def damped_step(task, theta, target, arm):
 def contraction_factors(sigma, gain, damping):
     """(transpose, damped): by which one iteration multiplies a small error along the direction u_i of J, for each σ_i.
 
-    transpose:  1 − α σ²          damped:  λ²/(σ² + λ²)          sigma is an array, gain and damping are numbers
+    An iteration is θ ← θ + P e.  Near a target in reach it turns e into (1 − J P) e, to first order:
+        transpose_step:  P = α Jᵀ          damped_step:  P = Jᵀ (J Jᵀ + λ² 1)⁻¹          J = Σ σ_i u_i v_iᵀ
+    *Find* the factor of each for an e along u_i.  It has a sign: below 0, the error changes sides.
+    sigma is an array, and so are both results; gain is α, damping is λ > 0, both are numbers.
 
     The slowest direction decides: for the damped step the smallest σ, for the transpose often both ends.
-    *Source:* e ← (1 − J P) e, P = α Jᵀ or Jᵀ (J Jᵀ + λ²)⁻¹, with the singular values of J.
+    *Source:* the singular value decomposition of J.
     """
     ### BEGIN SOLUTION 11.12
+    # J P has the same directions u_i as J Jᵀ.  Along u_i, J Jᵀ multiplies by σ_i².
     return 1.0 - gain * sigma**2, damping**2 / (sigma**2 + damping**2)
     ### END SOLUTION
 
@@ -388,12 +392,15 @@ def limited_step(task, theta, target, arm):
 
 
 def null_space_step(task, theta, target, arm):
-    """θ + J⁺ e + (1 − J⁺ J) z:  go to the target, and use the freedom that is left to go to arm.rest (n,).
+    """θ + Δθ:  go to the target, and use the freedom that is left to go to the angles arm.rest (n,).
 
-    z = κ (rest − θ),      κ = arm.pull.  1 − J⁺ J projects onto what does not move the end.
+    z = κ (rest − θ) is the change that would be welcome, κ = arm.pull.  *Find* Δθ with pseudo_inverse: of all Δθ for
+    which |J Δθ − e| is smallest, the one that is nearest to z.
     *Source:* Liégeois 1977.
     """
     ### BEGIN SOLUTION 11.16
+    # Δθ = z + y, where y is the shortest of all with the smallest |J y − (e − J z)|.  That is the same as
+    # J⁺ e + (1 − J⁺ J) z: 1 − J⁺ J projects onto what does not move the end.
     e, J = task(theta, target, arm)
     z = arm.pull * (arm.rest - theta)
     return theta + z + pseudo_inverse(J) @ (e - J @ z)

@@ -8,8 +8,8 @@ v (n, d) [m/s] · omega (n,) or (n, 3) [rad/s], world · J (m, d) [N s] impulses
 
 A load is a function  load(t, x, q, v, omega, p) → (F, tau).  Planes are further rows of all arrays.  A row with
 inv_mass = 0 keeps the velocity that you give it: at rest it is ground, and in motion a conveyor belt or a turntable.
-A plane moves along itself only; what rises, such as a lift, is a body.  Loads of lesson 5 have v before q: (t, x, v, q,
-omega, p), as its rolling balls have here.  A scene calls only what it needs: no detection where nothing can touch.
+A plane moves along itself only; what rises, such as a lift, is a body.  Lesson 5 has the same order for one body.
+A scene calls only what it needs: no detection where nothing can touch.
 Given in support/simulator.py: a loop with joints.  Given in support/invariants.py: how to judge a run.
 *Left out:* restitution of many contacts, sleeping.
 """
@@ -60,6 +60,7 @@ from .support.contact_points import (
     round_contacts,
 )
 from .support.invariants import (
+    checked_histories,
     closing_speeds,
     mechanical_energy_2d,
     momenta_2d,
@@ -231,12 +232,12 @@ def support_velocity(place, ball):
     ### END SOLUTION
 
 
-def carried_step(load, t, x, v, q, omega, dt, ball):
-    """Return (x, v, q, ω) of a CarriedBall after dt; second order while it rolls, exact while it slips along a line.
+def carried_step(load, t, x, q, v, omega, dt, ball):
+    """Return (x, q, v, ω) of a CarriedBall after dt; second order while it rolls, exact while it slips along a line.
 
     Friction brings the lowest point to the velocity of the floor where the ball would be at t + dt if v stayed:
         v', ω' = stop_slip(v, omega, support_velocity(x + dt v, ball), dt, ball)
-        _, v_new, _, ω_new = rigid_body_step(load, t, x, v', q, ω', dt, ball)
+        _, _, v_new, ω_new = rigid_body_step(load, t, x, q, v', ω', dt, ball)
         x ← x + dt (v + v_new)/2,      q ← quaternion_product(exponential(½ dt (ω + ω_new)), q)
 
     From step to step the floor below changes by dt (3/2 v − 1/2 v_before), which is Adams and Bashforth's method.
@@ -244,9 +245,9 @@ def carried_step(load, t, x, v, q, omega, dt, ball):
     """
     ### BEGIN SOLUTION 10.9
     pushed, turned = stop_slip(v, omega, support_velocity(x + dt * v, ball), dt, ball)
-    _, v_new, _, omega_new = rigid_body_step(load, t, x, pushed, q, turned, dt, ball)
+    _, _, v_new, omega_new = rigid_body_step(load, t, x, q, pushed, turned, dt, ball)
     q = quaternion_product(exponential(0.5 * dt * (omega + omega_new)), q)
-    return x + 0.5 * dt * (v + v_new), v_new, q, omega_new
+    return x + 0.5 * dt * (v + v_new), q, v_new, omega_new
     ### END SOLUTION
 
 
@@ -255,14 +256,16 @@ def carried_step(load, t, x, v, q, omega, dt, ball):
 def slip_time(v, omega, ball):
     """Return the time [s] until a RollingBall on a floor at rest ceases to slip; inf if it never does.
 
-    Friction and gravity change the slip u = v + ω × r, r = (0, 0, −radius), at the constant rate
-        u̇ = −μ |g_z| (1 + m radius²/I) u/|u| + g_t,      g_t = (g_x, g_y, 0)
-    so that |u| decreases by  b = μ |g_z| (1 + m radius²/I) − u · g_t/|u|  per second:  t = |u|/b, and inf if b ≤ 0.
-    Of u only the part along the floor counts: u_z = 0.  Return 0 where u = 0.
+    *Find* the rate at which friction and gravity change the slip, the velocity of the lowest point:
+        u = v + ω × r,      r = (0, 0, −radius)
+    The rate is constant.  Friction is as large as Coulomb allows, μ m |g_z|.  I = I_body[0] is the same about all
+    axes.
+    Of u only the part along the floor counts: u_z = 0.  Return 0 where u = 0, and inf where |u| does not decrease.
     Gravity along the floor must be zero or parallel to u, or u would change its direction.
     *Source:* Newton and Euler, with Coulomb's law.
     """
     ### BEGIN SOLUTION 10.10
+    # u̇ = −μ |g_z| (1 + m radius²/I) u/|u| + g_t,  so |u| decreases by  μ |g_z| (1 + m radius²/I) − u · g_t/|u|
     slip = point_velocity(v, omega, np.array([0.0, 0.0, -ball.radius]))
     slip[2] = 0.0
     size = norm(slip)
@@ -274,8 +277,8 @@ def slip_time(v, omega, ball):
     ### END SOLUTION
 
 
-def exact_rolling_step(load, t, x, v, q, omega, dt, ball):
-    """Return (x, v, q, ω) of a RollingBall after dt: average_rolling_step until it ceases to slip, and for the rest.
+def exact_rolling_step(load, t, x, q, v, omega, dt, ball):
+    """Return (x, q, v, ω) of a RollingBall after dt: average_rolling_step until it ceases to slip, and for the rest.
 
     The first part lasts min(dt, slip_time(v, omega, ball)), and the second begins when and where the first has ended.
     Each part has constant accelerations, so that both are exact, and so is the whole.
@@ -283,21 +286,21 @@ def exact_rolling_step(load, t, x, v, q, omega, dt, ball):
     """
     ### BEGIN SOLUTION 10.11
     first = np.minimum(dt, slip_time(v, omega, ball))
-    x, v, q, omega = average_rolling_step(load, t, x, v, q, omega, first, ball)
-    return average_rolling_step(load, t + first, x, v, q, omega, dt - first, ball)
+    x, q, v, omega = average_rolling_step(load, t, x, q, v, omega, first, ball)
+    return average_rolling_step(load, t + first, x, q, v, omega, dt - first, ball)
     ### END SOLUTION
 
 
 def corner_impact(v, omega, r, inv_mass, inv_inertia):
     """Return (v (2,), ω) of a body in the plane after its point at r (2,) has hit an edge and stops there.
 
-    The impulse acts at that point, so the angular momentum about it stays:   L = I ω − m (r × v)
-    Afterwards the body turns about it:   ω⁺ = L/(I + m |r|²),      v⁺ = −ω⁺ × r = ω⁺ (r_y, −r_x)
-
-    r × v = cross_2d(r, v).  For a slender block this is Housner's ratio 1 − 1.5 sin²α.
+    *Find* what the impulse, which acts at that point, leaves unchanged.  Afterwards the body turns about that point.
+    v is the velocity of the centre, and r × v = cross_2d(r, v).  For a slender block the result is Housner's ratio
+    ω⁺/ω = 1 − 1.5 sin²α.
     *Source:* Housner 1963, “The behavior of inverted pendulum structures during earthquakes”.
     """
     ### BEGIN SOLUTION 10.12
+    # The angular momentum about the corner stays, L = I ω − m (r × v); then it turns about the corner, v⁺ = −ω⁺ × r.
     L = omega / inv_inertia - cross_2d(r, v) / inv_mass
     omega = L / (1.0 / inv_inertia + (r[0] * r[0] + r[1] * r[1]) / inv_mass)
     return omega * np.array([r[1], -r[0]]), omega
@@ -372,8 +375,11 @@ def gain_without_source(energies, work):
     largest over j ≤ k of  (E_k − W_k) − (E_j − W_j)          energies E (k,), work W (k,) done until then, both [J]
 
     It is 0 or more.  Friction and impacts only take energy; a growth above the error of the steps is a fault.
+    E and W may be lists.  Call checked_histories(energies, work) first: it returns both as arrays.
+    Raises what that raises.
     """
     ### BEGIN SOLUTION 10.15
+    energies, work = checked_histories(energies, work)
     lowest, gain = np.inf, 0.0
     for k in range(energies.size):
         rest = energies[k] - work[k]

@@ -18,7 +18,7 @@ from rich.table import Table
 
 from solutions.checks import BadInput
 
-from . import engines, modules
+from . import engines, modules, needs
 from .processes import Ended, alone_in, ending_once, one_sentence, workers
 from .scene import OPTIONAL, PRODUCTS
 from .store import SUBSET, lessons_of
@@ -95,8 +95,13 @@ def on_cluster(executor, of):
 
 
 @app.command("list")
-def list_scenes():
-    """Name every scene and its lesson."""
+def list_scenes(
+    exercises: Annotated[bool, typer.Option("--exercises", help="Name every exercise, and what it calls.")] = False,
+):
+    """Name every scene and its lesson; or every exercise, and the exercises that it calls."""
+    if exercises:
+        list_exercises()
+        return
     table = Table("scene", "lesson", "what it is", box=None, header_style="bold")
     scenes, broken = loadable_scenes()
     for name in modules.in_course_order(scenes):
@@ -106,6 +111,13 @@ def list_scenes():
     console.print(table)
     for error in broken.values():
         raise error
+
+
+def list_exercises():
+    table = Table("exercise", "lesson", "function", "calls", box=None, header_style="bold")
+    for number, one in needs.table().items():
+        table.add_row(number, one["lesson"], one["function"], ", ".join(one["needs"]))
+    console.print(table)
 
 
 @app.command("record")

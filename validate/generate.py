@@ -1,14 +1,16 @@
-"""Make lessons/ from solutions/: the same modules with the answers taken out.
+"""Make lessons/ from solutions/: the same modules with the answers taken out; and needs.json, which calls which.
 
 `python -m validate.generate` writes them, `--check` only says whether they are what it would write.
 """
 
+import json
 import re
 import sys
 from pathlib import Path
 
 from solutions.checks import BadInput
 
+from . import needs
 from .modules import ROOT, SOLUTIONS, lesson_names
 
 LESSONS = ROOT / "lessons"
@@ -54,6 +56,12 @@ def lessons():
     return {"__init__.py": f'"""{about}"""\n', **texts}
 
 
+def needs_text():
+    """The text of needs.json."""
+    rows = needs.read_from(SOLUTIONS, lesson_names(), exercises).items()
+    return "{\n" + ",\n".join(f"{json.dumps(number)}: {json.dumps(one)}" for number, one in rows) + "\n}\n"
+
+
 def differing(folder=None):
     """Names of the files that are not what the solutions would give, missing and superfluous ones included."""
     texts = lessons()
@@ -74,17 +82,21 @@ def main(arguments):
     if arguments not in ([], ["--check"], ["--force"]):
         print(f"{' '.join(arguments)} is not an option here: give --check, --force or nothing", file=sys.stderr)
         return 2
-    changed = differing()
+    changed, table = differing(), needs_text()
+    other_needs = not needs.FILE.is_file() or needs.FILE.read_text(encoding="utf-8") != table
     if arguments == ["--check"]:
-        if changed:
-            print(f"lessons/ is not what solutions/ gives ({', '.join(changed)}): run python -m validate.generate",
-                  file=sys.stderr)
-        return 1 if changed else 0
+        named = ", ".join(changed + [needs.FILE.name] * other_needs)
+        if named:
+            print(f"lessons/ is not what solutions/ gives ({named}): run python -m validate.generate", file=sys.stderr)
+        return 1 if named else 0
     answered = worked_in()
     if answered and arguments != ["--force"]:
         print(f"lessons/ holds answers ({', '.join(answered)}): move them away, or overwrite them with --force",
               file=sys.stderr)
         return 2
+    if other_needs:
+        needs.FILE.write_text(table, encoding="utf-8")
+        print(f"validate/{needs.FILE.name}")
     texts = lessons()
     for name in changed:
         if name in texts:

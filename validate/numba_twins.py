@@ -1,4 +1,4 @@
-"""How a plain function is compiled with numba: the compiled twins, their cache, and three changes to numba itself.
+"""How a plain function is compiled with numba: the compiled twins, their cache, and four changes to numba itself.
 
 A twin's cache on disk lies in a folder that is named after a digest of *all* files of its set of modules.  numba
 looks at one file only, so without the digest an edit to an imported sibling would leave a stale caller.
@@ -34,8 +34,23 @@ def compiled_twins(module, names, space, cache):
         copy.__module__, copy.__qualname__, copy.__doc__ = module.__name__, plain.__qualname__, plain.__doc__
         twins[name] = njit(cache=True, error_model="numpy", no_cfunc_wrapper=True)(copy)
         # numba recognises a function argument in its disk cache by this id alone: make it the same in every process
+        _forget_literals(twins[name])
         twins[name]._set_uuid(str(uuid.uuid5(uuid.NAMESPACE_URL, f"{module.__name__}.{plain.__qualname__}")))
     return twins
+
+
+def _forget_literals(twin):
+    """Let callers compile a twin once for all strings and whole numbers that they write down.
+
+    numba would compile it for each of them: every check of the input again for the name of each thing that it checks.
+    """
+    from numba.core.types import unliteral
+    fold = twin._compiler.fold_argument_types
+
+    def folded(arguments, keywords):
+        signature, kinds = fold(arguments, keywords)
+        return signature, tuple(map(unliteral, kinds))
+    twin._compiler.fold_argument_types = folded
 
 
 class CachedDispatch:

@@ -96,6 +96,7 @@ class Scene:
     slow_methods: tuple = ()                 # functions of methods that only --full runs
     slow_cases: tuple = ()                   # names of cases that only --full runs
     uncompiled_in_quick: tuple = ()  # functions of methods that plain Python finishes before numba compiles them
+    shorter_in_quick: dict = field(default_factory=dict)     # {method's function: its most steps in a quick validation}
     moves: bool = True                       # False: nothing moves; no start is compared with the truth
     refinement: str = "step dt [s]"  # what dt = T/steps stands for; "" where nothing can be refined: steps is (1,)
     quantity_names: Callable | None = None  # (p) → names of what is observed, for a scene that shows a table of numbers

@@ -11,6 +11,7 @@ import numpy as np
 from ..checks import Diverged
 
 CELLS_PER_BODY = 8           # at most [-]: a body that flies far away must not make the grid huge
+FINEST = 1e-9                # least edge of a cell over the extent of all bodies [-]: so its place is an exact integer
 
 
 class Pairs(NamedTuple):
@@ -40,16 +41,30 @@ def cell_numbers(low, size):
 
 
 def cell_size(low, high):
-    """Edge of the cells [m]: the largest box, or more where so small cells would be too many."""
+    """Edge of the cells [m]: the largest box, doubled until the grid, its rim left out, has few enough cells.
+
+    Raises Diverged where a corner is not finite.
+    """
     n, d = low.shape
-    size, volume = 0.0, 1.0
+    size = 0.0
     for c in range(d):
-        size = max(size, np.max(high[:, c] - low[:, c]))
-    for c in range(d):
-        volume *= np.max(low[:, c]) - np.min(low[:, c]) + size
-    if not np.isfinite(volume):
-        raise Diverged("the volume around all bodies", volume, "take more substeps")
-    return max(size, (volume / (CELLS_PER_BODY * n)) ** (1.0 / d))
+        extent = np.max(high[:, c]) - np.min(low[:, c])
+        if not np.isfinite(extent):
+            raise Diverged("the extent of all bodies [m]", extent, "take more substeps")
+        size = max(size, np.max(high[:, c] - low[:, c]), FINEST * extent)
+    if size == 0.0:                                          # so far out that boxes and ways between them round to 0
+        return 1.0
+    while cells_inside(low, size) > CELLS_PER_BODY * n:
+        size *= 2.0
+    return size
+
+
+def cells_inside(low, size):
+    """The number of cells that the low corners span, the rim left out; a float, because it may be huge."""
+    count = 1.0
+    for c in range(low.shape[1]):
+        count *= np.floor((np.max(low[:, c]) - np.min(low[:, c])) / size) + 1.0
+    return count
 
 
 def sorted_by_cell(cell, cells):

@@ -34,7 +34,8 @@ def advance_pile_2d(bounds, find_contacts, state, dt, steps, pile):
     """Given.  PileState after so many steps in the plane, with disc_bounds and round_contacts, or those of boxes.
 
     Contacts are found once per step.  A substep: gravity and the last impulses; a sweep of soft contacts; motion; a
-    sweep at rest, which takes back the velocity that only served to push bodies apart.
+    sweep at rest, which takes back the velocity that only served to push bodies apart.  Bodies that begin inside each
+    other part with at most SEPARATION_SPEED per contact.
     Raises BadInput for hertz that a substep cannot carry, Diverged with the residual where bodies sink into each other.
     """
     state, dt, steps = checked_pile(state, dt, steps, pile)

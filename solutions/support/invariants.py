@@ -1,10 +1,11 @@
 """Given with lesson 10.  How to judge a run of bodies in the plane: energy, momenta, work, overlap.
 
-None of them needs the angles q: in the plane neither energy nor momenta depend on them.
+In the plane neither energy nor momenta depend on the angles q.
 """
 
 import numpy as np
 
+from ..checks import check_shape, finite_array
 from ..contact import velocity_sweep_2d
 from .arms import arms_2d
 
@@ -26,10 +27,10 @@ def sweep_residual_2d(state, dt, p):
     return np.max(np.append(0.0, np.abs(better - J) * np.stack((arms.k_n, arms.k_n), axis=1)))
 
 
-def mechanical_energy_2d(x, v, omega, p):
+def mechanical_energy_2d(x, q, v, omega, p):
     """Given.  Return the energy [J] of all bodies in the plane that can move: Σ ½ m v² + ½ I ω² − m g · x.
 
-    What cannot turn has no energy of rotation.
+    What cannot turn has no energy of rotation.  The arguments are those of mechanical_energy.
     """
     energy = 0.0
     for i in range(x.shape[0]):
@@ -40,7 +41,7 @@ def mechanical_energy_2d(x, v, omega, p):
     return energy
 
 
-def momenta_2d(x, v, omega, p):
+def momenta_2d(x, q, v, omega, p):
     """Given.  Return momentum P [kg m/s] (2,) and angular momentum L [kg m²/s] about the origin, of all that can move.
 
     P = Σ m v,      L = Σ m (x_x v_y − x_y v_x) + I ω
@@ -73,6 +74,17 @@ def work_of_driven_rows(state, dt, p):
                 u_x, u_y = state.v[s, 0] - state.omega[s] * r_y, state.v[s, 1] + state.omega[s] * r_x
                 work += sign * (state.J[k, 0] * u_x + state.J[k, 1] * u_y)
     return work
+
+
+def checked_histories(energies, work):
+    """Given.  Return energies and work [J] as two arrays (k,), from lists or arrays of numbers.
+
+    Raises BadInput for what is not finite numbers, and for histories of different lengths.
+    """
+    energies, work = finite_array("an energy [J]", energies), finite_array("a work [J]", work)
+    check_shape("the energies [J]", energies, (energies.size,))
+    check_shape("the work [J], one number for each energy,", work, energies.shape)
+    return energies, work
 
 
 def overlap_bound_2d(states, dt, p):

@@ -125,8 +125,8 @@ def cloth_step(acceleration, t, x, v, dt, cloth):
     return new, (new - x) / dt
 
 
-def pivoted_body_step(t, x, v, q, omega, dt, body):
-    """Given.  Advance a PivotedBody body by one step: (x, v, q, ω); first order.
+def pivoted_body_step(t, x, q, v, omega, dt, body):
+    """Given.  Advance a PivotedBody body by one step: (x, q, v, ω); first order.
 
     Its pivot is one constraint, C = |x + r − pivot|.
     """
@@ -140,7 +140,7 @@ def pivoted_body_step(t, x, v, q, omega, dt, body):
         if C > 0.0:
             w = effective_inverse_mass_at(turned, r, gap / C, body.m, body.I_body)
             new, turned = apply_positional_impulse(new, turned, r, -gap / w, body.m, body.I_body)
-    return new, (new - x) / dt, turned, turning_rate(q, turned, dt)
+    return new, turned, (new - x) / dt, turning_rate(q, turned, dt)
 
 
 def balloon_step(acceleration, t, x, v, dt, balloon):

@@ -84,20 +84,20 @@ def rotation_trajectory(step, torque, t, q, L, dt, steps, body):
     return ts, qs, Ls
 
 
-def advance_rigid_body(step, load, t, x, v, q, omega, dt, steps, body):
-    """Given.  Return (x, v, q, ω) after `steps` steps of a rigid body; raises what advance_rotation raises."""
+def advance_rigid_body(step, load, t, x, q, v, omega, dt, steps, body):
+    """Given.  Return (x, q, v, ω) after `steps` steps of a rigid body; raises what advance_rotation raises."""
     positive_number("mass m [kg]", body.m)
     t, q, omega, dt, steps = checked_rotation(t, q, omega, dt, steps, body.I_body)
     t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
     check_shape("the position x", x, (3,))
-    F, tau = load(t, x, v, q, omega, body)
+    F, tau = load(t, x, q, v, omega, body)
     check_finite("force at the start [N]", F)
     check_finite("torque at the start [N m]", tau)
     for n in range(steps):
-        x, v, q, omega = step(load, t + n * dt, x, v, q, omega, dt, body)
+        x, q, v, omega = step(load, t + n * dt, x, q, v, omega, dt, body)
     check_end(x, v, dt)
     check_end(q, omega, dt)
-    return x, v, q, omega
+    return x, q, v, omega
 
 
 # ---------------------------------------------------------------------------------------------- steps

@@ -32,9 +32,9 @@ def particle_trajectory(step, acceleration, surface, t, x, v, dt, steps, p):
     return histories(lambda *now: advance_particle(step, acceleration, surface, *now), t, (x, v), dt, steps, p)
 
 
-def rigid_body_trajectory(step, load, t, x, v, q, omega, dt, steps, body):
-    """Return (ts, xs, vs, qs, ωs) of advance_rigid_body."""
-    return histories(lambda *now: advance_rigid_body(step, load, *now), t, (x, v, q, omega), dt, steps, body)
+def rigid_body_trajectory(step, load, t, x, q, v, omega, dt, steps, body):
+    """Return (ts, xs, qs, vs, ωs) of advance_rigid_body."""
+    return histories(lambda *now: advance_rigid_body(step, load, *now), t, (x, q, v, omega), dt, steps, body)
 
 
 def projectile_trajectories(step, gap, impact_time, t, x, v, dt, steps, p):

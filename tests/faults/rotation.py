@@ -27,8 +27,8 @@ fault("quaternion_update", "unit(q + 0.5 * dt * quaternion_product(spin, q))",
 fault("angular_acceleration", "cross(omega_body, I_body * omega_body)", "cross(I_body * omega_body, omega_body)",
       "the gyroscopic term has the other sign")
 fault("angular_acceleration", "unrotate(q, tau)", "tau", "the torque is taken in body coordinates")
-fault("rigid_body_step", "x + dt * v, v, quaternion_update(q, omega, dt)",
-      "x + dt * v, v, quaternion_update(q, omega - dt * angular_acceleration(q, omega, tau, body.I_body), dt)",
+fault("rigid_body_step", "quaternion_update(q, omega, dt)",
+      "quaternion_update(q, omega - dt * angular_acceleration(q, omega, tau, body.I_body), dt)",
       "it turns with nearly the old ω: explicit Euler for the orientation")
 fault("rolling_step", "ball.radius * ball.radius / ball.I_body[0]", "ball.radius / ball.I_body[0]",
       "the lever of friction counts once: right for a radius of 1 m")

@@ -32,7 +32,7 @@ fault("carried_step", "support_velocity(x + dt * v, ball)", "support_velocity(x,
 fault("slip_time", "ball.m * ball.radius * ball.radius / ball.I_body[0]", "ball.m * ball.radius / ball.I_body[0]",
       "right for a radius of 1 m only")
 fault("slip_time", "/ ball.I_body[0]) - along", "/ ball.I_body[0])", "the slope of the floor does not change the slip")
-fault("exact_rolling_step", "t + first, x, v, q, omega, dt - first, ball", "t + first, x, v, q, omega, dt, ball",
+fault("exact_rolling_step", "t + first, x, q, v, omega, dt - first, ball", "t + first, x, q, v, omega, dt, ball",
       "after the slip has ended it rolls for a whole step")
 fault("corner_impact", "- cross_2d(r, v) / inv_mass", "+ cross_2d(r, v) / inv_mass",
       "one part of the angular momentum has the other sign")

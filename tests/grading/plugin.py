@@ -16,12 +16,12 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput
-from validate import modules
+from validate import mistakes, modules
 from validate.loading import alarm, lacks
 
 from . import wire
 from .expect import NotYet
-from .points import BOX_LIMIT, LESSONS, LIMIT, PUBLIC, TESTS, Points, name_of, score
+from .points import BOX_LIMIT, LESSONS, LIMIT, PUBLIC, TESTS, TRACE, Points, name_of, score
 
 
 def pytest_addoption(parser):
@@ -44,6 +44,8 @@ def pytest_configure(config):
     if hasattr(config.option, "loadscopereorder"):
         config.option.loadscopereorder = False               # pytest-xdist would start the longest groups last
     if config.getoption("--of"):
+        if config.getoption("--seed") == PUBLIC:
+            config.traces = mistakes.Traces()
         try:
             modules.subject_folder(config.getoption("--of"))
         except BadInput as e:
@@ -142,15 +144,26 @@ def lesson(request):
         subject, _ = request.config.given[request.param]
         if hasattr(subject, "box"):
             subject.box.begin(BOX_LIMIT)
-        return Pure(subject)
+        return Pure(subject, trace_for(request))
     name, of = request.path.stem.removeprefix("test_"), request.config.getoption("--of") or "solutions"
     if request.param == "plain":
-        return Pure(modules.bind(name, of))
+        return Pure(modules.bind(name, of), trace_for(request))
     if not modules.can_compile():
         pytest.skip("numba has no wheel for this machine: the compiled twins are not tested")
     if request.node.get_closest_marker("counts_calls"):
         pytest.skip("counts the calls of a Python function, which compiled code cannot call")
     return Compiled(modules.bind(name, of, compiled=True))
+
+
+def trace_for(request):
+    """The Trace of the function that a test is about; None where nothing is traced, as with secret inputs."""
+    traces, mark = getattr(request.config, "traces", None), request.node.get_closest_marker("exercise")
+    if traces is None or mark is None:
+        return None
+    test = request.node.name.replace(f"[{request.param}-", "[").replace(f"[{request.param}]", "")
+    trace = traces.begin(request.param, request.path.stem.removeprefix("test_"), mark.args[0], test)
+    request.node.stash[TRACE] = trace
+    return trace
 
 
 class Draw:
@@ -177,8 +190,8 @@ def draw(request):
 class Pure:
     """A lesson whose functions must not change their arguments: a call that changes an array fails the test."""
 
-    def __init__(self, subject):
-        self.subject = subject
+    def __init__(self, subject, trace=None):
+        self.subject, self.trace = subject, trace
 
     def __getattr__(self, name):
         if isinstance(self.subject, types.ModuleType) and name not in vars(self.subject):
@@ -187,12 +200,16 @@ class Pure:
         value = getattr(self.subject, name)
         if not callable(value) or isinstance(value, type):
             return value
+        watched = self.trace and name == self.trace.function
+        value = self.trace.watching(value) if watched else value
 
         def call(*arguments):
             before = [a.copy() for a in wire.arrays_in(arguments)]
             result = value(*(getattr(a, "unwatched", a) for a in arguments))
             after = wire.arrays_in(arguments)
             if not all(np.array_equal(a, b, equal_nan=a.dtype.kind == "f") for a, b in zip(before, after)):
+                if watched:
+                    self.trace.changed_input()
                 quantity, expected = "the arrays that were handed in", "left as they were: return new ones"
                 raise NotYet(quantity, expected, f"{name} has changed one in place", "", "changed in place")
             return result
@@ -241,6 +258,8 @@ def pytest_sessionfinish(session):
     if terminal and hasattr(session.config, "points"):               # a file that cannot be loaded is reported once
         errors = reversed(terminal.stats.get("error", ()))
         terminal.stats["error"] = [*{str(report.longrepr): report for report in errors}.values()]
+    if hasattr(session.config, "points") and hasattr(session.config, "traces"):
+        session.config.points.explain(session.config.traces, modules.subject_folder(session.config.getoption("--of")))
     path = session.config.getoption("--outcomes")
     if path and hasattr(session.config, "points"):
         Path(path).write_text(json.dumps([outcome._asdict() for outcome in session.config.points.all()]))
@@ -257,6 +276,9 @@ def pytest_terminal_summary(terminalreporter, config):
     terminalreporter.section("points")
     for exercise, (earned, possible) in table.items():
         terminalreporter.line(f"{exercise:>6}  {earned:g} of {possible:g}")
+        for said in dict.fromkeys(text for o in config.points.all() for text in (o.below, o.idea)
+                                  if o.exercise == exercise and text):
+            terminalreporter.line(f"{'':8}{said}")
     earned = sum(e for e, _ in table.values())
     possible = sum(p for _, p in table.values())
     terminalreporter.line(f"{'all':>6}  {earned:g} of {possible:g}")

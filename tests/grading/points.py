@@ -10,6 +10,7 @@ from typing import NamedTuple
 import pytest
 
 from solutions.checks import BadInput
+from validate import mistakes, needs
 from validate.loading import TooLong, Unloadable, remedy_for, words_of
 
 from .expect import MOST_DIGITS, NotYet, tidy
@@ -22,7 +23,11 @@ LIMIT = 20.0                 # a grading test may take this long [s]: the slowes
 READING = "reading the file"   # the quantity where a file could not be loaded
 DURATION = "the time it takes"   # the quantity where a test did not end
 BOX_LIMIT = 10.0             # and so long in the sandbox [s]
+SHAPES = (AttributeError, TypeError, ValueError, IndexError, KeyError)   # what a result of another kind ends in
 LINES, PRINTED = 20, 2000    # of what a subject prints, so much is shown [lines, characters]
+
+
+TRACE = pytest.StashKey()    # of a test: what the exercise's function returned in it
 
 
 class Outcome(NamedTuple):
@@ -39,6 +44,8 @@ class Outcome(NamedTuple):
     error: str = ""          # the size of what is wrong, in place of expected and got where the inputs are secret
     given: str = ""          # the inputs, in words
     printed: str = ""        # by a subject in this process, while the test failed
+    idea: str = ""           # a known mistake that gives the same results, as a sentence
+    below: str = ""          # an exercise that this one calls, and that does not pass, as a sentence
 
 
 class Points:
@@ -53,6 +60,17 @@ class Points:
     def all(self):
         return [outcome for outcomes in self.outcomes.values() for outcome in outcomes]
 
+    def explain(self, traces, folder):
+        """Add to every outcome that is "not yet" the mistake that its exercise's results are known for, and an
+        exercise below it that does not pass.
+        """
+        for subject, outcomes in self.outcomes.items():
+            states = needs.states((o.exercise, o.status) for o in outcomes if o.status != "not run")
+            said = {number: reasons(number, states, traces.of(subject, number), folder)
+                    for number, state in states.items() if state == "not yet"}
+            self.outcomes[subject] = [o._replace(idea=said[o.exercise][0], below=said[o.exercise][1])
+                                      if o.status == "not yet" else o for o in outcomes]
+
     def pytest_collection_finish(self, session):
         if session.config.getoption("--collect-only"):
             for item in session.items:
@@ -65,11 +83,20 @@ class Points:
         report = yield
         mark = item.get_closest_marker("exercise")
         if mark and (call.when == "call" or (call.excinfo and call.when == "setup")):
-            found = outcome(mark, name_of(item), call.excinfo)
+            found = outcome(mark, name_of(item), call.excinfo, item.stash.get(TRACE, None))
             self.keep(item, found._replace(printed=beginning(report.capstdout)) if call.excinfo else found)
             if call.when == "setup" and isinstance(call.excinfo.value, BadInput):
                 report.longrepr = str(call.excinfo.value)            # how it came to that is not the student's
         return report
+
+
+def reasons(exercise, states, traces, folder):
+    """Two sentences about an exercise that does not pass, or empty ones: the mistake, and an exercise below it."""
+    if exercise not in needs.table():
+        return "", ""
+    found = mistakes.matching(needs.table()[exercise]["lesson"], exercise, traces)
+    below = needs.first_open(exercise, states, folder)
+    return mistakes.sentence(found), needs.sentence(exercise, below, states[below]) if below else ""
 
 
 def beginning(text):
@@ -85,8 +112,8 @@ def name_of(item):
     return item.name.replace("[given-", "[").replace("[given]", "")
 
 
-def outcome(mark, name, excinfo):
-    """The Outcome of one test from its mark and what it raised, if anything."""
+def outcome(mark, name, excinfo, trace=None):
+    """The Outcome of one test from its mark and what it raised, if anything; trace: what the function returned."""
     exercise, points, hint = mark.args[0], mark.kwargs["points"], mark.kwargs["hint"]
     if excinfo is None:
         return Outcome(exercise, name, points, "passed")
@@ -102,8 +129,18 @@ def outcome(mark, name, excinfo):
     if not any(Path(entry.filename).name.startswith("test_") for entry in _frames(error)):
         return unreadable(Outcome(exercise, name, points, "not run"), error, "")
     kind, place, said = type(error).__name__, _place(error), tidy(words_of(error), MOST_DIGITS)
-    return Outcome(exercise, name, points, "not yet", "the call itself", "an answer", f"{kind}: {said}{place}", "",
+    shapes = isinstance(error, SHAPES) and _misshapen(exercise, trace)
+    if shapes:                                                       # whoever called could not use what was returned
+        return Outcome(exercise, name, points, "not yet", f"what {trace.function} returns", *shapes, "",
+                       "return as many values as the docstring says, in its order", kind)
+    expected = "an answer: no error was expected here" if place else "an answer"
+    return Outcome(exercise, name, points, "not yet", "the call itself", expected, f"{kind}: {said}{place}", "",
                    _advice(error, said, hint), f"{kind}{place}")
+
+
+def _misshapen(exercise, trace):
+    lesson = needs.table().get(exercise, {"lesson": ""})["lesson"]
+    return mistakes.misshapen(lesson, exercise, trace)
 
 
 def unreadable(o, error, place):
@@ -148,11 +185,14 @@ def grade(lesson, subject, wanted=lambda exercise, test: True, seed=PUBLIC, coll
     return grade_each(lesson, {"given": (subject, wanted)}, seed, collect)["given"]
 
 
-def grade_each(lesson, subjects, seed=PUBLIC, collect=False):
-    """Test several subjects, {name: (subject, wanted)}, in one run of pytest: {name: outcomes}."""
+def grade_each(lesson, subjects, seed=PUBLIC, collect=False, traces=None):
+    """Test several subjects, {name: (subject, wanted)}, in one run of pytest: {name: outcomes}.
+
+    traces: mistakes.Traces, which keep what the functions of the exercises return.
+    """
     class Given:
         def pytest_configure(self, config):
-            config.given = subjects
+            config.given, config.traces = subjects, traces
 
     points = Points()
     file = str(LESSONS / f"test_{lesson}.py")

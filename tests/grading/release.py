@@ -46,7 +46,6 @@ TOP = "workbook"                                  # folder that the zip unpacks 
 WHEN = (1980, 1, 1, 0, 0, 0)                      # of every entry: the same commit gives the same bytes
 LEAKED = 2 / 3                                    # share of an answer
 TELLING = 5                                       # names, attributes and numbers in a statement: `r = x_b - x_a` has 3
-TELLING_SENTENCE = 30                             # characters of a sentence, without spaces; formulas are shorter
 PICTURES = {".png", ".jpg", ".gif"}
 ALWAYS = {
     "LICENSE",
@@ -66,10 +65,9 @@ AUTHORS = {
     "docs/scenes.png",                            # of the repository's README
     "docs/scenes.webp",
 }
-PLUGIN, ANSWERS = "tests/grading/plugin.py", "solutions/answers.md"
+PLUGIN = "tests/grading/plugin.py"
 OPENINGS = "notebooks/openings.json"
 README = "docs/students.md"                       # becomes README.md: the repository's own is for instructors
-NO_ANSWERS = "The answers to the questions of the notebooks are not part of this copy: ask your instructor for them.\n"
 MARKER = re.compile(r"(BEGIN|END)\W+SOLUTION", re.I)
 FENCE = re.compile(r"^ *(```|~~~).*?\n(.*?)^ *\1", re.M | re.S)
 WORD = re.compile(r"[^\W\d]\w*|\d[\d.]*")          # a name or a number
@@ -103,8 +101,8 @@ def release(
         )
     writable(out.absolute().parent)
     out.unlink(missing_ok=True)                   # so that no older zip is taken for this one if the command fails
-    files = contents(tracked(dirty), chosen, worked, with_solutions == EVERY)
-    refuse_leaks(files, worked, with_solutions == EVERY)
+    files = contents(tracked(dirty), chosen, worked)
+    refuse_leaks(files, worked)
     files["README.md"] = files.pop(README)
     write(out, files)
     answered = ", ".join(sorted(worked)) or "none"
@@ -152,7 +150,7 @@ def tracked(dirty):
     return sorted(path for path in git("ls-files", "-z").split("\0") if path and (ROOT / path).exists())
 
 
-def contents(paths, lessons, worked, answers):
+def contents(paths, lessons, worked):
     """Return {path in the zip: bytes}."""
     scenes = {name for name in modules.scene_names() if modules.bind_scene(name).lesson in lessons}
     others = set(modules.lesson_names()) - lessons
@@ -163,7 +161,6 @@ def contents(paths, lessons, worked, answers):
         files[f"solutions/{name}.py"] = generate.stub(source(name), solved, elsewhere=()).encode()
         files[f"lessons/{name}.py"] = generate.stub(source(name), elsewhere=modules.GIVEN | worked).encode()
     files["lessons/__init__.py"] = generate.lessons()["__init__.py"].encode()
-    files[ANSWERS] = read(ANSWERS) if answers else NO_ANSWERS.encode()
     if not worked >= lessons:
         files[OPENINGS] = openings({path: text for path, text in files.items() if path.startswith("notebooks/")})
     files["pyproject.toml"] = for_students(files["pyproject.toml"].decode(), files, worked >= lessons).encode()
@@ -424,24 +421,17 @@ def suspects(where, hidden, signs):
     return [hidden[number] for number in sorted(set().union(*(signs[sign] for sign in seen)))]
 
 
-def sentences(text):
-    """Return the sentences of answers.md that are long enough to recognise, without spaces."""
-    parts = (re.sub(r"\s", "", part) for part in re.split(r"(?<=[.:;?])\s+|\n\s*\n", text))
-    return {part for part in parts if len(part) >= TELLING_SENTENCE}
-
-
-def refuse_leaks(files, worked, answers_too):
+def refuse_leaks(files, worked):
     """Raise BadInput for the first text in the zip that students must not have."""
     hidden = [answer for name in modules.lesson_names() if name not in worked for answer in answers_of(name)]
     signs = signs_of(hidden)
-    secret = set() if answers_too else sentences((ROOT / ANSWERS).read_text(encoding="utf-8"))
     for path, data in sorted(files.items()):
         if "__pycache__" in path or path.endswith((".pyc", ".pyo")):
             raise BadInput(path, "compiled code", "answers can be read from that: git rm it")
         if Path(path).suffix in PICTURES or path == OPENINGS:           # frozen() accepts only numbers
             continue
         for text in texts(path, data.decode()):
-            leak = leak_in(text, hidden, signs, secret)
+            leak = leak_in(text, hidden, signs)
             if leak:
                 raise BadInput(path, f"not for students (it holds {leak.what})", leak.remedy)
 
@@ -452,18 +442,16 @@ class Leak(NamedTuple):
     remedy: str
 
 
-def leak_in(text, hidden, signs, secret):
+def leak_in(text, hidden, signs):
     """Return the first Leak of a text, or None."""
     marker = MARKER.search(text)
     if marker:
         return Leak(f"the marker {marker[0]}", "take it out")
-    where, whole = searched(text), re.sub(r"\s", "", text)
+    where = searched(text)
     for answer in suspects(where, hidden, signs):
         if holds(where, answer):
             what = f"the answer of exercise {answer.exercise}, {answer.function}"
             return Leak(what, f"take it out, or give --with-solutions={answer.lesson}")
-    if any(sentence in whole for sentence in secret):
-        return Leak(f"a sentence of {ANSWERS}", "take it out, or give --with-solutions")
     return None
 
 

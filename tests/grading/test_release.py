@@ -124,7 +124,6 @@ def test_students_get_the_files_they_need_and_none_of_the_authors(released, repo
     assert files.keys() >= NEEDED
     hidden = files.keys() - {".python-version", ".gitignore"}
     assert not [name for name in hidden if OF_AUTHORS.search(name)]
-    assert files["solutions/answers.md"] == release.NO_ANSWERS
 
 
 def test_the_students_readme_links_only_files_of_the_zip(released):
@@ -160,14 +159,12 @@ def test_a_released_lesson_is_as_worked_without_markers_and_others_import_it(rel
     for path in ("lessons/integrators.py", "solutions/springs.py"):
         assert "NotImplementedError" in files[path]
     assert "from solutions.integrators import" in files["lessons/springs.py"]
-    assert files["solutions/answers.md"] == release.NO_ANSWERS
 
 
 @pytest.mark.long
 def test_with_solutions_alone_releases_them_all(released):
     files = files_in(released("--with-solutions")[2])
     assert not any("NotImplementedError(\"Exercise" in files[f"solutions/{name}.py"] for name in lesson_names())
-    assert files["solutions/answers.md"] == (ROOT / "solutions/answers.md").read_text()
     assert "--of=lessons" not in files["pyproject.toml"]
 
 
@@ -272,10 +269,6 @@ def in_html(body):
     return "<pre>\n" + body.replace("<", "&lt;").replace(">", "&gt;") + "</pre>"
 
 
-def answer_to_a_question():
-    return "Well, " + (SOLUTIONS / "answers.md").read_text().split("\n\n")[2][3:].replace("\n", " \n ")
-
-
 SCENE = "validate/scenes/integrators/throw.py"
 MOST_OF_2_12 = "\n".join(body_of("2.12").splitlines()[2:])
 LEAKS = {  # path, text, a part of the message
@@ -291,7 +284,6 @@ LEAKS = {  # path, text, a part of the message
     "inline code": ("docs/page.md", f"The answer: `{body_of('2.9').strip()}`", "2.9"),
     "html": ("docs/page.html", in_html(body_of("1.7")), "1.7"),
     "recording": ("validate/recorded/throw.json", None, "1.8"),
-    "answer to a question": ("docs/page.md", answer_to_a_question(), "answers.md"),
     "compiled code": ("docs/integrators.cpython-311.pyc", b"\xa7\r\r\n\x00", "pyc"),
 }
 

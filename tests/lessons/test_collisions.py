@@ -18,8 +18,9 @@ KNOWN = 1e-10
 EDGE_PREFERENCE = 1e-9          # a pair of edges must separate by this much more [m] than any face, as the lesson says
 
 
-# Sizes of small, medium and large bodies [m]. Powers of two: what is exact at one size is exact at the others.
-SIZES = (2.0**-100, 1.0, 2.0**100)
+# Sizes of medium, small and large bodies [m], the ordinary one first: a student reads of the first case that fails.
+# Powers of two: what is exact at one size is exact at the others.
+SIZES = (1.0, 2.0**-100, 2.0**100)
 
 
 def places(draw, d=3):

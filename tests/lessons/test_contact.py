@@ -796,14 +796,27 @@ def inherited(new, old, J_old, near):
     return J
 
 
-@exercise("9.14", points=0.75,
+@exercise("9.14", points=0.25, hint="at the very place of an old contact J is its J_old: the whole vector")
+def test_a_contact_that_did_not_move_keeps_its_impulse(lesson, draw):
+    for d in (2, 3):
+        _, old, J_old, near = two_sets(draw, lesson, d)
+        close("J of contacts that did not move [N s]", lesson.kept_impulses(old, old, J_old, near), J_old, 0.0)
+
+
+@exercise("9.14", points=0.25,
           hint="for each contact look at the old ones with the same a and b, and take the impulse of the nearest")
 def test_a_contact_remembers_the_impulse_of_its_pair_and_place(lesson, draw):
     for d in (2, 3):
         new, old, J_old, near = two_sets(draw, lesson, d)
         close("J to begin with [N s]", lesson.kept_impulses(new, old, J_old, near), inherited(new, old, J_old, near),
               0.0)
-        close("J of contacts that did not move [N s]", lesson.kept_impulses(old, old, J_old, near), J_old, 0.0)
+
+
+@exercise("9.14", points=0.25, hint="several old contacts of the pair are near: the least |p − p_old| counts, not the "
+          "first one found")
+def test_of_several_old_contacts_that_are_near_the_nearest_counts(lesson, draw):
+    for d in (2, 3):
+        new, old, J_old, near = two_sets(draw, lesson, d)
         crowded = old._replace(p=0.01 * old.p)  # both contacts of a pair are near: the nearest counts
         close("J where several old contacts are near [N s]",
               lesson.kept_impulses(new._replace(p=0.01 * new.p), crowded, J_old, near),
@@ -828,22 +841,36 @@ def unit_vectors(draw, count, d):
     return directions / np.linalg.norm(directions, axis=1, keepdims=True)
 
 
-@exercise("9.14", points=0.25, hint="closer than `near`: exactly `near` is not; two contacts may share an old impulse")
-def test_exactly_near_is_too_far_and_one_impulse_may_serve_two(lesson, draw):
-    for d in (2, 3):
-        near = 2.0 ** draw.whole(-8, 2)                                  # powers of two: no round-off
-        place, e = near * np.floor(draw(-9.0, 9.0, d)), np.eye(d)[draw.whole(0, d - 1)]
-        J_old = draw(0.5, 2.0, (1, d))
-        old = contacts_of(lesson, [0], [1], place[None], e[None])
-        p = place + near * np.outer([0.5, -0.5, 1.0, -1.0, 1.0 - 2.0**-20], e)
-        new = contacts_of(lesson, [0] * 5, [1] * 5, p, np.tile(e, (5, 1)))
-        close("J of five contacts at ±near/2, at ±near and slightly nearer than that [N s]",
-              lesson.kept_impulses(new, old, J_old, near), np.array([1.0, 1.0, 0.0, 0.0, 1.0])[:, None] * J_old, 0.0,
-              given=f"near = {near} m, old contact at {place}, new ones at {p.tolist()}")
+def beside(draw, lesson, ways):
+    """(new ContactSet, old ContactSet, J_old, near): one old contact, and new ones at so many `near` beside it."""
+    d = draw.whole(2, 3)
+    near = 2.0 ** draw.whole(-8, 2)                                      # powers of two: no round-off
+    place, e = near * np.floor(draw(-9.0, 9.0, d)), np.eye(d)[draw.whole(0, d - 1)]
+    old, m = contacts_of(lesson, [0], [1], place[None], e[None]), len(ways)
+    new = contacts_of(lesson, [0] * m, [1] * m, place + near * np.outer(ways, e), np.tile(e, (m, 1)))
+    return new, old, draw(0.5, 2.0, (1, d)), near
 
 
-@exercise("9.14", points=0.25, hint="farther than `near`, or between other bodies: 0")
-def test_a_new_contact_begins_without_impulse(lesson, draw):
+@exercise("9.14", points=0.125, hint="closer than `near`: exactly `near` is too far")
+def test_exactly_near_is_too_far(lesson, draw):
+    for _ in range(4):
+        new, old, J_old, near = beside(draw, lesson, [1.0, -1.0, 1.0 - 2.0**-20])
+        close("J of three contacts at ±near and slightly nearer than that [N s]",
+              lesson.kept_impulses(new, old, J_old, near), np.array([0.0, 0.0, 1.0])[:, None] * J_old, 0.0,
+              given=f"near = {near} m, old contact at {old.p[0]}, new ones at {new.p.tolist()}")
+
+
+@exercise("9.14", points=0.125, hint="two new contacts may take over the same old impulse, each the whole of it")
+def test_one_old_impulse_may_serve_two_contacts(lesson, draw):
+    for _ in range(4):
+        new, old, J_old, near = beside(draw, lesson, [0.5, -0.5])
+        close("J of two contacts at ±near/2 [N s]", lesson.kept_impulses(new, old, J_old, near),
+              np.ones((2, 1)) * J_old, 0.0,
+              given=f"near = {near} m, old contact at {old.p[0]}, new ones at {new.p.tolist()}")
+
+
+@exercise("9.14", points=0.125, hint="`near` is a distance: farther than that, or where there was no contact, J is 0")
+def test_a_contact_elsewhere_begins_without_impulse(lesson, draw):
     new, old, J_old, near = two_sets(draw, lesson, 2)
     far = new._replace(p=new.p + np.array([0.0, 1.0]))
     close("J of contacts that lie elsewhere [N s]", lesson.kept_impulses(far, old, J_old, near), np.zeros(new.p.shape),
@@ -854,6 +881,12 @@ def test_a_new_contact_begins_without_impulse(lesson, draw):
                                np.zeros((0, 2)), np.zeros(0))
     close("J after a step without contacts [N s]", lesson.kept_impulses(new, nobody, np.zeros((0, 2)), near),
           np.zeros(new.p.shape), 0.0)
+
+
+@exercise("9.14", points=0.125,
+          hint="the same a and the same b: with another partner, or with a and b exchanged, it is another contact")
+def test_a_contact_of_other_bodies_begins_without_impulse(lesson, draw):
+    new, old, J_old, near = two_sets(draw, lesson, 2)
     one, other = (contacts_of(lesson, [a], [b], [(0.0, 0.0)], [MIDDLE]) for a, b in ((0, 1), (1, 0)))
     close("J of a contact whose bodies are those of an old one, a and b exchanged [N s]",
           lesson.kept_impulses(one, other, draw(0.5, 2.0, (1, 2)), near), np.zeros((1, 2)), 0.0)
@@ -911,10 +944,11 @@ def swept_scene(draw, lesson, mu, fixed=True):
     return draw(-3.0, 3.0, (4, 2)), draw(-3.0, 3.0, 4), J, c, arms, pile, x
 
 
-@exercise("9.16", points=0.25,
-          hint="u of a's point, J_n from aim, u_n and give, J_t within μ J_n; then v + J/m and ω + (r × J)/I")
-def test_one_contact_of_one_body_with_the_ground_by_hand(lesson, draw):
-    """J is 0 before.  n = (0, 1), so t = (−1, 0).  All that is needed to compute it again is given."""
+def by_hand(lesson, draw):
+    """(J, v and ω of body a after one contact with the ground, as found and as expected, and what is given), …
+
+    J is 0 before.  n = (0, 1), so t = (−1, 0).  All that is needed to compute it again is given.
+    """
     for mu, give in ((9.0, 0.0), (0.5, 0.0), (0.5, 1.0)):
         r, v, omega, aim = (1.0, -2.0), (draw.whole(1, 3), -draw.whole(1, 3)), draw.whole(1, 3), draw.whole(0, 2)
         inv_mass, inv_inertia = 1.0, 0.5
@@ -930,21 +964,26 @@ def test_one_contact_of_one_body_with_the_ground_by_hand(lesson, draw):
                                        np.zeros((1, 2)), np.array([aim], float), np.array([give]), c, arms, pile)
         given = (f"a on ground b; n = (0, 1), r_a = {r} m, v = {v} m/s, ω = {omega} rad/s, J = 0, 1/m = {inv_mass}, "
                  f"1/I = {inv_inertia}, k_n = {k_n}, k_t = {k_t}, aim {aim} m/s, give {give}, μ = {mu}")
-        close("J of one contact, in x and y [N s]", np.asarray(got[2])[0], (-J_t, J_n), ROUND_OFF, given)
-        close("v of body a after one contact [m/s]", np.asarray(got[0])[0],
-              (v[0] - inv_mass * J_t, v[1] + inv_mass * J_n), ROUND_OFF, given)
-        close("ω of body a after one contact [rad/s]", np.asarray(got[1])[0],
-              omega + inv_inertia * (r[0] * J_n + r[1] * J_t), ROUND_OFF, given)
+        found = np.asarray(got[2])[0], np.append(np.asarray(got[0])[0], np.asarray(got[1])[0])
+        after = (v[0] - inv_mass * J_t, v[1] + inv_mass * J_n, omega + inv_inertia * (r[0] * J_n + r[1] * J_t))
+        yield found, ((-J_t, J_n), after), given
 
 
-@exercise("9.16", points=0.25,
-          hint="u from the velocities as they are by then; J_n and J_t from this u; the change acts on both bodies "
-               "at once")
-def test_a_sweep_over_velocities_does_what_the_matrix_says(lesson, draw):
-    hard, loose = np.zeros(5), np.array([1.0, 1.0, 0.0, 1.0, 0.0])
-    for mu, fixed, soft in ((draw(0.1, 0.9), True, hard), (draw(0.1, 0.9), False, hard), (0.0, True, hard),
-                            (np.inf, True, hard), (draw(0.1, 0.9), True, loose), (draw(0.1, 0.9), False, loose),
-                            (draw(2.0, 9.0), False, loose), (np.inf, False, loose)):
+@exercise("9.16", points=0.125, hint="u of a's point; J_n from aim, u_n and give; J_t within μ J_n; J = J_n n + J_t t")
+def test_the_impulse_of_one_contact_with_the_ground_by_hand(lesson, draw):
+    for found, expected, given in by_hand(lesson, draw):
+        close("J of one contact, in x and y [N s]", found[0], expected[0], ROUND_OFF, given)
+
+
+@exercise("9.16", points=0.125, hint="the change of J acts on a: v + J/m and ω + (r × J)/I, r × J = r_x J_y − r_y J_x")
+def test_the_velocities_after_one_contact_with_the_ground_by_hand(lesson, draw):
+    for found, expected, given in by_hand(lesson, draw):
+        close("v_x, v_y and ω of body a after one contact [m/s, m/s, rad/s]", found[1], expected[1], ROUND_OFF, given)
+
+
+def check_sweep_by_matrix(lesson, draw, cases):
+    """Compare with a sweep over the Delassus matrix; cases (μ, whether the last body is fixed, which are soft), …"""
+    for mu, fixed, soft in cases:
         v, omega, J, c, arms, pile, x = swept_scene(draw, lesson, mu, fixed)
         aim, give = soft * draw(-3.0, 6.0, 5), soft * draw(0.1, 2.0, 5)
         if mu == np.inf:                                                 # the first contact has much to hold
@@ -975,7 +1014,30 @@ def test_a_sweep_over_velocities_does_what_the_matrix_says(lesson, draw):
             close("angular velocities after the sweep, over their size [-]", got_omega, after[:, 2], allowed, given)
 
 
-@exercise("9.16", points=0.5,
+HARD, LOOSE = np.zeros(5), np.array([1.0, 1.0, 0.0, 1.0, 0.0])           # which of five contacts are soft
+
+
+@exercise("9.16", points=0.125,
+          hint="u from the velocities as they are by then; J_n and J_t from this u; the change acts on both bodies "
+               "at once")
+def test_a_sweep_over_velocities_does_what_the_matrix_says(lesson, draw):
+    check_sweep_by_matrix(lesson, draw, ((draw(0.1, 0.9), True, HARD), (draw(0.1, 0.9), False, HARD),
+                                         (0.0, True, HARD)))
+
+
+@exercise("9.16", points=0.125,
+          hint="aim[k] and give[k] belong to contact k, and to J_n only: friction neither aims nor gives")
+def test_a_sweep_over_soft_contacts_does_what_the_matrix_says(lesson, draw):
+    check_sweep_by_matrix(lesson, draw, ((draw(0.1, 0.9), True, LOOSE), (draw(0.1, 0.9), False, LOOSE),
+                                         (draw(2.0, 9.0), False, LOOSE)))
+
+
+@exercise("9.16", points=0.25, hint="μ = ∞: no limit where J_n > 0, and 0 where J_n = 0; ∞ · 0 is no number")
+def test_a_sweep_with_infinite_friction_does_what_the_matrix_says(lesson, draw):
+    check_sweep_by_matrix(lesson, draw, ((np.inf, True, HARD), (np.inf, False, LOOSE)))
+
+
+@exercise("9.16", points=0.25,
           hint="k_n (1 + give) below, aim − u_n − give k_n J_n above: then u_n = aim − give k_n J_n holds afterwards")
 def test_a_contact_alone_gets_what_it_asks_for(lesson, draw):
     for give in (0.0, draw(0.1, 2.0)):
@@ -989,15 +1051,18 @@ def test_a_contact_alone_gets_what_it_asks_for(lesson, draw):
         u_n = np.sum(alone.n * velocities_at(x, alone, np.column_stack((v, omega))))
         close("u_n + give k_n J_n after the visit [m/s]", u_n + give * arm.k_n[0] * np.sum(alone.n * J), aim[0], 1e-11,
               given=f"aim {aim[0]} m/s, give {give}")
-    v, omega, J, c, arms, pile, x = swept_scene(draw, lesson, 0.5)
+
+
+@exercise("9.16", points=0.25, hint="J_n is 0 at least: what parts faster than aim says is not pulled back")
+def test_a_contact_does_not_pull(lesson, draw):
+    v, omega, J, c, arms, pile, _ = swept_scene(draw, lesson, 0.5)
     J = np.asarray(lesson.velocity_sweep_2d(v, omega, 0.0 * J, np.full(5, -200.0), np.zeros(5), c, arms, pile)[2])
     close("J of contacts that may approach as they do [N s]", J, np.zeros((5, 2)), 0.0)
 
 
-@exercise("9.16", points=1,
-          hint="what a gets, b loses: J on a and −J on b, each at its own offset; what cannot be moved keeps its "
-               "velocity")
-def test_a_sweep_keeps_momentum_and_moves_no_plane(lesson, draw):
+@exercise("9.16", points=0.25,
+          hint="what a gets, b loses: J on a and −J on b, each at its own offset and with its own mass")
+def test_a_sweep_keeps_momentum(lesson, draw):
     for mu in (0.0, draw(0.1, 0.9)):
         v, omega, J, c, arms, pile, x = swept_scene(draw, lesson, mu, fixed=False)
         aim, give = draw(-1.0, 1.0, 5), draw(0.0, 1.0, 5)
@@ -1011,10 +1076,23 @@ def test_a_sweep_keeps_momentum_and_moves_no_plane(lesson, draw):
               total(v, omega), 1e-11, given=f"μ = {mu}")
         moved = np.linalg.norm(got[0] - v) + np.linalg.norm(got[1] - omega)
         between("how much the sweep changes velocities [m/s]", moved, 0.01, 100.0)
-        normal, along = np.sum(c.n * got[2], axis=1), np.abs(c.n[:, 0] * got[2][:, 1] - c.n[:, 1] * got[2][:, 0])
+
+
+@exercise("9.16", points=0.25, hint="J_n is 0 at least, and J_t at most μ times the new J_n; keep both parts of J")
+def test_a_sweep_leaves_every_impulse_in_its_cone(lesson, draw):
+    for mu in (0.0, draw(0.1, 0.9)):
+        v, omega, J, c, arms, pile, _ = swept_scene(draw, lesson, mu, fixed=False)
+        aim, give = draw(-1.0, 1.0, 5), draw(0.0, 1.0, 5)
+        got = np.asarray(lesson.velocity_sweep_2d(v, omega, J, aim, give, c, arms, pile)[2])
+        normal, along = np.sum(c.n * got, axis=1), np.abs(c.n[:, 0] * got[:, 1] - c.n[:, 1] * got[:, 0])
         close("impulses that pull, or are outside their cone [-]", (normal < -1e-13) | (along > mu * normal + 1e-12),
               np.zeros(5), 0.0)
-    v, omega, J, c, arms, pile, x = swept_scene(draw, lesson, 0.5)
-    got_v, got_omega, _ = lesson.velocity_sweep_2d(v, omega, J, np.zeros(5), np.zeros(5), c, arms, pile)
+
+
+@exercise("9.16", points=0.25, hint="inverse masses and moments of 0: what cannot be moved keeps its velocity")
+def test_a_sweep_moves_no_plane(lesson, draw):
+    v, omega, J, c, arms, pile, _ = swept_scene(draw, lesson, 0.5)
+    got_v, got_omega, _ = lesson.velocity_sweep_2d(v.copy(), omega.copy(), J.copy(), np.zeros(5), np.zeros(5), c, arms,
+                                                   pile)
     close("velocity of what cannot be moved [m/s]", np.append(np.asarray(got_v)[3], np.asarray(got_omega)[3]),
           np.append(v[3], omega[3]), 0.0)

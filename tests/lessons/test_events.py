@@ -118,7 +118,7 @@ def test_a_trajectory_ends_where_its_loop_ends_and_keeps_the_start():
     flight = (collisions.continuous_step, collisions.ball_plane_gap, collisions.ball_plane_time, 0.5, x[None],
               np.array([[0.3, 0.2, -3.0]]), 0.01, 60, target)
     rolling = rotation.RollingBall(1.0, 0.1 * np.ones(3), 0.5, 0.3, DOWN)
-    body = (rotation.rolling_step, rotation.supported_weight, 0.5, x, v, np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3),
+    body = (rotation.rolling_step, rotation.supported_weight, 0.5, x, np.array([1.0, 0.0, 0.0, 0.0]), v, np.zeros(3),
             0.01, 60, rolling)
     for history, loop, run in (
             (trajectories.particle_trajectory, friction.advance_particle, particle),

@@ -69,8 +69,8 @@ def test_a_ball_with_mean_velocities_is_exact_but_for_the_step_in_which_it_begin
     truth = v_0 * t - 0.5 * mu * g * t * t + rolls * (T - t)
     errors = []
     for n in (97, 194, 388):
-        state = np.zeros(3), np.array([v_0, 0.0, 0.0]), np.array([1.0, 0.0, 0.0, 0.0]), np.array([0.0, backspin, 0.0])
-        x, v, _, omega = rotation.advance_rigid_body(rotation.average_rolling_step, rotation.supported_weight, 0.0,
+        state = np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0]), np.array([v_0, 0.0, 0.0]), np.array([0.0, backspin, 0.0])
+        x, _, v, omega = rotation.advance_rigid_body(rotation.average_rolling_step, rotation.supported_weight, 0.0,
                                                      *state, T / n, n, ball)
         assert abs(v[0] - rolls) < 1e-12 and abs(R * omega[1] - rolls) < 1e-12
         errors.append(abs(x[0] - truth))

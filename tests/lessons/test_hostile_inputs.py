@@ -64,7 +64,7 @@ rocker = simulator.RockingBlock(1.0, 0.1, 0.5, 0.09, 9.81)
 OSCILLATION = (integrators.oscillator_acceleration, 0.0, np.ones(2), np.zeros(2), 0.1, 3, oscillator)
 CONTACT = (friction.falling_acceleration, friction.particle_plane_gap, 0.0, 0.1 * up, -up, 0.05, 5, on_plane)
 TURNS = (rotation.no_torque, 0.0, q, L, 0.1, 3, rotation.RigidBody(1.0, I_body))
-ROLLING = (rotation.supported_weight, 0.0, still, np.array([1.0, 0.2, 0.0]), q, still, 0.01, 5, ball)
+ROLLING = (rotation.supported_weight, 0.0, still, q, np.array([1.0, 0.2, 0.0]), still, 0.01, 5, ball)
 FLIGHT = (collisions.ball_plane_gap, collisions.ball_plane_time, 0.0, up[None], -3.0 * up[None], 0.1, 5,
           collisions.Target(0.1, 1.0, plane))
 DROP = (impulses.falling_acceleration, 0.0, up[None], -up[None], 0.1, 5, drop)

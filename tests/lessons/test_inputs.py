@@ -6,8 +6,8 @@ import pytest
 from solutions.checks import BadInput, Diverged
 from validate import modules
 
-collisions, friction, impulses, integrators, pbd, rotation, springs = map(
-    modules.bind, ("collisions", "friction", "impulses", "integrators", "pbd", "rotation", "springs"))
+collisions, friction, impulses, integrators, pbd, rotation, simulator, springs = map(
+    modules.bind, ("collisions", "friction", "impulses", "integrators", "pbd", "rotation", "simulator", "springs"))
 UP, DOWN = np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.0, -9.81])
 ROPE, PAIRS = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]), np.array([[0, 1], [1, 2]])
 WEIGHT = np.array([0.0, -9.81])
@@ -63,7 +63,7 @@ ROLLING = rotation.RollingBall(1.0, 0.4 * np.ones(3), 1.0, 0.3, DOWN)
 
 def roll(ball, steps=100):
     return rotation.advance_rigid_body(rotation.rolling_step, rotation.supported_weight, 0.0, np.zeros(3),
-                         np.array([1.0, 0.0, 0.0]), np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3), 0.01, steps, ball)
+                         np.array([1.0, 0.0, 0.0, 0.0]), np.array([1.0, 0.0, 0.0]), np.zeros(3), 0.01, steps, ball)
 
 
 def test_a_rolling_ball_with_a_negative_friction_is_refused():
@@ -74,8 +74,16 @@ def test_a_rolling_ball_with_a_negative_friction_is_refused():
 
 def test_a_floor_never_pulls():
     """With gravity away from the floor the ball leaves with g and keeps its tangential speed."""
-    _, v, _, omega = roll(ROLLING._replace(gravity=-DOWN))
+    _, _, v, omega = roll(ROLLING._replace(gravity=-DOWN))
     assert abs(v[2] - 9.81) < 1e-9 and v[0] == 1.0 and not omega.any()
+
+
+def test_energies_may_be_a_list_and_one_without_its_work_is_refused():
+    assert simulator.gain_without_source([3, 1, 2.5], [0, 0, 0.5]) == 1.0
+    for energies, work in (([1.0, 2.0], [0.0]), ([1.0, 2.0], 0.0), (["much", 2.0], [0.0, 0.0]), (None, [0.0]),
+                           (np.ones((2, 3)), np.ones((2, 3)))):
+        with pytest.raises(BadInput):
+            simulator.gain_without_source(energies, work)
 
 
 # ---------------------------------------------------------------------------------------------- missing points

@@ -40,7 +40,7 @@ def test_a_belt_works_by_its_speed_times_the_momentum_that_it_gives():
     state, p = disc_on_floor((1.5, 0.0))
     states = ran(state, p, 0.01, 40, DISCS)
     end = states[-1]
-    before, after = (simulator.mechanical_energy_2d(s.x, s.v, s.omega, p) for s in (state, end))
+    before, after = (simulator.mechanical_energy_2d(s.x, s.q, s.v, s.omega, p) for s in (state, end))
     assert worked_on(states, 0.01, p) == pytest.approx(2.0 * 1.5**2 / 3.0, abs=1e-10)
     assert after - before == pytest.approx(2.0 * 1.5**2 / 6.0, abs=1e-10)
 
@@ -74,10 +74,10 @@ def test_momenta_in_the_plane_are_those_of_the_same_bodies_in_space():
                                     np.zeros((0, 4)), (0.0, -G, 0.0), 0.3, 1, 0.02)
     spin = np.pad(omega[:, None], ((0, 0), (2, 0)))
     space = np.pad(x, ((0, 0), (0, 1))), still, np.pad(v, ((0, 0), (0, 1))), spin, deep
-    P, L = simulator.momenta_2d(x, v, omega, flat)
+    P, L = simulator.momenta_2d(x, np.zeros(3), v, omega, flat)
     P_space, L_space = simulator.momenta(*space)
     assert np.allclose(np.append(P, L), [*P_space[:2], L_space[2]], rtol=0.0, atol=1e-12)
-    energy = simulator.mechanical_energy_2d(x, v, omega, flat)
+    energy = simulator.mechanical_energy_2d(x, np.zeros(3), v, omega, flat)
     assert energy == pytest.approx(simulator.mechanical_energy(*space), abs=1e-12)
 
 

@@ -93,7 +93,7 @@ def test_joints_of_a_free_tree_stay_closed_and_keep_both_momenta_and_energy(make
         return np.concatenate(simulator.momenta(x, q, v, omega, p))
 
     def energy(x, q, v, omega):
-        return (simulator.mechanical_energy_2d(x, v, omega, p) if q.ndim == 1 else
+        return (simulator.mechanical_energy_2d(x, q, v, omega, p) if q.ndim == 1 else
                 simulator.mechanical_energy(x, q, v, omega, p))
     begin, swings = (x, q, v, omega), []
     for dt, steps in ((0.01, 20), (0.005, 40)):
@@ -190,9 +190,9 @@ def test_one_ball_of_a_cradle_sends_one_away():
 def test_impacts_of_hinged_balls_keep_energy_with_e_1_and_lose_all_of_the_approach_with_e_0():
     for e in (1.0, 0.0):
         state, p = cradle(0.02, e, n=2)
-        begin = simulator.mechanical_energy_2d(state.x, state.v, state.omega, p)
+        begin = simulator.mechanical_energy_2d(state.x, state.q, state.v, state.omega, p)
         end = swing(state, p, 0.6, 400)
-        lost = begin - simulator.mechanical_energy_2d(end.x, end.v, end.omega, p)
+        lost = begin - simulator.mechanical_energy_2d(end.x, end.q, end.v, end.omega, p)
         first = G * (1.0 - np.cos(0.3))
         # the loop's own error is that of symplectic Euler, ½ w dt of the energy that swings
         assert abs(lost - (1.0 - e) * 0.5 * first) < 0.02 * first

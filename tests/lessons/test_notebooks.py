@@ -5,6 +5,7 @@ import re
 import nbformat
 import pytest
 
+from validate import modules
 from validate.generate import exercises, stub
 from validate.modules import ROOT, SOLUTIONS, lesson_names
 
@@ -31,6 +32,32 @@ def answered(state):
 def test_a_notebook_is_stored_without_outputs(path):
     for cell in nbformat.read(path, as_version=4).cells:
         assert cell.cell_type != "code" or (not cell.outputs and cell.execution_count is None)
+
+
+@pytest.mark.parametrize("path", [path for path in NOTEBOOKS if path.stem[:2] != "00"], ids=lambda path: path.stem)
+def test_a_lesson_is_told_in_the_same_way_everywhere(path):
+    cells = nbformat.read(path, as_version=4).cells
+    text = "\n\n".join(cell.source for cell in cells if cell.cell_type == "markdown")
+    code = [cell for cell in cells if cell.cell_type == "code"]
+    lesson = path.stem.partition("_")[2]
+    numbers = exercises((SOLUTIONS / f"{lesson}.py").read_text())
+    for heading in ("| **You need** |", "| **Time** |", "**Afterwards you can**", "## The idea", "## Break it",
+                    "## What this scene leaves out", "## Make it (★★★)", "## The curtain", "## What you know now",
+                    "**Read on.**", "## Three questions"):
+        assert text.count(heading) == 1, heading
+    assert f"| {len(numbers)}, 20 points" in text
+    assert text.count("<details><summary>Answer</summary>") == 3
+    stars = dict(re.findall(rf"`\w+` \(({path.stem[:2].lstrip('0')}\.\d+) (★+)\)", text))
+    assert stars.keys() == numbers.keys()
+    found = {number for number, hard in stars.items() if hard == "★★"}
+    assert len(found) >= 2 and set(stars.values()) == {"★", "★★"}
+    for number in found:
+        assert "*Find*" in getattr(modules.bind(lesson), numbers[number]).__doc__
+        assert f"<details><summary>Hint for {number}</summary>" in text
+    assert [cell.source for cell in code if cell.source.startswith("check(")] == [f'check("{n}")' for n in numbers]
+    hidden = [cell for cell in code if "plt." in cell.source or cell is code[0]]
+    assert all(cell.metadata.get("jupyter", {}).get("source_hidden") for cell in hidden)
+    assert not any("plt.show()" in cell.source for cell in code)
 
 
 @pytest.mark.parametrize(("path", "states"), [

@@ -17,11 +17,11 @@ TINY = 1e-30                 # complex step: its square vanishes beside 1, so a 
 
 
 def places(draw, d):
-    """(size, place) of small, medium and large bodies [m], at the origin and a thousand sizes away from it.
+    """(size, place) of medium, small and large bodies [m], at the origin and a thousand sizes away from it.
 
     The smallest size is below the round-off of a metre, so an answer with a fixed threshold fails.
     """
-    return [(size, far * size * draw(-1.0, 1.0, d)) for size in (1e-20, 1.0, 1e3) for far in (0.0, 1e3)]
+    return [(size, far * size * draw(-1.0, 1.0, d)) for size in (1.0, 1e-20, 1e3) for far in (0.0, 1e3)]
 
 
 def direction(draw, d):

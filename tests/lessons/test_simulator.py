@@ -7,7 +7,9 @@ import itertools
 import numpy as np
 import pytest
 
-from ..grading.expect import between, close
+from solutions.checks import BadInput
+
+from ..grading.expect import between, close, raises
 
 exercise = pytest.mark.exercise
 G = 9.81                     # [m/s²]
@@ -570,7 +572,7 @@ def test_the_centre_of_the_floor_has_the_velocity_of_the_floor(lesson, draw):
           ball.floor_v + np.array([0.0, arm * ball.floor_omega[2], 0.0]), ROUND_OFF)
 
 
-def supported(t, x, v, q, omega, ball):
+def supported(t, x, q, v, omega, ball):
     """Weight and the force of the floor: nothing is left of both.
 
     A kick before T_0 and a push after T_2 show with which time a load was asked.
@@ -601,7 +603,7 @@ def test_a_ball_on_a_turntable_moves_on_circles(lesson, draw):
     middle = x + np.array([-v[1], v[0], 0.0]) / rate
     truth = middle + about(np.array([0.0, 0.0, 1.0]), rate * T) @ (x - middle)
     for n in (50, 100):
-        state = x, v, np.eye(4)[0], rolling_on(lesson, x, v, ball)
+        state = x, np.eye(4)[0], v, rolling_on(lesson, x, v, ball)
         for k in range(n):
             state = lesson.carried_step(supported, T_0 + k * T / n, *state, T / n, ball)
         errors.append(np.linalg.norm(np.asarray(state[0]) - truth))
@@ -618,19 +620,19 @@ def test_a_belt_pulls_a_ball_along_with_exact_parabolas(lesson, draw):
     size = np.linalg.norm(belt)
     T = 0.5 * size / (mu * G * (1.0 + 1.0 / share))                        # half of the time for which it slips
     x, q = np.array([0.3, -0.2, ball.radius]), np.eye(4)[0]
-    state = x, np.zeros(3), q, np.zeros(3)
+    state = x, q, np.zeros(3), np.zeros(3)
     for k in range(n):
         state = lesson.carried_step(supported, T_0 + k * T / n, *state, T / n, ball)
     along = np.append(belt / size, 0.0)
     close("place while it slips [m]", state[0], x + 0.5 * mu * G * T * T * along, ROUND_OFF, given=f"belt {belt} m/s")
-    close("velocity while it slips [m/s]", state[1], mu * G * T * along, ROUND_OFF)
+    close("velocity while it slips [m/s]", state[2], mu * G * T * along, ROUND_OFF)
     spun = np.cross([0.0, 0.0, -ball.radius], mu * G * along) / (share * ball.radius**2)
     angle = 0.5 * np.linalg.norm(spun) * T * T
-    close("orientation while it slips, as a matrix", matrix(np.asarray(state[2])),
+    close("orientation while it slips, as a matrix", matrix(np.asarray(state[1])),
           about(spun / np.linalg.norm(spun), angle), MANY)
     for k in range(4 * n):
         state = lesson.carried_step(supported, T_0 + k * T / n, *state, T / n, ball)
-    close("velocity when it rolls [m/s]", state[1], share / (1.0 + share) * size * along, ROUND_OFF)
+    close("velocity when it rolls [m/s]", state[2], share / (1.0 + share) * size * along, ROUND_OFF)
 
 
 # ---------------------------------------------------------------------------------------------- exact events
@@ -678,10 +680,10 @@ def test_one_step_over_the_end_of_slipping_is_exact(lesson, draw):
     for T in (draw(0.2, 0.8) * ends, draw(1.5, 3.0) * ends):
         s = min(T, ends)
         end_v = v - ball.mu * G * s * e
-        got = lesson.exact_rolling_step(supported, T_0, x, v, np.eye(4)[0], omega, T, ball)
+        got = lesson.exact_rolling_step(supported, T_0, x, np.eye(4)[0], v, omega, T, ball)
         close("place after one step [m]", got[0], x + s * v - 0.5 * ball.mu * G * s * s * e + (T - s) * end_v, MANY,
               given=f"slips for {ends} s, dt = {T} s")
-        close("velocity after one step [m/s]", got[1], end_v, MANY)
+        close("velocity after one step [m/s]", got[2], end_v, MANY)
         rim = np.cross(np.asarray(got[3]), [0.0, 0.0, ball.radius])
         close("speed of the rim after one step [m/s]", rim @ e, (v - e * slip) @ e + ball.mu * G / share * s, MANY)
 
@@ -692,13 +694,13 @@ def test_a_long_step_is_as_good_as_many(lesson, draw):
     ball, v, omega, e, slip, share = bowled(lesson, draw)
     ends = slip / (ball.mu * G * (1.0 + 1.0 / share))
     T, n = draw(1.5, 3.0) * ends, draw.whole(3, 9)
-    start = np.zeros(3), v, np.eye(4)[0], omega
+    start = np.zeros(3), np.eye(4)[0], v, omega
     whole = lesson.exact_rolling_step(supported, T_0, *start, T, ball)
-    close("velocity when it rolls [m/s]", whole[1], v - slip * share / (1.0 + share) * e, MANY, given=f"dt = {T} s")
+    close("velocity when it rolls [m/s]", whole[2], v - slip * share / (1.0 + share) * e, MANY, given=f"dt = {T} s")
     parts = start
     for k in range(n):
         parts = lesson.exact_rolling_step(supported, T_0 + k * T / n, *parts, T / n, ball)
-    for name, one, many in zip(("place [m]", "velocity [m/s]", "orientation [-]", "angular velocity [rad/s]"), whole,
+    for name, one, many in zip(("place [m]", "orientation [-]", "velocity [m/s]", "angular velocity [rad/s]"), whole,
                                parts):
         close(f"{name} after one long step", one, many, MANY, given=f"{n} parts")
 
@@ -712,9 +714,9 @@ def test_the_second_part_asks_the_load_at_its_own_time(lesson, draw):
     ball, v, omega, _, slip, share = bowled(lesson, draw)
     ends = slip / (ball.mu * G * (1.0 + 1.0 / share))
     T, start = draw(1.5, 3.0) * ends, np.array([0.0, 0.0, ball.radius])
-    without = lesson.exact_rolling_step(supported, T_0, start, v, np.eye(4)[0], omega, T, ball)
-    pushed = lesson.exact_rolling_step(supported, T_2, start, v, np.eye(4)[0], omega, T, ball)
-    close("what the push adds to the velocity [m/s]", np.asarray(pushed[1]) - np.asarray(without[1]),
+    without = lesson.exact_rolling_step(supported, T_0, start, np.eye(4)[0], v, omega, T, ball)
+    pushed = lesson.exact_rolling_step(supported, T_2, start, np.eye(4)[0], v, omega, T, ball)
+    close("what the push adds to the velocity [m/s]", np.asarray(pushed[2]) - np.asarray(without[2]),
           (0.3 * ball.mu * G * (T - ends), 0.0, 0.0), MANY, given=f"slips for {ends} s, dt = {T} s")
 
 
@@ -827,7 +829,19 @@ def test_the_largest_gain_is_found_among_all_pairs_of_times(lesson, draw):
               given=f"E − W = {energies - work} J")
 
 
-@exercise("10.15", points=0.5, hint="losses are no gains: 0; what work explains is none, either")
+@exercise("10.15", points=0.25, hint="energies, work = checked_histories(energies, work) comes first")
+def test_histories_need_not_be_arrays_and_must_be_alike(lesson, draw):
+    energies, work = draw(-2.0, 2.0, 6), draw(-2.0, 2.0, 6)
+    expected = max((energies - work)[k] - (energies - work)[j] for k in range(6) for j in range(k + 1))
+    close("largest gain of numbers that are in no array [J]",
+          lesson.gain_without_source(tuple(energies.tolist()), tuple(work.tolist())), expected, ROUND_OFF)
+    close("largest gain of whole numbers [J]", lesson.gain_without_source((3, 1, 2), (0, 0, 0)), 1.0, 0.0)
+    raises("work of fewer times", BadInput, lesson.gain_without_source, energies, work[:5])
+    raises("an energy that is no number", BadInput, lesson.gain_without_source, np.append(energies[:5], np.nan), work)
+    raises("an energy that is infinite", BadInput, lesson.gain_without_source, np.append(energies[:5], np.inf), work)
+
+
+@exercise("10.15", points=0.25, hint="losses are no gains: 0; what work explains is none, either")
 def test_what_only_loses_gains_nothing(lesson, draw):
     energies = 5.0 - np.cumsum(draw(0.1, 1.0, 8))
     close("largest gain of what only loses [J]", lesson.gain_without_source(energies, np.zeros(8)), 0.0, 0.0)

@@ -33,7 +33,7 @@ def dominoes(n, dt, seconds, sweeps=20):
                                           state, dt, p)
         for i in np.flatnonzero((before > -0.2) & (state.q[:n] <= -0.2)):
             times[i] = (k + (before[i] + 0.2) / (before[i] - state.q[i])) * dt
-        energies.append(simulator.mechanical_energy_2d(state.x, state.v, state.omega, p))
+        energies.append(simulator.mechanical_energy_2d(state.x, state.q, state.v, state.omega, p))
         deepest = max(deepest, simulator.largest_overlap(state.contacts))
     return times, np.array(energies), deepest
 

@@ -24,12 +24,13 @@ def distance(f=lambda p, plane: sum(a * b for a, b in zip(plane.n, p)) + plane.d
 
 
 right("6.1", "as a sum")(distance())
-wrong("6.1", "d with the wrong sign")(distance(lambda p, plane: p @ plane.n - plane.d))
-wrong("6.1", "without its sign")(distance(lambda p, plane: abs(p @ plane.n + plane.d)))
+wrong("6.1", "reverses the sign of d")(distance(lambda p, plane: p @ plane.n - plane.d))
+wrong("6.1", "returns the distance without its sign")(distance(lambda p, plane: abs(p @ plane.n + plane.d)))
 wrong("6.1", "forgets d")(distance(lambda p, plane: p @ plane.n))
-wrong("6.1", "only the sign")(distance(lambda p, plane: np.sign(p @ plane.n + plane.d)))
-edit("6.1", "zero within a femtometre", "plane.d", "plane.d if abs(p @ plane.n + plane.d) > 1e-15 else 0.0")
-edit("6.1", "zero within a micrometre", "plane.d", "plane.d if abs(p @ plane.n + plane.d) > 1e-6 else 0.0")
+wrong("6.1", "returns only the sign of the distance")(distance(lambda p, plane: np.sign(p @ plane.n + plane.d)))
+edit("6.1", "returns zero for distances below 1e-15 m",
+     "plane.d", "plane.d if abs(p @ plane.n + plane.d) > 1e-15 else 0.0")
+edit("6.1", "returns zero for distances below 1 µm", "plane.d", "plane.d if abs(p @ plane.n + plane.d) > 1e-6 else 0.0")
 
 
 # 6.2 ------------------------------------------------------------------------------------------------------------
@@ -48,21 +49,22 @@ def impact(skin=1.0, after_skin=1.0, share=lambda d_1, d_2: d_1 / (d_1 + d_2), i
 
 
 right("6.2", "with new names")(impact())
-edit("6.2", "a point for a ball", "plane_distance(x_0, plane) - r, r - plane_distance(x_1, plane)",
+edit("6.2", "treats the ball as a point", "plane_distance(x_0, plane) - r, r - plane_distance(x_1, plane)",
      "plane_distance(x_0, plane), -plane_distance(x_1, plane)")
-edit("6.2", "no impact if it touches and leaves", "before <= 0.0", "before < 0.0")
-edit("6.2", "no impact at the end of the step", "after < 0.0", "after <= 0.0")
-wrong("6.2", "subtracts r only before")(impact(after_skin=0.0))
-wrong("6.2", "d₂ over the sum")(impact(share=lambda d_1, d_2: d_2 / (d_1 + d_2)))
-wrong("6.2", "the middle of the step")(impact(share=lambda d_1, d_2: 0.5))
-wrong("6.2", "never, if it already overlaps")(impact(inside=lambda t: NEVER))
-wrong("6.2", "extrapolates beyond the step")(impact(late=False))
+edit("6.2", "misses an impact if the ball touches and leaves", "before <= 0.0", "before < 0.0")
+edit("6.2", "misses an impact exactly at the end of the step", "after < 0.0", "after <= 0.0")
+wrong("6.2", "subtracts r from the first distance only")(impact(after_skin=0.0))
+wrong("6.2", "exchanges the two distances in the share of the step")(impact(share=lambda d_1, d_2: d_2 / (d_1 + d_2)))
+wrong("6.2", "returns the middle of the step")(impact(share=lambda d_1, d_2: 0.5))
+wrong("6.2", "finds no impact if the ball already overlaps")(impact(inside=lambda t: NEVER))
+wrong("6.2", "extrapolates beyond the end of the step")(impact(late=False))
 wrong("6.2", "forgets t")(impact(start=0.0))
-edit("6.2", "touches within a nanometre", "before <= 0.0", "before <= 1e-9")
-edit("6.2", "touches within a femtometre", "before <= 0.0", "before <= 1e-15")
-edit("6.2", "at once, if it is almost there", "before <= 0.0", "before <= 1e-6 * after")
-edit("6.2", "arrives within a picometre", "after < 0.0", "after < -1e-12")
-edit("6.2", "a point below does not touch", "before <= 0.0:", "before < 0.0 == r: return NEVER\n    if before <= 0.0:")
+edit("6.2", "treats a gap below 1 nm as contact", "before <= 0.0", "before <= 1e-9")
+edit("6.2", "treats a gap below 1e-15 m as contact", "before <= 0.0", "before <= 1e-15")
+edit("6.2", "finds an impact at once if the ball is almost there", "before <= 0.0", "before <= 1e-6 * after")
+edit("6.2", "misses a ball that ends less than 1 pm below the plane", "after < 0.0", "after < -1e-12")
+edit("6.2", "finds no impact for a point below the plane",
+     "before <= 0.0:", "before < 0.0 == r: return NEVER\n    if before <= 0.0:")
 
 
 # 6.3 ------------------------------------------------------------------------------------------------------------
@@ -74,9 +76,9 @@ def beside(foot=lambda x: np.array([x[0], 0.0, 0.0]), swap=False, radius=lambda 
     return cylinder_contact
 
 
-wrong("6.3", "the distance from the origin")(beside(lambda x: np.zeros(3)))
-wrong("6.3", "along y")(beside(lambda x: np.array([0.0, x[1], 0.0])))
-wrong("6.3", "n from a to b")(beside(swap=True))
+wrong("6.3", "uses the distance from the origin")(beside(lambda x: np.zeros(3)))
+wrong("6.3", "takes the cylinder's axis along y")(beside(lambda x: np.array([0.0, x[1], 0.0])))
+wrong("6.3", "returns a normal that points from a to b")(beside(swap=True))
 wrong("6.3", "forgets the cylinder's radius")(beside(radius=lambda R: 0.0))
 wrong("6.3", "forgets the ball's radius")(beside(own=lambda r: 0.0))
 
@@ -107,28 +109,28 @@ def root(which=-1.0, naive=False, rho=lambda R, r: R + r, three=False,
 
 
 right("6.4", "by the parts of the path")(root())
-wrong("6.4", "the second root")(root(which=1.0))
-wrong("6.4", "the textbook root")(root(naive=True))
+wrong("6.4", "returns the second root")(root(which=1.0))
+wrong("6.4", "uses the textbook form of the root, which cancels")(root(naive=True))
 wrong("6.4", "forgets the ball")(root(rho=lambda R, r: R))
 wrong("6.4", "forgets the cylinder")(root(rho=lambda R, r: r))
-wrong("6.4", "a sphere for a cylinder")(root(three=True))
-wrong("6.4", "later steps, too")(root(window=False))
-wrong("6.4", "also behind")(root(leaving=False))
-wrong("6.4", "never, if it already overlaps")(root(inside=lambda t: NEVER))
+wrong("6.4", "treats the cylinder as a sphere")(root(three=True))
+wrong("6.4", "accepts impacts after the end of the step")(root(window=False))
+wrong("6.4", "accepts impacts before the start of the step")(root(leaving=False))
+wrong("6.4", "finds no impact if the ball already overlaps")(root(inside=lambda t: NEVER))
 wrong("6.4", "forgets t")(root(t_0=0.0))
-edit("6.4", "the discrete test at the end of the step", "C / (np.sqrt(D) - B)",
+edit("6.4", "tests only the end of the step", "C / (np.sqrt(D) - B)",
      "1.0 if x_1[1:] @ x_1[1:] <= rho * rho else 2.0")
-edit("6.4", "no impact at the end of the step", "s > 1.0", "s >= 1.0")
-edit("6.4", "no impact if it touches and leaves", "C <= 0.0", "C < 0.0")
-edit("6.4", "a grazing ball misses", "D < 0.0", "D <= 0.0")
+edit("6.4", "misses an impact exactly at the end of the step", "s > 1.0", "s >= 1.0")
+edit("6.4", "misses an impact if the ball touches and leaves", "C <= 0.0", "C < 0.0")
+edit("6.4", "misses a ball that only grazes", "D < 0.0", "D <= 0.0")
 edit("6.4", "ignores steps below a micrometre", "B >= 0.0", "A < 1e-12 or B >= 0.0")
 edit("6.4", "ignores steps below a nanometre", "B >= 0.0", "A < 1e-18 or B >= 0.0")
-edit("6.4", "touches where C is small", "C <= 0.0", "C <= 1e-12")
-edit("6.4", "touches where C is tiny", "C <= 0.0", "C <= 1e-15")
-edit("6.4", "touches where C is minute", "C <= 0.0", "C <= 1e-22")
-edit("6.4", "never, if it is almost there", "s > 1.0", "not 1e-6 < s <= 1.0")
-edit("6.4", "rests where B is minute", "B >= 0.0", "B >= -1e-18")
-edit("6.4", "arrives a thousand-millionth of a step late", "s > 1.0", "s > 1.0 + 1e-9")
+edit("6.4", "treats C below 1e-12 as contact", "C <= 0.0", "C <= 1e-12")
+edit("6.4", "treats C below 1e-15 as contact", "C <= 0.0", "C <= 1e-15")
+edit("6.4", "treats C below 1e-22 as contact", "C <= 0.0", "C <= 1e-22")
+edit("6.4", "misses an impact in the first millionth of the step", "s > 1.0", "not 1e-6 < s <= 1.0")
+edit("6.4", "treats B above −1e-18 as a ball that does not approach", "B >= 0.0", "B >= -1e-18")
+edit("6.4", "accepts an impact slightly after the end of the step", "s > 1.0", "s > 1.0 + 1e-9")
 
 
 # 6.5 ------------------------------------------------------------------------------------------------------------
@@ -145,20 +147,21 @@ def foot(low=0.0, high=1.0, checked=True, begin="a", unit=False):
 
 
 right("6.5", "with a clamp")(foot())
-wrong("6.5", "a ray for a segment")(foot(high=np.inf))
+wrong("6.5", "treats the segment as a ray")(foot(high=np.inf))
 wrong("6.5", "divides by the length once")(foot(unit=True))
-wrong("6.5", "starts at p")(foot(begin="p"))
-edit("6.5", "a line for a segment", "np.minimum(1.0, np.maximum(0.0, (p - a) @ along / length_squared))",
+wrong("6.5", "adds the offset to p, not to a")(foot(begin="p"))
+edit("6.5", "treats the segment as an infinite line",
+     "np.minimum(1.0, np.maximum(0.0, (p - a) @ along / length_squared))",
      "(p - a) @ along / length_squared")
 edit("6.5", "accepts a segment of zero length",
      'raise BadInput("the length of an edge [m]", 0.0, "give two different ends")', "return a")
-edit("6.5", "the nearer end", "np.minimum(1.0, np.maximum(0.0, (p - a) @ along / length_squared))",
+edit("6.5", "returns the nearer end", "np.minimum(1.0, np.maximum(0.0, (p - a) @ along / length_squared))",
      "float((p - a) @ (p - a) > (p - b) @ (p - b))")
 edit("6.5", "refuses short segments", "length_squared == 0.0", "length_squared < 1e-12")
 edit("6.5", "refuses segments along a coordinate axis", "length_squared == 0.0", "np.any(a == b)")
-edit("6.5", "refuses less than a nanometre", "length_squared == 0.0", "length_squared < 1e-18")
-edit("6.5", "refuses less than an atomic nucleus", "length_squared == 0.0", "length_squared < 1e-30")
-edit("6.5", "refuses more than a million megametres", "length_squared == 0.0",
+edit("6.5", "refuses segments shorter than 1 nm", "length_squared == 0.0", "length_squared < 1e-18")
+edit("6.5", "refuses segments shorter than an atomic nucleus", "length_squared == 0.0", "length_squared < 1e-30")
+edit("6.5", "refuses very long segments", "length_squared == 0.0",
      "length_squared == 0.0 or length_squared > 1e24")
 edit("6.5", "never divides by zero", "/ length_squared", "/ (length_squared + 1e-30)")
 edit("6.5", "refuses two ends that are nearly equal", "length_squared == 0.0", "np.allclose(a, b, atol=0.0, rtol=1e-9)")
@@ -180,19 +183,19 @@ def face(signs=(1, -1), edges=3, thick=True, pierced=lambda r, R: -R - r, measur
 
 
 right("6.6", "by determinants")(face())
-wrong("6.6", "edges only")(face(signs=()))
-wrong("6.6", "one side of the face only")(face(signs=(1,)))
-wrong("6.6", "two edges only")(face(edges=2))
-wrong("6.6", "corners only")(face(measure=lambda a, b: size(a[1:])))
+wrong("6.6", "tests the edges only")(face(signs=()))
+wrong("6.6", "tests one side of the face only")(face(signs=(1,)))
+wrong("6.6", "tests two edges only")(face(edges=2))
+wrong("6.6", "measures the distance of the corners only")(face(measure=lambda a, b: size(a[1:])))
 wrong("6.6", "forgets r")(face(thick=False))
-wrong("6.6", "a pierced face has a gap of zero")(face(pierced=lambda r, R: 0.0))
+wrong("6.6", "returns a gap of zero for a pierced face")(face(pierced=lambda r, R: 0.0))
 edit("6.6", "treats an edge-on triangle as pierced", "np.all(turns > 0.0) or np.all(turns < 0.0)",
      "np.all(turns >= 0.0) or np.all(turns <= 0.0)")
-edit("6.6", "three equal signs, zeros as well", "np.all(turns > 0.0) or np.all(turns < 0.0)",
+edit("6.6", "counts zeros as equal signs", "np.all(turns > 0.0) or np.all(turns < 0.0)",
      "np.all(np.sign(turns) == np.sign(turns[0]))")
-edit("6.6", "signs with a minute tolerance", "np.all(turns > 0.0) or np.all(turns < 0.0)",
+edit("6.6", "tests the signs with a tolerance of 1e-30", "np.all(turns > 0.0) or np.all(turns < 0.0)",
      "np.all(turns > 1e-30) or np.all(turns < -1e-30)")
-edit("6.6", "signs with a tolerance", "np.all(turns > 0.0) or np.all(turns < 0.0)",
+edit("6.6", "tests the signs with a tolerance of 1e-12", "np.all(turns > 0.0) or np.all(turns < 0.0)",
      "np.all(turns > 1e-12) or np.all(turns < -1e-12)")
 
 
@@ -216,35 +219,37 @@ def on_triangle(edges=3, inside=True, clamp=True, checked=True, flat=worked.DEGE
 
 
 right("6.7", "in a loop")(on_triangle())
-wrong("6.7", "edges only")(on_triangle(inside=False))
-wrong("6.7", "the plane for the triangle")(on_triangle(clamp=False))
-wrong("6.7", "two edges only")(on_triangle(edges=2))
+wrong("6.7", "tests the edges only")(on_triangle(inside=False))
+wrong("6.7", "returns the closest point of the plane, not of the triangle")(on_triangle(clamp=False))
+wrong("6.7", "tests two edges only")(on_triangle(edges=2))
 wrong("6.7", "accepts a triangle without area")(on_triangle(checked=False))
 FIRST_TWO = "nearer(p, closest_on_segment(p, a, b), closest_on_segment(p, b, c))"
 THREE_EDGES = f"nearer(p, {FIRST_TWO}, closest_on_segment(p, c, a))"
 OUTSIDE = "closest_on_segment(p, {0}, {1}) if dot(cross({1} - {0}, q - {0}), N) < 0.0 else "
 edit("6.7", "refuses small inputs", "DEGENERATE_AREA * longest", "1e-9")
-edit("6.7", "an area of 1e-12 m² is none", "DEGENERATE_AREA * longest", "DEGENERATE_AREA")
-edit("6.7", "compares with a length", "DEGENERATE_AREA * longest", "DEGENERATE_AREA * np.sqrt(longest)")
+edit("6.7", "compares the area with an absolute 1e-12 m²", "DEGENERATE_AREA * longest", "DEGENERATE_AREA")
+edit("6.7", "compares |N| with a length, not with an area",
+     "DEGENERATE_AREA * longest", "DEGENERATE_AREA * np.sqrt(longest)")
 LONGEST = "max(dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c))"
-edit("6.7", "compares with the first edge only", LONGEST, "dot(b - a, b - a)")
-edit("6.7", "compares with the second edge only", LONGEST, "dot(c - b, c - b)")
-edit("6.7", "compares with the third edge only", LONGEST, "dot(a - c, a - c)")
+edit("6.7", "compares the area with the first edge only", LONGEST, "dot(b - a, b - a)")
+edit("6.7", "compares the area with the second edge only", LONGEST, "dot(c - b, c - b)")
+edit("6.7", "compares the area with the third edge only", LONGEST, "dot(a - c, a - c)")
 edit("6.7", "forgets the edge from b to c", LONGEST, "max(dot(b - a, b - a), dot(a - c, a - c))")
-edit("6.7", "compares with the shortest edge", LONGEST, LONGEST.replace("max", "min"))
-edit("6.7", "compares with all three edges together", LONGEST, LONGEST.replace("max(", "sum((") + ")")
-edit("6.7", "compares with the two edges at a", LONGEST, "np.sqrt(dot(b - a, b - a) * dot(a - c, a - c))")
-edit("6.7", "half of |N|", "np.sqrt(dot(N, N)) > DEGENERATE_AREA", "area > DEGENERATE_AREA")
-edit("6.7", "ten times too strict", "DEGENERATE_AREA * longest", "1e-11 * longest")
-edit("6.7", "ten times too tolerant", "DEGENERATE_AREA * longest", "1e-13 * longest")
-edit("6.7", "the square of DEGENERATE_AREA only",
+edit("6.7", "compares the area with the shortest edge", LONGEST, LONGEST.replace("max", "min"))
+edit("6.7", "compares the area with all three edges together", LONGEST, LONGEST.replace("max(", "sum((") + ")")
+edit("6.7", "compares the area with the two edges at a", LONGEST, "np.sqrt(dot(b - a, b - a) * dot(a - c, a - c))")
+edit("6.7", "halves |N| before the comparison", "np.sqrt(dot(N, N)) > DEGENERATE_AREA", "area > DEGENERATE_AREA")
+edit("6.7", "uses a limit for the area that is ten times too large", "DEGENERATE_AREA * longest", "1e-11 * longest")
+edit("6.7", "uses a limit for the area that is ten times too small", "DEGENERATE_AREA * longest", "1e-13 * longest")
+edit("6.7", "squares DEGENERATE_AREA but not the length",
      "np.sqrt(dot(N, N)) > DEGENERATE_AREA * longest", "dot(N, N) > DEGENERATE_AREA**2 * longest")
-edit("6.7", "the nearest corner", THREE_EDGES, "nearer(p, nearer(p, a, b), c)")
-edit("6.7", "the first edge with p outside", THREE_EDGES,
+edit("6.7", "returns the nearest corner", THREE_EDGES, "nearer(p, nearer(p, a, b), c)")
+edit("6.7", "takes the first edge that has p on its outer side", THREE_EDGES,
      OUTSIDE.format("a", "b") + OUTSIDE.format("b", "c") + "closest_on_segment(p, c, a)")
-edit("6.7", "the last edge with p outside", THREE_EDGES,
+edit("6.7", "takes the last edge that has p on its outer side", THREE_EDGES,
      OUTSIDE.format("c", "a") + OUTSIDE.format("b", "c") + "closest_on_segment(p, a, b)")
-edit("6.7", "the first two edges compared from a corner", FIRST_TWO, FIRST_TWO.replace("nearer(p", "nearer(c"))
+edit("6.7", "compares the first two edges by their distance from a corner, not from p",
+     FIRST_TWO, FIRST_TWO.replace("nearer(p", "nearer(c"))
 edit("6.7", "refuses needles: forgets the root of N · N", "np.sqrt(dot(N, N)) > DEGENERATE_AREA * longest",
      "dot(N, N) > DEGENERATE_AREA * longest**2")
 
@@ -266,19 +271,19 @@ def in_box(turn=lambda R, y: R.T @ y, inside=True, pick=np.argmin,
 
 right("6.8", "with clip")(in_box())
 wrong("6.8", "rotates the wrong way")(in_box(turn=lambda R, y: R @ y))
-wrong("6.8", "does not rotate")(in_box(turn=lambda R, y: y))
-wrong("6.8", "no case for the inside")(in_box(inside=False))
-wrong("6.8", "the farthest face")(in_box(pick=np.argmax))
-wrong("6.8", "a gap above zero inside")(in_box(depth_sign=1.0))
-wrong("6.8", "zero normal at the centre")(in_box(sign=np.sign))
-wrong("6.8", "n points inward")(in_box(out=-1.0))
+wrong("6.8", "does not transform the ball into the box's axes")(in_box(turn=lambda R, y: y))
+wrong("6.8", "does not handle a centre inside the box")(in_box(inside=False))
+wrong("6.8", "takes the farthest face")(in_box(pick=np.argmax))
+wrong("6.8", "returns a positive gap inside")(in_box(depth_sign=1.0))
+wrong("6.8", "returns a zero normal at the centre")(in_box(sign=np.sign))
+wrong("6.8", "returns a normal that points inwards")(in_box(out=-1.0))
 edit("6.8", "treats a point on a face as outside", "depth[i] < 0.0", "depth[i] <= 0.0")
-edit("6.8", "the face of the largest coordinate", "np.argmin(depth)", "np.argmax(np.abs(y))")
-edit("6.8", "the face of the least share of its half edge", "np.argmin(depth)", "np.argmin(depth / box.half)")
-edit("6.8", "sign(0) = -1", "y[i] >= 0.0", "y[i] > 0.0")
+edit("6.8", "takes the face of the largest coordinate", "np.argmin(depth)", "np.argmax(np.abs(y))")
+edit("6.8", "compares the depths relative to the half edges", "np.argmin(depth)", "np.argmin(depth / box.half)")
+edit("6.8", "takes −1 for the sign of 0", "y[i] >= 0.0", "y[i] > 0.0")
 edit("6.8", "treats a picometre outside as inside", "depth[i] < 0.0", "depth[i] < -1e-12")
 edit("6.8", "treats a minute distance outside as inside", "depth[i] < 0.0", "depth[i] < -1e-20")
-edit("6.8", "sign(0) = 1 within a picometre", "y[i] >= 0.0", "y[i] >= -1e-12")
+edit("6.8", "takes +1 for the sign of coordinates above −1 pm", "y[i] >= 0.0", "y[i] >= -1e-12")
 
 
 # 6.9 ------------------------------------------------------------------------------------------------------------
@@ -290,11 +295,12 @@ def sweep(f=lambda low, high, move: (low + np.clip(move, None, 0.0), high + np.c
 
 
 right("6.9", "by the parts of the way")(sweep())
-wrong("6.9", "only the end position")(sweep(lambda low, high, move: (low + move, high + move)))
-wrong("6.9", "only forwards")(sweep(lambda low, high, move: (low, high + move)))
-wrong("6.9", "larger on every side")(sweep(lambda low, high, move: (low - np.abs(move), high + np.abs(move))))
-edit("6.9", "all coordinates by the largest move", "np.maximum(high, high + move)", "high + max(0.0, np.max(move))")
-edit("6.9", "a picometre is no move", "return", "move = np.where(np.abs(move) < 1e-12, 0.0, move); return")
+wrong("6.9", "returns the box at the end position only")(sweep(lambda low, high, move: (low + move, high + move)))
+wrong("6.9", "extends the box in the positive directions only")(sweep(lambda low, high, move: (low, high + move)))
+wrong("6.9", "extends the box on every side")(sweep(lambda low, high, move: (low - np.abs(move), high + np.abs(move))))
+edit("6.9", "extends the box by the largest move in all coordinates",
+     "np.maximum(high, high + move)", "high + max(0.0, np.max(move))")
+edit("6.9", "ignores moves below 1 pm", "return", "move = np.where(np.abs(move) < 1e-12, 0.0, move); return")
 wrong("6.9", "does not sweep")(sweep(lambda low, high, move: (low, high)))
 
 
@@ -315,11 +321,11 @@ def brute(strict=False, first=lambda i: i + 1, turned=False, some=lambda low: lo
 
 
 right("6.10", "with NumPy's comparison")(brute())
-wrong("6.10", "a common face does not count")(brute(strict=True))
-wrong("6.10", "each with itself")(brute(first=lambda i: i))
-wrong("6.10", "each pair twice")(brute(first=lambda i: 0))
-wrong("6.10", "the larger number first")(brute(turned=True))
-edit("6.10", "neighbours in the list only", "range(i + 1, len(low))", "range(i + 1, min(i + 2, len(low)))")
+wrong("6.10", "omits boxes that share a face")(brute(strict=True))
+wrong("6.10", "pairs each box with itself")(brute(first=lambda i: i))
+wrong("6.10", "returns each pair twice")(brute(first=lambda i: 0))
+wrong("6.10", "returns the larger number first")(brute(turned=True))
+edit("6.10", "tests neighbours in the list only", "range(i + 1, len(low))", "range(i + 1, min(i + 2, len(low)))")
 edit("6.10", "accepts invalid boxes", "check_boxes(low, high)", "pass")
 edit("6.10", "accepts boxes that are slightly inside out", "check_boxes(low, high)", "check_boxes(low, high + 1e-9)")
 edit("6.10", "accepts lower corners at NaN", "check_boxes(low, high)",
@@ -327,9 +333,9 @@ edit("6.10", "accepts lower corners at NaN", "check_boxes(low, high)",
 edit("6.10", "accepts infinite corners", "check_boxes(low, high)",
      "check_boxes(np.maximum(low, -1e300), np.minimum(high, 1e300))")
 edit("6.10", "does not test the last two", "range(len(low))", "range(len(low) - 2)")
-edit("6.10", "touch up to a femtometre apart", "boxes_touch(low, high, i, low, high, j)",
+edit("6.10", "counts boxes as touching that are up to 1e-15 m apart", "boxes_touch(low, high, i, low, high, j)",
      "boxes_touch(low - 5e-16, high + 5e-16, i, low - 5e-16, high + 5e-16, j)")
-edit("6.10", "touch up to a nanometre apart", "boxes_touch(low, high, i, low, high, j)",
+edit("6.10", "counts boxes as touching that are up to 1 nm apart", "boxes_touch(low, high, i, low, high, j)",
      "boxes_touch(low - 5e-10, high + 5e-10, i, low - 5e-10, high + 5e-10, j)")
 edit("6.10", "checks its boxes after the search", "check_boxes(low, high)",
      "check_boxes(low[:len(high)], high)")
@@ -368,15 +374,16 @@ def every_item(a, i, b, j, found):
 
 
 right("6.11", "as a recursion")(traversal())
-wrong("6.11", "never prunes")(traversal(prune=False))
+wrong("6.11", "visits all pairs of nodes and never prunes")(traversal(prune=False))
 wrong("6.11", "forgets the second child")(traversal(second=False))
-wrong("6.11", "all items of leaves that touch")(traversal(leaves=every_item))
-wrong("6.11", "b before a")(traversal(turned=True))
-wrong("6.11", "gives up where b's node is bigger")(traversal(both=False))
-edit("6.11", "each pair of a tree's own nodes once", "if boxes_touch(", "if not (a is b and i > j) and boxes_touch(")
-edit("6.11", "a thousand pairs of nodes at most", "while len(waiting) > 0",
+wrong("6.11", "returns all items of leaves that touch")(traversal(leaves=every_item))
+wrong("6.11", "returns b before a")(traversal(turned=True))
+wrong("6.11", "stops where b's node is the larger one")(traversal(both=False))
+edit("6.11", "visits each pair of nodes once where a tree meets itself",
+     "if boxes_touch(", "if not (a is b and i > j) and boxes_touch(")
+edit("6.11", "visits at most 1,000 pairs of nodes", "while len(waiting) > 0",
      "for _ in (k for k in range(1000) if waiting)")
-edit("6.11", "ten thousand pairs of nodes at most", "while len(waiting) > 0",
+edit("6.11", "visits at most 10,000 pairs of nodes", "while len(waiting) > 0",
      "for _ in (k for k in range(10000) if waiting)")
 
 
@@ -396,24 +403,24 @@ def edges(inner=min, outer=max, sign=1.0, centre=False, checked=True, of=lambda 
 
 
 right("6.12", "with min and max")(edges())
-wrong("6.12", "the farthest corner")(edges(inner=max))
-wrong("6.12", "the worst edge")(edges(outer=min))
-wrong("6.12", "normals that point inward")(edges(sign=-1.0))
-wrong("6.12", "the middle of b for its corners")(edges(centre=True))
+wrong("6.12", "takes the farthest corner")(edges(inner=max))
+wrong("6.12", "takes the edge with the least separation")(edges(outer=min))
+wrong("6.12", "uses normals that point inwards")(edges(sign=-1.0))
+wrong("6.12", "uses the centre of b in place of its corners")(edges(centre=True))
 wrong("6.12", "accepts an edge of zero length")(edges(checked=False))
-wrong("6.12", "the edges of b")(edges(of=lambda a, b: (b, a)))
-edit("6.12", "the edge whose gap is nearest to zero", "not gap <= greatest", "abs(gap) < abs(greatest)")
-edit("6.12", "the first edge that separates", "not gap <= greatest", "greatest <= 0.0 and gap > greatest")
-edit("6.12", "the last edge that separates", "not gap <= greatest", "gap > min(greatest, 0.0)")
-edit("6.12", "seven edges at most", "range(len(a))", "range(min(len(a), 7))")
+wrong("6.12", "uses the edges of b")(edges(of=lambda a, b: (b, a)))
+edit("6.12", "takes the edge whose gap is nearest to zero", "not gap <= greatest", "abs(gap) < abs(greatest)")
+edit("6.12", "takes the first edge that separates", "not gap <= greatest", "greatest <= 0.0 and gap > greatest")
+edit("6.12", "takes the last edge that separates", "not gap <= greatest", "gap > min(greatest, 0.0)")
+edit("6.12", "uses the first seven edges only", "range(len(a))", "range(min(len(a), 7))")
 edit("6.12", "forgets the first corner of b", "range(len(b))", "range(1, len(b))")
-edit("6.12", "every edge begins at the first corner", "b[j] - a[i]", "b[j] - a[0]")
-edit("6.12", "a later edge must be better by a picometre", "not gap <= greatest", "not gap <= greatest + 1e-12")
-edit("6.12", "touch within a picometre", "return greatest, edge",
+edit("6.12", "starts every edge at the first corner", "b[j] - a[i]", "b[j] - a[0]")
+edit("6.12", "requires a later edge to be better by 1 pm", "not gap <= greatest", "not gap <= greatest + 1e-12")
+edit("6.12", "returns zero for gaps below 1 pm", "return greatest, edge",
      "return (0.0 if abs(greatest) < 1e-12 else greatest), edge")
-edit("6.12", "the least begins with a million gigametres", "outward(a, i), np.inf", "outward(a, i), 1e15")
-edit("6.12", "the least begins with a gigametre", "outward(a, i), np.inf", "outward(a, i), 1e9")
-edit("6.12", "the greatest begins with a megametre below zero", "-np.inf", "-1e6")
+edit("6.12", "starts the minimum at 1e15 m, not at infinity", "outward(a, i), np.inf", "outward(a, i), 1e15")
+edit("6.12", "starts the minimum at 1e9 m, not at infinity", "outward(a, i), np.inf", "outward(a, i), 1e9")
+edit("6.12", "starts the maximum at −1e6 m, not at minus infinity", "-np.inf", "-1e6")
 
 
 # 6.13 -----------------------------------------------------------------------------------------------------------
@@ -434,26 +441,26 @@ def cut(side=1.0, crossing=lambda s_i, s_j: s_i / (s_i - s_j), back=False, add=T
 
 
 right("6.13", "with a list")(cut())
-wrong("6.13", "keeps the other side")(cut(side=-1.0))
-wrong("6.13", "cuts in the middle of an edge")(cut(crossing=lambda s_i, s_j: 0.5))
-wrong("6.13", "the crossing from the other end")(cut(crossing=lambda s_i, s_j: s_j / (s_j - s_i)))
-wrong("6.13", "there and back along a segment")(cut(back=True))
-wrong("6.13", "only removes corners")(cut(add=False))
-wrong("6.13", "drops corners on the plane")(cut(kept_at=lambda s: s < 0.0))
+wrong("6.13", "keeps the other side of the plane")(cut(side=-1.0))
+wrong("6.13", "puts the crossing in the middle of the edge")(cut(crossing=lambda s_i, s_j: 0.5))
+wrong("6.13", "measures the crossing from the other end")(cut(crossing=lambda s_i, s_j: s_j / (s_j - s_i)))
+wrong("6.13", "treats a segment as a polygon with two edges")(cut(back=True))
+wrong("6.13", "removes corners and adds no crossings")(cut(add=False))
+wrong("6.13", "removes corners on the plane")(cut(kept_at=lambda s: s < 0.0))
 wrong("6.13", "counts corners on the plane twice")(cut(crosses=lambda a, b: a * b <= 0.0 and a != b))
 wrong("6.13", "forgets d")(cut(offset=0.0))
-edit("6.13", "keeps corners a nanometre outside", "s_i <= 0.0", "s_i <= 1e-9")
-edit("6.13", "keeps corners a femtometre outside", "s_i <= 0.0", "s_i <= 1e-15")
-edit("6.13", "keeps corners a minute distance outside", "s_i <= 0.0", "s_i <= 1e-20")
-edit("6.13", "no crossing where the product is minute", "s_i * s_j < 0.0", "s_i * s_j < -1e-30")
+edit("6.13", "keeps corners up to 1 nm outside", "s_i <= 0.0", "s_i <= 1e-9")
+edit("6.13", "keeps corners up to 1e-15 m outside", "s_i <= 0.0", "s_i <= 1e-15")
+edit("6.13", "keeps corners that are outside by a minute distance", "s_i <= 0.0", "s_i <= 1e-20")
+edit("6.13", "adds no crossing where the product of the distances is minute", "s_i * s_j < 0.0", "s_i * s_j < -1e-30")
 edit("6.13", "adds a crossing only where it goes out", "s_i * s_j < 0.0", "s_i < 0.0 < s_j")
-edit("6.13", "segments in a plane only", "k > 2", "y.shape != (2, 2)")
+edit("6.13", "recognises segments in two dimensions only", "k > 2", "y.shape != (2, 2)")
 edit("6.13", "fails for an empty polygon", "kept[:m].copy()",
      "kept[:m].copy() if (y @ n - d).max() > 0.0 else y.copy()")
-edit("6.13", "room for 8 corners", "2 * len(y)", "8")
-edit("6.13", "room for 10 corners", "2 * len(y)", "10")
-edit("6.13", "room for 16 corners", "2 * len(y)", "16")
-edit("6.13", "room for 20 corners", "2 * len(y)", "20")
+edit("6.13", "has room for 8 corners only", "2 * len(y)", "8")
+edit("6.13", "has room for 10 corners only", "2 * len(y)", "10")
+edit("6.13", "has room for 16 corners only", "2 * len(y)", "16")
+edit("6.13", "has room for 20 corners only", "2 * len(y)", "20")
 
 
 # 6.14 -----------------------------------------------------------------------------------------------------------
@@ -475,28 +482,30 @@ def boxes(axes=range(15), room=worked.EDGE_PREFERENCE, sign=1.0, width=worked.ha
 
 
 right("6.14", "with a tuple")(boxes())
-wrong("6.14", "the axes of a only")(boxes(axes=range(3)))
-wrong("6.14", "faces only")(boxes(axes=range(6)))
-wrong("6.14", "from a to b")(boxes(sign=-1.0))
+wrong("6.14", "tests the axes of a only")(boxes(axes=range(3)))
+wrong("6.14", "tests the normals of faces only")(boxes(axes=range(6)))
+wrong("6.14", "returns a normal that points from a to b")(boxes(sign=-1.0))
 wrong("6.14", "does not orient the axis")(boxes(fixed=True))
-wrong("6.14", "the last of equal ones")(boxes(choose=lambda new, old: new >= old))
+wrong("6.14", "takes the last one of equal axes")(boxes(choose=lambda new, old: new >= old))
 edit("6.14", "accepts zero axes", "dot(axis, axis) > 0.0", "dot(axis, axis) >= 0.0")
-edit("6.14", "edges need no advantage", "EDGE_PREFERENCE if k >= 6", "0.0 if k >= 6")
-edit("6.14", "edges win by a twentieth", "EDGE_PREFERENCE if k >= 6", "0.05 * abs(greatest) if k >= 6")
-edit("6.14", "edges win by a micrometre", "EDGE_PREFERENCE if k >= 6", "1e-6 if k >= 6")
-edit("6.14", "edges win by a picometre", "EDGE_PREFERENCE if k >= 6", "1e-12 if k >= 6")
-edit("6.14", "edges win by a part of the gap", "EDGE_PREFERENCE if k >= 6", "1e-9 * abs(greatest) if k >= 6")
-edit("6.14", "edges need no advantage over edges",
+edit("6.14", "prefers no face over an edge", "EDGE_PREFERENCE if k >= 6", "0.0 if k >= 6")
+edit("6.14", "prefers a face unless an edge separates by a twentieth more",
+     "EDGE_PREFERENCE if k >= 6", "0.05 * abs(greatest) if k >= 6")
+edit("6.14", "prefers a face unless an edge separates by 1 µm more", "EDGE_PREFERENCE if k >= 6", "1e-6 if k >= 6")
+edit("6.14", "prefers a face unless an edge separates by 1 pm more", "EDGE_PREFERENCE if k >= 6", "1e-12 if k >= 6")
+edit("6.14", "prefers a face by a part of the gap, not by EDGE_PREFERENCE",
+     "EDGE_PREFERENCE if k >= 6", "1e-9 * abs(greatest) if k >= 6")
+edit("6.14", "requires no advantage of an edge over another edge",
      "EDGE_PREFERENCE if k >= 6", "EDGE_PREFERENCE if k >= 6 and number < 6")
 edit("6.14", "forgets the last axis", "range(15)", "range(14)")
-edit("6.14", "the first axis that separates", "not gap <= greatest +", "greatest <= 0.0 and gap > greatest +")
-edit("6.14", "edges only where no face separates",
+edit("6.14", "takes the first axis that separates", "not gap <= greatest +", "greatest <= 0.0 and gap > greatest +")
+edit("6.14", "tests edges only where no face separates",
      "not gap <= greatest +", "(k < 6 or greatest < 0.0) and gap > greatest +")
-edit("6.14", "the axis whose gap is nearest to zero", "not gap <= greatest +", "abs(gap) < abs(greatest) +")
-wrong("6.14", "the least gap")(boxes(choose=lambda new, old: new < old))
-wrong("6.14", "the longest half edge for the width")(boxes(width=lambda box, n: float(np.max(box.half))))
-edit("6.14", "the greatest begins with a megametre below zero", "-np.inf", "-1e6")
-edit("6.14", "faces need an advantage, too", "EDGE_PREFERENCE if k >= 6 else 0.0", "EDGE_PREFERENCE")
+edit("6.14", "takes the axis whose gap is nearest to zero", "not gap <= greatest +", "abs(gap) < abs(greatest) +")
+wrong("6.14", "takes the axis with the least gap")(boxes(choose=lambda new, old: new < old))
+wrong("6.14", "takes the longest half edge for the half width")(boxes(width=lambda box, n: float(np.max(box.half))))
+edit("6.14", "starts the maximum at −1e6 m, not at minus infinity", "-np.inf", "-1e6")
+edit("6.14", "requires an advantage for faces, too", "EDGE_PREFERENCE if k >= 6 else 0.0", "EDGE_PREFERENCE")
 
 
 # 6.15 -----------------------------------------------------------------------------------------------------------
@@ -520,24 +529,24 @@ def nearest(steps=worked.MAX_GJK_STEPS, along=(-1.0, 1.0), reduce=True, swap=Fal
 
 
 right("6.15", "with vstack")(nearest())
-wrong("6.15", "a single step")(nearest(steps=1))
-wrong("6.15", "gives up after five steps")(nearest(steps=5))
-wrong("6.15", "the supports exchanged")(nearest(along=(1.0, -1.0)))
-wrong("6.15", "both along the same direction")(nearest(along=(-1.0, -1.0)))
-wrong("6.15", "keeps a single pair")(nearest(reduce=False))
-wrong("6.15", "n from a to b")(nearest(swap=True))
+wrong("6.15", "stops after a single iteration")(nearest(steps=1))
+wrong("6.15", "stops after five iterations")(nearest(steps=5))
+wrong("6.15", "exchanges the two directions of support")(nearest(along=(1.0, -1.0)))
+wrong("6.15", "takes both supports along the same direction")(nearest(along=(-1.0, -1.0)))
+wrong("6.15", "keeps a single pair of corners")(nearest(reduce=False))
+wrong("6.15", "returns a normal that points from a to b")(nearest(swap=True))
 edit("6.15", "checks nothing", "check_hulls(a, b)", "pass")
 edit("6.15", "checks a only", "check_hulls(a, b)", "check_hulls(a, a)")
 edit("6.15", "checks b only", "check_hulls(a, b)", "check_hulls(b, b)")
-edit("6.15", "a corner of each for the points between them", "weights @ p, 0.0, weights @ q, 0.0",
+edit("6.15", "returns a corner of each hull in place of the closest points", "weights @ p, 0.0, weights @ q, 0.0",
      "p[0], 0.0, q[0], 0.0")
-edit("6.15", "gives up after eight steps", "range(MAX_GJK_STEPS)", "range(8)")
-edit("6.15", "gives up after twelve steps", "range(MAX_GJK_STEPS)", "range(12)")
-edit("6.15", "gives up after twenty steps", "range(MAX_GJK_STEPS)", "range(20)")
-edit("6.15", "overlap below a femtometre", "if far_enough(", "if v @ v < 1e-30 or far_enough(")
-edit("6.15", "stops where little can be gained", "if far_enough(v, a[i] - b[j])",
+edit("6.15", "stops after eight iterations", "range(MAX_GJK_STEPS)", "range(8)")
+edit("6.15", "stops after twelve iterations", "range(MAX_GJK_STEPS)", "range(12)")
+edit("6.15", "stops after twenty iterations", "range(MAX_GJK_STEPS)", "range(20)")
+edit("6.15", "treats a distance below 1e-15 m as overlap", "if far_enough(", "if v @ v < 1e-30 or far_enough(")
+edit("6.15", "stops while the bounds still differ", "if far_enough(v, a[i] - b[j])",
      "if v @ v - v @ (a[i] - b[j]) < 1e-26")
-edit("6.15", "overlap below a nanometre", "if far_enough(", "if v @ v < 1e-18 or far_enough(")
+edit("6.15", "treats a distance below 1 nm as overlap", "if far_enough(", "if v @ v < 1e-18 or far_enough(")
 
 
 # 6.16 -----------------------------------------------------------------------------------------------------------
@@ -556,19 +565,20 @@ def field(strength=lambda g, reach: (1.0 / g - 1.0 / reach) / g**2,
 
 
 right("6.16", "with new names")(field())
-wrong("6.16", "attracts")(field(sign=-1.0))
-wrong("6.16", "the potential for the force")(field(strength=lambda g, reach: 0.5 * (1.0 / g - 1.0 / reach) ** 2))
-wrong("6.16", "one power too few")(field(strength=lambda g, reach: (1.0 / g - 1.0 / reach) / g))
-wrong("6.16", "from the centre on")(field(skin=False))
-wrong("6.16", "goes on beyond its reach")(field(ends=False))
-wrong("6.16", "accepts a position inside")(field(checked=False))
-wrong("6.16", "the offset itself for its direction")(field(unit=False))
+wrong("6.16", "reverses the force, which then attracts")(field(sign=-1.0))
+wrong("6.16", "returns the potential, not the force")(
+    field(strength=lambda g, reach: 0.5 * (1.0 / g - 1.0 / reach) ** 2))
+wrong("6.16", "divides by g in place of g²")(field(strength=lambda g, reach: (1.0 / g - 1.0 / reach) / g))
+wrong("6.16", "measures the gap from the centre")(field(skin=False))
+wrong("6.16", "repels beyond its reach, too")(field(ends=False))
+wrong("6.16", "accepts a position inside the obstacle")(field(checked=False))
+wrong("6.16", "multiplies by the offset in place of its direction")(field(unit=False))
 edit("6.16", "accepts a position on the surface", "not g > 0.0", "g < 0.0")
 edit("6.16", "refuses gaps below a micrometre", "not g > 0.0", "g < 1e-6")
 edit("6.16", "refuses minute gaps", "not g > 0.0", "not g > 1e-20")
-edit("6.16", "no more than a million m/s²", "k * (1.0 / g - 1.0 / reach) / (g * g * distance)",
+edit("6.16", "limits the acceleration to 1e6 m/s²", "k * (1.0 / g - 1.0 / reach) / (g * g * distance)",
      "min(k * (1.0 / g - 1.0 / reach) / (g * g), 1e6) / distance")
-edit("6.16", "no gap below a millimetre", "g = distance - radius",
+edit("6.16", "uses a gap of at least 1 mm", "g = distance - radius",
      "g = max(distance - radius, 1e-3 * (distance > radius))")
 edit("6.16", "measures its reach from the centre", "g >= reach", "distance >= reach")
 
@@ -592,31 +602,31 @@ def swerve(side=-1.0, half=2.0, power=2, window=True, behind=True, wide=True,
 
 
 right("6.17", "with new names")(swerve())
-wrong("6.17", "towards it")(swerve(side=1.0))
-wrong("6.17", "half as much")(swerve(half=1.0))
-wrong("6.17", "divides by τ once")(swerve(power=1))
-wrong("6.17", "avoids an obstacle behind")(swerve(behind=False))
-wrong("6.17", "no limit of time ahead")(swerve(window=False))
-wrong("6.17", "avoids an obstacle that is aside")(swerve(wide=False))
-wrong("6.17", "head on to the right")(swerve(left=-1.0))
-wrong("6.17", "does nothing head on")(swerve(left=0.0))
-wrong("6.17", "accelerates from rest")(swerve(rest=False))
+wrong("6.17", "steers towards the obstacle")(swerve(side=1.0))
+wrong("6.17", "steers half as much")(swerve(half=1.0))
+wrong("6.17", "divides by τ, not by τ²")(swerve(power=1))
+wrong("6.17", "steers for an obstacle behind, too")(swerve(behind=False))
+wrong("6.17", "does not limit the time ahead")(swerve(window=False))
+wrong("6.17", "steers for an obstacle that it would miss")(swerve(wide=False))
+wrong("6.17", "steers to the right where it is head-on")(swerve(left=-1.0))
+wrong("6.17", "does not steer where it is head-on")(swerve(left=0.0))
+wrong("6.17", "steers from rest")(swerve(rest=False))
 edit("6.17", "steers when exactly beside the centre", "tau <= 0.0", "tau < 0.0")
 edit("6.17", "steers at the end of the time ahead", "tau >= ahead", "tau > ahead")
-edit("6.17", "does nothing near the middle of the disc", "offset >= radius",
+edit("6.17", "does not steer where it would pass near the centre", "offset >= radius",
      "offset >= radius or r @ r < 0.05 * radius**2")
-wrong("6.17", "avoids by the whole radius")(swerve(need=lambda radius, offset: radius))
-edit("6.17", "too late for the last hundredth of a second", "tau <= 0.0", "tau <= 1e-2")
-edit("6.17", "too late for the last hundred microseconds", "tau <= 0.0", "tau <= 1e-4")
-edit("6.17", "at rest below a nanometre per second", "speed == 0.0", "speed < 1e-9")
-edit("6.17", "head-on within a minute distance", "offset > 0.0", "offset > 1e-19")
-edit("6.17", "four seconds ahead, whatever is asked", "tau >= ahead", "tau >= 4.0")
-edit("6.17", "at most ten seconds ahead", "tau >= ahead", "tau >= min(ahead, 10.0)")
-edit("6.17", "brakes", "tau**2 * aside", "tau**2 * aside - 0.1 * v")
-edit("6.17", "at rest where v[0] is zero", "speed == 0.0", "v[0] == 0.0")
-edit("6.17", "at rest below a millimetre per second", "speed == 0.0", "speed < 1e-3")
-edit("6.17", "left along x only", "np.array([-e[1], e[0]])", "np.array([0.0, e[0]])")
-edit("6.17", "head-on within a hundredth of the radius", "offset > 0.0", "offset >= 0.01 * radius")
-edit("6.17", "head-on within a micrometre", "offset > 0.0", "offset >= 1e-6")
-edit("6.17", "head-on where it is close to zero", "offset > 0.0", "not np.isclose(offset, 0.0)")
+wrong("6.17", "steers aside by the whole radius, whatever the offset")(swerve(need=lambda radius, offset: radius))
+edit("6.17", "does not steer in the last 0.01 s", "tau <= 0.0", "tau <= 1e-2")
+edit("6.17", "does not steer in the last 0.1 ms", "tau <= 0.0", "tau <= 1e-4")
+edit("6.17", "treats speeds below 1 nm/s as rest", "speed == 0.0", "speed < 1e-9")
+edit("6.17", "treats an offset below 1e-19 m as head-on", "offset > 0.0", "offset > 1e-19")
+edit("6.17", "looks 4 s ahead, whatever the argument", "tau >= ahead", "tau >= 4.0")
+edit("6.17", "looks at most 10 s ahead", "tau >= ahead", "tau >= min(ahead, 10.0)")
+edit("6.17", "brakes as well as steering sideways", "tau**2 * aside", "tau**2 * aside - 0.1 * v")
+edit("6.17", "treats v as zero where its first component is zero", "speed == 0.0", "v[0] == 0.0")
+edit("6.17", "treats speeds below 1 mm/s as rest", "speed == 0.0", "speed < 1e-3")
+edit("6.17", "computes the left direction for motion along x only", "np.array([-e[1], e[0]])", "np.array([0.0, e[0]])")
+edit("6.17", "treats an offset below a hundredth of the radius as head-on", "offset > 0.0", "offset >= 0.01 * radius")
+edit("6.17", "treats an offset below 1 µm as head-on", "offset > 0.0", "offset >= 1e-6")
+edit("6.17", "treats an offset close to zero as head-on", "offset > 0.0", "not np.isclose(offset, 0.0)")
 edit("6.17", "ignores a disc that it is inside", "offset >= radius", "offset >= radius or np.sqrt(r @ r) <= radius")

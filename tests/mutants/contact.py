@@ -42,17 +42,17 @@ def contact_rows(x, contacts):
     return G
 
 
-wrong("9.1", "b moves with a")(rows(sign_b=1.0))
-wrong("9.1", "the tangent on the other side")(rows(side=-1.0))
-wrong("9.1", "turns the other way")(rows(arm=-1.0))
-wrong("9.1", "does not turn")(rows(arm=0.0))
-wrong("9.1", "tangent before normal")(rows(swap=True))
-wrong("9.1", "all normals before all tangents")(rows(blocks=True))
-wrong("9.1", "arms from the origin")(rows(centre=False))
+wrong("9.1", "gives b the same sign as a")(rows(sign_b=1.0))
+wrong("9.1", "reverses the tangent")(rows(side=-1.0))
+wrong("9.1", "reverses the sign of the torque")(rows(arm=-1.0))
+wrong("9.1", "omits the rotation")(rows(arm=0.0))
+wrong("9.1", "puts the tangent before the normal")(rows(swap=True))
+wrong("9.1", "puts all normals before all tangents")(rows(blocks=True))
+wrong("9.1", "takes the arms from the origin")(rows(centre=False))
 edit("9.1", "takes body 0 for the ground", "contacts.b[k], -1.0)", "contacts.b[k], -1.0 if contacts.b[k] else 0.0)")
-edit("9.1", "arms to the surface of a, not to the middle of the gap", "contacts.p[k, 0] - x",
+edit("9.1", "takes the arms to the surface of a, not to the middle of the gap", "contacts.p[k, 0] - x",
      "contacts.p[k, 0] + 0.5 * contacts.gap[k] * n_x - x")
-edit("9.1", "no torque below a micrometre", "sign * (r_x * d_y - r_y * d_x)",
+edit("9.1", "omits lever arms below 1 µm", "sign * (r_x * d_y - r_y * d_x)",
      "sign * (r_x * d_y - r_y * d_x) * (abs(r_x * d_y - r_y * d_x) > 1e-6)")
 
 
@@ -70,12 +70,12 @@ def delassus_matrix(G, w):
     return np.array([[np.sum(r * w * s) for s in G] for r in G])
 
 
-wrong("9.2", "the root of the masses")(delassus(masses=np.sqrt))
-wrong("9.2", "no masses")(delassus(masses=np.ones_like))
-wrong("9.2", "no turning")(delassus(masses=lambda w: w * np.resize([1.0, 1.0, 0.0], len(w))))
-wrong("9.2", "for bodies, not for contacts")(delassus(turned=False))
-wrong("9.2", "each contact by itself")(delassus(diagonal=True))
-wrong("9.2", "moves even what is fixed, a little")(delassus(masses=lambda w: np.maximum(w, 1e-13)))
+wrong("9.2", "uses the square roots of the inverse masses")(delassus(masses=np.sqrt))
+wrong("9.2", "omits the masses")(delassus(masses=np.ones_like))
+wrong("9.2", "omits the rotation")(delassus(masses=lambda w: w * np.resize([1.0, 1.0, 0.0], len(w))))
+wrong("9.2", "returns a matrix for the bodies, not for the contacts")(delassus(turned=False))
+wrong("9.2", "keeps only the diagonal")(delassus(diagonal=True))
+wrong("9.2", "gives fixed bodies a small inverse mass")(delassus(masses=lambda w: np.maximum(w, 1e-13)))
 
 
 # 9.3 ------------------------------------------------------------------------------------------------------------
@@ -94,19 +94,19 @@ def complementarity_residual(A, b, lam):
     return worst
 
 
-wrong("9.3", "no sizes")(lcp_residual(size=lambda y: y))
-wrong("9.3", "approach only")(lcp_residual(size=lambda y: np.maximum(0.0, -y)))
-wrong("9.3", "an impulse for a velocity")(lcp_residual(scale=lambda A: 1.0))
-wrong("9.3", "the sum")(lcp_residual(total=np.sum))
-wrong("9.3", "the mean square")(lcp_residual(total=lambda y: np.sqrt(np.mean(y * y))))
-wrong("9.3", "the product")(lcp_residual(pair=np.multiply))
-wrong("9.3", "the larger one")(lcp_residual(pair=np.maximum))
-wrong("9.3", "no b")(lcp_residual(bias=0.0))
-wrong("9.3", "a contact that pulls does not approach")(
+wrong("9.3", "does not take absolute values")(lcp_residual(size=lambda y: y))
+wrong("9.3", "counts the approach only")(lcp_residual(size=lambda y: np.maximum(0.0, -y)))
+wrong("9.3", "compares an impulse with a velocity, without the diagonal of A")(lcp_residual(scale=lambda A: 1.0))
+wrong("9.3", "returns the sum, not the largest one")(lcp_residual(total=np.sum))
+wrong("9.3", "returns the root mean square, not the largest one")(lcp_residual(total=lambda y: np.sqrt(np.mean(y * y))))
+wrong("9.3", "takes the product in place of the minimum")(lcp_residual(pair=np.multiply))
+wrong("9.3", "takes the maximum in place of the minimum")(lcp_residual(pair=np.maximum))
+wrong("9.3", "omits b")(lcp_residual(bias=0.0))
+wrong("9.3", "omits the approach of a contact that pulls")(
     lcp_residual(pair=lambda x, u: np.where(x < 0.0, x, np.minimum(x, u))))
-wrong("9.3", "a contact that approaches does not pull")(
+wrong("9.3", "omits the pull of a contact that approaches")(
     lcp_residual(pair=lambda x, u: np.where(u < 0.0, u, np.minimum(x, u))))
-wrong("9.3", "pulling and approaching add up")(
+wrong("9.3", "adds pull and approach")(
     lcp_residual(pair=lambda x, u: np.where((x < 0.0) & (u < 0.0), x + u, np.minimum(x, u))))
 
 
@@ -135,16 +135,16 @@ def gauss_seidel_sweep(A, b, lam, omega):
     return lam
 
 
-wrong("9.4", "Jacobi")(swept(newest=False))
-wrong("9.4", "pulls")(swept(pulls=True))
-wrong("9.4", "no relaxation")(swept(relaxed=False))
-wrong("9.4", "from the last to the first")(swept(backwards=True))
-wrong("9.4", "relaxes what is projected already")(swept(inside=True))
-wrong("9.4", "does not divide")(swept(diagonal=False))
-wrong("9.4", "two sweeps")(swept(twice=True))
+wrong("9.4", "uses the old impulses of all contacts, as Jacobi's method does")(swept(newest=False))
+wrong("9.4", "does not limit the impulses to zero or more")(swept(pulls=True))
+wrong("9.4", "omits the relaxation")(swept(relaxed=False))
+wrong("9.4", "visits the contacts from the last to the first")(swept(backwards=True))
+wrong("9.4", "relaxes after the projection, not before")(swept(inside=True))
+wrong("9.4", "does not divide by the diagonal")(swept(diagonal=False))
+wrong("9.4", "makes two sweeps")(swept(twice=True))
 edit("9.4", "changes its input", "lam = lam.copy()", "pass")
-edit("9.4", "no b", "+ b[k]", "")
-edit("9.4", "at rest below a nanometre per second", "lam[k] = np.maximum",
+edit("9.4", "omits b", "+ b[k]", "")
+edit("9.4", "ignores velocities below 1 nm/s", "lam[k] = np.maximum",
      "if abs(A[k] @ lam + b[k]) > 1e-9: lam[k] = np.maximum")
 
 
@@ -159,11 +159,11 @@ def stack_contraction(n):
     return 0.5 + 0.5 * np.cos(np.pi / n)
 
 
-wrong("9.5", "Jacobi's")(stack(power=1))
-wrong("9.5", "twice the angle")(stack(half=1.0))
-wrong("9.5", "of a stack between two walls")(stack(shift=1))
-wrong("9.5", "the sine")(stack(of=np.sin))
-edit("9.5", "no stack above forty", "np.pi / n", "np.pi / min(n, 40)")
+wrong("9.5", "returns the factor of Jacobi's method")(stack(power=1))
+wrong("9.5", "uses twice the angle")(stack(half=1.0))
+wrong("9.5", "uses the angle for a stack between two walls")(stack(shift=1))
+wrong("9.5", "uses the sine in place of the cosine")(stack(of=np.sin))
+edit("9.5", "treats a stack above 40 bodies as one of 40", "np.pi / n", "np.pi / min(n, 40)")
 
 
 @variants
@@ -176,10 +176,10 @@ def mass_ratio_contraction(r):
     return 1.0 / (1.0 + 1.0 / r)
 
 
-wrong("9.6", "Jacobi's")(ratio(power=0.5))
-wrong("9.6", "the heavy one below")(ratio(turned=True))
-wrong("9.6", "two bodies below")(ratio(plus=2.0))
-edit("9.6", "loses what is left of a heavy one", "r / (1.0 + r)", "1.0 - 1.0 / r")
+wrong("9.6", "returns the factor of Jacobi's method")(ratio(power=0.5))
+wrong("9.6", "puts the heavy body below")(ratio(turned=True))
+wrong("9.6", "counts two bodies below")(ratio(plus=2.0))
+edit("9.6", "uses 1 − 1/r, which is right for large mass ratios only", "r / (1.0 + r)", "1.0 - 1.0 / r")
 
 
 @variants
@@ -196,12 +196,12 @@ def best_relaxation(rho):
     return 2.0 / (1.0 + s), (1.0 - s) / (1.0 + s)
 
 
-wrong("9.7", "no root")(relaxation(root=lambda y: y))
-wrong("9.7", "takes ρ for that of Jacobi")(relaxation(of=lambda rho: 1.0 - rho * rho))
-wrong("9.7", "half as much")(relaxation(two=1.0))
-wrong("9.7", "the factor squared")(relaxation(factor=lambda omega: (omega - 1.0) ** 2))
-edit("9.7", "ρ of a low stack at most", "1.0 - rho", "1.0 - min(rho, 0.999)")
-wrong("9.7", "ω for the factor")(relaxation(factor=lambda omega: 0.5 * omega))
+wrong("9.7", "omits the square root")(relaxation(root=lambda y: y))
+wrong("9.7", "takes ρ for the factor of Jacobi's method")(relaxation(of=lambda rho: 1.0 - rho * rho))
+wrong("9.7", "returns half of it")(relaxation(two=1.0))
+wrong("9.7", "squares the factor")(relaxation(factor=lambda omega: (omega - 1.0) ** 2))
+edit("9.7", "limits ρ to 0.999", "1.0 - rho", "1.0 - min(rho, 0.999)")
+wrong("9.7", "returns ω/2 for the factor")(relaxation(factor=lambda omega: 0.5 * omega))
 
 
 # 9.8 ------------------------------------------------------------------------------------------------------------
@@ -232,19 +232,19 @@ def solve_lcp(A, b):
     return murty()(A, b)
 
 
-wrong("9.8", "takes redundant contacts")(murty(check=lambda A: None))
-wrong("9.8", "none ever leaves")(murty(sides="on"))
-wrong("9.8", "none ever comes")(murty(sides="off"))
-wrong("9.8", "generous with what is wrong")(murty(slack=1e-2))
-wrong("9.8", "a thousand times too generous")(murty(slack=1e-10))
-wrong("9.8", "takes round-off for wrong")(murty(slack=0.0))
-wrong("9.8", "all wrong contacts change sides at once")(murty(everything=True))
-wrong("9.8", "the round-off of the largest row for all")(murty(size=np.max))
-wrong("9.8", "a round-off of 1e-13 m/s")(murty(size=np.ones_like))
-wrong("9.8", "a velocity for an impulse")(murty(diagonal=lambda A: np.ones(len(A))))
-edit("9.8", "solves for the impulses of all", "if pushes[k]:", "if True:")
-edit("9.8", "the bias with the wrong sign", "A[k], -b[k]", "A[k], b[k]")
-edit("9.8", "does not check", "check_independent(A)", "pass")
+wrong("9.8", "accepts redundant contacts")(murty(check=lambda A: None))
+wrong("9.8", "lets no contact leave")(murty(sides="on"))
+wrong("9.8", "lets no contact come back")(murty(sides="off"))
+wrong("9.8", "uses a tolerance of 1e-2")(murty(slack=1e-2))
+wrong("9.8", "uses a tolerance a thousand times too large")(murty(slack=1e-10))
+wrong("9.8", "uses no tolerance for round-off")(murty(slack=0.0))
+wrong("9.8", "lets all wrong contacts change sides at once")(murty(everything=True))
+wrong("9.8", "uses the round-off of the largest row for all rows")(murty(size=np.max))
+wrong("9.8", "uses an absolute round-off of 1e-13 m/s")(murty(size=np.ones_like))
+wrong("9.8", "measures round-off as a velocity, not as an impulse")(murty(diagonal=lambda A: np.ones(len(A))))
+edit("9.8", "solves for the impulses of all contacts", "if pushes[k]:", "if True:")
+edit("9.8", "reverses the sign of b", "A[k], -b[k]", "A[k], b[k]")
+edit("9.8", "does not check its input", "check_independent(A)", "pass")
 edit("9.8", "returns velocities", "return lam", "return u")
 
 
@@ -275,22 +275,24 @@ def cone_residual(A, b, J, mu):
     return np.max(k * np.abs(free - J))
 
 
-wrong("9.9", "frictionless")(natural(cone=lambda mu, J: 0.0))
-wrong("9.9", "no limit")(natural(cone=lambda mu, J: np.inf))
-wrong("9.9", "the limit without μ")(natural(cone=lambda mu, J: max(J, 0.0)))
-wrong("9.9", "an impulse for a velocity")(natural(scaled=False))
-wrong("9.9", "normals only")(natural(tangents=False))
-wrong("9.9", "tangents only")(natural(normals=False))
-wrong("9.9", "friction to one side only")(natural(two_sided=False))
-wrong("9.9", "the sum")(natural(total=sum))
-wrong("9.9", "the friction of the first contact for all")(natural(own=False))
-wrong("9.9", "the limit of J_n', not of J_n")(natural(given=False))
-wrong("9.9", "friction where it pulls")(natural(cone=lambda mu, J: mu * abs(J) if J else 0.0))
-wrong("9.9", "no friction above one")(natural(cone=lambda mu, J: min(mu, 1.0) * J if J > 0.0 else 0.0))
-wrong("9.9", "ten for infinite friction")(natural(cone=lambda mu, J: min(mu, 10.0) * J if J > 0.0 else 0.0))
-edit("9.9", "a little friction without a normal impulse", "else 0.0", "else 1e-9")
-edit("9.9", "no infinite friction", "mu[n // 2] * J[n] if J[n] > 0.0 else 0.0", "mu[n // 2] * np.maximum(0.0, J[n])")
-edit("9.9", "no b", "A @ J + b", "A @ J")
+wrong("9.9", "omits the friction")(natural(cone=lambda mu, J: 0.0))
+wrong("9.9", "does not limit the friction")(natural(cone=lambda mu, J: np.inf))
+wrong("9.9", "omits μ in the limit")(natural(cone=lambda mu, J: max(J, 0.0)))
+wrong("9.9", "compares an impulse with a velocity, without the diagonal of A")(natural(scaled=False))
+wrong("9.9", "measures the normals only")(natural(tangents=False))
+wrong("9.9", "measures the tangents only")(natural(normals=False))
+wrong("9.9", "limits the friction to one side only")(natural(two_sided=False))
+wrong("9.9", "returns the sum, not the largest one")(natural(total=sum))
+wrong("9.9", "uses the friction coefficient of the first contact for all")(natural(own=False))
+wrong("9.9", "uses the limit of the corrected normal impulse, not of the given one")(natural(given=False))
+wrong("9.9", "allows friction where the normal impulse is negative")(
+    natural(cone=lambda mu, J: mu * abs(J) if J else 0.0))
+wrong("9.9", "limits μ to 1")(natural(cone=lambda mu, J: min(mu, 1.0) * J if J > 0.0 else 0.0))
+wrong("9.9", "uses μ = 10 for infinite friction")(natural(cone=lambda mu, J: min(mu, 10.0) * J if J > 0.0 else 0.0))
+edit("9.9", "allows a little friction without a normal impulse", "else 0.0", "else 1e-9")
+edit("9.9", "multiplies an infinite μ by a normal impulse of zero",
+     "mu[n // 2] * J[n] if J[n] > 0.0 else 0.0", "mu[n // 2] * np.maximum(0.0, J[n])")
+edit("9.9", "omits b", "A @ J + b", "A @ J")
 
 
 # 9.10 -----------------------------------------------------------------------------------------------------------
@@ -333,19 +335,20 @@ def cone_sweep(A, b, J, mu):
     return J
 
 
-wrong("9.10", "the limit of before")(coned(new_limit=False))
-wrong("9.10", "Jacobi")(coned(newest=False))
-wrong("9.10", "pulls")(coned(pulls=True))
-wrong("9.10", "half the friction")(coned(share=0.5))
-wrong("9.10", "friction to one side only")(coned(two_sided=False))
-wrong("9.10", "friction before the normal")(coned(friction_first=True))
-wrong("9.10", "all normals before all friction")(coned(by_kind=True))
-wrong("9.10", "from the last contact to the first")(coned(order=reversed))
-wrong("9.10", "no friction above one")(coned(most=1.0))
-wrong("9.10", "a hundred for infinite friction")(coned(most=100.0))
-wrong("9.10", "at rest below a nanometre per second")(coned(quiet=1e-9))
+wrong("9.10", "limits the friction by the old normal impulse")(coned(new_limit=False))
+wrong("9.10", "uses the old impulses of all contacts, as Jacobi's method does")(coned(newest=False))
+wrong("9.10", "does not limit the normal impulses to zero or more")(coned(pulls=True))
+wrong("9.10", "uses half of μ")(coned(share=0.5))
+wrong("9.10", "limits the friction to one side only")(coned(two_sided=False))
+wrong("9.10", "updates the friction before the normal impulse")(coned(friction_first=True))
+wrong("9.10", "updates all normal impulses before all friction")(coned(by_kind=True))
+wrong("9.10", "visits the contacts from the last to the first")(coned(order=reversed))
+wrong("9.10", "limits μ to 1")(coned(most=1.0))
+wrong("9.10", "uses μ = 100 for infinite friction")(coned(most=100.0))
+wrong("9.10", "ignores velocities below 1 nm/s")(coned(quiet=1e-9))
 edit("9.10", "changes its input", "J = J.copy()", "pass")
-edit("9.10", "no infinite friction", "mu[n // 2] * J[n] if J[n] > 0.0 else 0.0", "mu[n // 2] * J[n]")
+edit("9.10", "multiplies an infinite μ by a normal impulse of zero",
+     "mu[n // 2] * J[n] if J[n] > 0.0 else 0.0", "mu[n // 2] * J[n]")
 
 
 # 9.11 -----------------------------------------------------------------------------------------------------------
@@ -370,27 +373,28 @@ def contact_forces(x, inv_mass, inv_inertia, contacts, load, mu):
     return F.reshape(len(mu), 2), (free + (F @ G) * w).reshape(len(x), 3)
 
 
-wrong("9.11", "no check")(forces(check=lambda *scene: None))
-wrong("9.11", "pushes where it should not")(forces(bias=-1.0))
-wrong("9.11", "half the load")(forces(bias=0.5))
-wrong("9.11", "accelerations without the load")(forces(loaded=0.0))
-wrong("9.11", "accelerations without the contacts")(forces(push=0.0))
-wrong("9.11", "loads are accelerations")(forces(weigh=False))
-wrong("9.11", "no torques")(forces(pulled=lambda load: load * [1.0, 1.0, 0.0]))
-wrong("9.11", "torques the other way")(forces(pulled=lambda load: load * [1.0, 1.0, -1.0]))
-wrong("9.11", "loads only press")(forces(pulled=lambda load: np.minimum(load, [np.inf, 0.0, np.inf])))
-wrong("9.11", "the friction of the first contact for all")(forces(friction=lambda mu: np.full(len(mu), mu[0])))
-wrong("9.11", "the mean friction for all")(forces(friction=lambda mu: np.full(len(mu), np.mean(mu))))
-wrong("9.11", "no friction above three")(forces(friction=lambda mu: np.minimum(mu, 3.0)))
-wrong("9.11", "the size of friction")(forces(told=np.abs))
-wrong("9.11", "the friction on b")(forces(told=lambda F: F * [1.0, -1.0]))
-wrong("9.11", "at rest below a micrometre per second squared")(
+wrong("9.11", "does not check its input")(forces(check=lambda *scene: None))
+wrong("9.11", "reverses the sign of the accelerations by the loads")(forces(bias=-1.0))
+wrong("9.11", "uses half of the load")(forces(bias=0.5))
+wrong("9.11", "omits the load in the accelerations")(forces(loaded=0.0))
+wrong("9.11", "omits the contact forces in the accelerations")(forces(push=0.0))
+wrong("9.11", "takes the loads for accelerations")(forces(weigh=False))
+wrong("9.11", "omits the torques of the loads")(forces(pulled=lambda load: load * [1.0, 1.0, 0.0]))
+wrong("9.11", "reverses the torques of the loads")(forces(pulled=lambda load: load * [1.0, 1.0, -1.0]))
+wrong("9.11", "omits loads that lift")(forces(pulled=lambda load: np.minimum(load, [np.inf, 0.0, np.inf])))
+wrong("9.11", "uses the friction coefficient of the first contact for all")(
+    forces(friction=lambda mu: np.full(len(mu), mu[0])))
+wrong("9.11", "uses the mean friction coefficient for all")(forces(friction=lambda mu: np.full(len(mu), np.mean(mu))))
+wrong("9.11", "limits μ to 3")(forces(friction=lambda mu: np.minimum(mu, 3.0)))
+wrong("9.11", "drops the sign of the friction")(forces(told=np.abs))
+wrong("9.11", "returns the friction on b, not on a")(forces(told=lambda F: F * [1.0, -1.0]))
+wrong("9.11", "returns zero for accelerations below 1 µm/s²")(
     forces(felt=lambda a: np.where(np.abs(a) < 1e-6, 0.0, a)))
-edit("9.11", "the inertia of the last body for all", "inverse_masses(inv_mass, inv_inertia)",
+edit("9.11", "uses the inertia of the last body for all", "inverse_masses(inv_mass, inv_inertia)",
      "inverse_masses(inv_mass, np.where(inv_inertia > 0.0, inv_inertia[-1], 0.0))")
-edit("9.11", "the mass of the last body for all", "inverse_masses(inv_mass, inv_inertia)",
+edit("9.11", "uses the mass of the last body for all", "inverse_masses(inv_mass, inv_inertia)",
      "inverse_masses(np.where(inv_mass > 0.0, inv_mass[-1], 0.0), inv_inertia)")
-edit("9.11", "frictionless", "@ (w * load.ravel()), mu)", "@ (w * load.ravel()), 0.0 * mu)")
+edit("9.11", "omits the friction", "@ (w * load.ravel()), mu)", "@ (w * load.ravel()), 0.0 * mu)")
 
 
 # 9.12 -----------------------------------------------------------------------------------------------------------
@@ -413,21 +417,21 @@ def soft_contact(gap, hertz, zeta, dt):
     return -stiffness * gap / both, 1.0 / (dt * both)
 
 
-wrong("9.12", "hertz for angular frequency")(soft(angular=1.0))
-wrong("9.12", "half the damping")(soft(damping=1.0))
-wrong("9.12", "sucks")(soft(sign=1.0))
-wrong("9.12", "hard")(soft(give=0.0))
-wrong("9.12", "twice as soft")(soft(give=2.0))
-wrong("9.12", "keeps a gap open")(soft(opens=lambda gap, dt: (0.0, 0.0)))
-wrong("9.12", "closes a gap by its spring")(soft(opens=lambda gap, dt: (-gap / dt, 0.5)))
-wrong("9.12", "what just touches is open")(soft(touches=True))
+wrong("9.12", "uses the frequency in hertz in place of the angular frequency")(soft(angular=1.0))
+wrong("9.12", "uses half of the damping")(soft(damping=1.0))
+wrong("9.12", "reverses the sign, so that the contact pulls")(soft(sign=1.0))
+wrong("9.12", "returns a hard contact, with no softness")(soft(give=0.0))
+wrong("9.12", "makes the contact twice as soft")(soft(give=2.0))
+wrong("9.12", "does not let a gap close")(soft(opens=lambda gap, dt: (0.0, 0.0)))
+wrong("9.12", "closes an open gap by the spring")(soft(opens=lambda gap, dt: (-gap / dt, 0.5)))
+wrong("9.12", "treats a gap of zero as open")(soft(touches=True))
 SOFT = "-s * gap / (dt * (2.0 * zeta + s))"
-edit("9.12", "parts at 10 m/s at most", SOFT, f"min(10.0, {SOFT})")
-edit("9.12", "approaches at 100 m/s at most", "-gap / dt, 0.0", "max(-100.0, -gap / dt), 0.0")
-edit("9.12", "no spring is stiffer than five over a step", "s = 2.0", "s = min(5.0, 2.0 * np.pi * hertz * dt); _ = 2.0")
-edit("9.12", "always a little damping", "2.0 * zeta + s)),", "2.0 * max(zeta, 0.05) + s)),")
-edit("9.12", "an ångström is no gap", "gap > 0.0", "gap > 1e-10")
-edit("9.12", "tolerates a slop of 10 µm", SOFT, SOFT.replace("gap", "min(0.0, gap + 1e-5)"))
+edit("9.12", "limits the speed of separation to 10 m/s", SOFT, f"min(10.0, {SOFT})")
+edit("9.12", "limits the speed of approach to 100 m/s", "-gap / dt, 0.0", "max(-100.0, -gap / dt), 0.0")
+edit("9.12", "limits the stiffness", "s = 2.0", "s = min(5.0, 2.0 * np.pi * hertz * dt); _ = 2.0")
+edit("9.12", "uses at least a little damping", "2.0 * zeta + s)),", "2.0 * max(zeta, 0.05) + s)),")
+edit("9.12", "treats a gap below 1e-10 m as closed", "gap > 0.0", "gap > 1e-10")
+edit("9.12", "allows an overlap of 10 µm", SOFT, SOFT.replace("gap", "min(0.0, gap + 1e-5)"))
 
 
 # 9.13 -----------------------------------------------------------------------------------------------------------
@@ -446,18 +450,19 @@ def friction_disc(J, limit):
     return tuple(np.array(J) * (1.0 if size <= limit else limit / size))
 
 
-edit("9.13", "a box", "scaled(limit / size, J)",
+edit("9.13", "limits each component by itself, which gives a box", "scaled(limit / size, J)",
      "(min(max(J[0], -limit), limit), min(max(J[1], -limit), limit), min(max(J[2], -limit), limit))")
-wrong("9.13", "forgets an axis")(disc(size=lambda J: np.sqrt(J[0] ** 2 + J[1] ** 2)))
-wrong("9.13", "always on the rim")(disc(inside=lambda size, limit: size == 0.0))
-wrong("9.13", "never limited")(disc(inside=lambda size, limit: True))
-wrong("9.13", "nothing beyond the rim")(disc(scale=0.0))
-edit("9.13", "beyond the rim by a nanonewton second", "size > limit", "size > limit + 1e-9")
-edit("9.13", "nothing below a nanonewton second", "scaled(limit / size, J)", "scaled((limit > 1e-9) * limit / size, J)")
-edit("9.13", "the size of the first component", "scaled(limit / size, J)",
+wrong("9.13", "omits one component in the length")(disc(size=lambda J: np.sqrt(J[0] ** 2 + J[1] ** 2)))
+wrong("9.13", "always returns an impulse on the rim")(disc(inside=lambda size, limit: size == 0.0))
+wrong("9.13", "does not limit the impulse")(disc(inside=lambda size, limit: True))
+wrong("9.13", "returns zero beyond the rim")(disc(scale=0.0))
+edit("9.13", "limits only impulses that are 1 nN s beyond the rim", "size > limit", "size > limit + 1e-9")
+edit("9.13", "returns zero where the limit is below 1 nN s",
+     "scaled(limit / size, J)", "scaled((limit > 1e-9) * limit / size, J)")
+edit("9.13", "drops the sign of the first component", "scaled(limit / size, J)",
      "scaled(limit / size, (abs(J[0]), J[1], J[2]))")
-edit("9.13", "an array", "scaled(limit / size, J)", "np.array(scaled(limit / size, J))")
-wrong("9.13", "squares")(disc(inside=lambda size, limit: size * size <= limit))
+edit("9.13", "returns an array, not a tuple", "scaled(limit / size, J)", "np.array(scaled(limit / size, J))")
+wrong("9.13", "compares the square of the length with the limit")(disc(inside=lambda size, limit: size * size <= limit))
 
 
 # 9.14 -----------------------------------------------------------------------------------------------------------
@@ -494,25 +499,25 @@ def kept_impulses(contacts, old, J_old, near):
     return J
 
 
-wrong("9.14", "any partner")(kept(partner=False))
-wrong("9.14", "however far away")(kept(near_enough=lambda d, near: True))
-wrong("9.14", "the first of the pair")(kept(take=lambda distance: 0))
-wrong("9.14", "the farthest")(kept(take=np.argmax))
-wrong("9.14", "also with a and b exchanged")(kept(either=True))
-wrong("9.14", "half of it")(kept(share=0.5))
-wrong("9.14", "looks along x only")(kept(flat=True))
-wrong("9.14", "the square for the distance")(kept(near_enough=lambda d, near: d * d < near))
-edit("9.14", "starts from nothing", "J[k, c] = J_old[s, c]", "pass")
-wrong("9.14", "along the surface only")(
+wrong("9.14", "accepts an old contact of another pair of bodies")(kept(partner=False))
+wrong("9.14", "accepts an old contact at any distance")(kept(near_enough=lambda d, near: True))
+wrong("9.14", "takes the first old contact of the pair")(kept(take=lambda distance: 0))
+wrong("9.14", "takes the farthest old contact")(kept(take=np.argmax))
+wrong("9.14", "accepts an old contact with a and b exchanged")(kept(either=True))
+wrong("9.14", "keeps half of the impulse")(kept(share=0.5))
+wrong("9.14", "measures the distance along x only")(kept(flat=True))
+wrong("9.14", "compares the squared distance with the limit")(kept(near_enough=lambda d, near: d * d < near))
+edit("9.14", "returns zero impulses", "J[k, c] = J_old[s, c]", "pass")
+wrong("9.14", "measures the distance along the surface only")(
     kept(size=lambda r, n: np.linalg.norm(r - np.outer(r @ n, n), axis=1)))
-wrong("9.14", "the largest coordinate for the distance")(
+wrong("9.14", "uses the largest coordinate difference for the distance")(
     kept(size=lambda r, n: np.max(np.abs(r), axis=1, initial=0.0)))
-wrong("9.14", "looks along x and y only")(kept(size=lambda r, n: np.linalg.norm(r[:, :2], axis=1)))
-wrong("9.14", "exactly near is near")(kept(near_enough=lambda d, near: d <= near))
-wrong("9.14", "wants nearly the same normal")(kept(alike=0.9))
-wrong("9.14", "wants a normal on the same side")(kept(alike=0.0))
-wrong("9.14", "turns the impulse with the normal")(kept(given=lambda J, n, m: J + (J @ m) * (n - m)))
-wrong("9.14", "each old impulse once")(kept(once=True))
+wrong("9.14", "measures the distance along x and y only")(kept(size=lambda r, n: np.linalg.norm(r[:, :2], axis=1)))
+wrong("9.14", "accepts a contact exactly at the limit")(kept(near_enough=lambda d, near: d <= near))
+wrong("9.14", "requires nearly the same normal")(kept(alike=0.9))
+wrong("9.14", "requires a normal on the same side")(kept(alike=0.0))
+wrong("9.14", "rotates the impulse with the normal")(kept(given=lambda J, n, m: J + (J @ m) * (n - m)))
+wrong("9.14", "uses each old impulse once only")(kept(once=True))
 
 
 # 9.15 -----------------------------------------------------------------------------------------------------------
@@ -537,16 +542,16 @@ def has_left_margin(low, high, wide_low, wide_high):
     return bool(not (np.all(wide_low <= low) and np.all(high <= wide_high)))
 
 
-wrong("9.15", "never to the left")(leaves(low_side=False))
-wrong("9.15", "never to the right")(leaves(high_side=False))
-wrong("9.15", "not the last body")(leaves(bodies=slice(None, -1)))
-wrong("9.15", "not the last axis")(leaves(axes=slice(None, -1)))
-wrong("9.15", "all must have left")(leaves(all_of=True))
-wrong("9.15", "loses what is no number")(leaves(nan=False))
-wrong("9.15", "loses what is no number on the right")(leaves(nan_high=False))
-wrong("9.15", "tolerates ten nanometres")(leaves(slack=1e-8))
-wrong("9.15", "nothing leaves a box without a size")(leaves(endless=True))
-edit("9.15", "the edge itself is outside", "wide_low[i, c] <= low[i, c] and", "wide_low[i, c] < low[i, c] and")
+wrong("9.15", "does not test the lower side")(leaves(low_side=False))
+wrong("9.15", "does not test the upper side")(leaves(high_side=False))
+wrong("9.15", "omits the last body")(leaves(bodies=slice(None, -1)))
+wrong("9.15", "omits the last axis")(leaves(axes=slice(None, -1)))
+wrong("9.15", "requires that all bodies have left")(leaves(all_of=True))
+wrong("9.15", "does not notice NaN")(leaves(nan=False))
+wrong("9.15", "does not notice NaN on the upper side")(leaves(nan_high=False))
+wrong("9.15", "allows an excess of 10 nm")(leaves(slack=1e-8))
+wrong("9.15", "lets nothing leave a box without a size")(leaves(endless=True))
+edit("9.15", "counts the edge itself as outside", "wide_low[i, c] <= low[i, c] and", "wide_low[i, c] < low[i, c] and")
 
 
 # 9.16 -----------------------------------------------------------------------------------------------------------
@@ -585,26 +590,27 @@ def velocity_swept(newest=True, b_too=True, spin=1.0, soft=1.0, aims=1.0, pulls=
 
 
 right("9.16", "with vectors")(velocity_swept())
-wrong("9.16", "Jacobi")(velocity_swept(newest=False))
-wrong("9.16", "b does not feel it")(velocity_swept(b_too=False))
-wrong("9.16", "turns the wrong way")(velocity_swept(spin=-1.0))
-wrong("9.16", "does not turn")(velocity_swept(spin=0.0))
-wrong("9.16", "forgets what a soft contact carries")(velocity_swept(soft=0.0))
-wrong("9.16", "aims at rest")(velocity_swept(aims=0.0))
-wrong("9.16", "pulls")(velocity_swept(pulls=True))
-wrong("9.16", "no cone")(velocity_swept(cone=False))
-wrong("9.16", "the limit of before")(velocity_swept(old_limit=True))
-wrong("9.16", "both arms are those of a")(velocity_swept(other_arm=True))
-wrong("9.16", "the aim of body a")(velocity_swept(aim_of=lambda k, a: a))
-wrong("9.16", "the give of body a")(velocity_swept(give_of=lambda k, a: a))
-wrong("9.16", "the aim of the first contact for all")(velocity_swept(aim_of=lambda k, a: 0))
-wrong("9.16", "the give of the first contact for all")(velocity_swept(give_of=lambda k, a: 0))
-wrong("9.16", "friction aims, too")(velocity_swept(slips=1.0))
-wrong("9.16", "friction gives, too")(velocity_swept(gives=1.0))
-wrong("9.16", "no friction where it is soft")(velocity_swept(hard_only=True))
-wrong("9.16", "J_t from the velocity after J_n")(velocity_swept(again=True))
-wrong("9.16", "a thousand for infinite friction")(velocity_swept(most=1000.0))
+wrong("9.16", "uses the velocities before the sweep for all contacts, as Jacobi's method does")(
+    velocity_swept(newest=False))
+wrong("9.16", "applies no impulse to b")(velocity_swept(b_too=False))
+wrong("9.16", "reverses the change of the spin")(velocity_swept(spin=-1.0))
+wrong("9.16", "omits the change of the spin")(velocity_swept(spin=0.0))
+wrong("9.16", "omits the softness times the impulse so far")(velocity_swept(soft=0.0))
+wrong("9.16", "omits the target velocity")(velocity_swept(aims=0.0))
+wrong("9.16", "does not limit the normal impulse to zero or more")(velocity_swept(pulls=True))
+wrong("9.16", "does not limit the friction")(velocity_swept(cone=False))
+wrong("9.16", "limits the friction by the old normal impulse")(velocity_swept(old_limit=True))
+wrong("9.16", "uses the arm of a for both bodies")(velocity_swept(other_arm=True))
+wrong("9.16", "uses the target of number a, not of contact k")(velocity_swept(aim_of=lambda k, a: a))
+wrong("9.16", "uses the softness of number a, not of contact k")(velocity_swept(give_of=lambda k, a: a))
+wrong("9.16", "uses the target of the first contact for all")(velocity_swept(aim_of=lambda k, a: 0))
+wrong("9.16", "uses the softness of the first contact for all")(velocity_swept(give_of=lambda k, a: 0))
+wrong("9.16", "uses the target for the friction, too")(velocity_swept(slips=1.0))
+wrong("9.16", "uses the softness for the friction, too")(velocity_swept(gives=1.0))
+wrong("9.16", "omits the friction of soft contacts")(velocity_swept(hard_only=True))
+wrong("9.16", "computes the friction from the velocity after the normal impulse")(velocity_swept(again=True))
+wrong("9.16", "uses μ = 1000 for infinite friction")(velocity_swept(most=1000.0))
 edit("9.16", "changes its input", "v.copy(), omega.copy(), J.copy()", "v, omega, J")
-edit("9.16", "the mass of a for b", "v[b, 0] -= inv_mass[b] * d_x", "v[b, 0] -= inv_mass[a] * d_x")
-edit("9.16", "no impulse below a nanonewton second", "0.0 if J_n <= 0.0", "0.0 if J_n <= 1e-9")
-edit("9.16", "divides by the hard mass", "k_n * (1.0 + give[k])", "k_n")
+edit("9.16", "uses the mass of a for b", "v[b, 0] -= inv_mass[b] * d_x", "v[b, 0] -= inv_mass[a] * d_x")
+edit("9.16", "omits impulses below 1 nN s", "0.0 if J_n <= 0.0", "0.0 if J_n <= 1e-9")
+edit("9.16", "omits the softness in the denominator", "k_n * (1.0 + give[k])", "k_n")

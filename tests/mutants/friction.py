@@ -27,11 +27,11 @@ def normal_force(F, n):
     return total if total > 0.0 else 0.0
 
 
-edit("3.1", "with the sign of F · n", "-(F @ n)", "F @ n")
-edit("3.1", "pulls at a lifted body", "np.maximum(0.0, -(F @ n))", "-(F @ n)")
-edit("3.1", "all of F presses", "np.maximum(0.0, -(F @ n))", "np.sqrt(F @ F) * (F @ n < 0.0)")
-edit("3.1", "the last coordinate only", "-(F @ n)", "-F[-1]")
-edit("3.1", "a vector", "np.maximum(0.0, -(F @ n))", "max(0.0, -(F @ n)) * n")
+edit("3.1", "omits the minus sign of F · n", "-(F @ n)", "F @ n")
+edit("3.1", "returns a negative normal force where the body is lifted", "np.maximum(0.0, -(F @ n))", "-(F @ n)")
+edit("3.1", "takes the size of F for the normal force", "np.maximum(0.0, -(F @ n))", "np.sqrt(F @ F) * (F @ n < 0.0)")
+edit("3.1", "uses the last coordinate of F only", "-(F @ n)", "-F[-1]")
+edit("3.1", "returns the vector, not its size", "np.maximum(0.0, -(F @ n))", "max(0.0, -(F @ n)) * n")
 edit("3.1", "ignores a small load", "np.maximum(0.0, -(F @ n))", "max(0.0, -(F @ n)) * (F @ n < -1e-3)")
 
 
@@ -49,15 +49,16 @@ def holding(sign=-1.0, rim=True, clamp=True, load=lambda F, n: max(0.0, -(F @ n)
 
 
 right("3.2", "by a clamp")(holding())
-wrong("3.2", "pushes on")(holding(sign=1.0))
-wrong("3.2", "no friction beyond the cone")(holding(rim=False))
-wrong("3.2", "holds everything")(holding(clamp=False))
-wrong("3.2", "cancels the whole of F")(holding(part=lambda F, n: F))
-wrong("3.2", "the normal force is the size of F")(holding(load=lambda F, n: size(F)))
+wrong("3.2", "pushes along the applied force, not against it")(holding(sign=1.0))
+wrong("3.2", "returns no friction beyond the cone")(holding(rim=False))
+wrong("3.2", "does not limit the friction to μ N")(holding(clamp=False))
+wrong("3.2", "cancels all of F, its normal part included")(holding(part=lambda F, n: F))
+wrong("3.2", "takes the size of F for the normal force")(holding(load=lambda F, n: size(F)))
 wrong("3.2", "takes a lifting force for a load")(holding(load=lambda F, n: abs(F @ n)))
 wrong("3.2", "accepts a negative μ")(holding(checked=False))
-edit("3.2", "multiplies ∞ by 0", "cone_radius(mu_s, normal_force(F, n))", "cone_radius(mu_s, 1.0) * normal_force(F, n)")
-edit("3.2", "always on the rim", "size <= limit", "size == 0.0")
+edit("3.2", "multiplies an infinite μ by a normal force of zero",
+     "cone_radius(mu_s, normal_force(F, n))", "cone_radius(mu_s, 1.0) * normal_force(F, n)")
+edit("3.2", "always returns the largest friction, μ N", "size <= limit", "size == 0.0")
 
 
 # 3.3 ------------------------------------------------------------------------------------------------------------
@@ -70,11 +71,12 @@ def braking(sign=-1.0, direction=lambda F, v, n: unit(tangential(v, n)),
 
 
 right("3.3", "by a unit vector")(braking())
-wrong("3.3", "speeds up")(braking(sign=1.0))
-wrong("3.3", "against the pull")(braking(direction=lambda F, v, n: unit(tangential(F, n))))
-wrong("3.3", "against all of v")(braking(direction=lambda F, v, n: unit(v)))
-wrong("3.3", "grows with the speed")(braking(scale=lambda v: size(v)))
-wrong("3.3", "the load is the size of F")(braking(load=lambda F, n: size(F)))
+wrong("3.3", "pushes along the velocity, not against it")(braking(sign=1.0))
+wrong("3.3", "acts against the applied force, not against the velocity")(
+    braking(direction=lambda F, v, n: unit(tangential(F, n))))
+wrong("3.3", "acts against the whole velocity, its normal part included")(braking(direction=lambda F, v, n: unit(v)))
+wrong("3.3", "makes the friction grow with the speed")(braking(scale=lambda v: size(v)))
+wrong("3.3", "takes the size of F for the normal force")(braking(load=lambda F, n: size(F)))
 wrong("3.3", "brakes a lifted body, too")(braking(load=lambda F, n: abs(F @ n)))
 edit("3.3", "divides by a speed of zero", "speed > 0.0", "True")
 edit("3.3", "treats a slow body as at rest", "speed > 0.0", "speed > 1e-9")
@@ -94,14 +96,15 @@ def on_slope(holds=lambda theta, mu_s, mu_k: np.tan(theta) <= mu_s,
 
 
 right("3.4", "by the tangent")(on_slope())
-wrong("3.4", "static friction in motion")(
+wrong("3.4", "uses the static coefficient in motion")(
     on_slope(slides=lambda theta, mu_s, mu_k: np.sin(theta) - mu_s * np.cos(theta)))
-wrong("3.4", "kinetic friction at rest")(on_slope(holds=lambda theta, mu_s, mu_k: np.tan(theta) <= mu_k))
-wrong("3.4", "sine and cosine exchanged")(
+wrong("3.4", "uses the kinetic coefficient at rest")(on_slope(holds=lambda theta, mu_s, mu_k: np.tan(theta) <= mu_k))
+wrong("3.4", "exchanges sine and cosine")(
     on_slope(slides=lambda theta, mu_s, mu_k: np.cos(theta) - mu_k * np.sin(theta)))
-wrong("3.4", "sin θ against μ")(on_slope(holds=lambda theta, mu_s, mu_k: np.sin(theta) <= mu_s))
+wrong("3.4", "compares sin θ with μ_s, not tan θ")(on_slope(holds=lambda theta, mu_s, mu_k: np.sin(theta) <= mu_s))
 wrong("3.4", "never holds")(on_slope(holds=lambda theta, mu_s, mu_k: False))
-wrong("3.4", "friction on level ground")(on_slope(slides=lambda theta, mu_s, mu_k: np.sin(theta) - mu_k))
+wrong("3.4", "uses the normal force of level ground, without cos θ")(
+    on_slope(slides=lambda theta, mu_s, mu_k: np.sin(theta) - mu_k))
 edit("3.4", "accepts a negative μ_s", "cone_radius(mu_s, np.cos(theta))", "mu_s * np.cos(theta)")
 edit("3.4", "accepts a negative μ_k", "cone_radius(mu_k, np.cos(theta))", "mu_k * np.cos(theta)")
 
@@ -117,9 +120,9 @@ def dissipating(sign=-1.0, stop=lambda m, speed: m * speed, choose=min, limit=co
 
 right("3.5", "by its magnitude")(dissipating())
 wrong("3.5", "leaves a round-off velocity")(dissipating(exactly=False))
-wrong("3.5", "along the motion")(dissipating(sign=1.0))
+wrong("3.5", "pushes along the motion, not against it")(dissipating(sign=1.0))
 wrong("3.5", "forgets the mass")(dissipating(stop=lambda m, speed: speed))
-wrong("3.5", "the larger of both impulses")(dissipating(choose=max))
+wrong("3.5", "takes the larger of the two impulses")(dissipating(choose=max))
 wrong("3.5", "always slides")(dissipating(choose=lambda limit, stop: limit))
 wrong("3.5", "always stops")(dissipating(choose=lambda limit, stop: stop))
 wrong("3.5", "forgets μ")(dissipating(limit=lambda mu, j_n: worked.check_friction(mu) or j_n))
@@ -138,16 +141,19 @@ def square(sign=-1.0, mass=True, clamp=lambda y, limit: np.clip(y, -limit, limit
 
 
 right("3.6", "both tangents at once")(square())
-wrong("3.6", "along the motion")(square(sign=1.0))
+wrong("3.6", "pushes along the motion, not against it")(square(sign=1.0))
 wrong("3.6", "forgets the mass")(square(mass=False))
-wrong("3.6", "no clamp from below")(square(clamp=np.minimum))
-wrong("3.6", "one tangent only")(square(second=False))
-wrong("3.6", "inside the cone: half the area")(square(width=np.sqrt(0.5)))
-edit("3.6", "a cone", "limit = cone_radius(mu, j_n)", "return friction_impulse(v_t, m, j_n, mu)")
+wrong("3.6", "does not limit the friction from below")(square(clamp=np.minimum))
+wrong("3.6", "applies friction along the first tangent only")(square(second=False))
+wrong("3.6", "uses a pyramid inside the cone")(square(width=np.sqrt(0.5)))
+edit("3.6", "limits the friction by a cone, not by a pyramid",
+     "limit = cone_radius(mu, j_n)", "return friction_impulse(v_t, m, j_n, mu)")
 edit("3.6", "accepts a negative μ, and multiplies ∞ by 0", "cone_radius(mu, j_n)", "mu * j_n")
-edit("3.6", "no clamp of the second tangent from above", "np.maximum(-limit, np.minimum(limit, m * (v_t @ t_2)))",
+edit("3.6", "does not limit the friction along the second tangent from above",
+     "np.maximum(-limit, np.minimum(limit, m * (v_t @ t_2)))",
      "max(-limit, m * (v_t @ t_2))")
-edit("3.6", "no clamp of the second tangent from below", "np.maximum(-limit, np.minimum(limit, m * (v_t @ t_2)))",
+edit("3.6", "does not limit the friction along the second tangent from below",
+     "np.maximum(-limit, np.minimum(limit, m * (v_t @ t_2)))",
      "min(limit, m * (v_t @ t_2))")
 
 
@@ -172,21 +178,22 @@ def block_step(rest=True, at_rest="mu_s", moving="mu_k", late=0.0, old=False, ag
 
 
 right("3.7", "by a unit vector")(block_step())
-wrong("3.7", "kinetic friction at rest")(block_step(at_rest="mu_k"))
-wrong("3.7", "static friction in motion")(block_step(moving="mu_s"))
+wrong("3.7", "uses the kinetic coefficient at rest")(block_step(at_rest="mu_k"))
+wrong("3.7", "uses the static coefficient in motion")(block_step(moving="mu_s"))
 wrong("3.7", "does not test whether it holds")(block_step(rest=False))
 wrong("3.7", "evaluates at t + dt")(block_step(late=1.0))
 wrong("3.7", "moves with the old velocity")(block_step(old=True))
-wrong("3.7", "friction as a force: the block oscillates")(block_step(speed=0.0))
-wrong("3.7", "friction without dt")(block_step(once=False))
-wrong("3.7", "against the old velocity")(block_step(against="old"))
-wrong("3.7", "at rest if one coordinate of v is zero")(block_step(still=lambda v: bool(np.any(v == 0.0))))
-wrong("3.7", "at rest below a millimetre per second")(block_step(still=lambda v: size(v) <= 1e-3))
-wrong("3.7", "at rest below a nanometre per second")(block_step(still=lambda v: size(v) <= 1e-9))
-wrong("3.7", "slips exactly on the edge of the cone")(block_step(holds=lambda pull, limit: pull < limit))
+wrong("3.7", "applies the full friction for the whole step, which can reverse the block")(block_step(speed=0.0))
+wrong("3.7", "omits dt in the impulse of friction")(block_step(once=False))
+wrong("3.7", "directs friction against the old velocity")(block_step(against="old"))
+wrong("3.7", "treats the block as at rest if one coordinate of v is zero")(
+    block_step(still=lambda v: bool(np.any(v == 0.0))))
+wrong("3.7", "treats a block slower than 1 mm/s as at rest")(block_step(still=lambda v: size(v) <= 1e-3))
+wrong("3.7", "treats a block slower than 1 nm/s as at rest")(block_step(still=lambda v: size(v) <= 1e-9))
+wrong("3.7", "lets the block slip exactly on the edge of the cone")(block_step(holds=lambda pull, limit: pull < limit))
 wrong("3.7", "stops a block that reverses")(block_step(turns=False))
 wrong("3.7", "treats a lifted block as loaded")(block_step(load=lambda a, n: abs(a @ n)))
-wrong("3.7", "the load is the size of a")(block_step(load=lambda a, n: size(a)))
+wrong("3.7", "takes the size of a for the load")(block_step(load=lambda a, n: size(a)))
 edit("3.7", "changes its input", "v = v + dt * a_t", "v += dt * a_t")
 
 
@@ -206,17 +213,18 @@ def heading(moving=lambda v, a_t: v, limit="mu_s", sign=1.0, scaled=True,
 
 
 right("3.8", "all cases from one pull")(heading())
-wrong("3.8", "a moving block slides along the pull")(heading(moving=lambda v, a_t: a_t))
-wrong("3.8", "kinetic friction at rest")(heading(limit="mu_k"))
-wrong("3.8", "against the pull")(heading(sign=-1.0))
-wrong("3.8", "no unit vector")(heading(scaled=False))
-wrong("3.8", "slips exactly on the edge of the cone")(heading(ask=lambda pull, hold: pull >= hold))
+wrong("3.8", "returns the direction of the pull for a moving block")(heading(moving=lambda v, a_t: a_t))
+wrong("3.8", "uses the kinetic coefficient at rest")(heading(limit="mu_k"))
+wrong("3.8", "reverses the direction of the pull")(heading(sign=-1.0))
+wrong("3.8", "does not return a unit vector")(heading(scaled=False))
+wrong("3.8", "lets the block slip exactly on the edge of the cone")(heading(ask=lambda pull, hold: pull >= hold))
 wrong("3.8", "treats a lifted block as loaded")(heading(load=lambda a, n: abs(a @ n)))
-wrong("3.8", "at rest below a micrometre per second")(heading(least=1e-6))
+wrong("3.8", "treats a block slower than 1 µm/s as at rest")(heading(least=1e-6))
 wrong("3.8", "always breaks away")(heading(ask=lambda pull, hold: True))
 wrong("3.8", "never breaks away")(heading(ask=lambda pull, hold: False))
 wrong("3.8", "does not advance t")(heading(clock=0.0))
-edit("3.8", "multiplies ∞ by 0", "cone_radius(p.mu_s, normal_force(a, p.n))", "p.mu_s * normal_force(a, p.n)")
+edit("3.8", "multiplies an infinite μ by a normal force of zero",
+     "cone_radius(p.mu_s, normal_force(a, p.n))", "p.mu_s * normal_force(a, p.n)")
 
 
 # 3.9 ------------------------------------------------------------------------------------------------------------
@@ -236,16 +244,17 @@ def first_stop(halvings=60, whole=True, begin=0.0, length=lambda middle, dt: mid
 
 
 right("3.9", "with its own test")(first_stop())
-wrong("3.9", "ten halvings")(first_stop(halvings=10))
+wrong("3.9", "halves the interval only ten times")(first_stop(halvings=10))
 right("3.9", "does not test the whole step: bisection finds its end")(first_stop(whole=False))
-wrong("3.9", "forces at a later time")(first_stop(begin=1.0))
+wrong("3.9", "evaluates the forces at a later time")(first_stop(begin=1.0))
 wrong("3.9", "returns the first half, however late it stops")(first_stop(end=lambda a, b: 0.5 * a))
-wrong("3.9", "speed with the wrong sign")(first_stop(towards=-1.0))
+wrong("3.9", "reverses the sign of the speed")(first_stop(towards=-1.0))
 BRAKE = "cone_radius(p.mu_k, normal_force(acceleration(t, x, v, p), p.n))"
-edit("3.9", "v over μ g, without the drive", "moving, stopped = 0.0, dt", f"return min(dt, v @ d / {BRAKE})")
-edit("3.9", "the deceleration at t", "moving, stopped = 0.0, dt",
+edit("3.9", "divides the speed by μ g and omits the drive",
+     "moving, stopped = 0.0, dt", f"return min(dt, v @ d / {BRAKE})")
+edit("3.9", "assumes the deceleration at t for the whole step", "moving, stopped = 0.0, dt",
      f"return min(dt, v @ d / abs({BRAKE} - acceleration(t, x, v, p) @ d))")
-edit("3.9", "the speed whatever its direction: never stops",
+edit("3.9", "tests whether the block moves, whatever its direction, so that it never stops",
      "kinetic_friction_step(acceleration, t, x, v, dt, d, p)[1] @ d > 0.0",
      "np.any(kinetic_friction_step(acceleration, t, x, v, dt, d, p)[1])")
 
@@ -268,13 +277,13 @@ def first_slip(halvings=60, since=lambda t, tau: t + tau, whole=True, slips=lamb
 right("3.10", "with its own test")(first_slip())
 
 
-wrong("3.10", "ten halvings")(first_slip(halvings=10))
-wrong("3.10", "counts from zero")(first_slip(since=lambda t, tau: tau))
+wrong("3.10", "halves the interval only ten times")(first_slip(halvings=10))
+wrong("3.10", "evaluates the forces as if the step began at time 0")(first_slip(since=lambda t, tau: tau))
 wrong("3.10", "tests at t")(first_slip(since=lambda t, tau: t))
-wrong("3.10", "the two tests exchanged")(first_slip(slips=lambda d: size(d) == 0.0))
-edit("3.10", "the kinetic limit", "if not np.any", "p = p._replace(mu_s=p.mu_k)\n    if not np.any")
+wrong("3.10", "exchanges holding and slipping in the test")(first_slip(slips=lambda d: size(d) == 0.0))
+edit("3.10", "uses the kinetic coefficient", "if not np.any", "p = p._replace(mu_s=p.mu_k)\n    if not np.any")
 LOAD_OF_NOW = "p._replace(gravity=p.gravity + np.cos(p.omega * t) * (p.drive - along), drive=along)"
-edit("3.10", "the load at t", "if not np.any",
+edit("3.10", "keeps the load at t for the whole step", "if not np.any",
      f"along = tangential(p.drive, p.n); p = {LOAD_OF_NOW}\n    if not np.any")
 edit("3.10", "returns the time, not the duration", "return slips", "return t + slips")
 
@@ -300,7 +309,7 @@ wrong("3.11", "slides for the whole step")(event(whole=True))
 wrong("3.11", "never breaks away")(event(waits=False))
 wrong("3.11", "stops at the end of every step")(event(rest=True))
 wrong("3.11", "does not move")(event(moves=False))
-edit("3.11", "a moving block only", "d = slip_direction(acceleration, t, x, v, p)",
+edit("3.11", "handles a moving block only", "d = slip_direction(acceleration, t, x, v, p)",
      "d = v / max(1e-300, np.sqrt(v @ v))")
 edit("3.11", "does not stop near the end of the step", "tau == dt", "tau >= 0.99 * dt")
 
@@ -319,13 +328,13 @@ def hollow(sign=-1.0, inside=1.0, centred=True, axial=True, scaled=True, safe=Tr
 
 
 right("3.12", "by a unit vector")(hollow())
-wrong("3.12", "outwards")(hollow(sign=1.0))
-wrong("3.12", "negative inside")(hollow(inside=-1.0))
-wrong("3.12", "around the origin")(hollow(centred=False))
-wrong("3.12", "every trough a bowl")(hollow(axial=False))
-wrong("3.12", "no unit vector")(hollow(scaled=False))
+wrong("3.12", "returns a normal that points out of the bowl")(hollow(sign=1.0))
+wrong("3.12", "reverses the sign of the gap")(hollow(inside=-1.0))
+wrong("3.12", "puts the centre of the bowl at the origin")(hollow(centred=False))
+wrong("3.12", "treats a trough like a bowl")(hollow(axial=False))
+wrong("3.12", "does not return a unit normal")(hollow(scaled=False))
 wrong("3.12", "divides by a distance of zero")(hollow(safe=False))
-edit("3.12", "a ball instead of a bowl", "p.radius - distance, -r / distance", "distance - p.radius, r / distance")
+edit("3.12", "treats the bowl as a ball", "p.radius - distance, -r / distance", "distance - p.radius, r / distance")
 edit("3.12", "treats a micrometre around the centre as the centre", "distance > 0.0", "distance > 1e-6")
 
 
@@ -343,17 +352,18 @@ def impact(leaves=True, bounce=lambda e: 1.0 + e, mass=True, slip=tangential,
 
 
 right("3.13", "by the same law")(impact())
-wrong("3.13", "pulls at a leaving body")(impact(leaves=False))
-wrong("3.13", "e for 1 + e")(impact(bounce=lambda e: e))
-wrong("3.13", "1 − e")(impact(bounce=lambda e: 1.0 - e))
-wrong("3.13", "no restitution")(impact(bounce=lambda e: 1.0))
-wrong("3.13", "pulls in")(impact(sign=-1.0))
+wrong("3.13", "pulls at a body that leaves")(impact(leaves=False))
+wrong("3.13", "uses e in place of 1 + e")(impact(bounce=lambda e: e))
+wrong("3.13", "uses 1 − e in place of 1 + e")(impact(bounce=lambda e: 1.0 - e))
+wrong("3.13", "omits the restitution")(impact(bounce=lambda e: 1.0))
+wrong("3.13", "reverses the impulse, which pulls the particle in")(impact(sign=-1.0))
 wrong("3.13", "forgets the mass in friction")(impact(mass=False))
 wrong("3.13", "forgets the mass in the normal impulse")(impact(mass_n=False))
-wrong("3.13", "friction against all of v")(impact(slip=lambda v, n: v))
-wrong("3.13", "no friction")(impact(friction=lambda v_t, m, j_n, mu: 0.0 * v_t))
+wrong("3.13", "directs friction against all of v, its normal part included")(impact(slip=lambda v, n: v))
+wrong("3.13", "omits the friction")(impact(friction=lambda v_t, m, j_n, mu: 0.0 * v_t))
 wrong("3.13", "always sticks")(impact(friction=lambda v_t, m, j_n, mu: -m * v_t))
-edit("3.13", "friction as if e = 0", "tangential(v, n), m, j_n, mu", "tangential(v, n), m, -m * v_n, mu")
+edit("3.13", "limits the friction by the normal impulse for e = 0",
+     "tangential(v, n), m, j_n, mu", "tangential(v, n), m, -m * v_n, mu")
 edit("3.13", "ignores slow impacts", "v_n >= 0.0", "v_n >= -1e-3")
 
 
@@ -383,26 +393,26 @@ contact, gripping = variants(particle_step), variants(functools.partial(particle
 for number, particle in (("3.14", contact), ("3.16", gripping)):
     right(number, "with new names")(particle())
     wrong(number, "moves with the old velocity")(particle(old=True))
-    wrong(number, "puts it in deeper")(particle(back=1.0))
-    wrong(number, "does not put it back")(particle(back=0.0))
-    wrong(number, "puts it half the way back")(particle(half=0.5))
-    wrong(number, "asks for the gap before it moves")(particle(asked="old"))
+    wrong(number, "moves the particle deeper into the surface")(particle(back=1.0))
+    wrong(number, "does not move the particle back to the surface")(particle(back=0.0))
+    wrong(number, "moves the particle only half of the way back")(particle(half=0.5))
+    wrong(number, "evaluates the gap before the particle has moved")(particle(asked="old"))
     wrong(number, "forgets to divide by the mass")(particle(mass=False))
-    wrong(number, "leaves what is inside and leaves")(particle(only_inwards=True))
-    wrong(number, "every particle is in contact")(particle(reached=np.inf))
+    wrong(number, "does not move a particle back that is inside and already leaves")(particle(only_inwards=True))
+    wrong(number, "treats every particle as in contact")(particle(reached=np.inf))
     wrong(number, "forgets dt")(particle(once=False))
-    wrong(number, "the clock stands still")(particle(clock=0.0))
-    wrong(number, "in contact a millimetre too early")(particle(reached=1e-3))
-wrong("3.14", "grips too")(contact(grip=1.0))
-wrong("3.16", "does not grip")(gripping(grip=0.0))
-wrong("3.16", "grips forwards")(gripping(grip=-1.0))
-wrong("3.16", "grips on the way out")(gripping(both_ways=True))
-wrong("3.16", "a depth below zero")(gripping(depth=lambda phi: phi))
-wrong("3.16", "grips the displacement of the old velocity")(gripping(moving=lambda moved, x, v, dt: dt * v))
+    wrong(number, "evaluates the acceleration at time 0")(particle(clock=0.0))
+    wrong(number, "finds contact within a gap of 1 mm")(particle(reached=1e-3))
+wrong("3.14", "also corrects the position for friction, which belongs to 3.16")(contact(grip=1.0))
+wrong("3.16", "omits the friction correction of the position")(gripping(grip=0.0))
+wrong("3.16", "reverses the friction correction of the position")(gripping(grip=-1.0))
+wrong("3.16", "applies the correction to a leaving particle, too")(gripping(both_ways=True))
+wrong("3.16", "uses the gap in place of the depth, with the wrong sign")(gripping(depth=lambda phi: phi))
+wrong("3.16", "corrects the displacement of the old velocity")(gripping(moving=lambda moved, x, v, dt: dt * v))
 edit("3.14", "changes its input", "v = v + dt * acceleration(t, x, v, p)", "v += dt * acceleration(t, x, v, p)")
-edit("3.14", "contact at φ = 0", "phi < 0.0", "phi <= 0.0")
-edit("3.16", "contact at φ = 0", "phi < 0.0", "phi <= 0.0")
-edit("3.16", "grips what moves along the surface", "v @ n < 0.0", "v @ n <= 0.0")
+edit("3.14", "finds contact at φ = 0 already", "phi < 0.0", "phi <= 0.0")
+edit("3.16", "finds contact at φ = 0 already", "phi < 0.0", "phi <= 0.0")
+edit("3.16", "applies the correction to a particle that moves along the surface", "v @ n < 0.0", "v @ n <= 0.0")
 
 
 # 3.15 -----------------------------------------------------------------------------------------------------------
@@ -415,11 +425,11 @@ def grip(sign=-1.0, part=tangential, limit=lambda mu, depth: mu * depth, choose=
 
 
 right("3.15", "by a unit vector")(grip())
-wrong("3.15", "forwards")(grip(sign=1.0))
+wrong("3.15", "reverses the correction")(grip(sign=1.0))
 
 
-wrong("3.15", "all of the displacement")(grip(part=lambda moved, n: moved))
-wrong("3.15", "holds everything")(grip(choose=lambda limit, s: s))
+wrong("3.15", "uses all of the displacement, its normal part included")(grip(part=lambda moved, n: moved))
+wrong("3.15", "does not limit the correction")(grip(choose=lambda limit, s: s))
 wrong("3.15", "always slides")(grip(choose=lambda limit, s: limit))
 wrong("3.15", "forgets μ")(grip(limit=lambda mu, depth: depth))
-edit("3.15", "no more than a tenth of a metre", "1.0, depth", "1.0, min(depth, 0.1)")
+edit("3.15", "uses at most 10 cm of the depth", "1.0, depth", "1.0, min(depth, 0.1)")

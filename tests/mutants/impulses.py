@@ -29,14 +29,14 @@ def kinematic_response(v, n, e):
     return along - e * normal if np.dot(v, n) < 0.0 else np.array(v)
 
 
-wrong("7.1", "e for 1 + e")(response(bounce=lambda e: e))
-wrong("7.1", "1 − e")(response(bounce=lambda e: 1.0 - e))
-wrong("7.1", "pulls at a leaving body")(response(leaves=False))
+wrong("7.1", "uses e in place of 1 + e")(response(bounce=lambda e: e))
+wrong("7.1", "uses 1 − e in place of 1 + e")(response(bounce=lambda e: 1.0 - e))
+wrong("7.1", "pulls at a body that leaves")(response(leaves=False))
 wrong("7.1", "reverses all of v")(response(all_of_v=True))
-wrong("7.1", "pulls in")(response(sign=1.0))
+wrong("7.1", "reverses the impulse, which pulls the body in")(response(sign=1.0))
 edit("7.1", "changes its input", "v - (1.0 + e) * v_n * n", "np.subtract(v, (1.0 + e) * v_n * n, out=v)")
 edit("7.1", "ignores slow approach", "v_n >= 0.0", "v_n >= -1e-3")
-edit("7.1", "ignores ten nanometres per second", "v_n >= 0.0", "v_n >= -1e-8")
+edit("7.1", "ignores approach slower than 10 nm/s", "v_n >= 0.0", "v_n >= -1e-8")
 
 
 # 7.2 ------------------------------------------------------------------------------------------------------------
@@ -55,15 +55,15 @@ def penalty_force(phi, v_n, stiffness, damping):
     return f if depth > 0.0 and f > 0.0 else 0.0
 
 
-wrong("7.2", "pulls back a fast leaving body")(penalty(pulls=True))
-wrong("7.2", "the damper pushes on")(penalty(damper=1.0))
-wrong("7.2", "no damper")(penalty(damper=0.0))
-wrong("7.2", "the spring pulls in")(penalty(spring=1.0))
+wrong("7.2", "pulls a body back that leaves fast")(penalty(pulls=True))
+wrong("7.2", "reverses the damper")(penalty(damper=1.0))
+wrong("7.2", "omits the damper")(penalty(damper=0.0))
+wrong("7.2", "reverses the spring")(penalty(spring=1.0))
 edit("7.2", "ignores a depth of a millimetre", "phi >= 0.0", "phi >= -1e-3")
-edit("7.2", "damps at φ = 0", "phi >= 0.0", "phi > 0.0")
+edit("7.2", "damps at φ = 0, too", "phi >= 0.0", "phi > 0.0")
 wrong("7.2", "damps outside, too")(penalty(inside=lambda phi: True))
-edit("7.2", "ignores a nanometre", "phi >= 0.0", "phi >= -1e-9")
-edit("7.2", "no force without a spring", "phi >= 0.0", "phi >= 0.0 or stiffness == 0.0")
+edit("7.2", "ignores a depth of 1 nm", "phi >= 0.0", "phi >= -1e-9")
+edit("7.2", "returns no force where the stiffness is zero", "phi >= 0.0", "phi >= 0.0 or stiffness == 0.0")
 
 
 # 7.3 ------------------------------------------------------------------------------------------------------------
@@ -82,12 +82,12 @@ def relative_velocity_2d(a, b, r_a, r_b):
     return (point(a, r_a) - point(b, r_b))[:2]
 
 
-wrong("7.3", "turns clockwise")(seen(side=-1.0))
-wrong("7.3", "b as seen from a")(seen(sign=-1.0))
-wrong("7.3", "does not rotate")(seen(turns=0.0))
-wrong("7.3", "each at the other's offset")(seen(swap=True))
-edit("7.3", "the turn of b added", "- turn_b", "+ turn_b")
-edit("7.3", "a wall is at rest", "- b.v", "- (b.v if b.inv_mass else 0.0)")
+wrong("7.3", "takes a positive ω as clockwise")(seen(side=-1.0))
+wrong("7.3", "returns the velocity of b relative to a")(seen(sign=-1.0))
+wrong("7.3", "omits the rotation")(seen(turns=0.0))
+wrong("7.3", "exchanges the arms of the two bodies")(seen(swap=True))
+edit("7.3", "adds the rotation of b in place of subtracting it", "- turn_b", "+ turn_b")
+edit("7.3", "takes an immovable body to be at rest", "- b.v", "- (b.v if b.inv_mass else 0.0)")
 
 
 # 7.4 ------------------------------------------------------------------------------------------------------------
@@ -102,9 +102,9 @@ def size(bounce=lambda e: 1.0 + e, over=lambda k_n: 1.0 / k_n, leaves=True,
 
 
 right("7.4", "the checks in a loop")(size())
-wrong("7.4", "no restitution")(size(bounce=lambda e: 1.0))
-wrong("7.4", "1 − e")(size(bounce=lambda e: 1.0 - e))
-wrong("7.4", "times k_n")(size(over=lambda k_n: k_n))
+wrong("7.4", "omits the restitution")(size(bounce=lambda e: 1.0))
+wrong("7.4", "uses 1 − e in place of 1 + e")(size(bounce=lambda e: 1.0 - e))
+wrong("7.4", "multiplies by the effective inverse mass in place of dividing by it")(size(over=lambda k_n: k_n))
 wrong("7.4", "pulls at separating bodies")(size(leaves=False))
 wrong("7.4", "accepts any restitution")(size(checks=(worked.check_inverse_mass,)))
 edit("7.4", "accepts two immovable bodies", "check_inverse_mass(k_n)", "pass")
@@ -113,8 +113,8 @@ edit("7.4", "accepts any restitution for separating bodies", "check_restitution(
      "if u_n >= 0.0:\n        return 0.0\n    check_restitution(e)")
 edit("7.4", "accepts two immovable bodies that separate",
      "check_inverse_mass(k_n)", "if u_n < 0.0:\n        check_inverse_mass(k_n)")
-edit("7.4", "ignores ten nanometres per second", "u_n >= 0.0", "u_n >= -1e-8")
-edit("7.4", "slow bodies do not rebound", "(1.0 + e) * u_n", "(1.0 + e * (u_n < -1e-7)) * u_n")
+edit("7.4", "ignores approach slower than 10 nm/s", "u_n >= 0.0", "u_n >= -1e-8")
+edit("7.4", "omits the restitution of slow bodies", "(1.0 + e) * u_n", "(1.0 + e * (u_n < -1e-7)) * u_n")
 edit("7.4", "refuses heavy bodies", "check_inverse_mass(k_n)", "check_inverse_mass(k_n if k_n > 1e-3 else 0.0)")
 edit("7.4", "accepts a negative inverse mass", "check_inverse_mass(k_n)", "check_inverse_mass(abs(k_n))")
 edit("7.4", "accepts any inverse mass that is not zero or below", "check_inverse_mass(k_n)",
@@ -132,15 +132,17 @@ def flat_k(power=2, second=True, over=False, arm=lambda r, n: r[0] * n[1] - r[1]
 
 
 right("7.5", "body by body")(flat_k())
-wrong("7.5", "the lever not squared")(flat_k(power=1))
-wrong("7.5", "b does not turn")(flat_k(second=False))
-wrong("7.5", "inertia for its inverse")(flat_k(over=True))
-wrong("7.5", "r · n for r × n")(flat_k(arm=lambda r, n: r @ n))
+wrong("7.5", "does not square the lever arm r × n")(flat_k(power=1))
+wrong("7.5", "omits the rotation of b")(flat_k(second=False))
+wrong("7.5", "uses the inertia in place of its inverse")(flat_k(over=True))
+wrong("7.5", "uses r · n in place of r × n")(flat_k(arm=lambda r, n: r @ n))
 wrong("7.5", "forgets the masses")(flat_k(mass=0.0))
-edit("7.5", "the mass of a must be finite", "a.inv_mass +", "(a.inv_mass or 1.0) +")
-edit("7.5", "a on an axle does not turn", "lever_a**2 * a.inv_inertia", "lever_a**2 * (a.inv_mass and a.inv_inertia)")
-edit("7.5", "b on an axle does not turn", "lever_b**2 * b.inv_inertia", "lever_b**2 * (b.inv_mass and b.inv_inertia)")
-edit("7.5", "what cannot rotate cannot move", "a.inv_mass +", "(a.inv_inertia and a.inv_mass) +")
+edit("7.5", "uses a mass of 1 kg where a is immovable", "a.inv_mass +", "(a.inv_mass or 1.0) +")
+edit("7.5", "omits the rotation of a if its mass is infinite",
+     "lever_a**2 * a.inv_inertia", "lever_a**2 * (a.inv_mass and a.inv_inertia)")
+edit("7.5", "omits the rotation of b if its mass is infinite",
+     "lever_b**2 * b.inv_inertia", "lever_b**2 * (b.inv_mass and b.inv_inertia)")
+edit("7.5", "omits the mass of a body that cannot rotate", "a.inv_mass +", "(a.inv_inertia and a.inv_mass) +")
 
 
 @variants
@@ -157,14 +159,15 @@ def effective_inverse_mass(a, b, r_a, r_b, n):
     return give(a, r_a) + give(b, r_b)
 
 
-wrong("7.7", "b does not turn")(solid_k(second=False))
-wrong("7.7", "× r from the wrong side")(solid_k(sign=-1.0))
+wrong("7.7", "omits the rotation of b")(solid_k(second=False))
+wrong("7.7", "takes r × (…) in place of (…) × r")(solid_k(sign=-1.0))
 wrong("7.7", "forgets the masses")(solid_k(mass=0.0))
-wrong("7.7", "without the last × r")(solid_k(back=lambda turn, r: turn))
-edit("7.7", "the inertia tensor of a for its inverse", "times(a.inv_inertia,", "times(np.linalg.pinv(a.inv_inertia),")
-edit("7.7", "against a wall a does not turn", "n @ turn_a", "(n @ turn_a if b.inv_mass else 0.0)")
-edit("7.7", "a on an axle does not turn", "n @ turn_a", "(n @ turn_a if a.inv_mass else 0.0)")
-edit("7.7", "what cannot rotate cannot move", "a.inv_mass +", "a.inv_mass * a.inv_inertia.any() +")
+wrong("7.7", "omits the last cross product with r")(solid_k(back=lambda turn, r: turn))
+edit("7.7", "uses the inertia tensor of a in place of its inverse",
+     "times(a.inv_inertia,", "times(np.linalg.pinv(a.inv_inertia),")
+edit("7.7", "omits the rotation of a where b is immovable", "n @ turn_a", "(n @ turn_a if b.inv_mass else 0.0)")
+edit("7.7", "omits the rotation of a if its mass is infinite", "n @ turn_a", "(n @ turn_a if a.inv_mass else 0.0)")
+edit("7.7", "omits the mass of a body that cannot rotate", "a.inv_mass +", "a.inv_mass * a.inv_inertia.any() +")
 
 
 # 7.6 ------------------------------------------------------------------------------------------------------------
@@ -178,13 +181,13 @@ def pushed(mass=lambda m: m, inertia=lambda i: i, side=1.0, turns=True):
 
 
 right("7.6", "by a torque")(pushed())
-wrong("7.6", "mass for its inverse")(pushed(mass=lambda m: 1.0 / m if m else 0.0))
-wrong("7.6", "inertia for its inverse")(pushed(inertia=lambda i: 1.0 / i if i else 0.0))
+wrong("7.6", "multiplies by the mass in place of its inverse")(pushed(mass=lambda m: 1.0 / m if m else 0.0))
+wrong("7.6", "multiplies by the inertia in place of its inverse")(pushed(inertia=lambda i: 1.0 / i if i else 0.0))
 wrong("7.6", "turns the other way")(pushed(side=-1.0))
-wrong("7.6", "does not rotate")(pushed(turns=False))
-edit("7.6", "does not turn on an axle", "body.inv_inertia * cross_2d",
+wrong("7.6", "omits the change of the rotation")(pushed(turns=False))
+edit("7.6", "does not rotate a body whose mass is infinite", "body.inv_inertia * cross_2d",
      "(body.inv_mass and body.inv_inertia) * cross_2d")
-edit("7.6", "what cannot rotate cannot move", "body.inv_mass * J", "(body.inv_inertia and body.inv_mass) * J")
+edit("7.6", "does not move a body that cannot rotate", "body.inv_mass * J", "(body.inv_inertia and body.inv_mass) * J")
 
 
 # 7.8 ------------------------------------------------------------------------------------------------------------
@@ -201,10 +204,11 @@ def angular_momenta(L_a, L_b, r_a, r_b, J):
     return L_a + skew(r_a) @ J, L_b + skew(r_b) @ -J
 
 
-wrong("7.8", "b gains as a does")(momenta(sign_b=1.0))
-edit("7.8", "J × r", "L_a + cross(r_a, J), L_b - cross(r_b, J)", "L_a - cross(r_a, J), L_b + cross(r_b, J)")
-wrong("7.8", "b does not turn")(momenta(sign_b=0.0))
-wrong("7.8", "one arm for both")(momenta(arm=lambda r_a, r_b: (r_a, r_a)))
+wrong("7.8", "gives b the same change as a")(momenta(sign_b=1.0))
+edit("7.8", "takes J × r in place of r × J",
+     "L_a + cross(r_a, J), L_b - cross(r_b, J)", "L_a - cross(r_a, J), L_b + cross(r_b, J)")
+wrong("7.8", "does not change b")(momenta(sign_b=0.0))
+wrong("7.8", "uses the same arm for both bodies")(momenta(arm=lambda r_a, r_b: (r_a, r_a)))
 
 
 # 7.9 ------------------------------------------------------------------------------------------------------------
@@ -216,17 +220,17 @@ def K_of(sign=-1.0, mass=lambda m: m * np.eye(3), turn=lambda r: skew(r), middle
 
 
 right("7.9", "with skew")(K_of())
-wrong("7.9", "plus for minus")(K_of(sign=1.0))
-wrong("7.9", "1/m everywhere")(K_of(mass=lambda m: m * np.ones((3, 3))))
+wrong("7.9", "adds the rotational part where it is subtracted")(K_of(sign=1.0))
+wrong("7.9", "adds 1/m to every entry, not only on the diagonal")(K_of(mass=lambda m: m * np.ones((3, 3))))
 wrong("7.9", "forgets the mass")(K_of(mass=lambda m: np.zeros((3, 3))))
-edit("7.9", "both levers on one side of the tensor", "cross(times(inv_inertia, cross(r, unit)), r)",
+edit("7.9", "multiplies by the tensor after both cross products", "cross(times(inv_inertia, cross(r, unit)), r)",
      "times(inv_inertia, cross(cross(r, unit), r))")
-wrong("7.9", "a number for the tensor")(K_of(middle=lambda inv: np.trace(inv) / 3.0 * np.eye(3)))
-edit("7.9", "does not turn on an axle", "K = np.zeros((3, 3))",
+wrong("7.9", "replaces the inverse tensor by a number")(K_of(middle=lambda inv: np.trace(inv) / 3.0 * np.eye(3)))
+edit("7.9", "omits the rotation if the mass is infinite", "K = np.zeros((3, 3))",
      "K = np.zeros((3, 3))\n    if inv_mass == 0.0:\n        return K")
-edit("7.9", "what cannot rotate cannot move", "K = np.zeros((3, 3))",
+edit("7.9", "returns zero for a body that cannot rotate", "K = np.zeros((3, 3))",
      "K = np.zeros((3, 3))\n    if not inv_inertia.any():\n        return K")
-edit("7.9", "nothing at the centre of mass", "K = np.zeros((3, 3))",
+edit("7.9", "returns zero at the centre of mass", "K = np.zeros((3, 3))",
      "K = np.zeros((3, 3))\n    if not r.any():\n        return K")
 
 
@@ -259,31 +263,32 @@ wrong("7.10", "pulls at separating bodies")(cone(parts=False))
 wrong("7.10", "never rebounds")(cone(goal=lambda u_sep: 0.0))
 wrong("7.10", "never sticks")(cone(sticks=lambda J_t, J_n, mu: False))
 wrong("7.10", "always sticks")(cone(sticks=lambda J_t, J_n, mu: True))
-wrong("7.10", "against the slip before the impact")(cone(side="slip"))
-wrong("7.10", "keeps the stick's normal impulse")(cone(clamp="cut"))
-wrong("7.10", "pulls where sticking would have to")(cone(sticks=lambda J_t, J_n, mu: J_t <= mu * abs(J_n)))
+wrong("7.10", "directs friction against the slip before the impact")(cone(side="slip"))
+wrong("7.10", "keeps the normal impulse of sticking")(cone(clamp="cut"))
+wrong("7.10", "pulls where sticking would need a pull")(cone(sticks=lambda J_t, J_n, mu: J_t <= mu * abs(J_n)))
 wrong("7.10", "compares all of the impulse with the cone")(
     cone(sticks=lambda J_t, J_n, mu: np.hypot(J_t, J_n) <= mu * J_n))
 wrong("7.10", "ignores bodies that separate too slowly")(cone(enough=lambda u_sep: 0.0))
-wrong("7.10", "half the friction")(cone(rim=lambda mu: 0.5 * mu))
-edit("7.10", "sticks as if K were a number", "solve3(K[0], K[1], K[2], u_sep * n - u)",
+wrong("7.10", "uses half of the friction coefficient")(cone(rim=lambda mu: 0.5 * mu))
+edit("7.10", "sticks as if K were a number, not a matrix", "solve3(K[0], K[1], K[2], u_sep * n - u)",
      "(u_sep * n - u) / (n @ times(K, n))")
 edit("7.10", "pushes bodies that separate exactly at u_sep", "u @ n >= u_sep", "u @ n > u_sep")
-edit("7.10", "tolerates a nanometre per second below u_sep", "u @ n >= u_sep", "u @ n >= u_sep - 1e-9")
-edit("7.10", "a small impulse has no direction", "np.sin(beta) / size", "(np.sin(beta) / size if size > 1e-9 else 0.0)")
-edit("7.10", "a friction above 10 is infinite", "np.arctan(mu)", "np.arctan(mu if mu < 10.0 else np.inf)")
-edit("7.10", "a friction of 10 at most", "np.arctan(mu)", "np.arctan(mu if mu > 1e5 else min(mu, 10.0))")
+edit("7.10", "ignores bodies up to 1 nm/s below u_sep", "u @ n >= u_sep", "u @ n >= u_sep - 1e-9")
+edit("7.10", "treats a small tangential impulse as zero",
+     "np.sin(beta) / size", "(np.sin(beta) / size if size > 1e-9 else 0.0)")
+edit("7.10", "treats a friction above 10 as infinite", "np.arctan(mu)", "np.arctan(mu if mu < 10.0 else np.inf)")
+edit("7.10", "limits the friction to 10", "np.arctan(mu)", "np.arctan(mu if mu > 1e5 else min(mu, 10.0))")
 edit("7.10", "sticks with a friction above 10", "size <= mu * (J @ n)",
      "size <= mu * (J @ n) or (mu > 10.0 and J @ n > 0.0)")
 edit("7.10", "slides on the rim of the cone, too", "size <= mu * (J @ n)", "size < mu * (J @ n)")
-edit("7.10", "heavy bodies stick", "size <= mu * (J @ n)", "size <= mu * (J @ n) or K[0, 0] < 1e-9")
+edit("7.10", "always lets heavy bodies stick", "size <= mu * (J @ n)", "size <= mu * (J @ n) or K[0, 0] < 1e-9")
 edit("7.10", "accepts a friction that is not a number", "check_contact(u, n, K, mu)",
      "check_contact(u, n, K, 0.0 if mu != mu else mu)")
 edit("7.10", "accepts an infinite velocity", "check_contact(u, n, K, mu)",
      "check_contact(np.where(np.isinf(u), 1.0, u), n, K, mu)")
 edit("7.10", "accepts a K without an inverse", "check_contact(u, n, K, mu)",
      "check_contact(u, n, K + (n @ K @ n > 0.0) * np.eye(3), mu)")
-edit("7.10", "no friction without slip", "J_t = tangential(J, n)",
+edit("7.10", "omits the friction where there is no slip before the impact", "J_t = tangential(J, n)",
      "J_t = tangential(J, n)\n"
      "    if not tangential(u, n).any():\n        return (u_sep - u @ n) / (n @ times(K, n)) * n")
 
@@ -301,13 +306,15 @@ def energy_change(u, K, J):
     return J @ (u + (u + K @ J)) / 2.0
 
 
-wrong("7.11", "without the half")(work(half=1.0))
-wrong("7.11", "lost, not gained")(work(sign=-1.0))
-wrong("7.11", "with the velocity before only")(work(half=0.0))
-wrong("7.11", "without the velocity before")(work(first=0.0))
-edit("7.11", "every impact loses", "J @ u + 0.5 * (J @ times(K, J))", "-abs(J @ u + 0.5 * (J @ times(K, J)))")
-edit("7.11", "every impact gains", "J @ u + 0.5 * (J @ times(K, J))", "abs(J @ u + 0.5 * (J @ times(K, J)))")
-edit("7.11", "what comes in is always lost", "J @ u +", "-abs(J @ u) +")
+wrong("7.11", "omits the factor ½")(work(half=1.0))
+wrong("7.11", "returns the energy lost, not the energy gained")(work(sign=-1.0))
+wrong("7.11", "uses the velocity before the impact only")(work(half=0.0))
+wrong("7.11", "omits the velocity before the impact")(work(first=0.0))
+edit("7.11", "returns a loss for every impact",
+     "J @ u + 0.5 * (J @ times(K, J))", "-abs(J @ u + 0.5 * (J @ times(K, J)))")
+edit("7.11", "returns a gain for every impact",
+     "J @ u + 0.5 * (J @ times(K, J))", "abs(J @ u + 0.5 * (J @ times(K, J)))")
+edit("7.11", "counts J · u as a loss, whatever its sign", "J @ u +", "-abs(J @ u) +")
 
 
 # 7.12 -----------------------------------------------------------------------------------------------------------
@@ -330,9 +337,9 @@ def gap_multiplier(phi, u_n, k_n, dt):
     return 0.0 if free >= 0.0 else -free / (dt * k_n)
 
 
-wrong("7.12", "does not ask how wide the gap is")(multiplier(gap=0.0))
+wrong("7.12", "does not use the width of the gap")(multiplier(gap=0.0))
 wrong("7.12", "pulls open gaps together")(multiplier(clamp=False))
-wrong("7.12", "times k_n")(multiplier(over=lambda k_n: k_n))
+wrong("7.12", "multiplies by k_n in place of dividing by it")(multiplier(over=lambda k_n: k_n))
 wrong("7.12", "accepts two immovable bodies")(multiplier(check=False))
 edit("7.12", "accepts a step of zero", 'check_positive("step dt [s]", dt)', "dt = dt or 1.0")
 edit("7.12", "accepts a negative step", 'check_positive("step dt [s]", dt)', 'check_positive("step dt [s]", abs(dt))')
@@ -342,7 +349,7 @@ edit("7.12", "accepts any step if the gap opens", 'check_positive("step dt [s]",
      'if u_n >= 0.0:\n        return 0.0\n    check_positive("step dt [s]", dt)')
 edit("7.12", "accepts two immovable bodies that do not meet", "check_inverse_mass(k_n)",
      "if phi + dt * u_n > 0.0:\n        return 0.0\n    check_inverse_mass(k_n)")
-edit("7.12", "closes by less than a nanometre", "-(phi / dt + u_n) / k_n)",
+edit("7.12", "ignores overlaps below 1 nm", "-(phi / dt + u_n) / k_n)",
      "-(phi / dt + u_n) / k_n if phi + dt * u_n <= -1e-9 else 0.0)")
 edit("7.12", "waits until the gap is closed", "np.maximum(0.0, -(phi / dt + u_n) / k_n)",
      "max(0.0, -u_n / k_n) if phi <= 0.0 else 0.0")
@@ -351,7 +358,7 @@ edit("7.12", "accepts any inverse mass that is not zero or below", "check_invers
      "if k_n <= 0.0:\n        check_inverse_mass(k_n)")
 edit("7.12", "accepts an infinite step", 'check_positive("step dt [s]", dt)',
      'check_positive("step dt [s]", 1.0 if dt == np.inf else dt)')
-edit("7.12", "pulls a closed gap together", "return np.maximum(", "return -u_n / k_n if phi == 0.0 else np.maximum(")
+edit("7.12", "pulls where the gap is closed", "return np.maximum(", "return -u_n / k_n if phi == 0.0 else np.maximum(")
 
 
 # 7.13 -----------------------------------------------------------------------------------------------------------
@@ -381,19 +388,20 @@ def impact_time(phi, v_n, a_n, dt):
     return min(dt, 2.0 * phi / (s - v_n) if v_n < 0.0 else (v_n + s) / -a_n)
 
 
-wrong("7.13", "a ball inside meets later")(moment(inside=False))
-wrong("7.13", "a rising ball never comes down")(moment(back=False))
-wrong("7.13", "beyond the end of the step")(moment(limit=False))
-wrong("7.13", "half the acceleration")(moment(pull=1.0))
-wrong("7.13", "divides by a tiny acceleration")(moment(stable=False))
-edit("7.13", "without acceleration", "phi = np.maximum(0.0, phi)", "phi, a_n = max(0.0, phi), 0.0")
-edit("7.13", "treats depth as height", "phi = np.maximum(0.0, phi)", "phi = abs(phi)")
+wrong("7.13", "does not treat a ball inside as a ball on the plane")(moment(inside=False))
+wrong("7.13", "finds no impact for a rising ball")(moment(back=False))
+wrong("7.13", "accepts impacts beyond the end of the step")(moment(limit=False))
+wrong("7.13", "uses half of the acceleration")(moment(pull=1.0))
+wrong("7.13", "divides by a very small acceleration")(moment(stable=False))
+edit("7.13", "omits the acceleration", "phi = np.maximum(0.0, phi)", "phi, a_n = max(0.0, phi), 0.0")
+edit("7.13", "takes the depth below the surface for a height", "phi = np.maximum(0.0, phi)", "phi = abs(phi)")
 edit("7.13", "ignores an immediate impact", "return np.minimum(tau, dt)", "return tau if 0.0 < tau < dt else dt")
-edit("7.13", "a resting ball without acceleration meets at once", "squared = v_n * v_n",
+edit("7.13", "finds an impact for a resting ball without acceleration", "squared = v_n * v_n",
      "if phi == 0.0 and v_n <= 0.0 and a_n <= 0.0:\n        return 0.0\n    squared = v_n * v_n")
 edit("7.13", "treats a micrometre as contact", "np.maximum(0.0, phi)", "phi if phi > 1e-6 else 0.0")
-edit("7.13", "a grazing touch is no impact", "squared < 0.0 or", "squared < 0.0 or (squared == 0.0 and phi > 0.0) or")
-edit("7.13", "the form of the way down for the way back, too", "if v_n < 0.0 else", "if v_n < 0.0 or phi > 0.0 else")
+edit("7.13", "misses a grazing touch", "squared < 0.0 or", "squared < 0.0 or (squared == 0.0 and phi > 0.0) or")
+edit("7.13", "uses the form for a falling ball for a rising one, too",
+     "if v_n < 0.0 else", "if v_n < 0.0 or phi > 0.0 else")
 
 
 # 7.14 -----------------------------------------------------------------------------------------------------------
@@ -415,22 +423,23 @@ def bouncing_time(v_n, a_n, e):
     return 2.0 * v_n / (-a_n) / (1.0 - e) if a_n < 0.0 and e < 1.0 else float("inf")
 
 
-wrong("7.14", "the way up only")(zeno(flight=1.0))
-edit("7.14", "nearly elastic bounces never end", "e == 1.0", "e > 0.99")
-edit("7.14", "slow bounces take no time", "v_n <= 0.0", "v_n <= 1e-3")
-edit("7.14", "a ball that does not leave bounces forever", "if v_n <= 0.0:",
+wrong("7.14", "counts the way up only")(zeno(flight=1.0))
+edit("7.14", "treats nearly elastic bounces as endless", "e == 1.0", "e > 0.99")
+edit("7.14", "treats bounces slower than 1 mm/s as no bounces", "v_n <= 0.0", "v_n <= 1e-3")
+edit("7.14", "returns infinity for a ball that does not leave", "if v_n <= 0.0:",
      "if a_n >= 0.0 or e == 1.0:\n        return np.inf\n    if v_n <= 0.0:")
 edit("7.14", "treats e within 1e-5 of 1 as 1", "e == 1.0", "np.isclose(e, 1.0)")
-edit("7.14", "20,000 flights", "-2.0 * v_n / (a_n * (1.0 - e))", "sum(-2.0 * v_n * e**k / a_n for k in range(20_000))")
-wrong("7.14", "one flight")(zeno(sum=lambda e: 1.0))
-wrong("7.14", "1 + e")(zeno(sum=lambda e: 1.0 + e))
-wrong("7.14", "a time below zero")(zeno(down=False))
-wrong("7.14", "e = 1 ends at once")(zeno(endless=False))
-wrong("7.14", "comes back without acceleration")(zeno(falls=False))
+edit("7.14", "sums 20,000 flights only",
+     "-2.0 * v_n / (a_n * (1.0 - e))", "sum(-2.0 * v_n * e**k / a_n for k in range(20_000))")
+wrong("7.14", "counts one flight only")(zeno(sum=lambda e: 1.0))
+wrong("7.14", "uses 1 + e in place of 1 − e")(zeno(sum=lambda e: 1.0 + e))
+wrong("7.14", "returns a negative time")(zeno(down=False))
+wrong("7.14", "returns zero for e = 1")(zeno(endless=False))
+wrong("7.14", "returns a finite time without acceleration")(zeno(falls=False))
 edit("7.14", "treats e within 1e-12 of 1 as 1", "e == 1.0", "e > 1.0 - 1e-12")
-edit("7.14", "a restitution below a hundredth is none", "(1.0 - e)", "(1.0 - (e if e > 0.01 else 0.0))")
-edit("7.14", "bounces slower than a nanometre per second take no time", "v_n <= 0.0", "v_n <= 1e-9")
-edit("7.14", "weak gravity is none", "a_n >= 0.0", "a_n >= -1e-12")
+edit("7.14", "treats a restitution below 0.01 as zero", "(1.0 - e)", "(1.0 - (e if e > 0.01 else 0.0))")
+edit("7.14", "treats bounces slower than 1 nm/s as no bounces", "v_n <= 0.0", "v_n <= 1e-9")
+edit("7.14", "treats a weak acceleration as zero", "a_n >= 0.0", "a_n >= -1e-12")
 
 
 # 7.15 -----------------------------------------------------------------------------------------------------------
@@ -446,21 +455,22 @@ def project(old=False, back=-1.0, response=worked.kinematic_response, asked="new
 
 right("7.15", "with new names")(project())
 wrong("7.15", "moves with the old velocity")(project(old=True))
-wrong("7.15", "puts it in deeper")(project(back=1.0))
-wrong("7.15", "leaves it inside")(project(back=0.0))
-wrong("7.15", "does not bounce")(project(response=lambda v, n, e: tangential(v, n)))
+wrong("7.15", "moves the ball deeper into the plane")(project(back=1.0))
+wrong("7.15", "leaves the ball inside the plane")(project(back=0.0))
+wrong("7.15", "does not reflect the velocity")(project(response=lambda v, n, e: tangential(v, n)))
 wrong("7.15", "evaluates the gap before it moves")(project(asked="old"))
-edit("7.15", "ignores a tenth of a millimetre", "phi < 0.0", "phi < -1e-4")
-edit("7.15", "ignores a nanometre", "phi < 0.0", "phi < -1e-9")
+edit("7.15", "ignores depths below 0.1 mm", "phi < 0.0", "phi < -1e-4")
+edit("7.15", "ignores depths below 1 nm", "phi < 0.0", "phi < -1e-9")
 edit("7.15", "reverses a leaving ball", "kinematic_response(v, p.n, p.e)", "v - (1.0 + p.e) * (v @ p.n) * p.n")
-edit("7.15", "puts back only an approaching ball", "phi < 0.0", "phi < 0.0 and v @ p.n < 0.0")
-edit("7.15", "gravity for every acceleration", "acceleration(t, x, v, p)", "p.gravity")
-edit("7.15", "the acceleration at the end of the step", "acceleration(t, x, v, p)", "acceleration(t + dt, x, v, p)")
-edit("7.15", "the acceleration where it would be", "acceleration(t, x, v, p)", "acceleration(t, x + dt * v, v, p)")
-edit("7.15", "the acceleration at rest", "acceleration(t, x, v, p)", "acceleration(t, x, 0.0 * v, p)")
+edit("7.15", "moves only an approaching ball back", "phi < 0.0", "phi < 0.0 and v @ p.n < 0.0")
+edit("7.15", "uses gravity in place of the acceleration", "acceleration(t, x, v, p)", "p.gravity")
+edit("7.15", "takes the acceleration at time t + dt", "acceleration(t, x, v, p)", "acceleration(t + dt, x, v, p)")
+edit("7.15", "takes the acceleration at the new position",
+     "acceleration(t, x, v, p)", "acceleration(t, x + dt * v, v, p)")
+edit("7.15", "takes the acceleration at zero velocity", "acceleration(t, x, v, p)", "acceleration(t, x, 0.0 * v, p)")
 wrong("7.15", "forgets dt")(project(once=False))
-edit("7.15", "reverses a ball on the plane", "phi < 0.0", "phi <= 0.0")
-edit("7.15", "a ball slower than 2 g dt stays on the plane", "kinematic_response(v, p.n, p.e)",
+edit("7.15", "reflects a ball that is exactly on the plane", "phi < 0.0", "phi <= 0.0")
+edit("7.15", "omits the restitution for a ball slower than 2 g dt", "kinematic_response(v, p.n, p.e)",
      "kinematic_response(v, p.n, p.e if v @ p.n < 2.0 * dt * (p.gravity @ p.n) else 0.0)")
 
 
@@ -515,38 +525,40 @@ def back_to(rest=True, goes_on=True, once=False, silent=False, changes=False,
 
 
 right("7.16", "with new names")(back_to())
-wrong("7.16", "stops at the impact")(back_to(goes_on=False))
+wrong("7.16", "ends the step at the impact")(back_to(goes_on=False))
 wrong("7.16", "never raises Diverged")(back_to(silent=True))
 wrong("7.16", "changes its input")(back_to(changes=True))
-wrong("7.16", "one impact per step")(back_to(once=True))
-wrong("7.16", "flies without the half of a t²")(back_to(fly=lambda x, v, a, t: (x + t * v, v + t * a)))
-wrong("7.16", "every impact elastic")(back_to(bounce=lambda e: 1.0))
-edit("7.16", "projects instead", "a, left = acceleration(t, x, v, p), dt",
+wrong("7.16", "handles one impact per step only")(back_to(once=True))
+wrong("7.16", "omits ½ a t² in the flight")(back_to(fly=lambda x, v, a, t: (x + t * v, v + t * a)))
+wrong("7.16", "makes every impact elastic")(back_to(bounce=lambda e: 1.0))
+edit("7.16", "projects the position in place of going back to the impact", "a, left = acceleration(t, x, v, p), dt",
      "return position_projection_step(acceleration, t, x, v, dt, p)")
-edit("7.16", "lies as soon as it is slow", "bouncing_time(v @ p.n, a @ p.n, p.e) <= left", "v @ p.n < 1e-3")
-edit("7.16", "lies below a micrometre per second", "bouncing_time(v @ p.n, a @ p.n, p.e) <= left", "v @ p.n < 1e-6")
-edit("7.16", "gravity for every acceleration", "acceleration(t, x, v, p)", "p.gravity")
-edit("7.16", "the acceleration at the end of the step", "acceleration(t, x, v, p)", "acceleration(t + dt, x, v, p)")
-edit("7.16", "a new acceleration after each impact", "x = x - gap(x, p) * p.n",
+edit("7.16", "lets the ball lie as soon as it is slow",
+     "bouncing_time(v @ p.n, a @ p.n, p.e) <= left", "v @ p.n < 1e-3")
+edit("7.16", "lets the ball lie below 1 µm/s", "bouncing_time(v @ p.n, a @ p.n, p.e) <= left", "v @ p.n < 1e-6")
+edit("7.16", "uses gravity in place of the acceleration", "acceleration(t, x, v, p)", "p.gravity")
+edit("7.16", "takes the acceleration at time t + dt", "acceleration(t, x, v, p)", "acceleration(t + dt, x, v, p)")
+edit("7.16", "evaluates the acceleration again after each impact", "x = x - gap(x, p) * p.n",
      "x = x - gap(x, p) * p.n\n        a = acceleration(t + dt - left, x, v, p)")
-edit("7.16", "does not put back a ball that starts inside", "x = x - gap(x, p) * p.n", "pass")
-edit("7.16", "a ball that starts inside does not bounce", "a, left = acceleration(t, x, v, p), dt",
+edit("7.16", "does not move a ball back that starts inside", "x = x - gap(x, p) * p.n", "pass")
+edit("7.16", "stops a ball that starts inside in place of reflecting it", "a, left = acceleration(t, x, v, p), dt",
      "a, left = acceleration(t, x, v, p), dt\n    if gap(x, p) < 0.0 and v @ p.n < 0.0:\n"
      "        x, v = x - gap(x, p) * p.n, tangential(v, p.n)")
-wrong("7.16", "a resting ball does not slide")(back_to(lie=lambda x, v, a, t, n: (x, 0.0 * v)))
-edit("7.16", "once it lies, nothing lifts it off", "return slide_on_plane(x, v, a, left, p.n)",
+wrong("7.16", "stops the sliding of a resting ball")(back_to(lie=lambda x, v, a, t, n: (x, 0.0 * v)))
+edit("7.16", "keeps a resting ball on the plane, whatever lifts it", "return slide_on_plane(x, v, a, left, p.n)",
      "return free_flight(x, tangential(v, p.n), tangential(a, p.n), left)")
-edit("7.16", "puts back what starts inside and leaves", "a, left = acceleration(t, x, v, p), dt",
+edit("7.16", "moves a ball back that starts inside and already leaves", "a, left = acceleration(t, x, v, p), dt",
      "a, left = acceleration(t, x, v, p), dt\n    x = x - min(0.0, gap(x, p)) * p.n")
-edit("7.16", "a new acceleration where it lies", "slide_on_plane(x, v, a, left, p.n)",
+edit("7.16", "evaluates the acceleration again where the ball lies", "slide_on_plane(x, v, a, left, p.n)",
      "slide_on_plane(x, v, acceleration(t + dt - left, x, v, p), left, p.n)")
-edit("7.16", "drops the last nanosecond", "left <= 0.0", "left <= 1e-9")
-edit("7.16", "a thousand impacts at most", "range(MAX_IMPACTS)", "range(1000)")
-edit("7.16", "bounces under all of the acceleration", "bouncing_time(v @ p.n, a @ p.n, p.e)",
+edit("7.16", "omits the last nanosecond of the step", "left <= 0.0", "left <= 1e-9")
+edit("7.16", "handles at most 1,000 impacts", "range(MAX_IMPACTS)", "range(1000)")
+edit("7.16", "uses the size of the acceleration, not its normal part, for the time of bouncing",
+     "bouncing_time(v @ p.n, a @ p.n, p.e)",
      "bouncing_time(v @ p.n, -np.sqrt(a @ a), p.e)")
-edit("7.16", "every acceleration pulls in", "impact_time(gap(x, p), v @ p.n, a @ p.n, left)",
+edit("7.16", "treats every acceleration as directed into the plane", "impact_time(gap(x, p), v @ p.n, a @ p.n, left)",
      "impact_time(gap(x, p), v @ p.n, -abs(a @ p.n), left)")
-edit("7.16", "does not lie after a bounce of no time", "bouncing_time(v @ p.n, a @ p.n, p.e) <= left",
+edit("7.16", "does not let the ball lie where bouncing takes no time", "bouncing_time(v @ p.n, a @ p.n, p.e) <= left",
      "0.0 < bouncing_time(v @ p.n, a @ p.n, p.e) <= left")
 
 
@@ -601,45 +613,50 @@ def sweeping(sweeps=3000, before=True, takes_back=True, friction=lambda mu: mu, 
 
 
 right("7.17", "until no impulse changes")(sweeping())
-wrong("7.17", "one sweep")(sweeping(sweeps=1))
-wrong("7.17", "five sweeps")(sweeping(sweeps=5))
-wrong("7.17", "restitution of what the sweep has left")(sweeping(before=False))
-wrong("7.17", "without friction")(sweeping(friction=lambda mu: 0.0))
-wrong("7.17", "never rebounds")(sweeping(rebound=lambda e: 0.0))
+wrong("7.17", "sweeps once only")(sweeping(sweeps=1))
+wrong("7.17", "sweeps five times only")(sweeping(sweeps=5))
+wrong("7.17", "takes the restitution from the velocities that the sweep has changed already")(sweeping(before=False))
+wrong("7.17", "omits the friction")(sweeping(friction=lambda mu: 0.0))
+wrong("7.17", "never lets the body rebound")(sweeping(rebound=lambda e: 0.0))
 wrong("7.17", "does not rotate")(sweeping(push=lambda body, r, J: body._replace(v=body.v + body.inv_mass * J)))
 wrong("7.17", "accepts any restitution")(sweeping(check=lambda *_: None))
 wrong("7.17", "returns a residual of zero")(sweeping(report=lambda residual: 0.0))
-edit("7.17", "one after the other", "check_impacts(body, r, n, e, mu)",
+edit("7.17", "solves the impacts one after the other", "check_impacts(body, r, n, e, mu)",
      "from solutions.support.impulses import sequential_impacts as one; return one(body, r, n, e, mu)")
-edit("7.17", "all points leave alike", "cone_impulse(u, n[i], K, u_sep[i], mu)",
+edit("7.17", "uses the largest separation velocity for all points", "cone_impulse(u, n[i], K, u_sep[i], mu)",
      "cone_impulse(u, n[i], K, u_sep.max(), mu)")
-edit("7.17", "none rebounds", "cone_impulse(u, n[i], K, u_sep[i], mu)", "cone_impulse(u, n[i], K, 0.0, mu)")
-edit("7.17", "one normal for all points", "cone_impulse(u, n[i]", "cone_impulse(u, n[0]")
-edit("7.17", "rebounds with the speed of the centre", "point_velocity(after.v, after.omega, r[i])", "after.v")
-edit("7.17", "settled at an absolute 1e-11 m/s", "CONVERGED * speed", "1e-11")
-edit("7.17", "the body before the impact, if the sweeps do not settle",
+edit("7.17", "omits the restitution", "cone_impulse(u, n[i], K, u_sep[i], mu)", "cone_impulse(u, n[i], K, 0.0, mu)")
+edit("7.17", "uses the first normal for all points", "cone_impulse(u, n[i]", "cone_impulse(u, n[0]")
+edit("7.17", "takes the restitution from the velocity of the centre of mass",
+     "point_velocity(after.v, after.omega, r[i])", "after.v")
+edit("7.17", "stops at an absolute 1e-11 m/s", "CONVERGED * speed", "1e-11")
+edit("7.17", "returns the body before the impact if the sweeps do not settle",
      JAMMED, "(body, residual)")
-edit("7.17", "friction of 1 at most", "u_sep[i], mu)", "u_sep[i], min(mu, 1.0))")
-edit("7.17", "the result of the last sweep, if the sweeps do not settle",
+edit("7.17", "limits the friction to 1", "u_sep[i], mu)", "u_sep[i], min(mu, 1.0))")
+edit("7.17", "returns the result of the last sweep if the sweeps do not settle",
      f"return {JAMMED}", "return after, residual")
-edit("7.17", "without friction, if the sweeps do not settle", "apply_impulse, body, r, n, e, mu)",
+edit("7.17", "omits the friction if the sweeps do not settle", "apply_impulse, body, r, n, e, mu)",
      "apply_impulse, body, r, n, e, 0.0)")
-edit("7.17", "100 sweeps", "range(MAX_SWEEPS)", "range(100)")
-edit("7.17", "500 sweeps", "range(MAX_SWEEPS)", "range(500)")
-edit("7.17", "an impulse for a velocity", "np.abs(times(K, J - Js[i])).max()", "np.abs(J - Js[i]).max()")
-edit("7.17", "rounding without the rotation", "largest_speed(body, r)", "np.linalg.norm(body.v)")
-edit("7.17", "rounding of the points' velocities", "largest_speed(body, r)",
+edit("7.17", "stops after 100 sweeps", "range(MAX_SWEEPS)", "range(100)")
+edit("7.17", "stops after 500 sweeps", "range(MAX_SWEEPS)", "range(500)")
+edit("7.17", "measures the change as an impulse, not as a velocity",
+     "np.abs(times(K, J - Js[i])).max()", "np.abs(J - Js[i]).max()")
+edit("7.17", "estimates the round-off without the rotation", "largest_speed(body, r)", "np.linalg.norm(body.v)")
+edit("7.17", "estimates the round-off from the velocities of the points", "largest_speed(body, r)",
      "max([np.linalg.norm(point_velocity(body.v, body.omega, arm)) for arm in r])")
-edit("7.17", "no change if it is against the axes", "np.abs(times(K, J - Js[i])).max()", "times(K, J - Js[i]).max()")
-edit("7.17", "the residual of the last point", "residual = max(residual, ", "residual = max(0.0, ")
-edit("7.17", "the residual of the first point", "residual = max(residual, ", "residual = max(residual, (i == 0) * ")
+edit("7.17", "omits negative changes from the residual",
+     "np.abs(times(K, J - Js[i])).max()", "times(K, J - Js[i]).max()")
+edit("7.17", "returns the residual of the last point", "residual = max(residual, ", "residual = max(0.0, ")
+edit("7.17", "returns the residual of the first point",
+     "residual = max(residual, ", "residual = max(residual, (i == 0) * ")
 edit("7.17", "checks the restitution only", "check_impacts(body, r, n, e, mu)", "check_restitution(e)")
-edit("7.17", "four fifths of the friction", "u_sep[i], mu)", "u_sep[i], 0.8 * mu)")
-edit("7.17", "more than two points share one friction", "u_sep[i], mu)", "u_sep[i], mu if len(r) < 3 else mu / len(r))")
-edit("7.17", "friction of 2 at most", "u_sep[i], mu)", "u_sep[i], min(mu, 2.0))")
-edit("7.17", "sticks as a ball would", "contact_matrix(r[i], body.inv_mass, body.inv_inertia)",
+edit("7.17", "uses four fifths of the friction", "u_sep[i], mu)", "u_sep[i], 0.8 * mu)")
+edit("7.17", "divides the friction among the points if there are more than two",
+     "u_sep[i], mu)", "u_sep[i], mu if len(r) < 3 else mu / len(r))")
+edit("7.17", "limits the friction to 2", "u_sep[i], mu)", "u_sep[i], min(mu, 2.0))")
+edit("7.17", "replaces the inverse tensor by a number", "contact_matrix(r[i], body.inv_mass, body.inv_inertia)",
      "contact_matrix(r[i], body.inv_mass, np.trace(body.inv_inertia) / 3.0 * np.eye(3))")
-edit("7.17", "asks for the normal changes only", "np.abs(times(K, J - Js[i])).max()", "abs(n[i] @ times(K, J - Js[i]))")
-edit("7.17", "infinite friction, if the sweeps do not settle", "apply_impulse, body, r, n, e, mu)",
+edit("7.17", "measures the normal changes only", "np.abs(times(K, J - Js[i])).max()", "abs(n[i] @ times(K, J - Js[i]))")
+edit("7.17", "uses infinite friction if the sweeps do not settle", "apply_impulse, body, r, n, e, mu)",
      "apply_impulse, body, r, n, e, np.inf)")
-edit("7.17", "the residual of the sweeps that do not settle", JAMMED, f"({JAMMED}[0], residual)")
+edit("7.17", "returns the residual of the sweeps that did not settle", JAMMED, f"({JAMMED}[0], residual)")

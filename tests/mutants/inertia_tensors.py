@@ -21,7 +21,7 @@ def centre_of_mass(m, x):
     return M, X
 
 
-edit("4.1", "mean position, whatever the masses", "m @ x / M", "np.sum(x, axis=0) / m.size")
+edit("4.1", "takes the mean of the positions, whatever the masses", "m @ x / M", "np.sum(x, axis=0) / m.size")
 edit("4.1", "forgets to divide by the mass", "m @ x / M", "m @ x")
 edit("4.1", "divides by the number of points", "m @ x / M", "m @ x / m.size")
 edit("4.1", "divides by zero", 'check_positive("total mass [kg]", M)', "pass")
@@ -33,8 +33,9 @@ edit("4.1", "refuses less than a microgram", POSITIVE, 'check_positive("total ma
 edit("4.1", "refuses less than a molecule", POSITIVE, 'check_positive("total mass [kg]", M if M > 1e-20 else 0.0)')
 edit("4.1", "refuses what is almost all hole", POSITIVE,
      'check_positive("total mass [kg]", M if M > 1e-3 * np.sum(np.abs(m)) else 0.0)')
-edit("4.1", "zero within a nanometre", "m @ x / M", "np.where(np.abs(m @ x / M) < 1e-9, 0.0, m @ x / M)")
-edit("4.1", "holes count as mass", "np.sum(m)", "np.sum(np.abs(m))")
+edit("4.1", "returns zero for coordinates below 1 nm",
+     "m @ x / M", "np.where(np.abs(m @ x / M) < 1e-9, 0.0, m @ x / M)")
+edit("4.1", "uses the sizes of the masses, so that holes count as mass", "np.sum(m)", "np.sum(np.abs(m))")
 
 
 # 4.2 ------------------------------------------------------------------------------------------------------------
@@ -47,13 +48,13 @@ def linear_momentum(m, v):
 
 
 edit("4.2", "forgets the masses", "m @ v", "np.sum(v, axis=0)")
-edit("4.2", "total mass times the mean velocity", "m @ v", "np.sum(m) * np.sum(v, axis=0) / m.size")
-edit("4.2", "speeds instead of velocities", "m @ v", "m @ np.abs(v)")
-edit("4.2", "velocity of the centre", "m @ v", "m @ v / np.sum(m)")
-edit("4.2", "by centre_of_mass, which refuses a sum of zero", "m @ v", "np.sum(m) * centre_of_mass(m, v)[1]")
-edit("4.2", "a hole taken for a body", "m @ v", "np.abs(m) @ v")
+edit("4.2", "multiplies the total mass by the mean velocity", "m @ v", "np.sum(m) * np.sum(v, axis=0) / m.size")
+edit("4.2", "uses the absolute values of the velocities", "m @ v", "m @ np.abs(v)")
+edit("4.2", "returns the velocity of the centre of mass", "m @ v", "m @ v / np.sum(m)")
+edit("4.2", "calls centre_of_mass, which refuses a total mass of zero", "m @ v", "np.sum(m) * centre_of_mass(m, v)[1]")
+edit("4.2", "takes a hole for a body", "m @ v", "np.abs(m) @ v")
 edit("4.2", "refuses holes", "return m @ v", '[check_positive("mass [kg]", k) for k in m]; return m @ v')
-edit("4.2", "zero within a nanometre per second", "m @ v", "np.where(np.abs(m @ v) < 1e-9, 0.0, m @ v)")
+edit("4.2", "returns zero for components below 1e-9 kg m/s", "m @ v", "np.where(np.abs(m @ v) < 1e-9, 0.0, m @ v)")
 
 
 # 4.3 ------------------------------------------------------------------------------------------------------------
@@ -62,15 +63,15 @@ def angular_momentum(m, x, v, about):
     return m @ np.cross(x, v) - np.cross(about, m @ v)
 
 
-edit("4.3", "cross product the other way round", "cross(x[n] - about, v[n])", "cross(v[n], x[n] - about)")
+edit("4.3", "takes v × r in place of r × v", "cross(x[n] - about, v[n])", "cross(v[n], x[n] - about)")
 edit("4.3", "always about the origin", "x[n] - about", "x[n]")
 edit("4.3", "forgets the masses", "m[n] * cross", "cross")
 edit("4.3", "always about the centre", "x[n] - about", "x[n] - m @ x / np.sum(m)")
 edit("4.3", "refuses a total mass of zero or less", "L = np.zeros(3)",
      'check_positive("total mass [kg]", np.sum(m)); L = np.zeros(3)')
-edit("4.3", "a hole taken for a body", "m[n] * cross", "abs(m[n]) * cross")
+edit("4.3", "takes a hole for a body", "m[n] * cross", "abs(m[n]) * cross")
 edit("4.3", "ignores holes", "m[n] * cross", "max(0.0, m[n]) * cross")
-edit("4.3", "velocities relative to the centre", "v[n])", "v[n] - m @ v / np.sum(m))")
+edit("4.3", "uses the velocities relative to the centre of mass", "v[n])", "v[n] - m @ v / np.sum(m))")
 
 
 # 4.4 ------------------------------------------------------------------------------------------------------------
@@ -84,14 +85,17 @@ def point_mass_inertia(m, r):
 
 
 TENSOR = "[[yy + zz, -xy, -xz], [-xy, xx + zz, -yz], [-xz, -yz, xx + yy]]"
-edit("4.4", "plus sign off the diagonal", TENSOR, TENSOR.replace("-", ""))
-edit("4.4", "second moments for the tensor", TENSOR, "[[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]")
-edit("4.4", "diagonal only", TENSOR, "[[yy + zz, 0.0, 0.0], [0.0, xx + zz, 0.0], [0.0, 0.0, xx + yy]]")
-edit("4.4", "distance from the point instead of from the axis", TENSOR, "np.eye(3) * (xx + yy + zz)")
-edit("4.4", "a hole taken for a body", "xx, yy, zz =", "m = np.abs(m); xx, yy, zz =")
+edit("4.4", "omits the minus signs off the diagonal", TENSOR, TENSOR.replace("-", ""))
+edit("4.4", "returns the second moments, Σ m r rᵀ, in place of the tensor",
+     TENSOR, "[[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]")
+edit("4.4", "omits the entries off the diagonal",
+     TENSOR, "[[yy + zz, 0.0, 0.0], [0.0, xx + zz, 0.0], [0.0, 0.0, xx + yy]]")
+edit("4.4", "uses the distance from the point, not from each axis", TENSOR, "np.eye(3) * (xx + yy + zz)")
+edit("4.4", "takes a hole for a body", "xx, yy, zz =", "m = np.abs(m); xx, yy, zz =")
 edit("4.4", "refuses a total mass of zero or less", "xx, yy, zz =",
      'check_positive("total mass [kg]", np.sum(m)); xx, yy, zz =')
-edit("4.4", "zero within a nanometre", "xx, yy, zz =", "r = np.where(np.abs(r) < 1e-9, 0.0, r); xx, yy, zz =")
+edit("4.4", "treats coordinates below 1 nm as zero",
+     "xx, yy, zz =", "r = np.where(np.abs(r) < 1e-9, 0.0, r); xx, yy, zz =")
 
 
 # 4.5 ------------------------------------------------------------------------------------------------------------
@@ -101,14 +105,16 @@ def box_inertia(m, size):
     return np.diag(np.sum(second) - second)
 
 
-edit("4.5", "edges taken for half edges", "m / 12.0", "m / 3.0")
-edit("4.5", "each axis with its own edge", "[bb + cc, aa + cc, aa + bb]", "[2.0 * aa, 2.0 * bb, 2.0 * cc]")
-edit("4.5", "edges in the wrong order", "[bb + cc, aa + cc, aa + bb]", "[aa + cc, bb + cc, aa + bb]")
+edit("4.5", "takes the edges for half edges", "m / 12.0", "m / 3.0")
+edit("4.5", "uses each axis's own edge in place of the two others",
+     "[bb + cc, aa + cc, aa + bb]", "[2.0 * aa, 2.0 * bb, 2.0 * cc]")
+edit("4.5", "exchanges the edges of the first two axes", "[bb + cc, aa + cc, aa + bb]", "[aa + cc, bb + cc, aa + bb]")
 edit("4.5", "refuses holes", "m / 12.0", '(check_positive("mass m [kg]", m) or m) / 12.0')
 edit("4.5", "refuses a plate", "m / 12.0", '(check_positive("edge [m]", np.min(size)) or m) / 12.0')
 edit("4.5", "refuses what is smaller than a tenth of a millimetre", "m / 12.0",
      '(check_positive("edge [m]", np.max(size) - 1e-4) or m) / 12.0')
-edit("4.5", "three numbers", "np.diag(np.array([bb + cc, aa + cc, aa + bb]))", "np.array([bb + cc, aa + cc, aa + bb])")
+edit("4.5", "returns the three moments, not the tensor",
+     "np.diag(np.array([bb + cc, aa + cc, aa + bb]))", "np.array([bb + cc, aa + cc, aa + bb])")
 
 
 # 4.6 ------------------------------------------------------------------------------------------------------------
@@ -117,11 +123,11 @@ def sphere_inertia(m, radius):
     return worked.capsule_inertia(m, radius, 0.0)
 
 
-edit("4.6", "a shell, two thirds", "0.4 * m", "2.0 / 3.0 * m")
-edit("4.6", "the diameter", "radius * radius", "4.0 * radius * radius")
-edit("4.6", "filled everywhere", "np.eye(3)", "np.ones((3, 3))")
-edit("4.6", "the sum of all three moments", "0.4 * m", "1.2 * m")
-edit("4.6", "a hole taken for a body", "0.4 * m", "0.4 * abs(m)")
+edit("4.6", "uses the factor 2/3 of a hollow sphere", "0.4 * m", "2.0 / 3.0 * m")
+edit("4.6", "uses the diameter in place of the radius", "radius * radius", "4.0 * radius * radius")
+edit("4.6", "fills the whole matrix, not only its diagonal", "np.eye(3)", "np.ones((3, 3))")
+edit("4.6", "returns the sum of the three moments on the diagonal", "0.4 * m", "1.2 * m")
+edit("4.6", "takes a hole for a body", "0.4 * m", "0.4 * abs(m)")
 edit("4.6", "refuses what is smaller than a nanometre", "0.4 * m",
      '0.4 * (check_positive("radius [m]", radius - 1e-9) or m)')
 edit("4.6", "refuses holes", "0.4 * m", '0.4 * (check_positive("mass m [kg]", m) or m)')
@@ -133,16 +139,18 @@ def cylinder_inertia(m, radius, length):
     return m * radius**2 / 4.0 * np.diag([1.0, 1.0, 2.0]) + m * length**2 / 12.0 * np.diag([1.0, 1.0, 0.0])
 
 
-edit("4.7", "axis along y", "across, 0.5 * m * radius * radius", "0.5 * m * radius * radius, across")
-edit("4.7", "rod across, without its thickness", "3.0 * radius * radius + length * length", "length * length")
-edit("4.7", "half the length", "length * length", "0.25 * length * length")
-edit("4.7", "a hoop about its axis", "0.5 * m * radius * radius", "m * radius * radius")
+edit("4.7", "takes the cylinder's axis along y",
+     "across, 0.5 * m * radius * radius", "0.5 * m * radius * radius, across")
+edit("4.7", "omits the radius in the moments across the axis",
+     "3.0 * radius * radius + length * length", "length * length")
+edit("4.7", "uses half of the length", "length * length", "0.25 * length * length")
+edit("4.7", "uses the moment of a hoop about the axis", "0.5 * m * radius * radius", "m * radius * radius")
 edit("4.7", "refuses holes", "across = m", 'check_positive("mass m [kg]", m); across = m')
 edit("4.7", "refuses a disc", "across = m", 'check_positive("length [m]", length); across = m')
 edit("4.7", "refuses a rod", "across = m", 'check_positive("radius [m]", radius); across = m')
-edit("4.7", "a disc when shorter than a nanometre", "length * length", "length * length * (length > 1e-9)")
-edit("4.7", "a density, which a disc has not", "across = m", "m = m / length * length; across = m")
-edit("4.7", "a density, which a rod has not", "across = m", "m = m / radius**2 * radius**2; across = m")
+edit("4.7", "treats a cylinder shorter than 1 nm as a disc", "length * length", "length * length * (length > 1e-9)")
+edit("4.7", "divides by the length, which is zero for a disc", "across = m", "m = m / length * length; across = m")
+edit("4.7", "divides by the radius, which is zero for a rod", "across = m", "m = m / radius**2 * radius**2; across = m")
 
 
 # 4.8 ------------------------------------------------------------------------------------------------------------
@@ -156,10 +164,12 @@ def capsule(across=lambda r, h: 0.4 * r * r + 0.25 * h * h + 0.375 * h * r):
     return capsule_inertia
 
 
-wrong("4.8", "half balls centred on the ends of the cylinder")(capsule(lambda r, h: 0.4 * r * r + 0.25 * h * h))
-wrong("4.8", "half balls moved as if from their flat faces")(
+wrong("4.8", "puts the centres of the half balls at the ends of the cylinder")(
+    capsule(lambda r, h: 0.4 * r * r + 0.25 * h * h))
+wrong("4.8", "moves the half balls as if their moments were about their own centres")(
     capsule(lambda r, h: 0.4 * r * r + (0.5 * h + 0.375 * r) ** 2))
-wrong("4.8", "minus sign in the last term")(capsule(lambda r, h: 0.4 * r * r + 0.25 * h * h - 0.375 * h * r))
+wrong("4.8", "subtracts the last term of the half balls")(
+    capsule(lambda r, h: 0.4 * r * r + 0.25 * h * h - 0.375 * h * r))
 
 
 @right("4.8", "from the flat face to the centre of the half ball, and out again")
@@ -172,21 +182,25 @@ def capsule_inertia(m, radius, length):
     return worked.cylinder_inertia(m_c, radius, length) + halves
 
 
-edit("4.8", "mass shared by length", "4.0 / 3.0 * radius", "2.0 * radius")
-edit("4.8", "the box around it, as an engine does",
+edit("4.8", "divides the mass by length, not by volume", "4.0 / 3.0 * radius", "2.0 * radius")
+edit("4.8", "uses the box around the capsule",
      "np.diag(np.array([across, across, 0.5 * m_c * rr + 0.4 * m_s * rr]))",
      "box_inertia(m, np.array([2.0 * radius, 2.0 * radius, length + 2.0 * radius]))")
-edit("4.8", "length over all", "rr, hh =", "length = max(0.0, length - 2.0 * radius); rr, hh =")
+edit("4.8", "takes the length for the length over all",
+     "rr, hh =", "length = max(0.0, length - 2.0 * radius); rr, hh =")
 edit("4.8", "refuses holes", "m_c = m", 'check_positive("mass m [kg]", m); m_c = m')
 edit("4.8", "refuses a rod", "m_c = m", 'check_positive("radius [m]", radius); m_c = m')
-edit("4.8", "shares by volumes, which a rod has not", "length / (length + 4.0 / 3.0 * radius)",
+edit("4.8", "divides by the volume, which is zero for a rod", "length / (length + 4.0 / 3.0 * radius)",
      "(np.pi * rr * length) / (np.pi * rr * length + 4.0 / 3.0 * np.pi * rr * radius)")
-edit("4.8", "at least a picometre long", "(length + 4.0 / 3.0 * radius)", "max(length + 4.0 / 3.0 * radius, 1e-12)")
+edit("4.8", "uses a length of at least 1 pm in the denominator",
+     "(length + 4.0 / 3.0 * radius)", "max(length + 4.0 / 3.0 * radius, 1e-12)")
 edit("4.8", "never divides by zero", "(length + 4.0 / 3.0 * radius)", "(length + 4.0 / 3.0 * radius + 1e-24)")
-edit("4.8", "a rod when it is thin", "length / (length + 4.0 / 3.0 * radius)",
+edit("4.8", "treats a thin capsule as a rod", "length / (length + 4.0 / 3.0 * radius)",
      "(1.0 if radius < 1e-2 * length else length / (length + 4.0 / 3.0 * radius))")
-edit("4.8", "a ball when it is short", "m_c = m * length", "m_c = 0.0 if length < 1e-3 * radius else m * length")
-edit("4.8", "a ball when shorter than a micrometre", "m_c = m * length", "m_c = 0.0 if length < 1e-6 else m * length")
+edit("4.8", "treats a short capsule as a ball",
+     "m_c = m * length", "m_c = 0.0 if length < 1e-3 * radius else m * length")
+edit("4.8", "treats a capsule shorter than 1 µm as a ball",
+     "m_c = m * length", "m_c = 0.0 if length < 1e-6 else m * length")
 
 
 # 4.9 ------------------------------------------------------------------------------------------------------------
@@ -195,9 +209,9 @@ def world_inertia(I_body, R):
     return np.array([[R[i] @ I_body @ R[j] for j in range(3)] for i in range(3)])
 
 
-edit("4.9", "turned the other way", "R @ I_body @ R.T", "R.T @ I_body @ R")
-edit("4.9", "turned on one side only", "R @ I_body @ R.T", "R @ I_body")
-edit("4.9", "not turned", "R @ I_body @ R.T", "I_body.copy()")
+edit("4.9", "takes Rᵀ I R in place of R I Rᵀ", "R @ I_body @ R.T", "R.T @ I_body @ R")
+edit("4.9", "takes R I in place of R I Rᵀ", "R @ I_body @ R.T", "R @ I_body")
+edit("4.9", "returns the tensor in the body's axes", "R @ I_body @ R.T", "I_body.copy()")
 edit("4.9", "refuses holes", "return R", 'check_positive("a moment [kg m²]", np.trace(I_body)); return R')
 edit("4.9", "changes its input", "R @ I_body @ R.T", "np.matmul(R @ I_body, R.T, out=I_body)")
 
@@ -208,11 +222,11 @@ def world_inverse_inertia(I_body, R):
     return np.linalg.inv(R @ I_body @ R.T)
 
 
-edit("4.10", "not inverted", "inverse(I_body)", "I_body")
-edit("4.10", "turned the other way", "inverse(I_body), R)", "inverse(I_body), R.T)")
-edit("4.10", "one over each entry of the diagonal", "inverse(I_body)", "np.diag(1.0 / np.diag(I_body))")
-edit("4.10", "stays in the body's axes", "world_inertia(inverse(I_body), R)", "inverse(I_body)")
-edit("4.10", "an inverse of what has none", "inverse(I_body)", "np.linalg.pinv(I_body)")
+edit("4.10", "returns the tensor, not its inverse", "inverse(I_body)", "I_body")
+edit("4.10", "uses Rᵀ in place of R", "inverse(I_body), R)", "inverse(I_body), R.T)")
+edit("4.10", "inverts the entries of the diagonal only", "inverse(I_body)", "np.diag(1.0 / np.diag(I_body))")
+edit("4.10", "returns the inverse in the body's axes", "world_inertia(inverse(I_body), R)", "inverse(I_body)")
+edit("4.10", "returns a pseudo-inverse where there is no inverse", "inverse(I_body)", "np.linalg.pinv(I_body)")
 edit("4.10", "refuses small inputs", "inverse(I_body)",
      "inverse(I_body if abs(np.linalg.det(I_body)) > 1e-12 else 0.0 * I_body)")
 
@@ -225,12 +239,12 @@ def parallel_axes(I, m, d):
 
 
 POINT = "point_mass_inertia(np.array([m]), d.reshape(1, 3))"
-edit("4.11", "the same on the whole diagonal", POINT, "m * d @ d * np.eye(3)")
-edit("4.11", "minus sign lost off the diagonal", POINT, "m * (d @ d * np.eye(3) + np.outer(d, d))")
-edit("4.11", "diagonal only", POINT, "m * np.diag(d @ d - d * d)")
-edit("4.11", "smaller away from the centre", "I + point", "I - point")
+edit("4.11", "adds m d² to the whole diagonal and nothing else", POINT, "m * d @ d * np.eye(3)")
+edit("4.11", "adds d dᵀ in place of subtracting it", POINT, "m * (d @ d * np.eye(3) + np.outer(d, d))")
+edit("4.11", "omits the entries off the diagonal", POINT, "m * np.diag(d @ d - d * d)")
+edit("4.11", "subtracts the term in place of adding it", "I + point", "I - point")
 edit("4.11", "refuses holes", "return I", 'check_positive("a moment [kg m²]", np.trace(I)); return I')
-edit("4.11", "zero within a micrometre", "return I", "d = np.where(np.abs(d) < 1e-6, 0.0, d); return I")
+edit("4.11", "treats offsets below 1 µm as zero", "return I", "d = np.where(np.abs(d) < 1e-6, 0.0, d); return I")
 edit("4.11", "changes its input", f"I + {POINT}", f"np.add(I, {POINT}, out=I)")
 
 
@@ -244,9 +258,10 @@ def carried(offset=lambda y, X: y - X, body=lambda M, X, I: worked.MassPropertie
     return combine
 
 
-wrong("4.12", "tensors added as they are")(carried(lambda y, X: 0.0 * y))
-wrong("4.12", "about the origin")(carried(lambda y, X: y))
-wrong("4.12", "centre without its offset")(carried(body=lambda M, X, I: worked.MassProperties(M, 0.0 * X, I)))
+wrong("4.12", "adds the tensors without moving them to the common centre")(carried(lambda y, X: 0.0 * y))
+wrong("4.12", "returns the tensor about the origin")(carried(lambda y, X: y))
+wrong("4.12", "puts the centre of each part at the origin")(
+    carried(body=lambda M, X, I: worked.MassProperties(M, 0.0 * X, I)))
 
 
 @variants
@@ -260,7 +275,7 @@ def gathered(reference=lambda x: x[0]):
     return combine
 
 
-wrong("4.12", "about the origin of the world first: digits cancel far away")(gathered(lambda x: 0.0 * x[0]))
+wrong("4.12", "sums about the world's origin first, which loses digits far away")(gathered(lambda x: 0.0 * x[0]))
 
 
 @variants
@@ -277,19 +292,20 @@ def one_by_one(centre=lambda m, x: (np.sum(m), m @ x / np.sum(m))):
     return combine
 
 
-wrong("4.12", "one after the other, and refuses to begin with a hole")(one_by_one(worked.centre_of_mass))
+wrong("4.12", "combines the parts one by one, which fails where the first ones have no mass")(
+    one_by_one(worked.centre_of_mass))
 
 
-edit("4.12", "shifted with the total mass", "m[n]", "M")
-edit("4.12", "three bodies at most", "range(m.size)", "range(min(3, m.size))")
+edit("4.12", "moves each tensor with the total mass", "m[n]", "M")
+edit("4.12", "uses the first three bodies only", "range(m.size)", "range(min(3, m.size))")
 edit("4.12", "divides by zero", "centre_of_mass(m, x)", "np.sum(m), m @ x / np.sum(m)")
 edit("4.12", "refuses a mass of zero only", "centre_of_mass(m, x)",
      "centre_of_mass(m, x) if np.sum(m) == 0.0 else (np.sum(m), m @ x / np.sum(m))")
 edit("4.12", "changes its input", "parallel_axes(I[n], m[n], x[n] - X)",
      "np.add(I[n], parallel_axes(0.0 * I[n], m[n], x[n] - X), out=I[n])")
-edit("4.12", "a body without mass loses its tensor", "total += parallel_axes(",
+edit("4.12", "omits the tensor of a body without mass", "total += parallel_axes(",
      "total += 0.0 if m[n] == 0.0 else parallel_axes(")
-edit("4.12", "a plain tuple", "MassProperties(M, X, total)", "(M, X, total)")
+edit("4.12", "returns a plain tuple, not MassProperties", "MassProperties(M, X, total)", "(M, X, total)")
 
 
 # 4.13 -----------------------------------------------------------------------------------------------------------
@@ -308,15 +324,15 @@ def principal_axes(I):
     return np.diag(A)[order], R * np.linalg.det(R)
 
 
-edit("4.13", "left-handed half of the time", "dot(R[:, 0], cross(R[:, 1], R[:, 2])) < 0.0", "False")
+edit("4.13", "does not make the axes right-handed", "dot(R[:, 0], cross(R[:, 1], R[:, 2])) < 0.0", "False")
 edit("4.13", "reverses a row", "R[:, 2] = -R[:, 2]", "R[2] = -R[2]")
-edit("4.13", "negative moments taken for positive ones, as singular values are", "return moments, R",
+edit("4.13", "returns the moments without their signs", "return moments, R",
      "return np.abs(moments), R")
-edit("4.13", "no moment below zero", "return moments, R", "return np.maximum(moments, 0.0), R")
-edit("4.13", "moments in no order", "np.linalg.eigh(I)", "np.linalg.eig(I)")
-edit("4.13", "axes in rows", "return moments, R", "return moments, R.T")
-edit("4.13", "descending", "return moments, R", "return moments[::-1], -R[:, ::-1]")
-edit("4.13", "diagonal entries for moments", "return moments, R", "return np.sort(np.diag(I)), R")
+edit("4.13", "replaces negative moments by zero", "return moments, R", "return np.maximum(moments, 0.0), R")
+edit("4.13", "does not sort the moments", "np.linalg.eigh(I)", "np.linalg.eig(I)")
+edit("4.13", "returns the axes as rows, not as columns", "return moments, R", "return moments, R.T")
+edit("4.13", "sorts the moments in descending order", "return moments, R", "return moments[::-1], -R[:, ::-1]")
+edit("4.13", "returns the entries of the diagonal as moments", "return moments, R", "return np.sort(np.diag(I)), R")
 edit("4.13", "reverses all three columns at the end", "return moments, R", "return moments, -R")
 
 
@@ -343,29 +359,31 @@ def judged(lowest=lambda a, c: a <= 1e-14 * c, highest=lambda a, b, c: c > (a + 
 
 wrong("4.14", "does not test the sum")(judged(highest=lambda a, b, c: False))
 wrong("4.14", "accepts moments near zero")(judged(lambda a, c: a <= 0.0))
-wrong("4.14", "a tolerance of 1e-14 kg m²")(judged(lambda a, c: a <= 1e-14))
-wrong("4.14", "a thousand million times too tolerant")(judged(highest=lambda a, b, c: c > (a + b) * (1.0 + 1e-9)))
+wrong("4.14", "compares the smallest moment with an absolute 1e-14 kg m²")(judged(lambda a, c: a <= 1e-14))
+wrong("4.14", "allows a relative excess of 1e-9 in the triangle inequality")(
+    judged(highest=lambda a, b, c: c > (a + b) * (1.0 + 1e-9)))
 wrong("4.14", "refuses needles with one moment a hundred million times the other")(judged(lambda a, c: a <= 1e-8 * c))
 wrong("4.14", "refuses needles with one moment a million million times the other")(judged(lambda a, c: a <= 1e-12 * c))
-wrong("4.14", "a smallest moment of 1e-26 kg m²")(judged(lambda a, c: a <= 1e-26))
-wrong("4.14", "ten thousand times too tolerant of asymmetry")(judged(equal=1e-10))
-wrong("4.14", "a hundred times too tolerant of asymmetry")(judged(equal=1e-12))
-wrong("4.14", "asks Ixy and Iyx only")(judged(asymmetry=lambda I: abs(I[0, 1] - I[1, 0])))
-wrong("4.14", "wants symmetry to the last digit")(judged(equal=0.0))
+wrong("4.14", "compares the smallest moment with an absolute 1e-26 kg m²")(judged(lambda a, c: a <= 1e-26))
+wrong("4.14", "allows an asymmetry of 1e-10")(judged(equal=1e-10))
+wrong("4.14", "allows an asymmetry of 1e-12")(judged(equal=1e-12))
+wrong("4.14", "compares only Ixy with Iyx")(judged(asymmetry=lambda I: abs(I[0, 1] - I[1, 0])))
+wrong("4.14", "requires symmetry to the last digit")(judged(equal=0.0))
 wrong("4.14", "tests symmetry with NumPy's isclose")(judged(equal=1e-5))
-wrong("4.14", "names another moment")(judged(named=lambda a, c: (c, a)))
+wrong("4.14", "names another moment in the error")(judged(named=lambda a, c: (c, a)))
 wrong("4.14", "accepts zero")(judged(lambda a, c: a < 0.0))
 wrong("4.14", "refuses a plate because of round-off")(judged(highest=lambda a, b, c: c >= a + b))
 wrong("4.14", "does not look below the diagonal")(judged(symmetric=False))
 wrong("4.14", "accepts NaN")(judged(finite=False))
-wrong("4.14", "a tolerance in kg m², blind to small bodies")(judged(lambda a, c: a <= 1e-6))
+wrong("4.14", "compares the smallest moment with an absolute 1e-6 kg m²")(judged(lambda a, c: a <= 1e-6))
 right("4.14", "with eigenvalues only")(judged())
-edit("4.14", "looks at the diagonal instead of the principal moments", "moments, _ = principal_axes(I)",
+edit("4.14", "tests the diagonal in place of the principal moments", "moments, _ = principal_axes(I)",
      "moments = np.sort(np.diag(I))")
-edit("4.14", "a sum in kg m², blind to small bodies", "(1.0 + MOMENT_ROUND_OFF)", "1.0 + MOMENT_ROUND_OFF")
+edit("4.14", "compares the sum of moments with an absolute tolerance in kg m²",
+     "(1.0 + MOMENT_ROUND_OFF)", "1.0 + MOMENT_ROUND_OFF")
 edit("4.14", "accepts NaN off the diagonal", "kg m²]\", I)", "kg m²]\", np.diag(I))")
-edit("4.14", "looks for NaN above the diagonal only", "kg m²]\", I)", "kg m²]\", np.triu(I))")
-edit("4.14", "looks for NaN below the diagonal only", "kg m²]\", I)", "kg m²]\", np.tril(I))")
+edit("4.14", "finds NaN on and above the diagonal only", "kg m²]\", I)", "kg m²]\", np.triu(I))")
+edit("4.14", "finds NaN on and below the diagonal only", "kg m²]\", I)", "kg m²]\", np.tril(I))")
 edit("4.14", "compares the asymmetry with the root of all squares", "MOMENT_ROUND_OFF * np.max(np.abs(I))",
      "MOMENT_ROUND_OFF * np.sqrt(np.sum(I * I))")
 edit("4.14", "compares the asymmetry with the trace", "MOMENT_ROUND_OFF * np.max(np.abs(I))",
@@ -377,9 +395,9 @@ edit("4.14", "copies the words for the smallest moment", "the smallest principal
      "the largest principal moment")
 edit("4.14", "copies the words for the asymmetry", "the asymmetry of an inertia", "an entry of the inertia")
 edit("4.14", "copies the words for an entry", "an entry of the inertia", "the asymmetry of an inertia")
-edit("4.14", "the smallest moment against the middle one", "moments[0] <= MOMENT_ROUND_OFF * moments[2]",
+edit("4.14", "compares the smallest moment with the middle one", "moments[0] <= MOMENT_ROUND_OFF * moments[2]",
      "moments[0] <= MOMENT_ROUND_OFF * moments[1]")
-edit("4.14", "asymmetry against the largest entry with its sign", "np.max(np.abs(I)):", "np.max(I):")
+edit("4.14", "compares the asymmetry with the largest entry, signs included", "np.max(np.abs(I)):", "np.max(I):")
 
 
 # 4.15 -----------------------------------------------------------------------------------------------------------
@@ -401,13 +419,13 @@ def mesh_integrals(x, faces):
 
 SIX_VOLUMES = "a[0] * bc_x + a[1] * bc_y + a[2] * bc_z"
 SECOND = "w / 120.0 * (a[i] * a[j] + b[i] * b[j] + c[i] * c[j] + s * (a[j] + b[j] + c[j]))"
-edit("4.15", "volumes without their signs", SIX_VOLUMES, f"abs({SIX_VOLUMES})")
-edit("4.15", "the whole volume without its sign", "return volume, first", "return abs(volume), first")
-edit("4.15", "a mass at each corner instead of the integral", SECOND,
+edit("4.15", "drops the sign of each tetrahedron's volume", SIX_VOLUMES, f"abs({SIX_VOLUMES})")
+edit("4.15", "drops the sign of the whole volume", "return volume, first", "return abs(volume), first")
+edit("4.15", "puts masses at the corners in place of integrating", SECOND,
      "w / 24.0 * (a[i] * a[j] + b[i] * b[j] + c[i] * c[j])")
-edit("4.15", "triangles read clockwise", SIX_VOLUMES, f"-({SIX_VOLUMES})")
-edit("4.15", "all mass at the middle of each tetrahedron", SECOND, "w / 96.0 * s * (a[j] + b[j] + c[j])")
-edit("4.15", "middle of the triangle, not of the tetrahedron", "w / 24.0", "w / 18.0")
+edit("4.15", "reverses the orientation of the triangles", SIX_VOLUMES, f"-({SIX_VOLUMES})")
+edit("4.15", "puts all mass of a tetrahedron at its centre", SECOND, "w / 96.0 * s * (a[j] + b[j] + c[j])")
+edit("4.15", "uses the centre of the triangle, not of the tetrahedron", "w / 24.0", "w / 18.0")
 edit("4.15", "ignores tetrahedra below a cubic nanometre", "volume +=", "w = w if abs(w) > 1e-27 else 0.0; volume +=")
 
 
@@ -436,12 +454,13 @@ def closing(ranged=True, directed=True, counted=True, twice=True, spare=True, na
 
 right("4.16", "counting every edge")(closing())
 wrong("4.16", "counts the triangles at each edge, whatever their direction")(closing(directed=False))
-wrong("4.16", "looks for one reversed edge, not for equal counts")(closing(counted=False))
+wrong("4.16", "looks for one reversed edge in place of comparing the counts")(closing(counted=False))
 wrong("4.16", "does not look at the numbers")(closing(ranged=False))
-wrong("4.16", "names corner 0, whichever is open")(closing(named=lambda edges: 0))
-wrong("4.16", "wants each edge exactly once in each direction")(closing(twice=False))
-wrong("4.16", "wants every corner to be used")(closing(spare=False))
-wrong("4.16", "numbers the edges by triangles, not by corners")(closing(number=lambda i, j, faces: i * len(faces) + j))
+wrong("4.16", "names corner 0 in the error, whichever edge is open")(closing(named=lambda edges: 0))
+wrong("4.16", "requires each edge exactly once in each direction")(closing(twice=False))
+wrong("4.16", "requires that every corner is used")(closing(spare=False))
+wrong("4.16", "numbers the edges with the number of triangles, not of corners")(
+    closing(number=lambda i, j, faces: i * len(faces) + j))
 edit("4.16", "refuses a triangle with a corner twice though it closes", "if i < 0 or i >= count:",
      "if i < 0 or i >= count or i == j:")
 
@@ -477,30 +496,34 @@ def mesh_body(density, x, faces):
     return worked.MassProperties(whole.m, x[0] + body.x, body.I)
 
 
-edit("4.17", "tensor about the first corner", "second - volume * np.outer(centre, centre)", "second")
-edit("4.17", "second moments for the tensor", "np.trace(covariance) * np.eye(3) - covariance", "covariance")
+edit("4.17", "returns the tensor about the first corner", "second - volume * np.outer(centre, centre)", "second")
+edit("4.17", "returns the second moments in place of the tensor",
+     "np.trace(covariance) * np.eye(3) - covariance", "covariance")
 edit("4.17", "forgets the density in the tensor", "density * (np.trace", "1.0 * (np.trace")
-edit("4.17", "plus sign off the diagonal", "np.eye(3) - covariance",
+edit("4.17", "omits the minus signs off the diagonal", "np.eye(3) - covariance",
      "np.eye(3) + covariance - 2.0 * np.diag(np.diag(covariance))")
-edit("4.17", "about the origin of the world: digits cancel far away", "offsets = x - x[0]", "offsets, x = x, 0.0 * x")
-edit("4.17", "density taken for mass", "density * volume", "density")
-edit("4.17", "the mean of the corners for the centre", "x[0] + centre", "np.sum(x, axis=0) / x.shape[0]")
-edit("4.17", "the tensor about the mean of the corners", "first / volume", "np.sum(offsets, axis=0) / x.shape[0]")
-edit("4.17", "a mesh inside-out gets the volume it should have had", "volume <= MOMENT", "abs(volume) <= MOMENT")
+edit("4.17", "integrates about the world's origin, which loses digits far away",
+     "offsets = x - x[0]", "offsets, x = x, 0.0 * x")
+edit("4.17", "takes the density for the mass", "density * volume", "density")
+edit("4.17", "returns the mean of the corners as the centre", "x[0] + centre", "np.sum(x, axis=0) / x.shape[0]")
+edit("4.17", "returns centre and tensor for the mean of the corners",
+     "first / volume", "np.sum(offsets, axis=0) / x.shape[0]")
+edit("4.17", "accepts a mesh that is inside-out", "volume <= MOMENT", "abs(volume) <= MOMENT")
 edit("4.17", "does not check that the mesh is closed", "check_closed(x.shape[0], faces)", "pass")
 edit("4.17", "accepts a flat mesh if its round-off volume is positive",
      "MOMENT_ROUND_OFF * np.max(np.abs(offsets)) ** 3", "0.0")
 edit("4.17", "refuses what is small, whatever its shape", "MOMENT_ROUND_OFF * np.max(np.abs(offsets)) ** 3",
      "MOMENT_ROUND_OFF")
-edit("4.17", "a length for a volume", "np.max(np.abs(offsets)) ** 3", "np.max(np.abs(offsets))")
-edit("4.17", "how far the others are above the first corner, not from it", "np.max(np.abs(offsets))", "np.max(offsets)")
-edit("4.17", "how far the others are below the first corner, not from it", "np.max(np.abs(offsets))",
+edit("4.17", "compares the volume with a length", "np.max(np.abs(offsets)) ** 3", "np.max(np.abs(offsets))")
+edit("4.17", "measures the size of the mesh on the positive side of the first corner only",
+     "np.max(np.abs(offsets))", "np.max(offsets)")
+edit("4.17", "measures the size of the mesh on the negative side of the first corner only", "np.max(np.abs(offsets))",
      "np.max(-offsets)")
 edit("4.17", "accepts indices of no corner", "x.shape[0], faces", "np.max(faces) + 1, faces")
 edit("4.17", "accepts an infinite density", 'check_positive("density [kg/m³]", density)',
      'if not density > 0.0: raise BadInput("density [kg/m³]", density, "give some")')
-edit("4.17", "a thousand times too tolerant", "MOMENT_ROUND_OFF * np.max", "1e-17 * np.max")
-edit("4.17", "a thousand times too strict", "MOMENT_ROUND_OFF * np.max", "1e-11 * np.max")
-edit("4.17", "looks at the corners of triangles only", "[m]\", x)", "[m]\", x[np.unique(faces % x.shape[0])])")
-edit("4.17", "a plain tuple", "MassProperties(density * volume, x[0] + centre, tensor)",
+edit("4.17", "accepts volumes a thousand times too small", "MOMENT_ROUND_OFF * np.max", "1e-17 * np.max")
+edit("4.17", "refuses volumes a thousand times too large", "MOMENT_ROUND_OFF * np.max", "1e-11 * np.max")
+edit("4.17", "checks only the corners that triangles use", "[m]\", x)", "[m]\", x[np.unique(faces % x.shape[0])])")
+edit("4.17", "returns a plain tuple, not MassProperties", "MassProperties(density * volume, x[0] + centre, tensor)",
      "(density * volume, x[0] + centre, tensor)")

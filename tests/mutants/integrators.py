@@ -18,11 +18,12 @@ def euler_step(acceleration, t, x, v, dt, p):
     return x, v
 
 
-edit("1.1", "moves with the new velocity", "x + dt * v,", "x + dt * (v + dt * acceleration(t, x, v, p)),")
+edit("1.1", "moves the position with the new velocity", "x + dt * v,", "x + dt * (v + dt * acceleration(t, x, v, p)),")
 edit("1.1", "forgets dt in the velocity", "v + dt * acceleration", "v + acceleration")
-edit("1.1", "evaluates at the end of the step", "acceleration(t, x, v, p)", "acceleration(t, x + dt * v, v, p)")
+edit("1.1", "takes the acceleration at the new position",
+     "acceleration(t, x, v, p)", "acceleration(t, x + dt * v, v, p)")
 edit("1.1", "changes its input", "v + dt * acceleration(t, x, v, p)", "np.add(v, dt * acceleration(t, x, v, p), out=v)")
-edit("1.1", "evaluates at t + dt", "acceleration(t, x", "acceleration(t + dt, x")
+edit("1.1", "takes the acceleration at time t + dt", "acceleration(t, x", "acceleration(t + dt, x")
 
 
 # 1.2 ------------------------------------------------------------------------------------------------------------
@@ -33,9 +34,10 @@ def midpoint_step(acceleration, t, x, v, dt, p):
     return x + (x_end - x_mid), v + (v_end - v_mid)
 
 
-edit("1.2", "half a step only", "x + dt * v_mid, v + dt", "x + 0.5 * dt * v_mid, v + 0.5 * dt")
-edit("1.2", "position still with the old velocity", "x + dt * v_mid", "x + dt * v")
-edit("1.2", "forgets to move the clock", "acceleration(t + 0.5 * dt", "acceleration(t")
+edit("1.2", "advances by dt/2 only", "x + dt * v_mid, v + dt", "x + 0.5 * dt * v_mid, v + 0.5 * dt")
+edit("1.2", "moves the position with the velocity at the start of the step", "x + dt * v_mid", "x + dt * v")
+edit("1.2", "evaluates the slope at the middle at time t, not at t + dt/2",
+     "acceleration(t + 0.5 * dt", "acceleration(t")
 
 
 # 1.3 ------------------------------------------------------------------------------------------------------------
@@ -52,11 +54,11 @@ def runge_kutta(nodes=(0, 0.5, 0.5, 1), weights=(1 / 6, 1 / 3, 1 / 3, 1 / 6)):
     return step
 
 
-wrong("1.3", "equal weights")(runge_kutta(weights=(1 / 4, 1 / 4, 1 / 4, 1 / 4)))
-wrong("1.3", "weights of the middle and the ends swapped")(runge_kutta(weights=(1 / 3, 1 / 6, 1 / 6, 1 / 3)))
-wrong("1.3", "last slope in the middle")(runge_kutta(nodes=(0, 0.5, 0.5, 0.5)))
+wrong("1.3", "gives the four slopes equal weights")(runge_kutta(weights=(1 / 4, 1 / 4, 1 / 4, 1 / 4)))
+wrong("1.3", "exchanges the weights of the middle and of the ends")(runge_kutta(weights=(1 / 3, 1 / 6, 1 / 6, 1 / 3)))
+wrong("1.3", "takes the fourth slope at the middle of the step, not at its end")(runge_kutta(nodes=(0, 0.5, 0.5, 0.5)))
 right("1.3", "from its table")(runge_kutta())
-edit("1.3", "position by Euler, velocity by Runge–Kutta", "x + dt / 6.0 * (v + 2.0 * v2 + 2.0 * v3 + v4)", "x + dt * v")
+edit("1.3", "moves the position by an Euler step", "x + dt / 6.0 * (v + 2.0 * v2 + 2.0 * v3 + v4)", "x + dt * v")
 edit("1.3", "does not advance t to the midpoint", "acceleration(t + 0.5 * dt, x + 0.5 * dt * v2",
      "acceleration(t, x + 0.5 * dt * v2")
 edit("1.3", "does not advance t to the end", "acceleration(t + dt", "acceleration(t")
@@ -70,8 +72,8 @@ def average_velocity_step(acceleration, t, x, v, dt, p):
 
 
 edit("1.4", "adds the velocities without halving", "0.5 * dt", "dt")
-edit("1.4", "new velocity twice", "(v + v_new)", "(v_new + v_new)")
-edit("1.4", "halves the velocity update too", "v + dt * acc", "v + 0.5 * dt * acc")
+edit("1.4", "moves with the new velocity, not with the mean of old and new", "(v + v_new)", "(v_new + v_new)")
+edit("1.4", "halves the change of the velocity, too", "v + dt * acc", "v + 0.5 * dt * acc")
 
 
 # 1.5 ------------------------------------------------------------------------------------------------------------
@@ -81,10 +83,11 @@ def symplectic_euler_step(acceleration, t, x, v, dt, p):
     return x + dt * v + dt * dt * a, v + dt * a
 
 
-edit("1.5", "plain Euler", "v = v + dt * acceleration(t, x, v, p)",
+edit("1.5", "takes an explicit Euler step", "v = v + dt * acceleration(t, x, v, p)",
      "v, x = v + dt * acceleration(t, x, v, p), x - dt * dt * acceleration(t, x, v, p)")
-edit("1.5", "position first", "acceleration(t, x, v, p)", "acceleration(t, x + dt * v, v, p)")
-edit("1.5", "a flipped sign", "v + dt", "v - dt")
+edit("1.5", "moves the position first, with the old velocity, and takes the acceleration there",
+     "acceleration(t, x, v, p)", "acceleration(t, x + dt * v, v, p)")
+edit("1.5", "subtracts the acceleration", "v + dt", "v - dt")
 
 
 # 1.6 ------------------------------------------------------------------------------------------------------------
@@ -95,10 +98,10 @@ def verlet_step(acceleration, t, x, v, dt, p):
     return x_new, half + 0.5 * dt * acceleration(t + dt, x_new, 2.0 * half - v, p)
 
 
-edit("1.6", "old acceleration for the whole velocity", "(a + a_new)", "(a + a)")
-edit("1.6", "new acceleration with the old velocity", "v + dt * a, p)", "v, p)")
+edit("1.6", "advances the velocity with the old acceleration only", "(a + a_new)", "(a + a)")
+edit("1.6", "takes the new acceleration at the old velocity", "v + dt * a, p)", "v, p)")
 edit("1.6", "forgets the half in the position", "0.5 * dt * dt * a", "dt * dt * a")
-edit("1.6", "new acceleration at the old time", "acceleration(t + dt", "acceleration(t")
+edit("1.6", "takes the new acceleration at the old time", "acceleration(t + dt", "acceleration(t")
 
 
 # 1.7 ------------------------------------------------------------------------------------------------------------
@@ -121,12 +124,13 @@ def implicit_euler(time=1.0, place=1.0, enough=lambda k, delta, w: delta <= 1e-1
 
 
 right("1.7", "with a stopping test")(implicit_euler())
-wrong("1.7", "acceleration at the old time")(implicit_euler(time=0.0))
-wrong("1.7", "acceleration at the old place")(implicit_euler(place=0.0))
+wrong("1.7", "takes the acceleration at the old time")(implicit_euler(time=0.0))
+wrong("1.7", "takes the acceleration at the old position")(implicit_euler(place=0.0))
 wrong("1.7", "never raises: returns the last iterate")(implicit_euler(silent=True))
-wrong("1.7", "one linearised step, no loop")(implicit_euler(enough=lambda k, delta, w: True))
-wrong("1.7", "stops at a tenth")(implicit_euler(enough=lambda k, delta, w: delta <= 0.1))
-edit("1.7", "one Euler step instead of an equation", "w = v.copy()",
+wrong("1.7", "takes one Newton iteration only")(implicit_euler(enough=lambda k, delta, w: True))
+wrong("1.7", "stops iterating while the correction is still large")(
+    implicit_euler(enough=lambda k, delta, w: delta <= 0.1))
+edit("1.7", "takes a symplectic Euler step and solves no equation", "w = v.copy()",
      "w = v + dt * acceleration(t, x, v, p); return x + dt * w, w")
 edit("1.7", "tests only positive corrections", "np.max(np.abs(delta))", "np.max(delta)")
 
@@ -153,9 +157,9 @@ def implicit_midpoint_step(acceleration, t, x, v, dt, p):
     return x + dt * v_mid, v + dt * acceleration(t + 0.5 * dt, x_mid, v_mid, p)
 
 
-edit("1.8", "a whole implicit Euler step", "0.5 * dt, p)", "dt, p); return x_mid, v_mid")
-edit("1.8", "stops in the middle", "2.0 * x_mid - x, 2.0 * v_mid - v", "x_mid, v_mid")
-edit("1.8", "two half steps of implicit Euler", "2.0 * x_mid - x, 2.0 * v_mid - v",
+edit("1.8", "takes a whole step of implicit Euler", "0.5 * dt, p)", "dt, p); return x_mid, v_mid")
+edit("1.8", "returns the state at the middle of the step", "2.0 * x_mid - x, 2.0 * v_mid - v", "x_mid, v_mid")
+edit("1.8", "takes two half steps of implicit Euler", "2.0 * x_mid - x, 2.0 * v_mid - v",
      "implicit_euler_step(acceleration, t + 0.5 * dt, x_mid, v_mid, 0.5 * dt, p)")
 
 
@@ -170,8 +174,8 @@ def columns(acceleration=worked.oscillator_acceleration):
 
 right("1.9", "columns stacked")(columns())
 wrong("1.9", "forgets the damping")(columns(lambda t, x, v, p: -p.omega**2 * x))
-edit("1.9", "rows for columns", "[[x1[0], x2[0]], [v1[0], v2[0]]]", "[[x1[0], v1[0]], [x2[0], v2[0]]]")
-edit("1.9", "the inverse", "np.array([[x1[0], x2[0]], [v1[0], v2[0]]])",
+edit("1.9", "returns the transpose", "[[x1[0], x2[0]], [v1[0], v2[0]]]", "[[x1[0], v1[0]], [x2[0], v2[0]]]")
+edit("1.9", "returns the inverse of the matrix", "np.array([[x1[0], x2[0]], [v1[0], v2[0]]])",
      "np.linalg.inv(np.array([[x1[0], x2[0]], [v1[0], v2[0]]]))")
 
 
@@ -185,7 +189,8 @@ def observed_order(dts, errors):
 
 
 edit("1.10", "accepts an error of zero", 'check_positive("error [-]", errors[n])', "pass")
-edit("1.10", "slope without logarithms", "xi = np.log(dts) - np.mean(np.log(dts))",
+edit("1.10", "fits a line to the errors, not to their logarithms", "xi = np.log(dts) - np.mean(np.log(dts))",
      "return np.polyfit(dts, errors, 1)[0]")
-edit("1.10", "only the two ends", "np.sum(xi * eta) / np.sum(xi * xi)", "(eta[-1] - eta[0]) / (xi[-1] - xi[0])")
+edit("1.10", "uses the first and the last error only",
+     "np.sum(xi * eta) / np.sum(xi * xi)", "(eta[-1] - eta[0]) / (xi[-1] - xi[0])")
 edit("1.10", "forgets the mean of log dt", "xi = np.log(dts) - np.mean(np.log(dts))", "xi = np.log(dts)")

@@ -28,11 +28,12 @@ def joint_positions(theta, lengths):
     return np.stack((z.real, z.imag), axis=1)
 
 
-wrong("11.1", "angles against the x axis")(positions(absolute=True))
-wrong("11.1", "sine and cosine in each other's place")(positions(swap=True))
-wrong("11.1", "each angle one link late")(positions(late=True))
-wrong("11.1", "no end")(positions(last=False))
-edit("11.1", "links do not add up", "x[k, 0] + lengths[k] * np.cos(phi)", "lengths[k] * np.cos(phi)")
+wrong("11.1", "measures each angle from the x axis, not from the link before")(positions(absolute=True))
+wrong("11.1", "exchanges sine and cosine")(positions(swap=True))
+wrong("11.1", "adds each angle one link late")(positions(late=True))
+wrong("11.1", "omits the end of the last link")(positions(last=False))
+edit("11.1", "does not add the positions of the links before",
+     "x[k, 0] + lengths[k] * np.cos(phi)", "lengths[k] * np.cos(phi)")
 
 
 # 11.2 -----------------------------------------------------------------------------------------------------------
@@ -51,11 +52,11 @@ def jacobian_2d(x):
     return np.array([[0.0, -1.0], [1.0, 0.0]]) @ (x[-1] - x[:-1]).T
 
 
-wrong("11.2", "turns clockwise")(jacobian(sign=-1.0))
-wrong("11.2", "only its own link")(jacobian(first=True))
-wrong("11.2", "along r")(jacobian(turn=False))
-wrong("11.2", "directions without levers")(jacobian(unit=True))
-edit("11.2", "from the base", "x[n, 0] - x[k, 0]", "x[n, 0] - x[0, 0]")
+wrong("11.2", "reverses the sign, so that joints rotate clockwise")(jacobian(sign=-1.0))
+wrong("11.2", "uses only the joint's own link as the arm")(jacobian(first=True))
+wrong("11.2", "uses the arm r itself, not its perpendicular")(jacobian(turn=False))
+wrong("11.2", "normalises the columns")(jacobian(unit=True))
+edit("11.2", "takes all arms from the base", "x[n, 0] - x[k, 0]", "x[n, 0] - x[0, 0]")
 
 
 # 11.3 -----------------------------------------------------------------------------------------------------------
@@ -76,12 +77,12 @@ def ellipse(of_svd=True, squares=False, swapped=False, degrees=False):
 
 
 right("11.3", "by the singular values of NumPy")(ellipse())
-wrong("11.3", "the short axis as a difference of squares")(ellipse(of_svd=False))
-wrong("11.3", "squares of the axes")(ellipse(squares=True))
-wrong("11.3", "the angle of the short axis")(ellipse(swapped=True))
-wrong("11.3", "degrees")(ellipse(degrees=True))
-edit("11.3", "twice the angle", "0.5 * np.arctan2", "np.arctan2")
-edit("11.3", "the short axis is D", "np.sqrt(squared) / longer", "np.sqrt(squared)")
+wrong("11.3", "computes the short axis from a difference, which cancels")(ellipse(of_svd=False))
+wrong("11.3", "returns the squares of the axes")(ellipse(squares=True))
+wrong("11.3", "returns the angle of the short axis")(ellipse(swapped=True))
+wrong("11.3", "returns the angle in degrees")(ellipse(degrees=True))
+edit("11.3", "returns twice the angle", "0.5 * np.arctan2", "np.arctan2")
+edit("11.3", "returns the determinant as the short axis", "np.sqrt(squared) / longer", "np.sqrt(squared)")
 
 
 # 11.4 and 11.5 --------------------------------------------------------------------------------------------------
@@ -101,14 +102,14 @@ def two_links(one_elbow=False, back=1.0, wraps=True, checks=True, inside=True, s
 
 
 right("11.4", "by the arccosine")(two_links())
-wrong("11.4", "one elbow for both")(two_links(one_elbow=True))
-wrong("11.4", "the bend on the wrong side")(two_links(back=-1.0))
-wrong("11.4", "θ₁ beyond π")(two_links(wraps=False))
-wrong("11.4", "reaches everything")(two_links(checks=False))
-wrong("11.4", "no hole in the middle")(two_links(inside=False))
-wrong("11.4", "the second link first")(two_links(swap=True))
-wrong("11.4", "the inner angle of the triangle")(two_links(supplement=True))
-edit("11.4", "half the bend", "elbow * 2.0 * np.arctan2", "elbow * np.arctan2")
+wrong("11.4", "returns the same elbow twice")(two_links(one_elbow=True))
+wrong("11.4", "reverses the correction of θ₁ by the bend")(two_links(back=-1.0))
+wrong("11.4", "does not bring θ₁ back into (−π, π]")(two_links(wraps=False))
+wrong("11.4", "does not test the reach")(two_links(checks=False))
+wrong("11.4", "omits the inner limit of the reach")(two_links(inside=False))
+wrong("11.4", "exchanges the two links")(two_links(swap=True))
+wrong("11.4", "returns the inner angle of the triangle for θ₂")(two_links(supplement=True))
+edit("11.4", "returns half of θ₂", "elbow * 2.0 * np.arctan2", "elbow * np.arctan2")
 
 
 @variants
@@ -122,11 +123,11 @@ def three_links(wrist=1.0, relative=True, wraps=True, elbow_kept=True):
 
 
 right("11.5", "by complex numbers")(three_links())
-wrong("11.5", "two links to the end itself")(three_links(wrist=0.0))
-wrong("11.5", "the wrist beyond the end")(three_links(wrist=-1.0))
-wrong("11.5", "the third angle against the x axis")(three_links(relative=False))
-wrong("11.5", "θ₃ beyond π")(three_links(wraps=False))
-wrong("11.5", "one elbow for both")(three_links(elbow_kept=False))
+wrong("11.5", "solves the first two links for the end itself, not for the wrist")(three_links(wrist=0.0))
+wrong("11.5", "puts the wrist beyond the end")(three_links(wrist=-1.0))
+wrong("11.5", "measures the third angle from the x axis")(three_links(relative=False))
+wrong("11.5", "does not bring θ₃ back into (−π, π]")(three_links(wraps=False))
+wrong("11.5", "returns the same elbow twice")(three_links(elbow_kept=False))
 
 
 # 11.6 -----------------------------------------------------------------------------------------------------------
@@ -153,11 +154,11 @@ def joint_frames(theta, axes, offsets):
     return x, a, q
 
 
-wrong("11.6", "axes as they were given")(frames(axis_in_world=False))
-wrong("11.6", "a joint does not move its own link")(frames(before=True))
-wrong("11.6", "axes of the world instead of the link's")(frames(order=-1))
+wrong("11.6", "does not rotate the axes into the world")(frames(axis_in_world=False))
+wrong("11.6", "rotates a joint's own link one joint late")(frames(before=True))
+wrong("11.6", "multiplies the rotations in the wrong order")(frames(order=-1))
 wrong("11.6", "turns the other way")(frames(sign=-1.0))
-edit("11.6", "offsets of the world", "rotate(q, row(offsets, k))", "row(offsets, k)")
+edit("11.6", "does not rotate the offsets into the world", "rotate(q, row(offsets, k))", "row(offsets, k)")
 
 
 # 11.7 -----------------------------------------------------------------------------------------------------------
@@ -171,10 +172,10 @@ def spatial(sign=1.0, end=True, swapped=False, spins=True):
 
 
 right("11.7", "all joints at once")(spatial())
-wrong("11.7", "left-handed")(spatial(sign=-1.0))
-wrong("11.7", "the velocity of a point at the origin")(spatial(end=False))
-wrong("11.7", "angular velocity first")(spatial(swapped=True))
-wrong("11.7", "no angular velocity")(spatial(spins=False))
+wrong("11.7", "reverses the cross product")(spatial(sign=-1.0))
+wrong("11.7", "returns the velocity of a point at the origin")(spatial(end=False))
+wrong("11.7", "puts the angular velocity first")(spatial(swapped=True))
+wrong("11.7", "omits the angular velocity")(spatial(spins=False))
 
 
 # 11.8 -----------------------------------------------------------------------------------------------------------
@@ -195,12 +196,12 @@ def rotation(body=False, shorter=True, half=2.0, back=False, small=True, arccos=
 
 
 right("11.8", "with a unit vector")(rotation())
-wrong("11.8", "in the frame of the body")(rotation(body=True))
-wrong("11.8", "the longer way")(rotation(shorter=False))
-wrong("11.8", "half the angle")(rotation(half=1.0))
-wrong("11.8", "back instead of forth")(rotation(back=True))
-wrong("11.8", "0/0 where nothing is to be done")(rotation(small=False))
-wrong("11.8", "the arccosine of almost 1")(rotation(arccos=True))
+wrong("11.8", "returns the error in body coordinates")(rotation(body=True))
+wrong("11.8", "rotates the longer way")(rotation(shorter=False))
+wrong("11.8", "returns half of the angle")(rotation(half=1.0))
+wrong("11.8", "reverses the rotation")(rotation(back=True))
+wrong("11.8", "divides zero by zero where no rotation is needed")(rotation(small=False))
+wrong("11.8", "uses the arccosine, which loses digits near 1")(rotation(arccos=True))
 
 
 # 11.9 -----------------------------------------------------------------------------------------------------------
@@ -214,11 +215,11 @@ def transposed(sign=1.0, gain=lambda arm, J: arm.gain, signs=False):
 
 
 right("11.9", "with Jᵀ written out")(transposed())
-wrong("11.9", "uphill")(transposed(sign=-1.0))
-wrong("11.9", "no gain")(transposed(gain=lambda arm, J: 1.0))
-wrong("11.9", "a gain relative to σ²")(transposed(gain=lambda arm, J: arm.gain / np.linalg.norm(J, 2) ** 2))
-wrong("11.9", "only the signs")(transposed(signs=True))
-edit("11.9", "forgets where it was", "return theta + arm.gain", "return arm.gain")
+wrong("11.9", "reverses the step, which then increases the error")(transposed(sign=-1.0))
+wrong("11.9", "omits the gain")(transposed(gain=lambda arm, J: 1.0))
+wrong("11.9", "divides the gain by σ²")(transposed(gain=lambda arm, J: arm.gain / np.linalg.norm(J, 2) ** 2))
+wrong("11.9", "uses only the signs of Jᵀ e")(transposed(signs=True))
+edit("11.9", "returns the change, not the new angles", "return theta + arm.gain", "return arm.gain")
 
 
 # 11.10 ----------------------------------------------------------------------------------------------------------
@@ -239,11 +240,11 @@ def pseudo_inverse(J):
 
 
 wrong("11.10", "inverts round-off")(inverse(cut=0.0))
-wrong("11.10", "gives up what is only small")(inverse(cut=1e-4))
-wrong("11.10", "σ squared")(inverse(power=2))
-wrong("11.10", "the transpose")(inverse(full=False))
+wrong("11.10", "drops small singular values that are no round-off")(inverse(cut=1e-4))
+wrong("11.10", "divides by σ² in place of σ")(inverse(power=2))
+wrong("11.10", "returns the transpose, not the pseudo-inverse")(inverse(full=False))
 edit("11.10", "multiplies by σ", "/ sigma[i]", "* sigma[i]")
-edit("11.10", "only the last direction", "J_plus[k, r] += v", "J_plus[k, r] = v")
+edit("11.10", "keeps the last direction only", "J_plus[k, r] += v", "J_plus[k, r] = v")
 
 
 # 11.11 and 11.12 ------------------------------------------------------------------------------------------------
@@ -258,11 +259,11 @@ def damping_of(squared=True, damped=True, sign=1.0, after=False):
 
 
 right("11.11", "as a system for all joints")(damping_of())
-wrong("11.11", "λ in place of λ²")(damping_of(squared=False))
-wrong("11.11", "no damping")(damping_of(damped=False))
-wrong("11.11", "away from the target")(damping_of(sign=-1.0))
-wrong("11.11", "a shorter step on top of it")(damping_of(after=True))
-edit("11.11", "λ² off the diagonal, too", "A[r, r] +=", "A[r] +=")
+wrong("11.11", "uses λ in place of λ²")(damping_of(squared=False))
+wrong("11.11", "omits the damping")(damping_of(damped=False))
+wrong("11.11", "reverses the step")(damping_of(sign=-1.0))
+wrong("11.11", "scales the step down as well")(damping_of(after=True))
+edit("11.11", "adds λ² off the diagonal, too", "A[r, r] +=", "A[r] +=")
 
 
 @variants
@@ -277,11 +278,11 @@ def factors(gain_power=2, damping_power=2, done=False, size=lambda y: y, worst=F
 
 
 right("11.12", "term by term")(factors())
-wrong("11.12", "σ for σ²")(factors(gain_power=1))
-wrong("11.12", "λ for λ²")(factors(damping_power=1))
-wrong("11.12", "what is done, not what is left")(factors(done=True))
-wrong("11.12", "sizes")(factors(size=np.abs))
-wrong("11.12", "the slowest for all")(factors(worst=True))
+wrong("11.12", "uses σ in place of σ²")(factors(gain_power=1))
+wrong("11.12", "uses λ in place of λ²")(factors(damping_power=1))
+wrong("11.12", "returns the share that is done, not the share that is left")(factors(done=True))
+wrong("11.12", "returns sizes in place of signed factors")(factors(size=np.abs))
+wrong("11.12", "returns the slowest factor for all")(factors(worst=True))
 
 
 # 11.13 ----------------------------------------------------------------------------------------------------------
@@ -302,12 +303,12 @@ def descent(last_first=True, moves_end=True, sign=1.0, keeps=True, wish=False, s
 
 
 right("11.13", "by complex numbers, with all joints")(descent())
-wrong("11.13", "from the first joint to the last")(descent(last_first=False))
-wrong("11.13", "the end stays where it was")(descent(moves_end=False))
-wrong("11.13", "turns away")(descent(sign=-1.0))
-wrong("11.13", "no limits")(descent(keeps=False))
-wrong("11.13", "the end turns as if there were no limits")(descent(wish=True))
-wrong("11.13", "half of each turn")(descent(share=0.5))
+wrong("11.13", "visits the joints from the first to the last")(descent(last_first=False))
+wrong("11.13", "does not move the end between the joints")(descent(moves_end=False))
+wrong("11.13", "rotates away from the target")(descent(sign=-1.0))
+wrong("11.13", "omits the limits")(descent(keeps=False))
+wrong("11.13", "moves the end as if there were no limits")(descent(wish=True))
+wrong("11.13", "makes half of each rotation")(descent(share=0.5))
 edit("11.13", "changes its input", "theta.copy()", "theta")
 
 
@@ -330,11 +331,11 @@ def projections(back=True, forth=True, old=False, base=True, lengths_in=1):
 
 
 right("11.14", "with unit vectors")(projections())
-wrong("11.14", "only back")(projections(forth=False))
-wrong("11.14", "only forth")(projections(back=False))
-wrong("11.14", "from the old places")(projections(old=True))
-wrong("11.14", "the base comes along")(projections(base=False))
-wrong("11.14", "lengths in the wrong order")(projections(lengths_in=-1))
+wrong("11.14", "makes the backward pass only")(projections(forth=False))
+wrong("11.14", "makes the forward pass only")(projections(back=False))
+wrong("11.14", "uses the old positions in the backward pass")(projections(old=True))
+wrong("11.14", "does not put the base back")(projections(base=False))
+wrong("11.14", "uses the lengths in the wrong order")(projections(lengths_in=-1))
 edit("11.14", "changes its input", "x[0].copy(), x.copy()", "x[0].copy(), x")
 
 
@@ -357,12 +358,12 @@ def between_limits(blocks=True, by_gradient=True, clips=True, low_too=True, froz
 
 
 right("11.15", "as a system for all joints")(between_limits())
-wrong("11.15", "clips only")(between_limits(blocks=False))
-wrong("11.15", "blocks only")(between_limits(clips=False))
-wrong("11.15", "no lower limits")(between_limits(low_too=False))
-wrong("11.15", "a joint at a limit never comes free")(between_limits(frozen=True))
-edit("11.15", "blocks what is pushed inwards", "wish[k] > 0.0", "wish[k] < 0.0")
-edit("11.15", "no damping", "arm.damping * arm.damping", "1e-9")
+wrong("11.15", "clips the angles and blocks no joint")(between_limits(blocks=False))
+wrong("11.15", "blocks joints and does not clip the angles")(between_limits(clips=False))
+wrong("11.15", "omits the lower limits")(between_limits(low_too=False))
+wrong("11.15", "never frees a joint at a limit")(between_limits(frozen=True))
+edit("11.15", "blocks joints that move away from their limits", "wish[k] > 0.0", "wish[k] < 0.0")
+edit("11.15", "omits the damping", "arm.damping * arm.damping", "1e-9")
 
 
 # 11.16 ----------------------------------------------------------------------------------------------------------
@@ -379,9 +380,9 @@ def freedom(projects=True, reaches=True, sign=1.0, pulls=True, towards_zero=Fals
 
 
 right("11.16", "with the projection as a matrix")(freedom())
-wrong("11.16", "the pull moves the end")(freedom(projects=False))
-wrong("11.16", "the pull alone")(freedom(reaches=False))
-wrong("11.16", "away from rest")(freedom(sign=-1.0))
-wrong("11.16", "all the way to rest")(freedom(pulls=False))
-wrong("11.16", "to zero in place of rest")(freedom(towards_zero=True))
-edit("11.16", "no pull", "return theta + z +", "return theta +")
+wrong("11.16", "does not project the pull into the null space")(freedom(projects=False))
+wrong("11.16", "omits the step towards the target")(freedom(reaches=False))
+wrong("11.16", "reverses the pull")(freedom(sign=-1.0))
+wrong("11.16", "pulls all the way to rest in one step")(freedom(pulls=False))
+wrong("11.16", "pulls to zero in place of the rest angles")(freedom(towards_zero=True))
+edit("11.16", "omits the pull", "return theta + z +", "return theta +")

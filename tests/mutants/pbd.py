@@ -32,19 +32,19 @@ def link(sign=1.0, scaled=True, absolute=False, towards=1.0, squared=False, chec
 
 
 right("8.1", "with norm")(link())
-wrong("8.1", "too short is positive")(link(sign=-1.0))
-wrong("8.1", "the gradient of j")(link(towards=-1.0))
-wrong("8.1", "no unit vector")(link(scaled=False))
-wrong("8.1", "never too short")(link(absolute=True))
-wrong("8.1", "squares of lengths")(link(squared=True))
-wrong("8.1", "the strain")(link(ratio=True))
+wrong("8.1", "reverses the sign of C")(link(sign=-1.0))
+wrong("8.1", "returns the gradient of the other point")(link(towards=-1.0))
+wrong("8.1", "does not normalise the gradient")(link(scaled=False))
+wrong("8.1", "treats a link that is too short as satisfied")(link(absolute=True))
+wrong("8.1", "uses the squares of the lengths")(link(squared=True))
+wrong("8.1", "returns the strain in place of the extension")(link(ratio=True))
 wrong("8.1", "accepts coincident ends")(link(checked=False))
 edit("8.1", "refuses short segments", "length == 0.0", "length < 1e-9")
 edit("8.1", "treats a picometre as zero", "length == 0.0", "length < 1e-12")
-edit("8.1", "never too long", "length - rest", "min(0.0, length - rest)")
-edit("8.1", "towards where it should go", "r / length", "r / length * np.sign(rest - length)")
-edit("8.1", "refuses what is in line with the second axis", "length == 0.0", "r[0] == 0.0")
-edit("8.1", "no direction at the rest length", "r / length", "r / length * abs(np.sign(length - rest))")
+edit("8.1", "treats a link that is too long as satisfied", "length - rest", "min(0.0, length - rest)")
+edit("8.1", "reverses the gradient where the link is too short", "r / length", "r / length * np.sign(rest - length)")
+edit("8.1", "refuses links along the second axis", "length == 0.0", "r[0] == 0.0")
+edit("8.1", "returns a zero gradient at the rest length", "r / length", "r / length * abs(np.sign(length - rest))")
 
 
 # 8.2 ------------------------------------------------------------------------------------------------------------
@@ -62,12 +62,12 @@ def projecting(sign=-1.0, mass=True, total=lambda w, g: np.sum(w * np.sum(g * g,
 
 right("8.2", "all points at once")(projecting())
 wrong("8.2", "moves the wrong way")(projecting(sign=1.0))
-wrong("8.2", "every point alike")(projecting(mass=False))
-wrong("8.2", "forgets the masses below")(projecting(total=lambda w, g: np.sum(g * g)))
+wrong("8.2", "moves every point alike, whatever its mass")(projecting(mass=False))
+wrong("8.2", "omits the masses in the denominator")(projecting(total=lambda w, g: np.sum(g * g)))
 wrong("8.2", "takes gradients for unit vectors")(projecting(total=lambda w, g: np.sum(w)))
-wrong("8.2", "half of it")(projecting(sign=-0.5))
+wrong("8.2", "corrects half of the error only")(projecting(sign=-0.5))
 wrong("8.2", "accepts an unsatisfiable constraint")(projecting(checked=False))
-edit("8.2", "every point on its own", "-C / weight * inv_mass[:, None]",
+edit("8.2", "solves for each point on its own", "-C / weight * inv_mass[:, None]",
      "-C / np.sum(gradients**2, axis=1)[:, None] * (inv_mass > 0.0)[:, None]")
 edit("8.2", "refuses small masses", "weight == 0.0", "weight < 1e-6")
 edit("8.2", "refuses only where all masses are infinite or all gradients 0", "weight == 0.0",
@@ -98,15 +98,15 @@ def predicting(half=1.0, stops=False, falls=False, clock=1.0, speed=1.0, changes
 
 
 right("8.3", "with a mask")(predicting())
-wrong("8.3", "half of the force")(predicting(half=0.5))
-wrong("8.3", "immovable points stop")(predicting(stops=True))
-wrong("8.3", "immovable points fall")(predicting(falls=True))
+wrong("8.3", "adds ½ dt² a in place of dt² a")(predicting(half=0.5))
+wrong("8.3", "stops immovable points")(predicting(stops=True))
+wrong("8.3", "lets immovable points fall")(predicting(falls=True))
 wrong("8.3", "does not advance t")(predicting(clock=0.0))
-wrong("8.3", "the force of rest")(predicting(speed=0.0))
+wrong("8.3", "takes the acceleration at zero velocity")(predicting(speed=0.0))
 wrong("8.3", "changes its input")(predicting(changes=True))
-edit("8.3", "heavy points fall more slowly",
+edit("8.3", "divides the acceleration of heavy points by their mass",
      "free = network.inv_mass > 0.0", "free = np.minimum(1.0, network.inv_mass)")
-wrong("8.3", "no force")(predicting(half=0.0))
+wrong("8.3", "omits the acceleration")(predicting(half=0.0))
 edit("8.3", "treats heavy points as immovable", "network.inv_mass > 0.0", "network.inv_mass > 1e-6")
 edit("8.3", "changes the array that the acceleration returned", "a = acceleration(t, x, v, network)",
      "a = acceleration(t, x, v, network)\n    a[network.inv_mass == 0.0] = 0.0")
@@ -141,21 +141,22 @@ def newton(curved=1.0, per_row=True, scale=lambda dt: dt * dt, sign=1.0, from_go
 
 right("8.4", "in blocks")(newton())
 wrong("8.4", "takes links for straight surfaces: no second derivative")(newton(curved=0.0))
-wrong("8.4", "the second derivative with the other sign")(newton(curved=-1.0))
-wrong("8.4", "one mass for all")(newton(per_row=False))
-wrong("8.4", "gives Λ for λ")(newton(scale=lambda dt: 1.0))
-wrong("8.4", "dt for dt²")(newton(scale=lambda dt: dt))
-wrong("8.4", "multipliers of the other sign")(newton(sign=-1.0))
-wrong("8.4", "away from the prediction")(newton(from_goal=-1.0))
+wrong("8.4", "reverses the sign of the second derivative")(newton(curved=-1.0))
+wrong("8.4", "uses the same mass for all points")(newton(per_row=False))
+wrong("8.4", "returns Λ in place of λ")(newton(scale=lambda dt: 1.0))
+wrong("8.4", "uses dt in place of dt²")(newton(scale=lambda dt: dt))
+wrong("8.4", "reverses the sign of the multipliers")(newton(sign=-1.0))
+wrong("8.4", "reverses the difference from the prediction")(newton(from_goal=-1.0))
 wrong("8.4", "adds the old λ")(newton(difference=True))
-wrong("8.4", "second derivatives along the link only")(newton(across=False))
+wrong("8.4", "omits the part of the second derivative across the link")(newton(across=False))
 SHARE = "REGULARISATION * (network.inv_mass[network.i[s]] + network.inv_mass[network.j[s]])"
-edit("8.4", "no trace of compliance", SHARE, "0.0")
-edit("8.4", "the trace acts on λ, not on its change", " - trace * dt * dt * lam[s]", "")
-edit("8.4", "the trace without the masses", SHARE, "REGULARISATION * 2.0")
-edit("8.4", "link s joins points s and s + 1", "for s in range(C.size):",
+edit("8.4", "omits the small regularisation", SHARE, "0.0")
+edit("8.4", "lets the regularisation act on λ, not on its change", " - trace * dt * dt * lam[s]", "")
+edit("8.4", "omits the masses in the regularisation", SHARE, "REGULARISATION * 2.0")
+edit("8.4", "assumes that link s joins the points s and s + 1", "for s in range(C.size):",
      "network = network._replace(i=np.arange(C.size), j=np.arange(C.size) + 1)\n    for s in range(C.size):")
-edit("8.4", "the trace with the mass of one end", "(network.inv_mass[network.i[s]] + network.inv_mass[network.j[s]])",
+edit("8.4", "uses the mass of one end only in the regularisation",
+     "(network.inv_mass[network.i[s]] + network.inv_mass[network.j[s]])",
      "network.inv_mass[network.i[s]]")
 
 
@@ -177,29 +178,29 @@ def projecting(enough=lambda done, change, longest: change <= 1e-12 * longest, s
     return constraint_projection_step
 
 
-wrong("8.5", "one iteration")(projecting(enough=lambda done, change, longest: True))
-wrong("8.5", "two iterations")(projecting(enough=lambda done, change, longest: done == 1))
-wrong("8.5", "a trillionth of a metre, however large the network")(projecting(enough=lambda done, change,
+wrong("8.5", "stops after one iteration")(projecting(enough=lambda done, change, longest: True))
+wrong("8.5", "stops after two iterations")(projecting(enough=lambda done, change, longest: done == 1))
+wrong("8.5", "compares the change with an absolute 1e-12 m")(projecting(enough=lambda done, change,
                                                                                longest: change <= 1e-12))
 edit("8.5", "tests only positive corrections", "np.max(np.abs(change))", "np.max(change)")
 wrong("8.5", "does not raise Diverged")(projecting(gives_up=False))
 wrong("8.5", "keeps the predicted velocity")(projecting(speed=lambda new, x, goal, v, dt: (goal - x) / dt))
 wrong("8.5", "keeps the old velocity")(projecting(speed=lambda new, x, goal, v, dt: v))
 wrong("8.5", "forgets the prediction")(projecting(force=False))
-wrong("8.5", "the velocity without dt")(projecting(speed=lambda new, x, goal, v, dt: new - x))
-wrong("8.5", "begins at the prediction")(projecting(start="goal"))
-edit("8.5", "puts immovable points back", "new = new + change",
+wrong("8.5", "does not divide by dt in the velocity")(projecting(speed=lambda new, x, goal, v, dt: new - x))
+wrong("8.5", "starts the iteration at the prediction")(projecting(start="goal"))
+edit("8.5", "stops immovable points that move", "new = new + change",
      "change[network.inv_mass == 0.0] = 0.0\n        new = new + change")
-edit("8.5", "gravity for any acceleration", "predict(acceleration, t,", "predict(network_gravity, t,")
-edit("8.5", "the acceleration at t + dt", "predict(acceleration, t,", "predict(acceleration, t + dt,")
-edit("8.5", "λ = 0 in every iteration", "change, lam = newton", "change, _ = newton")
-edit("8.5", "the first link for the longest", "np.max(network.rest)", "network.rest[0]")
-edit("8.5", "the last link for the longest", "np.max(network.rest)", "network.rest[-1]")
-edit("8.5", "at most eight iterations", "range(NEWTON_LIMIT)", "range(8)")
+edit("8.5", "uses gravity in place of the acceleration", "predict(acceleration, t,", "predict(network_gravity, t,")
+edit("8.5", "takes the acceleration at time t + dt", "predict(acceleration, t,", "predict(acceleration, t + dt,")
+edit("8.5", "restarts λ at zero in every iteration", "change, lam = newton", "change, _ = newton")
+edit("8.5", "takes the first link for the longest", "np.max(network.rest)", "network.rest[0]")
+edit("8.5", "takes the last link for the longest", "np.max(network.rest)", "network.rest[-1]")
+edit("8.5", "stops after eight iterations", "range(NEWTON_LIMIT)", "range(8)")
 edit("8.5", "accepts NaN as converged", "np.max(np.abs(change)) <= NEWTON_TOLERANCE * longest",
      "not np.max(np.abs(change)) > NEWTON_TOLERANCE * longest")
-edit("8.5", "at most fifteen iterations", "range(NEWTON_LIMIT)", "range(15)")
-edit("8.5", "at most thirty iterations", "range(NEWTON_LIMIT)", "range(30)")
+edit("8.5", "stops after fifteen iterations", "range(NEWTON_LIMIT)", "range(15)")
+edit("8.5", "stops after thirty iterations", "range(NEWTON_LIMIT)", "range(30)")
 
 
 # 8.6 ------------------------------------------------------------------------------------------------------------
@@ -228,28 +229,28 @@ def sweeping(stiff=True, by_mass=True, sign=1.0, jacobi=False, backwards=False, 
 
 right("8.6", "with vectors")(sweeping())
 wrong("8.6", "always fully stiff")(sweeping(stiff=False))
-wrong("8.6", "both ends alike")(sweeping(by_mass=False))
-wrong("8.6", "the wrong way")(sweeping(sign=-1.0))
-wrong("8.6", "all links at once")(sweeping(jacobi=True))
-wrong("8.6", "from the last to the first")(sweeping(backwards=True))
+wrong("8.6", "moves both ends equally, whatever their masses")(sweeping(by_mass=False))
+wrong("8.6", "reverses the corrections")(sweeping(sign=-1.0))
+wrong("8.6", "corrects all links at once, from the old positions")(sweeping(jacobi=True))
+wrong("8.6", "visits the links from the last to the first")(sweeping(backwards=True))
 wrong("8.6", "changes its input")(sweeping(changes=True))
 wrong("8.6", "accepts coincident ends")(sweeping(checked=False))
 wrong("8.6", "moves the immovable")(sweeping(held=False))
-edit("8.6", "a thread: never too short", "share = network.stiffness[s]",
+edit("8.6", "never pushes, as a thread", "share = network.stiffness[s]",
      "share = network.stiffness[s] * (length > network.rest[s])")
 edit("8.6", "refuses short segments", "length == 0.0", "length < 1e-6")
-edit("8.6", "link s joins points s and s + 1", "i, j = network.i[s], network.j[s]", "i, j = s, s + 1")
-edit("8.6", "the rest length of the first link", "network.rest[s]", "network.rest[0]")
-edit("8.6", "the stiffness of the first link", "network.stiffness[s]", "network.stiffness[0]")
-edit("8.6", "the stiffness of one sweep so that all remove s", "network.stiffness[s] *",
+edit("8.6", "assumes that link s joins the points s and s + 1", "i, j = network.i[s], network.j[s]", "i, j = s, s + 1")
+edit("8.6", "uses the rest length of the first link for all", "network.rest[s]", "network.rest[0]")
+edit("8.6", "uses the stiffness of the first link for all", "network.stiffness[s]", "network.stiffness[0]")
+edit("8.6", "reduces the stiffness so that all sweeps together remove the share s", "network.stiffness[s] *",
      "(1.0 - (1.0 - network.stiffness[s]) ** (1.0 / network.sweeps)) *")
-edit("8.6", "the stiffness of all sweeps in each", "network.stiffness[s] *",
+edit("8.6", "uses the stiffness of all sweeps in each sweep", "network.stiffness[s] *",
      "(1.0 - (1.0 - network.stiffness[s]) ** network.sweeps) *")
-edit("8.6", "all sweeps at once", "range(network.i.size)", "[*range(network.i.size)] * network.sweeps")
-edit("8.6", "as soft as in XPBD", "(w[i] + w[j])", "(w[i] + w[j] + network.alpha[s])")
+edit("8.6", "makes all sweeps in one call", "range(network.i.size)", "[*range(network.i.size)] * network.sweeps")
+edit("8.6", "adds α in the denominator, as XPBD does", "(w[i] + w[j])", "(w[i] + w[j] + network.alpha[s])")
 edit("8.6", "visits the links in the order of their first points", "range(network.i.size)", "np.argsort(network.i)")
 edit("8.6", "refuses a nanometre", "length == 0.0", "length < 1e-9")
-edit("8.6", "a millionth of its length is no error", "share = network.stiffness[s]",
+edit("8.6", "ignores errors below a millionth of the length", "share = network.stiffness[s]",
      "share = (abs(length - network.rest[s]) > 1e-6 * length) * network.stiffness[s]")
 
 
@@ -279,20 +280,21 @@ def dynamics(sweeps=lambda n: n, speed=lambda new, x, goal, v, dt: (new - x) / d
 
 
 right("8.7", "with a copy")(dynamics())
-wrong("8.7", "one sweep")(dynamics(sweeps=lambda n: 1))
-wrong("8.7", "one sweep too many")(dynamics(sweeps=lambda n: n + 1))
-wrong("8.7", "no sweep")(dynamics(sweeps=lambda n: 0))
+wrong("8.7", "makes one sweep only")(dynamics(sweeps=lambda n: 1))
+wrong("8.7", "makes one sweep too many")(dynamics(sweeps=lambda n: n + 1))
+wrong("8.7", "makes no sweep")(dynamics(sweeps=lambda n: 0))
 wrong("8.7", "keeps the predicted velocity")(dynamics(speed=lambda new, x, goal, v, dt: (goal - x) / dt))
 wrong("8.7", "keeps the old velocity")(dynamics(speed=lambda new, x, goal, v, dt: v))
-wrong("8.7", "no force")(dynamics(begin="x"))
-edit("8.7", "an immovable point is at rest", "(new - x) / dt", "(new - x) / dt * (network.inv_mass > 0.0)[:, None]")
+wrong("8.7", "omits the acceleration in the prediction")(dynamics(begin="x"))
+edit("8.7", "sets the velocity of immovable points to zero",
+     "(new - x) / dt", "(new - x) / dt * (network.inv_mass > 0.0)[:, None]")
 edit("8.7", "visits the links from the last to the first", "distance_sweep(new, network)",
      "distance_sweep(new, network._replace(i=network.i[::-1], j=network.j[::-1], rest=network.rest[::-1], "
      "stiffness=network.stiffness[::-1]))")
-edit("8.7", "gravity for any acceleration", "predict(acceleration, t,", "predict(network_gravity, t,")
-edit("8.7", "the acceleration at t + dt", "predict(acceleration, t,", "predict(acceleration, t + dt,")
-wrong("8.7", "five sweeps at most")(dynamics(sweeps=lambda n: min(n, 5)))
-edit("8.7", "in the plane only", "new = distance_sweep(new, network)",
+edit("8.7", "uses gravity in place of the acceleration", "predict(acceleration, t,", "predict(network_gravity, t,")
+edit("8.7", "takes the acceleration at time t + dt", "predict(acceleration, t,", "predict(acceleration, t + dt,")
+wrong("8.7", "makes at most five sweeps")(dynamics(sweeps=lambda n: min(n, 5)))
+edit("8.7", "corrects the first two coordinates only", "new = distance_sweep(new, network)",
      "new = distance_sweep(new, network)\n        new[:, 2:] = x[:, 2:]")
 edit("8.7", "stops when less than a micrometre changes", "new = distance_sweep(new, network)",
      "old, new = new, distance_sweep(new, network)\n        if np.abs(new - old).max() < 1e-6:\n            break")
@@ -309,14 +311,14 @@ def sagging(left=lambda s, n: (1.0 - s) ** n, step=lambda dt: dt * dt, below=lam
 
 right("8.8", "by what is put back")(
     lambda g, dt, stiffness, sweeps: g * dt**2 / (1.0 - (1.0 - stiffness) ** sweeps) - g * dt**2)
-wrong("8.8", "the share that the sweeps remove, not what they leave")(sagging(left=lambda s, n: s**n))
-wrong("8.8", "falls once only")(sagging(below=lambda S: 1.0))
-wrong("8.8", "before the sweeps")(sagging(above=lambda S: 1.0))
-wrong("8.8", "falls by ½ g dt²")(sagging(step=lambda dt: 0.5 * dt * dt))
-edit("8.8", "no more than five sweeps", "** sweeps", "** min(sweeps, 5)")
-wrong("8.8", "n times as stiff")(sagging(left=lambda s, n: max(0.0, 1.0 - n * s)))
-edit("8.8", "no more than fifty sweeps", "** sweeps", "** min(sweeps, 50)")
-wrong("8.8", "n times as stiff, where it is soft")(
+wrong("8.8", "uses the share that the sweeps remove, not the share that they leave")(sagging(left=lambda s, n: s**n))
+wrong("8.8", "omits the denominator, as if the mass fell in one step only")(sagging(below=lambda S: 1.0))
+wrong("8.8", "returns the sag before the sweeps")(sagging(above=lambda S: 1.0))
+wrong("8.8", "uses ½ g dt² in place of g dt²")(sagging(step=lambda dt: 0.5 * dt * dt))
+edit("8.8", "counts at most five sweeps", "** sweeps", "** min(sweeps, 5)")
+wrong("8.8", "multiplies the stiffness by the number of sweeps")(sagging(left=lambda s, n: max(0.0, 1.0 - n * s)))
+edit("8.8", "counts at most fifty sweeps", "** sweeps", "** min(sweeps, 50)")
+wrong("8.8", "multiplies a small stiffness by the number of sweeps")(
     sagging(left=lambda s, n: (1.0 - s) ** n if s > 0.01 else 1.0 - n * s))
 
 
@@ -347,23 +349,25 @@ def folding(angle="atan2", wrapped=lambda C: np.pi - (np.pi - C) % (2.0 * np.pi)
 
 
 right("8.9", "with NumPy's products")(folding())
-wrong("8.9", "an angle without a side: acos")(folding(angle="acos"))
-wrong("8.9", "flat is π")(folding(angle="open"))
-wrong("8.9", "not taken into (−π, π]")(folding(wrapped=lambda C: C))
-wrong("8.9", "taken into (−π, π] from above only")(folding(wrapped=lambda C: C - 2.0 * np.pi * (C > np.pi)))
-wrong("8.9", "taken into (−π, π] from below only")(folding(wrapped=lambda C: C + 2.0 * np.pi * (C <= -np.pi)))
-wrong("8.9", "folded to the other side")(folding(sign=-1.0))
-wrong("8.9", "gradients of the other sign")(folding(wings=-1.0))
-wrong("8.9", "gradients without the edge's length")(folding(slope=0.0))
-wrong("8.9", "half of each wing to each end of the edge")(folding(leverage=False))
-wrong("8.9", "leverage of the other end")(folding(swapped=True))
-wrong("8.9", "net force not zero")(folding(closed=False))
+wrong("8.9", "uses the arccosine, which loses the sign of the angle")(folding(angle="acos"))
+wrong("8.9", "measures a flat fold as π, not as 0")(folding(angle="open"))
+wrong("8.9", "does not bring the angle back into (−π, π]")(folding(wrapped=lambda C: C))
+wrong("8.9", "brings only angles above π back into (−π, π]")(folding(wrapped=lambda C: C - 2.0 * np.pi * (C > np.pi)))
+wrong("8.9", "brings only angles below −π back into (−π, π]")(
+    folding(wrapped=lambda C: C + 2.0 * np.pi * (C <= -np.pi)))
+wrong("8.9", "reverses the sign of the angle")(folding(sign=-1.0))
+wrong("8.9", "reverses the gradients")(folding(wings=-1.0))
+wrong("8.9", "omits the length of the edge in the gradients")(folding(slope=0.0))
+wrong("8.9", "gives each end of the edge half of each wing's gradient")(folding(leverage=False))
+wrong("8.9", "exchanges the shares of the two ends of the edge")(folding(swapped=True))
+wrong("8.9", "returns gradients that do not add up to zero")(folding(closed=False))
 wrong("8.9", "accepts a triangle without area")(folding(checked=False))
-edit("8.9", "leverage of c held between 0 and 1", "dot(b - c, e) / squared",
+edit("8.9", "limits the share of c to 0 … 1", "dot(b - c, e) / squared",
      "min(1.0, max(0.0, dot(b - c, e) / squared))")
-edit("8.9", "leverage of d held between 0 and 1", "dot(b - d, e) / squared",
+edit("8.9", "limits the share of d to 0 … 1", "dot(b - d, e) / squared",
      "min(1.0, max(0.0, dot(b - d, e) / squared))")
-edit("8.9", "taken into [−π, π)", "np.ceil((turn - np.pi) / (2.0 * np.pi))", "np.floor((turn + np.pi) / (2.0 * np.pi))")
+edit("8.9", "brings the angle into [−π, π)",
+     "np.ceil((turn - np.pi) / (2.0 * np.pi))", "np.floor((turn + np.pi) / (2.0 * np.pi))")
 edit("8.9", "removes one full turn only", "np.ceil((turn - np.pi) / (2.0 * np.pi))",
      "np.sign(np.ceil((turn - np.pi) / (2.0 * np.pi)))")
 edit("8.9", "tests the area of one triangle only", "squared_c == 0.0 or squared_d == 0.0", "squared_d == 0.0")
@@ -410,13 +414,14 @@ def ball(sign=1.0, n_sign=1.0, centred=True, scaled=True, safe=True):
 
 
 right("8.10", "with norm")(ball())
-edit("8.10", "a bowl", "distance - obstacle.radius, r / distance", "obstacle.radius - distance, -r / distance")
+edit("8.10", "treats the ball as a bowl",
+     "distance - obstacle.radius, r / distance", "obstacle.radius - distance, -r / distance")
 edit("8.10", "treats a micrometre around the centre as the centre", "distance > 0.0", "distance > 1e-6")
 edit("8.10", "treats round-off around the centre as the centre", "distance > 0.0", "distance > 1e-14")
-wrong("8.10", "positive inside")(ball(sign=-1.0))
-wrong("8.10", "inwards")(ball(n_sign=-1.0))
-wrong("8.10", "around the origin")(ball(centred=False))
-wrong("8.10", "no unit vector")(ball(scaled=False))
+wrong("8.10", "reverses the sign of the gap")(ball(sign=-1.0))
+wrong("8.10", "returns a normal that points inwards")(ball(n_sign=-1.0))
+wrong("8.10", "puts the centre of the ball at the origin")(ball(centred=False))
+wrong("8.10", "does not return a unit normal")(ball(scaled=False))
 wrong("8.10", "divides by a distance of zero")(ball(safe=False))
 
 
@@ -435,18 +440,19 @@ def outside(asks=lambda phi: phi < 0.0, sign=-1.0, held=True, changes=False, sha
 
 right("8.11", "with a new array")(outside())
 right("8.11", "treats the surface as inside")(outside(asks=lambda phi: phi <= 0.0))
-wrong("8.11", "pulls everything onto the skin")(outside(asks=lambda phi: True))
-wrong("8.11", "pulls in what is outside")(outside(asks=lambda phi: phi > 0.0))
-wrong("8.11", "deeper")(outside(sign=1.0))
-wrong("8.11", "half of the way")(outside(share=0.5))
+wrong("8.11", "moves every point onto the surface")(outside(asks=lambda phi: True))
+wrong("8.11", "moves points outside onto the surface")(outside(asks=lambda phi: phi > 0.0))
+wrong("8.11", "reverses the correction, which pushes points in deeper")(outside(sign=1.0))
+wrong("8.11", "moves points only half of the way")(outside(share=0.5))
 wrong("8.11", "moves the immovable")(outside(held=False))
 wrong("8.11", "changes its input")(outside(changes=True))
-edit("8.11", "five centimetres are not inside", "phi < 0.0", "phi < -0.05")
-edit("8.11", "heavy points move less", "x[k] -= phi * n", "x[k] -= min(1.0, inv_mass[k]) * phi * n")
-edit("8.11", "all like the first", "surface(x[k], obstacle)", "surface(x[0], obstacle)")
-edit("8.11", "the floor for any surface", "surface(x[k], obstacle)", "floor_gap(x[k], obstacle)")
-edit("8.11", "in space only", "x = float_copy(x)", "x = float_copy(x) + np.zeros((x.shape[0], 3))")
-edit("8.11", "upwards from the centre of a ball", "x[k] -= phi * n",
+edit("8.11", "ignores depths below 5 cm", "phi < 0.0", "phi < -0.05")
+edit("8.11", "moves heavy points less", "x[k] -= phi * n", "x[k] -= min(1.0, inv_mass[k]) * phi * n")
+edit("8.11", "uses the gap of the first point for all points", "surface(x[k], obstacle)", "surface(x[0], obstacle)")
+edit("8.11", "uses the floor in place of the given surface", "surface(x[k], obstacle)", "floor_gap(x[k], obstacle)")
+edit("8.11", "returns three coordinates, also in the plane",
+     "x = float_copy(x)", "x = float_copy(x) + np.zeros((x.shape[0], 3))")
+edit("8.11", "moves a point at the centre of a ball upwards", "x[k] -= phi * n",
      "x[k] -= phi * (n if n.any() else np.eye(n.size)[-1])")
 edit("8.11", "divides by the length of n", "x[k] -= phi * n", "x[k] -= phi * (n / np.sqrt(np.sum(n * n)))")
 edit("8.11", "treats heavy points as immovable", "inv_mass[k] > 0.0", "inv_mass[k] > 1e-6")
@@ -469,18 +475,18 @@ def giving(memory=1.0, sign=-1.0, below=1.0, checked=True, weighed=True, nan=Tru
 
 
 right("8.12", "in two lines")(giving())
-wrong("8.12", "forgets what it has pulled")(giving(memory=0.0))
-wrong("8.12", "soft above, stiff below")(giving(below=0.0))
-wrong("8.12", "the wrong way")(giving(sign=1.0))
+wrong("8.12", "omits the multiplier Λ so far")(giving(memory=0.0))
+wrong("8.12", "omits α̃ in the denominator")(giving(below=0.0))
+wrong("8.12", "reverses the sign of the change")(giving(sign=1.0))
 wrong("8.12", "accepts a negative compliance")(giving(checked=False))
-edit("8.12", "the error without its sign", "-C - alpha_scaled", "-abs(C) - alpha_scaled")
+edit("8.12", "drops the sign of C", "-C - alpha_scaled", "-abs(C) - alpha_scaled")
 wrong("8.12", "accepts NaN")(giving(nan=False))
 wrong("8.12", "accepts a constraint without movable mass")(giving(weighed=False))
 edit("8.12", "refuses heavy points", "weight == 0.0", "weight < 1e-9")
-edit("8.12", "a very small compliance is none", "-C - alpha_scaled * Lam",
+edit("8.12", "treats a very small compliance as zero", "-C - alpha_scaled * Lam",
      "-C - (alpha_scaled > 1e-6) * alpha_scaled * Lam")
 edit("8.12", "accepts a slightly negative compliance", "not alpha_scaled >= 0.0", "not alpha_scaled >= -1e-9")
-edit("8.12", "no change where C = 0", "(-C - alpha_scaled", "(C != 0.0) * (-C - alpha_scaled")
+edit("8.12", "returns no change where C = 0", "(-C - alpha_scaled", "(C != 0.0) * (-C - alpha_scaled")
 
 
 # 8.13 -----------------------------------------------------------------------------------------------------------
@@ -510,40 +516,40 @@ def soft_sweep(adds=True, kept=True, jacobi=False, mass=True, sign=1.0, changes=
 
 right("8.13", "with vectors")(soft_sweep())
 wrong("8.13", "returns the last ΔΛ")(soft_sweep(adds=False))
-wrong("8.13", "forgets what it has pulled")(soft_sweep(kept=False))
-wrong("8.13", "all links at once")(soft_sweep(jacobi=True))
+wrong("8.13", "omits the multipliers so far")(soft_sweep(kept=False))
+wrong("8.13", "corrects all links at once, from the old positions")(soft_sweep(jacobi=True))
 wrong("8.13", "forgets the masses")(soft_sweep(mass=False))
-wrong("8.13", "the wrong way")(soft_sweep(sign=-1.0))
+wrong("8.13", "reverses the corrections")(soft_sweep(sign=-1.0))
 wrong("8.13", "changes its input")(soft_sweep(changes=True))
 wrong("8.13", "accepts coincident ends")(soft_sweep(checked=False))
-wrong("8.13", "one compliance for all")(soft_sweep(one_alpha=True))
-wrong("8.13", "PBD's stiffness on top")(soft_sweep(stiffness=True))
-wrong("8.13", "α without dt²")(soft_sweep(power=0))
-wrong("8.13", "α dt²")(soft_sweep(power=-2))
-wrong("8.13", "α/dt")(soft_sweep(power=1))
-wrong("8.13", "half of the weight")(soft_sweep(weight=0.5))
-edit("8.13", "a thread: never too short", "length - network.rest[s]", "max(0.0, length - network.rest[s])")
-edit("8.13", "link s joins points s and s + 1", "i, j = network.i[s], network.j[s]", "i, j = s, s + 1")
-edit("8.13", "the rest length of the first link", "network.rest[s]", "network.rest[0]")
-edit("8.13", "what is inextensible never pushes", "length - network.rest[s]",
+wrong("8.13", "uses one compliance for all links")(soft_sweep(one_alpha=True))
+wrong("8.13", "multiplies by PBD's stiffness as well")(soft_sweep(stiffness=True))
+wrong("8.13", "uses α in place of α/dt²")(soft_sweep(power=0))
+wrong("8.13", "uses α dt² in place of α/dt²")(soft_sweep(power=-2))
+wrong("8.13", "uses α/dt in place of α/dt²")(soft_sweep(power=1))
+wrong("8.13", "uses half of the inverse masses")(soft_sweep(weight=0.5))
+edit("8.13", "never pushes, as a thread", "length - network.rest[s]", "max(0.0, length - network.rest[s])")
+edit("8.13", "assumes that link s joins the points s and s + 1", "i, j = network.i[s], network.j[s]", "i, j = s, s + 1")
+edit("8.13", "uses the rest length of the first link for all", "network.rest[s]", "network.rest[0]")
+edit("8.13", "never pushes where α = 0", "length - network.rest[s]",
      "length - network.rest[s] if network.alpha[s] else max(0.0, length - network.rest[s])")
-edit("8.13", "what is inextensible never pulls", "length - network.rest[s]",
+edit("8.13", "never pulls where α = 0", "length - network.rest[s]",
      "length - network.rest[s] if network.alpha[s] else min(0.0, length - network.rest[s])")
-edit("8.13", "no visit where α = 0", "i, j = network.i[s], network.j[s]",
+edit("8.13", "skips links with α = 0", "i, j = network.i[s], network.j[s]",
      "i, j = network.i[s], network.j[s]\n        if network.alpha[s] == 0.0:\n            continue")
-edit("8.13", "keeps no Λ where α = 0", "Lam[s] += change", "Lam[s] += change * (network.alpha[s] > 0.0)")
+edit("8.13", "stores no Λ where α = 0", "Lam[s] += change", "Lam[s] += change * (network.alpha[s] > 0.0)")
 edit("8.13", "checks nothing",
      "compliant_multiplier(length - network.rest[s], Lam[s], w[i] + w[j], network.alpha[s] / (dt * dt))",
      "(network.rest[s] - length - network.alpha[s] / dt**2 * Lam[s]) / (w[i] + w[j] + network.alpha[s] / dt**2)")
-edit("8.13", "skips immovable points", "length = distance_between(x, i, j)",
+edit("8.13", "skips links between immovable points", "length = distance_between(x, i, j)",
      "length = distance_between(x, i, j)\n        if w[i] + w[j] == 0.0:\n            continue")
 edit("8.13", "visits the links in the order of their first points", "range(network.i.size)", "np.argsort(network.i)")
-edit("8.13", "no visit where a link has its rest length", "length = distance_between(x, i, j)",
+edit("8.13", "skips links that have their rest length", "length = distance_between(x, i, j)",
      "length = distance_between(x, i, j)\n"
      "        if abs(length / network.rest[s] - 1.0) < 1e-9:\n            continue")
 edit("8.13", "refuses a nanometre", "length == 0.0", "length < 1e-9")
-edit("8.13", "all sweeps at once", "range(network.i.size)", "[*range(network.i.size)] * network.sweeps")
-edit("8.13", "a part of α in each sweep",
+edit("8.13", "makes all sweeps in one call", "range(network.i.size)", "[*range(network.i.size)] * network.sweeps")
+edit("8.13", "divides α by the number of sweeps",
      "network.alpha[s] / (dt * dt)", "network.alpha[s] / (dt * dt) / network.sweeps")
 edit("8.13", "returns its input where there are no links", "x, Lam, w =",
      "if network.i.size == 0:\n        return x, Lam\n    x, Lam, w =")
@@ -562,20 +568,21 @@ def soft_step(anew=False, sweeps=lambda n: n, hard=False, speed=lambda new, x, v
 
 
 right("8.14", "with a loop")(soft_step())
-wrong("8.14", "Λ = 0 at every sweep")(soft_step(anew=True))
-wrong("8.14", "Λ = 1 to begin with")(soft_step(begin=1.0))
-wrong("8.14", "PBD after all")(soft_step(hard=True))
-wrong("8.14", "no sweep")(soft_step(sweeps=lambda n: 0))
+wrong("8.14", "restarts Λ at zero in every sweep")(soft_step(anew=True))
+wrong("8.14", "starts with Λ = 1")(soft_step(begin=1.0))
+wrong("8.14", "takes a PBD step")(soft_step(hard=True))
+wrong("8.14", "makes no sweep")(soft_step(sweeps=lambda n: 0))
 wrong("8.14", "keeps the old velocity")(soft_step(speed=lambda new, x, v, dt: v))
-edit("8.14", "an immovable point is at rest", "(new - x) / dt", "(new - x) / dt * (network.inv_mass > 0.0)[:, None]")
-wrong("8.14", "half of the velocity")(soft_step(speed=lambda new, x, v, dt: 0.5 * (new - x) / dt))
-edit("8.14", "the last Λ for all links", "compliant_sweep(new, Lam, dt, network)",
+edit("8.14", "sets the velocity of immovable points to zero",
+     "(new - x) / dt", "(new - x) / dt * (network.inv_mass > 0.0)[:, None]")
+wrong("8.14", "halves the velocity")(soft_step(speed=lambda new, x, v, dt: 0.5 * (new - x) / dt))
+edit("8.14", "uses the last Λ for all links", "compliant_sweep(new, Lam, dt, network)",
      "compliant_sweep(new, np.full(network.i.size, Lam[-1]), dt, network)")
-edit("8.14", "one Λ per point", "np.zeros(network.i.size)", "np.zeros(x.shape[0])")
-edit("8.14", "gravity for any acceleration", "predict(acceleration, t,", "predict(network_gravity, t,")
-edit("8.14", "the acceleration at t + dt", "predict(acceleration, t,", "predict(acceleration, t + dt,")
-wrong("8.14", "five sweeps at most")(soft_step(sweeps=lambda n: min(n, 5)))
-edit("8.14", "PBD where nothing is soft", "Lam = np.zeros(network.i.size)",
+edit("8.14", "keeps one Λ per point, not per link", "np.zeros(network.i.size)", "np.zeros(x.shape[0])")
+edit("8.14", "uses gravity in place of the acceleration", "predict(acceleration, t,", "predict(network_gravity, t,")
+edit("8.14", "takes the acceleration at time t + dt", "predict(acceleration, t,", "predict(acceleration, t + dt,")
+wrong("8.14", "makes at most five sweeps")(soft_step(sweeps=lambda n: min(n, 5)))
+edit("8.14", "takes a PBD step where no link is soft", "Lam = np.zeros(network.i.size)",
      "Lam = np.zeros(network.i.size)\n"
      "    if not network.alpha.any():\n        return pbd_step(acceleration, t, x, v, dt, network)")
 
@@ -592,12 +599,12 @@ def readiness(turned=True, arm=np.cross, centre=1.0, moments=lambda I: 1.0 / I, 
 
 
 right("8.15", "with NumPy's product")(readiness())
-wrong("8.15", "moments about the world's axes")(readiness(turned=False))
-wrong("8.15", "turned the wrong way")(readiness(back=True))
-wrong("8.15", "does not move, only turns")(readiness(centre=0.0))
-wrong("8.15", "does not rotate")(readiness(arm=lambda r, n: 0.0 * r))
-wrong("8.15", "the arm along n")(readiness(arm=lambda r, n: (r @ n) * n))
-edit("8.15", "right only for masses above 1 kg", "1.0 / m", "1.0 / max(m, 1.0)")
+wrong("8.15", "uses the body's moments with vectors in world axes")(readiness(turned=False))
+wrong("8.15", "rotates from body to world in place of world to body")(readiness(back=True))
+wrong("8.15", "omits the mass")(readiness(centre=0.0))
+wrong("8.15", "omits the rotation")(readiness(arm=lambda r, n: 0.0 * r))
+wrong("8.15", "uses the part of the arm along n in place of r × n")(readiness(arm=lambda r, n: (r @ n) * n))
+edit("8.15", "uses a mass of at least 1 kg", "1.0 / m", "1.0 / max(m, 1.0)")
 wrong("8.15", "multiplies by the moments")(readiness(moments=lambda I: I))
 
 
@@ -615,15 +622,15 @@ def apply_multipliers(mass=True, sign=1.0, turned=True, half=1.0, unit=True, mov
 right("8.16", "by the product itself")(apply_multipliers())
 wrong("8.16", "forgets the mass")(apply_multipliers(mass=False))
 wrong("8.16", "turns the other way")(apply_multipliers(sign=-1.0))
-wrong("8.16", "moments about the world's axes")(apply_multipliers(turned=False))
+wrong("8.16", "uses the body's moments with vectors in world axes")(apply_multipliers(turned=False))
 wrong("8.16", "turns twice as far")(apply_multipliers(half=2.0))
-wrong("8.16", "a quaternion of another length")(apply_multipliers(unit=False))
-edit("8.16", "right only for masses above 1 kg", "p / m", "p / max(m, 1.0)")
-edit("8.16", "right only for masses below 1 kg", "p / m", "p / min(m, 1.0)")
-wrong("8.16", "turns only")(apply_multipliers(moves=0.0))
+wrong("8.16", "does not normalise the quaternion")(apply_multipliers(unit=False))
+edit("8.16", "uses a mass of at least 1 kg", "p / m", "p / max(m, 1.0)")
+edit("8.16", "uses a mass of at most 1 kg", "p / m", "p / min(m, 1.0)")
+wrong("8.16", "rotates the body and does not move it")(apply_multipliers(moves=0.0))
 edit("8.16", "fails without rotation", "quaternion_update(q, turn, 1.0)",
      "quaternion_update(q, turn / np.sqrt(turn @ turn), np.sqrt(turn @ turn))")
-edit("8.16", "a microradian is no turn", "quaternion_update(q, turn, 1.0)",
+edit("8.16", "ignores rotations below 1 µrad", "quaternion_update(q, turn, 1.0)",
      "quaternion_update(q, turn * (turn @ turn > 1e-12), 1.0)")
 
 
@@ -638,16 +645,17 @@ def rate(order=False, scale=2.0, by_w=True, per_step=True, sign=1.0, back=True):
 
 
 right("8.17", "with a conjugate by signs")(rate())
-wrong("8.17", "the body's own axes")(rate(order=True))
-wrong("8.17", "half as fast")(rate(scale=1.0))
-wrong("8.17", "not for −q")(rate(by_w=False))
-wrong("8.17", "an angle, no rate")(rate(per_step=False))
-wrong("8.17", "backwards")(rate(sign=-1.0))
-wrong("8.17", "the product of both")(rate(back=False))
+wrong("8.17", "returns the rate in body coordinates")(rate(order=True))
+wrong("8.17", "omits the factor 2")(rate(scale=1.0))
+wrong("8.17", "fails where q and −q describe the same rotation")(rate(by_w=False))
+wrong("8.17", "does not divide by dt")(rate(per_step=False))
+wrong("8.17", "returns the rate of the reversed rotation")(rate(sign=-1.0))
+wrong("8.17", "multiplies the two quaternions without conjugating one")(rate(back=False))
 edit("8.17", "fails without rotation", "return 2.0 / (turn[0] * dt) * turn[1:]",
      "size = np.sqrt(np.sum(turn[1:] ** 2))\n    return 2.0 * size / (turn[0] * dt) * (turn[1:] / size)")
-edit("8.17", "a microradian is no turn", "* turn[1:]", "* turn[1:] * (turn[1:] @ turn[1:] > 1e-12)")
-edit("8.17", "no more than 120°", "2.0 / (turn[0] * dt)", "2.0 / (np.sign(turn[0]) * max(abs(turn[0]), 0.5) * dt)")
+edit("8.17", "ignores rotations below 1 µrad", "* turn[1:]", "* turn[1:] * (turn[1:] @ turn[1:] > 1e-12)")
+edit("8.17", "limits the rotation to 120°",
+     "2.0 / (turn[0] * dt)", "2.0 / (np.sign(turn[0]) * max(abs(turn[0]), 0.5) * dt)")
 
 
 @right("8.17", "by the angle")
@@ -674,11 +682,12 @@ def enclosed(share=6.0, order=(0, 1, 2), slope_share=6.0, sign=1.0, only_first=F
 
 right("8.18", "all faces at once")(enclosed())
 right("8.18", "from another corner")(enclosed(order=(1, 2, 0)))
-wrong("8.18", "inside out")(enclosed(order=(0, 2, 1)))
-wrong("8.18", "a third")(enclosed(share=3.0))
-wrong("8.18", "a third in the slope")(enclosed(slope_share=3.0))
-wrong("8.18", "the first corner only")(enclosed(only_first=True))
-edit("8.18", "the volume without its sign", "return V, gradient", "return abs(V), gradient")
-edit("8.18", "no surface is inside-out", "return V, gradient", "return abs(V), np.sign(V) * gradient")
-edit("8.18", "the last face of a corner only", "gradient[faces[f, 0]] += across", "gradient[faces[f, 0]] = across")
+wrong("8.18", "returns volume and gradient with the opposite sign")(enclosed(order=(0, 2, 1)))
+wrong("8.18", "divides the volume by 3 in place of 6")(enclosed(share=3.0))
+wrong("8.18", "divides the gradient by 3 in place of 6")(enclosed(slope_share=3.0))
+wrong("8.18", "computes the gradient of the first corner of each face only")(enclosed(only_first=True))
+edit("8.18", "drops the sign of the volume", "return V, gradient", "return abs(V), gradient")
+edit("8.18", "drops the sign of volume and gradient", "return V, gradient", "return abs(V), np.sign(V) * gradient")
+edit("8.18", "keeps only the last face of each corner",
+     "gradient[faces[f, 0]] += across", "gradient[faces[f, 0]] = across")
 edit("8.18", "leaves out the corners of no face", "return V, gradient", "return V, gradient[np.unique(faces)]")

@@ -17,10 +17,12 @@ def skew(a):
 
 
 MATRIX = "[[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]]"
-edit("5.1", "transposed: b × a", MATRIX, "[[0.0, a[2], -a[1]], [-a[2], 0.0, a[0]], [a[1], -a[0], 0.0]]")
-edit("5.1", "symmetric", MATRIX, MATRIX.replace("-", ""))
-edit("5.1", "x and z exchanged", MATRIX, MATRIX.replace("a[2]", "c").replace("a[0]", "a[2]").replace("c", "a[0]"))
-edit("5.1", "outer product", f"np.array({MATRIX})", "np.outer(a, a)")
+edit("5.1", "returns the transpose, which gives b × a",
+     MATRIX, "[[0.0, a[2], -a[1]], [-a[2], 0.0, a[0]], [a[1], -a[0], 0.0]]")
+edit("5.1", "omits the minus signs", MATRIX, MATRIX.replace("-", ""))
+edit("5.1", "exchanges the components x and z",
+     MATRIX, MATRIX.replace("a[2]", "c").replace("a[0]", "a[2]").replace("c", "a[0]"))
+edit("5.1", "returns the outer product of a with itself", f"np.array({MATRIX})", "np.outer(a, a)")
 
 
 # 5.2 ------------------------------------------------------------------------------------------------------------
@@ -29,9 +31,9 @@ def point_velocity(v, omega, r):
     return worked.skew(omega) @ r + v
 
 
-edit("5.2", "r × ω", "cross(omega, r)", "cross(r, omega)")
-edit("5.2", "forgets the centre of mass", "v + cross(omega, r)", "cross(omega, r)")
-edit("5.2", "forgets the rotation", "v + cross(omega, r)", "v.copy()")
+edit("5.2", "takes r × ω in place of ω × r", "cross(omega, r)", "cross(r, omega)")
+edit("5.2", "omits the velocity of the centre of mass", "v + cross(omega, r)", "cross(omega, r)")
+edit("5.2", "omits the rotation, ω × r", "v + cross(omega, r)", "v.copy()")
 
 
 # 5.3 ------------------------------------------------------------------------------------------------------------
@@ -40,11 +42,12 @@ def total_load(x, points, forces):
     return np.sum(forces, axis=0), np.sum(np.cross(points, forces), axis=0) - np.cross(x, np.sum(forces, axis=0))
 
 
-edit("5.3", "torque about the origin", "points[i] - x", "points[i]")
-edit("5.3", "f × r", "cross(points[i] - x, forces[i])", "cross(forces[i], points[i] - x)")
-edit("5.3", "arm from the point to the centre", "points[i] - x", "x - points[i]")
-edit("5.3", "all forces at the mean point", "points[i] - x", "np.sum(points, axis=0) / points.shape[0] - x")
-edit("5.3", "moves the points", "points[i] - x", "np.subtract(points[i], x, out=points[i])")
+edit("5.3", "takes the torque about the origin, not about the centre of mass", "points[i] - x", "points[i]")
+edit("5.3", "takes f × r in place of r × f", "cross(points[i] - x, forces[i])", "cross(forces[i], points[i] - x)")
+edit("5.3", "takes the arm from the point to the centre", "points[i] - x", "x - points[i]")
+edit("5.3", "lets all forces act at the mean of the points",
+     "points[i] - x", "np.sum(points, axis=0) / points.shape[0] - x")
+edit("5.3", "changes the array of points", "points[i] - x", "np.subtract(points[i], x, out=points[i])")
 
 
 # 5.4 ------------------------------------------------------------------------------------------------------------
@@ -53,10 +56,10 @@ def angular_velocity(R, L, I_body):
     return np.linalg.solve(R @ np.diag(I_body) @ R.T, L)
 
 
-edit("5.4", "moments of the body, axes of the world", "R @ ((R.T @ L) / I_body)", "L / I_body")
-edit("5.4", "stays in the body", "R @ ((R.T @ L) / I_body)", "(R.T @ L) / I_body")
-edit("5.4", "multiplies by the inertia", "/ I_body", "* I_body")
-edit("5.4", "R and its transpose exchanged", "R @ ((R.T @ L) / I_body)", "R.T @ ((R @ L) / I_body)")
+edit("5.4", "divides L in world axes by the moments of the body axes", "R @ ((R.T @ L) / I_body)", "L / I_body")
+edit("5.4", "returns ω in body coordinates", "R @ ((R.T @ L) / I_body)", "(R.T @ L) / I_body")
+edit("5.4", "multiplies by the inertia in place of dividing by it", "/ I_body", "* I_body")
+edit("5.4", "exchanges R and its transpose", "R @ ((R.T @ L) / I_body)", "R.T @ ((R @ L) / I_body)")
 
 
 # 5.5 ------------------------------------------------------------------------------------------------------------
@@ -71,13 +74,15 @@ def derivative(mass=lambda m: m, turn=lambda omega, R: worked.skew(omega) @ R,
 
 
 right("5.5", "by columns")(derivative(turn=lambda omega, R: np.cross(omega, R.T).T))
-wrong("5.5", "momentum for velocity")(derivative(mass=lambda m: 1.0))
-wrong("5.5", "R ω*")(derivative(turn=lambda omega, R: R @ worked.skew(omega)))
+wrong("5.5", "returns the momentum P in place of the velocity P/m")(derivative(mass=lambda m: 1.0))
+wrong("5.5", "takes R ω* in place of ω* R")(derivative(turn=lambda omega, R: R @ worked.skew(omega)))
 wrong("5.5", "turns the other way")(derivative(turn=lambda omega, R: worked.skew(omega).T @ R))
-wrong("5.5", "rows for columns")(derivative(turn=lambda omega, R: np.cross(omega, R)))
-wrong("5.5", "L for ω")(derivative(omega=lambda R, L, I: L))
-wrong("5.5", "a gyroscopic term in L̇")(derivative(torque=lambda tau, omega, L: tau - np.cross(omega, L)))
-edit("5.5", "right only for masses above 1 kg", "S.P / body.m", "S.P / max(1.0, body.m)")
+wrong("5.5", "takes the cross product with the rows of R, not with its columns")(
+    derivative(turn=lambda omega, R: np.cross(omega, R)))
+wrong("5.5", "uses L in place of ω")(derivative(omega=lambda R, L, I: L))
+wrong("5.5", "adds a gyroscopic term to L̇, where only the torque belongs")(
+    derivative(torque=lambda tau, omega, L: tau - np.cross(omega, L)))
+edit("5.5", "uses a mass of at least 1 kg", "S.P / body.m", "S.P / max(1.0, body.m)")
 
 
 # 5.6 ------------------------------------------------------------------------------------------------------------
@@ -92,11 +97,11 @@ def matrix_update(R, omega, dt):
 
 
 edit("5.6", "does not renormalise", "first, second = M[:, 0].copy(), M[:, 1].copy()", "return M")
-edit("5.6", "brings the columns to length 1 and leaves them oblique", "dot(first, second) * first", "0.0")
-edit("5.6", "the third column inside out", "cross(first, second)", "cross(second, first)")
-edit("5.6", "ω of the body", "skew(omega) @ R", "R @ skew(omega)")
+edit("5.6", "normalises the columns but does not make them orthogonal", "dot(first, second) * first", "0.0")
+edit("5.6", "reverses the third column", "cross(first, second)", "cross(second, first)")
+edit("5.6", "takes ω as if it were in body coordinates", "skew(omega) @ R", "R @ skew(omega)")
 edit("5.6", "forgets dt", "dt * (skew(omega) @ R)", "skew(omega) @ R")
-edit("5.6", "renormalises rows", "np.stack((first, second, cross(first, second)), axis=1)",
+edit("5.6", "orthonormalises the rows, not the columns", "np.stack((first, second, cross(first, second)), axis=1)",
      "np.linalg.qr(M.T)[0].T * np.sign(np.diag(np.linalg.qr(M.T)[1]))[:, None]")
 edit("5.6", "changes its input", "R + dt * (skew(omega) @ R)", "np.add(R, dt * (skew(omega) @ R), out=R)")
 
@@ -116,17 +121,17 @@ def rodrigues(angle=lambda rate, dt: rate * dt, sign=1.0, along=1.0, side=lambda
 
 right("5.7", "as one matrix")(rodrigues())
 wrong("5.7", "turns the other way")(rodrigues(sign=-1.0))
-wrong("5.7", "on the side of the body")(rodrigues(side=lambda T, R: R @ T))
-wrong("5.7", "half the angle")(rodrigues(angle=lambda rate, dt: 0.5 * rate * dt))
+wrong("5.7", "multiplies R from the right, as if ω were in body coordinates")(rodrigues(side=lambda T, R: R @ T))
+wrong("5.7", "rotates by half of the angle")(rodrigues(angle=lambda rate, dt: 0.5 * rate * dt))
 wrong("5.7", "forgets the part along the axis")(rodrigues(along=0.0))
 wrong("5.7", "divides by zero at rest")(rodrigues(rest=False))
-wrong("5.7", "turns only for a second")(rodrigues(angle=lambda rate, dt: rate))
+wrong("5.7", "omits dt")(rodrigues(angle=lambda rate, dt: rate))
 edit("5.7", "changes its input", "turned = float_copy(R)", "turned = R")
 edit("5.7", "treats a milliradian per second as rest", "rate != 0.0", "rate > 1e-3")
-edit("5.7", "the sine without its sign", "np.sin(rate * dt)", "np.sqrt(1.0 - np.cos(rate * dt) ** 2)")
-edit("5.7", "no more than half a turn", "np.cos(rate * dt), np.sin(rate * dt)",
+edit("5.7", "drops the sign of the sine", "np.sin(rate * dt)", "np.sqrt(1.0 - np.cos(rate * dt) ** 2)")
+edit("5.7", "limits the angle to half a turn", "np.cos(rate * dt), np.sin(rate * dt)",
      "np.cos(min(rate * dt, np.pi)), np.sin(min(rate * dt, np.pi))")
-edit("5.7", "no more than a turn", "np.cos(rate * dt), np.sin(rate * dt)",
+edit("5.7", "limits the angle to one turn", "np.cos(rate * dt), np.sin(rate * dt)",
      "np.cos(min(rate * dt, 2.0 * np.pi)), np.sin(min(rate * dt, 2.0 * np.pi))")
 
 
@@ -142,12 +147,13 @@ def hamilton(dot=-1.0, twist=1.0, mixed=(1.0, 1.0), scalar=0, close=lambda c: c)
 
 
 right("5.8", "scalar and vector parts")(hamilton())
-wrong("5.8", "b first: a × b the other way")(hamilton(twist=-1.0))
-wrong("5.8", "no cross product: they commute")(hamilton(twist=0.0))
-wrong("5.8", "plus in the scalar")(hamilton(dot=1.0))
+wrong("5.8", "multiplies in the wrong order, b before a")(hamilton(twist=-1.0))
+wrong("5.8", "omits the cross product")(hamilton(twist=0.0))
+wrong("5.8", "adds the dot product in the scalar part, where it is subtracted")(hamilton(dot=1.0))
 wrong("5.8", "forgets a scalar")(hamilton(mixed=(1.0, 0.0)))
-wrong("5.8", "the scalar last")(hamilton(scalar=3))
-wrong("5.8", "turns what has a negative scalar round")(hamilton(close=lambda c: c if c[0] >= 0.0 else -c))
+wrong("5.8", "puts the scalar part last")(hamilton(scalar=3))
+wrong("5.8", "changes the sign of a product with a negative scalar part")(
+    hamilton(close=lambda c: c if c[0] >= 0.0 else -c))
 
 
 # 5.9 ------------------------------------------------------------------------------------------------------------
@@ -157,8 +163,8 @@ def rotation_matrix(q):
     return np.eye(3) + 2.0 * q[0] * K + 2.0 * K @ K
 
 
-edit("5.9", "from world to body", "w, x, y, z = q[0]", "w, x, y, z = -q[0]")
-edit("5.9", "the scalar last", "q[0], q[1], q[2], q[3]", "q[3], q[0], q[1], q[2]")
+edit("5.9", "returns the transpose, which rotates from world to body", "w, x, y, z = q[0]", "w, x, y, z = -q[0]")
+edit("5.9", "reads the scalar part as the last component", "q[0], q[1], q[2], q[3]", "q[3], q[0], q[1], q[2]")
 edit("5.9", "forgets a factor 2 beside w", "w, x, y, z = q[0]", "w, x, y, z = 0.5 * q[0]")
 edit("5.9", "adds w² to a diagonal that has it already", "1.0 - 2.0 * (y * y + z * z)",
      "w * w + 1.0 - 2.0 * (y * y + z * z)")
@@ -180,15 +186,15 @@ def quaternion_update(q, omega, dt):
     return worked.unit(worked.quaternion_product(np.concatenate(([1.0], 0.5 * dt * omega)), q))
 
 
-wrong("5.10", "forgets the half")(third_way(half=1.0))
-wrong("5.10", "ω on the right: of the body")(third_way(left=False))
+wrong("5.10", "omits the factor ½")(third_way(half=1.0))
+wrong("5.10", "multiplies by ω from the right, as if ω were in body coordinates")(third_way(left=False))
 wrong("5.10", "turns the other way")(third_way(sign=-1.0))
 wrong("5.10", "does not normalise")(third_way(close=lambda q: q))
 wrong("5.10", "divides by the squared length")(third_way(close=lambda q: q / (q @ q)))
 wrong("5.10", "divides zero by zero")(third_way(close=lambda q: q / np.linalg.norm(q)))
 edit("5.10", "changes its input",
      "q + 0.5 * dt * quaternion_product(spin, q)", "np.add(q, 0.5 * dt * quaternion_product(spin, q), out=q)")
-edit("5.10", "never back", "0.5 * dt", "0.5 * abs(dt)")
+edit("5.10", "ignores the sign of dt", "0.5 * dt", "0.5 * abs(dt)")
 
 
 # 5.11 -----------------------------------------------------------------------------------------------------------
@@ -202,12 +208,12 @@ def euler_equations(gyro=-1.0, inverse=True, push=worked.unrotate, back=worked.r
     return angular_acceleration
 
 
-wrong("5.11", "no gyroscopic term: nothing tumbles")(euler_equations(gyro=0.0))
-wrong("5.11", "the gyroscopic term with a plus")(euler_equations(gyro=1.0))
+wrong("5.11", "omits the gyroscopic term, so that nothing tumbles")(euler_equations(gyro=0.0))
+wrong("5.11", "adds the gyroscopic term in place of subtracting it")(euler_equations(gyro=1.0))
 wrong("5.11", "forgets I⁻¹")(euler_equations(inverse=False))
-wrong("5.11", "torque of the world in the body")(euler_equations(push=lambda q, tau: tau))
-wrong("5.11", "stays in the body")(euler_equations(back=lambda q, a: a))
-wrong("5.11", "ω × ω")(euler_equations(momentum=lambda I, w: w))
+wrong("5.11", "uses the world's torque in body axes without rotating it")(euler_equations(push=lambda q, tau: tau))
+wrong("5.11", "returns the result in body coordinates")(euler_equations(back=lambda q, a: a))
+wrong("5.11", "takes ω × ω, which is zero, in place of ω × Iω")(euler_equations(momentum=lambda I, w: w))
 
 
 @right("5.11", "with the inertia of the world")
@@ -217,7 +223,7 @@ def angular_acceleration(q, omega, tau, I_body):
     return np.linalg.solve(I, tau - np.cross(omega, I @ omega))
 
 
-edit("5.11", "moments of the body, axes of the world", "omega_body = unrotate(q, omega)",
+edit("5.11", "uses the moments of the body with vectors in world axes", "omega_body = unrotate(q, omega)",
      "return (tau - cross(omega, I_body * omega)) / I_body")
 edit("5.11", "ignores small torques", "unrotate(q, tau)", "unrotate(q, tau) * (np.sum(tau * tau) > 1e-12)")
 
@@ -226,27 +232,27 @@ edit("5.11", "ignores small torques", "unrotate(q, tau)", "unrotate(q, tau) * (n
 @variants
 def loop(late=0.0, old_v=False, old_omega=False, gyro=True, mass=True, turned=worked.quaternion_update, first=False):
     """The loop of the second lecture deck with an order that may be wrong."""
-    def rigid_body_step(load, t, x, v, q, omega, dt, body):
-        F, tau = load(t + late * dt, x + (dt * v if first else 0.0), v, q, omega, body)
+    def rigid_body_step(load, t, x, q, v, omega, dt, body):
+        F, tau = load(t + late * dt, x + (dt * v if first else 0.0), q, v, omega, body)
         if not gyro:
             tau = tau + np.cross(omega, worked.body_angular_momentum(q, omega, body.I_body))
         v_new = v + dt * F / (body.m if mass else 1.0)
         omega_new = omega + dt * worked.angular_acceleration(q, omega, tau, body.I_body)
-        return x + dt * (v if old_v else v_new), v_new, turned(q, omega if old_omega else omega_new, dt), omega_new
+        return x + dt * (v if old_v else v_new), turned(q, omega if old_omega else omega_new, dt), v_new, omega_new
     return rigid_body_step
 
 
 right("5.12", "with a name for everything")(loop())
 wrong("5.12", "moves with the old velocity")(loop(old_v=True))
-wrong("5.12", "turns with the old ω")(loop(old_omega=True))
-wrong("5.12", "load at the end of the step")(loop(late=1.0))
-wrong("5.12", "load at the new position")(loop(first=True))
-wrong("5.12", "no gyroscopic term")(loop(gyro=False))
+wrong("5.12", "rotates with the old ω")(loop(old_omega=True))
+wrong("5.12", "takes the load at time t + dt")(loop(late=1.0))
+wrong("5.12", "takes the load at the new position")(loop(first=True))
+wrong("5.12", "omits the gyroscopic term")(loop(gyro=False))
 wrong("5.12", "forgets the mass")(loop(mass=False))
 wrong("5.12", "forgets to normalise q")(loop(turned=third_way(close=lambda q: q)))
 edit("5.12", "changes its input", "v = v + dt / body.m * F", "v += dt / body.m * F")
-edit("5.12", "right only for masses above 1 kg", "dt / body.m", "dt / max(body.m, 1.0)")
-edit("5.12", "right only for masses below 1 kg", "dt / body.m", "dt / min(body.m, 1.0)")
+edit("5.12", "uses a mass of at least 1 kg", "dt / body.m", "dt / max(body.m, 1.0)")
+edit("5.12", "uses a mass of at most 1 kg", "dt / body.m", "dt / min(body.m, 1.0)")
 
 
 # 5.13 -----------------------------------------------------------------------------------------------------------
@@ -255,8 +261,8 @@ def kinetic_energy(q, L, I_body):
     return 0.5 * worked.angular_velocity(worked.rotation_matrix(q), L, I_body) @ L
 
 
-edit("5.13", "L of the world over moments of the body", "unrotate(q, L)", "L")
-edit("5.13", "forgets the half", "0.5 * np.sum", "np.sum")
+edit("5.13", "divides L in world axes by the moments of the body axes", "unrotate(q, L)", "L")
+edit("5.13", "omits the factor ½", "0.5 * np.sum", "np.sum")
 edit("5.13", "takes L for ω", "L_body * L_body / I_body", "L_body * L_body * I_body")
 edit("5.13", "turns L the wrong way", "unrotate(q, L)", "rotate(q, L)")
 
@@ -278,11 +284,12 @@ def tumbling_rate(I_body, k, spin):
     return max(0.0, np.max(np.linalg.eigvals(spin * matrix).real))
 
 
-wrong("5.14", "the outer axes tumble")(racket(sign=-1.0))
-wrong("5.14", "everything tumbles")(racket(root=lambda s: np.sqrt(abs(s))))
-wrong("5.14", "forgets the root")(racket(root=lambda s: max(0.0, s)))
-wrong("5.14", "over the squared moment of the axis itself")(racket(below=lambda I, i, j: (I.sum() - I[i] - I[j]) ** 2))
-wrong("5.14", "a negative spin calms")(racket(spin_of=lambda spin: spin))
+wrong("5.14", "reverses a sign, so that the outer axes tumble")(racket(sign=-1.0))
+wrong("5.14", "finds tumbling about every axis")(racket(root=lambda s: np.sqrt(abs(s))))
+wrong("5.14", "omits the square root")(racket(root=lambda s: max(0.0, s)))
+wrong("5.14", "divides by the squared moment of the axis itself")(
+    racket(below=lambda I, i, j: (I.sum() - I[i] - I[j]) ** 2))
+wrong("5.14", "returns a negative rate for a negative spin")(racket(spin_of=lambda spin: spin))
 
 
 # 5.15 -----------------------------------------------------------------------------------------------------------
@@ -291,12 +298,12 @@ def heavy_top_torque(t, q, L, top):
     return np.cross(worked.rotation_matrix(q)[:, 2], [0.0, 0.0, -top.mgl])
 
 
-edit("5.15", "lifts the tip", "[-e[1], e[0], 0.0]", "[e[1], -e[0], 0.0]")
+edit("5.15", "reverses the torque, which lifts the tip", "[-e[1], e[0], 0.0]", "[e[1], -e[0], 0.0]")
 edit("5.15", "forgets the weight", "top.mgl * np", "np")
-edit("5.15", "in coordinates of the body", "top.mgl * np.array([-e[1], e[0], 0.0])",
+edit("5.15", "returns the torque in body coordinates", "top.mgl * np.array([-e[1], e[0], 0.0])",
      "unrotate(q, top.mgl * np.array([-e[1], e[0], 0.0]))")
-edit("5.15", "the axis turned the wrong way", "rotate(q, np", "unrotate(q, np")
-edit("5.15", "lifts what hangs", "top.mgl * np", "np.sign(e[2]) * top.mgl * np")
+edit("5.15", "rotates the axis from world to body", "rotate(q, np", "unrotate(q, np")
+edit("5.15", "reverses the torque for a top that hangs", "top.mgl * np", "np.sign(e[2]) * top.mgl * np")
 
 
 # 5.16 -----------------------------------------------------------------------------------------------------------
@@ -320,20 +327,20 @@ def midpoint(gyro=1.0, newton=True, enough=lambda n, change, m: change <= 1e-12 
 
 
 right("5.16", "by NumPy's solver")(midpoint())
-wrong("5.16", "fixed-point iteration")(midpoint(newton=False))
-wrong("5.16", "until the change is small in kg m²/s")(midpoint(enough=lambda n, change, m: change <= 1e-12))
-wrong("5.16", "one correction")(midpoint(enough=lambda n, change, m: True))
-wrong("5.16", "two corrections: not there yet")(midpoint(enough=lambda n, change, m: n == 1))
-wrong("5.16", "the gyroscopic term with the other sign")(midpoint(gyro=-1.0))
-wrong("5.16", "ω at the beginning of the step")(midpoint(at=lambda m, start: start))
-wrong("5.16", "ω at the end of the step")(midpoint(at=lambda m, start: 2.0 * m - start))
-wrong("5.16", "turns on the side of the world")(
+wrong("5.16", "iterates without Newton's method")(midpoint(newton=False))
+wrong("5.16", "compares the change with an absolute tolerance")(midpoint(enough=lambda n, change, m: change <= 1e-12))
+wrong("5.16", "iterates only once")(midpoint(enough=lambda n, change, m: True))
+wrong("5.16", "stops after two corrections")(midpoint(enough=lambda n, change, m: n == 1))
+wrong("5.16", "reverses the gyroscopic term")(midpoint(gyro=-1.0))
+wrong("5.16", "rotates with ω at the beginning of the step")(midpoint(at=lambda m, start: start))
+wrong("5.16", "rotates with ω at the end of the step")(midpoint(at=lambda m, start: 2.0 * m - start))
+wrong("5.16", "multiplies the rotation from the left, as if ω were in world coordinates")(
     midpoint(close=lambda q, w, dt: worked.unit(worked.quaternion_product(np.concatenate(([1.0], 0.5 * dt * w)), q))))
-wrong("5.16", "forgets the half in the turn")(
+wrong("5.16", "omits the factor ½ in the rotation")(
     midpoint(close=lambda q, w, dt: worked.unit(worked.quaternion_product(q, np.concatenate(([1.0], dt * w))))))
-wrong("5.16", "turns by |ω| dt: the angle of another rule")(
+wrong("5.16", "rotates by the angle of another rule")(
     midpoint(close=lambda q, w, dt: worked.unit(worked.quaternion_product(q, worked.exponential(dt * w)))))
-wrong("5.16", "does not normalise")(
+wrong("5.16", "does not normalise the quaternion")(
     midpoint(close=lambda q, w, dt: worked.quaternion_product(q, np.concatenate(([1.0], 0.5 * dt * w)))))
 wrong("5.16", "normalises the turn, not its result")(
     midpoint(close=lambda q, w, dt: worked.quaternion_product(q, worked.unit(np.concatenate(([1.0], 0.5 * dt * w))))))
@@ -364,18 +371,19 @@ def splitting(order="aca", middle=worked.intermediate_axis, fresh=True, whole=1.
 
 
 right("5.17", "half of c, all of a, half of c")(splitting("cac"))
-wrong("5.17", "a, then c: first order, and not reversible")(splitting("ac"))
-wrong("5.17", "L in the body as it was at the beginning")(splitting(fresh=False))
-wrong("5.17", "forgets the turn about L")(splitting(whole=0.0))
-wrong("5.17", "about L of the world, on the side of the body")(splitting(left=False))
-wrong("5.17", "turns about its axes the other way")(splitting(sign=-1.0))
-wrong("5.17", "the whole energy of a and c: L²/2I_b counted twice")(splitting(slow=lambda I, k, b: 1.0 / I[k]))
-wrong("5.17", "differences of moments, not of their inverses")(
+wrong("5.17", "rotates about a, then c: a first-order splitting")(splitting("ac"))
+wrong("5.17", "uses L in the body's axes as it was at the beginning of the step")(splitting(fresh=False))
+wrong("5.17", "omits the rotation about L")(splitting(whole=0.0))
+wrong("5.17", "rotates about L of the world as if it were in body coordinates")(splitting(left=False))
+wrong("5.17", "rotates about the body's axes the other way")(splitting(sign=-1.0))
+wrong("5.17", "omits the subtraction of 1/I_b")(splitting(slow=lambda I, k, b: 1.0 / I[k]))
+wrong("5.17", "uses differences of the moments, not of their inverses")(
     splitting(slow=lambda I, k, b: 1.0 / (I[k] - I[b]) if I[k] != I[b] else 0.0))
 wrong("5.17", "always takes the first axis for the middle one")(splitting(middle=lambda I: 0))
 edit("5.17", "does not normalise at the end", "unit(quaternion_product(exponential(dt / I_body[b] * L), turned))",
      "quaternion_product(exponential(dt / I_body[b] * L), turned)")
-edit("5.17", "turns about its axes the whole way twice", "dt * (1.0 / I_body[a] - 1.0 / I_body[b]), dt * (1.0",
+edit("5.17", "rotates about the outer axis by the whole angle twice",
+     "dt * (1.0 / I_body[a] - 1.0 / I_body[b]), dt * (1.0",
      "2.0 * dt * (1.0 / I_body[a] - 1.0 / I_body[b]), 2.0 * dt * (1.0")
 
 
@@ -395,9 +403,9 @@ def composed(shares=(G, G, 1.0 - 4.0 * G, G, G), clock=1.0):
 
 
 right("5.18", "as a list of shares")(composed())
-wrong("5.18", "five equal substeps")(composed([0.2] * 5))
-wrong("5.18", "the third forwards: more than one step in all")(composed([G, G, 4.0 * G - 1.0, G, G]))
-wrong("5.18", "forgets the third")(composed([G, G, G, G]))
-wrong("5.18", "Yoshida's three shares: fourth order, but another method")(composed([G3, 1.0 - 2.0 * G3, G3]))
-wrong("5.18", "the negative one first")(composed([1.0 - 4.0 * G, G, G, G, G]))
+wrong("5.18", "takes five equal substeps")(composed([0.2] * 5))
+wrong("5.18", "takes the third substep forwards")(composed([G, G, 4.0 * G - 1.0, G, G]))
+wrong("5.18", "omits the third substep")(composed([G, G, G, G]))
+wrong("5.18", "takes Yoshida's three substeps")(composed([G3, 1.0 - 2.0 * G3, G3]))
+wrong("5.18", "takes the negative substep first")(composed([1.0 - 4.0 * G, G, G, G, G]))
 wrong("5.18", "does not advance t")(composed(clock=0.0))

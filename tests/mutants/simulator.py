@@ -23,11 +23,11 @@ def new_velocities_2d(load, t, x, q, v, omega, dt, p):
 
 
 edit("10.1", "divides by the inverse mass", "p.inv_mass[:, None] * F", "F / p.inv_mass[:, None]")
-edit("10.1", "the mass of the first for all", "p.inv_mass[:, None]", "p.inv_mass[0]")
-edit("10.1", "does not turn", "omega + dt * p.inv_inertia * tau", "omega")
-edit("10.1", "turns the other way", "omega + dt *", "omega - dt *")
-edit("10.1", "moves what cannot be moved", "p.inv_mass[:, None] * F", "np.maximum(p.inv_mass, 0.1)[:, None] * F")
-edit("10.1", "loads at time 0", "load(t, x", "load(0.0, x")
+edit("10.1", "uses the mass of the first body for all", "p.inv_mass[:, None]", "p.inv_mass[0]")
+edit("10.1", "does not change the spin", "omega + dt * p.inv_inertia * tau", "omega")
+edit("10.1", "reverses the torque", "omega + dt *", "omega - dt *")
+edit("10.1", "moves immovable bodies", "p.inv_mass[:, None] * F", "np.maximum(p.inv_mass, 0.1)[:, None] * F")
+edit("10.1", "evaluates the load at time 0", "load(t, x", "load(0.0, x")
 
 
 # 10.2 -----------------------------------------------------------------------------------------------------------
@@ -42,16 +42,16 @@ def new_velocities(load, t, x, q, v, omega, dt, p):
     return v + (dt * p.inv_mass * F.T).T, omega
 
 
-edit("10.2", "no gyroscopic term", "angular_acceleration(q[i], omega[i], tau[i], 1.0 / p.inv_inertia[i])",
+edit("10.2", "omits the gyroscopic term", "angular_acceleration(q[i], omega[i], tau[i], 1.0 / p.inv_inertia[i])",
      "angular_acceleration(q[i], 0.0 * omega[i], tau[i], 1.0 / p.inv_inertia[i])")
-edit("10.2", "no torque", "omega[i], tau[i], 1.0", "omega[i], 0.0 * tau[i], 1.0")
-edit("10.2", "inverse inertia for inertia", "1.0 / p.inv_inertia[i]", "p.inv_inertia[i]")
-edit("10.2", "the first body only", "range(omega.shape[0])", "range(1)")
-edit("10.2", "the orientation of the first for all", "q[i]", "q[0]")
-edit("10.2", "the velocity stays", "v + dt * p.inv_mass[:, None] * F", "v")
+edit("10.2", "omits the torque", "omega[i], tau[i], 1.0", "omega[i], 0.0 * tau[i], 1.0")
+edit("10.2", "uses the inverse inertia in place of the inertia", "1.0 / p.inv_inertia[i]", "p.inv_inertia[i]")
+edit("10.2", "changes the spin of the first body only", "range(omega.shape[0])", "range(1)")
+edit("10.2", "uses the orientation of the first body for all", "q[i]", "q[0]")
+edit("10.2", "does not change the velocity", "v + dt * p.inv_mass[:, None] * F", "v")
 
 
-edit("10.2", "turns what has a mass", "p.inv_inertia[i, 0] > 0.0", "p.inv_mass[i] > 0.0")
+edit("10.2", "rotates every body that has a mass", "p.inv_inertia[i, 0] > 0.0", "p.inv_mass[i] > 0.0")
 
 
 # 10.3 -----------------------------------------------------------------------------------------------------------
@@ -61,13 +61,13 @@ def free_step_2d(load, t, x, q, v, omega, dt, p):
     return np.array([x[i] + dt * faster[i] for i in range(len(x))]), q + turning * dt, faster, turning
 
 
-edit("10.3", "positions with the old velocities",
+edit("10.3", "moves the positions with the old velocities",
      "v, omega = new_velocities_2d(load, t, x, q, v, omega, dt, p)",
      "old, (v, omega) = v, new_velocities_2d(load, t, x, q, v, omega, dt, p); x = x + dt * (old - v)")
-edit("10.3", "angles stay", "q + dt * omega", "q")
-edit("10.3", "half a step", "x + dt * v", "x + 0.5 * dt * v")
-edit("10.3", "velocities are lost", "v, omega = new", "_, omega = new")
-edit("10.3", "turns back", "q + dt * omega", "q - dt * omega")
+edit("10.3", "does not change the angles", "q + dt * omega", "q")
+edit("10.3", "moves by half a step", "x + dt * v", "x + 0.5 * dt * v")
+edit("10.3", "returns the old velocities", "v, omega = new", "_, omega = new")
+edit("10.3", "rotates the other way", "q + dt * omega", "q - dt * omega")
 
 
 # 10.4 -----------------------------------------------------------------------------------------------------------
@@ -77,12 +77,13 @@ def free_step(load, t, x, q, v, omega, dt, p):
     return x + dt * v, worked.turn_quaternions(q, omega, dt), v, omega
 
 
-edit("10.4", "the first body only", "range(q.shape[0])", "range(1)")
-edit("10.4", "the spin of the first for all", "omega[i], dt", "omega[0], dt")
-edit("10.4", "turns back", "quaternion_update(q[i], omega[i], dt)", "quaternion_update(q[i], -omega[i], dt)")
-edit("10.4", "positions stay", "x + dt * v", "x")
-edit("10.4", "not unit", "quaternion_update(q[i], omega[i], dt)", "1.01 * quaternion_update(q[i], omega[i], dt)")
-edit("10.4", "velocities are lost", "v, omega = new", "_, omega = new")
+edit("10.4", "rotates the first body only", "range(q.shape[0])", "range(1)")
+edit("10.4", "uses the spin of the first body for all", "omega[i], dt", "omega[0], dt")
+edit("10.4", "rotates the other way", "quaternion_update(q[i], omega[i], dt)", "quaternion_update(q[i], -omega[i], dt)")
+edit("10.4", "does not change the positions", "x + dt * v", "x")
+edit("10.4", "returns quaternions that are not normalised",
+     "quaternion_update(q[i], omega[i], dt)", "1.01 * quaternion_update(q[i], omega[i], dt)")
+edit("10.4", "returns the old velocities", "v, omega = new", "_, omega = new")
 
 
 # 10.5 -----------------------------------------------------------------------------------------------------------
@@ -96,13 +97,13 @@ def find_contacts(narrow, x, low, high, turn, p):
     return narrow(x, turn, p.half, p.planes, pairs, p.margin)
 
 
-edit("10.5", "boxes are not widened", "near_pairs(low - p.margin, high + p.margin, p.planes)",
+edit("10.5", "does not widen the boxes by the margin", "near_pairs(low - p.margin, high + p.margin, p.planes)",
      "near_pairs(low, high, p.planes)")
-edit("10.5", "boxes are made smaller", "low - p.margin", "low + p.margin")
-edit("10.5", "only what overlaps", "pairs, p.margin)", "pairs, 0.0)")
-edit("10.5", "no planes", "high + p.margin, p.planes)", "high + p.margin, p.planes[:0])")
-edit("10.5", "ground on ground", "p.inv_mass)", "p.inv_mass + 1.0)")
-edit("10.5", "twice the margin", "pairs, p.margin)", "pairs, 2.0 * p.margin)")
+edit("10.5", "raises the lower corners by the margin in place of lowering them", "low - p.margin", "low + p.margin")
+edit("10.5", "finds only what overlaps", "pairs, p.margin)", "pairs, 0.0)")
+edit("10.5", "omits the planes", "high + p.margin, p.planes)", "high + p.margin, p.planes[:0])")
+edit("10.5", "finds contacts between immovable bodies, too", "p.inv_mass)", "p.inv_mass + 1.0)")
+edit("10.5", "uses twice the margin", "pairs, p.margin)", "pairs, 2.0 * p.margin)")
 
 
 # 10.6 -----------------------------------------------------------------------------------------------------------
@@ -124,25 +125,27 @@ def contact_step_2d(load, bounds, narrow, t, state, dt, p):
 for number, old_law in (("10.6", "velocity_sweep_2d(v, omega, J, aim, 0.0 * aim, contacts, arms, p)"),
                         ("10.7", "velocity_sweep(v, omega, J, aim, 0.0 * aim, contacts, arms, p.inv_mass, inv_inertia, "
                                  "p.mu)")):
-    edit(number, "stops what is not there yet", old_law, old_law.replace("aim, 0.0", "0.0 * aim, 0.0"))
-    edit(number, "everything is soft", old_law, old_law.replace("0.0 * aim", "0.0 * aim + 1.0"))
-    edit(number, "asks for more than to come to rest", "closing_speeds(contacts.gap, dt)",
+    edit(number, "stops bodies that are not in contact yet", old_law, old_law.replace("aim, 0.0", "0.0 * aim, 0.0"))
+    edit(number, "makes every contact soft", old_law, old_law.replace("0.0 * aim", "0.0 * aim + 1.0"))
+    edit(number, "uses targets other than the closing speeds", "closing_speeds(contacts.gap, dt)",
          "-closing_speeds(contacts.gap, dt) + 0.1")
-    edit(number, "positions without contact", "return PileState(x + dt * v",
+    edit(number, "moves the positions with the velocities before contact", "return PileState(x + dt * v",
          "return PileState(x + dt * (v if J.size == 0 else state.v)")
-    edit(number, "J is lost", "v, omega, contacts, J)", "v, omega, contacts, 0.0 * J)")
-    edit(number, "loads at time 0", "(load, t, x", "(load, 0.0, x")
-    edit(number, "remembers from everywhere", "kept_impulses(contacts, old, J, p.margin)",
+    edit(number, "returns zero impulses", "v, omega, contacts, J)", "v, omega, contacts, 0.0 * J)")
+    edit(number, "evaluates the load at time 0", "(load, t, x", "(load, 0.0, x")
+    edit(number, "keeps impulses from any distance", "kept_impulses(contacts, old, J, p.margin)",
          "kept_impulses(contacts, old, J, np.inf)")
-    edit(number, "remembers within a millimetre", "kept_impulses(contacts, old, J, p.margin)",
+    edit(number, "keeps impulses within 1 mm only", "kept_impulses(contacts, old, J, p.margin)",
          "kept_impulses(contacts, old, J, 1e-3)")
-    edit(number, "velocities of before", "PileState(x + dt * v", "PileState(x + dt * state.v")
-edit("10.6", "remembered but not applied", "apply_impulses_2d(v, omega, J, contacts, arms, p.inv_mass, p.inv_inertia)",
+    edit(number, "moves the positions with the old velocities", "PileState(x + dt * v", "PileState(x + dt * state.v")
+edit("10.6", "does not apply the impulses that it keeps",
+     "apply_impulses_2d(v, omega, J, contacts, arms, p.inv_mass, p.inv_inertia)",
      "pass")
-edit("10.6", "no memory", "kept_impulses(contacts, old, J, p.margin)", "np.zeros(contacts.p.shape)")
-edit("10.6", "one sweep", "range(p.sweeps)", "range(1)")
-edit("10.6", "angles stay", "q + dt * omega", "q")
-edit("10.6", "no forces", "v, omega = new_velocities_2d(load, t, x, q, v, omega, dt, p)",
+edit("10.6", "starts from zero impulses in every step",
+     "kept_impulses(contacts, old, J, p.margin)", "np.zeros(contacts.p.shape)")
+edit("10.6", "makes one sweep only", "range(p.sweeps)", "range(1)")
+edit("10.6", "does not change the angles", "q + dt * omega", "q")
+edit("10.6", "omits the forces", "v, omega = new_velocities_2d(load, t, x, q, v, omega, dt, p)",
      "v, omega = v.copy(), omega.copy()")
 
 
@@ -163,15 +166,17 @@ def contact_step(load, bounds, narrow, t, state, dt, p):
     return worked.PileState(state.x + dt * v, worked.turn_quaternions(state.q, omega, dt), v, omega, contacts, J)
 
 
-edit("10.7", "remembered but not applied", "apply_impulses(v, omega, J, contacts, arms, p.inv_mass, inv_inertia)",
+edit("10.7", "does not apply the impulses that it keeps",
+     "apply_impulses(v, omega, J, contacts, arms, p.inv_mass, inv_inertia)",
      "pass")
-edit("10.7", "no memory", "kept_impulses(contacts, old, J, p.margin)", "np.zeros(contacts.p.shape)")
-edit("10.7", "orientations stay", "turn_quaternions(q, omega, dt)", "q")
-edit("10.7", "inertia of the body for that of the world", "world_inertia(turn, p.inv_inertia)",
+edit("10.7", "starts from zero impulses in every step",
+     "kept_impulses(contacts, old, J, p.margin)", "np.zeros(contacts.p.shape)")
+edit("10.7", "does not change the orientations", "turn_quaternions(q, omega, dt)", "q")
+edit("10.7", "uses the inertia in body axes in place of world axes", "world_inertia(turn, p.inv_inertia)",
      "world_inertia(np.stack([np.eye(3)] * len(turn)), p.inv_inertia)")
-edit("10.7", "no friction", "p.mu)", "0.0)")
-edit("10.7", "one sweep", "range(p.sweeps)", "range(1)")
-edit("10.7", "no forces", "v, omega = new_velocities(load, t, x, q, v, omega, dt, p)",
+edit("10.7", "omits the friction", "p.mu)", "0.0)")
+edit("10.7", "makes one sweep only", "range(p.sweeps)", "range(1)")
+edit("10.7", "omits the forces", "v, omega = new_velocities(load, t, x, q, v, omega, dt, p)",
      "v, omega = v.copy(), omega.copy()")
 
 
@@ -182,30 +187,31 @@ def support_velocity(place, ball):
     return ball.floor_v + np.array([w[1] * r[2] - w[2] * r[1], w[2] * r[0] - w[0] * r[2], w[0] * r[1] - w[1] * r[0]])
 
 
-edit("10.8", "turns about the origin", "place - ball.centre", "place")
-edit("10.8", "turns the other way", "ball.floor_omega, place", "-ball.floor_omega, place")
-edit("10.8", "turns in place", "point_velocity(ball.floor_v", "point_velocity(0.0 * ball.floor_v")
-edit("10.8", "does not turn", "ball.floor_omega, place", "0.0 * ball.floor_omega, place")
+edit("10.8", "rotates about the origin", "place - ball.centre", "place")
+edit("10.8", "reverses the rotation", "ball.floor_omega, place", "-ball.floor_omega, place")
+edit("10.8", "rotates in place", "point_velocity(ball.floor_v", "point_velocity(0.0 * ball.floor_v")
+edit("10.8", "omits the rotation", "ball.floor_omega, place", "0.0 * ball.floor_omega, place")
 
 
 # 10.9 -----------------------------------------------------------------------------------------------------------
 @right("10.9", "by the change of the velocity")
-def carried_step(load, t, x, v, q, omega, dt, ball):
+def carried_step(load, t, x, q, v, omega, dt, ball):
     pushed, turned = worked.stop_slip(v, omega, worked.support_velocity(x + dt * v, ball), dt, ball)
-    _, v_new, _, omega_new = worked.rigid_body_step(load, t, x, pushed, q, turned, dt, ball)
+    _, _, v_new, omega_new = worked.rigid_body_step(load, t, x, q, pushed, turned, dt, ball)
     spin = worked.exponential(dt * (omega + 0.5 * (omega_new - omega)))
-    return x + dt * (v + 0.5 * (v_new - v)), v_new, worked.quaternion_product(spin, q), omega_new
+    return x + dt * (v + 0.5 * (v_new - v)), worked.quaternion_product(spin, q), v_new, omega_new
 
 
-edit("10.9", "the floor where the ball was", "support_velocity(x + dt * v, ball)", "support_velocity(x, ball)")
-edit("10.9", "loads at time 0", "rigid_body_step(load, t, x", "rigid_body_step(load, 0.0, x")
-edit("10.9", "the floor half a step ahead", "support_velocity(x + dt * v, ball)",
+edit("10.9", "takes the velocity of the floor at the old position",
+     "support_velocity(x + dt * v, ball)", "support_velocity(x, ball)")
+edit("10.9", "evaluates the load at time 0", "rigid_body_step(load, t, x", "rigid_body_step(load, 0.0, x")
+edit("10.9", "takes the velocity of the floor half a step ahead", "support_velocity(x + dt * v, ball)",
      "support_velocity(x + 0.5 * dt * v, ball)")
-edit("10.9", "the floor stands still", "support_velocity(x + dt * v, ball)", "0.0 * x")
-edit("10.9", "positions with the new velocities", "0.5 * dt * (v + v_new)", "dt * v_new")
-edit("10.9", "turns with the new spin", "0.5 * dt * (omega + omega_new)", "dt * omega_new")
-edit("10.9", "does not turn", "quaternion_product(exponential(0.5 * dt * (omega + omega_new)), q)", "q")
-edit("10.9", "the old spin", "v_new, q, omega_new", "v_new, q, omega")
+edit("10.9", "takes the floor to be at rest", "support_velocity(x + dt * v, ball)", "0.0 * x")
+edit("10.9", "moves the position with the new velocity", "0.5 * dt * (v + v_new)", "dt * v_new")
+edit("10.9", "rotates with the new spin", "0.5 * dt * (omega + omega_new)", "dt * omega_new")
+edit("10.9", "does not rotate", "quaternion_product(exponential(0.5 * dt * (omega + omega_new)), q)", "q")
+edit("10.9", "returns the old spin", "q, v_new, omega_new", "q, v_new, omega")
 
 
 # 10.10 ----------------------------------------------------------------------------------------------------------
@@ -222,34 +228,37 @@ def slip_time(v, omega, ball):
     return size / slower if slower > 0.0 else np.inf
 
 
-edit("10.10", "friction only brakes", "(1.0 + ball.m * ball.radius * ball.radius / ball.I_body[0])", "1.0")
-edit("10.10", "does not look at the spin", "point_velocity(v, omega,", "point_velocity(v, 0.0 * omega,")
-edit("10.10", "the highest point", "-ball.radius]", "ball.radius]")
-edit("10.10", "gravity helps", "- along", "+ along")
-edit("10.10", "a floor that is level", "- along", "")
-edit("10.10", "rises and slips", "slip[2] = 0.0", "pass")
-edit("10.10", "always ends", "size / rate if rate > 0.0 else np.inf", "size / rate")
-edit("10.10", "no friction coefficient", "-ball.mu * ball.gravity[2]", "-ball.gravity[2]")
+edit("10.10", "omits the effect of friction on the spin",
+     "(1.0 + ball.m * ball.radius * ball.radius / ball.I_body[0])", "1.0")
+edit("10.10", "omits the spin", "point_velocity(v, omega,", "point_velocity(v, 0.0 * omega,")
+edit("10.10", "uses the velocity of the highest point", "-ball.radius]", "ball.radius]")
+edit("10.10", "adds gravity along the slope in place of subtracting it", "- along", "+ along")
+edit("10.10", "omits gravity along the slope", "- along", "")
+edit("10.10", "keeps the vertical part of the slip", "slip[2] = 0.0", "pass")
+edit("10.10", "returns a finite time where the slip never ends", "size / rate if rate > 0.0 else np.inf", "size / rate")
+edit("10.10", "omits the friction coefficient", "-ball.mu * ball.gravity[2]", "-ball.gravity[2]")
 
 
 # 10.11 ----------------------------------------------------------------------------------------------------------
 @right("10.11", "as a loop over both parts")
-def exact_rolling_step(load, t, x, v, q, omega, dt, ball):
-    state, first = (x, v, q, omega), min(dt, worked.slip_time(v, omega, ball))
+def exact_rolling_step(load, t, x, q, v, omega, dt, ball):
+    state, first = (x, q, v, omega), min(dt, worked.slip_time(v, omega, ball))
     for begins, part in ((t, first), (t + first, dt - first)):
         state = worked.average_rolling_step(load, begins, *state, part, ball)
     return state
 
 
-edit("10.11", "one part", "np.minimum(dt, slip_time(v, omega, ball))", "dt")
-edit("10.11", "the rest is as long as the step", "omega, dt - first, ball)", "omega, dt, ball)")
-edit("10.11", "longer than the step", "np.minimum(dt, slip_time(v, omega, ball))", "slip_time(v, omega, ball)")
-edit("10.11", "the first part at time 0", "average_rolling_step(load, t, x", "average_rolling_step(load, 0.0, x")
-edit("10.11", "the second part at time 0", "load, t + first", "load, first")
-edit("10.11", "the second part at the time of the first", "load, t + first", "load, t")
-edit("10.11", "half of the slip", "np.minimum(dt, slip_time(v, omega, ball))",
+edit("10.11", "treats the whole step as slipping", "np.minimum(dt, slip_time(v, omega, ball))", "dt")
+edit("10.11", "makes the second part as long as the step", "omega, dt - first, ball)", "omega, dt, ball)")
+edit("10.11", "lets the first part be longer than the step",
+     "np.minimum(dt, slip_time(v, omega, ball))", "slip_time(v, omega, ball)")
+edit("10.11", "evaluates the first part at time 0",
+     "average_rolling_step(load, t, x", "average_rolling_step(load, 0.0, x")
+edit("10.11", "starts the second part at the length of the first, not at t plus it", "load, t + first", "load, first")
+edit("10.11", "starts the second part at time t", "load, t + first", "load, t")
+edit("10.11", "ends the first part after half of the slip time", "np.minimum(dt, slip_time(v, omega, ball))",
      "np.minimum(dt, 0.5 * slip_time(v, omega, ball))")
-edit("10.11", "the second part from the start", "x, v, q, omega = average", "_, v, q, omega = average")
+edit("10.11", "starts the second part at the old position", "x, q, v, omega = average", "_, q, v, omega = average")
 
 
 # 10.12 ----------------------------------------------------------------------------------------------------------
@@ -261,13 +270,16 @@ def corner_impact(v, omega, r, inv_mass, inv_inertia):
     return v + inv_mass * J, omega + inv_inertia * (lever @ J)
 
 
-edit("10.12", "only the spin is kept", "omega / inv_inertia - cross_2d(r, v) / inv_mass", "omega / inv_inertia")
-edit("10.12", "the other side", "- cross_2d(r, v)", "+ cross_2d(r, v)")
-edit("10.12", "inertia about the centre", "(1.0 / inv_inertia + (r[0] * r[0] + r[1] * r[1]) / inv_mass)",
+edit("10.12", "omits the orbital angular momentum",
+     "omega / inv_inertia - cross_2d(r, v) / inv_mass", "omega / inv_inertia")
+edit("10.12", "reverses the orbital angular momentum", "- cross_2d(r, v)", "+ cross_2d(r, v)")
+edit("10.12", "uses the inertia about the centre, not about the corner",
+     "(1.0 / inv_inertia + (r[0] * r[0] + r[1] * r[1]) / inv_mass)",
      "(1.0 / inv_inertia)")
-edit("10.12", "energy is kept", "omega = L / (1.0 / inv_inertia + (r[0] * r[0] + r[1] * r[1]) / inv_mass)", "pass")
-edit("10.12", "the centre stops", "omega * np.array([r[1], -r[0]])", "0.0 * v")
-edit("10.12", "turns away from the corner", "np.array([r[1], -r[0]])", "np.array([-r[1], r[0]])")
+edit("10.12", "keeps the spin unchanged",
+     "omega = L / (1.0 / inv_inertia + (r[0] * r[0] + r[1] * r[1]) / inv_mass)", "pass")
+edit("10.12", "sets the velocity of the centre to zero", "omega * np.array([r[1], -r[0]])", "0.0 * v")
+edit("10.12", "rotates away from the corner", "np.array([r[1], -r[0]])", "np.array([-r[1], r[0]])")
 
 
 # 10.13 ----------------------------------------------------------------------------------------------------------
@@ -280,13 +292,14 @@ def mechanical_energy(x, q, v, omega, p):
     return np.sum(0.5 * m * np.sum(v[moves] ** 2, axis=1)) - m @ (x[moves] @ p.gravity) + spin
 
 
-edit("10.13", "height counts downwards", "- dot(p.gravity, x[i])", "+ dot(p.gravity, x[i])")
-edit("10.13", "twice the motion", "0.5 * dot(v[i], v[i])", "dot(v[i], v[i])")
-edit("10.13", "spin in the world", "unrotate(q[i], omega[i])", "omega[i]")
-edit("10.13", "no rotation", "0.5 * np.sum(w * w / p.inv_inertia[i])", "0.0")
-edit("10.13", "inverse inertia for inertia", "w * w / p.inv_inertia[i]", "w * w * p.inv_inertia[i]")
-edit("10.13", "everything turns", "p.inv_inertia[i, 0] > 0.0", "True")
-edit("10.13", "the first body only", "range(x.shape[0])", "range(1)")
+edit("10.13", "reverses the sign of the potential energy", "- dot(p.gravity, x[i])", "+ dot(p.gravity, x[i])")
+edit("10.13", "omits the factor ½ of the translation", "0.5 * dot(v[i], v[i])", "dot(v[i], v[i])")
+edit("10.13", "uses ω in world axes with the moments of the body", "unrotate(q[i], omega[i])", "omega[i]")
+edit("10.13", "omits the rotation", "0.5 * np.sum(w * w / p.inv_inertia[i])", "0.0")
+edit("10.13", "multiplies by the inverse inertia in place of the inertia",
+     "w * w / p.inv_inertia[i]", "w * w * p.inv_inertia[i]")
+edit("10.13", "divides by an inverse inertia of zero", "p.inv_inertia[i, 0] > 0.0", "True")
+edit("10.13", "counts the first body only", "range(x.shape[0])", "range(1)")
 
 
 # 10.14 ----------------------------------------------------------------------------------------------------------
@@ -301,26 +314,32 @@ def momenta(x, q, v, omega, p):
     return P, L
 
 
-edit("10.14", "no orbit", "cross(x[i], v[i]) / p.inv_mass[i]", "0.0")
-edit("10.14", "no spin", "body_angular_momentum(q[i], omega[i], 1.0 / p.inv_inertia[i])", "0.0")
-edit("10.14", "everything turns", "p.inv_inertia[i, 0] > 0.0", "True")
-edit("10.14", "velocities for momenta", "P += v[i] / p.inv_mass[i]", "P += v[i]")
-edit("10.14", "cross product the other way", "cross(x[i], v[i])", "cross(v[i], x[i])")
-edit("10.14", "spin by the inverse tensor", "1.0 / p.inv_inertia[i]", "p.inv_inertia[i]")
+edit("10.14", "omits the orbital angular momentum", "cross(x[i], v[i]) / p.inv_mass[i]", "0.0")
+edit("10.14", "omits the spin", "body_angular_momentum(q[i], omega[i], 1.0 / p.inv_inertia[i])", "0.0")
+edit("10.14", "divides by an inverse inertia of zero", "p.inv_inertia[i, 0] > 0.0", "True")
+edit("10.14", "adds velocities in place of momenta", "P += v[i] / p.inv_mass[i]", "P += v[i]")
+edit("10.14", "takes v × x in place of x × v", "cross(x[i], v[i])", "cross(v[i], x[i])")
+edit("10.14", "uses the inverse inertia in place of the inertia", "1.0 / p.inv_inertia[i]", "p.inv_inertia[i]")
 
 
 # 10.15 ----------------------------------------------------------------------------------------------------------
 @right("10.15", "by all pairs of times")
 def gain_without_source(energies, work):
+    energies, work = worked.checked_histories(energies, work)
     rest = energies - work
     return max(rest[k] - rest[:k + 1].min() for k in range(len(rest)))
 
 
-edit("10.15", "work is a loss", "energies[k] - work[k]", "energies[k] + work[k]")
-edit("10.15", "work is forgotten", "energies[k] - work[k]", "energies[k]")
-edit("10.15", "since the beginning", "np.minimum(lowest, rest)", "energies[0] - work[0]")
-edit("10.15", "since the last time", "np.minimum(lowest, rest)", "energies[k - 1] - work[k - 1] if k else rest")
-edit("10.15", "in the end", "np.maximum(gain, rest - lowest)", "rest - lowest")
+edit("10.15", "does not check its input", "checked_histories(energies, work)", "energies, work")
+edit("10.15", "converts its input to arrays without checking it", "checked_histories(energies, work)",
+     "np.asarray(energies), np.asarray(work)")
+edit("10.15", "adds the work in place of subtracting it", "energies[k] - work[k]", "energies[k] + work[k]")
+edit("10.15", "omits the work", "energies[k] - work[k]", "energies[k]")
+edit("10.15", "measures the gain since the beginning, not since the lowest point",
+     "np.minimum(lowest, rest)", "energies[0] - work[0]")
+edit("10.15", "measures the gain since the last time",
+     "np.minimum(lowest, rest)", "energies[k - 1] - work[k - 1] if k else rest")
+edit("10.15", "returns the gain at the end, not the largest one", "np.maximum(gain, rest - lowest)", "rest - lowest")
 
 
 # 10.16 ----------------------------------------------------------------------------------------------------------
@@ -337,10 +356,12 @@ def compare(full, minimal, runs, clock):
     return off.max(), np.median(ratios)
 
 
-edit("10.16", "minimal over full", "(between - began) / (clock() - between)", "(clock() - between) / (between - began)")
-edit("10.16", "the mean", "np.median(ratios)", "np.mean(ratios)")
-edit("10.16", "another order", "slow = full()", "minimal(); slow = full()")
-edit("10.16", "the best", "np.median(ratios)", "np.max(ratios)")
-edit("10.16", "one side only", "np.max(np.abs(slow - quick))", "np.max(slow - quick)")
-edit("10.16", "the mean difference", "np.max(np.abs(slow - quick))", "np.mean(np.abs(slow - quick))")
-edit("10.16", "the last number only", "np.max(np.abs(slow - quick))", "np.abs(slow - quick).ravel()[-1]")
+edit("10.16", "divides the minimal time by the full time",
+     "(between - began) / (clock() - between)", "(clock() - between) / (between - began)")
+edit("10.16", "uses the mean of the ratios in place of the median", "np.median(ratios)", "np.mean(ratios)")
+edit("10.16", "calls the functions in another order", "slow = full()", "minimal(); slow = full()")
+edit("10.16", "uses the largest ratio", "np.median(ratios)", "np.max(ratios)")
+edit("10.16", "omits negative differences", "np.max(np.abs(slow - quick))", "np.max(slow - quick)")
+edit("10.16", "returns the mean difference, not the largest one",
+     "np.max(np.abs(slow - quick))", "np.mean(np.abs(slow - quick))")
+edit("10.16", "compares the last number only", "np.max(np.abs(slow - quick))", "np.abs(slow - quick).ravel()[-1]")

@@ -20,9 +20,9 @@ def universal_gravity(x_a, x_b, m_a, m_b, G):
 
 
 edit("2.1", "accepts coincident bodies", 'check_positive("distance of two bodies [m]", distance)', "pass")
-edit("2.1", "repels", "return G", "return -G")
-edit("2.1", "divides by r² and forgets that r has a length", "distance**3", "distance**2")
-edit("2.1", "acceleration instead of force", "G * m_a * m_b", "G * m_b")
+edit("2.1", "reverses the force, so that the bodies repel each other", "return G", "return -G")
+edit("2.1", "divides the vector r by |r|², not by |r|³", "distance**3", "distance**2")
+edit("2.1", "returns the acceleration of b, not a force", "G * m_a * m_b", "G * m_b")
 
 
 # 2.2 ------------------------------------------------------------------------------------------------------------
@@ -31,9 +31,9 @@ def air_force(v, wind, k_v):
     return -(k_v * v) + wind
 
 
-edit("2.2", "viscosity speeds up", "wind - k_v * v", "wind + k_v * v")
-edit("2.2", "takes the wind for a velocity", "wind - k_v * v", "k_v * (wind - v)")
-edit("2.2", "quadratic", "k_v * v", "k_v * np.abs(v) * v")
+edit("2.2", "reverses the viscosity, so that it speeds the body up", "wind - k_v * v", "wind + k_v * v")
+edit("2.2", "treats the wind as a velocity, not as a force", "wind - k_v * v", "k_v * (wind - v)")
+edit("2.2", "makes the force grow with the square of the speed", "k_v * v", "k_v * np.abs(v) * v")
 edit("2.2", "divides by the viscosity", "wind - k_v * v", "-k_v * (v - wind / k_v)")
 
 
@@ -43,11 +43,12 @@ def spring_tension(length, rate, rest, k, k_d):
     return k * length + k_d * rate - k * rest
 
 
-edit("2.3", "pushes when stretched", "length - rest", "rest - length")
-edit("2.3", "damper drives", "+ k_d * rate", "- k_d * rate")
-edit("2.3", "strain instead of extension", "(length - rest)", "(length - rest) / rest")
-edit("2.3", "a rope: never pushes", "k * (length - rest) + k_d * rate", "max(0.0, k * (length - rest) + k_d * rate)")
-edit("2.3", "damps against the extension", "k_d * rate", "k_d * abs(rate) * np.sign(length - rest)")
+edit("2.3", "reverses the spring, so that it pushes when it is stretched", "length - rest", "rest - length")
+edit("2.3", "reverses the damper's sign, so that it drives the motion", "+ k_d * rate", "- k_d * rate")
+edit("2.3", "uses the strain in place of the extension", "(length - rest)", "(length - rest) / rest")
+edit("2.3", "never pushes, as a rope", "k * (length - rest) + k_d * rate", "max(0.0, k * (length - rest) + k_d * rate)")
+edit("2.3", "gives the damping the sign of the extension, not of its rate",
+     "k_d * rate", "k_d * abs(rate) * np.sign(length - rest)")
 
 
 # 2.4 ------------------------------------------------------------------------------------------------------------
@@ -57,12 +58,12 @@ def soft_constraint_force(C, C_rate, gradient, k, k_d):
     return spring + damper
 
 
-edit("2.4", "pushes away", "-(k", "(k")
-edit("2.4", "brings the gradient to length 1", "* gradient", "* gradient / np.sqrt(gradient @ gradient)")
-edit("2.4", "no damper", "k_d * C_rate", "0.0")
-edit("2.4", "pulls from one side only", "k * C +", "k * min(C, 0.0) +")
-edit("2.4", "pushes from the other side only", "k * C +", "k * max(C, 0.0) +")
-edit("2.4", "damps one way only", "k_d * C_rate", "k_d * max(C_rate, 0.0)")
+edit("2.4", "reverses the force", "-(k", "(k")
+edit("2.4", "normalises the gradient", "* gradient", "* gradient / np.sqrt(gradient @ gradient)")
+edit("2.4", "omits the damper", "k_d * C_rate", "0.0")
+edit("2.4", "applies the spring only where C is negative", "k * C +", "k * min(C, 0.0) +")
+edit("2.4", "applies the spring only where C is positive", "k * C +", "k * max(C, 0.0) +")
+edit("2.4", "damps only where C grows", "k_d * C_rate", "k_d * max(C_rate, 0.0)")
 
 
 # 2.5 ------------------------------------------------------------------------------------------------------------
@@ -74,11 +75,12 @@ def soft_contact_force(C, C_rate, gradient, k, k_d):
     return force
 
 
-edit("2.5", "pulls a point that leaves", "np.maximum(0.0, -(k * C + k_d * C_rate))", "-(k * C + k_d * C_rate)")
-edit("2.5", "damps above the surface", "C >= 0.0", "False")
+edit("2.5", "lets the damper pull a point back that leaves",
+     "np.maximum(0.0, -(k * C + k_d * C_rate))", "-(k * C + k_d * C_rate)")
+edit("2.5", "applies a force above the surface, too", "C >= 0.0", "False")
 edit("2.5", "limits the spring but not the damper", "np.maximum(0.0, -(k * C + k_d * C_rate))",
      "(max(0.0, -k * C) - k_d * C_rate)")
-edit("2.5", "already pushes at the surface", "C >= 0.0", "C > 0.0")
+edit("2.5", "applies a force at C = 0 already", "C >= 0.0", "C > 0.0")
 edit("2.5", "returns a number for zero force", "return 0.0 * gradient", "return 0.0")
 edit("2.5", "ignores a depth of a millimetre", "C >= 0.0", "C >= -1e-3")
 
@@ -105,14 +107,15 @@ def angular_spring(angle=short_way, power=2, hinge=1.0, order=(0, 1, 2), checked
 
 
 right("2.6", "with complex numbers")(angular_spring())
-wrong("2.6", "no wrap-around")(angular_spring(angle=lambda theta, rest: theta - rest))
-wrong("2.6", "the sine of the angle")(angular_spring(angle=lambda theta, rest: np.sin(theta - rest)))
+wrong("2.6", "does not bring the angle back into (−π, π]")(angular_spring(angle=lambda theta, rest: theta - rest))
+wrong("2.6", "uses the sine of the angle in place of the angle")(
+    angular_spring(angle=lambda theta, rest: np.sin(theta - rest)))
 wrong("2.6", "takes the angle without its sign")(angular_spring(angle=lambda theta, rest: abs(theta) - rest))
-wrong("2.6", "force that does not fall with the arm")(angular_spring(power=1))
-wrong("2.6", "no force on the hinge")(angular_spring(hinge=0.0))
-wrong("2.6", "hinge pushed the wrong way")(angular_spring(hinge=-1.0))
-wrong("2.6", "opens instead of closing")(angular_spring(angle=lambda theta, rest: -short_way(theta, rest)))
-wrong("2.6", "a, c, b")(angular_spring(order=(0, 2, 1)))
+wrong("2.6", "does not divide the torque by the length of the arm")(angular_spring(power=1))
+wrong("2.6", "applies no force to the hinge")(angular_spring(hinge=0.0))
+wrong("2.6", "reverses the force on the hinge")(angular_spring(hinge=-1.0))
+wrong("2.6", "reverses all three forces")(angular_spring(angle=lambda theta, rest: -short_way(theta, rest)))
+wrong("2.6", "returns the forces in the order a, c, b")(angular_spring(order=(0, 2, 1)))
 wrong("2.6", "accepts an arm of zero length")(angular_spring(checked=False))
 edit("2.6", "tests the length of one arm only", "squared_a == 0.0 or squared_c == 0.0", "squared_a == 0.0")
 edit("2.6", "refuses small inputs", "squared_a == 0.0 or squared_c == 0.0", "squared_a < 1e-6 or squared_c < 1e-6")
@@ -145,21 +148,26 @@ def overwrite(force, at, pull):
 
 right("2.7", "all springs at once")(by_matrices())
 wrong("2.7", "keeps one spring per point")(by_matrices(add=overwrite))
-wrong("2.7", "pushes instead of pulling")(by_matrices(tension=lambda *a: -worked.spring_tension(*a)))
-wrong("2.7", "the far end feels nothing")(by_matrices(other=0.0))
-wrong("2.7", "both ends the same way")(by_matrices(other=-1.0))
-wrong("2.7", "r instead of r/l")(by_matrices(unit=False))
-wrong("2.7", "rate without division by l")(by_matrices(rate=lambda r, u, length: np.sum(r * u, axis=1)))
-wrong("2.7", "speed for rate")(by_matrices(rate=lambda r, u, length: np.sqrt(np.sum(u * u, axis=1))))
-wrong("2.7", "rate the other way round")(by_matrices(rate=lambda r, u, length: -np.sum(r * u, axis=1) / length))
+wrong("2.7", "reverses the forces, so that a stretched spring pushes")(
+    by_matrices(tension=lambda *a: -worked.spring_tension(*a)))
+wrong("2.7", "applies no force to the second end")(by_matrices(other=0.0))
+wrong("2.7", "pushes both ends in the same direction")(by_matrices(other=-1.0))
+wrong("2.7", "multiplies by the vector r, not by the unit vector r/l")(by_matrices(unit=False))
+wrong("2.7", "does not divide by the length in the rate of the length")(
+    by_matrices(rate=lambda r, u, length: np.sum(r * u, axis=1)))
+wrong("2.7", "uses the relative speed, not the rate of the length")(
+    by_matrices(rate=lambda r, u, length: np.sqrt(np.sum(u * u, axis=1))))
+wrong("2.7", "reverses the sign of the rate")(by_matrices(rate=lambda r, u, length: -np.sum(r * u, axis=1) / length))
 wrong("2.7", "accepts a spring of zero length")(by_matrices(checked=False))
-edit("2.7", "damps every motion, not only along the spring", "move_apart(force, i, j, -T / length, -T / length, x)",
+edit("2.7", "damps the whole relative velocity, not only its part along the spring",
+     "move_apart(force, i, j, -T / length, -T / length, x)",
      "move_apart(force, i, j, -T / length, -T / length, x)\n"
      "        move_apart(force, i, j, -network.k_d[s], -network.k_d[s], v)")
-edit("2.7", "every spring like the first", "network.rest[s], network.k[s], network.k_d[s]",
+edit("2.7", "uses the constants of the first spring for all springs", "network.rest[s], network.k[s], network.k_d[s]",
      "network.rest[0], network.k[0], network.k_d[0]")
-edit("2.7", "nothing on fixed points", "return force", "return force * (network.inv_mass > 0.0)[:, None]")
-edit("2.7", "the plane only", "force = np.zeros(x.shape)", "x, v, force = x[:, :2], v[:, :2], np.zeros(x.shape)")
+edit("2.7", "returns no force on fixed points", "return force", "return force * (network.inv_mass > 0.0)[:, None]")
+edit("2.7", "computes the forces in the x–y plane only",
+     "force = np.zeros(x.shape)", "x, v, force = x[:, :2], v[:, :2], np.zeros(x.shape)")
 edit("2.7", "refuses small inputs", "length == 0.0", "length < 3e-5")
 
 
@@ -180,14 +188,14 @@ def newton(gravity=lambda g, inv_mass: g, air=over_mass, springs=over_mass, fixe
 
 
 right("2.8", "all points at once")(newton())
-wrong("2.8", "fixed points fall")(newton(fixed=False))
-wrong("2.8", "heavy points fall slower")(newton(gravity=lambda g, inv_mass: g * inv_mass))
+wrong("2.8", "lets fixed points fall")(newton(fixed=False))
+wrong("2.8", "divides gravity by the mass")(newton(gravity=lambda g, inv_mass: g * inv_mass))
 wrong("2.8", "forgets gravity")(newton(gravity=lambda g, inv_mass: 0.0 * g))
-wrong("2.8", "wind blows on all masses alike")(newton(air=lambda a, inv_mass: a))
-wrong("2.8", "springs pull on all masses alike")(newton(springs=lambda f, inv_mass: f))
+wrong("2.8", "does not divide the force of the air by the mass")(newton(air=lambda a, inv_mass: a))
+wrong("2.8", "does not divide the forces of the springs by the mass")(newton(springs=lambda f, inv_mass: f))
 wrong("2.8", "forgets the air")(newton(air=lambda a, inv_mass: 0.0))
 wrong("2.8", "multiplies by the mass")(newton(springs=lambda f, inv_mass: f / np.where(inv_mass > 0.0, inv_mass, 1.0)))
-wrong("2.8", "springs the wrong way")(newton(springs=lambda f, inv_mass: -f * inv_mass))
+wrong("2.8", "reverses the forces of the springs")(newton(springs=lambda f, inv_mass: -f * inv_mass))
 edit("2.8", "treats heavy points as fixed", "network.inv_mass[n] > 0.0", "network.inv_mass[n] > 0.1")
 
 
@@ -200,10 +208,10 @@ def loop(step=integrators.average_velocity_step):
     return mass_spring_damper_step
 
 
-wrong("2.9", "Euler")(loop(integrators.euler_step))
-wrong("2.9", "new velocity twice")(loop(integrators.symplectic_euler_step))
-wrong("2.9", "Verlet: exact in free fall, but another loop")(loop(integrators.verlet_step))
-wrong("2.9", "midpoint: exact in free fall, but another loop")(loop(integrators.midpoint_step))
+wrong("2.9", "takes an explicit Euler step")(loop(integrators.euler_step))
+wrong("2.9", "moves with the new velocity, not with the mean of old and new")(loop(integrators.symplectic_euler_step))
+wrong("2.9", "takes a Verlet step")(loop(integrators.verlet_step))
+wrong("2.9", "takes a midpoint step")(loop(integrators.midpoint_step))
 
 
 @right("2.9", "the lines of the lecture")
@@ -240,16 +248,16 @@ def numbering(number=lambda r, c, rows, cols: r * cols + c, exists=inside,
 right("2.10", "over a list of nodes")(numbering())
 wrong("2.10", "counts along columns")(numbering(number=lambda r, c, rows, cols: c * rows + r))
 wrong("2.10", "multiplies by the rows")(numbering(number=lambda r, c, rows, cols: r * rows + c))
-edit("2.10", "a torus: wraps around the edge", "if 0 <= r + dr < rows and 0 <= c + dc < cols",
+edit("2.10", "wraps around the edge of the grid", "if 0 <= r + dr < rows and 0 <= c + dc < cols",
      "for r, c, dr, dc in [(r, c, (r + dr) % rows - r, (c + dc) % cols - c)]")
-edit("2.10", "a row below zero exists", "0 <= r + dr < rows", "r + dr < rows")
+edit("2.10", "treats an index below zero as a valid row", "0 <= r + dr < rows", "r + dr < rows")
 wrong("2.10", "tests the index, not the column")(
     numbering(exists=lambda r, c, rows, cols: 0 <= r * cols + c < rows * cols))
 wrong("2.10", "forgets the left edge")(numbering(exists=lambda r, c, rows, cols: r < rows and c < cols))
-wrong("2.10", "every pair twice")(numbering(row=lambda i, j: [[i, j], [j, i]]))
-wrong("2.10", "indices that are not integers")(numbering(kind=float))
-wrong("2.10", "wrong shape without pairs")(numbering(empty=False))
-wrong("2.10", "nodes outside, offsets inside")(numbering(turned=True))
+wrong("2.10", "returns each pair twice")(numbering(row=lambda i, j: [[i, j], [j, i]]))
+wrong("2.10", "returns indices that are not integers")(numbering(kind=float))
+wrong("2.10", "returns an array of another shape where there are no pairs")(numbering(empty=False))
+wrong("2.10", "loops over the nodes first and over the offsets inside")(numbering(turned=True))
 
 
 # 2.11 -----------------------------------------------------------------------------------------------------------
@@ -268,14 +276,16 @@ def blocks(sideways=lambda stretch: max(0.0, stretch), along=1.0, damper=lambda 
 
 
 right("2.11", "by outer products")(blocks())
-wrong("2.11", "the sideways push of a compressed spring")(blocks(sideways=lambda stretch: stretch))
-wrong("2.11", "nothing sideways")(blocks(sideways=lambda stretch: 0.0))
-wrong("2.11", "as stiff perpendicular as along")(blocks(sideways=lambda stretch: 1.0))
-wrong("2.11", "nothing along")(blocks(along=0.0))
-wrong("2.11", "a damper in all directions")(blocks(damper=lambda k_d, nn: k_d * np.eye(len(nn))))
+wrong("2.11", "keeps the perpendicular stiffness of a compressed spring, which is negative")(
+    blocks(sideways=lambda stretch: stretch))
+wrong("2.11", "omits the stiffness perpendicular to the spring")(blocks(sideways=lambda stretch: 0.0))
+wrong("2.11", "makes the spring as stiff perpendicular to itself as along itself")(blocks(sideways=lambda stretch: 1.0))
+wrong("2.11", "omits the stiffness along the spring")(blocks(along=0.0))
+wrong("2.11", "damps in all directions, not only along the spring")(
+    blocks(damper=lambda k_d, nn: k_d * np.eye(len(nn))))
 wrong("2.11", "forgets k_d")(blocks(damper=lambda k_d, nn: nn))
-wrong("2.11", "derivative of F without the minus")(blocks(sign=-1.0))
-edit("2.11", "a spring that is stretched little is slack", "1.0 - network.rest[s] / length",
+wrong("2.11", "omits the minus sign of the derivative")(blocks(sign=-1.0))
+edit("2.11", "treats a spring that is stretched a little as slack", "1.0 - network.rest[s] / length",
      "0.85 - network.rest[s] / length")
 
 
@@ -304,18 +314,20 @@ def descent(conjugate=True, tolerance=1e-10, rounds=10, start=0.0, silent=False,
 
 
 right("2.12", "conjugacy written out")(descent())
-wrong("2.12", "steepest descent")(descent(conjugate=False))
+wrong("2.12", "follows the steepest descent")(descent(conjugate=False))
 wrong("2.12", "stops at a thousandth")(descent(tolerance=1e-3))
 wrong("2.12", "stops after as many rounds as unknowns")(descent(rounds=1))
 wrong("2.12", "never raises: returns the last iterate")(descent(silent=True))
 wrong("2.12", "starts from ones, with the residual of zeros")(descent(start=1.0))
 wrong("2.12", "changes the right-hand side")(descent(copied=False))
 wrong("2.12", "divides zero by zero")(descent(zero=False))
-edit("2.12", "the ratio upside down", "squared / before", "before / squared")
-edit("2.12", "residuals in place of conjugate directions: r + p", "squared / before * p", "p")
-edit("2.12", "a tolerance in the unit of the right-hand side", "CG_TOLERANCE * CG_TOLERANCE * squared",
+edit("2.12", "inverts the ratio β", "squared / before", "before / squared")
+edit("2.12", "omits the factor β in the new direction", "squared / before * p", "p")
+edit("2.12", "compares the residual with the bare tolerance, not with a part of the right-hand side",
+     "CG_TOLERANCE * CG_TOLERANCE * squared",
      "CG_TOLERANCE * CG_TOLERANCE")
-edit("2.12", "the tolerance not squared", "CG_TOLERANCE * CG_TOLERANCE * squared", "CG_TOLERANCE * squared")
+edit("2.12", "compares the squared residual with the tolerance itself",
+     "CG_TOLERANCE * CG_TOLERANCE * squared", "CG_TOLERANCE * squared")
 
 
 # 2.13 -----------------------------------------------------------------------------------------------------------
@@ -350,15 +362,15 @@ def dense(blocks_of, network, n, d):
 
 right("2.13", "as one dense system")(large_step())
 wrong("2.13", "forgets dt ∂F/∂x v on the right")(large_step(ahead=0.0))
-wrong("2.13", "∂F/∂x v with the wrong sign")(large_step(ahead=-1.0))
-wrong("2.13", "dampers explicit")(large_step(damping=0.0))
-wrong("2.13", "viscosity explicit")(large_step(viscosity=0.0))
-wrong("2.13", "springs explicit")(large_step(stiffness=0.0))
+wrong("2.13", "reverses the sign of ∂F/∂x v")(large_step(ahead=-1.0))
+wrong("2.13", "treats the dampers explicitly")(large_step(damping=0.0))
+wrong("2.13", "treats the viscosity explicitly")(large_step(viscosity=0.0))
+wrong("2.13", "treats the springs explicitly")(large_step(stiffness=0.0))
 wrong("2.13", "moves with the old velocity")(large_step(old=True))
-wrong("2.13", "acceleration at the end of the step")(large_step(late=1.0))
-wrong("2.13", "fixed points move")(large_step(held=False))
+wrong("2.13", "takes the acceleration at time t + dt")(large_step(late=1.0))
+wrong("2.13", "lets fixed points move")(large_step(held=False))
 wrong("2.13", "forgets the mass on the right")(large_step(massive=False))
-edit("2.13", "fully implicit Euler, by Newton's method", "a = acceleration(t, x, v, network)",
+edit("2.13", "solves the nonlinear equation of implicit Euler by Newton's method", "a = acceleration(t, x, v, network)",
      "from solutions.integrators import implicit_euler_step as step; return step(acceleration, t, x, v, dt, network)")
-edit("2.13", "symplectic Euler", "conjugate_gradients(apply_step_matrix, A, right)", "dt * a")
+edit("2.13", "takes a symplectic Euler step", "conjugate_gradients(apply_step_matrix, A, right)", "dt * a")
 edit("2.13", "treats heavy points as fixed", "network.inv_mass[n] > 0.0", "network.inv_mass[n] > 0.1")

@@ -48,9 +48,9 @@ class Texts(HTMLParser):
 
 @cache
 def secrets():
-    """The answers of all lessons, their signs, and the sentences of the answers to the questions."""
+    """The answers of all lessons, and their signs."""
     hidden = [answer for name in modules.lesson_names() for answer in release.answers_of(name)]
-    return hidden, release.signs_of(hidden), release.sentences((ROOT / release.ANSWERS).read_text(encoding="utf-8"))
+    return hidden, release.signs_of(hidden)
 
 
 def leaks(texts):
@@ -100,6 +100,15 @@ def test_every_lesson_adds_up_to_twenty_points_and_has_a_sheet():
         assert f"--lesson {name} " in sheet and leaks([sheet]) == []
 
 
+def test_each_notebook_says_how_many_hours_the_plan_expects():
+    for name, lesson in course.lessons().items():
+        text = course.notebook_of(name).read_text(encoding="utf-8")
+        told = re.search(r"about ([\d.]+) hours: ([\d.]+) to read and run, ([\d.]+) to write", text)
+        whole, reading, writing = map(float, told.groups())
+        assert whole == reading + writing, name
+        assert abs(reading - lesson.reading) <= 0.5 and abs(writing - lesson.writing) <= 0.5, name
+
+
 @pytest.mark.parametrize("taught", plan.COURSES, ids=lambda taught: taught.title)
 def test_a_course_teaches_what_it_needs_before_it_is_needed(taught):
     there = {one.number for name in taught.worked for one in course.lessons()[name].exercises}
@@ -120,7 +129,7 @@ def test_the_zips_of_a_course_can_be_released(taught):
     every, paths = modules.lesson_names(), release.tracked(dirty=True)
     for worked in map(set, taught.zips().values()):
         assert release.with_earlier(worked) == worked
-        release.refuse_leaks(release.contents(paths, set(every), worked, answers=False), worked, answers_too=False)
+        release.refuse_leaks(release.contents(paths, set(every), worked), worked)
 
 
 def test_the_glossary_has_every_word_of_the_table():
@@ -133,16 +142,17 @@ def test_a_notebook_loses_its_sliders_and_loads_its_player_once(tmp_path):
     cell = nbformat.v4.new_code_cell("x\n" * (pages.LONG + 1))
     view = nbformat.v4.new_output("display_data", {pages.WIDGET: {}, "text/plain": "interactive"})
     cell.outputs = [view, *(nbformat.v4.new_output("display_data", {"text/html": FILM}) for _ in range(2))]
-    said = "# One\nWrite `euler_step` (1.1), not `euler_step` (1.2); see `02_springs.ipynb`."
+    said = "# One\nWrite `euler_step` (1.1 ★), not `euler_step` (1.2); see `02_springs.ipynb`."
     text = nbformat.v4.new_markdown_cell(said)
     (tmp_path / "_static").mkdir()
-    made = pages.prepared(nbformat.v4.new_notebook(cells=[text, cell]), "01_integrators", tmp_path, {})
+    made = pages.prepared(nbformat.v4.new_notebook(cells=[text, cell]), "01_integrators", tmp_path, {}, report=True)
     shown = [output["data"]["text/html"] for output in made.cells[2].outputs]
     assert len(shown) == 2 and shown[0].count("<script") == 1 and shown[1] == "<div>film</div>"
     assert [path.read_text() for path in (tmp_path / "_static").iterdir()] == ["let player = 1;" * 400]
     assert made.cells[2].metadata.tags == ["hide-input"]
-    assert "{py:func}`~lessons.integrators.euler_step` (1.1), not `euler_step` (1.2)" in made.cells[0].source
+    assert "{py:func}`~lessons.integrators.euler_step` (1.1 ★), not `euler_step` (1.2)" in made.cells[0].source
     assert "[`02_springs.ipynb`](02_springs)" in made.cells[0].source
+    assert '<a href="../report/oscillator.html">' in made.cells[1]["source"]
 
 
 def test_a_notebook_that_prints_a_lesson_runs_with_the_stubs():

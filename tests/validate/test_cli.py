@@ -153,7 +153,7 @@ def test_list_names_every_scene(capsys):
 class Here:
     """Workers that are this process: what is replaced here is replaced for them."""
 
-    def each(self, calls, kinds=None):
+    def each(self, calls, kinds=None, alone=False):
         for key, (function, *arguments) in calls.items():
             yield key, function(*arguments)
 
@@ -173,7 +173,7 @@ def pretended(monkeypatch, here):
 
     def errors(name, plan):
         calls.append(("errors", name))
-        return {"scene": name}
+        return {"scene": name, "cases": {}}
 
     def times(name, plan, result):
         if len([c for c in calls if c[0] == "times"]) == 1 and interrupt:

@@ -43,7 +43,7 @@ HARMLESS = Fault("springs", "air_force", "wind - k_v * v", "-(k_v * v) + wind", 
 def alone(monkeypatch, tmp_path):
     """The command without other processes, and with a file of its own for what it keeps."""
     class Here:
-        def each(self, calls, kinds=None):
+        def each(self, calls, kinds=None, alone=False):
             return ((key, call[0](*call[1:])) for key, call in calls.items())
     monkeypatch.setattr(__main__, "KEPT", tmp_path / "kept" / "faults.json")
     monkeypatch.setattr(coverage, "places", lambda: {("springs", "air_force"): ["stability/springs/lecture-step"]})

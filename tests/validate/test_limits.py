@@ -7,7 +7,7 @@ import pytest
 
 from solutions.checks import BadInput
 from validate import limits
-from validate.reference.schemes import TABLEAUX, ErrorLaw, advance
+from validate.reference.schemes import TABLEAUX, ErrorLaw, advance, advance_modes
 
 
 def report(*rows):
@@ -46,6 +46,15 @@ def test_a_table_multiplies_a_decay_by_its_stability_function(label, factor):
     assert label in TABLEAUX
     v = advance(label, lambda t, x, v: -2.0 * v, 0.0, 1.0, 0.1, 7)[1]
     assert v == pytest.approx(factor(-0.2) ** 7, rel=1e-14)
+
+
+@pytest.mark.parametrize("label", TABLEAUX)
+def test_modes_that_do_not_touch_are_run_by_the_power_of_a_matrix(label):
+    omega, c, x, v = np.array(((0.5, 3.0, 7.0), (0.1, 0.0, 2.0), (1.0, -2.0, 0.5), (0.0, 4.0, -3.0)))
+    law = lambda t, x, v: -omega**2 * x - c * v
+    for steps in (1, 2, 37):
+        one_by_one, at_once = (march(label, law, x, v, 0.02, steps) for march in (advance, advance_modes))
+        assert np.allclose(at_once, one_by_one, rtol=1e-13, atol=1e-13)
 
 
 def test_an_expansion_says_how_far_it_can_be_trusted():

@@ -78,6 +78,16 @@ def test_steps_span_two_decades(name):
     assert list(steps) == sorted(steps) and steps[-1] >= 100 * steps[0]
 
 
+@scenes([n for n in SCENES if modules.bind_scene(n).shorter_in_quick])
+def test_a_quick_validation_ends_a_sweep_where_the_scene_says(name):
+    quick, full = (select(name, measure.Plan(quick=quick)) for quick in (True, False))
+    of = {method.function: method for method in full.methods}
+    for function, most in full.scene.shorter_in_quick.items():
+        assert most in full.scene.steps and full.steps_of(of[function]) == full.steps
+        assert quick.steps_of(of[function]) == tuple(n for n in quick.steps if n <= most)
+    assert any("the finest steps of" in note for note in quick.notes)
+
+
 @scenes(SCENES, SAMPLE)
 def test_nothing_departs_from_truth_without_having_been_predicted(name):
     result = measure.errors(name, BRIEF)

@@ -3,7 +3,9 @@
 import pytest
 
 from validate import measure, modules
+from validate.reference.contact import Settling, sway_of_tower
 from validate.results import is_right
+from validate.scenes.contact import mass_ratio, stack
 
 TEXT = (modules.SOLUTIONS / "contact.py").read_text(encoding="utf-8")
 CONE = "limit = mu[n // 2] * J[n] if J[n] > 0.0 else 0.0"
@@ -31,3 +33,15 @@ def test_a_wrong_answer_departs(tmp_path, scene, case, method, right, wrong):
     result = measure.errors(scene, measure.Plan(of=str(tmp_path), speeds=("plain",), live=()))
     verdicts = {c["label"]: is_right(c) for c in result["cases"][case]["ours"]}
     assert verdicts[method] is False, verdicts
+
+
+@pytest.mark.long
+def test_the_sway_of_the_piles_is_that_of_the_reference():
+    """To half of it, since rounding in another order changes what is left of the rocking; 0 stands for round-off."""
+    for n, known in stack.SWAY.items():
+        assert sway_of_tower((1.0,) * n, 1.0, 9.81, stack.SETTLED) == pytest.approx(known, rel=0.5, abs=1e-14)
+    for r, known in mass_ratio.SWAY.items():
+        p = mass_ratio.Params(r=r)
+        substeps, hertz, seconds = mass_ratio.solver(p)
+        how = Settling(mass_ratio.DT, substeps, hertz, mass_ratio.ZETA, mass_ratio.MU, seconds)
+        assert sway_of_tower(tuple(mass_ratio.masses(p)), 1.0, 9.81, how) == pytest.approx(known, rel=0.5, abs=1e-14)

@@ -70,7 +70,7 @@ WRONG = [                    # case, the function that it examines, what is put 
     ("extremes", "compliant_multiplier", lambda C, Lam, weight, alpha_scaled: 0.0),
     ("extremes", "fold_constraint", lambda x, fold: (0.0, x)),
     ("primitives", "pivoted_body_step",
-     lambda t, x, v, q, omega, dt, rod: (x + dt * v, v + dt * rod.gravity, q, omega)),
+     lambda t, x, q, v, omega, dt, rod: (x + dt * v, q, v + dt * rod.gravity, omega)),
     ("primitives", "balloon_step", without_air),
     ("primitives", "cloth_step", links_only),
     ("primitives", "fold_sweep", lambda x, cloth: x),

@@ -30,9 +30,9 @@ def floor_ahead(load, bounds, narrow, t, state, dt, p):
     return end._replace(v=np.stack((end.v[0], np.zeros(3))))
 
 
-def floor_behind(load, t, x, v, q, omega, dt, ball):
+def floor_behind(load, t, x, q, v, omega, dt, ball):
     """Takes the floor where the ball was."""
-    return worked.carried_step(load, t, x, v, q, omega, dt, ball._replace(centre=ball.centre + dt * v))
+    return worked.carried_step(load, t, x, q, v, omega, dt, ball._replace(centre=ball.centre + dt * v))
 
 
 def elastic(step, t, x, v, dt, block):

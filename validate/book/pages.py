@@ -18,7 +18,7 @@ INLINE = re.compile(r"<script>(.*?)</script>", re.S)            # a player: the 
 LONG = 8                     # lines of code; longer cells are folded
 LINK = re.compile(r"\[([^\]]*)\]\((?!https?://|#)([^)\s]+)\)")  # to a file of the repository
 NOTEBOOK = re.compile(r"`(?:notebooks/)?(\d\d_\w+)\.ipynb`")
-EXERCISE = re.compile(r"`(\w+)` \((\d+\.\d+)\)")
+EXERCISE = re.compile(r"`(\w+)` \((\d+\.\d+)( ★*)?\)")
 LEFT_OUT = "# {0}\n\nThis copy of the book was built without this notebook.\n"
 PAGES = re.compile(r"(?:docs/|\.\./)?((?:grading|students|plan)(?=\.md)|(?:lessons|notebooks)/\w+(?=\.))")
 
@@ -36,7 +36,7 @@ def write_all(folder, numbers, report, say):
         if numbers and path.stem[:2] not in numbers:
             write(folder / "notebooks" / f"{path.stem}.md", LEFT_OUT.format(path.stem))
             continue
-        text = json.dumps(prepared(execute.kept(path, say), path.stem, folder, alts), ensure_ascii=False)
+        text = json.dumps(prepared(execute.kept(path, say), path.stem, folder, alts, bool(report)), ensure_ascii=False)
         (folder / "notebooks" / path.name).write_text(text, encoding="utf-8")
     (folder / "alts.json").write_text(json.dumps(alts, ensure_ascii=False), encoding="utf-8")
     for name in course.lessons():
@@ -60,7 +60,7 @@ def write(path, text):
 
 # ---------------------------------------------------------------------------------------------- notebooks
 
-def prepared(book, stem, folder, alts):
+def prepared(book, stem, folder, alts, report=False):
     """An executed notebook as the book shows it.
 
     Sliders, which need a kernel, go, and the figure that they drew stays.  Long code is folded.  A player's script,
@@ -83,16 +83,19 @@ def prepared(book, stem, folder, alts):
                 alts[hashlib.sha256(b64decode(data["image/png"])).hexdigest()] = described
     lesson = stem.partition("_")[2]
     if lesson in course.lessons():
-        book.cells.insert(1, about(lesson, stem))
+        book.cells.insert(1, about(lesson, stem, report))
     return book
 
 
-def about(lesson, stem):
-    """What the book adds to a lesson's first screen."""
+def about(lesson, stem, report):
+    """What the book adds to a lesson's first screen: where to work, and its scenes in the report."""
     facts = course.lessons()[lesson]
+    scenes = ", ".join(f'<a href="../report/{name}.html">{name}</a>' for name in facts.scenes)
+    runs = f" All runs of its scenes are in the report: {scenes}." if report else ""
     text = (f"```{{admonition}} This page is the notebook as the worked answers run it\n:class: note\nTo work on it "
             f"yourself, open `notebooks/{stem}.ipynb` in JupyterLab. Films play here; sliders need JupyterLab. "
-            f"The lesson has {len(facts.exercises)} exercises: [what each function does](../lessons/{lesson}).\n```")
+            f"The lesson has {len(facts.exercises)} exercises: [what each function does](../lessons/{lesson})."
+            f"{runs}\n```")
     return {"cell_type": "markdown", "id": "about-this-page", "metadata": {}, "source": text}
 
 
@@ -115,7 +118,7 @@ def with_links(text):
 
     def to_function(match):
         known = match[2] in api.targets() and api.target(match[2]).endswith(f".{match[1]}")
-        return f"{{py:func}}`~{api.target(match[2])}` ({match[2]})" if known else match[0]
+        return f"{{py:func}}`~{api.target(match[2])}` ({match[2]}{match[3] or ''})" if known else match[0]
     return EXERCISE.sub(to_function, text)
 
 

@@ -87,12 +87,11 @@ def cases(name):
 
 
 def questions(name):
-    """The questions at the end of a notebook."""
+    """The questions at the end of a notebook, with their folded answers."""
     from . import execute
     book = execute.nbformat.read(course.notebook_of(name), as_version=4)
     text = next((cell.source for cell in book.cells if cell.source.startswith("## Three questions")), "")
-    return "\n".join(line for line in text.splitlines()[1:] if not line.startswith("Answers:")).strip() \
-        + "\n\nAnswers are in `solutions/answers.md`, which students do not get."
+    return text.partition("\n")[2].strip()
 
 
 def commands(lesson):

@@ -122,7 +122,7 @@ def relative_to(truth, a, b):
 def method_curve(selection, method, p, truth):
     """The errors of one of our methods over the sweep."""
     scene, step = selection.fastest(method)
-    runs = [(n, run_to_end(scene, step, p, n, bool(selection.plan.overrides))) for n in selection.steps]
+    runs = [(n, run_to_end(scene, step, p, n, bool(selection.plan.overrides))) for n in selection.steps_of(method)]
     order = scene.orders.get(method.function, method.order)
     found = judged(scene, method.label, p, truth, runs, order)
     return {**found, "role": Role.OURS, "colour": method.colour, "marker": method.marker, "line": "-"}

@@ -24,7 +24,7 @@ def picture(selection, p, agreeing):
     dt = seconds / (per_frame * FRAMES)
     frames = [np.array(scene.truth(p, seconds * k / FRAMES)) for k in range(FRAMES + 1)]
     shown = {scene.film_of_truth: (Role.TRUTH, frames)}
-    for method in sorted((m for m in scene.methods if m.label in agreeing), key=lambda m: -m.order)[:1]:
+    for method in sorted((m for m in scene.methods if m.label in agreeing), key=selection.rank)[:1]:
         shown[method.label] = (Role.OURS, our_frames(*selection.fastest(method), p, dt, per_frame))
     for engine in scene.engines:
         if selection.is_live(engine) and engine.label not in scene.expected_departures:

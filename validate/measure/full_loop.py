@@ -115,12 +115,12 @@ def rolling_ball():
     """rolling_step of lesson 5: a ball on the plane z = 0, found at every step."""
     whole = []
 
-    def rolling_step(load, t, x, v, q, omega, dt, ball):
+    def rolling_step(load, t, x, q, v, omega, dt, ball):
         if not whole:
             whole.append(Whole(x[None], ball.m, ball.I_body[None], ball.radius, np.array([(0.0, 0.0, 1.0, 0.0)]),
                                ball.gravity, ball.mu, IN_SPACE, 0.1 * ball.radius))
         now = whole[0].advance(simulator.weight, t, dt, x=x[None], v=v[None], q=q[None], omega=omega[None])
-        return now.x[0], now.v[0], now.q[0], now.omega[0]
+        return now.x[0], now.q[0], now.v[0], now.omega[0]
     return rolling_step
 
 

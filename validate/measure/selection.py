@@ -71,6 +71,10 @@ class Selection(NamedTuple):
         """The speeds at which a method runs, the fastest last."""
         return speeds_of(self.scene, self.plan, method)
 
+    def rank(self, method):
+        """Sort methods by it: those of high order come first, and of one order those that are compiled."""
+        return -method.order, self.speeds(method)[-1:] != ("compiled",)
+
     def bound(self, method, speed):
         """(scene, step): the scene and our step, both plain or both compiled."""
         if speed not in self.bindings:
@@ -79,6 +83,11 @@ class Selection(NamedTuple):
             self.bindings[speed] = scene, modules.module_set(self.plan.of, compiled)
         scene, lessons = self.bindings[speed]
         return scene, getattr(lessons.lesson(method.lesson), method.function)
+
+    def steps_of(self, method):
+        """The numbers of steps of a method: in a quick validation some end their sweep before the finest step."""
+        most = self.scene.shorter_in_quick.get(method.function, np.inf) if self.plan.quick else np.inf
+        return tuple(n for n in self.steps if n <= most)
 
     def fastest(self, method):
         """The same at the fastest speed that was asked for."""
@@ -155,12 +164,14 @@ def notes_of(scene, plan, methods):
     slow = [m.label for m in scene.methods if m not in methods]
     plain = [m.label for m in methods if speeds_of(scene, plan, m) != plan.speeds]
     finest = "the engines' finest step, where the one before it is fine enough to judge them by"
+    short = [m.label for m in methods if m.function in scene.shorter_in_quick]
     several = len(scene.cases) > 1 and scene.moves and scene.engines
     left = (
         (slow, f", to keep this one quick: {', '.join(slow)}"),
         (scene.slow_cases, f": {', '.join(scene.slow_cases)}"),
         (several, f": the engines on {', '.join(list(scene.cases)[1:])}"),
         (len(scene.steps) > 1 and scene.engines, f": {finest}"),
+        (short, f": the finest steps of {', '.join(short)}"),
         (plain, f": the same, compiled: {', '.join(plain)}"),
         (scene.refined, ": run times of steps coarser than the scene's own sweep"),
     )

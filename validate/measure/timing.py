@@ -240,7 +240,7 @@ def empty_step(step):
 def ablations(selection, p, agreeing):
     """[{what, cost: times longer with it put in, same: the motion is unchanged, note}] for what the scene omits."""
     scene = selection.scene
-    method = max((m for m in scene.methods if m.label in agreeing), key=lambda m: m.order, default=None)
+    method = min((m for m in scene.methods if m.label in agreeing), key=selection.rank, default=None)
     if method is None:
         return []
     speed = selection.speeds(method)[-1]

@@ -14,11 +14,12 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+from IPython import get_ipython
 from IPython.display import HTML, Markdown, display
 
 from solutions.checks import BadInput
 
-from .. import engines, measure, modules
+from .. import engines, measure, modules, needs
 from ..loading import lacks, waiting
 from ..measure import film
 from ..report import ARROWS, PLAYER_3D, plots, words
@@ -118,19 +119,57 @@ def answers(lesson):
     return StandIn(lesson, withheld)
 
 
+waiting_for, drawn = {}, []  # in one cell: {what is not attempted yet: None}, and whether each attempt gave something
+
+
 def attempt(function, *arguments):
-    """What your function returns; None, and a sentence, when it is not written yet or fails."""
+    """What your function returns; None when it is not written yet or fails.
+
+    A failure is reported at once.  What is not attempted yet is said once per cell or figure.
+    """
     try:
         with np.errstate(all="ignore"):
-            return function(*arguments)
+            result = function(*arguments)
+        drawn.append(True)
+        return result
     except NotImplementedError as e:
-        colour = COLOUR["not attempted"]
-        display(HTML(f'<p style="color:{colour}">○ {escape(str(e))}: not attempted yet, so it is not drawn.</p>'))
+        waiting_for[str(e).removeprefix("Exercise ").replace(":", "")] = None
     except ArithmeticError as e:
         display(HTML(f'<p style="color:{COLOUR["not yet"]}">✗ {escape(str(e))}.</p>'))
     except Exception as e:
         display(HTML(f'<p style="color:{COLOUR["not yet"]}">✗ {escape(type(e).__name__)}: {escape(str(e))}.</p>'))
+    drawn.append(False)
     return None
+
+
+def show_figure():
+    """Show the figure of this cell without its empty axes, and say what it still waits for.
+
+    If every attempt since the last figure failed, there is nothing of yours to see, and the figure is not drawn.
+    """
+    empty = drawn and not any(drawn)
+    _say_waiting()
+    for number in plt.get_fignums():
+        figure = plt.figure(number)
+        for ax in figure.axes:
+            if not ax.has_data() and not ax.patches and not ax.texts and not ax.images:
+                ax.remove()
+        if empty or not figure.axes:
+            plt.close(figure)
+    plt.show()
+
+
+def _say_waiting(*_):
+    """Say in one sentence what was not attempted yet, and forget it."""
+    if waiting_for:
+        display(HTML(f'<p style="color:{COLOUR["not attempted"]}">○ Not attempted yet: '
+                     f'{escape(", ".join(waiting_for))}.</p>'))
+    waiting_for.clear()
+    drawn.clear()
+
+
+if get_ipython():
+    get_ipython().events.register("post_run_cell", _say_waiting)
 
 
 def fastest(lesson, trial):
@@ -223,7 +262,30 @@ def check(exercise):
         outcomes = json.loads(file.read_text()) if file.is_file() else []
     if not outcomes:
         raise RuntimeError(f"the check of exercise {exercise} did not run:\n{said}")
-    display(_Answer(exercise, outcomes))
+    display(_Answer(exercise, outcomes, _below(exercise, outcomes, own)))
+
+
+def _below(exercise, outcomes, own):
+    """The sentence about an exercise that this one calls, where that does not pass."""
+    below = needs.needed(exercise, own)
+    if not below or not any(o["status"] == "not yet" for o in outcomes):
+        return ""
+    states = needs.states((o["exercise"], o["status"]) for o in _outcomes_of(below, own))
+    first = needs.first_open(exercise, states, own)
+    return needs.sentence(exercise, first, states[first]) if first else ""
+
+
+def _outcomes_of(exercises, own):
+    """The outcomes of some exercises, as saved just now; none where the code ends the program."""
+    files = dict.fromkeys(str(TESTS / f"test_{needs.table()[number]['lesson']}.py") for number in exercises)
+    with tempfile.TemporaryDirectory() as scratch:
+        file = Path(scratch) / "outcomes.json"
+        try:
+            pytest_process.run(*files, f"--of={own}", *(f"--exercise={number}" for number in exercises),
+                               f"--outcomes={file}", f"--rootdir={modules.ROOT}", "--tb=line")
+        except pytest_process.Ended:
+            return []
+        return json.loads(file.read_text()) if file.is_file() else []
 
 
 def _lesson_of(exercise):
@@ -234,11 +296,83 @@ def _lesson_of(exercise):
     raise BadInput(f"exercise {exercise!r}", "unknown", 'give its number in quotes, like check("1.2")')
 
 
+# ---------------------------------------------------------------------------------------------- how far
+
+def progress(lesson):
+    """Your points in a lesson so far, and the next exercise of which everything that it calls passes."""
+    try:
+        own = modules.subject_folder(folder())
+        if not needs.of_lesson(lesson):
+            raise BadInput(f"lesson {lesson!r}", "unknown", f"choose from: {', '.join(modules.lesson_names())}")
+    except BadInput as e:
+        _say(str(e))
+        return
+    outcomes = _outcomes_of(needs.of_lesson(lesson), own)
+    if not outcomes:
+        _say(f"The exercises of {lesson} ended without an answer: lessons/{lesson}.py ends the program, "
+             "or asks for more memory than there is.")
+        return
+    display(_Progress(lesson, outcomes))
+
+
+class _Progress:
+    """The points of a lesson, for people, as text and as HTML."""
+
+    def __init__(self, lesson, outcomes):
+        self.lesson, self.states = lesson, needs.states((o["exercise"], o["status"]) for o in outcomes)
+        self.earned = sum(o["points"] for o in outcomes if o["status"] == "passed")
+        self.possible = sum(o["points"] for o in outcomes)
+
+    def signs(self):
+        """(exercise, its state) in the order of the lesson."""
+        return [(number, self.states.get(number, "not attempted")) for number in needs.of_lesson(self.lesson)]
+
+    def next(self):
+        number = needs.next_of(self.lesson, self.states)
+        return f"next: {number} {needs.table()[number]['function']}" if number else "all exercises pass"
+
+    def title(self):
+        return f"{self.lesson}: {self.earned:g} of {self.possible:g} points"
+
+    def __repr__(self):
+        return f"{self.title()}\n{' '.join(f'{SIGN[state]} {number}' for number, state in self.signs())}\n{self.next()}"
+
+    def _repr_html_(self):
+        marks = " &nbsp; ".join(f'<span style="color:{COLOUR[state]};white-space:nowrap" title="{escape(state)}">'
+                                f'{SIGN[state]} {number}</span>' for number, state in self.signs())
+        return f"<div><b>{escape(self.title())}</b><br>{marks}<br>{escape(self.next())}</div>"
+
+
+def exercise_map():
+    """A table of all exercises: the function that each asks for, and the exercises that this calls."""
+    display(_Map())
+
+
+class _Map:
+    """All exercises and what each calls, for people, as text and as HTML."""
+
+    def rows(self):
+        for number, one in needs.table().items():
+            yield number, one["lesson"], one["function"], ", ".join(one["needs"])
+
+    def __repr__(self):
+        return "\n".join(f"{number:6} {lesson:16} {function:32} {calls}" for number, lesson, function, calls in
+                         self.rows())
+
+    def _repr_html_(self):
+        head = "".join(f'<th scope="col" style="text-align:left">{name}</th>'
+                       for name in ("exercise", "lesson", "function", "calls"))
+        body = "".join(f"<tr>{''.join(f'<td style=text-align:left>{escape(cell)}</td>' for cell in row)}</tr>"
+                       for row in self.rows())
+        return (f"<details><summary>All {len(needs.table())} exercises, and what each calls</summary>"
+                f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></details>")
+
+
 class _Answer:
     """The answer of a check, for people: the worst outcome first; all of it as text and as HTML."""
 
-    def __init__(self, exercise, outcomes):
-        self.exercise, self.outcomes = exercise, outcomes
+    def __init__(self, exercise, outcomes, below=""):
+        self.exercise, self.outcomes, self.below = exercise, outcomes, below
         self.open = [o for o in outcomes if o["status"] != "passed"]
         states = {o["status"] for o in outcomes}
         self.state = "not yet" if "not yet" in states else "not attempted" if "not attempted" in states else "passed"
@@ -251,10 +385,14 @@ class _Answer:
             waits = self.open[0]["got"]
             yield ("still open" if f"Exercise {self.exercise}:" in waits else "it waits for"), waits
         elif self.open:
+            if self.below:
+                yield "first", self.below
             first = next(o for o in self.open if o["status"] == "not yet")
             for name in ("quantity", "given", "expected", "got", "tolerance", "hint", "printed"):
                 if first[name]:
                     yield name, first[name]
+            if first["idea"]:
+                yield "diagnosis", first["idea"]
 
     def __repr__(self):
         (title, points), *rest = self.lines()
@@ -272,6 +410,11 @@ class _Answer:
 
 
 # ---------------------------------------------------------------------------------------------- pictures
+
+def look(method, **changes):
+    """How every figure draws a method of validate/methods.py: its arguments for `plot`, with changes."""
+    return {"color": method.colour, "marker": method.marker, "label": method.label, **changes}
+
 
 def play(frames, seconds, links=(), height=260):
     """A film: frames = {label: list of (n, 2) arrays [m]}; "truth" is drawn in grey, the others in colour."""

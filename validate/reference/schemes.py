@@ -87,7 +87,6 @@ def weighted(weights, values):
     return total
 
 
-@cache
 def stages(tableau):
     """[(c, row of α, row of β, weight of the stage itself or None, whether its acceleration is used)]"""
     used = {stage for row in (*tableau.beta, tableau.b) for stage, _ in row}
@@ -95,17 +94,21 @@ def stages(tableau):
             for i, (c, alpha, beta) in enumerate(zip(tableau.c, tableau.alpha, tableau.beta, strict=True))]
 
 
-def step(tableau, law, t, x, v, h):
-    """One step; x and v are floats, complex numbers or arrays."""
-    V, forces = [], []
-    for c, alpha, beta, itself, used in stages(tableau):
-        if itself is None:
-            V.append(v + h * weighted(beta, forces))
-            forces.append(law(t + c * h, x + h * weighted(alpha, V), V[-1]) if used else None)
-        else:
-            for stage, one in zip((V, forces), implicit_stage(law, t + c * h, x, v, itself * h), strict=True):
-                stage.append(one)
-    return x + h * weighted(tableau.a, V), v + h * weighted(tableau.b, forces)
+def step_of(tableau):
+    """The function (law, t, x, v, h) → (x, v) of one step; x and v are floats, complex numbers or arrays."""
+    rows, a, b = stages(tableau), tableau.a, tableau.b
+
+    def step(law, t, x, v, h):
+        V, forces = [], []
+        for c, alpha, beta, itself, used in rows:
+            if itself is None:
+                V.append(v + h * weighted(beta, forces) if beta else v)
+                forces.append(law(t + c * h, x + h * weighted(alpha, V) if alpha else x, V[-1]) if used else None)
+            else:
+                for stage, one in zip((V, forces), implicit_stage(law, t + c * h, x, v, itself * h), strict=True):
+                    stage.append(one)
+        return x + h * weighted(a, V), v + h * weighted(b, forces)
+    return step
 
 
 def implicit_stage(law, t, x, v, h):
@@ -123,12 +126,21 @@ def implicit_stage(law, t, x, v, h):
 
 
 def advance(scheme, law, x, v, h, steps):
-    """(x, v) after so many steps.  A scheme is a label of TABLEAUX, or a function like `step` without a tableau."""
-    move = scheme if callable(scheme) else lambda *now: step(TABLEAUX[scheme], *now)
+    """(x, v) after so many steps.  A scheme is a label of TABLEAUX, or a function like those of `step_of`."""
+    move = scheme if callable(scheme) else step_of(TABLEAUX[scheme])
     with np.errstate(all="ignore"):
         for n in range(steps):
             x, v = move(law, n * h, x, v, h)
     return x, v
+
+
+def advance_modes(scheme, law, x, v, h, steps):
+    """The same for a law −ω² x − c v of each coordinate on its own: the power of the (2, 2) matrix of one step."""
+    one, none = np.ones_like(x), np.zeros_like(x)
+    with np.errstate(all="ignore"):
+        columns = [np.stack(advance(scheme, law, *begin, h, 1), axis=-1) for begin in ((one, none), (none, one))]
+        after = np.linalg.matrix_power(np.stack(columns, axis=-1), steps) @ np.stack((x, v), axis=-1)[..., None]
+    return after[..., 0, 0], after[..., 1, 0]
 
 
 class ErrorLaw:
@@ -210,15 +222,17 @@ class Model(NamedTuple):
     run: object              # (p, h, steps, nudge) → what is observed at the end; nudge [m] moves the start
 
 
-def table_model(scheme, law, begin, seen, order=1, ahead=0.0):
-    """The Model of an engine that does what a scheme does: a label of TABLEAUX, or p → a function like `step`.
+def table_model(scheme, law, begin, seen, order=1, ahead=0.0, march=advance):
+    """The Model of an engine that does what a scheme does: a label of TABLEAUX, or p → a function like those of
+    `step_of`.
 
-    Its first velocity is that of begin(p) and  ahead h a  at the start.
+    Its first velocity is that of begin(p) and  ahead h a  at the start.  march: `advance`, or its like for such a law.
     """
+    @cache                                              # a method and an engine may have the same model
     def run(p, h, steps, nudge):
         force, (x, v) = law(p), begin(p)
         rule = scheme(p) if callable(scheme) else scheme
-        return seen(advance(rule, force, nudged(x, nudge), v + ahead * h * force(0.0, x, v), h, steps)[0], p)
+        return seen(march(rule, force, nudged(x, nudge), v + ahead * h * force(0.0, x, v), h, steps)[0], p)
     return Model(order, run)
 
 
@@ -227,20 +241,22 @@ def nudged(x, nudge):
     return x + nudge * (np.cos(np.arange(x.size) ** 2.0).reshape(x.shape) if isinstance(x, np.ndarray) else 1.0)
 
 
-def predict_by_tables(T, law, begin, seen, truth, floor, engines=None, departures=None, finest=None, powers=None):
+def predict_by_tables(T, law, begin, seen, truth, floor, engines=None, departures=None, finest=None, powers=None,
+                      march=advance):
     """The field `predicted_error` of a scene, (label, p, dt) → Prediction, from the tables above.
 
     law(p) → a(t, x, v);    begin(p) → (x, v);    seen(x, p) → what the scene observes of x;    floor(p, dt) → round-off
     engines: {label: Model};    departures: those of the scene;    finest: {order or label: steps of the finest run of a
     table}
-    powers: {label: the first three powers of dt in the error, where they are not k, k + 1, k + 2 of order k}
+    powers: {label: the first three powers of dt in the error, where they are not k, k + 1, k + 2 of order k};    march:
+    `advance`, or `advance_modes` for modes that do not touch
     """
     engines, departures, finest = engines or {}, departures or {}, {**FINEST, **(finest or {})}
 
     @cache
     def error_law(label, p):
         own = departures[label].own_law if label in departures else truth
-        order, run = engines.get(label) or table_model(label, law, begin, seen, ORDERS[label])
+        order, run = engines.get(label) or table_model(label, law, begin, seen, ORDERS[label], march=march)
         return ErrorLaw(lambda steps, nudge: run(p, T / steps, steps, nudge), np.array(own(p, T), dtype=float),
                         (powers or {}).get(label, order), T, finest.get(label, finest[order]))
 

@@ -289,10 +289,23 @@ def predict_turns(T, moments, begin, torque, seen, truth, floor, engines=(), dou
 
 
 def free_turns(T, truth, uncertainty):
-    """Return the field `predicted_error` of a free body that starts at R = 1, with p.moments() and p.omega()."""
+    """Return the field `predicted_error` of a free body that starts at R = 1, with p.moments() and p.omega().
+
+    The floor is round-off, u = 1.1e-16.  A step rounds the orientation by about u in each direction.  A rounding about
+    L or about the axis of symmetry stays what it is.  One that tilts the axis by δ at t also changes the rate of spin,
+    which is (1/I₃ − 1/I₁) L₃: at the end the spin is off by  δ S (1 − t/T),  S = |1/I₃ − 1/I₁| |L| T.  For the
+    axisymmetric body S = 54.
+
+    If the δ are independent, with standard deviation σ, n steps end S σ √(n/3) off; a mean of μ adds ½ S μ n.  Counted
+    on 100,000 steps of the splitting against the same steps in 80 bits: σ = 0.74 u, and μ = 0.0045 ± 0.0024 u.  The
+    random walk gives 8e-13, and the roundings as they were, each with its weight, 4.2e-12.  That is five standard
+    deviations of a random walk: their mean is not 0 and drifts slowly.  (Error at the end: 3.5e-12.)  So √n rules below
+    some 30,000 steps and n above: from there to a million the error is 0.17 to 0.31 u n (four bodies: 0.08 to 0.6 u n).
+    The limit of 2 u n is what a mean tilt of 4/S u = 0.07 u, a tenth of σ, would give.
+    """
     def begin(p):
         return (1.0 + 0j, 0j), tuple(map(float, p.moments() * p.omega()))
-    # roundings of one sign, as those of a turn about a fixed axis are, and what the truth leaves open
+    # roundings as derived above, 1e-12 of Newton's method, and what the truth leaves open
     floor = lambda p, dt: 1e-12 + T / dt * ROUND_OFF + 10.0 * uncertainty
     return predict_turns(T, lambda p: p.moments(), begin, lambda p: no_torque, np.ravel, truth, floor,
                          ENGINES, {**DOUBLINGS, 1: 0})

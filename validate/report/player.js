@@ -51,7 +51,7 @@ function controls(place, { last, seconds, runs, draw, reset, hint }) {
     const tick = now => {
       if (!state.playing || !place.isConnected) return;
       if (state.seen) {
-        state.at = (state.at + Math.min(100, now - state.before) / 1000 / showing * state.speed * last) % (last + 1);
+        state.at = (state.at + Math.min(100, Math.max(0, now - state.before)) / 1000 / showing * state.speed * last) % (last + 1);
         if (state.at > last) state.at = 0;
         told(); show();
       }

@@ -821,14 +821,15 @@ def one_step(lesson):
         t, h, omega = rng.uniform((0.0, 0.1, 2.0), (1.0, 0.3, 4.0))
         for name in label:
             p = Swing(k, 0.0 * c if name == "blanes_moan_step" else c, drive, omega)
-            truth = schemes.step(schemes.TABLEAUX[label[name]], lambda t, x, v, p=p: swinging(t, x, v, p), t, x, v, h)
+            law, step = lambda t, x, v, p=p: swinging(t, x, v, p), schemes.step_of(schemes.TABLEAUX[label[name]])
+            truth = step(law, t, x, v, h)
             got = getattr(lesson, name)(swinging, t, x, v, h, p)
             worst[name] = max(worst[name], np.max(np.abs(np.array(got) - truth)))
         # a history is that of single steps, each at its own time, and ends where a run of many steps ends
         p, states, rk4 = Swing(k, c, drive, omega), [(x, v)], lesson.rk4_step
         for n in range(3):
             law = lambda t, x, v, p=p: swinging(t, x, v, p)
-            states.append(schemes.step(schemes.TABLEAUX[label["rk4_step"]], law, t + n * h, *states[-1], h))
+            states.append(schemes.step_of(schemes.TABLEAUX[label["rk4_step"]])(law, t + n * h, *states[-1], h))
         ts, xs, vs = lesson.trajectory(rk4, swinging, t, x, v, h, 3, p)
         end = np.array(lesson.advance(rk4, swinging, t, x, v, h, 3, p))
         errors = np.stack((xs, vs), axis=1) - np.array(states), ts - t - h * np.arange(4), end - states[-1]

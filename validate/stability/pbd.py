@@ -702,7 +702,7 @@ def quarter_period(lesson, rod, half, theta, dt):
     x, v, omega, t = half * np.array([np.sin(theta), 0.0, -np.cos(theta)]), np.zeros(3), np.zeros(3), 0.0
     while x[0] > 0.0 and t < 2.0:
         before = x[0]
-        x, v, q, omega = lesson.pivoted_body_step(t, x, v, q, omega, dt, rod)
+        x, q, v, omega = lesson.pivoted_body_step(t, x, q, v, omega, dt, rod)
         t += dt
     return t - dt * x[0] / (x[0] - before)
 
@@ -824,7 +824,7 @@ def constraints_and_gradients(lesson):
         after = wxyz(tan_turn(dt * omega) * turn)
         note("rate", (lesson.turning_rate(q, after, dt), lesson.turning_rate(q, -after, dt)), (omega, omega))
         body = lesson.PivotedBody(m, I_body, np.zeros(3), x[0], np.zeros(3), 2)        # held at its centre: it is free
-        *_, new_omega = lesson.pivoted_body_step(0.0, x[0], np.zeros(3), q, omega, 0.01, body)
+        *_, new_omega = lesson.pivoted_body_step(0.0, x[0], q, np.zeros(3), omega, 0.01, body)
         note("free", new_omega, omega + 0.01 * euler_rate(R, omega, I_body))
 
         # a fold of half the stiffness goes half of a small way; a cloth in the air falls as one

@@ -672,27 +672,27 @@ def one_step_of_the_loop(lesson):
         q, (x, v, omega, f, a) = rng.normal(size=4), rng.normal(size=(5, 3))
         q /= np.linalg.norm(q)
         R = quaternion_matrix(*q)
-        load = lambda t, x, v, q, omega, body, f=f, a=a: (np.cos(t) * f, np.sin(t) * a)
+        load = lambda t, x, q, v, omega, body, f=f, a=a: (np.cos(t) * f, np.sin(t) * a)
         tensor = R @ np.diag(I) @ R.T
         new_v = v + dt / m * np.cos(t) * f
         new_omega = omega + dt * np.linalg.solve(tensor, np.sin(t) * a - np.cross(omega, tensor @ omega))
-        got = lesson.rigid_body_step(load, t, x, v, q, omega, dt, lesson.RigidBody(m, I))
-        for one, truth in ((got[0], x + dt * new_v), (got[1], new_v), (got[3], new_omega),
-                           (quaternion_matrix(*got[2]), cayley(dt * new_omega) @ R)):
+        got = lesson.rigid_body_step(load, t, x, q, v, omega, dt, lesson.RigidBody(m, I))
+        for one, truth in ((got[0], x + dt * new_v), (got[2], new_v), (got[3], new_omega),
+                           (quaternion_matrix(*got[1]), cayley(dt * new_omega) @ R)):
             worst["loop"] = max(worst["loop"], np.max(np.abs(one - truth)))
 
         (radius, mu, inertia), g = rng.uniform((0.1, 0.2, 0.01), (0.5, 0.5, 0.1)), rng.normal(size=3)
         along = np.array([1.0, 1.0, 0.0])                        # the floor's share of a vector
         for up in (-9.81, 2.0):                                  # gravity presses the ball on the floor, or lifts it
             ball = lesson.RollingBall(m, np.full(3, inertia), radius, mu, np.array([g[0], g[1], up]))
-            F, tau = lesson.supported_weight(t, x, v, q, omega, ball)
+            F, tau = lesson.supported_weight(t, x, q, v, omega, ball)
             rests = m * np.array([g[0], g[1], max(0.0, up)])
             worst["support"] = max(worst["support"], np.max(np.abs(F - rests)), np.max(np.abs(tau)))
         ball, r = ball._replace(gravity=np.array([g[0], g[1], -9.81])), np.array([0.0, 0.0, -radius])
         for speed in (1e-3, 3.0):                                # friction stops the first slip, and not the second
             before, limit = speed * v * along, mu * m * 9.81 * dt
             start = before - (np.cross(omega, r) + dt * g) * along
-            _, end, _, spin = lesson.rolling_step(lesson.supported_weight, t, x, start, q, omega, dt, ball)
+            _, _, end, spin = lesson.rolling_step(lesson.supported_weight, t, x, q, start, omega, dt, ball)
             J = m * (end - start - dt * g * along)
             worst["impulse"] = max(worst["impulse"], np.max(np.abs(inertia * (spin - omega) - np.cross(r, J))))
             after = (end + np.cross(spin, r)) * along

@@ -82,7 +82,7 @@ def growth_on_a_turntable(lesson):
     w, r, table = 2.0 / 7.0 * spin, np.array([0.0, 0.0, -R]), np.array([0.0, 0.0, spin])
     x, v = np.array([0.6, 0.0, R]), np.array([0.0, 0.3, 0.0])
     omega, upright, down = np.cross(r, np.cross(table, x) - v) / R**2, np.array([1.0, 0.0, 0.0, 0.0]), (0.0, 0.0, -G)
-    still = lambda t, x, v, q, omega, ball: (np.zeros(3), np.zeros(3))
+    still = lambda t, x, q, v, omega, ball: (np.zeros(3), np.zeros(3))
 
     def loop(dt, steps):
         state, p = lesson.make_bodies([x], [upright], 1.0, [(moment,) * 3], [(R,) * 3], [(0.0, 0.0, 1.0, 0.0)], down,
@@ -94,10 +94,10 @@ def growth_on_a_turntable(lesson):
 
     def ahead(dt, steps):
         ball = lesson.CarriedBall(1.0, np.full(3, moment), R, 10.0, np.array(down), np.zeros(3), np.zeros(3), table)
-        now = x, v, upright, omega
+        now = x, upright, v, omega
         for n in range(steps):
             now = lesson.carried_step(still, n * dt, *now, dt, ball)
-        return np.linalg.norm(now[1])
+        return np.linalg.norm(now[2])
 
     dts, grown = (0.02, 0.05, 0.1, 0.2), []
     for dt in dts:

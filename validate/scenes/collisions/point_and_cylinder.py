@@ -177,6 +177,7 @@ SCENE = Scene(
     supports=supports,
     # Plain Python finishes before numba has compiled it.
     uncompiled_in_quick=("discrete_step",),
+    shorter_in_quick={"discrete_step": 1000},
     sanity_checks=sanity_checks,
     points=points,
     links=links,

@@ -265,6 +265,8 @@ SCENE = Scene(
     engines=ENGINES,
     omitted_methods=("the sliding and the event step hold a block on one plane; a bowl has a different one at every "
                      "point"),
+    uncompiled_in_quick=("position_friction_step",),
+    shorter_in_quick={"position_friction_step": 5000},
     sanity_checks=sanity_checks,
     points=points,
     links=links,

@@ -179,6 +179,7 @@ SCENE = Scene(
     expected_departures={"pyramid": Departure(BOX, pyramid), "pybullet, pyramid": Departure(BOX, pyramid)},
     # The deceleration is constant, and the stop is found.
     orders={"event_step": EXACT},
+    uncompiled_in_quick=("pyramid_step",),
     sanity_checks=sanity_checks,
     points=points,
     links=links,

@@ -183,6 +183,8 @@ SCENE = Scene(
         (10.0, (0.275087463, -0.961419205), 5e-10),
         (2.367841948, (1.0, 0.0), 5e-9),
     ),
+    uncompiled_in_quick=("rattle_step",),
+    shorter_in_quick={"rattle_step": 1000},
     sanity_checks=sanity_checks,
     points=points,
     links=links,

@@ -204,6 +204,8 @@ SCENE = Scene(
                      "sparse one, and pymunk more iterations"),
     # The reference solution alone takes seconds.
     slow_cases=("50 links",),
+    uncompiled_in_quick=("rattle_step",),
+    shorter_in_quick={"rattle_step": 600},
     sanity_checks=sanity_checks,
     points=points,
     links=links,

@@ -167,6 +167,8 @@ SCENE = Scene(
         "midpoint_step",
         "composed_midpoint_step",
     ),  # the asymmetric top has them
+    uncompiled_in_quick=("runge_kutta_step",),
+    shorter_in_quick={"runge_kutta_step": 2000},
     sanity_checks=sanity_checks,
     points=points,
     links=links,

@@ -205,6 +205,8 @@ SCENE = Scene(
         "midpoint_step",
         "composed_midpoint_step",
     ),  # the asymmetric top has them
+    uncompiled_in_quick=("quaternion_step", "runge_kutta_step"),
+    shorter_in_quick={"quaternion_step": 20000, "runge_kutta_step": 2000},
     sanity_checks=sanity_checks,
     points=points,
     links=links,

@@ -46,17 +46,17 @@ def start(p):
         check_positive(name, getattr(p, name))
     if not p.mu >= 2.0 / 7.0 * np.tan(np.radians(p.slope)):
         raise BadInput("the friction μ", p.mu, "give 2/7 tan(slope) or more: with less it slides")
-    return np.array([0.0, 0.0, p.radius]), np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3)
+    return np.array([0.0, 0.0, p.radius]), np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3), np.zeros(3)
 
 
 def run(step, acceleration, state, p, dt, steps):
-    x, v, q, omega = state
-    return advance_rigid_body(step, acceleration, 0.0, x, v, q, omega, dt, steps, ball(p))
+    x, q, v, omega = state
+    return advance_rigid_body(step, acceleration, 0.0, x, q, v, omega, dt, steps, ball(p))
 
 
 def observe(state, p):
     """Return distance down the slope s [m], speed v and rim speed rω [m/s]."""
-    return np.array([state[0][0], state[1][0], p.radius * state[3][1]])
+    return np.array([state[0][0], state[2][0], p.radius * state[3][1]])
 
 
 def truth(p, t):
@@ -175,6 +175,8 @@ SCENE = Scene(
     tolerance=tolerance,
     predicted_error=predicted_error,
     engines=ENGINES,
+    uncompiled_in_quick=("rolling_step",),
+    shorter_in_quick={"rolling_step": 2000},
     sanity_checks=sanity_checks,
     points=points,
     links=links,

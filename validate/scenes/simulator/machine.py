@@ -98,7 +98,7 @@ def start(p):
 def energy(now, rows):
     """Energy [J] of all that moves, and of the spring."""
     stretch = np.linalg.norm(now.x[HAMMER] - ANCHOR) - REST
-    return mechanical_energy_2d(now.x, now.v, now.omega, rows) + 0.5 * SPRING * stretch**2
+    return mechanical_energy_2d(now.x, now.q, now.v, now.omega, rows) + 0.5 * SPRING * stretch**2
 
 
 def work_of_supports(now, rows):

@@ -48,7 +48,7 @@ def ball(p):
 
 
 def start(p):
-    """(x, v, q, ω) of a ball that rolls, v + ω × r = Ω × x, and (PileState, Bodies) for the whole loop."""
+    """(x, q, v, ω) of a ball that rolls, v + ω × r = Ω × x, and (PileState, Bodies) for the whole loop."""
     for name in ("spin", "shape", "R", "m", "g"):
         check_positive(name, getattr(p, name))
     x, v, r = np.array([p.x0, 0.0, p.R]), np.array([0.0, p.v0, 0.0]), np.array([0.0, 0.0, -p.R])
@@ -57,20 +57,20 @@ def start(p):
                               np.full((1, 3), p.R), np.array([(0.0, 0.0, 1.0, 0.0)]), np.array([0.0, 0.0, -p.g]), MU,
                               SWEEPS, MARGIN)
     state = state._replace(v=np.stack((v, np.zeros(3))), omega=np.stack((omega, table(p))))
-    return x, v, UPRIGHT, omega, state, rows
+    return x, UPRIGHT, v, omega, state, rows
 
 
 def run(step, acceleration, state, p, dt, steps):
-    x, v, q, omega, rows, bodies_here = state
+    x, q, v, omega, rows, bodies_here = state
     if step.__name__ == "carried_step":
-        return *advance_rigid_body(step, acceleration, 0.0, x, v, q, omega, dt, steps, ball(p)), rows, bodies_here
+        return *advance_rigid_body(step, acceleration, 0.0, x, q, v, omega, dt, steps, ball(p)), rows, bodies_here
     end = advance_contact(step, weight, ball_bounds, round_contacts, 0.0, rows, dt, steps, bodies_here)
-    return end.x[0], end.v[0], end.q[0], end.omega[0], end, bodies_here
+    return end.x[0], end.q[0], end.v[0], end.omega[0], end, bodies_here
 
 
 def observe(state, p):
     """Return x, y [m] and both velocities [m/s]."""
-    return np.concatenate((state[0][:2], state[1][:2]))
+    return np.concatenate((state[0][:2], state[2][:2]))
 
 
 def rate(p):
@@ -107,7 +107,7 @@ def tolerance(p, dt):
 
 
 def pybullet_make(p, dt):
-    x, v, _, omega, *_ = start(p)
+    x, _, v, omega, *_ = start(p)
     return pybullet_turntable(ball(p), x, v, omega, dt)
 
 
@@ -146,7 +146,7 @@ def sanity_checks():
     """Return ((claim, found, expected, tolerance), …): the circle by an independent integrator, and 2/7."""
     from scipy.integrate import solve_ivp
     p, r = Params(), np.array([0.0, 0.0, -Params().R])
-    x, v, _, omega, *_ = start(p)
+    x, _, v, omega, *_ = start(p)
 
     def slope(t, y):
         """ẋ, v̇ and ω̇ by the friction that keeps the lowest point on the table."""

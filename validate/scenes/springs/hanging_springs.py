@@ -10,7 +10,7 @@ from solutions.springs import make_spring_network
 from solutions.springs import spring_network_acceleration as acceleration
 from validate.engines.springs import pymunk_net
 from validate.methods import IMPLICIT_MESH, INTEGRATORS
-from validate.reference.schemes import Model, nudged, predict_by_tables
+from validate.reference.schemes import Model, advance_modes, nudged, predict_by_tables
 from validate.reference.springs import ReferenceNetwork, by_mode, pymunk_net_model, state_of
 from validate.scene import EXACT, PYMUNK, Engine, Scene
 
@@ -174,7 +174,8 @@ SCENE = Scene(
     truth=truth,
     truth_uncertainty=UNCERTAINTY,
     tolerance=tolerance,
-    predicted_error=predict_by_tables(T, law, released, from_modes, truth, floor, {"pymunk": Model(1, pymunk_chain)}),
+    predicted_error=predict_by_tables(T, law, released, from_modes, truth, floor, {"pymunk": Model(1, pymunk_chain)},
+                                      march=advance_modes),
     engines=ENGINES,
     slow_methods=("implicit_euler_step", "implicit_midpoint_step", "implicit_spring_network_step"),
     sanity_checks=sanity_checks,

@@ -1,0 +1,186 @@
+"""A check names the mistake in a wrong answer, and none in a right one; with secret inputs it names nothing."""
+
+
+import json
+import subprocess
+import sys
+import types
+
+import numpy as np
+import pytest
+
+from validate import mistakes, modules, needs
+
+from ..mutants.traces import mutants_of, names_in, traces_of
+from . import example, points, release
+
+LESSONS = modules.lesson_names()
+EACH = 5                     # the default run tries one of so many known wrong answers of a lesson; --long all [-]
+RECOGNISED = 0.9             # share of the wrong answers of a lesson that its table knows, at least
+NOISE = 1e-15                # relative size of what another order of the same operations may change
+
+
+def rounded_otherwise(function):
+    """The function, whose results differ in their last digits, as they do when somebody else writes it."""
+    rng = np.random.default_rng(5)
+
+    def noisy(value):
+        if isinstance(value, (float, np.floating)):
+            return value * (1.0 + NOISE * rng.uniform(-1.0, 1.0))
+        if isinstance(value, np.ndarray) and value.dtype.kind == "f":
+            return value * (1.0 + NOISE * rng.uniform(-1.0, 1.0, value.shape))
+        if isinstance(value, tuple):
+            parts = [noisy(part) for part in value]
+            return type(value)(*parts) if hasattr(value, "_fields") else tuple(parts)
+        return value
+    return lambda *arguments: noisy(function(*arguments))
+
+
+def named(lesson, chosen, changed=lambda function: function):
+    """{number: all ideas that are found} for these of the lesson's answers, each changed in that way."""
+    kept = mutants_of(lesson)
+    traces = traces_of(lesson, {k: (kept[k].exercise, changed(kept[k].function)) for k in chosen})
+    return {k: mistakes.matching(lesson, kept[k].exercise, traces[k]) for k in chosen}
+
+
+@pytest.mark.parametrize(("name", "each"), [
+    *((name, EACH) for name in LESSONS),
+    *(pytest.param(name, 1, marks=pytest.mark.long) for name in LESSONS)])
+def test_nine_of_ten_wrong_answers_are_recognised_and_no_right_one(name, each):
+    kept, table = mutants_of(name), mistakes.table(name)
+    every = [k for k, mutant in enumerate(kept) if not mutant.right]
+    right = [k for k, mutant in enumerate(kept) if mutant.right]
+    known = [k for k in every if kept[k].story in [one["idea"] for one in table[kept[k].exercise]["wrong"]]]
+    missed = [f"{kept[k].exercise} {kept[k].story}" for k in every if k not in known]
+    assert len(known) >= RECOGNISED * len(every), missed
+    found = named(name, known[::each])
+    print(f"{name}: {len(known)} of {len(every)} wrong answers are in the table; {len(found)} were tried")
+    assert not [f"{kept[k].exercise} {kept[k].story}" for k in found if kept[k].story not in found[k]]
+    assert not {k: ideas for k, ideas in named(name, right).items() if ideas}
+    assert not {k: ideas for k, ideas in named(name, right, rounded_otherwise).items() if ideas}
+
+
+# ---------------------------------------------------------------------------------------------- in a check
+
+EULER = "return x + dt * v, v + dt * acceleration(t, x, v, p)"           # the answer to 1.1
+IDEA = "moves the position with the new velocity"
+
+
+def run_of(tmp_path, lesson, exercises, changes, *more):
+    """Outcomes of pytest --of a folder with that lesson, worked but for some replacements in its text, and what it
+    printed.
+    """
+    text = example.worked(lesson)
+    for old, new in changes.items():
+        assert text.count(old) == 1, old
+        text = text.replace(old, new)
+    folder, file = tmp_path / "mine", tmp_path / "outcomes.json"
+    folder.mkdir(exist_ok=True)
+    (folder / f"{lesson}.py").write_text(text)
+    chosen = [f"--exercise={number}" for number in exercises]
+    command = [sys.executable, "-m", "pytest", f"--of={folder}", *chosen, f"--outcomes={file}", "--tb=line",
+               "-p", "no:cacheprovider", *more, str(points.LESSONS / f"test_{lesson}.py")]
+    said = subprocess.run(command, cwd=modules.ROOT, capture_output=True, text=True).stdout
+    return [points.Outcome(**outcome) for outcome in json.loads(file.read_text())], said
+
+
+def test_a_mistake_that_is_written_differently_is_named(tmp_path):
+    other = "w = v + acceleration(t, x, v, p) * dt\n    return w * dt + x, w"
+    outcomes, said = run_of(tmp_path, "integrators", ["1.1"], {EULER: other})
+    assert IDEA in said and "a known mistake gives the same results" in said
+    assert all(IDEA in o.idea for o in outcomes if o.status == "not yet")
+    assert all(o.idea == "" for o in outcomes if o.status == "passed")
+
+
+def test_an_unknown_mistake_is_not_named(tmp_path):
+    outcomes, _ = run_of(tmp_path, "integrators", ["1.1"], {EULER: "return x + 1.1 * dt * v, v - 0.3 * dt * x"})
+    assert "not yet" in {o.status for o in outcomes} and not any(o.idea for o in outcomes)
+
+
+@pytest.mark.parametrize(("name", "number"), [("springs", "2.4"), ("friction", "3.1"), ("impulses", "7.14")])
+def test_an_answer_that_always_returns_zero_is_not_named(name, number):
+    """It gives the same as many a mistake in the first call of a test."""
+    worked = getattr(modules.bind(name), names_in(name)[number])
+    traces = traces_of(name, {"zero": (number, lambda *arguments: 0.0 * worked(*arguments))})
+    assert mistakes.matching(name, number, traces["zero"]) == []
+
+
+def test_with_secret_inputs_no_mistake_is_named(tmp_path):
+    other = "w = v + acceleration(t, x, v, p) * dt\n    return w * dt + x, w"
+    outcomes, said = run_of(tmp_path, "integrators", ["1.1"], {EULER: other}, "--seed=a secret")
+    assert "not yet" in {o.status for o in outcomes} and not any(o.idea for o in outcomes) and IDEA not in said
+
+
+def test_a_grader_traces_nothing():
+    """It grades by `points.grade`, with public and with secret inputs."""
+    module = modules.bind("integrators")
+    wrong = types.SimpleNamespace(**{**vars(module), "euler_step": lambda a, t, x, v, dt, p: (x, v)})
+    for seed in (points.PUBLIC, "a secret"):
+        outcomes = points.grade("integrators", wrong, lambda exercise, test: exercise == "1.1", seed)
+        assert "not yet" in {o.status for o in outcomes} and not any(o.idea or o.below for o in outcomes)
+
+
+def test_a_failure_below_is_named(tmp_path):
+    """8.7 calls predict, 8.3."""
+    wrong = {"return x + dt * v + dt * dt * free[:, None] * a": "return x + dt * v + dt * free[:, None] * a"}
+    outcomes, said = run_of(tmp_path, "pbd", ["8.3", "8.7"], wrong)
+    sentence = "8.7 calls predict (8.3), which does not pass yet: mend that first"
+    assert sentence in said and {o.below for o in outcomes if o.status == "not yet"} == {"", sentence}
+    assert not any(o.below for o in outcomes if o.exercise == "8.3")
+
+
+@pytest.mark.parametrize(("returned", "kind"), [("None", "None"), ("dt", "a number"), ("(x, v, t)", "3 values")])
+def test_a_result_of_another_kind_is_named(tmp_path, returned, kind):
+    outcomes, _ = run_of(tmp_path, "integrators", ["1.1"], {EULER: f"return {returned}"})
+    failed = [o for o in outcomes if o.status == "not yet"]
+    assert failed and {o.quantity for o in failed} == {"what euler_step returns"}
+    assert {o.got.partition(" (")[0] for o in failed} == {kind}
+    assert {o.expected.partition(" (")[0] for o in failed} == {"2 values"}
+
+
+def test_an_error_where_none_was_expected_is_said(tmp_path):
+    outcomes, _ = run_of(tmp_path, "integrators", ["1.1"], {EULER: "raise ValueError('too fast')"})
+    failed = [o for o in outcomes if o.status == "not yet"]
+    assert failed and all(o.expected == "an answer: no error was expected here" for o in failed)
+
+
+# ---------------------------------------------------------------------------------------------- the tables
+
+def test_exercises_call_those_that_their_answers_use():
+    table = needs.table()
+    assert table["8.7"]["needs"] == ["8.3", "8.6"] and table["8.16"]["needs"] == ["5.10"]
+    assert "5.10" in table["5.12"]["needs"] and "1.4" in table["2.9"]["needs"]
+    assert {number for name in LESSONS for number in names_in(name)} == set(table)
+    assert needs.needed("8.7") == ["8.3", "8.6"]
+
+
+def test_another_lesson_is_needed_only_where_it_is_imported_from_beside(tmp_path):
+    (tmp_path / "pbd.py").write_text("from .rotation import quaternion_update\n")
+    assert "5.10" in needs.needed("8.16", tmp_path)
+    (tmp_path / "pbd.py").write_text("from solutions.rotation import quaternion_update\n")
+    assert needs.needed("8.16", tmp_path) == []
+
+
+def test_the_next_exercise_is_the_first_whose_calls_pass():
+    states = dict.fromkeys(needs.of_lesson("pbd"), "passed")
+    assert needs.next_of("pbd", states) is None
+    assert needs.next_of("pbd", {**states, "8.7": "not yet", "8.3": "not attempted"}) == "8.3"
+    assert needs.next_of("pbd", {**states, "8.16": "not yet"}) == "8.16"
+
+
+@pytest.mark.parametrize("name", LESSONS)
+def test_no_answer_can_be_read_from_a_table(name):
+    """Nothing of an answer's text is in it, and no code."""
+    path = mistakes.FOLDER / f"{name}.json"
+    text = path.read_text(encoding="utf-8")
+    hidden = list(release.answers_of(name))
+    assert release.leak_in(text, hidden, release.signs_of(hidden)) is None
+    assert not any(release.leak_in(quoted, hidden, release.signs_of(hidden))
+                   for quoted in release.texts(f"{name}.json", text))
+
+
+def test_the_order_matters_only_where_it_is_said():
+    rows, other = [(1, 2), (3, 4)], [(3, 4), (1, 2)]
+    assert not mistakes.same(mistakes.summary(rows), mistakes.summary(other))
+    assert mistakes.same(mistakes.summary(rows, True), mistakes.summary(other, True))
+    assert not mistakes.same(mistakes.summary(rows, True), mistakes.summary([(1, 4), (3, 2)], True))
