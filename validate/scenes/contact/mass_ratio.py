@@ -207,8 +207,8 @@ def tolerance(p, dt):
     """forces      Sweeps stop where the residual is 1e-13 of the largest (|A||F| + |b|)_k; the error is the residual
                 over the least eigenvalue of A at most.  Murty solves a linear system: 1.1e-16 times the condition of
                 A, and ten for the operations.  The pile still rocks a little when it is read: three times what
-                the recursion of its sweeps says, because the phase of the rocking depends on the places of the corners, and
-                the force of a rounded gap.  How engines come to rest no theory says: they agree if a force
+                the recursion of its sweeps says, because the phase of the rocking depends on the places of the
+                corners, and the force of a rounded gap.  How engines come to rest no theory says: they agree if a force
                 tells to a hundredth of the light box what it carries.
     overlap     The upper box slides aside by no more than it sinks, and takes a corner along: a relative change of
                 2 (w/2)²/I/k_n times twice that over w, or 2.4 depths over w; and a corner's sway, as above.  MuJoCo's
