@@ -154,10 +154,12 @@ def cases_of(scene, plan):
 def notes_of(scene, plan, methods):
     """Sentences: what the scene omits, and what this run leaves to --full.  A notebook has no --full."""
     omitted = (scene.omitted_methods[0].upper() + scene.omitted_methods[1:],) if scene.omitted_methods else ()
+    if plan.most_steps:
+        return omitted
     for product in dict.fromkeys(e.product for e in scene.engines if left_out(e, plan)):
         why = "this run asked for others" if engines.installed(product) else f"not installed; {engines.REMEDY}"
         omitted += (f"The witness {product} is left out: {why}",)
-    if plan.most_steps or not plan.quick:
+    if not plan.quick:
         return omitted
     slow = [m.label for m in scene.methods if m not in methods]
     plain = [m.label for m in methods if speeds_of(scene, plan, m) != plan.speeds]
