@@ -43,14 +43,24 @@ def seen(tips):
     return np.asarray(tips) @ np.array([[-0.4, -0.3], [1.0, 0.0], [0.0, 1.0]])
 
 
-def axes_seen(R):
+def axes_seen(R, p):
     """Return the centre of a body and the tips of its three axes, as points to draw."""
     return seen(np.vstack((np.zeros(3), np.reshape(R, (3, 3)).T)))
+
+
+def axes_links(p):
+    """Return the links of `axes_seen`: from the centre to each tip."""
+    return [(0, 1), (0, 2), (0, 3)]
 
 
 def pose(x, R):
     """Return the pose (7,) of a body at x with the rotation R, for the 3D player."""
     return np.concatenate((x, quaternion(R)))
+
+
+def turned_in_place(R, p):
+    """Return the poses of one body with the rotation R whose centre stays in the origin."""
+    return [pose(np.zeros(3), np.reshape(R, (3, 3)))]
 
 
 def omega_and_L(R, p, reach):
