@@ -53,6 +53,19 @@ def axes_links(p):
     return [(0, 1), (0, 2), (0, 3)]
 
 
+def arms_and_target(arms, target, size):
+    """Return points to draw, to 10 µm: the joints and the end of each arm, and a cross of this size at the target."""
+    cross = np.asarray(target) + size * np.array([(-1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (1.0, -1.0)])
+    return np.round(np.concatenate((*arms, cross)), 5)
+
+
+def two_arms_and_target_links(n):
+    """Return the links of `arms_and_target` for two arms of n links each."""
+    cross = 2 * (n + 1)
+    arms = [(first + k, first + k + 1) for first in (0, n + 1) for k in range(n)]
+    return [*arms, (cross, cross + 1), (cross + 2, cross + 3)]
+
+
 def pose(x, R):
     """Return the pose (7,) of a body at x with the rotation R, for the 3D player."""
     return np.concatenate((x, quaternion(R)))
