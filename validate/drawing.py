@@ -43,14 +43,37 @@ def seen(tips):
     return np.asarray(tips) @ np.array([[-0.4, -0.3], [1.0, 0.0], [0.0, 1.0]])
 
 
-def axes_seen(R):
+def axes_seen(R, p):
     """Return the centre of a body and the tips of its three axes, as points to draw."""
     return seen(np.vstack((np.zeros(3), np.reshape(R, (3, 3)).T)))
+
+
+def axes_links(p):
+    """Return the links of `axes_seen`: from the centre to each tip."""
+    return [(0, 1), (0, 2), (0, 3)]
+
+
+def arms_and_target(arms, target, size):
+    """Return points to draw, to 10 µm: the joints and the end of each arm, and a cross of this size at the target."""
+    cross = np.asarray(target) + size * np.array([(-1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (1.0, -1.0)])
+    return np.round(np.concatenate((*arms, cross)), 5)
+
+
+def two_arms_and_target_links(n):
+    """Return the links of `arms_and_target` for two arms of n links each."""
+    cross = 2 * (n + 1)
+    arms = [(first + k, first + k + 1) for first in (0, n + 1) for k in range(n)]
+    return [*arms, (cross, cross + 1), (cross + 2, cross + 3)]
 
 
 def pose(x, R):
     """Return the pose (7,) of a body at x with the rotation R, for the 3D player."""
     return np.concatenate((x, quaternion(R)))
+
+
+def turned_in_place(R, p):
+    """Return the poses of one body with the rotation R whose centre stays in the origin."""
+    return [pose(np.zeros(3), np.reshape(R, (3, 3)))]
 
 
 def omega_and_L(R, p, reach):

@@ -3,7 +3,7 @@
 import numpy as np
 
 from validate.engines.bullet import Bullet
-from validate.scene import EngineRun
+from validate.scene import PYBULLET, Engine, EngineRun
 
 PLACE_APART = 1.0            # metre between two copies along the x axis
 
@@ -98,6 +98,25 @@ def bullet_swept(p, x, v, dt):
                 done[k] = np.linalg.norm(there - at[k]) < (1.0 - 1e-9) * speed * dt - 1e-12
                 at[k] = there
     return EngineRun(step, lambda: across(at), bullet.close)
+
+
+def ray_and_sweep(place, order, obstacle):
+    """Return pybullet's two ways to stop the balls (x, v) = place(p) at an obstacle: by rays, of this order; swept."""
+    rays = lambda p, dt: bullet_rays(p, *place(p), dt)
+    swept = lambda p, dt: bullet_swept(p, *place(p), dt)
+    return (
+        Engine(PYBULLET, "rays", rays, order, f"one rayTestBatch per step, at a {obstacle}", most_steps=100),
+        Engine(PYBULLET, "swept", swept, 0, SWEPT_SETTINGS, most_steps=200),
+    )
+
+
+def discrete_up_to(fastest):
+    """Return supports(name, p): the discrete test up to a speed [m/s]; engines only at the ENGINE_SPEEDS."""
+    def supports(name, p):
+        if name == "discrete_step":
+            return p.speed <= fastest
+        return p.speed in ENGINE_SPEEDS or not name.startswith("pybullet")
+    return supports
 
 
 def swept_limit(p, dt):

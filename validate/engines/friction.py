@@ -6,7 +6,7 @@ begins with the overlap that its engine tolerates.  Otherwise it first falls tha
 """
 from validate.engines.bullet import Bullet
 from validate.engines.chipmunk import pymunk_space, pymunk_world
-from validate.scene import EngineRun
+from validate.scene import PYBULLET, PYMUNK, Engine, EngineRun
 
 # half the length of the block [m]: no step may move it by its own size, or pybullet loses the contact
 HALF = 1.0
@@ -80,6 +80,14 @@ def bullet_block(gravity, mu, v, fastest, dt, read, push=None, pyramid=False):
     if push is not None:
         step = pushed(bullet.step, dt, lambda F: bullet.push(slab, F, bullet.position(slab)), push)
     return EngineRun(step, lambda: read(bullet.position(slab)), bullet.close)
+
+
+def slab_on_line_and_box(pymunk_make, pybullet_make, before="", after=""):
+    """Return both engines with their slab; the words before and after it say what a scene does with it."""
+    line = f"{before}a slab of 2 m on a line{after}; {SWEEPS} iterations, collision_slop 1e-5"
+    box = (f"{before}a slab of 2 m on a box{after}; maximal coordinates, solverResidualThreshold 0, "
+           f"{SWEEPS} iterations")
+    return Engine(PYMUNK, "", pymunk_make, 1, line), Engine(PYBULLET, "", pybullet_make, 1, box)
 
 
 def pushed(step, dt, apply, push):

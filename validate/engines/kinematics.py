@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from validate.scene import EngineRun
+
 from .bullet import Bullet
 
 
@@ -50,3 +52,13 @@ class BulletArm(BulletChain):
         if threshold is not None:
             more["residualThreshold"] = float(threshold)
         return np.array(self.search([float(target[0]), float(target[1]), 0.0], **more))
+
+
+def bullet_reach(lengths, starts, observe, target, direction=None, **settings):
+    """Make an EngineRun of searches by a planar arm, one from each start; read: observe(their angles).
+
+    There are no steps: each search runs when it is read.  The settings are those of BulletArm.solve.
+    """
+    arm = BulletArm(lengths)
+    read = lambda: observe([arm.solve(theta, target, direction, **settings) for theta in starts])
+    return EngineRun(lambda: None, read, arm.close)

@@ -9,6 +9,7 @@ from scipy.optimize import brentq, nnls
 from scipy.spatial import ConvexHull
 
 COPIES = 16                  # balls per run, so that their impacts fall on all phases of a step
+SPEEDS = {"1 m/s": 1.0, "10 m/s": 10.0, "100 m/s": 1e2, "1,000 m/s": 1e3, "10,000 m/s": 1e4}     # of the balls
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 EARLIEST, SPREAD = 0.3, 0.4  # range of the impacts, as shares of the output time
 
@@ -21,16 +22,29 @@ def impact_times(T):
     return T * (EARLIEST + SPREAD * ((np.arange(COPIES) + 1.0) * GOLDEN % 1.0))
 
 
-def with_balls_that_miss(x, v):
-    """Return (x, v) with as many balls again, a kilometre aside, which never hit; a broad phase would skip them."""
+def with_balls_that_miss(x, v, target):
+    """Return the state with as many balls again, a kilometre aside, which never hit; a broad phase would skip them."""
     aside = np.array([0.0, 1.0, 0.0])
     more = np.linalg.norm(v[0]) * np.tile(aside, (COPIES, 1))
-    return np.concatenate((x, x + 1e3 * np.array([0.0, 1.0, 1.0]))), np.concatenate((v, more))
+    return np.concatenate((x, x + 1e3 * np.array([0.0, 1.0, 1.0]))), np.concatenate((v, more)), target
 
 
 def first_root(gap, t_0, t_1):
     """Return the time between t_0 (gap above zero) and t_1 (below) at which gap(t) is zero, to the last digit."""
     return brentq(gap, t_0, t_1, xtol=1e-300, rtol=4.0 * np.finfo(float).eps)
+
+
+def stopped(x, v, gap, latest, t):
+    """Return the positions (n, 3) at t of balls that fly straight and stop where gap(position) becomes zero.
+
+    gap is above zero at the start and below at `latest`, a time for each ball.  *Source:* x₀ + v min(t, t*), t* the
+    root, by brentq.
+    """
+    found = []
+    for y, w, last in zip(x, v, latest):
+        moment = first_root(lambda s, y=y, w=w: gap(y + s * w), 0.0, last)
+        found.append(y + min(t, moment) * w)
+    return np.array(found)
 
 
 def hull_nearest(a, b, weight=1e3):

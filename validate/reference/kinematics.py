@@ -53,6 +53,14 @@ def nearest_reachable(target, lengths):
     return np.asarray(target) * (min(max(r, inner), outer) / r)
 
 
+def bent_to(target, lengths):
+    """Angles (3,) of an arm that reaches a target by a bend of its first two joints: the law of cosines."""
+    r, rest = np.hypot(*target), lengths[1] + lengths[2]
+    bend = np.pi - np.arccos((lengths[0] ** 2 + rest**2 - r * r) / (2.0 * lengths[0] * rest))
+    first = np.arctan2(target[1], target[0]) - np.arctan2(rest * np.sin(bend), lengths[0] + rest * np.cos(bend))
+    return np.array([first, bend, 0.0])
+
+
 def bullet_ik(theta, target, lengths, direction=None, damping=DAMPING, iterations=ITERATIONS, threshold=THRESHOLD):
     """Angles that pybullet returns for a planar arm.
 

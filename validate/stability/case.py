@@ -114,6 +114,25 @@ def refuse(methods, run):
     return refused
 
 
+class LargestErrors(dict):
+    """{law: its largest error in many random cases}.  NaN is larger than any number, and its finding does not hold."""
+
+    def keep(self, law, *errors):
+        """Keep the largest of these errors and of the earlier ones."""
+        self[law] = np.max([self.get(law, 0.0), *errors])
+
+    def note(self, law, got, truth):
+        """Keep the largest difference of numbers from their truth; both may be tuples of arrays.  Here ∞ equals ∞."""
+        got, truth = flat(got), flat(truth)
+        self.keep(law, np.max(np.abs(np.where(got == truth, 0.0, got - truth))))
+
+
+def flat(numbers):
+    """Return all numbers of an array or of a tuple of arrays in one row."""
+    parts = numbers if isinstance(numbers, tuple) else (numbers,)
+    return np.concatenate([np.ravel(part) for part in parts])
+
+
 def agreement(claim, quantity, error, tolerance):
     """Make the Finding that a function errs by no more than `tolerance`: error is the largest of many random cases."""
     return finding(claim=claim, quantity=quantity, predicted=0.0, measured=error, tolerance=tolerance,

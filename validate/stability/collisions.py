@@ -12,7 +12,7 @@ from solutions import integrators
 from solutions.integrators import observed_order
 from validate.engines.bullet import Bullet
 from validate.reference.collisions import depth_of, hull_nearest
-from validate.stability.case import DOTS, LINE, Picture, agreement, case, finding, refuses, series
+from validate.stability.case import DOTS, LINE, LargestErrors, Picture, agreement, case, finding, refuses, series
 
 from .. import engines
 
@@ -760,13 +760,12 @@ def nearest_features(lesson):
     The two parts of a cut polygon have its area together, and a line through two corners cuts off what is on one side.
     """
     rng = np.random.default_rng(68)
-    worst, seen = dict.fromkeys(("triangle", "box", "inside", "cut", "corners", "flight", "flock", "align"),
-                                0.0), set()
+    worst, seen = LargestErrors(), set()
     for _ in range(300):
         corners, p = rng.normal(size=(3, 3)), 1.5 * rng.normal(size=3)
         truth = nearest_of_hull(p, corners)
         seen.add(tuple(np.abs(np.linalg.solve(corners.T, truth)) > 1e-9))               # which corners have a weight
-        worst["triangle"] = max(worst["triangle"], np.max(np.abs(lesson.closest_on_triangle(p, *corners) - truth)))
+        worst.note("triangle", lesson.closest_on_triangle(p, *corners), truth)
     for _ in range(100):
         R, half, centre, r = np.linalg.qr(rng.normal(size=(3, 3)))[0], rng.uniform(0.5, 2.0, 3), rng.normal(size=3), 0.1
         box = lesson.make_box(centre, R, half)
@@ -775,11 +774,11 @@ def nearest_features(lesson):
         k = int(np.argmin(depths))
         out = R[:, k % 3] * (1.0 if k < 3 else -1.0)
         c = lesson.ball_box(centre + R @ y, r, box)
-        worst["inside"] = max(worst["inside"], np.max(np.abs(c.n - out)), abs(c.gap + depths[k] + r))
+        worst.keep("inside", np.max(np.abs(c.n - out)), abs(c.gap + depths[k] + r))
         y = rng.uniform(1.1, 2.0, 3) * half * rng.choice((-1.0, 0.4, 1.0), 3)
         gap = np.linalg.norm(y - np.clip(y, -half, half)) - r
         if gap > -r:
-            worst["box"] = max(worst["box"], abs(lesson.ball_box(centre + R @ y, r, box).gap - gap))
+            worst.keep("box", abs(lesson.ball_box(centre + R @ y, r, box).gap - gap))
 
         turns = np.sort(rng.uniform(0.0, 2.0 * np.pi, 6))
         polygon = np.stack((np.cos(turns), np.sin(turns)), axis=1)
@@ -787,15 +786,15 @@ def nearest_features(lesson):
         parts = lesson.clip(polygon, n, d), lesson.clip(polygon, -n, -d)
         lost = abs(sum(area(part) for part in parts if len(part)) - area(polygon))
         beyond = np.max(parts[0] @ n - d, initial=0.0)
-        worst["cut"] = max(worst["cut"], lost, beyond)
+        worst.keep("cut", lost, beyond)
         x, v, dt = rng.normal((0.0, 0.0, 9.0)), rng.normal(size=3), rng.uniform(0.1, 1.0)
         target = lesson.Target(0.1, 0.1, lesson.make_plane((0.0, 0.0, 1.0, 0.0)))
         for step in (lesson.discrete_step, lesson.continuous_step):
             got = step(lesson.ball_plane_gap, lesson.ball_plane_time, 0.0, x, v, dt, target)
-            worst["flight"] = max(worst["flight"], np.max(np.abs(np.array(got) - (x + dt * v, v))))
+            worst.note("flight", np.array(got), (x + dt * v, v))
     square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     for n in (np.array([1.0, -1.0]), np.array([-1.0, 1.0])):                            # through (0, 0) and (1, 1)
-        worst["corners"] = max(worst["corners"], abs(len(lesson.clip(square, n, 0.0)) - 3))
+        worst.keep("corners", abs(len(lesson.clip(square, n, 0.0)) - 3))
     for _ in range(20):
         x, v = 0.5 * rng.normal(size=(5, 2)) + 3.0 * np.arange(5)[:, None] * [0.4, 0.2], rng.normal(size=(5, 2))
         near = np.linalg.norm(x[:, None] - x, axis=2) + 10.0 * np.eye(5)
@@ -813,10 +812,10 @@ def nearest_features(lesson):
         steps = 1e-20j * np.eye(10).reshape(10, 5, 2)
         force = -np.array([energy(x + step).imag for step in steps]).reshape(5, 2) / 1e-20
         still, moving = (lesson.flock_acceleration(0.0, x, speed, flock) for speed in (0.0 * v, v))
-        worst["flock"] = max(worst["flock"], np.max(np.abs(still - force)) / np.max(np.abs(force)))
+        worst.keep("flock", np.max(np.abs(still - force)) / np.max(np.abs(force)))
         in_reach = near < 2.0 * radius + reach
         adapts = align * np.array([np.sum((v - v[i])[in_reach[i]], axis=0) for i in range(5)])
-        worst["align"] = max(worst["align"], np.max(np.abs(moving - still - adapts)))
+        worst.keep("align", np.max(np.abs(moving - still - adapts)))
     names = (
         ("triangle", f"A point's nearest on a triangle, in {len(seen)} of its 7 regions.", "nearest point [m]"),
         ("box", "Outside a box the gap is that to its nearest side, edge or corner.", "gap outside a box [m]"),

@@ -12,7 +12,19 @@ from solutions.impulses import cross_2d
 from validate.engines.contact import DT as ENGINE_DT
 from validate.engines.contact import KINDS, MU, BulletPile, PymunkPile, fallen
 from validate.reference.contact import enumerated, natural_residual
-from validate.stability.case import DOTS, EDGE, LINE, Picture, agreement, bisect, case, finding, refuses, series
+from validate.stability.case import (
+    DOTS,
+    EDGE,
+    LINE,
+    LargestErrors,
+    Picture,
+    agreement,
+    bisect,
+    case,
+    finding,
+    refuses,
+    series,
+)
 
 from .. import engines
 
@@ -904,10 +916,7 @@ def laws_of_contact(lesson):
     A sweep takes new impulses for the contacts before, old ones for itself and those behind: tril(A) and triu(A).
     """
     rng = np.random.default_rng(98)
-    worst = dict.fromkeys(("rows", "matrix", "sweep", "lcp", "judge", "cone", "judge of cones", "spring", "kept"), 0.0)
-
-    def note(name, got, truth):
-        worst[name] = max(worst[name], np.max(np.abs(np.asarray(got) - truth)))
+    worst = LargestErrors()
 
     for _ in range(50):
         x, v, n, p = rng.normal(size=(4, 4, 2))
@@ -920,29 +929,31 @@ def laws_of_contact(lesson):
         u, t = at[0] - at[1], np.stack((-n[:, 1], n[:, 0]), axis=1)
         along = np.stack((np.sum(n * u, axis=1), np.sum(t * u, axis=1)), axis=1).ravel()
         G = lesson.contact_rows(x, contacts)
-        note("rows", G @ np.column_stack((v, omega)).ravel(), along)
-        note("matrix", lesson.delassus_matrix(G, w), sum(w_i * np.outer(g, g) for w_i, g in zip(w, G.T, strict=True)))
+        worst.note("rows", G @ np.column_stack((v, omega)).ravel(), along)
+        truth = sum(w_i * np.outer(g, g) for w_i, g in zip(w, G.T, strict=True))
+        worst.note("matrix", lesson.delassus_matrix(G, w), truth)
 
         factor = rng.normal(size=(8, 8))
         A, b, mu = factor @ factor.T + 0.5 * np.eye(8), rng.normal(size=8), rng.uniform(0.1, 1.0, 4)
         k, old, relaxation = np.diag(A), rng.uniform(0.0, 1.0, 8), rng.uniform(0.5, 1.5)
         new = lesson.gauss_seidel_sweep(A, b, old, relaxation)
         mixed = np.tril(A, -1) @ new + np.triu(A) @ old + b
-        note("sweep", new, np.maximum(0.0, old - relaxation * mixed / k))
-        note("lcp", lesson.solve_lcp(A, b), enumerated(A, b))
+        worst.note("sweep", new, np.maximum(0.0, old - relaxation * mixed / k))
+        worst.note("lcp", lesson.solve_lcp(A, b), enumerated(A, b))
         u = A @ old + b
-        note("judge", lesson.complementarity_residual(A, b, old), max(abs(min(k[i] * old[i], u[i])) for i in range(8)))
+        truth = max(abs(min(k[i] * old[i], u[i])) for i in range(8))
+        worst.note("judge", lesson.complementarity_residual(A, b, old), truth)
 
         J = rng.normal(size=8)
         J_n, J_t = pushes(J, A @ J + b, k, mu)
         apart = np.abs(J_n - J[::2]) * k[::2], np.abs(J_t - J[1::2]) * k[1::2]
-        note("judge of cones", lesson.cone_residual(A, b, J, mu), np.max(apart))
+        worst.note("judge of cones", lesson.cone_residual(A, b, J, mu), np.max(apart))
         new = lesson.cone_sweep(A, b, J, mu)
         u = np.tril(A, -1) @ new + np.triu(A) @ J + b
         limited = np.where(np.arange(8) % 2, J, new)                        # J_t is limited by the new J_n
         J_n, _ = pushes(J, u, k, mu)
         _, J_t = pushes(limited, u, k, mu)
-        note("cone", new, np.stack((J_n, J_t), axis=1).ravel())
+        worst.note("cone", new, np.stack((J_n, J_t), axis=1).ravel())
 
         # old contacts of the same bodies and of others, near and far
         near, d = 0.5, 3
@@ -954,7 +965,7 @@ def laws_of_contact(lesson):
         for k in range(5):
             away = np.where(old_b == here_b[k], np.linalg.norm(old_p - here_p[k], axis=1), np.inf)
             truth[k] = J_old[np.argmin(away)] if away.min() < near else 0.0
-        note("kept", lesson.kept_impulses(*sets, J_old, near), truth)
+        worst.note("kept", lesson.kept_impulses(*sets, J_old, near), truth)
 
         # a spring (2π hertz)² and a damper over 1/k_n, one implicit Euler step: u = u₀ + k_n J, x = gap + dt u
         hertz, zeta, dt, gap, u_0 = rng.uniform((5.0, 0.5, 0.001, 0.001, -1.0), (50.0, 5.0, 0.01, 0.01, 1.0))
@@ -962,8 +973,8 @@ def laws_of_contact(lesson):
         impulse = (aim - u_0) / (1.0 + give)                                # k_n J of u = aim − give k_n J
         s = 2.0 * np.pi * hertz
         force = -s * s * (-gap + dt * (u_0 + impulse)) - 2.0 * zeta * s * (u_0 + impulse)
-        note("spring", impulse, dt * force)
-        note("spring", lesson.soft_contact(gap, hertz, zeta, dt), (-gap / dt, 0.0))
+        worst.note("spring", impulse, dt * force)
+        worst.note("spring", lesson.soft_contact(gap, hertz, zeta, dt), (-gap / dt, 0.0))
     names = (
         ("rows", "Rows times velocities are the relative velocities of the points.", "relative velocity [m/s]"),
         ("matrix", "The Delassus matrix adds up over all coordinates.", "matrix [1/kg]"),

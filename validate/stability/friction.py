@@ -11,7 +11,19 @@ from solutions.friction import ParticleInBowl, ParticleOnPlane
 from solutions.support.friction import make_block
 from validate.engines.friction import bullet_block, pymunk_block
 from validate.reference.friction import DrivenBlock, T, slip_limits, slip_position, slips
-from validate.stability.case import DOTS, EDGE, LINE, Picture, agreement, bisect, case, finding, refuses, series
+from validate.stability.case import (
+    DOTS,
+    EDGE,
+    LINE,
+    LargestErrors,
+    Picture,
+    agreement,
+    bisect,
+    case,
+    finding,
+    refuses,
+    series,
+)
 
 from .. import engines
 
@@ -574,11 +586,7 @@ def frame(rng):
 def laws_of_friction(lesson):
     """The cone, the pyramid, a slope, a block and a particle, with masses, restitution, and μ_s above μ_k."""
     rng = np.random.default_rng(31)
-    names = ("normal", "static", "kinetic", "cone", "pyramid", "slope", "block", "hollow", "particle", "shift")
-    worst = dict.fromkeys(names, 0.0)
-
-    def note(name, got, truth):
-        worst[name] = max(worst[name], np.max(np.abs(np.asarray(got) - truth)))
+    worst = LargestErrors()
 
     for _ in range(TRIED):
         n, t_1, t_2 = frame(rng)
@@ -590,22 +598,22 @@ def laws_of_friction(lesson):
             F_N = max(0.0, -away * load)
             for share in (0.95, 1.05):                          # of what static friction can hold
                 F = away * load * n + share * mu_s * load * t_1
-                note("normal", lesson.normal_force(F, n), F_N)
-                note("static", lesson.static_friction(F, n, mu_s), -min(share * mu_s * load, mu_s * F_N) * t_1)
+                worst.note("normal", lesson.normal_force(F, n), F_N)
+                worst.note("static", lesson.static_friction(F, n, mu_s), -min(share * mu_s * load, mu_s * F_N) * t_1)
             v = slip + rng.normal() * n
-            note("kinetic", lesson.kinetic_friction(F, v, n, mu_k), -mu_k * F_N * slip / np.linalg.norm(slip))
+            worst.note("kinetic", lesson.kinetic_friction(F, v, n, mu_k), -mu_k * F_N * slip / np.linalg.norm(slip))
 
         # impulses: what is nearest to −m v_t in the disc of radius μ j_n, or in the square
         for mu in np.array((0.5, 0.95, 1.05)) * m * np.linalg.norm(slip) / j_n:
-            note("cone", lesson.friction_impulse(slip, m, j_n, mu), nearest_in_disc(-m * slip, mu * j_n))
+            worst.note("cone", lesson.friction_impulse(slip, m, j_n, mu), nearest_in_disc(-m * slip, mu * j_n))
             sides = np.clip((-m * slip @ t_1, -m * slip @ t_2), -mu * j_n, mu * j_n)
-            note("pyramid", lesson.pyramid_impulse(slip, m, j_n, mu, t_1, t_2), sides[0] * t_1 + sides[1] * t_2)
+            worst.note("pyramid", lesson.pyramid_impulse(slip, m, j_n, mu, t_1, t_2), sides[0] * t_1 + sides[1] * t_2)
 
         # a slope: it holds to μ_s, and from there on μ_k counts
         for steep, slides in ((0.99, 0.0), (1.01, 1.0)):
             theta, g = np.arctan(steep * mu_s), rng.uniform(1.0, 20.0)
             pull = slides * g * np.cos(theta) * (np.tan(theta) - mu_k)
-            note("slope", lesson.incline_acceleration(theta, mu_s, mu_k, g), pull)
+            worst.note("slope", lesson.incline_acceleration(theta, mu_s, mu_k, g), pull)
 
         # a block on a plane that gravity presses on or lifts off; at rest it holds between the two μ
         dt = rng.uniform(0.01, 0.1)
@@ -617,7 +625,7 @@ def laws_of_friction(lesson):
                 holds = not np.any(start) and share * mu_s * load <= mu_s * a_n
                 end = 0.0 * slip if holds else free + nearest_in_disc(-free, mu_k * dt * a_n)
                 x, v = lesson.sliding_step(lesson.driven_acceleration, 0.0, t_2, start, dt, p)
-                note("block", (x, v), np.array((t_2 + dt * end, end)))
+                worst.note("block", (x, v), np.array((t_2 + dt * end, end)))
 
         # a hollow: its distance and the derivative of that, for a bowl and for a trough along a slanting axis
         centre, x, radius = rng.normal(size=3), rng.normal(size=3), rng.uniform(3.0, 5.0)
@@ -630,24 +638,24 @@ def laws_of_friction(lesson):
 
             slope_of = np.array([distance(x + 1e-20j * e).imag for e in np.eye(3)]) / 1e-20
             phi, normal = lesson.particle_bowl_gap(x, p)
-            note("hollow", (phi, *normal), (distance(x), *slope_of))
+            worst.note("hollow", (phi, *normal), (distance(x), *slope_of))
 
         # a particle that hits with m, e and μ: friction has the whole normal impulse, rebound included
         e, fall = rng.uniform(0.1, 0.9), 10.0 ** rng.uniform(-4.0, 0.0)
         for mu in np.array((0.5, 0.95, 1.05)) * np.linalg.norm(slip) / ((1.0 + e) * fall):
             J = lesson.particle_contact_impulse(slip - fall * n, n, m, e, mu)
             after = slip + nearest_in_disc(-slip, mu * (1.0 + e) * fall) + e * fall * n
-            note("particle", slip - fall * n + J / m, after)
+            worst.note("particle", slip - fall * n + J / m, after)
             p = ParticleOnPlane(m, mu, e, np.zeros(3), centre, n)
             _, v = lesson.contact_step(lesson.falling_acceleration, lesson.particle_plane_gap, 0.0, centre,
                                        slip - fall * n, dt, p)
-            note("particle", v, after)
+            worst.note("particle", v, after)
             depth, moved = dt * fall, dt * (slip - fall * n)
             shift = nearest_in_disc(-dt * slip, mu * depth)
-            note("shift", lesson.friction_position_correction(moved, n, depth, mu), shift)
+            worst.note("shift", lesson.friction_position_correction(moved, n, depth, mu), shift)
             x, _ = lesson.position_friction_step(lesson.falling_acceleration, lesson.particle_plane_gap, 0.0, centre,
                                                  slip - fall * n, dt, p)
-            note("shift", x, centre + dt * slip + shift)
+            worst.note("shift", x, centre + dt * slip + shift)
     # μ is up to 10⁴ where a particle hits slowly, which costs four digits
     claims = {
         "normal": ("A support pushes against a load, and does not hold what is pulled away.", "normal force [N]"),

@@ -10,7 +10,19 @@ from scipy.optimize import minimize_scalar
 from solutions.checks import Diverged
 from validate.reference.contact import enumerated
 from validate.reference.impulses import COPIES
-from validate.stability.case import DOTS, EDGE, LINE, Picture, agreement, bisect, case, finding, refuses, series
+from validate.stability.case import (
+    DOTS,
+    EDGE,
+    LINE,
+    LargestErrors,
+    Picture,
+    agreement,
+    bisect,
+    case,
+    finding,
+    refuses,
+    series,
+)
 
 G = 9.81                     # [m/s²]
 ROUND_OFF = 1e-12            # of numbers below 30 after a few hundred operations, each rounded by 1.1e-16 of its result
@@ -669,25 +681,24 @@ def mobility(r, m, I):
 def laws_of_an_impact(lesson):
     """What a surface does to a point, a spring to a ball, Coulomb's cone to a slip, and when a gap closes."""
     rng = np.random.default_rng(78)
-    worst = dict.fromkeys(("mirror", "spring", "matrix", "normal", "cone", "side", "work", "gap", "time", "slide",
-                           "fall"), 0.0)
+    worst = LargestErrors()
     for _ in range(TRIED):
         # a point on a surface: the normal velocity is −e times the old one, or as it was, however slow
         n, v, e = UP[:2], rng.normal(size=2) * [1.0, 10.0 ** rng.uniform(-3.0, 0.0)], rng.uniform()
         truth = np.array([v[0], v[1] if v[1] > 0.0 else -e * v[1]])
-        worst["mirror"] = max(worst["mirror"], np.max(np.abs(lesson.kinematic_response(v, n, e) - truth)))
+        worst.note("mirror", lesson.kinematic_response(v, n, e), truth)
         k, d, deep = rng.uniform(0.5, 2.0, 3)
         part = -k * deep / d                                    # the damper alone would pull as strongly as the spring
         pushes = [lesson.penalty_force(phi, v_n, k, d) for phi, v_n in (
             (-deep, 0.0), (-deep, part), (-deep, -0.5 * part), (-deep, -2.0 * part), (deep, part), (0.0, part))]
         truth = np.array([1.0, 2.0, 0.5, 0.0, 0.0, 0.0]) * k * deep
-        worst["spring"] = max(worst["spring"], np.max(np.abs(pushes - truth)) / (k * deep))
+        worst.keep("spring", np.max(np.abs(pushes - truth)) / (k * deep))
 
         # a rough impact: at the limit of sticking, a little inside the cone and a little outside
         n, r, m, factor = unit_vector(rng, 3), rng.normal(size=3), rng.uniform(0.5, 2.0), rng.normal(size=(3, 3))
         I = factor @ factor.T + 0.5 * np.eye(3)
         K, u = mobility(r, m, I), rng.normal(size=3)
-        worst["matrix"] = max(worst["matrix"], np.max(np.abs(lesson.contact_matrix(r, 1.0 / m, np.linalg.inv(I)) - K)))
+        worst.keep("matrix", np.max(np.abs(lesson.contact_matrix(r, 1.0 / m, np.linalg.inv(I)) - K)))
         u, u_sep = u - (u @ n + rng.uniform(0.5, 1.5)) * n, rng.uniform(0.0, 0.5)
         stick = np.linalg.solve(K, u_sep * n - u)
         along = stick - (stick @ n) * n
@@ -695,34 +706,34 @@ def laws_of_an_impact(lesson):
         for mu in (0.95 * needs, 1.05 * needs) if stick @ n > 0.0 else ():
             J = lesson.cone_impulse(u, n, K, u_sep, mu)
             J_t, after = J - (J @ n) * n, u + K @ J
-            worst["normal"] = max(worst["normal"], abs(after @ n - u_sep))
+            worst.keep("normal", abs(after @ n - u_sep))
             lost = abs(np.linalg.norm(J_t) - mu * (J @ n)) if mu < needs else np.linalg.norm(after - u_sep * n)
-            worst["cone"] = max(worst["cone"], lost)
+            worst.keep("cone", lost)
             side = J_t / np.linalg.norm(J_t) - along / np.linalg.norm(along)
-            worst["side"] = max(worst["side"], np.linalg.norm(side))
+            worst.keep("side", np.linalg.norm(side))
         J = rng.normal(size=3)
         v_b, w_b = u - np.cross(omega := rng.normal(size=3), r), omega
         v_a, w_a = v_b + J / m, w_b + np.linalg.solve(I, np.cross(r, J))
         gain = 0.5 * (m * (v_a @ v_a - v_b @ v_b) + w_a @ I @ w_a - w_b @ I @ w_b)
-        worst["work"] = max(worst["work"], abs(lesson.energy_change(u, K, J) - gain) / (1.0 + abs(gain)))
+        worst.keep("work", abs(lesson.energy_change(u, K, J) - gain) / (1.0 + abs(gain)))
 
         # a gap in a step: it stays open by itself, or closes exactly; and when it closes under an acceleration
         phi, k_n, dt = rng.uniform(0.1, 1.0, 3)
         for u_n in (-0.5 * phi / dt, -2.0 * phi / dt):
             left = phi + dt * (u_n + k_n * lesson.gap_multiplier(phi, u_n, k_n, dt))
-            worst["gap"] = max(worst["gap"], abs(left - max(0.0, phi + dt * u_n)))
+            worst.keep("gap", abs(left - max(0.0, phi + dt * u_n)))
         v_n, a_n, long = rng.normal(), rng.normal(), 10.0
         roots = np.roots((0.5 * a_n, v_n, phi))
         ahead = [root.real for root in roots if root.imag == 0.0 and 0.0 < root.real < long]
-        worst["time"] = max(worst["time"], abs(lesson.impact_time(phi, v_n, a_n, long) - min(ahead, default=long)))
+        worst.keep("time", abs(lesson.impact_time(phi, v_n, a_n, long) - min(ahead, default=long)))
 
         # a ball on its plane: gravity into it slides the ball, gravity away from it lifts it off
         n, x, v, a = unit_vector(rng, 3), *rng.normal(size=(3, 3))
         pushed = a - min(0.0, a @ n) * n
         truth = np.array([x + dt * (v - (v @ n) * n) + 0.5 * dt * dt * pushed, v - (v @ n) * n + dt * pushed])
-        worst["slide"] = max(worst["slide"], np.max(np.abs(lesson.slide_on_plane(x, v, a, dt, n) - truth)))
+        worst.note("slide", lesson.slide_on_plane(x, v, a, dt, n), truth)
         truth = np.array([x + dt * v + 0.5 * dt * dt * a, v + dt * a])
-        worst["fall"] = max(worst["fall"], np.max(np.abs(lesson.free_flight(x, v, a, dt) - truth)))
+        worst.note("fall", lesson.free_flight(x, v, a, dt), truth)
     names = (
         ("mirror", "A surface reverses what comes, times e, and leaves alone what goes, however slowly.",
          "velocity [m/s]"),

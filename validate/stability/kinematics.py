@@ -10,7 +10,18 @@ from scipy.spatial.transform import Rotation
 
 from solutions.checks import Diverged
 from validate.reference.kinematics import annulus, curvature_of, end_of, jacobian_of, joints_of, spatial_end
-from validate.stability.case import DOTS, LINE, Picture, agreement, bisect, case, finding, refuses, series
+from validate.stability.case import (
+    DOTS,
+    LINE,
+    LargestErrors,
+    Picture,
+    agreement,
+    bisect,
+    case,
+    finding,
+    refuses,
+    series,
+)
 
 SMALL = 1e-8                 # disturbance that a linear theory knows [rad]: leaves 1e-8 of what is measured
 FOUR_DIGITS = 1e-4           # of an edge that bisection finds, and of a factor, relative [-]
@@ -542,19 +553,19 @@ def geometry_of_arms(lesson):
     A damped step between limits is that of the joints that are free to go; one at its limit is free to go inwards.
     """
     rng = np.random.default_rng(111)
-    worst = dict.fromkeys(("ellipse", "rotation", "limits", "rest", "search", "base", "links"), 0.0)
+    worst = LargestErrors()
     for _ in range(TRIED):
         J = rng.normal(size=(2, 4))
         u, sigma, _ = np.linalg.svd(J)
         longer, shorter, angle = lesson.velocity_ellipse(J)
         along = abs(u[:, 0] @ (np.cos(angle), np.sin(angle)))                # 1 where it is the longer axis, either way
-        worst["ellipse"] = max(worst["ellipse"], abs(longer - sigma[0]), abs(shorter - sigma[1]), abs(along - 1.0))
+        worst.keep("ellipse", abs(longer - sigma[0]), abs(shorter - sigma[1]), abs(along - 1.0))
 
         here, turn = Rotation.random(rng=rng), rng.normal(size=3)
         turn *= rng.uniform(0.1, 3.1) / np.linalg.norm(turn)                 # short of half a turn, the long way often
         quaternions = [sign * np.roll(r.as_quat(), 1)
                        for r, sign in ((here, 1.0), (Rotation.from_rotvec(turn) * here, rng.choice((-1.0, 1.0))))]
-        worst["rotation"] = max(worst["rotation"], np.max(np.abs(lesson.rotation_error(*quaternions) - turn)))
+        worst.note("rotation", lesson.rotation_error(*quaternions), turn)
 
         lengths, theta, damping = rng.uniform(0.5, 1.0, 4), rng.uniform(-1.0, 1.0, 4), rng.uniform(0.1, 0.5)
         low, high = theta - rng.choice((0.0, 0.05, 3.0), 4), theta + rng.choice((0.0, 0.05, 3.0), 4)
@@ -565,8 +576,7 @@ def geometry_of_arms(lesson):
         J[:, blocked] = 0.0
         truth = np.clip(theta + np.linalg.solve(J.T @ J + damping**2 * np.eye(4), J.T @ e), low, high)
         arm = lesson.make_arm_2d(lengths, 0.0, damping, low, high, 0.0, 0.0)
-        worst["limits"] = max(worst["limits"],
-                              np.max(np.abs(lesson.limited_step(lesson.reach_2d, theta, target, arm) - truth)))
+        worst.note("limits", lesson.limited_step(lesson.reach_2d, theta, target, arm), truth)
 
         # with the end on its target, the step goes to the rest posture as far as the end stays, to first order
         rest, pull, J = rng.uniform(-1.0, 1.0, 4), 0.1, jacobian_of(theta, lengths)
@@ -574,7 +584,7 @@ def geometry_of_arms(lesson):
         got = lesson.null_space_step(lesson.reach_2d, theta, end_of(theta, lengths), arm) - theta
         free = np.linalg.svd(J)[2][2:]                                       # two directions that do not move the end
         truth = free.T @ (free @ (pull * (rest - theta)))
-        worst["rest"] = max(worst["rest"], np.max(np.abs(got - truth)))
+        worst.note("rest", got, truth)
 
         # a search counts its iterations, as this loop does
         target, arm, count = end_of(theta + 0.3, lengths), lesson.make_arm_2d(lengths, 0.0, 0.1, -9.0, 9.0, 0.0, 0.0), 0
@@ -582,13 +592,13 @@ def geometry_of_arms(lesson):
         while np.linalg.norm(target - end_of(angles, lengths)) > 1e-6 and count < 50:
             angles, count = lesson.damped_step(lesson.reach_2d, angles, target, arm), count + 1
         found, error, iterations = lesson.solve_reach(lesson.damped_step, lesson.reach_2d, theta, target, 1e-6, 50, arm)
-        worst["search"] = max(worst["search"], abs(iterations - count), np.max(np.abs(found - angles)),
+        worst.keep("search", abs(iterations - count), np.max(np.abs(found - angles)),
                               abs(error - np.linalg.norm(target - end_of(angles, lengths))))
 
         x = np.concatenate((np.zeros((1, 3)), np.cumsum(rng.normal(size=(4, 3)), axis=0))) + rng.normal(size=3)
         swept = lesson.fabrik_sweep(x, rng.normal(size=3), lengths)
-        worst["base"] = max(worst["base"], np.max(np.abs(swept[0] - x[0])))
-        worst["links"] = max(worst["links"], np.max(np.abs(np.linalg.norm(np.diff(swept, axis=0), axis=1) - lengths)))
+        worst.keep("base", np.max(np.abs(swept[0] - x[0])))
+        worst.keep("links", np.max(np.abs(np.linalg.norm(np.diff(swept, axis=0), axis=1) - lengths)))
     names = (
         ("ellipse", "The ellipse of velocities has the singular values as half axes, and u₁ as direction.",
          "half axes and direction [m, -]"),

@@ -11,7 +11,7 @@ from solutions import integrators
 from solutions.checks import Diverged
 from solutions.pbd import ConstraintNetwork
 from validate.reference.pbd import pendulum_period
-from validate.stability.case import DOTS, LINE, Picture, agreement, case, finding, refuses, series
+from validate.stability.case import DOTS, LINE, LargestErrors, Picture, agreement, case, finding, refuses, series
 
 G = 9.81                     # [m/s²]
 MILLIMETRES = 1e3            # millimetres per metre
@@ -758,35 +758,28 @@ def constraints_and_gradients(lesson):
     """
     rng = np.random.default_rng(81)
     nowhere = lesson.Obstacle(np.full(3, 50.0), 0.0, np.array([0.0, 0.0, -50.0]), np.array([0.0, 0.0, 1.0]))
-    names = ("link", "correction", "newton", "fold", "ball", "volume", "lever", "impulse", "rate", "free", "bent",
-             "falls", "air")
-    worst = dict.fromkeys(names, 0.0)
-
-    def note(name, got, truth):
-        got = np.concatenate([np.ravel(part) for part in got]) if isinstance(got, tuple) else np.asarray(got)
-        truth = np.concatenate([np.ravel(part) for part in truth]) if isinstance(truth, tuple) else truth
-        worst[name] = max(worst[name], np.max(np.abs(got - truth)))
+    worst = LargestErrors()
 
     for _ in range(TRIED):
         x, w, rest = rng.normal(size=(4, 3)), rng.uniform(0.5, 2.0, 4), rng.uniform(0.5, 2.0)
         link = lambda end, other=x[1], rest=rest: size_of(end - other) - rest
-        note("link", lesson.distance_constraint(x[0], x[1], rest), (link(x[0]), derivative(link, x[0])))
+        worst.note("link", lesson.distance_constraint(x[0], x[1], rest), (link(x[0]), derivative(link, x[0])))
         C, g = rng.normal(), rng.normal(size=(4, 3))
         least = -C * (w[:, None] * g) / np.sum(w[:, None] * g * g)
-        note("correction", lesson.constraint_correction(C, g, w), least)
+        worst.note("correction", lesson.constraint_correction(C, g, w), least)
 
         fold = rng.uniform(-3.0, 3.0)
         C = fold_angle(x) - fold
         bent = C - 2.0 * np.pi * np.round(C / (2.0 * np.pi))
         slope = derivative(fold_angle, x).reshape(4, 3)
         got_C, got_slope = lesson.fold_constraint(x, fold)
-        note("fold", (got_C, got_slope / np.max(np.abs(slope))), (bent, slope / np.max(np.abs(slope))))
+        worst.note("fold", (got_C, got_slope / np.max(np.abs(slope))), (bent, slope / np.max(np.abs(slope))))
         obstacle = lesson.Obstacle(x[1], rest, x[2], np.array([0.0, 0.0, 1.0]))
-        note("ball", lesson.ball_gap(x[0], obstacle), (link(x[0]), derivative(link, x[0])))
+        worst.note("ball", lesson.ball_gap(x[0], obstacle), (link(x[0]), derivative(link, x[0])))
         faces = np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]])
         far = x + np.array([3.0, -2.0, 4.0])                     # the origin is outside: some faces count negative
         V = lambda x, faces=faces: volume_of(x, faces)
-        note("volume", lesson.volume_gradient(far, faces), (V(x), derivative(V, far)))
+        worst.note("volume", lesson.volume_gradient(far, faces), (V(x), derivative(V, far)))
 
         # three links of four points in a row, the first one fixed, from a guess that breaks them
         chain = lesson.make_constraint_network(x, 1.0 / w, [0], [(0, 1), (1, 2), (2, 3)], 0.0, 1.0, (0.0, 0.0, -G), 1)
@@ -806,7 +799,7 @@ def constraints_and_gradients(lesson):
         truth = y - np.linalg.solve(derivative(laws, y), laws(y))
         change, forces = lesson.newton_correction(guess, lam, goal, dt, chain)
         scale = np.max(np.abs(truth))
-        note("newton", np.concatenate(((guess + change).ravel(), forces)) / scale, truth / scale)
+        worst.note("newton", np.concatenate(((guess + change).ravel(), forces)) / scale, truth / scale)
 
         # rigid bodies with three different moments, turned anyhow
         m, I_body, turn = rng.uniform(0.5, 2.0), rng.uniform(1.0, 1.9, 3), Rotation.random(rng=rng)
@@ -814,29 +807,29 @@ def constraints_and_gradients(lesson):
         inverse = R @ np.diag(1.0 / I_body) @ R.T
         lever = np.cross(r, n)
         weight = 1.0 / m + lever @ inverse @ lever
-        note("lever", lesson.effective_inverse_mass_at(q, r, n, m, I_body), weight)
+        worst.note("lever", lesson.effective_inverse_mass_at(q, r, n, m, I_body), weight)
         phi = inverse @ np.cross(r, p)
         tan_turn = lambda phi: Rotation.from_rotvec(2.0 * np.arctan(0.5 * size_of(phi)) / size_of(phi) * phi)
         new_x, new_q = lesson.apply_positional_impulse(x[0], q, r, p, m, I_body)
         after = wxyz(tan_turn(phi) * turn)
-        note("impulse", (new_x, np.sign(new_q @ after) * new_q), (x[0] + p / m, after))
+        worst.note("impulse", (new_x, np.sign(new_q @ after) * new_q), (x[0] + p / m, after))
         dt = rng.uniform(0.2, 0.8)
         after = wxyz(tan_turn(dt * omega) * turn)
-        note("rate", (lesson.turning_rate(q, after, dt), lesson.turning_rate(q, -after, dt)), (omega, omega))
+        worst.note("rate", (lesson.turning_rate(q, after, dt), lesson.turning_rate(q, -after, dt)), (omega, omega))
         body = lesson.PivotedBody(m, I_body, np.zeros(3), x[0], np.zeros(3), 2)        # held at its centre: it is free
         *_, new_omega = lesson.pivoted_body_step(0.0, x[0], q, np.zeros(3), omega, 0.01, body)
-        note("free", new_omega, omega + 0.01 * euler_rate(R, omega, I_body))
+        worst.note("free", new_omega, omega + 0.01 * euler_rate(R, omega, I_body))
 
         # a fold of half the stiffness goes half of a small way; a cloth in the air falls as one
         share, slight = rng.uniform(0.2, 0.8), np.array([[0, 1, 2, 3]])
         sheet = lesson.Cloth(chain._replace(inv_mass=w), slight, np.array([fold_angle(x) - 1e-6]), share, nowhere)
         left = (fold_angle(lesson.fold_sweep(x, sheet)) - sheet.fold[0]) / 1e-6
-        note("bent", left, 1.0 - share)
+        worst.note("bent", left, 1.0 - share)
         weave = lesson.make_constraint_network(x, 1.0 / w, [], [(0, 1), (1, 2), (2, 3)], 0.0, 1.0, (0.0, 0.0, -G), 2)
         sheet = lesson.Cloth(weave, slight, np.array([fold_angle(x)]), share, nowhere)
         fallen, v = lesson.cloth_step(lesson.network_gravity, 0.0, x, 0.0 * x + p, 0.01, sheet)
         speed = p - np.array([0.0, 0.0, 0.01 * G])
-        note("falls", (fallen, v), (x + 0.01 * speed, 0.0 * x + speed))
+        worst.note("falls", (fallen, v), (x + 0.01 * speed, 0.0 * x + speed))
 
         # air that is hardly compressed: p = (V₀ − V)/α for one implicit step, m v = dt p ∇V, all linear
         alpha, less, dt = rng.uniform(0.5, 2.0), 1e-6, rng.uniform(0.1, 0.5)
@@ -847,7 +840,7 @@ def constraints_and_gradients(lesson):
         _, v = lesson.balloon_step(lesson.network_gravity, 0.0, corners, 0.0 * corners, dt,
                                    lesson.Balloon(net, outside, volume_of(corners, outside) + less, alpha, nowhere))
         pressure = less / (alpha + dt * dt * np.sum(w[:, None] * g * g))
-        note("air", v / less, dt * pressure * w[:, None] * g / less)
+        worst.note("air", v / less, dt * pressure * w[:, None] * g / less)
     claims = (
         ("link", "The gradient of a link is the derivative of its length.", "link [m, -]", 1e-12),
         ("correction", "A correction meets its constraint with the least Σ m |Δx|².", "correction [m]", 1e-12),

@@ -11,7 +11,7 @@ from solutions.checks import Diverged
 from validate.methods import TURNS
 from validate.reference.orientation import about, cross_matrix, quaternion_matrix, relative_turn
 from validate.reference.rotation import symmetric_top
-from validate.stability.case import DOTS, EDGE, LINE, Picture, agreement, bisect, case, finding, series
+from validate.stability.case import DOTS, EDGE, LINE, LargestErrors, Picture, agreement, bisect, case, finding, series
 
 EPS = 1.2e-16                # relative size of a rounding
 LABEL = {method.function: method.label for method in TURNS}
@@ -666,7 +666,7 @@ def one_step(lesson):
 @case("one-step-of-the-loop", "One step of the lecture's loop, and of a rolling ball", compiled=False)
 def one_step_of_the_loop(lesson):
     """A body under a force and a torque of time; a ball of any size whose friction stops its slip within the cone."""
-    rng, worst = np.random.default_rng(57), dict.fromkeys(("loop", "support", "impulse", "cone", "slip"), 0.0)
+    rng, worst = np.random.default_rng(57), LargestErrors()
     for _ in range(TRIED):
         m, I, dt, t = rng.uniform(0.5, 2.0), rng.uniform(1.0, 1.9, 3), rng.uniform(0.01, 0.1), rng.uniform()
         q, (x, v, omega, f, a) = rng.normal(size=4), rng.normal(size=(5, 3))
@@ -679,7 +679,7 @@ def one_step_of_the_loop(lesson):
         got = lesson.rigid_body_step(load, t, x, q, v, omega, dt, lesson.RigidBody(m, I))
         for one, truth in ((got[0], x + dt * new_v), (got[2], new_v), (got[3], new_omega),
                            (quaternion_matrix(*got[1]), cayley(dt * new_omega) @ R)):
-            worst["loop"] = max(worst["loop"], np.max(np.abs(one - truth)))
+            worst.note("loop", one, truth)
 
         (radius, mu, inertia), g = rng.uniform((0.1, 0.2, 0.01), (0.5, 0.5, 0.1)), rng.normal(size=3)
         along = np.array([1.0, 1.0, 0.0])                        # the floor's share of a vector
@@ -687,20 +687,20 @@ def one_step_of_the_loop(lesson):
             ball = lesson.RollingBall(m, np.full(3, inertia), radius, mu, np.array([g[0], g[1], up]))
             F, tau = lesson.supported_weight(t, x, q, v, omega, ball)
             rests = m * np.array([g[0], g[1], max(0.0, up)])
-            worst["support"] = max(worst["support"], np.max(np.abs(F - rests)), np.max(np.abs(tau)))
+            worst.keep("support", np.max(np.abs(F - rests)), np.max(np.abs(tau)))
         ball, r = ball._replace(gravity=np.array([g[0], g[1], -9.81])), np.array([0.0, 0.0, -radius])
         for speed in (1e-3, 3.0):                                # friction stops the first slip, and not the second
             before, limit = speed * v * along, mu * m * 9.81 * dt
             start = before - (np.cross(omega, r) + dt * g) * along
             _, _, end, spin = lesson.rolling_step(lesson.supported_weight, t, x, q, start, omega, dt, ball)
             J = m * (end - start - dt * g * along)
-            worst["impulse"] = max(worst["impulse"], np.max(np.abs(inertia * (spin - omega) - np.cross(r, J))))
+            worst.keep("impulse", np.max(np.abs(inertia * (spin - omega) - np.cross(r, J))))
             after = (end + np.cross(spin, r)) * along
             stops = np.linalg.norm(before) / (1.0 / m + radius**2 / inertia) <= limit
             if stops:
-                worst["slip"] = max(worst["slip"], np.max(np.abs(after)))
+                worst.keep("slip", np.max(np.abs(after)))
             else:
-                worst["cone"] = max(worst["cone"], np.max(np.abs(J + limit * before / np.linalg.norm(before))))
+                worst.keep("cone", np.max(np.abs(J + limit * before / np.linalg.norm(before))))
     claims = (("loop", "The loop takes new velocities for positions, and Euler's equation for ω.",
                "state [m, m/s, -, rad/s]"),
               ("support", "A floor takes what presses on it, and does not hold what is lifted.", "force [N]"),

@@ -6,7 +6,18 @@ What a case predicts is derived in its docstring; what it measures comes from th
 import numpy as np
 
 from validate.reference.simulator import rocking
-from validate.stability.case import DOTS, LINE, Picture, agreement, bisect, case, finding, refuses, series
+from validate.stability.case import (
+    DOTS,
+    LINE,
+    LargestErrors,
+    Picture,
+    agreement,
+    bisect,
+    case,
+    finding,
+    refuses,
+    series,
+)
 
 G = 9.81                     # [m/s²]
 ROUND_OFF = 1e-12            # of numbers around 1 after a few hundred operations
@@ -294,11 +305,7 @@ def loop_by_parts(lesson):
     Euler's equation in world coordinates, ω̇ = I⁻¹ (τ − ω × I ω), with I = R diag Rᵀ as matrices.
     """
     rng = np.random.default_rng(101)
-    names = ("plane", "space", "turn", "invariants", "gain", "found", "corner", "slip", "floor", "times")
-    worst = dict.fromkeys(names, 0.0)
-
-    def note(name, got, truth):
-        worst[name] = max(worst[name], np.max(np.abs(np.asarray(got) - truth)))
+    worst = LargestErrors()
 
     for _ in range(TRIED):
         m, dt, t, g = rng.uniform(0.5, 2.0, 2), rng.uniform(0.01, 0.1), rng.uniform(0.0, 1.0), rng.normal(size=3)
@@ -314,12 +321,12 @@ def loop_by_parts(lesson):
         v_new = v + dt * w[:, None] * np.cos(t) * push[:, :2]
         omega_new = omega + dt * np.array([*(1.0 / inertia), 0.0]) * np.sin(t) * twist[:, 0]
         x, q, got_v, got_omega = lesson.free_step_2d(load, t, state.x, state.q, v, omega, dt, p)
-        note("plane", np.column_stack((got_v, got_omega)), np.column_stack((v_new, omega_new)))
-        note("plane", np.column_stack((x, q)), np.column_stack((state.x + dt * v_new, state.q + dt * omega_new)))
+        worst.note("plane", np.column_stack((got_v, got_omega)), np.column_stack((v_new, omega_new)))
+        worst.note("plane", np.column_stack((x, q)), np.column_stack((state.x + dt * v_new, state.q + dt * omega_new)))
         steps = 5
         v_end = v + dt * w[:, None] * push[:, :2] * sum(np.cos(t + k * dt) for k in range(steps))
         end = lesson.advance_free(lesson.free_step_2d, load, t, state.x, state.q, v, omega, dt, steps, p)
-        note("times", end[2], v_end)
+        worst.note("times", end[2], v_end)
 
         # in space
         turns, moments = rng.normal(size=(2, 4)), rng.uniform(1.0, 1.9, (2, 3))
@@ -333,26 +340,26 @@ def loop_by_parts(lesson):
                  for i, I in enumerate(tensors)]
         omega_new = omega + dt * np.array([*rates, np.zeros(3)])
         x, q, got_v, got_omega = lesson.free_step(load, t, state.x, state.q, v, omega, dt, p)
-        note("space", (got_v, got_omega), np.array((v + dt * w[:, None] * np.cos(t) * push, omega_new)))
-        note("space", x, state.x + dt * got_v)
+        worst.note("space", (got_v, got_omega), np.array((v + dt * w[:, None] * np.cos(t) * push, omega_new)))
+        worst.note("space", x, state.x + dt * got_v)
         for i in range(2):                                       # by 2 atan(½ |ω| dt) about ω
             rate = np.linalg.norm(omega_new[i])
             axis, angle = omega_new[i] / rate, 2.0 * np.arctan(0.5 * rate * dt)
             R = matrix_of(np.array([np.cos(0.5 * angle), *(np.sin(0.5 * angle) * axis)]))
-            note("turn", matrix_of(q[i]), R @ matrix_of(turns[i]))
+            worst.note("turn", matrix_of(q[i]), R @ matrix_of(turns[i]))
         energy = sum(0.5 * m[i] * v[i] @ v[i] + 0.5 * omega[i] @ tensors[i] @ omega[i] - m[i] * g @ state.x[i]
                      for i in range(2))
         P = sum(m[i] * v[i] for i in range(2))
         L = sum(m[i] * np.cross(state.x[i], v[i]) + tensors[i] @ omega[i] for i in range(2))
-        note("invariants", lesson.mechanical_energy(state.x, state.q, v, omega, p), energy)
-        note("invariants", lesson.momenta(state.x, state.q, v, omega, p), np.array((P, L)))
+        worst.note("invariants", lesson.mechanical_energy(state.x, state.q, v, omega, p), energy)
+        worst.note("invariants", lesson.momenta(state.x, state.q, v, omega, p), np.array((P, L)))
 
         energies, work = rng.normal(size=(2, 6))
         rest = energies - work
         gain = max(rest[k] - rest[j] for k in range(6) for j in range(k + 1))
-        note("gain", lesson.gain_without_source(energies, work), gain)
+        worst.note("gain", lesson.gain_without_source(energies, work), gain)
         runs = iter((rest, rest + 1.5)).__next__                 # the second is ahead, and takes a third of the time
-        note("gain", lesson.compare(runs, runs, 1, iter((0.0, 3.0, 4.0)).__next__), (1.5, 3.0))
+        worst.note("gain", lesson.compare(runs, runs, 1, iter((0.0, 3.0, 4.0)).__next__), (1.5, 3.0))
 
         # a disc at the margin of another, and of the floor: found before it touches, and not from farther away
         for share, count in ((0.9, 2), (1.1, 0)):
@@ -364,15 +371,15 @@ def loop_by_parts(lesson):
             low, high, turn = lesson.disc_bounds(beside, state.q, p.half)
             found = lesson.find_contacts(lesson.round_contacts, beside, low, high, turn, p)
             on_floor = 1 if count else 0                         # the other disc is as near to the floor
-            note("found", found.a.size, count + on_floor)
-        note("found", lesson.closing_speeds(np.array([0.02, -0.01]), dt), (-0.02 / dt, 0.0))
+            worst.note("found", found.a.size, count + on_floor)
+        worst.note("found", lesson.closing_speeds(np.array([0.02, -0.01]), dt), (-0.02 / dt, 0.0))
 
         # a corner that stops keeps the angular momentum about it
         v, omega, r, inv_mass, inv_inertia = rng.normal(size=2), rng.normal(), rng.normal(size=2), 1.0 / m[0], 3.0
         v_new, omega_new = lesson.corner_impact(v, omega, r, inv_mass, inv_inertia)
         about = lambda v, omega, r=r, k=inv_inertia, w=inv_mass: omega / k - (r[0] * v[1] - r[1] * v[0]) / w
-        note("corner", v_new + omega_new * np.array([-r[1], r[0]]), 0.0)
-        note("corner", about(v_new, omega_new), about(v, omega))
+        worst.note("corner", v_new + omega_new * np.array([-r[1], r[0]]), 0.0)
+        worst.note("corner", about(v_new, omega_new), about(v, omega))
 
         # a ball that slips: its slip decreases by what friction and gravity do to centre and rotation
         radius, mu, I, slope = rng.uniform((0.1, 0.2, 0.01, -0.5), (0.5, 0.5, 0.1, 0.5))
@@ -384,10 +391,10 @@ def loop_by_parts(lesson):
         size = np.linalg.norm((v + np.cross(omega, r))[:2])
         friction = -mu * m[0] * G * along
         slows = -(friction / m[0] + slope * along + np.cross(np.cross(r, friction) / I, r)) @ along
-        note("slip", lesson.slip_time(v, omega, ball), size / slows if slows > 0.0 else np.inf)
+        worst.note("slip", lesson.slip_time(v, omega, ball), size / slows if slows > 0.0 else np.inf)
         centre, v_s, omega_s, place = rng.normal(size=(4, 3))
         carried = lesson.CarriedBall(1.0, np.ones(3), 0.1, 0.5, np.array([0.0, 0.0, -G]), centre, v_s, omega_s)
-        note("floor", lesson.support_velocity(place, carried), v_s + np.cross(omega_s, place - centre))
+        worst.note("floor", lesson.support_velocity(place, carried), v_s + np.cross(omega_s, place - centre))
     claims = (
         ("plane", "In the plane v changes by F/m and ω by τ/I, and positions by the new ones.",
          "state [m, m/s, rad/s]"),

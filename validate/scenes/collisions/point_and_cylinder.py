@@ -1,9 +1,8 @@
 """Balls fly at an infinite cylinder, across its axis, at 1 to 10⁴ m/s: the discrete and the continuous test.
 
 This is the worked question of the second lecture deck.  The discrete test runs after each step.  It finds a ball up to
-v dt inside, or misses
-it, because a step longer than the path through the cylinder can pass it.  The continuous test solves for the first root
-and works with any step.
+v dt inside, or misses it, because a step longer than the path through the cylinder can pass it.  The continuous test
+solves for the first root and works with any step.
 """
 
 from typing import Annotated, NamedTuple
@@ -13,19 +12,10 @@ import numpy as np
 from solutions.checks import check_positive
 from solutions.collisions import Plane
 from solutions.support.collisions import Target, advance_projectiles, ball_cylinder_gap, ball_cylinder_time
-from validate.engines.collisions import (
-    ENGINE_SPEEDS,
-    PLACE_APART,
-    RAY_ENDS,
-    SWEPT_SETTINGS,
-    across,
-    bullet_rays,
-    bullet_swept,
-    swept_limit,
-)
+from validate.engines.collisions import PLACE_APART, RAY_ENDS, across, discrete_up_to, ray_and_sweep, swept_limit
 from validate.methods import CONTINUOUS, DISCRETE
-from validate.reference.collisions import COPIES, first_root, impact_times, with_balls_that_miss
-from validate.scene import EXACT, PYBULLET, ROUND_OFF, Engine, Scene
+from validate.reference.collisions import COPIES, SPEEDS, impact_times, stopped, with_balls_that_miss
+from validate.scene import EXACT, ROUND_OFF, Scene
 
 T = 1.0                      # [s]: every ball has hit by then
 STEPS = (20, 50, 100, 200, 500, 1000, 2000)
@@ -39,13 +29,7 @@ class Params(NamedTuple):
     R: Annotated[float, "of the cylinder, about the x axis [m]"] = 0.5
 
 
-CASES = {
-    "1 m/s": Params(),
-    "10 m/s": Params(10.0),
-    "100 m/s": Params(100.0),
-    "1,000 m/s": Params(1e3),
-    "10,000 m/s": Params(1e4),
-}
+CASES = {name: Params(speed) for name, speed in SPEEDS.items()}
 
 
 def place(p):
@@ -64,12 +48,6 @@ def start(p):
     return *place(p), Target(p.r, p.R, Plane(np.array([0.0, 0.0, 1.0]), 0.0))
 
 
-def with_others(p):
-    """Return (state, p) with balls that never hit."""
-    x, v, goal = start(p)
-    return (*with_balls_that_miss(x, v), goal), p
-
-
 def run(step, acceleration, state, p, dt, steps):
     x, v, goal = state
     x, v = advance_projectiles(step, ball_cylinder_gap, ball_cylinder_time, 0.0, x, v, dt, steps, goal)
@@ -86,20 +64,8 @@ def truth(p, t):
     Source: the distance of a point from a line.
     """
     x, v = place(p)
-    found = []
-    for y, w in zip(x, v):
-        nearest = -(y[1:] @ w[1:]) / (w[1:] @ w[1:])
-        gap = lambda s, y=y, w=w: np.hypot(*(y + s * w)[1:]) - p.R - p.r
-        moment = first_root(gap, 0.0, nearest)
-        found.append(y + min(t, moment) * w)
-    return across(np.array(found))
-
-
-def supports(name, p):
-    """The discrete test up to FASTEST_DISCRETE; engines at the lowest, the middle and the highest speed."""
-    if name == "discrete_step":
-        return p.speed <= FASTEST_DISCRETE
-    return p.speed in ENGINE_SPEEDS or not name.startswith("pybullet")
+    nearest = [-(y[1:] @ w[1:]) / (w[1:] @ w[1:]) for y, w in zip(x, v)]
+    return across(stopped(x, v, lambda y: np.hypot(y[1], y[2]) - p.R - p.r, nearest, t))
 
 
 def tolerance(p, dt):
@@ -119,24 +85,7 @@ def tolerance(p, dt):
             "pybullet, swept": per_ball(swept_limit(p, dt) / steep) + rounded}
 
 
-ENGINES = (
-    Engine(
-        PYBULLET,
-        "rays",
-        lambda p, dt: bullet_rays(p, *place(p), dt),
-        0,
-        "one rayTestBatch per step, at a GEOM_CYLINDER of radius R + r",
-        most_steps=100,
-    ),
-    Engine(
-        PYBULLET,
-        "swept",
-        lambda p, dt: bullet_swept(p, *place(p), dt),
-        0,
-        SWEPT_SETTINGS,
-        most_steps=200,
-    ),
-)
+ENGINES = ray_and_sweep(place, 0, "GEOM_CYLINDER of radius R + r")
 
 
 def points(observed, p):
@@ -174,7 +123,7 @@ SCENE = Scene(
     tolerance=tolerance,
     engines=ENGINES,
     orders={"continuous_step": EXACT},
-    supports=supports,
+    supports=discrete_up_to(FASTEST_DISCRETE),
     # Plain Python finishes before numba has compiled it.
     uncompiled_in_quick=("discrete_step",),
     shorter_in_quick={"discrete_step": 1000},
@@ -184,7 +133,7 @@ SCENE = Scene(
     uses=("a straight way", "a quadratic equation for each step, or a distance"),
     full_loop="the scene ends where the loop begins: a ball stays where it is found to hit",
     ablations={
-        "balls that never come near, tested at every step": with_others,
+        "balls that never come near, tested at every step": lambda p: (with_balls_that_miss(*start(p)), p),
         "gravity: the path would bend, and the equation be of fourth degree": ("short straight pieces of the path "
                                                                               "lead back to this equation"),
         "response": "lesson 7 builds it",

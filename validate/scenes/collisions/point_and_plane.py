@@ -11,18 +11,10 @@ import numpy as np
 from solutions.checks import check_positive
 from solutions.collisions import Plane
 from solutions.support.collisions import Target, advance_projectiles, ball_plane_gap, ball_plane_time
-from validate.engines.collisions import (
-    ENGINE_SPEEDS,
-    PLACE_APART,
-    SWEPT_SETTINGS,
-    across,
-    bullet_rays,
-    bullet_swept,
-    swept_limit,
-)
+from validate.engines.collisions import PLACE_APART, across, discrete_up_to, ray_and_sweep, swept_limit
 from validate.methods import CONTINUOUS, DISCRETE
-from validate.reference.collisions import COPIES, first_root, impact_times, with_balls_that_miss
-from validate.scene import EXACT, PYBULLET, ROUND_OFF, Engine, Scene
+from validate.reference.collisions import COPIES, SPEEDS, impact_times, stopped, with_balls_that_miss
+from validate.scene import EXACT, ROUND_OFF, Scene
 
 T = 1.0                      # [s]: every ball has hit by then
 STEPS = (20, 50, 100, 200, 500, 1000, 2000)
@@ -36,13 +28,7 @@ class Params(NamedTuple):
     R: Annotated[float, "no cylinder here"] = 0.0
 
 
-CASES = {
-    "1 m/s": Params(),
-    "10 m/s": Params(10.0),
-    "100 m/s": Params(100.0),
-    "1,000 m/s": Params(1e3),
-    "10,000 m/s": Params(1e4),
-}
+CASES = {name: Params(speed) for name, speed in SPEEDS.items()}
 
 
 def place(p):
@@ -56,12 +42,6 @@ def start(p):
     for name in ("speed", "r"):
         check_positive(name, getattr(p, name))
     return *place(p), Target(p.r, p.R, Plane(np.array([0.0, 0.0, 1.0]), 0.0))
-
-
-def with_others(p):
-    """Return (state, p) with balls that never hit."""
-    x, v, goal = start(p)
-    return (*with_balls_that_miss(x, v), goal), p
 
 
 def run(step, acceleration, state, p, dt, steps):
@@ -79,18 +59,8 @@ def truth(p, t):
 
     Source: the distance of a point from the plane z = 0.
     """
-    found = []
-    for y, w in zip(*place(p)):
-        moment = first_root(lambda s, y=y, w=w: y[2] + s * w[2] - p.r, 0.0, T)
-        found.append(y + min(t, moment) * w)
-    return across(np.array(found))
-
-
-def supports(name, p):
-    """The discrete test up to FASTEST_DISCRETE; engines at the lowest, the middle and the highest speed."""
-    if name == "discrete_step":
-        return p.speed <= FASTEST_DISCRETE
-    return p.speed in ENGINE_SPEEDS or not name.startswith("pybullet")
+    x, v = place(p)
+    return across(stopped(x, v, lambda y: y[2] - p.r, np.full(COPIES, T), t))
 
 
 def tolerance(p, dt):
@@ -110,24 +80,7 @@ def tolerance(p, dt):
     }
 
 
-ENGINES = (
-    Engine(
-        PYBULLET,
-        "rays",
-        lambda p, dt: bullet_rays(p, *place(p), dt),
-        EXACT,
-        "one rayTestBatch per step, at a GEOM_PLANE raised by the radius of the balls",
-        most_steps=100,
-    ),
-    Engine(
-        PYBULLET,
-        "swept",
-        lambda p, dt: bullet_swept(p, *place(p), dt),
-        0,
-        SWEPT_SETTINGS,
-        most_steps=200,
-    ),
-)
+ENGINES = ray_and_sweep(place, EXACT, "GEOM_PLANE raised by the radius of the balls")
 
 
 def points(observed, p):
@@ -165,7 +118,7 @@ SCENE = Scene(
     tolerance=tolerance,
     engines=ENGINES,
     orders={"continuous_step": EXACT},
-    supports=supports,
+    supports=discrete_up_to(FASTEST_DISCRETE),
     # Plain Python finishes before numba has compiled it.
     uncompiled_in_quick=("discrete_step",),
     shorter_in_quick={"discrete_step": 1000},
@@ -175,7 +128,7 @@ SCENE = Scene(
     uses=("a straight way", "two signed distances for each step"),
     full_loop="the scene ends where the loop begins: a ball stays where it is found to hit",
     ablations={
-        "balls that never come near, tested at every step": with_others,
+        "balls that never come near, tested at every step": lambda p: (with_balls_that_miss(*start(p)), p),
         "gravity: the path would bend": "then the formula is the first step of Newton's method",
         "response": "lesson 7 builds it",
     },

@@ -8,13 +8,13 @@ from solutions.checks import check_positive
 from solutions.friction import driven_acceleration as acceleration
 from solutions.integrators import advance
 from solutions.support.friction import make_block
-from validate.engines.friction import SWEEPS, bullet_block, pymunk_block
+from validate.engines.friction import bullet_block, pymunk_block, slab_on_line_and_box
 from validate.engines.mujoco import IMPEDANCE, SOFT, TIME_CONSTANT
 from validate.engines.mujoco import block as mujoco_block
 from validate.methods import EVENT, SLIDING
 from validate.reference.friction import CLOSE, SoftBlock, block_in_space
 from validate.reference.schemes import summed
-from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, Departure, Engine, Prediction, Scene, by_order
+from validate.scene import EXACT, MUJOCO, Departure, Engine, Prediction, Scene, by_order
 
 T = 1.0                      # [s]
 STEPS = (50, 100, 200, 500, 1000, 2000, 5000)
@@ -132,8 +132,8 @@ def held(p, t):
     return truth(p, t) if slides else np.array([soft(p).arrest(p.v0, t)])
 
 
-def mujoco_make(p, dt):
-    return mujoco_block(tilted(p), p.mu, p.v0, dt, lambda x: np.array(x[:1]))
+def pymunk_make(p, dt):
+    return pymunk_block(tilted(p), p.mu, p.v0, dt, lambda x: np.array([x.x]))
 
 
 def pybullet_make(p, dt):
@@ -142,21 +142,12 @@ def pybullet_make(p, dt):
     return bullet_block((along, 0.0, across), p.mu, (p.v0, 0.0, 0.0), fastest, dt, lambda x: np.array(x[:1]))
 
 
+def mujoco_make(p, dt):
+    return mujoco_block(tilted(p), p.mu, p.v0, dt, lambda x: np.array(x[:1]))
+
+
 ENGINES = (
-    Engine(
-        PYMUNK,
-        "",
-        lambda p, dt: pymunk_block(tilted(p), p.mu, p.v0, dt, lambda x: np.array([x.x])),
-        1,
-        f"gravity tilted, a slab of 2 m on a line; {SWEEPS} iterations, collision_slop 1e-5",
-    ),
-    Engine(
-        PYBULLET,
-        "",
-        pybullet_make,
-        1,
-        f"gravity tilted, a slab of 2 m on a box; maximal coordinates, solverResidualThreshold 0, {SWEEPS} iterations",
-    ),
+    *slab_on_line_and_box(pymunk_make, pybullet_make, before="gravity tilted, "),
     Engine(MUJOCO, "", mujoco_make, 1, f"gravity tilted, a ball that cannot turn; {SOFT}"),
 )
 
@@ -181,11 +172,6 @@ def points(observed, p):
 
 def links(p):
     return [(0, 1)]
-
-
-def in_space(p):
-    """The same motion with an unused third coordinate."""
-    return block_in_space(*start(p)), p
 
 
 SCENE = Scene(
@@ -216,7 +202,7 @@ SCENE = Scene(
     links=links,
     uses=("two coordinates", "a normal", "one step of a block that stays on its plane"),
     ablations={
-        "the third dimension": in_space,
+        "the third dimension": lambda p: (block_in_space(*start(p)), p),
         "rotation: it does not tip": "the whole loop of lesson 10 has it, and is measured",
         "detection: it does not leave the slope": "the whole loop of lesson 10 has it, and is measured",
     },

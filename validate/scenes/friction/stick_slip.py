@@ -1,20 +1,17 @@
 """A block under a periodic force slightly stronger than friction: it slips twice per period, and sticks in between."""
 
-
 import numpy as np
 
 from solutions.checks import check_positive
 from solutions.friction import driven_acceleration as acceleration
 from solutions.integrators import advance
 from solutions.support.friction import make_block, slip_times
-from validate.engines.friction import MASS, SWEEPS, bullet_block, pymunk_block
+from validate.engines.friction import MASS, bullet_block, pymunk_block, slab_on_line_and_box
 from validate.methods import EVENT, SLIDING
 from validate.reference.friction import DrivenBlock, T, block_in_space, slip_errors, slip_limits, slip_position, slips
-from validate.scene import PYBULLET, PYMUNK, Engine, Scene
+from validate.scene import Scene
 
 STEPS = (80, 160, 400, 800, 1600, 4000, 8000)
-
-
 CASES = {"F = 8 cos t": DrivenBlock(), "F = 16 cos 2t, turns without a rest": DrivenBlock(force=16.0, omega=2.0)}
 
 
@@ -50,23 +47,7 @@ def pybullet_make(p, dt):
     return bullet_block((0.0, 0.0, -p.g), p.mu, still, 0.1, dt, lambda x: np.array(x[:1]), push(p, 3))
 
 
-ENGINES = (
-    Engine(
-        PYMUNK,
-        "",
-        pymunk_make,
-        1,
-        f"a slab of 2 m on a line, the force applied each step; {SWEEPS} iterations, collision_slop 1e-5",
-    ),
-    Engine(
-        PYBULLET,
-        "",
-        pybullet_make,
-        1,
-        ("a slab of 2 m on a box, the force applied each step; maximal coordinates, solverResidualThreshold 0, "
-         f"{SWEEPS} iterations"),
-    ),
-)
+ENGINES = slab_on_line_and_box(pymunk_make, pybullet_make, after=", the force applied each step")
 
 
 def sanity_checks():
@@ -96,11 +77,6 @@ def links(p):
     return [(0, 1)]
 
 
-def in_space(p):
-    """The same motion with an unused third coordinate."""
-    return block_in_space(*start(p)), p
-
-
 SCENE = Scene(
     title="Stick and slip",
     lesson="friction",
@@ -122,7 +98,7 @@ SCENE = Scene(
     links=links,
     uses=("two coordinates", "a normal", "one step of a block that stays on its plane"),
     ablations={
-        "the third dimension": in_space,
+        "the third dimension": lambda p: (block_in_space(*start(p)), p),
         "rotation: it does not tip": "the whole loop of lesson 10 has it, and is measured",
         "detection: it does not leave the floor": "the whole loop of lesson 10 has it, and is measured",
     },

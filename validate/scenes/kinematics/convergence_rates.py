@@ -11,10 +11,10 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.kinematics import advance_reach, make_arm_2d, reach_2d
-from validate.engines.kinematics import BulletArm
+from validate.engines.kinematics import bullet_reach
 from validate.methods import DAMPED, FACTORS, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import end_of, jacobian_of, joints_of
-from validate.scene import EXACT, PYBULLET, ROUND_OFF, Engine, EngineRun, Scene
+from validate.scene import EXACT, PYBULLET, ROUND_OFF, Engine, Scene
 
 T = 1.0
 STEPS = (1,)
@@ -119,9 +119,8 @@ def tolerance(p, dt):
 # ---------------------------------------------------------------------------------------------- engine
 
 def pybullet_make(p, dt):
-    engine, target = BulletArm(lengths_of(p)), end_of(ANGLES, lengths_of(p))
-    read = lambda: observe([engine.solve(theta, target, iterations=1) for theta in start(p)], p)
-    return EngineRun(lambda: None, read, engine.close)
+    target = end_of(ANGLES, lengths_of(p))
+    return bullet_reach(lengths_of(p), start(p), lambda found: observe(found, p), target, iterations=1)
 
 
 ENGINES = (Engine(PYBULLET, "", pybullet_make, EXACT, "calculateInverseKinematics, maxNumIterations 1"),)

@@ -12,10 +12,11 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.kinematics import make_arm_2d, reach_2d, solve_reach
-from validate.engines.kinematics import BulletArm
+from validate.drawing import arms_and_target, two_arms_and_target_links
+from validate.engines.kinematics import bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
-from validate.reference.kinematics import bullet_ik, end_of, joints_of
-from validate.scene import EXACT, PYBULLET, Departure, Engine, EngineRun, Scene
+from validate.reference.kinematics import bent_to, bullet_ik, end_of, joints_of
+from validate.scene import EXACT, PYBULLET, Departure, Engine, Scene
 
 T = 1.0
 STEPS = (1,)
@@ -88,9 +89,7 @@ def tolerance(p, dt):
 # ---------------------------------------------------------------------------------------------- engine
 
 def pybullet_make(p, dt, **settings):
-    engine = BulletArm(LENGTHS)
-    read = lambda: observe([engine.solve(start(p)[0], target_of(p), **settings)], p)
-    return EngineRun(lambda: None, read, engine.close)
+    return bullet_reach(LENGTHS, start(p), lambda found: observe(found, p), target_of(p), **settings)
 
 
 def cured(p, dt):
@@ -115,16 +114,12 @@ def quantity_names(p):
 
 def points(observed, p):
     """The straight arm, an arm that reaches the target by a bend of its first two joints, and the target."""
-    straight = joints_of(np.full(3, p.bent), LENGTHS)
-    r, rest = np.hypot(p.x, p.y), LENGTHS[1] + LENGTHS[2]
-    bend = np.pi - np.arccos((LENGTHS[0] ** 2 + rest**2 - r * r) / (2.0 * LENGTHS[0] * rest))
-    first = np.arctan2(p.y, p.x) - np.arctan2(rest * np.sin(bend), LENGTHS[0] + rest * np.cos(bend))
-    cross = target_of(p) + 0.04 * np.array([(-1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (1.0, -1.0)])
-    return np.round(np.concatenate((straight, joints_of(np.array([first, bend, 0.0]), LENGTHS), cross)), 5)
+    arms = [joints_of(angles, LENGTHS) for angles in (np.full(3, p.bent), bent_to(target_of(p), LENGTHS))]
+    return arms_and_target(arms, target_of(p), 0.04)
 
 
 def links(p):
-    return [(0, 1), (1, 2), (2, 3), (4, 5), (5, 6), (6, 7), (8, 9), (10, 11)]
+    return two_arms_and_target_links(3)
 
 
 SCENE = Scene(

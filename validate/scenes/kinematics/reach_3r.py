@@ -11,10 +11,11 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.kinematics import make_arm_2d, pose_2d, solve_reach
-from validate.engines.kinematics import BulletArm
+from validate.drawing import arms_and_target, two_arms_and_target_links
+from validate.engines.kinematics import bullet_reach
 from validate.methods import CLOSED_3R, DAMPED, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import bullet_ik, end_of, jacobian_of, joints_of
-from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Engine, EngineRun, Scene
+from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Engine, Scene
 
 T = 1.0
 STEPS = (1,)
@@ -118,9 +119,8 @@ def tolerance(p, dt):
 # ---------------------------------------------------------------------------------------------- engine
 
 def pybullet_make(p, dt, **settings):
-    engine, (x, y, direction) = BulletArm(lengths_of(p)), target_of(p)
-    read = lambda: observe([engine.solve(theta, (x, y), direction, **settings) for theta in start(p)], p)
-    return EngineRun(lambda: None, read, engine.close)
+    x, y, direction = target_of(p)
+    return bullet_reach(lengths_of(p), start(p), lambda found: observe(found, p), (x, y), direction, **settings)
 
 
 def cured(p, dt):
@@ -156,13 +156,11 @@ def sanity_checks():
 def points(observed, p):
     """Both arms, and the target as a small cross."""
     arms = [joints_of(angles, lengths_of(p)) for angles in np.asarray(observed).reshape(2, 3)]
-    size = 0.03 * sum(lengths_of(p))
-    cross = target_of(p)[:2] + size * np.array([(-1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (1.0, -1.0)])
-    return np.round(np.concatenate((*arms, cross)), 5)
+    return arms_and_target(arms, target_of(p)[:2], 0.03 * sum(lengths_of(p)))
 
 
 def links(p):
-    return [(0, 1), (1, 2), (2, 3), (4, 5), (5, 6), (6, 7), (8, 9), (10, 11)]
+    return two_arms_and_target_links(3)
 
 
 SCENE = Scene(

@@ -11,10 +11,11 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.kinematics import advance_reach, make_arm_2d, reach_2d
-from validate.engines.kinematics import BulletArm
+from validate.drawing import arms_and_target, two_arms_and_target_links
+from validate.engines.kinematics import bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
-from validate.reference.kinematics import end_of, joints_of
-from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Engine, EngineRun, Scene
+from validate.reference.kinematics import bent_to, end_of, joints_of
+from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Engine, Scene
 
 T = 1.0
 STEPS = (1,)
@@ -93,8 +94,7 @@ def tolerance(p, dt):
 # ---------------------------------------------------------------------------------------------- engine
 
 def pybullet_make(p, dt):
-    engine = BulletArm(LENGTHS)
-    return EngineRun(lambda: None, lambda: observe([engine.solve(np.zeros(3), (p.x, 0.0))], p), engine.close)
+    return bullet_reach(LENGTHS, start(p), lambda found: observe(found, p), (p.x, 0.0))
 
 
 ENGINES = (Engine(PYBULLET, "", pybullet_make, EXACT, "calculateInverseKinematics as it is"),)
@@ -117,16 +117,13 @@ def sanity_checks():
 
 def points(observed, p):
     """The straight arm, an arm that reaches the target by a bend of its first two joints, and the target."""
-    straight = joints_of(np.zeros(3), LENGTHS)
-    rest = LENGTHS[1] + LENGTHS[2]
-    bend = np.pi - np.arccos((LENGTHS[0] ** 2 + rest**2 - p.x**2) / (2.0 * LENGTHS[0] * rest))
-    first = -np.arctan2(rest * np.sin(bend), LENGTHS[0] + rest * np.cos(bend))
-    cross = (p.x, 0.0) + 0.04 * np.array([(-1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (1.0, -1.0)])
-    return np.round(np.concatenate((straight, joints_of(np.array([first, bend, 0.0]), LENGTHS), cross)), 5)
+    target = (p.x, 0.0)
+    arms = [joints_of(angles, LENGTHS) for angles in (np.zeros(3), bent_to(target, LENGTHS))]
+    return arms_and_target(arms, target, 0.04)
 
 
 def links(p):
-    return [(0, 1), (1, 2), (2, 3), (4, 5), (5, 6), (6, 7), (8, 9), (10, 11)]
+    return two_arms_and_target_links(3)
 
 
 SCENE = Scene(

@@ -11,10 +11,10 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.kinematics import advance_reach, make_arm_2d, reach_2d
-from validate.engines.kinematics import BulletArm
+from validate.engines.kinematics import bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, TRANSPOSE
 from validate.reference.kinematics import annulus, bullet_ik, end_of, joints_of, nearest_reachable
-from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Engine, EngineRun, Scene
+from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Engine, Scene
 
 T = 1.0
 STEPS = (1,)
@@ -107,9 +107,7 @@ def tolerance(p, dt):
 # ---------------------------------------------------------------------------------------------- engine
 
 def pybullet_make(p, dt, **more):
-    engine = BulletArm(lengths_of(p))
-    read = lambda: observe([engine.solve(start(p)[0], target_of(p), **more)], p)
-    return EngineRun(lambda: None, read, engine.close)
+    return bullet_reach(lengths_of(p), start(p), lambda found: observe(found, p), target_of(p), **more)
 
 
 ENGINES = (

@@ -8,7 +8,7 @@ from solutions.rotation import RigidBody
 from solutions.rotation import no_torque as acceleration
 from solutions.support.rotation import advance_rotation, check_moments
 from validate import drawing
-from validate.drawing import axes_seen, omega_and_L, pose
+from validate.drawing import axes_links, axes_seen, omega_and_L, turned_in_place
 from validate.engines.mujoco import FREE_WITNESS
 from validate.engines.rotation import FREE_ENGINES
 from validate.methods import TURNS
@@ -52,8 +52,7 @@ def run(step, acceleration, state, p, dt, steps):
 
 def observe(state, p):
     """Return R, nine numbers, in which q and −q are equal."""
-    w, x, y, z = state[0]
-    return quaternion_matrix(w, x, y, z).ravel()
+    return quaternion_matrix(*state[0]).ravel()
 
 
 def truth(p, t):
@@ -76,22 +75,10 @@ def tolerance(p, dt):
 ENGINES = FREE_ENGINES + FREE_WITNESS
 
 
-def points(observed, p):
-    return axes_seen(observed)
-
-
-def links(p):
-    return [(0, 1), (0, 2), (0, 3)]
-
-
 def bodies(p):
     """Draw a plate of one kilogram with these moments: Iᵢ = m(aⱼ² + aₖ²)/3 for half sizes a, thicker than it is."""
     a = np.sqrt(1.5 * np.maximum(0.0, np.sum(p.moments()) - 2.0 * p.moments()))
     return [drawing.box(np.maximum(a, 0.05 * a.max()))]
-
-
-def poses(observed, p):
-    return [pose(np.zeros(3), np.reshape(observed, (3, 3)))]
 
 
 def arrows(observed, p):
@@ -132,10 +119,10 @@ SCENE = Scene(
     uncompiled_in_quick=("runge_kutta_step", "midpoint_step"),
     shorter_in_quick={"runge_kutta_step": 2000, "midpoint_step": 2000},
     sanity_checks=sanity_checks,
-    points=points,
-    links=links,
+    points=axes_seen,
+    links=axes_links,
     bodies=bodies,
-    poses=poses,
+    poses=turned_in_place,
     arrows=arrows,
     uses=("one orientation", "one angular momentum", "one step function"),
     ablations={

@@ -9,7 +9,7 @@ from solutions.rotation import RigidBody
 from solutions.rotation import no_torque as acceleration
 from solutions.support.rotation import advance_rotation, check_moments
 from validate import drawing
-from validate.drawing import axes_seen, omega_and_L, pose
+from validate.drawing import axes_links, axes_seen, omega_and_L, turned_in_place
 from validate.engines import installed
 from validate.engines.bullet import Rigid
 from validate.engines.mujoco import FREE_WITNESS
@@ -56,8 +56,7 @@ def run(step, acceleration, state, p, dt, steps):
 
 def observe(state, p):
     """Return R, nine numbers, in which q and −q are equal."""
-    w, x, y, z = state[0]
-    return quaternion_matrix(w, x, y, z).ravel()
+    return quaternion_matrix(*state[0]).ravel()
 
 
 def truth(p, t):
@@ -77,21 +76,9 @@ def tolerance(p, dt):
 ENGINES = FREE_ENGINES + FREE_WITNESS[:1]               # its default would need 10⁵ steps here
 
 
-def points(observed, p):
-    return axes_seen(observed)
-
-
-def links(p):
-    return [(0, 1), (0, 2), (0, 3)]
-
-
 def bodies(p):
     """Draw a cylinder of one kilogram with these moments: I₃ = ½mr², I₁ = m(3r² + l²)/12."""
     return [drawing.cylinder(np.sqrt(2.0 * p.I3), np.sqrt(12.0 * p.I1 - 6.0 * p.I3))]
-
-
-def poses(observed, p):
-    return [pose(np.zeros(3), np.reshape(observed, (3, 3)))]
 
 
 def arrows(observed, p):
@@ -170,10 +157,10 @@ SCENE = Scene(
     uncompiled_in_quick=("runge_kutta_step",),
     shorter_in_quick={"runge_kutta_step": 2000},
     sanity_checks=sanity_checks,
-    points=points,
-    links=links,
+    points=axes_seen,
+    links=axes_links,
     bodies=bodies,
-    poses=poses,
+    poses=turned_in_place,
     arrows=arrows,
     uses=("one orientation", "one angular momentum", "one step function"),
     ablations={
