@@ -114,7 +114,7 @@ def refuse(methods, run):
     return refused
 
 
-class LargestErrors(dict):
+class Worst(dict):
     """{law: its largest error in many random cases}.  NaN is larger than any number, and its finding does not hold."""
 
     def keep(self, law, *errors):

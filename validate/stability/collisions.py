@@ -12,7 +12,7 @@ from solutions import integrators
 from solutions.integrators import observed_order
 from validate.engines.bullet import Bullet
 from validate.reference.collisions import depth_of, hull_nearest
-from validate.stability.case import DOTS, LINE, LargestErrors, Picture, agreement, case, finding, refuses, series
+from validate.stability.case import DOTS, LINE, Picture, Worst, agreement, case, finding, refuses, series
 
 from .. import engines
 
@@ -760,7 +760,7 @@ def nearest_features(lesson):
     The two parts of a cut polygon have its area together, and a line through two corners cuts off what is on one side.
     """
     rng = np.random.default_rng(68)
-    worst, seen = LargestErrors(), set()
+    worst, seen = Worst(), set()
     for _ in range(300):
         corners, p = rng.normal(size=(3, 3)), 1.5 * rng.normal(size=3)
         truth = nearest_of_hull(p, corners)

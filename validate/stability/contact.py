@@ -12,19 +12,7 @@ from solutions.impulses import cross_2d
 from validate.engines.contact import DT as ENGINE_DT
 from validate.engines.contact import KINDS, MU, BulletPile, PymunkPile, fallen
 from validate.reference.contact import enumerated, natural_residual
-from validate.stability.case import (
-    DOTS,
-    EDGE,
-    LINE,
-    LargestErrors,
-    Picture,
-    agreement,
-    bisect,
-    case,
-    finding,
-    refuses,
-    series,
-)
+from validate.stability.case import DOTS, EDGE, LINE, Picture, Worst, agreement, bisect, case, finding, refuses, series
 
 from .. import engines
 
@@ -916,7 +904,7 @@ def laws_of_contact(lesson):
     A sweep takes new impulses for the contacts before, old ones for itself and those behind: tril(A) and triu(A).
     """
     rng = np.random.default_rng(98)
-    worst = LargestErrors()
+    worst = Worst()
 
     for _ in range(50):
         x, v, n, p = rng.normal(size=(4, 4, 2))

@@ -11,19 +11,7 @@ from solutions.friction import ParticleInBowl, ParticleOnPlane
 from solutions.support.friction import make_block
 from validate.engines.friction import bullet_block, pymunk_block
 from validate.reference.friction import DrivenBlock, T, slip_limits, slip_position, slips
-from validate.stability.case import (
-    DOTS,
-    EDGE,
-    LINE,
-    LargestErrors,
-    Picture,
-    agreement,
-    bisect,
-    case,
-    finding,
-    refuses,
-    series,
-)
+from validate.stability.case import DOTS, EDGE, LINE, Picture, Worst, agreement, bisect, case, finding, refuses, series
 
 from .. import engines
 
@@ -586,7 +574,7 @@ def frame(rng):
 def laws_of_friction(lesson):
     """The cone, the pyramid, a slope, a block and a particle, with masses, restitution, and μ_s above μ_k."""
     rng = np.random.default_rng(31)
-    worst = LargestErrors()
+    worst = Worst()
 
     for _ in range(TRIED):
         n, t_1, t_2 = frame(rng)

@@ -10,19 +10,7 @@ from scipy.optimize import minimize_scalar
 from solutions.checks import Diverged
 from validate.reference.contact import enumerated
 from validate.reference.impulses import COPIES
-from validate.stability.case import (
-    DOTS,
-    EDGE,
-    LINE,
-    LargestErrors,
-    Picture,
-    agreement,
-    bisect,
-    case,
-    finding,
-    refuses,
-    series,
-)
+from validate.stability.case import DOTS, EDGE, LINE, Picture, Worst, agreement, bisect, case, finding, refuses, series
 
 G = 9.81                     # [m/s²]
 ROUND_OFF = 1e-12            # of numbers below 30 after a few hundred operations, each rounded by 1.1e-16 of its result
@@ -681,7 +669,7 @@ def mobility(r, m, I):
 def laws_of_an_impact(lesson):
     """What a surface does to a point, a spring to a ball, Coulomb's cone to a slip, and when a gap closes."""
     rng = np.random.default_rng(78)
-    worst = LargestErrors()
+    worst = Worst()
     for _ in range(TRIED):
         # a point on a surface: the normal velocity is −e times the old one, or as it was, however slow
         n, v, e = UP[:2], rng.normal(size=2) * [1.0, 10.0 ** rng.uniform(-3.0, 0.0)], rng.uniform()

@@ -10,18 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from solutions.checks import Diverged
 from validate.reference.kinematics import annulus, curvature_of, end_of, jacobian_of, joints_of, spatial_end
-from validate.stability.case import (
-    DOTS,
-    LINE,
-    LargestErrors,
-    Picture,
-    agreement,
-    bisect,
-    case,
-    finding,
-    refuses,
-    series,
-)
+from validate.stability.case import DOTS, LINE, Picture, Worst, agreement, bisect, case, finding, refuses, series
 
 SMALL = 1e-8                 # disturbance that a linear theory knows [rad]: leaves 1e-8 of what is measured
 FOUR_DIGITS = 1e-4           # of an edge that bisection finds, and of a factor, relative [-]
@@ -553,7 +542,7 @@ def geometry_of_arms(lesson):
     A damped step between limits is that of the joints that are free to go; one at its limit is free to go inwards.
     """
     rng = np.random.default_rng(111)
-    worst = LargestErrors()
+    worst = Worst()
     for _ in range(TRIED):
         J = rng.normal(size=(2, 4))
         u, sigma, _ = np.linalg.svd(J)

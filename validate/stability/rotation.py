@@ -11,7 +11,7 @@ from solutions.checks import Diverged
 from validate.methods import TURNS
 from validate.reference.orientation import about, cross_matrix, quaternion_matrix, relative_turn
 from validate.reference.rotation import symmetric_top
-from validate.stability.case import DOTS, EDGE, LINE, LargestErrors, Picture, agreement, bisect, case, finding, series
+from validate.stability.case import DOTS, EDGE, LINE, Picture, Worst, agreement, bisect, case, finding, series
 
 EPS = 1.2e-16                # relative size of a rounding
 LABEL = {method.function: method.label for method in TURNS}
@@ -666,7 +666,7 @@ def one_step(lesson):
 @case("one-step-of-the-loop", "One step of the lecture's loop, and of a rolling ball", compiled=False)
 def one_step_of_the_loop(lesson):
     """A body under a force and a torque of time; a ball of any size whose friction stops its slip within the cone."""
-    rng, worst = np.random.default_rng(57), LargestErrors()
+    rng, worst = np.random.default_rng(57), Worst()
     for _ in range(TRIED):
         m, I, dt, t = rng.uniform(0.5, 2.0), rng.uniform(1.0, 1.9, 3), rng.uniform(0.01, 0.1), rng.uniform()
         q, (x, v, omega, f, a) = rng.normal(size=4), rng.normal(size=(5, 3))
