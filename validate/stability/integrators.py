@@ -18,7 +18,7 @@ import numpy as np
 from solutions.checks import Diverged
 from validate.methods import BLANES_MOAN, INTEGRATORS
 from validate.reference import schemes
-from validate.stability.case import DOTS, EDGE, LINE, Picture, agreement, bisect, case, finding, refuse, series
+from validate.stability.case import DOTS, EDGE, LINE, Picture, Worst, agreement, bisect, case, finding, refuse, series
 
 OMEGA = 3.0                  # angular frequency of the runs [rad/s]: not 1, so that h mistaken for hω would show
 STEPS = 499  # of one run: a prime, so that no run ends at its start, where eigenvalues meet and round-off grows
@@ -815,7 +815,7 @@ def swinging(t, x, v, p):
 def one_step(lesson):
     """A method is its table of coefficients: one step under a force of t, x and v is the same to round-off."""
     label = {**LABEL, BLANES_MOAN.function: BLANES_MOAN.label}
-    rng, worst, history = np.random.default_rng(11), dict.fromkeys(label, 0.0), 0.0
+    rng, worst, history = np.random.default_rng(11), Worst(), 0.0
     for _ in range(TRIED):
         (k, c), (x, v, drive) = rng.uniform(-1.0, 1.0, (2, 2, 2)), rng.uniform(-1.0, 1.0, (3, 2))
         t, h, omega = rng.uniform((0.0, 0.1, 2.0), (1.0, 0.3, 4.0))
@@ -823,7 +823,7 @@ def one_step(lesson):
             p = Swing(k, 0.0 * c if name == "blanes_moan_step" else c, drive, omega)
             truth = schemes.step(schemes.TABLEAUX[label[name]], lambda t, x, v, p=p: swinging(t, x, v, p), t, x, v, h)
             got = getattr(lesson, name)(swinging, t, x, v, h, p)
-            worst[name] = max(worst[name], np.max(np.abs(np.array(got) - truth)))
+            worst.keep(name, np.max(np.abs(np.array(got) - truth)))
         # a history is that of single steps, each at its own time, and ends where a run of many steps ends
         p, states, rk4 = Swing(k, c, drive, omega), [(x, v)], lesson.rk4_step
         for n in range(3):

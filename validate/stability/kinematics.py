@@ -582,7 +582,7 @@ def geometry_of_arms(lesson):
             angles, count = lesson.damped_step(lesson.reach_2d, angles, target, arm), count + 1
         found, error, iterations = lesson.solve_reach(lesson.damped_step, lesson.reach_2d, theta, target, 1e-6, 50, arm)
         worst.keep("search", abs(iterations - count), np.max(np.abs(found - angles)),
-                              abs(error - np.linalg.norm(target - end_of(angles, lengths))))
+                   abs(error - np.linalg.norm(target - end_of(angles, lengths))))
 
         x = np.concatenate((np.zeros((1, 3)), np.cumsum(rng.normal(size=(4, 3)), axis=0))) + rng.normal(size=3)
         swept = lesson.fabrik_sweep(x, rng.normal(size=3), lengths)
