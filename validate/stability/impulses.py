@@ -482,7 +482,7 @@ def energy_gain(lesson):
     for e in (0.0, 0.5, 1.0):
         u = 2.0 * ACROSS - UP
         gained = lesson.energy_change(u, K, lesson.contact_impulse(u, UP, K, e, 0.0))
-        worst = max(worst, abs(gained + 0.5 * (1.0 - e * e) / K[1, 1]))
+        worst = np.maximum(worst, abs(gained + 0.5 * (1.0 - e * e) / K[1, 1]))
     found.append(finding(
         claim="Without friction an impact loses ½ (1 − e²) u_n²/k.",
         quantity="largest difference for e = 0, ½, 1 [J]",
@@ -544,7 +544,7 @@ def invalid_impacts(lesson):
     for y in exponents:
         J = lesson.contact_impulse(10.0**y * u, n, K, 0.5, 0.3)
         sizes.append(np.linalg.norm(J) / 10.0**y)
-        worst = max(worst, abs(n @ (10.0**y * u + K @ J) - 10.0**y) / 10.0**y)
+        worst = np.maximum(worst, abs(n @ (10.0**y * u + K @ J) - 10.0**y) / 10.0**y)
     found.append(finding(
         claim="An impact has no characteristic speed: the same law holds from a micrometre to 10⁸ m per second.",
         quantity="largest error of the rebound, over the speed [-]",
@@ -765,7 +765,7 @@ def several_points(lesson):
         lam = enumerated(G @ np.linalg.solve(M, G.T), u_n - np.maximum(0.0, -e * u_n))
         truth = y + np.linalg.solve(M, G.T @ lam)
         after, _ = lesson.solve_impacts(body, r, n, e, 0.0)
-        law = max(law, np.max(np.abs(np.concatenate((after.v, after.omega)) - truth)))
+        law = np.maximum(law, np.max(np.abs(np.concatenate((after.v, after.omega)) - truth)))
 
         if np.all(u_n < 0.0):
             mu, before = rng.uniform(0.2, 2.0), 0.5 * (m * v @ v + omega @ I @ omega)
@@ -773,7 +773,7 @@ def several_points(lesson):
             for restitution in (0.0, e):
                 end, _ = lesson.most_dissipative_impact(*answers, body, r, n, restitution, mu)
                 lost.append(before - 0.5 * (m * end.v @ end.v + end.omega @ I @ end.omega))
-            share = max(share, abs(lost[1] / lost[0] - (1.0 - e * e)))
+            share = np.maximum(share, abs(lost[1] / lost[0] - (1.0 - e * e)))
     return [agreement("Without friction the impulses solve the complementarity problem of all points together.",
                       "velocities after the impact: largest error [m/s, rad/s]", law, 1e-9),
             agreement("The impact that dissipates most loses 1 − e² of what it loses with e = 0.",

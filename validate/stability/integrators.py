@@ -832,7 +832,7 @@ def one_step(lesson):
         ts, xs, vs = lesson.trajectory(rk4, swinging, t, x, v, h, 3, p)
         end = np.array(lesson.advance(rk4, swinging, t, x, v, h, 3, p))
         errors = np.stack((xs, vs), axis=1) - np.array(states), ts - t - h * np.arange(4), end - states[-1]
-        history = max(history, *(np.max(np.abs(error)) for error in errors))
+        history = np.max((history, *(np.max(np.abs(error)) for error in errors)))
     return [agreement(f"One step of {label[name]} is that of its published coefficients.",
                       f"{label[name]}: largest error of a step [m, m/s]", error,
                       100.0 * NEWTON if "implicit" in name else ROUNDED) for name, error in worst.items()] + [
