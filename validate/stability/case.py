@@ -114,8 +114,14 @@ def refuse(methods, run):
     return refused
 
 
-class LargestErrors(dict):
-    """{law: its largest error in many random cases}.  NaN is larger than any number, and its finding does not hold."""
+class Worst(dict):
+    """{law: its largest error in many random cases}.
+
+    NaN is larger than any number, and a law that no case tried has NaN: their findings do not hold.
+    """
+
+    def __missing__(self, law):
+        return np.nan
 
     def keep(self, law, *errors):
         """Keep the largest of these errors and of the earlier ones."""

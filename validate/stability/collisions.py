@@ -12,7 +12,7 @@ from solutions import integrators
 from solutions.integrators import observed_order
 from validate.engines.bullet import Bullet
 from validate.reference.collisions import depth_of, hull_nearest
-from validate.stability.case import DOTS, LINE, LargestErrors, Picture, agreement, case, finding, refuses, series
+from validate.stability.case import DOTS, LINE, Picture, Worst, agreement, case, finding, refuses, series
 
 from .. import engines
 
@@ -691,7 +691,7 @@ def cloth_swept_steered(lesson):
     A swept box is the box around all corners at the beginning and the end.  A body that steers with a for the time τ
     passes the centre at exactly the radius: x + v τ + ½ a τ².
     """
-    rng, worst, inside = np.random.default_rng(67), {"gap": 0.0, "swept": 0.0, "steer": 0.0, "straight": 0.0}, 0
+    rng, worst, inside = np.random.default_rng(67), Worst(), 0
     for _ in range(200):
         a, b, c = rng.normal(size=(3, 3))
         r, R = rng.uniform(0.01, 0.1), rng.uniform(0.1, 0.5)
@@ -699,18 +699,18 @@ def cloth_swept_steered(lesson):
         inside += surrounds(corners)
         edges = corners[:2], corners[1:], corners[[2, 0]]
         truth = 0.0 if surrounds(corners) else min(least_on_edge(*edge) for edge in edges)
-        worst["gap"] = max(worst["gap"], abs(lesson.triangle_cylinder_gap(a, b, c, r, R) - (truth - R - r)))
+        worst.keep("gap", abs(lesson.triangle_cylinder_gap(a, b, c, r, R) - (truth - R - r)))
         beside = a + np.array([1.0, 0.0, 0.0])                   # an edge along the axis is a point in this view
         y, along = a[1:], (b - a)[1:]
         truth = np.linalg.norm(y + np.clip(-(y @ along) / (along @ along), 0.0, 1.0) * along)
         got = lesson.triangle_cylinder_gap(*rng.permutation((a, beside, b)), r, R)
-        worst["gap"] = max(worst["gap"], abs(got - (truth - R - r)))
+        worst.keep("gap", abs(got - (truth - R - r)))
 
         low, move = rng.normal(size=3), rng.normal(size=3)
         high = low + rng.uniform(0.1, 1.0, 3)
         around = np.array([low, high, low + move, high + move])
         got = np.array(lesson.swept_box(low, high, move))
-        worst["swept"] = max(worst["swept"], np.max(np.abs(got - [around.min(axis=0), around.max(axis=0)])))
+        worst.keep("swept", np.max(np.abs(got - [around.min(axis=0), around.max(axis=0)])))
 
         x, v, centre = rng.normal(size=2), rng.normal(size=2), 3.0 * rng.normal(size=2)
         e, ahead, radius = v / np.hypot(*v), rng.uniform(1.0, 5.0), rng.uniform(0.5, 2.0)
@@ -720,9 +720,9 @@ def cloth_swept_steered(lesson):
         if 0.0 < tau < ahead and beside < radius:
             passing = x + v * tau + 0.5 * steered * tau**2 - centre
             off = abs(np.hypot(*passing) - radius) + abs(steered @ e) * tau**2
-            worst["steer"] = max(worst["steer"], off / radius)
+            worst.keep("steer", off / radius)
         else:
-            worst["straight"] = max(worst["straight"], np.hypot(*steered))
+            worst.keep("straight", np.hypot(*steered))
     return [
         agreement(f"A cloth's gap counts corners, edges and faces; here {inside} of 200 faces surround the axis.",
                   "gap of a triangle and a cylinder: largest error [m]", worst["gap"], 1e-9),
@@ -760,7 +760,7 @@ def nearest_features(lesson):
     The two parts of a cut polygon have its area together, and a line through two corners cuts off what is on one side.
     """
     rng = np.random.default_rng(68)
-    worst, seen = LargestErrors(), set()
+    worst, seen = Worst(), set()
     for _ in range(300):
         corners, p = rng.normal(size=(3, 3)), 1.5 * rng.normal(size=3)
         truth = nearest_of_hull(p, corners)

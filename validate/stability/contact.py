@@ -12,19 +12,7 @@ from solutions.impulses import cross_2d
 from validate.engines.contact import DT as ENGINE_DT
 from validate.engines.contact import KINDS, MU, BulletPile, PymunkPile, fallen
 from validate.reference.contact import enumerated, natural_residual
-from validate.stability.case import (
-    DOTS,
-    EDGE,
-    LINE,
-    LargestErrors,
-    Picture,
-    agreement,
-    bisect,
-    case,
-    finding,
-    refuses,
-    series,
-)
+from validate.stability.case import DOTS, EDGE, LINE, Picture, Worst, agreement, bisect, case, finding, refuses, series
 
 from .. import engines
 
@@ -878,7 +866,7 @@ def closed_forms(lesson):
         trial = np.linspace(1.0, 1.999, 800)
         at_least = min(relaxed_radius(A, w) for w in trial)
         best = max(best, relaxed_radius(A, omega) - at_least)
-        left = max(left, abs(relaxed_radius(A, omega) - rho))
+        left = np.maximum(left, abs(relaxed_radius(A, omega) - rho))
     rng, off = np.random.default_rng(99), 0.0
     for _ in range(100):
         J, limit = rng.normal(size=3), rng.uniform(0.1, 2.0)
@@ -886,8 +874,8 @@ def closed_forms(lesson):
         q = rng.normal(size=(50, 3))
         q *= (limit * rng.uniform(0.0, 1.0, 50) / np.linalg.norm(q, axis=1))[:, None]
         q = np.concatenate((q, [limit * J / np.linalg.norm(J)]))
-        off = max(off, np.linalg.norm(P) - limit, np.max((q - P) @ (J - P)),
-                  np.linalg.norm(P - J) if np.linalg.norm(J) <= limit else 0.0)
+        off = np.max((off, np.linalg.norm(P) - limit, np.max((q - P) @ (J - P)),
+                      np.linalg.norm(P - J) if np.linalg.norm(J) <= limit else 0.0))
     return [
         agreement("The contraction of a stack is the spectral radius of a sweep.",
                   "contraction of a stack: largest error [-]", radius, 1e-12),
@@ -916,7 +904,7 @@ def laws_of_contact(lesson):
     A sweep takes new impulses for the contacts before, old ones for itself and those behind: tril(A) and triu(A).
     """
     rng = np.random.default_rng(98)
-    worst = LargestErrors()
+    worst = Worst()
 
     for _ in range(50):
         x, v, n, p = rng.normal(size=(4, 4, 2))

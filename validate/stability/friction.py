@@ -11,19 +11,7 @@ from solutions.friction import ParticleInBowl, ParticleOnPlane
 from solutions.support.friction import make_block
 from validate.engines.friction import bullet_block, pymunk_block
 from validate.reference.friction import DrivenBlock, T, slip_limits, slip_position, slips
-from validate.stability.case import (
-    DOTS,
-    EDGE,
-    LINE,
-    LargestErrors,
-    Picture,
-    agreement,
-    bisect,
-    case,
-    finding,
-    refuses,
-    series,
-)
+from validate.stability.case import DOTS, EDGE, LINE, Picture, Worst, agreement, bisect, case, finding, refuses, series
 
 from .. import engines
 
@@ -586,7 +574,7 @@ def frame(rng):
 def laws_of_friction(lesson):
     """The cone, the pyramid, a slope, a block and a particle, with masses, restitution, and μ_s above μ_k."""
     rng = np.random.default_rng(31)
-    worst = LargestErrors()
+    worst = Worst()
 
     for _ in range(TRIED):
         n, t_1, t_2 = frame(rng)
@@ -683,7 +671,7 @@ def stops_and_starts(lesson):
     A force that grows with time bends the speed: the step under kinetic friction is then the midpoint rule.
     """
     rng = np.random.default_rng(32)
-    worst = dict.fromkeys(("stops", "starts", "midpoint"), 0.0)
+    worst = Worst()
     for _ in range(TRIED):
         n, t_1, _ = frame(rng)
         load, speed, mu_k, more = rng.uniform(5.0, 15.0), rng.uniform(0.5, 2.0), *rng.uniform(0.1, 0.6, 2)
@@ -695,7 +683,7 @@ def stops_and_starts(lesson):
             lasts = min(dt, after)
             end = speed - lasts * (mu_k * load - pull) if dt < after else 0.0
             truth = lasts, *((speed * lasts - 0.5 * (mu_k * load - pull) * lasts**2) * t_1), *(end * t_1)
-            worst["stops"] = max(worst["stops"], np.max(np.abs(np.array((tau, *x, *v)) - truth)))
+            worst.keep("stops", np.max(np.abs(np.array((tau, *x, *v)) - truth)))
             if dt > after and np.any(v):                        # a stop is a stop: round-off would count as motion
                 worst["stops"] = np.inf
 
@@ -704,16 +692,16 @@ def stops_and_starts(lesson):
             p = lesson.make_block(n, mu_s, mu_k, -load * n, sign * drive * t_1, omega)
             at = 0.5 * np.pi / omega
             tau, x, _ = lesson.advance_to_event(lesson.driven_acceleration, at, n, 0.0 * n, 1.0 / omega, p)
-            worst["starts"] = max(worst["starts"], abs(tau - (0.5 * np.pi - begin) / omega), np.max(np.abs(x - n)))
+            worst.keep("starts", abs(tau - (0.5 * np.pi - begin) / omega), np.max(np.abs(x - n)))
             d = lesson.slip_direction(lesson.driven_acceleration, at + 1.01 * tau, n, 0.0 * n, p)
-            worst["starts"] = max(worst["starts"], np.max(np.abs(d + sign * t_1)))
+            worst.keep("starts", np.max(np.abs(d + sign * t_1)))
 
         dt, t = rng.uniform(0.05, 0.2), rng.uniform(0.0, 1.0)
         x, v = lesson.kinetic_friction_step(lesson.driven_acceleration, t, 0.0 * n, speed * t_1, dt, t_1, p)
         force = lambda t, p=p, load=load, mu_k=mu_k, t_1=t_1: p.drive @ t_1 * np.cos(p.omega * t) - mu_k * load
         mean = speed + 0.5 * dt * force(t)
         truth = np.array((dt * mean * t_1, (speed + dt * force(t + 0.5 * dt)) * t_1))
-        worst["midpoint"] = max(worst["midpoint"], np.max(np.abs(np.array((x, v)) - truth)))
+        worst.keep("midpoint", np.max(np.abs(np.array((x, v)) - truth)))
     return [agreement("Under constant forces a block stops after v/(μ_k a_n − a_t), completely.",
                       "time, place and velocity of a stop: largest error [s, m, m/s]", worst["stops"], 1e-9),
             agreement("A block breaks away where the force passes μ_s a_n, to the side of the force.",

@@ -10,19 +10,7 @@ from scipy.optimize import minimize_scalar
 from solutions.checks import Diverged
 from validate.reference.contact import enumerated
 from validate.reference.impulses import COPIES
-from validate.stability.case import (
-    DOTS,
-    EDGE,
-    LINE,
-    LargestErrors,
-    Picture,
-    agreement,
-    bisect,
-    case,
-    finding,
-    refuses,
-    series,
-)
+from validate.stability.case import DOTS, EDGE, LINE, Picture, Worst, agreement, bisect, case, finding, refuses, series
 
 G = 9.81                     # [m/s²]
 ROUND_OFF = 1e-12            # of numbers below 30 after a few hundred operations, each rounded by 1.1e-16 of its result
@@ -494,7 +482,7 @@ def energy_gain(lesson):
     for e in (0.0, 0.5, 1.0):
         u = 2.0 * ACROSS - UP
         gained = lesson.energy_change(u, K, lesson.contact_impulse(u, UP, K, e, 0.0))
-        worst = max(worst, abs(gained + 0.5 * (1.0 - e * e) / K[1, 1]))
+        worst = np.maximum(worst, abs(gained + 0.5 * (1.0 - e * e) / K[1, 1]))
     found.append(finding(
         claim="Without friction an impact loses ½ (1 − e²) u_n²/k.",
         quantity="largest difference for e = 0, ½, 1 [J]",
@@ -556,7 +544,7 @@ def invalid_impacts(lesson):
     for y in exponents:
         J = lesson.contact_impulse(10.0**y * u, n, K, 0.5, 0.3)
         sizes.append(np.linalg.norm(J) / 10.0**y)
-        worst = max(worst, abs(n @ (10.0**y * u + K @ J) - 10.0**y) / 10.0**y)
+        worst = np.maximum(worst, abs(n @ (10.0**y * u + K @ J) - 10.0**y) / 10.0**y)
     found.append(finding(
         claim="An impact has no characteristic speed: the same law holds from a micrometre to 10⁸ m per second.",
         quantity="largest error of the rebound, over the speed [-]",
@@ -599,7 +587,7 @@ def two_bodies(lesson):
     In space a body's block of M is its inertia tensor in the world, and its part of G is n and r × n.
     """
     rng = np.random.default_rng(77)
-    worst = dict.fromkeys(("u", "k_n", "rebound", "momentum", "spin", "space", "momenta"), 0.0)
+    worst = Worst()
     for _ in range(100):
         x_a, x_b, p, v_a, v_b = rng.normal(size=(5, 2))
         (w_a, w_b), masses, e = rng.normal(size=2), rng.uniform(0.5, 2.0, 4), rng.uniform(0.1, 0.9)
@@ -610,23 +598,23 @@ def two_bodies(lesson):
         state = np.concatenate((v_a, [w_a], v_b, [w_b]))
         u = lesson.relative_velocity_2d(a, b, p - x_a, p - x_b)
         truth = row @ state * n + across @ state * np.array([-n[1], n[0]])
-        worst["u"] = max(worst["u"], np.max(np.abs(u - truth)))
+        worst.keep("u", np.max(np.abs(u - truth)))
         k_n = lesson.effective_inverse_mass_2d(a, b, p - x_a, p - x_b, n)
         inverse = 1.0 / masses[[0, 0, 1, 2, 2, 3]]
-        worst["k_n"] = max(worst["k_n"], abs(k_n - row @ (inverse * row)) / k_n)
+        worst.keep("k_n", abs(k_n - row @ (inverse * row)) / k_n)
         if (u_n := u @ n) > 0.0:
             n, u_n, row = -n, -u_n, -row
         J = lesson.impulse_size(u_n, k_n, e) * n
         a_new, b_new = lesson.apply_impulse_2d(a, p - x_a, J), lesson.apply_impulse_2d(b, p - x_b, -J)
         after = np.concatenate((a_new.v, [a_new.omega], b_new.v, [b_new.omega]))
-        worst["rebound"] = max(worst["rebound"], abs(row @ after + e * u_n) / abs(u_n))
+        worst.keep("rebound", abs(row @ after + e * u_n) / abs(u_n))
         change = after - state
         P = masses[0] * change[:2] + masses[2] * change[3:5]
         spin = masses[1] * change[2] + masses[3] * change[5]
         spin += masses[0] * (x_a[0] * change[1] - x_a[1] * change[0])
         spin += masses[2] * (x_b[0] * change[4] - x_b[1] * change[3])
-        worst["momentum"] = max(worst["momentum"], np.max(np.abs(P)))
-        worst["spin"] = max(worst["spin"], abs(spin))
+        worst.keep("momentum", np.max(np.abs(P)))
+        worst.keep("spin", abs(spin))
 
         r_a, r_b, n3, L_a, L_b, J3 = rng.normal(size=(6, 3))
         n3 /= np.linalg.norm(n3)
@@ -640,13 +628,13 @@ def two_bodies(lesson):
         G = np.concatenate((n3, np.cross(r_a, n3), -n3, -np.cross(r_b, n3)))
         truth = G @ np.linalg.solve(M, G)
         got = lesson.effective_inverse_mass(*bodies, r_a, r_b, n3)
-        worst["space"] = max(worst["space"], abs(got - truth) / truth)
+        worst.keep("space", abs(got - truth) / truth)
         # both bodies touch at one point, so that J and −J have no torque together about the origin
         p3 = rng.normal(size=3)
         new_a, new_b = lesson.angular_momenta(L_a, L_b, r_a, r_b, J3)
         orbital = np.cross(p3 - r_a, J3) - np.cross(p3 - r_b, J3)
         own = np.concatenate((new_a - L_a - np.cross(r_a, J3), new_a + new_b - L_a - L_b + orbital))
-        worst["momenta"] = max(worst["momenta"], np.max(np.abs(own)))
+        worst.keep("momenta", np.max(np.abs(own)))
     names = (
         ("u", "Two points approach with the velocities of centres and rotations.", "relative velocity [m/s]"),
         ("k_n", "In the plane k_n is G M⁻¹ Gᵀ.", "k_n, relative [-]"),
@@ -681,7 +669,7 @@ def mobility(r, m, I):
 def laws_of_an_impact(lesson):
     """What a surface does to a point, a spring to a ball, Coulomb's cone to a slip, and when a gap closes."""
     rng = np.random.default_rng(78)
-    worst = LargestErrors()
+    worst = Worst()
     for _ in range(TRIED):
         # a point on a surface: the normal velocity is −e times the old one, or as it was, however slow
         n, v, e = UP[:2], rng.normal(size=2) * [1.0, 10.0 ** rng.uniform(-3.0, 0.0)], rng.uniform()
@@ -777,7 +765,7 @@ def several_points(lesson):
         lam = enumerated(G @ np.linalg.solve(M, G.T), u_n - np.maximum(0.0, -e * u_n))
         truth = y + np.linalg.solve(M, G.T @ lam)
         after, _ = lesson.solve_impacts(body, r, n, e, 0.0)
-        law = max(law, np.max(np.abs(np.concatenate((after.v, after.omega)) - truth)))
+        law = np.maximum(law, np.max(np.abs(np.concatenate((after.v, after.omega)) - truth)))
 
         if np.all(u_n < 0.0):
             mu, before = rng.uniform(0.2, 2.0), 0.5 * (m * v @ v + omega @ I @ omega)
@@ -785,7 +773,7 @@ def several_points(lesson):
             for restitution in (0.0, e):
                 end, _ = lesson.most_dissipative_impact(*answers, body, r, n, restitution, mu)
                 lost.append(before - 0.5 * (m * end.v @ end.v + end.omega @ I @ end.omega))
-            share = max(share, abs(lost[1] / lost[0] - (1.0 - e * e)))
+            share = np.maximum(share, abs(lost[1] / lost[0] - (1.0 - e * e)))
     return [agreement("Without friction the impulses solve the complementarity problem of all points together.",
                       "velocities after the impact: largest error [m/s, rad/s]", law, 1e-9),
             agreement("The impact that dissipates most loses 1 − e² of what it loses with e = 0.",

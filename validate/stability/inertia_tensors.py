@@ -8,7 +8,7 @@ import numpy as np
 
 from solutions.checks import BadInput
 from solutions.integrators import observed_order
-from validate.stability.case import DOTS, LINE, Picture, agreement, case, finding, refuses, series
+from validate.stability.case import DOTS, LINE, Picture, Worst, agreement, case, finding, refuses, series
 
 SPACING = 2.0**-52           # of floats around 1 [-]; a coordinate has half of it as relative rounding error
 PLACES = 64  # directions in which the body is moved: the mean square of so many errors is known to 18 %
@@ -225,7 +225,7 @@ def momenta(lesson):
 
     The tensor is summed in coordinates: I_jk = Σ m (r² δ_jk − r_j r_k).
     """
-    rng, worst = np.random.default_rng(43), {"P": 0.0, "centre": 0.0, "about": 0.0}
+    rng, worst = np.random.default_rng(43), Worst()
     for _ in range(50):
         m, x = rng.uniform(0.5, 2.0, 7), rng.normal(size=(7, 3))
         V, omega, about = rng.normal(size=(3, 3))
@@ -238,7 +238,7 @@ def momenta(lesson):
         for name, got, truth in (("P", lesson.linear_momentum(m, v), P),
                                  ("centre", lesson.angular_momentum(m, x, v, X), L),
                                  ("about", lesson.angular_momentum(m, x, v, about), moved)):
-            worst[name] = max(worst[name], np.linalg.norm(got - truth) / np.linalg.norm(truth))
+            worst.keep(name, np.linalg.norm(got - truth) / np.linalg.norm(truth))
     names = (
         ("P", "The momentum of a body is its mass times the velocity of its centre.", "linear momentum"),
         ("centre", "About its centre the angular momentum of a body is I ω.", "angular momentum about the centre"),
@@ -255,7 +255,7 @@ def bodies_with_holes(lesson):
     I_jk = Σ m (r² δ_jk − r_j r_k).
     """
     rng = np.random.default_rng(44)
-    worst = dict.fromkeys(("sums", "tensor", "combined", "inverse", "axes", "hand"), 0.0)
+    worst = Worst()
     for _ in range(50):
         m, x, v, about = rng.uniform(0.5, 2.0, 7), *rng.normal(size=(2, 7, 3)), rng.normal(size=3)
         m[3] = -0.4                                              # a hole
@@ -265,15 +265,15 @@ def bodies_with_holes(lesson):
         L = np.sum(m[:, None] * np.cross(x - about, v), axis=0)
         got = *lesson.centre_of_mass(m, x), lesson.linear_momentum(m, v), lesson.angular_momentum(m, x, v, about)
         for one, truth in zip(got, (m.sum(), X, m @ v, L), strict=True):
-            worst["sums"] = max(worst["sums"], np.max(np.abs(one - truth)) / np.max(np.abs(truth)))
-        worst["tensor"] = max(worst["tensor"], np.max(np.abs(lesson.point_mass_inertia(m, x) - I)) / np.max(np.abs(I)))
+            worst.keep("sums", np.max(np.abs(one - truth)) / np.max(np.abs(truth)))
+        worst.keep("tensor", np.max(np.abs(lesson.point_mass_inertia(m, x) - I)) / np.max(np.abs(I)))
 
         factors = rng.normal(size=(7, 3, 3))
         own = 0.2 * m[:, None, None] * (factors @ factors.transpose(0, 2, 1) + np.eye(3))
         whole = lesson.combine(m, x, own)
         truth = np.sum(own, axis=0) + I - m.sum() * (X @ X * np.eye(3) - np.outer(X, X))
-        worst["combined"] = max(worst["combined"], np.max(np.abs(whole.I - truth)) / np.max(np.abs(truth)),
-                                np.max(np.abs(whole.x - X)))
+        worst.keep("combined", np.max(np.abs(whole.I - truth)) / np.max(np.abs(truth)),
+                   np.max(np.abs(whole.x - X)))
 
         R = np.linalg.qr(rng.normal(size=(3, 3)))[0]
         R[:, 2] *= np.linalg.det(R)
@@ -281,12 +281,12 @@ def bodies_with_holes(lesson):
         body = lesson.world_inertia(np.diag(moments), R)
         inverse = lesson.world_inverse_inertia(np.diag(moments), R)
         # along the k-th column of R the tensor is the k-th moment
-        worst["inverse"] = max(worst["inverse"], np.max(np.abs(body @ R - R * moments)),
-                               np.max(np.abs(inverse @ R - R / moments)))
+        worst.keep("inverse", np.max(np.abs(body @ R - R * moments)),
+                   np.max(np.abs(inverse @ R - R / moments)))
         found, axes = lesson.principal_axes(R @ np.diag(moments) @ R.T)
-        worst["axes"] = max(worst["axes"], np.max(np.abs(found - moments)),
-                            np.max(np.abs(np.abs(np.sum(axes * R, axis=0)) - 1.0)))
-        worst["hand"] = max(worst["hand"], abs(np.linalg.det(axes) - 1.0))
+        worst.keep("axes", np.max(np.abs(found - moments)),
+                   np.max(np.abs(np.abs(np.sum(axes * R, axis=0)) - 1.0)))
+        worst.keep("hand", abs(np.linalg.det(axes) - 1.0))
     # a closed mesh without one of its triangles, or with one of them the other way round, is open
     torn = [np.delete(FACES, k, axis=0) for k in range(4)]
     torn += [np.where(np.arange(4)[:, None] == k, FACES[:, ::-1], FACES) for k in range(4)]

@@ -18,7 +18,7 @@ import numpy as np
 from solutions.checks import Diverged
 from validate.methods import BLANES_MOAN, INTEGRATORS
 from validate.reference import schemes
-from validate.stability.case import DOTS, EDGE, LINE, Picture, agreement, bisect, case, finding, refuse, series
+from validate.stability.case import DOTS, EDGE, LINE, Picture, Worst, agreement, bisect, case, finding, refuse, series
 
 OMEGA = 3.0                  # angular frequency of the runs [rad/s]: not 1, so that h mistaken for hω would show
 STEPS = 499  # of one run: a prime, so that no run ends at its start, where eigenvalues meet and round-off grows
@@ -815,7 +815,7 @@ def swinging(t, x, v, p):
 def one_step(lesson):
     """A method is its table of coefficients: one step under a force of t, x and v is the same to round-off."""
     label = {**LABEL, BLANES_MOAN.function: BLANES_MOAN.label}
-    rng, worst, history = np.random.default_rng(11), dict.fromkeys(label, 0.0), 0.0
+    rng, worst, history = np.random.default_rng(11), Worst(), 0.0
     for _ in range(TRIED):
         (k, c), (x, v, drive) = rng.uniform(-1.0, 1.0, (2, 2, 2)), rng.uniform(-1.0, 1.0, (3, 2))
         t, h, omega = rng.uniform((0.0, 0.1, 2.0), (1.0, 0.3, 4.0))
@@ -824,7 +824,7 @@ def one_step(lesson):
             law, step = lambda t, x, v, p=p: swinging(t, x, v, p), schemes.step_of(schemes.TABLEAUX[label[name]])
             truth = step(law, t, x, v, h)
             got = getattr(lesson, name)(swinging, t, x, v, h, p)
-            worst[name] = max(worst[name], np.max(np.abs(np.array(got) - truth)))
+            worst.keep(name, np.max(np.abs(np.array(got) - truth)))
         # a history is that of single steps, each at its own time, and ends where a run of many steps ends
         p, states, rk4 = Swing(k, c, drive, omega), [(x, v)], lesson.rk4_step
         for n in range(3):
@@ -833,7 +833,7 @@ def one_step(lesson):
         ts, xs, vs = lesson.trajectory(rk4, swinging, t, x, v, h, 3, p)
         end = np.array(lesson.advance(rk4, swinging, t, x, v, h, 3, p))
         errors = np.stack((xs, vs), axis=1) - np.array(states), ts - t - h * np.arange(4), end - states[-1]
-        history = max(history, *(np.max(np.abs(error)) for error in errors))
+        history = np.max((history, *(np.max(np.abs(error)) for error in errors)))
     return [agreement(f"One step of {label[name]} is that of its published coefficients.",
                       f"{label[name]}: largest error of a step [m, m/s]", error,
                       100.0 * NEWTON if "implicit" in name else ROUNDED) for name, error in worst.items()] + [

@@ -10,18 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from solutions.checks import Diverged
 from validate.reference.kinematics import annulus, curvature_of, end_of, jacobian_of, joints_of, spatial_end
-from validate.stability.case import (
-    DOTS,
-    LINE,
-    LargestErrors,
-    Picture,
-    agreement,
-    bisect,
-    case,
-    finding,
-    refuses,
-    series,
-)
+from validate.stability.case import DOTS, LINE, Picture, Worst, agreement, bisect, case, finding, refuses, series
 
 SMALL = 1e-8                 # disturbance that a linear theory knows [rad]: leaves 1e-8 of what is measured
 FOUR_DIGITS = 1e-4           # of an edge that bisection finds, and of a factor, relative [-]
@@ -553,7 +542,7 @@ def geometry_of_arms(lesson):
     A damped step between limits is that of the joints that are free to go; one at its limit is free to go inwards.
     """
     rng = np.random.default_rng(111)
-    worst = LargestErrors()
+    worst = Worst()
     for _ in range(TRIED):
         J = rng.normal(size=(2, 4))
         u, sigma, _ = np.linalg.svd(J)
@@ -593,7 +582,7 @@ def geometry_of_arms(lesson):
             angles, count = lesson.damped_step(lesson.reach_2d, angles, target, arm), count + 1
         found, error, iterations = lesson.solve_reach(lesson.damped_step, lesson.reach_2d, theta, target, 1e-6, 50, arm)
         worst.keep("search", abs(iterations - count), np.max(np.abs(found - angles)),
-                              abs(error - np.linalg.norm(target - end_of(angles, lengths))))
+                   abs(error - np.linalg.norm(target - end_of(angles, lengths))))
 
         x = np.concatenate((np.zeros((1, 3)), np.cumsum(rng.normal(size=(4, 3)), axis=0))) + rng.normal(size=3)
         swept = lesson.fabrik_sweep(x, rng.normal(size=3), lengths)

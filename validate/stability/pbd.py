@@ -11,7 +11,7 @@ from solutions import integrators
 from solutions.checks import Diverged
 from solutions.pbd import ConstraintNetwork
 from validate.reference.pbd import pendulum_period
-from validate.stability.case import DOTS, LINE, LargestErrors, Picture, agreement, case, finding, refuses, series
+from validate.stability.case import DOTS, LINE, Picture, Worst, agreement, case, finding, refuses, series
 
 G = 9.81                     # [m/s²]
 MILLIMETRES = 1e3            # millimetres per metre
@@ -758,7 +758,7 @@ def constraints_and_gradients(lesson):
     """
     rng = np.random.default_rng(81)
     nowhere = lesson.Obstacle(np.full(3, 50.0), 0.0, np.array([0.0, 0.0, -50.0]), np.array([0.0, 0.0, 1.0]))
-    worst = LargestErrors()
+    worst = Worst()
 
     for _ in range(TRIED):
         x, w, rest = rng.normal(size=(4, 3)), rng.uniform(0.5, 2.0, 4), rng.uniform(0.5, 2.0)

@@ -11,7 +11,7 @@ from solutions.checks import Diverged
 from validate.methods import TURNS
 from validate.reference.orientation import about, cross_matrix, quaternion_matrix, relative_turn
 from validate.reference.rotation import symmetric_top
-from validate.stability.case import DOTS, EDGE, LINE, LargestErrors, Picture, agreement, bisect, case, finding, series
+from validate.stability.case import DOTS, EDGE, LINE, Picture, Worst, agreement, bisect, case, finding, series
 
 EPS = 1.2e-16                # relative size of a rounding
 LABEL = {method.function: method.label for method in TURNS}
@@ -461,13 +461,13 @@ def loads_and_derivatives(lesson):
     largest real part of the eigenvalues of Euler's equations, linearised by differences that are exact for them,
     because they are quadratic.
     """
-    rng, worst = np.random.default_rng(55), {"load": 0.0, "derivative": 0.0, "rate": 0.0}
+    rng, worst = np.random.default_rng(55), Worst()
     for _ in range(50):
         x, points, forces = rng.normal(size=3), rng.normal(size=(5, 3)), rng.normal(size=(5, 3))
         F, tau = lesson.total_load(x, points, forces)
         for V, omega in rng.normal(size=(6, 2, 3)):
             work = np.sum(forces * (V + np.cross(omega, points - x)))
-            worst["load"] = max(worst["load"], abs(F @ V + tau @ omega - work) / np.sum(np.abs(forces)))
+            worst.keep("load", abs(F @ V + tau @ omega - work) / np.sum(np.abs(forces)))
 
         R, _ = np.linalg.qr(rng.normal(size=(3, 3)))
         R *= np.sign(np.linalg.det(R))
@@ -478,14 +478,14 @@ def loads_and_derivatives(lesson):
         omega = np.linalg.solve(R @ np.diag(I_body) @ R.T, L)
         truth = np.concatenate((P / m, np.stack([np.cross(omega, axis) for axis in R.T], axis=1).ravel(), F, tau))
         got = np.concatenate([np.ravel(part) for part in rate])
-        worst["derivative"] = max(worst["derivative"], np.linalg.norm(got - truth) / np.linalg.norm(truth))
+        worst.keep("derivative", np.linalg.norm(got - truth) / np.linalg.norm(truth))
 
         k, spin = int(rng.integers(3)), rng.choice([-1.0, 1.0]) * rng.uniform(0.5, 5.0)
         euler = lambda w, I=I_body: np.cross(I * w, w) / I
         about = spin * np.eye(3)[k]
         matrix = np.stack([0.5 * (euler(about + e) - euler(about - e)) for e in np.eye(3)], axis=1)
         growth = max(0.0, np.linalg.eigvals(matrix).real.max())
-        worst["rate"] = max(worst["rate"], abs(lesson.tumbling_rate(I_body, k, spin) - growth) / abs(spin))
+        worst.keep("rate", abs(lesson.tumbling_rate(I_body, k, spin) - growth) / abs(spin))
     return [
         agreement("A load is what does the same work on every rigid motion.", "power: largest relative error [-]",
                   worst["load"], 1e-12),
@@ -625,7 +625,7 @@ def by_matrices(t, q, L, dt, I, a, b):
 @case("one-step", "One step of each rotation", compiled=False)
 def one_step(lesson):
     """A step is its definition by matrices: three unlike moments, any orientation, a torque of time and orientation."""
-    rng, errors, parts = np.random.default_rng(56), {}, dict.fromkeys(("product", "energy", "top", "velocity"), 0.0)
+    rng, errors, parts = np.random.default_rng(56), Worst(), Worst()
     for _ in range(TRIED):
         I = rng.uniform(1.0, 1.9, 3)[rng.permutation(3)]
         q, (L, a, b, r, v) = rng.normal(size=4), rng.normal(size=(5, 3))
@@ -637,20 +637,19 @@ def one_step(lesson):
             h = SHORT * dt if name == "runge_kutta_step" else dt
             turned, momentum = steps[h][name]
             new_q, new_L = getattr(lesson, name)(torque, t, q, L, h, body)
-            error = max(np.max(np.abs(quaternion_matrix(*new_q) - turned)), np.max(np.abs(new_L - momentum)))
-            errors[name] = max(errors.get(name, 0.0), error)
+            errors.note(name, (quaternion_matrix(*new_q), new_L), (turned, momentum))
 
         p = rng.normal(size=4)
         p /= np.linalg.norm(p)
         product = quaternion_matrix(*lesson.quaternion_product(p, q))
-        parts["product"] = max(parts["product"], np.max(np.abs(product - quaternion_matrix(*p) @ R)),
-                               np.max(np.abs(lesson.rotation_matrix(q) - R)))
+        parts.keep("product", np.max(np.abs(product - quaternion_matrix(*p) @ R)),
+                   np.max(np.abs(lesson.rotation_matrix(q) - R)))
         energy = 0.5 * L @ np.linalg.solve(R @ np.diag(I) @ R.T, L)
-        parts["energy"] = max(parts["energy"], abs(lesson.kinetic_energy(q, L, I) - energy))
+        parts.keep("energy", abs(lesson.kinetic_energy(q, L, I) - energy))
         tau = np.cross(R[:, 2], [0.0, 0.0, -2.5])
-        parts["top"] = max(parts["top"], np.max(np.abs(lesson.heavy_top_torque(t, q, L, lesson.Top(I, 2.5)) - tau)))
-        parts["velocity"] = max(parts["velocity"], np.max(np.abs(lesson.point_velocity(v, L, r) - v - np.cross(L, r))),
-                                np.max(np.abs(lesson.skew(L) - cross_matrix(L))))
+        parts.keep("top", np.max(np.abs(lesson.heavy_top_torque(t, q, L, lesson.Top(I, 2.5)) - tau)))
+        parts.keep("velocity", np.max(np.abs(lesson.point_velocity(v, L, r) - v - np.cross(L, r))),
+                   np.max(np.abs(lesson.skew(L) - cross_matrix(L))))
     claims = (("product", "A product of quaternions is the product of their matrices.", "matrix [-]"),
               ("energy", "The energy of rotation is ½ L · I⁻¹ L in the world.", "energy [J]"),
               ("top", "Gravity turns a top about its pivot with l𝐞 × (−Mg ẑ).", "torque [N m]"),
@@ -666,7 +665,7 @@ def one_step(lesson):
 @case("one-step-of-the-loop", "One step of the lecture's loop, and of a rolling ball", compiled=False)
 def one_step_of_the_loop(lesson):
     """A body under a force and a torque of time; a ball of any size whose friction stops its slip within the cone."""
-    rng, worst = np.random.default_rng(57), LargestErrors()
+    rng, worst = np.random.default_rng(57), Worst()
     for _ in range(TRIED):
         m, I, dt, t = rng.uniform(0.5, 2.0), rng.uniform(1.0, 1.9, 3), rng.uniform(0.01, 0.1), rng.uniform()
         q, (x, v, omega, f, a) = rng.normal(size=4), rng.normal(size=(5, 3))

@@ -6,18 +6,7 @@ What a case predicts is derived in its docstring; what it measures comes from th
 import numpy as np
 
 from validate.reference.simulator import rocking
-from validate.stability.case import (
-    DOTS,
-    LINE,
-    LargestErrors,
-    Picture,
-    agreement,
-    bisect,
-    case,
-    finding,
-    refuses,
-    series,
-)
+from validate.stability.case import DOTS, LINE, Picture, Worst, agreement, bisect, case, finding, refuses, series
 
 G = 9.81                     # [m/s²]
 ROUND_OFF = 1e-12            # of numbers around 1 after a few hundred operations
@@ -305,7 +294,7 @@ def loop_by_parts(lesson):
     Euler's equation in world coordinates, ω̇ = I⁻¹ (τ − ω × I ω), with I = R diag Rᵀ as matrices.
     """
     rng = np.random.default_rng(101)
-    worst = LargestErrors()
+    worst = Worst()
 
     for _ in range(TRIED):
         m, dt, t, g = rng.uniform(0.5, 2.0, 2), rng.uniform(0.01, 0.1), rng.uniform(0.0, 1.0), rng.normal(size=3)

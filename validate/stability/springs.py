@@ -87,7 +87,8 @@ def lecture_step(lesson):
         v_new = v + dt * a
         got_x, got_v = lesson.mass_spring_damper_step(0.3, x, xv, dt, network)
         truth = np.concatenate((y + 0.5 * dt * (v + v_new), v_new))
-        worst = max(worst, np.max(np.abs(np.concatenate((got_x[:, 1], got_v[:, 1])) - truth)) / np.max(np.abs(truth)))
+        got = np.concatenate((got_x[:, 1], got_v[:, 1]))
+        worst = np.maximum(worst, np.max(np.abs(got - truth)) / np.max(np.abs(truth)))
     claim = "The lecture's step adds gravity, wind, drag, springs and dampers, and moves with the mean velocity."
     return [agreement(claim, "state after a step: largest relative error [-]", worst, ROUNDED)], None
 
@@ -111,10 +112,10 @@ def angular_spring(lesson):
 
         truth = -gradient(energy, x).reshape(3, 2)
         F = np.array(lesson.angular_spring_forces(x[:2], x[2:4], x[4:], rest, k))
-        worst = max(worst, np.max(np.abs(F - truth)) / np.max(np.abs(truth)))
-        force = max(force, np.max(np.abs(F.sum(axis=0))) / np.max(np.abs(F)))
+        worst = np.maximum(worst, np.max(np.abs(F - truth)) / np.max(np.abs(truth)))
+        force = np.maximum(force, np.max(np.abs(F.sum(axis=0))) / np.max(np.abs(F)))
         places = x.reshape(3, 2)
-        moment = max(moment, abs(np.sum(places[:, 0] * F[:, 1] - places[:, 1] * F[:, 0])) / np.max(np.abs(F)))
+        moment = np.maximum(moment, abs(np.sum(places[:, 0] * F[:, 1] - places[:, 1] * F[:, 0])) / np.max(np.abs(F)))
     return [agreement("The forces on both ends and on the hinge are the derivative of ½k(θ − rest)².",
                       "forces: largest relative error [-]", worst, 1e-10),
             agreement("They add up to nothing.", "sum of the forces over the largest [-]", force, ROUNDED),
@@ -144,7 +145,7 @@ def large_step(lesson):
             hessian = np.array([push(r + IMAGINARY * 1j * e).imag for e in np.eye(3)]) / IMAGINARY
             values, axes = np.linalg.eigh(hessian)
             positive = axes * np.maximum(values, 0.0) @ axes.T
-            stiffness = max(stiffness, np.max(np.abs(blocks[s] - positive)) / k[s])
+            stiffness = np.maximum(stiffness, np.max(np.abs(blocks[s] - positive)) / k[s])
             n = r / length(r)
             ends = np.kron(np.eye(5)[i[s]] - np.eye(5)[j[s]], np.eye(3))
             K += ends.T @ positive @ ends
@@ -158,7 +159,7 @@ def large_step(lesson):
         v_new[free] += np.linalg.solve(A[np.ix_(free, free)], right[free])
         got_x, got_v = lesson.implicit_spring_network_step(lesson.spring_network_acceleration, 0.0, x, v, h, network)
         truth = np.concatenate((x.ravel() + h * v_new, v_new))
-        steps = max(steps, np.max(np.abs(np.concatenate((got_x.ravel(), got_v.ravel())) - truth)))
+        steps = np.maximum(steps, np.max(np.abs(np.concatenate((got_x.ravel(), got_v.ravel())) - truth)))
     # conjugate gradients end at 1e-10 of the right-hand side; A has a condition below 1e3
     return [agreement("The stiffness of a spring is the positive part of the second derivative of its energy.",
                       "blocks of K over k: largest error [-]", stiffness, 1e-10),
