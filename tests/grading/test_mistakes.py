@@ -15,7 +15,7 @@ from ..mutants.traces import mutants_of, names_in, traces_of
 from . import example, points, release
 
 LESSONS = modules.lesson_names()
-EACH = 5                     # the default run tries one of so many known wrong answers of a lesson; --long all [-]
+EACH = 20                    # the default run tries one of so many known wrong answers of a lesson; --long all [-]
 RECOGNISED = 0.9             # share of the wrong answers of a lesson that its table knows, at least
 NOISE = 1e-15                # relative size of what another order of the same operations may change
 
