@@ -66,6 +66,7 @@ def plane_distance(p, plane):
 
     E(p) = a x + b y + c z + d = n · p + d
 
+    The product is p @ n: p may have two components, and `dot` takes three.
     *Source:* first lecture deck, “Detect collision: point–plane”.
     """
     ### BEGIN SOLUTION 6.1
@@ -151,7 +152,7 @@ def closest_on_segment(p, a, b):
     *Find* it: the points of the segment are a + s (b − a) with 0 ≤ s ≤ 1.  Where the nearest point of the line through
     a and b is beyond an end, that end is nearest.
 
-    Raises BadInput for a segment of zero length.
+    Raises BadInput("the length of an edge [m]", 0.0, "give two different ends") for a segment of zero length.
     """
     ### BEGIN SOLUTION 6.5
     # s = (p − a) · (b − a)/|b − a|²,  limited to 0 ≤ s ≤ 1
@@ -202,7 +203,8 @@ def closest_on_triangle(p, a, b, c):
     q where it is inside: ((b − a) × (q − a)) · N ≥ 0, and the same for b, c and for c, a;
     elsewhere the nearest of the closest_on_segment of the three edges; nearer(p, q, other) returns q or other
 
-    Raises BadInput for a triangle without area: |N| ≤ DEGENERATE_AREA times its longest edge squared.
+    Raises BadInput("the area of a triangle [m²]", ½|N|, "give three corners that are not on one line") where |N| is
+    DEGENERATE_AREA times its longest edge squared or less.
     """
     ### BEGIN SOLUTION 6.7
     N = cross(b - a, c - a)
@@ -258,7 +260,8 @@ def swept_box(low, high, move):
 def all_pairs(low, high):
     """Return (m, 2): the numbers i < j of all boxes low, high (n, d) that touch, each pair once, by testing every pair.
 
-    These are n (n − 1)/2 tests with boxes_touch: ten times as many boxes take a hundred times as long.
+    These are n (n − 1)/2 tests, boxes_touch(low, high, i, low, high, j): ten times as many boxes take a hundred times
+    as long.
     Begin with the empty list  found = [(0, 0) for _ in range(0)],  from which the compiler infers its type.
     Append pairs, and return as_pairs(found).
     Raises what check_boxes raises; call it first.
@@ -278,9 +281,9 @@ def find_intersections(a, b):
     """Return (m, 2): the pairs (item of a, item of b) whose boxes touch, each once, by a joint descent of two Trees.
 
     FindIntersections(i, j), first of (0, 0), does nothing unless the boxes of node i of a and node j of b touch
-    (boxes_touch).  If they do:
+    (boxes_touch(a.low, a.high, i, b.low, b.high, j)).  If they do:
         neither is a leaf      FindIntersections of each child of the larger node with the other one; the larger is the
-                               one with the greater half_perimeter, i if these are equal
+                               one with the greater half_perimeter(tree, node), i if these are equal
         one is a leaf          FindIntersections of each child of the other one with the leaf
         both are leaves        test the pairs of their items: touching_items(a, i, b, j, found)
 
@@ -420,7 +423,7 @@ def repulsion(x, centre, radius, reach, k):
     U = ½ k (1/g − 1/reach)²          for a gap g = |x − centre| − radius below reach,     0 beyond
     *Find* a = −∇U.  A body of finite energy never touches the obstacle.
 
-    k in m⁴/s².  Raises BadInput for a gap of zero or below.
+    k in m⁴/s².  Raises BadInput("the gap to an obstacle [m]", g, "start outside, and take smaller steps") for g ≤ 0.
     *Source:* first lecture deck, “Collision avoidance: force fields”; Khatib 1986.
     """
     ### BEGIN SOLUTION 6.16

@@ -151,11 +151,11 @@ def verlet_step(acceleration, t, x, v, dt, p):
 
 
 def blanes_moan_step(acceleration, t, x, v, dt, p):
-    """Given.  Advance one step of six kicks and drifts; fourth order, for accelerations that do not depend on v.
+    """Given.  Advance one step of seven kicks and six drifts; fourth order, for accelerations that do not depend on v.
 
     kick:  v ← v + kick dt a(t, x)         drift:  x ← x + drift dt v,   t ← t + drift dt        by turns, see SPLITTING
     With SPLITTING = ((0, ½), (1, ½)) this is leapfrog: Verlet is the simplest of a family.  It keeps the energy as
-    Verlet does, with an error that is smaller by orders of magnitude for six times the work.
+    Verlet does, with an error that is smaller by orders of magnitude for seven times the work.
     *Source:* Blanes and Moan 2002, the Runge–Kutta–Nyström method SRKN₆ᵇ of order 4.
     """
     x, v = x.copy(), v.copy()
@@ -317,7 +317,8 @@ def observed_order(dts, errors):
     *Find* the formula: log(error) over log(dt) is a straight line, and k is its slope by least squares.
 
     dts and errors are (n,) arrays of positive numbers.
-    Raises BadInput for one that is not: check_positive("step dt [s]", dt) and check_positive("error [-]", error).
+    Raises BadInput for one that is not: check_positive("step dt [s]", dt) for every dt of dts, and
+    check_positive("error [-]", error) for every error of errors.
     A run with an error of exactly 0 gives no information about the order.
     """
     ### BEGIN SOLUTION 1.10

@@ -1,6 +1,6 @@
 """Which exercise calls which others: read from the worked answers, and looked up where there are none.
 
-`needs.json` has {exercise: its lesson, its function, the exercises that it calls}.  A call through a given function
+`needs.json` has {exercise: its lesson, its function, whether it is a formula to find, the exercises that it calls}.
 counts, too, and through a function that is handed over.  `python -m validate.generate` writes it.
 """
 
@@ -11,6 +11,7 @@ from functools import cache, lru_cache
 from pathlib import Path
 
 FILE = Path(__file__).with_name("needs.json")
+FIND = "*Find*"              # in the docstring of an exercise whose formula is to be found
 
 
 # ---------------------------------------------------------------------------------------------- looking up
@@ -19,6 +20,11 @@ FILE = Path(__file__).with_name("needs.json")
 def table():
     """{exercise: {"lesson", "function", "needs"}} in the order of the course; empty where the file is missing."""
     return json.loads(FILE.read_text(encoding="utf-8")) if FILE.is_file() else {}
+
+
+def asks_to_find(exercise):
+    """Whether a formula is to be found: a ★★ exercise."""
+    return table().get(exercise, {}).get("find", False)
 
 
 def of_lesson(lesson):
@@ -107,7 +113,13 @@ def read_from(solutions, lessons, exercises):
                     seen.add(other)
                     waiting.append(other)
         return found
-    return {number: {"lesson": lesson, "function": name, "needs": sorted(called((lesson, name)), key=in_order)}
+
+    def to_find(lesson, function):
+        text = (solutions / f"{lesson}.py").read_text(encoding="utf-8")
+        (node,) = (node for node in ast.parse(text).body if getattr(node, "name", "") == function)
+        return FIND in ast.get_docstring(node)
+    return {number: {"lesson": lesson, "function": name, "find": to_find(lesson, name),
+                     "needs": sorted(called((lesson, name)), key=in_order)}
             for (lesson, name), number in numbers.items()}
 
 

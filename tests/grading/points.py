@@ -96,7 +96,9 @@ def reasons(exercise, states, traces, folder):
         return "", ""
     found = mistakes.matching(needs.table()[exercise]["lesson"], exercise, traces)
     below = needs.first_open(exercise, states, folder)
-    return mistakes.sentence(found), needs.sentence(exercise, below, states[below]) if below else ""
+    if below:                                              # what is below spoils the results, so they tell nothing
+        return "", needs.sentence(exercise, below, states[below])
+    return mistakes.sentence(found), ""
 
 
 def beginning(text):

@@ -96,14 +96,13 @@ def test_a_ball_meets_a_plane_when_its_surface_does(lesson, draw):
 def test_a_touching_ball_meets_the_plane_at_once_and_one_that_does_not_arrive_never(lesson, draw):
     r = draw(0.1, 0.5)
     t, dt, x_0, x_1, plane, s = fall(lesson, draw, 3, r)
-    given = f"t = {t}, dt = {dt}, {x_0} to {x_1}, r = {r}, {plane}"
-    short = x_0 + 0.9 * s * (x_1 - x_0)
-    never("time of impact if the step ends before it [s]", lesson.plane_impact_time(t, dt, x_0, short, r, plane), given)
-    never("time of impact of a ball that flies off [s]",
-          lesson.plane_impact_time(t, dt, x_0, 2.0 * x_0 - x_1, r, plane), given)
+    given = lambda begin, end: f"t = {t}, dt = {dt}, {begin} to {end}, r = {r}, {plane}"
+    for what, end in (("if the step ends before it", x_0 + 0.9 * s * (x_1 - x_0)),
+                      ("of a ball that flies off", 2.0 * x_0 - x_1)):
+        never(f"time of impact {what} [s]", lesson.plane_impact_time(t, dt, x_0, end, r, plane), given(x_0, end))
     for end in (x_0, 2.0 * x_1 - x_0):
         close("time of impact of a ball that already overlaps [s]", lesson.plane_impact_time(t, dt, x_1, end, r, plane),
-              t, 0.0, given)
+              t, 0.0, given(x_1, end))
 
 
 @exercise("6.2", points=0.5,
@@ -319,8 +318,8 @@ def test_the_nearest_point_of_a_segment_is_its_foot_or_an_end(lesson, draw):
         s = draw(0.1, 0.9)
         on = a + s * (b - a)
         nearly = a + 1e-9 * (b - a), b - 1e-9 * (b - a)                  # inside, but almost at an end
-        for p, expected in (*((q + aside, q) for q in nearly), (on + aside, on), (a - s * (b - a) + aside, a),
-                            (b + s * (b - a) - aside, b), (a, a)):
+        for p, expected in ((on + aside, on), (a - s * (b - a) + aside, a), (b + s * (b - a) - aside, b), (a, a),
+                            *((q + aside, q) for q in nearly)):
             close("nearest point of the segment [m]", lesson.closest_on_segment(p, a, b), expected, ROUND_OFF,
                   given=f"p = {p}, a = {a}, b = {b}")
 
@@ -1248,7 +1247,8 @@ def test_the_field_is_the_slope_of_its_potential(lesson, draw):
         close("tangential component of the acceleration [m/s²]", here - (here @ way) * way, np.zeros(d), 1e-9, given)
         for beyond in (reach, draw(1.1, 3.0) * reach):
             got = lesson.repulsion(centre + (radius + beyond + 1e-9) * way, centre, radius, reach, k)
-            close("acceleration out of reach [m/s²]", got, np.zeros(d), 0.0, given)
+            close("acceleration out of reach [m/s²]", got, np.zeros(d), 0.0,
+                  f"gap {beyond + 1e-9} m, radius {radius} m, reach {reach} m, k = {k}")
 
 
 @exercise("6.16", points=0.5, hint="there is no field where the gap is zero or negative: raise BadInput with the gap")

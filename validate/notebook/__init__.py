@@ -112,9 +112,8 @@ def answers(lesson):
     withheld = modules.withheld(lesson)
     if not withheld:
         return modules.bind(lesson)
-    display(HTML(f"<p>The worked answers of {escape(lesson)} are not in this copy of the workbook: your own functions "
-                 "stand in "
-                 "for them. What a figure calls truth does not come from them.</p>"))
+    display(HTML(f"<p>Your own functions stand in for the worked answers of {escape(lesson)}, which are not in this "
+                 "copy. What a figure calls truth is computed independently.</p>"))
     mine(lesson)
     return StandIn(lesson, withheld)
 
@@ -353,15 +352,15 @@ class _Map:
 
     def rows(self):
         for number, one in needs.table().items():
-            yield number, one["lesson"], one["function"], ", ".join(one["needs"])
+            yield number, "★★" if one["find"] else "★", one["lesson"], one["function"], ", ".join(one["needs"])
 
     def __repr__(self):
-        return "\n".join(f"{number:6} {lesson:16} {function:32} {calls}" for number, lesson, function, calls in
-                         self.rows())
+        return "\n".join(f"{number:6} {stars:3} {lesson:16} {function:32} {calls}"
+                         for number, stars, lesson, function, calls in self.rows())
 
     def _repr_html_(self):
         head = "".join(f'<th scope="col" style="text-align:left">{name}</th>'
-                       for name in ("exercise", "lesson", "function", "calls"))
+                       for name in ("exercise", "kind", "lesson", "function", "calls"))
         body = "".join(f"<tr>{''.join(f'<td style=text-align:left>{escape(cell)}</td>' for cell in row)}</tr>"
                        for row in self.rows())
         return (f"<details><summary>All {len(needs.table())} exercises, and what each calls</summary>"
@@ -399,11 +398,18 @@ class _Answer:
         indented = ((name, value.replace("\n", f"\n{'':15}")) for name, value in rest)
         return "\n".join([f"{title} ({points})", *(f"    {name:10} {value}" for name, value in indented)])
 
+    def shown(self, name, value):
+        """A line as HTML.  If the exercise is to find a formula, the hint that tells it is folded."""
+        if name == "hint" and needs.asks_to_find(self.exercise):
+            return f"<details><summary>show it</summary>{escape(value)}</details>"
+        return escape(value)
+
     def _repr_html_(self):
         (title, points), *rest = self.lines()
         name_style = "text-align:left;vertical-align:top;color:#5b666e;padding:.1rem 1rem .1rem 0"
         rows = "".join(f'<tr><td style="{name_style}">{escape(n)}</td>'
-                       f'<td style="text-align:left;white-space:pre-wrap">{escape(v)}</td></tr>' for n, v in rest)
+                       f'<td style="text-align:left;white-space:pre-wrap">{self.shown(n, v)}</td></tr>'
+                       for n, v in rest)
         return (f'<div style="border-left:4px solid {COLOUR[self.state]};padding:.3rem .8rem;margin:.3rem 0">'
                 f'<b style="color:{COLOUR[self.state]}">{escape(title)}</b> ({points})'
                 f'<table style="margin:0">{rows}</table></div>')
