@@ -211,7 +211,8 @@ class Pure:
                 if watched:
                     self.trace.changed_input()
                 quantity, expected = "the arrays that were handed in", "left as they were: return new ones"
-                raise NotYet(quantity, expected, f"{name} has changed one in place", "", "changed in place")
+                culprit = f"{name}, or a function that it calls," if self.trace and not watched else name
+                raise NotYet(quantity, expected, f"{culprit} has changed one in place", "", "changed in place")
             return result
 
         call.unwatched = value

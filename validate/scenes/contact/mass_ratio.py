@@ -298,8 +298,8 @@ ENGINES = (
 def too_few(sweeps):
     """Why so many sweeps per step do not carry the heavy box, and that nobody says so."""
     steps = sweeps_needed(1e3, 1.0, SMALL) / sweeps
-    return Departure(f"1,000 on 1 want 6,912 sweeps, {steps:.0f} of its steps, before which the heavy box is inside "
-                     "the light one; and it reports no residual, so that it cannot refuse",
+    return Departure(f"a mass ratio of 1,000 takes 6,912 sweeps, which are {steps:.0f} of its steps. By then the heavy "
+                     "box is inside the light one. It reports no residual, so nobody is warned",
                      lambda p, t: np.zeros(1))
 
 
