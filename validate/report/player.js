@@ -88,7 +88,7 @@ function controls(place, { last, seconds, runs, draw, reset, hint }) {
     label.append(run.label);
     box.onchange = () => { run.shown = box.checked; show(); };
   }
-  if (runs.length > 1 && last > 0) {
+  if (runs.length > 1 && last > 0 && (runs[0].role || runs[0].look) === "truth") {
     const choice = add(add(bar, "label", { textContent: "difference from the truth" }), "select", { ariaLabel: "Magnify the difference from the truth" });
     for (const value of MAGNIFIED) add(choice, "option", { value, textContent: value === 1 ? "as it is" : `× ${value.toLocaleString("en")}` });
     choice.onchange = () => { state.magnified = +choice.value; show(); };
