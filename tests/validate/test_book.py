@@ -155,6 +155,15 @@ def test_a_notebook_loses_its_sliders_and_loads_its_player_once(tmp_path):
     assert '<a href="../report/oscillator.html">' in made.cells[1]["source"]
 
 
+def test_the_report_in_the_book_leads_to_pages_of_the_book():
+    link = '<a href="../{0}"><code>{0}</code></a>'
+    scene, lesson = "validate/scenes/pbd/rope.py", "solutions/pbd.py"
+    page = "; ".join(link.format(path) for path in (scene, lesson, "notebooks/08_pbd.ipynb"))
+    assert pages.with_pages_for_sources(page) == (
+        f'<code>{scene}</code>; <a href="../lessons/pbd.html"><code>{lesson}</code></a>; '
+        '<a href="../notebooks/08_pbd.html"><code>notebooks/08_pbd.ipynb</code></a>')
+
+
 def test_a_notebook_that_prints_a_lesson_runs_with_the_stubs():
     prints = [path.stem[:2] for path in sorted(execute.NOTEBOOKS.glob("[0-9]*.ipynb"))
               if execute.prints_source(nbformat.read(path, as_version=4))]

@@ -13,6 +13,7 @@ from ..store import SUBSET
 from . import api, course, execute, plan, sheets
 
 HERE = Path(__file__).resolve().parent
+SOURCE = re.compile(r'<a href="(?:\.\./)*\.\./((notebooks|solutions|validate)/[\w/.]+)">(<code>[\w/.]+</code>)</a>')
 WIDGET = "application/vnd.jupyter.widget-view+json"
 INLINE = re.compile(r"<script>(.*?)</script>", re.S)            # a player: the same in every film
 LONG = 8                     # lines of code; longer cells are folded
@@ -49,6 +50,8 @@ def write_all(folder, numbers, report, say):
         write(folder / "sheets" / f"{name}.md", sheets.page(name, bool(report)))
     if report:
         shutil.copytree(report, folder / "extra" / "report", ignore=shutil.ignore_patterns("results", SUBSET))
+        for page in (folder / "extra" / "report").glob("*.html"):
+            write(page, with_pages_for_sources(page.read_text(encoding="utf-8")))
     write(folder / "index.md", front(paths))
     about_report = HERE / ("validation.md" if report else "no_report.md")
     write(folder / "validation.md", about_report.read_text(encoding="utf-8"))
@@ -56,6 +59,16 @@ def write_all(folder, numbers, report, say):
 
 def write(path, text):
     path.write_text(text, encoding="utf-8")
+
+
+def with_pages_for_sources(page):
+    """A page of the report whose links to files of the repository lead to pages of the book, where there are any."""
+    def to_page(match):
+        path, folder, text = Path(match[1]), match[2], match[3]
+        parts = {"notebooks": "notebooks", "solutions": "lessons"}
+        known = folder == "notebooks" or path.stem in course.lessons() and len(path.parts) == 2
+        return f'<a href="../{parts[folder]}/{path.stem}.html">{text}</a>' if folder in parts and known else text
+    return SOURCE.sub(to_page, page)
 
 
 # ---------------------------------------------------------------------------------------------- notebooks
