@@ -66,7 +66,7 @@ def with_pages_for_sources(page):
     def to_page(match):
         path, folder, text = Path(match[1]), match[2], match[3]
         parts = {"notebooks": "notebooks", "solutions": "lessons"}
-        known = folder == "notebooks" or path.stem in course.lessons() and len(path.parts) == 2
+        known = folder == "notebooks" or (path.stem in course.lessons() and len(path.parts) == 2)
         return f'<a href="../{parts[folder]}/{path.stem}.html">{text}</a>' if folder in parts and known else text
     return SOURCE.sub(to_page, page)
 
