@@ -10,7 +10,6 @@ import hashlib
 import os
 import pickle
 import queue
-import re
 import subprocess
 import sys
 import threading
@@ -24,9 +23,9 @@ from solutions.checks import BadInput
 from . import modules
 from .processes import Affinity, outcome
 from .run import processor
+from .scheduler import CONNECT_WITHIN, connected, workers_of
 from .store import installed_versions, sources
 
-CONNECT_WITHIN = 5.0         # [s]: a scheduler answers in milliseconds
 WORKERLESS = 30.0            # time that a cluster may be without any worker [s]: a nanny starts a new one in 2
 LOOK_AFTER = 1.0             # interval of checks that the cluster still answers [s]
 TRIES = 3                    # of a call whose measuring process broke [-]
@@ -138,31 +137,6 @@ def cluster(address, of):
                     client.run(end, found.run, on_error="ignore")
     finally:
         client.close(timeout=CONNECT_WITHIN)
-
-
-def connected(address):
-    """Connect to the scheduler."""
-    if not re.fullmatch(r"\w+://\S+:\d+", address):
-        raise BadInput(f"--executor {address!r}", "not an address", "write it like tcp://127.0.0.1:8786")
-    try:
-        from distributed import Client
-    except ImportError:
-        remedy = "--executor needs it: pip install -c constraints.txt -e '.[cluster]'"
-        raise BadInput("the package distributed", "not installed", remedy) from None
-    try:
-        return Client(address, timeout=CONNECT_WITHIN, set_as_default=False)
-    except (OSError, ValueError) as e:
-        why = f"no Dask scheduler that answers ({type(e).__name__})"
-        remedy = "start one there with `dask scheduler`, and name the address that it prints"
-        raise BadInput(f"--executor {address}", why, remedy) from None
-
-
-def workers_of(client):
-    """Return {address of a worker: its threads}; empty if the scheduler does not answer."""
-    try:
-        return dict(client.nthreads()) if client.status == "running" else {}
-    except Exception:                                                  # Dask raises errors of many kinds when cut off
-        return {}
 
 
 def one_of_each_machine(workers):

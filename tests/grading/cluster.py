@@ -10,7 +10,6 @@ import json
 import os
 import pickle
 import queue
-import re
 import shutil
 import subprocess
 import sys
@@ -22,10 +21,10 @@ from importlib.metadata import version
 
 from solutions.checks import BadInput
 from validate import modules
+from validate.scheduler import CONNECT_WITHIN, connected, workers_of
 
 from . import children, local, marking, sandbox
 
-CONNECT_WITHIN = 5.0         # [s]: a scheduler answers in milliseconds
 WORKERLESS = 30.0            # time that a cluster may be without any worker [s]: a nanny starts a new one in 2
 LOOK_AFTER = 1.0             # interval of checks that the cluster still answers [s]
 AHEAD = 4                    # submissions sent per thread [-]: a whole large class would fill the scheduler's memory
@@ -47,23 +46,6 @@ def results(address, todo, settings):
         client.close()
         raise
     return graded(client, address, todo, settings)
-
-
-def connected(address):
-    """Connect to the scheduler."""
-    if not re.fullmatch(r"\w+://\S+:\d+", address):
-        raise BadInput(f"--executor {address!r}", "not an address", "write it like tcp://127.0.0.1:8786")
-    try:
-        from distributed import Client
-    except ImportError:
-        remedy = "--executor needs it: pip install -c constraints.txt -e '.[cluster]'"
-        raise BadInput("the package distributed", "not installed", remedy) from None
-    try:
-        return Client(address, timeout=CONNECT_WITHIN, set_as_default=False)
-    except (OSError, ValueError) as e:
-        why = f"no Dask scheduler that answers ({type(e).__name__})"
-        remedy = "start one there with `dask scheduler`, and name the address that it prints"
-        raise BadInput(f"--executor {address}", why, remedy) from None
 
 
 def fit(client, address, settings):
@@ -166,14 +148,6 @@ def outcomes(client, address, todo, settings, alone=None):
 def threads_of(client):
     """Return the number of submissions that the cluster grades at a time; 0 if it does not answer."""
     return sum(workers_of(client).values())
-
-
-def workers_of(client):
-    """Return {address of a worker: its threads}; empty if the scheduler does not answer."""
-    try:
-        return dict(client.nthreads()) if client.status == "running" else {}
-    except Exception:                                                  # Dask raises errors of many kinds when cut off
-        return {}
 
 
 def fetched(future):

@@ -9,7 +9,7 @@ import pytest
 
 from solutions.checks import BadInput
 from validate.stability import integrators
-from validate.stability.case import EDGE, bisect, finding
+from validate.stability.case import EDGE, Worst, bisect, finding
 from validate.stability.examine import all_cases, examine, subject_of
 
 examined = cache(examine)
@@ -178,3 +178,14 @@ def test_bisection_says_so_when_there_is_no_edge():
     assert bisect(lambda h: True, 0.05, 4.0) == 0.0
     assert bisect(lambda h: False, 0.05, 4.0) == np.inf
     assert bisect(lambda h: h > np.pi, 0.05, 4.0) == pytest.approx(np.pi, rel=EDGE)
+
+
+def test_the_worst_error_keeps_a_nan_and_asks_for_a_trial():
+    worst = Worst()
+    assert np.isnan(worst["never tried"])
+    worst.keep("law", 1.0, 2.0)
+    worst.note("pair", (np.array([1.0, np.inf]), 3.0), (np.array([1.5, np.inf]), 3.0))
+    assert worst["law"] == 2.0 and worst["pair"] == 0.5
+    for error in (np.nan, 1.0):
+        worst.keep("law", error)
+    assert np.isnan(worst["law"])

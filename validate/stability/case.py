@@ -130,7 +130,8 @@ class Worst(dict):
     def note(self, law, got, truth):
         """Keep the largest difference of numbers from their truth; both may be tuples of arrays.  Here ∞ equals ∞."""
         got, truth = flat(got), flat(truth)
-        self.keep(law, np.max(np.abs(np.where(got == truth, 0.0, got - truth))))
+        with np.errstate(invalid="ignore"):                # ∞ − ∞, which is not used
+            self.keep(law, np.max(np.abs(np.where(got == truth, 0.0, got - truth))))
 
 
 def flat(numbers):

@@ -514,7 +514,7 @@ def undefined_distance(lesson):
 
 def inside(box, points):
     """Return how far the farthest of these points is outside a box [m]; below zero if all are inside."""
-    return max(np.max(np.abs(box.R.T @ (x - box.x)) - box.half) for x in points)
+    return np.max([np.max(np.abs(box.R.T @ (x - box.x)) - box.half) for x in points])
 
 
 def overlapping(rng, n):
@@ -536,7 +536,7 @@ def overlapping(rng, n):
 
 def ways_out(lesson, pairs):
     """Return (depths found [m], true ones, the worst errors) of pairs of boxes that overlap."""
-    worst = {"depth": 0.0, "left": 0.0, "outside": -1.0, "deepest": 0.0}
+    worst = Worst()
     depths, true = [], []
     for a, b in pairs:
         gap, n, _ = lesson.box_separation(a, b)
@@ -544,13 +544,13 @@ def ways_out(lesson, pairs):
         moved = a._replace(x=a.x - gap * n)
         depths.append(-gap)
         true.append(-way)
-        worst["depth"] = max(worst["depth"], abs(gap - way))
-        worst["left"] = max(worst["left"], abs(lesson.box_separation(moved, b)[0]))
+        worst.keep("depth", abs(gap - way))
+        worst.keep("left", abs(lesson.box_separation(moved, b)[0]))
         if len(contacts.gap) == 0:
-            worst["outside"] = np.inf
+            worst.keep("outside", np.inf)
             continue
-        worst["outside"] = max(worst["outside"], inside(a, contacts.p_a), inside(b, contacts.p_b))
-        worst["deepest"] = max(worst["deepest"], abs(contacts.gap.min() - gap))
+        worst.keep("outside", inside(a, contacts.p_a), inside(b, contacts.p_b))
+        worst.keep("deepest", abs(contacts.gap.min() - gap))
     return np.array(depths), np.array(true), worst
 
 
@@ -580,9 +580,9 @@ def boxes_leave_by_the_shortest_way(worst):
             claim="Points of contact lie on both bodies.",
             quantity="distance of the farthest point of contact outside its box, or 0 [m]",
             predicted=0.0,
-            measured=max(0.0, worst["outside"]),
+            measured=worst["outside"],
             tolerance=1e-11,
-            observation=(f"No point of contact of 100 pairs is more than {max(0.0, worst['outside']):.0e} m "
+            observation=(f"No point of contact of 100 pairs is more than {worst['outside']:.0e} m "
                          "outside its box."),
         ),
         finding(
