@@ -21,12 +21,12 @@ def arms_2d(x, inv_mass, inv_inertia, c):
     m = c.a.size
     arms = Arms(np.empty((m, 2)), np.empty((m, 2)), np.empty(m), np.empty(m))
     for k in range(m):
-        light = inv_mass[c.a[k]] + inv_mass[c.b[k]]
-        arms.k_n[k], arms.k_t[k] = light, light
-        for body, r in ((c.a[k], arms.r_a), (c.b[k], arms.r_b)):
-            r[k, 0], r[k, 1] = c.p[k, 0] - x[body, 0], c.p[k, 1] - x[body, 1]
-            arms.k_n[k] += inv_inertia[body] * (r[k, 0] * c.n[k, 1] - r[k, 1] * c.n[k, 0]) ** 2
-            arms.k_t[k] += inv_inertia[body] * (r[k, 0] * c.n[k, 0] + r[k, 1] * c.n[k, 1]) ** 2
+        a, b, n_x, n_y = c.a[k], c.b[k], c.n[k, 0], c.n[k, 1]
+        a_x, a_y, b_x, b_y = c.p[k, 0] - x[a, 0], c.p[k, 1] - x[a, 1], c.p[k, 0] - x[b, 0], c.p[k, 1] - x[b, 1]
+        arms.r_a[k, 0], arms.r_a[k, 1], arms.r_b[k, 0], arms.r_b[k, 1] = a_x, a_y, b_x, b_y
+        light, I_a, I_b = inv_mass[a] + inv_mass[b], inv_inertia[a], inv_inertia[b]
+        arms.k_n[k] = light + I_a * (a_x * n_y - a_y * n_x) ** 2 + I_b * (b_x * n_y - b_y * n_x) ** 2
+        arms.k_t[k] = light + I_a * (a_x * n_x + a_y * n_y) ** 2 + I_b * (b_x * n_x + b_y * n_y) ** 2
     return arms
 
 
@@ -56,10 +56,13 @@ def arms_3d(x, inv_mass, inv_inertia, c):
 def apply_impulses_2d(v, omega, J, c, arms, inv_mass, inv_inertia):
     """Velocities of all bodies after impulses J (m, 2) at their contacts, in place."""
     for k in range(c.a.size):
-        for body, r, sign in ((c.a[k], arms.r_a, 1.0), (c.b[k], arms.r_b, -1.0)):
-            v[body, 0] += sign * inv_mass[body] * J[k, 0]
-            v[body, 1] += sign * inv_mass[body] * J[k, 1]
-            omega[body] += sign * inv_inertia[body] * (r[k, 0] * J[k, 1] - r[k, 1] * J[k, 0])
+        a, b, J_x, J_y = c.a[k], c.b[k], J[k, 0], J[k, 1]
+        v[a, 0] += inv_mass[a] * J_x
+        v[a, 1] += inv_mass[a] * J_y
+        omega[a] += inv_inertia[a] * (arms.r_a[k, 0] * J_y - arms.r_a[k, 1] * J_x)
+        v[b, 0] -= inv_mass[b] * J_x
+        v[b, 1] -= inv_mass[b] * J_y
+        omega[b] -= inv_inertia[b] * (arms.r_b[k, 0] * J_y - arms.r_b[k, 1] * J_x)
 
 
 def apply_impulse(v, omega, i, r, J, inv_mass, inv_inertia):

@@ -16,6 +16,7 @@ from .arms import (
     world_inertia,
 )
 from .broad_phase import Pairs, near_pairs
+from .contact_points import put_back, reordered, spread_order
 from .scenes import PileState, check_overlap, checked_pile
 
 SEPARATION_SPEED = 3.0       # at which bodies part that begin inside each other [m/s]: they are not to be thrown out
@@ -33,9 +34,9 @@ def contact_targets(gap, dt, pile):
 def advance_pile_2d(bounds, find_contacts, state, dt, steps, pile):
     """Given.  PileState after so many steps in the plane, with disc_bounds and round_contacts, or those of boxes.
 
-    Contacts are found once per step.  A substep: gravity and the last impulses; a sweep of soft contacts; motion; a
-    sweep at rest, which takes back the velocity that only served to push bodies apart.  Bodies that begin inside each
-    other part with at most SEPARATION_SPEED per contact.
+    Contacts are found once per step, and visited in spread_order.  A substep: gravity and the last impulses; a sweep of
+    soft contacts; motion; a sweep at rest, which takes back the velocity that only served to push bodies apart.  Bodies
+    that begin inside each other part with at most SEPARATION_SPEED per contact.
     Raises BadInput for hertz that a substep cannot carry, Diverged with the residual where bodies sink into each other.
     """
     state, dt, steps = checked_pile(state, dt, steps, pile)
@@ -49,17 +50,19 @@ def advance_pile_2d(bounds, find_contacts, state, dt, steps, pile):
             pairs = near_pairs(wide_low, wide_high, pile.planes)
         old, contacts = contacts, find_contacts(x, turn, pile.half, pile.planes, pairs, 0.5 * pile.margin)
         allowed = check_overlap(contacts, v, dt, pile.half, allowed, residual)
-        arms = arms_2d(x, pile.inv_mass, pile.inv_inertia, contacts)
-        J, gap = kept_impulses(contacts, old, J, pile.margin), contacts.gap
+        J, order = kept_impulses(contacts, old, J, pile.margin), spread_order(contacts.a.size)
+        J, spread = J[order], reordered(contacts, order)
+        arms, gap = arms_2d(x, pile.inv_mass, pile.inv_inertia, spread), spread.gap
         for _ in range(pile.substeps):
             aim, give = contact_targets(gap, h, pile)
             v, omega = v + h * falls * pile.gravity, omega.copy()
-            apply_impulses_2d(v, omega, J, contacts, arms, pile.inv_mass, pile.inv_inertia)
-            v, omega, J = velocity_sweep_2d(v, omega, J, aim, give, contacts, arms, pile)
+            apply_impulses_2d(v, omega, J, spread, arms, pile.inv_mass, pile.inv_inertia)
+            v, omega, J = velocity_sweep_2d(v, omega, J, aim, give, spread, arms, pile)
             x, q, before = x + h * v, q + h * omega, v
-            gap = gap + h * normal_velocities_2d(v, omega, contacts, arms)
+            gap = gap + h * normal_velocities_2d(v, omega, spread, arms)
             aim, give = np.minimum(aim, 0.0), 0.0 * give
-            v, omega, J = velocity_sweep_2d(v, omega, J, aim, give, contacts, arms, pile)
+            v, omega, J = velocity_sweep_2d(v, omega, J, aim, give, spread, arms, pile)
+        J = put_back(J, order)
         residual = np.max(np.abs(v - before))
     check_end(x, v, dt)
     return PileState(x, q, v, omega, contacts, J)

@@ -19,6 +19,7 @@ from .tuples import across, axis, minus, plus, put, row, scaled
 # of two faces that separate alike, take that of a unless b's is better by this [m], or normals take turns
 PREFER_FIRST = 1e-4
 PREFER_FACES = 1e-3          # an edge must be better than any face by this [m]: a face holds more points
+APART = 5                    # contacts that a sweep visits one after the other lie so far from each other in memory [-]
 PARALLEL = 1e-6              # sin² of the angle below which two edges count as parallel [-]
 
 
@@ -41,6 +42,33 @@ def room_for(bodies, m, d):
 def first_of(c, m):
     """The first m contacts."""
     return ContactSet(c.first, c.a[:m], c.b[:m], c.n[:m], c.p[:m], c.gap[:m])
+
+
+def spread_order(m):
+    """(m,) the order 0, 5, 10, …, 1, 6, 11, … for a sweep over m contacts.
+
+    Contacts that lie side by side share a body, and a processor would wait for one before it begins the next.  A sweep
+    in the plane takes three quarters of the time like this.
+    """
+    order, i = np.empty(m, np.int64), 0
+    for begin in range(APART):
+        for k in range(begin, m, APART):
+            order[i] = k
+            i += 1
+    return order
+
+
+def reordered(c, order):
+    """The contacts in another order, without `first`.  A whole number without a sign is an index that needs no test."""
+    a, b = c.a[order].astype(np.uint32), c.b[order].astype(np.uint32)
+    return ContactSet(c.first[:0], a, b, c.n[order], c.p[order], c.gap[order])
+
+
+def put_back(J, order):
+    """Rows that are sorted by `order`, as they were before."""
+    back = np.empty(J.shape)
+    back[order] = J
+    return back
 
 
 # ------------------------------------------------------------------------------------------ what is round, in 2D and 3D
@@ -104,67 +132,68 @@ def box_bounds_2d(x, q, half):
     return x[:n] - reach, x[:n] + reach, turn
 
 
-def face_gaps_2d(d, u, half_x, half_y, cosine, sine, reach_x, reach_y):
+def face_gaps_2d(d, u, own, other, cosine, sine):
     """Gaps [m] along the two axes u and (−u_y, u_x) of a box between it and another one at d.
 
-    half_x, half_y are its half sizes, reach_x and reach_y those of the other; cosine and sine of the angle between
-    them, without sign.
+    own, other: half sizes (x, y) of both; cosine and sine of the angle between them, without sign.
     """
-    return (abs(u[0] * d[0] + u[1] * d[1]) - half_x - reach_x * cosine - reach_y * sine,
-            abs(u[0] * d[1] - u[1] * d[0]) - half_y - reach_x * sine - reach_y * cosine)
+    return (abs(u[0] * d[0] + u[1] * d[1]) - own[0] - other[0] * cosine - other[1] * sine,
+            abs(u[0] * d[1] - u[1] * d[0]) - own[1] - other[0] * sine - other[1] * cosine)
 
 
-def clipped_edge(d, n, deep, wide, u, half_x, half_y):
-    """(n, (along, gap), (along, gap)): where the nearest edge of a box at d lies over a face at deep along ±n, ±wide
-    across.
+def clipped_edge(d, n, deep, wide, u, other):
+    """(n, p, q): where the nearest edge of a box at d lies over a face at deep along ±n, ±wide across.
 
-    n comes back as the outward normal of the face.  The gap is infinite where no part of the edge lies over the face.
+    u and other are that box's first axis and half sizes.  n comes back as the outward normal of the face; p and q are
+    points (x, y, gap) halfway between the edge and the face.  The gap is infinite where no part of the edge is there.
     """
     if n[0] * d[0] + n[1] * d[1] < 0.0:
         n = -n[0], -n[1]
-    out, edge = (half_x * u[0], half_x * u[1]), (-half_y * u[1], half_y * u[0])
+    out, edge = (other[0] * u[0], other[0] * u[1]), (-other[1] * u[1], other[1] * u[0])
     if abs(n[0] * u[0] + n[1] * u[1]) < abs(n[1] * u[0] - n[0] * u[1]):
         out, edge = edge, out
-    if n[0] * out[0] + n[1] * out[1] > 0.0:  # from its centre to its edge that looks at the face
+    if n[0] * out[0] + n[1] * out[1] > 0.0:              # from its centre to its edge that looks at the face
         out = -out[0], -out[1]
     if n[0] * edge[1] - n[1] * edge[0] < 0.0:                        # from there to the end at larger `along`
         edge = -edge[0], -edge[1]
-    gap, along = n[0] * (d[0] + out[0]) + n[1] * (d[1] + out[1]) - deep, n[0] * (d[1] + out[1]) - n[1] * (d[0] + out[0])
+    out = d[0] + out[0], d[1] + out[1]
+    gap, along = n[0] * out[0] + n[1] * out[1] - deep, n[0] * out[1] - n[1] * out[0]
     rise, run = n[0] * edge[0] + n[1] * edge[1], n[0] * edge[1] - n[1] * edge[0]
     s, t = max(-1.0, (-wide - along) / run), min(1.0, (wide - along) / run)
     if s > t:
-        return n, (0.0, np.inf), (0.0, np.inf)
-    return n, (along + s * run, gap + s * rise), (along + t * run, gap + t * rise)
+        return n, (0.0, 0.0, np.inf), (0.0, 0.0, np.inf)
+    return (n, point_over_face(n, deep, along + s * run, gap + s * rise),
+            point_over_face(n, deep, along + t * run, gap + t * rise))
 
 
-def box_pair_2d(x, turn, half, i, j, reach, c, m):
-    """Write the contacts of boxes i and j from place m on; return how many contacts there are then."""
-    d, u, w = (x[j, 0] - x[i, 0], x[j, 1] - x[i, 1]), (turn[i, 0], turn[i, 1]), (turn[j, 0], turn[j, 1])
-    cosine, sine = abs(u[0] * w[0] + u[1] * w[1]), abs(u[0] * w[1] - u[1] * w[0])
-    a_x, a_y = face_gaps_2d(d, u, half[i, 0], half[i, 1], cosine, sine, half[j, 0], half[j, 1])
+def point_over_face(n, deep, along, gap):
+    """(x, y, gap) of a contact from the centre of a box: half the gap above its face at deep along n."""
+    up = deep + 0.5 * gap
+    return up * n[0] - along * n[1], up * n[1] + along * n[0], gap
+
+
+def box_pair_2d(d, u, w, a, b, reach):
+    """(n, p, q) of boxes a and b: the normal from b to a, and their contacts (x, y, gap) from the centre of a.
+
+    d is the way from a to b, u and w their first axes, a and b their half sizes.  A gap is infinite where there is no
+    contact.  All are numbers: compiled code hands over numbers sooner than arrays.
+    """
+    cosine, sine, none = abs(u[0] * w[0] + u[1] * w[1]), abs(u[0] * w[1] - u[1] * w[0]), (0.0, 0.0, np.inf)
+    a_x, a_y = face_gaps_2d(d, u, a, b, cosine, sine)
     of_a = max(a_x, a_y)
     if of_a > reach:
-        return m
-    b_x, b_y = face_gaps_2d(d, w, half[j, 0], half[j, 1], cosine, sine, half[i, 0], half[i, 1])
+        return u, none, none
+    b_x, b_y = face_gaps_2d(d, w, b, a, cosine, sine)
     of_b = max(b_x, b_y)
     if of_b > reach:
-        return m
-    u_y, w_y = (-u[1], u[0]), (-w[1], w[0])
+        return u, none, none
     if of_a + PREFER_FIRST >= of_b:
-        owner, sign, along_x = i, -1.0, a_x >= a_y
-        axis_n, deep, wide = (u, half[i, 0], half[i, 1]) if along_x else (u_y, half[i, 1], half[i, 0])
-        n, p, q = clipped_edge(d, axis_n, deep, wide, w, half[j, 0], half[j, 1])
-    else:
-        owner, sign, along_x = j, 1.0, b_x >= b_y
-        axis_n, deep, wide = (w, half[j, 0], half[j, 1]) if along_x else (w_y, half[j, 1], half[j, 0])
-        n, p, q = clipped_edge((-d[0], -d[1]), axis_n, deep, wide, u, half[i, 0], half[i, 1])
-    for along, gap in (p, q):
-        if gap <= reach:
-            up = deep + 0.5 * gap
-            c.a[m], c.b[m], c.gap[m], c.n[m, 0], c.n[m, 1] = i, j, gap, sign * n[0], sign * n[1]
-            c.p[m, 0], c.p[m, 1] = x[owner, 0] + up * n[0] - along * n[1], x[owner, 1] + up * n[1] + along * n[0]
-            m += 1
-    return m
+        face, deep, wide = (u, a[0], a[1]) if a_x >= a_y else ((-u[1], u[0]), a[1], a[0])
+        n, p, q = clipped_edge(d, face, deep, wide, w, b)
+        return (-n[0], -n[1]), p, q
+    face, deep, wide = (w, b[0], b[1]) if b_x >= b_y else ((-w[1], w[0]), b[1], b[0])
+    n, p, q = clipped_edge((-d[0], -d[1]), face, deep, wide, u, a)
+    return n, (d[0] + p[0], d[1] + p[1], p[2]), (d[0] + q[0], d[1] + q[1], q[2])
 
 
 def box_line(x, turn, half, i, j, line, reach, c, m):
@@ -187,10 +216,16 @@ def box_contacts_2d(x, turn, half, planes, pairs, reach):
     for i in range(n):
         for k in range(pairs.first[i], pairs.first[i + 1]):
             j = pairs.partner[k]
-            if j < n:
-                m = box_pair_2d(x, turn, half, i, j, reach, c, m)
-            else:
+            if j >= n:
                 m = box_line(x, turn, half, i, j, planes[j - n], reach, c, m)
+                continue
+            d, u, w = (x[j, 0] - x[i, 0], x[j, 1] - x[i, 1]), (turn[i, 0], turn[i, 1]), (turn[j, 0], turn[j, 1])
+            normal, p, q = box_pair_2d(d, u, w, (half[i, 0], half[i, 1]), (half[j, 0], half[j, 1]), reach)
+            for p_x, p_y, gap in (p, q):
+                if gap <= reach:
+                    c.a[m], c.b[m], c.gap[m], c.n[m, 0], c.n[m, 1] = i, j, gap, normal[0], normal[1]
+                    c.p[m, 0], c.p[m, 1] = x[i, 0] + p_x, x[i, 1] + p_y
+                    m += 1
         c.first[i + 1] = m
     return first_of(c, m)
 
