@@ -305,13 +305,15 @@ def substep_matrix(masses, c, zeta):
         a soft sweep:           J_k += (−s gap_k/(2ζ + s) − u_k − k_k J_k/(s (2ζ + s)))/(k_k (1 + 1/(s (2ζ + s))))
         motion:                 gap_k += u_k
         a sweep at rest:        J_k −= u_k/k_k
-    with k_k = 1/m_k + 1/m_(k−1).  Each change of J_k acts on v at once.  Contacts are visited in their order by bodies:
-    that of the lowest body with its upper neighbour, with the floor, and then upwards.
+    with k_k = 1/m_k + 1/m_(k−1).  Each change of J_k acts on v at once.  Contacts are numbered by bodies: that of the
+    lowest body with its upper neighbour, with the floor, and then upwards.  Those with the numbers 0, 5, 10, … are
+    visited first, then 1, 6, 11, … and so on.
     """
     n, w, s = len(masses), 1.0 / np.array(masses, float), 2.0 * np.pi * c
     k_n, give = w + np.append(0.0, w[:-1]), 1.0 / (s * (2.0 * zeta + s))
     rows = np.eye(n) - np.eye(n, k=-1)
-    order, columns = [1, 0, *range(2, n)][-n:] if n > 1 else [0], []
+    numbered, columns = [1, 0, *range(2, n)] if n > 1 else [0], []
+    order = [k for first in range(5) for k in numbered[first::5]]
     for gap, J, v in np.eye(3 * n).reshape(3 * n, 3, n):
         gap, J, v = 1.0 * gap, 1.0 * J, v + w * (rows.T @ J)
         for aim, soft in ((-s * gap / (2.0 * zeta + s), give), (np.zeros(n), 0.0)):
