@@ -25,6 +25,12 @@ def trees():
     return {".".join(name.parts): ast.parse(path.read_text(encoding="utf-8")) for name, path in files.items()}
 
 
+@cache
+def parts(piece):
+    """All names, attributes and constants in a piece of source."""
+    return [node for node in ast.walk(piece) if isinstance(node, (ast.Name, ast.Attribute, ast.Constant))]
+
+
 def imported(tree, home=""):
     """{name: (module below solutions, its name there, or None for a module)} of what a file imports from solutions."""
     found = {}
@@ -92,7 +98,7 @@ def reached(roots):
 def named(nodes, there, lesson):
     """What pieces of source name: imported names, attributes of a lesson, and names of its functions in quotes."""
     for node in nodes:
-        for one in ast.walk(node):
+        for one in parts(node):
             if isinstance(one, ast.Name) and one.id in there and there[one.id][1]:
                 yield there[one.id]
             elif isinstance(one, ast.Attribute) and isinstance(one.value, ast.Name):
@@ -105,32 +111,39 @@ def named(nodes, there, lesson):
                 yield lesson, one.value
 
 
+@cache
+def parsed(path):
+    """(syntax tree, what it imports from solutions, {name: its definition}) of a file."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    own = {node.name: node for node in tree.body if isinstance(node, ast.FunctionDef)}
+    own |= {target.id: node for node in tree.body if isinstance(node, ast.Assign)
+            for target in node.targets if isinstance(target, ast.Name)}
+    return tree, imported(tree), own
+
+
 def roots_of_scene(name):
     """What a scene names of the lessons, its methods included."""
     scene = modules.bind_scene(name)
-    tree = ast.parse(modules.scene_files()[name].read_text(encoding="utf-8"))
-    return {*named([tree], imported(tree), scene.lesson), *((m.lesson, m.function) for m in scene.methods)}
+    tree, there, _ = parsed(modules.scene_files()[name])
+    return {*named([tree], there, scene.lesson), *((m.lesson, m.function) for m in scene.methods)}
 
 
 def roots_of_case(case):
     """What a stability case names of its lesson, in its own function and in what it uses of its file."""
-    tree = ast.parse(Path(inspect.getsourcefile(case.examine)).read_text(encoding="utf-8"))
-    own = {node.name: node for node in tree.body if isinstance(node, ast.FunctionDef)}
-    own |= {target.id: node for node in tree.body if isinstance(node, ast.Assign)
-            for target in node.targets if isinstance(target, ast.Name)}
+    _, there, own = parsed(Path(inspect.getsourcefile(case.examine)))
     pieces, waiting = {}, [case.examine.__name__]
     while waiting:
         name = waiting.pop()
         if name not in pieces:
             pieces[name] = own[name]
-            waiting += [n.id for n in ast.walk(own[name]) if isinstance(n, ast.Name) and n.id in own]
-    return {*named(pieces.values(), imported(tree), case.lesson), *methods_in(pieces.values())}
+            waiting += [n.id for n in parts(own[name]) if isinstance(n, ast.Name) and n.id in own]
+    return {*named(pieces.values(), there, case.lesson), *methods_in(pieces.values())}
 
 
 def methods_in(nodes):
     """The functions of the methods that pieces of source name, such as INTEGRATORS."""
     for node in nodes:
-        for one in ast.walk(node):
+        for one in parts(node):
             found = getattr(methods, one.id, ()) if isinstance(one, ast.Name) else ()
             for method in [found] if isinstance(found, Method) else found if isinstance(found, tuple) else ():
                 if isinstance(method, Method):
