@@ -15,7 +15,7 @@ from solutions.checks import BadInput
 from .. import engines, modules
 from ..scene import OPTIONAL, Engine, Method, Scene
 
-REPEATS = 7                  # of a timed run
+REPEATS = 7                  # of a timed run, at most
 NOTEBOOK = 0.02              # how long a timed run in a notebook may take [s]
 
 
@@ -31,12 +31,12 @@ class Plan(NamedTuple):
 
     def time_limits(self):
         """{speed: how long a single timed run may take [s]}; longer ones are left to --full, and there out."""
-        ours, engine = (NOTEBOOK, NOTEBOOK) if self.most_steps else (0.003, 0.01) if self.quick else (0.5, 1.5)
+        ours, engine = (NOTEBOOK, NOTEBOOK) if self.most_steps else (0.003, 0.01) if self.quick else (0.25, 1.0)
         return {"plain": ours, "compiled": ours, "engine": engine}
 
     def repeats(self):
-        """Number of timed repeats; fewer in a notebook, where the reader is waiting."""
-        return 3 if self.most_steps else REPEATS
+        """Number of timed repeats; fewer where a reader is waiting."""
+        return 3 if self.most_steps else 5 if self.quick else REPEATS
 
 
 class Selection(NamedTuple):

@@ -1,7 +1,8 @@
 """Error against run time.
 
 Only the stepping loop is timed: two warm-ups, then interleaved repeats with garbage collection off.  A loop that is
-shorter than a tenth of a millisecond is repeated inside the clock.  Errors come from separate, identical runs.
+shorter than a tenth of a millisecond is repeated inside the clock; one that takes longer than 40 ms is warmed up once
+and repeated less often, because its time varies less.  Errors come from separate, identical runs.
 """
 
 import gc
@@ -26,6 +27,9 @@ WARM_UPS, PROBE = 2, 64
 EXACTLY = 1e-11              # a smaller relative error is round-off: there is no race for it [-]
 LOST = 10.0                  # a run with a larger relative error is not worth timing [-]
 SAME = 1e-9                  # relative difference of two motions that count as the same [-]
+LONG = 0.04                  # a timed loop that takes longer is warmed up once [s]
+ENOUGH = 0.3                 # a timed loop is repeated until it has run for so long, or as often as was asked for [s]
+LEAST_REPEATS = 3            # but at least so often [-]
 SHORTEST = 1e-4              # a timed loop is repeated until it lasts this long [s]
 SHORTEST_LOOK = 0.1          # the system counts hundredths of a second: a shorter look at them is no measurement [s]
 TARGETS = (1e-2, 1e-3, 1e-4, 1e-6, 1e-8)
@@ -161,30 +165,31 @@ def interleaved(items, time_limits, repeats=REPEATS):
         enabled = gc.isenabled()
         gc.disable()
         try:
-            for _ in range(repeats):
-                for (item, inner), seconds in zip(chosen, samples):
-                    seconds.append(clock(item, inner))
+            for lap in range(repeats):
+                for (item, inner, seconds), sample in zip(chosen, samples):
+                    if lap < LEAST_REPEATS or lap * seconds < ENOUGH:
+                        sample.append(clock(item, inner))
         finally:
             if enabled:
                 gc.enable()
     return [(item, {"seconds": float(np.median(s)), "low": min(s), "high": max(s), "repeats": s})
-            for (item, _), s in zip(chosen, samples)]
+            for (item, *_), s in zip(chosen, samples)]
 
 
 def short_enough(items, time_limits):
-    """[(item, repeats inside the clock)] of what does not take too long, warmed up."""
+    """[(item, repeats inside the clock, seconds)] of what does not take too long, warmed up."""
     chosen, pace = [], {}                                            # pace: {(label, speed): seconds per step}
     for item in items:
         key = item.label, item.speed
-        first = all((i.label, i.speed) != key for i, _ in chosen)
+        first = all((i.label, i.speed) != key for i, *_ in chosen)
         limit = time_limits[item.speed] * (3.0 if first else 1.0)    # or a slow one would not be there at all
         if key not in pace:
             pace[key] = seconds_per_step(item, limit)
         if pace[key] * item.steps > limit:
             continue
-        seconds = min(clock(item, 1) for _ in range(WARM_UPS))
+        seconds = min(clock(item, 1) for _ in range(1 if pace[key] * item.steps > LONG else WARM_UPS))
         pace[key] = seconds / item.steps
-        chosen.append((item, 1 if item.speed == "engine" else max(1, int(SHORTEST / max(seconds, 1e-9)))))
+        chosen.append((item, 1 if item.speed == "engine" else max(1, int(SHORTEST / max(seconds, 1e-9))), seconds))
     return chosen
 
 
