@@ -97,8 +97,7 @@ def start(p):
 
 def run(step, acceleration, state, p, dt, steps):
     x, v, network = state
-    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, network)
-    return x, v, network
+    return *advance(step, acceleration, 0.0, x, v, dt, steps, network), network
 
 
 def observe(state, p):
@@ -184,26 +183,16 @@ def in_space(p):
 
 
 SCENE = Scene(
-    title="Discrete catenary",
-    link_look="spring",
-    lesson="springs",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
+    title="Discrete catenary", lesson="springs",
+    cases=CASES, duration=T, steps=STEPS,
     methods=(*INTEGRATORS, IMPLICIT_MESH),
-    acceleration=acceleration,
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    truth_uncertainty=UNCERTAINTY,
-    tolerance=tolerance,
+    acceleration=acceleration, start=start, run=run, observe=observe,
+    truth=truth, truth_uncertainty=UNCERTAINTY, tolerance=tolerance,
     predicted_error=net_errors(net, T, truth, UNCERTAINTY, engines=MODELS),
     engines=ENGINES,
     slow_methods=(*LEFT_TO_FULL, "implicit_spring_network_step"),
     sanity_checks=sanity_checks,
-    points=points,
-    links=links,
+    points=points, links=links, link_look="spring",
     uses=("two coordinates", "springs with dampers", "one step function"),
     ablations={
         "the third dimension": in_space,

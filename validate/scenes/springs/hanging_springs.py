@@ -51,8 +51,7 @@ def start(p):
 
 def run(step, acceleration, state, p, dt, steps):
     x, v, network = state
-    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, network)
-    return x, v, network
+    return *advance(step, acceleration, 0.0, x, v, dt, steps, network), network
 
 
 def observe(state, p):
@@ -160,27 +159,17 @@ def in_space(p):
 
 
 SCENE = Scene(
-    title="Hanging springs",
-    link_look="spring",
-    lesson="springs",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
+    title="Hanging springs", lesson="springs",
+    cases=CASES, duration=T, steps=STEPS,
     methods=(*INTEGRATORS, IMPLICIT_MESH),
-    acceleration=acceleration,
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    truth_uncertainty=UNCERTAINTY,
-    tolerance=tolerance,
+    acceleration=acceleration, start=start, run=run, observe=observe,
+    truth=truth, truth_uncertainty=UNCERTAINTY, tolerance=tolerance,
     predicted_error=predict_by_tables(T, law, released, from_modes, truth, floor, {"pymunk": Model(1, pymunk_chain)},
                                       march=advance_modes),
     engines=ENGINES,
     slow_methods=("implicit_euler_step", "implicit_midpoint_step", "implicit_spring_network_step"),
     sanity_checks=sanity_checks,
-    points=points,
-    links=links,
+    points=points, links=links, link_look="spring",
     uses=("one coordinate", "springs with dampers", "one step function"),
     ablations={"the second and third dimension": in_space,
               "rotation": "the whole loop of lesson 10 has it, and is measured",
