@@ -17,9 +17,9 @@ def start_net(p):
     return state_of(square_net(p), make_spring_network)
 
 
-def net_in_space(p):
-    """The same motion with an unused third coordinate."""
-    return state_of(square_net(p).padded(), make_spring_network), p
+def in_space(net):
+    """Return p → (state, p) of the ReferenceNetwork net(p): the same motion with three coordinates."""
+    return lambda p: (state_of(net(p).padded(), make_spring_network), p)
 
 
 def observe_net(state, p):
@@ -79,7 +79,7 @@ NET = {
     "link_look": "spring",
     "uses": ("two coordinates", "springs with dampers", "one step function"),
     "ablations": {
-        "the third dimension": net_in_space,
+        "the third dimension": in_space(square_net),
         "rotation": "the whole loop of lesson 10 has it, and is measured",
         "contact of the net with itself": "the whole loop of lesson 10 has it, and is measured",
     },

@@ -11,7 +11,7 @@ from solutions.integrators import advance
 from solutions.springs import make_spring_network
 from solutions.springs import spring_network_acceleration as acceleration
 from validate.engines.bullet import Bullet
-from validate.engines.springs import pymunk_net
+from validate.engines.springs import in_space, pymunk_net
 from validate.methods import IMPLICIT_MESH, INTEGRATORS, LEFT_TO_FULL
 from validate.reference.schemes import table_model
 from validate.reference.springs import (
@@ -177,11 +177,6 @@ def sanity_checks():
     )
 
 
-def in_space(p):
-    """The same motion with an unused third coordinate."""
-    return state_of(net(p).padded(), make_spring_network), p
-
-
 SCENE = Scene(
     title="Discrete catenary", lesson="springs",
     cases=CASES, duration=T, steps=STEPS,
@@ -195,7 +190,7 @@ SCENE = Scene(
     points=points, links=links, link_look="spring",
     uses=("two coordinates", "springs with dampers", "one step function"),
     ablations={
-        "the third dimension": in_space,
+        "the third dimension": in_space(net),
         "rotation": "the whole loop of lesson 10 has it, and is measured",
         "contact between links": "the whole loop of lesson 10 has it, and is measured",
     },

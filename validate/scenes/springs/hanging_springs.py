@@ -8,7 +8,7 @@ from solutions.checks import check_positive
 from solutions.integrators import advance
 from solutions.springs import make_spring_network
 from solutions.springs import spring_network_acceleration as acceleration
-from validate.engines.springs import pymunk_net
+from validate.engines.springs import in_space, pymunk_net
 from validate.methods import IMPLICIT_MESH, INTEGRATORS
 from validate.reference.schemes import Model, advance_modes, nudged, predict_by_tables
 from validate.reference.springs import ReferenceNetwork, by_mode, pymunk_net_model, state_of
@@ -153,11 +153,6 @@ def sanity_checks():
             ("the tip at T, nearly at rest [m]", truth(p, T)[-1], tip, 2.0 * left * tip))
 
 
-def in_space(p):
-    """The same motion with two unused coordinates."""
-    return state_of(net(p).padded(), make_spring_network), p
-
-
 SCENE = Scene(
     title="Hanging springs", lesson="springs",
     cases=CASES, duration=T, steps=STEPS,
@@ -171,7 +166,7 @@ SCENE = Scene(
     sanity_checks=sanity_checks,
     points=points, links=links, link_look="spring",
     uses=("one coordinate", "springs with dampers", "one step function"),
-    ablations={"the second and third dimension": in_space,
+    ablations={"the second and third dimension": in_space(net),
               "rotation": "the whole loop of lesson 10 has it, and is measured",
               "contact between masses": "the whole loop of lesson 10 has it, and is measured"},
 )
