@@ -22,6 +22,11 @@ def impact_times(T):
     return T * (EARLIEST + SPREAD * ((np.arange(COPIES) + 1.0) * GOLDEN % 1.0))
 
 
+def impact_claim(x, v, end, T):
+    """Return the sanity check that balls (x, v), which end at end (n, 2), y and z, have fallen until impact_times."""
+    return "times of impact [s]", (end[:, 1] - x[:, 2]) / v[:, 2], impact_times(T), 1e-14
+
+
 def with_balls_that_miss(x, v, target):
     """Return the state with as many balls again, a kilometre aside, which never hit; a broad phase would skip them."""
     aside = np.array([0.0, 1.0, 0.0])
@@ -35,7 +40,7 @@ def first_root(gap, t_0, t_1):
 
 
 def stopped(x, v, gap, latest, t):
-    """Return the positions (n, 3) at t of balls that fly straight and stop where gap(position) becomes zero.
+    """Return y and z of all balls at t, in one row: they fly straight and stop where gap(position) becomes zero.
 
     gap is above zero at the start and below at `latest`, a time for each ball.  *Source:* x₀ + v min(t, t*), t* the
     root, by brentq.
@@ -44,7 +49,7 @@ def stopped(x, v, gap, latest, t):
     for y, w, last in zip(x, v, latest):
         moment = first_root(lambda s, y=y, w=w: gap(y + s * w), 0.0, last)
         found.append(y + min(t, moment) * w)
-    return np.array(found)
+    return np.ravel(np.array(found)[:, 1:])
 
 
 def hull_nearest(a, b, weight=1e3):
