@@ -4,6 +4,8 @@ Nothing here uses the functions of `solutions`.  Distances of convex bodies are 
 weights (SciPy's nnls), first roots are SciPy's brentq, pairs are NumPy's comparison of all with all.
 """
 
+from typing import Annotated, NamedTuple
+
 import numpy as np
 from scipy.optimize import brentq, nnls
 from scipy.spatial import ConvexHull
@@ -12,6 +14,18 @@ COPIES = 16                  # balls per run, so that their impacts fall on all 
 SPEEDS = {"1 m/s": 1.0, "10 m/s": 10.0, "100 m/s": 1e2, "1,000 m/s": 1e3, "10,000 m/s": 1e4}     # of the balls
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 EARLIEST, SPREAD = 0.3, 0.4  # range of the impacts, as shares of the output time
+
+
+class Balls(NamedTuple):
+    """Balls that fly at an obstacle."""
+    speed: Annotated[float, "of the balls [m/s]"] = 1.0
+    r: Annotated[float, "their radius [m]"] = 0.1
+    R: Annotated[float, "of the cylinder about the x axis [m]; 0: the plane z = 0"] = 0.0
+
+
+def at_speeds(R):
+    """Return {name: Balls} of the cases; R: of the cylinder [m], 0 for a plane."""
+    return {name: Balls(speed, R=R) for name, speed in SPEEDS.items()}
 
 
 def impact_times(T):

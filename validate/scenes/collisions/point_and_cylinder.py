@@ -5,8 +5,6 @@ v dt inside, or misses it, because a step longer than the path through the cylin
 solves for the first root and works with any step.
 """
 
-from typing import Annotated, NamedTuple
-
 import numpy as np
 
 from solutions.support.collisions import advance_projectiles, ball_cylinder_gap, ball_cylinder_time
@@ -19,22 +17,14 @@ from validate.engines.collisions import (
     start_balls,
     swept_limit,
 )
-from validate.reference.collisions import COPIES, SPEEDS, impact_claim, impact_times, stopped, with_balls_that_miss
+from validate.reference.collisions import COPIES, at_speeds, impact_claim, impact_times, stopped, with_balls_that_miss
 from validate.scene import EXACT, ROUND_OFF, Scene
 
 T = 1.0                      # [s]: every ball has hit by then
 STEPS = (20, 50, 100, 200, 500, 1000, 2000)
 FASTEST_DISCRETE = 100.0     # [m/s]: above this, no step of the sweep is short enough for the discrete test
 WIDEST = 0.8                 # largest offset from the axis at which a ball aims, over R + r [-]
-
-
-class Params(NamedTuple):
-    speed: Annotated[float, "of the balls [m/s]"] = 1.0
-    r: Annotated[float, "their radius [m]"] = 0.1
-    R: Annotated[float, "of the cylinder, about the x axis [m]"] = 0.5
-
-
-CASES = {name: Params(speed) for name, speed in SPEEDS.items()}
+CASES = at_speeds(R=0.5)
 
 
 def place(p):
@@ -98,7 +88,7 @@ def links(p):
 
 def sanity_checks():
     """Return ((claim, found, expected, tolerance), …): the point where a ball in the middle must touch."""
-    p = Params(1e4)
+    p = CASES["10,000 m/s"]
     x = truth(p, T).reshape(-1, 2)
     return (("distance of all balls from the axis at the end [m]", np.hypot(*x.T), p.R + p.r, 1e-11),
             impact_claim(*place(p), x, T))

@@ -4,28 +4,18 @@ The test of the first lecture deck, E(p) < 0 after each step, finds them up to v
 t + dt d₁/(d₁ + d₂) puts them back exactly, because the path is straight.  No ball passes a plane: it has no far side.
 """
 
-from typing import Annotated, NamedTuple
-
 import numpy as np
 
 from solutions.support.collisions import advance_projectiles, ball_plane_gap, ball_plane_time
 from validate.engines.collisions import BALLS, PLACE_APART, discrete_up_to, ray_and_sweep, start_balls, swept_limit
-from validate.reference.collisions import COPIES, SPEEDS, impact_claim, impact_times, stopped, with_balls_that_miss
+from validate.reference.collisions import COPIES, at_speeds, impact_claim, impact_times, stopped, with_balls_that_miss
 from validate.scene import EXACT, ROUND_OFF, Scene
 
 T = 1.0                      # [s]: every ball has hit by then
 STEPS = (20, 50, 100, 200, 500, 1000, 2000)
 FASTEST_DISCRETE = 10.0     # [m/s]: above this, a ball is deeper than the picture is wide, at every step of the sweep
 TILT = 0.3                   # of the path, from the vertical [rad]
-
-
-class Params(NamedTuple):
-    speed: Annotated[float, "of the balls [m/s]"] = 1.0
-    r: Annotated[float, "their radius [m]"] = 0.1
-    R: Annotated[float, "no cylinder here"] = 0.0
-
-
-CASES = {name: Params(speed) for name, speed in SPEEDS.items()}
+CASES = at_speeds(R=0.0)
 
 
 def place(p):
@@ -79,13 +69,9 @@ def points(observed, p):
     return np.round(np.concatenate(([[-1.0, 0.0], [1.0, 0.0]], balls)), 3)
 
 
-def links(p):
-    return [(0, 1)]
-
-
 def sanity_checks():
     """Return ((claim, found, expected, tolerance), …) about the reference solution."""
-    p = Params(1e4)
+    p = CASES["10,000 m/s"]
     x = truth(p, T).reshape(-1, 2)
     return (("height of all balls at the end [m]", x[:, 1], p.r, 1e-11), impact_claim(*place(p), x, T))
 
@@ -93,7 +79,7 @@ def sanity_checks():
 SCENE = Scene(
     title="Point and plane", **BALLS, cases=CASES, duration=T, steps=STEPS,
     start=start, run=run, truth=truth, tolerance=tolerance, engines=ENGINES, supports=discrete_up_to(FASTEST_DISCRETE),
-    sanity_checks=sanity_checks, points=points, links=links,
+    sanity_checks=sanity_checks, points=points, links=lambda p: [(0, 1)],
     uses=("a straight way", "two signed distances for each step"),
     ablations={
         "balls that never come near, tested at every step": lambda p: (with_balls_that_miss(*start(p)), p),
