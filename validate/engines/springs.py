@@ -10,11 +10,16 @@ from validate.reference.springs import square_net, state_of
 from validate.scene import PYMUNK, Engine
 
 
-def start_net(p):
-    """Return (x, v, network) of a SquareNet.  Raises BadInput for a parameter that is not positive."""
-    for name in ("n", "spacing", "m", "k"):
-        check_positive(name, getattr(p, name))
-    return state_of(square_net(p), make_spring_network)
+def start_of(net, positive):
+    """Return start(p) → (x, v, network) of net(p); it raises BadInput unless these parameters are positive."""
+    def start(p):
+        for name in positive:
+            check_positive(name, getattr(p, name))
+        return state_of(net(p), make_spring_network)
+    return start
+
+
+start_net = start_of(square_net, ("n", "spacing", "m", "k"))
 
 
 def in_space(net):

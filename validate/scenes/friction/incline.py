@@ -166,9 +166,7 @@ def points(observed, p):
 
 SCENE = Scene(
     title="Block on an incline",
-    **block_on("slope", start),
-    cases=CASES, duration=T, steps=STEPS,
-    acceleration=acceleration, run=run,
+    **block_on("slope", start), cases=CASES, duration=T, steps=STEPS, acceleration=acceleration, run=run,
     truth=truth, truth_uncertainty=1e-15, tolerance=tolerance, predicted_error=predicted_error,
     engines=ENGINES,
     expected_departures={

@@ -69,9 +69,7 @@ def points(observed, p):
 
 SCENE = Scene(
     title="Stick and slip",
-    **block_on("floor", start),
-    cases=CASES, duration=T, steps=STEPS,
-    acceleration=acceleration, run=run,
+    **block_on("floor", start), cases=CASES, duration=T, steps=STEPS, acceleration=acceleration, run=run,
     truth=slip_position, truth_uncertainty=1e-13, tolerance=slip_limits, predicted_error=slip_errors,
     engines=ENGINES,
     sanity_checks=sanity_checks,

@@ -6,12 +6,10 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
-from solutions.checks import check_positive
 from solutions.integrators import advance
-from solutions.springs import make_spring_network
 from solutions.springs import spring_network_acceleration as acceleration
 from validate.engines.bullet import Bullet
-from validate.engines.springs import in_space, pymunk_net
+from validate.engines.springs import in_space, pymunk_net, start_of
 from validate.methods import IMPLICIT_MESH, INTEGRATORS, LEFT_TO_FULL
 from validate.reference.schemes import table_model
 from validate.reference.springs import (
@@ -22,7 +20,6 @@ from validate.reference.springs import (
     net_law,
     net_limits,
     rest_positions,
-    state_of,
 )
 from validate.scene import PYBULLET, PYMUNK, Engine, EngineRun, Scene
 
@@ -89,10 +86,7 @@ def net(p):
     )
 
 
-def start(p):
-    for name in ("links", "m", "k", "rest", "span"):
-        check_positive(name, getattr(p, name))
-    return state_of(net(p), make_spring_network)
+start = start_of(net, ("links", "m", "k", "rest", "span"))
 
 
 def run(step, acceleration, state, p, dt, steps):

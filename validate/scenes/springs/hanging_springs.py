@@ -4,14 +4,12 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.integrators import advance
-from solutions.springs import make_spring_network
 from solutions.springs import spring_network_acceleration as acceleration
-from validate.engines.springs import in_space, pymunk_net
+from validate.engines.springs import in_space, pymunk_net, start_of
 from validate.methods import IMPLICIT_MESH, INTEGRATORS
 from validate.reference.schemes import Model, advance_modes, nudged, predict_by_tables
-from validate.reference.springs import ReferenceNetwork, by_mode, pymunk_net_model, state_of
+from validate.reference.springs import ReferenceNetwork, by_mode, pymunk_net_model
 from validate.scene import EXACT, PYMUNK, Engine, Scene
 
 T = 1.5                      # [s]: two and a half periods of the slowest mode
@@ -43,10 +41,7 @@ def net(p):
     return ReferenceNetwork(x, 0.0 * x, (0,), pairs, rest, p.m, p.k, p.k_d, p.k_v, np.array([p.g]), np.zeros(1))
 
 
-def start(p):
-    for name in ("springs", "m", "k", "rest"):
-        check_positive(name, getattr(p, name))
-    return state_of(net(p), make_spring_network)
+start = start_of(net, ("springs", "m", "k", "rest"))
 
 
 def run(step, acceleration, state, p, dt, steps):
