@@ -1,9 +1,14 @@
-"""Moving points, swept balls and pairs of boxes in pybullet."""
+"""Moving points, swept balls and pairs of boxes in pybullet, and what the scenes of moving points share."""
 
 import numpy as np
 
+from solutions.checks import check_positive
+from solutions.collisions import Plane
+from solutions.support.collisions import Target
 from validate.engines.bullet import Bullet
-from validate.scene import PYBULLET, Engine, EngineRun
+from validate.methods import CONTINUOUS, DISCRETE
+from validate.reference.collisions import COPIES
+from validate.scene import EXACT, PYBULLET, Engine, EngineRun
 
 PLACE_APART = 1.0            # metre between two copies along the x axis
 
@@ -22,6 +27,33 @@ RAY_ENDS = 1e-2
 def across(x):
     """Return the coordinates (1, 2) of positions x (n, 3), in one row, because there is no motion along x."""
     return np.ravel(x[:, 1:])
+
+
+def start_balls(place, positive):
+    """Return start(p) of the balls (x, v) = place(p); it raises BadInput unless these parameters are positive."""
+    def start(p):
+        for name in positive:
+            check_positive(name, getattr(p, name))
+        return *place(p), Target(p.r, p.R, Plane(np.array([0.0, 0.0, 1.0]), 0.0))
+    return start
+
+
+def observe_balls(state, p):
+    """Return the places of the balls that may hit, in one row."""
+    return across(state[0][:COPIES])
+
+
+# the fields that the scenes of balls at an obstacle share
+BALLS = {
+    "lesson": "collisions",
+    "methods": (CONTINUOUS, DISCRETE),
+    "orders": {"continuous_step": EXACT},
+    "observe": observe_balls,
+    "truth_uncertainty": 1e-13,              # of brentq, times the 7,000 m that the fastest balls have travelled
+    "uncompiled_in_quick": ("discrete_step",),           # plain Python finishes before numba has compiled it
+    "shorter_in_quick": {"discrete_step": 1000},
+    "full_loop": "the scene ends where the loop begins: a ball stays where it is found to hit",
+}
 
 
 def target(bullet, p, grown=0.0):

@@ -1,4 +1,4 @@
-"""A block on a plane, and a particle, in the two engines: the comparison runs of lesson 3.
+"""A block on a plane, and a particle, in the two engines: the comparison runs of lesson 3, and what blocks share.
 
 Both engines hold a resting block by impulses, as our sliding_step does, and differ from it in the order of motion:
 pybullet moves with the new velocity, pymunk with the old one.  The contact exists from the first step if the block
@@ -6,6 +6,8 @@ begins with the overlap that its engine tolerates.  Otherwise it first falls tha
 """
 from validate.engines.bullet import Bullet
 from validate.engines.chipmunk import pymunk_space, pymunk_world
+from validate.methods import EVENT, SLIDING
+from validate.reference.friction import block_in_space
 from validate.scene import PYBULLET, PYMUNK, Engine, EngineRun
 
 # half the length of the block [m]: no step may move it by its own size, or pybullet loses the contact
@@ -80,6 +82,28 @@ def bullet_block(gravity, mu, v, fastest, dt, read, push=None, pyramid=False):
     if push is not None:
         step = pushed(bullet.step, dt, lambda F: bullet.push(slab, F, bullet.position(slab)), push)
     return EngineRun(step, lambda: read(bullet.position(slab)), bullet.close)
+
+
+def along_the_plane(state, p):
+    """Return the way of the block along its plane [m]."""
+    return state[0][:1]
+
+
+def block_on(ground, start):
+    """Return the fields that the scenes of a block share; ground: "floor" or "slope", start: that of the scene."""
+    return {
+        "lesson": "friction",
+        "methods": (SLIDING, EVENT),
+        "start": start,
+        "observe": along_the_plane,
+        "links": lambda p: [(0, 1)],
+        "uses": ("two coordinates", "a normal", "one step of a block that stays on its plane"),
+        "ablations": {
+            "the third dimension": lambda p: (block_in_space(*start(p)), p),
+            "rotation: it does not tip": "the whole loop of lesson 10 has it, and is measured",
+            f"detection: it does not leave the {ground}": "the whole loop of lesson 10 has it, and is measured",
+        },
+    }
 
 
 def slab_on_line_and_box(pymunk_make, pybullet_make, before="", after=""):

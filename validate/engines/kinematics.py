@@ -1,8 +1,8 @@
-"""pybullet's inverse kinematics of arms.  IK_SDLS is never asked for: it ends the process in 3.2.7."""
+"""pybullet's inverse kinematics of arms, and what scenes of arms share.  IK_SDLS would end the process in 3.2.7."""
 
 import numpy as np
 
-from validate.scene import EngineRun
+from validate.scene import EXACT, EngineRun
 
 from .bullet import Bullet
 
@@ -62,3 +62,16 @@ def bullet_reach(lengths, starts, observe, target, direction=None, **settings):
     arm = BulletArm(lengths)
     read = lambda: observe([arm.solve(theta, target, direction, **settings) for theta in starts])
     return EngineRun(lambda: None, read, arm.close)
+
+
+def answers_of(methods):
+    """Return the fields that the scenes of one answer share: nothing moves, and nothing can be refined."""
+    return {
+        "lesson": "kinematics",
+        "methods": methods,
+        "orders": dict.fromkeys((method.function for method in methods), EXACT),
+        "moves": False,
+        "duration": 1.0,
+        "refinement": "",
+        "steps": (1,),
+    }

@@ -1,8 +1,10 @@
-"""Free and rolling bodies in pybullet."""
+"""Free and rolling bodies in pybullet, and what the scenes of free bodies share."""
 
 import numpy as np
 
+from validate.drawing import axes_links, axes_seen, turned_in_place
 from validate.engines.bullet import Rigid
+from validate.reference.orientation import quaternion_matrix
 from validate.scene import PYBULLET, Engine, EngineRun
 
 
@@ -14,6 +16,7 @@ def free_body(maximal):
         return EngineRun(bullet.step, lambda: bullet.R(body).ravel(), bullet.close)
     return make
 
+
 FREE_ENGINES = (
     Engine(
         PYBULLET,
@@ -24,6 +27,26 @@ FREE_ENGINES = (
     ),
     Engine(PYBULLET, "", free_body(True), 1, "useMaximalCoordinates=1, no damping"),
 )
+
+
+def observe_rotation(state, p):
+    """Return R, nine numbers, in which q and −q are equal."""
+    return quaternion_matrix(*state[0]).ravel()
+
+
+# the fields that the scenes of a body without a torque share
+FREE_BODY = {
+    "lesson": "rotation",
+    "observe": observe_rotation,
+    "points": axes_seen,
+    "links": axes_links,
+    "poses": turned_in_place,
+    "uses": ("one orientation", "one angular momentum", "one step function"),
+    "ablations": {
+        "position": "x += dt P/M runs beside it without any effect",
+        "contacts": "the whole loop of lesson 10 has them, and is measured",
+    },
+}
 
 
 def rolling_ball(ball, v, maximal, dt):

@@ -1,23 +1,30 @@
-"""A net of masses and springs: how it starts and is drawn, and the same in pymunk."""
+"""Masses on springs: how a net starts and is drawn, what its scenes have in common, and the same in pymunk."""
 
 import numpy as np
 
 from solutions.checks import check_positive
 from solutions.springs import make_spring_network
 from validate.engines.chipmunk import pymunk_space, pymunk_world
+from validate.methods import IMPLICIT_MESH, INTEGRATORS
 from validate.reference.springs import square_net, state_of
+from validate.scene import PYMUNK, Engine
 
 
-def start_net(p):
-    """Return (x, v, network) of a SquareNet.  Raises BadInput for a parameter that is not positive."""
-    for name in ("n", "spacing", "m", "k"):
-        check_positive(name, getattr(p, name))
-    return state_of(square_net(p), make_spring_network)
+def start_of(net, positive):
+    """Return start(p) → (x, v, network) of net(p); it raises BadInput unless these parameters are positive."""
+    def start(p):
+        for name in positive:
+            check_positive(name, getattr(p, name))
+        return state_of(net(p), make_spring_network)
+    return start
 
 
-def net_in_space(p):
-    """The same motion with an unused third coordinate."""
-    return state_of(square_net(p).padded(), make_spring_network), p
+start_net = start_of(square_net, ("n", "spacing", "m", "k"))
+
+
+def in_space(net):
+    """Return p → (state, p) of the ReferenceNetwork net(p): the same motion with three coordinates."""
+    return lambda p: (state_of(net(p).padded(), make_spring_network), p)
 
 
 def observe_net(state, p):
@@ -60,3 +67,25 @@ def pymunk_net(net, dt, observe):
             space.add(pymunk.DampedSpring(bodies[i], bodies[j], (0.0, 0.0), (0.0, 0.0), float(rest), net.k, net.k_d))
     d = net.x.shape[1]
     return pymunk_world(space, dt, lambda: observe(np.array([body.position for body in bodies])[:, :d]))
+
+
+# the fields that the scenes of a SquareNet share
+NET = {
+    "lesson": "springs",
+    "methods": (*INTEGRATORS, IMPLICIT_MESH),
+    "start": start_net,
+    "observe": observe_net,
+    "engines": (
+        Engine(PYMUNK, "", lambda p, dt: pymunk_net(square_net(p), dt, np.ravel), 1,
+               "DampedSpring between point masses"),
+    ),
+    "points": net_points,
+    "links": net_links,
+    "link_look": "spring",
+    "uses": ("two coordinates", "springs with dampers", "one step function"),
+    "ablations": {
+        "the third dimension": in_space(square_net),
+        "rotation": "the whole loop of lesson 10 has it, and is measured",
+        "contact of the net with itself": "the whole loop of lesson 10 has it, and is measured",
+    },
+}

@@ -4,6 +4,8 @@ Nothing here uses the functions of `solutions`.  Distances of convex bodies are 
 weights (SciPy's nnls), first roots are SciPy's brentq, pairs are NumPy's comparison of all with all.
 """
 
+from typing import Annotated, NamedTuple
+
 import numpy as np
 from scipy.optimize import brentq, nnls
 from scipy.spatial import ConvexHull
@@ -14,12 +16,29 @@ GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 EARLIEST, SPREAD = 0.3, 0.4  # range of the impacts, as shares of the output time
 
 
+class Balls(NamedTuple):
+    """Balls that fly at an obstacle."""
+    speed: Annotated[float, "of the balls [m/s]"] = 1.0
+    r: Annotated[float, "their radius [m]"] = 0.1
+    R: Annotated[float, "of the cylinder about the x axis [m]; 0: the plane z = 0"] = 0.0
+
+
+def at_speeds(R):
+    """Return {name: Balls} of the cases; R: of the cylinder [m], 0 for a plane."""
+    return {name: Balls(speed, R=R) for name, speed in SPEEDS.items()}
+
+
 def impact_times(T):
     """Return the time of each copy's impact [s]: EARLIEST + SPREAD {k φ} of T, φ the golden section.
 
     These times are spread evenly over the phases of a step of any length.
     """
     return T * (EARLIEST + SPREAD * ((np.arange(COPIES) + 1.0) * GOLDEN % 1.0))
+
+
+def impact_claim(x, v, end, T):
+    """Return the sanity check that balls (x, v), which end at end (n, 2), y and z, have fallen until impact_times."""
+    return "times of impact [s]", (end[:, 1] - x[:, 2]) / v[:, 2], impact_times(T), 1e-14
 
 
 def with_balls_that_miss(x, v, target):
@@ -35,7 +54,7 @@ def first_root(gap, t_0, t_1):
 
 
 def stopped(x, v, gap, latest, t):
-    """Return the positions (n, 3) at t of balls that fly straight and stop where gap(position) becomes zero.
+    """Return y and z of all balls at t, in one row: they fly straight and stop where gap(position) becomes zero.
 
     gap is above zero at the start and below at `latest`, a time for each ball.  *Source:* x₀ + v min(t, t*), t* the
     root, by brentq.
@@ -44,7 +63,7 @@ def stopped(x, v, gap, latest, t):
     for y, w, last in zip(x, v, latest):
         moment = first_root(lambda s, y=y, w=w: gap(y + s * w), 0.0, last)
         found.append(y + min(t, moment) * w)
-    return np.array(found)
+    return np.ravel(np.array(found)[:, 1:])
 
 
 def hull_nearest(a, b, weight=1e3):

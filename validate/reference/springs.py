@@ -293,3 +293,21 @@ def net_errors(make, T, truth, uncertainty, seen=lambda x, p: x.ravel(), engines
     models = {"implicit mesh": model(implicit_net), "pymunk": model(pymunk_net_model), **(engines or {})}
     return predict_by_tables(T, net_law(make), lambda p: (make(p).x, make(p).v), seen, truth,
                              lambda p, dt: 1e-12 + T / dt * ROUND_OFF + 10.0 * uncertainty, models, **more)
+
+
+def net_truth(T, uncertainty):
+    """Return the fields of a SquareNet's scene that judge it: its truth up to T [s], and the errors that theory allows.
+
+    uncertainty: of the truth, relative [-].
+    """
+    def truth(p, t):
+        """Every node, by DOP853 with separately coded forces, at a relative tolerance of 1e-13."""
+        return net_motion(p, T)(t).ravel()
+
+    def tolerance(p, dt):
+        """Each mode on its own, with a margin for large motion; pymunk is symplectic Euler, order 1."""
+        limits = net_limits(square_net, p, np.linalg.norm(truth(p, T)), T, dt, uncertainty)
+        return {**limits, "pymunk": limits[1]}
+
+    return {"duration": T, "truth": truth, "truth_uncertainty": uncertainty, "tolerance": tolerance,
+            "predicted_error": net_errors(square_net, T, truth, uncertainty)}

@@ -151,17 +151,11 @@ def links(p):
 
 
 SCENE = Scene(
-    title="Pairs of boxes",
-    lesson="collisions",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
+    title="Pairs of boxes", lesson="collisions",
+    cases=CASES, duration=T, steps=STEPS,
     methods=(TREES, BRUTE_FORCE),
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    truth_uncertainty=1e-16,
+    start=start, run=run, observe=observe,
+    truth=truth, truth_uncertainty=1e-16,
     tolerance=tolerance,
     engines=ENGINES,
     expected_departures={
@@ -176,8 +170,7 @@ SCENE = Scene(
     moves=False,
     refinement="",
     quantity_names=quantity_names,
-    points=points,
-    links=links,
+    points=points, links=links,
     uses=("boxes along the axes", "a tree, rebuilt"),
     full_loop="the broad phase alone: nothing moves, so there is no loop",
     ablations={

@@ -5,31 +5,26 @@ v dt inside, or misses it, because a step longer than the path through the cylin
 solves for the first root and works with any step.
 """
 
-from typing import Annotated, NamedTuple
-
 import numpy as np
 
-from solutions.checks import check_positive
-from solutions.collisions import Plane
-from solutions.support.collisions import Target, advance_projectiles, ball_cylinder_gap, ball_cylinder_time
-from validate.engines.collisions import PLACE_APART, RAY_ENDS, across, discrete_up_to, ray_and_sweep, swept_limit
-from validate.methods import CONTINUOUS, DISCRETE
-from validate.reference.collisions import COPIES, SPEEDS, impact_times, stopped, with_balls_that_miss
+from solutions.support.collisions import advance_projectiles, ball_cylinder_gap, ball_cylinder_time
+from validate.engines.collisions import (
+    BALLS,
+    PLACE_APART,
+    RAY_ENDS,
+    discrete_up_to,
+    ray_and_sweep,
+    start_balls,
+    swept_limit,
+)
+from validate.reference.collisions import COPIES, at_speeds, impact_claim, impact_times, stopped, with_balls_that_miss
 from validate.scene import EXACT, ROUND_OFF, Scene
 
 T = 1.0                      # [s]: every ball has hit by then
 STEPS = (20, 50, 100, 200, 500, 1000, 2000)
 FASTEST_DISCRETE = 100.0     # [m/s]: above this, no step of the sweep is short enough for the discrete test
 WIDEST = 0.8                 # largest offset from the axis at which a ball aims, over R + r [-]
-
-
-class Params(NamedTuple):
-    speed: Annotated[float, "of the balls [m/s]"] = 1.0
-    r: Annotated[float, "their radius [m]"] = 0.1
-    R: Annotated[float, "of the cylinder, about the x axis [m]"] = 0.5
-
-
-CASES = {name: Params(speed) for name, speed in SPEEDS.items()}
+CASES = at_speeds(R=0.5)
 
 
 def place(p):
@@ -42,20 +37,12 @@ def place(p):
     return x, np.tile(p.speed * e, (COPIES, 1))
 
 
-def start(p):
-    for name in ("speed", "r", "R"):
-        check_positive(name, getattr(p, name))
-    return *place(p), Target(p.r, p.R, Plane(np.array([0.0, 0.0, 1.0]), 0.0))
+start = start_balls(place, ("speed", "r", "R"))
 
 
 def run(step, acceleration, state, p, dt, steps):
     x, v, goal = state
-    x, v = advance_projectiles(step, ball_cylinder_gap, ball_cylinder_time, 0.0, x, v, dt, steps, goal)
-    return x, v, goal
-
-
-def observe(state, p):
-    return across(state[0][:COPIES])
+    return *advance_projectiles(step, ball_cylinder_gap, ball_cylinder_time, 0.0, x, v, dt, steps, goal), goal
 
 
 def truth(p, t):
@@ -65,7 +52,7 @@ def truth(p, t):
     """
     x, v = place(p)
     nearest = [-(y[1:] @ w[1:]) / (w[1:] @ w[1:]) for y, w in zip(x, v)]
-    return across(stopped(x, v, lambda y: np.hypot(y[1], y[2]) - p.R - p.r, nearest, t))
+    return stopped(x, v, lambda y: np.hypot(y[1], y[2]) - p.R - p.r, nearest, t)
 
 
 def tolerance(p, dt):
@@ -101,37 +88,17 @@ def links(p):
 
 def sanity_checks():
     """Return ((claim, found, expected, tolerance), …): the point where a ball in the middle must touch."""
-    p = Params(1e4)
-    x, (began, v) = truth(p, T).reshape(-1, 2), place(p)
+    p = CASES["10,000 m/s"]
+    x = truth(p, T).reshape(-1, 2)
     return (("distance of all balls from the axis at the end [m]", np.hypot(*x.T), p.R + p.r, 1e-11),
-            ("times of impact [s]", (x[:, 1] - began[:, 2]) / v[:, 2], impact_times(T), 1e-14))
+            impact_claim(*place(p), x, T))
 
 
 SCENE = Scene(
-    title="Point and cylinder",
-    lesson="collisions",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
-    methods=(CONTINUOUS, DISCRETE),
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    # of brentq, times the 7,000 m that the fastest balls have travelled
-    truth_uncertainty=1e-13,
-    tolerance=tolerance,
-    engines=ENGINES,
-    orders={"continuous_step": EXACT},
-    supports=discrete_up_to(FASTEST_DISCRETE),
-    # Plain Python finishes before numba has compiled it.
-    uncompiled_in_quick=("discrete_step",),
-    shorter_in_quick={"discrete_step": 1000},
-    sanity_checks=sanity_checks,
-    points=points,
-    links=links,
+    title="Point and cylinder", **BALLS, cases=CASES, duration=T, steps=STEPS,
+    start=start, run=run, truth=truth, tolerance=tolerance, engines=ENGINES, supports=discrete_up_to(FASTEST_DISCRETE),
+    sanity_checks=sanity_checks, points=points, links=links,
     uses=("a straight way", "a quadratic equation for each step, or a distance"),
-    full_loop="the scene ends where the loop begins: a ball stays where it is found to hit",
     ablations={
         "balls that never come near, tested at every step": lambda p: (with_balls_that_miss(*start(p)), p),
         "gravity: the path would bend, and the equation be of fourth degree": ("short straight pieces of the path "

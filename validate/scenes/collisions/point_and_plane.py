@@ -4,31 +4,18 @@ The test of the first lecture deck, E(p) < 0 after each step, finds them up to v
 t + dt d₁/(d₁ + d₂) puts them back exactly, because the path is straight.  No ball passes a plane: it has no far side.
 """
 
-from typing import Annotated, NamedTuple
-
 import numpy as np
 
-from solutions.checks import check_positive
-from solutions.collisions import Plane
-from solutions.support.collisions import Target, advance_projectiles, ball_plane_gap, ball_plane_time
-from validate.engines.collisions import PLACE_APART, across, discrete_up_to, ray_and_sweep, swept_limit
-from validate.methods import CONTINUOUS, DISCRETE
-from validate.reference.collisions import COPIES, SPEEDS, impact_times, stopped, with_balls_that_miss
+from solutions.support.collisions import advance_projectiles, ball_plane_gap, ball_plane_time
+from validate.engines.collisions import BALLS, PLACE_APART, discrete_up_to, ray_and_sweep, start_balls, swept_limit
+from validate.reference.collisions import COPIES, at_speeds, impact_claim, impact_times, stopped, with_balls_that_miss
 from validate.scene import EXACT, ROUND_OFF, Scene
 
 T = 1.0                      # [s]: every ball has hit by then
 STEPS = (20, 50, 100, 200, 500, 1000, 2000)
 FASTEST_DISCRETE = 10.0     # [m/s]: above this, a ball is deeper than the picture is wide, at every step of the sweep
 TILT = 0.3                   # of the path, from the vertical [rad]
-
-
-class Params(NamedTuple):
-    speed: Annotated[float, "of the balls [m/s]"] = 1.0
-    r: Annotated[float, "their radius [m]"] = 0.1
-    R: Annotated[float, "no cylinder here"] = 0.0
-
-
-CASES = {name: Params(speed) for name, speed in SPEEDS.items()}
+CASES = at_speeds(R=0.0)
 
 
 def place(p):
@@ -38,20 +25,12 @@ def place(p):
     return touch - np.outer(p.speed * impact_times(T), e), np.tile(p.speed * e, (COPIES, 1))
 
 
-def start(p):
-    for name in ("speed", "r"):
-        check_positive(name, getattr(p, name))
-    return *place(p), Target(p.r, p.R, Plane(np.array([0.0, 0.0, 1.0]), 0.0))
+start = start_balls(place, ("speed", "r"))
 
 
 def run(step, acceleration, state, p, dt, steps):
     x, v, goal = state
-    x, v = advance_projectiles(step, ball_plane_gap, ball_plane_time, 0.0, x, v, dt, steps, goal)
-    return x, v, goal
-
-
-def observe(state, p):
-    return across(state[0][:COPIES])
+    return *advance_projectiles(step, ball_plane_gap, ball_plane_time, 0.0, x, v, dt, steps, goal), goal
 
 
 def truth(p, t):
@@ -60,7 +39,7 @@ def truth(p, t):
     Source: the distance of a point from the plane z = 0.
     """
     x, v = place(p)
-    return across(stopped(x, v, lambda y: y[2] - p.r, np.full(COPIES, T), t))
+    return stopped(x, v, lambda y: y[2] - p.r, np.full(COPIES, T), t)
 
 
 def tolerance(p, dt):
@@ -90,43 +69,18 @@ def points(observed, p):
     return np.round(np.concatenate(([[-1.0, 0.0], [1.0, 0.0]], balls)), 3)
 
 
-def links(p):
-    return [(0, 1)]
-
-
 def sanity_checks():
     """Return ((claim, found, expected, tolerance), …) about the reference solution."""
-    p = Params(1e4)
-    x, (began, v) = truth(p, T).reshape(-1, 2), place(p)
-    return (("height of all balls at the end [m]", x[:, 1], p.r, 1e-11),
-            ("times of impact [s]", (x[:, 1] - began[:, 2]) / v[:, 2], impact_times(T), 1e-14))
+    p = CASES["10,000 m/s"]
+    x = truth(p, T).reshape(-1, 2)
+    return (("height of all balls at the end [m]", x[:, 1], p.r, 1e-11), impact_claim(*place(p), x, T))
 
 
 SCENE = Scene(
-    title="Point and plane",
-    lesson="collisions",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
-    methods=(CONTINUOUS, DISCRETE),
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    # of brentq, times the 7,000 m that the fastest balls have travelled
-    truth_uncertainty=1e-13,
-    tolerance=tolerance,
-    engines=ENGINES,
-    orders={"continuous_step": EXACT},
-    supports=discrete_up_to(FASTEST_DISCRETE),
-    # Plain Python finishes before numba has compiled it.
-    uncompiled_in_quick=("discrete_step",),
-    shorter_in_quick={"discrete_step": 1000},
-    sanity_checks=sanity_checks,
-    points=points,
-    links=links,
+    title="Point and plane", **BALLS, cases=CASES, duration=T, steps=STEPS,
+    start=start, run=run, truth=truth, tolerance=tolerance, engines=ENGINES, supports=discrete_up_to(FASTEST_DISCRETE),
+    sanity_checks=sanity_checks, points=points, links=lambda p: [(0, 1)],
     uses=("a straight way", "two signed distances for each step"),
-    full_loop="the scene ends where the loop begins: a ball stays where it is found to hit",
     ablations={
         "balls that never come near, tested at every step": lambda p: (with_balls_that_miss(*start(p)), p),
         "gravity: the path would bend": "then the formula is the first step of Newton's method",

@@ -339,17 +339,11 @@ def links(p):
 
 
 SCENE = Scene(
-    title="Mass ratio",
-    lesson="contact",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
+    title="Mass ratio", lesson="contact",
+    cases=CASES, duration=T, steps=STEPS,
     methods=(DIRECT, SWEEPS, PILE, COUNTED_SWEEPS),
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    truth_uncertainty=1e-15,
+    start=start, run=run, observe=observe,
+    truth=truth, truth_uncertainty=1e-15,
     tolerance=tolerance,
     engines=ENGINES,
     expected_departures={
@@ -369,8 +363,7 @@ SCENE = Scene(
     quantity_names=quantity_names,
     published_states=((1.0, (107.91, 98.1), 1e-12),),
     sanity_checks=sanity_checks,
-    points=points,
-    links=links,
+    points=points, links=links,
     uses=("rows of both contacts", "masses", "for the pile: contact points, soft contacts and memory"),
     full_loop="forces of bodies at rest: nothing moves, so there is no loop",
     ablations={"friction": "it carries nothing here; it keeps the boxes of the pile from sliding off",

@@ -248,28 +248,18 @@ def links(p):
 
 
 SCENE = Scene(
-    title="Particle in a bowl",
-    lesson="friction",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
+    title="Particle in a bowl", lesson="friction",
+    cases=CASES, duration=T, steps=STEPS,
     methods=(CONTACT, GRIPPING),
-    acceleration=acceleration,
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    truth_uncertainty=1e-9,
-    tolerance=tolerance,
-    predicted_error=predicted_error,
+    acceleration=acceleration, start=start, run=run, observe=observe,
+    truth=truth, truth_uncertainty=1e-9, tolerance=tolerance, predicted_error=predicted_error,
     engines=ENGINES,
     omitted_methods=("the sliding and the event step hold a block on one plane; a bowl has a different one at every "
                      "point"),
     uncompiled_in_quick=("position_friction_step",),
     shorter_in_quick={"position_friction_step": 5000},
     sanity_checks=sanity_checks,
-    points=points,
-    links=links,
+    points=points, links=links,
     uses=("three coordinates", "an implicit surface", "one impulse for each contact"),
     full_loop="the loop has no contact with a curved surface that is given by an equation",
     ablations={

@@ -8,11 +8,10 @@ from solutions.checks import check_positive
 from solutions.friction import driven_acceleration as acceleration
 from solutions.integrators import advance
 from solutions.support.friction import make_block
-from validate.engines.friction import bullet_block, pymunk_block, slab_on_line_and_box
+from validate.engines.friction import block_on, bullet_block, pymunk_block, slab_on_line_and_box
 from validate.engines.mujoco import IMPEDANCE, SOFT, TIME_CONSTANT
 from validate.engines.mujoco import block as mujoco_block
-from validate.methods import EVENT, SLIDING
-from validate.reference.friction import CLOSE, SoftBlock, block_in_space
+from validate.reference.friction import CLOSE, SoftBlock
 from validate.reference.schemes import summed
 from validate.scene import EXACT, MUJOCO, Departure, Engine, Prediction, Scene, by_order
 
@@ -48,12 +47,7 @@ def start(p):
 
 def run(step, acceleration, state, p, dt, steps):
     x, v, block = state
-    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, block)
-    return x, v, block
-
-
-def observe(state, p):
-    return state[0][:1]
+    return *advance(step, acceleration, 0.0, x, v, dt, steps, block), block
 
 
 def truth(p, t):
@@ -170,25 +164,10 @@ def points(observed, p):
     return np.stack([-0.4 * down, 1.4 * down, observed[0] * down + 0.03 * np.array([np.sin(theta), np.cos(theta)])])
 
 
-def links(p):
-    return [(0, 1)]
-
-
 SCENE = Scene(
     title="Block on an incline",
-    lesson="friction",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
-    methods=(SLIDING, EVENT),
-    acceleration=acceleration,
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    truth_uncertainty=1e-15,
-    tolerance=tolerance,
-    predicted_error=predicted_error,
+    **block_on("slope", start), cases=CASES, duration=T, steps=STEPS, acceleration=acceleration, run=run,
+    truth=truth, truth_uncertainty=1e-15, tolerance=tolerance, predicted_error=predicted_error,
     engines=ENGINES,
     expected_departures={
         "mujoco": Departure("its contact is a spring with a damper, and its friction holds only what moves: on the "
@@ -199,11 +178,4 @@ SCENE = Scene(
                      "regularised-friction-creeps shows the effect"),
     sanity_checks=sanity_checks,
     points=points,
-    links=links,
-    uses=("two coordinates", "a normal", "one step of a block that stays on its plane"),
-    ablations={
-        "the third dimension": lambda p: (block_in_space(*start(p)), p),
-        "rotation: it does not tip": "the whole loop of lesson 10 has it, and is measured",
-        "detection: it does not leave the slope": "the whole loop of lesson 10 has it, and is measured",
-    },
 )

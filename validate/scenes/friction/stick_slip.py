@@ -6,9 +6,8 @@ from solutions.checks import check_positive
 from solutions.friction import driven_acceleration as acceleration
 from solutions.integrators import advance
 from solutions.support.friction import make_block, slip_times
-from validate.engines.friction import MASS, bullet_block, pymunk_block, slab_on_line_and_box
-from validate.methods import EVENT, SLIDING
-from validate.reference.friction import DrivenBlock, T, block_in_space, slip_errors, slip_limits, slip_position, slips
+from validate.engines.friction import MASS, block_on, bullet_block, pymunk_block, slab_on_line_and_box
+from validate.reference.friction import DrivenBlock, T, slip_errors, slip_limits, slip_position, slips
 from validate.scene import Scene
 
 STEPS = (80, 160, 400, 800, 1600, 4000, 8000)
@@ -24,12 +23,7 @@ def start(p):
 
 def run(step, acceleration, state, p, dt, steps):
     x, v, block = state
-    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, block)
-    return x, v, block
-
-
-def observe(state, p):
-    return state[0][:1]
+    return *advance(step, acceleration, 0.0, x, v, dt, steps, block), block
 
 
 def push(p, d):
@@ -73,33 +67,11 @@ def points(observed, p):
     return np.array([[0.0, 0.0], [50.0 * observed[0], 0.3]])
 
 
-def links(p):
-    return [(0, 1)]
-
-
 SCENE = Scene(
     title="Stick and slip",
-    lesson="friction",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
-    methods=(SLIDING, EVENT),
-    acceleration=acceleration,
-    start=start,
-    run=run,
-    observe=observe,
-    truth=slip_position,
-    truth_uncertainty=1e-13,
-    tolerance=slip_limits,
-    predicted_error=slip_errors,
+    **block_on("floor", start), cases=CASES, duration=T, steps=STEPS, acceleration=acceleration, run=run,
+    truth=slip_position, truth_uncertainty=1e-13, tolerance=slip_limits, predicted_error=slip_errors,
     engines=ENGINES,
     sanity_checks=sanity_checks,
     points=points,
-    links=links,
-    uses=("two coordinates", "a normal", "one step of a block that stays on its plane"),
-    ablations={
-        "the third dimension": lambda p: (block_in_space(*start(p)), p),
-        "rotation: it does not tip": "the whole loop of lesson 10 has it, and is measured",
-        "detection: it does not leave the floor": "the whole loop of lesson 10 has it, and is measured",
-    },
 )

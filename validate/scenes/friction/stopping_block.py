@@ -40,8 +40,7 @@ def start(p):
 
 def run(step, acceleration, state, p, dt, steps):
     x, v, block = state
-    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, block)
-    return x, v, block
+    return *advance(step, acceleration, 0.0, x, v, dt, steps, block), block
 
 
 def observe(state, p):
@@ -161,28 +160,18 @@ def links(p):
 
 
 SCENE = Scene(
-    title="Stopping block",
-    lesson="friction",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
+    title="Stopping block", lesson="friction",
+    cases=CASES, duration=T, steps=STEPS,
     methods=(SLIDING, PYRAMID, EVENT),
-    acceleration=acceleration,
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    truth_uncertainty=1e-15,
-    tolerance=tolerance,
-    predicted_error=predicted_error,
+    acceleration=acceleration, start=start, run=run, observe=observe,
+    truth=truth, truth_uncertainty=1e-15, tolerance=tolerance, predicted_error=predicted_error,
     engines=ENGINES,
     expected_departures={"pyramid": Departure(BOX, pyramid), "pybullet, pyramid": Departure(BOX, pyramid)},
     # The deceleration is constant, and the stop is found.
     orders={"event_step": EXACT},
     uncompiled_in_quick=("pyramid_step",),
     sanity_checks=sanity_checks,
-    points=points,
-    links=links,
+    points=points, links=links,
     uses=("three coordinates", "a normal", "one step of a block that stays on its plane"),
     ablations={
         "rotation: it does not turn or tip": "the whole loop of lesson 10 has it, and is measured",

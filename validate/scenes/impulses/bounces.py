@@ -68,8 +68,7 @@ def start(p):
 
 def run(step, acceleration, state, p, dt, steps):
     x, v, drop = state
-    x, v = advance_balls(step, acceleration, 0.0, x, v, dt, steps, drop)
-    return x, v, drop
+    return *advance_balls(step, acceleration, 0.0, x, v, dt, steps, drop), drop
 
 
 def observe(state, p):
@@ -219,18 +218,11 @@ def in_space(p):
 
 
 SCENE = Scene(
-    title="Bounces",
-    lesson="impulses",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
+    title="Bounces", lesson="impulses",
+    cases=CASES, duration=T, steps=STEPS,
     methods=(PENALTY, PROJECTING, BACKTRACKING),
-    acceleration=acceleration,
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    truth_uncertainty=1e-14,
+    acceleration=acceleration, start=start, run=run, observe=observe,
+    truth=truth, truth_uncertainty=1e-14,
     tolerance=tolerance,
     engines=ENGINES,
     expected_departures={
@@ -242,8 +234,7 @@ SCENE = Scene(
     uncompiled_in_quick=("position_projection_step",),
     shorter_in_quick={"position_projection_step": 2500},
     sanity_checks=sanity_checks,
-    points=points,
-    links=links,
+    points=points, links=links,
     film_seconds=4.5,  # [s]: until it is at rest
     uses=("two coordinates", "one plane", "one number e for each impact"),
     full_loop="the loop has no restitution: its contacts do not bounce",

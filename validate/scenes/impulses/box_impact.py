@@ -216,17 +216,11 @@ def links(p):
 
 
 SCENE = Scene(
-    title="A box lands",
-    lesson="impulses",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
+    title="A box lands", lesson="impulses",
+    cases=CASES, duration=T, steps=STEPS,
     methods=(TOGETHER, IN_TURN),
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    truth_uncertainty=1e-14,
+    start=start, run=run, observe=observe,
+    truth=truth, truth_uncertainty=1e-14,
     tolerance=tolerance,
     engines=ENGINES,
     expected_departures={
@@ -240,8 +234,7 @@ SCENE = Scene(
     refinement="",
     quantity_names=quantity_names,
     sanity_checks=sanity_checks,
-    points=points,
-    links=links,
+    points=points, links=links,
     uses=("one body", "the offsets of the points in contact", "sweeps over them until nothing changes"),
     full_loop="one impact without time: there is no loop",
     ablations={

@@ -40,8 +40,7 @@ def start(p):
 
 def run(step, acceleration, state, p, dt, steps):
     x, v, discs = state
-    x, v = advance_discs(step, x, v, dt, steps, discs)
-    return x, v, discs
+    return *advance_discs(step, x, v, dt, steps, discs), discs
 
 
 def seen(x, v, p):
@@ -136,17 +135,11 @@ def points(observed, p):
 
 
 SCENE = Scene(
-    title="Cradle",
-    lesson="impulses",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
+    title="Cradle", lesson="impulses",
+    cases=CASES, duration=T, steps=STEPS,
     methods=(PROJECTING_DISCS, BACKTRACKING_DISCS),
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    truth_uncertainty=1e-15,
+    start=start, run=run, observe=observe,
+    truth=truth, truth_uncertainty=1e-15,
     tolerance=tolerance,
     engines=ENGINES,
     orders={"backtracking_discs_step": EXACT},

@@ -45,8 +45,7 @@ def start(p):
 
 def run(step, acceleration, state, p, dt, steps):
     x, v, discs = state
-    x, v = advance_discs(step, x, v, dt, steps, discs)
-    return x, v, discs
+    return *advance_discs(step, x, v, dt, steps, discs), discs
 
 
 def observe(state, p):
@@ -157,23 +156,16 @@ def in_space(p):
 
 
 SCENE = Scene(
-    title="Oblique discs",
-    lesson="impulses",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
+    title="Oblique discs", lesson="impulses",
+    cases=CASES, duration=T, steps=STEPS,
     methods=(PROJECTING_DISCS, BACKTRACKING_DISCS),
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    truth_uncertainty=1e-15,
+    start=start, run=run, observe=observe,
+    truth=truth, truth_uncertainty=1e-15,
     tolerance=tolerance,
     engines=ENGINES,
     orders={"backtracking_discs_step": EXACT},
     sanity_checks=sanity_checks,
-    points=points,
-    links=links,
+    points=points, links=links,
     uses=("two coordinates", "two radii", "one number e for the impact"),
     full_loop="the loop has no restitution: its contacts do not bounce",
     ablations={

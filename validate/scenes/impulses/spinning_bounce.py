@@ -183,18 +183,11 @@ def links(p):
 
 
 SCENE = Scene(
-    title="Spinning bounce",
-    lesson="impulses",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
+    title="Spinning bounce", lesson="impulses",
+    cases=CASES, duration=T, steps=STEPS,
     methods=(PROJECTING_SPIN, BACKTRACKING_SPIN),
-    acceleration=acceleration,
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    truth_uncertainty=1e-15,
+    acceleration=acceleration, start=start, run=run, observe=observe,
+    truth=truth, truth_uncertainty=1e-15,
     tolerance=tolerance,
     engines=ENGINES,
     orders={"backtracking_spin_step": EXACT},
@@ -202,8 +195,7 @@ SCENE = Scene(
     uncompiled_in_quick=("position_projection_spin_step",),
     shorter_in_quick={"position_projection_spin_step": 500},
     sanity_checks=sanity_checks,
-    points=points,
-    links=links,
+    points=points, links=links,
     uses=("one ball", "one angular velocity", "one impulse in a cone"),
     full_loop="the loop has no restitution: its contacts do not bounce",
     ablations={

@@ -33,21 +33,13 @@ def tolerance(p, dt):
 
 
 SCENE = Scene(
-    title="Kepler",
-    lesson="integrators",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
+    title="Kepler", lesson="integrators",
+    cases=CASES, duration=T, steps=STEPS,
     methods=(*INTEGRATORS, BLANES_MOAN),
-    acceleration=acceleration,
-    start=planet,
-    run=run,
-    observe=observe,
+    acceleration=acceleration, start=planet, run=run, observe=observe,
     truth=kepler_position,
     # of the reference solution: round-off in the energy, v²/2 − μ/r, grows with time as in drift(): 3e-13
-    truth_uncertainty=1e-12,
-    tolerance=tolerance,
-    predicted_error=kepler_errors(T),
+    truth_uncertainty=1e-12, tolerance=tolerance, predicted_error=kepler_errors(T),
     engines=KEPLER_ENGINES,
     orders={"symplectic_euler_step": LATE_LEAPFROG},  # see late_start
     slow_methods=LEFT_TO_FULL,

@@ -173,20 +173,13 @@ def in_space(p):
 
 
 SCENE = Scene(
-    title="Linear drag",
-    lesson="integrators",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
+    title="Linear drag", lesson="integrators",
+    cases=CASES, duration=T, steps=STEPS,
     methods=INTEGRATORS,
-    acceleration=acceleration,
-    start=start,
-    run=run,
-    observe=observe,
+    acceleration=acceleration, start=start, run=run, observe=observe,
     truth=truth,
     # (1 − e^(−kt)) and gt are ten times as large as their difference
-    truth_uncertainty=1e-14,
-    tolerance=tolerance,
+    truth_uncertainty=1e-14, tolerance=tolerance,
     engines=ENGINES,
     expected_departures=DEPARTURES,
     predicted_error=predict_by_tables(T, law, thrown, seen, truth, floor, MODELS, DEPARTURES),

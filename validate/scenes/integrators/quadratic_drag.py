@@ -163,19 +163,11 @@ def in_space(p):
 
 
 SCENE = Scene(
-    title="Quadratic drag",
-    lesson="integrators",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
+    title="Quadratic drag", lesson="integrators",
+    cases=CASES, duration=T, steps=STEPS,
     methods=INTEGRATORS,
-    acceleration=acceleration,
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    truth_uncertainty=1e-14,
-    tolerance=tolerance,
+    acceleration=acceleration, start=start, run=run, observe=observe,
+    truth=truth, truth_uncertainty=1e-14, tolerance=tolerance,
     engines=ENGINES,
     expected_departures=DEPARTURES,
     predicted_error=predict_by_tables(T, law, at_rest, seen, truth, floor, MODELS, DEPARTURES),

@@ -135,19 +135,11 @@ def points(observed, p):
 
 
 SCENE = Scene(
-    title="Throw",
-    lesson="integrators",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
+    title="Throw", lesson="integrators",
+    cases=CASES, duration=T, steps=STEPS,
     methods=INTEGRATORS,
-    acceleration=acceleration,
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    truth_uncertainty=1e-15,
-    tolerance=tolerance,
+    acceleration=acceleration, start=start, run=run, observe=observe,
+    truth=truth, truth_uncertainty=1e-15, tolerance=tolerance,
     engines=ENGINES,
     expected_departures=DEPARTURES,
     predicted_error=predicted_error,

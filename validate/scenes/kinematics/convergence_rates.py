@@ -11,13 +11,12 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.kinematics import advance_reach, make_arm_2d, reach_2d
-from validate.engines.kinematics import bullet_reach
+from validate.engines.kinematics import answers_of, bullet_reach
 from validate.methods import DAMPED, FACTORS, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import end_of, jacobian_of, joints_of
 from validate.scene import EXACT, PYBULLET, ROUND_OFF, Engine, Scene
 
 T = 1.0
-STEPS = (1,)
 MOVED = 1e-5                 # along a direction, to either side [rad]
 ANGLES = np.array([0.4, 0.9, 0.7])
 METHODS = (FACTORS, TRANSPOSE, DAMPED, PSEUDO_INVERSE)
@@ -158,28 +157,15 @@ def links(p):
 
 
 SCENE = Scene(
-    title="Rates of convergence",
-    lesson="kinematics",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
-    methods=METHODS,
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    truth_uncertainty=1e-15,
+    title="Rates of convergence", **answers_of(METHODS), cases=CASES,
+    start=start, run=run, observe=observe, truth=truth, truth_uncertainty=1e-15,
     tolerance=tolerance,
     engines=ENGINES,
-    orders=dict.fromkeys((method.function for method in METHODS), EXACT),
     supports=supports,
     omitted_methods="CCD and FABRIK have no factor that follows from J alone; pymunk has no inverse kinematics",
-    moves=False,
-    refinement="",
     quantity_names=quantity_names,
     sanity_checks=sanity_checks,
-    points=points,
-    links=links,
+    points=points, links=links,
     uses=("the Jacobian of the end", "one iteration of each method"),
     ablations={"more iterations": "each multiplies by the same factors, as long as the error is small"},
 )

@@ -13,13 +13,11 @@ import numpy as np
 from solutions.checks import check_positive
 from solutions.kinematics import make_arm_2d, reach_2d, solve_reach
 from validate.drawing import arms_and_target, two_arms_and_target_links
-from validate.engines.kinematics import bullet_reach
+from validate.engines.kinematics import answers_of, bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import bent_to, bullet_ik, end_of, joints_of
 from validate.scene import EXACT, PYBULLET, Departure, Engine, Scene
 
-T = 1.0
-STEPS = (1,)
 MOST = 4000                  # iterations
 ENOUGH = 1e-8                # |e| over the reach at which a search ends [-]
 LENGTHS = np.array([1.0, 0.7, 0.4])
@@ -118,34 +116,16 @@ def points(observed, p):
     return arms_and_target(arms, target_of(p), 0.04)
 
 
-def links(p):
-    return two_arms_and_target_links(3)
-
-
 SCENE = Scene(
-    title="A nearly straight arm",
-    lesson="kinematics",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
-    methods=METHODS,
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    truth_uncertainty=0.0,
+    title="A nearly straight arm", **answers_of(METHODS), cases=CASES,
+    start=start, run=run, observe=observe, truth=truth, truth_uncertainty=0.0, supports=supports,
     tolerance=tolerance,
     engines=ENGINES,
-    orders=dict.fromkeys((method.function for method in METHODS), EXACT),
-    supports=supports,
     expected_departures={"pybullet, default": Departure(
         "20 iterations with its damping of ½ m² are few for a bend that small", default_law)},
     omitted_methods="pymunk has no inverse kinematics",
-    moves=False,
-    refinement="",
     quantity_names=quantity_names,
-    points=points,
-    links=links,
+    points=points, links=lambda p: two_arms_and_target_links(3),
     uses=("positions of the joints", "the Jacobian of the end, for the methods that have one"),
     ablations={"the bend": "without it no method but CCD moves: see the straight arm"},
 )

@@ -12,13 +12,12 @@ import numpy as np
 from solutions.checks import check_positive
 from solutions.kinematics import make_arm_2d, reach_2d, solve_reach
 from validate.drawing import arms_and_target, two_arms_and_target_links
-from validate.engines.kinematics import bullet_reach
+from validate.engines.kinematics import answers_of, bullet_reach
 from validate.methods import CCD, CLOSED_2R, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import bullet_ik, jacobian_of, joints_of
 from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Engine, Scene
 
 T = 1.0
-STEPS = (1,)
 ENOUGH = 1e-10               # |e| over the reach at which a search ends [-]
 MOST = 20_000                # iterations; the transpose needs some thousand near the edge of the reach
 BEND = 1.2                   # of the elbow at the start, to either side [rad]
@@ -153,38 +152,21 @@ def points(observed, p):
     return arms_and_target(arms, target_of(p), 0.03 * (p.l_1 + p.l_2))
 
 
-def links(p):
-    return two_arms_and_target_links(2)
-
-
 SCENE = Scene(
-    title="Two elbows",
-    lesson="kinematics",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
-    methods=METHODS,
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    truth_uncertainty=1e-15,
+    title="Two elbows", **answers_of(METHODS), cases=CASES,
+    start=start, run=run, observe=observe, truth=truth, truth_uncertainty=1e-15,
     tolerance=tolerance,
     engines=ENGINES,
-    orders=dict.fromkeys((method.function for method in METHODS), EXACT),
     expected_departures={"pybullet, default": Departure(
         "its damping of ½ m² does not know how large the arm is, and it stops after 20 iterations or at 0.1 mm",
         default_law)},
     supports=supports,
     omitted_methods="pymunk has no inverse kinematics; near the hole the pseudo-inverse is missing: σ₂ is small on its "
                     "way there, so that it jumps about and does not arrive",
-    moves=False,
-    refinement="",
     quantity_names=quantity_names,
     published_states=((1.0, tuple(np.radians((30.0, 90.0, 120.0, -90.0))), 5e-4),),
     sanity_checks=sanity_checks,
-    points=points,
-    links=links,
+    points=points, links=lambda p: two_arms_and_target_links(2),
     uses=("positions of the joints", "the Jacobian of the end, for the methods that have one"),
     ablations={"masses": "inverse kinematics asks where, not how fast",
                "limits of the joints": "they would choose one of the two answers, or none"},

@@ -12,13 +12,12 @@ import numpy as np
 from solutions.checks import check_positive
 from solutions.kinematics import make_arm_2d, pose_2d, solve_reach
 from validate.drawing import arms_and_target, two_arms_and_target_links
-from validate.engines.kinematics import bullet_reach
+from validate.engines.kinematics import answers_of, bullet_reach
 from validate.methods import CLOSED_3R, DAMPED, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import bullet_ik, end_of, jacobian_of, joints_of
 from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Engine, Scene
 
 T = 1.0
-STEPS = (1,)
 ENOUGH = 1e-10               # |e| at which a search ends [m and rad]
 MOST = 20_000                # iterations; the transpose needs some thousand
 BEND = 1.2                   # of the elbow at the start, to either side [rad]
@@ -159,37 +158,20 @@ def points(observed, p):
     return arms_and_target(arms, target_of(p)[:2], 0.03 * sum(lengths_of(p)))
 
 
-def links(p):
-    return two_arms_and_target_links(3)
-
-
 SCENE = Scene(
-    title="Three links and a direction",
-    lesson="kinematics",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
-    methods=METHODS,
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    truth_uncertainty=1e-15,
+    title="Three links and a direction", **answers_of(METHODS), cases=CASES,
+    start=start, run=run, observe=observe, truth=truth, truth_uncertainty=1e-15,
     tolerance=tolerance,
     engines=ENGINES,
-    orders=dict.fromkeys((method.function for method in METHODS), EXACT),
     expected_departures={"pybullet, default": Departure(
         "it stops by its place alone, at 0.1 mm or after 20 iterations, and its damping of ½ does not know the size of "
         "the arm", default_law)},
     omitted_methods="CCD and FABRIK have no direction; pymunk has no inverse kinematics",
-    moves=False,
-    refinement="",
     quantity_names=quantity_names,
     published_states=((1.0, (0.0, 0.5 * np.pi, -0.5 * np.pi, 2.0 * np.arctan2(2.0, 3.0), -0.5 * np.pi,
                              0.5 * np.pi - 2.0 * np.arctan2(2.0, 3.0)), 1e-14),),
     sanity_checks=sanity_checks,
-    points=points,
-    links=links,
+    points=points, links=lambda p: two_arms_and_target_links(3),
     uses=("positions of the joints", "the Jacobian of the end, and of the direction: a row of ones"),
     ablations={"a fourth joint": "it would leave one freedom, and a whole curve of answers",
                "masses": "inverse kinematics asks where, not how fast"},

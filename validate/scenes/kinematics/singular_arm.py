@@ -12,13 +12,11 @@ import numpy as np
 from solutions.checks import check_positive
 from solutions.kinematics import advance_reach, make_arm_2d, reach_2d
 from validate.drawing import arms_and_target, two_arms_and_target_links
-from validate.engines.kinematics import bullet_reach
+from validate.engines.kinematics import answers_of, bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import bent_to, end_of, joints_of
 from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Engine, Scene
 
-T = 1.0
-STEPS = (1,)
 ITERATIONS = 200
 LENGTHS = np.array([1.0, 0.7, 0.4])
 REACH = 2.1                  # [m]
@@ -122,37 +120,19 @@ def points(observed, p):
     return arms_and_target(arms, target, 0.04)
 
 
-def links(p):
-    return two_arms_and_target_links(3)
-
-
 SCENE = Scene(
-    title="A straight arm",
-    lesson="kinematics",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
-    methods=METHODS,
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    truth_uncertainty=0.0,
+    title="A straight arm", **answers_of(METHODS), cases=CASES,
+    start=start, run=run, observe=observe, truth=truth, truth_uncertainty=0.0, supports=supports,
     tolerance=tolerance,
     engines=ENGINES,
-    orders=dict.fromkeys((method.function for method in METHODS), EXACT),
-    supports=supports,
     expected_departures={
         "transpose": JACOBIAN, "pseudo-inverse": JACOBIAN, "damped": JACOBIAN, "pybullet": JACOBIAN,
         "CCD": Departure("every joint points at the target already", stays),
         "FABRIK": Departure("projections along a line stay on the line", on_the_line)},
     omitted_methods="pymunk has no inverse kinematics",
-    moves=False,
-    refinement="",
     quantity_names=quantity_names,
     sanity_checks=sanity_checks,
-    points=points,
-    links=links,
+    points=points, links=lambda p: two_arms_and_target_links(3),
     uses=("positions of the joints", "the Jacobian of the end, for the methods that have one"),
     ablations={"a disturbance": "the nearly straight arm shows what a millionth of a radian does"},
 )

@@ -11,13 +11,11 @@ import numpy as np
 
 from solutions.checks import check_positive
 from solutions.kinematics import advance_reach, make_arm_2d, reach_2d
-from validate.engines.kinematics import bullet_reach
+from validate.engines.kinematics import answers_of, bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, TRANSPOSE
 from validate.reference.kinematics import annulus, bullet_ik, end_of, joints_of, nearest_reachable
 from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Engine, Scene
 
-T = 1.0
-STEPS = (1,)
 ITERATIONS = 3000            # of each method
 BENT = 0.5                   # all angles at the start [rad]
 METHODS = (DAMPED, CCD, FABRIK, TRANSPOSE)
@@ -156,20 +154,10 @@ def links(p):
 
 
 SCENE = Scene(
-    title="Out of reach",
-    lesson="kinematics",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
-    methods=METHODS,
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    truth_uncertainty=1e-15,
+    title="Out of reach", **answers_of(METHODS), cases=CASES,
+    start=start, run=run, observe=observe, truth=truth, truth_uncertainty=1e-15,
     tolerance=tolerance,
     engines=ENGINES,
-    orders=dict.fromkeys((method.function for method in METHODS), EXACT),
     supports=supports,
     expected_departures={"pybullet, default": Departure(
         "its damping of ½ m² does not know the size of the arm and the distance, and it stops after 20 iterations",
@@ -177,13 +165,10 @@ SCENE = Scene(
     omitted_methods="the pseudo-inverse is missing: at the edge of the ring the arm is straight, its steps grow "
                     "without bound, and it never comes to rest; the transpose is left out where it needs more than "
                     "3,000 iterations",
-    moves=False,
-    refinement="",
     quantity_names=quantity_names,
     published_states=((1.0, (np.sqrt(11.25) - 2.1, -2.1 * 2.0 / np.sqrt(5.0), 2.1 / np.sqrt(5.0)), 1e-14),),
     sanity_checks=sanity_checks,
-    points=points,
-    links=links,
+    points=points, links=links,
     uses=("positions of the joints", "the Jacobian of the end", "damping that fits the distance"),
     ablations={"limits of the joints": "they make the reach smaller, and its edge is then no circle"},
 )

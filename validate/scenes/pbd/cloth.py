@@ -64,8 +64,7 @@ def start(p):
 
 def run(step, acceleration, state, p, dt, steps):
     x, v, network = state
-    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, network)
-    return x, v, network
+    return *advance(step, acceleration, 0.0, x, v, dt, steps, network), network
 
 
 def observe(state, p):
@@ -153,25 +152,17 @@ def links(p):
 
 
 SCENE = Scene(
-    title="Cloth",
-    lesson="pbd",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
+    title="Cloth", lesson="pbd",
+    cases=CASES, duration=T, steps=STEPS,
     methods=(XPBD,),
-    acceleration=acceleration,
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    truth_uncertainty=UNCERTAINTY,
+    acceleration=acceleration, start=start, run=run, observe=observe,
+    truth=truth, truth_uncertainty=UNCERTAINTY,
     tolerance=tolerance,
     engines=ENGINES,
     omitted_methods=("PBD has no stiffness of its own to compare (stability case stiffness-depends-on-dt), "
                      "and Newton's matrix would be dense, with 2,682 unknowns"),
     sanity_checks=sanity_checks,
-    points=points,
-    links=links,
+    points=points, links=links,
     uses=("three coordinates", "links, in sequence", "one step function"),
     full_loop="the loop has joints and contacts, but no links of a given length",
     ablations={

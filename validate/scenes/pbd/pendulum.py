@@ -45,8 +45,7 @@ def start(p):
 
 def run(step, acceleration, state, p, dt, steps):
     x, v, network = state
-    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, network)
-    return x, v, network
+    return *advance(step, acceleration, 0.0, x, v, dt, steps, network), network
 
 
 def observe(state, p):
@@ -154,18 +153,11 @@ def in_space(p):
 
 
 SCENE = Scene(
-    title="Pendulum",
-    lesson="pbd",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
+    title="Pendulum", lesson="pbd",
+    cases=CASES, duration=T, steps=STEPS,
     methods=(PROJECTION, PBD, XPBD, RATTLE, ROPE, COMPOSED_ROPE),
-    acceleration=acceleration,
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    truth_uncertainty=1e-14,
+    acceleration=acceleration, start=start, run=run, observe=observe,
+    truth=truth, truth_uncertainty=1e-14,
     tolerance=tolerance,
     predicted_error=first_of(rope_errors(T, rope, lambda x: x[1], truth, floor, ROPE_STEPS), by_angles),
     engines=ENGINES,
@@ -186,8 +178,7 @@ SCENE = Scene(
     uncompiled_in_quick=("rattle_step",),
     shorter_in_quick={"rattle_step": 1000},
     sanity_checks=sanity_checks,
-    points=points,
-    links=links,
+    points=points, links=links,
     uses=("two coordinates", "one link", "one step function"),
     full_loop="a string fixes a distance and does not turn; a joint of the loop fixes a point of a body that turns",
     ablations={

@@ -45,8 +45,7 @@ def start(p):
 
 def run(step, acceleration, state, p, dt, steps):
     x, v, network = state
-    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, network)
-    return x, v, network
+    return *advance(step, acceleration, 0.0, x, v, dt, steps, network), network
 
 
 def observe(state, p):
@@ -177,18 +176,11 @@ def in_space(p):
 
 
 SCENE = Scene(
-    title="Rope",
-    lesson="pbd",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
+    title="Rope", lesson="pbd",
+    cases=CASES, duration=T, steps=STEPS,
     methods=(PROJECTION, PBD, XPBD, RATTLE, ROPE, COMPOSED_ROPE),
-    acceleration=acceleration,
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    truth_uncertainty=1e-9,
+    acceleration=acceleration, start=start, run=run, observe=observe,
+    truth=truth, truth_uncertainty=1e-9,
     tolerance=tolerance,
     predicted_error=rope_errors(T, rope, lambda x: x[1:].ravel(), truth, floor, PREDICTED, UNFINISHED),
     engines=ENGINES,
@@ -207,8 +199,7 @@ SCENE = Scene(
     uncompiled_in_quick=("rattle_step",),
     shorter_in_quick={"rattle_step": 600},
     sanity_checks=sanity_checks,
-    points=points,
-    links=links,
+    points=points, links=links,
     uses=("two coordinates", "links, in sequence", "one step function"),
     full_loop="a string fixes a distance; a joint of the loop fixes a point, and its chain of rods is another motion",
     ablations={

@@ -8,11 +8,10 @@ from solutions.rotation import RigidBody
 from solutions.rotation import no_torque as acceleration
 from solutions.support.rotation import advance_rotation, check_moments
 from validate import drawing
-from validate.drawing import axes_links, axes_seen, omega_and_L, turned_in_place
+from validate.drawing import omega_and_L
 from validate.engines.mujoco import FREE_WITNESS
-from validate.engines.rotation import FREE_ENGINES
+from validate.engines.rotation import FREE_BODY, FREE_ENGINES
 from validate.methods import TURNS
-from validate.reference.orientation import quaternion_matrix
 from validate.reference.rotation import FreeTop, free_limits, freely
 from validate.reference.turns import free_turns
 from validate.scene import Scene
@@ -46,13 +45,7 @@ def start(p):
 
 def run(step, acceleration, state, p, dt, steps):
     q, L, body = state
-    q, L = advance_rotation(step, acceleration, 0.0, q, L, dt, steps, body)
-    return q, L, body
-
-
-def observe(state, p):
-    """Return R, nine numbers, in which q and −q are equal."""
-    return quaternion_matrix(*state[0]).ravel()
+    return *advance_rotation(step, acceleration, 0.0, q, L, dt, steps, body), body
 
 
 def truth(p, t):
@@ -100,33 +93,17 @@ def sanity_checks():
 
 SCENE = Scene(
     title="Asymmetric top",
-    lesson="rotation",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
+    **FREE_BODY,
+    cases=CASES, duration=T, steps=STEPS,
     methods=TURNS,
-    acceleration=acceleration,
-    start=start,
-    run=run,
-    observe=observe,
+    acceleration=acceleration, start=start, run=run,
     truth=truth,
     # 1 − k² = 5e-5 is known to 2e-16/5e-5, and the time of the flip varies as its logarithm
-    truth_uncertainty=1e-11,
-    tolerance=tolerance,
-    predicted_error=free_turns(T, truth, 1e-11),
+    truth_uncertainty=1e-11, tolerance=tolerance, predicted_error=free_turns(T, truth, 1e-11),
     engines=ENGINES,
     slow_methods=("composed_midpoint_step",),
     uncompiled_in_quick=("runge_kutta_step", "midpoint_step"),
     shorter_in_quick={"runge_kutta_step": 2000, "midpoint_step": 2000},
     sanity_checks=sanity_checks,
-    points=axes_seen,
-    links=axes_links,
-    bodies=bodies,
-    poses=turned_in_place,
-    arrows=arrows,
-    uses=("one orientation", "one angular momentum", "one step function"),
-    ablations={
-        "position": "x += dt P/M runs beside it without any effect",
-        "contacts": "the whole loop of lesson 10 has them, and is measured",
-    },
+    bodies=bodies, arrows=arrows,
 )

@@ -9,11 +9,11 @@ from solutions.rotation import RigidBody
 from solutions.rotation import no_torque as acceleration
 from solutions.support.rotation import advance_rotation, check_moments
 from validate import drawing
-from validate.drawing import axes_links, axes_seen, omega_and_L, turned_in_place
+from validate.drawing import omega_and_L
 from validate.engines import installed
 from validate.engines.bullet import Rigid
 from validate.engines.mujoco import FREE_WITNESS
-from validate.engines.rotation import FREE_ENGINES
+from validate.engines.rotation import FREE_BODY, FREE_ENGINES
 from validate.methods import MATRIX, TURNS
 from validate.reference.orientation import quaternion_matrix
 from validate.reference.rotation import FIRST_ORDER, free_limits, freely, symmetric_top
@@ -50,13 +50,7 @@ def start(p):
 
 def run(step, acceleration, state, p, dt, steps):
     q, L, body = state
-    q, L = advance_rotation(step, acceleration, 0.0, q, L, dt, steps, body)
-    return q, L, body
-
-
-def observe(state, p):
-    """Return R, nine numbers, in which q and −q are equal."""
-    return quaternion_matrix(*state[0]).ravel()
+    return *advance_rotation(step, acceleration, 0.0, q, L, dt, steps, body), body
 
 
 def truth(p, t):
@@ -127,19 +121,13 @@ def engines_energy(p, dt=1e-3, steps=10000):
 
 SCENE = Scene(
     title="Axisymmetric body",
-    lesson="rotation",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
+    **FREE_BODY,
+    cases=CASES, duration=T, steps=STEPS,
     methods=tuple(m for m in TURNS if m is not MATRIX),
-    acceleration=acceleration,
-    start=start,
-    run=run,
-    observe=observe,
+    acceleration=acceleration, start=start, run=run,
     truth=truth,
     truth_uncertainty=1e-14,  # 54 radians about L, each rounded to 2e-16
-    tolerance=tolerance,
-    predicted_error=free_turns(T, truth, 1e-14),
+    tolerance=tolerance, predicted_error=free_turns(T, truth, 1e-14),
     engines=ENGINES,
     orders={
         "splitting_step": EXACT,
@@ -157,14 +145,5 @@ SCENE = Scene(
     uncompiled_in_quick=("runge_kutta_step",),
     shorter_in_quick={"runge_kutta_step": 2000},
     sanity_checks=sanity_checks,
-    points=axes_seen,
-    links=axes_links,
-    bodies=bodies,
-    poses=turned_in_place,
-    arrows=arrows,
-    uses=("one orientation", "one angular momentum", "one step function"),
-    ablations={
-        "position": "x += dt P/M runs beside it without any effect",
-        "contacts": "the whole loop of lesson 10 has them, and is measured",
-    },
+    bodies=bodies, arrows=arrows,
 )

@@ -50,8 +50,7 @@ def start(p):
 
 def run(step, acceleration, state, p, dt, steps):
     q, L, top = state
-    q, L = advance_rotation(step, acceleration, 0.0, q, L, dt, steps, top)
-    return q, L, top
+    return *advance_rotation(step, acceleration, 0.0, q, L, dt, steps, top), top
 
 
 def observe(state, p):
@@ -143,8 +142,6 @@ def links(p):
     return [(0, 1)]
 
 
-
-
 def bodies(p):
     """Draw the upper end of the axle, a metre from its point, to show the arches, and a plumb line over the point."""
     reach = np.sin(p.tilt)
@@ -183,19 +180,11 @@ def sanity_checks():
 
 
 SCENE = Scene(
-    title="Heavy top",
-    lesson="rotation",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
+    title="Heavy top", lesson="rotation",
+    cases=CASES, duration=T, steps=STEPS,
     methods=TURNS,
-    acceleration=acceleration,
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    truth_uncertainty=1e-12,
-    tolerance=tolerance,
+    acceleration=acceleration, start=start, run=run, observe=observe,
+    truth=truth, truth_uncertainty=1e-12, tolerance=tolerance,
     predicted_error=predict_turns(T, Params.moments, released, weight, seen, truth, floor, ("mujoco",)),
     engines=ENGINES,
     slow_methods=(
@@ -208,11 +197,8 @@ SCENE = Scene(
     uncompiled_in_quick=("quaternion_step", "runge_kutta_step"),
     shorter_in_quick={"quaternion_step": 20000, "runge_kutta_step": 2000},
     sanity_checks=sanity_checks,
-    points=points,
-    links=links,
-    bodies=bodies,
-    poses=poses,
-    arrows=arrows,
+    points=points, links=links,
+    bodies=bodies, poses=poses, arrows=arrows,
     trail=1,  # the tip
     uses=("one orientation", "one angular momentum", "one torque", "one step function"),
     ablations={

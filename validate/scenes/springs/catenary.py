@@ -6,12 +6,10 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
-from solutions.checks import check_positive
 from solutions.integrators import advance
-from solutions.springs import make_spring_network
 from solutions.springs import spring_network_acceleration as acceleration
 from validate.engines.bullet import Bullet
-from validate.engines.springs import pymunk_net
+from validate.engines.springs import in_space, pymunk_net, start_of
 from validate.methods import IMPLICIT_MESH, INTEGRATORS, LEFT_TO_FULL
 from validate.reference.schemes import table_model
 from validate.reference.springs import (
@@ -22,7 +20,6 @@ from validate.reference.springs import (
     net_law,
     net_limits,
     rest_positions,
-    state_of,
 )
 from validate.scene import PYBULLET, PYMUNK, Engine, EngineRun, Scene
 
@@ -89,16 +86,12 @@ def net(p):
     )
 
 
-def start(p):
-    for name in ("links", "m", "k", "rest", "span"):
-        check_positive(name, getattr(p, name))
-    return state_of(net(p), make_spring_network)
+start = start_of(net, ("links", "m", "k", "rest", "span"))
 
 
 def run(step, acceleration, state, p, dt, steps):
     x, v, network = state
-    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, network)
-    return x, v, network
+    return *advance(step, acceleration, 0.0, x, v, dt, steps, network), network
 
 
 def observe(state, p):
@@ -178,35 +171,20 @@ def sanity_checks():
     )
 
 
-def in_space(p):
-    """The same motion with an unused third coordinate."""
-    return state_of(net(p).padded(), make_spring_network), p
-
-
 SCENE = Scene(
-    title="Discrete catenary",
-    link_look="spring",
-    lesson="springs",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
+    title="Discrete catenary", lesson="springs",
+    cases=CASES, duration=T, steps=STEPS,
     methods=(*INTEGRATORS, IMPLICIT_MESH),
-    acceleration=acceleration,
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    truth_uncertainty=UNCERTAINTY,
-    tolerance=tolerance,
+    acceleration=acceleration, start=start, run=run, observe=observe,
+    truth=truth, truth_uncertainty=UNCERTAINTY, tolerance=tolerance,
     predicted_error=net_errors(net, T, truth, UNCERTAINTY, engines=MODELS),
     engines=ENGINES,
     slow_methods=(*LEFT_TO_FULL, "implicit_spring_network_step"),
     sanity_checks=sanity_checks,
-    points=points,
-    links=links,
+    points=points, links=links, link_look="spring",
     uses=("two coordinates", "springs with dampers", "one step function"),
     ablations={
-        "the third dimension": in_space,
+        "the third dimension": in_space(net),
         "rotation": "the whole loop of lesson 10 has it, and is measured",
         "contact between links": "the whole loop of lesson 10 has it, and is measured",
     },

@@ -4,14 +4,12 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solutions.checks import check_positive
 from solutions.integrators import advance
-from solutions.springs import make_spring_network
 from solutions.springs import spring_network_acceleration as acceleration
-from validate.engines.springs import pymunk_net
+from validate.engines.springs import in_space, pymunk_net, start_of
 from validate.methods import IMPLICIT_MESH, INTEGRATORS
 from validate.reference.schemes import Model, advance_modes, nudged, predict_by_tables
-from validate.reference.springs import ReferenceNetwork, by_mode, pymunk_net_model, state_of
+from validate.reference.springs import ReferenceNetwork, by_mode, pymunk_net_model
 from validate.scene import EXACT, PYMUNK, Engine, Scene
 
 T = 1.5                      # [s]: two and a half periods of the slowest mode
@@ -43,16 +41,12 @@ def net(p):
     return ReferenceNetwork(x, 0.0 * x, (0,), pairs, rest, p.m, p.k, p.k_d, p.k_v, np.array([p.g]), np.zeros(1))
 
 
-def start(p):
-    for name in ("springs", "m", "k", "rest"):
-        check_positive(name, getattr(p, name))
-    return state_of(net(p), make_spring_network)
+start = start_of(net, ("springs", "m", "k", "rest"))
 
 
 def run(step, acceleration, state, p, dt, steps):
     x, v, network = state
-    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, network)
-    return x, v, network
+    return *advance(step, acceleration, 0.0, x, v, dt, steps, network), network
 
 
 def observe(state, p):
@@ -154,35 +148,20 @@ def sanity_checks():
             ("the tip at T, nearly at rest [m]", truth(p, T)[-1], tip, 2.0 * left * tip))
 
 
-def in_space(p):
-    """The same motion with two unused coordinates."""
-    return state_of(net(p).padded(), make_spring_network), p
-
-
 SCENE = Scene(
-    title="Hanging springs",
-    link_look="spring",
-    lesson="springs",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
+    title="Hanging springs", lesson="springs",
+    cases=CASES, duration=T, steps=STEPS,
     methods=(*INTEGRATORS, IMPLICIT_MESH),
-    acceleration=acceleration,
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    truth_uncertainty=UNCERTAINTY,
-    tolerance=tolerance,
+    acceleration=acceleration, start=start, run=run, observe=observe,
+    truth=truth, truth_uncertainty=UNCERTAINTY, tolerance=tolerance,
     predicted_error=predict_by_tables(T, law, released, from_modes, truth, floor, {"pymunk": Model(1, pymunk_chain)},
                                       march=advance_modes),
     engines=ENGINES,
     slow_methods=("implicit_euler_step", "implicit_midpoint_step", "implicit_spring_network_step"),
     sanity_checks=sanity_checks,
-    points=points,
-    links=links,
+    points=points, links=links, link_look="spring",
     uses=("one coordinate", "springs with dampers", "one step function"),
-    ablations={"the second and third dimension": in_space,
+    ablations={"the second and third dimension": in_space(net),
               "rotation": "the whole loop of lesson 10 has it, and is measured",
               "contact between masses": "the whole loop of lesson 10 has it, and is measured"},
 )

@@ -7,10 +7,9 @@ import numpy as np
 
 from solutions.integrators import advance, amplification_matrix, average_velocity_step
 from solutions.springs import spring_network_acceleration as acceleration
-from validate.engines.springs import net_in_space, net_links, net_points, observe_net, pymunk_net, start_net
-from validate.methods import IMPLICIT_MESH, INTEGRATORS
-from validate.reference.springs import SquareNet, modes, net_errors, net_limits, net_motion, square_net
-from validate.scene import PYMUNK, Engine, Scene
+from validate.engines.springs import NET, net_points, observe_net, start_net
+from validate.reference.springs import SquareNet, modes, net_motion, net_truth, square_net
+from validate.scene import Scene
 
 FRAMES_PER_SECOND = 24
 SAMPLES = (1, 4, 16, 64, 256)              # steps per frame [-]
@@ -26,24 +25,7 @@ CASES = {"net": SquareNet(spacing=0.5, shear=1, k=20.0, k_d=0.12, wind=0.1)}
 
 def run(step, acceleration, state, p, dt, steps):
     x, v, network = state
-    x, v = advance(step, acceleration, 0.0, x, v, dt, steps, network)
-    return x, v, network
-
-
-def truth(p, t):
-    """Every node, by DOP853 with separately coded forces, at a relative tolerance of 1e-13."""
-    return net_motion(p, T)(t).ravel()
-
-
-def tolerance(p, dt):
-    """Each mode on its own, with a margin for large motion; pymunk is symplectic Euler, order 1."""
-    limits = net_limits(square_net, p, np.linalg.norm(truth(p, T)), T, dt, UNCERTAINTY)
-    return {**limits, "pymunk": limits[1]}
-
-
-ENGINES = (
-    Engine(PYMUNK, "", lambda p, dt: pymunk_net(square_net(p), dt, np.ravel), 1, "DampedSpring between point masses"),
-)
+    return *advance(step, acceleration, 0.0, x, v, dt, steps, network), network
 
 
 def sanity_checks():
@@ -59,10 +41,10 @@ def sanity_checks():
         A = amplification_matrix(average_velocity_step, omega, 0.5 * c / omega, dt)
         expected = 1.0 - c * dt + 0.5 * (omega * dt) ** 2
         claims.append((f"det A, {samples} samples per frame [-]", np.linalg.det(A), expected, 1e-12))
-    p = CASES["net"]
+    p, end = CASES["net"], net_motion(CASES["net"], T)(T).ravel()
     for samples, said, digit in ((4, 0.03, 0.005), (16, 0.008, 0.0005)):  # of the docstring, rounded to one digit
         steps = round(FRAMES_PER_SECOND * samples * T)
-        off = observe_net(run(average_velocity_step, acceleration, start_net(p), p, T / steps, steps), p) - truth(p, T)
+        off = observe_net(run(average_velocity_step, acceleration, start_net(p), p, T / steps, steps), p) - end
         worst = np.linalg.norm(net_points(off, p), axis=1).max()
         claims.append((f"error of its worst node, {samples} of the lecture's steps per frame [m]", worst, said, digit))
     return tuple(claims)
@@ -70,26 +52,10 @@ def sanity_checks():
 
 SCENE = Scene(
     title="1, 4, 16 samples per frame",
-    link_look="spring",
-    lesson="springs",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
-    methods=(*INTEGRATORS, IMPLICIT_MESH),
-    acceleration=acceleration,
-    start=start_net,
-    run=run,
-    observe=observe_net,
-    truth=truth,
-    truth_uncertainty=UNCERTAINTY,
-    tolerance=tolerance,
-    predicted_error=net_errors(square_net, T, truth, UNCERTAINTY),
-    engines=ENGINES,
+    **NET,
+    **net_truth(T, UNCERTAINTY),
+    cases=CASES, steps=STEPS,
+    acceleration=acceleration, run=run,
     slow_methods=("implicit_euler_step", "implicit_midpoint_step", "implicit_spring_network_step"),
     sanity_checks=sanity_checks,
-    points=net_points,
-    links=net_links,
-    uses=("two coordinates", "springs with dampers", "one step function"),
-    ablations={"the third dimension": net_in_space, "rotation": "the whole loop of lesson 10 has it, and is measured",
-              "contact of the net with itself": "the whole loop of lesson 10 has it, and is measured"},
 )
