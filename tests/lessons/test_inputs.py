@@ -203,6 +203,17 @@ def test_a_scene_with_contacts_refuses_what_no_body_and_no_solver_can_be(name):
         assert said in str(refused.value), (field, value)
 
 
+@pytest.mark.parametrize("name", ["make_bodies_2d", "make_bodies"])
+def test_bodies_may_have_no_plane_and_places_are_rows(name):
+    d = SCENES[name][1]
+    _, p = two_balls(name, planes=[])
+    assert p.planes.shape == (0, d + 1) and p.inv_mass.size == 2
+    for field, value, said in (("x", np.zeros(2), "give a list of rows"), ("x", np.zeros((0, d)), "not an empty one"),
+                               ("gravity", -9.81, "give a list of numbers")):
+        with pytest.raises(BadInput, match=said):
+            two_balls(name, **{field: value})
+
+
 @pytest.mark.parametrize("name", ["make_pile_2d", "make_pile"])
 def test_a_pile_refuses_a_changed_record_that_its_substeps_cannot_carry(name):
     """A record is changed by _replace, which checks nothing: each run checks what it divides by."""
