@@ -24,8 +24,10 @@ class WrongShape(BadInput):
     """An array of the wrong shape: names the array, its shape, and the expected shape or number of dimensions."""
 
     def __init__(self, thing, shape, expected):
-        wanted = f"at least one number, in {expected} dimensions" if isinstance(expected, int) else expected
-        super().__init__(f"the shape of {thing}", shape, f"give {wanted}")
+        kind = {1: "a list of numbers", 2: "a list of rows"}
+        wanted = kind.get(expected, f"an array of {expected} dimensions") if isinstance(expected, int) else expected
+        empty = ", not an empty one" if 0 in shape else ""
+        super().__init__(f"the shape of {thing}", shape, f"give {wanted}{empty}")
 
 
 class Diverged(ArithmeticError):

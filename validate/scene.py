@@ -95,6 +95,7 @@ class Scene:
     omitted_methods: str = ""                # why methods or engines that a reader expects are missing
     slow_methods: tuple = ()                 # functions of methods that only --full runs
     slow_cases: tuple = ()                   # names of cases that only --full runs
+    slow_runs: dict = field(default_factory=dict)        # {case: functions of methods that only --full runs in it}
     uncompiled_in_quick: tuple = ()  # functions of methods that plain Python finishes before numba compiles them
     shorter_in_quick: dict = field(default_factory=dict)     # {method's function: its most steps in a quick validation}
     moves: bool = True                       # False: nothing moves; no start is compared with the truth

@@ -105,12 +105,13 @@ def make_bodies_2d(x, q, m, inertia, half, planes, gravity, mu, sweeps, margin):
     """Return (PileState, Bodies) of discs or boxes at rest in the plane: x (n, 2), angles q (n,), planes (p, 3).
 
     m [kg] and inertia [kg m²] are numbers or one each, infinite for what no impulse moves or turns; half (n, 2) half
-    sizes [m], of a disc its radius twice.
+    sizes [m], of a disc its radius twice; planes may be an empty list.
     Raises BadInput for sizes, masses or settings that are not above zero, and planes without a unit normal.
     """
     x, half, planes = finite_array("a centre x [m]", x), finite_array("a half size [m]", half), finite_array("a plane",
                                                                                                              planes)
     q, gravity = finite_array("an angle q [rad]", q), finite_array("gravity [m/s²]", gravity)
+    planes = planes if planes.size > 0 else np.zeros((0, 3))         # an empty list has no rows to count
     check_bodies(x, half, planes, 2)
     n, p = len(x), len(planes)
     check_field("the angles q [rad]", q, (n,))
@@ -132,6 +133,7 @@ def make_bodies(x, q, m, inertia, half, planes, gravity, mu, sweeps, margin):
                                                                                                              planes)
     q, gravity = finite_array("a quaternion q [-]", q), finite_array("gravity [m/s²]", gravity)
     inertia = np.asarray(inertia, np.float64)
+    planes = planes if planes.size > 0 else np.zeros((0, 4))         # an empty list has no rows to count
     check_bodies(x, half, planes, 3)
     n, p = len(x), len(planes)
     check_field("the quaternions q [-]", q, (n, 4))

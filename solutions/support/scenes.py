@@ -199,12 +199,15 @@ def make_pile(x, q, m, inertia, half, planes, gravity, mu, substeps, hertz, zeta
 def checked_pile(state, dt, steps, pile):
     """(PileState, dt, steps), converted to float64.
 
-    Raises BadInput for a step or a number of steps that is none, hertz that a substep does not carry, what is not
-    finite, and quaternions without length.
+    Raises BadInput for a step or a number of steps or substeps that is none, hertz that a substep does not carry, what
+    is not finite, and quaternions without length.
     """
     dt, steps = positive_number("step dt [s]", dt), whole_number("number of steps", steps, 0)
-    check_positive("a substep [s]", dt / pile.substeps)
-    product = pile.hertz * dt / pile.substeps
+    substeps = whole_number("number of substeps", pile.substeps, 1)
+    check_positive("a substep [s]", dt / substeps)
+    check_positive("hertz of the contacts [1/s]", pile.hertz)
+    check_positive("damping ratio ζ of the contacts [-]", pile.zeta)
+    product = pile.hertz * dt / substeps
     if not product <= HIGHEST * (1.0 + 1e-9):
         raise BadInput("hertz of the contacts times a substep [-]", product,
                        "give at most 1/3: take more substeps, or fewer hertz")

@@ -6,8 +6,8 @@ import pytest
 from solutions.checks import BadInput, Diverged
 from validate import modules
 
-collisions, friction, impulses, integrators, pbd, rotation, simulator, springs = map(
-    modules.bind, ("collisions", "friction", "impulses", "integrators", "pbd", "rotation", "simulator", "springs"))
+collisions, contact, friction, impulses, integrators, pbd, rotation, simulator, springs = map(modules.bind, (
+    "collisions", "contact", "friction", "impulses", "integrators", "pbd", "rotation", "simulator", "springs"))
 UP, DOWN = np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.0, -9.81])
 ROPE, PAIRS = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]), np.array([[0, 1], [1, 2]])
 WEIGHT = np.array([0.0, -9.81])
@@ -160,6 +160,95 @@ def test_a_multiplier_refuses_a_step_of_zero(speed):
         pytest.skip("numba has no wheel for this machine")
     with pytest.raises(BadInput, match="step dt"):
         modules.bind("impulses", compiled=speed == "compiled").gap_multiplier(0.1, -1.0, 1.0, 0.0)
+
+
+# ---------------------------------------------------------------------------------------------- many contacts
+
+SCENES = {                   # what makes a scene, its dimension, and the last of its settings
+    "make_pile_2d": (contact.make_pile_2d, 2, {"substeps": 2, "hertz": 60.0, "zeta": 10.0, "margin": 0.02}),
+    "make_pile": (contact.make_pile, 3, {"substeps": 2, "hertz": 60.0, "zeta": 10.0, "margin": 0.02}),
+    "make_bodies_2d": (simulator.make_bodies_2d, 2, {"sweeps": 4, "margin": 0.02}),
+    "make_bodies": (simulator.make_bodies, 3, {"sweeps": 4, "margin": 0.02}),
+}
+ROUND = {2: (contact.disc_bounds, contact.round_contacts), 3: (contact.ball_bounds, contact.round_contacts)}
+
+
+def two_balls(name, **changed):
+    """The state and the record of two discs or balls above each other, made by that function, with something changed.
+    """
+    make, d, settings = SCENES[name]
+    up = np.eye(d)[-1]
+    given = {"x": np.outer([0.5, 1.5], up), "q": np.zeros(2) if d == 2 else np.tile((1.0, 0.0, 0.0, 0.0), (2, 1)),
+             "m": 1.0, "inertia": 0.1 if d == 2 else np.full((2, 3), 0.1), "half": np.full((2, d), 0.5),
+             "planes": [(*up, 0.0)], "gravity": -9.81 * up, "mu": 0.5, **settings}
+    assert changed.keys() <= given.keys()
+    return make(*(given | changed).values())
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_scene_with_contacts_refuses_what_no_body_and_no_solver_can_be(name):
+    """Sizes, masses and settings that are not above zero, and planes whose normal has no length or not that of 1."""
+    _, d, settings = SCENES[name]
+    two_balls(name)
+    impossible = [("half", np.full((2, d), size), str(size)) for size in (0.0, -0.5)]
+    impossible += [("m", value, str(value)) for value in (0.0, -2.0, np.nan)]
+    impossible += [("inertia", np.zeros((2, 3)) if d == 3 else 0.0, "0.0"), ("mu", -0.1, "-0.1")]
+    impossible += [("planes", [(*length * np.eye(d)[0], 1.0)], str(length)) for length in (0.0, 2.0)]
+    impossible += [(setting, value, str(value)) for setting in settings for value in (0, -1)]
+    if d == 3:
+        impossible.append(("q", np.zeros((2, 4)), "0.0"))
+    for field, value, said in impossible:
+        with pytest.raises(BadInput) as refused:
+            two_balls(name, **{field: value})
+        assert said in str(refused.value), (field, value)
+
+
+@pytest.mark.parametrize("name", ["make_bodies_2d", "make_bodies"])
+def test_bodies_may_have_no_plane_and_places_are_rows(name):
+    d = SCENES[name][1]
+    _, p = two_balls(name, planes=[])
+    assert p.planes.shape == (0, d + 1) and p.inv_mass.size == 2
+    for field, value, said in (("x", np.zeros(2), "give a list of rows"), ("x", np.zeros((0, d)), "not an empty one"),
+                               ("gravity", -9.81, "give a list of numbers")):
+        with pytest.raises(BadInput, match=said):
+            two_balls(name, **{field: value})
+
+
+@pytest.mark.parametrize("name", ["make_pile_2d", "make_pile"])
+def test_a_pile_refuses_a_changed_record_that_its_substeps_cannot_carry(name):
+    """A record is changed by _replace, which checks nothing: each run checks what it divides by."""
+    state, pile = two_balls(name)
+    advance = contact.advance_pile_2d if name == "make_pile_2d" else contact.advance_pile
+    for changed, said in (({"substeps": 0}, "substeps is 0"), ({"substeps": -2}, "substeps is -2"),
+                          ({"hertz": 1000.0}, "times a substep"), ({"hertz": 0.0}, "hertz"), ({"zeta": 0.0}, "ζ")):
+        with pytest.raises(BadInput, match=said):
+            advance(*ROUND[state.x.shape[1]], state, 1.0 / 240.0, 2, pile._replace(**changed))
+
+
+@pytest.mark.parametrize("name", ["make_bodies_2d", "make_bodies"])
+def test_two_bodies_that_no_impulse_moves_may_overlap_and_stay(name):
+    """Both are infinitely heavy, one half inside the other and in the ground: there is no contact, and no motion."""
+    d = SCENES[name][1]
+    x = np.zeros((2, d))
+    x[1, 0] = 0.5
+    state, p = two_balls(name, x=x, m=np.inf, inertia=np.full((2, 3) if d == 3 else 2, np.inf))
+    step = simulator.contact_step_2d if d == 2 else simulator.contact_step
+    end = simulator.advance_contact(step, simulator.weight, *ROUND[d], 0.0, state, 0.01, 5, p)
+    assert end.contacts.a.size == 0 and np.array_equal(end.x, state.x) and not end.v.any()
+
+
+def test_a_loop_without_sweeps_ends_in_an_error_that_says_so():
+    """No impulse stops the fall.  The loop names the bodies and the sweeps as soon as they are deep in each other."""
+    state, p = two_balls("make_bodies_2d")
+    with pytest.raises(Diverged, match="with 0 sweeps per step"):
+        simulator.advance_contact(simulator.contact_step_2d, simulator.weight, *ROUND[2], 0.0, state, 0.01, 100,
+                                  p._replace(sweeps=0))
+
+
+def test_a_contact_needs_a_normal_of_length_one_and_a_body_that_can_move():
+    for n, inv_mass, said in (((0.0, 0.0), [1.0, 1.0], "0.0"), ((0.0, 1.0), [0.0, 0.0], "above zero")):
+        with pytest.raises(BadInput, match=said):
+            contact.make_contacts([0], [1], [(0.0, 0.0)], [n], inv_mass)
 
 
 # ---------------------------------------------------------------------------------------------- simultaneous impacts

@@ -88,6 +88,17 @@ def test_a_quick_validation_ends_a_sweep_where_the_scene_says(name):
     assert any("the finest steps of" in note for note in quick.notes)
 
 
+@scenes([n for n in SCENES if modules.bind_scene(n).slow_runs])
+def test_a_quick_validation_leaves_a_slow_run_out_and_a_full_one_does_not(name):
+    quick, full = (select(name, measure.Plan(quick=quick)) for quick in (True, False))
+    for case, functions in full.scene.slow_runs.items():
+        p = full.scene.cases[case]
+        assert set(functions) <= {method.function for method in full.methods_for(p)}
+        assert not set(functions) & {method.function for method in quick.methods_for(p)}
+        assert any(set(functions) & {method.function for method in quick.methods_for(q)} for q in quick.cases.values())
+    assert any("our methods on" in note for note in quick.notes)
+
+
 @scenes(SCENES, SAMPLE)
 def test_nothing_departs_from_truth_without_having_been_predicted(name):
     result = measure.errors(name, BRIEF)

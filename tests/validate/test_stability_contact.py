@@ -23,6 +23,20 @@ def backwards(A, b, lam, omega):
     return worked.gauss_seidel_sweep(A[::-1, ::-1], b[::-1], lam[::-1], omega)[::-1]
 
 
+def unprojected_at_once(A, b, J, mu):
+    """All normals and tangents from the old impulses."""
+    step = J - (A @ J + b) / np.diag(A)
+    limit = np.repeat(mu, 2) * np.repeat(np.maximum(0.0, step[::2]), 2)
+    return np.where(np.arange(J.size) % 2 == 0, np.maximum(0.0, step), np.clip(step, -limit, limit))
+
+
+def right_corner_first(A, b, J, mu):
+    """Another order of the contacts."""
+    order = np.arange(J.size).reshape(-1, 2)[::-1].ravel()
+    J = worked.cone_sweep(A[np.ix_(order, order)], b[order], J[order], mu[::-1])
+    return J[order]
+
+
 def deaf(A, b, lam, omega):
     """Takes no relaxation."""
     return worked.gauss_seidel_sweep(A, b, lam, 1.0)
@@ -104,6 +118,12 @@ WRONG = [                    # case, the function that it examines, what is put 
     ("contraction-of-a-stack", "gauss_seidel_sweep", jacobi),
     ("contraction-of-a-stack", "gauss_seidel_sweep", backwards),
     ("contraction-of-a-mass-ratio", "gauss_seidel_sweep", jacobi),
+    ("speed-of-sinking", "gauss_seidel_sweep", jacobi),
+    ("speed-of-sinking", "gauss_seidel_sweep", backwards),
+    ("trembling", "gauss_seidel_sweep", jacobi),
+    ("trembling", "gauss_seidel_sweep", backwards),
+    ("creeping", "cone_sweep", unprojected_at_once),
+    ("creeping", "cone_sweep", right_corner_first),
     ("over-relaxation", "gauss_seidel_sweep", deaf),
     ("over-relaxation", "gauss_seidel_sweep", jacobi),
     ("sag-of-a-soft-contact", "advance_pile_2d", half_the_hertz),

@@ -56,8 +56,10 @@ class Selection(NamedTuple):
         return next(iter(self.cases.items()))
 
     def methods_for(self, p):
-        """The methods that support this case."""
-        return tuple(m for m in self.methods if supports(self.scene, m, p))
+        """The methods that support this case, and in a quick validation are not too slow in it."""
+        slow = [m for case, functions in slow_runs(self.scene, self.plan) if self.cases.get(case) == p
+                for m in functions]
+        return tuple(m for m in self.methods if supports(self.scene, m, p) and m.function not in slow)
 
     def engines_for(self, p):
         """The engines that support this case; an optional one only where it runs."""
@@ -127,6 +129,11 @@ def methods_of(scene, plan):
     return tuple(m for m in scene.methods if m.function not in slow)
 
 
+def slow_runs(scene, plan):
+    """The pairs (case, functions of methods) that are left to a full validation."""
+    return scene.slow_runs.items() if plan.quick else ()
+
+
 def speeds_of(scene, plan, method: Method):
     """The speeds at which a method runs: plain only where plain Python finishes before numba has compiled."""
     soon = not scene.refined or method.function in scene.uncompiled_in_quick
@@ -169,6 +176,7 @@ def notes_of(scene, plan, methods):
     left = (
         (slow, f", to keep this one quick: {', '.join(slow)}"),
         (scene.slow_cases, f": {', '.join(scene.slow_cases)}"),
+        (scene.slow_runs, f": our methods on {', '.join(scene.slow_runs)}"),
         (several, f": the engines on {', '.join(list(scene.cases)[1:])}"),
         (len(scene.steps) > 1 and scene.engines, f": {finest}"),
         (short, f": the finest steps of {', '.join(short)}"),

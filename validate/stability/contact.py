@@ -118,6 +118,195 @@ def contraction_of_a_mass_ratio(lesson):
         "A thousand times the mass wants a thousand times the sweeps; light on heavy is no trouble.")
 
 
+# ---------------------------------------------------------------------------------------------- sweeps that stop early
+
+FRAME = 1.0 / 60.0           # [s], a step of the next three cases
+PUSH = 0.2                   # share of an overlap that each step wants back [-]
+SAME = 1e-9                  # of two ways to compute a speed or an eigenvalue: round-off, over 1 − T at the worst [-]
+
+
+def standing(masses):
+    """(rows (n, n), inverse masses) of a column: velocities to relative velocities at the contacts."""
+    return np.eye(len(masses)) - np.eye(len(masses), k=-1), 1.0 / np.array(masses, float)
+
+
+def cornered(width, height):
+    """(rows (4, 3), inverse masses) of a box of 1 kg with two corners on the ground: normal and tangent of each.
+
+    u_n = v_y + ω r_x and u_t = −v_x + ω r_y, with r from its centre to the corner.
+    """
+    rows = [row for r_x in (-0.5 * width, 0.5 * width) for row in ((0.0, 1.0, r_x), (-1.0, 0.0, -0.5 * height))]
+    return np.array(rows), np.array([1.0, 1.0, 12.0 / (width**2 + height**2)])
+
+
+def left_by_sweeps(rows, w, m):
+    """T: velocities before m sweeps from zero → velocities after them, as long as every contact pushes and sticks.
+
+    A sweep solves with the lower triangle L of A = rows W rowsᵀ and keeps the rest: H = 1 − L⁻¹A.  After m of them the
+    impulses are −(1 + H + … + H^(m − 1)) L⁻¹ u.
+    """
+    A = (rows * w) @ rows.T
+    lower = np.linalg.inv(np.tril(A))
+    H = np.eye(len(A)) - lower @ A
+    S = sum((np.linalg.matrix_power(H, k) for k in range(m)), 0.0 * A) @ lower
+    return np.eye(len(w)) - w[:, None] * (rows.T @ S @ rows)
+
+
+def end_speeds(rows, w, m, pull):
+    """The velocities that do not change any more: v = T (v + pull)."""
+    T = left_by_sweeps(rows, w, m)
+    return np.linalg.solve(np.eye(len(w)) - T, T @ pull)
+
+
+def swept_speeds(sweep, rows, w, m, pull, steps, remember=False):
+    """Velocities after so many steps; in each of them m calls of sweep(A, b, impulses)."""
+    A, v, J = (rows * w) @ rows.T, np.zeros(len(w)), np.zeros(len(rows))
+    for _ in range(steps):
+        v, J = v + pull, J if remember else 0.0 * J
+        b = rows @ v
+        for _ in range(m):
+            J = sweep(A, b, J)
+        v = v + w * (rows.T @ J)
+    return v
+
+
+@case("speed-of-sinking", "How fast the heavy one sinks", compiled=False)
+def speed_of_sinking(lesson):
+    """Each step adds g dt, and m sweeps from zero leave the share ρ^m of all approach: the speed g dt ρ^m/(1 − ρ^m).
+
+    That is exact for the upper one of two bodies.  Of a stack each body has its own speed, (1 − T)⁻¹ T g dt.
+    """
+    sweep, found, dots = lambda A, b, J: lesson.gauss_seidel_sweep(A, b, J, 1.0), [], []
+    for r, m in ((10.0, 5), (10.0, 20), (100.0, 20)):
+        rho = r / (1.0 + r)
+        speed = -swept_speeds(sweep, *standing([1.0, r]), m, -np.full(2, G * FRAME), 400)[1]
+        dots.append((r, m, speed))
+        law = G * FRAME * rho**m / (1.0 - rho**m)
+        found.append(finding(
+            claim="A body that is r times as heavy as what carries it sinks with g dt ρ^m/(1 − ρ^m), ρ = r/(1 + r).",
+            quantity=f"speed of the heavy one, r = {r:g}, {m} sweeps per step [m/s]",
+            predicted=law,
+            measured=speed,
+            tolerance=SAME * law,
+            observation=f"{r:g} kg on 1 kg sink with {speed:.3g} m/s, because {m} sweeps are too few.",
+        ))
+    ten, pull = standing(np.ones(10)), -np.full(10, G * FRAME)
+    theory, speeds = -end_speeds(*ten, 25, pull), -swept_speeds(sweep, *ten, 25, pull, 400)
+    for k, name in ((9, "top"), (0, "lowest")):
+        found.append(finding(
+            claim="Of a stack of ten each box sinks with its own speed, (1 − T)⁻¹ T g dt.",
+            quantity=f"speed of the {name} of ten boxes, 25 sweeps per step [m/s]",
+            predicted=theory[k],
+            measured=speeds[k],
+            tolerance=SAME * theory[k],
+            observation=f"The {name} of ten boxes sinks with {speeds[k]:.3f} m/s.",
+        ))
+    remembered = -swept_speeds(sweep, *ten, 25, pull, 400, remember=True)
+    found.append(finding(
+        claim="With memory the forces add up from step to step, and nothing sinks in the end.",
+        quantity="speed of the top of ten boxes, 25 sweeps per step and memory [m/s]",
+        predicted=0.0,
+        measured=remembered[9],
+        tolerance=ROUND_OFF,
+        observation=f"With memory {abs(remembered[9]):.1e} m/s are left.",
+    ))
+    fine = np.arange(3.0, 41.0)
+    lines = [series(f"theory, ratio {r:g}", fine, np.log10(G * FRAME / ((1.0 + 1.0 / r) ** fine - 1.0)), LINE)
+             for r in (10.0, 100.0)]
+    return found, Picture("How fast the heavy one sinks", "sweeps per step", "log₁₀ of the speed [m/s]", [
+        *lines, series("measured", [m for _, m, _ in dots], np.log10([speed for *_, speed in dots]), DOTS)],
+        "No law of contact is wrong: the solver stopped too early.  More sweeps, memory or more equal masses help.")
+
+
+def trembling_step(sweep, m, y, v, lam):
+    """(y, v, λ) after a step of ten boxes with memory: y displacements over dt, v velocities, λ impulses."""
+    D, _ = standing(np.ones(10))
+    b = D @ v + PUSH * (D @ y)
+    for _ in range(m):
+        lam = sweep(D @ D.T, b, lam, 1.0)
+    v = v + D.T @ lam
+    return y + v, v, lam
+
+
+@case("trembling", "Why a stack trembles", compiled=False)
+def trembling(lesson):
+    """Memory keeps a push after its overlap has gone.  One step multiplies displacements, velocities and impulses by
+    one matrix, and where its largest eigenvalue is above 1 the stack trembles.
+
+    Theory writes the matrix down with H = 1 − L⁻¹A of a sweep: λ → H^m λ + (H^m − 1) A⁻¹ (u + PUSH gap/dt).  The
+    measured one comes from the lesson's sweeps, column by column, far from where they cut off.
+    """
+    D, _ = standing(np.ones(10))
+    A, one, zero = D @ D.T, np.eye(10), np.zeros((10, 10))
+    H, found, radii = one - np.linalg.inv(np.tril(A)) @ A, [], {}
+    for m in (4, 7, 8, 12, 20):
+        kept = np.linalg.matrix_power(H, m)
+        answer = (kept - one) @ np.linalg.inv(A)
+        lam = np.hstack((PUSH * answer @ D, answer @ D, kept))
+        v = np.hstack((zero, one, zero)) + D.T @ lam
+        theory = np.max(np.abs(np.linalg.eigvals(np.vstack((np.hstack((one, zero, zero)) + v, v, lam)))))
+        rest = np.zeros(10), np.zeros(10), np.full(10, 1e3)
+        base = np.concatenate(trembling_step(lesson.gauss_seidel_sweep, m, *rest))
+        columns = [np.concatenate(trembling_step(lesson.gauss_seidel_sweep, m, *(a + e for a, e in zip(rest, np.split(
+            unit, 3), strict=True)))) - base for unit in np.eye(30)]
+        radii[m] = theory, np.max(np.abs(np.linalg.eigvals(np.stack(columns, axis=1))))
+    for m, verb in ((7, "trembles"), (8, "comes to rest")):
+        theory, measured = radii[m]
+        found.append(finding(
+            claim="Memory that keeps pushes makes ten boxes tremble with seven sweeps per step, and not with eight.",
+            quantity=f"growth per step, {m} sweeps [-]",
+            predicted=theory,
+            measured=measured,
+            tolerance=SAME,
+            observation=f"With {m} sweeps a disturbance is multiplied by {measured:.4f} per step: the stack {verb}.",
+        ))
+    few = np.array(sorted(radii))
+    return found, Picture("Ten boxes with memory and a push", "sweeps per step", "growth per step [-]", [
+        series("theory, largest eigenvalue", few, [radii[m][0] for m in few], LINE),
+        series("measured", few, [radii[m][1] for m in few], DOTS)],
+        "Above 1 the stack trembles.  A sweep at rest after the motion takes the pushes out of the memory.")
+
+
+@case("creeping", "Why a box slides on a still platform", compiled=False)
+def creeping(lesson):
+    """A sweep visits the left corner first, which takes more than its share.  So the box turns, and friction comes too
+    late: what is left of each step adds up to (1 − T)⁻¹ T g dt, along the floor as well.
+    """
+    rows, w = cornered(0.5, 1.0)
+    mu, found, speeds = np.array([0.6, 0.6]), [], {}
+    sweep = lambda A, b, J: lesson.cone_sweep(A, b, J, mu)
+    for degrees in (0.0, 15.0):
+        slope = np.radians(degrees)
+        pull = G * FRAME * np.array([np.sin(slope), -np.cos(slope), 0.0])
+        for m in (1, 2, 4, 8):
+            speeds[degrees, m] = (end_speeds(rows, w, m, pull)[0],
+                                  swept_speeds(sweep, rows, w, m, pull, 400)[0])
+        for m in (1, 4):
+            theory, speed = speeds[degrees, m]
+            found.append(finding(
+                claim="A box with enough friction creeps with (1 − T)⁻¹ T g dt, on a level floor, too.",
+                quantity=f"speed of a box with μ = 0.6 on {degrees:g}°, sweeps per step: {m} [m/s]",
+                predicted=theory,
+                measured=speed,
+                tolerance=SAME * theory,
+                observation=f"On {degrees:g}° it creeps with {1e3 * speed:.3g} mm/s; sweeps per step: {m}.",
+            ))
+        still = swept_speeds(sweep, rows, w, 1, pull, 400, remember=True)[0]
+        found.append(finding(
+            claim="With memory it stands, even with one sweep per step.",
+            quantity=f"speed of a box with μ = 0.6 on {degrees:g}°, one sweep per step and memory [m/s]",
+            predicted=0.0,
+            measured=still,
+            tolerance=ROUND_OFF,
+            observation=f"On {degrees:g}° {abs(still):.1e} m/s are left.",
+        ))
+    few = np.array([1, 2, 4, 8])
+    return found, Picture("A box that should stand", "sweeps per step", "log₁₀ of its speed [m/s]", [
+        series(f"{name}, {degrees:g}°", few, np.log10([speeds[degrees, m][k] for m in few]), look)
+        for k, name, look in ((0, "theory", LINE), (1, "measured", DOTS)) for degrees in (0.0, 15.0)],
+        "The platform does not move: the solver stops before normal and friction of both corners agree.")
+
+
 def sweep_radius(lesson, n, omega):
     """Largest size of an eigenvalue of a sweep over n equal bodies: what it does to single errors, where all push."""
     A, b, forces = column(np.ones(n))

@@ -133,15 +133,16 @@ def truth(p, t):
 def tolerance(p, dt):
     """What stands: in the first steps the loop does not know the forces.  60 sweeps leave ρ⁶⁰ of g dt, with
     ρ = cos²(π/14) for seven bodies in a row at the worst, and memory takes as much of the rest in each further step:
-    g dt² ρ⁶⁰/(1 − ρ⁶⁰) altogether.  A corner of a card that leans by θ moves 1/sin θ as far.
+    g dt² ρ⁶⁰/(1 − ρ⁶⁰) altogether.  A corner of a card that leans by θ moves 1/sin θ as far.  Where that is more than
+    MARGIN in the first step, memory does not know the contact again: no limit is known.
 
     What falls: no theory says how far two runs differ.  Nor does it for pymunk, in which contacts must overlap first.
     """
     left = np.cos(np.pi / 14.0) ** (2 * SWEEPS)
-    sinks = p.g * dt**2 * left / (1.0 - left) / np.sin(lean(p))
+    first = p.g * dt**2 * left / np.sin(lean(p))
     size = np.linalg.norm(corners(*house(p)))
-    stands = sinks * np.sqrt(28.0) / size + 1e-9
-    return {UNKNOWN: stands if p.rough > 1.0 else np.inf, "pymunk": np.inf}
+    stands = first / (1.0 - left) * np.sqrt(28.0) / size + 1e-9
+    return {UNKNOWN: stands if p.rough > 1.0 and first < MARGIN else np.inf, "pymunk": np.inf}
 
 
 def pymunk_make(p, dt):
@@ -196,8 +197,10 @@ SCENE = Scene(
     tolerance=tolerance,
     engines=ENGINES,
     orders={"contact_step_2d": UNKNOWN},
-    slow_methods=("contact_step_2d",),
-    slow_cases=("rough enough", "barely"),
+    slow_cases=("barely",),
+    slow_runs={"too smooth": ("contact_step_2d",)},          # what falls wants short steps, and nothing judges it
+    uncompiled_in_quick=("contact_step_2d",),
+    shorter_in_quick={"contact_step_2d": 60},
     omitted_methods="pybullet: the house was not set up in it",
     sanity_checks=sanity_checks,
     points=points, links=links,
