@@ -125,9 +125,9 @@ def cylinder_impact_time(t, dt, x_0, x_1, r, R):
     A = w · w,   B = y · w,   C = y · y − ρ²,   D = B² − A C = A ρ² − (y₀ w₁ − y₁ w₀)²
     first root  s = C/(−B + √D),   t* = t + s dt
 
-    Use the last form of D, because B² − A C cancels if a fast ball barely grazes the cylinder.  Use this form of s,
-    because (−B − √D)/A cancels more.  If the ball is already close, C cancels in any form: the share s is then known to
-    the round-off of |y| over the gap.
+    Use the last form of D, because B² − A C cancels if a fast ball barely grazes the cylinder or comes from far away.
+    For s, (−B − √D)/A is as good.  If the ball is already close, both cancel: the share s is then known to the
+    round-off of |y| over the gap.
 
     t where it already touches (C ≤ 0); NEVER where it does not approach (B ≥ 0), misses (D < 0) or comes later (s > 1).
     *Source:* second lecture deck, the worked question, part 2.
@@ -287,6 +287,8 @@ def find_intersections(a, b):
         one is a leaf          FindIntersections of each child of the other one with the leaf
         both are leaves        test the pairs of their items: touching_items(a, i, b, j, found)
 
+    The larger node goes first because that prunes sooner.  The pairs are the same whichever goes first, and they may
+    come in any order.
     Keep a list of the pairs (i, j) still to visit, at first [(0, 0)], and one of found pairs as in all_pairs; return
     as_pairs(found).  Node i is a leaf if a.child[i] = 0.  Otherwise its children are a.child[i] and a.child[i] + 1.
     If your loop never ends, it has taken the child 0 of a leaf for a node, which is the root.

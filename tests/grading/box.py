@@ -109,8 +109,8 @@ class Sandbox:
 
     Attributes:
     secret: errors keep no text of the student's code, which may know secret inputs · failed: an error of the grader
-    itself · late: the time was up or the system ended the worker, perhaps because of other processes · seen: codes of
-    watch.SENTENCES that the instructor may look into.
+    itself · late: the time was up or the system ended the worker, perhaps because of other processes · overdue: the
+    time was up since `begin` · seen: codes of watch.SENTENCES that the instructor may look into.
     """
 
     def __init__(self, lesson, exercises, text, given, earlier, budget, records=(), limits=LIMITS):
@@ -118,7 +118,7 @@ class Sandbox:
         self.lines = text.count(b"\n") + 1
         self.printed, self.seen = b"", set()
         self.process, self.broken, self.failed = None, None, None
-        self.secret, self.late, self.depth = False, False, 0
+        self.secret, self.late, self.overdue, self.depth = False, False, False, 0
         self.records, self.meter = {kind.__name__: kind for kind in records}, Meter()
         self.begin(budget)
         self.folder = Path(tempfile.mkdtemp(prefix="workbook-"))
@@ -196,6 +196,7 @@ class Sandbox:
             self.seen.add("wire")
             self.stop()
         self.allow(limit)
+        self.overdue = False
 
     def allow(self, limit):
         """Set the time limits, from now on."""
@@ -322,7 +323,7 @@ class Sandbox:
             raise self.too_long()
 
     def too_long(self):
-        self.late = True
+        self.late = self.overdue = True
         self.seen.add("time")
         if self.meter.used < self.budget:
             return self.lost("it took too long")

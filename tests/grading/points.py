@@ -20,6 +20,7 @@ LESSONS = TESTS / "lessons"  # the grading tests
 OURS = {TESTS, TESTS.parent / "validate", Path(os.__file__).parent}                      # no subject's file is in here
 PUBLIC = "public"            # the seed of everyone's own tests
 LIMIT = 20.0                 # a grading test may take this long [s]: the slowest takes 2, on two shared cores
+AGAIN = 4.0                  # and so long where a test of the exercise, or of one that it calls, has taken too long [s]
 READING = "reading the file"   # the quantity where a file could not be loaded
 DURATION = "the time it takes"   # the quantity where a test did not end
 BOX_LIMIT = 10.0             # and so long in the sandbox [s]
@@ -126,7 +127,8 @@ def outcome(mark, name, excinfo, trace=None):
         words = map(str, (error.quantity, error.expected, error.got, error.tolerance, hint, error.error, error.given))
         return Outcome(exercise, name, points, "not yet", *words)
     if isinstance(error, TooLong):
-        return Outcome(exercise, name, points, "not yet", DURATION, f"an answer within {LIMIT:g} s", "none", "",
+        within = f"an answer within {getattr(error, 'limit', LIMIT):g} s"
+        return Outcome(exercise, name, points, "not yet", DURATION, within, "none", "",
                        "does a loop of yours never end? Count its rounds, and stop after so many")
     if not any(Path(entry.filename).name.startswith("test_") for entry in _frames(error)):
         return unreadable(Outcome(exercise, name, points, "not run"), error, "")

@@ -3,10 +3,14 @@
 import re
 import subprocess
 import sys
+import time
+import types
 
 import pytest
 
 from validate import modules
+
+from . import plugin, points
 
 LEFT_OUT = re.compile(r"^(\d+) long tests were left out: pytest --long runs them, too$", re.MULTILINE)
 
@@ -29,3 +33,49 @@ def test_the_summary_counts_the_long_tests_that_were_left_out(options):
 def test_the_summary_has_no_such_line_with_long_or_with_an_exercise(options):
     files = "tests/grading/test_scale.py", "tests/lessons/test_integrators.py"
     assert not LEFT_OUT.search(printed(*files, "--collect-only", *options))
+
+
+# ---------------------------------------------------------------------------------------------- a loop without end
+
+def endless(*arguments):
+    while True:
+        pass
+
+
+@pytest.fixture
+def short(monkeypatch):
+    """Limits of a second and a tenth of it, in place of those of the grader."""
+    monkeypatch.setattr(plugin, "LIMIT", 1.0)
+    monkeypatch.setattr(plugin, "AGAIN", 0.1)
+
+
+def limits_of(exercises, **changes):
+    """{exercise: the limits [s] of its tests that took too long, "passed" for others}, with these functions changed."""
+    changed = types.SimpleNamespace(**{**vars(modules.bind("integrators")), **changes})
+    outcomes = points.grade("integrators", changed, lambda exercise, test: exercise in exercises)
+    assert {o.hint.partition("?")[0] for o in outcomes if o.quantity == points.DURATION} \
+        <= {"does a loop of yours never end"}
+    return {number: [o.expected.removeprefix("an answer within ") or o.status for o in outcomes if o.exercise == number]
+            for number in exercises}
+
+
+def test_a_loop_without_end_is_waited_for_once(short):
+    began = time.process_time()
+    found = limits_of(["1.1", "1.2"], euler_step=endless)
+    assert found == {"1.1": ["1 s", "0.1 s"], "1.2": ["passed", "passed"]}
+    assert time.process_time() - began < 3.0
+
+
+def test_after_a_loop_without_end_a_test_that_ends_passes(short):
+    euler_step, calls = modules.bind("integrators").euler_step, []
+
+    def first_call_never_ends(*arguments):
+        calls.append(arguments)
+        return endless() if len(calls) == 1 else euler_step(*arguments)
+    assert limits_of(["1.1"], euler_step=first_call_never_ends) == {"1.1": ["1 s", "passed"]}
+
+
+def test_what_calls_a_loop_without_end_has_less_time_from_its_first_test_on(short):
+    found = limits_of(["1.7", "1.8"], implicit_euler_step=endless, implicit_midpoint_step=endless)
+    assert sorted(found["1.7"]) == ["0.1 s"] * 3 + ["1 s"]
+    assert set(found["1.8"]) == {"0.1 s"}

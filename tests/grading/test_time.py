@@ -20,7 +20,7 @@ import pytest
 from validate import loading
 
 from ..attacks import HONEST, SOLVED
-from . import box, children, local, marking, remote, sandbox, submissions
+from . import box, children, local, marking, plugin, points, remote, sandbox, submissions
 
 pytestmark = pytest.mark.xdist_group("time")
 LIMIT = 1.0                  # of the calls of a test here [s]
@@ -113,6 +113,18 @@ def test_a_call_that_sleeps_or_loops_is_ended(body):
         with pytest.raises(box.Lost, match="it took too long"):
             place.call("lesson:observed_order", (1.0, 1.0))
         assert place.late and LIMIT <= place.meter.used < 3.0 * LIMIT
+
+
+@pytest.mark.long
+def test_a_loop_without_end_is_waited_for_once(monkeypatch):
+    monkeypatch.setattr(plugin, "BOX_LIMIT", LIMIT)
+    monkeypatch.setattr(plugin, "AGAIN", 0.2)
+    with opened("\ndef euler_step(*arguments):\n    while True:\n        pass\n") as place:
+        before, subject = place.meter.used, remote.lesson_in(place, "integrators")
+        outcomes = points.grade("integrators", subject, lambda exercise, test: exercise in ("1.1", "1.10"))
+        assert LIMIT + 0.2 <= place.meter.used - before < 2.0 * LIMIT and place.late
+        assert [o.got for o in outcomes if o.exercise == "1.1"] == ["Lost: it took too long"] * 2
+        assert not place.overdue                                       # 1.10 has come after it
 
 
 @pytest.mark.long

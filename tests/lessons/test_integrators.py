@@ -137,7 +137,7 @@ def test_halving_the_step_divides_the_error_by_two_to_the_order(lesson, draw, me
 
 @pytest.mark.parametrize(("method", "share"), [
     pytest.param("implicit_euler_step", 1.0, marks=exercise(
-        "1.7", points=1, hint=HINTS["1.7"] + "; repeat until the correction is small enough")),
+        "1.7", points=0.5, hint=HINTS["1.7"] + "; repeat until the correction is small enough")),
     pytest.param("implicit_midpoint_step", 0.5, marks=exercise("1.8", points=0.5, hint=HINTS["1.8"]))])
 def test_an_implicit_step_solves_its_own_equation_however_long_it_is(lesson, draw, method, share):
     """v⁺ = v + dt a and x⁺ = x + dt v, both evaluated at the end of the step, or at its midpoint."""
@@ -154,6 +154,38 @@ def test_an_implicit_step_solves_its_own_equation_however_long_it_is(lesson, dra
         # Half a step doubles it, but there r′ < 1.9.
         close("v⁺ − v − dt a after the step [m/s]", rest, [0.0, 0.0], 1e-11, given)
         close("x⁺ − x − dt v after the step [m]", x_new - x - dt * there[1], [0.0, 0.0], 1e-11, given)
+
+
+@exercise("1.7", points=0.5, hint="newton_matrix(acceleration, tₙ + dt, xₙ, w, dt, p) adds dt w to xₙ; then w ← w − δ")
+def test_newtons_method_has_the_matrix_of_the_end_of_the_step(lesson, draw):
+    """x⁺ = y solves  y + κ y³ = x + dt v  with κ = s (t + dt)² dt²,  for the hard spring a = −s t² x³.
+
+    Another matrix, at other times or positions, has another derivative than 1 + 3κ y²: then the error of each
+    correction is more than 0.8 of the one before, or grows, and 30 corrections do not suffice.
+    """
+    x, v, dt = draw(0.8, 1.2, 2), draw(-1.0, 1.0, 2), draw(0.1, 0.2)
+    x_new, v_new = lesson.implicit_euler_step(hard_spring, 0.0, x, v, dt, Drive(0.0, 0.0))
+    close("x and v after a step without a force", [x_new, v_new], [x + dt * v, v], 1e-14, given=f"dt = {dt:.4g} s")
+    late = draw(500.0, 900.0) * dt, draw(-0.9, -0.7) * x / dt            # no time matters, but each position
+    early = draw(0.4, 0.6) * dt, 0.0 * x                                  # the spring is nine times as hard at the end
+    for t, v in (late, early):
+        kappa = draw(9.0, 12.0)
+        p = Drive(kappa / (dt * (t + dt)) ** 2, 0.0)
+        y = np.array([cubic_root(kappa, right) for right in x + dt * v])
+        x_new, v_new = lesson.implicit_euler_step(hard_spring, t, x, v, dt, p)
+        # the last correction is below 1e-12 |w| with |w| < 12 m/s, and Newton squares what is left
+        close("x after a step of a hard spring [m]", x_new, y, 1e-11, given=f"dt = {dt:.4g} s, t = {t:.4g} s")
+        close("v after a step of a hard spring [m/s]", v_new, (y - x) / dt, 1e-10)
+
+
+def hard_spring(t, x, v, p):
+    return -p.strength * t * t * x * x * x
+
+
+def cubic_root(kappa, right):
+    """The y with y + κ y³ = right, by bisection and secants."""
+    from scipy.optimize import brentq
+    return brentq(lambda y: y + kappa * y**3 - right, -2.0, 2.0, xtol=1e-15)
 
 
 @exercise("1.7", points=0.5, hint="if the loop ends without a return, raise Diverged as the docstring says")

@@ -33,6 +33,8 @@ edit("3.1", "takes the size of F for the normal force", "np.maximum(0.0, -(F @ n
 edit("3.1", "uses the last coordinate of F only", "-(F @ n)", "-F[-1]")
 edit("3.1", "returns the vector, not its size", "np.maximum(0.0, -(F @ n))", "max(0.0, -(F @ n)) * n")
 edit("3.1", "ignores a small load", "np.maximum(0.0, -(F @ n))", "max(0.0, -(F @ n)) * (F @ n < -1e-3)")
+edit("3.1", "returns the size of the normal part, whatever its direction", "np.maximum(0.0, -(F @ n))", "np.abs(F @ n)")
+edit("3.1", "takes the smaller of the two in place of the larger", "np.maximum", "np.minimum")
 
 
 # 3.2 ------------------------------------------------------------------------------------------------------------
@@ -59,6 +61,15 @@ wrong("3.2", "accepts a negative μ")(holding(checked=False))
 edit("3.2", "multiplies an infinite μ by a normal force of zero",
      "cone_radius(mu_s, normal_force(F, n))", "cone_radius(mu_s, 1.0) * normal_force(F, n)")
 edit("3.2", "always returns the largest friction, μ N", "size <= limit", "size == 0.0")
+edit("3.2", "exchanges the two cases", "size <= limit", "size > limit")
+edit("3.2", "does not divide by |F_t| beyond the limit", "-limit / size * F_t", "-limit * F_t")
+edit("3.2", "multiplies F_t by μ in place of the normal force",
+     "cone_radius(mu_s, normal_force(F, n))", "cone_radius(mu_s, size)")
+edit("3.2", "reverses the normal", "normal_force(F, n)", "normal_force(F, -n)")
+edit("3.2", "forgets the minus sign beyond the limit", "else -limit", "else limit")
+edit("3.2", "forgets the minus sign while it holds", "return -F_t", "return F_t")
+edit("3.2", "forgets μ", "cone_radius(mu_s, normal_force(F, n))", "normal_force(F, n)")
+edit("3.2", "compares the squared force with the limit", "np.sqrt(F_t @ F_t)", "F_t @ F_t")
 
 
 # 3.3 ------------------------------------------------------------------------------------------------------------
@@ -82,6 +93,10 @@ edit("3.3", "divides by a speed of zero", "speed > 0.0", "True")
 edit("3.3", "treats a slow body as at rest", "speed > 0.0", "speed > 1e-9")
 edit("3.3", "accepts a negative μ, and multiplies ∞ by 0", "cone_radius(mu_k, normal_force(F, n))",
      "mu_k * normal_force(F, n)")
+edit("3.3", "forgets μ", "cone_radius(mu_k, normal_force(F, n))", "normal_force(F, n)")
+edit("3.3", "divides by the square of the speed", "np.sqrt(v_t @ v_t)", "v_t @ v_t")
+edit("3.3", "reverses the normal", "normal_force(F, n)", "normal_force(F, -n)")
+edit("3.3", "uses the normal velocity as the load", "normal_force(F, n)", "normal_force(v, n)")
 
 
 # 3.4 ------------------------------------------------------------------------------------------------------------
@@ -107,6 +122,19 @@ wrong("3.4", "uses the normal force of level ground, without cos θ")(
     on_slope(slides=lambda theta, mu_s, mu_k: np.sin(theta) - mu_k))
 edit("3.4", "accepts a negative μ_s", "cone_radius(mu_s, np.cos(theta))", "mu_s * np.cos(theta)")
 edit("3.4", "accepts a negative μ_k", "cone_radius(mu_k, np.cos(theta))", "mu_k * np.cos(theta)")
+edit("3.4", "takes the angle for one in degrees",
+     "np.sin(theta) <= cone_radius(mu_s, np.cos(theta))",
+     "np.sin(np.radians(theta)) <= cone_radius(mu_s, np.cos(np.radians(theta)))")
+edit("3.4", "forgets g", "return g * (", "return (")
+edit("3.4", "adds the kinetic friction", "np.sin(theta) - cone_radius(mu_k", "np.sin(theta) + cone_radius(mu_k")
+edit("3.4", "forgets the kinetic friction",
+     "np.sin(theta) - cone_radius(mu_k, np.cos(theta))", "np.sin(theta) - 0.0 * cone_radius(mu_k, np.cos(theta))")
+edit("3.4", "exchanges holding and sliding", "<=", ">")
+edit("3.4", "returns an acceleration up the slope", "return g", "return -g")
+edit("3.4", "reverses the difference: friction minus gravity",
+     "np.sin(theta) - cone_radius(mu_k, np.cos(theta))", "cone_radius(mu_k, np.cos(theta)) - np.sin(theta)")
+edit("3.4", "compares the angle itself with μ",
+     "np.sin(theta) <= cone_radius(mu_s, np.cos(theta))", "theta <= cone_radius(mu_s, 1.0)")
 
 
 # 3.5 ------------------------------------------------------------------------------------------------------------
@@ -129,6 +157,13 @@ wrong("3.5", "forgets μ")(dissipating(limit=lambda mu, j_n: worked.check_fricti
 wrong("3.5", "accepts a negative μ")(dissipating(limit=lambda mu, j_n: mu * j_n if j_n > 0.0 else 0.0))
 edit("3.5", "divides by a speed of zero", "m * speed <= limit", "0.0 < m * speed <= limit")
 edit("3.5", "changes its input", "-m * v_t if", "np.multiply(v_t, -m, out=v_t) if")
+edit("3.5", "compares the speed with the limit, without the mass", "m * speed <= limit", "speed <= limit")
+edit("3.5", "compares the squared speed", "np.sqrt(v_t @ v_t)", "v_t @ v_t")
+edit("3.5", "does not divide by the speed", "/ speed * v_t", "* v_t")
+edit("3.5", "forgets the minus sign when it stops the body", "return -m", "return m")
+edit("3.5", "exchanges the two cases", "m * speed <= limit", "m * speed > limit")
+edit("3.5", "returns a change of velocity, not an impulse, when it stops the body", "return -m * v_t", "return -v_t")
+edit("3.5", "divides by the mass", "return -m * v_t", "return -v_t / m")
 
 
 # 3.6 ------------------------------------------------------------------------------------------------------------
@@ -155,6 +190,19 @@ edit("3.6", "does not limit the friction along the second tangent from above",
 edit("3.6", "does not limit the friction along the second tangent from below",
      "np.maximum(-limit, np.minimum(limit, m * (v_t @ t_2)))",
      "min(limit, m * (v_t @ t_2))")
+edit("3.6", "exchanges the two tangents", "-first * t_1 - second * t_2", "-first * t_2 - second * t_1")
+edit("3.6", "applies friction along the second tangent only", "-first * t_1 - second * t_2", "-second * t_2")
+edit("3.6", "reverses the impulse along the second tangent",
+     "-first * t_1 - second * t_2", "-first * t_1 + second * t_2")
+edit("3.6", "reverses the impulse along the first tangent", "-first * t_1 - second * t_2", "first * t_1 - second * t_2")
+edit("3.6", "takes the second component along the first tangent", "m * (v_t @ t_2)", "m * (v_t @ t_1)")
+edit("3.6", "does not limit the impulse at all",
+     "limit = cone_radius(mu, j_n)", "limit = cone_radius(mu, j_n) * 0.0 + np.inf")
+edit("3.6", "always slides: takes the full limit along each tangent",
+     "np.maximum(-limit, np.minimum(limit, m * (v_t @ t_1)))", "limit * np.sign(v_t @ t_1)")
+edit("3.6", "forgets μ", "cone_radius(mu, j_n)", "j_n")
+edit("3.6", "divides by the mass in place of multiplying by it",
+     "limit = cone_radius(mu, j_n)", "limit, m = cone_radius(mu, j_n), 1.0 / m")
 
 
 # 3.7 ------------------------------------------------------------------------------------------------------------
@@ -195,6 +243,14 @@ wrong("3.7", "stops a block that reverses")(block_step(turns=False))
 wrong("3.7", "treats a lifted block as loaded")(block_step(load=lambda a, n: abs(a @ n)))
 wrong("3.7", "takes the size of a for the load")(block_step(load=lambda a, n: size(a)))
 edit("3.7", "changes its input", "v = v + dt * a_t", "v += dt * a_t")
+edit("3.7", "forgets dt beside the acceleration", "v + dt * a_t", "v + a_t")
+edit("3.7", "adds the whole acceleration, its normal part included", "v + dt * a_t", "v + dt * a")
+edit("3.7", "subtracts the acceleration", "v + dt * a_t", "v - dt * a_t")
+edit("3.7", "omits the friction", "v = v + friction_impulse(v, 1.0, dt * a_n, p.mu_k)", "pass")
+edit("3.7", "returns the impulse as the new velocity", "v = v + friction_impulse", "v = friction_impulse")
+edit("3.7", "subtracts the impulse", "v = v + friction_impulse", "v = v - friction_impulse")
+edit("3.7", "multiplies the load by dt twice", "dt * a_n, p.mu_k", "dt * dt * a_n, p.mu_k")
+edit("3.7", "exchanges holding and sliding", "<= cone_radius", "> cone_radius")
 
 
 # 3.8 ------------------------------------------------------------------------------------------------------------
@@ -225,6 +281,12 @@ wrong("3.8", "never breaks away")(heading(ask=lambda pull, hold: False))
 wrong("3.8", "does not advance t")(heading(clock=0.0))
 edit("3.8", "multiplies an infinite μ by a normal force of zero",
      "cone_radius(p.mu_s, normal_force(a, p.n))", "p.mu_s * normal_force(a, p.n)")
+edit("3.8", "uses the whole acceleration, its normal part included", "a_t = tangential(a, p.n)", "a_t = a")
+edit("3.8", "returns the direction against the motion", "return v / speed", "return -v / speed")
+edit("3.8", "divides by the square of the speed", "np.sqrt(v @ v)", "v @ v")
+edit("3.8", "exchanges holding and slipping", "pull > cone", "pull < cone")
+edit("3.8", "returns the velocity itself", "return v / speed", "return v")
+edit("3.8", "returns zeros for a moving block", "return v / speed", "return 0.0 * v")
 
 
 # 3.9 ------------------------------------------------------------------------------------------------------------
@@ -257,6 +319,9 @@ edit("3.9", "assumes the deceleration at t for the whole step", "moving, stopped
 edit("3.9", "tests whether the block moves, whatever its direction, so that it never stops",
      "kinetic_friction_step(acceleration, t, x, v, dt, d, p)[1] @ d > 0.0",
      "np.any(kinetic_friction_step(acceleration, t, x, v, dt, d, p)[1])")
+edit("3.9", "exchanges the two halves", "middle, d, p)[1] @ d > 0.0", "middle, d, p)[1] @ d <= 0.0")
+edit("3.9", "returns the rest of the step, after the stop", "return stopped", "return dt - stopped")
+edit("3.9", "returns zero for a block that goes on", "return dt", "return 0.0")
 
 
 # 3.10 -----------------------------------------------------------------------------------------------------------
@@ -286,6 +351,11 @@ LOAD_OF_NOW = "p._replace(gravity=p.gravity + np.cos(p.omega * t) * (p.drive - a
 edit("3.10", "keeps the load at t for the whole step", "if not np.any",
      f"along = tangential(p.drive, p.n); p = {LOAD_OF_NOW}\n    if not np.any")
 edit("3.10", "returns the time, not the duration", "return slips", "return t + slips")
+edit("3.10", "exchanges the two halves",
+     "if np.any(slip_direction(acceleration, t + middle", "if not np.any(slip_direction(acceleration, t + middle")
+edit("3.10", "returns the rest of the step, after the slip", "return slips", "return dt - slips")
+edit("3.10", "returns zero if the block still holds", "return dt", "return 0.0")
+edit("3.10", "returns infinity if the block still holds", "return dt", "return np.inf")
 
 
 # 3.11 -----------------------------------------------------------------------------------------------------------
@@ -312,6 +382,11 @@ wrong("3.11", "does not move")(event(moves=False))
 edit("3.11", "handles a moving block only", "d = slip_direction(acceleration, t, x, v, p)",
      "d = v / max(1e-300, np.sqrt(v @ v))")
 edit("3.11", "does not stop near the end of the step", "tau == dt", "tau >= 0.99 * dt")
+edit("3.11", "returns the whole step as the time",
+     "return tau, x, v if tau == dt else 0.0 * v", "return dt, x, v if tau == dt else 0.0 * v")
+edit("3.11", "returns the rest of the step as the time", "return tau, x, v if", "return dt - tau, x, v if")
+edit("3.11", "exchanges the two cases", "if not np.any(d)", "if np.any(d)")
+edit("3.11", "stops the block that goes on, and lets the other one go on", "tau == dt", "tau != dt")
 
 
 # 3.12 -----------------------------------------------------------------------------------------------------------
@@ -336,6 +411,11 @@ wrong("3.12", "does not return a unit normal")(hollow(scaled=False))
 wrong("3.12", "divides by a distance of zero")(hollow(safe=False))
 edit("3.12", "treats the bowl as a ball", "p.radius - distance, -r / distance", "distance - p.radius, r / distance")
 edit("3.12", "treats a micrometre around the centre as the centre", "distance > 0.0", "distance > 1e-6")
+edit("3.12", "returns the distance from the centre as the gap", "p.radius - distance, -r", "distance, -r")
+edit("3.12", "adds the centre", "x - p.centre", "x + p.centre")
+edit("3.12", "takes the part along the axis in place of the rest",
+     "tangential(x - p.centre, p.axis)", "((x - p.centre) @ p.axis) * p.axis")
+edit("3.12", "compares the squared distance with the radius", "distance = np.sqrt(r @ r)", "distance = r @ r")
 
 
 # 3.13 -----------------------------------------------------------------------------------------------------------
@@ -365,6 +445,16 @@ wrong("3.13", "always sticks")(impact(friction=lambda v_t, m, j_n, mu: -m * v_t)
 edit("3.13", "limits the friction by the normal impulse for e = 0",
      "tangential(v, n), m, j_n, mu", "tangential(v, n), m, -m * v_n, mu")
 edit("3.13", "ignores slow impacts", "v_n >= 0.0", "v_n >= -1e-3")
+edit("3.13", "reverses the test of the approach", "v_n >= 0.0", "v_n <= 0.0")
+edit("3.13", "reverses the friction", "+ friction_impulse", "- friction_impulse")
+edit("3.13", "reverses the normal impulse only", "return j_n * n + f", "return -j_n * n + f")
+edit("3.13", "uses the normal velocity for the load of the friction", "m, j_n, mu)", "m, -v_n, mu)")
+edit("3.13", "forgets the minus sign of the normal impulse", "j_n = -(", "j_n = (")
+edit("3.13", "exchanges e and μ", "(1.0 + e) * m * v_n", "(1.0 + mu) * m * v_n")
+edit("3.13", "returns a velocity: divides by the mass",
+     "j_n * n + friction_impulse(tangential(v, n), m, j_n, mu)",
+     "(j_n * n + friction_impulse(tangential(v, n), m, j_n, mu)) / m")
+edit("3.13", "returns the velocity after the impact", "return j_n * n + f", "return v + j_n * n + f")
 
 
 # 3.14 and 3.16 --------------------------------------------------------------------------------------------------
@@ -413,6 +503,18 @@ edit("3.14", "changes its input", "v = v + dt * acceleration(t, x, v, p)", "v +=
 edit("3.14", "finds contact at φ = 0 already", "phi < 0.0", "phi <= 0.0")
 edit("3.16", "finds contact at φ = 0 already", "phi < 0.0", "phi <= 0.0")
 edit("3.16", "applies the correction to a particle that moves along the surface", "v @ n < 0.0", "v @ n <= 0.0")
+edit("3.14", "exchanges e and μ", "p.m, p.e, p.mu", "p.m, p.mu, p.e")
+edit("3.14", "corrects the position only", "v = v + particle_contact_impulse(v, n, p.m, p.e, p.mu) / p.m", "pass")
+edit("3.14", "moves the particle back whenever it is outside", "phi < 0.0", "phi > 0.0")
+edit("3.14", "subtracts the impulse", "v = v + particle_contact", "v = v - particle_contact")
+edit("3.14", "multiplies the impulse by the mass", "p.mu) / p.m", "p.mu) * p.m")
+edit("3.14", "returns the impulse over mass as the velocity", "v = v + particle_contact", "v = particle_contact")
+edit("3.16", "corrects the position with e in place of μ", "-phi, p.mu)", "-phi, p.e)")
+edit("3.16", "exchanges e and μ in the impulse", "p.m, p.e, p.mu", "p.m, p.mu, p.e")
+edit("3.16", "takes the velocity for the displacement",
+     "friction_position_correction(moved", "friction_position_correction(v")
+edit("3.16", "returns the velocity before the impulse",
+     "v = v + particle_contact_impulse(v, n, p.m, p.e, p.mu) / p.m", "pass")
 
 
 # 3.15 -----------------------------------------------------------------------------------------------------------
@@ -433,3 +535,6 @@ wrong("3.15", "does not limit the correction")(grip(choose=lambda limit, s: s))
 wrong("3.15", "always slides")(grip(choose=lambda limit, s: limit))
 wrong("3.15", "forgets μ")(grip(limit=lambda mu, depth: depth))
 edit("3.15", "uses at most 10 cm of the depth", "1.0, depth", "1.0, min(depth, 0.1)")
+edit("3.15", "reverses the depth", "depth, mu)", "-depth, mu)")
+edit("3.15", "returns the whole displacement along the surface",
+     "friction_impulse(tangential(moved, n), 1.0, depth, mu)", "tangential(moved, n)")

@@ -36,6 +36,7 @@ edit("4.1", "refuses what is almost all hole", POSITIVE,
 edit("4.1", "returns zero for coordinates below 1 nm",
      "m @ x / M", "np.where(np.abs(m @ x / M) < 1e-9, 0.0, m @ x / M)")
 edit("4.1", "uses the sizes of the masses, so that holes count as mass", "np.sum(m)", "np.sum(np.abs(m))")
+edit("4.1", "multiplies by the total mass", "m @ x / M", "m @ x * M")
 
 
 # 4.2 ------------------------------------------------------------------------------------------------------------
@@ -55,6 +56,8 @@ edit("4.2", "calls centre_of_mass, which refuses a total mass of zero", "m @ v",
 edit("4.2", "takes a hole for a body", "m @ v", "np.abs(m) @ v")
 edit("4.2", "refuses holes", "return m @ v", '[check_positive("mass [kg]", k) for k in m]; return m @ v')
 edit("4.2", "returns zero for components below 1e-9 kg m/s", "m @ v", "np.where(np.abs(m @ v) < 1e-9, 0.0, m @ v)")
+edit("4.2", "reverses the sign", "m @ v", "-(m @ v)")
+edit("4.2", "divides by the masses", "return m @ v", "return (1.0 / m) @ v")
 
 
 # 4.3 ------------------------------------------------------------------------------------------------------------
@@ -72,6 +75,11 @@ edit("4.3", "refuses a total mass of zero or less", "L = np.zeros(3)",
 edit("4.3", "takes a hole for a body", "m[n] * cross", "abs(m[n]) * cross")
 edit("4.3", "ignores holes", "m[n] * cross", "max(0.0, m[n]) * cross")
 edit("4.3", "uses the velocities relative to the centre of mass", "v[n])", "v[n] - m @ v / np.sum(m))")
+edit("4.3", "measures the arm from the point to the reference point", "x[n] - about", "about - x[n]")
+edit("4.3", "adds the reference point", "x[n] - about", "x[n] + about")
+edit("4.3", "keeps the last point only", "L += m", "L = m")
+edit("4.3", "divides by the mass", "L += m[n] * c", "L += 1.0 / m[n] * c")
+edit("4.3", "takes the dot product in every component", "cross(x[n] - about, v[n])", "(x[n] - about) * v[n]")
 
 
 # 4.4 ------------------------------------------------------------------------------------------------------------
@@ -96,6 +104,20 @@ edit("4.4", "refuses a total mass of zero or less", "xx, yy, zz =",
      'check_positive("total mass [kg]", np.sum(m)); xx, yy, zz =')
 edit("4.4", "treats coordinates below 1 nm as zero",
      "xx, yy, zz =", "r = np.where(np.abs(r) < 1e-9, 0.0, r); xx, yy, zz =")
+edit("4.4", "puts x² in Ixx, not y² + z²",
+     "[[yy + zz, -xy, -xz], [-xy, xx + zz, -yz], [-xz, -yz, xx + yy]]",
+     "[[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]]")
+edit("4.4", "forgets the masses",
+     "np.sum(m * r[:, 0] * r[:, 0]), np.sum(m * r[:, 1] * r[:, 1]), np.sum(m * r[:, 2] * r[:, 2])",
+     "np.sum(r[:, 0] * r[:, 0]), np.sum(r[:, 1] * r[:, 1]), np.sum(r[:, 2] * r[:, 2])")
+edit("4.4", "subtracts the squares on the diagonal", "xx + yy]]", "xx - yy]]")
+edit("4.4", "exchanges the moments of the first two axes",
+     "[[yy + zz, -xy, -xz], [-xy, xx + zz, -yz]", "[[xx + zz, -xy, -xz], [-xy, yy + zz, -yz]")
+edit("4.4", "exchanges Ixz and Iyz",
+     "[[yy + zz, -xy, -xz], [-xy, xx + zz, -yz], [-xz, -yz, xx + yy]]",
+     "[[yy + zz, -xy, -yz], [-xy, xx + zz, -xz], [-yz, -xz, xx + yy]]")
+edit("4.4", "fills the upper half only",
+     "[-xy, xx + zz, -yz], [-xz, -yz, xx + yy]]", "[0.0, xx + zz, -yz], [0.0, 0.0, xx + yy]]")
 
 
 # 4.5 ------------------------------------------------------------------------------------------------------------
@@ -115,6 +137,11 @@ edit("4.5", "refuses what is smaller than a tenth of a millimetre", "m / 12.0",
      '(check_positive("edge [m]", np.max(size) - 1e-4) or m) / 12.0')
 edit("4.5", "returns the three moments, not the tensor",
      "np.diag(np.array([bb + cc, aa + cc, aa + bb]))", "np.array([bb + cc, aa + cc, aa + bb])")
+edit("4.5", "forgets the squares",
+     "size[0] * size[0], size[1] * size[1], size[2] * size[2]", "size[0], size[1], size[2]")
+edit("4.5", "forgets the mass", "m / 12.0", "1.0 / 12.0")
+edit("4.5", "subtracts the squares", "[bb + cc, aa + cc, aa + bb]", "[bb - cc, aa - cc, aa - bb]")
+edit("4.5", "divides by 6 in place of 12", "12.0", "6.0")
 
 
 # 4.6 ------------------------------------------------------------------------------------------------------------
@@ -131,6 +158,11 @@ edit("4.6", "takes a hole for a body", "0.4 * m", "0.4 * abs(m)")
 edit("4.6", "refuses what is smaller than a nanometre", "0.4 * m",
      '0.4 * (check_positive("radius [m]", radius - 1e-9) or m)')
 edit("4.6", "refuses holes", "0.4 * m", '0.4 * (check_positive("mass m [kg]", m) or m)')
+edit("4.6", "forgets the square of the radius", "radius * radius", "radius")
+edit("4.6", "forgets the mass", "0.4 * m", "0.4")
+edit("4.6", "uses the factor 1/2 of a disc", "0.4", "0.5")
+edit("4.6", "uses the factor 3/5", "0.4", "0.6")
+edit("4.6", "cubes the radius", "radius * radius", "radius**3")
 
 
 # 4.7 ------------------------------------------------------------------------------------------------------------
@@ -151,6 +183,19 @@ edit("4.7", "refuses a rod", "across = m", 'check_positive("radius [m]", radius)
 edit("4.7", "treats a cylinder shorter than 1 nm as a disc", "length * length", "length * length * (length > 1e-9)")
 edit("4.7", "divides by the length, which is zero for a disc", "across = m", "m = m / length * length; across = m")
 edit("4.7", "divides by the radius, which is zero for a rod", "across = m", "m = m / radius**2 * radius**2; across = m")
+edit("4.7", "uses the axis's moment for all three axes",
+     "[across, across, 0.5", "[0.5 * m * radius * radius, 0.5 * m * radius * radius, 0.5")
+edit("4.7", "takes the cylinder's axis along x",
+     "np.array([across, across, 0.5 * m * radius * radius])", "np.array([0.5 * m * radius * radius, across, across])")
+edit("4.7", "exchanges radius and length", "across = m", "radius, length = length, radius; across = m")
+edit("4.7", "takes the radius for the diameter", "across = m", "radius = 0.5 * radius; across = m")
+edit("4.7", "takes the diameter for the radius", "across = m", "radius = 2.0 * radius; across = m")
+edit("4.7", "gives the radius the same weight as the length across the axis",
+     "3.0 * radius * radius + length", "radius * radius + length")
+edit("4.7", "takes the moments about the end, not about the centre",
+     "across = m * (3.0 * radius * radius + length * length) / 12.0",
+     "across = m * (3.0 * radius * radius + 4.0 * length * length) / 12.0")
+edit("4.7", "forgets the square of the length", "length * length", "length")
 
 
 # 4.8 ------------------------------------------------------------------------------------------------------------
@@ -201,6 +246,18 @@ edit("4.8", "treats a short capsule as a ball",
      "m_c = m * length", "m_c = 0.0 if length < 1e-3 * radius else m * length")
 edit("4.8", "treats a capsule shorter than 1 µm as a ball",
      "m_c = m * length", "m_c = 0.0 if length < 1e-6 else m * length")
+edit("4.8", "gives each half ball the mass of both", "m_s = m - m_c", "m_s = 2.0 * (m - m_c)")
+edit("4.8", "takes half of the mass of the half balls", "m_s = m - m_c", "m_s = 0.5 * (m - m_c)")
+edit("4.8", "takes the capsule's axis along x",
+     "np.array([across, across, 0.5 * m_c * rr + 0.4 * m_s * rr])",
+     "np.array([0.5 * m_c * rr + 0.4 * m_s * rr, across, across])")
+edit("4.8", "does not move the half balls", "(0.4 * rr + 0.25 * hh + 0.375 * length * radius)", "0.4 * rr")
+edit("4.8", "moves the half balls by the whole length", "0.25 * hh", "hh")
+edit("4.8", "puts the centre of a half ball at half of its height", "0.375 * length", "0.5 * length")
+edit("4.8", "omits the half balls in the moment about the axis", "+ 0.4 * m_s * rr]", "]")
+edit("4.8", "gives both half balls together the volume of one", "4.0 / 3.0", "2.0 / 3.0")
+edit("4.8", "exchanges the two masses", "m_s = m - m_c", "m_s = m_c; m_c = m - m_c")
+edit("4.8", "measures the half ball's centre from its pole", "0.375 * length", "0.625 * length")
 
 
 # 4.9 ------------------------------------------------------------------------------------------------------------
@@ -214,6 +271,9 @@ edit("4.9", "takes R I in place of R I Rᵀ", "R @ I_body @ R.T", "R @ I_body")
 edit("4.9", "returns the tensor in the body's axes", "R @ I_body @ R.T", "I_body.copy()")
 edit("4.9", "refuses holes", "return R", 'check_positive("a moment [kg m²]", np.trace(I_body)); return R')
 edit("4.9", "changes its input", "R @ I_body @ R.T", "np.matmul(R @ I_body, R.T, out=I_body)")
+edit("4.9", "forgets the transpose at the end", "R @ I_body @ R.T", "R @ I_body @ R")
+edit("4.9", "multiplies entry by entry", "R @ I_body @ R.T", "R * I_body * R.T")
+edit("4.9", "multiplies by the transpose only", "R @ I_body @ R.T", "I_body @ R.T")
 
 
 # 4.10 -----------------------------------------------------------------------------------------------------------
@@ -229,6 +289,10 @@ edit("4.10", "returns the inverse in the body's axes", "world_inertia(inverse(I_
 edit("4.10", "returns a pseudo-inverse where there is no inverse", "inverse(I_body)", "np.linalg.pinv(I_body)")
 edit("4.10", "refuses small inputs", "inverse(I_body)",
      "inverse(I_body if abs(np.linalg.det(I_body)) > 1e-12 else 0.0 * I_body)")
+edit("4.10", "rotates by R and R, without the transpose",
+     "world_inertia(inverse(I_body), R)", "R @ inverse(I_body) @ R")
+edit("4.10", "inverts the matrix entry by entry", "inverse(I_body)", "1.0 / (I_body + 0.0)")
+edit("4.10", "takes R I⁻¹ without the transpose", "world_inertia(inverse(I_body), R)", "R @ inverse(I_body)")
 
 
 # 4.11 -----------------------------------------------------------------------------------------------------------
@@ -246,6 +310,13 @@ edit("4.11", "subtracts the term in place of adding it", "I + point", "I - point
 edit("4.11", "refuses holes", "return I", 'check_positive("a moment [kg m²]", np.trace(I)); return I')
 edit("4.11", "treats offsets below 1 µm as zero", "return I", "d = np.where(np.abs(d) < 1e-6, 0.0, d); return I")
 edit("4.11", "changes its input", f"I + {POINT}", f"np.add(I, {POINT}, out=I)")
+edit("4.11", "forgets the mass", "np.array([m])", "np.ones(1)")
+edit("4.11", "returns the added term only", "return I + point", "return point")
+edit("4.11", "does not square the distance", "d.reshape(1, 3)", "(np.sign(d) * np.sqrt(np.abs(d))).reshape(1, 3)")
+edit("4.11", "adds the squares of d on the diagonal of their own axes",
+     "point_mass_inertia(np.array([m]), d.reshape(1, 3))", "m * np.diag(d * d)")
+edit("4.11", "omits |d|²: subtracts m d dᵀ only",
+     "point_mass_inertia(np.array([m]), d.reshape(1, 3))", "-m * np.outer(d, d)")
 
 
 # 4.12 -----------------------------------------------------------------------------------------------------------
@@ -306,6 +377,11 @@ edit("4.12", "changes its input", "parallel_axes(I[n], m[n], x[n] - X)",
 edit("4.12", "omits the tensor of a body without mass", "total += parallel_axes(",
      "total += 0.0 if m[n] == 0.0 else parallel_axes(")
 edit("4.12", "returns a plain tuple, not MassProperties", "MassProperties(M, X, total)", "(M, X, total)")
+edit("4.12", "reverses the sign of the mass in the added term", "m[n], x[n] - X", "-m[n], x[n] - X")
+edit("4.12", "keeps the last body only", "total += p", "total = p")
+edit("4.12", "moves the tensors by the sum of the positions", "x[n] - X", "x[n] + X")
+edit("4.12", "omits the tensors of the parts, as if they were points",
+     "parallel_axes(I[n], m", "parallel_axes(0.0 * I[n], m")
 
 
 # 4.13 -----------------------------------------------------------------------------------------------------------
@@ -334,6 +410,7 @@ edit("4.13", "returns the axes as rows, not as columns", "return moments, R", "r
 edit("4.13", "sorts the moments in descending order", "return moments, R", "return moments[::-1], -R[:, ::-1]")
 edit("4.13", "returns the entries of the diagonal as moments", "return moments, R", "return np.sort(np.diag(I)), R")
 edit("4.13", "reverses all three columns at the end", "return moments, R", "return moments, -R")
+edit("4.13", "tests the determinant the other way", "< 0.0", "> 0.0")
 
 
 # 4.14 -----------------------------------------------------------------------------------------------------------
@@ -427,6 +504,13 @@ edit("4.15", "reverses the orientation of the triangles", SIX_VOLUMES, f"-({SIX_
 edit("4.15", "puts all mass of a tetrahedron at its centre", SECOND, "w / 96.0 * s * (a[j] + b[j] + c[j])")
 edit("4.15", "uses the centre of the triangle, not of the tetrahedron", "w / 24.0", "w / 18.0")
 edit("4.15", "ignores tetrahedra below a cubic nanometre", "volume +=", "w = w if abs(w) > 1e-27 else 0.0; volume +=")
+edit("4.15", "forgets the division by 6 of the volume", "w / 6.0", "w")
+edit("4.15", "divides the first integrals by 6 in place of 24", "w / 24.0", "w / 6.0")
+edit("4.15", "divides the second integrals by 24 in place of 120", "w / 120.0", "w / 24.0")
+edit("4.15", "forgets the corner a in the sum", "s = a[i] + b[i]", "s = b[i]")
+edit("4.15", "forgets s sᵀ in the second integrals", "+ s * (a[j] + b[j] + c[j]))", ")")
+edit("4.15", "takes b × a in place of b × c", "b[1] * c[2] - b[2] * c[1]", "b[1] * a[2] - b[2] * a[1]")
+edit("4.15", "fills the lower half of the second integrals only", "second[j, i] = second[i, j]", "pass")
 
 
 # 4.16 -----------------------------------------------------------------------------------------------------------
@@ -527,3 +611,13 @@ edit("4.17", "refuses volumes a thousand times too large", "MOMENT_ROUND_OFF * n
 edit("4.17", "checks only the corners that triangles use", "[m]\", x)", "[m]\", x[np.unique(faces % x.shape[0])])")
 edit("4.17", "returns a plain tuple, not MassProperties", "MassProperties(density * volume, x[0] + centre, tensor)",
      "(density * volume, x[0] + centre, tensor)")
+edit("4.17", "returns the centre relative to the first corner", "x[0] + centre", "centre")
+edit("4.17", "adds the term of the centre in place of subtracting it", "second - volume", "second + volume")
+edit("4.17", "forgets the volume beside the centre's term", "volume * np.outer", "np.outer")
+edit("4.17", "does not divide the first integrals by the volume", "first / volume", "first")
+edit("4.17", "reverses the sign of the tensor",
+     "np.trace(covariance) * np.eye(3) - covariance", "covariance - np.trace(covariance) * np.eye(3)")
+edit("4.17", "adds the covariance to its trace", "np.eye(3) - covariance", "np.eye(3) + covariance")
+edit("4.17", "divides by the mass in place of the volume", "first / volume", "first / (density * volume)")
+edit("4.17", "adds the trace to every entry, not only on the diagonal",
+     "np.trace(covariance) * np.eye(3)", "np.trace(covariance)")

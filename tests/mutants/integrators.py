@@ -24,6 +24,15 @@ edit("1.1", "takes the acceleration at the new position",
      "acceleration(t, x, v, p)", "acceleration(t, x + dt * v, v, p)")
 edit("1.1", "changes its input", "v + dt * acceleration(t, x, v, p)", "np.add(v, dt * acceleration(t, x, v, p), out=v)")
 edit("1.1", "takes the acceleration at time t + dt", "acceleration(t, x", "acceleration(t + dt, x")
+edit("1.1", "moves the position backwards", "x + dt * v,", "x - dt * v,")
+edit("1.1", "subtracts the acceleration", "v + dt * acceleration", "v - dt * acceleration")
+edit("1.1", "forgets dt in the position", "x + dt * v,", "x + v,")
+edit("1.1", "exchanges x and v in the arguments of the acceleration",
+     "acceleration(t, x, v, p)", "acceleration(t, v, x, p)")
+edit("1.1", "returns the velocity first",
+     "x + dt * v, v + dt * acceleration(t, x, v, p)", "v + dt * acceleration(t, x, v, p), x + dt * v")
+edit("1.1", "moves the position with the mean of the old and the new velocity",
+     "x + dt * v,", "x + dt * (v + 0.5 * dt * acceleration(t, x, v, p)),")
 
 
 # 1.2 ------------------------------------------------------------------------------------------------------------
@@ -38,6 +47,17 @@ edit("1.2", "advances by dt/2 only", "x + dt * v_mid, v + dt", "x + 0.5 * dt * v
 edit("1.2", "moves the position with the velocity at the start of the step", "x + dt * v_mid", "x + dt * v")
 edit("1.2", "evaluates the slope at the middle at time t, not at t + dt/2",
      "acceleration(t + 0.5 * dt", "acceleration(t")
+edit("1.2", "takes the acceleration at the old position", "0.5 * dt, x_mid, v_mid", "0.5 * dt, x, v_mid")
+edit("1.2", "takes the acceleration at the old velocity", "0.5 * dt, x_mid, v_mid", "0.5 * dt, x_mid, v")
+edit("1.2", "starts the whole step at the midpoint, not at its beginning",
+     "return x + dt * v_mid, v + dt", "return x_mid + dt * v_mid, v_mid + dt")
+edit("1.2", "takes the velocity at the midpoint after a whole step, not after half of it",
+     "v_mid = v + 0.5 * dt", "v_mid = v + dt")
+edit("1.2", "takes the position at the midpoint after a whole step, not after half of it",
+     "x_mid = x + 0.5 * dt", "x_mid = x + dt")
+edit("1.2", "takes the acceleration at time t + dt", "acceleration(t + 0.5 * dt", "acceleration(t + dt")
+edit("1.2", "takes an Euler step with the acceleration at its beginning",
+     "acceleration(t + 0.5 * dt, x_mid, v_mid, p)", "acceleration(t, x, v, p)")
 
 
 # 1.3 ------------------------------------------------------------------------------------------------------------
@@ -62,6 +82,32 @@ edit("1.3", "moves the position by an Euler step", "x + dt / 6.0 * (v + 2.0 * v2
 edit("1.3", "does not advance t to the midpoint", "acceleration(t + 0.5 * dt, x + 0.5 * dt * v2",
      "acceleration(t, x + 0.5 * dt * v2")
 edit("1.3", "does not advance t to the end", "acceleration(t + dt", "acceleration(t")
+edit("1.3", "computes the third velocity from the first acceleration",
+     "v3 = v + 0.5 * dt * a2", "v3 = v + 0.5 * dt * a1")
+edit("1.3", "computes the fourth velocity from the second acceleration", "v4 = v + dt * a3", "v4 = v + dt * a2")
+edit("1.3", "takes half a step to the fourth velocity, where a whole one belongs",
+     "v4 = v + dt * a3", "v4 = v + 0.5 * dt * a3")
+edit("1.3", "takes half a step to the fourth position, where a whole one belongs",
+     "x + dt * v3, v4", "x + 0.5 * dt * v3, v4")
+edit("1.3", "takes the third acceleration at the position that the first velocity reaches",
+     "x + 0.5 * dt * v2, v3", "x + 0.5 * dt * v, v3")
+edit("1.3", "takes the fourth acceleration at the position that the second velocity reaches",
+     "x + dt * v3, v4", "x + dt * v2, v4")
+edit("1.3", "takes the second acceleration at the old position", "x + 0.5 * dt * v, v2", "x, v2")
+edit("1.3", "takes the second acceleration at the position that the second velocity reaches",
+     "x + 0.5 * dt * v, v2", "x + 0.5 * dt * v2, v2")
+edit("1.3", "takes the third acceleration at the position that the third velocity reaches",
+     "x + 0.5 * dt * v2, v3", "x + 0.5 * dt * v3, v3")
+edit("1.3", "takes the fourth acceleration at the position that the fourth velocity reaches",
+     "x + dt * v3, v4", "x + dt * v4, v4")
+edit("1.3", "takes a whole step to the second velocity, where half of it belongs", "v2 = v + 0.5 * dt", "v2 = v + dt")
+edit("1.3", "takes a whole step to the third velocity, where half of it belongs", "v3 = v + 0.5 * dt", "v3 = v + dt")
+edit("1.3", "starts the third velocity from the second one, not from vₙ", "v3 = v + 0.5", "v3 = v2 + 0.5")
+edit("1.3", "starts the fourth velocity from the third one, not from vₙ", "v4 = v + dt", "v4 = v3 + dt")
+edit("1.3", "gives the third acceleration the weight of one at an end", "2.0 * a2 + 2.0 * a3", "2.0 * a2 + a3")
+edit("1.3", "gives the third velocity the weight of one at an end", "2.0 * v2 + 2.0 * v3", "2.0 * v2 + v3")
+edit("1.3", "takes the second acceleration at the old velocity", "x + 0.5 * dt * v, v2, p", "x + 0.5 * dt * v, v, p")
+edit("1.3", "takes the fourth acceleration at the third velocity", "dt * v3, v4, p", "dt * v3, v3, p")
 
 
 # 1.4 ------------------------------------------------------------------------------------------------------------
@@ -74,6 +120,13 @@ def average_velocity_step(acceleration, t, x, v, dt, p):
 edit("1.4", "adds the velocities without halving", "0.5 * dt", "dt")
 edit("1.4", "moves with the new velocity, not with the mean of old and new", "(v + v_new)", "(v_new + v_new)")
 edit("1.4", "halves the change of the velocity, too", "v + dt * acc", "v + 0.5 * dt * acc")
+edit("1.4", "moves with the old velocity, not with the mean of old and new", "(v + v_new)", "(v + v)")
+edit("1.4", "takes the difference of the velocities in place of their mean", "(v + v_new)", "(v_new - v)")
+edit("1.4", "subtracts the acceleration", "v + dt * acc", "v - dt * acc")
+edit("1.4", "takes the acceleration at time t + dt", "acceleration(t, x", "acceleration(t + dt, x")
+edit("1.4", "returns the mean velocity, not the new one", "(v + v_new), v_new", "(v + v_new), 0.5 * (v + v_new)")
+edit("1.4", "takes the acceleration at the position that the old velocity reaches",
+     "acceleration(t, x, v, p)", "acceleration(t, x + dt * v, v, p)")
 
 
 # 1.5 ------------------------------------------------------------------------------------------------------------
@@ -85,9 +138,17 @@ def symplectic_euler_step(acceleration, t, x, v, dt, p):
 
 edit("1.5", "takes an explicit Euler step", "v = v + dt * acceleration(t, x, v, p)",
      "v, x = v + dt * acceleration(t, x, v, p), x - dt * dt * acceleration(t, x, v, p)")
-edit("1.5", "moves the position first, with the old velocity, and takes the acceleration there",
+edit("1.5", "takes the acceleration at the position that the old velocity reaches",
      "acceleration(t, x, v, p)", "acceleration(t, x + dt * v, v, p)")
+edit("1.5", "moves the position first, with the old velocity, and takes the acceleration there",
+     "v = v + dt * acceleration(t, x, v, p)",
+     "x = x + dt * v; v = v + dt * acceleration(t, x, v, p); return x, v")
 edit("1.5", "subtracts the acceleration", "v + dt", "v - dt")
+edit("1.5", "moves the position backwards", "return x + dt", "return x - dt")
+edit("1.5", "takes the acceleration at time t + dt", "acceleration(t, x", "acceleration(t + dt, x")
+edit("1.5", "returns the velocity first", "return x + dt * v, v", "return v, x + dt * v")
+edit("1.5", "moves with the mean of the old and the new velocity",
+     "return x + dt * v, v", "return x + dt * v - 0.5 * dt * dt * acceleration(t, x, v, p), v")
 
 
 # 1.6 ------------------------------------------------------------------------------------------------------------
@@ -102,6 +163,13 @@ edit("1.6", "advances the velocity with the old acceleration only", "(a + a_new)
 edit("1.6", "takes the new acceleration at the old velocity", "v + dt * a, p)", "v, p)")
 edit("1.6", "forgets the half in the position", "0.5 * dt * dt * a", "dt * dt * a")
 edit("1.6", "takes the new acceleration at the old time", "acceleration(t + dt", "acceleration(t")
+edit("1.6", "forgets the half in the velocity", "v + 0.5 * dt * (a + a_new)", "v + dt * (a + a_new)")
+edit("1.6", "takes the new acceleration at the old position", "acceleration(t + dt, x_new", "acceleration(t + dt, x")
+edit("1.6", "omits the acceleration in the position", "x + dt * v + 0.5 * dt * dt * a", "x + dt * v")
+edit("1.6", "uses dt in place of dt² in the position", "0.5 * dt * dt * a", "0.5 * dt * a")
+edit("1.6", "advances the velocity with the new acceleration only", "(a + a_new)", "(a_new + a_new)")
+edit("1.6", "predicts the velocity over half a step", "v + dt * a, p", "v + 0.5 * dt * a, p")
+edit("1.6", "takes the new acceleration in the middle of the step", "acceleration(t + dt", "acceleration(t + 0.5 * dt")
 
 
 # 1.7 ------------------------------------------------------------------------------------------------------------
@@ -132,6 +200,12 @@ wrong("1.7", "stops iterating while the correction is still large")(
     implicit_euler(enough=lambda k, delta, w: delta <= 0.1))
 edit("1.7", "takes a symplectic Euler step and solves no equation", "w = v.copy()",
      "w = v + dt * acceleration(t, x, v, p); return x + dt * w, w")
+edit("1.7", "evaluates the matrix at x + dt w, where newton_matrix adds dt w once more",
+     "newton_matrix(acceleration, t + dt, x, w", "newton_matrix(acceleration, t + dt, x + dt * w, w")
+edit("1.7", "evaluates the matrix at x + dt v", "newton_matrix(acceleration, t + dt, x, w",
+     "newton_matrix(acceleration, t + dt, x + dt * v, w")
+edit("1.7", "evaluates the matrix at the old time",
+     "newton_matrix(acceleration, t + dt", "newton_matrix(acceleration, t")
 edit("1.7", "tests only positive corrections", "np.max(np.abs(delta))", "np.max(delta)")
 
 
@@ -150,6 +224,18 @@ def implicit_euler_step(acceleration, t, x, v, dt, p):
     return x + dt * w, w
 
 
+edit("1.7", "adds the correction δ in place of subtracting it", "w = w - delta", "w = w + delta")
+edit("1.7", "moves the position with the old velocity at the end", "return x + dt * w, w", "return x + dt * v, w")
+edit("1.7", "builds the matrix at the old velocity",
+     "newton_matrix(acceleration, t + dt, x, w", "newton_matrix(acceleration, t + dt, x, v")
+edit("1.7", "omits the old velocity in the residual", "w - v - dt", "w - dt")
+edit("1.7", "adds the acceleration in the residual", "w - v - dt", "w - v + dt")
+edit("1.7", "forgets dt in the residual", "w - v - dt * acceleration", "w - v - acceleration")
+edit("1.7", "takes the acceleration at the old velocity", "x + dt * w, w, p)", "x + dt * w, v, p)")
+edit("1.7", "takes the acceleration at the position that the old velocity reaches",
+     "x + dt * w, w, p)", "x + dt * v, w, p)")
+
+
 # 1.8 ------------------------------------------------------------------------------------------------------------
 @right("1.8", "the second half explicitly")
 def implicit_midpoint_step(acceleration, t, x, v, dt, p):
@@ -161,6 +247,13 @@ edit("1.8", "takes a whole step of implicit Euler", "0.5 * dt, p)", "dt, p); ret
 edit("1.8", "returns the state at the middle of the step", "2.0 * x_mid - x, 2.0 * v_mid - v", "x_mid, v_mid")
 edit("1.8", "takes two half steps of implicit Euler", "2.0 * x_mid - x, 2.0 * v_mid - v",
      "implicit_euler_step(acceleration, t + 0.5 * dt, x_mid, v_mid, 0.5 * dt, p)")
+edit("1.8", "takes a whole step where half a step belongs", "0.5 * dt, p)", "dt, p)")
+edit("1.8", "starts at the time of the middle of the step",
+     "implicit_euler_step(acceleration, t, x", "implicit_euler_step(acceleration, t + 0.5 * dt, x")
+edit("1.8", "returns the velocity in the middle", "2.0 * v_mid - v", "v_mid")
+edit("1.8", "returns the position in the middle", "return 2.0 * x_mid - x,", "return x_mid,")
+edit("1.8", "moves the position with the velocity at the end of the step",
+     "2.0 * x_mid - x,", "x + dt * (2.0 * v_mid - v),")
 
 
 # 1.9 ------------------------------------------------------------------------------------------------------------
@@ -177,6 +270,13 @@ wrong("1.9", "forgets the damping")(columns(lambda t, x, v, p: -p.omega**2 * x))
 edit("1.9", "returns the transpose", "[[x1[0], x2[0]], [v1[0], v2[0]]]", "[[x1[0], v1[0]], [x2[0], v2[0]]]")
 edit("1.9", "returns the inverse of the matrix", "np.array([[x1[0], x2[0]], [v1[0], v2[0]]])",
      "np.linalg.inv(np.array([[x1[0], x2[0]], [v1[0], v2[0]]]))")
+edit("1.9", "exchanges ω and ζ", "Oscillator(omega, zeta)", "Oscillator(zeta, omega)")
+edit("1.9", "exchanges the two columns", "[[x1[0], x2[0]], [v1[0], v2[0]]]", "[[x2[0], x1[0]], [v2[0], v1[0]]]")
+edit("1.9", "exchanges the two rows", "[[x1[0], x2[0]], [v1[0], v2[0]]]", "[[v1[0], v2[0]], [x1[0], x2[0]]]")
+edit("1.9", "starts both columns from x = 1", "0.0, zero, one, dt", "0.0, one, zero, dt")
+edit("1.9", "starts the second column from (1, 1)", "0.0, zero, one, dt", "0.0, one, one, dt")
+edit("1.9", "exchanges position and velocity in both starts",
+     "x1, v1 = step(oscillator_acceleration, 0.0, one, zero", "x1, v1 = step(oscillator_acceleration, 0.0, zero, one")
 
 
 # 1.10 -----------------------------------------------------------------------------------------------------------
@@ -194,3 +294,15 @@ edit("1.10", "fits a line to the errors, not to their logarithms", "xi = np.log(
 edit("1.10", "uses the first and the last error only",
      "np.sum(xi * eta) / np.sum(xi * xi)", "(eta[-1] - eta[0]) / (xi[-1] - xi[0])")
 edit("1.10", "forgets the mean of log dt", "xi = np.log(dts) - np.mean(np.log(dts))", "xi = np.log(dts)")
+edit("1.10", "exchanges steps and errors: the slope of log dt over log error",
+     "np.sum(xi * eta) / np.sum(xi * xi)", "np.sum(xi * eta) / np.sum(eta * eta)")
+edit("1.10", "returns the reciprocal of the slope",
+     "np.sum(xi * eta) / np.sum(xi * xi)", "np.sum(xi * xi) / np.sum(xi * eta)")
+edit("1.10", "returns the negative slope", "return np.sum(xi", "return -np.sum(xi")
+edit("1.10", "returns the correlation, not the slope",
+     "np.sum(xi * xi)", "np.sqrt(np.sum(xi * xi) * np.sum(eta * eta))")
+edit("1.10", "divides each logarithm by the other one, and takes the mean",
+     "np.sum(xi * eta) / np.sum(xi * xi)", "np.mean(np.log(errors) / np.log(dts))")
+edit("1.10", "accepts a step of zero or below", 'check_positive("step dt [s]", dts[n])', "pass")
+edit("1.10", "forgets the mean of both",
+     "np.sum(xi * eta) / np.sum(xi * xi)", "np.sum(np.log(dts) * np.log(errors)) / np.sum(np.log(dts)**2)")

@@ -23,6 +23,10 @@ edit("5.1", "omits the minus signs", MATRIX, MATRIX.replace("-", ""))
 edit("5.1", "exchanges the components x and z",
      MATRIX, MATRIX.replace("a[2]", "c").replace("a[0]", "a[2]").replace("c", "a[0]"))
 edit("5.1", "returns the outer product of a with itself", f"np.array({MATRIX})", "np.outer(a, a)")
+edit("5.1", "has the wrong sign of a_y in the first row", "-a[2], a[1]]", "-a[2], -a[1]]")
+edit("5.1", "has the wrong sign of a_x in the second row", "0.0, -a[0]]", "0.0, a[0]]")
+edit("5.1", "has the wrong sign of a_z in the first row", "[[0.0, -a[2]", "[[0.0, a[2]")
+edit("5.1", "exchanges the components x and y", "return np", "a = a[[1, 0, 2]]; return np")
 
 
 # 5.2 ------------------------------------------------------------------------------------------------------------
@@ -34,6 +38,7 @@ def point_velocity(v, omega, r):
 edit("5.2", "takes r × ω in place of ω × r", "cross(omega, r)", "cross(r, omega)")
 edit("5.2", "omits the velocity of the centre of mass", "v + cross(omega, r)", "cross(omega, r)")
 edit("5.2", "omits the rotation, ω × r", "v + cross(omega, r)", "v.copy()")
+edit("5.2", "subtracts the rotation", "v + cross", "v - cross")
 
 
 # 5.3 ------------------------------------------------------------------------------------------------------------
@@ -48,6 +53,11 @@ edit("5.3", "takes the arm from the point to the centre", "points[i] - x", "x - 
 edit("5.3", "lets all forces act at the mean of the points",
      "points[i] - x", "np.sum(points, axis=0) / points.shape[0] - x")
 edit("5.3", "changes the array of points", "points[i] - x", "np.subtract(points[i], x, out=points[i])")
+edit("5.3", "keeps the last torque only", "tau += cross", "tau = cross")
+edit("5.3", "keeps the last force only", "F += forces", "F = forces")
+edit("5.3", "returns the torque first", "return F, tau", "return tau, F")
+edit("5.3", "adds the centre of mass", "points[i] - x", "points[i] + x")
+edit("5.3", "takes the mean of the forces", "return F, tau", "return F / forces.shape[0], tau")
 
 
 # 5.4 ------------------------------------------------------------------------------------------------------------
@@ -60,6 +70,9 @@ edit("5.4", "divides L in world axes by the moments of the body axes", "R @ ((R.
 edit("5.4", "returns ω in body coordinates", "R @ ((R.T @ L) / I_body)", "(R.T @ L) / I_body")
 edit("5.4", "multiplies by the inertia in place of dividing by it", "/ I_body", "* I_body")
 edit("5.4", "exchanges R and its transpose", "R @ ((R.T @ L) / I_body)", "R.T @ ((R @ L) / I_body)")
+edit("5.4", "divides L of the world by the moments and rotates the result",
+     "R @ ((R.T @ L) / I_body)", "R @ (L / I_body)")
+edit("5.4", "converts with R and R, not with Rᵀ first", "(R.T @ L)", "(R @ L)")
 
 
 # 5.5 ------------------------------------------------------------------------------------------------------------
@@ -83,6 +96,12 @@ wrong("5.5", "uses L in place of ω")(derivative(omega=lambda R, L, I: L))
 wrong("5.5", "adds a gyroscopic term to L̇, where only the torque belongs")(
     derivative(torque=lambda tau, omega, L: tau - np.cross(omega, L)))
 edit("5.5", "uses a mass of at least 1 kg", "S.P / body.m", "S.P / max(1.0, body.m)")
+edit("5.5", "multiplies by the mass", "S.P / body.m", "S.P * body.m")
+edit("5.5", "exchanges force and torque", "F, tau)", "tau, F)")
+edit("5.5", "returns the new orientation, R + ω* R", "skew(omega) @ S.R,", "S.R + skew(omega) @ S.R,")
+edit("5.5", "returns ω* in place of ω* R", "skew(omega) @ S.R", "skew(omega)")
+edit("5.5", "returns the momenta in place of force and torque", "F, tau)", "S.P, S.L)")
+edit("5.5", "divides the force by the mass", "F, tau)", "F / body.m, tau)")
 
 
 # 5.6 ------------------------------------------------------------------------------------------------------------
@@ -104,6 +123,14 @@ edit("5.6", "forgets dt", "dt * (skew(omega) @ R)", "skew(omega) @ R")
 edit("5.6", "orthonormalises the rows, not the columns", "np.stack((first, second, cross(first, second)), axis=1)",
      "np.linalg.qr(M.T)[0].T * np.sign(np.diag(np.linalg.qr(M.T)[1]))[:, None]")
 edit("5.6", "changes its input", "R + dt * (skew(omega) @ R)", "np.add(R, dt * (skew(omega) @ R), out=R)")
+edit("5.6", "returns the three vectors as rows, not as columns", "axis=1", "axis=0")
+edit("5.6", "subtracts the rotation", "R + dt", "R - dt")
+edit("5.6", "does not normalise the second column", "second /= norm(second)", "pass")
+edit("5.6", "does not normalise the first column", "first /= norm(first)", "pass")
+edit("5.6", "adds the part along the first column", "second -= dot", "second += dot")
+edit("5.6", "leaves out R: keeps only the change", "M = R + dt", "M = dt")
+edit("5.6", "takes the half of the step, as for a quaternion", "dt * (skew", "0.5 * dt * (skew")
+edit("5.6", "keeps the third column of the step", "cross(first, second)), axis=1", "M[:, 2] / norm(M[:, 2])), axis=1")
 
 
 # 5.7 ------------------------------------------------------------------------------------------------------------
@@ -133,6 +160,15 @@ edit("5.7", "limits the angle to half a turn", "np.cos(rate * dt), np.sin(rate *
      "np.cos(min(rate * dt, np.pi)), np.sin(min(rate * dt, np.pi))")
 edit("5.7", "limits the angle to one turn", "np.cos(rate * dt), np.sin(rate * dt)",
      "np.cos(min(rate * dt, 2.0 * np.pi)), np.sin(min(rate * dt, 2.0 * np.pi))")
+edit("5.7", "rotates the rows, not the columns", "r = R[:, k].copy()", "r = R[k].copy()")
+edit("5.7", "stores the turned columns as rows", "turned[:, k] =", "turned[k] =")
+edit("5.7", "exchanges sine and cosine",
+     "c, s = np.cos(rate * dt), np.sin(rate * dt)", "s, c = np.cos(rate * dt), np.sin(rate * dt)")
+edit("5.7", "does not normalise the axis", "n = omega / rate", "n = omega")
+edit("5.7", "adds 1 + cos θ along the axis", "1.0 - c", "1.0 + c")
+edit("5.7", "takes the part along r in place of n", "dot(n, r) * n", "dot(n, r) * r")
+edit("5.7", "takes the angle for one in degrees",
+     "np.cos(rate * dt), np.sin(rate * dt)", "np.cos(np.degrees(rate * dt)), np.sin(np.degrees(rate * dt))")
 
 
 # 5.8 ------------------------------------------------------------------------------------------------------------
@@ -156,6 +192,19 @@ wrong("5.8", "changes the sign of a product with a negative scalar part")(
     hamilton(close=lambda c: c if c[0] >= 0.0 else -c))
 
 
+edit("5.8", "multiplies component by component", "return np", "return a * b\n    return np")
+edit("5.8", "has a wrong sign in the x component", "a[2] * b[3] - a[3] * b[2]", "a[3] * b[2] - a[2] * b[3]")
+edit("5.8", "has a wrong sign in the y component",
+     "a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1]", "a[0] * b[2] + a[1] * b[3] + a[2] * b[0] - a[3] * b[1]")
+edit("5.8", "has a wrong sign in the z component", "a[1] * b[2] - a[2] * b[1]", "a[2] * b[1] - a[1] * b[2]")
+edit("5.8", "omits the product of the vectors in the scalar part",
+     "a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3]", "a[0] * b[0]")
+edit("5.8", "returns the product with a conjugated",
+     "return np", "a = np.array([a[0], -a[1], -a[2], -a[3]]); return np")
+edit("5.8", "returns the product with b conjugated",
+     "return np", "b = np.array([b[0], -b[1], -b[2], -b[3]]); return np")
+
+
 # 5.9 ------------------------------------------------------------------------------------------------------------
 @right("5.9", "1 + 2w 𝐪* + 2 𝐪*²")
 def rotation_matrix(q):
@@ -168,6 +217,14 @@ edit("5.9", "reads the scalar part as the last component", "q[0], q[1], q[2], q[
 edit("5.9", "forgets a factor 2 beside w", "w, x, y, z = q[0]", "w, x, y, z = 0.5 * q[0]")
 edit("5.9", "adds w² to a diagonal that has it already", "1.0 - 2.0 * (y * y + z * z)",
      "w * w + 1.0 - 2.0 * (y * y + z * z)")
+edit("5.9", "has a wrong sign beside w in the first row: 2(xy + wz)", "2.0 * (x * y - w * z)", "2.0 * (x * y + w * z)")
+edit("5.9", "has a wrong sign beside w in the first row: 2(xz − wy)", "2.0 * (x * z + w * y)", "2.0 * (x * z - w * y)")
+edit("5.9", "has a wrong sign beside w in the second row: 2(yz + wx)",
+     "2.0 * (y * z - w * x)]", "2.0 * (y * z + w * x)]")
+edit("5.9", "adds the squares on the diagonal", "[[1.0 - 2.0", "[[1.0 + 2.0")
+edit("5.9", "forgets the factor 2 on the diagonal", "1.0 - 2.0 * (y * y + z * z)", "1.0 - (y * y + z * z)")
+edit("5.9", "uses the component's own square on the diagonal",
+     "1.0 - 2.0 * (y * y + z * z)", "1.0 - 2.0 * (x * x + z * z)")
 
 
 # 5.10 -----------------------------------------------------------------------------------------------------------
@@ -195,6 +252,12 @@ wrong("5.10", "divides zero by zero")(third_way(close=lambda q: q / np.linalg.no
 edit("5.10", "changes its input",
      "q + 0.5 * dt * quaternion_product(spin, q)", "np.add(q, 0.5 * dt * quaternion_product(spin, q), out=q)")
 edit("5.10", "ignores the sign of dt", "0.5 * dt", "0.5 * abs(dt)")
+edit("5.10", "forgets dt", "0.5 * dt * q", "0.5 * q")
+edit("5.10", "returns the change, not the new orientation", "unit(q + 0.5", "unit(0.5")
+edit("5.10", "puts ω into the first three components",
+     "[0.0, omega[0], omega[1], omega[2]]", "[omega[0], omega[1], omega[2], 0.0]")
+edit("5.10", "normalises the turn, not its result",
+     "unit(q + 0.5 * dt * quaternion_product(spin, q))", "q + unit(0.5 * dt * quaternion_product(spin, q))")
 
 
 # 5.11 -----------------------------------------------------------------------------------------------------------
@@ -226,6 +289,15 @@ def angular_acceleration(q, omega, tau, I_body):
 edit("5.11", "uses the moments of the body with vectors in world axes", "omega_body = unrotate(q, omega)",
      "return (tau - cross(omega, I_body * omega)) / I_body")
 edit("5.11", "ignores small torques", "unrotate(q, tau)", "unrotate(q, tau) * (np.sum(tau * tau) > 1e-12)")
+edit("5.11", "uses ω of the world in the gyroscopic term", "omega_body = unrotate(q, omega)", "omega_body = omega")
+edit("5.11", "forgets the torque", "(unrotate(q, tau) - cross", "(0.0 * tau - cross")
+edit("5.11", "divides ω by the moments in the gyroscopic term", "I_body * omega_body", "omega_body / I_body")
+edit("5.11", "exchanges rotate and unrotate for the torque", "unrotate(q, tau)", "rotate(q, tau)")
+edit("5.11", "exchanges rotate and unrotate at the end", "return rotate", "return unrotate")
+edit("5.11", "divides only the torque by the moments",
+     "(unrotate(q, tau) - cross(omega_body, I_body * omega_body)) / I_body",
+     "unrotate(q, tau) / I_body - cross(omega_body, I_body * omega_body)")
+edit("5.11", "exchanges rotate and unrotate for ω", "unrotate(q, omega)", "rotate(q, omega)")
 
 
 # 5.12 -----------------------------------------------------------------------------------------------------------
@@ -253,6 +325,17 @@ wrong("5.12", "forgets to normalise q")(loop(turned=third_way(close=lambda q: q)
 edit("5.12", "changes its input", "v = v + dt / body.m * F", "v += dt / body.m * F")
 edit("5.12", "uses a mass of at least 1 kg", "dt / body.m", "dt / max(body.m, 1.0)")
 edit("5.12", "uses a mass of at most 1 kg", "dt / body.m", "dt / min(body.m, 1.0)")
+edit("5.12", "multiplies by the mass", "dt / body.m * F", "dt * body.m * F")
+edit("5.12", "forgets dt beside the angular acceleration", "omega + dt * angular", "omega + angular")
+edit("5.12", "forgets dt beside the force", "dt / body.m * F", "1.0 / body.m * F")
+edit("5.12", "exchanges force and torque", "F, tau = load", "tau, F = load")
+edit("5.12", "subtracts the force", "v = v + dt", "v = v - dt")
+edit("5.12", "returns ω before v",
+     "quaternion_update(q, omega, dt), v, omega", "quaternion_update(q, omega, dt), omega, v")
+edit("5.12", "moves with the mean of the old and the new velocity",
+     "v = v + dt / body.m * F", "v = v + dt / body.m * F; x = x - 0.5 * dt * dt / body.m * F")
+edit("5.12", "does not rotate the body", "quaternion_update(q, omega, dt), v", "q, v")
+edit("5.12", "does not move the body", "return x + dt * v,", "return x,")
 
 
 # 5.13 -----------------------------------------------------------------------------------------------------------
@@ -265,6 +348,8 @@ edit("5.13", "divides L in world axes by the moments of the body axes", "unrotat
 edit("5.13", "omits the factor ½", "0.5 * np.sum", "np.sum")
 edit("5.13", "takes L for ω", "L_body * L_body / I_body", "L_body * L_body * I_body")
 edit("5.13", "turns L the wrong way", "unrotate(q, L)", "rotate(q, L)")
+edit("5.13", "forgets the square of L", "L_body * L_body / I_body", "L_body / I_body")
+edit("5.13", "divides by the squares of the moments", "L_body * L_body / I_body", "(L_body / I_body)**2")
 
 
 # 5.14 -----------------------------------------------------------------------------------------------------------
@@ -290,6 +375,17 @@ wrong("5.14", "omits the square root")(racket(root=lambda s: max(0.0, s)))
 wrong("5.14", "divides by the squared moment of the axis itself")(
     racket(below=lambda I, i, j: (I.sum() - I[i] - I[j]) ** 2))
 wrong("5.14", "returns a negative rate for a negative spin")(racket(spin_of=lambda spin: spin))
+edit("5.14", "forgets the spin", "return abs(spin) * np.sqrt", "return np.sqrt")
+edit("5.14", "squares the spin, as in the square of the rate", "abs(spin)", "spin**2")
+edit("5.14", "does not divide by any moments", "/ (I_body[i] * I_body[j])", "/ 1.0")
+edit("5.14", "divides by one moment only", "(I_body[i] * I_body[j])", "I_body[i]")
+edit("5.14", "returns NaN where the rotation is stable", "np.sqrt(np.maximum(0.0, squared))", "np.sqrt(squared)")
+edit("5.14", "takes the root of the spin, too", "abs(spin)", "np.sqrt(abs(spin))")
+edit("5.14", "uses the difference of the other two moments",
+     "(I_body[k] - I_body[i]) * (I_body[j] - I_body[k])", "(I_body[j] - I_body[i])**2")
+edit("5.14", "counts the axes from 1", "i, j =", "k = k - 1; i, j =")
+edit("5.14", "takes the sizes of both differences",
+     "(I_body[k] - I_body[i]) * (I_body[j] - I_body[k])", "abs(I_body[k] - I_body[i]) * (I_body[j] - I_body[k])")
 
 
 # 5.15 -----------------------------------------------------------------------------------------------------------
@@ -304,6 +400,12 @@ edit("5.15", "returns the torque in body coordinates", "top.mgl * np.array([-e[1
      "unrotate(q, top.mgl * np.array([-e[1], e[0], 0.0]))")
 edit("5.15", "rotates the axis from world to body", "rotate(q, np", "unrotate(q, np")
 edit("5.15", "reverses the torque for a top that hangs", "top.mgl * np", "np.sign(e[2]) * top.mgl * np")
+edit("5.15", "exchanges two components of the torque", "[-e[1], e[0], 0.0]", "[e[0], -e[1], 0.0]")
+edit("5.15", "loses the sign of one component of the torque", "[-e[1], e[0], 0.0]", "[e[1], e[0], 0.0]")
+edit("5.15", "takes the weight for the torque", "[-e[1], e[0], 0.0]", "[0.0, 0.0, -1.0]")
+edit("5.15", "returns the torque about the top's own axis", "[-e[1], e[0], 0.0]", "[e[0], e[1], e[2]]")
+edit("5.15", "takes L for the axis", "rotate(q, np.array([0.0, 0.0, 1.0]))", "L / np.sqrt(L @ L)")
+edit("5.15", "takes the x axis of the body for the axis of the top", "[0.0, 0.0, 1.0]", "[1.0, 0.0, 0.0]")
 
 
 # 5.16 -----------------------------------------------------------------------------------------------------------
@@ -348,6 +450,17 @@ wrong("5.16", "fails for a body at rest")(midpoint(enough=lambda n, change, m: c
 edit("5.16", "never raises: rotates by the last iterate",
      'raise Diverged("Newton\'s method did not converge at dt [s]", dt, "take a smaller step")',
      "return unit(quaternion_product(q, np.array([1.0, 0.5 * dt * w[0], 0.5 * dt * w[1], 0.5 * dt * w[2]])))")
+edit("5.16", "adds the correction δ in place of subtracting it", "m = m - delta", "m = m + delta")
+edit("5.16", "takes a whole step to the middle", "- 0.5 * dt * cross(m, w)", "- dt * cross(m, w)")
+edit("5.16", "takes w × m in place of m × w", "cross(m, w)", "cross(w, m)")
+edit("5.16", "starts from L of the world", "start = unrotate(q, L)", "start = L.copy()")
+edit("5.16", "takes the rotation of half a step",
+     "[1.0, 0.5 * dt * w[0], 0.5 * dt * w[1], 0.5 * dt * w[2]]",
+     "[1.0, 0.25 * dt * w[0], 0.25 * dt * w[1], 0.25 * dt * w[2]]")
+edit("5.16", "omits the old value in the residual", "r = m - start", "r = m")
+edit("5.16", "rotates with the angular momentum m in place of w",
+     "[1.0, 0.5 * dt * w[0], 0.5 * dt * w[1], 0.5 * dt * w[2]]",
+     "[1.0, 0.5 * dt * m[0], 0.5 * dt * m[1], 0.5 * dt * m[2]]")
 
 
 # 5.17 -----------------------------------------------------------------------------------------------------------
@@ -385,6 +498,12 @@ edit("5.17", "does not normalise at the end", "unit(quaternion_product(exponenti
 edit("5.17", "rotates about the outer axis by the whole angle twice",
      "dt * (1.0 / I_body[a] - 1.0 / I_body[b]), dt * (1.0",
      "2.0 * dt * (1.0 / I_body[a] - 1.0 / I_body[b]), 2.0 * dt * (1.0")
+edit("5.17", "omits the last half rotation about a",
+     "turned = about_axis(turned, a, 0.5 * slow_a * body_component(turned, L, a))", "pass")
+edit("5.17", "forgets the moment in the rotation about L", "exponential(dt / I_body[b] * L)", "exponential(dt * L)")
+edit("5.17", "rotates about L the other way", "exponential(dt / I_body[b] * L)", "exponential(-dt / I_body[b] * L)")
+edit("5.17", "rotates about c by half of the angle", "c, slow_c * body", "c, 0.5 * slow_c * body")
+edit("5.17", "forgets the component of L in the angle about c", "slow_c * body_component(turned, L, c)", "slow_c")
 
 
 # 5.18 -----------------------------------------------------------------------------------------------------------
@@ -409,3 +528,8 @@ wrong("5.18", "omits the third substep")(composed([G, G, G, G]))
 wrong("5.18", "takes Yoshida's three substeps")(composed([G3, 1.0 - 2.0 * G3, G3]))
 wrong("5.18", "takes the negative substep first")(composed([1.0 - 4.0 * G, G, G, G, G]))
 wrong("5.18", "does not advance t")(composed(clock=0.0))
+edit("5.18", "forgets dt in the time of each substep", "t = t + share * dt", "t = t + share")
+edit("5.18", "advances the time by the whole step each time", "t = t + share * dt", "t = t + dt")
+edit("5.18", "advances the time before the substep",
+     "q, L = step(torque, t, q, L, share * dt, body)", "q, L = step(torque, t + share * dt, q, L, share * dt, body)")
+edit("5.18", "takes 1 − 2γ in the middle", "1.0 - 4.0 * SUZUKI", "1.0 - 2.0 * SUZUKI")

@@ -23,6 +23,10 @@ edit("2.1", "accepts coincident bodies", 'check_positive("distance of two bodies
 edit("2.1", "reverses the force, so that the bodies repel each other", "return G", "return -G")
 edit("2.1", "divides the vector r by |r|², not by |r|³", "distance**3", "distance**2")
 edit("2.1", "returns the acceleration of b, not a force", "G * m_a * m_b", "G * m_b")
+edit("2.1", "forgets G", "G * m_a", "m_a")
+edit("2.1", "forgets the mass of b", "m_a * m_b", "m_a")
+edit("2.1", "adds the masses in place of multiplying them", "m_a * m_b", "(m_a + m_b)")
+edit("2.1", "divides by one power of the distance too many", "distance**3", "distance**4")
 
 
 # 2.2 ------------------------------------------------------------------------------------------------------------
@@ -35,6 +39,10 @@ edit("2.2", "reverses the viscosity, so that it speeds the body up", "wind - k_v
 edit("2.2", "treats the wind as a velocity, not as a force", "wind - k_v * v", "k_v * (wind - v)")
 edit("2.2", "makes the force grow with the square of the speed", "k_v * v", "k_v * np.abs(v) * v")
 edit("2.2", "divides by the viscosity", "wind - k_v * v", "-k_v * (v - wind / k_v)")
+edit("2.2", "subtracts the wind", "wind - k_v * v", "-wind - k_v * v")
+edit("2.2", "omits the wind", "wind - k_v * v", "-k_v * v")
+edit("2.2", "omits the viscosity", "wind - k_v * v", "wind - 0.0 * v")
+edit("2.2", "reverses both forces", "wind - k_v * v", "k_v * v - wind")
 
 
 # 2.3 ------------------------------------------------------------------------------------------------------------
@@ -49,6 +57,13 @@ edit("2.3", "uses the strain in place of the extension", "(length - rest)", "(le
 edit("2.3", "never pushes, as a rope", "k * (length - rest) + k_d * rate", "max(0.0, k * (length - rest) + k_d * rate)")
 edit("2.3", "gives the damping the sign of the extension, not of its rate",
      "k_d * rate", "k_d * abs(rate) * np.sign(length - rest)")
+edit("2.3", "exchanges k and k_d", "k * (length - rest) + k_d * rate", "k_d * (length - rest) + k * rate")
+edit("2.3", "omits the rest length", "(length - rest)", "length")
+edit("2.3", "omits the damper", "+ k_d * rate", "+ 0.0 * rate")
+edit("2.3", "reverses the whole tension",
+     "return k * (length - rest) + k_d * rate", "return -(k * (length - rest) + k_d * rate)")
+edit("2.3", "never pulls", "k * (length - rest) + k_d * rate", "min(0.0, k * (length - rest) + k_d * rate)")
+edit("2.3", "adds the rest length", "length - rest", "length + rest")
 
 
 # 2.4 ------------------------------------------------------------------------------------------------------------
@@ -64,6 +79,11 @@ edit("2.4", "omits the damper", "k_d * C_rate", "0.0")
 edit("2.4", "applies the spring only where C is negative", "k * C +", "k * min(C, 0.0) +")
 edit("2.4", "applies the spring only where C is positive", "k * C +", "k * max(C, 0.0) +")
 edit("2.4", "damps only where C grows", "k_d * C_rate", "k_d * max(C_rate, 0.0)")
+edit("2.4", "reverses the damper", "k_d * C_rate", "-k_d * C_rate")
+edit("2.4", "reverses the spring", "(k * C +", "(-k * C +")
+edit("2.4", "exchanges k and k_d", "k * C + k_d * C_rate", "k_d * C + k * C_rate")
+edit("2.4", "takes the size of C", "k * C", "k * abs(C)")
+edit("2.4", "omits the spring", "k * C +", "")
 
 
 # 2.5 ------------------------------------------------------------------------------------------------------------
@@ -83,6 +103,13 @@ edit("2.5", "limits the spring but not the damper", "np.maximum(0.0, -(k * C + k
 edit("2.5", "applies a force at C = 0 already", "C >= 0.0", "C > 0.0")
 edit("2.5", "returns a number for zero force", "return 0.0 * gradient", "return 0.0")
 edit("2.5", "ignores a depth of a millimetre", "C >= 0.0", "C >= -1e-3")
+edit("2.5", "reverses the damper", "k_d * C_rate", "-k_d * C_rate")
+edit("2.5", "pushes on the other side", "C >= 0.0", "C <= 0.0")
+edit("2.5", "omits the damper", "+ k_d * C_rate", "")
+edit("2.5", "forgets the minus sign, so that nothing is left above zero", "-(k * C", "(k * C")
+edit("2.5", "takes the smaller of the two in place of the larger", "np.maximum", "np.minimum")
+edit("2.5", "exchanges k and k_d", "k * C + k_d * C_rate", "k_d * C + k * C_rate")
+edit("2.5", "reverses the force", "return np.maximum(0.0", "return -np.maximum(0.0")
 
 
 # 2.6 ------------------------------------------------------------------------------------------------------------
@@ -119,6 +146,17 @@ wrong("2.6", "returns the forces in the order a, c, b")(angular_spring(order=(0,
 wrong("2.6", "accepts an arm of zero length")(angular_spring(checked=False))
 edit("2.6", "tests the length of one arm only", "squared_a == 0.0 or squared_c == 0.0", "squared_a == 0.0")
 edit("2.6", "refuses small inputs", "squared_a == 0.0 or squared_c == 0.0", "squared_a < 1e-6 or squared_c < 1e-6")
+edit("2.6", "exchanges the arguments of the arctangent",
+     "np.arctan2(r_a[0] * r_c[1] - r_a[1] * r_c[0], r_a[0] * r_c[0] + r_a[1] * r_c[1])",
+     "np.arctan2(r_a[0] * r_c[0] + r_a[1] * r_c[1], r_a[0] * r_c[1] - r_a[1] * r_c[0])")
+edit("2.6", "measures the angle clockwise", "r_a[0] * r_c[1] - r_a[1] * r_c[0],", "r_a[1] * r_c[0] - r_a[0] * r_c[1],")
+edit("2.6", "adds the rest angle", "theta - rest", "theta + rest")
+edit("2.6", "pushes along the arms, not across them", "np.array([-push_c * r_c[1], push_c * r_c[0]])", "push_c * r_c")
+edit("2.6", "gives a the same sign as c", "push_a, push_c = k * turn", "push_a, push_c = -k * turn")
+edit("2.6", "forgets the rest angle", "theta - rest", "theta")
+edit("2.6", "forgets the factor k",
+     "k * turn / squared_a, -k * turn / squared_c", "turn / squared_a, -turn / squared_c")
+edit("2.6", "uses degrees in place of radians", "turn = theta - rest", "turn = np.degrees(theta - rest)")
 
 
 # 2.7 ------------------------------------------------------------------------------------------------------------
@@ -169,6 +207,12 @@ edit("2.7", "returns no force on fixed points", "return force", "return force * 
 edit("2.7", "computes the forces in the x–y plane only",
      "force = np.zeros(x.shape)", "x, v, force = x[:, :2], v[:, :2], np.zeros(x.shape)")
 edit("2.7", "refuses small inputs", "length == 0.0", "length < 3e-5")
+edit("2.7", "pushes with the tension per length squared",
+     "-T / length, -T / length, x", "-T / length**2, -T / length**2, x")
+edit("2.7", "omits the damper's rate", "length, rate, network.rest[s]", "length, 0.0, network.rest[s]")
+edit("2.7", "exchanges k and k_d", "network.k[s], network.k_d[s])", "network.k_d[s], network.k[s])")
+edit("2.7", "exchanges length and rest length", "length, rate, network.rest[s]", "network.rest[s], rate, length")
+edit("2.7", "exchanges length and rate", "length, rate, network.rest[s]", "rate, length, network.rest[s]")
 
 
 # 2.8 ------------------------------------------------------------------------------------------------------------
@@ -197,6 +241,9 @@ wrong("2.8", "forgets the air")(newton(air=lambda a, inv_mass: 0.0))
 wrong("2.8", "multiplies by the mass")(newton(springs=lambda f, inv_mass: f / np.where(inv_mass > 0.0, inv_mass, 1.0)))
 wrong("2.8", "reverses the forces of the springs")(newton(springs=lambda f, inv_mass: -f * inv_mass))
 edit("2.8", "treats heavy points as fixed", "network.inv_mass[n] > 0.0", "network.inv_mass[n] > 0.1")
+edit("2.8", "subtracts gravity", "network.gravity[c] + (", "-network.gravity[c] + (")
+edit("2.8", "subtracts the force of the air", "force[n, c] + air", "force[n, c] - air")
+edit("2.8", "omits the springs", "(force[n, c] + air)", "air")
 
 
 # 2.9 ------------------------------------------------------------------------------------------------------------
@@ -223,6 +270,7 @@ def mass_spring_damper_step(t, x, v, dt, network):
 edit("2.9", "changes its input", "average_velocity_step(spring_network_acceleration, t, x, v, dt, network)",
      "average_velocity_step(spring_network_acceleration, t, x, v, dt, network)[0], "
      "np.add(v, dt * spring_network_acceleration(t, x, v, network), out=v)")
+edit("2.9", "exchanges x and v", "t, x, v, dt, network)", "t, v, x, dt, network)")
 
 
 # 2.10 -----------------------------------------------------------------------------------------------------------
@@ -258,6 +306,16 @@ wrong("2.10", "returns each pair twice")(numbering(row=lambda i, j: [[i, j], [j,
 wrong("2.10", "returns indices that are not integers")(numbering(kind=float))
 wrong("2.10", "returns an array of another shape where there are no pairs")(numbering(empty=False))
 wrong("2.10", "loops over the nodes first and over the offsets inside")(numbering(turned=True))
+edit("2.10", "exchanges the two offsets", "for dr, dc in offsets", "for dc, dr in offsets")
+edit("2.10", "allows one row too many", "r + dr < rows", "r + dr <= rows")
+edit("2.10", "allows one column too many", "c + dc < cols", "c + dc <= cols")
+edit("2.10", "runs rows over the columns and columns over the rows",
+     "for r in range(rows) for c in range(cols)", "for r in range(cols) for c in range(rows)")
+edit("2.10", "subtracts the offset", "(r + dr) * cols + c + dc)]", "(r - dr) * cols + c - dc)]")
+edit("2.10", "returns the second node first",
+     "(r * cols + c, (r + dr) * cols + c + dc)]", "((r + dr) * cols + c + dc, r * cols + c)]")
+edit("2.10", "loops over the columns first",
+     "for r in range(rows) for c in range(cols)", "for c in range(cols) for r in range(rows)")
 
 
 # 2.11 -----------------------------------------------------------------------------------------------------------
@@ -287,6 +345,17 @@ wrong("2.11", "forgets k_d")(blocks(damper=lambda k_d, nn: nn))
 wrong("2.11", "omits the minus sign of the derivative")(blocks(sign=-1.0))
 edit("2.11", "treats a spring that is stretched a little as slack", "1.0 - network.rest[s] / length",
      "0.85 - network.rest[s] / length")
+edit("2.11", "uses the extension in place of its share of the length",
+     "1.0 - network.rest[s] / length", "length - network.rest[s]")
+edit("2.11", "exchanges rest and length in the ratio", "network.rest[s] / length", "length / network.rest[s]")
+edit("2.11", "divides the products of r by the length once", "r[b] / squared", "r[b] / length")
+edit("2.11", "adds the whole stiffness along the spring to the part across",
+     "(network.k[s] - across) * nn", "network.k[s] * nn")
+edit("2.11", "does not divide by the squared length", "r[a] * r[b] / squared", "r[a] * r[b]")
+edit("2.11", "uses k in the damping", "network.k_d[s] * nn", "network.k[s] * nn")
+edit("2.11", "subtracts the part across", "K[s, a, a] = across", "K[s, a, a] = -across")
+edit("2.11", "exchanges the directions along and across",
+     "(network.k[s] - across) * nn", "(across - network.k[s]) * nn")
 
 
 # 2.12 -----------------------------------------------------------------------------------------------------------
@@ -328,6 +397,13 @@ edit("2.12", "compares the residual with the bare tolerance, not with a part of 
      "CG_TOLERANCE * CG_TOLERANCE")
 edit("2.12", "compares the squared residual with the tolerance itself",
      "CG_TOLERANCE * CG_TOLERANCE * squared", "CG_TOLERANCE * squared")
+edit("2.12", "adds α A p to the residual, where it is subtracted", "r -= alpha", "r += alpha")
+edit("2.12", "exchanges numerator and denominator of α", "squared / np.sum(p * Ap)", "np.sum(p * Ap) / squared")
+edit("2.12", "moves along r, not along p", "y += alpha * p", "y += alpha * r")
+edit("2.12", "subtracts the old direction", "r + squared / before * p", "r - squared / before * p")
+edit("2.12", "moves the solution the wrong way", "y += alpha", "y -= alpha")
+edit("2.12", "uses the ratio of the lengths, not of their squares",
+     "squared / before * p", "np.sqrt(squared / before) * p")
 
 
 # 2.13 -----------------------------------------------------------------------------------------------------------
@@ -374,3 +450,11 @@ edit("2.13", "solves the nonlinear equation of implicit Euler by Newton's method
      "from solutions.integrators import implicit_euler_step as step; return step(acceleration, t, x, v, dt, network)")
 edit("2.13", "takes a symplectic Euler step", "conjugate_gradients(apply_step_matrix, A, right)", "dt * a")
 edit("2.13", "treats heavy points as fixed", "network.inv_mass[n] > 0.0", "network.inv_mass[n] > 0.1")
+edit("2.13", "uses dt in place of dt² beside K", "dt * dt * K", "dt * K")
+edit("2.13", "exchanges dt and dt² beside K and D", "dt * dt * K + dt * D", "dt * K + dt * dt * D")
+edit("2.13", "subtracts the dampers", "dt * dt * K + dt * D", "dt * dt * K - dt * D")
+edit("2.13", "forgets dt on the right", "right[n] = dt * (", "right[n] = (")
+edit("2.13", "forgets the mass in the diagonal", "1.0 / network.inv_mass[n] + dt", "1.0 + dt")
+edit("2.13", "uses the inverse mass in the diagonal", "1.0 / network.inv_mass[n] + dt", "network.inv_mass[n] + dt")
+edit("2.13", "returns Δv in place of the velocity", "v = v + conj", "v = conj")
+edit("2.13", "omits dt beside the pull", "- dt * pull", "- pull")
