@@ -19,13 +19,13 @@ from IPython.display import HTML, Markdown, display
 
 from solutions.checks import BadInput
 
-from .. import engines, measure, modules, needs
+from .. import engines, failing_case, measure, modules, needs
 from ..loading import lacks, waiting
 from ..measure import film
 from ..report import ARROWS, PLAYER_3D, plots, words
 from ..results import Role
 from ..scene import PRODUCTS
-from . import pytest_process, saving
+from . import cases, pytest_process, saving
 
 TESTS = modules.ROOT / "tests" / "lessons"
 OPENINGS, ARRAY = modules.ROOT / "notebooks" / "openings.json", "array"                # made by `release`
@@ -250,18 +250,19 @@ def check(exercise):
         _say(str(e))
         return
     with tempfile.TemporaryDirectory() as scratch:
-        file = Path(scratch) / "outcomes.json"
+        file, case = Path(scratch) / "outcomes.json", Path(scratch) / "case.json"
         try:
             said = pytest_process.run(str(TESTS / f"test_{lesson}.py"), f"--of={own}", f"--exercise={exercise}",
-                             f"--outcomes={file}", f"--rootdir={modules.ROOT}", "--tb=line")
+                             f"--outcomes={file}", f"--case={case}", f"--rootdir={modules.ROOT}", "--tb=line")
         except pytest_process.Ended:
             _say(f"The check of exercise {exercise} ended without an answer: lessons/{lesson}.py ends the program, "
                  "or asks for more memory than there is.")
             return
         outcomes = json.loads(file.read_text()) if file.is_file() else []
+        picture = cases.drawn(failing_case.decoded(case.read_text())) if case.is_file() else None
     if not outcomes:
         raise RuntimeError(f"the check of exercise {exercise} did not run:\n{said}")
-    display(_Answer(exercise, outcomes, _below(exercise, outcomes, own)))
+    display(_Answer(exercise, outcomes, _below(exercise, outcomes, own), picture))
 
 
 def _below(exercise, outcomes, own):
@@ -370,8 +371,8 @@ class _Map:
 class _Answer:
     """The answer of a check, for people: the worst outcome first; all of it as text and as HTML."""
 
-    def __init__(self, exercise, outcomes, below=""):
-        self.exercise, self.outcomes, self.below = exercise, outcomes, below
+    def __init__(self, exercise, outcomes, below="", picture=None):
+        self.exercise, self.outcomes, self.below, self.picture = exercise, outcomes, below, picture
         self.open = [o for o in outcomes if o["status"] != "passed"]
         states = {o["status"] for o in outcomes}
         self.state = "not yet" if "not yet" in states else "not attempted" if "not attempted" in states else "passed"
@@ -396,7 +397,8 @@ class _Answer:
     def __repr__(self):
         (title, points), *rest = self.lines()
         indented = ((name, value.replace("\n", f"\n{'':15}")) for name, value in rest)
-        return "\n".join([f"{title} ({points})", *(f"    {name:10} {value}" for name, value in indented)])
+        drawn = [f"    {'picture':10} {self.picture.alt}"] if self.picture else []
+        return "\n".join([f"{title} ({points})", *(f"    {name:10} {value}" for name, value in indented), *drawn])
 
     def shown(self, name, value):
         """A line as HTML.  If the exercise is to find a formula, the hint that tells it is folded."""
@@ -412,7 +414,7 @@ class _Answer:
                        for n, v in rest)
         return (f'<div style="border-left:4px solid {COLOUR[self.state]};padding:.3rem .8rem;margin:.3rem 0">'
                 f'<b style="color:{COLOUR[self.state]}">{escape(title)}</b> ({points})'
-                f'<table style="margin:0">{rows}</table></div>')
+                f'<table style="margin:0">{rows}</table>{self.picture.html() if self.picture else ""}</div>')
 
 
 # ---------------------------------------------------------------------------------------------- pictures
