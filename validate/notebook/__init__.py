@@ -424,26 +424,32 @@ def look(method, **changes):
     return {"color": method.colour, "marker": method.marker, "label": method.label, **changes}
 
 
-def play(frames, seconds, links=(), height=260):
-    """A film: frames = {label: list of (n, 2) arrays [m]}; "truth" is drawn in grey, the others in colour."""
-    _display(_plane(frames, seconds, links), height)
+def play(frames, seconds, links=(), height=260, shown_as=None):
+    """A film: frames = {label: list of (n, 2) arrays [m]}; "truth" is drawn in grey, the others in colour.
+
+    shown_as = {label: Method of validate/methods.py}: these have the colour and the marker of their method.
+    """
+    _display(_plane(frames, seconds, links, shown_as or {}), height)
 
 
-def save_film(frames, seconds, file, links=()):
+def save_film(frames, seconds, file, links=(), shown_as=None):
     """Write a film as a page (file ends with .html; any browser plays it) or as a picture that moves (.gif).
 
-    frames, seconds and links are those of `play`.  Raises BadInput for any other ending.
+    frames, seconds, links and shown_as are those of `play`.  Raises BadInput for any other ending.
     """
-    saving.save(_plane(frames, seconds, links), Path(file))
+    saving.save(_plane(frames, seconds, links, shown_as or {}), Path(file))
     display(HTML(f"<p>Written: {escape(str(file))}</p>"))
 
 
-def _plane(frames, seconds, links):
+def _plane(frames, seconds, links, shown_as):
     """A film in the plane as data."""
     roles = [Role.TRUTH if label == "truth" else Role.OURS for label in frames]
     films = [{"label": label, "role": role.value, "colour": colour,
               "frames": [np.round(np.asarray(f, dtype=float), 5).tolist() for f in frames[label]]}
              for label, role, colour in zip(frames, roles, film.colours(roles))]
+    for run in films:
+        method = shown_as.get(run["label"])
+        run.update({"colour": method.colour, "marker": method.marker} if method else {})
     return {"seconds": seconds, "links": [list(map(int, pair)) for pair in links], "films": films}
 
 
