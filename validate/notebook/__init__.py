@@ -29,7 +29,13 @@ from . import cases, pytest_process, saving
 
 TESTS = modules.ROOT / "tests" / "lessons"
 OPENINGS, ARRAY = modules.ROOT / "notebooks" / "openings.json", "array"                # made by `release`
-COLOUR = {"passed": "#00684a", "not yet": "#b3261e", "not attempted": "#7a5b00"}
+LIGHT = {"passed": "#00684a", "not-yet": "#b3261e", "not-attempted": "#7a5b00", "soft": "#5b666e"}     # on white
+DARK = {"passed": "#4cc38a", "not-yet": "#ff8a80", "not-attempted": "#e0b050", "soft": "#a3adb4"}      # on black
+COLOUR = {name.replace("-", " "): f"var(--workbook-{name}, {colour})" for name, colour in LIGHT.items()}
+IN_THE_DARK = "{" + ";".join(f"--workbook-{name}:{colour}" for name, colour in DARK.items()) + "}"
+# of JupyterLab's dark theme and of the book's; every output has it, because a page may hold any of them alone
+STYLE = (f'<style>body[data-jp-theme-light="false"],body[data-theme="dark"]{IN_THE_DARK}'
+         f'@media(prefers-color-scheme:dark){{body[data-theme="auto"]{IN_THE_DARK}}}</style>')
 SIGN = {"passed": "✓", "not yet": "✗", "not attempted": "○"}
 
 plots.style()
@@ -84,7 +90,11 @@ def _say_unreadable(lesson, e):
 
 
 def _say(sentence):
-    display(HTML(f'<p style="color:{COLOUR["not yet"]}"><b>{escape(sentence)}</b></p>'))
+    display(HTML(f'{STYLE}<p style="color:{COLOUR["not yet"]}"><b>{escape(sentence)}</b></p>'))
+
+
+def _say_failed(why):
+    display(HTML(f'{STYLE}<p style="color:{COLOUR["not yet"]}">✗ {escape(why)}.</p>'))
 
 
 class StandIn:
@@ -134,9 +144,9 @@ def attempt(function, *arguments):
     except NotImplementedError as e:
         waiting_for[str(e).removeprefix("Exercise ").replace(":", "")] = None
     except ArithmeticError as e:
-        display(HTML(f'<p style="color:{COLOUR["not yet"]}">✗ {escape(str(e))}.</p>'))
+        _say_failed(str(e))
     except Exception as e:
-        display(HTML(f'<p style="color:{COLOUR["not yet"]}">✗ {escape(type(e).__name__)}: {escape(str(e))}.</p>'))
+        _say_failed(f"{type(e).__name__}: {e}")
     drawn.append(False)
     return None
 
@@ -161,7 +171,7 @@ def show_figure():
 def _say_waiting(*_):
     """Say in one sentence what was not attempted yet, and forget it."""
     if waiting_for:
-        display(HTML(f'<p style="color:{COLOUR["not attempted"]}">○ Not attempted yet: '
+        display(HTML(f'{STYLE}<p style="color:{COLOUR["not attempted"]}">○ Not attempted yet: '
                      f'{escape(", ".join(waiting_for))}.</p>'))
     waiting_for.clear()
     drawn.clear()
@@ -340,7 +350,7 @@ class _Progress:
     def _repr_html_(self):
         marks = " &nbsp; ".join(f'<span style="color:{COLOUR[state]};white-space:nowrap" title="{escape(state)}">'
                                 f'{SIGN[state]} {number}</span>' for number, state in self.signs())
-        return f"<div><b>{escape(self.title())}</b><br>{marks}<br>{escape(self.next())}</div>"
+        return f"{STYLE}<div><b>{escape(self.title())}</b><br>{marks}<br>{escape(self.next())}</div>"
 
 
 def exercise_map():
@@ -408,11 +418,11 @@ class _Answer:
 
     def _repr_html_(self):
         (title, points), *rest = self.lines()
-        name_style = "text-align:left;vertical-align:top;color:#5b666e;padding:.1rem 1rem .1rem 0"
+        name_style = f"text-align:left;vertical-align:top;color:{COLOUR['soft']};padding:.1rem 1rem .1rem 0"
         rows = "".join(f'<tr><td style="{name_style}">{escape(n)}</td>'
                        f'<td style="text-align:left;white-space:pre-wrap">{self.shown(n, v)}</td></tr>'
                        for n, v in rest)
-        return (f'<div style="border-left:4px solid {COLOUR[self.state]};padding:.3rem .8rem;margin:.3rem 0">'
+        return (f'{STYLE}<div style="border-left:4px solid {COLOUR[self.state]};padding:.3rem .8rem;margin:.3rem 0">'
                 f'<b style="color:{COLOUR[self.state]}">{escape(title)}</b> ({points})'
                 f'<table style="margin:0">{rows}</table>{self.picture.html() if self.picture else ""}</div>')
 
