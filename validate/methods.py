@@ -71,14 +71,14 @@ PROJECTION = Method("constraint_projection_step", "projection", 1, "pbd", "#E69F
 PBD = Method("pbd_step", "PBD", 1, "pbd", "#D55E00", "D")
 XPBD = Method("xpbd_step", "XPBD", 1, "pbd", "#56B4E9", "^")
 RATTLE = Method("rattle_step", "RATTLE", 2, "pbd", "#009E73", "s")
-ROPE = Method("rope_step", "rope", 2, "pbd", "#56B4E9", "^")
+ROPE = Method("rope_step", "rope", 2, "pbd", "#0072B2", "P")
 COMPOSED_ROPE = Method("composed_rope_step", "rope, composed", 4, "pbd", "#6A51A3", ">")
 
 # contact
 SWEEPS = Method("contact_forces", "sweeps", 2, "contact", "#009E73", "s")
 DIRECT = Method("solve_lcp", "Murty", 2, "contact", "#0072B2", "^")
 PILE = Method("advance_pile_2d", "pile", 1, "contact", "#D55E00", "o")
-PILE_IN_SPACE = Method("advance_pile", "pile in space", 1, "contact", "#CC79A7", "s")
+PILE_IN_SPACE = Method("advance_pile", "pile in space", 1, "contact", "#CC79A7", "D")
 COUNTED_SWEEPS = Method("gauss_seidel_sweep", "sweeps, counted", 2, "contact", "#E69F00", "v")
 REFLECTION = Method("gauss_seidel_sweep", "sweep with ω = 2", 2, "contact", "#E69F00", "v")
 ONE_BY_ONE = Method("impulse_size", "impulses one by one", 2, "impulses", "#0072B2", "o")
@@ -111,4 +111,15 @@ TURNS = (MATRIX, AXIS_ANGLE, QUATERNION, GYROSCOPIC, IMPLICIT_GYROSCOPIC, RUNGE_
          COMPOSED_SPLITTING, COMPOSED_MIDPOINT)
 
 ENGINE_LOOKS = {"pymunk": ("#000000", "x"), "pybullet": ("#5A5A5A", "+"), "mujoco": ("#8C0D26", "1")}  # colour, marker
-VARIANT_LINES = {"": "-", "default": ":"}                                         # the other variants are dashed
+VARIANT_LINES = {"": "-", "default": ":"}
+OTHER_VARIANTS = (("--", ""), ("-.", "s"), (":", "o"), ("--", "D"))  # line, marker in place of the engine's own
+
+
+def engine_look(engine, engines):
+    """(colour, marker, line) of one of a scene's engines; curves of several variants may lie on each other."""
+    colour, marker = ENGINE_LOOKS[engine.product]
+    if engine.variant in VARIANT_LINES:
+        return colour, marker, VARIANT_LINES[engine.variant]
+    others = [one.variant for one in engines if one.product == engine.product and one.variant not in VARIANT_LINES]
+    line, other = OTHER_VARIANTS[others.index(engine.variant) % len(OTHER_VARIANTS)]
+    return colour, other or marker, line

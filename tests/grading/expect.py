@@ -24,10 +24,11 @@ class NotYet(AssertionError):
 
     quantity and tolerance may be shown to anyone.  given (the inputs), expected and got may not when the inputs are
     secret; then error, in few words, stands in for them.
+    compared: (got, expected) as numbers, where there are any; a notebook draws them.
     """
 
-    def __init__(self, quantity, expected, got, tolerance, error="", given=""):
-        self.quantity, self.tolerance, self.error = quantity, tolerance, error
+    def __init__(self, quantity, expected, got, tolerance, error="", given="", compared=(None, None)):
+        self.quantity, self.tolerance, self.error, self.compared = quantity, tolerance, error, compared
         self.expected, self.got, self.given = tidy(expected, MOST_DIGITS), tidy(got, MOST_DIGITS), tidy(given)
         words = {"expected": self.expected, "got": self.got, "tolerance": tolerance}
         told = ", ".join(f"{name} {text}" for name, text in words.items() if text)
@@ -61,7 +62,8 @@ def close(quantity, got, expected, tolerance, given=""):
     if not np.all(off <= tolerance):
         allowed = f"{tolerance:.1e}" if tolerance else "none: exactly this"
         texts = compared(expected, array, ~(off <= tolerance))
-        raise NotYet(quantity, *texts, allowed, how_far(np.max(off), np.max(np.abs(expected))), given)
+        error = how_far(np.max(off), np.max(np.abs(expected)))
+        raise NotYet(quantity, *texts, allowed, error, given, (array, expected))
 
 
 def between(quantity, got, low, high, given=""):

@@ -21,7 +21,19 @@ from validate.loading import TooLong, alarm, lacks
 
 from . import wire
 from .expect import NotYet
-from .points import AGAIN, BOX_LIMIT, LESSONS, LIMIT, PUBLIC, TESTS, TRACE, Points, name_of, score
+from .points import (
+    AGAIN,
+    BOX_LIMIT,
+    LESSONS,
+    LIMIT,
+    PUBLIC,
+    TESTS,
+    TRACE,
+    FailingCases,
+    Points,
+    name_of,
+    score,
+)
 
 
 def pytest_addoption(parser):
@@ -34,6 +46,8 @@ def pytest_addoption(parser):
     group.addoption("--seed", default=PUBLIC, help=seed)
     group.addoption("--long", action="store_true", help="run the long tests, too")
     group.addoption("--outcomes", metavar="FILE", help="with --of: write every outcome there, as JSON")
+    case = "with --of and the public seed: write the first failing call there, as JSON, for a notebook to draw"
+    group.addoption("--case", metavar="FILE", help=case)
 
 
 def pytest_configure(config):
@@ -54,6 +68,9 @@ def pytest_configure(config):
             config.option.tbstyle = "short"
         config.points = Points()
         config.pluginmanager.register(config.points)
+        if config.getoption("--case") and hasattr(config, "traces"):  # never with a secret seed
+            config.cases = FailingCases()
+            config.pluginmanager.register(config.cases)
     for exercise in config.getoption("--exercise"):
         if not tests_of(exercise):
             raise pytest.UsageError(f"exercise {exercise!r} is unknown: give its number, like --exercise=1.2")
@@ -294,6 +311,8 @@ def pytest_sessionfinish(session):
     path = session.config.getoption("--outcomes")
     if path and hasattr(session.config, "points"):
         Path(path).write_text(json.dumps([outcome._asdict() for outcome in session.config.points.all()]))
+    for text in [*session.config.cases.found.values()][:1] if hasattr(session.config, "cases") else ():
+        Path(session.config.getoption("--case")).write_text(text)
 
 
 def pytest_terminal_summary(terminalreporter, config):

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import pytest
 
 from solutions.checks import BadInput
-from validate import mistakes, needs
+from validate import failing_case, mistakes, needs
 from validate.loading import TooLong, Unloadable, remedy_for, words_of
 
 from .expect import MOST_DIGITS, NotYet, tidy
@@ -89,6 +89,30 @@ class Points:
             if call.when == "setup" and isinstance(call.excinfo.value, BadInput):
                 report.longrepr = str(call.excinfo.value)            # how it came to that is not the student's
         return report
+
+
+class FailingCases:
+    """A pytest plugin that keeps the last call of the exercise's function in the first test that failed, as text:
+    found = {(name of the subject, exercise): a failing_case.Case}.
+    """
+
+    def __init__(self):
+        self.found, self.failed = {}, set()
+
+    def pytest_runtest_makereport(self, item, call):
+        trace, mark = item.stash.get(TRACE, None), item.get_closest_marker("exercise")
+        key = trace and (item.callspec.params["lesson"], mark.args[0])
+        if call.when != "call" or not call.excinfo or not trace or not trace.calls or key in self.failed:
+            return
+        if call.excinfo.errisinstance(NotImplementedError):
+            return
+        self.failed.add(key)
+        result = None if trace.returned is mistakes.NOTHING else trace.returned
+        expected = failing_case.expected_result(result, *getattr(call.excinfo.value, "compared", (None, None)))
+        case = failing_case.Case(mark.args[0], name_of(item), list(trace.arguments), result, expected)
+        text = failing_case.encoded(case)
+        if text:
+            self.found[key] = text
 
 
 def reasons(exercise, states, traces, folder):
@@ -189,10 +213,11 @@ def grade(lesson, subject, wanted=lambda exercise, test: True, seed=PUBLIC, coll
     return grade_each(lesson, {"given": (subject, wanted)}, seed, collect)["given"]
 
 
-def grade_each(lesson, subjects, seed=PUBLIC, collect=False, traces=None):
+def grade_each(lesson, subjects, seed=PUBLIC, collect=False, traces=None, cases=None):
     """Test several subjects, {name: (subject, wanted)}, in one run of pytest: {name: outcomes}.
 
-    traces: mistakes.Traces, which keep what the functions of the exercises return.
+    traces: mistakes.Traces, which keep what the functions of the exercises return.  cases: FailingCases, which need
+    these.  Both are for public inputs only.
     """
     class Given:
         def pytest_configure(self, config):
@@ -206,7 +231,7 @@ def grade_each(lesson, subjects, seed=PUBLIC, collect=False, traces=None):
     if collect:
         arguments.append("--collect-only")
     with contextlib.redirect_stdout(io.StringIO()):
-        pytest.main([*arguments, *faster], plugins=[Given(), points])
+        pytest.main([*arguments, *faster], plugins=[Given(), points, *filter(None, [cases])])
     return {name: points.outcomes.get(name, []) for name in subjects}
 
 

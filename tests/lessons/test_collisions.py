@@ -50,7 +50,7 @@ def never(quantity, got, given=""):
     if got is None or np.ndim(got) > 0 or np.asarray(got).dtype.kind not in "iuf":
         numbers(quantity, got, (), given)
     if not float(got) == np.inf:
-        raise NotYet(quantity, "NEVER", f"{got}", "none: exactly this", "another time", given)
+        raise NotYet(quantity, "NEVER", f"{got}", "none: exactly this", "another time", given, (got, np.inf))
 
 
 def same_contact(got, p_a, p_b, n, gap, tolerance, given=""):
@@ -649,7 +649,7 @@ def same_pairs(quantity, got, expected, given=""):
         raise NotYet(quantity, "an array of shape (m, 2)", f"shape {got.shape}", "", f"shape {got.shape}", given)
     if len(got) != len(expected):
         raise NotYet(quantity, f"{len(expected)} pairs", f"{len(got)} pairs", "none: exactly these",
-                     "another number of pairs", given)
+                     "another number of pairs", given, (got, expected))
     close(quantity, got[np.lexsort(got.T[::-1])], expected, 0.0, given)
 
 

@@ -99,3 +99,29 @@ def test_a_lesson_that_cannot_be_loaded_is_told_and_the_engines_run_alone(tmp_pa
     case = next(iter(result["cases"].values()))
     assert case["ours"] == [] and case["engines"] and scene_of("stick_slip").title
     assert "friction.py cannot be loaded: SyntaxError: invalid syntax (friction.py, line 1)" in capsys.readouterr().out
+
+
+def test_a_film_has_the_look_of_its_methods(monkeypatch):
+    from validate import methods
+    from validate.notebook import play
+    shown = []
+    monkeypatch.setattr("validate.notebook.display", lambda one: shown.append(one.data))
+    frames = [[[0.0, 0.0]], [[1.0, 0.0]]]
+    play({"mine": frames}, 1.0, shown_as={"mine": methods.RK4})
+    assert f'"colour": "{methods.RK4.colour}", "frames"' in shown[0] and '"marker": "s"' in shown[0]
+    assert f'color:{methods.RK4.colour}">■</span> mine' in shown[0]
+    play({"mine": frames}, 1.0)
+    assert '"marker"' not in shown[1] and "●</span> mine" in shown[1]
+
+
+def test_words_can_be_read_on_white_and_on_black():
+    """WCAG 2: a contrast of 4.5 or more, on white and on JupyterLab's dark #111111."""
+    from validate.notebook import DARK, LIGHT
+
+    def luminance(colour):
+        parts = [int(colour[k:k + 2], 16) / 255.0 for k in (1, 3, 5)]
+        linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in parts]
+        return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+    assert LIGHT.keys() == DARK.keys()
+    assert all(1.05 / (luminance(colour) + 0.05) >= 4.5 for colour in LIGHT.values())
+    assert all((luminance(colour) + 0.05) / (luminance("#111111") + 0.05) >= 4.5 for colour in DARK.values())

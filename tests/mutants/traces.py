@@ -20,10 +20,10 @@ def mutants_of(lesson):
     return importlib.import_module(f"tests.mutants.{lesson}").MUTANTS
 
 
-def traces_of(lesson, answers, every=False):
+def traces_of(lesson, answers, every=False, cases=None):
     """{key: {test: Trace}} of some answers, {key: (exercise, function)}, in the tests of their exercises.
 
-    every: keep all calls, as for writing a table.
+    every: keep all calls, as for writing a table.  cases: FailingCases, which keep the calls that fail.
     """
     names, module = names_in(lesson), vars(modules.bind(lesson))
 
@@ -31,7 +31,8 @@ def traces_of(lesson, answers, every=False):
         changed = types.SimpleNamespace(**{**module, names[number]: function})
         return changed, lambda exercise, test: exercise == number
     traces = mistakes.Traces(names, every)
-    points.grade_each(lesson, {str(key): subject(*answer) for key, answer in answers.items()}, traces=traces)
+    points.grade_each(lesson, {str(key): subject(*answer) for key, answer in answers.items()}, traces=traces,
+                      cases=cases)
     return {key: traces.of(str(key), number) for key, (number, _) in answers.items()}
 
 

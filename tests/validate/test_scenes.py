@@ -9,7 +9,7 @@ import pytest
 
 from solutions import integrators
 from solutions.checks import BadInput
-from validate import engines, measure, modules
+from validate import engines, measure, methods, modules
 from validate.generate import stub
 from validate.measure.accuracy import engine_curve
 from validate.measure.selection import select
@@ -212,3 +212,13 @@ def test_a_method_with_a_law_of_its_own_must_follow_that_law(tmp_path):
                                 measure.Plan(of=str(tmp_path), speeds=("plain",), live=(), most_steps=200))
         verdicts = {c["label"]: is_right(c) for c in result["cases"]["heading 22.5°"]["ours"]}
         assert verdicts["pyramid"] is expected and verdicts["sliding"] is True
+
+
+def test_no_two_curves_of_a_scene_look_alike():
+    """Methods differ in colour and in marker; variants of an engine in marker or line."""
+    for name in modules.scene_names():
+        scene = modules.bind_scene(name)
+        for looks in ([m.colour for m in scene.methods], [m.marker for m in scene.methods],
+                      [methods.engine_look(e, scene.engines) for e in scene.engines]):
+            assert len(set(looks)) == len(looks), name
+        assert not {m.colour for m in scene.methods} & {colour for colour, _ in methods.ENGINE_LOOKS.values()}

@@ -8,7 +8,7 @@ import numpy as np
 from solutions.checks import BadInput
 
 from .. import engines
-from ..methods import ENGINE_LOOKS, VARIANT_LINES
+from ..methods import engine_look
 from ..modules import report_text
 from ..results import Role, Verdict, jsonable
 from ..scene import ROUND_OFF, parameter_table
@@ -131,9 +131,9 @@ def method_curve(selection, method, p, truth):
 def engine_curve(selection, case, engine, p, truth):
     """An engine's errors: live where it is installed, recorded where it is not."""
     scene = selection.scene
-    colour, marker = ENGINE_LOOKS[engine.product]
+    colour, marker, line = engine_look(engine, scene.engines)
     about = {"role": Role.ENGINE, "product": engine.product, "variant": engine.variant, "settings": engine.settings,
-             "colour": colour, "marker": marker, "line": VARIANT_LINES.get(engine.variant, "--")}
+             "colour": colour, "marker": marker, "line": line}
     if selection.is_live(engine):
         source = f"live, {engine.product} {engines.installed(engine.product)}"
         runs = [(n, run_engine_to_end(scene, engine, p, n)) for n in engine_steps(selection, engine, p)]

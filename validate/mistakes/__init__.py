@@ -72,6 +72,7 @@ class Trace:
 
     def __init__(self, function, wanted=()):
         self.function, self.wanted, self.calls, self.returned = function, wanted, 0, NOTHING
+        self.arguments = ()                                          # of the last call, as they were handed in
         self.results, self.sorted_out, self.kinds = {}, {}, set()    # {number of the call: its summary}
         self.numbers, self.plain = False, set()                      # what there is of them: `is_telling`
 
@@ -96,6 +97,7 @@ class Trace:
         def watched(*arguments, **named):
             self.calls += 1
             kept, self.returned = is_kept(self.calls) or self.calls in self.wanted, NOTHING
+            self.arguments = arguments
             try:
                 result = function(*arguments, **named)
             except Exception as e:

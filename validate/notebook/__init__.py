@@ -19,17 +19,23 @@ from IPython.display import HTML, Markdown, display
 
 from solutions.checks import BadInput
 
-from .. import engines, measure, modules, needs
+from .. import engines, failing_case, measure, modules, needs
 from ..loading import lacks, waiting
 from ..measure import film
 from ..report import ARROWS, PLAYER_3D, plots, words
 from ..results import Role
 from ..scene import PRODUCTS
-from . import pytest_process, saving
+from . import cases, pytest_process, saving
 
 TESTS = modules.ROOT / "tests" / "lessons"
 OPENINGS, ARRAY = modules.ROOT / "notebooks" / "openings.json", "array"                # made by `release`
-COLOUR = {"passed": "#00684a", "not yet": "#b3261e", "not attempted": "#7a5b00"}
+LIGHT = {"passed": "#00684a", "not-yet": "#b3261e", "not-attempted": "#7a5b00", "soft": "#5b666e"}     # on white
+DARK = {"passed": "#4cc38a", "not-yet": "#ff8a80", "not-attempted": "#e0b050", "soft": "#a3adb4"}      # on black
+COLOUR = {name.replace("-", " "): f"var(--workbook-{name}, {colour})" for name, colour in LIGHT.items()}
+IN_THE_DARK = "{" + ";".join(f"--workbook-{name}:{colour}" for name, colour in DARK.items()) + "}"
+# of JupyterLab's dark theme and of the book's; every output has it, because a page may hold any of them alone
+STYLE = (f'<style>body[data-jp-theme-light="false"],body[data-theme="dark"]{IN_THE_DARK}'
+         f'@media(prefers-color-scheme:dark){{body[data-theme="auto"]{IN_THE_DARK}}}</style>')
 SIGN = {"passed": "✓", "not yet": "✗", "not attempted": "○"}
 
 plots.style()
@@ -84,7 +90,11 @@ def _say_unreadable(lesson, e):
 
 
 def _say(sentence):
-    display(HTML(f'<p style="color:{COLOUR["not yet"]}"><b>{escape(sentence)}</b></p>'))
+    display(HTML(f'{STYLE}<p style="color:{COLOUR["not yet"]}"><b>{escape(sentence)}</b></p>'))
+
+
+def _say_failed(why):
+    display(HTML(f'{STYLE}<p style="color:{COLOUR["not yet"]}">✗ {escape(why)}.</p>'))
 
 
 class StandIn:
@@ -134,9 +144,9 @@ def attempt(function, *arguments):
     except NotImplementedError as e:
         waiting_for[str(e).removeprefix("Exercise ").replace(":", "")] = None
     except ArithmeticError as e:
-        display(HTML(f'<p style="color:{COLOUR["not yet"]}">✗ {escape(str(e))}.</p>'))
+        _say_failed(str(e))
     except Exception as e:
-        display(HTML(f'<p style="color:{COLOUR["not yet"]}">✗ {escape(type(e).__name__)}: {escape(str(e))}.</p>'))
+        _say_failed(f"{type(e).__name__}: {e}")
     drawn.append(False)
     return None
 
@@ -161,7 +171,7 @@ def show_figure():
 def _say_waiting(*_):
     """Say in one sentence what was not attempted yet, and forget it."""
     if waiting_for:
-        display(HTML(f'<p style="color:{COLOUR["not attempted"]}">○ Not attempted yet: '
+        display(HTML(f'{STYLE}<p style="color:{COLOUR["not attempted"]}">○ Not attempted yet: '
                      f'{escape(", ".join(waiting_for))}.</p>'))
     waiting_for.clear()
     drawn.clear()
@@ -250,18 +260,19 @@ def check(exercise):
         _say(str(e))
         return
     with tempfile.TemporaryDirectory() as scratch:
-        file = Path(scratch) / "outcomes.json"
+        file, case = Path(scratch) / "outcomes.json", Path(scratch) / "case.json"
         try:
             said = pytest_process.run(str(TESTS / f"test_{lesson}.py"), f"--of={own}", f"--exercise={exercise}",
-                             f"--outcomes={file}", f"--rootdir={modules.ROOT}", "--tb=line")
+                             f"--outcomes={file}", f"--case={case}", f"--rootdir={modules.ROOT}", "--tb=line")
         except pytest_process.Ended:
             _say(f"The check of exercise {exercise} ended without an answer: lessons/{lesson}.py ends the program, "
                  "or asks for more memory than there is.")
             return
         outcomes = json.loads(file.read_text()) if file.is_file() else []
+        picture = cases.drawn(failing_case.decoded(case.read_text())) if case.is_file() else None
     if not outcomes:
         raise RuntimeError(f"the check of exercise {exercise} did not run:\n{said}")
-    display(_Answer(exercise, outcomes, _below(exercise, outcomes, own)))
+    display(_Answer(exercise, outcomes, _below(exercise, outcomes, own), picture))
 
 
 def _below(exercise, outcomes, own):
@@ -339,7 +350,7 @@ class _Progress:
     def _repr_html_(self):
         marks = " &nbsp; ".join(f'<span style="color:{COLOUR[state]};white-space:nowrap" title="{escape(state)}">'
                                 f'{SIGN[state]} {number}</span>' for number, state in self.signs())
-        return f"<div><b>{escape(self.title())}</b><br>{marks}<br>{escape(self.next())}</div>"
+        return f"{STYLE}<div><b>{escape(self.title())}</b><br>{marks}<br>{escape(self.next())}</div>"
 
 
 def exercise_map():
@@ -370,8 +381,8 @@ class _Map:
 class _Answer:
     """The answer of a check, for people: the worst outcome first; all of it as text and as HTML."""
 
-    def __init__(self, exercise, outcomes, below=""):
-        self.exercise, self.outcomes, self.below = exercise, outcomes, below
+    def __init__(self, exercise, outcomes, below="", picture=None):
+        self.exercise, self.outcomes, self.below, self.picture = exercise, outcomes, below, picture
         self.open = [o for o in outcomes if o["status"] != "passed"]
         states = {o["status"] for o in outcomes}
         self.state = "not yet" if "not yet" in states else "not attempted" if "not attempted" in states else "passed"
@@ -396,7 +407,8 @@ class _Answer:
     def __repr__(self):
         (title, points), *rest = self.lines()
         indented = ((name, value.replace("\n", f"\n{'':15}")) for name, value in rest)
-        return "\n".join([f"{title} ({points})", *(f"    {name:10} {value}" for name, value in indented)])
+        drawn = [f"    {'picture':10} {self.picture.alt}"] if self.picture else []
+        return "\n".join([f"{title} ({points})", *(f"    {name:10} {value}" for name, value in indented), *drawn])
 
     def shown(self, name, value):
         """A line as HTML.  If the exercise is to find a formula, the hint that tells it is folded."""
@@ -406,13 +418,13 @@ class _Answer:
 
     def _repr_html_(self):
         (title, points), *rest = self.lines()
-        name_style = "text-align:left;vertical-align:top;color:#5b666e;padding:.1rem 1rem .1rem 0"
+        name_style = f"text-align:left;vertical-align:top;color:{COLOUR['soft']};padding:.1rem 1rem .1rem 0"
         rows = "".join(f'<tr><td style="{name_style}">{escape(n)}</td>'
                        f'<td style="text-align:left;white-space:pre-wrap">{self.shown(n, v)}</td></tr>'
                        for n, v in rest)
-        return (f'<div style="border-left:4px solid {COLOUR[self.state]};padding:.3rem .8rem;margin:.3rem 0">'
+        return (f'{STYLE}<div style="border-left:4px solid {COLOUR[self.state]};padding:.3rem .8rem;margin:.3rem 0">'
                 f'<b style="color:{COLOUR[self.state]}">{escape(title)}</b> ({points})'
-                f'<table style="margin:0">{rows}</table></div>')
+                f'<table style="margin:0">{rows}</table>{self.picture.html() if self.picture else ""}</div>')
 
 
 # ---------------------------------------------------------------------------------------------- pictures
@@ -422,26 +434,32 @@ def look(method, **changes):
     return {"color": method.colour, "marker": method.marker, "label": method.label, **changes}
 
 
-def play(frames, seconds, links=(), height=260):
-    """A film: frames = {label: list of (n, 2) arrays [m]}; "truth" is drawn in grey, the others in colour."""
-    _display(_plane(frames, seconds, links), height)
+def play(frames, seconds, links=(), height=260, shown_as=None):
+    """A film: frames = {label: list of (n, 2) arrays [m]}; "truth" is drawn in grey, the others in colour.
+
+    shown_as = {label: Method of validate/methods.py}: these have the colour and the marker of their method.
+    """
+    _display(_plane(frames, seconds, links, shown_as or {}), height)
 
 
-def save_film(frames, seconds, file, links=()):
+def save_film(frames, seconds, file, links=(), shown_as=None):
     """Write a film as a page (file ends with .html; any browser plays it) or as a picture that moves (.gif).
 
-    frames, seconds and links are those of `play`.  Raises BadInput for any other ending.
+    frames, seconds, links and shown_as are those of `play`.  Raises BadInput for any other ending.
     """
-    saving.save(_plane(frames, seconds, links), Path(file))
+    saving.save(_plane(frames, seconds, links, shown_as or {}), Path(file))
     display(HTML(f"<p>Written: {escape(str(file))}</p>"))
 
 
-def _plane(frames, seconds, links):
+def _plane(frames, seconds, links, shown_as):
     """A film in the plane as data."""
     roles = [Role.TRUTH if label == "truth" else Role.OURS for label in frames]
     films = [{"label": label, "role": role.value, "colour": colour,
               "frames": [np.round(np.asarray(f, dtype=float), 5).tolist() for f in frames[label]]}
              for label, role, colour in zip(frames, roles, film.colours(roles))]
+    for run in films:
+        method = shown_as.get(run["label"])
+        run.update({"colour": method.colour, "marker": method.marker} if method else {})
     return {"seconds": seconds, "links": [list(map(int, pair)) for pair in links], "films": films}
 
 

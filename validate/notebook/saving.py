@@ -13,6 +13,7 @@ from solutions.checks import BadInput
 
 from ..report import plots
 
+SIGNS = {"o": "●", "s": "■", "^": "▲", "v": "▼", "D": "◆", "d": "♦", "P": "✚", "<": "◀", ">": "▶", "h": "⬢"}
 FRAMES_PER_SECOND = 25       # of a GIF: viewers round longer times between pictures to 1/100 s
 
 
@@ -21,7 +22,8 @@ def film_html(picture, height=260):
     name = f"p{uuid.uuid4().hex}"
     runs = picture["films"]
     alone = runs if len(runs) == 1 else []                           # the player's bar names several
-    key = " &nbsp; ".join(f'<span style="color:{run["colour"]}">●</span> {escape(run["label"])}' for run in alone)
+    key = " &nbsp; ".join(f'<span style="color:{run["colour"]}">{SIGNS.get(run.get("marker"), "●")}</span> '
+                          f'{escape(run["label"])}' for run in alone)
     script = (Path(plots.__file__).parent / "player.js").read_text()
     style = f"width:100%;max-width:46rem;height:{height}px;background:#f6f7f8"
     return (f'<canvas data-picture="{name}" style="{style}"></canvas><div>{key}</div>'
@@ -52,7 +54,7 @@ def _save_gif(picture, file):
     drawn = []
     for run, _ in films:
         drawn.append([ax.plot([], [], color=run["colour"], lw=1.5)[0] for _ in picture["links"]]
-                     or [ax.plot([], [], "o", color=run["colour"], ms=4)[0]])
+                     or [ax.plot([], [], run.get("marker", "o"), color=run["colour"], ms=4)[0]])
     count = max(2, round(picture["seconds"] * FRAMES_PER_SECOND))
 
     def show(k):

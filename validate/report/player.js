@@ -84,7 +84,9 @@ function controls(place, { last, seconds, runs, draw, reset, hint }) {
   if (reset) add(bar, "button", { type: "button", textContent: "reset view", onclick: reset });
   if (runs.length > 1) for (const run of runs) {
     const label = add(bar, "label"), box = add(label, "input", { type: "checkbox", checked: true });
-    add(label, "i").style.background = shade(run.colour);
+    const sign = add(label, "i");
+    sign.style.background = shade(run.colour);
+    if (MARKERS[run.marker]) { sign.style.clipPath = outline(run.marker); sign.style.borderRadius = 0; }
     label.append(run.label);
     box.onchange = () => { run.shown = box.checked; show(); };
   }
@@ -99,6 +101,19 @@ function controls(place, { last, seconds, runs, draw, reset, hint }) {
   show();
   return { show, stop: () => state.stop?.() };
 }
+
+// Markers of matplotlib: corners (x, y) of a shape of size 1, y down; "o" is a circle.
+const turned = (n, begin, stretch = 1) => Array.from({ length: n }, (_, k) => [stretch * Math.sin(begin + 2 * Math.PI * k / n), -Math.cos(begin + 2 * Math.PI * k / n)]);
+const MARKERS = {
+  "^": turned(3, 0), ">": turned(3, Math.PI / 2), "v": turned(3, Math.PI), "<": turned(3, -Math.PI / 2), s: turned(4, Math.PI / 4), D: turned(4, 0), d: turned(4, 0, 0.6), h: turned(6, 0),
+  P: [[-0.35, -1], [0.35, -1], [0.35, -0.35], [1, -0.35], [1, 0.35], [0.35, 0.35], [0.35, 1], [-0.35, 1], [-0.35, 0.35], [-1, 0.35], [-1, -0.35], [-0.35, -0.35]] };
+function mark(pen, [x, y], radius, marker) {
+  pen.beginPath();
+  if (!MARKERS[marker]) { pen.arc(x, y, radius, 0, 7); return; }
+  for (const [dx, dy] of MARKERS[marker]) pen.lineTo(x + 1.25 * radius * dx, y + 1.25 * radius * dy);
+  pen.closePath();
+}
+const outline = marker => `polygon(${MARKERS[marker].map(([x, y]) => `${(50 + 50 * x).toFixed(1)}% ${(50 + 50 * y).toFixed(1)}%`).join(", ")})`;
 
 const floats = text => new Float32Array(Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer);
 
@@ -232,7 +247,7 @@ function drawer(canvas, film, small) {
       const radius = (small ? 2 : 4) * (run.points > 8 ? 0.6 : 1) * { truth: 1.9, engine: 1.3, ours: 0.9 }[role];
       for (let p = 0; p < run.points; p++) {
         if (moving && fixed[p]) continue;
-        pen.beginPath(); pen.arc(...at(run, k, p), radius, 0, 7);
+        mark(pen, at(run, k, p), radius, run.marker);
         role === "engine" ? pen.stroke() : pen.fill();
       }
       pen.globalAlpha = 1;

@@ -15,7 +15,7 @@ from matplotlib.colors import TwoSlopeNorm
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from .. import methods
-from ..results import Verdict, jsonable
+from ..results import Role, Verdict, jsonable
 from ..store import whole
 from . import words
 
@@ -24,6 +24,7 @@ DRAWN_FROM = "drawn from data "
 NOTE = {"xycoords": ("axes fraction", "data"), "fontsize": 8, "color": "#555555"}
 TOP = 10.0                      # errors above this, and failures, are drawn here, as crosses [-]
 WIDTH, HEIGHT = 5.2, 3.4        # of the axes with their labels [in]: as wide as a phone shows without shrinking letters
+LARGEST, SMALLEST = 8.0, 4.5    # markers of the lowest and of the uppermost curve [pt]
 MARKERS = "o^sDvP<>hdX*p8H"     # of the things in a stability picture that are no method
 DASHES = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (5, 2, 1, 2)), (0, (8, 3)), (0, (3, 2, 1, 2, 1, 2)))
 
@@ -35,9 +36,17 @@ def style():
 
 
 def looks(result):
-    """{label: (colour, marker, line)} of every curve of a scene."""
-    curves = (c for one in result["cases"].values() for c in one["ours"] + one["engines"])
-    return {c["label"]: (c["colour"], c["marker"], c["line"]) for c in curves}
+    """{label: how it is drawn} of every curve of a scene.
+
+    Curves may lie on each other, so each has smaller markers than the one below it; engines have crosses and rings,
+    which show what is below.
+    """
+    curves = {c["label"]: c for one in result["cases"].values() for c in one["ours"] + one["engines"]}
+    look = {}
+    for (label, c), size in zip(curves.items(), np.linspace(LARGEST, SMALLEST, len(curves))):
+        wide = {"ms": LARGEST + 1.0, "mfc": "none"} if Role(c["role"]) is Role.ENGINE else {"ms": size}
+        look[label] = {"color": c["colour"], "marker": c["marker"], "ls": c["line"], **wide}
+    return look
 
 
 def error_label(result):
@@ -58,20 +67,20 @@ def _ground(axes, bottom):
 
 def convergence(path, result):
     """Error against step, with the runs that failed along the top."""
-    case, bottom = next(iter(result["cases"].values())), floor(result)
+    case, bottom, look_of = next(iter(result["cases"].values())), floor(result), looks(result)
     figure, axes = plt.subplots()
     for c in case["ours"] + case["engines"]:
         if Verdict(c["verdict"]) is Verdict.NOT_ATTEMPTED or not c["rows"]:
             continue
-        colour, marker, line = c["colour"], c["marker"], c["line"]
+        look = look_of[c["label"]]
+        colour, marker = c["colour"], c["marker"]
         lost = [r["dt"] for r in c["rows"] if r["error"] is None or r["error"] >= TOP]
         # a line has a gap where a run was lost
         seen = [(r["dt"], np.nan if r["dt"] in lost else max(r["error"], bottom)) for r in c["rows"]]
         order = f": {c['order']:.2f}" if c["order"] is not None else ""
         own = [(row["dt"], max(error, bottom)) for row, error in words.own_errors(c) if error < TOP]
         if len(lost) < len(seen):
-            axes.loglog(*zip(*seen), color=colour, marker=marker, ls=line, ms=5, lw=1.3,
-                        label=c["label"] + (order if not own else ""))
+            axes.loglog(*zip(*seen), **look, lw=1.3, label=c["label"] + (order if not own else ""))
         if own:                                                      # the order is that of this second line
             axes.loglog(*zip(*own), color=colour, marker=marker, ls=(0, (4, 2)), ms=5, lw=1.0, mfc="none",
                         label=f"{c['label']}, from its own law{order}")
@@ -90,16 +99,14 @@ def work_precision(path, result):
     rows = [{**r, "error": max(r["error"], bottom)} for r in result["times"]["rows"] if r["error"] < TOP]
     compiled = any(r["speed"] == "compiled" for r in rows)
     for label, speed in dict.fromkeys((r["label"], r["speed"]) for r in rows):
-        colour, marker, line = look[label]
         mine = sorted((r["steps"], r["seconds"], r["error"], r["low"], r["high"]) for r in rows
                       if (r["label"], r["speed"]) == (label, speed))
         _, x, y, low, high = zip(*mine)
         plain = compiled and speed == "plain"
-        faint = {"ls": ":", "ms": 3, "lw": 0.9, "alpha": 0.55}
+        faint = {**look[label], "ls": ":", "ms": 3, "lw": 0.9, "alpha": 0.55}
         name = f"{label} (recorded)" if speed == "recorded" else label
-        strong = {"ls": line, "ms": 5, "lw": 1.4, "label": name}
-        axes.loglog(x, y, color=colour, marker=marker, **(faint if plain else strong))
-        axes.hlines(y, low, high, color=colour, lw=0.8, alpha=0.5)
+        axes.loglog(x, y, **(faint if plain else {**look[label], "lw": 1.4, "label": name}))
+        axes.hlines(y, low, high, color=look[label]["color"], lw=0.8, alpha=0.5)
     if compiled and any(r["speed"] == "plain" for r in rows):
         axes.plot([], [], color="#555555", ls=":", marker=".", label="the same, plain Python")
     _ground(axes, bottom)
