@@ -15,8 +15,10 @@ def picture(selection, p, agreeing):
     """The film of a case as data: one entry for each run, with its role, its colour and its frames."""
     scene = selection.scene
     if not scene.moves:
-        seconds, shown = 0.0, {scene.film_of_truth: (Role.TRUTH, [np.array(scene.truth(p, scene.duration), dtype=float)])}
-        if scene.our_film is not None:
+        if scene.our_film is None:
+            there = np.array(scene.truth(p, scene.duration), dtype=float)
+            seconds, shown = 0.0, {scene.film_of_truth: (Role.TRUTH, [there])}
+        else:
             seconds, frames = scene.our_film(p)
             shown = {"our run": (Role.OURS, frames)}
         return {"seconds": seconds, "dt": 0.0, "links": links(scene, p), "look": scene.link_look,

@@ -113,8 +113,9 @@ def with_units(params, table):
     """The numbers of a case with their units, such as k = 100 N/m; table: [(name, value, meaning [unit])]."""
     units = {name: re.search(r"\[([^\]]+)\]$", meaning) for name, _, meaning in table}
     shown = {name: unit[1] for name, unit in units.items() if unit and unit[1] != "-"}
-    return ", ".join(f"{name} = {number(x, 4)} {shown.get(name, '')}".rstrip() for name, x in params.items()
-                     if isinstance(x, (int, float)) and not isinstance(x, bool))
+    each = (f"{name} = {number(x, 4)} {shown.get(name, '')}".rstrip() for name, x in params.items()
+            if isinstance(x, (int, float)) and not isinstance(x, bool))
+    return ", ".join(one.replace(" ", "\u00a0") for one in each)               # a line breaks only between two
 
 
 # ---------------------------------------------------------------------------------------------- verdicts
