@@ -50,7 +50,8 @@ html_theme_options = {"top_of_page_buttons": [],
                                              "color-brand-visited": "#c3a6ff"}}
 
 
-NAMED = {'class="caption" role="heading"': 'class="caption" role="heading" aria-level="2"',
+NAMED = {'<th class="head"><p></p></th>': '<td class="head"></td>',           # the corner of a table
+         'class="caption" role="heading"': 'class="caption" role="heading" aria-level="2"',
          '<aside class="sidebar-drawer">': '<aside class="sidebar-drawer" aria-label="Contents of the book">',
          '<aside class="toc-drawer': '<aside aria-label="Contents of this page" class="toc-drawer',
          '<summary aria-label="Toggle hidden content">': "<summary>",       # its text says what it does

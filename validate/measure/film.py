@@ -15,10 +15,14 @@ def picture(selection, p, agreeing):
     """The film of a case as data: one entry for each run, with its role, its colour and its frames."""
     scene = selection.scene
     if not scene.moves:
-        there = np.array(scene.truth(p, scene.duration), dtype=float)
-        shown = {scene.film_of_truth: (Role.TRUTH, [there])}
-        return {"seconds": 0.0, "dt": 0.0, "links": links(scene, p), "look": scene.link_look,
-                "films": films(scene, shown, p), "space": in_space(scene, shown, p, 1.0)}
+        if scene.our_film is None:
+            there = np.array(scene.truth(p, scene.duration), dtype=float)
+            seconds, shown = 0.0, {scene.film_of_truth: (Role.TRUTH, [there])}
+        else:
+            seconds, frames = scene.our_film(p)
+            shown = {"our run": (Role.OURS, frames)}
+        return {"seconds": seconds, "dt": 0.0, "links": links(scene, p), "look": scene.link_look,
+                "films": films(scene, shown, p), "space": in_space(scene, shown, p, seconds or 1.0)}
     per_frame = max(1, scene.steps[-3] // FRAMES)
     seconds = scene.film_seconds or scene.duration
     dt = seconds / (per_frame * FRAMES)

@@ -70,7 +70,8 @@ def environment():
     pages.tests["reaches"] = lambda row: any(t is not None for t in row.values())
     pages.globals.update(judge=words.judge, verdicts=words.verdicts, known=words.known, percents=words.percents,
                          legend=[(v.value, words.KINDS[v], words.LEGEND[v]) for v in Verdict], thumb=thumbnail,
-                         arrow_colours=ARROWS, csv=tables.address, ablation_rows=tables.ablations,
+                         arrow_colours=ARROWS, arrow_meanings=words.ARROWS, with_units=words.with_units,
+                         csv=tables.address, ablation_rows=tables.ablations,
                          coverage_rows=tables.coverage, summary_line=words.summary_line)
     return pages
 

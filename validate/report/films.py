@@ -36,7 +36,7 @@ def still(picture):
     for film, points in runs:
         k = round(STILL * (len(points) - 1))
         moving = np.ptp(points, axis=0).max(axis=1) > 0.0
-        trails = [points[:k + 1:2, i] for i in np.flatnonzero(moving)] if len(points[0]) <= FEW else []
+        trails = [points[:k + 1, i] for i in np.flatnonzero(moving)] if len(points[0]) <= FEW else []
         now = at(points[k])
         drawn.append({
             "role": Role(film["role"]).value, "colour": film["colour"],

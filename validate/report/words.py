@@ -24,6 +24,8 @@ LEGEND = {                   # every verdict has one name and one sign
                        "here. The error is shown and not judged.",
     Verdict.NOT_ATTEMPTED: "The exercise behind this method has no answer yet.",
 }
+ARROWS = {"ω": "angular velocity ω", "L": "angular momentum L", "v": "velocity v of the centre", "τ": "torque τ",
+          "Rω": "speed Rω of the rim"}                                        # what the arrows of a film in 3D mean
 TIE = 2.0                    # a ratio of times below this, and above its inverse, is a tie [-]
 NEARLY = 1.05                # times an engine's smallest error: a setting that comes as near may run for it [-]
 BUSY = 0.25                  # cores that other programs use, from which times are doubtful [-]
@@ -43,7 +45,9 @@ def number(x, digits=3):
     """1.23e-4 as 1.23 · 10⁻⁴; None as a dash."""
     if x is None:
         return "–"
-    if x == 0 or 1e-2 <= abs(x) < 1e4:
+    if x < 0:
+        return f"−{number(-x, digits)}"
+    if x == 0 or 1e-2 <= x < 1e4:
         return f"{x:.{digits}g}"
     mantissa, exponent = f"{x:.{digits - 1}e}".split("e")
     raised = str(int(exponent)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
@@ -103,6 +107,15 @@ def order(curve):
     if curve["expected"] == EXACT:
         return EXACT
     return f"{'–' if curve['order'] is None else format(curve['order'], '.2f')} ({curve['expected']})"
+
+
+def with_units(params, table):
+    """The numbers of a case with their units, such as k = 100 N/m; table: [(name, value, meaning [unit])]."""
+    units = {name: re.search(r"\[([^\]]+)\]$", meaning) for name, _, meaning in table}
+    shown = {name: unit[1] for name, unit in units.items() if unit and unit[1] != "-"}
+    each = (f"{name} = {number(x, 4)} {shown.get(name, '')}".rstrip() for name, x in params.items()
+            if isinstance(x, (int, float)) and not isinstance(x, bool))
+    return ", ".join(one.replace(" ", "\u00a0") for one in each)               # a line breaks only between two
 
 
 # ---------------------------------------------------------------------------------------------- verdicts

@@ -14,6 +14,7 @@ import {
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
 const ARROWS = ["#e69f00", "#cc79a7", "#009e73"];                      // Okabe and Ito: told apart by everyone
+const BRIGHT = { "--ink": "#1d2429", "--line": "#d5dadd" };            // colours of a page that does not say its own
 const { controls: film_bar, floats, metres, nice, page } = globalThis.filmPlayer;
 
 function shape(body) {
@@ -36,7 +37,9 @@ function figure(body, run) {
       color: run.colour, transparent: ghost, opacity: ghost ? 0.3 : 1, roughness: 0.7, flatShading: body.kind === "mesh", depthWrite: !ghost })));
   }
   const edges = new EdgesGeometry(geometry, 20);
-  group.add(new LineSegments(edges, new LineBasicMaterial({ color: run.look === "engine" ? run.colour : "#1d2429" })));
+  const line = new LineBasicMaterial({ color: run.look === "engine" ? run.colour : "#1d2429" });
+  if (run.look === "truth") line.name = "--ink";                     // a ghost is as dark or light as the page's letters
+  group.add(new LineSegments(edges, line));
   if (body.kind === "sphere" || body.kind === "cylinder" || body.kind === "capsule") {      // a mark, or nobody sees it turn
     const reach = body.kind === "sphere" ? body.r : body.r * 1.001, z = body.kind === "sphere" ? 0 : (body.length || 0) / 2;
     const ring = [...Array(33)].map((_, i) => new Vector3(0, reach * Math.cos(i * Math.PI / 16), (z || reach) * Math.sin(i * Math.PI / 16)));
@@ -126,8 +129,10 @@ function play(place) {
     scene.add(sign);
   });
   if (picture.ground) {
-    const grid = new GridHelper(2 * size, 20, "#9aa3a8", "#d5dadd").rotateX(Math.PI / 2);
+    const grid = new GridHelper(2 * size, 20).rotateX(Math.PI / 2);
     grid.position.set(centre.x, centre.y, 0);
+    grid.material.vertexColors = false;
+    grid.material.name = "--line";
     scene.add(grid);
   }
   camera.up.set(0, 0, 1);
@@ -194,6 +199,7 @@ function play(place) {
     last, seconds: picture.seconds, runs, hint: "Drag or use the arrow keys to turn it. Click it, then the wheel or + and − bring it nearer.",
     draw: (k, magnified) => {
       scene.background.set(page("--wash", "#f6f7f8"));
+      scene.traverse(({ material }) => { if (material?.name) material.color.set(page(material.name, BRIGHT[material.name])); });
       set(k, magnified);
       render();
     },

@@ -21,7 +21,7 @@ from solutions.contact import (
 )
 from solutions.support.arms import world_inertia
 from solutions.support.broad_phase import near_pairs
-from validate.drawing import seen
+from validate.drawing import box, seen, sphere
 from validate.engines.contact import DT, KINDS, MU, BulletPile, G, PymunkPile, fallen, inverse_tensors
 from validate.methods import PILE, PILE_IN_SPACE
 from validate.reference.contact import natural_residual
@@ -33,7 +33,7 @@ BLOCK = 10                   # steps from one look at the energy to the next
 QUIET = 1e-2                 # of the weight: what may be out of balance in a pile that has come to rest [-]
 CHAINS = 4.0                 # times the mean force in a column: the largest one in a pile [-]
 PYRAMID = np.sqrt(2.0)       # by which pybullet's friction exceeds μ along the diagonals of its pyramid [-]
-SETTLED = {}                 # {p: (x, q)} where our last run of a case ended, for the picture
+FALL = {}                    # {p: [(x, q), …]} of our last run of a case, block by block, for the film
 
 
 class Params(NamedTuple):
@@ -89,10 +89,11 @@ def run(step, acceleration, state, p, dt, steps):
              "spheres": (ball_bounds, round_contacts), "bricks": (box_bounds, box_contacts)}[p.kind]
     shape = [getattr(f, "twin", f) for f in shape]                       # what a compiled step takes
     (pile_state, pile), energies = state, []
+    FALL[p] = [(pile_state.x, pile_state.q)]
     for _ in range(round(p.seconds / DT / BLOCK)):
         pile_state = step(*shape, pile_state, DT, BLOCK, pile)
         energies.append(energy(pile, pile_state.x, pile_state.q, pile_state.v, pile_state.omega))
-    SETTLED[p] = pile_state.x, pile_state.q
+        FALL[p].append((pile_state.x, pile_state.q))
     return pile_state, pile, energies
 
 
@@ -220,22 +221,36 @@ def sanity_checks():
 
 # ---------------------------------------------------------------------------------------------- picture
 
-def where(p):
-    """(x (n, d), q) in the end of our last run; at the start if there was none."""
+def our_film(p):
+    """[seconds, poses (n, 7) of every body at each frame] of our last run; the start alone if there was none."""
     state = start(p)[0]
-    x, q = SETTLED.get(p, (state.x, state.q))
-    return x[:p.n], q[:p.n]
+    fall = FALL.get(p, [(state.x, state.q)])
+    return (len(fall) - 1) * BLOCK * DT, [in_space(x[:p.n], q[:p.n]) for x, q in fall]
 
 
-SIDES = 24                   # of a circle in the picture
+def in_space(x, q):
+    """Poses (n, 7) of bodies; those of two dimensions stand upright in the plane x = 0."""
+    if x.shape[1] == 2:
+        x, q = np.insert(x, 0, 0.0, axis=1), np.stack((np.cos(0.5 * q), np.sin(0.5 * q), 0.0 * q, 0.0 * q), axis=1)
+    return np.hstack((x, q))
 
 
-def points(observed, p):
+def bodies(p):
+    """Spheres and boxes; a disc is drawn as a sphere, and a box of two dimensions as thick as it is wide."""
+    halves = start(p)[1].half
+    if kind_of(p).shape == "round":
+        return [sphere(half[0]) for half in halves]
+    return [box((half[0], *half) if len(half) == 2 else half) for half in halves]
+
+
+SIDES = 16                   # of a circle in the picture
+
+
+def points(poses, p):
     """The outline of every sphere, seen obliquely from the front, and the floor: the first case is drawn."""
-    x, _ = where(p)
     pile, turn = start(p)[1], np.linspace(0.0, 2.0 * np.pi, SIDES + 1)[:-1]
     ring = np.stack((np.cos(turn), np.sin(turn)), axis=1)
-    circles = [middle + half[0] * ring for middle, half in zip(seen(x), pile.half)]
+    circles = [middle + half[0] * ring for middle, half in zip(seen(poses[:, :3]), pile.half)]
     wall = pile.planes[1, -1]
     floor = seen([(u * wall, v * wall, 0.0) for u, v in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
     return np.round(np.concatenate((*circles, floor)), 4)
@@ -265,7 +280,7 @@ SCENE = Scene(
     refinement="",
     quantity_names=quantity_names,
     sanity_checks=sanity_checks,
-    points=points, links=links,
+    points=points, links=links, our_film=our_film, bodies=bodies, poses=lambda poses, p: poses, ground=True,
     uses=("a broad phase that looks again only when something has left its widened box", "contact points", "memory",
           "soft contacts with substeps"),
     full_loop="its method is a whole loop itself, of which only the end is seen",
