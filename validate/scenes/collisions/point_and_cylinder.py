@@ -131,12 +131,11 @@ SCENE = Scene(
     points=points,
     links=links,
     uses=("a straight way", "a quadratic equation for each step, or a distance"),
-    full_loop="the scene ends where the loop begins: a ball stays where it is found to hit",
     ablations={
         "balls that never come near, tested at every step": lambda p: (with_balls_that_miss(*start(p)), p),
         "gravity: the path would bend, and the equation be of fourth degree": ("short straight pieces of the path "
                                                                               "lead back to this equation"),
-        "response": "lesson 7 builds it",
+        "response": "the whole loop of lesson 10 has it, and is measured",
         "a cloth in place of the balls: its edges and faces": "triangle_cylinder_gap of this lesson tests them",
     },
 )

@@ -126,10 +126,9 @@ SCENE = Scene(
     points=points,
     links=links,
     uses=("a straight way", "two signed distances for each step"),
-    full_loop="the scene ends where the loop begins: a ball stays where it is found to hit",
     ablations={
         "balls that never come near, tested at every step": lambda p: (with_balls_that_miss(*start(p)), p),
         "gravity: the path would bend": "then the formula is the first step of Newton's method",
-        "response": "lesson 7 builds it",
+        "response": "the whole loop of lesson 10 has it, and is measured",
     },
 )
