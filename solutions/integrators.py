@@ -15,18 +15,28 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .checks import Diverged, check_end, check_positive, checked_run, float_copy
+from .checks import (
+    Diverged,
+    check_end,
+    check_not_negative,
+    check_positive,
+    checked_run,
+    finite_number,
+    float_copy,
+    positive_number,
+)
 
 __all__ = [
-    "NEWTON_LIMIT", "POSITION_ROUND_OFF", "Oscillator", "advance", "amplification_matrix",
-    "average_velocity_step", "blanes_moan_step", "euler_step", "implicit_euler_step",
-    "implicit_midpoint_step", "midpoint_step", "newton_matrix", "observed_order",
+    "MOST_ADAPTED_STEPS", "NEWTON_LIMIT", "POSITION_ROUND_OFF", "Oscillator", "advance", "advance_adaptive",
+    "amplification_matrix", "average_velocity_step", "blanes_moan_step", "euler_step", "implicit_euler_step",
+    "implicit_midpoint_step", "inner_product", "midpoint_step", "newton_matrix", "observed_order",
     "oscillator_acceleration", "rk4_step", "solve", "spectral_radius", "symplectic_euler_step",
     "trajectory", "verlet_step",
 ]
 
 NEWTON_TOLERANCE = 1e-12     # last correction over the size of the velocity [-]: well above round-off, 2e-16
 NEWTON_LIMIT = 30            # corrections [-]; from a good guess Newton doubles its digits and needs fewer than 8
+MOST_ADAPTED_STEPS = 1000000 # of one run [-]: half a second, compiled; what needs more falls into the origin
 POSITION_ROUND_OFF = 1e-15   # a few spacings of floats [-]: the relative accuracy of any position
 KICKS = (0.0829844064174052, 0.396309801498368, -0.0390563049223486)      # the fourth is 1 − 2 Σ, then backwards
 DRIFTS = (0.245298957184271, 0.604872665711080)                           # the third is ½ − Σ, then backwards
@@ -269,6 +279,53 @@ def trajectory(step, acceleration, t, x, v, dt, steps, p):
         x, v = advance(step, acceleration, t + n * dt, x, v, dt, 1, p)
         xs[n + 1], vs[n + 1] = x, v
     return ts, xs, vs
+
+
+def inner_product(a, b):
+    """Given.  Return Σ a b over all entries of two arrays of one shape."""
+    total = 0.0
+    for k in range(a.size):
+        total += a.flat[k] * b.flat[k]
+    return total
+
+
+def advance_adaptive(step, acceleration, t, x, v, share, duration, p):
+    """Given.  Return the state (x, v) after `duration` [s], in steps that adapt to the distance from the origin.
+
+    An attraction −μ x/|x|³ turns a motion at the rate ρ = √(|a|/|x|) = √(μ/|x|³) [1/s].  A step lasts dt = share/ρ: on
+    a circle, share is the angle of a step [rad].  ρ is that of the middle of the step, and changes from step to step
+    by what ρ̇ = −3/2 ρ x·v/x² adds up to in the time dt:
+
+        ρ ← √(|a|/|x|) − ½ share 3/2 x·v/x²            at the start, half a step ahead
+        ρ ← ρ − share 3/2 x·v/x²                       between two steps
+
+    The rule sees both its neighbours alike.  So a run backwards takes the same steps, and a step that keeps the energy
+    over long times still does so; dt = share √(|x|/|a|) at the beginning of each step would not.  The last step is
+    shorter: it ends at t + duration.
+
+    Raises BadInput for a share that is not positive, a duration below zero or a state that is not finite.  Raises
+    Diverged where ρ is not positive, because the steps are too long for the rule, and where more than
+    MOST_ADAPTED_STEPS are needed or a step does not change the time any more, because the motion falls into the origin.
+    *Source:* Hairer and Söderlind 2005, “Explicit, time reversible, adaptive step size control”.
+    *Left out:* laws that are not ∝ 1/x², several centres.
+    """
+    t, x, v, share, _ = checked_run(t, x, v, positive_number("share of a step [-]", share), 0)
+    dt = finite_number("duration [s]", duration)
+    check_not_negative("duration [s]", dt)
+    end, steps, a = t + dt, 0, acceleration(t, x, v, p)
+    rate = np.sqrt(np.sqrt(inner_product(a, a) / inner_product(x, x)))
+    rate -= 0.75 * share * inner_product(x, v) / inner_product(x, x)
+    while t < end:
+        if not (rate > 0.0 and np.isfinite(rate)):
+            raise Diverged("the rate of an adapted step [1/s]", rate, "give a smaller share, and start off the origin")
+        dt = min(share / rate, end - t)
+        if steps == MOST_ADAPTED_STEPS or t + dt == t:
+            raise Diverged("an adapted step leads no further; dt [s]", dt, "end before the motion reaches the origin")
+        x, v = step(acceleration, t, x, v, dt, p)
+        rate -= 1.5 * share * inner_product(x, v) / inner_product(x, x)
+        t, steps = t + dt, steps + 1
+    check_end(x, v, dt)
+    return x, v
 
 
 # ---------------------------------------------------------------------------------------------- how good is a method?

@@ -16,6 +16,7 @@ VERLET = Method("verlet_step", "Verlet", 2, "integrators", "#0072B2", "P")
 IMPLICIT_EULER = Method("implicit_euler_step", "implicit Euler", 1, "integrators", "#8C6D31", "<")
 IMPLICIT_MIDPOINT = Method("implicit_midpoint_step", "implicit midpoint", 2, "integrators", "#6A51A3", ">")
 BLANES_MOAN = Method("blanes_moan_step", "Blanes–Moan", 4, "integrators", "#17A2A2", "h")
+ADAPTIVE = Method("advance_adaptive", "Blanes–Moan, adaptive", 4, "integrators", "#A6761D", "p")
 
 # springs
 IMPLICIT_MESH = Method("implicit_spring_network_step", "implicit mesh", 1, "springs", "#7F7F7F", "h")

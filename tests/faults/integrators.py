@@ -22,6 +22,11 @@ fault("verlet_step", "x_new, v + dt * a, p)", "x_new, v, p)", "the last force ta
 fault("verlet_step", "a_new = acceleration(t + dt,", "a_new = acceleration(t,",
       "the last force is taken at the old time")
 fault("blanes_moan_step", "t += drift * dt", "t += 0.0", "the forces in a step are those of its beginning")
+fault("advance_adaptive", "rate -= 1.5 * share", "rate -= 1.515 * share",
+      "the rate follows the distance 1 % too strongly")
+fault("advance_adaptive", "rate -= 0.75 * share", "rate -= 0.0 * share",
+      "the first rate is that of the beginning of the step")
+fault("inner_product", "a.flat[k] * b.flat[k]", "a.flat[0] * b.flat[k]", "the product takes one entry for all")
 fault("newton_matrix", "x + dt * ahead, ahead, p) - ", "x + dt * ahead, v, p) - ",
       "the slope of the force leaves out half of its dependence on the velocity")
 fault("implicit_euler_step", "residual = w - v - dt * acceleration(t + dt,",

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from solutions.checks import BadInput
+from solutions.checks import BadInput, Diverged
 from validate.modules import bind
 from validate.reference.integrators import Planet, kepler_position, perihelion
 
@@ -57,6 +57,100 @@ def test_leapfrog_is_the_simplest_of_the_family(monkeypatch):
     ours = integrators.blanes_moan_step(attraction, 0.0, x, v, 0.05, p)
     verlet = integrators.verlet_step(attraction, 0.0, x, v, 0.05, p)
     assert np.allclose(ours, verlet, atol=1e-15)
+
+
+def energy_at_far_ends(run, share, p, revolutions):
+    """Energies [J/kg] of a planet whenever it has passed its farthest place, by the adaptive run(step, …, duration)."""
+    ends = []
+
+    def step(acceleration, t, x, v, dt, p):
+        x_new, v_new = integrators.blanes_moan_step(acceleration, t, x, v, dt, p)
+        if x @ v >= 0.0 > x_new @ v_new:
+            ends.append(0.5 * v_new @ v_new - p.mu / np.linalg.norm(x_new))
+        return x_new, v_new
+    x, v = perihelion(p)
+    run(step, attraction, 0.0, x, v, share, revolutions * 2.0 * np.pi * np.sqrt(p.a**3 / p.mu), p)
+    return np.array(ends)
+
+
+def advance_by_beginnings(step, acceleration, t, x, v, share, duration, p):
+    """The rule that is not symmetric: dt = share √(|x|/|a|) at the beginning of each step."""
+    end = t + duration
+    while t < end:
+        dt = min(share * np.sqrt(np.linalg.norm(x) / np.linalg.norm(acceleration(t, x, v, p))), end - t)
+        x, v = step(acceleration, t, x, v, dt, p)
+        t += dt
+    return x, v
+
+
+def counted_run(share, T, p):
+    """Where a planet is at T by adaptive steps, and how many there were."""
+    steps = []
+
+    def step(*arguments):
+        steps.append(arguments[1])
+        return integrators.blanes_moan_step(*arguments)
+    return integrators.advance_adaptive(step, attraction, 0.0, *perihelion(p), share, T, p)[0], len(steps)
+
+
+def test_adaptive_steps_are_of_fourth_order_and_beat_equal_steps_by_far():
+    p, T = Planet(mu=2.0, a=1.5, e=0.9), 9.0
+    mean = np.sqrt(p.mu / p.a**3)
+    errors, work = [], []
+    for share in (0.05, 0.025, 0.0125):
+        x, steps = counted_run(share, T, p)
+        errors.append(np.linalg.norm(x - kepler_position(p, T)))
+        work.append(steps)
+    assert abs(np.log2(errors[-2] / errors[-1]) - 4.0) < 0.3, errors
+    assert errors[0] < 1e-3 * orbit_error(integrators.blanes_moan_step, work[0], p, T)
+    assert abs(work[0] - mean * T / 0.05) < 0.5 * work[0]
+
+
+def test_adaptive_steps_do_not_let_the_energy_drift_and_those_of_the_beginnings_do():
+    p, share, revolutions = Planet(mu=1.0, a=1.0, e=0.8), 0.15, 60
+    drifts = []
+    for run in (integrators.advance_adaptive, advance_by_beginnings):
+        energies = energy_at_far_ends(run, share, p, revolutions)
+        off = np.abs(energies + 0.5 * p.mu / p.a)
+        drifts.append((np.max(off[-10:]), np.max(off[:10])))
+    assert drifts[0][0] < 2.0 * drifts[0][1], "the symmetric rule: as large at the end as at the beginning"
+    assert drifts[1][0] > 4.0 * drifts[1][1] and drifts[1][0] > 5.0 * drifts[0][0], "the other rule: it grows"
+
+
+@pytest.mark.parametrize("shape", [(2,), (3,), (1, 2)])
+def test_adaptive_steps_take_any_shape_end_in_time_and_leave_their_input_alone(shape):
+    p, ends = Planet(mu=1.0, a=1.0, e=0.5), []
+
+    def step(acceleration, t, x, v, dt, p):
+        ends.append(t + dt)
+        return integrators.blanes_moan_step(acceleration, t, x, v, dt, p)
+    x, v = np.zeros(shape), np.zeros(shape)
+    x.flat[:2], v.flat[:2] = perihelion(p)
+    begin, law = (x.copy(), v.copy()), lambda t, x, v, p: -p.mu / np.sum(x * x) ** 1.5 * x
+    end, _ = integrators.advance_adaptive(step, law, 0.5, x, v, 0.02, 3.0, p)
+    assert ends[-1] == 3.5 and np.all(np.diff(ends) > 0.0)
+    assert np.allclose(end.flat[:2], kepler_position(p, 3.0), atol=1e-7)
+    assert np.array_equal(x, begin[0]) and np.array_equal(v, begin[1])
+    same = integrators.advance_adaptive(step, law, 0.5, x, v, 0.02, 0.0, p)
+    assert np.array_equal(same, begin)
+
+
+def test_adaptive_steps_that_could_go_on_for_ever_end_with_an_error(monkeypatch):
+    p, x, still = Planet(), np.array([1.0, 0.0]), np.zeros(2)
+    run = lambda x, v, share, T: integrators.advance_adaptive(
+        integrators.blanes_moan_step, attraction, 0.0, x, v, share, T, p)
+    with pytest.raises(Diverged, match="leads no further"):
+        run(x, still, 0.1, 1.2)                                      # it falls into the origin after π/√8 = 1.11 s
+    with pytest.raises(Diverged, match="rate"):
+        run(*perihelion(Planet(e=0.9)), 1.5, 20.0)                   # steps so long that ρ is negative
+    with pytest.raises(Diverged, match="rate"), np.errstate(all="ignore"):
+        run(still, x, 0.1, 1.0)                                      # the rate has no limit at the origin
+    monkeypatch.setattr(integrators, "MOST_ADAPTED_STEPS", 50)
+    with pytest.raises(Diverged, match="leads no further"):
+        run(x, np.array([0.0, 1.0]), 0.1, 6.0)
+    for share, T in ((0.0, 1.0), (-1.0, 1.0), (np.nan, 1.0), (0.1, -1.0), (0.1, np.inf)):
+        with pytest.raises(BadInput):
+            run(x, still, share, T)
 
 
 @pytest.mark.parametrize("backspin", [0.0, -60.0])

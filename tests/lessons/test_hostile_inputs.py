@@ -75,6 +75,7 @@ IMPACTS = (solid, arms, normals, 0.5, 0.3)
 STARTED = {
     "integrators": {
         "advance": [(integrators.rk4_step, *OSCILLATION)],
+        "advance_adaptive": [(integrators.verlet_step, *OSCILLATION[:5], 2.0, oscillator)],
         "trajectory": [(integrators.verlet_step, *OSCILLATION)]},
     "springs": {"make_spring_network": [(rope, 0.1, [0], links, 50.0, 0.1, weight, calm, 0.2)]},
     "friction": {

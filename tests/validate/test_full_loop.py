@@ -8,7 +8,8 @@ from validate.measure import full_loop
 PLAN = measure.Plan(speeds=("plain",), live=(), quick=False)
 EARLIER = [name for name in modules.scene_names()
            if modules.bind_scene(name).lesson not in ("simulator", "kinematics")]
-LOOPS = ("rolling_down", "incline", "stopping_block", "heavy_top", "throw", "catenary")
+LOOPS = ("rolling_down", "incline", "stopping_block", "heavy_top", "throw", "catenary", "bounces", "point_and_plane",
+         "point_and_cylinder", "pendulum", "rope")
 
 
 @pytest.mark.parametrize("name", EARLIER)
@@ -19,8 +20,9 @@ def test_a_scene_is_measured_against_the_whole_loop_or_says_why_not(name):
 
 
 def agreeing(name):
-    """A result in which all methods agree, because finding out takes long."""
-    return {"cases": {"first": {"ours": [{"label": m.label, "verdict": "agrees"}
+    """A result in which all methods agree with 100 steps or more, because finding out takes long."""
+    rows = [{"steps": n, "failure": "diverged" if n < 100 else None} for n in modules.bind_scene(name).steps]
+    return {"cases": {"first": {"ours": [{"label": m.label, "verdict": "agrees", "rows": rows}
                                          for m in modules.bind_scene(name).methods]}}}
 
 
@@ -47,6 +49,15 @@ def test_a_loop_that_moves_otherwise_is_noticed_and_the_audit_checks_the_ratio(m
     assert list(audit.of_times(result, {"times": 0})) == []
     result["times"]["left_out"]["ratio"] = 2.0
     assert len(list(audit.of_times(result, {"times": 0}))) == 1
+
+
+@pytest.mark.parametrize(("scene", "setting", "value"), [
+    ("pendulum", "SLENDER", 1e-6), ("point_and_cylinder", "GRIP", 0.1)])
+def test_a_rod_that_is_no_string_and_a_target_that_does_not_hold_are_noticed(scene, setting, value, monkeypatch):
+    monkeypatch.setattr(full_loop, "interleaved", lambda items, limits, repeats: [
+        (item, {"seconds": 1.0, "repeats": [1.0]}) for item in items])
+    monkeypatch.setattr(full_loop, setting, value)
+    assert full_loop.left_out(scene, PLAN, agreeing(scene))["same"] is False
 
 
 def test_a_quick_run_leaves_it_to_a_full_one():

@@ -118,6 +118,7 @@ FORMULAS = {
     "impulses/two-bodies": ("relative_velocity_2d", "effective_inverse_mass_2d", "apply_impulse_2d", "impulse_size",
                             "effective_inverse_mass", "angular_momenta"),
     "integrators/one-step": ("euler_step", "rk4_step", "verlet_step", "implicit_midpoint_step", "blanes_moan_step"),
+    "integrators/adaptive-steps": ("advance_adaptive",),
     "integrators/what-measures-methods": ("amplification_matrix", "newton_matrix", "spectral_radius", "observed_order"),
     "springs/angular-spring-forces": ("angular_spring_forces",),
     "springs/large-step": ("spring_stiffness", "implicit_spring_network_step"),

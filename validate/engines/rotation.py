@@ -43,7 +43,7 @@ FREE_BODY = {
     "poses": turned_in_place,
     "uses": ("one orientation", "one angular momentum", "one step function"),
     "ablations": {
-        "position": "x += dt P/M runs beside it without any effect",
+        "position": "the whole loop of lesson 10 has it, and is measured",
         "contacts": "the whole loop of lesson 10 has them, and is measured",
     },
 }

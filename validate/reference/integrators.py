@@ -1,11 +1,12 @@
 """Kepler's ellipse: the reference solution of lesson 1's orbits, and the error limits from theory."""
 
+from functools import cache
 from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from ..scene import LATE_LEAPFROG, ROUND_OFF
-from .schemes import predict_by_tables, table_model
+from .schemes import TABLEAUX, Model, nudged, predict_by_tables, step_of, table_model
 
 
 class Planet(NamedTuple):
@@ -120,6 +121,34 @@ def late_start(p, T, dt, side):
     return error if np.isfinite(error) else 1.0
 
 
+def mean_rate(p):
+    """Return n = √(μ/a³) [rad/s]: Kepler's third law."""
+    return np.sqrt(p.mu / p.a**3)
+
+
+def adaptive_limit(p, T, share):
+    """Return the largest relative error at T of a method of order 4 whose steps are share/√(μ/r³), as in drift."""
+    growth = share**4 + mean_rate(p) * T / (4.0 * np.pi) * share**5
+    return passage_weight(p, T) * growth + round_off(p, T, share / mean_rate(p))
+
+
+def adaptive_march(law, x, v, share, T):
+    """Return x at T of adaptive steps of Blanes and Moan's table, in complex numbers: x·v/x² is the real part of v/x.
+
+    The middle of each step has the rate ρ, √(|a|/|x|) continued by ρ̇ = −3/2 ρ x·v/x²; the step is share/ρ.
+    Source: Hairer and Söderlind 2005.
+    """
+    move, t = step_of(TABLEAUX["Blanes–Moan"]), 0.0
+    rate = np.sqrt(abs(law(t, x, v)) / abs(x)) - 0.75 * share * (v / x).real
+    while t < T:
+        if not rate > 0.0:
+            raise ArithmeticError("the steps are too long for the rule")
+        h = min(share / rate, T - t)
+        x, v = move(law, t, x, v, h)
+        t, rate = t + h, rate - 1.5 * share * (v / x).real
+    return x
+
+
 def kepler_limits(p, T, dt):
     """Return {order or engine label: largest relative error at T}."""
     smooth = {k: drift(p, T, dt, k) for k in (1, 2, 4)}
@@ -150,7 +179,16 @@ def kepler_errors(T):
     models = {
         "pymunk": table_model("old velocity, new force", law, begin, seen), "pybullet": kicked,
         "symplectic Euler": kicked, **dict.fromkeys(("Verlet", *LEAPFROG_STARTS), leapfrog)}
+
+    @cache
+    def adaptive(p, h, steps, nudge):
+        x, v = begin(p)
+        return seen(adaptive_march(law(p), nudged(x, nudge), v, h * mean_rate(p), T), p)
+    models["Blanes–Moan, adaptive"] = Model(4, adaptive)
     # a method that is its own inverse has an error in even powers of dt only
-    even = {**dict.fromkeys(("Verlet", "implicit midpoint", *LEAPFROG_STARTS), (2, 4, 6)), "Blanes–Moan": (4, 6, 8)}
+    even = {**dict.fromkeys(("Verlet", "implicit midpoint", *LEAPFROG_STARTS), (2, 4, 6)),
+            **dict.fromkeys(("Blanes–Moan", "Blanes–Moan, adaptive"), (4, 6, 8))}
     return predict_by_tables(T, law, begin, seen, kepler_position, lambda p, dt: random_round_off(p, T, dt), models,
-                             finest={1: 20000, 2: 10000, 4: 4000, "Runge–Kutta 4": 10000}, powers=even)
+                             finest={1: 20000, 2: 10000, 4: 4000, "Runge–Kutta 4": 10000,
+                                     "Blanes–Moan, adaptive": 2000},
+                             powers=even)

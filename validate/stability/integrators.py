@@ -18,6 +18,7 @@ import numpy as np
 from solutions.checks import Diverged
 from validate.methods import BLANES_MOAN, INTEGRATORS
 from validate.reference import schemes
+from validate.reference.integrators import Planet, adaptive_march, orbit, perihelion
 from validate.stability.case import DOTS, EDGE, LINE, Picture, Worst, agreement, bisect, case, finding, refuse, series
 
 OMEGA = 3.0                  # angular frequency of the runs [rad/s]: not 1, so that h mistaken for hω would show
@@ -839,6 +840,75 @@ def one_step(lesson):
                       100.0 * NEWTON if "implicit" in name else ROUNDED) for name, error in worst.items()] + [
         agreement("Many steps are single steps, each at its own time.",
                   "history of Runge–Kutta 4: largest error in three steps [s, m, m/s]", history, ROUNDED)], None
+
+
+# ---------------------------------------------------------------------------------------------- adaptive steps
+
+SHARE = 0.1                  # of the adaptive steps [-]
+SHAPES = (0.0, 0.3, 0.6, 0.9, 0.99)          # eccentricities [-]
+COUNTED = SHARE**2           # the rate lags behind the truth by the square of a step, relative to it [-]
+
+
+def attracted(t, x, v, p):
+    """a = −μ x/|x|³"""
+    return -p.mu / np.sum(x * x) ** 1.5 * x
+
+
+def steps_per_revolution(lesson, p):
+    """Return how many adaptive steps a revolution takes: those of ten, counted."""
+    taken = []
+
+    def step(*arguments):
+        taken.append(arguments[1])
+        return lesson.blanes_moan_step(*arguments)
+    period = 2.0 * np.pi * np.sqrt(p.a**3 / p.mu)
+    lesson.advance_adaptive(step, attracted, 0.0, *perihelion(p), SHARE, 10.0 * period, p)
+    return len(taken) / 10.0
+
+
+def counted_by_theory(e):
+    """Return ∮ρ dt/share over an ellipse, ∮(1 − e cos E)^(−1/2) dE/share: r = a (1 − e cos E),  n dt = r/a dE."""
+    E = np.linspace(0.0, 2.0 * np.pi, 2000, endpoint=False)          # of a periodic function: exact to round-off
+    return 2.0 * np.pi * np.mean(1.0 / np.sqrt(1.0 - e * np.cos(E))) / SHARE
+
+
+@case("adaptive-steps", "Steps that adapt to the distance", compiled=False)
+def adaptive_steps(lesson):
+    """A revolution takes as many steps as the rule promises, from any place, and a fall ends where the sun is."""
+    counts = np.array([steps_per_revolution(lesson, Planet(e=e)) for e in SHAPES])
+    theory = np.array([counted_by_theory(e) for e in SHAPES])
+    worst, rng = 0.0, np.random.default_rng(13)
+    for _ in range(TRIED // 2):
+        mu, a, e, before, T = rng.uniform((0.5, 0.5, 0.1, 0.0, 1.0), (2.0, 2.0, 0.8, 6.0, 4.0))
+        p = Planet(mu, a, e)
+        x, v = orbit(*perihelion(p), mu, before)
+        got, _ = lesson.advance_adaptive(lesson.blanes_moan_step, attracted, before, x, v, SHARE, T, p)
+        truth = adaptive_march(lambda t, x, v, mu=mu: -mu * x / abs(x) ** 3, complex(*x), complex(*v), SHARE, T)
+        worst = np.max((worst, abs(complex(*got) - truth) / a))
+    p, r = Planet(mu=2.0), 1.5
+    fall = np.pi / np.sqrt(8.0) * np.sqrt(r**3 / p.mu)
+    start = np.array([r, 0.0]), np.zeros(2)
+    found = bisect(lambda T: refuse((BLANES_MOAN,), lambda name: lesson.advance_adaptive(
+        getattr(lesson, name), attracted, 0.0, *start, SHARE, T, p)) == 1, 0.5 * fall, 2.0 * fall)
+    return [
+        agreement("A planet at any place of its ellipse moves as by the published rule.",
+                  "positions after some revolutions: largest error, over a [-]", worst, 100.0 * ROUNDED),
+        finding(claim="A revolution with the eccentricity 0.99 takes ∮(1 − e cos E)^(−1/2) dE/share steps.",
+                quantity="steps per revolution [-]", predicted=theory[-1], measured=counts[-1],
+                tolerance=COUNTED * theory[-1] + 0.1,
+                observation=f"It takes {counts[-1]:.1f} steps, and a circle {counts[0]:.1f}. Equal steps that are as "
+                            f"short near the sun would be {1e3 * 2.0 * np.pi / SHARE:,.0f}."),
+        finding(claim="A fall from rest reaches the origin after π/√8 √(r³/μ), and no step leads beyond.",
+                quantity="longest run that ends with a number [s]", predicted=fall, measured=found,
+                tolerance=(SHARE**4 + EDGE) * fall,
+                observation=f"A run of {found:.6f} s ends; a longer one raises Diverged."),
+    ], Picture(
+        "How many steps a revolution needs", "eccentricity [-]", "adaptive steps per revolution [-]",
+        [series("∮(1 − e cos E)^(−1/2) dE/share", curve := np.linspace(0.0, 0.995, 100),
+                [counted_by_theory(e) for e in curve], LINE),
+         series("counted in ten revolutions", SHAPES, counts, DOTS)],
+        f"The share is {SHARE:g}: on a circle, the angle of a step. A comet that comes a hundred times nearer to the "
+        "sun than a planet needs only about twice as many steps.")
 
 
 @case("what-measures-methods", "What measures a method", compiled=False)

@@ -84,6 +84,6 @@ SCENE = Scene(
     ablations={
         "balls that never come near, tested at every step": lambda p: (with_balls_that_miss(*start(p)), p),
         "gravity: the path would bend": "then the formula is the first step of Newton's method",
-        "response": "lesson 7 builds it",
+        "response": "the whole loop of lesson 10 has it, and is measured",
     },
 )

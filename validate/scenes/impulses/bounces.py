@@ -237,10 +237,9 @@ SCENE = Scene(
     points=points, links=links,
     film_seconds=4.5,  # [s]: until it is at rest
     uses=("two coordinates", "one plane", "one number e for each impact"),
-    full_loop="the loop has no restitution: its contacts do not bounce",
     ablations={
         "the third dimension": in_space,
-        "rotation: the ball has no torque": "the scene spinning_bounce puts it in",
-        "detection": "one ball, one plane; lesson 6 finds contacts",
+        "rotation: the ball has no torque": "the whole loop of lesson 10 has it, and is measured",
+        "detection": "the whole loop of lesson 10 has it, and is measured",
     },
 )

@@ -51,7 +51,7 @@ def run(step, acceleration, state, p, dt, steps):
 def observe(state, p):
     """Return positions and velocities of both, of each copy: (COPIES, 8), flat."""
     x, v, _ = state
-    return np.concatenate((x[:, :, :2], v[:, :, :2]), axis=2).ravel()
+    return np.concatenate((x[:, :2, :2], v[:, :2, :2]), axis=2).ravel()
 
 
 def normal(p):
@@ -155,6 +155,15 @@ def in_space(p):
     return start(p), p
 
 
+def with_discs_that_miss(p):
+    """The same motion beside three more discs, at rest and far away: ten pairs in place of one."""
+    x, v, _ = start(p)
+    rest = np.zeros((COPIES, 3, x.shape[2]))
+    rest[:, :, 1] = -20.0 * p.R * np.arange(1.0, 4.0)
+    discs = Discs(np.full(5, p.R), np.array([1.0 / p.m1, 1.0 / p.m2, 1.0, 1.0, 1.0]), p.e)
+    return (np.concatenate((x, rest), axis=1), np.concatenate((v, 0.0 * rest), axis=1), discs), p
+
+
 SCENE = Scene(
     title="Oblique discs", lesson="impulses",
     cases=CASES, duration=T, steps=STEPS,
@@ -167,10 +176,11 @@ SCENE = Scene(
     sanity_checks=sanity_checks,
     points=points, links=links,
     uses=("two coordinates", "two radii", "one number e for the impact"),
-    full_loop="the loop has no restitution: its contacts do not bounce",
+    full_loop="contacts of the loop bounce a step late, and it does not part what overlaps: another motion",
     ablations={
         "the third dimension": in_space,
         "rotation: without friction no torque acts on a disc": "the scene spinning_bounce puts it in",
-        "detection: the only pair is tested at every step": "lesson 6 finds pairs among many",
+        "three discs that never come near, in all ten pairs": with_discs_that_miss,
+        "detection: all pairs are tested at every step": "lesson 6 finds pairs among many",
     },
 )

@@ -53,7 +53,7 @@ SCENE = Scene(
     ablations={
         "the third dimension": planet_in_space,
         "the motion of the sun": "the lighter the planet, the smaller the effect",
-        "steps that adapt to the distance": "beyond this workbook",
+        "steps that adapt to the distance": "the scene of the near collision has them",
         "rotation": "the whole loop of lesson 10 has it, and is measured",
     },
 )

@@ -180,9 +180,8 @@ SCENE = Scene(
     sanity_checks=sanity_checks,
     points=points, links=links,
     uses=("two coordinates", "one link", "one step function"),
-    full_loop="a string fixes a distance and does not turn; a joint of the loop fixes a point of a body that turns",
     ablations={
         "the third dimension": in_space,
-        "rotation of the bob": "pivoted_body_step of this lesson has it: a rigid body on a pivot",
+        "rotation of the bob": "the whole loop of lesson 10 has it, and is measured",
     },
 )

@@ -201,10 +201,9 @@ SCENE = Scene(
     sanity_checks=sanity_checks,
     points=points, links=links,
     uses=("two coordinates", "links, in sequence", "one step function"),
-    full_loop="a string fixes a distance; a joint of the loop fixes a point, and its chain of rods is another motion",
     ablations={
         "the third dimension": in_space,
-        "contact of the rope with itself": "lesson 6 finds it",
+        "contact of the rope with itself": "the whole loop of lesson 10 looks for it, and is measured",
         "bending stiffness": "cloth_step of this lesson has it",
     },
 )

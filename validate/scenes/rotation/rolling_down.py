@@ -173,5 +173,5 @@ SCENE = Scene(
     bodies=bodies, poses=poses, arrows=arrows,
     uses=("one ball", "one force at one point", "the lecture's loop"),
     ablations={"detection of the contact": "the whole loop of lesson 10 has it, and is measured",
-              "a force of the support that is solved for": "N = mg cos β, because there is no motion along the normal"},
+              "a force of the support that is solved for": "the whole loop of lesson 10 has it, and is measured"},
 )

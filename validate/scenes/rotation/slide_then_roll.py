@@ -190,5 +190,5 @@ SCENE = Scene(
     ground=True,
     uses=("one ball", "one force at one point", "the lecture's loop"),
     ablations={"detection of the contact": "the whole loop of lesson 10 has it, and is measured",
-              "a force of the support that is solved for": "N = mg, because there is no vertical motion"},
+              "a force of the support that is solved for": "the whole loop of lesson 10 has it, and is measured"},
 )
