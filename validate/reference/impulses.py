@@ -252,6 +252,38 @@ def struck(label, a, b, v, reach, m_a, m_b, e, dt, steps):
     return a + v_a * dt * (steps - n), v_a, b + v_b * dt * (steps - n), v_b
 
 
+def passed_on(label, x, v, reach, dt, steps):
+    """Return [(x, v)] of equal balls in a row, x (n,), of which the first flies with v, for each close call both ways.
+
+    Each impact passes v on at the end of the first step that ends with an overlap.  The lesson's step shares the
+    overlap between the two at once, pybullet leaves it, and pymunk takes a part of it away in the next step.  None for
+    too many ways.
+    """
+    open_runs, ends = [(tuple(x), 0, 0)], []
+    while open_runs:
+        x, flies, n = open_runs.pop()
+        if len(ends) + len(open_runs) > MOST_WAYS:
+            return None
+        ways = [(steps - n, False)]
+        if flies + 1 < len(x):
+            gap = (x[flies + 1] - x[flies] - reach) / (v * dt)
+            whole = [round(gap), round(gap) + 1] if abs(gap - round(gap)) < 1e-9 else [int(gap) + 1]
+            ways = {(min(max(k, 1), steps - n), max(k, 1) <= steps - n) for k in whole}
+        for k, hits in ways:
+            new = list(x)
+            new[flies] += k * v * dt
+            if not hits:
+                ends.append((np.array(new), v * (np.arange(len(x)) == flies)))
+                continue
+            overlap = max(reach - (new[flies + 1] - new[flies]), 0.0)
+            if label == "pymunk":
+                overlap = (1.0 - PYMUNK_BIAS**dt) * max(overlap - PYMUNK_SLOP, 0.0) if n + k < steps else 0.0
+            share = 0.0 if label == "pybullet" else 0.5 * overlap
+            new[flies], new[flies + 1] = new[flies] - share, new[flies + 1] + share
+            open_runs.append((tuple(new), flies + 1, n + k))
+    return ends
+
+
 def rounded_steps(T, dt, size):
     """Return how far round-off may bring a run of T/dt steps, relative: a few spacings for each, and some dozen."""
     return (2.0 * T / dt + 50.0) * ROUND_OFF * size
