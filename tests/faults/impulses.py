@@ -35,6 +35,8 @@ fault("bouncing_time", "a_n * (1.0 - e)", "a_n * (1.0 - e * e)", "the flights sh
 fault("bouncing_time", "if v_n <= 0.0:", "if v_n <= 0.1:", "small bounces are left out")
 fault("position_projection_step", "x = x - phi * p.n", "x = x - 2.0 * phi * p.n",
       "the ball is mirrored, not moved back")
+fault("position_projection_step", "v = v + dt * acceleration(t, x, v, p)\n    x = x + dt * v",
+      "x = x + dt * v\n    v = v + dt * acceleration(t, x, v, p)", "the ball moves with its old velocity")
 fault("backtracking_step", "slide_on_plane(x, v, a, left, p.n)", "slide_on_plane(x, v, a, 0.0, p.n)",
       "a ball that has bounced to rest stops sliding for the rest of the step")
 fault("slide_on_plane", "a - np.minimum(0.0, a @ n) * n", "tangential(a, n)", "the plane also pulls")

@@ -151,15 +151,22 @@ def discrete_up_to(fastest):
     return supports
 
 
+def swept_radius(p, dt):
+    """Return the radius [m] of the sphere that bullet_swept sweeps in a step; None for steps that are not swept.
+
+    Those are shorter than half of it.  *Source:* Bullet: changeDynamics sets the threshold of motion to half the
+    radius; btDiscreteDynamicsWorld::integrateTransforms.
+    """
+    return SWEPT * p.r if p.speed * dt >= 0.5 * SWEPT * p.r else None
+
+
 def swept_limit(p, dt):
     """Return the largest distance [m] between the position of bullet_swept and the place of impact.
 
-    Steps shorter than half the swept radius are not swept: a ball is then at most v dt deep.  Longer steps end
-    where the swept sphere touches, with the ball (1 − SWEPT) r deep, or earlier, where the ball itself is found
-    less deep. *Source:* Bullet: changeDynamics sets the threshold of motion to half the radius;
-    btDiscreteDynamicsWorld::integrateTransforms.
+    Without a sweep a ball is at most v dt deep.  With one it ends where the swept sphere touches, with the ball
+    (1 − SWEPT) r deep, or earlier, where the ball itself is found less deep.
     """
-    return p.speed * dt if p.speed * dt < 0.5 * SWEPT * p.r else max((1.0 - SWEPT) * p.r, 0.0)
+    return p.speed * dt if swept_radius(p, dt) is None else (1.0 - SWEPT) * p.r
 
 
 def bullet_boxes(low, high):

@@ -10,6 +10,8 @@ import numpy as np
 from scipy.optimize import brentq, nnls
 from scipy.spatial import ConvexHull
 
+from ..scene import Prediction
+
 COPIES = 16                  # balls per run, so that their impacts fall on all phases of a step
 SPEEDS = {"1 m/s": 1.0, "10 m/s": 10.0, "100 m/s": 1e2, "1,000 m/s": 1e3, "10,000 m/s": 1e4}     # of the balls
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
@@ -53,17 +55,69 @@ def first_root(gap, t_0, t_1):
     return brentq(gap, t_0, t_1, xtol=1e-300, rtol=4.0 * np.finfo(float).eps)
 
 
+def moments(x, v, gap, latest):
+    """Return the times (n,) at which gap(position) becomes zero for balls that fly straight.
+
+    gap is above zero at the start and below at `latest`, a time for each ball; a ball with latest 0 never touches.
+    """
+    touches = lambda y, w, last: first_root(lambda s: gap(y + s * w), 0.0, last) if last > 0.0 else np.inf
+    return np.array([touches(y, w, last) for y, w, last in zip(x, v, latest)])
+
+
 def stopped(x, v, gap, latest, t):
     """Return y and z of all balls at t, in one row: they fly straight and stop where gap(position) becomes zero.
 
-    gap is above zero at the start and below at `latest`, a time for each ball.  *Source:* x₀ + v min(t, t*), t* the
-    root, by brentq.
+    gap and latest as in `moments`.  *Source:* x₀ + v min(t, t*), t* the root, by brentq.
     """
-    found = []
-    for y, w, last in zip(x, v, latest):
-        moment = first_root(lambda s, y=y, w=w: gap(y + s * w), 0.0, last)
-        found.append(y + min(t, moment) * w)
-    return np.ravel(np.array(found)[:, 1:])
+    return np.ravel((x + np.minimum(t, moments(x, v, gap, latest))[:, None] * v)[:, 1:])
+
+
+def found_after(enters, leaves, dt, T):
+    """Return the times (n,) at which balls stop that are tested after each step only; None where round-off decides.
+
+    That is the first multiple of dt between the times at which a ball enters its target and leaves it again.  A ball
+    for which there is none flies on until T.
+    """
+    steps = enters / dt
+    if np.any(np.abs(steps - np.round(steps)) < 1e-9):
+        return None
+    found = dt * np.ceil(steps)
+    return np.where(found < leaves, np.minimum(found, T), T)
+
+
+def detection_errors(T, place, when, swept, band):
+    """Return the field `predicted_error` of a scene of balls that fly straight and stop where they are found to touch.
+
+    place(p) → (x, v), each (n, 3)    when(p, r) → the times at which balls of radius r enter and leave the target
+    swept(p, dt) → radius that an engine sweeps, None if none    band(p, dt, label) → as in Prediction
+    """
+    def predicted_error(label, p, dt):
+        """The moment of each impact is known, and so is its place in a step: a test after each step finds a ball at the
+        first multiple of dt inside, and no ball that leaves before one.  A swept ball also stops where its smaller
+        sphere touches, if that is earlier in the step.
+        """
+        if label not in ("discrete", "pybullet, swept"):
+            return None
+        v, (enters, leaves) = place(p)[1], when(p, p.r)
+        found = found_after(enters, leaves, dt, T)
+        if found is None:
+            return None
+        if label != "discrete" and (r := swept(p, dt)) is not None:
+            found = np.minimum(found, when(p, r)[0])
+        error = (found - np.minimum(enters, T))[:, None] * v
+        return Prediction(np.ravel(error[:, 1:]), band(p, dt, label))
+
+    return predicted_error
+
+
+def rounded_way(x, v, t, dt):
+    """Return the largest error [m] (n,) of balls (x, v), each (n, d), that add v dt until t (n,), along d axes.
+
+    Each sum is rounded by half a spacing of floats at its value, and v dt by half a spacing of itself.
+    """
+    k = np.arange(1, int(np.ceil(np.max(t) / dt)) + 1)
+    along = 0.5 * np.spacing(np.abs(x[..., None] + dt * k * v[..., None])) + 0.5 * np.spacing(np.abs(dt * v))[..., None]
+    return np.linalg.norm(np.sum(np.where(dt * k <= np.asarray(t)[:, None, None], along, 0.0), axis=-1), axis=-1)
 
 
 def hull_nearest(a, b, weight=1e3):

@@ -8,8 +8,13 @@ pybullet creates contacts before bodies touch, and loses the approach velocity i
 contactProcessingThreshold is 0.  It also pushes overlapping bodies apart, which adds speed, unless contactERP is 0.
 """
 
+from collections.abc import Callable
+from typing import NamedTuple
+
 import numpy as np
 from scipy.optimize import brentq
+
+from ..scene import ROUND_OFF
 
 COPIES = 16
 APART = 10.0                 # distance between copies in an engine's world [m]: they never touch
@@ -20,8 +25,10 @@ LATE = 1.5
 
 
 def delays(window):
-    """Return (COPIES,) start delays [s] between 0 and window: no two fall on the same phase of a step."""
-    return window * np.mod(GOLDEN * np.arange(COPIES), 1.0)
+    """Return (COPIES,) start delays [s] between 0 and window: no two fall on the same phase of a step, and the
+    first is not quite 0, where round-off would decide in which step an impact is found.
+    """
+    return window * np.mod(GOLDEN * (0.001 + np.arange(COPIES)), 1.0)
 
 
 # ---------------------------------------------------------------------- several points at once, by linear algebra
@@ -101,3 +108,182 @@ def soft_bounce(height, speed, t, g, omega, zeta):
         if until >= t:
             return inside(t)
         t, (y, v) = t - until, inside(until)
+
+
+# ---------------------------------------------------------------------------------------------- balls, step by step
+
+CLOSE_CALL = 1e-12           # part of the steps of a flight up to which round-off decides whether the last one hits [-]
+MOST_WAYS = 64               # that close calls may lead to
+PYMUNK_SLOP = 1e-5           # overlap that pymunk leaves [m]
+PYMUNK_BIAS = float(np.float32(0.9)) ** 60     # share of the rest that is left after a second; 0.9 has 32 bits [-]
+
+
+class Dropping(NamedTuple):
+    """What a method or an engine does with a ball above a floor, per step."""
+    ahead: float             # 1: positions take the new velocity, −1: the old one
+    step: Callable           # (y, v, push, g, e, dt) → (y, v, push, whether it hit); push [m] is added to the position
+
+
+def set_on_floor(y, v, push, g, e, dt):
+    """The lesson's: fall with the new velocity; if that ends below the floor, bounce and start again on it."""
+    v = v - g * dt
+    y = y + v * dt
+    hits = y < 0.0 and v < 0.0
+    return max(y, 0.0), -e * v if hits else v, 0.0, hits
+
+
+def hit_then_fall(y, v, push, g, e, dt):
+    """pybullet's: a ball that overlaps leaves with −e of its velocity before gravity, and then it moves."""
+    hits = y < 0.0 and v < 0.0
+    new = max(v - g * dt, max(-e * v, 0.0)) if y < 0.0 else v - g * dt
+    return y + new * dt, new, 0.0, hits
+
+
+def fall_then_hit(y, v, push, g, e, dt):
+    """pymunk's: it moves with the old velocity, and then leaves.  An overlap beyond the slop shrinks in positions."""
+    y = y + v * dt + push
+    new, push, hits = v - g * dt, 0.0, y < 0.0 and v < 0.0
+    if y < 0.0:
+        new = max(new, -e * v)
+        push = (1.0 - PYMUNK_BIAS**dt) * max(-y - PYMUNK_SLOP, 0.0)
+    return y, new, push, hits
+
+
+DROPPING = {"projecting": Dropping(1.0, set_on_floor), "pybullet": Dropping(1.0, hit_then_fall),
+            "pymunk": Dropping(-1.0, fall_then_hit)}
+
+
+def flying_steps(y, v, g, dt, ahead):
+    """Return [(how many steps from y ≥ 0 end above the floor, 0)], or two where round-off decides, the second with the
+    little [m] by which it must be lower to hit.
+
+    After k steps the height is  y + k (v ∓ ½ g dt) dt − ½ g dt² k²,  − for new velocities, + for old ones.
+    """
+    rise, curve = (v - 0.5 * ahead * g * dt) * dt, g * dt * dt
+    if rise <= 0.0 and y == 0.0:
+        return [(0, 0.0)]
+    if curve == 0.0:
+        steps = y / -rise if rise < 0.0 else np.inf
+    else:
+        steps = (rise + np.sqrt(rise * rise + 2.0 * curve * y)) / curve
+    if np.isinf(steps):
+        return [(steps, 0.0)]
+    if abs(steps - round(steps)) < CLOSE_CALL * (1.0 + steps) and round(steps) > 0:
+        little = 2.0 * CLOSE_CALL * (1.0 + steps) * (abs(rise) + curve * steps)
+        return [(round(steps), 0.0), (round(steps) - 1, little)]
+    return [(int(steps), 0.0)]
+
+
+def dropped(label, y, v, g, e, dt, steps):
+    """Return [(y, v, number of the step whose end found the first impact)] of one ball, for each close call both ways.
+
+    In the air many steps are one parabola, so that this takes a time per impact and not per step.
+    """
+    rule, open_runs, ends = DROPPING[label], [(y, v, 0.0, 0, np.inf)], []
+    while open_runs:
+        y, v, push, n, first = open_runs.pop()
+        if y >= 0.0 and push == 0.0:
+            ways = flying_steps(y, v, g, dt, rule.ahead)
+        else:
+            ways = [(0, 0.0)]
+        if len(ends) + len(open_runs) > MOST_WAYS:
+            return None
+        for k, lower in ways:
+            k = int(min(k, steps - n))
+            height = y + k * (v - 0.5 * rule.ahead * g * dt) * dt - 0.5 * g * (dt * k) ** 2
+            if n + k == steps:
+                ends.append((height, v - k * g * dt, first))
+                continue
+            height = max(height, 0.0) - lower if k else height - lower
+            now, speed, push_now, hits = rule.step(height, v - k * g * dt, push, g, e, dt)
+            found = n + k + (label != "pybullet")
+            open_runs.append((now, speed, push_now, n + k + 1, min(first, found) if hits else first))
+    return ends
+
+
+def all_dropped(label, y, v, g, e, dt, steps):
+    """Return (runs (n, 3) of n balls as `dropped`, by how much they may be off (n, 3)); None for too many ways.
+
+    Where a close call leads to several ends, it is the middle of them.
+    """
+    runs = [dropped(label, *ball, g, e, dt, steps) for ball in zip(y, v)]
+    if None in runs:
+        return None
+    low, high = np.array([np.min(run, axis=0) for run in runs]), np.array([np.max(run, axis=0) for run in runs])
+    with np.errstate(invalid="ignore"):                                                 # a ball that never hits: ∞
+        return np.where(low == high, low, 0.5 * (low + high)), np.where(low == high, 0.0, 0.5 * (high - low))
+
+
+def pushed(y, v, g, stiffness, damping, dt, steps):
+    """Return (height, speed) of balls y, v (n,) over a soft floor by symplectic Euler, which finds it step by step."""
+    for _ in range(steps):
+        v = v + dt * (np.where(y < 0.0, np.maximum(0.0, -stiffness * y - damping * v), 0.0) - g)
+        y = y + dt * v
+    return y, v
+
+
+def struck(label, a, b, v, reach, m_a, m_b, e, dt, steps):
+    """Return the end of two discs at a and b, all complex, of which b rests and a flies with v: (a, v_a, b, v_b).
+
+    They overlap first at the end of a step, and turn along the line of centres at that moment.  The lesson's step moves
+    them apart at once, pybullet never, and pymunk in positions by a part of the overlap per step.  None where round-off
+    decides in which step.
+    """
+    along = ((b - a) * v.conjugate()).real / abs(v)
+    half = np.sqrt(reach**2 - abs(b - a) ** 2 + along**2)
+    meets, leaves = (along - half) / abs(v) / dt, (along + half) / abs(v) / dt          # in steps
+    if min(abs(t - round(t)) for t in (meets, leaves)) < 1e-9:
+        return None
+    n = int(meets) + 1
+    if n > min(leaves, steps):
+        return a + v * dt * steps, v, b, 0j
+    a = a + v * dt * n
+    share_a, share_b = (m / (m_a + m_b) for m in (m_b, m_a))
+    normal = (a - b) / abs(a - b)
+    closing = min((v * normal.conjugate()).real, 0.0)
+    v_a, v_b = v - (1.0 + e) * share_a * closing * normal, (1.0 + e) * share_b * closing * normal
+    while n < steps and label != "pybullet":
+        overlap = reach - abs(a - b) - (PYMUNK_SLOP if label == "pymunk" else 0.0)
+        if overlap <= 0.0:
+            break
+        part = (1.0 - PYMUNK_BIAS**dt if label == "pymunk" else 1.0) * overlap * (a - b) / abs(a - b)
+        wait = dt if label == "pymunk" else 0.0
+        a, b, n = a + share_a * part + wait * v_a, b - share_b * part + wait * v_b, n + (label == "pymunk")
+    return a + v_a * dt * (steps - n), v_a, b + v_b * dt * (steps - n), v_b
+
+
+def passed_on(label, x, v, reach, dt, steps):
+    """Return [(x, v)] of equal balls in a row, x (n,), of which the first flies with v, for each close call both ways.
+
+    Each impact passes v on at the end of the first step that ends with an overlap.  The lesson's step shares the
+    overlap between the two at once, pybullet leaves it, and pymunk takes a part of it away in the next step.  None for
+    too many ways.
+    """
+    open_runs, ends = [(tuple(x), 0, 0)], []
+    while open_runs:
+        x, flies, n = open_runs.pop()
+        if len(ends) + len(open_runs) > MOST_WAYS:
+            return None
+        ways = [(steps - n, False)]
+        if flies + 1 < len(x):
+            gap = (x[flies + 1] - x[flies] - reach) / (v * dt)
+            whole = [round(gap), round(gap) + 1] if abs(gap - round(gap)) < 1e-9 else [int(gap) + 1]
+            ways = {(min(max(k, 1), steps - n), max(k, 1) <= steps - n) for k in whole}
+        for k, hits in ways:
+            new = list(x)
+            new[flies] += k * v * dt
+            if not hits:
+                ends.append((np.array(new), v * (np.arange(len(x)) == flies)))
+                continue
+            overlap = max(reach - (new[flies + 1] - new[flies]), 0.0)
+            if label == "pymunk":
+                overlap = (1.0 - PYMUNK_BIAS**dt) * max(overlap - PYMUNK_SLOP, 0.0) if n + k < steps else 0.0
+            share = 0.0 if label == "pybullet" else 0.5 * overlap
+            new[flies], new[flies + 1] = new[flies] - share, new[flies + 1] + share
+            open_runs.append((tuple(new), flies + 1, n + k))
+    return ends
+
+
+def rounded_steps(T, dt, size):
+    """Return how far round-off may bring a run of T/dt steps, relative: a few spacings for each, and some dozen."""
+    return (2.0 * T / dt + 50.0) * ROUND_OFF * size

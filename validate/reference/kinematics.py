@@ -7,8 +7,18 @@ whatever the size of the arm is, and the error of the orientation has no part in
 *Source:* Bullet, b3PhysicsServerCommandProcessor (processCalculateInverseKinematicsCommand) and IKTrajectoryHelper.
 """
 
+from cmath import phase, rect
+from functools import cache
+from itertools import pairwise
+
 import numpy as np
 
+from ..scene import ROUND_OFF, Prediction
+
+NUDGE = 1e-11                # of the angles at the start, to see what becomes of roundings [rad]
+ASIDE = np.array([0.5, -0.4, -1.0])                      # a direction that no symmetry knows
+ROUNDINGS = 30.0             # spacings of floats by which the angles of an iteration may be off [-]
+SURE = 0.1                   # a band above this part of the tolerance is no prediction [-]
 DAMPING, LARGEST, ITERATIONS, THRESHOLD = 0.5, 0.25 * np.pi, 20, 1e-4         # [m²], [rad], [-], [m]
 
 
@@ -61,24 +71,49 @@ def bent_to(target, lengths):
     return np.array([first, bend, 0.0])
 
 
-def bullet_ik(theta, target, lengths, direction=None, damping=DAMPING, iterations=ITERATIONS, threshold=THRESHOLD):
-    """Angles that pybullet returns for a planar arm.
+def bullet_ik(theta, target, lengths, direction=None, **settings):
+    """Angles that pybullet returns for a planar arm; settings as in `bullet_search`."""
+    return bullet_search(theta, target, lengths, direction, **settings)[0]
+
+
+def single_rounding(theta, target, lengths, direction):
+    """What is in doubt [rad] of pybullet's angles by default, because 2 arccos w, w near 1, is rounded to 32 bits.
+
+    w is rounded to 1.1e-16, and so is the quaternion that it comes from: a few times 2.2e-16/sin(φ/2) of the angle φ.
+    Where that does not tell to which float of 32 bits φ is rounded, the search is run with the other one, too.
+    """
+    missing, doubt = [], 0.0
+    angles, _ = bullet_search(theta, target, lengths, direction, missing=missing)
+    for k, angle in enumerate(map(abs, missing)):
+        single = np.float32(angle)
+        spacing, unsure = float(np.spacing(single)), 4.0 * ROUND_OFF / np.sin(0.5 * max(angle, 3e-8))
+        if 0.5 * spacing - abs(angle - float(single)) < unsure:
+            other, _ = bullet_search(theta, target, lengths, direction, off=(k, max(spacing, unsure)))
+            doubt += np.linalg.norm(other - angles)
+    return doubt
+
+
+def bullet_search(theta, target, lengths, direction=None, damping=DAMPING, iterations=ITERATIONS, threshold=THRESHOLD,
+                  missing=None, off=(-1, 0.0)):
+    """(angles that pybullet returns for a planar arm, iterations).
 
     With a direction [rad] of the last link it has six rows.  The angle of the rotation that is missing goes through a
-    float of 32 bits there.
+    float of 32 bits there.  A list `missing` receives these angles; off = (k, δ) adds δ to that of iteration k.
     """
     theta, n = np.array(theta, float), len(theta)
-    for _ in range(iterations):
+    for k in range(iterations):
         e, J = target - end_of(theta, lengths), jacobian_of(theta, lengths)
         size = np.linalg.norm(e)
         if direction is not None:
-            missing = np.float32(np.angle(np.exp(1j * (direction - np.sum(theta)))))
-            e, J = np.append(e, float(missing)), np.vstack((J, np.ones(n)))
+            angle = np.angle(np.exp(1j * (direction - np.sum(theta))))
+            e, J = np.append(e, float(np.float32(angle)) + off[1] * (k == off[0])), np.vstack((J, np.ones(n)))
+            if missing is not None:
+                missing.append(angle)
         step = np.linalg.solve(J.T @ J + damping * np.eye(n), J.T @ e)
         theta = theta + step * min(1.0, LARGEST / max(np.max(np.abs(step)), 1e-300))
         if size <= threshold:
-            break
-    return theta
+            return theta, k + 1
+    return theta, iterations
 
 
 def turned(axis, angle):
@@ -95,3 +130,104 @@ def spatial_end(theta, axes, offsets):
         R = R @ turned(axis, angle)
         x = x + R @ offset
     return x, R
+
+
+# ---------------------------------------------------------------------------------------------- every search once more
+
+def chain(theta, lengths):
+    """Joints and end [complex numbers] of a planar arm."""
+    x, phi = [0j], 0.0
+    for angle, length in zip(theta, lengths):
+        phi += angle
+        x.append(x[-1] + rect(length, phi))
+    return x
+
+
+def descended(theta, x, e, turn, gain, damping):
+    """θ + α Jᵀ e: joint k moves the end at a right angle to its way there."""
+    end = x[-1]
+    return [angle + gain * (((end - joint) * 1j).conjugate() * e).real + (gain * turn if turn is not None else 0.0)
+            for angle, joint in zip(theta, x)]
+
+
+def solved(theta, x, e, turn, gain, damping):
+    """θ + (JᵀJ + λ² 1)⁻¹ Jᵀ e, by n equations; the shortest least squares where λ = 0."""
+    levers = 1j * (x[-1] - np.array(x[:-1]))
+    J, e = np.stack((levers.real, levers.imag)), np.array([e.real, e.imag])
+    if turn is not None:
+        J, e = np.vstack((J, np.ones(len(theta)))), np.append(e, turn)
+    if damping == 0.0:
+        return list(theta + np.linalg.lstsq(J, e, rcond=1e-10)[0])
+    return list(theta + np.linalg.solve(J.T @ J + damping**2 * np.eye(len(theta)), J.T @ e))
+
+
+def pointed(theta, x, e, turn, gain, damping):
+    """From the last joint to the first, each turns the end into the direction of the target."""
+    end, target, new = x[-1], x[-1] + e, list(theta)
+    for k in reversed(range(len(theta))):
+        angle = phase((target - x[k]) * (end - x[k]).conjugate())
+        new[k] += angle
+        end = x[k] + (end - x[k]) * rect(1.0, angle)
+    return new
+
+
+def pulled(theta, x, e, turn, gain, damping):
+    """The end goes to the target and pulls the joints, each along its line to the next; then the base pulls back."""
+    lengths, n = [abs(b - a) for a, b in pairwise(x)], len(theta)
+    x = [*x[:-1], x[-1] + e]
+    for k in reversed(range(n)):
+        x[k] = x[k + 1] + (x[k] - x[k + 1]) * (lengths[k] / abs(x[k] - x[k + 1]))
+    x[0] = 0j
+    for k in range(n):
+        x[k + 1] = x[k] + (x[k + 1] - x[k]) * (lengths[k] / abs(x[k + 1] - x[k]))
+    directions = [phase(b - a) for a, b in pairwise(x)]
+    return [phase(rect(1.0, b - a)) for a, b in zip([0.0, *directions], directions)]
+
+
+SEARCHES = {"transpose": descended, "pseudo-inverse": solved, "damped": solved, "CCD": pointed, "FABRIK": pulled}
+
+
+def searched(label, theta, target, lengths, enough, most, gain, damping):
+    """(θ, iterations) of a search that ends when |e| ≤ enough, or after `most` iterations.
+
+    A target with a direction [rad], (x, y, φ), has that as a third row of J.  Nothing here is shared with the lesson.
+    """
+    theta, goal, step = list(theta), complex(*target[:2]), SEARCHES[label]
+    damping = damping if label == "damped" else 0.0
+    for n in range(most):
+        x = chain(theta, lengths)
+        e, turn = goal - x[-1], phase(rect(1.0, target[2] - sum(theta))) if len(target) == 3 else None
+        if np.hypot(abs(e), turn or 0.0) <= enough:
+            return theta, n
+        theta = step(theta, x, e, turn, gain, damping)
+    return theta, most
+
+
+def search_errors(searches, seen, truth, tolerance):
+    """The field `predicted_error` of a scene of searches.
+
+    searches(label, p) → functions of a nudge (3,) [rad] of the start that return (θ, iterations), None for others
+    seen(angles, p), truth(p), tolerance(label, p) → what is observed, shall be, and may be off, relative
+    """
+    @cache
+    def found(label, p):
+        runs = searches(label, p)
+        if runs is None:
+            return None
+        here, there = [run(0.0 * ASIDE) for run in runs], [run(NUDGE * ASIDE) for run in runs]
+        if any(a[1] != b[1] for a, b in zip(here, there)):                          # one iteration more, or less
+            return None
+        error = seen([theta for theta, _ in here], p) - truth(p)
+        size = np.linalg.norm(truth(p)) or 1.0
+        grown = np.linalg.norm(seen([theta for theta, _ in there], p) - truth(p) - error) / NUDGE
+        band = ROUND_OFF * (ROUNDINGS * (1.0 + grown) + sum(n for _, n in here)) / size
+        return Prediction(error, band) if band < SURE * tolerance(label, p) else None
+
+    def predicted_error(label, p, dt):
+        """The search itself, iteration by iteration, by complex numbers and other equations than the lesson's: it ends
+        as far from the target as this one does.  A nudge of the start says what roundings may grow to; where that is
+        not small, as on a jump near a singular arm, only the tolerance judges.
+        """
+        return found(label, p)
+
+    return predicted_error

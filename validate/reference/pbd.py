@@ -5,6 +5,7 @@ links keep their length exactly; SciPy's DOP853 integrates them.  A cloth is a s
 finds its rest state.
 """
 
+from cmath import rect
 from functools import cache
 from typing import NamedTuple
 
@@ -354,3 +355,22 @@ def rope_errors(T, rope, seen, truth, floor, labels, unfinished=()):
         return found._replace(band=found.band + 0.5 * np.linalg.norm(found.error) / error_law(label, p).size)
 
     return predicted_error
+
+
+def bullet_bob(bob, m, inertia, g, dt, steps):
+    """Return where pybullet's bob (2,) is, a body with a moment of inertia that turns about a point in the origin.
+
+    Symplectic Euler; an impulse J at the pivot then gives its velocity there, v + ω × r, the value −(bob + r)/dt, which
+    takes back in one step what the joint has opened (erp 1). Along r that acts on m alone, across it on  1/m + |r|²/I.
+    Its first step moves nothing: that is seen, at all steps, and not derived.
+    """
+    x, v, angle, omega = complex(*bob), 0j, 0.0, 0.0
+    arm = -x
+    for _ in range(steps - 1):
+        r, v = arm * rect(1.0, angle), v - 1j * g * dt
+        along = r / abs(r)
+        want = (-(x + r) / dt - v - 1j * omega * r) * along.conjugate()
+        J = along * complex(m * want.real, want.imag / (1.0 / m + abs(r) ** 2 / inertia))
+        v, omega = v + J / m, omega + (r.conjugate() * J).imag / inertia
+        x, angle = x + v * dt, angle + omega * dt
+    return np.array([x.real, x.imag])

@@ -60,6 +60,7 @@ CASES = {
         "flying disc (2D)",
     )
 }
+GRID = 10216                 # of pybullet: spacings of the grid for the points of a hull, along each axis
 MARGIN = 0.001               # of pybullet: the radius that rounds boxes, and surrounds hulls of points [m]
 
 
@@ -335,16 +336,17 @@ def tolerance(p, dt):
 
     GJK stops when it knows the distance to 1e-14 of the size.  The points may be known only to the
     root of that, but these bodies have corners, so the last step is exact.  pybullet has closed forms for some pairs
-    (Bullet's btDefaultCollisionConfiguration and btConvexConvexAlgorithm): round-off.  For the others its GJK stops
-    when the squared distance is known to 1e-12 of itself and the points to 1e-6 of the distance: 1e-5 for these.
-    Around a hull of points it has a margin, which limits the accuracy of the gap and of the
-    point on it.  pymunk's results are closed forms.
+    (Bullet's btDefaultCollisionConfiguration and btConvexConvexAlgorithm): round-off.  So has its GJK between bodies
+    that have corners without their margins: its last simplex spans the nearest features.  A ball inside a box is
+    round: the expanding polytope stops when the depth is known to 1e-12 m, which it is where the normal is off by
+    √(2 · 1e-12 m/r), and the point by that times r.  pymunk's results are closed forms.
     """
+    turned = np.sqrt(2e-12 / p.r) * np.hypot(1.0, p.r) / np.linalg.norm(truth(p, T))
     return {
         EXACT: 1e-12,
-        "pybullet": 1e-12 if p.pair in CLOSED_FORMS else 1e-5,
-        "pybullet, round edges": 1e-5,
-        "pybullet, hull": 2.0 * MARGIN / np.linalg.norm(truth(p, T)),
+        "pybullet": 1e-12 if p.pair in CLOSED_FORMS else turned,
+        "pybullet, round edges": 1e-12,
+        "pybullet, hull": 1e-12,
         "pymunk": 1e-12,
     }
 
@@ -403,10 +405,13 @@ def bullet_make(p, dt):
     return EngineRun(lambda: None, read, bullet.close)
 
 
-def with_round_edges(p, t):
-    """Return the reference solution for boxes with edges and corners rounded by MARGIN: smaller boxes with that radius.
+def with_margins(p, t):
+    """Return the reference solution for pybullet's bodies.
 
-    Source: Bullet, btBoxShape::localGetSupportingVertexWithoutMargin and setMargin, with the margin that pybullet sets.
+    box     edges and corners rounded by MARGIN: a smaller box with that radius
+    hull    MARGIN around the hull of the points, which are on a grid
+    Source: Bullet, btBoxShape::localGetSupportingVertexWithoutMargin, btConvexHullShape and setMargin, with the margin
+    that pybullet sets.
     """
     (a, b), (r_a, r_b) = SHAPES[p.pair], radii(p)
     (x, m_a), (y, m_b) = core(a, p), core(b, p)
@@ -420,10 +425,23 @@ def with_round_edges(p, t):
 
 def core(body, p):
     """Return (points, margin) of a body in pybullet."""
+    if body[0] == "hull":
+        return snapped(corners(body, p)), MARGIN
     if body[0] != "box":
         return corners(body, p), 0.0
     x, angles, half = body[1]
     return corners(("box", (x, angles, np.array(half) - MARGIN)), p), MARGIN
+
+
+def snapped(x):
+    """Return points (k, 3) on the grid on which pybullet finds the hull of a mesh.
+
+    Each axis has GRID spacings between the outermost points, and counts them from the middle, towards zero.
+    Source: Bullet, btConvexHullShape::optimizeConvexHull and btConvexHullInternal::compute.
+    """
+    low, high = x.min(axis=0), x.max(axis=0)
+    middle, spacing = 0.5 * (low + high), (high - low) / GRID
+    return middle + np.trunc((x - middle) / spacing) * spacing
 
 
 def pymunk_make(p, dt):
@@ -526,8 +544,11 @@ SCENE = Scene(
     engines=ENGINES,
     expected_departures={
         "pybullet, round edges": Departure(
-            "it rounds the edges and corners of a box with a radius of 1 mm", with_round_edges
-        )
+            "it rounds the edges and corners of a box with a radius of 1 mm", with_margins
+        ),
+        "pybullet, hull": Departure(
+            "it places the points of a hull on a grid of its own and surrounds them with a margin of 1 mm", with_margins
+        ),
     },
     orders={method.function: EXACT for method in METHODS},
     supports=supports,

@@ -16,8 +16,19 @@ from validate.engines.collisions import (
     ray_and_sweep,
     start_balls,
     swept_limit,
+    swept_radius,
 )
-from validate.reference.collisions import COPIES, at_speeds, impact_claim, impact_times, stopped, with_balls_that_miss
+from validate.reference.collisions import (
+    COPIES,
+    at_speeds,
+    detection_errors,
+    impact_claim,
+    impact_times,
+    moments,
+    rounded_way,
+    stopped,
+    with_balls_that_miss,
+)
 from validate.scene import EXACT, ROUND_OFF, Scene
 
 T = 1.0                      # [s]: every ball has hit by then
@@ -51,22 +62,52 @@ def truth(p, t):
     Source: the distance of a point from a line.
     """
     x, v = place(p)
-    nearest = [-(y[1:] @ w[1:]) / (w[1:] @ w[1:]) for y, w in zip(x, v)]
-    return stopped(x, v, lambda y: np.hypot(y[1], y[2]) - p.R - p.r, nearest, t)
+    return stopped(x, v, lambda y: np.hypot(y[1], y[2]) - p.R - p.r, nearest(p), t)
+
+
+def nearest(p):
+    """Return the times (COPIES,) at which the balls would be nearest to the axis."""
+    x, v = place(p)
+    return -np.sum(x[:, 1:] * v[:, 1:], axis=1) / np.sum(v[:, 1:] ** 2, axis=1)
+
+
+def when(p, r):
+    """Return the times at which balls of radius r enter and leave the cylinder: never, if they pass beside it."""
+    (x, v), middle, gap = place(p), nearest(p), lambda y: np.hypot(y[1], y[2]) - p.R - r
+    meets = gap((x + middle[:, None] * v).T) < 0.0
+    enters = moments(x, v, gap, np.where(meets, middle, 0.0))
+    return enters, 2.0 * middle - enters
+
+
+def rounding(p, dt):
+    """Return the largest relative error by round-off."""
+    x, v = place(p)
+    way = np.linalg.norm(rounded_way(x[:, 1:], v[:, 1:], impact_times(T), dt))
+    few = 12.0 * ROUND_OFF * np.sqrt(COPIES) * p.speed * T
+    return (way + few) / np.sqrt(1.0 - WIDEST**2) / np.linalg.norm(truth(p, T))
+
+
+def band(p, dt, label):
+    """Return how far a run may be off from its prediction: round-off, and where a swept sphere ends, as a ray does."""
+    if label == "discrete" or swept_radius(p, dt) is None:
+        return rounding(p, dt)
+    steep = np.sqrt(1.0 - WIDEST**2)
+    return np.sqrt(COPIES) * RAY_ENDS / steep / np.linalg.norm(truth(p, T)) + rounding(p, dt)
 
 
 def tolerance(p, dt):
     """Limits relative to the root of the sum of all squares.
 
-    continuous: a position is rounded by ½ spacing of the farthest one, speed · 0.7 s, at each of T/dt steps; with
-    its largest offset b (R + r) from the axis the root is 1/√(1 − b²) times as uncertain as the position.
+    continuous: a position is rounded by ½ spacing of itself at each step until the impact; with its largest offset
+    b (R + r) from the axis the root is 1/√(1 − b²) times as uncertain as the position; a dozen roundings of the whole
+    way for the time of impact, here and in the truth.
     rays: where a ray ends is measured and not derived.
-    discrete: detected at most one step late.  That is meaningless for steps that can pass the cylinder, whose shortest
-    path is 2 √(1 − b²)(R + r).
+    discrete: detected at most one step late; `predicted_error` knows when.  A step longer than the shortest path
+    through the cylinder, 2 √(1 − b²)(R + r), can pass it.
     """
     size, steep = np.linalg.norm(truth(p, T)), np.sqrt(1.0 - WIDEST**2)
     per_ball = lambda metres: np.sqrt(COPIES) * metres / size
-    rounded = per_ball((T / dt + 20.0) * ROUND_OFF * (p.speed * T + PLACE_APART * COPIES) / steep)
+    rounded = rounding(p, dt)
     late = per_ball(p.speed * dt) if p.speed * dt < 2.0 * steep * (p.R + p.r) else np.inf
     return {EXACT: rounded, 1: late + rounded, "pybullet, rays": per_ball(RAY_ENDS / steep) + rounded,
             "pybullet, swept": per_ball(swept_limit(p, dt) / steep) + rounded}
@@ -97,6 +138,7 @@ def sanity_checks():
 SCENE = Scene(
     title="Point and cylinder", **BALLS, cases=CASES, duration=T, steps=STEPS,
     start=start, run=run, truth=truth, tolerance=tolerance, engines=ENGINES, supports=discrete_up_to(FASTEST_DISCRETE),
+    predicted_error=detection_errors(T, place, when, swept_radius, band),
     sanity_checks=sanity_checks, points=points, links=links,
     uses=("a straight way", "a quadratic equation for each step, or a distance"),
     ablations={

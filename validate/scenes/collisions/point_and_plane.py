@@ -7,8 +7,26 @@ t + dt d₁/(d₁ + d₂) puts them back exactly, because the path is straight. 
 import numpy as np
 
 from solutions.support.collisions import advance_projectiles, ball_plane_gap, ball_plane_time
-from validate.engines.collisions import BALLS, PLACE_APART, discrete_up_to, ray_and_sweep, start_balls, swept_limit
-from validate.reference.collisions import COPIES, at_speeds, impact_claim, impact_times, stopped, with_balls_that_miss
+from validate.engines.collisions import (
+    BALLS,
+    PLACE_APART,
+    discrete_up_to,
+    ray_and_sweep,
+    start_balls,
+    swept_limit,
+    swept_radius,
+)
+from validate.reference.collisions import (
+    COPIES,
+    at_speeds,
+    detection_errors,
+    impact_claim,
+    impact_times,
+    moments,
+    rounded_way,
+    stopped,
+    with_balls_that_miss,
+)
 from validate.scene import EXACT, ROUND_OFF, Scene
 
 T = 1.0                      # [s]: every ball has hit by then
@@ -45,18 +63,32 @@ def truth(p, t):
 def tolerance(p, dt):
     """Limits relative to the root of the sum of all squares.
 
-    continuous: a position is rounded by ½ spacing of the farthest one at each of T/dt steps, and 1/cos 0.3 rad
-    times as much on a tilted path. discrete: detected at most one step late.  pybullet's rays are exact here, because a
+    continuous: a position is rounded by ½ spacing of itself at each step until the impact, and 1/cos 0.3 rad
+    times as much on a tilted path; a dozen roundings of the whole way for the time of impact, here and in the truth.
+    discrete: detected at most one step late; `predicted_error` knows when.  pybullet's rays are exact here, because a
     plane is not rounded.
     """
     size = np.linalg.norm(truth(p, T))
     per_ball = lambda metres: np.sqrt(COPIES) * metres / size
-    rounded = per_ball((T / dt + 20.0) * ROUND_OFF * (p.speed * T + PLACE_APART * COPIES) / np.cos(TILT))
+    rounded = rounding(p, dt)
     return {
         EXACT: rounded,
         1: per_ball(p.speed * dt) + rounded,
         "pybullet, swept": per_ball(swept_limit(p, dt) / np.cos(TILT)) + rounded,
     }
+
+
+def rounding(p, dt):
+    """Return the largest relative error by round-off."""
+    x, v = place(p)
+    way = np.linalg.norm(rounded_way(x[:, 1:], v[:, 1:], impact_times(T), dt))
+    few = 12.0 * ROUND_OFF * np.sqrt(COPIES) * p.speed * T
+    return (way + few) / np.cos(TILT) / np.linalg.norm(truth(p, T))
+
+
+def when(p, r):
+    """Return the times at which balls of radius r reach the plane; nothing leaves it again."""
+    return moments(*place(p), lambda y: y[2] - r, np.full(COPIES, 2.0 * T)), np.inf
 
 
 ENGINES = ray_and_sweep(place, EXACT, "GEOM_PLANE raised by the radius of the balls")
@@ -79,6 +111,7 @@ def sanity_checks():
 SCENE = Scene(
     title="Point and plane", **BALLS, cases=CASES, duration=T, steps=STEPS,
     start=start, run=run, truth=truth, tolerance=tolerance, engines=ENGINES, supports=discrete_up_to(FASTEST_DISCRETE),
+    predicted_error=detection_errors(T, place, when, swept_radius, lambda p, dt, label: rounding(p, dt)),
     sanity_checks=sanity_checks, points=points, links=lambda p: [(0, 1)],
     uses=("a straight way", "two signed distances for each step"),
     ablations={

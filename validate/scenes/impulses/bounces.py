@@ -13,11 +13,22 @@ from solutions.support.impulses import advance_balls
 from validate.engines.bullet import IMPACT_SETTINGS, Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_floor, pymunk_space, pymunk_world
 from validate.methods import BACKTRACKING, PENALTY, PROJECTING
-from validate.reference.impulses import APART, COPIES, LATE, delays, soft_bounce
-from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Engine, EngineRun, Scene, by_order
+from validate.reference.impulses import (
+    APART,
+    COPIES,
+    DROPPING,
+    LATE,
+    all_dropped,
+    delays,
+    pushed,
+    rounded_steps,
+    soft_bounce,
+)
+from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Engine, EngineRun, Prediction, Scene, by_order
 
 T = 1.9                      # [s]: in the third flight, clear of impacts
 STEPS = (40, 100, 200, 500, 1000, 2500, 10000)
+SPREADS = 100.0              # by which an impact on a soft floor multiplies roundings [-]
 RADIUS = 0.1                 # of the engines' balls [m]
 
 
@@ -153,6 +164,28 @@ def tolerance(p, dt):
     }
 
 
+def predicted_error(label, p, dt):
+    """Ball by ball: a flight is a parabola whose points are the ends of steps, ½ g dt per step off the true one, and an
+    impact is found at the first of these below the floor.  The lesson's step sets the ball on the floor; pybullet
+    turns it where it is; pymunk turns it and then lifts it by a part of its depth per step.  A soft floor pushes by
+    its force at the start of each step.  Where round-off decides whether a step ends below the floor, both are right.
+    """
+    law, steps = soft(p, T) if label == "penalty" else truth(p, T), round(T / dt)
+    size = np.linalg.norm(law)
+    if label == "penalty":
+        y, v = pushed(*fallen(p), p.g, p.omega**2, 2.0 * p.damping() * p.omega, dt, steps)
+        return Prediction(seen(p, T, lambda k: (y[k], v[k])) - law, rounded_steps(T, dt, SPREADS * COPIES / size))
+    if label not in DROPPING:
+        return None
+    runs = all_dropped(label, *fallen(p), p.g, p.e, dt, steps)
+    if runs is None:
+        return None
+    found, ways = runs
+    far = APART * COPIES if label == "pymunk" else 1.0
+    return Prediction(seen(p, T, lambda k: found[k, :2]) - law,
+                      1.01 * np.linalg.norm(ways[:, :2]) / size + rounded_steps(T, dt, far * np.sqrt(COPIES) / size))
+
+
 def pymunk_make(p, dt):
     space = pymunk_space((0.0, -p.g))
     pymunk_floor(space)
@@ -224,6 +257,7 @@ SCENE = Scene(
     acceleration=acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-14,
     tolerance=tolerance,
+    predicted_error=predicted_error,
     engines=ENGINES,
     expected_departures={
         "penalty": Departure("its floor is a spring that takes 30 ms to reverse the ball, at any step", soft)

@@ -10,8 +10,8 @@ from solutions.support.impulses import Discs, advance_discs
 from validate.engines.bullet import IMPACT_SETTINGS, Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_space, pymunk_world
 from validate.methods import BACKTRACKING_DISCS, PROJECTING_DISCS
-from validate.reference.impulses import APART, COPIES, delays
-from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Scene, by_order
+from validate.reference.impulses import APART, COPIES, DROPPING, delays, rounded_steps, struck
+from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Prediction, Scene, by_order
 
 T = 1.0                      # [s]: they meet before half of it
 STEPS = (20, 50, 100, 200, 500, 2000, 5000)
@@ -103,6 +103,25 @@ def tolerance(p, dt):
     return {1: late, EXACT: exact, "pymunk": late, "pybullet": late}
 
 
+def predicted_error(label, p, dt):
+    """Pair by pair: they turn at the end of the first step that ends with an overlap, along the line of centres there;
+    a step that leads beyond the other finds none.  The lesson's step moves them apart at once, pybullet never, and
+    pymunk by a part of the overlap per step.
+    """
+    if label not in DROPPING:
+        return None
+    rest, reach, law = complex(*(2.0 * p.R * normal(p))), 2.0 * p.R, truth(p, T)
+    ends = [struck(label, complex(p.v * before - p.away), rest, complex(p.v), reach, p.m1, p.m2, p.e, dt,
+                   round(T / dt)) for before in delays(WINDOW)]
+    if None in ends:
+        return None
+    found = np.array(ends)
+    size = np.linalg.norm(law)
+    far = APART * COPIES if label == "pymunk" else 5.0
+    return Prediction(np.stack((found.real, found.imag), axis=-1).ravel() - law,
+                      rounded_steps(T, dt, far * np.sqrt(COPIES) / size))
+
+
 def pymunk_make(p, dt):
     space, (x, v, _) = pymunk_space(), start(p)
     discs = [pymunk_ball(space, m, 1.0, p.R, x[k, i, :2] + (0.0, APART * k), v[k, i, :2], 0.0, p.e if i else 1.0, 0.0)
@@ -171,6 +190,7 @@ SCENE = Scene(
     start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-15,
     tolerance=tolerance,
+    predicted_error=predicted_error,
     engines=ENGINES,
     orders={"backtracking_discs_step": EXACT},
     sanity_checks=sanity_checks,

@@ -12,8 +12,8 @@ from solutions.support.impulses import SpinningBall, advance_spinning_balls
 from validate.engines.bullet import IMPACT_ITERATIONS, IMPACT_SETTINGS, Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_floor, pymunk_space, pymunk_world
 from validate.methods import BACKTRACKING_SPIN, PROJECTING_SPIN
-from validate.reference.impulses import APART, COPIES, delays
-from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Scene, by_order
+from validate.reference.impulses import APART, COPIES, DROPPING, all_dropped, delays, rounded_steps
+from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Prediction, Scene, by_order
 
 T = 1.0                      # [s]: it hits the floor after half of it
 STEPS = (20, 50, 100, 200, 500, 2000, 10000)
@@ -111,6 +111,28 @@ def tolerance(p, dt):
     return {1: late, EXACT: exact, "pymunk": late, "pybullet": late}
 
 
+def predicted_error(label, p, dt):
+    """Ball by ball: an impact is found at the first end of a step below the floor, and until then the ball goes on as
+    before.  The lesson's step sets it on the floor; pybullet turns it where it is; pymunk turns it and then lifts it by
+    a part of its depth per step.
+    """
+    before = delays(WINDOW)
+    runs = label in DROPPING and all_dropped(label, p.h - p.fall * before, np.full(COPIES, -p.fall), 0.0, p.e, dt,
+                                             round(T / dt))
+    if not runs:
+        return None
+    (found, ways), law, (v, rim) = runs, truth(p, T), after(p)
+    hit = np.minimum(found[:, 2] * dt, T)
+    done = hit < T
+    rows = (p.v * (before + hit) + v * (T - hit), found[:, 0], np.where(done, v, p.v), found[:, 1],
+            np.where(done, rim, p.rim))
+    size = np.linalg.norm(law)
+    far = APART * COPIES if label == "pymunk" else 5.0
+    unsure = 1.01 * np.linalg.norm(ways * (1.0, 1.0, abs(p.v - v) * dt))
+    return Prediction(np.stack(rows, axis=1).ravel() - law,
+                      unsure / size + rounded_steps(T, dt, far * np.sqrt(COPIES) / size))
+
+
 def pymunk_make(p, dt):
     space = pymunk_space()
     space.iterations = IMPACT_ITERATIONS
@@ -189,6 +211,7 @@ SCENE = Scene(
     acceleration=acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-15,
     tolerance=tolerance,
+    predicted_error=predicted_error,
     engines=ENGINES,
     orders={"backtracking_spin_step": EXACT},
     supports=supports,

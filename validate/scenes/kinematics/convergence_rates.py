@@ -13,8 +13,8 @@ from solutions.checks import check_positive
 from solutions.kinematics import advance_reach, make_arm_2d, reach_2d
 from validate.engines.kinematics import answers_of, bullet_reach
 from validate.methods import DAMPED, FACTORS, PSEUDO_INVERSE, TRANSPOSE
-from validate.reference.kinematics import end_of, jacobian_of, joints_of
-from validate.scene import EXACT, PYBULLET, ROUND_OFF, Engine, Scene
+from validate.reference.kinematics import SEARCHES, bullet_ik, end_of, jacobian_of, joints_of, searched
+from validate.scene import EXACT, PYBULLET, ROUND_OFF, Engine, Prediction, Scene
 
 T = 1.0
 MOVED = 1e-5                 # along a direction, to either side [rad]
@@ -115,6 +115,22 @@ def tolerance(p, dt):
     return {EXACT: lost / size, "closed form": 20.0 * ROUND_OFF / size}
 
 
+def predicted_error(label, p, dt):
+    """The difference over a finite way is taken of the same iteration, by complex numbers and other equations than the
+    lesson's.  What is left is a rounding of the end, here and there, over 2 δ σ₂.
+    """
+    target, lengths, (gain, damping) = end_of(ANGLES, lengths_of(p)), lengths_of(p), settings(p)
+    if label == "pybullet":
+        found = [bullet_ik(theta, target, lengths, damping=p.setting, iterations=1) for theta in start(p)]
+    elif label in SEARCHES:
+        found = [searched(label, theta, target, lengths, 0.0, 1, gain, damping)[0] for theta in start(p)]
+    else:
+        return None
+    size = np.linalg.norm(truth(p, T)) or 1.0
+    rounded = 2.0 * ROUND_OFF * sum(lengths) / (MOVED * directions(p)[1][1])
+    return Prediction(observe(found, p) - truth(p, T), rounded / size)
+
+
 # ---------------------------------------------------------------------------------------------- engine
 
 def pybullet_make(p, dt):
@@ -160,6 +176,7 @@ SCENE = Scene(
     title="Rates of convergence", **answers_of(METHODS), cases=CASES,
     start=start, run=run, observe=observe, truth=truth, truth_uncertainty=1e-15,
     tolerance=tolerance,
+    predicted_error=predicted_error,
     engines=ENGINES,
     supports=supports,
     omitted_methods="CCD and FABRIK have no factor that follows from J alone; pymunk has no inverse kinematics",

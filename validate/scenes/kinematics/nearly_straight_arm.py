@@ -15,13 +15,24 @@ from solutions.kinematics import make_arm_2d, reach_2d, solve_reach
 from validate.drawing import arms_and_target, two_arms_and_target_links
 from validate.engines.kinematics import answers_of, bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
-from validate.reference.kinematics import bent_to, bullet_ik, end_of, joints_of
+from validate.reference.kinematics import (
+    SEARCHES,
+    bent_to,
+    bullet_ik,
+    bullet_search,
+    end_of,
+    joints_of,
+    search_errors,
+    searched,
+)
 from validate.scene import EXACT, PYBULLET, Departure, Engine, Scene
 
 MOST = 4000                  # iterations
 ENOUGH = 1e-8                # |e| over the reach at which a search ends [-]
 LENGTHS = np.array([1.0, 0.7, 0.4])
 REACH = 2.1                  # [m]
+GAIN, LAMBDA = 0.6 / REACH**2, 0.2 * REACH               # α [1/m²], λ [m]
+CURE = {"damping": LAMBDA**2, "iterations": MOST, "threshold": 1e-8}
 METHODS = (TRANSPOSE, PSEUDO_INVERSE, DAMPED, CCD, FABRIK)
 
 
@@ -59,7 +70,7 @@ def run(step, acceleration, state, p, dt, steps):
 
 
 def arm_of(p):
-    return make_arm_2d(LENGTHS, 0.6 / REACH**2, 0.2 * REACH, -np.inf, np.inf, 0.0, 0.0)
+    return make_arm_2d(LENGTHS, GAIN, LAMBDA, -np.inf, np.inf, 0.0, 0.0)
 
 
 def observe(state, p):
@@ -91,7 +102,19 @@ def pybullet_make(p, dt, **settings):
 
 
 def cured(p, dt):
-    return pybullet_make(p, dt, damping=(0.2 * REACH) ** 2, iterations=MOST, threshold=1e-8)
+    return pybullet_make(p, dt, **CURE)
+
+
+def searches(label, p):
+    """As `search_errors` wants them.  From exactly straight the rounding of π decides."""
+    theta, target = start(p)[0], target_of(p)
+    if p.bent == 0.0 and p.y == 0.0:
+        return None
+    if label == "pybullet":
+        return [lambda nudge: bullet_search(theta + nudge, target, LENGTHS, **CURE)]
+    if label not in SEARCHES:
+        return None
+    return [lambda nudge: searched(label, theta + nudge, target, LENGTHS, ENOUGH * REACH, MOST, GAIN, LAMBDA)]
 
 
 ENGINES = (
@@ -120,6 +143,7 @@ SCENE = Scene(
     title="A nearly straight arm", **answers_of(METHODS), cases=CASES,
     start=start, run=run, observe=observe, truth=truth, truth_uncertainty=0.0, supports=supports,
     tolerance=tolerance,
+    predicted_error=search_errors(searches, observe, lambda p: truth(p, 1.0), lambda label, p: ENOUGH),
     engines=ENGINES,
     expected_departures={"pybullet, default": Departure(
         "20 iterations with its damping of ½ m² are few for a bend that small", default_law)},

@@ -14,12 +14,21 @@ from solutions.kinematics import make_arm_2d, reach_2d, solve_reach
 from validate.drawing import arms_and_target, two_arms_and_target_links
 from validate.engines.kinematics import answers_of, bullet_reach
 from validate.methods import CCD, CLOSED_2R, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
-from validate.reference.kinematics import bullet_ik, jacobian_of, joints_of
+from validate.reference.kinematics import (
+    SEARCHES,
+    bullet_ik,
+    bullet_search,
+    jacobian_of,
+    joints_of,
+    search_errors,
+    searched,
+)
 from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Engine, Scene
 
 T = 1.0
 ENOUGH = 1e-10               # |e| over the reach at which a search ends [-]
 MOST = 20_000                # iterations; the transpose needs some thousand near the edge of the reach
+GAIN, LAMBDA = 0.7, 0.1      # α times, and λ over, the square of the reach and the reach [-]
 BEND = 1.2                   # of the elbow at the start, to either side [rad]
 CURED = 1e-4                 # jointDamping over the square of the reach [-]
 METHODS = (CLOSED_2R, TRANSPOSE, PSEUDO_INVERSE, DAMPED, CCD, FABRIK)
@@ -71,7 +80,7 @@ def run(step, acceleration, state, p, dt, steps):
 
 def arm_of(p):
     size = p.l_1 + p.l_2
-    return make_arm_2d(lengths_of(p), 0.7 / size**2, 0.1 * size, -np.inf, np.inf, 0.0, 0.0)
+    return make_arm_2d(lengths_of(p), GAIN / size**2, LAMBDA * size, -np.inf, np.inf, 0.0, 0.0)
 
 
 def observe(state, p):
@@ -113,9 +122,31 @@ def pybullet_make(p, dt, **settings):
     return bullet_reach(lengths_of(p), start(p), lambda found: observe(found, p), target_of(p), **settings)
 
 
-def cured(p, dt):
+def cure(p):
     size = p.l_1 + p.l_2
-    return pybullet_make(p, dt, damping=CURED * size**2, iterations=100, threshold=1e-9 * size)
+    return {"damping": CURED * size**2, "iterations": 100, "threshold": 1e-9 * size}
+
+
+def cured(p, dt):
+    return pybullet_make(p, dt, **cure(p))
+
+
+def searches(label, p):
+    """As `search_errors` wants them."""
+    target, lengths, size = target_of(p), lengths_of(p), p.l_1 + p.l_2
+    if label == "pybullet":
+        return [lambda nudge, theta=theta: bullet_search(theta + nudge[:2], target, lengths, **cure(p))
+                for theta in start(p)]
+    if label not in SEARCHES:
+        return None
+    return [lambda nudge, theta=theta: searched(label, theta + nudge[:2], target, lengths, ENOUGH * size, MOST,
+                                                GAIN / size**2, LAMBDA * size) for theta in start(p)]
+
+
+def turned_by(angles, p):
+    """The angles, within half a turn of the truth."""
+    answer = truth(p, T)
+    return answer + np.angle(np.exp(1j * (np.concatenate(angles) - answer)))
 
 
 ENGINES = (
@@ -156,6 +187,8 @@ SCENE = Scene(
     title="Two elbows", **answers_of(METHODS), cases=CASES,
     start=start, run=run, observe=observe, truth=truth, truth_uncertainty=1e-15,
     tolerance=tolerance,
+    predicted_error=search_errors(searches, turned_by, lambda p: truth(p, T),
+                                  lambda label, p: tolerance(p, T).get(label, tolerance(p, T)[EXACT])),
     engines=ENGINES,
     expected_departures={"pybullet, default": Departure(
         "its damping of ½ m² does not know how large the arm is, and it stops after 20 iterations or at 0.1 mm",

@@ -14,12 +14,22 @@ from solutions.kinematics import make_arm_2d, pose_2d, solve_reach
 from validate.drawing import arms_and_target, two_arms_and_target_links
 from validate.engines.kinematics import answers_of, bullet_reach
 from validate.methods import CLOSED_3R, DAMPED, PSEUDO_INVERSE, TRANSPOSE
-from validate.reference.kinematics import bullet_ik, end_of, jacobian_of, joints_of
+from validate.reference.kinematics import (
+    SEARCHES,
+    bullet_ik,
+    end_of,
+    jacobian_of,
+    joints_of,
+    search_errors,
+    searched,
+    single_rounding,
+)
 from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Engine, Scene
 
 T = 1.0
 ENOUGH = 1e-10               # |e| at which a search ends [m and rad]
 MOST = 20_000                # iterations; the transpose needs some thousand
+LAMBDA = 0.1                 # λ over the reach [-]
 BEND = 1.2                   # of the elbow at the start, to either side [rad]
 METHODS = (CLOSED_3R, TRANSPOSE, PSEUDO_INVERSE, DAMPED)
 
@@ -68,7 +78,7 @@ def run(step, acceleration, state, p, dt, steps):
 
 def arm_of(p):
     size = p.l_1 + p.l_2 + p.l_3
-    return make_arm_2d(lengths_of(p), 1.0 / (2.0 * size**2 + 3.0), 0.1 * size, -np.inf, np.inf, 0.0, 0.0)
+    return make_arm_2d(lengths_of(p), 1.0 / (2.0 * size**2 + 3.0), LAMBDA * size, -np.inf, np.inf, 0.0, 0.0)
 
 
 def observe(state, p):
@@ -106,13 +116,34 @@ def tolerance(p, dt):
     The closed form: a few roundings of lengths and angles, over σ₃, here as in the truth.
 
     pybullet, cured, knows no missing rotation below 2 arccos(1 − 1.1e-16) = 3e-8 rad.  By default it follows its own
-    law.  That angle, up to π, also goes through a float of 32 bits, with a spacing of 2.4e-7, of which an iteration
-    passes on 1/(1 + ½) at most; each later iteration undoes a part of it.
+    law.  Where its angle is known too little to tell to which float of 32 bits it is rounded, an iteration is off by
+    the spacing of those; `single_rounding` finds these iterations.
     """
     over = np.sqrt(2.0) / smallest_singular_value(p) / np.linalg.norm(truth(p, T))
     size = 1.0 + p.l_1 + p.l_2 + p.l_3
     return {EXACT: 1.1 * ENOUGH * over, "closed form": 20.0 * ROUND_OFF * size * over, "pybullet": 3e-8 * over,
-            "pybullet, default": 2.4e-7 / 1.5}
+            "pybullet, default": (1e-13 + single_doubt(p)) * np.sqrt(2.0) / np.linalg.norm(truth(p, T))}
+
+
+def single_doubt(p):
+    """The larger of what is in doubt by floats of 32 bits at both answers [rad]."""
+    x, y, direction = target_of(p)
+    return max(single_rounding(theta, np.array([x, y]), lengths_of(p), direction) for theta in start(p))
+
+
+def searches(label, p):
+    """As `search_errors` wants them; pybullet, cured, is judged by its tolerance alone."""
+    if label not in SEARCHES:
+        return None
+    target, lengths, size = target_of(p), lengths_of(p), p.l_1 + p.l_2 + p.l_3
+    return [lambda nudge, theta=theta: searched(label, theta + nudge, target, lengths, ENOUGH, MOST,
+                                                1.0 / (2.0 * size**2 + 3.0), LAMBDA * size) for theta in start(p)]
+
+
+def turned_by(angles, p):
+    """The angles, within half a turn of the truth."""
+    answer = truth(p, T)
+    return answer + np.angle(np.exp(1j * (np.concatenate(angles) - answer)))
 
 
 # ---------------------------------------------------------------------------------------------- engine
@@ -162,6 +193,7 @@ SCENE = Scene(
     title="Three links and a direction", **answers_of(METHODS), cases=CASES,
     start=start, run=run, observe=observe, truth=truth, truth_uncertainty=1e-15,
     tolerance=tolerance,
+    predicted_error=search_errors(searches, turned_by, lambda p: truth(p, T), lambda label, p: tolerance(p, T)[EXACT]),
     engines=ENGINES,
     expected_departures={"pybullet, default": Departure(
         "it stops by its place alone, at 0.1 mm or after 20 iterations, and its damping of ½ does not know the size of "
