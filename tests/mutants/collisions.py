@@ -31,6 +31,9 @@ wrong("6.1", "returns only the sign of the distance")(distance(lambda p, plane: 
 edit("6.1", "returns zero for distances below 1e-15 m",
      "plane.d", "plane.d if abs(p @ plane.n + plane.d) > 1e-15 else 0.0")
 edit("6.1", "returns zero for distances below 1 µm", "plane.d", "plane.d if abs(p @ plane.n + plane.d) > 1e-6 else 0.0")
+edit("6.1", "subtracts d", "p @ plane.n + plane.d", "plane.d - p @ plane.n")
+edit("6.1", "reverses the distance: positive on the wrong side",
+     "return p @ plane.n + plane.d", "return -(p @ plane.n + plane.d)")
 
 
 # 6.2 ------------------------------------------------------------------------------------------------------------
@@ -65,6 +68,21 @@ edit("6.2", "finds an impact at once if the ball is almost there", "before <= 0.
 edit("6.2", "misses a ball that ends less than 1 pm below the plane", "after < 0.0", "after < -1e-12")
 edit("6.2", "finds no impact for a point below the plane",
      "before <= 0.0:", "before < 0.0 == r: return NEVER\n    if before <= 0.0:")
+edit("6.2", "adds r to the distance before the step",
+     "plane_distance(x_0, plane) - r,", "plane_distance(x_0, plane) + r,")
+edit("6.2", "takes d₂ with the wrong sign", "r - plane_distance(x_1, plane)", "plane_distance(x_1, plane) - r")
+edit("6.2", "subtracts the two distances in place of adding them", "(before + after)", "(before - after)")
+edit("6.2", "adds r to the distance after the step",
+     "r - plane_distance(x_1, plane)", "-r - plane_distance(x_1, plane)")
+edit("6.2", "forgets dt", "t + dt * before", "t + before")
+edit("6.2", "exchanges the positions before and after",
+     "before, after = plane_distance(x_0, plane) - r, r - plane_distance(x_1, plane)",
+     "before, after = plane_distance(x_1, plane) - r, r - plane_distance(x_0, plane)")
+edit("6.2", "subtracts the time until the impact", "t + dt * before", "t - dt * before")
+edit("6.2", "subtracts the diameter, not the radius, from the distance before",
+     "plane_distance(x_0, plane) - r,", "plane_distance(x_0, plane) - 2.0 * r,")
+edit("6.2", "returns the end of the step if the ball does not reach the plane", "return NEVER", "return t + dt")
+edit("6.2", "divides by the distance after only", "(before + after)", "after")
 
 
 # 6.3 ------------------------------------------------------------------------------------------------------------
@@ -90,6 +108,13 @@ def cylinder_contact(x, r, R):
     return worked.Contact(x - r * n, np.array([x[0], 0.0, 0.0]) + R * n, n, h - r - R, 0.0)
 
 
+edit("6.3", "exchanges the two radii",
+     "ball_contact(x, r, np.array([x[0], 0.0, 0.0]), R)", "ball_contact(x, R, np.array([x[0], 0.0, 0.0]), r)")
+edit("6.3", "takes the cylinder's axis along z", "np.array([x[0], 0.0, 0.0])", "np.array([0.0, 0.0, x[2]])")
+edit("6.3", "takes the part across the axis for the foot", "np.array([x[0], 0.0, 0.0])", "np.array([0.0, x[1], x[2]])")
+edit("6.3", "adds the ball's radius to the cylinder's, and keeps it", "0.0]), R)", "0.0]), R + r)")
+
+
 # 6.4 ------------------------------------------------------------------------------------------------------------
 @variants
 def root(which=-1.0, naive=False, rho=lambda R, r: R + r, three=False,
@@ -110,7 +135,7 @@ def root(which=-1.0, naive=False, rho=lambda R, r: R + r, three=False,
 
 right("6.4", "by the parts of the path")(root())
 wrong("6.4", "returns the second root")(root(which=1.0))
-wrong("6.4", "uses the textbook form of the root, which cancels")(root(naive=True))
+wrong("6.4", "takes the textbook form of the root, with D = B² − A C, which cancels")(root(naive=True))
 wrong("6.4", "forgets the ball")(root(rho=lambda R, r: R))
 wrong("6.4", "forgets the cylinder")(root(rho=lambda R, r: r))
 wrong("6.4", "treats the cylinder as a sphere")(root(three=True))
@@ -131,6 +156,32 @@ edit("6.4", "treats C below 1e-22 as contact", "C <= 0.0", "C <= 1e-22")
 edit("6.4", "misses an impact in the first millionth of the step", "s > 1.0", "not 1e-6 < s <= 1.0")
 edit("6.4", "treats B above −1e-18 as a ball that does not approach", "B >= 0.0", "B >= -1e-18")
 edit("6.4", "accepts an impact slightly after the end of the step", "s > 1.0", "s > 1.0 + 1e-9")
+edit("6.4", "takes D = B² − A C, which cancels",
+     "D = A * rho * rho - (y[0] * w[1] - y[1] * w[0]) ** 2", "D = B * B - A * C")
+edit("6.4", "forgets the root of D", "np.sqrt(D)", "D")
+edit("6.4", "forgets the minus sign of B", "(np.sqrt(D) - B)", "(np.sqrt(D) + B)")
+edit("6.4", "subtracts the radii", "rho = R + r", "rho = R - r")
+edit("6.4", "does not square the sum of the radii", "y @ y - rho * rho", "y @ y - rho")
+edit("6.4", "takes the end of the step for the direction: forgets the difference", "x_1[1:] - x_0[1:]", "x_1[1:]")
+edit("6.4", "takes the opposite direction", "x_1[1:] - x_0[1:]", "x_0[1:] - x_1[1:]")
+edit("6.4", "forgets dt", "t + s * dt", "t + s")
+edit("6.4", "takes the cylinder's axis along z: uses the first two coordinates",
+     "y, w = x_0[1:], x_1[1:] - x_0[1:]", "y, w = x_0[:2], x_1[:2] - x_0[:2]")
+edit("6.4", "uses 2B in place of B", "w @ w, y @ w,", "w @ w, 2.0 * (y @ w),")
+edit("6.4", "exchanges the tests of B: misses a ball that approaches", "B >= 0.0 or", "B <= 0.0 or")
+edit("6.4", "takes the sum of the products in the last form of D",
+     "(y[0] * w[1] - y[1] * w[0]) ** 2", "(y[0] * w[1] + y[1] * w[0]) ** 2")
+
+
+@right("6.4", "by the other form of the root")
+def cylinder_impact_time(t, dt, x_0, x_1, r, R):
+    y, w = x_0[1:], (x_1 - x_0)[1:]
+    A, B, inside = w @ w, y @ w, y @ y <= (R + r)**2
+    D = A * (R + r)**2 - (y[0] * w[1] - y[1] * w[0]) ** 2
+    if inside or B >= 0.0 or D < 0.0:
+        return t if inside else NEVER
+    s = (-B - np.sqrt(D)) / A
+    return NEVER if s > 1.0 else t + s * dt
 
 
 # 6.5 ------------------------------------------------------------------------------------------------------------
@@ -168,6 +219,12 @@ edit("6.5", "refuses two ends that are nearly equal", "length_squared == 0.0", "
 edit("6.5", "takes what is close to an end for the end",
      "np.minimum(1.0, np.maximum(0.0, (p - a) @ along / length_squared))",
      "(lambda s: 0.0 if s < 1e-6 else 1.0 if s > 1.0 - 1e-6 else s)((p - a) @ along / length_squared)")
+edit("6.5", "measures the offset from b", "(p - a) @ along", "(p - b) @ along")
+edit("6.5", "measures the offset from the point to the end", "(p - a) @ along", "(a - p) @ along")
+edit("6.5", "exchanges the limits, so that one end always wins",
+     "np.minimum(1.0, np.maximum(0.0,", "np.maximum(1.0, np.minimum(0.0,")
+edit("6.5", "adds the share to the other end", "return a + np", "return b + np")
+edit("6.5", "subtracts the share from a", "return a + np", "return a - np")
 
 
 # 6.6 ------------------------------------------------------------------------------------------------------------
@@ -197,6 +254,15 @@ edit("6.6", "tests the signs with a tolerance of 1e-30", "np.all(turns > 0.0) or
      "np.all(turns > 1e-30) or np.all(turns < -1e-30)")
 edit("6.6", "tests the signs with a tolerance of 1e-12", "np.all(turns > 0.0) or np.all(turns < 0.0)",
      "np.all(turns > 1e-12) or np.all(turns < -1e-12)")
+edit("6.6", "forgets R",
+     "np.minimum(two_edges, edge_axis_distance(c, a)) - R - r", "np.minimum(two_edges, edge_axis_distance(c, a)) - r")
+edit("6.6", "adds r to the gap", "c, a)) - R - r", "c, a)) - R + r")
+edit("6.6", "takes the greatest of the three distances", "return np.minimum(two_edges", "return np.maximum(two_edges")
+edit("6.6", "pierces where any of the three signs is positive", "np.all(turns > 0.0)", "np.any(turns > 0.0)")
+edit("6.6", "has the gap of a pierced face positive", "return -R - r", "return R + r")
+edit("6.6", "takes the first two coordinates: projects along z",
+     "a[1] * b[2] - a[2] * b[1]", "a[0] * b[1] - a[1] * b[0]")
+edit("6.6", "has a wrong sign in a cross product", "c[1] * a[2] - c[2] * a[1]", "a[1] * c[2] - a[2] * c[1]")
 
 
 # 6.7 ------------------------------------------------------------------------------------------------------------
@@ -252,6 +318,13 @@ edit("6.7", "compares the first two edges by their distance from a corner, not f
      FIRST_TWO, FIRST_TWO.replace("nearer(p", "nearer(c"))
 edit("6.7", "refuses needles: forgets the root of N · N", "np.sqrt(dot(N, N)) > DEGENERATE_AREA * longest",
      "dot(N, N) > DEGENERATE_AREA * longest**2")
+edit("6.7", "subtracts N, not the part along it: forgets the division by N · N",
+     "dot(p - a, N) / dot(N, N) * N", "dot(p - a, N) * N")
+edit("6.7", "adds the part along N", "q = p - dot", "q = p + dot")
+edit("6.7", "divides by |N| once", "dot(p - a, N) / dot(N, N) * N", "dot(p - a, N) / np.sqrt(dot(N, N)) * N")
+edit("6.7", "takes q as inside where one of the three tests holds",
+     "N) >= 0.0 and dot(cross(c - b, q - b), N) >= 0.0 and", "N) >= 0.0 or dot(cross(c - b, q - b), N) >= 0.0 or")
+edit("6.7", "projects p itself, not p − a", "dot(p - a, N) /", "dot(p, N) /")
 
 
 # 6.8 ------------------------------------------------------------------------------------------------------------
@@ -284,6 +357,23 @@ edit("6.8", "takes −1 for the sign of 0", "y[i] >= 0.0", "y[i] > 0.0")
 edit("6.8", "treats a picometre outside as inside", "depth[i] < 0.0", "depth[i] < -1e-12")
 edit("6.8", "treats a minute distance outside as inside", "depth[i] < 0.0", "depth[i] < -1e-20")
 edit("6.8", "takes +1 for the sign of coordinates above −1 pm", "y[i] >= 0.0", "y[i] >= -1e-12")
+edit("6.8", "takes the full edges for the half edges", "depth = box.half", "depth = 0.5 * box.half")
+edit("6.8", "returns q in the box's axes", "box.x + box.R @ q", "box.x + q")
+edit("6.8", "forgets the box's centre in the nearest point", "box.x + box.R @ q", "box.R @ q")
+edit("6.8", "drops the absolute value of the coordinates in the depth", "box.half - np.abs(y)", "box.half - y")
+edit("6.8", "forgets r in the gap inside", "-depth[i] - r", "-depth[i]")
+edit("6.8", "adds r to the gap inside", "-depth[i] - r", "r - depth[i]")
+edit("6.8", "takes the row of R for the axis", "column(box.R, i)", "box.R[i].copy()")
+edit("6.8", "exchanges the two points inside",
+     "Contact(x - r * n, x + depth[i] * n,", "Contact(x + depth[i] * n, x - r * n,")
+edit("6.8", "puts p_a on the other side of the ball", "x - r * n, x", "x + r * n, x")
+edit("6.8", "puts p_b on the other side", "x + depth[i] * n", "x - depth[i] * n")
+edit("6.8", "gives the ball's contact outside a radius of zero", "ball_contact(x, r, box", "ball_contact(x, 0.0, box")
+edit("6.8", "treats the ball as inside where a single coordinate is", "if depth[i] < 0.0", "if np.max(depth) < 0.0")
+edit("6.8", "limits the coordinates from above only",
+     "np.minimum(box.half, np.maximum(-box.half, y))", "np.minimum(box.half, y)")
+edit("6.8", "uses the body axis in place of the world axis for the normal", "column(box.R, i)", "np.eye(3)[i]")
+edit("6.8", "rotates q by the transpose", "box.R @ q", "box.R.T @ q")
 
 
 # 6.9 ------------------------------------------------------------------------------------------------------------
@@ -302,6 +392,16 @@ edit("6.9", "extends the box by the largest move in all coordinates",
      "np.maximum(high, high + move)", "high + max(0.0, np.max(move))")
 edit("6.9", "ignores moves below 1 pm", "return", "move = np.where(np.abs(move) < 1e-12, 0.0, move); return")
 wrong("6.9", "does not sweep")(sweep(lambda low, high, move: (low, high)))
+edit("6.9", "exchanges minimum and maximum",
+     "np.minimum(low, low + move), np.maximum(high, high + move)",
+     "np.maximum(low, low + move), np.minimum(high, high + move)")
+edit("6.9", "subtracts the move",
+     "low + move), np.maximum(high, high + move)", "low - move), np.maximum(high, high - move)")
+edit("6.9", "returns the upper corner first",
+     "return np.minimum(low, low + move), np.maximum(high, high + move)",
+     "return np.maximum(high, high + move), np.minimum(low, low + move)")
+edit("6.9", "adds the move to the width: the upper corner from the lower one",
+     "np.maximum(high, high + move)", "np.maximum(high, low + move)")
 
 
 # 6.10 -----------------------------------------------------------------------------------------------------------
@@ -339,6 +439,10 @@ edit("6.10", "counts boxes as touching that are up to 1 nm apart", "boxes_touch(
      "boxes_touch(low - 5e-10, high + 5e-10, i, low - 5e-10, high + 5e-10, j)")
 edit("6.10", "checks its boxes after the search", "check_boxes(low, high)",
      "check_boxes(low[:len(high)], high)")
+edit("6.10", "starts each inner loop at 1, not at i + 1", "range(i + 1, len(low))", "range(1, len(low))")
+edit("6.10", "returns the pairs that do not touch", "if boxes_touch", "if not boxes_touch")
+edit("6.10", "stops at the first pair of each box", "found.append((i, j))", "found.append((i, j)); break")
+edit("6.10", "starts each inner loop at i + 2", "range(i + 1, len(low))", "range(i + 2, len(low))")
 
 
 # 6.11 -----------------------------------------------------------------------------------------------------------
@@ -387,6 +491,26 @@ edit("6.11", "visits at most 10,000 pairs of nodes", "while len(waiting) > 0",
      "for _ in (k for k in range(10000) if waiting)")
 
 
+@right("6.11", "opens the smaller node first")
+def find_intersections(a, b):
+    found, waiting = [], [(0, 0)]
+    while waiting:
+        i, j = waiting.pop(0)
+        if worked.boxes_touch(a.low, a.high, i, b.low, b.high, j):
+            down_a, down_b = a.child[i], b.child[j]
+            if not down_a and not down_b:
+                worked.touching_items(a, i, b, j, found)
+            elif not down_b or (down_a and worked.half_perimeter(a, i) < worked.half_perimeter(b, j)):
+                waiting += [(down_a, j), (down_a + 1, j)]
+            else:
+                waiting += [(i, down_b), (i, down_b + 1)]
+    return worked.as_pairs(found)
+
+
+edit("6.11", "forgets the first child", "waiting.append((down_a, j))", "pass")
+edit("6.11", "forgets the second child of b", "waiting.append((i, down_b + 1))", "pass")
+
+
 # 6.12 -----------------------------------------------------------------------------------------------------------
 @variants
 def edges(inner=min, outer=max, sign=1.0, centre=False, checked=True, of=lambda a, b: (a, b)):
@@ -421,6 +545,11 @@ edit("6.12", "returns zero for gaps below 1 pm", "return greatest, edge",
 edit("6.12", "starts the minimum at 1e15 m, not at infinity", "outward(a, i), np.inf", "outward(a, i), 1e15")
 edit("6.12", "starts the minimum at 1e9 m, not at infinity", "outward(a, i), np.inf", "outward(a, i), 1e9")
 edit("6.12", "starts the maximum at −1e6 m, not at minus infinity", "-np.inf", "-1e6")
+edit("6.12", "forgets a's corner", "n @ (b[j] - a[i])", "n @ b[j]")
+edit("6.12", "keeps the gap of the last edge", "greatest, edge = gap, i", "edge = i")
+edit("6.12", "counts the edges from 1", "return greatest, edge", "return greatest, edge + 1")
+edit("6.12", "does not start the minimum again for each edge",
+     "n, gap = outward(a, i), np.inf", "n, gap = outward(a, i), (np.inf if i == 0 else gap)")
 
 
 # 6.13 -----------------------------------------------------------------------------------------------------------
@@ -461,6 +590,13 @@ edit("6.13", "has room for 8 corners only", "2 * len(y)", "8")
 edit("6.13", "has room for 10 corners only", "2 * len(y)", "10")
 edit("6.13", "has room for 16 corners only", "2 * len(y)", "16")
 edit("6.13", "has room for 20 corners only", "2 * len(y)", "20")
+edit("6.13", "subtracts the share of the edge", "y[i] + s_i / (s_i - s_j)", "y[i] - s_i / (s_i - s_j)")
+edit("6.13", "divides by the sum of the two distances", "s_i / (s_i - s_j)", "s_i / (s_i + s_j)")
+edit("6.13", "adds d", "n @ y[i] - d, n @ y[j] - d", "n @ y[i] + d, n @ y[j] + d")
+edit("6.13", "adds no crossing from the last corner to the first", "(k > 2 or i == 0)", "i < k - 1")
+edit("6.13", "adds a crossing where the signs are equal", "s_i * s_j < 0.0", "s_i * s_j > 0.0")
+edit("6.13", "adds a crossing only where it comes in", "s_i * s_j < 0.0", "s_i > 0.0 and s_j < 0.0")
+edit("6.13", "adds the whole edge vector", "s_i / (s_i - s_j) * (y[j] - y[i])", "s_i / (s_i - s_j) * y[j]")
 
 
 # 6.14 -----------------------------------------------------------------------------------------------------------
@@ -506,6 +642,12 @@ wrong("6.14", "takes the axis with the least gap")(boxes(choose=lambda new, old:
 wrong("6.14", "takes the longest half edge for the half width")(boxes(width=lambda box, n: float(np.max(box.half))))
 edit("6.14", "starts the maximum at −1e6 m, not at minus infinity", "-np.inf", "-1e6")
 edit("6.14", "requires an advantage for faces, too", "EDGE_PREFERENCE if k >= 6 else 0.0", "EDGE_PREFERENCE")
+edit("6.14", "adds the half widths",
+     "- half_width(a, axis) - half_width(b, axis)", "+ half_width(a, axis) + half_width(b, axis)")
+edit("6.14", "forgets the half width of b", "- half_width(b, axis)", "")
+edit("6.14", "drops the absolute value of the distance", "abs(dot(r, axis))", "dot(r, axis)")
+edit("6.14", "leaves out the last six axes", "range(15)", "range(9)")
+edit("6.14", "counts the axes from 1", "-best), number", "-best), number + 1")
 
 
 # 6.15 -----------------------------------------------------------------------------------------------------------
@@ -547,6 +689,10 @@ edit("6.15", "treats a distance below 1e-15 m as overlap", "if far_enough(", "if
 edit("6.15", "stops while the bounds still differ", "if far_enough(v, a[i] - b[j])",
      "if v @ v - v @ (a[i] - b[j]) < 1e-26")
 edit("6.15", "treats a distance below 1 nm as overlap", "if far_enough(", "if v @ v < 1e-18 or far_enough(")
+edit("6.15", "takes the difference the other way", "v = weights @ (p - q)", "v = weights @ (q - p)")
+edit("6.15", "appends the corner of b to p", "np.concatenate((q, b[j:j + 1]))", "np.concatenate((q, a[i:i + 1]))")
+edit("6.15", "stops where it should go on, and goes on where it should stop", "if far_enough", "if not far_enough")
+edit("6.15", "adds the corner of b in place of subtracting it", "a[i] - b[j])", "a[i] + b[j])")
 
 
 # 6.16 -----------------------------------------------------------------------------------------------------------
@@ -581,6 +727,20 @@ edit("6.16", "limits the acceleration to 1e6 m/s²", "k * (1.0 / g - 1.0 / reach
 edit("6.16", "uses a gap of at least 1 mm", "g = distance - radius",
      "g = max(distance - radius, 1e-3 * (distance > radius))")
 edit("6.16", "measures its reach from the centre", "g >= reach", "distance >= reach")
+edit("6.16", "forgets k", "k * (1.0 / g", "(1.0 / g")
+edit("6.16", "adds the two terms of the potential", "(1.0 / g - 1.0 / reach)", "(1.0 / g + 1.0 / reach)")
+edit("6.16", "keeps the square of the potential", "(1.0 / g - 1.0 / reach) /", "(1.0 / g - 1.0 / reach)**2 /")
+edit("6.16", "keeps the factor ½ of the potential", "k * (1.0", "0.5 * k * (1.0")
+edit("6.16", "divides by one power of the gap too many", "(g * g * distance)", "(g * g * g * distance)")
+edit("6.16", "forgets the inner derivative", "(g * g * distance)", "distance")
+edit("6.16", "takes the inner derivative with the distance from the centre, not with the gap",
+     "(g * g * distance)", "(distance * distance * distance)")
+edit("6.16", "adds the radius to the distance", "distance - radius", "distance + radius")
+edit("6.16", "does not root the distance", "np.sqrt(r @ r)", "r @ r")
+edit("6.16", "omits the term of the reach", "(1.0 / g - 1.0 / reach)", "(1.0 / g)")
+edit("6.16", "repels beyond the reach only", "g >= reach", "g <= reach")
+edit("6.16", "repels by the gap itself, not by one over it",
+     "k * (1.0 / g - 1.0 / reach) / (g * g * distance) * r", "k * (reach - g) / distance * r")
 
 
 # 6.17 -----------------------------------------------------------------------------------------------------------
@@ -630,3 +790,18 @@ edit("6.17", "treats an offset below a hundredth of the radius as head-on", "off
 edit("6.17", "treats an offset below 1 µm as head-on", "offset > 0.0", "offset >= 1e-6")
 edit("6.17", "treats an offset close to zero as head-on", "offset > 0.0", "not np.isclose(offset, 0.0)")
 edit("6.17", "ignores a disc that it is inside", "offset >= radius", "offset >= radius or np.sqrt(r @ r) <= radius")
+edit("6.17", "measures the offset the wrong way: from the centre to the body", "r = centre - x", "r = x - centre")
+edit("6.17", "adds the offset, where only the rest of the radius is missing", "(radius - offset)", "(radius + offset)")
+edit("6.17", "steers along r, not across v", "aside = -y / offset", "aside = -r / np.sqrt(r @ r)")
+edit("6.17", "does not normalise the offset", "aside = -y / offset", "aside = -y")
+edit("6.17", "steers four times as much", "2.0 * (radius", "4.0 * (radius")
+edit("6.17", "uses v in place of its direction for the distance along", "along = r @ e", "along = r @ v")
+edit("6.17", "takes the offset from the whole distance, not from its part across", "y = r - along * e", "y = r")
+edit("6.17", "adds the part along the motion", "y = r - along * e", "y = r + along * e")
+edit("6.17", "uses `ahead` in place of the time until it passes", "/ tau**2", "/ ahead**2")
+edit("6.17", "squares the offset that is missing", "2.0 * (radius - offset)", "2.0 * (radius - offset)**2")
+edit("6.17", "steers only where it would miss", "offset >= radius", "offset <= radius")
+edit("6.17", "divides by the square of the speed for the time",
+     "np.sqrt(y @ y), along / speed", "np.sqrt(y @ y), along / speed**2")
+edit("6.17", "takes the distance for the time: does not divide by the speed",
+     "np.sqrt(y @ y), along / speed", "np.sqrt(y @ y), along")

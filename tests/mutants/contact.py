@@ -54,6 +54,17 @@ edit("9.1", "takes the arms to the surface of a, not to the middle of the gap", 
      "contacts.p[k, 0] + 0.5 * contacts.gap[k] * n_x - x")
 edit("9.1", "omits lever arms below 1 µm", "sign * (r_x * d_y - r_y * d_x)",
      "sign * (r_x * d_y - r_y * d_x) * (abs(r_x * d_y - r_y * d_x) > 1e-6)")
+edit("9.1", "gives a the minus sign and b the plus sign",
+     "(contacts.a[k], 1.0), (contacts.b[k], -1.0)", "(contacts.a[k], -1.0), (contacts.b[k], 1.0)")
+edit("9.1", "takes r · d in place of r × d", "(r_x * d_y - r_y * d_x)", "(r_x * d_x + r_y * d_y)")
+edit("9.1", "takes the normal for the tangent, too", "(2 * k + 1, -n_y, n_x)", "(2 * k + 1, n_x, n_y)")
+edit("9.1", "exchanges the components of the normal for the tangent without a sign",
+     "(2 * k + 1, -n_y, n_x)", "(2 * k + 1, n_y, n_x)")
+edit("9.1", "uses the arm of a for both bodies",
+     "contacts.p[k, 0] - x[body, 0], contacts.p[k, 1] - x[body, 1]",
+     "contacts.p[k, 0] - x[contacts.a[k], 0], contacts.p[k, 1] - x[contacts.a[k], 1]")
+edit("9.1", "forgets the sign in the rotation of b", "sign * (r_x", "(r_x")
+edit("9.1", "adds the two products of the arm", "(r_x * d_y - r_y * d_x)", "(r_x * d_y + r_y * d_x)")
 
 
 # 9.2 ------------------------------------------------------------------------------------------------------------
@@ -76,6 +87,9 @@ wrong("9.2", "omits the rotation")(delassus(masses=lambda w: w * np.resize([1.0,
 wrong("9.2", "returns a matrix for the bodies, not for the contacts")(delassus(turned=False))
 wrong("9.2", "keeps only the diagonal")(delassus(diagonal=True))
 wrong("9.2", "gives fixed bodies a small inverse mass")(delassus(masses=lambda w: np.maximum(w, 1e-13)))
+edit("9.2", "divides by the inverse masses", "(G * w)", "(G / np.where(w > 0.0, w, np.inf))")
+edit("9.2", "squares the inverse masses", "(G * w)", "(G * w * w)")
+edit("9.2", "reverses the sign", "return (G", "return -(G")
 
 
 # 9.3 ------------------------------------------------------------------------------------------------------------
@@ -108,6 +122,13 @@ wrong("9.3", "omits the pull of a contact that approaches")(
     lcp_residual(pair=lambda x, u: np.where(u < 0.0, u, np.minimum(x, u))))
 wrong("9.3", "adds pull and approach")(
     lcp_residual(pair=lambda x, u: np.where((x < 0.0) & (u < 0.0), x + u, np.minimum(x, u))))
+
+
+edit("9.3", "uses the whole product A λ in place of the diagonal's", "np.diag(A) * lam,", "A @ lam,")
+edit("9.3", "takes the smallest one", "np.max(np.abs", "np.min(np.abs")
+edit("9.3", "returns the largest one with its sign",
+     "np.max(np.abs(np.minimum(np.diag(A) * lam, A @ lam + b)))", "np.max(np.minimum(np.diag(A) * lam, A @ lam + b))")
+edit("9.3", "divides by the diagonal", "np.diag(A) * lam", "lam / np.diag(A)")
 
 
 # 9.4 ------------------------------------------------------------------------------------------------------------
@@ -146,6 +167,16 @@ edit("9.4", "changes its input", "lam = lam.copy()", "pass")
 edit("9.4", "omits b", "+ b[k]", "")
 edit("9.4", "ignores velocities below 1 nm/s", "lam[k] = np.maximum",
      "if abs(A[k] @ lam + b[k]) > 1e-9: lam[k] = np.maximum")
+edit("9.4", "adds the correction", "lam[k] - omega", "lam[k] + omega")
+edit("9.4", "takes the smaller of the two in place of the larger", "np.maximum(0.0", "np.minimum(0.0")
+edit("9.4", "divides by the relaxation", "omega * (A[k]", "1.0 / omega * (A[k]")
+edit("9.4", "subtracts b", "A[k] @ lam + b[k]", "A[k] @ lam - b[k]")
+edit("9.4", "forgets the impulse so far: starts each from zero",
+     "np.maximum(0.0, lam[k] - omega", "np.maximum(0.0, -omega")
+edit("9.4", "multiplies by the diagonal", "/ A[k, k]", "* A[k, k]")
+edit("9.4", "limits the correction, not the impulse",
+     "np.maximum(0.0, lam[k] - omega * (A[k] @ lam + b[k]) / A[k, k])",
+     "lam[k] + np.maximum(0.0, -omega * (A[k] @ lam + b[k]) / A[k, k])")
 
 
 # 9.5 to 9.7 -----------------------------------------------------------------------------------------------------
@@ -202,6 +233,20 @@ wrong("9.7", "returns half of it")(relaxation(two=1.0))
 wrong("9.7", "squares the factor")(relaxation(factor=lambda omega: (omega - 1.0) ** 2))
 edit("9.7", "limits ρ to 0.999", "1.0 - rho", "1.0 - min(rho, 0.999)")
 wrong("9.7", "returns ω/2 for the factor")(relaxation(factor=lambda omega: 0.5 * omega))
+edit("9.5", "uses degrees", "0.5 * np.pi / n", "90.0 / n")
+edit("9.5", "uses n + 1 in place of n", "0.5 * np.pi / n", "0.5 * np.pi / (n + 1)")
+edit("9.5", "multiplies the angle by n", "0.5 * np.pi / n", "0.5 * np.pi * n")
+edit("9.5", "returns 1 minus the factor",
+     "return np.cos(0.5 * np.pi / n) ** 2", "return 1.0 - np.cos(0.5 * np.pi / n) ** 2")
+edit("9.6", "returns 1 minus the factor", "return r / (1.0 + r)", "return 1.0 / (1.0 + r)")
+edit("9.6", "returns the inverse of the factor", "return r / (1.0 + r)", "return (1.0 + r) / r")
+edit("9.6", "squares the factor", "return r / (1.0 + r)", "return (r / (1.0 + r))**2")
+edit("9.7", "forgets the 1 in the denominator", "(1.0 + np.sqrt(1.0 - rho))", "np.sqrt(1.0 - rho)")
+edit("9.7", "adds ρ under the root", "1.0 - rho)", "1.0 + rho)")
+edit("9.7", "subtracts the root", "1.0 + np.sqrt", "1.0 - np.sqrt")
+edit("9.7", "returns 1 − ω for the factor", "omega - 1.0", "1.0 - omega")
+edit("9.7", "returns the factor first", "return omega, omega - 1.0", "return omega - 1.0, omega")
+edit("9.7", "returns ρ for the factor", "omega - 1.0", "rho")
 
 
 # 9.8 ------------------------------------------------------------------------------------------------------------
@@ -246,6 +291,9 @@ edit("9.8", "solves for the impulses of all contacts", "if pushes[k]:", "if True
 edit("9.8", "reverses the sign of b", "A[k], -b[k]", "A[k], b[k]")
 edit("9.8", "does not check its input", "check_independent(A)", "pass")
 edit("9.8", "returns velocities", "return lam", "return u")
+edit("9.8", "forgets the minus sign of the right-hand side", "A[k], -b[k]", "A[k], b[k]")
+edit("9.8", "solves for the absolute value: never sees a pull",
+     "lam = solve(matrix, right)", "lam = np.abs(solve(matrix, right))")
 
 
 # 9.9 ------------------------------------------------------------------------------------------------------------
@@ -293,6 +341,12 @@ edit("9.9", "allows a little friction without a normal impulse", "else 0.0", "el
 edit("9.9", "multiplies an infinite μ by a normal impulse of zero",
      "mu[n // 2] * J[n] if J[n] > 0.0 else 0.0", "mu[n // 2] * np.maximum(0.0, J[n])")
 edit("9.9", "omits b", "A @ J + b", "A @ J")
+edit("9.9", "adds the velocity over k", "J[n] - u[n] / A[n, n])", "J[n] + u[n] / A[n, n])")
+edit("9.9", "subtracts b", "A @ J + b", "A @ J - b")
+edit("9.9", "takes the friction's diagonal for the normal", "A[n, n] * np.abs(J_n", "A[t, t] * np.abs(J_n")
+edit("9.9", "omits the impulses in the velocity", "A @ J + b", "b")
+edit("9.9", "does not limit the normal impulse to zero or more",
+     "np.maximum(0.0, J[n] - u[n] / A[n, n])", "J[n] - u[n] / A[n, n]")
 
 
 # 9.10 -----------------------------------------------------------------------------------------------------------
@@ -349,6 +403,17 @@ wrong("9.10", "ignores velocities below 1 nm/s")(coned(quiet=1e-9))
 edit("9.10", "changes its input", "J = J.copy()", "pass")
 edit("9.10", "multiplies an infinite μ by a normal impulse of zero",
      "mu[n // 2] * J[n] if J[n] > 0.0 else 0.0", "mu[n // 2] * J[n]")
+edit("9.10", "adds the correction of the normal impulse", "J[n] - (A[n]", "J[n] + (A[n]")
+edit("9.10", "adds the correction of the friction", "J[t] - (A[t]", "J[t] + (A[t]")
+edit("9.10", "does not limit the friction",
+     "np.minimum(np.maximum(J[t] - (A[t] @ J + b[t]) / A[t, t], -limit), limit)", "J[t] - (A[t] @ J + b[t]) / A[t, t]")
+edit("9.10", "omits μ in the limit", "mu[n // 2] * J[n]", "J[n]")
+edit("9.10", "uses the friction coefficient of the first contact for all", "mu[n // 2]", "mu[0]")
+edit("9.10", "uses the friction's diagonal for the normal impulse", "/ A[n, n]", "/ A[t, t]")
+edit("9.10", "omits b", "A[n] @ J + b[n]", "A[n] @ J")
+edit("9.10", "always slides: takes the limit",
+     "np.minimum(np.maximum(J[t] - (A[t] @ J + b[t]) / A[t, t], -limit), limit)",
+     "limit * np.sign(J[t] - (A[t] @ J + b[t]) / A[t, t])")
 
 
 # 9.11 -----------------------------------------------------------------------------------------------------------
@@ -395,6 +460,9 @@ edit("9.11", "uses the inertia of the last body for all", "inverse_masses(inv_ma
 edit("9.11", "uses the mass of the last body for all", "inverse_masses(inv_mass, inv_inertia)",
      "inverse_masses(np.where(inv_mass > 0.0, inv_mass[-1], 0.0), inv_inertia)")
 edit("9.11", "omits the friction", "@ (w * load.ravel()), mu)", "@ (w * load.ravel()), 0.0 * mu)")
+edit("9.11", "subtracts the forces of the contacts",
+     "+ np.ascontiguousarray(G.T) @ F)", "- np.ascontiguousarray(G.T) @ F)")
+edit("9.11", "does not divide by the masses at the end", "a = w * (load", "a = (load")
 
 
 # 9.12 -----------------------------------------------------------------------------------------------------------
@@ -432,6 +500,16 @@ edit("9.12", "limits the stiffness", "s = 2.0", "s = min(5.0, 2.0 * np.pi * hert
 edit("9.12", "uses at least a little damping", "2.0 * zeta + s)),", "2.0 * max(zeta, 0.05) + s)),")
 edit("9.12", "treats a gap below 1e-10 m as closed", "gap > 0.0", "gap > 1e-10")
 edit("9.12", "allows an overlap of 10 µm", SOFT, SOFT.replace("gap", "min(0.0, gap + 1e-5)"))
+edit("9.12", "forgets dt in the closing velocity", "-gap / dt, 0.0", "-gap, 0.0")
+edit("9.12", "forgets the minus sign in the closing velocity", "-gap / dt, 0.0", "gap / dt, 0.0")
+edit("9.12", "forgets the factor 2 of the damping", "/ (dt * (2.0 * zeta + s))", "/ (dt * (zeta + s))")
+edit("9.12", "omits the damping", "(2.0 * zeta + s)), 1.0 / (s * (2.0 * zeta + s))", "s), 1.0 / (s * s)")
+edit("9.12", "returns give first",
+     "return -s * gap / (dt * (2.0 * zeta + s)), 1.0 / (s * (2.0 * zeta + s))",
+     "return 1.0 / (s * (2.0 * zeta + s)), -s * gap / (dt * (2.0 * zeta + s))")
+edit("9.12", "returns the reciprocal of give", "1.0 / (s * (2.0 * zeta + s))", "s * (2.0 * zeta + s)")
+edit("9.12", "forgets dt in aim", "/ (dt * (2.0 * zeta + s))", "/ (2.0 * zeta + s)")
+edit("9.12", "forgets one factor of the frequency in give", "1.0 / (s * (2.0 * zeta + s))", "1.0 / (2.0 * zeta + s)")
 
 
 # 9.13 -----------------------------------------------------------------------------------------------------------
@@ -463,6 +541,11 @@ edit("9.13", "drops the sign of the first component", "scaled(limit / size, J)",
      "scaled(limit / size, (abs(J[0]), J[1], J[2]))")
 edit("9.13", "returns an array, not a tuple", "scaled(limit / size, J)", "np.array(scaled(limit / size, J))")
 wrong("9.13", "compares the square of the length with the limit")(disc(inside=lambda size, limit: size * size <= limit))
+edit("9.13", "divides by the square of the length", "limit / size, J", "limit / size**2, J")
+edit("9.13", "returns a unit vector beyond the rim", "scaled(limit / size, J)", "scaled(1.0 / size, J)")
+edit("9.13", "multiplies by the limit, and does not divide by the length",
+     "scaled(limit / size, J)", "scaled(limit, J)")
+edit("9.13", "reverses the impulse beyond the rim", "scaled(limit / size", "scaled(-limit / size")
 
 
 # 9.14 -----------------------------------------------------------------------------------------------------------
@@ -518,6 +601,12 @@ wrong("9.14", "requires nearly the same normal")(kept(alike=0.9))
 wrong("9.14", "requires a normal on the same side")(kept(alike=0.0))
 wrong("9.14", "rotates the impulse with the normal")(kept(given=lambda J, n, m: J + (J @ m) * (n - m)))
 wrong("9.14", "uses each old impulse once only")(kept(once=True))
+edit("9.14", "compares a in place of b", "old.b[s] == contacts.b[k]", "old.b[s] == contacts.a[k]")
+edit("9.14", "copies the impulse of contact k, not of the nearest one",
+     "J_old[s, c]", "J_old[min(k, len(J_old) - 1), c]")
+edit("9.14", "adds up the impulses of all contacts that are near enough", "J[k, c] = J_old", "J[k, c] += J_old")
+edit("9.14", "leaves out the last old contact of a body",
+     "range(old.first[i], old.first[i + 1])", "range(old.first[i], old.first[i + 1] - 1)")
 
 
 # 9.15 -----------------------------------------------------------------------------------------------------------
@@ -552,6 +641,12 @@ wrong("9.15", "does not notice NaN on the upper side")(leaves(nan_high=False))
 wrong("9.15", "allows an excess of 10 nm")(leaves(slack=1e-8))
 wrong("9.15", "lets nothing leave a box without a size")(leaves(endless=True))
 edit("9.15", "counts the edge itself as outside", "wide_low[i, c] <= low[i, c] and", "wide_low[i, c] < low[i, c] and")
+edit("9.15", "returns True if none has left", "return True", "return False")
+edit("9.15", "returns the opposite", "if not (wide", "if (wide")
+edit("9.15", "exchanges the boxes",
+     "wide_low[i, c] <= low[i, c] and high[i, c] <= wide_high[i, c]",
+     "low[i, c] <= wide_low[i, c] and wide_high[i, c] <= high[i, c]")
+edit("9.15", "joins the two conditions by or", "low[i, c] and high[i, c] <=", "low[i, c] or high[i, c] <=")
 
 
 # 9.16 -----------------------------------------------------------------------------------------------------------
@@ -614,3 +709,15 @@ edit("9.16", "changes its input", "v.copy(), omega.copy(), J.copy()", "v, omega,
 edit("9.16", "uses the mass of a for b", "v[b, 0] -= inv_mass[b] * d_x", "v[b, 0] -= inv_mass[a] * d_x")
 edit("9.16", "omits impulses below 1 nN s", "0.0 if J_n <= 0.0", "0.0 if J_n <= 1e-9")
 edit("9.16", "omits the softness in the denominator", "k_n * (1.0 + give[k])", "k_n")
+edit("9.16", "adds the normal velocity in place of subtracting it", "(aim[k] - u_n -", "(aim[k] + u_n -")
+edit("9.16", "adds the tangential velocity", "J_t - u_t /", "J_t + u_t /")
+edit("9.16", "forgets k_n", "/ (k_n * (1.0 + give[k]))", "/ (1.0 + give[k])")
+edit("9.16", "uses k_n for the friction, too", "u_t / arms.k_t[k]", "u_t / k_n")
+edit("9.16", "adds the change of the impulse to b, too", "v[b, 0] -= inv_mass[b] * d_x", "v[b, 0] += inv_mass[b] * d_x")
+edit("9.16", "reverses the tangent in the velocity", "n_x * u_y - n_y * u_x", "n_y * u_x - n_x * u_y")
+edit("9.16", "applies the whole impulse in every visit, not its change",
+     "J_n * n_x - J_t * n_y - J[k, 0], J_n * n_y + J_t * n_x - J[k, 1]", "J_n * n_x - J_t * n_y, J_n * n_y + J_t * n_x")
+edit("9.16", "forgets μ", "pile.mu * J_n if", "J_n if")
+edit("9.16", "reverses the rotation in the velocity of a's point",
+     "v[a, 0] - omega[a] * a_y", "v[a, 0] + omega[a] * a_y")
+edit("9.16", "starts each impulse from zero", "J_n += (aim", "J_n = (aim")

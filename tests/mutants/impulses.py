@@ -37,6 +37,12 @@ wrong("7.1", "reverses the impulse, which pulls the body in")(response(sign=1.0)
 edit("7.1", "changes its input", "v - (1.0 + e) * v_n * n", "np.subtract(v, (1.0 + e) * v_n * n, out=v)")
 edit("7.1", "ignores slow approach", "v_n >= 0.0", "v_n >= -1e-3")
 edit("7.1", "ignores approach slower than 10 nm/s", "v_n >= 0.0", "v_n >= -1e-8")
+edit("7.1", "forgets the normal: subtracts a number from each component", "(1.0 + e) * v_n * n", "(1.0 + e) * v_n")
+edit("7.1", "changes only bodies that leave", "v_n >= 0.0", "v_n <= 0.0")
+edit("7.1", "reverses the normal velocity without e", "(1.0 + e) * v_n", "2.0 * v_n")
+edit("7.1", "returns the normal velocity only", "else v - (1.0 + e) * v_n * n", "else -e * v_n * n")
+edit("7.1", "scales the whole velocity by e", "v - (1.0 + e) * v_n * n", "e * (v - 2.0 * v_n * n)")
+edit("7.1", "stops the normal velocity: omits e", "(1.0 + e) * v_n * n", "v_n * n")
 
 
 # 7.2 ------------------------------------------------------------------------------------------------------------
@@ -64,6 +70,12 @@ edit("7.2", "damps at φ = 0, too", "phi >= 0.0", "phi > 0.0")
 wrong("7.2", "damps outside, too")(penalty(inside=lambda phi: True))
 edit("7.2", "ignores a depth of 1 nm", "phi >= 0.0", "phi >= -1e-9")
 edit("7.2", "returns no force where the stiffness is zero", "phi >= 0.0", "phi >= 0.0 or stiffness == 0.0")
+edit("7.2", "pushes outside only", "phi >= 0.0", "phi <= 0.0")
+edit("7.2", "exchanges stiffness and damping", "-stiffness * phi - damping * v_n", "-damping * phi - stiffness * v_n")
+edit("7.2", "takes the smaller of the two in place of the larger", "np.maximum", "np.minimum")
+edit("7.2", "drops both minus signs", "-stiffness * phi - damping * v_n", "stiffness * phi + damping * v_n")
+edit("7.2", "limits the spring, not the sum",
+     "np.maximum(0.0, -stiffness * phi - damping * v_n)", "np.maximum(0.0, -stiffness * phi) - damping * v_n")
 
 
 # 7.3 ------------------------------------------------------------------------------------------------------------
@@ -88,6 +100,13 @@ wrong("7.3", "omits the rotation")(seen(turns=0.0))
 wrong("7.3", "exchanges the arms of the two bodies")(seen(swap=True))
 edit("7.3", "adds the rotation of b in place of subtracting it", "- turn_b", "+ turn_b")
 edit("7.3", "takes an immovable body to be at rest", "- b.v", "- (b.v if b.inv_mass else 0.0)")
+edit("7.3", "omits the velocities of the centres", "a.v + turn_a - b.v - turn_b", "turn_a - turn_b")
+edit("7.3", "adds the velocity of b", "- b.v - turn_b", "+ b.v + turn_b")
+edit("7.3", "omits the rotation of b", "- b.v - turn_b", "- b.v")
+edit("7.3", "multiplies ω by the arm itself, not by its perpendicular",
+     "a.omega * np.array([-r_a[1], r_a[0]])", "a.omega * r_a")
+edit("7.3", "exchanges the components of the arm without a sign",
+     "np.array([-r_a[1], r_a[0]])", "np.array([r_a[1], r_a[0]])")
 
 
 # 7.4 ------------------------------------------------------------------------------------------------------------
@@ -119,6 +138,11 @@ edit("7.4", "refuses heavy bodies", "check_inverse_mass(k_n)", "check_inverse_ma
 edit("7.4", "accepts a negative inverse mass", "check_inverse_mass(k_n)", "check_inverse_mass(abs(k_n))")
 edit("7.4", "accepts any inverse mass that is not zero or below", "check_inverse_mass(k_n)",
      "if k_n <= 0.0:\n        check_inverse_mass(k_n)")
+edit("7.4", "forgets the minus sign", "-(1.0 + e) * u_n / k_n", "(1.0 + e) * u_n / k_n")
+edit("7.4", "returns the impulse for separating bodies only", "u_n >= 0.0", "u_n <= 0.0")
+edit("7.4", "uses e in place of 1 + e", "(1.0 + e)", "e")
+edit("7.4", "forgets the effective inverse mass", " / k_n", "")
+edit("7.4", "returns the velocity after the impact", "-(1.0 + e) * u_n / k_n", "-e * u_n")
 
 
 # 7.5 and 7.7 ----------------------------------------------------------------------------------------------------
@@ -168,6 +192,22 @@ edit("7.7", "uses the inertia tensor of a in place of its inverse",
 edit("7.7", "omits the rotation of a where b is immovable", "n @ turn_a", "(n @ turn_a if b.inv_mass else 0.0)")
 edit("7.7", "omits the rotation of a if its mass is infinite", "n @ turn_a", "(n @ turn_a if a.inv_mass else 0.0)")
 edit("7.7", "omits the mass of a body that cannot rotate", "a.inv_mass +", "a.inv_mass * a.inv_inertia.any() +")
+edit("7.5", "omits the rotation of both bodies", "+ lever_a**2 * a.inv_inertia + lever_b**2 * b.inv_inertia", "")
+edit("7.5", "uses the reduced mass: adds the masses", "a.inv_mass + b.inv_mass", "1.0 / (a.inv_mass + b.inv_mass)")
+edit("7.5", "exchanges the inertias of the two bodies",
+     "lever_a**2 * a.inv_inertia + lever_b**2 * b.inv_inertia",
+     "lever_a**2 * b.inv_inertia + lever_b**2 * a.inv_inertia")
+edit("7.5", "subtracts the rotation of b", "+ lever_b**2 * b.inv_inertia", "- lever_b**2 * b.inv_inertia")
+edit("7.5", "uses the length of the arm in place of r × n",
+     "cross_2d(r_a, n), cross_2d(r_b, n)", "np.hypot(r_a[0], r_a[1]), np.hypot(r_b[0], r_b[1])")
+edit("7.7", "omits the rotation of both bodies", "+ n @ turn_a + n @ turn_b", "")
+edit("7.7", "subtracts the rotation of b", "+ n @ turn_b", "- n @ turn_b")
+edit("7.7", "takes n × r in place of r × n", "cross(r_a, n)", "cross(n, r_a)")
+edit("7.7", "exchanges the inertias of the two bodies",
+     "times(a.inv_inertia, cross(r_a, n))", "times(b.inv_inertia, cross(r_a, n))")
+edit("7.7", "uses the arm of a for both bodies",
+     "cross(times(b.inv_inertia, cross(r_b, n)), r_b)", "cross(times(b.inv_inertia, cross(r_a, n)), r_a)")
+edit("7.7", "forgets the inverse inertia", "times(a.inv_inertia, cross(r_a, n))", "cross(r_a, n)")
 
 
 # 7.6 ------------------------------------------------------------------------------------------------------------
@@ -188,6 +228,12 @@ wrong("7.6", "omits the change of the rotation")(pushed(turns=False))
 edit("7.6", "does not rotate a body whose mass is infinite", "body.inv_inertia * cross_2d",
      "(body.inv_mass and body.inv_inertia) * cross_2d")
 edit("7.6", "does not move a body that cannot rotate", "body.inv_mass * J", "(body.inv_inertia and body.inv_mass) * J")
+edit("7.6", "subtracts the impulse", "body.v + body.inv_mass * J", "body.v - body.inv_mass * J")
+edit("7.6", "forgets the mass", "body.inv_mass * J", "J")
+edit("7.6", "uses r · J in place of r × J", "cross_2d(r, J)", "(r @ J)")
+edit("7.6", "forgets the inertia", "body.inv_inertia * cross_2d", "cross_2d")
+edit("7.6", "uses the inverse mass for the rotation", "body.inv_inertia * cross_2d", "body.inv_mass * cross_2d")
+edit("7.6", "uses the inverse inertia for the velocity", "body.inv_mass * J", "body.inv_inertia * J")
 
 
 # 7.8 ------------------------------------------------------------------------------------------------------------
@@ -209,6 +255,13 @@ edit("7.8", "takes J × r in place of r × J",
      "L_a + cross(r_a, J), L_b - cross(r_b, J)", "L_a - cross(r_a, J), L_b + cross(r_b, J)")
 wrong("7.8", "does not change b")(momenta(sign_b=0.0))
 wrong("7.8", "uses the same arm for both bodies")(momenta(arm=lambda r_a, r_b: (r_a, r_a)))
+edit("7.8", "exchanges the signs of the two bodies",
+     "L_a + cross(r_a, J), L_b - cross(r_b, J)", "L_a - cross(r_a, J), L_b + cross(r_b, J)")
+edit("7.8", "exchanges the two arms",
+     "L_a + cross(r_a, J), L_b - cross(r_b, J)", "L_a + cross(r_b, J), L_b - cross(r_a, J)")
+edit("7.8", "returns the changes only", "L_a + cross(r_a, J), L_b - cross(r_b, J)", "cross(r_a, J), -cross(r_b, J)")
+edit("7.8", "adds the impulse itself, not its moment", "L_a + cross(r_a, J), L_b - cross(r_b, J)", "L_a + J, L_b - J")
+edit("7.8", "does not change a", "L_a + cross(r_a, J),", "L_a,")
 
 
 # 7.9 ------------------------------------------------------------------------------------------------------------
@@ -232,6 +285,15 @@ edit("7.9", "returns zero for a body that cannot rotate", "K = np.zeros((3, 3))"
      "K = np.zeros((3, 3))\n    if not inv_inertia.any():\n        return K")
 edit("7.9", "returns zero at the centre of mass", "K = np.zeros((3, 3))",
      "K = np.zeros((3, 3))\n    if not r.any():\n        return K")
+edit("7.9", "omits the last cross product with r",
+     "cross(times(inv_inertia, cross(r, unit)), r)", "times(inv_inertia, cross(r, unit))")
+edit("7.9", "omits the rotation", "+ cross(times(inv_inertia, cross(r, unit)), r)", "+ 0.0 * r")
+edit("7.9", "uses the inertia in place of its inverse",
+     "times(inv_inertia, cross", "times(np.linalg.inv(inv_inertia + 1e-300 * np.eye(3)), cross")
+edit("7.9", "forgets the inverse inertia", "times(inv_inertia, cross(r, unit))", "cross(r, unit)")
+edit("7.9", "uses the mass in place of its inverse", "inv_mass * unit", "(1.0 / inv_mass if inv_mass else 0.0) * unit")
+edit("7.9", "adds the inverse inertia itself, without the arms",
+     "cross(times(inv_inertia, cross(r, unit)), r)", "times(inv_inertia, unit)")
 
 
 # 7.10 -----------------------------------------------------------------------------------------------------------
@@ -291,6 +353,18 @@ edit("7.10", "accepts a K without an inverse", "check_contact(u, n, K, mu)",
 edit("7.10", "omits the friction where there is no slip before the impact", "J_t = tangential(J, n)",
      "J_t = tangential(J, n)\n"
      "    if not tangential(u, n).any():\n        return (u_sep - u @ n) / (n @ times(K, n)) * n")
+edit("7.10", "exchanges sine and cosine of the angle β",
+     "np.cos(beta) * n + np.sin(beta) / size * J_t", "np.sin(beta) * n + np.cos(beta) / size * J_t")
+edit("7.10", "takes μ for the angle β", "beta = np.arctan(mu)", "beta = mu")
+edit("7.10", "directs the friction of sliding the other way",
+     "+ np.sin(beta) / size * J_t", "- np.sin(beta) / size * J_t")
+edit("7.10", "does not normalise the tangential impulse", "np.sin(beta) / size * J_t", "np.sin(beta) * J_t")
+edit("7.10", "adds u in place of subtracting it when it sticks", "u_sep * n - u)", "u_sep * n + u)")
+edit("7.10", "forgets K where it slides", "(n @ times(K, d))", "(n @ d)")
+edit("7.10", "exchanges the two cases", "size <= mu * (J @ n)", "size > mu * (J @ n)")
+edit("7.10", "multiplies by K in place of solving with it",
+     "solve3(K[0], K[1], K[2], u_sep * n - u)", "times(K, u_sep * n - u)")
+edit("7.10", "reverses the normal velocity when it slides", "(u_sep - u @ n)", "(u_sep + u @ n)")
 
 
 # 7.11 -----------------------------------------------------------------------------------------------------------
@@ -315,6 +389,10 @@ edit("7.11", "returns a loss for every impact",
 edit("7.11", "returns a gain for every impact",
      "J @ u + 0.5 * (J @ times(K, J))", "abs(J @ u + 0.5 * (J @ times(K, J)))")
 edit("7.11", "counts J · u as a loss, whatever its sign", "J @ u +", "-abs(J @ u) +")
+edit("7.11", "forgets K in the second term", "J @ times(K, J)", "J @ J")
+edit("7.11", "subtracts the second term", "J @ u + 0.5", "J @ u - 0.5")
+edit("7.11", "halves the first term, too", "J @ u +", "0.5 * (J @ u) +")
+edit("7.11", "uses K⁻¹ in place of K", "times(K, J)", "np.linalg.solve(K, J)")
 
 
 # 7.12 -----------------------------------------------------------------------------------------------------------
@@ -359,6 +437,13 @@ edit("7.12", "accepts any inverse mass that is not zero or below", "check_invers
 edit("7.12", "accepts an infinite step", 'check_positive("step dt [s]", dt)',
      'check_positive("step dt [s]", 1.0 if dt == np.inf else dt)')
 edit("7.12", "pulls where the gap is closed", "return np.maximum(", "return -u_n / k_n if phi == 0.0 else np.maximum(")
+edit("7.12", "multiplies the gap by dt", "phi / dt", "phi * dt")
+edit("7.12", "forgets to divide by k_n", "(phi / dt + u_n) / k_n", "(phi / dt + u_n)")
+edit("7.12", "forgets the minus sign", "-(phi / dt + u_n)", "(phi / dt + u_n)")
+edit("7.12", "subtracts the velocity", "phi / dt + u_n", "phi / dt - u_n")
+edit("7.12", "omits the velocity", "phi / dt + u_n", "phi / dt")
+edit("7.12", "adds the gap itself, without dt", "phi / dt + u_n", "phi + u_n")
+edit("7.12", "takes the smaller of the two in place of the larger", "np.maximum(0.0, -", "np.minimum(0.0, -")
 
 
 # 7.13 -----------------------------------------------------------------------------------------------------------
@@ -402,6 +487,15 @@ edit("7.13", "treats a micrometre as contact", "np.maximum(0.0, phi)", "phi if p
 edit("7.13", "misses a grazing touch", "squared < 0.0 or", "squared < 0.0 or (squared == 0.0 and phi > 0.0) or")
 edit("7.13", "uses the form for a falling ball for a rising one, too",
      "if v_n < 0.0 else", "if v_n < 0.0 or phi > 0.0 else")
+edit("7.13", "adds 2 a φ under the root", "v_n * v_n - 2.0 * a_n * phi", "v_n * v_n + 2.0 * a_n * phi")
+edit("7.13", "uses 4 a φ under the root", "v_n * v_n - 2.0 * a_n * phi", "v_n * v_n - 4.0 * a_n * phi")
+edit("7.13", "forgets the root", "s = np.sqrt(squared)", "s = squared")
+edit("7.13", "returns the other root", "2.0 * phi / (s - v_n)", "2.0 * phi / (-s - v_n)")
+edit("7.13", "forgets the 2 in the numerator", "2.0 * phi / (s", "phi / (s")
+edit("7.13", "forgets the minus sign for a rising ball", "-(v_n + s) / a_n", "(v_n + s) / a_n")
+edit("7.13", "returns the longer of both times", "np.minimum(tau, dt)", "np.maximum(tau, dt)")
+edit("7.13", "takes the wrong root for a rising ball", "-(v_n + s) / a_n", "-(v_n - s) / a_n")
+edit("7.13", "returns zero if the gap never closes", "return dt", "return 0.0 * dt")
 
 
 # 7.14 -----------------------------------------------------------------------------------------------------------
@@ -440,6 +534,12 @@ edit("7.14", "treats e within 1e-12 of 1 as 1", "e == 1.0", "e > 1.0 - 1e-12")
 edit("7.14", "treats a restitution below 0.01 as zero", "(1.0 - e)", "(1.0 - (e if e > 0.01 else 0.0))")
 edit("7.14", "treats bounces slower than 1 nm/s as no bounces", "v_n <= 0.0", "v_n <= 1e-9")
 edit("7.14", "treats a weak acceleration as zero", "a_n >= 0.0", "a_n >= -1e-12")
+edit("7.14", "counts the flights after the first impact only", "-2.0 * v_n /", "-2.0 * e * v_n /")
+edit("7.14", "squares the restitution", "(1.0 - e)", "(1.0 - e * e)")
+edit("7.14", "multiplies, where the sum of the series divides",
+     "-2.0 * v_n / (a_n * (1.0 - e))", "-2.0 * v_n / a_n * (1.0 - e)")
+edit("7.14", "forgets the acceleration", "(a_n * (1.0 - e))", "(-1.0 * (1.0 - e))")
+edit("7.14", "divides by e", "(a_n * (1.0 - e))", "(a_n * e)")
 
 
 # 7.15 -----------------------------------------------------------------------------------------------------------
@@ -496,6 +596,14 @@ def position_projection_step(acceleration, t, x, v, dt, p):
     place, speed = x + dt * v + dt**2 * a, v + dt * a
     depth = (p.point - place) @ p.n
     return (place + depth * p.n, worked.kinematic_response(speed, p.n, p.e)) if depth > 0.0 else (place, speed)
+
+
+edit("7.15", "exchanges the signs of the test: corrects outside", "phi < 0.0", "phi > 0.0")
+edit("7.15", "moves the ball back by half of the depth", "x = x - phi", "x = x - 0.5 * phi")
+edit("7.15", "subtracts the acceleration", "v = v + dt", "v = v - dt")
+edit("7.15", "reverses the normal", "kinematic_response(v, p.n, p.e)", "kinematic_response(v, -p.n, p.e)")
+edit("7.15", "forgets dt in the position", "x = x + dt * v", "x = x + v")
+edit("7.15", "returns the velocity first", "return x, v", "return v, x")
 
 
 # 7.16 -----------------------------------------------------------------------------------------------------------
@@ -576,6 +684,15 @@ def backtracking_step(acceleration, t, x, v, dt, p):
         impacts += 1
         if impacts == worked.MAX_IMPACTS:
             raise Diverged("impacts in a step of dt [s]", dt, "take a smaller one")
+edit("7.16", "adds the time of flight to what is left", "left -= tau", "left += 0.0 * tau")
+edit("7.16", "flies for the whole rest at once", "free_flight(x, v, a, tau)", "free_flight(x, v, a, left)")
+edit("7.16", "looks for the impact within dt, not within the time that is left", "a @ p.n, left)", "a @ p.n, dt)")
+edit("7.16", "does not reflect the ball", "v = kinematic_response(v, p.n, p.e)", "pass")
+edit("7.16", "moves the ball the wrong way to the plane", "x = x - gap(x, p) * p.n", "x = x + gap(x, p) * p.n")
+edit("7.16", "lets the ball lie for the whole step, not for what is left",
+     "slide_on_plane(x, v, a, left, p.n)", "slide_on_plane(x, v, a, dt, p.n)")
+edit("7.16", "reverses the test of the bouncing time", "p.e) <= left", "p.e) > left")
+edit("7.16", "flies with zero acceleration", "free_flight(x, v, a, tau)", "free_flight(x, v, 0.0 * a, tau)")
 
 
 # 7.17 -----------------------------------------------------------------------------------------------------------
@@ -660,3 +777,11 @@ edit("7.17", "measures the normal changes only", "np.abs(times(K, J - Js[i])).ma
 edit("7.17", "uses infinite friction if the sweeps do not settle", "apply_impulse, body, r, n, e, mu)",
      "apply_impulse, body, r, n, e, np.inf)")
 edit("7.17", "returns the residual of the sweeps that did not settle", JAMMED, f"({JAMMED}[0], residual)")
+edit("7.17", "subtracts the impulse", "apply_impulse(after, r[i], J - Js[i])", "apply_impulse(after, r[i], Js[i] - J)")
+edit("7.17", "applies the whole impulse again in every sweep",
+     "apply_impulse(after, r[i], J - Js[i])", "apply_impulse(after, r[i], J)")
+edit("7.17", "does not remove the point's own impulse from the velocity", "- times(K, Js[i])", "")
+edit("7.17", "adds the velocity by the point's own impulse", "- times(K, Js[i])", "+ times(K, Js[i])")
+edit("7.17", "takes all velocities before the impact",
+     "point_velocity(after.v, after.omega, r[i])", "point_velocity(body.v, body.omega, r[i])")
+edit("7.17", "does not store the impulse", "Js[i] = J", "pass")

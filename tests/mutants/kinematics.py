@@ -34,6 +34,11 @@ wrong("11.1", "adds each angle one link late")(positions(late=True))
 wrong("11.1", "omits the end of the last link")(positions(last=False))
 edit("11.1", "does not add the positions of the links before",
      "x[k, 0] + lengths[k] * np.cos(phi)", "lengths[k] * np.cos(phi)")
+edit("11.1", "measures the angles clockwise", "phi += theta[k]", "phi -= theta[k]")
+edit("11.1", "takes the angles in degrees", "np.cos(phi)", "np.cos(np.radians(phi))")
+edit("11.1", "forgets the lengths", "lengths[k] * np.cos(phi)", "np.cos(phi)")
+edit("11.1", "uses the length of the first link for all", "lengths[k] * np.cos(phi)", "lengths[0] * np.cos(phi)")
+edit("11.1", "leaves out the base", "return x", "return x[1:]")
 
 
 # 11.2 -----------------------------------------------------------------------------------------------------------
@@ -57,6 +62,13 @@ wrong("11.2", "uses only the joint's own link as the arm")(jacobian(first=True))
 wrong("11.2", "uses the arm r itself, not its perpendicular")(jacobian(turn=False))
 wrong("11.2", "normalises the columns")(jacobian(unit=True))
 edit("11.2", "takes all arms from the base", "x[n, 0] - x[k, 0]", "x[n, 0] - x[0, 0]")
+edit("11.2", "forgets the minus sign of r_y", "x[k, 1] - x[n, 1], x[n, 0]", "x[n, 1] - x[k, 1], x[n, 0]")
+edit("11.2", "exchanges the two rows", "J[0, k], J[1, k] = ", "J[1, k], J[0, k] = ")
+edit("11.2", "takes the position of the end, not its offset from the joint",
+     "x[k, 1] - x[n, 1], x[n, 0] - x[k, 0]", "-x[n, 1], x[n, 0]")
+edit("11.2", "measures the arm from the next joint",
+     "x[k, 1] - x[n, 1], x[n, 0] - x[k, 0]", "x[k + 1, 1] - x[n, 1], x[n, 0] - x[k + 1, 0]")
+edit("11.2", "returns the transpose", "return J", "return J.T.copy()")
 
 
 # 11.3 -----------------------------------------------------------------------------------------------------------
@@ -83,6 +95,17 @@ wrong("11.3", "returns the angle of the short axis")(ellipse(swapped=True))
 wrong("11.3", "returns the angle in degrees")(ellipse(degrees=True))
 edit("11.3", "returns twice the angle", "0.5 * np.arctan2", "np.arctan2")
 edit("11.3", "returns the determinant as the short axis", "np.sqrt(squared) / longer", "np.sqrt(squared)")
+edit("11.3", "exchanges the two half axes",
+     "return longer, np.sqrt(squared) / longer,", "return np.sqrt(squared) / longer, longer,")
+edit("11.3", "adds a and c in the angle", "2.0 * b, a - c)", "2.0 * b, a + c)")
+edit("11.3", "forgets the factor 2 beside b", "np.arctan2(2.0 * b, a - c)", "np.arctan2(b, a - c)")
+edit("11.3", "exchanges the arguments of the arctangent", "np.arctan2(2.0 * b, a - c)", "np.arctan2(a - c, 2.0 * b)")
+edit("11.3", "forgets b in the longer axis", "0.25 * (a - c) ** 2 + b * b", "0.25 * (a - c) ** 2")
+edit("11.3", "forgets the quarter", "0.25 * (a - c) ** 2", "(a - c) ** 2")
+edit("11.3", "takes the shorter axis for the longer one", "0.5 * (a + c) + np.sqrt", "0.5 * (a + c) - np.sqrt")
+edit("11.3", "uses JᵀJ in place of JJᵀ",
+     "a, b, c, squared = J[0] @ J[0], J[0] @ J[1], J[1] @ J[1], 0.0",
+     "a, b, c, squared = J[:, 0] @ J[:, 0], J[:, 0] @ J[:, 1], J[:, 1] @ J[:, 1], 0.0")
 
 
 # 11.4 and 11.5 --------------------------------------------------------------------------------------------------
@@ -128,6 +151,28 @@ wrong("11.5", "puts the wrist beyond the end")(three_links(wrist=-1.0))
 wrong("11.5", "measures the third angle from the x axis")(three_links(relative=False))
 wrong("11.5", "does not bring θ₃ back into (−π, π]")(three_links(wraps=False))
 wrong("11.5", "returns the same elbow twice")(three_links(elbow_kept=False))
+edit("11.4", "exchanges the arguments of the arctangent of the target",
+     "np.arctan2(target[1], target[0])", "np.arctan2(target[0], target[1])")
+edit("11.4", "exchanges sine and cosine of θ₂",
+     "lengths[1] * np.sin(theta_2), lengths[0] + lengths[1] * np.cos(theta_2)",
+     "lengths[1] * np.cos(theta_2), lengths[0] + lengths[1] * np.sin(theta_2)")
+edit("11.4", "omits the correction of θ₁ by the bend", "target[0]) - back", "target[0]) - 0.0 * back")
+edit("11.4", "forgets the roots",
+     "np.sqrt(np.maximum(outer, 0.0)), np.sqrt(np.maximum(inner, 0.0))",
+     "np.maximum(outer, 0.0), np.maximum(inner, 0.0)")
+edit("11.4", "returns the angles in degrees", "return np.array(", "return np.degrees(")
+edit("11.4", "reverses the sign of the elbow", "theta_2 = elbow", "theta_2 = -elbow")
+edit("11.5", "subtracts only θ₂", "phi - theta[0] - theta[1]", "phi - theta[1]")
+edit("11.5", "adds the first two angles", "phi - theta[0] - theta[1]", "phi + theta[0] + theta[1]")
+edit("11.5", "exchanges sine and cosine",
+     "lengths[2] * np.cos(phi), target[1] - lengths[2] * np.sin(phi)",
+     "lengths[2] * np.sin(phi), target[1] - lengths[2] * np.cos(phi)")
+edit("11.5", "uses the length of the second link for the wrist",
+     "target[0] - lengths[2] * np.cos(phi), target[1] - lengths[2] * np.sin(phi)",
+     "target[0] - lengths[1] * np.cos(phi), target[1] - lengths[1] * np.sin(phi)")
+edit("11.5", "forgets the length of the third link",
+     "target[0] - lengths[2] * np.cos(phi), target[1] - lengths[2] * np.sin(phi)",
+     "target[0] - np.cos(phi), target[1] - np.sin(phi)")
 
 
 # 11.6 -----------------------------------------------------------------------------------------------------------
@@ -159,6 +204,14 @@ wrong("11.6", "rotates a joint's own link one joint late")(frames(before=True))
 wrong("11.6", "multiplies the rotations in the wrong order")(frames(order=-1))
 wrong("11.6", "turns the other way")(frames(sign=-1.0))
 edit("11.6", "does not rotate the offsets into the world", "rotate(q, row(offsets, k))", "row(offsets, k)")
+edit("11.6", "does not add the positions of the joints before",
+     "plus(row(x, k), 1.0, rotate(q, row(offsets, k)))", "rotate(q, row(offsets, k))")
+edit("11.6", "subtracts the offsets", "plus(row(x, k), 1.0,", "plus(row(x, k), -1.0,")
+edit("11.6", "turns every joint by 1 rad", "scaled(theta[k], axis)", "scaled(1.0, axis)")
+edit("11.6", "turns by twice the angle", "scaled(theta[k], axis)", "scaled(2.0 * theta[k], axis)")
+edit("11.6", "turns by half of the angle", "scaled(theta[k], axis)", "scaled(0.5 * theta[k], axis)")
+edit("11.6", "turns about the axis in the world, from the right",
+     "exponential(scaled(theta[k], axis))", "exponential(scaled(theta[k], rotate(q, axis)))")
 
 
 # 11.7 -----------------------------------------------------------------------------------------------------------
@@ -176,6 +229,9 @@ wrong("11.7", "reverses the cross product")(spatial(sign=-1.0))
 wrong("11.7", "returns the velocity of a point at the origin")(spatial(end=False))
 wrong("11.7", "puts the angular velocity first")(spatial(swapped=True))
 wrong("11.7", "omits the angular velocity")(spatial(spins=False))
+edit("11.7", "measures the arm from the next joint", "minus(row(x, n), row(x, k))", "minus(row(x, n), row(x, k + 1))")
+edit("11.7", "takes the position of the end, not its offset from the joint", "minus(row(x, n), row(x, k))", "row(x, n)")
+edit("11.7", "uses the axis of the first joint for all", "across(row(a, k),", "across(row(a, 0),")
 
 
 # 11.8 -----------------------------------------------------------------------------------------------------------
@@ -202,6 +258,10 @@ wrong("11.8", "returns half of the angle")(rotation(half=1.0))
 wrong("11.8", "reverses the rotation")(rotation(back=True))
 wrong("11.8", "divides zero by zero where no rotation is needed")(rotation(small=False))
 wrong("11.8", "uses the arccosine, which loses digits near 1")(rotation(arccos=True))
+edit("11.8", "does not divide by |𝐝|", "np.arctan2(size, d[0]) / size", "np.arctan2(size, d[0])")
+edit("11.8", "exchanges the arguments of the arctangent", "np.arctan2(size, d[0])", "np.arctan2(d[0], size)")
+edit("11.8", "forgets the conjugate", "np.array((q[0], -q[1], -q[2], -q[3]))", "q")
+edit("11.8", "takes the sine for the angle", "2.0 if size == 0.0 else 2.0 * np.arctan2(size, d[0]) / size", "2.0")
 
 
 # 11.9 -----------------------------------------------------------------------------------------------------------
@@ -220,6 +280,9 @@ wrong("11.9", "omits the gain")(transposed(gain=lambda arm, J: 1.0))
 wrong("11.9", "divides the gain by σ²")(transposed(gain=lambda arm, J: arm.gain / np.linalg.norm(J, 2) ** 2))
 wrong("11.9", "uses only the signs of Jᵀ e")(transposed(signs=True))
 edit("11.9", "returns the change, not the new angles", "return theta + arm.gain", "return arm.gain")
+edit("11.9", "divides by the gain", "arm.gain * (e @ J)", "(e @ J) / arm.gain")
+edit("11.9", "starts from zero angles", "theta + arm", "0.0 * theta + arm")
+edit("11.9", "normalises the error", "(e @ J)", "(e @ J) / (np.sqrt(e @ e) + 1e-300)")
 
 
 # 11.10 ----------------------------------------------------------------------------------------------------------
@@ -245,6 +308,11 @@ wrong("11.10", "divides by σ² in place of σ")(inverse(power=2))
 wrong("11.10", "returns the transpose, not the pseudo-inverse")(inverse(full=False))
 edit("11.10", "multiplies by σ", "/ sigma[i]", "* sigma[i]")
 edit("11.10", "keeps the last direction only", "J_plus[k, r] += v", "J_plus[k, r] = v")
+edit("11.10", "exchanges rows and columns: returns the transpose of the pseudo-inverse",
+     "return J_plus", "return J_plus.T.copy()")
+edit("11.10", "keeps the small singular values only", "if not sigma[i] <= SINGULAR", "if sigma[i] <= SINGULAR")
+edit("11.10", "does not divide by σ", "/ sigma[i]", "/ 1.0")
+edit("11.10", "compares with SINGULAR itself, not with that part of the largest σ", "SINGULAR * sigma[0]", "SINGULAR")
 
 
 # 11.11 and 11.12 ------------------------------------------------------------------------------------------------
@@ -283,6 +351,20 @@ wrong("11.12", "uses λ in place of λ²")(factors(damping_power=1))
 wrong("11.12", "returns the share that is done, not the share that is left")(factors(done=True))
 wrong("11.12", "returns sizes in place of signed factors")(factors(size=np.abs))
 wrong("11.12", "returns the slowest factor for all")(factors(worst=True))
+edit("11.11", "subtracts λ²", "A[r, r] += arm", "A[r, r] -= arm")
+edit("11.11", "returns the change, not the new angles", "return theta + sum", "return sum")
+edit("11.11", "divides by λ²", "A[r, r] += arm.damping * arm.damping", "A[r, r] += 1.0 / (arm.damping * arm.damping)")
+edit("11.11", "adds λ² to the first entry only", "A[r, r] +=", "A[0, 0] +=")
+edit("11.11", "replaces the diagonal by λ²", "A[r, r] += arm", "A[r, r] = arm")
+edit("11.11", "multiplies by J Jᵀ in place of solving with it", "solve_symmetric(A, e)", "A @ e")
+edit("11.12", "exchanges the two factors",
+     "return 1.0 - gain * sigma**2, damping**2 / (sigma**2 + damping**2)",
+     "return damping**2 / (sigma**2 + damping**2), 1.0 - gain * sigma**2")
+edit("11.12", "omits the damping in the denominator", "(sigma**2 + damping**2)", "sigma**2")
+edit("11.12", "subtracts λ² in the denominator", "(sigma**2 + damping**2)", "(sigma**2 - damping**2)")
+edit("11.12", "returns the share that is done for the damped step", "damping**2 / (sigma**2", "sigma**2 / (sigma**2")
+edit("11.12", "forgets the gain", "gain * sigma**2", "sigma**2")
+edit("11.12", "divides the gain by σ²", "gain * sigma**2", "gain / sigma**2")
 
 
 # 11.13 ----------------------------------------------------------------------------------------------------------
@@ -310,6 +392,20 @@ wrong("11.13", "omits the limits")(descent(keeps=False))
 wrong("11.13", "moves the end as if there were no limits")(descent(wish=True))
 wrong("11.13", "makes half of each rotation")(descent(share=0.5))
 edit("11.13", "changes its input", "theta.copy()", "theta")
+edit("11.13", "exchanges the arguments of the arctangent",
+     "np.arctan2(r_x * s_y - r_y * s_x, r_x * s_x + r_y * s_y)",
+     "np.arctan2(r_x * s_x + r_y * s_y, r_x * s_y - r_y * s_x)")
+edit("11.13", "replaces the angle by the turn", "wish = theta[k] + np", "wish = np")
+edit("11.13", "turns the end the other way",
+     "x[k, 0] + c * r_x - s * r_y, x[k, 1] + s * r_x + c * r_y",
+     "x[k, 0] + c * r_x + s * r_y, x[k, 1] - s * r_x + c * r_y")
+edit("11.13", "limits the turn, not the angle",
+     "new = np.minimum(np.maximum(wish, arm.low[k]), arm.high[k])",
+     "new = theta[k] + np.minimum(np.maximum(wish - theta[k], arm.low[k]), arm.high[k])")
+edit("11.13", "turns the end about the base",
+     "theta[k], end_x, end_y = new, x[k, 0] + c * r_x - s * r_y, x[k, 1] + s * r_x + c * r_y",
+     "theta[k], end_x, end_y = new, c * end_x - s * end_y, s * end_x + c * end_y")
+edit("11.13", "has a wrong sign in the cross product", "r_x * s_y - r_y * s_x, r_x", "r_x * s_y + r_y * s_x, r_x")
 
 
 # 11.14 ----------------------------------------------------------------------------------------------------------
@@ -337,6 +433,12 @@ wrong("11.14", "uses the old positions in the backward pass")(projections(old=Tr
 wrong("11.14", "does not put the base back")(projections(base=False))
 wrong("11.14", "uses the lengths in the wrong order")(projections(lengths_in=-1))
 edit("11.14", "changes its input", "x[0].copy(), x.copy()", "x[0].copy(), x")
+edit("11.14", "moves the base to the origin", "x[0] = base", "x[0] = 0.0 * base")
+edit("11.14", "exchanges the two points: measures from the old point to the new one",
+     "x[k] = point_at(x[k + 1], x[k], lengths[k])", "x[k] = point_at(x[k], x[k + 1], lengths[k])")
+edit("11.14", "exchanges the two points on the way forth",
+     "x[k + 1] = point_at(x[k], x[k + 1], lengths[k])", "x[k + 1] = point_at(x[k + 1], x[k], lengths[k])")
+edit("11.14", "leaves out the last link on the way forth", "for k in range(n):", "for k in range(n - 1):")
 
 
 # 11.15 ----------------------------------------------------------------------------------------------------------
@@ -364,6 +466,16 @@ wrong("11.15", "omits the lower limits")(between_limits(low_too=False))
 wrong("11.15", "never frees a joint at a limit")(between_limits(frozen=True))
 edit("11.15", "blocks joints that move away from their limits", "wish[k] > 0.0", "wish[k] < 0.0")
 edit("11.15", "omits the damping", "arm.damping * arm.damping", "1e-9")
+edit("11.15", "blocks joints at any limit, whatever the direction",
+     "(theta[k] >= arm.high[k] and wish[k] > 0.0)", "(theta[k] >= arm.high[k])")
+edit("11.15", "omits the upper limits",
+     "np.minimum(np.maximum(theta + sum_of_rows(J, solve_symmetric(A, e)), arm.low), arm.high)",
+     "np.maximum(theta + sum_of_rows(J, solve_symmetric(A, e)), arm.low)")
+edit("11.15", "exchanges the limits",
+     "(theta[k] >= arm.high[k] and wish[k] > 0.0) or (theta[k] <= arm.low[k] and wish[k] < 0.0)",
+     "(theta[k] >= arm.low[k] and wish[k] > 0.0) or (theta[k] <= arm.high[k] and wish[k] < 0.0)")
+edit("11.15", "uses λ in place of λ²", "arm.damping * arm.damping", "arm.damping")
+edit("11.15", "does not block a joint exactly at its upper limit", "theta[k] >= arm.high[k]", "theta[k] > arm.high[k]")
 
 
 # 11.16 ----------------------------------------------------------------------------------------------------------
@@ -386,3 +498,10 @@ wrong("11.16", "reverses the pull")(freedom(sign=-1.0))
 wrong("11.16", "pulls all the way to rest in one step")(freedom(pulls=False))
 wrong("11.16", "pulls to zero in place of the rest angles")(freedom(towards_zero=True))
 edit("11.16", "omits the pull", "return theta + z +", "return theta +")
+edit("11.16", "subtracts the pull", "theta + z + pseudo", "theta - z + pseudo")
+edit("11.16", "adds what the pull moves to the error, where it is subtracted", "(e - J @ z)", "(e + J @ z)")
+edit("11.16", "returns the change, not the new angles", "return theta + z", "return z")
+edit("11.16", "uses the transpose in place of the pseudo-inverse",
+     "pseudo_inverse(J) @ (e - J @ z)", "J.T @ (e - J @ z)")
+edit("11.16", "projects onto what moves the end, not onto what does not",
+     "theta + z + pseudo_inverse(J) @ (e - J @ z)", "theta + pseudo_inverse(J) @ (e + J @ z)")

@@ -45,6 +45,11 @@ edit("8.1", "treats a link that is too long as satisfied", "length - rest", "min
 edit("8.1", "reverses the gradient where the link is too short", "r / length", "r / length * np.sign(rest - length)")
 edit("8.1", "refuses links along the second axis", "length == 0.0", "r[0] == 0.0")
 edit("8.1", "returns a zero gradient at the rest length", "r / length", "r / length * abs(np.sign(length - rest))")
+edit("8.1", "adds the rest length", "length - rest", "length + rest")
+edit("8.1", "forgets the root", "np.sqrt(np.sum(r * r))", "np.sum(r * r)")
+edit("8.1", "forgets the rest length", "length - rest", "length")
+edit("8.1", "divides the gradient by the rest length", "r / length", "r / rest")
+edit("8.1", "takes the size of the extension", "length - rest", "abs(length - rest)")
 
 
 # 8.2 ------------------------------------------------------------------------------------------------------------
@@ -81,6 +86,12 @@ edit("8.2", "accepts immovable points where the constraint holds", "if weight ==
      "if C == 0.0:\n        return 0.0 * gradients\n    if weight == 0.0:")
 edit("8.2", "refuses a constraint one of whose points has no gradient", "if weight == 0.0:",
      "if weight == 0.0 or not np.all(np.any(gradients != 0.0, axis=1)):")
+edit("8.2", "multiplies by Σ w |∇C|²", "-C / weight", "-C * weight")
+edit("8.2", "forgets Σ w |∇C|²", "-C / weight", "-C")
+edit("8.2", "uses the masses in place of their inverses",
+     "* inv_mass[:, None] * gradients", "/ inv_mass[:, None] * gradients")
+edit("8.2", "forgets the square of the gradients", "inv_mass[k] * g * g", "inv_mass[k] * g")
+edit("8.2", "forgets C", "-C / weight", "-1.0 / weight")
 
 
 # 8.3 ------------------------------------------------------------------------------------------------------------
@@ -114,6 +125,14 @@ edit("8.3", "changes the array that the acceleration returned", "a = acceleratio
 def predict(acceleration, t, x, v, dt, network):
     a = acceleration(t, x, v, network)
     return x + dt * (v + dt * np.where(network.inv_mass[:, None] > 0.0, a, 0.0))
+
+
+edit("8.3", "uses dt in place of dt² beside the acceleration", "dt * dt * free", "dt * free")
+edit("8.3", "forgets dt beside the velocity", "x + dt * v", "x + v")
+edit("8.3", "subtracts the acceleration", "+ dt * dt * free", "- dt * dt * free")
+edit("8.3", "returns the change of the positions", "return x + dt * v", "return dt * v")
+edit("8.3", "multiplies the acceleration by the inverse mass", "free[:, None] * a", "network.inv_mass[:, None] * a")
+edit("8.3", "omits the velocity", "x + dt * v + dt", "x + dt")
 
 
 # 8.4 ------------------------------------------------------------------------------------------------------------
@@ -158,6 +177,13 @@ edit("8.4", "assumes that link s joins the points s and s + 1", "for s in range(
 edit("8.4", "uses the mass of one end only in the regularisation",
      "(network.inv_mass[network.i[s]] + network.inv_mass[network.j[s]])",
      "network.inv_mass[network.i[s]]")
+edit("8.4", "adds C in place of subtracting it", "-C[s] - trace", "C[s] - trace")
+edit("8.4", "takes the compliance on the diagonal with the wrong sign",
+     "A[size + s, size + s] = -trace", "A[size + s, size + s] = trace")
+edit("8.4", "omits the masses beside the multipliers", "-network.inv_mass[e] * J[s, a]", "-J[s, a]")
+edit("8.4", "multiplies the multipliers by dt² in place of dividing",
+     "found[size:] / (dt * dt)", "found[size:] * (dt * dt)")
+edit("8.4", "returns the new positions, not their change", "return change,", "return x + change,")
 
 
 # 8.5 ------------------------------------------------------------------------------------------------------------
@@ -201,6 +227,11 @@ edit("8.5", "accepts NaN as converged", "np.max(np.abs(change)) <= NEWTON_TOLERA
      "not np.max(np.abs(change)) > NEWTON_TOLERANCE * longest")
 edit("8.5", "stops after fifteen iterations", "range(NEWTON_LIMIT)", "range(15)")
 edit("8.5", "stops after thirty iterations", "range(NEWTON_LIMIT)", "range(30)")
+edit("8.5", "multiplies by dt in the velocity", "(new - x) / dt", "(new - x) * dt")
+edit("8.5", "takes the velocity with the wrong sign", "(new - x) / dt", "(x - new) / dt")
+edit("8.5", "replaces the positions by their change", "new = new + change", "new = change")
+edit("8.5", "subtracts the change", "new = new + change", "new = new - change")
+edit("8.5", "takes the change of velocity from the prediction", "(new - x) / dt", "(new - goal) / dt")
 
 
 # 8.6 ------------------------------------------------------------------------------------------------------------
@@ -265,6 +296,15 @@ def distance_sweep(x, network):
 edit("8.6", "returns its input where nothing is to be done", "x, w = float_copy(x), network.inv_mass",
      "w, r = network.inv_mass, x[network.i] - x[network.j]\n"
      "    if np.allclose(np.sqrt(np.sum(r ** 2, axis=1)), network.rest):\n        return x\n    x = float_copy(x)")
+edit("8.6", "exchanges the inverse masses of the two ends", "w[i] * share, w[j] * share", "w[j] * share, w[i] * share")
+edit("8.6", "forgets to divide by the inverse masses", "/ (w[i] + w[j])", "/ 1.0")
+edit("8.6", "moves both ends in the same direction", "w[j] * share, x", "-w[j] * share, x")
+edit("8.6", "moves the first end only", "w[j] * share, x", "0.0, x")
+edit("8.6", "multiplies by the vector, not by the unit vector",
+     "network.rest[s] / length - 1.0", "network.rest[s] - length")
+edit("8.6", "makes the correction half as large", "share = network", "share = 0.5 * network")
+edit("8.6", "compares the lengths by their ratio the other way round",
+     "network.rest[s] / length - 1.0", "length / network.rest[s] - 1.0")
 
 
 # 8.7 ------------------------------------------------------------------------------------------------------------
@@ -280,6 +320,8 @@ def dynamics(sweeps=lambda n: n, speed=lambda new, x, goal, v, dt: (new - x) / d
 
 
 right("8.7", "with a copy")(dynamics())
+edit("8.7", "starts from the old positions and forgets the prediction",
+     "new = predict(acceleration, t, x, v, dt, network)", "new = x")
 wrong("8.7", "makes one sweep only")(dynamics(sweeps=lambda n: 1))
 wrong("8.7", "makes one sweep too many")(dynamics(sweeps=lambda n: n + 1))
 wrong("8.7", "makes no sweep")(dynamics(sweeps=lambda n: 0))
@@ -298,6 +340,11 @@ edit("8.7", "corrects the first two coordinates only", "new = distance_sweep(new
      "new = distance_sweep(new, network)\n        new[:, 2:] = x[:, 2:]")
 edit("8.7", "stops when less than a micrometre changes", "new = distance_sweep(new, network)",
      "old, new = new, distance_sweep(new, network)\n        if np.abs(new - old).max() < 1e-6:\n            break")
+edit("8.7", "forgets dt in the velocity", "(new - x) / dt", "(new - x)")
+edit("8.7", "multiplies by dt in the velocity", "(new - x) / dt", "(new - x) * dt")
+edit("8.7", "takes the velocity with the wrong sign", "(new - x) / dt", "(x - new) / dt")
+edit("8.7", "adds the change to the old velocity", "(new - x) / dt", "v + (new - x) / dt")
+edit("8.7", "takes the mean of the old and the new velocity", "(new - x) / dt", "0.5 * (v + (new - x) / dt)")
 
 
 # 8.8 ------------------------------------------------------------------------------------------------------------
@@ -320,6 +367,13 @@ wrong("8.8", "multiplies the stiffness by the number of sweeps")(sagging(left=la
 edit("8.8", "counts at most fifty sweeps", "** sweeps", "** min(sweeps, 50)")
 wrong("8.8", "multiplies a small stiffness by the number of sweeps")(
     sagging(left=lambda s, n: (1.0 - s) ** n if s > 0.01 else 1.0 - n * s))
+
+
+edit("8.8", "uses dt in place of dt²", "g * dt * dt", "g * dt")
+edit("8.8", "has the wrong sign in the denominator", "(1.0 - S)", "(1.0 + S)")
+edit("8.8", "forgets the sweeps: counts one", "** sweeps", "** 1")
+edit("8.8", "divides by the stiffness, as for a single sweep", "/ (1.0 - S)", "/ stiffness")
+edit("8.8", "returns a negative sag", "return g", "return -g")
 
 
 # 8.9 ------------------------------------------------------------------------------------------------------------
@@ -401,6 +455,22 @@ def fold_constraint(x, fold):
     return C, np.stack((-(1.0 - at_b[0]) * g_c - (1.0 - at_b[1]) * g_d, -at_b[0] * g_c - at_b[1] * g_d, g_c, g_d))
 
 
+edit("8.9", "adds the rest angle", "theta - fold", "theta + fold")
+edit("8.9", "exchanges the arguments of the arctangent",
+     "np.arctan2(dot(cross(N_c, N_d), e) / length, dot(N_c, N_d))",
+     "np.arctan2(dot(N_c, N_d), dot(cross(N_c, N_d), e) / length)")
+edit("8.9", "does not normalise the edge", "dot(cross(N_c, N_d), e) / length", "dot(cross(N_c, N_d), e)")
+edit("8.9", "divides the gradients of the wings by |N| once",
+     "-length / squared_c * N_c", "-length / np.sqrt(squared_c) * N_c")
+edit("8.9", "returns the rows in the order c, d, a, b",
+     "np.stack((hinge, -hinge - wing_c - wing_d, wing_c, wing_d))",
+     "np.stack((wing_c, wing_d, hinge, -hinge - wing_c - wing_d))")
+edit("8.9", "reverses the second normal", "cross(b - d, a - d)", "cross(a - d, b - d)")
+edit("8.9", "measures the shares of an end from the other end",
+     "-dot(b - c, e) / squared * wing_c - dot(b - d, e)", "-dot(a - c, e) / squared * wing_c - dot(b - d, e)")
+edit("8.9", "forgets the rest angle", "theta - fold", "theta")
+
+
 # 8.10 -----------------------------------------------------------------------------------------------------------
 @variants
 def ball(sign=1.0, n_sign=1.0, centred=True, scaled=True, safe=True):
@@ -423,6 +493,11 @@ wrong("8.10", "returns a normal that points inwards")(ball(n_sign=-1.0))
 wrong("8.10", "puts the centre of the ball at the origin")(ball(centred=False))
 wrong("8.10", "does not return a unit normal")(ball(scaled=False))
 wrong("8.10", "divides by a distance of zero")(ball(safe=False))
+edit("8.10", "returns the distance from the centre", "return distance - obstacle.radius,", "return distance,")
+edit("8.10", "adds the centre", "x - obstacle.centre", "x + obstacle.centre")
+edit("8.10", "forgets the root", "np.sqrt(np.sum(r * r))", "np.sum(r * r)")
+edit("8.10", "adds the radius", "distance - obstacle.radius", "distance + obstacle.radius")
+edit("8.10", "divides the normal by the radius", "r / distance if", "r / obstacle.radius if")
 
 
 # 8.11 -----------------------------------------------------------------------------------------------------------
@@ -458,6 +533,7 @@ edit("8.11", "divides by the length of n", "x[k] -= phi * n", "x[k] -= phi * (n 
 edit("8.11", "treats heavy points as immovable", "inv_mass[k] > 0.0", "inv_mass[k] > 1e-6")
 edit("8.11", "returns its input where nothing is inside", "x = float_copy(x)",
      "if min(surface(p, obstacle)[0] for p in x) >= 0.0:\n        return x\n    x = float_copy(x)")
+edit("8.11", "moves the points that are outside only", "phi < 0.0", "phi > 0.0")
 
 
 # 8.12 -----------------------------------------------------------------------------------------------------------
@@ -487,6 +563,13 @@ edit("8.12", "treats a very small compliance as zero", "-C - alpha_scaled * Lam"
      "-C - (alpha_scaled > 1e-6) * alpha_scaled * Lam")
 edit("8.12", "accepts a slightly negative compliance", "not alpha_scaled >= 0.0", "not alpha_scaled >= -1e-9")
 edit("8.12", "returns no change where C = 0", "(-C - alpha_scaled", "(C != 0.0) * (-C - alpha_scaled")
+edit("8.12", "adds C", "(-C - alpha_scaled * Lam)", "(C - alpha_scaled * Lam)")
+edit("8.12", "adds the multiplier so far with the wrong sign", "(-C - alpha_scaled * Lam)", "(-C + alpha_scaled * Lam)")
+edit("8.12", "subtracts the compliance, where it is added", "weight + alpha_scaled", "weight - alpha_scaled")
+edit("8.12", "multiplies by the denominator", "/ (weight + alpha_scaled)", "* (weight + alpha_scaled)")
+edit("8.12", "returns the new Λ, not its change", "return (-C", "return Lam + (-C")
+edit("8.12", "takes a weight of 1", "(weight + alpha_scaled)", "(1.0 + alpha_scaled)")
+edit("8.12", "forgets the compliance beside the multiplier so far", "alpha_scaled * Lam", "Lam")
 
 
 # 8.13 -----------------------------------------------------------------------------------------------------------
@@ -553,6 +636,16 @@ edit("8.13", "divides α by the number of sweeps",
      "network.alpha[s] / (dt * dt)", "network.alpha[s] / (dt * dt) / network.sweeps")
 edit("8.13", "returns its input where there are no links", "x, Lam, w =",
      "if network.i.size == 0:\n        return x, Lam\n    x, Lam, w =")
+edit("8.13", "exchanges the inverse masses of the two ends",
+     "w[i] * change / length, w[j] * change / length", "w[j] * change / length, w[i] * change / length")
+edit("8.13", "moves both ends in the same direction", "w[j] * change / length, x", "-w[j] * change / length, x")
+edit("8.13", "subtracts the change from Λ", "Lam[s] += change", "Lam[s] -= change")
+edit("8.13", "does not divide by the length",
+     "w[i] * change / length, w[j] * change / length", "w[i] * change, w[j] * change")
+edit("8.13", "exchanges C and Λ", "length - network.rest[s], Lam[s],", "Lam[s], length - network.rest[s],")
+edit("8.13", "reverses the sign of C", "length - network.rest[s], Lam[s]", "network.rest[s] - length, Lam[s]")
+edit("8.13", "moves the ends by the whole Λ, not by its change",
+     "Lam[s] += change", "Lam[s] += change; change = Lam[s]")
 
 
 # 8.14 -----------------------------------------------------------------------------------------------------------
@@ -585,6 +678,12 @@ wrong("8.14", "makes at most five sweeps")(soft_step(sweeps=lambda n: min(n, 5))
 edit("8.14", "takes a PBD step where no link is soft", "Lam = np.zeros(network.i.size)",
      "Lam = np.zeros(network.i.size)\n"
      "    if not network.alpha.any():\n        return pbd_step(acceleration, t, x, v, dt, network)")
+edit("8.14", "multiplies by dt in the velocity", "(new - x) / dt", "(new - x) * dt")
+edit("8.14", "forgets dt in the velocity", "(new - x) / dt", "(new - x)")
+edit("8.14", "takes the velocity with the wrong sign", "(new - x) / dt", "(x - new) / dt")
+edit("8.14", "starts from the old positions and forgets the prediction",
+     "new = predict(acceleration, t, x, v, dt, network)", "new = x")
+edit("8.14", "makes one sweep only", "range(network.sweeps)", "range(1)")
 
 
 # 8.15 -----------------------------------------------------------------------------------------------------------
@@ -606,6 +705,13 @@ wrong("8.15", "omits the rotation")(readiness(arm=lambda r, n: 0.0 * r))
 wrong("8.15", "uses the part of the arm along n in place of r × n")(readiness(arm=lambda r, n: (r @ n) * n))
 edit("8.15", "uses a mass of at least 1 kg", "1.0 / m", "1.0 / max(m, 1.0)")
 wrong("8.15", "multiplies by the moments")(readiness(moments=lambda I: I))
+edit("8.15", "forgets the square of r × n", "turn * turn / I_body", "turn / I_body")
+edit("8.15", "adds the mass in place of its inverse", "1.0 / m", "m")
+edit("8.15", "uses the length of the arm in place of r × n", "cross(r, n)", "r")
+edit("8.15", "divides by the squares of the moments", "turn * turn / I_body", "turn * turn / I_body**2")
+edit("8.15", "returns the effective mass, not its inverse",
+     "return 1.0 / m + np.sum(turn * turn / I_body)", "return 1.0 / (1.0 / m + np.sum(turn * turn / I_body))")
+edit("8.15", "subtracts the rotation", "1.0 / m + np", "1.0 / m - np")
 
 
 # 8.16 -----------------------------------------------------------------------------------------------------------
@@ -632,6 +738,16 @@ edit("8.16", "fails without rotation", "quaternion_update(q, turn, 1.0)",
      "quaternion_update(q, turn / np.sqrt(turn @ turn), np.sqrt(turn @ turn))")
 edit("8.16", "ignores rotations below 1 µrad", "quaternion_update(q, turn, 1.0)",
      "quaternion_update(q, turn * (turn @ turn > 1e-12), 1.0)")
+edit("8.16", "multiplies by the mass", "p / m", "p * m")
+edit("8.16", "moves the other way", "x + p / m", "x - p / m")
+edit("8.16", "multiplies by the moments", "/ I_body)", "* I_body)")
+edit("8.16", "forgets the moments", "unrotate(q, cross(r, p)) / I_body", "unrotate(q, cross(r, p))")
+edit("8.16", "does not rotate back into the world",
+     "rotate(q, unrotate(q, cross(r, p)) / I_body)", "unrotate(q, cross(r, p)) / I_body")
+edit("8.16", "moves the body and does not rotate it", "quaternion_update(q, turn, 1.0)", "q")
+edit("8.16", "exchanges rotate and unrotate",
+     "rotate(q, unrotate(q, cross(r, p)) / I_body)", "unrotate(q, rotate(q, cross(r, p)) / I_body)")
+edit("8.16", "rotates by p in place of r × p", "cross(r, p)", "p")
 
 
 # 8.17 -----------------------------------------------------------------------------------------------------------
@@ -666,6 +782,13 @@ def turning_rate(q_old, q_new, dt):
     return 2.0 * np.tan(np.arctan2(s, turn[0])) / dt * turn[1:] / s if s > 0.0 else np.zeros(3)
 
 
+edit("8.17", "does not divide by the scalar part", "2.0 / (turn[0] * dt)", "2.0 / dt")
+edit("8.17", "multiplies by dt", "2.0 / (turn[0] * dt)", "2.0 * dt / turn[0]")
+edit("8.17", "takes half in place of twice", "2.0 / (turn[0]", "0.5 / (turn[0]")
+edit("8.17", "takes the difference of the quaternions",
+     "turn = quaternion_product(q_new, q_back)", "turn = q_new - q_old; turn[0] = 1.0")
+
+
 # 8.18 -----------------------------------------------------------------------------------------------------------
 @variants
 def enclosed(share=6.0, order=(0, 1, 2), slope_share=6.0, sign=1.0, only_first=False):
@@ -691,3 +814,10 @@ edit("8.18", "drops the sign of volume and gradient", "return V, gradient", "ret
 edit("8.18", "keeps only the last face of each corner",
      "gradient[faces[f, 0]] += across", "gradient[faces[f, 0]] = across")
 edit("8.18", "leaves out the corners of no face", "return V, gradient", "return V, gradient[np.unique(faces)]")
+edit("8.18", "forgets the division by 6", "cross(b, c) / 6.0", "cross(b, c)")
+edit("8.18", "exchanges the corners in one of the cross products", "cross(c, a) / 6.0", "cross(a, c) / 6.0")
+edit("8.18", "forgets the division by 6 at the third corner", "cross(a, b) / 6.0", "cross(a, b)")
+edit("8.18", "gives two corners of a face the same gradient",
+     "gradient[faces[f, 1]] += cross(c, a) / 6.0", "gradient[faces[f, 1]] += across")
+edit("8.18", "uses the area of the face for its first corner",
+     "across = cross(b, c) / 6.0", "across = cross(b - a, c - a) / 6.0")

@@ -28,6 +28,14 @@ edit("10.1", "does not change the spin", "omega + dt * p.inv_inertia * tau", "om
 edit("10.1", "reverses the torque", "omega + dt *", "omega - dt *")
 edit("10.1", "moves immovable bodies", "p.inv_mass[:, None] * F", "np.maximum(p.inv_mass, 0.1)[:, None] * F")
 edit("10.1", "evaluates the load at time 0", "load(t, x", "load(0.0, x")
+edit("10.1", "forgets dt beside the force", "v + dt * p.inv_mass", "v + p.inv_mass")
+edit("10.1", "forgets the mass", "dt * p.inv_mass[:, None] * F", "dt * F * (p.inv_mass[:, None] > 0.0)")
+edit("10.1", "exchanges force and torque: uses the inverse mass for the torque",
+     "p.inv_inertia * tau", "p.inv_mass * tau")
+edit("10.1", "subtracts the force", "v + dt * p", "v - dt * p")
+edit("10.1", "returns the changes only",
+     "return v + dt * p.inv_mass[:, None] * F, omega + dt", "return dt * p.inv_mass[:, None] * F, dt")
+edit("10.1", "forgets dt beside the torque", "omega + dt * p", "omega + p")
 
 
 # 10.2 -----------------------------------------------------------------------------------------------------------
@@ -52,6 +60,13 @@ edit("10.2", "does not change the velocity", "v + dt * p.inv_mass[:, None] * F",
 
 
 edit("10.2", "rotates every body that has a mass", "p.inv_inertia[i, 0] > 0.0", "p.inv_mass[i] > 0.0")
+edit("10.2", "forgets dt beside the angular acceleration", "omega[i] + dt * angular", "omega[i] + angular")
+edit("10.2", "forgets the mass", "dt * p.inv_mass[:, None] * F", "dt * F * (p.inv_mass[:, None] > 0.0)")
+edit("10.2", "subtracts the angular acceleration", "omega[i] + dt", "omega[i] - dt")
+edit("10.2", "returns the angular acceleration in place of ω",
+     "omega[i] = omega[i] + dt * angular", "omega[i] = dt * angular")
+edit("10.2", "forgets dt beside the force", "v + dt * p", "v + p")
+edit("10.2", "subtracts the force", "v + dt * p", "v - dt * p")
 
 
 # 10.3 -----------------------------------------------------------------------------------------------------------
@@ -68,6 +83,11 @@ edit("10.3", "does not change the angles", "q + dt * omega", "q")
 edit("10.3", "moves by half a step", "x + dt * v", "x + 0.5 * dt * v")
 edit("10.3", "returns the old velocities", "v, omega = new", "_, omega = new")
 edit("10.3", "rotates the other way", "q + dt * omega", "q - dt * omega")
+edit("10.3", "forgets dt beside ω", "q + dt * omega", "q + omega")
+edit("10.3", "exchanges v and ω",
+     "return x + dt * v, q + dt * omega, v, omega", "return x + dt * v, q + dt * omega, omega, v")
+edit("10.3", "does not move the positions", "return x + dt * v,", "return x,")
+edit("10.3", "moves backwards", "return x + dt", "return x - dt")
 
 
 # 10.4 -----------------------------------------------------------------------------------------------------------
@@ -84,6 +104,15 @@ edit("10.4", "does not change the positions", "x + dt * v", "x")
 edit("10.4", "returns quaternions that are not normalised",
      "quaternion_update(q[i], omega[i], dt)", "1.01 * quaternion_update(q[i], omega[i], dt)")
 edit("10.4", "returns the old velocities", "v, omega = new", "_, omega = new")
+edit("10.4", "moves with the old velocity",
+     "v, omega = new_velocities(load, t, x, q, v, omega, dt, p)",
+     "v_old = v; v, omega = new_velocities(load, t, x, q, v, omega, dt, p); x = x + dt * (v_old - v)")
+edit("10.4", "does not rotate the bodies", "q[i] = quaternion_update(q[i], omega[i], dt)", "pass")
+edit("10.4", "forgets dt beside v", "x + dt * v", "x + v")
+edit("10.4", "rotates by half of the step", "omega[i], dt)", "omega[i], 0.5 * dt)")
+edit("10.4", "moves backwards", "return x + dt", "return x - dt")
+edit("10.4", "exchanges the velocities v and ω in what it returns",
+     "return x + dt * v, q, v, omega", "return x + dt * v, q, omega, v")
 
 
 # 10.5 -----------------------------------------------------------------------------------------------------------
@@ -147,6 +176,10 @@ edit("10.6", "makes one sweep only", "range(p.sweeps)", "range(1)")
 edit("10.6", "does not change the angles", "q + dt * omega", "q")
 edit("10.6", "omits the forces", "v, omega = new_velocities_2d(load, t, x, q, v, omega, dt, p)",
      "v, omega = v.copy(), omega.copy()")
+edit("10.6", "reverses the closing speeds", "closing_speeds(contacts.gap, dt)", "-closing_speeds(contacts.gap, dt)")
+edit("10.6", "uses the gap in place of the closing speed", "closing_speeds(contacts.gap, dt)", "contacts.gap")
+edit("10.6", "does not move the bodies", "PileState(x + dt * v,", "PileState(x,")
+edit("10.6", "returns the old contacts", "dt * omega, v, omega, contacts, J)", "dt * omega, v, omega, old, J)")
 
 
 # 10.7 -----------------------------------------------------------------------------------------------------------
@@ -178,6 +211,10 @@ edit("10.7", "omits the friction", "p.mu)", "0.0)")
 edit("10.7", "makes one sweep only", "range(p.sweeps)", "range(1)")
 edit("10.7", "omits the forces", "v, omega = new_velocities(load, t, x, q, v, omega, dt, p)",
      "v, omega = v.copy(), omega.copy()")
+edit("10.7", "reverses the closing speeds", "closing_speeds(contacts.gap, dt)", "-closing_speeds(contacts.gap, dt)")
+edit("10.7", "uses the gap in place of the closing speed", "closing_speeds(contacts.gap, dt)", "contacts.gap")
+edit("10.7", "does not move the bodies", "PileState(x + dt * v,", "PileState(x,")
+edit("10.7", "returns the old contacts", "dt), v, omega, contacts, J)", "dt), v, omega, old, J)")
 
 
 # 10.8 -----------------------------------------------------------------------------------------------------------
@@ -191,6 +228,8 @@ edit("10.8", "rotates about the origin", "place - ball.centre", "place")
 edit("10.8", "reverses the rotation", "ball.floor_omega, place", "-ball.floor_omega, place")
 edit("10.8", "rotates in place", "point_velocity(ball.floor_v", "point_velocity(0.0 * ball.floor_v")
 edit("10.8", "omits the rotation", "ball.floor_omega, place", "0.0 * ball.floor_omega, place")
+edit("10.8", "adds the centre", "place - ball.centre", "place + ball.centre")
+edit("10.8", "exchanges velocity and rotation", "ball.floor_v, ball.floor_omega", "ball.floor_omega, ball.floor_v")
 
 
 # 10.9 -----------------------------------------------------------------------------------------------------------
@@ -212,6 +251,17 @@ edit("10.9", "moves the position with the new velocity", "0.5 * dt * (v + v_new)
 edit("10.9", "rotates with the new spin", "0.5 * dt * (omega + omega_new)", "dt * omega_new")
 edit("10.9", "does not rotate", "quaternion_product(exponential(0.5 * dt * (omega + omega_new)), q)", "q")
 edit("10.9", "returns the old spin", "q, v_new, omega_new", "q, v_new, omega")
+edit("10.9", "moves with the old velocity", "0.5 * dt * (v + v_new)", "dt * v")
+edit("10.9", "adds the velocities without halving", "x + 0.5 * dt", "x + dt")
+edit("10.9", "rotates with the old spin", "(omega + omega_new)), q)", "(omega + omega)), q)")
+edit("10.9", "returns the old velocity", "q, v_new, omega_new", "q, v, omega_new")
+edit("10.9", "omits the friction of the floor", "t, x, q, pushed, turned, dt", "t, x, q, v, omega, dt")
+edit("10.9", "starts the step with the old velocity", "q, pushed, turned", "q, v, turned")
+edit("10.9", "starts the step with the old spin", "q, pushed, turned", "q, pushed, omega")
+edit("10.9", "adds the rotations without halving", "exponential(0.5 * dt", "exponential(dt")
+edit("10.9", "multiplies the rotation from the right, as if it were in body coordinates",
+     "quaternion_product(exponential(0.5 * dt * (omega + omega_new)), q)",
+     "quaternion_product(q, exponential(0.5 * dt * (omega + omega_new)))")
 
 
 # 10.10 ----------------------------------------------------------------------------------------------------------
@@ -237,6 +287,15 @@ edit("10.10", "omits gravity along the slope", "- along", "")
 edit("10.10", "keeps the vertical part of the slip", "slip[2] = 0.0", "pass")
 edit("10.10", "returns a finite time where the slip never ends", "size / rate if rate > 0.0 else np.inf", "size / rate")
 edit("10.10", "omits the friction coefficient", "-ball.mu * ball.gravity[2]", "-ball.gravity[2]")
+edit("10.10", "reverses the effect of friction on the spin", "(1.0 + ball.m", "(1.0 - ball.m")
+edit("10.10", "forgets the square of the radius", "ball.radius * ball.radius /", "ball.radius /")
+edit("10.10", "returns the rate, not the time", "return size / rate", "return rate")
+edit("10.10", "returns the reciprocal", "return size / rate", "return rate / size")
+edit("10.10", "forgets gravity in the friction", "-ball.mu * ball.gravity[2] *", "ball.mu *")
+edit("10.10", "returns infinity where the ball does not slip", "return 0.0", "return np.inf")
+edit("10.10", "does not divide by the moment of inertia", "/ ball.I_body[0])", ")")
+edit("10.10", "counts the effect of friction on the spin only", "(1.0 + ball.m * ball.radius", "(ball.m * ball.radius")
+edit("10.10", "returns zero where it slips forever", "else np.inf", "else 0.0")
 
 
 # 10.11 ----------------------------------------------------------------------------------------------------------
@@ -259,6 +318,12 @@ edit("10.11", "starts the second part at time t", "load, t + first", "load, t")
 edit("10.11", "ends the first part after half of the slip time", "np.minimum(dt, slip_time(v, omega, ball))",
      "np.minimum(dt, 0.5 * slip_time(v, omega, ball))")
 edit("10.11", "starts the second part at the old position", "x, q, v, omega = average", "_, q, v, omega = average")
+edit("10.11", "takes the longer of the two times", "np.minimum(dt, slip", "np.maximum(dt, slip")
+edit("10.11", "advances the first part only",
+     "return average_rolling_step(load, t + first, x, q, v, omega, dt - first, ball)", "return x, q, v, omega")
+edit("10.11", "goes back in the second part", "dt - first", "first - dt")
+edit("10.11", "advances each part by half of the step",
+     "first = np.minimum(dt, slip_time(v, omega, ball))", "first = 0.5 * dt")
 
 
 # 10.12 ----------------------------------------------------------------------------------------------------------
@@ -280,6 +345,17 @@ edit("10.12", "keeps the spin unchanged",
      "omega = L / (1.0 / inv_inertia + (r[0] * r[0] + r[1] * r[1]) / inv_mass)", "pass")
 edit("10.12", "sets the velocity of the centre to zero", "omega * np.array([r[1], -r[0]])", "0.0 * v")
 edit("10.12", "rotates away from the corner", "np.array([r[1], -r[0]])", "np.array([-r[1], r[0]])")
+edit("10.12", "keeps the velocity of the centre", "return omega * np.array([r[1], -r[0]]), omega", "return v, omega")
+edit("10.12", "uses the mass in place of its inverse beside r × v",
+     "cross_2d(r, v) / inv_mass", "cross_2d(r, v) * inv_mass")
+edit("10.12", "uses the inertia's inverse in place of the inertia", "omega / inv_inertia", "omega * inv_inertia")
+edit("10.12", "forgets the mass in the inertia about the corner",
+     "(r[0] * r[0] + r[1] * r[1]) / inv_mass", "(r[0] * r[0] + r[1] * r[1])")
+edit("10.12", "returns the angular momentum in place of ω", "omega = L / (", "omega = L; _ = 1.0 / (")
+edit("10.12", "forgets the square of the distance",
+     "(r[0] * r[0] + r[1] * r[1]) / inv_mass", "np.sqrt(r[0] * r[0] + r[1] * r[1]) / inv_mass")
+edit("10.12", "stops the body", "return omega * np.array([r[1], -r[0]]), omega", "return 0.0 * v, 0.0 * omega")
+edit("10.12", "uses r · v in place of r × v", "cross_2d(r, v)", "(r @ v)")
 
 
 # 10.13 ----------------------------------------------------------------------------------------------------------
@@ -300,6 +376,13 @@ edit("10.13", "multiplies by the inverse inertia in place of the inertia",
      "w * w / p.inv_inertia[i]", "w * w * p.inv_inertia[i]")
 edit("10.13", "divides by an inverse inertia of zero", "p.inv_inertia[i, 0] > 0.0", "True")
 edit("10.13", "counts the first body only", "range(x.shape[0])", "range(1)")
+edit("10.13", "omits the potential energy", "- dot(p.gravity, x[i])", "")
+edit("10.13", "multiplies by the inverse mass", "x[i])) / p.inv_mass[i]", "x[i])) * p.inv_mass[i]")
+edit("10.13", "forgets the squares of ω", "w * w / p", "w / p")
+edit("10.13", "omits the factor ½ of the rotation", "0.5 * np.sum", "np.sum")
+edit("10.13", "rotates ω from body to world in place of world to body",
+     "w = unrotate(q[i], omega[i])", "w = unrotate(q[i] * np.array([1.0, -1.0, -1.0, -1.0]), omega[i])")
+edit("10.13", "forgets the mass", "x[i])) / p.inv_mass[i]", "x[i]))")
 
 
 # 10.14 ----------------------------------------------------------------------------------------------------------
@@ -320,6 +403,10 @@ edit("10.14", "divides by an inverse inertia of zero", "p.inv_inertia[i, 0] > 0.
 edit("10.14", "adds velocities in place of momenta", "P += v[i] / p.inv_mass[i]", "P += v[i]")
 edit("10.14", "takes v × x in place of x × v", "cross(x[i], v[i])", "cross(v[i], x[i])")
 edit("10.14", "uses the inverse inertia in place of the inertia", "1.0 / p.inv_inertia[i]", "p.inv_inertia[i]")
+edit("10.14", "returns L first", "return P, L", "return L, P")
+edit("10.14", "multiplies by the inverse mass", "v[i] / p.inv_mass[i]", "v[i] * p.inv_mass[i]")
+edit("10.14", "forgets the mass in the orbital part", "cross(x[i], v[i]) / p.inv_mass[i]", "cross(x[i], v[i])")
+edit("10.14", "keeps the last body only", "P += v", "P = v")
 
 
 # 10.15 ----------------------------------------------------------------------------------------------------------
@@ -340,6 +427,11 @@ edit("10.15", "measures the gain since the beginning, not since the lowest point
 edit("10.15", "measures the gain since the last time",
      "np.minimum(lowest, rest)", "energies[k - 1] - work[k - 1] if k else rest")
 edit("10.15", "returns the gain at the end, not the largest one", "np.maximum(gain, rest - lowest)", "rest - lowest")
+edit("10.15", "returns the largest loss", "np.maximum(gain, rest - lowest)", "np.maximum(gain, lowest - rest)")
+edit("10.15", "measures the gain since the highest point",
+     "np.minimum(lowest, rest)", "np.maximum(lowest if k else -np.inf, rest)")
+edit("10.15", "returns the largest minus the smallest, whatever their order",
+     "return gain", "return np.max(energies - work) - np.min(energies - work)")
 
 
 # 10.16 ----------------------------------------------------------------------------------------------------------
@@ -365,3 +457,10 @@ edit("10.16", "omits negative differences", "np.max(np.abs(slow - quick))", "np.
 edit("10.16", "returns the mean difference, not the largest one",
      "np.max(np.abs(slow - quick))", "np.mean(np.abs(slow - quick))")
 edit("10.16", "compares the last number only", "np.max(np.abs(slow - quick))", "np.abs(slow - quick).ravel()[-1]")
+edit("10.16", "adds up the differences of all runs",
+     "np.maximum(difference, np.max(np.abs(slow - quick)))", "difference + np.max(np.abs(slow - quick))")
+edit("10.16", "returns the ratios, not their median", "np.median(ratios)", "ratios")
+edit("10.16", "adds up the ratios", "np.median(ratios)", "np.sum(ratios)")
+edit("10.16", "takes the smallest of the ratios", "np.median(ratios)", "np.min(ratios)")
+edit("10.16", "returns the difference of the last run",
+     "np.maximum(difference, np.max(np.abs(slow - quick)))", "np.max(np.abs(slow - quick))")
