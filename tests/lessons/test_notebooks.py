@@ -112,6 +112,8 @@ def test_a_film_has_the_look_of_its_methods(monkeypatch):
     assert f'color:{methods.RK4.colour}">■</span> mine' in shown[0]
     play({"mine": frames}, 1.0)
     assert '"marker"' not in shown[1] and "●</span> mine" in shown[1]
+    play({"beside it": frames, "mine": frames}, 1.0, shown_as={"mine": methods.DAMPED})
+    assert shown[2].count(f'"colour": "{methods.DAMPED.colour}"') == 1       # which is the first colour of the others
 
 
 def test_words_can_be_read_on_white_and_on_black():

@@ -454,12 +454,17 @@ def save_film(frames, seconds, file, links=(), shown_as=None):
 def _plane(frames, seconds, links, shown_as):
     """A film in the plane as data."""
     roles = [Role.TRUTH if label == "truth" else Role.OURS for label in frames]
+    taken = {method.colour for label, method in shown_as.items() if label in frames}
+    others = iter([colour for colour in film.COLOURS[Role.OURS] * 3 if colour not in taken])
     films = [{"label": label, "role": role.value, "colour": colour,
               "frames": [np.round(np.asarray(f, dtype=float), 5).tolist() for f in frames[label]]}
              for label, role, colour in zip(frames, roles, film.colours(roles))]
     for run in films:
         method = shown_as.get(run["label"])
-        run.update({"colour": method.colour, "marker": method.marker} if method else {})
+        if method:
+            run.update(colour=method.colour, marker=method.marker)
+        elif run["role"] == Role.OURS.value:
+            run["colour"] = next(others)
     return {"seconds": seconds, "links": [list(map(int, pair)) for pair in links], "films": films}
 
 
