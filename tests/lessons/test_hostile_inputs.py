@@ -22,7 +22,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from solutions.checks import BadInput, Diverged
+from solutions.support.orbits import attraction
 from validate import modules
+from validate.reference.integrators import Planet
 
 from ..grading import points
 
@@ -75,7 +77,8 @@ IMPACTS = (solid, arms, normals, 0.5, 0.3)
 STARTED = {
     "integrators": {
         "advance": [(integrators.rk4_step, *OSCILLATION)],
-        "advance_adaptive": [(integrators.verlet_step, *OSCILLATION[:5], 2.0, oscillator)],
+        "advance_adaptive": [(integrators.verlet_step, attraction, 0.0, np.ones(2), np.array([-0.5, 0.5]), 0.1, 2.0,
+                              Planet())],
         "trajectory": [(integrators.verlet_step, *OSCILLATION)]},
     "springs": {"make_spring_network": [(rope, 0.1, [0], links, 50.0, 0.1, weight, calm, 0.2)]},
     "friction": {
@@ -155,9 +158,9 @@ TRUSTED = {
 FREE = {name for names in TRUSTED.values() for name in names}
 PATIENCE = 5.0               # time limit of one call [s]; ordinary calls take milliseconds
 # These functions do not check the records of an acceleration or a surface that they are given.
-LAWS = {"advance", "trajectory", "advance_pile_2d", "advance_pile", "pile_trajectory", "advance_particle",
-        "advance_rotation", "rotation_trajectory", "advance_rigid_body", "slip_times", "advance_projectiles",
-        "advance_free", "advance_contact", "advance_rocking",
+LAWS = {"advance", "advance_adaptive", "trajectory", "advance_pile_2d", "advance_pile", "pile_trajectory",
+        "advance_particle", "advance_rotation", "rotation_trajectory", "advance_rigid_body", "slip_times",
+        "advance_projectiles", "advance_free", "advance_contact", "advance_rocking",
         "advance_reach", "reach_trajectory", "solve_reach", "solve_targets"}
 
 
@@ -364,6 +367,12 @@ def outcomes(function, calls):
 
 
 # ---------------------------------------------------------------------------------------------- the tests
+
+@pytest.fixture(autouse=True)
+def few_adapted_steps(monkeypatch):
+    """What a million adapted steps would refuse is refused within the time limit of a call."""
+    monkeypatch.setattr(integrators, "MOST_ADAPTED_STEPS", 1000)
+
 
 def test_no_hostile_value_gives_an_answer_that_is_silently_wrong(ordinary, capsys):
     tables = {True: defaultdict(Counter), False: defaultdict(Counter)}

@@ -248,7 +248,7 @@ def test_the_grader_says_the_same_and_gives_no_points(kind):
     broken = KINDS[kind]
     text = broken.text if isinstance(broken.text, bytes) else broken.text.encode()
     outcomes = [outcome for _, outcome in marking.mark_lesson("integrators", text, "a secret")[0]]
-    assert len(outcomes) == 21 and {o.status for o in outcomes} == {"not yet"}
+    assert len(outcomes) == 22 and {o.status for o in outcomes} == {"not yet"}
     assert len({(o.got, o.hint) for o in outcomes}) == 1
     assert broken.reason in outcomes[0].got and broken.remedy in outcomes[0].hint, outcomes[0]
 

@@ -102,7 +102,7 @@ def tolerance(p, dt):
     b (R + r) from the axis the root is 1/√(1 − b²) times as uncertain as the position; a dozen roundings of the whole
     way for the time of impact, here and in the truth.
     rays: where a ray ends is measured and not derived.
-    discrete: detected at most one step late; `predicted_error` knows when.  A step longer than the shortest path
+    discrete: detected at most one step late, at a moment that is predicted.  A step longer than the shortest path
     through the cylinder, 2 √(1 − b²)(R + r), can pass it.
     """
     size, steep = np.linalg.norm(truth(p, T)), np.sqrt(1.0 - WIDEST**2)

@@ -65,7 +65,7 @@ def tolerance(p, dt):
 
     continuous: a position is rounded by ½ spacing of itself at each step until the impact, and 1/cos 0.3 rad
     times as much on a tilted path; a dozen roundings of the whole way for the time of impact, here and in the truth.
-    discrete: detected at most one step late; `predicted_error` knows when.  pybullet's rays are exact here, because a
+    discrete: detected at most one step late, at a moment that is predicted.  pybullet's rays are exact here, because a
     plane is not rounded.
     """
     size = np.linalg.norm(truth(p, T))

@@ -117,7 +117,7 @@ def tolerance(p, dt):
 
     pybullet, cured, knows no missing rotation below 2 arccos(1 − 1.1e-16) = 3e-8 rad.  By default it follows its own
     law.  Where its angle is known too little to tell to which float of 32 bits it is rounded, an iteration is off by
-    the spacing of those; `single_rounding` finds these iterations.
+    the spacing of those, in the iterations where that can happen.
     """
     over = np.sqrt(2.0) / smallest_singular_value(p) / np.linalg.norm(truth(p, T))
     size = 1.0 + p.l_1 + p.l_2 + p.l_3
