@@ -118,9 +118,9 @@ RECORD = (modules.SCENES / "springs" / "hanging_springs.py").read_text()
 
 
 @pytest.mark.parametrize(("text", "says"), [
-    (RECORD.replace("    tolerance=tolerance,\n", ""), "'tolerance'"),
-    (RECORD.replace("    tolerance=tolerance,\n", "    tolerence=tolerance,\n"), "'tolerence'"),
-    (RECORD.replace("    steps=STEPS,\n", "    steps=5,\n"), "field 'steps'"),
+    (RECORD.replace(" tolerance=tolerance,", ""), "'tolerance'"),
+    (RECORD.replace(" tolerance=tolerance,", " tolerence=tolerance,"), "'tolerence'"),
+    (RECORD.replace(" steps=STEPS,", " steps=5,"), "field 'steps'"),
     (RECORD.replace("SCENE = Scene(", "SCENES = Scene("), "SCENE = Scene"),
     (RECORD.replace('lesson="springs"', 'lesson="spring"'), "'spring'"),
 ], ids=["missing", "misspelt", "of another type", "no record", "of another lesson"])

@@ -52,7 +52,6 @@ BALLS = {
     "truth_uncertainty": 1e-13,              # of brentq, times the 7,000 m that the fastest balls have travelled
     "uncompiled_in_quick": ("discrete_step",),           # plain Python finishes before numba has compiled it
     "shorter_in_quick": {"discrete_step": 1000},
-    "full_loop": "the scene ends where the loop begins: a ball stays where it is found to hit",
 }
 
 
