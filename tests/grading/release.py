@@ -287,6 +287,7 @@ class Answer(NamedTuple):
     body: str                        # normalised
     pieces: dict[str, int]           # {statement: its size}
     lines: dict[str, int]            # {line without spaces: its size}
+    names: set[frozenset[str]]       # the names of each telling statement or line, and that of the function
 
 
 def answers_of(lesson):
@@ -294,7 +295,10 @@ def answers_of(lesson):
         body = textwrap.dedent("".join(match[0].splitlines(keepends=True)[1:-1]))
         tree, function = ast.parse(body), generate.exercises(source(lesson))[match["exercise"]]
         lines = {line: len(words(text)) for text in body.splitlines() if (line := squeezed(text))}
-        yield Answer(lesson, match["exercise"], function, plain(tree.body), dict(pieces(tree)), lines)
+        telling = [text for text, size in pieces(tree) if size >= TELLING]
+        telling += [text for text in body.splitlines() if len(words(text)) >= TELLING]
+        names = {frozenset(word for word in words(text) if not word[0].isdigit()) for text in (*telling, function)}
+        yield Answer(lesson, match["exercise"], function, plain(tree.body), dict(pieces(tree)), lines, names)
 
 
 def pieces(tree):
@@ -415,6 +419,24 @@ def signs_of(hidden):
     return signs
 
 
+def names_of(hidden):
+    """Return {longest name: sets of names}: a text that holds a sign of an answer has all names of one of these sets.
+
+    A set without names stands below "".
+    """
+    sets = {}
+    for answer in hidden:
+        for names in answer.names:
+            sets.setdefault(max(names, key=len, default=""), set()).add(names)
+    return sets
+
+
+def may_hold(text, sets):
+    """Whether a text has all names of a sign.  That is quick to see, and a text without them needs no search."""
+    names = {"", *WORD.findall(text)}
+    return any(some <= names for name in names & sets.keys() for some in sets[name])
+
+
 def suspects(where, hidden, signs):
     """Return the answers of which a searched text holds a sign; it cannot hold any other answer."""
     seen = signs.keys() & (where.statements | where.lines | where.bodies)
@@ -425,13 +447,14 @@ def refuse_leaks(files, worked):
     """Raise BadInput for the first text in the zip that students must not have."""
     hidden = [answer for name in modules.lesson_names() if name not in worked for answer in answers_of(name)]
     signs = signs_of(hidden)
+    sets = names_of(hidden)
     for path, data in sorted(files.items()):
         if "__pycache__" in path or path.endswith((".pyc", ".pyo")):
             raise BadInput(path, "compiled code", "answers can be read from that: git rm it")
         if Path(path).suffix in PICTURES or path == OPENINGS:           # frozen() accepts only numbers
             continue
         for text in texts(path, data.decode()):
-            leak = leak_in(text, hidden, signs)
+            leak = leak_in(text, hidden, signs, sets)
             if leak:
                 raise BadInput(path, f"not for students (it holds {leak.what})", leak.remedy)
 
@@ -442,11 +465,13 @@ class Leak(NamedTuple):
     remedy: str
 
 
-def leak_in(text, hidden, signs):
+def leak_in(text, hidden, signs, sets):
     """Return the first Leak of a text, or None."""
     marker = MARKER.search(text)
     if marker:
         return Leak(f"the marker {marker[0]}", "take it out")
+    if not may_hold(text, sets):
+        return None
     where = searched(text)
     for answer in suspects(where, hidden, signs):
         if holds(where, answer):

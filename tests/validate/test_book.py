@@ -50,7 +50,7 @@ class Texts(HTMLParser):
 def secrets():
     """The answers of all lessons, and their signs."""
     hidden = [answer for name in modules.lesson_names() for answer in release.answers_of(name)]
-    return hidden, release.signs_of(hidden)
+    return hidden, release.signs_of(hidden), release.names_of(hidden)
 
 
 def leaks(texts):
