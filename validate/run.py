@@ -45,7 +45,7 @@ def measure_errors(store, names, plan, pool, bars):
     A process stays with a lesson as long as it can.  Two processes at the same lesson would compile the same twice.
     """
     lessons = {("errors", name): modules.bind_scene(name).lesson for name in names}
-    lessons |= {("stability", lesson): lesson for lesson in lessons_of(names)}
+    lessons |= {("stability", lesson): lesson for lesson in reversed(lessons_of(names))}     # the short ones come last
     todo = {(kind, name): ((measure.errors if kind == "errors" else stability_cases), name, plan)
             for kind, name in lessons if not store.has(kind, name)}
     bar = bars.add_task("errors and stability", total=len(lessons), completed=len(lessons) - len(todo))

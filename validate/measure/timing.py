@@ -9,6 +9,7 @@ import gc
 import os
 import time
 import warnings
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -65,7 +66,7 @@ def times(name, plan, result):
     return jsonable({
         "rows": rows,
         "untimed": list(dict.fromkeys(f"{i.label} ({i.speed})" for i in items if (i.label, i.speed) not in done)),
-        "baseline": baseline(plan) if scene.moves else {},
+        "baseline": baseline(plan.live) if scene.moves else {},
         "load": os.getloadavg() if hasattr(os, "getloadavg") else None,
         "others": others if items else None,
         "time_to_error": times_to_error(rows),
@@ -216,13 +217,14 @@ def clock(item, inner, steps=None):
         close()
 
 
-def baseline(plan):
-    """Cost of one step of an empty world [s], the Python call included, for each engine."""
+@cache
+def baseline(live):
+    """Cost of one step of an empty world [s], the Python call included, for each engine.  It is measured once."""
     costs = {}
-    if PYMUNK in plan.live:
+    if PYMUNK in live:
         space = pymunk_space()
         costs[PYMUNK] = empty_step(lambda: space.step(1e-3))
-    if PYBULLET in plan.live and engines.installed(PYBULLET):
+    if PYBULLET in live and engines.installed(PYBULLET):
         bullet = Bullet(1e-3)
         costs[PYBULLET] = empty_step(bullet.step)
         bullet.close()
@@ -256,16 +258,16 @@ def ablations(selection, p, agreeing):
         if isinstance(extra, str):
             rows.append({"what": what, "cost": None, "same": None, "note": extra, "observed": None, "repeats": None})
         else:
-            rows.append(with_and_without(bound, step, speed, steps, p, what, *extra(p)))
+            rows.append(with_and_without(bound, step, speed, steps, selection.plan.repeats(), p, what, *extra(p)))
     return rows
 
 
-def with_and_without(scene, step, speed, steps, p, what, state, p_full):
+def with_and_without(scene, step, speed, steps, repeats, p, what, state, p_full):
     """What it costs to put one omitted thing in, and whether the motion stays the same."""
     dt = scene.duration / steps
     items = [Timed(which, speed, steps, dt, time_ours(scene, step, *begin))
              for which, *begin in (("without", p), ("with", p_full, state))]
-    (_, lean), (_, full) = interleaved(items, {speed: np.inf})
+    (_, lean), (_, full) = interleaved(items, {speed: np.inf}, repeats)
     a = scene.observe(scene.run(step, scene.acceleration, scene.start(p), p, dt, steps), p)
     b = scene.observe(scene.run(step, scene.acceleration, state, p_full, dt, steps), p)
     return {"what": what, "cost": full["seconds"] / lean["seconds"], "same": relative(a, b) < SAME, "note": "",

@@ -198,7 +198,7 @@ SCENE = Scene(
     ),
     shorter_in_quick={
         "euler_step": 5000, "midpoint_step": 5000, "average_velocity_step": 5000,
-        "implicit_euler_step": 5000, "implicit_midpoint_step": 1000,
+        "implicit_euler_step": 2000, "implicit_midpoint_step": 1000,
     },
     points=points, links=links,
     uses=("one coordinate", "one step function"),
