@@ -128,6 +128,8 @@ WRONG = [                    # case, the function that it examines, what is put 
     ("over-relaxation", "gauss_seidel_sweep", jacobi),
     ("sag-of-a-soft-contact", "advance_pile_2d", half_the_hertz),
     ("sag-of-a-soft-contact", "advance_pile_2d", pile_with(gravity=np.array([0.0, -9.8]))),
+    ("stack-at-rest", "advance_pile_2d", half_the_hertz),
+    ("stack-at-rest", "advance_pile_2d", pile_with(gravity=np.array([0.01, -9.81]))),
     ("mass-ratio-of-a-million", "solve_lcp", swept),
     ("mass-ratio-of-a-million", "solve_contacts", silent),
     ("mass-ratio-of-a-million", "solve_contacts", too_soon),

@@ -421,6 +421,50 @@ def sag_of_a_soft_contact(lesson):
         "Twice the hertz, a quarter of the depth; smaller steps alone change nothing, but they allow more hertz.")
 
 
+@case("stack-at-rest", "How deep a stack of ten rests, and whether it drifts", compiled=False)
+def stack_at_rest(lesson):
+    """Ten boxes of width w rest where theory says, with the impulses of theory, and are left alone for two seconds.
+
+    Joint k, counted from 0 at the floor, carries (10 − k) m g, half of it at each corner, and a corner sinks by
+    k_n F/(2π hertz)².  Between two boxes k_n = 2/m + 2 (w/2)²/I = 5/m, at the floor half of that, because I = m w²/6.
+    If that is the rest of the pile, nothing moves but by round-off.  A depth is the difference of two places of up to
+    10 m, each rounded to 1.8e-15 m, here and in the pile.  Sideways nothing leads back: in each step four lever arms of
+    half a metre are rounded to 1.1e-16 m.  A pile that is put down without an overlap sways first.
+    """
+    n, hertz, substeps, seconds = 10, 60.0, 2, 2.0
+    joints = np.arange(n)
+    weights = (n - joints) * G
+    law = np.where(joints == 0, 2.5, 5.0) * 0.5 * weights / (2.0 * np.pi * hertz) ** 2
+    x = np.stack((np.zeros(n), joints + 0.5 - np.cumsum(law)), axis=1)
+    state, pile = pile_of(lesson, "box", x, [(0.5, 0.5)] * n, 1.0, hertz=hertz, zeta=1.0, substeps=substeps)
+    contacts = after(lesson, "box", state, pile, DT).contacts
+    upper = np.where(contacts.b == n, contacts.a, np.maximum(contacts.a, contacts.b))
+    J = 0.5 * weights[upper, None] * DT / substeps * np.where(contacts.n[:, 1:] > 0.0, 1.0, -1.0) * (0.0, 1.0)
+    end = after(lesson, "box", state._replace(contacts=contacts, J=J), pile, seconds)
+    depths = 1.0 - np.diff(end.x[:n, 1], prepend=-0.5)
+    moved = max(np.max(np.abs(end.x[:n, 0])), np.max(np.abs(end.q)))
+    found = [finding(
+        claim="A joint of a stack is k_n F/(2π hertz)² deep, F the weight above it on two corners.",
+        quantity=f"largest error of the depths of ten joints after {seconds:g} s [m]",
+        predicted=0.0,
+        measured=np.max(np.abs(depths - law)),
+        tolerance=4.0 * np.spacing(float(n)),
+        observation=(f"The joints are {1e3 * law.min():.2f} to {1e3 * law.max():.2f} mm deep, and that to "
+                     f"{np.max(np.abs(depths - law)):.0e} m."),
+    ), finding(
+        claim="A stack at rest does not drift, neither sideways nor by turning.",
+        quantity=f"largest way sideways or angle in {seconds:g} s [m, rad]",
+        predicted=0.0,
+        measured=moved,
+        tolerance=4.0 * seconds / DT * np.spacing(0.5),
+        observation=f"In {seconds:g} s no box moves sideways or turns by more than {moved:.0e}.",
+    )]
+    return found, Picture("How deep a stack of ten rests", "joint, from the floor", "depth [mm]", [
+        series("theory", joints + 1.0, 1e3 * law, LINE), series("after two seconds", joints + 1.0, 1e3 * depths, DOTS)],
+        "Each joint carries one box less than the one below it.  The floor does not give way, so the lowest joint is "
+        "half as deep as its load says.")
+
+
 @case("mass-ratio-of-a-million", "A million to one", compiled=False)
 def mass_ratio_of_a_million(lesson):
     """A million on one: sweeps say that they have not got there, and Murty's method solves it in two pivots.
