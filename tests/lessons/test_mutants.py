@@ -16,7 +16,7 @@ from ..grading.points import grade, grade_each, score
 from ..mutants import collection, variants
 
 LESSONS = modules.lesson_names()
-EACH = 12                    # of so many wrong answers of an exercise the default run grades one; --long grades all [-]
+EACH = 24                    # of so many wrong answers of an exercise the default run grades one; --long grades all [-]
 
 
 def mutants_of(name):
