@@ -8,47 +8,30 @@ solves for the first root and works with any step.
 import numpy as np
 
 from solutions.support.collisions import advance_projectiles, ball_cylinder_gap, ball_cylinder_time
-from validate.engines.collisions import (
-    BALLS,
-    PLACE_APART,
-    RAY_ENDS,
-    discrete_up_to,
-    ray_and_sweep,
-    start_balls,
-    swept_limit,
-    swept_radius,
-)
-from validate.reference.collisions import (
-    COPIES,
-    at_speeds,
-    detection_errors,
-    impact_claim,
-    impact_times,
-    moments,
-    rounded_way,
-    stopped,
-    with_balls_that_miss,
-)
+from validate.engines import collisions as engines
+from validate.reference import collisions as balls
 from validate.scene import EXACT, ROUND_OFF, Scene
 
 T = 1.0                      # [s]: every ball has hit by then
 STEPS = (20, 50, 100, 200, 500, 1000, 2000)
 FASTEST_DISCRETE = 100.0     # [m/s]: above this, no step of the sweep is short enough for the discrete test
 WIDEST = 0.8                 # largest offset from the axis at which a ball aims, over R + r [-]
-CASES = at_speeds(R=0.5)
+CASES = balls.at_speeds(R=0.5)
 
 
 def place(p):
     """Return (x, v), each (COPIES, 3): balls that come down, tilted by 0.3 rad towards y, each with its own offset."""
     e, across = np.array([0.0, np.sin(0.3), -np.cos(0.3)]), np.array([0.0, np.cos(0.3), np.sin(0.3)])
-    k = np.arange(COPIES)
+    k = np.arange(balls.COPIES)
     beside = WIDEST * (p.R + p.r) * np.sin(1.0 + 2.0 * k)
-    way = p.speed * impact_times(T) + np.sqrt((p.R + p.r) ** 2 - beside**2)    # to the nearest point to the axis
-    x = np.outer(PLACE_APART * (k - 0.5 * COPIES), [1.0, 0.0, 0.0]) + np.outer(beside, across) - np.outer(way, e)
-    return x, np.tile(p.speed * e, (COPIES, 1))
+    # to the point that is nearest to the axis
+    way = p.speed * balls.impact_times(T) + np.sqrt((p.R + p.r) ** 2 - beside**2)
+    along = engines.PLACE_APART * (k - 0.5 * balls.COPIES)
+    x = np.outer(along, [1.0, 0.0, 0.0]) + np.outer(beside, across) - np.outer(way, e)
+    return x, np.tile(p.speed * e, (balls.COPIES, 1))
 
 
-start = start_balls(place, ("speed", "r", "R"))
+start = engines.start_balls(place, ("speed", "r", "R"))
 
 
 def run(step, acceleration, state, p, dt, steps):
@@ -62,7 +45,7 @@ def truth(p, t):
     Source: the distance of a point from a line.
     """
     x, v = place(p)
-    return stopped(x, v, lambda y: np.hypot(y[1], y[2]) - p.R - p.r, nearest(p), t)
+    return balls.stopped(x, v, lambda y: np.hypot(y[1], y[2]) - p.R - p.r, nearest(p), t)
 
 
 def nearest(p):
@@ -75,24 +58,24 @@ def when(p, r):
     """Return the times at which balls of radius r enter and leave the cylinder: never, if they pass beside it."""
     (x, v), middle, gap = place(p), nearest(p), lambda y: np.hypot(y[1], y[2]) - p.R - r
     meets = gap((x + middle[:, None] * v).T) < 0.0
-    enters = moments(x, v, gap, np.where(meets, middle, 0.0))
+    enters = balls.moments(x, v, gap, np.where(meets, middle, 0.0))
     return enters, 2.0 * middle - enters
 
 
 def rounding(p, dt):
     """Return the largest relative error by round-off."""
     x, v = place(p)
-    way = np.linalg.norm(rounded_way(x[:, 1:], v[:, 1:], impact_times(T), dt))
-    few = 12.0 * ROUND_OFF * np.sqrt(COPIES) * p.speed * T
+    way = np.linalg.norm(balls.rounded_way(x[:, 1:], v[:, 1:], balls.impact_times(T), dt))
+    few = 12.0 * ROUND_OFF * np.sqrt(balls.COPIES) * p.speed * T
     return (way + few) / np.sqrt(1.0 - WIDEST**2) / np.linalg.norm(truth(p, T))
 
 
 def band(p, dt, label):
     """Return how far a run may be off from its prediction: round-off, and where a swept sphere ends, as a ray does."""
-    if label == "discrete" or swept_radius(p, dt) is None:
+    if label == "discrete" or engines.swept_radius(p, dt) is None:
         return rounding(p, dt)
     steep = np.sqrt(1.0 - WIDEST**2)
-    return np.sqrt(COPIES) * RAY_ENDS / steep / np.linalg.norm(truth(p, T)) + rounding(p, dt)
+    return np.sqrt(balls.COPIES) * engines.RAY_ENDS / steep / np.linalg.norm(truth(p, T)) + rounding(p, dt)
 
 
 def tolerance(p, dt):
@@ -106,14 +89,14 @@ def tolerance(p, dt):
     through the cylinder, 2 √(1 − b²)(R + r), can pass it.
     """
     size, steep = np.linalg.norm(truth(p, T)), np.sqrt(1.0 - WIDEST**2)
-    per_ball = lambda metres: np.sqrt(COPIES) * metres / size
+    per_ball = lambda metres: np.sqrt(balls.COPIES) * metres / size
     rounded = rounding(p, dt)
     late = per_ball(p.speed * dt) if p.speed * dt < 2.0 * steep * (p.R + p.r) else np.inf
-    return {EXACT: rounded, 1: late + rounded, "pybullet, rays": per_ball(RAY_ENDS / steep) + rounded,
-            "pybullet, swept": per_ball(swept_limit(p, dt) / steep) + rounded}
+    return {EXACT: rounded, 1: late + rounded, "pybullet, rays": per_ball(engines.RAY_ENDS / steep) + rounded,
+            "pybullet, swept": per_ball(engines.swept_limit(p, dt) / steep) + rounded}
 
 
-ENGINES = ray_and_sweep(place, 0, "GEOM_CYLINDER of radius R + r")
+ENGINES = engines.ray_and_sweep(place, 0, "GEOM_CYLINDER of radius R + r")
 
 
 def points(observed, p):
@@ -132,17 +115,18 @@ def sanity_checks():
     p = CASES["10,000 m/s"]
     x = truth(p, T).reshape(-1, 2)
     return (("distance of all balls from the axis at the end [m]", np.hypot(*x.T), p.R + p.r, 1e-11),
-            impact_claim(*place(p), x, T))
+            balls.impact_claim(*place(p), x, T))
 
 
 SCENE = Scene(
-    title="Point and cylinder", **BALLS, cases=CASES, duration=T, steps=STEPS,
-    start=start, run=run, truth=truth, tolerance=tolerance, engines=ENGINES, supports=discrete_up_to(FASTEST_DISCRETE),
-    predicted_error=detection_errors(T, place, when, swept_radius, band),
+    title="Point and cylinder", **engines.BALLS, cases=CASES, duration=T, steps=STEPS,
+    start=start, run=run, truth=truth, tolerance=tolerance,
+    engines=ENGINES, supports=engines.discrete_up_to(FASTEST_DISCRETE),
+    predicted_error=balls.detection_errors(T, place, when, engines.swept_radius, band),
     sanity_checks=sanity_checks, points=points, links=links,
     uses=("a straight way", "a quadratic equation for each step, or a distance"),
     ablations={
-        "balls that never come near, tested at every step": lambda p: (with_balls_that_miss(*start(p)), p),
+        "balls that never come near, tested at every step": lambda p: (balls.with_balls_that_miss(*start(p)), p),
         "gravity: the path would bend, and the equation be of fourth degree": ("short straight pieces of the path "
                                                                               "lead back to this equation"),
         "response": "the whole loop of lesson 10 has it, and is measured",

@@ -7,43 +7,25 @@ t + dt d₁/(d₁ + d₂) puts them back exactly, because the path is straight. 
 import numpy as np
 
 from solutions.support.collisions import advance_projectiles, ball_plane_gap, ball_plane_time
-from validate.engines.collisions import (
-    BALLS,
-    PLACE_APART,
-    discrete_up_to,
-    ray_and_sweep,
-    start_balls,
-    swept_limit,
-    swept_radius,
-)
-from validate.reference.collisions import (
-    COPIES,
-    at_speeds,
-    detection_errors,
-    impact_claim,
-    impact_times,
-    moments,
-    rounded_way,
-    stopped,
-    with_balls_that_miss,
-)
+from validate.engines import collisions as engines
+from validate.reference import collisions as balls
 from validate.scene import EXACT, ROUND_OFF, Scene
 
 T = 1.0                      # [s]: every ball has hit by then
 STEPS = (20, 50, 100, 200, 500, 1000, 2000)
 FASTEST_DISCRETE = 10.0     # [m/s]: above this, a ball is deeper than the picture is wide, at every step of the sweep
 TILT = 0.3                   # of the path, from the vertical [rad]
-CASES = at_speeds(R=0.0)
+CASES = balls.at_speeds(R=0.0)
 
 
 def place(p):
     """Return (x, v), each (COPIES, 3): balls that come down side by side, tilted towards y."""
-    e, k = np.array([0.0, np.sin(TILT), -np.cos(TILT)]), np.arange(COPIES)
-    touch = np.stack((PLACE_APART * (k - 0.5 * COPIES), 0.0 * k, 0.0 * k + p.r), axis=1)
-    return touch - np.outer(p.speed * impact_times(T), e), np.tile(p.speed * e, (COPIES, 1))
+    e, k = np.array([0.0, np.sin(TILT), -np.cos(TILT)]), np.arange(balls.COPIES)
+    touch = np.stack((engines.PLACE_APART * (k - 0.5 * balls.COPIES), 0.0 * k, 0.0 * k + p.r), axis=1)
+    return touch - np.outer(p.speed * balls.impact_times(T), e), np.tile(p.speed * e, (balls.COPIES, 1))
 
 
-start = start_balls(place, ("speed", "r"))
+start = engines.start_balls(place, ("speed", "r"))
 
 
 def run(step, acceleration, state, p, dt, steps):
@@ -57,7 +39,7 @@ def truth(p, t):
     Source: the distance of a point from the plane z = 0.
     """
     x, v = place(p)
-    return stopped(x, v, lambda y: y[2] - p.r, np.full(COPIES, T), t)
+    return balls.stopped(x, v, lambda y: y[2] - p.r, np.full(balls.COPIES, T), t)
 
 
 def tolerance(p, dt):
@@ -69,53 +51,54 @@ def tolerance(p, dt):
     plane is not rounded.
     """
     size = np.linalg.norm(truth(p, T))
-    per_ball = lambda metres: np.sqrt(COPIES) * metres / size
+    per_ball = lambda metres: np.sqrt(balls.COPIES) * metres / size
     rounded = rounding(p, dt)
     return {
         EXACT: rounded,
         1: per_ball(p.speed * dt) + rounded,
-        "pybullet, swept": per_ball(swept_limit(p, dt) / np.cos(TILT)) + rounded,
+        "pybullet, swept": per_ball(engines.swept_limit(p, dt) / np.cos(TILT)) + rounded,
     }
 
 
 def rounding(p, dt):
     """Return the largest relative error by round-off."""
     x, v = place(p)
-    way = np.linalg.norm(rounded_way(x[:, 1:], v[:, 1:], impact_times(T), dt))
-    few = 12.0 * ROUND_OFF * np.sqrt(COPIES) * p.speed * T
+    way = np.linalg.norm(balls.rounded_way(x[:, 1:], v[:, 1:], balls.impact_times(T), dt))
+    few = 12.0 * ROUND_OFF * np.sqrt(balls.COPIES) * p.speed * T
     return (way + few) / np.cos(TILT) / np.linalg.norm(truth(p, T))
 
 
 def when(p, r):
     """Return the times at which balls of radius r reach the plane; nothing leaves it again."""
-    return moments(*place(p), lambda y: y[2] - r, np.full(COPIES, 2.0 * T)), np.inf
+    return balls.moments(*place(p), lambda y: y[2] - r, np.full(balls.COPIES, 2.0 * T)), np.inf
 
 
-ENGINES = ray_and_sweep(place, EXACT, "GEOM_PLANE raised by the radius of the balls")
+ENGINES = engines.ray_and_sweep(place, EXACT, "GEOM_PLANE raised by the radius of the balls")
 
 
 def points(observed, p):
     """Draw the plane as a line, and the lowest points of the balls, seen from the front."""
     x = np.reshape(observed, (-1, 2))
-    balls = np.stack((0.12 * (np.arange(COPIES) - 0.5 * COPIES), x[:, 1] - p.r), axis=1)
-    return np.round(np.concatenate(([[-1.0, 0.0], [1.0, 0.0]], balls)), 3)
+    lowest = np.stack((0.12 * (np.arange(balls.COPIES) - 0.5 * balls.COPIES), x[:, 1] - p.r), axis=1)
+    return np.round(np.concatenate(([[-1.0, 0.0], [1.0, 0.0]], lowest)), 3)
 
 
 def sanity_checks():
     """Return ((claim, found, expected, tolerance), …) about the reference solution."""
     p = CASES["10,000 m/s"]
     x = truth(p, T).reshape(-1, 2)
-    return (("height of all balls at the end [m]", x[:, 1], p.r, 1e-11), impact_claim(*place(p), x, T))
+    return (("height of all balls at the end [m]", x[:, 1], p.r, 1e-11), balls.impact_claim(*place(p), x, T))
 
 
 SCENE = Scene(
-    title="Point and plane", **BALLS, cases=CASES, duration=T, steps=STEPS,
-    start=start, run=run, truth=truth, tolerance=tolerance, engines=ENGINES, supports=discrete_up_to(FASTEST_DISCRETE),
-    predicted_error=detection_errors(T, place, when, swept_radius, lambda p, dt, label: rounding(p, dt)),
+    title="Point and plane", **engines.BALLS, cases=CASES, duration=T, steps=STEPS,
+    start=start, run=run, truth=truth, tolerance=tolerance,
+    engines=ENGINES, supports=engines.discrete_up_to(FASTEST_DISCRETE),
+    predicted_error=balls.detection_errors(T, place, when, engines.swept_radius, lambda p, dt, label: rounding(p, dt)),
     sanity_checks=sanity_checks, points=points, links=lambda p: [(0, 1)],
     uses=("a straight way", "two signed distances for each step"),
     ablations={
-        "balls that never come near, tested at every step": lambda p: (with_balls_that_miss(*start(p)), p),
+        "balls that never come near, tested at every step": lambda p: (balls.with_balls_that_miss(*start(p)), p),
         "gravity: the path would bend": "then the formula is the first step of Newton's method",
         "response": "the whole loop of lesson 10 has it, and is measured",
     },
