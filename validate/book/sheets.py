@@ -77,7 +77,8 @@ def scenes(lesson, report):
     for name in lesson.scenes:
         scene = modules.bind_scene(name)
         title = f'<a href="../report/{name}.html">{scene.title}</a>' if report else scene.title
-        rows.append((title, plain(" ".join(scene.story.split("\n\n")[0].split())), f"`validate --scene {name}`"))
+        story = plain(" ".join(scene.story.split("\n\n")[0].split()))
+        rows.append((title, story, f"`.venv/bin/validate --scene {name}`"))
     return plan.table(("scene", "what it is", "command"), rows)
 
 
