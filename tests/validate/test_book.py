@@ -21,6 +21,7 @@ from validate.book import api, course, execute, figures, pages, plan, sheets
 from validate.modules import ROOT
 
 pytestmark = pytest.mark.xdist_group("book")
+ESTIMATED = 0.4              # of a lesson's hours [h]: they are given in halves, and a text may change a little
 FILM = "<div>film</div><script>" + "let player = 1;" * 400 + "</script>"
 
 
@@ -100,13 +101,47 @@ def test_every_lesson_adds_up_to_twenty_points_and_has_a_sheet():
         assert f"--lesson {name} " in sheet and leaks([sheet]) == []
 
 
-def test_each_notebook_says_how_many_hours_the_plan_expects():
+def test_the_hours_are_the_same_on_every_page_and_near_the_estimate():
+    weeks = [row.split(" | ") for row in plan.course_table(plan.COURSES[-1]).splitlines()]
     for name, lesson in course.lessons().items():
-        text = course.notebook_of(name).read_text(encoding="utf-8")
-        told = re.search(r"about ([\d.]+) hours: ([\d.]+) to read and run, ([\d.]+) to write", text)
-        whole, reading, writing = map(float, told.groups())
-        assert whole == reading + writing, name
-        assert abs(reading - lesson.reading) <= 0.5 and abs(writing - lesson.writing) <= 0.5, name
+        head, (reading, writing) = lesson.head, lesson.estimate
+        assert abs(head.reading - reading) <= ESTIMATED and abs(head.writing - writing) <= ESTIMATED, name
+        told = f"about {head.whole:g} hours: {head.reading:g} to read and run, {head.writing:g} to write"
+        assert f"| **Time** | {told} |" in course.notebook_of(name).read_text(encoding="utf-8")
+        assert f"| hours | {told.removeprefix('about ').replace(' hours', '')} |" in sheets.page(name, report=False)
+        assert f"| {head.whole:g}: {head.reading:g} + {head.writing:g} |" in plan.lesson_table()
+        assert sum(float(week[4]) for week in weeks if f"({'notebooks/' + course.notebook_of(name).stem})" in week[1]) \
+            == head.whole
+
+
+def test_a_course_takes_as_many_hours_as_its_weeks():
+    for taught in plan.COURSES:
+        section = plan.course_section(taught)
+        weeks = [row.split(" | ")[4] for row in section.splitlines() if re.match(r"\| \d", row)]
+        assert f"About {sum(float(hours) for hours in weeks if hours):g} hours" in section
+
+
+def test_hours_that_do_not_add_up_are_refused(monkeypatch):
+    said = ("| **You need** | sums |\n| **Lessons before** | none |\n"
+            "| **Time** | about 5.5 hours: 1 to read and run, 4 to write |")
+    cells = [nbformat.v4.new_markdown_cell(text) for text in ("", "", said)]
+    monkeypatch.setattr(course.nbformat, "read", lambda *path, as_version: nbformat.v4.new_notebook(cells=cells))
+    with pytest.raises(ValueError, match="do not add up"):
+        course.head("friction")
+
+
+def test_a_lesson_names_every_lesson_whose_exercises_it_calls_as_one_before_it():
+    for name, lesson in course.lessons().items():
+        called = {int(number.split(".")[0]) for number in sheets.foreign(lesson)}
+        assert called <= lesson.head.numbers <= set(range(1, lesson.number)), name
+        assert lesson.head.numbers or lesson.head.before == "none", name
+
+
+def test_a_sheet_shows_the_stars_of_the_notebook():
+    for name in course.lessons():
+        notebook = dict(re.findall(r"`\w+` \((\d+\.\d+) (★+)\)", course.notebook_of(name).read_text(encoding="utf-8")))
+        sheet = dict(re.findall(r"^\| (\d+\.\d+) \| [^|]+ \| (★+) \|", sheets.page(name, report=False), re.M))
+        assert sheet == notebook, name
 
 
 @pytest.mark.parametrize("taught", plan.COURSES, ids=lambda taught: taught.title)
@@ -115,7 +150,9 @@ def test_a_course_teaches_what_it_needs_before_it_is_needed(taught):
     lessons = set(taught.worked)
     for week in taught.weeks:
         if week.lesson:
-            assert course.lessons()[week.lesson].needs <= lessons | {week.lesson}, week
+            lesson = course.lessons()[week.lesson]
+            assert lesson.needs <= lessons | {week.lesson}, week
+            assert lesson.head.numbers <= {course.lessons()[name].number for name in lessons}, week
             for one in week.exercises():
                 assert {n for n in one.uses if course.in_order(n) < course.in_order(one.number)} <= there, one
                 there.add(one.number)

@@ -7,33 +7,18 @@ from .. import modules
 from ..stability.examine import all_cases
 from . import course, plan
 
-BEFORE = {                   # mathematics and physics that a lesson takes for granted
-    "integrators": "derivatives, Taylor series, 2 × 2 matrices and their eigenvalues",
-    "springs": "vectors, Newton's second law; for 2.11 to 2.13 linear systems of equations",
-    "friction": "vectors and their parts along a normal; forces on a slope",
-    "inertia_tensors": "integrals over volumes, symmetric matrices, eigenvectors",
-    "rotation": "cross products, rotation matrices, angular momentum; complex numbers help with quaternions",
-    "collisions": "planes and lines in vector form, quadratic equations, convex sets",
-    "impulses": "momentum, kinetic energy, cross products, the inertia tensor of lesson 4",
-    "pbd": "gradients, linear systems of equations, Newton's method",
-    "contact": "matrices and their eigenvalues, inequalities; a single contact, as in lesson 7",
-    "simulator": "lessons 1, 5, 7 and 9",
-    "kinematics": "partial derivatives, least squares, singular values",
-}
-
 
 def page(name, report):
     """The sheet of one lesson, in Markdown."""
     lesson = course.lessons()[name]
-    later = [other for other, one in course.lessons().items() if name in one.needs]
-    needs = plan.numbers_of(lesson.needs)
+    head, later = lesson.head, [one.number for one in course.lessons().values() if lesson.number in one.head.numbers]
     facts = plan.table(("fact", "value"), [
-        ("hours to read and run the notebook", plan.hours(lesson.reading)),
-        ("hours to write all exercises", plan.hours(lesson.writing)),
-        ("exercises, points", f"{len(lesson.exercises)}, {lesson.points:g}"),
-        ("mathematics and physics", BEFORE[name]),
-        ("lessons whose functions it calls", needs),
-        ("lessons that need it", plan.numbers_of(later)),
+        ("hours", f"{head.whole:g}: {head.reading:g} to read and run, {head.writing:g} to write"),
+        ("exercises, points", f"{len(lesson.exercises)} ({plan.stars(lesson.exercises)}), {lesson.points:g}"),
+        ("mathematics and physics", head.mathematics),
+        ("lessons before", head.before),
+        ("exercises of other lessons that it calls", ", ".join(foreign(lesson)) or "none"),
+        ("lessons that build on it", ", ".join(map(str, later)) or "none"),
         ("students hand in", f"`lessons/{name}.py`"),
         ("worked answers", f"`solutions/{name}.py`"),
     ])
@@ -41,8 +26,11 @@ def page(name, report):
         f"# {lesson.number} · {name}: lesson sheet", f"{lesson.title}. The [notebook](../notebooks/"
         f"{course.notebook_of(name).stem}) and the [functions](../lessons/{name}). How the hours are estimated: "
         "[Plan a course](../plan).", "## The lesson", facts,
-        "## Exercises", "*Minutes* are an estimate. *Calls* and *called by* name exercises. In their own copy, "
-        "students cannot pass an exercise that calls one which they have left out.", exercise_table(lesson),
+        "## Exercises", "★: the docstring gives the formula. ★★: students find it; the notebook has a folded hint. "
+        "The ★★★ task *Make it* at the end of the notebook has no points. *Minutes* are an estimate. *Calls* and "
+        "*called by* name exercises. In their own copy, students cannot pass an exercise that calls one which they "
+        "have left out.",
+        exercise_table(lesson),
         "## Where students go wrong", "A check that fails gives these hints. Each one answers a mistake that a test "
         f"of the workbook catches. The wrong answers that must fail are in `tests/mutants/{name}.py`.", hints(lesson),
         "## What to show", "Every scene below has a film, its truth, and both engines where they can do it.",
@@ -51,13 +39,19 @@ def page(name, report):
         "## Commands", commands(lesson)]) + "\n"
 
 
+def foreign(lesson):
+    """Numbers of the exercises of other lessons that exercises of this lesson call themselves."""
+    found = {number for one in lesson.exercises for number in one.uses}
+    return sorted(found - {one.number for one in lesson.exercises}, key=course.in_order)
+
+
 def exercise_table(lesson):
     rows = []
     for one in lesson.exercises:
         users = course.used_by().get(one.number, ())
-        rows.append((one.number, f"{{py:func}}`~lessons.{one.lesson}.{one.function}`", f"{one.points:g}",
+        rows.append((one.number, f"{{py:func}}`~lessons.{one.lesson}.{one.function}`", one.stars, f"{one.points:g}",
                      f"{one.minutes:.0f}", ", ".join(one.uses) or "–", ", ".join(users) or "–"))
-    return plan.table(("exercise", "function", "points", "minutes", "calls", "called by"), rows)
+    return plan.table(("exercise", "function", "stars", "points", "minutes", "calls", "called by"), rows)
 
 
 def hints(lesson):
