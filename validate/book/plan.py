@@ -1,7 +1,10 @@
 """Courses of 4, 8 and 14 weeks, and the tables of the page *Plan a course*."""
 
+import re
+import subprocess
 from typing import NamedTuple
 
+from ..modules import ROOT
 from . import course
 
 ALL = ()
@@ -93,7 +96,7 @@ def half(number):
 
 def lesson_link(name):
     lesson = course.lessons()[name]
-    return f"[{lesson.number} · {name}](notebooks/{course.notebook_of(name).stem})"
+    return f"[{lesson.number} · {name}](notebooks/{course.notebook_of(name).stem}) ([sheet](sheets/{name}))"
 
 
 def numbers_of(names):
@@ -103,12 +106,12 @@ def numbers_of(names):
 
 def lesson_table():
     """Every lesson with its size, its hours and what it needs."""
-    rows = [(lesson_link(name), f"[sheet](sheets/{name})", stars(lesson.exercises), f"{lesson.points:g}",
+    rows = [(lesson_link(name), stars(lesson.exercises), f"{lesson.points:g}",
              f"{lesson.head.whole:g}: {lesson.head.reading:g} + {lesson.head.writing:g}",
              ", ".join(map(str, sorted(lesson.head.numbers))) or "–", numbers_of(lesson.needs), len(lesson.scenes),
              lesson.cases)
             for name, lesson in course.lessons().items()]
-    return table(("lesson", "", "exercises", "points", "hours: to read + to write", "builds on lessons",
+    return table(("lesson", "exercises", "points", "hours: to read + to write", "builds on lessons",
                   "loads files of", "scenes", "stability cases"), rows)
 
 
@@ -150,14 +153,21 @@ def release(name, worked):
     return f".venv/bin/release --out {name}.zip" + (f" --with-solutions={','.join(worked)}" if worked else "")
 
 
+def grade(name):
+    """The command that grades a lesson."""
+    return (f".venv/bin/grade class --out grades-{name} --lesson {name} --roster class/list.csv "
+            "--due 2026-11-30T23:59 --late 10")
+
+
 def course_section(plan):
     """A course as the page shows it."""
     total = sum(half(week.hours()) for week in plan.weeks)
-    zips = "\n".join(release(f"week-{number}", worked) for number, worked in plan.zips().items())
+    zips = "\n".join(release(plan.weeks[number - 1].lesson, worked) for number, worked in plan.zips().items())
     why = (f" Students get lessons {numbers_of(plan.worked)} as worked answers, because lessons of this course call "
            "them." if plan.worked else "")
     return (f"### {plan.title}\n\n{plan.aim} About {total:g} hours of a student's work.{why}\n\n"
-            f"{course_table(plan)}\n\nThe students' zips:\n\n```sh\n{zips}\n```")
+            f"{course_table(plan)}\n\nThe students' zips, one for each lesson, in the order of the weeks:\n\n"
+            f"```sh\n{zips}\n```")
 
 
 def free_exercises():
@@ -167,6 +177,25 @@ def free_exercises():
         free = [one for one in lesson.exercises if not course.used_by().get(one.number)]
         rows.append((lesson_link(name), span(free), f"{sum(one.points for one in free):g}"))
     return table(("lesson", "exercises that no other exercise calls", "points"), rows)
+
+
+def repository():
+    """The address of the repository, from CITATION.cff or else from git; "" if neither has one."""
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    if named := re.search(r"^repository-code: *[\"']?(\S+?)[\"']?$", citation, re.M):
+        return named[1]
+    said = subprocess.run(["git", "remote", "get-url", "origin"], cwd=ROOT, capture_output=True, text=True)
+    address = re.fullmatch(r"https://(?:[^@/]*@)?([\w.-]+/[\w./-]+?)(?:\.git)?", said.stdout.strip())
+    return f"https://{address[1]}" if address else ""
+
+
+def with_address(text):
+    """A page in which REPOSITORY is the address of the repository, if it is known."""
+    address = repository()
+    if not address:
+        return text
+    text = text.replace("`REPOSITORY` stands for the address of the repository.", f"The repository is at <{address}>.")
+    return text.replace("REPOSITORY", address)
 
 
 def filled(text):

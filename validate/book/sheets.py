@@ -5,7 +5,7 @@ import re
 
 from .. import modules
 from ..stability.examine import all_cases
-from . import course, plan
+from . import course, plan, weeks
 
 
 def page(name, report):
@@ -20,21 +20,26 @@ def page(name, report):
         ("exercises of other lessons that it calls", ", ".join(foreign(lesson)) or "none"),
         ("lessons that build on it", ", ".join(map(str, later)) or "none"),
         ("students hand in", f"`lessons/{name}.py`"),
-        ("worked answers", f"`solutions/{name}.py`"),
+        ("worked answers, in the repository", path(f"solutions/{name}.py")),
+        ("wrong answers that must fail, in the repository", path(f"tests/mutants/{name}.py")),
+        ("grading tests", path(f"tests/lessons/test_{name}.py")),
     ])
     return "\n\n".join([
         f"# {lesson.number} · {name}: lesson sheet", f"{lesson.title}. The [notebook](../notebooks/"
         f"{course.notebook_of(name).stem}) and the [functions](../lessons/{name}). How the hours are estimated: "
-        "[Plan a course](../plan).", "## The lesson", facts,
-        "## Exercises", "★: the docstring gives the formula. ★★: students find it; the notebook has a folded hint. "
-        "The ★★★ task *Make it* at the end of the notebook has no points. *Minutes* are an estimate. *Calls* and "
-        "*called by* name exercises. In their own copy, students cannot pass an exercise that calls one which they "
-        "have left out.",
+        "[Plan a course](../plan). Where the repository is, and how to set it up: [Set up a course](../instructors).",
+        "## The lesson", facts, "## A week with it" if len(weeks.WEEKS[name]) == 1 else "## Two weeks with it",
+        "In the week before, make the zip (*Commands*, below) and try it once yourself: unpack it, set it up, run the "
+        "first check.", weeks.table(name, report),
+        "## Exercises", "★: the docstring gives the formula. ★★: students find it; the notebook has a folded hint. The "
+        "★★★ task *Make it* at the end of the notebook has no points. *Minutes* are an estimate. *Calls* and *called "
+        "by* name exercises. In their own copy, students cannot pass an exercise that calls one which they have left "
+        "out.",
         exercise_table(lesson),
         "## Where students go wrong", "A check that fails gives these hints. Each one answers a mistake that a test "
-        f"of the workbook catches. The wrong answers that must fail are in `tests/mutants/{name}.py`.", hints(lesson),
+        "of the workbook catches.", hints(lesson),
         "## What to show", "Every scene below has a film, its truth, and both engines where they can do it.",
-        scenes(lesson, report), "Stability cases: limits that theory gives, found by experiment.", cases(name),
+        scenes(lesson, report), "Stability cases: limits that theory gives, found by experiment.", cases(name, report),
         "## Questions to discuss", questions(name),
         "## Commands", commands(lesson)]) + "\n"
 
@@ -76,9 +81,16 @@ def scenes(lesson, report):
     return plan.table(("scene", "what it is", "command"), rows)
 
 
-def cases(name):
+def cases(name, report):
     found = [case for case in all_cases() if case.lesson == name]
-    return "\n".join(f"- {plain(case.title)}" for case in found)
+    return "\n".join(f'- <a href="../report/stability.html#{name}-{case.slug}">{html.escape(case.title)}</a>' if report
+                     else f"- {plain(case.title)}" for case in found)
+
+
+def path(file):
+    """A file of the repository, with a link if the repository's address is known."""
+    address = plan.repository()
+    return f"[`{file}`]({address}/blob/HEAD/{file})" if address else f"`{file}`"
 
 
 def questions(name):
@@ -90,10 +102,15 @@ def questions(name):
 
 
 def commands(lesson):
-    before = tuple(name for name, one in course.lessons().items() if one.number < lesson.number)
-    said = ("The students' zip when this lesson begins. It holds the earlier lessons as worked answers, so that nobody "
-            "is held up by a gap in them." if before else "The students' zip when this lesson begins.")
+    before = [name for name, one in course.lessons().items() if one.number < lesson.number]
+    said = "Make the students' zip when this lesson begins."
+    if before:
+        said += (" It holds the earlier lessons as worked answers, so that nobody is held up by a gap in them. **So it "
+                 f"publishes the answers of {before[-1]}**: if you accept that lesson late, hand the zip out when its "
+                 "late days are over. If your course leaves lessons out, take the command from [Plan a course](../plan)"
+                 ".")
     return (f"{said}\n\n```sh\n{plan.release(lesson.name, before)}\n```\n\nGrade what comes back. The folder `class` "
-            f"has one folder or zip per student.\n\n```sh\n.venv/bin/grade class --out grades-{lesson.name} "
-            f"--lesson {lesson.name} --roster list.csv --due 2026-11-30T23:59\n```\n\n"
+            "has one folder or zip per student, and the class list `list.csv`. `--late 10` takes ten per cent for each "
+            f"day begun after `--due`. If you have set a part of the lesson only, add for example "
+            f"`--exercises {plan.span(lesson.exercises[:5])}`.\n\n```sh\n{plan.grade(lesson.name)}\n```\n\n"
             "[Grading a class](../grading) explains both.")
