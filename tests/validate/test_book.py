@@ -175,6 +175,8 @@ def test_the_weeks_of_a_lesson_hold_every_exercise_once_in_whole_sections_and_it
         parts = [part for week in weeks.WEEKS[name] for part in (week.before, week.after)]
         numbers = [number for first, last in parts for number in range(first, last + 1)]
         assert numbers == list(range(1, len(lesson.exercises) + 1)), name
+        assert sum(weeks.hours(name, *part) for part in parts) == lesson.head.writing, name
+        assert all(weeks.hours(name, *part) > 0.0 for part in parts), name
         told = weeks.table(name, report=False)
         sections = weeks.sections(name)
         assert sections and all(f"*{title}*" in told for _, _, title in sections), name

@@ -118,7 +118,7 @@ def lesson_table():
 def stars(chosen):
     """How many exercises there are of each kind: "13 ★, 4 ★★"."""
     counts = [(kind, sum(one.stars == kind for one in chosen)) for kind in ("★", "★★")]
-    return ", ".join(f"{count} {kind}" for kind, count in counts if count)
+    return ", ".join(f"{count}\N{NO-BREAK SPACE}{kind}" for kind, count in counts if count)
 
 
 def span(chosen):
@@ -163,8 +163,8 @@ def course_section(plan):
     """A course as the page shows it."""
     total = sum(half(week.hours()) for week in plan.weeks)
     zips = "\n".join(release(plan.weeks[number - 1].lesson, worked) for number, worked in plan.zips().items())
-    why = (f" Students get lessons {numbers_of(plan.worked)} as worked answers, because lessons of this course call "
-           "them." if plan.worked else "")
+    why = (f" Students get lessons {numbers_of(plan.worked).replace(', ', ' and ')} as worked answers, because lessons "
+           "of this course load their files." if plan.worked else "")
     return (f"### {plan.title}\n\n{plan.aim} About {total:g} hours of a student's work.{why}\n\n"
             f"{course_table(plan)}\n\nThe students' zips, one for each lesson, in the order of the weeks:\n\n"
             f"```sh\n{zips}\n```")
@@ -194,7 +194,7 @@ def with_address(text):
     address = repository()
     if not address:
         return text
-    text = text.replace("`REPOSITORY` stands for the address of the repository.", f"The repository is at <{address}>.")
+    text = re.sub(r"`REPOSITORY` stands for .*", f"The repository is at <{address}>.", text)
     return text.replace("REPOSITORY", address)
 
 

@@ -30,7 +30,8 @@ def page(name, report):
         "[Plan a course](../plan). Where the repository is, and how to set it up: [Set up a course](../instructors).",
         "## The lesson", facts, "## A week with it" if len(weeks.WEEKS[name]) == 1 else "## Two weeks with it",
         "In the week before, make the zip (*Commands*, below) and try it once yourself: unpack it, set it up, run the "
-        "first check.", weeks.table(name, report),
+        f"first check. The hours below are those to write; the notebook takes {head.reading:g} "
+        f"{'hour' if head.reading == 1.0 else 'hours'} more.", weeks.table(name, report),
         "## Exercises", "★: the docstring gives the formula. ★★: students find it; the notebook has a folded hint. The "
         "★★★ task *Make it* at the end of the notebook has no points. *Minutes* are an estimate. *Calls* and *called "
         "by* name exercises. In their own copy, students cannot pass an exercise that calls one which they have left "

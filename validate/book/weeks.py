@@ -134,13 +134,21 @@ def sections(name):
     return [(int(first), int(last or first), title) for first, last, title in found]
 
 
+def hours(name, first, last):
+    """Hours to write the exercises of a range, so rounded that all ranges of a lesson add up to its hours."""
+    lesson = course.lessons()[name]
+    until = [lesson.head.writing * sum(one.minutes for one in lesson.exercises[:number])
+             / sum(one.minutes for one in lesson.exercises) for number in (first - 1, last)]
+    return plan.half(until[1]) - plan.half(until[0])
+
+
 def work(name, first, last):
     """The exercises of a range, by section, with the hours to write them."""
     lesson = course.lessons()[name]
     told = "; ".join(f"{plan.span(lesson.exercises[low - 1:high])} *{title}*" for low, high, title in sections(name)
                      if first <= low and high <= last)
-    hours = plan.half(sum(one.minutes for one in lesson.exercises[first - 1:last]) / 60.0)
-    return f"{told} (about {hours:g} hour{'s' * (hours != 1.0)})"
+    needed = hours(name, first, last)
+    return f"{told} (about {needed:g} {'hour' if needed <= 1.0 else 'hours'})"
 
 
 def table(name, report):
