@@ -213,6 +213,7 @@ def documents():
 def test_every_page_gives_a_command_in_the_same_words():
     grades, tests, zips = [], [], set()
     for text in documents().values():
+        text = re.sub(r" \\\n +", " ", text)
         grades += [line for line in re.findall(r"^\.venv/bin/grade .*", text, re.M) if "--roster" in line]
         tests += re.findall(r"\.venv/bin/pytest[^`\n]*--exercise.*", text)
         zips |= set(re.findall(r"--out (\S+\.zip)", text))

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from ..modules import ROOT
 from . import course
 
-ALL = ()
+WIDTH = 84                   # of the code on a page of the book [characters]
 
 
 class Week(NamedTuple):
@@ -150,13 +150,19 @@ def course_table(plan):
 
 def release(name, worked):
     """The command that makes a students' zip with these lessons as worked answers."""
-    return f".venv/bin/release --out {name}.zip" + (f" --with-solutions={','.join(worked)}" if worked else "")
+    return in_sight(f".venv/bin/release --out {name}.zip", f"--with-solutions={','.join(worked)}" if worked else "")
 
 
 def grade(name):
     """The command that grades a lesson."""
-    return (f".venv/bin/grade class --out grades-{name} --lesson {name} --roster class/list.csv "
-            "--due 2026-11-30T23:59 --late 10")
+    return in_sight(f".venv/bin/grade class --out grades-{name} --lesson {name}",
+                    "--roster class/list.csv --due 2026-11-30T23:59 --late 10")
+
+
+def in_sight(command, options):
+    """A command with its options, on a second line if they would run out of the page."""
+    line = f"{command} {options}".strip()
+    return line if len(line) <= WIDTH else f"{command} \\\n    {options}"
 
 
 def course_section(plan):
