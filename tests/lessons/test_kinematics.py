@@ -117,7 +117,8 @@ def test_links_add_up_from_the_base(lesson, draw):
               ROUND_OFF, given=f"θ = {theta}, lengths {lengths} m")
 
 
-@exercise("11.1", points=0.5, hint="an angle is relative to the link before it: joint k moves what comes after it only")
+@exercise("11.1", points=0.5,
+          hint="each angle is relative to the link before it: joint k moves only the links after it")
 def test_a_joint_turns_all_that_comes_after_it(lesson, draw):
     n, angle = draw.whole(3, 6), draw(0.5, 2.0)
     theta, lengths = draw(-3.0, 3.0, n), lengths_of(draw, n)
@@ -143,7 +144,7 @@ def test_the_jacobian_turns_rates_of_joints_into_the_velocity_of_the_end(lesson,
               given=f"rates {rates} rad/s")
 
 
-@exercise("11.2", points=0.5, hint="only places count: x[n] is the end, x[k] the joint, wherever they are")
+@exercise("11.2", points=0.5, hint="only the positions matter: x[n] is the end, x[k] the joint, wherever they are")
 def test_the_jacobian_needs_no_angles(lesson, draw):
     x = draw(-2.0, 2.0, (draw.whole(3, 6), 2))
     r = x[-1] - x[:-1]
@@ -163,7 +164,7 @@ def test_the_ellipse_has_the_singular_values_as_half_axes(lesson, draw):
 
 
 @exercise("11.3", points=0.5,
-          hint="σ₂ from D, the sum of squares of 2 × 2 determinants: a difference would lose its digits")
+          hint="σ₂ from D, the root of a sum of squares of 2 × 2 determinants: a difference would lose digits")
 def test_the_short_axis_keeps_its_digits_where_the_arm_is_nearly_straight(lesson, draw):
     """Both columns are rounded, which changes what is nine digits shorter by 1e-16/1e-9."""
     small, a, b, angle = draw(1e-9, 1e-8), draw(1.5, 2.0), draw(0.5, 1.0), draw(0.3, 1.2)
@@ -180,7 +181,8 @@ def test_the_short_axis_keeps_its_digits_where_the_arm_is_nearly_straight(lesson
 # ---------------------------------------------------------------------------------------------- in closed form
 
 @exercise("11.4", points=1,
-          hint="θ₂ from the distance, with the sign of elbow; θ₁ is the bearing minus what the bend adds")
+          hint="θ₂ from the distance, with the sign of elbow; θ₁ is the direction of the target minus the part due to "
+               "θ₂")
 def test_both_elbows_reach_the_target(lesson, draw):
     for elbow in (1.0, -1.0):
         for _ in range(6):
@@ -259,7 +261,7 @@ def test_each_joint_turns_about_an_axis_of_the_link_before_it(lesson, draw):
 
 
 @exercise("11.6", points=0.5,
-          hint="with all axes along z it is the planar chain, and q turns about z by the sum of angles")
+          hint="with all axes along z it is the planar chain, and q is the rotation about z by the sum of angles")
 def test_a_chain_with_parallel_axes_is_planar(lesson, draw):
     n = draw.whole(2, 6)
     theta, lengths, z = draw(-1.0, 1.0, n), lengths_of(draw, n), np.array([0.0, 0.0, 1.0])
@@ -315,7 +317,8 @@ def test_the_rotation_vector_turns_one_orientation_into_the_other(lesson, draw):
                   given=f"q = {q}, q_target = {q_target}")
 
 
-@exercise("11.8", points=0.5, hint="the shorter way round; atan2 keeps the digits of a small angle, and 0 stays 0")
+@exercise("11.8", points=0.5,
+          hint="take the shorter rotation; atan2 keeps the digits of a small angle, and for 0 the result is 0")
 def test_small_and_large_angles_keep_their_digits(lesson, draw):
     axis, q = unit(draw), quaternion(unit(draw), draw(0.5, 3.0))
     still = np.array([1.0, 0.0, 0.0, 0.0])
@@ -343,7 +346,8 @@ def test_a_transpose_step_goes_down_the_gradient(lesson, draw):
           given=f"θ = {theta}, target {target} m, α = {gain}")
 
 
-@exercise("11.9", points=0.5, hint="the error along u_i is multiplied by 1 − α σ²: nothing else may scale the step")
+@exercise("11.9", points=0.5,
+          hint="the step multiplies the error along u_i by 1 − α σ²: do not scale it in another way")
 def test_the_gain_decides_how_fast_the_error_shrinks(lesson, draw):
     lengths, theta = lengths_of(draw, 3), bent(draw, 3)
     u, sigma, v = np.linalg.svd(slopes(theta, lengths), full_matrices=False)
@@ -365,7 +369,7 @@ def test_the_pseudo_inverse_solves_with_the_shortest_answer(lesson, draw):
         close("J⁺", lesson.pseudo_inverse(J), expected, SOLVED, given=f"J = {J}")
 
 
-@exercise("11.10", points=0.5, hint="leave out every σ_i up to SINGULAR σ₁: 1/σ of round-off would fill the answer")
+@exercise("11.10", points=0.5, hint="leave out every σ_i up to SINGULAR σ₁: 1/σ of a round-off would spoil the answer")
 def test_directions_that_no_joint_can_move_are_left_alone(lesson, draw):
     for size, small in ((1.0, 0.0), (1.0, draw(1e-14, 1e-12)), (1e6, draw(1e-14, 1e-12))):
         sigma = size * np.array([draw(1.0, 3.0), draw(0.5, 0.9), small])
@@ -395,7 +399,7 @@ def test_a_damped_step_weighs_the_error_against_the_way(lesson, draw):
         close("θ after a step [rad]", got, expected, SOLVED, given=f"θ = {theta}, target {target} m, λ = {damping} m")
 
 
-@exercise("11.11", points=0.5, hint="Jᵀ (J Jᵀ + λ² 1)⁻¹ e has no part above |e|/(2λ), whatever J is")
+@exercise("11.11", points=0.5, hint="Jᵀ (J Jᵀ + λ² 1)⁻¹ e is never longer than |e|/(2λ), whatever J is")
 def test_a_damped_step_is_bounded_where_the_arm_is_straight(lesson, draw):
     for damping in (draw(0.05, 0.2), draw(0.5, 1.0)):
         lengths, theta, target = lengths_of(draw, 3), np.array([draw(-3.0, 3.0), 0.0, 0.0]), draw(-9.0, 9.0, 2)
@@ -407,7 +411,7 @@ def test_a_damped_step_is_bounded_where_the_arm_is_straight(lesson, draw):
               abs(across @ e) * sigma / (sigma**2 + damping**2), SOLVED, given=f"θ₁ = {theta[0]}, λ = {damping} m")
 
 
-@exercise("11.12", points=0.5, hint="1 − α σ² and λ²/(σ² + λ²), one of each for every σ")
+@exercise("11.12", points=0.5, hint="return 1 − α σ² and λ²/(σ² + λ²) for every σ")
 def test_factors_are_what_an_iteration_leaves_of_an_error(lesson, draw):
     sigma, gain, damping = np.sort(draw(0.2, 3.0, 3))[::-1].copy(), draw(0.05, 0.5), draw(0.1, 1.0)
     J, u = with_singular_values(draw, sigma, 4)
@@ -417,7 +421,7 @@ def test_factors_are_what_an_iteration_leaves_of_an_error(lesson, draw):
         close(f"factors of the {name} [-]", got, factors, SOLVED, given=f"σ = {sigma}, α = {gain}, λ = {damping}")
 
 
-@exercise("11.12", points=0.5, hint="no σ, no progress: both factors are 1; the transpose's may be below 0")
+@exercise("11.12", points=0.5, hint="for σ = 0 both factors are 1; the factor of the transpose may be below 0")
 def test_factors_at_the_ends_of_their_range(lesson, draw):
     size = draw(0.3, 3.0)
     sigma = np.array([0.0, size, 2.0 * size])
@@ -438,7 +442,7 @@ def coordinate_descent(theta, target, lengths, low, high):
     return theta
 
 
-@exercise("11.13", points=1, hint="last joint first; after each joint the end is somewhere else: turn it about x_k")
+@exercise("11.13", points=1, hint="last joint first; after each joint, turn the end about x_k")
 def test_each_joint_points_the_end_at_the_target(lesson, draw):
     for n in (1, 2, draw.whole(3, 7)):
         lengths, theta, target = lengths_of(draw, n), draw(-1.5, 1.5, n), draw(-2.0, 2.0, 2)
@@ -449,7 +453,7 @@ def test_each_joint_points_the_end_at_the_target(lesson, draw):
 
 
 @exercise("11.13", points=0.5,
-          hint="stop each joint at its limit, and turn the end by what the joint has really turned")
+          hint="stop each joint at its limit, and turn the end by the actual change of the angle")
 def test_limits_stop_a_joint_and_the_others_go_on(lesson, draw):
     for _ in range(5):
         n = draw.whole(3, 6)
@@ -476,7 +480,7 @@ def there_and_back(x, target, lengths):
 
 
 @exercise("11.14", points=1,
-          hint="back from the target with the new next joint, forth from the base with the new last one")
+          hint="back: from the target, with the new joint x_k+1; forth: from the base, with the new joint x_k")
 def test_a_sweep_projects_there_and_back(lesson, draw):
     for d in (2, 3):
         n = draw.whole(2, 6)
@@ -517,7 +521,7 @@ def test_limits_that_stop_nothing_change_nothing(lesson, draw):
 
 
 @exercise("11.15", points=0.5,
-          hint="zeros in the columns of blocked joints, so that the others do the whole work; clip at last")
+          hint="zeros in the columns of blocked joints, so that the others take over; clip at the end")
 def test_blocked_joints_leave_their_work_to_the_others(lesson, draw):
     for exactly in (True, False, False, False):
         n = draw.whole(4, 6)
@@ -540,7 +544,7 @@ def test_blocked_joints_leave_their_work_to_the_others(lesson, draw):
 
 
 @exercise("11.15", points=0.5,
-          hint="only joints that Jᵀ e pushes outwards are blocked: one that it pulls back must come free")
+          hint="block only joints that Jᵀ e pushes outwards; a joint that it pulls back must be free")
 def test_it_comes_to_rest_where_no_joint_alone_can_come_nearer(lesson, draw):
     for _ in range(3):
         lengths, target = lengths_of(draw, 3), draw(-1.5, 1.5, 2)
@@ -554,7 +558,7 @@ def test_it_comes_to_rest_where_no_joint_alone_can_come_nearer(lesson, draw):
               given=f"target {target} m, limits {arm.low} to {arm.high}")
 
 
-@exercise("11.16", points=0.5, hint="z + J⁺ (e − J z) is the same: what z moves the end by is taken back")
+@exercise("11.16", points=0.5, hint="z + J⁺ (e − J z) is the same: it cancels the motion of the end due to z")
 def test_the_pull_to_rest_does_not_move_the_end(lesson, draw):
     n, pull = draw.whole(3, 6), draw(0.2, 1.0)
     lengths, theta, rest = lengths_of(draw, n), bent(draw, n), draw(-1.0, 1.0, n)
@@ -567,7 +571,7 @@ def test_the_pull_to_rest_does_not_move_the_end(lesson, draw):
         close("change of θ [rad]", change, z + shortest, 1e-9, given=f"θ = {theta}, rest {rest}, κ = {pull}")
 
 
-@exercise("11.16", points=0.5, hint="of all angles that reach the target it comes to rest near arm.rest")
+@exercise("11.16", points=0.5, hint="among all angles that reach the target, the arm comes to rest near arm.rest")
 def test_it_ends_on_the_target_as_near_to_rest_as_it_can(lesson, draw):
     lengths, theta = draw(0.8, 1.2, 4), np.append(draw(-1.0, 1.0), draw(0.4, 0.8, 3))
     target, rest = joints(theta, lengths)[-1], theta + draw(-0.15, 0.15, 4)
