@@ -139,19 +139,18 @@ def truth(p, t):
     """At rest the floor carries all: Newton's second law for the sum of the bodies.  The walls balance each other.
     Rigid bodies do not overlap, e = 0 makes no energy, and the natural map has no residual.
 
-    The residual is that of the impulses of the last step, ours or an engine's.  pymunk tells only the
-    sum of two points for boxes, so that they are not judged.  pybullet's friction is a pyramid, which reaches √2 μ
-    along its diagonals; it is judged with √2 μ here, and with μ in a stability case.
+    The residual is that of the impulses of the last step, ours or an engine's.  For boxes pymunk reports only the sum
+    of two points, so that these are not judged.  pybullet's friction is a pyramid, which reaches √2 μ along its
+    diagonals; it is judged with √2 μ here, and with μ in a stability case.
     Source: Newton; Signorini and Coulomb.
     """
     return np.array([1.0, 0.0, 0.0, 0.0] + ([] if not p.judged else [0.0]))
 
 
 def tolerance(p, dt):
-    """What has come to rest still creeps: 1 % of the weight, or of g dt, is allowed to each of the numbers but the
-    overlap.  That is the sag of a soft contact, k_n F/(2π hertz)².  Between bodies of the least mass k_n = 2/m, and
-    twice that at corners.  F is the weight of a column of bodies, n/across of them, times 4, because forces go in
-    chains.
+    """A pile at rest still creeps: each number but the overlap may be off by 1 % of the weight, or of g dt.  The
+    overlap may be the sag of a soft contact, k_n F/(2π hertz)².  Between bodies of the least mass k_n = 2/m, and twice
+    that at corners.  F is 4 times the weight of a column of n/across bodies, because forces go in chains.
 
     pymunk lets bodies overlap by its slop, 1e-3 m, over the least half size of 0.08 m, and by as much again where its
     iterations have not converged.  Its default slop is larger than the bodies.  pybullet's iterations leave more than
@@ -272,10 +271,10 @@ SCENE = Scene(
     orders={"advance_pile": EXACT, "advance_pile_2d": EXACT},
     supports=supports,
     slow_cases=tuple(CASES)[1:],
-    omitted_methods="sweeps and Murty's method alone find no places; matrices of 2,000 contacts would have "
-                    "16 million numbers; pybullet's residual stays between 0.3 and 4 g dt in 200 and 1,000 bodies, "
-                    "because 50 iterations do not find the forces; another command, python -m validate.piles, "
-                    "compares piles of 1,000",
+    omitted_methods="sweeps and Murty's method alone are missing: they move no bodies, and a matrix of 2,000 contacts "
+                    "would have 16 million numbers; pybullet's residual stays between 0.3 and 4 g dt with 200 and with "
+                    "1,000 bodies, because 50 iterations do not find the forces; the command python -m validate.piles "
+                    "compares piles of 1,000 bodies",
     moves=False,
     refinement="",
     quantity_names=quantity_names,
