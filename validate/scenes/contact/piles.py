@@ -242,6 +242,18 @@ def bodies(p):
     return [box((half[0], *half) if len(half) == 2 else half) for half in halves]
 
 
+def walls(p):
+    """Edges of the container, as high as the bodies begin; in two dimensions its floor and two walls."""
+    state, pile = start(p)
+    wall, high = pile.planes[1, -1], np.max(state.x[:p.n, -1] + np.max(pile.half, axis=-1))
+    if state.x.shape[1] == 2:
+        corners = np.array([(0.0, -wall, high), (0.0, -wall, 0.0), (0.0, wall, 0.0), (0.0, wall, high)])
+        return np.stack((corners[:-1], corners[1:]), axis=1)
+    floor = np.array([(u * wall, v * wall, 0.0) for u, v in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+    rim = floor + np.array((0.0, 0.0, high))
+    return [*zip(floor, np.roll(floor, 1, axis=0)), *zip(floor, rim), *zip(rim, np.roll(rim, 1, axis=0))]
+
+
 SIDES = 16                   # of a circle in the picture
 
 
@@ -279,7 +291,8 @@ SCENE = Scene(
     refinement="",
     quantity_names=quantity_names,
     sanity_checks=sanity_checks,
-    points=points, links=links, our_film=our_film, bodies=bodies, poses=lambda poses, p: poses, ground=True,
+    points=points, links=links, our_film=our_film,
+    bodies=bodies, poses=lambda poses, p: poses, ground=True, walls=walls,
     uses=("a broad phase that looks again only when something has left its widened box", "contact points", "memory",
           "soft contacts with substeps"),
     full_loop="its method is a whole loop itself, of which only the end is seen",
