@@ -145,7 +145,7 @@ function play(place) {
   }
   camera.up.set(0, 0, 1);
   camera.near = size / 1000; camera.far = size * 100;
-  const home = centre.clone().add(new Vector3(0.75, -1.2, 0.6).multiplyScalar(0.95 * size)), controls = new OrbitControls(camera, view);
+  const home = centre.clone().add(new Vector3(0.75, -1.2, 0.6).multiplyScalar((walls.length ? 1.15 : 0.95) * size)), controls = new OrbitControls(camera, view);
   camera.position.copy(home);
   controls.target.copy(centre);
   controls.update();
