@@ -113,6 +113,7 @@ class Scene:
     arrows: Callable | None = None           # (observed, p) → {name: (from, to)} [m], such as ω and L
     trail: int | None = None                 # number of the body whose path is drawn
     ground: bool = False                     # draw the plane z = 0
+    walls: Callable | None = None            # (p) → pairs of points in space: edges of what stands still, in 3D
     story: str = ""                          # the module's docstring, filled in when the scene is loaded
 
     def __post_init__(self):

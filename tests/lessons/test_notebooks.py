@@ -1,13 +1,17 @@
 """The notebooks run from first cell to last with nothing attempted, half done and solved; stored without outputs."""
 
+import json
 import re
+from html import escape
 
 import nbformat
 import pytest
+from matplotlib.figure import Figure
 
 from validate import modules
 from validate.generate import exercises, stub
 from validate.modules import ROOT, SOLUTIONS, lesson_names
+from validate.notebook import figures
 
 from .kernels import kernel, ran
 
@@ -26,6 +30,15 @@ def answered(state):
     """{lesson: exercises that are solved in that state}."""
     every = {name: list(exercises((SOLUTIONS / f"{name}.py").read_text())) for name in lesson_names()}
     return {name: set(numbers[:round(STATES[state] * len(numbers))]) for name, numbers in every.items()}
+
+
+def described(said):
+    """The description of each figure that a cell showed, which is the same beside the PNG and in the HTML."""
+    shown = [content for content in json.loads(said) if "image/png" in content.get("data", {})]
+    for content in shown:
+        alt = content["metadata"]["image/png"]["alt"]
+        assert content["data"]["text/html"].startswith(f'<img alt="{escape(alt)}"')
+        yield alt
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
@@ -85,6 +98,8 @@ def test_a_notebook_runs_to_its_end_and_its_checks_say_the_state(path, states, t
                 if asked and known.get(asked[1]) == expected:
                     continue
                 said = ran(client, source)
+                for alt in described(said):
+                    assert len(alt) > 20 and alt != figures.NOTHING, f"a figure has too few words ({alt}):\n{source}"
                 if asked:
                     assert f"Exercise {asked[1]}: {expected}" in said, f"{state}: {said}"
                     known[asked[1]] = expected
@@ -114,6 +129,45 @@ def test_a_film_has_the_look_of_its_methods(monkeypatch):
     assert '"marker"' not in shown[1] and "●</span> mine" in shown[1]
     play({"beside it": frames, "mine": frames}, 1.0, shown_as={"mine": methods.DAMPED})
     assert shown[2].count(f'"colour": "{methods.DAMPED.colour}"') == 1       # which is the first colour of the others
+
+
+def test_a_figure_is_described_by_its_labels_and_by_where_its_curves_end():
+    figure, empty = Figure(), Figure()
+    left, right = figure.subplots(1, 2, sharey=True)
+    left.plot([0, 1, 2], [1.0, 0.5, -0.25], label="Euler, $\\mu_s$ = 1")
+    left.set(title="a spring", xlabel="t [s]", ylabel="x [m]")
+    left.legend(title="method")
+    right.plot([0, 1], [0, 1])
+    right.text(0, 0, "a wall")
+    right.set(xlabel="t [s]", aspect="equal")
+    assert figures.describe(figure) == (
+        "Plot: a spring; x [m] against t [s]; curves (method): “Euler, μ_s = 1” from 1 at 0 to -0.25 at 2. "
+        "Plot: x [m] against t [s]; words: a wall.")
+    assert figures.describe(empty) == figures.NOTHING
+
+
+def test_a_figure_is_shown_with_its_description_and_drawn_once():
+    """As HTML, because JupyterLab shows the words of HTML only, and as PNG, for everything else."""
+    from IPython.core.interactiveshell import InteractiveShell
+    from IPython.core.pylabtools import select_figure_formats
+    shell, drawings = InteractiveShell(), []
+
+    class Counted(Figure):
+        def draw(self, renderer):
+            drawings.append(self)
+            super().draw(renderer)
+    figure = Counted()
+    figure.subplots().set(xlabel="t [s]", ylabel='"x" [m]')
+    figures.install(shell)
+    for options in ({}, {"facecolor": "red"}):             # the second call replaces what IPython draws with
+        select_figure_formats(shell, {"png"}, bbox_inches=None, **options)
+        drawings.clear()
+        data, metadata = shell.display_formatter.format(figure)
+        assert len(drawings) == 1 and metadata["image/png"]["alt"] == 'Plot: "x" [m] against t [s].'
+        assert data["text/html"] == ('<img alt="Plot: &quot;x&quot; [m] against t [s]." '
+                                     f'src="data:image/png;base64,{data["image/png"].strip()}">')
+    select_figure_formats(shell, {"svg"})
+    assert {"image/png", "text/html"}.isdisjoint(shell.display_formatter.format(figure)[0])
 
 
 def test_words_can_be_read_on_white_and_on_black():

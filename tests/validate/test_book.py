@@ -17,7 +17,7 @@ from solutions.checks import BadInput
 from tests.grading import choice, release
 from validate import modules
 from validate.book import __main__ as book
-from validate.book import api, course, execute, figures, pages, plan, sheets, weeks
+from validate.book import api, course, execute, pages, plan, sheets, weeks
 from validate.modules import ROOT
 
 pytestmark = pytest.mark.xdist_group("book")
@@ -307,16 +307,6 @@ def test_a_cell_that_fails_or_ends_its_kernel_is_named(cell, said, tmp_path):
         execute.outputs_of(client, cell, "05")
 
 
-def test_a_figure_is_described_by_its_labels():
-    from matplotlib.figure import Figure
-    figure = Figure()
-    axes = figure.subplots()
-    axes.plot([1, 2], label="Euler")
-    axes.set(title="a spring", xlabel="t [s]", ylabel="x [m]")
-    assert figures.describe(figure) == "Plot: a spring; x [m] against t [s]; curves: Euler."
-    assert figures.describe(Figure()) == "Drawing without axes."
-
-
 # ---------------------------------------------------------------------------------------------- the checks can fail
 
 @pytest.mark.parametrize("page", [
@@ -400,5 +390,5 @@ def test_the_whole_book_has_no_answer_and_asks_no_other_host(tmp_path):
         if path.stem[:2] != "00":
             assert "not attempted" not in Texts(page).whole and "✗ Exercise" not in page
             figures_of = re.findall(r'<img alt="([^"]*)" [^>]*src="\.\./_images/', page)
-            assert figures_of and all(alt.startswith(("Plot: ", "Drawing")) for alt in figures_of)
+            assert figures_of and all(len(alt) > 20 for alt in figures_of)
     assert all(name in (site / "glossary.html").read_text(encoding="utf-8") for name in ("mutant", "warm start"))

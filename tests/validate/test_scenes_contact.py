@@ -1,11 +1,13 @@
 """Scenes of lesson 9: a wrong answer departs from the truth in the case that should notice it."""
 
+import numpy as np
 import pytest
 
 from validate import measure, modules
+from validate.measure import film
 from validate.reference.contact import Settling, sway_of_tower
 from validate.results import is_right
-from validate.scenes.contact import mass_ratio, stack
+from validate.scenes.contact import mass_ratio, piles, stack
 
 TEXT = (modules.SOLUTIONS / "contact.py").read_text(encoding="utf-8")
 CONE = "limit = mu[n // 2] * J[n] if J[n] > 0.0 else 0.0"
@@ -45,3 +47,16 @@ def test_the_sway_of_the_piles_is_that_of_the_reference():
         substeps, hertz, seconds = mass_ratio.solver(p)
         how = Settling(mass_ratio.DT, substeps, hertz, mass_ratio.ZETA, mass_ratio.MU, seconds)
         assert sway_of_tower(tuple(mass_ratio.masses(p)), 1.0, 9.81, how) == pytest.approx(known, rel=0.5, abs=1e-14)
+
+
+@pytest.mark.parametrize("case", ["12 spheres", "30 discs"])
+def test_a_pile_is_filmed_inside_the_edges_of_its_container(case):
+    """The edges touch the planes of the container and surround the first places of all bodies, with their radii."""
+    p = piles.CASES[case]
+    _, (first, *_) = piles.our_film(p)
+    edges = np.reshape(film.packed(piles.bodies(p), {}, 1.0, walls=piles.walls(p))["walls"], (-1, 3))
+    planes = piles.start(p)[1].planes
+    gaps = edges[:, 3 - len(planes[0]) + 1:] @ planes[:, :-1].T + planes[:, -1]     # discs stand in the plane x = 0
+    assert np.min(gaps, axis=0) == pytest.approx(0.0, abs=1e-12)
+    radii = [body["r"] for body in piles.bodies(p)]
+    assert np.max(edges[:, 2]) == pytest.approx(np.max(first[:, 2] + radii), abs=1e-12)

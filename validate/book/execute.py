@@ -24,8 +24,6 @@ NOTEBOOKS, KEPT = ROOT / "notebooks", ROOT / ".cache" / "book"
 LONGEST = 600                # of one cell [s]
 SHOWN = {"stream", "display_data", "execute_result", "error"}
 FIRST = """%matplotlib inline
-from validate.book.figures import install
-install(get_ipython())
 %reset -f"""
 
 
@@ -118,7 +116,7 @@ def fingerprint(path):
     """A hash of everything that a notebook's outputs depend on."""
     sources = [path, *sorted(SOLUTIONS.rglob("*.py")), *sorted((ROOT / "tests" / "lessons").glob("test_*.py"))]
     sources += [file for file in sorted((ROOT / "validate").rglob("*.py"))
-                if file.parent.name != "book" or file.stem in ("execute", "figures")]
+                if file.parent.name != "book" or file.stem == "execute"]
     sources += sorted((ROOT / "validate" / "report").glob("*.js"))
     return hashlib.sha256(b"\0".join(file.read_bytes() for file in sources)).hexdigest()[:16]
 

@@ -90,6 +90,8 @@ def prepared(book, stem, folder, alts, report=False):
         cell.outputs = [output for output in cell.outputs if WIDGET not in output.get("data", {})]
         for output in cell.outputs:
             data = output.get("data", {})
+            if "image/png" in data:
+                data.pop("text/html", None)      # the same figure, for JupyterLab
             if "text/html" in data:
                 data["text/html"] = INLINE.sub(lambda match: script(match[1], folder, players), data["text/html"])
             if "image/png" in data:

@@ -65,16 +65,18 @@ def in_space(scene, shown, p, seconds):
         for label, (_, film) in shown.items():
             each = [scene.arrows(observed, p) for observed in film]
             arrows[label] = {name: [one[name] for one in each] for name in each[0]}
-    return packed(scene.bodies(p), runs, seconds, arrows, scene.trail, scene.ground)
+    walls = scene.walls(p) if scene.walls else ()
+    return packed(scene.bodies(p), runs, seconds, arrows, scene.trail, scene.ground, walls)
 
 
-def packed(bodies, runs, seconds, arrows=None, trail=None, ground=False):
+def packed(bodies, runs, seconds, arrows=None, trail=None, ground=False, walls=()):
     """What the 3D player plays.
 
     bodies    shapes of validate/drawing.py
     runs      {label: (role, poses)}; poses (frames, bodies, 7): position x, y, z [m] and unit quaternion w, x, y, z
     arrows    {label: {name: (frames, 2, 3)}}: where each arrow begins and ends, for the runs that have them
     trail     number of the body whose path is drawn;   ground: draw the plane z = 0
+    walls     pairs of points: edges of what stands still, such as a container, drawn as thin lines
     """
     arrows = arrows or {}
     names = list(next(iter(arrows.values()), {}))
@@ -88,7 +90,7 @@ def packed(bodies, runs, seconds, arrows=None, trail=None, ground=False):
         entries.append({"label": label, "look": Role(role).value, "colour": colour,
                         "frames": base64.b64encode(frames.tobytes()).decode()})
     return {"seconds": float(seconds), "ground": ground, "trail": trail, "arrows": names, "bodies": list(bodies),
-            "runs": entries}
+            "walls": np.asarray(walls, dtype=float).reshape(-1, 2, 3).tolist(), "runs": entries}
 
 
 def links(scene, p):

@@ -25,7 +25,7 @@ from ..measure import film
 from ..report import ARROWS, PLAYER_3D, plots, words
 from ..results import Role
 from ..scene import PRODUCTS
-from . import cases, pytest_process, saving
+from . import cases, figures, pytest_process, saving
 
 TESTS = modules.ROOT / "tests" / "lessons"
 OPENINGS, ARRAY = modules.ROOT / "notebooks" / "openings.json", "array"                # made by `release`
@@ -179,6 +179,7 @@ def _say_waiting(*_):
 
 if get_ipython():
     get_ipython().events.register("post_run_cell", _say_waiting)
+    figures.install(get_ipython())
 
 
 def fastest(lesson, trial):

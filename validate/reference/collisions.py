@@ -92,9 +92,9 @@ def detection_errors(T, place, when, swept, band):
     swept(p, dt) → radius that an engine sweeps, None if none    band(p, dt, label) → as in Prediction
     """
     def predicted_error(label, p, dt):
-        """The moment of each impact is known, and so is its place in a step: a test after each step finds a ball at the
-        first multiple of dt inside, and no ball that leaves before one.  A swept ball also stops where its smaller
-        sphere touches, if that is earlier in the step.
+        """The time of each impact is known, and so is where in a step it falls.  A test after each step finds a ball
+        at the first multiple of dt at which it is inside.  It misses a ball that has left by then.  A swept ball also
+        stops where its smaller sphere touches, if that is earlier in the step.
         """
         if label not in ("discrete", "pybullet, swept"):
             return None

@@ -77,9 +77,9 @@ def slip_limits(p, dt):
     A slip begins and ends at the limit of friction, which is why its detection error is of second order.
 
     Order 1 uses the force at the beginning of each step for all of it: in a slip of s seconds in which A |cos ωt|
-    changes by V its velocity is wrong by ½ dt V.  Order 2, a midpoint step, is wrong by dt² Aω² s/24, and in
-    addition the distance by dt² Aω s/6.  The velocity error at the end over the deceleration there is the delay of
-    the stop.  If the next slip begins at that moment, its first acceleration is too small by as much time.  In
+    changes by V its velocity is wrong by ½ dt V.  In order 2, a midpoint step, the velocity is wrong by dt² Aω² s/24,
+    and the distance by another dt² Aω s/6.  The velocity error at the end, divided by the deceleration there, is the
+    delay of the stop.  If the next slip begins at that moment, it lacks its first acceleration for the same time.  In
     order 1 the terms in dt² are bounded by Aω dt² s each for the beginning, the end and the sum.  The engines use
     the same forces at the same times.  That pymunk moves with the old velocity has no effect, because a slip begins
     and ends at rest.
@@ -116,7 +116,7 @@ def pushed_in_steps(p, steps, new):
 
 
 def slip_errors(label, p, dt):
-    """What the same rule makes of the force in plain numbers, the force from the beginning of each step.
+    """The same rule in plain numbers, with the force from the beginning of each step.
 
     Our sliding step and pybullet move with the new velocity, pymunk with the old one.  The engines' sweeps leave 1e-9.
     """

@@ -261,9 +261,9 @@ def predict_by_tables(T, law, begin, seen, truth, floor, engines=None, departure
                         (powers or {}).get(label, order), T, finest.get(label, finest[order]))
 
     def predicted_error(label, p, dt):
-        """The error, with its sign, of the method's own table of numbers (Runge–Kutta, partitioned), run apart from
-        the lesson with other forces: at the same step where that is coarse, else by its expansion in powers of dt.
-        A run must come as near to it as the expansion can be trusted.
+        """The error, with its sign, of the method's own table of coefficients (Runge–Kutta, partitioned), in a program
+        that shares neither steps nor forces with the lesson: with the same step where that is coarse, otherwise by an
+        expansion of the error in powers of dt.  A run must agree with it as closely as the expansion is known.
         """
         return error_law(label, p).prediction(dt, floor(p, dt)) if label in engines or label in TABLEAUX else None
 

@@ -62,7 +62,10 @@ def _ground(axes, bottom):
     """Name the line on which runs lie that are right to the last digit that can be told, if there are any."""
     if any(np.any(np.asarray(line.get_ydata(), dtype=float) == bottom) for line in axes.lines):
         axes.axhline(bottom, color="#999999", lw=0.6)
-        axes.annotate("no error that can be told", (0.01, bottom), va="top", **NOTE)
+        low, high = axes.get_ylim()
+        axes.set_ylim(low * (low / high) ** 0.05, high)              # room for words below the markers on the line
+        axes.annotate("no error that can be told", (0.01, bottom), xytext=(0, -6), textcoords="offset points", va="top",
+                      **NOTE)
 
 
 def convergence(path, result):

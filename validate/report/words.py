@@ -434,8 +434,8 @@ def _ours(result):
         yield f"{', '.join(labels)}: {why}."
     shown = [c for c in next(iter(result["cases"].values()))["ours"] if c["order"] is not None and is_right(c)]
     if shown:
-        orders = "; ".join(f"{c['label']}: {c['order']:.2f} ({c['expected']})" for c in shown)
-        yield f"Measured orders of convergence, with the expected order in brackets. {orders}."
+        orders = "; ".join(f"{c['label']} {c['order']:.2f} ({c['expected']})" for c in shown)
+        yield f"Measured orders of convergence, with the expected order in brackets: {orders}."
     exact = [c["label"] for c in next(iter(result["cases"].values()))["ours"] if c["expected"] == EXACT and is_right(c)]
     if exact and result["refinement"]:
         yield f"Exact up to round-off at every step, as derived: {', '.join(exact)}."

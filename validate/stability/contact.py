@@ -53,7 +53,7 @@ def sweeps_until(errors, small):
 
 # ---------------------------------------------------------------------------------------------- contraction
 
-@case("contraction-of-a-stack", "Why ten boxes want hundreds of sweeps", compiled=False)
+@case("contraction-of-a-stack", "Why ten boxes need hundreds of sweeps", compiled=False)
 def contraction_of_a_stack(lesson):
     """On n equal bodies, one on the other, a sweep leaves cos²(π/2n) of the error: sin²(π/2n) is done.
 
@@ -78,7 +78,7 @@ def contraction_of_a_stack(lesson):
     enough = sweeps_until(errors_of(lesson, np.ones(10), 1.0, 320), 1e-3)
     theory = np.log(1e-3) / np.log(np.cos(np.pi / 20.0) ** 2)
     found.append(finding(
-        claim="Ten boxes want ln 10⁻³/ln ρ sweeps to a thousandth; the slow part is nearly all of the first error.",
+        claim="Ten boxes need ln 10⁻³/ln ρ sweeps to a thousandth; the slow part is nearly all of the first error.",
         quantity="sweeps until the forces are right to 10⁻³, ten boxes [-]",
         predicted=theory,
         measured=enough,
@@ -89,7 +89,7 @@ def contraction_of_a_stack(lesson):
     return found, Picture("What a sweep does", "log₁₀ of the number of bodies", "log₁₀ of the part removed", [
         series("theory, sin²(π/2n)", np.log10(fine), 2.0 * np.log10(np.sin(0.5 * np.pi / fine)), LINE),
         series("measured", np.log10(sizes), np.log10(done), DOTS)],
-        "Twice as many boxes want four times as many sweeps: each sweep passes a force on to neighbours.")
+        "Twice as many boxes need four times as many sweeps: each sweep passes a force on to neighbours.")
 
 
 @case("contraction-of-a-mass-ratio", "Why the heavy one sinks", compiled=False)
@@ -115,7 +115,7 @@ def contraction_of_a_mass_ratio(lesson):
     return found, Picture("Heavy on light", "log₁₀ of the mass ratio", "log₁₀ of the part of the error removed", [
         series("theory, 1/(1 + r)", fine, -np.log10(1.0 + 10.0**fine), LINE),
         series("measured", np.log10(ratios), np.log10(done), DOTS)],
-        "A thousand times the mass wants a thousand times the sweeps; light on heavy is no trouble.")
+        "A thousand times the mass needs a thousand times the sweeps; light on heavy is no trouble.")
 
 
 # ---------------------------------------------------------------------------------------------- sweeps that stop early
@@ -477,7 +477,7 @@ def mass_ratio_of_a_million(lesson):
     A, b, forces = column((1.0, ratio))
     error = np.max(np.abs(lesson.solve_lcp(A, b) / forces - 1.0))
     found.append(finding(
-        claim="A direct method does not mind the masses.",
+        claim="A direct method is accurate at any mass ratio.",
         quantity="relative error of the forces by Murty's method [-]",
         predicted=0.0,
         measured=error,
@@ -789,7 +789,7 @@ def refusals(lesson):
     )
     refused = sum(refuses(function, (), value) for function, value in asked)
     return finding(
-        claim="Sizes and masses of none, planes without a normal, hertz that no substep carries and contacts of two "
+        claim="Sizes and masses of zero, planes without a normal, hertz that no substep carries and contacts of two "
               "immovable bodies are refused, with their value.",
         quantity=f"calls that name the value in their error [of {len(asked)}]",
         predicted=len(asked),
@@ -1203,10 +1203,10 @@ def laws_of_contact(lesson):
         ("matrix", "The Delassus matrix adds up over all coordinates.", "matrix [1/kg]"),
         ("sweep", "A sweep uses new impulses before, old ones behind, and none pulls.", "impulses of a sweep [N s]"),
         ("lcp", "The direct solver finds the set of contacts that push.", "impulses of the direct solver [N s]"),
-        ("judge", "The residual sees what pulls, approaches, or pushes while it parts.", "residual [m/s]"),
+        ("judge", "The residual finds contacts that pull, approach, or push while they part.", "residual [m/s]"),
         ("cone", "A sweep with friction limits J_t by the new J_n, with the μ of each contact.",
          "impulses with friction [N s]"),
-        ("judge of cones", "The residual with friction sees too much and too little.", "residual with friction [m/s]"),
+        ("judge of cones", "The residual finds too much friction, and too little.", "residual with friction [m/s]"),
         ("kept", "A contact takes over the impulse of the nearest old one between the same two bodies.",
          "impulses that are kept [N s]"),
         ("spring", "A soft contact is an implicit Euler step of a damped spring.", "impulse of a soft contact [m/s]"))

@@ -447,7 +447,7 @@ def posture(lesson):
 
 # ---------------------------------------------------------------------------------------------- extremes
 
-@case("extremes", "Arms and targets that are none", compiled=False)
+@case("extremes", "Impossible arms and targets", compiled=False)
 def extremes(lesson):
     """Both edges of the ring, the centre of one without a hole, angles of many turns, and values that are refused."""
     found, way = [], np.array([np.cos(2.0), np.sin(2.0)])
@@ -520,7 +520,7 @@ def refusals(lesson):
     except Diverged:
         lost = 1
     return finding(
-        claim="Lengths, limits, axes and targets that are none are refused with their value, and what overflows has "
+        claim="Impossible lengths, limits, axes and targets are refused with their value, and what overflows has "
               "diverged.",
         quantity=f"calls that end in such a sentence [of {len(asked) + 1}]",
         predicted=len(asked) + 1,
@@ -592,9 +592,9 @@ def geometry_of_arms(lesson):
         ("ellipse", "The ellipse of velocities has the singular values as half axes, and u₁ as direction.",
          "half axes and direction [m, -]"),
         ("rotation", "The error of an orientation is the shortest rotation vector, of q and of −q.", "rotation [rad]"),
-        ("limits", "Between limits the joints that may go take a damped step.", "angles with limits [rad]"),
-        ("rest", "A rest posture attracts the arm, within what leaves the end where it is.", "angles [rad]"),
-        ("search", "A search ends when it is near enough, and counts what it took.", "search [-, rad, m]"),
+        ("limits", "Joints that are free to move between their limits take a damped step.", "angles with limits [rad]"),
+        ("rest", "A rest posture attracts the arm by motions that leave the end in its place.", "angles [rad]"),
+        ("search", "A search ends when it is near enough, and counts its iterations.", "search [-, rad, m]"),
         ("base", "A sweep of FABRIK leaves the base where it was.", "place of the base [m]"),
         ("links", "A sweep of FABRIK leaves each link its own length.", "lengths of links [m]"))
     return [agreement(claim, f"largest error of the {quantity}",

@@ -56,7 +56,7 @@ def margin_and_speed(lesson):
     for speed in (5.0, 8.0):
         deep = deepest(lesson, speed, 0.02, dt)
         found.append(finding(
-            claim="A faster one is found v dt − margin inside at the worst, and stays there.",
+            claim="A faster body is up to v dt − margin inside when it is found, and stays there.",
             quantity=f"greatest depth at {speed:g} m/s, margin 0.02 m [m]",
             predicted=speed * dt - 0.02 - speed * dt / 32.0,
             measured=deep,
@@ -104,7 +104,7 @@ def growth_on_a_turntable(lesson):
         first, last = (loop(dt, steps) for steps in (round(2.0 / dt), round(12.0 / dt)))
         grown.append(np.log(last / first) / 10.0)
         found.append(finding(
-            claim="A floor that is taken where the ball was lets its speed grow by ½ (2Ω/7)² dt per second.",
+            claim="With the floor's velocity where the ball was, its speed grows by the share ½ (2Ω/7)² dt per second.",
             quantity=f"growth of ln |v| per second, dt = {dt:g} s, Ω = 2 rad/s [1/s]",
             predicted=0.5 * w * w * dt,
             measured=grown[-1],
@@ -114,7 +114,7 @@ def growth_on_a_turntable(lesson):
     dt = 0.2
     first, last = (ahead(dt, steps) for steps in (round(2.0 / dt), round(12.0 / dt)))
     found.append(finding(
-        claim="One that is taken where the ball will be leaves a growth of the fourth order.",
+        claim="With the floor's velocity where the ball will be, the growth is of the fourth order.",
         quantity="growth of ln |v| per second, dt = 0.2 s, floor ahead [1/s]",
         predicted=0.25 * (w * dt) ** 4 / dt,
         measured=np.log(last / first) / 10.0,
@@ -266,7 +266,7 @@ def refusals(lesson):
              (lambda: moved(0.01, v=np.full((2, 2), np.nan)), "nan"), (lambda: moved(0.01, v=np.zeros((3, 2))), "3"))
     refused = sum(refuses(function, (), value) for function, value in asked)
     return finding(
-        claim="Masses, sizes, margins and steps of none, normals that are none, and what is no number are refused, "
+        claim="Masses, sizes, margins and steps of zero, normals without a length, and what is no number are refused, "
               "with their value.",
         quantity=f"calls that name the value in their error [of {len(asked)}]",
         predicted=len(asked),
@@ -391,7 +391,7 @@ def loop_by_parts(lesson):
          "state [m, m/s, rad/s]"),
         ("turn", "A body turns by 2 atan(½ |ω| dt) about its own new ω.", "orientation [-]"),
         ("times", "Each step takes the load of its own time.", "velocity after five steps [m/s]"),
-        ("invariants", "Energy and momenta are those of matrices, for bodies that can move.",
+        ("invariants", "Energy and momenta equal those by matrices; bodies that cannot move do not count.",
          "invariants [J, kg m²/s]"),
         ("gain", "A gain counts from any time on, without the work that was done; a difference counts either way.",
          "gain and difference [J]"),

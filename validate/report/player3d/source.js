@@ -4,6 +4,7 @@
 // {seconds, ground: bool, trail: number of a body or null, arrows: ["ω", "L", …],
 //  bodies: [{kind: "box", size: [half, half, half]} | {kind: "sphere", r} | {kind: "cylinder" | "capsule", r, length} (along z)
 //           | {kind: "cone", r, length} (tip in the origin) | {kind: "mesh", vertices: [[x, y, z], …], triangles: [[i, j, k], …]}],
+//  walls: [[[x, y, z], [x, y, z]], …]: edges of what stands still,
 //  runs: [{label, look: "truth" | "ours" | "engine", colour, frames: base64 of float32 (frame, body: x y z w qx qy qz; arrow: from, to)}]}
 import "../player.js";
 import {
@@ -14,7 +15,7 @@ import {
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
 const ARROWS = ["#e69f00", "#cc79a7", "#009e73"];                      // Okabe and Ito: told apart by everyone
-const BRIGHT = { "--ink": "#1d2429", "--line": "#d5dadd" };            // colours of a page that does not say its own
+const BRIGHT = { "--ink": "#1d2429", "--soft": "#5b666e", "--line": "#d5dadd" };            // colours of a page that does not say its own
 const { controls: film_bar, floats, metres, nice, page } = globalThis.filmPlayer;
 
 function shape(body) {
@@ -119,6 +120,13 @@ function play(place) {
     return { label: run.label, colour: run.colour, look: run.look, shown: true, numbers, figures, pointers, trail, frames: numbers.length / row };
   });
 
+  const walls = (picture.walls ?? []).flat().map(point => new Vector3(...point));
+  if (walls.length) {
+    const line = new LineBasicMaterial();
+    line.name = "--soft";
+    scene.add(new LineSegments(new BufferGeometry().setFromPoints(walls), line));
+    walls.forEach(point => { low.min(point); high.max(point); });
+  }
   const centre = low.clone().add(high).multiplyScalar(0.5), size = Math.max(high.clone().sub(low).length(), 1e-6);
   const corner = picture.ground ? new Vector3(low.x, low.y, 0) : low, reach = nice(0.3 * size), axes = new AxesHelper(reach);
   axes.position.copy(corner);
@@ -137,7 +145,7 @@ function play(place) {
   }
   camera.up.set(0, 0, 1);
   camera.near = size / 1000; camera.far = size * 100;
-  const home = centre.clone().add(new Vector3(0.75, -1.2, 0.6).multiplyScalar(0.95 * size)), controls = new OrbitControls(camera, view);
+  const home = centre.clone().add(new Vector3(0.75, -1.2, 0.6).multiplyScalar((walls.length ? 1.15 : 0.95) * size)), controls = new OrbitControls(camera, view);
   camera.position.copy(home);
   controls.target.copy(centre);
   controls.update();

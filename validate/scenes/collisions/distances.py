@@ -336,10 +336,10 @@ def tolerance(p, dt):
 
     GJK stops when it knows the distance to 1e-14 of the size.  The points may be known only to the
     root of that, but these bodies have corners, so the last step is exact.  pybullet has closed forms for some pairs
-    (Bullet's btDefaultCollisionConfiguration and btConvexConvexAlgorithm): round-off.  So has its GJK between bodies
-    that have corners without their margins: its last simplex spans the nearest features.  A ball inside a box is
-    round: the expanding polytope stops when the depth is known to 1e-12 m, which it is where the normal is off by
-    √(2 · 1e-12 m/r), and the point by that times r.  pymunk's results are closed forms.
+    (Bullet's btDefaultCollisionConfiguration and btConvexConvexAlgorithm): round-off.  Its GJK is as exact for bodies
+    that have corners when their margins are taken away, because its last simplex spans the nearest features.  A ball
+    inside a box is round: the expanding polytope stops when the depth is known to 1e-12 m, which it is where the
+    normal is off by √(2 · 1e-12 m/r), and the point by that times r.  pymunk's results are closed forms.
     """
     turned = np.sqrt(2e-12 / p.r) * np.hypot(1.0, p.r) / np.linalg.norm(truth(p, T))
     return {

@@ -111,7 +111,7 @@ def by_wider_boxes(p, t):
 
 
 def tolerance(p, dt):
-    """Counts are exact: whole numbers, of which a quotient rounds by 1e-16."""
+    """Counts are whole numbers and exact; the quotient of two is rounded by 1e-16."""
     return dict.fromkeys((EXACT, *(engine.label for engine in ENGINES)), 1e-15)
 
 

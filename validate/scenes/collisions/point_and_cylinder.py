@@ -81,9 +81,9 @@ def band(p, dt, label):
 def tolerance(p, dt):
     """Limits relative to the root of the sum of all squares.
 
-    continuous: a position is rounded by ½ spacing of itself at each step until the impact; with its largest offset
-    b (R + r) from the axis the root is 1/√(1 − b²) times as uncertain as the position; a dozen roundings of the whole
-    way for the time of impact, here and in the truth.
+    continuous: a position is rounded by ½ spacing of itself at each step until the impact; for the path that passes
+    farthest from the axis, at b (R + r), the root is 1/√(1 − b²) times as uncertain as the position.  The time of
+    impact adds a dozen roundings of the whole way, here and in the truth.
     rays: where a ray ends is measured and not derived.
     discrete: detected at most one step late, at a moment that is predicted.  A step longer than the shortest path
     through the cylinder, 2 √(1 − b²)(R + r), can pass it.

@@ -102,8 +102,8 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """An arch that is short of the critical number by a relative δ falls with about 10 g δ: 1e-6 m/s² mean
-    1e-8.  Bisection stops at 1e-6.
+    """An arch whose number is less than the critical one by a share δ falls with about 10 g δ: an acceleration of 1e-6
+    m/s² means δ = 1e-8.  The bisection stops at 1e-6.
 
     Any nudge brings down an arch near its least thickness.  Engines nudge it: gravity acts for a step before the
     joints carry.  No theory says how much more thickness they need, so their errors are shown and not judged.
@@ -228,7 +228,7 @@ SCENE = Scene(
     orders={"contact_forces": EXACT},
     supports=supports,
     slow_cases=tuple(CASES)[1:],
-    omitted_methods="Murty's method knows no friction; the pile has no stones but boxes",
+    omitted_methods="Murty's method has no friction; the pile holds boxes, not the stones of an arch",
     moves=False,
     refinement="",
     quantity_names=quantity_names,

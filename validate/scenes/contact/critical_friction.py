@@ -1,8 +1,8 @@
 """How rough must it be?  A ladder, discs, a box and an overhang that stand by a hair, and when they do not any more.
 
 A scene stands where the contact solver finds no acceleration.  Its critical number is found by bisection: the least
-friction, the steepest slope or the longest overhang that stands.  The engine is watched for a second instead, and what
-has moved by less than a millimetre stands.
+friction, the steepest slope or the longest overhang that stands.  An engine runs for a second instead, and what has
+moved by less than a millimetre stands.
 """
 
 from typing import Annotated, NamedTuple
@@ -174,8 +174,8 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """A number that is short of the critical one by a relative δ leaves an acceleration of g δ times a lever.  With
-    levers of a tenth and more, 1e-8 m/s² mean 10 · 1e-8/g; bisection stops at 1e-9.
+    """A number that is less than the critical one by a share δ leaves an acceleration of g δ times a lever.  With
+    levers of a tenth and more, 1e-8 m/s² means δ = 10 · 1e-8/g at most.  The bisection stops at 1e-9.
 
     In an engine that acceleration has a second to move something by 1 mm: δ = 2 · 1e-3/(g · 1 s²) over the lever.
     pybullet lets an overhanging stack sink and lean before it carries, and default settings are coarse.  No theory
@@ -371,8 +371,8 @@ SCENE = Scene(
     orders={"contact_forces": EXACT},
     supports=supports,
     slow_cases=("ladder at 40°", "ladder at 75°", "overhang of five blocks"),
-    omitted_methods="Murty's method knows no friction; pybullet has no discs and no plane in which they could stay, "
-                    "and with its default settings five blocks fall at a third of the overhang: 50 iterations do not "
+    omitted_methods="Murty's method has no friction; pybullet has no discs, nor a plane in which they could stay; with "
+                    "its default settings five blocks fall at a third of the overhang, because 50 iterations do not "
                     "find the forces between them",
     moves=False,
     refinement="",

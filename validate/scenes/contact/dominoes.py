@@ -1,9 +1,10 @@
 """A row of dominoes, the first of them pushed: impacts, tilting, sliding and leaning all at once.
 
 No formula gives this motion, and nobody published it.  Two codes that share nothing, the lesson's pile and pymunk, must
-come to nearly the same motion as their steps shrink; that is the test.  Not to the same one: the pile visits each
-contact twice per step, which does not finish an impact that runs through several contacts.  Down to 1/50,000 s it stays
-½ to 1 % away, by up to 0.07 rad in a late domino.  The loop of lesson 10 comes within 0.15 % with 100 sweeps per step.
+come to nearly the same motion as their steps shrink; that is the test.  The motions are not quite the same, because
+the pile visits each contact twice per step, which does not finish an impact that runs through several contacts.  Even
+with steps of 1/50,000 s it stays ½ to 1 % away: up to 0.07 rad in a late domino.  The loop of lesson 10 comes within
+0.15 % with 100 sweeps per step.
 """
 
 from functools import cache
@@ -111,13 +112,13 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """Each impact of two dominoes is seen up to one step late.  Until then a corner goes v dt too far, with the speed
-    v = ω (height + width) of the first at most, and whatever it meets later is as late.  n impacts are off by
-    n v dt at each corner: first order.  Where in its step an impact falls is chance, so that errors of single runs
+    """Each impact of two dominoes is seen up to one step late.  Until then a corner goes v dt too far, with v = ω
+    (height + width) of the first domino at most.  Whatever it meets later, it meets as late.  After n impacts each
+    corner is off by n v dt: first order.  It is chance where in its step an impact falls.  So errors of single runs
     scatter by a factor of three about a line, and the slope through four of them says little.
 
-    Impacts that two sweeps do not finish are not in this limit: at 1/1000 s it is still above what they do, and with
-    shorter steps the pile would depart.
+    This limit leaves out the impacts that two sweeps do not finish.  At 1/1000 s it is still larger than their effect;
+    with shorter steps the pile would depart.
 
     pybullet does not converge to this motion: its contact points live longer than a step.  No theory says how far it
     stays away, so its errors are shown and not judged.
@@ -233,7 +234,7 @@ SCENE = Scene(
     orders={"advance_pile_2d": ABOUT_1},
     slow_cases=("fifteen", "six, smoother"),
     uncompiled_in_quick=("advance_pile_2d",),
-    omitted_methods="matrices have no places, and so no motion: sweeps and Murty's method without it are missing",
+    omitted_methods="sweeps and Murty's method alone are missing: they find forces and move no bodies",
     sanity_checks=sanity_checks,
     points=points, links=links,
     uses=("contact points of boxes", "soft contacts and memory", "one substep per step"),

@@ -79,8 +79,9 @@ def observe(state, p):
 
 
 def truth(p, t):
-    """⌊10^N π⌋ impacts.  Energy is a circle for √m v and √M V: wall and pair reflect it about two lines with
-    the angle θ = arctan √(m/M) between them.  Two impacts turn it by 2θ, until after ⌈π/θ⌉ − 1 nothing approaches.
+    """⌊10^N π⌋ impacts.  The point (√M V, √m v) stays on a circle, because energy is conserved.  An impact with the
+    wall and one of the pair reflect it about two lines with the angle θ = arctan √(m/M) between them.  So two impacts
+    turn it by 2θ; after ⌈π/θ⌉ − 1 impacts nothing approaches.
 
     Source: Galperin 2003.
     """
@@ -92,8 +93,9 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """One impact too many is 1/⌊10^N π⌋.  Four roundings of 1.1e-16 an impact in the velocities are, over the number of
-    impacts, 4.4e-16; θ is rounded in the truth, too.  Engines do the same operations, if they see every impact.
+    """One impact too many is 1/⌊10^N π⌋.  Each impact rounds velocities four times by 1.1e-16: relative to the number
+    of impacts that is 4.4e-16.  θ is rounded in the truth, too.  Engines do the same operations, if they see every
+    impact.
     """
     return {EXACT: 1e-15, "pymunk": 1e-15, "pybullet": 1e-15}
 
@@ -202,8 +204,8 @@ SCENE = Scene(
     engines=ENGINES,
     orders={"impulse_size": EXACT, "gauss_seidel_sweep": EXACT},
     supports=supports,
-    omitted_methods="engines stop at 10,000 kg: their circles pass through each other where one goes further than a "
-                    "radius in a step, so that a million kg want four million steps",
+    omitted_methods="engines go up to 10,000 kg: two of their circles pass through each other if one moves further "
+                    "than a radius in a step, so that a million kg would need four million steps",
     moves=False,
     refinement="",
     quantity_names=quantity_names,

@@ -188,8 +188,8 @@ def truth(p, t):
                 upper contact has k_n = 2.5 (1 + 1/r)/m and half of r m g.
     sweeps      A sweep leaves ρ = r/(1 + r) of the error: ln(1/1000)/ln ρ of them.  The best relaxation has a double
                 eigenvalue ω − 1; the recursion of its two errors is counted to the end.
-    stands      what should stand, does: 1
-    refused     what sweeps cannot find, they refuse: 1
+    stands      1: what should stand stands
+    refused     1: what sweeps cannot find they refuse
     Source: Newton; Catto 2011 for soft contacts; Young 1971 for relaxation.
     """
     if p.kind == "overlap":
@@ -206,10 +206,10 @@ def sag(p):
 def tolerance(p, dt):
     """forces      Sweeps stop where the residual is 1e-13 of the largest (|A||F| + |b|)_k; the error is the residual
                 over the least eigenvalue of A at most.  Murty solves a linear system: 1.1e-16 times the condition of
-                A, and ten for the operations.  The pile still rocks a little when it is read: three times what
-                the recursion of its sweeps says, because the phase of the rocking depends on the places of the
-                corners, and the force of a rounded gap.  How engines come to rest no theory says: they agree if a force
-                tells to a hundredth of the light box what it carries.
+                A, and ten for the operations.  The pile still rocks a little when it is read.  The
+                limit is three times what the recursion of its sweeps says, because the phase of the rocking depends on
+                the places of the corners, and the force of a rounded gap.  No theory says how engines come to rest:
+                they agree if each force is right to a hundredth of the light box's weight.
     overlap     The upper box slides aside by no more than it sinks, and takes a corner along: a relative change of
                 2 (w/2)²/I/k_n times twice that over w, or 2.4 depths over w; and a corner's sway, as above.  MuJoCo's
                 overlaps are differences of places, which are rounded.
@@ -299,7 +299,7 @@ def too_few(sweeps):
     """Why so many sweeps per step do not carry the heavy box, and that nobody says so."""
     steps = sweeps_needed(1e3, 1.0, SMALL) / sweeps
     return Departure(f"a mass ratio of 1,000 takes 6,912 sweeps, which are {steps:.0f} of its steps. By then the heavy "
-                     "box is inside the light one. It reports no residual, so nobody is warned",
+                     "box is inside the light one. It reports no residual, so that nothing warns of it",
                      lambda p, t: np.zeros(1))
 
 
@@ -354,10 +354,10 @@ SCENE = Scene(
     supports=supports,
     slow_cases=("forces, 1,000 : 1", "overlap, 1,000 : 1", "sweeps, 1,000 : 1", "relaxed sweeps, a million : 1",
                 "1,000 on 1, standing"),
-    omitted_methods="sweeps without relaxation are not counted at a million, where they are 6.9 million; the engines' "
-                    "default settings are asked only whether the boxes stand and whether they refuse: where the light "
-                    "box is squeezed out no law says how far; MuJoCo's contacts would sink by 5 cm at 1,000, and not "
-                    "settle while the others do",
+    omitted_methods="at a million, sweeps without relaxation are not counted: it would take 6.9 million of them; the "
+                    "engines' default settings are judged only by whether the boxes stand and whether the engine "
+                    "refuses, because no law says how far a light box is squeezed out; at 1,000 MuJoCo's contacts "
+                    "would sink by 5 cm, and would not settle in the time that the others need",
     moves=False,
     refinement="",
     quantity_names=quantity_names,

@@ -139,19 +139,18 @@ def truth(p, t):
     """At rest the floor carries all: Newton's second law for the sum of the bodies.  The walls balance each other.
     Rigid bodies do not overlap, e = 0 makes no energy, and the natural map has no residual.
 
-    The residual is that of the impulses of the last step, ours or an engine's.  pymunk tells only the
-    sum of two points for boxes, so that they are not judged.  pybullet's friction is a pyramid, which reaches √2 μ
-    along its diagonals; it is judged with √2 μ here, and with μ in a stability case.
+    The residual is that of the impulses of the last step, ours or an engine's.  For boxes pymunk reports only the sum
+    of two points, so that these are not judged.  pybullet's friction is a pyramid, which reaches √2 μ along its
+    diagonals; it is judged with √2 μ here, and with μ in a stability case.
     Source: Newton; Signorini and Coulomb.
     """
     return np.array([1.0, 0.0, 0.0, 0.0] + ([] if not p.judged else [0.0]))
 
 
 def tolerance(p, dt):
-    """What has come to rest still creeps: 1 % of the weight, or of g dt, is allowed to each of the numbers but the
-    overlap.  That is the sag of a soft contact, k_n F/(2π hertz)².  Between bodies of the least mass k_n = 2/m, and
-    twice that at corners.  F is the weight of a column of bodies, n/across of them, times 4, because forces go in
-    chains.
+    """A pile at rest still creeps: each number but the overlap may be off by 1 % of the weight, or of g dt.  The
+    overlap may be the sag of a soft contact, k_n F/(2π hertz)².  Between bodies of the least mass k_n = 2/m, and twice
+    that at corners.  F is 4 times the weight of a column of n/across bodies, because forces go in chains.
 
     pymunk lets bodies overlap by its slop, 1e-3 m, over the least half size of 0.08 m, and by as much again where its
     iterations have not converged.  Its default slop is larger than the bodies.  pybullet's iterations leave more than
@@ -243,6 +242,18 @@ def bodies(p):
     return [box((half[0], *half) if len(half) == 2 else half) for half in halves]
 
 
+def walls(p):
+    """Edges of the container, as high as the bodies begin; in two dimensions its floor and two walls."""
+    state, pile = start(p)
+    wall, high = pile.planes[1, -1], np.max(state.x[:p.n, -1] + np.max(pile.half, axis=-1))
+    if state.x.shape[1] == 2:
+        corners = np.array([(0.0, -wall, high), (0.0, -wall, 0.0), (0.0, wall, 0.0), (0.0, wall, high)])
+        return np.stack((corners[:-1], corners[1:]), axis=1)
+    floor = np.array([(u * wall, v * wall, 0.0) for u, v in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+    rim = floor + np.array((0.0, 0.0, high))
+    return [*zip(floor, np.roll(floor, 1, axis=0)), *zip(floor, rim), *zip(rim, np.roll(rim, 1, axis=0))]
+
+
 SIDES = 16                   # of a circle in the picture
 
 
@@ -272,15 +283,16 @@ SCENE = Scene(
     orders={"advance_pile": EXACT, "advance_pile_2d": EXACT},
     supports=supports,
     slow_cases=tuple(CASES)[1:],
-    omitted_methods="sweeps and Murty's method alone find no places; matrices of 2,000 contacts would have "
-                    "16 million numbers; pybullet's residual stays between 0.3 and 4 g dt in 200 and 1,000 bodies, "
-                    "because 50 iterations do not find the forces; another command, python -m validate.piles, "
-                    "compares piles of 1,000",
+    omitted_methods="sweeps and Murty's method alone are missing: they move no bodies, and a matrix of 2,000 contacts "
+                    "would have 16 million numbers; pybullet's residual stays between 0.3 and 4 g dt with 200 and with "
+                    "1,000 bodies, because 50 iterations do not find the forces; the command python -m validate.piles "
+                    "compares piles of 1,000 bodies",
     moves=False,
     refinement="",
     quantity_names=quantity_names,
     sanity_checks=sanity_checks,
-    points=points, links=links, our_film=our_film, bodies=bodies, poses=lambda poses, p: poses, ground=True,
+    points=points, links=links, our_film=our_film,
+    bodies=bodies, poses=lambda poses, p: poses, ground=True, walls=walls,
     uses=("a broad phase that looks again only when something has left its widened box", "contact points", "memory",
           "soft contacts with substeps"),
     full_loop="its method is a whole loop itself, of which only the end is seen",

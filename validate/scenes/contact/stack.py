@@ -1,9 +1,9 @@
-"""Ten boxes on each other: the joint under k of them carries k m g, and solvers differ only in how soon they know it.
+"""Ten boxes on each other: the joint under k of them carries k m g, and solvers differ only in how soon they find it.
 
-A box has two contacts with the one below.  Sweeps have to find out by neighbours how many boxes there are above, and
-which way they rock: the sweeps of contact_forces give up on ten boxes, and say so.  Murty's method needs a few pivots.
-The pile needs two sweeps a substep, because it begins each with the impulses of the last: a memory turns sweeps into
-steps.
+A box has two contacts with the one below.  A sweep passes on from neighbour to neighbour how many boxes there are
+above, and which way they rock.  That takes long: the sweeps of contact_forces give up on ten boxes, and say so.
+Murty's method needs a few pivots.  The pile needs two sweeps per substep, because it begins each with the impulses of
+the last: its sweeps are spread over many steps.
 """
 
 from typing import Annotated, NamedTuple
@@ -150,11 +150,10 @@ def tolerance(p, dt):
     Murty solves a linear system: 1.1e-16 times the condition of A, and ten for the operations.
 
     The pile still rocks a little when it is read.  A reference that knows only the recursion of its sweeps says how
-    much.  The phase of the rocking depends on the exact places of the corners, which it takes for
-    fixed: three times its sway, and the force of a rounded gap.
-    How engines come to rest no theory says.  They agree if each force tells to a hundredth of a box how many it
-    carries.  So does the pile in space.  MuJoCo's contacts are at rest after 150 of their time constants, but for
-    roundings.
+    much.  It takes the corners as fixed, and the phase of the rocking depends on their exact places.  So the limit is
+    three times its sway, and the force of a rounded gap.
+    No theory says how engines come to rest.  They agree, and so does the pile in space, if each force is right to a
+    hundredth of a box's weight.  MuJoCo's contacts are at rest after 150 of their time constants, but for roundings.
     """
     A, here = normal_matrix(p), 2 if p.shape == "boxes" else 1
     values, forces = np.linalg.eigvalsh(A), np.repeat(truth(p, T), here) / here
@@ -268,8 +267,8 @@ SCENE = Scene(
     orders={"contact_forces": EXACT, "solve_lcp": EXACT, "advance_pile_2d": EXACT, "advance_pile": EXACT},
     supports=supports,
     slow_cases=("twenty discs", "ten cubes in space", "five cubes in space"),
-    omitted_methods="the sweeps are missing for ten boxes: after 50,000 they end in Diverged, "
-                    "because boxes that rock settle slowly; what moves has no discs, which would fall over",
+    omitted_methods="for ten boxes sweeps are missing: after 50,000 of them they end in Diverged, because boxes that "
+                    "rock settle slowly; no case with a motion has a column of discs, which would fall over",
     moves=False,
     refinement="",
     quantity_names=quantity_names,

@@ -71,12 +71,12 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """The velocity is exact at every step, but summed at one end of each: the error is at most ½ dt times its change.
+    """The velocity is exact at every step.  Positions sum it at one end of each: off by at most ½ dt times its change.
 
-    Sliding from v₀ for the time T it changes by a T.  Stopping on the way it changes by v₀, and the last, shorter
-    step adds up to ⅛ a dt².  pybullet moves with the new velocity like our methods of order 1, pymunk with the old
-    one: the same bound. A slab of 2 m on two or four contacts settles within its iterations; both begin with
-    the overlap that their engine tolerates.
+    In a block that slides for the time T the velocity changes by a T.  In one that stops on the way it changes by v₀,
+    and the last, shorter step adds up to ⅛ a dt².  pybullet moves with the new velocity like our methods of order 1,
+    pymunk with the old one: the same bound.  On two or four contacts, a slab of 2 m settles within an engine's
+    iterations.  It begins with the overlap that the engine tolerates.
     """
     limits = by_order(0.0, T, dt)
     along, across = tilted(p)
@@ -91,12 +91,12 @@ NEW_VELOCITY = {"sliding": True, "pybullet": True, "pymunk": False}
 
 
 def predicted_error(label, p, dt):
-    """Velocities are exact at every step, but the block moves with the new one (pymunk: the old one) for all of it.
+    """Velocities are exact at every step, but the block moves with the new one (pymunk: the old one) all step long.
 
     So it ends where the rectangle rule ends: too low on the slope with the new velocity, too high with the old one.
 
     MuJoCo's block hops on its contact: the same contact law, solved in closed form, predicts every hop.  Runs that
-    begin a nanometre apart say how much that can be trusted: four times half their range.
+    begin a nanometre apart show how far that can be trusted: the band is four times half of their range.
     """
     along, across = tilted(p)
     if label == "mujoco":

@@ -70,7 +70,7 @@ def pyramid(p, t):
 
 
 def tolerance(p, dt):
-    """The velocity is exact at every step until it is zero, but summed at the wrong end of each: ½ v₀ dt.
+    """The velocity is exact at every step until it is zero.  Positions sum it at the wrong end of each step: ½ v₀ dt.
 
     The last step is shorter, which adds up to ⅛ μg dt² (see the incline).  With the pyramid the same holds for each
     component, relative to a shorter distance.

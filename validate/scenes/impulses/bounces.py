@@ -132,9 +132,9 @@ def tolerance(p, dt):
     """An impact is detected at most N steps late; a ball that leaves from below takes 1/e of that: L = N dt/e.
 
     It leaves with e v, hence the 1/e.  After every impact the speed is off by  s ← e (s + g L),  because the impact
-    was detected so much later, and the time by  τ ← τ + L + 2s/g,  because the next flight is 2s/g longer.  At T, a
-    after the last impact, the height is off by |v| τ + s a + ½ g dt a and the speed by g τ + s + g dt.  A ball at
-    rest is as deep as its first impact left it, at most v₁ L, or jumps with the g dt of a step. The penalty's
+    was detected late, and the time by  τ ← τ + L + 2s/g,  because the next flight is 2s/g longer.  At the end, a time
+    a after the last impact, the height is off by |v| τ + s a + ½ g dt a and the speed by g τ + s + g dt.  A ball at
+    rest is as deep as its first impact left it, at most v₁ L, or jumps with the speed g dt of a step. The penalty's
     spring keeps ½v² + ½ω²x² − ½ω² dt x v, so entering and leaving at |x| ≤ v dt costs (ω dt)² of the speed, and its
     damper, evaluated at one end of the step, ζω dt.
     """
@@ -165,10 +165,11 @@ def tolerance(p, dt):
 
 
 def predicted_error(label, p, dt):
-    """Ball by ball: a flight is a parabola whose points are the ends of steps, ½ g dt per step off the true one, and an
-    impact is found at the first of these below the floor.  The lesson's step sets the ball on the floor; pybullet
-    turns it where it is; pymunk turns it and then lifts it by a part of its depth per step.  A soft floor pushes by
-    its force at the start of each step.  Where round-off decides whether a step ends below the floor, both are right.
+    """Each ball is predicted on its own.  In flight the steps end on a parabola, whose velocity is ½ g dt off the true
+    one.  An impact is found at the first end of a step below the floor.  The lesson's step then sets the ball on the
+    floor; pybullet reverses it where it is; pymunk reverses it and then lifts it by a part of its depth per step.  A
+    soft floor pushes by its force at the start of each step.  Where round-off decides whether a step ends below the
+    floor, both outcomes are right.
     """
     law, steps = soft(p, T) if label == "penalty" else truth(p, T), round(T / dt)
     size = np.linalg.norm(law)
@@ -260,7 +261,8 @@ SCENE = Scene(
     predicted_error=predicted_error,
     engines=ENGINES,
     expected_departures={
-        "penalty": Departure("its floor is a spring that takes 30 ms to reverse the ball, at any step", soft)
+        "penalty": Departure("its floor is a spring, which takes 30 ms to reverse the ball, however short a step is",
+                             soft)
     },
     # Between impacts at known times the motion is a parabola.
     orders={"backtracking_step": EXACT},

@@ -112,7 +112,7 @@ def in_turn(p, t):
 
 
 def tolerance(p, dt):
-    """Sweeps stop at changes of 1e-14 of 2 m/s, and what remains is at most a hundred times that, for 2 m/s.
+    """Sweeps stop when they change less than 1e-14 of 2 m/s; what remains is at most a hundred times that.
 
     For ω it is larger, as the box is smaller than a metre.  The engines' boxes overlap by 1e-12 m, over arms of 0.1
     m: ten times that, and a safety factor of ten.

@@ -55,7 +55,7 @@ def observe(state, p):
 
 
 def truth(p, t):
-    """With gaps e = 1 and equal masses pass the velocity from ball to ball, and the last one leaves: (0, 0, 0, 0, 1).
+    """With gaps, e = 1 and equal masses, each impact passes the velocity on; the last ball leaves: (0, 0, 0, 0, 1).
 
     Touching balls collide simultaneously, and five velocities have only two conditions: momentum and energy.  (Both
     engines end with (−½, 0, ½, ½, ½) here at any step, and our steps with (0, 0, 0, 0, 1).) Source: Newton; for the
@@ -78,9 +78,9 @@ def truth(p, t):
 def tolerance(p, dt):
     """Each of four impacts is detected up to one step late; the last ball is off by up to 4 v dt.
 
-    Until it is detected a ball goes v dt too far.  Separating overlapping balls moves each by that much once more.
-    A step in which a ball crosses a whole gap merges two impacts into one; then there is no bound.  Touching balls
-    keep momentum and energy exactly, however they share them.
+    Until its impact is detected, a ball goes v dt too far.  Separating overlapping balls moves each by that much once
+    more.  A step in which a ball crosses a whole gap merges two impacts into one; then there is no bound.  Touching
+    balls keep momentum and energy exactly, however they share them.
     """
     exact = by_order(1.0 / T, T, dt)[EXACT]
     if p.gap == 0.0:
@@ -96,7 +96,7 @@ def tolerance(p, dt):
 def predicted_error(label, p, dt):
     """With gaps: each impact is found at the first end of a step with an overlap, and the next ball flies on from where
     the lesson's step, or an engine, then puts it.  Where a gap is a whole number of steps, round-off decides in which
-    step the impact is found, and both are right.
+    step the impact is found; both outcomes are right.
     """
     if label not in DROPPING or p.gap == 0.0 or 2.0 * p.v * dt >= p.gap:
         return None

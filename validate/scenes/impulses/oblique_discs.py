@@ -104,9 +104,9 @@ def tolerance(p, dt):
 
 
 def predicted_error(label, p, dt):
-    """Pair by pair: they turn at the end of the first step that ends with an overlap, along the line of centres there;
-    a step that leads beyond the other finds none.  The lesson's step moves them apart at once, pybullet never, and
-    pymunk by a part of the overlap per step.
+    """Each pair is predicted on its own.  The impact happens at the first end of a step with an overlap, along the
+    line of centres at that moment.  A step that leads past the other disc finds no overlap.  The lesson's step moves
+    them apart at once, pybullet never, and pymunk by a part of the overlap per step.
     """
     if label not in DROPPING:
         return None

@@ -112,9 +112,9 @@ def tolerance(p, dt):
 
 
 def predicted_error(label, p, dt):
-    """Ball by ball: an impact is found at the first end of a step below the floor, and until then the ball goes on as
-    before.  The lesson's step sets it on the floor; pybullet turns it where it is; pymunk turns it and then lifts it by
-    a part of its depth per step.
+    """Each ball is predicted on its own.  An impact is found at the first end of a step below the floor; until then
+    the ball goes on as before.  The lesson's step then sets it on the floor; pybullet reverses it where it is; pymunk
+    reverses it and then lifts it by a part of its depth per step.
     """
     before = delays(WINDOW)
     runs = label in DROPPING and all_dropped(label, p.h - p.fall * before, np.full(COPIES, -p.fall), 0.0, p.e, dt,

@@ -78,14 +78,14 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """Moments grow with the body: the moment of a body between two balls lies between theirs, which grow with R⁵.
+    """A body that contains one ball and lies inside another has a moment between theirs, which grow with R⁵.
 
     Triangles: on an octahedron, 1/√3 away, an equilateral triangle of edge √2/n has its corners √2/(n √3) from its
-    centre. Moved onto the sphere they appear at most √3 times as far apart: within α = √2/n of the direction of the
-    centre.  So the triangle does not come nearer than R cos α:  0 ≤ error ≤ 1 − cos⁵α, of second order. Points: a
-    cell that the sphere cuts is within its half diagonal, √3 R/n, of the sphere.  Each cell also lacks its own
-    moment, m h²/6, h = 2R/n, compared with ⅖ m R²:  error ≤ (1 + √3/n)⁵ − 1 + 5/(3n²), at worst of first order.
-    pybullet's own rule does not depend on n: round-off.
+    centre. Moved onto the sphere, and seen from its middle, they are at most √3 times as far apart: within α = √2/n of
+    the direction of the triangle's centre.  So the triangle does not come nearer to the middle than R cos α:  0 ≤
+    error ≤ 1 − cos⁵α, of second order. Points: a cell that the sphere cuts is within its half diagonal, √3 R/n, of the
+    sphere.  Each cell also lacks its own moment, m h²/6, h = 2R/n, compared with ⅖ m R²:  error ≤ (1 + √3/n)⁵ − 1 +
+    5/(3n²), at worst of first order.  pybullet's own rule does not depend on n: round-off.
     """
     n = 1.0 / dt
     alpha = min(np.sqrt(2.0) / n, 0.5 * np.pi)
@@ -201,7 +201,7 @@ SCENE = Scene(
     engines=ENGINES,
     expected_departures={
         "pybullet, hull": Departure(
-            "it takes the cube around the hull for the hull, and makes it 6 mm larger", by_fat_box
+            "it uses the cube around the hull in place of the hull, and makes that cube 6 mm larger", by_fat_box
         )
     },
     # Plain Python finishes before numba has compiled it.

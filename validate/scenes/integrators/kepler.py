@@ -28,7 +28,8 @@ def observe(state, p):
 
 
 def tolerance(p, dt):
-    """Order 2 and 4 drift in phase; symplectic Euler and the engines are leapfrog, half a step late or early."""
+    """Methods of order 2 and 4 drift in phase.  Symplectic Euler and the engines are leapfrog, started half a step
+    late or early."""
     return kepler_limits(p, T, dt)
 
 

@@ -39,7 +39,7 @@ def observe(state, p):
 def tolerance(p, dt):
     """As in kepler.  The rate at the nearest point, √(μ/r³), is 32 times the mean: equal steps are wasted far away.
 
-    An adaptive step has the same product of rate and dt everywhere, its share.
+    An adaptive step keeps the product of rate and dt the same everywhere.  This product is its share.
     """
     return {**kepler_limits(p, T, dt), ADAPTIVE.label: adaptive_limit(p, T, share(p, dt))}
 

@@ -60,7 +60,7 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """Only the decaying term, of length |v₀ − v∞|/k, has an error, at the rate k; x(T) is ten times shorter.
+    """Only the decaying term has an error.  Its length is |v₀ − v∞|/k, its rate is k, and x(T) is ten times shorter.
 
     Both engines are of first order and take drag at the beginning of a step, or multiply v by e^(−k dt): order 1
     with rate k.  A first velocity half a step later would not help, because drag depends on it.  The hidden damping

@@ -70,7 +70,7 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """The fastest rate is ω + c/m; relative to x(T), which damping has made e^(δT) smaller than the initial amplitude.
+    """The fastest rate is ω + c/m.  Errors are relative to x(T), which damping has made e^(δT) times smaller than x₀.
 
     Both engines are symplectic Euler with the damper at one end of the step.  They err like our methods of order 1,
     and like those of order 2 if they start half a step ahead and no force depends on velocity.

@@ -1,4 +1,4 @@
-"""A stone thrown from a cliff, without air: most methods trace its parabola exactly, three miss it by ½ g h t."""
+"""A stone thrown from a cliff, without air: most methods trace its parabola exactly, three miss it by ½ g dt t."""
 
 from functools import cache
 from typing import Annotated, NamedTuple
@@ -81,7 +81,8 @@ DEPARTURES = {"pybullet, default": hidden_damping(acceleration, start)}
 def predicted_error(label, p, dt):
     """+½ g dt T ẑ with the old velocity, −½ g dt T ẑ with the new one, and zero for all others, to round-off.
 
-    pybullet's default body falls by its own law, with the new velocity: its table of numbers predicts the rest.
+    pybullet's default body falls by a law of its own.  The table of coefficients of its method, applied to that law,
+    predicts its error.
     """
     round_off = by_order(0.0, T, dt)[EXACT]
     if label in DEPARTURES:

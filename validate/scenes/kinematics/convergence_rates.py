@@ -106,8 +106,9 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """A central difference leaves δ²/6 times third derivatives, over σ₂: of the end up to 3√3 reach along a direction
-    of size 1, and of the step up to (1 + reach/σ₂)² times that; and a rounding of the end over 2 δ σ₂.
+    """A central difference is off by δ²/6 times a third derivative, over σ₂.  That of the end is at most 3√3 reach
+    along a direction of size 1, and that of the step at most (1 + reach/σ₂)² times as large.  A rounding of the end
+    over 2 δ σ₂ is added.
     """
     sigma, reach = directions(p)[1][1], p.l_1 + p.l_2 + p.l_3
     lost = 0.87 * reach / sigma * (MOVED * (1.0 + reach / sigma)) ** 2 + 2.0 * ROUND_OFF * reach / (MOVED * sigma)
@@ -116,8 +117,8 @@ def tolerance(p, dt):
 
 
 def predicted_error(label, p, dt):
-    """The difference over a finite way is taken of the same iteration, by complex numbers and other equations than the
-    lesson's.  What is left is a rounding of the end, here and there, over 2 δ σ₂.
+    """The prediction takes the same difference of the same iteration, by complex numbers and other equations than the
+    lesson's.  What is left is a rounding of the end, in both, over 2 δ σ₂.
     """
     target, lengths, (gain, damping) = end_of(ANGLES, lengths_of(p)), lengths_of(p), settings(p)
     if label == "pybullet":

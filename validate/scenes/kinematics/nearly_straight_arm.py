@@ -2,8 +2,8 @@
 
 A straight arm is a saddle.  A small bend grows in each iteration by a factor above 1 until the arm is free; the
 stability case about straight arms predicts the factors.  CCD does not even need a bend if the target lies behind its
-last joint: it turns that joint by π, whose sine is 1.2e-16 in floats, and what is left of the symmetry breaks.
-pybullet gives up after 20 iterations by default, when its bend is still small; more iterations and less damping help.
+last joint: it turns that joint by π, whose sine is 1.2e-16 in floats, and that breaks the symmetry.  pybullet gives up
+after 20 iterations by default, when its bend is still small; more iterations and less damping help.
 """
 
 from typing import Annotated, NamedTuple
@@ -79,7 +79,7 @@ def observe(state, p):
 
 
 def truth(p, t):
-    """Nothing: all these targets are within the ring that the arm reaches.
+    """The distance that is left is zero: all these targets are within the ring that the arm reaches.
 
     Source: the triangle's inequality; the longest link is shorter than the other two together.
     """
@@ -89,8 +89,8 @@ def truth(p, t):
 def tolerance(p, dt):
     """A search ends at 1e-8 of the reach.  pybullet, cured, ends after the iteration that began with 1e-8 m.
 
-    By default it follows its own law.  The steps of twenty iterations are rounded a few hundred times, and a bend of a
-    millionth carries on 1e-10 of itself.
+    By default it follows its own law.  Twenty iterations round a few hundred times, which changes a bend of a
+    millionth by 1e-10 of itself.
     """
     return {EXACT: ENOUGH, "pybullet, default": 1e-11}
 
@@ -146,7 +146,7 @@ SCENE = Scene(
     predicted_error=search_errors(searches, observe, lambda p: truth(p, 1.0), lambda label, p: ENOUGH),
     engines=ENGINES,
     expected_departures={"pybullet, default": Departure(
-        "20 iterations with its damping of ½ m² are few for a bend that small", default_law)},
+        "its 20 iterations with a damping of ½ m² are too few for so small a bend", default_law)},
     omitted_methods="pymunk has no inverse kinematics",
     quantity_names=quantity_names,
     points=points, links=lambda p: two_arms_and_target_links(3),

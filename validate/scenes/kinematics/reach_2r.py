@@ -191,11 +191,11 @@ SCENE = Scene(
                                   lambda label, p: tolerance(p, T).get(label, tolerance(p, T)[EXACT])),
     engines=ENGINES,
     expected_departures={"pybullet, default": Departure(
-        "its damping of ½ m² does not know how large the arm is, and it stops after 20 iterations or at 0.1 mm",
+        "its damping is ½ m² whatever the size of the arm, and it stops after 20 iterations or at 0.1 mm",
         default_law)},
     supports=supports,
-    omitted_methods="pymunk has no inverse kinematics; near the hole the pseudo-inverse is missing: σ₂ is small on its "
-                    "way there, so that it jumps about and does not arrive",
+    omitted_methods="pymunk has no inverse kinematics; near the hole the pseudo-inverse is missing, because σ₂ is "
+                    "small on the way there: it takes large jumps and does not arrive",
     quantity_names=quantity_names,
     published_states=((1.0, tuple(np.radians((30.0, 90.0, 120.0, -90.0))), 5e-4),),
     sanity_checks=sanity_checks,

@@ -1,8 +1,9 @@
 """Three links, a place and a direction: as many conditions as joints, so that again there are two answers.
 
-The closed form puts the last joint where the direction wants it and solves the other two.  The damped step does the
-same by a Jacobian with a third row.  pybullet accepts a direction, too, but it looks at the place only when it decides
-whether it is done.
+The closed form puts the last joint where the direction requires it, and solves for the other two.  The damped step
+does the
+same by a Jacobian with a third row.  pybullet accepts a direction, too, but decides by the place alone whether it is
+done.
 """
 
 from typing import Annotated, NamedTuple
@@ -115,9 +116,9 @@ def tolerance(p, dt):
 
     The closed form: a few roundings of lengths and angles, over σ₃, here as in the truth.
 
-    pybullet, cured, knows no missing rotation below 2 arccos(1 − 1.1e-16) = 3e-8 rad.  By default it follows its own
-    law.  Where its angle is known too little to tell to which float of 32 bits it is rounded, an iteration is off by
-    the spacing of those, in the iterations where that can happen.
+    pybullet, cured, sees no missing rotation below 2 arccos(1 − 1.1e-16) = 3e-8 rad.  By default it follows its own
+    law.  Where its angle is not known well enough to tell to which 32-bit float it is rounded, that iteration may be
+    off by the spacing of such floats.
     """
     over = np.sqrt(2.0) / smallest_singular_value(p) / np.linalg.norm(truth(p, T))
     size = 1.0 + p.l_1 + p.l_2 + p.l_3
@@ -196,8 +197,8 @@ SCENE = Scene(
     predicted_error=search_errors(searches, turned_by, lambda p: truth(p, T), lambda label, p: tolerance(p, T)[EXACT]),
     engines=ENGINES,
     expected_departures={"pybullet, default": Departure(
-        "it stops by its place alone, at 0.1 mm or after 20 iterations, and its damping of ½ does not know the size of "
-        "the arm", default_law)},
+        "it stops at 0.1 mm from the place, whatever the direction, or after 20 iterations, and its damping is ½ "
+        "whatever the size of the arm", default_law)},
     omitted_methods="CCD and FABRIK have no direction; pymunk has no inverse kinematics",
     quantity_names=quantity_names,
     published_states=((1.0, (0.0, 0.5 * np.pi, -0.5 * np.pi, 2.0 * np.arctan2(2.0, 3.0), -0.5 * np.pi,

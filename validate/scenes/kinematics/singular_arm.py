@@ -1,8 +1,8 @@
 """A straight arm and a target on its axis: who finds out how to bend?  Nobody.
 
-The end cannot move along a straight arm: Jᵀe = 0, although e is not.  Every method that asks the Jacobian stays where
-it is, for ever.  Every joint points at the target already, so that CCD has nothing to do, and projections along the
-line stay on the line.  A millionth of a radian at the start saves them all: see the nearly straight arm.
+The end cannot move along a straight arm: Jᵀe = 0, although e is not zero.  Every method that uses the Jacobian stays
+where it is, for ever.  Every joint points at the target already, so that CCD has nothing to do, and projections along
+the line stay on the line.  A millionth of a radian at the start saves them all: see the nearly straight arm.
 """
 
 from typing import Annotated, NamedTuple
@@ -57,7 +57,7 @@ def observe(state, p):
 
 
 def truth(p, t):
-    """Nothing and nothing: both targets are within the ring that the arm reaches.
+    """The distance that is left is zero: both targets are within the ring that the arm reaches.
 
     Source: the triangle's inequality; the longest link is shorter than the other two together.
     """

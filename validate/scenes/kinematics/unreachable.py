@@ -94,8 +94,8 @@ def truth(p, t):
 def tolerance(p, dt):
     """½|e|² has the second derivatives  H = JᵀJ + S,  S_ik = −e · ∂²x/∂θ_i∂θ_k,  and |S| ≤ 3 |e| reach.  The gain is
     below 1/|H|.  A damped step multiplies small errors by  1 − (JᵀJ + λ²)⁻¹ H,  whose size is below 1 for λ² > ½|S|,
-    and here λ² = ½ · 3 |e| reach.  So both come to rest, and 3,000 iterations leave round-off of them: some dozen
-    roundings of the angles move the end aside.
+    and here λ² = ½ · 3 |e| reach.  So both come to rest, and after 3,000 iterations only round-off is left: some dozen
+    roundings of the angles, which move the end.
 
     CCD and FABRIK have no such theory here, and by default pybullet follows its own law: ten times what was measured.
     """
@@ -160,7 +160,7 @@ SCENE = Scene(
     engines=ENGINES,
     supports=supports,
     expected_departures={"pybullet, default": Departure(
-        "its damping of ½ m² does not know the size of the arm and the distance, and it stops after 20 iterations",
+        "its damping is ½ m² whatever the size of the arm and the distance, and it stops after 20 iterations",
         default_law)},
     omitted_methods="the pseudo-inverse is missing: at the edge of the ring the arm is straight, its steps grow "
                     "without bound, and it never comes to rest; the transpose is left out where it needs more than "

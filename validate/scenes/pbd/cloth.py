@@ -74,8 +74,8 @@ def observe(state, p):
 def truth(p, t):
     """Springs of stiffness 1/α, observed at every point.
 
-    Released flat: moved by DOP853 with separately coded forces.  At rest: the least energy by a sparse Newton
-    method, which does not move.
+    Released flat: moved by DOP853 with separately coded forces.  At rest: the shape of least energy, by a sparse
+    Newton method; it does not move.
     """
     return rest(p).ravel() if p.hanging else reference(p).sol(t)[:3 * p.n**2]
 
@@ -97,8 +97,8 @@ def tolerance(p, dt):
     With short steps, dt² < α m, the links of a cloth barely interact within a sweep.  XPBD then has the error of
     implicit Euler, its lag times dt.  The limit is twice that, because the next order is smaller where this one is
     below ½.  With longer steps a single sweep does not reach the end of the cloth.  A link is then too long by the
-    distance that its tension moves a point in one step: at a corner n²/2 points with g dt² each; n links may hang
-    on it.
+    distance that its tension moves a point in one step.  At a corner that is g dt² for each of n²/2 points; n links
+    may hang on it.
     """
     floor, size = by_order(0.0, T, dt)[1] + UNCERTAINTY, np.linalg.norm(truth(p, T)) / p.n
     soft = 0.5 * p.n**3 * p.g * dt**2 / size
@@ -159,8 +159,8 @@ SCENE = Scene(
     truth=truth, truth_uncertainty=UNCERTAINTY,
     tolerance=tolerance,
     engines=ENGINES,
-    omitted_methods=("PBD has no stiffness of its own to compare (stability case stiffness-depends-on-dt), "
-                     "and Newton's matrix would be dense, with 2,682 unknowns"),
+    omitted_methods=("PBD has no stiffness of its own to compare (stability case stiffness-depends-on-dt); the methods "
+                     "that solve for all links at once would have a dense matrix, with 2,682 unknowns"),
     sanity_checks=sanity_checks,
     points=points, links=links,
     uses=("three coordinates", "links, in sequence", "one step function"),

@@ -103,8 +103,9 @@ def mujoco_make(integrator):
 
 
 def by_bullet(label, p, dt):
-    """pybullet's bob moves by symplectic Euler, and its joint takes back in each step what the last one has opened: its
-    own step, written out.  What its sweeps and roundings leave, 1e-15 of a velocity, grows as a pendulum's errors do.
+    """pybullet's bob moves by symplectic Euler, and in each step its joint closes what the last step has opened.  The
+    prediction is this step, written out.  Sweeps and roundings leave 1e-15 of a velocity, which grows as a pendulum's
+    errors do.
     """
     if label != "pybullet":
         return None
@@ -174,8 +175,8 @@ SCENE = Scene(
     engines=ENGINES,
     expected_departures={
         "pybullet": Departure(
-            (f"there our bob must have a moment of inertia, because its solver sweeps over three axes: with {SHARE} "
-             "mL² it turns with the string"),
+            (f"its solver, which sweeps over three axes, needs a bob with a moment of inertia. It has {SHARE} mL² "
+             f"and turns with the string, so that it falls as if gravity were g/{1.0 + SHARE:g}"),
             with_inertia,
         )
     },

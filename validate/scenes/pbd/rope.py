@@ -186,8 +186,8 @@ SCENE = Scene(
     engines=ENGINES,
     expected_departures={
         "pybullet": Departure(
-            ("there our points must have a moment of inertia, because its solver sweeps over three axes: with "
-             f"{SHARE} m l² each turns with the link above it"),
+            ("its solver, which sweeps over three axes, needs points with a moment of inertia. Each has "
+             f"{SHARE} m l² and turns with the link above it, so that the rope falls a little more slowly"),
             of_bodies,
         )
     },

@@ -92,8 +92,9 @@ SHARES = {"the lecture's loop": 1.0, "pybullet": 1.0, "pybullet, reduced coordin
 def predicted_error(label, p, dt):
     """Both velocities are exact at every step, but the ball moves with the new one, the old one or their mean.
 
-    The rectangle rule, or the trapezoidal one, says where that ends: too early with the new velocity.  pybullet in
-    maximal coordinates has the moment of its sphere in the first step, 2/5 mR², and then the one that it is given.
+    The rectangle rule, or the trapezoidal one, predicts where the ball ends: too early with the new velocity.  In its
+    first step pybullet, in maximal coordinates, uses the moment of its own sphere, 2/5 mR², and from then on the one
+    that it is given.
     """
     more = p.mu * p.g * dt * (p.shape / SPHERE - 1.0) if label == "pybullet" else 0.0
     rolling = (p.v0 + more) / (1.0 + p.shape)

@@ -85,7 +85,7 @@ def tolerance(p, dt):
     exact, though an engine's friction may act for one step more or less: another μg dt².
     With mean velocities only that one step is inexact: by ½ μg s (dt − s), where s is the time in it at which rolling
     begins.  That is ⅛ μg dt² at most, but no fixed share of dt²: the order that a sweep shows depends on s.
-    Cut there, no step is inexact.
+    A method that cuts its step there has no inexact step.
     """
     brake, size = p.mu * p.g, np.linalg.norm(truth(p, T))
     rounded = (1e-12 + T / dt * ROUND_OFF) * max(1.0, (abs(p.v0) + abs(p.rim0)) / size)
@@ -101,9 +101,9 @@ SHARES = {"the lecture's loop": 1.0, "mean velocities": 0.5}      # of the new v
 def predicted_error(label, p, dt):
     """The rectangle rule with the new velocity, or the trapezoidal one: velocities are exact at every step.
 
-    Zero where a step is cut at the event.  pybullet is our first loop, but in the first step it has the moment of its
-    sphere, 2/5 mR²: the rim gains more there.  pymunk moves with the old velocity.  The overlap with which both begin
-    is their band.
+    A step that is cut at the event has no error.  pybullet does as our first loop does, but in the first step it uses
+    the moment of its own sphere, 2/5 mR², so that the rim gains more there.  pymunk moves with the old velocity.  The
+    overlap with which both begin is their band.
     """
     gain = p.mu * p.g * dt * (1.0 / SPHERE - 1.0 / p.shape) if label == "pybullet" else 0.0
     rolls = rolls_from(p) - gain / (p.mu * p.g * (1.0 + 1.0 / p.shape))

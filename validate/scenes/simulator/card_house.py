@@ -122,7 +122,7 @@ def truth(p, t):
     """Rough enough, it stands: nothing moves.  By symmetry the cards of a tent push each other horizontally.  Their
     contact has the normal of a face, which leans by θ: μ ≥ tan θ.  The feet need less.
 
-    Too smooth, it falls, and nobody knows how: the picture shows pymunk with 6,000 steps per second.
+    Too smooth, it falls, and no theory says how; the picture shows pymunk with 6,000 steps per second.
     """
     if p.rough > 1.0 or t == 0.0:
         return corners(*house(p))
@@ -131,12 +131,13 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """What stands: in the first steps the loop does not know the forces.  60 sweeps leave ρ⁶⁰ of g dt, with
-    ρ = cos²(π/14) for seven bodies in a row at the worst, and memory takes as much of the rest in each further step:
-    g dt² ρ⁶⁰/(1 − ρ⁶⁰) altogether.  A corner of a card that leans by θ moves 1/sin θ as far.  Where that is more than
-    MARGIN in the first step, memory does not know the contact again: no limit is known.
+    """A house that stands: at first the loop does not have the forces.  60 sweeps leave ρ⁶⁰ of g dt, with ρ =
+    cos²(π/14) in the worst case, seven bodies in a row.  Each further step starts warm and leaves the same share of
+    the rest: g dt² ρ⁶⁰/(1 − ρ⁶⁰) altogether.  A corner of a card that leans by θ moves 1/sin θ as far.  Where that is
+    more than MARGIN in the first step, the warm start does not recognise the contact: no limit is known.
 
-    What falls: no theory says how far two runs differ.  Nor does it for pymunk, in which contacts must overlap first.
+    A house that falls: no theory says how far two runs differ.  Nor does any for pymunk, in which contacts must
+    overlap first.
     """
     left = np.cos(np.pi / 14.0) ** (2 * SWEEPS)
     first = p.g * dt**2 * left / np.sin(lean(p))
@@ -201,7 +202,7 @@ SCENE = Scene(
     slow_runs={"too smooth": ("contact_step_2d",)},          # what falls wants short steps, and nothing judges it
     uncompiled_in_quick=("contact_step_2d",),
     shorter_in_quick={"contact_step_2d": 60},
-    omitted_methods="pybullet: the house was not set up in it",
+    omitted_methods="the house was not set up in pybullet",
     sanity_checks=sanity_checks,
     points=points, links=links,
     uses=("boxes in the plane", "friction that holds", "sweeps with memory"),

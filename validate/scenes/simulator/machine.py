@@ -167,17 +167,19 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """energy: symplectic Euler lets the energy of the spring swing by ½ ω dt of itself to both sides, ω² = k/m; the
-    spring can have what the hammer begins with.  Everything else takes energy, or is counted as work of the supports.
+    """energy: under symplectic Euler the energy of the spring swings by ½ ω dt of itself to both sides, ω² = k/m; at
+    most it is the energy with which the hammer begins.  Everything else takes energy, or is counted as work of the
+    supports.
 
-    overlap: a contact knows its tangent, and a corner that turns moves on an arc: in a step it gets ½ v ω dt² inside,
-    and nothing pushes it back.  Until it has turned by a right angle that is ½ v π/2 dt, with the speed v of a fall
-    from the highest place, 0.75 m.
+    overlap: a step moves a corner along a tangent, but a corner that turns moves on an arc.  Per step it gets ½ v ω
+    dt² inside, and nothing pushes it back.  Until it has turned by a right angle that adds up to ½ v π/2 dt, with the
+    speed v of a fall from the highest place, 0.75 m.
 
     residual: the blow of the hammer runs through five dominoes to the floor: six contacts in a row.  Each sweep leaves
     cos²(π/12) of it.
 
-    places: the order in which dominoes and crates come to rest decides where; no theory says how far two runs differ.
+    places: where dominoes and crates end depends on the order in which they come to rest; no theory says how far two
+    runs differ.
     """
     omega, v = np.sqrt(SPRING / MASS[HAMMER]), np.sqrt(2.0 * p.g * PLACES[:, 1].max())
     limits = {"places": np.inf, "energy": omega * dt, "overlap": 0.25 * np.pi * v * dt / THICK,
@@ -250,8 +252,8 @@ SCENE = Scene(
     slow_runs={"places": ("contact_step_2d",)},              # it wants shorter steps than that, and nothing judges it
     uncompiled_in_quick=("contact_step_2d",),
     shorter_in_quick={"contact_step_2d": 120},
-    omitted_methods="pybullet: belt and crank are bodies of no mass that carry others along, which only its reduced "
-                    "coordinates know; the machine was not set up in it",
+    omitted_methods="the machine was not set up in pybullet: its belt and its crank are bodies without mass that carry "
+                    "others along, which pybullet has only in reduced coordinates",
     sanity_checks=sanity_checks,
     points=points, links=links,
     uses=("boxes in the plane", "springs with dampers, air", "supports that move", "sweeps with memory"),

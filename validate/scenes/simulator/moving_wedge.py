@@ -98,11 +98,11 @@ def truth(p, t):
 def tolerance(p, dt):
     """Positions with the new velocities are late by ½ a dt T, with the old ones early by that; velocities are exact.
 
-    Ours: 25 sweeps leave 1e-7 of an impulse in the first step, and memory has the rest.
-    pymunk: both overlaps, and what 100 iterations leave in the first step, which they begin from nothing.
-    pybullet: the same lateness, a hundredth more for contacts that begin without overlap, while the block moves by less
-    than a half of its half size in a step: beyond, it leaves the points behind that carry it.  In maximal coordinates
-    the wedge, which stands on its edge, sinks by some dt, and no theory says how far.
+    Ours: 25 sweeps leave 1e-7 of an impulse in the first step, and later steps, which start warm, find the rest.
+    pymunk: both overlaps, and what 100 iterations leave in the first step, which has no warm start.
+    pybullet: the same lateness, and a hundredth more for contacts that begin without overlap.  This holds while the
+    block moves by less than a half of its half size per step; with longer steps it leaves behind the points that carry
+    it.  In maximal coordinates the wedge, which stands on its edge, sinks by some dt, and no theory says how far.
     """
     size = np.linalg.norm(truth(p, T))
     late = 0.5 * np.linalg.norm(accelerations(p)) * dt * T / size
@@ -116,7 +116,7 @@ def tolerance(p, dt):
 def predicted_error(label, p, dt):
     """+½ a dt T in the positions with the new velocities, −½ a dt T with pymunk's old ones, and nothing in velocities.
 
-    The band is what the solvers leave: the rest of `tolerance`.  For pybullet that is all that is asked.
+    The band is what the solvers leave: the rest of `tolerance`.  pybullet is judged by `tolerance` alone.
     """
     sign = {LOOP_2D.label: 1.0, "pymunk": -1.0}.get(label)
     if sign is None:

@@ -103,10 +103,10 @@ def tolerance(p, dt):
     """Let P² = 3 g/4R.  Errors grow as cosh(P t), in the fall and after the impact.
 
     The whole loop and the engines find the corner up to dt late.  In that time the angular acceleration has the wrong
-    sign: 2 P² sin α dt.  Before, velocities are new ones in positions:
-    dt/2 P² sin α; the pivot moves up by ½ ω² dt² per step and is set down again, another ½ ω² dt of the rate.  Then
-    cosh(P T) of all that, at the most.
-    A cut step has the error of Runge–Kutta 4, (P dt)⁴ P T/120 of the rate, and round-off.
+    sign: 2 P² sin α dt.  Before the impact positions use the new velocities:
+    dt/2 P² sin α.  The pivot moves up by ½ ω² dt² per step and is set down again, another ½ ω² dt of the rate.  All
+    that grows by cosh(P T) at the most.  A cut step has the error of Runge–Kutta 4, (P dt)⁴ P T/120 of the rate, and
+    round-off.
     """
     P2 = 0.75 * p.g / np.hypot(p.b, p.h)
     P, sine = np.sqrt(P2), np.sin(alpha(p))

@@ -94,12 +94,12 @@ def observe(state, p):
 def truth(p, t):
     """With gaps: pendulums by DOP853 until a gap closes; there the impulse along the normal, with e = 1.
 
-    Each impact passes the rate on, but for the squares of the angles, since equal levers mean equal masses: the last
+    Equal levers act like equal masses.  So each impact passes the rate on, up to squares of the angles, and the last
     ball leaves alone.  Source: Newton; Herrmann and Schmälzle 1981.
-    Touching balls collide at once, and for five rates there are two laws only: momentum and energy.  Gravity turns the
-    sum of small angles as if all were one pendulum, whoever moves, so that the sums are those of one pendulum that
-    swings through.  (Who leaves is a choice: Moreau's law in our loop gives (−0.26, 0, 0, 0.51, 0.51) rad/s with 400
-    steps, and something else where rounding closes one of the contacts a step later.)
+    Touching balls collide at the same time, and five rates have only two conditions: momentum and energy.  For small
+    angles gravity acts on the sum of the angles as on one pendulum, whichever ball moves: the sums are those of one
+    pendulum that swings through.  (Which balls leave depends on the law of impact: Moreau's in our loop gives (−0.26,
+    0, 0, 0.51, 0.51) rad/s with 400 steps, and another result where rounding closes one of the contacts a step later.)
     """
     if p.gap > 0.0:
         return np.concatenate(cradle_motion(*of(p), t)[:2])
@@ -113,13 +113,13 @@ def of(p):
 
 
 def tolerance(p, dt):
-    """Velocities are new ones in positions: half a step of the swing, ½ dt.  Each of four impacts (four for each ball
-    that swings) is found up to one step late, and so is everything after it.  Late by s, an angle is off by ω s and a
-    rate by w² sin(angle) s, with w² = g/L; a ball that has stopped went up to ω dt too far.  A step in which a ball
-    crosses half of a gap merges two impacts; then there is no bound.
+    """Positions use the new velocities, which costs half a step of the swing, ½ dt.  Each of four impacts (four for
+    each ball that swings) is found up to one step late, and so is everything after it.  Late by s, an angle is off by
+    ω s and a rate by w² sin(angle) s, with w² = g/L; a ball that has stopped went up to ω dt too far.  A step in which
+    a ball crosses half of a gap merges two impacts; then there is no bound.
 
-    Touching balls keep the sums; a late impact of a ball inside the next one does not change them.  Half of a step of
-    the swing is left, and in five angles of up to 0.3 the cubes, which gravity sees: 5 · angle³/6 · w² T at most.
+    Touching balls keep the sums; a late impact of a ball inside the next one does not change them.  What is left is
+    half a step of the swing, and the cubes in the sines of five angles of up to 0.3: 5 · angle³/6 · w² T at most.
     """
     w2, size = p.g / p.L, np.linalg.norm(truth(p, T))
     fastest = 2.0 * np.sqrt(w2) * np.sin(0.5 * p.angle)

@@ -1,6 +1,6 @@
 """A ball rolls on a turntable.  It does not fly off: it moves on a circle, at 2/7 of the table's angular velocity.
 
-A step that takes the velocity of the table where the ball was spirals outwards, in our loop as in an engine.
+If a step takes the table's velocity where the ball was, the ball spirals outwards, in our loop as in an engine.
 """
 
 from typing import Annotated, NamedTuple
@@ -91,12 +91,13 @@ def truth(p, t):
 
 
 def tolerance(p, dt):
-    """Adams and Bashforth's method leaves 5/12 (w dt)³ of v per step and the mean velocity 1/12: ½ T w² dt² |v| of the
-    place, w times that of the velocity; a fifth more for the next order, with w dt up to 0.2.
+    """Per step, Adams and Bashforth's method leaves 5/12 (w dt)³ of v and the mean velocity 1/12 (w dt)³.  In all, the
+    place is off by ½ T w² dt² |v| and the velocity by w times that; a fifth more for the next order, with w dt up to
+    0.2.
 
-    A floor that is where the ball was makes it Euler's method: |v| grows by ½ w² dt per second.  That is ½ T w dt |v|
-    of the place and w times that of the velocity.  It also begins one step late: dt |v|, and w dt |v|.  Positions with
-    the new velocities are another dt |v| at most.
+    With the floor's velocity where the ball was, the step is Euler's method: |v| grows by the share ½ w² dt per
+    second.  The place is then off by ½ T w dt |v|, and the velocity by w times that.  It also begins one step late:
+    another dt |v| of the place, and w dt |v| of the velocity.  Moving with the new velocities adds dt |v| at most.
     """
     w, size = rate(p), np.linalg.norm(truth(p, T))
     v = abs(p.v0) / size
@@ -107,11 +108,12 @@ def tolerance(p, dt):
 
 
 def predicted_error(label, p, dt):
-    """While it rolls, a step adds  i w (f − f_before)  to v, complex, where f is the place whose floor it takes and
-    w = c/(1 + c) Ω: a linear recursion of x, v and f_before.  The carried step takes the floor at  x + dt v  and moves
-    by the mean velocity; the loop takes it at x and moves by the new one.  Of a change of slip, |Ω| |v| dt, the loop's
-    sweeps leave 2⁻²⁰ to the next step.  pybullet does as the loop does, but by a contact point that it keeps for some
-    steps, a law that is not derived here: it has its tolerance only.
+    """While it rolls, a step adds  i w (f − f_before)  to v, a complex number, where f is the place at which it takes
+    the floor's velocity and w = c/(1 + c) Ω: a linear recursion of x, v and f_before.  The carried step takes the
+    floor at  x + dt v  and moves by the mean velocity; the loop takes it at x and moves by the new one.  The loop's
+    sweeps leave 2⁻²⁰ of a change of slip, |Ω| |v| dt, to the next step.  pybullet does as the loop does, but with a
+    contact point that it keeps for some steps.  That law is not derived here, so pybullet is judged by its tolerance
+    only.
     """
     if label not in ("the floor ahead", "the whole loop"):
         return None
@@ -199,7 +201,7 @@ SCENE = Scene(
     uncompiled_in_quick=("carried_step",),
     slow_methods=("contact_step",),
     slow_cases=("hollow ball",),
-    omitted_methods="pymunk has no floor that one sees from above",
+    omitted_methods="pymunk is planar: seen from above, it has no floor under the ball",
     sanity_checks=sanity_checks,
     points=points, links=links,
     bodies=bodies, poses=poses,
