@@ -12,7 +12,6 @@ from validate.scene import EngineRun
 OVERLAP = 1e-6               # with which pymunk's bodies begin [m]: it sees a contact when there is one
 HEAVY = 1e9                  # mass of pybullet's turntable over that of the ball [-]: it falls by 1e-7 m in 5 s
 WIDE = 1e12                  # moment of inertia of pybullet's wedge, which cannot turn [kg m²]
-ERP = 0.08                   # share of an overlap that a contact of pybullet's takes back in a step [-]
 ITERATIONS = 100             # of both engines' contact solvers
 
 

@@ -11,8 +11,9 @@ import numpy as np
 from solutions.checks import check_positive
 from solutions.simulator import advance_contact, box_bounds_2d, box_contacts_2d, make_bodies_2d
 from solutions.simulator import weight as acceleration
+from validate.engines.bullet import CONTACT_ERP
 from validate.engines.chipmunk import pymunk_world
-from validate.engines.simulator import ERP, OVERLAP, WIDE, pybullet_wedge, pymunk_body, pymunk_floor_space
+from validate.engines.simulator import OVERLAP, WIDE, pybullet_wedge, pymunk_body, pymunk_floor_space
 from validate.methods import LOOP_2D
 from validate.reference.simulator import wedge_pushed_out
 from validate.scene import PYBULLET, PYMUNK, ROUND_OFF, Engine, Prediction, Scene
@@ -108,7 +109,7 @@ def tolerance(p, dt):
     size = np.linalg.norm(truth(p, T))
     late = 0.5 * np.linalg.norm(accelerations(p)) * dt * T / size
     engine = 1.001 * late + 2.0 * OVERLAP / size + 1e-3 * dt
-    pushed = late + (4.0 + 2.0 * ERP / dt) * OVERLAP / size + turned(p) if carried(p, dt) else np.inf
+    pushed = late + (4.0 + 2.0 * CONTACT_ERP / dt) * OVERLAP / size + turned(p) if carried(p, dt) else np.inf
     return {1: 1.001 * late + 1e-7 * dt / T + 1e-9 + T / dt * ROUND_OFF, "pymunk": engine,
             "pybullet": pushed, "pybullet, maximal coordinates": pushed}
 
@@ -140,7 +141,7 @@ def predicted_error(label, p, dt):
     if sign is None:
         if not carried(p, dt):
             return None
-        way, v = wedge_pushed_out((p.M, p.m), slope(p), p.g, OVERLAP, ERP, dt, round(T / dt))
+        way, v = wedge_pushed_out((p.M, p.m), slope(p), p.g, OVERLAP, CONTACT_ERP, dt, round(T / dt))
         begin = places(p) - np.array([(0.0, OVERLAP)]) - np.outer((0.0, OVERLAP), normal(p))
         return Prediction(np.delete(np.concatenate((begin.ravel() + way, v)), (1, 5)) - truth(p, T),
                           turned(p) + 1e-14 + T / dt * ROUND_OFF)
