@@ -628,6 +628,13 @@ def one_step(lesson):
             new_q, new_L = getattr(lesson, name)(torque, t, q, L, dt, body)
             errors.note(name, (quaternion_matrix(*new_q), new_L), steps[name])
 
+        # a symmetric body turns about L and about its axis, both at once and exactly
+        k, sides = int(rng.integers(3)), np.full(3, I[0])
+        sides[k] = I[1]
+        own = about(np.eye(3)[k], dt * (1.0 / I[1] - 1.0 / I[0]) * (R.T @ L)[k])
+        turned = quaternion_matrix(*lesson.splitting_free_rotation(q, L, sides, dt))
+        parts.note("symmetric", turned, turned_by(dt / I[0] * L) @ R @ own)
+
         # the three updates by themselves: forwards, backwards, and slowly
         for w, h in ((L, dt), (L, -dt), (1e-5 * L, dt)):
             parts.note("update", lesson.matrix_update(R, w, h), gram_schmidt(R + h * cross_matrix(w) @ R))
@@ -656,6 +663,7 @@ def one_step(lesson):
         parts.keep("velocity", np.max(np.abs(lesson.point_velocity(v, L, r) - v - np.cross(L, r))),
                    np.max(np.abs(lesson.skew(L) - cross_matrix(L))))
     claims = (("update", "Each update turns by its own law: forwards, backwards, and slowly.", "orientation [-]"),
+              ("symmetric", "Splitting is exact for a symmetric body.", "orientation of a symmetric body [-]"),
               ("history", "Many steps are single steps, each at its own time.", "history [s, -, kg m²/s]"),
               ("product", "A product of quaternions is the product of their matrices.", "matrix [-]"),
               ("energy", "The energy of rotation is ½ L · I⁻¹ L in the world.", "energy [J]"),
