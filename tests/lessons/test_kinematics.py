@@ -157,10 +157,12 @@ def test_the_ellipse_has_the_singular_values_as_half_axes(lesson, draw):
     for n in (2, draw.whole(3, 6)):
         sigma = draw(1.5, 3.0), draw(0.3, 1.2)
         J, u = with_singular_values(draw, sigma, n)
-        longer, shorter, angle = lesson.velocity_ellipse(J)
-        close("half axes of the ellipse [m]", (longer, shorter), sigma, ROUND_OFF, given=f"J = {J}")
-        close("sine of the angle from the longer axis [-]", u[0, 0] * np.sin(angle) - u[1, 0] * np.cos(angle), 0.0,
-              ROUND_OFF, given=f"J = {J}")
+        for mirror in (1.0, -1.0):                                       # the longer axis points upwards, and downwards
+            mirrored, y = J * [[1.0], [mirror]], mirror * u[1, 0]
+            longer, shorter, angle = lesson.velocity_ellipse(mirrored)
+            close("half axes of the ellipse [m]", (longer, shorter), sigma, ROUND_OFF, given=f"J = {mirrored}")
+            close("sine of the angle from the longer axis [-]", u[0, 0] * np.sin(angle) - y * np.cos(angle), 0.0,
+                  ROUND_OFF, given=f"J = {mirrored}")
 
 
 @exercise("11.3", points=0.5,
@@ -201,10 +203,11 @@ def test_both_elbows_reach_the_target(lesson, draw):
 @exercise("11.4", points=0.5,
           hint="at both edges of the reach there is one answer; beyond them BadInput, with the distance")
 def test_the_edges_of_the_reach_are_reached_and_nothing_beyond(lesson, draw):
-    for _ in range(4):
-        lengths, bearing = np.array([draw(1.2, 2.0), draw(0.5, 1.1)]), draw(-3.0, 3.0)
+    for k in range(4):
+        long, short, bearing = draw(1.2, 2.0), draw(0.5, 1.1), draw(-3.0, 3.0)
+        lengths = np.array([short, long] if k % 2 else [long, short])    # either may be the longer one
         way = np.array([np.cos(bearing), np.sin(bearing)])
-        most, least = lengths.sum(), lengths[0] - lengths[1]
+        most, least = long + short, long - short
         for edge in (most, least):
             theta = np.asarray(lesson.solve_2r(edge * way, lengths, 1.0))
             close("end of the arm at the edge of its reach [m]", joints(theta, lengths)[-1], edge * way, SOLVED,
@@ -338,12 +341,14 @@ def test_small_and_large_angles_keep_their_digits(lesson, draw):
 @exercise("11.9", points=0.5, hint="θ + α Jᵀ e; e @ J is Jᵀ e")
 def test_a_transpose_step_goes_down_the_gradient(lesson, draw):
     n = draw.whole(2, 6)
-    lengths, theta, target, gain = lengths_of(draw, n), bent(draw, n), draw(-2.0, 2.0, 2), draw(0.05, 0.5)
-    half_square = lambda angles: 0.5 * np.sum((target - joints(angles, lengths)[-1]) ** 2)
-    slope = [0.5 * (half_square(theta + d) - half_square(theta - d)) / DIFFERENCE for d in DIFFERENCE * np.eye(n)]
-    got = lesson.transpose_step(reach, theta, target, arm_of(lesson, lengths, gain=gain))
-    close("change of θ over the gain [-]", (np.asarray(got) - theta) / gain, -np.array(slope), 1e-6,
-          given=f"θ = {theta}, target {target} m, α = {gain}")
+    lengths, theta, gain, bearing = lengths_of(draw, n), bent(draw, n), draw(0.05, 0.5), draw(-3.0, 3.0)
+    for away in (draw(0.1, 1.0), draw(2.0, 4.0)):                        # near, and so far that a cautious step shows
+        target = joints(theta, lengths)[-1] + away * np.array([np.cos(bearing), np.sin(bearing)])
+        half_square = lambda angles, target=target: 0.5 * np.sum((target - joints(angles, lengths)[-1]) ** 2)
+        slope = [0.5 * (half_square(theta + d) - half_square(theta - d)) / DIFFERENCE for d in DIFFERENCE * np.eye(n)]
+        got = lesson.transpose_step(reach, theta, target, arm_of(lesson, lengths, gain=gain))
+        close("change of θ over the gain [-]", (np.asarray(got) - theta) / gain, -np.array(slope), 1e-6,
+              given=f"θ = {theta}, target {target} m, α = {gain}")
 
 
 @exercise("11.9", points=0.5,

@@ -272,13 +272,18 @@ def gaps(x, half, planes, movable):
 
 
 def crowd(draw, lesson, d, margin):
-    """(x, half, planes, Bodies): ten round bodies of which three cannot move, and two planes."""
+    """(x, half, planes, Bodies): ten round bodies of which three cannot move, and three planes.
+
+    The last plane is a ceiling, and body 0 is below it, at a part of the margin.
+    """
     n = 10
     x, half = draw(0.0, 2.0, (n, d)), np.repeat(draw(0.2, 0.5, (n, 1)), d, axis=1)
-    planes = np.stack([np.append(unit_vector(draw, d), draw(-0.5, 0.5)) for _ in range(2)])
-    inv_mass = np.append(draw(0.5, 2.0, 7), np.zeros(5))
+    x[0, -1] = 1.5 - half[0, 0] - draw(0.3, 0.9) * margin
+    planes = np.stack([np.append(unit_vector(draw, d), draw(-0.5, 0.5)) for _ in range(2)]
+                      + [np.append(-np.eye(d)[-1], 1.5)])
+    inv_mass = np.append(draw(0.5, 2.0, 7), np.zeros(6))
     inv_inertia = inv_mass if d == 2 else np.repeat(inv_mass[:, None], 3, axis=1)
-    return np.vstack((x, np.zeros((2, d)))), half, planes, bodies_of(lesson, inv_mass, inv_inertia, half, planes,
+    return np.vstack((x, np.zeros((3, d)))), half, planes, bodies_of(lesson, inv_mass, inv_inertia, half, planes,
                                                                      margin=margin)
 
 
@@ -346,7 +351,27 @@ def test_a_disc_rolls_down_a_slope_or_slides(lesson, draw):
         close("angle of a disc on a slope [rad]", np.asarray(end.q)[0], 0.5 * turns * n * dt * (1.0 + 1.0 / n), MANY)
 
 
-@exercise("10.6", points=0.5, hint="aim = closing_speeds(gap, dt): bodies may close their gap, but not more")
+@pytest.mark.counts_calls                                            # boxes would be compiled anew, for seconds
+@exercise("10.6", points=0.25, hint="bounds(x, q, half): detection takes the bodies as they are turned")
+def test_a_box_comes_down_on_its_lowest_corner(lesson, draw):
+    """The corner at r from the centre stops: j = −v_y/(1/m + r_x²/I)."""
+    m, I, fall, half = draw(0.5, 2.0), draw(0.02, 0.1), draw(0.5, 2.0), np.array([0.3, 0.2])
+    for turn in (draw(0.3, 1.2), draw(-1.2, -0.3)):
+        corners = np.array([(a, b) for a in (-1.0, 1.0) for b in (-1.0, 1.0)]) * half
+        corners = corners @ np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
+        r = corners[np.argmin(corners[:, 1])]
+        state, p = made(lesson, [(0.0, -r[1])], m, [I], [half], [(0.0, 1.0, 0.0)], 0.0, 1, 0.01)
+        state = state._replace(q=np.array([turn, 0.0]), v=np.array([(0.0, -fall), (0.0, 0.0)]))
+        end = lesson.contact_step_2d(lambda t, x, q, v, omega, p: (0.0 * x, 0.0 * omega), lesson.box_bounds_2d,
+                                     lesson.box_contacts_2d, T_0, state, 0.005, p)
+        j = fall / (1.0 / m + r[0] ** 2 / I)
+        given = f"turned by {turn} rad, {fall} m/s"
+        close("velocity of a box that comes down on a corner [m/s]", np.asarray(end.v)[0], (0.0, j / m - fall), MANY,
+              given=given)
+        close("its angular velocity [rad/s]", np.asarray(end.omega)[0], r[0] * j / I, MANY, given=given)
+
+
+@exercise("10.6", points=0.25, hint="aim = closing_speeds(gap, dt): bodies may close their gap, but not more")
 def test_a_falling_disc_stops_on_the_surface_and_not_in_it(lesson, draw):
     floor = np.array([0.0, 1.0, draw(-0.5, 0.5)])
     state, p, r, _ = disc_on(lesson, draw, floor, 0.5, v=(0.0, -draw(0.5, 1.5)), height=draw(0.05, 0.2), margin=0.1)
@@ -776,6 +801,11 @@ def test_energy_is_that_of_motion_rotation_and_height(lesson, draw):
     close("energy where one body has a mass, and inv_inertia 0 [J]",
           lesson.mechanical_energy(x, q, v, omega, p._replace(inv_inertia=stiff)),
           expected - 0.5 * omega[1] @ tensor @ omega[1], MANY)
+    axle = p.inv_mass * [1.0, 0.0, 1.0]
+    m = 1.0 / p.inv_mass[1]
+    expected -= 0.5 * m * v[1] @ v[1] + 0.5 * omega[1] @ tensor @ omega[1] - m * p.gravity @ x[1]
+    close("energy where one body is on an axle, with inv_mass 0 [J]",
+          lesson.mechanical_energy(x, q, v, omega, p._replace(inv_mass=axle)), expected, MANY)
 
 
 @exercise("10.13", points=0.5,
@@ -812,6 +842,9 @@ def test_momenta_are_those_of_orbit_and_spin(lesson, draw):
     tensor = matrix(q[1]) @ np.diag(1.0 / p.inv_inertia[1]) @ matrix(q[1]).T
     close("angular momentum where one body has a mass, and inv_inertia 0 [kg m²/s]",
           lesson.momenta(x, q, v, omega, p._replace(inv_inertia=stiff))[1], L - tensor @ omega[1], MANY)
+    own, axle = np.cross(x[1], v[1]) / p.inv_mass[1] + tensor @ omega[1], p.inv_mass * [1.0, 0.0, 1.0]
+    close("angular momentum where one body is on an axle, with inv_mass 0 [kg m²/s]",
+          lesson.momenta(x, q, v, omega, p._replace(inv_mass=axle))[1], L - own, MANY)
 
 
 @exercise("10.14", points=0.5, hint="about another point, L differs by the cross product of the displacement and P")
