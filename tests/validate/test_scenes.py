@@ -84,7 +84,7 @@ def test_a_quick_validation_ends_a_sweep_where_the_scene_says(name):
     quick, full = (select(name, measure.Plan(quick=quick)) for quick in (True, False))
     of = {method.function: method for method in full.methods}
     for function, most in full.scene.shorter_in_quick.items():
-        assert most in full.scene.steps and full.steps_of(of[function]) == full.steps
+        assert most in full.scene.steps and full.steps_of(of[function])[:len(full.steps)] == full.steps
         assert quick.steps_of(of[function]) == tuple(n for n in quick.steps if n <= most)
     assert any("the finest steps of" in note for note in quick.notes)
 

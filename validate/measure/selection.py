@@ -87,9 +87,10 @@ class Selection(NamedTuple):
         return scene, getattr(lessons.lesson(method.lesson), method.function)
 
     def steps_of(self, method):
-        """The numbers of steps of a method: in a quick validation some end their sweep before the finest step."""
-        most = self.scene.shorter_in_quick.get(method.function, np.inf) if self.plan.quick else np.inf
-        return tuple(n for n in self.steps if n <= most)
+        """The numbers of steps of a method: some end their sweep sooner in a quick validation, or later in a full one."""
+        if not self.plan.quick:
+            return self.steps + self.scene.finer_in_full.get(method.function, ())
+        return tuple(n for n in self.steps if n <= self.scene.shorter_in_quick.get(method.function, np.inf))
 
     def fastest(self, method):
         """The same at the fastest speed that was asked for."""
