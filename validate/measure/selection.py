@@ -87,7 +87,7 @@ class Selection(NamedTuple):
         return scene, getattr(lessons.lesson(method.lesson), method.function)
 
     def steps_of(self, method):
-        """The numbers of steps of a method: some end their sweep sooner in a quick validation, or later in a full one."""
+        """The numbers of steps of a method: some end their sweep sooner in a quick run, or later in a full one."""
         if not self.plan.quick:
             return self.steps + self.scene.finer_in_full.get(method.function, ())
         return tuple(n for n in self.steps if n <= self.scene.shorter_in_quick.get(method.function, np.inf))
