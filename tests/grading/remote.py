@@ -45,9 +45,18 @@ def handout():
 def box_of(lesson, text, budget):
     """Make the sandbox for one lesson's file."""
     earlier = {name: worked_functions(name) for name in builds_on(lesson)}
-    values = vars(modules.bind(lesson)).values()
-    records = [kind for kind in values if hasattr(kind, "_fields")]
-    return Sandbox(lesson, list(exercises(lesson).values()), text, handout(), earlier, budget, records)
+    return Sandbox(lesson, list(exercises(lesson).values()), text, handout(), earlier, budget, records_of(lesson))
+
+
+def records_of(lesson):
+    """List the classes of NamedTuples that a lesson's functions may hand over: its own, and those of the modules from
+    which its given functions come.
+    """
+    own = vars(modules.bind(lesson))
+    homes = [value.__globals__ for value in own.values() if isinstance(value, types.FunctionType)]
+    spaces = (*homes, own)                                             # of two with one name the lesson's own counts
+    return [kind for space in spaces for kind in space.values()
+            if isinstance(kind, type) and issubclass(kind, tuple) and hasattr(kind, "_fields")]
 
 
 def worked_functions(lesson):

@@ -79,6 +79,14 @@ def test_only_what_is_chosen_is_run_and_a_change_of_the_choice_grades_again():
 
 
 @pytest.mark.usefixtures("in_sandbox")
+def test_a_right_answer_that_hands_a_record_of_a_given_module_to_a_given_function_earns_its_points():
+    lessons, worth = choice.chosen([], "10.5")                         # near_pairs returns it, round_contacts takes it
+    submission = submissions.Submission("ada", {"simulator": example.worked("simulator").encode()}, (), "")
+    found = marking.mark(submission, marking.settings(lessons, "a secret", worth))
+    assert {test["status"] for test in found["tests"]} == {"passed"}
+
+
+@pytest.mark.usefixtures("in_sandbox")
 @pytest.mark.xdist_group("a graded class")
 def test_a_class_is_graded_by_the_exercises_that_were_set(tmp_path):
     example.make(tmp_path / "class")
