@@ -1056,7 +1056,7 @@ def judge(lesson):
         found += pyramid_of_pybullet()
     return found, Picture("pymunk's impulses, judged", "time [s]", "log₁₀ of the residual over g dt", [
         series("30 discs, 200 iterations", times, np.log10(np.maximum(seen, 1e-16)), DOTS)],
-        "While discs fall and roll, the impulses are not those of rest; then the residual goes where round-off is.")
+        "While discs fall and roll, the impulses are not those of rest; then the residual falls to round-off.")
 
 
 def own_push(record, k):

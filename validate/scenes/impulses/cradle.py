@@ -165,7 +165,7 @@ SCENE = Scene(
     orders={"backtracking_discs_step": EXACT},
     points=points,
     uses=("one coordinate", "the order of the impacts"),
-    full_loop="contacts of the loop bounce a step late, and it does not part what overlaps; lesson 10 has a cradle",
+    full_loop="contacts of the loop bounce a step late, and it leaves overlaps as they are; lesson 10 has a cradle",
     ablations={
         "the strings": "a swinging ball would move on an arc",
         "the stiffness of the balls": "it decides which balls leave if they touch; rigid bodies have none",
