@@ -362,7 +362,7 @@ def over_relaxation(lesson):
         series("theory, ω = 1", sweeps, 2.0 * sweeps * np.log10(np.cos(0.05 * np.pi)), LINE),
         series("ω = 1", sweeps[::5], np.log10(plain[::5]), DOTS),
         series(f"ω = {omega:.3f}", sweeps[:61:3], np.log10(np.maximum(relaxed[::3], 1e-16)), DOTS)],
-        f"One number makes {fewer} sweeps out of {more}: the cure that costs nothing.")
+        f"One number turns {more} sweeps into {fewer}, at no cost.")
 
 
 # ---------------------------------------------------------------------------------------------- piles
