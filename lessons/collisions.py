@@ -4,8 +4,8 @@ Symbols: x (d,) centre, p (d,) any point [m] · r, R [m] radii · n (d,) unit no
 negative where two bodies overlap · E(p) [m] signed distance from a plane · low, high (n, d) [m] corners of n
 boxes along the axes · t, dt [s].
 
-*Detection* finds which bodies touch, where and when.  It is pure geometry, and all of this lesson but its end.
-*Avoidance* acts before contact; it needs detection with a large reach, and forces.
+*Detection* finds which bodies touch, where and when.  It is pure geometry, and fills this lesson except for its end.
+*Avoidance* acts before contact.  It needs detection with a large reach, and forces.
 *Response* changes velocities after contact: lesson 7.
 Given in support/collisions.py: make_plane and make_box; contacts of capsules, polygons, boxes; discrete_step and
 continuous_step of balls that fly; a flock.  Trees are built in support/trees.py.
@@ -79,7 +79,7 @@ def plane_impact_time(t, dt, x_0, x_1, r, plane):
     The ball moves straight from x_0 at t to x_1 at t + dt.  r = 0: a point.
     t* = t + dt d₁/(d₁ + d₂)         d₁ = E(x_0) − r above the plane before,   d₂ = r − E(x_1) below it after
 
-    t where it already touches (d₁ ≤ 0), NEVER where it does not reach the plane (d₂ < 0).
+    Return t where the ball already touches (d₁ ≤ 0), and NEVER where it does not reach the plane (d₂ < 0).
     *Source:* first lecture deck, “Time of impact”.
     """
     # YOUR CODE HERE
@@ -87,7 +87,7 @@ def plane_impact_time(t, dt, x_0, x_1, r, plane):
 
 
 def ball_contact(x_a, r_a, x_b, r_b):
-    """Given.  Return the Contact of two balls; with r_b = 0 of a ball and a point.  Most round shapes reduce to this.
+    """Given.  Return the Contact of two balls, or of a ball and a point (r_b = 0).  Most round shapes reduce to this.
 
     n = (x_a − x_b)/|x_a − x_b|,   gap = |x_a − x_b| − r_a − r_b,   p_a = x_a − r_a n,   p_b = x_b + r_b n
     """
@@ -110,7 +110,7 @@ def cylinder_contact(x, r, R):
 
 
 def cylinder_impact_time(t, dt, x_0, x_1, r, R):
-    """Return the time [s] at which a ball first touches that cylinder: the continuous test.
+    """Return the time [s] at which a ball first touches the cylinder of cylinder_contact: the continuous test.
 
     The ball moves straight from x_0 (3,) at t to x_1 at t + dt.
     With y the coordinates (1, 2) of x_0, w those of x_1 − x_0 and ρ = R + r:  |y + s w|² = ρ² is  A s² + 2 B s + C = 0,
@@ -118,10 +118,11 @@ def cylinder_impact_time(t, dt, x_0, x_1, r, R):
     first root  s = C/(−B + √D),   t* = t + s dt
 
     Use the last form of D, because B² − A C cancels if a fast ball barely grazes the cylinder or comes from far away.
-    For s, (−B − √D)/A is as good.  If the ball is already close, both cancel: the share s is then known to the
-    round-off of |y| over the gap.
+    For s, (−B − √D)/A is equally accurate.  If the ball is already close, both forms cancel; then the relative error of
+    s is the round-off of |y| over the gap.
 
-    t where it already touches (C ≤ 0); NEVER where it does not approach (B ≥ 0), misses (D < 0) or comes later (s > 1).
+    Return t where the ball already touches (C ≤ 0).  Return NEVER where it does not approach (B ≥ 0), misses (D < 0)
+    or touches only after this step (s > 1).
     *Source:* second lecture deck, the worked question, part 2.
     """
     # YOUR CODE HERE
@@ -131,8 +132,8 @@ def cylinder_impact_time(t, dt, x_0, x_1, r, R):
 def closest_on_segment(p, a, b):
     """Return the point (d,) of the segment from a to b (d,) that is nearest to p (d,).
 
-    *Find* it: the points of the segment are a + s (b − a) with 0 ≤ s ≤ 1.  Where the nearest point of the line through
-    a and b is beyond an end, that end is nearest.
+    *Find* it: the points of the segment are a + s (b − a) with 0 ≤ s ≤ 1.  If the nearest point of the line through
+    a and b is beyond an end, return that end.
 
     Raises BadInput("the length of an edge [m]", 0.0, "give two different ends") for a segment of zero length.
     """
@@ -156,7 +157,7 @@ def triangle_cylinder_gap(a, b, c, r, R):
     disc about 0.  Where the projected triangle contains 0, the axis passes through the face:
         gap = −R − r                              y_i z_j − z_i y_j  over (a, b), (b, c), (c, a) are all > 0 or all < 0
     elsewhere the nearest point is on an edge:
-        gap = least edge_axis_distance − R − r    of the three edges
+        gap = least edge_axis_distance of the three edges − R − r
 
     All corners can be far outside while an edge or the face is not: testing the particles of a cloth is not enough.
     *Source:* second lecture deck, the worked question, part 3.
@@ -172,7 +173,7 @@ def closest_on_triangle(p, a, b, c):
 
     N = (b − a) × (c − a),    q = p − ((p − a) · N/N · N) N         the projection of p on the triangle's plane
     q where it is inside: ((b − a) × (q − a)) · N ≥ 0, and the same for b, c and for c, a;
-    elsewhere the nearest of the closest_on_segment of the three edges; nearer(p, q, other) returns q or other
+    elsewhere the nearest of the three points closest_on_segment of the edges; nearer(p, q, other) returns q or other
 
     Raises BadInput("the area of a triangle [m²]", ½|N|, "give three corners that are not on one line") where |N| is
     DEGENERATE_AREA times its longest edge squared or less.
@@ -201,10 +202,10 @@ def ball_box(x, r, box):
 def swept_box(low, high, move):
     """Return (low, high), each (d,): the box around the path of a box low, high (d,) that moves by move (d,) [m].
 
-    Each face of it is at the outermost of the first and last position of that face.  If nothing touches it, the body
-    hits nothing.
+    Each of its faces is at the outer one of the first and last positions of that face.  If no body touches this box,
+    the moving body hits nothing.
     *Source:* first lecture deck, “Swept volumes”.
-    *Left out:* the swept volume itself is smaller than the box around it.
+    *Left out:* the swept volume itself, which is smaller than the box around it.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 6.9: swept_box")
@@ -213,8 +214,8 @@ def swept_box(low, high, move):
 def all_pairs(low, high):
     """Return (m, 2): the numbers i < j of all boxes low, high (n, d) that touch, each pair once, by testing every pair.
 
-    These are n (n − 1)/2 tests, boxes_touch(low, high, i, low, high, j): ten times as many boxes take a hundred times
-    as long.
+    There are n (n − 1)/2 tests, boxes_touch(low, high, i, low, high, j), so ten times as many boxes take a hundred
+    times as long.
     Begin with the empty list  found = [(0, 0) for _ in range(0)],  from which the compiler infers its type.
     Append pairs, and return as_pairs(found).
     Raises what check_boxes raises; call it first.
@@ -237,7 +238,7 @@ def find_intersections(a, b):
     come in any order.
     Keep a list of the pairs (i, j) still to visit, at first [(0, 0)], and one of found pairs as in all_pairs; return
     as_pairs(found).  Node i is a leaf if a.child[i] = 0.  Otherwise its children are a.child[i] and a.child[i] + 1.
-    If your loop never ends, it has taken the child 0 of a leaf for a node, which is the root.
+    If your loop never ends, it may have used the child 0 of a leaf as a node: node 0 is the root.
     *Source:* second lecture deck, “FindIntersections(node₁, node₂)”.
     """
     # YOUR CODE HERE
@@ -252,7 +253,7 @@ def separating_edge(a, b):
     gap of edge i:  the least  n_i · (b_j − a_i)  of all corners j of b,  n_i = outward(a, i).    Return the greatest
 
     A positive gap: a line along this edge separates the polygons.  If the gaps of both polygons are negative, they
-    overlap, and the greater gap is the shortest way out.
+    overlap, and the greater gap gives the shortest way out.
     Corners are counter-clockwise.
     *Source:* the separating axis theorem; Gottschalk, Lin and Manocha 1996.
     """
@@ -267,7 +268,8 @@ def clip(y, n, d):
     sign (s_i s_j < 0), add
         y_i + s_i/(s_i − s_j) (y_j − y_i)
     A segment (k = 2) has only one edge: there is no crossing from its second corner back to its first.  If nothing is
-    left, return an array without rows.  y itself may have no row, or one: it can be the result of another cut.
+    left, return an array without rows.  y itself may have no row or one row, because it can be the result of another
+    cut.
     *Source:* Sutherland and Hodgman 1974.
     """
     # YOUR CODE HERE
@@ -278,9 +280,9 @@ def box_separation(a, b):
     """Return (gap [m], n, k): the best separating axis of two Boxes, as a unit normal from b to a, and its number.
 
     gap along an axis:   |r · axis| − half_width(a, axis) − half_width(b, axis),     r = x_a − x_b
-    Choose the axis of the greatest gap.  An axis of two edges (k ≥ 6) must exceed the best face, k < 6, and any edges
-    before it by EDGE_PREFERENCE.  Of equal gaps the first counts.  candidate_axis(a, b, k) returns axis k; skip those
-    that are zeros.  n = ±axis, such that n · r ≥ 0.
+    Choose the axis of the greatest gap.  An axis of two edges (k ≥ 6) wins only if its gap exceeds the best gap before
+    it, of faces (k < 6) and edges, by EDGE_PREFERENCE.  Of equal gaps the first counts.  candidate_axis(a, b, k)
+    returns axis k; skip those that are zeros.  n = ±axis, such that n · r ≥ 0.
 
     gap > 0: the boxes are at least that far apart along n.  gap ≤ 0: they overlap, and −gap along n is the shortest way
     out.
@@ -301,7 +303,7 @@ def gjk(a, b):
         v = Σ weight (p − q)                                      the nearest point so far
         i = support(a, −v),  j = support(b, v),  w = a_i − b_j    the difference that is farthest towards 0
         stop if far_enough(v, w);  otherwise append a_i to p and b_j to q, and reduce them with nearest_subsimplex(p, q)
-    Return ball_contact(Σ weight p, 0, Σ weight q, 0).  Where the bodies overlap it has a gap of 0 (or round-off), and
+    Return ball_contact(Σ weight p, 0, Σ weight q, 0).  Where the bodies overlap, its gap is 0 (or round-off) and
     its normal is meaningless.
     Raises what check_hulls raises; call it first.
     *Source:* Gilbert, Johnson and Keerthi 1988.
@@ -328,7 +330,7 @@ def repulsion(x, centre, radius, reach, k):
 def steer(x, v, centre, radius, ahead):
     """Return the acceleration (2,) [m/s²], across v, that just steers a body at x with v (2,) around a disc in its way.
 
-    e = v/|v|,   r = centre − x,   τ = r · e/|v|                  time until it passes the centre
+    e = v/|v|,   r = centre − x,   τ = r · e/|v|                  time until the body passes the centre
     y = r − (r · e) e                                             offset from the centre when it passes: −y
     a points along −y/|y|                 if 0 < τ < ahead [s] and |y| < radius;  else a = 0
 

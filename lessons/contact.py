@@ -2,15 +2,16 @@
 
     0 ≤ λ  ⊥  A λ + b ≥ 0,      A = G M⁻¹ Gᵀ,      |J_t| ≤ μ J_n
 
-Symbols: a ContactSet (solutions/support/contact_points.py) holds of each contact k its bodies a[k] and b[k], unit
-normal n[k], pointing from b to a, the place p[k] and the gap[k] · r = p − x offset from a centre · u [m/s] velocity of
-a's contact point relative to b's, u_n = n · u · J [N s] impulse on a; b receives −J · λ normal impulses · G (2m, 3n)
+Symbols: a ContactSet (solutions/support/contact_points.py) holds for each contact k its bodies a[k] and b[k], the unit
+normal n[k], which points from b to a, the place p[k] and the gap[k] · r = p − x offset from a centre · u [m/s] velocity
+of a's contact point relative to b's, u_n = n · u · J [N s] impulse on a; b receives −J · λ normal impulses · G (2m, 3n)
 contact rows · M⁻¹ (3n,) inverse masses of all coordinates · A (2m, 2m) [1/kg] Delassus matrix · b [m/s] u without
 impulses · k_n, k_t [1/kg] effective inverse masses, the diagonal of A · μ [-] friction · ω [-] relaxation ·
 ρ [-] contraction factor: error after a sweep over the error before it.
-First exactly, in the plane, with matrices: small scenes.  Then quickly, with arrays: piles.  What stands there runs
-compiled if it holds loops over numbers and arrays only: no dict, no lambda, no text.
-Given in solutions/support/contact.py: advance_pile_2d and advance_pile, which call what stands here in each step.
+The first part is for small scenes: exact, in the plane, with matrices.  The second part is for piles: fast, with
+arrays.  Functions of the second part run compiled if they contain only loops over numbers and arrays: no dict, no
+lambda, no string.  Given in solutions/support/contact.py: advance_pile_2d and advance_pile, which call them in each
+step.
 *Left out:* restitution of many contacts (no law decides it, only conventions); sleeping; rolling resistance.
 """
 
@@ -79,7 +80,7 @@ def complementarity_residual(A, b, lam):
 
     largest |min(A_kk λ_k, (A λ + b)_k)|          A_kk turns the impulse into a velocity
 
-    It is 0 exactly if no contact pulls, no contact approaches, and none that separates pushes.
+    It is 0 exactly if no contact pulls, no contact approaches, and no contact both pushes and separates.
     *Source:* min(x, y) = 0 if and only if x ≥ 0, y ≥ 0 and x y = 0; Cottle, Pang and Stone 1992.
     """
     # YOUR CODE HERE
@@ -87,11 +88,11 @@ def complementarity_residual(A, b, lam):
 
 
 def gauss_seidel_sweep(A, b, lam, omega):
-    """Impulses (m,) after one sweep of projected Gauss–Seidel over all contacts in their order, with relaxation ω.
+    """Impulses (m,) after one sweep of projected Gauss–Seidel over all contacts in order, with relaxation ω.
 
-    λ_k ← max(0, λ_k − ω u_k/A_kk),      u_k = Σ_l A_kl λ_l + b_k  with those of λ that are new already
+    λ_k ← max(0, λ_k − ω u_k/A_kk),      u_k = Σ_l A_kl λ_l + b_k  with the newest λ_l
 
-    With ω = 1 each contact in turn stops approaching, as if it were alone.  Returns a new array.
+    With ω = 1 each visit stops the approach of its contact, as if it were alone.  Returns a new array.
     *Source:* Cryer 1971.  Sequential impulses (Catto 2006) are the same with ω = 1.
     """
     # YOUR CODE HERE
@@ -101,7 +102,8 @@ def gauss_seidel_sweep(A, b, lam, omega):
 def stack_contraction(n):
     """ρ of Gauss–Seidel on a frictionless stack of n equal bodies on the ground:  cos²(π/2n).
 
-    Jacobi's iteration on that A has the eigenvalues cos((2j − 1) π/2n), and Gauss–Seidel has their squares.
+    Jacobi's iteration on the A of this stack has the eigenvalues cos((2j − 1) π/2n), and Gauss–Seidel has their
+    squares.
     *Source:* Young 1971; the matrix is tridiagonal.
     """
     # YOUR CODE HERE
@@ -114,7 +116,7 @@ def mass_ratio_contraction(r):
     A = [[1, −1], [−1, 1 + 1/r]]/m: contact 0 is between the ground and the lower body, contact 1 between the bodies.
     *Find* ρ, the factor by which one sweep (gauss_seidel_sweep with ω = 1) shrinks the error of both λ.  Both contacts
     push.
-    *Source:* both equations by hand.
+    *Source:* direct elimination in the two equations.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 9.6: mass_ratio_contraction")
@@ -135,14 +137,14 @@ def best_relaxation(rho):
 def solve_lcp(A, b):
     """λ (m,) with 0 ≤ λ ⊥ A λ + b ≥ 0, exact but for round-off: Murty's least-index method.
 
-    Guess which contacts push: at first none.  Then repeat, at most MAX_PIVOTS m times:
-        Find λ with (A λ + b)_k = 0 for those that push and λ_k = 0 for the others.  solve of lesson 1 does it, if the
-        rows of the others are those of the identity.
+    Guess which contacts push, at first none.  Then repeat, at most MAX_PIVOTS m times:
+        Find λ with (A λ + b)_k = 0 for the contacts that push and λ_k = 0 for the others.  Use solve of lesson 1, with
+        rows of the identity matrix for the others.
         A contact is wrong if it pushes and λ_k < −ε_k/A_kk, or if it does not and (A λ + b)_k < −ε_k, where
         ε_k = CONVERGED (Σ_l |A_kl λ_l| + |b_k|) is round-off.
-        If none is wrong, return λ.  Else only the wrong one of least index changes sides.
-    For a positive definite A no guess comes twice, so it ends.  There is one answer only, so that another fixed order,
-    such as the greatest index first, is right as well.
+        If none is wrong, return λ.  Otherwise change the guess for one contact only: the wrong one of least index.
+    For a positive definite A no guess occurs twice, so the method ends.  There is only one answer, so another fixed
+    order, such as the greatest index first, is right as well.
     Raises what check_independent(A) raises; call it first.  After the last round raises
     Diverged("complementarity residual [m/s]", complementarity_residual(A, b, λ), "use projected Gauss–Seidel").
     *Source:* Murty 1974.
@@ -156,9 +158,10 @@ def cone_residual(A, b, J, mu):
 
     With u = A J + b, each contact by itself would change its impulse to
         J_n' = max(0, J_n − u_n/k_n),       J_t' = J_t − u_t/k_t, but at most limit in size
-    limit is μ times the given J_n, not J_n'; 0 where J_n ≤ 0.
+    Here limit is μ times the given J_n, not J_n'; it is 0 where J_n ≤ 0.
     The residual is the largest k_n |J_n' − J_n| or k_t |J_t' − J_t|.  J and u hold (n, t) of one contact after the
-    other; k_n and k_t are on the diagonal of A.  It is 0 exactly where the laws hold, for any solver's J; μ = ∞, too.
+    other; k_n and k_t are on the diagonal of A.  The residual is 0 exactly where the laws hold, for the J of any
+    solver, and for μ = ∞ as well.
     *Source:* the natural map: J = P(J − u/k), P the projection onto what the laws allow; Acary and Brogliato 2008.
     """
     # YOUR CODE HERE
@@ -170,8 +173,8 @@ def cone_sweep(A, b, J, mu):
 
     J_n ← max(0, J_n − u_n/k_n),      J_t ← J_t − u_t/k_t, but at most μ J_n in size (0 where J_n = 0)
 
-    Each u comes from the newest J, and the limit from the new J_n.  Layout and μ are those of cone_residual, and what a
-    sweep leaves unchanged has no residual.  Returns a new array.
+    Each u comes from the newest J, and the limit from the new J_n.  Layout and μ are those of cone_residual.  If a
+    sweep leaves J unchanged, its residual is 0.  Returns a new array.
     *Source:* Jourdan, Alart and Jean 1998; Catto 2006.
     """
     # YOUR CODE HERE
@@ -181,7 +184,7 @@ def cone_sweep(A, b, J, mu):
 def solve_contacts(A, b, mu):
     """Given.  J (2m,) by cone_sweep from 0 until cone_residual is at most CONVERGED times the largest (|A||J| + |b|)_k.
 
-    Raises Diverged with the residual after MAX_SWEEPS sweeps: a mass ratio of a million is too much for it.
+    Raises Diverged with the residual after MAX_SWEEPS sweeps, which are too few for a mass ratio of a million.
     """
     J, residual = np.zeros(b.size), np.inf
     for _ in range(MAX_SWEEPS // 10):
@@ -202,7 +205,7 @@ def contact_forces(x, inv_mass, inv_inertia, contacts, load, mu):
     x (n, 2), inv_mass (n,), inv_inertia (n,), load (n, 3) [N, N, N m] force and torque on each body, mu (m,).
     A scene stays at rest where a = 0.  A contact is released when its F_n reaches 0.
     Raises what check_scene(x, inv_mass, inv_inertia, contacts, load, mu) raises; call it first.
-    *Left out:* which of several F is the real one where supports are redundant; sums and moments are right.
+    *Left out:* the choice among several possible F where supports are redundant; sums and moments are right.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 9.11: contact_forces")
@@ -211,7 +214,7 @@ def contact_forces(x, inv_mass, inv_inertia, contacts, load, mu):
 # ---------------------------------------------------------------------- quickly: piles in arrays
 
 def soft_contact(gap, hertz, zeta, dt):
-    """(aim [m/s], give [-]) of a contact that is a damped spring: it asks for u_n = aim − give k_n J_n.
+    """(aim [m/s], give [-]) of a contact that is a damped spring: its law is u_n = aim − give k_n J_n.
 
     gap > 0:     aim is the velocity that just closes the gap in this step, and give = 0.
     gap ≤ 0:     *Find* aim and give of an implicit Euler step of a damped spring.  It pushes with the impulse
@@ -238,10 +241,10 @@ def friction_disc(J, limit):
 
 
 def kept_impulses(contacts, old, J_old, near):
-    """J (m, d) [N s] to begin a step with, the warm start: each contact takes over the impulse of an old one.
+    """J (m, d) [N s] to begin a step with (warm start): each contact takes over the impulse of an old one.
 
-    That is the nearest contact of `old` with the same a and the same b, if it is closer than `near` [m]; else J is 0.
-    Normals may have turned: copy the vector.  Two new contacts may take over the same old impulse.
+    The old one is the nearest contact of `old` with the same a and the same b, if it is closer than `near` [m]; else J
+    is 0.  Normals may have turned, so copy the vector.  Two new contacts may take over the same old impulse.
     contacts and old are ContactSets; J_old belongs to old.  old.first says where the contacts of each body a are.
     *Source:* Catto 2006.
     """
@@ -252,14 +255,14 @@ def kept_impulses(contacts, old, J_old, near):
 def has_left_margin(low, high, wide_low, wide_high):
     """True if the box of any body, corners low and high (n, d), sticks out of its widened box, wide_low and wide_high.
 
-    As long as none has left, only pairs that the last search found (with the widened boxes) can touch.  NaN has left.
+    While this is False, only pairs that the last search found (with the widened boxes) can touch.  Return True for NaN.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 9.15: has_left_margin")
 
 
 def velocity_sweep_2d(v, omega, J, aim, give, contacts, arms, pile):
-    """(v, omega, J) in the plane after one visit to every contact, each as if alone: a sweep without a matrix.
+    """(v, omega, J) in the plane after one visit to every contact, each as if it were alone: a sweep without a matrix.
 
     u = velocity of a's contact point less that of b's: (v_x − ω r_y, v_y + ω r_x) with r = arms.r_a[k], arms.r_b[k]
     J_n ← max(0, J_n + (aim − u_n − give k_n J_n)/(k_n (1 + give)))           along n;   k_n = arms.k_n[k]

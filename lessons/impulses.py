@@ -5,13 +5,13 @@ n unit normal, from b to a · u [m/s] velocity of a's contact point relative to 
 J, j [N s] impulse on a; b receives −J · e [-] restitution · μ [-] friction · K [1/kg] the response of u to an impulse:
 u⁺ = u + K J, and k_n = n · K n · φ [m] gap, n = ∇φ · λ [N s] multiplier of the gap.
 
-Velocities after an impact have a ⁺.  An impact is so short that positions do not change and other forces do not count.
-An immovable body has inv_mass = 0 and inv_inertia = 0; one on an axle through its centre of mass has only inv_mass = 0,
-and one that cannot rotate only inv_inertia = 0.  In the plane r × n is the number r_x n_y − r_y n_x, and omega
-is a number, counter-clockwise.
+The sign ⁺ marks velocities after an impact.  An impact is so short that positions do not change and other forces have
+no effect.  An immovable body has inv_mass = 0 and inv_inertia = 0.  A body on an axle through its centre of mass has
+only inv_mass = 0, and a body that cannot rotate has only inv_inertia = 0.  In the plane r × n is the number
+r_x n_y − r_y n_x, and omega is a number, counter-clockwise.
 Given in support/impulses.py: contact_impulse, penalty_step, a spinning ball, discs, and the loops advance_balls,
 advance_spinning_balls and advance_discs.
-*Left out:* finding contacts (lesson 6).  Lasting contacts, as in a stack (lesson 9).
+*Left out:* detection of contacts (lesson 6); lasting contacts, as in a stack (lesson 9).
 """
 
 from typing import NamedTuple
@@ -93,7 +93,8 @@ def penalty_force(phi, v_n, stiffness, damping):
 
     f = max(0, −stiffness φ − damping v_n)  while φ < 0;     0 outside
 
-    φ [m] gap, v_n [m/s] its rate, stiffness [N/m], damping [N s/m].  For a force over mass give both over m.
+    φ [m] gap, v_n [m/s] its rate, stiffness [N/m], damping [N s/m].  For an acceleration divide the last two by the
+    mass.
     *Source:* first lecture deck, “Penalty method”.
     """
     # YOUR CODE HERE
@@ -123,7 +124,7 @@ def impulse_size(u_n, k_n, e):
 
     j = −(1 + e) u_n/k_n,      and 0 where they are already separating, u_n ≥ 0
 
-    k_n [1/kg]: the change of u_n by j = 1 N s, over that j; without rotation k_n = 1/m_a + 1/m_b.
+    k_n [1/kg] is the change of u_n per unit of impulse j; without rotation k_n = 1/m_a + 1/m_b.
     Raises what check_restitution and check_inverse_mass raise; call them first.
     *Source:* first lecture deck, “Computing impulse”, 1st: objects cannot rotate; second lecture deck, “Coefficient of
     restitution”.
@@ -188,7 +189,7 @@ def angular_momenta(L_a, L_b, r_a, r_b, J):
 
     L_a⁺ = L_a + r_a × J,   L_b⁺ = L_b − r_b × J
 
-    No inertia tensor is needed.  Where L is the state, as in lesson 5, this is the update.
+    No inertia tensor is needed.  If the state contains L, as in lesson 5, this is the whole update of rotation.
     *Source:* first lecture deck, “LA += rA × J, LB −= rB × J”.
     """
     # YOUR CODE HERE
@@ -215,17 +216,17 @@ def contact_matrix(r, inv_mass, inv_inertia):
 def cone_impulse(u, n, K, u_sep, mu):
     """Return J (3,) [N s] in the cone |J_t| ≤ μ J_n after which two contact points separate at u_sep ≥ 0 [m/s].
 
-    n · u⁺ = u_sep, unless they separate faster before:
+    There are three cases:
 
-    n · u ≥ u_sep:    J = 0: they already separate fast enough
-    otherwise, also where they separate too slowly, 0 < n · u < u_sep:
+    n · u ≥ u_sep:    J = 0, because the points already separate fast enough.
+    Otherwise n · u⁺ = u_sep, also where they separate too slowly, 0 < n · u < u_sep:
     stick:        J = K⁻¹ (u_sep n − u), after which u⁺ = u_sep n has no tangential part; if |J_t| ≤ μ J_n, this is J.
     slide:        J = j d,   j = (u_sep − n · u)/(n · K d)
                   d = n cos β + sin β J_t/|J_t|   is on the rim of the cone, tan β = μ, on the side of the stick's J,
                                                   with J_t = tangential(J, n) of that J
 
-    n · K d > 0 for every μ, infinity included: it holds for the stick's J, and d leans less towards J_t than that J.
-    solve3 of lesson 5 solves for J, given the columns of K.  Raises what check_contact raises; call it first.
+    n · K d > 0 for every μ, infinity included: it is positive for the J of stick, and d leans less towards J_t than
+    that J.  solve3 of lesson 5 solves for J, given the columns of K.  Raises what check_contact raises; call it first.
     *Source:* Coulomb's law on velocities after the impact; second lecture deck, “Coulomb's law”.  The side of
     the rim is a modelling choice (see the notebook).
     *Left out:* slip that changes direction during the impact.
@@ -269,7 +270,7 @@ def impact_time(phi, v_n, a_n, dt):
     φ + v_n τ + ½ a_n τ² = 0  with the gap closing at τ; a_n is constant.  A negative gap counts as φ = 0: it touches.
     s = √(v_n² − 2 a_n φ)
     v_n < 0:                  τ = 2φ/(s − v_n)           equals (−v_n − s)/a_n, without division by a small a_n
-    v_n ≥ 0 and a_n < 0:      τ = −(v_n + s)/a_n         it comes back
+    v_n ≥ 0 and a_n < 0:      τ = −(v_n + s)/a_n         the gap opens first, and then closes
     v_n ≥ 0 and a_n ≥ 0, or no real s:   it never closes: dt
     A gap that only touches zero, s = 0, closes there.
 
@@ -282,11 +283,11 @@ def impact_time(phi, v_n, a_n, dt):
 def bouncing_time(v_n, a_n, e):
     """Return the time [s] for which a ball keeps bouncing that leaves its plane with v_n [m/s], at constant a_n [m/s²].
 
-    *Find* it: a_n < 0 brings the ball back with the speed with which it left, and each impact leaves the share e of it.
-    Sum up the times of all flights; these are infinitely many impacts in a finite time (Zeno).
+    *Find* it: a_n < 0 brings the ball back with the speed with which it left, and each impact leaves a fraction e of
+    it.  Sum up the times of all flights.  There are infinitely many impacts in a finite time (Zeno).
 
-    It is 0 where v_n ≤ 0, and ∞ (np.inf) where a_n ≥ 0 or e = 1.  Where both conditions hold it is 0: a ball that does
-    not leave does not bounce.
+    Return 0 where v_n ≤ 0, and ∞ (np.inf) where a_n ≥ 0 or e = 1.  Where both conditions hold return 0, because a ball
+    that does not leave does not bounce.
     *Source:* Newton's restitution; free flight at constant acceleration.
     """
     # YOUR CODE HERE
@@ -311,7 +312,8 @@ def position_projection_step(acceleration, t, x, v, dt, p):
     v ← v + dt a(t, x, v),    x ← x + dt v                       as usual, velocity first
     φ = gap(x, p) < 0:        v ← kinematic_response(v, n, e),   x ← x − φ n
 
-    The ball is left alone where φ is 0 or more.  What counts is v after the acceleration, not the velocity before it.
+    Where φ ≥ 0, nothing is corrected.  The response acts on the v after the acceleration, not on the velocity before
+    it.
     *Source:* second lecture deck, time stepping, “Option 2”.
     """
     # YOUR CODE HERE
@@ -358,8 +360,8 @@ def solve_impacts(body, r, n, e, mu):
     The residual of a sweep is the largest component of all changes of velocity Kᵢ (J − Jᵢ) of a point by its
     own impulse.  The sweeps end when the residual is at most CONVERGED times largest_speed(body, r).  If MAX_SWEEPS
     sweeps are not enough, return most_dissipative_impact(contact_matrix, cone_impulse, apply_impulse, body, r, n, e, μ)
-    of the body before the impact, given in support/impacts.py: with much friction the law can be without an answer, and
-    then the residual shows that.
+    of the body before the impact, given in support/impacts.py: with much friction the law may have no solution,
+    and then the residual shows that.
 
     The order of the points does not matter at convergence: a box that lands flat leaves the floor flat.
     Raises what check_impacts raises; call it first.

@@ -61,7 +61,7 @@ def linear_momentum(m, v):
 
     P = Σ mᵢ vᵢ = M Ẋ,   dP/dt = F         constant without external forces
 
-    The masses may be zero or negative, and so may their sum, here and below.
+    Here and in the following functions, each mass and the sum of all may also be zero or negative.
     *Source:* first lecture deck, “Linear Momentum”.
     """
     # YOUR CODE HERE
@@ -98,7 +98,8 @@ def box_inertia(m, size):
 
     Ixx = ∫∫∫ ρ (y² + z²) dx dy dz = m (b² + c²)/12,   a, b, c = size
 
-    m < 0 is allowed, here and below: a hole is a body of negative mass.  An edge of zero is allowed: a plate, a rod.
+    m < 0 is allowed for this solid and the following ones: a hole is a body of negative mass.  An edge of zero is
+    allowed: a plate or a rod.
     *Source:* first lecture deck, “Inertia Tensor”, the volume integral.
     """
     # YOUR CODE HERE
@@ -133,8 +134,8 @@ def capsule_inertia(m, radius, length):
     `length` is that of the cylinder.  The mass is divided in proportion to volume, m_c for the cylinder and m_s
     for the two half balls together:
         m_c = m length/(length + 4/3 radius),   m_s = m − m_c
-    *Find* Izz and Ixx = Iyy: move both parts to the capsule's centre.  The centre of mass of a half ball is not in its
-    flat face.
+    *Find* Izz and Ixx = Iyy: add the tensors of all parts about the capsule's centre.  The centre of mass of a half
+    ball is not in its flat face.
 
     length = 0 is a ball, radius = 0 a rod; with both zero there is no body.
     *Source:* the parallel-axis theorem, below; Eberly, “Game physics”, 2003.
@@ -190,7 +191,7 @@ def combine(m, x, I):
     M, X = centre_of_mass,   I = Σ of all Iᵢ, each moved to X by parallel_axes
 
     A body of negative mass is a hole.  All tensors are in the same axes: use world_inertia first for a rotated part.
-    About the origin of the world, a body far away would lose its digits.
+    Do not sum about the origin of the world: for a body far away, most digits would be lost.
     Raises BadInput like centre_of_mass; the order of the bodies does not matter.
     """
     # YOUR CODE HERE
@@ -202,8 +203,8 @@ def principal_axes(I):
 
     I = R diag(moments) Rᵀ        L is parallel to ω about these axes, and about no others
 
-    np.linalg.eigh(I) returns moments and columns, but these can be left-handed, det R = −1: then reverse the
-    last column.  Moments may be negative: those of a hole are.
+    np.linalg.eigh(I) returns moments and columns.  The columns can be left-handed, det R = −1; then reverse the sign of
+    the last one.  Moments may be negative: those of a hole are.
     *Source:* Euler 1765; Landau and Lifshitz, Mechanics, § 32.
     """
     # YOUR CODE HERE
@@ -213,13 +214,13 @@ def principal_axes(I):
 def check_inertia(I):
     """Raise BadInput unless I (3, 3) can be the tensor of a body with thickness.
 
-    I₁ ≤ I₂ ≤ I₃ are its principal moments and ε = MOMENT_ROUND_OFF.  The name of the thing in BadInput is one of
+    I₁ ≤ I₂ ≤ I₃ are its principal moments and ε = MOMENT_ROUND_OFF.  The first argument of BadInput is one of
     "an entry of the inertia tensor [kg m²]"           infinite or NaN                  (from check_finite)
     "the asymmetry of an inertia tensor [kg m²]"       max|I − Iᵀ| > ε max|I|
     "the smallest principal moment [kg m²]"            I₁ ≤ ε I₃: no resistance; a line of points has I₁ = 0
     "the largest principal moment [kg m²]"             I₃ > (I₁ + I₂)(1 + ε): impossible, I₁ + I₂ − I₃ = 2 ∫ z² dm ≥ 0
 
-    Its value is the entry, the asymmetry or the moment.
+    The second argument, its value, is the entry, the asymmetry or the moment.
     A plate without thickness has I₃ = I₁ + I₂ and is accepted.
     """
     # YOUR CODE HERE
@@ -254,8 +255,8 @@ def check_closed(count, faces):
 
     A triangle (i, j, k) has the edges i → j, j → k, k → i.  In a closed mesh whose triangles are all
     counter-clockwise as seen from outside, every edge i → j has a partner j → i in a neighbour: both occur
-    equally often. (Represent an edge i → j by the integer i · count + j.  Sorted, the edges and the reversed
-    edges are the same list.)
+    equally often. (Represent an edge i → j by the integer i · count + j.  Then the sorted list of the edges
+    equals the sorted list of the reversed edges.)
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 4.16: check_closed")
@@ -267,8 +268,8 @@ def mesh_body(density, x, faces):
     Let (V, S, Q) be the mesh_integrals of x − o, about a point o of the body itself, the first corner:
         m = ρ V,   centre = o + c,  c = S/V,   C = Q − V c cᵀ,   I = ρ (tr C 1 − C)
 
-    About the origin of the world, each tetrahedron would extend from there to its triangle.  At the distance D terms of
-    size D⁵ would cancel, and a body of one metre would lose half of its digits at D = 30 m.
+    If the integrals were about the origin of the world, each tetrahedron would extend from there to its triangle.  At
+    the distance D, terms of size D⁵ would cancel, and a body of one metre would lose half of its digits at D = 30 m.
 
     Raises BadInput unless the density is positive (check_positive), the corners are finite and the mesh is closed
     (check_closed).  Raises it with "the volume inside the mesh [m³]" unless V > ε e³, e = max|x − o| over all

@@ -9,7 +9,7 @@ n unit normal or direction, from b (or j) to a (or i).
 
 A method for points is a function  step(acceleration, t, x, v, dt, network) → (x, v)  at t + dt, as in lesson 1.
 The step passes network on unchanged.
-Given in support/pbd.py: make_constraint_network, network_gravity, the standard rattle_step, and what becomes of the
+Given in support/pbd.py: make_constraint_network, network_gravity, the standard rattle_step, and objects that consist of
 parts of this lesson: a cloth, a balloon, a rigid body on a pivot.
 *Left out:* friction (lesson 3 adds it to such a step); collision of a cloth with itself (lesson 6 finds it).
 """
@@ -62,11 +62,11 @@ class Obstacle(NamedTuple):
 # ---------------------------------------------------------------------------------------------- one constraint
 
 def distance_constraint(x_i, x_j, rest):
-    """Return (C, n): by how much two points (d,) are farther apart than `rest` [m], and the gradient of C for point i.
+    """Return (C, n): the distance of two points (d,) minus `rest` [m], and the gradient of C with respect to point i.
 
     C = |x_i − x_j| − rest,      n = ∇ᵢC = (x_i − x_j)/|x_i − x_j|,      ∇ⱼC = −n
 
-    Raises BadInput("the length of a link [m]", 0.0, "keep its ends apart") when the ends coincide: no direction.
+    Raises BadInput("the length of a link [m]", 0.0, "keep its ends apart") when the ends coincide.
     *Source:* second lecture deck, “Inextensible spring between particles i and j”.
     """
     # YOUR CODE HERE
@@ -120,9 +120,9 @@ def newton_correction(x, lam, goal, dt, network):
     (x, λ), with the new multipliers λ_new as unknowns:
         (1 − dt² W Σ λₛ ∇²Cₛ) Δx − dt² W Jᵀ λ_new = x_pred − x
         J Δx − ε dt² (λ_new − λ)                  = −C              ε = REGULARISATION (w_i + w_j) of each link
-    ε is a very small compliance.  It acts on the change λ_new − λ only, so that it has no effect at convergence.
-    Redundant links (a square with both diagonals) have many equivalent multipliers.  ε selects among them; without it
-    the matrix has no inverse.
+    ε is a very small compliance.  It acts only on the change λ_new − λ, so it has no effect at convergence.
+    Redundant links (a square with both diagonals) have many equivalent multipliers.  ε selects one set of them; without
+    ε the matrix has no inverse.
     Use Λ = dt² λ_new as the unknown, because its size is comparable to that of x.  The second equation becomes
         J Δx − ε Λ = −C − ε dt² λ          with −ε on the diagonal
 
@@ -159,7 +159,8 @@ def distance_sweep(x, network):
 
     Δx_i = −s w_i/(w_i + w_j) C n,      Δx_j = +s w_j/(w_i + w_j) C n          s: the stiffness of the link
 
-    These are the corrections of constraint_correction for two points, times s, for any network.sweeps and alpha.
+    These are the corrections of constraint_correction for two points, times s.  They depend on neither network.sweeps
+    nor alpha.
     distance_between and move_apart (vectors.py) compute them fast.  Returns a new array.
     Raises BadInput("the length of a link [m]", 0.0, "keep its ends apart") when the ends of a link coincide.
     A link between two immovable points does not occur: make_constraint_network refuses it.
@@ -183,10 +184,12 @@ def pbd_step(acceleration, t, x, v, dt, network):
 def pbd_sag(g, dt, stiffness, sweeps):
     """Return the sag [m] of a weight that hangs at rest from a single link under PBD; an inextensible link has none.
 
-    predict first lowers the weight by g dt².  Then each of the n sweeps removes the share s of the error that it finds.
+    predict first lowers the weight by g dt².  Then each of the n sweeps removes a fraction s of the error that it
+    finds.
     *Find* the sag at which a step ends where it began.
 
-    s: stiffness, above 0 and up to 1; n: sweeps.  The sag is no property of the link: half the step, a quarter of it.
+    s: stiffness, above 0 and up to 1; n: sweeps.  The sag is not a property of the link: half the step gives a quarter
+    of it.
     *Source:* Müller et al. 2006, section 3.3; second lecture deck, “If not enough iterations, constraints appear soft!”
     """
     # YOUR CODE HERE
@@ -207,7 +210,7 @@ def fold_constraint(x, fold):
     ∇_b = −∇_a − ∇_c − ∇_d                                                            no net force from outside
 
     Raises BadInput("the area of a triangle at a fold [m²]", 0.0, "keep its corners apart") for a triangle without area,
-    also where its corners are apart but on one line.
+    also where its corners are different but on one line.
     *Source:* Müller et al. 2006, section 4.1; Bridson et al. 2003 for an angle that is smooth at a flat fold.
     """
     # YOUR CODE HERE
@@ -236,7 +239,7 @@ def keep_outside(surface, x, inv_mass, obstacle):
     The constraint of each point is φ ≥ 0.
     (φ, n) = surface(x_k, obstacle);   where φ < 0 and the point can move (w_k > 0):   x_k ← x_k − φ n
 
-    A point outside is left alone, and one at the centre of a ball, where n = 0, stays.  Returns a new array.
+    A point outside stays where it is, and so does a point at the centre of a ball, where n = 0.  Returns a new array.
     *Source:* Müller et al. 2006, section 3.4; second lecture deck, “Project particle out”.
     """
     # YOUR CODE HERE
@@ -267,7 +270,7 @@ def compliant_sweep(x, Lam, dt, network):
     Λₛ ← Λₛ + ΔΛ,   x_i ← x_i + w_i ΔΛ n,   x_j ← x_j − w_j ΔΛ n
 
     C and n are those of distance_constraint, for the ends as the earlier visits have left them.  A link that is too
-    short pushes, also with α = 0.  Returns new arrays.
+    short pushes its ends apart, also with α = 0.  Returns new arrays.
     Raises what distance_constraint and compliant_multiplier raise.
     *Source:* Macklin et al. 2016, algorithm 1.
     """
@@ -278,7 +281,8 @@ def compliant_sweep(x, Lam, dt, network):
 def xpbd_step(acceleration, t, x, v, dt, network):
     """Advance a network by one step of XPBD: pbd_step with compliant_sweep, from Λ = 0 in every step; first order.
 
-    Many short steps with one sweep each are better than a long one with as many: m/dt² then outweighs the links.
+    Many short steps with one sweep each are better than one long step with as many sweeps, because m/dt² then outweighs
+    the stiffness of the links.
     *Source:* Macklin et al. 2016; Macklin et al. 2019, “Small steps in physics simulation”.
     """
     # YOUR CODE HERE
@@ -292,8 +296,8 @@ def effective_inverse_mass_at(q, r, n, m, I_body):
 
     w = 1/m + (r × n)ᵀ I⁻¹ (r × n)          I⁻¹ = R I_body⁻¹ Rᵀ: unrotate(q, ·) converts a vector to body coordinates
 
-    r starts at the centre of mass, and w increases with its offset from the line along n through it.  r and n are in
-    world coordinates.
+    r starts at the centre of mass.  w increases with the distance of the centre of mass from the line of n through the
+    point.  r and n are in world coordinates.
     *Source:* Müller et al. 2020, “Detailed rigid body simulation with extended position based dynamics”, eqs. 2, 3.
     """
     # YOUR CODE HERE
@@ -313,7 +317,7 @@ def apply_positional_impulse(x, q, r, p, m, I_body):
 
 
 def turning_rate(q_old, q_new, dt):
-    """Return ω [rad/s] (3,) with which quaternion_update leads from q_old to q_new in dt: v = Δx/dt for rotations.
+    """Return the ω [rad/s] (3,) with which quaternion_update turns q_old into q_new in dt: v = Δx/dt for rotations.
 
     Δq = q_new q̄_old = (Δ₀, 𝚫),      ω = 2 𝚫/(Δ₀ dt)          q̄ = (w, −x, −y, −z);   the same for q and −q
 
@@ -330,8 +334,8 @@ def turning_rate(q_old, q_new, dt):
 def volume_gradient(x, faces):
     """Return (V [m³], ∇V (n, 3) [m²]) of a closed surface with corners x (n, 3) and triangles faces (f, 3).
 
-    Row k of ∇V is ∂V/∂x_k; it is 0 for a corner of no face.  Faces are counter-clockwise seen from outside.  Where they
-    are clockwise, the surface is inside-out, and V and ∇V have the opposite sign.
+    Row k of ∇V is ∂V/∂x_k; it is 0 for a corner that belongs to no face.  Faces are counter-clockwise seen from
+    outside.  Where they are clockwise, the surface is inside-out, and V and ∇V have the opposite sign.
     *Find* V as a sum over the faces, and its gradient.  The origin may be anywhere, inside or outside.
 
     *Source:* Müller et al. 2006, section 4.2, balloons; the divergence theorem.

@@ -1,4 +1,4 @@
-"""Lesson 10.  Simulator: the whole loop, composed of what lessons 1 to 9 have.
+"""Lesson 10.  Simulator: the whole loop, composed of functions of lessons 1 to 9.
 
     forces → velocities → detection → contact → positions
 
@@ -6,9 +6,9 @@ Symbols: n bodies in arrays · x (n, d) [m] · q (n,) angles [rad] in the plane,
 v (n, d) [m/s] · omega (n,) or (n, 3) [rad/s], world · J (m, d) [N s] impulses of m contacts · F (n, d) [N], tau (n,) or
 (n, 3) [N m] loads · p: a Bodies (support/bodies.py) or any record with the fields that a function reads.
 
-A load is a function  load(t, x, q, v, omega, p) → (F, tau).  Planes are further rows of all arrays.  A row with
-inv_mass = 0 keeps the velocity that you give it: at rest it is ground, and in motion a conveyor belt or a turntable.
-A plane moves along itself only; what rises, such as a lift, is a body.  Lesson 5 has the same order for one body.
+A load is a function  load(t, x, q, v, omega, p) → (F, tau).  Planes are additional rows of all arrays.  A row with
+inv_mass = 0 keeps the velocity that you give it: it is the ground if at rest, or a moving conveyor belt or turntable.
+A plane moves only along itself; a lift, which rises, is a body.  Lesson 5 has the same order for one body.
 A scene calls only what it needs: no detection where nothing can touch.
 Given in support/simulator.py: a loop with joints.  Given in support/invariants.py: how to judge a run.
 *Left out:* restitution of many contacts, sleeping.
@@ -81,7 +81,7 @@ from solutions.vectors import cross, dot, norm
 # ---------------------------------------------------------------------------------------------- without contact
 
 def weight(t, x, q, v, omega, p):
-    """Given.  Return the load of gravity, in the plane or in space: F = m g, no torque; 0 for what no force moves."""
+    """Given.  Return the load of gravity, in the plane or in space: F = m g, no torque; F = 0 where inv_mass = 0."""
     F = np.zeros(x.shape)
     for i in range(x.shape[0]):
         if p.inv_mass[i] > 0.0:
@@ -106,7 +106,8 @@ def new_velocities(load, t, x, q, v, omega, dt, p):
 
     v ← v + dt F/m,      ω ← ω + dt ω̇,      with ω̇ = angular_acceleration(q, ω, τ, I_body) of lesson 5, body by body
 
-    I_body = 1/p.inv_inertia[i] (3,).  A body whose inv_inertia is 0 keeps its ω, also if it has a mass.  New arrays.
+    I_body = 1/p.inv_inertia[i] (3,).  A body whose inv_inertia is 0 keeps its ω, even if it has a finite mass.  Returns
+    new arrays.
     *Source:* second lecture deck, “Simulation loop”, with the gyroscopic term.
     """
     # YOUR CODE HERE
@@ -170,7 +171,7 @@ def contact_step_2d(load, bounds, narrow, t, state, dt, p):
 
 
 def contact_step(load, bounds, narrow, t, state, dt, p):
-    """Return the PileState of all bodies in space after dt: the same loop with
+    """Return the PileState of all bodies in space after dt: the loop of contact_step_2d with
 
     new_velocities,  world_inertia(turn, p.inv_inertia) in place of p.inv_inertia wherever an impulse acts,  arms_3d,
     apply_impulses,  velocity_sweep(v, omega, J, aim, give, contacts, arms, p.inv_mass, inv_inertia, p.mu)  and
@@ -217,7 +218,7 @@ def slip_time(v, omega, ball):
         u = v + ω × r,      r = (0, 0, −radius)
     The rate is constant.  Friction is as large as Coulomb allows, μ m |g_z|.  I = I_body[0] is the same about all
     axes.
-    Of u only the part along the floor counts: u_z = 0.  Return 0 where u = 0, and inf where |u| does not decrease.
+    Only the part of u along the floor counts: set u_z = 0.  Return 0 where u = 0, and inf where |u| does not decrease.
     Gravity along the floor must be zero or parallel to u, or u would change its direction.
     *Source:* Newton and Euler, with Coulomb's law.
     """
@@ -226,10 +227,10 @@ def slip_time(v, omega, ball):
 
 
 def exact_rolling_step(load, t, x, q, v, omega, dt, ball):
-    """Return (x, q, v, ω) of a RollingBall after dt: average_rolling_step until it ceases to slip, and for the rest.
+    """Return (x, q, v, ω) of a RollingBall after dt: average_rolling_step until slip ends, and again for the rest.
 
     The first part lasts min(dt, slip_time(v, omega, ball)), and the second begins when and where the first has ended.
-    Each part has constant accelerations, so that both are exact, and so is the whole.
+    Each part has constant accelerations, so average_rolling_step is exact for both.
     *Source:* event-driven integration; stick and slip of lesson 3.
     """
     # YOUR CODE HERE
@@ -252,7 +253,7 @@ def rocking_step(step, t, x, v, dt, block):
     """Given.  Return (θ, θ̇), each (1,), after dt of rocking: a step of lesson 1, cut where it changes its corner.
 
     A block on its right corner is the mirror image of one on its left corner.
-    *Left out:* a second change in one step: what rocks so quickly is nearly at rest.
+    *Left out:* a second change in one step; a block that rocks so quickly is nearly at rest.
     """
     if x[0] == 0.0 and v[0] == 0.0:                          # it stands
         return x, v
@@ -283,7 +284,7 @@ def mechanical_energy(x, q, v, omega, p):
 
 
 def momenta(x, q, v, omega, p):
-    """Return momentum P [kg m/s] (3,) and angular momentum L [kg m²/s] (3,) about the origin, of all that can move.
+    """Return momentum P [kg m/s] (3,) and angular momentum L [kg m²/s] (3,) about the origin, of all movable bodies.
 
     P = Σ m v,      L = Σ x × m v + I ω          I ω = body_angular_momentum(q, ω, I_body) of lesson 5
 
@@ -299,20 +300,20 @@ def gain_without_source(energies, work):
 
     largest over j ≤ k of  (E_k − W_k) − (E_j − W_j)          energies E (k,), work W (k,) done until then, both [J]
 
-    It is 0 or more.  Friction and impacts only take energy; a growth above the error of the steps is a fault.
+    It is 0 or more.  Friction and impacts only take energy, so a growth above the error of the steps reveals a fault.
     E and W may be lists.  Call checked_histories(energies, work) first: it returns both as arrays.
-    Raises what that raises.
+    Raises what checked_histories raises.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 10.15: gain_without_source")
 
 
 def compare(full, minimal, runs, clock):
-    """Return (largest difference, ratio of times): what a loop gains by what it leaves out.
+    """Return (largest difference, ratio of times) of a full loop and a minimal one, which leaves something out.
 
-    full() and minimal() each return the same kind of array, such as a history of positions.  Run one after the other,
-    `runs` times, and take the time of each run by clock() [s], before and after.  The difference is the largest of
-    all |full − minimal|; the ratio is the median of the ratios full over minimal of neighbouring runs.
+    full() and minimal() each return the same kind of array, such as a history of positions.  Run full and
+    then minimal, `runs` times, and call clock() [s] before and after each run to get its time.  The difference is the
+    largest of all |full − minimal|; the ratio is the median of the ratios full over minimal of neighbouring runs.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 10.16: compare")
@@ -335,8 +336,9 @@ def advance_free(step, load, t, x, q, v, omega, dt, steps, p):
 def advance_contact(step, load, bounds, narrow, t, state, dt, steps, p):
     """Given.  Return the PileState after so many steps of contact_step_2d or contact_step.
 
-    Raises BadInput for arrays that do not fit, Diverged where bodies sink into each other (it names both, the time and
-    the depth) or are not finite.  Bodies that overlap at the beginning stay so: nothing here parts them.
+    Raises BadInput for arrays that do not fit.  Raises Diverged where bodies sink into each other (it names both
+    bodies, the time and the depth) or are not finite.  Bodies that overlap at the beginning stay so: this loop does not
+    separate them.
     """
     t, x, q, v, omega, dt, steps = checked_bodies(t, state.x, state.q, state.v, state.omega, dt, steps, p)
     state, allowed = PileState(x, q, v, omega, state.contacts, state.J), np.inf

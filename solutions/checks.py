@@ -1,4 +1,4 @@
-"""Errors and checks.  Given: every lesson may raise these errors, and none has to define them."""
+"""Errors and checks.  Given: every lesson may raise these errors."""
 
 import numpy as np
 
@@ -81,7 +81,7 @@ def check_friction(mu):
 
 
 def check_indices(thing, numbers, count):
-    """Return numbers as an array of int64.  Raises BadInput unless all are in 0 … count − 1; −1 is not the last one."""
+    """Return numbers as an array of int64.  Raises BadInput unless all are in 0 … count − 1, also for −1."""
     values = finite_array(thing, numbers)
     for number in values.ravel():
         if number != np.floor(number) or not 0 <= number < count:
@@ -90,7 +90,7 @@ def check_indices(thing, numbers, count):
 
 
 def one_each(thing, value, count):
-    """Return (count,) finite numbers of zero or more, from one number for all or from one each.  Raises BadInput."""
+    """Return (count,) finite numbers of zero or more, from one number for all or one for each.  Raises BadInput."""
     values = finite_array(thing, value)
     if values.ndim > 0:
         check_shape(thing, values, (count,))

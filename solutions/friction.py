@@ -4,9 +4,9 @@ Symbols: x (d,) [m], v (d,) [m/s] of a block or a particle in d dimensions · n 
 surface, towards the body · F [N], F_N [N] normal force · μ [-] friction, μ_s static, μ_k kinetic · J, j [N s] impulse ·
 e [-] restitution · φ [m] gap.
 
-A support pushes, and never pulls: F_N ≥ 0.  Friction opposes motion along the surface with at most μ F_N, so the forces
-of a support fill a cone.  The index t means the part along the surface, y_t = y − (y · n) n.
-Every law for forces here also holds for accelerations: put a for F and m = 1.
+A support pushes and never pulls: F_N ≥ 0.  Friction opposes motion along the surface with at most μ F_N, so the forces
+of a support fill a cone.  The index t denotes the part along the surface, y_t = y − (y · n) n.
+Every law for forces here also holds for accelerations: use a in place of F, and m = 1.
 Given in support/friction.py: make_block, pyramid_step, event_step, and the loops slip_times and advance_particle.
 *Left out:* rotation (a block that tips, a ball that rolls): lesson 5.  Friction that depends on speed, time or area.
 """
@@ -68,7 +68,7 @@ def tangential(y, n):
 
 
 def cone_radius(mu, F_N):
-    """Given.  Return μ F_N, the limit of friction; without load 0, even for μ = ∞.  Raises BadInput if μ < 0."""
+    """Given.  Return μ F_N, the limit of friction; it is 0 without load, even for μ = ∞.  Raises BadInput if μ < 0."""
     check_friction(mu)
     return 0.0 if F_N <= 0.0 else mu * F_N               # in this order, so that a load of NaN does not count as none
 
@@ -76,7 +76,7 @@ def cone_radius(mu, F_N):
 def normal_force(F, n):
     """Return F_N [N], the size of the normal force of a support on a body on which all other forces are F (d,).
 
-    F_N = max(0, −F · n)          it acts along n: it balances a force into the support, and is 0 for one away from it
+    F_N = max(0, −F · n)          along n; it balances a force into the support, and is 0 for a force away from it
 
     *Source:* first lecture deck, “Resting contact”, “Normal force”.
     """
@@ -121,11 +121,11 @@ def kinetic_friction(F, v, n, mu_k):
 def incline_acceleration(theta, mu_s, mu_k, g):
     """Return the acceleration [m/s²] down a slope of angle θ [rad], 0 ≤ θ < π/2, of a block released on it at rest.
 
-    *Find* it: static friction holds the block up to its limit, with the limit included; beyond, the block slides under
+    *Find* it: static friction holds the block up to and including its limit; beyond the limit the block slides under
     kinetic friction.
 
-    Take both limits from cone_radius, with the normal force over the weight [-] as the load: it raises BadInput for a
-    negative μ and handles μ = ∞.
+    Take both limits from cone_radius, with the normal force over the weight [-] as the load: cone_radius raises
+    BadInput for a negative μ and handles μ = ∞.
     *Source:* first lecture deck, “Friction (2)”.
     """
     ### BEGIN SOLUTION 3.4
@@ -144,9 +144,9 @@ def friction_impulse(v_t, m, j_n, mu):
     J_t = −min(μ j_n, m |v_t|) v_t/|v_t|          of all |J_t| ≤ μ j_n;   0 where v_t = 0
 
     If the body continues to slide, friction is on the rim of the cone, against the motion: −μ j_n v_t/|v_t|.
-    If it stops, friction is inside the cone: return −m v_t itself, because −m |v_t| v_t/|v_t| would leave a velocity
-    of the size of round-off, and any velocity counts as motion.  This is Coulomb's law.  It follows entirely from the
-    principle of maximum dissipation.
+    If it stops, friction is inside the cone.  Then return −m v_t itself, because −m |v_t| v_t/|v_t| would leave a
+    velocity of the size of round-off, and any velocity counts as motion.  Both cases together are Coulomb's law, which
+    follows from the principle of maximum dissipation alone.
     j_n ≥ 0 [N s] is the normal impulse; take μ j_n from cone_radius.
     *Source:* second lecture deck, “Maximum dissipation principle”; Moreau 1973 for the principle.
     """
@@ -158,10 +158,10 @@ def friction_impulse(v_t, m, j_n, mu):
 
 
 def pyramid_impulse(v_t, m, j_n, mu, t_1, t_2):
-    """Return the same for a pyramid in place of the cone, with sides that face the unit vectors t_1 and t_2 (d,).
+    """Return the friction impulse (d,) for a pyramid instead of the cone; its sides face the unit vectors t_1 and t_2.
 
-    *Find* J_t (d,) [N s]: of all those along the surface with |J_t · t_1| ≤ μ j_n and |J_t · t_2| ≤ μ j_n, the one that
-    leaves the least kinetic energy.
+    *Find* J_t (d,) [N s]: of all impulses along the surface with |J_t · t_1| ≤ μ j_n and |J_t · t_2| ≤ μ j_n, the one
+    that leaves the least kinetic energy.
 
     t_1 and t_2 lie along the surface, perpendicular to each other.  Take μ j_n from cone_radius.  Solvers use the
     pyramid because the two directions are independent.  Its friction is up to √2 times too strong, and not exactly
@@ -195,8 +195,9 @@ def sliding_step(acceleration, t, x, v, dt, p):
     The impulse removes at most the present velocity; a friction force over dt could reverse it.  v lies in the plane.
     p has the fields n, mu_s and mu_k of a Block.
     *Source:* second lecture deck, the order of its steps; Moreau 1988 for friction as one impulse per step.
-    *Left out:* a block that is lifted off; a block that reverses within a step.  The latter is at rest for a moment,
-    and on a slope between the two μ static friction would hold it there.  This step does not see that; event_step does.
+    *Left out:* a block that is lifted off; a block that reverses within a step.  Such a block is at rest for a moment,
+    and on a slope with μ_k < tan θ < μ_s static friction would hold it there.  This step misses that; event_step
+    does not.
     """
     ### BEGIN SOLUTION 3.7
     a = acceleration(t, x, v, p)
@@ -244,8 +245,9 @@ def stopping_time(acceleration, t, x, v, dt, d, p):
     """Return the time [s] until a block that slides along d stops: the τ in (0, dt] at which its speed along d is 0.
 
     If  kinetic_friction_step(acceleration, t, x, v, dt, d, p)  ends with  v · d > 0,  the block goes on: return dt.
-    Otherwise halve the interval (0, dt] HALVINGS times.  Keep the half in which the sign changes: a slide to its
-    beginning still moves (v · d > 0), a slide to its end does not.  Return the end of the last interval.
+    Otherwise halve the interval (0, dt] HALVINGS times.  Keep the half in which the sign changes: after a slide to its
+    beginning the block still moves (v · d > 0), after a slide to its end it does not.  Return the end of the last
+    interval.
     *Source:* bisection; second lecture deck, “go back to time of impact”, for the idea.
     """
     ### BEGIN SOLUTION 3.9
@@ -320,7 +322,7 @@ def particle_bowl_gap(x, p):
     """Return (φ, n) of a round hollow: distance [m] of x (d,) from its wall, positive inside, and unit normal.
 
     r = x − centre, without its part along the axis:  r ← r − (r · axis) axis          (axis = 0: a bowl)
-    φ = radius − |r|,     n = −r/|r| = ∇φ of the nearest wall;          inwards; n = 0 in the very centre
+    φ = radius − |r|,     n = −r/|r| = ∇φ of the nearest wall;          inwards; n = 0 at the exact centre
 
     *Source:* second lecture deck, the implicit function φ(x) of an obstacle.
     """
@@ -357,8 +359,9 @@ def contact_step(acceleration, surface, t, x, v, dt, p):
         v ← v + particle_contact_impulse(v, n, m, e, μ)/m            the impulse is 0 where v already points outwards
         x ← x − φ n
 
-    A particle that should rest on a slope moves dt² g sin θ down it in every step, and the correction acts only across
-    it.  It creeps at dt g sin θ: the artificial sliding of this method.  p has the fields m, e and mu.
+    A particle that should rest on a slope moves dt² g sin θ down the slope in every step, and the correction acts only
+    across the slope.  So the particle creeps at dt g sin θ: the artificial sliding of this method.  p has the fields m,
+    e and mu.
     *Source:* second lecture deck, “A simple strategy for particle/implicit collisions”.
     """
     ### BEGIN SOLUTION 3.14
@@ -376,10 +379,10 @@ def friction_position_correction(moved, n, depth, mu):
     """Return the correction (d,) [m] along the surface after a step that moved a particle by `moved` (d,).
 
     Δx_t = −min(μ depth, |s|) s/|s|,     s = tangential(moved, n);          0 where s = 0
-    depth ≥ 0 [m]: how deep the particle then is inside.
+    depth ≥ 0 [m]: depth of the particle inside the obstacle after the step.
 
-    This is friction for positions: the normal correction is the depth, the tangential one at most μ times that.
-    On a slope depth = dt² g cos θ, so that a particle at rest returns to its old position if tan θ ≤ μ.
+    This is friction for positions: the normal correction is the depth, and the tangential one is at most μ times that.
+    On a slope depth = dt² g cos θ, so a particle at rest returns to its old position if tan θ ≤ μ.
     *Source:* second lecture deck, “tangential position correction to counteract artificial sliding”;
     Macklin et al. 2014, eq. 24.
     """
@@ -394,7 +397,7 @@ def position_friction_step(acceleration, surface, t, x, v, dt, p):
     As contact_step.  Where φ < 0 and the velocity was inwards (v · n < 0, before the impulse), also add to x
         friction_position_correction(displacement in this step before x was moved back, n, −φ, μ)
 
-    *Source:* second lecture deck, the last line of that strategy.
+    *Source:* second lecture deck, the last line of “A simple strategy for particle/implicit collisions”.
     """
     ### BEGIN SOLUTION 3.16
     v = v + dt * acceleration(t, x, v, p)

@@ -6,9 +6,9 @@ Symbols: t [s] time · x [m] position · v [m/s] velocity · a [m/s²] accelerat
 the scene.
 
 Every method is a function  step(acceleration, t, x, v, dt, p) → (x, v)  at t + dt.  x and v are float arrays of
-the same shape, which may be any.  acceleration(t, x, v, p) returns an array of that shape; p is passed on to it
+the same shape; any shape is allowed.  acceleration(t, x, v, p) returns an array of that shape; p is passed on to it
 unchanged.
-*Left out:* everything that is not a smooth acceleration; contacts begin with lesson 3.
+*Left out:* accelerations that are not smooth; contacts begin with lesson 3.
 """
 
 from typing import NamedTuple
@@ -64,7 +64,7 @@ def euler_step(acceleration, t, x, v, dt, p):
 
 
 def midpoint_step(acceleration, t, x, v, dt, p):
-    """Advance one step along the slope at its middle, which half an Euler step reaches; second order.
+    """Advance one step along the slope at its middle, which half a step of Euler estimates; second order.
 
     x½ = xₙ + ½dt vₙ                      v½ = vₙ + ½dt a(tₙ, xₙ, vₙ)
     xₙ₊₁ = xₙ + dt v½                     vₙ₊₁ = vₙ + dt a(tₙ + ½dt, x½, v½)
@@ -148,8 +148,8 @@ def verlet_step(acceleration, t, x, v, dt, p):
     xₙ₊₁ = xₙ + dt vₙ + ½dt² aₙ
     vₙ₊₁ = vₙ + ½dt (aₙ + aₙ₊₁),           aₙ₊₁ = a(tₙ + dt, xₙ₊₁, vₙ + dt aₙ)
 
-    The velocity inside aₙ₊₁ is an Euler prediction.  It matters only for accelerations that depend on velocity; for
-    those it preserves second order.
+    The velocity inside aₙ₊₁ is an Euler prediction.  It matters only for accelerations that depend on velocity.  With
+    it, the method has second order for those as well.
     *Source:* Swope et al. 1982; the prediction: Groot and Warren 1997 with λ = 1.
     """
     ### BEGIN SOLUTION 1.6
@@ -163,9 +163,9 @@ def verlet_step(acceleration, t, x, v, dt, p):
 def blanes_moan_step(acceleration, t, x, v, dt, p):
     """Given.  Advance one step of seven kicks and six drifts; fourth order, for accelerations that do not depend on v.
 
-    kick:  v ← v + kick dt a(t, x)         drift:  x ← x + drift dt v,   t ← t + drift dt        by turns, see SPLITTING
-    With SPLITTING = ((0, ½), (1, ½)) this is leapfrog: Verlet is the simplest of a family.  It keeps the energy as
-    Verlet does, with an error that is smaller by orders of magnitude for seven times the work.
+    kick:  v ← v + kick dt a(t, x)         drift:  x ← x + drift dt v,   t ← t + drift dt     alternately, see SPLITTING
+    With SPLITTING = ((0, ½), (1, ½)) this is leapfrog, so Verlet is the simplest member of this family.  The energy
+    error stays bounded, as with Verlet.  It is smaller by orders of magnitude, for seven times the work.
     *Source:* Blanes and Moan 2002, the Runge–Kutta–Nyström method SRKN₆ᵇ of order 4.
     """
     x, v = x.copy(), v.copy()
@@ -183,8 +183,8 @@ def blanes_moan_step(acceleration, t, x, v, dt, p):
 def newton_matrix(acceleration, t, x, v, dt, p):
     """Given.  Return the (n, n) matrix  1 − dt ∂a/∂v (t, x + dt v, v)  over the n entries of v, by central differences.
 
-    It is the derivative of the residual  r(v) = v − vₙ − dt a(t, xₙ + dt v, v),  of which Newton's method finds
-    the zero.
+    It is the derivative of the residual  r(v) = v − vₙ − dt a(t, xₙ + dt v, v).  Newton's method finds the zero of
+    this residual.
     """
     matrix = np.eye(v.size)
     for k in range(v.size):
@@ -217,7 +217,8 @@ def implicit_euler_step(acceleration, t, x, v, dt, p):
     newton_matrix and solve are given above.  r and δ are flat, (n,): use .ravel() and .reshape(v.shape).
 
     Raises Diverged("Newton's method did not converge at dt [s]", dt, "take a smaller step") after NEWTON_LIMIT
-    corrections.  solve raises LinAlgError where the 1 in the matrix is lost beside dt² k/m, above 10¹⁶.
+    corrections.  solve raises LinAlgError where dt² k/m exceeds 10¹⁶, because round-off then removes the 1 in the
+    matrix.
     *Source:* Hairer and Wanner 1996, “Solving ordinary differential equations II”, IV.3 and IV.8.
     """
     ### BEGIN SOLUTION 1.7
@@ -293,19 +294,19 @@ def advance_adaptive(step, acceleration, t, x, v, share, duration, p):
     """Given.  Return the state (x, v) after `duration` [s], in steps that adapt to the distance from the origin.
 
     An attraction −μ x/|x|³ turns a motion at the rate ρ = √(|a|/|x|) = √(μ/|x|³) [1/s].  A step lasts dt = share/ρ: on
-    a circle, share is the angle of a step [rad].  ρ is that of the middle of the step, and changes from step to step
-    by what ρ̇ = −3/2 ρ x·v/x² adds up to in the time dt:
+    a circle, share is the angle of a step [rad].  ρ belongs to the middle of the step.  Its rate of change is
+    ρ̇ = −3/2 ρ x·v/x², so over the time dt from one middle to the next it changes by −3/2 ρ dt x·v/x²:
 
         ρ ← √(|a|/|x|) − ½ share 3/2 x·v/x²            at the start, half a step ahead
         ρ ← ρ − share 3/2 x·v/x²                       between two steps
 
-    The rule sees both its neighbours alike.  So a run backwards takes the same steps, and a step that keeps the energy
-    over long times still does so; dt = share √(|x|/|a|) at the beginning of each step would not.  The last step is
-    shorter: it ends at t + duration.
+    The rule is symmetric in time, so a run backwards takes the same steps.  A method that keeps the energy over long
+    times therefore still does so.  With dt = share √(|x|/|a|) at the beginning of each step it would not.  The last
+    step is shorter: it ends at t + duration.
 
     Raises BadInput for a share that is not positive, a duration below zero or a state that is not finite.  Raises
     Diverged where ρ is not positive, because the steps are too long for the rule, and where more than
-    MOST_ADAPTED_STEPS are needed or a step does not change the time any more, because the motion falls into the origin.
+    MOST_ADAPTED_STEPS are needed or a step no longer changes the time, because the motion falls into the origin.
     *Source:* Hairer and Söderlind 2005, “Explicit, time reversible, adaptive step size control”.
     *Left out:* laws that are not ∝ 1/x², several centres.
     """
@@ -344,8 +345,8 @@ def oscillator_acceleration(t, x, v, p):
 def amplification_matrix(step, omega, zeta, dt):
     """Return the (2, 2) matrix A of one step on an oscillator: (xₙ₊₁, vₙ₊₁)ᵀ = A (xₙ, vₙ)ᵀ.
 
-    Column 1 is the result of the step from (x, v) = (1, 0), column 2 that from (0, 1).  States are arrays of
-    shape (1,), the acceleration is oscillator_acceleration, its parameters an Oscillator.
+    Column 1 is the result of the step from (x, v) = (1, 0), and column 2 is the result from (0, 1).  States are arrays
+    of shape (1,).  The acceleration is oscillator_acceleration, and its parameters are an Oscillator.
     The method is stable if no eigenvalue of A has an absolute value above 1.
     *Source:* Hairer and Wanner 1996, IV.2.
     """
@@ -374,7 +375,7 @@ def observed_order(dts, errors):
     *Find* the formula: log(error) over log(dt) is a straight line, and k is its slope by least squares.
 
     dts and errors are (n,) arrays of positive numbers.
-    Raises BadInput for one that is not: check_positive("step dt [s]", dt) for every dt of dts, and
+    Raises BadInput for any other number: call check_positive("step dt [s]", dt) for every dt of dts, and
     check_positive("error [-]", error) for every error of errors.
     A run with an error of exactly 0 gives no information about the order.
     """

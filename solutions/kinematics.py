@@ -1,9 +1,9 @@
 """Lesson 11.  Kinematics: chains, forward and inverse.
 
-    x = f(θ),      ẋ = J(θ) θ̇,      θ ← θ + Δθ  until  e = target − x  is gone
+    x = f(θ),      ẋ = J(θ) θ̇,      θ ← θ + Δθ  until  e = target − x  is zero
 
 Symbols: θ (n,) [rad] angles of the joints, each relative to the link before it · x (n + 1, d) [m] positions of the
-joints, the last one the end of the arm · J (m, n) Jacobian · e (m,) what is left of the way to the target · σ [m]
+joints, the last one the end of the arm · J (m, n) Jacobian · e (m,) remaining error to the target · σ [m]
 singular values of J · α [1/m²] gain · λ [m] damping · q (4,) = (w, x, y, z) orientation of the last link · elbow ±1.
 An arm is an Arm2D or an Arm3D (support/chains.py).  Its base is at the origin.
 
@@ -53,7 +53,7 @@ def joint_positions(theta, lengths):
 
 
 def jacobian_2d(x):
-    """J (2, n) [m/rad]: column k is the velocity of the end when only joint k turns, with 1 rad/s.
+    """J (2, n) [m/rad]: column k is the velocity of the end when only joint k turns, at 1 rad/s.
 
     column k = (−r_y, r_x),      r = x_n − x_k          x (n + 1, 2) as joint_positions gives it
 
@@ -72,7 +72,7 @@ def velocity_ellipse(J):
     """(σ₁, σ₂, angle): the half axes [m], σ₁ ≥ σ₂, of the ellipse {J θ̇ : |θ̇| = 1}, and the angle of the longer one.
 
     σ₁² = ½(a + c) + √(¼(a − c)² + b²),      σ₂ = D/σ₁,      angle = ½ atan2(2b, a − c),      J Jᵀ = [[a, b], [b, c]]
-    D² = Σ_i<k (J_0i J_1k − J_1i J_0k)²          the determinant of J Jᵀ, as a sum in which nothing cancels
+    D² = Σ_i<k (J_0i J_1k − J_1i J_0k)²          the determinant of J Jᵀ, as a sum without cancellation
     J (2, n) is not zero.  Where the arm is straight, σ₂ = 0: no joint moves the end along it.
     *Source:* Yoshikawa 1985; for D² Cauchy and Binet.
     """
@@ -92,7 +92,7 @@ def solve_2r(target, lengths, elbow):
     θ₂ = elbow · 2 atan2(√((l₁ + l₂)² − r²), √(r² − (l₁ − l₂)²)),      r = |target|
     θ₁ = atan2(y, x) − atan2(l₂ sin θ₂, l₁ + l₂ cos θ₂), wrapped(θ₁) if that is outside
 
-    That is cos θ₂ = (r² − l₁² − l₂²)/(2 l₁ l₂), by half the angle.  A root of a number below 0 counts as 0.
+    This is cos θ₂ = (r² − l₁² − l₂²)/(2 l₁ l₂), in terms of half the angle.  Take the root of a negative number as 0.
     Raises BadInput("distance of the target [m]", r, remedy) where r is above l₁ + l₂ or below |l₁ − l₂| by more than
     EDGE (l₁ + l₂), which is round-off.  *Source:* Lynch and Park 2017, chapter 6; the law of cosines.
     """
@@ -130,8 +130,8 @@ def joint_frames(theta, axes, offsets):
     orientation of the last link.
 
     From q = (1, 0, 0, 0) and x_0 = 0, joint after joint:
-        a_k = q applied to axes_k          the axis, which its own joint does not move
-        q ← q ∘ exp(θ_k axes_k)            the joint turns all that follows
+        a_k = q applied to axes_k          the axis, which its own joint does not turn
+        q ← q ∘ exp(θ_k axes_k)            the joint turns all later links
         x_k+1 = x_k + (the new q applied to offsets_k)
     rotate(q, r), quaternion_product and exponential are those of lesson 5.  Compiled, tuples are quicker than rows:
     row(x, k), put(x, k, r), plus, minus, across (×) and scaled of support/tuples.py; rotate takes them.
@@ -170,7 +170,7 @@ def jacobian_3d(x, a):
 def rotation_error(q, q_target):
     """Rotation vector (3,) [rad], at most π long, that turns the orientation q into q_target:  exp(φ) ∘ q = ±q_target.
 
-    d = q_target ∘ q̄,  or −d where that has w < 0, which is the same rotation by the shorter way: d = (w, 𝐝)
+    d = q_target ∘ q̄ = (w, 𝐝);  where w < 0 take −d, which is the same rotation by the shorter way
     φ = 2 atan2(|𝐝|, w) 𝐝/|𝐝|,      2𝐝 where |𝐝| = 0          q̄ = (w, −x, −y, −z)
 
     *Source:* Lynch and Park 2017, chapter 3: the logarithm of a rotation.
@@ -227,7 +227,7 @@ def end_pose(theta, arm):
 def transpose_step(task, theta, target, arm):
     """θ + α Jᵀ e:  one step of steepest descent on ½|e|², α = arm.gain.
 
-    Near a target that it can reach it converges only for α < 2/σ₁².
+    Near a target within reach it converges only for α < 2/σ₁².
     *Source:* Wolovich and Elliott 1984.
     """
     ### BEGIN SOLUTION 11.9
@@ -265,8 +265,8 @@ def pseudo_inverse_step(task, theta, target, arm):
 def damped_step(task, theta, target, arm):
     """θ + Jᵀ (J Jᵀ + λ² 1)⁻¹ e:  the Δθ with the smallest |J Δθ − e|² + λ² |Δθ|², λ = arm.damping.
 
-    No step is longer than |e|/(2λ).  λ > 0 where J Jᵀ has no inverse.  Given are row_products(J), which is J Jᵀ,
-    solve_symmetric(A, e), which is A⁻¹ e, and sum_of_rows(J, y), which is Jᵀ y: compiled, they are quicker than NumPy.
+    No step is longer than |e|/(2λ).  Where J Jᵀ has no inverse, λ must be above 0.  Given are row_products(J) for J Jᵀ,
+    solve_symmetric(A, e) for A⁻¹ e, and sum_of_rows(J, y) for Jᵀ y: compiled, they are faster than NumPy.
     *Source:* Wampler 1986; Nakamura and Hanafusa 1986.  Levenberg 1944 for least squares.
     """
     ### BEGIN SOLUTION 11.11
@@ -279,14 +279,15 @@ def damped_step(task, theta, target, arm):
 
 
 def contraction_factors(sigma, gain, damping):
-    """(transpose, damped): by which one iteration multiplies a small error along the direction u_i of J, for each σ_i.
+    """(transpose, damped): factors by which one iteration multiplies a small error along u_i, for each σ_i of J.
 
     An iteration is θ ← θ + P e.  Near a target in reach it turns e into (1 − J P) e, to first order:
         transpose_step:  P = α Jᵀ          damped_step:  P = Jᵀ (J Jᵀ + λ² 1)⁻¹          J = Σ σ_i u_i v_iᵀ
     *Find* the factor of each for an e along u_i.  It has a sign: below 0, the error changes sides.
     sigma is an array, and so are both results; gain is α, damping is λ > 0, both are numbers.
 
-    The slowest direction decides: for the damped step the smallest σ, for the transpose often both ends.
+    The slowest direction decides.  For the damped step it belongs to the smallest σ, for the transpose to the smallest
+    or the largest.
     *Source:* the singular value decomposition of J.
     """
     ### BEGIN SOLUTION 11.12
@@ -302,9 +303,9 @@ def ccd_step(task, theta, target, arm):
     end points at the target (2,), as seen from that joint.
 
     Δ_k = atan2(r × s, r · s),      r = end − x_k,      s = target − x_k,      r × s = r_x s_y − r_y s_x
-    θ_k ← θ_k + Δ_k, but not beyond arm.low_k and arm.high_k; then turn the end about x_k by what θ_k has changed.
+    θ_k ← θ_k + Δ_k, but not beyond arm.low_k and arm.high_k; then turn the end about x_k by the change of θ_k.
 
-    The x_k are where they were before the sweep, because joints nearer to the base have not moved yet.
+    All x_k are those before the sweep, because joints nearer to the base have not turned yet.
     task is not used.  Returns a new array.
     *Source:* Wang and Chen 1991.
     """
@@ -322,7 +323,7 @@ def ccd_step(task, theta, target, arm):
 
 
 def point_at(p, towards, length):
-    """Given.  The point (d,) at this distance [m] from p towards another one; along the first axis if they coincide."""
+    """Given.  The point (d,) at this distance [m] from p towards another one; along axis 0 if the two coincide."""
     r = towards - p
     size = np.sqrt(np.sum(r * r))
     if size == 0.0:
@@ -334,11 +335,11 @@ def point_at(p, towards, length):
 def fabrik_sweep(x, target, lengths):
     """Positions (n + 1, d) of joints and end after one sweep of projections there and back, in the plane or in space.
 
-    Back: the end goes to the target.  Then each joint, from the last to the first, goes along the line from its next
-        one to itself to where it is lengths_k from that: x_k ← point_at(x_k+1, x_k, lengths_k), with the new x_k+1.
-    Forth: joint 0 returns to where it was.  Then x_k+1 ← point_at(x_k, x_k+1, lengths_k), with the new x_k.
+    Back: the end goes to the target.  Then each joint, from the last to the first, moves along the line to the joint
+        after it until their distance is lengths_k: x_k ← point_at(x_k+1, x_k, lengths_k), with the new x_k+1.
+    Forth: joint 0 returns to its old place.  Then x_k+1 ← point_at(x_k, x_k+1, lengths_k), with the new x_k.
 
-    It is lesson 8's projection of distances, with all of the correction on one end.  Returns a new array.
+    This is lesson 8's projection of distances, with the whole correction on one end.  Returns a new array.
     *Source:* Aristidou and Lasenby 2011, FABRIK.
     """
     ### BEGIN SOLUTION 11.14
@@ -374,8 +375,8 @@ def limited_step(task, theta, target, arm):
 
     A joint is blocked if it is at a limit, or beyond it, and (Jᵀ e)_k points further out.
     J' is J with zeros in the columns of blocked joints.
-    θ ← θ + J'ᵀ (J' J'ᵀ + λ² 1)⁻¹ e, and then each angle that is outside its limits goes to the nearest one.
-    Where it comes to rest, no joint alone could make |e| smaller, to first order, without leaving its limits.
+    θ ← θ + J'ᵀ (J' J'ᵀ + λ² 1)⁻¹ e.  Then set each angle that is outside its limits to the nearest limit.
+    Where the iteration comes to rest, no single joint can reduce |e|, to first order, without leaving its limits.
     *Source:* Bertsekas 1982, projected Newton methods.
     """
     ### BEGIN SOLUTION 11.15
@@ -392,9 +393,9 @@ def limited_step(task, theta, target, arm):
 
 
 def null_space_step(task, theta, target, arm):
-    """θ + Δθ:  go to the target, and use the freedom that is left to go to the angles arm.rest (n,).
+    """θ + Δθ:  go to the target, and use the remaining freedom to approach the angles arm.rest (n,).
 
-    z = κ (rest − θ) is the change that would be welcome, κ = arm.pull.  *Find* Δθ with pseudo_inverse: of all Δθ for
+    z = κ (rest − θ) is the desired change, κ = arm.pull.  *Find* Δθ with pseudo_inverse: of all Δθ for
     which |J Δθ − e| is smallest, the one that is nearest to z.
     *Source:* Liégeois 1977.
     """
@@ -410,7 +411,7 @@ def null_space_step(task, theta, target, arm):
 # ---------------------------------------------------------------------------------------------- loops
 
 def advance_reach(step, task, theta, target, iterations, arm):
-    """Given.  θ after so many iterations.  Raises BadInput for what is no search, Diverged if θ is no longer finite."""
+    """Given.  θ after so many iterations.  Raises BadInput for invalid input, Diverged if θ is no longer finite."""
     theta, target, _, iterations = checked_reach(theta, target, 0.0, iterations, arm.low.size)
     theta = theta.copy()
     for _ in range(iterations):
@@ -433,7 +434,7 @@ def reach_trajectory(step, task, theta, target, iterations, arm):
 def solve_reach(step, task, theta, target, tolerance, most, arm):
     """Given.  (θ, |e|, iterations) when |e| is at most the tolerance, or after `most` iterations.
 
-    A target out of reach is no error: |e| says how far away the arm has stayed.  Raises what advance_reach raises.
+    A target out of reach is not an error: |e| is the distance that remains.  Raises what advance_reach raises.
     """
     theta, target, tolerance, most = checked_reach(theta, target, tolerance, most, arm.low.size)
     theta, iterations = theta.copy(), 0

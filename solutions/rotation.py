@@ -9,8 +9,8 @@ Vectors are in world coordinates, unless the name ends in _body.  The axes of th
 its principal axes, which lesson 4 computes.
 
 Every method is a function  step(torque, t, q, L, dt, body) → (q, L)  at t + dt.  torque(t, q, L, body) returns
-(3,) [N m].  body is any record with a field I_body and is passed on unchanged.  The state is L itself, so that
-without a torque it is kept to the last digit.
+(3,) [N m].  body is any record with a field I_body and is passed on unchanged.  The state contains L itself, so
+without a torque L stays constant to the last digit.
 Given in support/rotation.py: make_rigid_body; steps by the other updates of orientation, by ω as the state, and by
 Runge–Kutta; compositions of fourth order; loops over steps.
 *Left out:* contacts, except of a ball on a floor; lesson 6 finds contacts and lesson 7 resolves them.
@@ -186,7 +186,7 @@ def axis_angle_update(R, omega, dt):
 
 
 def quaternion_product(a, b):
-    """Return the product a b (4,) of two quaternions (w, x, y, z): the rotation by b, followed by that by a.
+    """Return the product a b (4,) of two quaternions (w, x, y, z): the rotation by b, followed by the rotation by a.
 
     (a₀, 𝐚)(b₀, 𝐛) = (a₀b₀ − 𝐚·𝐛,  a₀𝐛 + b₀𝐚 + 𝐚×𝐛)
 
@@ -221,7 +221,8 @@ def rotation_matrix(q):
 def quaternion_update(q, omega, dt):
     """Return the orientation (4,) after dt at ω, third way:  q + dt q̇  with  q̇ = ½ (0, ω) q,  then unit; first order.
 
-    The axis of rotation is exact, but the angle is 2 atan(½|ω| dt) instead of |ω| dt: never more than half a turn.
+    The axis of rotation is exact.  The angle is 2 atan(½|ω| dt) instead of |ω| dt, so it is never more than half a
+    turn.
     *Source:* first lecture deck, “Use quaternions”; second lecture deck, “Don't forget to normalize q”.
     """
     ### BEGIN SOLUTION 5.10
@@ -297,9 +298,9 @@ def rolling_step(load, t, x, q, v, omega, dt, ball):
 
 
 def average_rolling_step(load, t, x, q, v, omega, dt, ball):
-    """Given.  The same with positions by the means of the old and the new velocities; second order.
+    """Given.  Advance as rolling_step does, but the positions with the mean of old and new velocities; second order.
 
-    It is exact while the ball slides or rolls along a line: then its velocities are linear in t.
+    It is exact while the ball slides or rolls along a line, because its velocities are then linear in t.
     """
     _, _, v_new, omega_new = rolling_step(load, t, x, q, v, omega, dt, ball)
     turn = exponential(0.5 * dt * (omega + omega_new))
@@ -320,11 +321,12 @@ def kinetic_energy(q, L, I_body):
 def tumbling_rate(I_body, k, spin):
     """Return the rate [1/s] at which a disturbance of a rotation about the k-th principal axis grows as e^(rate·t).
 
-    *Find* it: in Euler's equations without torque put ω = spin 𝐞ₖ and a small part across 𝐞ₖ, and keep what is linear
-    in that part.
+    *Find* it: insert ω = spin 𝐞ₖ plus a small part across 𝐞ₖ into Euler's equations without torque, and keep the terms
+    that are linear in that part.
 
     I_body (3,) are the principal moments, k is 0, 1 or 2.  The spin [rad/s] may have either sign; the rate is never
-    negative.  It is positive only for the axis of the middle moment: the tennis-racket theorem.  Elsewhere return 0.
+    negative.  It is positive only for the axis of the middle moment (the tennis-racket theorem).  For the other axes
+    return 0.
     *Source:* second lecture deck, “Tennis racket theorem”; Euler's equations, linearised about ω = spin 𝐞ₖ.
     """
     ### BEGIN SOLUTION 5.14
@@ -341,7 +343,7 @@ def no_torque(t, q, L, body):
 
 
 def heavy_top_torque(t, q, L, top):
-    """Return τ [N m] (3,) of gravity, −z, about the pivot of a Top with its centre of mass on its axis 𝐞 = R (0, 0, 1).
+    """Return the torque τ [N m] (3,) of gravity, along −z, about the pivot of a Top whose axis is 𝐞 = R (0, 0, 1).
 
     *Find* it: the weight Mg acts at l𝐞 from the pivot, and top.mgl is the product of the three numbers.
 
@@ -360,7 +362,7 @@ def heavy_top_torque(t, q, L, top):
 def midpoint_free_rotation(q, L, I_body, dt):
     """Return the orientation (4,) of a free body after dt by the implicit midpoint rule; second order, exact energy.
 
-    Let ℓ be the body coordinates of L at the start (unrotate).  Find those at the middle of the step, m:
+    Let ℓ be the body coordinates of L at the start (unrotate).  Find m, those at the middle of the step:
         m = ℓ + ½dt m × w,    w = m/I_body
     Newton's method: start from a copy of ℓ and repeat, at most NEWTON_LIMIT times,
         r = m − ℓ − ½dt m × w;     column k of its derivative:  𝐞ₖ + ½dt (w − m/Iₖ) × 𝐞ₖ
@@ -393,7 +395,7 @@ def midpoint_free_rotation(q, L, I_body, dt):
 
 
 def intermediate_axis(I_body):
-    """Given.  Return the number of the axis with the middle moment; the first possible one where moments are equal."""
+    """Given.  Return the number of the axis with the middle moment; if moments are equal, the first such axis."""
     for k in range(2):
         if (I_body[(k + 1) % 3] - I_body[k]) * (I_body[k] - I_body[(k + 2) % 3]) >= 0.0:
             return k
@@ -408,7 +410,7 @@ def splitting_free_rotation(q, L, I_body, dt):
     and the motion by each term alone is known.  The first rotates the body about L, by dt/I_b L: multiply by
     exponential(dt/I_b L) from the left; it commutes with the others.  The second rotates it about its own axis a by the
     angle dt (1/I_a − 1/I_b) L_a:  about_axis, with  L_a = body_component(q, L, a)  of the latest q.  The third does the
-    same about c.  Order of the rotations:
+    same about the axis c.  Order of the rotations:
         half of a,  all of c,  half of a,  about L          and unit at the end
     Exact when two moments are equal.
     *Source:* Touma and Wisdom 1994; Fassò 2003, “Comparison of splitting algorithms for the rigid body”.

@@ -64,7 +64,7 @@ def universal_gravity(x_a, x_b, m_a, m_b, G):
 
     F = G m_a m_b / r²  along the line from a to b,   r = |x_b − x_a|
 
-    Near the ground, with the Earth as b, it is m_a g.
+    Near the ground, with the Earth as b, this force is m_a g.
     Raises BadInput for two bodies at the same place: check_positive("distance of two bodies [m]", r).
     *Source:* first lecture deck, “Friction (2)” and “Gravity”; Newton 1687.
     """
@@ -95,7 +95,7 @@ def spring_tension(length, rate, rest, k, k_d):
 
     T = k (l − rest) + k_d l̇          l̇ [m/s], here `rate`: the rate of lengthening
 
-    *Source:* first lecture deck, “Damping”; its sign is that of the force on the moving end.
+    *Source:* first lecture deck, “Damping”; the sign there is that of the force on the moving end.
     """
     ### BEGIN SOLUTION 2.3
     return k * (length - rest) + k_d * rate
@@ -133,7 +133,7 @@ def angular_spring_forces(x_a, x_b, x_c, rest, k):
     """Return the forces [N] (2,) on a, b and c of a plane angular spring at b, with the rest angle `rest` [rad].
 
     θ is the angle from r_a = x_a − x_b to r_c = x_c − x_b, counter-clockwise.  Take θ − rest into (−π, π].
-    The energy is ½k(θ − rest)², k [N m/rad].  *Find* the forces: minus its derivatives by x_a, x_b and x_c.
+    The energy is ½k(θ − rest)², k [N m/rad].  *Find* the forces: minus its derivatives with respect to x_a, x_b, x_c.
     Returns (F_a, F_b, F_c).
     Raises BadInput("the arm of an angular spring [m]", 0.0, "keep its ends away from its hinge") for an arm of
     zero length.
@@ -166,9 +166,9 @@ def spring_forces(x, v, network):
     For each spring:  r = x_j − x_i,   l = |r|,   l̇ = r · (v_j − v_i) / l,   T = spring_tension(l, l̇, …)
                       F_i += T r/l,    F_j −= T r/l
 
-    Include the forces on fixed points; spring_network_acceleration holds those points.
-    distance_between, product_between and move_apart (vectors.py) are made for links, and fast.  Array expressions are
-    equally correct, with one trap: if i holds a point twice, F[i] += f adds only once.
+    Include the forces on fixed points, because spring_network_acceleration holds those points.
+    distance_between, product_between and move_apart (vectors.py) are fast functions for links.  Array expressions are
+    equally correct, but if i contains a point twice, F[i] += f adds only once.
     Raises BadInput("the length of a spring [m]", 0.0, "keep its ends apart") when the ends coincide, because the
     spring then has no direction.
     *Source:* first lecture deck, “spring.point1.force += force; spring.point2.force -= force”.
@@ -224,8 +224,8 @@ def mass_spring_damper_step(t, x, v, dt, network):
 def grid_pairs(rows, cols, offsets):
     """Return the pairs (s, 2) of nodes that springs join in a grid; node (r, c) has the number r · cols + c.
 
-    For every offset (dr, dc), and for every node from the first to the last: the pair (node, node at r + dr, c + dc),
-    if that node exists.  STRUCTURAL, SHEAR and BEND are such offsets; add the tuples to combine them.
+    For every offset (dr, dc), and for every node from the first to the last, list the pair (node, node at r + dr,
+    c + dc) if the second node exists.  STRUCTURAL, SHEAR and BEND are tuples of offsets; add them to combine them.
     Returns integers; an empty list of pairs has shape (0, 2).
     *Source:* first lecture deck, “Multiple connectivity”; Provot 1995 for the three names.
     """
@@ -240,7 +240,8 @@ def grid_pairs(rows, cols, offsets):
 def make_spring_network(x, m, fixed, pairs, k, k_d, gravity, wind, k_v):
     """Given.  Make a SpringNetwork whose springs have their lengths at x as natural lengths.
 
-    x (n, d); m [kg], k and k_d are numbers or one each; fixed lists point numbers; pairs (s, 2); gravity and wind (d,).
+    x (n, d).  m [kg], k and k_d: one number for all, or one for each.  fixed: indices of points.  pairs (s, 2).
+    gravity and wind (d,).
     Raises BadInput for a mass that is not positive, a state that is not finite, a point number out of range, a spring
     of zero length, a negative stiffness, damper or viscosity, gravity or wind of another dimension than x.
     """
@@ -275,15 +276,16 @@ class StepMatrix(NamedTuple):
 
 
 def spring_stiffness(x, network):
-    """Return the blocks K [N/m] and D [N s/m], each (s, d, d): minus the derivatives of the force on i by x_i and v_i.
+    """Return the blocks K [N/m] and D [N s/m], each (s, d, d): the response of end i to x_i and v_i.
 
     K = −∂F_i/∂x_i of the force of the spring, k (l − rest) along n = r/l,  r = x_j − x_i
     D = −∂F_i/∂v_i of the force of the damper
 
     *Find* both.  K is the sum of a part along the spring, with n nᵀ, and a part across it, with 1 − n nᵀ.
-    The blocks of j are the same, and those of one end by the motion of the other have the opposite sign.
-    *Left out,* so that the matrix stays positive: the part across of a compressed spring, where its factor would be
-    negative (put 0), and the share of the damper in ∂F/∂x.
+    The blocks of j are the same.  The derivatives of the force on one end with respect to the
+    position or velocity of the other end have the opposite sign.
+    *Left out,* so that the matrix stays positive definite: the part across a compressed spring, where its factor
+    would be negative (use 0), and the contribution of the damper to ∂F/∂x.
     The worked answer fills the blocks entry by entry, which compiles fastest.
     *Source:* Baraff and Witkin 1998; Choi and Ko 2002 for the max.
     """

@@ -1,6 +1,6 @@
-"""Vectors of three coordinates, matrices of three rows, and the rows of points that a link joins, written out.
+"""Functions for vectors of three coordinates, matrices of three rows, and the two points of a link, written out.
 
-Given.  Compiled, these functions are as fast as loops; NumPy's own take longer to compile and to run.
+Given.  Compiled, these functions are as fast as loops.  NumPy's own functions take longer to compile and to run.
 """
 
 import numpy as np

@@ -155,7 +155,10 @@ def implicit_gyroscopic_step(torque, t, q, L, dt, body):
 
 
 def runge_kutta_step(torque, t, q, L, dt, body):
-    """Given.  Runge–Kutta 4 of lesson 1 for q̇ = ½ (0, ω) q, L̇ = τ, then q normalised; fourth order, energy drifts."""
+    """Given.  Runge–Kutta 4 of lesson 1 for q̇ = ½ (0, ω) q, L̇ = τ, then q normalised; fourth order, energy drifts.
+
+    The stages have quaternions that are not quite of length 1.  ω and τ are those of the orientation q/|q|.
+    """
     rate_1, tau_1 = _slope(torque, t, q, L, body)
     rate_2, tau_2 = _slope(torque, t + 0.5 * dt, q + 0.5 * dt * rate_1, L + 0.5 * dt * tau_1, body)
     rate_3, tau_3 = _slope(torque, t + 0.5 * dt, q + 0.5 * dt * rate_2, L + 0.5 * dt * tau_2, body)
@@ -166,8 +169,9 @@ def runge_kutta_step(torque, t, q, L, dt, body):
 
 def _slope(torque, t, q, L, body):
     """Given.  Return q̇ and L̇."""
-    omega = angular_velocity(rotation_matrix(q), L, body.I_body)
-    return 0.5 * quaternion_product(np.array([0.0, omega[0], omega[1], omega[2]]), q), torque(t, q, L, body)
+    turn = unit(q)
+    omega = angular_velocity(rotation_matrix(turn), L, body.I_body)
+    return 0.5 * quaternion_product(np.array([0.0, omega[0], omega[1], omega[2]]), q), torque(t, turn, L, body)
 
 
 def composed_splitting_step(torque, t, q, L, dt, body):

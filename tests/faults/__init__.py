@@ -13,8 +13,8 @@ from validate import modules
 
 
 class Fault(NamedTuple):
-    """One wrong line in the function of a lesson."""
-    lesson: str
+    """One wrong line in a function of a lesson, or of a given module."""
+    lesson: str              # or support.rotation, support.geometry …
     function: str
     old: str                 # text that occurs exactly once in the function
     new: str                 # the text in its place
@@ -28,11 +28,14 @@ class Fault(NamedTuple):
 
 
 def collection(lesson):
-    """Return fault(function, old, new, wrong, missed=""), which keeps a Fault of that lesson, and the list of all."""
+    """Return fault(function, old, new, wrong, missed="", of=lesson), which keeps a Fault, and the list of all.
+
+    `of` names a given module in place of the lesson.
+    """
     faults = []
 
-    def fault(function, old, new, wrong, missed=""):
-        faults.append(Fault(lesson, function, old, new, wrong, missed))
+    def fault(function, old, new, wrong, missed="", of=lesson):
+        faults.append(Fault(of, function, old, new, wrong, missed))
 
     return fault, faults
 
@@ -42,10 +45,15 @@ def faults_of(lesson):
     return importlib.import_module(f"{__name__}.{lesson}").FAULTS
 
 
+def file_of(module):
+    """The file of a lesson or of a given module below solutions/."""
+    return module.replace(".", "/") + ".py"
+
+
 def planted(fault):
-    """The text of the lesson with the fault in it.  Raises ValueError unless the old text occurs once in the function.
+    """The text of the module with the fault in it.  Raises ValueError unless the old text occurs once in the function.
     """
-    text = (modules.SOLUTIONS / f"{fault.lesson}.py").read_text(encoding="utf-8")
+    text = (modules.SOLUTIONS / file_of(fault.lesson)).read_text(encoding="utf-8")
     function = next(node for node in ast.parse(text).body if getattr(node, "name", None) == fault.function)
     lines = text.splitlines(keepends=True)
     first = (function.body[1] if ast.get_docstring(function) else function.body[0]).lineno - 1

@@ -106,7 +106,7 @@ def verdict(done):
     table = Table(header_style="bold", box=None, pad_edge=False)
     for column in ("lesson", "faults", "noticed", "MISSED", "of these with a reason"):
         table.add_column(column, justify="left" if column == "lesson" else "right")
-    for lesson in dict.fromkeys(fault.lesson for fault in done):
+    for lesson in dict.fromkeys(fault.lesson for fault in done):             # given modules have rows of their own
         table.add_row(lesson, *map(str, counts({f: found for f, found in done.items() if f.lesson == lesson})))
     table.add_row("all", *map(str, counts(done)), style="bold")
     console.print()

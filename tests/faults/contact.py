@@ -44,3 +44,32 @@ fault("velocity_sweep_2d", "- v[b, 1] - omega[b] * b_x", "- v[b, 1] + omega[b] *
 fault("velocity_sweep_2d", "- give[k] * k_n * J_n)", ")", "the contact does not give under its load")
 fault("velocity_sweep", "minus(old, row(J, k)), inv_mass, inv_inertia)",
       "minus(row(J, k), old), inv_mass, inv_inertia)", "action without reaction")
+fault("contact_rows", "contacts.p[k, 0] - x[body, 0]", "contacts.p[k, 0] - x[contacts.a[k], 0]",
+      "both arms begin at the first body")
+fault("delassus_matrix", "(G * w)", "(G * (w > 0.0) * np.max(w))", "all bodies are as light as the lightest")
+fault("complementarity_residual", "np.diag(A) * lam", "lam", "impulses are compared with velocities")
+fault("gauss_seidel_sweep", "for k in range(lam.size)", "for k in range(lam.size - 1, -1, -1)",
+      "the sweep begins at the other end")
+fault("solve_lcp", "(lam[k] < -epsilon[k] / A[k, k])", "(lam[k] < -1e-3)", "contacts may pull by 1 mN s")
+fault("solve_lcp", "(u[k] < -epsilon[k])", "(u[k] < -1e-4)", "contacts may approach by 0.1 mm/s")
+fault("cone_residual", "limit = mu[n // 2] * J[n] if J[n] > 0.0 else 0.0",
+      "limit = mu[n // 2] * np.maximum(0.0, J[n] - u[n] / A[n, n])", "the limit is that of the new J_n")
+fault("cone_sweep", "(A[t] @ J + b[t]) / A[t, t]", "(A[t] @ J + b[t]) / np.maximum(A[t, t], A[n, n])",
+      "a sweep changes J_t too little, and many sweeps do not")
+fault("contact_forces", "G @ (w * load.ravel())", "G @ load.ravel() * np.max(w)", "right for equal masses only")
+fault("soft_contact", "if gap > 0.0:", "if gap > 1e-3:", "the spring acts before it touches")
+fault("friction_disc", "size = np.sqrt(dot(J, J))", "size = max(abs(J[0]), abs(J[1]), abs(J[2]))",
+      "a box in place of the disc of friction")
+fault("kept_impulses", "near * near", "near", "metres are compared with square metres")
+fault("kept_impulses", "(contacts.p[k, c] - old.p[s, c]) ** 2", "(contacts.p[k, c] - old.p[s, c]) ** 2 * (c == 0)",
+      "only the distance along x counts")
+fault("velocity_sweep_2d", "pile.mu * J_n if J_n > 0.0", "pile.mu * (n_x * J[k, 0] + n_y * J[k, 1]) if J_n > 0.0",
+      "friction is limited by the old J_n")
+fault("velocity_sweep_2d", "J_t = -limit if J_t < -limit else", "J_t = limit if J_t < -limit else",
+      "friction at its limit turns round on one side")
+fault("velocity_sweep", "plus(old, -1.0 / arms.k_t[k], u)", "plus(old, -1.0 / arms.k_n[k], u)",
+      "in space friction has the mass of the normal direction")
+fault("velocity_sweep", "aim[k] - dot(n, u) - give[k] * k_n * J_n", "aim[k] - dot(n, u)",
+      "in space contacts do not give under their load")
+fault("velocity_sweep", "mu * J_n if J_n > 0.0 else 0.0", "mu * dot(n, old) if J_n > 0.0 else 0.0",
+      "in space friction is limited by the old J_n")

@@ -43,3 +43,30 @@ fault("slide_on_plane", "a - np.minimum(0.0, a @ n) * n", "tangential(a, n)", "t
 fault("free_flight", "0.5 * t * t * a", "0.49 * t * t * a", "the fall is 2 % too short")
 fault("solve_impacts", "Js[i] = J\n        if", "Js[i] = np.maximum(J, 0.0)\n        if",
       "impulses along negative axes are forgotten between sweeps")
+fault("kinematic_response", "v_n = v @ n", "v_n = v[v.size - 1] * n[n.size - 1]",
+      "only the last coordinate counts: right above a level floor")
+fault("impulse_size", "u_n >= 0.0 else", "u_n >= -0.01 else", "slow contacts get no impulse, as in engines")
+fault("effective_inverse_mass_2d", "lever_b**2 * b.inv_inertia", "lever_b**2 * b.inv_inertia * (b.inv_mass > 0.0)",
+      "a second body on an axle does not turn")
+fault("apply_impulse_2d", "body.inv_inertia * cross_2d(r, J)",
+      "body.inv_inertia * (body.inv_mass > 0.0) * cross_2d(r, J)", "no impulse turns a body on an axle")
+fault("effective_inverse_mass", "a.inv_mass + b.inv_mass", "2.0 * a.inv_mass", "right for equal masses only")
+fault("relative_velocity", "- point_velocity(b.v, b.omega, r_b)", "- point_velocity(b.v, b.omega, r_a)",
+      "the second point has the first arm")
+fault("apply_impulse", "times(body.inv_inertia, cross(r, J))", "times(body.inv_inertia * np.eye(3), cross(r, J))",
+      "products of inertia are left out")
+fault("cone_impulse", "if u @ n >= u_sep:", "if u @ n >= 0.0:", "points that part too slowly are left alone")
+fault("cone_impulse", "size <= mu * (J @ n)", "size <= mu * np.abs(J @ n)", "a sticking impulse may pull")
+fault("impact_time", "phi = np.maximum(0.0, phi)", "phi = np.abs(phi)", "what is inside is as far away outside")
+fault("impact_time", "np.minimum(tau, dt)", "tau", "an impact may be later than the step")
+fault("bouncing_time", "if a_n >= 0.0 or e == 1.0:", "if e == 1.0:",
+      "a ball that is pulled away comes to rest on its plane")
+fault("gap", "(x - p.point) @ p.n", "x @ p.n - p.point @ np.abs(p.n)",
+      "right for normals without negative coordinates only")
+fault("position_projection_step", "if phi < 0.0:", "if phi < 0.0 and v @ p.n < 0.0:",
+      "a ball inside that leaves is not moved out")
+fault("backtracking_step", "p.e) <= left", "p.e) <= dt",
+      "bounces that last longer than what is left of the step are cut off")
+fault("solve_impacts", "n[i], K, u_sep[i], mu", "n[i], K, u_sep[0], mu", "all points separate as fast as the first")
+fault("solve_impacts", "residual = max(residual, np.abs(times(K, J - Js[i])).max())",
+      "residual = np.abs(times(K, J - Js[i])).max()", "the sweeps end when the last point is at rest")

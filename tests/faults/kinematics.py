@@ -52,3 +52,33 @@ fault("angles_of", "wrapped(phi - before), phi", "wrapped(phi - before), 0.0",
       "angles are from the x axis, not from the link before")
 fault("reach_2d", "target - x[theta.size], jacobian_2d(x)", "target - x[theta.size - 1], jacobian_2d(x)",
       "the last joint but one reaches for the target")
+fault("velocity_ellipse", "np.arctan2(2.0 * b, a - c)", "np.arctan2(2.0 * np.abs(b), a - c)",
+      "the long axis never points downwards")
+fault("velocity_ellipse", "for i in range(k):", "for i in range(max(0, k - 1), k):", "right for two joints only")
+fault("solve_2r", "np.abs(lengths[0] - lengths[1])", "lengths[0] - lengths[1]",
+      "an arm with a longer second link has no hole")
+fault("solve_2r", "wrapped(np.arctan2(target[1], target[0]) - back)", "np.arctan2(target[1], target[0]) - back",
+      "angles beyond half a turn")
+fault("solve_3r", "wrapped(phi - theta[0] - theta[1])", "phi - theta[0] - theta[1]",
+      "the hand turns the long way round")
+fault("pseudo_inverse", "SINGULAR * sigma[0]", "SINGULAR", "what is singular depends on the unit of length")
+fault("ccd_step", "np.minimum(np.maximum(wish, arm.low[k]), arm.high[k])", "np.minimum(wish, arm.high[k])",
+      "joints have no lower limit")
+fault("ccd_step", "np.cos(new - theta[k]), np.sin(new - theta[k])", "np.cos(wish - theta[k]), np.sin(wish - theta[k])",
+      "the end goes where a joint without limits would take it")
+fault("fabrik_sweep", "x[0] = base", "x[0] = 0.0 * base", "the base is always at the origin")
+fault("limited_step", "theta[k] >= arm.high[k]", "theta[k] > arm.high[k]", "a joint at its upper limit is not blocked")
+fault("joint_frames", "quaternion_product(q, exponential(scaled(theta[k], axis)))",
+      "quaternion_product(exponential(scaled(theta[k], axis)), q)", "all axes are those of the world")
+fault("jacobian_3d", "minus(row(x, n), row(x, k))", "row(x, n)", "all joints turn the end about the base")
+fault("rotation_error", "if d[0] < 0.0:", "if d[0] < -0.999:", "it turns the long way round")
+fault("reach_3d", "jacobian_3d(x, a)[:3]", "jacobian_3d(x, a)[3:]", "the rows of the rotation for those of the place")
+fault("pose_3d", "rotation_error(q, target[3:])", "-rotation_error(q, target[3:])",
+      "the hand turns away from its target")
+fault("end_pose", "x[theta.size], q", "x[theta.size - 1], q", "the place of the last joint for that of the end")
+fault("point_at", "r[0], size = 1.0, 1.0", "r[1], size = 1.0, 1.0", "what has no direction goes along the second axis")
+fault("solve_reach", "theta, iterations = step(task, theta, target, arm), iterations + 1",
+      "theta, iterations = step(task, theta, target, arm), iterations + 2", "each iteration counts twice")
+fault("solve_targets", "task, theta, targets[i]", "task, thetas[i - 1] if i > 0 else theta, targets[i]",
+      "each search begins where the last one ended")
+fault("reach_trajectory", "step, task, thetas[k]", "step, task, thetas[0]", "a history repeats its first iteration")

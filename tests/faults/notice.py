@@ -22,7 +22,7 @@ from validate.measure.selection import Plan, select
 from validate.results import Verdict
 from validate.stability.examine import all_cases, broken_off, examine
 
-from . import planted
+from . import file_of, planted
 
 SWEEPS = (300, 1000, 5000)   # most steps of a run, before all of them: a coarse sweep often shows the fault
 SECONDS = {}                 # of the places that have run in this process: quick ones are asked first
@@ -39,20 +39,29 @@ class Notice(NamedTuple):
 
 @contextmanager
 def copy_with(texts):
-    """A temporary copy of solutions/ in which some lessons have another text: {lesson: text}.
+    """A temporary copy of solutions/ in which some modules have another text: {lesson or given module: text}.
 
     What is compiled meanwhile goes with it, so that it does not crowd out compiled code that will be used again.
+    Given modules are everybody's own, so only plain code takes them from the copy, and only while this lasts.
     """
-    kept = numba_twins.CACHE
+    kept, support, given = numba_twins.CACHE, modules.SUPPORT, modules.given_modules
     with tempfile.TemporaryDirectory(prefix="fault-") as folder:
         copy, numba_twins.CACHE = Path(folder) / "lessons", Path(folder) / "compiled"
         shutil.copytree(modules.SOLUTIONS, copy, ignore=shutil.ignore_patterns("__pycache__"))
         for lesson, text in texts.items():
-            (copy / f"{lesson}.py").write_text(text, encoding="utf-8")
+            (copy / file_of(lesson)).write_text(text, encoding="utf-8")
+        if any(is_given(lesson) for lesson in texts):
+            modules.SUPPORT = copy / "support"
+            modules.given_modules = lambda: ["checks"]
         try:
             yield copy
         finally:
-            numba_twins.CACHE = kept
+            numba_twins.CACHE, modules.SUPPORT, modules.given_modules = kept, support, given
+
+
+def is_given(module):
+    """Whether this is a given module, and not a lesson."""
+    return module not in modules.lesson_names()
 
 
 def notice(fault, first="", finest=np.inf):
@@ -66,7 +75,8 @@ def notice(fault, first="", finest=np.inf):
                 if most > min(SWEEPS[0], finest) and place.startswith(coverage.STABILITY):
                     continue                                         # it has no sweep, and has already run
                 tried.append(place)
-                turned = turned_at(place, copy, (fault.lesson, fault.function), most)
+                speeds = ("plain",) if is_given(fault.lesson) else tuple(LIMITS)
+                turned = turned_at(place, copy, (fault.lesson, fault.function), most, speeds)
                 if turned:
                     return Notice(turned, place, time.monotonic() - began, sorted(set(tried)))
     return Notice("", "", time.monotonic() - began, sorted(set(tried)))
@@ -76,7 +86,7 @@ def rank(place, fault, first):
     """Places of the lesson itself before those of later lessons; those that name the function first, and quick ones."""
     roots = roots_of(place)
     near = coverage.defined((fault.lesson, fault.function)) in {coverage.defined(root) for root in roots}
-    own = any(lesson == fault.lesson for lesson, _ in roots)
+    own = any(lesson == fault.lesson.removeprefix("support.") for lesson, _ in roots)
     slow = SECONDS.get(place, 0.0) // 1.0
     return place != first, not own, not near, slow, not place.startswith(coverage.STABILITY), place
 

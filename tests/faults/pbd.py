@@ -44,3 +44,33 @@ fault("turning_rate", "2.0 / (turn[0] * dt) * turn[1:]", "2.0 / dt * turn[1:]",
 fault("volume_gradient", "cross(c, a) / 6.0", "cross(a, c) / 6.0", "one corner of each face pulls inwards")
 fault("volume_gradient", "V += dot(a, across)", "V += np.abs(dot(a, across))",
       "every face adds to the volume, whichever way it looks")
+fault("distance_constraint", "return length - rest,", "return 0.5 * (length * length - rest * rest) / rest,",
+      "another constraint with the same zero")
+fault("constraint_correction", "weight += inv_mass[k] * g * g", "weight += inv_mass[0] * g * g",
+      "all points weigh as the first")
+fault("predict", "free[:, None] * a", "a", "immovable points feel forces")
+fault("predict", "x + dt * v +", "x + dt * free[:, None] * v +", "immovable points that are driven stop")
+fault("predict", "acceleration(t, x, v, network)", "acceleration(t + dt, x, v, network)",
+      "the forces are those of the end of the step")
+fault("newton_correction", "A[a, b] -= network.inv_mass[e] * bend", "A[a, b] -= network.inv_mass[f] * bend",
+      "the curvature moves an end by the mass of the other")
+fault("constraint_projection_step", "NEWTON_TOLERANCE * longest", "1e-5 * longest",
+      "Newton's method stops at five digits")
+fault("distance_sweep", "w[i] * share, w[j] * share", "w[j] * share, w[i] * share",
+      "the heavy end of a link moves more")
+fault("distance_sweep", "network.stiffness[s]", "network.stiffness[0]", "all links are as stiff as the first")
+fault("fold_constraint", "np.arctan2(dot(cross(N_c, N_d), e) / length,",
+      "np.arctan2(np.abs(dot(cross(N_c, N_d), e)) / length,", "all folds are to one side")
+fault("ball_gap", "r / distance if", "r / obstacle.radius if", "the normal has the length 1 at the surface only")
+fault("keep_outside", "phi < 0.0 and inv_mass[k] > 0.0", "phi < 0.0", "immovable points are moved out")
+fault("compliant_multiplier", "/ (weight + alpha_scaled)", "/ (weight + 2.0 * alpha_scaled)",
+      "each visit does too little, and many visits the same")
+fault("compliant_sweep", "Lam[s], w[i] + w[j],", "Lam[s], 2.0 * w[i],", "right for equal masses only")
+fault("compliant_sweep", "network.alpha[s] / (dt * dt)", "network.alpha[0] / (dt * dt)",
+      "all links have the compliance of the first")
+fault("effective_inverse_mass_at", "turn * turn / I_body)", "turn * turn / I_body[0])", "one moment for all axes")
+fault("apply_positional_impulse", "rotate(q, unrotate(q, cross(r, p)) / I_body)", "cross(r, p) / I_body",
+      "the moments are taken in world coordinates")
+fault("turning_rate", "2.0 / (turn[0] * dt)", "2.0 / (np.abs(turn[0]) * dt)", "q and −q turn in opposite directions")
+fault("floor_gap", "(x - obstacle.point) * obstacle.n", "x * obstacle.n - obstacle.point[0] * obstacle.n",
+      "the floor has another height")

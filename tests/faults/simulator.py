@@ -50,3 +50,38 @@ fault("gain_without_source", "lowest = np.minimum(lowest, rest)", "lowest = rest
       "gains count from the start only")
 fault("compare", "np.max(np.abs(slow - quick))", "np.max(slow - quick)", "a loop that is ahead has no difference")
 fault("advance_free", "t + n * dt, x, q", "t, x, q", "all loads are those of the start")
+fault("new_velocities_2d", "load(t, x", "load(t + dt, x", "the load is that of the end of the step")
+fault("new_velocities", "p.inv_inertia[i, 0] > 0.0", "p.inv_mass[i] > 0.0 and p.inv_inertia[i, 0] > 0.0",
+      "no torque turns a body on an axle")
+fault("new_velocities", "tau[i]", "tau[i] * (i == 0)", "only the first body has a torque")
+fault("find_contacts", "p.planes, pairs, p.margin)", "p.planes, pairs, 0.0)",
+      "contacts are found when they have closed")
+fault("find_contacts", "high + p.margin", "high", "ceilings are found late")
+fault("contact_step_2d", "bounds(x, q, p.half)", "bounds(x, 0.0 * q, p.half)", "detection takes all boxes as upright")
+fault("contact_step_2d", "closing_speeds(contacts.gap, dt)", "closing_speeds(0.0 * contacts.gap, dt)",
+      "bodies stop before they touch")
+fault("contact_step", "closing_speeds(contacts.gap, dt)", "closing_speeds(0.0 * contacts.gap, dt)",
+      "in space bodies stop before they touch")
+fault("contact_step", "world_inertia(turn, p.inv_inertia)", "world_inertia(0.0 * turn + np.eye(3), p.inv_inertia)",
+      "the tensor of a body does not turn with it")
+fault("contact_step", "J = kept_impulses(contacts, old, J, p.margin)",
+      "J = 0.0 * kept_impulses(contacts, old, J, p.margin)", "in space the warm start is lost")
+fault("contact_step", "turn_quaternions(q, omega, dt)", "turn_quaternions(q, state.omega, dt)",
+      "bodies turn with their old ω")
+fault("carried_step", "0.5 * dt * (omega + omega_new)", "dt * omega_new",
+      "the ball turns with its new ω, and moves with the mean velocity")
+fault("slip_time", "slip[2] = 0.0", "slip[2] = slip[2]", "a vertical velocity counts as slip")
+fault("slip_time", "size / rate if rate > 0.0 else np.inf", "size / np.abs(rate)", "a slip that grows ends, too")
+fault("exact_rolling_step", "t + first", "t", "both parts have the load of the start")
+fault("corner_impact", "r[0] * r[0] + r[1] * r[1]", "r[1] * r[1]",
+      "only the height of the centre counts for the moment about the corner")
+fault("rocking_step", "-side * x_new, -side * v_new", "-x_new, -v_new", "right for one of both corners only")
+fault("mechanical_energy", "if p.inv_mass[i] > 0.0:", "if p.inv_mass[i] > 0.0 or p.inv_inertia[i, 0] > 0.0:",
+      "what is on an axle has an infinite energy")
+fault("momenta", "1.0 / p.inv_inertia[i])", "1.0 / p.inv_inertia[0])", "all bodies have the moments of the first")
+fault("gain_without_source", "np.maximum(gain, rest - lowest)", "rest - lowest", "only the gain at the end counts")
+fault("compare", "np.median(ratios)", "np.mean(ratios)", "one slow run spoils the ratio")
+fault("compare", "np.maximum(difference, np.max(np.abs(slow - quick)))", "np.max(np.abs(slow - quick))",
+      "only the difference of the last run counts")
+fault("advance_contact", "t + n * dt, state, dt, p)", "t, state, dt, p)", "all loads are those of the start")
+fault("weight", "p.gravity / p.inv_mass[i]", "p.gravity / p.inv_mass[0]", "all bodies weigh as much as the first")

@@ -16,12 +16,11 @@ from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from solutions.checks import BadInput
-from validate import modules
 from validate.__main__ import writable
 from validate.processes import alone_in, one_sentence
 from validate.store import whole, write_whole
 
-from . import local, marking, pages, sandbox, similar, submissions
+from . import choice, local, marking, pages, sandbox, similar, submissions
 
 JOBS = max(1, min(8, os.cpu_count() or 1))
 console = Console()
@@ -37,6 +36,7 @@ Class = Annotated[
 ]
 Out = Annotated[Path, typer.Option(help="Folder for grades, pages and CSV.")]
 Lessons = Annotated[list[str] | None, typer.Option(help="Only this lesson (may be repeated); all of them without.")]
+Exercises = Annotated[str | None, typer.Option(metavar="N.K,N.K-N.K,N.K=POINTS", help=choice.OPTION)]
 Seed = Annotated[
     str | None,
     typer.Option(help="Secret from which hidden inputs are drawn; made and kept in OUT/seed.txt without."),
@@ -59,6 +59,7 @@ def grade(
     class_: Class,
     out: Out = Path("grades"),
     lesson: Lessons = None,
+    exercises: Exercises = None,
     seed: Seed = None,
     due: Due = None,
     late: Late = 0.0,
@@ -66,24 +67,17 @@ def grade(
     jobs: Jobs = JOBS,
     executor: Executor = None,
 ):
-    lessons = chosen(lesson or [])
+    lessons, worth = choice.chosen(lesson or [], exercises)
     terms = pages.Terms(deadline(due), late)
     people = submissions.roster(roster) if roster else {}
     intake = submissions.read_all(class_, lessons, people, roster)
     sandbox.keep_out({class_: "submissions", out: "output folder", **({roster: "class list"} if roster else {})})
     with alone_in(writable(out)):
-        settings = marking.settings(lessons, secret(out, seed))
+        settings = marking.settings(lessons, secret(out, seed), worth)
         raise typer.Exit(run(intake, settings, people, terms, jobs, executor, out))
 
 
 # ---------------------------------------------------------------------------------------------- what was asked for
-
-def chosen(lessons):
-    """Return the lessons to grade, in the order of the course.  Raises BadInput for an unknown one."""
-    for name in lessons:
-        modules.bind(name)
-    return [n for n in modules.lesson_names() if not lessons or n in lessons]
-
 
 def deadline(text):
     try:

@@ -18,8 +18,8 @@ from validate.__main__ import writable
 from validate.modules import ROOT
 from validate.store import write_whole
 
-from . import children, marking, pages, points, sandbox, submissions
-from .__main__ import chosen
+from . import children, choice, marking, pages, points, sandbox, submissions
+from .__main__ import Exercises
 from .release import tracked
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
@@ -78,11 +78,13 @@ exit $code
 
 @app.command(help="Write the zip that Gradescope asks for; the seed is in it, so show it to nobody.")
 def gradescope(
-    seed: Seed, out: Archive = Path("autograder.zip"), lesson: Lessons = None, late: Late = 0.0, dirty: Dirty = False
+    seed: Seed, out: Archive = Path("autograder.zip"), lesson: Lessons = None, exercises: Exercises = None,
+    late: Late = 0.0, dirty: Dirty = False,
 ):
     if not seed.strip():
         raise BadInput("--seed", "empty", "give a secret")
-    course = json.dumps({"lessons": chosen(lesson or []), "seed": seed, "late": late}, indent=1)
+    lessons, worth = choice.chosen(lesson or [], exercises)
+    course = json.dumps({"lessons": lessons, "exercises": worth, "seed": seed, "late": late}, indent=1)
     files = {
         "setup.sh": (SETUP.encode(), 0o755),
         "run_autograder": (RUN.encode(), 0o755),
@@ -90,7 +92,7 @@ def gradescope(
     }
     files |= {f"workbook/{path}": ((ROOT / path).read_bytes(), 0o644) for path in tracked(dirty)}
     write_zip(out, files)
-    print(f"{out}: {len(files)} files, lessons {', '.join(chosen(lesson or []))}")
+    print(f"{out}: {len(files)} files, lessons {', '.join(lessons)}")
 
 
 def write_zip(out, files):
@@ -133,7 +135,7 @@ def run(
 
 def graded(folder, course, metadata):
     """Grade one submission: Gradescope's results.json as a dict.  Gradescope's dates override those of the files."""
-    settings = marking.settings(tuple(course["lessons"]), course["seed"])
+    settings = marking.settings(tuple(course["lessons"]), course["seed"], course.get("exercises"))
     users, assignment = metadata.get("users") or [{}], metadata.get("assignment") or {}
     with children.reader() as child:
         submission = submissions.read(folder, users[0].get("email") or "submission", settings.lessons, child)
@@ -199,9 +201,11 @@ TAIL = """      - name: Autograding Reporter
 
 
 @app.command(help="Write a workflow for GitHub Classroom with one step per exercise: all of its points, or none.")
-def classroom(out: Workflow = Path(".github/workflows/grade.yml"), lesson: Lessons = None):
+def classroom(out: Workflow = Path(".github/workflows/grade.yml"), lesson: Lessons = None,
+              exercises: Exercises = None):
+    lessons, worth = choice.chosen(lesson or [], exercises)
     writable(out.absolute().parent)
-    pages.write_whole(out, workflow(marking.manifest(tuple(chosen(lesson or [])))))
+    pages.write_whole(out, workflow(marking.manifest(tuple(lessons), worth)))
     print(out)
 
 

@@ -15,7 +15,7 @@ LONGEST = 300                # of a text [characters]
 MARGIN = re.compile(r"(?<=\[) | (?=[\],])")                            # as NumPy prints arrays: [ 1.   -0.25]
 BETWEEN = re.compile(r"(?:(?<=[\d.\]])|(?<=nan|inf)) (?=-?(?:[\d\[]|nan|inf))")
 FLOAT = re.compile(r"(?<![\w.])-?\d+\.\d*(?:e[-+]?\d+)?")
-NOTHING = "None: does every way through your function end in a return?"
+NOTHING = "None: does every path through your function end with a return?"
 ROUNDING, NEARLY = 1e-15, 1e-6          # relative differences: nobody means the one, and a test means the other
 
 

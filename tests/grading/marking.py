@@ -52,18 +52,27 @@ class Settings(NamedTuple):
         return hashlib.sha256(repr((self, submission.digest(), sandbox.unavailable())).encode()).hexdigest()
 
 
-def settings(lessons, seed):
-    """Return the Settings for these lessons."""
-    return Settings(tuple(lessons), seed, manifest(lessons), code_digest(lessons))
+def settings(lessons, seed, worth=None):
+    """Return the Settings for these lessons, or for the exercises of worth, {exercise: points or None}."""
+    return Settings(tuple(lessons), seed, manifest(lessons, worth), code_digest(lessons))
 
 
-def manifest(lessons):
-    """List every test that gives points, in the order of the lessons and exercises."""
+def manifest(lessons, worth=None):
+    """List every test that gives points, in the order of the lessons and exercises.
+
+    worth: {exercise: points or None} of the exercises that are graded; empty for all.  Points that are given are shared
+    among the tests of an exercise as its own are.
+    """
     rows = []
     for lesson in lessons:
         functions = remote.exercises(lesson)
         for o in points.grade(lesson, None, collect=True):
             rows.append((lesson, o.exercise, functions[o.exercise], o.test, o.points, o.hint))
+    if worth:
+        rows = [row for row in rows if row[1] in worth]
+        own = {exercise: sum(row[4] for row in rows if row[1] == exercise) for exercise in worth}
+        rows = [(*row[:4], row[4] if (given := worth[row[1]]) is None else row[4] * given / own[row[1]], row[5])
+                for row in rows]
     return tuple(sorted(rows, key=lambda row: (lessons.index(row[0]), [int(n) for n in row[1].split(".")])))
 
 
@@ -98,7 +107,9 @@ def mark(submission, settings):
     for lesson in settings.lessons:
         if lesson in submission.files:
             with bounded():
-                outcomes, printed[lesson], late, seen = mark_lesson(lesson, submission.files[lesson], settings.seed)
+                graded = {row[3] for row in settings.manifest if row[0] == lesson}
+                outcomes, printed[lesson], late, seen = mark_lesson(
+                    lesson, submission.files[lesson], settings.seed, graded)
             watched[lesson] = sorted(seen & {*watch.SENTENCES}) + watch.in_text(submission.files[lesson])
             found.update({(lesson, kind, o.test): o for kind, o in outcomes})
             again += [lesson] * late
@@ -132,11 +143,15 @@ def again(submission, settings, first):
     }
 
 
-def mark_lesson(lesson, text, seed):
+def mark_lesson(lesson, text, seed, graded=None):
     """Mark one file: ([(kind, Outcome), …], printed text, whether the time was up, codes to look into).
 
-    kind is "visible" or "hidden".  The printed text is that of the visible tests only.
+    graded: names of the tests that are run; without it all of them.  kind is "visible" or "hidden".  The printed text
+    is that of the visible tests only.
     """
+    def wanted(exercise, test):
+        return graded is None or test in graded
+
     place = remote.box_of(lesson, text, BUDGET)
     try:
         place.open()
@@ -146,7 +161,7 @@ def mark_lesson(lesson, text, seed):
             unread = [("visible", points.unreadable(o, place.broken, where)) for o in tests]
             return unread, readable(place.printed.decode(errors="replace")), place.late, place.seen
         subject = remote.lesson_in(place, lesson)
-        outcomes = [("visible", o) for o in points.grade(lesson, subject, seed=points.PUBLIC)]
+        outcomes = [("visible", o) for o in points.grade(lesson, subject, wanted, points.PUBLIC)]
         place.stop()                                                   # after this the printed text is complete
         printed = readable(place.printed.decode(errors="replace"))
         passed = {o.test for _, o in outcomes if o.status == "passed"}

@@ -257,7 +257,7 @@ class Pure:
             if not all(np.array_equal(a, b, equal_nan=a.dtype.kind == "f") for a, b in zip(before, after)):
                 if watched:
                     self.trace.changed_input()
-                quantity, expected = "the arrays that were handed in", "left as they were: return new ones"
+                quantity, expected = "the input arrays", "unchanged: return new arrays"
                 culprit = f"{name}, or a function that it calls," if self.trace and not watched else name
                 raise NotYet(quantity, expected, f"{culprit} has changed one in place", "", "changed in place")
             return result

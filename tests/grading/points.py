@@ -153,7 +153,7 @@ def outcome(mark, name, excinfo, trace=None):
     if isinstance(error, TooLong):
         within = f"an answer within {getattr(error, 'limit', LIMIT):g} s"
         return Outcome(exercise, name, points, "not yet", DURATION, within, "none", "",
-                       "does a loop of yours never end? Count its rounds, and stop after so many")
+                       "does one of your loops never end? Limit the number of its rounds")
     if not any(Path(entry.filename).name.startswith("test_") for entry in _frames(error)):
         return unreadable(Outcome(exercise, name, points, "not run"), error, "")
     kind, place, said = type(error).__name__, _place(error), tidy(words_of(error), MOST_DIGITS)
@@ -161,7 +161,7 @@ def outcome(mark, name, excinfo, trace=None):
     if shapes:                                                       # whoever called could not use what was returned
         return Outcome(exercise, name, points, "not yet", f"what {trace.function} returns", *shapes, "",
                        "return as many values as the docstring says, in its order", kind)
-    expected = "an answer: no error was expected here" if place else "an answer"
+    expected = "an answer, and no error" if place else "an answer"
     return Outcome(exercise, name, points, "not yet", "the call itself", expected, f"{kind}: {said}{place}", "",
                    _advice(error, said, hint), f"{kind}{place}")
 
@@ -196,11 +196,11 @@ def _place(error):
 def _advice(error, said, hint):
     """A hint for what Python says, where that is more to the point than the hint for the physics."""
     if "NoneType" in said:
-        return "your function gave None: does every way through it end in a return?"
+        return "your function returned None: does every path through it end with a return?"
     if "to unpack" in said:
         return "return as many values as the docstring says, in its order"
     if isinstance(error, NameError):
-        return "a name is misspelt, or was never given a value"
+        return "a name is misspelt, or it has no value yet"
     return hint
 
 

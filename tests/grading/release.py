@@ -61,6 +61,7 @@ AUTHORS = {
     "validate/generate.py",                       # makes the lessons from the answers
     "validate/benchmark.py",                      # times the answers
     "docs/grading.md",                            # for instructors
+    "docs/instructors.md",
     "docs/plan.md",
     "docs/scenes.png",                            # of the repository's README
     "docs/scenes.webp",

@@ -71,7 +71,7 @@ def test_the_zip_has_its_scripts_at_the_root_and_the_workbook_as_tracked(archive
     with zipfile.ZipFile(archive) as entries:
         modes = {entry.filename: stat.S_IMODE(entry.external_attr >> 16) for entry in entries.infolist()}
         files = {name: entries.read(name) for name in modes}
-    assert json.loads(files["course.json"]) == {"lessons": ["integrators"], "seed": SEED, "late": 10.0}
+    assert json.loads(files["course.json"]) == {"lessons": ["integrators"], "exercises": {}, "seed": SEED, "late": 10.0}
     for path in ("solutions/integrators.py", "constraints.txt"):
         assert files[f"workbook/{path}"] == (ROOT / path).read_bytes()
     assert modes["setup.sh"] == modes["run_autograder"] == 0o755 and modes["course.json"] == 0o600

@@ -54,7 +54,7 @@ def limits_of(exercises, **changes):
     changed = types.SimpleNamespace(**{**vars(modules.bind("integrators")), **changes})
     outcomes = points.grade("integrators", changed, lambda exercise, test: exercise in exercises)
     assert {o.hint.partition("?")[0] for o in outcomes if o.quantity == points.DURATION} \
-        <= {"does a loop of yours never end"}
+        <= {"does one of your loops never end"}
     return {number: [o.expected.removeprefix("an answer within ") or o.status for o in outcomes if o.exercise == number]
             for number in exercises}
 

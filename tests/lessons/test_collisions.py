@@ -92,7 +92,8 @@ def test_a_ball_meets_a_plane_when_its_surface_does(lesson, draw):
               given=f"t = {t}, dt = {dt}, {x_0} to {x_1}, r = {r}, {plane}")
 
 
-@exercise("6.2", points=0.25, hint="d₁ ≤ 0: it already touches, at t; d₂ < 0: it does not arrive, NEVER")
+@exercise("6.2", points=0.25,
+          hint="d₁ ≤ 0: the ball already touches, return t; d₂ < 0: it does not reach the plane, return NEVER")
 def test_a_touching_ball_meets_the_plane_at_once_and_one_that_does_not_arrive_never(lesson, draw):
     r = draw(0.1, 0.5)
     t, dt, x_0, x_1, plane, s = fall(lesson, draw, 3, r)
@@ -106,7 +107,7 @@ def test_a_touching_ball_meets_the_plane_at_once_and_one_that_does_not_arrive_ne
 
 
 @exercise("6.2", points=0.5,
-          hint="check d₁ ≤ 0 first, wherever the ball goes; then d₂ < 0; with d₂ = 0 it arrives at the end of the step")
+          hint="test d₁ ≤ 0 first, wherever the ball goes; then d₂ < 0; with d₂ = 0 it touches at the end of the step")
 def test_a_ball_of_any_size_meets_a_plane_only_if_it_comes_through_from_above(lesson, draw):
     """The gap changes linearly. Both ends are known to 1e-13 of the size and differ by at least 0.4 sizes."""
     for size, place in places(draw):
@@ -358,7 +359,7 @@ def is_nearest(quantity, q, p, corners, size, given=""):
 
 
 @exercise("6.5", points=0.5,
-          hint="from the nearest point q, p − q makes no acute angle with the segment: clamp s to 0 … 1")
+          hint="at the nearest point q, p − q makes no acute angle with the segment: clamp s to 0 … 1")
 def test_no_point_of_a_segment_is_nearer_at_any_size_and_place(lesson, draw):
     for d in (2, 3):
         for size, place in places(draw, d):
@@ -649,7 +650,7 @@ def same_pairs(quantity, got, expected, given=""):
         raise NotYet(quantity, "an array of shape (m, 2)", f"shape {got.shape}", "", f"shape {got.shape}", given)
     if len(got) != len(expected):
         raise NotYet(quantity, f"{len(expected)} pairs", f"{len(got)} pairs", "none: exactly these",
-                     "another number of pairs", given, (got, expected))
+                     "a different number of pairs", given, (got, expected))
     close(quantity, got[np.lexsort(got.T[::-1])], expected, 0.0, given)
 
 
@@ -741,7 +742,7 @@ def test_nodes_that_do_not_touch_are_not_searched(lesson, draw):
 
 
 @exercise("6.11", points=0.25,
-          hint="a tree may be a single leaf with child 0; compare girths only if neither node is a leaf")
+          hint="a tree may be a single leaf with child 0; compare half_perimeter only if neither node is a leaf")
 def test_trees_of_crowds_of_any_kind_find_the_pairs_that_brute_force_finds(lesson, draw):
     for d in (2, 3):
         for name, low, high in crowds(draw, d):
@@ -902,7 +903,7 @@ def corners_left(quantity, got, d, given):
     return numbers(quantity, got, (len(got) if hasattr(got, "__len__") else 0, d), given)
 
 
-@exercise("6.13", points=0.25, hint="a corner exactly on the plane, s_i = 0, is kept and adds no crossing")
+@exercise("6.13", points=0.25, hint="a corner exactly on the plane, s_i = 0, stays and adds no crossing")
 def test_a_corner_on_the_plane_is_kept_once(lesson, draw):
     for d in (2, 3):
         wide, high = float(draw.whole(1, 4)), float(draw.whole(1, 4))    # whole numbers: s is exactly 0
@@ -937,7 +938,7 @@ def test_a_cut_segment_keeps_two_ends(lesson, draw):
 
 
 @exercise("6.13", points=0.25,
-          hint="the parts on both sides together make up the polygon: nothing twice, nothing lost")
+          hint="the two parts on both sides of the plane together must be the whole polygon")
 def test_what_two_opposite_cuts_leave_makes_up_the_polygon(lesson, draw):
     """Each part lies in the polygon and on its own side. If both areas add up to the polygon's, nothing is missing."""
     for d in (2, 3):
@@ -1095,7 +1096,7 @@ def test_two_edges_win_only_by_a_nanometre(lesson, draw):
 
 
 @exercise("6.14", points=0.25,
-          hint="a zero axis gives a gap of 0, which is greater than that of overlapping boxes: skip it")
+          hint="an axis of zeros gives a gap of 0, which is greater than the gap of overlapping boxes: skip it")
 def test_boxes_turned_parallel_nested_and_far_apart_are_separated_by_the_best_of_their_axes(lesson, draw):
     """Overlapping boxes are as deep as the nearest facet of the hull of all differences is from 0.
 
@@ -1251,7 +1252,8 @@ def test_the_field_is_the_slope_of_its_potential(lesson, draw):
                   f"gap {beyond + 1e-9} m, radius {radius} m, reach {reach} m, k = {k}")
 
 
-@exercise("6.16", points=0.5, hint="there is no field where the gap is zero or negative: raise BadInput with the gap")
+@exercise("6.16", points=0.5,
+          hint="the field is undefined where the gap is zero or negative: raise BadInput with the gap")
 def test_a_position_inside_an_obstacle_is_refused(lesson, draw):
     centre, radius, gap = draw(-3.0, 3.0, 2), draw(0.3, 1.0), draw(0.3, 0.6)
     way = axes(draw, 2)[0]

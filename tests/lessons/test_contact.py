@@ -131,7 +131,7 @@ def test_rows_turn_all_velocities_into_those_of_all_contacts(lesson, draw):
                   got @ (v * [size, size, 1.0]).ravel() / size, expected, ROUND_OFF, given=f"size {size} m")
 
 
-@exercise("9.1", points=0.5, hint="a contact sees its own two bodies only, and no motion that both make together")
+@exercise("9.1", points=0.5, hint="a contact depends on its own two bodies only, and not on a common motion of both")
 def test_what_moves_as_one_body_has_no_relative_velocities(lesson, draw):
     x, _, _, c = scene(draw, lesson)
     got = np.asarray(lesson.contact_rows(x, c))
@@ -188,7 +188,7 @@ def test_each_way_to_break_the_law_counts_with_its_velocity(lesson, draw):
                   slow * ROUND_OFF, given=f"contact {k}, λ = {one} N s, u = {speeds} m/s")
 
 
-@exercise("9.3", points=0.5, hint="at the answer every contact has λ = 0 or u = 0, and the residual is round-off")
+@exercise("9.3", points=0.5, hint="at the solution every contact has λ = 0 or u = 0, and the residual is round-off")
 def test_the_residual_vanishes_at_the_answer_and_nowhere_else(lesson, draw):
     for _ in range(5):
         A, b = positive_definite(draw, 4), draw(-3.0, 3.0, 4)
@@ -204,7 +204,7 @@ def test_the_residual_vanishes_at_the_answer_and_nowhere_else(lesson, draw):
 # ---------------------------------------------------------------------------------------------- sweeps
 
 @exercise("9.4", points=0.5,
-          hint="in order, each with the newest λ: λ_k − ω u_k/A_kk, never below 0; what is right stays as it is")
+          hint="in order, each with the newest λ: λ_k − ω u_k/A_kk, never below 0; the solution does not change")
 def test_a_sweep_leaves_the_answer_and_corrects_what_is_wrong(lesson, draw):
     for omega in (1.0, draw(0.5, 0.9), draw(1.1, 1.9)):
         A, b = positive_definite(draw, 4), draw(-3.0, 3.0, 4)
@@ -224,7 +224,7 @@ def test_a_sweep_leaves_the_answer_and_corrects_what_is_wrong(lesson, draw):
 
 
 @exercise("9.4", points=0.5,
-          hint="with ω = 2 each contact turns its own velocity round: an elastic impact, one after the other")
+          hint="with ω = 2 each visit reverses the velocity of its contact: elastic impacts, one after the other")
 def test_two_elastic_balls_and_a_wall_count_the_digits_of_pi(lesson, draw):
     """Galperin 2003: the ball at rest lies between the wall and one of 100^N times its mass;
     they meet exactly ⌊10^N π⌋ times in all.
@@ -241,7 +241,7 @@ def test_two_elastic_balls_and_a_wall_count_the_digits_of_pi(lesson, draw):
 
 
 @exercise("9.4", points=0.5,
-          hint="use what the sweep has just changed, not what was there before it; that is Jacobi's method")
+          hint="use the impulses that this sweep has already changed; with the old ones it is Jacobi's method")
 def test_the_error_shrinks_by_the_factor_of_theory(lesson, draw):
     n, r = draw.whole(5, 9), draw(5.0, 30.0)
     for name, masses, rho in ((f"a stack of {n}", [1.0] * n, half_turn(n)),
@@ -275,7 +275,7 @@ def test_a_stack_contracts_by_the_largest_eigenvalue(lesson, draw):
           np.max(np.linalg.eigvalsh(jacobi)) ** 2, ROUND_OFF, given=f"n = {n}")
 
 
-@exercise("9.6", points=0.5, hint="r/(1 + r): the heavier the upper body, the slower")
+@exercise("9.6", points=0.5, hint="r/(1 + r): a heavier upper body makes the convergence slower")
 def test_a_heavy_body_on_a_light_one_contracts_slowly(lesson, draw):
     for r in (1.0, draw(0.01, 0.5), draw(2.0, 50.0), 1e6):
         rho = spectral_radius(iteration_matrix(chain([1.0, r])[0], 1.0))
@@ -317,7 +317,7 @@ def test_any_other_relaxation_is_slower(lesson, draw):
 # ---------------------------------------------------------------------------------------------- a direct solver
 
 @exercise("9.8", points=1,
-          hint="solve for those that push, find the first contact that is wrong, let only that one change sides, "
+          hint="solve for the contacts that push, find the first contact that is wrong, change only that one, "
                "and repeat")
 def test_the_direct_solver_finds_the_only_set_of_contacts_that_fits(lesson, draw):
     for m in (1, 2, 3, 5, 7):
@@ -333,7 +333,7 @@ def test_the_direct_solver_finds_the_only_set_of_contacts_that_fits(lesson, draw
           0.0)
 
 
-@exercise("9.8", points=0.25, hint="only the wrong contact of least index changes sides in each round")
+@exercise("9.8", points=0.25, hint="in each round change only the wrong contact of least index")
 def test_the_direct_solver_ends_where_changing_all_wrong_contacts_goes_round_in_circles(lesson, draw):
     """From none, all contacts that are wrong at once would lead to 0, then to 1 and 2, and back.
 
@@ -348,7 +348,7 @@ def test_the_direct_solver_ends_where_changing_all_wrong_contacts_goes_round_in_
               size * enumerated(A_k, b_k), SOLVED, given=f"A = {A_k}, b = {b_k}")
 
 
-@exercise("9.8", points=0.25, hint="ε_k belongs to its own row, and to its own size: it is no fixed number")
+@exercise("9.8", points=0.25, hint="ε_k is computed from the terms of row k: it is not a fixed number")
 def test_contacts_of_any_size_are_solved_side_by_side(lesson, draw):
     for _ in range(3):
         A, b = positive_definite(draw, 3), draw(-3.0, 3.0, 3)
@@ -369,7 +369,7 @@ def test_contacts_of_any_size_are_solved_side_by_side(lesson, draw):
 
 
 @exercise("9.8", points=0.25,
-          hint="a guess is solved exactly by elimination: sweeps do not get there; wrong is what exceeds ε_k")
+          hint="solve each guess exactly by elimination, not by sweeps; a contact is wrong only beyond ε_k")
 def test_the_direct_solver_does_not_mind_how_heavy_the_top_is(lesson, draw):
     """Condition 4e6: of the forces, (round-off) × (condition) = 1e-9 may be wrong."""
     for masses in ([1.0, 1e6], [*draw(0.5, 2.0, draw.whole(3, 12)), 1e6], np.ones(draw.whole(10, 25))):
@@ -409,7 +409,7 @@ def lawful(draw, m, loose=False):
     return A, u - A @ J, J, mu, kinds
 
 
-@exercise("9.9", points=0.5, hint="J_n' and J_t' as in the docstring; what is as it should be does not change")
+@exercise("9.9", points=0.5, hint="J_n' and J_t' as in the docstring; impulses that obey the laws do not change")
 def test_lawful_impulses_have_no_residual(lesson, draw):
     for speed in draw(0.1, 2.0, 2):
         A, b = np.diag(draw(0.5, 2.0, 2)), np.array([-speed, 0.0])
@@ -477,7 +477,7 @@ def judged(A, b, J, mu):
     return worst
 
 
-@exercise("9.10", points=0.5, hint="lawful impulses stay as they are")
+@exercise("9.10", points=0.5, hint="impulses that obey the laws do not change")
 def test_a_sweep_leaves_lawful_impulses_alone(lesson, draw):
     for _ in range(4):
         A, b, J, mu, _ = lawful(draw, 5)
@@ -522,7 +522,7 @@ def test_a_cone_sweep_visits_the_contacts_in_their_order(lesson, draw):
               given=f"A = {A}, b = {size * b}, J = {size * J}, μ = {mu}")
 
 
-@exercise("9.10", points=0.25, hint="use the newest J everywhere, and sweep over all contacts in their order")
+@exercise("9.10", points=0.25, hint="use the newest J everywhere, and sweep over all contacts in order")
 def test_sweeps_end_where_all_laws_hold(lesson, draw):
     for _ in range(3):
         x, inv_mass, inv_inertia, c = scene(draw, lesson, fixed=False)
@@ -570,7 +570,7 @@ def block_on_incline(lesson, slope, mu, w=1.0, h=1.0):
     return np.asarray(a)[1], np.asarray(F)
 
 
-@exercise("9.11", points=0.25, hint="load and forces both accelerate: a = M⁻¹ (load + Gᵀ F), and torques count, too")
+@exercise("9.11", points=0.25, hint="load and contact forces both accelerate: a = M⁻¹ (load + Gᵀ F), torques included")
 def test_a_block_on_an_incline_stays_slides_or_topples(lesson, draw):
     """It slides by g (sin θ − μ cos θ) where tan θ > μ.
 
@@ -683,7 +683,7 @@ def test_scenes_without_physics_are_refused(lesson, draw):
 # ---------------------------------------------------------------------------------------------- soft contacts
 
 @exercise("9.12", points=0.5,
-          hint="s = 2π hertz dt: hertz are turns per second, not rad/s; the new velocity counts for spring and damper")
+          hint="s = 2π hertz dt: hertz are turns per second, not rad/s; spring and damper use the new velocity")
 def test_a_soft_contact_is_an_implicit_euler_step_of_a_damped_spring(lesson, draw):
     """v' (1 + 2ζωdt + ω²dt²) = v − dt ω² gap;  J = m (v' − v), and the contact asks for v' = aim − give J/m."""
     for _ in range(4):
@@ -725,7 +725,7 @@ def test_a_soft_contact_sags_by_its_force_whatever_the_step(lesson, draw):
               given=f"{hertz} Hz, ζ = {zeta}, dt = {dt} s")
 
 
-@exercise("9.12", points=0.5, hint="gap > 0: aim = −gap/dt, and no give")
+@exercise("9.12", points=0.5, hint="gap > 0: aim = −gap/dt, and give = 0")
 def test_an_open_contact_may_close_its_gap_and_no_more(lesson, draw):
     for gap in (draw(1e-3, 1.0), 1e-9):
         dt = draw(0.001, 0.02)
@@ -796,7 +796,7 @@ def inherited(new, old, J_old, near):
     return J
 
 
-@exercise("9.14", points=0.25, hint="at the very place of an old contact J is its J_old: the whole vector")
+@exercise("9.14", points=0.25, hint="exactly at the place of an old contact, J is its J_old: the whole vector")
 def test_a_contact_that_did_not_move_keeps_its_impulse(lesson, draw):
     for d in (2, 3):
         _, old, J_old, near = two_sets(draw, lesson, d)
@@ -804,7 +804,7 @@ def test_a_contact_that_did_not_move_keeps_its_impulse(lesson, draw):
 
 
 @exercise("9.14", points=0.25,
-          hint="for each contact look at the old ones with the same a and b, and take the impulse of the nearest")
+          hint="for each contact, take the impulse of the nearest old contact with the same a and b")
 def test_a_contact_remembers_the_impulse_of_its_pair_and_place(lesson, draw):
     for d in (2, 3):
         new, old, J_old, near = two_sets(draw, lesson, d)
@@ -812,8 +812,9 @@ def test_a_contact_remembers_the_impulse_of_its_pair_and_place(lesson, draw):
               0.0)
 
 
-@exercise("9.14", points=0.25, hint="several old contacts of the pair are near: the least |p − p_old| counts, not the "
-          "first one found")
+@exercise("9.14", points=0.25,
+          hint="several old contacts of the pair are near: take the one with the least |p − p_old|, not the "
+                "first one found")
 def test_of_several_old_contacts_that_are_near_the_nearest_counts(lesson, draw):
     for d in (2, 3):
         new, old, J_old, near = two_sets(draw, lesson, d)
@@ -1018,7 +1019,7 @@ HARD, LOOSE = np.zeros(5), np.array([1.0, 1.0, 0.0, 1.0, 0.0])           # which
 
 
 @exercise("9.16", points=0.125,
-          hint="u from the velocities as they are by then; J_n and J_t from this u; the change acts on both bodies "
+          hint="u from the newest velocities; J_n and J_t from this u; the change acts on both bodies "
                "at once")
 def test_a_sweep_over_velocities_does_what_the_matrix_says(lesson, draw):
     check_sweep_by_matrix(lesson, draw, ((draw(0.1, 0.9), True, HARD), (draw(0.1, 0.9), False, HARD),
@@ -1026,13 +1027,13 @@ def test_a_sweep_over_velocities_does_what_the_matrix_says(lesson, draw):
 
 
 @exercise("9.16", points=0.125,
-          hint="aim[k] and give[k] belong to contact k, and to J_n only: friction neither aims nor gives")
+          hint="aim[k] and give[k] belong to contact k, and to J_n only: friction uses neither")
 def test_a_sweep_over_soft_contacts_does_what_the_matrix_says(lesson, draw):
     check_sweep_by_matrix(lesson, draw, ((draw(0.1, 0.9), True, LOOSE), (draw(0.1, 0.9), False, LOOSE),
                                          (draw(2.0, 9.0), False, LOOSE)))
 
 
-@exercise("9.16", points=0.25, hint="μ = ∞: no limit where J_n > 0, and 0 where J_n = 0; ∞ · 0 is no number")
+@exercise("9.16", points=0.25, hint="μ = ∞: no limit where J_n > 0, and 0 where J_n = 0; ∞ · 0 is NaN")
 def test_a_sweep_with_infinite_friction_does_what_the_matrix_says(lesson, draw):
     check_sweep_by_matrix(lesson, draw, ((np.inf, True, HARD), (np.inf, False, LOOSE)))
 
@@ -1053,7 +1054,7 @@ def test_a_contact_alone_gets_what_it_asks_for(lesson, draw):
               given=f"aim {aim[0]} m/s, give {give}")
 
 
-@exercise("9.16", points=0.25, hint="J_n is 0 at least: what parts faster than aim says is not pulled back")
+@exercise("9.16", points=0.25, hint="J_n ≥ 0: a contact that separates faster than aim is not pulled back")
 def test_a_contact_does_not_pull(lesson, draw):
     v, omega, J, c, arms, pile, _ = swept_scene(draw, lesson, 0.5)
     J = np.asarray(lesson.velocity_sweep_2d(v, omega, 0.0 * J, np.full(5, -200.0), np.zeros(5), c, arms, pile)[2])
@@ -1061,7 +1062,7 @@ def test_a_contact_does_not_pull(lesson, draw):
 
 
 @exercise("9.16", points=0.25,
-          hint="what a gets, b loses: J on a and −J on b, each at its own offset and with its own mass")
+          hint="J acts on a and −J on b, each at its own offset and with its own mass")
 def test_a_sweep_keeps_momentum(lesson, draw):
     for mu in (0.0, draw(0.1, 0.9)):
         v, omega, J, c, arms, pile, x = swept_scene(draw, lesson, mu, fixed=False)
@@ -1078,7 +1079,7 @@ def test_a_sweep_keeps_momentum(lesson, draw):
         between("how much the sweep changes velocities [m/s]", moved, 0.01, 100.0)
 
 
-@exercise("9.16", points=0.25, hint="J_n is 0 at least, and J_t at most μ times the new J_n; keep both parts of J")
+@exercise("9.16", points=0.25, hint="J_n ≥ 0, and |J_t| is at most μ times the new J_n; keep both parts of J")
 def test_a_sweep_leaves_every_impulse_in_its_cone(lesson, draw):
     for mu in (0.0, draw(0.1, 0.9)):
         v, omega, J, c, arms, pile, _ = swept_scene(draw, lesson, mu, fixed=False)
@@ -1089,7 +1090,7 @@ def test_a_sweep_leaves_every_impulse_in_its_cone(lesson, draw):
               np.zeros(5), 0.0)
 
 
-@exercise("9.16", points=0.25, hint="inverse masses and moments of 0: what cannot be moved keeps its velocity")
+@exercise("9.16", points=0.25, hint="a body with an inverse mass and inertia of 0 keeps its velocity")
 def test_a_sweep_moves_no_plane(lesson, draw):
     v, omega, J, c, arms, pile, _ = swept_scene(draw, lesson, 0.5)
     got_v, got_omega, _ = lesson.velocity_sweep_2d(v.copy(), omega.copy(), J.copy(), np.zeros(5), np.zeros(5), c, arms,

@@ -315,7 +315,7 @@ def test_friction_shortens_the_velocity_that_the_pull_alone_would_give(lesson, d
 
 
 @exercise("3.7", points=0.5,
-          hint="at rest means that every component of v is zero; at |a_t| = μ_s a_n the block still holds; "
+          hint="a block is at rest if every component of v is zero; at |a_t| = μ_s a_n it stays at rest; "
                "a lifted block, a_n = 0, feels no friction")
 def test_a_block_that_creeps_or_reverses_or_moves_along_an_axis_is_not_at_rest(lesson, draw):
     pull = lesson.driven_acceleration
@@ -387,7 +387,8 @@ def test_a_block_slides_on_or_breaks_away_along_the_pull_or_stays(lesson, draw):
 
 
 @exercise("3.9", points=0.5,
-          hint="the speed along d reaches zero once: keep the half of the interval that contains it, HALVINGS times")
+          hint="the speed along d becomes zero once: keep the half of the interval that contains this time, HALVINGS "
+               "times")
 def test_a_sliding_block_stops_after_v_over_mu_g(lesson, draw):
     p, _ = on_the_line(draw, lesson, draw(0.3, 0.9), 0.0, 0.0)
     d, speed = -np.array([p.n[1], -p.n[0]]), draw(0.5, 3.0)
@@ -398,7 +399,7 @@ def test_a_sliding_block_stops_after_v_over_mu_g(lesson, draw):
               dt if expected is None else expected, tolerance, given=f"v = {speed} m/s, μ = {p.mu_k}, dt = {dt} s")
 
 
-@exercise("3.9", points=1, hint="a slide of length τ takes the forces at its own midpoint: pass t, and τ as its dt")
+@exercise("3.9", points=1, hint="pass t and τ (as dt) to kinetic_friction_step: it takes the forces at the middle of τ")
 def test_a_pushed_block_stops_where_a_slide_of_that_length_ends_at_rest(lesson, draw):
     """Brent's method finds the root of v(τ) = v + τ (drive cos ω(t + ½τ) − μ g), the velocity of a midpoint slide."""
     omega, t = draw(1.0, 2.0), draw(0.1, 0.3)
@@ -419,7 +420,8 @@ def test_a_pushed_block_stops_where_a_slide_of_that_length_ends_at_rest(lesson, 
     close("time to the stop of a slide that starts at rest [s]", got, stop, 1e-11, given=f"{from_rest}, t = {t} s")
 
 
-@exercise("3.10", points=1, hint="call slip_direction with v = 0 at t + τ, not at t; the block slips if any(…) is true")
+@exercise("3.10", points=1,
+          hint="call slip_direction with v = 0 at t + τ, not at t; the block slips if any component is not 0")
 def test_a_block_breaks_away_when_the_force_reaches_its_limit(lesson, draw):
     """The block holds from |cos ωt| = 1/amplitude until the reversed force reaches the same size."""
     omega, amplitude = draw(1.0, 3.0), draw(1.1, 2.0)
@@ -474,7 +476,7 @@ def test_a_slide_goes_to_its_stop_and_no_further(lesson, draw):
 
 
 @exercise("3.11", points=0.5,
-          hint="where slip_direction returns zeros nothing moves: find only the time to the breakaway")
+          hint="where slip_direction returns zeros the block does not move: find only the time to the breakaway")
 def test_a_block_at_rest_waits_for_its_breakaway(lesson, draw):
     omega, amplitude = draw(1.0, 3.0), draw(1.1, 2.0)
     p, _ = on_the_line(draw, lesson, draw(0.3, 0.9), amplitude, omega)

@@ -149,7 +149,7 @@ def test_contact_points_move_as_their_bodies_carry_them(lesson, draw):
               (apart[0] - apart[1]) / (2.0 * h), 1e-8, given=f"a = {a}, b = {b}, r_a = {r_a}, r_b = {r_b}")
 
 
-@exercise("7.4", points=0.5, hint="j = −(1 + e) u_n/k_n, with k_n = 1/m_a + 1/m_b; and never a pull")
+@exercise("7.4", points=0.5, hint="j = −(1 + e) u_n/k_n, with k_n = 1/m_a + 1/m_b; and never a negative j")
 def test_two_bodies_part_with_e_times_their_speed_and_keep_their_momentum(lesson, draw):
     for e, slow, heavy in ((draw(0.1, 0.9), 1.0, 1.0), (0.0, 1.0, 1.0), (1.0, 1.0, 1.0), (draw(0.1, 0.9), 1e-6, 1.0),
                            (draw(0.1, 0.9), TINY, 1.0), (draw(0.1, 0.9), 1.0, 1e20)):
@@ -361,7 +361,8 @@ def steep(draw, low, high):
 
 
 @exercise("7.10", points=0.25,
-          hint="compare |J_t|, not |J|, with μ J_n; where 0 < n · u < u_sep the bodies separate too slowly: push")
+          hint="compare |J_t|, not |J|, with μ J_n; where 0 < n · u < u_sep the bodies separate too slowly and need "
+               "an impulse")
 def test_a_wide_enough_cone_sticks_also_where_bodies_separate_too_slowly(lesson, draw):
     """With u = u_sep n − K J, the sticking impulse is J."""
     for slow in (False, True):
@@ -391,7 +392,7 @@ def test_a_wide_enough_cone_sticks_also_where_bodies_separate_too_slowly(lesson,
           given=f"u = {-n} m/s, n = {n}, K = {k} on its diagonal, u_sep = {u_sep} m/s, μ = 0")
 
 
-@exercise("7.10", points=0.25, hint="a large μ is not an infinite one: compare |J_t| with μ J_n, and slide with that μ")
+@exercise("7.10", points=0.25, hint="a large μ is still finite: compare |J_t| with μ J_n, and slide with this μ")
 def test_much_friction_sticks_or_slides_as_little_friction_does(lesson, draw):
     """K has a condition number below 100, and impulses below 1e3."""
     for low, high in ((3.0, 10.0), (20.0, 50.0), (100.0, 200.0)):
@@ -408,7 +409,7 @@ def test_much_friction_sticks_or_slides_as_little_friction_does(lesson, draw):
 
 
 @exercise("7.10", points=0.5,
-          hint="a sticking impulse that pulls, J_n < 0, is in no cone: slide; β = arctan μ also handles μ = ∞")
+          hint="a sticking impulse that pulls, J_n < 0, is outside every cone: slide; β = arctan μ also handles μ = ∞")
 def test_a_contact_slides_where_sticking_would_have_to_pull(lesson, draw):
     n, K = contact(draw)
     side = across(n, K @ n) / np.linalg.norm(across(n, K @ n))
@@ -437,7 +438,7 @@ def test_contacts_without_physics_are_refused(lesson, draw):
             "a zero normal": (u, STILL, K, 0.0, 0.3),
             "a normal of length 2": (u, 2.0 * n, K, 0.0, 0.3),
             "two immovable bodies": (u, n, np.zeros((3, 3)), 0.0, 0.3),
-            "a K that gives way along n only": (u_n * axis, axis, np.diag(axis), 0.0, 0.3),
+            "a K that is not zero along n only": (u_n * axis, axis, np.diag(axis), 0.0, 0.3),
             "a velocity that is not a number": (np.nan * u, n, K, 0.0, 0.3),
             "an infinite velocity": (np.inf * u, n, K, 0.0, 0.3),
         }
@@ -498,7 +499,7 @@ def height(phi, v_n, a_n):
 
 
 @exercise("7.13", points=0.75,
-          hint="take the root at which the gap closes: the first for v_n < 0, the second if the ball comes back")
+          hint="take the root at which the gap closes: the first for v_n < 0, the second if the gap opens first")
 def test_the_moment_of_impact_is_a_root_of_the_gap(lesson, draw):
     phi, speed = draw(0.2, 2.0), draw(0.5, 5.0)
     for v_n, a_n in ((-speed, -draw(1.0, 10.0)),
@@ -519,7 +520,7 @@ def test_the_moment_of_impact_is_a_root_of_the_gap(lesson, draw):
 
 
 @exercise("7.13", points=0.25,
-          hint="if the gap never closes: dt; at or below the surface φ counts as 0; do not divide by a tiny a_n")
+          hint="return dt if the gap never closes; at or below the surface φ counts as 0; do not divide by a tiny a_n")
 def test_the_impact_time_is_dt_without_an_impact_and_zero_for_a_ball_pressed_in(lesson, draw):
     phi, speed, dt = draw(0.5, 2.0), draw(0.5, 2.0), draw(5.0, 9.0)
     for v_n, a_n in ((speed, 0.0),
@@ -734,7 +735,7 @@ def test_a_backtracking_step_keeps_its_first_acceleration_and_puts_back_a_ball_i
 
 
 @exercise("7.16", points=0.25,
-          hint="impact_time takes a ball inside for one that touches: if it leaves, it flies from where it is; "
+          hint="impact_time treats a ball inside as one that touches: if it leaves, it flies from its place; "
                "where a_n > 0, slide_on_plane(…) lifts a ball off")
 def test_a_ball_that_leaves_from_inside_flies_and_one_that_is_pulled_off_takes_off(lesson, draw):
     for e in (0.0, draw(0.3, 0.8)):
@@ -1107,7 +1108,7 @@ def tumbling(draw, lesson):
 
 
 @exercise("7.17", points=0.25,
-          hint="each point has its own normal and its own u_sepᵢ ≥ 0; what leaves must leave at least with u_sepᵢ")
+          hint="each point has its own normal and its own u_sepᵢ ≥ 0; afterwards it must separate at u_sepᵢ or faster")
 def test_without_friction_a_tumbling_body_changes_no_more_than_all_its_points_demand(lesson, draw):
     """Sweeps stop at changes of 1e-14 of 10 m/s. The error may be a hundred times that. ω is v over 0.1 m."""
     for body, r, n in tumbling(draw, lesson):

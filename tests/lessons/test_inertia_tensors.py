@@ -76,7 +76,7 @@ def test_a_body_without_mass_has_no_centre_of_mass(lesson, draw):
         raises(f"a mass of {wrong} kg", BadInput, lesson.centre_of_mass, np.array([m[0], wrong]), x)
 
 
-@exercise("4.2", points=0.5, hint="weigh each velocity with its mass: Σ mᵢ vᵢ, a vector")
+@exercise("4.2", points=0.5, hint="multiply each velocity by its mass: Σ mᵢ vᵢ, a vector")
 def test_linear_momentum_is_the_mass_times_the_velocity_of_the_centre(lesson, draw):
     m, x = cloud(draw, draw.whole(3, 6))
     v, t = draw(-4.0, 4.0, x.shape), 0.5
@@ -502,7 +502,7 @@ def test_possible_tensors_pass(lesson, draw):
 
 
 @exercise("4.14", points=0.25,
-          hint="ε = MOMENT_ROUND_OFF, times max|I|, the largest moment, or the sum of the other two: no other number")
+          hint="each limit is ε = MOMENT_ROUND_OFF times max|I|, the largest moment, or the sum of the other two")
 def test_each_limit_is_epsilon_of_the_size_of_the_tensor(lesson, draw):
     """All tensors are diagonal, so that their moments are known to a few roundings, a hundredth of ε = 1e-14."""
     low, middle = draw(0.5, 1.0), draw(1.0, 1.5)
@@ -533,7 +533,7 @@ def test_each_limit_is_epsilon_of_the_size_of_the_tensor(lesson, draw):
 
 
 @exercise("4.14", points=0.25,
-          hint="each limit is a fraction of the tensor's own size: as strict for a bacterium as for a ship")
+          hint="each limit is a fraction of the size of the tensor itself, for small and large bodies alike")
 def test_a_tensor_is_possible_exactly_when_its_mass_is_nowhere_below_zero(lesson, draw):
     """∫ x², ∫ y² and ∫ z² dm along the principal axes, (I₂ + I₃ − I₁)/2 and cyclically, are zero or positive."""
     for size in (1e-24, 1e-9, 1.0, 1e9, 1e24):
@@ -835,7 +835,7 @@ def test_a_sheet_thinner_than_round_off_has_no_volume(lesson, draw):
 
 
 @exercise("4.17", points=0.5,
-          hint="the centre is first/volume, not the mean of the corners; do not refuse a small body")
+          hint="the centre is first/volume, not the mean of the corners; a small body is valid")
 def test_a_lump_of_any_size_and_place_has_the_mass_centre_and_tensor_of_its_tetrahedra(lesson, draw):
     for size in SIZES:
         for far in (0.0, 1e3):

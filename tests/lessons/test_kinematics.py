@@ -117,7 +117,8 @@ def test_links_add_up_from_the_base(lesson, draw):
               ROUND_OFF, given=f"θ = {theta}, lengths {lengths} m")
 
 
-@exercise("11.1", points=0.5, hint="an angle is relative to the link before it: joint k moves what comes after it only")
+@exercise("11.1", points=0.5,
+          hint="each angle is relative to the link before it: joint k moves only the links after it")
 def test_a_joint_turns_all_that_comes_after_it(lesson, draw):
     n, angle = draw.whole(3, 6), draw(0.5, 2.0)
     theta, lengths = draw(-3.0, 3.0, n), lengths_of(draw, n)
@@ -143,7 +144,7 @@ def test_the_jacobian_turns_rates_of_joints_into_the_velocity_of_the_end(lesson,
               given=f"rates {rates} rad/s")
 
 
-@exercise("11.2", points=0.5, hint="only places count: x[n] is the end, x[k] the joint, wherever they are")
+@exercise("11.2", points=0.5, hint="only the positions matter: x[n] is the end, x[k] the joint, wherever they are")
 def test_the_jacobian_needs_no_angles(lesson, draw):
     x = draw(-2.0, 2.0, (draw.whole(3, 6), 2))
     r = x[-1] - x[:-1]
@@ -156,14 +157,16 @@ def test_the_ellipse_has_the_singular_values_as_half_axes(lesson, draw):
     for n in (2, draw.whole(3, 6)):
         sigma = draw(1.5, 3.0), draw(0.3, 1.2)
         J, u = with_singular_values(draw, sigma, n)
-        longer, shorter, angle = lesson.velocity_ellipse(J)
-        close("half axes of the ellipse [m]", (longer, shorter), sigma, ROUND_OFF, given=f"J = {J}")
-        close("sine of the angle from the longer axis [-]", u[0, 0] * np.sin(angle) - u[1, 0] * np.cos(angle), 0.0,
-              ROUND_OFF, given=f"J = {J}")
+        for mirror in (1.0, -1.0):                                       # the longer axis points upwards, and downwards
+            mirrored, y = J * [[1.0], [mirror]], mirror * u[1, 0]
+            longer, shorter, angle = lesson.velocity_ellipse(mirrored)
+            close("half axes of the ellipse [m]", (longer, shorter), sigma, ROUND_OFF, given=f"J = {mirrored}")
+            close("sine of the angle from the longer axis [-]", u[0, 0] * np.sin(angle) - y * np.cos(angle), 0.0,
+                  ROUND_OFF, given=f"J = {mirrored}")
 
 
 @exercise("11.3", points=0.5,
-          hint="σ₂ from D, the sum of squares of 2 × 2 determinants: a difference would lose its digits")
+          hint="σ₂ from D, the root of a sum of squares of 2 × 2 determinants: a difference would lose digits")
 def test_the_short_axis_keeps_its_digits_where_the_arm_is_nearly_straight(lesson, draw):
     """Both columns are rounded, which changes what is nine digits shorter by 1e-16/1e-9."""
     small, a, b, angle = draw(1e-9, 1e-8), draw(1.5, 2.0), draw(0.5, 1.0), draw(0.3, 1.2)
@@ -180,7 +183,8 @@ def test_the_short_axis_keeps_its_digits_where_the_arm_is_nearly_straight(lesson
 # ---------------------------------------------------------------------------------------------- in closed form
 
 @exercise("11.4", points=1,
-          hint="θ₂ from the distance, with the sign of elbow; θ₁ is the bearing minus what the bend adds")
+          hint="θ₂ from the distance, with the sign of elbow; θ₁ is the direction of the target minus the part due to "
+               "θ₂")
 def test_both_elbows_reach_the_target(lesson, draw):
     for elbow in (1.0, -1.0):
         for _ in range(6):
@@ -199,10 +203,11 @@ def test_both_elbows_reach_the_target(lesson, draw):
 @exercise("11.4", points=0.5,
           hint="at both edges of the reach there is one answer; beyond them BadInput, with the distance")
 def test_the_edges_of_the_reach_are_reached_and_nothing_beyond(lesson, draw):
-    for _ in range(4):
-        lengths, bearing = np.array([draw(1.2, 2.0), draw(0.5, 1.1)]), draw(-3.0, 3.0)
+    for k in range(4):
+        long, short, bearing = draw(1.2, 2.0), draw(0.5, 1.1), draw(-3.0, 3.0)
+        lengths = np.array([short, long] if k % 2 else [long, short])    # either may be the longer one
         way = np.array([np.cos(bearing), np.sin(bearing)])
-        most, least = lengths.sum(), lengths[0] - lengths[1]
+        most, least = long + short, long - short
         for edge in (most, least):
             theta = np.asarray(lesson.solve_2r(edge * way, lengths, 1.0))
             close("end of the arm at the edge of its reach [m]", joints(theta, lengths)[-1], edge * way, SOLVED,
@@ -259,7 +264,7 @@ def test_each_joint_turns_about_an_axis_of_the_link_before_it(lesson, draw):
 
 
 @exercise("11.6", points=0.5,
-          hint="with all axes along z it is the planar chain, and q turns about z by the sum of angles")
+          hint="with all axes along z it is the planar chain, and q is the rotation about z by the sum of angles")
 def test_a_chain_with_parallel_axes_is_planar(lesson, draw):
     n = draw.whole(2, 6)
     theta, lengths, z = draw(-1.0, 1.0, n), lengths_of(draw, n), np.array([0.0, 0.0, 1.0])
@@ -315,7 +320,8 @@ def test_the_rotation_vector_turns_one_orientation_into_the_other(lesson, draw):
                   given=f"q = {q}, q_target = {q_target}")
 
 
-@exercise("11.8", points=0.5, hint="the shorter way round; atan2 keeps the digits of a small angle, and 0 stays 0")
+@exercise("11.8", points=0.5,
+          hint="take the shorter rotation; atan2 keeps the digits of a small angle, and for 0 the result is 0")
 def test_small_and_large_angles_keep_their_digits(lesson, draw):
     axis, q = unit(draw), quaternion(unit(draw), draw(0.5, 3.0))
     still = np.array([1.0, 0.0, 0.0, 0.0])
@@ -335,15 +341,18 @@ def test_small_and_large_angles_keep_their_digits(lesson, draw):
 @exercise("11.9", points=0.5, hint="θ + α Jᵀ e; e @ J is Jᵀ e")
 def test_a_transpose_step_goes_down_the_gradient(lesson, draw):
     n = draw.whole(2, 6)
-    lengths, theta, target, gain = lengths_of(draw, n), bent(draw, n), draw(-2.0, 2.0, 2), draw(0.05, 0.5)
-    half_square = lambda angles: 0.5 * np.sum((target - joints(angles, lengths)[-1]) ** 2)
-    slope = [0.5 * (half_square(theta + d) - half_square(theta - d)) / DIFFERENCE for d in DIFFERENCE * np.eye(n)]
-    got = lesson.transpose_step(reach, theta, target, arm_of(lesson, lengths, gain=gain))
-    close("change of θ over the gain [-]", (np.asarray(got) - theta) / gain, -np.array(slope), 1e-6,
-          given=f"θ = {theta}, target {target} m, α = {gain}")
+    lengths, theta, gain, bearing = lengths_of(draw, n), bent(draw, n), draw(0.05, 0.5), draw(-3.0, 3.0)
+    for away in (draw(0.1, 1.0), draw(2.0, 4.0)):                        # near, and so far that a cautious step shows
+        target = joints(theta, lengths)[-1] + away * np.array([np.cos(bearing), np.sin(bearing)])
+        half_square = lambda angles, target=target: 0.5 * np.sum((target - joints(angles, lengths)[-1]) ** 2)
+        slope = [0.5 * (half_square(theta + d) - half_square(theta - d)) / DIFFERENCE for d in DIFFERENCE * np.eye(n)]
+        got = lesson.transpose_step(reach, theta, target, arm_of(lesson, lengths, gain=gain))
+        close("change of θ over the gain [-]", (np.asarray(got) - theta) / gain, -np.array(slope), 1e-6,
+              given=f"θ = {theta}, target {target} m, α = {gain}")
 
 
-@exercise("11.9", points=0.5, hint="the error along u_i is multiplied by 1 − α σ²: nothing else may scale the step")
+@exercise("11.9", points=0.5,
+          hint="the step multiplies the error along u_i by 1 − α σ²: do not scale it in another way")
 def test_the_gain_decides_how_fast_the_error_shrinks(lesson, draw):
     lengths, theta = lengths_of(draw, 3), bent(draw, 3)
     u, sigma, v = np.linalg.svd(slopes(theta, lengths), full_matrices=False)
@@ -365,7 +374,7 @@ def test_the_pseudo_inverse_solves_with_the_shortest_answer(lesson, draw):
         close("J⁺", lesson.pseudo_inverse(J), expected, SOLVED, given=f"J = {J}")
 
 
-@exercise("11.10", points=0.5, hint="leave out every σ_i up to SINGULAR σ₁: 1/σ of round-off would fill the answer")
+@exercise("11.10", points=0.5, hint="leave out every σ_i up to SINGULAR σ₁: 1/σ of a round-off would spoil the answer")
 def test_directions_that_no_joint_can_move_are_left_alone(lesson, draw):
     for size, small in ((1.0, 0.0), (1.0, draw(1e-14, 1e-12)), (1e6, draw(1e-14, 1e-12))):
         sigma = size * np.array([draw(1.0, 3.0), draw(0.5, 0.9), small])
@@ -395,7 +404,7 @@ def test_a_damped_step_weighs_the_error_against_the_way(lesson, draw):
         close("θ after a step [rad]", got, expected, SOLVED, given=f"θ = {theta}, target {target} m, λ = {damping} m")
 
 
-@exercise("11.11", points=0.5, hint="Jᵀ (J Jᵀ + λ² 1)⁻¹ e has no part above |e|/(2λ), whatever J is")
+@exercise("11.11", points=0.5, hint="Jᵀ (J Jᵀ + λ² 1)⁻¹ e is never longer than |e|/(2λ), whatever J is")
 def test_a_damped_step_is_bounded_where_the_arm_is_straight(lesson, draw):
     for damping in (draw(0.05, 0.2), draw(0.5, 1.0)):
         lengths, theta, target = lengths_of(draw, 3), np.array([draw(-3.0, 3.0), 0.0, 0.0]), draw(-9.0, 9.0, 2)
@@ -407,7 +416,7 @@ def test_a_damped_step_is_bounded_where_the_arm_is_straight(lesson, draw):
               abs(across @ e) * sigma / (sigma**2 + damping**2), SOLVED, given=f"θ₁ = {theta[0]}, λ = {damping} m")
 
 
-@exercise("11.12", points=0.5, hint="1 − α σ² and λ²/(σ² + λ²), one of each for every σ")
+@exercise("11.12", points=0.5, hint="return 1 − α σ² and λ²/(σ² + λ²) for every σ")
 def test_factors_are_what_an_iteration_leaves_of_an_error(lesson, draw):
     sigma, gain, damping = np.sort(draw(0.2, 3.0, 3))[::-1].copy(), draw(0.05, 0.5), draw(0.1, 1.0)
     J, u = with_singular_values(draw, sigma, 4)
@@ -417,7 +426,7 @@ def test_factors_are_what_an_iteration_leaves_of_an_error(lesson, draw):
         close(f"factors of the {name} [-]", got, factors, SOLVED, given=f"σ = {sigma}, α = {gain}, λ = {damping}")
 
 
-@exercise("11.12", points=0.5, hint="no σ, no progress: both factors are 1; the transpose's may be below 0")
+@exercise("11.12", points=0.5, hint="for σ = 0 both factors are 1; the factor of the transpose may be below 0")
 def test_factors_at_the_ends_of_their_range(lesson, draw):
     size = draw(0.3, 3.0)
     sigma = np.array([0.0, size, 2.0 * size])
@@ -438,7 +447,7 @@ def coordinate_descent(theta, target, lengths, low, high):
     return theta
 
 
-@exercise("11.13", points=1, hint="last joint first; after each joint the end is somewhere else: turn it about x_k")
+@exercise("11.13", points=1, hint="last joint first; after each joint, turn the end about x_k")
 def test_each_joint_points_the_end_at_the_target(lesson, draw):
     for n in (1, 2, draw.whole(3, 7)):
         lengths, theta, target = lengths_of(draw, n), draw(-1.5, 1.5, n), draw(-2.0, 2.0, 2)
@@ -449,7 +458,7 @@ def test_each_joint_points_the_end_at_the_target(lesson, draw):
 
 
 @exercise("11.13", points=0.5,
-          hint="stop each joint at its limit, and turn the end by what the joint has really turned")
+          hint="stop each joint at its limit, and turn the end by the actual change of the angle")
 def test_limits_stop_a_joint_and_the_others_go_on(lesson, draw):
     for _ in range(5):
         n = draw.whole(3, 6)
@@ -476,7 +485,7 @@ def there_and_back(x, target, lengths):
 
 
 @exercise("11.14", points=1,
-          hint="back from the target with the new next joint, forth from the base with the new last one")
+          hint="back: from the target, with the new joint x_k+1; forth: from the base, with the new joint x_k")
 def test_a_sweep_projects_there_and_back(lesson, draw):
     for d in (2, 3):
         n = draw.whole(2, 6)
@@ -517,7 +526,7 @@ def test_limits_that_stop_nothing_change_nothing(lesson, draw):
 
 
 @exercise("11.15", points=0.5,
-          hint="zeros in the columns of blocked joints, so that the others do the whole work; clip at last")
+          hint="zeros in the columns of blocked joints, so that the others take over; clip at the end")
 def test_blocked_joints_leave_their_work_to_the_others(lesson, draw):
     for exactly in (True, False, False, False):
         n = draw.whole(4, 6)
@@ -540,7 +549,7 @@ def test_blocked_joints_leave_their_work_to_the_others(lesson, draw):
 
 
 @exercise("11.15", points=0.5,
-          hint="only joints that Jᵀ e pushes outwards are blocked: one that it pulls back must come free")
+          hint="block only joints that Jᵀ e pushes outwards; a joint that it pulls back must be free")
 def test_it_comes_to_rest_where_no_joint_alone_can_come_nearer(lesson, draw):
     for _ in range(3):
         lengths, target = lengths_of(draw, 3), draw(-1.5, 1.5, 2)
@@ -554,7 +563,7 @@ def test_it_comes_to_rest_where_no_joint_alone_can_come_nearer(lesson, draw):
               given=f"target {target} m, limits {arm.low} to {arm.high}")
 
 
-@exercise("11.16", points=0.5, hint="z + J⁺ (e − J z) is the same: what z moves the end by is taken back")
+@exercise("11.16", points=0.5, hint="z + J⁺ (e − J z) is the same: it cancels the motion of the end due to z")
 def test_the_pull_to_rest_does_not_move_the_end(lesson, draw):
     n, pull = draw.whole(3, 6), draw(0.2, 1.0)
     lengths, theta, rest = lengths_of(draw, n), bent(draw, n), draw(-1.0, 1.0, n)
@@ -567,7 +576,7 @@ def test_the_pull_to_rest_does_not_move_the_end(lesson, draw):
         close("change of θ [rad]", change, z + shortest, 1e-9, given=f"θ = {theta}, rest {rest}, κ = {pull}")
 
 
-@exercise("11.16", points=0.5, hint="of all angles that reach the target it comes to rest near arm.rest")
+@exercise("11.16", points=0.5, hint="among all angles that reach the target, the arm comes to rest near arm.rest")
 def test_it_ends_on_the_target_as_near_to_rest_as_it_can(lesson, draw):
     lengths, theta = draw(0.8, 1.2, 4), np.append(draw(-1.0, 1.0), draw(0.4, 0.8, 3))
     target, rest = joints(theta, lengths)[-1], theta + draw(-0.15, 0.15, 4)

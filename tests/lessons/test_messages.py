@@ -73,7 +73,7 @@ def test_a_range_shows_which_end_was_missed():
 
 
 @pytest.mark.parametrize(("got", "said"), [
-    (None, "None: does every way through your function end in a return?"), ("left", "a str"), (3.0, "a number"),
+    (None, "None: does every path through your function end with a return?"), ("left", "a str"), (3.0, "a number"),
     (np.zeros(2), "an array of shape (2,)"), ((1.0, (2.0, 3.0)), "a tuple"), ((1.0, np.inf, 2.0), "inf at [1]")])
 def test_what_is_no_such_array_is_named(got, said):
     assert told(close, got, np.zeros(3), 1.0).got == said

@@ -54,9 +54,9 @@ def test_a_lesson_is_told_in_the_same_way_everywhere(path):
     code = [cell for cell in cells if cell.cell_type == "code"]
     lesson = path.stem.partition("_")[2]
     numbers = exercises((SOLUTIONS / f"{lesson}.py").read_text())
-    for heading in ("| **You need** |", "| **Time** |", "**Afterwards you can**", "## The idea", "## Break it",
-                    "## What this scene leaves out", "## Make it (★★★)", "## The curtain", "## What you know now",
-                    "**Read on.**", "## Three questions"):
+    for heading in ("| **You need** |", "| **Lessons before** |", "| **Time** |", "**Afterwards you can**",
+                    "## The idea", "## Break it", "## What this scene leaves out", "## Make it (★★★)", "## The curtain",
+                    "## What you know now", "**Read on.**", "## Three questions"):
         assert text.count(heading) == 1, heading
     assert f"| {len(numbers)}, 20 points" in text
     assert text.count("<details><summary>Answer</summary>") == 3

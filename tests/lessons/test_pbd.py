@@ -117,7 +117,7 @@ def test_a_distance_constraint_gives_the_extension_and_its_gradient(lesson, draw
           given=f"x_i - x_j = {turn * np.array([3.0, 4.0])} m, rest = 5 m")
 
 
-@exercise("8.1", points=0.25, hint="without a length there is no direction: raise BadInput before dividing")
+@exercise("8.1", points=0.25, hint="a link of zero length has no direction: raise BadInput before dividing")
 def test_a_link_whose_ends_coincide_is_refused(lesson, draw):
     x = draw(-2.0, 2.0, 2)
     n = direction(draw, 2)
@@ -494,7 +494,7 @@ def test_a_weight_on_one_link_sags_by_what_its_sweeps_leave(lesson, draw):
 
 
 @exercise("8.8", points=0.5,
-          hint="the sweeps leave the share S = (1 − s)ⁿ; at the sag, they take back exactly the fall g dt²")
+          hint="the sweeps leave a fraction S = (1 − s)ⁿ of the error; at rest they remove exactly the fall g dt²")
 def test_the_sag_is_where_falling_and_projecting_balance(lesson, draw):
     for sweeps in (1, draw.whole(2, 6), draw.whole(7, 12)):
         g, dt, s = draw(1.0, 20.0), draw(0.01, 0.1), draw(0.2, 0.8)

@@ -175,7 +175,8 @@ def test_the_axis_angle_update_is_exact_at_constant_omega(lesson, draw):
 
 
 @exercise("5.7", points=0.75,
-          hint="only |ω| = 0 is rest; use the whole angle in sin θ and cos θ, also beyond one turn and for dt < 0")
+          hint="the body is at rest only if |ω| = 0; use the whole angle in sin θ and cos θ, also beyond one turn and "
+               "for dt < 0")
 def test_the_axis_angle_update_turns_by_any_angle_at_any_rate(lesson, draw):
     """The angle |ω| dt is below 30 and has a relative error of 1e-16."""
     for quarter in (0, 1, 2, 3, 4, 7, 15):
@@ -459,7 +460,7 @@ def test_the_midpoint_turn_keeps_the_energy_however_often(lesson, draw):
     close("energy after 200 turns over energy before", energy(q) / begin, 1.0, 1e-12)
 
 
-@exercise("5.16", points=0.25, hint="at rest m = 0, and 0 ≤ 0 must end the loop")
+@exercise("5.16", points=0.25, hint="for a body at rest m = 0, and the condition 0 ≤ 0 must end the loop")
 def test_the_midpoint_turn_leaves_a_resting_body(lesson, draw):
     turn_once(lesson, draw)
     q, I_body = orientation(draw), moments(draw)
@@ -467,7 +468,7 @@ def test_the_midpoint_turn_leaves_a_resting_body(lesson, draw):
 
 
 @exercise("5.16", points=0.25,
-          hint="if the loop ends without convergence, raise Diverged: do not rotate with the last m")
+          hint="if the loop ends without convergence, raise Diverged; do not use the last m")
 def test_the_midpoint_turn_solves_its_equation_or_raises_diverged(lesson, draw):
     turn_once(lesson, draw)
     raises("an L that is not a number", Diverged,
@@ -563,7 +564,7 @@ def waves(t, q, L, body):
 
 
 @exercise("5.18", points=1,
-          hint="fractions γ, γ, 1 − 4γ, γ, γ of dt; the third is negative; advance t with each of them")
+          hint="the substeps are γ, γ, 1 − 4γ, γ, γ times dt; the third is negative; advance t by each of them")
 def test_five_reversible_substeps_make_fourth_order(lesson, draw):
     q = orientation(draw)
     L, t = draw(0.5, 1.5, 3), draw(0.0, 1.0)

@@ -311,7 +311,7 @@ def test_a_mesh_obeys_newton_and_a_weight_hangs_still(lesson, draw):
 
 
 @exercise("2.9", points=1,
-          hint="one of the steps of lesson 1 does this: pass it spring_network_acceleration, and the network as p")
+          hint="a step of lesson 1 does this: pass spring_network_acceleration to it, and the network as p")
 def test_the_lectures_loop_is_exact_in_free_fall_and_settles_where_the_weight_hangs(lesson, draw):
     steps = draw.whole(8, 12)
     dt = draw(0.08, 0.12)
@@ -382,7 +382,7 @@ def test_a_small_grid_has_its_threads_in_order_and_a_single_node_none(lesson, dr
     close("pairs of a single node", lesson.grid_pairs(1, 1, lesson.STRUCTURAL), np.zeros((0, 2)), 0.0)
 
 
-@exercise("2.10", points=1, hint="a partner beyond the edge does not exist: do not wrap to the other side")
+@exercise("2.10", points=1, hint="there is no node beyond the edge: do not wrap around to the other side")
 def test_a_large_grid_has_every_thread_diagonal_and_bend_once(lesson, draw):
     rows, cols = draw.whole(5, 7), draw.whole(8, 11)
     pairs = np.asarray(lesson.grid_pairs(rows, cols, lesson.STRUCTURAL + lesson.SHEAR + lesson.BEND))

@@ -258,8 +258,9 @@ edit("6.6", "forgets R",
      "np.minimum(two_edges, edge_axis_distance(c, a)) - R - r", "np.minimum(two_edges, edge_axis_distance(c, a)) - r")
 edit("6.6", "adds r to the gap", "c, a)) - R - r", "c, a)) - R + r")
 edit("6.6", "takes the greatest of the three distances", "return np.minimum(two_edges", "return np.maximum(two_edges")
-edit("6.6", "pierces where any of the three signs is positive", "np.all(turns > 0.0)", "np.any(turns > 0.0)")
-edit("6.6", "has the gap of a pierced face positive", "return -R - r", "return R + r")
+edit("6.6", "counts the face as pierced where any of the three products is positive",
+     "np.all(turns > 0.0)", "np.any(turns > 0.0)")
+edit("6.6", "returns a positive gap for a pierced face", "return -R - r", "return R + r")
 edit("6.6", "takes the first two coordinates: projects along z",
      "a[1] * b[2] - a[2] * b[1]", "a[0] * b[1] - a[1] * b[0]")
 edit("6.6", "has a wrong sign in a cross product", "c[1] * a[2] - c[2] * a[1]", "a[1] * c[2] - a[2] * c[1]")
@@ -677,9 +678,9 @@ wrong("6.15", "exchanges the two directions of support")(nearest(along=(1.0, -1.
 wrong("6.15", "takes both supports along the same direction")(nearest(along=(-1.0, -1.0)))
 wrong("6.15", "keeps a single pair of corners")(nearest(reduce=False))
 wrong("6.15", "returns a normal that points from a to b")(nearest(swap=True))
-edit("6.15", "checks nothing", "check_hulls(a, b)", "pass")
-edit("6.15", "checks a only", "check_hulls(a, b)", "check_hulls(a, a)")
-edit("6.15", "checks b only", "check_hulls(a, b)", "check_hulls(b, b)")
+edit("6.15", "does not check its input", "check_hulls(a, b)", "pass")
+edit("6.15", "checks only the points of a", "check_hulls(a, b)", "check_hulls(a, a)")
+edit("6.15", "checks only the points of b", "check_hulls(a, b)", "check_hulls(b, b)")
 edit("6.15", "returns a corner of each hull in place of the closest points", "weights @ p, 0.0, weights @ q, 0.0",
      "p[0], 0.0, q[0], 0.0")
 edit("6.15", "stops after eight iterations", "range(MAX_GJK_STEPS)", "range(8)")
@@ -729,14 +730,14 @@ edit("6.16", "uses a gap of at least 1 mm", "g = distance - radius",
 edit("6.16", "measures its reach from the centre", "g >= reach", "distance >= reach")
 edit("6.16", "forgets k", "k * (1.0 / g", "(1.0 / g")
 edit("6.16", "adds the two terms of the potential", "(1.0 / g - 1.0 / reach)", "(1.0 / g + 1.0 / reach)")
-edit("6.16", "keeps the square of the potential", "(1.0 / g - 1.0 / reach) /", "(1.0 / g - 1.0 / reach)**2 /")
+edit("6.16", "squares the difference, as in the potential", "(1.0 / g - 1.0 / reach) /", "(1.0 / g - 1.0 / reach)**2 /")
 edit("6.16", "keeps the factor ½ of the potential", "k * (1.0", "0.5 * k * (1.0")
 edit("6.16", "divides by one power of the gap too many", "(g * g * distance)", "(g * g * g * distance)")
 edit("6.16", "forgets the inner derivative", "(g * g * distance)", "distance")
-edit("6.16", "takes the inner derivative with the distance from the centre, not with the gap",
+edit("6.16", "divides by the square of the distance from the centre, not of the gap",
      "(g * g * distance)", "(distance * distance * distance)")
 edit("6.16", "adds the radius to the distance", "distance - radius", "distance + radius")
-edit("6.16", "does not root the distance", "np.sqrt(r @ r)", "r @ r")
+edit("6.16", "omits the square root in the distance", "np.sqrt(r @ r)", "r @ r")
 edit("6.16", "omits the term of the reach", "(1.0 / g - 1.0 / reach)", "(1.0 / g)")
 edit("6.16", "repels beyond the reach only", "g >= reach", "g <= reach")
 edit("6.16", "repels by the gap itself, not by one over it",

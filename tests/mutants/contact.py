@@ -109,7 +109,7 @@ def complementarity_residual(A, b, lam):
 
 
 wrong("9.3", "does not take absolute values")(lcp_residual(size=lambda y: y))
-wrong("9.3", "counts the approach only")(lcp_residual(size=lambda y: np.maximum(0.0, -y)))
+wrong("9.3", "counts only the speed of approach")(lcp_residual(size=lambda y: np.maximum(0.0, -y)))
 wrong("9.3", "compares an impulse with a velocity, without the diagonal of A")(lcp_residual(scale=lambda A: 1.0))
 wrong("9.3", "returns the sum, not the largest one")(lcp_residual(total=np.sum))
 wrong("9.3", "returns the root mean square, not the largest one")(lcp_residual(total=lambda y: np.sqrt(np.mean(y * y))))
@@ -209,7 +209,7 @@ def mass_ratio_contraction(r):
 
 wrong("9.6", "returns the factor of Jacobi's method")(ratio(power=0.5))
 wrong("9.6", "puts the heavy body below")(ratio(turned=True))
-wrong("9.6", "counts two bodies below")(ratio(plus=2.0))
+wrong("9.6", "treats the lower body as two bodies")(ratio(plus=2.0))
 edit("9.6", "uses 1 − 1/r, which is right for large mass ratios only", "r / (1.0 + r)", "1.0 - 1.0 / r")
 
 
@@ -278,8 +278,8 @@ def solve_lcp(A, b):
 
 
 wrong("9.8", "accepts redundant contacts")(murty(check=lambda A: None))
-wrong("9.8", "lets no contact leave")(murty(sides="on"))
-wrong("9.8", "lets no contact come back")(murty(sides="off"))
+wrong("9.8", "never removes a contact from the pushing ones")(murty(sides="on"))
+wrong("9.8", "never adds a contact to the pushing ones again")(murty(sides="off"))
 wrong("9.8", "uses a tolerance of 1e-2")(murty(slack=1e-2))
 wrong("9.8", "uses a tolerance a thousand times too large")(murty(slack=1e-10))
 wrong("9.8", "uses no tolerance for round-off")(murty(slack=0.0))
@@ -639,9 +639,9 @@ wrong("9.15", "requires that all bodies have left")(leaves(all_of=True))
 wrong("9.15", "does not notice NaN")(leaves(nan=False))
 wrong("9.15", "does not notice NaN on the upper side")(leaves(nan_high=False))
 wrong("9.15", "allows an excess of 10 nm")(leaves(slack=1e-8))
-wrong("9.15", "lets nothing leave a box without a size")(leaves(endless=True))
+wrong("9.15", "counts no body as having left a box without a size")(leaves(endless=True))
 edit("9.15", "counts the edge itself as outside", "wide_low[i, c] <= low[i, c] and", "wide_low[i, c] < low[i, c] and")
-edit("9.15", "returns True if none has left", "return True", "return False")
+edit("9.15", "returns True if no body has left", "return True", "return False")
 edit("9.15", "returns the opposite", "if not (wide", "if (wide")
 edit("9.15", "exchanges the boxes",
      "wide_low[i, c] <= low[i, c] and high[i, c] <= wide_high[i, c]",

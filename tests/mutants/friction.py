@@ -122,7 +122,7 @@ wrong("3.4", "uses the normal force of level ground, without cos θ")(
     on_slope(slides=lambda theta, mu_s, mu_k: np.sin(theta) - mu_k))
 edit("3.4", "accepts a negative μ_s", "cone_radius(mu_s, np.cos(theta))", "mu_s * np.cos(theta)")
 edit("3.4", "accepts a negative μ_k", "cone_radius(mu_k, np.cos(theta))", "mu_k * np.cos(theta)")
-edit("3.4", "takes the angle for one in degrees",
+edit("3.4", "treats the angle as one in degrees",
      "np.sin(theta) <= cone_radius(mu_s, np.cos(theta))",
      "np.sin(np.radians(theta)) <= cone_radius(mu_s, np.cos(np.radians(theta)))")
 edit("3.4", "forgets g", "return g * (", "return (")
@@ -228,8 +228,8 @@ def block_step(rest=True, at_rest="mu_s", moving="mu_k", late=0.0, old=False, ag
 right("3.7", "by a unit vector")(block_step())
 wrong("3.7", "uses the kinetic coefficient at rest")(block_step(at_rest="mu_k"))
 wrong("3.7", "uses the static coefficient in motion")(block_step(moving="mu_s"))
-wrong("3.7", "does not test whether it holds")(block_step(rest=False))
-wrong("3.7", "evaluates at t + dt")(block_step(late=1.0))
+wrong("3.7", "does not test whether static friction holds the block")(block_step(rest=False))
+wrong("3.7", "takes the acceleration at t + dt")(block_step(late=1.0))
 wrong("3.7", "moves with the old velocity")(block_step(old=True))
 wrong("3.7", "applies the full friction for the whole step, which can reverse the block")(block_step(speed=0.0))
 wrong("3.7", "omits dt in the impulse of friction")(block_step(once=False))
@@ -344,7 +344,7 @@ right("3.10", "with its own test")(first_slip())
 
 wrong("3.10", "halves the interval only ten times")(first_slip(halvings=10))
 wrong("3.10", "evaluates the forces as if the step began at time 0")(first_slip(since=lambda t, tau: tau))
-wrong("3.10", "tests at t")(first_slip(since=lambda t, tau: t))
+wrong("3.10", "tests the pull at t, not at t + τ")(first_slip(since=lambda t, tau: t))
 wrong("3.10", "exchanges holding and slipping in the test")(first_slip(slips=lambda d: size(d) == 0.0))
 edit("3.10", "uses the kinetic coefficient", "if not np.any", "p = p._replace(mu_s=p.mu_k)\n    if not np.any")
 LOAD_OF_NOW = "p._replace(gravity=p.gravity + np.cos(p.omega * t) * (p.drive - along), drive=along)"
@@ -432,7 +432,7 @@ def impact(leaves=True, bounce=lambda e: 1.0 + e, mass=True, slip=tangential,
 
 
 right("3.13", "by the same law")(impact())
-wrong("3.13", "pulls at a body that leaves")(impact(leaves=False))
+wrong("3.13", "pulls back a particle that leaves")(impact(leaves=False))
 wrong("3.13", "uses e in place of 1 + e")(impact(bounce=lambda e: e))
 wrong("3.13", "uses 1 − e in place of 1 + e")(impact(bounce=lambda e: 1.0 - e))
 wrong("3.13", "omits the restitution")(impact(bounce=lambda e: 1.0))

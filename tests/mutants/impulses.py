@@ -31,7 +31,7 @@ def kinematic_response(v, n, e):
 
 wrong("7.1", "uses e in place of 1 + e")(response(bounce=lambda e: e))
 wrong("7.1", "uses 1 − e in place of 1 + e")(response(bounce=lambda e: 1.0 - e))
-wrong("7.1", "pulls at a body that leaves")(response(leaves=False))
+wrong("7.1", "pulls back a body that leaves")(response(leaves=False))
 wrong("7.1", "reverses all of v")(response(all_of_v=True))
 wrong("7.1", "reverses the impulse, which pulls the body in")(response(sign=1.0))
 edit("7.1", "changes its input", "v - (1.0 + e) * v_n * n", "np.subtract(v, (1.0 + e) * v_n * n, out=v)")
@@ -320,7 +320,7 @@ def cone(check=True, parts=True, enough=lambda u_sep: u_sep, goal=lambda u_sep: 
 
 
 right("7.10", "by NumPy's solver")(cone())
-wrong("7.10", "checks nothing")(cone(check=False))
+wrong("7.10", "does not check its input")(cone(check=False))
 wrong("7.10", "pulls at separating bodies")(cone(parts=False))
 wrong("7.10", "never rebounds")(cone(goal=lambda u_sep: 0.0))
 wrong("7.10", "never sticks")(cone(sticks=lambda J_t, J_n, mu: False))
@@ -517,7 +517,7 @@ def bouncing_time(v_n, a_n, e):
     return 2.0 * v_n / (-a_n) / (1.0 - e) if a_n < 0.0 and e < 1.0 else float("inf")
 
 
-wrong("7.14", "counts the way up only")(zeno(flight=1.0))
+wrong("7.14", "counts only the way up of each flight")(zeno(flight=1.0))
 edit("7.14", "treats nearly elastic bounces as endless", "e == 1.0", "e > 0.99")
 edit("7.14", "treats bounces slower than 1 mm/s as no bounces", "v_n <= 0.0", "v_n <= 1e-3")
 edit("7.14", "returns infinity for a ball that does not leave", "if v_n <= 0.0:",

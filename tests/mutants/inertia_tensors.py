@@ -31,7 +31,7 @@ edit("4.1", "accepts NaN", POSITIVE, 'if M <= 0.0: raise BadInput("total mass [k
 edit("4.1", "accepts infinity", POSITIVE, 'if not M > 0.0: raise BadInput("total mass [kg]", M, "give some")')
 edit("4.1", "refuses less than a microgram", POSITIVE, 'check_positive("total mass [kg]", M if M > 1e-9 else 0.0)')
 edit("4.1", "refuses less than a molecule", POSITIVE, 'check_positive("total mass [kg]", M if M > 1e-20 else 0.0)')
-edit("4.1", "refuses what is almost all hole", POSITIVE,
+edit("4.1", "refuses a body that consists almost entirely of holes", POSITIVE,
      'check_positive("total mass [kg]", M if M > 1e-3 * np.sum(np.abs(m)) else 0.0)')
 edit("4.1", "returns zero for coordinates below 1 nm",
      "m @ x / M", "np.where(np.abs(m @ x / M) < 1e-9, 0.0, m @ x / M)")
@@ -53,7 +53,7 @@ edit("4.2", "multiplies the total mass by the mean velocity", "m @ v", "np.sum(m
 edit("4.2", "uses the absolute values of the velocities", "m @ v", "m @ np.abs(v)")
 edit("4.2", "returns the velocity of the centre of mass", "m @ v", "m @ v / np.sum(m)")
 edit("4.2", "calls centre_of_mass, which refuses a total mass of zero", "m @ v", "np.sum(m) * centre_of_mass(m, v)[1]")
-edit("4.2", "takes a hole for a body", "m @ v", "np.abs(m) @ v")
+edit("4.2", "counts a hole as a body: uses the size of its mass", "m @ v", "np.abs(m) @ v")
 edit("4.2", "refuses holes", "return m @ v", '[check_positive("mass [kg]", k) for k in m]; return m @ v')
 edit("4.2", "returns zero for components below 1e-9 kg m/s", "m @ v", "np.where(np.abs(m @ v) < 1e-9, 0.0, m @ v)")
 edit("4.2", "reverses the sign", "m @ v", "-(m @ v)")
@@ -67,12 +67,13 @@ def angular_momentum(m, x, v, about):
 
 
 edit("4.3", "takes v × r in place of r × v", "cross(x[n] - about, v[n])", "cross(v[n], x[n] - about)")
-edit("4.3", "always about the origin", "x[n] - about", "x[n]")
+edit("4.3", "takes L about the origin, whatever the point `about` is", "x[n] - about", "x[n]")
 edit("4.3", "forgets the masses", "m[n] * cross", "cross")
-edit("4.3", "always about the centre", "x[n] - about", "x[n] - m @ x / np.sum(m)")
+edit("4.3", "takes L about the centre of mass, whatever the point `about` is",
+     "x[n] - about", "x[n] - m @ x / np.sum(m)")
 edit("4.3", "refuses a total mass of zero or less", "L = np.zeros(3)",
      'check_positive("total mass [kg]", np.sum(m)); L = np.zeros(3)')
-edit("4.3", "takes a hole for a body", "m[n] * cross", "abs(m[n]) * cross")
+edit("4.3", "counts a hole as a body: uses the size of its mass", "m[n] * cross", "abs(m[n]) * cross")
 edit("4.3", "ignores holes", "m[n] * cross", "max(0.0, m[n]) * cross")
 edit("4.3", "uses the velocities relative to the centre of mass", "v[n])", "v[n] - m @ v / np.sum(m))")
 edit("4.3", "measures the arm from the point to the reference point", "x[n] - about", "about - x[n]")
@@ -99,7 +100,7 @@ edit("4.4", "returns the second moments, Σ m r rᵀ, in place of the tensor",
 edit("4.4", "omits the entries off the diagonal",
      TENSOR, "[[yy + zz, 0.0, 0.0], [0.0, xx + zz, 0.0], [0.0, 0.0, xx + yy]]")
 edit("4.4", "uses the distance from the point, not from each axis", TENSOR, "np.eye(3) * (xx + yy + zz)")
-edit("4.4", "takes a hole for a body", "xx, yy, zz =", "m = np.abs(m); xx, yy, zz =")
+edit("4.4", "counts a hole as a body: uses the size of its mass", "xx, yy, zz =", "m = np.abs(m); xx, yy, zz =")
 edit("4.4", "refuses a total mass of zero or less", "xx, yy, zz =",
      'check_positive("total mass [kg]", np.sum(m)); xx, yy, zz =')
 edit("4.4", "treats coordinates below 1 nm as zero",
@@ -154,7 +155,7 @@ edit("4.6", "uses the factor 2/3 of a hollow sphere", "0.4 * m", "2.0 / 3.0 * m"
 edit("4.6", "uses the diameter in place of the radius", "radius * radius", "4.0 * radius * radius")
 edit("4.6", "fills the whole matrix, not only its diagonal", "np.eye(3)", "np.ones((3, 3))")
 edit("4.6", "returns the sum of the three moments on the diagonal", "0.4 * m", "1.2 * m")
-edit("4.6", "takes a hole for a body", "0.4 * m", "0.4 * abs(m)")
+edit("4.6", "counts a hole as a body: uses the size of its mass", "0.4 * m", "0.4 * abs(m)")
 edit("4.6", "refuses what is smaller than a nanometre", "0.4 * m",
      '0.4 * (check_positive("radius [m]", radius - 1e-9) or m)')
 edit("4.6", "refuses holes", "0.4 * m", '0.4 * (check_positive("mass m [kg]", m) or m)')
@@ -450,7 +451,7 @@ wrong("4.14", "tests symmetry with NumPy's isclose")(judged(equal=1e-5))
 wrong("4.14", "names another moment in the error")(judged(named=lambda a, c: (c, a)))
 wrong("4.14", "accepts zero")(judged(lambda a, c: a < 0.0))
 wrong("4.14", "refuses a plate because of round-off")(judged(highest=lambda a, b, c: c >= a + b))
-wrong("4.14", "does not look below the diagonal")(judged(symmetric=False))
+wrong("4.14", "does not test the entries below the diagonal")(judged(symmetric=False))
 wrong("4.14", "accepts NaN")(judged(finite=False))
 wrong("4.14", "compares the smallest moment with an absolute 1e-6 kg m²")(judged(lambda a, c: a <= 1e-6))
 right("4.14", "with eigenvalues only")(judged())
@@ -467,11 +468,14 @@ edit("4.14", "compares the asymmetry with the trace", "MOMENT_ROUND_OFF * np.max
      "MOMENT_ROUND_OFF * np.trace(I)")
 edit("4.14", "compares the smallest moment with the trace", "MOMENT_ROUND_OFF * moments[2]",
      "MOMENT_ROUND_OFF * np.trace(I)")
-edit("4.14", "copies the words for the largest moment", "the largest principal moment", "the smallest principal moment")
-edit("4.14", "copies the words for the smallest moment", "the smallest principal moment",
+edit("4.14", "names the smallest moment in the error, where the largest one is wrong",
+     "the largest principal moment", "the smallest principal moment")
+edit("4.14", "names the largest moment in the error, where the smallest one is wrong", "the smallest principal moment",
      "the largest principal moment")
-edit("4.14", "copies the words for the asymmetry", "the asymmetry of an inertia", "an entry of the inertia")
-edit("4.14", "copies the words for an entry", "an entry of the inertia", "the asymmetry of an inertia")
+edit("4.14", "names an entry in the error, where the tensor is not symmetric",
+     "the asymmetry of an inertia", "an entry of the inertia")
+edit("4.14", "names the asymmetry in the error, where an entry is not finite",
+     "an entry of the inertia", "the asymmetry of an inertia")
 edit("4.14", "compares the smallest moment with the middle one", "moments[0] <= MOMENT_ROUND_OFF * moments[2]",
      "moments[0] <= MOMENT_ROUND_OFF * moments[1]")
 edit("4.14", "compares the asymmetry with the largest entry, signs included", "np.max(np.abs(I)):", "np.max(I):")
@@ -539,7 +543,7 @@ def closing(ranged=True, directed=True, counted=True, twice=True, spare=True, na
 right("4.16", "counting every edge")(closing())
 wrong("4.16", "counts the triangles at each edge, whatever their direction")(closing(directed=False))
 wrong("4.16", "looks for one reversed edge in place of comparing the counts")(closing(counted=False))
-wrong("4.16", "does not look at the numbers")(closing(ranged=False))
+wrong("4.16", "does not test whether the numbers of the corners exist")(closing(ranged=False))
 wrong("4.16", "names corner 0 in the error, whichever edge is open")(closing(named=lambda edges: 0))
 wrong("4.16", "requires each edge exactly once in each direction")(closing(twice=False))
 wrong("4.16", "requires that every corner is used")(closing(spare=False))

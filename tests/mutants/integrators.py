@@ -304,5 +304,5 @@ edit("1.10", "returns the correlation, not the slope",
 edit("1.10", "divides each logarithm by the other one, and takes the mean",
      "np.sum(xi * eta) / np.sum(xi * xi)", "np.mean(np.log(errors) / np.log(dts))")
 edit("1.10", "accepts a step of zero or below", 'check_positive("step dt [s]", dts[n])', "pass")
-edit("1.10", "forgets the mean of both",
+edit("1.10", "forgets both means, that of log dt and that of log error",
      "np.sum(xi * eta) / np.sum(xi * xi)", "np.sum(np.log(dts) * np.log(errors)) / np.sum(np.log(dts)**2)")

@@ -94,6 +94,8 @@ wrong("11.3", "returns the squares of the axes")(ellipse(squares=True))
 wrong("11.3", "returns the angle of the short axis")(ellipse(swapped=True))
 wrong("11.3", "returns the angle in degrees")(ellipse(degrees=True))
 edit("11.3", "returns twice the angle", "0.5 * np.arctan2", "np.arctan2")
+edit("11.3", "returns an angle that is never negative",
+     "np.arctan2(2.0 * b, a - c)", "np.arctan2(2.0 * np.abs(b), a - c)")
 edit("11.3", "returns the determinant as the short axis", "np.sqrt(squared) / longer", "np.sqrt(squared)")
 edit("11.3", "exchanges the two half axes",
      "return longer, np.sqrt(squared) / longer,", "return np.sqrt(squared) / longer, longer,")
@@ -133,6 +135,8 @@ wrong("11.4", "omits the inner limit of the reach")(two_links(inside=False))
 wrong("11.4", "exchanges the two links")(two_links(swap=True))
 wrong("11.4", "returns the inner angle of the triangle for θ₂")(two_links(supplement=True))
 edit("11.4", "returns half of θ₂", "elbow * 2.0 * np.arctan2", "elbow * np.arctan2")
+edit("11.4", "has no hole in the reach where the second link is the longer one",
+     "np.abs(lengths[0] - lengths[1])", "lengths[0] - lengths[1]")
 
 
 @variants
@@ -283,6 +287,7 @@ edit("11.9", "returns the change, not the new angles", "return theta + arm.gain"
 edit("11.9", "divides by the gain", "arm.gain * (e @ J)", "(e @ J) / arm.gain")
 edit("11.9", "starts from zero angles", "theta + arm", "0.0 * theta + arm")
 edit("11.9", "normalises the error", "(e @ J)", "(e @ J) / (np.sqrt(e @ e) + 1e-300)")
+edit("11.9", "shortens an error that is longer than a metre", "(e @ J)", "(e @ J) / np.maximum(1.0, np.sqrt(e @ e))")
 
 
 # 11.10 ----------------------------------------------------------------------------------------------------------

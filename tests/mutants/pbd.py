@@ -259,14 +259,14 @@ def sweeping(stiff=True, by_mass=True, sign=1.0, jacobi=False, backwards=False, 
 
 
 right("8.6", "with vectors")(sweeping())
-wrong("8.6", "always fully stiff")(sweeping(stiff=False))
+wrong("8.6", "ignores the stiffness: always corrects the whole error")(sweeping(stiff=False))
 wrong("8.6", "moves both ends equally, whatever their masses")(sweeping(by_mass=False))
 wrong("8.6", "reverses the corrections")(sweeping(sign=-1.0))
 wrong("8.6", "corrects all links at once, from the old positions")(sweeping(jacobi=True))
 wrong("8.6", "visits the links from the last to the first")(sweeping(backwards=True))
 wrong("8.6", "changes its input")(sweeping(changes=True))
 wrong("8.6", "accepts coincident ends")(sweeping(checked=False))
-wrong("8.6", "moves the immovable")(sweeping(held=False))
+wrong("8.6", "moves immovable points")(sweeping(held=False))
 edit("8.6", "never pushes, as a thread", "share = network.stiffness[s]",
      "share = network.stiffness[s] * (length > network.rest[s])")
 edit("8.6", "refuses short segments", "length == 0.0", "length < 1e-6")
@@ -280,7 +280,7 @@ edit("8.6", "uses the stiffness of all sweeps in each sweep", "network.stiffness
 edit("8.6", "makes all sweeps in one call", "range(network.i.size)", "[*range(network.i.size)] * network.sweeps")
 edit("8.6", "adds α in the denominator, as XPBD does", "(w[i] + w[j])", "(w[i] + w[j] + network.alpha[s])")
 edit("8.6", "visits the links in the order of their first points", "range(network.i.size)", "np.argsort(network.i)")
-edit("8.6", "refuses a nanometre", "length == 0.0", "length < 1e-9")
+edit("8.6", "refuses links shorter than a nanometre", "length == 0.0", "length < 1e-9")
 edit("8.6", "ignores errors below a millionth of the length", "share = network.stiffness[s]",
      "share = (abs(length - network.rest[s]) > 1e-6 * length) * network.stiffness[s]")
 
@@ -519,7 +519,7 @@ wrong("8.11", "moves every point onto the surface")(outside(asks=lambda phi: Tru
 wrong("8.11", "moves points outside onto the surface")(outside(asks=lambda phi: phi > 0.0))
 wrong("8.11", "reverses the correction, which pushes points in deeper")(outside(sign=1.0))
 wrong("8.11", "moves points only half of the way")(outside(share=0.5))
-wrong("8.11", "moves the immovable")(outside(held=False))
+wrong("8.11", "moves immovable points")(outside(held=False))
 wrong("8.11", "changes its input")(outside(changes=True))
 edit("8.11", "ignores depths below 5 cm", "phi < 0.0", "phi < -0.05")
 edit("8.11", "moves heavy points less", "x[k] -= phi * n", "x[k] -= min(1.0, inv_mass[k]) * phi * n")
@@ -621,7 +621,7 @@ edit("8.13", "never pulls where α = 0", "length - network.rest[s]",
 edit("8.13", "skips links with α = 0", "i, j = network.i[s], network.j[s]",
      "i, j = network.i[s], network.j[s]\n        if network.alpha[s] == 0.0:\n            continue")
 edit("8.13", "stores no Λ where α = 0", "Lam[s] += change", "Lam[s] += change * (network.alpha[s] > 0.0)")
-edit("8.13", "checks nothing",
+edit("8.13", "does not check its input",
      "compliant_multiplier(length - network.rest[s], Lam[s], w[i] + w[j], network.alpha[s] / (dt * dt))",
      "(network.rest[s] - length - network.alpha[s] / dt**2 * Lam[s]) / (w[i] + w[j] + network.alpha[s] / dt**2)")
 edit("8.13", "skips links between immovable points", "length = distance_between(x, i, j)",
@@ -630,7 +630,7 @@ edit("8.13", "visits the links in the order of their first points", "range(netwo
 edit("8.13", "skips links that have their rest length", "length = distance_between(x, i, j)",
      "length = distance_between(x, i, j)\n"
      "        if abs(length / network.rest[s] - 1.0) < 1e-9:\n            continue")
-edit("8.13", "refuses a nanometre", "length == 0.0", "length < 1e-9")
+edit("8.13", "refuses links shorter than a nanometre", "length == 0.0", "length < 1e-9")
 edit("8.13", "makes all sweeps in one call", "range(network.i.size)", "[*range(network.i.size)] * network.sweeps")
 edit("8.13", "divides α by the number of sweeps",
      "network.alpha[s] / (dt * dt)", "network.alpha[s] / (dt * dt) / network.sweeps")

@@ -101,7 +101,7 @@ edit("5.5", "exchanges force and torque", "F, tau)", "tau, F)")
 edit("5.5", "returns the new orientation, R + ω* R", "skew(omega) @ S.R,", "S.R + skew(omega) @ S.R,")
 edit("5.5", "returns ω* in place of ω* R", "skew(omega) @ S.R", "skew(omega)")
 edit("5.5", "returns the momenta in place of force and torque", "F, tau)", "S.P, S.L)")
-edit("5.5", "divides the force by the mass", "F, tau)", "F / body.m, tau)")
+edit("5.5", "returns the acceleration in place of the force", "F, tau)", "F / body.m, tau)")
 
 
 # 5.6 ------------------------------------------------------------------------------------------------------------
@@ -129,7 +129,7 @@ edit("5.6", "does not normalise the second column", "second /= norm(second)", "p
 edit("5.6", "does not normalise the first column", "first /= norm(first)", "pass")
 edit("5.6", "adds the part along the first column", "second -= dot", "second += dot")
 edit("5.6", "leaves out R: keeps only the change", "M = R + dt", "M = dt")
-edit("5.6", "takes the half of the step, as for a quaternion", "dt * (skew", "0.5 * dt * (skew")
+edit("5.6", "uses ½ dt, which belongs to a quaternion", "dt * (skew", "0.5 * dt * (skew")
 edit("5.6", "keeps the third column of the step", "cross(first, second)), axis=1", "M[:, 2] / norm(M[:, 2])), axis=1")
 
 
@@ -167,7 +167,7 @@ edit("5.7", "exchanges sine and cosine",
 edit("5.7", "does not normalise the axis", "n = omega / rate", "n = omega")
 edit("5.7", "adds 1 + cos θ along the axis", "1.0 - c", "1.0 + c")
 edit("5.7", "takes the part along r in place of n", "dot(n, r) * n", "dot(n, r) * r")
-edit("5.7", "takes the angle for one in degrees",
+edit("5.7", "converts the angle to degrees",
      "np.cos(rate * dt), np.sin(rate * dt)", "np.cos(np.degrees(rate * dt)), np.sin(np.degrees(rate * dt))")
 
 
@@ -215,7 +215,7 @@ def rotation_matrix(q):
 edit("5.9", "returns the transpose, which rotates from world to body", "w, x, y, z = q[0]", "w, x, y, z = -q[0]")
 edit("5.9", "reads the scalar part as the last component", "q[0], q[1], q[2], q[3]", "q[3], q[0], q[1], q[2]")
 edit("5.9", "forgets a factor 2 beside w", "w, x, y, z = q[0]", "w, x, y, z = 0.5 * q[0]")
-edit("5.9", "adds w² to a diagonal that has it already", "1.0 - 2.0 * (y * y + z * z)",
+edit("5.9", "adds w² to a diagonal entry that already contains it", "1.0 - 2.0 * (y * y + z * z)",
      "w * w + 1.0 - 2.0 * (y * y + z * z)")
 edit("5.9", "has a wrong sign beside w in the first row: 2(xy + wz)", "2.0 * (x * y - w * z)", "2.0 * (x * y + w * z)")
 edit("5.9", "has a wrong sign beside w in the first row: 2(xz − wy)", "2.0 * (x * z + w * y)", "2.0 * (x * z - w * y)")
@@ -370,7 +370,7 @@ def tumbling_rate(I_body, k, spin):
 
 
 wrong("5.14", "reverses a sign, so that the outer axes tumble")(racket(sign=-1.0))
-wrong("5.14", "finds tumbling about every axis")(racket(root=lambda s: np.sqrt(abs(s))))
+wrong("5.14", "returns a positive rate for every axis")(racket(root=lambda s: np.sqrt(abs(s))))
 wrong("5.14", "omits the square root")(racket(root=lambda s: max(0.0, s)))
 wrong("5.14", "divides by the squared moment of the axis itself")(
     racket(below=lambda I, i, j: (I.sum() - I[i] - I[j]) ** 2))
@@ -440,7 +440,7 @@ wrong("5.16", "multiplies the rotation from the left, as if ω were in world coo
     midpoint(close=lambda q, w, dt: worked.unit(worked.quaternion_product(np.concatenate(([1.0], 0.5 * dt * w)), q))))
 wrong("5.16", "omits the factor ½ in the rotation")(
     midpoint(close=lambda q, w, dt: worked.unit(worked.quaternion_product(q, np.concatenate(([1.0], dt * w))))))
-wrong("5.16", "rotates by the angle of another rule")(
+wrong("5.16", "rotates by the whole angle |w| dt, which belongs to another rule")(
     midpoint(close=lambda q, w, dt: worked.unit(worked.quaternion_product(q, worked.exponential(dt * w)))))
 wrong("5.16", "does not normalise the quaternion")(
     midpoint(close=lambda q, w, dt: worked.quaternion_product(q, np.concatenate(([1.0], 0.5 * dt * w)))))

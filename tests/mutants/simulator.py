@@ -133,6 +133,7 @@ edit("10.5", "finds only what overlaps", "pairs, p.margin)", "pairs, 0.0)")
 edit("10.5", "omits the planes", "high + p.margin, p.planes)", "high + p.margin, p.planes[:0])")
 edit("10.5", "finds contacts between immovable bodies, too", "p.inv_mass)", "p.inv_mass + 1.0)")
 edit("10.5", "uses twice the margin", "pairs, p.margin)", "pairs, 2.0 * p.margin)")
+edit("10.5", "widens the boxes downwards only", "high + p.margin", "high")
 
 
 # 10.6 -----------------------------------------------------------------------------------------------------------
@@ -179,6 +180,7 @@ edit("10.6", "omits the forces", "v, omega = new_velocities_2d(load, t, x, q, v,
 edit("10.6", "reverses the closing speeds", "closing_speeds(contacts.gap, dt)", "-closing_speeds(contacts.gap, dt)")
 edit("10.6", "uses the gap in place of the closing speed", "closing_speeds(contacts.gap, dt)", "contacts.gap")
 edit("10.6", "does not move the bodies", "PileState(x + dt * v,", "PileState(x,")
+edit("10.6", "looks for contacts of bodies that are not turned", "bounds(x, q, p.half)", "bounds(x, 0.0 * q, p.half)")
 edit("10.6", "returns the old contacts", "dt * omega, v, omega, contacts, J)", "dt * omega, v, omega, old, J)")
 
 
@@ -379,6 +381,8 @@ edit("10.13", "counts the first body only", "range(x.shape[0])", "range(1)")
 edit("10.13", "omits the potential energy", "- dot(p.gravity, x[i])", "")
 edit("10.13", "multiplies by the inverse mass", "x[i])) / p.inv_mass[i]", "x[i])) * p.inv_mass[i]")
 edit("10.13", "forgets the squares of ω", "w * w / p", "w / p")
+edit("10.13", "counts the rotation of rows with inv_mass 0, too", "if p.inv_mass[i] > 0.0:",
+     "if p.inv_mass[i] + p.inv_inertia[i, 0] > 0.0:")
 edit("10.13", "omits the factor ½ of the rotation", "0.5 * np.sum", "np.sum")
 edit("10.13", "rotates ω from body to world in place of world to body",
      "w = unrotate(q[i], omega[i])", "w = unrotate(q[i] * np.array([1.0, -1.0, -1.0, -1.0]), omega[i])")
@@ -407,6 +411,8 @@ edit("10.14", "returns L first", "return P, L", "return L, P")
 edit("10.14", "multiplies by the inverse mass", "v[i] / p.inv_mass[i]", "v[i] * p.inv_mass[i]")
 edit("10.14", "forgets the mass in the orbital part", "cross(x[i], v[i]) / p.inv_mass[i]", "cross(x[i], v[i])")
 edit("10.14", "keeps the last body only", "P += v", "P = v")
+edit("10.14", "counts rows with inv_mass 0 that can turn, too", "if p.inv_mass[i] > 0.0:",
+     "if p.inv_mass[i] + p.inv_inertia[i, 0] > 0.0:")
 
 
 # 10.15 ----------------------------------------------------------------------------------------------------------

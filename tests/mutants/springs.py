@@ -101,7 +101,7 @@ edit("2.5", "applies a force above the surface, too", "C >= 0.0", "False")
 edit("2.5", "limits the spring but not the damper", "np.maximum(0.0, -(k * C + k_d * C_rate))",
      "(max(0.0, -k * C) - k_d * C_rate)")
 edit("2.5", "applies a force at C = 0 already", "C >= 0.0", "C > 0.0")
-edit("2.5", "returns a number for zero force", "return 0.0 * gradient", "return 0.0")
+edit("2.5", "returns a number, not a vector, where the force is zero", "return 0.0 * gradient", "return 0.0")
 edit("2.5", "ignores a depth of a millimetre", "C >= 0.0", "C >= -1e-3")
 edit("2.5", "reverses the damper", "k_d * C_rate", "-k_d * C_rate")
 edit("2.5", "pushes on the other side", "C >= 0.0", "C <= 0.0")
@@ -185,7 +185,7 @@ def overwrite(force, at, pull):
 
 
 right("2.7", "all springs at once")(by_matrices())
-wrong("2.7", "keeps one spring per point")(by_matrices(add=overwrite))
+wrong("2.7", "adds only one spring to each point")(by_matrices(add=overwrite))
 wrong("2.7", "reverses the forces, so that a stretched spring pushes")(
     by_matrices(tension=lambda *a: -worked.spring_tension(*a)))
 wrong("2.7", "applies no force to the second end")(by_matrices(other=0.0))
@@ -294,14 +294,16 @@ def numbering(number=lambda r, c, rows, cols: r * cols + c, exists=inside,
 
 
 right("2.10", "over a list of nodes")(numbering())
-wrong("2.10", "counts along columns")(numbering(number=lambda r, c, rows, cols: c * rows + r))
-wrong("2.10", "multiplies by the rows")(numbering(number=lambda r, c, rows, cols: r * rows + c))
+wrong("2.10", "numbers the nodes along the columns")(numbering(number=lambda r, c, rows, cols: c * rows + r))
+wrong("2.10", "multiplies the row by the number of rows, not of columns")(
+    numbering(number=lambda r, c, rows, cols: r * rows + c))
 edit("2.10", "wraps around the edge of the grid", "if 0 <= r + dr < rows and 0 <= c + dc < cols",
      "for r, c, dr, dc in [(r, c, (r + dr) % rows - r, (c + dc) % cols - c)]")
 edit("2.10", "treats an index below zero as a valid row", "0 <= r + dr < rows", "r + dr < rows")
 wrong("2.10", "tests the index, not the column")(
     numbering(exists=lambda r, c, rows, cols: 0 <= r * cols + c < rows * cols))
-wrong("2.10", "forgets the left edge")(numbering(exists=lambda r, c, rows, cols: r < rows and c < cols))
+wrong("2.10", "does not test for rows and columns below zero")(
+    numbering(exists=lambda r, c, rows, cols: r < rows and c < cols))
 wrong("2.10", "returns each pair twice")(numbering(row=lambda i, j: [[i, j], [j, i]]))
 wrong("2.10", "returns indices that are not integers")(numbering(kind=float))
 wrong("2.10", "returns an array of another shape where there are no pairs")(numbering(empty=False))
@@ -384,10 +386,10 @@ def descent(conjugate=True, tolerance=1e-10, rounds=10, start=0.0, silent=False,
 
 right("2.12", "conjugacy written out")(descent())
 wrong("2.12", "follows the steepest descent")(descent(conjugate=False))
-wrong("2.12", "stops at a thousandth")(descent(tolerance=1e-3))
+wrong("2.12", "stops when a thousandth of the residual is left")(descent(tolerance=1e-3))
 wrong("2.12", "stops after as many rounds as unknowns")(descent(rounds=1))
 wrong("2.12", "never raises: returns the last iterate")(descent(silent=True))
-wrong("2.12", "starts from ones, with the residual of zeros")(descent(start=1.0))
+wrong("2.12", "starts from y = 1, with the residual of y = 0")(descent(start=1.0))
 wrong("2.12", "changes the right-hand side")(descent(copied=False))
 wrong("2.12", "divides zero by zero")(descent(zero=False))
 edit("2.12", "inverts the ratio β", "squared / before", "before / squared")

@@ -14,13 +14,14 @@ import nbformat
 import pytest
 
 from solutions.checks import BadInput
-from tests.grading import release
+from tests.grading import choice, release
 from validate import modules
 from validate.book import __main__ as book
-from validate.book import api, course, execute, pages, plan, sheets
+from validate.book import api, course, execute, pages, plan, sheets, weeks
 from validate.modules import ROOT
 
 pytestmark = pytest.mark.xdist_group("book")
+ESTIMATED = 0.4              # of a lesson's hours [h]: they are given in halves, and a text may change a little
 FILM = "<div>film</div><script>" + "let player = 1;" * 400 + "</script>"
 
 
@@ -100,13 +101,47 @@ def test_every_lesson_adds_up_to_twenty_points_and_has_a_sheet():
         assert f"--lesson {name} " in sheet and leaks([sheet]) == []
 
 
-def test_each_notebook_says_how_many_hours_the_plan_expects():
+def test_the_hours_are_the_same_on_every_page_and_near_the_estimate():
+    weeks = [row.split(" | ") for row in plan.course_table(plan.COURSES[-1]).splitlines()]
     for name, lesson in course.lessons().items():
-        text = course.notebook_of(name).read_text(encoding="utf-8")
-        told = re.search(r"about ([\d.]+) hours: ([\d.]+) to read and run, ([\d.]+) to write", text)
-        whole, reading, writing = map(float, told.groups())
-        assert whole == reading + writing, name
-        assert abs(reading - lesson.reading) <= 0.5 and abs(writing - lesson.writing) <= 0.5, name
+        head, (reading, writing) = lesson.head, lesson.estimate
+        assert abs(head.reading - reading) <= ESTIMATED and abs(head.writing - writing) <= ESTIMATED, name
+        told = f"about {head.whole:g} hours: {head.reading:g} to read and run, {head.writing:g} to write"
+        assert f"| **Time** | {told} |" in course.notebook_of(name).read_text(encoding="utf-8")
+        assert f"| hours | {told.removeprefix('about ').replace(' hours', '')} |" in sheets.page(name, report=False)
+        assert f"| {head.whole:g}: {head.reading:g} + {head.writing:g} |" in plan.lesson_table()
+        assert sum(float(week[4]) for week in weeks if f"({'notebooks/' + course.notebook_of(name).stem})" in week[1]) \
+            == head.whole
+
+
+def test_a_course_takes_as_many_hours_as_its_weeks():
+    for taught in plan.COURSES:
+        section = plan.course_section(taught)
+        weeks = [row.split(" | ")[4] for row in section.splitlines() if re.match(r"\| \d", row)]
+        assert f"About {sum(float(hours) for hours in weeks if hours):g} hours" in section
+
+
+def test_hours_that_do_not_add_up_are_refused(monkeypatch):
+    said = ("| **You need** | sums |\n| **Lessons before** | none |\n"
+            "| **Time** | about 5.5 hours: 1 to read and run, 4 to write |")
+    cells = [nbformat.v4.new_markdown_cell(text) for text in ("", "", said)]
+    monkeypatch.setattr(course.nbformat, "read", lambda *path, as_version: nbformat.v4.new_notebook(cells=cells))
+    with pytest.raises(ValueError, match="do not add up"):
+        course.head("friction")
+
+
+def test_a_lesson_names_every_lesson_whose_exercises_it_calls_as_one_before_it():
+    for name, lesson in course.lessons().items():
+        called = {int(number.split(".")[0]) for number in sheets.foreign(lesson)}
+        assert called <= lesson.head.numbers <= set(range(1, lesson.number)), name
+        assert lesson.head.numbers or lesson.head.before == "none", name
+
+
+def test_a_sheet_shows_the_stars_of_the_notebook():
+    for name in course.lessons():
+        notebook = dict(re.findall(r"`\w+` \((\d+\.\d+) (★+)\)", course.notebook_of(name).read_text(encoding="utf-8")))
+        sheet = dict(re.findall(r"^\| (\d+\.\d+) \| [^|]+ \| (★+) \|", sheets.page(name, report=False), re.M))
+        assert sheet == notebook, name
 
 
 @pytest.mark.parametrize("taught", plan.COURSES, ids=lambda taught: taught.title)
@@ -115,7 +150,9 @@ def test_a_course_teaches_what_it_needs_before_it_is_needed(taught):
     lessons = set(taught.worked)
     for week in taught.weeks:
         if week.lesson:
-            assert course.lessons()[week.lesson].needs <= lessons | {week.lesson}, week
+            lesson = course.lessons()[week.lesson]
+            assert lesson.needs <= lessons | {week.lesson}, week
+            assert lesson.head.numbers <= {course.lessons()[name].number for name in lessons}, week
             for one in week.exercises():
                 assert {n for n in one.uses if course.in_order(n) < course.in_order(one.number)} <= there, one
                 there.add(one.number)
@@ -130,6 +167,88 @@ def test_the_zips_of_a_course_can_be_released(taught):
     for worked in map(set, taught.zips().values()):
         assert release.with_earlier(worked) == worked
         release.refuse_leaks(release.contents(paths, set(every), worked), worked)
+
+
+def test_the_weeks_of_a_lesson_hold_every_exercise_once_in_whole_sections_and_its_own_scenes():
+    assert weeks.WEEKS.keys() == course.lessons().keys()
+    for name, lesson in course.lessons().items():
+        parts = [part for week in weeks.WEEKS[name] for part in (week.before, week.after)]
+        numbers = [number for first, last in parts for number in range(first, last + 1)]
+        assert numbers == list(range(1, len(lesson.exercises) + 1)), name
+        assert sum(weeks.hours(name, *part) for part in parts) == lesson.head.writing, name
+        assert all(weeks.hours(name, *part) > 0.0 for part in parts), name
+        told = weeks.table(name, report=False)
+        sections = weeks.sections(name)
+        assert sections and all(f"*{title}*" in told for _, _, title in sections), name
+        assert all(set(week.show) <= set(lesson.scenes) for week in weeks.WEEKS[name])
+        two = sum(week.lesson == name for week in plan.COURSES[-1].weeks) == 2
+        assert len(weeks.WEEKS[name]) == (2 if two else 1), name
+
+
+def test_two_weeks_with_a_lesson_are_those_of_the_long_course():
+    for name, own in weeks.WEEKS.items():
+        planned = [week.exercises() for week in plan.COURSES[-1].weeks if week.lesson == name]
+        assert [[f"{course.lessons()[name].number}.{n}" for n in (week.before[0], week.after[1])] for week in own] == \
+            [[chosen[0].number, chosen[-1].number] for chosen in planned]
+
+
+def test_a_sheet_links_every_case_and_scene_and_names_the_paths_of_the_answers():
+    for name, lesson in course.lessons().items():
+        sheet = sheets.page(name, report=True)
+        assert sheet.count(f'<a href="../report/stability.html#{name}-') == lesson.cases > 0
+        assert all(f'<a href="../report/{scene}.html">' in sheet for scene in lesson.scenes)
+        assert all(f"`{path}/{name}.py`" in sheet for path in ("solutions", "tests/mutants"))
+        assert "publishes the answers of" in sheet or name == "integrators"
+        assert f"({'sheets/' + name})" in plan.lesson_table()
+
+
+def documents():
+    """{name: text} of what an instructor or a student reads: docs, README, the first notebook, sheets, the plan."""
+    paths = [*(ROOT / "docs").glob("*.md"), ROOT / "README.md", ROOT / "notebooks" / "00_start_here.ipynb"]
+    texts = {path.name: path.read_text(encoding="utf-8") for path in paths}
+    return texts | {"plan.md": plan.filled(texts["plan.md"])} | {
+        name: sheets.page(name, report=False) for name in course.lessons()}
+
+
+def test_every_page_gives_a_command_in_the_same_words():
+    grades, tests, zips = [], [], set()
+    for text in documents().values():
+        text = re.sub(r" \\\n +", " ", text)
+        grades += [line for line in re.findall(r"^\.venv/bin/grade .*", text, re.M) if "--roster" in line]
+        tests += re.findall(r"\.venv/bin/pytest[^`\n]*--exercise.*", text)
+        zips |= set(re.findall(r"--out (\S+\.zip)", text))
+    assert len(grades) >= 14 and all("--roster class/list.csv" in line and "--late 10" in line for line in grades)
+    assert len(tests) >= 2 and all("--of=" in line for line in tests)
+    assert zips == {"workbook.zip", "autograder.zip", *(f"{name}.zip" for name in course.lessons())}
+
+
+def test_the_commands_that_a_page_gives_to_the_grader_name_exercises_that_there_are():
+    found = [(name, match[1] or match[2]) for name, text in documents().items()
+             for match in re.finditer(r'--exercises (?:"([^"]+)"|([\d.=,–-]+))', text)]
+    assert len(found) >= 14 and all(choice.chosen([], text)[1] for _, text in found)
+    for taught in plan.COURSES:
+        for week in filter(plan.Week.exercises, taught.weeks):
+            assert [*choice.chosen([week.lesson], plan.span(week.exercises()))[1]] == [
+                one.number for one in week.exercises()]
+
+
+@pytest.mark.parametrize(("remote", "address"), [
+    ("https://github.com/someone/workbook.git", "https://github.com/someone/workbook"),
+    ("https://someone:ghp_secret@github.com/someone/workbook", "https://github.com/someone/workbook"),
+    ("https://ghp_secret@example.org/workbook", "https://example.org/workbook"),
+    ("git@github.com:someone/workbook.git", ""), ("/home/someone/workbook", ""), ("", "")])
+def test_the_book_names_the_address_of_the_repository_and_no_secret(remote, address, monkeypatch, tmp_path):
+    (tmp_path / "CITATION.cff").write_text("title: A workbook\n")
+    subprocess.run(["git", "init", "-q", tmp_path], check=True)
+    if remote:
+        subprocess.run(["git", "remote", "add", "origin", remote], cwd=tmp_path, check=True)
+    monkeypatch.setattr(plan, "ROOT", tmp_path)
+    assert plan.repository() == address
+    page = plan.with_address((ROOT / "docs" / "instructors.md").read_text(encoding="utf-8"))
+    assert (f"git clone {address} workbook" in page) == bool(address) == ("REPOSITORY" not in page)
+    assert ("stands for the address" in page) != bool(address)
+    (tmp_path / "CITATION.cff").write_text('repository-code: "https://example.org/cited"\n')
+    assert plan.repository() == "https://example.org/cited"
 
 
 def test_the_glossary_has_every_word_of_the_table():

@@ -25,7 +25,7 @@ def test_there_are_at_least_eleven_faults_in_every_lesson_and_each_is_one_of_a_k
 def test_a_fault_is_one_replacement_in_a_function_that_the_report_executes(name):
     for fault in faults_of(name):
         compile(planted(fault), fault.name, "exec")
-        assert coverage.places()[coverage.defined((name, fault.function))], fault.name
+        assert coverage.places()[coverage.defined((fault.lesson, fault.function))], fault.name
         assert fault.old.count("\n") <= 1 and fault.new.count("\n") <= 1, fault.name
         assert fault.wrong and not fault.wrong.endswith("."), fault.name
 

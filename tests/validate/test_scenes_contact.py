@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from validate import measure, modules
+from validate.engines.contact import pymunk_tower
 from validate.measure import film
-from validate.reference.contact import Settling, sway_of_tower
+from validate.reference.contact import Settling, Towers, sway_of_tower, unrest_in_pymunk
 from validate.results import is_right
 from validate.scenes.contact import mass_ratio, piles, stack
 
@@ -60,3 +61,28 @@ def test_a_pile_is_filmed_inside_the_edges_of_its_container(case):
     assert np.min(gaps, axis=0) == pytest.approx(0.0, abs=1e-12)
     radii = [body["r"] for body in piles.bodies(p)]
     assert np.max(edges[:, 2]) == pytest.approx(np.max(first[:, 2] + radii), abs=1e-12)
+
+
+@pytest.mark.long
+def test_the_unrest_of_pymunks_towers_is_that_of_the_reference():
+    """To half of it, as for the piles; 0 stands for less than the roundings that the limit allows besides."""
+    for (n, *settings), known in stack.UNREST.items():
+        joints = stack.tower(stack.Params(n=n)).joint_frictions()
+        how = Towers(stack.DT, *settings, stack.OVERLAP, joints, stack.WAITING)
+        assert unrest_in_pymunk((1.0,) * n, 1.0, 9.81, how) == pytest.approx(known, rel=0.5, abs=1e-14)
+    for r, known in mass_ratio.UNREST.items():
+        p = mass_ratio.Params(r=r)
+        how = Towers(stack.DT, *mass_ratio.PYMUNK_SETTINGS, stack.OVERLAP, mass_ratio.tower(p).joint_frictions(), 3.0)
+        assert unrest_in_pymunk(tuple(mass_ratio.masses(p)), 1.0, 9.81, how) == pytest.approx(known, abs=1e-12)
+
+
+@pytest.mark.parametrize("steps", [1, 4, 24])
+def test_the_reference_of_pymunks_towers_errs_as_the_engine_does(steps):
+    """While the tower falls into its joints, when errors are largest: to a hundredth of them."""
+    p = stack.Params(n=5, m=2.0)
+    here = stack.tower(p)._replace(waiting=steps * stack.DT)
+    forces, _ = pymunk_tower(here, 10, 0.1)()
+    truth = stack.truth(p, 1.0)
+    how = Towers(stack.DT, 10, 0.1, stack.OVERLAP, here.joint_frictions(), here.waiting)
+    found = np.linalg.norm(forces - truth) / np.linalg.norm(truth)
+    assert unrest_in_pymunk((p.m,) * p.n, p.size, p.g, how) == pytest.approx(found, rel=0.01)

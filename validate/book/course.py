@@ -1,4 +1,8 @@
-"""Facts about the lessons, read from their files: exercises, points, what a lesson needs, an estimate of its hours."""
+"""Facts about the lessons, read from their files: exercises, points, hours, what a lesson needs.
+
+The head of a notebook is the source of a lesson's hours, of the mathematics that it takes for granted, and of the
+lessons that it builds on.  The tests compare the hours with an estimate, and the lessons with the calls.
+"""
 
 import json
 import re
@@ -13,6 +17,7 @@ from typing import NamedTuple
 import nbformat
 
 from .. import coverage, generate, modules
+from .. import needs as calls
 from ..modules import ROOT, SOLUTIONS
 from ..stability.examine import all_cases
 
@@ -31,10 +36,30 @@ class Exercise(NamedTuple):
     hints: tuple             # that its tests give when they fail
     lines: int               # of its worked answer, without comments and blank lines
     uses: tuple              # numbers of the exercises that its answer calls
+    stars: str               # ★ or ★★
 
     @property
     def minutes(self):
+        """An estimate."""
         return MINUTES_PER_EXERCISE + MINUTES_PER_LINE * self.lines
+
+
+class Head(NamedTuple):
+    """What the table at the beginning of a notebook says."""
+    mathematics: str         # and physics, that the lesson takes for granted
+    before: str              # the lessons that it builds on, each with a reason
+    reading: float           # hours with the notebook, without its exercises
+    writing: float           # hours for all exercises
+
+    @property
+    def whole(self):
+        """All hours of the lesson."""
+        return self.reading + self.writing
+
+    @property
+    def numbers(self):
+        """Numbers of the lessons that it builds on."""
+        return frozenset(map(int, re.findall(r"lesson (\d+)", self.before)))
 
 
 class Lesson(NamedTuple):
@@ -48,20 +73,22 @@ class Lesson(NamedTuple):
     cases: int               # stability cases
     words: int               # of its notebook
     outputs: int             # code cells of its notebook that are no check
+    head: Head
 
     @property
     def points(self):
         return sum(one.points for one in self.exercises)
 
     @property
-    def reading(self):
-        """Hours with the notebook, without its exercises."""
-        return (self.words / WORDS_PER_MINUTE + self.outputs * MINUTES_PER_OUTPUT) / 60.0
+    def estimate(self):
+        """(hours to read and run the notebook, hours to write all exercises), by the constants above."""
+        reading = self.words / WORDS_PER_MINUTE + self.outputs * MINUTES_PER_OUTPUT
+        return reading / 60.0, sum(one.minutes for one in self.exercises) / 60.0
 
-    @property
-    def writing(self):
-        """Hours for all exercises."""
-        return sum(one.minutes for one in self.exercises) / 60.0
+    def hours(self, chosen):
+        """Hours of a student who does these exercises and reads their share of the notebook."""
+        share = sum(one.minutes for one in chosen) / sum(one.minutes for one in self.exercises)
+        return self.head.reading * len(chosen) / len(self.exercises) + self.head.writing * share
 
 
 @cache
@@ -74,7 +101,7 @@ def lessons():
     for name, path in modules.scene_files().items():
         scenes[path.parent.name].append(name)
     return {name: Lesson(number, name, title(name), exercises_of(name), needs(name), tuple(scenes[name]), cases[name],
-                         *size_of_notebook(name)) for number, name in enumerate(modules.lesson_names(), 1)}
+                         *size_of_notebook(name), head(name)) for number, name in enumerate(modules.lesson_names(), 1)}
 
 
 def notebook_of(name):
@@ -85,6 +112,17 @@ def notebook_of(name):
 def title(name):
     first = nbformat.read(notebook_of(name), as_version=4).cells[0].source
     return re.sub(r"^# *\d+ *· *", "", first.splitlines()[0]).strip("# ")
+
+
+def head(name):
+    """The Head of a lesson's notebook."""
+    text = nbformat.read(notebook_of(name), as_version=4).cells[2].source
+    rows = dict(re.findall(r"^\| \*\*([\w ]+)\*\* \| (.+) \|$", text, re.M))
+    told = re.fullmatch(r"about ([\d.]+) hours: ([\d.]+) to read and run, ([\d.]+) to write", rows["Time"])
+    whole, reading, writing = map(float, told.groups())
+    if whole != reading + writing:
+        raise ValueError(f"the hours in the head of notebook {name} do not add up: {rows['Time']}")
+    return Head(rows["You need"], rows["Lessons before"], reading, writing)
 
 
 def size_of_notebook(name):
@@ -146,7 +184,8 @@ def exercises_of(name):
         tests = grading_tests()[number]
         hints = tuple(dict.fromkeys(test["hint"] for test in tests))
         points = sum(test["points"] for test in tests)
-        found.append(Exercise(name, number, function, points, hints, lines, uses(name, function)))
+        found.append(Exercise(name, number, function, points, hints, lines, uses(name, function),
+                              "★★" if calls.asks_to_find(number) else "★"))
     return tuple(found)
 
 

@@ -1,10 +1,13 @@
 """Courses of 4, 8 and 14 weeks, and the tables of the page *Plan a course*."""
 
+import re
+import subprocess
 from typing import NamedTuple
 
+from ..modules import ROOT
 from . import course
 
-ALL = ()
+WIDTH = 84                   # of the code on a page of the book [characters]
 
 
 class Week(NamedTuple):
@@ -24,12 +27,8 @@ class Week(NamedTuple):
         return tuple(one for one in chosen if course.in_order(one.number)[1] not in self.leave_out)
 
     def hours(self):
-        """Hours of a student: the notebook's share of these exercises, and the exercises themselves."""
-        if not self.lesson:
-            return 0.0
-        lesson, chosen = course.lessons()[self.lesson], self.exercises()
-        share = len(chosen) / len(lesson.exercises)
-        return lesson.reading * share + sum(one.minutes for one in chosen) / 60.0
+        """Hours of a student."""
+        return course.lessons()[self.lesson].hours(self.exercises()) if self.lesson else 0.0
 
 
 class Course(NamedTuple):
@@ -63,7 +62,7 @@ COURSES = (
         "Four weeks: particles", "A unit of another course, such as numerical methods or computer graphics.",
         (Week("integrators"), Week("springs", last=10, note="without the implicit step of a stiff mesh"),
          Week("pbd", last=7, note="the projection method and PBD"),
-         Week("pbd", first=8, last=15, note="cloth, obstacles, compliance, a soft ball")),
+         Week("pbd", first=8, leave_out=(15, 16, 17), note="cloth, obstacles, compliance, a soft ball")),
         worked=("friction", "rotation")),
     Course(
         "Eight weeks: rigid bodies", "From Euler's method to a body that collides, with friction.",
@@ -90,14 +89,14 @@ def table(head, rows):
     return "\n".join("| " + " | ".join(map(str, line)) + " |" for line in lines)
 
 
-def hours(number):
+def half(number):
     """Hours to the half."""
-    return f"{max(0.5, round(2.0 * number) / 2.0):g}"
+    return max(0.5, round(2.0 * number) / 2.0) if number else 0.0
 
 
 def lesson_link(name):
     lesson = course.lessons()[name]
-    return f"[{lesson.number} · {name}](notebooks/{course.notebook_of(name).stem})"
+    return f"[{lesson.number} · {name}](notebooks/{course.notebook_of(name).stem}) ([sheet](sheets/{name}))"
 
 
 def numbers_of(names):
@@ -107,12 +106,19 @@ def numbers_of(names):
 
 def lesson_table():
     """Every lesson with its size, its hours and what it needs."""
-    rows = [(lesson_link(name), len(lesson.exercises), f"{lesson.points:g}", hours(lesson.reading),
-             hours(lesson.writing), numbers_of(course.imports(name)), numbers_of(lesson.needs), len(lesson.scenes),
+    rows = [(lesson_link(name), stars(lesson.exercises), f"{lesson.points:g}",
+             f"{lesson.head.whole:g}: {lesson.head.reading:g} + {lesson.head.writing:g}",
+             ", ".join(map(str, sorted(lesson.head.numbers))) or "–", numbers_of(lesson.needs), len(lesson.scenes),
              lesson.cases)
             for name, lesson in course.lessons().items()]
-    return table(("lesson", "exercises", "points", "hours to read and run", "hours to write", "calls lessons",
-                  "needs in all", "scenes", "stability cases"), rows)
+    return table(("lesson", "exercises", "points", "hours: to read + to write", "builds on lessons",
+                  "loads files of", "scenes", "stability cases"), rows)
+
+
+def stars(chosen):
+    """How many exercises there are of each kind: "13 ★, 4 ★★"."""
+    counts = [(kind, sum(one.stars == kind for one in chosen)) for kind in ("★", "★★")]
+    return ", ".join(f"{count}\N{NO-BREAK SPACE}{kind}" for kind, count in counts if count)
 
 
 def span(chosen):
@@ -135,7 +141,8 @@ def course_table(plan):
         chosen = week.exercises()
         if chosen:
             points = sum(one.points for one in chosen)
-            rows.append((number, lesson_link(week.lesson), span(chosen), f"{points:g}", hours(week.hours()), week.note))
+            hours = f"{half(week.hours()):g}"
+            rows.append((number, lesson_link(week.lesson), span(chosen), f"{points:g}", hours, week.note))
         else:
             rows.append((number, "", "", "", "", week.note))
     return table(("week", "lesson", "exercises", "points", "hours", "remark"), rows)
@@ -143,17 +150,30 @@ def course_table(plan):
 
 def release(name, worked):
     """The command that makes a students' zip with these lessons as worked answers."""
-    return f".venv/bin/release --out {name}.zip" + (f" --with-solutions={','.join(worked)}" if worked else "")
+    return in_sight(f".venv/bin/release --out {name}.zip", f"--with-solutions={','.join(worked)}" if worked else "")
+
+
+def grade(name):
+    """The command that grades a lesson."""
+    return in_sight(f".venv/bin/grade class --out grades-{name} --lesson {name}",
+                    "--roster class/list.csv --due 2026-11-30T23:59 --late 10")
+
+
+def in_sight(command, options):
+    """A command with its options, on a second line if they would run out of the page."""
+    line = f"{command} {options}".strip()
+    return line if len(line) <= WIDTH else f"{command} \\\n    {options}"
 
 
 def course_section(plan):
     """A course as the page shows it."""
-    total = sum(week.hours() for week in plan.weeks)
-    zips = "\n".join(release(f"week-{number}", worked) for number, worked in plan.zips().items())
-    why = (f" Students get lessons {numbers_of(plan.worked)} as worked answers, because lessons of this course call "
-           "them." if plan.worked else "")
-    return (f"### {plan.title}\n\n{plan.aim} About {round(total)} hours of a student's work.{why}\n\n"
-            f"{course_table(plan)}\n\nThe students' zips:\n\n```sh\n{zips}\n```")
+    total = sum(half(week.hours()) for week in plan.weeks)
+    zips = "\n".join(release(plan.weeks[number - 1].lesson, worked) for number, worked in plan.zips().items())
+    why = (f" Students get lessons {numbers_of(plan.worked).replace(', ', ' and ')} as worked answers, because lessons "
+           "of this course load their files." if plan.worked else "")
+    return (f"### {plan.title}\n\n{plan.aim} About {total:g} hours of a student's work.{why}\n\n"
+            f"{course_table(plan)}\n\nThe students' zips, one for each lesson, in the order of the weeks:\n\n"
+            f"```sh\n{zips}\n```")
 
 
 def free_exercises():
@@ -163,6 +183,25 @@ def free_exercises():
         free = [one for one in lesson.exercises if not course.used_by().get(one.number)]
         rows.append((lesson_link(name), span(free), f"{sum(one.points for one in free):g}"))
     return table(("lesson", "exercises that no other exercise calls", "points"), rows)
+
+
+def repository():
+    """The address of the repository, from CITATION.cff or else from git; "" if neither has one."""
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    if named := re.search(r"^repository-code: *[\"']?(\S+?)[\"']?$", citation, re.M):
+        return named[1]
+    said = subprocess.run(["git", "remote", "get-url", "origin"], cwd=ROOT, capture_output=True, text=True)
+    address = re.fullmatch(r"https://(?:[^@/]*@)?([\w.-]+/[\w./-]+?)(?:\.git)?", said.stdout.strip())
+    return f"https://{address[1]}" if address else ""
+
+
+def with_address(text):
+    """A page in which REPOSITORY is the address of the repository, if it is known."""
+    address = repository()
+    if not address:
+        return text
+    text = re.sub(r"`REPOSITORY` stands for .*", f"The repository is at <{address}>.", text)
+    return text.replace("REPOSITORY", address)
 
 
 def filled(text):

@@ -5,59 +5,59 @@ import re
 
 from .. import modules
 from ..stability.examine import all_cases
-from . import course, plan
-
-BEFORE = {                   # mathematics and physics that a lesson takes for granted
-    "integrators": "derivatives, Taylor series, 2 × 2 matrices and their eigenvalues",
-    "springs": "vectors, Newton's second law; for 2.11 to 2.13 linear systems of equations",
-    "friction": "vectors and their parts along a normal; forces on a slope",
-    "inertia_tensors": "integrals over volumes, symmetric matrices, eigenvectors",
-    "rotation": "cross products, rotation matrices, angular momentum; complex numbers help with quaternions",
-    "collisions": "planes and lines in vector form, quadratic equations, convex sets",
-    "impulses": "momentum, kinetic energy, cross products, the inertia tensor of lesson 4",
-    "pbd": "gradients, linear systems of equations, Newton's method",
-    "contact": "matrices and their eigenvalues, inequalities; a single contact, as in lesson 7",
-    "simulator": "lessons 1, 5, 7 and 9",
-    "kinematics": "partial derivatives, least squares, singular values",
-}
+from . import course, plan, weeks
 
 
 def page(name, report):
     """The sheet of one lesson, in Markdown."""
     lesson = course.lessons()[name]
-    later = [other for other, one in course.lessons().items() if name in one.needs]
-    needs = plan.numbers_of(lesson.needs)
+    head, later = lesson.head, [one.number for one in course.lessons().values() if lesson.number in one.head.numbers]
     facts = plan.table(("fact", "value"), [
-        ("hours to read and run the notebook", plan.hours(lesson.reading)),
-        ("hours to write all exercises", plan.hours(lesson.writing)),
-        ("exercises, points", f"{len(lesson.exercises)}, {lesson.points:g}"),
-        ("mathematics and physics", BEFORE[name]),
-        ("lessons whose functions it calls", needs),
-        ("lessons that need it", plan.numbers_of(later)),
+        ("hours", f"{head.whole:g}: {head.reading:g} to read and run, {head.writing:g} to write"),
+        ("exercises, points", f"{len(lesson.exercises)} ({plan.stars(lesson.exercises)}), {lesson.points:g}"),
+        ("mathematics and physics", head.mathematics),
+        ("lessons before", head.before),
+        ("exercises of other lessons that it calls", ", ".join(foreign(lesson)) or "none"),
+        ("lessons that build on it", ", ".join(map(str, later)) or "none"),
         ("students hand in", f"`lessons/{name}.py`"),
-        ("worked answers", f"`solutions/{name}.py`"),
+        ("worked answers, in the repository", path(f"solutions/{name}.py")),
+        ("wrong answers that must fail, in the repository", path(f"tests/mutants/{name}.py")),
+        ("grading tests", path(f"tests/lessons/test_{name}.py")),
     ])
     return "\n\n".join([
         f"# {lesson.number} · {name}: lesson sheet", f"{lesson.title}. The [notebook](../notebooks/"
         f"{course.notebook_of(name).stem}) and the [functions](../lessons/{name}). How the hours are estimated: "
-        "[Plan a course](../plan).", "## The lesson", facts,
-        "## Exercises", "*Minutes* are an estimate. *Calls* and *called by* name exercises. In their own copy, "
-        "students cannot pass an exercise that calls one which they have left out.", exercise_table(lesson),
+        "[Plan a course](../plan). Where the repository is, and how to set it up: [Set up a course](../instructors).",
+        "## The lesson", facts, "## A week with it" if len(weeks.WEEKS[name]) == 1 else "## Two weeks with it",
+        "In the week before, make the zip (*Commands*, below) and try it once yourself: unpack it, set it up, run the "
+        f"first check. The hours below are those to write; the notebook takes {head.reading:g} "
+        f"{'hour' if head.reading == 1.0 else 'hours'} more.", weeks.table(name, report),
+        "## Exercises", "★: the docstring gives the formula. ★★: students find it; the notebook has a folded hint. The "
+        "★★★ task *Make it* at the end of the notebook has no points. *Minutes* are an estimate. *Calls* and *called "
+        "by* name exercises. In their own copy, students cannot pass an exercise that calls one which they have left "
+        "out.",
+        exercise_table(lesson),
         "## Where students go wrong", "A check that fails gives these hints. Each one answers a mistake that a test "
-        f"of the workbook catches. The wrong answers that must fail are in `tests/mutants/{name}.py`.", hints(lesson),
+        "of the workbook catches.", hints(lesson),
         "## What to show", "Every scene below has a film, its truth, and both engines where they can do it.",
-        scenes(lesson, report), "Stability cases: limits that theory gives, found by experiment.", cases(name),
+        scenes(lesson, report), "Stability cases: limits that theory gives, found by experiment.", cases(name, report),
         "## Questions to discuss", questions(name),
         "## Commands", commands(lesson)]) + "\n"
+
+
+def foreign(lesson):
+    """Numbers of the exercises of other lessons that exercises of this lesson call themselves."""
+    found = {number for one in lesson.exercises for number in one.uses}
+    return sorted(found - {one.number for one in lesson.exercises}, key=course.in_order)
 
 
 def exercise_table(lesson):
     rows = []
     for one in lesson.exercises:
         users = course.used_by().get(one.number, ())
-        rows.append((one.number, f"{{py:func}}`~lessons.{one.lesson}.{one.function}`", f"{one.points:g}",
+        rows.append((one.number, f"{{py:func}}`~lessons.{one.lesson}.{one.function}`", one.stars, f"{one.points:g}",
                      f"{one.minutes:.0f}", ", ".join(one.uses) or "–", ", ".join(users) or "–"))
-    return plan.table(("exercise", "function", "points", "minutes", "calls", "called by"), rows)
+    return plan.table(("exercise", "function", "stars", "points", "minutes", "calls", "called by"), rows)
 
 
 def hints(lesson):
@@ -82,9 +82,16 @@ def scenes(lesson, report):
     return plan.table(("scene", "what it is", "command"), rows)
 
 
-def cases(name):
+def cases(name, report):
     found = [case for case in all_cases() if case.lesson == name]
-    return "\n".join(f"- {plain(case.title)}" for case in found)
+    return "\n".join(f'- <a href="../report/stability.html#{name}-{case.slug}">{html.escape(case.title)}</a>' if report
+                     else f"- {plain(case.title)}" for case in found)
+
+
+def path(file):
+    """A file of the repository, with a link if the repository's address is known."""
+    address = plan.repository()
+    return f"[`{file}`]({address}/blob/HEAD/{file})" if address else f"`{file}`"
 
 
 def questions(name):
@@ -96,10 +103,15 @@ def questions(name):
 
 
 def commands(lesson):
-    before = tuple(name for name, one in course.lessons().items() if one.number < lesson.number)
-    said = ("The students' zip when this lesson begins. It holds the earlier lessons as worked answers, so that nobody "
-            "is held up by a gap in them." if before else "The students' zip when this lesson begins.")
+    before = [name for name, one in course.lessons().items() if one.number < lesson.number]
+    said = "Make the students' zip when this lesson begins."
+    if before:
+        said += (" It holds the earlier lessons as worked answers, so that nobody is held up by a gap in them. **So it "
+                 f"publishes the answers of {before[-1]}**: if you accept that lesson late, hand the zip out when its "
+                 "late days are over. If your course leaves lessons out, take the command from [Plan a course](../plan)"
+                 ".")
     return (f"{said}\n\n```sh\n{plan.release(lesson.name, before)}\n```\n\nGrade what comes back. The folder `class` "
-            f"has one folder or zip per student.\n\n```sh\n.venv/bin/grade class --out grades-{lesson.name} "
-            f"--lesson {lesson.name} --roster list.csv --due 2026-11-30T23:59\n```\n\n"
+            "has one folder or zip per student, and the class list `list.csv`. `--late 10` takes ten per cent for each "
+            f"day begun after `--due`. If you have set a part of the lesson only, add for example "
+            f"`--exercises {plan.span(lesson.exercises[:5])}`.\n\n```sh\n{plan.grade(lesson.name)}\n```\n\n"
             "[Grading a class](../grading) explains both.")

@@ -10,6 +10,8 @@ from . import quiet_import
 
 _idle = []                   # connected clients that are free for another run
 IMPACT_ITERATIONS = 50       # of the contact solver
+CONTACT_ERP = 0.08           # share of an overlap that a contact takes back in a step [-]
+WARM = 0.1                   # share of the last impulses with which the contact solver begins, by default [-]
 UPRIGHT = np.eye(3)          # rotation of a body that is not rotated
 
 
@@ -130,7 +132,7 @@ class Rigid(Bullet):
 
     def close(self):
         """Restore the engine's own settings for the next world."""
-        self.pb.setPhysicsEngineParameter(numSolverIterations=50, erp=0.2, contactSlop=1e-5)
+        self.pb.setPhysicsEngineParameter(numSolverIterations=50, erp=0.2, contactSlop=1e-5, warmStartingFactor=WARM)
         super().close()
 
 
@@ -181,7 +183,7 @@ class Impacts(Bullet):
     def close(self):
         """Restore the engine's own settings for the next world."""
         self.pb.setPhysicsEngineParameter(
-            numSolverIterations=50, contactERP=0.08, contactSlop=1e-5, restitutionVelocityThreshold=0.2
+            numSolverIterations=50, contactERP=CONTACT_ERP, contactSlop=1e-5, restitutionVelocityThreshold=0.2
         )
         super().close()
 

@@ -1,5 +1,6 @@
 """Piles of bodies between walls for the lesson and for both engines: the same bodies, places, friction and steps."""
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -7,7 +8,7 @@ import numpy as np
 from solutions.support.scenes import make_pile, make_pile_2d
 
 from . import quiet_import
-from .bullet import Rigid
+from .bullet import WARM, Rigid
 from .chipmunk import pymunk_floor, pymunk_space
 
 G, DT, MU = 9.81, 1.0 / 240.0, 0.5
@@ -249,6 +250,11 @@ class Tower(NamedTuple):
         """Return a coefficient per cube; an engine multiplies those of a pair, and the floor has 1."""
         return [np.sqrt(self.mu) if k else self.mu for k in range(len(self.masses))]
 
+    def joint_frictions(self):
+        """Return the coefficients of the joints, from the floor upwards."""
+        mus = [1.0, *self.frictions()]
+        return tuple(a * b for a, b in pairwise(mus))
+
 
 def pymunk_tower(tower, iterations, slop):
     """Build a tower; return a function that waits and returns (force under each cube [N], its sinking [m])."""
@@ -280,21 +286,29 @@ def pymunk_tower(tower, iterations, slop):
     return wait
 
 
-def bullet_tower(tower, iterations, residual):
-    """Do the same in pybullet; return the client's close function, too."""
+def bullet_tower(tower, iterations, residual, warm=WARM, maximal=False):
+    """Do the same in pybullet; return the client's close function, too.
+
+    warm: the share of the last impulses with which its solver begins.  maximal: the ground has maximal coordinates as
+    the cubes do; else its contacts begin from nothing.  A force is the vertical part of all contacts of a joint: they
+    tilt as corners sink, and friction carries the rest.
+    """
     bullet = Rigid(DT, (0.0, 0.0, -tower.g), iterations)
     pb = bullet.pb
-    pb.setPhysicsEngineParameter(solverResidualThreshold=residual, contactSlop=1e-5)
+    pb.setPhysicsEngineParameter(solverResidualThreshold=residual, contactSlop=1e-5, warmStartingFactor=warm)
     slab = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[5.0, 5.0, 1.0])
-    ground = pb.createMultiBody(0, slab, basePosition=[0.0, 0.0, -1.0])
+    ground = pb.createMultiBody(0, slab, basePosition=[0.0, 0.0, -1.0], useMaximalCoordinates=int(maximal))
     pb.changeDynamics(ground, -1, lateralFriction=1.0, restitution=0)
     shape = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[0.5 * tower.size] * 3)
     bodies = [bullet.body(m, (inertia,) * 3, (0.0, 0.0, y), (0.0,) * 3, True, shape=shape, mu=mu)
               for m, inertia, y, mu in zip(tower.masses, tower.inertias, tower.heights(), tower.frictions())]
 
+    def upward(c):
+        return c[9] * c[7][2] - c[10] * c[11][2] - c[12] * c[13][2]      # friction is that on the lower body
+
     def wait():
         for _ in range(round(tower.waiting / DT)):
             bullet.step()
-        forces = np.array([sum(c[9] for c in pb.getContactPoints(a, b)) for a, b in zip(bodies, [ground, *bodies])])
-        return forces, np.array([bullet.position(body)[2] for body in bodies]) - tower.heights()
+        forces = [sum(map(upward, pb.getContactPoints(a, b))) for a, b in zip(bodies, [ground, *bodies])]
+        return np.array(forces), np.array([bullet.position(body)[2] for body in bodies]) - tower.heights()
     return wait, bullet.close

@@ -7,11 +7,9 @@ begins with the overlap that its engine tolerates.  Otherwise it first falls tha
 from validate.engines.bullet import Bullet
 from validate.engines.chipmunk import pymunk_space, pymunk_world
 from validate.methods import EVENT, SLIDING
-from validate.reference.friction import block_in_space
+from validate.reference.friction import HALF, block_in_space
 from validate.scene import PYBULLET, PYMUNK, Engine, EngineRun
 
-# half the length of the block [m]: no step may move it by its own size, or pybullet loses the contact
-HALF = 1.0
 # half its height [m]: friction acts that far below the centre, and moves the load forward by μ LOW.  With a cube and
 # μ = 0.8 nearly all load is on its front edge, and pybullet's friction is up to 0.7 % too strong
 LOW = 0.1

@@ -11,6 +11,7 @@ from validate.scene import EngineRun
 
 OVERLAP = 1e-6               # with which pymunk's bodies begin [m]: it sees a contact when there is one
 HEAVY = 1e9                  # mass of pybullet's turntable over that of the ball [-]: it falls by 1e-7 m in 5 s
+WIDE = 1e12                  # moment of inertia of pybullet's wedge, which cannot turn [kg m²]
 ITERATIONS = 100             # of both engines' contact solvers
 
 
@@ -84,17 +85,28 @@ def pybullet_wedge(x, m, half, thick, angle, g, maximal, dt):
     x (2, 2) centres, m (2,), half: half size of the block, which is a cube, thick (2,): half sizes of the wedge.
     read: x of the wedge, x and y of the block, and their velocities.  The block leaves a contact point behind by its
     way in a step, and loses it where that is more than the breaking threshold.
+
+    Each begins a micrometre inside what carries it: without, a rounding decides which contacts the first step has.
+    In maximal coordinates a moment of inertia counts from the second step on, so that the first one is done far from
+    everything and without gravity.
     """
-    bullet = Rigid(dt, (0.0, 0.0, -g), iterations=ITERATIONS)
-    pb, R = bullet.pb, about(np.array([0.0, 1.0, 0.0]), angle)
+    bullet = Rigid(dt, iterations=ITERATIONS)
+    pb, R, down = bullet.pb, about(np.array([0.0, 1.0, 0.0]), angle), np.array([0.0, -OVERLAP])
     pb.setPhysicsEngineParameter(contactBreakingThreshold=1.0)
     slab = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=[5.0, 5.0, 1.0])
     floor, pair = pb.createMultiBody(0, slab, basePosition=[0.0, 0.0, -1.0], useMaximalCoordinates=int(maximal)), []
-    moments = np.full(3, HEAVY), np.full(3, 2.0 / 3.0 * m[1] * half**2)
-    for place, mass, moment, sizes in zip(x, m, moments, ((*thick[:1], 2.0 * half, *thick[1:]), (half, half, half))):
+    moments = np.full(3, WIDE), np.full(3, 2.0 / 3.0 * m[1] * half**2)
+    places = x[0] + down, x[1] + down - OVERLAP * np.array([np.sin(angle), np.cos(angle)])
+    for mass, moment, sizes in zip(m, moments, ((*thick[:1], 2.0 * half, *thick[1:]), (half, half, half))):
         shape = pb.createCollisionShape(pb.GEOM_BOX, halfExtents=list(map(float, sizes)))
-        pair.append(bullet.body(mass, moment, (place[0], 0.0, place[1]), np.zeros(3), maximal, R=R, shape=shape))
+        apart = (0.0, 0.0, 10.0 * (1 + len(pair)))
+        pair.append(bullet.body(mass, moment, apart, np.zeros(3), maximal, R=R, shape=shape))
     pb.changeDynamics(floor, -1, lateralFriction=0, rollingFriction=0, spinningFriction=0, restitution=0)
+    bullet.step()
+    for body, place in zip(pair, places):
+        q = pb.getBasePositionAndOrientation(body)[1]
+        pb.resetBasePositionAndOrientation(body, [float(place[0]), 0.0, float(place[1])], q)
+    pb.setGravity(0.0, 0.0, -g)
     wedge, block = pair
 
     def read():

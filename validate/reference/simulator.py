@@ -213,3 +213,21 @@ def least_friction(a, b, n, p, x, weights):
         middle = 0.5 * (low + high)
         low, high = (low, middle) if rests(middle) else (middle, high)
     return high
+
+
+def wedge_pushed_out(m, angle, g, overlap, share, dt, steps):
+    """Return (way (4,) [m], velocity (4,) [m/s]): x and y of a wedge on a floor, then of a block on it, by Bullet.
+
+    Nothing rubs or turns.  Both begin with an overlap.  A step adds gravity to the velocities, then finds the impulses
+    at both contacts after which each opens at  share · overlap left/dt,  and moves with the new velocities.
+    """
+    s, c = np.sin(angle), np.cos(angle)
+    normals = np.array([(0.0, 1.0, 0.0, 0.0), (-s, -c, s, c)])                    # how fast a contact opens
+    lightness, way, v = 1.0 / np.repeat(m, 2), np.zeros(4), np.zeros(4)
+    inverse = np.linalg.inv(normals * lightness @ normals.T)
+    for _ in range(steps):
+        v = v - dt * g * np.array([0.0, 1.0, 0.0, 1.0])
+        opening = share * (overlap - normals @ way) / dt
+        v += lightness * (normals.T @ (inverse @ (opening - normals @ v)))
+        way = way + dt * v
+    return way, v

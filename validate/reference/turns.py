@@ -153,9 +153,9 @@ def solve(columns, right):
 # ---------------------------------------------------------------------------------------------- higher order
 
 def classical(torque, q, L, I, h):
-    """Runge–Kutta 4 on the pair and L; between the stages the pair's length is not quite 1."""
+    """Runge–Kutta 4 on the pair and L; between the stages the pair's length is not quite 1, but R is a rotation."""
     def slope(q, L):
-        M = matrix(q)
+        M = matrix(q, 2.0 / (abs(q[0]) ** 2 + abs(q[1]) ** 2))
         omega = to_world(M, over(to_body(M, L), I))
         return product(turn(omega, 0.5, 0.0), q), torque(M)
 

@@ -705,6 +705,13 @@ def cloth_swept_steered(lesson):
         truth = np.linalg.norm(y + np.clip(-(y @ along) / (along @ along), 0.0, 1.0) * along)
         got = lesson.triangle_cylinder_gap(*rng.permutation((a, beside, b)), r, R)
         worst.keep("gap", abs(got - (truth - R - r)))
+        for k in (1, 2):                                         # one edge at one height, or at one depth
+            level = np.stack((a, b, c))
+            level[1, k] = level[0, k]
+            corners = level[:, 1:]
+            edges = corners[:2], corners[1:], corners[[2, 0]]
+            truth = 0.0 if surrounds(corners) else min(least_on_edge(*edge) for edge in edges)
+            worst.keep("gap", abs(lesson.triangle_cylinder_gap(*level, r, R) - (truth - R - r)))
 
         low, move = rng.normal(size=3), rng.normal(size=3)
         high = low + rng.uniform(0.1, 1.0, 3)
@@ -775,6 +782,8 @@ def nearest_features(lesson):
         out = R[:, k % 3] * (1.0 if k < 3 else -1.0)
         c = lesson.ball_box(centre + R @ y, r, box)
         worst.keep("inside", np.max(np.abs(c.n - out)), abs(c.gap + depths[k] + r))
+        place = centre + R @ y
+        worst.note("inside", (c.p_a, c.p_b), (place - r * out, place + depths[k] * out))
         y = rng.uniform(1.1, 2.0, 3) * half * rng.choice((-1.0, 0.4, 1.0), 3)
         gap = np.linalg.norm(y - np.clip(y, -half, half)) - r
         if gap > -r:
@@ -813,6 +822,8 @@ def nearest_features(lesson):
         force = -np.array([energy(x + step).imag for step in steps]).reshape(5, 2) / 1e-20
         still, moving = (lesson.flock_acceleration(0.0, x, speed, flock) for speed in (0.0 * v, v))
         worst.keep("flock", np.max(np.abs(still - force)) / np.max(np.abs(force)))
+        both = 0.5 * np.sum(v * v) + energy(x + 0j).real
+        worst.keep("flock", abs(lesson.flock_energy(x, v, flock) - both) / both)
         in_reach = near < 2.0 * radius + reach
         adapts = align * np.array([np.sum((v - v[i])[in_reach[i]], axis=0) for i in range(5)])
         worst.keep("align", np.max(np.abs(moving - still - adapts)))
@@ -823,7 +834,111 @@ def nearest_features(lesson):
         ("cut", "A line cuts a polygon in two parts, which have its area together.", "area of both parts [m²]"),
         ("corners", "A corner on the line belongs to both parts.", "number of corners [-]"),
         ("flight", "A ball that meets nothing flies on.", "state after a step [m, m/s]"),
-        ("flock", "A flock at rest is driven by the derivative of its energy.", "acceleration, relative [-]"),
+        ("flock", "A flock at rest is driven by the derivative of its energy.", "force and energy, relative [-]"),
         ("align", "Its members adapt to the velocities of those in reach.", "alignment [m/s²]"))
     return [agreement(claim, f"largest error of the {quantity}", worst[name], 1e-9)
             for name, claim, quantity in names], None
+
+
+def touching(low_a, high_a, low_b, high_b):
+    """Return all pairs (i, j) of boxes of two sets that touch in every coordinate, as a sorted list."""
+    both = (low_a[:, None] <= high_b) & (low_b <= high_a[:, None])
+    return [tuple(pair) for pair in np.argwhere(np.all(both, axis=2)).tolist()]
+
+
+def exact_touches(lesson):
+    """Return whether each of these is as defined: numbers without round-off, in which bodies just touch."""
+    low = np.stack(np.divmod(np.arange(16), 4), axis=1).astype(float)    # squares of a board
+    squares = low, low + 1.0
+    neighbours = [(i, j) for i, j in touching(*squares, *squares) if i < j]
+    floor, box = lesson.make_plane((0.0, 0.0, 2.0, -2.0)), lesson.make_box(np.zeros(3), np.eye(3), (1.0, 2.0, 4.0))
+    above = lambda z: np.array([3.0, -1.0, z])
+    beside = lesson.ball_box(np.array([1.0, 0.5, -0.5]), 0.25, box)
+    middle = lesson.ball_box(np.zeros(3), 0.25, box)
+    upper = lesson.Box(np.array([0.0, 0.0, 7.5]), np.eye(3), np.array([2.0, 1.0, 4.0]))
+    return {
+        "squares of a board": sorted(map(tuple, lesson.all_pairs(*squares).tolist())) == neighbours,
+        "the same, by a tree": sorted(map(tuple, lesson.tree_pairs(*squares).tolist())) == neighbours,
+        "a ball that ends on a floor": lesson.plane_impact_time(0.25, 0.5, above(3.0), above(1.5), 0.5, floor) == 0.75,
+        "a ball that ends on a cylinder": lesson.cylinder_impact_time(
+            0.25, 0.5, np.array([0.0, 3.0, 0.0]), np.array([0.0, 1.0, 0.0]), 0.25, 0.75) == 0.75,
+        "corners on a floor": len(lesson.points_plane(np.stack((above(1.0), above(0.5), above(1.5))), floor).gap) == 2,
+        "a centre on a face": np.array_equal(beside.n, [1.0, 0.0, 0.0]) and beside.gap == -0.25,
+        "the centre of a box": np.array_equal(middle.n, [1.0, 0.0, 0.0]) and middle.gap == -1.25,
+        "a box on a box": len(lesson.box_box(upper, box).gap) == 4,
+        "a disc straight ahead": np.array_equal(np.sign(lesson.steer(*np.array(((0.0, 0.0), (2.0, 0.0), (3.0, 0.0))),
+                                                                     1.0, 5.0)), [0.0, 1.0]),
+    }
+
+
+@case("points-and-times", "Where bodies touch, and when", compiled=False)
+def points_and_times(lesson):
+    """Points of contact lie on both bodies, at the nearest places; an impact is at its share of any step.
+
+    The nearest points of segments and hulls are those of non-negative least squares.  A ball is thrown so that it
+    touches after a known share of the step.
+    """
+    rng, worst, wrong = np.random.default_rng(69), Worst(), 0
+    for _ in range(50):
+        x, y, normal, w = rng.normal(size=(4, 3))
+        r_a, r_b, R, share = rng.uniform(0.1, 0.5, 4)
+        t, dt, d = rng.uniform((0.0, 0.1, -1.0), (3.0, 1.0, 1.0))
+        n = (x - y) / np.linalg.norm(x - y)
+        c = lesson.ball_contact(x, r_a, y, r_b)
+        worst.note("points", (c.p_a, c.p_b, c.n), (x - r_a * n, y + r_b * n, n))
+        ends = rng.normal(size=(4, 3))
+        for one in (x[None], ends[2:]):
+            p, q = hull_nearest(one, ends[:2])
+            n = (p - q) / np.linalg.norm(p - q)
+            c = lesson.ball_capsule(x, r_a, *ends[:2], r_b) if len(one) == 1 else lesson.capsule_capsule(
+                *one, r_a, *ends[:2], r_b)
+            worst.note("points", (c.p_a, c.p_b, c.n), (p - r_a * n, q + r_b * n, n))
+        a, b = rng.normal(size=(5, 3)), rng.normal((8.0, 0.0, 0.0), 1.0, (6, 3))
+        c = lesson.gjk(a, b)
+        worst.note("hulls", (c.p_a, c.p_b), hull_nearest(a, b))
+
+        plane, n = lesson.make_plane((*normal, d)), normal / np.linalg.norm(normal)
+        height = (normal @ x + d) / np.linalg.norm(normal)
+        c = lesson.ball_plane(x, r_a, plane)
+        worst.note("points", (c.p_a, c.p_b, np.array([c.gap])), (x - r_a * n, x - height * n, np.array([height - r_a])))
+
+        hit, moment = x - (height - r_a) * n, np.array([t + share * dt])
+        way = w - (w @ n + 1.0) * n                              # towards the plane
+        x_0, x_1 = hit - share * way, hit + (1.0 - share) * way
+        worst.note("times", lesson.plane_impact_time(t, dt, x_0, x_1, r_a, plane), moment)
+        end = lesson.continuous_step(lesson.ball_plane_gap, lesson.ball_plane_time, t, x_0, way / dt, dt,
+                                     lesson.Target(r_a, R, plane))
+        worst.note("times", end, (hit, 0.0 * hit))
+        turn = 2.0 * np.pi * share
+        out = np.array([0.0, np.cos(turn), np.sin(turn)])
+        hit, way = np.array([x[0], 0.0, 0.0]) + (r_a + R) * out, w - (w @ out + 1.0) * out
+        x_0, x_1 = hit - share * way, hit + (1.0 - share) * way
+        worst.note("times", lesson.cylinder_impact_time(t, dt, x_0, x_1, r_a, R), moment)
+        c = lesson.cylinder_hit(t, dt, x_0, x_1, r_a, R)
+        worst.note("times", (c.p_a, c.p_b, c.n, np.array([c.gap, c.t])),
+                   (hit - r_a * out, hit - r_a * out, out, np.array([0.0, *moment])))
+
+        along = ends[1] - ends[0]
+        n, cut = along / np.linalg.norm(along), ends[0] + share * along
+        for sign, part in ((1.0, (ends[0], cut)), (-1.0, (cut, ends[1]))):
+            got = lesson.clip(ends[:2], sign * n, sign * (n @ cut))
+            worst.keep("cut", np.max(np.abs(got - part)) if got.shape == (2, 3) else np.inf)
+
+        corners = rng.uniform(0.0, 4.0, (30, 2)), rng.uniform(0.0, 4.0, (20, 2))
+        sets = [(low, low + rng.uniform(0.1, 0.5, low.shape)) for low in corners]
+        found = lesson.find_intersections(*(lesson.build_tree(*boxes) for boxes in sets))
+        wrong += sorted(map(tuple, found.tolist())) != touching(*sets[0], *sets[1])
+    claims = (("points", "Points of contact are the nearest points, moved out by the radii.", "points [m]", 1e-9),
+              ("hulls", "Two hulls are nearest where least squares says.", "nearest points [m]", 1e-6),
+              ("times", "An impact is at its share of the step, whenever the step begins.", "times [s] and places [m]",
+               1e-9),
+              ("cut", "A segment is cut once.", "ends of a segment [m]", 1e-12))
+    exact = exact_touches(lesson)
+    others = ", ".join(what for what, right in exact.items() if not right) or "none"
+    return [agreement(claim, f"largest error of the {quantity}", worst[name], limit)
+            for name, claim, quantity, limit in claims] + [
+        agreement("Two trees find the boxes of both that touch.", "trees with other pairs [of 50]", wrong, 0.0),
+        finding(claim="What just touches is in contact, and ties are resolved as they are defined.",
+                quantity=f"touches and ties as defined [of {len(exact)}]", predicted=len(exact),
+                measured=sum(map(bool, exact.values())), tolerance=0.0,
+                observation=f"Otherwise: {others}.")], None

@@ -1156,13 +1156,31 @@ def laws_of_contact(lesson):
         truth = sum(w_i * np.outer(g, g) for w_i, g in zip(w, G.T, strict=True))
         worst.note("matrix", lesson.delassus_matrix(G, w), truth)
 
+        # a sweep over the same contacts without a matrix: each in turn changes the velocities of all, y, by M⁻¹ Gᵀ
+        m_inv, I_inv, mu = rng.uniform(0.5, 2.0, 4), rng.uniform(0.5, 2.0, 4), rng.uniform(0.1, 1.0)
+        aim, give, J = rng.normal(size=4), rng.uniform(0.0, 0.5, 4), rng.normal(size=(4, 2))
+        held, w = lesson.arms_2d(x, m_inv, I_inv, contacts), np.column_stack((m_inv, m_inv, I_inv)).ravel()
+        y, kept, axes = np.column_stack((v, omega)).ravel(), J.copy(), np.stack((n, t), axis=1)
+        for k in range(4):
+            rows = G[2 * k:2 * k + 2]
+            k_n, k_t = np.sum(w * rows * rows, axis=1)
+            worst.note("arms", (held.r_a[k], held.r_b[k], held.k_n[k], held.k_t[k]), (arms[0][k], arms[1][k], k_n, k_t))
+            (u_n, u_t), (J_n, J_t) = rows @ y, axes[k] @ kept[k]
+            J_n = max(0.0, J_n + (aim[k] - u_n - give[k] * k_n * J_n) / (k_n * (1.0 + give[k])))
+            new = np.array([J_n, np.clip(J_t - u_t / k_t, -mu * J_n, mu * J_n)]) @ axes[k]
+            y, kept[k] = y + w * (rows.T @ (axes[k] @ (new - kept[k]))), new
+        pile = lesson.Pile(m_inv, I_inv, np.ones((4, 2)), np.zeros((0, 3)), np.zeros(2), mu, 1, 30.0, 1.0, 0.1)
+        swept = lesson.velocity_sweep_2d(v, omega, J, aim, give, contacts, held, pile)
+        worst.note("quick", (np.column_stack(swept[:2]), swept[2]), (y, kept))
+
         factor = rng.normal(size=(8, 8))
         A, b, mu = factor @ factor.T + 0.5 * np.eye(8), rng.normal(size=8), rng.uniform(0.1, 1.0, 4)
         k, old, relaxation = np.diag(A), rng.uniform(0.0, 1.0, 8), rng.uniform(0.5, 1.5)
         new = lesson.gauss_seidel_sweep(A, b, old, relaxation)
         mixed = np.tril(A, -1) @ new + np.triu(A) @ old + b
         worst.note("sweep", new, np.maximum(0.0, old - relaxation * mixed / k))
-        worst.note("lcp", lesson.solve_lcp(A, b), enumerated(A, b))
+        size = 10.0 ** rng.uniform(-9.0, 3.0)                               # from dust to rocks
+        worst.note("lcp", lesson.solve_lcp(A, size * b) / size, enumerated(A, b))
         u = A @ old + b
         truth = max(abs(min(k[i] * old[i], u[i])) for i in range(8))
         worst.note("judge", lesson.complementarity_residual(A, b, old), truth)
@@ -1177,6 +1195,29 @@ def laws_of_contact(lesson):
         J_n, _ = pushes(J, u, k, mu)
         _, J_t = pushes(limited, u, k, mu)
         worst.note("cone", new, np.stack((J_n, J_t), axis=1).ravel())
+
+        # one contact of two bodies in space: along n as in the plane, and across it in the disc of friction
+        (n, *_), (x_a, x_b, p), J, y = np.linalg.qr(rng.normal(size=(3, 3)))[0], *(
+            rng.normal(size=shape) for shape in ((3, 3), 3, 12))
+        factors, light, mu = rng.normal(size=(2, 3, 3)), rng.uniform(0.5, 2.0, 2), rng.uniform(0.1, 1.0)
+        turns = factors @ np.swapaxes(factors, 1, 2) + 0.5 * np.eye(3)
+        W = np.zeros((12, 12))
+        for i, block in enumerate((light[0] * np.eye(3), turns[0], light[1] * np.eye(3), turns[1])):
+            W[3 * i:3 * i + 3, 3 * i:3 * i + 3] = block
+        rows = np.concatenate([sign * np.concatenate((np.eye(3), np.cross(p - x, np.eye(3))), axis=1)
+                               for x, sign in ((x_a, 1.0), (x_b, -1.0))], axis=1)
+        K, u, (aim, give) = rows @ W @ rows.T, rows @ y, rng.uniform(0.0, 0.5, 2)
+        k_n = n @ K @ n
+        J_n = max(0.0, J @ n + (aim - u @ n - give * k_n * (J @ n)) / (k_n * (1.0 + give)))
+        stick = J - u / (np.trace(K) - k_n)
+        J_t = stick - (stick @ n) * n
+        new = J_n * n + min(1.0, mu * J_n / np.linalg.norm(J_t)) * J_t
+        contact = lesson.ContactSet(np.array([0, 1, 1]), np.array([0]), np.array([1]), n[None], p[None], np.zeros(1))
+        held = lesson.arms_3d(np.array([x_a, x_b]), light, turns, contact)
+        swept = lesson.velocity_sweep(y.reshape(2, 2, 3)[:, 0].copy(), y.reshape(2, 2, 3)[:, 1].copy(), J[None],
+                                      np.array([aim]), np.array([give]), contact, held, light, turns, mu)
+        truth = (y + W @ rows.T @ (new - J)).reshape(2, 2, 3)
+        worst.note("in space", swept, (truth[:, 0], truth[:, 1], new))
 
         # old contacts of the same bodies and of others, near and far
         near, d = 0.5, 3
@@ -1206,6 +1247,11 @@ def laws_of_contact(lesson):
         ("judge", "The residual finds contacts that pull, approach, or push while they part.", "residual [m/s]"),
         ("cone", "A sweep with friction limits J_t by the new J_n, with the μ of each contact.",
          "impulses with friction [N s]"),
+        ("arms", "Arms and effective inverse masses are those of the rows.", "arms [m, 1/kg]"),
+        ("quick", "A sweep without a matrix does what each contact by itself does to all velocities.",
+         "state after a quick sweep [m/s, rad/s, N s]"),
+        ("in space", "In space a sweep limits friction by the disc of the new J_n.",
+         "state after a sweep in space [m/s, rad/s, N s]"),
         ("judge of cones", "The residual finds too much friction, and too little.", "residual with friction [m/s]"),
         ("kept", "A contact takes over the impulse of the nearest old one between the same two bodies.",
          "impulses that are kept [N s]"),

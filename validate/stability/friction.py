@@ -570,6 +570,25 @@ def frame(rng):
     return np.linalg.qr(rng.normal(size=(3, 3)))[0].T
 
 
+def nearest_in_square(y, side):
+    """Return the point of the square |y_1| ≤ side, |y_2| ≤ side in the plane z = 0 that is nearest to y."""
+    return np.clip(y * [1.0, 1.0, 0.0], -side, side)
+
+
+def particle_after(law, p, friction_of_positions, t, x, v, dt, steps):
+    """Return (x, v) after steps of a particle on a plane: free, then out along the normal, rebound, and friction."""
+    for k in range(steps):
+        v = v + dt * law(t + k * dt)
+        x, fall, slip = x + dt * v, -(v @ p.n), v - (v @ p.n) * p.n
+        depth = -((x - p.point) @ p.n)
+        if depth > 0.0:
+            x = x + depth * p.n
+            if fall > 0.0:
+                v = slip + nearest_in_disc(-slip, p.mu * (1.0 + p.e) * fall) + p.e * fall * p.n
+                x = x + friction_of_positions * nearest_in_disc(-dt * slip, p.mu * depth)
+    return x, v
+
+
 @case("laws-of-friction", "Each law of friction by itself", compiled=False)
 def laws_of_friction(lesson):
     """The cone, the pyramid, a slope, a block and a particle, with masses, restitution, and μ_s above μ_k."""
@@ -607,7 +626,7 @@ def laws_of_friction(lesson):
         dt = rng.uniform(0.01, 0.1)
         for away, share in ((-1.0, 0.99), (-1.0, 1.01), (1.0, 0.5)):
             a_n = max(0.0, -away * load)
-            p = lesson.make_block(n, mu_s, mu_k, away * load * n + share * mu_s * load * t_1, np.zeros(3), 1.0)
+            p = lesson.make_block(m * n, mu_s, mu_k, away * load * n + share * mu_s * load * t_1, np.zeros(3), 1.0)
             for start in (0.0 * slip, slip):
                 free = start + dt * share * mu_s * load * t_1
                 holds = not np.any(start) and share * mu_s * load <= mu_s * a_n
@@ -644,6 +663,22 @@ def laws_of_friction(lesson):
             x, _ = lesson.position_friction_step(lesson.falling_acceleration, lesson.particle_plane_gap, 0.0, centre,
                                                  slip - fall * n, dt, p)
             worst.note("shift", x, centre + dt * slip + shift)
+
+        # two steps under a force that changes: inside on the way in, inside on the way out, outside; then the pyramid
+        t, still, swing = rng.uniform(), rng.normal(size=3), rng.normal(size=3)
+        law = lambda t, still=still, swing=swing: still + np.cos(3.0 * t) * swing
+        p = ParticleOnPlane(m, mu_k, e, still, centre, n)
+        for gap, v_n in ((-0.2, -1.5), (-0.4, 1.5), (0.3, -1.5)):
+            start = centre + slip + gap * n, slip + v_n * n
+            for step, more in (("contact_step", 0.0), ("position_friction_step", 1.0)):
+                got = lesson.advance_particle(getattr(lesson, step), lambda t, x, v, p, law=law: law(t),
+                                              lesson.particle_plane_gap, t, *start, dt, 2, p)
+                worst.note("steps", got, particle_after(law, p, more, t, *start, dt, 2))
+        p = lesson.make_block((0.0, 0.0, 1.0), mu_s, mu_k, still - [0.0, 0.0, 5.0], swing, 3.0)
+        free = slip * [1.0, 1.0, 0.0] + dt * law(t) * [1.0, 1.0, 0.0]
+        end = free + nearest_in_square(-free, mu_k * dt * max(0.0, 5.0 - law(t)[2]))
+        got = lesson.pyramid_step(lesson.driven_acceleration, t, centre, slip * [1.0, 1.0, 0.0], dt, p)
+        worst.note("block", got, (centre + dt * end, end))
     # μ is up to 10⁴ where a particle hits slowly, which costs four digits
     claims = {
         "normal": ("A support pushes against a load, and does not hold what is pulled away.", "normal force [N]"),
@@ -658,6 +693,8 @@ def laws_of_friction(lesson):
         "hollow": ("The normal of a bowl and of a trough is the derivative of the distance.",
                    "distance and normal [m, -]"),
         "particle": ("A particle rebounds by e, and slips by what μ (1 + e) leaves.", "velocity of the particle [m/s]"),
+        "steps": ("Steps of a particle are one after the other, each under the force of its beginning.",
+                  "state of the particle [m, m/s]"),
         "shift": ("The position slips back by μ times its depth at most.", "position [m]"),
     }
     return [agreement(claim, f"largest error of the {quantity}", worst[name], 1e-10)
@@ -687,9 +724,11 @@ def stops_and_starts(lesson):
             if dt > after and np.any(v):                        # a stop is a stop: round-off would count as motion
                 worst["stops"] = np.inf
 
-        drive, omega, begin = 2.0 * mu_s * load, rng.uniform(1.0, 3.0), np.arccos(0.5)
-        for sign in (-1.0, 1.0):                                # −drive sin ωt, from 0 on, passes μ_s a_n at ωt = π/6
-            p = lesson.make_block(n, mu_s, mu_k, -load * n, sign * drive * t_1, omega)
+        # −drive sin ωt, from 0 on, passes μ_s a_n at ωt = π/6; a_n = load + press sin ωt
+        press, omega, begin = rng.uniform(0.1, 0.5) * load, rng.uniform(1.0, 3.0), np.arccos(0.5)
+        drive = 2.0 * mu_s * load + mu_s * press
+        for sign in (-1.0, 1.0):
+            p = lesson.make_block(n, mu_s, mu_k, -load * n, sign * drive * t_1 + press * n, omega)
             at = 0.5 * np.pi / omega
             tau, x, _ = lesson.advance_to_event(lesson.driven_acceleration, at, n, 0.0 * n, 1.0 / omega, p)
             worst.keep("starts", abs(tau - (0.5 * np.pi - begin) / omega), np.max(np.abs(x - n)))
@@ -698,13 +737,25 @@ def stops_and_starts(lesson):
 
         dt, t = rng.uniform(0.05, 0.2), rng.uniform(0.0, 1.0)
         x, v = lesson.kinetic_friction_step(lesson.driven_acceleration, t, 0.0 * n, speed * t_1, dt, t_1, p)
-        force = lambda t, p=p, load=load, mu_k=mu_k, t_1=t_1: p.drive @ t_1 * np.cos(p.omega * t) - mu_k * load
+        force = lambda t, p=p, load=load, mu_k=mu_k, t_1=t_1, press=press: (
+            p.drive @ t_1 * np.cos(p.omega * t) - mu_k * (load - press * np.cos(p.omega * t)))
         mean = speed + 0.5 * dt * force(t)
         truth = np.array((dt * mean * t_1, (speed + dt * force(t + 0.5 * dt)) * t_1))
         worst.keep("midpoint", np.max(np.abs(np.array((x, v)) - truth)))
+
+        # it stops and slides back at once, where static friction does not hold; without load and pull it stays
+        p = lesson.make_block(n, mu_s, mu_k, -load * n - 1.2 * mu_s * load * t_1, np.zeros(3), 1.0)
+        after = speed / ((mu_k + 1.2 * mu_s) * load)
+        ours = lesson.slip_times(lesson.driven_acceleration, t, 0.0 * n, speed * t_1, 0.7 * after, 3, p)
+        truth = np.array(((t, t + after), (t + after, t + 2.1 * after)))
+        worst.keep("slips", np.max(np.abs(ours - truth)) if ours.shape == truth.shape else np.inf)
+        p = lesson.make_block(n, mu_s, mu_k, 0.0 * n, 0.0 * n, 1.0)
+        worst.keep("slips", np.max(np.abs(lesson.slip_direction(lesson.driven_acceleration, t, n, 0.0 * n, p))))
     return [agreement("Under constant forces a block stops after v/(μ_k a_n − a_t), completely.",
                       "time, place and velocity of a stop: largest error [s, m, m/s]", worst["stops"], 1e-9),
             agreement("A block breaks away where the force passes μ_s a_n, to the side of the force.",
                       "time of a start: largest error [s]", worst["starts"], 1e-9),
+            agreement("A block that static friction does not hold slides back at once, in a slip of its own.",
+                      "times of slips: largest error [s]", worst["slips"], 1e-9),
             agreement("Between events its motion is that of the midpoint rule.",
                       "state after a step: largest error [m, m/s]", worst["midpoint"], 1e-9)], None

@@ -580,55 +580,75 @@ def planar_rows(x_a, x_b, p, n):
     return np.array([n[0], n[1], -n[0] * r_a[1] + n[1] * r_a[0], -n[0], -n[1], n[0] * r_b[1] - n[1] * r_b[0]])
 
 
+# of (v_a, ω_a, v_b, ω_b) what cannot change: nothing, an axle, the floor, a body that does not turn, and likewise for a
+HELD = ((), (3, 4), (3, 4, 5), (5,), (0, 1), (2, 3, 4, 5))
+
+
 @case("two-bodies", "An impact of two free bodies, in the plane and in space", compiled=False)
 def two_bodies(lesson):
     """K = G M⁻¹ Gᵀ with the rows G of the contact's velocity; momentum and angular momentum about the origin are kept.
 
     In space a body's block of M is its inertia tensor in the world, and its part of G is n and r × n.
+    What is held has a 0 in M⁻¹: a body on an axle moves as little as the floor, but turns.
     """
     rng = np.random.default_rng(77)
     worst = Worst()
-    for _ in range(100):
+    for trial in range(120):
         x_a, x_b, p, v_a, v_b = rng.normal(size=(5, 2))
         (w_a, w_b), masses, e = rng.normal(size=2), rng.uniform(0.5, 2.0, 4), rng.uniform(0.1, 0.9)
         n = np.array([np.cos(turn := rng.uniform(0.0, 6.28)), np.sin(turn)])
-        a = lesson.BodyState2D(v_a, w_a, 1.0 / masses[0], 1.0 / masses[1])
-        b = lesson.BodyState2D(v_b, w_b, 1.0 / masses[2], 1.0 / masses[3])
+        speed, held = 10.0 ** rng.uniform(-4.0, 0.0), HELD[trial % len(HELD)]
+        v_a, v_b, w_a, w_b = speed * v_a, speed * v_b, speed * w_a, speed * w_b
+        inverse = 1.0 / masses[[0, 0, 1, 2, 2, 3]]
+        inverse[list(held)] = 0.0
+        a = lesson.BodyState2D(v_a, w_a, inverse[0], inverse[2])
+        b = lesson.BodyState2D(v_b, w_b, inverse[3], inverse[5])
         row, across = planar_rows(x_a, x_b, p, n), planar_rows(x_a, x_b, p, np.array([-n[1], n[0]]))
         state = np.concatenate((v_a, [w_a], v_b, [w_b]))
         u = lesson.relative_velocity_2d(a, b, p - x_a, p - x_b)
         truth = row @ state * n + across @ state * np.array([-n[1], n[0]])
         worst.keep("u", np.max(np.abs(u - truth)))
         k_n = lesson.effective_inverse_mass_2d(a, b, p - x_a, p - x_b, n)
-        inverse = 1.0 / masses[[0, 0, 1, 2, 2, 3]]
         worst.keep("k_n", abs(k_n - row @ (inverse * row)) / k_n)
         if (u_n := u @ n) > 0.0:
             n, u_n, row = -n, -u_n, -row
         J = lesson.impulse_size(u_n, k_n, e) * n
         a_new, b_new = lesson.apply_impulse_2d(a, p - x_a, J), lesson.apply_impulse_2d(b, p - x_b, -J)
         after = np.concatenate((a_new.v, [a_new.omega], b_new.v, [b_new.omega]))
-        worst.keep("rebound", abs(row @ after + e * u_n) / abs(u_n))
-        change = after - state
-        P = masses[0] * change[:2] + masses[2] * change[3:5]
-        spin = masses[1] * change[2] + masses[3] * change[5]
-        spin += masses[0] * (x_a[0] * change[1] - x_a[1] * change[0])
-        spin += masses[2] * (x_b[0] * change[4] - x_b[1] * change[3])
-        worst.keep("momentum", np.max(np.abs(P)))
-        worst.keep("spin", abs(spin))
+        worst.keep("rebound", abs(row @ after + e * u_n) / speed)
+        change = (after - state) / speed
+        worst.keep("held", np.max(np.abs(change + (1.0 + e) * u_n / speed / k_n * inverse * row)))
+        if not held:
+            P = masses[0] * change[:2] + masses[2] * change[3:5]
+            spin = masses[1] * change[2] + masses[3] * change[5]
+            spin += masses[0] * (x_a[0] * change[1] - x_a[1] * change[0])
+            spin += masses[2] * (x_b[0] * change[4] - x_b[1] * change[3])
+            worst.keep("momentum", np.max(np.abs(P)))
+            worst.keep("spin", abs(spin))
 
         r_a, r_b, n3, L_a, L_b, J3 = rng.normal(size=(6, 3))
         n3 /= np.linalg.norm(n3)
         factors = rng.normal(size=(2, 3, 3))
         I_a, I_b = (f @ f.T + np.eye(3) for f in factors)
-        bodies = [lesson.BodyState3D(np.zeros(3), np.zeros(3), 1.0 / m, np.linalg.inv(I))
-                  for m, I in ((masses[0], I_a), (masses[2], I_b))]
-        M = np.zeros((12, 12))
-        for k, block in enumerate((masses[0] * np.eye(3), I_a, masses[2] * np.eye(3), I_b)):
-            M[3 * k:3 * k + 3, 3 * k:3 * k + 3] = block
+        turns = [np.linalg.inv(I) for I in (I_a, I_b)]
+        v, omega = rng.normal(size=(2, 2, 3))
+        bodies = [lesson.BodyState3D(v[k], omega[k], inverse[3 * k], turns[k] * (inverse[3 * k + 2] > 0.0))
+                  for k in range(2)]
+        W = np.zeros((12, 12))
+        for k, block in enumerate((bodies[0].inv_mass * np.eye(3), bodies[0].inv_inertia,
+                                   bodies[1].inv_mass * np.eye(3), bodies[1].inv_inertia)):
+            W[3 * k:3 * k + 3, 3 * k:3 * k + 3] = block
         G = np.concatenate((n3, np.cross(r_a, n3), -n3, -np.cross(r_b, n3)))
-        truth = G @ np.linalg.solve(M, G)
+        truth = G @ W @ G
         got = lesson.effective_inverse_mass(*bodies, r_a, r_b, n3)
         worst.keep("space", abs(got - truth) / truth)
+        rows = np.concatenate([sign * np.concatenate((np.eye(3), np.cross(r, np.eye(3))), axis=1)
+                               for r, sign in ((r_a, 1.0), (r_b, -1.0))], axis=1)    # u along x, y and z
+        state = np.concatenate((v[0], omega[0], v[1], omega[1]))
+        worst.note("u in space", lesson.relative_velocity(*bodies, r_a, r_b), rows @ state)
+        pushed = [lesson.apply_impulse(*one) for one in ((bodies[0], r_a, J3), (bodies[1], r_b, -J3))]
+        after = np.concatenate([part for body in pushed for part in (body.v, body.omega)])
+        worst.note("pushed", after, state + W @ rows.T @ J3)
         # both bodies touch at one point, so that J and −J have no torque together about the origin
         p3 = rng.normal(size=3)
         new_a, new_b = lesson.angular_momenta(L_a, L_b, r_a, r_b, J3)
@@ -638,10 +658,15 @@ def two_bodies(lesson):
     names = (
         ("u", "Two points approach with the velocities of centres and rotations.", "relative velocity [m/s]"),
         ("k_n", "In the plane k_n is G M⁻¹ Gᵀ.", "k_n, relative [-]"),
-        ("rebound", "They separate with −e u_n.", "velocity after the impact, relative [-]"),
-        ("momentum", "An impact keeps the momentum.", "momentum [kg m/s]"),
-        ("spin", "An impact keeps the angular momentum about the origin.", "angular momentum [kg m²/s]"),
+        ("rebound", "They separate with −e u_n, however slowly they have come.",
+         "velocity after the impact, relative [-]"),
+        ("held", "What is held keeps its velocity, and all else changes by M⁻¹ Gᵀ j.",
+         "change of velocity, relative [-]"),
+        ("momentum", "An impact keeps the momentum.", "momentum, relative [kg]"),
+        ("spin", "An impact keeps the angular momentum about the origin.", "angular momentum, relative [kg m]"),
         ("space", "In space k_n is G M⁻¹ Gᵀ, too.", "k_n in space, relative [-]"),
+        ("u in space", "In space two points approach with u = G v.", "relative velocity in space [m/s]"),
+        ("pushed", "In space an impulse changes velocities by M⁻¹ Gᵀ J.", "velocities in space [m/s, rad/s]"),
         ("momenta", "L changes by r × J, and the angular momentum of both stays.", "momenta in space [kg m²/s]"))
     return [agreement(claim, f"largest error of the {quantity}", worst[name], 1e-12)
             for name, claim, quantity in names], None
@@ -650,6 +675,7 @@ def two_bodies(lesson):
 # ---------------------------------------------------------------------------------------------- each law by itself
 
 TRIED = 50                   # random impacts [-]
+FLIGHTS = 400                # summed up [-]: 0.9⁴⁰⁰ is below round-off
 CORNERS = np.array([[1.0, 0.0, -1.0], [-0.5, 0.8, -1.0], [-0.5, -0.8, -1.0]])  # under a body, from its centre [m]
 
 
@@ -672,9 +698,11 @@ def laws_of_an_impact(lesson):
     worst = Worst()
     for _ in range(TRIED):
         # a point on a surface: the normal velocity is −e times the old one, or as it was, however slow
-        n, v, e = UP[:2], rng.normal(size=2) * [1.0, 10.0 ** rng.uniform(-3.0, 0.0)], rng.uniform()
-        truth = np.array([v[0], v[1] if v[1] > 0.0 else -e * v[1]])
-        worst.note("mirror", lesson.kinematic_response(v, n, e), truth)
+        n, along, across = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        (v_n, *v_t), e = rng.normal(size=3) * [10.0 ** rng.uniform(-3.0, 0.0), 1.0, 1.0], rng.uniform()
+        slides = v_t[0] * along + v_t[1] * across
+        truth = slides + (v_n if v_n > 0.0 else -e * v_n) * n
+        worst.note("mirror", lesson.kinematic_response(slides + v_n * n, n, e), truth)
         k, d, deep = rng.uniform(0.5, 2.0, 3)
         part = -k * deep / d                                    # the damper alone would pull as strongly as the spring
         pushes = [lesson.penalty_force(phi, v_n, k, d) for phi, v_n in (
@@ -699,6 +727,12 @@ def laws_of_an_impact(lesson):
             worst.keep("cone", lost)
             side = J_t / np.linalg.norm(J_t) - along / np.linalg.norm(along)
             worst.keep("side", np.linalg.norm(side))
+        t = K @ n - (n @ K @ n) * n                             # so fast a slip this way that sticking would pull
+        lean = 3.0 * (n @ K @ n) / (t @ t)
+        for mu in np.array([0.95, 1.05]) * lean * np.linalg.norm(t):
+            J = lesson.cone_impulse(u_sep * n - K @ (lean * t - n), n, K, u_sep, mu)
+            J_n = (2.0 * (n @ K @ n)) / (n @ K @ n + mu * np.linalg.norm(t))
+            worst.note("pulls", J / (J_n * (1.0 + mu)), (n + mu * t / np.linalg.norm(t)) / (1.0 + mu))
         J = rng.normal(size=3)
         v_b, w_b = u - np.cross(omega := rng.normal(size=3), r), omega
         v_a, w_a = v_b + J / m, w_b + np.linalg.solve(I, np.cross(r, J))
@@ -714,6 +748,12 @@ def laws_of_an_impact(lesson):
         roots = np.roots((0.5 * a_n, v_n, phi))
         ahead = [root.real for root in roots if root.imag == 0.0 and 0.0 < root.real < long]
         worst.keep("time", abs(lesson.impact_time(phi, v_n, a_n, long) - min(ahead, default=long)))
+        speed, pull = abs(v_n), abs(a_n)                        # from inside: at once, when it comes back, or never
+        times = [lesson.impact_time(-phi, *way, long) for way in ((-speed, a_n), (speed, -pull), (speed, pull))]
+        worst.note("inside", np.array(times), np.array([0.0, min(2.0 * speed / pull, long), long]))
+        bounces = [lesson.bouncing_time(*way, 0.9 * e) for way in ((speed, -pull), (speed, pull), (-speed, -pull))]
+        truth = np.array([np.sum((0.9 * e) ** np.arange(FLIGHTS)), np.inf, 0.0])
+        worst.note("bounces", np.array(bounces) * pull / (2.0 * speed), truth)
 
         # a ball on its plane: gravity into it slides the ball, gravity away from it lifts it off
         n, x, v, a = unit_vector(rng, 3), *rng.normal(size=(3, 3))
@@ -722,6 +762,18 @@ def laws_of_an_impact(lesson):
         worst.note("slide", lesson.slide_on_plane(x, v, a, dt, n), truth)
         truth = np.array([x + dt * v + 0.5 * dt * dt * a, v + dt * a])
         worst.note("fall", lesson.free_flight(x, v, a, dt), truth)
+
+        # one step over a tilted plane, in coordinates along its normal and along itself
+        axes = np.linalg.qr(rng.normal(size=(3, 3)))[0].T
+        p = lesson.BouncingBall(e, rng.normal(size=3), rng.normal(size=3), axes[0], 1.0, 0.0)
+        place, speeds = rng.normal(size=3) * [0.1, 1.0, 1.0], axes @ (v + dt * p.gravity)
+        x = p.point + axes.T @ place
+        worst.note("distance", lesson.gap(x, p), place[0])
+        place = place + dt * speeds
+        if place[0] < 0.0:
+            place[0], speeds[0] = 0.0, max(speeds[0], -e * speeds[0])
+        worst.note("tilted", lesson.position_projection_step(lesson.falling_acceleration, 0.0, x, v, dt, p),
+                   np.array([p.point + axes.T @ place, axes.T @ speeds]))
     names = (
         ("mirror", "A surface reverses what comes, times e, and leaves alone what goes, however slowly.",
          "velocity [m/s]"),
@@ -730,12 +782,19 @@ def laws_of_an_impact(lesson):
         ("matrix", "K = 1/m − r* I⁻¹ r*.", "K [1/kg]"),
         ("normal", "A rough impact ends with the normal velocity that restitution asks for.", "normal velocity [m/s]"),
         ("cone", "5 % inside the cone it sticks, 5 % outside it is on the rim.", "law of Coulomb [N s, m/s]"),
+        ("pulls", "Where sticking would pull, the impulse is on the rim, whatever μ is.", "impulse, relative [-]"),
         ("side", "Friction is on the side of the sticking impulse.", "direction of friction [-]"),
         ("work", "The gain of energy is that of ½m v² and ½ω·Iω.", "gain, relative [-]"),
         ("gap", "A gap closes exactly in its step, or stays open without an impulse.", "gap after the step [m]"),
         ("time", "A gap closes at the first root of its parabola.", "time [s]"),
+        ("inside", "What is inside touches: it closes at once, when it comes back, or never.", "time from inside [s]"),
+        ("bounces", "All bounces last as long as the sum of their flights.", "time of all bounces, relative [-]"),
         ("slide", "A plane pushes and never pulls: what lifts a ball lifts it off.", "state after sliding [m, m/s]"),
-        ("fall", "A flight is a parabola.", "state after a flight [m, m/s]"))
+        ("fall", "A flight is a parabola.", "state after a flight [m, m/s]"),
+        ("distance", "A gap is the distance along the normal, however the plane is tilted.",
+         "gap over a tilted plane [m]"),
+        ("tilted", "A ball that ends inside is moved out along the normal, also if it leaves already.",
+         "state after a step over a tilted plane [m, m/s]"))
     return [agreement(claim, f"largest error of the {quantity}", worst[name], 1e-9)
             for name, claim, quantity in names], None
 
@@ -749,13 +808,13 @@ def several_points(lesson):
     """
     rng, law, share = np.random.default_rng(79), 0.0, 0.0
     answers = lesson.contact_matrix, lesson.cone_impulse, lesson.apply_impulse
-    for _ in range(TRIED // 10):
+    for trial in range(TRIED // 5):
         r = CORNERS + rng.uniform(-0.2, 0.2, (3, 3))
         n = np.array([unit_vector(rng, 3) for _ in r]) * 0.3 + [0.0, 0.0, 1.0]
         n /= np.linalg.norm(n, axis=1)[:, None]
         m, factor, e = rng.uniform(0.5, 2.0), rng.normal(size=(3, 3)), rng.uniform(0.1, 0.9)
         I = factor @ factor.T + 0.5 * np.eye(3)
-        v, omega = np.array([*rng.normal(size=2), -3.0]), 0.3 * rng.normal(size=3)
+        v, omega = np.array([*rng.normal(size=2), -3.0]), (0.3, 3.0)[trial % 2] * rng.normal(size=3)
         body = lesson.BodyState3D(v, omega, 1.0 / m, np.linalg.inv(I))
         G = np.concatenate((n, np.cross(r, n)), axis=1)
         M = np.zeros((6, 6))

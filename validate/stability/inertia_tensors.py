@@ -8,7 +8,7 @@ import numpy as np
 
 from solutions.checks import BadInput
 from solutions.integrators import observed_order
-from validate.stability.case import DOTS, LINE, Picture, Worst, agreement, case, finding, refuses, series
+from validate.stability.case import DOTS, LINE, Picture, Worst, agreement, case, finding, flat, refuses, series
 
 SPACING = 2.0**-52           # of floats around 1 [-]; a coordinate has half of it as relative rounding error
 PLACES = 64  # directions in which the body is moved: the mean square of so many errors is known to 18 %
@@ -274,9 +274,18 @@ def bodies_with_holes(lesson):
         truth = np.sum(own, axis=0) + I - m.sum() * (X @ X * np.eye(3) - np.outer(X, X))
         worst.keep("combined", np.max(np.abs(whole.I - truth)) / np.max(np.abs(truth)),
                    np.max(np.abs(whole.x - X)))
+        one = lesson.combine(m[:1], x[:1], own[:1])
+        worst.keep("combined", np.max(np.abs(one.I - own[0])) / np.max(np.abs(own[0])), np.max(np.abs(one.x - x[0])))
 
         R = np.linalg.qr(rng.normal(size=(3, 3)))[0]
         R[:, 2] *= np.linalg.det(R)
+        # a tetrahedron beside the origin: polynomials of degree 2 by four points inside it
+        corners = CORNER @ R.T + 3.0 * about
+        inside = (corners + (np.sqrt(5.0) - 1.0) * np.mean(corners, axis=0)) / np.sqrt(5.0)
+        truth = 0.08 * np.concatenate(([1.0], np.mean(inside, axis=0), (inside.T @ inside / 4.0).ravel()))
+        got = flat(lesson.mesh_integrals(corners, FACES))
+        worst.keep("integrals", np.max(np.abs(got - truth)) / np.max(np.abs(truth)))
+
         moments = np.sort(rng.uniform(1.0, 1.9, 3))
         body = lesson.world_inertia(np.diag(moments), R)
         inverse = lesson.world_inverse_inertia(np.diag(moments), R)
@@ -287,19 +296,21 @@ def bodies_with_holes(lesson):
         worst.keep("axes", np.max(np.abs(found - moments)),
                    np.max(np.abs(np.abs(np.sum(axes * R, axis=0)) - 1.0)))
         worst.keep("hand", abs(np.linalg.det(axes) - 1.0))
-    # a closed mesh without one of its triangles, or with one of them the other way round, is open
+    # a closed mesh without one of its triangles, or with one of them the other way round, is open; or it is inside out
     torn = [np.delete(FACES, k, axis=0) for k in range(4)]
-    torn += [np.where(np.arange(4)[:, None] == k, FACES[:, ::-1], FACES) for k in range(4)]
+    torn += [np.where(np.arange(4)[:, None] == k, FACES[:, ::-1], FACES) for k in range(4)] + [FACES[:, ::-1]]
     refused = sum(refuses(lesson.mesh_body, (1.0, CORNER, faces), "") for faces in torn)
     names = (
         ("sums", "A hole counts with its negative mass: centre, momentum, angular momentum.", "sums over points"),
         ("tensor", "A tensor of points has the products −Σ m x y, all three of them.", "tensor of points"),
         ("combined", "A body of parts has its tensor about its own centre of mass.", "tensor of parts"),
+        ("integrals", "The integrals over a mesh are those over its inside, wherever the origin is.", "integrals"),
         ("inverse", "A tensor and its inverse turn with the body.", "tensor along the axes of the body"),
         ("axes", "Principal axes are those that the body was turned to.", "moments and axes"),
         ("hand", "Principal axes are right-handed.", "determinant of the axes"))
     return [agreement(claim, f"{quantity}: largest error [-]", worst[name], 1e-12)
             for name, claim, quantity in names] + [finding(
-        claim="A mesh that lacks a triangle, or has one the wrong way round, is refused.",
-        quantity=f"open meshes that are refused [of {len(torn)}]", predicted=len(torn), measured=refused, tolerance=0.0,
-        observation=f"{refused} of {len(torn)} open meshes are refused.")], None
+        claim="A mesh that lacks a triangle, or has one or all of them the wrong way round, is refused.",
+        quantity=f"meshes without an inside that are refused [of {len(torn)}]", predicted=len(torn),
+        measured=refused, tolerance=0.0,
+        observation=f"{refused} of {len(torn)} such meshes are refused.")], None

@@ -534,6 +534,7 @@ def refusals(lesson):
 # ---------------------------------------------------------------------------------------------- each function by itself
 
 TRIED = 50                   # random arms [-]
+STEP = 1e-5                  # of a central difference [rad]: its third order and round-off are 5e-11 of a metre
 
 
 @case("geometry-of-arms", "Ellipse, rotation, limits and null space", compiled=False)
@@ -589,6 +590,49 @@ def geometry_of_arms(lesson):
         swept = lesson.fabrik_sweep(x, rng.normal(size=3), lengths)
         worst.keep("base", np.max(np.abs(swept[0] - x[0])))
         worst.keep("links", np.max(np.abs(np.linalg.norm(np.diff(swept, axis=0), axis=1) - lengths)))
+        worst.note("alike", lesson.point_at(x[0], x[0], lengths[0]), x[0] + lengths[0] * X)
+
+        # angles from a target, in every quadrant; the second link is the longer one as often as not
+        angles = rng.uniform(-3.1, 3.1, 3)
+        elbow = np.sign(angles[1])
+        angles[1] = elbow * rng.uniform(0.1, 3.0)
+        end = end_of(angles[:2], lengths[:2])
+        worst.note("closed form", lesson.solve_2r(end, lengths, elbow), angles[:2])
+        whole = np.array([*end_of(angles, lengths[:3]), np.remainder(np.sum(angles), 2.0 * np.pi)])
+        worst.note("closed form", lesson.solve_3r(whole, lengths, elbow), angles)
+        hole = 0.9 * abs(lengths[0] - lengths[1]) * end / np.linalg.norm(end)
+        worst.keep("hole", not refuses(lesson.solve_2r, (hole, lengths, elbow)))
+
+        # of any size; every other matrix has two rows alike
+        M, size = rng.normal(size=(3, 4)), 10.0 ** rng.uniform(-12.0, 12.0)
+        M[2] = M[1] if elbow > 0.0 else M[2]
+        worst.note("inverse", size * lesson.pseudo_inverse(size * M), np.linalg.pinv(M, 1e-10))
+
+        # each joint, from the last one on, turns the end towards the target as far as it may
+        low, high = theta - rng.choice((0.0, 0.05, 9.0), 4), theta + rng.choice((0.0, 0.05, 9.0), 4)
+        arm = lesson.make_arm_2d(lengths, 0.0, 0.0, low, high, 0.0, 0.0)
+        target, truth = rng.normal(size=2), theta.copy()
+        for k in range(3, -1, -1):
+            joints = joints_of(truth, lengths) @ (1.0, 1j)
+            truth[k] = np.clip(truth[k] + np.angle((target @ (1.0, 1j) - joints[k]) / (joints[4] - joints[k])),
+                               low[k], high[k])
+        worst.note("turns", lesson.ccd_step(lesson.reach_2d, theta, target, arm), truth)
+        thetas = lesson.reach_trajectory(lesson.ccd_step, lesson.reach_2d, theta, target, 2, arm)
+        worst.note("history", thetas, np.array([theta, truth, lesson.ccd_step(lesson.reach_2d, truth, target, arm)]))
+        targets, arm = rng.normal(size=(2, 2)), lesson.make_arm_2d(lengths, 0.0, 0.3, -9.0, 9.0, 0.0, 0.0)
+        many = lesson.solve_targets(lesson.damped_step, lesson.reach_2d, theta, targets, 1e-6, 3, arm)
+        each = [lesson.solve_reach(lesson.damped_step, lesson.reach_2d, theta, one, 1e-6, 3, arm) for one in targets]
+        worst.note("many", many, tuple(np.array(part) for part in zip(*each)))
+
+        # in space: the way to the target and the change of the end, by matrices
+        six, place = rng.uniform(-2.0, 2.0, 6), rng.normal(size=3)
+        arm, (x, R) = lesson.make_arm_3d(AXES, OFFSETS, 0.0, 0.1, -9.0, 9.0, 0.0, 0.0), spatial_end(six, AXES, OFFSETS)
+        e, J = lesson.reach_3d(six, place, arm)
+        slope = [spatial_end(six + d, AXES, OFFSETS)[0] - spatial_end(six - d, AXES, OFFSETS)[0]
+                 for d in STEP * np.eye(6)]
+        pose = lesson.end_pose(six, arm)
+        worst.note("space", (e, pose[:3], Rotation.from_quat(np.roll(pose[3:], -1)).as_matrix()), (place - x, x, R))
+        worst.note("slope", J, np.transpose(slope) / (2.0 * STEP))
     names = (
         ("ellipse", "The ellipse of velocities has the singular values as half axes, and u₁ as direction.",
          "half axes and direction [m, -]"),
@@ -597,6 +641,18 @@ def geometry_of_arms(lesson):
         ("rest", "A rest posture attracts the arm by motions that leave the end in its place.", "angles [rad]"),
         ("search", "A search ends when it is near enough, and counts its iterations.", "search [-, rad, m]"),
         ("base", "A sweep of FABRIK leaves the base where it was.", "place of the base [m]"),
-        ("links", "A sweep of FABRIK leaves each link its own length.", "lengths of links [m]"))
+        ("links", "A sweep of FABRIK leaves each link its own length.", "lengths of links [m]"),
+        ("alike", "What has no direction goes along the first axis.", "place [m]"),
+        ("closed form", "The closed forms return the angles from −π to π that led to a target.",
+         "angles of closed forms [rad]"),
+        ("hole", "A target in the hole is refused, whichever link is longer.", "refusals that are missing [-]"),
+        ("inverse", "The pseudo-inverse is that of the singular values, whatever the unit of length is.",
+         "J⁺ times the size [-]"),
+        ("turns", "In cyclic descent each joint in turn points the end at the target, within its limits.",
+         "angles after a sweep [rad]"),
+        ("history", "A history holds each iteration, from where the one before ended.", "angles of a history [rad]"),
+        ("many", "Of many targets each is looked for from the same angles.", "searches [rad, m, -]"),
+        ("space", "In space the end is where products of rotations have it.", "end in space [m, -]"),
+        ("slope", "In space J is the change of the end with the angles.", "J in space [m]"))
     return [agreement(claim, f"largest error of the {quantity}",
                       worst[name], 1e-9) for name, claim, quantity in names], None

@@ -801,6 +801,36 @@ def constraints_and_gradients(lesson):
         scale = np.max(np.abs(truth))
         worst.note("newton", np.concatenate(((guess + change).ravel(), forces)) / scale, truth / scale)
 
+        # a law of time, place and velocity; the first point is driven and feels nothing, inside a ball, too
+        t, v = rng.uniform(0.0, 6.0), rng.normal(size=(4, 3))
+        pushed = np.sin(t) * x - 0.3 * v + 1.0
+        pushed[0] = 0.0
+        shaken = lesson.predict(lambda t, x, v, p: np.sin(t) * x - 0.3 * v + 1.0, t, x, v, dt, chain)
+        worst.note("driven", shaken, x + dt * v + dt * dt * pushed)
+        ball = lesson.Obstacle(x[0] + 0.1, 1.5, np.zeros(3), np.array([0.0, 0.0, 1.0]))
+        r = x - ball.centre
+        out = ball.centre + r * np.maximum(1.0, ball.radius / np.linalg.norm(r, axis=1))[:, None]
+        out[0] = x[0]
+        worst.note("outside", lesson.keep_outside(lesson.ball_gap, x, chain.inv_mass, ball), out)
+        held, _ = lesson.constraint_projection_step(lesson.network_gravity, t, x, 3.0 * v, 0.01, chain)
+        worst.note("exact", np.linalg.norm(held[:-1] - held[1:], axis=1), chain.rest)
+
+        # one visit to each of two links that share no point and have nothing in common
+        rests, stiff, alphas = rng.uniform(0.5, 2.0, size=(3, 2))
+        pair = lesson.make_constraint_network(x, 1.0 / w, [], [(0, 1), (2, 3)], alphas, 0.5 * stiff, (0.0, 0.0, -G), 1)
+        pair, r = pair._replace(rest=rests), x[[0, 2]] - x[[1, 3]]
+        lengths, kept = np.linalg.norm(r, axis=1), lambda y, w=w: (y / w[:, None])[[0, 2]] + (y / w[:, None])[[1, 3]]
+        wish = (lengths - 0.5 * stiff * (lengths - rests))[:, None] * r / lengths[:, None]
+        swept = lesson.distance_sweep(x, pair)
+        worst.note("visit", (swept[[0, 2]] - swept[[1, 3]], kept(swept)), (wish, kept(x)))
+        before = rng.normal(size=2)
+        swept, after = lesson.compliant_sweep(x, before, dt, pair)
+        new = swept[[0, 2]] - swept[[1, 3]]
+        push = (after - before)[:, None] * r / lengths[:, None]
+        truth = (rests - alphas / dt**2 * after)[:, None] * r / lengths[:, None]
+        worst.note("spring", (new, (swept - x)[[0, 2]], (swept - x)[[1, 3]]),
+                   (truth, w[[0, 2], None] * push, -w[[1, 3], None] * push))
+
         # rigid bodies with three different moments, turned anyhow
         m, I_body, turn = rng.uniform(0.5, 2.0), rng.uniform(1.0, 1.9, 3), Rotation.random(rng=rng)
         R, q, (r, n, p, omega) = turn.as_matrix(), wxyz(turn), rng.normal(size=(4, 3))
@@ -850,6 +880,13 @@ def constraints_and_gradients(lesson):
          "angle and gradient, relative [rad, -]", 1e-9),
         ("ball", "The normal of a ball is the derivative of the distance.", "gap and normal [m, -]", 1e-12),
         ("volume", "The gradient of a volume is its derivative, wherever the origin is.", "volume [m³, m²]", 1e-11),
+        ("driven", "A point that cannot move keeps its velocity, and all others feel the force of their time.",
+         "predicted place [m]", 1e-12),
+        ("outside", "Points inside a ball go to its surface; one that cannot move stays.", "place [m]", 1e-12),
+        ("exact", "After a step of the projection method every link has its length.", "length [m]", 1e-12),
+        ("visit", "A visit leaves 1 − s of a link's error, and the centre of mass where it is.", "place [m, kg m]",
+         1e-12),
+        ("spring", "After a visit each link obeys Hooke's law with its own compliance.", "place [m]", 1e-9),
         ("lever", "A point of a body moves by 1/m + (r × n) · I⁻¹ (r × n), in world coordinates.", "weight [1/kg]",
          1e-11),
         ("impulse", "A positional impulse moves by p/m, and turns about I⁻¹ (r × p).", "place and turn [m, -]",

@@ -279,6 +279,7 @@ def refusals(lesson):
 # ---------------------------------------------------------------------------------------------- each part by itself
 
 TRIED = 30                   # random bodies and loads [-]
+SIDES = np.array([(0.0, 1.0), (0.0, -1.0), (1.0, 0.0), (-1.0, 0.0)])  # normals of a floor, a ceiling and two walls
 
 
 def matrix_of(q):
@@ -291,12 +292,13 @@ def matrix_of(q):
 def loop_by_parts(lesson):
     """Two unlike bodies and an immovable one, turned and tumbling, under loads with torques that depend on time.
 
+    In space the second body is free, on an axle, which no force moves, or cannot be turned, by turns.
     Euler's equation in world coordinates, ω̇ = I⁻¹ (τ − ω × I ω), with I = R diag Rᵀ as matrices.
     """
     rng = np.random.default_rng(101)
     worst = Worst()
 
-    for _ in range(TRIED):
+    for trial in range(TRIED):
         m, dt, t, g = rng.uniform(0.5, 2.0, 2), rng.uniform(0.01, 0.1), rng.uniform(0.0, 1.0), rng.normal(size=3)
         push, twist = rng.normal(size=(2, 3, 3))
 
@@ -316,17 +318,28 @@ def loop_by_parts(lesson):
         v_end = v + dt * w[:, None] * push[:, :2] * sum(np.cos(t + k * dt) for k in range(steps))
         end = lesson.advance_free(lesson.free_step_2d, load, t, state.x, state.q, v, omega, dt, steps, p)
         worst.note("times", end[2], v_end)
+        alone = p._replace(planes=np.zeros((0, 3)), half=np.full((3, 2), 1e-6))        # they meet nobody
+        end = lesson.advance_contact(lesson.contact_step_2d, load, lesson.disc_bounds, lesson.round_contacts, t,
+                                     state._replace(v=v, omega=omega, contacts=state.contacts._replace(
+                                         first=np.zeros(4, np.int64))), dt, steps, alone)
+        worst.note("times", end.v, v_end)
 
         # in space
         turns, moments = rng.normal(size=(2, 4)), rng.uniform(1.0, 1.9, (2, 3))
         turns /= np.linalg.norm(turns, axis=1)[:, None]
         state, p = lesson.make_bodies(rng.normal(size=(2, 3)), turns, m, moments, np.full((2, 3), 0.1), [(0.0, *UP)],
                                       g, 0.3, 1, 0.01)
+        held = trial % 3
+        w[1] *= held != 1                                        # on an axle; with 2 it cannot be turned
+        p.inv_mass[1] = w[1]
+        p.inv_inertia[1] *= held != 2
         v, omega = rng.normal(size=(2, 3, 3)) * [[1.0], [1.0], [0.0]]
+        v *= 10.0 ** rng.uniform(-2.0, 2.0)
         load = lambda t, x, q, v, omega, p, push=push, twist=twist: (np.cos(t) * push, np.sin(t) * twist)
         tensors = [R @ np.diag(I) @ R.T for R, I in zip(map(matrix_of, turns), moments, strict=True)]
         rates = [np.linalg.solve(I, np.sin(t) * twist[i] - np.cross(omega[i], I @ omega[i]))
                  for i, I in enumerate(tensors)]
+        rates[1] = rates[1] * (held != 2)
         omega_new = omega + dt * np.array([*rates, np.zeros(3)])
         x, q, got_v, got_omega = lesson.free_step(load, t, state.x, state.q, v, omega, dt, p)
         worst.note("space", (got_v, got_omega), np.array((v + dt * w[:, None] * np.cos(t) * push, omega_new)))
@@ -336,31 +349,65 @@ def loop_by_parts(lesson):
             axis, angle = omega_new[i] / rate, 2.0 * np.arctan(0.5 * rate * dt)
             R = matrix_of(np.array([np.cos(0.5 * angle), *(np.sin(0.5 * angle) * axis)]))
             worst.note("turn", matrix_of(q[i]), R @ matrix_of(turns[i]))
+        movable, tensors[1] = range(1 if held == 1 else 2), tensors[1] * (held != 2)
         energy = sum(0.5 * m[i] * v[i] @ v[i] + 0.5 * omega[i] @ tensors[i] @ omega[i] - m[i] * g @ state.x[i]
-                     for i in range(2))
-        P = sum(m[i] * v[i] for i in range(2))
-        L = sum(m[i] * np.cross(state.x[i], v[i]) + tensors[i] @ omega[i] for i in range(2))
-        worst.note("invariants", lesson.mechanical_energy(state.x, state.q, v, omega, p), energy)
-        worst.note("invariants", lesson.momenta(state.x, state.q, v, omega, p), np.array((P, L)))
+                     for i in movable)
+        P = sum(m[i] * v[i] for i in movable)
+        L = sum(m[i] * np.cross(state.x[i], v[i]) + tensors[i] @ omega[i] for i in movable)
+        size = 1.0 + np.max(np.abs(v)) ** 2                      # the invariants of fast bodies are large
+        worst.note("invariants", lesson.mechanical_energy(state.x, state.q, v, omega, p) / size, energy / size)
+        momenta = np.array(lesson.momenta(state.x, state.q, v, omega, p))
+        worst.note("invariants", momenta / size, np.array((P, L)) / size)
 
         energies, work = rng.normal(size=(2, 6))
         rest = energies - work
         gain = max(rest[k] - rest[j] for k in range(6) for j in range(k + 1))
         worst.note("gain", lesson.gain_without_source(energies, work), gain)
-        runs = iter((rest, rest + 1.5)).__next__                 # the second is ahead, and takes a third of the time
-        worst.note("gain", lesson.compare(runs, runs, 1, iter((0.0, 3.0, 4.0)).__next__), (1.5, 3.0))
+        # the second is ahead by 0.5, 1.5 and 1 J, and is 2, 3 and 9 times as fast
+        runs = iter((rest, rest + 0.5, rest, rest + 1.5, rest, rest + 1.0)).__next__
+        clock = iter((0.0, 2.0, 3.0, 3.0, 6.0, 7.0, 7.0, 16.0, 17.0)).__next__
+        worst.note("gain", lesson.compare(runs, runs, 3, clock), (1.5, 3.0))
 
-        # a disc at the margin of another, and of the floor: found before it touches, and not from farther away
-        for share, count in ((0.9, 2), (1.1, 0)):
-            gap = share * 0.05
-            state, p = lesson.make_bodies_2d([(0.0, 0.1 + gap), (0.2 + gap, 0.3 + gap)], np.zeros(2), 1.0, 1.0,
-                                             np.full((2, 2), 0.1), [UP], (0.0, 0.0), 0.0, 1, 0.05)
-            beside = state.x.copy()
-            beside[1, 1] = beside[0, 1]
-            low, high, turn = lesson.disc_bounds(beside, state.q, p.half)
-            found = lesson.find_contacts(lesson.round_contacts, beside, low, high, turn, p)
-            on_floor = 1 if count else 0                         # the other disc is as near to the floor
-            worst.note("found", found.a.size, count + on_floor)
+        # a disc at the margin of another, and of a plane: found before it touches, and not from farther away
+        for share, count in ((0.9, 3), (1.1, 0)):
+            gap, n = share * 0.05, SIDES[trial % 4]
+            along = np.array([-n[1], n[0]])
+            state, p = lesson.make_bodies_2d([(0.1 + gap) * n, (0.1 + gap) * n + (0.2 + gap) * along], np.zeros(2), 1.0,
+                                             1.0, np.full((2, 2), 0.1), [(*n, 0.0)], (0.0, 0.0), 0.0, 1, 0.05)
+            low, high, turn = lesson.disc_bounds(state.x, state.q, p.half)
+            found = lesson.find_contacts(lesson.round_contacts, state.x, low, high, turn, p)
+            worst.note("found", found.a.size, count)             # both are as near to the plane
+
+        # a turned box comes down on one corner, in the plane and in space: this stops at the floor, or closes its gap
+        R, angle, ahead = matrix_of(turns[0]), rng.uniform(0.2, 1.3), rng.choice((0.0, 0.004))
+        flat = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+        for axes, moment in ((flat, inertia[:1]), (R, moments[0])):
+            d, half = len(axes), np.array([0.3, 0.2, 0.1][:len(axes)])
+            corners = (np.stack(np.meshgrid(*[(-1.0, 1.0)] * d), axis=-1).reshape(-1, d) * half) @ axes.T
+            lowest = corners[np.argmin(corners[:, -1])]
+            if np.sort(corners[:, -1])[1] < lowest[-1] + 0.02:           # two corners come nearly at once
+                continue
+            place, n, fall = np.array([*[0.5] * (d - 1), ahead - lowest[-1]]), np.eye(d)[-1], -rng.uniform(1.0, 2.0)
+            r, q = lowest - 0.5 * ahead * n, [angle] if d == 2 else turns[:1]
+            state, p = (lesson.make_bodies_2d if d == 2 else lesson.make_bodies)(
+                [place], q, m[0], moment if d == 2 else [moment], [half], [(*n, 0.0)], np.zeros(d), 0.0, 1, 0.01)
+            state = state._replace(v=np.array([0.3 * np.eye(d)[0] + fall * n, np.zeros(d)]))
+            step, *shape = (lesson.contact_step_2d, lesson.box_bounds_2d, lesson.box_contacts_2d) if d == 2 else (
+                lesson.contact_step, lesson.box_bounds, lesson.box_contacts)
+            end = step(lesson.weight, *shape, 0.0, state, dt, p)
+            lever = np.array([r[0]]) if d == 2 else axes.T @ np.cross(r, n)      # in the body's coordinates
+            j = (-ahead / dt - fall) / (1.0 / m[0] + np.sum(lever**2 / moment))
+            spin = lever * j / moment if d == 2 else axes @ (lever * j / moment)
+            worst.note("corner of a box", (end.v[0], end.omega[0], end.J),
+                       (state.v[0] + j / m[0] * n, spin, j * n))
+            worst.note("corner of a box", end.x[0], place + dt * (state.v[0] + j / m[0] * n))
+            if d == 2:
+                worst.note("corner of a box", end.q[0], angle + dt * spin)
+            else:
+                rate = np.linalg.norm(spin)
+                half_turn = np.arctan(0.5 * rate * dt)
+                worst.note("corner of a box", matrix_of(end.q[0]),
+                           matrix_of(np.array([np.cos(half_turn), *(np.sin(half_turn) * spin / rate)])) @ R)
         worst.note("found", lesson.closing_speeds(np.array([0.02, -0.01]), dt), (-0.02 / dt, 0.0))
 
         # a corner that stops keeps the angular momentum about it
@@ -372,15 +419,21 @@ def loop_by_parts(lesson):
 
         # a ball that slips: its slip decreases by what friction and gravity do to centre and rotation
         radius, mu, I, slope = rng.uniform((0.1, 0.2, 0.01, -0.5), (0.5, 0.5, 0.1, 0.5))
+        slope = slope if trial % 3 else 60.0                     # so steep that it slips faster and faster
         angle, r = rng.uniform(0.0, 6.28), np.array([0.0, 0.0, -radius])
         along = np.array([np.cos(angle), np.sin(angle), 0.0])
         ball = lesson.RollingBall(m[0], np.full(3, I), radius, mu, slope * along - [0.0, 0.0, G])
         omega = rng.normal(size=3)
-        v = rng.uniform(0.5, 2.0) * along - np.cross(omega, r) * [1.0, 1.0, 0.0]
+        v = rng.uniform(0.5, 2.0) * along - np.cross(omega, r) * [1.0, 1.0, 0.0] + [0.0, 0.0, rng.normal()]
         size = np.linalg.norm((v + np.cross(omega, r))[:2])
         friction = -mu * m[0] * G * along
         slows = -(friction / m[0] + slope * along + np.cross(np.cross(r, friction) / I, r)) @ along
         worst.note("slip", lesson.slip_time(v, omega, ball), size / slows if slows > 0.0 else np.inf)
+        seen, stops = [], lesson.slip_time(v, omega, ball)
+        watched = lambda t, x, q, v, omega, p, seen=seen: (seen.append(t), (p.m * p.gravity, np.zeros(3)))[1]
+        if stops < np.inf:
+            lesson.exact_rolling_step(watched, t, x[0], np.array([1.0, 0.0, 0.0, 0.0]), v, omega, 2.0 * stops, ball)
+            worst.note("parts", (min(seen), max(seen)), (t, t + stops))
         centre, v_s, omega_s, place = rng.normal(size=(4, 3))
         carried = lesson.CarriedBall(1.0, np.ones(3), 0.1, 0.5, np.array([0.0, 0.0, -G]), centre, v_s, omega_s)
         worst.note("floor", lesson.support_velocity(place, carried), v_s + np.cross(omega_s, place - centre))
@@ -396,8 +449,11 @@ def loop_by_parts(lesson):
         ("gain", "A gain counts from any time on, without the work that was done; a difference counts either way.",
          "gain and difference [J]"),
         ("found", "Contacts are found up to the margin, and may close in one step.", "contacts and speeds [-, m/s]"),
+        ("corner of a box", "The corner on which a box comes down stops there, or closes its gap.",
+         "state and impulse [m, m/s, rad/s, N s]"),
         ("corner", "A corner that stops keeps the angular momentum about it.", "velocity and momentum [m/s, kg m²/s]"),
         ("slip", "A slip ends when friction and gravity have used it up.", "time [s]"),
+        ("parts", "A ball rolls from when its slip has ended: loads are those of both times.", "times of loads [s]"),
         ("floor", "A floor that travels and turns has the velocity of each of its points.",
          "velocity of a floor [m/s]"))
     return [agreement(claim, f"{name}: largest error of the {quantity}", worst[name], 1e-9)
@@ -460,6 +516,24 @@ def rolling_by_contact(lesson):
     found.append(agreement("Impulses that are kept carry a stack with one sweep per step: 1, 2 and 3 weights.",
                            "impulses under three discs over m g dt: largest error [-]",
                            np.max(np.abs(carried - (1.0, 2.0, 3.0))), 1e-6))
+    state, p = lesson.make_bodies([(0.0, 0.0, y) for y in heights[:2]], [(1.0, 0.0, 0.0, 0.0)] * 2, m, [(I, I, I)] * 2,
+                                  np.full((2, 3), r), [(0.0, 0.0, 1.0, 0.0)], (0.0, 0.0, -G), 0.0, 1, 0.01)
+    piled = lesson.advance_contact(lesson.contact_step, lesson.weight, lesson.ball_bounds, lesson.round_contacts, 0.0,
+                                   state, 1e-4, 80, p)
+    carried = np.sort(np.abs(piled.J[:, 2])) / (m * G * 1e-4)
+    found.append(agreement("So they do in space, at rest.",
+                           "impulses under two spheres, and their speed, over those of g dt: largest error [-]",
+                           max(np.max(np.abs(carried - (1.0, 2.0))), np.max(np.abs(piled.v)) / (G * 1e-4)), 1e-6))
+    # a carried ball rolls on a floor at rest that is tilted, and turns by its way over its radius
+    tilted, still = np.array([down, 0.0, -G]), np.zeros(3)
+    ball = lesson.CarriedBall(m, np.full(3, I), r, 0.9, tilted, still, still, still)
+    now = np.array([0.0, 0.0, r]), np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3), np.zeros(3)
+    for k in range(steps):
+        now = lesson.carried_step(lambda t, x, q, v, omega, p: (p.m * p.gravity, np.zeros(3)), k * dt, *now, dt, ball)
+    half_turn = 0.5 * now[0][0] / r
+    found.append(agreement("A carried ball turns by its way over its radius.",
+                           "quaternion after 12 steps: largest error [-]",
+                           np.max(np.abs(now[1] - (np.cos(half_turn), 0.0, np.sin(half_turn), 0.0))), ROUND_OFF))
     found.append(agreement("They carry it at rest.", "speed of three discs over g dt [-]",
                            np.max(np.abs(end.v)) / (G * 1e-4), 1e-6))
     return found, None

@@ -52,6 +52,7 @@ def forces(lesson):
         errors["contact"].append(length(pushed - 0.5 * k * abs(C) * slope) / (k * abs(C)))
         errors["free"].append(max(length(lesson.soft_contact_force(abs(C), -10.0 * slow, slope, k, k_d)),
                                   length(lesson.soft_contact_force(NEARLY, -10.0 * slow, slope, k, k_d)),
+                                  length(lesson.soft_contact_force(0.0, -10.0 * slow, slope, k, k_d)),
                                   length(lesson.soft_contact_force(deep, 3.0 * slow, slope, k, k_d))))
     for name, claim in (
             ("gravity", "Newton's attraction is the derivative of −G m_a m_b/r."),
@@ -104,18 +105,20 @@ def angular_spring(lesson):
     """U = ½k(θ − rest)² for arms of any length, any angle and any rest angle; θ − rest within half a turn."""
     rng, worst, force, moment = np.random.default_rng(23), 0.0, 0.0, 0.0
     for _ in range(CASES):
-        x, rest, k = rng.normal(size=6), rng.uniform(-np.pi, np.pi), rng.uniform(0.5, 2.0)
+        places, angle, k = rng.normal(size=6), rng.uniform(-np.pi, np.pi), rng.uniform(0.5, 2.0)
+        for mirror in (1.0, -1.0):                               # past half a turn on either side
+            x, rest = places * np.tile((1.0, mirror), 3), mirror * angle
 
-        def energy(x, rest=rest, k=k):
-            turn = angle_between(x[:2] - x[2:4], x[4:] - x[2:4]) - rest
-            return 0.5 * k * (turn - 2.0 * np.pi * np.round(turn.real / (2.0 * np.pi))) ** 2
+            def energy(x, rest=rest, k=k):
+                turn = angle_between(x[:2] - x[2:4], x[4:] - x[2:4]) - rest
+                return 0.5 * k * (turn - 2.0 * np.pi * np.round(turn.real / (2.0 * np.pi))) ** 2
 
-        truth = -gradient(energy, x).reshape(3, 2)
-        F = np.array(lesson.angular_spring_forces(x[:2], x[2:4], x[4:], rest, k))
-        worst = np.maximum(worst, np.max(np.abs(F - truth)) / np.max(np.abs(truth)))
-        force = np.maximum(force, np.max(np.abs(F.sum(axis=0))) / np.max(np.abs(F)))
-        places = x.reshape(3, 2)
-        moment = np.maximum(moment, abs(np.sum(places[:, 0] * F[:, 1] - places[:, 1] * F[:, 0])) / np.max(np.abs(F)))
+            truth = -gradient(energy, x).reshape(3, 2)
+            F = np.array(lesson.angular_spring_forces(x[:2], x[2:4], x[4:], rest, k))
+            largest = np.max(np.abs(F))
+            worst = np.maximum(worst, np.max(np.abs(F - truth)) / np.max(np.abs(truth)))
+            force = np.maximum(force, np.max(np.abs(F.sum(axis=0))) / largest)
+            moment = np.maximum(moment, abs(np.sum(x[::2] * F[:, 1] - x[1::2] * F[:, 0])) / largest)
     return [agreement("The forces on both ends and on the hinge are the derivative of ½k(θ − rest)².",
                       "forces: largest relative error [-]", worst, 1e-10),
             agreement("They add up to nothing.", "sum of the forces over the largest [-]", force, ROUNDED),
@@ -173,13 +176,14 @@ def grids(lesson):
     wrong = 0
     for rows, cols in ((1, 1), (1, 4), (3, 2), (4, 5)):
         place = [divmod(k, cols) for k in range(rows * cols)]
-        for offsets in (lesson.STRUCTURAL, lesson.SHEAR, lesson.BEND, lesson.STRUCTURAL + lesson.SHEAR + lesson.BEND):
+        for offsets in (lesson.STRUCTURAL, lesson.SHEAR, lesson.BEND, lesson.STRUCTURAL + lesson.SHEAR + lesson.BEND,
+                        ((-1, 0), (-2, 1))):
             truth = sorted((i, j) for i, (r, c) in enumerate(place) for j, (s, d) in enumerate(place)
                            if (s - r, d - c) in offsets)
             wrong += sorted(map(tuple, lesson.grid_pairs(rows, cols, offsets).tolist())) != truth
     lengths = [np.hypot(*offset) for offset in lesson.STRUCTURAL + lesson.SHEAR + lesson.BEND]
     found = abs(sum(lengths) - (2.0 + 2.0 * np.sqrt(2.0) + 4.0))           # 1, 1, √2, √2, 2, 2
     return [agreement("A grid joins the nodes whose rows and columns differ by an offset, and no others.",
-                      "grids with other pairs [of 16]", wrong, 0.0),
+                      "grids with other pairs [of 20]", wrong, 0.0),
             agreement("Threads are 1, diagonals √2 and every second node 2 apart.",
                       "sum of the offsets: error [-]", found, ROUNDED)], None

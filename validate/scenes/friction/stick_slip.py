@@ -7,7 +7,7 @@ from solutions.friction import driven_acceleration as acceleration
 from solutions.integrators import advance
 from solutions.support.friction import make_block, slip_times
 from validate.engines.friction import MASS, block_on, bullet_block, pymunk_block, slab_on_line_and_box
-from validate.reference.friction import DrivenBlock, T, slip_errors, slip_limits, slip_position, slips
+from validate.reference.friction import DrivenBlock, T, pushed_in_steps, slip_errors, slip_limits, slip_position, slips
 from validate.scene import Scene
 
 STEPS = (80, 160, 400, 800, 1600, 4000, 8000)
@@ -37,8 +37,8 @@ def pymunk_make(p, dt):
 
 
 def pybullet_make(p, dt):
-    still = (0.0, 0.0, 0.0)
-    return bullet_block((0.0, 0.0, -p.g), p.mu, still, 0.1, dt, lambda x: np.array(x[:1]), push(p, 3))
+    still, fastest = (0.0, 0.0, 0.0), pushed_in_steps(p, round(T / dt), True)[1]
+    return bullet_block((0.0, 0.0, -p.g), p.mu, still, fastest, dt, lambda x: np.array(x[:1]), push(p, 3))
 
 
 ENGINES = slab_on_line_and_box(pymunk_make, pybullet_make, after=", the force applied each step")

@@ -57,5 +57,8 @@ SCENE = Scene(
     cases=CASES, steps=STEPS,
     acceleration=acceleration, run=run,
     slow_methods=LEFT_TO_FULL,          # of these the implicit ones build a dense matrix at every correction
+    slow_runs=dict.fromkeys(list(CASES)[1:], ("implicit_spring_network_step",)),
+    uncompiled_in_quick=("implicit_spring_network_step",),
+    shorter_in_quick={"implicit_spring_network_step": 200},
     sanity_checks=sanity_checks,
 )
