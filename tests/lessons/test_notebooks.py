@@ -144,6 +144,10 @@ def test_a_figure_is_described_by_its_labels_and_by_where_its_curves_end():
         "Plot: a spring; x [m] against t [s]; curves (method): “Euler, μ_s = 1” from 1 at 0 to -0.25 at 2. "
         "Plot: x [m] against t [s]; words: a wall.")
     assert figures.describe(empty) == figures.NOTHING
+    axes = empty.subplots()
+    axes.bar([0, 1], [1.25, 0.5], label="Ixx")
+    axes.set_xticks([0, 1], ["a box", "a rod"])
+    assert figures.describe(empty) == "Plot: bars at: a box, a rod; lengths: “Ixx” 1.25, 0.5."
 
 
 def test_a_figure_is_shown_with_its_description_and_drawn_once():
