@@ -174,6 +174,21 @@ def test_a_figure_is_shown_with_its_description_and_drawn_once():
     assert {"image/png", "text/html"}.isdisjoint(shell.display_formatter.format(figure)[0])
 
 
+def test_a_narrow_logarithmic_axis_names_few_numbers(monkeypatch):
+    """Unless the cell has chosen its own."""
+    from validate import notebook
+    figure, (plain, chosen) = notebook.plt.subplots(1, 2)
+    for axes in (plain, chosen):
+        axes.loglog([2e-4, 9e-4], [1.0, 2.0])
+    chosen.set_xticks([3e-4], ["mine"])
+    monkeypatch.setattr(notebook.plt, "show", figure.canvas.draw)
+    notebook.show_figure()
+    named = [[tick.get_text() for tick in axes.get_xticklabels(which="both")] for axes in (plain, chosen)]
+    notebook.plt.close(figure)
+    assert {"2·10⁻⁴", "5·10⁻⁴"} <= set(named[0]) and not any("times" in name for name in named[0])
+    assert named[1][0] == "mine"
+
+
 def test_words_can_be_read_on_white_and_on_black():
     """WCAG 2: a contrast of 4.5 or more, on white and on JupyterLab's dark #111111."""
     from validate.notebook import DARK, LIGHT
