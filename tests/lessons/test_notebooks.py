@@ -144,6 +144,10 @@ def test_a_figure_is_described_by_its_labels_and_by_where_its_curves_end():
         "Plot: a spring; x [m] against t [s]; curves (method): “Euler, μ_s = 1” from 1 at 0 to -0.25 at 2. "
         "Plot: x [m] against t [s]; words: a wall.")
     assert figures.describe(empty) == figures.NOTHING
+    axes = empty.subplots()
+    axes.bar([0, 1], [1.25, 0.5], label="Ixx")
+    axes.set_xticks([0, 1], ["a box", "a rod"])
+    assert figures.describe(empty) == "Plot: bars at: a box, a rod; lengths: “Ixx” 1.25, 0.5."
 
 
 def test_a_figure_is_shown_with_its_description_and_drawn_once():
@@ -168,6 +172,21 @@ def test_a_figure_is_shown_with_its_description_and_drawn_once():
                                      f'src="data:image/png;base64,{data["image/png"].strip()}">')
     select_figure_formats(shell, {"svg"})
     assert {"image/png", "text/html"}.isdisjoint(shell.display_formatter.format(figure)[0])
+
+
+def test_a_narrow_logarithmic_axis_names_few_numbers(monkeypatch):
+    """Unless the cell has chosen its own."""
+    from validate import notebook
+    figure, (plain, chosen) = notebook.plt.subplots(1, 2)
+    for axes in (plain, chosen):
+        axes.loglog([2e-4, 9e-4], [1.0, 2.0])
+    chosen.set_xticks([3e-4], ["mine"])
+    monkeypatch.setattr(notebook.plt, "show", figure.canvas.draw)
+    notebook.show_figure()
+    named = [[tick.get_text() for tick in axes.get_xticklabels(which="both")] for axes in (plain, chosen)]
+    notebook.plt.close(figure)
+    assert {"2·10⁻⁴", "5·10⁻⁴"} <= set(named[0]) and not any("times" in name for name in named[0])
+    assert named[1][0] == "mine"
 
 
 def test_words_can_be_read_on_white_and_on_black():

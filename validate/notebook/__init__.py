@@ -9,6 +9,7 @@ import os
 import re
 import tempfile
 import uuid
+import warnings
 from html import escape
 from pathlib import Path
 
@@ -16,6 +17,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from IPython import get_ipython
 from IPython.display import HTML, Markdown, display
+from matplotlib.ticker import LogFormatterSciNotation
 
 from solutions.checks import BadInput
 
@@ -40,6 +42,8 @@ SIGN = {"passed": "✓", "not yet": "✗", "not attempted": "○"}
 
 plots.style()
 plt.rcParams["figure.figsize"] = (7.2, 3.8)
+# a figure that waits for an exercise may have nothing yet that its legend could name
+warnings.filterwarnings("ignore", "No artists with labels found to put in legend", UserWarning)
 
 
 def folder():
@@ -163,6 +167,9 @@ def show_figure():
         for ax in figure.axes:
             if not ax.has_data() and not ax.patches and not ax.texts and not ax.images:
                 ax.remove()
+            for axis in (ax.xaxis, ax.yaxis):
+                if type(axis.get_major_formatter()) is LogFormatterSciNotation:          # no choice of the cell's own
+                    plots.tick(axis)
         if empty or not figure.axes:
             plt.close(figure)
     plt.show()

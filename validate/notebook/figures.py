@@ -9,6 +9,7 @@ from html import escape
 from weakref import WeakKeyDictionary
 
 import numpy as np
+from matplotlib.container import BarContainer
 from matplotlib.figure import Figure
 
 MOST_CURVES, MOST_WORDS = 8, 12                 # that the description of one plot names
@@ -36,7 +37,7 @@ def _sentence(axes):
     if axes.get_label() == "<colorbar>":
         scale = plain(axes.get_ylabel() or axes.get_xlabel())
         return f"Colours: {scale}." if scale else ""
-    parts = [plain(axes.get_title() or axes.get_title("left")), _quantities(axes), _curves(axes)]
+    parts = [plain(axes.get_title() or axes.get_title("left")), _quantities(axes), _bars(axes) or _curves(axes)]
     if not parts[2]:
         parts += [_words("at", _categories(axes)), _words("words", [plain(one.get_text()) for one in axes.texts])]
     shown = "; ".join(filter(None, parts))
@@ -61,6 +62,15 @@ def _curves(axes):
     named = [f"“{plain(label)}”{_ends(axes, handle)}" for handle, label in zip(handles, labels) if plain(label)]
     title = plain(axes.get_legend().get_title().get_text()) if axes.get_legend() else ""
     return _words(f"curves ({title})" if title else "curves", list(dict.fromkeys(named)), MOST_CURVES)
+
+
+def _bars(axes):
+    """The lengths of the bars, and what each stands for; nothing where there are none."""
+    bars = [one for one in axes.containers if isinstance(one, BarContainer)]
+    sizes = [[b.get_height() if one.orientation == "vertical" else b.get_width() for b in one] for one in bars]
+    names = [f"“{plain(one.get_label())}” " if not one.get_label().startswith("_") else "" for one in bars]
+    listed = [f"{name}{', '.join(f'{x:.3g}' for x in found[:MOST_WORDS])}" for name, found in zip(names, sizes)]
+    return f"{_words('bars at', _categories(axes)) or 'bars'}; lengths: {'; '.join(listed)}" if bars else ""
 
 
 def _ends(axes, handle):

@@ -263,7 +263,7 @@ def _power(x, _):
     return f"{'' if lead == '1' else f'{lead}·'}10{str(exponent).translate(RAISED)}"
 
 
-def _tick(axis):
+def tick(axis):
     """On a logarithmic axis name powers of ten, and over fewer than two of them 2 and 5 as well;
     more would run into each other.
     """
@@ -275,8 +275,8 @@ def _tick(axis):
 
 
 def _finish(figure, axes, path, title):
-    _tick(axes.xaxis)
-    _tick(axes.yaxis)
+    tick(axes.xaxis)
+    tick(axes.yaxis)
     if not axes.get_legend_handles_labels()[0]:
         axes.plot([], [], label=" ")
         axes.text(0.5, 0.5, "nothing to draw: no method has been attempted", transform=axes.transAxes, ha="center",

@@ -501,7 +501,7 @@ def undefined_distance(lesson):
         for s in sizes
     ]
     return found, Picture(
-        "Small triangles are none of that",
+        "A small triangle is not a flat one",
         "log₁₀ of the size of a triangle [m]",
         "gap of a ball above it [m]",
         [

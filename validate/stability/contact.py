@@ -362,7 +362,7 @@ def over_relaxation(lesson):
         series("theory, ω = 1", sweeps, 2.0 * sweeps * np.log10(np.cos(0.05 * np.pi)), LINE),
         series("ω = 1", sweeps[::5], np.log10(plain[::5]), DOTS),
         series(f"ω = {omega:.3f}", sweeps[:61:3], np.log10(np.maximum(relaxed[::3], 1e-16)), DOTS)],
-        f"One number makes {fewer} sweeps out of {more}: the cure that costs nothing.")
+        f"One number turns {more} sweeps into {fewer}, at no cost.")
 
 
 # ---------------------------------------------------------------------------------------------- piles
@@ -1056,7 +1056,7 @@ def judge(lesson):
         found += pyramid_of_pybullet()
     return found, Picture("pymunk's impulses, judged", "time [s]", "log₁₀ of the residual over g dt", [
         series("30 discs, 200 iterations", times, np.log10(np.maximum(seen, 1e-16)), DOTS)],
-        "While discs fall and roll, the impulses are not those of rest; then the residual goes where round-off is.")
+        "While discs fall and roll, the impulses are not those of rest; then the residual falls to round-off.")
 
 
 def own_push(record, k):

@@ -125,7 +125,8 @@ def straight_arm(lesson):
         series(f"theory, {label}", distances, np.log10(laws[name]), LINE),
         series(label, distances, np.log10(drawn[name]), DOTS))]
     return found, Picture("Out of a straight arm", "distance of the target [m]", "log₁₀ of the growth per iteration",
-                          curves, "FABRIK leaves a nearly straight arm fastest.  An exactly straight one, none leaves.")
+                          curves,
+                          "FABRIK leaves a nearly straight arm fastest.  No method leaves an exactly straight one.")
 
 
 def near_singular(lesson):

@@ -245,7 +245,7 @@ def flight_and_its_invariants(lesson):
     return found, Picture("How far a body falls in 1.2 s", "dt [s]", "fall [m]", [
         series("theory, ½ g T (T + dt)", dts, 0.5 * G * T * (T + np.array(dts)), LINE), series("measured", dts, falls,
                                                                                               DOTS)],
-        "Velocities first makes a fall too deep by ½ g T dt: exactly, whatever the step is.")
+        "Moving with the new velocity makes a fall too deep by ½ g T dt: exactly, whatever the step is.")
 
 
 def refusals(lesson):

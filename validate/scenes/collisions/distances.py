@@ -561,7 +561,7 @@ SCENE = Scene(
     uses=("the shapes of two bodies", "where they are"),
     full_loop="nothing moves here, so there is no loop",
     ablations={
-        "motion": "continuous detection: the two scenes of points",
+        "motion": "the two scenes of points have continuous detection",
         "finding the pairs": "the scene of pairs",
         "response": "lesson 7 builds it",
     },

@@ -127,8 +127,8 @@ SCENE = Scene(
     uses=("a straight way", "a quadratic equation for each step, or a distance"),
     ablations={
         "balls that never come near, tested at every step": lambda p: (balls.with_balls_that_miss(*start(p)), p),
-        "gravity: the path would bend, and the equation be of fourth degree": ("short straight pieces of the path "
-                                                                              "lead back to this equation"),
+        "gravity: the path would bend, and the equation would be of fourth degree":
+            "short straight pieces of the path lead back to this equation",
         "response": "the whole loop of lesson 10 has it, and is measured",
         "a cloth in place of the balls: its edges and faces": "triangle_cylinder_gap of this lesson tests them",
     },

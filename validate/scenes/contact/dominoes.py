@@ -241,7 +241,7 @@ SCENE = Scene(
     full_loop="its method is a whole loop itself, with soft contacts in place of rigid ones: the motions "
               "are not the same",
     ablations={"restitution": "dominoes of wood bounce a little; no law says how several impacts at once do",
-               "substeps": "two or four per step cost as many times more and do not come nearer to the limit",
+               "substeps": "two or four per step take two or four times as long, and come no nearer to the limit",
                "more sweeps": "a pile has two per substep; with 100 per step the loop of lesson 10 errs by 0.27 % at "
                               "1,000 steps, where the pile errs by 1 %, and visits 50 times as many contacts per step"},
 )

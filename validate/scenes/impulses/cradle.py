@@ -167,7 +167,7 @@ SCENE = Scene(
     shorter_in_quick={"position_projection_discs_step": 500},
     points=points,
     uses=("one coordinate", "the order of the impacts"),
-    full_loop="contacts of the loop bounce a step late, and it does not part what overlaps; lesson 10 has a cradle",
+    full_loop="contacts of the loop bounce a step late, and it leaves overlaps as they are; lesson 10 has a cradle",
     ablations={
         "the strings": "a swinging ball would move on an arc",
         "the stiffness of the balls": "it decides which balls leave if they touch; rigid bodies have none",

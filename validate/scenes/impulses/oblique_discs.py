@@ -196,7 +196,7 @@ SCENE = Scene(
     sanity_checks=sanity_checks,
     points=points, links=links,
     uses=("two coordinates", "two radii", "one number e for the impact"),
-    full_loop="contacts of the loop bounce a step late, and it does not part what overlaps: another motion",
+    full_loop="contacts of the loop bounce a step late, and it leaves overlaps as they are: another motion",
     ablations={
         "the third dimension": in_space,
         "rotation: without friction no torque acts on a disc": "the scene spinning_bounce puts it in",

@@ -73,10 +73,10 @@ def tolerance(p, dt):
     Beyond that a step has an error of (ρ dt)³, dt² ∫ρ³ dt in all, where ρ(t) is the rope's fastest rate at that
     time.  For the fourth order it is dt⁴ ∫ρ⁵ dt.
 
-    PBD and XPBD stop their sweeps before all links have their length.  Even a single sweep
-    leaves a link too long by at most the distance that its tension moves a point in one step, T dt²/m (stability
-    case stiffness-depends-on-dt has it exactly).  That is up to N times as much in position; its share of l changes
-    the forces, ∫ρ dt times.
+    PBD and XPBD stop their sweeps before all links have their length.  Even a single sweep leaves a link too long by
+    at most the distance that its tension moves a point in one step, T dt²/m (stability case stiffness-depends-on-dt
+    has it exactly).  Over N links that adds up to N times as much in position.  Links that are too long also change
+    the forces, which adds ∫ρ dt times as much again.
     """
     one, three, five, pull = rope_rates(p.links, p.l, p.m, p.g, T)
     size, of = np.linalg.norm(truth(p, T)), (p.links, p.l, p.m, p.g, T)

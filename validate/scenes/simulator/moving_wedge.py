@@ -231,5 +231,5 @@ SCENE = Scene(
     points=points, links=links,
     uses=("boxes in the plane", "three contacts", "sweeps with memory"),
     ablations={"friction": "without it momentum along the floor stays, and the motion has a closed form",
-               "rotation of the wedge": "a wide foot would carry its moments; ours has no inverse inertia instead"},
+               "rotation of the wedge": "a wide foot would carry its moments; ours has an inverse inertia of zero"},
 )
