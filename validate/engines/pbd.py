@@ -34,12 +34,18 @@ def pymunk_rope(x, l, m, g, dt, read, iterations):
     return pymunk_world(space, dt, lambda: read(np.array([body.position for body in bodies])))
 
 
+def bullet_sweeps(links):
+    """Return how often pybullet visits each link in a step."""
+    return ITERATIONS * max(links, 10)
+
+
 def bullet_rope(x, m, g, inertia, dt, read):
     """Make the same of bodies with a moment of inertia that turn with the link above, by point-to-point constraints.
 
-    z is up.
+    z is up.  In maximal coordinates a moment of inertia counts from the second step on, and a body without shape could
+    not turn in the first one: that is done beforehand, without gravity.
     """
-    bullet = Rigid(dt, (0.0, 0.0, -g), iterations=ITERATIONS * max(len(x), 10), erp=1.0)
+    bullet = Rigid(dt, iterations=bullet_sweeps(len(x)), erp=1.0)
     pb = bullet.pb
     bodies, above = [], np.zeros(2)
     for place in x:
@@ -51,5 +57,7 @@ def bullet_rope(x, m, g, inertia, dt, read):
             bullet.pivot(body, arm, True)
         bodies.append(body)
         above = place
+    bullet.step()
+    pb.setGravity(0.0, 0.0, -g)
     places = lambda: np.array([bullet.position(body) for body in bodies])
     return EngineRun(bullet.step, lambda: read(places()[:, ::2]), bullet.close)

@@ -11,6 +11,7 @@ from solutions.checks import check_positive
 from solutions.friction import ParticleInBowl, check_friction, particle_bowl_gap
 from solutions.friction import falling_acceleration as acceleration
 from solutions.support.friction import advance_particle
+from validate.engines.bullet import CONTACT_ERP
 from validate.engines.friction import SWEEPS, bullet_in_hollow
 from validate.methods import CONTACT, GRIPPING
 from validate.reference.schemes import ErrorLaw
@@ -165,18 +166,43 @@ def in_steps(p, steps, gripping, nudge):
     return x
 
 
+def in_bullet(p, steps, nudge):
+    """Return x at T of pybullet's ball on the tangent plane: the fall, the plane, its friction, then the way.
+
+    The plane lets the ball come as near as it is in one step, and drives a ball inside it out by a share of its depth.
+    """
+    dt, (x, v) = T / steps, place(p)
+    x, fall = x * (1.0 + nudge), np.array([0.0, 0.0, -p.g * T / steps])
+    across = np.array([1.0, 0.0 if p.trough else 1.0, 1.0])
+    for _ in range(steps):
+        r = across * x
+        far = np.sqrt(r @ r)
+        n, gap, v = -r / far, p.radius - far, v + fall
+        out = -gap / dt * (1.0 if gap > 0.0 else CONTACT_ERP)
+        pushed = max(0.0, out - v @ n)
+        v = v + pushed * n
+        along = v - (v @ n) * n
+        size = np.sqrt(along @ along)
+        if size > 0.0:
+            v = v - along * min(1.0, p.mu * pushed / size)
+        x = x + dt * v
+    return x
+
+
 @cache
 def error_law(label, p):
     run = lambda steps, nudge: in_steps(p, steps, label == "gripping", nudge)
+    if label == "pybullet":
+        run = lambda steps, nudge: in_bullet(p, steps, nudge)
     return ErrorLaw(run, np.array(truth(p, T)), 1, T, 800)
 
 
 def predicted_error(label, p, dt):
     """The error, with its sign, of the same rule in plain numbers: the fall, the way back to the wall, the friction.
 
-    At the same step where that is coarse, else by its expansion in powers of dt.
+    At the same step where that is coarse, else by its expansion in powers of dt.  pybullet's own step likewise.
     """
-    return error_law(label, p).prediction(dt, 1e-10) if label in ("contact", "gripping") else None
+    return error_law(label, p).prediction(dt, 1e-10) if label in ("contact", "gripping", "pybullet") else None
 
 
 def pybullet_make(p, dt):

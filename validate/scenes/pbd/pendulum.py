@@ -131,7 +131,8 @@ ENGINES = (
         "",
         pybullet_make,
         1,
-        f"JOINT_POINT2POINT, useMaximalCoordinates=1, erp 1, {10 * ITERATIONS} iterations; a bob with I = {SHARE} mL²",
+        f"JOINT_POINT2POINT, useMaximalCoordinates=1, erp 1, {10 * ITERATIONS} iterations; a bob with I = {SHARE} mL²; "
+        "a step without gravity beforehand, after which moments count",
     ),
     Engine(MUJOCO, "", mujoco_make("RK4"), 4, "hinge; Runge–Kutta 4", 5000),
     Engine(MUJOCO, "default", mujoco_make("Euler"), 1, "hinge; the semi-implicit Euler step", 5000),
