@@ -45,3 +45,32 @@ fault("repulsion", "g = distance - radius", "g = distance", "the obstacle is a p
 fault("steer", "2.0 * (radius - offset)", "(radius - offset)", "it moves aside by half of what it needs")
 fault("steer", "tau <= 0.0 or", "", "it steers around what it has passed")
 fault("ball_contact", "np.sqrt(r @ r) - r_a - r_b", "np.sqrt(r @ r) - r_a", "the gap leaves out the second radius")
+
+# drawn up without a look at those above
+fault("plane_impact_time", "if after < 0.0:", "if after <= 0.0:", "a ball that ends on a plane does not touch it")
+fault("plane_impact_time", "t + dt * before", "dt * before", "times count from the beginning of the step")
+fault("cylinder_impact_time", "s > 1.0", "s >= 1.0", "a ball that ends on a cylinder does not touch it")
+fault("edge_axis_distance", "y_a[0] == y_b[0] and", "y_a[0] == y_b[0] or", "an edge at one height is taken for a point")
+fault("ball_box", "if depth[i] < 0.0:", "if depth[i] <= 0.0:", "a centre on a face leaves along no axis of the box")
+fault("ball_box", "y[i] >= 0.0", "y[i] > 0.0", "from the very centre it leaves on the other side")
+fault("ball_box", "x + depth[i] * n", "x + (depth[i] + r) * n", "the point on the box is outside it")
+fault("all_pairs", "range(i + 1, len(low))", "range(i + 1, len(low) - (i == 0))",
+      "the first and the last box are never compared")
+fault("steer", "np.array([-e[1], e[0]])", "np.array([e[1], -e[0]])", "it turns right for what is straight ahead")
+fault("gjk", "weights @ q, 0.0)", "q[0], 0.0)", "the nearest point of the second body is a corner")
+fault("ball_contact", "x_b + r_b * n", "x_b + r_a * n", "the point on the second ball is not on it")
+fault("ball_plane", "x - distance * plane.n", "x - (distance - r) * plane.n", "the point on the plane is not on it",
+      of="support.collisions")
+fault("cylinder_hit", "(moment - t) / dt", "moment / dt", "right for steps that begin at 0", of="support.collisions")
+fault("continuous_step", "(moment - t) * v", "moment * v", "right for steps that begin at 0", of="support.collisions")
+fault("capsule_capsule", "p, r_a, q, r_b", "p, r_b, q, r_a", "the radii are exchanged", of="support.collisions")
+fault("points_plane", "if distance <= 0.0:", "if distance < 0.0:", "a corner that just touches has no contact",
+      of="support.collisions")
+fault("box_box", "(k - 6) // 3, -n)", "(k - 6) // 3, n)", "the edge of the first box is that on its far side",
+      of="support.collisions")
+fault("make_plane", "y[-1] / length", "y[-1]", "the distance from the origin is not scaled", of="support.collisions")
+fault("flock_energy", "0.5 * p.gather", "p.gather", "the pull to the middle counts twice", of="support.collisions")
+fault("boxes_touch", "low_a[i, c] > high_b[j, c]", "low_a[i, c] >= high_b[j, c]", "boxes that just touch do not",
+      of="support.trees")
+fault("touching_items", "b.order[m]", "a.order[m]", "items of the second tree have the numbers of the first",
+      of="support.trees")

@@ -45,3 +45,22 @@ fault("friction_position_correction", "1.0, depth, mu)", "1.0, 0.5 * depth, mu)"
 fault("position_friction_step", "moved = dt * v",
       "moved = dt * tangential(v, p.gravity / np.sqrt(p.gravity @ p.gravity))",
       "the correction leaves out the vertical part of the motion")
+
+# drawn up without a look at those above
+fault("incline_acceleration", "np.sin(theta) <= cone", "np.sin(theta) < cone",
+      "at exactly the limit a slope does not hold",
+      missed="sin θ and μ cos θ are equal only to round-off, which decides")
+fault("slip_direction", "pull > cone_radius", "pull >= cone_radius", "without load and pull a block slips to nowhere")
+fault("slip_direction", "normal_force(a, p.n)", "normal_force(p.gravity, p.n)",
+      "the limit of static friction leaves out a drive along the normal")
+fault("kinetic_friction_step", "normal_force(middle, p.n)", "normal_force(early, p.n)",
+      "the load is that of the beginning of the step")
+fault("contact_step", "acceleration(t, x, v, p)", "acceleration(t + dt, x, v, p)",
+      "the force is that of the end of the step")
+fault("contact_step", "x = x - phi * n", "x = x - (1.0 + p.e) * phi * n", "the position bounces, too")
+fault("position_friction_step", "if v @ n < 0.0:", "if True:", "friction also moves back what already leaves")
+fault("slip_times", "slipping = slides and bool(np.any(v))", "slipping = slides",
+      "a block that stops and slides back is said not to have stopped", of="support.friction")
+fault("pyramid_step", "p.mu_k, t_1", "p.mu_s, t_1", "a sliding block has static friction", of="support.friction")
+fault("advance_particle", "t + n * dt", "t", "every step begins at the time of the first", of="support.friction")
+fault("make_block", "Block(n / length", "Block(n", "the normal may have any length", of="support.friction")

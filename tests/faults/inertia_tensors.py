@@ -30,3 +30,12 @@ fault("check_closed", "if there[k] != back[k]:", "if there[k] != back[k] and k =
       "an open mesh passes, unless its first edge is open")
 fault("mesh_body", "x[0] + centre", "centre", "the centre is given from the first corner")
 fault("mesh_body", "second - volume * np.outer(centre, centre)", "second", "the tensor is about the first corner")
+
+# drawn up without a look at those above
+fault("combine", "centre_of_mass(m, x)", "(np.sum(m), x.T @ m / np.sum(m) if m.size > 1 else 0.0 * x[0])",
+      "a single part is moved to the origin")
+fault("mesh_integrals", "w / 24.0 * s", "abs(w) / 24.0 * s", "tetrahedra on the outer side are added to the centre")
+fault("mesh_body", "volume <= MOMENT_ROUND_OFF", "abs(volume) <= MOMENT_ROUND_OFF",
+      "a mesh turned inside out has a negative mass")
+fault("inverse", "cross(a, b))) / determinant", "cross(b, a))) / determinant",
+      "the last row has the other sign", of="vectors")

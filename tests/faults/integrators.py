@@ -38,3 +38,12 @@ fault("amplification_matrix", "[[x1[0], x2[0]], [v1[0], v2[0]]]", "[[x1[0], v1[0
 fault("spectral_radius", "return abs(half_trace) + np.sqrt(discriminant)", "return half_trace + np.sqrt(discriminant)",
       "the larger of two real eigenvalues, not that of the larger absolute value")
 fault("observed_order", "return np.sum(", "return 0.9 * np.sum(", "the order is 10 % too low")
+
+# drawn up without a look at those above
+fault("inner_product", "range(a.size)", "range(min(a.size, 2))", "the product leaves out the third coordinate")
+fault("advance", "t + n * dt", "t", "every step begins at the time of the first")
+fault("trajectory", "t + n * dt", "t", "every step of a history begins at the time of the first")
+fault("trajectory", "ts = t + dt", "ts = dt", "the times of a history begin at 0")
+fault("advance_adaptive", "min(share / rate, end - t)", "share / rate", "the last step goes past the end")
+fault("verlet_step", "v + dt * a, p)", "v + 0.5 * dt * a, p)",
+      "the velocity in the last force is that of half a step: right without drag")

@@ -47,3 +47,22 @@ fault("splitting_free_rotation", "turned = about_axis(turned, a, 0.5 * slow_a * 
 fault("midpoint_step", "L + 0.5 * dt * torque(t + dt, q, L, body)", "L + 0.5 * dt * torque(t, q, L, body) * 0.98",
       "the second half of the angular impulse is 2 % too small")
 fault("compose", "1.0 - 4.0 * SUZUKI", "1.0 - 3.96 * SUZUKI", "the shares of the step do not add up to 1")
+
+# drawn up without a look at those above
+fault("axis_angle_update", "if rate != 0.0:", "if rate > 1e-3:", "a slow body does not turn")
+fault("quaternion_update", "0.5 * dt", "0.5 * abs(dt)", "a step backwards turns forwards")
+fault("intermediate_axis", ">= 0.0", "> 0.0", "the middle axis of a symmetric body may be its axis of symmetry")
+fault("average_rolling_step", "quaternion_product(turn, q)", "quaternion_product(q, turn)",
+      "the ball turns about axes of its own")
+fault("average_rolling_step", "(omega + omega_new)", "(omega_new + omega_new)",
+      "the ball turns with its new angular velocity")
+fault("runge_kutta_step", "L + dt * tau_3", "L", "the last stage has the old angular momentum", of="support.rotation")
+fault("_slope", "rotation_matrix(turn)", "rotation_matrix(q)",
+      "between the stages, lengths are not kept", of="support.rotation")
+fault("rotation_trajectory", "t + n * dt, q", "t, q", "every step of a history begins at the time of the first",
+      of="support.rotation")
+fault("rotation_trajectory", "ts = t + dt", "ts = dt", "the times of a history begin at 0", of="support.rotation")
+fault("advance_rotation", "t + n * dt", "t", "every step begins at the time of the first", of="support.rotation")
+fault("advance_rigid_body", "t + n * dt", "t", "every step begins at the time of the first", of="support.rotation")
+fault("make_rigid_body", "m), moments)", "m), moments[::-1].copy())", "the moments are reversed", of="support.rotation")
+fault("about_axis", "x * c - z * s", "x * c + z * s", "a turn about the second axis is none", of="support.quaternions")

@@ -37,3 +37,15 @@ fault("implicit_spring_network_step", "dt * dt * K + dt * D", "0.5 * dt * dt * K
       "the matrix has half of the stiffness: another method, which loses less energy")
 fault("conjugate_gradients", "enough = CG_TOLERANCE * CG_TOLERANCE * squared", "enough = 1e-4 * squared",
       "the step is solved to 1 % only")
+
+# drawn up without a look at those above
+fault("soft_contact_force", "if C >= 0.0:", "if C > 0.0:", "a surface that is just touched already pushes")
+fault("angular_spring_forces", "np.ceil((turn - np.pi) / (2.0 * np.pi))", "np.where(turn > np.pi, 1.0, 0.0)",
+      "angles above half a turn are brought back, those below minus half a turn are not")
+fault("angular_spring_forces", "np.ceil((turn - np.pi) / (2.0 * np.pi))", "np.floor((turn + np.pi) / (2.0 * np.pi))",
+      "at exactly half a turn it pushes to the other side",
+      missed="both ways round are equally long there, and round-off decides between them")
+fault("grid_pairs", "0 <= r + dr < rows", "r + dr < rows", "offsets to an earlier row leave the grid")
+fault("spring_forces", "network.rest[s]", "network.rest[0]", "all springs have the length of the first")
+fault("spring_stiffness", "network.k_d[s] * nn", "network.k_d[0] * nn", "all springs have the damper of the first")
+fault("randomised", "2.0 * u - 1.0", "u", "what is drawn is above its value only")

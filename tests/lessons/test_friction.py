@@ -365,6 +365,9 @@ def test_a_block_slides_on_or_breaks_away_along_the_pull_or_stays(lesson, draw):
     gentle = steep._replace(mu_s=1.001 * np.tan(np.arcsin(steep.gravity @ down / G)))
     close("direction from rest where it holds [-]: none", lesson.slip_direction(pull, 0.0, still, still, gentle),
           still, 0.0, given=f"{gentle}")
+    lifted = gentle._replace(drive=draw(0.1, 0.3) * G * gentle.n)
+    close("direction from rest where a drive lifts [-]", lesson.slip_direction(pull, 0.0, still, still, lifted),
+          down, ROUND_OFF, given=f"{lifted}")
     close("direction of a block on its way up [-]", lesson.slip_direction(pull, 0.0, still, -v, gentle),
           -across, ROUND_OFF, given=f"{gentle}, v = {-v}")
     omega = draw(1.0, 3.0)

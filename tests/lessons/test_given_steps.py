@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput, Diverged
+from solutions.support.trajectories import particle_trajectory, rigid_body_trajectory
 from validate.modules import bind
 from validate.reference.integrators import Planet, kepler_position, perihelion
 
-integrators, pbd, rotation = map(bind, ("integrators", "pbd", "rotation"))
+integrators, friction, pbd, rotation = map(bind, ("integrators", "friction", "pbd", "rotation"))
 
 
 def attraction(t, x, v, p):
@@ -212,3 +213,53 @@ def test_what_is_not_a_rope_is_refused():
         network = pbd.make_constraint_network(x, 1.0, [0], pairs, 0.0, 1.0, (0.0, -9.81), 1)
         with pytest.raises(BadInput, match="neighbours"):
             pbd.rope_step(pbd.network_gravity, 0.0, x, 0.0 * x, 0.01, network)
+
+
+def whirled(t, q, L, body):
+    return np.array([np.cos(3.0 * t), t, 0.5])
+
+
+def pushed(t, x, q, v, omega, body):
+    return np.array([t, 1.0, 0.0]), whirled(t, q, omega, body)
+
+
+def blown(t, x, v, p):
+    return p.gravity + np.array([np.cos(3.0 * t), 0.0])
+
+
+BODY = rotation.make_rigid_body(2.0, (1.0, 1.5, 2.0))
+UPRIGHT, SPIN = np.array([1.0, 0.0, 0.0, 0.0]), np.array([0.3, 0.2, 0.1])
+GRAIN = friction.ParticleOnPlane(1.0, 0.3, 0.5, np.array([0.0, -9.81]), np.zeros(2), np.array([0.0, 1.0]))
+FALL = friction.contact_step, blown, friction.particle_plane_gap
+LOOPS = {                         # a history, the loop over steps that it follows, and the state at the start
+    "orbit": (lambda *now: integrators.trajectory(integrators.verlet_step, blown, *now, GRAIN),
+              lambda *now: integrators.advance(integrators.verlet_step, blown, *now, GRAIN),
+              (np.zeros(2), np.ones(2))),
+    "rotation": (lambda *now: rotation.rotation_trajectory(rotation.splitting_step, whirled, *now, BODY),
+                 lambda *now: rotation.advance_rotation(rotation.splitting_step, whirled, *now, BODY), (UPRIGHT, SPIN)),
+    "rigid body": (lambda *now: rigid_body_trajectory(rotation.rigid_body_step, pushed, *now, BODY),
+                   lambda *now: rotation.advance_rigid_body(rotation.rigid_body_step, pushed, *now, BODY),
+                   (np.zeros(3), UPRIGHT, np.ones(3), SPIN)),
+    "particle": (lambda *now: particle_trajectory(*FALL, *now, GRAIN),
+                 lambda *now: friction.advance_particle(*FALL, *now, GRAIN), (np.array([0.0, 0.1]), np.ones(2))),
+}
+
+
+@pytest.mark.parametrize("name", LOOPS)
+def test_a_history_has_the_times_of_its_steps_and_the_states_of_runs_that_end_there(name):
+    history, loop, start = LOOPS[name]
+    ts, *parts = history(0.7, *start, 0.05, 4)
+    assert np.allclose(ts, 0.7 + 0.05 * np.arange(5), rtol=0.0, atol=1e-15)
+    for steps in range(5):
+        for part, end in zip(parts, loop(0.7, *start, 0.05, steps), strict=True):
+            assert np.allclose(part[steps], end, rtol=0.0, atol=1e-13), (name, steps)
+
+
+@pytest.mark.parametrize("name", LOOPS)
+def test_a_loop_takes_each_step_at_its_own_time(name):
+    """Two steps at once are one step, and then one that begins later."""
+    _, loop, start = LOOPS[name]
+    once = loop(0.7, *start, 0.05, 1)
+    for one, two in zip(loop(0.75, *once, 0.05, 1), loop(0.7, *start, 0.05, 2), strict=True):
+        assert np.allclose(one, two, rtol=0.0, atol=1e-13)
+    assert not np.allclose(np.concatenate(loop(0.0, *start, 0.05, 2)), np.concatenate(loop(0.7, *start, 0.05, 2)))

@@ -287,6 +287,7 @@ edit("3.8", "divides by the square of the speed", "np.sqrt(v @ v)", "v @ v")
 edit("3.8", "exchanges holding and slipping", "pull > cone", "pull < cone")
 edit("3.8", "returns the velocity itself", "return v / speed", "return v")
 edit("3.8", "returns zeros for a moving block", "return v / speed", "return 0.0 * v")
+edit("3.8", "takes the normal force of gravity alone", "normal_force(a, p.n)", "normal_force(p.gravity, p.n)")
 
 
 # 3.9 ------------------------------------------------------------------------------------------------------------

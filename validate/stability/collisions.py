@@ -551,6 +551,8 @@ def ways_out(lesson, pairs):
             continue
         worst.keep("outside", inside(a, contacts.p_a), inside(b, contacts.p_b))
         worst.keep("deepest", abs(contacts.gap.min() - gap))
+        apart = contacts.p_a - contacts.p_b - contacts.gap[:, None] * contacts.n
+        worst.keep("apart", np.max(np.abs(apart)))
     return np.array(depths), np.array(true), worst
 
 
@@ -593,6 +595,14 @@ def boxes_leave_by_the_shortest_way(worst):
             tolerance=1e-11,
             observation=("The deepest point of contact of 100 pairs is as deep as the axis gives, to "
                          f"{worst['deepest']:.0e} m."),
+        ),
+        finding(
+            claim="The points of a contact are apart by its gap, along n.",
+            quantity="greatest length of p_a − p_b − gap n, of 100 pairs [m]",
+            predicted=0.0,
+            measured=worst["apart"],
+            tolerance=1e-11,
+            observation=f"For 100 pairs p_a − p_b is gap n to {worst['apart']:.0e} m.",
         ),
     ]
 
@@ -851,6 +861,8 @@ def exact_touches(lesson):
     low = np.stack(np.divmod(np.arange(16), 4), axis=1).astype(float)    # squares of a board
     squares = low, low + 1.0
     neighbours = [(i, j) for i, j in touching(*squares, *squares) if i < j]
+    around = np.stack((np.arange(1.0, 13.0), np.arange(12.0, 0.0, -1.0)), axis=1)    # twelve boxes about one point
+    everyone = [(i, j) for i in range(12) for j in range(i + 1, 12)]
     floor, box = lesson.make_plane((0.0, 0.0, 2.0, -2.0)), lesson.make_box(np.zeros(3), np.eye(3), (1.0, 2.0, 4.0))
     above = lambda z: np.array([3.0, -1.0, z])
     beside = lesson.ball_box(np.array([1.0, 0.5, -0.5]), 0.25, box)
@@ -859,6 +871,8 @@ def exact_touches(lesson):
     return {
         "squares of a board": sorted(map(tuple, lesson.all_pairs(*squares).tolist())) == neighbours,
         "the same, by a tree": sorted(map(tuple, lesson.tree_pairs(*squares).tolist())) == neighbours,
+        "boxes about one point": sorted(map(tuple, lesson.all_pairs(-around, around).tolist())) == everyone,
+        "the same, by another tree": sorted(map(tuple, lesson.tree_pairs(-around, around).tolist())) == everyone,
         "a ball that ends on a floor": lesson.plane_impact_time(0.25, 0.5, above(3.0), above(1.5), 0.5, floor) == 0.75,
         "a ball that ends on a cylinder": lesson.cylinder_impact_time(
             0.25, 0.5, np.array([0.0, 3.0, 0.0]), np.array([0.0, 1.0, 0.0]), 0.25, 0.75) == 0.75,

@@ -183,7 +183,10 @@ def grids(lesson):
             wrong += sorted(map(tuple, lesson.grid_pairs(rows, cols, offsets).tolist())) != truth
     lengths = [np.hypot(*offset) for offset in lesson.STRUCTURAL + lesson.SHEAR + lesson.BEND]
     found = abs(sum(lengths) - (2.0 + 2.0 * np.sqrt(2.0) + 4.0))           # 1, 1, √2, √2, 2, 2
+    drawn = lesson.randomised(8.0, 0.25, np.array([0.0, 0.5, 1.0])) - np.array([6.0, 8.0, 10.0])
     return [agreement("A grid joins the nodes whose rows and columns differ by an offset, and no others.",
                       "grids with other pairs [of 20]", wrong, 0.0),
             agreement("Threads are 1, diagonals √2 and every second node 2 apart.",
-                      "sum of the offsets: error [-]", found, ROUNDED)], None
+                      "sum of the offsets: error [-]", found, ROUNDED),
+            agreement("A quantity that is drawn at random is spread evenly about its value.",
+                      "least, middle and largest draw: error [N/m]", np.max(np.abs(drawn)), ROUNDED)], None
