@@ -1257,4 +1257,21 @@ def laws_of_contact(lesson):
          "impulses that are kept [N s]"),
         ("spring", "A soft contact is an implicit Euler step of a damped spring.", "impulse of a soft contact [m/s]"))
     return [agreement(claim, f"largest error of the {quantity}", worst[name], 1e-9)
-            for name, claim, quantity in names], None
+            for name, claim, quantity in names] + [stops_in_a_substep(lesson)], None
+
+
+def stops_in_a_substep(lesson):
+    """The Finding on a disc and a sphere that reach their floor in the middle of the last of three substeps.
+
+    A contact with a gap lets them close it, which takes half of their velocity; there is no gravity.
+    """
+    found, r, h = [], 0.1, DT / 3.0
+    for d, make, advance, bounds in ((2, lesson.make_pile_2d, lesson.advance_pile_2d, lesson.disc_bounds),
+                                     (3, lesson.make_pile, lesson.advance_pile, lesson.ball_bounds)):
+        up = np.eye(d)[-1]
+        state, pile = make([(r + 2.5 * h) * up], [0.0] if d == 2 else [UPRIGHT], 1.0, 0.01 if d == 2 else [(0.01,) * 3],
+                           [(r,) * d], [(*up, 0.0)], np.zeros(d), 0.3, 3, 30.0, 1.0, 0.1)
+        end = advance(bounds, lesson.round_contacts, state._replace(v=np.stack((-up, 0.0 * up))), DT, 1, pile)
+        found += [*(end.x[0] - r * up), *(end.v[0] + 0.5 * up)]
+    return agreement("What comes with 1 m/s goes down to the floor and not into it: gaps are those of each substep.",
+                     "places and velocities: largest error [m, m/s]", np.max(np.abs(found)), 1e-12)
