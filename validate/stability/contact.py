@@ -1219,6 +1219,14 @@ def laws_of_contact(lesson):
         truth = (y + W @ rows.T @ (new - J)).reshape(2, 2, 3)
         worst.note("in space", swept, (truth[:, 0], truth[:, 1], new))
 
+        # a free body between two substeps: ω − dt I⁻¹ (ω × I ω), with the tensor as a matrix
+        turn, omega, light, dt = np.linalg.qr(rng.normal(size=(3, 3)))[0], *rng.normal(size=(1, 3)), rng.uniform(
+            0.5, 2.0, 3), rng.uniform(0.01, 0.1)
+        turn *= np.linalg.det(turn)
+        I = turn @ np.diag(1.0 / light) @ turn.T
+        worst.note("turns", lesson.turn_freely(turn[None], omega[None], light[None], dt)[0],
+                   omega - dt * np.linalg.solve(I, np.cross(omega, I @ omega)))
+
         # old contacts of the same bodies and of others, near and far
         near, d = 0.5, 3
         old_b, old_p, J_old = rng.integers(1, 4, 6), rng.uniform(0.0, 1.0, (6, d)), rng.normal(size=(6, d))
@@ -1252,6 +1260,7 @@ def laws_of_contact(lesson):
          "state after a quick sweep [m/s, rad/s, N s]"),
         ("in space", "In space a sweep limits friction by the disc of the new J_n.",
          "state after a sweep in space [m/s, rad/s, N s]"),
+        ("turns", "A free body of a pile obeys Euler's equation.", "angular velocity [rad/s]"),
         ("judge of cones", "The residual with friction sees too much and too little.", "residual with friction [m/s]"),
         ("kept", "A contact takes over the impulse of the nearest old one between the same two bodies.",
          "impulses that are kept [N s]"),
