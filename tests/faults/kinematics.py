@@ -68,8 +68,6 @@ fault("ccd_step", "np.cos(new - theta[k]), np.sin(new - theta[k])", "np.cos(wish
       "the end goes where a joint without limits would take it")
 fault("fabrik_sweep", "x[0] = base", "x[0] = 0.0 * base", "the base is always at the origin")
 fault("limited_step", "theta[k] >= arm.high[k]", "theta[k] > arm.high[k]", "a joint at its upper limit is not blocked")
-fault("joint_frames", "quaternion_product(q, exponential(scaled(theta[k], axis)))",
-      "quaternion_product(exponential(scaled(theta[k], axis)), q)", "all axes are those of the world")
 fault("jacobian_3d", "minus(row(x, n), row(x, k))", "row(x, n)", "all joints turn the end about the base")
 fault("rotation_error", "if d[0] < 0.0:", "if d[0] < -0.999:", "it turns the long way round")
 fault("reach_3d", "jacobian_3d(x, a)[:3]", "jacobian_3d(x, a)[3:]", "the rows of the rotation for those of the place")

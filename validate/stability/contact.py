@@ -1219,6 +1219,14 @@ def laws_of_contact(lesson):
         truth = (y + W @ rows.T @ (new - J)).reshape(2, 2, 3)
         worst.note("in space", swept, (truth[:, 0], truth[:, 1], new))
 
+        # a free body between two substeps: ω − dt I⁻¹ (ω × I ω), with the tensor as a matrix
+        turn, omega, light, dt = np.linalg.qr(rng.normal(size=(3, 3)))[0], *rng.normal(size=(1, 3)), rng.uniform(
+            0.5, 2.0, 3), rng.uniform(0.01, 0.1)
+        turn *= np.linalg.det(turn)
+        I = turn @ np.diag(1.0 / light) @ turn.T
+        worst.note("turns", lesson.turn_freely(turn[None], omega[None], light[None], dt)[0],
+                   omega - dt * np.linalg.solve(I, np.cross(omega, I @ omega)))
+
         # old contacts of the same bodies and of others, near and far
         near, d = 0.5, 3
         old_b, old_p, J_old = rng.integers(1, 4, 6), rng.uniform(0.0, 1.0, (6, d)), rng.normal(size=(6, d))
@@ -1252,9 +1260,27 @@ def laws_of_contact(lesson):
          "state after a quick sweep [m/s, rad/s, N s]"),
         ("in space", "In space a sweep limits friction by the disc of the new J_n.",
          "state after a sweep in space [m/s, rad/s, N s]"),
+        ("turns", "A free body of a pile obeys Euler's equation.", "angular velocity [rad/s]"),
         ("judge of cones", "The residual finds too much friction, and too little.", "residual with friction [m/s]"),
         ("kept", "A contact takes over the impulse of the nearest old one between the same two bodies.",
          "impulses that are kept [N s]"),
         ("spring", "A soft contact is an implicit Euler step of a damped spring.", "impulse of a soft contact [m/s]"))
     return [agreement(claim, f"largest error of the {quantity}", worst[name], 1e-9)
-            for name, claim, quantity in names], None
+            for name, claim, quantity in names] + [stops_in_a_substep(lesson)], None
+
+
+def stops_in_a_substep(lesson):
+    """The Finding on a disc and a sphere that reach their floor in the middle of the last of three substeps.
+
+    A contact with a gap lets them close it, which takes half of their velocity; there is no gravity.
+    """
+    found, r, h = [], 0.1, DT / 3.0
+    for d, make, advance, bounds in ((2, lesson.make_pile_2d, lesson.advance_pile_2d, lesson.disc_bounds),
+                                     (3, lesson.make_pile, lesson.advance_pile, lesson.ball_bounds)):
+        up = np.eye(d)[-1]
+        state, pile = make([(r + 2.5 * h) * up], [0.0] if d == 2 else [UPRIGHT], 1.0, 0.01 if d == 2 else [(0.01,) * 3],
+                           [(r,) * d], [(*up, 0.0)], np.zeros(d), 0.3, 3, 30.0, 1.0, 0.1)
+        end = advance(bounds, lesson.round_contacts, state._replace(v=np.stack((-up, 0.0 * up))), DT, 1, pile)
+        found += [*(end.x[0] - r * up), *(end.v[0] + 0.5 * up)]
+    return agreement("What comes with 1 m/s goes down to the floor and not into it: gaps are those of each substep.",
+                     "places and velocities: largest error [m, m/s]", np.max(np.abs(found)), 1e-12)

@@ -815,6 +815,12 @@ def constraints_and_gradients(lesson):
         held, _ = lesson.constraint_projection_step(lesson.network_gravity, t, x, 3.0 * v, 0.01, chain)
         worst.note("exact", np.linalg.norm(held[:-1] - held[1:], axis=1), chain.rest)
 
+        # points that all feel the same move as one, by the mean of both accelerations; RATTLE is given
+        free, one = chain._replace(inv_mass=w), np.tile(v[:1], (4, 1))
+        felt = [np.cos(time) * np.ones((4, 3)) for time in (t, t + dt)]
+        got = lesson.rattle_step(lambda t, x, v, p: np.cos(t) * np.ones(x.shape), t, x, one, dt, free)
+        worst.note("as one", got, (x + dt * one + 0.5 * dt * dt * felt[0], one + 0.5 * dt * (felt[0] + felt[1])))
+
         # one visit to each of two links that share no point and have nothing in common
         rests, stiff, alphas = rng.uniform(0.5, 2.0, size=(3, 2))
         pair = lesson.make_constraint_network(x, 1.0 / w, [], [(0, 1), (2, 3)], alphas, 0.5 * stiff, (0.0, 0.0, -G), 1)
@@ -855,6 +861,11 @@ def constraints_and_gradients(lesson):
         sheet = lesson.Cloth(chain._replace(inv_mass=w), slight, np.array([fold_angle(x) - 1e-6]), share, nowhere)
         left = (fold_angle(lesson.fold_sweep(x, sheet)) - sheet.fold[0]) / 1e-6
         worst.note("bent", left, 1.0 - share)
+        mixed = np.array([2, 0, 3, 1])                          # the same sheet with other numbers of its points
+        renamed = sheet._replace(network=chain._replace(inv_mass=w[np.argsort(mixed)]), hinges=mixed[None])
+        got = lesson.fold_sweep(x[np.argsort(mixed)], renamed)[mixed] - x
+        worst.note("numbers", got / 1e-6, (lesson.fold_sweep(x, sheet) - x) / 1e-6)
+        worst.note("numbers", np.sum(got / w[:, None], axis=0) / 1e-6, 0.0)
         weave = lesson.make_constraint_network(x, 1.0 / w, [], [(0, 1), (1, 2), (2, 3)], 0.0, 1.0, (0.0, 0.0, -G), 2)
         sheet = lesson.Cloth(weave, slight, np.array([fold_angle(x)]), share, nowhere)
         fallen, v = lesson.cloth_step(lesson.network_gravity, 0.0, x, 0.0 * x + p, 0.01, sheet)
@@ -884,6 +895,10 @@ def constraints_and_gradients(lesson):
          "predicted place [m]", 1e-12),
         ("outside", "Points inside a ball go to its surface; one that cannot move stays.", "place [m]", 1e-12),
         ("exact", "After a step of the projection method every link has its length.", "length [m]", 1e-12),
+        ("as one", "A network that feels the same everywhere moves as one, by the accelerations of both times.",
+         "state [m, m/s]", 1e-9),
+        ("numbers", "A visit to a fold keeps the centre of mass, however its points are numbered.", "way [-, kg]",
+         1e-6),
         ("visit", "A visit leaves 1 − s of a link's error, and the centre of mass where it is.", "place [m, kg m]",
          1e-12),
         ("spring", "After a visit each link obeys Hooke's law with its own compliance.", "place [m]", 1e-9),
