@@ -85,4 +85,5 @@ fault("compare", "np.maximum(difference, np.max(np.abs(slow - quick)))", "np.max
       "only the difference of the last run counts")
 fault("advance_contact", "t + n * dt, state, dt, p)", "t, state, dt, p)", "all loads are those of the start")
 fault("weight", "p.gravity / p.inv_mass[i]", "p.gravity / p.inv_mass[0]", "all bodies weigh as much as the first")
-fault("mean_contact_step_2d", "0.5 * dt * (v + v_new)", "dt * v_new", "positions with the new velocities alone")
+fault("mean_contact_step_2d", "0.5 * dt * (v + v_new)", "dt * v_new", "positions with the new velocities alone",
+      of="support.simulator")
