@@ -189,7 +189,7 @@ def quaternion_update(q, omega, dt):
     """Return the orientation (4,) after dt at ω, third way:  q + dt q̇  with  q̇ = ½ (0, ω) q,  then unit; first order.
 
     The axis of rotation is exact.  The angle is 2 atan(½|ω| dt) instead of |ω| dt, so it is never more than half a
-    turn.
+    turn.  unit raises BadInput for a quaternion 0, which is no orientation.
     *Source:* first lecture deck, “Use quaternions”; second lecture deck, “Don't forget to normalize q”.
     """
     # YOUR CODE HERE
