@@ -175,15 +175,15 @@ def test_a_finding_has_as_many_digits_as_its_tolerance(x, tolerance, said):
     assert words.known(x, tolerance) == said
 
 
-def race(theirs, ours, reached=True):
+def race(theirs, ours, reached=True, speed="compiled"):
     """A race whose times are (shortest, median, longest) [s]."""
     rows = [{"label": label, "speed": speed, "steps": 10, "error": 0.01, "low": t[0], "seconds": t[1], "high": t[2]}
-            for label, speed, t in (("pymunk", "engine", theirs), ("Verlet", "plain", ours))]
+            for label, speed, t in (("pymunk", "engine", theirs), ("Verlet", speed, ours))]
     curve = {"label": "Verlet", "rows": [{"error": 0.01 if reached else 0.1}]}
     result = {"times": {"rows": rows}, "cases": {"one": {"ours": [curve]}}}
     known = {"ours": ours[1], "ratio": theirs[1] / ours[1]} if ours else {"ours": None, "ratio": None}
     return words.race({"engine": "pymunk", "product": "pymunk", "error": 0.01, "seconds": theirs[1],
-                       "method": "Verlet", "speed": "plain", **known}, result)
+                       "method": "Verlet", "speed": speed, **known}, result)
 
 
 def test_a_race_is_won_only_beyond_a_factor_of_two_and_beyond_the_spread_of_its_times():
@@ -192,6 +192,13 @@ def test_a_race_is_won_only_beyond_a_factor_of_two_and_beyond_the_spread_of_its_
     assert race((0.8, 4.0, 4.1), (0.9, 1.0, 1.1))["outcome"] == "a tie"
     assert race((0.2, 0.2, 0.2), (0.9, 1.0, 1.1))["outcome"] == "slower"
     assert words.ratio(race((2.0, 4.0, 8.0), (1.0, 1.0, 1.0))) == "4× (2.0 to 8.0)"
+
+
+def test_plain_python_alone_can_win_a_race_but_not_lose_it():
+    assert race((3.9, 4.0, 4.1), (0.9, 1.0, 1.1), speed="plain")["outcome"] == "faster"
+    for theirs in (1.8, 0.2):
+        found = race((theirs,) * 3, (0.9, 1.0, 1.1), speed="plain")
+        assert found["outcome"] == "open" and found["ratio"] is None and "plain Python only" in words.ratio(found)
 
 
 def test_a_race_without_a_ratio_says_why_and_is_lost_where_no_run_of_ours_is_that_accurate():

@@ -183,7 +183,8 @@ def races(result):
 def race(advantage, result):
     """A race with the range of its ratio and its outcome: faster, a tie, slower, or open; and why it has no ratio.
 
-    To have no run that is as accurate as the engine's is a loss; to have no time of one leaves the race open.
+    To have no run that is as accurate as the engine's is a loss; to have no time of one leaves the race open.  So does
+    a time in plain Python that does not win, where the same method was not timed compiled.
     """
     a, rows = advantage, result["times"]["rows"]
     if not a["ratio"]:
@@ -198,6 +199,10 @@ def race(advantage, result):
     low = theirs["low"] / (a["ours"] * beside["high"] / beside["seconds"])
     high = theirs["high"] / (a["ours"] * beside["low"] / beside["seconds"])
     tie = 1.0 / TIE < a["ratio"] < TIE or low < 1.0 < high
+    plain_only = not any(r["label"] == a["method"] and r["speed"] == "compiled" for r in rows)
+    if plain_only and (tie or a["ratio"] < 1.0):
+        why = f"“{a['method']}” reaches it in {seconds(a['ours'])}, but was timed in plain Python only"
+        return {**a, "ratio": None, "range": None, "outcome": "open", "why": why}
     outcome = "a tie" if tie else "faster" if a["ratio"] > 1.0 else "slower"
     return {**a, "range": (low, high), "outcome": outcome, "why": ""}
 
@@ -474,7 +479,7 @@ def _times(result):
         engine = named({"label": a["engine"], "product": a["product"]})
         reached = f"{engine} reaches an error of {percent(a['error'])} in {seconds(a['seconds'])}."
         if not one["ratio"]:
-            yield f"{reached} We have no time to set beside it: {one['why']}."
+            yield f"{reached} No time of ours can be set beside it: {one['why']}."
         else:
             ours = f"Our “{a['method']}”, {a['speed']}, reaches it in {seconds(a['ours'])}"
             yield f"{reached} {ours}: {one['outcome']}, {ratio(one)}."
