@@ -265,69 +265,105 @@ class Towers(NamedTuple):
     seconds: float           # [s]
 
 
+class ChipmunkTower(NamedTuple):
+    """A tower of boxes as Chipmunk keeps it, from below; the last body stands for the floor, and never moves.
+
+    Places and velocities are (x, y, θ) of each body: places are linear in the motion, and lever arms stay.
+    """
+    w: list                  # 1/mass of each body [1/kg]
+    turn: list               # 1/moment of inertia [1/(kg m²)]
+    arm: float               # half a size [m]
+    effective: list          # effective mass at the corners of each joint, the same along it [kg]
+    places: list
+    v: list
+    push: list               # the velocities that take overlaps back; each step begins without them
+    J: list                  # impulses of the two corners of each joint, across it [N s]
+    F: list                  # along it
+
+
+def chipmunk_tower(masses, size, overlap):
+    """Make a tower whose boxes overlap one another and the floor."""
+    n, arm = len(masses), 0.5 * size
+    w, turn = [*(1.0 / m for m in masses), 0.0], [*(6.0 / (m * size**2) for m in masses), 0.0]
+    effective = [1.0 / (w[k] + w[k - 1] + arm * arm * (turn[k] + turn[k - 1])) for k in range(n)]
+    places = [[0.0, -overlap * (k + 1), 0.0] for k in range(n)] + [[0.0, 0.0, 0.0]]
+    still = lambda columns, rows: [[0.0] * columns for _ in range(rows)]
+    return ChipmunkTower(w, turn, arm, effective, places, still(3, n + 1), still(3, n + 1), still(2, n), still(2, n))
+
+
+def kick(tower, v, k, x, normal, along):
+    """Change the velocities of the box above joint k and of what is below it by impulses at a corner."""
+    for body, sign in ((k, 1.0), (k - 1, -1.0)):
+        v[body][0] += sign * tower.w[body] * along
+        v[body][1] += sign * tower.w[body] * normal
+        v[body][2] += tower.turn[body] * (sign * x * normal + tower.arm * along)
+
+
+def opening(v, k, x):
+    """How fast, or by how much, joint k opens at a corner."""
+    return v[k][1] + x * v[k][2] - v[k - 1][1] - x * v[k - 1][2]
+
+
+def overlapping_corners(tower, how):
+    """[[joint, corner, its x, velocity that takes its overlap back, impulse for that]], in Chipmunk's order.
+
+    That is from the highest joint to the lowest, the left corner first, but on the floor the right one.  The impulses
+    of the last step are applied; those of a corner that has opened are forgotten.
+    """
+    found, order = [], [(joint, c) for joint in reversed(range(len(tower.J))) for c in ((0, 1) if joint else (1, 0))]
+    for k, c in order:
+        x = (2 * c - 1) * tower.arm
+        gap = opening(tower.places, k, x)
+        if gap > 0.0:
+            tower.J[k][c] = tower.F[k][c] = 0.0
+            continue
+        back = (1.0 - 0.9 ** (60.0 * how.dt)) * -min(0.0, gap + how.slop) / how.dt
+        found.append([k, c, x, back, 0.0])
+        kick(tower, tower.v, k, x, tower.J[k][c], tower.F[k][c])
+    return found
+
+
+def chipmunk_sweep(tower, corners, frictions):
+    """Sweep once through the corners; return the largest change of a velocity [m/s].
+
+    A corner's normal impulse and friction begin from the same velocities.
+    """
+    v, push, J, F, arm, most = tower.v, tower.push, tower.J, tower.F, tower.arm, 0.0
+    for corner in corners:
+        k, c, x, back, pushed = corner
+        m = tower.effective[k]
+        slip = v[k][0] + arm * v[k][2] - v[k - 1][0] + arm * v[k - 1][2]
+        normal = max(0.0, J[k][c] - m * opening(v, k, x))
+        along = min(max(F[k][c] - m * slip, -frictions[k] * normal), frictions[k] * normal)
+        more = max(0.0, pushed + m * (back - opening(push, k, x)))
+        kick(tower, v, k, x, normal - J[k][c], along - F[k][c])
+        kick(tower, push, k, x, more - pushed, 0.0)
+        most = max(most, abs(normal - J[k][c]) / m, abs(along - F[k][c]) / m, abs(more - pushed) / m)
+        J[k][c], F[k][c], corner[4] = normal, along, more
+    return most
+
+
 @cache
 def unrest_in_pymunk(masses, size, g, how):
     """Return the relative error of the forces in the joints of a tower in pymunk, after so many seconds.
 
-    Places are linear in the motion, (x, y, θ) of each box, and lever arms stay.  A step of Chipmunk moves with the old
-    velocities; finds the corners that overlap; adds gravity and the impulses of the last step; and sweeps through the
-    joints from the highest to the lowest, the left corner first, but on the floor the right one.  A corner's normal
-    impulse and friction begin from the same velocities.  A second set of velocities takes 1 − 0.9^(60 dt) of an
-    overlap beyond the slop back, and is then forgotten.  A sweep that changes no velocity by 1e-17 m/s is the last.
+    A step of Chipmunk moves with the old velocities; finds the corners that overlap; adds gravity and the impulses of
+    the last step; and sweeps through the corners.  A second set of velocities takes 1 − 0.9^(60 dt) of an overlap
+    beyond the slop back, and is then forgotten.  A sweep that changes no velocity by 1e-17 m/s is the last.
     *Source:* Munk2D, cpSpaceStep.c and cpArbiter.c.
     """
-    n, dt, mus = len(masses), how.dt, how.frictions
-    w, turn = [1.0 / m for m in masses], [6.0 / (m * size**2) for m in masses]
-    arm = 0.5 * size
-    corners = [(k, c, (c - 0.5) * size) for k in range(n - 1, -1, -1) for c in ((0, 1) if k else (1, 0))]
-    below = [0.0, *w[:-1]], [0.0, *turn[:-1]]
-    weight = [[1.0 / (w[k] + below[0][k] + arm * arm * (turn[k] + below[1][k])) for _ in range(2)] for k in range(n)]
-    places, v, push = ([[0.0, 0.0, 0.0] for _ in range(n + 1)] for _ in range(3))          # the last one is the floor
-    w, turn = [*w, 0.0], [*turn, 0.0]
-    for k in range(n):
-        places[k][1] = -how.overlap * (k + 1)
-    J, F = [[0.0, 0.0] for _ in range(n)], [[0.0, 0.0] for _ in range(n)]
-    back = 1.0 - 0.9 ** (60.0 * dt)
-
-    def kick(v, k, x, normal, along):
-        for body, sign in ((k, 1.0), (k - 1, -1.0)):                      # the box of a joint, and the one below it
-            v[body][0] += sign * w[body] * along
-            v[body][1] += sign * w[body] * normal
-            v[body][2] += turn[body] * (sign * x * normal + arm * along)
-
-    def opening(v, k, x):
-        return v[k][1] + x * v[k][2] - v[k - 1][1] - x * v[k - 1][2]
-
+    tower, n, dt = chipmunk_tower(masses, size, how.overlap), len(masses), how.dt
     for _ in range(round(how.seconds / dt)):
         for k in range(n):
-            places[k] = [place + dt * (a + b) for place, a, b in zip(places[k], v[k], push[k])]
-            push[k] = [0.0, 0.0, 0.0]
-            v[k][1] -= g * dt
-        touching, aims, pushed = [], {}, {}
-        for k, c, x in corners:
-            gap = opening(places, k, x)
-            if gap > 0.0:
-                J[k][c] = F[k][c] = 0.0
-                continue
-            touching.append((k, c, x))
-            aims[k, c], pushed[k, c] = -back * min(0.0, gap + how.slop) / dt, 0.0
-            kick(v, k, x, J[k][c], F[k][c])
+            tower.places[k] = [place + dt * (a + b) for place, a, b in zip(tower.places[k], tower.v[k], tower.push[k])]
+            tower.push[k] = [0.0, 0.0, 0.0]
+            tower.v[k][1] -= g * dt
+        corners = overlapping_corners(tower, how)
         for _ in range(how.iterations):
-            most = 0.0
-            for k, c, x in touching:
-                by = weight[k][c]                                         # the same across: both arms are half a size
-                slip = v[k][0] + arm * v[k][2] - v[k - 1][0] + arm * v[k - 1][2]
-                normal = max(0.0, J[k][c] - by * opening(v, k, x))
-                along = min(max(F[k][c] - by * slip, -mus[k] * normal), mus[k] * normal)
-                more = max(0.0, pushed[k, c] + by * (aims[k, c] - opening(push, k, x)))
-                kick(v, k, x, normal - J[k][c], along - F[k][c])
-                kick(push, k, x, more - pushed[k, c], 0.0)
-                most = max(most, abs(normal - J[k][c]) / by, abs(along - F[k][c]) / by, abs(more - pushed[k, c]) / by)
-                J[k][c], F[k][c], pushed[k, c] = normal, along, more
-            if most < 1e-17:
+            if chipmunk_sweep(tower, corners, how.frictions) < 1e-17:
                 break
     truth = g * np.cumsum(np.array(masses)[::-1])[::-1]
-    return float(np.linalg.norm(np.sum(J, axis=1) / dt - truth) / np.linalg.norm(truth))
+    return float(np.linalg.norm(np.sum(tower.J, axis=1) / dt - truth) / np.linalg.norm(truth))
 
 
 def rounded_overlap(masses, size, g, share, dt):
