@@ -885,6 +885,71 @@ def exact_touches(lesson):
     }
 
 
+def nearest_places(lesson, rng, worst):
+    """Note how far the points of contact of one random pair of each kind are from the nearest points."""
+    x, y, normal = rng.normal(size=(3, 3))
+    r_a, r_b, d = rng.uniform((0.1, 0.1, -1.0), (0.5, 0.5, 1.0))
+    n = (x - y) / np.linalg.norm(x - y)
+    c = lesson.ball_contact(x, r_a, y, r_b)
+    worst.note("points", (c.p_a, c.p_b, c.n), (x - r_a * n, y + r_b * n, n))
+    ends = rng.normal(size=(4, 3))
+    for one in (x[None], ends[2:]):
+        p, q = hull_nearest(one, ends[:2])
+        n = (p - q) / np.linalg.norm(p - q)
+        c = lesson.ball_capsule(x, r_a, *ends[:2], r_b) if len(one) == 1 else lesson.capsule_capsule(
+            *one, r_a, *ends[:2], r_b)
+        worst.note("points", (c.p_a, c.p_b, c.n), (p - r_a * n, q + r_b * n, n))
+    a, b = rng.normal(size=(5, 3)), rng.normal((8.0, 0.0, 0.0), 1.0, (6, 3))
+    c = lesson.gjk(a, b)
+    worst.note("hulls", (c.p_a, c.p_b), hull_nearest(a, b))
+    n, height = normal / np.linalg.norm(normal), (normal @ x + d) / np.linalg.norm(normal)
+    c = lesson.ball_plane(x, r_a, lesson.make_plane((*normal, d)))
+    worst.note("points", (c.p_a, c.p_b, np.array([c.gap])), (x - r_a * n, x - height * n, np.array([height - r_a])))
+
+
+def known_impacts(lesson, rng, worst):
+    """Note how far the impacts of one ball on a plane and on a cylinder are from where and when it was aimed at."""
+    x, normal, w = rng.normal(size=(3, 3))
+    r, R, share = rng.uniform(0.1, 0.5, 3)
+    t, dt, d = rng.uniform((0.0, 0.1, -1.0), (3.0, 1.0, 1.0))
+    moment = np.array([t + share * dt])
+
+    plane, n = lesson.make_plane((*normal, d)), normal / np.linalg.norm(normal)
+    hit, way = x - ((normal @ x + d) / np.linalg.norm(normal) - r) * n, w - (w @ n + 1.0) * n    # towards the plane
+    x_0, x_1 = hit - share * way, hit + (1.0 - share) * way
+    worst.note("times", lesson.plane_impact_time(t, dt, x_0, x_1, r, plane), moment)
+    end = lesson.continuous_step(lesson.ball_plane_gap, lesson.ball_plane_time, t, x_0, way / dt, dt,
+                                 lesson.Target(r, R, plane))
+    worst.note("times", end, (hit, 0.0 * hit))
+
+    turn = 2.0 * np.pi * share
+    out = np.array([0.0, np.cos(turn), np.sin(turn)])
+    hit, way = np.array([x[0], 0.0, 0.0]) + (r + R) * out, w - (w @ out + 1.0) * out
+    x_0, x_1 = hit - share * way, hit + (1.0 - share) * way
+    worst.note("times", lesson.cylinder_impact_time(t, dt, x_0, x_1, r, R), moment)
+    c = lesson.cylinder_hit(t, dt, x_0, x_1, r, R)
+    worst.note("times", (c.p_a, c.p_b, c.n, np.array([c.gap, c.t])),
+               (hit - r * out, hit - r * out, out, np.array([0.0, *moment])))
+
+
+def cut_segment(lesson, rng, worst):
+    """Note how far both parts of a segment, cut at a random place, are from where they should end."""
+    ends, share = rng.normal(size=(2, 3)), rng.uniform(0.1, 0.5)
+    along = ends[1] - ends[0]
+    n, cut = along / np.linalg.norm(along), ends[0] + share * along
+    for sign, part in ((1.0, (ends[0], cut)), (-1.0, (cut, ends[1]))):
+        got = lesson.clip(ends, sign * n, sign * (n @ cut))
+        worst.keep("cut", np.max(np.abs(got - part)) if got.shape == (2, 3) else np.inf)
+
+
+def trees_agree(lesson, rng):
+    """Whether two trees find the pairs of random boxes that brute force finds."""
+    corners = rng.uniform(0.0, 4.0, (30, 2)), rng.uniform(0.0, 4.0, (20, 2))
+    sets = [(low, low + rng.uniform(0.1, 0.5, low.shape)) for low in corners]
+    found = lesson.find_intersections(*(lesson.build_tree(*boxes) for boxes in sets))
+    return sorted(map(tuple, found.tolist())) == touching(*sets[0], *sets[1])
+
+
 @case("points-and-times", "Where bodies touch, and when", compiled=False)
 def points_and_times(lesson):
     """Points of contact lie on both bodies, at the nearest places; an impact is at its share of any step.
@@ -894,54 +959,9 @@ def points_and_times(lesson):
     """
     rng, worst, wrong = np.random.default_rng(69), Worst(), 0
     for _ in range(50):
-        x, y, normal, w = rng.normal(size=(4, 3))
-        r_a, r_b, R, share = rng.uniform(0.1, 0.5, 4)
-        t, dt, d = rng.uniform((0.0, 0.1, -1.0), (3.0, 1.0, 1.0))
-        n = (x - y) / np.linalg.norm(x - y)
-        c = lesson.ball_contact(x, r_a, y, r_b)
-        worst.note("points", (c.p_a, c.p_b, c.n), (x - r_a * n, y + r_b * n, n))
-        ends = rng.normal(size=(4, 3))
-        for one in (x[None], ends[2:]):
-            p, q = hull_nearest(one, ends[:2])
-            n = (p - q) / np.linalg.norm(p - q)
-            c = lesson.ball_capsule(x, r_a, *ends[:2], r_b) if len(one) == 1 else lesson.capsule_capsule(
-                *one, r_a, *ends[:2], r_b)
-            worst.note("points", (c.p_a, c.p_b, c.n), (p - r_a * n, q + r_b * n, n))
-        a, b = rng.normal(size=(5, 3)), rng.normal((8.0, 0.0, 0.0), 1.0, (6, 3))
-        c = lesson.gjk(a, b)
-        worst.note("hulls", (c.p_a, c.p_b), hull_nearest(a, b))
-
-        plane, n = lesson.make_plane((*normal, d)), normal / np.linalg.norm(normal)
-        height = (normal @ x + d) / np.linalg.norm(normal)
-        c = lesson.ball_plane(x, r_a, plane)
-        worst.note("points", (c.p_a, c.p_b, np.array([c.gap])), (x - r_a * n, x - height * n, np.array([height - r_a])))
-
-        hit, moment = x - (height - r_a) * n, np.array([t + share * dt])
-        way = w - (w @ n + 1.0) * n                              # towards the plane
-        x_0, x_1 = hit - share * way, hit + (1.0 - share) * way
-        worst.note("times", lesson.plane_impact_time(t, dt, x_0, x_1, r_a, plane), moment)
-        end = lesson.continuous_step(lesson.ball_plane_gap, lesson.ball_plane_time, t, x_0, way / dt, dt,
-                                     lesson.Target(r_a, R, plane))
-        worst.note("times", end, (hit, 0.0 * hit))
-        turn = 2.0 * np.pi * share
-        out = np.array([0.0, np.cos(turn), np.sin(turn)])
-        hit, way = np.array([x[0], 0.0, 0.0]) + (r_a + R) * out, w - (w @ out + 1.0) * out
-        x_0, x_1 = hit - share * way, hit + (1.0 - share) * way
-        worst.note("times", lesson.cylinder_impact_time(t, dt, x_0, x_1, r_a, R), moment)
-        c = lesson.cylinder_hit(t, dt, x_0, x_1, r_a, R)
-        worst.note("times", (c.p_a, c.p_b, c.n, np.array([c.gap, c.t])),
-                   (hit - r_a * out, hit - r_a * out, out, np.array([0.0, *moment])))
-
-        along = ends[1] - ends[0]
-        n, cut = along / np.linalg.norm(along), ends[0] + share * along
-        for sign, part in ((1.0, (ends[0], cut)), (-1.0, (cut, ends[1]))):
-            got = lesson.clip(ends[:2], sign * n, sign * (n @ cut))
-            worst.keep("cut", np.max(np.abs(got - part)) if got.shape == (2, 3) else np.inf)
-
-        corners = rng.uniform(0.0, 4.0, (30, 2)), rng.uniform(0.0, 4.0, (20, 2))
-        sets = [(low, low + rng.uniform(0.1, 0.5, low.shape)) for low in corners]
-        found = lesson.find_intersections(*(lesson.build_tree(*boxes) for boxes in sets))
-        wrong += sorted(map(tuple, found.tolist())) != touching(*sets[0], *sets[1])
+        for check in (nearest_places, known_impacts, cut_segment):
+            check(lesson, rng, worst)
+        wrong += not trees_agree(lesson, rng)
     claims = (("points", "Points of contact are the nearest points, moved out by the radii.", "points [m]", 1e-9),
               ("hulls", "Two hulls are nearest where least squares says.", "nearest points [m]", 1e-6),
               ("times", "An impact is at its share of the step, whenever the step begins.", "times [s] and places [m]",
