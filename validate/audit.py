@@ -175,6 +175,12 @@ def of_times(result, counts):
         full, lean = (median(repeats) for repeats in left_out["repeats"])
         if differs(left_out["ratio"], full / lean) or left_out["same"] != (distance(*left_out["observed"]) < SAME):
             yield "what the whole loop costs does not follow from its repeats"
+    for row in times.get("engine_parts") or ():
+        full, lean = (median(repeats) for repeats in row["repeats"])
+        before, after = row["observed"]
+        change = None if before is None or after is None else distance(after, before)
+        if differs(row["cost"], full / lean) or differs(row["change"], change):
+            yield f"what {row['part']!r} costs in {row['engine']} does not follow from its repeats"
 
 
 def least_time(points, target):

@@ -7,9 +7,11 @@ import numpy as np
 from ..reference.orientation import quaternion
 from ..scene import Departure
 from . import quiet_import
+from .switches import made
 
 _idle = []                   # connected clients that are free for another run
-IMPACT_ITERATIONS = 50       # of the contact solver
+ITERATIONS = 50              # of the contact solver, by default
+IMPACT_ITERATIONS = 50
 CONTACT_ERP = 0.08           # share of an overlap that a contact takes back in a step [-]
 WARM = 0.1                   # share of the last impulses with which the contact solver begins, by default [-]
 UPRIGHT = np.eye(3)          # rotation of a body that is not rotated
@@ -35,6 +37,7 @@ class Bullet:
         pybullet = quiet_import("pybullet")
         self.client = _idle.pop() if _idle else pybullet.connect(pybullet.DIRECT)
         self.pb = Client(pybullet, self.client)
+        made(self)
         self.pb.setGravity(*map(float, gravity))
         self.pb.setTimeStep(dt)
         # the residual threshold stops the solver at an absolute velocity, which ruins small steps; the breaking
@@ -64,7 +67,8 @@ class Bullet:
         self.pb.stepSimulation()
 
     def close(self):
-        """Empty the world and keep its client for the next run, because connecting takes 20 ms."""
+        """Empty the world and keep its client, with its own settings, for the next run: connecting takes 20 ms."""
+        self.pb.setPhysicsEngineParameter(numSolverIterations=ITERATIONS, warmStartingFactor=WARM)
         self.pb.resetSimulation()
         _idle.append(self.client)
 
@@ -132,7 +136,7 @@ class Rigid(Bullet):
 
     def close(self):
         """Restore the engine's own settings for the next world."""
-        self.pb.setPhysicsEngineParameter(numSolverIterations=50, erp=0.2, contactSlop=1e-5, warmStartingFactor=WARM)
+        self.pb.setPhysicsEngineParameter(erp=0.2, contactSlop=1e-5)
         super().close()
 
 
@@ -183,7 +187,7 @@ class Impacts(Bullet):
     def close(self):
         """Restore the engine's own settings for the next world."""
         self.pb.setPhysicsEngineParameter(
-            numSolverIterations=50, contactERP=CONTACT_ERP, contactSlop=1e-5, restitutionVelocityThreshold=0.2
+            contactERP=CONTACT_ERP, contactSlop=1e-5, restitutionVelocityThreshold=0.2
         )
         super().close()
 

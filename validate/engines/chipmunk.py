@@ -1,11 +1,13 @@
 """pymunk, which wraps Chipmunk2D: the 2D engine."""
 from validate.scene import EngineRun
 
+from .switches import made
+
 
 def pymunk_space(gravity=(0.0, 0.0)):
     """Make a pymunk.Space without damping, its units metres."""
     import pymunk
-    space = pymunk.Space()
+    space = made(pymunk.Space())
     space.gravity = tuple(map(float, gravity))
     space.collision_slop = 1e-5                      # the default, 0.1, is a length in pixels
     return space

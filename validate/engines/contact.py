@@ -10,6 +10,7 @@ from solutions.support.scenes import make_pile, make_pile_2d
 from . import quiet_import
 from .bullet import WARM, Rigid
 from .chipmunk import pymunk_floor, pymunk_space
+from .switches import made
 
 G, DT, MU = 9.81, 1.0 / 240.0, 0.5
 
@@ -87,7 +88,7 @@ class PymunkPile:
 
     def __init__(self, kind, state, pile, iterations, slop=1e-3):
         import pymunk
-        self.space, self.bodies = pymunk.Space(), []
+        self.space, self.bodies = made(pymunk.Space()), []
         self.space.gravity, self.space.iterations, self.space.collision_slop = (0.0, -G), iterations, slop
         wall = pile.planes[1, 2]
         for p, q in (((-wall - 1.0, -1.0), (wall + 1.0, -1.0)), ((-wall - 1.0, -1.0), (-wall - 1.0, 60.0)),

@@ -17,6 +17,7 @@ from ..results import Verdict, jsonable
 from . import timing
 from .accuracy import relative
 from .selection import select, with_overrides
+from .switches import engine_parts
 from .timing import SAME, Timed, interleaved, time_ours
 
 NEAR = 1e-9                  # gap up to which the loop finds contacts [m]
@@ -258,5 +259,10 @@ def left_out(name, plan, result):
 
 @with_overrides
 def times(name, plan, result):
-    """Everything about a scene that a clock says: its run times, and what it gains by what it leaves out."""
-    return {**timing.times(name, plan, result), "left_out": jsonable(left_out(name, plan, result))}
+    """Everything about a scene that a clock says: its run times, what it gains by what it leaves out, and what each
+    part of an engine costs.
+    """
+    selection = select(name, plan)
+    parts = [] if plan.quick or plan.most_steps else engine_parts(selection, selection.first[1])
+    return {**timing.times(name, plan, result), "left_out": jsonable(left_out(name, plan, result)),
+            "engine_parts": parts}

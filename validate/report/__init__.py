@@ -47,9 +47,9 @@ def files(results, stability):
 LEAST, MOST = 0.1, 3000.0    # range of ratios that the front page has room for [-]
 
 
-def place(ratio):
-    """Where a ratio stands on the front page's scale, which is logarithmic [%]."""
-    share = log(min(max(ratio, LEAST), MOST) / LEAST) / log(MOST / LEAST)
+def place(ratio, least=LEAST, most=MOST):
+    """Where a ratio stands on a scale, which is logarithmic and by default the front page's [%]."""
+    share = log(min(max(ratio, least), most) / least) / log(most / least)
     return round(100.0 * share, 2)
 
 
@@ -96,7 +96,7 @@ def texts(results, stability, about):
         found["coverage.html"] = page(
             "coverage.html", coverage=coverage, scenes={r["scene"]: r["title"] for r in results},
             cases={f"{c['lesson']}/{c['slug']}": c["title"] for c in stability})
-    found["left_out.html"] = page("left_out.html", rows=words.left_out(results))
+    found["left_out.html"] = page("left_out.html", rows=words.left_out(results), parts=words.engine_parts(results))
     if stability:
         found["stability.html"] = page("stability.html", cases=stability)
     products = words.products(results)

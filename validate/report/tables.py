@@ -13,6 +13,7 @@ TIMES = ("method or engine", "speed", "steps", "relative error [-]", "median tim
 SCENES = ("scene", "lesson", "side", "verdict", "comparisons")
 RACES = ("scene", "lesson", "engine", "relative error [-]", "engine's time [s]", "our method", "our time [s]",
          "ratio [-]", "lowest ratio [-]", "highest ratio [-]", "outcome")
+PARTS = ("scene", "engine", "part", "steps", "time with it over time without it [-]", "relative change without it [-]")
 DEPARTURES = ("engine", "verdict", "smallest departure [-]", "largest departure [-]", "reason", "scenes")
 FINDINGS = ("lesson", "case", "claim", "quantity", "predicted", "measured", "tolerance", "holds", "observation")
 
@@ -34,7 +35,8 @@ def address(header, rows):
 def names(results, stability):
     """The files that `texts` gives."""
     drawn = [case for case in stability if case["picture"]]
-    front = {"scenes.csv": True, "races.csv": faster(results)["races"], "departures.csv": departures(results)["lines"]}
+    front = {"scenes.csv": True, "races.csv": faster(results)["races"], "departures.csv": departures(results)["lines"],
+             "engine-parts.csv": words.engine_parts(results)}
     return {*(name for name, rows in front.items() if rows), *(f"{r['scene']}-runs.csv" for r in results),
             *(f"{r['scene']}-times.csv" for r in results if r["refinement"]), *(["stability.csv"] if stability else []),
             *(f"stability-{case['lesson']}-{case['slug']}.csv" for case in drawn)}
@@ -57,6 +59,10 @@ def texts(results, stability):
     if lines:
         found["departures.csv"] = text(DEPARTURES, [
             (d["engine"], d["kind"], d["low"], d["high"], d["reason"], " ".join(d["places"])) for d in lines])
+    if words.engine_parts(results):
+        found["engine-parts.csv"] = text(PARTS, [
+            (r["scene"], row["engine"], row["part"], row["steps"], row["cost"], row["change"])
+            for r in results for row in r["times"].get("engine_parts") or ()])
     for r in results:
         found[f"{r['scene']}-runs.csv"] = text(RUNS, runs(r))
         if r["refinement"]:

@@ -9,6 +9,7 @@ import numpy as np
 from markupsafe import Markup, escape
 
 from ..measure.accuracy import relative
+from ..measure.timing import SAME
 from ..results import Verdict, is_right
 from ..scene import EXACT, OPTIONAL, PRODUCTS
 
@@ -266,6 +267,25 @@ def left_out(results):
     return [{"scene": r["scene"], "title": r["title"], "lesson": r["lesson"], "uses": r["uses"],
              **(r["times"].get("left_out") or {"ratio": None, "note": "not measured"})}
             for r in results if r["lesson"] not in ("simulator", "kinematics")]
+
+
+def engine_parts(results):
+    """The parts of engines that were switched off in turn: [{scene, title, lesson, found: {part: its rows}}]."""
+    rows = []
+    for r in results:
+        found = {}
+        for row in r["times"].get("engine_parts") or ():
+            found.setdefault(row["part"], []).append({**row, "says": change_without(row)})
+        if found:
+            rows.append({"scene": r["scene"], "title": r["title"], "lesson": r["lesson"], "found": found})
+    return rows
+
+
+def change_without(row):
+    """What becomes of a motion without a part of the engine, in a word or two."""
+    if row["change"] is None:
+        return "lost"
+    return "same" if row["change"] < SAME else f"changes by {percent(row['change'])}"
 
 
 def best_order(curves):

@@ -1,0 +1,66 @@
+"""The engines' own switches: each acts on its part, changes what it must, and leaves nothing behind."""
+
+import json
+
+import pytest
+
+from validate import audit, engines
+from validate.engines.switches import SWITCHES, worlds_made
+from validate.measure import switches
+from validate.measure.selection import Plan, select
+from validate.report import words
+from validate.scene import PYBULLET, PYMUNK
+
+PLAN = Plan(quick=False, speeds=("plain",))
+
+
+def parts(name, **changes):
+    """{(product, part): its row} of a scene."""
+    selection = select(name, PLAN._replace(**changes))
+    return {(row["product"], row["part"]): row for row in switches.engine_parts(selection, selection.first[1])}
+
+
+def test_a_particle_has_no_part_to_leave_out():
+    assert parts("throw") == {}
+
+
+def test_without_collisions_or_friction_a_rolling_ball_moves_otherwise():
+    found = parts("slide_then_roll")
+    product = next(iter(found))[0]
+    assert found[product, "collision detection"]["change"] > 0.01
+    assert found[product, "friction"]["change"] > 0.01
+    assert words.change_without(found[product, "friction"]).startswith("changes by")
+
+
+def test_joints_are_swept_even_where_nothing_collides():
+    found = parts("rope", live=(PYMUNK,))
+    assert (PYMUNK, "all sweeps but one") in found and (PYMUNK, "friction") not in found
+    assert found[PYMUNK, "all sweeps but one"]["cost"] > 1.2
+
+
+@pytest.mark.skipif(not engines.installed(PYBULLET), reason="pybullet is not installed here")
+def test_pybullet_forgets_a_switch_when_its_world_is_closed():
+    selection = select("slide_then_roll", PLAN)
+    engine = next(e for e in selection.engines_for(selection.first[1]) if e.product == PYBULLET)
+    settings = []
+    for _ in range(2):
+        with worlds_made() as worlds:
+            run = engine.make(selection.first[1], 0.01)
+        bullet, = worlds
+        known = bullet.pb.getPhysicsEngineParameters()
+        settings.append({key: known[key] for key in ("numSolverIterations", "warmStartingFactor") if key in known})
+        for switch in SWITCHES:
+            if switch.product == PYBULLET:
+                assert switch.off(bullet), switch.part
+        run.close()
+    assert settings[0] == settings[1] and settings[0]["numSolverIterations"] > 1
+
+
+def test_the_audit_derives_the_cost_and_the_change_of_a_part_again():
+    rows = json.loads(json.dumps(list(parts("slide_then_roll", live=(PYMUNK, PYBULLET)).values())))
+    times = {"rows": [], "time_to_error": {}, "advantage": [], "ablations": [], "engine_parts": rows}
+    result = {"cases": {"only": {"ours": [], "engines": []}}, "times": times}
+    assert list(audit.of_times(result, {"times": 0})) == []
+    rows[0]["cost"] *= 1.1
+    rows[1]["change"] = 0.5
+    assert len(list(audit.of_times(result, {"times": 0}))) == 2
