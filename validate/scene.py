@@ -96,7 +96,7 @@ class Scene:
     slow_methods: tuple = ()                 # functions of methods that only --full runs
     slow_cases: tuple = ()                   # names of cases that only --full runs
     slow_runs: dict = field(default_factory=dict)        # {case: functions of methods that only --full runs in it}
-    uncompiled_in_quick: tuple = ()  # functions of methods that plain Python finishes before numba compiles them
+    compiled_in_quick: tuple = ()            # functions of methods that take longer in plain Python than numba does
     shorter_in_quick: dict = field(default_factory=dict)     # {method's function: its most steps in a quick validation}
     finer_in_full: dict = field(default_factory=dict)        # {method's function: its further numbers of steps there}
     moves: bool = True                       # False: nothing moves; no start is compared with the truth

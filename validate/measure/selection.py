@@ -136,9 +136,9 @@ def slow_runs(scene, plan):
 
 
 def speeds_of(scene, plan, method: Method):
-    """The speeds at which a method runs: plain only where plain Python finishes before numba has compiled."""
-    soon = not scene.refined or method.function in scene.uncompiled_in_quick
-    return ("plain",) if plan.quick and soon and "plain" in plan.speeds else plan.speeds
+    """The speeds at which a method runs: a quick run compiles only what the scene names."""
+    plain_only = plan.quick and not (scene.refined and method.function in scene.compiled_in_quick)
+    return ("plain",) if plain_only and "plain" in plan.speeds else plan.speeds
 
 
 def sweep(scene, plan):
@@ -171,7 +171,7 @@ def notes_of(scene, plan, methods):
         return omitted
     slow = [m.label for m in scene.methods if m not in methods]
     plain = [m.label for m in methods if speeds_of(scene, plan, m) != plan.speeds]
-    finest = "the engines' finest step, where the one before it is fine enough to judge them by"
+    finest = "the engines' finest steps, where four before them can be judged"
     short = [m.label for m in methods if m.function in scene.shorter_in_quick]
     several = len(scene.cases) > 1 and scene.moves and scene.engines
     left = (
@@ -182,7 +182,7 @@ def notes_of(scene, plan, methods):
         (len(scene.steps) > 1 and scene.engines, f": {finest}"),
         (short, f": the finest steps of {', '.join(short)}"),
         (plain, f": the same, compiled: {', '.join(plain)}"),
-        (scene.refined, ": run times of steps coarser than the scene's own sweep"),
+        (scene.refined, ": run times of every second step, and of steps coarser than the scene's own sweep"),
     )
     return omitted + tuple(f"Left to --full{what}" for present, what in left if present)
 

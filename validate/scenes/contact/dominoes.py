@@ -233,7 +233,6 @@ SCENE = Scene(
     engines=ENGINES,
     orders={"advance_pile_2d": ABOUT_1},
     slow_cases=("fifteen", "six, smoother"),
-    uncompiled_in_quick=("advance_pile_2d",),
     omitted_methods="sweeps and Murty's method alone are missing: they find forces and move no bodies",
     sanity_checks=sanity_checks,
     points=points, links=links,

@@ -205,7 +205,6 @@ SCENE = Scene(
         )
     },
     # Plain Python finishes before numba has compiled it.
-    uncompiled_in_quick=("mesh_body", "point_mass_inertia"),
     moves=False,
     refinement="fineness 1/n [-]: n triangles per quarter of the equator, n points per diameter",
     points=points,

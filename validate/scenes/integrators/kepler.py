@@ -5,7 +5,7 @@
 from solutions.integrators import advance
 from solutions.support.orbits import attraction as acceleration
 from validate.engines.integrators import KEPLER_ENGINES, planet, planet_in_space, sun_and_planet
-from validate.methods import BLANES_MOAN, INTEGRATORS, LEFT_TO_FULL
+from validate.methods import BLANES_MOAN, EXPLICIT, INTEGRATORS, LEFT_TO_FULL
 from validate.reference.integrators import Planet, kepler_errors, kepler_limits, kepler_position
 from validate.scene import LATE_LEAPFROG, Scene
 
@@ -43,7 +43,7 @@ SCENE = Scene(
     truth_uncertainty=1e-12, tolerance=tolerance, predicted_error=kepler_errors(T),
     engines=KEPLER_ENGINES,
     orders={"symplectic_euler_step": LATE_LEAPFROG},  # see late_start
-    slow_methods=LEFT_TO_FULL,
+    slow_methods=LEFT_TO_FULL, compiled_in_quick=EXPLICIT,
     published_states=(
         (100.0, (-0.104183204, -0.694741716), 1e-9),
     # its velocity is then (1.236177763, 0.564623251) m/s

@@ -3,7 +3,7 @@
 from solutions.integrators import advance, advance_adaptive, blanes_moan_step
 from solutions.support.orbits import attraction as acceleration
 from validate.engines.integrators import KEPLER_ENGINES, planet, planet_in_space, sun_and_planet
-from validate.methods import ADAPTIVE, BLANES_MOAN, INTEGRATORS, LEFT_TO_FULL
+from validate.methods import ADAPTIVE, BLANES_MOAN, EXPLICIT, INTEGRATORS, LEFT_TO_FULL
 from validate.reference.integrators import (
     Planet,
     adaptive_limit,
@@ -62,7 +62,7 @@ SCENE = Scene(
     predicted_error=kepler_errors(T),
     engines=KEPLER_ENGINES,
     orders={"symplectic_euler_step": LATE_LEAPFROG},          # see late_start
-    slow_methods=LEFT_TO_FULL,
+    slow_methods=LEFT_TO_FULL, compiled_in_quick=EXPLICIT,
     published_states=((20.0, (-1.295266251, 0.400393896), 1e-9),),
     points=sun_and_planet,
     film_seconds=12.6,          # two revolutions [s]

@@ -185,7 +185,6 @@ SCENE = Scene(
     predicted_error=predict_by_tables(T, law, thrown, seen, truth, floor, MODELS, DEPARTURES),
     slow_methods=LEFT_TO_FULL,
     # Plain Python finishes before numba has compiled it.
-    uncompiled_in_quick=("symplectic_euler_step", "verlet_step"),
     published_states=((1.97599434, (2.18789655, 0.0), 4e-8),),
     points=points,
     uses=("one point in the plane", "one step function"),

@@ -173,7 +173,6 @@ SCENE = Scene(
     predicted_error=predict_by_tables(T, law, at_rest, seen, truth, floor, MODELS, DEPARTURES),
     slow_methods=LEFT_TO_FULL,
     # Plain Python finishes before numba has compiled it.
-    uncompiled_in_quick=("symplectic_euler_step", "verlet_step"),
     # the depth; the speed is then 9.852684396 m/s
     published_states=((3.0, (22.80837567,), 5e-9),),
     points=points,

@@ -151,7 +151,6 @@ SCENE = Scene(
     # irrelevant to this scene, and half of its compile time
     ),
     # Plain Python finishes before numba has compiled it.
-    uncompiled_in_quick=tuple(m.function for m in INTEGRATORS if m.order < 4),
     # by hand, exactly: only round-off may differ
     published_states=((10.0, (-20.0, 20.0, -410.5), 1e-12),),
     points=points,

@@ -159,6 +159,7 @@ SCENE = Scene(
     truth=truth, truth_uncertainty=UNCERTAINTY,
     tolerance=tolerance,
     engines=ENGINES,
+    compiled_in_quick=("xpbd_step",),
     omitted_methods=("PBD has no stiffness of its own to compare (stability case stiffness-depends-on-dt); the methods "
                      "that solve for all links at once would have a dense matrix, with 2,682 unknowns"),
     sanity_checks=sanity_checks,

@@ -217,7 +217,7 @@ SCENE = Scene(
                      "sparse one, and pymunk more iterations"),
     # The reference solution alone takes seconds.
     slow_cases=("50 links",),
-    uncompiled_in_quick=("rattle_step",),
+    compiled_in_quick=("constraint_projection_step", "pbd_step", "xpbd_step", "rope_step", "composed_rope_step"),
     shorter_in_quick={"rattle_step": 600},
     sanity_checks=sanity_checks,
     points=points, links=links,

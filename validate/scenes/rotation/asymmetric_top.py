@@ -18,9 +18,10 @@ from validate.scene import Scene
 
 T = 10.0                     # [s]: it flips at 6.06 s, and is about to start the next flip
 STEPS = (500, 1000, 2000, 5000, 10000, 20000, 50000)
-IN_QUICK = {                 # {function that runs uncompiled in a quick validation: its most steps there}
-    "matrix_step": 10000, "axis_angle_step": 10000, "implicit_gyroscopic_step": 5000, "runge_kutta_step": 2000,
-    "midpoint_step": 2000,
+IN_QUICK = {                 # {function: its most steps in a quick validation}
+    "matrix_step": 5000, "axis_angle_step": 5000, "quaternion_step": 5000, "gyroscopic_step": 5000,
+    "implicit_gyroscopic_step": 2000, "runge_kutta_step": 2000, "midpoint_step": 2000, "splitting_step": 5000,
+    "composed_splitting_step": 2000,
 }
 
 
@@ -106,7 +107,6 @@ SCENE = Scene(
     truth_uncertainty=1e-11, tolerance=tolerance, predicted_error=free_turns(T, truth, 1e-11),
     engines=ENGINES,
     slow_methods=("composed_midpoint_step",),
-    uncompiled_in_quick=tuple(IN_QUICK),
     shorter_in_quick=IN_QUICK,
     sanity_checks=sanity_checks,
     bodies=bodies, arrows=arrows,

@@ -142,8 +142,10 @@ SCENE = Scene(
         "midpoint_step",
         "composed_midpoint_step",
     ),  # the asymmetric top has them
-    uncompiled_in_quick=("runge_kutta_step",),
-    shorter_in_quick={"runge_kutta_step": 2000},
+    shorter_in_quick={
+        "quaternion_step": 50000, "gyroscopic_step": 50000, "runge_kutta_step": 2000, "splitting_step": 10000,
+        "composed_splitting_step": 5000,
+    },
     sanity_checks=sanity_checks,
     bodies=bodies, arrows=arrows,
 )

@@ -205,7 +205,6 @@ SCENE = Scene(
     tolerance=tolerance,
     predicted_error=predicted_error,
     engines=ENGINES,
-    uncompiled_in_quick=("exact_rolling_step", "rolling_step"),
     shorter_in_quick={"rolling_step": 1500},
     slow_cases=("goes on", "disc"),
     orders={"exact_rolling_step": EXACT, "average_rolling_step": "2 on average"},

@@ -200,7 +200,6 @@ SCENE = Scene(
     orders={"contact_step_2d": UNKNOWN},
     slow_cases=("barely",),
     slow_runs={"too smooth": ("contact_step_2d",)},          # what falls wants short steps, and nothing judges it
-    uncompiled_in_quick=("contact_step_2d",),
     shorter_in_quick={"contact_step_2d": 60},
     omitted_methods="the house was not set up in pybullet",
     sanity_checks=sanity_checks,

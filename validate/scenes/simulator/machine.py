@@ -250,7 +250,6 @@ SCENE = Scene(
     orders={"contact_step_2d": UNKNOWN},
     slow_cases=("overlap",),
     slow_runs={"places": ("contact_step_2d",)},              # it wants shorter steps than that, and nothing judges it
-    uncompiled_in_quick=("contact_step_2d",),
     shorter_in_quick={"contact_step_2d": 120},
     omitted_methods="the machine was not set up in pybullet: its belt and its crank are bodies without mass that carry "
                     "others along, which pybullet has only in reduced coordinates",

@@ -225,7 +225,6 @@ SCENE = Scene(
     predicted_error=predicted_error,
     engines=ENGINES,
     orders={"mean_contact_step_2d": EXACT},
-    uncompiled_in_quick=("contact_step_2d", "mean_contact_step_2d"),
     slow_cases=("45°, light wedge", "10°, heavy wedge"),
     sanity_checks=sanity_checks,
     points=points, links=links,

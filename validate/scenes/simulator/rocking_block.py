@@ -195,7 +195,6 @@ SCENE = Scene(
     tolerance=tolerance,
     engines=ENGINES,
     orders={"contact_step_2d": BY_PHASE},
-    uncompiled_in_quick=("rocking_step",),
     slow_methods=("contact_step_2d",),
     slow_cases=("a quarter of it",),
     sanity_checks=sanity_checks,

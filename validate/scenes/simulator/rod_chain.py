@@ -214,7 +214,6 @@ SCENE = Scene(
     engines=ENGINES,
     slow_cases=("50 rods",),
     slow_methods=("composed_joint_step_2d", "joint_step"),
-    uncompiled_in_quick=("joint_step_2d",),
     sanity_checks=sanity_checks,
     points=points, links=links,
     bodies=bodies, poses=poses,

@@ -217,7 +217,6 @@ SCENE = Scene(
     engines=ENGINES,
     orders={"joint_contact_step_2d": BY_PHASE},
     slow_cases=("two balls", "touching"),
-    uncompiled_in_quick=("joint_contact_step_2d",),
     sanity_checks=sanity_checks,
     points=points, links=links,
     bodies=bodies, poses=poses,

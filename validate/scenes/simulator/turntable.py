@@ -198,7 +198,6 @@ SCENE = Scene(
     tolerance=tolerance,
     predicted_error=predicted_error,
     engines=ENGINES,
-    uncompiled_in_quick=("carried_step",),
     slow_methods=("contact_step",),
     slow_cases=("hollow ball",),
     omitted_methods="pymunk is planar: seen from above, it has no floor under the ball",

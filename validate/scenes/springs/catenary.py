@@ -10,7 +10,7 @@ from solutions.integrators import advance
 from solutions.springs import spring_network_acceleration as acceleration
 from validate.engines.bullet import Bullet
 from validate.engines.springs import in_space, pymunk_net, start_of
-from validate.methods import IMPLICIT_MESH, INTEGRATORS, LEFT_TO_FULL
+from validate.methods import EXPLICIT, IMPLICIT_MESH, INTEGRATORS, LEFT_TO_FULL
 from validate.reference.schemes import table_model
 from validate.reference.springs import (
     ReferenceNetwork,
@@ -179,6 +179,7 @@ SCENE = Scene(
     truth=truth, truth_uncertainty=UNCERTAINTY, tolerance=tolerance,
     predicted_error=net_errors(net, T, truth, UNCERTAINTY, engines=MODELS),
     engines=ENGINES,
+    compiled_in_quick=EXPLICIT,
     slow_methods=(*LEFT_TO_FULL, "implicit_spring_network_step"),
     sanity_checks=sanity_checks,
     points=points, links=links, link_look="spring",
