@@ -185,9 +185,14 @@ def race(advantage, result):
     """A race with the range of its ratio and its outcome: faster, a tie, slower, or open; and why it has no ratio.
 
     To have no run that is as accurate as the engine's is a loss; to have no time of one leaves the race open.  So does
-    a time in plain Python that does not win, where the same method was not timed compiled.
+    a time in plain Python that does not win, where the same method was not timed compiled.  And there is no race to an
+    error that no theory bounds: of runs that scatter, the most accurate one was lucky.
     """
     a, rows = advantage, result["times"]["rows"]
+    theirs = next(c for c in next(iter(result["cases"].values()))["engines"] if c["label"] == a["engine"])
+    if Verdict(theirs["verdict"]) is Verdict.UNDECIDED:
+        why = "no theory bounds its errors, and the smallest may be luck"
+        return {**a, "ratio": None, "range": None, "outcome": "open", "why": why}
     if not a["ratio"]:
         reach = accurate_enough(a, result)
         why = f"{reach[0]} reaches it, in a run that is too long to be timed here" if reach else ""
