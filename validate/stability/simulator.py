@@ -537,3 +537,45 @@ def rolling_by_contact(lesson):
     found.append(agreement("They carry it at rest.", "speed of three discs over g dt [-]",
                            np.max(np.abs(end.v)) / (G * 1e-4), 1e-6))
     return found, None
+
+
+@case("sweeps-until-settled", "When to stop sweeping", compiled=False)
+def sweeps_until_settled(lesson):
+    """Sweeps that end when they change little leave ρ/(1 − ρ) times the last change, with the contraction factor ρ.
+
+    For n discs on top of each other ρ = cos²(π/(2n)): the floor does not move, so the lowest contact has half the
+    inverse mass of the others.  The last change lies between ρ and 1 times the threshold.
+    """
+    n, m, r, dt, ts = 6, 2.0, 0.4, 1e-3, (1, 2, 4, 8, 16, 32)
+    heights, truth = r * (1.0 + 2.0 * np.arange(n)), np.arange(1.0, n + 1.0)
+    state, p = lesson.make_bodies_2d([(0.0, y) for y in heights], np.zeros(n), m, 0.1, np.full((n, 2), r), [UP],
+                                     (0.0, -G), 0.0, 500, 0.01)
+
+    def after(steps, sweeps):
+        return lesson.advance_contact(lesson.settled_contact_step_2d, lesson.weight, lesson.disc_bounds,
+                                      lesson.round_contacts, 0.0, state, dt, steps, p._replace(sweeps=sweeps))
+
+    def wrong(end):
+        return np.max(np.abs(np.sort(np.abs(end.J[:, 1])) / (m * G * dt) - truth)) / n
+
+    rho = np.cos(np.pi / (2 * n)) ** 2
+    bound = lesson.SETTLED * rho / (1.0 - rho)
+    left = {steps: wrong(after(steps, p.sweeps)) for steps in ts}
+    alone, late = [wrong(after(steps, 1)) for steps in ts], after(400, 1)
+    found = [
+        finding(claim="A first step, which knows no impulses, leaves as much as the threshold and the contraction say.",
+                quantity="error of the forces under six discs over SETTLED ρ/(1 − ρ) [-]",
+                predicted=0.5 * (1.0 + rho), measured=left[1] / bound, tolerance=0.5 * (1.0 - rho) + 0.01,
+                observation=f"It leaves {left[1]:.1e} of the largest force."),
+        agreement("Later steps, which know the impulses of the last one, leave less.",
+                  "largest error of the forces after 2 to 32 steps [-]", max(list(left.values())[1:]), bound),
+        agreement("One sweep per step finds the forces, too, in hundreds of steps, because impulses are kept.",
+                  "400 steps of one sweep: error of the forces, or speed of the discs over g dt [-]",
+                  max(wrong(late), np.max(np.abs(late.v)) / (G * dt)), 1e-5),
+    ]
+    percent = lambda errors: 100.0 * np.array(errors)
+    return found, Picture("Forces under six discs", "step", "error of the forces over the largest [%]", [
+        series("sweeps until settled", ts, percent(list(left.values())), DOTS),
+        series("one sweep per step", ts, percent(alone), DOTS)],
+        "Sweeps that go on until little changes find the forces in the first step. With one sweep per step dozens of "
+        "steps go by, in which the discs sink into each other.")
