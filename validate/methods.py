@@ -87,7 +87,7 @@ ONE_BY_ONE = Method("impulse_size", "impulses one by one", 2, "impulses", "#0072
 # simulator
 LOOP_2D = Method("contact_step_2d", "the whole loop", 1, "simulator", "#D55E00", "D")
 LOOP_WITH_MEANS = Method("mean_contact_step_2d", "the loop, mean velocities", 2, "simulator", "#009E73", "s")
-SETTLED_LOOP = Method("settled_contact_step_2d", "the loop, sweeps until settled", 1, "simulator", "#D55E00", "D")
+SETTLED_LOOP = Method("settled_contact_step_2d", "the loop, sweeps until settled", 1, "simulator", "#009E73", "s")
 LOOP = Method("contact_step", "the whole loop", 1, "simulator", "#D55E00", "D")
 CARRIED = Method("carried_step", "the floor ahead", 2, "simulator", "#009E73", "s")
 EXACT_ROLLING = Method("exact_rolling_step", "cut at the event", 2, "simulator", "#CC79A7", "v")
