@@ -184,7 +184,7 @@ def race(theirs, ours, reached=True, speed="compiled"):
     rows = [{"label": label, "speed": speed, "steps": 10, "error": 0.01, "low": t[0], "seconds": t[1], "high": t[2]}
             for label, speed, t in (("pymunk", "engine", theirs), ("Verlet", speed, ours))]
     curve = {"label": "Verlet", "rows": [{"error": 0.01 if reached else 0.1}]}
-    result = {"times": {"rows": rows}, "cases": {"one": {"ours": [curve], "engines": [engine()]}}}
+    result = {"quick": False, "times": {"rows": rows}, "cases": {"one": {"ours": [curve], "engines": [engine()]}}}
     known = {"ours": ours[1], "ratio": theirs[1] / ours[1]} if ours else {"ours": None, "ratio": None}
     return words.race({"engine": "pymunk", "product": "pymunk", "error": 0.01, "seconds": theirs[1],
                        "method": "Verlet", "speed": speed, **known}, result)
@@ -209,8 +209,10 @@ def test_a_race_without_a_ratio_says_why_and_is_lost_where_no_run_of_ours_is_tha
     open_race = {"engine": "pymunk", "error": 0.01, "seconds": 1.0, "ratio": None}
     for error, said, outcome in ((0.001, "too long to be timed", "open"), (0.1, "none of our runs", "slower")):
         case = {"ours": [{"label": "Verlet", "rows": [{"error": error}]}], "engines": [engine()]}
-        found = words.race(open_race, {"cases": {"one": case}, "times": {"rows": []}})
+        found = words.race(open_race, {"quick": False, "cases": {"one": case}, "times": {"rows": []}})
         assert said in words.ratio(found) and found["outcome"] == outcome
+        short = words.race(open_race, {"quick": True, "cases": {"one": case}, "times": {"rows": []}})
+        assert short["outcome"] == "open"
 
 
 def test_there_is_no_race_to_an_error_that_no_theory_bounds():
@@ -263,7 +265,7 @@ def test_of_settings_that_err_alike_the_fastest_one_runs():
             for a in settings]
     rows.append({"label": "ours", "speed": "compiled", "error": 1e-4, "seconds": 1e-3, "low": 1e-3, "high": 1e-3})
     engines = [engine(a["engine"]) for a in settings]
-    result = {"cases": {"only": {"engines": engines}}, "times": {"advantage": settings, "rows": rows}}
+    result = {"quick": False, "cases": {"only": {"engines": engines}}, "times": {"advantage": settings, "rows": rows}}
     assert words.races(result)["pymunk"]["engine"] == "pymunk, fewer iterations"
     settings[1]["error"] = rows[1]["error"] = 1.06e-4                  # errs more: its time is no time to that error
     assert words.races(result)["pymunk"]["engine"] == "pymunk"

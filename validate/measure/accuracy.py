@@ -36,7 +36,7 @@ def errors(name, plan):
         cases[case] = case_errors(selection, case, p, with_engines)
     _, first = selection.first
     return jsonable({
-        "scene": name, "title": scene.title, "lesson": scene.lesson, "story": scene.story,
+        "scene": name, "quick": plan.quick, "title": scene.title, "lesson": scene.lesson, "story": scene.story,
         "moves": scene.moves, "refinement": scene.refinement, "T": scene.duration,
         "uncertainty": scene.truth_uncertainty, "truth_story": report_text(scene.truth), "uses": list(scene.uses),
         "parameters": parameter_table(scene.parameters), "notes": selection.notes, "cases": cases,

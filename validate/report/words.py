@@ -184,33 +184,53 @@ def races(result):
 def race(advantage, result):
     """A race with the range of its ratio and its outcome: faster, a tie, slower, or open; and why it has no ratio.
 
-    To have no run that is as accurate as the engine's is a loss; to have no time of one leaves the race open.  So does
-    a time in plain Python that does not win, where the same method was not timed compiled.  And there is no race to an
-    error that no theory bounds: of runs that scatter, the most accurate one was lucky.
+    To have no run that is as accurate as the engine's is a loss.
     """
-    a, rows = advantage, result["times"]["rows"]
-    theirs = next(c for c in next(iter(result["cases"].values()))["engines"] if c["label"] == a["engine"])
-    if Verdict(theirs["verdict"]) is Verdict.UNDECIDED:
-        why = "no theory bounds its errors, and the smallest may be luck"
+    a = advantage
+    if why := why_open(a, result):
         return {**a, "ratio": None, "range": None, "outcome": "open", "why": why}
     if not a["ratio"]:
+        return {**a, "range": None, "outcome": "slower", "why": "none of our runs is that accurate"}
+    outcome = "a tie" if tied(a, result) else "faster" if a["ratio"] > 1.0 else "slower"
+    return {**a, "range": range_of(a, result), "outcome": outcome, "why": ""}
+
+
+def why_open(a, result):
+    """Why a race is not decided; nothing where it is.
+
+    Of runs that scatter, because no theory bounds their errors, the most accurate one was lucky.  The sweeps of a quick
+    validation end early, and it leaves most compiling to a full one.
+    """
+    theirs = next(c for c in next(iter(result["cases"].values()))["engines"] if c["label"] == a["engine"])
+    if Verdict(theirs["verdict"]) is Verdict.UNDECIDED:
+        return "no theory bounds its errors, and the smallest may be luck"
+    if not a["ratio"]:
         reach = accurate_enough(a, result)
-        why = f"{reach[0]} reaches it, in a run that is too long to be timed here" if reach else ""
-        return {**a, "range": None, "outcome": "open" if reach else "slower",
-                "why": why or "none of our runs is that accurate"}
+        return (f"{reach[0]} reaches it, in a run that is too long to be timed here" if reach else
+                "none of the runs of a quick validation is that accurate" if result["quick"] else "")
+    compiled = any(r["label"] == a["method"] and r["speed"] == "compiled" for r in result["times"]["rows"])
+    if not compiled and (tied(a, result) or a["ratio"] < 1.0):
+        return f"“{a['method']}” reaches it in {seconds(a['ours'])}, but was timed in plain Python only"
+    return ""
+
+
+def range_of(a, result):
+    """The lowest and the highest ratio that the repeats allow.
+
+    Our time to that error was interpolated between runs: its spread is that of the run beside it.
+    """
+    rows = result["times"]["rows"]
     theirs = next(r for r in rows if r["label"] == a["engine"] and r["error"] == a["error"] and r["speed"] == "engine")
     ours = [r for r in rows if (r["label"], r["speed"]) == (a["method"], a["speed"])]
-    # our time to that error was interpolated between runs: its spread is that of the run beside it
     beside = min(ours, key=lambda r: abs(r["seconds"] - a["ours"]))
-    low = theirs["low"] / (a["ours"] * beside["high"] / beside["seconds"])
-    high = theirs["high"] / (a["ours"] * beside["low"] / beside["seconds"])
-    tie = 1.0 / TIE < a["ratio"] < TIE or low < 1.0 < high
-    plain_only = not any(r["label"] == a["method"] and r["speed"] == "compiled" for r in rows)
-    if plain_only and (tie or a["ratio"] < 1.0):
-        why = f"“{a['method']}” reaches it in {seconds(a['ours'])}, but was timed in plain Python only"
-        return {**a, "ratio": None, "range": None, "outcome": "open", "why": why}
-    outcome = "a tie" if tie else "faster" if a["ratio"] > 1.0 else "slower"
-    return {**a, "range": (low, high), "outcome": outcome, "why": ""}
+    return (theirs["low"] / (a["ours"] * beside["high"] / beside["seconds"]),
+            theirs["high"] / (a["ours"] * beside["low"] / beside["seconds"]))
+
+
+def tied(a, result):
+    """Whether a ratio is within a factor of two, or within the spread of its times."""
+    low, high = range_of(a, result)
+    return 1.0 / TIE < a["ratio"] < TIE or low < 1.0 < high
 
 
 def accurate_enough(advantage, result):
