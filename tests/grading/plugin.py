@@ -143,7 +143,7 @@ def limit_of(item, limit):
 
 def pytest_collection_modifyitems(config, items):
     wanted = [item for item in items if is_wanted(item, config)]
-    keep = [item for item in wanted if not is_left_out(item, config)]
+    keep = once_compiled([item for item in wanted if not is_left_out(item, config)], config)
     count_left_out(config, len(wanted) - len(keep))
     if len(keep) < len(items):
         kept = {*keep}
@@ -168,6 +168,21 @@ def is_wanted(item, config):
 def is_left_out(item, config):
     """Whether this test is long and was not asked for."""
     return bool(item.get_closest_marker("long")) and not config.getoption("--long")
+
+
+def once_compiled(items, config):
+    """By default one test of each exercise runs with compiled answers: each more of them compiles something else."""
+    if config.getoption("--long") or config.getoption("--compiled") or hasattr(config, "given"):
+        return items
+    seen, keep = set(), []
+    for item in items:
+        mark, speed = item.get_closest_marker("exercise"), getattr(item, "callspec", None)
+        compiled = mark is not None and speed is not None and speed.params.get("lesson") == "compiled"
+        if not compiled or mark.args[0] not in seen:
+            keep.append(item)
+        if compiled:
+            seen.add(mark.args[0])
+    return keep
 
 
 def count_left_out(config, count):

@@ -49,7 +49,7 @@ def named(lesson, chosen, changed=lambda function: function):
 def test_nine_of_ten_wrong_answers_are_recognised_and_no_right_one(name, each):
     kept, table = mutants_of(name), mistakes.table(name)
     every = [k for k, mutant in enumerate(kept) if not mutant.right]
-    right = [k for k, mutant in enumerate(kept) if mutant.right]
+    right = [k for k, mutant in enumerate(kept) if mutant.right][::min(each, 4)]
     known = [k for k in every if kept[k].story in [one["idea"] for one in table[kept[k].exercise]["wrong"]]]
     missed = [f"{kept[k].exercise} {kept[k].story}" for k in every if k not in known]
     assert len(known) >= RECOGNISED * len(every), missed

@@ -45,7 +45,8 @@ def test_a_truth_reproduces_what_was_published(name):
         assert np.allclose(scene.truth(p, t), expected, rtol=0.0, atol=tolerance)
 
 
-@scenes([n for n in SCENES if modules.bind_scene(n).sanity_checks])
+@scenes([n for n in SCENES if modules.bind_scene(n).sanity_checks],
+        set(SCENES) - {"cloth", "dominoes", "rod_chain", "rope"})           # which take half of the time
 def test_what_a_scene_claims_beside_its_motion_holds(name):
     for claim, found, expected, tolerance in modules.bind_scene(name).sanity_checks():
         assert np.all(np.abs(np.asarray(found)
