@@ -196,6 +196,7 @@ def test_a_race_is_won_only_beyond_a_factor_of_two_and_beyond_the_spread_of_its_
     assert race((0.8, 4.0, 4.1), (0.9, 1.0, 1.1))["outcome"] == "a tie"
     assert race((0.2, 0.2, 0.2), (0.9, 1.0, 1.1))["outcome"] == "slower"
     assert words.ratio(race((2.0, 4.0, 8.0), (1.0, 1.0, 1.0))) == "4× (2.0 to 8.0)"
+    assert words.ratio(race((1.1, 1.3, 1.9), (1.0, 1.0, 1.0))) == "1.3× (1.1 to 1.9)"
 
 
 def test_plain_python_alone_can_win_a_race_but_not_lose_it():

@@ -30,6 +30,7 @@ def test_without_collisions_or_friction_a_rolling_ball_moves_otherwise():
     assert found[product, "collision detection"]["change"] > 0.01
     assert found[product, "friction"]["change"] > 0.01
     assert words.change_without(found[product, "friction"]).startswith("changes by")
+    assert [words.change_without({"change": size}) for size in (None, 7.0, 1e-12)] == ["lost", "another motion", "same"]
 
 
 def test_joints_are_swept_even_where_nothing_collides():

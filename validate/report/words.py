@@ -94,12 +94,14 @@ def factor(x):
 
 
 def ratio(race):
-    """A ratio of times with its range: one digit where the range is wide, two where it is narrow; or why there is none.
+    """A ratio of times with its range, or why there is none.
+
+    It has two digits where the range is narrow or the ratio near 1, else one.
     """
     if not race["ratio"]:
         return race["why"]
     low, high = race["range"]
-    digits = 2 if high < 1.5 * low else 1
+    digits = 2 if high < 1.5 * low or race["ratio"] < TIE else 1
     return f"{rounded(race['ratio'], digits)}× ({rounded(low)} to {rounded(high)})"
 
 
@@ -310,7 +312,9 @@ def change_without(row):
     """What becomes of a motion without a part of the engine, in a word or two."""
     if row["change"] is None:
         return "lost"
-    return "same" if row["change"] < SAME else f"changes by {percent(row['change'])}"
+    if row["change"] >= 1.0:
+        return "another motion"
+    return "same" if row["change"] < SAME else f"changes by {percent(row['change'])}".replace(" %", "\u00a0%")
 
 
 def best_order(curves):
