@@ -98,7 +98,7 @@ class Scene:
     slow_runs: dict = field(default_factory=dict)        # {case: functions of methods that only --full runs in it}
     compiled_in_quick: tuple = ()            # functions of methods that take longer in plain Python than numba does
     shorter_in_quick: dict = field(default_factory=dict)     # {method's function: its most steps in a quick validation}
-    finer_in_full: dict = field(default_factory=dict)        # {method's function: its further numbers of steps there}
+    finer_in_full: dict = field(default_factory=dict)  # {function or engine's label: further steps of the first case}
     moves: bool = True                       # False: nothing moves; no start is compared with the truth
     refinement: str = "step dt [s]"  # what dt = T/steps stands for; "" where nothing can be refined: steps is (1,)
     quantity_names: Callable | None = None  # (p) → names of what is observed, for a scene that shows a table of numbers

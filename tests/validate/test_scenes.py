@@ -11,7 +11,7 @@ from solutions import integrators
 from solutions.checks import BadInput
 from validate import engines, measure, methods, modules
 from validate.generate import stub
-from validate.measure.accuracy import engine_curve
+from validate.measure.accuracy import ASYMPTOTIC, engine_curve
 from validate.measure.selection import select
 from validate.measure.timing import time_to_error
 from validate.report import words
@@ -85,9 +85,22 @@ def test_a_quick_validation_ends_a_sweep_where_the_scene_says(name):
     quick, full = (select(name, measure.Plan(quick=quick)) for quick in (True, False))
     of = {method.function: method for method in full.methods}
     for function, most in full.scene.shorter_in_quick.items():
-        assert most in full.scene.steps and full.steps_of(of[function])[:len(full.steps)] == full.steps
-        assert quick.steps_of(of[function]) == tuple(n for n in quick.steps if n <= most)
+        p = full.first[1]
+        assert most in full.scene.steps and full.steps_of(of[function], p)[:len(full.steps)] == full.steps
+        assert quick.steps_of(of[function], p) == tuple(n for n in quick.steps if n <= most)
     assert any("the finest steps of" in note for note in quick.notes)
+
+
+def test_a_curve_ends_after_four_judged_runs_in_a_quick_validation_alone():
+    steps = modules.bind_scene("linear_drag").steps
+    quick, full = ({curve["label"]: curve["rows"] for curve in (*case["ours"], *case["engines"])} for case in (
+        measure.errors("linear_drag", BRIEF._replace(most_steps=None, quick=quick))["cases"]["shot"]
+        for quick in (True, False)))
+    assert all(rows[-1]["steps"] == steps[-1] for rows in full.values())
+    for label, rows in quick.items():
+        assert rows == full[label][:len(rows)]
+        assert sum(row["limit"] < ASYMPTOTIC for row in rows if row["steps"] in steps) <= 4 < len(steps)
+    assert any(len(rows) < len(full[label]) for label, rows in quick.items())
 
 
 @scenes([n for n in SCENES if modules.bind_scene(n).slow_runs])

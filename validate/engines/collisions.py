@@ -50,7 +50,6 @@ BALLS = {
     "orders": {"continuous_step": EXACT},
     "observe": observe_balls,
     "truth_uncertainty": 1e-13,              # of brentq, times the 7,000 m that the fastest balls have travelled
-    "shorter_in_quick": {"continuous_step": 1000, "discrete_step": 1000},
 }
 
 

@@ -122,9 +122,9 @@ def relative_to(truth, a, b):
 def method_curve(selection, method, p, truth):
     """The errors of one of our methods over the sweep."""
     scene, step = selection.fastest(method)
-    runs = [(n, run_to_end(scene, step, p, n, bool(selection.plan.overrides))) for n in selection.steps_of(method)]
     order = scene.orders.get(method.function, method.order)
-    found = judged(scene, method.label, p, truth, runs, order)
+    runs = ((n, run_to_end(scene, step, p, n, bool(selection.plan.overrides))) for n in selection.steps_of(method, p))
+    found = judged(scene, method.label, p, truth, runs, order, selection.plan.enough())
     return {**found, "role": Role.OURS, "colour": method.colour, "marker": method.marker, "line": "-"}
 
 
@@ -136,7 +136,7 @@ def engine_curve(selection, case, engine, p, truth):
              "colour": colour, "marker": marker, "line": line}
     if selection.is_live(engine):
         source = f"live, {engine.product} {engines.installed(engine.product)}"
-        runs = [(n, run_engine_to_end(scene, engine, p, n)) for n in engine_steps(selection, engine, p)]
+        runs = ((n, run_engine_to_end(scene, engine, p, n)) for n in selection.steps_of(engine, p))
     else:
         record = traces.recorded(selection.name, case, engine)
         if record is None:
@@ -147,20 +147,8 @@ def engine_curve(selection, case, engine, p, truth):
         source = record["source"]
         runs = [(r["steps"], Outcome(np.array(r["observed"]) if r["observed"] else None, r["failure"]))
                 for r in record["runs"]]
-    found = judged(scene, engine.label, p, truth, runs, engine.order)
+    found = judged(scene, engine.label, p, truth, runs, engine.order, selection.plan.enough())
     return {**about, **found, "source": source}
-
-
-def engine_steps(selection, engine, p):
-    """The numbers of steps that an engine runs: in a quick validation up to the fourth that can be judged.
-
-    Further ones take most of its time, and a first-order error shows as well before them.
-    """
-    scene = selection.scene
-    steps = [n for n in selection.steps if n <= (engine.most_steps or n)]
-    small = [n for n in steps if n in scene.steps
-             and allowed(scene, p, engine.label, engine.order, n) < ASYMPTOTIC]
-    return [n for n in steps if n <= small[3]] if selection.plan.quick and len(small) > 4 else steps
 
 
 def allowed(scene, p, label, order, steps):
@@ -184,20 +172,25 @@ def bound(scene, p, label, order, steps, law):
     return {"limit": limit, "predicted": predicted, "band": prediction.band}
 
 
-def judged(scene, label, p, truth, runs, order):
+def judged(scene, label, p, truth, runs, order, enough):
     """The curve of a method or an engine: its errors over the sweep, the order that they show, and the verdict.
 
+    runs: pairs (number of steps, Outcome), from coarse to fine; none is taken after `enough` that can be judged.
     Where the scene gives it its own law, it must follow that law.  Where that is the truth, it departs from nothing.
     """
     departure = scene.expected_departures.get(label)
     law = truth if departure is None else np.array(departure.own_law(p, scene.duration), dtype=float)
     departure = None if np.array_equal(law, truth) else departure
-    rows = [{"steps": steps, "dt": scene.duration / steps, "observed": outcome.observed,
-             "error": None if outcome.failure else relative(outcome.observed, truth), "failure": outcome.failure,
-             **bound(scene, p, label, order, steps, law)} for steps, outcome in runs]
+    rows = []
+    for steps, outcome in runs:
+        rows.append({"steps": steps, "dt": scene.duration / steps, "observed": outcome.observed,
+                     "error": None if outcome.failure else relative(outcome.observed, truth),
+                     "failure": outcome.failure, **bound(scene, p, label, order, steps, law)})
+        if sum(r["steps"] in scene.steps and r["limit"] < ASYMPTOTIC for r in rows) >= enough:
+            break
     off = rows if departure is None else [{**r, "error": r["error"] and relative(r["observed"], law)} for r in rows]
     order_shown = shown_order(off, 10.0 * scene.truth_uncertainty)
-    verdict, message = verdict_on(off, law, runs[-1][1], order, order_shown)
+    verdict, message = verdict_on(off, law, outcome, order, order_shown)
     found = {"label": label, "rows": rows, "order": order_shown, "expected": order, "verdict": verdict,
              "message": message, "departure_reason": ""}
     if departure is None:

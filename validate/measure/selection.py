@@ -38,6 +38,13 @@ class Plan(NamedTuple):
         """Number of timed repeats; fewer where a reader is waiting."""
         return 3 if self.most_steps else 5 if self.quick else REPEATS
 
+    def enough(self):
+        """How many of a curve's runs are judged before it ends: four in a quick validation, not in a notebook.
+
+        Finer runs take most of the time, and a fault shows as well before them.
+        """
+        return 4 if self.quick and not self.most_steps else np.inf
+
 
 class Selection(NamedTuple):
     """What is to be done of one scene."""
@@ -86,11 +93,16 @@ class Selection(NamedTuple):
         scene, lessons = self.bindings[speed]
         return scene, getattr(lessons.lesson(method.lesson), method.function)
 
-    def steps_of(self, method):
-        """The numbers of steps of a method: some end their sweep sooner in a quick run, or later in a full one."""
-        if not self.plan.quick:
-            return self.steps + self.scene.finer_in_full.get(method.function, ())
-        return tuple(n for n in self.steps if n <= self.scene.shorter_in_quick.get(method.function, np.inf))
+    def steps_of(self, runner, p):
+        """The numbers of steps of a Method or an Engine.
+
+        Some sweeps end sooner in a quick run.  In a full run some go on, in the case that is timed.
+        """
+        name, most = name_of(runner), (isinstance(runner, Engine) and runner.most_steps) or np.inf
+        if self.plan.quick:
+            most = min(most, self.scene.shorter_in_quick.get(name, np.inf))
+        finer = () if self.plan.quick or p != self.first[1] else self.scene.finer_in_full.get(name, ())
+        return tuple(n for n in self.steps if n <= most) + finer
 
     def fastest(self, method):
         """The same at the fastest speed that was asked for."""
@@ -116,10 +128,14 @@ def left_out(engine, plan):
     return engine.product in OPTIONAL and engine.product not in plan.live
 
 
+def name_of(runner):
+    """What a Method or an Engine is called in the fields of a Scene: its function, or its label."""
+    return runner.label if isinstance(runner, Engine) else runner.function
+
+
 def supports(scene, runner, p):
     """Whether a Method or an Engine of the scene can do this case at all."""
-    name = runner.label if isinstance(runner, Engine) else runner.function
-    return scene.supports is None or scene.supports(name, p)
+    return scene.supports is None or scene.supports(name_of(runner), p)
 
 
 def methods_of(scene, plan):
@@ -171,7 +187,7 @@ def notes_of(scene, plan, methods):
         return omitted
     slow = [m.label for m in scene.methods if m not in methods]
     plain = [m.label for m in methods if speeds_of(scene, plan, m) != plan.speeds]
-    finest = "the engines' finest steps, where four before them can be judged"
+    finest = "finer steps, where four runs of a method or an engine can be judged already"
     short = [m.label for m in methods if m.function in scene.shorter_in_quick]
     several = len(scene.cases) > 1 and scene.moves and scene.engines
     left = (
@@ -179,7 +195,7 @@ def notes_of(scene, plan, methods):
         (scene.slow_cases, f": {', '.join(scene.slow_cases)}"),
         (scene.slow_runs, f": our methods on {', '.join(scene.slow_runs)}"),
         (several, f": the engines on {', '.join(list(scene.cases)[1:])}"),
-        (len(scene.steps) > 1 and scene.engines, f": {finest}"),
+        (len(scene.steps) > plan.enough(), f": {finest}"),
         (short, f": the finest steps of {', '.join(short)}"),
         (plain, f": the same, compiled: {', '.join(plain)}"),
         (scene.refined, ": run times of every second step, and of steps coarser than the scene's own sweep"),

@@ -271,15 +271,15 @@ def predict_by_tables(T, law, begin, seen, truth, floor, engines=None, departure
 
 
 def predict_angles(T, law, begin, seen, truth, floor, labels, finest=None):
-    """The field `predicted_error` of MuJoCo's hinges: a table of numbers, applied to the angles.
+    """The field `predicted_error` of methods whose coordinates are angles: a table of numbers, applied to the angles.
 
-    law(p) → θ̈(t, θ, ω);    labels: {label of the engine: label of TABLEAUX};    the others as above.
+    law(p) → θ̈(t, θ, ω);    labels: {label of a method or an engine: label of TABLEAUX};    the others as above.
     """
     tables = {label: table_model(scheme, law, begin, seen, ORDERS[scheme]) for label, scheme in labels.items()}
     by_tables = predict_by_tables(T, law, begin, seen, truth, floor, tables, finest=finest)
 
     def predicted_error(label, p, dt):
-        """MuJoCo has no joints that could open: its method, applied to the angles, predicts its error."""
+        """Angles cannot leave a joint open: the method, applied to the angles, predicts the error."""
         return by_tables(label, p, dt) if label in labels else None
 
     return predicted_error

@@ -352,7 +352,7 @@ def symplectic_euler(lesson):
     )
 
 
-@case("midpoint", "Midpoint: slow growth")
+@case("midpoint", "Midpoint: slow growth", compiled=False)
 def midpoint(lesson):
     """Midpoint, undamped:  R(iy) = 1 + iy − ½y²,  |R|² = 1 + ¼y⁴,  y = hω."""
     step, law = "midpoint_step", lambda y: np.sqrt(1.0 + y**4 / 4.0)
@@ -453,7 +453,7 @@ def rk4(lesson):
     )
 
 
-@case("implicit-euler", "Implicit Euler: numerical damping")
+@case("implicit-euler", "Implicit Euler: numerical damping", compiled=False)
 def implicit_euler(lesson):
     """Implicit Euler damps an undamped oscillator:  |R(iy)| = (1 + y²)^(−½) per step, y = hω.
 
@@ -516,7 +516,7 @@ def implicit_euler(lesson):
     )
 
 
-@case("phase-error", "Verlet and implicit midpoint: phase")
+@case("phase-error", "Verlet and implicit midpoint: phase", compiled=False)
 def phase_error(lesson):
     """Verlet turns the motion by 2 asin(½hω) per step, implicit midpoint by 2 atan(½hω): energy is kept, phase is not.
 

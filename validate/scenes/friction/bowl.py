@@ -282,7 +282,6 @@ SCENE = Scene(
     engines=ENGINES,
     omitted_methods=("the sliding and the event step hold a block on one plane; a bowl has a different one at every "
                      "point"),
-    shorter_in_quick={"contact_step": 10000, "position_friction_step": 5000},
     finer_in_full={"contact_step": (50_000, 150_000)},       # there its error is as small as that of pybullet at 20,000
     sanity_checks=sanity_checks,
     points=points, links=links,

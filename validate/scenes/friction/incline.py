@@ -176,7 +176,6 @@ SCENE = Scene(
     orders={"event_step": EXACT},
     omitted_methods=("the integrators of lesson 1 have no stopping condition; the stability case "
                      "regularised-friction-creeps shows the effect"),
-    shorter_in_quick={"event_step": 2000},
     sanity_checks=sanity_checks,
     points=points,
 )

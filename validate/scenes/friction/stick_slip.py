@@ -72,7 +72,6 @@ SCENE = Scene(
     **block_on("floor", start), cases=CASES, duration=T, steps=STEPS, acceleration=acceleration, run=run,
     truth=slip_position, truth_uncertainty=1e-13, tolerance=slip_limits, predicted_error=slip_errors,
     engines=ENGINES,
-    shorter_in_quick={"event_step": 4000},
     sanity_checks=sanity_checks,
     points=points,
 )

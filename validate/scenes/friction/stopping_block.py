@@ -169,7 +169,6 @@ SCENE = Scene(
     expected_departures={"pyramid": Departure(BOX, pyramid), "pybullet, pyramid": Departure(BOX, pyramid)},
     # The deceleration is constant, and the stop is found.
     orders={"event_step": EXACT},
-    shorter_in_quick={"event_step": 2000},
     sanity_checks=sanity_checks,
     points=points, links=links,
     uses=("three coordinates", "a normal", "one step of a block that stays on its plane"),

@@ -267,7 +267,7 @@ SCENE = Scene(
     # Between impacts at known times the motion is a parabola.
     orders={"backtracking_step": EXACT},
     supports=supports,
-    shorter_in_quick={"penalty_step": 2500, "position_projection_step": 2500, "backtracking_step": 1000},
+    shorter_in_quick={"penalty_step": 2500},
     sanity_checks=sanity_checks,
     points=points, links=links,
     film_seconds=4.5,  # [s]: until it is at rest

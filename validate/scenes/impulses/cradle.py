@@ -163,7 +163,6 @@ SCENE = Scene(
     predicted_error=predicted_error,
     engines=ENGINES,
     orders={"backtracking_discs_step": EXACT},
-    shorter_in_quick={"position_projection_discs_step": 500, "backtracking_discs_step": 500},
     points=points,
     uses=("one coordinate", "the order of the impacts"),
     full_loop="contacts of the loop bounce a step late, and it leaves overlaps as they are; lesson 10 has a cradle",

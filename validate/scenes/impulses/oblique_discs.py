@@ -193,7 +193,6 @@ SCENE = Scene(
     predicted_error=predicted_error,
     engines=ENGINES,
     orders={"backtracking_discs_step": EXACT},
-    shorter_in_quick={"position_projection_discs_step": 2000, "backtracking_discs_step": 2000},
     sanity_checks=sanity_checks,
     points=points, links=links,
     uses=("two coordinates", "two radii", "one number e for the impact"),

@@ -215,7 +215,6 @@ SCENE = Scene(
     engines=ENGINES,
     orders={"backtracking_spin_step": EXACT},
     supports=supports,
-    shorter_in_quick={"position_projection_spin_step": 500, "backtracking_spin_step": 2000},
     sanity_checks=sanity_checks,
     points=points, links=links,
     uses=("one ball", "one angular velocity", "one impulse in a cone"),

@@ -66,7 +66,6 @@ SCENE = Scene(
     published_states=((20.0, (-1.295266251, 0.400393896), 1e-9),),
     points=sun_and_planet,
     film_seconds=12.6,          # two revolutions [s]
-    shorter_in_quick={"advance_adaptive": 5000},
     uses=("one point in the plane", "one step function"),
     ablations={"the third dimension": planet_in_space,
               "rotation": "the whole loop of lesson 10 has it, and is measured"},

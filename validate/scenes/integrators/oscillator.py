@@ -194,10 +194,7 @@ SCENE = Scene(
     expected_departures=DEPARTURES,
     predicted_error=predict_by_tables(T, law, released, seen, truth, floor, MODELS, DEPARTURES),
     compiled_in_quick=("symplectic_euler_step", "verlet_step", "rk4_step"),
-    shorter_in_quick={
-        "euler_step": 5000, "midpoint_step": 5000, "average_velocity_step": 5000,
-        "implicit_euler_step": 2000, "implicit_midpoint_step": 1000,
-    },
+    shorter_in_quick={"implicit_euler_step": 2000, "implicit_midpoint_step": 1000},
     points=points, links=links,
     uses=("one coordinate", "one step function"),
     ablations={

@@ -217,8 +217,9 @@ SCENE = Scene(
                      "sparse one, and pymunk more iterations"),
     # The reference solution alone takes seconds.
     slow_cases=("50 links",),
-    compiled_in_quick=("constraint_projection_step", "pbd_step", "xpbd_step", "rope_step", "composed_rope_step"),
-    shorter_in_quick={"rattle_step": 600},
+    finer_in_full=dict.fromkeys(("pymunk", "pymunk, fewer iterations"), (10_000, 20_000, 50_000)),
+    slow_methods=("constraint_projection_step",),                    # the pendulum has it
+    compiled_in_quick=("pbd_step", "xpbd_step", "rope_step", "composed_rope_step"),
     sanity_checks=sanity_checks,
     points=points, links=links,
     uses=("two coordinates", "links, in sequence", "one step function"),

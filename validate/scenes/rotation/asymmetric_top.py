@@ -20,8 +20,7 @@ T = 10.0                     # [s]: it flips at 6.06 s, and is about to start th
 STEPS = (500, 1000, 2000, 5000, 10000, 20000, 50000)
 IN_QUICK = {                 # {function: its most steps in a quick validation}
     "matrix_step": 5000, "axis_angle_step": 5000, "quaternion_step": 5000, "gyroscopic_step": 5000,
-    "implicit_gyroscopic_step": 2000, "runge_kutta_step": 2000, "midpoint_step": 2000, "splitting_step": 5000,
-    "composed_splitting_step": 2000,
+    "implicit_gyroscopic_step": 2000, "runge_kutta_step": 2000, "midpoint_step": 2000, "composed_splitting_step": 2000,
 }
 
 

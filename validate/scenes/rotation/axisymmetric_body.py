@@ -138,14 +138,12 @@ SCENE = Scene(
                      "worst of the others; the asymmetric top has it"),
     slow_methods=(
         "axis_angle_step",
+        "gyroscopic_step",
         "implicit_gyroscopic_step",
         "midpoint_step",
         "composed_midpoint_step",
     ),  # the asymmetric top has them
-    shorter_in_quick={
-        "quaternion_step": 50000, "gyroscopic_step": 50000, "runge_kutta_step": 2000, "splitting_step": 10000,
-        "composed_splitting_step": 5000,
-    },
+    shorter_in_quick={"quaternion_step": 50000, "runge_kutta_step": 2000, "composed_splitting_step": 2000},
     sanity_checks=sanity_checks,
     bodies=bodies, arrows=arrows,
 )

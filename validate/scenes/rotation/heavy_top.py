@@ -194,10 +194,7 @@ SCENE = Scene(
         "midpoint_step",
         "composed_midpoint_step",
     ),  # the asymmetric top has them
-    shorter_in_quick={
-        "quaternion_step": 20000, "gyroscopic_step": 5000, "runge_kutta_step": 2000, "splitting_step": 5000,
-        "composed_splitting_step": 2000,
-    },
+    shorter_in_quick={"gyroscopic_step": 5000, "runge_kutta_step": 2000, "composed_splitting_step": 2000},
     sanity_checks=sanity_checks,
     points=points, links=links,
     bodies=bodies, poses=poses, arrows=arrows,

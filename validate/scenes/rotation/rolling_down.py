@@ -166,7 +166,6 @@ SCENE = Scene(
     acceleration=acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-15, tolerance=tolerance, predicted_error=predicted_error,
     engines=ENGINES,
-    shorter_in_quick={"rolling_step": 2000, "average_rolling_step": 2000},
     sanity_checks=sanity_checks,
     points=points, links=links,
     bodies=bodies, poses=poses, arrows=arrows,

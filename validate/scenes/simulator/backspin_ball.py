@@ -205,7 +205,6 @@ SCENE = Scene(
     tolerance=tolerance,
     predicted_error=predicted_error,
     engines=ENGINES,
-    shorter_in_quick={"rolling_step": 1500},
     slow_cases=("goes on", "disc"),
     orders={"exact_rolling_step": EXACT, "average_rolling_step": "2 on average"},
     sanity_checks=sanity_checks,

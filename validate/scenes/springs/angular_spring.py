@@ -190,7 +190,6 @@ SCENE = Scene(
     predicted_error=predict_by_tables(T, law, released, seen, truth, floor, {"pymunk": Model(1, pymunk_rod)}),
     engines=ENGINES,
     slow_methods=LEFT_TO_FULL,
-    shorter_in_quick={"symplectic_euler_step": 2000, "verlet_step": 5000, "rk4_step": 1000},
     sanity_checks=sanity_checks,
     points=points, links=links,
     uses=("one angle", "the moment of its spring", "one step function"),

@@ -180,6 +180,7 @@ SCENE = Scene(
     predicted_error=net_errors(net, T, truth, UNCERTAINTY, engines=MODELS),
     engines=ENGINES,
     compiled_in_quick=EXPLICIT,
+    finer_in_full={"pymunk": (20_000, 50_000)},
     slow_methods=(*LEFT_TO_FULL, "implicit_spring_network_step"),
     sanity_checks=sanity_checks,
     points=points, links=links, link_look="spring",

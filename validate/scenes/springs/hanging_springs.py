@@ -7,7 +7,7 @@ import numpy as np
 from solutions.integrators import advance
 from solutions.springs import spring_network_acceleration as acceleration
 from validate.engines.springs import in_space, pymunk_net, start_of
-from validate.methods import EXPLICIT, IMPLICIT_MESH, INTEGRATORS
+from validate.methods import EXPLICIT, IMPLICIT_MESH, INTEGRATORS, LEFT_TO_FULL
 from validate.reference.schemes import Model, advance_modes, nudged, predict_by_tables, table_model
 from validate.reference.springs import ReferenceNetwork, by_mode, pymunk_net_model
 from validate.scene import EXACT, PYMUNK, Engine, Scene
@@ -162,7 +162,8 @@ SCENE = Scene(
     predicted_error=predict_by_tables(T, law, released, from_modes, truth, floor, MODELS, march=advance_modes),
     engines=ENGINES,
     compiled_in_quick=EXPLICIT,
-    slow_methods=("implicit_euler_step", "implicit_midpoint_step", "implicit_spring_network_step"),
+    finer_in_full={"pymunk": (50_000,)},
+    slow_methods=(*LEFT_TO_FULL, "implicit_spring_network_step"),
     sanity_checks=sanity_checks,
     points=points, links=links, link_look="spring",
     uses=("one coordinate", "springs with dampers", "one step function"),

@@ -8,7 +8,7 @@ import numpy as np
 from solutions.integrators import advance, amplification_matrix, average_velocity_step
 from solutions.springs import spring_network_acceleration as acceleration
 from validate.engines.springs import NET, net_points, observe_net, start_net
-from validate.methods import EXPLICIT
+from validate.methods import EXPLICIT, LEFT_TO_FULL
 from validate.reference.springs import SquareNet, modes, net_motion, net_truth, square_net
 from validate.scene import Scene
 
@@ -58,6 +58,6 @@ SCENE = Scene(
     cases=CASES, steps=STEPS,
     acceleration=acceleration, run=run,
     compiled_in_quick=EXPLICIT,
-    slow_methods=("implicit_euler_step", "implicit_midpoint_step", "implicit_spring_network_step"),
+    slow_methods=(*LEFT_TO_FULL, "implicit_spring_network_step"),
     sanity_checks=sanity_checks,
 )

@@ -57,6 +57,7 @@ SCENE = Scene(
     cases=CASES, steps=STEPS,
     acceleration=acceleration, run=run,
     compiled_in_quick=EXPLICIT,
+    finer_in_full={"pymunk": (10_000, 20_000)},
     slow_methods=LEFT_TO_FULL,          # of these the implicit ones build a dense matrix at every correction
     slow_runs=dict.fromkeys(list(CASES)[1:], ("implicit_spring_network_step",)),
     shorter_in_quick={"implicit_spring_network_step": 200},
