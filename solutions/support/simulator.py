@@ -1,34 +1,36 @@
 """Given with lesson 10.  Loops with joints, one whose positions go with mean velocities, and one that sweeps only as
-long as it helps.
+long as it helps; and a chain that needs no joints, because its coordinates are angles.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 
 from ..simulator import contact_step_2d, find_contacts, kept_impulses, new_velocities_2d, velocity_sweep_2d
 from .arms import apply_impulses_2d, arms_2d
-from .joints import COMPOSED, close_joints_2d, hold_joints_2d, parting_speeds, without_joined
+from .invariants import closing_speeds
+from .joints import COMPOSED, close_joints_2d, hold_joints_2d, parting_speeds, solve_band, without_joined
 from .scenes import PileState
 
 SETTLED = 1e-3               # change of an impulse, over the largest impulse [-]
-REPEATS = 500                # of a step, at most
+FURTHER = 1500               # sweeps after those of the step, at most
 
 
 def settled_contact_step_2d(load, bounds, narrow, t, state, dt, p):
-    """Given.  Return the PileState of contact_step_2d with as many sweeps as it takes until they change little.
+    """Given.  Return the PileState of contact_step_2d, swept further until a sweep changes little.
 
-    The step is repeated from the same state, each time with the impulses that the last time found, until p.sweeps more
-    change no component by more than SETTLED times the largest one.  At rest one repetition does; an impact that runs
-    through several contacts gets as many as it needs.
+    The sweeps end when one changes no component of an impulse by more than SETTLED times the largest one.  At rest one
+    does; an impact that runs through several contacts gets as many as it needs.
     *Source:* the residual threshold of an engine's solver.
     """
-    new = contact_step_2d(load, bounds, narrow, t, state, dt, p)
-    for _ in range(REPEATS if new.J.size else 0):
-        found = new.J
-        again = PileState(state.x, state.q, state.v, state.omega, new.contacts, found)
-        new = contact_step_2d(load, bounds, narrow, t, again, dt, p)
-        if np.max(np.abs(new.J - found)) <= SETTLED * np.max(np.abs(new.J)):
+    _, _, v, omega, contacts, J = contact_step_2d(load, bounds, narrow, t, state, dt, p)
+    arms, aim = arms_2d(state.x, p.inv_mass, p.inv_inertia, contacts), closing_speeds(contacts.gap, dt)
+    for _ in range(FURTHER if J.size else 0):
+        found = J
+        v, omega, J = velocity_sweep_2d(v, omega, found, aim, 0.0 * aim, contacts, arms, p)
+        if np.max(np.abs(J - found)) <= SETTLED * np.max(np.abs(J)):
             break
-    return new
+    return PileState(state.x + dt * v, state.q + dt * omega, v, omega, contacts, J)
 
 
 def mean_contact_step_2d(load, bounds, narrow, t, state, dt, p):
@@ -85,3 +87,32 @@ def joint_contact_step_2d(load, bounds, narrow, t, state, dt, p):
         v, omega, J = velocity_sweep_2d(v, omega, J, aim, give, contacts, arms, p)
         v, omega = close_joints_2d(x, q, v, omega, dt, p)
     return PileState(x + dt * v, q + dt * omega, v, omega, contacts, J)
+
+
+class RodsInAngles(NamedTuple):
+    """Equal rods in the plane, each hinged to the end of the one before, the first to a wall."""
+    m: float                 # mass of each [kg]
+    l: float                 # length of each [m]
+    I: float                 # moment of inertia of each about its centre [kg m²]
+    g: float                 # gravity, along −y [m/s²]
+
+
+def rods_acceleration(t, q, omega, p):
+    """Given.  Return the angular accelerations (n,) [rad/s²] of RodsInAngles p whose angles from the x axis are q (n,).
+
+    Angles cannot leave a joint open, so nothing holds it: Lagrange's equations replace the impulses of the joints.
+        Σⱼ (m l² cᵢⱼ cos(qᵢ − qⱼ) + δᵢⱼ I) αⱼ = −Σⱼ m l² cᵢⱼ sin(qᵢ − qⱼ) ωⱼ² − m g l (n − i − ½) cos qᵢ
+        cᵢⱼ = n − max(i, j) − ½  and  cᵢᵢ = n − i − ¾,  i and j from 0
+    The matrix is full, so that a step costs n³, where the band of the joints costs n.
+    *Source:* Lagrange's equations.
+    """
+    n, c, s = q.size, np.cos(q), np.sin(q)
+    A, right = np.empty((n, n)), np.empty(n)
+    for i in range(n):
+        right[i] = -p.m * p.g * p.l * (n - i - 0.5) * c[i]
+        for j in range(n):
+            share = p.m * p.l * p.l * (n - max(i, j) - 0.5)
+            A[i, j] = share * (c[i] * c[j] + s[i] * s[j])
+            right[i] -= share * (s[i] * c[j] - c[i] * s[j]) * omega[j] * omega[j]
+        A[i, i] = p.m * p.l * p.l * (n - i - 0.75) + p.I
+    return solve_band(A, right, n)

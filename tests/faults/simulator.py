@@ -85,9 +85,19 @@ fault("compare", "np.maximum(difference, np.max(np.abs(slow - quick)))", "np.max
       "only the difference of the last run counts")
 fault("advance_contact", "t + n * dt, state, dt, p)", "t, state, dt, p)", "all loads are those of the start")
 fault("weight", "p.gravity / p.inv_mass[i]", "p.gravity / p.inv_mass[0]", "all bodies weigh as much as the first")
-fault("settled_contact_step_2d", "<= SETTLED * np.max(np.abs(new.J))", "<= 10.0 * SETTLED * np.max(np.abs(new.J))",
+fault("settled_contact_step_2d", "<= SETTLED * np.max(np.abs(J))", "<= 10.0 * SETTLED * np.max(np.abs(J))",
       "the sweeps end ten times too early", of="support.simulator")
-fault("settled_contact_step_2d", "state.v, state.omega, new.contacts, found", "new.v, new.omega, new.contacts, found",
-      "each repetition begins with the velocities of the last one", of="support.simulator")
+fault("settled_contact_step_2d", "velocity_sweep_2d(v, omega, found,", "velocity_sweep_2d(v, omega, 0.0 * found,",
+      "each further sweep forgets the impulses before it", of="support.simulator")
+fault("settled_contact_step_2d", "state.x + dt * v,", "state.x + dt * state.v,", "places go with the last velocities",
+      of="support.simulator")
+fault("settled_contact_step_2d", "closing_speeds(contacts.gap, dt)", "closing_speeds(0.0 * contacts.gap, dt)",
+      "further sweeps stop bodies before they touch", of="support.simulator")
 fault("mean_contact_step_2d", "0.5 * dt * (v + v_new)", "dt * v_new", "positions with the new velocities alone",
+      of="support.simulator")
+fault("rods_acceleration", "(n - i - 0.75) + p.I", "(n - i - 0.75)", "rods have no moment of inertia of their own",
+      of="support.simulator")
+fault("rods_acceleration", "s[i] * c[j] - c[i] * s[j]", "s[i] * c[j] + c[i] * s[j]",
+      "the pull of rods that turn has the sine of the sum of the angles", of="support.simulator")
+fault("rods_acceleration", "(n - i - 0.5) * c[i]", "(n - i) * c[i]", "a rod's own weight acts at its end",
       of="support.simulator")

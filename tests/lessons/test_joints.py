@@ -8,7 +8,7 @@ from solutions.rotation import exponential
 from solutions.support import joints
 from validate import modules
 from validate.reference.rotation import HeavyTop
-from validate.reference.simulator import cradle_motion, rods_error, rods_motion
+from validate.reference.simulator import cradle_motion, rods_error, rods_motion, rods_slope
 
 simulator = modules.bind("simulator")
 G = 9.81                     # [m/s²]
@@ -70,6 +70,15 @@ def test_a_chain_makes_the_same_error_as_the_discrete_lagrangian_in_angles_does(
     theta = rods_motion(n, l, m, m * l * l / 12.0, G, T).y[:n, -1]
     true = l * np.cumsum(np.stack((np.sin(theta), -np.cos(theta)), axis=1), axis=0)
     assert np.isclose(np.linalg.norm(ends - true), rods_error(n, l, m, m * l * l / 12.0, G, T, steps), rtol=1e-6)
+
+
+def test_angles_obey_lagranges_equations():
+    rng, slope = np.random.default_rng(17), rods_slope(5, 0.3, 0.5, 0.004, G)
+    for _ in range(20):
+        q, omega = rng.uniform(-np.pi, np.pi, 5), rng.normal(size=5)
+        there = slope(0.0, np.append(q + 0.5 * np.pi, omega))[5:]             # angles from straight down
+        found = simulator.rods_acceleration(0.0, q, omega, simulator.RodsInAngles(0.5, 0.3, 0.004, G))
+        assert np.allclose(found, there, rtol=1e-11, atol=1e-11 * np.abs(there).max())
 
 
 def test_five_substeps_make_it_fourth_order():

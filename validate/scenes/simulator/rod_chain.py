@@ -1,6 +1,7 @@
 """A chain of rigid rods on hinges is let go from horizontal.  Its end whips round within a second.
 
 Our joints take all hinges at once, by one band matrix.  pymunk and pybullet sweep over them, one after the other.
+Angles need no joints at all: the chain obeys Lagrange's equations, and Runge–Kutta's method of lesson 1 solves them.
 """
 
 from typing import Annotated, NamedTuple
@@ -8,14 +9,16 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from solutions.checks import BadInput, check_positive
+from solutions.integrators import advance
 from solutions.rotation import SUZUKI
 from solutions.simulator import advance_free, make_bodies, make_bodies_2d, make_joints
 from solutions.simulator import weight as acceleration
+from solutions.support.simulator import RodsInAngles, rods_acceleration
 from validate import drawing
 from validate.drawing import pose
 from validate.engines.mujoco import chain as mujoco_chain
 from validate.engines.simulator import pybullet_chain, pymunk_chain
-from validate.methods import COMPOSED_JOINTS, JOINTS, JOINTS_IN_SPACE
+from validate.methods import COMPOSED_JOINTS, IN_ANGLES, JOINTS, JOINTS_IN_SPACE
 from validate.reference.orientation import about
 from validate.reference.schemes import predict_angles
 from validate.reference.simulator import (
@@ -34,6 +37,7 @@ STEPS = (10, 20, 50, 100, 200, 500, 1000)
 SWEEPS = 10                  # of both engines for each rod: an impulse travels one rod per sweep
 HEADING = np.array([0.6, 0.8, 0.0])      # of the chain in space: along no axis
 THICK = 0.01                 # moment of a rod about itself over the other two [-]
+LABELS_IN_ANGLES = (IN_ANGLES.label, "mujoco")        # whose coordinates are angles: no joint can open
 FIVE = (SUZUKI, SUZUKI, 1.0 - 4.0 * SUZUKI, SUZUKI, SUZUKI)
 
 
@@ -76,6 +80,10 @@ def start(p):
 
 
 def run(step, acceleration, state, p, dt, steps):
+    if step.__name__ == "rk4_step":
+        rods = RodsInAngles(p.m, p.l, inertia(p), p.g)
+        angle, omega = advance(step, rods_acceleration, 0.0, state[1][1:], state[3][1:], dt, steps, rods)
+        return centres(angle, p), np.append(0.0, angle), state[2], np.append(0.0, omega), *state[4:]
     if step.__name__ == "joint_step":
         now = advance_free(step, acceleration, 0.0, *state[5:9], dt, steps, state[9])
         # for the picture: places and angles in the plane of the motion
@@ -89,6 +97,12 @@ def about_x(q):
     """Return the x axis (3,) of a body with the quaternion q: along the rod."""
     w, x, y, z = q
     return np.array([1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)])
+
+
+def centres(angle, p):
+    """Return the centres (N + 1, 2) [m] of the wall and of rods with these angles (N,)."""
+    along = 0.5 * p.l * np.stack((np.cos(angle), np.sin(angle)), axis=1)
+    return np.concatenate((np.zeros((1, 2)), np.cumsum(2.0 * along, axis=0) - along))
 
 
 def lower_ends(x, angle, p):
@@ -122,7 +136,7 @@ def tolerance(p, dt):
     the step after the one that opened it: that is of second order.  Where a rod turns by more than a
     radian in a step, an expansion in powers of dt says nothing.
 
-    MuJoCo's angles change at the greatest rate of a rod.
+    The angles of Runge–Kutta's method and of MuJoCo change at the greatest rate of a rod.
     """
     size, n = np.linalg.norm(truth(p, T)), p.rods
     coarse, composed = max(200, 10 * n), max(100, 4 * n)
@@ -131,7 +145,8 @@ def tolerance(p, dt):
     rounded = 1e-11 + T / dt * 100.0 * ROUND_OFF
     gaps, fastest = rods_gaps(*of(p))
     witness = (rods_lag(*of(p)) * dt + gaps * dt**2) / size + second + 1e-9 if fastest * dt < 1.0 else np.inf
-    return {1: witness, 2: second + rounded, 4: fourth + rounded, "mujoco": by_order(fastest, T, dt)[4] + 1e-9}
+    return {1: witness, 2: second + rounded, 4: fourth + rounded,
+            **dict.fromkeys(LABELS_IN_ANGLES, by_order(fastest, T, dt)[4] + 1e-9)}
 
 
 def pymunk_make(p, dt, iterations, bias):
@@ -204,14 +219,16 @@ def poses(observed, p):
 SCENE = Scene(
     title="A chain of rods", lesson="simulator",
     cases=CASES, duration=T, steps=STEPS,
-    methods=(JOINTS, COMPOSED_JOINTS, JOINTS_IN_SPACE),
+    methods=(JOINTS, COMPOSED_JOINTS, JOINTS_IN_SPACE, IN_ANGLES),
     acceleration=acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-9,
     tolerance=tolerance,
     predicted_error=predict_angles(
         T, hanging, lambda p: (np.full(p.rods, 0.5 * np.pi), np.zeros(p.rods)),
-        lambda theta, p: rods_ends(theta, p.l).ravel(), truth, lambda p, dt: 1e-9, {"mujoco": "Runge–Kutta 4"}),
+        lambda theta, p: rods_ends(theta, p.l).ravel(), truth, lambda p, dt: 1e-9,
+        dict.fromkeys(LABELS_IN_ANGLES, "Runge–Kutta 4")),
     engines=ENGINES,
+    finer_in_full=dict.fromkeys(("pymunk", "pybullet"), (2000, 5000, 10_000, 20_000)),
     slow_cases=("50 rods",),
     slow_methods=("composed_joint_step_2d", "joint_step"),
     sanity_checks=sanity_checks,
