@@ -171,17 +171,16 @@ def is_left_out(item, config):
 
 
 def once_compiled(items, config):
-    """By default one test of each exercise runs with compiled answers: each more of them compiles something else."""
+    """By default one test of each lesson runs with compiled answers: each more of them compiles something else."""
     if config.getoption("--long") or config.getoption("--compiled") or hasattr(config, "given"):
         return items
     seen, keep = set(), []
     for item in items:
-        mark, speed = item.get_closest_marker("exercise"), getattr(item, "callspec", None)
-        compiled = mark is not None and speed is not None and speed.params.get("lesson") == "compiled"
-        if not compiled or mark.args[0] not in seen:
+        compiled = hasattr(item, "callspec") and item.callspec.params.get("lesson") == "compiled"
+        if not compiled or item.path not in seen:
             keep.append(item)
         if compiled:
-            seen.add(mark.args[0])
+            seen.add(item.path)
     return keep
 
 

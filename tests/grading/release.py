@@ -297,8 +297,9 @@ def answers_of(lesson):
         tree, function = ast.parse(body), generate.exercises(source(lesson))[match["exercise"]]
         lines = {line: len(words(text)) for text in body.splitlines() if (line := squeezed(text))}
         telling = [text for text, size in pieces(tree) if size >= TELLING]
-        telling += [text for text in body.splitlines() if len(words(text)) >= TELLING]
-        names = {frozenset(word for word in words(text) if not word[0].isdigit()) for text in (*telling, function)}
+        if telling:
+            telling += [text for text in body.splitlines() if len(words(text)) >= TELLING]
+        names = {frozenset(word for word in words(text) if not word[0].isdigit()) for text in telling or [function]}
         yield Answer(lesson, match["exercise"], function, plain(tree.body), dict(pieces(tree)), lines, names)
 
 

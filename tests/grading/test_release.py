@@ -20,7 +20,8 @@ from validate.modules import ROOT, SOLUTIONS, lesson_names
 from ..lessons.kernels import kernel, ran
 from . import release
 
-pytestmark = pytest.mark.xdist_group("notebooks")        # one kernel at a time, see test_notebooks
+# one kernel at a time, see test_notebooks; long, because the search for answers reads every text of the zip
+pytestmark = [pytest.mark.xdist_group("notebooks"), pytest.mark.long]
 
 
 def git(*arguments, cwd):
@@ -91,7 +92,6 @@ def solved(name):
 
 # ---------------------------------------------------------------------------------------------- contents
 
-@pytest.mark.long
 def test_the_same_commit_gives_the_same_bytes(released, tmp_path):
     (code, said, first), (_, _, second) = released(), released(out=tmp_path / "again.zip")
     assert code == 0, said
@@ -162,14 +162,12 @@ def test_a_released_lesson_is_as_worked_without_markers_and_others_import_it(rel
     assert "from solutions.integrators import" in files["lessons/springs.py"]
 
 
-@pytest.mark.long
 def test_with_solutions_alone_releases_them_all(released):
     files = files_in(released("--with-solutions")[2])
     assert not any("NotImplementedError(\"Exercise" in files[f"solutions/{name}.py"] for name in lesson_names())
     assert "--of=lessons" not in files["pyproject.toml"]
 
 
-@pytest.mark.long
 def test_a_single_lesson_comes_with_its_scenes_and_what_it_builds_on(released, tmp_path):
     zipped = released("--lesson", "integrators")[2]
     shutil.unpack_archive(zipped, tmp_path)
@@ -339,13 +337,11 @@ def test_every_answer_would_be_found_as_code_and_as_text():
 
 # ---------------------------------------------------------------------------------------------- the unpacked zip
 
-@pytest.mark.long
 def test_the_tests_run_in_the_zip_and_score_nothing(unpacked):
     said = run_in(unpacked, "pytest", "--of=lessons", "--tb=no", "-p", "no:cacheprovider").stdout
     assert re.search(r"^ +all  0 of " + str(20 * len(lesson_names())), said, re.M), said
 
 
-@pytest.mark.long
 def test_the_command_line_lists_the_scenes_and_reports_that_worked_answers_are_missing(unpacked):
     assert "oscillator" in run_in(unpacked, "validate", "list").stdout
     asked = run_in(unpacked, "validate", "--scene", "oscillator")
@@ -353,7 +349,6 @@ def test_the_command_line_lists_the_scenes_and_reports_that_worked_answers_are_m
     assert "without worked answers of integrators" in asked.stderr
 
 
-@pytest.mark.long
 @pytest.mark.parametrize(("name", "checks"), [("00_start_here", {"1.1"}), ("01_integrators", {"1.10"})])
 def test_a_notebook_runs_in_the_zip_and_names_the_answers_it_lacks(unpacked, monkeypatch, name, checks):
     monkeypatch.setenv("PYTHONPATH", str(unpacked))
@@ -372,7 +367,6 @@ def test_a_notebook_runs_in_the_zip_and_names_the_answers_it_lacks(unpacked, mon
     assert all(f"Exercise {number}: not attempted" in said for number in checks)
 
 
-@pytest.mark.long
 def test_the_students_answers_replace_the_worked_ones(unpacked, tmp_path):
     for name in lesson_names():
         (tmp_path / f"{name}.py").write_text(solved(name))
@@ -395,7 +389,6 @@ def test_the_students_answers_replace_the_worked_ones(unpacked, tmp_path):
     assert run.stdout.strip().endswith("None"), run.stderr
 
 
-@pytest.mark.long
 def test_a_students_file_that_cannot_be_loaded_leaves_the_given_functions(unpacked, tmp_path):
     (tmp_path / "integrators.py").write_text("def euler_step(:\n")
     program = """
@@ -407,7 +400,6 @@ def test_a_students_file_that_cannot_be_loaded_leaves_the_given_functions(unpack
     assert "2.0 advance None" in run.stdout, run.stderr
 
 
-@pytest.mark.long
 def test_a_lesson_is_checked_even_if_a_lesson_that_it_imports_does_not_load(unpacked, tmp_path):
     for name in lesson_names():
         (tmp_path / f"{name}.py").write_text(solved(name))
@@ -458,9 +450,10 @@ def shown():
     plt.close("all")
 
 notebook.play = lambda frames, *_, **__: [keep(name, pictures) for name, pictures in frames.items()]
-notebook.display, plt.show, space = lambda *_: None, shown, {}
+notebook.display, notebook.show_figure, plt.show, space = lambda *_: None, shown, shown, {}
 for cell in nbformat.read(sys.argv[1], as_version=4).cells:
-    if cell.cell_type == "code" and not re.search("^check|^show_|measured\\\\(|interact|ablations", cell.source, re.M):
+    skipped = re.search("^check|^show_(?!figure)|measured\\\\(|interact|ablations", cell.source, re.M)
+    if cell.cell_type == "code" and not skipped:
         exec(cell.source, space)
 print(json.dumps(found))
 """
@@ -473,15 +466,17 @@ def truths(copy, notebook, lessons):
     return json.loads(run.stdout.splitlines()[-1])
 
 
-@pytest.mark.long
 @pytest.mark.parametrize(("notebook", "least"), [("01_integrators.ipynb", 5), ("02_springs.ipynb", 5)])
 def test_reference_curves_of_a_notebook_do_not_use_the_students_functions(unpacked, tmp_path, notebook, least):
-    """Functions that are all off by a hundredth give the same reference curves as functions not yet written."""
+    """Functions that are all off by a hundredth give the same reference curves as right ones."""
+    for folder in ("right", "wrong"):
+        (tmp_path / folder).mkdir()
     for name in lesson_names():
         answered = generate.exercises((SOLUTIONS / f"{name}.py").read_text())
-        (tmp_path / f"{name}.py").write_text(solved(name) + WRONG.format(names=tuple(answered.values())))
-    wrong, open_ = truths(unpacked, notebook, tmp_path), truths(unpacked, notebook, unpacked / "lessons")
-    assert len(wrong) >= least and wrong == open_
+        (tmp_path / "right" / f"{name}.py").write_text(solved(name))
+        (tmp_path / "wrong" / f"{name}.py").write_text(solved(name) + WRONG.format(names=tuple(answered.values())))
+    wrong, right = (truths(unpacked, notebook, tmp_path / folder) for folder in ("wrong", "right"))
+    assert len(wrong) >= least and wrong == right
     for name, places in wrong.items():
         if name.endswith("07-2b95ab truth"):                          # the distances to Kepler's foci sum to 2 m
             distances = [np.hypot(*p) + np.hypot(p[0] + 1.2, p[1]) for p in places]
