@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 
 CACHE = Path(__file__).resolve().parent.parent / ".cache" / "compiled"
+SAVE_WITHIN = 10.0           # wait for another process that saves [s]
 CACHED_SETS = 6              # digests kept on disk: some edits back; older ones are deleted
 
 
@@ -115,13 +116,18 @@ def _shorten_broadcast_error():
 
 
 @cache
-def _ignore_full_disk():
-    """Let numba go on when the disk is full: it then compiles again next time."""
+def _save_one_at_a_time():
+    """Let one process at a time save to a cache, and let numba go on when it cannot: it then compiles again next time.
+
+    numba reads the index of a function, adds an entry and writes it back.  Two processes at once lose an entry, or give
+    the machine code of both the same file.
+    """
+    from filelock import FileLock
     from numba.core.caching import Cache
     keep = Cache.save_overload
 
     def keep_if_possible(cache, signature, data):
-        with suppress(OSError):
+        with suppress(OSError), FileLock(Path(cache.cache_path) / "lock", timeout=SAVE_WITHIN):    # or the disk is full
             keep(cache, signature, data)
     Cache.save_overload = keep_if_possible
 
@@ -132,7 +138,7 @@ def use_cache(digest):
     from numba.core.config import _OptLevel
     _make_dispatcher_constants_cacheable()
     _shorten_broadcast_error()
-    _ignore_full_disk()
+    _save_one_at_a_time()
     numba.config.OPT, numba.config.LOOP_VECTORIZE = _OptLevel(1), 0  # same speed, a third of the compile time
     warnings.filterwarnings("ignore", message="Cannot cache compiled function")  # then it is compiled anew, that is all
     folder = CACHE / digest

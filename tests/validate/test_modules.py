@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -60,6 +61,24 @@ print(sum(lesson.{function}.stats.cache_misses.values()))
 """
     in_a_new_process(ask)
     assert in_a_new_process(ask) == "0"
+
+
+@needs_numba
+def test_two_processes_that_save_at_once_lose_nothing(tmp_path):
+    (tmp_path / "lower.py").write_text("def base(x):\n    return x + x\n")
+    ask = """
+import sys
+from time import sleep
+from numba.core.caching import IndexDataCacheFile
+from validate.modules import bind
+lesson, write = bind("lower", sys.argv[1], compiled=True), IndexDataCacheFile._save_index
+# one process is in the middle of its save when the other begins
+IndexDataCacheFile._save_index = lambda index, entries: (sleep(2.0), write(index, entries))
+print(lesson.base(eval(sys.argv[2])), sum(lesson.base.stats.cache_misses.values()))
+"""
+    with ThreadPoolExecutor(2) as pool:
+        assert list(pool.map(lambda x: in_a_new_process(ask, tmp_path, x), ("3", "1.5"))) == ["6 1", "3.0 1"]
+        assert list(pool.map(lambda x: in_a_new_process(ask, tmp_path, x), ("3", "1.5"))) == ["6 0", "3.0 0"]
 
 
 @needs_numba
