@@ -108,8 +108,8 @@ def make_bodies_2d(x, q, m, inertia, half, planes, gravity, mu, sweeps, margin):
     sizes [m], of a disc its radius twice; planes may be an empty list.
     Raises BadInput for sizes, masses or settings that are not above zero, and planes without a unit normal.
     """
-    x, half, planes = finite_array("a centre x [m]", x), finite_array("a half size [m]", half), finite_array("a plane",
-                                                                                                             planes)
+    x, half = finite_array("a centre x [m]", x), finite_array("a half size [m]", half)
+    planes = finite_array("a plane", planes)
     q, gravity = finite_array("an angle q [rad]", q), finite_array("gravity [m/s²]", gravity)
     planes = planes if planes.size > 0 else np.zeros((0, 3))         # an empty list has no rows to count
     check_bodies(x, half, planes, 2)
@@ -129,8 +129,8 @@ def make_bodies(x, q, m, inertia, half, planes, gravity, mu, sweeps, margin):
 
     q are unit quaternions, inertia (n, 3): principal moments [kg m²]; the rest is as in make_bodies_2d.
     """
-    x, half, planes = finite_array("a centre x [m]", x), finite_array("a half size [m]", half), finite_array("a plane",
-                                                                                                             planes)
+    x, half = finite_array("a centre x [m]", x), finite_array("a half size [m]", half)
+    planes = finite_array("a plane", planes)
     q, gravity = finite_array("a quaternion q [-]", q), finite_array("gravity [m/s²]", gravity)
     inertia = np.asarray(inertia, np.float64)
     planes = planes if planes.size > 0 else np.zeros((0, 4))         # an empty list has no rows to count
@@ -151,13 +151,14 @@ def make_bodies(x, q, m, inertia, half, planes, gravity, mu, sweeps, margin):
 
 def movable_pairs(pairs, inv_mass):
     """Return the Pairs of which at least one body can move: no impulse stops two that cannot."""
-    first, partner = np.zeros(pairs.first.size, np.int64), [0 for _ in range(0)]
+    first, partner, m = np.zeros(pairs.first.size, np.int64), np.empty(pairs.partner.size, np.int64), 0
     for i in range(pairs.first.size - 1):
         for k in range(pairs.first[i], pairs.first[i + 1]):
             if inv_mass[i] + inv_mass[pairs.partner[k]] > 0.0:
-                partner.append(pairs.partner[k])
-        first[i + 1] = len(partner)
-    return Pairs(first, np.array(partner, dtype=np.int64))
+                partner[m] = pairs.partner[k]
+                m += 1
+        first[i + 1] = m
+    return Pairs(first, partner[:m])
 
 
 def checked_bodies(t, x, q, v, omega, dt, steps, p):

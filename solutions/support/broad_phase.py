@@ -24,9 +24,7 @@ class Pairs(NamedTuple):
 
 
 def cell_numbers(low, size):
-    """(cell (n,), stride (d,), cells): the cell of each box's low corner,
-    in a grid that has an empty rim on all sides.
-    """
+    """(cell (n,), stride (d,), cells): the cell of each box's low corner, in a grid with an empty rim on all sides."""
     n, d = low.shape
     cell, stride, cells = np.zeros(n, np.int64), np.ones(d, np.int64), 1
     for c in range(d):
@@ -46,24 +44,27 @@ def cell_size(low, high):
     Raises Diverged where a corner is not finite.
     """
     n, d = low.shape
-    size = 0.0
+    size, span = 0.0, np.empty(d)
     for c in range(d):
-        extent = np.max(high[:, c]) - np.min(low[:, c])
-        if not np.isfinite(extent):
-            raise Diverged("the extent of all bodies [m]", extent, "take more substeps")
-        size = max(size, np.max(high[:, c] - low[:, c]), FINEST * extent)
+        least, last, most, widest = np.inf, -np.inf, -np.inf, 0.0
+        for i in range(n):
+            a, b = low[i, c], high[i, c]
+            if not -np.inf < a <= b < np.inf:
+                raise Diverged("the extent of all bodies [m]", abs(a) + abs(b), "take more substeps")
+            least, last, most, widest = min(least, a), max(last, a), max(most, b), max(widest, b - a)
+        size, span[c] = max(size, widest, FINEST * (most - least)), last - least
     if size == 0.0:                                          # so far out that boxes and ways between them round to 0
         return 1.0
-    while cells_inside(low, size) > CELLS_PER_BODY * n:
+    while cells_inside(span, size) > CELLS_PER_BODY * n:
         size *= 2.0
     return size
 
 
-def cells_inside(low, size):
-    """The number of cells that the low corners span, the rim left out; a float, because it may be huge."""
+def cells_inside(span, size):
+    """The number of cells that low corners with this span (d,) lie in, the rim left out; a float: it may be huge."""
     count = 1.0
-    for c in range(low.shape[1]):
-        count *= np.floor((np.max(low[:, c]) - np.min(low[:, c])) / size) + 1.0
+    for width in span:
+        count *= np.floor(width / size) + 1.0
     return count
 
 
@@ -98,8 +99,9 @@ def box_reaches(low, high, i, plane):
 
 
 def near_pairs(low, high, planes):
-    """Pairs of boxes, corners low and high (n, d), that overlap, and of boxes and the planes (p,
-    d + 1) that they reach.
+    """Pairs of boxes that overlap, and of boxes and the planes that they reach.
+
+    Corners low and high (n, d), planes (p, d + 1).
     """
     n, d = low.shape
     cell, stride, cells = cell_numbers(low, cell_size(low, high))
