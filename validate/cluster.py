@@ -178,8 +178,9 @@ class Child:
         with self.lock:
             if self.process is None or run != self.run or self.process.poll() is not None:
                 self.end(self.run)
-                self.run, self.process = run, subprocess.Popen([sys.executable, "-m", __name__], cwd=modules.ROOT,
-                                                               stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+                self.run = run
+                self.process = subprocess.Popen([sys.executable, "-m", __name__], cwd=modules.ROOT,
+                                                stdin=subprocess.PIPE, stdout=subprocess.PIPE)
             try:
                 pickle.dump(parcel, self.process.stdin)
                 self.process.stdin.flush()

@@ -43,8 +43,8 @@ def verdicts(old, new):
         if was is None:
             yield Change("verdicts", place, f"is new: {now['verdict']}", Verdict(now["verdict"]) is Verdict.DEPARTS)
         elif now is None:
-            optional = was.get("product") in OPTIONAL and not any(was["product"] == c.get("product")
-                                                                  for c in after.values())
+            products = {c.get("product") for c in after.values()}
+            optional = was.get("product") in OPTIONAL and was["product"] not in products
             gone = "was left out" if optional else "is gone"
             yield Change("verdicts", place, f"{gone}; it was: {was['verdict']}", not optional)
         elif was["verdict"] != now["verdict"]:

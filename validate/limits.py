@@ -67,8 +67,8 @@ def table_of(title, rows, key):
     for name, group in [*groups.items(), ("all", rows)]:
         ratios = [row.ratio for row in group]
         sides = f"{sum(row.two_sided for row in group) / len(group):.0%}"
-        table.add_row(name, str(len(group)), sides, *(f"{x:.3g}" for x in (share(ratios, 50), share(ratios, 90),
-                                                                          max(ratios))))
+        largest = share(ratios, 50), share(ratios, 90), max(ratios)
+        table.add_row(name, str(len(group)), sides, *(f"{x:.3g}" for x in largest))
     return table
 
 

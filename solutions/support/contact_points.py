@@ -242,9 +242,8 @@ def box_bounds(x, q, half):
         put(turn[i], 1, (2.0 * (a * b + w * c), 1.0 - 2.0 * (a * a + c * c), 2.0 * (b * c - w * a)))
         put(turn[i], 2, (2.0 * (a * c - w * b), 2.0 * (b * c + w * a), 1.0 - 2.0 * (a * a + b * b)))
         for e in range(3):
-            reach[i, e] = half[i, 0] * abs(turn[i, e, 0]) + half[i, 1] * abs(turn[i, e, 1]) + half[i,
-                                                                                                   2] * abs(turn[i, e,
-                                                                                                                 2])
+            along_x, along_y, along_z = abs(turn[i, e, 0]), abs(turn[i, e, 1]), abs(turn[i, e, 2])
+            reach[i, e] = half[i, 0] * along_x + half[i, 1] * along_y + half[i, 2] * along_z
     return x[:n] - reach, x[:n] + reach, turn
 
 
@@ -258,16 +257,14 @@ def face_gap(C, t, h_a, h_b, k):
 
 
 def edge_gap(C, t, h_a, h_b, i, j):
-    """Gap [m] along the normal of edge i of a and edge j of b; −∞ where these are parallel:
-    then a face says the same.
-    """
+    """Gap [m] along the normal of edge i of a and edge j of b; −∞ if these are parallel: then a face says the same."""
     squared_sine = 1.0 - C[i, j] * C[i, j]
     if squared_sine < PARALLEL:
         return -np.inf
     i_1, i_2, j_1, j_2 = (i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3
     distance = abs(t[i_2] * C[i_1, j] - t[i_1] * C[i_2, j])
-    reach = h_a[i_1] * abs(C[i_2, j]) + h_a[i_2] * abs(C[i_1, j]) + h_b[j_1] * abs(C[i, j_2]) + h_b[j_2] * abs(C[i,
-                                                                                                                 j_1])
+    reach_a = h_a[i_1] * abs(C[i_2, j]) + h_a[i_2] * abs(C[i_1, j])
+    reach = reach_a + h_b[j_1] * abs(C[i, j_2]) + h_b[j_2] * abs(C[i, j_1])
     return (distance - reach) / np.sqrt(squared_sine)
 
 

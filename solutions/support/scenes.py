@@ -63,8 +63,8 @@ def make_contacts(a, b, p, n, inv_mass):
     """
     inv_mass = finite_array("an inverse mass [1/kg]", inv_mass)
     check_shape("the inverse masses", inv_mass, (inv_mass.size,))
-    a, b = check_indices("a body of a contact", a, inv_mass.size), check_indices("a body of a contact", b,
-                                                                                 inv_mass.size)
+    a = check_indices("a body of a contact", a, inv_mass.size)
+    b = check_indices("a body of a contact", b, inv_mass.size)
     p, n = finite_array("a contact point [m]", p), finite_array("a normal [-]", n)
     check_shape("the bodies a", a, (a.size,))
     check_shape("the bodies b", b, (a.size,))
@@ -156,8 +156,8 @@ def make_pile_2d(x, q, m, inertia, half, planes, gravity, mu, substeps, hertz, z
     m [kg] and inertia [kg m²] are numbers or one each; half (n, 2) half sizes [m], of a disc its radius twice.
     Raises BadInput for sizes, masses or settings that are not above zero, and planes without a unit normal.
     """
-    x, half, planes = finite_array("a centre x [m]", x), finite_array("a half size [m]", half), finite_array("a plane",
-                                                                                                             planes)
+    x, half = finite_array("a centre x [m]", x), finite_array("a half size [m]", half)
+    planes = finite_array("a plane", planes)
     q, gravity = finite_array("an angle q [rad]", q), finite_array("gravity [m/s²]", gravity)
     check_pile(x, half, planes, 2)
     n, p = len(x), len(planes)
@@ -176,8 +176,8 @@ def make_pile(x, q, m, inertia, half, planes, gravity, mu, substeps, hertz, zeta
 
     inertia (n, 3): principal moments [kg m²].
     """
-    x, half, planes = finite_array("a centre x [m]", x), finite_array("a half size [m]", half), finite_array("a plane",
-                                                                                                             planes)
+    x, half = finite_array("a centre x [m]", x), finite_array("a half size [m]", half)
+    planes = finite_array("a plane", planes)
     q, gravity = finite_array("a quaternion q [-]", q), finite_array("gravity [m/s²]", gravity)
     inertia = finite_array("a moment of inertia [kg m²]", inertia)
     check_pile(x, half, planes, 3)

@@ -450,8 +450,8 @@ def test_each_broken_law_is_measured_as_a_velocity(lesson, draw):
         u, s = A @ J + b, slow * draw(0.01, 0.1)
         k_n, k_t = np.diag(A)[::2], np.diag(A)[1::2]
         for what, place, dJ, du, expected in (
-                ("approaches", 0, 0.0, -u[0] - s, s), ("pulls", 0, -s / k_n[0], 0.0, s), ("sticks but separates", 2,
-                                                                                          0.0, s, s),
+                ("approaches", 0, 0.0, -u[0] - s, s), ("pulls", 0, -s / k_n[0], 0.0, s),
+                ("sticks but separates", 2, 0.0, s, s),
                 ("sticks but slips", 3, 0.0, s, s), ("has friction outside its cone", 5, 5.0 * s / k_t[2], 0.0,
                                                      5.0 * s),
                 ("slips against its friction on the other side", 7, -5.0 * s / k_t[3], 0.0, 5.0 * s),
@@ -1047,8 +1047,8 @@ def test_a_contact_alone_gets_what_it_asks_for(lesson, draw):
         alone = lesson.ContactSet(c.first, *(field.copy() for field in only))
         arm = lesson.Arms(*(field[:1].copy() for field in arms))
         aim = np.array([draw(5.0, 9.0) + 8.0])
-        v, omega, J = map(np.asarray, lesson.velocity_sweep_2d(v, omega, 0.1 * alone.n, aim, np.array([give]), alone,
-                                                               arm, pile))
+        swept = lesson.velocity_sweep_2d(v, omega, 0.1 * alone.n, aim, np.array([give]), alone, arm, pile)
+        v, omega, J = map(np.asarray, swept)
         u_n = np.sum(alone.n * velocities_at(x, alone, np.column_stack((v, omega))))
         close("u_n + give k_n J_n after the visit [m/s]", u_n + give * arm.k_n[0] * np.sum(alone.n * J), aim[0], 1e-11,
               given=f"aim {aim[0]} m/s, give {give}")

@@ -125,8 +125,8 @@ def test_both_points_of_a_held_joint_have_the_same_velocity_and_no_momentum_is_m
     later = q + h * turns if flat else joints.turn_on(q, turns, h, p.inv_inertia)[0]
     before = q - h * turns if flat else joints.turn_on(q, turns, -h, p.inv_inertia)[0]
     arms = joints.joint_arms_2d if flat else joints.joint_arms
-    apart = [joints.joint_gaps(x + s * h * held, arms(turned, p.joints), p.joints) for s, turned in ((1.0, later),
-                                                                                                (-1.0, before))]
+    apart = [joints.joint_gaps(x + s * h * held, arms(turned, p.joints), p.joints)
+             for s, turned in ((1.0, later), (-1.0, before))]
     assert np.max(np.abs(apart[0] - apart[1])) / (2.0 * h) < 1e-8
     assert np.allclose((held - v).T @ (1.0 / p.inv_mass), 0.0, atol=1e-13)
 

@@ -92,10 +92,10 @@ def test_what_overflows_has_diverged():
 
 def test_angles_come_back_from_points():
     theta = 3.0 * drawn(9, 12)
-    assert np.allclose(worked.angles_of(worked.joint_positions(theta, np.linspace(0.5, 1.5, 12))), theta, rtol=0.0,
-                       atol=1e-13)
-    assert np.allclose(worked.wrapped(np.array([3.5, -3.5, 9.0])), [3.5 - 2.0 * np.pi, 2.0 * np.pi - 3.5,
-                                                                    9.0 - 2.0 * np.pi], rtol=0.0, atol=1e-14)
+    found = worked.angles_of(worked.joint_positions(theta, np.linspace(0.5, 1.5, 12)))
+    assert np.allclose(found, theta, rtol=0.0, atol=1e-13)
+    wrapped = [3.5 - 2.0 * np.pi, 2.0 * np.pi - 3.5, 9.0 - 2.0 * np.pi]
+    assert np.allclose(worked.wrapped(np.array([3.5, -3.5, 9.0])), wrapped, rtol=0.0, atol=1e-14)
 
 
 def test_limits_are_one_for_all_joints_or_one_each():

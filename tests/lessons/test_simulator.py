@@ -283,8 +283,8 @@ def crowd(draw, lesson, d, margin):
                       + [np.append(-np.eye(d)[-1], 1.5)])
     inv_mass = np.append(draw(0.5, 2.0, 7), np.zeros(6))
     inv_inertia = inv_mass if d == 2 else np.repeat(inv_mass[:, None], 3, axis=1)
-    return np.vstack((x, np.zeros((3, d)))), half, planes, bodies_of(lesson, inv_mass, inv_inertia, half, planes,
-                                                                     margin=margin)
+    bodies = bodies_of(lesson, inv_mass, inv_inertia, half, planes, margin=margin)
+    return np.vstack((x, np.zeros((3, d)))), half, planes, bodies
 
 
 @exercise("10.5", points=0.5, hint="widen the boxes by the margin on all sides, and let narrow find gaps up to margin")

@@ -307,8 +307,8 @@ def natural(cone=lambda mu, J: mu * J if J > 0.0 else 0.0, scaled=True, tangents
             limit = cone(mu[n // 2] if own else mu[0], J[n] if given else new)
             off_n = max(0.0, J[n] - u[n] / k_n) - J[n]
             off_t = min(max(J[n + 1] - u[n + 1] / k_t, -limit if two_sided else 0.0), limit) - J[n + 1]
-            sizes += [(k_n if scaled else 1.0) * abs(off_n)] * normals + [(k_t if scaled
-                                                                           else 1.0) * abs(off_t)] * tangents
+            scale_n, scale_t = (k_n, k_t) if scaled else (1.0, 1.0)
+            sizes += [scale_n * abs(off_n)] * normals + [scale_t * abs(off_t)] * tangents
         return total(sizes)
     return cone_residual
 

@@ -206,8 +206,8 @@ def projecting(enough=lambda done, change, longest: change <= 1e-12 * longest, s
 
 wrong("8.5", "stops after one iteration")(projecting(enough=lambda done, change, longest: True))
 wrong("8.5", "stops after two iterations")(projecting(enough=lambda done, change, longest: done == 1))
-wrong("8.5", "compares the change with an absolute 1e-12 m")(projecting(enough=lambda done, change,
-                                                                               longest: change <= 1e-12))
+wrong("8.5", "compares the change with an absolute 1e-12 m")(
+    projecting(enough=lambda done, change, longest: change <= 1e-12))
 edit("8.5", "tests only positive corrections", "np.max(np.abs(change))", "np.max(change)")
 wrong("8.5", "does not raise Diverged")(projecting(gives_up=False))
 wrong("8.5", "keeps the predicted velocity")(projecting(speed=lambda new, x, goal, v, dt: (goal - x) / dt))

@@ -16,8 +16,8 @@ def slower(task, theta, target, arm):
 
 def with_damping(times):
     """The damped step with another damping than it was told."""
-    return lambda task, theta, target, arm: worked.damped_step(task, theta, target,
-                                                               arm._replace(damping=times * arm.damping))
+    return lambda task, theta, target, arm: worked.damped_step(
+        task, theta, target, arm._replace(damping=times * arm.damping))
 
 
 def nudged(step):

@@ -105,8 +105,8 @@ def kept_L(update):
 
 def by_columns(q, omega, h):
     """(1 + h ω*) R, its columns made orthonormal from the first to the last."""
-    a, b, c = zip(*(plus(row, move, h) for row, move in zip(matrix(q), zip(*(cross(omega, column)
-                                                                             for column in zip(*matrix(q)))))))
+    moves = zip(*(cross(omega, column) for column in zip(*matrix(q))))
+    a, b, c = zip(*(plus(row, move, h) for row, move in zip(matrix(q), moves)))
     a = tuple(x / length(a) for x in a)
     b = plus(b, a, -dot(a, b))
     b = tuple(x / length(b) for x in b)

@@ -129,8 +129,8 @@ def stability(path, case):
     figure, axes = plt.subplots()
     labels = [label for label, *_ in picture["series"]]
     measured = {thing_of(label) for label, _, _, mark in picture["series"] if mark == "dots"}
-    for (label, xs, ys, mark), colour, marker, dashes in zip(picture["series"], series_colours(labels),
-                                                             series_markers(labels), series_dashes(labels)):
+    looks = zip(series_colours(labels), series_markers(labels), series_dashes(labels))
+    for (label, xs, ys, mark), (colour, marker, dashes) in zip(picture["series"], looks):
         few = len(xs) <= 60
         look = ({"ls": "", "marker": marker, "ms": 5 if few else 2, "zorder": 2} if mark == "dots" else
                 {"ls": "-" if thing_of(label) in measured else dashes, "zorder": 3})

@@ -880,8 +880,8 @@ def exact_touches(lesson):
         "a centre on a face": np.array_equal(beside.n, [1.0, 0.0, 0.0]) and beside.gap == -0.25,
         "the centre of a box": np.array_equal(middle.n, [1.0, 0.0, 0.0]) and middle.gap == -1.25,
         "a box on a box": len(lesson.box_box(upper, box).gap) == 4,
-        "a disc straight ahead": np.array_equal(np.sign(lesson.steer(*np.array(((0.0, 0.0), (2.0, 0.0), (3.0, 0.0))),
-                                                                     1.0, 5.0)), [0.0, 1.0]),
+        "a disc straight ahead": np.array_equal(
+            np.sign(lesson.steer(*np.array(((0.0, 0.0), (2.0, 0.0), (3.0, 0.0))), 1.0, 5.0)), [0.0, 1.0]),
     }
 
 

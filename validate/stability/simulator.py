@@ -173,8 +173,8 @@ def rocking_to_the_end(lesson):
               for b in widths[::4]]
     return found, Picture("What an impact leaves", "half width of a block of half height 0.5 m [m]",
                           "rate after over before [-]", [
-        series("theory, 1 − 1.5 sin²α", widths, 1.0 - 1.5 * sine**2, LINE), series("corner_impact", widths[::4], ratios,
-                                                                                  DOTS)],
+        series("theory, 1 − 1.5 sin²α", widths, 1.0 - 1.5 * sine**2, LINE),
+        series("corner_impact", widths[::4], ratios, DOTS)],
         "A slender block loses next to nothing at each impact and rocks for long; a cube stops at once.")
 
 
@@ -243,8 +243,8 @@ def flight_and_its_invariants(lesson):
     found.append(agreement("Two runs are compared by difference and by time.", "error of 0.01 m and of 6 [m, -]",
                            max(abs(difference - 0.01), abs(ratio - 6.0)), ROUND_OFF))
     return found, Picture("How far a body falls in 1.2 s", "dt [s]", "fall [m]", [
-        series("theory, ½ g T (T + dt)", dts, 0.5 * G * T * (T + np.array(dts)), LINE), series("measured", dts, falls,
-                                                                                              DOTS)],
+        series("theory, ½ g T (T + dt)", dts, 0.5 * G * T * (T + np.array(dts)), LINE),
+        series("measured", dts, falls, DOTS)],
         "Moving with the new velocity makes a fall too deep by ½ g T dt: exactly, whatever the step is.")
 
 

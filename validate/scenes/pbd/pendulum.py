@@ -188,6 +188,7 @@ SCENE = Scene(
         (10.0, (0.275087463, -0.961419205), 5e-10),
         (2.367841948, (1.0, 0.0), 5e-9),
     ),
+    finer_in_full={"pymunk": (20_000, 50_000)},
     shorter_in_quick={"constraint_projection_step": 2000},
     sanity_checks=sanity_checks,
     points=points, links=links,
