@@ -10,7 +10,7 @@ from validate.reference.contact import Settling, Towers, sway_of_tower, unrest_i
 from validate.results import is_right
 from validate.scenes.contact import mass_ratio, piles, stack
 
-TEXT = (modules.SOLUTIONS / "contact.py").read_text(encoding="utf-8")
+TEXT, SIMULATOR = ((modules.SOLUTIONS / f"{name}.py").read_text(encoding="utf-8") for name in ("contact", "simulator"))
 CONE = "limit = mu[n // 2] * J[n] if J[n] > 0.0 else 0.0"
 WRONG = [                    # scene, case, method, a right line, a wrong one
     ("mass_ratio", "relaxed sweeps, 10 : 1", "sweeps, counted", "omega = 2.0 / (1.0 + np.sqrt(1.0 - rho))",
@@ -32,7 +32,8 @@ WRONG = [                    # scene, case, method, a right line, a wrong one
                          ids=[f"{scene}-{k}" for k, (scene, *_) in enumerate(WRONG)])
 def test_a_wrong_answer_departs(tmp_path, scene, case, method, right, wrong):
     assert right in TEXT
-    (tmp_path / "contact.py").write_text(TEXT.replace(right, wrong).replace("from .", "from solutions."))
+    for lesson, text in (("contact", TEXT.replace(right, wrong)), ("simulator", SIMULATOR)):
+        (tmp_path / f"{lesson}.py").write_text(text.replace("from .", "from solutions."))
     result = measure.errors(scene, measure.Plan(of=str(tmp_path), speeds=("plain",), live=()))
     verdicts = {c["label"]: is_right(c) for c in result["cases"][case]["ours"]}
     assert verdicts[method] is False, verdicts

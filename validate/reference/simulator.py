@@ -8,11 +8,12 @@ from scipy.integrate import solve_ivp
 RTOL, ATOL = 1e-12, 1e-14
 
 
-def rocking(half_width, half_height, g, lean, t):
+def rocking(half_width, half_height, g, lean, t, pushed=0.0):
     """Return (angle [rad], rate [rad/s], times and rates (before, after) of the impacts) of a uniform block at t.
 
-    It is let go at `lean` on its left corner.  About a corner 4/3 m R² θ̈ = −m g R sin(α − θ), by DOP853 until the
-    angle is zero; then the moment of momentum about the other corner stays: with the products of inertia written out,
+    It begins at `lean` on its left corner, with the rate `pushed`.  About a corner 4/3 m R² θ̈ = −m g R sin(α − θ), by
+    DOP853 until the angle is zero; then the moment of momentum about the other corner stays: with the products of
+    inertia written out,
         before:  I ω + m (h² − b²) ω,       after:  (I + m R²) ω⁺,       I = m R²/3
     *Source:* Housner 1963.
     """
@@ -23,7 +24,7 @@ def rocking(half_width, half_height, g, lean, t):
     def flat(_, y):
         return y[0]
     flat.terminal, flat.direction = True, -1.0
-    now, y, side, impacts = 0.0, np.array([lean, 0.0]), 1.0, []
+    now, y, side, impacts = 0.0, np.array([lean, pushed]), 1.0, []
     while now < t:
         run = solve_ivp(lambda _, y: (y[1], -rate * np.sin(alpha - y[0])), (now, t), y, method="DOP853", rtol=RTOL,
                         atol=ATOL, events=flat)
