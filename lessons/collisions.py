@@ -34,7 +34,7 @@ __all__ = [
 NEVER = np.inf               # time of an event that does not occur in this step [s]
 DEGENERATE_AREA = 1e-12      # area over longest edge squared below which a triangle's normal is round-off [-]
 MAX_GJK_STEPS = 100          # at most [-]; ordinary pairs need below 20, ellipsoids of 1 : 300 sometimes all of them
-EDGE_PREFERENCE = 1e-9       # how much better than faces a pair of edges must separate [m]; prevents alternation
+EDGE_PREFERENCE = 1e-9       # of the size: so much better must a pair of edges separate [-]; prevents alternation
 
 
 class Contact(NamedTuple):
@@ -191,7 +191,7 @@ def ball_box(x, r, box):
         n = sign(y_i) times that axis, sign(0) = 1;   gap = −depth − r,   p_a = x − r n,   p_b = x + depth n
 
     column(box.R, i) is axis i.
-    *Source:* Ericson 2005, section 5.1.3.
+    *Source:* Ericson 2005, section 5.1.4, the nearest point of a turned box.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 6.8: ball_box")
@@ -202,8 +202,8 @@ def ball_box(x, r, box):
 def swept_box(low, high, move):
     """Return (low, high), each (d,): the box around the path of a box low, high (d,) that moves by move (d,) [m].
 
-    Each of its faces is at the outer one of the first and last positions of that face.  If no body touches this box,
-    the moving body hits nothing.
+    Each of its faces is at the outer one of the first and last positions of that face.  A body at rest that does not
+    touch this box is not hit.  If both bodies move, neither hits the other unless their swept boxes touch.
     *Source:* first lecture deck, “Swept volumes”.
     *Left out:* the swept volume itself, which is smaller than the box around it.
     """
@@ -269,7 +269,7 @@ def clip(y, n, d):
         y_i + s_i/(s_i − s_j) (y_j − y_i)
     A segment (k = 2) has only one edge: there is no crossing from its second corner back to its first.  If nothing is
     left, return an array without rows.  y itself may have no row or one row, because it can be the result of another
-    cut.
+    cut.  All numbers are finite.
     *Source:* Sutherland and Hodgman 1974.
     """
     # YOUR CODE HERE
@@ -281,8 +281,8 @@ def box_separation(a, b):
 
     gap along an axis:   |r · axis| − half_width(a, axis) − half_width(b, axis),     r = x_a − x_b
     Choose the axis of the greatest gap.  An axis of two edges (k ≥ 6) wins only if its gap exceeds the best gap before
-    it, of faces (k < 6) and edges, by EDGE_PREFERENCE.  Of equal gaps the first counts.  candidate_axis(a, b, k)
-    returns axis k; skip those that are zeros.  n = ±axis, such that n · r ≥ 0.
+    it, of faces (k < 6) and edges, by EDGE_PREFERENCE times the longest half edge of both boxes.  Of equal gaps the
+    first counts.  candidate_axis(a, b, k) returns axis k; skip those that are zeros.  n = ±axis, such that n · r ≥ 0.
 
     gap > 0: the boxes are at least that far apart along n.  gap ≤ 0: they overlap, and −gap along n is the shortest way
     out.
@@ -328,7 +328,7 @@ def repulsion(x, centre, radius, reach, k):
 
 
 def steer(x, v, centre, radius, ahead):
-    """Return the acceleration (2,) [m/s²], across v, that just steers a body at x with v (2,) around a disc in its way.
+    """Return the acceleration (2,) [m/s²], across v, that steers a body at x with v (2,) aside from a disc in its way.
 
     e = v/|v|,   r = centre − x,   τ = r · e/|v|                  time until the body passes the centre
     y = r − (r · e) e                                             offset from the centre when it passes: −y
@@ -336,7 +336,11 @@ def steer(x, v, centre, radius, ahead):
 
     *Find* its size: constant for the time τ, it moves the body aside until the offset from the centre is the radius.
     If the body heads for the exact centre (y = 0), it turns left: −y/|y| = (−e₁, e₀).
-    radius [m] is the sum of the disc's radius, the body's own and the clearance.  At rest (v = 0): 0.
+    At rest (v = 0): 0.
+    radius [m] is the sum of the disc's radius, the body's own and a clearance.  The clearance is needed.  A body that
+    holds this acceleration for τ ends at the distance radius, abreast of the centre, but it was nearer just before:
+    by no more than the factor |v|/√(v² + a²τ²).  It ends faster by the inverse of that factor.  If the acceleration is
+    computed anew all the time, it remains across v, so the speed remains, and the body comes much less too near.
     *Source:* first lecture deck, “Collision avoidance: steer to avoid”; Reynolds 1999.
     """
     # YOUR CODE HERE

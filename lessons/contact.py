@@ -17,7 +17,7 @@ step.
 
 import numpy as np
 
-from solutions.checks import Diverged
+from solutions.checks import Diverged, float_copy
 from solutions.integrators import solve
 from solutions.support.arms import Arms, apply_impulse, point_velocity_of
 from solutions.support.contact_points import (
@@ -33,6 +33,7 @@ from solutions.support.contact_points import (
 from solutions.support.scenes import (
     Pile,
     PileState,
+    check_friction_problem,
     check_independent,
     check_scene,
     inverse_masses,
@@ -45,7 +46,7 @@ from solutions.vectors import dot
 
 CONVERGED = 1e-13            # residual over the terms that it is a sum of [-]: a thousand roundings
 MAX_SWEEPS = 50_000          # of solve_contacts [-]; a stack of 20 needs 3,800
-MAX_PIVOTS = 1000            # of solve_lcp, per contact [-]; it has needed two per contact
+MAX_PIVOTS = 100             # of solve_lcp, per contact [-]; contacts of bodies have needed two, the worst case 2ᵐ/m
 
 
 # ---------------------------------------------------------------------- exactly: all contacts in matrices
@@ -78,7 +79,7 @@ def delassus_matrix(G, w):
 def complementarity_residual(A, b, lam):
     """How far [m/s] normal impulses λ (m,) are from the law 0 ≤ λ ⊥ A λ + b ≥ 0.
 
-    largest |min(A_kk λ_k, (A λ + b)_k)|          A_kk turns the impulse into a velocity
+    largest |min(A_kk λ_k, (A λ + b)_k)|          A_kk turns the impulse into a velocity; m ≥ 1
 
     It is 0 exactly if no contact pulls, no contact approaches, and no contact both pushes and separates.
     *Source:* min(x, y) = 0 if and only if x ≥ 0, y ≥ 0 and x y = 0; Cottle, Pang and Stone 1992.
@@ -92,7 +93,8 @@ def gauss_seidel_sweep(A, b, lam, omega):
 
     λ_k ← max(0, λ_k − ω u_k/A_kk),      u_k = Σ_l A_kl λ_l + b_k  with the newest λ_l
 
-    With ω = 1 each visit stops the approach of its contact, as if it were alone.  Returns a new array.
+    With ω = 1 each visit stops the approach of its contact, as if it were alone.  The diagonal of A is above zero.
+    Returns a new array.
     *Source:* Cryer 1971.  Sequential impulses (Catto 2006) are the same with ω = 1.
     """
     # YOUR CODE HERE
@@ -144,8 +146,9 @@ def solve_lcp(A, b):
         ε_k = CONVERGED (Σ_l |A_kl λ_l| + |b_k|) is round-off.
         If none is wrong, return λ.  Otherwise change the guess for one contact only: the wrong one of least index.
     For a positive definite A no guess occurs twice, so the method ends.  There is only one answer, so another fixed
-    order, such as the greatest index first, is right as well.
-    Raises what check_independent(A) raises; call it first.  After the last round raises
+    order, such as the greatest index first, is right as well.  An order that depends on how wrong a contact is may
+    repeat guesses for ever.
+    Raises what check_independent(A, b) raises; call it first.  After the last round raises
     Diverged("complementarity residual [m/s]", complementarity_residual(A, b, λ), "use projected Gauss–Seidel").
     *Source:* Murty 1974.
     """
@@ -174,7 +177,7 @@ def cone_sweep(A, b, J, mu):
     J_n ← max(0, J_n − u_n/k_n),      J_t ← J_t − u_t/k_t, but at most μ J_n in size (0 where J_n = 0)
 
     Each u comes from the newest J, and the limit from the new J_n.  Layout and μ are those of cone_residual.  If a
-    sweep leaves J unchanged, its residual is 0.  Returns a new array.
+    sweep leaves J unchanged, its residual is 0.  The diagonal of A is above zero.  Returns a new array.
     *Source:* Jourdan, Alart and Jean 1998; Catto 2006.
     """
     # YOUR CODE HERE
@@ -184,15 +187,21 @@ def cone_sweep(A, b, J, mu):
 def solve_contacts(A, b, mu):
     """Given.  J (2m,) by cone_sweep from 0 until cone_residual is at most CONVERGED times the largest (|A||J| + |b|)_k.
 
-    Raises Diverged with the residual after MAX_SWEEPS sweeps, which are too few for a mass ratio of a million.
+    Raises what check_friction_problem(A, b, mu) raises, and Diverged with the residual after MAX_SWEEPS sweeps, which
+    are too few for a mass ratio of a million, or earlier where 1,000 sweeps do not reduce it.
     """
-    J, residual = np.zeros(b.size), np.inf
-    for _ in range(MAX_SWEEPS // 10):
+    check_friction_problem(A, b, mu)
+    J, residual, before = np.zeros(b.size), np.inf, np.inf
+    for k in range(MAX_SWEEPS // 10):
         for _ in range(10):
             J = cone_sweep(A, b, J, mu)
         residual = cone_residual(A, b, J, mu)
         if residual <= CONVERGED * np.max(np.abs(A) @ np.abs(J) + np.abs(b)):
             return J
+        if k % 100 == 99:
+            if not residual < before:
+                break
+            before = residual
     raise Diverged("residual of the contacts [m/s]", residual, "use a direct solver, or more equal masses")
 
 
@@ -245,7 +254,8 @@ def kept_impulses(contacts, old, J_old, near):
 
     The old one is the nearest contact of `old` with the same a and the same b, if it is closer than `near` [m]; else J
     is 0.  Normals may have turned, so copy the vector.  Two new contacts may take over the same old impulse.
-    contacts and old are ContactSets; J_old belongs to old.  old.first says where the contacts of each body a are.
+    contacts and old are ContactSets with fields first, a, b, n, p and gap; J_old belongs to old.  Old contacts are
+    ordered by a: those with a = i have the numbers old.first[i], …, old.first[i + 1] − 1.
     *Source:* Catto 2006.
     """
     # YOUR CODE HERE
@@ -269,8 +279,8 @@ def velocity_sweep_2d(v, omega, J, aim, give, contacts, arms, pile):
     J_t ← J_t − u_t/k_t, but at most μ J_n in size, with the new J_n          along t = (−n_y, n_x);   k_t = arms.k_t[k]
     Both use the same u.  Then the change of J acts on a, and minus that on b:   v += J/m,   ω += (r × J)/I
 
-    v (n + p, 2), omega (n + p,), J (m, 2) in x and y, aim and give (m,); masses and mu from pile.  μ = ∞ sticks where
-    J_n > 0.  Returns new arrays.
+    v (n + p, 2), omega (n + p,), J (m, 2) in x and y, aim and give (m,).  1/m of body i is pile.inv_mass[i], 1/I is
+    pile.inv_inertia[i], and μ is pile.mu, the same for all contacts.  μ = ∞ sticks where J_n > 0.  Returns new arrays.
     *Source:* sequential impulses, Catto 2006; aim and give: see soft_contact.
     """
     # YOUR CODE HERE
@@ -279,7 +289,7 @@ def velocity_sweep_2d(v, omega, J, aim, give, contacts, arms, pile):
 
 def velocity_sweep(v, omega, J, aim, give, contacts, arms, inv_mass, inv_inertia, mu):
     """Given.  The same in space: J_t in the disc of friction, inv_inertia (n + p, 3, 3) in the world."""
-    v, omega, J = v.copy(), omega.copy(), J.copy()
+    v, omega, J = float_copy(v), float_copy(omega), float_copy(J)
     for k in range(contacts.a.size):
         a, b, k_n, old = contacts.a[k], contacts.b[k], arms.k_n[k], row(J, k)
         n, r_a, r_b = row(contacts.n, k), row(arms.r_a, k), row(arms.r_b, k)

@@ -91,7 +91,7 @@ def static_friction(F, n, mu_s):
     F_s = −μ_s F_N F_t/|F_t|             beyond: then the body begins to slide
 
     Take μ_s F_N from cone_radius, which raises BadInput for a negative μ_s and handles μ_s = ∞.
-    *Source:* first lecture deck, “Static friction”, F_s = μ_s F_N.
+    *Source:* first lecture deck, “Static friction”, F_s = μ_s F_N, which is the limit and not the size: F_s ≤ μ_s F_N.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 3.2: static_friction")
@@ -135,7 +135,8 @@ def friction_impulse(v_t, m, j_n, mu):
     velocity of the size of round-off, and any velocity counts as motion.  Both cases together are Coulomb's law, which
     follows from the principle of maximum dissipation alone.
     j_n ≥ 0 [N s] is the normal impulse; take μ j_n from cone_radius.
-    *Source:* second lecture deck, “Maximum dissipation principle”; Moreau 1973 for the principle.
+    *Source:* second lecture deck, “Maximum dissipation principle”, where v̂_t = v_t/|v_t| is meant by v_t; Moreau 1973
+    for the principle.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 3.5: friction_impulse")

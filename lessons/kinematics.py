@@ -13,10 +13,11 @@ A task is a function  task(θ, target, arm) → (e, J).  A method is a function 
 
 import numpy as np
 
-from solutions.checks import BadInput, check_array, check_shape, finite_array
+from solutions.checks import BadInput, check_array, check_shape, finite_array, float_copy
 from solutions.rotation import quaternion_product
 from solutions.support.chains import Arm2D, Arm3D, check_found, checked_reach, make_arm_2d, make_arm_3d, wrapped
 from solutions.support.quaternions import exponential, rotate
+from solutions.support.records import check_record
 from solutions.support.small_systems import row_products, solve_symmetric, sum_of_rows
 from solutions.support.tuples import across, minus, plus, put, row, scaled
 
@@ -49,7 +50,7 @@ def joint_positions(theta, lengths):
 def jacobian_2d(x):
     """J (2, n) [m/rad]: column k is the velocity of the end when only joint k turns, at 1 rad/s.
 
-    column k = (−r_y, r_x),      r = x_n − x_k          x (n + 1, 2) as joint_positions gives it
+    column k = (−r_y, r_x),      r = x_n − x_k          x (n + 1, 2): the joints and the end, anywhere in the plane
 
     *Source:* Lynch and Park 2017, chapter 5.
     """
@@ -72,12 +73,13 @@ def velocity_ellipse(J):
 def solve_2r(target, lengths, elbow):
     """θ (2,), both from −π to π, with which the first two links end at the target (2,); elbow = ±1 is the sign of θ₂.
 
-    θ₂ = elbow · 2 atan2(√((l₁ + l₂)² − r²), √(r² − (l₁ − l₂)²)),      r = |target|
+    θ₂ = elbow · 2 atan2(√((b − r)(b + r)), √((r − a)(r + a))),      r = |target|,  a = |l₁ − l₂|,  b = l₁ + l₂
     θ₁ = atan2(y, x) − atan2(l₂ sin θ₂, l₁ + l₂ cos θ₂), wrapped(θ₁) if that is outside
 
-    This is cos θ₂ = (r² − l₁² − l₂²)/(2 l₁ l₂), in terms of half the angle.  Take the root of a negative number as 0.
-    Raises BadInput("distance of the target [m]", r, remedy) where r is above l₁ + l₂ or below |l₁ − l₂| by more than
-    EDGE (l₁ + l₂), which is round-off.  *Source:* Lynch and Park 2017, chapter 6; the law of cosines.
+    This is cos θ₂ = (r² − l₁² − l₂²)/(2 l₁ l₂).  Half the angle and the products keep all digits of θ₂ at the edges of
+    the reach, where the arccosine and b² − r² lose half of them.  Take the root of a negative number as 0.
+    Raises BadInput("distance of the target [m]", r, remedy) where r is above b or below a by more than EDGE b, which is
+    round-off.  lengths may have more entries.  *Source:* Lynch and Park 2017, chapter 6; the law of cosines.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 11.4: solve_2r")
@@ -87,7 +89,7 @@ def solve_3r(target, lengths, elbow):
     """θ (3,), all from −π to π, with which three links end at (x, y) with the direction φ: target = (x, y, φ).
 
     The last joint must be at (x, y) − l₃ (cos φ, sin φ).  solve_2r brings it there; then θ₃ = φ − θ₁ − θ₂, wrapped.
-    Raises what solve_2r raises.
+    φ may be any number of turns away from θ₁ + θ₂ + θ₃.  Raises what solve_2r raises.
     *Source:* Lynch and Park 2017, chapter 6.
     """
     # YOUR CODE HERE
@@ -175,8 +177,9 @@ def end_pose(theta, arm):
 # ---------------------------------------------------------------------------------------------- methods with a Jacobian
 
 def transpose_step(task, theta, target, arm):
-    """θ + α Jᵀ e:  one step of steepest descent on ½|e|², α = arm.gain.
+    """θ + α Jᵀ e:  one step of steepest descent on ½|e|², α = arm.gain.  Limits are not kept.
 
+    e (m,) and J (m, n) have all rows of the task, which may be 2, 3, 6 or more.
     Near a target within reach it converges only for α < 2/σ₁².
     *Source:* Wolovich and Elliott 1984.
     """
@@ -205,8 +208,9 @@ def pseudo_inverse_step(task, theta, target, arm):
 def damped_step(task, theta, target, arm):
     """θ + Jᵀ (J Jᵀ + λ² 1)⁻¹ e:  the Δθ with the smallest |J Δθ − e|² + λ² |Δθ|², λ = arm.damping.
 
-    No step is longer than |e|/(2λ).  Where J Jᵀ has no inverse, λ must be above 0.  Given are row_products(J) for J Jᵀ,
-    solve_symmetric(A, e) for A⁻¹ e, and sum_of_rows(J, y) for Jᵀ y: compiled, they are faster than NumPy.
+    No step is longer than |e|/(2λ).  Where J Jᵀ has no inverse, λ must be above 0.  Limits are not kept.
+    Given are row_products(J) for J Jᵀ, solve_symmetric(A, e) for A⁻¹ e, and sum_of_rows(J, y) for Jᵀ y: compiled, they
+    are faster than NumPy.
     *Source:* Wampler 1986; Nakamura and Hanafusa 1986.  Levenberg 1944 for least squares.
     """
     # YOUR CODE HERE
@@ -239,7 +243,7 @@ def ccd_step(task, theta, target, arm):
     θ_k ← θ_k + Δ_k, but not beyond arm.low_k and arm.high_k; then turn the end about x_k by the change of θ_k.
 
     All x_k are those before the sweep, because joints nearer to the base have not turned yet.
-    task is not used.  Returns a new array.
+    Where s is 0, any Δ_k is right, as the end is equally far away.  task is not used.  Returns a new array.
     *Source:* Wang and Chen 1991.
     """
     # YOUR CODE HERE
@@ -303,7 +307,7 @@ def null_space_step(task, theta, target, arm):
     """θ + Δθ:  go to the target, and use the remaining freedom to approach the angles arm.rest (n,).
 
     z = κ (rest − θ) is the desired change, κ = arm.pull.  *Find* Δθ with pseudo_inverse: of all Δθ for
-    which |J Δθ − e| is smallest, the one that is nearest to z.
+    which |J Δθ − e| is smallest, the one that is nearest to z.  Limits are not kept.
     *Source:* Liégeois 1977.
     """
     # YOUR CODE HERE
@@ -314,6 +318,7 @@ def null_space_step(task, theta, target, arm):
 
 def advance_reach(step, task, theta, target, iterations, arm):
     """Given.  θ after so many iterations.  Raises BadInput for invalid input, Diverged if θ is no longer finite."""
+    check_record(arm, theta)
     theta, target, _, iterations = checked_reach(theta, target, 0.0, iterations, arm.low.size)
     theta = theta.copy()
     for _ in range(iterations):
@@ -325,6 +330,7 @@ def advance_reach(step, task, theta, target, iterations, arm):
 
 def reach_trajectory(step, task, theta, target, iterations, arm):
     """Given.  The angles (iterations + 1, n) before the first iteration and after each."""
+    check_record(arm, theta)
     theta, target, _, iterations = checked_reach(theta, target, 0.0, iterations, arm.low.size)
     thetas = np.empty((iterations + 1, theta.size))
     thetas[0] = theta
@@ -338,6 +344,7 @@ def solve_reach(step, task, theta, target, tolerance, most, arm):
 
     A target out of reach is not an error: |e| is the distance that remains.  Raises what advance_reach raises.
     """
+    check_record(arm, theta)
     theta, target, tolerance, most = checked_reach(theta, target, tolerance, most, arm.low.size)
     theta, iterations = theta.copy(), 0
     e, _ = task(theta, target, arm)
@@ -351,6 +358,7 @@ def solve_reach(step, task, theta, target, tolerance, most, arm):
 
 def solve_targets(step, task, theta, targets, tolerance, most, arm):
     """Given.  (θ (m, n), |e| (m,), iterations (m,)) for each of the targets (m, …), all from the same θ (n,)."""
+    check_record(arm, theta)
     theta, targets = finite_array("the angles θ [rad]", theta), finite_array("the targets", targets)
     check_array("the targets", targets, 2)
     m = targets.shape[0]

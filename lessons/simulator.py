@@ -16,7 +16,7 @@ Given in support/simulator.py: a loop with joints.  Given in support/invariants.
 
 import numpy as np
 
-from solutions.checks import check_end, checked_run
+from solutions.checks import check_end, check_load, check_shape, checked_run
 from solutions.contact import kept_impulses, velocity_sweep, velocity_sweep_2d
 from solutions.impulses import cross_2d
 from solutions.integrators import rk4_step
@@ -37,6 +37,7 @@ from solutions.support.bodies import (
     Bodies,
     CarriedBall,
     RockingBlock,
+    Toppled,
     check_sinking,
     check_speed,
     checked_bodies,
@@ -59,6 +60,7 @@ from solutions.support.contact_points import (
     largest_overlap,
     round_contacts,
 )
+from solutions.support.forces import contact_force, joint_forces, joint_forces_2d, normal_and_friction, normal_forces
 from solutions.support.invariants import (
     checked_histories,
     closing_speeds,
@@ -75,6 +77,8 @@ from solutions.support.joints import (
     parting_speeds,
     without_joined,
 )
+from solutions.support.passing import check_passing
+from solutions.support.records import check_record
 from solutions.support.scenes import PileState
 from solutions.vectors import cross, dot, norm
 
@@ -106,8 +110,8 @@ def new_velocities(load, t, x, q, v, omega, dt, p):
 
     v ← v + dt F/m,      ω ← ω + dt ω̇,      with ω̇ = angular_acceleration(q, ω, τ, I_body) of lesson 5, body by body
 
-    I_body = 1/p.inv_inertia[i] (3,).  A body whose inv_inertia is 0 keeps its ω, even if it has a finite mass.  Returns
-    new arrays.
+    I_body = 1/p.inv_inertia[i] (3,).  The three numbers in inv_inertia[i] are all above 0 or all 0.  If they are 0, the
+    body keeps its ω, even if it has a finite mass; forces move it all the same.  Returns new arrays.
     *Source:* second lecture deck, “Simulation loop”, with the gyroscopic term.
     """
     # YOUR CODE HERE
@@ -219,6 +223,7 @@ def slip_time(v, omega, ball):
     The rate is constant.  Friction is as large as Coulomb allows, μ m |g_z|.  I = I_body[0] is the same about all
     axes.
     Only the part of u along the floor counts: set u_z = 0.  Return 0 where u = 0, and inf where |u| does not decrease.
+    All numbers are finite, but μ may be ∞; advance_rigid_body has checked that.
     Gravity along the floor must be zero or parallel to u, or u would change its direction.
     *Source:* Newton and Euler, with Coulomb's law.
     """
@@ -241,8 +246,8 @@ def corner_impact(v, omega, r, inv_mass, inv_inertia):
     """Return (v (2,), ω) of a body in the plane after its point at r (2,) has hit an edge and stops there.
 
     *Find* what the impulse, which acts at that point, leaves unchanged.  Afterwards the body turns about that point.
-    v is the velocity of the centre, and r × v = cross_2d(r, v).  For a slender block the result is Housner's ratio
-    ω⁺/ω = 1 − 1.5 sin²α.
+    v is the velocity of the centre, and r × v = cross_2d(r, v).  inv_mass and inv_inertia are above zero.  For a
+    slender block the result is Housner's ratio ω⁺/ω = 1 − 1.5 sin²α.
     *Source:* Housner 1963, “The behavior of inverted pendulum structures during earthquakes”.
     """
     # YOUR CODE HERE
@@ -277,7 +282,8 @@ def mechanical_energy(x, q, v, omega, p):
     """Return the energy [J] of all bodies in space that can move:  Σ ½ m v² + ½ ω · I ω − m g · x.
 
     ½ ω · I ω = ½ Σ Iₖ ωₖ², with the components of ω in body coordinates (unrotate) and Iₖ = 1/p.inv_inertia[i, k].
-    Rows with inv_mass = 0 do not count; a body whose inv_inertia is 0 has no energy of rotation.
+    Rows with inv_mass = 0 do not count; a body whose inv_inertia is 0 has no energy of rotation.  No field of p is NaN:
+    the loops refuse such a record.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 10.13: mechanical_energy")
@@ -288,7 +294,7 @@ def momenta(x, q, v, omega, p):
 
     P = Σ m v,      L = Σ x × m v + I ω          I ω = body_angular_momentum(q, ω, I_body) of lesson 5
 
-    Rows with inv_mass = 0 do not count; a body whose inv_inertia is 0 has no I ω.
+    Rows with inv_mass = 0 do not count; a body whose inv_inertia is 0 has no I ω.  No field of p is NaN.
     Without loads and supports both are constant, whatever the bodies do to each other.
     """
     # YOUR CODE HERE
@@ -311,9 +317,9 @@ def gain_without_source(energies, work):
 def compare(full, minimal, runs, clock):
     """Return (largest difference, ratio of times) of a full loop and a minimal one, which leaves something out.
 
-    full() and minimal() each return the same kind of array, such as a history of positions.  Run full and
-    then minimal, `runs` times, and call clock() [s] before and after each run to get its time.  The difference is the
-    largest of all |full − minimal|; the ratio is the median of the ratios full over minimal of neighbouring runs.
+    full() and minimal() return arrays of the same shape.  Run full and then minimal, `runs` times, and time each run
+    with clock() [s].  The difference is the largest |full − minimal| of neighbouring runs, over all entries and all
+    rounds.  The ratio is the median, over the rounds, of the time of full over that of minimal.
     """
     # YOUR CODE HERE
     raise NotImplementedError("Exercise 10.16: compare")
@@ -326,7 +332,9 @@ def advance_free(step, load, t, x, q, v, omega, dt, steps, p):
 
     Raises BadInput for arrays that do not fit, Diverged when the end is not finite.
     """
+    check_record(p, x)
     t, x, q, v, omega, dt, steps = checked_bodies(t, x, q, v, omega, dt, steps, p)
+    check_load(load(t, x, q, v, omega, p), x.shape, omega.shape)
     for n in range(steps):
         x, q, v, omega = step(load, t + n * dt, x, q, v, omega, dt, p)
     check_speed(v, omega, dt)
@@ -337,22 +345,32 @@ def advance_contact(step, load, bounds, narrow, t, state, dt, steps, p):
     """Given.  Return the PileState after so many steps of contact_step_2d or contact_step.
 
     Raises BadInput for arrays that do not fit.  Raises Diverged where bodies sink into each other (it names both
-    bodies, the time and the depth) or are not finite.  Bodies that overlap at the beginning stay so: this loop does not
-    separate them.
+    bodies, the time and the depth) or are not finite, and where they pass each other within a step (it names the speed
+    and a step that is short enough).  Bodies that overlap at the beginning stay so: this loop does not separate them.
     """
+    check_record(p, state)
     t, x, q, v, omega, dt, steps = checked_bodies(t, state.x, state.q, state.v, state.omega, dt, steps, p)
+    check_load(load(t, x, q, v, omega, p), x.shape, omega.shape)
     state, allowed = PileState(x, q, v, omega, state.contacts, state.J), np.inf
     for n in range(steps):
-        state = step(load, bounds, narrow, t + n * dt, state, dt, p)
+        before, state = state, step(load, bounds, narrow, t + n * dt, state, dt, p)
         allowed = check_sinking(state, t + n * dt, dt, p, allowed)
+        check_passing(before, state, bounds, narrow, t + n * dt, dt, p)
     check_speed(state.v, state.omega, dt)
     return state
 
 
 def advance_rocking(step, t, x, v, dt, steps, block):
-    """Given.  Return (θ, θ̇), each (1,), of a RockingBlock after so many rocking_steps with a step of lesson 1."""
+    """Given.  Return (θ, θ̇), each (1,), of a RockingBlock after so many rocking_steps with a step of lesson 1.
+
+    Raises BadInput for a block or a state that cannot be, Toppled where the block has fallen on its side.
+    """
+    check_record(block, x)
     t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
+    check_shape("the lean θ", x, (1,))
     for n in range(steps):
         x, v = rocking_step(step, t + n * dt, x, v, dt, block)
+        if abs(x[0]) >= 0.5 * np.pi:
+            raise Toppled(x[0])
     check_end(x, v, dt)
     return x, v

@@ -4,8 +4,8 @@ import numpy as np
 
 __all__ = [
     "UNIT", "BadInput", "Diverged", "WrongShape", "check_array", "check_end", "check_field",
-    "check_finite", "check_friction", "check_indices", "check_normal", "check_not_negative",
-    "check_positive", "check_restitution", "check_shape", "checked_run", "finite_array",
+    "check_finite", "check_friction", "check_indices", "check_law", "check_load", "check_normal", "check_not_negative",
+    "check_positive", "check_restitution", "check_shape", "check_unit", "checked_run", "finite_array",
     "finite_number", "float_copy", "number", "one_each", "positive_number", "whole_number",
 ]
 
@@ -61,11 +61,42 @@ def check_field(thing, values, shape):
     check_shape(thing, values, shape)
 
 
+def check_law(thing, values, shape):
+    """Raise BadInput unless a law returned an array of this shape at the start of a run."""
+    found = False
+    try:
+        found = values.shape == shape
+    except Exception:
+        raise BadInput(thing, "not an array", "return an array from its law")                        # noqa: B904
+    if not found:
+        raise WrongShape(thing, values.shape, shape)
+
+
+def check_load(result, F_shape, tau_shape):
+    """Raise BadInput unless a load returned (F, tau) at the start: two arrays of finite numbers of these shapes."""
+    pair = False
+    try:
+        pair = len(result) == 2
+    except Exception:
+        raise BadInput("what the load returned", "not (F, tau)", "return two arrays")            # noqa: B904
+    if not pair:
+        raise BadInput("what the load returned", "not (F, tau)", "return two arrays")
+    F, tau = result
+    check_law("force F [N]", F, F_shape)
+    check_law("torque τ [N m]", tau, tau_shape)
+    check_finite("force at the start [N]", F)
+    check_finite("torque at the start [N m]", tau)
+
+
 def check_normal(n):
     """Raise BadInput unless n (d,) is a unit vector."""
-    length = np.sqrt(n @ n)
+    check_unit("length of a normal [-]", np.sqrt(n @ n))
+
+
+def check_unit(thing, length):
+    """Raise BadInput unless a length is 1."""
     if not abs(length - 1.0) <= UNIT:
-        raise BadInput("length of a normal [-]", length, "give a unit vector")
+        raise BadInput(thing, length, "divide by it: the length must be 1")
 
 
 def check_restitution(e):
@@ -85,7 +116,7 @@ def check_indices(thing, numbers, count):
     values = finite_array(thing, numbers)
     for number in values.ravel():
         if number != np.floor(number) or not 0 <= number < count:
-            raise BadInput(thing, f"{number:g}", f"give whole numbers from 0 to {count - 1}")
+            raise BadInput(thing, number, f"give whole numbers from 0 to {count - 1}")
     return values.astype(np.int64)
 
 

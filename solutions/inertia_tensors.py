@@ -234,7 +234,7 @@ def combine(m, x, I):
 def principal_axes(I):
     """Return (moments, R): principal moments (3,) [kg m²], ascending, and axes R (3, 3), right-handed columns.
 
-    I = R diag(moments) Rᵀ        L is parallel to ω about these axes, and about no others
+    I = R diag(moments) Rᵀ        L is parallel to ω about these axes; about no others if the moments differ
 
     np.linalg.eigh(I) returns moments and columns.  The columns can be left-handed, det R = −1; then reverse the sign of
     the last one.  Moments may be negative: those of a hole are.

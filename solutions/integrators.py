@@ -18,6 +18,7 @@ import numpy as np
 from .checks import (
     Diverged,
     check_end,
+    check_law,
     check_not_negative,
     check_positive,
     checked_run,
@@ -25,19 +26,21 @@ from .checks import (
     float_copy,
     positive_number,
 )
+from .support.records import check_record
 
 __all__ = [
-    "MOST_ADAPTED_STEPS", "NEWTON_LIMIT", "POSITION_ROUND_OFF", "Oscillator", "advance", "advance_adaptive",
-    "amplification_matrix", "average_velocity_step", "blanes_moan_step", "euler_step", "implicit_euler_step",
+    "MOST_ADAPTED_STEPS", "NEWTON_LIMIT", "ROUND_OFF", "Oscillator", "advance", "advance_adaptive",
+    "amplification_matrix", "average_velocity_step", "blanes_moan_step", "difference_step", "euler_step",
+    "implicit_euler_step",
     "implicit_midpoint_step", "inner_product", "midpoint_step", "newton_matrix", "observed_order",
     "oscillator_acceleration", "rk4_step", "solve", "spectral_radius", "symplectic_euler_step",
-    "trajectory", "verlet_step",
+    "trajectory", "velocity_round_off", "verlet_step",
 ]
 
 NEWTON_TOLERANCE = 1e-12     # last correction over the size of the velocity [-]: well above round-off, 2e-16
 NEWTON_LIMIT = 30            # corrections [-]; from a good guess Newton doubles its digits and needs fewer than 8
 MOST_ADAPTED_STEPS = 1000000 # of one run [-]: half a second, compiled; what needs more falls into the origin
-POSITION_ROUND_OFF = 1e-15   # a few spacings of floats [-]: the relative accuracy of any position
+ROUND_OFF = 1e-15            # a few spacings of floats [-]: the relative accuracy of any position or velocity
 KICKS = (0.0829844064174052, 0.396309801498368, -0.0390563049223486)      # the fourth is 1 − 2 Σ, then backwards
 DRIFTS = (0.245298957184271, 0.604872665711080)                           # the third is ½ − Σ, then backwards
 SPLITTING = (
@@ -45,6 +48,8 @@ SPLITTING = (
     (1.0 - 2.0 * (KICKS[0] + KICKS[1] + KICKS[2]), 0.5 - DRIFTS[0] - DRIFTS[1]),
     (KICKS[2], DRIFTS[1]), (KICKS[1], DRIFTS[0]), (KICKS[0], 0.0))
 DIFFERENCE_STEP = 6e-6       # ∛(2.2e-16) [-]: balances truncation against round-off in a central difference
+LEAST_DIFFERENCE = 1e-12     # of a position or of dt a [-]: 4000 roundings, which leave three digits to the change
+UNDERFLOW = 1e-200           # velocity [m/s] that counts as none: what is computed from a smaller one loses its digits
 
 
 # ---------------------------------------------------------------------------------------------- explicit methods
@@ -180,21 +185,40 @@ def blanes_moan_step(acceleration, t, x, v, dt, p):
 
 # ---------------------------------------------------------------------------------------------- implicit methods
 
+def difference_step(acceleration, t, x, v, dt, p):
+    """Given.  Return by how much [m/s] newton_matrix varies a velocity, relative to what the step itself can change.
+
+    DIFFERENCE_STEP max|v|, but at least LEAST_DIFFERENCE (max|xₙ|/dt + dt max|a|): the round-off of a position, or of
+    an acceleration, would hide a smaller change.
+    """
+    a = acceleration(t, x + dt * v, v, p)
+    least = LEAST_DIFFERENCE * (np.max(np.abs(x)) / dt + dt * np.max(np.abs(a))) + UNDERFLOW
+    return max(DIFFERENCE_STEP * np.max(np.abs(v)), least)
+
+
 def newton_matrix(acceleration, t, x, v, dt, p):
     """Given.  Return the (n, n) matrix  1 − dt ∂a/∂v (t, x + dt v, v)  over the n entries of v, by central differences.
 
     It is the derivative of the residual  r(v) = v − vₙ − dt a(t, xₙ + dt v, v).  Newton's method finds the zero of
     this residual.
     """
-    matrix = np.eye(v.size)
+    matrix, h = np.eye(v.size), difference_step(acceleration, t, x, v, dt, p)
     for k in range(v.size):
         ahead, behind = float_copy(v), float_copy(v)
-        ahead.ravel()[k] += DIFFERENCE_STEP * max(1.0, abs(v.ravel()[k]))
-        behind.ravel()[k] -= DIFFERENCE_STEP * max(1.0, abs(v.ravel()[k]))
+        ahead.ravel()[k] += h
+        behind.ravel()[k] -= h
         change = acceleration(t, x + dt * ahead, ahead, p) - acceleration(t, x + dt * behind, behind, p)
         for row in range(v.size):
             matrix[row, k] -= dt * change.ravel()[row] / (ahead.ravel()[k] - behind.ravel()[k])
     return matrix
+
+
+def velocity_round_off(x, v, dt):
+    """Given.  Return how well [m/s] a step of dt can know a velocity:  ROUND_OFF (max|v| + max|x|/dt) + UNDERFLOW.
+
+    The second term is the round-off of a position far from the origin, expressed as a velocity.
+    """
+    return ROUND_OFF * (np.max(np.abs(v)) + np.max(np.abs(x)) / dt) + UNDERFLOW
 
 
 def solve(matrix, right):
@@ -212,24 +236,27 @@ def implicit_euler_step(acceleration, t, x, v, dt, p):
     repeat, at most NEWTON_LIMIT times,
         r = w − vₙ − dt a(tₙ + dt, xₙ + dt w, w)
         w ← w − δ,    newton_matrix(acceleration, tₙ + dt, xₙ, w, dt, p) · δ = r
-    until max|δ| ≤ NEWTON_TOLERANCE · max(1, max|w|) + POSITION_ROUND_OFF · max|xₙ| / dt.  The last term is the
-    round-off of a position far from the origin, expressed as a velocity.
-    newton_matrix and solve are given above.  r and δ are flat, (n,): use .ravel() and .reshape(v.shape).
+    until max|δ| ≤ NEWTON_TOLERANCE · max|w| + velocity_round_off(xₙ, vₙ, dt).  This is relative to the motion: a fixed
+    number such as 1e-12 m/s would be too much for a very small body, and too little for a very large one.
+    newton_matrix, velocity_round_off and solve are given above.  r and δ are flat, (n,): use .ravel() and
+    .reshape(v.shape).
 
     Raises Diverged("Newton's method did not converge at dt [s]", dt, "take a smaller step") after NEWTON_LIMIT
     corrections.  solve raises LinAlgError where dt² k/m exceeds 10¹⁶, because round-off then removes the 1 in the
     matrix.
+    *Left out:* a body at rest at the origin where large terms of a cancel, so that only their round-off moves it: put
+    the origin elsewhere.
     *Source:* Hairer and Wanner 1996, “Solving ordinary differential equations II”, IV.3 and IV.8.
     """
     ### BEGIN SOLUTION 1.7
     w = v.copy()
-    unknowable = POSITION_ROUND_OFF * np.max(np.abs(x)) / dt
+    round_off = velocity_round_off(x, v, dt)
     for _ in range(NEWTON_LIMIT):
         residual = w - v - dt * acceleration(t + dt, x + dt * w, w, p)
         matrix = newton_matrix(acceleration, t + dt, x, w, dt, p)
         delta = solve(matrix, residual.ravel()).reshape(v.shape)
         w = w - delta
-        if np.max(np.abs(delta)) <= NEWTON_TOLERANCE * max(1.0, np.max(np.abs(w))) + unknowable:
+        if np.max(np.abs(delta)) <= NEWTON_TOLERANCE * np.max(np.abs(w)) + round_off:
             return x + dt * w, w
     raise Diverged("Newton's method did not converge at dt [s]", dt, "take a smaller step")
     ### END SOLUTION
@@ -262,7 +289,9 @@ def advance(step, acceleration, t, x, v, dt, steps, p):
     Raises BadInput for a step that is not positive or a state that is not finite, Diverged when the final state is not
     finite.
     """
+    check_record(p, x)
     t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
+    check_law("acceleration [m/s²]", acceleration(t, x, v, p), x.shape)
     for n in range(steps):
         x, v = step(acceleration, t + n * dt, x, v, dt, p)
     check_end(x, v, dt)
@@ -271,13 +300,16 @@ def advance(step, acceleration, t, x, v, dt, steps, p):
 
 def trajectory(step, acceleration, t, x, v, dt, steps, p):
     """Given.  Return ts (steps + 1,), xs and vs (steps + 1, …): times and states of the same run, with the start."""
+    check_record(p, x)
     t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
+    check_law("acceleration [m/s²]", acceleration(t, x, v, p), x.shape)
     ts = t + dt * np.arange(steps + 1)
     xs = np.zeros((steps + 1, *x.shape))
     vs = np.zeros((steps + 1, *v.shape))
     xs[0], vs[0] = x, v
     for n in range(steps):
-        x, v = advance(step, acceleration, t + n * dt, x, v, dt, 1, p)
+        x, v = step(acceleration, t + n * dt, x, v, dt, p)
+        check_end(x, v, dt)
         xs[n + 1], vs[n + 1] = x, v
     return ts, xs, vs
 
@@ -310,10 +342,12 @@ def advance_adaptive(step, acceleration, t, x, v, share, duration, p):
     *Source:* Hairer and Söderlind 2005, “Explicit, time reversible, adaptive step size control”.
     *Left out:* laws that are not ∝ 1/x², several centres.
     """
+    check_record(p, x)
     t, x, v, share, _ = checked_run(t, x, v, positive_number("share of a step [-]", share), 0)
     dt = finite_number("duration [s]", duration)
     check_not_negative("duration [s]", dt)
     end, steps, a = t + dt, 0, acceleration(t, x, v, p)
+    check_law("acceleration [m/s²]", a, x.shape)
     rate = np.sqrt(np.sqrt(inner_product(a, a) / inner_product(x, x)))
     rate -= 0.75 * share * inner_product(x, v) / inner_product(x, x)
     while t < end:

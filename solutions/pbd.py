@@ -181,7 +181,8 @@ def constraint_projection_step(acceleration, t, x, v, dt, network):
     """Advance a network by one step of the lecture's projection method: all λ together, every link exact; first order.
 
     x_pred = predict(…).  Start from x itself (not x_pred) and λ = 0.  Add Δx of newton_correction and take its λ,
-    until |Δx| of every coordinate is at most NEWTON_TOLERANCE times the longest link.  Then  vₙ₊₁ = (xₙ₊₁ − xₙ)/dt.
+    until |Δx| of every coordinate is at most NEWTON_TOLERANCE times the longest link (0 if there is none).  Then
+    vₙ₊₁ = (xₙ₊₁ − xₙ)/dt.
 
     Raises Diverged("the projection did not converge at dt [s]", dt, "take a smaller step, or slacken what is taut")
     after NEWTON_LIMIT iterations.  That includes networks which no finite λ can hold, such as a rope that is taut
@@ -192,7 +193,7 @@ def constraint_projection_step(acceleration, t, x, v, dt, network):
     ### BEGIN SOLUTION 8.5
     goal = predict(acceleration, t, x, v, dt, network)
     new, lam = x.copy(), np.zeros(network.i.size)
-    longest = np.max(network.rest)
+    longest = np.max(network.rest) if network.i.size > 0 else 0.0
     for _ in range(NEWTON_LIMIT):
         change, lam = newton_correction(new, lam, goal, dt, network)
         new = new + change
@@ -268,6 +269,7 @@ def fold_constraint(x, fold):
     """Return (C [rad], ∇C (4, 3) [rad/m]): the error of the fold angle of two triangles with a common edge.
 
     x (4, 3) holds the corners: a and b of the edge, c and d opposite to it.      e = b − a
+    Compute with dot and cross, which are imported: |e| is np.sqrt(dot(e, e)).
     N_c = (a − c) × (b − c),   N_d = (b − d) × (a − d)          normals, both on one side of a flat sheet
     θ = atan2((N_c × N_d) · e/|e|,  N_c · N_d),      C = θ − fold, taken into (−π, π]
 
@@ -339,7 +341,7 @@ def keep_outside(surface, x, inv_mass, obstacle):
 # ---------------------------------------------------------------------------------------------- XPBD: compliant links
 
 def compliant_multiplier(C, Lam, weight, alpha_scaled):
-    """Return ΔΛ [N s²] for one visit to a compliant constraint: a spring of stiffness 1/α for any step and any sweeps.
+    """Return ΔΛ [N s²] for one visit to a compliant constraint: a spring of stiffness 1/α, whatever the step is.
 
     Λ = λ dt² is the sum of the ΔΛ of earlier visits in this step.  A visit with ΔΛ changes C by weight ΔΛ, to first
     order; weight = Σ w |∇C|².  *Find* the ΔΛ after which C and Λ, both with their new values, obey Hooke's law:
@@ -366,7 +368,8 @@ def compliant_sweep(x, Lam, dt, network):
     Λₛ ← Λₛ + ΔΛ,   x_i ← x_i + w_i ΔΛ n,   x_j ← x_j − w_j ΔΛ n
 
     C and n are those of distance_constraint, for the ends as the earlier visits have left them.  A link that is too
-    short pushes its ends apart, also with α = 0.  Returns new arrays.
+    short pushes its ends apart, also with α = 0.  One visit is enough for a single link.  For a chain, visits repeat
+    until all links obey Hooke's law together; before that it is softer than its α.  Returns new arrays.
     Raises what distance_constraint and compliant_multiplier raise.
     *Source:* Macklin et al. 2016, algorithm 1.
     """
@@ -388,7 +391,7 @@ def xpbd_step(acceleration, t, x, v, dt, network):
     """Advance a network by one step of XPBD: pbd_step with compliant_sweep, from Λ = 0 in every step; first order.
 
     Many short steps with one sweep each are better than one long step with as many sweeps, because m/dt² then outweighs
-    the stiffness of the links.
+    the stiffness of the links.  (Only a very large number of sweeps, about 3 N² for a chain of N links, is better.)
     *Source:* Macklin et al. 2016; Macklin et al. 2019, “Small steps in physics simulation”.
     """
     ### BEGIN SOLUTION 8.14
@@ -456,7 +459,7 @@ def volume_gradient(x, faces):
     outside.  Where they are clockwise, the surface is inside-out, and V and ∇V have the opposite sign.
     *Find* V as a sum over the faces, and its gradient.  The origin may be anywhere, inside or outside.
 
-    *Source:* Müller et al. 2006, section 4.2, balloons; the divergence theorem.
+    *Source:* Müller et al. 2006, section 4.4, balloons; the divergence theorem.
     """
     ### BEGIN SOLUTION 8.18
     # V is the sum of the tetrahedra from the origin to each face, Σ a · (b × c)/6; those of faces that look towards the

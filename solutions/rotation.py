@@ -150,7 +150,7 @@ def matrix_update(R, omega, dt):
     """Return the orientation (3, 3) after dt at ω, first way:  R + dt ω* R, then renormalised; first order.
 
     Renormalise by Gram and Schmidt: scale the first column to length 1; subtract from the second its part along the
-    first, and scale it to length 1; the third is first × second.
+    first, and scale it to length 1; the third is first × second.  The columns of R are not parallel, and none is zero.
     *Source:* first lecture deck, “Update Orientation”.
     """
     ### BEGIN SOLUTION 5.6
@@ -169,7 +169,7 @@ def axis_angle_update(R, omega, dt):
     θ = |ω| dt,   n = ω/|ω|
     r ← cos θ r + sin θ n × r + (1 − cos θ)(n · r) n
 
-    Exact for constant ω.  Where ω = 0, return a copy of R.
+    Exact for constant ω.  Where ω = 0 the orientation stays R.
     *Source:* first lecture deck, “Extract axis-angle from ω(t) and rotate columns of R(t)”; Rodrigues 1840.
     """
     ### BEGIN SOLUTION 5.7
@@ -241,7 +241,8 @@ def body_angular_momentum(q, omega, I_body):
 def angular_acceleration(q, omega, tau, I_body):
     """Return ω̇ = I⁻¹ (τ − ω × Iω) [rad/s²] (3,); the gyroscopic term ω × Iω makes a body tumble without any torque.
 
-    rotate and unrotate, given above, convert vectors from body to world coordinates and back.
+    rotate and unrotate, given above, convert vectors from body to world coordinates and back.  The moments I_body are
+    above zero.
     *Source:* second lecture deck, “Rigid bodies”; Euler 1758.
     """
     ### BEGIN SOLUTION 5.11
@@ -292,7 +293,7 @@ def rolling_step(load, t, x, q, v, omega, dt, ball):
     K = 1.0 / ball.m + ball.radius * ball.radius / ball.I_body[0]
     J = np.zeros(3)
     if size != 0.0:
-        limit = cone_radius(ball.mu, max(0.0, -ball.m * ball.gravity[2])) * dt
+        limit = cone_radius(ball.mu, max(0.0, -ball.m * ball.gravity[2]) * dt)
         J = -np.minimum(limit, size / K) / size * slip
     return rigid_body_step(load, t, x, q, v + J / ball.m, omega + cross(r, J) / ball.I_body[0], dt, ball)
 
@@ -324,9 +325,9 @@ def tumbling_rate(I_body, k, spin):
     *Find* it: insert ω = spin 𝐞ₖ plus a small part across 𝐞ₖ into Euler's equations without torque, and keep the terms
     that are linear in that part.
 
-    I_body (3,) are the principal moments, k is 0, 1 or 2.  The spin [rad/s] may have either sign; the rate is never
-    negative.  It is positive only for the axis of the middle moment (the tennis-racket theorem).  For the other axes
-    return 0.
+    I_body (3,) are the principal moments, all above zero; k is 0, 1 or 2.  The spin [rad/s] may have either sign; the
+    rate is never negative.  It is positive only for the axis of the middle moment (the tennis-racket theorem).  For the
+    other axes return 0.
     *Source:* second lecture deck, “Tennis racket theorem”; Euler's equations, linearised about ω = spin 𝐞ₖ.
     """
     ### BEGIN SOLUTION 5.14

@@ -1,8 +1,8 @@
 """Lesson 2.  Forces, and the mass-spring-damper system.
 
 Symbols: x (n, d) [m] positions of n points in d dimensions · v (n, d) [m/s] · F [N] · m [kg], inv_mass [1/kg]
-(0: a fixed point) · k [N/m] stiffness · k_d [N s/m] damper · k_v [N s/m] viscosity · l [m] length of a spring, rest
-its natural length.
+(0: a fixed point) · k [N/m] stiffness · k_d [N s/m] damper · k_v [N s/m] viscous drag · l [m] length of a spring,
+rest its natural length.
 
 A spring joins points i and j.  Its tension pulls i towards j and j towards i: two forces, equal and opposite.
 *Left out:* collisions of the points with each other; bending and torsion of a rod with thickness.
@@ -23,6 +23,7 @@ from .checks import (
 )
 from .integrators import average_velocity_step
 from .support.networks import inverse_masses, measured_links
+from .support.records import check_record
 from .vectors import distance_between, move_apart, product_between
 
 __all__ = [
@@ -49,7 +50,7 @@ class SpringNetwork(NamedTuple):
     inv_mass: np.ndarray      # (n,) 1/m [1/kg]; 0 is a fixed point
     gravity: np.ndarray       # (d,) [m/s²]
     wind: np.ndarray          # (d,) force of the wind on each point [N]
-    k_v: float                # viscosity [N s/m]
+    k_v: float                # viscous drag [N s/m]
     i: np.ndarray             # (s,) first end of each spring
     j: np.ndarray             # (s,) second end
     rest: np.ndarray          # (s,) natural length [m]
@@ -82,8 +83,8 @@ def air_force(v, wind, k_v):
     F = F_wind − k_v v
 
     wind [N] is the force on a point at rest.  v and wind are arrays that broadcast, (n, d) and (d,), or one
-    coordinate of each.
-    *Source:* first lecture deck, “Viscosity”, and “initialize force with wind”.
+    coordinate of each.  k_v is the lecture's k_v n: a length of the body times the viscosity n [Pa s] of the fluid.
+    *Source:* first lecture deck, “Viscosity”, F = −k_v n v, and “initialize force with wind”.  Stokes 1851: 6π r n v.
     """
     ### BEGIN SOLUTION 2.2
     return wind - k_v * v
@@ -95,7 +96,8 @@ def spring_tension(length, rate, rest, k, k_d):
 
     T = k (l − rest) + k_d l̇          l̇ [m/s], here `rate`: the rate of lengthening
 
-    *Source:* first lecture deck, “Damping”; the sign there is that of the force on the moving end.
+    *Source:* first lecture deck, “Damping”, corrected.  Its (x − x_rest) k − v k_d mixes two forces: the first sign is
+    that of the tension, the second one that of the force on the moving end, −(x − x_rest) k − v k_d.
     """
     ### BEGIN SOLUTION 2.3
     return k * (length - rest) + k_d * rate
@@ -212,6 +214,7 @@ def mass_spring_damper_step(t, x, v, dt, network):
 
     wind on every point · spring and damper forces on both ends · a = g + F/m · v_new = v + dt a · x += dt (v + v_new)/2
 
+    A fixed point has no acceleration, so it keeps its velocity, as a curtain ring does that is drawn along its pole.
     *Source:* first lecture deck, “Mass-Spring-Damper System”.
     """
     ### BEGIN SOLUTION 2.9
@@ -257,7 +260,9 @@ def make_spring_network(x, m, fixed, pairs, k, k_d, gravity, wind, k_v):
     stiffness = one_each("stiffness k [N/m]", k, len(i))
     damper = one_each("damper k_d [N s/m]", k_d, len(i))
     viscosity = one_each("viscosity k_v [N s/m]", k_v, 1)[0]
-    return SpringNetwork(inv_mass, gravity, wind, viscosity, i, j, rest, stiffness, damper)
+    network = SpringNetwork(inv_mass, gravity, wind, viscosity, i, j, rest, stiffness, damper)
+    check_record(network, x)
+    return network
 
 
 def randomised(value, spread, u):
@@ -371,7 +376,8 @@ def implicit_spring_network_step(acceleration, t, x, v, dt, network):
     vₙ₊₁ = vₙ + Δv,   xₙ₊₁ = xₙ + dt vₙ₊₁
 
     K, D = spring_stiffness(x, network).  The matrix is a StepMatrix with the diagonal m + dt k_v (0 for a fixed point)
-    and the blocks dt² K + dt D.  ∂F/∂x v = −apply_blocks(v, i, j, K).  The right-hand side of a fixed point is 0.
+    and the blocks dt² K + dt D.  ∂F/∂x v = −apply_blocks(v, i, j, K).  The right-hand side of a fixed point is 0, so it
+    keeps its velocity.
     Solve with conjugate_gradients and apply_step_matrix.
     *Source:* Baraff and Witkin 1998, “Large steps in cloth simulation”.
     """

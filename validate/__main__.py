@@ -18,7 +18,7 @@ from rich.table import Table
 
 from solutions.checks import BadInput
 
-from . import engines, modules, needs
+from . import copies, engines, modules, needs
 from .processes import Ended, alone_in, ending_once, one_sentence, workers
 from .scene import OPTIONAL, PRODUCTS
 from .store import SUBSET, lessons_of
@@ -66,6 +66,7 @@ def validate(
     from . import measure  # takes half a second: not for --help
     from .run import run
     names, broken = select_scenes(scene or [], lesson or [])
+    asked, of = of, copies.meant_here(of)
     require_answers(of, names)
     plan = plan_of(of, names, plain, quick, [e.value for e in engine or []], overrides(set_ or [], names))
     try:
@@ -74,6 +75,8 @@ def validate(
                 pass
             with alone_in(writable(out)):
                 code = run(names, plan, pool, out, console, measuring)
+        if of != asked:
+            console.print(f"Measured: {of}, with the scenes of {modules.ROOT}", highlight=False, soft_wrap=True)
     except Ended as e:
         console.print(f"Interrupted. What was finished is kept in {out}: the same command goes on from there.",
                       soft_wrap=True)

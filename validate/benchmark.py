@@ -204,13 +204,19 @@ def imports():
         yield f"import of lesson {name}", "under 0.3 s", f"{taken:.2f} s  (NumPy alone {alone:.2f} s)", taken < 0.3
 
 
-def main():
-    table = Table("what", "asked", "found", "", box=None, header_style="bold")
-    for part in (thousand_springs, growth, pair_search, cloth_frame, memory, imports):
+PARTS = thousand_springs, growth, pair_search, cloth_frame, memory, imports
+
+
+def main(parts=PARTS):
+    """Print every requirement with its result; return 1 if one is not met, else 0."""
+    table, missed = Table("what", "asked", "found", "", box=None, header_style="bold"), 0
+    for part in parts:
         for what, asked, found, met in part():
             table.add_row(what, asked, found, "[green]met[/green]" if met else "[bold red]not met[/bold red]")
+            missed += not met
     Console().print(table)
+    return 1 if missed else 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

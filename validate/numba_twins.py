@@ -6,6 +6,7 @@ looks at one file only, so without the digest an edit to an imported sibling wou
 
 import os
 import shutil
+import time
 import types
 import uuid
 import warnings
@@ -16,8 +17,11 @@ from pathlib import Path
 import numpy as np
 
 CACHE = Path(__file__).resolve().parent.parent / ".cache" / "compiled"
+INLINED = "vectors"          # its functions become part of their callers: a call would pass whole arrays, and a step of
+                             # a spring net would take 2.5 times as long
 SAVE_WITHIN = 10.0           # wait for another process that saves [s]
-CACHED_SETS = 6              # digests kept on disk: some edits back; older ones are deleted
+CACHED_SETS = 6              # digests kept on disk: some edits back
+IN_USE = 3600.0              # a digest that was asked for so long ago [s] may still be in use by another process
 
 
 def compiled_twins(module, names, space, cache):
@@ -33,7 +37,8 @@ def compiled_twins(module, names, space, cache):
         plain = space[name]
         copy = types.FunctionType(plain.__code__, space, plain.__name__, plain.__defaults__, plain.__closure__)
         copy.__module__, copy.__qualname__, copy.__doc__ = module.__name__, plain.__qualname__, plain.__doc__
-        twins[name] = njit(cache=True, error_model="numpy", no_cfunc_wrapper=True)(copy)
+        inline = "always" if module.__name__.rpartition(".")[2] == INLINED else "never"
+        twins[name] = njit(cache=True, error_model="numpy", no_cfunc_wrapper=True, inline=inline)(copy)
         # numba recognises a function argument in its disk cache by this id alone: make it the same in every process
         _forget_literals(twins[name])
         twins[name]._set_uuid(str(uuid.uuid5(uuid.NAMESPACE_URL, f"{module.__name__}.{plain.__qualname__}")))
@@ -64,7 +69,7 @@ class CachedDispatch:
 
     def __call__(self, *arguments):
         # a lesson's function may take another
-        arguments = [a.twin if isinstance(a, CachedDispatch) else a for a in arguments]
+        arguments = [a.twin if isinstance(a, CachedDispatch | CheckedFirst) else a for a in arguments]
         kinds = tuple(map(_kind, arguments))
         if kinds not in self.known:
             from numba import typeof
@@ -73,6 +78,33 @@ class CachedDispatch:
                 self.twin.compile(exact)
             self.known[kinds] = self.twin.get_overload(exact)
         return self.known[kinds](*arguments)
+
+
+class CheckedFirst:
+    """A compiled function whose records are checked in plain Python before it starts."""
+
+    def __init__(self, twin, check, compiled=None):
+        self.twin, self.check, self.compiled = twin, check, compiled or twin
+
+    def __call__(self, *arguments):
+        self.check(*arguments)
+        return self.compiled(*(a.twin if isinstance(a, CheckedFirst) else a for a in arguments))
+
+    def __getattr__(self, name):                                     # py_func, overloads … are those of the twin
+        if name == "twin":
+            raise AttributeError(name)
+        return getattr(self.twin, name)
+
+
+def passed_over(p, state):
+    """Stand in for check_record where compiled code calls it: CheckedFirst has made the call before."""
+
+
+def cached_dispatch(function):
+    """Return a compiled function as a scene's plain run calls it."""
+    if isinstance(function, CheckedFirst):
+        return CheckedFirst(function.twin, function.check, CachedDispatch(function.twin))
+    return CachedDispatch(function)
 
 
 def _kind(argument):
@@ -93,6 +125,16 @@ def _make_dispatcher_constants_cacheable():
     from numba import types
     from numba.core.imputils import lower_constant
     lower_constant(types.Dispatcher)(lambda context, builder, kind, function: context.get_dummy_value())
+
+
+@cache
+def _pass_checked_functions_on():
+    """Let a compiled function take a CheckedFirst as an argument: the twin in it is meant."""
+    from numba.extending import typeof_impl
+
+    @typeof_impl.register(CheckedFirst)
+    def _(checked, context):
+        return typeof_impl(checked.twin, context)
 
 
 @cache
@@ -133,10 +175,11 @@ def _save_one_at_a_time():
 
 
 def use_cache(digest):
-    """Return the cache folder of this digest, as text, and delete the folders of digests long gone."""
+    """Return the cache folder of this digest, as text, and delete those that nobody has asked for for long."""
     import numba
     from numba.core.config import _OptLevel
     _make_dispatcher_constants_cacheable()
+    _pass_checked_functions_on()
     _shorten_broadcast_error()
     _save_one_at_a_time()
     numba.config.OPT, numba.config.LOOP_VECTORIZE = _OptLevel(1), 0  # same speed, a third of the compile time
@@ -148,7 +191,14 @@ def use_cache(digest):
         import tempfile
         folder = Path(tempfile.mkdtemp(prefix="workbook-"))
     os.utime(folder)
-    digests = sorted(folder.parent.iterdir(), key=lambda path: path.stat().st_mtime, reverse=True)
-    for old in digests[CACHED_SETS:]:
-        shutil.rmtree(old, ignore_errors=True)
+    forget_old_sets(folder.parent)
     return str(folder)
+
+
+def forget_old_sets(cache):
+    """Delete all folders of a cache but the newest CACHED_SETS and those that another process may be using."""
+    with suppress(OSError):                                          # another process deletes them at this moment
+        newest = sorted(cache.iterdir(), key=lambda path: path.stat().st_mtime, reverse=True)
+        for old in newest[CACHED_SETS:]:
+            if old.stat().st_mtime < time.time() - IN_USE:
+                shutil.rmtree(old, ignore_errors=True)

@@ -29,8 +29,13 @@ def whole(path):
 
 def write_whole(path, value):
     """Write JSON so that a reader never sees half of it."""
+    write_text(path, json.dumps(value, ensure_ascii=False, allow_nan=False))
+
+
+def write_text(path, text):
+    """Write a text so that a reader never sees half of it."""
     with whole(path) as draft:
-        draft.write_bytes(json.dumps(value, ensure_ascii=False, allow_nan=False).encode())
+        draft.write_bytes(text.encode())
 
 
 def read_whole(path, kind, remedy):

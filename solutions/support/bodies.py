@@ -13,15 +13,18 @@ from ..checks import (
     check_normal,
     check_positive,
     check_shape,
+    check_unit,
     finite_array,
     finite_number,
     number,
     positive_number,
     whole_number,
 )
+from ..friction import cone_radius
 from ..rotation import point_velocity
 from ..vectors import cross, norm
 from .broad_phase import Pairs
+from .records import check_principal_moments, check_record
 from .scenes import PileState, deepest_contact, no_contacts, still_allowed
 
 HALVINGS = 50                # of a step, until the time of an impact is known to round-off [-]
@@ -60,6 +63,14 @@ class RockingBlock(NamedTuple):
     g: float                 # gravity [m/s²]
 
 
+class Toppled(Diverged):
+    """A rocking block lies on its side: says by which angle it leans."""
+
+    def __init__(self, lean):
+        super().__init__("lean of a rocking block [rad]", f"{lean:.4g}",
+                         "it has fallen on its side: start with less lean or speed, or end the run earlier")
+
+
 class Sunk(Diverged):
     """Two bodies sink into each other: says which, when, how deep, and with how many sweeps per step."""
 
@@ -67,6 +78,17 @@ class Sunk(Diverged):
         other = f"plane {b - bodies}" if b >= bodies else f"body {b}"
         super().__init__(f"overlap [m] of body {a} and {other} at t = {t:.4g} s, with {sweeps} sweeps per step",
                          f"{overlap:.3g}", "take more sweeps, shorter steps, or more equal masses")
+
+
+class TooFast(Diverged):
+    """Two bodies, or a body and a plane, pass each other within a step: says when, how fast, and which step would do.
+    """
+
+    def __init__(self, a, b, bodies, t, dt, speed, enough):
+        other = f"plane {b - bodies}" if b >= bodies else f"body {b}"
+        super().__init__(f"body {a} and {other} pass each other within the step of {dt:.3g} s from t = {t:.4g} s; "
+                         f"speed of one as the other sees it [m/s]", f"{speed:.4g}",
+                         f"take steps of at most {enough:.2g} s")
 
 
 def inverse_or_zero(thing, values, count, planes):
@@ -119,15 +141,17 @@ def make_bodies_2d(x, q, m, inertia, half, planes, gravity, mu, sweeps, margin):
     mu, sweeps, margin = settings_of(mu, sweeps, margin)
     state = PileState(np.concatenate((x, np.zeros((p, 2)))), np.concatenate((q, np.zeros(p))), np.zeros((n + p, 2)),
                       np.zeros(n + p), no_contacts(n, 2), np.zeros((0, 2)))
-    return state, Bodies(inverse_or_zero("mass [kg]", m, n, p),
-                         inverse_or_zero("moment of inertia [kg m²]", inertia, n, p), half, planes, gravity, mu, sweeps,
-                         margin)
+    bodies = Bodies(inverse_or_zero("mass [kg]", m, n, p), inverse_or_zero("moment of inertia [kg m²]", inertia, n, p),
+                    half, planes, gravity, mu, sweeps, margin)
+    check_record(bodies, state)
+    return state, bodies
 
 
 def make_bodies(x, q, m, inertia, half, planes, gravity, mu, sweeps, margin):
     """Return (PileState, Bodies) of spheres or boxes at rest in space: x (n, 3), q (n, 4), planes (p, 4).
 
-    q are unit quaternions, inertia (n, 3): principal moments [kg m²]; the rest is as in make_bodies_2d.
+    q are unit quaternions, inertia (n, 3): principal moments [kg m²], of a body all finite or all infinite; the rest is
+    as in make_bodies_2d.
     """
     x, half = finite_array("a centre x [m]", x), finite_array("a half size [m]", half)
     planes = finite_array("a plane", planes)
@@ -141,12 +165,15 @@ def make_bodies(x, q, m, inertia, half, planes, gravity, mu, sweeps, margin):
     check_shape("the moments of inertia [kg m²]", inertia, (n, 3))
     for i in range(n):
         check_normal(q[i])
+        check_principal_moments(inertia[i])
     mu, sweeps, margin = settings_of(mu, sweeps, margin)
     state = PileState(np.concatenate((x, np.zeros((p, 3)))),
                       np.concatenate((q, np.tile(np.array([1.0, 0.0, 0.0, 0.0]), p).reshape(p, 4))),
                       np.zeros((n + p, 3)), np.zeros((n + p, 3)), no_contacts(n, 3), np.zeros((0, 3)))
     turned = inverse_or_zero("moment of inertia [kg m²]", inertia.ravel(), 3 * n, 3 * p).reshape(-1, 3)
-    return state, Bodies(inverse_or_zero("mass [kg]", m, n, p), turned, half, planes, gravity, mu, sweeps, margin)
+    bodies = Bodies(inverse_or_zero("mass [kg]", m, n, p), turned, half, planes, gravity, mu, sweeps, margin)
+    check_record(bodies, state)
+    return state, bodies
 
 
 def movable_pairs(pairs, inv_mass):
@@ -165,7 +192,7 @@ def checked_bodies(t, x, q, v, omega, dt, steps, p):
     """Return (t, x, q, v, omega, dt, steps), converted to float64.
 
     Raises BadInput for a step or a number of steps that is none, arrays that do not fit the bodies, what is not finite,
-    and quaternions without length.  make_bodies has checked the rest of p.
+    and quaternions that are not of length 1.  check_record has checked p.
     """
     x, q = finite_array("position x [m]", x), finite_array("orientation q", q)
     v, omega = finite_array("velocity v [m/s]", v), finite_array("angular velocity ω [rad/s]", omega)
@@ -178,7 +205,7 @@ def checked_bodies(t, x, q, v, omega, dt, steps, p):
         check_shape("orientation q", q, (rows, 4))
         check_shape("angular velocity ω [rad/s]", omega, (rows, 3))
         for i in range(rows):
-            check_positive("length of a quaternion [-]", np.sum(q[i] ** 2))
+            check_unit("length of a quaternion q [-]", np.sqrt(np.sum(q[i] ** 2)))
     else:
         check_shape("orientation q", q, (rows,))
         check_shape("angular velocity ω [rad/s]", omega, (rows,))
@@ -219,6 +246,7 @@ def stop_slip(v, omega, floor, dt, ball):
     """Given.  Return (v, omega) after friction has acted for dt against a floor with the velocity `floor` (3,).
 
     As rolling_step of lesson 5:  J = −min(μN dt, |u|/K) u/|u|,  u = v + ω × r + dt g_t − floor,  K = 1/m + radius²/I.
+    A floor pushes and never pulls: N = max(0, −m g_z).  Raises BadInput for μ < 0.
     """
     r = np.array([0.0, 0.0, -ball.radius])
     slip = point_velocity(v, omega, r) + dt * ball.gravity - floor
@@ -226,7 +254,7 @@ def stop_slip(v, omega, floor, dt, ball):
     size, K = norm(slip), 1.0 / ball.m + ball.radius * ball.radius / ball.I_body[0]
     if size == 0.0:
         return v, omega
-    limit = -ball.mu * ball.m * ball.gravity[2] * dt
+    limit = cone_radius(ball.mu, max(0.0, -ball.m * ball.gravity[2]) * dt)
     J = -np.minimum(limit, size / K) / size * slip
     return v + J / ball.m, omega + cross(r, J) / ball.I_body[0]
 

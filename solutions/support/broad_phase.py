@@ -101,7 +101,7 @@ def box_reaches(low, high, i, plane):
 def near_pairs(low, high, planes):
     """Pairs of boxes that overlap, and of boxes and the planes that they reach.
 
-    Corners low and high (n, d), planes (p, d + 1).
+    Corners low and high (n, d), planes (p, d + 1), all of them finite.
     """
     n, d = low.shape
     cell, stride, cells = cell_numbers(low, cell_size(low, high))

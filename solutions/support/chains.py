@@ -17,6 +17,7 @@ from ..checks import (
     number,
     whole_number,
 )
+from .records import check_record
 
 
 class Arm2D(NamedTuple):
@@ -86,7 +87,9 @@ def make_arm_2d(lengths, gain, damping, low, high, rest, pull):
     for length in lengths:
         check_positive("the length of a link [m]", length)
     low, high, rest, gain, damping, pull = settings(lengths.size, gain, damping, low, high, rest, pull)
-    return Arm2D(lengths.copy(), low, high, rest, gain, damping, pull)
+    arm = Arm2D(lengths.copy(), low, high, rest, gain, damping, pull)
+    check_record(arm, low)
+    return arm
 
 
 def make_arm_3d(axes, offsets, gain, damping, low, high, rest, pull):
@@ -98,7 +101,9 @@ def make_arm_3d(axes, offsets, gain, damping, low, high, rest, pull):
     for k in range(len(axes)):
         check_normal(axes[k].copy())
     low, high, rest, gain, damping, pull = settings(len(axes), gain, damping, low, high, rest, pull)
-    return Arm3D(axes.copy(), offsets.copy(), low, high, rest, gain, damping, pull)
+    arm = Arm3D(axes.copy(), offsets.copy(), low, high, rest, gain, damping, pull)
+    check_record(arm, low)
+    return arm
 
 
 # ---------------------------------------------------------------------------------------------- checking

@@ -37,6 +37,7 @@ from ..collisions import (
     separating_edge,
 )
 from .geometry import PARALLEL, box_edge, box_face, column, incident_edge, outward
+from .records import check_record
 from .trees import build_tree
 
 
@@ -138,6 +139,7 @@ def advance_projectiles(step, gap, impact_time, t, x, v, dt, steps, p):
 
     Raises BadInput for a step that is not positive, and a state that is not finite.
     """
+    check_record(p, x)
     t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
     check_array("position x [m]", x, 2)
     x, v = x.copy(), v.copy()
@@ -166,7 +168,8 @@ def nearer_pair(p, q, other_p, other_q):
 def closest_segments(a, b, c, d):
     """Given.  Return (p, q): the points of the segments a b and c d that are nearest to each other.
 
-    Either one of them is an end, or both are inside: there |a + s u − c − t w|² is least (u = b − a, w = d − c).
+    Either one of them is an end, or both are inside: there |a + s u − c − t w|² is least (u = b − a, w = d − c).  All
+    numbers are finite.
     *Source:* Lumelsky 1985.
     """
     p, q = nearer_pair(a, closest_on_segment(a, c, d), b, closest_on_segment(b, c, d))
@@ -318,8 +321,8 @@ def flock_acceleration(t, x, v, p):
 
     a_i = Σ_j repulsion(x_i, x_j, 2 radius, reach, k) + Σ_near align (v_j − v_i) + gather (x̄ − x_i)
 
-    Separation and gathering have potentials, and alignment only removes energy.  The energy therefore cannot grow, U
-    stays finite, and no members collide.
+    Separation and gathering have potentials, and alignment (≥ 0) only removes energy.  In exact motion the energy
+    therefore cannot grow, U stays finite, and no members collide.  A step that is too long for the reach can skip U.
     *Source:* first lecture deck, “as in flocking”; Reynolds 1987 for the three rules.
     """
     a, middle = np.zeros(x.shape), np.zeros(x.shape[1])
@@ -356,4 +359,6 @@ def make_flock(radius, reach, k, align, gather):
     """Given.  Make a Flock; raises BadInput for a length or a k that is not positive, or values that are not finite."""
     lengths = positive_number("radius [m]", radius), positive_number("reach [m]", reach)
     pulls = finite_number("align [1/s]", align), finite_number("gather [1/s²]", gather)
-    return Flock(*lengths, positive_number("k [m⁴/s²]", k), *pulls)
+    flock = Flock(*lengths, positive_number("k [m⁴/s²]", k), *pulls)
+    check_record(flock, np.zeros((1, 1)))
+    return flock

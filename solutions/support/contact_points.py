@@ -13,12 +13,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..checks import BadInput
 from ..vectors import dot
 from .tuples import across, axis, minus, plus, put, row, scaled
 
-# of two faces that separate alike, take that of a unless b's is better by this [m], or normals take turns
-PREFER_FIRST = 1e-4
-PREFER_FACES = 1e-3          # an edge must be better than any face by this [m]: a face holds more points
+# Of the longest half size of both boxes [-]: of two faces that separate alike, take that of a unless b's is better by
+# so much, or normals take turns; an edge must be better by so much than any face, which holds more points.
+PREFER_FIRST, PREFER_FACES = 2e-4, 2e-3
 APART = 5                    # contacts that a sweep visits one after the other lie so far from each other in memory [-]
 PARALLEL = 1e-6              # sin² of the angle below which two edges count as parallel [-]
 
@@ -73,15 +74,28 @@ def put_back(J, order):
 
 # ------------------------------------------------------------------------------------------ what is round, in 2D and 3D
 
+def check_round(half):
+    """Raise BadInput unless each body has the same half size (n, d) along all axes, which is its radius."""
+    for i in range(half.shape[0]):
+        for e in range(1, half.shape[1]):
+            if half[i, e] != half[i, 0]:
+                raise BadInput("half size of a disc or sphere [m]", half[i, e], "give its radius for every axis")
+
+
 def disc_bounds(x, q, half):
-    """(low, high, turn) of discs; nobody sees how a disc is turned."""
+    """(low, high, turn) of discs; nobody sees how a disc is turned.  Raises BadInput for two different half sizes."""
     n = half.shape[0]
+    check_round(half)
     return x[:n] - half, x[:n] + half, np.zeros((n, 2))
 
 
 def ball_bounds(x, q, half):
-    """(low, high, turn) of spheres: any axes are principal axes of theirs, so they keep those of the world."""
+    """(low, high, turn) of spheres: any axes are principal axes of theirs, so they keep those of the world.
+
+    Raises BadInput for different half sizes of a sphere.
+    """
     n = half.shape[0]
+    check_round(half)
     turn = np.zeros((n, 3, 3))
     for i in range(n):
         for e in range(3):
@@ -187,7 +201,7 @@ def box_pair_2d(d, u, w, a, b, reach):
     of_b = max(b_x, b_y)
     if of_b > reach:
         return u, none, none
-    if of_a + PREFER_FIRST >= of_b:
+    if of_a + PREFER_FIRST * max(a[0], a[1], b[0], b[1]) >= of_b:
         face, deep, wide = (u, a[0], a[1]) if a_x >= a_y else ((-u[1], u[0]), a[1], a[0])
         n, p, q = clipped_edge(d, face, deep, wide, w, b)
         return (-n[0], -n[1]), p, q
@@ -350,11 +364,12 @@ def box_pair(x, turn, half, i, j, reach, C, t, y, z, c, m):
         for s in range(3):
             C[r, s] = dot(axis(turn, i, r), axis(turn, j, s))
     best, k, h_a, h_b = -np.inf, 0, half[i], half[j]
+    size = max(h_a[0], h_a[1], h_a[2], h_b[0], h_b[1], h_b[2])
     for test in range(15):
         gap = face_gap(C, t, h_a, h_b, test) if test < 6 else edge_gap(C, t, h_a, h_b, (test - 6) // 3, (test - 6) % 3)
         if gap > reach:
             return m
-        if gap > best + (0.0 if test < 3 else PREFER_FIRST if test < 6 else PREFER_FACES):
+        if gap > best + size * (0.0 if test < 3 else PREFER_FIRST if test < 6 else PREFER_FACES):
             best, k = gap, test
     if k < 3:
         return face_points(x, turn, half, i, j, k, reach, y, z, c, m, -1.0)

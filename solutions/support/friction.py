@@ -9,6 +9,7 @@ from ..checks import (
     check_end,
     check_field,
     check_friction,
+    check_law,
     check_normal,
     check_restitution,
     check_shape,
@@ -26,6 +27,7 @@ from ..friction import (
     slip_direction,
     tangential,
 )
+from .records import check_record
 
 MAX_EVENTS = 8               # stops and starts per step [-]; a force that reverses more often needs a shorter step
 
@@ -48,7 +50,9 @@ def make_block(n, mu_s, mu_k, gravity, drive, omega):
     length = positive_number("length of the normal n [-]", np.linalg.norm(n))
     for thing, y in (("gravity", gravity), ("drive over mass", drive)):
         check_shape(thing, y, n.shape[:1])
-    return Block(n / length, mu_s, mu_k, gravity, drive, finite_number("angular frequency ω [rad/s]", omega))
+    block = Block(n / length, mu_s, mu_k, gravity, drive, finite_number("angular frequency ω [rad/s]", omega))
+    check_record(block, n)
+    return block
 
 
 def pyramid_step(acceleration, t, x, v, dt, p):
@@ -77,9 +81,11 @@ def event_step(acceleration, t, x, v, dt, p):
 
 def slip_times(acceleration, t, x, v, dt, steps, p):
     """Given.  Return (k, 2) [s]: beginning and end of each slip; a slip that is not over ends with the run."""
+    check_record(p, x)
     t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
     check_normal(p.n)
     check_shape("the position x", x, p.n.shape)
+    check_law("acceleration [m/s²]", acceleration(t, x, v, p), x.shape)
     finite_array("acceleration at the start [m/s²]", acceleration(t, x, v, p))
     times = np.zeros((MAX_EVENTS * steps, 2))
     k, slipping = 0, False
@@ -107,6 +113,7 @@ def advance_particle(step, acceleration, surface, t, x, v, dt, steps, p):
     Raises BadInput for a mass or a step that is not positive, a negative μ, an e outside 0 … 1, a state that is not
     finite, and a surface whose normal at x is no unit vector; Diverged when the final state is not finite.
     """
+    check_record(p, x)
     t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
     positive_number("mass m [kg]", p.m)
     check_friction(number("friction μ [-]", p.mu))
@@ -117,6 +124,7 @@ def advance_particle(step, acceleration, surface, t, x, v, dt, steps, p):
     check_field("normal at the start [-]", n, x.shape)
     if np.any(n):                                        # in the middle of a bowl there is no normal
         check_normal(n)
+    check_law("acceleration [m/s²]", acceleration(t, x, v, p), x.shape)
     for n in range(steps):
         x, v = step(acceleration, surface, t + n * dt, x, v, dt, p)
     check_end(x, v, dt)

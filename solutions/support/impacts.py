@@ -112,6 +112,26 @@ def impact_residual(contact_matrix, cone_impulse, after, r, n, Js, u_sep, mu):
     return worst
 
 
+def stop_approach(contact_matrix, apply_impulse, after, r, n, Js, allowed):
+    """Given.  Return (BodyState3D, impulses (points, 3)) after impulses along the normals, until no point comes in.
+
+    Each one stops a point that approaches faster than `allowed` [m/s].  It loses energy and stays in the cone.
+    """
+    Js = Js.copy()
+    for _ in range(MAX_SWEEPS):
+        fastest = 0.0
+        for i in range(len(r)):
+            u_n = n[i] @ velocity_at(after, r[i])
+            fastest = np.maximum(fastest, -u_n)
+            if u_n < 0.0:
+                J = -u_n / (n[i] @ times(contact_matrix(r[i], after.inv_mass, after.inv_inertia), n[i])) * n[i]
+                after = apply_impulse(after, r[i], J)
+                Js[i] += J
+        if fastest <= allowed:
+            break
+    return after, Js
+
+
 def most_dissipative_impact(contact_matrix, cone_impulse, apply_impulse, body, r, n, e, mu):
     """Given.  Return (BodyState3D, residual [m/s]) after simultaneous impacts for which solve_impacts finds no answer.
 
@@ -121,7 +141,8 @@ def most_dissipative_impact(contact_matrix, cone_impulse, apply_impulse, body, r
     Jᵢ ← project_onto_cone(Jᵢ − uᵢ/tr Kᵢ).  Scale all impulses by s.
     s = 1 leaves the least energy, and s = 1 + e is Poisson's restitution;
     s is smaller where a point would otherwise move into the other body.  This never gains energy: the energy is
-    a parabola in s, and s = 1 + e loses 1 − e² of what s = 1 loses.
+    a parabola in s, and s = 1 + e loses 1 − e² of what s = 1 loses.  The gradient converges slowly, so that some points
+    may still approach: stop_approach ends that.
     *Source:* Moreau 1973, maximum dissipation; Anitescu 2006, the convex problem; Poisson 1817, the two phases.
     """
     before = np.zeros((len(r), 3))
@@ -155,4 +176,5 @@ def most_dissipative_impact(contact_matrix, cone_impulse, apply_impulse, body, r
     for i in range(len(r)):
         Js[i] *= share
         after = apply_impulse(after, r[i], Js[i])
+    after, Js = stop_approach(contact_matrix, apply_impulse, after, r, n, Js, CONVERGED * speed)
     return after, impact_residual(contact_matrix, cone_impulse, after, r, n, Js, u_sep, mu)

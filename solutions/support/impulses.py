@@ -10,6 +10,7 @@ from ..checks import (
     check_end,
     check_field,
     check_friction,
+    check_law,
     check_normal,
     check_not_negative,
     check_positive,
@@ -41,6 +42,7 @@ from ..impulses import (
 from ..vectors import cross
 from .discs import drift, meeting_time, normal_between, overlap, separated
 from .impacts import impact_residual
+from .records import check_record
 
 
 class SpinningBall(NamedTuple):
@@ -190,11 +192,13 @@ def advance_balls(step, acceleration, t, x, v, dt, steps, p):
     Raises BadInput for a step that is not positive, an e outside 0 … 1, a normal that is not a unit vector, a
     state that is not finite; Diverged when the final state is not finite.
     """
+    check_record(p, x)
     t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
     check_array("position x [m]", x, 2)
     check_over_plane(p, x.shape[1])
     check_not_negative("stiffness over mass [1/s²]", number("stiffness over mass [1/s²]", p.stiffness))
     check_not_negative("damping over mass [1/s]", number("damping over mass [1/s]", p.damping))
+    check_law("acceleration [m/s²]", acceleration(t, x[0], v[0], p), x.shape[1:])
     x, v = x.copy(), v.copy()
     for k in range(x.shape[0]):
         x_k, v_k = x[k], v[k]
@@ -210,6 +214,7 @@ def advance_spinning_balls(step, acceleration, t, x, v, omega, dt, steps, p):
 
     Raises the errors of advance_balls, and BadInput for μ < 0.
     """
+    check_record(p, x)
     t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
     check_field("position x [m]", x, (len(x), 3))
     omega = finite_array("angular velocity ω [rad/s]", omega)
@@ -219,6 +224,7 @@ def advance_spinning_balls(step, acceleration, t, x, v, omega, dt, steps, p):
     check_positive("inverse mass [1/kg]", number("inverse mass [1/kg]", p.inv_mass))
     check_field("inverse inertia [1/(kg m²)]", p.inv_inertia, (3, 3))
     positive_number("radius [m]", p.radius)
+    check_law("acceleration [m/s²]", acceleration(t, x[0], v[0], p), x.shape[1:])
     x, v, omega = x.copy(), v.copy(), omega.copy()
     for k in range(x.shape[0]):
         x_k, v_k, omega_k = x[k], v[k], omega[k]
@@ -231,6 +237,7 @@ def advance_spinning_balls(step, acceleration, t, x, v, omega, dt, steps, p):
 
 def advance_discs(step, x, v, dt, steps, p):
     """Given.  Return (x, v), each (copies, bodies, d), of discs after `steps` steps; raises as advance_balls."""
+    check_record(p, x)
     _, x, v, dt, steps = checked_run(0.0, x, v, dt, steps)
     check_array("position x [m]", x, 3)
     check_restitution(finite_number("restitution e [-]", p.e))

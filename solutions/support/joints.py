@@ -8,8 +8,12 @@ without a sign: it may pull.  So its law is an equation, and the Delassus matrix
 A chain has a matrix with a narrow band, so that the work grows with the number of its bodies.  The steps are RATTLE of
 lesson 8, with bodies in place of points:  half of the load, impulses that close the joints at the *end* of the step,
 motion, the other half, and impulses that stop what the joints' points move relative to each other.
+
+Joints may form closed loops, and their rows may depend on each other: two ball joints on one axis are a hinge in space,
+a beam may lie on three supports, and a four-bar may lie flat.  Then many impulses give the same motion, and the
+shortest of them is taken (shortest_impulses).
 *Source:* Andersen 1983; Hairer, Lubich, Wanner 2006, VII.1.
-*Left out:* joints that form a closed loop; limits, motors and friction of joints.
+*Left out:* limits, motors and friction of joints.
 """
 
 from typing import NamedTuple
@@ -19,7 +23,6 @@ import numpy as np
 from ..checks import (
     BadInput,
     Diverged,
-    check_field,
     check_indices,
     check_positive,
     check_restitution,
@@ -30,11 +33,16 @@ from ..rotation import SUZUKI, body_angular_momentum, exponential, quaternion_pr
 from .arms import apply_impulses, apply_impulses_2d, normal_velocities_2d, point_velocity_of, world_inertia
 from .contact_points import ContactSet
 from .quaternions import rotate, unrotate
-from .scenes import check_independent
+from .records import check_record
+from .small_systems import shortest_solution, solve_band
 from .tuples import across, minus, row, times
 
-CLOSED = 1e-14               # gap of a joint that counts as closed, per metre of coordinates [-]: 45 roundings
+CLOSED = 1e-14               # gap of a joint that counts as closed, over the size of its terms [-]: 45 roundings
+SHAPE = 100.0                # for gaps that no impulse closes, over CLOSED [-]: bodies of rounded shape leave such gaps
+CLEAR = 1e-8                 # least pivot over its diagonal [-]: without exchange of rows it costs 8 of 16 digits
 MOST = 30                    # rounds of Newton's method per step [-]; with useful steps it needs 3 to 6
+
+NOT_CLOSED = "take a smaller step; if that does not help, the joints cannot all stay closed"
 
 COMPOSED = (SUZUKI, SUZUKI, 1.0 - 4.0 * SUZUKI, SUZUKI, SUZUKI)  # steps of a method of order 4, over dt [-]
 
@@ -46,6 +54,7 @@ class Joints(NamedTuple):
     r_a: np.ndarray          # (m, d) the point of a, from its centre, in coordinates of a [m]
     r_b: np.ndarray          # (m, d) the same for b [m]
     band: int                # rows of the Delassus matrix that are farther apart have no entry
+    loops: bool              # whether they form a closed loop, so that rows may depend on each other
 
 
 class JointedBodies(NamedTuple):
@@ -70,38 +79,54 @@ class JointArms(NamedTuple):
 
 def make_joints(state, p, a, b, places, e):
     """Return the JointedBodies of a Bodies p, whose bodies a[k] and b[k] are joined at places[k] (m, d) [m], as they
-    are in the PileState; e is the restitution of their contacts.
+    are in the PileState; e is the restitution of their contacts.  There may be no joint at all.
 
-    A row with inv_mass = 0 is the world, such as a plane.
-    Raises BadInput for a body that is none, for two that cannot move, and for joints that form a closed loop.
+    A row with inv_mass = 0 is the world, such as a plane.  Two ball joints on one axis are a hinge in space.
+    Raises BadInput for a body that is none, and for two that cannot move.
     """
+    check_record(p, state)
     check_restitution(e)
     places, d = finite_array("the place of a joint [m]", places), state.x.shape[1]
+    places = places if places.size > 0 else np.zeros((0, d))             # an empty list has no rows to count
     a = check_indices("a body of a joint", a, p.inv_mass.size)
     b = check_indices("a body of a joint", b, p.inv_mass.size)
     check_shape("the bodies a", a, (a.size,))
     check_shape("the bodies b", b, (a.size,))
-    check_field("the places of the joints [m]", places, (a.size, d))
-    r_a, r_b, apart = places - state.x[a], places - state.x[b], 0
+    check_shape("the places of the joints [m]", places, (a.size, d))
     for k in range(a.size):
         if a[k] == b[k]:
             raise BadInput("both bodies of a joint", a[k], "name two bodies")
         check_positive("inverse mass of both bodies of a joint [1/kg]", p.inv_mass[a[k]] + p.inv_mass[b[k]])
-        for i in range(k):
-            if any(body in (a[i], b[i]) and p.inv_mass[body] > 0.0 for body in (a[k], b[k])):
-                apart = max(apart, k - i)
-    arms, band = JointArms(r_a, r_b), d * (apart + 1) - 1
-    flat = state.q.ndim == 1
+    r_a, r_b = places - state.x[a], places - state.x[b]
     for k in range(a.size):
-        if flat:
+        if state.q.ndim == 1:
             r_a[k], r_b[k] = turned_2d(-state.q[a[k]], r_a[k]), turned_2d(-state.q[b[k]], r_b[k])
         else:
             r_a[k], r_b[k] = unrotate(state.q[a[k]], r_a[k]), unrotate(state.q[b[k]], r_b[k])
-    joints = JointedBodies(*p, float(e), Joints(a, b, r_a, r_b, band))
-    arms = joint_arms_2d(state.q, joints.joints) if flat else joint_arms(state.q, joints.joints)
-    check_independent(joint_matrix_2d(arms, arms, joints) if flat
-                      else joint_matrix(arms, arms, p.inv_mass, spatial_inertia(state.q, p.inv_inertia), joints.joints))
-    return joints
+    band = d * (farthest_neighbour(a, b, p.inv_mass) + 1) - 1
+    jointed = JointedBodies(*p, float(e), Joints(a, b, r_a, r_b, band, form_loops(a, b, p.inv_mass)))
+    check_record(jointed, state)
+    return jointed
+
+
+def farthest_neighbour(a, b, inv_mass):
+    """The largest difference of the numbers of two joints that share a body that can move; 0 if none do."""
+    apart = 0
+    for k in range(a.size):
+        for i in range(k):
+            if any(body in (a[i], b[i]) and inv_mass[body] > 0.0 for body in (a[k], b[k])):
+                apart = max(apart, k - i)
+    return apart
+
+
+def form_loops(a, b, inv_mass):
+    """Whether joints lead from a body back to it; all bodies with inv_mass = 0 are one, the world."""
+    part = np.where(inv_mass > 0.0, np.arange(inv_mass.size), -1)        # of what the joints so far have joined
+    for k in range(a.size):
+        if part[a[k]] == part[b[k]]:
+            return True
+        part[part == part[b[k]]] = part[a[k]]
+    return False
 
 
 # ---------------------------------------------------------------------------------------------- in the plane
@@ -134,6 +159,14 @@ def joint_gaps(x, arms, joints):
     return gaps
 
 
+def size_of_terms(x, arms, turned):
+    """The size [m] of what a gap is a sum of, of which some roundings are its error; turned: the largest angle [rad].
+
+    An angle q is known to a rounding of itself, so that an arm r may be off by |q| roundings of r.
+    """
+    return np.max(np.abs(x)) + (1.0 + turned) * np.maximum(np.max(np.abs(arms.r_a)), np.max(np.abs(arms.r_b)))
+
+
 def joint_matrix_2d(left, right, p):
     """A (2m, 2m) [1/kg]: velocities of the joints' points, at the arms `left`, by unit impulses at the arms `right`.
 
@@ -164,53 +197,80 @@ def add_block_2d(A, k, s, sign, body, left, right, inv_mass, inv_inertia):
     A[2 * k + 1, 2 * s + 1] += light + turns * left[k, 0] * right[s, 0]
 
 
-def solve_band(A, right, band):
-    """The J with A J = right, by elimination within the band; A and right are used up, and J is right.
+def impulses_2d(left, right, u, p):
+    """(J (m, 2) [N s], whether they reach u): impulses at the arms `right` that add −u (m, 2) [m/s] at the arms `left`.
 
-    A is near a positive definite matrix, so no pivot needs to be looked for.
+    Joints without loops have independent rows: one after the other holds a body that the joints before let go.  Then
+    the matrix is near a positive definite one, and elimination within the band is safe.  In a loop rows may depend on
+    each other: always, as those of two ball joints on one axis, or in a singular position, as in a flat four-bar.
+    Where a pivot shows that, shortest_impulses takes all rows at once.
     """
-    for k in range(right.size):
-        for r in range(k + 1, min(right.size, k + band + 1)):
-            factor = A[r, k] / A[k, k]
-            for c in range(k + 1, min(right.size, k + band + 1)):
-                A[r, c] -= factor * A[k, c]
-            right[r] -= factor * right[k]
-    for k in range(right.size - 1, -1, -1):
-        for c in range(k + 1, min(right.size, k + band + 1)):
-            right[k] -= A[k, c] * right[c]
-        right[k] /= A[k, k]
-    return right
+    J = -u.ravel()
+    if solve_band(joint_matrix_2d(left, right, p), J, p.joints.band, least_pivot(p.joints)):
+        return J.reshape(-1, 2), True
+    return shortest_impulses(joint_matrix_2d(left, right, p), u)
+
+
+def least_pivot(joints):
+    """The pivot, over the diagonal, at which elimination within the band ends."""
+    return CLEAR if joints.loops else 0.0
+
+
+def shortest_impulses(A, u):
+    """(J (m, d), whether they reach u): the J of least Σ |J|² with A J = −u, or as near to it as A allows.
+
+    Bodies move in one way only, but where rows depend on each other many J move them so.  The shortest one is unique
+    and does not depend on the order of the joints, on the axes or on the units.  It is that of joints which are
+    equally stiff.
+    It does not reach u where more than half of u is left: no J at these arms makes those velocities.
+    """
+    J = shortest_solution(A, -u.ravel())
+    return J.reshape(u.shape), np.max(np.abs(A @ J + u.ravel())) <= 0.5 * np.max(np.abs(u))
 
 
 def close_joints_2d(x, q, v, omega, dt, p):
     """(v, omega) after the impulses at the joints with which all of them are closed at x + dt v, q + dt omega.
 
     Newton's method: what is open in the end needs the velocity −gap/dt there, from an impulse that acts now.
-    Raises Diverged where a step is too long for that.
+    Where a mechanism is singular at the start, as a flat four-bar, no impulse in the directions of the start may reach
+    that; then the directions at the end serve.  Such a step is of second order, also within a composed one.
+    Raises Diverged where a step is too long for that, or where bodies go where the joints cannot stay closed.
     """
-    v, omega, arms = v.copy(), omega.copy(), joint_arms_2d(q, p.joints)
-    open_by, small = 0.0, CLOSED * (1.0 + np.max(np.abs(x)))
-    for _ in range(MOST):
-        end = joint_arms_2d(q + dt * omega, p.joints)
-        gaps = joint_gaps(x + dt * v, end, p.joints)
+    v, omega, joints, arms = v.copy(), omega.copy(), p.joints, joint_arms_2d(q, p.joints)
+    open_by, turned = 0.0, np.max(np.abs(q))
+    for _ in range(MOST if joints.a.size > 0 else 0):
+        there, end = x + dt * v, joint_arms_2d(q + dt * omega, joints)
+        gaps, small = joint_gaps(there, end, joints), CLOSED * size_of_terms(there, end, turned)
         open_by = np.max(np.abs(gaps))
         if open_by <= small:
             return v, omega
-        J = solve_band(joint_matrix_2d(end, arms, p), -gaps.ravel() / dt, p.joints.band)
-        apply_impulses_2d(v, omega, J.reshape(-1, 2), p.joints, arms, p.inv_mass, p.inv_inertia)
-    raise Diverged("the largest gap of a joint [m]", open_by, "take a smaller step")
+        J, reach = impulses_2d(end, arms, gaps / dt, p)
+        if reach:
+            apply_impulses_2d(v, omega, J, joints, arms, p.inv_mass, p.inv_inertia)
+        elif open_by <= SHAPE * small:
+            return v, omega
+        else:
+            arms = end
+    if joints.a.size > 0:
+        raise Diverged("the largest gap of a joint [m]", open_by, NOT_CLOSED)
+    return v, omega
 
 
-def hold_joints_2d(q, v, omega, p):
-    """(v, omega) after the impulses with which both points of each joint have the same velocity."""
-    v, omega, joints, arms = v.copy(), omega.copy(), p.joints, joint_arms_2d(q, p.joints)
+def joint_velocities_2d(v, omega, arms, joints):
+    """u (m, 2) [m/s]: the velocity of the point of a less that of b, of each joint."""
     u = np.empty(arms.r_a.shape)
     for k in range(joints.a.size):
         a, b = joints.a[k], joints.b[k]
         u[k, 0] = v[a, 0] - omega[a] * arms.r_a[k, 1] - v[b, 0] + omega[b] * arms.r_b[k, 1]
         u[k, 1] = v[a, 1] + omega[a] * arms.r_a[k, 0] - v[b, 1] - omega[b] * arms.r_b[k, 0]
-    J = solve_band(joint_matrix_2d(arms, arms, p), -u.ravel(), joints.band)
-    apply_impulses_2d(v, omega, J.reshape(-1, 2), joints, arms, p.inv_mass, p.inv_inertia)
+    return u
+
+
+def hold_joints_2d(q, v, omega, p):
+    """(v, omega) after the impulses with which both points of each joint have the same velocity."""
+    v, omega, joints, arms = v.copy(), omega.copy(), p.joints, joint_arms_2d(q, p.joints)
+    J, _ = impulses_2d(arms, arms, joint_velocities_2d(v, omega, arms, joints), p)
+    apply_impulses_2d(v, omega, J, joints, arms, p.inv_mass, p.inv_inertia)
     return v, omega
 
 
@@ -287,6 +347,14 @@ def joint_matrix(left, right, inv_mass, inv_inertia, joints):
     return A
 
 
+def impulses_3d(left, right, u, inv_mass, inv_inertia, joints):
+    """(J (m, 3), whether they reach u) as in the plane."""
+    J = -u.ravel()
+    if solve_band(joint_matrix(left, right, inv_mass, inv_inertia, joints), J, joints.band, least_pivot(joints)):
+        return J.reshape(-1, 3), True
+    return shortest_impulses(joint_matrix(left, right, inv_mass, inv_inertia, joints), u)
+
+
 def turn_on(q, omega, dt, inv_body):
     """(q, omega) of all bodies after they have turned freely for dt: splitting_free_rotation of lesson 5, L as it is.
 
@@ -305,29 +373,42 @@ def turn_on(q, omega, dt, inv_body):
 
 def close_joints(x, q, v, omega, dt, p):
     """(v, omega) as in the plane: all joints are closed when the bodies have moved and turned on for dt."""
-    v, omega, arms, inv_inertia = v.copy(), omega.copy(), joint_arms(q, p.joints), spatial_inertia(q, p.inv_inertia)
-    open_by, small = 0.0, CLOSED * (1.0 + np.max(np.abs(x)))
-    for _ in range(MOST):
-        end = joint_arms(turn_on(q, omega, dt, p.inv_inertia)[0], p.joints)
-        gaps = joint_gaps(x + dt * v, end, p.joints)
+    v, omega, joints, arms = v.copy(), omega.copy(), p.joints, joint_arms(q, p.joints)
+    inv_inertia, open_by = spatial_inertia(q, p.inv_inertia), 0.0
+    for _ in range(MOST if joints.a.size > 0 else 0):
+        there, end = x + dt * v, joint_arms(turn_on(q, omega, dt, p.inv_inertia)[0], joints)
+        gaps, small = joint_gaps(there, end, joints), CLOSED * size_of_terms(there, end, 0.0)
         open_by = np.max(np.abs(gaps))
         if open_by <= small:
             return v, omega
-        J = solve_band(joint_matrix(end, arms, p.inv_mass, inv_inertia, p.joints), -gaps.ravel() / dt, p.joints.band)
-        apply_impulses(v, omega, J.reshape(-1, 3), p.joints, arms, p.inv_mass, inv_inertia)
-    raise Diverged("the largest gap of a joint [m]", open_by, "take a smaller step")
+        J, reach = impulses_3d(end, arms, gaps / dt, p.inv_mass, inv_inertia, joints)
+        if reach:
+            apply_impulses(v, omega, J, joints, arms, p.inv_mass, inv_inertia)
+        elif open_by <= SHAPE * small:
+            return v, omega
+        else:
+            arms = end
+    if joints.a.size > 0:
+        raise Diverged("the largest gap of a joint [m]", open_by, NOT_CLOSED)
+    return v, omega
+
+
+def joint_velocities(v, omega, arms, joints):
+    """u (m, 3) [m/s] as in the plane."""
+    u = np.empty(arms.r_a.shape)
+    for k in range(joints.a.size):
+        apart = minus(point_velocity_of(v, omega, joints.a[k], row(arms.r_a, k)),
+                      point_velocity_of(v, omega, joints.b[k], row(arms.r_b, k)))
+        u[k, 0], u[k, 1], u[k, 2] = apart
+    return u
 
 
 def hold_joints(q, v, omega, p):
     """(v, omega) as in the plane: both points of each joint have the same velocity."""
     v, omega, joints, arms = v.copy(), omega.copy(), p.joints, joint_arms(q, p.joints)
-    inv_inertia, u = spatial_inertia(q, p.inv_inertia), np.empty(arms.r_a.shape)
-    for k in range(joints.a.size):
-        apart = minus(point_velocity_of(v, omega, joints.a[k], row(arms.r_a, k)),
-                      point_velocity_of(v, omega, joints.b[k], row(arms.r_b, k)))
-        u[k, 0], u[k, 1], u[k, 2] = apart
-    J = solve_band(joint_matrix(arms, arms, p.inv_mass, inv_inertia, joints), -u.ravel(), joints.band)
-    apply_impulses(v, omega, J.reshape(-1, 3), joints, arms, p.inv_mass, inv_inertia)
+    inv_inertia, u = spatial_inertia(q, p.inv_inertia), joint_velocities(v, omega, arms, joints)
+    J, _ = impulses_3d(arms, arms, u, p.inv_mass, inv_inertia, joints)
+    apply_impulses(v, omega, J, joints, arms, p.inv_mass, inv_inertia)
     return v, omega
 
 

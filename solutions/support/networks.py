@@ -2,7 +2,10 @@
 
 import numpy as np
 
-from ..checks import WrongShape, check_indices, check_positive, one_each
+from ..checks import Diverged, WrongShape, check_indices, check_positive, one_each
+
+VERLET_STABLE = 2.0          # ω dt up to which Verlet is stable [-]: its step has a trace of 2 − ω² dt²
+SUZUKI_STABLE = 2.7209745385 # the same for five Verlet steps with Suzuki's shares: where |trace| is first 2
 
 
 def inverse_masses(thing, m, fixed, x):
@@ -80,3 +83,30 @@ def apply_multipliers(J, Lam, network):
 def constraint_rates(J, v):
     """Given.  Return J v (s,) [m/s]: the rate of change of each constraint."""
     return J @ v.ravel()
+
+
+def check_taut_points(pulls, dt, stable, network):
+    """Given.  Raise Diverged if a point between taut links swings so fast that a step of dt cannot be stable.
+
+    pulls (s,) are τ = T/l [N/m], tension over length of the links.  A point of mass m whose neighbours stay where they
+    are swings across its links with ω² = (Σ τ)/m, so the fastest swing of a rope has at least that ω.  RATTLE moves
+    it as Verlet does: its amplitude grows by a factor in every step with ω dt > stable.  In such a step the links
+    move a point by more than twice their length.
+    *Source:* Leimkuhler and Reich 2004, 7.2 (RATTLE is Verlet on the constraint surface).
+    """
+    total = np.zeros(network.inv_mass.size)
+    for s in range(pulls.size):
+        total[network.i[s]] += pulls[s]
+        total[network.j[s]] += pulls[s]
+    k = np.argmax(network.inv_mass * total)
+    squared = network.inv_mass[k] * total[k]
+    if not dt * dt * squared <= stable * stable:
+        ratio = 1.0
+        for s in range(pulls.size):
+            if k == network.i[s] or k == network.j[s]:
+                other = network.j[s] if k == network.i[s] else network.i[s]
+                if network.inv_mass[other] > 0.0:
+                    ratio = max(ratio, network.inv_mass[k] / network.inv_mass[other])
+        raise Diverged("(step dt [s], its stability bound [s], mass ratio of neighbours [-]) of a taut rope",
+                       (float(abs(dt)), float(stable / np.sqrt(squared)), float(ratio)),
+                       "take a smaller step, or a heavier point")

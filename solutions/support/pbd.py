@@ -32,6 +32,7 @@ from ..pbd import (
 )
 from ..vectors import dot
 from .networks import apply_multipliers, constraint_rates, inverse_masses, link_delassus_matrix, measured_links
+from .records import check_record
 
 FIRST_REGULARISATION = 1e-10 # the same while gaps still close: redundant links then disagree by more than round-off
 
@@ -84,6 +85,8 @@ def rattle_step(acceleration, t, x, v, dt, network):
     """
     _, J = constraints(x, network)
     new = x + dt * v + 0.5 * dt * dt * acceleration(t, x, v, network)
+    if network.i.size == 0:
+        return new, (new - x) / dt + 0.5 * dt * acceleration(t + dt, new, v, network)
     for _ in range(NEWTON_LIMIT):
         C, J_new = constraints(new, network)
         # The next round removes the error of the regularisation.
@@ -188,4 +191,7 @@ def make_constraint_network(x, m, fixed, pairs, alpha, stiffness, gravity, sweep
             raise BadInput(f"the inverse mass at {link} [1/kg]", 0.0, "leave out links between immovable points")
         if not 0.0 < shares[s] <= 1.0:
             raise BadInput(f"the stiffness of link {s} [-]", shares[s], "give a number above 0, up to 1")
-    return ConstraintNetwork(inv_mass, gravity, i, j, rest, shares, alphas, whole_number("sweeps in a step", sweeps, 1))
+    sweeps = whole_number("sweeps in a step", sweeps, 1)
+    network = ConstraintNetwork(inv_mass, gravity, i, j, rest, shares, alphas, sweeps)
+    check_record(network, x)
+    return network

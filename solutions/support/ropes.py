@@ -9,6 +9,7 @@ import numpy as np
 
 from ..checks import BadInput
 from ..rotation import SUZUKI
+from .networks import SUZUKI_STABLE, VERLET_STABLE, check_taut_points
 
 
 def check_rope(network):
@@ -29,7 +30,7 @@ def link_product(a, r, b, s):
 def move_along_links(y, x, z, right, w):
     """Move y (n, d) along the links of x, in place, so that (link s of z) · (link s of y) grows by right[s].
 
-    w (n,) are the inverse masses.  right is used up.
+    w (n,) are the inverse masses.  right becomes the multiples of the links: negative where a link pulls.
     """
     n, ratio = right.size, np.zeros(right.size)
     for s in range(n):
@@ -54,14 +55,21 @@ def rope_step(acceleration, t, x, v, dt, network):
     """Advance a rope by one step of RATTLE with one Newton correction; second order, and it loses no energy.
 
     The first end of a rope may be fixed, or any other point that leaves every link a movable end.
+    Raises Diverged where a light point between taut links swings faster than dt allows, ω dt > 2: check_taut_points.
     """
     check_rope(network)
+    return taut_rope_step(acceleration, t, x, v, dt, dt, VERLET_STABLE, network)
+
+
+def taut_rope_step(acceleration, t, x, v, dt, whole, stable, network):
+    """The rope_step by dt, as a part of a whole step [s] that is stable up to ω · whole = stable [-]."""
     right = np.zeros(network.rest.size)
     half = v + 0.5 * dt * acceleration(t, x, v, network)                 # the velocity in the middle of the step
     new = x + dt * half
     for s in range(right.size):
         right[s] = 0.5 * (network.rest[s] * network.rest[s] - link_product(new, s, new, s)) / dt
     move_along_links(half, x, new, right, network.inv_mass)
+    check_taut_points(-2.0 / dt * right, whole, stable, network)
     new = x + dt * half
     v = half + 0.5 * dt * acceleration(t + dt, new, half, network)
     for s in range(right.size):
@@ -71,8 +79,12 @@ def rope_step(acceleration, t, x, v, dt, network):
 
 
 def composed_rope_step(acceleration, t, x, v, dt, network):
-    """Advance a rope by five rope_steps, the third one backwards, as `compose` of lesson 5 does; fourth order."""
+    """Advance a rope by five rope_steps, the third one backwards, as `compose` of lesson 5 does; fourth order.
+
+    Raises Diverged where a light point between taut links swings with ω dt > SUZUKI_STABLE, about 2.72.
+    """
+    check_rope(network)
     for share in (SUZUKI, SUZUKI, 1.0 - 4.0 * SUZUKI, SUZUKI, SUZUKI):
-        x, v = rope_step(acceleration, t, x, v, share * dt, network)
+        x, v = taut_rope_step(acceleration, t, x, v, share * dt, dt, SUZUKI_STABLE, network)
         t = t + share * dt
     return x, v

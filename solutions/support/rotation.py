@@ -3,9 +3,9 @@
 import numpy as np
 
 from ..checks import (
-    BadInput,
     check_end,
-    check_finite,
+    check_law,
+    check_load,
     check_positive,
     check_shape,
     checked_run,
@@ -30,8 +30,7 @@ from ..rotation import (
 )
 from ..vectors import cross
 from .quaternions import check_rotation, quaternion_from_matrix, rotate, solve3, unit, unrotate
-
-FLAT_BODY_TOLERANCE = 1e-12  # a flat body has I₁ + I₂ = I₃; round-off may violate that by this share [-]
+from .records import check_principal_moments, check_record
 
 
 def check_moments(I_body):
@@ -39,10 +38,7 @@ def check_moments(I_body):
     check_shape("the principal moments", I_body, (3,))
     for k in range(3):
         check_positive("a principal moment of inertia [kg m²]", I_body[k])
-        others = I_body[(k + 1) % 3] + I_body[(k + 2) % 3]
-        if I_body[k] > others * (1.0 + FLAT_BODY_TOLERANCE):
-            raise BadInput("a principal moment of inertia [kg m²]", I_body[k],
-                           "no distribution of mass has it; keep it below the sum of the other two")
+    check_principal_moments(I_body)
 
 
 def checked_rotation(t, q, L, dt, steps, I_body):
@@ -65,7 +61,9 @@ def advance_rotation(step, torque, t, q, L, dt, steps, body):
 
     Raises what checked_rotation raises, and Diverged when the final state is not finite.
     """
+    check_record(body, L)
     t, q, L, dt, steps = checked_rotation(t, q, L, dt, steps, body.I_body)
+    check_law("torque [N m]", torque(t, q, L, body), L.shape)
     for n in range(steps):
         q, L = step(torque, t + n * dt, q, L, dt, body)
     check_end(q, L, dt)
@@ -74,25 +72,27 @@ def advance_rotation(step, torque, t, q, L, dt, steps, body):
 
 def rotation_trajectory(step, torque, t, q, L, dt, steps, body):
     """Given.  Return times (steps + 1,), orientations (steps + 1, 4) and L (steps + 1, 3), with the start."""
+    check_record(body, L)
     t, q, L, dt, steps = checked_rotation(t, q, L, dt, steps, body.I_body)
+    check_law("torque [N m]", torque(t, q, L, body), L.shape)
     ts = t + dt * np.arange(steps + 1)
     qs, Ls = np.zeros((steps + 1, 4)), np.zeros((steps + 1, 3))
     qs[0], Ls[0] = q, L
     for n in range(steps):
-        q, L = advance_rotation(step, torque, t + n * dt, q, L, dt, 1, body)
+        q, L = step(torque, t + n * dt, q, L, dt, body)
+        check_end(q, L, dt)
         qs[n + 1], Ls[n + 1] = q, L
     return ts, qs, Ls
 
 
 def advance_rigid_body(step, load, t, x, q, v, omega, dt, steps, body):
     """Given.  Return (x, q, v, ω) after `steps` steps of a rigid body; raises what advance_rotation raises."""
+    check_record(body, x)
     positive_number("mass m [kg]", body.m)
     t, q, omega, dt, steps = checked_rotation(t, q, omega, dt, steps, body.I_body)
     t, x, v, dt, steps = checked_run(t, x, v, dt, steps)
     check_shape("the position x", x, (3,))
-    F, tau = load(t, x, q, v, omega, body)
-    check_finite("force at the start [N]", F)
-    check_finite("torque at the start [N m]", tau)
+    check_load(load(t, x, q, v, omega, body), (3,), (3,))
     for n in range(steps):
         x, q, v, omega = step(load, t + n * dt, x, q, v, omega, dt, body)
     check_end(x, v, dt)
@@ -106,7 +106,9 @@ def make_rigid_body(m, I_body):
     """Given.  Make a RigidBody from a number and three; raises BadInput for a mass or moments that no body has."""
     moments = finite_array("principal moments [kg m²]", I_body)
     check_moments(moments)
-    return RigidBody(positive_number("mass m [kg]", m), moments)
+    body = RigidBody(positive_number("mass m [kg]", m), moments)
+    check_record(body, moments)
+    return body
 
 
 def matrix_step(torque, t, q, L, dt, body):

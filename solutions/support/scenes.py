@@ -15,12 +15,14 @@ from ..checks import (
     check_not_negative,
     check_positive,
     check_shape,
+    check_unit,
     finite_array,
     number,
     positive_number,
     whole_number,
 )
 from .contact_points import ContactSet
+from .records import check_record
 
 HIGHEST = 1.0 / 3.0          # hertz times a substep [-]: faster soft contacts make piles tremble
 INDEPENDENT = 1e-12          # least pivot of A over its diagonal [-]: below it a contact repeats what others say
@@ -67,15 +69,9 @@ def make_contacts(a, b, p, n, inv_mass):
     b = check_indices("a body of a contact", b, inv_mass.size)
     p, n = finite_array("a contact point [m]", p), finite_array("a normal [-]", n)
     check_shape("the bodies a", a, (a.size,))
-    check_shape("the bodies b", b, (a.size,))
-    check_field("the contact points p", p, (a.size, 2))
-    check_field("the normals n", n, (a.size, 2))
-    for k in range(a.size):
-        check_normal(n[k])
-        if a[k] == b[k]:
-            raise BadInput("both bodies of a contact", a[k], "name two bodies")
-        check_positive("inverse mass of both bodies of a contact [1/kg]", inv_mass[a[k]] + inv_mass[b[k]])
-    return ContactSet(np.zeros(1, np.int64), a, b, n, p, np.zeros(a.size))
+    contacts = ContactSet(np.zeros(1, np.int64), a, b, n, p, np.zeros(a.size))
+    check_contacts(contacts, inv_mass)
+    return contacts
 
 
 def inverse_masses(inv_mass, inv_inertia):
@@ -98,10 +94,51 @@ def check_scene(x, inv_mass, inv_inertia, contacts, load, mu):
     for i in range(len(x)):
         check_not_negative("an inverse mass [1/kg]", inv_mass[i])
         check_not_negative("an inverse inertia [1/(kg m²)]", inv_inertia[i])
+    check_contacts(contacts, inv_mass)
 
 
-def check_independent(A):
-    """Raise BadInput unless A is positive definite: all pivots of elimination above INDEPENDENT times the diagonal."""
+def check_contacts(contacts, inv_mass):
+    """Raise BadInput unless a ContactSet joins two of these bodies at each contact, of which one can be moved."""
+    check_field("the contact points p [m]", contacts.p, (contacts.a.size, 2))
+    check_field("the normals n [-]", contacts.n, (contacts.a.size, 2))
+    check_field("the gaps of the contacts [m]", contacts.gap, (contacts.a.size,))
+    check_shape("the bodies b of the contacts", contacts.b, contacts.a.shape)
+    check_indices("a body a of a contact", contacts.a, inv_mass.size)
+    check_indices("a body b of a contact", contacts.b, inv_mass.size)
+    for k in range(contacts.a.size):
+        check_normal(contacts.n[k])
+        if contacts.a[k] == contacts.b[k]:
+            raise BadInput("both bodies of a contact", contacts.a[k], "name two bodies")
+        check_positive("inverse mass of both bodies of a contact [1/kg]",
+                       inv_mass[contacts.a[k]] + inv_mass[contacts.b[k]])
+
+
+def check_delassus(A, b):
+    """Raise BadInput unless A (rows, rows) [1/kg] and b (rows,) [m/s] are finite and the diagonal of A is positive.
+
+    The diagonal is 0 where neither body of a contact can be moved.
+    """
+    check_field("the Delassus matrix A [1/kg]", A, (b.size, b.size))
+    check_field("the velocities b without impulses [m/s]", b, (b.size,))
+    for k in range(b.size):
+        check_positive("inverse mass on the diagonal of A [1/kg]", A[k, k])
+
+
+def check_friction_problem(A, b, mu):
+    """Raise BadInput unless A, b and μ (rows/2,) are what solve_contacts can be asked about."""
+    check_delassus(A, b)
+    check_shape("the friction μ, one number for two rows of A", mu, (b.size // 2,))
+    check_shape("the rows of A, two for each contact", b, (2 * mu.size,))
+    for k in range(mu.size):
+        check_friction(mu[k])
+
+
+def check_independent(A, b):
+    """Raise BadInput unless A and b are finite and A is positive definite.
+
+    All pivots of elimination must be above INDEPENDENT times the diagonal.
+    """
+    check_delassus(A, b)
     U = 1.0 * A
     for k in range(A.shape[0]):
         if not U[k, k] > INDEPENDENT * A[k, k]:
@@ -166,8 +203,10 @@ def make_pile_2d(x, q, m, inertia, half, planes, gravity, mu, substeps, hertz, z
     mu, substeps, hertz, zeta, margin = settings(mu, substeps, hertz, zeta, margin)
     state = PileState(np.concatenate((x, np.zeros((p, 2)))), np.concatenate((q, np.zeros(p))), np.zeros((n + p, 2)),
                       np.zeros(n + p), no_contacts(n, 2), np.zeros((0, 2)))
-    return state, Pile(inverse("mass [kg]", m, n, p), inverse("moment of inertia [kg m²]", inertia, n, p), half, planes,
-                       gravity, mu, substeps, hertz, zeta, margin)
+    pile = Pile(inverse("mass [kg]", m, n, p), inverse("moment of inertia [kg m²]", inertia, n, p), half, planes,
+                gravity, mu, substeps, hertz, zeta, margin)
+    check_record(pile, state)
+    return state, pile
 
 
 def make_pile(x, q, m, inertia, half, planes, gravity, mu, substeps, hertz, zeta, margin):
@@ -192,15 +231,16 @@ def make_pile(x, q, m, inertia, half, planes, gravity, mu, substeps, hertz, zeta
     state = PileState(np.concatenate((x, np.zeros((p, 3)))),
                       np.concatenate((q, np.tile(np.array([1.0, 0.0, 0.0, 0.0]), p).reshape(p, 4))),
                       np.zeros((n + p, 3)), np.zeros((n + p, 3)), no_contacts(n, 3), np.zeros((0, 3)))
-    return state, Pile(inverse("mass [kg]", m, n, p), inv_inertia, half, planes, gravity, mu, substeps, hertz, zeta,
-                       margin)
+    pile = Pile(inverse("mass [kg]", m, n, p), inv_inertia, half, planes, gravity, mu, substeps, hertz, zeta, margin)
+    check_record(pile, state)
+    return state, pile
 
 
 def checked_pile(state, dt, steps, pile):
     """(PileState, dt, steps), converted to float64.
 
     Raises BadInput for a step or a number of steps or substeps that is none, hertz that a substep does not carry, what
-    is not finite, and quaternions without length.
+    is not finite, and quaternions that are not of length 1.
     """
     dt, steps = positive_number("step dt [s]", dt), whole_number("number of steps", steps, 0)
     substeps = whole_number("number of substeps", pile.substeps, 1)
@@ -220,8 +260,18 @@ def checked_pile(state, dt, steps, pile):
     if q.ndim == 2:
         check_shape("orientation q", q, (len(x), 4))
         for i in range(q.shape[0]):
-            check_positive("length of a quaternion [-]", np.sum(q[i] ** 2))
+            check_unit("length of a quaternion q [-]", np.sqrt(np.sum(q[i] ** 2)))
     return PileState(x, q, v, omega, state.contacts, finite_array("impulse J [N s]", state.J)), dt, steps
+
+
+def smaller_half(contacts, k, half):
+    """The smallest half size [m] of both bodies of contact k; planes have none."""
+    size, n = np.inf, half.shape[0]
+    for c in range(half.shape[1]):
+        size = min(size, half[contacts.a[k], c])
+        if contacts.b[k] < n:
+            size = min(size, half[contacts.b[k], c])
+    return size
 
 
 def deepest_contact(contacts, v, dt, half):
@@ -230,19 +280,13 @@ def deepest_contact(contacts, v, dt, half):
     What moves fast may go as far in during a step as the bodies move in it: that part does not count.  Raises Diverged
     where a velocity is no number.
     """
-    deepest, share, fastest, n = -1, 0.0, np.max(np.abs(v)), half.shape[0]
+    deepest, share, fastest = -1, 0.0, np.max(np.abs(v))
     if not np.isfinite(fastest):
         raise Diverged("the largest velocity of a body [m/s]", fastest, "take shorter steps, substeps or more sweeps")
     for k in range(contacts.a.size):
         sunk = -contacts.gap[k] - 2.0 * dt * fastest
-        if sunk > 0.0:
-            size = half[contacts.a[k], 0]
-            for c in range(half.shape[1]):
-                size = min(size, half[contacts.a[k], c])
-                if contacts.b[k] < n:
-                    size = min(size, half[contacts.b[k], c])
-            if sunk / size > share:
-                deepest, share = k, sunk / size
+        if sunk > 0.0 and sunk / smaller_half(contacts, k, half) > share:
+            deepest, share = k, sunk / smaller_half(contacts, k, half)
     return deepest, share
 
 

@@ -1,16 +1,35 @@
 """Given with lesson 10.  Loops with joints, one whose positions go with mean velocities, and one that sweeps only as
-long as it helps; and a chain that needs no joints, because its coordinates are angles.
+long as it helps; a chain that needs no joints, because its coordinates are angles; the history of a run with contact.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from ..simulator import contact_step_2d, find_contacts, kept_impulses, new_velocities_2d, velocity_sweep_2d
+from ..checks import whole_number
+from ..simulator import (
+    advance_contact,
+    contact_step_2d,
+    find_contacts,
+    kept_impulses,
+    new_velocities_2d,
+    velocity_sweep_2d,
+)
 from .arms import apply_impulses_2d, arms_2d
 from .invariants import closing_speeds
-from .joints import COMPOSED, close_joints_2d, hold_joints_2d, parting_speeds, solve_band, without_joined
+from .joints import (
+    COMPOSED,
+    close_joints_2d,
+    hold_joints_2d,
+    impulses_2d,
+    joint_arms_2d,
+    joint_velocities_2d,
+    parting_speeds,
+    without_joined,
+)
+from .records import check_record
 from .scenes import PileState
+from .small_systems import solve_band
 
 SETTLED = 1e-3               # change of an impulse, over the largest impulse [-]
 FURTHER = 1500               # sweeps after those of the step, at most
@@ -89,6 +108,32 @@ def joint_contact_step_2d(load, bounds, narrow, t, state, dt, p):
     return PileState(x + dt * v, q + dt * omega, v, omega, contacts, J)
 
 
+def joint_impulses_2d(load, t, before, after, dt, p):
+    """Given.  Return J (m, 2) [N s], on body a, of the joints in a step of joint_contact_step_2d from `before`, at t.
+
+    They are what loads and contacts leave of the change of the velocities; J/dt is the mean force of the step, impacts
+    included.  Where rows depend on each other J is the shortest that there is.
+    """
+    arms = arms_2d(before.x, p.inv_mass, p.inv_inertia, after.contacts)
+    v, omega = new_velocities_2d(load, t, before.x, before.q, before.v, before.omega, dt, p)
+    apply_impulses_2d(v, omega, after.J, after.contacts, arms, p.inv_mass, p.inv_inertia)
+    ends = joint_arms_2d(before.q, p.joints)
+    return impulses_2d(ends, ends, joint_velocities_2d(v - after.v, omega - after.omega, ends, p.joints), p)[0]
+
+
+# ---------------------------------------------------------------------------------------------- the history of a run
+
+def contact_trajectory(step, load, bounds, narrow, t, state, dt, steps, p):
+    """Given.  Return (ts, [state, …]) of advance_contact: times and all PileStates, the first included."""
+    check_record(p, state)
+    steps, states = whole_number("number of steps", steps, 0), [state]
+    for n in range(steps):
+        states.append(advance_contact(step, load, bounds, narrow, t + n * dt, states[-1], dt, 1, p))
+    return t + dt * np.arange(steps + 1), states
+
+
+# ---------------------------------------------------------------------------------------------- without joints
+
 class RodsInAngles(NamedTuple):
     """Equal rods in the plane, each hinged to the end of the one before, the first to a wall."""
     m: float                 # mass of each [kg]
@@ -115,4 +160,5 @@ def rods_acceleration(t, q, omega, p):
             A[i, j] = share * (c[i] * c[j] + s[i] * s[j])
             right[i] -= share * (s[i] * c[j] - c[i] * s[j]) * omega[j] * omega[j]
         A[i, i] = p.m * p.l * p.l * (n - i - 0.75) + p.I
-    return solve_band(A, right, n)
+    solve_band(A, right, n, 0.0)
+    return right

@@ -12,13 +12,13 @@ LEAF_SIZE = 8                # boxes in a leaf of a tree [-]: testing so few is 
 class Tree(NamedTuple):
     """A hierarchy of boxes around n items; node 0 is the root, which contains all items."""
     low: np.ndarray          # (m, d) corners of the box around each node [m]
-    high: np.ndarray         # (m, d)
+    high: np.ndarray         # (m, d) [m]
     child: np.ndarray        # (m,) number of the first child, the second follows it; 0 marks a leaf
     first: np.ndarray        # (m,) the items of a node are order[first], …
     count: np.ndarray        # (m,) … this many
     order: np.ndarray        # (n,) numbers of the items
     item_low: np.ndarray     # (n, d) boxes of the items [m], sorted like `order`: those of one leaf are adjacent
-    item_high: np.ndarray    # (n, d)
+    item_high: np.ndarray    # (n, d) [m]
 
 
 def check_boxes(low, high):

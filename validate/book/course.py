@@ -101,7 +101,7 @@ def lessons():
     for name, path in modules.scene_files().items():
         scenes[path.parent.name].append(name)
     return {name: Lesson(number, name, title(name), exercises_of(name), needs(name), tuple(scenes[name]), cases[name],
-                         *size_of_notebook(name), head(name)) for number, name in enumerate(modules.lesson_names(), 1)}
+                         *size_of_notebook(name), head(name)) for number, name in modules.lessons_by_number().items()}
 
 
 def notebook_of(name):

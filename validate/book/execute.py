@@ -7,6 +7,7 @@ import contextlib
 import hashlib
 import os
 import queue
+import sys
 import tempfile
 import time
 from pathlib import Path
@@ -28,12 +29,13 @@ FIRST = """%matplotlib inline
 
 
 @contextlib.contextmanager
-def kernel(folder, **environment):
-    """A client of a new kernel with that working folder."""
+def kernel(folder, python=sys.executable, **environment):
+    """A client of a new kernel of that Python, with that working folder."""
     # Two kernels that start at the same time may choose the same port, but not the same file.
     with tempfile.TemporaryDirectory() as place:
         manager = KernelManager(kernel_name="python3",
                                 **{"transport": "ipc", "ip": f"{place}/kernel"} if zmq.has("ipc") else {})
+        manager.kernel_spec.argv = [str(python), "-m", "ipykernel_launcher", "-f", "{connection_file}"]
         manager.start_kernel(cwd=folder, env={**os.environ, **environment})
         client = manager.blocking_client()
         client.is_kernel_alive = manager.is_alive

@@ -21,7 +21,8 @@ LINK = re.compile(r"\[([^\]]*)\]\((?!https?://|#)([^)\s]+)\)")  # to a file of t
 NOTEBOOK = re.compile(r"`(?:notebooks/)?(\d\d_\w+)\.ipynb`")
 EXERCISE = re.compile(r"`(\w+)` \((\d+\.\d+)( ★*)?\)")
 LEFT_OUT = "# {0}\n\nThis copy of the book was built without this notebook.\n"
-PAGES = re.compile(r"(?:docs/|\.\./)?((?:grading|instructors|students|plan)(?=\.md)|(?:lessons|notebooks)/\w+(?=\.))")
+PAGES = re.compile(r"(?:docs/|\.\./)?"
+                   r"((?:grading|instructors|plan|slides|students)(?=\.md)|(?:lessons|notebooks)/\w+(?=\.))")
 
 
 def write_all(folder, numbers, report, say):
@@ -43,7 +44,7 @@ def write_all(folder, numbers, report, say):
     for name in course.lessons():
         write(folder / "lessons" / f"{name}.rst", api.page(name))
     write(folder / "glossary.md", glossary())
-    for name in ("grading", "instructors", "students"):
+    for name in ("grading", "instructors", "slides", "students"):
         text = (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8")
         write(folder / f"{name}.md", plan.with_address(linked(text)))
     write(folder / "plan.md", plan.filled(linked((ROOT / "docs" / "plan.md").read_text(encoding="utf-8"))))

@@ -29,8 +29,8 @@ WEEKS = {
         "2.83/ω. Then move the slider."),),
     "springs": (Week(
         (1, 9), (10, 13),
-        "Ask why only one cloth keeps its shape. Go through the forces of the lesson; show why a spring never moves "
-        "the centre of mass, and which springs of a cloth are no threads.",
+        "Ask why only one cloth keeps its shape. Go through the forces of the lesson; show why springs alone never "
+        "move the centre of mass, and which springs of a cloth are no threads.",
         ("hanging_springs", "spring_net"),
         "Signs go wrong in 2.7. Draw two points, one spring and both forces on paper; then add the damper.",
         "How many more steps does a hundred times the stiffness cost? Ten times as many, because ω dt < 2. Why has "
@@ -95,8 +95,8 @@ WEEKS = {
         "How far too low does a chain hang, for a given step and number of sweeps (8.8)? Predict it, then measure."),
         Week(
         (12, 14), (15, 18),
-        "The stiffness of PBD depends on the step; a compliance does not. A rigid body as a point with an effective "
-        "inverse mass.",
+        "The stiffness of PBD depends on the step; a compliance does not, once the sweeps have converged. A rigid "
+        "body as a point with an effective inverse mass.",
         ("cloth",),
         "A push at one end of a rod: which share moves it, and which share turns it? On paper, before 8.15 to 8.17.",
         "*Break it*: eight sweeps or eight substeps? Predict how much stiffer each makes a chain (8 and 64 times).")),

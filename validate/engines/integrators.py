@@ -54,7 +54,7 @@ def pymunk_planet(p, dt, ahead=0.0):
 def bullet_planet(p, dt, ahead=0.0):
     """Apply the attraction as a force, from the position before each step.
 
-    By default a body would carry the hidden damping −0.04 v (1 + |v|) and spiral into the sun within 15 s.
+    By default a body would carry the damping −0.04 v (1 + |v|) and spiral into the sun within 15 s.
     """
     bullet = Bullet(dt)
     x, v = perihelion(p)

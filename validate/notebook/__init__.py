@@ -21,7 +21,7 @@ from matplotlib.ticker import LogFormatterSciNotation
 
 from solutions.checks import BadInput
 
-from .. import engines, failing_case, measure, modules, needs
+from .. import copies, engines, failing_case, measure, modules, needs
 from ..loading import lacks, waiting
 from ..measure import film
 from ..report import ARROWS, PLAYER_3D, plots, words
@@ -41,7 +41,7 @@ STYLE = (f'<style>body[data-jp-theme-light="false"],body[data-theme="dark"]{IN_T
 SIGN = {"passed": "✓", "not yet": "✗", "not attempted": "○"}
 
 plots.style()
-plt.rcParams["figure.figsize"] = (7.2, 3.8)
+plt.rcParams.update({"figure.figsize": (7.2, 3.8), "legend.fontsize": 9})
 # a figure that waits for an exercise may have nothing yet that its legend could name
 warnings.filterwarnings("ignore", "No artists with labels found to put in legend", UserWarning)
 
@@ -260,8 +260,11 @@ def _unfrozen(value):
 
 # ---------------------------------------------------------------------------------------------- the check
 
-def check(exercise):
-    """Run the grader's tests of one exercise on your code as saved just now: not attempted, not yet, or passed."""
+def check(exercise, hint=False):
+    """Run the grader's tests of one exercise on your code as saved just now: not attempted, not yet, or passed.
+
+    Text does not print the hint of a ★★ exercise, because it tells the formula, unless hint=True asks for it.
+    """
     try:
         lesson, own = _lesson_of(exercise), modules.subject_folder(folder())
     except BadInput as e:
@@ -280,7 +283,7 @@ def check(exercise):
         picture = cases.drawn(failing_case.decoded(case.read_text())) if case.is_file() else None
     if not outcomes:
         raise RuntimeError(f"the check of exercise {exercise} did not run:\n{said}")
-    display(_Answer(exercise, outcomes, _below(exercise, outcomes, own), picture))
+    display(_Answer(exercise, outcomes, _below(exercise, outcomes, own), picture, hint, copies.doubtful(own)))
 
 
 def _below(exercise, outcomes, own):
@@ -389,11 +392,21 @@ class _Map:
 class _Answer:
     """The answer of a check, for people: the worst outcome first; all of it as text and as HTML."""
 
-    def __init__(self, exercise, outcomes, below="", picture=None):
+    def __init__(self, exercise, outcomes, below="", picture=None, unfolded=False, folder=""):
         self.exercise, self.outcomes, self.below, self.picture = exercise, outcomes, below, picture
+        self.unfolded = unfolded                     # whether a hint that tells the formula was asked for
+        self.folder = folder                         # which was tested, where one might doubt it
         self.open = [o for o in outcomes if o["status"] != "passed"]
         states = {o["status"] for o in outcomes}
         self.state = "not yet" if "not yet" in states else "not attempted" if "not attempted" in states else "passed"
+
+    def first(self):
+        """The outcome that is shown."""
+        return next((o for o in self.open if o["status"] == "not yet"), None)
+
+    def folds(self, name):
+        """Whether this line tells the formula that the exercise asks to find, and was not asked for."""
+        return name == "hint" and self.first()["tells"] and not self.unfolded
 
     def lines(self):
         earned = sum(o["points"] for o in self.outcomes if o["status"] == "passed")
@@ -405,22 +418,25 @@ class _Answer:
         elif self.open:
             if self.below:
                 yield "first", self.below
-            first = next(o for o in self.open if o["status"] == "not yet")
+            first = self.first()
             for name in ("quantity", "given", "expected", "got", "tolerance", "hint", "printed"):
                 if first[name]:
                     yield name, first[name]
             if first["idea"]:
                 yield "diagnosis", first["idea"]
+        if self.folder:
+            yield "tested", self.folder
 
     def __repr__(self):
         (title, points), *rest = self.lines()
-        indented = ((name, value.replace("\n", f"\n{'':15}")) for name, value in rest)
+        ask = f'it tells the formula: check("{self.exercise}", hint=True) shows it'
+        indented = ((name, ask if self.folds(name) else value.replace("\n", f"\n{'':15}")) for name, value in rest)
         drawn = [f"    {'picture':10} {self.picture.alt}"] if self.picture else []
         return "\n".join([f"{title} ({points})", *(f"    {name:10} {value}" for name, value in indented), *drawn])
 
     def shown(self, name, value):
-        """A line as HTML.  If the exercise is to find a formula, the hint that tells it is folded."""
-        if name == "hint" and needs.asks_to_find(self.exercise):
+        """A line as HTML."""
+        if self.folds(name):
             return f"<details><summary>show it</summary>{escape(value)}</details>"
         return escape(value)
 

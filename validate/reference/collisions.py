@@ -7,6 +7,7 @@ weights (SciPy's nnls), first roots are SciPy's brentq, pairs are NumPy's compar
 from typing import Annotated, NamedTuple
 
 import numpy as np
+from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, nnls
 from scipy.spatial import ConvexHull
 
@@ -157,3 +158,27 @@ def all_touching(low, high):
         i, j = np.nonzero(np.all((low[part, None] <= high[None]) & (low[None] <= high[part, None]), axis=2))
         found.append(np.stack((i + first, j), axis=1)[i + first < j])
     return np.concatenate(found)
+
+
+# ---------------------------------------------------------------------------------------------- steering past a disc
+
+def held_steering(distance, offset):
+    """Return (closest approach over the radius, last speed over the first) of a body that holds its acceleration.
+
+    In radii, with speed 1: along = t − distance, across = offset + ½ a t², a = 2 (1 − offset)/distance².  The square
+    of the distance is least where  (t − distance) + (offset + ½ a t²) a t = 0.
+    """
+    a = 2.0 * (1.0 - offset) / distance**2
+    t = brentq(lambda t: t - distance + (offset + 0.5 * a * t * t) * a * t, 0.0, distance, xtol=1e-15)
+    return np.hypot(t - distance, offset + 0.5 * a * t * t), np.hypot(1.0, a * distance)
+
+
+def anew_steering(distance, offset):
+    """Return the closest approach over the radius of a body whose acceleration is always that of the moment.
+
+    In the frame of its velocity the centre is A ahead and B beside.  The velocity turns at the rate a, so
+    dA/dt = −1 − a B and dB/dt = a A, with a = 2 (1 − B)/A².  Without the time that is an equation for B(A), which
+    ends at A = 0, abreast of the centre.
+    """
+    slope = lambda s, B: 2.0 * (1.0 - B) * (distance - s) / ((distance - s) ** 2 + 2.0 * B * (1.0 - B))
+    return solve_ivp(slope, (0.0, distance), [offset], method="DOP853", rtol=1e-12, atol=1e-14).y[0, -1]

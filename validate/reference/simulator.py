@@ -3,7 +3,7 @@
 from functools import cache
 
 import numpy as np
-from scipy.integrate import solve_ivp
+from scipy.integrate import quad, solve_ivp
 
 RTOL, ATOL = 1e-12, 1e-14
 
@@ -179,6 +179,39 @@ def cradle_motion(lifted, angle, n, pitch, L, R, g, inertia, T):
             y[n + k:n + k + 2] -= 2.0 * lever * (lever @ y[n + k:n + k + 2]) / (lever @ lever)
             impacts.append((now, k, before, y[n:].copy()))
     return y[:n], y[n:], impacts
+
+
+# ---------------------------------------------------------------------------------------------- when a support lets go
+
+def leaves_ball(start, speed, R, g):
+    """Return (time [s], angle [rad]) at which a puck leaves a ball on which it slides without friction.
+
+    Its centre is at R from that of the ball, at the angle `start` from the top, and goes down with `speed` > 0.
+    The ball pushes with m (g cos θ − R ω²), and R²ω² = speed² + 2 g R (cos start − cos θ), so that the force ends at
+        cos θ = (2 cos start + speed²/(g R))/3
+    *Source:* energy; ∫ dθ/ω is the time.
+    """
+    angle = np.arccos((2.0 * np.cos(start) + speed * speed / (g * R)) / 3.0)
+    rate = lambda theta: np.sqrt(speed * speed + 2.0 * g * R * (np.cos(start) - np.cos(theta))) / R
+    return quad(lambda theta: 1.0 / rate(theta), start, angle, epsabs=1e-12)[0], angle
+
+
+def slides_on_ball(start, speed, R, g, t):
+    """Return (angle [rad], speed [m/s]) of that puck at t [s], before or after, by DOP853."""
+    run = solve_ivp(lambda _, y: (y[1], g / R * np.sin(y[0])), (0.0, t), (start, speed / R), method="DOP853", rtol=RTOL,
+                    atol=ATOL)
+    return run.y[0, -1], R * run.y[1, -1]
+
+
+def leaves_platform(depth, speed, rate, g):
+    """Return the time [s] at which a box leaves a platform that oscillates up and down, x = −D cos(rate t + φ).
+
+    It begins at x = −depth with `speed` upwards: D cos φ = depth, rate D sin φ = speed.  The platform pushes with
+    m (g + ẍ), so that the force ends at  cos(rate t + φ) = −g/(rate² D);  inf if D ≤ g/rate².
+    *Source:* Newton's second law.
+    """
+    D, phi = np.hypot(depth, speed / rate), np.arctan2(speed / rate, depth)
+    return (np.arccos(-g / (rate * rate * D)) - phi) / rate if rate * rate * D > g else np.inf
 
 
 # ---------------------------------------------------------------------------------------------- boxes at rest

@@ -59,7 +59,7 @@ class SquareNet(NamedTuple):
     m: Annotated[float, "each node [kg]"] = 0.05
     k: Annotated[float, "each spring [N/m]: the uppermost stretch by a tenth"] = 200.0
     k_d: Annotated[float, "its damper [N s/m]"] = 0.1
-    k_v: Annotated[float, "viscosity on each node [N s/m]"] = 0.0
+    k_v: Annotated[float, "viscous drag on each node [N s/m]"] = 0.0
     wind: Annotated[float, "horizontal, on each node [N]: a tenth of its weight"] = 0.05
     g: Annotated[float, "gravity [m/s²]"] = 9.81
 

@@ -21,7 +21,7 @@ from . import words
 
 EXACT_RUN = 1e-12               # relative error of a run of many steps that is exact [-]
 DRAWN_FROM = "drawn from data "
-NOTE = {"xycoords": ("axes fraction", "data"), "fontsize": 8, "color": "#555555"}
+NOTE = {"xycoords": ("axes fraction", "data"), "fontsize": 9, "color": "#555555"}
 TOP = 10.0                      # errors above this, and failures, are drawn here, as crosses [-]
 WIDTH, HEIGHT = 5.2, 3.4        # of the axes with their labels [in]: as wide as a phone shows without shrinking letters
 LARGEST, SMALLEST = 8.0, 4.5    # markers of the lowest and of the uppermost curve [pt]
@@ -96,7 +96,10 @@ def convergence(path, result):
 
 
 def work_precision(path, result):
-    """Error against run time: compiled solid, plain faint, engines dark."""
+    """Error against run time: compiled solid, plain faint, engines dark.
+
+    Where more steps took less time the machine was not quiet; a line would run backwards, so there is none.
+    """
     figure, axes = plt.subplots()
     bottom, look = floor(result), looks(result)
     rows = [{**r, "error": max(r["error"], bottom)} for r in result["times"]["rows"] if r["error"] < TOP]
@@ -108,7 +111,8 @@ def work_precision(path, result):
         plain = compiled and speed == "plain"
         faint = {**look[label], "ls": ":", "ms": 3, "lw": 0.9, "alpha": 0.55}
         name = f"{label} (recorded)" if speed == "recorded" else label
-        axes.loglog(x, y, **(faint if plain else {**look[label], "lw": 1.4, "label": name}))
+        drawn = faint if plain else {**look[label], "lw": 1.4, "label": name}
+        axes.loglog(x, y, **(drawn if np.all(np.diff(x) > 0.0) else {**drawn, "ls": ""}))
         axes.hlines(y, low, high, color=look[label]["color"], lw=0.8, alpha=0.5)
     if compiled and any(r["speed"] == "plain" for r in rows):
         axes.plot([], [], color="#555555", ls=":", marker=".", label="the same, plain Python")
@@ -282,7 +286,7 @@ def _finish(figure, axes, path, title):
         axes.text(0.5, 0.5, "nothing to draw: no method has been attempted", transform=axes.transAxes, ha="center",
                   color="#555555")
     if path is None:
-        axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=8.5, title=title, title_fontsize=8.5,
+        axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=9, title=title, title_fontsize=9,
                     alignment="left")
         _margins(figure, axes, title)
         plt.show()
@@ -300,7 +304,7 @@ def _save(figure, path):
     plt.close(figure)
 
 
-LETTER = 0.072                  # mean width of a letter of the legend [in]: 0.61 of 8.5 points
+LETTER = 0.076                  # mean width of a letter of the legend [in]: 0.61 of 9 points
 LINE = 0.172                    # height of a line of the legend [in]
 
 

@@ -8,11 +8,10 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from solutions import collisions as worked
-from solutions import integrators
-from solutions.integrators import observed_order
 from validate.engines.bullet import Bullet
-from validate.reference.collisions import depth_of, hull_nearest
-from validate.stability.case import DOTS, LINE, Picture, Worst, agreement, case, finding, refuses, series
+from validate.reference.collisions import anew_steering, depth_of, held_steering, hull_nearest
+from validate.reference.schemes import TABLEAUX, step_of
+from validate.stability.case import DOTS, LINE, Picture, Worst, agreement, case, finding, log_slope, refuses, series
 
 from .. import engines
 
@@ -157,7 +156,7 @@ def far_from_origin(lesson):
     gap = lambda a, b, shift: lesson.gjk(a + shift, b + shift).gap
     squares = lambda D: [(gap(a, b, D * place) - true) ** 2 for (a, b), true in zip(bodies, exact)]
     errors = np.array([np.sqrt(np.mean(squares(D))) for D in away])
-    slope, worst = observed_order(away, errors), errors[-1] / (away[-1] * SPACING)
+    slope, worst = log_slope(away, errors), errors[-1] / (away[-1] * SPACING)
     found = [
         finding(
             claim="Far from the origin only the rounding of the corners remains: the error grows in proportion to D.",
@@ -394,7 +393,7 @@ def degenerate_shapes(lesson):
 def nearest_approach(lesson, closing, k, reach, steps=10_000):
     """Return the least gap [m] of two bodies that approach head-on at that speed [m/s], and that of theory.
 
-    The run uses Verlet's method of lesson 1.
+    The run uses Verlet's method.
     """
     radius, turning = 0.1, 1.0 / (1.0 / reach + closing / np.sqrt(2.0 * k))
     p, dt = lesson.make_flock(radius, reach, k, 0.0, 0.0), 2e-3 * turning / closing
@@ -403,14 +402,80 @@ def nearest_approach(lesson, closing, k, reach, steps=10_000):
     begin = 2.0 * half - 2.0 * radius                               # its potential energy there counts as well
     x = np.array([[-half, 0.0], [half, 0.0]])
     v = np.array([[0.5, 0.0], [-0.5, 0.0]]) * np.sqrt(closing**2 - 2.0 * k * (1.0 / begin - 1.0 / reach) ** 2)
-    least = np.inf
+    least, verlet = np.inf, step_of(TABLEAUX["Verlet"])
+    law = lambda t, x, v: lesson.flock_acceleration(t, x, v, p)
     for n in range(steps):
-        x, v = integrators.verlet_step(lesson.flock_acceleration, n * dt, x, v, dt, p)
+        x, v = verlet(law, n * dt, x, v, dt)
         gap = x[1, 0] - x[0, 0] - 2.0 * radius
         if gap > least:
             break
         least = gap
     return least, turning
+
+
+def steered_past(lesson, distance, offset, anew, steps=4000):
+    """Return the least distance from the centre of a disc of radius 1 m, and the last speed, of a body of 1 m/s.
+
+    It begins at that distance before the centre and passes it at that offset, both in m, if it does not steer.  It
+    steers once and holds that acceleration until it is abreast of the centre, or steers anew in each step until it
+    moves away from the centre.  Then the speed is that after the last step that turned it by less than 0.1 rad.
+    """
+    x, v, centre, dt = np.array([-distance, offset]), np.array([1.0, 0.0]), np.zeros(2), distance / steps
+    law, midpoint = lambda t, x, v: lesson.steer(x, v, centre, 1.0, np.inf), step_of(TABLEAUX["midpoint"])
+    if not anew:
+        a, t = law(0.0, x, v), np.linspace(0.0, distance, steps + 1)[:, None]
+        return np.linalg.norm(x + v * t + 0.5 * a * t * t, axis=1).min(), np.linalg.norm(v + a * distance)
+    least, speed = np.linalg.norm(x), 1.0
+    while x @ v < 0.0:
+        if np.linalg.norm(law(0.0, x, v)) * dt < 0.1:
+            speed = np.linalg.norm(v)
+        x, v = midpoint(law, 0.0, x, v, dt)
+        least = min(least, np.linalg.norm(x))
+    return least, speed
+
+
+def steering():
+    """Return [(distance, offset)] of bodies that steer past a disc of radius 1 m."""
+    return (4.0, 0.0), (4.0, 0.5), (1.5, 0.0), (1.5, 0.5)
+
+
+def steered_findings(lesson):
+    """Return how near a body comes that holds the acceleration of exercise 6.17, and one that computes it anew.
+
+    Places on a path are dt = 1/4000 of the distance apart, so they miss the least one by dt²/2 at most; the midpoint
+    method is of second order as well.  With A before the centre, A² < 2 (1 − B) dt, it turns by more than 1 rad per
+    step and is wrong.  From there on the distance B changes by A²/2 = (1 − B) dt.  A step that turns it by θ < 0.1 rad
+    multiplies its speed by 1 + θ⁴/8; θ grows like 1/A², so all of them together do as much as A/7dt < 13 of the last.
+    """
+    found = []
+    for distance, offset in steering():
+        where = f"from {distance:g} radii, offset {offset:g}"
+        nearest, faster = held_steering(distance, offset)
+        got, speed = steered_past(lesson, distance, offset, False)
+        found += [finding(
+            claim="A body that holds the acceleration of its steering cuts into the disc before it is abreast.",
+            quantity=f"closest approach over the radius, {where} [-]", predicted=nearest, measured=got,
+            tolerance=(distance / 4000) ** 2,
+            observation=f"It comes as near as {got:.4f} radii.",
+        ), finding(
+            claim="It ends faster: its acceleration is across its first velocity, not across the present one.",
+            quantity=f"last speed over the first, {where} [-]", predicted=faster, measured=speed, tolerance=1e-12,
+            observation=f"It ends at {speed:.4f} times its speed.",
+        )]
+        nearest = anew_steering(distance, offset)
+        got, speed = steered_past(lesson, distance, offset, True)
+        found += [finding(
+            claim="A body that computes its steering anew all the time comes too near as well, but less.",
+            quantity=f"closest approach over the radius, computed anew, {where} [-]", predicted=nearest, measured=got,
+            tolerance=10.0 * (distance / 4000) ** 2 + (1.0 - nearest) * distance / 4000,
+            observation=f"It comes as near as {got:.6f} radii.",
+        ), finding(
+            claim="It keeps its speed, because its acceleration is always across its velocity.",
+            quantity=f"speed over the first while steps resolve the turn, computed anew, {where} [-]", predicted=1.0,
+            measured=speed, tolerance=2e-4,
+            observation=f"As long as a step turns it by less than 0.1 rad, it has {speed:.6f} times its speed.",
+        )]
+    return found
 
 
 @case("head-on-avoidance", "Avoidance head-on", compiled=False)
@@ -420,8 +485,10 @@ def head_on_avoidance(lesson):
     Each has the kinetic energy ½ (u/2)².  g = 1/(1/reach + u/√(2k)) is above zero at any speed.  Verlet's energy
     error is (dt/τ)² = 4e-6 times a constant for the steepness of the potential, at most the fourth power: 4·5/2.
     The gap follows the energy with a power below one.
+
+    Steering has no potential, and does not keep clear of its disc: see steered_findings.
     """
-    found, k, reach = [], 1.0, 1.0
+    found, k, reach = steered_findings(lesson), 1.0, 1.0
     for closing in (1.0, 10.0, 100.0):
         got, turning = nearest_approach(lesson, closing, k, reach)
         found.append(finding(
@@ -529,7 +596,7 @@ def overlapping(rng, n):
             )
             for _ in range(2)
         )
-        if worked.box_separation(a, b)[0] < 0.0:
+        if depth_of(corners_of(a), corners_of(b))[0] < 0.0:
             pairs.append((a, b))
     return pairs
 
@@ -699,7 +766,8 @@ def cloth_swept_steered(lesson):
     """A cloth's gap by a search along its edges and by the winding number of its face about the axis.
 
     A swept box is the box around all corners at the beginning and the end.  A body that steers with a for the time τ
-    passes the centre at exactly the radius: x + v τ + ½ a τ².
+    is then abreast of the centre at exactly the radius: x + v τ + ½ a τ².  How near it was before is the subject of
+    `head-on-avoidance`.
     """
     rng, worst, inside = np.random.default_rng(67), Worst(), 0
     for _ in range(200):
@@ -745,8 +813,8 @@ def cloth_swept_steered(lesson):
                   "gap of a triangle and a cylinder: largest error [m]", worst["gap"], 1e-9),
         agreement("A swept box is the box around the first and the last position.",
                   "corners of a swept box: largest error [m]", worst["swept"], 1e-12),
-        agreement("A body that steers passes the centre at exactly the radius.",
-                  "distance when it passes, over the radius: largest error [-]", worst["steer"], 1e-11),
+        agreement("A body that steers is abreast of the centre at exactly the radius.",
+                  "distance when it is abreast, over the radius: largest error [-]", worst["steer"], 1e-11),
         agreement("It steers only for what is ahead, in time and in its way.", "acceleration for all else [m/s²]",
                   worst["straight"], 0.0)], None
 

@@ -11,6 +11,7 @@ from solutions.friction import ParticleInBowl, ParticleOnPlane
 from solutions.support.friction import make_block
 from validate.engines.friction import bullet_block, pymunk_block
 from validate.reference.friction import DrivenBlock, T, slip_limits, slip_position, slips
+from validate.reference.schemes import TABLEAUX, step_of
 from validate.stability.case import DOTS, EDGE, LINE, Picture, Worst, agreement, bisect, case, finding, refuses, series
 
 from .. import engines
@@ -241,10 +242,13 @@ def regularised_friction_creeps(lesson):
         a = p.gravity
         return a - (a @ p.n) * p.n + lesson.kinetic_friction(a, v, p.n, p.mu_k)
 
+    def euler_step(acceleration, t, x, v, dt, p):
+        return step_of(TABLEAUX["Euler"])(lambda *now: acceleration(*now, p), t, x, v, dt)
+
     for dt in (0.05, 0.02, 0.01):
         steps = round(1.0 / dt)
         x, v = np.zeros(2), np.array([1.0, 0.0])
-        ts, _, vs = integrators.trajectory(integrators.euler_step, force, 0.0, x, v, dt, steps, block)
+        ts, _, vs = integrators.trajectory(euler_step, force, 0.0, x, v, dt, steps, block)
         swing = np.ptp(vs[-4:, 0])
         found.append(finding(
             claim="As a force, friction does not stop a block: its velocity alternates by μ g dt.",

@@ -7,8 +7,19 @@ Needles, plates, and impossible tensors: the edge between them.
 import numpy as np
 
 from solutions.checks import BadInput
-from solutions.integrators import observed_order
-from validate.stability.case import DOTS, LINE, Picture, Worst, agreement, case, finding, flat, refuses, series
+from validate.stability.case import (
+    DOTS,
+    LINE,
+    Picture,
+    Worst,
+    agreement,
+    case,
+    finding,
+    flat,
+    log_slope,
+    refuses,
+    series,
+)
 
 SPACING = 2.0**-52           # of floats around 1 [-]; a coordinate has half of it as relative rounding error
 PLACES = 64  # directions in which the body is moved: the mean square of so many errors is known to 18 %
@@ -66,7 +77,7 @@ def far_from_origin(lesson):
     near, far = 2.0 ** np.arange(2, 11), 2.0 ** np.arange(6, 27, 4)
     ours = mean_error(lambda x: lesson.mesh_body(1.0, x, FACES).I, far)
     naive = mean_error(about_the_world, near)
-    slope, steep = observed_order(far, ours), observed_order(near, naive)
+    slope, steep = log_slope(far, ours), log_slope(near, naive)
     found = [
         finding(
             claim="About a corner of the body, only the rounding of its corners remains: the error grows like D.",

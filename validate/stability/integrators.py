@@ -14,12 +14,26 @@ The first case draws all methods into one picture.
 from typing import NamedTuple
 
 import numpy as np
+from scipy.integrate import solve_ivp
 
 from solutions.checks import Diverged
 from validate.methods import BLANES_MOAN, INTEGRATORS
 from validate.reference import schemes
 from validate.reference.integrators import Planet, adaptive_march, orbit, perihelion
-from validate.stability.case import DOTS, EDGE, LINE, Picture, Worst, agreement, bisect, case, finding, refuse, series
+from validate.stability.case import (
+    DOTS,
+    EDGE,
+    LINE,
+    Picture,
+    Worst,
+    agreement,
+    bisect,
+    case,
+    finding,
+    jitted,
+    refuse,
+    series,
+)
 
 OMEGA = 3.0                  # angular frequency of the runs [rad/s]: not 1, so that h mistaken for hω would show
 STEPS = 499  # of one run: a prime, so that no run ends at its start, where eigenvalues meet and round-off grows
@@ -951,3 +965,147 @@ def what_measures_methods(lesson):
                       max(errors["radius"]), 1e-9),
             agreement("The observed order is the slope of the least squares on logarithmic scales.",
                       "order: largest error [-]", max(errors["order"]), 1e-12)], None
+
+
+# ---------------------------------------------------------------------------------------------- a million steps
+
+DYADIC = 1.0 / 64.0          # a step [s] whose products with ½ and with itself are exact: a sum is all that is rounded
+CIRCLES = 16                 # planets on the same circle, at other places
+SPREAD = 3.0 / np.sqrt(2.0 * CIRCLES)   # three standard deviations of the root mean square of so many, over its mean
+MANY, FEW = 10**6, 10**4     # steps of a run: compiled, and in plain Python
+
+
+def attracted_each(t, x, v, p):
+    """a = −μ x/|x|³ for each row of x (n, 2)"""
+    a = np.empty_like(x)
+    for k in range(x.shape[0]):
+        square = x[k, 0] * x[k, 0] + x[k, 1] * x[k, 1]
+        a[k] = -p.mu / (square * np.sqrt(square)) * x[k]
+    return a
+
+
+def discrete_circle(dt, phi):
+    """Return (x, v), at the angles phi, of a planet that Verlet keeps on the unit circle about μ = 1.
+
+    xₙ₊₁ − 2xₙ + xₙ₋₁ = −dt² xₙ  turns x by θ with  2 − 2 cos θ = dt²,  and  v = (xₙ₊₁ − xₙ₋₁)/2dt  has length sin θ/dt.
+    """
+    speed = np.sin(2.0 * np.arcsin(0.5 * dt)) / dt
+    return np.stack((np.cos(phi), np.sin(phi)), 1), speed * np.stack((-np.sin(phi), np.cos(phi)), 1)
+
+
+def walk_of_energy(dt):
+    """Return the standard deviation [J/kg] of the energy after one step on that circle, if roundings are independent.
+
+    A sum is rounded by up to half the spacing u of floats, with variance u²/12.  A step makes two sums in x and one
+    in v, and the energy ½v² − 1/|x| changes by  x · δx + v · δv  where |x| = 1.
+    """
+    x, v = discrete_circle(dt, np.linspace(0.0, 2.0 * np.pi, 10000))
+    squares = 2.0 * (x * np.spacing(abs(x))) ** 2 + (v * np.spacing(abs(v))) ** 2
+    return np.sqrt(np.mean(np.sum(squares, axis=1)) / 12.0)
+
+
+@case("a-million-steps", "A million steps of a planet")
+def a_million_steps(lesson):
+    """On its discrete circle Verlet keeps the energy, so that nothing but rounding changes it: a random walk.
+
+    After n steps it is off by √n times one step's share (Brouwer's law).  The step is a power of two, because a rounded
+    ½dt² would be a systematic error, which grows by n.
+    *Source:* Brouwer 1937; Hairer, McLachlan, Razakarivony 2008, "Achieving Brouwer's law with implicit Runge–Kutta
+    methods".
+    """
+    fast = hasattr(lesson.verlet_step, "py_func")
+    law, longest = (jitted(attracted_each), MANY) if fast else (attracted_each, FEW)
+    x, v = discrete_circle(DYADIC, np.arange(1.0, CIRCLES + 1.0))
+    energy = lambda x, v: 0.5 * np.sum(v * v, axis=1) - 1.0 / np.sqrt(np.sum(x * x, axis=1))
+    counts, walks, share = [longest // 100, longest // 10, longest], [], walk_of_energy(DYADIC)
+    for n in counts:
+        off = energy(*lesson.advance(lesson.verlet_step, law, 0.0, x, v, DYADIC, n, Planet())) - energy(x, v)
+        walks.append(np.sqrt(np.mean(off**2)))
+    return [finding(
+        claim="Rounding changes the energy of a planet like a random walk, by √n times the share of one step.",
+        quantity=f"energy after {n:,} steps: root mean square of {CIRCLES} planets [J/kg]",
+        predicted=share * np.sqrt(n), measured=walk, tolerance=SPREAD * share * np.sqrt(n),
+        observation=f"After {n:,} steps, {n * 2.0 * np.arcsin(0.5 * DYADIC) / (2.0 * np.pi):,.0f} revolutions, the "
+                    f"energy is off by {walk:.1e} J/kg.") for n, walk in zip(counts, walks)], Picture(
+        "The energy of a planet, rounded a million times", "log₁₀ of the steps [-]",
+        "log₁₀ of the energy's error [J/kg]",
+        [series("√n times the share of one step", np.log10(counts), np.log10(share * np.sqrt(counts)), LINE),
+         series("measured", np.log10(counts), np.log10(walks), DOTS)],
+        "A hundred times as many steps make ten times the error. Shorter steps do not help, because more are needed.")
+
+
+# ---------------------------------------------------------------------------------------------- the limit of prediction
+
+HELD, HORIZON = np.radians([120.0, 120.0]), 0.1      # both arms at the start [rad]; a prediction is lost beyond [rad]
+AHEAD, SLICES = 16.0, 50     # duration of the runs [s]; samples per second
+EXPONENTS = (2, 4, 6, 8)     # one start is off by ten to minus each of these [rad]
+# Where 0.1 rad is reached the growth is no longer quite linear, and the motion turns once per half second.
+RIPPLE = 0.1                 # [s]
+
+
+def double_pendulum(t, x, v, p):
+    """θ̈ of two equal arms of 1 m with masses at their ends, in each row of x = (θ₁, θ₂), both from the vertical.
+
+    2θ̈₁ + c θ̈₂ = −s ω₂² − 2g sin θ₁,    c θ̈₁ + θ̈₂ = s ω₁² − g sin θ₂,    s, c: sine and cosine of θ₁ − θ₂
+    """
+    s, c = np.sin(x[:, 0] - x[:, 1]), np.cos(x[:, 0] - x[:, 1])
+    f = -s * v[:, 1] ** 2 - 2.0 * 9.81 * np.sin(x[:, 0])
+    h = s * v[:, 0] ** 2 - 9.81 * np.sin(x[:, 1])
+    return np.stack(((f - c * h) / (2.0 - c * c), (2.0 * h - c * f) / (2.0 - c * c)), axis=1)
+
+
+def true_growth():
+    """Return (ts, angles (n, 2), factors (n,)): the motion, and what a small error in θ₁ has grown to at most by then.
+
+    An imaginary part of 1e-30 in the start is carried along as the derivative by it, to all digits.
+    """
+    def rates(t, y):
+        return np.concatenate((y[2:], double_pendulum(t, y[None, :2], y[None, 2:], None)[0]))
+    ts, tiny = np.arange(AHEAD * SLICES + 1.0) / SLICES, 1e-30
+    begin = np.array([*HELD, 0.0, 0.0]) + 1j * tiny * np.array([1.0, 0.0, 0.0, 0.0])
+    y = solve_ivp(rates, (0.0, AHEAD), begin, method="DOP853", rtol=1e-13, atol=1e-15, t_eval=ts).y
+    return ts, y[:2].real.T, np.maximum.accumulate(np.linalg.norm(y[:2].imag, axis=0)) / tiny
+
+
+def first_beyond(ts, sizes, limit=HORIZON):
+    """Return the first of the times at which a size is beyond the limit; infinite if it never is."""
+    beyond = np.flatnonzero(sizes > limit)
+    return ts[beyond[0]] if len(beyond) else np.inf
+
+
+def sampled(lesson, starts, steps):
+    """Return the angles (n, k, 2) of runs from these starts, with so many steps per second, at the times ts."""
+    run = lesson.trajectory(lesson.rk4_step, double_pendulum, 0.0, starts, 0.0 * starts, 1.0 / steps,
+                            round(AHEAD * steps), None)
+    return run[1][::steps // SLICES]
+
+
+@case("limit-of-prediction", "How long a double pendulum can be predicted", compiled=False)
+def limit_of_prediction(lesson):
+    """A small error grows by a factor that the motion alone decides, whatever its cause: method, start or rounding."""
+    ts, truth, factor = true_growth()
+    starts = HELD + np.array([[0.0, 0.0], *([10.0**-k, 0.0] for k in EXPONENTS)])
+    fine, coarse = (sampled(lesson, starts, steps) for steps in (500, 250))
+    apart = np.linalg.norm(fine[:, 1:] - fine[:, :1], axis=2).T
+    lost = [first_beyond(ts, np.linalg.norm(run[:, 0] - truth, axis=1)) for run in (fine, coarse)]
+    found = [finding(
+        claim="Two starts that differ by ε are apart by ε times the growth of a small error, while that is small.",
+        quantity=f"time until starts 1e-{k} rad apart differ by {HORIZON:g} rad [s]",
+        predicted=first_beyond(ts, factor * 10.0**-k), measured=first_beyond(ts, sizes), tolerance=RIPPLE,
+        observation=f"They differ by {HORIZON:g} rad after {first_beyond(ts, sizes):.2f} s.")
+        for k, sizes in zip(EXPONENTS, apart)]
+    later = first_beyond(ts, factor / np.interp(lost[1], ts, factor), 16.0)
+    found.append(finding(
+        claim="Half the step makes Runge–Kutta 4 sixteen times as accurate. The prediction then lasts until an error "
+              "has grown sixteen times larger.",
+        quantity="time until 500 steps per second err by 0.1 rad [s]", predicted=later, measured=lost[0],
+        tolerance=2.0 * RIPPLE,
+        observation=f"250 steps per second predict {lost[1]:.2f} s, and 500 predict {lost[0]:.2f} s."))
+    every = slice(None, None, 5)
+    return found, Picture(
+        "How two nearly equal starts part", "t [s]", "log₁₀ of the distance of the two [rad]",
+        [line for k, sizes in zip(EXPONENTS, apart) for line in (
+            series(f"1e-{k}, theory", ts[every], np.log10(np.minimum(10.0, factor[every] * 10.0**-k)), LINE),
+            series(f"1e-{k}, measured", ts[1::40], np.log10(np.maximum.accumulate(sizes)[1::40]), DOTS))],
+        f"After {AHEAD:g} s an error is {factor[-1]:.0e} times as large. A thousand times the accuracy buys only a few "
+        "seconds. Rounding, which is 1e-16, limits every prediction, that of the truth included.")

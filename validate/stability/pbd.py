@@ -4,6 +4,8 @@ Most bodies hang straight down or move in a circle.  A sweep is then a linear ma
 result is known in closed form.  *Source:* Müller et al. 2006, Macklin et al. 2016 and 2019; each case derives the rest.
 """
 
+import itertools
+
 import numpy as np
 from scipy.spatial.transform import Rotation
 
@@ -11,7 +13,7 @@ from solutions import integrators
 from solutions.checks import Diverged
 from solutions.pbd import ConstraintNetwork
 from validate.reference.pbd import pendulum_period
-from validate.stability.case import DOTS, LINE, Picture, Worst, agreement, case, finding, refuses, series
+from validate.stability.case import DOTS, LINE, Picture, Worst, agreement, case, finding, flat, refuses, series
 
 G = 9.81                     # [m/s²]
 MILLIMETRES = 1e3            # millimetres per metre
@@ -113,21 +115,47 @@ def stiffness_depends_on_dt(lesson):
     )
 
 
+def chain_findings(lesson, N=8, alpha=1e-4):
+    """Return the sag of a chain of N springs of 1/α under XPBD, for several numbers of sweeps and two steps.
+
+    The rest position does not depend on the velocity that is lost on the way, so a tenth of it is taken in each step.
+    """
+    found, weights = [], np.ones(N)
+    for sweeps, per_second in ((1, 60), (5, 60), (20, 60), (1, 240)):
+        x, dt = straight(N), 1.0 / per_second
+        p, v = network(weights, 1.0, alpha, sweeps), 0.0 * x
+        for _ in range(10 * per_second):
+            x, v = lesson.xpbd_step(lesson.network_gravity, 0.0, x, 0.9 * v, dt, p)
+        predicted, got = left_over(weights, sweeps, dt, alpha).sum(), stretch(x).sum()
+        found.append(finding(
+            claim="A chain is as soft as its compliance says only when the sweeps have converged; before that it is "
+                  "softer, by the amount that the theory of Gauss–Seidel iteration gives.",
+            quantity=f"{N} springs, {sweeps} {'sweep' if sweeps == 1 else 'sweeps'} of 1/{per_second} s: sag [mm]",
+            predicted=MILLIMETRES * predicted,
+            measured=MILLIMETRES * got,
+            tolerance=MILLIMETRES * SETTLED,
+            observation=(f"The end hangs {MILLIMETRES * got:.2f} mm too low; the springs themselves would sag by "
+                         f"{MILLIMETRES * alpha * G * 0.5 * N * (N + 1):.2f} mm."),
+        ))
+    return found
+
+
 @case("compliance", "XPBD: a compliance of its own", compiled=False)
 def compliance(lesson):
-    """XPBD sags by m g/k for any step and any number of sweeps, and one spring under XPBD is implicit Euler.
+    """One spring under XPBD is implicit Euler, and sags by m g/k for any step and any number of sweeps.
 
     With (s, v) relative to rest and h = dt, implicit Euler is  (s, v) ← ((1, h), (−hω², 1))/(1 + h²ω²).  It settles by
     (1 + h²ω²)^(−1/2) per step.  With hω = 1, 80 steps leave 2⁻⁴⁰ = 1e-12 of the sag, whose 10 cm give SETTLED.
+
+    A chain of springs is as soft as its compliance only when the sweeps have converged: see left_over.
     """
-    found, m = [], 2.0
+    found, m = chain_findings(lesson), 2.0
     for dt in (1.0 / 30.0, 1.0 / 60.0, 1.0 / 240.0):
         for n in (1, 7):
             k = m / dt**2
             got = stretch(settle(lesson, "xpbd_step", network([m], 1.0, 1.0 / k, n), straight(1), dt, 80))[0]
             found.append(finding(
-                claim=("A compliance is a property of the spring: the weight sags by m g/k for any step and any "
-                       "number of sweeps."),
+                claim="A single spring sags by m g/k for any step and any number of sweeps.",
                 quantity=f"sag, {n} sweeps of dt = 1/{round(1 / dt)} s, k = {k:.0f} N/m [mm]",
                 predicted=MILLIMETRES * m * G / k,
                 measured=MILLIMETRES * got,
@@ -172,17 +200,19 @@ def compliance(lesson):
     )
 
 
-def left_over(masses, sweeps, dt):
-    """Return the exact stretch [m] of each link of a chain at rest under PBD, which n Gauss–Seidel sweeps leave.
+def left_over(masses, sweeps, dt, alpha=0.0):
+    """Return the exact stretch [m] of each link of a chain at rest under PBD or XPBD, left by n Gauss–Seidel sweeps.
 
-    Each step falls by g dt², which Λ* (the weight below, times dt²) would undo.  n sweeps solve A Λ = b up to Gⁿ, with
-    A = J W Jᵀ, G = 1 − L⁻¹A and A's lower triangle L.  At rest Λ = (1 − Gⁿ) A⁻¹ b equals Λ*, and the sweeps leave
-    b − AΛ* = A (1 − Gⁿ)⁻¹ Gⁿ Λ*.
+    Each step falls by g dt², which Λ* (the weight below, times dt²) would undo.  n sweeps solve B Λ = b up to Gⁿ, with
+    B = A + α/dt², A = J W Jᵀ, G = 1 − L⁻¹B and B's lower triangle L.  At rest Λ = (1 − Gⁿ) B⁻¹ b equals Λ*, and the
+    sweeps leave  b − AΛ* = B (1 − Gⁿ)⁻¹ Gⁿ Λ* + α/dt² Λ*,  of which the last part is Hooke's law.
     """
     n, w = len(masses), 1.0 / np.array(masses, dtype=float)
     A = np.diag(w + np.append(0.0, w[:-1])) - np.diag(w[:-1], 1) - np.diag(w[:-1], -1)
-    power = np.linalg.matrix_power(np.eye(n) - np.linalg.solve(np.tril(A), A), sweeps)
-    return A @ np.linalg.solve(np.eye(n) - power, power @ (G * dt * dt * np.cumsum(masses[::-1])[::-1]))
+    B = A + alpha / dt**2 * np.eye(n)
+    power = np.linalg.matrix_power(np.eye(n) - np.linalg.solve(np.tril(B), B), sweeps)
+    load = G * dt * dt * np.cumsum(masses[::-1])[::-1]
+    return B @ np.linalg.solve(np.eye(n) - power, power @ load) + alpha / dt**2 * load
 
 
 def patience(n, sweeps):
@@ -370,7 +400,7 @@ def substeps_vs_iterations(lesson):
     """Substeps compared with sweeps: n sweeps of one step, or n steps with one sweep each, for the same work per frame.
 
     n sweeps leave a softness of  A (1 − Gⁿ)⁻¹ Gⁿ Λ*, at first about 1/n of that of one sweep.  n substeps leave
-    ½N(N − 1) g (dt/n)², which is 1/n² of it.
+    ½N(N − 1) g (dt/n)², which is 1/n² of it.  But sweeps converge: from some 3 N² visits on, Gⁿ is the smaller one.
     """
     found, N, frame = [], 8, 1.0 / 60.0
     x, once = straight(N), 0.5 * N * (N - 1) * G * frame**2
@@ -379,15 +409,16 @@ def substeps_vs_iterations(lesson):
         "substeps": lambda n: settle(lesson, "xpbd_step", network([1.0] * N), x, frame / n, patience(N, 1)),
     }
     theory = {"sweeps": lambda n: left_over([1.0] * N, n, frame).sum(), "substeps": lambda n: once / n**2}
-    for way in ways:
-        got, bound = stretch(ways[way](10)).sum(), theory[way](10)
+    for way, n in itertools.product(ways, (10, 300)):
+        got, bound = stretch(ways[way](n)).sum(), theory[way](n)
         found.append(finding(
-            claim="n substeps are n² times as stiff as one step with one sweep; n sweeps are not.",
-            quantity=f"10 {way} per frame: end of {N} links too low by [mm]",
+            claim="n substeps are n² times as stiff as one step with one sweep, and n sweeps are not, unless they are "
+                  "so many that they have converged.",
+            quantity=f"{n} {way} per frame: end of {N} links too low by [mm]",
             predicted=MILLIMETRES * bound,
             measured=MILLIMETRES * got,
             tolerance=MILLIMETRES * SETTLED,
-            observation=f"With 10 {way} per frame a chain of {N} m hangs {MILLIMETRES * got:.4f} mm too low.",
+            observation=f"With {n} {way} per frame a chain of {N} m hangs {MILLIMETRES * got:.2g} mm too low.",
         ))
     fine, dots = np.arange(1, 31), (1, 2, 5, 10)
     drawn = []
@@ -403,7 +434,8 @@ def substeps_vs_iterations(lesson):
         "log₁₀ of the visits to a link",
         "log₁₀ of how much too low [mm]",
         drawn,
-        "For the same work the slope is twice as steep: short steps are worth more than many sweeps.",
+        ("For the same work the slope is twice as steep: short steps are worth more than many sweeps, up to some 3 N² "
+         "visits."),
     )
 
 
@@ -915,3 +947,59 @@ def constraints_and_gradients(lesson):
          1e-4))
     return [agreement(claim, f"{name}: largest error of the {quantity}", worst[name], tolerance)
             for name, claim, quantity, tolerance in claims], None
+
+
+# ---------------------------------------------------------------------------------------------- inside out
+
+CORNERS = np.array([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.3, 0.3, 1.0)])            # [m]
+TETRAHEDRON = np.array([(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)])    # faces, counter-clockwise seen from outside
+
+
+def volume_restored(lesson, x, target):
+    """Return the corners of a tetrahedron after Newton's method for V = target, all corners equally heavy."""
+    for _ in range(60):
+        V, gradient = lesson.volume_gradient(x, TETRAHEDRON)
+        x = x + (target - V) / np.sum(gradient * gradient) * gradient
+    return x
+
+
+@case("inside-out", "A tetrahedron that is inside out", compiled=False)
+def inside_out(lesson):
+    """A corner that has passed through the face opposite makes the volume negative, and the gradient still points out.
+
+    The mirror image has V → −V, and ∇V, an area times a direction, is mirrored and changes its sign.  So a correction
+    along ∇V leads back through the face.  Lengths cannot do that: the mirror image has the same edges.  Flat, V = 0 and
+    ∇V is the areas of the faces, so that a flat body is no obstacle; only a body that is a line has no gradient.
+    """
+    rng, errors = np.random.default_rng(31), Worst()
+    mirror = np.diag((1.0, 1.0, -1.0))
+    for _ in range(TRIED):
+        x = CORNERS + rng.uniform(-0.2, 0.2, (4, 3))
+        V, gradient = lesson.volume_gradient(x, TETRAHEDRON)
+        errors.note("mirrored", lesson.volume_gradient(x @ mirror, TETRAHEDRON), (-V, -gradient @ mirror))
+        errors.note("edges", length_of_edges(x @ mirror), length_of_edges(x))
+        for height in (-1.0, 0.0):                         # of the fourth corner, over its own: inside out, and flat
+            bottom = np.cross(x[1] - x[0], x[2] - x[0])
+            bottom /= np.linalg.norm(bottom)
+            turned = x.copy()
+            turned[3] += (height - 1.0) * (bottom @ (x[3] - x[0])) * bottom
+            end = volume_restored(lesson, turned, V)
+            errors.note(f"restored {height:g}", volume_of(end, TETRAHEDRON), V)
+    line = lesson.volume_gradient(np.outer(np.arange(4.0), (1.0, 2.0, 3.0)), TETRAHEDRON)
+    return [
+        agreement("The mirror image of a body has the negative volume, and the mirrored gradient with the other sign.",
+                  "volume and gradient: largest error [m³, m²]", errors["mirrored"], ROUND_OFF),
+        agreement("The mirror image has the same edges, so that no length can tell it.",
+                  "edges: largest difference [m]", errors["edges"], ROUND_OFF),
+        agreement("A volume leads a tetrahedron that is inside out back through its own face.",
+                  "volume in the end, from inside out: largest error [m³]", errors["restored -1"], ROUND_OFF),
+        agreement("A flat one gets its volume back, too.", "volume in the end, from flat: largest error [m³]",
+                  errors["restored 0"], ROUND_OFF),
+        agreement("Corners on a line have neither a volume nor a direction in which there would be one.",
+                  "volume and gradient [m³, m²]", np.max(np.abs(flat(line))), 1e2 * ROUND_OFF),
+    ], None
+
+
+def length_of_edges(x):
+    """Return the six lengths [m] of the edges of a tetrahedron."""
+    return np.array([np.linalg.norm(x[i] - x[j]) for i in range(4) for j in range(i)])

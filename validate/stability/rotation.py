@@ -736,3 +736,51 @@ def one_step_of_the_loop(lesson):
               ("slip", "A slow slip is stopped in the step.", "slip that is left [m/s]"))
     return [agreement(claim, f"{name}: largest error of the {quantity}", worst[name], 1e-10)
             for name, claim, quantity in claims], None
+
+
+# ---------------------------------------------------------------------------------------------- a million steps
+
+LONG_RUN, SHORT_RUN = 10**6, 10**3   # steps: compiled, and in plain Python
+THROWN = 3                   # tops, thrown at random
+
+
+def along_axis(q, L):
+    """Return L · (axis 3 of the body), computed in NumPy's extended precision and independent of the length of q."""
+    w, x, y, z = q.astype(np.longdouble)
+    axis = np.array((2.0 * (x * z + w * y), 2.0 * (y * z - w * x), w * w - x * x - y * y + z * z))
+    return axis @ L / (w * w + x * x + y * y + z * z)
+
+
+def drifts(lesson, n, tops):
+    """Return (change of L_z, change of L₃) over |L| of tops after n steps of the splitting."""
+    top, changes = lesson.Top(np.array([ACROSS, ACROSS, ALONG]), MGL), []
+    for q, L in tops:
+        end = lesson.advance_rotation(lesson.splitting_step, lesson.heavy_top_torque, 0.0, q, L, 1.0 / 64.0, n, top)
+        changes.append((end[1][2] - L[2], along_axis(*end) - along_axis(q, L)) / np.linalg.norm(L))
+    return np.array(changes, float)
+
+
+@case("a-million-steps", "A million steps of a top")
+def a_million_steps(lesson):
+    """Gravity has no torque about the vertical, nor about the axis of a symmetric top: L_z and L₃ stay.
+
+    The splitting keeps both, so that rounding alone changes them.  The torque is computed with a vertical component of
+    exactly 0, so that L_z keeps every bit.  Each step divides q by its length, which is rounded: that is the same
+    deviation again and again, and L₃ drifts by n times it, at most n ε.
+    """
+    rng, longest = np.random.default_rng(7), LONG_RUN if hasattr(lesson.splitting_step, "py_func") else SHORT_RUN
+    places, spins = rng.normal(size=(THROWN, 4)), 10.0 * rng.normal(size=(THROWN, 3))
+    tops = [(q / np.linalg.norm(q), L) for q, L in zip(places, spins)]
+    counts = [longest // 100, longest // 10, longest]
+    vertical, axial = np.moveaxis([drifts(lesson, n, tops) for n in counts], 2, 0)
+    sizes = np.sqrt(np.mean(axial**2, axis=1))
+    return [
+        agreement("The angular momentum about the vertical keeps every bit.",
+                  f"change of L_z after {longest:,} steps, over |L| [-]", np.max(np.abs(vertical)), 0.0),
+        agreement("Rounding changes the angular momentum about the axis by less than ε per step.",
+                  f"change of L₃ after {longest:,} steps, over |L| [-]", np.max(np.abs(axial[-1])), longest * EPS),
+    ], Picture(
+        "The angular momentum of a top about its axis", "log₁₀ of the steps [-]", "log₁₀ of its change over |L| [-]",
+        [series("ε per step", np.log10(counts), np.log10(EPS * np.array(counts)), LINE),
+         series("measured", np.log10(counts), np.log10(sizes), DOTS)],
+        "Rounding adds up, because every step rounds in the same way. After a million steps eleven digits are left.")

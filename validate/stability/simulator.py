@@ -3,9 +3,14 @@
 What a case predicts is derived in its docstring; what it measures comes from the loops of the lesson.
 """
 
+from collections.abc import Callable
+from typing import NamedTuple
+
 import numpy as np
 
-from validate.reference.simulator import rocking
+from solutions.checks import Diverged
+from solutions.support.events import release
+from validate.reference.simulator import leaves_ball, leaves_platform, rocking, slides_on_ball
 from validate.stability.case import DOTS, LINE, Picture, Worst, agreement, bisect, case, finding, refuses, series
 
 G = 9.81                     # [m/s²]
@@ -364,9 +369,13 @@ def loop_by_parts(lesson):
         gain = max(rest[k] - rest[j] for k in range(6) for j in range(k + 1))
         worst.note("gain", lesson.gain_without_source(energies, work), gain)
         # the second is ahead by 0.5, 1.5 and 1 J, and is 2, 3 and 9 times as fast
-        runs = iter((rest, rest + 0.5, rest, rest + 1.5, rest, rest + 1.0)).__next__
-        clock = iter((0.0, 2.0, 3.0, 3.0, 6.0, 7.0, 7.0, 16.0, 17.0)).__next__
-        worst.note("gain", lesson.compare(runs, runs, 3, clock), (1.5, 3.0))
+        ends, now = iter((rest, rest + 0.5, rest, rest + 1.5, rest, rest + 1.0)), np.zeros(1)
+        lengths = iter((2.0, 1.0, 3.0, 1.0, 9.0, 1.0))
+
+        def run(ends=ends, lengths=lengths, now=now):
+            now += next(lengths)                                 # the clock stands still between the runs
+            return next(ends)
+        worst.note("gain", lesson.compare(run, run, 3, now.item), (1.5, 3.0))
 
         # a disc at the margin of another, and of a plane: found before it touches, and not from farther away
         for share, count in ((0.9, 3), (1.1, 0)):
@@ -539,6 +548,115 @@ def rolling_by_contact(lesson):
     return found, None
 
 
+# ---------------------------------------------------------------------------------------------- release
+
+BALL = (0.2, 1.0, 1.1)       # of a puck on a ball: angle at the start [rad], speed [m/s], distance of the centres [m]
+STIFFNESS, DEPTH = 100.0, 0.3    # of the spring under a platform [N/m], below equilibrium at the start [m]
+HEAVY, LIGHT = 1.0, 0.5      # masses of the platform and of the box on it [kg]
+
+
+def puck_on_a_ball(lesson, ahead):
+    """(load, shapes, PileState, Bodies) of a puck on a fixed disc, with the velocity that it has at t = −ahead."""
+    start, speed, R = BALL
+    angle, back = slides_on_ball(*BALL, G, -ahead) if ahead > 0.0 else (start, speed)
+    state, p = lesson.make_bodies_2d([(0.0, 0.0), (R * np.sin(start), R * np.cos(start))], np.zeros(2), [np.inf, 1.0],
+                                     [np.inf, np.inf], [(1.0, 1.0), (0.1, 0.1)], [], (0.0, -G), 0.0, 10, 0.2)
+    v = back * np.array([(0.0, 0.0), (np.cos(angle), -np.sin(angle))])
+    return lesson.weight, (lesson.disc_bounds, lesson.round_contacts), state._replace(v=v), p
+
+
+def box_on_a_spring(lesson, ahead):
+    """The same for a box on a platform on a spring, which begins at rest; the spring has its natural length at 0."""
+    def load(t, x, q, v, omega, p):
+        F, tau = lesson.weight(t, x, q, v, omega, p)
+        F[0, 1] -= STIFFNESS * x[0, 1]
+        return F, tau
+    rate = np.sqrt(STIFFNESS / (HEAVY + LIGHT))
+    low = -G / rate**2 - DEPTH
+    state, p = lesson.make_bodies_2d([(0.0, low), (0.0, low + 0.15)], np.zeros(2), [HEAVY, LIGHT], [np.inf, np.inf],
+                                     [(0.5, 0.1), (0.05, 0.05)], [], (0.0, -G), 0.0, 30, 0.2)
+    v = np.array([(0.0, -DEPTH * rate * np.sin(rate * ahead))] * 2)
+    return load, (lesson.box_bounds_2d, lesson.box_contacts_2d), state._replace(v=v), p
+
+
+def pushed(lesson, step, scene, dt, ahead, seconds):
+    """(times [s], forces [N] between bodies 0 and 1) of such a scene; `ahead` [steps] is the leapfrog start."""
+    load, shapes, state, p = scene(lesson, ahead * dt)
+    ts, states = lesson.contact_trajectory(step, load, *shapes, 0.0, state, dt, int(seconds / dt) + 8, p)
+    return ts[:-1], lesson.normal_forces(states, 0, 1, dt)
+
+
+class Held(NamedTuple):
+    """A body on a support that lets it go."""
+    what: str                # as a sentence without its full stop
+    scene: Callable          # (lesson, ahead [s]) → load, shapes, PileState, Bodies
+    rate: float              # of the motion [1/s]
+    a: float                 # acceleration along the motion at the start [m/s²]
+    force: Callable          # (t [s]) → force of the support [N]
+    time: Callable           # (more [m/s]) → time of release [s] if it begins faster by that
+
+
+def supports():
+    """The puck and the box, with their theories."""
+    start, speed, R = BALL
+    rate = np.sqrt(STIFFNESS / (HEAVY + LIGHT))
+
+    def on_the_ball(t):
+        angle, v = slides_on_ball(*BALL, G, t)
+        return G * np.cos(angle) - v * v / R
+    return (Held("a puck leaves a ball", puck_on_a_ball, np.sqrt(G / R), G * np.sin(start), on_the_ball,
+                 lambda more: leaves_ball(start, speed + more, R, G)[0]),
+            Held("a box leaves an oscillating platform", box_on_a_spring, rate, rate**2 * DEPTH,
+                 lambda t: LIGHT * (G + rate**2 * DEPTH * np.cos(rate * t)),
+                 lambda more: leaves_platform(DEPTH, more, rate, G)))
+
+
+def about_release(lesson, held):
+    """(findings, curves) of one of them."""
+    what, T = held.what, held.time(0.0)
+    run = lambda dt, ahead: pushed(lesson, lesson.contact_step_2d, held.scene, dt, ahead, T)
+    dts = T / np.array([20.3, 40.6, 81.2])
+    led, plain = (np.array([release(*run(dt, ahead)) for dt in dts]) for ahead in (0.5, 0.0))
+    order, best = np.log2((led[1] - T) / (led[2] - T)), (4.0 * led[2] - led[1]) / 3.0
+    dt, small, force = dts[2], held.rate * dts[1:], run(dts[2], 0.5)[1][2]
+    found = [
+        finding(claim="J/dt is the force of the support at the beginning of the step.",
+                quantity=f"third force in the run in which {what} [N]", predicted=held.force(2.0 * dt), measured=force,
+                tolerance=small[1] ** 2 * force, observation=f"The third force is {force:.4f} N."),
+        finding(claim="From the impulses of steps a release is found with order 2 if the run has a leapfrog start.",
+                quantity=f"order of the time at which {what} [-]", predicted=2.0, measured=order,
+                tolerance=1.5 * small[0], observation=f"The order is {order:.2f} where {what}."),
+        finding(claim="The support lets go where the force that holds the contact would begin to pull.",
+                quantity=f"time at which {what}, from two steps [s]", predicted=T, measured=best,
+                tolerance=small[0] ** 3 * T, observation=f"After {best:.6f} s {what}."),
+        finding(claim="With v at the time of x the loop starts too fast by ½ a dt.",
+                quantity=f"change of the time at which {what} by that start, dt = {1e3 * dt:.1f} ms [s]",
+                predicted=held.time(0.5 * held.a * dt) - T, measured=plain[2] - led[2], tolerance=small[1] ** 2 * T,
+                observation=f"So {what} {1e3 * (led[2] - plain[2]):.3f} ms early."),
+    ]
+    fine = np.linspace(0.0, dts[0], 30)
+    return found, [
+        series(f"{what}: theory", 1e3 * fine, [1e3 * (held.time(0.5 * held.a * dt) - T) for dt in fine], LINE),
+        series(f"{what}: v at the time of x", 1e3 * dts, 1e3 * (plain - T), DOTS),
+        series(f"{what}: leapfrog start", 1e3 * dts, 1e3 * (led - T), DOTS)]
+
+
+@case("release-from-a-support", "When a support lets go", compiled=False)
+def release_from_a_support(lesson):
+    """The loop is the leapfrog method if v is half a step before x at the start, and J/dt is the force at x.
+
+    So the release has order 2; the next order is a relative k dt, where k is the rate of the motion.  The best of two
+    steps, (4 t(½dt) − t(dt))/3, then errs by (k dt)³ of the time.  If v belongs to the time of x, the loop follows a
+    start with v + ½ a dt, to (k dt)² of the time.  On a round support the first two forces share their sum wrongly,
+    because the gap is 0 only at the start.
+    """
+    (about_ball, ball), (about_platform, platform) = (about_release(lesson, held) for held in supports())
+    return about_ball + about_platform, Picture(
+        "Time of release from the impulses of steps", "dt [ms]", "error [ms]", ball + platform,
+        "The lines are the releases after a start that is too fast by ½ a dt. A leapfrog start leaves an error of "
+        "second order.")
+
+
 @case("sweeps-until-settled", "When to stop sweeping", compiled=False)
 def sweeps_until_settled(lesson):
     """Sweeps that end when they change little leave ρ/(1 − ρ) times the last change, with the contraction factor ρ.
@@ -585,3 +703,234 @@ def sweeps_until_settled(lesson):
         series("one sweep per step", ts, percent(alone), DOTS)],
         "Sweeps that go on until little changes find the forces in the first step. With one sweep per step dozens of "
         "steps go by, in which the discs sink into each other.")
+
+
+# ---------------------------------------------------------------------------------------------- turns per step
+
+SPINS = (0.5, 5.0, 50.0)     # angle [rad] by which a ball turns in its first step
+
+
+def slipping_ball(lesson, spin, mu, dt, steps):
+    """Return the PileState of a ball of 1 kg and 10 cm that is put on a floor with this ω about y, after some steps."""
+    state, p = lesson.make_bodies([(0.0, 0.0, 0.1)], [(1.0, 0.0, 0.0, 0.0)], 1.0, [(0.004, 0.004, 0.004)],
+                                  [(0.1, 0.1, 0.1)], [(0.0, 0.0, 1.0, 0.0)], (0.0, 0.0, -G), mu, 40, 0.01)
+    state.omega[0, 1] = spin
+    return lesson.advance_contact(lesson.contact_step, lesson.weight, lesson.ball_bounds, lesson.round_contacts, 0.0,
+                                  state, dt, steps, p)
+
+
+@case("turns-per-step", "A ball that turns many times per step", compiled=False)
+def turns_per_step(lesson):
+    """A ball put down with the spin Ω slips for 2RΩ/7μg with v = μ g t.  Then it rolls with v = 2RΩ/7, for any Ω dt.
+
+    A ball looks the same from every side, so that the turn of a step changes neither the contact nor the impulse.
+    Friction is constant while it slips, and J_t < μ J_n in the step in which it stops slipping, which conserves the
+    angular momentum about the contact.  μ is chosen for a hundred steps of slip.
+    *Source:* Coriolis 1835, with I = 2/5 m R².
+    """
+    dt, R, found, ends = 0.01, 0.1, [], []
+    for turn in SPINS:
+        spin = turn / dt
+        mu = 2.0 * R * spin / (7.0 * G * 100.5 * dt)
+        half, end = (slipping_ball(lesson, spin, mu, dt, steps) for steps in (50, 140))
+        ends.append(end.v[0, 0])
+        found.append(agreement("While a ball slips, it gains μ g per second and loses 5μg/2R of its spin.",
+                               f"ball that turns by {turn:g} rad per step: error of v and R ω over R Ω [-]",
+                               np.max(np.abs((half.v[0, 0] - mu * G * 50 * dt,
+                                              R * half.omega[0, 1] - R * spin + 2.5 * mu * G * 50 * dt))) / (R * spin),
+                               ROUND_OFF))
+        found.append(agreement("In the end it rolls with 2/7 of the speed of its surface.",
+                               f"ball that turns by {turn:g} rad per step: error of v and R ω over R Ω in the end [-]",
+                               np.max(np.abs(np.array((end.v[0, 0], R * end.omega[0, 1])) / (R * spin) - 2.0 / 7.0)),
+                               ROUND_OFF))
+    fine = np.logspace(-1.0, 2.0, 40)
+    return found, Picture("A ball put down with a spin", "log₁₀ of its turn in the first step [rad]",
+                          "log₁₀ of its speed in the end [m/s]", [
+        series("theory, 2/7 R Ω", np.log10(fine), np.log10(2.0 / 7.0 * R * fine / dt), LINE),
+        series("measured", np.log10(SPINS), np.log10(ends), DOTS)],
+        "The speed is right at eight turns per step as at half a radian. The orientation is not: quaternion_update "
+        "turns by 2 arctan(½ω dt), which is at most half a turn per step.")
+
+
+# ---------------------------------------------------------------------------------------------- turns through a wall
+
+BAR, WALL = (1.0, 0.02), (0.2, 0.01)     # half sizes of a bar that turns about its centre, and of a wall beside it [m]
+PLACE, REACH = 0.7, 0.02                 # of the wall, from the centre of the bar; margin [m]
+
+
+def turns_to_a_wall(lesson, angle, omega):
+    """(PileState, Bodies) of the bar at this angle [rad] to the wall, which nothing moves; no gravity."""
+    state, p = lesson.make_bodies_2d([(0.0, 0.0), (PLACE, 0.0)], [angle, 0.0], [1.0, np.inf], [0.3, np.inf],
+                                     [BAR, WALL], [], (0.0, 0.0), 0.0, 20, REACH)
+    return state._replace(omega=np.array([omega, 0.0])), p
+
+
+def angle_found():
+    """The angle [rad] at which the bar comes within the margin of the wall's inner corner, at r:
+
+    r sin θ = w cos θ + b + margin,     half thicknesses b of the bar and w of the wall
+    """
+    r = PLACE - WALL[0]
+    return np.arctan2(WALL[1], r) + np.arcsin((BAR[1] + REACH) / np.hypot(r, WALL[1]))
+
+
+def ends_of_turn(lesson, omega, dt):
+    """(misses, errors) of 4 starts, just before the wall is near: runs that go on as if there were no wall, and runs
+    of advance_contact that end in an error in place of that.
+    """
+    misses, errors, shapes = 0, 0, (lesson.box_bounds_2d, lesson.box_contacts_2d)
+    for k in range(4):
+        start = -angle_found() * (1.0 + 1e-9) - k / 4.0 * omega * dt
+        state, p = turns_to_a_wall(lesson, start, omega)
+        now, steps = state, 1 + int(np.ceil(2.0 * angle_found() / (omega * dt)))
+        for n in range(steps):
+            now = lesson.contact_step_2d(lesson.weight, *shapes, n * dt, now, dt, p)
+        if now.omega[0] == omega:
+            misses += 1
+            try:
+                lesson.advance_contact(lesson.contact_step_2d, lesson.weight, *shapes, 0.0, state, dt, steps, p)
+            except Diverged:
+                errors += 1
+    return misses, errors
+
+
+def silent_plates(lesson, ways, thin=0.01):
+    """(runs that pass, errors) of a plate that flies towards another one, by these ways per step in half thicknesses.
+
+    It begins just outside the margin, a half of `thin`.
+    """
+    passes, errors, dt, shapes = 0, 0, 0.01, (lesson.box_bounds_2d, lesson.box_contacts_2d)
+    for way in ways:
+        state, p = lesson.make_bodies_2d([(0.0, 2.51 * thin), (0.0, 0.0)], np.zeros(2), [1.0, np.inf], [0.3, np.inf],
+                                         np.full((2, 2), (0.5, thin)), [], (0.0, 0.0), 0.0, 20, 0.5 * thin)
+        now = state = state._replace(v=np.array([(0.0, -way * thin / dt), (0.0, 0.0)]))
+        for n in range(3):
+            now = lesson.contact_step_2d(lesson.weight, *shapes, n * dt, now, dt, p)
+        if now.x[0, 1] < -2.0 * thin:
+            passes += 1
+            try:
+                lesson.advance_contact(lesson.contact_step_2d, lesson.weight, *shapes, 0.0, state, dt, 3, p)
+            except Diverged:
+                errors += 1
+    return passes, errors
+
+
+@case("turns-through-a-wall", "How fast a bar may turn beside a thin wall", compiled=False)
+def turns_through_a_wall(lesson):
+    """A bar turns about its centre.  Its face meets the inner corner of a wall, which is parallel to it at θ = 0.
+
+    The loop finds the contact where the gap is at most the margin, which is for |θ| ≤ θ*:
+        r sin θ* = w cos θ* + b + margin
+    Found at θ < 0 it stops the bar; behind the middle it is found on the wrong side, and lets the bar go on.  So no
+    start misses the wall if ω dt ≤ θ*: dt = (w + b + margin)/(r ω) to first order, half of the thickness over the speed
+    of the tip.  Twice that step and more can miss it altogether.
+    """
+    found, spins, edges, theta = [], (5.0, 80.0), [], angle_found()
+    for omega in spins:
+        edges.append(bisect(lambda dt, omega=omega: ends_of_turn(lesson, omega, dt)[0] > 0, 0.3 * theta / omega,
+                            4.0 * theta / omega))
+        found.append(finding(
+            claim="No start misses the wall if the bar turns by at most the angle at which it comes near, in a step.",
+            quantity=f"longest step that misses no wall, ω = {omega:g} rad/s [s]", predicted=theta / omega,
+            measured=edges[-1], tolerance=1e-5 * theta / omega,
+            observation=f"At {omega:g} rad/s the bar first passes at a step of {1e3 * edges[-1]:.3g} ms."))
+    misses, errors = np.sum([ends_of_turn(lesson, 20.0, share * theta / 20.0) for share in (1.1, 1.5, 2.1, 5.0, 20.0)],
+                            axis=0)
+    found.append(finding(
+        claim="No bar passes in silence: advance_contact ends in an error where the loop would miss the wall.",
+        quantity=f"errors of {misses:.0f} runs that miss the wall, with 1.1 to 20 times that step [-]",
+        predicted=max(misses, 1), measured=errors, tolerance=0.0,
+        observation=f"{errors:.0f} of {misses:.0f} such runs end in an error."))
+    ways = np.linspace(2.05, 8.05, 13)
+    passes, errors = silent_plates(lesson, ways)
+    found.append(finding(
+        claim="A plate behind the middle of another one is let go on the far side, and this is an error, too.",
+        quantity=f"plates that end in an error, of {ways.size} that fly 2 to 8 half thicknesses per step [-]",
+        predicted=np.sum(ways > 2.51), measured=errors, tolerance=0.0,
+        observation=f"{passes} of {ways.size} plates pass, and {errors} end in an error."))
+    fine = np.geomspace(4.0, 100.0, 40)
+    return found, Picture("A bar beside a thin wall", "log₁₀ of ω [rad/s]", "log₁₀ of the longest step [ms]", [
+        series("theory, θ*/ω", np.log10(fine), np.log10(1e3 * theta / fine), LINE),
+        series("measured", np.log10(spins), np.log10(1e3 * np.array(edges)), DOTS)],
+        "Above the line a bar can turn through the wall between two steps, and advance_contact says so.")
+
+
+# ---------------------------------------------------------------------------------------------- forces
+
+SWING, CENTRE, INERTIA = 1.2, 0.7, 0.05  # of a pendulum: largest angle [rad], hinge to centre [m], moment [kg m²]
+FEET = np.array([(0.5, 0.3), (-0.5, 0.3), (-0.5, -0.3), (0.5, -0.3)])        # of a table, 0.4 m below its centre [m]
+
+
+def tension(lesson, dt, steps):
+    """(angles [rad], forces [N] along the rod) of a pendulum of 2 kg, let go at SWING, after each joint_step_2d."""
+    place = CENTRE * np.array([np.sin(SWING), -np.cos(SWING)])
+    state, p = lesson.make_bodies_2d([place, (0.0, 0.0)], [SWING, 0.0], [2.0, np.inf], [INERTIA, np.inf],
+                                     np.full((2, 2), 0.1), [], (0.0, -G), 0.0, 1, 0.01)
+    p, now, angles, forces = lesson.make_joints(state, p, [0], [1], [(0.0, 0.0)], 0.0), state[:4], [], []
+    for n in range(steps):
+        now = lesson.joint_step_2d(lesson.weight, n * dt, *now, dt, p)
+        F = lesson.joint_forces_2d(lesson.weight, (n + 1) * dt, *now, p)[0]
+        angles.append(now[1][0])
+        forces.append(F @ (-np.sin(now[1][0]), np.cos(now[1][0])))
+    return np.array(angles), np.array(forces)
+
+
+def tension_at(theta):
+    """m g cos θ + m l ω² [N], where the energy gives ω² = 2 m g l (cos θ − cos θ₀)/(I + m l²)."""
+    omega_squared = 4.0 * G * CENTRE * (np.cos(theta) - np.cos(SWING)) / (INERTIA + 2.0 * CENTRE**2)
+    return 2.0 * G * np.cos(theta) + 2.0 * CENTRE * omega_squared
+
+
+def legs(lesson, place):
+    """Forces (4, 3) [N] of the ground on the feet of a table without weight that bears 100 N at place (2,) [m]."""
+    load = lambda t, x, q, v, omega, p: (np.array([(0.0, 0.0, -100.0), np.zeros(3)]),
+                                         np.array([np.cross((*place, 0.0), (0.0, 0.0, -100.0)), np.zeros(3)]))
+    state, p = lesson.make_bodies([(0.0, 0.0, 0.4), (0.0, 0.0, 0.0)], [(1.0, 0.0, 0.0, 0.0)] * 2, [3.0, np.inf],
+                                  [(0.2, 0.4, 0.5), (np.inf,) * 3], np.full((2, 3), 0.1), [], np.zeros(3), 0.0, 1, 0.01)
+    p = lesson.make_joints(state, p, [0] * 4, [1] * 4, [(*foot, 0.0) for foot in FEET], 0.0)
+    return lesson.joint_forces(load, 0.0, *state[:4], p)
+
+
+def feet(lesson, place, dt):
+    """Normal forces (left, right) [N] of a smooth floor on a box of 1 m that bears 100 N at `place` [m] of its middle.
+    """
+    load = lambda t, x, q, v, omega, p: (np.array([(0.0, -100.0), (0.0, 0.0)]), np.array([-100.0 * place, 0.0]))
+    state, p = lesson.make_bodies_2d([(0.0, 0.2)], [0.0], 3.0, 0.3, [(0.5, 0.2)], [UP], (0.0, 0.0), 0.0, 60, 0.01)
+    state = lesson.advance_contact(lesson.contact_step_2d, load, lesson.box_bounds_2d, lesson.box_contacts_2d, 0.0,
+                                   state, dt, 20, p)
+    N, _ = lesson.normal_and_friction(state, dt)
+    return N[np.argsort(state.contacts.p[:, 0])]
+
+
+@case("forces-of-supports", "What a rod and the legs of a table bear", compiled=False)
+def forces_of_supports(lesson):
+    """The rod of a pendulum bears m g cos θ + m l ω²; joint_step_2d leaves an error of order 2.
+
+    Four legs are one more than the laws of equilibrium determine.  The shortest of all possible forces is that of
+    equally stiff legs, whose shares are linear in the place of the foot:
+        N_k = W (1/4 + x x_k/Σx² + y y_k/Σy²),      the load W at (x, y)
+    Two feet on a floor are determined:  N = W (1/2 ± x/b),  b their distance.
+    """
+    (coarse, far), (angles, near) = tension(lesson, 0.02, 40), tension(lesson, 0.01, 80)
+    swing = np.linspace(-SWING, SWING)
+    errors = np.max(np.abs(far - tension_at(coarse))), np.max(np.abs(near - tension_at(angles)))
+    rate = np.sqrt(2.0 * G * CENTRE / (INERTIA + 2.0 * CENTRE**2))
+    places = ((0.0, 0.0), (0.2, 0.0), (0.25, 0.15), (-0.1, 0.3))
+    wrong = max(np.max(np.abs(legs(lesson, place) - np.stack((0.0 * FEET[:, 0], 0.0 * FEET[:, 0], 100.0 * (
+        0.25 + FEET @ (place / np.sum(FEET**2, axis=0)))), axis=1))) for place in places)
+    shares = max(np.max(np.abs(feet(lesson, x, 0.01) - 100.0 * np.array((0.5 - x, 0.5 + x)))) for x in (0.0, 0.2, 0.4))
+    found = [
+        agreement("A rod bears m g cos θ + m l ω².", "error of its force over 3 m g, dt = 0.01 s [-]",
+                  errors[1] / (6.0 * G), (rate * 0.01) ** 2),
+        finding(claim="The force has the order of the step.", quantity="order of the force of a rod [-]", predicted=2.0,
+                measured=np.log2(errors[0] / errors[1]), tolerance=(rate * 0.02) ** 2,
+                observation=f"The order is {np.log2(errors[0] / errors[1]):.2f}."),
+        agreement("Four legs share a load as four equal springs.", "error of the forces of four legs, 100 N [N]", wrong,
+                  100.0 * ROUND_OFF),
+        agreement("Two feet share a load by their levers.", "error of the forces of two feet, 100 N [N]", shares,
+                  100.0 * ROUND_OFF),
+    ]
+    return found, Picture("The force in the rod of a pendulum", "angle [rad]", "force [N]", [
+        series("theory, m g cos θ + m l ω²", swing, tension_at(swing), LINE),
+        series("joint_forces_2d, dt = 20 ms", coarse, far, DOTS)],
+        "A pendulum that is let go at 69° pulls in its lowest position with twice its weight and more.")

@@ -6,7 +6,7 @@ truncation error worth naming.  *Source:* Squire and Trapp 1998 for that derivat
 
 import numpy as np
 
-from validate.stability.case import agreement, case
+from validate.stability.case import agreement, case, finding
 
 EARTH, RADIUS, GM = 5.9722e24, 6.371e6, 3.986004418e14    # mass [kg], mean radius [m], G times the mass [m³/s²]
 G_SI = 6.67430e-11                                        # CODATA 2018 [m³/(kg s²)]
@@ -190,3 +190,65 @@ def grids(lesson):
                       "sum of the offsets: error [-]", found, ROUNDED),
             agreement("A quantity that is drawn at random is spread evenly about its value.",
                       "least, middle and largest draw: error [N/m]", np.max(np.abs(drawn)), ROUNDED)], None
+
+
+# ---------------------------------------------------------------------------------------------- stiff cloth
+
+TILT, G = 0.5, 9.81          # of the slope [rad]; gravity [m/s²]
+STIFF = (1e2, 1e5, 1e8)      # of threads between points of 10 g [N/m]
+FRAME, FRAMES = 1.0 / 60.0, 60           # a step [s], and their number
+STRAIN, MASS = 0.01, 0.01    # of all threads at the start [-]; of a point [kg]
+
+
+def slid(lesson, step, k):
+    """Return (x, v, strains) of a stretched cloth of 4 by 4 points after a second on a slope without friction.
+
+    y is the normal of the slope.  After each step the slope takes what is below it, and the velocity into it.
+    """
+    grid = 0.1 * np.stack((np.tile(np.arange(4.0), 4), np.zeros(16), np.repeat(np.arange(4.0), 4)), axis=1)
+    pairs = lesson.grid_pairs(4, 4, lesson.STRUCTURAL + lesson.SHEAR)
+    cloth = lesson.make_spring_network(grid, MASS, [], pairs, k, 0.0, (G * np.sin(TILT), -G * np.cos(TILT), 0.0),
+                                       np.zeros(3), 0.0)
+    x, v = (1.0 + STRAIN) * (grid - grid.mean(axis=0)), 0.0 * grid
+    for n in range(FRAMES):
+        x, v = step(lesson.spring_network_acceleration, n * FRAME, x, v, FRAME, cloth)
+        x[:, 1], v[:, 1] = np.maximum(x[:, 1], 0.0), np.where(x[:, 1] < 0.0, 0.0, v[:, 1])
+    return x, v, lengths(x, cloth) / cloth.rest - 1.0
+
+
+def explicit(acceleration, t, x, v, dt, network):
+    """Take a step of symplectic Euler."""
+    v = v + dt * acceleration(t, x, v, network)
+    return x + dt * v, v
+
+
+def lengths(x, network):
+    """Return the lengths of all springs [m]."""
+    return np.linalg.norm(x[network.j] - x[network.i], axis=1)
+
+
+@case("stiff-cloth-on-a-slope", "A stiff cloth on a slope, in steps of a sixtieth of a second", compiled=False)
+def stiff_cloth_on_a_slope(lesson):
+    """A cloth slides by ½ g sin θ t (t + dt), however stiff its threads are, and loses their strain.
+
+    A translation strains no thread, so that it moves as one point does by symplectic Euler.  Implicit Euler multiplies
+    an oscillation by (1 + (ω dt)²)^(−1/2) per step, and the slowest one has ω² = (2 − √2) k/m, that of four points in
+    a row.  Symplectic Euler is stable for ω dt < 2 only.  The fastest ω² is above (2 + √2) k/m, which is too fast for
+    all three cloths.  Conjugate gradients end at 1e-10 of the right-hand side.
+    """
+    found, t = [], FRAME * FRAMES
+    way, exploded = 0.5 * G * np.sin(TILT) * t * (t + FRAME), 0
+    for k in STIFF:
+        x, _, strain = slid(lesson, lesson.implicit_spring_network_step, k)
+        left = STRAIN * (1.0 + (2.0 - np.sqrt(2.0)) * k / MASS * FRAME**2) ** (-0.5 * FRAMES)
+        found += [agreement("A cloth slides like a point, however stiff it is.",
+                            f"way of the centre in 1 s less ½ g sin θ t (t + dt), k = {k:g} N/m [m]",
+                            abs(x[:, 0].mean() - way) + np.max(np.abs(x[:, 1])), 1e-10 * way),
+                  agreement("A large step takes the strain of stiff threads away.",
+                            f"largest strain after 1 s, k = {k:g} N/m [-]", np.max(np.abs(strain)), left + ROUNDED)]
+        with np.errstate(all="ignore"):
+            exploded += not np.max(np.abs(slid(lesson, explicit, k)[2])) < 1.0
+    found.append(finding(claim="An explicit step of this length tears every one of these cloths.",
+                         quantity="cloths that symplectic Euler strains by more than 1 [of 3]", predicted=len(STIFF),
+                         measured=exploded, tolerance=0.0, observation=f"It tears {exploded} of {len(STIFF)}."))
+    return found, None

@@ -324,5 +324,6 @@ PICTURES = {
     "6.16": Picture(near_obstacle, obstacle, push_away,
                     "the acceleration points away from the centre, and is 0 beyond the reach."),
     "6.17": Picture(in_world, walk, steered,
-                    "the steered path passes the centre exactly on the rim of the disc, if it has to steer."),
+                    "if it has to steer, the path ends beside the centre, exactly on the rim of the disc, and cuts "
+                    "into the disc just before."),
 }

@@ -45,11 +45,12 @@ def ellipse(result, J):
 
 
 def wished(target, lengths, *_):
-    """The reach and the target, with the direction of the hand if the target has one."""
+    """The reach and the target, or several points, with the direction of the hand if the target has one."""
     phi = target[2] if len(target) == 3 else None
     hand = [] if phi is None else [
         Arrow(target[:2], 0.5 * lengths[-1] * np.array([np.cos(phi), np.sin(phi)]), "direction φ of the target")]
-    return [*base_and_reach(lengths), Dots(target[None, :2], "target"), *hand]
+    points = target[None, :2] if len(target) == 3 else target.reshape(-1, 2)
+    return [*base_and_reach(lengths), Dots(points, "target" if len(points) == 1 else "targets"), *hand]
 
 
 def solved_2r(theta, target, lengths, *_):

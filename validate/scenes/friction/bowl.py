@@ -88,8 +88,9 @@ def reference(p):
     slow.terminal, slow.direction = True, -1
 
     t, (x, v), pieces = 0.0, place(p), []
+    stopped = np.linalg.norm(v) <= AT_REST
     while t < T:
-        if p.mu > 0.0 and np.linalg.norm(v) <= AT_REST:
+        if p.mu > 0.0 and stopped:
             n = inward(x, p)
             down = np.array([0.0, 0.0, -1.0]) + n[2] * n
             if np.linalg.norm(down) <= p.mu * n[2]:
@@ -106,7 +107,8 @@ def reference(p):
             events=slow if p.mu else None,
         )
         pieces.append((t, piece.sol))
-        t, x, v = piece.t[-1], piece.y[:3, -1], piece.y[3:, -1]
+        # The root of `slow` may be rounded to a speed above AT_REST, so the event says that the mass has stopped.
+        t, x, v, stopped = piece.t[-1], piece.y[:3, -1], piece.y[3:, -1], piece.status == 1
     return pieces, None
 
 

@@ -63,7 +63,7 @@ def tolerance(p, dt):
     """Only the decaying term has an error.  Its length is |v₀ − v∞|/k, its rate is k, and x(T) is ten times shorter.
 
     Both engines are of first order and take drag at the beginning of a step, or multiply v by e^(−k dt): order 1
-    with rate k.  A first velocity half a step later would not help, because drag depends on it.  The hidden damping
+    with rate k.  A first velocity half a step later would not help, because drag depends on it.  The default damping
     has its fastest rate, 0.04 (1 + 2|v|), at the greater of the initial speed and the terminal one.
     """
     scale = np.hypot(p.vx, p.vy + p.g / p.k) / p.k / np.linalg.norm(truth(p, T))
@@ -80,7 +80,7 @@ def law(p):
 
 
 def damped_law(p):
-    """Return the same with the hidden damping."""
+    """Return the same with the default damping."""
     return lambda t, x, v: complex(0.0, -p.g) - p.k * v - 0.04 * v * (1.0 + abs(v))
 
 

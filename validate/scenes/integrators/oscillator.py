@@ -88,7 +88,7 @@ def law(p):
 
 
 def damped_law(p):
-    """Return the same with the hidden damping."""
+    """Return the same with the default damping."""
     return lambda t, x, v: -(p.k * x + p.c * v) / p.m - 0.04 * v * (1.0 + abs(v))
 
 

@@ -66,7 +66,7 @@ def truth(p, t):
 def tolerance(p, dt):
     """The fastest rate is |∂a/∂v| = 2g/v∞ at the terminal speed, and the error scales with v∞ over that rate.
 
-    Both engines are of first order and take drag at the beginning of a step: order 1.  The hidden damping adds 0.04
+    Both engines are of first order and take drag at the beginning of a step: order 1.  The default damping adds 0.04
     (1 + 2v) to the rate; v∞ bounds the speed with it, too.
     """
     v_end, depth = terminal_speed(p), truth(p, T)[0]
@@ -90,7 +90,7 @@ def law(p):
 
 
 def damped_law(p):
-    """Return the same with the hidden damping."""
+    """Return the same with the default damping."""
     return lambda t, x, v: p.g - p.c / p.m * v * abs(v) - 0.04 * v * (1.0 + abs(v))
 
 

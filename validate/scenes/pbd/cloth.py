@@ -165,7 +165,7 @@ SCENE = Scene(
     sanity_checks=sanity_checks,
     points=points, links=links,
     uses=("three coordinates", "links, in sequence", "one step function"),
-    full_loop="a joint of the loop can stand for a string, but the joints may not form the closed loops of a cloth",
+    full_loop="the joints of the loop are rigid, and the threads of this cloth stretch",
     ablations={
         "bending stiffness": "cloth_step of this lesson has it",
         "contact of the cloth with itself": "lesson 6 finds it",

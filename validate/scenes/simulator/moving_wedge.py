@@ -90,7 +90,7 @@ def accelerations(p):
 def truth(p, t):
     """Constant accelerations: A = m g sin θ cos θ/(M + m sin²θ) of the wedge.
 
-    Source: Landau and Lifshitz, Mechanics, § 5, or any text on constraints.
+    Source: `accelerations`; a common exercise, e.g. Morin 2008, Introduction to Classical Mechanics, “Moving plane”.
     """
     a, x = accelerations(p), places(p)
     begin = np.array([x[0, 0], x[1, 0], x[1, 1]])

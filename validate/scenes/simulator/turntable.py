@@ -1,4 +1,4 @@
-"""A ball rolls on a turntable.  It does not fly off: it moves on a circle, at 2/7 of the table's angular velocity.
+"""A ball rolls on a turntable, without slipping: it moves on a circle, at 2/7 of the table's angular velocity.
 
 If a step takes the table's velocity where the ball was, the ball spirals outwards, in our loop as in an engine.
 """
@@ -82,7 +82,8 @@ def truth(p, t):
     """v̇ = c/(1 + c) Ω × v: a circle about x₀ + n × v₀/rate, with c = I/mR².
 
     Friction F gives m v̇ = F and I ω̇ = r × F.  The lowest point keeps to the table, v + ω × r = Ω × x, so that
-    v̇ (1 + 1/c) = Ω × v.  Source: Lamb 1914, Higher Mechanics; Weltner 1979.
+    v̇ (1 + 1/c) = Ω × v.
+    Source: Weltner 1979, “Stable circular orbits of freely moving balls on rotating discs”.
     """
     w = rate(p)
     middle = np.array([p.x0 - p.v0 / w, 0.0])

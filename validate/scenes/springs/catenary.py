@@ -37,7 +37,7 @@ class Params(NamedTuple):
     m: Annotated[float, "each point between links [kg]"] = 0.02
     k: Annotated[float, "each link [N/m]: the outermost stretches by a fifth"] = 100.0
     k_d: Annotated[float, "damper [N s/m]"] = 0.02
-    k_v: Annotated[float, "viscosity [N s/m]"] = 0.0
+    k_v: Annotated[float, "viscous drag [N s/m]"] = 0.0
     wind: Annotated[float, "sideways, on each point [N]: a tenth of its weight"] = 0.02
     g: Annotated[float, "gravity [m/s²]"] = 9.81
 
@@ -119,7 +119,10 @@ def tolerance(p, dt):
 
 
 def pybullet_make(p, dt):
-    """Use one free body per point, with all forces from the state before each step, because pybullet has no springs."""
+    """Use one free body per point, with all forces from the state before each step.
+
+    pybullet has no spring between two rigid bodies.
+    """
     chain, bullet = net(p).padded(), Bullet(dt)
     B, (x, v) = chain.spring_matrix(), (chain.x.copy(), chain.v.copy())
     bodies = {n: bullet.point_mass(p.m, x[n], v[n]) for n in np.flatnonzero(chain.free())}

@@ -24,7 +24,7 @@ class Params(NamedTuple):
     k: Annotated[float, "each spring [N/m]"] = 500.0
     rest: Annotated[float, "its natural length [m]"] = 0.1
     k_d: Annotated[float, "damper beside each spring [N s/m]"] = 0.05
-    k_v: Annotated[float, "viscosity on each mass [N s/m]"] = 0.0
+    k_v: Annotated[float, "viscous drag on each mass [N s/m]"] = 0.0
     g: Annotated[float, "gravity [m/s²]"] = 9.81
 
 

@@ -1,0 +1,177 @@
+"""Two stars attract each other and circle their common centre of mass, each on an ellipse of its own."""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from solutions.checks import check_positive
+from solutions.integrators import advance
+from solutions.springs import universal_gravity
+from validate.engines.bullet import Bullet
+from validate.engines.chipmunk import pymunk_space, pymunk_world
+from validate.engines.integrators import planet
+from validate.methods import EXPLICIT, INTEGRATORS, LEFT_TO_FULL
+from validate.reference.integrators import kepler_errors, kepler_limits, kepler_position
+from validate.scene import LATE_LEAPFROG, PYBULLET, PYMUNK, Engine, EngineRun, Scene
+
+T = 20.0                     # [s]: six revolutions
+STEPS = (500, 1000, 2000, 5000, 10000, 20000, 50000)
+
+
+class Stars(NamedTuple):
+    """Two stars that start at their smallest distance, with their centre of mass at rest in the origin."""
+    m_a: Annotated[float, "mass of the heavy star [kg]"] = 3.0
+    m_b: Annotated[float, "mass of the light star [kg]"] = 1.0
+    G: Annotated[float, "constant of gravity [m³/(kg s²)]"] = 1.0
+    a: Annotated[float, "half the long axis of the path of one star as seen from the other [m]"] = 1.0
+    e: Annotated[float, "eccentricity [-]"] = 0.6
+
+    @property
+    def mu(self):
+        """G (m_a + m_b) [m³/s²]: the path of one star, seen from the other, is that of a planet around such a sun."""
+        return self.G * (self.m_a + self.m_b)
+
+
+CASES = {"3 : 1": Stars()}
+
+
+def both(r, p):
+    """Return the rows of a and b (2, 2) that belong to r = x_b − x_a (2,), about the centre of mass."""
+    total = p.m_a + p.m_b
+    return np.stack((-p.m_b / total * r, p.m_a / total * r))
+
+
+def acceleration(t, x, v, p):
+    """m_a a_a = F,  m_b a_b = −F"""
+    F = universal_gravity(x[0], x[1], p.m_a, p.m_b, p.G)
+    return np.stack((F / p.m_a, -F / p.m_b))
+
+
+def start(p):
+    for name in ("m_a", "m_b", "G"):
+        check_positive(name, getattr(p, name))
+    r, v = planet(p)
+    return both(r, p), both(v, p)
+
+
+def run(step, acceleration, state, p, dt, steps):
+    x, v = state
+    return advance(step, acceleration, 0.0, x, v, dt, steps, p)
+
+
+def observe(state, p):
+    return state[0][:, :2].ravel()
+
+
+def truth(p, t):
+    """x_a = −m_b/(m_a + m_b) r,   x_b = m_a/(m_a + m_b) r,   r̈ = −G (m_a + m_b) r/|r|³
+
+    Forces that are opposite leave the centre of mass at rest.  Dividing by the masses and subtracting gives Kepler's
+    law for r.  Every method keeps the centre of mass, so that both stars err like r.
+    Source: Newton 1687, Principia, book I, propositions 57 to 60; Goldstein, Classical mechanics, § 3.1.
+    """
+    return both(kepler_position(p, t), p).ravel()
+
+
+def tolerance(p, dt):
+    """The relative errors are those of one planet, because both paths are similar to that of r."""
+    return kepler_limits(p, T, dt)
+
+
+def predicted_error(label, p, dt):
+    """Predict the errors of both stars from that of r."""
+    found = of_one_planet(label, p, dt)
+    return found and found._replace(error=both(np.array(found.error), p).ravel())
+
+
+of_one_planet = kepler_errors(T)
+
+
+def pymunk_stars(p, dt, ahead=0.0):
+    """Attraction in velocity_func, which Chipmunk calls after it has moved both bodies."""
+    import pymunk
+    space, bodies, (x, v) = pymunk_space(), [], start(p)
+    for m, place, speed, pull in zip((p.m_a, p.m_b), x, v, acceleration(0.0, x, v, p)):
+        body = pymunk.Body(m, 1.0)
+        body.position, body.velocity = tuple(map(float, place)), tuple(map(float, speed + ahead * dt * pull))
+        bodies.append(body)
+
+    def attracted_by(other, m):
+        def attract(body, gravity, damping, dt):
+            r = other.position - body.position
+            body.velocity += p.G * m * dt / r.length**3 * r
+        return attract
+
+    bodies[0].velocity_func = attracted_by(bodies[1], p.m_b)
+    bodies[1].velocity_func = attracted_by(bodies[0], p.m_a)
+    space.add(*bodies)
+    return pymunk_world(space, dt, lambda: np.array([body.position for body in bodies]).ravel())
+
+
+def bullet_stars(p, dt, ahead=0.0):
+    """Apply the attraction as two opposite forces, from the positions before each step."""
+    bullet, (x, v) = Bullet(dt), start(p)
+    v = v - ahead * dt * acceleration(0.0, x, v, p)
+    bodies = [bullet.point_mass(m, (*place, 0.0), (*speed, 0.0)) for m, place, speed in zip((p.m_a, p.m_b), x, v)]
+
+    def step():
+        x_a, x_b = (np.array(bullet.position(body)) for body in bodies)
+        r = x_b - x_a
+        F = p.G * p.m_a * p.m_b / np.linalg.norm(r) ** 3 * r
+        bullet.push(bodies[0], F, x_a)
+        bullet.push(bodies[1], -F, x_b)
+        bullet.step()
+
+    return EngineRun(step, lambda: np.array([bullet.position(body)[:2] for body in bodies]).ravel(), bullet.close)
+
+
+ENGINES = (
+    Engine(PYMUNK, "", pymunk_stars, LATE_LEAPFROG, "attraction in velocity_func", 20_000),
+    Engine(PYMUNK, "leapfrog start", lambda p, dt: pymunk_stars(p, dt, ahead=0.5), 2, "first velocity + ½ a dt",
+           20_000),
+    Engine(PYBULLET, "", bullet_stars, LATE_LEAPFROG,
+           "useMaximalCoordinates=1, no damping; two forces before each step", 20_000),
+    Engine(PYBULLET, "leapfrog start", lambda p, dt: bullet_stars(p, dt, ahead=0.5), 2, "first velocity − ½ a dt",
+           20_000),
+)
+
+
+def points(observed, p):
+    """Draw both stars."""
+    return np.reshape(observed, (2, 2))
+
+
+def in_space(p):
+    """The same motion with an unused z coordinate."""
+    return tuple(np.append(rows, np.zeros((2, 1)), axis=1) for rows in start(p)), p
+
+
+def sanity_checks():
+    """Return ((claim, found, expected, tolerance), …): the centre of mass, and Kepler's third law for two bodies."""
+    p = CASES["3 : 1"]
+    period = 2.0 * np.pi * np.sqrt(p.a**3 / (p.G * (p.m_a + p.m_b)))
+    x_a, x_b = truth(p, 0.3).reshape(2, 2)
+    moved = np.linalg.norm(p.m_a * x_a + p.m_b * x_b) / (p.m_a + p.m_b)
+    return (("distance of the centre of mass from the origin [m]", moved, 0.0, 1e-15),
+            ("place of both after a revolution: largest difference [m]",
+             np.max(np.abs(truth(p, period) - truth(p, 0.0))), 0.0, 1e-14))
+
+
+SCENE = Scene(
+    title="Two stars", lesson="springs",
+    cases=CASES, duration=T, steps=STEPS,
+    methods=INTEGRATORS,
+    acceleration=acceleration, start=start, run=run, observe=observe,
+    truth=truth, truth_uncertainty=1e-12, tolerance=tolerance, predicted_error=predicted_error,
+    engines=ENGINES,
+    orders={"symplectic_euler_step": LATE_LEAPFROG},
+    slow_methods=LEFT_TO_FULL, compiled_in_quick=EXPLICIT,
+    sanity_checks=sanity_checks, points=points,
+    film_seconds=6.3,                                    # two revolutions
+    uses=("two points in the plane", "one force and its reaction", "one step function"),
+    ablations={
+        "the third dimension": in_space,
+        "rotation": "the whole loop of lesson 10 has it, and is measured",
+        "a third star": "it has no closed form",
+    },
+)
