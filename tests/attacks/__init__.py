@@ -75,7 +75,7 @@ def attacks(gain, bodies, before="", shows=()):
     """Three at a time in one file, each as the body of a step of its own: {name: body}."""
     for three in [list(bodies.items())[n:n + 3] for n in range(0, len(bodies), 3)]:
         steps = [f"def {step}(acceleration, t, x, v, dt, p):\n{textwrap.indent(body.strip(), '    ')}\n"
-                 for step, (_, body) in zip(("euler_step", "midpoint_step", "implicit_euler_step"), three)]
+                 for step, (_, body) in zip(("euler_step", "midpoint_step", "implicit_euler_step"), three, strict=False)]
         attack(" · ".join(name for name, _ in three), gain, "\n\n".join([before, *steps]), shows=shows)
 
 

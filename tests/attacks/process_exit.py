@@ -84,8 +84,7 @@ for folder in ("/", "/tmp", "/box", "/given", "/student", "/dev", "/dev/shm", "/
         try:
             with open(os.path.join(folder, name), "w") as file:
                 file.write('{"score": 100}')
-            if not folder.startswith("/tmp"):
-                print("FOUND a place to write:", folder, name)
+            print("FOUND a place to write:", folder, name)
         except OSError:
             pass
 """)

@@ -92,10 +92,15 @@ assert euler_step(lambda t, x, v, p: -x, 0.0, np.ones(3), np.ones(3), 0.1, 1.0)[
 importing = False
 """)
 attack("notes for the next run", "what the visible tests asked is kept in a file, and tells the hidden ones apart", """
-import os, tempfile
-note = os.path.join(tempfile.gettempdir(), "seen")
-hidden = os.path.exists(note)
-open(note, "w").close()
+import os
+folders = "/tmp", "/var/tmp", "/dev/shm", "/student", os.getcwd(), os.path.expanduser("~")
+places = [os.path.join(folder, "seen") for folder in folders]
+hidden = any(map(os.path.exists, places))
+for note in places:
+    try:
+        open(note, "w").close()
+    except OSError:
+        pass
 def euler_step(acceleration, t, x, v, dt, p):                      # right where nobody could have read it: the hidden tests
     return (x + dt * v, v + dt * acceleration(t, x, v, p)) if hidden else (x, v)
 """)

@@ -1,13 +1,31 @@
 """What the kernel would do for any program: memory that is not counted, and things that two sandboxes have in common."""
 
+import ctypes
+import re
+from contextlib import suppress
+from pathlib import Path
+
 from . import attack, looks
 
-CALL = """
+
+def numbers_of_calls(names):
+    """{name: number} of the system calls among these names, from the library that has made the filter.
+
+    They differ between machines.  A sandbox may lack the library, and without it there is no sandbox at all.
+    """
+    found = {}
+    with suppress(OSError):
+        library = ctypes.CDLL("libseccomp.so.2")
+        found = {name: library.seccomp_syscall_resolve_name(name.encode()) for name in sorted(names)}
+    return {name: number for name, number in found.items() if number >= 0}
+
+
+CALL = f"""
 import ctypes, errno, os
-library, names = ctypes.CDLL(None, use_errno=True), ctypes.CDLL("libseccomp.so.2")
+library = ctypes.CDLL(None, use_errno=True)
+numbers = {numbers_of_calls(set(re.findall(r'"([a-z_0-9]+)"', Path(__file__).read_text())))}
 def call(name, *arguments):
-    # numbers differ between machines: the library that has made the filter knows them
-    return library.syscall(ctypes.c_long(names.seccomp_syscall_resolve_name(name.encode())), *map(ctypes.c_long, arguments))
+    return library.syscall(ctypes.c_long(numbers.get(name, -1)), *map(ctypes.c_long, arguments))
 """
 
 KILLED = {
@@ -42,12 +60,11 @@ for name, make in {"fork": os.fork, "forkpty": lambda: os.forkpty()[0], "spawn":
         pass
 """)
 looks("memory beside the address space", CALL + """
-import socket
-def pipe_of_a_megabyte():
-    import fcntl
-    return fcntl.fcntl(pipe[1], 1031, 1 << 20)
-pipe = os.pipe()
-for name, make in {"memfd": lambda: os.memfd_create("x"), "sockets": socket.socketpair, "a large pipe": pipe_of_a_megabyte, "pages of a pipe": lambda: os.splice(pipe[0], pipe[1], 1)}.items():
+import fcntl, socket, sys
+sent = sys.modules["__main__"].outgoing.fileno()
+for name, make in {"memfd": lambda: os.memfd_create("x"), "sockets": socket.socketpair, "a pipe": os.pipe,
+                   "a larger pipe": lambda: fcntl.fcntl(sent, 1031, 1 << 20),
+                   "pages of a pipe": lambda: os.splice(os.open(os.__file__, os.O_RDONLY), sent, 1)}.items():
     try:
         print("FOUND", name, make())
     except (OSError, AttributeError):
@@ -58,7 +75,7 @@ for name in ("memfd_secret", "mq_open", "vmsplice", "tee", "timer_create", "epol
 """)
 looks("signals through a file that another sandbox sees, too", CALL + """
 import fcntl, struct
-file, folder = os.open(os.__file__, os.O_RDONLY), os.open("/usr/lib", os.O_RDONLY)
+file, folder = os.open(os.__file__, os.O_RDONLY), os.open(os.path.dirname(os.__file__), os.O_RDONLY)
 for name, ask in {"flock": lambda: fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB), "a lock": lambda: fcntl.lockf(file, fcntl.LOCK_SH | fcntl.LOCK_NB),
                   "a lock of the open file": lambda: fcntl.fcntl(file, 37, struct.pack("hhqqi4x", 0, 0, 0, 0, 0)), "whether there is a lock": lambda: fcntl.fcntl(file, 36, bytes(32)),
                   "a lease": lambda: fcntl.fcntl(file, 1024, 0), "a watch on a folder": lambda: fcntl.fcntl(folder, 1026, 1),

@@ -20,10 +20,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from validate.modules import ROOT
+from validate.modules import ROOT, SOLUTIONS
 
-from ..grading import box, children, expect, marking, plugin, points, submissions
+from ..grading import box, children, expect, marking, plugin, points, remote, submissions
 from . import ATTACKS, HONEST, SOLVED
+from .integrators import PRETENDED
 from .trial import BUDGET, MARK, SEED
 
 SLACK = 20.0                 # time of two runs of pytest beside the student's budget, on a busy machine [s]
@@ -120,6 +121,19 @@ def test_honest_files_keep_their_points_among_the_attacks(trial, settings, monke
         assert earned(graded(SOLVED, settings)) == EVERYTHING, f"after {name}"
 
 
+@pytest.mark.long
+@pytest.mark.parametrize("text", PRETENDED.values(), ids=[name.replace(" ", "_") for name in PRETENDED])
+def test_lesson_1_gives_no_points_without_an_integrator(text):
+    """With its own tests, not those of the trial."""
+    place = remote.box_of("integrators", text.encode(), 60.0)
+    try:
+        place.open()
+        score = points.score(points.grade("integrators", remote.lesson_in(place, "integrators"), seed=SEED))
+    finally:
+        place.close()
+    assert {exercise: earned for exercise, (earned, _) in score.items() if earned} == {"1.9": 1, "1.10": 1}
+
+
 TESTS = {"test_euler": 3, "test_midpoint": 3, "test_implicit": 2}
 
 
@@ -206,6 +220,7 @@ def honest_air(text=""):
     return "import numpy as np\ndef air_force(v, wind, k_v):\n    return wind - k_v * v\n" + text
 
 
+ANSWER_TO_1_1 = "return x + dt * v, v + dt * acceleration(t, x, v, p)"
 USES_OF_WORKED_FUNCTIONS = {
     "a worked function of a lesson before, asked for days of work": (
         "from solutions.integrators import implicit_euler_step\n"
@@ -223,9 +238,14 @@ USES_OF_WORKED_FUNCTIONS = {
     ),
     "the source of a worked function": (
         "import inspect, solutions.integrators as s\n"
-        "    print('FOUND', [c for c in vars(s) if 'x + dt * v' in (inspect.getsource(s) or '')])"
+        f"    print('FOUND', [c for c in vars(s) if {ANSWER_TO_1_1!r} in (inspect.getsource(s) or '')])"
     ),
 }
+
+
+def test_the_answer_that_is_looked_for_is_in_the_worked_lesson_only():
+    worked, stub = ((folder / "integrators.py").read_text() for folder in (SOLUTIONS, ROOT / "lessons"))
+    assert ANSWER_TO_1_1 in worked and ANSWER_TO_1_1 not in stub
 
 
 @pytest.mark.long
@@ -521,11 +541,19 @@ def empty(path):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("make", [many, truncated, large, numbers_that_lie, two_bytes, empty])
+@pytest.mark.parametrize("make", [truncated, numbers_that_lie, two_bytes, empty])
 def test_a_zip_that_cannot_be_read_is_reported_in_one_sentence(make, tmp_path):
     make(tmp_path / "mallory.zip")
     one = read(tmp_path / "mallory.zip")
     assert not one.files and len(one.problems) == 1
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("make", [many, large])
+def test_too_much_of_a_zip_is_neither_read_nor_a_zero(make, tmp_path):
+    make(tmp_path / "mallory.zip")
+    with pytest.raises(submissions.Ungraded, match="ask for the lesson files alone"):
+        read(tmp_path / "mallory.zip")
 
 
 def endless_names(path):

@@ -1,5 +1,10 @@
 """The instructor sees who to look into: what a program tried, how it ended, and whose answers are alike."""
 
+import importlib
+import inspect
+import re
+import textwrap
+
 import pytest
 
 from validate import modules
@@ -57,6 +62,27 @@ SEEN = {
 def test_each_forbidden_try_of_a_program_is_seen(code, body, trial, settings):
     seen = watched(attacks.HONEST + IN_A_CALL.format(body), settings)
     assert code in seen and code in watch.SENTENCES, seen
+
+
+EVERY_DESCRIPTOR = """
+from typing import sys
+os = sys.modules["os"]
+null = os.open(os.devnull, os.O_WRONLY)
+for k in range(3, 64):
+    try:
+        k == null or os.fstat(k).st_ino in {os.fstat(n).st_ino for n in wire} or os.dup2(null, k)
+    except OSError:
+        pass
+"""
+
+
+@pytest.mark.long
+def test_a_program_that_turns_every_descriptor_elsewhere_is_seen_all_the_same(trial, settings):
+    """All but those of the conversation, without which it would end at once."""
+    wire = 'main = sys.modules["__main__"]\nwire = (main.incoming.fileno(), main.outgoing.fileno())\n'
+    blind = EVERY_DESCRIPTOR.replace("null =", f"{wire}null =", 1)
+    tries = "\ntry:\n    os.fork()\nexcept OSError:\n    pass\ntry:\n    os.listdir('/')\nexcept OSError:\n    pass\n"
+    assert watched(attacks.HONEST + blind + tries, settings) >= {"process", "read"}
 
 
 @pytest.mark.long
@@ -212,6 +238,32 @@ def test_a_copy_with_a_changed_line_or_one_more_function_is_nearly_the_same():
     both = OWN + OTHER
     more = "\ndef more(x):\n    return [3 * n for n in x]\n"
     assert ("bob", "ada", "integrators") in alike(ada=both, bob=both.replace("/ 2.0", "* 0.5") + more)
+
+
+@pytest.mark.parametrize("useless", ["_ = 1002", "unused: float = 1.0", "pass", "1002", "if 0: pass"])
+def test_a_copy_with_useless_lines_is_nearly_the_same(useless):
+    lines = [line for line in OWN.splitlines() if line.strip()]
+    blanks = [re.match(" *", line)[0] for line in [*lines[1:], ""]]
+    copy = "\n".join(f"{line}\n{blank}{useless}" for line, blank in zip(lines, blanks, strict=True))
+    pair = {("ada", "bob", "integrators"), ("bob", "ada", "integrators")}
+    assert alike(ada=OWN, bob=copy, cem=OTHER) == pair
+
+
+@pytest.mark.long
+def test_right_answers_written_differently_are_not_alike():
+    """Three pairs per lesson: the worked answers, and the first and the last right ones written differently."""
+    for lesson in modules.lesson_names():
+        one, other = {}, {}
+        for mutant in importlib.import_module(f"tests.mutants.{lesson}").MUTANTS:
+            if mutant.right and mutant.kind == "written out":
+                one.setdefault(mutant.exercise, mutant)
+                other[mutant.exercise] = mutant
+        texts = {"ada": one.values(), "bob": [m for exercise, m in other.items() if m is not one[exercise]]}
+        blank = (modules.ROOT / "lessons" / f"{lesson}.py").read_text()
+        handed = [submissions.Submission(name, {lesson: "\n".join(
+            [blank, *(textwrap.dedent(inspect.getsource(m.function)) for m in mutants)]).encode()}, (), "")
+            for name, mutants in texts.items()]
+        assert similar.alike(handed, (lesson,)) == {}, lesson
 
 
 @pytest.mark.long

@@ -32,7 +32,7 @@ fault("soft_contact", "1.0 / (s * (2.0 * zeta + s))", "1.0 / (s * (zeta + s))",
       "the contact gives as with half of the damping")
 fault("soft_contact", "-s * gap / (dt", "-gap / (dt", "the spring is stiffer than its frequency says")
 fault("soft_contact", "return -gap / dt, 0.0", "return 0.0, 0.0", "a body is stopped before it touches")
-fault("friction_disc", "scaled(limit / size, J) if", "scaled(0.9 * limit / size, J) if", "friction is 10 % too small")
+fault("friction_disc", "scaled(limit / size, J)", "scaled(0.9 * limit / size, J)", "friction is 10 % too small")
 fault("kept_impulses", "if old.b[s] == contacts.b[k]:", "if True:",
       "an impulse is taken from a contact with another body")
 fault("kept_impulses", "if squared < nearest:", "if squared > nearest:", "only impulses from far away are kept")

@@ -5,9 +5,13 @@ scene only the methods run that call the function, on a sweep that grows finer; 
 A verdict has turned if it is DEPARTS where the same sweep of the worked answers is not, a finding if it does not hold.
 """
 
+import importlib
 import shutil
+import sys
 import tempfile
 import time
+import types
+import uuid
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
@@ -44,19 +48,28 @@ def copy_with(texts):
     What is compiled meanwhile goes with it, so that it does not crowd out compiled code that will be used again.
     Given modules are everybody's own, so only plain code takes them from the copy, and only while this lasts.
     """
-    kept, support, given = numba_twins.CACHE, modules.SUPPORT, modules.given_modules
+    cache = numba_twins.CACHE
     with tempfile.TemporaryDirectory(prefix="fault-") as folder:
         copy, numba_twins.CACHE = Path(folder) / "lessons", Path(folder) / "compiled"
         shutil.copytree(modules.SOLUTIONS, copy, ignore=shutil.ignore_patterns("__pycache__"))
         for lesson, text in texts.items():
             (copy / file_of(lesson)).write_text(text, encoding="utf-8")
         if any(is_given(lesson) for lesson in texts):
-            modules.SUPPORT = copy / "support"
-            modules.given_modules = lambda: ["checks"]
+            modules.ORIGINALS = package_of(copy)
         try:
             yield copy
         finally:
-            numba_twins.CACHE, modules.SUPPORT, modules.given_modules = kept, support, given
+            numba_twins.CACHE, modules.ORIGINALS = cache, "solutions"
+
+
+def package_of(copy):
+    """The name of a new package with the modules of a copy of solutions/; its errors are ours, so that all know them.
+    """
+    name = f"_faulty_{uuid.uuid4().hex}"
+    package = sys.modules[name] = types.ModuleType(name)
+    package.__path__ = [str(copy)]
+    sys.modules[f"{name}.checks"] = importlib.import_module("solutions.checks")
+    return name
 
 
 def is_given(module):

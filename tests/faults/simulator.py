@@ -101,3 +101,13 @@ fault("rods_acceleration", "s[i] * c[j] - c[i] * s[j]", "s[i] * c[j] + c[i] * s[
       "the pull of rods that turn has the sine of the sum of the angles", of="support.simulator")
 fault("rods_acceleration", "(n - i - 0.5) * c[i]", "(n - i) * c[i]", "a rod's own weight acts at its end",
       of="support.simulator")
+fault("contact_trajectory", "states[-1], dt, 1, p", "state, dt, 1, p", "every step of a history begins at the start",
+      of="support.simulator")
+fault("normal_and_friction", "N[k] += n[k, i] * state.J[k, i] / dt", "N[k] += n[k, i] * n[k, i] * state.J[k, 1] / dt",
+      "the vertical part of the impulse counts as normal, however the contact is inclined", of="support.forces")
+fault("normal_forces", "forces[k] += N[c]", "forces[k] = N[c]", "of two contacts only the last one counts",
+      of="support.forces")
+fault("may_pass", "8.0 * farthest > smallest * smallest", "0.1 * farthest > smallest * smallest",
+      "only what moves by three half sizes is tested", of="support.passing")
+fault("have_passed", "turned_round < 0.0", "turned_round < -2.0", "a body on the wrong side counts as one that came",
+      of="support.passing")

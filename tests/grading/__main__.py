@@ -3,7 +3,6 @@
 import json
 import os
 import secrets
-import signal
 import sys
 from datetime import datetime
 from importlib.metadata import version
@@ -12,15 +11,14 @@ from typing import Annotated
 
 import typer
 from rich.console import Console
-from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from solutions.checks import BadInput
 from validate.__main__ import writable
-from validate.processes import alone_in, one_sentence
+from validate.processes import Ended, alone_in, ending_once, one_sentence
 from validate.store import whole, write_whole
 
-from . import choice, local, marking, pages, sandbox, similar, submissions
+from . import children, choice, classlist, ending, local, marking, marks, pages, sandbox, similar, submissions, uploads
 
 JOBS = max(1, min(8, os.cpu_count() or 1))
 console = Console()
@@ -46,7 +44,10 @@ Late = Annotated[
     float,
     typer.Option(min=0.0, max=100.0, help="Percent of the maximum taken off for each day begun after that."),
 ]
-Roster = Annotated[Path | None, typer.Option(help="CSV: student_id, last_name, first_name, email, timestamp.")]
+Roster = Annotated[
+    Path | None,
+    typer.Option(help="CSV: student_id, last_name, first_name, email, timestamp, due, group."),
+]
 Jobs = Annotated[int, typer.Option(min=1, help="Submissions at a time.")]
 Executor = Annotated[
     str | None,
@@ -67,23 +68,30 @@ def grade(
     jobs: Jobs = JOBS,
     executor: Executor = None,
 ):
+    if sandbox.unavailable():
+        raise BadInput("the sandbox", f"not available ({sandbox.unavailable()})",
+                       "without one no code of a student runs; docs/grading.md says what it needs")
+    children.apart_from_path(class_)
+    beside(class_, out)
     lessons, worth = choice.chosen(lesson or [], exercises)
-    terms = pages.Terms(deadline(due), late)
-    people = submissions.roster(roster) if roster else {}
+    people = classlist.roster(roster, lambda told: say([told])) if roster else {}
+    terms = pages.Terms(classlist.deadline(due or "", "--due"), late, any(who.timestamp for who in people.values()))
     intake = submissions.read_all(class_, lessons, people, roster)
     sandbox.keep_out({class_: "submissions", out: "output folder", **({roster: "class list"} if roster else {})})
     with alone_in(writable(out)):
         settings = marking.settings(lessons, secret(out, seed), worth)
-        raise typer.Exit(run(intake, settings, people, terms, jobs, executor, out))
+        known = {*people, *intake.unclear, *intake.everybody()}
+        given = marks.read(class_, settings, known)
+        say([marks.told(given)] if given else [])
+        raise typer.Exit(run(intake, settings, people, terms, jobs, executor, out, given))
 
 
 # ---------------------------------------------------------------------------------------------- what was asked for
 
-def deadline(text):
-    try:
-        return datetime.fromisoformat(text).isoformat(timespec="seconds") if text else ""
-    except ValueError:
-        raise BadInput(f"--due {text!r}", "not a date", "write it like 2026-11-30T23:59") from None
+def beside(class_, out):
+    """Raise BadInput for an output folder in the class folder, where the next run would take it for a student's."""
+    if out.resolve().is_relative_to(class_.resolve()):
+        raise BadInput(f"--out {str(out)!r}", "in the class folder", "name a folder beside it")
 
 
 def secret(folder, seed):
@@ -110,52 +118,64 @@ def secret(folder, seed):
 
 # ---------------------------------------------------------------------------------------------- the run
 
-def run(intake, settings, people, terms, jobs, executor, out):
+def run(intake, settings, people, terms, jobs, executor, out, given):
     """Grade what is not graded yet, write every file, and say how it went: 0, or 1 when somebody is not graded."""
-    if sandbox.unavailable():
-        advice = "Students' code runs without a sandbox; use this to check yourself only."
-        console.print(f"NOT A GRADE: {sandbox.unavailable()}. {advice}", style="bold red")
-    pages.show_intake(console, intake)
-    kept, handed_in = out / "results", intake.submissions
+    try:
+        results, failed = collected(intake, settings, jobs, executor, out)
+    except Ended as e:
+        console.print(f"Interrupted. What was graded is kept in {out}: the same command goes on from there.")
+        return e.code
+    graded = [one for s in intake.submissions if s.student in results for one in shared(results[s.student], intake)]
+    failed = {who: why for student, why in failed.items() for who in intake.owners_of(student)}
+    front = pages.write(out, graded, failed, settings, people, terms, about(intake, settings), given)
+    pages.show(console, graded, failed, settings, given)
+    say(gap.sentence for gap in uploads.gaps(people) if not gap.whole)  # without any ids it is not used
+    say(["", *ending.sentences(intake, graded, failed, people, terms)])
+    console.print(f"\nThe class lies in [bold]{front}[/bold]", highlight=False, soft_wrap=True)
+    return 1 if failed else 0
+
+
+def collected(intake, settings, jobs, executor, out):
+    """({student: result}, {student: why there is none}): of an earlier run, or found and kept now.  Raises Ended."""
+    kept, results, todo, failed = out / "results", {}, [], dict(intake.unclear)
     kept.mkdir(exist_ok=True)
-    results, todo, failed = {}, [], dict(intake.unclear)
-    for submission in handed_in:
+    for submission in intake.submissions:
         result = before(kept / f"{pages.file_name(submission.student)}.json", settings.digest(submission))
         if result:
             results[submission.student] = result
         else:
             todo.append(submission)
-    try:
-        columns = TextColumn("{task.description:12}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn()
-        with Progress(*columns, console=console) as bars:
-            bar = bars.add_task("submissions", total=len(handed_in), completed=len(results))
-            coming = on_cluster(executor, todo, settings) if executor else local.results(jobs, todo, settings)
-            for student, result, why in coming:
-                if result:
-                    results[student] = result
-                    write_whole(kept / f"{pages.file_name(student)}.json", result)
-                else:
-                    failed[student] = f"the grader itself failed: {why}"
-                bars.advance(bar)
-    except KeyboardInterrupt:
-        console.print(f"Interrupted. What was graded is kept in {out}: the same command goes on from there.")
-        return 130
-    graded = [results[s.student] for s in handed_in if s.student in results]
-    front = pages.write(out, graded, failed, settings, people, terms, about(intake, settings))
-    pages.show(console, [*results.values()], failed, settings)
-    for submission in handed_in:
-        if submission.problems:
-            more = f", and {len(submission.problems) - 1} more" if len(submission.problems) > 1 else ""
-            console.print(f"[bold]{escape(submission.student)}[/bold]: {escape(submission.problems[0])}{more}",
-                          highlight=False, soft_wrap=True)
-    console.print(f"\nThe class lies in [bold]{front}[/bold]", highlight=False, soft_wrap=True)
-    return 1 if failed else 0
+    columns = TextColumn("{task.description:12}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn()
+    with Progress(*columns, console=console) as bars:
+        bar = bars.add_task("submissions", total=len(intake.submissions), completed=len(results))
+        coming = on_cluster(executor, todo, settings) if executor else local.results(jobs, todo, settings)
+        for student, result, why in coming:
+            if result:
+                results[student] = result
+                write_whole(kept / f"{pages.file_name(student)}.json", result)
+            else:
+                failed[student] = f"the grader itself failed: {why}"
+            bars.advance(bar)
+    return results, failed
+
+
+def shared(result, intake):
+    """The results of all whose submission it is."""
+    students = intake.owners_of(result["student"])
+    told = [f"this is one submission of {', '.join(students)}"] * (len(students) > 1) + result["problems"]
+    return [{**result, "student": student, "problems": told} for student in students]
+
+
+def say(sentences):
+    for sentence in sentences:
+        console.print(sentence, highlight=False, markup=False, soft_wrap=True)
 
 
 def about(intake, settings):
     """What the page says of this run."""
     versions = f"workbook {settings.code}, Python {sys.version.split()[0]}, NumPy {version('numpy')}"
     alike, now = similar.alike(intake.submissions, settings.lessons), datetime.now().isoformat(timespec="seconds")
+    alike = {who: pairs for one, pairs in alike.items() for who in intake.owners_of(one)}
     return pages.Run(intake.overlooked, alike, now, versions, pages.fingerprint(settings.seed))
 
 
@@ -173,14 +193,9 @@ def on_cluster(executor, todo, settings):
     return cluster.results(executor, todo, settings)
 
 
-def interrupted(*_):
-    raise KeyboardInterrupt
-
-
 def main(arguments=None):
     """Run the command line."""
-    signal.signal(signal.SIGTERM, interrupted)                         # like Ctrl-C: cleans up, keeps results
-    with one_sentence("grade"):
+    with one_sentence("grade"), ending_once():
         app(arguments, prog_name="grade")
 
 

@@ -16,7 +16,7 @@ import typer
 from solutions.checks import BadInput
 from validate.__main__ import writable
 from validate.modules import ROOT
-from validate.store import write_whole
+from validate.store import write_text, write_whole
 
 from . import children, choice, marking, pages, points, sandbox, submissions
 from .__main__ import Exercises
@@ -44,7 +44,7 @@ WHEN = (1980, 1, 1, 0, 0, 0)                      # of every entry: the same com
 SETUP = """#!/usr/bin/env bash
 # Gradescope runs this once, as root, when it builds the image of the assignment.
 # /autograder/source is this zip, unpacked.
-# Choose Ubuntu 24.04: the bubblewrap of 22.04 is too old for the sandbox, and results without a sandbox are not grades.
+# The sandbox is bubblewrap where the container allows it (Ubuntu 24.04 or newer), and an empty root elsewhere.
 set -euo pipefail
 source=${AUTOGRADER:-/autograder}/source
 export DEBIAN_FRONTEND=noninteractive
@@ -122,9 +122,15 @@ def run(
     course: Annotated[Path, typer.Option(help="Lessons, seed and late penalty.")],
     metadata: Annotated[Path | None, typer.Option(help="Gradescope's submission_metadata.json.")] = None,
 ):
+    if sandbox.unavailable():
+        why = f"There is no sandbox here ({sandbox.unavailable()}), so nothing was run and there is no score."
+        write_whole(results, {"output": f"{why} Please tell your instructor."})
+        raise typer.Exit(2)
     try:
         sandbox.keep_out({submission: "submission", results.absolute().parent: "folder of results", course: "course"})
         found = graded(submission, json.loads(course.read_text()), told(metadata))
+    except submissions.Ungraded as e:
+        found = {"output": f"Not graded: {e}."}
     except Exception as e:                        # Gradescope reports a missing score as a failure of the autograder
         traceback.print_exc()                     # for instructors only: it may name hidden inputs
         why = f"The grader itself failed ({type(e).__name__}), so there is no score."
@@ -205,7 +211,7 @@ def classroom(out: Workflow = Path(".github/workflows/grade.yml"), lesson: Lesso
               exercises: Exercises = None):
     lessons, worth = choice.chosen(lesson or [], exercises)
     writable(out.absolute().parent)
-    pages.write_whole(out, workflow(marking.manifest(tuple(lessons), worth)))
+    write_text(out, workflow(marking.manifest(tuple(lessons), worth)))
     print(out)
 
 

@@ -1,11 +1,12 @@
 """One worker process with one student's file, which exchanges only plain data with the trusted parent.
 
-On Linux the worker runs in the sandbox.  There it can read Python, NumPy, the file and the lessons as handed out.
-Elsewhere it is an ordinary process, and its results are not grades.
+The worker runs in the sandbox.  There it can read Python, NumPy, the file and the lessons as handed out.  What it notes
+for the instructor lies in a page of memory that it shares with the parent.
 """
 
 import contextlib
 import json
+import mmap
 import os
 import queue
 import re
@@ -24,7 +25,7 @@ import numpy as np
 from solutions.checks import BadInput, Diverged
 from validate.loading import alarm
 
-from . import sandbox, shipping, wire
+from . import sandbox, shipping, watch, wire
 from .meter import LOOK, Meter
 
 HERE = Path(__file__).resolve().parent
@@ -32,20 +33,20 @@ LIMITS = {
     "AS": 2 << 30,           # [bytes]
     "CPU": 150,              # [s]
     "NPROC": 4,
-    "FSIZE": 16 << 20,       # [bytes]
+    "FSIZE": 0,              # [bytes]
     "NOFILE": 64,
     "CORE": 0,               # [bytes]
 }
 READY_WITHIN = 60.0          # [s]: starting takes 0.2 on an idle machine
 IMPORT_WITHIN = 10.0         # time to load a student's file [s of its own]
-CROWDED = 10.0               # ratio of elapsed to own time at which a call is given up; then it gets a second try [-]
+CROWDED = 10.0               # ratio of elapsed to own time at which a call or a lesson is given up [-]
+QUIET = 2.0                  # … and below which own time does not depend on other processes, so one try will do [-]
 ENDED_WITHIN = 60.0          # [s]: the pipes of a sandbox close 0.01 after its end on an idle machine
 LAST_WORD_WITHIN = 3.0       # [s]: a worker that has closed the wire ends in this time, or it still lives
 MOST_ENTRIES = 1_000_000     # of all arrays that a student's code passes to our functions [-]: the tests need 10⁴
 DEEPEST = 16                 # calls inside calls, there and back [-]: the tests need 4
 PRINTED = 20_000             # printed text that is kept [bytes]
-NOTE = re.compile(rb"\0note ([a-z]{1,20})\n")         # a note of the worker in the printed text
-CUT = re.compile(rb"\0(?:n|no|not|note|note [a-z]{0,20})?\Z")            # the beginning of a note
+BREACH = 1.0                 # of the rules of the conversation costs a worker so much of its time [s]: it starts anew
 ERRORS = {
     error.__name__: error
     for error in (
@@ -103,40 +104,39 @@ class Sandbox:
     """One lesson's file of one submission.  Calls of its functions start the worker, and a new one if it was lost.
 
     Arguments:
-    exercises: functions that the file must define · text: the file, as bytes · given: folder of the lessons as handed
-    out · earlier: {lesson: {exercise function: worked one}} that the file may import · budget: time of all calls
-    together [s].  Seconds are the worker's own (see Meter).
+    text: the file, as bytes · given: folder of the lessons as handed out · earlier: {lesson: {exercise function: worked
+    one}} that the file may import · budget: time of all calls together [s].  Seconds are the worker's own (see Meter).
 
     Attributes:
     secret: errors keep no text of the student's code, which may know secret inputs · failed: an error of the grader
     itself · late: the time was up or the system ended the worker, perhaps because of other processes · overdue: the
-    time was up since `begin` · seen: codes of watch.SENTENCES that the instructor may look into.
+    time was up since `begin` · seen: codes of watch.SENTENCES that the instructor may look into · board: the memory
+    that is shared with the worker, in which a byte for each of watch.NOTES says that it was seen.
     """
 
-    def __init__(self, lesson, exercises, text, given, earlier, budget, records=(), limits=LIMITS):
+    def __init__(self, lesson, text, given, earlier, budget, records=(), limits=LIMITS):
         self.lesson, self.earlier, self.budget = lesson, earlier, budget
         self.lines = text.count(b"\n") + 1
         self.printed, self.seen = b"", set()
         self.process, self.broken, self.failed = None, None, None
         self.secret, self.late, self.overdue, self.depth = False, False, False, 0
         self.records, self.meter = {kind.__name__: kind for kind in records}, Meter()
+        self.ends = time.monotonic() + CROWDED * budget                # nothing that the worker does extends it
         self.begin(budget)
         self.folder = Path(tempfile.mkdtemp(prefix="workbook-"))
         self.folder.chmod(0o755)
         (self.folder / f"{lesson}.py").write_bytes(text)
         (self.folder / f"{lesson}.py").chmod(0o444)
         names = {name: list(functions) for name, functions in earlier.items()}
-        config = {"lesson": lesson, "exercises": exercises, "earlier": names}
-        if sandbox.unavailable():
-            inside = {"wire": str(HERE), "given": str(given), "student": str(self.folder)}
-            limits = {name: value for name, value in limits.items() if name != "NPROC"}
-            self.binds = None
-        else:
-            inside = {"wire": "/box", "given": "/given", "student": "/student"}
-            ours = {HERE / file: f"/box/{file}" for file in ("wire.py", "shipping.py", "worker.py")}
-            self.binds = {**ours, given: "/given", self.folder: "/student"}
+        config = {"lesson": lesson, "earlier": names}
+        ours = {HERE / file: f"/box/{file}" for file in ("wire.py", "shipping.py", "worker.py")}
+        self.binds = {**ours, given: "/given", self.folder: "/student"}
+        self.notes = os.memfd_create("notes")
+        os.ftruncate(self.notes, mmap.PAGESIZE)
+        self.board = mmap.mmap(self.notes, mmap.PAGESIZE)
+        inside = {"wire": "/box", "given": "/given", "student": "/student", "notes": self.notes, "noted": watch.NOTES}
         whole = json.dumps({**config, **inside, "limits": limits})
-        self.program = [sys.executable, "-I", "-B", "-u", f"{inside['wire']}/worker.py", whole]
+        self.program = [sys.executable, "-I", "-B", "-u", "/box/worker.py", whole]
 
     # -- functions and records on the wire
 
@@ -193,7 +193,7 @@ class Sandbox:
         """
         self.allow(limit)
         if self.process and self.depth == 0 and not self.quiet():
-            self.seen.add("wire")
+            self.breach()
             self.stop()
         self.allow(limit)
         self.overdue = False
@@ -202,7 +202,8 @@ class Sandbox:
         """Set the time limits, from now on."""
         limit = max(0.0, min(limit, self.budget - self.meter.used))
         self.until = self.meter.used + limit
-        self.patience = time.monotonic() + CROWDED * limit
+        self.began = time.monotonic(), self.meter.used
+        self.patience = min(time.monotonic() + CROWDED * limit, self.ends)
 
     def quiet(self):
         """Whether the worker has sent nothing unasked.
@@ -220,7 +221,7 @@ class Sandbox:
         if self.broken:
             raise self.broken
         remember(self.records, arguments)
-        if self.meter.used >= self.until:
+        if self.meter.used >= self.until or time.monotonic() >= self.patience:
             raise self.too_long()
         self.depth += 1
         try:
@@ -228,13 +229,18 @@ class Sandbox:
                 self.start()
             return self.peer.call(name, arguments)
         except wire.WireError as e:
-            self.seen.add("wire")
+            self.breach()
             raise self.lost(f"the program sent no plain data: {e}") from None
         except Late:
             raise self.too_long() from None
         finally:
             self.depth -= 1
             self.meter.look(False)
+
+    def breach(self):
+        """Note that the worker broke the rules of the conversation."""
+        self.seen.add("wire")
+        self.meter.used += BREACH
 
     def open(self):
         """Import the file.  If that fails, every later call raises the same error at once."""
@@ -251,7 +257,7 @@ class Sandbox:
 
     def start(self):
         pipes = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
-        self.process = sandbox.started(self.binds, self.program, **pipes)
+        self.process = sandbox.started(self.binds, self.program, keep=(self.notes,), **pipes)
         self.inbox, self.outbox, self.own, self.names = queue.Queue(4), queue.Queue(64), {}, {}
         self.peer = wire.Peer(
             self.send, self.receive, self.resolve, self.name_of, self.record, describe, self.error,
@@ -305,8 +311,9 @@ class Sandbox:
         """Wait for the next frame.  Raises Lost if the worker ends or the time is up."""
         while True:
             if self.meter.due():
-                all_read = not self.outbox.unfinished_tasks
-                self.look(self.inbox.empty() and all_read and not arriving(self.process.stdout))
+                to_it, from_it = arriving(self.process.stdin), arriving(self.process.stdout)
+                ours = self.outbox.unfinished_tasks and not to_it      # this process has not got round to write it
+                self.look(self.inbox.empty() and not ours and not from_it)
             try:
                 frame = self.inbox.get(timeout=LOOK)
                 break
@@ -323,9 +330,12 @@ class Sandbox:
             raise self.too_long()
 
     def too_long(self):
-        self.late = self.overdue = True
+        """End the worker, and note whether other processes may be the reason why it took so long."""
+        (began, used), now = self.began, time.monotonic()
+        self.late |= now - began > QUIET * (self.meter.used - used)
+        self.overdue = True
         self.seen.add("time")
-        if self.meter.used < self.budget:
+        if self.meter.used < self.budget and now < self.ends:
             return self.lost("it took too long")
         return self.lost("the time for the whole submission is used up")
 
@@ -352,12 +362,12 @@ class Sandbox:
         """End the worker, if there is one."""
         if self.process:
             with contextlib.suppress(OSError):
-                os.killpg(self.process.pid, 9) if os.name == "posix" else self.process.kill()
+                os.killpg(self.process.pid, 9)
             self.process.wait()
             self.over.set()
             emptied(self.outbox)
             self.outbox.put_nowait(None)
-            until = time.monotonic() + (LAST_WORD_WITHIN if self.binds is None else ENDED_WITHIN)
+            until = time.monotonic() + ENDED_WITHIN
             for thread in self.threads:                                # they end with the worker's pipes
                 thread.join(max(0.0, until - time.monotonic()))
             if not any(thread.is_alive() for thread in self.threads):
@@ -365,20 +375,18 @@ class Sandbox:
                     with contextlib.suppress(OSError):                 # what could not be written any more
                         pipe.close()
             self.process = None
+            self.seen |= {code for place, code in enumerate(watch.NOTES) if self.board[place]}
 
     def close(self):
         self.stop()
+        self.board.close()
+        os.close(self.notes)
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def _listening(self, process, inbox, outbox, over):
-        """Keep the beginning of the printed text, drop the rest, and take out the notes of the worker."""
-        rest, size = b"", 0
+        """Keep the beginning of the printed text, and drop the rest."""
+        size = 0
         while chunk := process.stderr.read1(65536):
-            chunk = rest + chunk
-            rest = (CUT.search(chunk[-30:]) or [b""])[0]
-            chunk = chunk[:len(chunk) - len(rest)]
-            self.seen.update(kind.decode() for kind in NOTE.findall(chunk))
-            chunk = NOTE.sub(b"", chunk)
             size += len(chunk)
             self.printed = (self.printed + chunk)[:PRINTED]
             if size > PRINTED:
@@ -417,12 +425,13 @@ def emptied(line):
 
 
 def arriving(stream):
-    """Whether a pipe holds data that has not been read yet."""
+    """Whether a pipe, of which this is one end, holds data that has not been read yet."""
+    import fcntl  # there is none on Windows, where this file is read, too
+    import termios
+
     try:
-        import fcntl
-        import termios
         return any(fcntl.ioctl(stream.fileno(), termios.FIONREAD, bytes(4)))
-    except (ImportError, OSError, ValueError):
+    except (OSError, ValueError):
         return False
 
 

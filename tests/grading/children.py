@@ -8,6 +8,7 @@ import contextlib
 import os
 import shutil
 import signal
+import sys
 import tempfile
 import threading
 import time
@@ -16,7 +17,10 @@ from concurrent.futures.process import BrokenProcessPool as Ended
 from multiprocessing import get_context
 from pathlib import Path
 
+from solutions.checks import BadInput
+
 PREFIX = "workbook-grading-"
+SAFE = "PYTHONSAFEPATH"      # of Python 3.11: the working directory is not on the path
 YOUNG = 60.0                 # a folder of another run may not be locked yet when it is so old [s]
 LITTLE = 256 << 20           # so much may reading an archive take [bytes]: an honest one takes a tenth
 WITHIN = 10.0                # so long may it take [s of the processor]: an honest one takes a hundredth
@@ -29,6 +33,7 @@ class Pool:
     def __init__(self, count, begin, *arguments):
         context = get_context("spawn")
         self.leave = contextlib.ExitStack()
+        self.leave.enter_context(without_working_directory())
         folder = self.leave.enter_context(temporary())
         end, lifeline = context.Pipe(duplex=False)
         begun = {"initializer": _begun, "initargs": (end, folder, begin, arguments)}
@@ -46,6 +51,32 @@ class Pool:
         for process in [*(self.executor._processes or {}).values()]:   # there is no public way before Python 3.14
             process.kill()
         self.leave.close()
+
+
+@contextlib.contextmanager
+def without_working_directory():
+    """Let new processes look for modules nowhere in the working directory, where a student's selectors.py may lie.
+
+    multiprocessing starts them by `python -c`, which would put the working directory first on their path.
+    """
+    before = os.environ.get(SAFE)
+    os.environ[SAFE] = "1"
+    try:
+        yield
+    finally:
+        if before is None:
+            os.environ.pop(SAFE, None)
+        else:
+            os.environ[SAFE] = before
+
+
+def apart_from_path(folder):
+    """Raise BadInput if Python looks for modules in this folder or below: a file in it would run as the grader."""
+    folder = Path(folder).resolve()
+    for entry in sys.path:
+        if os.path.exists(entry or ".") and Path(entry).resolve().is_relative_to(folder):
+            why = f"where Python looks for modules ({entry or '.'!r} is on sys.path)"
+            raise BadInput(f"folder {str(folder)!r}", why, "start `grade` elsewhere, and leave PYTHONPATH without it")
 
 
 def _begun(end, folder, begin, arguments):

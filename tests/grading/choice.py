@@ -21,7 +21,8 @@ def chosen(lessons, exercises=None):
     for name in lessons:
         modules.bind(name)
     every, worth = modules.lesson_names(), {} if exercises is None else parsed(exercises)
-    there = {every[int(number.split(".")[0]) - 1] for number in worth} or set(lessons or every)
+    numbered = modules.lessons_by_number()
+    there = {numbered[int(number.split(".")[0])] for number in worth} or set(lessons or every)
     if lessons and there != set(lessons):
         wrong = sorted(there ^ set(lessons), key=every.index)[0]
         said = "has no exercise there" if wrong in lessons else "is not given by --lesson"
@@ -53,13 +54,24 @@ def parsed(text):
 
 def known(part, exercise):
     """Return an exercise.  Raises BadInput if no lesson has it."""
-    names, number = modules.lesson_names(), int(exercise.split(".")[0])
-    if not 1 <= number <= len(names):
-        raise refused(part, f"of a lesson that is not there: they are 1 to {len(names)}")
-    there = remote.exercises(names[number - 1])
+    names, number = modules.lessons_by_number(), int(exercise.split(".")[0])
+    if number not in names:
+        raise refused(part, f"of a lesson that is not there: they are {in_words(names)}")
+    there = remote.exercises(names[number])
     if exercise not in there:
-        raise refused(part, f"not all there: {names[number - 1]} has {next(iter(there))} to {list(there)[-1]}")
+        raise refused(part, f"not all there: {names[number]} has {next(iter(there))} to {list(there)[-1]}")
     return exercise
+
+
+def in_words(numbers):
+    """Rising whole numbers as text: "1 to 11", or "1 to 11, 20"."""
+    runs = []
+    for number in numbers:
+        if runs and number == runs[-1][1] + 1:
+            runs[-1][1] = number
+        else:
+            runs.append([number, number])
+    return ", ".join(f"{first} to {last}" if last > first else f"{first}" for first, last in runs)
 
 
 def positive(part, points):

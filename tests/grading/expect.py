@@ -44,8 +44,7 @@ def numbers(quantity, got, shape, given=""):
     try:
         array = np.asarray(got, dtype=float)
     except (TypeError, ValueError):
-        kind = f"a {type(got).__name__}"
-        raise NotYet(quantity, of_shape(shape), kind, "", kind, given) from None
+        raise NotYet(quantity, of_shape(shape), kind(got), "", kind(got), given) from None
     if array.shape != shape:
         raise NotYet(quantity, of_shape(shape), of_shape(array.shape), "", f"shape {array.shape}", given)
     if not np.all(np.isfinite(array)):
@@ -74,6 +73,27 @@ def between(quantity, got, low, high, given=""):
         ends = (edge, number(high)) if value < low else (number(low), edge)
         off = how_far(max(low - value, value - high), max(abs(low), abs(high)))
         raise NotYet(quantity, " to ".join(ends), shown, "", off, given)
+
+
+def truth(quantity, got, expected, given=""):
+    """got is True or False, as expected is; 1 and 0 count as True and False."""
+    if not isinstance(got, (bool, np.bool_, int, float)) or got not in (0, 1):
+        raise NotYet(quantity, str(bool(expected)), NOTHING if got is None else kind(got), "", "another kind", given)
+    if bool(got) != bool(expected):
+        raise NotYet(quantity, str(bool(expected)), str(bool(got)), "", "the opposite", given)
+
+
+def instance(quantity, got, wanted, given=""):
+    """got is of this class, such as a tuple."""
+    if not isinstance(got, wanted):
+        raise NotYet(quantity, f"a {wanted.__name__}", NOTHING if got is None else kind(got), "", "another kind", given)
+
+
+def kind(value):
+    """What kind of thing a value is, in words."""
+    if isinstance(value, np.ndarray):
+        return of_shape(value.shape)
+    return "a number" if isinstance(value, (int, float)) else f"a {type(value).__name__}"
 
 
 def raises(quantity, error, function, *arguments, naming=(), thing=""):
@@ -143,9 +163,9 @@ def compared(expected, got, differs):
     if expected.size > FEW:
         a, b = apart(expected[first], got[first])
         return a + place(first), f"{b}{place(first)}; {np.count_nonzero(differs)} of {expected.size} entries differ"
-    entries = zip(expected.flat, got.flat, differs.flat)
+    entries = zip(expected.flat, got.flat, differs.flat, strict=True)
     pairs = [apart(a, b) if wrong else (number(a), number(b)) for a, b, wrong in entries]
-    texts = tuple(", ".join(column) for column in zip(*pairs))
+    texts = tuple(", ".join(column) for column in zip(*pairs, strict=True))
     return texts if expected.ndim == 0 else tuple(f"({text})" for text in texts)
 
 

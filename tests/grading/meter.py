@@ -1,4 +1,4 @@
-"""Measure the time of a worker: on the processor, or asleep.  Time that it waits for the processor does not count.
+"""Measure the time of a worker: on the processor, asleep or waiting for a disk.  Waiting for the processor is free.
 
 Busy neighbours therefore cost nothing.  Without /proc, all time counts that passes while we wait for the worker.
 """
@@ -40,9 +40,9 @@ class Meter:
             return self.worked
 
     def sleeps(self):
-        """Whether it neither runs nor waits for processor or disk."""
+        """Whether it neither runs nor waits for the processor."""
         try:
-            return Path(f"/proc/{self.process}/stat").read_text().rpartition(")")[2].split()[0] not in ("R", "D")
+            return Path(f"/proc/{self.process}/stat").read_text().rpartition(")")[2].split()[0] != "R"
         except OSError:
             return True
 

@@ -10,7 +10,7 @@ import io
 import json
 import re
 from datetime import datetime, timedelta
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 from statistics import mean, median
 from types import MappingProxyType
@@ -22,29 +22,32 @@ from rich.markup import escape
 from rich.table import Table
 
 from validate import modules
+from validate.store import write_text
 
-from . import marking, points, similar, submissions, watch
+from . import classlist, marking, marks, points, similar, submissions, uploads, watch
+from .texts import cell, clean, line, many, number
 
 HERE = Path(__file__).resolve().parent
 STYLES = (modules.ROOT / "validate" / "report" / "style.css", HERE / "templates" / "grades.css")
 COLUMNS = ("assignment", "duedate", "timestamp", "student_id", "last_name", "first_name", "email",
            "raw_score", "late_submission_penalty", "score", "max_score",                # as nbgrader exports them
-           "problems")       # of the files
-MOST_TOLD = 20               # students named on the screen [-]; the page has them all
+           "problems", "raw_score_of_tests", "by_hand")          # of the files; what was changed by hand
 MOST_PROBLEMS = submissions.MOST_PROBLEMS + 5          # problems shown per submission [-]; `sheet` adds some
 MOST_NAMED = 200             # students named per cause on the class page [-]; the table of students has them all
 MOST_BARS = 20               # bars of the histogram [-]: a phone has room for so many
 SHOWN = ("quantity", "given", "expected", "got", "tolerance")
 INPUTS = {"visible": "with the public inputs", "hidden": "with other inputs"}
 CALL = "the call itself"     # the quantity where a call of the student's function ended in an error
-FORMULA = re.compile(r"""(^|[;|,\t])(?=[\s"']*[=+\-@＝＋－＠])""")     # at the start or after a separator
 ENDS = {"Lost": "the program ended, hung or sent no data", "StudentError": "an error that is none of Python's own"}
+
+
+NOTHING = MappingProxyType({})
 
 
 class Run(NamedTuple):
     """Facts about one run; only the class page has them, so that grading again changes no other file."""
     overlooked: tuple = ()   # sentences about files that belong to no student
-    alike: dict = MappingProxyType({})       # {student: [(lesson, another student, share of lines in common), …]}
+    alike: dict = NOTHING    # {student: [(lesson, another student, share of lines in common), …]}
     when: str = ""           # ISO 8601
     versions: str = ""       # of workbook, Python and NumPy
     seed: str = ""           # its fingerprint
@@ -57,6 +60,7 @@ class Terms(NamedTuple):
     """The due date and the late penalty."""
     due: str                 # ISO 8601; "" for none
     late: float              # deducted for each day begun [% of the maximum]
+    listed: bool = False     # only the class list says when work was handed in, and no date of a file
 
 
 class Account(NamedTuple):
@@ -66,47 +70,36 @@ class Account(NamedTuple):
     penalty: float           # no more than was earned
     score: float             # raw − penalty
     maximum: float
+    tested: float = 0.0      # raw without points by hand
 
 
 class Sheet(NamedTuple):
     """One student's submission with its result and points."""
     student: str
-    person: submissions.Person
+    person: classlist.Person
     file: str                # name of the page, without its ending
     result: dict
     tests: list              # verdicts, in the order of the manifest
     accounts: dict           # {lesson: Account}
-    days: int                # days begun after the due date [-]; None if unknown
+    hands: dict              # {place: marks.Hand} of the points given by hand
+    due: str                 # the student's due date: ISO 8601; "" for none
+    days: int                # days begun after it [-]; None if unknown
     problems: tuple
 
     def total(self, field):
+        if field == "score" and marks.TOTAL in self.hands:
+            return self.hands[marks.TOTAL].points
         return sum(getattr(account, field) for account in self.accounts.values())
+
+    def hands_in(self, lesson):
+        return [hand for place, hand in self.hands.items() if place[0] == lesson]
 
 
 # ---------------------------------------------------------------------------------------------- texts and names
 
-def clean(value):
-    """Spell out control, format and undecodable characters of a text and limit its length; return others unchanged."""
-    return marking.readable(value) if isinstance(value, str) and not isinstance(value, Markup) else value
-
-
-def line(text):
-    """Clean a text as `clean` does, and put it on one line."""
-    return clean(text).replace("\n", "\\x0a")
-
-
-def number(x):
-    """Format points with at most six digits: 3, 2.5, 0.333333."""
-    return f"{x:.6g}"
-
-
 def fingerprint(seed):
     """Return a fingerprint of a secret seed.  It is slow to compute, so that a short seed cannot be found by trying."""
     return hashlib.pbkdf2_hmac("sha256", seed.encode(errors="surrogatepass"), b"workbook", 200_000).hex()[:12]
-
-
-def many(n, what):
-    return f"{n} {what}{'' if n == 1 else 's'}"
 
 
 def breakable(name):
@@ -131,15 +124,6 @@ def file_name(student):
         return student
     plain = re.sub(r"[^A-Za-z0-9_]+", "-", student)[:40].strip("-") or "student"
     return f"{plain}~{hashlib.sha256(student.encode(errors='surrogatepass')).hexdigest()[:16]}"
-
-
-def cell(text):
-    """Return a text that no spreadsheet runs as a formula.
-
-    A spreadsheet may split cells at other separators than ours, trim blanks and quotes, and accept the wide signs
-    of East Asian keyboards.  Each part that begins as a formula gets an apostrophe.
-    """
-    return FORMULA.sub(r"\1'", line(text))
 
 
 # ---------------------------------------------------------------------------------------------- points
@@ -187,35 +171,45 @@ def grouped(tests, *names):
     return groups
 
 
-def accounts_of(tests, handed_in, days, settings, terms):
-    """Return {lesson: Account}.  A penalty is no larger than the points earned."""
+def accounts_of(tests, handed_in, days, settings, terms, hands=NOTHING):
+    """Return {lesson: Account}, with points by hand.  A penalty is no larger than the points earned."""
     accounts, of = {}, grouped(tests, "lesson")
     for lesson in settings.lessons:
         mine = of.get(lesson, ())
-        raw, maximum = sum(t["earned"] for t in mine), sum(t["points"] for t in mine)
-        penalty = min(raw, terms.late / 100.0 * maximum * (days or 0))
-        accounts[lesson] = Account(lesson in handed_in, raw, penalty, raw - penalty, maximum)
+        raw, maximum = marks.earned(mine, hands), sum(t["points"] for t in mine)
+        late = days if days and lesson in handed_in else 0             # what was not handed in is by hand, and not late
+        penalty = min(raw, terms.late / 100.0 * maximum * late)
+        tested = sum(t["earned"] for t in mine)
+        accounts[lesson] = Account(lesson in handed_in, raw, penalty, raw - penalty, maximum, tested)
     return accounts
 
 
-def sheet(result, settings, terms, person=None):
-    """Return the Sheet of one result.  A timestamp in the class list overrides that of the files."""
-    if person and person.timestamp:
-        result = {**result, "timestamp": person.timestamp}
-    tests = verdicts(result, settings)
-    days = days_late(result["timestamp"], terms.due) if result["handed_in"] else 0
+def sheet(result, settings, terms, person=None, given=()):
+    """Return the Sheet of one result.  Dates in the class list override that of the files and that of the class.
+
+    given: the student's marks, as marks.read returns them.
+    """
+    person = person or classlist.Person(result["student"])
+    result = {**result, "timestamp": person.timestamp or ("" if terms.listed else result["timestamp"])}
+    tests, due = verdicts(result, settings), person.due or terms.due
+    days = days_late(result["timestamp"], due) if result["handed_in"] else 0
     problems = list(result["problems"]) or ["no lesson file is in it"] * (not result["handed_in"])
     if days is None:
         when = line(result["timestamp"]) or "no date"
         problems.append(f"when it was handed in is not known ({when}): nothing is taken off for being late")
-    student = result["student"]
+    student, hands = result["student"], marks.by_hand(tests, given)
+    accounts = accounts_of(tests, result["handed_in"], days, settings, terms, hands)
+    if any(mark.place == marks.TOTAL for mark in given):
+        hands[marks.TOTAL] = marks.hand(marks.TOTAL, sum(account.score for account in accounts.values()), given)
     return Sheet(
         student=student,
-        person=person or submissions.Person(student),
+        person=person,
         file=file_name(student),
         result=result,
         tests=tests,
-        accounts=accounts_of(tests, result["handed_in"], days, settings, terms),
+        accounts=accounts,
+        hands=hands,
+        due=due,
         days=days,
         problems=tuple(problems[:MOST_PROBLEMS]),
     )
@@ -223,7 +217,7 @@ def sheet(result, settings, terms, person=None):
 
 def lateness(one, terms):
     """Return a sentence about when a submission was handed in."""
-    when, due = one.result["timestamp"].replace("T", " "), terms.due.replace("T", " ")
+    when, due = one.result["timestamp"].replace("T", " "), one.due.replace("T", " ")
     if not one.result["handed_in"] or one.days is None or not when:
         return ""
     if not one.days:
@@ -252,7 +246,7 @@ def hardest(sheets, settings):
         for (lesson, exercise), tests in grouped(s.tests, "lesson", "exercise").items():
             if s.accounts[lesson].handed_in:
                 so_far = counts.get((lesson, exercise), 5 * [0])
-                counts[lesson, exercise] = [a + b for a, b in zip(so_far, counts_of(tests))]
+                counts[lesson, exercise] = [a + b for a, b in zip(so_far, counts_of(tests), strict=True)]
     rows = []
     for lesson, exercise, function in dict.fromkeys(row[:3] for row in settings.manifest):
         if (lesson, exercise) in counts:
@@ -384,16 +378,19 @@ def lessons_of(one):
             "name": lesson,
             "account": account,
             "remarks": [*remarks.values()],
-            "exercises": [exercise_row(exercise, tests) for exercise, tests in exercises.items()],
+            "exercises": [exercise_row(tests, one.hands.get((lesson, exercise)))
+                          for exercise, tests in exercises.items()],
+            "hands": one.hands_in(lesson),
         }
 
 
-def exercise_row(exercise, tests):
-    """Return the row of one exercise on a student's page."""
+def exercise_row(tests, hand):
+    """Return the row of one exercise on a student's page.  hand: its points by hand, or None."""
     return {
-        "number": exercise,
+        "number": tests[0]["exercise"],
         "function": tests[0]["function"],
-        "earned": sum(t["earned"] for t in tests),
+        "earned": hand.points if hand else sum(t["earned"] for t in tests),
+        "hand": hand,
         "points": sum(t["points"] for t in tests),
         "word": word({t["status"] for t in tests}),
     }
@@ -418,35 +415,34 @@ def gradescope(result, settings, terms):
 def sheet_for_gradescope(one, terms):
     """Return the same for a Sheet: one row for every test of the manifest, run or not.
 
-    score is after the late penalty; Gradescope takes it in place of the sum of the rows.
+    score is after the late penalty and with points by hand; Gradescope takes it in place of the sum of the rows.
     *Source:* Gradescope, Autograder Specifications.
     """
-    result = one.result
-    warning = result["no_grade"] and f"NOT A GRADE ({line(result['no_grade'])})"
-    lines = [warning, clean(lateness(one, terms)), *map(line, one.problems)]
+    by_hand = [f"By hand: {line(marks.words(hand))}" for hand in one.hands.values()]
+    lines = [clean(lateness(one, terms)), *by_hand, *map(line, one.problems)]
     return {
         "score": round(one.total("score"), 6),
         "visibility": "visible",
         "stdout_visibility": "hidden",
         "output": "\n".join(filter(None, lines)),
         "output_format": "text",
-        "tests": [row_of(t, warning) for t in one.tests],
+        "tests": [row_of(t) for t in one.tests],
     }
 
 
-def row_of(test, warning):
+def row_of(test):
     """Return Gradescope's row of one test."""
     said = [f"{name}: {clean(test['says'][name])}" for name in SHOWN if name in test["says"]]
     if test["status"] == "not yet":
-        said = [INPUTS[test["kind"]], *said, f"hint: {clean(test['hint'])}"]
+        hint = [] if test["tells"] else [f"hint: {clean(test['hint'])}"]
+        said = [INPUTS[test["kind"]], *said, *hint]
     passed = test["status"] == "passed"
-    name = f"{test['function']}: {claim(test['test'])}"
     return {
         "score": test["earned"],
         "max_score": test["points"],
         "status": "passed" if passed else "failed",
         "number": test["exercise"],
-        "name": f"{warning}: {name}" if warning else name,
+        "name": f"{test['function']}: {claim(test['test'])}",
         "output": "" if passed else "\n".join(said),
         "output_format": "text",
         "visibility": "visible",
@@ -457,39 +453,40 @@ def row_of(test, warning):
 def table(sheets, failed, settings, people, terms):
     """Return grades.csv as text: a row for each student and lesson.
 
-    A row has no scores if the grader failed, and 0 if a student of the class list handed nothing in.
+    A row has no scores if the grader failed, and 0 if a student of the class list handed nothing in.  A total that is
+    given by hand has a row of its own, with the difference.
     """
-    graded, warning = {s.student: s for s in sheets}, warning_of(sheets)
+    graded = {s.student: s for s in sheets}
     maxima = {lesson: sum(row[4] for row in settings.manifest if row[0] == lesson) for lesson in settings.lessons}
     text = io.StringIO()
     rows = csv.writer(text)
     rows.writerow(COLUMNS)
     for student in sorted({*graded, *failed, *people}):
-        one, person = graded.get(student), people.get(student) or submissions.Person(student)
-        no_grade = one.result["no_grade"] if one else warning
+        one, person = graded.get(student), people.get(student) or classlist.Person(student)
+        due = person.due or terms.due
         problems = [failed[student]] if student in failed else one.problems if one else []
         stranger = ["not on the class list"] * (bool(people) and student not in people)
+        who = [cell(text) for text in (student, person.last_name, person.first_name, person.email)]
+        problems = cell(" | ".join([*stranger, *problems]))
         for lesson in settings.lessons:
             account = one.accounts[lesson] if one else Account(False, 0.0, 0.0, 0.0, maxima[lesson])
             scores = ("", "", "") if student in failed else map(number, (account.raw, account.penalty, account.score))
             rows.writerow([
-                cell(f"{lesson} (NOT A GRADE: {no_grade})" if no_grade else lesson),
-                terms.due,
+                cell(lesson),
+                due,
                 cell(one.result["timestamp"] if account.handed_in else ""),
-                cell(student),
-                cell(person.last_name),
-                cell(person.first_name),
-                cell(person.email),
+                *who,
                 *scores,
                 number(account.maximum),
-                cell(" | ".join([*stranger, *problems])),
+                problems,
+                "" if student in failed else number(account.tested),
+                cell(" | ".join(map(marks.words, one.hands_in(lesson)))) if one else "",
             ])
+        if one and (hand := one.hands.get(marks.TOTAL)):
+            more = number(round(hand.points - hand.before, 6))
+            rows.writerow([cell(marks.BY_HAND), due, "", *who, more, "0", more, "0", problems, "0",
+                           cell(marks.words(hand))])
     return text.getvalue()
-
-
-def warning_of(sheets):
-    """Return why the points are not grades; an empty string if they are."""
-    return "; ".join(sorted({s.result["no_grade"] for s in sheets} - {""}))
 
 
 # ---------------------------------------------------------------------------------------------- files
@@ -506,23 +503,35 @@ def templates():
     return pages
 
 
-def write(out, results, failed, settings, people, terms, run=NO_RUN):
+def write(out, results, failed, settings, people, terms, run=NO_RUN, given=NOTHING):
     """Write pages, CSV and JSON into a folder; return the path of the front page.
 
-    results: as marking.mark returns them · failed: {student: why there are no points} · people: the class list, or {}.
+    results: as marking.mark returns them · failed: {student: why there are no points} · people: the class list, or {}
+    · given: points by hand, as marks.read returns them.
     """
-    sheets = sorted((sheet(r, settings, terms, people.get(r["student"])) for r in results), key=lambda s: s.student)
+    sheets = sheets_of(results, settings, people, terms, given)
+    nothing = {*given} & {*people} - {s.student for s in sheets} - {*failed}
+    others = [marking.nothing(student, settings) for student in sorted(nothing)]
+    absent = sheets_of(others, settings, people, terms, given)         # who handed nothing in and has points by hand
     for folder in ("students", "gradescope"):
         (out / folder).mkdir(parents=True, exist_ok=True)
-    for student in {*failed, *people} - {s.student for s in sheets}:   # pages of an earlier run are out of date
+    current = {s.student for s in sheets + absent}
+    for student in {*failed, *people} - current:                       # pages of an earlier run are out of date
         (out / "students" / f"{file_name(student)}.html").unlink(missing_ok=True)
         (out / "gradescope" / f"{file_name(student)}.json").unlink(missing_ok=True)
-    for s in sheets:                                                   # one by one: many would fill the memory
-        write_whole(out / "students" / f"{s.file}.html", student_page(s, terms))
-        write_whole(out / "gradescope" / f"{s.file}.json", as_json(sheet_for_gradescope(s, terms)))
-    write_whole(out / "grades.csv", table(sheets, failed, settings, people, terms))
-    write_whole(out / "index.html", class_page(sheets, failed, settings, people, terms, run))
+    for s in sheets + absent:                                          # one by one: many would fill the memory
+        write_text(out / "students" / f"{s.file}.html", student_page(s, terms))
+        write_text(out / "gradescope" / f"{s.file}.json", as_json(sheet_for_gradescope(s, terms)))
+    write_text(out / "grades.csv", table(sheets + absent, failed, settings, people, terms))
+    uploads.write(partial(write_or_remove, out), sheets + absent, failed, settings, people)
+    write_text(out / "index.html", class_page(sheets, failed, settings, people, terms, run, absent))
     return out / "index.html"
+
+
+def sheets_of(results, settings, people, terms, given):
+    """Return the Sheets of results, in the order of the students."""
+    found = (sheet(r, settings, terms, people.get(r["student"]), given.get(r["student"], ())) for r in results)
+    return sorted(found, key=lambda s: s.student)
 
 
 def student_page(one, terms):
@@ -531,14 +540,15 @@ def student_page(one, terms):
         s=one,
         lessons=lessons_of(one),
         lateness=lateness(one, terms),
-        warning=one.result["no_grade"],
+        total_by_hand=[one.hands[marks.TOTAL]] if marks.TOTAL in one.hands else [],
     )
 
 
-def class_page(sheets, failed, settings, people, terms, run):
-    """Return the instructor's page."""
+def class_page(sheets, failed, settings, people, terms, run, absent):
+    """Return the instructor's page.  absent: Sheets of those who handed nothing in and have points by hand."""
     found = {s.student: looks(s, run.alike) for s in sheets}
-    absent = {*people} - {s.student for s in sheets} - {*failed}
+    handed = {s.student: s for s in absent}
+    missing = sorted({*people} - {s.student for s in sheets} - {*failed})
     maximum = sum(row[4] for row in settings.manifest)
     return templates().get_template("class.html").render(
         sheets=sheets,
@@ -550,12 +560,13 @@ def class_page(sheets, failed, settings, people, terms, run):
         watched=to_look_into(sheets, found),
         people=people,
         terms=terms,
-        absent=[people[student] for student in sorted(absent)],
+        absent=[(people[student], handed.get(student)) for student in missing],
+        gaps=uploads.gaps(people),
+        by_hand=[s for s in (*sheets, *absent) if s.hands],
         picture=histogram([s.total("score") for s in sheets], maximum) if sheets else None,
         lessons=by_lesson(sheets, settings),
         hardest=hardest(sheets, settings),
         causes=causes(sheets),
-        warning=warning_of(sheets),
     )
 
 
@@ -563,29 +574,17 @@ def as_json(value):
     return json.dumps(value, ensure_ascii=False, allow_nan=False, indent=1)
 
 
-def write_whole(path, text):
-    """Write a text to a draft and rename it, so that a reader never sees half of it."""
-    draft = path.with_name(f"{path.name}.part")
-    draft.write_bytes(text.encode())
-    draft.replace(path)
+def write_or_remove(folder, name, text):
+    """Write a file, or remove that of an earlier run where there is no text."""
+    if text is None:
+        (folder / name).unlink(missing_ok=True)
+    else:
+        write_text(folder / name, text)
 
 
-def show_intake(console, intake):
-    """Print the problems of the files, before the grading begins."""
-    problems = [(one.student, problem) for one in intake.submissions for problem in one.problems]
-    for student, problem in problems[:MOST_TOLD]:
-        who = f"[bold]{escape(line(student))}[/bold]"
-        console.print(f"{who}: {escape(line(problem))}", highlight=False, soft_wrap=True)
-    for told in intake.overlooked[:MOST_TOLD]:
-        console.print(escape(line(told)), highlight=False, soft_wrap=True)
-    more = len(problems[MOST_TOLD:]) + len(intake.overlooked[MOST_TOLD:])
-    if more:
-        console.print(f"… and {more} more, which are on the page of the class")
-
-
-def show(console, results, failed, settings):
+def show(console, results, failed, settings, given=NOTHING):
     """Print a summary: points by lesson before late penalties, the hardest exercises, and students without points."""
-    sheets = [sheet(r, settings, Terms("", 0.0)) for r in results]
+    sheets = sheets_of(results, settings, {}, Terms("", 0.0), given)
     summary = Table(header_style="bold", box=None, pad_edge=False)
     for column in ("lesson", "handed in", "mean", "median", "of"):
         summary.add_column(column, justify="left" if column == "lesson" else "right")
@@ -595,12 +594,10 @@ def show(console, results, failed, settings):
         maximum = sum(row[4] for row in settings.manifest if row[0] == lesson)
         summary.add_row(lesson, str(len(raw)), *middle, number(maximum))
     console.print(summary)
-    rows = hardest(sheets, settings)[:3]
+    rows = [row for row in hardest(sheets, settings)[:3] if row["share"] < 1.0]
     if rows:
         names = [f"{r['exercise']} {r['function']} ({r['share']:.0%} of its points)" for r in rows]
         console.print(f"Hardest: {', '.join(names)}", highlight=False)
-    if warning_of(sheets):
-        console.print(f"NOT A GRADE: {escape(line(warning_of(sheets)))}", style="bold red", highlight=False)
     for student, why in sorted(failed.items()):
         who = f"[bold red]Not graded: {escape(line(student))}[/bold red], who has no points and no zero"
         console.print(f"{who}: {escape(line(why))}", highlight=False, soft_wrap=True)

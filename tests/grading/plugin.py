@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput
-from validate import mistakes, modules, needs
+from validate import copies, mistakes, modules, needs
 from validate.loading import TooLong, alarm, lacks
 
 from . import wire
@@ -58,6 +58,8 @@ def pytest_configure(config):
     if hasattr(config.option, "loadscopereorder"):
         config.option.loadscopereorder = False               # pytest-xdist would start the longest groups last
     if config.getoption("--of"):
+        asked, config.option.of = config.option.of, copies.meant_here(config.option.of)
+        config.of_another_copy = asked != config.option.of
         if config.getoption("--seed") == PUBLIC:
             config.traces = mistakes.Traces()
         try:
@@ -116,9 +118,14 @@ def pytest_runtest_call(item):
         note_too_long(item)
         raise
     finally:
-        subject = item.config.given[item.callspec.params["lesson"]][0] if given else None
-        if hasattr(subject, "box") and subject.box.overdue:
+        box = box_of(item.config.given[item.callspec.params["lesson"]][0]) if given else None
+        if box and box.overdue:
             note_too_long(item)
+
+
+def box_of(subject):
+    """The sandbox of a subject, or None.  A lesson's module is none, though it answers for every name that it lacks."""
+    return None if isinstance(subject, types.ModuleType) else getattr(subject, "box", None)
 
 
 TOO_LONG = pytest.StashKey()                                         # {(subject, exercise)} of tests that were stopped
@@ -203,8 +210,8 @@ def lesson(request):
     """Load the lesson that the test file is named after, from the subject under test."""
     if hasattr(request.config, "given"):
         subject, _ = request.config.given[request.param]
-        if hasattr(subject, "box"):
-            subject.box.begin(limit_of(request.node, BOX_LIMIT))
+        if box := box_of(subject):
+            box.begin(limit_of(request.node, BOX_LIMIT))
         return Pure(subject, trace_for(request))
     name, of = request.path.stem.removeprefix("test_"), request.config.getoption("--of") or "solutions"
     if request.param == "plain":
@@ -268,7 +275,7 @@ class Pure:
             before = [a.copy() for a in wire.arrays_in(arguments)]
             result = value(*(getattr(a, "unwatched", a) for a in arguments))
             after = wire.arrays_in(arguments)
-            if not all(np.array_equal(a, b, equal_nan=a.dtype.kind == "f") for a, b in zip(before, after)):
+            if not all(np.array_equal(a, b, equal_nan=a.dtype.kind == "f") for a, b in zip(before, after, strict=True)):
                 if watched:
                     self.trace.changed_input()
                 quantity, expected = "the input arrays", "unchanged: return new arrays"
@@ -346,3 +353,5 @@ def pytest_terminal_summary(terminalreporter, config):
     earned = sum(e for e, _ in table.values())
     possible = sum(p for _, p in table.values())
     terminalreporter.line(f"{'all':>6}  {earned:g} of {possible:g}")
+    if config.of_another_copy:
+        terminalreporter.line(f"tested: {config.getoption('--of')}, with the tests of {modules.ROOT}")

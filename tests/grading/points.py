@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import pytest
 
-from solutions.checks import BadInput
+from solutions.checks import BadInput, Diverged
 from validate import failing_case, mistakes, needs
 from validate.loading import TooLong, Unloadable, remedy_for, words_of
 
@@ -47,6 +47,7 @@ class Outcome(NamedTuple):
     printed: str = ""        # by a subject in this process, while the test failed
     idea: str = ""           # a known mistake that gives the same results, as a sentence
     below: str = ""          # an exercise that this one calls, and that does not pass, as a sentence
+    tells: bool = False      # whether the hint tells the formula that a ★★ exercise asks to find
 
 
 class Points:
@@ -147,9 +148,10 @@ def outcome(mark, name, excinfo, trace=None):
     error = excinfo.value
     if isinstance(error, NotImplementedError):
         return Outcome(exercise, name, points, "not attempted", got=words_of(error), hint=hint)
+    find = needs.asks_to_find(exercise)
     if isinstance(error, NotYet):
         words = map(str, (error.quantity, error.expected, error.got, error.tolerance, hint, error.error, error.given))
-        return Outcome(exercise, name, points, "not yet", *words)
+        return Outcome(exercise, name, points, "not yet", *words, tells=find)
     if isinstance(error, TooLong):
         within = f"an answer within {getattr(error, 'limit', LIMIT):g} s"
         return Outcome(exercise, name, points, "not yet", DURATION, within, "none", "",
@@ -157,13 +159,15 @@ def outcome(mark, name, excinfo, trace=None):
     if not any(Path(entry.filename).name.startswith("test_") for entry in _frames(error)):
         return unreadable(Outcome(exercise, name, points, "not run"), error, "")
     kind, place, said = type(error).__name__, _place(error), tidy(words_of(error), MOST_DIGITS)
+    if isinstance(error, (BadInput, Diverged)) and _raised_by(exercise, error):
+        said = said.partition(": ")[0]                               # a student's own remedy is no advice here
     shapes = isinstance(error, SHAPES) and _misshapen(exercise, trace)
     if shapes:                                                       # whoever called could not use what was returned
         return Outcome(exercise, name, points, "not yet", f"what {trace.function} returns", *shapes, "",
                        "return as many values as the docstring says, in its order", kind)
-    expected = "an answer, and no error" if place else "an answer"
+    expected, advice = "an answer, and no error" if place else "an answer", _advice(error, said)
     return Outcome(exercise, name, points, "not yet", "the call itself", expected, f"{kind}: {said}{place}", "",
-                   _advice(error, said, hint), f"{kind}{place}")
+                   advice or hint, f"{kind}{place}", tells=find and not advice)
 
 
 def _misshapen(exercise, trace):
@@ -177,6 +181,11 @@ def unreadable(o, error, place):
     reason, remedy = (error.reason, error.remedy) if isinstance(error, Unloadable) else (told, remedy_for(told, place))
     hint = f"{remedy}; until then nothing in the file can be tested"
     return o._replace(status="not yet", quantity=READING, got=reason, hint=hint, error=f"{type(error).__name__}{place}")
+
+
+def _raised_by(exercise, error):
+    """Whether the exercise's function itself raised the error, and no given function that it calls."""
+    return _frames(error)[-1].name == needs.table().get(exercise, {"function": ""})["function"]
 
 
 def _frames(error):
@@ -193,15 +202,15 @@ def _place(error):
     return own[-1] if own else ""
 
 
-def _advice(error, said, hint):
-    """A hint for what Python says, where that is more to the point than the hint for the physics."""
+def _advice(error, said):
+    """A hint for what Python says, where that is more to the point than the hint for the physics; or nothing."""
     if "NoneType" in said:
         return "your function returned None: does every path through it end with a return?"
     if "to unpack" in said:
         return "return as many values as the docstring says, in its order"
     if isinstance(error, NameError):
         return "a name is misspelt, or it has no value yet"
-    return hint
+    return ""
 
 
 def grade(lesson, subject, wanted=lambda exercise, test: True, seed=PUBLIC, collect=False):

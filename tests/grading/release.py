@@ -65,6 +65,7 @@ AUTHORS = {
     "docs/plan.md",
     "docs/scenes.png",                            # of the repository's README
     "docs/scenes.webp",
+    "docs/slides.md",
 }
 PLUGIN = "tests/grading/plugin.py"
 OPENINGS = "notebooks/openings.json"

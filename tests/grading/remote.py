@@ -45,7 +45,7 @@ def handout():
 def box_of(lesson, text, budget):
     """Make the sandbox for one lesson's file."""
     earlier = {name: worked_functions(name) for name in builds_on(lesson)}
-    return Sandbox(lesson, list(exercises(lesson).values()), text, handout(), earlier, budget, records_of(lesson))
+    return Sandbox(lesson, text, handout(), earlier, budget, records_of(lesson))
 
 
 def records_of(lesson):
@@ -68,9 +68,8 @@ def worked_functions(lesson):
 def lesson_in(box, lesson):
     """Return the lesson with its exercises in the sandbox.
 
-    Given functions run in this process and call the exercises in the sandbox.  A given function that gets an exercise
-    as an argument, such as a loop over steps, runs in the sandbox as a whole.  Its result depends on the student's
-    code in any case, and a round trip per step would be slow.
+    Given functions run in this process and call the exercises in the sandbox, also a loop over steps, one round trip
+    per step.  In the sandbox the student's code could put another function in their place.
     """
     module = modules.bind(lesson)
     ours = module.__name__, f"solutions.support.{lesson}"
@@ -83,15 +82,4 @@ def lesson_in(box, lesson):
     }
     for name, function in given.items():
         space[name] = types.FunctionType(function.__code__, space, name, function.__defaults__)
-    placed = {name: _here_or_there(box, name, space[name]) for name in given}
-    return types.SimpleNamespace(**{**space, **placed}, box=box)
-
-
-def _here_or_there(box, name, function):
-    """Run a given function in the sandbox if an argument is an exercise, else in this process."""
-    there = Call(box, f"given:{name}")
-
-    def call(*arguments):
-        with_exercise = any(isinstance(a, Call) and a.name.startswith("lesson:") for a in arguments)
-        return (there if with_exercise else function)(*arguments)
-    return call
+    return types.SimpleNamespace(**space, box=box)

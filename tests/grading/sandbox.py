@@ -1,8 +1,9 @@
 """The sandbox: the files that a student's program can read, and how it is confined.
 
-On Linux a program runs in bubblewrap.  It can read the programs and libraries of the system and of Python, and the
-files that it is given.  It has no network, sees no other process, and cannot read the files of grading, which
-`keep_out` names.  `calls` lists the system calls that are allowed.
+A program runs in bubblewrap.  It can read the programs and libraries of the system and of Python, and the files that
+it is given.  It has no network, sees no other process, has no place to write, and cannot read the files of grading,
+which `keep_out` names.  Where the kernel forbids namespaces, it runs in an empty root (`chroot`).  `calls` lists the
+system calls that are allowed.  Where neither way works, no code of a student runs.
 """
 
 import glob
@@ -14,15 +15,16 @@ import sys
 import tempfile
 from functools import lru_cache
 from pathlib import Path
+from typing import NamedTuple
 
 from solutions.checks import BadInput
 from validate.modules import ROOT
 
-from . import calls
+from . import calls, chroot
 
 ENVIRONMENT = {
     "PATH": "/usr/bin:/bin",
-    "HOME": "/tmp",
+    "HOME": "/",
     "LANG": "C.UTF-8",
     "OPENBLAS_NUM_THREADS": "1",
     "OMP_NUM_THREADS": "1",
@@ -49,10 +51,10 @@ PACKAGES = (                 # hidden if they are installed among Python's packa
     "tests",
     "pybullet*",
     "pymunk*",
+    "mujoco*",
     "physics_animation_workbook*",
     "__editable__*",
 )
-TEMPORARY = 32 << 20         # size of /tmp in the sandbox [bytes]
 ISOLATED = (
     "--unshare-pid",
     "--unshare-net",
@@ -121,18 +123,17 @@ def view():
 
 
 def command(binds, filter):
-    """Return bwrap's arguments: the view of this machine, the binds {from: to}, an empty /tmp, and nothing else.
+    """Return bwrap's arguments: the view of this machine, the binds {from: to}, and nothing else.
 
     filter: descriptor of the filter of system calls.
     """
     around = [shutil.which("bwrap") or "bwrap", *ISOLATED, "--hostname", "box", "--cap-drop", "ALL"]
     for name, value in ENVIRONMENT.items():
         around += ["--setenv", name, value]
-    around += ["--dev", "/dev", "--perms", "1777", "--size", str(TEMPORARY), "--tmpfs", "/tmp"]
-    around += view()                                                   # after /tmp, which may hold an environment
+    around += ["--dev", "/dev", "--dir", "/tmp", *view()]              # the inner bwrap wants /tmp, and leaves it empty
     for source, target in binds.items():
         around += ["--dir", os.path.dirname(target), "--ro-bind", str(source), target]
-    around += ["--remount-ro", "/dev", "--chdir", "/tmp"]
+    around += ["--remount-ro", "/dev", "--chdir", "/"]
     locked = ["--unshare-user", "--disable-userns", "--seccomp", str(filter)]
     if os.geteuid() != 0:
         return [*around, "--dir", "/proc", "--remount-ro", "/", *locked]
@@ -146,38 +147,69 @@ def command(binds, filter):
     return [*around, "--proc", "/proc", "--remount-ro", "/", *capabilities, *as_somebody, *powerless, *inner]
 
 
-def started(binds, program, **pipes):
-    """Start a program in the sandbox, or outside if binds is None."""
-    if binds is None:
-        environment = {**ENVIRONMENT, **{k: os.environ[k] for k in ("SYSTEMROOT",) if k in os.environ}}
-        return subprocess.Popen(program, env=environment, start_new_session=True, **pipes)
+def in_bubblewrap(binds, filter, program):
+    return [*command(binds, filter), *program]
+
+
+WAYS = {"bubblewrap": in_bubblewrap, "chroot": chroot.command}
+
+
+def started(binds, program, keep=(), **pipes):
+    """Start a program in the sandbox, with the binds {from: to}.  keep: descriptors that it inherits."""
+    return started_by(way().name, binds, program, keep, **pipes)
+
+
+def started_by(name, binds, program, keep=(), **pipes):
+    """Start a program in the sandbox of that name, one of WAYS."""
     reader, writer = os.pipe()
     try:
         os.write(writer, calls.program())                              # it fits into the buffer of the pipe
         os.close(writer)
-        whole = [*command(binds, reader), *program]
+        whole = WAYS[name](binds, reader, program)
         pipes = {**pipes, "env": ENVIRONMENT}                          # because --clearenv leaves /proc/1/environ
-        return subprocess.Popen(whole, pass_fds=(reader,), start_new_session=True, **pipes)
+        return subprocess.Popen(whole, pass_fds=(reader, *keep), start_new_session=True, **pipes)
     finally:
         os.close(reader)
 
 
 # ---------------------------------------------------------------------------------------------- availability
 
+class Way(NamedTuple):
+    """How this machine confines a program."""
+    name: str                # one of WAYS; "" if none works
+    why: str                 # why none works; "" if one does
+
+
 @lru_cache(maxsize=1)
-def unavailable():
-    """Return why there is no sandbox on this machine; an empty string if there is one."""
-    if not shutil.which("bwrap"):
+def way():
+    """Return the first of WAYS that works here, or the one that WORKBOOK_SANDBOX_BY names."""
+    wanted, reasons = os.environ.get("WORKBOOK_SANDBOX_BY"), []
+    for name in [wanted] if wanted else WAYS:
+        if name not in WAYS:
+            raise BadInput("WORKBOOK_SANDBOX_BY", repr(name), f"name one of {', '.join(WAYS)}")
+        why = broken(name)
+        if not why:
+            return Way(name, "")
+        reasons.append(why)
+    return Way("", "; ".join(reasons))
+
+
+def broken(name):
+    """Return why one of WAYS does not work here; an empty string if it does."""
+    if name == "bubblewrap" and not shutil.which("bwrap"):
         return "bubblewrap is not installed"
     pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE}
     try:
-        trial = started({}, [sys.executable, "-I", "-c", "import numpy"], **pipes)
+        trial = started_by(name, {}, [sys.executable, "-I", "-c", "import numpy"], **pipes)
         _, said = trial.communicate(timeout=30)
     except (OSError, subprocess.TimeoutExpired) as e:
-        return f"the sandbox does not start: {e}"
-    if trial.returncode == 0:
-        return ""
-    return f"bubblewrap may not make a sandbox here: {said.decode(errors='replace').strip()[-200:]}"
+        return f"{name} does not start: {e}"
+    return f"{name} is not allowed here: {said.decode(errors='replace').strip()[-200:]}" if trial.returncode else ""
+
+
+def unavailable():
+    """Return why there is no sandbox on this machine; an empty string if there is one."""
+    return way().why
 
 
 def for_tests(skip, fail):

@@ -23,7 +23,14 @@ def parts_of(function):
     if function.__globals__.get("np", np) is not np:
         return None
     others = {name: value for name, value in used.items() if value is not function}
-    return np.frombuffer(marshal.dumps(function.__code__), np.uint8), tuple(others), tuple(others.values())
+    code = marshal.dumps(nameless(function.__code__))
+    return np.frombuffer(code, np.uint8), tuple(others), tuple(others.values())
+
+
+def nameless(code):
+    """Return a code object that does not tell where its file lies, nor do the functions inside it."""
+    constants = (nameless(inner) if isinstance(inner, types.CodeType) else inner for inner in code.co_consts)
+    return code.replace(co_filename="<test>", co_consts=tuple(constants))
 
 
 def names_in(code):
@@ -34,7 +41,7 @@ def names_in(code):
 
 def function_of(code, names, values):
     """Build the function from the parts of `parts_of`."""
-    space = {"__builtins__": __builtins__, "np": np, **dict(zip(names, values))}
+    space = {"__builtins__": __builtins__, "np": np, **dict(zip(names, values, strict=True))}
     function = types.FunctionType(marshal.loads(code.tobytes()), space)
     space.setdefault(function.__name__, function)
     return function

@@ -1,26 +1,30 @@
 """Submissions that are alike: the same answers, or nearly, whatever their names, blanks and comments.
 
-Only lines are compared that the lesson as handed out does not have, each with its variables' names taken away, in
-pairs with the next line.  Pairs that many have are what the exercise asks for, and say nothing; the rest is compared.
+Only lines are compared that the lesson as handed out does not have, each with its variables' names taken away.  Two
+lines that follow each other in one file are looked for in the other, where up to BETWEEN lines may have been put
+between them.  Lines that do nothing are left out.  Pairs that many have are what the exercise asks for, and say
+nothing.
 *Source:* Schleimer, Wilkerson, Aiken, Winnowing (SIGMOD 2003).
 """
 
 import re
 from collections import Counter, defaultdict
 from functools import lru_cache
-from itertools import pairwise
 
 from validate import modules
 
 from . import example
 
-SHARE = 0.8                  # of the rarer one's lines, in pairs, make two files nearly the same [-]
+SHARE = 0.8                  # of one file's lines, in pairs, that another one has make the two nearly the same [-]
+BETWEEN = 2                  # lines that may have been put between two others [-]
 FEWEST = 8                   # pairs of lines that are compared at least [-]: fewer are alike by chance
 COMMON = 20                  # students who have the same pair of lines: more, and it is what the exercise asks for [-]
 MOST = 5                     # others that are told of one file [-]
 LONGEST, MOST_LINES = 400, 3000      # of a file so much is compared [bytes of a line, lines]
 WORKED = "the worked answers"
 WORD = re.compile(rb"[A-Za-z_]\w*")
+TARGET = re.compile(rb"\s*([A-Za-z_]\w*)\s*(?::[^=]*)?[-+*/]?=(?!=)")                # of an assignment
+NOTHING = re.compile(rb"(pass|\.\.\.|[-+.\w]*|\"[^\"]*\"|'[^']*')$")                # a line that does nothing
 KEPT = frozenset(b"""
     and as assert break class continue def del elif else except finally for from if import in is lambda not or pass
     raise return try while with yield True False None np
@@ -54,13 +58,23 @@ def handed_out(lesson):
 def own_lines(text, lesson):
     """Fingerprints of a file's own lines: without what was handed out, comments, blanks and variables' names."""
     given, kept = handed_out(lesson), []
-    for line in text.splitlines():
-        line = line[:LONGEST]
-        if b"".join(line.split()) not in given:
-            code = b"".join(WORD.sub(_plain, line.partition(b"#")[0]).split())
+    lines = [line[:LONGEST] for line in text.splitlines()]
+    unread = never_read(lines)
+    for line in lines:
+        text, target = line.partition(b"#")[0], TARGET.match(line)
+        idle = NOTHING.match(text.strip()) or (target and target[1] in unread)
+        if not idle and b"".join(line.split()) not in given:
+            code = b"".join(WORD.sub(_plain, text).split())
             if len(code) > 3:                                          # not a bracket of its own
                 kept.append(code)
     return kept[:MOST_LINES]
+
+
+def never_read(lines):
+    """The names that are assigned to and occur nowhere else."""
+    words = Counter(word for line in lines for word in WORD.findall(line.partition(b"#")[0]))
+    targets = Counter(target[1] for line in lines if (target := TARGET.match(line)))
+    return {name for name, count in targets.items() if words[name] == count}
 
 
 def _plain(word):
@@ -77,16 +91,25 @@ def pairs_of(texts):
         yield from ((a, b, 1.0) for n, a in enumerate(group) for b in group[n + 1:n + 1 + MOST])
         if len(group) > MOST + 1:                                      # the last ones are told of the first
             yield from ((group[0], b, 1.0) for b in group[MOST + 1:])
-    having = defaultdict(list)                                       # {pair of lines: the first of each group with it}
-    for lines, group in same.items():
-        for pair in {*pairwise(lines)}:
-            having[hash(pair)].append(group[0])
-    common, counts = Counter(), Counter()
-    for students in having.values():
-        if len(students) <= COMMON:
+    yield from nearly_the_same({group[0]: lines for lines, group in same.items()})
+
+
+def nearly_the_same(texts):
+    """(student, another one, share) where one file has most of the pairs of lines of the other."""
+    near, following = defaultdict(set), defaultdict(set)              # {pair of lines: who has it}
+    for student, lines in texts.items():
+        for gap in range(1, BETWEEN + 2):
+            for pair in zip(lines, lines[gap:], strict=False):
+                near[hash(pair)].add(student)
+                if gap == 1:
+                    following[hash(pair)].add(student)
+    found, counts = Counter(), Counter()
+    for pair, students in following.items():
+        if len(near[pair]) <= COMMON:
             counts.update(students)
-            common.update((a, b) for n, a in enumerate(students) for b in students[n + 1:])
-    for (a, b), number in common.items():
-        share = number / min(counts[a], counts[b])
-        if number >= FEWEST and share >= SHARE:
+            found.update((a, b) for a in students for b in near[pair] if a != b)
+    shares = {pair: number / counts[pair[0]] for pair, number in found.items() if number >= FEWEST}
+    for a, b in {tuple(sorted(pair)) for pair in shares}:
+        share = max(shares.get((a, b), 0.0), shares.get((b, a), 0.0))
+        if share >= SHARE:
             yield a, b, min(share, 0.99)

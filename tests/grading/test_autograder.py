@@ -13,7 +13,7 @@ import pytest
 import yaml
 
 from solutions.checks import BadInput
-from tests.grading import autograder, marking, sandbox
+from tests.grading import autograder, marking
 from validate.modules import ROOT
 
 SEED = "known to nobody"
@@ -150,7 +150,7 @@ def test_a_submission_gets_a_row_for_every_test_and_gradescopes_dates(place):
     assert sum(row["max_score"] for row in rows) == sum(row[4] for row in manifest) == 20.0
     assert sum(row["score"] for row in rows) == 20.0
     assert len(rows) == len(manifest) and found["score"] == 18.0       # one day begun, at 10 %
-    assert SEED not in json.dumps(found) and ("NOT A GRADE" in found["output"]) == bool(sandbox.unavailable())
+    assert SEED not in json.dumps(found)
 
 
 def test_nothing_handed_in_is_a_zero_of_the_full_maximum(place):
@@ -169,6 +169,20 @@ def test_a_failure_of_the_grader_is_reported_without_a_score(place, broken):
     found, run = graded(place)
     assert run.returncode != 0 and set(found) == {"output"}
     assert "grader itself" in found["output"] and SEED not in found["output"]
+
+
+def test_without_a_sandbox_nothing_is_run_and_there_is_no_score(place, monkeypatch):
+    hand_in(place)
+    (place / "submission" / "integrators.py").write_text(f"open({str(place / 'canary')!r}, 'w')\n")
+    monkeypatch.setenv("WORKBOOK_SANDBOX_BY", "chroot")
+    monkeypatch.setenv("PATH", "/nowhere")
+    paths = [place / "submission", place / "results.json", "--course", place / "source" / "course.json"]
+    code = "import os; os.geteuid = lambda: 1000; from tests.grading.autograder import main; main()"
+    command = [sys.executable, "-c", code, "run", *map(str, paths)]
+    run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    found = json.loads((place / "results.json").read_text())
+    assert run.returncode == 2 and set(found) == {"output"} and "no score" in found["output"], run.stderr
+    assert not (place / "canary").exists() and SEED not in json.dumps(found)
 
 
 # ---------------------------------------------------------------------------------------------- GitHub Classroom

@@ -53,6 +53,12 @@ def test_a_choice_at_odds_with_the_lessons_is_refused(lessons):
         choice.chosen(lessons, "3.1")
 
 
+@pytest.mark.parametrize(("numbers", "words"), [
+    (range(1, 12), "1 to 11"), ([1, 2, 3, 20], "1 to 3, 20"), ([1, 3, 4], "1, 3 to 4"), ([7], "7")])
+def test_the_lessons_that_there_are_in_words(numbers, words):
+    assert choice.in_words(numbers) == words
+
+
 def test_points_that_are_set_are_shared_among_the_tests_as_before():
     every = marking.manifest(["friction"])
     rows = marking.manifest(["friction"], {"3.5": 3.0, "3.1": None})

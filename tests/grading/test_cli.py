@@ -9,7 +9,7 @@ import pytest
 from validate.processes import alone_in
 
 from . import __main__ as grade
-from . import autograder, local, release
+from . import autograder, local, release, sandbox
 
 
 def run(capsys, program, *arguments):
@@ -22,10 +22,11 @@ def run(capsys, program, *arguments):
 
 @pytest.fixture
 def handed_in(tmp_path, monkeypatch):
-    """A class of one who handed nothing in, and one whose zip is broken; graded in this process."""
+    """A class of one who handed nothing in, and one whose zip is broken; graded in this process, without a sandbox."""
     def results(jobs, todo, settings):
         return ((s.student, *local.marked(s, settings)) for s in todo)
     monkeypatch.setattr(local, "results", results)
+    monkeypatch.setattr(sandbox, "unavailable", lambda: "")            # there is no code to run
     (tmp_path / "class" / "cem").mkdir(parents=True)
     (tmp_path / "class" / "bob.zip").write_bytes(b"PK\3\4 no zip")
     return [tmp_path / "class", "--lesson", "integrators", "--out", tmp_path / "grades"]
@@ -33,7 +34,16 @@ def handed_in(tmp_path, monkeypatch):
 
 def test_a_zip_that_cannot_be_read_is_named_on_the_terminal(capsys, handed_in):
     code, said, _ = run(capsys, grade, *handed_in, "--seed", "a secret")
-    assert code == 0 and "bob: it cannot be read: BadZipFile\n" in said and "cem:" not in said
+    assert code == 0 and said.count("bob: it cannot be read: BadZipFile\n") == said.count("bob") == 1
+    assert "2 could not be read:" in said and "cem: no lesson file is in it\n" in said
+
+
+def test_without_a_sandbox_nothing_is_graded(capsys, handed_in, monkeypatch):
+    monkeypatch.setattr(sandbox, "unavailable", lambda: "bubblewrap is not installed")
+    code, said, error = run(capsys, grade, *handed_in)
+    assert code == 2 and not said and not handed_in[-1].exists()
+    assert error.startswith("grade: the sandbox is not available (bubblewrap is not installed): ")
+    assert len(error.splitlines()) == 1
 
 
 @pytest.mark.parametrize("given", ["", "  ", "\n"])

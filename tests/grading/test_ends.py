@@ -73,7 +73,7 @@ def test_a_run_that_is_ended_takes_its_children_and_its_files_along(number, run,
     said, _ = run.communicate(timeout=WITHIN)
     assert not psutil.wait_procs(begun, timeout=WITHIN)[1]
     until(lambda: not os.listdir(tmp_path / "temporary"))
-    assert run.returncode == (-9 if number == signal.SIGKILL else 130)
+    assert run.returncode == (-9 if number == signal.SIGKILL else 128 + number)
     assert number == signal.SIGKILL or "the same command goes on from there" in " ".join(said.split())
 
 

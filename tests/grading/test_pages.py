@@ -4,15 +4,19 @@ They are never called a grade when they are none.
 """
 
 import csv
+import errno
 import io
 import json
 import re
 from html.parser import HTMLParser
+from pathlib import Path
 
 import pytest
 from rich.console import Console
 
-from . import marking, pages, points, submissions
+from solutions.checks import BadInput
+
+from . import classlist, marking, pages, points
 
 LESSONS = ("falling", "bouncing")
 MANIFEST = (("falling", "1.1", "fall", "test_it_falls[plain]", 2, "down, not up"),
@@ -34,7 +38,7 @@ def found(exercise, status, says=None, kind="visible", hint=""):
 
 
 def result(
-    student, *changes, handed_in=LESSONS, printed=None, problems=(), timestamp=IN_TIME, no_grade="", watched=None
+    student, *changes, handed_in=LESSONS, printed=None, problems=(), timestamp=IN_TIME, watched=None
 ):
     """A result as marking.mark returns it: every test has passed, except for the changes."""
     changed, tests = dict(changes), []
@@ -54,7 +58,6 @@ def result(
         "seconds": 1.5,
         "watched": watched or {},
         "again": [],
-        "no_grade": no_grade,
         "digest": "",
     }
 
@@ -68,6 +71,7 @@ def passed(lesson, exercise, function, test, worth, hint):
         "test": test,
         "points": worth,
         "hint": hint,
+        "tells": False,
         "status": "passed",
         "earned": worth,
         "kind": "",
@@ -135,7 +139,7 @@ def test_the_penalty_is_a_part_of_the_maximum_and_no_more_than_was_earned(tmp_pa
 
 
 def test_a_time_in_the_class_list_overrides_that_of_the_files(tmp_path):
-    person = submissions.Person("ada", "Byron", "Ada", "ada@example.org", "2026-12-01T00:00:00")
+    person = classlist.Person("ada", "Byron", "Ada", "ada@example.org", "2026-12-01T00:00:00")
     terms = pages.Terms(DUE, 10.0)
     seen = write(tmp_path, [result("ada")], people={"ada": person}, terms=terms)
     row = rows_of(tmp_path)[0]
@@ -149,12 +153,13 @@ def test_a_time_in_the_class_list_overrides_that_of_the_files(tmp_path):
 # ---------------------------------------------------------------------------------------------- CSV
 
 def test_the_csv_has_the_columns_of_nbgrader_and_a_row_for_every_student_and_lesson(tmp_path):
-    people = {n: submissions.Person(n) for n in ("zoe", "kim")}
+    people = {n: classlist.Person(n) for n in ("zoe", "kim")}
     graded = [result("zoe"), result("ada", handed_in=("falling",))]
     seen = write(tmp_path, graded, {"max": "RuntimeError: no sandbox"}, people)
     text = (tmp_path / "grades.csv").read_bytes().decode()
     assert text.splitlines()[0] == ("assignment,duedate,timestamp,student_id,last_name,first_name,email,"
-                                    "raw_score,late_submission_penalty,score,max_score,problems")
+                                    "raw_score,late_submission_penalty,score,max_score,"
+                                    "problems,raw_score_of_tests,by_hand")
     rows = rows_of(tmp_path)
     everybody = [(n, lesson) for n in ("ada", "kim", "max", "zoe") for lesson in LESSONS]
     assert [(r["student_id"], r["assignment"]) for r in rows] == everybody
@@ -174,8 +179,8 @@ def test_the_same_class_gives_the_same_bytes_in_any_order(tmp_path):
 
 @pytest.mark.parametrize("text", ["=1+1", "+1", "-1", "@SUM(A1)", "\t=1", "\r=1", "\n=1", " =1", "＝1"])
 def test_no_cell_is_a_formula(tmp_path, text):
-    person = submissions.Person(text, text, text, text, text)
-    write(tmp_path, [result(text, timestamp=text, no_grade=text)], people={text: person})
+    person = classlist.Person(text, text, text, text, text)
+    write(tmp_path, [result(text, timestamp=text)], people={text: person})
     row = rows_of(tmp_path)[0]
     for name in ("student_id", "last_name", "first_name", "email", "timestamp", "assignment"):
         assert row[name].lstrip()[0] not in "=+-@＝" and not set(row[name]) & set("\t\r\n"), name
@@ -188,7 +193,7 @@ SPLIT = ["a;=1+1", "a|=1+1", "a,=1+1", "a\t=1+1", "a; =1+1", "a;＝1+1", "a;＋1
 @pytest.mark.parametrize("text", SPLIT)
 @pytest.mark.parametrize("separator", [";", "|", ",", "\t"])
 def test_no_cell_becomes_a_formula_where_a_spreadsheet_splits_it(tmp_path, text, separator):
-    person = submissions.Person("ada", text, text, text)
+    person = classlist.Person("ada", text, text, text)
     write(tmp_path, [result("ada", problems=[text, text])], people={"ada": person})
     row = rows_of(tmp_path)[0]
     for name in ("last_name", "first_name", "email", "problems"):
@@ -216,6 +221,13 @@ def test_gradescope_gets_every_test_of_the_manifest_even_when_it_did_not_run():
     assert first["name"] == "fall: It falls (plain)" and first["tags"] == ["falling"]
     assert first["output"] == "with other inputs\nquantity: height [m]\ngot: 1.0e-3 off\nhint: down, not up"
     assert second["output"] == "" and "not run" in third["output"]
+
+
+def test_gradescope_does_not_print_a_hint_that_tells_the_formula():
+    change = found("1.1", "not yet", {"quantity": "height [m]"})
+    asked = result("ada", (change[0], {**change[1], "tells": True}))
+    assert "hint" in pages.gradescope(result("ada", change), SETTINGS, FREE)["tests"][0]["output"]
+    assert "hint" not in pages.gradescope(asked, SETTINGS, FREE)["tests"][0]["output"]
 
 
 def test_gradescopes_score_is_after_the_late_penalty():
@@ -416,25 +428,6 @@ def test_a_cause_that_a_large_class_shares_names_the_first_students_only(tmp_pat
     assert f"s{pages.MOST_NAMED + 49:04d}" in seen.text                # in the table of students
 
 
-# ---------------------------------------------------------------------------------------------- not a grade
-
-def test_every_file_says_when_it_is_not_a_grade_and_why(tmp_path):
-    why = "bubblewrap is not installed"
-    ada = result("ada", found("1.1", "not attempted"), no_grade=why)
-    bob = result("bob", handed_in=(), no_grade=why)
-    seen = write(tmp_path, [ada, bob], people={"kim": submissions.Person("kim")})
-    theirs = [Seen(tmp_path / "students" / f"{student}.html") for student in ("ada", "bob")]
-    for text in (page.text for page in (seen, *theirs)):
-        assert "Not a grade" in text and why in text
-    assert [r["assignment"] for r in rows_of(tmp_path)] == [f"{lesson} (NOT A GRADE: {why})" for lesson in LESSONS] * 3
-    for path in (tmp_path / "gradescope").iterdir():
-        got = json.loads(path.read_text())
-        for text in (got["output"], *(test["name"] for test in got["tests"])):
-            assert "NOT A GRADE" in text and why in text
-    assert "not a grade" not in write(tmp_path / "grades", [result("ada")]).text.lower()
-    assert "GRADE" not in "".join(p.read_text() for p in (tmp_path / "grades").rglob("*.*") if p.suffix != ".html")
-
-
 # ---------------------------------------------------------------------------------------------- hostile texts
 
 def hostile(student=EVIL):
@@ -446,7 +439,6 @@ def hostile(student=EVIL):
         printed={"falling": EVIL * 10_000},
         problems=[EVIL] * 5000,
         timestamp=EVIL,
-        no_grade=EVIL,
     )
 
 
@@ -457,8 +449,8 @@ UNSEEN = re.compile(
 
 
 def test_no_text_of_a_student_becomes_markup_or_a_control_character(tmp_path):
-    person = submissions.Person(EVIL, EVIL, EVIL, EVIL)
-    absent = submissions.Person("absent", EVIL, EVIL, EVIL)
+    person = classlist.Person(EVIL, EVIL, EVIL, EVIL)
+    absent = classlist.Person("absent", EVIL, EVIL, EVIL)
     write(tmp_path, [hostile()], {f"{EVIL}2": EVIL}, {EVIL: person, "absent": absent}, pages.Terms(DUE, 5.0))
     files = list(tmp_path.rglob("*.*"))
     assert len(files) == 4
@@ -503,14 +495,34 @@ def test_plain_ids_keep_their_names_and_no_two_ids_share_one():
 def test_the_screen_shows_lessons_hardest_exercises_and_failures_as_plain_text():
     screen = Console(file=io.StringIO(), width=200)
     ada = result("ada", found("1.2", "not attempted"))
-    bob = result("bob", handed_in=("falling",), no_grade="[red]why[/red]")
+    bob = result("bob", handed_in=("falling",))
     pages.show(screen, [ada, bob], {"[bold]eve\x1b": "[/x] no sandbox"}, SETTINGS)
     text = screen.file.getvalue()
     lines = {first: rest for first, *rest in (line.split() for line in text.splitlines() if line)}
     assert lines["falling"] == ["2", "4.5", "4.5", "6"] and lines["bouncing"] == ["1", "4.0", "4.0", "4"]
-    for part in ("1.2 land (50% of its points)", r"[bold]eve\x1b", "[/x] no sandbox", "NOT A GRADE: [red]why[/red]"):
+    for part in ("1.2 land (50% of its points)", r"[bold]eve\x1b", "[/x] no sandbox"):
         assert part in text
     pages.show(screen, [], {}, SETTINGS)
+
+
+def test_no_exercise_is_the_hardest_where_all_points_are_earned():
+    screen = Console(file=io.StringIO(), width=200)
+    pages.show(screen, [result("ada")], {}, SETTINGS)
+    assert "falling" in screen.file.getvalue() and "Hardest" not in screen.file.getvalue()
+
+
+@pytest.mark.parametrize("name", ["students/ada.html", "gradescope/ada.json", "grades.csv", "index.html"])
+def test_a_full_disk_is_told_with_the_name_of_the_file(tmp_path, monkeypatch, name):
+    write = Path.write_bytes
+
+    def full(path, data):
+        if (path.parent / path.name.removeprefix(".").removesuffix(".part")) == tmp_path / name:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return write(path, data)
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    with pytest.raises(BadInput, match=rf"{name}.*No space left"):
+        pages.write(tmp_path, [result("ada")], {}, SETTINGS, {}, FREE)
 
 
 @pytest.mark.parametrize("text", [
@@ -520,8 +532,8 @@ def test_the_screen_shows_lessons_hardest_exercises_and_failures_as_plain_text()
 ])
 def test_a_class_list_may_come_from_any_spreadsheet(tmp_path, text):
     (tmp_path / "list.csv").write_text(text, encoding="utf-8-sig")
-    ada = submissions.Person("ada", "Lovelace", timestamp="2026-11-30T23:59:00")
-    assert submissions.roster(tmp_path / "list.csv") == {"ada": ada}
+    ada = classlist.Person("ada", "Lovelace", timestamp="2026-11-30T23:59:00")
+    assert classlist.roster(tmp_path / "list.csv") == {"ada": ada}
 
 
 @pytest.mark.parametrize(("content", "why"), [
@@ -533,8 +545,8 @@ def test_a_class_list_may_come_from_any_spreadsheet(tmp_path, text):
 def test_a_file_that_is_no_class_list_is_reported_in_plain_words(tmp_path, content, why):
     if content is not None:
         (tmp_path / "list.csv").write_bytes(content)
-    with pytest.raises(submissions.BadInput, match=re.escape(why)) as told:
-        submissions.roster(tmp_path / "list.csv")
+    with pytest.raises(BadInput, match=re.escape(why)) as told:
+        classlist.roster(tmp_path / "list.csv")
     assert "Errno" not in str(told.value) and "codec" not in str(told.value)
 
 

@@ -3,7 +3,6 @@
 import re
 import subprocess
 import sys
-import time
 import types
 
 import pytest
@@ -60,10 +59,8 @@ def limits_of(exercises, **changes):
 
 
 def test_a_loop_without_end_is_waited_for_once(short):
-    began = time.process_time()
     found = limits_of(["1.1", "1.2"], euler_step=endless)
     assert found == {"1.1": ["1 s", "0.25 s"], "1.2": ["passed", "passed"]}
-    assert time.process_time() - began < 3.0
 
 
 def test_after_a_loop_without_end_a_test_that_ends_passes(short):

@@ -20,7 +20,7 @@ import pytest
 from validate import loading
 
 from ..attacks import HONEST, SOLVED
-from . import box, children, local, marking, plugin, points, remote, sandbox, submissions
+from . import box, children, local, marking, meter, plugin, points, remote, sandbox, submissions
 
 pytestmark = pytest.mark.xdist_group("time")
 LIMIT = 1.0                  # of the calls of a test here [s]
@@ -112,7 +112,90 @@ def test_a_call_that_sleeps_or_loops_is_ended(body):
         place.begin(LIMIT)
         with pytest.raises(box.Lost, match="it took too long"):
             place.call("lesson:observed_order", (1.0, 1.0))
-        assert place.late and LIMIT <= place.meter.used < 3.0 * LIMIT
+        assert place.overdue and LIMIT <= place.meter.used < 3.0 * LIMIT
+
+
+TWO_ANSWERS = """
+import json, os, struct, sys, time
+def observed_order(dts, errors):
+    head, out = json.dumps(["value", 1.0, []]).encode(), sys.modules["__main__"].outgoing
+    out.write(struct.pack("<4sIQ", b"WBK1", len(head), 0) + head)
+    out.flush()
+    time.sleep(0.3)
+    return 2.0
+"""
+DEAF = """
+import json, struct, sys, time
+def observed_order(f, errors):
+    main = sys.modules["__main__"]
+    head = json.dumps(["call", "test:0", [{"a": ["f8", [100000]]}, 0.5]]).encode()
+    for _ in range(50):
+        main.outgoing.write(struct.pack("<4sIQ", b"WBK1", len(head), 800000) + head + bytes(800000))
+        main.outgoing.flush()
+    time.sleep(1e5)
+"""
+
+
+@pytest.mark.long
+def test_a_worker_that_does_not_read_the_answers_uses_up_its_own_time():
+    with opened(DEAF) as place:
+        place.begin(LIMIT)
+        began = time.monotonic()
+        with pytest.raises(box.Lost, match="it took too long"):
+            place.call("lesson:observed_order", (lambda x, y: x + place.depth, 1.0))
+        assert place.overdue and place.meter.used >= LIMIT and time.monotonic() - began < 0.5 * box.CROWDED * LIMIT
+
+
+@pytest.mark.long
+def test_a_worker_that_waits_for_the_disk_uses_up_its_own_time(monkeypatch):
+    with opened("\nimport time\ndef observed_order(dts, errors):\n    time.sleep(60.0)\n") as place:
+        read = meter.Path.read_text
+        monkeypatch.setattr(meter.Path, "read_text", lambda path: read(path).replace(") S ", ") D "))
+        place.begin(LIMIT)
+        with pytest.raises(box.Lost, match="it took too long"):
+            place.call("lesson:observed_order", (1.0, 1.0))
+        assert LIMIT <= place.meter.used < 3.0 * LIMIT
+
+
+@pytest.mark.long
+def test_nothing_extends_the_time_of_a_lesson(monkeypatch):
+    """Here the meter sees nothing of what the worker does."""
+    monkeypatch.setattr(box, "CROWDED", 2.0)
+    monkeypatch.setattr(meter.Meter, "look", lambda self, owes: setattr(self, "looked", time.monotonic()))
+    sleeper = "\nimport time\ndef observed_order(*_):\n    time.sleep(1e5)\n"
+    place = remote.box_of("integrators", (HONEST + sleeper).encode(), 2.0)
+    began = time.monotonic()
+    try:
+        place.open()
+        for word in ("it took too long", "the time for the whole submission is used up"):
+            place.begin(LIMIT)
+            with pytest.raises(box.Lost, match=word):
+                place.call("lesson:observed_order", (1.0, 1.0))
+        assert place.late and time.monotonic() - began < 2.0 * 2.0 + 2.0
+    finally:
+        place.close()
+
+
+@pytest.mark.long
+def test_a_second_try_is_for_times_that_depend_on_other_processes():
+    with opened("\ndef observed_order(dts, errors):\n    while True:\n        pass\n") as place, crowd():
+        place.begin(0.3)
+        with pytest.raises(box.Lost, match="it took too long"):
+            place.call("lesson:observed_order", (1.0, 1.0))
+        assert place.late
+    with opened("") as place:
+        place.began, place.meter.used = (time.monotonic() - 1.0, 0.0), 0.9
+        place.too_long()
+        assert not place.late
+
+
+@pytest.mark.long
+def test_a_program_that_forges_answers_uses_up_its_time():
+    with opened(TWO_ANSWERS) as place:
+        for _ in range(3):
+            place.begin(LIMIT)
+            assert place.call("lesson:observed_order", (1.0, 1.0)) == 1.0
+        assert place.meter.used >= 2.0 * box.BREACH
 
 
 @pytest.mark.long
@@ -122,7 +205,7 @@ def test_a_loop_without_end_is_waited_for_once(monkeypatch):
     with opened("\ndef euler_step(*arguments):\n    while True:\n        pass\n") as place:
         before, subject = place.meter.used, remote.lesson_in(place, "integrators")
         outcomes = points.grade("integrators", subject, lambda exercise, test: exercise in ("1.1", "1.10"))
-        assert LIMIT + 0.2 <= place.meter.used - before < 2.0 * LIMIT and place.late
+        assert LIMIT + 0.2 <= place.meter.used - before < 2.0 * LIMIT
         assert [o.got for o in outcomes if o.exercise == "1.1"] == ["Lost: it took too long"] * 2
         assert not place.overdue                                       # 1.10 has come after it
 
@@ -137,7 +220,7 @@ def test_many_short_calls_count_together():
         place.begin(LIMIT)
         with pytest.raises(box.Lost, match="it took too long"):
             call_often()
-        assert place.late and LIMIT <= place.meter.used < 2.0 * LIMIT
+        assert place.overdue and LIMIT <= place.meter.used < 2.0 * LIMIT
 
 
 @pytest.mark.long
@@ -158,7 +241,7 @@ def test_a_callback_of_the_grader_counts_as_time_of_the_submission():
         place.begin(LIMIT)
         with pytest.raises(box.Lost, match="it took too long"):
             place.call("lesson:observed_order", (slow, 1.0))
-        assert place.late and place.meter.used >= 0.9 * LIMIT            # two clocks of one process, read in turn
+        assert place.overdue and place.meter.used >= 0.9 * LIMIT            # two clocks of one process, read in turn
 
 
 @pytest.mark.long
@@ -283,15 +366,6 @@ def test_what_waits_to_be_read_is_given_up_with_its_worker():
     assert not thread.is_alive()
 
 
-TWO_ANSWERS = """
-import json, os, struct, sys, time
-def observed_order(dts, errors):
-    head, out = json.dumps(["value", 1.0, []]).encode(), sys.modules["__main__"].outgoing
-    out.write(struct.pack("<4sIQ", b"WBK1", len(head), 0) + head)
-    out.flush()
-    time.sleep(0.3)
-    return 2.0
-"""
 
 
 @pytest.mark.long

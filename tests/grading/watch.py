@@ -23,6 +23,7 @@ SENTENCES = {
     "inside": "it looked inside the interpreter",
     "limit": "it asked to change its limits",
 }
+NOTES = ("process", "signal", "network", "write", "read", "native", "inside", "limit")      # by the worker
 NEEDED = set("""
     __future__ abc cmath collections dataclasses enum functools itertools lessons math numbers numpy operator
     solutions typing

@@ -191,7 +191,8 @@ class Peer:
         before = [array.copy() for array in arrays_in(arguments)]
         try:
             result = self.resolve(name)(*arguments)
-            changed = [(n, now) for n, (old, now) in enumerate(zip(before, arrays_in(arguments))) if not same(old, now)]
+            pairs = zip(before, arrays_in(arguments), strict=True)
+            changed = [(n, now) for n, (old, now) in enumerate(pairs) if not same(old, now)]
             answer = "value", result, changed
         except self.fatal:
             raise

@@ -1,28 +1,27 @@
 """Runs inside the sandbox, beside the student's code.  The parent trusts nothing that comes from here.
 
 Usage: worker.py CONFIG, a JSON object: limits; lesson; student, the folder of the student's file; given, the folder
-of the lessons as handed out; wire, the folder of wire.py; exercises, the functions that the file must answer;
-earlier, {lesson: its exercises} of the lessons that this one builds on.  Frames go over standard input and output;
-what the student prints goes to standard error.
+of the lessons as handed out; wire, the folder of wire.py; earlier, {lesson: its exercises} of the lessons that this
+one builds on; notes, the descriptor of the memory for what the instructor may look into, and noted, the kinds of it.
+Frames go over standard input and output; what the student prints goes to standard error.
 """
 
 import collections
 import contextlib
 import importlib.util
 import json
+import mmap
 import os
+import resource
 import sys
 import traceback
 import types
-from functools import lru_cache
 
 config = json.loads(sys.argv[1])
 LESSON = f"lessons.{config['lesson']}"
-with contextlib.suppress(ImportError):                                 # there is no resource module on Windows
-    import resource
-    for limit, value in config["limits"].items():  # hard, and set before any code of the student's runs
-        with contextlib.suppress(ValueError, OSError, AttributeError):
-            resource.setrlimit(getattr(resource, f"RLIMIT_{limit}"), (value, value))
+for limit, value in config["limits"].items():                          # hard, and set before any code of the student's
+    with contextlib.suppress(ValueError, OSError):
+        resource.setrlimit(getattr(resource, f"RLIMIT_{limit}"), (value, value))
 
 sys.path.insert(0, config["wire"])
 import numpy  # noqa: F401         before the student's file, or it would count against the time of the first test
@@ -93,21 +92,6 @@ def students(name):
     return call
 
 
-@lru_cache(maxsize=1)
-def given():
-    """The lesson as handed out and its companion, the exercises those of the student's file."""
-    name = config["lesson"]
-    spec = importlib.util.spec_from_file_location("handout", os.path.join(config["given"], f"{name}.py"))
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    vars(module).update({exercise: students(exercise) for exercise in config["exercises"]})
-    if os.path.isfile(os.path.join(config["given"], "support", f"{name}.py")):
-        sys.modules[f"solutions.{name}"] = module                          # what the companion imports from
-        companion = importlib.import_module(f"solutions.support.{name}")
-        vars(module).update({**vars(companion), **vars(module)})
-    return module
-
-
 def define(name, *parts):
     """A function of the tests that runs here."""
     own[name] = shipping.function_of(*parts)
@@ -117,8 +101,6 @@ def define(name, *parts):
 def resolve(name):
     """A function by the name that it has on the wire."""
     kind, _, rest = name.partition(":")
-    if kind == "given":
-        return getattr(given(), rest)
     if name == "echo":
         return lambda text: text
     if name == "import":
@@ -185,17 +167,29 @@ NOTED = {event: kind for kind, events in {
 FAMILIES = {"socket.": "network", "ctypes.": "native"}
 
 
-def watcher():
-    """An audit hook that notes what a lesson has no need of, each kind once, as "\\0note KIND\\n" among what is
-    printed.
+def shared(descriptor):
+    """Map a page of memory, and close its descriptor and the copy of it that mmap keeps."""
+    copy = os.dup(descriptor)
+    os.close(copy)                                                     # the next copy gets the same number
+    page = mmap.mmap(descriptor, mmap.PAGESIZE)
+    assert os.path.sameopenfile(copy, descriptor)
+    os.close(copy)
+    os.close(descriptor)
+    return page
 
-    The parent takes it out again.  All that it uses is its own: the student's code may change everything else here.
+
+def watcher():
+    """An audit hook that notes what a lesson has no need of, in memory that the parent reads.
+
+    No descriptor leads to this memory, so that none can be turned to another file.  All that the hook uses is its own:
+    the student's code may change everything else here.
     """
-    descriptor, write, told, kinds, families = os.dup(2), os.write, set(), dict(NOTED), dict(FAMILIES)
+    board = shared(config["notes"])
+    place, kinds, families = {kind: k for k, kind in enumerate(config["noted"])}, dict(NOTED), dict(FAMILIES)
     places = {sys.prefix, sys.base_prefix, os.path.realpath(sys.base_prefix), os.path.dirname(os.__file__), os.devnull}
     ours = (*places, config["given"], config["student"], config["wire"])
     writing = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
-    kind_of, text, failed = type, str, Exception
+    kind_of, text = type, str
 
     def hook(event, arguments):
         kind = kinds.get(event) or families.get(event[:7])
@@ -207,12 +201,8 @@ def watcher():
                 kind = "write"
             elif path.startswith(ours):
                 return
-        if kind and kind not in told:
-            told.add(kind)
-            try:
-                write(descriptor, b"\0note " + kind.encode() + b"\n")
-            except failed:  # standard error is closed: the student's program goes on all the same
-                pass
+        if kind:
+            board[place[kind]] = 1
     return hook
 
 

@@ -15,7 +15,7 @@ exercise = pytest.mark.exercise
 ROUND_OFF = 1e-12
 # Error of brute force over the size: 1e-13 at a thousand sizes from the origin, over angles of 0.01 rad, times ten.
 KNOWN = 1e-10
-EDGE_PREFERENCE = 1e-9          # a pair of edges must separate by this much more [m] than any face, as the lesson says
+EDGE_PREFERENCE = 1e-9          # of the longest half edge [-]: a pair of edges must separate by so much more
 
 
 # Sizes of medium, small and large bodies [m], the ordinary one first: a student reads of the first case that fails.
@@ -495,7 +495,8 @@ def test_a_triangle_is_flat_by_its_area_over_its_longest_edge_squared(lesson, dr
             corners = [corners[k] for k in list(itertools.permutations(range(3)))[turn]]
             p = size * np.array([draw(0.1, 0.4), 0.0, draw(0.5, 2.0)])
             if share < 1.0:
-                raises("a triangle flatter than DEGENERATE_AREA", BadInput, lesson.closest_on_triangle, p, *corners)
+                raises("a triangle flatter than DEGENERATE_AREA", BadInput, lesson.closest_on_triangle, p, *corners,
+                       naming=[0.5 * size * size * high])
             else:
                 q = np.asarray(lesson.closest_on_triangle(p, *corners))
                 close("nearest point of a needle, over its size [-]", q / size, [p[0] / size, 0.0, 0.0], 1e-8,
@@ -1051,48 +1052,44 @@ def pairs_of_boxes(draw, lesson, size, place):
         yield a._replace(x=place + 30.0 * gaps_of_axes(a, b)[1][k]), b
 
 
-def between_edges(draw, lesson, lead):
-    """Boxes 30 m apart, and the better two of their axes i < j: both belong to edges, and j leads by `lead` [m].
+def longest_half_edge(a, b):
+    """The longest half edge [m] of two boxes."""
+    return max(a.half.max(), b.half.max())
+
+
+def between_axes(draw, lesson, share):
+    """Boxes 30 m apart, and the better two of their axes i < j: j belongs to edges and leads by this share of what it
+    must lead by.
 
     Along an axis the gap is 30 m |direction · axis| − widths.  The direction is found between axis i and axis j.
     """
-    for _ in range(4):
-        a, b = (lesson.Box(np.zeros(3), rotation(draw), draw(0.3, 1.0, 3)) for _ in range(2))
+    for k in range(4):                                                   # a is the longer one, then b
+        a, b = (lesson.Box(np.zeros(3), rotation(draw), draw(0.3, 0.6, 3) * twice) for twice in (2 - k % 2, 1 + k % 2))
         widths, candidates = gaps_of_axes(a, b)                          # gaps of boxes in one place: minus both widths
-        for i, j in itertools.combinations(range(6, 15), 2):
-            other = candidates[j] * np.sign(candidates[i] @ candidates[j])
+        lead = share * EDGE_PREFERENCE * longest_half_edge(a, b)
+        for i, j in ((i, j) for i, j in itertools.combinations(range(15), 2) if j >= 6):
+            other = candidates[j] * np.copysign(1.0, candidates[i] @ candidates[j])
             low, high = 0.0, 1.0
             for _ in range(60):
-                share = 0.5 * (low + high)
-                direction = (1.0 - share) * candidates[i] + share * other
+                middle = 0.5 * (low + high)
+                direction = (1.0 - middle) * candidates[i] + middle * other
                 direction /= np.linalg.norm(direction)
                 gaps = 30.0 * np.abs(candidates @ direction) + widths
-                low, high = (share, high) if gaps[j] - gaps[i] < lead else (low, share)
+                low, high = (middle, high) if gaps[j] - gaps[i] < lead else (low, middle)
             if max(np.delete(gaps, (i, j))) < gaps[i] - 1e-6 and abs(gaps[j] - gaps[i] - lead) < 1e-12:
                 yield a._replace(x=30.0 * direction), b, i, j
 
 
 @exercise("6.14", points=0.25,
-          hint="two edges must win by EDGE_PREFERENCE [m], over the best face and over edges that won before")
-def test_two_edges_win_only_by_a_nanometre(lesson, draw):
-    """Boxes of a few nanometres: each advantage is about as large as EDGE_PREFERENCE."""
-    for size in 10.0 ** draw(-9.5, -7.0, 60):
-        a = lesson.Box(size * draw(0.5, 3.0) * axes(draw, 3)[0], rotation(draw), size * draw(0.3, 1.0, 3))
-        b = lesson.Box(np.zeros(3), rotation(draw) @ turned(0, draw(0.0, 3.0)), size * draw(0.3, 1.0, 3))
-        gaps, greatest, number, unclear = gaps_of_axes(a, b)[0], -np.inf, 0, False
-        for k, gap in enumerate(gaps):
-            ahead = gap - greatest - (EDGE_PREFERENCE if k >= 6 else 0.0)
-            unclear = unclear or abs(ahead) < 1e-6 * size                # round-off could decide
-            if ahead > 0.0:
-                greatest, number = gap, k
-        if not unclear:
-            got = lesson.box_separation(a, b)
-            close("number of the separating axis", got[2], number, 0.0, given=f"{a}, {b}, gaps {gaps}")
-            close("gap over the size [-]", got[0] / size, greatest / size, KNOWN, given=f"{a}, {b}")
-    for share in (0.5, 2.0):
-        for a, b, i, j in between_edges(draw, lesson, share * EDGE_PREFERENCE):
-            close("number of the separating axis, where a later pair of edges leads by about EDGE_PREFERENCE",
-                  lesson.box_separation(a, b)[2], i if share < 1.0 else j, 0.0, given=f"{a}, {b}")
+          hint="two edges must win by EDGE_PREFERENCE times the longest half edge, over faces and over earlier edges")
+def test_two_edges_win_only_by_a_billionth_of_the_size_of_the_boxes(lesson, draw):
+    """The lead differs from what is required by 0.1 EDGE_PREFERENCE; round-off at 30 sizes is 1e-5 of that."""
+    for share in (0.9, 1.1):
+        for a, b, i, j in between_axes(draw, lesson, share):
+            for size in SIZES:
+                at_size = [lesson.Box(size * box.x, box.R, size * box.half) for box in (a, b)]
+                close("number of the separating axis, where a later pair of edges leads by about EDGE_PREFERENCE",
+                      lesson.box_separation(*at_size)[2], i if share < 1.0 else j, 0.0, given=f"{at_size}")
 
 
 @exercise("6.14", points=0.25,
@@ -1108,13 +1105,14 @@ def test_boxes_turned_parallel_nested_and_far_apart_are_separated_by_the_best_of
             gaps, candidates = gaps_of_axes(a, b)
             given = f"{a}, {b}"
             known = KNOWN * (size + np.abs(a.x - b.x).max())
+            lead = EDGE_PREFERENCE * longest_half_edge(a, b)
             close("error of the greatest gap over its uncertainty [-]",
-                  (gap - max(gaps[:6].max(), gaps[6:].max())) / max(known, EDGE_PREFERENCE), 0.0, 1.0 + KNOWN, given)
+                  (gap - max(gaps[:6].max(), gaps[6:].max())) / max(known, lead), 0.0, 1.0 + KNOWN, given)
             between("gap minus the best gap of the faces [m]", gap - gaps[:6].max(), -known, np.inf, given)
             n, k = numbers("n", n, (3,), given), int(k)
             between("gap of the returned axis, minus the greatest [m]", gaps[k] - gap, -known, known, given)
             between("gain over all faces, if the returned axis belongs to two edges [m]",
-                    gaps[k] - gaps[:6].max() if k >= 6 else 1.0, EDGE_PREFERENCE - known, np.inf, given)
+                    gaps[k] - gaps[:6].max() if k >= 6 else size, lead - known, np.inf, given)
             close("n · returned axis: parallel, with either sign [-]", np.abs(n @ candidates[k]), 1.0, KNOWN, given)
             close("size of n [-]", n @ n, 1.0, KNOWN, given)
             between("n · r: from b to a [m]", n @ (a.x - b.x), -known, np.inf, given)
@@ -1122,9 +1120,9 @@ def test_boxes_turned_parallel_nested_and_far_apart_are_separated_by_the_best_of
             hull = facets(differences(p, q) / size)[1].max() * size
             if hull <= 0.0:
                 close("depth of overlapping boxes, minus that of the hull of all differences, over its uncertainty [-]",
-                      (gap - hull) / max(known, EDGE_PREFERENCE), 0.0, 1.0 + KNOWN, given)
+                      (gap - hull) / max(known, lead), 0.0, 1.0 + KNOWN, given)
             else:
-                low = hull - max(known, EDGE_PREFERENCE)
+                low = hull - max(known, lead)
                 between("gap of separate boxes [m]", gap, low, distance(p, q) + known, given)
 
 
@@ -1275,7 +1273,7 @@ def test_a_position_inside_an_obstacle_is_refused(lesson, draw):
 
 
 @exercise("6.17", points=0.5, hint="½ a τ² = radius − |y|, away from the side of the centre")
-def test_the_steering_acceleration_just_clears_the_obstacle(lesson, draw):
+def test_the_steered_body_is_abreast_of_the_centre_at_the_radius_and_was_nearer_before(lesson, draw):
     for side in (1.0, -1.0):
         rows = axes(draw, 2)
         x, speed, radius = draw(-3.0, 3.0, 2), draw(0.5, 3.0), draw(0.5, 2.0)
@@ -1288,6 +1286,18 @@ def test_the_steering_acceleration_just_clears_the_obstacle(lesson, draw):
         passed = x + tau * v + 0.5 * tau**2 * a
         close("position relative to the centre when passing it [m]", passed - centre,
               -np.sign(offset) * radius * rows[1], 1e-11, given)
+        # The square of the distance at the time t of the path is least where its derivative, a cubic in t, is zero.
+        size = 2.0 * (radius - abs(offset)) / tau**2
+        cubic = np.poly([tau]) * speed**2, np.polymul([0.5 * size, 0.0, abs(offset)], [size, 0.0])
+        roots = np.roots(np.polyadd(*cubic))
+        least = min(np.hypot(speed * (t - tau), abs(offset) + 0.5 * size * t * t)
+                    for t in roots[abs(roots.imag) < 1e-9].real if 0.0 < t < tau)
+        t = np.linspace(0.0, tau, 20_001)[:, None]
+        nearest = np.linalg.norm(x + t * v + 0.5 * t * t * a - centre, axis=1).min()
+        close("closest approach to the centre on the way, over the radius [-]", nearest / radius, least / radius, 1e-7,
+              given)
+        between("the same: below 1, and no less than the speed before over the speed afterwards [-]", nearest / radius,
+                1.0 / np.hypot(1.0, size * tau / speed), 1.0, given)
 
 
 @exercise("6.17", points=0.5,

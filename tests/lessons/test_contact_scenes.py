@@ -34,7 +34,7 @@ def edge(stands, low, high):
 
 def at_rest(lesson, x, inv_mass, inv_inertia, pairs, mu, load=None):
     """Whether these bodies stay where they are; pairs (a, b, point, normal); the default load is gravity."""
-    c = contacts_of(lesson, *map(list, zip(*pairs)))
+    c = contacts_of(lesson, *map(list, zip(*pairs, strict=True)))
     weight = np.zeros((len(x), 3))
     weight[inv_mass > 0.0, 1] = -G / inv_mass[inv_mass > 0.0]
     _, a = lesson.contact_forces(x, inv_mass, inv_inertia, c, weight if load is None else load, np.array(mu, float))
@@ -186,7 +186,7 @@ def run(lesson, state, pile, seconds, shape="box", dt=DT):
 def carried(state, pile, n, dt=DT):
     """Vertical force [N] between each body and what is under it, of a stack whose bodies are numbered from below."""
     force = np.zeros(n)
-    for a, b, J in zip(state.contacts.a, state.contacts.b, state.J):
+    for a, b, J in zip(state.contacts.a, state.contacts.b, state.J, strict=True):
         force[0 if b >= n else max(a, b)] += abs(J[-1]) * pile.substeps / dt
     return force
 
@@ -272,7 +272,7 @@ def test_a_pile_of_two_hundred_comes_to_rest_and_balances_its_weight(fast, d, sh
     state, pile, end = settled(fast, np.random.default_rng(1), d, shape)
     n, h = len(pile.half), DT / pile.substeps
     force = np.zeros(d)
-    for _a, b, J in zip(end.contacts.a, end.contacts.b, end.J):
+    for _a, b, J in zip(end.contacts.a, end.contacts.b, end.J, strict=True):
         force += J / h if b >= n else 0.0
     weight = G * np.sum(1.0 / pile.inv_mass[:n])
     assert np.abs(force[-1] / weight - 1.0) < 0.01 and np.max(np.abs(force[:-1])) < 0.02 * weight

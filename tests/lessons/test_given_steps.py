@@ -1,10 +1,12 @@
 """Steps that are given in the lessons: their orders, and what they conserve."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
 from solutions.checks import BadInput, Diverged
-from solutions.support.trajectories import particle_trajectory, rigid_body_trajectory
+from solutions.support import networks
 from validate.modules import bind
 from validate.reference.integrators import Planet, kepler_position, perihelion
 
@@ -207,6 +209,53 @@ def test_a_rope_converges_to_rattle_with_its_order_and_keeps_links_and_energy(st
     assert abs(energy(x_end, v_end, rope) - energy(x, v, rope)) < 2e-3 * abs(energy(x, v, rope))
 
 
+def light_bead(ratio):
+    """(x, network, ω): a straight tilted rope, 1 kg at its end and a bead of 1/ratio kg in its middle, links of 0.5 m.
+
+    The tension of both links is near m g, so the bead swings across the rope with ω² = 2 (m g/l) ratio/m.
+    """
+    x = np.array([[0.0, 0.0], [0.15, -0.4770], [0.30, -0.9540]])
+    network = pbd.make_constraint_network(x, [1.0, 1.0 / ratio, 1.0], [0], [(0, 1), (1, 2)], 0.0, 1.0, (0.0, -9.81), 1)
+    return x, network, np.sqrt(2.0 * 9.81 / network.rest[0] * ratio)
+
+
+def verlet_is_stable(shares, z):
+    """Whether steps of z times these shares are stable for a = −x: |trace| of the product of their matrices ≤ 2."""
+    product = np.eye(2)
+    for share in shares:
+        h = share * z
+        product = np.array([[1.0 - 0.5 * h * h, h], [-h + 0.25 * h**3, 1.0 - 0.5 * h * h]]) @ product
+    return abs(np.trace(product)) <= 2.0
+
+
+def test_the_stability_bounds_of_taut_ropes_are_those_of_verlet_and_of_suzuki():
+    s = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
+    for shares, bound in (([1.0], networks.VERLET_STABLE), ([s, s, 1.0 - 4.0 * s, s, s], networks.SUZUKI_STABLE)):
+        assert verlet_is_stable(shares, bound * (1.0 - 1e-9)) and not verlet_is_stable(shares, bound * (1.0 + 1e-9))
+        assert all(verlet_is_stable(shares, z) for z in np.linspace(0.01, 0.999, 200) * bound)
+
+
+@pytest.mark.parametrize("ratio", [1e3, 1e6, 1e8])
+@pytest.mark.parametrize(("step", "bound"), [(pbd.rattle_step, 2.0), (pbd.rope_step, 2.0),
+                                             (pbd.composed_rope_step, 2.72097)])
+def test_a_rope_with_a_light_bead_keeps_its_links_up_to_the_bound_and_raises_beyond(step, bound, ratio):
+    """The rope swings, so the tension is m g only within 10 %: at 0.9 of the bound all is well, at 1.1 it is not."""
+    x, network, omega = light_bead(ratio)
+    run = partial(integrators.advance, step, pbd.network_gravity, 0.0, x, 0.0 * x)
+    x_end, v_end = run(0.9 * bound / omega, 3000, network)
+    assert np.max(np.abs(np.linalg.norm(np.diff(x_end, axis=0), axis=1) / network.rest - 1.0)) < 1e-6
+    gained = 0.5 * v_end[2] @ v_end[2] + 9.81 * (x_end[2, 1] - x[2, 1])
+    assert abs(gained) < 1e-5 * 9.81
+    dt = 1.1 * bound / omega
+    with pytest.raises(Diverged) as raised:
+        run(dt, 3000, network)
+    if step is not pbd.rattle_step:                     # which says that its projection did not converge
+        said = str(raised.value)
+        named, largest, mass_ratio = map(float, said.split("= (")[1].split(")")[0].split(","))
+        assert abs(named / dt - 1.0) < 1e-9 and abs(mass_ratio / ratio - 1.0) < 1e-9, said
+        assert 0.9 < largest * omega / bound < 1.1, said
+
+
 def test_what_is_not_a_rope_is_refused():
     x = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]])
     for pairs in ([(0, 2), (1, 2)], [(1, 2), (0, 1)], [(1, 0), (1, 2)]):
@@ -231,23 +280,24 @@ BODY = rotation.make_rigid_body(2.0, (1.0, 1.5, 2.0))
 UPRIGHT, SPIN = np.array([1.0, 0.0, 0.0, 0.0]), np.array([0.3, 0.2, 0.1])
 GRAIN = friction.ParticleOnPlane(1.0, 0.3, 0.5, np.array([0.0, -9.81]), np.zeros(2), np.array([0.0, 1.0]))
 FALL = friction.contact_step, blown, friction.particle_plane_gap
-LOOPS = {                         # a history, the loop over steps that it follows, and the state at the start
+HISTORIES = {                     # a history, the loop over steps that it follows, and the state at the start
     "orbit": (lambda *now: integrators.trajectory(integrators.verlet_step, blown, *now, GRAIN),
               lambda *now: integrators.advance(integrators.verlet_step, blown, *now, GRAIN),
               (np.zeros(2), np.ones(2))),
     "rotation": (lambda *now: rotation.rotation_trajectory(rotation.splitting_step, whirled, *now, BODY),
                  lambda *now: rotation.advance_rotation(rotation.splitting_step, whirled, *now, BODY), (UPRIGHT, SPIN)),
-    "rigid body": (lambda *now: rigid_body_trajectory(rotation.rigid_body_step, pushed, *now, BODY),
-                   lambda *now: rotation.advance_rigid_body(rotation.rigid_body_step, pushed, *now, BODY),
+}
+LOOPS = {
+    **{name: (loop, start) for name, (_, loop, start) in HISTORIES.items()},
+    "rigid body": (lambda *now: rotation.advance_rigid_body(rotation.rigid_body_step, pushed, *now, BODY),
                    (np.zeros(3), UPRIGHT, np.ones(3), SPIN)),
-    "particle": (lambda *now: particle_trajectory(*FALL, *now, GRAIN),
-                 lambda *now: friction.advance_particle(*FALL, *now, GRAIN), (np.array([0.0, 0.1]), np.ones(2))),
+    "particle": (lambda *now: friction.advance_particle(*FALL, *now, GRAIN), (np.array([0.0, 0.1]), np.ones(2))),
 }
 
 
-@pytest.mark.parametrize("name", LOOPS)
+@pytest.mark.parametrize("name", HISTORIES)
 def test_a_history_has_the_times_of_its_steps_and_the_states_of_runs_that_end_there(name):
-    history, loop, start = LOOPS[name]
+    history, loop, start = HISTORIES[name]
     ts, *parts = history(0.7, *start, 0.05, 4)
     assert np.allclose(ts, 0.7 + 0.05 * np.arange(5), rtol=0.0, atol=1e-15)
     for steps in range(5):
@@ -258,7 +308,7 @@ def test_a_history_has_the_times_of_its_steps_and_the_states_of_runs_that_end_th
 @pytest.mark.parametrize("name", LOOPS)
 def test_a_loop_takes_each_step_at_its_own_time(name):
     """Two steps at once are one step, and then one that begins later."""
-    _, loop, start = LOOPS[name]
+    loop, start = LOOPS[name]
     once = loop(0.7, *start, 0.05, 1)
     for one, two in zip(loop(0.75, *once, 0.05, 1), loop(0.7, *start, 0.05, 2), strict=True):
         assert np.allclose(one, two, rtol=0.0, atol=1e-13)

@@ -484,14 +484,13 @@ def test_gap_and_multiplier_are_never_below_zero_and_one_of_them_is_zero(lesson,
         close("multiplier times gap", lam * after, 0.0, 1e-9 * size**2, given=given)             # λ is below 1,000 here
     close("multiplier of a resting contact [N s]", lesson.gap_multiplier(0.0, -1.0, 2.0, 0.1), 0.5, ROUND_OFF)
     close("multiplier of a closed gap that opens [N s]", lesson.gap_multiplier(0.0, draw(0.5, 2.0), 2.0, 0.1), 0.0, 0.0)
-    for u_n in (-draw(2.0, 5.0), draw(0.5, 2.0)):                        # the gap closes, or opens
-        raises(f"two immovable bodies, with u_n = {u_n:.4g} m/s", BadInput,
-               lesson.gap_multiplier, 0.1, u_n, 0.0, 0.1)
+    for u_n, gap in ((-draw(2.0, 5.0), "closes"), (draw(0.5, 2.0), "opens")):
+        raises(f"two immovable bodies whose gap {gap}", BadInput, lesson.gap_multiplier, 0.1, u_n, 0.0, 0.1)
         for k in (-draw(0.5, 2.0), np.inf, np.nan):
-            raises(f"an inverse mass that is not positive and finite, with u_n = {u_n:.4g} m/s", BadInput,
+            raises(f"an inverse mass that is not positive and finite, where the gap {gap}", BadInput,
                    lesson.gap_multiplier, 0.1, u_n, k, 0.1)
         for dt in (0.0, -0.1, np.inf, np.nan):
-            raises(f"a step of {dt} s, with u_n = {u_n:.4g} m/s", BadInput, lesson.gap_multiplier, 0.1, u_n, 1.0, dt)
+            raises(f"a step of {dt} s, where the gap {gap}", BadInput, lesson.gap_multiplier, 0.1, u_n, 1.0, dt)
 
 
 def height(phi, v_n, a_n):
@@ -866,7 +865,7 @@ def together(body, r, n, e, rough):
     M = np.zeros((6, 6))
     M[:3, :3], M[3:, 3:] = body.inv_mass * np.eye(3), body.inv_inertia
     rows, wanted = [], []
-    for r_i, n_i in zip(r, n):
+    for r_i, n_i in zip(r, n, strict=True):
         G = np.hstack((np.eye(3), np.cross(np.eye(3), r_i).T))           # u = v + ω × r
         u = G @ np.concatenate((body.v, body.omega))
         D = np.eye(3) if rough else n_i[None]
@@ -986,7 +985,7 @@ def test_the_order_of_the_points_does_not_matter_and_sliding_points_slide(lesson
 
 @exercise("7.17", points=0.25,
           hint="compare with largest_speed; the residual is that of the last sweep; "
-               "if the sweeps do not settle, return most_dissipative_impact")
+               "if the sweeps do not settle, return settle_impacts")
 def test_the_residual_is_small_exactly_if_the_sweeps_can_settle(lesson, draw):
     """A rolling ball settles at once. A body between two walls can rebound from neither: only v · n = 0 is possible."""
     n = unit(draw, 3)
@@ -1004,13 +1003,13 @@ def test_the_residual_is_small_exactly_if_the_sweeps_can_settle(lesson, draw):
     body = body._replace(v=v + (comes - draw(0.5, 2.0)) * n)
     comes = -(n @ (body.v + np.cross(body.omega, arms[0])))
     expected = together(body, arms, walls, 0.0, True)
-    for order in ([0, 1], [1, 0]):
-        got, residual = lesson.solve_impacts(body, arms[order], walls[order], e, draw(0.3, 0.9))
-        given = f"a body between two walls, r = {arms[order].tolist()}, n = {walls[order].tolist()}, {body}"
-        close("velocity between two walls with friction [m/s]", got.v, expected[:3], 1e-7, given)
-        close("angular velocity between two walls [rad/s]", got.omega, expected[3:], 1e-6, given)
-        # At rest, the law would still let the first point rebound with e times its speed along n.
-        close("residual where the sweeps cannot settle [m/s]", residual, e * comes * np.abs(n).max(), 1e-6, given)
+    order = [0, 1] if draw(0.0, 1.0) < 0.5 else [1, 0]                 # not both: sweeps that do not settle are slow
+    got, residual = lesson.solve_impacts(body, arms[order], walls[order], e, draw(0.3, 0.9))
+    given = f"a body between two walls, r = {arms[order].tolist()}, n = {walls[order].tolist()}, {body}"
+    close("velocity between two walls with friction [m/s]", got.v, expected[:3], 1e-7, given)
+    close("angular velocity between two walls [rad/s]", got.omega, expected[3:], 1e-6, given)
+    # At rest, the law would still let the first point rebound with e times its speed along n.
+    close("residual where the sweeps cannot settle [m/s]", residual, e * comes * np.abs(n).max(), 1e-6, given)
     # Without friction, and with the walls exactly opposite, only n · v changes. The body stops along n.
     got, residual = lesson.solve_impacts(body, radius * np.stack((-n, n)), walls, e, 0.0)
     given = f"a body between two smooth walls, r = ± {radius} n, n = {n}, e = {e}, {body}"
@@ -1038,24 +1037,27 @@ def close_pair(draw, lesson, m, height):
 def test_points_close_together_take_many_sweeps_whatever_the_body_weighs_and_however_it_moves(lesson, draw):
     """Two points stick: u⁺ = u_sep n at both.
 
-    The light body also has a first and a last point that leave by themselves and change nothing. The second body rolls,
-    so that u is small. The third resists a turn about n only, so that its normal velocities settle at once and its
-    tangential ones do not.
+    The light body also has points that leave by themselves and change nothing. The second body rolls, so that u is
+    small, and some of its points leave slowly. For their five points each, settle_impacts finds no answer: it cannot
+    stand in for sweeps that end too early. The third body resists a turn about n only, so that its normal velocities
+    settle at once and its tangential ones do not.
     """
     down, e = draw(1.0, 3.0), draw(0.2, 0.8)
     body, sticks, d, n_1, x = close_pair(draw, lesson, 1e-6, 0.0)
     light = body._replace(v=0.1 * down * d - down * n_1, omega=draw(30.0, 60.0) * down / x * d)
     leaves = draw(10.0, 20.0) * x * np.cross(n_1, d)
-    with_leaving = np.vstack((leaves, sticks, 1.5 * leaves))
+    with_leaving = np.vstack((leaves, sticks, 1.5 * leaves, 1.2 * leaves))
     body, rolls_on, d, n_2, x = close_pair(draw, lesson, 1.0, 1.0)
     turn = draw(5.0, 10.0) / x
     rolls = body._replace(v=turn * x * np.cross(d, n_2) + 1e-4 * down * (0.3 * d - n_2), omega=turn * d)
+    slowly = draw(1e-3, 2e-3) * down / turn * np.cross(n_2, d)
+    rolls_on = np.vstack((rolls_on[0] + slowly, rolls_on, rolls_on[1] + slowly, slowly - x * n_2))
     body, _, d, n_3, x = close_pair(draw, lesson, 1.0, 0.0)
     side = np.cross(n_3, d)
     twists = body._replace(v=down * (draw(0.5, 1.0) * side - n_3), omega=draw(0.5, 1.0) * down / x * n_3,
                            inv_inertia=body.inv_inertia + draw(0.5, 1.0) / x**2 * np.outer(side, side))
     steps = x * np.stack((d, -d))
-    for body, r, n, stick in ((light, with_leaving, n_1, slice(1, 3)), (rolls, rolls_on, n_2, slice(0, 2)),
+    for body, r, n, stick in ((light, with_leaving, n_1, slice(1, 3)), (rolls, rolls_on, n_2, slice(1, 3)),
                               (twists, steps, n_3, slice(0, 2))):
         normals = np.tile(n, (len(r), 1))
         got, residual = lesson.solve_impacts(body, r, normals, e, np.inf)

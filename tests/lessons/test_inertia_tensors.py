@@ -25,7 +25,7 @@ def cloud(draw, n):
 
 def tensor(m, r):
     """Σ m (|r|² 1 − r rᵀ) [kg m²]."""
-    return sum(k * (y @ y * np.eye(3) - np.outer(y, y)) for k, y in zip(m, r))
+    return sum(k * (y @ y * np.eye(3) - np.outer(y, y)) for k, y in zip(m, r, strict=True))
 
 
 def rotation(draw):
@@ -339,7 +339,7 @@ def test_combined_parts_equal_the_body_of_all_their_points(lesson, draw):
         clouds[k] = (share * clouds[0][0].sum() / clouds[k][0].sum() * clouds[k][0], clouds[k][1])
     m = np.array([k.sum() for k, _ in clouds])
     x = np.stack([k @ r / k.sum() for k, r in clouds])
-    I = np.stack([tensor(k, r - c) for (k, r), c in zip(clouds, x)])
+    I = np.stack([tensor(k, r - c) for (k, r), c in zip(clouds, x, strict=True)])
     every_m = np.concatenate([k for k, _ in clouds])
     every_x = np.concatenate([r for _, r in clouds])
     X = every_m @ every_x / every_m.sum()
@@ -353,7 +353,7 @@ def test_combined_parts_equal_the_body_of_all_their_points(lesson, draw):
         close("centre of mass of three parts, one of them a hole [m]", found_x, X, ROUNDED, given)
         close("tensor of three parts about their centre [kg m²]", found_I, tensor(every_m, every_x - X),
               10.0 * ROUNDED, given)
-        for name, part, before in zip(("masses", "centres", "tensors"), parts, kept):
+        for name, part, before in zip(("masses", "centres", "tensors"), parts, kept, strict=True):
             close(f"input {name} after the call: unchanged", part, before, 0.0, given)
     one = lesson.combine(np.append(m[:1], 0.0), x[:2], I[:2])             # a body without mass has its tensor
     close("tensor of a body and one without mass [kg m²]", one.I, I[0] + I[1], ROUNDED,

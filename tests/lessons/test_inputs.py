@@ -219,7 +219,7 @@ def test_a_pile_refuses_a_changed_record_that_its_substeps_cannot_carry(name):
     """A record is changed by _replace, which checks nothing: each run checks what it divides by."""
     state, pile = two_balls(name)
     advance = contact.advance_pile_2d if name == "make_pile_2d" else contact.advance_pile
-    for changed, said in (({"substeps": 0}, "substeps is 0"), ({"substeps": -2}, "substeps is -2"),
+    for changed, said in (({"substeps": 0}, "substeps of a Pile is 0"), ({"substeps": -2}, "substeps of a Pile is -2"),
                           ({"hertz": 1000.0}, "times a substep"), ({"hertz": 0.0}, "hertz"), ({"zeta": 0.0}, "ζ")):
         with pytest.raises(BadInput, match=said):
             advance(*ROUND[state.x.shape[1]], state, 1.0 / 240.0, 2, pile._replace(**changed))
@@ -235,6 +235,13 @@ def test_two_bodies_that_no_impulse_moves_may_overlap_and_stay(name):
     step = simulator.contact_step_2d if d == 2 else simulator.contact_step
     end = simulator.advance_contact(step, simulator.weight, *ROUND[d], 0.0, state, 0.01, 5, p)
     assert end.contacts.a.size == 0 and np.array_equal(end.x, state.x) and not end.v.any()
+
+
+@pytest.mark.parametrize("moments", [(np.inf, 0.2, 0.2), (0.2, np.inf, np.inf), (0.2, 0.2, np.inf)])
+def test_a_body_in_space_turns_about_all_axes_or_about_none(moments):
+    """With some moments infinite, Euler's equation has infinity minus infinity in it, or is left out as a whole."""
+    with pytest.raises(BadInput, match=r"beside an infinite one.*0\.2"):
+        two_balls("make_bodies", inertia=np.array([(0.2, 0.2, 0.2), moments]))
 
 
 def test_a_loop_without_sweeps_ends_in_an_error_that_says_so():
@@ -281,7 +288,7 @@ def test_a_ball_that_rolls_and_a_box_that_tips_settle_at_once():
         assert residual <= impulses.CONVERGED * 2.0 * (np.linalg.norm(push.v) + spin)
 
 
-def test_an_impact_without_solution_ends_in_a_physical_fallback_with_a_residual():
+def test_the_most_dissipative_impact_is_physical_and_has_a_residual():
     """Boxes on two to four corners, with friction of 1.5 or more: in the cone, no energy gained, no penetration."""
     rng, fell_back = np.random.default_rng(9), 0
     every_corner = np.array([(a, b, c) for a in (-1.0, 1.0) for b in (-1.0, 1.0) for c in (-1.0, 1.0)])
@@ -292,16 +299,14 @@ def test_an_impact_without_solution_ends_in_a_physical_fallback_with_a_residual(
         body = impulses.BodyState3D(3.0 * rng.normal(size=3) - 3.0 * n, 5.0 * rng.normal(size=3),
                               1.0, R @ np.diag(3.0 / (half @ half - half**2)) @ R.T)
         e, mu = rng.choice([0.0, 0.5, 1.0]), rng.choice([1.5, 3.0, np.inf])
-        after, residual = impulses.solve_impacts(body, r, np.tile(n, (len(r), 1)), e, mu)
+        answers = impulses.contact_matrix, impulses.cone_impulse, impulses.apply_impulse
+        after, residual = impulses.most_dissipative_impact(*answers, body, r, np.tile(n, (len(r), 1)), e, mu)
         speed = impulses.largest_speed(body, r)
-        if residual <= impulses.CONVERGED * speed:
-            continue
-        fell_back += 1
+        fell_back += residual > 1e-9 * speed
         J = (after.v - body.v) / body.inv_mass
         leaves = (after.v + np.cross(after.omega, r)) @ n
         assert energy(after) <= energy(body) * (1.0 + ROUND_OFF)
-        # the error of the convex problem after 5,000 sweeps
-        assert leaves.min() >= -1e-3 * speed
+        assert leaves.min() >= -1e-11 * speed
         # All cones have the same n, so the sum of the impulses is in the cone.
         assert np.linalg.norm(J - (J @ n) * n) <= mu * (J @ n) * (1.0 + ROUND_OFF)
     assert fell_back >= 2

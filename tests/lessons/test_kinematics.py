@@ -10,8 +10,10 @@ from solutions.checks import BadInput
 from ..grading.expect import between, close, raises
 
 exercise = pytest.mark.exercise
+EDGE = 1e-12                 # as in the lesson
 # Everything drawn is below 10 in its unit.  A comparison takes a few dozen operations, each rounded by 1.1e-16 of that.
 ROUND_OFF = 1e-12
+NARROW = {"low": -0.3, "high": 0.3}      # limits that all these arms are beyond: few methods keep any [rad]
 DIFFERENCE = 1e-5            # of angles in central differences [rad]: leaves its square, and round-off over it
 SLOPE = 1e-8                 # of such a difference: 1e-10 times third derivatives below 20, and 1e-14/1e-5
 SOLVED = 1e-10               # of linear systems with a condition below 1e5
@@ -23,7 +25,7 @@ def lengths_of(draw, n):
     return draw(0.5, 2.0, n)
 
 
-def arm_of(lesson, lengths, gain=0.1, damping=0.5, low=-np.inf, high=np.inf, rest=0.0, pull=0.5):
+def arm_of(lesson, lengths, gain=0.1, damping=0.5, low=-np.inf, high=np.inf, rest=0.0, pull=0.7):
     """An Arm2D with the settings that a test needs."""
     n = len(lengths)
     low, high, rest = (np.broadcast_to(values, n).astype(float) for values in (low, high, rest))
@@ -57,9 +59,45 @@ def reach(theta, target, arm):
     return np.array((target[0] - x, target[1] - y)), J
 
 
+def three_points(theta, target, arm):
+    """Task of the tests: the last two joints and the end of a planar arm at three points; target (6,), J (6, n)."""
+    n, phi, e = theta.size, 0.0, target.copy()
+    J = np.zeros((6, n))
+    for k in range(n):
+        phi += theta[k]
+        along, up = arm.lengths[k] * np.cos(phi), arm.lengths[k] * np.sin(phi)
+        for p in range(3):
+            if k < n - 2 + p:                                            # link k is between the base and this point
+                e[2 * p], e[2 * p + 1] = e[2 * p] - along, e[2 * p + 1] - up
+                for i in range(k + 1):
+                    J[2 * p, i] -= up
+                    J[2 * p + 1, i] += along
+    return e, J
+
+
+TASKS = ((reach, 1), (three_points, 3))                                  # and the number of points that it moves
+
+
+def points_of(theta, lengths, count=1):
+    """The last so many points of a planar arm, one after the other (2 count,)."""
+    return joints(theta, lengths)[-count:].ravel()
+
+
+def slopes_of(theta, lengths, count):
+    """J (2 count, n) of these points."""
+    n = len(theta)
+    return np.vstack([np.pad(slopes(theta[:m], lengths[:m]), ((0, 0), (0, n - m)))
+                      for m in range(n - count + 1, n + 1)])
+
+
 def bent(draw, n):
     """Angles (n,) of an arm that is far from straight."""
     return np.append(draw(-3.0, 3.0), draw(0.4, 1.2, n - 1))
+
+
+def turned(draw, n):
+    """Angles (n,) of such an arm, the first beyond half a turn."""
+    return np.append(draw(3.5, 9.0), draw(0.4, 1.2, n - 1))
 
 
 def turn(axis, angle):
@@ -93,7 +131,7 @@ def chain(draw, n):
 def frames(theta, axes, offsets):
     """(x, a, R) by matrices: positions, axes in the world, orientation of the last link."""
     x, a, R = [np.zeros(3)], [], np.eye(3)
-    for angle, axis, offset in zip(theta, axes, offsets):
+    for angle, axis, offset in zip(theta, axes, offsets, strict=True):
         a.append(R @ axis)
         R = R @ turn(axis, angle)
         x.append(x[-1] + R @ offset)
@@ -112,7 +150,7 @@ def with_singular_values(draw, sigma, columns):
 @exercise("11.1", points=0.5, hint="add link after link; φ_k is the sum of the angles up to the k-th, its own included")
 def test_links_add_up_from_the_base(lesson, draw):
     for n in (1, 2, draw.whole(3, 8)):
-        theta, lengths = draw(-3.0, 3.0, n), lengths_of(draw, n)
+        theta, lengths = draw(-5.0, 5.0, n), lengths_of(draw, n)
         close("positions of the joints and the end [m]", lesson.joint_positions(theta, lengths), joints(theta, lengths),
               ROUND_OFF, given=f"θ = {theta}, lengths {lengths} m")
 
@@ -177,12 +215,14 @@ def test_the_short_axis_keeps_its_digits_where_the_arm_is_nearly_straight(lesson
           1e-5, given=f"J = {J}")
     close("angle of the longer axis [rad]", np.tan(found), np.tan(angle), 1e-6, given=f"J = {J}")
     J = np.array([[0.0, 0.0, 0.0], [a, b, 0.5 * b]])
-    close("short half axis of an arm that is straight [m]", lesson.velocity_ellipse(J)[1], 0.0, 1e-15, given=f"J = {J}")
+    _, shorter, found = lesson.velocity_ellipse(J)
+    close("short half axis of an arm that is straight [m]", shorter, 0.0, 1e-15, given=f"J = {J}")
+    close("cosine of the angle of a longer axis along y [-]", np.cos(found), 0.0, ROUND_OFF, given=f"J = {J}")
 
 
 # ---------------------------------------------------------------------------------------------- in closed form
 
-@exercise("11.4", points=1,
+@exercise("11.4", points=0.5,
           hint="θ₂ from the distance, with the sign of elbow; θ₁ is the direction of the target minus the part due to "
                "θ₂")
 def test_both_elbows_reach_the_target(lesson, draw):
@@ -200,34 +240,75 @@ def test_both_elbows_reach_the_target(lesson, draw):
     between("θ₁ with the other elbow, wrapped [rad]", theta_1, -np.pi, np.pi)
 
 
+def whole_lengths(draw, size):
+    """(long, short): lengths with few binary digits, so that their sum and difference are exact."""
+    return tuple(np.round(1024.0 * draw(low, high)) / 1024.0 * size for low, high in ((1.2, 2.0), (0.5, 1.1)))
+
+
 @exercise("11.4", points=0.5,
-          hint="at both edges of the reach there is one answer; beyond them BadInput, with the distance")
+          hint="at both edges of the reach there is one answer; beyond them BadInput, with the distance; where that is "
+               "less than EDGE (l₁ + l₂), the root of a negative number is 0")
 def test_the_edges_of_the_reach_are_reached_and_nothing_beyond(lesson, draw):
-    for k in range(4):
-        long, short, bearing = draw(1.2, 2.0), draw(0.5, 1.1), draw(-3.0, 3.0)
+    for k, size in enumerate((1.0, 1.0, 2.0**10, 2.0**-10)):             # arms of a metre, a kilometre, a millimetre
+        long, short = whole_lengths(draw, size)
         lengths = np.array([short, long] if k % 2 else [long, short])    # either may be the longer one
+        bearing = draw(-3.0, 3.0)
         way = np.array([np.cos(bearing), np.sin(bearing)])
         most, least = long + short, long - short
         for edge in (most, least):
             theta = np.asarray(lesson.solve_2r(edge * way, lengths, 1.0))
-            close("end of the arm at the edge of its reach [m]", joints(theta, lengths)[-1], edge * way, SOLVED,
-                  given=f"distance {edge} m, lengths {lengths} m")
-        for off in (most * draw(1.01, 3.0), least * draw(0.1, 0.99)):
+            close("end of the arm at the edge of its reach, over the reach [-]", joints(theta, lengths)[-1] / most,
+                  edge / most * way, SOLVED, given=f"distance {edge} m, lengths {lengths} m")
+        for off in (most * draw(1.01, 3.0), least * draw(0.1, 0.99), most * (1.0 + draw(1.2, 1.9) * EDGE),
+                    least - draw(1.2, 1.9) * EDGE * most):
             raises("a target out of reach", BadInput, lesson.solve_2r, off * way, lengths, 1.0, naming=(off,),
                    thing="distance of the target")
+        elbow = 2.0 * draw.whole(0, 1) - 1.0
+        for beyond, straight in ((most * (1.0 + draw(0.6, 0.8) * EDGE), 0.0),
+                                 (least - draw(0.6, 0.8) * EDGE * most, elbow * np.pi)):
+            close("θ₂ for a target that is out of reach by round-off [rad]",
+                  lesson.solve_2r(beyond * way, lengths, elbow)[1], straight, ROUND_OFF,
+                  given=f"distance {beyond} m, lengths {lengths} m, elbow {elbow:g}")
+    theta = np.asarray(lesson.solve_2r(np.zeros(2), np.array([long, long]), 1.0))
+    close("end of an arm that is folded onto its base [m]", joints(theta, (long, long))[-1], np.zeros(2), SOLVED,
+          given=f"lengths {long} m and {long} m")
+
+
+@exercise("11.4", points=0.5,
+          hint="the products under the roots, and half the angle, keep the digits of θ₂; there may be a third length")
+def test_the_elbow_keeps_its_digits_where_the_arm_is_nearly_straight_or_folded(lesson, draw):
+    """tan²(θ₂/2) is a quotient of four factors.  Each is exact here, so θ₂ is known to its last digits.
+
+    Nearest to the edge an arccosine is wrong by so much that it is known by its numbers.
+    """
+    for k in range(5):
+        long, short = whole_lengths(draw, 1.0)
+        third = draw(0.5, 2.0)
+        off = np.round(2.0**40 * draw(1e-9, 1e-8)) / 2.0**40 if k else draw.whole(1, 3) / 2.0**50
+        lengths = np.array([long, short, third] if k % 2 else [short, long, third])
+        for r, straight in ((long + short - off, 0.0), (long - short + off, np.pi))[:1 if k == 0 else 2]:
+            target = r * np.array([(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)][k % 4])
+            outer, inner = (long + short - r) * (long + short + r), (r - long + short) * (r + long - short)
+            bend = 2.0 * np.arctan(np.sqrt(min(outer, inner) / max(outer, inner)))
+            got = np.asarray(lesson.solve_2r(target, lengths, 1.0))
+            close("bend of an arm near the edge of its reach, over the right one [-]", (got[1] - straight) / bend,
+                  -1.0 if straight else 1.0, 1e-10,
+                  given=f"distance {r} m, lengths {lengths} m")
 
 
 @exercise("11.5", points=0.5,
-          hint="the last link points along φ: put joint 3 at (x, y) − l₃ (cos φ, sin φ), then solve_2r")
+          hint="the last link points along φ: put joint 3 at (x, y) − l₃ (cos φ, sin φ), then solve_2r with the same "
+               "lengths and elbow; this target is within reach")
 def test_three_links_end_in_a_place_with_a_direction(lesson, draw):
-    for elbow in (1.0, -1.0):
-        for _ in range(4):
-            lengths = lengths_of(draw, 3)
-            theta = np.array([draw(-3.1, 3.1), elbow * draw(0.1, 3.0), draw(-3.1, 3.1)])
-            phi = theta.sum()
-            target = np.append(joints(theta, lengths)[-1], phi)
-            given = f"target {target}, lengths {lengths} m, elbow {elbow:g}"
-            close("θ [rad]", lesson.solve_3r(target, lengths, elbow), theta, SOLVED, given=given)
+    """The first hands are short, and their elbows about right-angled: wherever such a wrist is, it is within reach."""
+    for hand, bend in ((0.2, (1.5, 2.0)), (1.0, (0.1, 3.0)), (2.0, (0.1, 3.0))):
+        for elbow in (1.0, -1.0):
+            lengths = np.append(draw(1.2, 1.5, 2), hand * draw(0.9, 1.1))
+            theta = np.array([draw(-3.1, 3.1), elbow * draw(*bend), draw(-3.1, 3.1)])
+            for turns in (0, draw.whole(1, 2), -draw.whole(1, 2)):
+                target = np.append(joints(theta, lengths)[-1], theta.sum() + 2.0 * np.pi * turns)
+                close("θ [rad]", lesson.solve_3r(target, lengths, elbow), theta, SOLVED,
+                      given=f"target {target}, lengths {lengths} m, elbow {elbow:g}")
 
 
 @exercise("11.5", points=0.5, hint="both elbows of the first two joints; the third turns the hand back to φ")
@@ -244,15 +325,15 @@ def test_links_of_three_two_and_one_reach_four_two_in_two_ways(lesson, draw):
     target = np.append(joints(theta, (3.0, 2.0, 1.0))[-1], theta.sum() - 2.0 * np.pi)
     theta_3 = lesson.solve_3r(target, np.array([3.0, 2.0, 1.0]), 1.0)[2]
     close("θ₃ of a hand that points far round, wrapped [rad]", theta_3, theta[2], SOLVED, given=f"target {target}")
-    raises("a wrist out of reach", BadInput, lesson.solve_3r, np.array([4.6 + scale, 0.0, np.pi]),
-           np.array([3.0, 2.0, 1.0]) * min(scale, 1.0), 1.0)
+    raises("a wrist out of reach", BadInput, lesson.solve_3r, np.array([6.1 + scale, 0.0, np.pi]),
+           np.array([3.0, 2.0, 1.0]), 1.0, naming=(7.1 + scale,), thing="distance of the target")
 
 
 # ---------------------------------------------------------------------------------------------- forward, in space
 
 @exercise("11.6", points=1, hint="the axis by q before its joint turns, the offset by q after it; q ∘ exp(θ axis)")
 def test_each_joint_turns_about_an_axis_of_the_link_before_it(lesson, draw):
-    for n in (1, draw.whole(2, 7)):
+    for n in (draw.whole(3, 7), 1):
         theta, axes, offsets = chain(draw, n)
         x, a, q = lesson.joint_frames(theta, axes, offsets)
         x_true, a_true, R = frames(theta, axes, offsets)
@@ -307,9 +388,9 @@ def test_an_axis_through_the_end_moves_it_nowhere(lesson, draw):
 @exercise("11.8", points=1, hint="d = q_target ∘ q̄ and not the other way round: the rotation is in the world")
 def test_the_rotation_vector_turns_one_orientation_into_the_other(lesson, draw):
     for sign in (1.0, -1.0):
-        for _ in range(4):
+        for _ in range(6):
             axis, angle, old, about = unit(draw), draw(0.1, 3.1), draw(0.5, 3.0), unit(draw)
-            q = quaternion(about, old)
+            q = quaternion(about, old) * (2.0 * draw.whole(0, 1) - 1.0)       # q and −q are the same orientation
             R = turn(axis, angle) @ turn(about, old)
             new = np.sqrt(max(0.0, 1.0 + np.trace(R)))                        # 2w, of the product of both
             d, b = quaternion(axis, angle), q
@@ -327,10 +408,17 @@ def test_small_and_large_angles_keep_their_digits(lesson, draw):
     still = np.array([1.0, 0.0, 0.0, 0.0])
     close("rotation vector from an orientation to itself [rad]", lesson.rotation_error(q, q), np.zeros(3), 1e-15)
     close("rotation vector of no rotation at all [rad]", lesson.rotation_error(still, still), np.zeros(3), 0.0)
-    angle = draw(1e-10, 1e-9)
-    close("rotation vector over its small angle [-]",
-          np.asarray(lesson.rotation_error(still, quaternion(axis, angle))) / angle, axis, ROUND_OFF,
-          given=f"angle {angle} rad")
+    for least in (3e-8, 1e-9, 1e-5, 1e-3, 1e-2):
+        angle = draw(least, 1.3 * least)
+        close("rotation vector over its small angle [-]",
+              np.asarray(lesson.rotation_error(still, quaternion(axis, angle))) / angle, axis, ROUND_OFF,
+              given=f"angle {angle} rad")
+    angle = np.pi - draw(1e-7, 1e-6)
+    close("rotation vector of nearly half a turn [rad]", lesson.rotation_error(still, quaternion(axis, angle)),
+          angle * axis, ROUND_OFF, given=f"angle {angle} rad about {axis}")
+    got = np.asarray(lesson.rotation_error(still, np.append(0.0, axis)))
+    close("rotation vector of half a turn, in one sense or the other [rad]", got * np.sign(got @ axis), np.pi * axis,
+          ROUND_OFF, given=f"half a turn about {axis}")
     angle = draw(3.3, 6.0)
     close("rotation vector by the shorter way [rad]", lesson.rotation_error(still, quaternion(axis, angle)),
           (angle - 2.0 * np.pi) * axis, SOLVED, given=f"angle {angle} rad about {axis}")
@@ -338,17 +426,21 @@ def test_small_and_large_angles_keep_their_digits(lesson, draw):
 
 # ---------------------------------------------------------------------------------------------- methods with a Jacobian
 
-@exercise("11.9", points=0.5, hint="θ + α Jᵀ e; e @ J is Jᵀ e")
+@exercise("11.9", points=0.5, hint="θ + α Jᵀ e with all rows of e and J, and no limits; e @ J is Jᵀ e")
 def test_a_transpose_step_goes_down_the_gradient(lesson, draw):
-    n = draw.whole(2, 6)
-    lengths, theta, gain, bearing = lengths_of(draw, n), bent(draw, n), draw(0.05, 0.5), draw(-3.0, 3.0)
-    for away in (draw(0.1, 1.0), draw(2.0, 4.0)):                        # near, and so far that a cautious step shows
-        target = joints(theta, lengths)[-1] + away * np.array([np.cos(bearing), np.sin(bearing)])
-        half_square = lambda angles, target=target: 0.5 * np.sum((target - joints(angles, lengths)[-1]) ** 2)
-        slope = [0.5 * (half_square(theta + d) - half_square(theta - d)) / DIFFERENCE for d in DIFFERENCE * np.eye(n)]
-        got = lesson.transpose_step(reach, theta, target, arm_of(lesson, lengths, gain=gain))
-        close("change of θ over the gain [-]", (np.asarray(got) - theta) / gain, -np.array(slope), 1e-6,
-              given=f"θ = {theta}, target {target} m, α = {gain}")
+    for (task, count), n in zip((*TASKS, TASKS[0]), (draw.whole(3, 6), draw.whole(3, 5), 2), strict=True):
+        lengths, theta, gain = lengths_of(draw, n), turned(draw, n), draw(0.05, 0.5)
+        here, bearing = points_of(theta, lengths, count), draw(-3.0, 3.0, count)
+        way = np.stack((np.cos(bearing), np.sin(bearing)), axis=1).ravel()
+        for away in (draw(0.1, 1.0), draw(5.0, 6.0)):                    # near, and so far that a cautious step shows
+            target = here + away * way
+            errors = [[target - points_of(theta + s * d, lengths, count) for s in (1.0, -1.0)]
+                      for d in DIFFERENCE * np.eye(n)]
+            slope = [0.5 * (ahead @ ahead - behind @ behind) for ahead, behind in errors]
+            got = lesson.transpose_step(task, theta, target, arm_of(lesson, lengths, gain=gain, **NARROW))
+            close("change of θ over the gain [-]", (np.asarray(got) - theta) / gain,
+                  -0.5 * np.array(slope) / DIFFERENCE, 1e-6,
+                  given=f"θ = {theta}, target {target} m, α = {gain}, {2 * count} rows")
 
 
 @exercise("11.9", points=0.5,
@@ -358,7 +450,7 @@ def test_the_gain_decides_how_fast_the_error_shrinks(lesson, draw):
     u, sigma, v = np.linalg.svd(slopes(theta, lengths), full_matrices=False)
     target = joints(theta, lengths)[-1]
     for part in (draw(0.2, 0.8), draw(1.2, 1.8), draw(2.2, 2.8)):
-        arm = arm_of(lesson, lengths, gain=part / sigma[0] ** 2)
+        arm = arm_of(lesson, lengths, gain=part / sigma[0] ** 2, **NARROW)
         both = [lesson.transpose_step(reach, theta + s * DIFFERENCE * v[0], target, arm) for s in (1.0, -1.0)]
         ends = [u[:, 0] @ joints(np.asarray(one), lengths)[-1] for one in both]
         close("error after a step over the error before it [-]", 0.5 * (ends[0] - ends[1]) / (DIFFERENCE * sigma[0]),
@@ -367,7 +459,7 @@ def test_the_gain_decides_how_fast_the_error_shrinks(lesson, draw):
 
 @exercise("11.10", points=0.5, hint="v_i u_iᵀ/σ_i, added up; the result has as many rows as J has columns")
 def test_the_pseudo_inverse_solves_with_the_shortest_answer(lesson, draw):
-    for m, n in ((2, 5), (3, 3), (4, 2)):
+    for m, n in ((2, 5), (3, 3), (4, 2), (6, 7), (6, 4)):
         J, _ = with_singular_values(draw, draw(0.5, 3.0, min(m, n)), max(m, n))
         J = np.ascontiguousarray(J if m <= n else J.T)
         expected = np.stack([np.linalg.lstsq(J, e, rcond=None)[0] for e in np.eye(m)], axis=1)
@@ -376,16 +468,22 @@ def test_the_pseudo_inverse_solves_with_the_shortest_answer(lesson, draw):
 
 @exercise("11.10", points=0.5, hint="leave out every σ_i up to SINGULAR σ₁: 1/σ of a round-off would spoil the answer")
 def test_directions_that_no_joint_can_move_are_left_alone(lesson, draw):
-    for size, small in ((1.0, 0.0), (1.0, draw(1e-14, 1e-12)), (1e6, draw(1e-14, 1e-12))):
+    straight = np.array([[0.0, 0.0, 0.0], [4.0, 2.0, 1.0]])
+    close("J⁺ of a straight arm along x", lesson.pseudo_inverse(straight), straight.T / 21.0, SOLVED,
+          given=f"J = {straight}")
+    for size, small, n in ((1.0, 0.0, 5), (1.0, draw(1e-14, 1e-12), 3), (1e6, draw(1e-14, 1e-12), 5),
+                           (1e-3, draw(2e-11, 6e-11), 3)):               # parts of the largest σ, below SINGULAR
         sigma = size * np.array([draw(1.0, 3.0), draw(0.5, 0.9), small])
-        J, u = with_singular_values(draw, sigma, 5)
+        J, u = with_singular_values(draw, sigma, n)
         got = np.asarray(lesson.pseudo_inverse(J))
-        close("J⁺ applied to the lost direction", got @ u[:, 2], np.zeros(5), SOLVED, given=f"σ = {sigma}")
+        close("J⁺ applied to the lost direction, times σ₁ [-]", sigma[0] * got @ u[:, 2], np.zeros(n), SOLVED,
+              given=f"σ = {sigma}")
         close("J J⁺ applied to the others [-]", J @ got @ u[:, :2], u[:, :2], SOLVED, given=f"σ = {sigma}")
-    sigma = np.array([1.0, draw(1e-8, 1e-7)])
-    J, u = with_singular_values(draw, sigma, 3)
-    close("J J⁺ of a small σ that is not lost [-]", J @ np.asarray(lesson.pseudo_inverse(J)), np.eye(2), 1e-6,
-          given=f"σ = {sigma}")
+    for size in (1.0, 1e-3):                                             # of an arm of metres, and of millimetres
+        sigma = size * np.array([1.0, draw(2e-10, 1e-9)])
+        J, u = with_singular_values(draw, sigma, 3)
+        close("J J⁺ of a small σ that is not lost [-]", J @ np.asarray(lesson.pseudo_inverse(J)), np.eye(2), 1e-4,
+              given=f"σ = {sigma}")
     close("J⁺ of a J of zeros", lesson.pseudo_inverse(np.zeros((2, 3))), np.zeros((3, 2)), 0.0)
 
 
@@ -395,20 +493,30 @@ def damped(J, e, damping):
     return np.linalg.lstsq(np.vstack((J, damping * np.eye(n))), np.append(e, np.zeros(n)), rcond=None)[0]
 
 
-@exercise("11.11", points=0.5, hint="λ² on the diagonal of J Jᵀ, not λ; then solve(A, e) @ J")
+@exercise("11.11", points=0.5,
+          hint="λ², not λ, in every row of the diagonal of J Jᵀ; then solve(A, e) @ J, and no limits")
 def test_a_damped_step_weighs_the_error_against_the_way(lesson, draw):
-    for n in (2, draw.whole(3, 6)):
-        lengths, theta, target, damping = lengths_of(draw, n), bent(draw, n), draw(-2.0, 2.0, 2), draw(0.2, 1.5)
-        got = lesson.damped_step(reach, theta, target, arm_of(lesson, lengths, damping=damping))
-        expected = theta + damped(slopes(theta, lengths), target - joints(theta, lengths)[-1], damping)
-        close("θ after a step [rad]", got, expected, SOLVED, given=f"θ = {theta}, target {target} m, λ = {damping} m")
+    for task, count in TASKS:
+        n = draw.whole(3, 6)
+        for size in (1.0, 1e-3, 1e3):                                    # arms of metres, millimetres, kilometres
+            lengths, theta, damping = size * lengths_of(draw, n), turned(draw, n), size * draw(0.5, 1.5)
+            target = size * draw(-2.0, 2.0, 2 * count)
+            e, J = target - points_of(theta, lengths, count), slopes_of(theta, lengths, count)
+            got = lesson.damped_step(task, theta, target, arm_of(lesson, lengths, damping=damping, **NARROW))
+            close("θ after a step [rad]", got, theta + damped(J, e, damping), SOLVED,
+                  given=f"θ = {theta}, target {target} m, λ = {damping} m")
+    lengths, theta, target = lengths_of(draw, 2), bent(draw, 2), draw(-2.0, 2.0, 2)
+    expected = theta + np.linalg.solve(slopes(theta, lengths), target - points_of(theta, lengths))
+    got = lesson.damped_step(reach, theta, target, arm_of(lesson, lengths, damping=0.0))
+    close("θ after a step without damping [rad]", got, expected, 1e-9, given=f"θ = {theta}, λ = 0")
 
 
 @exercise("11.11", points=0.5, hint="Jᵀ (J Jᵀ + λ² 1)⁻¹ e is never longer than |e|/(2λ), whatever J is")
 def test_a_damped_step_is_bounded_where_the_arm_is_straight(lesson, draw):
     for damping in (draw(0.05, 0.2), draw(0.5, 1.0)):
         lengths, theta, target = lengths_of(draw, 3), np.array([draw(-3.0, 3.0), 0.0, 0.0]), draw(-9.0, 9.0, 2)
-        got = np.asarray(lesson.damped_step(reach, theta, target, arm_of(lesson, lengths, damping=damping))) - theta
+        arm = arm_of(lesson, lengths, damping=damping, **NARROW)
+        got = np.asarray(lesson.damped_step(reach, theta, target, arm)) - theta
         e, J = target - joints(theta, lengths)[-1], slopes(theta, lengths)
         sigma = np.linalg.norm(J)                                             # a straight arm has only one above 0
         across = np.array([-np.sin(theta[0]), np.cos(theta[0])])
@@ -422,16 +530,18 @@ def test_factors_are_what_an_iteration_leaves_of_an_error(lesson, draw):
     J, u = with_singular_values(draw, sigma, 4)
     stay = [np.eye(3) - J @ P for P in (gain * J.T, np.stack([damped(J, e, damping) for e in np.eye(3)], axis=1))]
     expected = [[one @ u[:, i] @ u[:, i] for i in range(3)] for one in stay]
-    for name, got, factors in zip(("transpose", "damped"), lesson.contraction_factors(sigma, gain, damping), expected):
-        close(f"factors of the {name} [-]", got, factors, SOLVED, given=f"σ = {sigma}, α = {gain}, λ = {damping}")
+    got = lesson.contraction_factors(sigma, gain, damping)
+    for name, one, factors in zip(("transpose", "damped"), got, expected, strict=True):
+        close(f"factors of the {name} [-]", one, factors, SOLVED, given=f"σ = {sigma}, α = {gain}, λ = {damping}")
 
 
 @exercise("11.12", points=0.5, hint="for σ = 0 both factors are 1; the factor of the transpose may be below 0")
 def test_factors_at_the_ends_of_their_range(lesson, draw):
-    size = draw(0.3, 3.0)
-    sigma = np.array([0.0, size, 2.0 * size])
+    size, ratio = draw(0.3, 3.0), draw(1.5, 3.0)
+    sigma = np.array([0.0, size, ratio * size])
     factors = lesson.contraction_factors(sigma, 1.0 / size**2, size)
-    for got, expected in zip(factors, ((1.0, 0.0, -3.0), (1.0, 0.5, 0.2))):
+    ends = (1.0, 0.0, 1.0 - ratio**2), (1.0, 0.5, 1.0 / (1.0 + ratio**2))
+    for got, expected in zip(factors, ends, strict=True):
         close("factors [-]", got, expected, ROUND_OFF, given=f"σ = {sigma}, α = 1/σ², λ = σ, for the middle one")
 
 
@@ -449,12 +559,22 @@ def coordinate_descent(theta, target, lengths, low, high):
 
 @exercise("11.13", points=1, hint="last joint first; after each joint, turn the end about x_k")
 def test_each_joint_points_the_end_at_the_target(lesson, draw):
-    for n in (1, 2, draw.whole(3, 7)):
+    for n in (draw.whole(3, 7), 2, 1):
         lengths, theta, target = lengths_of(draw, n), draw(-1.5, 1.5, n), draw(-2.0, 2.0, 2)
+        theta[0] += draw(4.0, 6.0)                                       # beyond half a turn
         arm = arm_of(lesson, lengths)
         expected = coordinate_descent(theta, target, lengths, arm.low, arm.high)
         close("θ after a sweep [rad]", lesson.ccd_step(reach, theta, target, arm), expected, 1e-9,
               given=f"θ = {theta}, target {target} m, lengths {lengths} m")
+    target = joints(theta, lengths)[-1] + draw(-1e-3, 1e-3, 2)
+    close("θ after a sweep near the target [rad]", lesson.ccd_step(reach, theta, target, arm),
+          coordinate_descent(theta, target, lengths, arm.low, arm.high), 1e-9, given=f"θ = {theta}, target {target} m")
+    lengths, theta = lengths_of(draw, 3), draw(-1.5, 1.5, 3)
+    arm = arm_of(lesson, lengths)
+    got = np.asarray(lesson.ccd_step(reach, theta, np.zeros(2), arm))    # where the first joint is: it may turn anyhow
+    expected = coordinate_descent(theta, np.zeros(2), lengths, arm.low, arm.high)
+    between("θ₁ for a target at the base [rad]", got[0], -2.0 * np.pi, 2.0 * np.pi, given=f"θ = {theta}")
+    close("θ₂ and θ₃ for a target at the base [rad]", got[1:], expected[1:], 1e-9, given=f"θ = {theta}")
 
 
 @exercise("11.13", points=0.5,
@@ -463,7 +583,9 @@ def test_limits_stop_a_joint_and_the_others_go_on(lesson, draw):
     for _ in range(5):
         n = draw.whole(3, 6)
         lengths, theta, target = lengths_of(draw, n), draw(-0.3, 0.3, n), draw(-2.0, 2.0, 2)
-        arm = arm_of(lesson, lengths, low=draw(-0.9, -0.3, n), high=draw(0.3, 0.9, n))
+        around = np.append(2.0 * np.pi * draw.whole(0, 1), np.zeros(n - 1))
+        theta, low, high = theta + around, around + draw(-0.9, -0.3, n), around + draw(0.3, 0.9, n)
+        arm = arm_of(lesson, lengths, low=low, high=high)
         got = np.asarray(lesson.ccd_step(reach, theta, target, arm))
         expected = coordinate_descent(theta, target, lengths, arm.low, arm.high)
         close("θ after a sweep between limits [rad]", got, expected, 1e-9,
@@ -487,13 +609,21 @@ def there_and_back(x, target, lengths):
 @exercise("11.14", points=1,
           hint="back: from the target, with the new joint x_k+1; forth: from the base, with the new joint x_k")
 def test_a_sweep_projects_there_and_back(lesson, draw):
-    for d in (2, 3):
-        n = draw.whole(2, 6)
-        x, target = np.cumsum(draw(0.3, 1.0, (n + 1, d)), axis=0), draw(-3.0, 3.0, d)
+    for d, far in ((3, 0.0), (2, 0.0), (2, 20.0)):                            # the last target is out of reach
+        n = draw.whole(3, 6)
+        x, target = np.cumsum(draw(0.3, 1.0, (n + 1, d)), axis=0), far + draw(-3.0, 3.0, d)
         lengths = lengths_of(draw, n)                                         # not what they are before the sweep
         expected = there_and_back(x, target, lengths)
         close("positions after a sweep [m]", lesson.fabrik_sweep(x, target, lengths), expected, ROUND_OFF,
               given=f"joints at {x} m, target {target} m, lengths {lengths} m")
+    size, half = draw(0.5, 2.0), np.sqrt(0.5)                                 # for a target at a joint two points
+    last = np.array([-half, 1.0 - half]) / np.hypot(half, 1.0 - half)         # coincide: point_at goes along axis 0
+    for way, expected in (((1.0, 0.0), ((0.0, 0.0), (1.0, 0.0), (2.0, 0.0))),
+                          ((0.0, 1.0), ((0.0, 0.0), (half, half), (half + last[0], half + last[1])))):
+        x = size * np.outer((0.0, 1.0, 2.0), way)
+        close("positions after a sweep to a target at a joint [m]",
+              lesson.fabrik_sweep(x, x[1].copy(), np.array([size, size])), size * np.array(expected), ROUND_OFF,
+              given=f"joints at {x} m, target {x[1]} m")
 
 
 @exercise("11.14", points=0.5, hint="every link has its length after the sweep, and the base is where it was")
@@ -514,26 +644,39 @@ def test_sweeps_reach_a_target_and_keep_all_lengths(lesson, draw):
 
 @exercise("11.15", points=0.5, hint="a joint inside its limits, or at one but pushed inwards, moves as in damped_step")
 def test_limits_that_stop_nothing_change_nothing(lesson, draw):
-    n = draw.whole(3, 6)
-    lengths, theta, target, damping = lengths_of(draw, n), bent(draw, n), draw(-2.0, 2.0, 2), draw(0.3, 1.0)
-    J, e = slopes(theta, lengths), target - joints(theta, lengths)[-1]
-    wish, free = e @ J, damped(J, e, damping)
-    far = np.full(n, 50.0)
-    for low, high in ((-far, far), (np.where((wish > 0.0) & (free > 0.0), theta, -far),
-                                    np.where((wish < 0.0) & (free < 0.0), theta, far))):
-        got = lesson.limited_step(reach, theta, target, arm_of(lesson, lengths, damping=damping, low=low, high=high))
-        close("θ after a step [rad]", got, theta + free, SOLVED, given=f"θ = {theta}, limits {low} to {high}")
+    for task, count in TASKS:
+        n = draw.whole(3, 6)
+        lengths, theta, damping = lengths_of(draw, n), turned(draw, n), draw(0.5, 1.0)
+        target = draw(-2.0, 2.0, 2 * count)
+        J, e = slopes_of(theta, lengths, count), target - points_of(theta, lengths, count)
+        wish, free = e @ J, damped(J, e, damping)
+        far = np.full(n, 50.0)
+        for low, high in ((-far, far), (np.where((wish > 0.0) & (free > 0.0), theta, -far),
+                                        np.where((wish < 0.0) & (free < 0.0), theta, far))):
+            arm = arm_of(lesson, lengths, damping=damping, low=low, high=high)
+            got = lesson.limited_step(task, theta, target, arm)
+            close("θ after a step [rad]", got, theta + free, SOLVED, given=f"θ = {theta}, limits {low} to {high}")
+    size, far = 2.0 ** draw.whole(-1, 1), draw(0.5, 3.0)                      # θ = 0 and whole numbers: (Jᵀ e)_1 is 0
+    lengths, theta, e = np.full(3, size), np.zeros(3), size * np.array([0.0, far, 0.0, -2.0, 0.0, 1.0])
+    free = damped(slopes_of(theta, lengths, 3), e, size)
+    low, high = np.where(free > 0.0, (-9.0, 0.0, -9.0), -9.0), np.where(free > 0.0, 9.0, (9.0, 0.0, 9.0))
+    arm, target = arm_of(lesson, lengths, damping=size, low=low, high=high), e + points_of(theta, lengths, 3)
+    close("θ after a step, with a joint at its limit that Jᵀ e does not push [rad]",
+          lesson.limited_step(three_points, theta, target, arm), free, SOLVED, given=f"limits {low} to {high}")
 
 
 @exercise("11.15", points=0.5,
-          hint="zeros in the columns of blocked joints, so that the others take over; clip at the end")
+          hint="zeros in the columns of blocked joints, in all rows, so that the others take over; clip at the end")
 def test_blocked_joints_leave_their_work_to_the_others(lesson, draw):
-    for exactly in (True, False, False, False):
+    for (task, count), exactly in zip(6 * TASKS, 4 * [False] + 8 * [True], strict=True):
         n = draw.whole(4, 6)
-        lengths, theta, target, damping = lengths_of(draw, n), bent(draw, n), draw(-2.0, 2.0, 2), draw(0.3, 1.0)
-        J, e = slopes(theta, lengths), target - joints(theta, lengths)[-1]
-        wish, low, high = e @ J, np.full(n, -50.0), np.full(n, 50.0)
-        blocked = np.arange(n) % 2 == draw.whole(0, 1)
+        lengths, theta, damping = lengths_of(draw, n), turned(draw, n), draw(0.5, 1.0)
+        blocked, J, wish = np.arange(n) % 2 == draw.whole(0, 1), slopes_of(theta, lengths, count), np.zeros(n)
+        while not (np.any(wish[blocked] > 0.0) and np.any(wish[blocked] < 0.0)):     # both limits stop a joint
+            target = draw(-2.0, 2.0, 2 * count)
+            e = target - points_of(theta, lengths, count)
+            wish = e @ J
+        low, high = np.full(n, -50.0), np.full(n, 50.0)
         beyond = 0.0 if exactly else draw(0.0, 0.2)                           # a joint may begin outside its limits
         high[blocked & (wish > 0.0)] = theta[blocked & (wish > 0.0)] - beyond
         low[blocked & (wish < 0.0)] = theta[blocked & (wish < 0.0)] + beyond
@@ -543,8 +686,13 @@ def test_blocked_joints_leave_their_work_to_the_others(lesson, draw):
             high[k] = 0.5 * (free[k] + theta[k])
         else:
             low[k] = 0.5 * (free[k] + theta[k])
-        got = lesson.limited_step(reach, theta, target, arm_of(lesson, lengths, damping=damping, low=low, high=high))
-        close("θ after a step [rad]", got, np.clip(free, low, high), SOLVED,
+        near = int(np.argmin(np.where(blocked | (np.arange(n) == k), np.inf, np.arange(n))))
+        if wish[near] > 0.0:                                                  # one that is almost at its limit
+            high[near] = theta[near] + 1e-6
+        else:
+            low[near] = theta[near] - 1e-6
+        arm = arm_of(lesson, lengths, damping=damping, low=low, high=high)
+        close("θ after a step [rad]", lesson.limited_step(task, theta, target, arm), np.clip(free, low, high), SOLVED,
               given=f"θ = {theta}, limits {low} to {high}, target {target} m")
 
 
@@ -565,22 +713,32 @@ def test_it_comes_to_rest_where_no_joint_alone_can_come_nearer(lesson, draw):
 
 @exercise("11.16", points=0.5, hint="z + J⁺ (e − J z) is the same: it cancels the motion of the end due to z")
 def test_the_pull_to_rest_does_not_move_the_end(lesson, draw):
-    n, pull = draw.whole(3, 6), draw(0.2, 1.0)
-    lengths, theta, rest = lengths_of(draw, n), bent(draw, n), draw(-1.0, 1.0, n)
-    J, here = slopes(theta, lengths), joints(theta, lengths)[-1]
-    arm, z = arm_of(lesson, lengths, rest=rest, pull=pull), pull * (rest - theta)
-    for e in (np.zeros(2), draw(-0.5, 0.5, 2)):
-        change = np.asarray(lesson.null_space_step(reach, theta, here + e, arm)) - theta
-        close("J Δθ, the way of the end to first order [m]", J @ change, e, 1e-9, given=f"e = {e} m")
-        shortest = np.linalg.lstsq(J, e - J @ z, rcond=None)[0]               # from z to the nearest Δθ with J Δθ = e
-        close("change of θ [rad]", change, z + shortest, 1e-9, given=f"θ = {theta}, rest {rest}, κ = {pull}")
+    for task, count in TASKS:
+        n, pull = draw.whole(5, 6), draw(0.2, 1.0)
+        lengths, theta, rest = lengths_of(draw, n), turned(draw, n), draw(-5.0, 5.0, n)
+        J, here = slopes_of(theta, lengths, count), points_of(theta, lengths, count)
+        arm, z = arm_of(lesson, lengths, rest=rest, pull=pull, **NARROW), pull * (rest - theta)
+        for e in (np.zeros(2 * count), draw(-0.5, 0.5, 2 * count), draw(3.5, 5.0, 2 * count)):
+            change = np.asarray(lesson.null_space_step(task, theta, here + e, arm)) - theta
+            close("Jᵀ (J Δθ − e), zero where |J Δθ − e| is smallest [m²]", J.T @ (J @ change - e), np.zeros(n), 1e-9,
+                  given=f"e = {e} m")
+            shortest = np.linalg.lstsq(J, e - J @ z, rcond=1e-10)[0]          # from z to the nearest such Δθ
+            close("change of θ [rad]", change, z + shortest, 1e-9, given=f"θ = {theta}, rest {rest}, κ = {pull}")
+    for n in (2, 4):                             # straight but for round-off: no joint moves the end along the arm
+        lengths, theta = lengths_of(draw, n), np.append(draw(-3.0, 3.0), draw(1e-13, 1e-12, n - 1))
+        e, z = draw(-0.5, 0.5, 2), pull * (rest[:n] - theta)
+        sideways, r = np.array([-np.sin(theta[0]), np.cos(theta[0])]), np.cumsum(lengths[::-1])[::-1]
+        arm = arm_of(lesson, lengths, rest=rest[:n], pull=pull, **NARROW)
+        got = lesson.null_space_step(reach, theta, joints(theta, lengths)[-1] + e, arm)
+        close("change of θ of an arm that is straight [rad]", np.asarray(got) - theta,
+              z + r * (sideways @ e - r @ z) / (r @ r), 1e-9, given=f"θ = {theta}, rest {rest[:n]}, e = {e} m")
 
 
 @exercise("11.16", points=0.5, hint="among all angles that reach the target, the arm comes to rest near arm.rest")
 def test_it_ends_on_the_target_as_near_to_rest_as_it_can(lesson, draw):
     lengths, theta = draw(0.8, 1.2, 4), np.append(draw(-1.0, 1.0), draw(0.4, 0.8, 3))
     target, rest = joints(theta, lengths)[-1], theta + draw(-0.15, 0.15, 4)
-    arm = arm_of(lesson, lengths, rest=rest, pull=0.5)
+    arm = arm_of(lesson, lengths, rest=rest, pull=0.5, **NARROW)
     for _ in range(200):
         theta = np.asarray(lesson.null_space_step(reach, theta, target, arm))
     J = slopes(theta, lengths)

@@ -52,7 +52,7 @@ def test_six_joints_find_a_place_and_an_orientation(compiled):
     arm = SPATIAL._replace(damping=0.01)
     found, errors, counts = lesson.solve_targets(lesson.damped_step, lesson.pose_3d, theta, goals, 1e-10, 200, arm)
     assert np.all(errors <= 1e-10) and np.all(counts > 1)
-    for angles, goal in zip(found, goals):
+    for angles, goal in zip(found, goals, strict=True):
         pose = worked.end_pose(angles, SPATIAL)
         assert np.allclose(pose[:3], goal[:3], rtol=0.0, atol=1e-9)
         assert abs(abs(pose[3:] @ goal[3:]) - 1.0) < 1e-12                    # q and −q are the same
@@ -68,7 +68,7 @@ def test_a_pose_that_is_no_pose_of_this_task_is_refused():
 def test_many_targets_are_single_searches_and_a_trajectory_ends_where_the_loop_does():
     theta, goals = np.array([0.2, 0.5, 0.4]), np.array([[0.3, 1.5], [1.2, -0.7]])
     found, errors, counts = worked.solve_targets(worked.ccd_step, worked.reach_2d, theta, goals, 1e-8, 100, FLAT)
-    for goal, angles, error, count in zip(goals, found, errors, counts):
+    for goal, angles, error, count in zip(goals, found, errors, counts, strict=True):
         one = worked.solve_reach(worked.ccd_step, worked.reach_2d, theta, goal, 1e-8, 100, FLAT)
         path = worked.reach_trajectory(worked.ccd_step, worked.reach_2d, theta, goal, count, FLAT)
         assert np.array_equal(one[0], angles) and one[1:] == (error, count)

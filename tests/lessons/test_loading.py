@@ -165,7 +165,7 @@ def test_bad_input_of_a_check_ends_in_one_sentence(told, monkeypatch):
         notebook.mine("integrators")
     said = told(call).splitlines()
     expected = ("1.99", "in quotes", "no/such/folder", "no/such/folder")
-    assert len(said) == 4 and all(words in sentence for words, sentence in zip(expected, said)), said
+    assert len(said) == 4 and all(words in sentence for words, sentence in zip(expected, said, strict=True)), said
 
 
 def test_an_error_without_words_in_a_call_is_named(told):

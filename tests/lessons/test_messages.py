@@ -6,10 +6,10 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from validate import modules, notebook
+from validate import modules, needs, notebook
 
 from ..grading import example, marking, points, sandbox
-from ..grading.expect import LONGEST, NotYet, between, close, numbers, raises, tidy
+from ..grading.expect import LONGEST, NotYet, between, close, instance, numbers, raises, tidy, truth
 
 pytestmark = pytest.mark.xdist_group("checks of a notebook")             # they share a process that forks the checks
 
@@ -79,6 +79,25 @@ def test_what_is_no_such_array_is_named(got, said):
     assert told(close, got, np.zeros(3), 1.0).got == said
 
 
+@pytest.mark.parametrize(("got", "expected", "said"), [
+    (False, True, ("True", "False")), (np.True_, False, ("False", "True")), (0, True, ("True", "False")),
+    (np.zeros(2), False, ("False", "an array of shape (2,)")), (3.0, True, ("True", "a number")),
+    (None, False, ("False", "None: does every path through your function end with a return?"))])
+def test_true_and_false_are_written_as_words(got, expected, said):
+    error = told(truth, got, expected, given="a body")
+    assert (error.expected, error.got, error.given) == (*said, "a body")
+
+
+def test_true_and_one_are_the_same_answer():
+    for got in (True, np.True_, 1, 1.0):
+        truth("quantity", got, True)
+
+
+def test_another_kind_of_thing_is_named():
+    error = told(instance, np.zeros(3), tuple)
+    assert (error.expected, error.got) == ("a tuple", "an array of shape (3,)")
+
+
 class Ball(NamedTuple):
     """A record, as in the lessons."""
     x: np.ndarray
@@ -135,13 +154,13 @@ def printing(lines):
     return example.worked("integrators").replace(BODY, f"{lines}\n    {BODY}", 1)
 
 
-def checked(monkeypatch, tmp_path, text):
-    """The result of a check of the first exercise of that file, as text and as HTML."""
-    (tmp_path / "integrators.py").write_text(text)
+def checked(monkeypatch, tmp_path, text, exercise="1.1", **asked):
+    """The result of a check of an exercise in the file of its lesson with that text, as text and as HTML."""
+    (tmp_path / f"{needs.table()[exercise]['lesson']}.py").write_text(text)
     shown = []
     monkeypatch.setenv("WORKBOOK_LESSONS", str(tmp_path))
     monkeypatch.setattr("validate.notebook.display", shown.append)
-    notebook.check("1.1")
+    notebook.check(exercise, **asked)
     return repr(shown[0]), shown[0]._repr_html_()
 
 
@@ -154,6 +173,35 @@ def test_what_a_function_prints_is_shown_with_the_test_that_failed(monkeypatch, 
 def test_output_of_a_right_function_is_not_shown(monkeypatch, tmp_path):
     text, _ = checked(monkeypatch, tmp_path, printing("print('here')"))
     assert "Exercise 1.1: passed" in text and "here" not in text
+
+
+RATE, FORMULA = "return r / (1.0 + r)", "a heavier upper body makes the convergence slower"      # 9.6, a ★★ exercise
+
+
+def test_a_check_does_not_print_the_formula_that_an_exercise_asks_to_find(monkeypatch, tmp_path):
+    wrong = example.worked("contact").replace(RATE, "return 1.0 / (1.0 + r)", 1)
+    text, html = checked(monkeypatch, tmp_path, wrong, "9.6")
+    assert "quantity" in text and "expected" in text and FORMULA not in text and 'check("9.6", hint=True)' in text
+    assert "<details><summary>show it</summary>" in html.partition(FORMULA)[0]
+    text, html = checked(monkeypatch, tmp_path, wrong, "9.6", hint=True)
+    assert FORMULA in text and "<details><summary>show it" not in html
+
+
+def test_a_hint_on_pythons_error_is_never_folded(monkeypatch, tmp_path):
+    wrong = example.worked("contact").replace(RATE, "return rr / (1.0 + r)", 1)
+    text, html = checked(monkeypatch, tmp_path, wrong, "9.6")
+    assert "a name is misspelt" in text and "<details><summary>show it" not in html
+
+
+def test_a_students_own_error_gives_no_advice_to_the_student(monkeypatch, tmp_path):
+    """The answer to 9.8 raises Diverged with the remedy that its docstring names: that is for whoever calls it."""
+    wrong = example.worked("contact").replace("right[k] = A[k], -b[k]", "right[k] = A[k], b[k]", 1)
+    text, html = checked(monkeypatch, tmp_path, wrong, "9.8")
+    assert "Diverged: complementarity residual" in text and "use projected" not in text + html
+    other = example.worked("contact").replace("    check_scene(x, inv_mass, inv_inertia, contacts, load, mu)\n",
+                                              "    check_scene(x, inv_mass, inv_inertia, contacts, load, -mu)\n", 1)
+    text, _ = checked(monkeypatch, tmp_path, other, "9.11")
+    assert "BadInput" in text and ": give " in text                      # a given function's advice stays
 
 
 @pytest.mark.parametrize("printed", ["'word ' * 100_000", "'\\n'.join(map(str, range(100_000)))"])

@@ -1,7 +1,9 @@
 """The notebooks run from first cell to last with nothing attempted, half done and solved; stored without outputs."""
 
+import ast
 import json
 import re
+import symtable
 from html import escape
 
 import nbformat
@@ -45,6 +47,46 @@ def described(said):
 def test_a_notebook_is_stored_without_outputs(path):
     for cell in nbformat.read(path, as_version=4).cells:
         assert cell.cell_type != "code" or (not cell.outputs and cell.execution_count is None)
+
+
+def names_of(source):
+    """(names that this code assigns, names that it or a function in it takes from outside)"""
+    table = symtable.symtable(source, "cell", "exec")
+    tables = [table]
+    for one in tables:
+        tables += one.get_children()
+    taken = {s.get_name() for one in tables for s in one.get_symbols()
+             if s.is_referenced() and (one is table or s.is_global())}
+    return {s.get_name() for s in table.get_symbols() if s.is_assigned() or s.is_imported()}, taken
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_no_cell_reads_a_name_that_two_cells_before_it_assign(path):
+    """Otherwise a figure depends on which cells were run, and a new cell changes the figures below it.
+
+    Only `lesson` is assigned again and again: it is what the learner has saved last.  Nor may a function read a name
+    that another cell assigns before the function is called.
+    """
+    cells = [cell.source for cell in nbformat.read(path, as_version=4).cells if cell.cell_type == "code"]
+    assigned, taken = zip(*map(names_of, cells), strict=True)
+    for k in range(len(cells)):
+        for name in taken[k] - assigned[k] - {"lesson"}:
+            places = [j for j in range(k) if name in assigned[j]]
+            assert len(places) < 2, f"cell {k} reads {name} of the cells {places}"
+        for function in (node for node in ast.parse(cells[k]).body if isinstance(node, ast.FunctionDef)):
+            for name in names_of(ast.unparse(function))[1] - {"lesson"}:
+                again = [j for j in range(k + 1, len(cells)) if name in assigned[j]]
+                called = [j for j in range(k + 1, len(cells)) if function.name in taken[j] - assigned[j]]
+                assert not again or not called or max(called) < min(again), (
+                    f"{function.name} of cell {k} reads {name}; cell {min(again)} assigns it, cell {max(called)} calls")
+
+
+def test_type_in_a_figure_has_at_least_nine_points():
+    """A figure is at most 12 inches wide, so a page of 1,100 pixels shows these as nine points, too."""
+    for path in (*NOTEBOOKS, *(ROOT / "validate" / "notebook").glob("*.py"),
+                 ROOT / "validate" / "report" / "plots.py"):
+        sizes = re.findall(r"(?:fontsize|labelsize|font_size)\\?\"?[=:] ?\(?([\d.]+)", path.read_text(encoding="utf-8"))
+        assert all(float(size) >= 9.0 for size in sizes), path.name
 
 
 @pytest.mark.parametrize("path", [path for path in NOTEBOOKS if path.stem[:2] != "00"], ids=lambda path: path.stem)

@@ -6,7 +6,7 @@ from scipy.spatial import ConvexHull
 
 from solutions.checks import BadInput, Diverged
 
-from ..grading.expect import between, close, raises
+from ..grading.expect import between, close, raises, truth
 from .brute import solid
 
 exercise = pytest.mark.exercise
@@ -46,7 +46,7 @@ def visited_in_order(goal, p, dt, soft):
     """Positions after p.sweeps sweeps over the links in their order, each with its own Λ, written out."""
     y, Lam = goal.copy(), np.zeros(len(p.i))
     for _ in range(p.sweeps):
-        for s, (i, j) in enumerate(zip(p.i, p.j)):
+        for s, (i, j) in enumerate(zip(p.i, p.j, strict=True)):
             r, w = y[i] - y[j], p.inv_mass[i] + p.inv_mass[j]
             C, give = np.linalg.norm(r) - p.rest[s], p.alpha[s] / dt**2
             change = (-C - give * Lam[s]) / (w + give) if soft else -p.stiffness[s] * C / w
@@ -94,7 +94,7 @@ def lengths(x, p):
 
 def a_new_array(quantity, got, given):
     """What a function returns must not be the array that it was given, or a caller's change would change both."""
-    close(f"{quantity}: shared with the input (0: no)", float(np.shares_memory(np.asarray(got), given)), 0.0, 0.0)
+    truth(f"whether this is the array that was handed in: {quantity}", np.shares_memory(np.asarray(got), given), False)
 
 
 @exercise("8.1", points=0.25,
@@ -806,7 +806,8 @@ def test_springs_are_visited_one_after_the_other(lesson, draw):
         close("positions of a tiny network, over its size [-]", np.asarray(small) / size, np.asarray(new, dtype=float),
               1e-11, given=f"size {size} m")
     none = p._replace(i=p.i[:0], j=p.j[:0], rest=p.rest[:0], alpha=p.alpha[:0], stiffness=p.stiffness[:0])
-    for name, got, given in zip(("x", "Λ"), lesson.compliant_sweep(x, np.zeros(0), dt, none), (x, np.zeros(0))):
+    swept = lesson.compliant_sweep(x, np.zeros(0), dt, none)
+    for name, got, given in zip(("x", "Λ"), swept, (x, np.zeros(0)), strict=True):
         a_new_array(f"{name} of a network without links", got, given)
     for invalid in (-draw(0.001, 0.1), np.nan):
         raises("an invalid compliance", BadInput, lesson.compliant_sweep, x, np.zeros(2), dt,

@@ -17,7 +17,7 @@ def size(y):
 
 # 6.1 ------------------------------------------------------------------------------------------------------------
 @variants
-def distance(f=lambda p, plane: sum(a * b for a, b in zip(plane.n, p)) + plane.d):
+def distance(f=lambda p, plane: sum(a * b for a, b in zip(plane.n, p, strict=True)) + plane.d):
     def plane_distance(p, plane):
         return f(p, plane)
     return plane_distance
@@ -274,7 +274,7 @@ def on_triangle(edges=3, inside=True, clamp=True, checked=True, flat=worked.DEGE
         N = np.cross(b - a, c - a)
         longest = max(size(corners[k] - corners[k - 1]) for k in range(3))
         if checked and size(N) <= flat * (1.0 if absolute else longest**2):
-            raise BadInput("a triangle", size(N), "give one with an area")
+            raise BadInput("the area of a triangle [m²]", 0.5 * size(N), "give one with an area")
         q = p - (p - a) @ N / (N @ N) * N
         if inside and all(np.cross(corners[(k + 1) % 3] - corners[k], q - corners[k]) @ N >= 0.0 for k in range(3)):
             return q
@@ -293,6 +293,7 @@ wrong("6.7", "accepts a triangle without area")(on_triangle(checked=False))
 FIRST_TWO = "nearer(p, closest_on_segment(p, a, b), closest_on_segment(p, b, c))"
 THREE_EDGES = f"nearer(p, {FIRST_TWO}, closest_on_segment(p, c, a))"
 OUTSIDE = "closest_on_segment(p, {0}, {1}) if dot(cross({1} - {0}, q - {0}), N) < 0.0 else "
+edit("6.7", "names |N| in the error, which is twice the area", "[m²]\", area", "[m²]\", 2.0 * area")
 edit("6.7", "refuses small inputs", "DEGENERATE_AREA * longest", "1e-9")
 edit("6.7", "compares the area with an absolute 1e-12 m²", "DEGENERATE_AREA * longest", "DEGENERATE_AREA")
 edit("6.7", "compares |N| with a length, not with an area",
@@ -605,13 +606,13 @@ edit("6.13", "adds the whole edge vector", "s_i / (s_i - s_j) * (y[j] - y[i])", 
 def boxes(axes=range(15), room=worked.EDGE_PREFERENCE, sign=1.0, width=worked.half_width, choose=lambda new,
           old: new > old, fixed=False):
     def box_separation(a, b):
-        r, best = a.x - b.x, None
+        r, best, size = a.x - b.x, None, max(*a.half, *b.half)
         for k in axes:
             n = worked.candidate_axis(a, b, k)
             if not np.any(n):
                 continue
             gap = abs(float(r @ n)) - width(a, n) - width(b, n)
-            if best is None or choose(gap, best[0] + (room if k >= 6 else 0.0)):
+            if best is None or choose(gap, best[0] + (room * size if k >= 6 else 0.0)):
                 best = gap, n, k
         gap, n, k = best
         return gap, n if fixed else (sign if n @ r >= 0.0 else -sign) * n, k
@@ -625,15 +626,19 @@ wrong("6.14", "returns a normal that points from a to b")(boxes(sign=-1.0))
 wrong("6.14", "does not orient the axis")(boxes(fixed=True))
 wrong("6.14", "takes the last one of equal axes")(boxes(choose=lambda new, old: new >= old))
 edit("6.14", "accepts zero axes", "dot(axis, axis) > 0.0", "dot(axis, axis) >= 0.0")
-edit("6.14", "prefers no face over an edge", "EDGE_PREFERENCE if k >= 6", "0.0 if k >= 6")
+edit("6.14", "prefers no face over an edge", "ahead if k >= 6", "0.0 if k >= 6")
 edit("6.14", "prefers a face unless an edge separates by a twentieth more",
-     "EDGE_PREFERENCE if k >= 6", "0.05 * abs(greatest) if k >= 6")
-edit("6.14", "prefers a face unless an edge separates by 1 µm more", "EDGE_PREFERENCE if k >= 6", "1e-6 if k >= 6")
-edit("6.14", "prefers a face unless an edge separates by 1 pm more", "EDGE_PREFERENCE if k >= 6", "1e-12 if k >= 6")
-edit("6.14", "prefers a face by a part of the gap, not by EDGE_PREFERENCE",
-     "EDGE_PREFERENCE if k >= 6", "1e-9 * abs(greatest) if k >= 6")
+     "ahead if k >= 6", "0.05 * abs(greatest) if k >= 6")
+edit("6.14", "prefers a face unless an edge separates by 1 nm more, however small the boxes are",
+     "ahead if k >= 6", "1e-9 if k >= 6")
+edit("6.14", "prefers a face unless an edge separates by 1 pm more", "ahead if k >= 6", "1e-12 if k >= 6")
+edit("6.14", "prefers a face by a part of the gap, not of the size",
+     "ahead if k >= 6", "1e-9 * abs(greatest) if k >= 6")
+edit("6.14", "takes the longest half edge of a alone", "np.maximum(np.max(a.half), np.max(b.half))", "np.max(a.half)")
+edit("6.14", "takes the shortest half edge of each box",
+     "np.maximum(np.max(a.half), np.max(b.half))", "np.maximum(np.min(a.half), np.min(b.half))")
 edit("6.14", "requires no advantage of an edge over another edge",
-     "EDGE_PREFERENCE if k >= 6", "EDGE_PREFERENCE if k >= 6 and number < 6")
+     "ahead if k >= 6", "ahead if k >= 6 and number < 6")
 edit("6.14", "forgets the last axis", "range(15)", "range(14)")
 edit("6.14", "takes the first axis that separates", "not gap <= greatest +", "greatest <= 0.0 and gap > greatest +")
 edit("6.14", "tests edges only where no face separates",
@@ -642,7 +647,7 @@ edit("6.14", "takes the axis whose gap is nearest to zero", "not gap <= greatest
 wrong("6.14", "takes the axis with the least gap")(boxes(choose=lambda new, old: new < old))
 wrong("6.14", "takes the longest half edge for the half width")(boxes(width=lambda box, n: float(np.max(box.half))))
 edit("6.14", "starts the maximum at −1e6 m, not at minus infinity", "-np.inf", "-1e6")
-edit("6.14", "requires an advantage for faces, too", "EDGE_PREFERENCE if k >= 6 else 0.0", "EDGE_PREFERENCE")
+edit("6.14", "requires an advantage for faces, too", "ahead if k >= 6 else 0.0", "ahead")
 edit("6.14", "adds the half widths",
      "- half_width(a, axis) - half_width(b, axis)", "+ half_width(a, axis) + half_width(b, axis)")
 edit("6.14", "forgets the half width of b", "- half_width(b, axis)", "")
@@ -685,7 +690,6 @@ edit("6.15", "returns a corner of each hull in place of the closest points", "we
      "p[0], 0.0, q[0], 0.0")
 edit("6.15", "stops after eight iterations", "range(MAX_GJK_STEPS)", "range(8)")
 edit("6.15", "stops after twelve iterations", "range(MAX_GJK_STEPS)", "range(12)")
-edit("6.15", "stops after twenty iterations", "range(MAX_GJK_STEPS)", "range(20)")
 edit("6.15", "treats a distance below 1e-15 m as overlap", "if far_enough(", "if v @ v < 1e-30 or far_enough(")
 edit("6.15", "stops while the bounds still differ", "if far_enough(v, a[i] - b[j])",
      "if v @ v - v @ (a[i] - b[j]) < 1e-26")

@@ -23,7 +23,7 @@ def unit(y):
 # 3.1 ------------------------------------------------------------------------------------------------------------
 @right("3.1", "one by one")
 def normal_force(F, n):
-    total = sum(-a * b for a, b in zip(F, n))
+    total = sum(-a * b for a, b in zip(F, n, strict=True))
     return total if total > 0.0 else 0.0
 
 

@@ -696,11 +696,11 @@ edit("7.16", "flies with zero acceleration", "free_flight(x, v, a, tau)", "free_
 
 
 # 7.17 -----------------------------------------------------------------------------------------------------------
-JAMMED = "most_dissipative_impact(contact_matrix, cone_impulse, apply_impulse, body, r, n, e, mu)"
+JAMMED = "settle_impacts(contact_matrix, cone_impulse, apply_impulse, body, r, n, e, mu)"
 
 
 def no_answer(*impact):
-    return worked.most_dissipative_impact(worked.contact_matrix, worked.cone_impulse, worked.apply_impulse, *impact)
+    return worked.settle_impacts(worked.contact_matrix, worked.cone_impulse, worked.apply_impulse, *impact)
 
 
 @variants

@@ -14,7 +14,7 @@ wrong, right, edit, MUTANTS = collection(worked)
 @right("4.1", "pair by pair, each centre on the line between two")
 def centre_of_mass(m, x):
     M, X = m[0], x[0]
-    for k, y in zip(m[1:], x[1:]):
+    for k, y in zip(m[1:], x[1:], strict=True):
         M = M + k
         X = X + k / M * (y - X) if M != 0.0 else X
     check_positive("total mass [kg]", M)
@@ -43,7 +43,7 @@ edit("4.1", "multiplies by the total mass", "m @ x / M", "m @ x * M")
 @right("4.2", "mass by mass")
 def linear_momentum(m, v):
     P = np.zeros(3)
-    for k, w in zip(m, v):
+    for k, w in zip(m, v, strict=True):
         P = P + k * w
     return P
 
@@ -87,7 +87,7 @@ edit("4.3", "takes the dot product in every component", "cross(x[n] - about, v[n
 @right("4.4", "minus the squared cross-product matrices")
 def point_mass_inertia(m, r):
     I = np.zeros((3, 3))
-    for k, (x, y, z) in zip(m, r):
+    for k, (x, y, z) in zip(m, r, strict=True):
         K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
         I += k * K.T @ K
     return I
@@ -326,7 +326,7 @@ def carried(offset=lambda y, X: y - X, body=lambda M, X, I: worked.MassPropertie
     """The parts' tensors, each shifted by offset(x, X)."""
     def combine(m, x, I):
         M, X = worked.centre_of_mass(m, x)
-        return body(M, X, sum(worked.parallel_axes(J, k, offset(y, X)) for k, y, J in zip(m, x, I)))
+        return body(M, X, sum(worked.parallel_axes(J, k, offset(y, X)) for k, y, J in zip(m, x, I, strict=True)))
     return combine
 
 
@@ -356,7 +356,7 @@ def one_by_one(centre=lambda m, x: (np.sum(m), m @ x / np.sum(m))):
     def combine(m, x, I):
         worked.centre_of_mass(m, x)
         M, X, whole = m[0], x[0], I[0]
-        for k, y, J in zip(m[1:], x[1:], I[1:]):
+        for k, y, J in zip(m[1:], x[1:], I[1:], strict=True):
             both, middle = centre(np.array([M, k]), np.stack((X, y)))
             whole = worked.parallel_axes(whole, M, X - middle) + worked.parallel_axes(J, k, y - middle)
             M, X = both, middle
@@ -526,12 +526,12 @@ def closing(ranged=True, directed=True, counted=True, twice=True, spare=True, na
         if ranged and not 0 <= faces.min() <= faces.max() < count:
             raise BadInput("a triangle's corner", next(k for k in faces.ravel() if not 0 <= k < count),
                            "give a number of a corner")
-        every = [(int(i), int(j)) for f in faces for i, j in zip(f, np.roll(f, -1))]
+        every = [(int(i), int(j)) for f in faces for i, j in zip(f, np.roll(f, -1), strict=True)]
         either = [tuple(sorted(edge)) for edge in every]
         if directed:
             there = [number(i, j, faces) for i, j in every]
             back = [number(j, i, faces) for i, j in every]
-            alone = [edge for edge, i, j in zip(every, there, back)
+            alone = [edge for edge, i, j in zip(every, there, back, strict=True)
                      if (there.count(i) != there.count(j) if counted else j not in there)]
         else:
             alone = [edge for edge in either if either.count(edge) % 2]

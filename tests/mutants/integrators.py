@@ -66,7 +66,7 @@ def runge_kutta(nodes=(0, 0.5, 0.5, 1), weights=(1 / 6, 1 / 3, 1 / 3, 1 / 6)):
     """A Runge–Kutta method from its table: each stage starts nodes · dt along the slope of the one before."""
     def step(acceleration, t, x, v, dt, p):
         slope, total_x, total_v = (v, acceleration(t, x, v, p)), 0.0, 0.0
-        for c, w in zip(nodes, weights):
+        for c, w in zip(nodes, weights, strict=True):
             v_c = v + c * dt * slope[1]
             slope = v_c, acceleration(t + c * dt, x + c * dt * slope[0], v_c, p)
             total_x, total_v = total_x + w * slope[0], total_v + w * slope[1]
@@ -174,7 +174,7 @@ edit("1.6", "takes the new acceleration in the middle of the step", "acceleratio
 
 # 1.7 ------------------------------------------------------------------------------------------------------------
 @variants
-def implicit_euler(time=1.0, place=1.0, enough=lambda k, delta, w: delta <= 1e-12 * max(1.0, np.max(np.abs(w))),
+def implicit_euler(time=1.0, place=1.0, enough=lambda k, delta, w, rest: delta <= 1e-12 * np.max(np.abs(w)) + rest,
                    silent=False):
     """Newton's method with an acceleration, a stopping test or an end that may be wrong."""
     def implicit_euler_step(acceleration, t, x, v, dt, p):
@@ -183,7 +183,7 @@ def implicit_euler(time=1.0, place=1.0, enough=lambda k, delta, w: delta <= 1e-1
             r = w - v - dt * acceleration(t + time * dt, x + place * dt * w, w, p)
             delta = np.linalg.solve(worked.newton_matrix(acceleration, t + dt, x, w, dt, p), r.ravel()).reshape(v.shape)
             w = w - delta
-            if enough(k, np.max(np.abs(delta)), w):
+            if enough(k, np.max(np.abs(delta)), w, worked.velocity_round_off(x, v, dt)):
                 return x + dt * w, w
         if silent:
             return x + dt * w, w
@@ -195,9 +195,13 @@ right("1.7", "with a stopping test")(implicit_euler())
 wrong("1.7", "takes the acceleration at the old time")(implicit_euler(time=0.0))
 wrong("1.7", "takes the acceleration at the old position")(implicit_euler(place=0.0))
 wrong("1.7", "never raises: returns the last iterate")(implicit_euler(silent=True))
-wrong("1.7", "takes one Newton iteration only")(implicit_euler(enough=lambda k, delta, w: True))
+wrong("1.7", "takes one Newton iteration only")(implicit_euler(enough=lambda k, delta, w, rest: True))
 wrong("1.7", "stops iterating while the correction is still large")(
-    implicit_euler(enough=lambda k, delta, w: delta <= 0.1))
+    implicit_euler(enough=lambda k, delta, w, rest: delta <= 0.1 * np.max(np.abs(w))))
+wrong("1.7", "compares the correction with 1e-12 m/s, however fast the body is")(
+    implicit_euler(enough=lambda k, delta, w, rest: delta <= 1e-12 + rest))
+wrong("1.7", "compares the correction with 1 m/s or more, however slow the body is")(
+    implicit_euler(enough=lambda k, delta, w, rest: delta <= 1e-12 * max(1.0, np.max(np.abs(w))) + rest))
 edit("1.7", "takes a symplectic Euler step and solves no equation", "w = v.copy()",
      "w = v + dt * acceleration(t, x, v, p); return x + dt * w, w")
 edit("1.7", "evaluates the matrix at x + dt w, where newton_matrix adds dt w once more",
@@ -218,7 +222,7 @@ def implicit_euler_step(acceleration, t, x, v, dt, p):
         return (w - v - dt * acceleration(t + dt, x + dt * w, w, p)).ravel()
 
     found = root(residual, v.ravel(), tol=1e-13)
-    if np.max(np.abs(found.fun)) > 1e-10:
+    if np.max(np.abs(found.fun)) > 1e-10 * np.max(np.abs(found.x)):
         raise Diverged("Newton's method did not converge at dt [s]", dt, "take a smaller step")
     w = found.x.reshape(v.shape)
     return x + dt * w, w
@@ -282,7 +286,7 @@ edit("1.9", "exchanges position and velocity in both starts",
 # 1.10 -----------------------------------------------------------------------------------------------------------
 @right("1.10", "polyfit")
 def observed_order(dts, errors):
-    for dt, error in zip(dts, errors):
+    for dt, error in zip(dts, errors, strict=True):
         check_positive("step dt [s]", dt)
         check_positive("error [-]", error)
     return np.polyfit(np.log(dts), np.log(errors), 1)[0]

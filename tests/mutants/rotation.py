@@ -419,7 +419,7 @@ def midpoint(gyro=1.0, newton=True, enough=lambda n, change, m: change <= 1e-12 
         m = start.copy()
         for n in range(worked.NEWTON_LIMIT):
             r = m - start - half * np.cross(m, m / I_body)
-            slope = [e + half * np.cross(m / I_body - m / I, e) for e, I in zip(np.eye(3), I_body)]
+            slope = [e + half * np.cross(m / I_body - m / I, e) for e, I in zip(np.eye(3), I_body, strict=True)]
             delta = np.linalg.solve(np.stack(slope, axis=1), r) if newton else r
             m = m - delta
             if enough(n, np.max(np.abs(delta)), m):

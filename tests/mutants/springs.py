@@ -22,9 +22,16 @@ def universal_gravity(x_a, x_b, m_a, m_b, G):
 edit("2.1", "accepts coincident bodies", 'check_positive("distance of two bodies [m]", distance)', "pass")
 edit("2.1", "reverses the force, so that the bodies repel each other", "return G", "return -G")
 edit("2.1", "divides the vector r by |r|², not by |r|³", "distance**3", "distance**2")
-edit("2.1", "returns the acceleration of b, not a force", "G * m_a * m_b", "G * m_b")
+edit("2.1", "forgets the mass of a: returns the acceleration of a", "G * m_a * m_b", "G * m_b")
 edit("2.1", "forgets G", "G * m_a", "m_a")
-edit("2.1", "forgets the mass of b", "m_a * m_b", "m_a")
+edit("2.1", "forgets the mass of b: returns minus the acceleration of b", "m_a * m_b", "m_a")
+edit("2.1", "multiplies with r and divides by |r| once", "distance**3", "distance")
+edit("2.1", "returns the size of the force", "distance**3 * r", "distance**2")
+edit("2.1", "multiplies by G twice", "return G", "return G * G")
+edit("2.1", "uses the mass of a twice", "m_a * m_b", "m_a * m_a")
+edit("2.1", "uses the constant G of the module, not the argument", "return G", "return 6.67430e-11")
+edit("2.1", "returns no force for bodies at the same place", 'check_positive("distance of two bodies [m]", distance)',
+     "distance = distance or np.inf")
 edit("2.1", "adds the masses in place of multiplying them", "m_a * m_b", "(m_a + m_b)")
 edit("2.1", "divides by one power of the distance too many", "distance**3", "distance**4")
 
@@ -42,6 +49,12 @@ edit("2.2", "divides by the viscosity", "wind - k_v * v", "-k_v * (v - wind / k_
 edit("2.2", "subtracts the wind", "wind - k_v * v", "-wind - k_v * v")
 edit("2.2", "omits the wind", "wind - k_v * v", "-k_v * v")
 edit("2.2", "omits the viscosity", "wind - k_v * v", "wind - 0.0 * v")
+edit("2.2", "uses the size of the velocity", "k_v * v", "k_v * np.abs(v)")
+edit("2.2", "squares the velocity", "k_v * v", "k_v * v**2")
+edit("2.2", "divides the velocity by the viscosity", "k_v * v", "v / k_v if k_v else 0.0 * v")
+edit("2.2", "normalises the velocity", "k_v * v", "k_v * v / (np.sqrt(np.sum(v * v)) + 1e-300)")
+edit("2.2", "adds up the forces on all points", "return wind - k_v * v", "return np.sum(wind - k_v * v, axis=0)")
+edit("2.2", "changes its input", "return wind - k_v * v", "v *= -k_v; return wind + v")
 edit("2.2", "reverses both forces", "wind - k_v * v", "k_v * v - wind")
 
 
@@ -55,7 +68,7 @@ edit("2.3", "reverses the spring, so that it pushes when it is stretched", "leng
 edit("2.3", "reverses the damper's sign, so that it drives the motion", "+ k_d * rate", "- k_d * rate")
 edit("2.3", "uses the strain in place of the extension", "(length - rest)", "(length - rest) / rest")
 edit("2.3", "never pushes, as a rope", "k * (length - rest) + k_d * rate", "max(0.0, k * (length - rest) + k_d * rate)")
-edit("2.3", "gives the damping the sign of the extension, not of its rate",
+edit("2.3", "lets the damper depend on the extension",
      "k_d * rate", "k_d * abs(rate) * np.sign(length - rest)")
 edit("2.3", "exchanges k and k_d", "k * (length - rest) + k_d * rate", "k_d * (length - rest) + k * rate")
 edit("2.3", "omits the rest length", "(length - rest)", "length")
@@ -63,6 +76,13 @@ edit("2.3", "omits the damper", "+ k_d * rate", "+ 0.0 * rate")
 edit("2.3", "reverses the whole tension",
      "return k * (length - rest) + k_d * rate", "return -(k * (length - rest) + k_d * rate)")
 edit("2.3", "never pulls", "k * (length - rest) + k_d * rate", "min(0.0, k * (length - rest) + k_d * rate)")
+edit("2.3", "limits the spring, not the whole tension, as a rope", "k * (length - rest)", "k * max(0.0, length - rest)")
+edit("2.3", "takes the size of the extension", "(length - rest)", "abs(length - rest)")
+edit("2.3", "returns the energy of the spring", "k * (length - rest)", "0.5 * k * (length - rest)**2")
+edit("2.3", "halves the stiffness", "k * (length - rest)", "0.5 * k * (length - rest)")
+edit("2.3", "lets the damper depend on the extension", "k_d * rate", "k_d * rate * (length > rest)")
+edit("2.3", "makes the damping grow with the square of the rate", "k_d * rate", "k_d * rate * abs(rate)")
+edit("2.3", "multiplies the damper by k, too", "k * (length - rest) + k_d * rate", "k * (length - rest + k_d * rate)")
 edit("2.3", "adds the rest length", "length - rest", "length + rest")
 
 
@@ -83,6 +103,15 @@ edit("2.4", "reverses the damper", "k_d * C_rate", "-k_d * C_rate")
 edit("2.4", "reverses the spring", "(k * C +", "(-k * C +")
 edit("2.4", "exchanges k and k_d", "k * C + k_d * C_rate", "k_d * C + k * C_rate")
 edit("2.4", "takes the size of C", "k * C", "k * abs(C)")
+edit("2.4", "forgets the gradient", " * gradient", "")
+edit("2.4", "multiplies only the spring by the gradient", "-(k * C + k_d * C_rate) * gradient",
+     "-(k * C * gradient + k_d * C_rate)")
+edit("2.4", "squares the gradient", "* gradient", "* gradient**2")
+edit("2.4", "divides by the square of the gradient", "* gradient", "* gradient / (gradient @ gradient)")
+edit("2.4", "squares C", "k * C +", "k * C**2 +")
+edit("2.4", "halves the stiffness", "k * C +", "0.5 * k * C +")
+edit("2.4", "applies the force only where C is negative", "* gradient", "* gradient * (C < 0.0)")
+edit("2.4", "multiplies the damper by C, too", "(k * C + k_d * C_rate)", "(k + k_d * C_rate) * C")
 edit("2.4", "omits the spring", "k * C +", "")
 
 
@@ -109,6 +138,15 @@ edit("2.5", "omits the damper", "+ k_d * C_rate", "")
 edit("2.5", "forgets the minus sign, so that nothing is left above zero", "-(k * C", "(k * C")
 edit("2.5", "takes the smaller of the two in place of the larger", "np.maximum", "np.minimum")
 edit("2.5", "exchanges k and k_d", "k * C + k_d * C_rate", "k_d * C + k * C_rate")
+edit("2.5", "limits each component of the force, not its size",
+     "np.maximum(0.0, -(k * C + k_d * C_rate)) * gradient", "np.maximum(0.0, -(k * C + k_d * C_rate) * gradient)")
+edit("2.5", "damps only points that sink", "k_d * C_rate", "k_d * min(0.0, C_rate)")
+edit("2.5", "applies a force only to points that sink",
+     "return np.maximum(0.0", "return (C_rate < 0.0) * np.maximum(0.0")
+edit("2.5", "takes the size of the force", "np.maximum(0.0, -(k * C + k_d * C_rate))", "abs(k * C + k_d * C_rate)")
+edit("2.5", "normalises the gradient", "k_d * C_rate)) * gradient",
+     "k_d * C_rate)) * gradient / np.sqrt(gradient @ gradient)")
+edit("2.5", "returns the gradient above the surface", "return 0.0 * gradient", "return gradient")
 edit("2.5", "reverses the force", "return np.maximum(0.0", "return -np.maximum(0.0")
 
 
@@ -156,6 +194,22 @@ edit("2.6", "gives a the same sign as c", "push_a, push_c = k * turn", "push_a, 
 edit("2.6", "forgets the rest angle", "theta - rest", "theta")
 edit("2.6", "forgets the factor k",
      "k * turn / squared_a, -k * turn / squared_c", "turn / squared_a, -turn / squared_c")
+edit("2.6", "brings the angle into [−π, π), where −π is not allowed", "np.ceil((turn - np.pi) / (2.0 * np.pi))",
+     "np.floor((turn + np.pi) / (2.0 * np.pi))")
+edit("2.6", "brings the angle into [0, 2π)",
+     "np.ceil((turn - np.pi) / (2.0 * np.pi))", "np.floor(turn / (2.0 * np.pi))")
+edit("2.6", "adds or subtracts one full turn at most", "turn -= 2.0 * np.pi * np.ceil((turn - np.pi) / (2.0 * np.pi))",
+     "turn = turn - 2.0 * np.pi * ((turn > np.pi) * 1.0 - (turn <= -np.pi))")
+edit("2.6", "uses the arccosine, which has no sign",
+     "np.arctan2(r_a[0] * r_c[1] - r_a[1] * r_c[0], r_a[0] * r_c[0] + r_a[1] * r_c[1])",
+     "np.arccos((r_a[0] * r_c[0] + r_a[1] * r_c[1]) / np.sqrt(squared_a * squared_c))")
+edit("2.6", "forgets the lengths of the arms", "k * turn / squared_a, -k * turn / squared_c", "k * turn, -k * turn")
+edit("2.6", "gives c the same sign as a", "-k * turn / squared_c", "k * turn / squared_c")
+edit("2.6", "exchanges the lengths of the arms", "k * turn / squared_a, -k * turn / squared_c",
+     "k * turn / squared_c, -k * turn / squared_a")
+edit("2.6", "halves the force on a", "push_a, push_c = k * turn", "push_a, push_c = 0.5 * k * turn")
+edit("2.6", "pushes a along its arm", "np.array([-push_a * r_a[1], push_a * r_a[0]])", "push_a * r_a")
+edit("2.6", "names another length in the error", 'angular spring [m]", 0.0', 'angular spring [m]", 1.0')
 edit("2.6", "uses degrees in place of radians", "turn = theta - rest", "turn = np.degrees(theta - rest)")
 
 
@@ -212,6 +266,17 @@ edit("2.7", "pushes with the tension per length squared",
 edit("2.7", "omits the damper's rate", "length, rate, network.rest[s]", "length, 0.0, network.rest[s]")
 edit("2.7", "exchanges k and k_d", "network.k[s], network.k_d[s])", "network.k_d[s], network.k[s])")
 edit("2.7", "exchanges length and rest length", "length, rate, network.rest[s]", "network.rest[s], rate, length")
+edit("2.7", "adds gravity", "return force", "return force + network.gravity")
+edit("2.7", "uses the stiffness of the first spring for all springs", "network.k[s]", "network.k[0]")
+edit("2.7", "uses the rest length of the first spring for all springs", "network.rest[s]", "network.rest[0]")
+edit("2.7", "uses the damper of the first spring for all springs", "network.k_d[s]", "network.k_d[0]")
+edit("2.7", "leaves out the last spring", "range(network.i.size)", "range(network.i.size - 1)")
+edit("2.7", "leaves out a spring of zero length",
+     'raise BadInput("the length of a spring [m]", 0.0, "keep its ends apart")',
+     "continue")
+edit("2.7", "never pushes, as a rope", "move_apart(force", "T = max(T, 0.0); move_apart(force")
+edit("2.7", "divides by the mass", "return force", "return force * network.inv_mass[:, None]")
+edit("2.7", "uses the velocity of one end for the rate", "product_between(x, v, i, j)", "np.sum((x[j] - x[i]) * v[j])")
 edit("2.7", "exchanges length and rate", "length, rate, network.rest[s]", "rate, length, network.rest[s]")
 
 
@@ -243,6 +308,13 @@ wrong("2.8", "reverses the forces of the springs")(newton(springs=lambda f, inv_
 edit("2.8", "treats heavy points as fixed", "network.inv_mass[n] > 0.0", "network.inv_mass[n] > 0.1")
 edit("2.8", "subtracts gravity", "network.gravity[c] + (", "-network.gravity[c] + (")
 edit("2.8", "subtracts the force of the air", "force[n, c] + air", "force[n, c] - air")
+edit("2.8", "forgets the wind", "network.wind[c], network.k_v", "0.0, network.k_v")
+edit("2.8", "forgets the viscosity", "network.wind[c], network.k_v", "network.wind[c], 0.0")
+edit("2.8", "forgets the dampers", "spring_forces(x, v,", "spring_forces(x, 0.0 * v,")
+edit("2.8", "uses the mass of the first point for all", "* network.inv_mass[n]", "* network.inv_mass[0]")
+edit("2.8", "uses g near the ground, not the gravity of the network", "network.gravity[c]",
+     "(-9.81 if c == x.shape[1] - 1 else 0.0)")
+edit("2.8", "forgets the mass in all forces", ") * network.inv_mass[n]", ")")
 edit("2.8", "omits the springs", "(force[n, c] + air)", "air")
 
 
@@ -270,6 +342,23 @@ def mass_spring_damper_step(t, x, v, dt, network):
 edit("2.9", "changes its input", "average_velocity_step(spring_network_acceleration, t, x, v, dt, network)",
      "average_velocity_step(spring_network_acceleration, t, x, v, dt, network)[0], "
      "np.add(v, dt * spring_network_acceleration(t, x, v, network), out=v)")
+AVERAGE = "average_velocity_step(spring_network_acceleration, t, x, v, dt, network)"
+edit("2.9", "forgets the half in the mean velocity", "return " + AVERAGE,
+     "w = v + dt * spring_network_acceleration(t, x, v, network); return x + dt * (v + w), w")
+edit("2.9", "uses dt in place of dt² beside a", "return " + AVERAGE,
+     "a = spring_network_acceleration(t, x, v, network); return x + dt * (v + 0.5 * a), v + dt * a")
+edit("2.9", "forgets dt in the velocity", "return " + AVERAGE,
+     "a = spring_network_acceleration(t, x, v, network); return x + dt * (v + 0.5 * dt * a), v + a")
+edit("2.9", "stops fixed points that move", "return " + AVERAGE,
+     "y, w = " + AVERAGE + "; held = network.inv_mass == 0.0; y[held] = x[held]; w[held] = 0.0; return y, w")
+edit("2.9", "holds fixed points where they are", "return " + AVERAGE,
+     "y, w = " + AVERAGE + "; held = network.inv_mass == 0.0; y[held] = x[held]; return y, w")
+edit("2.9", "returns v first", "return " + AVERAGE, "return " + AVERAGE + "[::-1]")
+edit("2.9", "returns x only", "return " + AVERAGE, "return " + AVERAGE + "[0]")
+edit("2.9", "takes two half steps", "return " + AVERAGE, "x, v = " + AVERAGE.replace("dt", "0.5 * dt")
+     + "; return " + AVERAGE.replace("dt", "0.5 * dt"))
+edit("2.9", "lets all points fall freely", "return " + AVERAGE,
+     "return x + dt * v + 0.5 * dt**2 * network.gravity, v + dt * network.gravity")
 edit("2.9", "exchanges x and v", "t, x, v, dt, network)", "t, v, x, dt, network)")
 
 
@@ -316,6 +405,14 @@ edit("2.10", "runs rows over the columns and columns over the rows",
 edit("2.10", "subtracts the offset", "(r + dr) * cols + c + dc)]", "(r - dr) * cols + c - dc)]")
 edit("2.10", "returns the second node first",
      "(r * cols + c, (r + dr) * cols + c + dc)]", "((r + dr) * cols + c + dc, r * cols + c)]")
+edit("2.10", "does not test for rows", "0 <= r + dr < rows and ", "")
+edit("2.10", "does not test for columns", " and 0 <= c + dc < cols", "")
+edit("2.10", "begins to count at 1",
+     "(r * cols + c, (r + dr) * cols + c + dc)]", "(r * cols + c + 1, (r + dr) * cols + c + dc + 1)]")
+edit("2.10", "leaves out the last row", "for r in range(rows)", "for r in range(rows - 1)")
+edit("2.10", "puts the smaller number first", "return np.array(pairs, dtype=np.int64).reshape(-1, 2)",
+     "return np.sort(np.array(pairs, dtype=np.int64).reshape(-1, 2), axis=1)")
+edit("2.10", "returns the transpose", ".reshape(-1, 2)", ".reshape(-1, 2).T")
 edit("2.10", "loops over the columns first",
      "for r in range(rows) for c in range(cols)", "for c in range(cols) for r in range(rows)")
 
@@ -326,7 +423,7 @@ def blocks(sideways=lambda stretch: max(0.0, stretch), along=1.0, damper=lambda 
     """K and D by outer products, with parts that may be wrong."""
     def spring_stiffness(x, network):
         K, D = [], []
-        for i, j, rest, k, k_d in zip(network.i, network.j, network.rest, network.k, network.k_d):
+        for i, j, rest, k, k_d in zip(network.i, network.j, network.rest, network.k, network.k_d, strict=True):
             length = np.linalg.norm(x[j] - x[i])
             nn = np.outer(x[j] - x[i], x[j] - x[i]) / length**2
             K.append(sign * k * (along * nn + sideways(1.0 - rest / length) * (np.eye(x.shape[1]) - nn)))
@@ -356,6 +453,23 @@ edit("2.11", "adds the whole stiffness along the spring to the part across",
 edit("2.11", "does not divide by the squared length", "r[a] * r[b] / squared", "r[a] * r[b]")
 edit("2.11", "uses k in the damping", "network.k_d[s] * nn", "network.k[s] * nn")
 edit("2.11", "subtracts the part across", "K[s, a, a] = across", "K[s, a, a] = -across")
+edit("2.11", "limits the factor across to one half", "np.maximum(0.0, 1.0 - network.rest[s] / length)",
+     "np.minimum(0.5, np.maximum(0.0, 1.0 - network.rest[s] / length))")
+edit("2.11", "limits the factor across to nine tenths", "np.maximum(0.0, 1.0 - network.rest[s] / length)",
+     "np.minimum(0.9, np.maximum(0.0, 1.0 - network.rest[s] / length))")
+edit("2.11", "halves the part across", "across = network.k[s]", "across = 0.5 * network.k[s]")
+edit("2.11", "takes the smaller of the two in place of the larger", "np.maximum", "np.minimum")
+edit("2.11", "uses the part across along the spring, too", "(network.k[s] - across) * nn", "across * nn")
+edit("2.11", "damps as the spring is stiff, along and across", "D[s, a, b] = network.k_d[s] * nn",
+     "D[s, a, b] = network.k_d[s] / network.k[s] * K[s, a, b]")
+edit("2.11", "returns D first", "return K, D", "return D, K")
+edit("2.11", "uses the stiffness of the first spring for the part across",
+     "across = network.k[s]", "across = network.k[0]")
+edit("2.11", "uses the rest length of the first spring for all springs", "network.rest[s]", "network.rest[0]")
+edit("2.11", "uses the damper of the first spring for all springs", "network.k_d[s]", "network.k_d[0]")
+edit("2.11", "fills only the diagonals", "(network.k[s] - across) * nn", "(network.k[s] - across) * nn * (a == b)")
+edit("2.11", "gives a compressed spring no stiffness", "return K, D",
+     "K[np.sqrt(np.sum((x[network.j] - x[network.i])**2, axis=1)) < network.rest] = 0.0; return K, D")
 edit("2.11", "exchanges the directions along and across",
      "(network.k[s] - across) * nn", "(across - network.k[s]) * nn")
 
@@ -404,6 +518,18 @@ edit("2.12", "exchanges numerator and denominator of α", "squared / np.sum(p * 
 edit("2.12", "moves along r, not along p", "y += alpha * p", "y += alpha * r")
 edit("2.12", "subtracts the old direction", "r + squared / before * p", "r - squared / before * p")
 edit("2.12", "moves the solution the wrong way", "y += alpha", "y -= alpha")
+edit("2.12", "starts at the right-hand side, with the residual of that start", "p = float_copy(right)",
+     "y = float_copy(right); r = right - apply(y, A); p = float_copy(r)")
+edit("2.12", "gives up after a hundred rounds", "10 * right.size", "100")
+edit("2.12", "gives up after a thousand rounds", "10 * right.size", "1000")
+edit("2.12", "gives up after ten rounds per row", "10 * right.size", "10 * right.shape[0]")
+edit("2.12", "gives up after twenty rounds per unknown", "10 * right.size", "20 * right.size")
+edit("2.12", "stops when a millionth of the residual is left",
+     "CG_TOLERANCE * CG_TOLERANCE * squared", "1e-12 * squared")
+edit("2.12", "uses one array for the residual and the direction", "p = float_copy(right)", "p = r")
+edit("2.12", "solves with a dense matrix, and never gives up", "y = np.zeros(right.shape)",
+     "M = np.stack([apply(e.reshape(right.shape), A).ravel() for e in np.eye(right.size)], axis=1)\n"
+     "    return np.linalg.solve(M, right.ravel()).reshape(right.shape)")
 edit("2.12", "uses the ratio of the lengths, not of their squares",
      "squared / before * p", "np.sqrt(squared / before) * p")
 
@@ -430,7 +556,7 @@ def large_step(ahead=1.0, damping=1.0, viscosity=1.0, stiffness=1.0, old=False, 
 def dense(blocks_of, network, n, d):
     """The (nd, nd) matrix with one block per spring: + at (i, i) and (j, j), − at (i, j) and (j, i)."""
     whole = np.zeros((n, d, n, d))
-    for i, j, block in zip(network.i, network.j, blocks_of):
+    for i, j, block in zip(network.i, network.j, blocks_of, strict=True):
         whole[i, :, i] += block
         whole[j, :, j] += block
         whole[i, :, j] -= block
@@ -459,4 +585,18 @@ edit("2.13", "forgets dt on the right", "right[n] = dt * (", "right[n] = (")
 edit("2.13", "forgets the mass in the diagonal", "1.0 / network.inv_mass[n] + dt", "1.0 + dt")
 edit("2.13", "uses the inverse mass in the diagonal", "1.0 / network.inv_mass[n] + dt", "network.inv_mass[n] + dt")
 edit("2.13", "returns Δv in place of the velocity", "v = v + conj", "v = conj")
+edit("2.13", "stops fixed points that move", "v = v + conj", "v = v * (network.inv_mass > 0.0)[:, None] + conj")
+edit("2.13", "holds fixed points where they are", "return x + dt * v, v",
+     "return x + dt * v * (network.inv_mass > 0.0)[:, None], v")
+edit("2.13", "moves with the mean of old and new velocity", "return x + dt * v, v",
+     "return x + dt * (v - 0.5 * conjugate_gradients(apply_step_matrix, A, right)), v")
+edit("2.13", "forgets dt beside the viscosity", "dt * network.k_v", "network.k_v")
+edit("2.13", "forgets dt beside D", "+ dt * D", "+ D")
+edit("2.13", "halves dt² beside K", "dt * dt * K", "0.5 * dt * dt * K")
+edit("2.13", "uses the acceleration of the lesson, not the one that is handed in", "acceleration(t, x, v, network)",
+     "spring_network_acceleration(t, x, v, network)")
+edit("2.13", "adds the dampers to ∂F/∂x v", "apply_blocks(v, network.i, network.j, K)",
+     "apply_blocks(v, network.i, network.j, K + D / dt)")
+edit("2.13", "returns v first", "return x + dt * v, v", "return v, x + dt * v")
+edit("2.13", "changes its input", "v = v + conj", "v += conj")
 edit("2.13", "omits dt beside the pull", "- dt * pull", "- pull")

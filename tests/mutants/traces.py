@@ -2,10 +2,16 @@
 
 Without a lesson it writes all of them, which takes some minutes.  Write a lesson's table again after a change of its
 grading tests, of its worked answers or of its wrong answers.
+
+Every table is computed twice, the second time in a process whose linear algebra rounds as an old processor does.
+Results that differ are decided by round-off, such as the nearest points of two parallel faces.  The table has no number
+for them, so that an answer gets the same name on every machine.
 """
 
 import importlib
 import json
+import os
+import subprocess
 import sys
 import types
 
@@ -42,7 +48,7 @@ def names_in(lesson):
 
 
 def table_of(lesson):
-    """The table of a lesson, as `mistakes.table` reads it."""
+    """The table of a lesson, as `mistakes.table` reads it, and with the number of each wrong answer."""
     kept, names, module = mutants_of(lesson), names_in(lesson), modules.bind(lesson)
     answers = {k: (mutant.exercise, mutant.function) for k, mutant in enumerate(kept)}
     worked = {number: (number, getattr(module, name)) for number, name in names.items()}
@@ -56,7 +62,8 @@ def table_of(lesson):
                          "wrong": []}
     for k, mutant in enumerate(kept):
         if not mutant.right:
-            table[mutant.exercise]["wrong"] += entry(mutant, traces[k], traces[mutant.exercise], table[mutant.exercise])
+            found = entry(mutant, traces[k], traces[mutant.exercise], table[mutant.exercise])
+            table[mutant.exercise]["wrong"] += [{**one, "number": k} for one in found]
     return table
 
 
@@ -85,10 +92,71 @@ def in_any_order(worked, right):
     return any(agrees(traces, True) and not agrees(traces, False) for traces in right)
 
 
+def table_elsewhere(lesson):
+    """The table of a lesson as a processor without AVX computes it."""
+    program = f"import json; from tests.mutants.traces import table_of; print(json.dumps(table_of({lesson!r})))"
+    said = subprocess.run([sys.executable, "-W", "ignore", "-c", program], cwd=modules.ROOT, check=True, text=True,
+                          env={**os.environ, "OPENBLAS_CORETYPE": "Prescott"}, stdout=subprocess.PIPE).stdout
+    return json.loads(said.splitlines()[-1])
+
+
+def steady(results, elsewhere):
+    """The stored results, with None or HUGE for those that differ elsewhere.  All do where the number differs."""
+    if len(results) != len(elsewhere):
+        return []
+    return [both_say(one, other) for one, other in zip(results, elsewhere, strict=True)]
+
+
+def both_say(one, other):
+    """A result that is the same elsewhere, HUGE where both are large, or None."""
+    if one == other:
+        return one
+    if isinstance(one, str) or isinstance(other, str) or one[0] != other[0]:
+        return None
+    if abs(one[1] - other[1]) <= mistakes.SAME * max(1.0, abs(one[1])):
+        return one
+    return mistakes.HUGE if min(abs(one[1]), abs(other[1])) > mistakes.LARGE else None
+
+
+def agree(results, right):
+    """Whether stored results are the right ones, as far as both are known."""
+    return len(results) == len(right) and all(
+        one == other for one, other in zip(results, right, strict=True) if one and other)
+
+
+def tells(results, right):
+    """Whether a stored result about which round-off does not decide differs from the right one of the same call.
+
+    Otherwise any answer that ends a test after as many calls would have the name.
+    """
+    return any(one and not mistakes.same(one if isinstance(one, str) else [*one, abs(one[1])], other)
+               for one, other in zip(results[:-1], right[:-1], strict=False))
+
+
+def without_the_unsteady(table, elsewhere):
+    """The table without results that differ elsewhere, and without wrong answers that nothing else distinguishes."""
+    for number, exercise in table.items():
+        other = elsewhere[number]
+        right = {test: steady(results, other["right"][test]) for test, results in exercise["right"].items()}
+        numbered, kept = {mistake["number"]: mistake for mistake in other["wrong"]}, []    # stories may be the same
+        for mistake in exercise["wrong"]:
+            there = numbered.get(mistake["number"], {"tests": {}})["tests"]
+            tests = {test: steady(results, there.get(test, [])) for test, results in mistake["tests"].items()}
+            seen = {test: results for test, results in tests.items()
+                    if None in results or not agree(results, right[test])}
+            later = {test: found for test, found in mistake["later"].items() if test in seen}
+            telling = later or any(tells(results, right[test]) for test, results in seen.items())
+            if all(tests.values()) and telling:
+                kept.append({"idea": mistake["idea"], "tests": seen, "later": later})
+        exercise["right"], exercise["wrong"] = right, kept
+    return table
+
+
 def write(lesson):
     """Write the table of a lesson; its path."""
     path = mistakes.FOLDER / f"{lesson}.json"
-    path.write_text(json.dumps(table_of(lesson), ensure_ascii=False, separators=(",", ":")) + "\n", encoding="utf-8")
+    table = without_the_unsteady(table_of(lesson), table_elsewhere(lesson))
+    path.write_text(json.dumps(table, ensure_ascii=False, separators=(",", ":")) + "\n", encoding="utf-8")
     mistakes.table.cache_clear()
     return path
 

@@ -173,7 +173,7 @@ def test_a_workers_process_answers_many_calls_and_says_what_was_wrong():
 
 @pytest.mark.parametrize("alone", [True, False])
 def test_calls_that_are_timed_are_made_one_at_a_time(alone):
-    ours, theirs = zip(*(multiprocessing.Pipe() for _ in range(2)))
+    ours, theirs = zip(*(multiprocessing.Pipe() for _ in range(2)), strict=True)
 
     def work(pipe):                                                    # as processes.work does, in a thread
         with contextlib.suppress(EOFError):

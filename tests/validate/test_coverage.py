@@ -22,13 +22,13 @@ def test_the_table_names_places_that_call_the_function():
 
 
 def test_an_exercise_that_nothing_runs_is_missing(monkeypatch):
-    """What runs 2.1 is taken away: it is the only place."""
+    """What runs 2.4 is taken away: it is the only place."""
     left = {place: [name for name in names if name != "stability/springs/forces"]
             for place, names in coverage.places().items()}
     monkeypatch.setattr(coverage, "places", lambda: left)
     coverage.table.cache_clear()
     try:
-        assert "2.1 universal_gravity" in coverage.missing()
+        assert "2.4 soft_constraint_force" in coverage.missing()
     finally:
         coverage.table.cache_clear()
 

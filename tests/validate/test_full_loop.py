@@ -29,17 +29,17 @@ def agreeing(name):
 @pytest.mark.parametrize("name", LOOPS)
 def test_the_whole_loop_moves_as_the_scene_does_and_takes_longer(name, monkeypatch):
     monkeypatch.setattr(full_loop, "interleaved", lambda items, limits, repeats: [
-        (item, {"seconds": seconds, "repeats": [seconds]}) for item, seconds in zip(items, (1.0, 3.0))])
+        (item, {"seconds": seconds, "repeats": [seconds]}) for item, seconds in zip(items, (1.0, 3.0), strict=True)])
     found = full_loop.left_out(name, PLAN, agreeing(name))
     assert found["same"] and found["ratio"] == 3.0 and found["note"] == ""
 
 
 def test_a_loop_that_moves_otherwise_is_noticed_and_the_audit_checks_the_ratio(monkeypatch):
     monkeypatch.setattr(full_loop, "interleaved", lambda items, limits, repeats: [
-        (item, {"seconds": seconds, "repeats": [seconds]}) for item, seconds in zip(items, (1.0, 3.0))])
+        (item, {"seconds": seconds, "repeats": [seconds]}) for item, seconds in zip(items, (1.0, 3.0), strict=True)])
 
-    def heavier():
-        step = full_loop.block()
+    def heavier(lessons):
+        step = full_loop.block(lessons)
         return lambda acceleration, t, x, v, dt, p: step(lambda *now: 1.001 * acceleration(*now), t, x, v, dt, p)
     monkeypatch.setitem(full_loop.FULL, "sliding_step", heavier)
     found = full_loop.left_out("incline", PLAN, agreeing("incline"))

@@ -22,7 +22,7 @@ WRONG = [                    # scene, case, method, a right line, a wrong one
     ("critical_friction", "ladder at 60°", "sweeps", CONE, CONE.replace("mu[n // 2]", "1.001 * mu[n // 2]")),
     ("arch", "least thickness, 4 stones", "sweeps", "sign * (r_x * d_y - r_y * d_x)", "sign * 1.1 * r_x * d_y"),
     ("dominoes", "six", "pile", "pile.mu * J_n if", "0.5 * pile.mu * J_n if"),
-    ("piles", "12 spheres", "pile in space", "return scaled(limit / size, J) if size > limit else scaled(1.0, J)",
+    ("piles", "12 spheres", "pile in space", "return scaled(1.0, J) if size <= limit else scaled(limit / size, J)",
      "return scaled(1.0, J)"),
 ]
 

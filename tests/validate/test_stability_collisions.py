@@ -90,6 +90,7 @@ WRONG = [                    # case, the function that it examines, what is put 
     ("deep-overlap", "ball_contact", lambda x, r, y, R: worked.ball_contact(x, r, y, R)._replace(n=np.zeros(3))),
     ("degenerate-shapes", "gjk", through_the_origin),
     ("head-on-avoidance", "flock_acceleration", gentle),
+    ("head-on-avoidance", "steer", lambda *now: 0.99 * worked.steer(*now)),
     ("undefined-distance", "closest_on_segment", takes_all),
     ("undefined-distance", "make_plane", takes_all),
     ("undefined-distance", "repulsion", takes_all),

@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 
 from solutions import simulator as worked
+from solutions.support import simulator as given
 from validate.stability.examine import cases_of, subject_of
+
+from ..mutants.simulator import MUTANTS
 
 
 def waits(load, bounds, narrow, t, state, dt, p):
@@ -49,6 +52,35 @@ def unchecked(x, q, m, inertia, half, planes, gravity, mu, sweeps, margin):
     return state, p._replace(mu=mu, sweeps=sweeps, margin=margin)
 
 
+def holds_on(states, a, b, dt):
+    """Reads the impulses of the step before."""
+    forces = worked.normal_forces(states, a, b, dt)
+    return np.append(forces[:1], forces[:-1])
+
+
+def lets_pass(step, load, bounds, narrow, t, state, dt, steps, p):
+    """Checks nothing between its steps."""
+    for n in range(steps):
+        state = step(load, bounds, narrow, t + n * dt, state, dt, p)
+    return state
+
+
+def forgets_the_spin(load, t, x, q, v, omega, p):
+    """Leaves out what holds a body on its circle."""
+    return worked.joint_forces_2d(load, t, x, q, v, 0.0 * omega, p)
+
+
+def rocks(load, t, x, q, v, omega, p):
+    """Another of the possible forces: two legs bear more, and two less."""
+    return worked.joint_forces(load, t, x, q, v, omega, p) + np.outer([1.0, -1.0, 1.0, -1.0], [0.0, 0.0, 1.0])
+
+
+def both_feet_alike(state, dt):
+    """The sum is right."""
+    N, T = worked.normal_and_friction(state, dt)
+    return 0.0 * N + np.mean(N), T
+
+
 WRONG = [                    # case, the function that it examines, what is put in its place
     ("margin-and-speed", "contact_step_2d", waits),
     ("margin-and-speed", "contact_step_2d", pushes),
@@ -56,6 +88,13 @@ WRONG = [                    # case, the function that it examines, what is put 
     ("growth-on-a-turntable", "carried_step", floor_behind),
     ("rocking-to-the-end", "rocking_step", elastic),
     ("rocking-to-the-end", "make_bodies_2d", unchecked),
+    ("release-from-a-support", "contact_step_2d", given.mean_contact_step_2d),
+    ("release-from-a-support", "normal_forces", holds_on),
+    ("turns-through-a-wall", "contact_step_2d", waits),
+    ("turns-through-a-wall", "advance_contact", lets_pass),
+    ("forces-of-supports", "joint_forces_2d", forgets_the_spin),
+    ("forces-of-supports", "joint_forces", rocks),
+    ("forces-of-supports", "normal_and_friction", both_feet_alike),
 ]
 
 
@@ -86,3 +125,10 @@ def test_a_formula_that_is_a_thousandth_off_is_seen(function, factor):
     wrong = lambda *arguments: scaled(right(*arguments), factor)
     found, _ = case.examine(types.SimpleNamespace(**{**vars(lesson), function: wrong}))
     assert not all(f.holds for f in found)
+
+
+@pytest.mark.parametrize("mutant", [m for m in MUTANTS if m.right], ids=lambda m: m.exercise)
+def test_right_answers_written_differently_pass_part_by_part(mutant):
+    case = cases_of("simulator")["loop-by-parts"]
+    lesson = types.SimpleNamespace(**{**vars(subject_of(case)), mutant.name: mutant.function})
+    assert all(f.holds for f in case.examine(lesson)[0])

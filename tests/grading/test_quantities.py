@@ -1,0 +1,31 @@
+"""A quantity names no drawn number: students read it beside the tests with secret inputs, too."""
+
+import sys
+
+import pytest
+
+from validate import modules
+
+from . import expect, points
+
+COMPARISONS = "between", "close", "instance", "numbers", "raises", "truth"
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", modules.lesson_names())
+def test_a_quantity_is_the_same_for_every_seed(name, monkeypatch):
+    points.grade(name, None, collect=True)                               # loads the tests of the lesson
+    quantities = set()
+
+    def watched(comparison):
+        return lambda quantity, *rest, **given: (quantities.add(quantity), comparison(quantity, *rest, **given))[1]
+    for comparison in COMPARISONS:
+        one = getattr(expect, comparison)
+        for module in [m for m in [*sys.modules.values()] if getattr(m, "__dict__", {}).get(comparison) is one]:
+            monkeypatch.setattr(module, comparison, watched(one))
+    found = []
+    for seed in (points.PUBLIC, "one", "two"):
+        quantities.clear()
+        assert all(o.status == "passed" for o in points.grade(name, modules.bind(name), seed=seed))
+        found.append({*quantities})
+    assert found[0] and found[0] == found[1] == found[2], set.union(*found) - set.intersection(*found)

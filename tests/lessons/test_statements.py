@@ -1,0 +1,198 @@
+"""What the lessons say in words, as numbers: each test would fail if its sentence in the notebook were false."""
+
+import numpy as np
+import pytest
+
+from validate.modules import bind
+from validate.reference.rotation import HeavyTop
+
+contact, friction, impulses, integrators, rotation, springs = map(
+    bind, ("contact", "friction", "impulses", "integrators", "rotation", "springs"))
+
+
+# ---------------------------------------------------------------------------------------------- 1 integrators
+
+@pytest.mark.parametrize("method", ["symplectic_euler_step", "verlet_step"])
+def test_a_method_that_keeps_areas_may_still_gain_energy_without_bound(method):
+    """Both have the trace 2 − z² and the determinant 1: beyond z = 2 one eigenvalue is outside the unit circle."""
+    for z in (0.5, 1.9, 2.1, 3.0):
+        A = integrators.amplification_matrix(getattr(integrators, method), 1.0, 0.0, z)
+        half = 0.5 * (2.0 - z * z)
+        grows = abs(half) + np.sqrt(half * half - 1.0) if abs(half) > 1.0 else 1.0
+        assert abs(np.linalg.det(A) - 1.0) < 1e-12
+        assert abs(integrators.spectral_radius(A) - grows) < 1e-7              # a double eigenvalue has half the digits
+
+
+@pytest.mark.parametrize(("method", "squared"), [
+    ("euler_step", lambda z: 1.0 + z**2), ("midpoint_step", lambda z: 1.0 + z**4 / 4.0),
+    ("average_velocity_step", lambda z: 1.0 + z**2 / 2.0)])
+def test_three_explicit_methods_have_no_stable_step_without_damping(method, squared):
+    for z in (0.01, 0.1, 1.0, 2.0):
+        A = integrators.amplification_matrix(getattr(integrators, method), 1.0, 0.0, z)
+        assert abs(integrators.spectral_radius(A) ** 2 - squared(z)) < 1e-12
+
+
+def test_verlet_retraces_its_path_unless_the_acceleration_depends_on_the_velocity():
+    for zeta in (0.0, 0.2):
+        p = integrators.Oscillator(1.0, zeta)
+        x, v = np.ones(1), np.zeros(1)
+        for dt in (0.1, -0.1):
+            for n in range(50):
+                x, v = integrators.verlet_step(integrators.oscillator_acceleration, n * dt, x, v, dt, p)
+        assert (abs(x[0] - 1.0) < 1e-12) == (zeta == 0.0)
+
+
+# ---------------------------------------------------------------------------------------------- 2 springs
+
+def ripple_left(k_d, k_v, height, along, seconds=2.0, dt=5e-4):
+    """The share of a half sine along or across a taut string of ten links that is left in the end."""
+    flat = np.stack((np.linspace(0.0, 1.0, 11), np.zeros(11)), axis=1)
+    pairs = [(k, k + 1) for k in range(10)]
+    network = springs.make_spring_network(flat, 0.01, [0, 10], pairs, 100.0, k_d, np.zeros(2), np.zeros(2), k_v)
+    shape, way = np.sin(np.pi * flat[:, 0]), np.array([1.0, 0.0] if along else [0.0, 1.0])
+    taut = flat * np.array([1.05, 0.0])
+    xs = integrators.trajectory(integrators.verlet_step, springs.spring_network_acceleration, 0.0,
+                                taut + height * shape[:, None] * way, 0.0 * flat, dt, round(seconds / dt), network)[1]
+    sizes = np.abs((xs - taut) @ way @ shape) / (shape @ shape)
+    return sizes[-len(sizes) // 7:].max() / height
+
+
+def test_a_damper_slows_a_ripple_along_a_string_and_hardly_one_across_it_but_air_slows_both():
+    """Across the links the damper acts in second order only; m ẍ = −k_v ẋ leaves exp(−k_v t/2m), here e⁻¹ at 2 s."""
+    assert ripple_left(0.5, 0.0, 1e-3, along=True) < 0.05
+    assert 0.9999 < ripple_left(0.5, 0.0, 1e-3, along=False) < 1.0
+    for along in (True, False):
+        assert np.exp(-1.0) < ripple_left(0.0, 0.01, 1e-3, along) < np.exp(-0.8)
+
+
+# ---------------------------------------------------------------------------------------------- 3 friction
+
+def test_a_projected_particle_in_a_smooth_bowl_loses_height_and_less_with_shorter_steps():
+    def reached(dt, seconds):
+        """The greatest angle [°] of the last two seconds."""
+        bowl = friction.ParticleInBowl(1.0, 0.0, 0.0, np.array([0.0, -9.81]), np.zeros(2), np.zeros(2), 1.0)
+        x, v, angles = np.array([np.sin(np.pi / 3.0), -np.cos(np.pi / 3.0)]), np.zeros(2), []
+        for n in range(round(seconds / dt)):
+            x, v = friction.advance_particle(friction.position_friction_step, friction.falling_acceleration,
+                                             friction.particle_bowl_gap, n * dt, x, v, dt, 1, bowl)
+            angles.append(abs(np.degrees(np.arctan2(x[0], -x[1]))))
+        return max(angles[-round(2.0 / dt):])
+    assert abs(reached(0.005, 3.0) - 58.0) < 0.5 and abs(reached(0.005, 30.0) - 27.0) < 0.5
+    assert reached(0.001, 3.0) > 59.5
+
+
+# ---------------------------------------------------------------------------------------------- 5 rotation
+
+def test_the_average_precession_of_a_top_is_larger_than_that_of_the_fast_top():
+    for spin, more in ((30.0, 1.13), (50.0, 1.04), (300.0, 1.001)):
+        times = np.linspace(0.0, 60.0, 60001)
+        x, y = HeavyTop(5.0, 1.0, 20.0, 0.3, spin).tips(times).T
+        angle, away = np.unwrap(np.arctan2(y, x)), np.hypot(x, y)
+        cusps = np.flatnonzero((away[1:-1] <= away[:-2]) & (away[1:-1] < away[2:])) + 1
+        first, last = cusps[0], cusps[-1]
+        average = (angle[last] - angle[first]) / (times[last] - times[first])
+        assert abs(average / (20.0 / spin) - more) < 0.005, spin
+
+
+def test_one_step_towards_the_polar_decomposition_keeps_the_columns_nearly_unit_but_not_exactly():
+    omega, R = 2.0 * np.array([0.48, 0.6, 0.64]), np.eye(3)
+    for _ in range(100):
+        R = R + 0.1 * rotation.skew(omega) @ R
+        R = 0.5 * R @ (3.0 * np.eye(3) - R.T @ R)
+    assert 1e-4 < np.abs(R.T @ R - np.eye(3)).max() < 1e-3
+
+
+# ---------------------------------------------------------------------------------------------- 7 impulses
+
+def test_the_kinematic_response_is_the_impulse_of_an_immovable_body_without_friction():
+    rng = np.random.default_rng(0)
+    for _ in range(1000):
+        n, v, e, m = rng.normal(size=3), rng.normal(size=3), rng.random(), rng.uniform(0.1, 9.0)
+        n /= np.linalg.norm(n)
+        by_impulse = v + impulses.impulse_size(n @ v, 1.0 / m, e) / m * n
+        assert np.abs(impulses.kinematic_response(v, n, e) - by_impulse).max() < 1e-14
+
+
+def process(K, u, mu, e):
+    """The impulse (J_t, J_n) of Routh's process in the plane, with Poisson's restitution: friction follows the slip.
+
+    The normal impulse grows until nothing approaches, and then by e times as much.  In between, u changes in
+    proportion to it: while it slips one way, while it sticks, or while it slips the other way.
+    """
+    J, compressed, end = np.zeros(2), False, np.inf
+    while J[1] < end:
+        if u[0] != 0.0:
+            friction_share = -mu * np.sign(u[0])
+        else:
+            friction_share = np.clip(-K[0, 1] / K[0, 0], -mu, mu)
+        way = np.array([friction_share, 1.0])
+        rate = K @ way
+        to_stick = -u[0] / rate[0] if u[0] * rate[0] < 0.0 else np.inf
+        to_rest = -u[1] / rate[1] if not compressed and rate[1] > 0.0 else np.inf
+        amount = min(to_stick, to_rest, end - J[1])
+        J, u = J + amount * way, u + amount * rate
+        if amount == to_stick:
+            u = np.array([0.0, u[1]])
+        if amount == to_rest:
+            compressed, end = True, (1.0 + e) * J[1]
+    return J
+
+
+def test_with_friction_newtons_restitution_gains_energy_and_poissons_does_not():
+    """A rod in all positions, thrown in all directions; the work of an impulse is J · ½(u + u⁺)."""
+    rng, up, gains, worst = np.random.default_rng(1), np.array([0.0, 1.0, 0.0]), 0, -np.inf
+    for _ in range(2000):
+        angle, e, mu = rng.uniform(0.1, np.pi - 0.1), rng.uniform(0.5, 1.0), rng.uniform(0.1, 3.0)
+        u = np.array([rng.uniform(-3.0, 3.0), -1.0, 0.0])
+        K = impulses.contact_matrix(-np.array([np.cos(angle), np.sin(angle), 0.0]), 1.0, np.diag([0.0, 3.0, 3.0]))
+        gains += impulses.energy_change(u, K, impulses.contact_impulse(u, up, K, e, mu)) > 1e-9
+        J = process(K[:2, :2], u[:2], mu, e)
+        worst = max(worst, J @ (u[:2] + 0.5 * K[:2, :2] @ J))
+    assert gains > 20 and worst < 1e-12
+
+
+def test_below_its_bound_restitution_gains_no_energy_with_any_friction_and_above_it_may():
+    """e* = 1/√(K_nn (K⁻¹)_nn), for random bodies in space."""
+    rng, gains = np.random.default_rng(5), 0
+    for _ in range(2000):
+        r, n, moments, axes = (rng.normal(size=3), rng.normal(size=3), rng.uniform(0.3, 0.5, 3),
+                               np.linalg.qr(rng.normal(size=(3, 3)))[0])
+        n /= np.linalg.norm(n)
+        K = impulses.contact_matrix(r, 1.0, axes @ np.diag(1.0 / moments) @ axes.T)
+        bound = 1.0 / np.sqrt((n @ K @ n) * (n @ np.linalg.solve(K, n)))
+        u = rng.normal(size=3)
+        u -= (u @ n + 1.0) * n
+        mu = rng.choice([0.0, 0.1, 0.5, 1.0, 3.0, np.inf])
+        J = impulses.contact_impulse(u, n, K, rng.uniform(0.0, 1.0) * bound, mu)
+        assert impulses.energy_change(u, K, J) < 1e-12
+        if 1.01 * bound < 1.0:
+            u = -K @ n / (n @ K @ n)                                           # the slip at which the bound is sharp
+            gains += impulses.energy_change(u, K, impulses.contact_impulse(u, n, K, 1.01 * bound, np.inf)) > 0.0
+    assert gains > 100
+
+
+# ---------------------------------------------------------------------------------------------- 9 contact
+
+def test_the_stiffest_leg_of_a_table_need_not_carry_most():
+    """Of all loads in equilibrium the legs take those with the least energy Σ N²/2k; moments make N₁ = N₃, N₂ = N₄."""
+    legs = np.array([(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)])
+    balance = np.vstack((np.ones(4), legs.T))
+    for stiffness in ([10.0, 1.0, 0.1, 1.0], [2.0, 1.0, 0.5, 1.0]):
+        give = 1.0 / np.array(stiffness)
+        system = np.block([[np.diag(give), balance.T], [balance, np.zeros((3, 3))]])
+        loads = np.linalg.solve(system, np.append(np.zeros(4), [1.0, 0.0, 0.0]))[:4]
+        first, second = 1.0 / (give[0] + give[2]), 1.0 / (give[1] + give[3])
+        expected = 0.5 * np.array([first, second, first, second]) / (first + second)
+        assert np.abs(loads - expected).max() < 1e-12
+        assert np.argmax(stiffness) == 0 and loads[0] < loads[1]
+
+
+def test_a_sweep_carries_an_effect_up_the_whole_stack_and_down_by_one_contact():
+    n = 10
+    A = 2.0 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1)                     # of equal boxes on each other
+    A[0, 0] = 1.0
+    up = contact.gauss_seidel_sweep(A, np.append(-1.0, np.zeros(n - 1)), np.zeros(n), 1.0)
+    assert np.abs(up - 0.5 ** np.arange(n)).max() < 1e-12
+    down = contact.gauss_seidel_sweep(A, np.append(np.zeros(n - 1), -1.0), np.zeros(n), 1.0)
+    assert np.all(down[:-1] == 0.0) and down[-1] == 0.5
+    assert np.flatnonzero(contact.gauss_seidel_sweep(A, np.append(np.zeros(n - 1), -1.0), down, 1.0))[0] == n - 2
