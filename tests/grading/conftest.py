@@ -8,8 +8,6 @@ import pytest
 
 from validate.modules import ROOT
 
-from . import local, marking
-
 
 def git(*arguments, cwd):
     command = ["git", "-c", "user.name=a", "-c", "user.email=a@b", *arguments]
@@ -35,6 +33,8 @@ def made_up(monkeypatch):
     """Return function(more) after which nothing is graded: each result is marking.nothing with more(submission,
     settings).  It returns {student: how often he was graded}.
     """
+    from . import local, marking  # here, since this file must load where Python cannot start processes
+
     def set_up(more):
         graded = {}
 
