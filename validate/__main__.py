@@ -240,7 +240,7 @@ def select_scenes(scenes, lessons):
 def require_answers(of, names):
     """Raises BadInput when answers are asked for that are not there."""
     folder = modules.subject_folder(of)
-    lessons = {m.lesson for n in names for m in modules.bind_scene(n).methods} | set(lessons_of(names))
+    lessons = {r.who.lesson for n in names for r in modules.bind_scene(n).our_runners} | set(lessons_of(names))
     if missing := sorted(f"{lesson}.py" for lesson in lessons if not (folder / f"{lesson}.py").is_file()):
         raise BadInput(f"folder {str(of)!r}", f"without {', '.join(missing)}",
                        "put the lesson files there, or name lessons that are there with --lesson")

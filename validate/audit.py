@@ -237,11 +237,11 @@ def of_limits(data, counts):
         scene = modules.bind_scene(result["scene"], run["of"])
         for name, case in result["cases"].items():
             for curve in case["ours"] + case["engines"]:
+                runner = next(r for r in scene.runners if r.label == curve["label"])
                 law = np.array(curve.get("own_law") or case["truth"])
                 for row in curve["rows"]:
                     counts["limits"] += 1
-                    theory = jsonable(bound(scene, scene.cases[name], curve["label"], curve["expected"], row["steps"],
-                                            law))
+                    theory = jsonable(bound(runner, scene.cases[name], scene.duration / row["steps"], law))
                     if any(differs(row[key], theory[key]) for key in ("limit", "band")) or apart(row, theory):
                         place = f"{result['scene']}: {curve['label']}, {name}"
                         yield f"{place}: the limit at {row['steps']} steps is not theory's"

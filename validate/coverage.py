@@ -125,7 +125,7 @@ def roots_of_scene(name):
     """What a scene names of the lessons, its methods included."""
     scene = modules.bind_scene(name)
     tree, there, _ = parsed(modules.scene_files()[name])
-    return {*named([tree], there, scene.lesson), *((m.lesson, m.function) for m in scene.methods)}
+    return {*named([tree], there, scene.lesson), *((r.who.lesson, r.who.function) for r in scene.our_runners)}
 
 
 def roots_of_case(case):

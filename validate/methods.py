@@ -4,18 +4,23 @@ A new method is one line here.  Colours are those of Okabe and Ito 2008, which c
 and a few more.  Every curve has a marker, too.
 """
 
+from .reference import schemes
 from .scene import Method
 
 # integrators
-EULER = Method("euler_step", "Euler", 1, "integrators", "#E69F00", "o")
-MIDPOINT = Method("midpoint_step", "midpoint", 2, "integrators", "#56B4E9", "^")
-RK4 = Method("rk4_step", "Runge–Kutta 4", 4, "integrators", "#009E73", "s")
-AVERAGE_VELOCITY = Method("average_velocity_step", "average velocity", 1, "integrators", "#CC79A7", "v")
-SYMPLECTIC_EULER = Method("symplectic_euler_step", "symplectic Euler", 1, "integrators", "#D55E00", "D")
-VERLET = Method("verlet_step", "Verlet", 2, "integrators", "#0072B2", "P")
-IMPLICIT_EULER = Method("implicit_euler_step", "implicit Euler", 1, "integrators", "#8C6D31", "<")
-IMPLICIT_MIDPOINT = Method("implicit_midpoint_step", "implicit midpoint", 2, "integrators", "#6A51A3", ">")
-BLANES_MOAN = Method("blanes_moan_step", "Blanes–Moan", 4, "integrators", "#17A2A2", "h")
+EULER = Method("euler_step", "Euler", 1, "integrators", "#E69F00", "o", schemes.EULER)
+MIDPOINT = Method("midpoint_step", "midpoint", 2, "integrators", "#56B4E9", "^", schemes.MIDPOINT)
+RK4 = Method("rk4_step", "Runge–Kutta 4", 4, "integrators", "#009E73", "s", schemes.RK4)
+AVERAGE_VELOCITY = Method("average_velocity_step", "average velocity", 1, "integrators", "#CC79A7", "v",
+                          schemes.AVERAGE_VELOCITY)
+SYMPLECTIC_EULER = Method("symplectic_euler_step", "symplectic Euler", 1, "integrators", "#D55E00", "D",
+                          schemes.SYMPLECTIC_EULER)
+VERLET = Method("verlet_step", "Verlet", 2, "integrators", "#0072B2", "P", schemes.VERLET)
+IMPLICIT_EULER = Method("implicit_euler_step", "implicit Euler", 1, "integrators", "#8C6D31", "<",
+                        schemes.IMPLICIT_EULER)
+IMPLICIT_MIDPOINT = Method("implicit_midpoint_step", "implicit midpoint", 2, "integrators", "#6A51A3", ">",
+                           schemes.IMPLICIT_MIDPOINT)
+BLANES_MOAN = Method("blanes_moan_step", "Blanes–Moan", 4, "integrators", "#17A2A2", "h", schemes.BLANES_MOAN)
 ADAPTIVE = Method("advance_adaptive", "Blanes–Moan, adaptive", 4, "integrators", "#A6761D", "p")
 
 # springs
@@ -94,7 +99,7 @@ EXACT_ROLLING = Method("exact_rolling_step", "cut at the event", 2, "simulator",
 ROCKING = Method("rocking_step", "cut at the impact", 4, "simulator", "#009E73", "s")
 JOINTS = Method("joint_step_2d", "joints", 2, "simulator", "#0072B2", "o")
 COMPOSED_JOINTS = Method("composed_joint_step_2d", "joints, composed", 4, "simulator", "#6A51A3", "^")
-IN_ANGLES = Method("rk4_step", "angles, Runge–Kutta 4", 4, "integrators", "#CC79A7", "v")
+IN_ANGLES = Method("rk4_step", "angles, Runge–Kutta 4", 4, "integrators", "#CC79A7", "v", schemes.RK4)
 JOINTS_IN_SPACE = Method("joint_step", "joints in space", 2, "simulator", "#009E73", "s")
 JOINTED_LOOP = Method("joint_contact_step_2d", "the loop with joints", 1, "simulator", "#D55E00", "D")
 
@@ -110,7 +115,7 @@ FABRIK = Method("fabrik_step", "FABRIK", 1, "kinematics", "#56B4E9", "^")
 
 INTEGRATORS = (EULER, MIDPOINT, RK4, AVERAGE_VELOCITY, SYMPLECTIC_EULER, VERLET, IMPLICIT_EULER, IMPLICIT_MIDPOINT)
 ONE_OF_EACH_ORDER = (SYMPLECTIC_EULER, VERLET, RK4)                  # enough for most quick runs
-EXPLICIT = tuple(method.function for method in (*INTEGRATORS[:6], BLANES_MOAN))
+EXPLICIT = (EULER, MIDPOINT, RK4, AVERAGE_VELOCITY, SYMPLECTIC_EULER, VERLET, BLANES_MOAN)
 LEFT_TO_FULL = tuple(method.function for method in INTEGRATORS if method not in ONE_OF_EACH_ORDER)
 TURNS = (MATRIX, AXIS_ANGLE, QUATERNION, GYROSCOPIC, IMPLICIT_GYROSCOPIC, RUNGE_KUTTA, MIDPOINT_TURN, SPLITTING,
          COMPOSED_SPLITTING, COMPOSED_MIDPOINT)

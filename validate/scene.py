@@ -6,6 +6,7 @@ A scene is a file in `validate/scenes/<lesson>/` that ends with one `SCENE = Sce
 
 from collections.abc import Callable
 from dataclasses import MISSING, dataclass, field, fields
+from functools import partial
 from typing import NamedTuple, get_args, get_origin, get_type_hints
 
 import numpy as np
@@ -28,6 +29,7 @@ class Method(NamedTuple):
     lesson: str
     colour: str
     marker: str
+    table: tuple = ()        # its Tableau of validate/reference/schemes.py, where it has one
 
 
 class Engine(NamedTuple):
@@ -65,6 +67,59 @@ class Prediction(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Runner:
+    """One curve of a scene: a method of ours or an engine with its settings, and all that concerns it there."""
+    who: Method | Engine
+    order: int | str         # of convergence
+    limit: Callable          # (p, dt) → largest relative error; or {order: that}, of which it takes its own
+    predicted: Callable | str    # (p, dt) → Prediction, or None for a step that is too long; or why there is none
+    departure: Departure | None = None   # where it follows another law than the truth
+    supports: Callable | None = None     # (p) → bool: whether it can do this case; without it, it can do all
+    in_quick: bool = True                # False: only --full runs it
+    slow_cases: tuple = ()               # names of cases in which only --full runs it
+    compiled_in_quick: bool = False      # it takes longer in plain Python than numba does to compile it
+    most_in_quick: int | None = None     # its most steps in a quick run
+    finer_in_full: tuple = ()            # further steps of the first case in a full run
+
+    def __post_init__(self):
+        thing = f"the runner {self.who.label!r}"
+        for f in fields(self):
+            check_type(f"field {f.name!r} of {thing}", getattr(self, f.name), f.type)
+        if self.predicted == "":
+            raise BadInput(f"field 'predicted' of {thing}", "empty", "predict its error, or say why no theory does")
+
+    @property
+    def label(self):
+        """Its name for people."""
+        return self.who.label
+
+    @property
+    def is_engine(self):
+        """Whether it is an engine, not a method of ours."""
+        return isinstance(self.who, Engine)
+
+    def largest_error(self, p, dt):
+        """Return the largest relative error that theory allows it with steps of dt."""
+        limit = self.limit(p, dt)
+        return limit[self.order] if isinstance(limit, dict) else limit
+
+    def prediction(self, p, dt):
+        """Return the Prediction of its error with steps of dt, or None."""
+        return self.predicted(p, dt) if callable(self.predicted) else None
+
+
+def ours(method, *, order=None, **about):
+    """Return the Runner of a method of ours; its order is the usual one unless this scene has another."""
+    return Runner(who=method, order=method.order if order is None else order, **about)
+
+
+def engine(product, variant, make, settings, *, most_steps=None, **about):
+    """Return the Runner of an engine with these settings."""
+    order = about["order"]
+    return Runner(who=Engine(product, variant, make, order, settings, most_steps), **about)
+
+
+@dataclass(frozen=True, kw_only=True)
 class Scene:
     """One physical situation: its truth, our methods, the engines, and the tolerance derived for each.
 
@@ -75,14 +130,15 @@ class Scene:
     cases: dict              # {name: p}; the first is timed and drawn, all are checked
     duration: float          # T, the output time [s]; 1 where nothing moves
     steps: tuple             # numbers of steps over T, coarse to fine: they divide T and span two decades
-    methods: tuple           # of Method
     start: Callable          # (p) → state, a tuple of arrays; refuses impossible parameters
     run: Callable            # (step, acceleration, state, p, dt, steps) → state: only this is timed
     observe: Callable        # (state, p) → flat array that is compared with the truth at T
     truth: Callable          # (p, t) → the same quantities
     truth_uncertainty: float  # of the truth, relative [-]
-    tolerance: Callable      # (p, dt) → {order, or label of a method or an engine: largest relative error}
     points: Callable         # (observed, p) → (n, 2) drawing coordinates [m]
+    runners: tuple = ()      # of Runner: ours first
+    methods: tuple = ()      # of Method
+    tolerance: Callable | None = None    # (p, dt) → {order, or label of a method or an engine: largest relative error}
     engines: tuple = ()      # of Engine
     uses: tuple = ()         # what the scene needs, in words
     ablations: dict = field(default_factory=dict)        # {what it omits: p → (state, p) with it put in, or why not}
@@ -120,6 +176,11 @@ class Scene:
     def __post_init__(self):
         for f in fields(self):
             check_type(f"field {f.name!r} of scene {self.title!r}", getattr(self, f.name), f.type)
+        if not self.runners:
+            object.__setattr__(self, "runners", runners_of(self))
+        for runner in self.runners:
+            check_known(f"a case of {runner.label!r} in scene {self.title!r}", runner.slow_cases, self.cases)
+        check_known(f"a slow case of scene {self.title!r}", self.slow_cases, self.cases)
         if self.cases and self.bodies and not self.poses:
             raise BadInput(f"field 'poses' of scene {self.title!r}", "missing", "say where each body of `bodies` is")
 
@@ -129,9 +190,56 @@ class Scene:
         return next(iter(self.cases.values()))
 
     @property
+    def our_runners(self):
+        """The runners that are methods of ours."""
+        return tuple(r for r in self.runners if not r.is_engine)
+
+    @property
+    def engine_runners(self):
+        """The runners that are engines."""
+        return tuple(r for r in self.runners if r.is_engine)
+
+    @property
     def refined(self):
         """Whether anything can be refined, so that there is an error over dt."""
         return bool(self.refinement)
+
+
+def runners_of(scene):
+    """Return the Runners of a scene that keeps what concerns them in fields of its own."""
+    functions, labels = {m.function for m in scene.methods}, {e.label for e in scene.engines}
+    known = {"orders": functions, "slow_methods": functions, "compiled_in_quick": functions,
+             "shorter_in_quick": functions, "finer_in_full": functions | labels,
+             "expected_departures": {m.label for m in scene.methods} | labels}
+    for name, keys in known.items():
+        check_known(f"a name in field {name!r} of scene {scene.title!r}", getattr(scene, name), keys)
+    check_known(f"a case in field 'slow_runs' of scene {scene.title!r}", scene.slow_runs, scene.cases)
+    return tuple(runner_of(scene, who) for who in (*scene.methods, *scene.engines))
+
+
+def runner_of(scene, who):
+    """Return the Runner of one of its methods or engines."""
+    mine = isinstance(who, Method)
+    name = who.function if mine else who.label
+
+    def limit(p, dt):
+        limits = scene.tolerance(p, dt)
+        return limits.get(who.label, limits)
+    predicted = partial(scene.predicted_error, who.label) if scene.predicted_error else "its scene predicts nothing"
+    return Runner(
+        who=who, order=scene.orders.get(name, who.order) if mine else who.order, limit=limit, predicted=predicted,
+        departure=scene.expected_departures.get(who.label), supports=scene.supports and partial(scene.supports, name),
+        in_quick=name not in scene.slow_methods,
+        slow_cases=tuple(case for case, names in scene.slow_runs.items() if name in names),
+        compiled_in_quick=name in scene.compiled_in_quick, most_in_quick=scene.shorter_in_quick.get(name),
+        finer_in_full=scene.finer_in_full.get(name, ()))
+
+
+def check_known(thing, names, known):
+    """Raise BadInput for a name that is not known."""
+    for name in names:
+        if name not in known:
+            raise BadInput(f"{thing}, {name!r},", "unknown", f"choose from: {', '.join(map(str, known))}")
 
 
 def check_type(thing, value, kind):

@@ -21,7 +21,7 @@ import numpy as np
 
 from validate import coverage, modules, numba_twins
 from validate.loading import TooLong, alarm
-from validate.measure.accuracy import method_curve
+from validate.measure.accuracy import our_curve
 from validate.measure.selection import Plan, select
 from validate.results import Verdict
 from validate.stability.examine import all_cases, broken_off, examine
@@ -153,13 +153,13 @@ def turned_verdict(name, of, function=None, most=np.inf, compiled=False):
     selection = shortened(select(name, plan), most)
     for case, p in selection.cases.items():
         truth = np.array(selection.scene.truth(p, selection.scene.duration), dtype=float)
-        for method in selection.methods_for(p):
-            if function and not runs(name, method, function):
+        for runner in selection.ours_for(p):
+            if function and not runs(name, runner.who, function):
                 continue
-            curve = method_curve(selection, method, p, truth)
-            honest = (name, case, method.function, most, compiled)
+            curve = our_curve(selection, runner, p, truth)
+            honest = (name, case, runner.who.function, most, compiled)
             if curve["verdict"] is Verdict.DEPARTS and worked(*honest) is not Verdict.DEPARTS:
-                return f"{case}, {method.label}: {curve['message']}"
+                return f"{case}, {runner.label}: {curve['message']}"
     return ""
 
 
@@ -175,16 +175,16 @@ def worked(name, case, method, most, compiled):
     selection = shortened(select(name, Plan(speeds=("compiled",) if compiled else ("plain",), live=())), most)
     p = selection.cases[case]
     truth = np.array(selection.scene.truth(p, selection.scene.duration), dtype=float)
-    method = next(m for m in selection.methods_for(p) if m.function == method)
-    return method_curve(selection, method, p, truth)["verdict"]
+    runner = next(r for r in selection.ours_for(p) if r.who.function == method)
+    return our_curve(selection, runner, p, truth)["verdict"]
 
 
 @cache
 def runs(name, method, function):
     """Whether a method of a scene executes a function, or everything in the scene does."""
+    ours = {(r.who.lesson, r.who.function) for r in bound(name).our_runners}
     return function_in(coverage.reached({(method.lesson, method.function)}), function) or function_in(
-        coverage.reached(coverage.roots_of_scene(name) - {(m.lesson, m.function) for m in bound(name).methods}),
-        function)
+        coverage.reached(coverage.roots_of_scene(name) - ours), function)
 
 
 def function_in(places, function):

@@ -15,15 +15,15 @@ LOOPS = ("rolling_down", "incline", "stopping_block", "heavy_top", "throw", "cat
 @pytest.mark.parametrize("name", EARLIER)
 def test_a_scene_is_measured_against_the_whole_loop_or_says_why_not(name):
     scene = modules.bind_scene(name)
-    covered = any(method.function in full_loop.FULL for method in scene.methods)
+    covered = any(runner.who.function in full_loop.FULL for runner in scene.our_runners)
     assert covered != bool(scene.full_loop), "give the field full_loop a sentence, or leave it out"
 
 
 def agreeing(name):
     """A result in which all methods agree with 100 steps or more, because finding out takes long."""
     rows = [{"steps": n, "failure": "diverged" if n < 100 else None} for n in modules.bind_scene(name).steps]
-    return {"cases": {"first": {"ours": [{"label": m.label, "verdict": "agrees", "rows": rows}
-                                         for m in modules.bind_scene(name).methods]}}}
+    return {"cases": {"first": {"ours": [{"label": r.label, "verdict": "agrees", "rows": rows}
+                                         for r in modules.bind_scene(name).our_runners]}}}
 
 
 @pytest.mark.parametrize("name", LOOPS)

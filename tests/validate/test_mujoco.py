@@ -14,7 +14,8 @@ from validate.results import Verdict
 from validate.scene import MUJOCO, OPTIONAL, PRODUCTS
 from validate.scenes.friction import incline
 
-WITH_MUJOCO = [n for n in modules.scene_names() if any(e.product == MUJOCO for e in modules.bind_scene(n).engines)]
+WITH_MUJOCO = [name for name in modules.scene_names()
+               if any(r.who.product == MUJOCO for r in modules.bind_scene(name).engine_runners)]
 needs_mujoco = pytest.mark.skipif(not engines.installed(MUJOCO), reason=f"MuJoCo is not installed: {engines.REMEDY}")
 
 
@@ -24,8 +25,8 @@ def curve_of(name, case=None, variant=""):
     selection = select(name, plan)
     case = case or selection.first[0]
     p = selection.scene.cases[case]
-    engine = next(e for e in selection.engines_for(p) if e.product == MUJOCO and e.variant == variant)
-    return engine_curve(selection, case, engine, p, np.array(selection.scene.truth(p, selection.scene.duration)))
+    runner = next(r for r in selection.engines_for(p) if r.who.product == MUJOCO and r.who.variant == variant)
+    return engine_curve(selection, case, runner, p, np.array(selection.scene.truth(p, selection.scene.duration)))
 
 
 def test_it_is_a_witness_where_it_says_something():
@@ -38,8 +39,8 @@ def test_where_it_is_left_out_a_scene_says_so_and_keeps_all_other_verdicts(name)
     selection = select(name, measure.Plan(speeds=("plain",), live=()))
     assert sum("The witness mujoco is left out" in note for note in selection.notes) == 1
     for p in selection.cases.values():
-        left = {e.label for e in modules.bind_scene(name).engines if e.product not in OPTIONAL}
-        assert {e.label for e in selection.engines_for(p)} <= left
+        left = {r.label for r in modules.bind_scene(name).engine_runners if r.who.product not in OPTIONAL}
+        assert {r.label for r in selection.engines_for(p)} <= left
     with_it = select(name, measure.Plan(speeds=("plain",), live=PRODUCTS))
     assert not any("mujoco is left out" in note for note in with_it.notes)
 
@@ -66,7 +67,7 @@ def test_its_runge_kutta_method_is_of_order_four_and_errs_as_predicted(name, ord
 def test_without_the_terms_of_munthe_kaas_the_prediction_of_a_free_body_fails(monkeypatch):
     scene = modules.bind_scene("asymmetric_top")
     p = scene.parameters
-    engine = next(e for e in scene.engines if e.label == MUJOCO)
+    engine = next(r.who for r in scene.engine_runners if r.who.product == MUJOCO)
     seen = run_engine_to_end(scene, engine, p, 500).observed - scene.truth(p, scene.duration)
     off = []
     for step in (turns.munthe_kaas, turns.classical):
@@ -90,7 +91,7 @@ def test_its_block_hops_slides_and_creeps_as_its_contact_law_says(case, verdict)
 def test_another_impedance_would_be_seen_on_the_incline_and_in_the_sag():
     scene = modules.bind_scene("incline")
     p, steps = scene.cases["thrown up, sticks, μ = 0.6"], 1000
-    engine = next(e for e in scene.engines if e.product == MUJOCO)
+    engine = next(r.who for r in scene.engine_runners if r.who.product == MUJOCO)
     way = run_engine_to_end(scene, engine, p, steps).observed[0]
     for factor, near in ((1.0, True), (1.001, False)):
         law = incline.soft(p)._replace(d=IMPEDANCE * factor)

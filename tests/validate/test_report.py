@@ -9,6 +9,7 @@ import pytest
 
 from validate import measure, modules, report
 from validate.measure import timing
+from validate.measure.accuracy import theory
 from validate.measure.selection import Plan
 from validate.report import films, plots, words
 from validate.report.answers import answers
@@ -252,8 +253,8 @@ def test_no_page_names_what_only_a_programmer_knows():
     internal = re.compile(r"\b(?:[A-Z]{2,}_[A-Z_]+|[a-z]{4,}_[a-z_]{4,})\b")
     for name in modules.scene_names():
         scene = modules.bind_scene(name)
-        for thing in (scene.truth, scene.tolerance, scene.acceleration):
-            assert not internal.findall(modules.report_text(thing) if thing else ""), name
+        for text in (*map(modules.report_text, filter(None, (scene.truth, scene.acceleration))), theory(scene)):
+            assert not internal.findall(text), name
 
 
 def test_of_settings_that_err_alike_the_fastest_one_runs():

@@ -3,6 +3,7 @@ and a wrong method would be seen.
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -81,14 +82,14 @@ def test_steps_span_two_decades(name):
     assert list(steps) == sorted(steps) and steps[-1] >= 100 * steps[0]
 
 
-@scenes([n for n in SCENES if modules.bind_scene(n).shorter_in_quick])
+@scenes([n for n in SCENES if any(r.most_in_quick for r in modules.bind_scene(n).our_runners)])
 def test_a_quick_validation_ends_a_sweep_where_the_scene_says(name):
     quick, full = (select(name, measure.Plan(quick=quick)) for quick in (True, False))
-    of = {method.function: method for method in full.methods}
-    for function, most in full.scene.shorter_in_quick.items():
-        p = full.first[1]
-        assert most in full.scene.steps and full.steps_of(of[function], p)[:len(full.steps)] == full.steps
-        assert quick.steps_of(of[function], p) == tuple(n for n in quick.steps if n <= most)
+    for runner in full.ours:
+        if most := runner.most_in_quick:
+            p = full.first[1]
+            assert most in full.scene.steps and full.steps_of(runner, p)[:len(full.steps)] == full.steps
+            assert quick.steps_of(runner, p) == tuple(n for n in quick.steps if n <= most)
     assert any("the finest steps of" in note for note in quick.notes)
 
 
@@ -104,14 +105,15 @@ def test_a_curve_ends_after_four_judged_runs_in_a_quick_validation_alone():
     assert any(len(rows) < len(full[label]) for label, rows in quick.items())
 
 
-@scenes([n for n in SCENES if modules.bind_scene(n).slow_runs])
+@scenes([n for n in SCENES if any(r.slow_cases for r in modules.bind_scene(n).our_runners)])
 def test_a_quick_validation_leaves_a_slow_run_out_and_a_full_one_does_not(name):
     quick, full = (select(name, measure.Plan(quick=quick)) for quick in (True, False))
-    for case, functions in full.scene.slow_runs.items():
-        p = full.scene.cases[case]
-        assert set(functions) <= {method.function for method in full.methods_for(p)}
-        assert not set(functions) & {method.function for method in quick.methods_for(p)}
-        assert any(set(functions) & {method.function for method in quick.methods_for(q)} for q in quick.cases.values())
+    for runner in full.ours:
+        for case in runner.slow_cases:
+            p = full.scene.cases[case]
+            assert runner in full.ours_for(p)
+            assert runner.who not in [r.who for r in quick.ours_for(p)]
+            assert any(runner.who in [r.who for r in quick.ours_for(q)] for q in quick.cases.values())
     assert any("our methods on" in note for note in quick.notes)
 
 
@@ -137,14 +139,14 @@ def test_a_wrong_tensor_departs_and_a_table_without_motion_has_all_its_numbers(t
             assert len(curve["rows"][-1]["observed"]) == len(case["truth"]) == len(case["quantities"])
 
 
-def test_an_engine_that_leaves_its_own_rule_departs(monkeypatch):
-    departures = modules.bind_scene("tensors").expected_departures
-    departure = departures["pybullet, automatic"]
-    wrong = departure._replace(own_law=lambda p, t: departure.own_law(p, t) * 1.001)
-    monkeypatch.setitem(departures, "pybullet, automatic", wrong)
-    result = measure.errors("tensors", measure.Plan(speeds=("plain",), live=()))
+def test_an_engine_that_leaves_its_own_rule_departs():
+    runners = modules.bind_scene("tensors").runners
+    right = next(r for r in runners if r.departure and r.who.variant == "automatic")
+    wrong = right.departure._replace(own_law=lambda p, t: right.departure.own_law(p, t) * 1.001)
+    changed = tuple(replace(r, departure=wrong) if r is right else r for r in runners)
+    result = measure.errors("tensors", measure.Plan(speeds=("plain",), live=(), changes=(("runners", changed),)))
     assert {is_right(e) for one in result["cases"].values() for e in one["engines"]
-            if e["label"] == "pybullet, automatic"} == {False}
+            if e["label"] == right.label} == {False}
 
 
 def test_a_wrong_method_departs(tmp_path):
@@ -180,13 +182,13 @@ def test_stubs_are_not_attempted_and_depart_from_nothing():
     assert words.verdict(result["cases"]["under-damped"]["ours"])[1] == "open"
 
 
-@scenes([n for n in SCENES if any(e.product == PYBULLET for e in modules.bind_scene(n).engines)])
+@scenes([n for n in SCENES if any(r.who.product == PYBULLET for r in modules.bind_scene(n).engine_runners)])
 def test_without_pybullet_its_record_stands_in_and_says_so(name):
     selection = select(name, measure.Plan(speeds=("plain",), live=()))
     case, p = selection.first
     truth = np.array(selection.scene.truth(p, selection.scene.duration), dtype=float)
-    curves = [engine_curve(selection, case, engine, p, truth) for engine in selection.engines_for(p)
-              if engine.product == PYBULLET]
+    curves = [engine_curve(selection, case, runner, p, truth) for runner in selection.engines_for(p)
+              if runner.who.product == PYBULLET]
     assert curves and all(c["source"].startswith("recorded, pybullet") and c["rows"] for c in curves)
 
 
@@ -235,7 +237,8 @@ def test_no_two_curves_of_a_scene_look_alike():
     """Methods differ in colour and in marker; variants of an engine in marker or line."""
     for name in modules.scene_names():
         scene = modules.bind_scene(name)
-        for looks in ([m.colour for m in scene.methods], [m.marker for m in scene.methods],
-                      [methods.engine_look(e, scene.engines) for e in scene.engines]):
+        ours, witnesses = [r.who for r in scene.our_runners], [r.who for r in scene.engine_runners]
+        for looks in ([m.colour for m in ours], [m.marker for m in ours],
+                      [methods.engine_look(e, witnesses) for e in witnesses]):
             assert len(set(looks)) == len(looks), name
-        assert not {m.colour for m in scene.methods} & {colour for colour, _ in methods.ENGINE_LOOKS.values()}
+        assert not {m.colour for m in ours} & {colour for colour, _ in methods.ENGINE_LOOKS.values()}

@@ -42,7 +42,7 @@ def test_joints_are_swept_even_where_nothing_collides():
 @pytest.mark.skipif(not engines.installed(PYBULLET), reason="pybullet is not installed here")
 def test_pybullet_forgets_a_switch_when_its_world_is_closed():
     selection = select("slide_then_roll", PLAN)
-    engine = next(e for e in selection.engines_for(selection.first[1]) if e.product == PYBULLET)
+    engine = next(r.who for r in selection.engines_for(selection.first[1]) if r.who.product == PYBULLET)
     settings = []
     for _ in range(2):
         with worlds_made() as worlds:

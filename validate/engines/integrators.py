@@ -1,11 +1,31 @@
 """A planet: where it starts, how it is drawn, and the same in both engines."""
 
+from functools import partial
+
 import numpy as np
 
 from solutions.checks import BadInput, check_positive
 
-from ..reference.integrators import attraction, perihelion
-from ..scene import LATE_LEAPFROG, PYBULLET, PYMUNK, Engine, EngineRun
+from ..methods import (
+    BLANES_MOAN,
+    EXPLICIT,
+    IMPLICIT_MIDPOINT,
+    ONE_OF_EACH_ORDER,
+    RK4,
+    SYMPLECTIC_EULER,
+    VERLET,
+)
+from ..reference.integrators import (
+    EVEN,
+    FINEST,
+    FINEST_RK4,
+    attraction,
+    early_limit,
+    kepler_limits,
+    perihelion,
+)
+from ..reference.schemes import OLD_VELOCITY_NEW_FORCE
+from ..scene import LATE_LEAPFROG, PYBULLET, PYMUNK, EngineRun, engine, ours
 from .bullet import Bullet
 from .chipmunk import pymunk_space, pymunk_world
 
@@ -69,20 +89,27 @@ def bullet_planet(p, dt, ahead=0.0):
     return EngineRun(step, lambda: np.array(bullet.position(body)[:2]), bullet.close)
 
 
-KEPLER_ENGINES = (
-    Engine(PYMUNK, "", pymunk_planet, LATE_LEAPFROG, "attraction in velocity_func", 50_000),
-    Engine(
-        PYMUNK, "leapfrog start", lambda p, dt: pymunk_planet(p, dt, ahead=0.5), 2, "first velocity + ½ a dt", 50_000
-    ),
-    Engine(
-        PYBULLET,
-        "",
-        bullet_planet,
-        LATE_LEAPFROG,
-        "useMaximalCoordinates=1, no damping; force applied each step",
-        50_000,
-    ),
-    Engine(
-        PYBULLET, "leapfrog start", lambda p, dt: bullet_planet(p, dt, ahead=0.5), 2, "first velocity − ½ a dt", 50_000
-    ),
-)
+def planet_runners(motion, methods, pymunk_make, bullet_make, most_steps):
+    """Return the runners of a scene with Kepler's motion: our methods with equal steps, and the engines.
+
+    The engines take the attraction from the position before a step (pybullet) or after it (pymunk).  pybullet is
+    symplectic Euler, and with a leapfrog start both engines pass through Verlet's positions.
+    *_make(p, dt, ahead)   makes an engine's world; its first velocity is ahead a dt too large
+    most_steps             of an engine
+    """
+    T, limits = motion.T, kepler_limits(motion.T)
+    symmetric = (VERLET, IMPLICIT_MIDPOINT, BLANES_MOAN)
+    errors = {m: motion.predict(m.table, finest=FINEST_RK4 if m is RK4 else FINEST[m.order],
+                                powers=EVEN[m.order] if m in symmetric else None) for m in methods}
+    pymunk_errors = motion.predict(OLD_VELOCITY_NEW_FORCE, finest=FINEST[1])
+    leapfrog = {"order": 2, "limit": limits, "predicted": errors[VERLET], "most_steps": most_steps}
+    return (
+        *(ours(m, limit=limits, predicted=errors[m], order=LATE_LEAPFROG if m is SYMPLECTIC_EULER else m.order,
+               in_quick=m in (*ONE_OF_EACH_ORDER, BLANES_MOAN), compiled_in_quick=m in EXPLICIT) for m in errors),
+        engine(PYMUNK, "", pymunk_make, "attraction in velocity_func",
+               order=LATE_LEAPFROG, limit=early_limit(T), predicted=pymunk_errors, most_steps=most_steps),
+        engine(PYMUNK, "leapfrog start", partial(pymunk_make, ahead=0.5), "first velocity + ½ a dt", **leapfrog),
+        engine(PYBULLET, "", bullet_make, "useMaximalCoordinates=1, no damping; force applied each step",
+               order=LATE_LEAPFROG, limit=limits, predicted=errors[SYMPLECTIC_EULER], most_steps=most_steps),
+        engine(PYBULLET, "leapfrog start", partial(bullet_make, ahead=0.5), "first velocity − ½ a dt", **leapfrog),
+    )

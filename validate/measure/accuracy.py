@@ -43,8 +43,16 @@ def errors(name, plan):
         **parity(selection, first),
         "picture": film.picture(selection, first, labels_to_film({"cases": cases})),
         "law": report_text(scene.acceleration) if scene.acceleration else "",
-        "limits": "\n\n".join(report_text(f) for f in (scene.tolerance, scene.predicted_error) if f),
+        "limits": theory(scene),
     })
+
+
+def theory(scene):
+    """What the scene says about its limits and predictions: the texts of their functions."""
+    if scene.tolerance:
+        return "\n\n".join(report_text(f) for f in (scene.tolerance, scene.predicted_error) if f)
+    functions = [f for r in scene.runners for f in (r.limit, r.predicted) if callable(f)]
+    return "\n\n".join(filter(None, dict.fromkeys(report_text(getattr(f, "func", f)) for f in functions)))
 
 
 def case_errors(selection, case, p, with_engines):
@@ -56,8 +64,8 @@ def case_errors(selection, case, p, with_engines):
         "params": p._asdict() if hasattr(p, "_asdict") else {},
         "truth": truth.tolist(),
         "quantities": scene.quantity_names(p) if scene.quantity_names else [],
-        "ours": [method_curve(selection, method, p, truth) for method in selection.methods_for(p)],
-        "engines": [engine_curve(selection, case, e, p, truth) for e in engines_here],
+        "ours": [our_curve(selection, r, p, truth) for r in selection.ours_for(p)],
+        "engines": [engine_curve(selection, case, r, p, truth) for r in engines_here],
     }
 
 
@@ -119,79 +127,72 @@ def relative_to(truth, a, b):
 
 # ---------------------------------------------------------------------------------------------- curves
 
-def method_curve(selection, method, p, truth):
+def our_curve(selection, runner, p, truth):
     """The errors of one of our methods over the sweep."""
-    scene, step = selection.fastest(method)
-    order = scene.orders.get(method.function, method.order)
-    runs = ((n, run_to_end(scene, step, p, n, bool(selection.plan.overrides))) for n in selection.steps_of(method, p))
-    found = judged(scene, method.label, p, truth, runs, order, selection.plan.enough())
-    return {**found, "role": Role.OURS, "colour": method.colour, "marker": method.marker, "line": "-"}
+    scene, step = selection.fastest(runner)
+    runs = ((n, run_to_end(scene, step, p, n, bool(selection.plan.overrides))) for n in selection.steps_of(runner, p))
+    found = judged(scene, runner, p, truth, runs, selection.plan.enough())
+    return {**found, "role": Role.OURS, "colour": runner.who.colour, "marker": runner.who.marker, "line": "-"}
 
 
-def engine_curve(selection, case, engine, p, truth):
+def engine_curve(selection, case, runner, p, truth):
     """An engine's errors: live where it is installed, recorded where it is not."""
-    scene = selection.scene
-    colour, marker, line = engine_look(engine, scene.engines)
+    scene, engine = selection.scene, runner.who
+    colour, marker, line = engine_look(engine, [r.who for r in scene.engine_runners])
     about = {"role": Role.ENGINE, "product": engine.product, "variant": engine.variant, "settings": engine.settings,
              "colour": colour, "marker": marker, "line": line}
-    if selection.is_live(engine):
+    if selection.is_live(runner):
         source = f"live, {engine.product} {engines.installed(engine.product)}"
-        runs = ((n, run_engine_to_end(scene, engine, p, n)) for n in selection.steps_of(engine, p))
+        runs = ((n, run_engine_to_end(scene, engine, p, n)) for n in selection.steps_of(runner, p))
     else:
         record = traces.recorded(selection.name, case, engine)
         if record is None:
             message = f"{engine.product} is not installed here and this case was never recorded"
-            nothing = {"label": engine.label, "rows": [], "order": None, "expected": engine.order,
+            nothing = {"label": engine.label, "rows": [], "order": None, "expected": runner.order,
                        "verdict": Verdict.UNDECIDED}
             return {**about, **nothing, "source": "missing", "message": message, "departure_reason": ""}
         source = record["source"]
         runs = [(r["steps"], Outcome(np.array(r["observed"]) if r["observed"] else None, r["failure"]))
                 for r in record["runs"]]
-    found = judged(scene, engine.label, p, truth, runs, engine.order, selection.plan.enough())
+    found = judged(scene, runner, p, truth, runs, selection.plan.enough())
     return {**about, **found, "source": source}
 
 
-def allowed(scene, p, label, order, steps):
-    """The largest relative error that theory allows a method or an engine at so many steps."""
-    limits = scene.tolerance(p, scene.duration / steps)
-    return limits[label] if label in limits else limits[order]
-
-
-def bound(scene, p, label, order, steps, law):
-    """What theory says about a run of so many steps: {"limit", "predicted", "band"} of its row.
+def bound(runner, p, dt, law):
+    """What theory says about a run with steps of dt: {"limit", "predicted", "band"} of its row.
 
     limit      the largest relative error; with a prediction its size and its band
     predicted  what theory says will be observed: `law`, the truth or the own law, and the error; None without one
     band       the largest distance of what is observed from that, relative to the law
     """
-    prediction = scene.predicted_error and scene.predicted_error(label, p, scene.duration / steps)
+    prediction = runner.prediction(p, dt)
     if not prediction:
-        return {"limit": allowed(scene, p, label, order, steps), "predicted": None, "band": None}
+        return {"limit": runner.largest_error(p, dt), "predicted": None, "band": None}
     predicted = law + np.array(prediction.error, dtype=float)
     limit = relative(predicted, law) + prediction.band
     return {"limit": limit, "predicted": predicted, "band": prediction.band}
 
 
-def judged(scene, label, p, truth, runs, order, enough):
+def judged(scene, runner, p, truth, runs, enough):
     """The curve of a method or an engine: its errors over the sweep, the order that they show, and the verdict.
 
     runs: pairs (number of steps, Outcome), from coarse to fine; none is taken after `enough` that can be judged.
     Where the scene gives it its own law, it must follow that law.  Where that is the truth, it departs from nothing.
     """
-    departure = scene.expected_departures.get(label)
+    departure, order = runner.departure, runner.order
     law = truth if departure is None else np.array(departure.own_law(p, scene.duration), dtype=float)
     departure = None if np.array_equal(law, truth) else departure
     rows = []
     for steps, outcome in runs:
         rows.append({"steps": steps, "dt": scene.duration / steps, "observed": outcome.observed,
                      "error": None if outcome.failure else relative(outcome.observed, truth),
-                     "failure": outcome.failure, **bound(scene, p, label, order, steps, law)})
+                     "failure": outcome.failure, **bound(runner, p, scene.duration / steps, law)})
         if sum(r["steps"] in scene.steps and r["limit"] < ASYMPTOTIC for r in rows) >= enough:
             break
     off = rows if departure is None else [{**r, "error": r["error"] and relative(r["observed"], law)} for r in rows]
     order_shown = shown_order(off, 10.0 * scene.truth_uncertainty)
     verdict, message = verdict_on(off, law, outcome, order, order_shown)
-    found = {"label": label, "rows": rows, "order": order_shown, "expected": order, "verdict": verdict,
+    found = {"label": runner.label, "rows": rows, "order": order_shown, "expected": order, "verdict": verdict,
              "message": message, "departure_reason": ""}
     if departure is None:
         return found
@@ -260,12 +261,12 @@ def parity(selection, p):
     parity is None where no method has both.
     """
     rows = []
-    for method in selection.methods_for(p):
-        if len(selection.speeds(method)) == 2:
-            bound = (selection.bound(method, speed) for speed in selection.plan.speeds)
+    for runner in selection.ours_for(p):
+        if len(selection.speeds(runner)) == 2:
+            bound = (selection.bound(runner, speed) for speed in selection.plan.speeds)
             a, b = (run_to_end(scene, step, p, scene.steps[0]).observed for scene, step in bound)
             if a is not None and b is not None:
-                rows.append({"label": method.label, "plain": a, "compiled": b})
+                rows.append({"label": runner.label, "plain": a, "compiled": b})
     return {"parity": max((relative(row["plain"], row["compiled"]) for row in rows), default=None), "parity_rows": rows}
 
 

@@ -29,11 +29,11 @@ def picture(selection, p, agreeing):
     dt = seconds / (per_frame * FRAMES)
     frames = [np.array(scene.truth(p, seconds * k / FRAMES)) for k in range(FRAMES + 1)]
     shown = {scene.film_of_truth: (Role.TRUTH, frames)}
-    for method in sorted((m for m in scene.methods if m.label in agreeing), key=selection.rank)[:1]:
-        shown[method.label] = (Role.OURS, our_frames(*selection.fastest(method), p, dt, per_frame))
-    for engine in scene.engines:
-        if selection.is_live(engine) and engine.label not in scene.expected_departures:
-            shown[engine.label] = (Role.ENGINE, engine_frames(engine, p, dt, per_frame))
+    for runner in sorted((r for r in scene.our_runners if r.label in agreeing), key=selection.rank)[:1]:
+        shown[runner.label] = (Role.OURS, our_frames(*selection.fastest(runner), p, dt, per_frame))
+    for runner in scene.engine_runners:
+        if selection.is_live(runner) and not runner.departure:
+            shown[runner.label] = (Role.ENGINE, engine_frames(runner.who, p, dt, per_frame))
             break
     runs = films(scene, shown, p)
     if not selection.plan.overrides and not any(role is Role.ENGINE for role, _ in shown.values()):

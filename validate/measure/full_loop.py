@@ -252,24 +252,24 @@ def left_out(name, plan, result):
     selection = select(name, plan)
     scene, (_, p) = selection.scene, selection.first
     nothing = {"method": "", "steps": None, "ratio": None, "same": None, "observed": None, "repeats": None}
-    here = [m for m in scene.methods if m.function in FULL]
-    method = next((m for m in here if m.label in labels_as_expected(result)), None)
+    here = [r for r in scene.our_runners if r.who.function in FULL]
+    runner = next((r for r in here if r.label in labels_as_expected(result)), None)
     if scene.full_loop or not here:
         return {**nothing, "note": scene.full_loop}
     if plan.quick:
         return {**nothing, "note": "left to --full"}
-    if method is None:
+    if runner is None:
         return {**nothing, "note": f"{here[0].label} departs from the truth here"}
-    steps = next(n for n in scene.steps if n >= LEAST and n not in steps_that_fail(result, method.label))
-    _, step = selection.bound(method, "plain")
-    make, dt = partial(FULL[method.function], lessons_with_loop(plan)), scene.duration / steps
+    steps = next(n for n in scene.steps if n >= LEAST and n not in steps_that_fail(result, runner.label))
+    _, step = selection.bound(runner, "plain")
+    make, dt = partial(FULL[runner.who.function], lessons_with_loop(plan)), scene.duration / steps
     one, other = (run_to_end(scene, s, p, steps) for s in (made_when_called(make), step))
     if one.observed is None:
         return {**nothing, "note": f"the whole loop does not run here: {one.failure}"}
     timed = [Timed("without", "plain", steps, dt, time_ours(scene, step, p)),
              Timed("with", "plain", steps, dt, time_whole(scene, make, p))]
     (_, lean), (_, full) = interleaved(timed, {"plain": np.inf}, plan.repeats())
-    return {"method": method.label, "steps": steps, "ratio": full["seconds"] / lean["seconds"],
+    return {"method": runner.label, "steps": steps, "ratio": full["seconds"] / lean["seconds"],
             "same": relative(one.observed, other.observed) < SAME, "observed": (one.observed, other.observed),
             "repeats": (full["repeats"], lean["repeats"]), "note": ""}
 

@@ -20,10 +20,10 @@ def record(name):
     """Write the record of one scene's pybullet runs; its path, or None for a scene without that engine."""
     selection = select(name, Plan(speeds=(), quick=False))
     scene = selection.scene
-    witnesses = [e for e in scene.engines if e.product == PYBULLET]
+    witnesses = [r.who for r in scene.engine_runners if r.who.product == PYBULLET]
     if not witnesses:
         return None
-    runs = {case: {e.label: readings(selection, e, p) for e in selection.engines_for(p) if e in witnesses}
+    runs = {case: {r.label: readings(selection, r.who, p) for r in selection.engines_for(p) if r.who in witnesses}
             for case, p in scene.cases.items()}
     p = scene.parameters
     items = [Timed(e.label, "engine", n, scene.duration / n, time_engine(e, p))

@@ -13,7 +13,7 @@ import numpy as np
 from solutions.checks import BadInput
 
 from .. import engines, modules
-from ..scene import OPTIONAL, Engine, Method, Scene
+from ..scene import OPTIONAL, Scene
 
 REPEATS = 7                  # of a timed run, at most
 NOTEBOOK = 0.02              # how long a timed run in a notebook may take [s]
@@ -52,7 +52,7 @@ class Selection(NamedTuple):
     plan: Plan
     scene: Scene             # plain, with the subject's lessons
     cases: dict              # {name: p}
-    methods: tuple           # of Method; a case may support fewer
+    ours: tuple              # of Runner: methods of ours; a case may support fewer
     steps: tuple             # numbers of steps over T
     notes: tuple             # sentences: what is omitted, and what is left to --full
     bindings: dict           # {speed: (scene, its set of modules)} of the speeds that were used: looking up takes 30 ms
@@ -62,51 +62,53 @@ class Selection(NamedTuple):
         """(name, p) of the case that is timed and drawn."""
         return next(iter(self.cases.items()))
 
-    def methods_for(self, p):
-        """The methods that support this case, and in a quick validation are not too slow in it."""
-        slow = [m for case, functions in slow_runs(self.scene, self.plan) if self.cases.get(case) == p
-                for m in functions]
-        return tuple(m for m in self.methods if supports(self.scene, m, p) and m.function not in slow)
+    def ours_for(self, p):
+        """The methods of ours that support this case, and in a quick validation are not too slow in it."""
+        return tuple(r for r in self.ours if can_do(r, p) and not (self.plan.quick and self.is_slow(r, p)))
 
     def engines_for(self, p):
         """The engines that support this case; an optional one only where it runs."""
-        return tuple(e for e in self.scene.engines if supports(self.scene, e, p) and not left_out(e, self.plan))
+        return tuple(r for r in self.scene.engine_runners if can_do(r, p) and not left_out(r.who, self.plan))
 
-    def is_live(self, engine):
+    def is_slow(self, runner, p):
+        """Whether this case is one in which only a full validation runs it."""
+        return any(self.cases.get(case) == p for case in runner.slow_cases)
+
+    def is_live(self, runner):
         """Whether this engine is run here rather than read from its record."""
-        return engine.product in self.plan.live
+        return runner.who.product in self.plan.live
 
-    def speeds(self, method):
-        """The speeds at which a method runs, the fastest last."""
-        return speeds_of(self.scene, self.plan, method)
+    def speeds(self, runner):
+        """The speeds at which a method of ours runs, the fastest last."""
+        return speeds_of(self.scene, self.plan, runner)
 
-    def rank(self, method):
+    def rank(self, runner):
         """Sort methods by it: those of high order come first, and of one order those that are compiled."""
-        return -method.order, self.speeds(method)[-1:] != ("compiled",)
+        return -runner.who.order, self.speeds(runner)[-1:] != ("compiled",)
 
-    def bound(self, method, speed):
+    def bound(self, runner, speed):
         """(scene, step): the scene and our step, both plain or both compiled."""
         if speed not in self.bindings:
             compiled = speed == "compiled"
             scene = bound_scene(self.name, self.plan, compiled)
             self.bindings[speed] = scene, modules.module_set(self.plan.of, compiled)
         scene, lessons = self.bindings[speed]
-        return scene, getattr(lessons.lesson(method.lesson), method.function)
+        return scene, getattr(lessons.lesson(runner.who.lesson), runner.who.function)
 
     def steps_of(self, runner, p):
-        """The numbers of steps of a Method or an Engine.
+        """The numbers of steps of a runner.
 
         Some sweeps end sooner in a quick run.  In a full run some go on, in the case that is timed.
         """
-        name, most = name_of(runner), (isinstance(runner, Engine) and runner.most_steps) or np.inf
+        most = (runner.is_engine and runner.who.most_steps) or np.inf
         if self.plan.quick:
-            most = min(most, self.scene.shorter_in_quick.get(name, np.inf))
-        finer = () if self.plan.quick or p != self.first[1] else self.scene.finer_in_full.get(name, ())
+            most = min(most, runner.most_in_quick or np.inf)
+        finer = () if self.plan.quick or p != self.first[1] else runner.finer_in_full
         return tuple(n for n in self.steps if n <= most) + finer
 
-    def fastest(self, method):
+    def fastest(self, runner):
         """The same at the fastest speed that was asked for."""
-        return self.bound(method, self.speeds(method)[-1])
+        return self.bound(runner, self.speeds(runner)[-1])
 
 
 def bound_scene(name, plan, compiled=False):
@@ -118,9 +120,9 @@ def bound_scene(name, plan, compiled=False):
 def select(name, plan):
     """The Selection of a scene under a plan."""
     scene = bound_scene(name, plan)
-    methods = methods_of(scene, plan)
-    notes = notes_of(scene, plan, methods)
-    return Selection(name, plan, scene, cases_of(scene, plan), methods, sweep(scene, plan), notes, {})
+    ours = ours_of(scene, plan)
+    notes = notes_of(scene, plan, ours)
+    return Selection(name, plan, scene, cases_of(scene, plan), ours, sweep(scene, plan), notes, {})
 
 
 def left_out(engine, plan):
@@ -128,32 +130,19 @@ def left_out(engine, plan):
     return engine.product in OPTIONAL and engine.product not in plan.live
 
 
-def name_of(runner):
-    """What a Method or an Engine is called in the fields of a Scene: its function, or its label."""
-    return runner.label if isinstance(runner, Engine) else runner.function
+def can_do(runner, p):
+    """Whether a runner can do this case at all."""
+    return runner.supports is None or runner.supports(p)
 
 
-def supports(scene, runner, p):
-    """Whether a Method or an Engine of the scene can do this case at all."""
-    return scene.supports is None or scene.supports(name_of(runner), p)
+def ours_of(scene, plan):
+    """The methods of ours to run: slow ones only in a full validation, none without a speed."""
+    return tuple(r for r in scene.our_runners if r.in_quick or not plan.quick) if plan.speeds else ()
 
 
-def methods_of(scene, plan):
-    """The methods to run: slow ones only in a full validation, none without a speed."""
-    if not plan.speeds:
-        return ()
-    slow = scene.slow_methods if plan.quick else ()
-    return tuple(m for m in scene.methods if m.function not in slow)
-
-
-def slow_runs(scene, plan):
-    """The pairs (case, functions of methods) that are left to a full validation."""
-    return scene.slow_runs.items() if plan.quick else ()
-
-
-def speeds_of(scene, plan, method: Method):
-    """The speeds at which a method runs: a quick run compiles only what the scene names."""
-    plain_only = plan.quick and not (scene.refined and method.function in scene.compiled_in_quick)
+def speeds_of(scene, plan, runner):
+    """The speeds at which a method of ours runs: a quick run compiles only what the scene says."""
+    plain_only = plan.quick and not (scene.refined and runner.compiled_in_quick)
     return ("plain",) if plain_only and "plain" in plan.speeds else plan.speeds
 
 
@@ -175,25 +164,26 @@ def cases_of(scene, plan):
     return {case: q for case, q in scene.cases.items() if case not in slow}
 
 
-def notes_of(scene, plan, methods):
+def notes_of(scene, plan, ours):
     """Sentences: what the scene omits, and what this run leaves to --full.  A notebook has no --full."""
     omitted = (scene.omitted_methods[0].upper() + scene.omitted_methods[1:],) if scene.omitted_methods else ()
     if plan.most_steps:
         return omitted
-    for product in dict.fromkeys(e.product for e in scene.engines if left_out(e, plan)):
+    for product in dict.fromkeys(r.who.product for r in scene.engine_runners if left_out(r.who, plan)):
         why = "this run asked for others" if engines.installed(product) else f"not installed; {engines.REMEDY}"
         omitted += (f"The witness {product} is left out: {why}",)
     if not plan.quick:
         return omitted
-    slow = [m.label for m in scene.methods if m not in methods]
-    plain = [m.label for m in methods if speeds_of(scene, plan, m) != plan.speeds]
+    slow = [r.label for r in scene.our_runners if r not in ours]
+    plain = [r.label for r in ours if speeds_of(scene, plan, r) != plan.speeds]
     finest = "finer steps, where four runs of a method or an engine can be judged already"
-    short = [m.label for m in methods if m.function in scene.shorter_in_quick]
-    several = len(scene.cases) > 1 and scene.moves and scene.engines
+    short = [r.label for r in ours if r.most_in_quick]
+    slow_cases = [case for case in scene.cases if any(case in r.slow_cases for r in scene.our_runners)]
+    several = len(scene.cases) > 1 and scene.moves and scene.engine_runners
     left = (
         (slow, f", to keep this one quick: {', '.join(slow)}"),
         (scene.slow_cases, f": {', '.join(scene.slow_cases)}"),
-        (scene.slow_runs, f": our methods on {', '.join(scene.slow_runs)}"),
+        (slow_cases, f": our methods on {', '.join(slow_cases)}"),
         (several, f": the engines on {', '.join(list(scene.cases)[1:])}"),
         (len(scene.steps) > plan.enough(), f": {finest}"),
         (short, f": the finest steps of {', '.join(short)}"),

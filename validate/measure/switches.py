@@ -21,9 +21,9 @@ def engine_parts(selection, p):
         return []
     steps = next((n for n in scene.steps if n >= LEAST), scene.steps[-1])
     first = {}
-    for engine in selection.engines_for(p):
-        if selection.is_live(engine):
-            first.setdefault(engine.product, engine)
+    for runner in selection.engines_for(p):
+        if selection.is_live(runner):
+            first.setdefault(runner.who.product, runner.who)
     return [with_and_without(scene, engine, switch, p, steps, selection.plan.repeats())
             for engine in first.values() for switch in switches_of(engine, p, scene.duration / steps)]
 

@@ -88,25 +88,25 @@ def worth_timing(selection, case):
 
 def our_items(selection, p, found):
     """What to time of our own methods, at each speed."""
-    for method in selection.methods_for(p):
-        for speed in selection.speeds(method) if found[method.label] else ():      # a lost start cannot be prepared
-            prepare = time_ours(*selection.bound(method, speed), p)
-            for n in found[method.label]:
-                yield Timed(method.label, speed, n, selection.scene.duration / n, prepare)
+    for runner in selection.ours_for(p):
+        for speed in selection.speeds(runner) if found[runner.label] else ():      # a lost start cannot be prepared
+            prepare = time_ours(*selection.bound(runner, speed), p)
+            for n in found[runner.label]:
+                yield Timed(runner.label, speed, n, selection.scene.duration / n, prepare)
 
 
 def engine_items(selection, p, found):
     """What to time of the engines that are installed."""
-    for engine in selection.engines_for(p):
-        if selection.is_live(engine):
-            for n in found[engine.label]:
-                yield Timed(engine.label, "engine", n, selection.scene.duration / n, time_engine(engine, p))
+    for runner in selection.engines_for(p):
+        if selection.is_live(runner):
+            for n in found[runner.label]:
+                yield Timed(runner.label, "engine", n, selection.scene.duration / n, time_engine(runner.who, p))
 
 
 def recorded_times(selection, case, p):
     """[(label, "recorded", steps, times)] of the engines that are not installed."""
-    return [(e.label, "recorded", row["steps"], row) for e in selection.engines_for(p) if not selection.is_live(e)
-            for row in (traces.recorded(selection.name, case, e) or {}).get("seconds") or []]
+    return [(r.label, "recorded", row["steps"], row) for r in selection.engines_for(p) if not selection.is_live(r)
+            for row in (traces.recorded(selection.name, case, r.who) or {}).get("seconds") or []]
 
 
 def time_ours(scene, step, p, state=None):
@@ -247,11 +247,11 @@ def empty_step(step):
 def ablations(selection, p, agreeing):
     """[{what, cost: times longer with it put in, same: the motion is unchanged, note}] for what the scene omits."""
     scene = selection.scene
-    method = min((m for m in scene.methods if m.label in agreeing), key=selection.rank, default=None)
-    if method is None:
+    runner = min((r for r in scene.our_runners if r.label in agreeing), key=selection.rank, default=None)
+    if runner is None:
         return []
-    speed = selection.speeds(method)[-1]
-    bound, step = selection.bound(method, speed)
+    speed = selection.speeds(runner)[-1]
+    bound, step = selection.bound(runner, speed)
     steps = scene.steps[min(2, len(scene.steps) - 1)] if speed == "compiled" else scene.steps[0]
     rows = []
     for what, extra in scene.ablations.items():

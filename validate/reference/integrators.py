@@ -6,7 +6,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from ..scene import LATE_LEAPFROG, ROUND_OFF
-from .schemes import TABLEAUX, Model, nudged, predict_by_tables, step_of, table_model
+from .schemes import BLANES_MOAN, Model, Motion, nudged, step_of
 
 
 class Planet(NamedTuple):
@@ -138,7 +138,7 @@ def adaptive_march(law, x, v, share, T):
     The middle of each step has the rate ρ, √(|a|/|x|) continued by ρ̇ = −3/2 ρ x·v/x²; the step is share/ρ.
     Source: Hairer and Söderlind 2005.
     """
-    move, t = step_of(TABLEAUX["Blanes–Moan"]), 0.0
+    move, t = step_of(BLANES_MOAN), 0.0
     rate = np.sqrt(abs(law(t, x, v)) / abs(x)) - 0.75 * share * (v / x).real
     while t < T:
         if not rate > 0.0:
@@ -149,46 +149,47 @@ def adaptive_march(law, x, v, share, T):
     return x
 
 
-def kepler_limits(p, T, dt):
-    """Return {order or engine label: largest relative error at T}."""
-    smooth = {k: drift(p, T, dt, k) for k in (1, 2, 4)}
-    old, new = late_start(p, T, dt, -1.0) + smooth[2], late_start(p, T, dt, 1.0) + smooth[2]
-    return {**smooth, LATE_LEAPFROG: new, "pymunk": old, "pymunk, leapfrog start": smooth[2],
-            "pybullet": new, "pybullet, leapfrog start": smooth[2]}
+def kepler_limits(T):
+    """Return function(p, dt) → {order: largest relative error at T}."""
+    def limits(p, dt):
+        """Methods of order 2 and 4 drift in phase.  Symplectic Euler and pybullet are leapfrog, started half a step
+        late.
+        """
+        smooth = {k: drift(p, T, dt, k) for k in (1, 2, 4)}
+        return {**smooth, LATE_LEAPFROG: late_start(p, T, dt, 1.0) + smooth[2]}
+    return limits
 
 
-LEAPFROG_STARTS = ("pymunk, leapfrog start", "pybullet, leapfrog start")
+def early_limit(T):
+    """Return function(p, dt) → largest relative error at T of leapfrog that is started half a step early."""
+    def limit(p, dt):
+        """pymunk is leapfrog, started half a step early."""
+        return late_start(p, T, dt, -1.0) + drift(p, T, dt, 2)
+    return limit
 
 
-def kepler_errors(T):
-    """Return the field `predicted_error` of a planet: methods and engines as tables, positions as complex numbers.
+EVEN = {2: (2, 4, 6), 4: (4, 6, 8)}      # powers of dt in the error of a method that is its own inverse, by its order
+FINEST = {1: 20000, 2: 10000, 4: 4000}   # steps of the finest run of a table, by its order
+FINEST_RK4, FINEST_ADAPTIVE = 10000, 2000
 
-    The engines take the attraction from the position before a step (pybullet) or after it (pymunk).
-    """
+
+def kepler_motion(T):
+    """Return the Motion of a planet, with positions as complex numbers."""
     def law(p):
         return lambda t, x, v: -p.mu * x / abs(x) ** 3
 
     def begin(p):
         return tuple(complex(*pair) for pair in perihelion(p))
 
-    def seen(x, p):
-        return [x.real, x.imag]
+    return Motion(T, law, begin, lambda x, p: [x.real, x.imag], kepler_position,
+                  lambda p, dt: random_round_off(p, T, dt))
 
-    # pybullet is symplectic Euler, and with a leapfrog start both engines pass through Verlet's positions
-    kicked, leapfrog = table_model("symplectic Euler", law, begin, seen), table_model("Verlet", law, begin, seen, 2)
-    models = {
-        "pymunk": table_model("old velocity, new force", law, begin, seen), "pybullet": kicked,
-        "symplectic Euler": kicked, **dict.fromkeys(("Verlet", *LEAPFROG_STARTS), leapfrog)}
 
+def adaptive_errors(motion):
+    """Return the field `predicted` of steps that adapt to the distance."""
     @cache
-    def adaptive(p, h, steps, nudge):
-        x, v = begin(p)
-        return seen(adaptive_march(law(p), nudged(x, nudge), v, h * mean_rate(p), T), p)
-    models["Blanes–Moan, adaptive"] = Model(4, adaptive)
-    # a method that is its own inverse has an error in even powers of dt only
-    even = {**dict.fromkeys(("Verlet", "implicit midpoint", *LEAPFROG_STARTS), (2, 4, 6)),
-            **dict.fromkeys(("Blanes–Moan", "Blanes–Moan, adaptive"), (4, 6, 8))}
-    return predict_by_tables(T, law, begin, seen, kepler_position, lambda p, dt: random_round_off(p, T, dt), models,
-                             finest={1: 20000, 2: 10000, 4: 4000, "Runge–Kutta 4": 10000,
-                                     "Blanes–Moan, adaptive": 2000},
-                             powers=even)
+    def run(p, h, steps, nudge):
+        x, v = motion.begin(p)
+        end = adaptive_march(motion.law(p), nudged(x, nudge), v, h * mean_rate(p), motion.T)
+        return motion.seen(end, p)
+    return motion.predict_model(Model(4, run), finest=FINEST_ADAPTIVE, powers=EVEN[4])

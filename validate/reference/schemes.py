@@ -10,6 +10,7 @@ One loop runs all of them, with forces of validate/reference: nothing here is sh
 """
 
 import inspect
+from collections.abc import Callable
 from functools import cache
 from typing import NamedTuple
 
@@ -31,6 +32,7 @@ FINEST = {1: 800, 2: 400, 4: 200}    # steps that the table is run with, by its 
 
 class Tableau(NamedTuple):
     """A method.  Rows are tuples of (stage, weight)."""
+    order: int
     c: tuple
     alpha: tuple             # of the stages' positions
     beta: tuple              # of the stages' velocities
@@ -38,12 +40,12 @@ class Tableau(NamedTuple):
     b: tuple                 # of the new velocity
 
 
-def both(c, rows, weights):
+def both(order, c, rows, weights):
     """The same weights for position and velocity: an ordinary Runge–Kutta method."""
-    return Tableau(c, rows, rows, weights, weights)
+    return Tableau(order, c, rows, rows, weights, weights)
 
 
-def kicks_and_drifts(kicks, drifts):
+def kicks_and_drifts(order, kicks, drifts):
     """Velocity and position by turns.  Stage 2i is before kick i, stage 2i + 1 after it."""
     c, alpha, beta, moved, pushed, t = [], [], [], (), (), 0.0
     for i, (kick, drift) in enumerate(zip(kicks, (*drifts, 0.0), strict=True)):
@@ -51,33 +53,36 @@ def kicks_and_drifts(kicks, drifts):
         alpha += [moved, moved]
         beta += [pushed, (*pushed, (2 * i, kick))]
         pushed, moved, t = beta[-1], (*moved, (2 * i + 1, drift)), t + drift
-    return Tableau(tuple(c), tuple(alpha), tuple(beta), moved, pushed)
+    return Tableau(order, tuple(c), tuple(alpha), tuple(beta), moved, pushed)
 
 
 B = (0.0829844064174052, 0.396309801498368, -0.0390563049223486)     # Blanes and Moan 2002, table 3, order 4
 A = (0.245298957184271, 0.604872665711080)
 END = ((0, 1.0),)
 
+EULER = both(1, (0.0,), ((),), END)
+MIDPOINT = both(2, (0.0, 0.5), ((), ((0, 0.5),)), ((1, 1.0),))
+RK4 = both(4, (0.0, 0.5, 0.5, 1.0), ((), ((0, 0.5),), ((1, 0.5),), ((2, 1.0),)),
+           ((0, 1 / 6), (1, 1 / 3), (2, 1 / 3), (3, 1 / 6)))
+AVERAGE_VELOCITY = Tableau(1, (0.0, 1.0), ((), ()), ((), END), ((0, 0.5), (1, 0.5)), END)
+SYMPLECTIC_EULER = Tableau(1, (0.0, 1.0), ((), ()), ((), END), ((1, 1.0),), END)
+VERLET = Tableau(2, (0.0, 1.0), ((), ((0, 0.5), (1, 0.5))), ((), END), ((0, 0.5), (1, 0.5)), ((0, 0.5), (1, 0.5)))
+IMPLICIT_EULER = both(1, (1.0,), (END,), END)
+IMPLICIT_MIDPOINT = both(2, (0.5,), (((0, 0.5),),), END)
+BLANES_MOAN = kicks_and_drifts(4, (*B, 1.0 - 2.0 * sum(B), *B[::-1]), (*A, 0.5 - sum(A), 0.5 - sum(A), *A[::-1]))
+# what engines do: the force from the state before the step, or from the new position and the old velocity
+OLD_VELOCITY_OLD_FORCE = EULER
+NEW_VELOCITY_OLD_FORCE = SYMPLECTIC_EULER
+OLD_VELOCITY_NEW_FORCE = Tableau(1, (0.0, 1.0), ((), END), ((), ()), END, ((1, 1.0),))
+
 TABLEAUX = {                 # {label of validate/methods.py: Tableau}
-    "Euler": both((0.0,), ((),), END),
-    "midpoint": both((0.0, 0.5), ((), ((0, 0.5),)), ((1, 1.0),)),
-    "Runge–Kutta 4": both((0.0, 0.5, 0.5, 1.0), ((), ((0, 0.5),), ((1, 0.5),), ((2, 1.0),)),
-                          ((0, 1 / 6), (1, 1 / 3), (2, 1 / 3), (3, 1 / 6))),
-    "average velocity": Tableau((0.0, 1.0), ((), ()), ((), END), ((0, 0.5), (1, 0.5)), END),
-    "symplectic Euler": Tableau((0.0, 1.0), ((), ()), ((), END), ((1, 1.0),), END),
-    "Verlet": Tableau((0.0, 1.0), ((), ((0, 0.5), (1, 0.5))), ((), END), ((0, 0.5), (1, 0.5)), ((0, 0.5), (1, 0.5))),
-    "implicit Euler": both((1.0,), (END,), END),
-    "implicit midpoint": both((0.5,), (((0, 0.5),),), END),
-    "Blanes–Moan": kicks_and_drifts((*B, 1.0 - 2.0 * sum(B), *B[::-1]), (*A, 0.5 - sum(A), 0.5 - sum(A), *A[::-1])),
-    # what engines do: the force from the state before the step, or from the new position and the old velocity
-    "old velocity, old force": both((0.0,), ((),), END),
-    "new velocity, old force": Tableau((0.0, 1.0), ((), ()), ((), END), ((1, 1.0),), END),
-    "old velocity, new force": Tableau((0.0, 1.0), ((), END), ((), ()), END, ((1, 1.0),)),
+    "Euler": EULER, "midpoint": MIDPOINT, "Runge–Kutta 4": RK4, "average velocity": AVERAGE_VELOCITY,
+    "symplectic Euler": SYMPLECTIC_EULER, "Verlet": VERLET, "implicit Euler": IMPLICIT_EULER,
+    "implicit midpoint": IMPLICIT_MIDPOINT, "Blanes–Moan": BLANES_MOAN,
+    "old velocity, old force": OLD_VELOCITY_OLD_FORCE, "new velocity, old force": NEW_VELOCITY_OLD_FORCE,
+    "old velocity, new force": OLD_VELOCITY_NEW_FORCE,
 }
-
-
-ORDERS = {label: 2 if label in ("midpoint", "Verlet", "implicit midpoint") else 4 if label in
-          ("Runge–Kutta 4", "Blanes–Moan") else 1 for label in TABLEAUX}
+ORDERS = {label: table.order for label, table in TABLEAUX.items()}
 
 
 def weighted(weights, values):
@@ -126,8 +131,8 @@ def implicit_stage(law, t, x, v, h):
 
 
 def advance(scheme, law, x, v, h, steps):
-    """(x, v) after so many steps.  A scheme is a label of TABLEAUX, or a function like those of `step_of`."""
-    move = scheme if callable(scheme) else step_of(TABLEAUX[scheme])
+    """(x, v) after so many steps.  A scheme is a Tableau, or a function like those of `step_of`."""
+    move = scheme if callable(scheme) else step_of(scheme if isinstance(scheme, Tableau) else TABLEAUX[scheme])
     with np.errstate(all="ignore"):
         for n in range(steps):
             x, v = move(law, n * h, x, v, h)
@@ -239,6 +244,48 @@ def table_model(scheme, law, begin, seen, order=1, ahead=0.0, march=advance):
 def nudged(x, nudge):
     """x, moved by `nudge` in a direction that no symmetry knows."""
     return x + nudge * (np.cos(np.arange(x.size) ** 2.0).reshape(x.shape) if isinstance(x, np.ndarray) else 1.0)
+
+
+class Motion(NamedTuple):
+    """What a scene tells of its motion, in words of its own that share nothing with the lesson."""
+    T: float                 # the output time [s]
+    law: Callable            # p → a(t, x, v)
+    begin: Callable          # p → (x, v)
+    seen: Callable           # (x, p) → what the scene observes of x
+    truth: Callable          # (p, t) → the same
+    floor: Callable          # (p, dt) → round-off, relative
+    march: Callable = advance            # or `advance_modes` for modes that do not touch
+
+    def model(self, scheme, law=None, ahead=0.0):
+        """Return the Model of a method or an engine that does what a scheme does; law: another one than the scene's."""
+        order = scheme.order if isinstance(scheme, Tableau) else 1
+        return table_model(scheme, law or self.law, self.begin, self.seen, order, ahead, self.march)
+
+    def predict(self, scheme, law=None, follows=None, ahead=0.0, finest=None, powers=None):
+        """Return the field `predicted` of a Runner that does what a scheme does, as `predict_model` does."""
+        return self.predict_model(self.model(scheme, law, ahead), follows, finest, powers)
+
+    def predict_model(self, model, follows=None, finest=None, powers=None):
+        """Return the field `predicted` of a Runner.
+
+        follows   (p, t) → what it observes with no error: its own law in place of the truth
+        finest    steps of the finest run of the table, where they are not those of its order
+        powers    the first three powers of dt in the error, where they are not k, k + 1, k + 2 of order k
+        """
+        @cache
+        def error_law(p):
+            law = np.array((follows or self.truth)(p, self.T), dtype=float)
+            return ErrorLaw(lambda steps, nudge: model.run(p, self.T / steps, steps, nudge), law, powers or model.order,
+                            self.T, finest or FINEST[model.order])
+
+        def predicted_error(p, dt):
+            """The error, with its sign, of the method's own table of coefficients (Runge–Kutta, partitioned), in a
+            program that shares neither steps nor forces with the lesson: with the same step where that is coarse,
+            otherwise by an expansion of the error in powers of dt.  A run must agree with it as closely as the
+            expansion is known.
+            """
+            return error_law(p).prediction(dt, self.floor(p, dt))
+        return predicted_error
 
 
 def predict_by_tables(T, law, begin, seen, truth, floor, engines=None, departures=None, finest=None, powers=None,

@@ -18,6 +18,7 @@ from scipy.integrate import solve_ivp
 
 from solutions.checks import Diverged
 from validate.methods import BLANES_MOAN, INTEGRATORS
+from validate.methods import EXPLICIT as ALL_EXPLICIT
 from validate.reference import schemes
 from validate.reference.integrators import Planet, adaptive_march, orbit, perihelion
 from validate.stability.case import (
@@ -47,7 +48,8 @@ SHORTEST = 0.05
 LONGEST = 4.0
 CELLS = 120                  # of a map of amplification, in each direction
 
-EXPLICIT, IMPLICIT = INTEGRATORS[:6], INTEGRATORS[6:]
+EXPLICIT = tuple(m for m in INTEGRATORS if m in ALL_EXPLICIT)
+IMPLICIT = tuple(m for m in INTEGRATORS if m not in EXPLICIT)
 LABEL = {method.function: method.label for method in INTEGRATORS}
 
 

@@ -1,20 +1,23 @@
 """A planet orbits its sun sixteen times on an ellipse, and every method is compared by its final position."""
 
-
-
 from solutions.integrators import advance
 from solutions.support.orbits import attraction as acceleration
-from validate.engines.integrators import KEPLER_ENGINES, planet, planet_in_space, sun_and_planet
-from validate.methods import BLANES_MOAN, EXPLICIT, INTEGRATORS, LEFT_TO_FULL
-from validate.reference.integrators import Planet, kepler_errors, kepler_limits, kepler_position
-from validate.scene import LATE_LEAPFROG, Scene
+from validate.engines.integrators import (
+    bullet_planet,
+    planet,
+    planet_in_space,
+    planet_runners,
+    pymunk_planet,
+    sun_and_planet,
+)
+from validate.methods import BLANES_MOAN, INTEGRATORS
+from validate.reference.integrators import Planet, kepler_motion, kepler_position
+from validate.scene import Scene
 
 T = 100.0                    # [s]: sixteen revolutions
 STEPS = (500, 1000, 2000, 5000, 10000, 14000, 20000, 50000, 100000, 150000, 200000)
-# Euler, average velocity and implicit Euler gain or lose energy at every passage, see drift.  They are drawn, but
-# theory gives no limit for them at any step here.
-
-
+# Euler, average velocity and implicit Euler gain or lose energy at every passage, see drift() in
+# validate/reference/integrators.py.  They are drawn, but theory gives no limit for them at any step here.
 CASES = {"e = 0.6": Planet()}
 
 
@@ -27,27 +30,15 @@ def observe(state, p):
     return state[0][:2]
 
 
-def tolerance(p, dt):
-    """Methods of order 2 and 4 drift in phase.  Symplectic Euler and the engines are leapfrog, started half a step
-    late or early."""
-    return kepler_limits(p, T, dt)
-
-
 SCENE = Scene(
     title="Kepler", lesson="integrators",
     cases=CASES, duration=T, steps=STEPS,
-    methods=(*INTEGRATORS, BLANES_MOAN),
+    runners=planet_runners(kepler_motion(T), (*INTEGRATORS, BLANES_MOAN), pymunk_planet, bullet_planet, 50_000),
     acceleration=acceleration, start=planet, run=run, observe=observe,
     truth=kepler_position,
-    # of the reference solution: round-off in the energy, v²/2 − μ/r, grows with time as in drift(): 3e-13
-    truth_uncertainty=1e-12, tolerance=tolerance, predicted_error=kepler_errors(T),
-    engines=KEPLER_ENGINES,
-    orders={"symplectic_euler_step": LATE_LEAPFROG},  # see late_start
-    slow_methods=LEFT_TO_FULL, compiled_in_quick=EXPLICIT,
-    published_states=(
-        (100.0, (-0.104183204, -0.694741716), 1e-9),
-    # its velocity is then (1.236177763, 0.564623251) m/s
-    ),
+    # of the reference solution: round-off in the energy, v²/2 − μ/r, grows with time as a phase does: 3e-13
+    truth_uncertainty=1e-12,
+    published_states=((100.0, (-0.104183204, -0.694741716), 1e-9),),   # then v = (1.236177763, 0.564623251) m/s
     points=sun_and_planet,
     film_seconds=12.6,  # two revolutions [s]
     uses=("one point in the plane", "one step function"),

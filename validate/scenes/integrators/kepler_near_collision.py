@@ -2,17 +2,24 @@
 
 from solutions.integrators import advance, advance_adaptive, blanes_moan_step
 from solutions.support.orbits import attraction as acceleration
-from validate.engines.integrators import KEPLER_ENGINES, planet, planet_in_space, sun_and_planet
-from validate.methods import ADAPTIVE, BLANES_MOAN, EXPLICIT, INTEGRATORS, LEFT_TO_FULL
+from validate.engines.integrators import (
+    bullet_planet,
+    planet,
+    planet_in_space,
+    planet_runners,
+    pymunk_planet,
+    sun_and_planet,
+)
+from validate.methods import ADAPTIVE, BLANES_MOAN, INTEGRATORS
 from validate.reference.integrators import (
     Planet,
+    adaptive_errors,
     adaptive_limit,
-    kepler_errors,
-    kepler_limits,
+    kepler_motion,
     kepler_position,
     mean_rate,
 )
-from validate.scene import LATE_LEAPFROG, Scene
+from validate.scene import Scene, ours
 
 T = 20.0                     # [s]: three revolutions
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000, 14000, 20000, 50000, 100000, 200000)
@@ -36,33 +43,26 @@ def observe(state, p):
     return state[0][:2]
 
 
-def tolerance(p, dt):
-    """As in kepler.  The rate at the nearest point, √(μ/r³), is 32 times the mean: equal steps are wasted far away.
-
-    An adaptive step keeps the product of rate and dt the same everywhere.  This product is its share.
+def limit(p, dt):
+    """The rate at the nearest point, √(μ/r³), is 32 times the mean: equal steps are wasted far away.  An adaptive step
+    keeps the product of rate and dt the same everywhere.  This product is its share.
     """
-    return {**kepler_limits(p, T, dt), ADAPTIVE.label: adaptive_limit(p, T, share(p, dt))}
+    return adaptive_limit(p, T, share(p, dt))
 
+
+MOTION = kepler_motion(T)
+RUNNERS = (
+    *planet_runners(MOTION, (*INTEGRATORS, BLANES_MOAN), pymunk_planet, bullet_planet, 50_000),
+    ours(ADAPTIVE, limit=limit, predicted=adaptive_errors(MOTION)),
+)
 
 SCENE = Scene(
-    title="Kepler, near collision",
-    lesson="integrators",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
-    methods=(*INTEGRATORS, BLANES_MOAN, ADAPTIVE),
-    acceleration=acceleration,
-    start=planet,
-    run=run,
-    observe=observe,
+    title="Kepler, near collision", lesson="integrators",
+    cases=CASES, duration=T, steps=STEPS,
+    runners=RUNNERS,
+    acceleration=acceleration, start=planet, run=run, observe=observe,
     truth=kepler_position,
-    # of the reference solution, as in kepler: 1e-13
-    truth_uncertainty=1e-12,
-    tolerance=tolerance,
-    predicted_error=kepler_errors(T),
-    engines=KEPLER_ENGINES,
-    orders={"symplectic_euler_step": LATE_LEAPFROG},          # see late_start
-    slow_methods=LEFT_TO_FULL, compiled_in_quick=EXPLICIT,
+    truth_uncertainty=1e-12,    # of the reference solution, as in kepler: 1e-13
     published_states=((20.0, (-1.295266251, 0.400393896), 1e-9),),
     points=sun_and_planet,
     film_seconds=12.6,          # two revolutions [s]

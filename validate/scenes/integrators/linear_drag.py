@@ -1,5 +1,6 @@
 """A pellet shot up in syrup: linear drag bends the parabola until the pellet falls almost straight down."""
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -8,9 +9,9 @@ from solutions.checks import check_positive
 from solutions.integrators import advance
 from validate.engines.bullet import Bullet, hidden_damping
 from validate.engines.chipmunk import pymunk_space, pymunk_world
-from validate.methods import INTEGRATORS, LEFT_TO_FULL
-from validate.reference.schemes import predict_by_tables, table_model
-from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Scene, by_order
+from validate.methods import INTEGRATORS, ONE_OF_EACH_ORDER
+from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE, OLD_VELOCITY_OLD_FORCE, Motion
+from validate.scene import EXACT, PYBULLET, PYMUNK, EngineRun, Scene, by_order, engine, ours
 
 T = 1.97599434               # [s]: at which it is back at the initial height
 STEPS = (10, 20, 50, 100, 200, 500, 1000, 2000)
@@ -59,19 +60,23 @@ def truth(p, t):
     return v_end * t - (v_0 - v_end) * np.expm1(-p.k * t) / p.k
 
 
-def tolerance(p, dt):
+def limits(p, dt, damping=0.0):
     """Only the decaying term has an error.  Its length is |v₀ − v∞|/k, its rate is k, and x(T) is ten times shorter.
 
     Both engines are of first order and take drag at the beginning of a step, or multiply v by e^(−k dt): order 1
-    with rate k.  A first velocity half a step later would not help, because drag depends on it.  The default damping
-    has its fastest rate, 0.04 (1 + 2|v|), at the greater of the initial speed and the terminal one.
+    with rate k.  A first velocity half a step later would not help, because drag depends on it.
     """
     scale = np.hypot(p.vx, p.vy + p.g / p.k) / p.k / np.linalg.norm(truth(p, T))
-    limits = {k: scale * limit for k, limit in by_order(p.k, T, dt).items()}
-    fastest = max(np.hypot(p.vx, p.vy), p.g / p.k)
-    hidden = scale * by_order(p.k + 0.04 * (1.0 + 2.0 * fastest), T, dt)[1]
-    return {**limits, "pybullet, default": hidden,
-            **dict.fromkeys(("pymunk", "pymunk, own damping", "pybullet", "pybullet, own damping"), limits[1])}
+    return {k: scale * limit for k, limit in by_order(p.k + damping, T, dt).items()}
+
+
+def damped_limits(p, dt):
+    """The default damping has its fastest rate, 0.04 (1 + 2|v|), at the greater of the initial and terminal speed."""
+    return limits(p, dt, 0.04 * (1.0 + 2.0 * max(np.hypot(p.vx, p.vy), p.g / p.k)))
+
+
+def floor(p, dt):
+    return limits(p, dt)[EXACT]
 
 
 def law(p):
@@ -100,18 +105,8 @@ def own_damping(place):
     return model
 
 
-MODELS = {
-    "pymunk": table_model("old velocity, old force", law, thrown, seen),
-    "pymunk, own damping": table_model(own_damping(lambda old, new: old), law, thrown, seen),
-    "pybullet": table_model("new velocity, old force", law, thrown, seen),
-    "pybullet, default": table_model("new velocity, old force", damped_law, thrown, seen),
-    "pybullet, own damping": table_model(own_damping(lambda old, new: new), law, thrown, seen),
-}
-DEPARTURES = {"pybullet, default": hidden_damping(acceleration, start)}
-
-
-def floor(p, dt):
-    return tolerance(p, dt)[EXACT]
+MOTION = Motion(T, law, thrown, seen, truth, floor)
+DAMPED = hidden_damping(acceleration, start)
 
 
 def pymunk_make(p, dt, own=False):
@@ -151,15 +146,22 @@ def pybullet_make(p, dt, default=False, own=False):
     return EngineRun(bullet.step if own else step, lambda: np.array(bullet.position(body)[:2]), bullet.close)
 
 
-ENGINES = (
-    Engine(PYMUNK, "", pymunk_make, 1, "force applied each step"),
-    Engine(PYMUNK, "own damping", lambda p, dt: pymunk_make(p, dt, own=True), 1,
-           "space.damping = e^(−k): the share left after one second"),
-    Engine(PYBULLET, "default", lambda p, dt: pybullet_make(p, dt, default=True), 1,
-           "createMultiBody with its defaults; force applied each step"),
-    Engine(PYBULLET, "", pybullet_make, 1, "useMaximalCoordinates=1, no damping; force applied each step"),
-    Engine(PYBULLET, "own damping", lambda p, dt: pybullet_make(p, dt, own=True), 1,
-           "useMaximalCoordinates=1, linearDamping = 1 − e^(−k): the share lost in one second"),
+RUNNERS = (
+    *(ours(m, limit=limits, predicted=MOTION.predict(m.table), in_quick=m in ONE_OF_EACH_ORDER) for m in INTEGRATORS),
+    engine(PYMUNK, "", pymunk_make, "force applied each step",
+           order=1, limit=limits, predicted=MOTION.predict(OLD_VELOCITY_OLD_FORCE)),
+    engine(PYMUNK, "own damping", partial(pymunk_make, own=True),
+           "space.damping = e^(−k): the share left after one second",
+           order=1, limit=limits, predicted=MOTION.predict(own_damping(lambda old, new: old))),
+    engine(PYBULLET, "default", partial(pybullet_make, default=True),
+           "createMultiBody with its defaults; force applied each step",
+           order=1, limit=damped_limits, departure=DAMPED,
+           predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE, damped_law, follows=DAMPED.own_law)),
+    engine(PYBULLET, "", pybullet_make, "useMaximalCoordinates=1, no damping; force applied each step",
+           order=1, limit=limits, predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE)),
+    engine(PYBULLET, "own damping", partial(pybullet_make, own=True),
+           "useMaximalCoordinates=1, linearDamping = 1 − e^(−k): the share lost in one second",
+           order=1, limit=limits, predicted=MOTION.predict(own_damping(lambda old, new: new))),
 )
 
 
@@ -175,16 +177,11 @@ def in_space(p):
 SCENE = Scene(
     title="Linear drag", lesson="integrators",
     cases=CASES, duration=T, steps=STEPS,
-    methods=INTEGRATORS,
+    runners=RUNNERS,
     acceleration=acceleration, start=start, run=run, observe=observe,
     truth=truth,
     # (1 − e^(−kt)) and gt are ten times as large as their difference
-    truth_uncertainty=1e-14, tolerance=tolerance,
-    engines=ENGINES,
-    expected_departures=DEPARTURES,
-    predicted_error=predict_by_tables(T, law, thrown, seen, truth, floor, MODELS, DEPARTURES),
-    slow_methods=LEFT_TO_FULL,
-    # Plain Python finishes before numba has compiled it.
+    truth_uncertainty=1e-14,
     published_states=((1.97599434, (2.18789655, 0.0), 4e-8),),
     points=points,
     uses=("one point in the plane", "one step function"),

@@ -1,5 +1,6 @@
 """A mass on a spring with a damper, released at one metre: the standard problem for comparing methods."""
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -9,9 +10,9 @@ from solutions.integrators import Oscillator, advance
 from solutions.integrators import oscillator_acceleration as acceleration
 from validate.engines.bullet import Bullet, hidden_damping
 from validate.engines.chipmunk import pymunk_space, pymunk_world
-from validate.methods import INTEGRATORS
-from validate.reference.schemes import predict_by_tables, table_model
-from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Scene, by_order
+from validate.methods import IMPLICIT_EULER, IMPLICIT_MIDPOINT, INTEGRATORS, ONE_OF_EACH_ORDER
+from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE, Motion
+from validate.scene import EXACT, PYBULLET, PYMUNK, EngineRun, Scene, by_order, engine, ours
 
 T = 2.0                      # [s]: three periods
 STEPS = (100, 200, 500, 1000, 2000, 5000, 10000, 20000)
@@ -69,17 +70,22 @@ def truth(p, t):
     return np.array([p.x0 * np.exp(-delta * t) * shape])
 
 
-def tolerance(p, dt):
+def limits(p, dt):
     """The fastest rate is ω + c/m.  Errors are relative to x(T), which damping has made e^(δT) times smaller than x₀.
 
-    Both engines are symplectic Euler with the damper at one end of the step.  They err like our methods of order 1,
-    and like those of order 2 if they start half a step ahead and no force depends on velocity.
+    Both engines are symplectic Euler with the damper at one end of the step.  They err like our methods of order 1.
     """
     rate, shrunk = np.sqrt(p.k / p.m) + p.c / p.m, p.x0 / abs(truth(p, T)[0])
-    limits = {k: shrunk * limit for k, limit in by_order(rate, T, dt).items()}
-    leapfrog = limits[2] if p.c == 0.0 else limits[1]
-    return {**limits, "pymunk": limits[1], "pymunk, leapfrog start": leapfrog,
-            "pybullet": limits[1], "pybullet, default": limits[1], "pybullet, leapfrog start": leapfrog}
+    return {k: shrunk * limit for k, limit in by_order(rate, T, dt).items()}
+
+
+def leapfrog_limit(p, dt):
+    """An engine that starts half a step ahead errs like our methods of order 2 if no force depends on velocity."""
+    return limits(p, dt)[2 if p.c == 0.0 else 1]
+
+
+def floor(p, dt):
+    return limits(p, dt)[EXACT]
 
 
 def law(p):
@@ -106,18 +112,9 @@ def spring_and_damper(p):
     return lambda law, t, x, v, h: (x + h * v, (v - h * p.k / p.m * (x + h * v)) * kept(h))
 
 
-MODELS = {
-    "pymunk": table_model(spring_and_damper, law, released, seen),
-    "pymunk, leapfrog start": table_model(spring_and_damper, law, released, seen, ahead=0.5),
-    "pybullet": table_model("new velocity, old force", law, released, seen),
-    "pybullet, default": table_model("new velocity, old force", damped_law, released, seen),
-    "pybullet, leapfrog start": table_model("new velocity, old force", law, released, seen, ahead=-0.5),
-}
-DEPARTURES = {"pybullet, default": hidden_damping(lambda t, x, v, p: acceleration(t, x, v, oscillator(p)), start)}
-
-
-def floor(p, dt):
-    return tolerance(p, dt)[EXACT]
+MOTION = Motion(T, law, released, seen, truth, floor)
+DAMPED = hidden_damping(lambda t, x, v, p: acceleration(t, x, v, oscillator(p)), start)
+IN_QUICK = {IMPLICIT_EULER: 2000, IMPLICIT_MIDPOINT: 1000}           # the most steps, of what is slow in plain Python
 
 
 def pymunk_make(p, dt, ahead=0.0):
@@ -148,24 +145,22 @@ def pybullet_make(p, dt, ahead=0.0, default=False):
     return EngineRun(step, lambda: np.array([bullet.position(body)[0]]), bullet.close)
 
 
-ENGINES = (
-    Engine(PYMUNK, "", pymunk_make, 1, "DampedSpring; no other setting matters without contact"),
-    Engine(
-        PYMUNK,
-        "leapfrog start",
-        lambda p, dt: pymunk_make(p, dt, ahead=0.5),
-        1,
-        "first velocity + ½ a dt: second order without a damper",
-    ),
-    Engine(PYBULLET, "default", lambda p, dt: pybullet_make(p, dt, default=True), 1, "createMultiBody as it comes"),
-    Engine(PYBULLET, "", pybullet_make, 1, "useMaximalCoordinates=1, no damping; force applied each step"),
-    Engine(
-        PYBULLET,
-        "leapfrog start",
-        lambda p, dt: pybullet_make(p, dt, ahead=0.5),
-        1,
-        "first velocity − ½ a dt: second order without a damper",
-    ),
+RUNNERS = (
+    *(ours(m, limit=limits, predicted=MOTION.predict(m.table), compiled_in_quick=m in ONE_OF_EACH_ORDER,
+           most_in_quick=IN_QUICK.get(m)) for m in INTEGRATORS),
+    engine(PYMUNK, "", pymunk_make, "DampedSpring; no other setting matters without contact",
+           order=1, limit=limits, predicted=MOTION.predict(spring_and_damper)),
+    engine(PYMUNK, "leapfrog start", partial(pymunk_make, ahead=0.5),
+           "first velocity + ½ a dt: second order without a damper",
+           order=1, limit=leapfrog_limit, predicted=MOTION.predict(spring_and_damper, ahead=0.5)),
+    engine(PYBULLET, "default", partial(pybullet_make, default=True), "createMultiBody as it comes",
+           order=1, limit=limits, departure=DAMPED,
+           predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE, damped_law, follows=DAMPED.own_law)),
+    engine(PYBULLET, "", pybullet_make, "useMaximalCoordinates=1, no damping; force applied each step",
+           order=1, limit=limits, predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE)),
+    engine(PYBULLET, "leapfrog start", partial(pybullet_make, ahead=0.5),
+           "first velocity − ½ a dt: second order without a damper",
+           order=1, limit=leapfrog_limit, predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE, ahead=-0.5)),
 )
 
 
@@ -187,14 +182,9 @@ SCENE = Scene(
     link_look="spring and damper",
     lesson="integrators",
     cases=CASES, duration=T, steps=STEPS,
-    methods=INTEGRATORS,
+    runners=RUNNERS,
     acceleration=acceleration, start=start, run=run, observe=observe,
-    truth=truth, truth_uncertainty=1e-14, tolerance=tolerance,
-    engines=ENGINES,
-    expected_departures=DEPARTURES,
-    predicted_error=predict_by_tables(T, law, released, seen, truth, floor, MODELS, DEPARTURES),
-    compiled_in_quick=("symplectic_euler_step", "verlet_step", "rk4_step"),
-    shorter_in_quick={"implicit_euler_step": 2000, "implicit_midpoint_step": 1000},
+    truth=truth, truth_uncertainty=1e-14,
     points=points, links=links,
     uses=("one coordinate", "one step function"),
     ablations={

@@ -1,5 +1,6 @@
 """A parachutist falls from rest: drag grows with the square of the speed until it balances the weight."""
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -8,9 +9,9 @@ from solutions.checks import check_positive
 from solutions.integrators import advance
 from validate.engines.bullet import Bullet, hidden_damping
 from validate.engines.chipmunk import pymunk_space
-from validate.methods import INTEGRATORS, LEFT_TO_FULL
-from validate.reference.schemes import predict_by_tables, table_model
-from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Scene, by_order
+from validate.methods import INTEGRATORS, ONE_OF_EACH_ORDER
+from validate.reference.schemes import NEW_VELOCITY_OLD_FORCE, OLD_VELOCITY_OLD_FORCE, Motion
+from validate.scene import EXACT, PYBULLET, PYMUNK, EngineRun, Scene, by_order, engine, ours
 
 T = 3.0                      # [s]: three times the time to reach the terminal speed without air
 STEPS = (15, 30, 60, 150, 300, 600, 1500, 3000)
@@ -63,25 +64,23 @@ def truth(p, t):
     return np.array([terminal_speed(p) ** 2 / p.g * (s + np.log1p(np.exp(-2.0 * s)) - np.log(2.0))])
 
 
-def tolerance(p, dt):
+def limits(p, dt, damping=0.0):
     """The fastest rate is |∂a/∂v| = 2g/v∞ at the terminal speed, and the error scales with v∞ over that rate.
 
-    Both engines are of first order and take drag at the beginning of a step: order 1.  The default damping adds 0.04
-    (1 + 2v) to the rate; v∞ bounds the speed with it, too.
+    Both engines are of first order and take drag at the beginning of a step: order 1.
     """
-    v_end, depth = terminal_speed(p), truth(p, T)[0]
+    v_end = terminal_speed(p)
+    rate = 2.0 * p.g / v_end + damping
+    return {k: v_end / rate / truth(p, T)[0] * limit for k, limit in by_order(rate, T, dt).items()}
 
-    def limits(rate):
-        return {k: v_end / rate / depth * limit for k, limit in by_order(rate, T, dt).items()}
 
-    rate = 2.0 * p.g / v_end
-    ours = limits(rate)
-    return {
-        **ours,
-        "pymunk": ours[1],
-        "pybullet": ours[1],
-        "pybullet, default": limits(rate + 0.04 * (1.0 + 2.0 * v_end))[1],
-    }
+def damped_limits(p, dt):
+    """The default damping adds 0.04 (1 + 2v) to the rate; v∞ bounds the speed with it, too."""
+    return limits(p, dt, 0.04 * (1.0 + 2.0 * terminal_speed(p)))
+
+
+def floor(p, dt):
+    return limits(p, dt)[EXACT]
 
 
 def law(p):
@@ -102,16 +101,8 @@ def seen(x, p):
     return [x]
 
 
-MODELS = {
-    "pymunk": table_model("old velocity, old force", law, at_rest, seen),
-    "pybullet": table_model("new velocity, old force", law, at_rest, seen),
-    "pybullet, default": table_model("new velocity, old force", damped_law, at_rest, seen),
-}
-DEPARTURES = {"pybullet, default": hidden_damping(acceleration, start)}
-
-
-def floor(p, dt):
-    return tolerance(p, dt)[EXACT]
+MOTION = Motion(T, law, at_rest, seen, truth, floor)
+DAMPED = hidden_damping(acceleration, start)
 
 
 def pymunk_make(p, dt):
@@ -145,11 +136,16 @@ def pybullet_make(p, dt, default=False):
     return EngineRun(step, lambda: np.array([bullet.position(body)[0]]), bullet.close)
 
 
-ENGINES = (
-    Engine(PYMUNK, "", pymunk_make, 1, "force applied each step"),
-    Engine(PYBULLET, "default", lambda p, dt: pybullet_make(p, dt, default=True), 1,
-           "createMultiBody with its defaults; force applied each step"),
-    Engine(PYBULLET, "", pybullet_make, 1, "useMaximalCoordinates=1, no damping; force applied each step"),
+RUNNERS = (
+    *(ours(m, limit=limits, predicted=MOTION.predict(m.table), in_quick=m in ONE_OF_EACH_ORDER) for m in INTEGRATORS),
+    engine(PYMUNK, "", pymunk_make, "force applied each step",
+           order=1, limit=limits, predicted=MOTION.predict(OLD_VELOCITY_OLD_FORCE)),
+    engine(PYBULLET, "default", partial(pybullet_make, default=True),
+           "createMultiBody with its defaults; force applied each step",
+           order=1, limit=damped_limits, departure=DAMPED,
+           predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE, damped_law, follows=DAMPED.own_law)),
+    engine(PYBULLET, "", pybullet_make, "useMaximalCoordinates=1, no damping; force applied each step",
+           order=1, limit=limits, predicted=MOTION.predict(NEW_VELOCITY_OLD_FORCE)),
 )
 
 
@@ -165,14 +161,9 @@ def in_space(p):
 SCENE = Scene(
     title="Quadratic drag", lesson="integrators",
     cases=CASES, duration=T, steps=STEPS,
-    methods=INTEGRATORS,
+    runners=RUNNERS,
     acceleration=acceleration, start=start, run=run, observe=observe,
-    truth=truth, truth_uncertainty=1e-14, tolerance=tolerance,
-    engines=ENGINES,
-    expected_departures=DEPARTURES,
-    predicted_error=predict_by_tables(T, law, at_rest, seen, truth, floor, MODELS, DEPARTURES),
-    slow_methods=LEFT_TO_FULL,
-    # Plain Python finishes before numba has compiled it.
+    truth=truth, truth_uncertainty=1e-14,
     # the depth; the speed is then 9.852684396 m/s
     published_states=((3.0, (22.80837567,), 5e-9),),
     points=points,

@@ -9,10 +9,10 @@ from solutions.integrators import advance
 from solutions.springs import universal_gravity
 from validate.engines.bullet import Bullet
 from validate.engines.chipmunk import pymunk_space, pymunk_world
-from validate.engines.integrators import planet
-from validate.methods import EXPLICIT, INTEGRATORS, LEFT_TO_FULL
-from validate.reference.integrators import kepler_errors, kepler_limits, kepler_position
-from validate.scene import LATE_LEAPFROG, PYBULLET, PYMUNK, Engine, EngineRun, Scene
+from validate.engines.integrators import planet, planet_runners
+from validate.methods import INTEGRATORS
+from validate.reference.integrators import kepler_motion, kepler_position
+from validate.scene import EngineRun, Scene
 
 T = 20.0                     # [s]: six revolutions
 STEPS = (500, 1000, 2000, 5000, 10000, 20000, 50000)
@@ -73,18 +73,12 @@ def truth(p, t):
     return both(kepler_position(p, t), p).ravel()
 
 
-def tolerance(p, dt):
-    """The relative errors are those of one planet, because both paths are similar to that of r."""
-    return kepler_limits(p, T, dt)
+def seen(r, p):
+    return both(np.array([r.real, r.imag]), p).ravel()
 
 
-def predicted_error(label, p, dt):
-    """Predict the errors of both stars from that of r."""
-    found = of_one_planet(label, p, dt)
-    return found and found._replace(error=both(np.array(found.error), p).ravel())
-
-
-of_one_planet = kepler_errors(T)
+# the relative errors are those of one planet, because both paths are similar to that of r
+MOTION = kepler_motion(T)._replace(seen=seen, truth=truth)
 
 
 def pymunk_stars(p, dt, ahead=0.0):
@@ -125,17 +119,6 @@ def bullet_stars(p, dt, ahead=0.0):
     return EngineRun(step, lambda: np.array([bullet.position(body)[:2] for body in bodies]).ravel(), bullet.close)
 
 
-ENGINES = (
-    Engine(PYMUNK, "", pymunk_stars, LATE_LEAPFROG, "attraction in velocity_func", 20_000),
-    Engine(PYMUNK, "leapfrog start", lambda p, dt: pymunk_stars(p, dt, ahead=0.5), 2, "first velocity + ½ a dt",
-           20_000),
-    Engine(PYBULLET, "", bullet_stars, LATE_LEAPFROG,
-           "useMaximalCoordinates=1, no damping; two forces before each step", 20_000),
-    Engine(PYBULLET, "leapfrog start", lambda p, dt: bullet_stars(p, dt, ahead=0.5), 2, "first velocity − ½ a dt",
-           20_000),
-)
-
-
 def points(observed, p):
     """Draw both stars."""
     return np.reshape(observed, (2, 2))
@@ -160,12 +143,9 @@ def sanity_checks():
 SCENE = Scene(
     title="Two stars", lesson="springs",
     cases=CASES, duration=T, steps=STEPS,
-    methods=INTEGRATORS,
+    runners=planet_runners(MOTION, INTEGRATORS, pymunk_stars, bullet_stars, 20_000),
     acceleration=acceleration, start=start, run=run, observe=observe,
-    truth=truth, truth_uncertainty=1e-12, tolerance=tolerance, predicted_error=predicted_error,
-    engines=ENGINES,
-    orders={"symplectic_euler_step": LATE_LEAPFROG},
-    slow_methods=LEFT_TO_FULL, compiled_in_quick=EXPLICIT,
+    truth=truth, truth_uncertainty=1e-12,
     sanity_checks=sanity_checks, points=points,
     film_seconds=6.3,                                    # two revolutions
     uses=("two points in the plane", "one force and its reaction", "one step function"),
