@@ -4,7 +4,7 @@ A new method is one line here.  Colours are those of Okabe and Ito 2008, which c
 and a few more.  Every curve has a marker, too.
 """
 
-from .reference import schemes
+from .reference import kinematics, schemes
 from .scene import Method
 
 # integrators
@@ -107,11 +107,12 @@ JOINTED_LOOP = Method("joint_contact_step_2d", "the loop with joints", 1, "simul
 CLOSED_2R = Method("solve_2r", "closed form", 2, "kinematics", "#009E73", "s")
 CLOSED_3R = Method("solve_3r", "closed form", 2, "kinematics", "#009E73", "s")
 FACTORS = Method("contraction_factors", "closed form", 2, "kinematics", "#009E73", "s")
-TRANSPOSE = Method("transpose_step", "transpose", 1, "kinematics", "#E69F00", "o")
-PSEUDO_INVERSE = Method("pseudo_inverse_step", "pseudo-inverse", 2, "kinematics", "#D55E00", "D")
-DAMPED = Method("damped_step", "damped", 1, "kinematics", "#0072B2", "P")
-CCD = Method("ccd_step", "CCD", 1, "kinematics", "#CC79A7", "v")
-FABRIK = Method("fabrik_step", "FABRIK", 1, "kinematics", "#56B4E9", "^")
+TRANSPOSE = Method("transpose_step", "transpose", 1, "kinematics", "#E69F00", "o", kinematics.descended)
+PSEUDO_INVERSE = Method("pseudo_inverse_step", "pseudo-inverse", 2, "kinematics", "#D55E00", "D",
+                        kinematics.solved_undamped)
+DAMPED = Method("damped_step", "damped", 1, "kinematics", "#0072B2", "P", kinematics.solved)
+CCD = Method("ccd_step", "CCD", 1, "kinematics", "#CC79A7", "v", kinematics.pointed)
+FABRIK = Method("fabrik_step", "FABRIK", 1, "kinematics", "#56B4E9", "^", kinematics.pulled)
 
 INTEGRATORS = (EULER, MIDPOINT, RK4, AVERAGE_VELOCITY, SYMPLECTIC_EULER, VERLET, IMPLICIT_EULER, IMPLICIT_MIDPOINT)
 ONE_OF_EACH_ORDER = (SYMPLECTIC_EULER, VERLET, RK4)                  # enough for most quick runs

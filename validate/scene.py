@@ -29,7 +29,7 @@ class Method(NamedTuple):
     lesson: str
     colour: str
     marker: str
-    table: tuple = ()        # its Tableau of validate/reference/schemes.py, where it has one
+    table: object = None     # its Tableau, or its step written once more, of validate/reference
 
 
 class Engine(NamedTuple):

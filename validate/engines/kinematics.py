@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from validate.scene import EXACT, EngineRun
+from validate.scene import EngineRun
 
 from .bullet import Bullet
 
@@ -64,14 +64,10 @@ def bullet_reach(lengths, starts, observe, target, direction=None, **settings):
     return EngineRun(lambda: None, read, arm.close)
 
 
-def answers_of(methods):
-    """Return the fields that the scenes of one answer share: nothing moves, and nothing can be refined."""
-    return {
-        "lesson": "kinematics",
-        "methods": methods,
-        "orders": dict.fromkeys((method.function for method in methods), EXACT),
-        "moves": False,
-        "duration": 1.0,
-        "refinement": "",
-        "steps": (1,),
-    }
+ANSWER = {                   # fields that the scenes of one answer share: nothing moves, and nothing can be refined
+    "lesson": "kinematics",
+    "moves": False,
+    "duration": 1.0,
+    "refinement": "",
+    "steps": (1,),
+}

@@ -184,16 +184,18 @@ def pulled(theta, x, e, turn, gain, damping):
     return [phase(rect(1.0, b - a)) for a, b in zip([0.0, *directions], directions)]
 
 
-SEARCHES = {"transpose": descended, "pseudo-inverse": solved, "damped": solved, "CCD": pointed, "FABRIK": pulled}
+def solved_undamped(theta, x, e, turn, gain, damping):
+    """θ + J⁺ e."""
+    return solved(theta, x, e, turn, gain, 0.0)
 
 
-def searched(label, theta, target, lengths, enough, most, gain, damping):
+def searched(step, theta, target, lengths, enough, most, gain, damping):
     """(θ, iterations) of a search that ends when |e| ≤ enough, or after `most` iterations.
 
+    step: one of the five functions above.
     A target with a direction [rad], (x, y, φ), has that as a third row of J.  Nothing here is shared with the lesson.
     """
-    theta, goal, step = list(theta), complex(*target[:2]), SEARCHES[label]
-    damping = damping if label == "damped" else 0.0
+    theta, goal = list(theta), complex(*target[:2])
     for n in range(most):
         x = chain(theta, lengths)
         e, turn = goal - x[-1], phase(rect(1.0, target[2] - sum(theta))) if len(target) == 3 else None
@@ -203,31 +205,30 @@ def searched(label, theta, target, lengths, enough, most, gain, damping):
     return theta, most
 
 
-def search_errors(searches, seen, truth, tolerance):
-    """The field `predicted_error` of a scene of searches.
+def search_errors(searches, seen, truth, limit):
+    """Return the field `predicted` of a Runner that searches.
 
-    searches(label, p) → functions of a nudge (3,) [rad] of the start that return (θ, iterations), None for others
-    seen(angles, p), truth(p), tolerance(label, p) → what is observed, shall be, and may be off, relative
+    searches(p) → functions of a nudge (3,) [rad] of the start that return (θ, iterations); none where only round-off
+    decides
+    seen(angles, p), truth(p, t), limit(p, dt) → what is observed, shall be, and may be off, relative
     """
     @cache
-    def found(label, p):
-        runs = searches(label, p)
-        if runs is None:
-            return None
+    def found(p, dt):
+        runs = searches(p)
         here, there = [run(0.0 * ASIDE) for run in runs], [run(NUDGE * ASIDE) for run in runs]
-        if any(a[1] != b[1] for a, b in zip(here, there)):                          # one iteration more, or less
+        if not runs or any(a[1] != b[1] for a, b in zip(here, there)):              # one iteration more, or less
             return None
-        error = seen([theta for theta, _ in here], p) - truth(p)
-        size = np.linalg.norm(truth(p)) or 1.0
-        grown = np.linalg.norm(seen([theta for theta, _ in there], p) - truth(p) - error) / NUDGE
+        error = seen([theta for theta, _ in here], p) - truth(p, 1.0)
+        size = np.linalg.norm(truth(p, 1.0)) or 1.0
+        grown = np.linalg.norm(seen([theta for theta, _ in there], p) - truth(p, 1.0) - error) / NUDGE
         band = ROUND_OFF * (ROUNDINGS * (1.0 + grown) + sum(n for _, n in here)) / size
-        return Prediction(error, band) if band < SURE * tolerance(label, p) else None
+        return Prediction(error, band) if band < SURE * limit(p, dt) else None
 
-    def predicted_error(label, p, dt):
+    def predicted_error(p, dt):
         """The search itself, iteration by iteration, by complex numbers and other equations than the lesson's: it ends
         as far from the target as this one does.  A nudge of the start says what roundings may grow to; where that is
-        not small, as on a jump near a singular arm, only the tolerance judges.
+        not small, as on a jump near a singular arm, only the limit judges.
         """
-        return found(label, p)
+        return found(p, dt)
 
     return predicted_error

@@ -5,21 +5,21 @@ of the errors is 1 − ασ² for the transpose, λ²/(σ² + λ²) for the damp
 λ² = ½ m² it is what pybullet does, step by step.
 """
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from solutions.checks import check_positive
 from solutions.kinematics import advance_reach, make_arm_2d, reach_2d
-from validate.engines.kinematics import answers_of, bullet_reach
+from validate.engines.kinematics import ANSWER, bullet_reach
 from validate.methods import DAMPED, FACTORS, PSEUDO_INVERSE, TRANSPOSE
-from validate.reference.kinematics import SEARCHES, bullet_ik, end_of, jacobian_of, joints_of, searched
-from validate.scene import EXACT, PYBULLET, ROUND_OFF, Engine, Prediction, Scene
+from validate.reference.kinematics import bullet_ik, end_of, jacobian_of, joints_of, searched
+from validate.scene import EXACT, PYBULLET, ROUND_OFF, Prediction, Scene, engine, ours
 
 T = 1.0
 MOVED = 1e-5                 # along a direction, to either side [rad]
 ANGLES = np.array([0.4, 0.9, 0.7])
-METHODS = (FACTORS, TRANSPOSE, DAMPED, PSEUDO_INVERSE)
 
 
 class Params(NamedTuple):
@@ -36,15 +36,6 @@ CASES = {
     "pseudo-inverse": Params("pseudo-inverse", 0.0),
     "damped, λ² = ½ m², 10 cm each": Params("damped", 0.5, 0.1, 0.1, 0.1),
 }
-
-
-def supports(name, p):
-    """Each case belongs to one method, and to the closed form of its factors; pybullet's damping is ½ m²."""
-    if name == "pybullet":
-        return p.kind == "damped" and p.setting == 0.5
-    return name in {"damped": ("damped_step", "contraction_factors"),
-                    "transpose": ("transpose_step", "contraction_factors"),
-                    "pseudo-inverse": ("pseudo_inverse_step",)}[p.kind]
 
 
 def lengths_of(p):
@@ -105,31 +96,42 @@ def truth(p, t):
     return p.setting / (sigma**2 + p.setting)
 
 
-def tolerance(p, dt):
+def limit(p, dt):
     """A central difference is off by δ²/6 times a third derivative, over σ₂.  That of the end is at most 3√3 reach
     along a direction of size 1, and that of the step at most (1 + reach/σ₂)² times as large.  A rounding of the end
     over 2 δ σ₂ is added.
     """
     sigma, reach = directions(p)[1][1], p.l_1 + p.l_2 + p.l_3
     lost = 0.87 * reach / sigma * (MOVED * (1.0 + reach / sigma)) ** 2 + 2.0 * ROUND_OFF * reach / (MOVED * sigma)
-    size = np.linalg.norm(truth(p, T)) or 1.0
-    return {EXACT: lost / size, "closed form": 20.0 * ROUND_OFF / size}
+    return lost / size(p)
 
 
-def predicted_error(label, p, dt):
+def formula_limit(p, dt):
+    """The closed form of the factors: a few roundings."""
+    return 20.0 * ROUND_OFF / size(p)
+
+
+def size(p):
+    return np.linalg.norm(truth(p, T)) or 1.0
+
+
+def our_error(p, dt, step):
     """The prediction takes the same difference of the same iteration, by complex numbers and other equations than the
     lesson's.  What is left is a rounding of the end, in both, over 2 δ σ₂.
     """
-    target, lengths, (gain, damping) = end_of(ANGLES, lengths_of(p)), lengths_of(p), settings(p)
-    if label == "pybullet":
-        found = [bullet_ik(theta, target, lengths, damping=p.setting, iterations=1) for theta in start(p)]
-    elif label in SEARCHES:
-        found = [searched(label, theta, target, lengths, 0.0, 1, gain, damping)[0] for theta in start(p)]
-    else:
-        return None
-    size = np.linalg.norm(truth(p, T)) or 1.0
-    rounded = 2.0 * ROUND_OFF * sum(lengths) / (MOVED * directions(p)[1][1])
-    return Prediction(observe(found, p) - truth(p, T), rounded / size)
+    target, settled = end_of(ANGLES, lengths_of(p)), settings(p)
+    return predicted([searched(step, theta, target, lengths_of(p), 0.0, 1, *settled)[0] for theta in start(p)], p)
+
+
+def bullet_error(p, dt):
+    target = end_of(ANGLES, lengths_of(p))
+    found = [bullet_ik(theta, target, lengths_of(p), damping=p.setting, iterations=1) for theta in start(p)]
+    return predicted(found, p)
+
+
+def predicted(found, p):
+    rounded = 2.0 * ROUND_OFF * sum(lengths_of(p)) / (MOVED * directions(p)[1][1])
+    return Prediction(observe(found, p) - truth(p, T), rounded / size(p))
 
 
 # ---------------------------------------------------------------------------------------------- engine
@@ -139,7 +141,29 @@ def pybullet_make(p, dt):
     return bullet_reach(lengths_of(p), start(p), lambda found: observe(found, p), target, iterations=1)
 
 
-ENGINES = (Engine(PYBULLET, "", pybullet_make, EXACT, "calculateInverseKinematics, maxNumIterations 1"),)
+def of_kind(kind):
+    """Return the function (p) → bool: each case belongs to one method."""
+    return lambda p: p.kind == kind
+
+
+def has_factors(p):
+    """The closed form has the factors of the two methods that do not end after one iteration."""
+    return p.kind != "pseudo-inverse"
+
+
+def as_pybullet(p):
+    """pybullet's damping is ½ m²."""
+    return p.kind == "damped" and p.setting == 0.5
+
+
+RUNNERS = (
+    ours(FACTORS, order=EXACT, limit=formula_limit, supports=has_factors,
+         predicted="a formula: it leaves nothing but roundings"),
+    *(ours(m, order=EXACT, limit=limit, supports=of_kind(kind), predicted=partial(our_error, step=m.table))
+      for m, kind in ((TRANSPOSE, "transpose"), (DAMPED, "damped"), (PSEUDO_INVERSE, "pseudo-inverse"))),
+    engine(PYBULLET, "", pybullet_make, "calculateInverseKinematics, maxNumIterations 1",
+           order=EXACT, limit=limit, supports=as_pybullet, predicted=bullet_error),
+)
 
 
 def quantity_names(p):
@@ -174,12 +198,8 @@ def links(p):
 
 
 SCENE = Scene(
-    title="Rates of convergence", **answers_of(METHODS), cases=CASES,
+    title="Rates of convergence", **ANSWER, cases=CASES, runners=RUNNERS,
     start=start, run=run, observe=observe, truth=truth, truth_uncertainty=1e-15,
-    tolerance=tolerance,
-    predicted_error=predicted_error,
-    engines=ENGINES,
-    supports=supports,
     omitted_methods="CCD and FABRIK have no factor that follows from J alone; pymunk has no inverse kinematics",
     quantity_names=quantity_names,
     sanity_checks=sanity_checks,

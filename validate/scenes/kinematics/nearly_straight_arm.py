@@ -6,6 +6,7 @@ last joint: it turns that joint by π, whose sine is 1.2e-16 in floats, and that
 after 20 iterations by default, when its bend is still small; more iterations and less damping help.
 """
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -13,10 +14,9 @@ import numpy as np
 from solutions.checks import check_positive
 from solutions.kinematics import make_arm_2d, reach_2d, solve_reach
 from validate.drawing import arms_and_target, two_arms_and_target_links
-from validate.engines.kinematics import answers_of, bullet_reach
+from validate.engines.kinematics import ANSWER, bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import (
-    SEARCHES,
     bent_to,
     bullet_ik,
     bullet_search,
@@ -25,7 +25,7 @@ from validate.reference.kinematics import (
     search_errors,
     searched,
 )
-from validate.scene import EXACT, PYBULLET, Departure, Engine, Scene
+from validate.scene import EXACT, PYBULLET, Departure, Scene, engine, ours
 
 MOST = 4000                  # iterations
 ENOUGH = 1e-8                # |e| over the reach at which a search ends [-]
@@ -33,7 +33,6 @@ LENGTHS = np.array([1.0, 0.7, 0.4])
 REACH = 2.1                  # [m]
 GAIN, LAMBDA = 0.6 / REACH**2, 0.2 * REACH               # α [1/m²], λ [m]
 CURE = {"damping": LAMBDA**2, "iterations": MOST, "threshold": 1e-8}
-METHODS = (TRANSPOSE, PSEUDO_INVERSE, DAMPED, CCD, FABRIK)
 
 
 class Params(NamedTuple):
@@ -47,11 +46,6 @@ CASES = {
     "straight, target beside the arm": Params(1.05, 0.6, 0.0),
     "straight, target behind the last joint": Params(1.05, 0.0, 0.0),
 }
-
-
-def supports(name, p):
-    """From exactly straight with the target on the axis only CCD gets away."""
-    return name == "ccd_step" or p.bent > 0.0 or p.y > 0.0
 
 
 def target_of(p):
@@ -86,13 +80,16 @@ def truth(p, t):
     return np.zeros(1)
 
 
-def tolerance(p, dt):
-    """A search ends at 1e-8 of the reach.  pybullet, cured, ends after the iteration that began with 1e-8 m.
+def limit(p, dt):
+    """A search ends at 1e-8 of the reach.  pybullet, cured, ends after the iteration that began with 1e-8 m."""
+    return ENOUGH
 
-    By default it follows its own law.  Twenty iterations round a few hundred times, which changes a bend of a
+
+def default_limit(p, dt):
+    """By default pybullet follows its own law.  Twenty iterations round a few hundred times, which changes a bend of a
     millionth by 1e-10 of itself.
     """
-    return {EXACT: ENOUGH, "pybullet, default": 1e-11}
+    return 1e-11
 
 
 # ---------------------------------------------------------------------------------------------- engine
@@ -105,26 +102,43 @@ def cured(p, dt):
     return pybullet_make(p, dt, **CURE)
 
 
-def searches(label, p):
-    """As `search_errors` wants them.  From exactly straight the rounding of π decides."""
-    theta, target = start(p)[0], target_of(p)
-    if p.bent == 0.0 and p.y == 0.0:
-        return None
-    if label == "pybullet":
-        return [lambda nudge: bullet_search(theta + nudge, target, LENGTHS, **CURE)]
-    if label not in SEARCHES:
-        return None
-    return [lambda nudge: searched(label, theta + nudge, target, LENGTHS, ENOUGH * REACH, MOST, GAIN, LAMBDA)]
+def our_searches(p, step):
+    """Return the searches of a method of ours, as `search_errors` wants them."""
+    return searches(p, lambda theta: searched(step, theta, target_of(p), LENGTHS, ENOUGH * REACH, MOST, GAIN, LAMBDA))
 
 
-ENGINES = (
-    Engine(PYBULLET, "", cured, EXACT, "jointDamping as our λ², at most 4,000 iterations, residualThreshold 1e-8"),
-    Engine(PYBULLET, "default", pybullet_make, EXACT, "calculateInverseKinematics as it is"),
-)
+def cured_searches(p):
+    """Return those of pybullet, cured."""
+    return searches(p, lambda theta: bullet_search(theta, target_of(p), LENGTHS, **CURE))
+
+
+def searches(p, search):
+    """Return the one search from a nudged start; none from exactly straight, where the rounding of π decides."""
+    return [lambda nudge: search(start(p)[0] + nudge)] if is_bent(p) else []
+
+
+def is_bent(p):
+    """Whether anything but CCD gets away: an exactly straight arm with its target on its axis is stuck."""
+    return p.bent > 0.0 or p.y > 0.0
 
 
 def default_law(p, t):
     return observe([bullet_ik(start(p)[0], target_of(p), LENGTHS)], p)
+
+
+RUNNERS = (
+    *(ours(m, order=EXACT, limit=limit, supports=None if m is CCD else is_bent,
+           predicted=search_errors(partial(our_searches, step=m.table), observe, truth, limit))
+      for m in (TRANSPOSE, PSEUDO_INVERSE, DAMPED, CCD, FABRIK)),
+    engine(PYBULLET, "", cured, "jointDamping as our λ², at most 4,000 iterations, residualThreshold 1e-8",
+           order=EXACT, limit=limit, supports=is_bent,
+           predicted=search_errors(cured_searches, observe, truth, limit)),
+    engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics as it is",
+           order=EXACT, limit=default_limit, supports=is_bent,
+           predicted="its own law is its search, which leaves nothing but roundings",
+           departure=Departure("its 20 iterations with a damping of ½ m² are too few for so small a bend",
+                               default_law)),
+)
 
 
 def quantity_names(p):
@@ -140,13 +154,8 @@ def points(observed, p):
 
 
 SCENE = Scene(
-    title="A nearly straight arm", **answers_of(METHODS), cases=CASES,
-    start=start, run=run, observe=observe, truth=truth, truth_uncertainty=0.0, supports=supports,
-    tolerance=tolerance,
-    predicted_error=search_errors(searches, observe, lambda p: truth(p, 1.0), lambda label, p: ENOUGH),
-    engines=ENGINES,
-    expected_departures={"pybullet, default": Departure(
-        "its 20 iterations with a damping of ½ m² are too few for so small a bend", default_law)},
+    title="A nearly straight arm", **ANSWER, cases=CASES, runners=RUNNERS,
+    start=start, run=run, observe=observe, truth=truth, truth_uncertainty=0.0,
     omitted_methods="pymunk has no inverse kinematics",
     quantity_names=quantity_names,
     points=points, links=lambda p: two_arms_and_target_links(3),

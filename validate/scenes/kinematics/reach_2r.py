@@ -5,6 +5,7 @@ answer on that side.  pybullet's default damping of ½ m² suits arms of a metre
 reach away from the target, and jointDamping cures it.
 """
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -12,18 +13,10 @@ import numpy as np
 from solutions.checks import check_positive
 from solutions.kinematics import make_arm_2d, reach_2d, solve_reach
 from validate.drawing import arms_and_target, two_arms_and_target_links
-from validate.engines.kinematics import answers_of, bullet_reach
+from validate.engines.kinematics import ANSWER, bullet_reach
 from validate.methods import CCD, CLOSED_2R, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
-from validate.reference.kinematics import (
-    SEARCHES,
-    bullet_ik,
-    bullet_search,
-    jacobian_of,
-    joints_of,
-    search_errors,
-    searched,
-)
-from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Engine, Scene
+from validate.reference.kinematics import bullet_ik, bullet_search, jacobian_of, joints_of, search_errors, searched
+from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Scene, engine, ours
 
 T = 1.0
 ENOUGH = 1e-10               # |e| over the reach at which a search ends [-]
@@ -31,7 +24,6 @@ MOST = 20_000                # iterations; the transpose needs some thousand nea
 GAIN, LAMBDA = 0.7, 0.1      # α times, and λ over, the square of the reach and the reach [-]
 BEND = 1.2                   # of the elbow at the start, to either side [rad]
 CURED = 1e-4                 # jointDamping over the square of the reach [-]
-METHODS = (CLOSED_2R, TRANSPOSE, PSEUDO_INVERSE, DAMPED, CCD, FABRIK)
 
 
 class Params(NamedTuple):
@@ -46,11 +38,6 @@ CASES = {
     "near the edge of the reach": Params(1.0, 0.6, 1.4, 0.6), "near the hole": Params(1.0, 0.6, 0.1, -0.45),
     "10 cm each": Params(0.1, 0.1, 0.08, 0.1),
 }
-
-
-def supports(name, p):
-    """Near the hole σ₂ is small on the whole way, and the pseudo-inverse jumps about."""
-    return name != "pseudo_inverse_step" or p != CASES["near the hole"]
 
 
 def lengths_of(p):
@@ -100,20 +87,35 @@ def truth(p, t):
     return np.angle(np.exp(1j * np.array([bearing - beta, np.pi - gamma, bearing + beta, gamma - np.pi])))
 
 
-def tolerance(p, dt):
-    """Angles are off by |e|/σ₂ at most, σ₂ the smaller singular value of J at the answer; both answers have the same.
-    A search ends at |e| ≤ 1e-10 of the reach.  The gain 0.7/reach² is below 2/σ₁², because σ₁² < 2 reach².
-
-    The closed form: a few roundings of lengths, over σ₂, here as in the truth.
-
-    pybullet, cured: its position error is 1e-9 of the reach before its last iteration.  By default it follows its own
-    law: its matrix is well conditioned, and twenty iterations round a few hundred times.
-    """
+def relative(way, p):
+    """Return a way [of the reach] over σ₂, the smaller singular value of J, relative to both answers' angles."""
     angles = truth(p, T)
     smallest = np.linalg.svd(jacobian_of(angles[:2], lengths_of(p)), compute_uv=False)[-1]
-    over = (p.l_1 + p.l_2) * np.sqrt(2.0) / smallest / np.linalg.norm(angles)
-    return {EXACT: 1.1 * ENOUGH * over, "closed form": 20.0 * ROUND_OFF * over, "pybullet": 1.1e-9 * over,
-            "pybullet, default": 1e-13}
+    return way * (p.l_1 + p.l_2) * np.sqrt(2.0) / smallest / np.linalg.norm(angles)
+
+
+def limit(p, dt):
+    """Angles are off by |e|/σ₂ at most, σ₂ the smaller singular value of J at the answer; both answers have the same.
+    A search ends at |e| ≤ 1e-10 of the reach.  The gain 0.7/reach² is below 2/σ₁², because σ₁² < 2 reach².
+    """
+    return relative(1.1 * ENOUGH, p)
+
+
+def formula_limit(p, dt):
+    """The closed form: a few roundings of lengths, over σ₂, here as in the truth."""
+    return relative(20.0 * ROUND_OFF, p)
+
+
+def cured_limit(p, dt):
+    """pybullet, cured: its position error is 1e-9 of the reach before its last iteration."""
+    return relative(1.1e-9, p)
+
+
+def default_limit(p, dt):
+    """By default pybullet follows its own law: its matrix is well conditioned, and twenty iterations round a few
+    hundred times.
+    """
+    return 1e-13
 
 
 # ---------------------------------------------------------------------------------------------- engine
@@ -131,16 +133,17 @@ def cured(p, dt):
     return pybullet_make(p, dt, **cure(p))
 
 
-def searches(label, p):
-    """As `search_errors` wants them."""
+def our_searches(p, step):
+    """Return the searches of a method of ours, as `search_errors` wants them."""
     target, lengths, size = target_of(p), lengths_of(p), p.l_1 + p.l_2
-    if label == "pybullet":
-        return [lambda nudge, theta=theta: bullet_search(theta + nudge[:2], target, lengths, **cure(p))
-                for theta in start(p)]
-    if label not in SEARCHES:
-        return None
-    return [lambda nudge, theta=theta: searched(label, theta + nudge[:2], target, lengths, ENOUGH * size, MOST,
+    return [lambda nudge, theta=theta: searched(step, theta + nudge[:2], target, lengths, ENOUGH * size, MOST,
                                                 GAIN / size**2, LAMBDA * size) for theta in start(p)]
+
+
+def cured_searches(p):
+    """Return those of pybullet, cured."""
+    return [lambda nudge, theta=theta: bullet_search(theta + nudge[:2], target_of(p), lengths_of(p), **cure(p))
+            for theta in start(p)]
 
 
 def turned_by(angles, p):
@@ -149,15 +152,27 @@ def turned_by(angles, p):
     return answer + np.angle(np.exp(1j * (np.concatenate(angles) - answer)))
 
 
-ENGINES = (
-    Engine(PYBULLET, "", cured, EXACT,
-           "jointDamping 1e-4 reach², at most 100 iterations, residualThreshold 1e-9 reach"),
-    Engine(PYBULLET, "default", pybullet_make, EXACT, "calculateInverseKinematics as it is"),
-)
-
-
 def default_law(p, t):
     return observe([bullet_ik(theta, target_of(p), lengths_of(p)) for theta in start(p)], p)
+
+
+def far_from_the_hole(p):
+    """Near the hole σ₂ is small on the whole way, and the pseudo-inverse jumps about."""
+    return p != CASES["near the hole"]
+
+
+RUNNERS = (
+    ours(CLOSED_2R, order=EXACT, limit=formula_limit, predicted="a formula: it leaves nothing but roundings"),
+    *(ours(m, order=EXACT, limit=limit, supports=far_from_the_hole if m is PSEUDO_INVERSE else None,
+           predicted=search_errors(partial(our_searches, step=m.table), turned_by, truth, limit))
+      for m in (TRANSPOSE, PSEUDO_INVERSE, DAMPED, CCD, FABRIK)),
+    engine(PYBULLET, "", cured, "jointDamping 1e-4 reach², at most 100 iterations, residualThreshold 1e-9 reach",
+           order=EXACT, limit=cured_limit, predicted=search_errors(cured_searches, turned_by, truth, cured_limit)),
+    engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics as it is",
+           order=EXACT, limit=default_limit, predicted="its own law is its search, which leaves nothing but roundings",
+           departure=Departure("its damping is ½ m² whatever the size of the arm, and it stops after 20 iterations or "
+                               "at 0.1 mm", default_law)),
+)
 
 
 def quantity_names(p):
@@ -184,16 +199,8 @@ def points(observed, p):
 
 
 SCENE = Scene(
-    title="Two elbows", **answers_of(METHODS), cases=CASES,
+    title="Two elbows", **ANSWER, cases=CASES, runners=RUNNERS,
     start=start, run=run, observe=observe, truth=truth, truth_uncertainty=1e-15,
-    tolerance=tolerance,
-    predicted_error=search_errors(searches, turned_by, lambda p: truth(p, T),
-                                  lambda label, p: tolerance(p, T).get(label, tolerance(p, T)[EXACT])),
-    engines=ENGINES,
-    expected_departures={"pybullet, default": Departure(
-        "its damping is ½ m² whatever the size of the arm, and it stops after 20 iterations or at 0.1 mm",
-        default_law)},
-    supports=supports,
     omitted_methods="pymunk has no inverse kinematics; near the hole the pseudo-inverse is missing, because σ₂ is "
                     "small on the way there: it takes large jumps and does not arrive",
     quantity_names=quantity_names,

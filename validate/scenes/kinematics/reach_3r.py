@@ -1,11 +1,11 @@
 """Three links, a place and a direction: as many conditions as joints, so that again there are two answers.
 
 The closed form puts the last joint where the direction requires it, and solves for the other two.  The damped step
-does the
-same by a Jacobian with a third row.  pybullet accepts a direction, too, but decides by the place alone whether it is
-done.
+does the same by a Jacobian with a third row.  pybullet accepts a direction, too, but decides by the place alone whether
+it is done.
 """
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -13,10 +13,9 @@ import numpy as np
 from solutions.checks import check_positive
 from solutions.kinematics import make_arm_2d, pose_2d, solve_reach
 from validate.drawing import arms_and_target, two_arms_and_target_links
-from validate.engines.kinematics import answers_of, bullet_reach
+from validate.engines.kinematics import ANSWER, bullet_reach
 from validate.methods import CLOSED_3R, DAMPED, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import (
-    SEARCHES,
     bullet_ik,
     end_of,
     jacobian_of,
@@ -25,14 +24,13 @@ from validate.reference.kinematics import (
     searched,
     single_rounding,
 )
-from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Engine, Scene
+from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Scene, engine, ours
 
 T = 1.0
 ENOUGH = 1e-10               # |e| at which a search ends [m and rad]
 MOST = 20_000                # iterations; the transpose needs some thousand
 LAMBDA = 0.1                 # λ over the reach [-]
 BEND = 1.2                   # of the elbow at the start, to either side [rad]
-METHODS = (CLOSED_3R, TRANSPOSE, PSEUDO_INVERSE, DAMPED)
 
 
 class Params(NamedTuple):
@@ -110,20 +108,33 @@ def smallest_singular_value(p):
                for angles in truth(p, T).reshape(2, 3))
 
 
-def tolerance(p, dt):
+def relative(off, p):
+    """Return an error of place or direction over σ₃, relative to both answers' angles."""
+    return off * np.sqrt(2.0) / smallest_singular_value(p) / np.linalg.norm(truth(p, T))
+
+
+def limit(p, dt):
     """Angles are off by |e|/σ₃ at most, σ₃ the smallest singular value of J at the answer.  A search ends at 1e-10.
     The gain is below 2/σ₁², because σ₁² < 3 reach² + 3 and α = 1/(2 reach² + 3).
-
-    The closed form: a few roundings of lengths and angles, over σ₃, here as in the truth.
-
-    pybullet, cured, sees no missing rotation below 2 arccos(1 − 1.1e-16) = 3e-8 rad.  By default it follows its own
-    law.  Where its angle is not known well enough to tell to which 32-bit float it is rounded, that iteration may be
-    off by the spacing of such floats.
     """
-    over = np.sqrt(2.0) / smallest_singular_value(p) / np.linalg.norm(truth(p, T))
-    size = 1.0 + p.l_1 + p.l_2 + p.l_3
-    return {EXACT: 1.1 * ENOUGH * over, "closed form": 20.0 * ROUND_OFF * size * over, "pybullet": 3e-8 * over,
-            "pybullet, default": (1e-13 + single_doubt(p)) * np.sqrt(2.0) / np.linalg.norm(truth(p, T))}
+    return relative(1.1 * ENOUGH, p)
+
+
+def formula_limit(p, dt):
+    """The closed form: a few roundings of lengths and angles, over σ₃, here as in the truth."""
+    return relative(20.0 * ROUND_OFF * (1.0 + p.l_1 + p.l_2 + p.l_3), p)
+
+
+def cured_limit(p, dt):
+    """pybullet, cured, sees no missing rotation below 2 arccos(1 − 1.1e-16) = 3e-8 rad."""
+    return relative(3e-8, p)
+
+
+def default_limit(p, dt):
+    """By default pybullet follows its own law.  Where its angle is not known well enough to tell to which 32-bit float
+    it is rounded, that iteration may be off by the spacing of such floats.
+    """
+    return (1e-13 + single_doubt(p)) * np.sqrt(2.0) / np.linalg.norm(truth(p, T))
 
 
 def single_doubt(p):
@@ -132,12 +143,10 @@ def single_doubt(p):
     return max(single_rounding(theta, np.array([x, y]), lengths_of(p), direction) for theta in start(p))
 
 
-def searches(label, p):
-    """As `search_errors` wants them; pybullet, cured, is judged by its tolerance alone."""
-    if label not in SEARCHES:
-        return None
+def searches(p, step):
+    """Return the searches of a method of ours, as `search_errors` wants them."""
     target, lengths, size = target_of(p), lengths_of(p), p.l_1 + p.l_2 + p.l_3
-    return [lambda nudge, theta=theta: searched(label, theta + nudge, target, lengths, ENOUGH, MOST,
+    return [lambda nudge, theta=theta: searched(step, theta + nudge, target, lengths, ENOUGH, MOST,
                                                 1.0 / (2.0 * size**2 + 3.0), LAMBDA * size) for theta in start(p)]
 
 
@@ -158,15 +167,24 @@ def cured(p, dt):
     return pybullet_make(p, dt, damping=1e-4 * sum(lengths_of(p)) ** 2, iterations=200, threshold=1e-12)
 
 
-ENGINES = (
-    Engine(PYBULLET, "", cured, EXACT, "jointDamping 1e-4 reach², at most 200 iterations, residualThreshold 1e-12"),
-    Engine(PYBULLET, "default", pybullet_make, EXACT, "calculateInverseKinematics with targetOrientation, as it is"),
-)
-
-
 def default_law(p, t):
     x, y, direction = target_of(p)
     return observe([bullet_ik(theta, np.array([x, y]), lengths_of(p), direction) for theta in start(p)], p)
+
+
+RUNNERS = (
+    ours(CLOSED_3R, order=EXACT, limit=formula_limit, predicted="a formula: it leaves nothing but roundings"),
+    *(ours(m, order=EXACT, limit=limit,
+           predicted=search_errors(partial(searches, step=m.table), turned_by, truth, limit))
+      for m in (TRANSPOSE, PSEUDO_INVERSE, DAMPED)),
+    engine(PYBULLET, "", cured, "jointDamping 1e-4 reach², at most 200 iterations, residualThreshold 1e-12",
+           order=EXACT, limit=cured_limit,
+           predicted="it ends where it sees no missing rotation any more, and that moment depends on roundings"),
+    engine(PYBULLET, "default", pybullet_make, "calculateInverseKinematics with targetOrientation, as it is",
+           order=EXACT, limit=default_limit, predicted="its own law is its search, which leaves nothing but roundings",
+           departure=Departure("it stops at 0.1 mm from the place, whatever the direction, or after 20 iterations, and "
+                               "its damping is ½ whatever the size of the arm", default_law)),
+)
 
 
 def quantity_names(p):
@@ -191,14 +209,8 @@ def points(observed, p):
 
 
 SCENE = Scene(
-    title="Three links and a direction", **answers_of(METHODS), cases=CASES,
+    title="Three links and a direction", **ANSWER, cases=CASES, runners=RUNNERS,
     start=start, run=run, observe=observe, truth=truth, truth_uncertainty=1e-15,
-    tolerance=tolerance,
-    predicted_error=search_errors(searches, turned_by, lambda p: truth(p, T), lambda label, p: tolerance(p, T)[EXACT]),
-    engines=ENGINES,
-    expected_departures={"pybullet, default": Departure(
-        "it stops at 0.1 mm from the place, whatever the direction, or after 20 iterations, and its damping is ½ "
-        "whatever the size of the arm", default_law)},
     omitted_methods="CCD and FABRIK have no direction; pymunk has no inverse kinematics",
     quantity_names=quantity_names,
     published_states=((1.0, (0.0, 0.5 * np.pi, -0.5 * np.pi, 2.0 * np.arctan2(2.0, 3.0), -0.5 * np.pi,

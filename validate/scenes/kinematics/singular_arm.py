@@ -12,15 +12,14 @@ import numpy as np
 from solutions.checks import check_positive
 from solutions.kinematics import advance_reach, make_arm_2d, reach_2d
 from validate.drawing import arms_and_target, two_arms_and_target_links
-from validate.engines.kinematics import answers_of, bullet_reach
+from validate.engines.kinematics import ANSWER, bullet_reach
 from validate.methods import CCD, DAMPED, FABRIK, PSEUDO_INVERSE, TRANSPOSE
 from validate.reference.kinematics import bent_to, end_of, joints_of
-from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Engine, Scene
+from validate.scene import EXACT, PYBULLET, ROUND_OFF, Departure, Scene, engine, ours
 
 ITERATIONS = 200
 LENGTHS = np.array([1.0, 0.7, 0.4])
 REACH = 2.1                  # [m]
-METHODS = (TRANSPOSE, PSEUDO_INVERSE, DAMPED, CCD, FABRIK)
 
 
 class Params(NamedTuple):
@@ -28,11 +27,6 @@ class Params(NamedTuple):
 
 
 CASES = {"target beyond the last joint": Params(), "target behind the last joint": Params(1.05)}
-
-
-def supports(name, p):
-    """Behind its last joint CCD folds and gets away: that is in the scene of the nearly straight arm."""
-    return name != "ccd_step" or p.x > REACH - LENGTHS[-1]
 
 
 def start(p):
@@ -82,11 +76,11 @@ def on_the_line(p, t):
     return np.array([abs(p.x - s[3]) / REACH, 0.0])
 
 
-def tolerance(p, dt):
+def limit(p, dt):
     """On a line there are no sines and cosines but 0 and 1, and π is rounded once: what is left is the round-off of
     three lengths.
     """
-    return {EXACT: 20.0 * ROUND_OFF}
+    return 20.0 * ROUND_OFF
 
 
 # ---------------------------------------------------------------------------------------------- engine
@@ -95,8 +89,22 @@ def pybullet_make(p, dt):
     return bullet_reach(LENGTHS, start(p), lambda found: observe(found, p), (p.x, 0.0))
 
 
-ENGINES = (Engine(PYBULLET, "", pybullet_make, EXACT, "calculateInverseKinematics as it is"),)
-JACOBIAN = Departure("Jᵀe = 0 on a straight arm with its target on its axis: no joint can make |e| smaller", stays)
+def beyond_the_last_joint(p):
+    """Behind its last joint CCD folds and gets away: that is in the scene of the nearly straight arm."""
+    return p.x > REACH - LENGTHS[-1]
+
+
+STUCK = Departure("Jᵀe = 0 on a straight arm with its target on its axis: no joint can make |e| smaller", stays)
+POINTING = Departure("every joint points at the target already", stays)
+ON_THE_LINE = Departure("projections along a line stay on the line", on_the_line)
+JUDGED = {"order": EXACT, "limit": limit, "predicted": "its own law leaves nothing but roundings"}
+
+RUNNERS = (
+    *(ours(m, departure=STUCK, **JUDGED) for m in (TRANSPOSE, PSEUDO_INVERSE, DAMPED)),
+    ours(CCD, departure=POINTING, supports=beyond_the_last_joint, **JUDGED),
+    ours(FABRIK, departure=ON_THE_LINE, **JUDGED),
+    engine(PYBULLET, "", pybullet_make, "calculateInverseKinematics as it is", departure=STUCK, **JUDGED),
+)
 
 
 def quantity_names(p):
@@ -121,14 +129,8 @@ def points(observed, p):
 
 
 SCENE = Scene(
-    title="A straight arm", **answers_of(METHODS), cases=CASES,
-    start=start, run=run, observe=observe, truth=truth, truth_uncertainty=0.0, supports=supports,
-    tolerance=tolerance,
-    engines=ENGINES,
-    expected_departures={
-        "transpose": JACOBIAN, "pseudo-inverse": JACOBIAN, "damped": JACOBIAN, "pybullet": JACOBIAN,
-        "CCD": Departure("every joint points at the target already", stays),
-        "FABRIK": Departure("projections along a line stay on the line", on_the_line)},
+    title="A straight arm", **ANSWER, cases=CASES, runners=RUNNERS,
+    start=start, run=run, observe=observe, truth=truth, truth_uncertainty=0.0,
     omitted_methods="pymunk has no inverse kinematics",
     quantity_names=quantity_names,
     sanity_checks=sanity_checks,
