@@ -263,6 +263,11 @@ def field_names(required=False):
             if not required or (f.default is MISSING and f.default_factory is MISSING)]
 
 
+def no_limit(p, dt):
+    """No theory says how far some curves may be off.  Their errors are shown and not judged."""
+    return np.inf
+
+
 def by_order(rate, T, dt):
     """{order k: largest relative error at T} of a method whose local error is (rate dt)ᵏ⁺¹ per step.
 

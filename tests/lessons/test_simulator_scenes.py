@@ -62,9 +62,9 @@ def test_a_machine_runs_for_ten_seconds_and_gains_nothing_without_a_source():
         energies.append(machine.energy(state.now, state.rows))
     for kind in ("energy", "overlap", "residual"):
         seen = machine.CASES[kind]
-        assert machine.observe(state, seen)[0] < machine.tolerance(seen, machine.T / steps)[machine.UNKNOWN], kind
+        assert machine.observe(state, seen)[0] < machine.limit(seen, machine.T / steps), kind
     blind = simulator.gain_without_source(np.array(energies), np.zeros(len(energies)))
-    assert blind > 2.0 * machine.tolerance(p, machine.T / steps)[machine.UNKNOWN] * machine.first_energy(p)
+    assert blind > 2.0 * machine.limit(p, machine.T / steps) * machine.first_energy(p)
     assert np.max(np.abs(state.now.v)) < 5.0
     first = machine.FIRST
     assert np.count_nonzero(np.abs(state.now.q[first:first + machine.DOMINOES]) > 0.5) >= 3
@@ -77,5 +77,5 @@ def test_a_house_of_cards_stands_from_the_friction_on_that_statics_asks_for():
         p = card_house.Params(rough=rough)
         state = card_house.run(simulator.contact_step_2d, simulator.weight, card_house.start(p), p, 1.0 / steps, steps)
         moved = np.linalg.norm(card_house.observe(state, p) - card_house.truth(p, 0.0))
-        limit = card_house.tolerance(p._replace(rough=1.02), 1.0 / steps)[card_house.UNKNOWN]
+        limit = card_house.limit(p._replace(rough=1.02), 1.0 / steps)
         assert (moved < limit * np.linalg.norm(card_house.truth(p, 0.0))) == stands, (rough, moved, limit)

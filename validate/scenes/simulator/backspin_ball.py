@@ -4,6 +4,7 @@ Both parts of the motion are known exactly.  A loop is wrong only in the step in
 where it takes its velocities.  The third of our methods cuts its step at that event.
 """
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -19,7 +20,7 @@ from validate.engines.simulator import OVERLAP, pybullet_spinning_ball, pymunk_b
 from validate.methods import AVERAGE_ROLLING, EXACT_ROLLING, ROLLING
 from validate.reference.orientation import about
 from validate.reference.schemes import summed
-from validate.scene import EXACT, PYBULLET, PYMUNK, ROUND_OFF, Engine, Prediction, Scene
+from validate.scene import EXACT, PYBULLET, PYMUNK, ROUND_OFF, Prediction, Scene, engine, ours
 
 T = 3.0                      # [s]
 STEPS = (30, 60, 150, 300, 600, 1500, 3000)
@@ -78,44 +79,60 @@ def truth(p, t):
                      p.rim0 + brake * sliding / p.shape])
 
 
-def tolerance(p, dt):
+def rounded(p, dt):
+    return (1e-12 + T / dt * ROUND_OFF) * max(1.0, (abs(p.v0) + abs(p.rim0)) / np.linalg.norm(truth(p, T)))
+
+
+def late_limit(p, dt, overlap=0.0):
     """While it slides, a step that moves with the new velocity loses ½ μg dt per second; with the old it gains as much.
 
     In the step in which it begins to roll the velocity is off by at most μg dt, for dt.  After that both velocities are
     exact, though an engine's friction may act for one step more or less: another μg dt².
-    With mean velocities only that one step is inexact: by ½ μg s (dt − s), where s is the time in it at which rolling
-    begins.  That is ⅛ μg dt² at most, but no fixed share of dt²: the order that a sweep shows depends on s.
-    A method that cuts its step there has no inexact step.
     """
-    brake, size = p.mu * p.g, np.linalg.norm(truth(p, T))
-    rounded = (1e-12 + T / dt * ROUND_OFF) * max(1.0, (abs(p.v0) + abs(p.rim0)) / size)
-    limit = (0.5 * brake * dt * rolls_from(p) + 2.0 * brake * dt * dt) / size + rounded
-    mean = 1.001 * 0.125 * brake * dt * dt / size + rounded
-    return {1: limit, "2 on average": mean, EXACT: rounded, "pymunk": limit + OVERLAP / size, "pybullet": limit}
+    brake = p.mu * p.g
+    late = 0.5 * brake * dt * rolls_from(p) + 2.0 * brake * dt * dt
+    return (late + overlap) / np.linalg.norm(truth(p, T)) + rounded(p, dt)
 
 
-SPHERE = 0.4                 # I/mR² of the shape that rolls in pybullet [-]
-SHARES = {"the lecture's loop": 1.0, "mean velocities": 0.5}      # of the new velocity in the way of a step
+def mean_limit(p, dt):
+    """With mean velocities only the step in which it begins to roll is inexact: by ½ μg s (dt − s), where s is the
+    time in it at which rolling begins.  That is ⅛ μg dt² at most, but no fixed share of dt²: the order that a sweep
+    shows depends on s.
+    """
+    return 1.001 * 0.125 * p.mu * p.g * dt * dt / np.linalg.norm(truth(p, T)) + rounded(p, dt)
 
 
-def predicted_error(label, p, dt):
+def cut_limit(p, dt):
+    """A method that cuts its step where the ball begins to roll has no inexact step."""
+    return rounded(p, dt)
+
+
+def error(p, dt, share, gain=0.0, overlap=0.0):
     """The rectangle rule with the new velocity, or the trapezoidal one: velocities are exact at every step.
 
-    A step that is cut at the event has no error.  pybullet does as our first loop does, but in the first step it uses
-    the moment of its own sphere, 2/5 mR², so that the rim gains more there.  pymunk moves with the old velocity.  The
-    overlap with which both begin is their band.
+    pymunk moves with the old velocity.  The overlap with which both engines begin is their band.
     """
-    gain = p.mu * p.g * dt * (1.0 / SPHERE - 1.0 / p.shape) if label == "pybullet" else 0.0
     rolls = rolls_from(p) - gain / (p.mu * p.g * (1.0 + 1.0 / p.shape))
     velocity = lambda t: p.v0 - p.mu * p.g * np.minimum(t, rolls)
     new, old = summed(velocity, T, dt, True), summed(velocity, T, dt, False)
-    share = {"pybullet": 1.0, "pymunk": 0.0, **SHARES}.get(label)
-    off = 0.0 if share is None else share * new + (1.0 - share) * old - truth(p, T)[0]
-    size = np.linalg.norm(truth(p, T))
-    rounded = (1e-12 + T / dt * ROUND_OFF) * max(1.0, (abs(p.v0) + abs(p.rim0)) / size)
-    engine = OVERLAP / size if label in ("pybullet", "pymunk") else 0.0
-    faster = velocity(T) - truth(p, T)[1] if gain else 0.0
-    return Prediction(np.array([off, faster, faster]), rounded + engine)
+    off, law = share * new + (1.0 - share) * old - truth(p, T)[0], truth(p, T)
+    faster = velocity(T) - law[1] if gain else 0.0
+    return Prediction(np.array([off, faster, faster]), rounded(p, dt) + overlap / np.linalg.norm(law))
+
+
+def cut_error(p, dt):
+    """A step that is cut at the event has no error."""
+    return Prediction(np.zeros(3), rounded(p, dt))
+
+
+def bullet_error(p, dt):
+    """pybullet does as our first loop does, but in the first step it uses the moment of its own sphere, 2/5 mR², so
+    that the rim gains more there.
+    """
+    return error(p, dt, 1.0, p.mu * p.g * dt * (1.0 / SPHERE - 1.0 / p.shape), OVERLAP)
+
+
+SPHERE = 0.4                 # I/mR² of the shape that rolls in pybullet [-]
 
 
 def pymunk_make(p, dt):
@@ -133,10 +150,14 @@ def pybullet_make(p, dt):
     return pybullet_spinning_ball(ball(p), v, omega, dt)
 
 
-ENGINES = (
-    Engine(PYMUNK, "", pymunk_make, 1, "100 iterations; the circle starts 1e-6 m inside the floor"),
-    Engine(PYBULLET, "", pybullet_make, 1, "maximal coordinates on a GEOM_PLANE; 100 iterations, no residual "
-           "threshold, no slop, no damping"),
+RUNNERS = (
+    ours(ROLLING, limit=late_limit, predicted=partial(error, share=1.0)),
+    ours(AVERAGE_ROLLING, order="2 on average", limit=mean_limit, predicted=partial(error, share=0.5)),
+    ours(EXACT_ROLLING, order=EXACT, limit=cut_limit, predicted=cut_error),
+    engine(PYMUNK, "", pymunk_make, "100 iterations; the circle starts 1e-6 m inside the floor",
+           order=1, limit=partial(late_limit, overlap=OVERLAP), predicted=partial(error, share=0.0, overlap=OVERLAP)),
+    engine(PYBULLET, "", pybullet_make, "maximal coordinates on a GEOM_PLANE; 100 iterations, no residual threshold, "
+           "no slop, no damping", order=1, limit=late_limit, predicted=bullet_error),
 )
 
 
@@ -199,14 +220,10 @@ def sanity_checks():
 SCENE = Scene(
     title="A ball with backspin", lesson="simulator",
     cases=CASES, duration=T, steps=STEPS,
-    methods=(ROLLING, AVERAGE_ROLLING, EXACT_ROLLING),
+    runners=RUNNERS,
     acceleration=acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-15,
-    tolerance=tolerance,
-    predicted_error=predicted_error,
-    engines=ENGINES,
     slow_cases=("goes on", "disc"),
-    orders={"exact_rolling_step": EXACT, "average_rolling_step": "2 on average"},
     sanity_checks=sanity_checks,
     points=points, links=links,
     bodies=bodies, poses=poses, arrows=arrows,

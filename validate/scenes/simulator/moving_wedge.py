@@ -4,6 +4,7 @@ The forces at three contacts are constant.  A loop that finds them exactly has e
 late by half a step.  With the mean of the velocities before and after each step the positions are exact, too.
 """
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -16,7 +17,7 @@ from validate.engines.chipmunk import pymunk_world
 from validate.engines.simulator import OVERLAP, WIDE, pybullet_wedge, pymunk_body, pymunk_floor_space
 from validate.methods import LOOP_2D, LOOP_WITH_MEANS
 from validate.reference.simulator import wedge_pushed_out
-from validate.scene import EXACT, PYBULLET, PYMUNK, ROUND_OFF, Engine, Prediction, Scene
+from validate.scene import EXACT, PYBULLET, PYMUNK, ROUND_OFF, Prediction, Scene, engine, ours
 
 T = 0.4                      # [s]
 STEPS = (8, 16, 40, 80, 160, 400, 800)
@@ -97,25 +98,42 @@ def truth(p, t):
     return np.concatenate((begin + 0.5 * a * t * t, a * t))
 
 
-def tolerance(p, dt):
+def lag(p, dt):
+    """Return ½ a dt T (3,) [m]: how far positions with the new velocities are behind."""
+    return 0.5 * accelerations(p) * dt * T
+
+
+def relative_lag(p, dt):
+    return np.linalg.norm(lag(p, dt)) / np.linalg.norm(truth(p, T))
+
+
+def loop_limit(p, dt):
     """Positions with the new velocities are late by ½ a dt T, with the old ones early by that; velocities are exact.
 
     Ours: 25 sweeps leave 1e-7 of an impulse in the first step, and later steps, which start warm, find the rest.
-    With mean velocities nothing else is wrong: a sweep leaves `contraction` of an error.  A gap is rounded, and closed
-    within one step: that adds some 1e-12 to the velocities.
-    pymunk: both overlaps, and what 100 iterations leave in the first step, which has no warm start.
-    pybullet: both overlaps, and a share of them over the first step in the velocities, while the block moves by less
+    """
+    return 1.001 * relative_lag(p, dt) + 1e-7 * dt / T + 1e-9 + T / dt * ROUND_OFF
+
+
+def mean_limit(p, dt):
+    """With mean velocities nothing is wrong but what the sweeps leave of an error.  A gap is rounded, and closed within
+    one step: that adds some 1e-12 to the velocities.
+    """
+    return contraction(p) ** SWEEPS * dt / T + 5e-12 + T / dt * ROUND_OFF
+
+
+def pymunk_limit(p, dt):
+    """pymunk: both overlaps, and what 100 iterations leave in the first step, which has no warm start."""
+    return 1.001 * relative_lag(p, dt) + 2.0 * OVERLAP / np.linalg.norm(truth(p, T)) + 1e-3 * dt
+
+
+def bullet_limit(p, dt):
+    """pybullet: both overlaps, and a share of them over the first step in the velocities, while the block moves by less
     than its half size in a step.  Its contact points are twice as far apart, and it finds those of the last step again
     by the nearest place.  With longer steps it takes one for another.
     """
-    size = np.linalg.norm(truth(p, T))
-    late = 0.5 * np.linalg.norm(accelerations(p)) * dt * T / size
-    engine = 1.001 * late + 2.0 * OVERLAP / size + 1e-3 * dt
-    pushed = late + (4.0 + 2.0 * CONTACT_ERP / dt) * OVERLAP / size + turned(p) if carried(p, dt) else np.inf
-    exact = contraction(p) ** SWEEPS * dt / T + 5e-12 + T / dt * ROUND_OFF
-    return {1: 1.001 * late + 1e-7 * dt / T + 1e-9 + T / dt * ROUND_OFF, EXACT: exact,
-            "pymunk": engine, "pymunk, fewer iterations": engine,
-            "pybullet": pushed, "pybullet, maximal coordinates": pushed}
+    pushed = (4.0 + 2.0 * CONTACT_ERP / dt) * OVERLAP / np.linalg.norm(truth(p, T))
+    return relative_lag(p, dt) + pushed + turned(p) if carried(p, dt) else np.inf
 
 
 def contraction(p):
@@ -147,24 +165,23 @@ def turned(p):
     return angle * np.hypot(reach + 0.5 * p.g * T**2, p.g * T) / np.linalg.norm(truth(p, T))
 
 
-def predicted_error(label, p, dt):
+def lag_error(p, dt, sign, limit):
     """+½ a dt T in the positions with the new velocities, −½ a dt T with pymunk's old ones, and nothing in velocities.
-
-    The band is what the solvers leave: the rest of `tolerance`.  pybullet takes a share of the overlap of each contact
-    back per step, by a velocity that it adds.  The recursion of both overlaps says where that ends.
+    The band is what the solvers leave: the rest of the limit.
     """
-    sign = {LOOP_2D.label: 1.0, LOOP_WITH_MEANS.label: 0.0, "pymunk": -1.0, "pymunk, fewer iterations": -1.0}.get(label)
-    limits, size = tolerance(p, dt), np.linalg.norm(truth(p, T))
-    if sign is None:
-        if not carried(p, dt):
-            return None
-        way, v = wedge_pushed_out((p.M, p.m), slope(p), p.g, OVERLAP, CONTACT_ERP, dt, round(T / dt))
-        begin = places(p) - np.array([(0.0, OVERLAP)]) - np.outer((0.0, OVERLAP), normal(p))
-        return Prediction(np.delete(np.concatenate((begin.ravel() + way, v)), (1, 5)) - truth(p, T),
-                          turned(p) + 1e-14 + T / dt * ROUND_OFF)
-    late = 0.5 * accelerations(p) * dt * T * sign
-    limit = limits.get(label, limits[1 if sign else EXACT])
-    return Prediction(np.append(late, np.zeros(3)), limit - np.linalg.norm(late) / size)
+    return Prediction(np.append(sign * lag(p, dt), np.zeros(3)), limit(p, dt) - abs(sign) * relative_lag(p, dt))
+
+
+def bullet_error(p, dt):
+    """pybullet takes a share of the overlap of each contact back per step, by a velocity that it adds.  The recursion
+    of both overlaps says where that ends.
+    """
+    if not carried(p, dt):
+        return None
+    way, v = wedge_pushed_out((p.M, p.m), slope(p), p.g, OVERLAP, CONTACT_ERP, dt, round(T / dt))
+    begin = places(p) - np.array([(0.0, OVERLAP)]) - np.outer((0.0, OVERLAP), normal(p))
+    return Prediction(np.delete(np.concatenate((begin.ravel() + way, v)), (1, 5)) - truth(p, T),
+                      turned(p) + 1e-14 + T / dt * ROUND_OFF)
 
 
 def pymunk_make(p, dt, iterations):
@@ -190,14 +207,21 @@ def pybullet_make(p, dt, maximal):
 
 
 SETTINGS = "100 iterations, no residual threshold, no slop, contactBreakingThreshold 1, overlaps of 1e-6 m"
-ENGINES = (
-    Engine(PYMUNK, "", lambda p, dt: pymunk_make(p, dt, 100), 1, "a triangle with an infinite moment; 100 iterations, "
-           "collision_slop 1e-5, overlaps of 1e-6 m"),
-    Engine(PYMUNK, "fewer iterations", lambda p, dt: pymunk_make(p, dt, 20), 1, "the same with 20 iterations"),
-    Engine(PYBULLET, "", lambda p, dt: pybullet_make(p, dt, False), 1, "two boxes in reduced coordinates, no damping; "
-           f"{SETTINGS}"),
-    Engine(PYBULLET, "maximal coordinates", lambda p, dt: pybullet_make(p, dt, True), 1, "the same in maximal "
-           f"coordinates; {SETTINGS}; a step without gravity beforehand, after which the moments count"),
+PYMUNK_ERROR = partial(lag_error, sign=-1.0, limit=pymunk_limit)
+RUNNERS = (
+    ours(LOOP_2D, limit=loop_limit, predicted=partial(lag_error, sign=1.0, limit=loop_limit)),
+    ours(LOOP_WITH_MEANS, order=EXACT, limit=mean_limit, predicted=partial(lag_error, sign=0.0, limit=mean_limit)),
+    engine(PYMUNK, "", partial(pymunk_make, iterations=100),
+           "a triangle with an infinite moment; 100 iterations, collision_slop 1e-5, overlaps of 1e-6 m",
+           order=1, limit=pymunk_limit, predicted=PYMUNK_ERROR),
+    engine(PYMUNK, "fewer iterations", partial(pymunk_make, iterations=20), "the same with 20 iterations",
+           order=1, limit=pymunk_limit, predicted=PYMUNK_ERROR),
+    engine(PYBULLET, "", partial(pybullet_make, maximal=False),
+           f"two boxes in reduced coordinates, no damping; {SETTINGS}",
+           order=1, limit=bullet_limit, predicted=bullet_error),
+    engine(PYBULLET, "maximal coordinates", partial(pybullet_make, maximal=True),
+           f"the same in maximal coordinates; {SETTINGS}; a step without gravity beforehand, after which the moments "
+           "count", order=1, limit=bullet_limit, predicted=bullet_error),
 )
 
 
@@ -231,13 +255,9 @@ def sanity_checks():
 SCENE = Scene(
     title="A wedge that slides away", lesson="simulator",
     cases=CASES, duration=T, steps=STEPS,
-    methods=(LOOP_2D, LOOP_WITH_MEANS),
+    runners=RUNNERS,
     acceleration=acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-15,
-    tolerance=tolerance,
-    predicted_error=predicted_error,
-    engines=ENGINES,
-    orders={"mean_contact_step_2d": EXACT},
     slow_cases=("45°, light wedge", "10°, heavy wedge"),
     sanity_checks=sanity_checks,
     points=points, links=links,

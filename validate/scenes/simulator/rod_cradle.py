@@ -16,7 +16,7 @@ from validate.engines.simulator import ITERATIONS, pybullet_cradle, pymunk_cradl
 from validate.methods import JOINTED_LOOP
 from validate.reference.orientation import about
 from validate.reference.simulator import cradle_motion
-from validate.scene import PYBULLET, PYMUNK, ROUND_OFF, Engine, Scene
+from validate.scene import PYBULLET, PYMUNK, ROUND_OFF, Scene, engine, ours
 
 T = 0.7                      # [s]: all impacts are over after 0.6
 STEPS = (5, 10, 20, 50, 100, 200, 500)
@@ -112,7 +112,7 @@ def of(p):
     return p.lifted, p.angle, BALLS, pitch(p), p.L, p.R, p.g, p.L**2 + moment(p)
 
 
-def tolerance(p, dt):
+def limit(p, dt):
     """Positions use the new velocities, which costs half a step of the swing, ½ dt.  Each of four impacts (four for
     each ball that swings) is found up to one step late, and so is everything after it.  Late by s, an angle is off by
     ω s and a rate by w² sin(angle) s, with w² = g/L; a ball that has stopped went up to ω dt too far.  A step in which
@@ -127,13 +127,13 @@ def tolerance(p, dt):
     if p.gap == 0.0:
         late = dt * np.array([fastest, w2 * np.sin(p.angle), 2.0 * w2 * fastest * p.angle])
         cubes = p.angle**3 / 6.0 * w2 * T * np.array([T, 1.0, 0.0])
-        return {BY_PHASE: (np.linalg.norm(late) + np.linalg.norm(cubes)) / size + rounded}
+        return (np.linalg.norm(late) + np.linalg.norm(cubes)) / size + rounded
     if 2.0 * fastest * p.L * dt > p.gap:
-        return {BY_PHASE: np.inf}
+        return np.inf
     late = (4.0 * p.lifted + 0.5) * dt
     moves = np.hypot(fastest, w2 * np.sin(p.angle)) * late * np.sqrt(p.lifted)
     rests = np.sqrt(BALLS - p.lifted) * fastest * dt * np.hypot(1.0, np.sqrt(w2)) * p.lifted
-    return {BY_PHASE: (moves + rests) / size + rounded}
+    return (moves + rests) / size + rounded
 
 
 def engine_read(p):
@@ -152,11 +152,13 @@ def pybullet_make(p, dt):
     return pybullet_cradle(pivots(p), centres(angles(p), p), 1.0, moment(p), p.R, p.g, dt, engine_read(p))
 
 
-ENGINES = (
-    Engine(PYMUNK, "", pymunk_make, BY_PHASE,
-           f"PivotJoints, error_bias 0; collision_slop 1e-5, {ITERATIONS} iterations"),
-    Engine(PYBULLET, "", pybullet_make, BY_PHASE,
-           f"JOINT_POINT2POINT, erp 1; settings for impacts, {ITERATIONS} iterations"),
+JUDGED = {"order": BY_PHASE, "limit": limit, "predicted": "where in their steps the impacts fall decides"}
+RUNNERS = (
+    ours(JOINTED_LOOP, **JUDGED),
+    engine(PYMUNK, "", pymunk_make, f"PivotJoints, error_bias 0; collision_slop 1e-5, {ITERATIONS} iterations",
+           **JUDGED),
+    engine(PYBULLET, "", pybullet_make, f"JOINT_POINT2POINT, erp 1; settings for impacts, {ITERATIONS} iterations",
+           **JUDGED),
 )
 
 
@@ -210,12 +212,9 @@ def poses(observed, p):
 SCENE = Scene(
     title="A cradle of balls on rods", lesson="simulator",
     cases=CASES, duration=T, steps=STEPS,
-    methods=(JOINTED_LOOP,),
+    runners=RUNNERS,
     acceleration=acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-9,
-    tolerance=tolerance,
-    engines=ENGINES,
-    orders={"joint_contact_step_2d": BY_PHASE},
     slow_cases=("two balls", "touching"),
     sanity_checks=sanity_checks,
     points=points, links=links,
