@@ -18,9 +18,9 @@ from rich.table import Table
 
 from solutions.checks import BadInput
 
-from . import copies, engines, modules, needs
+from . import copies, modules, needs
 from .processes import Ended, alone_in, ending_once, one_sentence, workers
-from .scene import OPTIONAL, PRODUCTS
+from .products import PRODUCTS, PYBULLET, product_named
 from .store import SUBSET, lessons_of
 
 HELP = (
@@ -32,7 +32,7 @@ app = typer.Typer(add_completion=False, invoke_without_command=True, rich_markup
 console = Console()
 
 
-EngineName = StrEnum("EngineName", [(name, name) for name in PRODUCTS])
+EngineName = StrEnum("EngineName", [(product.name, product.name) for product in PRODUCTS])
 
 
 RESULTS = "<!-- results -->"    # begins and ends the table of results in the README
@@ -127,7 +127,7 @@ def list_exercises():
 def record(scene: Annotated[list[str] | None, ONE_SCENE] = None):
     """Keep the traces of pybullet in the repository, for machines without it."""
     from .measure.record import record as write_record
-    if not engines.installed("pybullet"):
+    if not PYBULLET.installed():
         raise BadInput("engine 'pybullet'", "not installed",
                        "record where it is: Linux x86-64 with Python 3.11 or older")
     names, broken = select_scenes(scene or [], [])
@@ -253,11 +253,11 @@ def require_answers(of, names):
 def plan_of(of, names, plain, quick, wanted, changes):
     from .measure import Plan
     folder = modules.subject_folder(of)
-    for name in wanted:
-        if not engines.installed(name):
-            instead = engines.REMEDY if name in OPTIONAL else "leave --engine out: its recorded traces stand in"
-            raise BadInput(f"engine {name!r}", "not installed", instead)
-    live = tuple(name for name in (wanted or PRODUCTS) if engines.installed(name))
+    chosen = tuple(product_named(name) for name in wanted) or PRODUCTS
+    for product in chosen if wanted else ():
+        if not product.installed():
+            raise BadInput(f"engine {product.name!r}", "not installed", product.remedy)
+    live = tuple(product for product in chosen if product.installed())
     speeds = {None: ("plain", "compiled"), True: ("plain",), False: ("compiled",)}[plain]
     if plain is False and not modules.can_compile():
         raise BadInput("numba", "not installed", "install it, or use --plain")

@@ -3,8 +3,8 @@
 from statistics import median
 from typing import NamedTuple
 
+from .products import product_named
 from .results import Verdict
-from .scene import OPTIONAL
 
 GOOD = {Verdict.AGREES, Verdict.FOLLOWS_OWN_LAW}
 ORDER = 0.05                 # a smaller change of an order is noise of the fit [-]
@@ -44,7 +44,8 @@ def verdicts(old, new):
             yield Change("verdicts", place, f"is new: {now['verdict']}", Verdict(now["verdict"]) is Verdict.DEPARTS)
         elif now is None:
             products = {c.get("product") for c in after.values()}
-            optional = was.get("product") in OPTIONAL and was["product"] not in products
+            name = was.get("product")
+            optional = bool(name) and name not in products and product_named(name).optional
             gone = "was left out" if optional else "is gone"
             yield Change("verdicts", place, f"{gone}; it was: {was['verdict']}", not optional)
         elif was["verdict"] != now["verdict"]:

@@ -121,14 +121,13 @@ LEFT_TO_FULL = tuple(method.function for method in INTEGRATORS if method not in 
 TURNS = (MATRIX, AXIS_ANGLE, QUATERNION, GYROSCOPIC, IMPLICIT_GYROSCOPIC, RUNGE_KUTTA, MIDPOINT_TURN, SPLITTING,
          COMPOSED_SPLITTING, COMPOSED_MIDPOINT)
 
-ENGINE_LOOKS = {"pymunk": ("#000000", "x"), "pybullet": ("#5A5A5A", "+"), "mujoco": ("#8C0D26", "1")}  # colour, marker
 VARIANT_LINES = {"": "-", "default": ":"}
 OTHER_VARIANTS = (("--", ""), ("-.", "s"), (":", "o"), ("--", "D"))  # line, marker in place of the engine's own
 
 
 def engine_look(engine, engines):
     """(colour, marker, line) of one of a scene's engines; curves of several variants may lie on each other."""
-    colour, marker = ENGINE_LOOKS[engine.product]
+    colour, marker = engine.product.colour, engine.product.marker
     if engine.variant in VARIANT_LINES:
         return colour, marker, VARIANT_LINES[engine.variant]
     others = [one.variant for one in engines if one.product == engine.product and one.variant not in VARIANT_LINES]

@@ -10,8 +10,8 @@ from pathlib import Path
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-from . import coverage, engines, measure, modules
-from .scene import OPTIONAL, PRODUCTS
+from . import coverage, measure, modules
+from .products import PRODUCTS
 from .stability.examine import stability_cases
 from .store import code_digest, lessons_of, store_for
 
@@ -84,8 +84,8 @@ def about(plan, out=None, measuring=None):
     Links to the sources are there only for a report in a folder of the repository.
     """
     inside = out is not None and out.resolve().is_relative_to(modules.ROOT)
-    absent = {n: "left out" if n in OPTIONAL else "recorded" for n in PRODUCTS}
-    live = [f"{n} {engines.installed(n)} live" if n in plan.live else f"{n} {absent[n]}" for n in PRODUCTS]
+    live = [f"{engine} {engine.installed()} live" if engine in plan.live else
+            f"{engine} {'left out' if engine.optional else 'recorded'}" for engine in PRODUCTS]
     compiler = f"numba {modules.numba_version()}" if modules.can_compile() else "numba not installed: plain speed only"
     return {
         "of": str(plan.of), "mode": "quick" if plan.quick else "full", "engines": live, "compiler": compiler,

@@ -13,12 +13,11 @@ import numpy as np
 
 from solutions.checks import BadInput
 
+from .products import MUJOCO, PRODUCTS, PYBULLET, PYMUNK, Product  # noqa: F401    scenes take them from here
+
 EXACT = "exact"              # an order: no error but round-off
 LATE_LEAPFROG = "1 to 2"     # an order: leapfrog whose first velocity belongs to half a step before or after
 ROUND_OFF = 2.3e-16          # spacing of floats around 1, rounded up [-]
-PYMUNK, PYBULLET, MUJOCO = "pymunk", "pybullet", "mujoco"
-PRODUCTS = (PYMUNK, PYBULLET, MUJOCO)
-OPTIONAL = (MUJOCO,)         # left out where it is not installed; for pybullet its record stands in there
 
 
 class Method(NamedTuple):
@@ -34,7 +33,7 @@ class Method(NamedTuple):
 
 class Engine(NamedTuple):
     """One way to set up an engine."""
-    product: str             # one of PRODUCTS
+    product: Product
     variant: str             # "" for the settings that match textbook physics, else their name
     make: Callable           # (p, dt) → EngineRun
     order: int | str         # expected order of convergence
@@ -44,7 +43,7 @@ class Engine(NamedTuple):
     @property
     def label(self):
         """Its name for people."""
-        return f"{self.product}, {self.variant}" if self.variant else self.product
+        return f"{self.product}, {self.variant}" if self.variant else self.product.name
 
 
 class EngineRun(NamedTuple):

@@ -7,8 +7,8 @@ from importlib.metadata import version
 
 from solutions.checks import BadInput
 
-from . import engines, modules
-from .scene import PRODUCTS
+from . import modules
+from .products import PRODUCTS
 
 SUBSET = "subset"            # folder, inside the report's, for scenes that cannot join that report
 
@@ -64,7 +64,7 @@ def sources(of):
 def installed_versions():
     """{package: its version or None} of those on which a result depends."""
     return {"numpy": version("numpy"), "scipy": version("scipy"), "numba": modules.numba_version(),
-            **{name: engines.installed(name) for name in PRODUCTS}}
+            **{product.name: product.installed() for product in PRODUCTS}}
 
 
 def store_for(out, plan, names):

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from solutions.checks import BadInput, Diverged
-from validate import engines, modules, targets
+from validate import modules, targets
+from validate.products import PYBULLET
 
 worked = modules.bind("kinematics")
 NO_LIMITS = (-np.inf, np.inf, 0.0, 0.0)
@@ -115,7 +116,7 @@ def test_elimination_solves_what_is_positive_definite_and_refuses_what_is_not():
         worked.solve_symmetric(np.ones((2, 2)), np.ones(2))
 
 
-@pytest.mark.skipif(not engines.installed("pybullet"), reason="pybullet has no wheel for this machine")
+@pytest.mark.skipif(not PYBULLET.installed(), reason="pybullet has no wheel for this machine")
 def test_a_comparison_with_pybullet_counts_no_target_that_is_less_well_solved():
     for name in targets.ARMS:
         for _, _, _, _, _, _, _, found, left in targets.compare(worked, name, 5, 3):

@@ -13,10 +13,11 @@ from pathlib import Path
 import pytest
 
 from validate import __main__ as cli
-from validate import engines, measure, modules, processes, report, store
+from validate import measure, modules, processes, report, store
 from validate import run as validation
 from validate.generate import exercises, stub
 from validate.measure import record, traces
+from validate.products import PYMUNK, Product
 from validate.report import plots, summary
 
 
@@ -118,8 +119,8 @@ RECORD = (modules.SCENES / "springs" / "hanging_springs.py").read_text()
 
 
 @pytest.mark.parametrize(("text", "says"), [
-    (RECORD.replace(" tolerance=tolerance,", ""), "'tolerance'"),
-    (RECORD.replace(" tolerance=tolerance,", " tolerence=tolerance,"), "'tolerence'"),
+    (RECORD.replace(" observe=observe,", ""), "'observe'"),
+    (RECORD.replace(" observe=observe,", " obsreve=observe,"), "'obsreve'"),
     (RECORD.replace(" steps=STEPS,", " steps=5,"), "field 'steps'"),
     (RECORD.replace("SCENE = Scene(", "SCENES = Scene("), "SCENE = Scene"),
     (RECORD.replace('lesson="springs"', 'lesson="spring"'), "'spring'"),
@@ -138,7 +139,7 @@ def test_an_unwritable_folder_is_named(capsys, tmp_path):
 
 
 def test_an_engine_that_is_asked_for_and_missing_is_named(capsys, tmp_path, monkeypatch):
-    monkeypatch.setattr(engines, "installed", lambda name: None)
+    monkeypatch.setattr(Product, "installed", lambda self: None)
     code, _, error = run(capsys, "--engine", "pybullet", "--out", str(tmp_path / "report"))
     assert code == 2 and "pybullet" in error and "recorded" in error
 
@@ -372,7 +373,7 @@ def test_a_missing_or_damaged_trace_is_named_where_it_is_needed(capsys, tmp_path
     ("oscillator", "k=1e300"), ("oscillator", "x0=0"), ("angular_spring", "theta0=0"), ("throw", "g=1e300")])
 def test_numbers_overflow_without_a_warning(tmp_path, scene, change):
     changes = cli.overrides([change], [scene])                      # pytest turns warnings into errors
-    plan = measure.Plan(speeds=("plain",), live=("pymunk",), overrides=changes, most_steps=500)
+    plan = measure.Plan(speeds=("plain",), live=(PYMUNK,), overrides=changes, most_steps=500)
     errors = measure.errors(scene, plan)
     result = {**errors, "times": measure.times(scene, plan, errors)}
     for plot in (plots.convergence, plots.work_precision):

@@ -3,20 +3,20 @@
 import numpy as np
 import pytest
 
-from validate import engines, measure, modules
+from validate import measure, modules
 from validate.compare import changes
 from validate.engines.mujoco import IMPEDANCE
 from validate.measure.accuracy import engine_curve, run_engine_to_end
 from validate.measure.selection import select
+from validate.products import MUJOCO, PRODUCTS
 from validate.reference import turns
 from validate.reference.friction import CLOSE
 from validate.results import Verdict
-from validate.scene import MUJOCO, OPTIONAL, PRODUCTS
 from validate.scenes.friction import incline
 
 WITH_MUJOCO = [name for name in modules.scene_names()
                if any(r.who.product == MUJOCO for r in modules.bind_scene(name).engine_runners)]
-needs_mujoco = pytest.mark.skipif(not engines.installed(MUJOCO), reason=f"MuJoCo is not installed: {engines.REMEDY}")
+needs_mujoco = pytest.mark.skipif(not MUJOCO.installed(), reason=f"MuJoCo is not installed: {MUJOCO.remedy}")
 
 
 def curve_of(name, case=None, variant=""):
@@ -39,7 +39,7 @@ def test_where_it_is_left_out_a_scene_says_so_and_keeps_all_other_verdicts(name)
     selection = select(name, measure.Plan(speeds=("plain",), live=()))
     assert sum("The witness mujoco is left out" in note for note in selection.notes) == 1
     for p in selection.cases.values():
-        left = {r.label for r in modules.bind_scene(name).engine_runners if r.who.product not in OPTIONAL}
+        left = {r.label for r in modules.bind_scene(name).engine_runners if not r.who.product.optional}
         assert {r.label for r in selection.engines_for(p)} <= left
     with_it = select(name, measure.Plan(speeds=("plain",), live=PRODUCTS))
     assert not any("mujoco is left out" in note for note in with_it.notes)
@@ -50,9 +50,9 @@ def test_a_report_without_it_is_no_regression_of_one_with_it():
         curves = [{"role": "engine", "label": n, "product": n, "verdict": "agrees", "rows": [], "order": None}
                   for n in products]
         return {"scenes": [{"scene": "s", "cases": {"c": {"ours": [], "engines": curves}}}], "stability": []}
-    both, one = report("pymunk", MUJOCO), report("pymunk")
+    both, one = report("pymunk", "mujoco"), report("pymunk")
     assert [(c.worse, "left out" in c.words) for c in changes(both, one)] == [(False, True)]
-    assert [c.worse for c in changes(both, report(MUJOCO))] == [True]
+    assert [c.worse for c in changes(both, report("mujoco"))] == [True]
 
 
 @needs_mujoco

@@ -10,7 +10,7 @@ import pytest
 
 from solutions import integrators
 from solutions.checks import BadInput
-from validate import engines, measure, methods, modules
+from validate import measure, methods, modules
 from validate.generate import stub
 from validate.measure.accuracy import ASYMPTOTIC, engine_curve
 from validate.measure.selection import select
@@ -22,7 +22,7 @@ from validate.scene import PRODUCTS, PYBULLET
 SCENES = modules.scene_names()
 MOVING = [n for n in SCENES if modules.bind_scene(n).moves]
 REFINED = [n for n in SCENES if modules.bind_scene(n).refined]
-LIVE = tuple(name for name in PRODUCTS if engines.installed(name))
+LIVE = tuple(product for product in PRODUCTS if product.installed())
 BRIEF = measure.Plan(speeds=("plain",), live=LIVE, most_steps=500)
 # `validate` judges every scene, and its exit code says the result; these stand for all in the default tests
 SAMPLE = {"oscillator", "incline", "spinning_bounce", "asymmetric_top", "pendulum", "backspin_ball"}
@@ -241,4 +241,4 @@ def test_no_two_curves_of_a_scene_look_alike():
         for looks in ([m.colour for m in ours], [m.marker for m in ours],
                       [methods.engine_look(e, witnesses) for e in witnesses]):
             assert len(set(looks)) == len(looks), name
-        assert not {m.colour for m in ours} & {colour for colour, _ in methods.ENGINE_LOOKS.values()}
+        assert not {m.colour for m in ours} & {product.colour for product in PRODUCTS}

@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from validate import audit, engines
-from validate.engines.switches import SWITCHES, worlds_made
+from validate import audit
+from validate.engines.switches import worlds_made
 from validate.measure import switches
 from validate.measure.selection import Plan, select
 from validate.report import words
@@ -35,11 +35,11 @@ def test_without_collisions_or_friction_a_rolling_ball_moves_otherwise():
 
 def test_joints_are_swept_even_where_nothing_collides():
     found = parts("rope", live=(PYMUNK,))
-    assert (PYMUNK, "all sweeps but one") in found and (PYMUNK, "friction") not in found
-    assert found[PYMUNK, "all sweeps but one"]["cost"] > 1.2
+    assert ("pymunk", "all sweeps but one") in found and ("pymunk", "friction") not in found
+    assert found["pymunk", "all sweeps but one"]["cost"] > 1.2
 
 
-@pytest.mark.skipif(not engines.installed(PYBULLET), reason="pybullet is not installed here")
+@pytest.mark.skipif(not PYBULLET.installed(), reason="pybullet is not installed here")
 def test_pybullet_forgets_a_switch_when_its_world_is_closed():
     selection = select("slide_then_roll", PLAN)
     engine = next(r.who for r in selection.engines_for(selection.first[1]) if r.who.product == PYBULLET)
@@ -50,9 +50,8 @@ def test_pybullet_forgets_a_switch_when_its_world_is_closed():
         bullet, = worlds
         known = bullet.pb.getPhysicsEngineParameters()
         settings.append({key: known[key] for key in ("numSolverIterations", "warmStartingFactor") if key in known})
-        for switch in SWITCHES:
-            if switch.product == PYBULLET:
-                assert switch.off(bullet), switch.part
+        for switch in PYBULLET.adapter.SWITCHES:
+            assert switch.off(bullet), switch.part
         run.close()
     assert settings[0] == settings[1] and settings[0]["numSolverIterations"] > 1
 

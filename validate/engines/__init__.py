@@ -1,4 +1,4 @@
-"""The engines, set up to match textbook mechanics, and whether they are installed.
+"""The engines, set up to match textbook mechanics.
 
 `bullet.py`, `chipmunk.py` and `mujoco.py` wrap one engine each.  The other files hold set-ups that several scenes of a
 lesson use.
@@ -12,24 +12,6 @@ import ctypes
 import importlib
 import os
 import sys
-from importlib.metadata import PackageNotFoundError, version
-
-from solutions.checks import BadInput
-
-from ..scene import PRODUCTS
-
-DISTRIBUTIONS = {"mujoco": "mujoco-core"}                # where a package is named otherwise
-REMEDY = "pip install -e '.[witness]' adds it"
-
-
-def installed(engine):
-    """Return the engine's version, or None.  Raises BadInput for an unknown name."""
-    if engine not in PRODUCTS:
-        raise BadInput(f"engine {engine!r}", "unknown", f"choose from: {', '.join(PRODUCTS)}")
-    try:
-        return version(DISTRIBUTIONS.get(engine, engine))
-    except PackageNotFoundError:
-        return None
 
 
 def quiet_import(name):

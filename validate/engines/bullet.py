@@ -5,9 +5,9 @@ from functools import cache, partial
 import numpy as np
 
 from ..reference.orientation import quaternion
-from ..scene import Departure
+from ..scene import Departure, EngineRun
 from . import quiet_import
-from .switches import made
+from .switches import Switch, made
 
 _idle = []                   # connected clients that are free for another run
 ITERATIONS = 50              # of the contact solver, by default
@@ -219,3 +219,58 @@ def hidden_damping(acceleration, start):
         return solve_ivp(slope, (0.0, max(t, 1e-9)), begin, method="DOP853", rtol=1e-12, atol=1e-13).y[:d, -1]
     return Departure("its reduced-coordinate bodies are damped by default, −0.04 v (1 + |v|); the 0.04 is documented, "
                      "the factor 1 + |v| is not", own_law)
+
+
+def empty_world():
+    """Make the EngineRun of a world without bodies."""
+    bullet = Bullet(1e-3)
+    return EngineRun(bullet.step, lambda: None, bullet.close)
+
+
+# ---------------------------------------------------------------------------------------------- switches
+
+def parts(bullet):
+    """[(body, link)] of everything in pybullet; empty where nothing has a shape.
+
+    pybullet does not tell whether a body in maximal coordinates has one.  But its client remembers what was called.
+    """
+    pb = bullet.pb
+    if "createCollisionShape" not in vars(pb):
+        return []
+    return [(body, link) for body in map(pb.getBodyUniqueId, range(pb.getNumBodies()))
+            for link in range(-1, pb.getNumJoints(body))]
+
+
+def let_all_pass(bullet):
+    """Let no shape collide with another."""
+    for body, link in parts(bullet):
+        bullet.pb.setCollisionFilterGroupMask(body, link, 0, 0)
+    return len(parts(bullet)) > 1
+
+
+def rub_nothing(bullet):
+    rubbing = [part for part in parts(bullet) if bullet.pb.getDynamicsInfo(*part)[1] > 0.0]
+    for body, link in rubbing:
+        bullet.pb.changeDynamics(body, link, lateralFriction=0.0)
+    return len(rubbing) > 1
+
+
+def forget_contacts(bullet):
+    """Begin the sweeps of each step from nothing."""
+    bullet.pb.setPhysicsEngineParameter(warmStartingFactor=0)
+    return len(parts(bullet)) > 1
+
+
+def sweep_once(bullet):
+    """Sweep once over contacts and joints."""
+    before = bullet.pb.getPhysicsEngineParameters()["numSolverIterations"]
+    bullet.pb.setPhysicsEngineParameter(numSolverIterations=1)
+    return before > 1 and (len(parts(bullet)) > 1 or bullet.pb.getNumConstraints() > 0)
+
+
+SWITCHES = (
+    Switch("collision detection", let_all_pass),
+    Switch("friction", rub_nothing),
+    Switch("memory of contacts", forget_contacts),
+    Switch("all sweeps but one", sweep_once),
+)

@@ -1,7 +1,8 @@
 """pymunk, which wraps Chipmunk2D: the 2D engine."""
+
 from validate.scene import EngineRun
 
-from .switches import made
+from .switches import Switch, made
 
 
 def pymunk_space(gravity=(0.0, 0.0)):
@@ -16,6 +17,11 @@ def pymunk_space(gravity=(0.0, 0.0)):
 def pymunk_world(space, dt, read):
     """Make the EngineRun of a space."""
     return EngineRun(lambda: space.step(dt), read, lambda: None)
+
+
+def empty_world():
+    """Make the EngineRun of a world without bodies."""
+    return pymunk_world(pymunk_space(), 1e-3, lambda: None)
 
 
 def pymunk_ball(space, m, I, radius, x, v, omega, e, mu):
@@ -35,3 +41,34 @@ def pymunk_floor(space):
     floor = pymunk.Segment(space.static_body, (-1000.0, -5.0), (1000.0, -5.0), 5.0)
     floor.elasticity, floor.friction = 1.0, 1.0
     space.add(floor)
+
+
+# ---------------------------------------------------------------------------------------------- switches
+
+def let_all_pass(space):
+    """Let no shape collide with another."""
+    import pymunk
+    for shape in space.shapes:
+        shape.filter = pymunk.ShapeFilter(mask=0)
+    return len(space.shapes) > 1
+
+
+def rub_nothing(space):
+    rubbing = [shape for shape in space.shapes if shape.friction > 0.0]
+    for shape in rubbing:
+        shape.friction = 0.0
+    return len(rubbing) > 1
+
+
+def sweep_once(space):
+    """Sweep once over contacts and joints."""
+    space.iterations, before = 1, space.iterations
+    return before > 1 and bool(space.constraints or len(space.shapes) > 1)
+
+
+# none for its memory of contacts: with collision_persistence = 0 it forgets a contact before it solves it
+SWITCHES = (
+    Switch("collision detection", let_all_pass),
+    Switch("friction", rub_nothing),
+    Switch("all sweeps but one", sweep_once),
+)

@@ -15,6 +15,7 @@ from ..scene import MUJOCO, Engine, EngineRun
 from . import quiet_import
 
 IMPEDANCE, TIME_CONSTANT = 0.95, 0.02    # of contacts: `solimp`, here the same at every depth, and `solref` [s]
+SWITCHES = ()                            # its contacts, friction and joints are rows of one problem
 SOFT = f"elliptic cone, impedance {IMPEDANCE}, time constant {TIME_CONSTANT} s"
 
 
@@ -45,6 +46,11 @@ def running(model, data, read):
     """Make the EngineRun of a world."""
     step = module().mj_step
     return EngineRun(lambda: step(model, data), read, lambda: None)
+
+
+def empty_world():
+    """Make the EngineRun of a world without bodies."""
+    return running(*world(1e-3, "", integrator="Euler"), lambda: None)
 
 
 def inertial(m, moments, place=(0.0, 0.0, 0.0)):

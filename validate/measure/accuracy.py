@@ -7,7 +7,6 @@ import numpy as np
 
 from solutions.checks import BadInput
 
-from .. import engines
 from ..methods import engine_look
 from ..modules import report_text
 from ..results import Role, Verdict, jsonable
@@ -139,10 +138,10 @@ def engine_curve(selection, case, runner, p, truth):
     """An engine's errors: live where it is installed, recorded where it is not."""
     scene, engine = selection.scene, runner.who
     colour, marker, line = engine_look(engine, [r.who for r in scene.engine_runners])
-    about = {"role": Role.ENGINE, "product": engine.product, "variant": engine.variant, "settings": engine.settings,
-             "colour": colour, "marker": marker, "line": line}
+    about = {"role": Role.ENGINE, "product": engine.product.name, "variant": engine.variant,
+             "settings": engine.settings, "colour": colour, "marker": marker, "line": line}
     if selection.is_live(runner):
-        source = f"live, {engine.product} {engines.installed(engine.product)}"
+        source = f"live, {engine.product} {engine.product.installed()}"
         runs = ((n, run_engine_to_end(scene, engine, p, n)) for n in selection.steps_of(runner, p))
     else:
         record = traces.recorded(selection.name, case, engine)

@@ -3,7 +3,6 @@
 import json
 import platform
 
-from .. import engines
 from ..results import jsonable
 from ..scene import PYBULLET
 from ..store import whole
@@ -30,7 +29,7 @@ def record(name):
              for e in witnesses if scene.moves for n in scene.steps if n <= (e.most_steps or n)]
     timed = interleaved(items, {"engine": LONGEST})
     record = {
-        "stamp": f"pybullet {engines.installed(PYBULLET)}, {platform.system()} {platform.machine()}, "
+        "stamp": f"pybullet {PYBULLET.installed()}, {platform.system()} {platform.machine()}, "
                  f"Python {platform.python_version()}",
         "settings": {e.label: e.settings for e in witnesses},
         "runs": runs,

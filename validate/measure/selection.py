@@ -12,8 +12,9 @@ import numpy as np
 
 from solutions.checks import BadInput
 
-from .. import engines, modules
-from ..scene import OPTIONAL, Scene
+from .. import modules
+from ..products import PYBULLET, PYMUNK
+from ..scene import Scene
 
 REPEATS = 7                  # of a timed run, at most
 NOTEBOOK = 0.02              # how long a timed run in a notebook may take [s]
@@ -24,7 +25,7 @@ class Plan(NamedTuple):
     of: str = "solutions"
     speeds: tuple = ("plain", "compiled")
     quick: bool = True
-    live: tuple = ("pymunk", "pybullet")     # engines that are installed; the others come from their records
+    live: tuple = (PYMUNK, PYBULLET)         # engines that are installed; the others come from their records
     overrides: tuple = ()                    # (name, value) pairs that replace parameters of the first case
     most_steps: int | None = None            # for a notebook: a shorter sweep, of the first case only
     changes: tuple = ()                      # for a notebook: (field, value) pairs that replace fields of the Scene
@@ -127,7 +128,7 @@ def select(name, plan):
 
 def left_out(engine, plan):
     """Whether this engine is optional and not run here: it has no record that could stand in."""
-    return engine.product in OPTIONAL and engine.product not in plan.live
+    return engine.product.optional and engine.product not in plan.live
 
 
 def can_do(runner, p):
@@ -170,7 +171,7 @@ def notes_of(scene, plan, ours):
     if plan.most_steps:
         return omitted
     for product in dict.fromkeys(r.who.product for r in scene.engine_runners if left_out(r.who, plan)):
-        why = "this run asked for others" if engines.installed(product) else f"not installed; {engines.REMEDY}"
+        why = "this run asked for others" if product.installed() else f"not installed; {product.remedy}"
         omitted += (f"The witness {product} is left out: {why}",)
     if not plan.quick:
         return omitted

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..engines.switches import SWITCHES, worlds_made
+from ..engines.switches import worlds_made
 from ..results import jsonable
 from .accuracy import relative, run_engine_to_end
 from .timing import Timed, interleaved, time_engine
@@ -31,13 +31,12 @@ def engine_parts(selection, p):
 def switches_of(engine, p, dt):
     """The switches of what the worlds of this engine have."""
     found = []
-    for switch in SWITCHES:
-        if switch.product == engine.product:
-            with worlds_made() as worlds:
-                run = engine.make(p, dt)
-            if any(switch.off(world) for world in worlds):
-                found.append(switch)
-            run.close()
+    for switch in engine.product.adapter.SWITCHES:
+        with worlds_made() as worlds:
+            run = engine.make(p, dt)
+        if any(switch.off(world) for world in worlds):
+            found.append(switch)
+        run.close()
     return found
 
 
@@ -61,7 +60,7 @@ def with_and_without(scene, engine, switch, p, steps, repeats):
     observed = [run_engine_to_end(scene, one, p, steps).observed for one in (engine, lean_engine)]
     lost = any(values is None for values in observed)
     return jsonable({
-        "engine": engine.label, "product": engine.product, "part": switch.part, "steps": steps,
+        "engine": engine.label, "product": engine.product.name, "part": switch.part, "steps": steps,
         "cost": full["seconds"] / lean["seconds"], "change": None if lost else relative(observed[1], observed[0]),
         "observed": observed, "repeats": (full["repeats"], lean["repeats"]),
     })

@@ -15,11 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .. import engines
-from ..engines.bullet import Bullet
-from ..engines.chipmunk import pymunk_space
 from ..results import jsonable
-from ..scene import PYBULLET, PYMUNK
 from . import traces
 from .accuracy import ASYMPTOTIC, labels_that_agree, relative
 from .selection import REPEATS, select, with_overrides
@@ -221,13 +217,10 @@ def clock(item, inner, steps=None):
 def baseline(live):
     """Cost of one step of an empty world [s], the Python call included, for each engine.  It is measured once."""
     costs = {}
-    if PYMUNK in live:
-        space = pymunk_space()
-        costs[PYMUNK] = empty_step(lambda: space.step(1e-3))
-    if PYBULLET in live and engines.installed(PYBULLET):
-        bullet = Bullet(1e-3)
-        costs[PYBULLET] = empty_step(bullet.step)
-        bullet.close()
+    for product in live:
+        world = product.adapter.empty_world()
+        costs[product.name] = empty_step(world.step)
+        world.close()
     return costs
 
 

@@ -5,7 +5,6 @@ from pathlib import Path
 from solutions.checks import BadInput
 
 from ..results import Role
-from ..scene import PYBULLET
 from ..store import read_whole
 
 RECORDED = Path(__file__).resolve().parent.parent / "recorded"
@@ -23,7 +22,7 @@ def recorded(name, case, engine):
     Raises BadInput without the scene's file.
     """
     record = trace(name) or {"runs": {}}
-    if not record["runs"] and engine.product == PYBULLET:
+    if not record["runs"] and engine.product.recorded:
         raise BadInput(f"file '{RECORDED / name}.json'", "missing or empty",
                        f"restore it, or give where pybullet is installed: validate record --scene {name}")
     runs = record["runs"].get(case, {}).get(engine.label)

@@ -21,7 +21,7 @@ from matplotlib.ticker import LogFormatterSciNotation
 
 from solutions.checks import BadInput
 
-from .. import copies, engines, failing_case, measure, modules, needs
+from .. import copies, failing_case, measure, modules, needs
 from ..loading import lacks, waiting
 from ..measure import film
 from ..report import ARROWS, PLAYER_3D, plots, words
@@ -541,7 +541,7 @@ def measured(name, most_steps=1000, **changes):
     """
     _, own = _scene_and_owner(name)
     plan = measure.Plan(of=str(folder()) if own else "solutions", speeds=("plain",) if own else (),
-                        live=tuple(n for n in PRODUCTS if engines.installed(n)), most_steps=most_steps,
+                        live=tuple(product for product in PRODUCTS if product.installed()), most_steps=most_steps,
                         changes=tuple(changes.items()))
     result = measure.errors(name, plan)
     return {**result, "times": measure.times(name, plan, result)}

@@ -8,6 +8,7 @@ from pathlib import Path
 from jinja2 import Environment, PackageLoader, select_autoescape
 from markupsafe import Markup
 
+from ..products import PRODUCTS
 from ..results import Verdict
 from ..store import whole
 from . import films, plots, tables, words
@@ -72,7 +73,9 @@ def environment():
                          legend=[(v.value, words.KINDS[v], words.LEGEND[v]) for v in Verdict], thumb=thumbnail,
                          arrow_colours=ARROWS, arrow_meanings=words.ARROWS, with_units=words.with_units,
                          csv=tables.address, ablation_rows=tables.ablations,
-                         coverage_rows=tables.coverage, summary_line=words.summary_line)
+                         coverage_rows=tables.coverage, summary_line=words.summary_line,
+                         dimensions={product.name: product.dimensions for product in PRODUCTS},
+                         part_names=words.part_names, part_products=words.part_products)
     return pages
 
 

@@ -10,8 +10,9 @@ from markupsafe import Markup, escape
 
 from ..measure.accuracy import relative
 from ..measure.timing import SAME
+from ..products import PRODUCTS
 from ..results import Verdict, is_right
-from ..scene import EXACT, OPTIONAL, PRODUCTS
+from ..scene import EXACT
 
 KINDS = {Verdict.AGREES: "agrees", Verdict.FOLLOWS_OWN_LAW: "predicted", Verdict.DEPARTS: "departs",
          Verdict.UNDECIDED: "open", Verdict.NOT_ATTEMPTED: "open"}             # classes of the style sheet
@@ -268,7 +269,7 @@ def busy_warning(results, cores):
 def products(results):
     """The engines that a report has columns for: one that is optional only where it ran."""
     ran = {c["product"] for r in results for one in r["cases"].values() for c in one["engines"]}
-    return [name for name in PRODUCTS if name not in OPTIONAL or name in ran]
+    return [product.name for product in PRODUCTS if not product.optional or product.name in ran]
 
 
 def row(result, products):
@@ -306,6 +307,17 @@ def engine_parts(results):
         if found:
             rows.append({"scene": r["scene"], "title": r["title"], "lesson": r["lesson"], "found": found})
     return rows
+
+
+def part_names(parts):
+    """Names of what was switched off anywhere."""
+    return list(dict.fromkeys(name for row in parts for name in row["found"]))
+
+
+def part_products(parts):
+    """Names of the engines of which parts were switched off."""
+    measured = {one["product"] for row in parts for rows in row["found"].values() for one in rows}
+    return [product.name for product in PRODUCTS if product.name in measured]
 
 
 def change_without(row):

@@ -13,7 +13,7 @@ from validate.reference.collisions import anew_steering, depth_of, held_steering
 from validate.reference.schemes import TABLEAUX, step_of
 from validate.stability.case import DOTS, LINE, Picture, Worst, agreement, case, finding, log_slope, refuses, series
 
-from .. import engines
+from ..products import PYBULLET
 
 THROWN = 10_000              # balls, each at its own phase of a step
 FEW = 60                     # balls in an engine
@@ -114,7 +114,7 @@ def tunnelling(lesson):
     speeds = np.array([14.0, 20.0, 30.0, 45.0, 70.0, 100.0])
     drawn = [series("discrete, measured", speeds, [passed_discretely(lesson, v, even[::50]) for v in speeds], DOTS),
              series("continuous, measured", speeds, [passed_continuously(lesson, v, even[::50]) for v in speeds], DOTS)]
-    if engines.installed("pybullet"):
+    if PYBULLET.installed():
         missed = passed_bullet(50.0, few)
         found.append(finding(
             claim="pybullet without continuous detection misses the same share.",

@@ -14,7 +14,7 @@ from validate.engines.contact import KINDS, MU, BulletPile, PymunkPile, fallen
 from validate.reference.contact import enumerated, natural_residual
 from validate.stability.case import DOTS, EDGE, LINE, Picture, Worst, agreement, bisect, case, finding, refuses, series
 
-from .. import engines
+from ..products import PYBULLET
 
 G = 9.81                     # [m/s²]
 THREE_DIGITS = 1e-3          # of what a sweep leaves undone, 1 − ρ [-]
@@ -1060,7 +1060,7 @@ def judge(lesson):
     """
     times, seen, record = pymunk_pile_at_rest(lesson)
     found = converged_impulses(lesson, record, seen[-1]) + impulse_left_out(lesson, record) + disc_of_friction(lesson)
-    if engines.installed("pybullet"):
+    if PYBULLET.installed():
         found += pyramid_of_pybullet()
     return found, Picture("pymunk's impulses, judged", "time [s]", "log₁₀ of the residual over g dt", [
         series("30 discs, 200 iterations", times, np.log10(np.maximum(seen, 1e-16)), DOTS)],

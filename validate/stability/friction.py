@@ -14,7 +14,7 @@ from validate.reference.friction import DrivenBlock, T, slip_limits, slip_positi
 from validate.reference.schemes import TABLEAUX, step_of
 from validate.stability.case import DOTS, EDGE, LINE, Picture, Worst, agreement, bisect, case, finding, refuses, series
 
-from .. import engines
+from ..products import PYBULLET, PYMUNK
 
 G = 9.81                     # [m/s²]
 WAY = 1e-9                   # [m]: far above the round-off of one second, far below any slip beyond the edge by 1e-6
@@ -70,8 +70,8 @@ def engine_moved(make, gravity, mu, dt=1.0 / 240.0):
 
 
 MAKERS = {
-    "pymunk": lambda gravity, mu, dt: pymunk_block(gravity, mu, 0.0, dt, lambda x: x.x),
-    "pybullet": lambda gravity, mu, dt: bullet_block(
+    PYMUNK: lambda gravity, mu, dt: pymunk_block(gravity, mu, 0.0, dt, lambda x: x.x),
+    PYBULLET: lambda gravity, mu, dt: bullet_block(
         (gravity[0], 0.0, gravity[1]), mu, (0.0, 0.0, 0.0), 0.1, dt, lambda x: x[0]
     ),
 }
@@ -112,16 +112,16 @@ def stick_threshold(lesson):
         drawn.append(series(f"{LABEL[step]}, measured", angles, edges, DOTS))
     theta = np.radians(30.0)
     gravity = (G * np.sin(theta), -G * np.cos(theta))
-    for name, make in MAKERS.items():
-        if engines.installed(name):
+    for product, make in MAKERS.items():
+        if product.installed():
             edge = bisect(lambda mu, make=make: abs(engine_moved(make, gravity, mu)) < ENGINE_WAY, 0.3, 1.0)
             found.append(finding(
                 claim="An engine's block holds from μ = tan θ on, to the accuracy of its position.",
-                quantity=f"{name}: least friction that holds at 30° [-]",
+                quantity=f"{product}: least friction that holds at 30° [-]",
                 predicted=np.tan(theta),
                 measured=edge,
                 tolerance=EDGE + 2.0 * ENGINE_WAY / (G * np.cos(theta)),
-                observation=f"By bisection {name} holds a block at 30° from μ = {edge:.5f} on.",
+                observation=f"By bisection {product} holds a block at 30° from μ = {edge:.5f} on.",
             ))
     fine = np.linspace(0.0, 62.0, 125)
     return found, Picture(

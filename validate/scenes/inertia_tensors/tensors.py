@@ -20,9 +20,9 @@ from solutions.inertia_tensors import (
     sphere_inertia,
     world_inertia,
 )
-from validate.engines import installed
 from validate.engines.bullet import Bullet
 from validate.methods import PARTS, TRIANGLES
+from validate.products import PYBULLET as ENGINE
 from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Engine, EngineRun, Scene
 
 T = 1.0
@@ -262,7 +262,7 @@ def sanity_checks():
               ("the same of a dumbbell [-]", too_much(dumbbell, 0), -0.34, 0.005),
               ("and along [-]", too_much(dumbbell, 2), 0.67, 0.005),
               ("centre of an uneven dumbbell, by the lesson [m]", combine(*parts(uneven)).x, centre(uneven), 1e-15))
-    if not installed("pybullet"):
+    if not ENGINE.installed():
         return claims
     bullet = Bullet(1.0)
     body = bullet.pb.createMultiBody(uneven.m, shape_of(bullet.pb, uneven))

@@ -10,11 +10,11 @@ from solutions.rotation import no_torque as acceleration
 from solutions.support.rotation import advance_rotation, check_moments
 from validate import drawing
 from validate.drawing import omega_and_L
-from validate.engines import installed
 from validate.engines.bullet import Rigid
 from validate.engines.mujoco import FREE_WITNESS
 from validate.engines.rotation import FREE_BODY, FREE_ENGINES
 from validate.methods import MATRIX, TURNS
+from validate.products import PYBULLET as ENGINE
 from validate.reference.orientation import quaternion_matrix
 from validate.reference.rotation import FIRST_ORDER, free_limits, freely, symmetric_top
 from validate.reference.turns import free_turns
@@ -98,7 +98,7 @@ def engines_energy(p, dt=1e-3, steps=10000):
 
     ω_⊥² is multiplied by 1 + (Ω dt)² per step, or divided by it; Ω = (I₃/I₁ − 1) ω₃.
     """
-    if not installed("pybullet"):
+    if not ENGINE.installed():
         return
     I, w = p.moments(), p.omega()
     for sign, maximal, kind in ((1, False, "reduced"), (-1, True, "maximal")):

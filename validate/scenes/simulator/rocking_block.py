@@ -159,8 +159,8 @@ RUNNERS = (
            "thirteen other settings find the corner as late",
            order=BY_PHASE, limit=partial(late_limit, overlap=1e-4), predicted=BY_CHANCE),
     engine(PYBULLET, "", pybullet_make, "a box in space on a fixed box; maximal coordinates, 100 iterations, no "
-           "residual threshold, no slop; thirteen other settings find the corner as late, but for substeps, which are smaller "
-           "steps", order=BY_PHASE, limit=partial(late_limit, overlap=1e-3), predicted=BY_CHANCE),
+           "residual threshold, no slop; thirteen other settings find the corner as late, but for substeps, which are "
+           "smaller steps", order=BY_PHASE, limit=partial(late_limit, overlap=1e-3), predicted=BY_CHANCE),
 )
 
 

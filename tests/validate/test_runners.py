@@ -1,0 +1,89 @@
+"""A runner has everything that concerns one curve of a scene; its label is ink."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from solutions.checks import BadInput
+from validate import measure, methods, modules
+from validate.methods import INTEGRATORS, RK4, VERLET
+from validate.scene import Method, Runner, no_limit, ours
+
+PLAIN = measure.Plan(speeds=("plain",), live=(), most_steps=1000)
+METHODS = [m for m in vars(methods).values() if isinstance(m, Method)]
+
+
+def limit(p, dt):
+    return dt
+
+
+def of_ours(result):
+    """The curves of our methods in the first case, without their labels."""
+    first = next(iter(result["cases"].values()))
+    return [{key: value for key, value in curve.items() if key != "label"} for curve in first["ours"]]
+
+
+def test_a_method_has_the_order_of_its_table():
+    assert all(m.order == m.table.order for m in METHODS if hasattr(m.table, "order"))
+    assert all(m.table is not None for m in INTEGRATORS)
+
+
+def test_a_new_label_changes_ink_and_nothing_else():
+    """Runge–Kutta 4 keeps its prediction under every name."""
+    scene = modules.bind_scene("quadratic_drag")
+    renamed = tuple(replace(r, who=r.who._replace(label="RK4")) if r.who is RK4 else r for r in scene.runners)
+    before, after = (measure.errors("quadratic_drag", PLAIN._replace(changes=changes))
+                     for changes in ((), (("runners", renamed),)))
+    assert of_ours(before) == of_ours(after)
+    assert "RK4" in [curve["label"] for curve in after["cases"]["falling"]["ours"]]
+
+
+def test_without_its_prediction_a_curve_is_still_judged_by_its_limit():
+    scene = modules.bind_scene("quadratic_drag")
+    without = tuple(replace(r, predicted="left out here") for r in scene.runners)
+    result = measure.errors("quadratic_drag", PLAIN._replace(changes=(("runners", without),)))
+    for curve in of_ours(result):
+        assert curve["verdict"] == "agrees" and all(row["predicted"] is None for row in curve["rows"])
+
+
+@pytest.mark.parametrize(("field", "value", "says"), [
+    ("predicted", "", "say why no theory does"), ("predicted", None, "predicted"), ("limit", 1.0, "limit"),
+    ("slow_cases", "all", "slow_cases"), ("in_quick", 1, "in_quick")])
+def test_a_runner_without_a_meaning_is_refused(field, value, says):
+    with pytest.raises(BadInput, match=says):
+        ours(VERLET, **{"limit": limit, "predicted": "of no theory", field: value})
+
+
+@pytest.mark.parametrize("misspelt", ["limits", "predict", "suports", "slow_case", "most_in_quik", "finer_in_ful",
+                                      "compiled_in_quik", "departures", "in_quik"])
+def test_a_misspelt_field_is_an_error(misspelt):
+    with pytest.raises(TypeError, match=misspelt):
+        ours(VERLET, limit=limit, predicted="of no theory", **{misspelt: None})
+
+
+def test_a_case_that_the_scene_has_not_is_refused():
+    scene = modules.bind_scene("quadratic_drag")
+    runner = ours(VERLET, limit=limit, predicted="of no theory", slow_cases=("faling",))
+    with pytest.raises(BadInput, match="faling"):
+        replace(scene, runners=(runner,))
+    with pytest.raises(BadInput, match="faling"):
+        replace(scene, slow_cases=("faling",))
+
+
+def test_a_limit_may_be_one_number_or_one_for_each_order():
+    by_order = {1: 1.0, 2: 0.25}
+    one, each = (ours(VERLET, limit=f, predicted="of no theory") for f in (limit, lambda p, dt: by_order))
+    assert one.largest_error(None, 0.5) == 0.5 and each.largest_error(None, 0.5) == 0.25
+
+
+@pytest.mark.parametrize("name", modules.scene_names())
+def test_every_curve_has_a_prediction_or_a_reason_why_not(name):
+    for runner in modules.bind_scene(name).runners:
+        assert isinstance(runner, Runner)
+        assert callable(runner.predicted) or len(runner.predicted.split()) >= 4, runner.label
+
+
+def test_the_largest_error_of_a_curve_that_no_theory_judges_is_infinite():
+    unjudged = [r for r in modules.bind_scene("dominoes").runners if r.limit is no_limit]
+    assert unjudged and all(r.largest_error(None, 0.1) == np.inf and not callable(r.predicted) for r in unjudged)

@@ -1,0 +1,52 @@
+"""The physics engines: one record each.  A new engine is one record here and one adapter in `validate/engines/`."""
+
+import importlib
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
+
+from solutions.checks import BadInput
+
+
+@dataclass(frozen=True)
+class Product:
+    """An engine."""
+    name: str                # of its Python module, in commands and in stored results
+    dimensions: int
+    file: str                # its adapter in validate/engines, which has empty_world() → EngineRun, and SWITCHES
+    colour: str
+    marker: str
+    distribution: str        # what pip installs
+    remedy: str              # what to do where it is not installed, for people
+    recorded: bool = False   # its record stands in where it is not installed
+    optional: bool = False   # it is left out where it is not installed
+
+    def __str__(self):
+        return self.name
+
+    @property
+    def adapter(self):
+        """Its module in validate/engines."""
+        return importlib.import_module(f"validate.engines.{self.file}")
+
+    def installed(self):
+        """Return its version, or None."""
+        try:
+            return version(self.distribution)
+        except PackageNotFoundError:
+            return None
+
+
+PYMUNK = Product("pymunk", 2, "chipmunk", "#000000", "x", "pymunk", "pip install pymunk")
+PYBULLET = Product("pybullet", 3, "bullet", "#5A5A5A", "+", "pybullet",
+                   "leave --engine out: its recorded traces stand in", recorded=True)
+MUJOCO = Product("mujoco", 3, "mujoco", "#8C0D26", "1", "mujoco-core", "pip install -e '.[witness]' adds it",
+                 optional=True)
+PRODUCTS = (PYMUNK, PYBULLET, MUJOCO)
+
+
+def product_named(name):
+    """Return the engine of that name.  Raises BadInput for an unknown one."""
+    for product in PRODUCTS:
+        if product.name == name:
+            return product
+    raise BadInput(f"engine {name!r}", "unknown", f"choose from: {', '.join(map(str, PRODUCTS))}")
