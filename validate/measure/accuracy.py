@@ -149,12 +149,18 @@ def engine_curve(selection, case, runner, p, truth):
             message = f"{engine.product} is not installed here and this case was never recorded"
             nothing = {"label": engine.label, "rows": [], "order": None, "expected": runner.order,
                        "verdict": Verdict.UNDECIDED}
-            return {**about, **nothing, "source": "missing", "message": message, "departure_reason": ""}
+            return {**about, **nothing, "source": "missing", "message": message, "departure_reason": "",
+                    "unpredicted": reason(runner)}
         source = record["source"]
         runs = [(r["steps"], Outcome(np.array(r["observed"]) if r["observed"] else None, r["failure"]))
                 for r in record["runs"]]
     found = judged(scene, runner, p, truth, runs, selection.plan.enough())
     return {**about, **found, "source": source}
+
+
+def reason(runner):
+    """Why no theory predicts the error of a runner; empty where one does."""
+    return "" if callable(runner.predicted) else runner.predicted
 
 
 def bound(runner, p, dt, law):
@@ -192,7 +198,7 @@ def judged(scene, runner, p, truth, runs, enough):
     order_shown = shown_order(off, 10.0 * scene.truth_uncertainty)
     verdict, message = verdict_on(off, law, outcome, order, order_shown)
     found = {"label": runner.label, "rows": rows, "order": order_shown, "expected": order, "verdict": verdict,
-             "message": message, "departure_reason": ""}
+             "message": message, "departure_reason": "", "unpredicted": reason(runner)}
     if departure is None:
         return found
     return {**found, "verdict": Verdict.FOLLOWS_OWN_LAW if verdict is Verdict.AGREES else verdict,

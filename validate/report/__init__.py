@@ -75,7 +75,7 @@ def environment():
                          csv=tables.address, ablation_rows=tables.ablations,
                          coverage_rows=tables.coverage, summary_line=words.summary_line,
                          dimensions={product.name: product.dimensions for product in PRODUCTS},
-                         part_names=words.part_names, part_products=words.part_products)
+                         unpredicted=words.unpredicted, part_names=words.part_names, part_products=words.part_products)
     return pages
 
 

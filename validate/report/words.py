@@ -309,6 +309,16 @@ def engine_parts(results):
     return rows
 
 
+def unpredicted(result):
+    """{reason: labels} of the curves of a scene whose error no theory predicts."""
+    found = {}
+    for case in result["cases"].values():
+        for curve in case["ours"] + case["engines"]:
+            if curve["unpredicted"]:
+                found.setdefault(curve["unpredicted"], {})[curve["label"]] = None
+    return {reason: list(labels) for reason, labels in found.items()}
+
+
 def part_names(parts):
     """Names of what was switched off anywhere."""
     return list(dict.fromkeys(name for row in parts for name in row["found"]))
