@@ -10,7 +10,7 @@ import pytest
 from solutions.checks import BadInput
 from validate.stability import integrators
 from validate.stability.case import EDGE, Worst, bisect, finding
-from validate.stability.examine import all_cases, examine, subject_of
+from validate.stability.examine import all_cases, examine, found_by, subject_of
 
 examined = cache(examine)
 CASES = {f"{case.lesson}/{case.slug}": case for case in all_cases()}
@@ -84,7 +84,7 @@ def test_a_wrong_method_does_not_find_the_bound(name, method, wrong):
     lesson = subject_of(CASES[name])
     subject = types.SimpleNamespace(**{**vars(lesson), method: getattr(lesson, wrong)})
     with np.errstate(all="ignore"):
-        found, _ = CASES[name].examine(subject)
+        found, _ = found_by(CASES[name], subject)
     assert not all(f.holds for f in found)
 
 
@@ -106,7 +106,7 @@ def without_tolerance(I):
 def test_a_wrong_tensor_does_not_find_the_bound(slug, method, function):
     case = CASES[f"inertia_tensors/{slug}"]
     subject = types.SimpleNamespace(**{**vars(subject_of(case)), method: function})
-    assert not all(f.holds for f in case.examine(subject)[0])
+    assert not all(f.holds for f in found_by(case, subject)[0])
 
 
 FORMULAS = {
@@ -160,13 +160,14 @@ def test_a_formula_that_is_a_thousandth_off_is_seen(name, function, factor):
     lesson = subject_of(CASES[name])
     right = getattr(lesson, function)
     wrong = lambda *arguments: scaled(right(*arguments), factor)
-    assert not all(f.holds for f in CASES[name].examine(types.SimpleNamespace(**{**vars(lesson), function: wrong}))[0])
+    subject = types.SimpleNamespace(**{**vars(lesson), function: wrong})
+    assert not all(f.holds for f in found_by(CASES[name], subject)[0])
 
 
 def test_an_edge_that_is_a_hundredth_off_is_seen_on_the_map_of_amplification(monkeypatch):
     case, edge = CASES["integrators/amplification"], integrators.EDGES["euler_step"]
     monkeypatch.setitem(integrators.EDGES, "euler_step", lambda zeta: 1.01 * edge(zeta))
-    found, picture = case.examine(subject_of(case))
+    found, picture = found_by(case, subject_of(case))
     assert [f.holds for f in found] == [False] + 5 * [True]
     assert all(np.shape(one["values"]) == (len(one["ys"]), len(one["xs"])) >= (100, 100) for one in picture.maps)
 

@@ -29,6 +29,27 @@ class Finding(NamedTuple):
         return bool(abs(self.measured - self.predicted) <= self.tolerance)
 
 
+class Checks(list):
+    """The findings of one case, as it makes them."""
+
+    def __call__(self, claim, quantity, *, law, found, within, saw):
+        """Add a Finding: theory says `law`, the experiment found `found`, and they may differ by `within`.
+
+        claim, quantity   as in Finding
+        saw               the result of the experiment, in one sentence
+        """
+        self.append(Finding(claim, quantity, float(law), float(found), float(within), saw))
+
+    def agree(self, claim, quantity, error, within):
+        """Add a Finding that a function errs by no more than `within`: error is the largest of many random cases."""
+        self(claim, quantity, law=0.0, found=error, within=within, saw=f"The largest error is {error:.1e}.")
+
+    def count(self, claim, quantity, results, saw):
+        """Add a Finding that all results are true.  saw has {n} and {all} for the numbers that are, and of all."""
+        n, every = sum(map(bool, results)), len(results)
+        self(claim, quantity, law=every, found=n, within=0.0, saw=saw.format(n=n, all=every))
+
+
 class Picture(NamedTuple):
     """Curves to draw: series = [(label, xs, ys, style)], style LINE or DOTS; or maps in their place."""
     title: str
@@ -45,7 +66,7 @@ class Case(NamedTuple):
     slug: str                # its part of the address
     title: str
     lesson: str
-    examine: Callable        # (lesson) → (findings, Picture)
+    examine: Callable        # (lesson, check: Checks) → Picture; or (lesson) → (findings, Picture)
     compiled: bool           # False for short runs and for runs with an acceleration of their own
 
 
@@ -62,7 +83,10 @@ CASES = {}                   # {lesson: {slug: Case}} of the files imported so f
 
 
 def case(slug, title, compiled=True):
-    """Register a function (lesson) → (findings, Picture) as a case of the lesson that its file is named after."""
+    """Register a function as a case of the lesson that its file is named after.
+
+    It is (lesson, check) → Picture or None, where check is the Checks that it fills; or (lesson) → (findings, Picture).
+    """
     def register(examine):
         lesson = examine.__module__.rpartition(".")[2]
         CASES.setdefault(lesson, {})[slug] = Case(slug, title, lesson, examine, compiled)

@@ -54,65 +54,52 @@ def sweeps_until(errors, small):
 # ---------------------------------------------------------------------------------------------- contraction
 
 @case("contraction-of-a-stack", "Why ten boxes need hundreds of sweeps", compiled=False)
-def contraction_of_a_stack(lesson):
+def contraction_of_a_stack(lesson, check):
     """On n equal bodies, one on the other, a sweep leaves cos²(π/2n) of the error: sin²(π/2n) is done.
 
     The eigenvalues of a sweep are cos²((2j − 1)π/2n).  The second one dies out by (cos²(3π/2n)/cos²(π/2n))ᵏ, of which
     1e-4 is left in the end; what it does to 1 − ρ is 8 times its share of the first error, which is below a ninth.
     """
-    found, sizes, done = [], (2, 3, 5, 10, 20, 50, 100), []
+    sizes, done = (2, 3, 5, 10, 20, 50, 100), []
     for n in sizes:
         second = np.cos(1.5 * np.pi / n) ** 2 / np.cos(0.5 * np.pi / n) ** 2 if n > 3 else 0.0
         sweeps = 20 if n <= 3 else int(np.ceil(np.log(1e-4) / np.log(second)))
         errors = errors_of(lesson, np.ones(n), 1.0, sweeps)
         done.append(1.0 - errors[-1] / errors[-2])
         law = np.sin(0.5 * np.pi / n) ** 2
-        found.append(finding(
-            claim="A sweep over n equal bodies on each other removes sin²(π/2n) of the error.",
-            quantity=f"part of the error that a sweep removes, n = {n} [-]",
-            predicted=law,
-            measured=done[-1],
-            tolerance=THREE_DIGITS * law,
-            observation=f"With n = {n} a sweep leaves {1.0 - done[-1]:.5f} of the error.",
-        ))
+        check("A sweep over n equal bodies on each other removes sin²(π/2n) of the error.",
+              f"part of the error that a sweep removes, n = {n} [-]",
+              law=law, found=done[-1], within=THREE_DIGITS * law,
+              saw=f"With n = {n} a sweep leaves {1.0 - done[-1]:.5f} of the error.")
     enough = sweeps_until(errors_of(lesson, np.ones(10), 1.0, 320), 1e-3)
     theory = np.log(1e-3) / np.log(np.cos(np.pi / 20.0) ** 2)
-    found.append(finding(
-        claim="Ten boxes need ln 10⁻³/ln ρ sweeps to a thousandth; the slow part is nearly all of the first error.",
-        quantity="sweeps until the forces are right to 10⁻³, ten boxes [-]",
-        predicted=theory,
-        measured=enough,
-        tolerance=0.05 * theory,
-        observation=f"Ten boxes need {enough:.0f} sweeps: with 25 of them they do not stand.",
-    ))
+    check("Ten boxes need ln 10⁻³/ln ρ sweeps to a thousandth; the slow part is nearly all of the first error.",
+          "sweeps until the forces are right to 10⁻³, ten boxes [-]", law=theory, found=enough, within=0.05 * theory,
+          saw=f"Ten boxes need {enough:.0f} sweeps: with 25 of them they do not stand.")
     fine = np.logspace(np.log10(2.0), 2.0, 60)
-    return found, Picture("What a sweep does", "log₁₀ of the number of bodies", "log₁₀ of the part removed", [
+    return Picture("What a sweep does", "log₁₀ of the number of bodies", "log₁₀ of the part removed", [
         series("theory, sin²(π/2n)", np.log10(fine), 2.0 * np.log10(np.sin(0.5 * np.pi / fine)), LINE),
         series("measured", np.log10(sizes), np.log10(done), DOTS)],
         "Twice as many boxes need four times as many sweeps: each sweep passes a force on to neighbours.")
 
 
 @case("contraction-of-a-mass-ratio", "Why the heavy one sinks", compiled=False)
-def contraction_of_a_mass_ratio(lesson):
+def contraction_of_a_mass_ratio(lesson, check):
     """A body r times as heavy as the one under it: a sweep leaves r/(1 + r) of the error.
 
     For two contacts the error after the first sweep lies along one direction, so that the ratio is exact from then on.
     What is removed, 1/(1 + r), is a small difference of errors, each rounded by 1.1e-16.
     """
-    found, ratios, done = [], (0.1, 1.0, 10.0, 100.0, 1000.0, 1e4), []
+    ratios, done = (0.1, 1.0, 10.0, 100.0, 1000.0, 1e4), []
     for r in ratios:
         errors = errors_of(lesson, (1.0, r), 1.0, 4)
         done.append(1.0 - errors[-1] / errors[-2])
-        found.append(finding(
-            claim="A sweep removes 1/(1 + r) of the error of a body r times as heavy as what carries it.",
-            quantity=f"part of the error that a sweep removes, r = {r:g} [-]",
-            predicted=1.0 / (1.0 + r),
-            measured=done[-1],
-            tolerance=THREE_DIGITS / (1.0 + r),
-            observation=f"A mass ratio of {r:g} leaves {1.0 - done[-1]:.5f} of the error after a sweep.",
-        ))
+        check("A sweep removes 1/(1 + r) of the error of a body r times as heavy as what carries it.",
+              f"part of the error that a sweep removes, r = {r:g} [-]",
+              law=1.0 / (1.0 + r), found=done[-1], within=THREE_DIGITS / (1.0 + r),
+              saw=f"A mass ratio of {r:g} leaves {1.0 - done[-1]:.5f} of the error after a sweep.")
     fine = np.linspace(-1.0, 4.0, 51)
-    return found, Picture("Heavy on light", "log₁₀ of the mass ratio", "log₁₀ of the part of the error removed", [
+    return Picture("Heavy on light", "log₁₀ of the mass ratio", "log₁₀ of the part of the error removed", [
         series("theory, 1/(1 + r)", fine, -np.log10(1.0 + 10.0**fine), LINE),
         series("measured", np.log10(ratios), np.log10(done), DOTS)],
         "A thousand times the mass needs a thousand times the sweeps; light on heavy is no trouble.")

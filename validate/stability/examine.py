@@ -1,13 +1,14 @@
 """Run stability cases with the lessons of a subject."""
 
 from importlib import import_module
+from inspect import signature
 from pathlib import Path
 
 import numpy as np
 
 from .. import modules
 from ..results import jsonable
-from .case import CASES, Examined, finding
+from .case import CASES, Checks, Examined, finding
 
 
 def cases_of(lesson):
@@ -30,7 +31,16 @@ def subject_of(case, of="solutions", compiled=True):
 def examine(case, of="solutions", compiled=True):
     """The findings and the picture of one case."""
     with np.errstate(all="ignore"):              # overflow is what an unstable run does
-        return Examined(case.slug, case.title, case.lesson, *case.examine(subject_of(case, of, compiled)))
+        return Examined(case.slug, case.title, case.lesson, *found_by(case, subject_of(case, of, compiled)))
+
+
+def found_by(case, lesson):
+    """(findings, Picture) of a case with a lesson."""
+    if len(signature(case.examine).parameters) == 1:
+        return case.examine(lesson)
+    check = Checks()
+    picture = case.examine(lesson, check)
+    return check, picture
 
 
 def stability_cases(lesson, plan):
