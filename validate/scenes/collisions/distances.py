@@ -260,7 +260,6 @@ def truth(p, t):
     return np.array([distance - r_a - r_b, *n, *(() if p.pair in AXIS_ONLY else y + r_b * n)])
 
 
-
 def round_off(p, dt):
     """A few hundred operations on numbers below 3, and normals known to round-off over a distance of 0.1: 1e-12.
 
