@@ -73,7 +73,8 @@ def test_the_unrest_of_pymunks_towers_is_that_of_the_reference():
         assert unrest_in_pymunk((1.0,) * n, 1.0, 9.81, how) == pytest.approx(known, rel=0.5, abs=1e-14)
     for r, known in mass_ratio.UNREST.items():
         p = mass_ratio.Params(r=r)
-        how = Towers(stack.DT, *mass_ratio.PYMUNK_SETTINGS, stack.OVERLAP, mass_ratio.tower(p).joint_frictions(), 3.0)
+        joints = mass_ratio.tower(p).joint_frictions()
+        how = Towers(stack.DT, **mass_ratio.FINE, overlap=stack.OVERLAP, frictions=joints, seconds=3.0)
         assert unrest_in_pymunk(tuple(mass_ratio.masses(p)), 1.0, 9.81, how) == pytest.approx(known, abs=1e-12)
 
 

@@ -1,5 +1,7 @@
 """Moving points, swept balls and pairs of boxes in pybullet, and what the scenes of moving points share."""
 
+from functools import partial
+
 import numpy as np
 
 from solutions.checks import check_positive
@@ -7,8 +9,8 @@ from solutions.collisions import Plane
 from solutions.support.collisions import Target
 from validate.engines.bullet import Bullet
 from validate.methods import CONTINUOUS, DISCRETE
-from validate.reference.collisions import COPIES
-from validate.scene import EXACT, PYBULLET, Engine, EngineRun
+from validate.reference.collisions import COPIES, ONLY_ROUND_OFF
+from validate.scene import EXACT, PYBULLET, EngineRun, engine, ours
 
 PLACE_APART = 1.0            # metre between two copies along the x axis
 
@@ -43,16 +45,6 @@ def observe_balls(state, p):
     return across(state[0][:COPIES])
 
 
-# the fields that the scenes of balls at an obstacle share
-BALLS = {
-    "lesson": "collisions",
-    "methods": (CONTINUOUS, DISCRETE),
-    "orders": {"continuous_step": EXACT},
-    "observe": observe_balls,
-    "truth_uncertainty": 1e-13,              # of brentq, times the 7,000 m that the fastest balls have travelled
-}
-
-
 def target(bullet, p, grown=0.0):
     """Make the static obstacle of a scene: the plane z = 0, or the cylinder about x, its radius larger by `grown`."""
     pb = bullet.pb
@@ -61,19 +53,18 @@ def target(bullet, p, grown=0.0):
     else:
         shape = pb.createCollisionShape(pb.GEOM_CYLINDER, radius=p.R + grown, height=100.0)
         turn = [0.0, np.sqrt(0.5), 0.0, np.sqrt(0.5)]
-    body = pb.createMultiBody(
-        0.0, shape, basePosition=[0.0, 0.0, grown if p.R == 0.0 else 0.0], baseOrientation=turn, useMaximalCoordinates=1
-    )
+    place = [0.0, 0.0, grown if p.R == 0.0 else 0.0]
+    body = pb.createMultiBody(0.0, shape, basePosition=place, baseOrientation=turn, useMaximalCoordinates=1)
     pb.changeDynamics(body, -1, lateralFriction=0, restitution=0)
     return body
 
 
-def bullet_rays(p, x, v, dt):
+def bullet_rays(p, dt, place):
     """Make an EngineRun of points that move by one ray per step, at an obstacle grown by the radius of the ball.
 
     A point stops where its ray ends.
     """
-    bullet = Bullet(dt)
+    bullet, (x, v) = Bullet(dt), place(p)
     target(bullet, p, p.r)
     at, velocity = np.array(x), np.array(v)
 
@@ -88,14 +79,14 @@ def bullet_rays(p, x, v, dt):
     return EngineRun(step, lambda: across(at), bullet.close)
 
 
-def bullet_swept(p, x, v, dt):
+def bullet_swept(p, dt, place):
     """Make an EngineRun of balls in maximal coordinates with continuous detection.
 
     Each ball is read at the end of the step that detected its impact.  Its velocity changes only in the step after
     that.  A ball that moved less than v dt with its old velocity was stopped by the sweep.  A ball whose velocity
     has changed was found in contact at its previous position.
     """
-    bullet = Bullet(dt)
+    bullet, (x, v) = Bullet(dt), place(p)
     pb = bullet.pb
     pb.setPhysicsEngineParameter(contactERP=0, contactSlop=0, restitutionVelocityThreshold=0)
     target(bullet, p)
@@ -103,16 +94,8 @@ def bullet_swept(p, x, v, dt):
     at, speed, bodies, done = np.array(x), np.linalg.norm(v[0]), [], [False] * len(x)
     for k in range(len(x)):
         body = pb.createMultiBody(1.0, shape, basePosition=x[k].tolist(), useMaximalCoordinates=1)
-        pb.changeDynamics(
-            body,
-            -1,
-            linearDamping=0,
-            angularDamping=0,
-            lateralFriction=0,
-            restitution=0,
-            contactProcessingThreshold=0,
-            ccdSweptSphereRadius=SWEPT * p.r,
-        )
+        pb.changeDynamics(body, -1, linearDamping=0, angularDamping=0, lateralFriction=0, restitution=0,
+                          contactProcessingThreshold=0, ccdSweptSphereRadius=SWEPT * p.r)
         pb.resetBaseVelocity(body, v[k].tolist())
         bodies.append(body)
 
@@ -129,23 +112,27 @@ def bullet_swept(p, x, v, dt):
     return EngineRun(step, lambda: across(at), bullet.close)
 
 
-def ray_and_sweep(place, order, obstacle):
-    """Return pybullet's two ways to stop the balls (x, v) = place(p) at an obstacle: by rays, of this order; swept."""
-    rays = lambda p, dt: bullet_rays(p, *place(p), dt)
-    swept = lambda p, dt: bullet_swept(p, *place(p), dt)
+def ball_runners(place, fastest, limits, late, obstacle, rays, swept):
+    """Return the runners of a scene of balls that stop at an obstacle: our methods, and pybullet's two ways.
+
+    place(p) → (x, v), each (n, 3)       fastest [m/s] with which the discrete test can deal
+    limits, late    of our methods: limits, and the field `predicted` of the discrete test
+    obstacle        of the rays, in words
+    rays, swept     {field: its value} of the Runner of each way of pybullet
+    """
+    def slow_enough(p):
+        return p.speed <= fastest
+
+    def some_speeds(p):
+        return p.speed in ENGINE_SPEEDS
     return (
-        Engine(PYBULLET, "rays", rays, order, f"one rayTestBatch per step, at a {obstacle}", most_steps=100),
-        Engine(PYBULLET, "swept", swept, 0, SWEPT_SETTINGS, most_steps=200),
+        ours(CONTINUOUS, limit=limits, predicted=ONLY_ROUND_OFF, order=EXACT),
+        ours(DISCRETE, limit=limits, predicted=late, supports=slow_enough),
+        engine(PYBULLET, "rays", partial(bullet_rays, place=place), f"one rayTestBatch per step, at a {obstacle}",
+               supports=some_speeds, most_steps=100, **rays),
+        engine(PYBULLET, "swept", partial(bullet_swept, place=place), SWEPT_SETTINGS,
+               supports=some_speeds, most_steps=200, **swept),
     )
-
-
-def discrete_up_to(fastest):
-    """Return supports(name, p): the discrete test up to a speed [m/s]; engines only at the ENGINE_SPEEDS."""
-    def supports(name, p):
-        if name == "discrete_step":
-            return p.speed <= fastest
-        return p.speed in ENGINE_SPEEDS or not name.startswith("pybullet")
-    return supports
 
 
 def swept_radius(p, dt):

@@ -16,6 +16,8 @@ from scipy.optimize import brentq
 
 from ..scene import ROUND_OFF
 
+# why no theory predicts the error of a method that finds the time of an impact within a step
+ONLY_ROUND_OFF = "exact: only round-off is left, and the limit bounds it"
 COPIES = 16
 APART = 10.0                 # distance between copies in an engine's world [m]: they never touch
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
@@ -118,10 +120,14 @@ PYMUNK_SLOP = 1e-5           # overlap that pymunk leaves [m]
 PYMUNK_BIAS = float(np.float32(0.9)) ** 60     # share of the rest that is left after a second; 0.9 has 32 bits [-]
 
 
-class Dropping(NamedTuple):
-    """What a method or an engine does with a ball above a floor, per step."""
+class ImpactRule(NamedTuple):
+    """What a method or an engine does about impacts.  Its step adds a push to the position of the next one."""
     ahead: float             # 1: positions take the new velocity, −1: the old one
-    step: Callable           # (y, v, push, g, e, dt) → (y, v, push, whether it hit); push [m] is added to the position
+    step: Callable           # of a ball above a floor, (y, v, push, g, e, dt) → (y, v, push [m], whether it hit)
+    at_end: bool             # it bounces at the end of the step that finds an overlap; False: at the start of the next
+    share: Callable          # (dt) → share of an overlap of two discs that it takes back per step [-]
+    slop: float = 0.0        # overlap that it leaves [m]
+    later: bool = False      # it takes an overlap back during the next step; False: at once
 
 
 def set_on_floor(y, v, push, g, e, dt):
@@ -149,8 +155,9 @@ def fall_then_hit(y, v, push, g, e, dt):
     return y, new, push, hits
 
 
-DROPPING = {"projecting": Dropping(1.0, set_on_floor), "pybullet": Dropping(1.0, hit_then_fall),
-            "pymunk": Dropping(-1.0, fall_then_hit)}
+PROJECTING_RULE = ImpactRule(1.0, set_on_floor, True, lambda dt: 1.0)
+BULLET_RULE = ImpactRule(1.0, hit_then_fall, False, lambda dt: 0.0)
+CHIPMUNK_RULE = ImpactRule(-1.0, fall_then_hit, True, lambda dt: 1.0 - PYMUNK_BIAS**dt, PYMUNK_SLOP, True)
 
 
 def flying_steps(y, v, g, dt, ahead):
@@ -174,12 +181,12 @@ def flying_steps(y, v, g, dt, ahead):
     return [(int(steps), 0.0)]
 
 
-def dropped(label, y, v, g, e, dt, steps):
+def dropped(rule, y, v, g, e, dt, steps):
     """Return [(y, v, number of the step whose end found the first impact)] of one ball, for each close call both ways.
 
     In the air many steps are one parabola, so that this takes a time per impact and not per step.
     """
-    rule, open_runs, ends = DROPPING[label], [(y, v, 0.0, 0, np.inf)], []
+    open_runs, ends = [(y, v, 0.0, 0, np.inf)], []
     while open_runs:
         y, v, push, n, first = open_runs.pop()
         if y >= 0.0 and push == 0.0:
@@ -196,17 +203,17 @@ def dropped(label, y, v, g, e, dt, steps):
                 continue
             height = max(height, 0.0) - lower if k else height - lower
             now, speed, push_now, hits = rule.step(height, v - k * g * dt, push, g, e, dt)
-            found = n + k + (label != "pybullet")
+            found = n + k + rule.at_end
             open_runs.append((now, speed, push_now, n + k + 1, min(first, found) if hits else first))
     return ends
 
 
-def all_dropped(label, y, v, g, e, dt, steps):
+def all_dropped(rule, y, v, g, e, dt, steps):
     """Return (runs (n, 3) of n balls as `dropped`, by how much they may be off (n, 3)); None for too many ways.
 
     Where a close call leads to several ends, it is the middle of them.
     """
-    runs = [dropped(label, *ball, g, e, dt, steps) for ball in zip(y, v)]
+    runs = [dropped(rule, *ball, g, e, dt, steps) for ball in zip(y, v)]
     if None in runs:
         return None
     low, high = np.array([np.min(run, axis=0) for run in runs]), np.array([np.max(run, axis=0) for run in runs])
@@ -222,7 +229,7 @@ def pushed(y, v, g, stiffness, damping, dt, steps):
     return y, v
 
 
-def struck(label, a, b, v, reach, m_a, m_b, e, dt, steps):
+def struck(rule, a, b, v, reach, m_a, m_b, e, dt, steps):
     """Return the end of two discs at a and b, all complex, of which b rests and a flies with v: (a, v_a, b, v_b).
 
     They overlap first at the end of a step, and turn along the line of centres at that moment.  The lesson's step moves
@@ -242,17 +249,17 @@ def struck(label, a, b, v, reach, m_a, m_b, e, dt, steps):
     normal = (a - b) / abs(a - b)
     closing = min((v * normal.conjugate()).real, 0.0)
     v_a, v_b = v - (1.0 + e) * share_a * closing * normal, (1.0 + e) * share_b * closing * normal
-    while n < steps and label != "pybullet":
-        overlap = reach - abs(a - b) - (PYMUNK_SLOP if label == "pymunk" else 0.0)
+    share, wait = rule.share(dt), dt if rule.later else 0.0
+    while n < steps and share:
+        overlap = reach - abs(a - b) - rule.slop
         if overlap <= 0.0:
             break
-        part = (1.0 - PYMUNK_BIAS**dt if label == "pymunk" else 1.0) * overlap * (a - b) / abs(a - b)
-        wait = dt if label == "pymunk" else 0.0
-        a, b, n = a + share_a * part + wait * v_a, b - share_b * part + wait * v_b, n + (label == "pymunk")
+        part = share * overlap * (a - b) / abs(a - b)
+        a, b, n = a + share_a * part + wait * v_a, b - share_b * part + wait * v_b, n + rule.later
     return a + v_a * dt * (steps - n), v_a, b + v_b * dt * (steps - n), v_b
 
 
-def passed_on(label, x, v, reach, dt, steps):
+def passed_on(rule, x, v, reach, dt, steps):
     """Return [(x, v)] of equal balls in a row, x (n,), of which the first flies with v, for each close call both ways.
 
     Each impact passes v on at the end of the first step that ends with an overlap.  The lesson's step shares the
@@ -275,11 +282,9 @@ def passed_on(label, x, v, reach, dt, steps):
             if not hits:
                 ends.append((np.array(new), v * (np.arange(len(x)) == flies)))
                 continue
-            overlap = max(reach - (new[flies + 1] - new[flies]), 0.0)
-            if label == "pymunk":
-                overlap = (1.0 - PYMUNK_BIAS**dt) * max(overlap - PYMUNK_SLOP, 0.0) if n + k < steps else 0.0
-            share = 0.0 if label == "pybullet" else 0.5 * overlap
-            new[flies], new[flies + 1] = new[flies] - share, new[flies + 1] + share
+            overlap = max(reach - (new[flies + 1] - new[flies]) - rule.slop, 0.0)
+            back = 0.0 if rule.later and n + k == steps else 0.5 * (rule.share(dt) * overlap)
+            new[flies], new[flies + 1] = new[flies] - back, new[flies + 1] + back
             open_runs.append((tuple(new), flies + 1, n + k))
     return ends
 

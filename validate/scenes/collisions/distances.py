@@ -22,12 +22,11 @@ from solutions.support.collisions import (
 )
 from validate.engines.bullet import Bullet
 from validate.methods import AXES, CONTINUOUS, GJK, NARROW
-from validate.reference.collisions import depth_of, first_root, hull_nearest
-from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Engine, EngineRun, Scene
+from validate.reference.collisions import ONLY_ROUND_OFF, depth_of, first_root, hull_nearest
+from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, EngineRun, Scene, engine, ours
 
 T = 1.0
 STEPS = (1,)
-METHODS = (NARROW, GJK, AXES, CONTINUOUS)
 
 
 class Params(NamedTuple):
@@ -36,30 +35,12 @@ class Params(NamedTuple):
     R: Annotated[float, "of the second [m]"] = 0.4
 
 
-CASES = {
-    name: Params(name)
-    for name in (
-        "ball, ball",
-        "ball, plane",
-        "ball, capsule",
-        "capsule, capsule",
-        "ball, triangle",
-        "ball, box",
-        "ball in a box",
-        "box, box (corner)",
-        "box, box (edges)",
-        "axis of a corner",
-        "axis of two edges",
-        "box in a box",
-        "box on a box",
-        "box, plane",
-        "triangle, box",
-        "disc, polygon (2D)",
-        "polygon, polygon (2D)",
-        "rectangles (2D)",
-        "flying disc (2D)",
-    )
-}
+CASES = {name: Params(name) for name in (
+    "ball, ball", "ball, plane", "ball, capsule", "capsule, capsule", "ball, triangle", "ball, box", "ball in a box",
+    "box, box (corner)", "box, box (edges)", "axis of a corner", "axis of two edges", "box in a box", "box on a box",
+    "box, plane", "triangle, box",
+    "disc, polygon (2D)", "polygon, polygon (2D)", "rectangles (2D)", "flying disc (2D)",
+)}
 GRID = 10216                 # of pybullet: spacings of the grid for the points of a hull, along each axis
 MARGIN = 0.001               # of pybullet: the radius that rounds boxes, and surrounds hulls of points [m]
 
@@ -126,7 +107,6 @@ SHAPES = {
     ),
     "flying disc (2D)": (("ball", [(-3.0, 0.35), (1.0, 0.05)]), ("ball", [(0.0, 0.0)])),
 }
-
 
 SHAPES |= {"axis of a corner": SHAPES["box, box (corner)"], "axis of two edges": SHAPES["box, box (edges)"]}
 # These give gap and normal only: a separating axis has no nearest points.
@@ -236,52 +216,6 @@ def observe(state, p):
     return np.array(state[0], dtype=float)
 
 
-def supports(name, p):
-    return p.pair in DOES[name]
-
-
-APART = (
-    "ball, ball",
-    "ball, capsule",
-    "capsule, capsule",
-    "ball, triangle",
-    "ball, box",
-    "box, box (corner)",
-    "box, box (edges)",
-    "triangle, box",
-    "disc, polygon (2D)",
-    "polygon, polygon (2D)",
-)
-# {method or engine: the pairs that it supports}
-DOES = {
-    "ball_contact": (
-        "ball, ball",
-        "ball, plane",
-        "ball, capsule",
-        "capsule, capsule",
-        "ball, triangle",
-        "ball, box",
-        "ball in a box",
-        "box, plane",
-    ),
-    "gjk": APART,
-    "box_separation": (*AXIS_ONLY, *MANY),
-    "continuous_step": ("flying disc (2D)",),
-    "pybullet": (
-        "ball, ball",
-        "ball, plane",
-        "ball, capsule",
-        "capsule, capsule",
-        "ball in a box",
-        "box on a box",
-        "box, plane",
-    ),
-    "pybullet, round edges": ("ball, box", "box, box (corner)", "box, box (edges)", "box in a box"),
-    "pybullet, hull": ("ball, triangle", "triangle, box"),
-    "pymunk": ("disc, polygon (2D)", "rectangles (2D)", "flying disc (2D)"),
-}
-
-
 # ---------------------------------------------------------------------------------------------- truth
 
 def truth(p, t):
@@ -326,29 +260,24 @@ def truth(p, t):
     return np.array([distance - r_a - r_b, *n, *(() if p.pair in AXIS_ONLY else y + r_b * n)])
 
 
+def round_off(p, dt):
+    """A few hundred operations on numbers below 3, and normals known to round-off over a distance of 0.1: 1e-12.
+
+    GJK stops when it knows the distance to 1e-14 of the size.  The points may be known only to the root of that, but
+    these bodies have corners, so the last step is exact.  pybullet's GJK is as exact for bodies that have corners when
+    their margins are taken away, because its last simplex spans the nearest features.  pymunk's results are closed
+    forms.
+    """
+    return 1e-12
 
 
-CLOSED_FORMS = ("ball, ball", "ball, plane", "ball, capsule", "capsule, capsule", "box on a box", "box, plane")
-
-
-def tolerance(p, dt):
-    """Ours: a few hundred operations on numbers below 3, and normals known to round-off over a distance of 0.1: 1e-12.
-
-    GJK stops when it knows the distance to 1e-14 of the size.  The points may be known only to the
-    root of that, but these bodies have corners, so the last step is exact.  pybullet has closed forms for some pairs
-    (Bullet's btDefaultCollisionConfiguration and btConvexConvexAlgorithm): round-off.  Its GJK is as exact for bodies
-    that have corners when their margins are taken away, because its last simplex spans the nearest features.  A ball
-    inside a box is round: the expanding polytope stops when the depth is known to 1e-12 m, which it is where the
-    normal is off by √(2 · 1e-12 m/r), and the point by that times r.  pymunk's results are closed forms.
+def polytope_limit(p, dt):
+    """pybullet has closed forms for some pairs (Bullet's btDefaultCollisionConfiguration and btConvexConvexAlgorithm):
+    round-off.  A ball inside a box is round: the expanding polytope stops when the depth is known to 1e-12 m, which it
+    is where the normal is off by √(2 · 1e-12 m/r), and the point by that times r.
     """
     turned = np.sqrt(2e-12 / p.r) * np.hypot(1.0, p.r) / np.linalg.norm(truth(p, T))
-    return {
-        EXACT: 1e-12,
-        "pybullet": 1e-12 if p.pair in CLOSED_FORMS else turned,
-        "pybullet, round edges": 1e-12,
-        "pybullet, hull": 1e-12,
-        "pymunk": 1e-12,
-    }
+    return turned if p.pair == "ball in a box" else round_off(p, dt)
 
 
 # ---------------------------------------------------------------------------------------------- engines
@@ -470,18 +399,42 @@ def pymunk_make(p, dt):
     return EngineRun(lambda: None, read, lambda: None)
 
 
-ENGINES = (
-    Engine(
-        PYBULLET,
-        "",
-        bullet_make,
-        EXACT,
-        ("getClosestPoints within 1 m; GEOM_SPHERE, _PLANE, _CAPSULE; for areas getContactPoints after "
-         "performCollisionDetection"),
-    ),
-    Engine(PYBULLET, "round edges", bullet_make, EXACT, "getClosestPoints within 1 m; GEOM_BOX"),
-    Engine(PYBULLET, "hull", bullet_make, EXACT, "getClosestPoints within 1 m; GEOM_MESH from corners"),
-    Engine(PYMUNK, "", pymunk_make, EXACT, "point_query, shapes_collide, segment_query with a radius"),
+def only(*pairs):
+    """Return the field `supports` of a runner that does these pairs."""
+    return lambda p: p.pair in pairs
+
+
+GJK_STOPS = "it stops when it knows the distance to 1e-14 of the size, and the limit bounds what is left"
+WITH_CORNERS = "exact for bodies with corners: only round-off is left, and the limit bounds it"
+POLYTOPE_STOPS = "closed forms are exact; its expanding polytope stops at 1e-12 m, and the limit bounds what is left"
+ROUND_EDGES = Departure("it rounds the edges and corners of a box with a radius of 1 mm", with_margins)
+OWN_GRID = Departure("it places the points of a hull on a grid of its own and surrounds them with a margin of 1 mm",
+                     with_margins)
+EXACTLY = {"order": EXACT, "limit": round_off, "predicted": ONLY_ROUND_OFF}
+RUNNERS = (
+    ours(NARROW, **EXACTLY,
+         supports=only("ball, ball", "ball, plane", "ball, capsule", "capsule, capsule", "ball, triangle", "ball, box",
+                       "ball in a box", "box, plane")),
+    ours(GJK, order=EXACT, limit=round_off, predicted=GJK_STOPS,
+         supports=only("ball, ball", "ball, capsule", "capsule, capsule", "ball, triangle", "ball, box",
+                       "box, box (corner)", "box, box (edges)", "triangle, box", "disc, polygon (2D)",
+                       "polygon, polygon (2D)")),
+    ours(AXES, **EXACTLY, supports=only(*AXIS_ONLY, *MANY)),
+    ours(CONTINUOUS, **EXACTLY, supports=only("flying disc (2D)")),
+    engine(PYBULLET, "", bullet_make,
+           "getClosestPoints within 1 m; GEOM_SPHERE, _PLANE, _CAPSULE; for areas getContactPoints after "
+           "performCollisionDetection",
+           order=EXACT, limit=polytope_limit, predicted=POLYTOPE_STOPS,
+           supports=only("ball, ball", "ball, plane", "ball, capsule", "capsule, capsule", "ball in a box",
+                         "box on a box", "box, plane")),
+    engine(PYBULLET, "round edges", bullet_make, "getClosestPoints within 1 m; GEOM_BOX",
+           order=EXACT, limit=round_off, predicted=WITH_CORNERS, departure=ROUND_EDGES,
+           supports=only("ball, box", "box, box (corner)", "box, box (edges)", "box in a box")),
+    engine(PYBULLET, "hull", bullet_make, "getClosestPoints within 1 m; GEOM_MESH from corners",
+           order=EXACT, limit=round_off, predicted=WITH_CORNERS, departure=OWN_GRID,
+           supports=only("ball, triangle", "triangle, box")),
+    engine(PYMUNK, "", pymunk_make, "point_query, shapes_collide, segment_query with a radius", **EXACTLY,
+           supports=only("disc, polygon (2D)", "rectangles (2D)", "flying disc (2D)")),
 )
 
 
@@ -529,35 +482,16 @@ BY_HAND = (0.40453610171, *(WORLD @ [-0.81482, -0.45268, 0.36214]), *(WORLD @ [0
 
 
 SCENE = Scene(
-    title="Distances and contacts",
-    lesson="collisions",
-    cases=CASES,
-    duration=T,
-    steps=STEPS,
-    methods=METHODS,
-    start=start,
-    run=run,
-    observe=observe,
-    truth=truth,
-    truth_uncertainty=1e-13,  # of a linear system with a condition below 100
-    tolerance=tolerance,
-    engines=ENGINES,
-    expected_departures={
-        "pybullet, round edges": Departure(
-            "it rounds the edges and corners of a box with a radius of 1 mm", with_margins
-        ),
-        "pybullet, hull": Departure(
-            "it places the points of a hull on a grid of its own and surrounds them with a margin of 1 mm", with_margins
-        ),
-    },
-    orders={method.function: EXACT for method in METHODS},
-    supports=supports,
+    title="Distances and contacts", lesson="collisions",
+    cases=CASES, duration=T, steps=STEPS,
+    runners=RUNNERS,
+    start=start, run=run, observe=observe,
+    truth=truth, truth_uncertainty=1e-13,  # of a linear system with a condition below 100
     moves=False,
     refinement="",
     quantity_names=quantity_names,
     published_states=((1.0, BY_HAND, 1e-4),),
-    points=points,
-    links=links,
+    points=points, links=links,
     uses=("the shapes of two bodies", "where they are"),
     full_loop="nothing moves here, so there is no loop",
     ablations={

@@ -5,7 +5,7 @@ neighbours.  The result then grows with n, the work of brute force with n², and
 (the benchmark measures it).
 """
 
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -14,7 +14,7 @@ from solutions.collisions import check_boxes
 from validate.engines.collisions import bullet_closest_pairs, bullet_query_pairs
 from validate.methods import BRUTE_FORCE, TREES
 from validate.reference.collisions import all_touching
-from validate.scene import EXACT, PYBULLET, Departure, Engine, EngineRun, Scene
+from validate.scene import EXACT, PYBULLET, Departure, EngineRun, Scene, engine, ours
 
 T = 1.0
 STEPS = (1,)
@@ -110,32 +110,32 @@ def by_wider_boxes(p, t):
     return np.array([len(true), len(true_pairs(p, MARGIN) - true)])
 
 
-def tolerance(p, dt):
-    """Counts are whole numbers and exact; the quotient of two is rounded by 1e-16."""
-    return dict.fromkeys((EXACT, *(engine.label for engine in ENGINES)), 1e-15)
+def limit(p, dt):
+    """Counts are whole numbers, which must be exact."""
+    return 1e-15
 
 
-def supports(name, p):
-    """Brute force up to 10,000 boxes; pybullet's closest points for the first case, its query up to MOST_BY_ENGINE."""
-    most = {"all_pairs": 10_000, "pybullet": 200, "pybullet, query": MOST_BY_ENGINE}
-    return p.n <= most.get(name, np.inf)
+def up_to(n):
+    """Return the field `supports` of a runner that does at most n boxes."""
+    return lambda p: p.n <= n
 
 
-def asked(find):
-    return lambda p, dt: EngineRun(lambda: None, lambda: judged(find(*boxes(p)), p), lambda: None)
+def pybullet_make(p, dt, find):
+    """Make an EngineRun of a function that returns the pairs of boxes that pybullet finds: one long reading."""
+    return EngineRun(lambda: None, lambda: judged(find(*boxes(p)), p), lambda: None)
 
 
-ENGINES = (
-    Engine(
-        PYBULLET, "", asked(bullet_closest_pairs), EXACT, "getClosestPoints(distance = 0) for every pair of GEOM_BOX"
-    ),
-    Engine(
-        PYBULLET,
-        "query",
-        asked(bullet_query_pairs),
-        EXACT,
-        "getOverlappingObjects with the corners of each box, after a step",
-    ),
+COUNTS = {"order": EXACT, "limit": limit, "predicted": "exact: counts are whole numbers"}
+RUNNERS = (
+    ours(TREES, **COUNTS),
+    ours(BRUTE_FORCE, **COUNTS, supports=up_to(10_000)),
+    engine(PYBULLET, "", partial(pybullet_make, find=bullet_closest_pairs),
+           "getClosestPoints(distance = 0) for every pair of GEOM_BOX", **COUNTS, supports=up_to(200)),
+    engine(PYBULLET, "query", partial(pybullet_make, find=bullet_query_pairs),
+           "getOverlappingObjects with the corners of each box, after a step", **COUNTS,
+           supports=up_to(MOST_BY_ENGINE),
+           departure=Departure("its broad phase enlarges boxes by 2 cm on every side, to predict contacts",
+                               by_wider_boxes)),
 )
 
 
@@ -153,19 +153,9 @@ def links(p):
 SCENE = Scene(
     title="Pairs of boxes", lesson="collisions",
     cases=CASES, duration=T, steps=STEPS,
-    methods=(TREES, BRUTE_FORCE),
+    runners=RUNNERS,
     start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-16,
-    tolerance=tolerance,
-    engines=ENGINES,
-    expected_departures={
-        "pybullet, query": Departure(
-            "its broad phase enlarges boxes by 2 cm on every side, to predict contacts",
-            by_wider_boxes,
-        )
-    },
-    orders={"tree_pairs": EXACT, "all_pairs": EXACT},
-    supports=supports,
     slow_cases=("10,000 boxes", "100,000 boxes"),  # too slow for a quick validation
     moves=False,
     refinement="",

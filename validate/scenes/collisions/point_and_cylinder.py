@@ -16,6 +16,7 @@ T = 1.0                      # [s]: every ball has hit by then
 STEPS = (20, 50, 100, 200, 500, 1000, 2000)
 FASTEST_DISCRETE = 100.0     # [m/s]: above this, no step of the sweep is short enough for the discrete test
 WIDEST = 0.8                 # largest offset from the axis at which a ball aims, over R + r [-]
+STEEP = np.sqrt(1.0 - WIDEST**2)     # cosine of the angle between its path and the normal [-]
 CASES = balls.at_speeds(R=0.5)
 
 
@@ -67,38 +68,54 @@ def rounding(p, dt):
     x, v = place(p)
     way = np.linalg.norm(balls.rounded_way(x[:, 1:], v[:, 1:], balls.impact_times(T), dt))
     few = 12.0 * ROUND_OFF * np.sqrt(balls.COPIES) * p.speed * T
-    return (way + few) / np.sqrt(1.0 - WIDEST**2) / np.linalg.norm(truth(p, T))
+    return (way + few) / STEEP / np.linalg.norm(truth(p, T))
 
 
-def band(p, dt, label):
-    """Return how far a run may be off from its prediction: round-off, and where a swept sphere ends, as a ray does."""
-    if label == "discrete" or engines.swept_radius(p, dt) is None:
-        return rounding(p, dt)
-    steep = np.sqrt(1.0 - WIDEST**2)
-    return np.sqrt(balls.COPIES) * engines.RAY_ENDS / steep / np.linalg.norm(truth(p, T)) + rounding(p, dt)
+def swept_band(p, dt):
+    """Return how far a swept ball may end from its prediction: as far as a ray does, by round-off without a sweep."""
+    return rounding(p, dt) if engines.swept_radius(p, dt) is None else ray_limit(p, dt)
 
 
-def tolerance(p, dt):
+def limits(p, dt):
     """Limits relative to the root of the sum of all squares.
 
     continuous: a position is rounded by ½ spacing of itself at each step until the impact; for the path that passes
     farthest from the axis, at b (R + r), the root is 1/√(1 − b²) times as uncertain as the position.  The time of
     impact adds a dozen roundings of the whole way, here and in the truth.
-    rays: where a ray ends is measured and not derived.
     discrete: detected at most one step late, at a moment that is predicted.  A step longer than the shortest path
     through the cylinder, 2 √(1 − b²)(R + r), can pass it.
     """
-    size, steep = np.linalg.norm(truth(p, T)), np.sqrt(1.0 - WIDEST**2)
-    per_ball = lambda metres: np.sqrt(balls.COPIES) * metres / size
+    late = per_ball(p, p.speed * dt) if p.speed * dt < 2.0 * STEEP * (p.R + p.r) else np.inf
     rounded = rounding(p, dt)
-    late = per_ball(p.speed * dt) if p.speed * dt < 2.0 * steep * (p.R + p.r) else np.inf
-    return {EXACT: rounded, 1: late + rounded, "pybullet, rays": per_ball(engines.RAY_ENDS / steep) + rounded,
-            "pybullet, swept": per_ball(engines.swept_limit(p, dt) / steep) + rounded}
+    return {EXACT: rounded, 1: late + rounded}
+
+
+def ray_limit(p, dt):
+    """A ray may end up to 1 cm in front of a round shape: where it ends is measured and not derived."""
+    return per_ball(p, engines.RAY_ENDS / STEEP) + rounding(p, dt)
+
+
+def swept_limit(p, dt):
+    """A swept ball ends where its smaller sphere touches, with the ball a fifth of its radius deep, or earlier.  A step
+    that is too short to be swept finds it at most one step late.
+    """
+    return per_ball(p, engines.swept_limit(p, dt) / STEEP) + rounding(p, dt)
+
+
+def per_ball(p, metres):
+    """Return the relative error if every ball is off by so many metres."""
+    return np.sqrt(balls.COPIES) * metres / np.linalg.norm(truth(p, T))
+
+
+RUNNERS = engines.ball_runners(
+    place, FASTEST_DISCRETE, limits, balls.detection_errors(T, place, when, rounding),
+    "GEOM_CYLINDER of radius R + r",
+    rays={"order": 0, "limit": ray_limit, "predicted": "where its rays end is measured and not derived"},
+    swept={"order": 0, "limit": swept_limit,
+           "predicted": balls.detection_errors(T, place, when, swept_band, engines.swept_radius)})
 
 
 SIDES = 36                   # of the polygon that is drawn for the circle: it differs by 0.4 % of the radius
-
-ENGINES = engines.ray_and_sweep(place, 0, "GEOM_CYLINDER of radius R + r")
 
 
 def points(observed, p):
@@ -121,10 +138,11 @@ def sanity_checks():
 
 
 SCENE = Scene(
-    title="Point and cylinder", **engines.BALLS, cases=CASES, duration=T, steps=STEPS,
-    start=start, run=run, truth=truth, tolerance=tolerance,
-    engines=ENGINES, supports=engines.discrete_up_to(FASTEST_DISCRETE),
-    predicted_error=balls.detection_errors(T, place, when, engines.swept_radius, band),
+    title="Point and cylinder", lesson="collisions",
+    cases=CASES, duration=T, steps=STEPS,
+    runners=RUNNERS,
+    start=start, run=run, observe=engines.observe_balls,
+    truth=truth, truth_uncertainty=balls.UNCERTAINTY,
     sanity_checks=sanity_checks, points=points, links=links,
     uses=("a straight way", "a quadratic equation for each step, or a distance"),
     ablations={

@@ -42,7 +42,7 @@ def truth(p, t):
     return balls.stopped(x, v, lambda y: y[2] - p.r, np.full(balls.COPIES, T), t)
 
 
-def tolerance(p, dt):
+def limits(p, dt):
     """Limits relative to the root of the sum of all squares.
 
     continuous: a position is rounded by ½ spacing of itself at each step until the impact, and 1/cos 0.3 rad
@@ -50,14 +50,20 @@ def tolerance(p, dt):
     discrete: detected at most one step late, at a moment that is predicted.  pybullet's rays are exact here, because a
     plane is not rounded.
     """
-    size = np.linalg.norm(truth(p, T))
-    per_ball = lambda metres: np.sqrt(balls.COPIES) * metres / size
     rounded = rounding(p, dt)
-    return {
-        EXACT: rounded,
-        1: per_ball(p.speed * dt) + rounded,
-        "pybullet, swept": per_ball(engines.swept_limit(p, dt) / np.cos(TILT)) + rounded,
-    }
+    return {EXACT: rounded, 1: per_ball(p, p.speed * dt) + rounded}
+
+
+def swept_limit(p, dt):
+    """A swept ball ends where its smaller sphere touches, with the ball a fifth of its radius deep, or earlier.  A step
+    that is too short to be swept finds it at most one step late.
+    """
+    return per_ball(p, engines.swept_limit(p, dt) / np.cos(TILT)) + rounding(p, dt)
+
+
+def per_ball(p, metres):
+    """Return the relative error if every ball is off by so many metres."""
+    return np.sqrt(balls.COPIES) * metres / np.linalg.norm(truth(p, T))
 
 
 def rounding(p, dt):
@@ -73,7 +79,12 @@ def when(p, r):
     return balls.moments(*place(p), lambda y: y[2] - r, np.full(balls.COPIES, 2.0 * T)), np.inf
 
 
-ENGINES = engines.ray_and_sweep(place, EXACT, "GEOM_PLANE raised by the radius of the balls")
+RUNNERS = engines.ball_runners(
+    place, FASTEST_DISCRETE, limits, balls.detection_errors(T, place, when, rounding),
+    "GEOM_PLANE raised by the radius of the balls",
+    rays={"order": EXACT, "limit": limits, "predicted": balls.ONLY_ROUND_OFF},
+    swept={"order": 0, "limit": swept_limit,
+           "predicted": balls.detection_errors(T, place, when, rounding, engines.swept_radius)})
 
 
 def points(observed, p):
@@ -91,10 +102,11 @@ def sanity_checks():
 
 
 SCENE = Scene(
-    title="Point and plane", **engines.BALLS, cases=CASES, duration=T, steps=STEPS,
-    start=start, run=run, truth=truth, tolerance=tolerance,
-    engines=ENGINES, supports=engines.discrete_up_to(FASTEST_DISCRETE),
-    predicted_error=balls.detection_errors(T, place, when, engines.swept_radius, lambda p, dt, label: rounding(p, dt)),
+    title="Point and plane", lesson="collisions",
+    cases=CASES, duration=T, steps=STEPS,
+    runners=RUNNERS,
+    start=start, run=run, observe=engines.observe_balls,
+    truth=truth, truth_uncertainty=balls.UNCERTAINTY,
     sanity_checks=sanity_checks, points=points, links=lambda p: [(0, 1)],
     uses=("a straight way", "two signed distances for each step"),
     ablations={

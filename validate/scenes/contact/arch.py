@@ -5,6 +5,7 @@ them, or accelerations where there are none.  The joints are redundant, so that 
 between standing and falling is.
 """
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -15,7 +16,7 @@ from validate.engines.bullet import UPRIGHT, Rigid
 from validate.engines.chipmunk import pymunk_space
 from validate.methods import SWEEPS
 from validate.reference.contact import arch, bisected, hinged_thickness, least_friction, least_thickness
-from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Scene
+from validate.scene import EXACT, PYBULLET, PYMUNK, EngineRun, Scene, engine, ours
 
 T = 1.0
 STEPS = (1,)
@@ -42,11 +43,6 @@ CASES = {
     "least friction, 4 stones": Params("friction"), "least friction, 10 stones": Params("friction", 10),
     "least friction, 10 thin stones": Params("friction", 10, t=0.108),
 }
-
-
-def supports(name, p):
-    """Thin stones fall in the engines before they slide."""
-    return not name.startswith("py") or (p.t >= 0.15 and p.n <= 10)
 
 
 def start(p):
@@ -101,14 +97,18 @@ def truth(p, t):
     return np.array([least_thickness(p.n, p.mu) if p.kind == "thickness" else least_friction(p.n, p.t)])
 
 
-def tolerance(p, dt):
+def limit(p, dt):
     """An arch whose number is less than the critical one by a share δ falls with about 10 g δ: an acceleration of 1e-6
     m/s² means δ = 1e-8.  The bisection stops at 1e-6.
+    """
+    return AT_REST / G + WIDTH + UNCERTAINTY
 
-    Any nudge brings down an arch near its least thickness.  Engines nudge it: gravity acts for a step before the
+
+def unknown(p, dt):
+    """Any nudge brings down an arch near its least thickness.  Engines nudge it: gravity acts for a step before the
     joints carry.  No theory says how much more thickness they need, so their errors are shown and not judged.
     """
-    return {EXACT: AT_REST / G + WIDTH + UNCERTAINTY, **dict.fromkeys((e.label for e in ENGINES), np.inf)}
+    return np.inf
 
 
 # ---------------------------------------------------------------------------------------------- engines
@@ -162,24 +162,34 @@ def pybullet_stands(p, number, dt, iterations, residual):
     return np.max(np.abs(x - stones.x)) < MOVED
 
 
-def making(holds, *settings):
-    """make(p, dt) of an engine: the bisection is one long reading."""
-    def read(p):
+def make(p, dt, holds):
+    """The EngineRun of an engine in which an arch holds or not: the bisection is one long reading."""
+    def read():
         expected = truth(p, T)[0]
-        found = bisected(lambda number: holds(p, number, *settings), 0.5 * expected, 2.0 * expected, 1e-3)
-        return np.array([found])
-    return lambda p, dt: EngineRun(lambda: None, lambda: read(p), lambda: None)
+        return np.array([bisected(lambda number: holds(p, number), 0.5 * expected, 2.0 * expected, 1e-3)])
+    return EngineRun(lambda: None, read, lambda: None)
 
 
-ENGINES = (
-    Engine(PYMUNK, "", making(pymunk_stands, 1e-3, 100, 1e-5), EXACT,
-           "polygons; 100 iterations, collision_slop 1e-5; stands if nothing moves by R/50 in 1 s of 1/1000 s"),
-    Engine(PYMUNK, "default", making(pymunk_stands, 1.0 / 240.0, 10, 0.1), EXACT,
-           "polygons; 10 iterations, collision_slop 0.1; 1 s of 1/240 s"),
-    Engine(PYBULLET, "", making(pybullet_stands, 1.0 / 240.0, 200, 0), EXACT,
-           "hulls, maximal coordinates; solverResidualThreshold 0, 200 iterations; 1 s of 1/240 s"),
-    Engine(PYBULLET, "default", making(pybullet_stands, 1.0 / 240.0, 50, 1e-7), EXACT,
-           "hulls, maximal coordinates; 50 iterations; 1 s of 1/240 s"),
+def thick(p):
+    """Thin stones fall in the engines before they slide."""
+    return p.t >= 0.15 and p.n <= 10
+
+
+BISECTED = "its bisection and its sweeps stop at a width, and the limit bounds what is left"
+NUDGED = {"order": EXACT, "limit": unknown, "supports": thick,
+          "predicted": "no theory says how much more thickness or friction a nudged arch needs"}
+RUNNERS = (
+    ours(SWEEPS, limit=limit, predicted=BISECTED, order=EXACT),
+    engine(PYMUNK, "", partial(make, holds=partial(pymunk_stands, dt=1e-3, iterations=100, slop=1e-5)),
+           "polygons; 100 iterations, collision_slop 1e-5; stands if nothing moves by R/50 in 1 s of 1/1000 s",
+           **NUDGED),
+    engine(PYMUNK, "default", partial(make, holds=partial(pymunk_stands, dt=1.0 / 240.0, iterations=10, slop=0.1)),
+           "polygons; 10 iterations, collision_slop 0.1; 1 s of 1/240 s", **NUDGED),
+    engine(PYBULLET, "", partial(make, holds=partial(pybullet_stands, dt=1.0 / 240.0, iterations=200, residual=0)),
+           "hulls, maximal coordinates; solverResidualThreshold 0, 200 iterations; 1 s of 1/240 s", **NUDGED),
+    engine(PYBULLET, "default",
+           partial(make, holds=partial(pybullet_stands, dt=1.0 / 240.0, iterations=50, residual=1e-7)),
+           "hulls, maximal coordinates; 50 iterations; 1 s of 1/240 s", **NUDGED),
 )
 
 
@@ -220,13 +230,9 @@ def links(p):
 SCENE = Scene(
     title="Masonry arch", lesson="contact",
     cases=CASES, duration=T, steps=STEPS,
-    methods=(SWEEPS,),
+    runners=RUNNERS,
     start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=UNCERTAINTY,
-    tolerance=tolerance,
-    engines=ENGINES,
-    orders={"contact_forces": EXACT},
-    supports=supports,
     slow_cases=tuple(CASES)[1:],
     omitted_methods="Murty's method has no friction; the pile holds boxes, not the stones of an arch",
     moves=False,

@@ -13,7 +13,7 @@ from solutions.checks import check_not_negative, check_positive
 from validate.engines.bullet import IMPACT_SETTINGS, Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_space
 from validate.methods import ONE_BY_ONE, REFLECTION
-from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Scene
+from validate.scene import EXACT, PYBULLET, PYMUNK, EngineRun, Scene, engine, ours
 
 T = 1.0
 STEPS = (1,)
@@ -31,8 +31,9 @@ class Params(NamedTuple):
 CASES = {f"{100**N:,} kg": Params(N) for N in (2, 0, 1, 3)}
 
 
-def supports(name, p):
-    return name not in ("pymunk", "pybullet") or p.N <= FINEST
+def countable(p):
+    """Up to two digits after the first: an engine needs a hundred times as many steps for each further one."""
+    return p.N <= FINEST
 
 
 def heavy(p):
@@ -92,12 +93,12 @@ def truth(p, t):
     return np.array([impacts, last * np.sin(turned), -np.cos(turned)])
 
 
-def tolerance(p, dt):
+def limit(p, dt):
     """One impact too many is 1/⌊10^N π⌋.  Each impact rounds velocities four times by 1.1e-16: relative to the number
     of impacts that is 4.4e-16.  θ is rounded in the truth, too.  Engines do the same operations, if they see every
     impact.
     """
-    return {EXACT: 1e-15, "pymunk": 1e-15, "pybullet": 1e-15}
+    return 1e-15
 
 
 # ---------------------------------------------------------------------------------------------- engines
@@ -148,9 +149,14 @@ def pybullet_make(p, dt):
     return EngineRun(lambda: None, lambda: count(bullet.step, velocities, p), bullet.close)
 
 
-ENGINES = (
-    Engine(PYMUNK, "", pymunk_make, EXACT, "circles on a line, 50 iterations, collision_slop 1e-5"),
-    Engine(PYBULLET, "", pybullet_make, EXACT, f"spheres on a line; {IMPACT_SETTINGS}"),
+OURS = {"order": EXACT, "limit": limit, "predicted": "exact: only round-off is left, and the limit bounds it"}
+ENGINES = {"order": EXACT, "limit": limit, "supports": countable,
+           "predicted": "exact if it sees every impact: only round-off is left, and the limit bounds it"}
+RUNNERS = (
+    ours(ONE_BY_ONE, **OURS),
+    ours(REFLECTION, **OURS),
+    engine(PYMUNK, "", pymunk_make, "circles on a line, 50 iterations, collision_slop 1e-5", **ENGINES),
+    engine(PYBULLET, "", pybullet_make, f"spheres on a line; {IMPACT_SETTINGS}", **ENGINES),
 )
 
 
@@ -197,13 +203,9 @@ def links(p):
 SCENE = Scene(
     title="Galperin's π", lesson="contact",
     cases=CASES, duration=T, steps=STEPS,
-    methods=(ONE_BY_ONE, REFLECTION),
+    runners=RUNNERS,
     start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-15,
-    tolerance=tolerance,
-    engines=ENGINES,
-    orders={"impulse_size": EXACT, "gauss_seidel_sweep": EXACT},
-    supports=supports,
     omitted_methods="engines go up to 10,000 kg: two of their circles pass through each other if one moves further "
                     "than a radius in a step, so that a million kg would need four million steps",
     moves=False,

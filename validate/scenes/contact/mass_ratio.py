@@ -5,6 +5,7 @@ compared: the forces, the depth to which soft contacts sink, the number of sweep
 At a million the sweeps do not get there, and must say so.
 """
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -36,7 +37,7 @@ from validate.reference.contact import (
     sweeps_needed,
     unrest_in_pymunk,
 )
-from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, ROUND_OFF, Departure, Engine, EngineRun, Scene
+from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, ROUND_OFF, Departure, EngineRun, Scene, engine, ours
 
 T = 1.0
 STEPS = (1,)
@@ -47,6 +48,12 @@ ZETA = 10.0                  # damping ratio of the pile's contacts [-]
 WAITING = 3.0                # of the engines [s]
 OVERLAP = 1e-6               # with which pymunk's bodies begin [m]: they see a contact when there is one
 STANDS = 0.1                 # of a box: what has moved by less, stands [-]
+WHOLE = 1e-15                # error of a whole number, which must be exact [-]
+ROUNDED = 1e-12              # of the forces of MuJoCo at rest, relative [-]
+FINE = {"iterations": 1000, "slop": 1e-4}                    # of pymunk; slop [m]
+# by mass ratio; each by a reference that takes seconds, and a test repeats it [-]
+UNREST = dict.fromkeys((10.0, 100.0, 1e3), 0.0)              # of pymunk by unrest_in_pymunk, but for roundings
+SWAY = {10.0: 2.983e-12, 100.0: 0.0, 1e3: 1.413e-7}          # of the pile by sway_of_tower
 
 
 class Params(NamedTuple):
@@ -70,23 +77,6 @@ CASES = {
 SOLVERS = {                  # (substeps, hertz [1/s], settling time [s]) of the pile, up to this mass ratio
     10.0: (4, 240.0, 1.5), 100.0: (16, 480.0, 1.0), 1e3: (16, 480.0, 3.0), np.inf: (16, 480.0, 5.0),
 }
-
-
-def supports(name, p):
-    """A million is left to Murty and to the question who refuses it; sweeps are counted where that takes seconds."""
-    if name == "mujoco":
-        return p.kind in ("forces", "overlap") and p.r <= 100.0
-    if p.kind in ("sweeps", "relaxed"):
-        return name == "gauss_seidel_sweep"
-    if p.kind == "overlap":
-        return name == "advance_pile_2d"
-    if p.kind == "stands":
-        return name == "advance_pile_2d" or name.startswith("py")
-    if p.kind == "refused":
-        return name in ("contact_forces", "advance_pile_2d") or name.endswith("default")
-    if name == "solve_lcp":
-        return True
-    return p.r <= 1e3 and name != "gauss_seidel_sweep" and not name.endswith("default")
 
 
 def solver(p):
@@ -212,50 +202,72 @@ def sag(p):
     return 1.25 * (1.0 + p.r) * p.g / (2.0 * np.pi * solver(p)[1]) ** 2
 
 
-def tolerance(p, dt):
-    """forces      Sweeps stop where the residual is 1e-13 of the largest (|A||F| + |b|)_k; the error is the residual
-                over the least eigenvalue of A at most.  Murty solves a linear system: 1.1e-16 times the condition of
-                A, and ten for the operations.  The pile still rocks a little when it is read.  The
-                limit is three times what the recursion of its sweeps says, because the phase of the rocking depends on
-                the places of the corners, and the force of a rounded gap.  pymunk rocks, too: its limit is three times
-                what the recursion of its sweeps says, and the roundings of Murty.  pybullet begins each step with the
-                last impulses, and takes 8 % of an overlap back per step, so that only the rounding of an overlap is
-                left.
-    overlap     The upper box slides aside by no more than it sinks, and takes a corner along: a relative change of
-                2 (w/2)²/I/k_n times twice that over w, or 2.4 depths over w; and a corner's sway, as above.  MuJoCo's
-                overlaps are differences of places, which are rounded.
-    all others  whole numbers, which must be exact
+def count_limit(p, dt):
+    """Numbers of sweeps, and whether boxes stand or are refused, are whole numbers, which must be exact."""
+    return WHOLE
+
+
+def swept_limit(p, dt):
+    """forces: sweeps stop where the residual is 1e-13 of the largest (|A||F| + |b|)_k; the error is the residual over
+    the least eigenvalue of A at most.
+    """
+    if p.kind != "forces":
+        return WHOLE
+    A, forces = normal_matrix(p), truth(p, T)
+    least = np.linalg.eigvalsh(A)[0]
+    return 1e-13 * (np.max(np.abs(A) @ forces) + p.g) / least * np.sqrt(2.0) / np.linalg.norm(forces)
+
+
+def solved_limit(p, dt):
+    """forces: Murty solves a linear system: 1.1e-16 times the condition of A, and ten for the operations."""
+    values = np.linalg.eigvalsh(normal_matrix(p))
+    return 10.0 * 1.1e-16 * values[-1] / values[0]
+
+
+def pile_limit(p, dt):
+    """forces: the pile still rocks a little when it is read.  The limit is three times what the recursion of its sweeps
+    says, because the phase of the rocking depends on the places of the corners, and the force of a rounded gap.
+    overlap: the upper box slides aside by no more than it sinks, and takes a corner along: a relative change of
+    2 (w/2)²/I/k_n times twice that over w, or 2.4 depths over w; and a corner's sway, as for the forces.
     """
     if p.kind == "overlap":
-        return {EXACT: 2.4 * sag(p) / p.size + sway(p), "mujoco": 10.0 * ROUND_OFF * p.size / sag(p)}
-    if p.kind != "forces":
-        engines = "pymunk", "pybullet", "pymunk, default", "pybullet, default", "mujoco"
-        return dict.fromkeys((EXACT, "pile", *engines), 1e-15)
+        return 2.4 * sag(p) / p.size + sway(p)
+    return sway(p) if p.kind == "forces" else WHOLE
+
+
+def pymunk_limit(p, dt):
+    """forces: pymunk rocks, too: its limit is three times what the recursion of its sweeps says, and the roundings of
+    Murty.
+    """
+    return 3.0 * unrest(p) + solved_limit(p, dt) if p.kind == "forces" else WHOLE
+
+
+def pybullet_limit(p, dt):
+    """forces: pybullet begins each step with the last impulses, and takes 8 % of an overlap back per step, so that only
+    the rounding of an overlap is left.
+    """
+    return rounded_overlap(masses(p), p.size, p.g, CONTACT_ERP, DT) if p.kind == "forces" else WHOLE
+
+
+def mujoco_limit(p, dt):
+    """forces: MuJoCo's contacts are at rest, but for roundings.
+    overlap: MuJoCo's overlaps are differences of places, which are rounded.
+    """
+    return 10.0 * ROUND_OFF * p.size / sag(p) if p.kind == "overlap" else ROUNDED
+
+
+def normal_matrix(p):
+    """A of the normal impulses, one contact in the middle of each joint."""
     light, heavy = 1.0 / masses(p)
-    A, forces = np.array([(light, -light), (-light, light + heavy)]), truth(p, T)
-    values = np.linalg.eigvalsh(A)
-    swept = 1e-13 * (np.max(np.abs(A) @ forces) + p.g) / values[0] * np.sqrt(2.0) / np.linalg.norm(forces)
-    solved = 10.0 * 1.1e-16 * values[-1] / values[0]
-    limits = {EXACT: swept, "Murty": solved, "mujoco": ROUNDED}
-    if not supports("advance_pile_2d", p):
-        return limits
-    return {**limits, "pile": sway(p), "pymunk": 3.0 * unrest(p) + solved,
-            "pybullet": rounded_overlap(masses(p), p.size, p.g, CONTACT_ERP, DT)}
+    return np.array([(light, -light), (-light, light + heavy)])
 
 
 def unrest(p):
     """Return the relative error of pymunk's forces when they are read; the cases are known beforehand."""
     if p._replace(r=10.0) == Params() and p.r in UNREST:
         return UNREST[p.r]
-    how = Towers(DT, *PYMUNK_SETTINGS, OVERLAP, tower(p).joint_frictions(), WAITING)
+    how = Towers(DT, **FINE, overlap=OVERLAP, frictions=tower(p).joint_frictions(), seconds=WAITING)
     return unrest_in_pymunk(tuple(masses(p)), p.size, p.g, how)
-
-
-UNREST = dict.fromkeys((10.0, 100.0, 1e3), 0.0)              # by unrest_in_pymunk, but for roundings; a test repeats it
-PYMUNK_SETTINGS = 1000, 1e-4                                 # iterations, collision_slop [m]
-
-
-ROUNDED = 1e-12              # of the forces of MuJoCo at rest, relative [-]
 
 
 def sway(p):
@@ -265,10 +277,6 @@ def sway(p):
     if rocks is None:
         rocks = sway_of_tower(tuple(masses(p)), p.size, p.g, Settling(DT, substeps, hertz, ZETA, MU, seconds))
     return 3.0 * rocks + rounded_force(masses(p), p.size, p.g, hertz)
-
-
-# by sway_of_tower, which takes up to two seconds; a test repeats it [-]
-SWAY = {10.0: 2.983e-12, 100.0: 0.0, 1e3: 1.413e-7}
 
 
 # ---------------------------------------------------------------------------------------------- engines
@@ -291,8 +299,8 @@ def pymunk_make(p, dt, iterations, slop):
     return EngineRun(lambda: None, lambda: answer(p, *wait()), lambda: None)
 
 
-def pybullet_make(p, dt, iterations, residual, *warm):
-    wait, close = bullet_tower(tower(p), iterations, residual, *warm)
+def pybullet_make(p, dt, **settings):
+    wait, close = bullet_tower(tower(p), **settings)
     return EngineRun(lambda: None, lambda: answer(p, *wait()), close)
 
 
@@ -308,26 +316,55 @@ def softly(p, t):
     return np.array([mujoco_sag(load, m, below) for load, m, below in zip(weights(p), masses(p), (np.inf, p.m))])
 
 
-ENGINES = (
-    Engine(PYMUNK, "", lambda p, dt: pymunk_make(p, dt, *PYMUNK_SETTINGS), EXACT,
-           "1,000 iterations, collision_slop 1e-4; 3 s of 1/240 s"),
-    Engine(PYMUNK, "default", lambda p, dt: pymunk_make(p, dt, 10, 0.1), EXACT,
-           "10 iterations, collision_slop 0.1; 3 s of 1/240 s"),
-    Engine(PYBULLET, "", lambda p, dt: pybullet_make(p, dt, 1000, 0, 1.0, True), EXACT,
-           "maximal coordinates, the floor's too; solverResidualThreshold 0, 1,000 iterations, warmStartingFactor 1; "
-           "3 s of 1/240 s"),
-    Engine(PYBULLET, "default", lambda p, dt: pybullet_make(p, dt, 50, 1e-7), EXACT,
-           "maximal coordinates; 50 iterations; 3 s of 1/240 s"),
-    Engine(MUJOCO, "", mujoco_make, EXACT, f"{SOFT}; 3 s of 1/240 s"),
-)
-
-
 def too_few(sweeps):
     """Why so many sweeps per step do not carry the heavy box, and that nobody says so."""
     steps = sweeps_needed(1e3, 1.0, SMALL) / sweeps
     return Departure(f"a mass ratio of 1,000 takes 6,912 sweeps, which are {steps:.0f} of its steps. By then the heavy "
                      "box is inside the light one. It reports no residual, so that nothing warns of it",
                      lambda p, t: np.zeros(1))
+
+
+def up_to(**most):
+    """Return the field `supports` of a runner that answers these kinds of questions up to these mass ratios.
+
+    A million is left to Murty and to the question who refuses it.
+    """
+    return lambda p: p.r <= most.get(p.kind, 0.0)
+
+
+ANY = np.inf
+SPRINGS = Departure("its contacts are springs with dampers, whose stiffness is not ours: the impedance "
+                    f"{IMPEDANCE} and the time constant {TIME_CONSTANT} s say how far they sink", softly)
+PHASE = "only the size of its rocking is known, because its phase depends on the exact places of the corners"
+RUNNERS = (
+    ours(DIRECT, limit=solved_limit, order=EXACT, supports=up_to(forces=ANY),
+         predicted="it solves a linear system: only round-off is left, and the limit bounds it"),
+    ours(SWEEPS, limit=swept_limit, order=EXACT, supports=up_to(forces=1e3, refused=ANY),
+         predicted="its sweeps stop at a residual, and the limit bounds what is left"),
+    ours(PILE, limit=pile_limit, order=EXACT, predicted=PHASE,
+         supports=up_to(forces=1e3, overlap=ANY, stands=ANY, refused=ANY)),
+    ours(COUNTED_SWEEPS, limit=count_limit, order=EXACT, supports=up_to(sweeps=ANY, relaxed=ANY),
+         predicted="exact: counts are whole numbers"),
+    engine(PYMUNK, "", partial(pymunk_make, **FINE), "1,000 iterations, collision_slop 1e-4; 3 s of 1/240 s",
+           order=EXACT, limit=pymunk_limit, predicted=PHASE, supports=up_to(forces=1e3, stands=ANY)),
+    engine(PYMUNK, "default", partial(pymunk_make, iterations=10, slop=0.1),
+           "10 iterations, collision_slop 0.1; 3 s of 1/240 s",
+           order=EXACT, limit=count_limit, departure=too_few(10), supports=up_to(stands=ANY, refused=ANY),
+           predicted="exact: it is 1 or 0"),
+    engine(PYBULLET, "", partial(pybullet_make, iterations=1000, residual=0, warm=1.0, maximal=True),
+           "maximal coordinates, the floor's too; solverResidualThreshold 0, 1,000 iterations, warmStartingFactor 1; "
+           "3 s of 1/240 s",
+           order=EXACT, limit=pybullet_limit, supports=up_to(forces=1e3, stands=ANY),
+           predicted="only the rounding of an overlap is left, and the limit bounds it"),
+    engine(PYBULLET, "default", partial(pybullet_make, iterations=50, residual=1e-7),
+           "maximal coordinates; 50 iterations; 3 s of 1/240 s",
+           order=EXACT, limit=count_limit, departure=too_few(50), supports=up_to(stands=ANY, refused=ANY),
+           predicted="exact: it is 1 or 0"),
+    engine(MUJOCO, "", mujoco_make, f"{SOFT}; 3 s of 1/240 s",
+           order=EXACT, limit=mujoco_limit, departure=SPRINGS,
+           supports=up_to(forces=100.0, overlap=100.0),
+           predicted="at rest only roundings are left, and the limit bounds them"),
+)
 
 
 def quantity_names(p):
@@ -368,17 +405,9 @@ def links(p):
 SCENE = Scene(
     title="Mass ratio", lesson="contact",
     cases=CASES, duration=T, steps=STEPS,
-    methods=(DIRECT, SWEEPS, PILE, COUNTED_SWEEPS),
+    runners=RUNNERS,
     start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-15,
-    tolerance=tolerance,
-    engines=ENGINES,
-    expected_departures={
-        "pymunk, default": too_few(10), "pybullet, default": too_few(50),
-        "mujoco": Departure("its contacts are springs with dampers, whose stiffness is not ours: the impedance "
-                            f"{IMPEDANCE} and the time constant {TIME_CONSTANT} s say how far they sink", softly)},
-    orders=dict.fromkeys(("contact_forces", "solve_lcp", "advance_pile_2d", "gauss_seidel_sweep"), EXACT),
-    supports=supports,
     slow_cases=("forces, 1,000 : 1", "overlap, 1,000 : 1", "sweeps, 1,000 : 1", "relaxed sweeps, a million : 1",
                 "1,000 on 1, standing"),
     omitted_methods="at a million, sweeps without relaxation are not counted: it would take 6.9 million of them; the "

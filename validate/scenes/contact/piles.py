@@ -5,6 +5,7 @@ weight, the walls push with as much from all sides, nothing overlaps, no energy 
 laws of Signorini and Coulomb.
 """
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -25,12 +26,13 @@ from validate.drawing import box, seen, sphere
 from validate.engines.contact import DT, KINDS, MU, BulletPile, G, PymunkPile, fallen, inverse_tensors
 from validate.methods import PILE, PILE_IN_SPACE
 from validate.reference.contact import natural_residual
-from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Scene
+from validate.scene import EXACT, PYBULLET, PYMUNK, EngineRun, Scene, engine, ours
 
 T = 1.0
 STEPS = (1,)
 BLOCK = 10                   # steps from one look at the energy to the next
 QUIET = 1e-2                 # of the weight: what may be out of balance in a pile that has come to rest [-]
+CREEPING = 2.0 * QUIET       # four numbers of 1 % each [-]
 CHAINS = 4.0                 # times the mean force in a column: the largest one in a pile [-]
 PYRAMID = np.sqrt(2.0)       # by which pybullet's friction exceeds μ along the diagonals of its pyramid [-]
 FALL = {}                    # {p: [(x, q), …]} of our last run of a case, block by block, for the film
@@ -52,16 +54,6 @@ CASES = {
     **{f"1,000 {name}": Params(name, 1000, kind.across, 4.0, int(name == "discs")) for name, kind in KINDS.items()},
     "1,000 spheres, judged": Params("spheres", 1000, 10, 6.0), "1,000 bricks, judged": Params("bricks", 1000, 10, 8.0),
 }
-
-
-def supports(name, p):
-    """Each engine and each of our two functions in its own number of dimensions.  Of many bodies pybullet's residual
-    does not go away, so that it is judged with a few; and 1,000 take it a minute.
-    """
-    flat = kind_of(p).d == 2
-    if name.startswith("pybullet") and p.n > (12 if p.judged else 200):
-        return False
-    return {"advance_pile_2d": flat, "advance_pile": not flat}.get(name, name.startswith("pymunk") == flat)
 
 
 def kind_of(p):
@@ -147,30 +139,38 @@ def truth(p, t):
     return np.array([1.0, 0.0, 0.0, 0.0] + ([] if not p.judged else [0.0]))
 
 
-def tolerance(p, dt):
+def limit(p, dt):
     """A pile at rest still creeps: each number but the overlap may be off by 1 % of the weight, or of g dt.  The
     overlap may be the sag of a soft contact, k_n F/(2π hertz)².  Between bodies of the least mass k_n = 2/m, and twice
     that at corners.  F is 4 times the weight of a column of n/across bodies, because forces go in chains.
-
-    pymunk lets bodies overlap by its slop, 1e-3 m, over the least half size of 0.08 m, and by as much again where its
-    iterations have not converged.  Its default slop is larger than the bodies.  pybullet's iterations leave more than
-    its slop.  No theory says how much, so these are shown and not judged.
     """
     kind, corner = kind_of(p), 2.0 if p.kind in ("boxes", "bricks") else 1.0
     columns = p.across ** (kind.d - 1)
     sag = corner * 2.0 * CHAINS * 1.3 * np.ceil(p.n / columns) * G / (2.0 * np.pi * kind.hertz) ** 2 / 0.08
-    quiet = 2.0 * QUIET                                                  # four numbers of 1 % each
-    return {EXACT: quiet + sag, "pymunk": quiet + 2.0 * 1e-3 / 0.08, "pymunk, default": np.inf, "pybullet": np.inf,
-            "pybullet, default": np.inf}
+    return CREEPING + sag
+
+
+def pymunk_limit(p, dt):
+    """pymunk lets bodies overlap by its slop, 1e-3 m, over the least half size of 0.08 m, and by as much again where
+    its iterations have not converged.
+    """
+    return CREEPING + 2.0 * 1e-3 / 0.08
+
+
+def unknown(p, dt):
+    """pymunk's default slop is larger than the bodies.  pybullet's iterations leave more than its slop.  No theory says
+    how much, so these are shown and not judged.
+    """
+    return np.inf
 
 
 # ---------------------------------------------------------------------------------------------- engines
 
-def making(rival, *settings, wider=1.0):
-    """make(p, dt) of an engine: its whole run is one long reading."""
-    def read(p):
+def make(p, dt, rival, wider=1.0):
+    """The EngineRun of an engine's pile: its whole run is one long reading."""
+    def read():
         state, pile = start(p)
-        world, energies = rival(kind_of(p), state, pile, *settings), []
+        world, energies = rival(kind_of(p), state, pile), []
         for _ in range(round(p.seconds / DT / BLOCK)):
             world.run(BLOCK)
             energies.append(energy(pile, *world.places(), *world.velocities()))
@@ -181,17 +181,41 @@ def making(rival, *settings, wider=1.0):
         found = numbers(p, pile, *world.places(), world.wall_force(), energies, residual)
         world.close()
         return found
-    return lambda p, dt: EngineRun(lambda: None, lambda: read(p), lambda: None)
+    return EngineRun(lambda: None, read, lambda: None)
 
 
-ENGINES = (
-    Engine(PYMUNK, "", making(PymunkPile, 50, 1e-3), EXACT, "50 iterations, collision_slop 1e-3; steps of 1/240 s"),
-    Engine(PYMUNK, "default", making(PymunkPile, 10, 0.1), EXACT,
-           "10 iterations, collision_slop 0.1; steps of 1/240 s"),
-    Engine(PYBULLET, "", making(BulletPile, 50, 0.0, wider=PYRAMID), EXACT,
-           "maximal coordinates; solverResidualThreshold 0, 50 iterations; steps of 1/240 s"),
-    Engine(PYBULLET, "default", making(BulletPile, 50, 1e-7, wider=PYRAMID), EXACT,
-           "maximal coordinates; 50 iterations; steps of 1/240 s"),
+def flat(p):
+    return kind_of(p).d == 2
+
+
+def solid(p):
+    return kind_of(p).d == 3
+
+
+def few_in_space(p):
+    """Of many bodies pybullet's residual does not go away, so that it is judged with a few; and 1,000 take it a
+    minute.
+    """
+    return solid(p) and p.n <= (12 if p.judged else 200)
+
+
+CREEPS = "where each body ends is unknown, and so is how it creeps there: the limit bounds how much"
+NO_LAW = "no theory says how much its iterations leave"
+RUNNERS = (
+    ours(PILE_IN_SPACE, limit=limit, predicted=CREEPS, order=EXACT, supports=solid),
+    ours(PILE, limit=limit, predicted=CREEPS, order=EXACT, supports=flat),
+    engine(PYMUNK, "", partial(make, rival=partial(PymunkPile, iterations=50, slop=1e-3)),
+           "50 iterations, collision_slop 1e-3; steps of 1/240 s",
+           order=EXACT, limit=pymunk_limit, predicted=CREEPS, supports=flat),
+    engine(PYMUNK, "default", partial(make, rival=partial(PymunkPile, iterations=10, slop=0.1)),
+           "10 iterations, collision_slop 0.1; steps of 1/240 s",
+           order=EXACT, limit=unknown, predicted=NO_LAW, supports=flat),
+    engine(PYBULLET, "", partial(make, rival=partial(BulletPile, iterations=50), wider=PYRAMID),
+           "maximal coordinates; solverResidualThreshold 0, 50 iterations; steps of 1/240 s",
+           order=EXACT, limit=unknown, predicted=NO_LAW, supports=few_in_space),
+    engine(PYBULLET, "default", partial(make, rival=partial(BulletPile, iterations=50, residual=1e-7), wider=PYRAMID),
+           "maximal coordinates; 50 iterations; steps of 1/240 s",
+           order=EXACT, limit=unknown, predicted=NO_LAW, supports=few_in_space),
 )
 
 
@@ -275,13 +299,9 @@ def links(p):
 SCENE = Scene(
     title="Piles", lesson="contact",
     cases=CASES, duration=T, steps=STEPS,
-    methods=(PILE_IN_SPACE, PILE),
+    runners=RUNNERS,
     start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-15,
-    tolerance=tolerance,
-    engines=ENGINES,
-    orders={"advance_pile": EXACT, "advance_pile_2d": EXACT},
-    supports=supports,
     slow_cases=tuple(CASES)[1:],
     omitted_methods="sweeps and Murty's method alone are missing: they move no bodies, and a matrix of 2,000 contacts "
                     "would have 16 million numbers; pybullet's residual stays between 0.3 and 4 g dt with 200 and with "

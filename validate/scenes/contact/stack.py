@@ -6,6 +6,7 @@ Murty's method needs a few pivots.  The pile needs two sweeps per substep, becau
 the last: its sweeps are spread over many steps.
 """
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -36,7 +37,7 @@ from validate.reference.contact import (
     sway_of_tower,
     unrest_in_pymunk,
 )
-from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, Engine, EngineRun, Scene
+from validate.scene import EXACT, MUJOCO, PYBULLET, PYMUNK, EngineRun, Scene, engine, ours
 
 T = 1.0
 STEPS = (1,)
@@ -47,6 +48,12 @@ SETTLING = 1.5               # how long the pile falls together [s]
 WAITING = 3.0                # and the engines [s]
 OVERLAP = 1e-6               # with which pymunk's bodies begin [m]: they see a contact when there is one
 WARMER = 0.85                # share of the last impulses with which pybullet's solver begins [-]
+ROUNDED = 1e-12              # of the forces of MuJoCo at rest, relative [-]
+FINE, DEFAULT = {"iterations": 100, "slop": 1e-4}, {"iterations": 10, "slop": 0.1}       # of pymunk; slop [m]
+SETTLED = Settling(DT, SUBSTEPS, HERTZ, ZETA, MU, SETTLING)
+# of n boxes, iterations, slop: by unrest_in_pymunk, which takes up to ten seconds; a test repeats it [-]
+UNREST = {(10, 100, 1e-4): 7.195e-7, (10, 10, 0.1): 1.047e-4, (5, 100, 1e-4): 0.0, (5, 10, 0.1): 1.643e-8}
+SWAY = {10: 1.387e-8, 5: 0.0}  # of n boxes, by sway_of_tower, which takes two seconds; a test repeats it [-]
 
 
 class Params(NamedTuple):
@@ -62,18 +69,6 @@ CASES = {
     "ten discs": Params("discs"), "twenty discs": Params("discs", 20),
     "ten cubes in space": Params("cubes"), "five cubes in space": Params("cubes", 5, 2.0),
 }
-
-
-def supports(name, p):
-    """Ten boxes are too many for the sweeps.  What moves cannot stand on one point: the pile and engines have boxes.
-    Of the four contacts under a cube one is redundant, so that no matrix has an answer; pymunk has no cubes.
-    """
-    if p.shape == "cubes":
-        return name == "advance_pile" or name.startswith(("pybullet", "mujoco"))
-    boxes = p.shape == "boxes"
-    if name == "advance_pile":
-        return False
-    return {"contact_forces": not boxes or p.n <= 5, "solve_lcp": True}.get(name, boxes)
 
 
 def moment(p):
@@ -153,34 +148,54 @@ def truth(p, t):
     return p.m * p.g * np.arange(p.n, 0.0, -1.0)
 
 
-def tolerance(p, dt):
+def swept_limit(p, dt):
     """Sweeps stop where the residual is 1e-13 of the largest (|A||F| + |b|)_k.  With λ the least eigenvalue of A, the
     error is the residual over λ at most: in a column of discs λ = 4 sin²(π/(4n + 2))/m, and boxes can rock, too.
-    Murty solves a linear system: 1.1e-16 times the condition of A, and ten for the operations.
-
-    The pile still rocks a little when it is read.  A reference that knows only the recursion of its sweeps says how
-    much.  It takes the corners as fixed, and the phase of the rocking depends on their exact places.  So the limit is
-    three times its sway, and the force of a rounded gap.  In space a cube has the moment of the square about both
-    axes, and rocks about both: twice as much.
-    pymunk rocks, too, and the recursion of its sweeps says how much.  Its limit is three times that, and the roundings
-    of Murty.
-    pybullet begins each step with the last impulses, so that its sweeps add up over the steps.  It takes 8 % of an
-    overlap back per step.  Nothing is left of the first overlaps, but each overlap is rounded.  With its default
-    settings sweeps do not add up, and its tower creeps: each force must tell to a hundredth of a box how many it
-    carries.
-    MuJoCo's contacts are at rest after 150 of their time constants, but for roundings.
     """
     A, here = normal_matrix(p), 2 if p.shape == "boxes" else 1
     values, forces = np.linalg.eigvalsh(A), np.repeat(truth(p, T), here) / here
-    swept = 1e-13 * (np.max(np.abs(A) @ forces) + p.g) / values[0] * np.sqrt(here * p.n) / np.linalg.norm(forces)
-    solved = 10.0 * 1.1e-16 * values[-1] / values[0]
-    limits = {EXACT: swept, "Murty": solved, "pybullet, default": told(p), "mujoco": ROUNDED,
-              "pybullet": rounded_overlap((p.m,) * p.n, p.size, p.g, CONTACT_ERP, DT)}
-    if p.shape == "discs":
-        return limits
-    rocks, rounded = 3.0 * sway(p), rounded_force((p.m,) * p.n, p.size, p.g, HERTZ)
-    return {**limits, "pile": rocks + rounded, "pile in space": 2.0 * rocks + rounded,
-            **{label: 3.0 * unrest(p, how) + solved for label, how in PYMUNK_SETTINGS.items()}}
+    return 1e-13 * (np.max(np.abs(A) @ forces) + p.g) / values[0] * np.sqrt(here * p.n) / np.linalg.norm(forces)
+
+
+def solved_limit(p, dt):
+    """Murty solves a linear system: 1.1e-16 times the condition of A, and ten for the operations."""
+    values = np.linalg.eigvalsh(normal_matrix(p))
+    return 10.0 * 1.1e-16 * values[-1] / values[0]
+
+
+def pile_limit(p, dt, axes=1.0):
+    """The pile still rocks a little when it is read.  A reference that knows only the recursion of its sweeps says how
+    much.  It takes the corners as fixed, and the phase of the rocking depends on their exact places.  So the limit is
+    three times its sway, and the force of a rounded gap.  In space a cube has the moment of the square about both
+    axes, and rocks about both: twice as much.
+    """
+    return axes * 3.0 * sway(p) + rounded_force((p.m,) * p.n, p.size, p.g, HERTZ)
+
+
+def pymunk_limit(p, dt, iterations, slop):
+    """pymunk rocks, too, and the recursion of its sweeps says how much.  Its limit is three times that, and the
+    roundings of Murty.
+    """
+    return 3.0 * unrest(p, iterations, slop) + solved_limit(p, dt)
+
+
+def pybullet_limit(p, dt):
+    """pybullet begins each step with the last impulses, so that its sweeps add up over the steps.  It takes 8 % of an
+    overlap back per step.  Nothing is left of the first overlaps, but each overlap is rounded.
+    """
+    return rounded_overlap((p.m,) * p.n, p.size, p.g, CONTACT_ERP, DT)
+
+
+def creeping_limit(p, dt):
+    """With pybullet's default settings sweeps do not add up, and its tower creeps: each force must tell to a hundredth
+    of a box how many it carries.
+    """
+    return 0.01 * p.m * p.g / np.linalg.norm(truth(p, T))
+
+
+def mujoco_limit(p, dt):
+    """MuJoCo's contacts are at rest after 150 of their time constants, but for roundings."""
+    return ROUNDED
 
 
 def sway(p):
@@ -190,19 +205,12 @@ def sway(p):
     return sway_of_tower((p.m,) * p.n, p.size, p.g, SETTLED)
 
 
-def unrest(p, how):
+def unrest(p, iterations, slop):
     """Return the relative error of pymunk's forces when they are read; the cases are known beforehand."""
-    if p.shape == "cubes":
-        return 0.0                                                        # pymunk has no cubes
-    if p.size == Params().size and p.g == Params().g and (p.n, *how) in UNREST:
-        return UNREST[p.n, *how]
-    joints = tower(p).joint_frictions()
-    return unrest_in_pymunk((p.m,) * p.n, p.size, p.g, Towers(DT, *how, OVERLAP, joints, WAITING))
-
-
-def told(p):
-    """Return the error of all forces of a hundredth of a box's weight in one of them, relative."""
-    return 0.01 * p.m * p.g / np.linalg.norm(truth(p, T))
+    if p.size == Params().size and p.g == Params().g and (p.n, iterations, slop) in UNREST:
+        return UNREST[p.n, iterations, slop]
+    how = Towers(DT, iterations, slop, OVERLAP, tower(p).joint_frictions(), WAITING)
+    return unrest_in_pymunk((p.m,) * p.n, p.size, p.g, how)
 
 
 def normal_matrix(p):
@@ -215,14 +223,6 @@ def normal_matrix(p):
             G[k, :, k - 1] = -G[k, :, k]
     G = G.reshape(p.n * len(offsets), 2 * p.n)
     return (G * np.tile((1.0 / p.m, 1.0 / moment(p)), p.n)) @ G.T
-
-
-PYMUNK_SETTINGS = {"pymunk": (100, 1e-4), "pymunk, default": (10, 0.1)}          # iterations, collision_slop [m]
-ROUNDED = 1e-12              # of the forces of MuJoCo at rest, relative [-]
-SETTLED = Settling(DT, SUBSTEPS, HERTZ, ZETA, MU, SETTLING)
-# of n boxes, iterations, slop: by unrest_in_pymunk, which takes up to ten seconds; a test repeats it [-]
-UNREST = {(10, 100, 1e-4): 7.195e-7, (10, 10, 0.1): 1.047e-4, (5, 100, 1e-4): 0.0, (5, 10, 0.1): 1.643e-8}
-SWAY = {10: 1.387e-8, 5: 0.0}  # of n boxes, by sway_of_tower, which takes two seconds; a test repeats it [-]
 
 
 # ---------------------------------------------------------------------------------------------- engines
@@ -246,17 +246,53 @@ def mujoco_make(p, dt):
     return EngineRun(lambda: None, lambda: wait()[0], lambda: None)
 
 
-ENGINES = (
-    Engine(PYMUNK, "", lambda p, dt: pymunk_make(p, dt, *PYMUNK_SETTINGS["pymunk"]), EXACT,
-           "100 iterations, collision_slop 1e-4; 3 s of 1/240 s"),
-    Engine(PYMUNK, "default", lambda p, dt: pymunk_make(p, dt, *PYMUNK_SETTINGS["pymunk, default"]), EXACT,
-           "10 iterations, collision_slop 0.1; 3 s of 1/240 s"),
-    Engine(PYBULLET, "", lambda p, dt: pybullet_make(p, dt, 200, 0, WARMER), EXACT,
+def are_boxes(p):
+    """What moves cannot stand on one point: discs would fall over."""
+    return p.shape == "boxes"
+
+
+def are_cubes(p):
+    return p.shape == "cubes"
+
+
+def are_boxes_or_cubes(p):
+    return are_boxes(p) or are_cubes(p)
+
+
+def are_flat(p):
+    """Of the four contacts under a cube one is redundant, so that no matrix has an answer."""
+    return not are_cubes(p)
+
+
+def settle_soon(p):
+    """Ten boxes are too many for the sweeps."""
+    return are_flat(p) and (not are_boxes(p) or p.n <= 5)
+
+
+PHASE = "only the size of its rocking is known, because its phase depends on the exact places of the corners"
+RUNNERS = (
+    ours(DIRECT, limit=solved_limit, order=EXACT, supports=are_flat,
+         predicted="it solves a linear system: only round-off is left, and the limit bounds it"),
+    ours(SWEEPS, limit=swept_limit, order=EXACT, supports=settle_soon,
+         predicted="its sweeps stop at a residual, and the limit bounds what is left"),
+    ours(PILE, limit=pile_limit, predicted=PHASE, order=EXACT, supports=are_boxes),
+    ours(PILE_IN_SPACE, limit=partial(pile_limit, axes=2.0), predicted=PHASE, order=EXACT, supports=are_cubes),
+    engine(PYMUNK, "", partial(pymunk_make, **FINE), "100 iterations, collision_slop 1e-4; 3 s of 1/240 s",
+           order=EXACT, limit=partial(pymunk_limit, **FINE), predicted=PHASE, supports=are_boxes),
+    engine(PYMUNK, "default", partial(pymunk_make, **DEFAULT), "10 iterations, collision_slop 0.1; 3 s of 1/240 s",
+           order=EXACT, limit=partial(pymunk_limit, **DEFAULT), predicted=PHASE, supports=are_boxes),
+    engine(PYBULLET, "", partial(pybullet_make, iterations=200, residual=0, warm=WARMER),
            f"maximal coordinates; solverResidualThreshold 0, 200 iterations, warmStartingFactor {WARMER}; "
-           "3 s of 1/240 s"),
-    Engine(PYBULLET, "default", lambda p, dt: pybullet_make(p, dt, 50, 1e-7, WARM), EXACT,
-           f"maximal coordinates; 50 iterations, warmStartingFactor {WARM}; 3 s of 1/240 s"),
-    Engine(MUJOCO, "", mujoco_make, EXACT, f"{SOFT}; 3 s of 1/240 s"),
+           "3 s of 1/240 s",
+           order=EXACT, limit=pybullet_limit, supports=are_boxes_or_cubes,
+           predicted="only roundings of overlaps are left, and the limit bounds them"),
+    engine(PYBULLET, "default", partial(pybullet_make, iterations=50, residual=1e-7, warm=WARM),
+           f"maximal coordinates; 50 iterations, warmStartingFactor {WARM}; 3 s of 1/240 s",
+           order=EXACT, limit=creeping_limit, supports=are_boxes_or_cubes,
+           predicted="its tower creeps, and its solver's sweeps are not modelled"),
+    engine(MUJOCO, "", mujoco_make, f"{SOFT}; 3 s of 1/240 s",
+           order=EXACT, limit=mujoco_limit, supports=are_boxes_or_cubes,
+           predicted="at rest only roundings are left, and the limit bounds them"),
 )
 
 
@@ -292,13 +328,9 @@ def links(p):
 SCENE = Scene(
     title="Stack of ten", lesson="contact",
     cases=CASES, duration=T, steps=STEPS,
-    methods=(DIRECT, SWEEPS, PILE, PILE_IN_SPACE),
+    runners=RUNNERS,
     start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-15,
-    tolerance=tolerance,
-    engines=ENGINES,
-    orders={"contact_forces": EXACT, "solve_lcp": EXACT, "advance_pile_2d": EXACT, "advance_pile": EXACT},
-    supports=supports,
     slow_cases=("twenty discs", "ten cubes in space", "five cubes in space"),
     omitted_methods="for ten boxes sweeps are missing: after 50,000 of them they end in Diverged, because boxes that "
                     "rock settle slowly; no case with a motion has a column of discs, which would fall over",

@@ -1,5 +1,6 @@
 """A ball dropped from one metre rebounds with 0.8 of its speed: each apex is 0.64 times the one before."""
 
+from functools import partial
 from itertools import pairwise
 from typing import Annotated, NamedTuple
 
@@ -15,16 +16,19 @@ from validate.engines.chipmunk import pymunk_ball, pymunk_floor, pymunk_space, p
 from validate.methods import BACKTRACKING, PENALTY, PROJECTING
 from validate.reference.impulses import (
     APART,
+    BULLET_RULE,
+    CHIPMUNK_RULE,
     COPIES,
-    DROPPING,
     LATE,
+    ONLY_ROUND_OFF,
+    PROJECTING_RULE,
     all_dropped,
     delays,
     pushed,
     rounded_steps,
     soft_bounce,
 )
-from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Engine, EngineRun, Prediction, Scene, by_order
+from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, EngineRun, Prediction, Scene, by_order, engine, ours
 
 T = 1.9                      # [s]: in the third flight, clear of impacts
 STEPS = (40, 100, 200, 500, 1000, 2500, 10000)
@@ -51,11 +55,6 @@ class Params(NamedTuple):
 
 
 CASES = {"plane": Params(), "space": Params(space=1.0), "comes to rest": Params(e=0.5)}
-
-
-def supports(name, p):
-    """Not the penalty for a ball at rest: it keeps oscillating inside the floor."""
-    return name != "penalty_step" or p.e >= 0.8
 
 
 def fallen(p):
@@ -128,20 +127,18 @@ def soft(p, t):
     return seen(p, t, lambda k: soft_bounce(y[k], v[k], t, p.g, p.omega, p.damping()))
 
 
-def tolerance(p, dt):
+def limits(p, dt, kick=0.0):
     """An impact is detected at most N steps late; a ball that leaves from below takes 1/e of that: L = N dt/e.
 
     It leaves with e v, hence the 1/e.  After every impact the speed is off by  s ← e (s + g L),  because the impact
     was detected late, and the time by  τ ← τ + L + 2s/g,  because the next flight is 2s/g longer.  At the end, a time
     a after the last impact, the height is off by |v| τ + s a + ½ g dt a and the speed by g τ + s + g dt.  A ball at
-    rest is as deep as its first impact left it, at most v₁ L, or jumps with the speed g dt of a step. The penalty's
-    spring keeps ½v² + ½ω²x² − ½ω² dt x v, so entering and leaving at |x| ≤ v dt costs (ω dt)² of the speed, and its
-    damper, evaluated at one end of the step, ζω dt.
+    rest is as deep as its first impact left it, at most v₁ L, or jumps with the speed g dt of a step.
     """
     exact, L = by_order(1.0 / T, T, dt)[EXACT], LATE * dt / p.e
     fast = np.sqrt(2.0 * p.g * p.h)
 
-    def off(before, kick):
+    def off(before):
         s = tau = since = 0.0
         for moment, speed in impacts(p):
             if moment > T + before:
@@ -151,40 +148,45 @@ def tolerance(p, dt):
             tau += L + 2.0 * s / p.g
         return (fast * L, p.g * L) if since - before + tau < T else (np.inf, np.inf)
 
-    def limit(kick):
-        worst = np.max([np.abs(off(before, kick)) for before in delays(0.15)], axis=0)
-        return np.linalg.norm(worst) * np.sqrt(COPIES) / np.linalg.norm(truth(p, T)) + exact
-    late = limit(0.0)
-    return {
-        1: late,
-        EXACT: exact,
-        "penalty": limit((p.omega * dt) ** 2 + p.damping() * p.omega * dt),
-        "pymunk": late,
-        "pybullet": late,
-    }
+    worst = np.max([np.abs(off(before)) for before in delays(0.15)], axis=0)
+    return {1: np.linalg.norm(worst) * np.sqrt(COPIES) / np.linalg.norm(truth(p, T)) + exact, EXACT: exact}
 
 
-def predicted_error(label, p, dt):
+def soft_limit(p, dt):
+    """A soft floor is met as late as a hard one, and each impact costs some of the speed besides.  The penalty's spring
+    keeps  ½v² + ½ω²x² − ½ω² dt x v,  so entering and leaving at |x| ≤ v dt costs (ω dt)² of it, and its damper,
+    evaluated at one end of the step, ζω dt.
+    """
+    return limits(p, dt, kick=(p.omega * dt) ** 2 + p.damping() * p.omega * dt)[1]
+
+
+def late_impacts(p, dt, rule, far=1.0):
     """Each ball is predicted on its own.  In flight the steps end on a parabola, whose velocity is ½ g dt off the true
     one.  An impact is found at the first end of a step below the floor.  The lesson's step then sets the ball on the
-    floor; pybullet reverses it where it is; pymunk reverses it and then lifts it by a part of its depth per step.  A
-    soft floor pushes by its force at the start of each step.  Where round-off decides whether a step ends below the
-    floor, both outcomes are right.
+    floor; pybullet reverses it where it is; pymunk reverses it and then lifts it by a part of its depth per step.
+    Where round-off decides whether a step ends below the floor, both outcomes are right.
     """
-    law, steps = soft(p, T) if label == "penalty" else truth(p, T), round(T / dt)
-    size = np.linalg.norm(law)
-    if label == "penalty":
-        y, v = pushed(*fallen(p), p.g, p.omega**2, 2.0 * p.damping() * p.omega, dt, steps)
-        return Prediction(seen(p, T, lambda k: (y[k], v[k])) - law, rounded_steps(T, dt, SPREADS * COPIES / size))
-    if label not in DROPPING:
-        return None
-    runs = all_dropped(label, *fallen(p), p.g, p.e, dt, steps)
+    # far [m]: places as large as this are rounded
+    law = truth(p, T)
+    runs, size = all_dropped(rule, *fallen(p), p.g, p.e, dt, round(T / dt)), np.linalg.norm(law)
     if runs is None:
         return None
     found, ways = runs
-    far = APART * COPIES if label == "pymunk" else 1.0
     return Prediction(seen(p, T, lambda k: found[k, :2]) - law,
                       1.01 * np.linalg.norm(ways[:, :2]) / size + rounded_steps(T, dt, far * np.sqrt(COPIES) / size))
+
+
+def pushed_back(p, dt):
+    """A soft floor pushes by its force at the start of each step."""
+    law = soft(p, T)
+    y, v = pushed(*fallen(p), p.g, p.omega**2, 2.0 * p.damping() * p.omega, dt, round(T / dt))
+    return Prediction(seen(p, T, lambda k: (y[k], v[k])) - law,
+                      rounded_steps(T, dt, SPREADS * COPIES / np.linalg.norm(law)))
+
+
+def keeps_bouncing(p):
+    """Not a ball that comes to rest: it keeps oscillating inside the soft floor."""
+    return p.e >= 0.8
 
 
 def pymunk_make(p, dt):
@@ -212,9 +214,17 @@ def pybullet_make(p, dt):
     return EngineRun(bullet.step, read, bullet.close)
 
 
-ENGINES = (
-    Engine(PYMUNK, "", pymunk_make, 1, f"{COPIES} circles on a thick segment; collision_slop 1e-5"),
-    Engine(PYBULLET, "", pybullet_make, 1, f"{COPIES} spheres on a GEOM_PLANE; {IMPACT_SETTINGS}", most_steps=2500),
+RUNNERS = (
+    ours(PENALTY, limit=soft_limit, predicted=pushed_back, supports=keeps_bouncing, most_in_quick=2500,
+         departure=Departure("its floor is a spring, which takes 30 ms to reverse the ball, however short a step is",
+                             soft)),
+    ours(PROJECTING, limit=limits, predicted=partial(late_impacts, rule=PROJECTING_RULE)),
+    # between impacts at known times the motion is a parabola
+    ours(BACKTRACKING, limit=limits, predicted=ONLY_ROUND_OFF, order=EXACT),
+    engine(PYMUNK, "", pymunk_make, f"{COPIES} circles on a thick segment; collision_slop 1e-5",
+           order=1, limit=limits, predicted=partial(late_impacts, rule=CHIPMUNK_RULE, far=APART * COPIES)),
+    engine(PYBULLET, "", pybullet_make, f"{COPIES} spheres on a GEOM_PLANE; {IMPACT_SETTINGS}",
+           order=1, limit=limits, predicted=partial(late_impacts, rule=BULLET_RULE), most_steps=2500),
 )
 
 
@@ -254,20 +264,9 @@ def in_space(p):
 SCENE = Scene(
     title="Bounces", lesson="impulses",
     cases=CASES, duration=T, steps=STEPS,
-    methods=(PENALTY, PROJECTING, BACKTRACKING),
+    runners=RUNNERS,
     acceleration=acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-14,
-    tolerance=tolerance,
-    predicted_error=predicted_error,
-    engines=ENGINES,
-    expected_departures={
-        "penalty": Departure("its floor is a spring, which takes 30 ms to reverse the ball, however short a step is",
-                             soft)
-    },
-    # Between impacts at known times the motion is a parabola.
-    orders={"backtracking_step": EXACT},
-    supports=supports,
-    shorter_in_quick={"penalty_step": 2500},
     sanity_checks=sanity_checks,
     points=points, links=links,
     film_seconds=4.5,  # [s]: until it is at rest

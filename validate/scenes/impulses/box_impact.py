@@ -9,9 +9,9 @@ from solutions.impulses import BodyState3D, check_restitution
 from validate.engines.bullet import Impacts
 from validate.engines.chipmunk import pymunk_space
 from validate.methods import IN_TURN, TOGETHER
-from validate.reference.impulses import all_at_once, each_in_turn
+from validate.reference.impulses import ONLY_ROUND_OFF, all_at_once, each_in_turn
 from validate.reference.orientation import leaning
-from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, Engine, EngineRun, Scene
+from validate.scene import EXACT, PYBULLET, PYMUNK, Departure, EngineRun, Scene, engine, ours
 
 T = 1.0
 STEPS = (1,)
@@ -43,12 +43,6 @@ CASES = {
     for e in (0.0, 0.5, 1.0)
     for p in (Params(lands, e, rough, flat),)
 }
-
-
-def supports(name, p):
-    """Each engine in its own dimensions; points in sequence only where there is more than one."""
-    known = {"pymunk": p.flat == 1.0, "pybullet": p.flat == 0.0, "sequential_impacts": p.lands != "corner"}
-    return known.get(name, True)
 
 
 def moments(p):
@@ -111,15 +105,17 @@ def in_turn(p, t):
     return each_in_turn(p.m, inv_inertia, y, r, n, p.e, p.rough) - y
 
 
-def tolerance(p, dt):
+def sweeps_left(p, dt):
     """Sweeps stop when they change less than 1e-14 of 2 m/s; what remains is at most a hundred times that.
 
-    For ω it is larger, as the box is smaller than a metre.  The engines' boxes overlap by 1e-12 m, over arms of 0.1
-    m: ten times that, and a safety factor of ten.
+    For ω it is larger, as the box is smaller than a metre.  The limit is relative to a change of 2 m/s or more.
     """
-    # relative to a change of 2 m/s or more
-    ours = 100.0 * 1e-14 / HALF.min()
-    return {EXACT: ours, "pymunk": 1e-10, "pybullet": 1e-10}
+    return 100.0 * 1e-14 / HALF.min()
+
+
+def overlap_left(p, dt):
+    """The engines' boxes overlap by 1e-12 m, over arms of 0.1 m: ten times that, and a safety factor of ten."""
+    return 1e-10
 
 
 def pymunk_make(p, dt):
@@ -155,15 +151,30 @@ def pybullet_make(p, dt):
     return EngineRun(bullet.step, lambda: np.concatenate((bullet.velocity(body), bullet.omega(body))) - y, bullet.close)
 
 
-ENGINES = (
-    Engine(PYMUNK, "", pymunk_make, EXACT, "a Poly on a thick Segment, 2,000 iterations"),
-    Engine(
-        PYBULLET,
-        "",
-        pybullet_make,
-        EXACT,
-        "a box on a box; maximal coordinates; contactERP, contactSlop, contactProcessingThreshold 0, 2,000 iterations",
-    ),
+def flat(p):
+    return p.flat == 1.0
+
+
+def in_space(p):
+    return p.flat == 0.0
+
+
+def several_points(p):
+    return p.lands != "corner"
+
+
+UNTIL_SETTLED = "its sweeps stop at a change of 1e-14 of the speed, and the limit bounds what is left"
+SMALL_OVERLAP = "its error is what 2,000 iterations and an overlap of 1e-12 m leave, and the limit bounds it"
+RUNNERS = (
+    ours(TOGETHER, limit=sweeps_left, predicted=UNTIL_SETTLED, order=EXACT),
+    ours(IN_TURN, limit=sweeps_left, predicted=ONLY_ROUND_OFF, order=EXACT, supports=several_points,
+         departure=Departure("each point sees the body as the previous one left it, so that the order of the points "
+                             "counts", in_turn)),
+    engine(PYMUNK, "", pymunk_make, "a Poly on a thick Segment, 2,000 iterations",
+           order=EXACT, limit=overlap_left, predicted=SMALL_OVERLAP, supports=flat),
+    engine(PYBULLET, "", pybullet_make, "a box on a box; maximal coordinates; contactERP, contactSlop, "
+           "contactProcessingThreshold 0, 2,000 iterations",
+           order=EXACT, limit=overlap_left, predicted=SMALL_OVERLAP, supports=in_space),
 )
 
 
@@ -218,18 +229,9 @@ def links(p):
 SCENE = Scene(
     title="A box lands", lesson="impulses",
     cases=CASES, duration=T, steps=STEPS,
-    methods=(TOGETHER, IN_TURN),
+    runners=RUNNERS,
     start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-14,
-    tolerance=tolerance,
-    engines=ENGINES,
-    expected_departures={
-        "one after the other": Departure(
-            "each point sees the body as the previous one left it, so that the order of the points counts", in_turn
-        )
-    },
-    orders={"solve_impacts": EXACT, "sequential_impacts": EXACT},
-    supports=supports,
     moves=False,
     refinement="",
     quantity_names=quantity_names,

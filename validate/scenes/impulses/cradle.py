@@ -1,5 +1,6 @@
 """Newton's cradle, five equal balls: with gaps mechanics says how many leave; for touching balls it does not."""
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -9,8 +10,18 @@ from solutions.support.impulses import Discs, advance_discs
 from validate.engines.bullet import IMPACT_SETTINGS, Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_space, pymunk_world
 from validate.methods import BACKTRACKING_DISCS, PROJECTING_DISCS
-from validate.reference.impulses import APART, COPIES, DROPPING, delays, passed_on, rounded_steps
-from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Prediction, Scene, by_order
+from validate.reference.impulses import (
+    APART,
+    BULLET_RULE,
+    CHIPMUNK_RULE,
+    COPIES,
+    ONLY_ROUND_OFF,
+    PROJECTING_RULE,
+    delays,
+    passed_on,
+    rounded_steps,
+)
+from validate.scene import EXACT, PYBULLET, PYMUNK, EngineRun, Prediction, Scene, by_order, engine, ours
 
 T = 0.4                      # [s]: all impacts are over after 0.16
 STEPS = (20, 50, 100, 200, 500, 2000, 5000)
@@ -75,7 +86,7 @@ def truth(p, t):
     return seen(x, v, p)
 
 
-def tolerance(p, dt):
+def limits(p, dt):
     """Each of four impacts is detected up to one step late; the last ball is off by up to 4 v dt.
 
     Until its impact is detected, a ball goes v dt too far.  Separating overlapping balls moves each by that much once
@@ -86,22 +97,22 @@ def tolerance(p, dt):
     if p.gap == 0.0:
         # In a longer step the first may pass the centre of the second.
         late = exact if p.v * dt < p.R else np.inf
-        return {1: late, EXACT: exact, "pymunk": late, "pybullet": late}
+        return {1: late, EXACT: exact}
     late = np.inf
     if 2.0 * p.v * dt < p.gap:
         late = 5.0 * p.v * dt * np.sqrt(BALLS * COPIES) / np.linalg.norm(truth(p, T)) + exact
-    return {1: late, EXACT: exact, "pymunk": late, "pybullet": late}
+    return {1: late, EXACT: exact}
 
 
-def predicted_error(label, p, dt):
+def late_impacts(p, dt, rule):
     """With gaps: each impact is found at the first end of a step with an overlap, and the next ball flies on from where
     the lesson's step, or an engine, then puts it.  Where a gap is a whole number of steps, round-off decides in which
     step the impact is found; both outcomes are right.
     """
-    if label not in DROPPING or p.gap == 0.0 or 2.0 * p.v * dt >= p.gap:
+    if p.gap == 0.0 or 2.0 * p.v * dt >= p.gap:
         return None
     x, _, _ = start(p)
-    rows = [passed_on(label, row, p.v, 2.0 * p.R, dt, round(T / dt)) for row in x[:, :, 0]]
+    rows = [passed_on(rule, row, p.v, 2.0 * p.R, dt, round(T / dt)) for row in x[:, :, 0]]
     if None in rows:
         return None
     ends = [np.array([np.concatenate(end) for end in row]) for row in rows]
@@ -141,9 +152,13 @@ def pybullet_make(p, dt):
     return EngineRun(bullet.step, read, bullet.close)
 
 
-ENGINES = (
-    Engine(PYMUNK, "", pymunk_make, 1, f"{COPIES} rows of circles; 50 iterations, collision_slop 1e-5"),
-    Engine(PYBULLET, "", pybullet_make, 1, f"{COPIES} rows of spheres; {IMPACT_SETTINGS}", most_steps=500),
+RUNNERS = (
+    ours(PROJECTING_DISCS, limit=limits, predicted=partial(late_impacts, rule=PROJECTING_RULE)),
+    ours(BACKTRACKING_DISCS, limit=limits, predicted=ONLY_ROUND_OFF, order=EXACT),
+    engine(PYMUNK, "", pymunk_make, f"{COPIES} rows of circles; 50 iterations, collision_slop 1e-5",
+           order=1, limit=limits, predicted=partial(late_impacts, rule=CHIPMUNK_RULE)),
+    engine(PYBULLET, "", pybullet_make, f"{COPIES} rows of spheres; {IMPACT_SETTINGS}",
+           order=1, limit=limits, predicted=partial(late_impacts, rule=BULLET_RULE), most_steps=500),
 )
 
 
@@ -156,13 +171,9 @@ def points(observed, p):
 SCENE = Scene(
     title="Cradle", lesson="impulses",
     cases=CASES, duration=T, steps=STEPS,
-    methods=(PROJECTING_DISCS, BACKTRACKING_DISCS),
+    runners=RUNNERS,
     start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-15,
-    tolerance=tolerance,
-    predicted_error=predicted_error,
-    engines=ENGINES,
-    orders={"backtracking_discs_step": EXACT},
     points=points,
     uses=("one coordinate", "the order of the impacts"),
     full_loop="contacts of the loop bounce a step late, and it leaves overlaps as they are; lesson 10 has a cradle",

@@ -1,5 +1,6 @@
 """A disc strikes another off-centre: without friction, only the line between their centres at contact matters."""
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -10,8 +11,18 @@ from solutions.support.impulses import Discs, advance_discs
 from validate.engines.bullet import IMPACT_SETTINGS, Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_space, pymunk_world
 from validate.methods import BACKTRACKING_DISCS, PROJECTING_DISCS
-from validate.reference.impulses import APART, COPIES, DROPPING, delays, rounded_steps, struck
-from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Prediction, Scene, by_order
+from validate.reference.impulses import (
+    APART,
+    BULLET_RULE,
+    CHIPMUNK_RULE,
+    COPIES,
+    ONLY_ROUND_OFF,
+    PROJECTING_RULE,
+    delays,
+    rounded_steps,
+    struck,
+)
+from validate.scene import EXACT, PYBULLET, PYMUNK, EngineRun, Prediction, Scene, by_order, engine, ours
 
 T = 1.0                      # [s]: they meet before half of it
 STEPS = (20, 50, 100, 200, 500, 2000, 5000)
@@ -82,7 +93,7 @@ def truth(p, t):
     return np.ravel(rows)
 
 
-def tolerance(p, dt):
+def limits(p, dt):
     """Detected up to one step late, the discs overlap: the first is up to s = v dt too far.
 
     The line of centres is then at atan(sin θ/(cos θ − s/D)).  The normal turns by that difference Δθ, and the impulse
@@ -93,31 +104,28 @@ def tolerance(p, dt):
     c = normal(p)[0]
     # It may pass the other before the first test.
     if s >= c:
-        return {1: np.inf, EXACT: exact, "pymunk": np.inf, "pybullet": np.inf}
+        return {1: np.inf, EXACT: exact}
     turned = np.arctan2(p.offset, c - s) - np.arctan2(p.offset, c)
     impulse = (1.0 + p.e) * p.v / (1.0 / p.m1 + 1.0 / p.m2) * turned
     wrong = np.hypot(impulse / p.m1, impulse / p.m2)
     since = T + WINDOW - p.away / p.v
     off = np.hypot(wrong, wrong * since + 3.0 * p.v * dt)
-    late = off * np.sqrt(COPIES) / np.linalg.norm(truth(p, T)) + exact
-    return {1: late, EXACT: exact, "pymunk": late, "pybullet": late}
+    return {1: off * np.sqrt(COPIES) / np.linalg.norm(truth(p, T)) + exact, EXACT: exact}
 
 
-def predicted_error(label, p, dt):
+def late_impact(p, dt, rule, far=5.0):
     """Each pair is predicted on its own.  The impact happens at the first end of a step with an overlap, along the
     line of centres at that moment.  A step that leads past the other disc finds no overlap.  The lesson's step moves
     them apart at once, pybullet never, and pymunk by a part of the overlap per step.
     """
-    if label not in DROPPING:
-        return None
+    # far [m]: places as large as this are rounded
     rest, reach, law = complex(*(2.0 * p.R * normal(p))), 2.0 * p.R, truth(p, T)
-    ends = [struck(label, complex(p.v * before - p.away), rest, complex(p.v), reach, p.m1, p.m2, p.e, dt,
+    ends = [struck(rule, complex(p.v * before - p.away), rest, complex(p.v), reach, p.m1, p.m2, p.e, dt,
                    round(T / dt)) for before in delays(WINDOW)]
     if None in ends:
         return None
     found = np.array(ends)
     size = np.linalg.norm(law)
-    far = APART * COPIES if label == "pymunk" else 5.0
     return Prediction(np.stack((found.real, found.imag), axis=-1).ravel() - law,
                       rounded_steps(T, dt, far * np.sqrt(COPIES) / size))
 
@@ -141,9 +149,13 @@ def pybullet_make(p, dt):
     return EngineRun(bullet.step, read, bullet.close)
 
 
-ENGINES = (
-    Engine(PYMUNK, "", pymunk_make, 1, f"{COPIES} pairs of circles; no other setting matters"),
-    Engine(PYBULLET, "", pybullet_make, 1, f"{COPIES} pairs of spheres; {IMPACT_SETTINGS}", most_steps=500),
+RUNNERS = (
+    ours(PROJECTING_DISCS, limit=limits, predicted=partial(late_impact, rule=PROJECTING_RULE)),
+    ours(BACKTRACKING_DISCS, limit=limits, predicted=ONLY_ROUND_OFF, order=EXACT),
+    engine(PYMUNK, "", pymunk_make, f"{COPIES} pairs of circles; no other setting matters",
+           order=1, limit=limits, predicted=partial(late_impact, rule=CHIPMUNK_RULE, far=APART * COPIES)),
+    engine(PYBULLET, "", pybullet_make, f"{COPIES} pairs of spheres; {IMPACT_SETTINGS}",
+           order=1, limit=limits, predicted=partial(late_impact, rule=BULLET_RULE), most_steps=500),
 )
 
 
@@ -186,13 +198,9 @@ def with_discs_that_miss(p):
 SCENE = Scene(
     title="Oblique discs", lesson="impulses",
     cases=CASES, duration=T, steps=STEPS,
-    methods=(PROJECTING_DISCS, BACKTRACKING_DISCS),
+    runners=RUNNERS,
     start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-15,
-    tolerance=tolerance,
-    predicted_error=predicted_error,
-    engines=ENGINES,
-    orders={"backtracking_discs_step": EXACT},
     sanity_checks=sanity_checks,
     points=points, links=links,
     uses=("two coordinates", "two radii", "one number e for the impact"),

@@ -1,5 +1,6 @@
 """A spinning ball hits the floor: friction removes as much slip as the cone permits; without slip the ball rolls."""
 
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -12,8 +13,18 @@ from solutions.support.impulses import SpinningBall, advance_spinning_balls
 from validate.engines.bullet import IMPACT_ITERATIONS, IMPACT_SETTINGS, Impacts
 from validate.engines.chipmunk import pymunk_ball, pymunk_floor, pymunk_space, pymunk_world
 from validate.methods import BACKTRACKING_SPIN, PROJECTING_SPIN
-from validate.reference.impulses import APART, COPIES, DROPPING, all_dropped, delays, rounded_steps
-from validate.scene import EXACT, PYBULLET, PYMUNK, Engine, EngineRun, Prediction, Scene, by_order
+from validate.reference.impulses import (
+    APART,
+    BULLET_RULE,
+    CHIPMUNK_RULE,
+    COPIES,
+    ONLY_ROUND_OFF,
+    PROJECTING_RULE,
+    all_dropped,
+    delays,
+    rounded_steps,
+)
+from validate.scene import EXACT, PYBULLET, PYMUNK, EngineRun, Prediction, Scene, by_order, engine, ours
 
 T = 1.0                      # [s]: it hits the floor after half of it
 STEPS = (20, 50, 100, 200, 500, 2000, 10000)
@@ -38,11 +49,6 @@ CASES = {
     "disc slips": Params(shape=0.5),
     "disc grips": Params(shape=0.5, mu=0.5),
 }
-
-
-def supports(name, p):
-    """A disc for the 2D engine, a sphere for the 3D engine."""
-    return name != "pybullet" or p.shape == 0.4
 
 
 def start(p):
@@ -99,7 +105,7 @@ def truth(p, t):
     return np.ravel(rows)
 
 
-def tolerance(p, dt):
+def limits(p, dt):
     """The impact is detected up to one step late, and until then the ball goes on as before: it is off by (v⁺ − v) dt.
 
     Placed on the floor, it lacks the e |v_n| dt by which it should have risen.  Velocities are exact, because they
@@ -107,19 +113,19 @@ def tolerance(p, dt):
     """
     v, _ = after(p)
     exact = by_order(1.0 / T, T, dt)[EXACT]
-    late = np.hypot(p.v - v, (1.0 + p.e) * p.fall) * dt * np.sqrt(COPIES) / np.linalg.norm(truth(p, T)) + exact
-    return {1: late, EXACT: exact, "pymunk": late, "pybullet": late}
+    late = np.hypot(p.v - v, (1.0 + p.e) * p.fall) * dt * np.sqrt(COPIES) / np.linalg.norm(truth(p, T))
+    return {1: late + exact, EXACT: exact}
 
 
-def predicted_error(label, p, dt):
+def late_impact(p, dt, rule, far=5.0):
     """Each ball is predicted on its own.  An impact is found at the first end of a step below the floor; until then
     the ball goes on as before.  The lesson's step then sets it on the floor; pybullet reverses it where it is; pymunk
     reverses it and then lifts it by a part of its depth per step.
     """
+    # far [m]: places as large as this are rounded
     before = delays(WINDOW)
-    runs = label in DROPPING and all_dropped(label, p.h - p.fall * before, np.full(COPIES, -p.fall), 0.0, p.e, dt,
-                                             round(T / dt))
-    if not runs:
+    runs = all_dropped(rule, p.h - p.fall * before, np.full(COPIES, -p.fall), 0.0, p.e, dt, round(T / dt))
+    if runs is None:
         return None
     (found, ways), law, (v, rim) = runs, truth(p, T), after(p)
     hit = np.minimum(found[:, 2] * dt, T)
@@ -127,7 +133,6 @@ def predicted_error(label, p, dt):
     rows = (p.v * (before + hit) + v * (T - hit), found[:, 0], np.where(done, v, p.v), found[:, 1],
             np.where(done, rim, p.rim))
     size = np.linalg.norm(law)
-    far = APART * COPIES if label == "pymunk" else 5.0
     unsure = 1.01 * np.linalg.norm(ways * (1.0, 1.0, abs(p.v - v) * dt))
     return Prediction(np.stack(rows, axis=1).ravel() - law,
                       unsure / size + rounded_steps(T, dt, far * np.sqrt(COPIES) / size))
@@ -137,20 +142,10 @@ def pymunk_make(p, dt):
     space = pymunk_space()
     space.iterations = IMPACT_ITERATIONS
     pymunk_floor(space)
-    balls = [
-        pymunk_ball(
-            space,
-            p.m,
-            p.shape * p.m * p.R**2,
-            p.R,
-            (APART * k + p.v * before, p.h - p.fall * before + p.R),
-            (p.v, -p.fall),
-            p.rim / p.R,
-            p.e,
-            p.mu,
-        )
-        for k, before in enumerate(delays(WINDOW))
-    ]
+    inertia, v, omega = p.shape * p.m * p.R**2, (p.v, -p.fall), p.rim / p.R
+    balls = [pymunk_ball(space, p.m, inertia, p.R, (APART * k + p.v * before, p.h - p.fall * before + p.R), v, omega,
+                         p.e, p.mu)
+             for k, before in enumerate(delays(WINDOW))]
     seen_of = lambda k, b: (b.position.x - APART * k, b.position.y - p.R, *b.velocity, p.R * b.angular_velocity)
     return pymunk_world(space, dt, lambda: np.ravel([seen_of(k, b) for k, b in enumerate(balls)]))
 
@@ -158,19 +153,10 @@ def pymunk_make(p, dt):
 def pybullet_make(p, dt):
     bullet = Impacts(dt)
     bullet.plane()
-    balls = [
-        bullet.ball(
-            p.m,
-            p.shape * p.m * p.R**2,
-            p.R,
-            (p.v * before, APART * k, p.h - p.fall * before + p.R),
-            (p.v, 0.0, -p.fall),
-            (0.0, -p.rim / p.R, 0.0),
-            p.e,
-            p.mu,
-        )
-        for k, before in enumerate(delays(WINDOW))
-    ]
+    inertia, v, omega = p.shape * p.m * p.R**2, (p.v, 0.0, -p.fall), (0.0, -p.rim / p.R, 0.0)
+    balls = [bullet.ball(p.m, inertia, p.R, (p.v * before, APART * k, p.h - p.fall * before + p.R), v, omega,
+                         p.e, p.mu)
+             for k, before in enumerate(delays(WINDOW))]
 
     def read():
         x, v, omega = (np.array([get(b) for b in balls]) for get in (bullet.position, bullet.velocity, bullet.omega))
@@ -178,9 +164,18 @@ def pybullet_make(p, dt):
     return EngineRun(bullet.step, read, bullet.close)
 
 
-ENGINES = (
-    Engine(PYMUNK, "", pymunk_make, 1, f"{COPIES} circles on a thick segment; {IMPACT_ITERATIONS} iterations"),
-    Engine(PYBULLET, "", pybullet_make, 1, f"{COPIES} spheres on a GEOM_PLANE; {IMPACT_SETTINGS}", most_steps=2000),
+def is_sphere(p):
+    return p.shape == 0.4
+
+
+RUNNERS = (
+    ours(PROJECTING_SPIN, limit=limits, predicted=partial(late_impact, rule=PROJECTING_RULE)),
+    ours(BACKTRACKING_SPIN, limit=limits, predicted=ONLY_ROUND_OFF, order=EXACT),
+    engine(PYMUNK, "", pymunk_make, f"{COPIES} circles on a thick segment; {IMPACT_ITERATIONS} iterations",
+           order=1, limit=limits, predicted=partial(late_impact, rule=CHIPMUNK_RULE, far=APART * COPIES)),
+    engine(PYBULLET, "", pybullet_make, f"{COPIES} spheres on a GEOM_PLANE; {IMPACT_SETTINGS}",
+           order=1, limit=limits, predicted=partial(late_impact, rule=BULLET_RULE), supports=is_sphere,
+           most_steps=2000),
 )
 
 
@@ -207,14 +202,9 @@ def links(p):
 SCENE = Scene(
     title="Spinning bounce", lesson="impulses",
     cases=CASES, duration=T, steps=STEPS,
-    methods=(PROJECTING_SPIN, BACKTRACKING_SPIN),
+    runners=RUNNERS,
     acceleration=acceleration, start=start, run=run, observe=observe,
     truth=truth, truth_uncertainty=1e-15,
-    tolerance=tolerance,
-    predicted_error=predicted_error,
-    engines=ENGINES,
-    orders={"backtracking_spin_step": EXACT},
-    supports=supports,
     sanity_checks=sanity_checks,
     points=points, links=links,
     uses=("one ball", "one angular velocity", "one impulse in a cone"),
