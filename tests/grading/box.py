@@ -8,7 +8,6 @@ import contextlib
 import json
 import mmap
 import os
-import queue
 import re
 import secrets
 import shutil
@@ -16,7 +15,6 @@ import signal
 import subprocess
 import sys
 import tempfile
-import threading
 import time
 from pathlib import Path
 
@@ -26,6 +24,7 @@ from solutions.checks import BadInput, Diverged
 from validate.loading import alarm
 
 from . import sandbox, shipping, watch, wire
+from .line import Ended, Line
 from .meter import LOOK, Meter
 
 HERE = Path(__file__).resolve().parent
@@ -46,6 +45,7 @@ LAST_WORD_WITHIN = 3.0       # [s]: a worker that has closed the wire ends in th
 MOST_ENTRIES = 1_000_000     # of all arrays that a student's code passes to our functions [-]: the tests need 10⁴
 DEEPEST = 16                 # calls inside calls, there and back [-]: the tests need 4
 PRINTED = 20_000             # printed text that is kept [bytes]
+MOST_WAITING = 64            # frames that the worker has not read yet
 BREACH = 1.0                 # of the rules of the conversation costs a worker so much of its time [s]: it starts anew
 ERRORS = {
     error.__name__: error
@@ -212,7 +212,9 @@ class Sandbox:
         """
         word = secrets.token_hex(8)
         try:
-            return self.call("echo", (word,)) == word and self.inbox.empty()
+            answered = self.call("echo", (word,)) == word
+            self.line.pump(0.0)
+            return answered and not self.line.arrived
         except Exception:                                              # Lost, or an error that the worker has sent
             return False
 
@@ -258,7 +260,7 @@ class Sandbox:
     def start(self):
         pipes = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
         self.process = sandbox.started(self.binds, self.program, keep=(self.notes,), **pipes)
-        self.inbox, self.outbox, self.own, self.names = queue.Queue(4), queue.Queue(64), {}, {}
+        self.line, self.own, self.names, self.heard = Line(self.process, self.hear), {}, {}, 0
         self.peer = wire.Peer(
             self.send, self.receive, self.resolve, self.name_of, self.record, describe, self.error,
             fatal=(KeyboardInterrupt, wire.WireError, Lost, Late),
@@ -267,22 +269,22 @@ class Sandbox:
         self.peer.serve = self.serve
         # only these may change their arguments: otherwise a student's code could change the inputs of the tests
         self.peer.may_change = lambda name: name.rpartition(":")[2].startswith("solve_")
-        self.over = threading.Event()
-        arguments = self.process, self.inbox, self.outbox, self.over
-        tasks = _reading, _writing, self._listening
-        self.threads = [threading.Thread(target=task, args=arguments, daemon=True) for task in tasks]
-        for thread in self.threads:
-            thread.start()
-        try:
-            ready = self.inbox.get(timeout=READY_WITHIN)
-        except queue.Empty:
-            ready = None
-        if not isinstance(ready, tuple):                               # the student's code has not run yet
+        if not self.is_ready():                                        # the student's code has not run yet
             self.stop()
             printed = self.printed[-500:].decode(errors="replace")
             self.failed = RuntimeError(f"the grader cannot start its sandbox: {printed}")
             raise self.failed
         self.meter.follow(self.process)
+
+    def is_ready(self):
+        """Wait for the first frame; return whether it has come."""
+        until = time.monotonic() + READY_WITHIN
+        with contextlib.suppress(Ended, wire.WireError):
+            while time.monotonic() < until:
+                if self.line.frame():
+                    return True
+                self.line.pump(LOOK)
+        return False
 
     def serve(self, name, arguments):
         """Run one of our functions for the student's code.  Raises WireError if the call is too large or too deep."""
@@ -300,28 +302,27 @@ class Sandbox:
             self.meter.used += time.thread_time() - began
 
     def send(self, frame):
-        """Send a frame to the worker."""
-        while True:
-            try:
-                return self.outbox.put(frame, timeout=LOOK)
-            except queue.Full:                                         # the worker calls and does not read the answers
-                self.look(True)
+        """Send a frame to the worker, or begin to."""
+        self.line.send(frame)
+        while len(self.line.waiting) > MOST_WAITING:                   # the worker calls and does not read the answers
+            self.line.pump(LOOK)
+            self.look(True)
 
     def receive(self):
         """Wait for the next frame.  Raises Lost if the worker ends or the time is up."""
         while True:
             if self.meter.due():
                 to_it, from_it = arriving(self.process.stdin), arriving(self.process.stdout)
-                ours = self.outbox.unfinished_tasks and not to_it      # this process has not got round to write it
-                self.look(self.inbox.empty() and not ours and not from_it)
+                ours = self.line.waiting and not to_it                 # this process has not got round to write it
+                self.look(not ours and not from_it)
             try:
-                frame = self.inbox.get(timeout=LOOK)
-                break
-            except queue.Empty:
-                pass
-        if isinstance(frame, Exception):
-            raise self.lost(f"{frame}{self.last_word()}")
-        return frame
+                if frame := self.line.frame():
+                    return frame
+                self.line.pump(LOOK)
+            except Ended:
+                raise self.lost(f"the program ended before it answered{self.last_word()}") from None
+            except wire.WireError as e:
+                raise self.lost(f"the program sent no plain data: {e}{self.last_word()}") from None
 
     def look(self, owes):
         """Measure the worker's time, and end the worker if it has taken too long."""
@@ -364,16 +365,9 @@ class Sandbox:
             with contextlib.suppress(OSError):
                 os.killpg(self.process.pid, 9)
             self.process.wait()
-            self.over.set()
-            emptied(self.outbox)
-            self.outbox.put_nowait(None)
-            until = time.monotonic() + ENDED_WITHIN
-            for thread in self.threads:                                # they end with the worker's pipes
-                thread.join(max(0.0, until - time.monotonic()))
-            if not any(thread.is_alive() for thread in self.threads):
+            if self.line.drain(ENDED_WITHIN):                          # its pipes end with the last of its processes
                 for pipe in (self.process.stdin, self.process.stdout, self.process.stderr):
-                    with contextlib.suppress(OSError):                 # what could not be written any more
-                        pipe.close()
+                    pipe.close()
             self.process = None
             self.seen |= {code for place, code in enumerate(watch.NOTES) if self.board[place]}
 
@@ -383,45 +377,12 @@ class Sandbox:
         os.close(self.notes)
         shutil.rmtree(self.folder, ignore_errors=True)
 
-    def _listening(self, process, inbox, outbox, over):
+    def hear(self, chunk):
         """Keep the beginning of the printed text, and drop the rest."""
-        size = 0
-        while chunk := process.stderr.read1(65536):
-            size += len(chunk)
-            self.printed = (self.printed + chunk)[:PRINTED]
-            if size > PRINTED:
-                self.seen.add("flood")
-
-
-def _reading(process, inbox, outbox, over):
-    """Pass the worker's frames on until the worker is stopped, after which no one takes them from the queue."""
-    def hand_on(frame):
-        while not over.is_set():
-            with contextlib.suppress(queue.Full):
-                return inbox.put(frame, timeout=LOOK)
-
-    try:
-        while not over.is_set() and (frame := wire.read(process.stdout)) is not None:
-            hand_on(frame)
-        hand_on(StudentError("the program ended before it answered"))
-    except Exception as e:
-        hand_on(StudentError(f"the program sent no plain data: {e}"))
-
-
-def _writing(process, inbox, outbox, over):
-    """Write frames to the worker, in a thread, because a worker that never reads must not stop the parent."""
-    with contextlib.suppress(OSError, ValueError):
-        while (frame := outbox.get()) is not None and not over.is_set():
-            process.stdin.write(frame)
-            process.stdin.flush()
-            outbox.task_done()
-
-
-def emptied(line):
-    """Take everything out of a queue."""
-    with contextlib.suppress(queue.Empty):
-        while True:
-            line.get_nowait()
+        self.heard += len(chunk)
+        self.printed = (self.printed + chunk)[:PRINTED]
+        if self.heard > PRINTED:
+            self.seen.add("flood")
 
 
 def arriving(stream):

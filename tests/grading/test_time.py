@@ -5,9 +5,7 @@ more, alone.
 """
 
 import contextlib
-import io
 import os
-import queue
 import subprocess
 import sys
 import threading
@@ -20,7 +18,7 @@ import pytest
 from validate import loading
 
 from ..attacks import HONEST, SOLVED
-from . import box, children, local, marking, meter, plugin, points, remote, sandbox, submissions
+from . import box, children, line, local, marking, meter, plugin, points, remote, sandbox, submissions, wire
 
 pytestmark = pytest.mark.xdist_group("time")
 LIMIT = 1.0                  # of the calls of a test here [s]
@@ -325,45 +323,51 @@ def observed_order(dts, errors):
 
 
 @pytest.mark.long
-def test_a_worker_that_floods_leaves_no_thread_behind_on_a_slow_machine(monkeypatch):
-    read = box.wire.read
-
-    def slowly(stream):
-        time.sleep(0.2)
-        return read(stream)
+def test_a_worker_that_floods_is_ended_and_its_pipes_are_closed():
     with opened(FLOOD) as place:
-        monkeypatch.setattr(box.wire, "read", slowly)
         place.begin(60.0)
         assert place.call("lesson:observed_order", (1.0, 1.0)) == 3.0
-        threads = place.threads
+        process = place.process
         place.stop()
-        assert not [thread for thread in threads if thread.is_alive()] and place.process is None
+        assert place.process is None and process.stdin.closed and process.stdout.closed and process.stderr.closed
 
 
 @pytest.mark.long
-def test_a_worker_that_does_not_listen_leaves_no_thread_behind():
+def test_a_worker_that_does_not_listen_is_ended_and_what_waits_is_given_up():
     with opened("\nimport time\ndef observed_order(dts, errors):\n    time.sleep(60.0)\n") as place:
         place.begin(60.0)
-        for _ in range(64):
-            place.send(bytes(100_000))                                 # more than the pipe and the queue hold together
-            if place.outbox.full():
-                break
-        threads = place.threads
+        for _ in range(box.MOST_WAITING):
+            place.send(bytes(100_000))                                 # more than the pipe holds
+        assert place.line.waiting
+        process = place.process
         place.stop()
-        assert not [thread for thread in threads if thread.is_alive()]
+        assert not place.line.waiting and process.stdin.closed
 
 
-@pytest.mark.long
-def test_what_waits_to_be_read_is_given_up_with_its_worker():
-    inbox, over = queue.Queue(1), threading.Event()
-    worker = types.SimpleNamespace(stdout=io.BytesIO(100 * box.wire.pack(("value", 0, []))))
-    thread = threading.Thread(target=box._reading, args=(worker, inbox, None, over), daemon=True)
-    thread.start()
-    time.sleep(0.2)
-    assert inbox.full() and thread.is_alive()
-    over.set()
-    thread.join(5.0)
-    assert not thread.is_alive()
+def test_more_than_a_frame_that_no_one_asked_for_breaks_the_rules():
+    read, write = os.pipe()
+    silent, kept = os.pipe()
+    pipes = [os.fdopen(number, mode, buffering=0) for number, mode in ((write, "wb"), (silent, "rb"))]
+    process = types.SimpleNamespace(stdin=pipes[0], stdout=os.fdopen(read, "rb", buffering=0), stderr=pipes[1])
+    place = line.Line(process, lambda chunk: None)
+    place.arrived += bytes(line.LONGEST + 1)
+    with pytest.raises(wire.WireError, match="more than anyone asked for"):
+        place.pump(0.0)
+    place.arrived.clear()
+    frame = wire.pack(("value", 1.5, []))
+    place.send(frame[:7])
+    place.pump(1.0)
+    assert place.frame() is None
+    place.send(frame[7:] + b"x")
+    place.pump(1.0)
+    assert wire.unpack(*place.frame()) == ("value", 1.5, ()) and place.frame() is None
+    process.stdin.close()
+    os.close(kept)
+    assert place.drain(5.0) and not place.open
+    with pytest.raises(line.Ended):
+        place.frame()
+    process.stdout.close()
+    process.stderr.close()
 
 
 

@@ -69,6 +69,14 @@ def usual(array):
     raise WireError(f"an array of {array.dtype} is not plain data")
 
 
+def sizes(header):
+    """The lengths of a frame's tree and of its arrays [bytes]."""
+    magic, tree, arrays = HEADER.unpack(header)
+    if magic != MAGIC or tree > MAX_TREE or arrays > MAX_ARRAYS:
+        raise WireError("not a frame, or too large a one")
+    return tree, arrays
+
+
 def read(stream):
     """The next (tree, arrays) of a binary stream, as bytes; None at its end."""
     raw = stream.read(HEADER.size)
@@ -76,9 +84,7 @@ def read(stream):
         return None
     if len(raw) < HEADER.size:
         raise WireError("a frame broke off")
-    magic, tree, arrays = HEADER.unpack(raw)
-    if magic != MAGIC or tree > MAX_TREE or arrays > MAX_ARRAYS:
-        raise WireError("not a frame, or too large a one")
+    tree, arrays = sizes(raw)
     head, body = stream.read(tree), stream.read(arrays) if arrays else b""
     if len(head) < tree or len(body) < arrays:
         raise WireError("a frame broke off")
