@@ -118,8 +118,8 @@ RECORD = (modules.SCENES / "springs" / "hanging_springs.py").read_text()
 
 
 @pytest.mark.parametrize(("text", "says"), [
-    (RECORD.replace(" tolerance=tolerance,", ""), "'tolerance'"),
-    (RECORD.replace(" tolerance=tolerance,", " tolerence=tolerance,"), "'tolerence'"),
+    (RECORD.replace(" points=points,", ""), "'points'"),
+    (RECORD.replace(" runners=RUNNERS,", " runers=RUNNERS,"), "'runers'"),
     (RECORD.replace(" steps=STEPS,", " steps=5,"), "field 'steps'"),
     (RECORD.replace("SCENE = Scene(", "SCENES = Scene("), "SCENE = Scene"),
     (RECORD.replace('lesson="springs"', 'lesson="spring"'), "'spring'"),
